@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+# Compiler flags and the places where programs, modules and headers are built (the run-in-place layout).
+option(MW_TESTS "Build the tests" ON)
+option(MW_BENCH "Build the benchmarks" OFF)
+option(MW_FUZZ "Build the fuzz targets (clang)" OFF)
+option(MW_ASSERTS "Keep asserts in optimised builds" OFF)
+set(MW_SANITIZE "" CACHE STRING "Sanitizers for -fsanitize=, comma separated")
+
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE RelWithDebInfo CACHE STRING "" FORCE)
+endif()
+
+set(CMAKE_CXX_STANDARD 23)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_C_STANDARD 11)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_CXX_SCAN_FOR_MODULES OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+set(MW_INCLUDE_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/include)
+# Programs find their libraries beside themselves, in place and installed alike.
+set(CMAKE_BUILD_RPATH_USE_ORIGIN ON)
+set(CMAKE_INSTALL_RPATH "$ORIGIN/../lib")
+
+add_compile_options(-Wall -Wextra -Wshadow -Werror -ffp-contract=off -fvisibility=hidden)
+add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor>)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # g++ 12 reports these on inlined library code where nothing is wrong.
+  add_compile_options(-Wno-maybe-uninitialized -Wno-restrict -Wno-stringop-overflow -Wno-array-bounds -Wno-dangling-pointer)
+endif()
+set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O2 -g1")
+set(CMAKE_C_FLAGS_RELWITHDEBINFO "-O2 -g1")
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
+set(CMAKE_C_FLAGS_RELEASE "-O2 -DNDEBUG")
+if(NOT MW_ASSERTS)
+  add_compile_definitions($<$<NOT:$<CONFIG:Debug>>:NDEBUG>)
+endif()
+if(MW_SANITIZE)
+  add_compile_options(-fsanitize=${MW_SANITIZE} -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${MW_SANITIZE})
+  if(MW_SANITIZE MATCHES "undefined")
+    add_compile_options(-fno-sanitize-recover=undefined)
+  endif()
+endif()

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+# One function per kind of target, so that every folder's CMake file reads as a list of what is in it.
+include(CMakeParseArguments)
+
+# Flags of code that runs in a realtime thread (docs/architecture.md, "Realtime").
+set(MW_REALTIME_FLAGS $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions> $<$<COMPILE_LANGUAGE:CXX>:-fno-rtti>)
+set_property(GLOBAL PROPERTY MW_REALTIME_TARGETS "")
+
+# mw_library(NAME SOURCES a.cc ... [DEPENDS mw_base ...] [PRIVATE_DEPENDS ...])
+# A static library mw_NAME; includes are rooted at src/. Without SOURCES it is header-only.
+function(mw_library name)
+  cmake_parse_arguments(A "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  if(A_SOURCES)
+    add_library(mw_${name} STATIC ${A_SOURCES})
+    target_include_directories(mw_${name} PUBLIC ${CMAKE_SOURCE_DIR}/src)
+    target_link_libraries(mw_${name} PUBLIC ${A_DEPENDS} PRIVATE ${A_PRIVATE_DEPENDS})
+  else()
+    add_library(mw_${name} INTERFACE)
+    target_include_directories(mw_${name} INTERFACE ${CMAKE_SOURCE_DIR}/src)
+    target_link_libraries(mw_${name} INTERFACE ${A_DEPENDS})
+  endif()
+endfunction()
+
+# mw_realtime_library(NAME ...): as mw_library, for code that the servo thread runs: no exceptions, no RTTI,
+# and its undefined symbols are checked against tools/realtime_symbols.txt by the test lint.symbols.
+function(mw_realtime_library name)
+  mw_library(${name} ${ARGN})
+  target_compile_options(mw_${name} PRIVATE ${MW_REALTIME_FLAGS})
+  set_property(GLOBAL APPEND PROPERTY MW_REALTIME_TARGETS mw_${name})
+endfunction()
+
+# mw_component(NAME SOURCES ... [DEPENDS ...]): a realtime HAL component, lib/NAME.so, loaded by `loadrt NAME`.
+function(mw_component name)
+  cmake_parse_arguments(A "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_library(comp_${name} MODULE ${A_SOURCES})
+  set_target_properties(comp_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name})
+  target_compile_options(comp_${name} PRIVATE ${MW_REALTIME_FLAGS})
+  target_compile_definitions(comp_${name} PRIVATE RTAPI=1)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(comp_${name} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fno-gnu-unique>)
+  endif()
+  # Static libraries linked in stay private to the module.
+  target_link_options(comp_${name} PRIVATE -Wl,--exclude-libs,ALL)
+  target_link_libraries(comp_${name} PRIVATE mw_hal_api ${A_DEPENDS})
+  set_property(GLOBAL APPEND PROPERTY MW_REALTIME_TARGETS comp_${name})
+  install(TARGETS comp_${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/millwright/modules)
+endfunction()
+
+# mw_program(NAME SOURCES ... DEPENDS ...): bin/NAME.
+function(mw_program name)
+  cmake_parse_arguments(A "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(${name} ${A_SOURCES})
+  target_link_libraries(${name} PRIVATE ${A_DEPENDS})
+  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endfunction()
+
+# mw_test(NAME SOURCES ... DEPENDS ... [LABELS ...] [TIMEOUT s] [COMPONENTS and2 ...]): a GoogleTest program, one CTest
+# test per case. COMPONENTS are built first.
+function(mw_test name)
+  if(NOT MW_TESTS)
+    return()
+  endif()
+  cmake_parse_arguments(A "" "TIMEOUT" "SOURCES;DEPENDS;LABELS;COMPONENTS" ${ARGN})
+  add_executable(${name} ${A_SOURCES})
+  target_link_libraries(${name} PRIVATE ${A_DEPENDS} GTest::gtest GTest::gtest_main)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
+  foreach(component ${A_COMPONENTS})
+    add_dependencies(${name} comp_${component})
+  endforeach()
+  if(NOT A_TIMEOUT)
+    set(A_TIMEOUT 120)
+  endif()
+  if(NOT A_LABELS)
+    set(A_LABELS unit)
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT ${A_TIMEOUT} LABELS "${A_LABELS}")
+endfunction()
+
+# mw_bench(NAME SOURCES ... DEPENDS ...): a Google Benchmark program, bench/NAME in the build folder.
+function(mw_bench name)
+  if(NOT MW_BENCH)
+    return()
+  endif()
+  cmake_parse_arguments(A "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(${name} ${A_SOURCES})
+  target_link_libraries(${name} PRIVATE ${A_DEPENDS} benchmark::benchmark benchmark::benchmark_main)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bench)
+endfunction()
+
+# mw_fuzz(NAME SOURCES ... DEPENDS ...): a libFuzzer program, fuzz/NAME in the build folder.
+function(mw_fuzz name)
+  if(NOT MW_FUZZ)
+    return()
+  endif()
+  cmake_parse_arguments(A "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(${name} ${A_SOURCES})
+  target_link_libraries(${name} PRIVATE ${A_DEPENDS})
+  target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/fuzz)
+endfunction()

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "base/atomic_file.hh"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+
+namespace mw {
+namespace {
+
+class FileHandle {
+  public:
+    explicit FileHandle(int fd) : fd_(fd) {}
+    FileHandle(const FileHandle &) = delete;
+    FileHandle &operator=(const FileHandle &) = delete;
+    ~FileHandle()
+    {
+        if (fd_ >= 0) {
+            ::close(fd_);
+        }
+    }
+    int get() const { return fd_; }
+
+  private:
+    int fd_;
+};
+
+std::unexpected<Error> system_failure(const std::string &doing, const std::string &path)
+{
+    return fail("cannot " + doing + " '" + path + "': " + std::strerror(errno), {path, 0, 0});
+}
+
+bool write_all(int fd, std::string_view content)
+{
+    while (!content.empty()) {
+        const ssize_t n = ::write(fd, content.data(), content.size());
+        if (n < 0 && errno == EINTR) {
+            continue;
+        }
+        if (n <= 0) {
+            return false;
+        }
+        content.remove_prefix(static_cast<std::size_t>(n));
+    }
+    return true;
+}
+
+std::string folder_of(const std::string &path)
+{
+    const auto slash = path.rfind('/');
+    if (slash == std::string::npos) {
+        return ".";
+    }
+    return slash == 0 ? "/" : path.substr(0, slash);
+}
+
+/// A symbolic link stays one: the file that it points to is replaced.
+std::string resolve(const std::string &path)
+{
+    char *real = ::realpath(path.c_str(), nullptr);
+    std::string out = real != nullptr ? real : path;
+    std::free(real);
+    return out;
+}
+
+}  // namespace
+
+Result<> write_file_atomically(const std::string &path, std::string_view content)
+{
+    const std::string target = resolve(path);
+    std::string temporary = target + ".XXXXXX";
+    const FileHandle file(::mkstemp(temporary.data()));
+    if (file.get() < 0) {
+        return system_failure("write", path);
+    }
+    struct stat old{};
+    const bool isReplacing = ::stat(target.c_str(), &old) == 0;
+    const mode_t mode = isReplacing ? (old.st_mode & 07777) : 0644;
+    const bool isWritten =
+        ::fchmod(file.get(), mode) == 0 && write_all(file.get(), content) && ::fsync(file.get()) == 0;
+    if (!isWritten || ::rename(temporary.c_str(), target.c_str()) != 0) {
+        auto failure = system_failure("write", path);
+        ::unlink(temporary.c_str());
+        return failure;
+    }
+    const FileHandle folder(::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY));
+    if (folder.get() < 0 || ::fsync(folder.get()) != 0) {
+        return system_failure("sync the folder of", path);
+    }
+    return {};
+}
+
+Result<std::string> read_file(const std::string &path)
+{
+    const FileHandle file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (file.get() < 0) {
+        return system_failure("open", path);
+    }
+    std::string content;
+    char buffer[65536];
+    while (true) {
+        const ssize_t n = ::read(file.get(), buffer, sizeof buffer);
+        if (n < 0 && errno == EINTR) {
+            continue;
+        }
+        if (n < 0) {
+            return system_failure("read", path);
+        }
+        if (n == 0) {
+            return content;
+        }
+        content.append(buffer, static_cast<std::size_t>(n));
+    }
+}
+
+}  // namespace mw

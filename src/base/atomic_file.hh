@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Files that are either the old ones or the new ones, whatever happens in between.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "base/result.hh"
+
+namespace mw {
+
+/// Replaces `path` by `content`: writes a temporary file beside it, syncs it, renames it over, syncs the folder.
+/// Permissions of an existing file are kept. On any error the old file is untouched and the temporary is removed.
+Result<> write_file_atomically(const std::string &path, std::string_view content);
+
+/// The whole file as text; the error names the file and the system's reason.
+Result<std::string> read_file(const std::string &path);
+
+}  // namespace mw

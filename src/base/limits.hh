@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Sizes that fixed layouts (shared memory, pins) are made for.
+#pragma once
+
+namespace mw {
+
+inline constexpr int MAX_JOINTS = 16;
+inline constexpr int MAX_AXES = 9;
+inline constexpr int MAX_SPINDLES = 8;
+inline constexpr int MAX_DIGITAL_IO = 64;
+inline constexpr int MAX_ANALOG_IO = 64;
+
+}  // namespace mw

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Small text helpers. Numbers are read and written without any regard to the locale.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mw {
+
+/// The whole of `text` as a number ("1", "-2.5", "+.15", "4.2e1"); nothing when anything is left over or the value
+/// is not finite. A decimal comma is never accepted.
+std::optional<double> parse_double(std::string_view text);
+
+/// The whole of `text` as an integer, decimal or with prefix 0x; nothing on leftovers or overflow.
+std::optional<std::int64_t> parse_int(std::string_view text);
+std::optional<std::uint64_t> parse_uint(std::string_view text);
+
+/// Shortest text that reads back as the same double.
+std::string to_text(double value);
+
+std::string_view trim(std::string_view text);
+std::string to_lower(std::string_view text);
+std::string to_upper(std::string_view text);
+bool equals_ignoring_case(std::string_view a, std::string_view b);
+std::vector<std::string> split_words(std::string_view text);
+
+/// The candidate that differs from `name` in the fewest edits, or empty when none is near
+/// (at most a third of the name's length).
+std::string nearest_name(std::string_view name, const std::vector<std::string> &candidates);
+
+}  // namespace mw

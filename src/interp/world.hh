@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What the interpreter asks of the machine around it. Implemented by task, by the standalone program and by tests.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "geom/pose.hh"
+#include "interp/canon.hh"
+
+namespace mw::interp {
+
+/// The state of the machine at a synchronisation point. Lengths in machine units, machine coordinates.
+struct MachineSnapshot {
+    Pose position;             ///< commanded position, tool offset not taken off
+    Pose probed_position;
+    bool isProbeTripped = false;
+    double input_value = 0;    ///< result of the last wait_input; -1 on timeout for digital
+    bool isInputTimedOut = false;
+    bool isMistOn = false, isFloodOn = false;
+    bool isFeedOverrideEnabled = true, isSpeedOverrideEnabled = true, isFeedHoldEnabled = true;
+    bool isAdaptiveFeedEnabled = false;
+    double feed_rate = 0;
+    std::array<double, 8> spindle_speed{};
+    std::array<int, 8> spindle_direction{};  ///< +1 cw, 0 stopped, -1 ccw
+    int tool_in_spindle = 0;
+    int selected_pocket = -1;
+};
+
+class World {
+  public:
+    virtual ~World() = default;
+    virtual MachineSnapshot snapshot() const = 0;
+    virtual LengthUnits machine_units() const = 0;
+    virtual unsigned axis_mask() const = 0;  ///< bit per axis, X = 1
+    virtual int count_spindles() const = 0;
+    virtual bool isBlockDeleteOn() const = 0;
+    virtual bool isOptionalStopOn() const = 0;
+};
+
+/// The tool table as the interpreter sees it. Entry 0 is the tool in the spindle. One owner: io (or the standalone).
+class ToolSource {
+  public:
+    virtual ~ToolSource() = default;
+    virtual int count() const = 0;                      ///< entries, the spindle's included
+    virtual ToolEntry entry(int index) const = 0;       ///< index in [0, count())
+    virtual int index_of_tool(int toolno) const = 0;    ///< -1 when the table has no such tool
+    virtual bool isRandom() const = 0;
+};
+
+/// Values for #<_ini[SECTION]KEY> and #<_hal[name]>.
+class ParameterSource {
+  public:
+    virtual ~ParameterSource() = default;
+    virtual std::optional<double> ini_value(std::string_view section, std::string_view key) const = 0;
+    virtual std::optional<double> hal_value(std::string_view name) const = 0;
+};
+
+}  // namespace mw::interp
