@@ -264,9 +264,28 @@ void read_io(IniReader &ini, MachineConfig &machine)
                          ini.file().find("EMCIO", "RANDOM_TOOLCHANGER")->place);
     }
     machine.task.sequencer.isToolChangeWithSpindleOn = ini.boolean("EMCIO", "TOOL_CHANGE_WITH_SPINDLE_ON", false);
+    task::ToolChangePlace &place = machine.task.tool_change_place;
+    place.isQuillRaised = ini.boolean("EMCIO", "TOOL_CHANGE_QUILL_UP", false);
+    const config::IniEntry *position = ini.file().find("EMCIO", "TOOL_CHANGE_POSITION");
+    if (position != nullptr) {
+        const std::vector<std::string> words = split_words(position->value);
+        for (std::size_t i = 0; i < words.size() && i < MAX_AXES; ++i) {
+            const auto value = parse_double(words[i]);
+            place.position[static_cast<int>(i)] = value.value_or(0.0);
+            place.coordinates = value.has_value() ? place.coordinates + 1 : -1000;
+        }
+        if (words.size() != 3 && words.size() != 6 && words.size() != 9) {
+            place.coordinates = -1;
+        }
+        if (place.coordinates < 0) {
+            ini.sink().error("[EMCIO]TOOL_CHANGE_POSITION = '" + position->value + "' is malformed", position->place,
+                             "expected 3, 6 or 9 numbers: X Y Z [A B C [U V W]]");
+            place.coordinates = 0;
+        }
+    }
     ini.know_all("EMCIO", {"EMCIO", "CYCLE_TIME", "TOOL_CHANGE_POSITION", "TOOL_CHANGE_QUILL_UP", "TOOL_CHANGE_AT_G30",
                            "DB_PROGRAM"});
-    for (const char *key : {"TOOL_CHANGE_QUILL_UP", "TOOL_CHANGE_AT_G30", "DB_PROGRAM"}) {
+    for (const char *key : {"TOOL_CHANGE_AT_G30", "DB_PROGRAM"}) {
         const config::IniEntry *entry = ini.file().find("EMCIO", key);
         if (entry != nullptr) {
             ini.sink().warning(std::string("[EMCIO]") + key + " is not supported by this version; it has no effect",

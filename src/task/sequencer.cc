@@ -240,6 +240,9 @@ bool Sequencer::push_move(const Item &item)
     if (!motion_.push_path(body)) {
         return false;
     }
+    if (move_listener_) {
+        move_listener_(body);
+    }
     isNextMoveWaitingForSpeed_ = isNextMoveWaitingForSpeed_ && !isFeed;
     return true;
 }

@@ -63,6 +63,7 @@ class Sequencer {
     void command_spindle(int spindle, double signed_rpm, bool isWaiting);
     void stop_spindles();
     int selected_index() const { return selected_index_; }
+    void set_move_listener(std::function<void(const motion::PathBody &)> listener) { move_listener_ = std::move(listener); }
 
   private:
     enum class Need : std::uint8_t { NOTHING, MOTION, MOTION_AND_IO };
@@ -96,6 +97,7 @@ class Sequencer {
     ToolStore &tools_;
     SequencerEvents events_;
     SequencerSettings settings_;
+    std::function<void(const motion::PathBody &)> move_listener_;
 
     Wait wait_ = Wait::NONE;
     std::int64_t deadline_ns_ = 0;   ///< of a dwell or a time limit; 0: none

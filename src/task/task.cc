@@ -11,7 +11,7 @@ constexpr std::size_t REMEMBERED_REQUESTS = 256;
 }  // namespace
 
 Task::Task(const Parts &parts, Settings settings)
-    : settings_(std::move(settings)), parts_(parts), motion_(parts.channels), canon_(queue_),
+    : settings_(std::move(settings)), parts_(parts), motion_(parts.channels), canon_(queue_, settings_.tool_change_place),
       frame_(canon_, settings_.machine_units),
       interp_(frame_, *this, parts.tools, parts.parameters, settings_.interpreter),
       sequencer_(queue_, motion_, io_, parts.tools, make_events(), settings_.sequencer)
@@ -218,6 +218,7 @@ void Task::run_interpreter()
                 return;
             }
             isWaitingForSync_ = false;
+            canon_.set_position(motion_.status().carte_pos_cmd);
             interp_.synch();
         }
         on_step_result(interp_.step());

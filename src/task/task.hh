@@ -36,6 +36,7 @@ struct Settings {
     std::string parameter_file;        ///< empty: parameters live in memory only
     interp::Settings interpreter;
     SequencerSettings sequencer;
+    ToolChangePlace tool_change_place;
     /// Blocks that the interpreter may read in one cycle, and queued items above which it waits.
     int blocks_per_cycle = 200;
     std::size_t read_ahead_items = 2000;
@@ -78,6 +79,11 @@ class Task final : public interp::World {
     /// The last program error with its place, callers and text; nullptr when the last program ended well.
     const diag::Diagnostic *program_error() const { return hasProgramError_ ? &program_error_ : nullptr; }
     const std::string &file_name(std::uint32_t index) const { return canon_.file_name(index); }
+    /// Is told of each move when it is handed to the planner (for figures and pictures).
+    void set_move_listener(std::function<void(const motion::PathBody &)> listener)
+    {
+        sequencer_.set_move_listener(std::move(listener));
+    }
 
     // interp::World
     interp::MachineSnapshot snapshot() const override;

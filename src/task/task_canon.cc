@@ -26,6 +26,50 @@ void TaskCanon::begin_block(const interp::BlockRef &block)
     ++tag_.block;
 }
 
+void TaskCanon::line(const interp::LineMove &move)
+{
+    last_end_ = move.end;
+    add(LineItem{move});
+}
+
+void TaskCanon::arc(const interp::ArcMove &move)
+{
+    last_end_ = move.end;
+    add(ArcItem{move});
+}
+
+void TaskCanon::probe(const interp::LineMove &move, interp::ProbeKind kind)
+{
+    last_end_ = move.end;
+    add(ProbeItem{move, kind});
+}
+
+void TaskCanon::rapid_to(const geom::Pose &end)
+{
+    interp::LineMove move;
+    move.end = end;
+    move.settings.kind = interp::FeedKind::RAPID;
+    move.settings.control = interp::MotionControl::EXACT_PATH;
+    line(move);
+}
+
+void TaskCanon::change_tool()
+{
+    if (place_.isQuillRaised) {
+        geom::Pose raised = last_end_;
+        raised[geom::AXIS_Z] = 0;
+        rapid_to(raised);
+    }
+    if (place_.coordinates > 0) {
+        geom::Pose end = last_end_;
+        for (int axis = 0; axis < place_.coordinates; ++axis) {
+            end[axis] = place_.position[axis];
+        }
+        rapid_to(end);
+    }
+    add(ChangeToolItem{});
+}
+
 void TaskCanon::offsets(int g5x_index, const geom::Pose &g5x, const geom::Pose &g92, double rotation_xy_deg)
 {
     add(OffsetsItem{g5x_index, g5x, g92, rotation_xy_deg});

@@ -10,20 +10,29 @@
 
 namespace mw::task {
 
+/// Where the machine goes for a tool change ([EMCIO]TOOL_CHANGE_POSITION, TOOL_CHANGE_QUILL_UP; requirement G5).
+struct ToolChangePlace {
+    bool isQuillRaised = false;      ///< Z to machine zero first
+    int coordinates = 0;             ///< how many of `position` are given: 0, 3, 6 or 9
+    geom::Pose position;             ///< [machine units], machine coordinates
+};
+
 class TaskCanon final : public interp::MachineCanon {
   public:
-    explicit TaskCanon(ItemQueue &queue) : queue_(queue) {}
+    explicit TaskCanon(ItemQueue &queue, const ToolChangePlace &place = {}) : queue_(queue), place_(place) {}
 
     /// Blocks seen since reset(); the number of the current one.
     std::uint32_t blocks() const { return tag_.block; }
     /// The name of a file by the index in SourceTag.
     const std::string &file_name(std::uint32_t index) const { return files_[index]; }
     void reset();
+    /// Where the machine is when nothing is queued.
+    void set_position(const geom::Pose &position) { last_end_ = position; }
 
     void begin_block(const interp::BlockRef &block) override;
-    void line(const interp::LineMove &move) override { add(LineItem{move}); }
-    void arc(const interp::ArcMove &move) override { add(ArcItem{move}); }
-    void probe(const interp::LineMove &move, interp::ProbeKind kind) override { add(ProbeItem{move, kind}); }
+    void line(const interp::LineMove &move) override;
+    void arc(const interp::ArcMove &move) override;
+    void probe(const interp::LineMove &move, interp::ProbeKind kind) override;
     void rigid_tap(const interp::LineMove &move, double scale) override { add(RigidTapItem{move, scale}); }
     void dwell(double seconds) override { add(DwellItem{seconds}); }
     void tool_offset(const geom::Pose &offset) override { add(ToolOffsetItem{offset}); }
@@ -35,7 +44,7 @@ class TaskCanon final : public interp::MachineCanon {
     void orient_spindle(int spindle, double angle_deg, int mode) override;
     void wait_orient_complete(int spindle, double timeout_s) override { add(WaitOrientItem{spindle, timeout_s}); }
     void select_tool(int toolno) override { add(SelectToolItem{toolno}); }
-    void change_tool() override { add(ChangeToolItem{}); }
+    void change_tool() override;
     void change_tool_number(int toolno) override { add(ChangeToolNumberItem{toolno}); }
     void set_tool_table_entry(int index, const interp::ToolEntry &entry) override { add(ToolEntryItem{index, entry}); }
     void coolant(bool isMist, bool isOn) override { add(CoolantItem{isMist, isOn}); }
@@ -64,7 +73,11 @@ class TaskCanon final : public interp::MachineCanon {
     void add(ItemBody body) { queue_.push_back({tag_, std::move(body)}); }
     void add_switch(motion::Switch what, int spindle, bool isEnabled) { add(OverrideSwitchItem{what, spindle, isEnabled}); }
 
+    void rapid_to(const geom::Pose &end);
+
     ItemQueue &queue_;
+    ToolChangePlace place_;
+    geom::Pose last_end_{};
     motion::SourceTag tag_{};
     std::vector<std::string> files_;
 };
