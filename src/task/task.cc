@@ -53,8 +53,15 @@ Result<> Task::start()
             return loaded;
         }
     }
-    interp_.synch();
+    synch_interpreter();
     return interp_.begin();
+}
+
+void Task::synch_interpreter()
+{
+    canon_.set_position(motion_.status().carte_pos_cmd);
+    frame_.set_position(motion_.status().carte_pos_cmd);
+    interp_.synch();
 }
 
 Result<> Task::save_parameters() const
@@ -218,8 +225,7 @@ void Task::run_interpreter()
                 return;
             }
             isWaitingForSync_ = false;
-            canon_.set_position(motion_.status().carte_pos_cmd);
-            interp_.synch();
+            synch_interpreter();
         }
         on_step_result(interp_.step());
     }

@@ -121,6 +121,8 @@ class Task final : public interp::World {
     void update_status();
     void post(MessageKind kind, std::string text) { messages_.push_back({kind, std::move(text)}); }
     bool isRunning() const { return run_ != Run::IDLE; }
+    /// Takes the machine's position and state as the program's.
+    void synch_interpreter();
     Result<> check_can_run() const;
 
     Settings settings_;

@@ -101,8 +101,7 @@ struct Task::Handler {
         task.hasProgramError_ = false;
         task.status_.isPaused = false;
         task.canon_.reset();
-        task.canon_.set_position(task.motion_.status().carte_pos_cmd);
-        task.interp_.synch();
+        task.synch_interpreter();
     }
 };
 
