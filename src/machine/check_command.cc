@@ -14,31 +14,30 @@
 namespace mw::machine {
 namespace {
 
-void print_result(const std::string &program, const MachineConfig &machine, const CheckResult &result)
-{
+void print_result(const std::string &program, const MachineConfig &machine, const CheckResult &result) {
     const char *unit = machine.isMetric ? "mm" : "in";
-    fmt::print("{}: {} blocks, {} moves, cutting {:.3f} {}, rapid {:.3f} {}\n", program, result.blocks, result.moves,
-               result.cutting_length, unit, result.rapid_length, unit);
+    fmt::print("{}: {} blocks, {} moves, cutting {:.3f} {}, rapid {:.3f} {}\n", program, result.blocks,
+               result.moves, result.cutting_length, unit, result.rapid_length, unit);
     for (int axis = 0; axis < MAX_AXES && result.hasMoves; ++axis) {
         const auto i = static_cast<std::size_t>(axis);
         if ((machine.axis_mask & (1U << axis)) != 0) {
-            fmt::print("  {} from {:.4f} to {:.4f} {}\n", geom::AXIS_LETTERS[axis], result.lowest[i], result.highest[i],
-                       geom::isAngular(axis) ? "deg" : unit);
+            fmt::print("  {} from {:.4f} to {:.4f} {}\n", geom::AXIS_LETTERS[axis], result.lowest[i],
+                       result.highest[i], geom::isAngular(axis) ? "deg" : unit);
         }
     }
 }
 
 }  // namespace
 
-int command_check(const std::vector<std::string> &words)
-{
+int command_check(const std::vector<std::string> &words) {
     const auto options = parse_options(words, {{}, {"--ini"}});
     if (!options.has_value()) {
         fmt::print(stderr, "millwright check: {}\n", options.error().str());
         return 2;
     }
     if (options->rest.size() != 1 || options->value("--ini").empty()) {
-        fmt::print(stderr, "millwright check: needs a program and a machine: millwright check PROGRAM.ngc --ini MACHINE.ini\n");
+        fmt::print(stderr, "millwright check: needs a program and a machine: millwright check PROGRAM.ngc "
+                           "--ini MACHINE.ini\n");
         return 2;
     }
     diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", d.str()); });

@@ -5,8 +5,7 @@
 
 namespace mw::machine {
 
-std::optional<double> IniParameters::ini_value(std::string_view section, std::string_view key) const
-{
+std::optional<double> IniParameters::ini_value(std::string_view section, std::string_view key) const {
     for (const config::IniEntry &entry : ini_.entries()) {
         if (equals_ignoring_case(entry.section, section) && equals_ignoring_case(entry.key, key)) {
             const auto words = split_words(entry.value);
@@ -16,8 +15,7 @@ std::optional<double> IniParameters::ini_value(std::string_view section, std::st
     return std::nullopt;
 }
 
-std::optional<double> IniParameters::hal_value(std::string_view name) const
-{
+std::optional<double> IniParameters::hal_value(std::string_view name) const {
     if (hal_ == nullptr) {
         return std::nullopt;
     }

@@ -3,8 +3,7 @@
 
 namespace mw::machine {
 
-std::unique_ptr<LoadedConfig> LoadedConfig::load(const std::string &path, diag::Sink &sink)
-{
+std::unique_ptr<LoadedConfig> LoadedConfig::load(const std::string &path, diag::Sink &sink) {
     auto file = config::IniFile::load(path, sink);
     if (!file.has_value()) {
         sink.error(file.error());

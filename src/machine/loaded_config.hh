@@ -12,9 +12,7 @@ namespace mw::machine {
 
 struct LoadedConfig {
     LoadedConfig(config::IniFile file, diag::Sink &sink)
-        : ini(std::move(file)), reader(ini, sink), machine(read_machine_config(reader))
-    {
-    }
+        : ini(std::move(file)), reader(ini, sink), machine(read_machine_config(reader)) {}
     /// Null when the file cannot be read or has errors; they are in the sink.
     static std::unique_ptr<LoadedConfig> load(const std::string &path, diag::Sink &sink);
 

@@ -25,8 +25,8 @@ struct MachineParts {
 };
 
 struct MachineOptions {
-    bool isStrict = false;             ///< unknown INI keys are errors
-    std::string instance;              ///< HAL instance of a realtime machine; empty: the user's default
+    bool isStrict = false;  ///< unknown INI keys are errors
+    std::string instance;   ///< HAL instance of a realtime machine; empty: the user's default
     /// Extra folders for HAL library files, before our own.
     std::vector<std::string> hal_library;
 };
@@ -34,12 +34,13 @@ struct MachineOptions {
 /// Realtime figures of a run; zero under the virtual clock.
 struct RealtimeFigures {
     bool isRealtime = false;
-    std::string missing;               ///< why it is not realtime, empty otherwise
+    std::string missing;  ///< why it is not realtime, empty otherwise
     std::uint64_t overruns = 0;
     std::int64_t max_latency_ns = 0;
 };
 
-/// One thread. Everything stops when it is destroyed: motion first, then the parts in reverse order of their start.
+/// One thread. Everything stops when it is destroyed: motion first, then the parts in reverse order of their
+/// start.
 class Machine {
   public:
     virtual ~Machine() = default;
@@ -56,9 +57,12 @@ class Machine {
 };
 
 /// The machine in this process, under the virtual clock: deterministic, as fast as the processor allows.
-Result<std::unique_ptr<Machine>> make_virtual_machine(const MachineParts &parts, const MachineOptions &options);
+Result<std::unique_ptr<Machine>> make_virtual_machine(const MachineParts &parts,
+                                                      const MachineOptions &options);
 
-/// The machine as two processes: this one with task, and the realtime process that it starts and that ends with it.
-Result<std::unique_ptr<Machine>> make_realtime_machine(const MachineParts &parts, const MachineOptions &options);
+/// The machine as two processes: this one with task, and the realtime process that it starts and that ends
+/// with it.
+Result<std::unique_ptr<Machine>> make_realtime_machine(const MachineParts &parts,
+                                                       const MachineOptions &options);
 
 }  // namespace mw::machine

@@ -20,13 +20,11 @@ constexpr std::int64_t STOP_TIMEOUT_NS = 30000000000;
 // Set by the signal handler; handlers have no other way to tell.
 volatile std::sig_atomic_t stop_signal = 0;
 
-void on_signal(int number)
-{
+void on_signal(int number) {
     stop_signal = number;
 }
 
-void catch_signals(bool isCatching)
-{
+void catch_signals(bool isCatching) {
     struct sigaction action{};
     action.sa_handler = isCatching ? on_signal : SIG_DFL;
     sigaction(SIGINT, &action, nullptr);
@@ -36,30 +34,26 @@ void catch_signals(bool isCatching)
 }  // namespace
 
 Operator::Operator(Machine &machine, const MachineConfig &config, diag::Sink &sink, double patience_s)
-    : machine_(machine), config_(config), sink_(sink), patience_ns_(static_cast<std::int64_t>(patience_s * 1e9))
-{
+    : machine_(machine), config_(config), sink_(sink),
+      patience_ns_(static_cast<std::int64_t>(patience_s * 1e9)) {
     stop_signal = 0;
     catch_signals(true);
 }
 
-Operator::~Operator()
-{
+Operator::~Operator() {
     catch_signals(false);
 }
 
-Result<> Operator::ask(task::Command command, const std::string &what)
-{
+Result<> Operator::ask(task::Command command, const std::string &what) {
     return wait_for(machine_.task().submit(std::move(command)), what, [] {});
 }
 
-Result<> Operator::switch_on()
-{
+Result<> Operator::switch_on() {
     auto status = ask(task::SetState{task::State::ESTOP_RESET}, "reset of the emergency stop");
     return status.has_value() ? ask(task::SetState{task::State::ON}, "switching the machine on") : status;
 }
 
-Result<> Operator::home_all()
-{
+Result<> Operator::home_all() {
     const auto homed = ask(task::HomeJoint{-1}, "homing");
     for (int joint = 0; joint < config_.num_joints; ++joint) {
         const auto i = static_cast<std::size_t>(joint);
@@ -74,8 +68,7 @@ Result<> Operator::home_all()
     return machine_.task().motion_status().isAllHomed ? Result<>{} : homed;
 }
 
-Result<> Operator::open_program(const std::string &path)
-{
+Result<> Operator::open_program(const std::string &path) {
     const auto text = read_file(path);
     if (!text.has_value()) {
         return std::unexpected(text.error());
@@ -85,21 +78,21 @@ Result<> Operator::open_program(const std::string &path)
     return status.has_value() ? ask(task::OpenProgram{path}, "opening the program") : status;
 }
 
-Result<> Operator::run_program(const std::function<void()> &each_cycle)
-{
+Result<> Operator::run_program(const std::function<void()> &each_cycle) {
     const auto wall_start = std::chrono::steady_clock::now();
     const std::int64_t start_ns = machine_.now_ns();
     isShowingProgress_ = ::isatty(STDERR_FILENO) != 0;
     const auto status = wait_for(machine_.task().submit(task::RunProgram{}), "the program", each_cycle);
     figures_.cycle_time_s = static_cast<double>(machine_.now_ns() - start_ns) * 1e-9;
-    figures_.wall_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
+    figures_.wall_time_s =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
     figures_.blocks = machine_.task().status().blocks;
     show_progress(true);
     return status;
 }
 
-Result<> Operator::wait_for(task::RequestId id, const std::string &what, const std::function<void()> &each_cycle)
-{
+Result<> Operator::wait_for(task::RequestId id, const std::string &what,
+                            const std::function<void()> &each_cycle) {
     task::Task &task = machine_.task();
     std::int64_t deadline_ns = machine_.now_ns() + patience_ns_;
     mark_ = {};
@@ -115,7 +108,8 @@ Result<> Operator::wait_for(task::RequestId id, const std::string &what, const s
         }
         if (progress != task::Progress::STARTED) {
             const std::string reason = task.reason(id);
-            return fail(reason == last_error_ || reason.empty() ? what + " failed" : what + " failed: " + reason);
+            return fail(reason == last_error_ || reason.empty() ? what + " failed"
+                                                                : what + " failed: " + reason);
         }
         if (stop_signal != 0) {
             return stop_on_signal();
@@ -129,14 +123,14 @@ Result<> Operator::wait_for(task::RequestId id, const std::string &what, const s
             deadline_ns = machine_.now_ns() + patience_ns_;
         } else if (machine_.now_ns() > deadline_ns) {
             const std::string waiting = task.status().waiting.what;
-            return fail(fmt::format("{}: no progress for {:g} s", what, static_cast<double>(patience_ns_) * 1e-9), {},
-                        waiting.empty() ? "motion is waiting" : "waiting for " + waiting);
+            return fail(
+                fmt::format("{}: no progress for {:g} s", what, static_cast<double>(patience_ns_) * 1e-9), {},
+                waiting.empty() ? "motion is waiting" : "waiting for " + waiting);
         }
     }
 }
 
-bool Operator::hasProgress()
-{
+bool Operator::hasProgress() {
     const motion::Status &motion = machine_.task().motion_status();
     Mark now{machine_.task().status().blocks, motion.carte_pos_cmd, {}};
     for (std::size_t i = 0; i < now.joints.size(); ++i) {
@@ -148,8 +142,7 @@ bool Operator::hasProgress()
     return isChanged;
 }
 
-Result<> Operator::stop_on_signal()
-{
+Result<> Operator::stop_on_signal() {
     catch_signals(false);
     machine_.task().submit(task::AbortAll{});
     const std::int64_t deadline_ns = machine_.now_ns() + STOP_TIMEOUT_NS;
@@ -159,14 +152,14 @@ Result<> Operator::stop_on_signal()
     return fail("stopped by a signal");
 }
 
-void Operator::switch_off()
-{
+void Operator::switch_off() {
     task::Task &task = machine_.task();
     task.submit(task::AbortAll{});
     const std::int64_t deadline_ns = machine_.now_ns() + STOP_TIMEOUT_NS;
     machine_.cycle();
     machine_.cycle();
-    while (!task.motion_status().isInPosition && task.motion_status().isEnabled && machine_.now_ns() < deadline_ns) {
+    while (!task.motion_status().isInPosition && task.motion_status().isEnabled &&
+           machine_.now_ns() < deadline_ns) {
         machine_.cycle();
     }
     task.submit(task::SetState{task::State::ESTOP});
@@ -176,8 +169,7 @@ void Operator::switch_off()
     show_messages();
 }
 
-void Operator::show_messages()
-{
+void Operator::show_messages() {
     task::Message message;
     while (machine_.task().poll_message(message)) {
         if (isShowingProgress_) {
@@ -194,8 +186,7 @@ void Operator::show_messages()
     }
 }
 
-void Operator::show_progress(bool isLast)
-{
+void Operator::show_progress(bool isLast) {
     const auto now = std::chrono::steady_clock::now();
     if (!isShowingProgress_ || (!isLast && now - last_shown_ < SHOW_EVERY)) {
         return;
@@ -213,12 +204,11 @@ void Operator::show_progress(bool isLast)
                std::string(static_cast<std::size_t>(WIDTH - filled), ' '), line, program_lines_);
 }
 
-OperatorFigures Operator::figures() const
-{
+OperatorFigures Operator::figures() const {
     OperatorFigures figures = figures_;
-    figures.warnings = static_cast<int>(std::count_if(sink_.all().begin(), sink_.all().end(), [](const auto &d) {
-        return d.severity == diag::Severity::WARNING;
-    }));
+    figures.warnings =
+        static_cast<int>(std::count_if(sink_.all().begin(), sink_.all().end(),
+                                       [](const auto &d) { return d.severity == diag::Severity::WARNING; }));
     return figures;
 }
 

@@ -12,10 +12,10 @@
 namespace mw::machine {
 
 struct OperatorFigures {
-    double cycle_time_s = 0;      ///< of the program, in the machine's time
+    double cycle_time_s = 0;  ///< of the program, in the machine's time
     double wall_time_s = 0;
     std::uint64_t blocks = 0;
-    int stops_passed = 0;         ///< M0, M1 and M60
+    int stops_passed = 0;  ///< M0, M1 and M60
     int warnings = 0;
 };
 

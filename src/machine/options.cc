@@ -5,8 +5,7 @@
 
 namespace mw::machine {
 
-Result<Options> parse_options(const std::vector<std::string> &words, const OptionNames &names)
-{
+Result<Options> parse_options(const std::vector<std::string> &words, const OptionNames &names) {
     Options options;
     for (std::size_t i = 0; i < words.size(); ++i) {
         const std::string &word = words[i];
@@ -28,7 +27,8 @@ Result<Options> parse_options(const std::vector<std::string> &words, const Optio
             std::vector<std::string> known(names.flags.begin(), names.flags.end());
             known.insert(known.end(), names.values.begin(), names.values.end());
             const std::string near = nearest_name(name, known);
-            return fail("unknown option " + word, {}, near.empty() ? "see millwright --help" : "did you mean " + near + "?");
+            return fail("unknown option " + word, {},
+                        near.empty() ? "see millwright --help" : "did you mean " + near + "?");
         }
     }
     return options;

@@ -22,8 +22,7 @@ struct Options {
     std::vector<std::string> rest;
 
     bool has(const std::string &flag) const { return flags.count(flag) > 0; }
-    std::string value(const std::string &name, const std::string &preset = "") const
-    {
+    std::string value(const std::string &name, const std::string &preset = "") const {
         const auto found = values.find(name);
         return found == values.end() ? preset : found->second;
     }

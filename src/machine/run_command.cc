@@ -28,15 +28,15 @@ struct RunWords {
     double patience_s = DEFAULT_PATIENCE_S;
 };
 
-Result<RunWords> parse_run(const std::vector<std::string> &words)
-{
+Result<RunWords> parse_run(const std::vector<std::string> &words) {
     const auto options =
         parse_options(words, {{"--realtime", "--strict"}, {"--trace", "--plot", "--patience"}});
     if (!options.has_value()) {
         return std::unexpected(options.error());
     }
     if (options->rest.size() != 2) {
-        return fail("run needs a machine's INI file and a program", {}, "millwright run MACHINE.ini PROGRAM.ngc");
+        return fail("run needs a machine's INI file and a program", {},
+                    "millwright run MACHINE.ini PROGRAM.ngc");
     }
     RunWords run{options->rest[0], options->rest[1], options->value("--trace"), options->value("--plot")};
     run.isRealtime = options->has("--realtime");
@@ -52,13 +52,12 @@ Result<RunWords> parse_run(const std::vector<std::string> &words)
 /// Keeps trace, figures and picture while the program runs.
 class Recorder {
   public:
-    Recorder(Machine &machine, const MachineConfig &config) : machine_(machine), monitor_(config.servo_period_ns)
-    {
+    Recorder(Machine &machine, const MachineConfig &config)
+        : machine_(machine), monitor_(config.servo_period_ns) {
         machine_.task().set_move_listener([this](const motion::PathBody &body) { monitor_.on_move(body); });
     }
 
-    Result<> open_trace(const std::string &path, const MachineConfig &config)
-    {
+    Result<> open_trace(const std::string &path, const MachineConfig &config) {
         auto writer = TraceWriter::create(path, config.axis_mask, config.num_joints);
         if (!writer.has_value()) {
             return std::unexpected(writer.error());
@@ -66,13 +65,11 @@ class Recorder {
         trace_.emplace(std::move(*writer));
         return {};
     }
-    void start()
-    {
+    void start() {
         monitor_.start(machine_.task().motion_status().carte_pos_cmd);
         machine_.channels().isTracing.store(1);
     }
-    void drain()
-    {
+    void drain() {
         motion::TraceSample sample;
         while (machine_.channels().trace.pop(sample)) {
             monitor_.on_sample(sample);
@@ -81,15 +78,15 @@ class Recorder {
             }
         }
     }
-    Result<> finish()
-    {
+    Result<> finish() {
         drain();
         machine_.channels().isTracing.store(0);
         machine_.task().set_move_listener({});
         const std::uint64_t lost = machine_.channels().trace_lost.load();
         const auto closed = trace_.has_value() ? trace_->close() : Result<>{};
         if (closed.has_value() && trace_.has_value() && lost > 0) {
-            return fail(fmt::format("the trace lacks {} servo cycles: this process was too slow to write them", lost));
+            return fail(fmt::format(
+                "the trace lacks {} servo cycles: this process was too slow to write them", lost));
         }
         return closed;
     }
@@ -101,8 +98,7 @@ class Recorder {
     std::optional<TraceWriter> trace_;
 };
 
-Result<> run_program(const RunWords &words, LoadedConfig &loaded, Operator &person, Recorder &recorder)
-{
+Result<> run_program(const RunWords &words, LoadedConfig &loaded, Operator &person, Recorder &recorder) {
     auto status = person.switch_on();
     status = status.has_value() ? person.home_all() : status;
     status = status.has_value() ? person.open_program(words.program) : status;
@@ -120,8 +116,7 @@ Result<> run_program(const RunWords &words, LoadedConfig &loaded, Operator &pers
 
 }  // namespace
 
-int command_run(const std::vector<std::string> &arguments)
-{
+int command_run(const std::vector<std::string> &arguments) {
     const auto words = parse_run(arguments);
     if (!words.has_value()) {
         fmt::print(stderr, "millwright run: {}\n", words.error().str());
@@ -138,7 +133,8 @@ int command_run(const std::vector<std::string> &arguments)
     const MachineParts parts{loaded->ini, loaded->reader, loaded->machine, sink};
     MachineOptions options;
     options.isStrict = words->isStrict;
-    auto machine = words->isRealtime ? make_realtime_machine(parts, options) : make_virtual_machine(parts, options);
+    auto machine =
+        words->isRealtime ? make_realtime_machine(parts, options) : make_virtual_machine(parts, options);
     if (!machine.has_value()) {
         sink.error(machine.error());
         return 1;
@@ -157,8 +153,9 @@ int command_run(const std::vector<std::string> &arguments)
     print_summary({words->program, loaded->machine, person.figures(), recorder.monitor().figures(),
                    (*machine)->realtime_figures(), words->isRealtime});
     if (!words->plot.empty()) {
-        const auto drawn = plot_path(recorder.monitor().points(), words->program + " on " + loaded->machine.name,
-                                     loaded->machine.isMetric ? "mm" : "inch", words->plot);
+        const auto drawn =
+            plot_path(recorder.monitor().points(), words->program + " on " + loaded->machine.name,
+                      loaded->machine.isMetric ? "mm" : "inch", words->plot);
         if (!drawn.has_value()) {
             sink.error(drawn.error());
             return 1;

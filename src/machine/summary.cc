@@ -9,34 +9,35 @@
 namespace mw::machine {
 namespace {
 
-std::string time_text(double seconds)
-{
+std::string time_text(double seconds) {
     const int minutes = static_cast<int>(seconds / 60);
-    return minutes > 0 ? fmt::format("{} min {:.3f} s", minutes, seconds - 60.0 * minutes) : fmt::format("{:.3f} s", seconds);
+    return minutes > 0 ? fmt::format("{} min {:.3f} s", minutes, seconds - 60.0 * minutes)
+                       : fmt::format("{:.3f} s", seconds);
 }
 
-void print_axes(const char *label, const Summary &summary, const std::array<double, MAX_AXES> &values, const char *power)
-{
+void print_axes(const char *label, const Summary &summary, const std::array<double, MAX_AXES> &values,
+                const char *power) {
     std::string text;
     for (int axis = 0; axis < MAX_AXES; ++axis) {
         if ((summary.machine.axis_mask & (1U << axis)) == 0) {
             continue;
         }
         const char *unit = geom::isAngular(axis) ? "deg" : (summary.machine.isMetric ? "mm" : "in");
-        text += fmt::format("  {} {:.4g} {}/{}", geom::AXIS_LETTERS[axis], values[static_cast<std::size_t>(axis)], unit, power);
+        text += fmt::format("  {} {:.4g} {}/{}", geom::AXIS_LETTERS[axis],
+                            values[static_cast<std::size_t>(axis)], unit, power);
     }
     fmt::print("{:<18}{}\n", label, text);
 }
 
 }  // namespace
 
-void print_summary(const Summary &summary)
-{
+void print_summary(const Summary &summary) {
     const char *unit = summary.machine.isMetric ? "mm" : "in";
     fmt::print("program             {} on {}\n", summary.program, summary.machine.name);
     fmt::print("cycle time          {}\n", time_text(summary.run.cycle_time_s));
     if (!summary.wasRealtime) {
-        fmt::print("simulated in        {:.3f} s, {:.0f} times faster than the clock\n", summary.run.wall_time_s,
+        fmt::print("simulated in        {:.3f} s, {:.0f} times faster than the clock\n",
+                   summary.run.wall_time_s,
                    summary.run.cycle_time_s / std::fmax(summary.run.wall_time_s, 1e-9));
     }
     fmt::print("cutting             {:.3f} {}\n", summary.path.cutting_length, unit);
@@ -54,9 +55,11 @@ void print_summary(const Summary &summary)
         fmt::print("program stops       {} passed\n", summary.run.stops_passed);
     }
     if (summary.wasRealtime) {
-        fmt::print("realtime            {}\n", summary.realtime.isRealtime ? "yes" : "no: " + summary.realtime.missing);
+        fmt::print("realtime            {}\n",
+                   summary.realtime.isRealtime ? "yes" : "no: " + summary.realtime.missing);
         fmt::print("overruns            {}\n", summary.realtime.overruns);
-        fmt::print("largest latency     {:.1f} us\n", static_cast<double>(summary.realtime.max_latency_ns) * 1e-3);
+        fmt::print("largest latency     {:.1f} us\n",
+                   static_cast<double>(summary.realtime.max_latency_ns) * 1e-3);
     }
     fmt::print("warnings            {}\n", summary.run.warnings);
     std::fflush(stdout);

@@ -8,8 +8,7 @@ constexpr std::int64_t CHANGE_TIME_NS = 100000000;
 
 }  // namespace
 
-Result<> ManualToolChange::create(hal::Hal &hal, Notice notice)
-{
+Result<> ManualToolChange::create(hal::Hal &hal, Notice notice) {
     const auto id = hal.new_component("hal_manualtoolchange");
     if (!id.has_value()) {
         return std::unexpected(id.error());
@@ -25,16 +24,14 @@ Result<> ManualToolChange::create(hal::Hal &hal, Notice notice)
     return status.has_value() ? hal.set_ready(comp_id_) : status;
 }
 
-void ManualToolChange::destroy()
-{
+void ManualToolChange::destroy() {
     if (hal_ != nullptr) {
         hal_->delete_component(comp_id_);
         hal_ = nullptr;
     }
 }
 
-void ManualToolChange::step(std::int64_t now_ns)
-{
+void ManualToolChange::step(std::int64_t now_ns) {
     if (hal_ == nullptr) {
         return;
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The person who changes tools by hand, as an in-process part: component hal_manualtoolchange (man page of that name).
+// The person who changes tools by hand, as an in-process part: component hal_manualtoolchange (man page of
+// that name).
 #pragma once
 
 #include <cstdint>

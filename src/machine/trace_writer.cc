@@ -9,8 +9,7 @@ namespace mw::machine {
 namespace {
 
 template <class T>
-void append(std::string &row, T value)
-{
+void append(std::string &row, T value) {
     char buffer[32];
     const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
     row.append(buffer, end);
@@ -19,12 +18,9 @@ void append(std::string &row, T value)
 }  // namespace
 
 TraceWriter::TraceWriter(std::FILE *file, std::string path, unsigned axis_mask, int num_joints)
-    : file_(file, &std::fclose), path_(std::move(path)), axis_mask_(axis_mask), num_joints_(num_joints)
-{
-}
+    : file_(file, &std::fclose), path_(std::move(path)), axis_mask_(axis_mask), num_joints_(num_joints) {}
 
-Result<TraceWriter> TraceWriter::create(const std::string &path, unsigned axis_mask, int num_joints)
-{
+Result<TraceWriter> TraceWriter::create(const std::string &path, unsigned axis_mask, int num_joints) {
     std::FILE *file = std::fopen(path.c_str(), "wbe");
     if (file == nullptr) {
         return fail("cannot write the trace '" + path + "': " + std::strerror(errno));
@@ -43,8 +39,7 @@ Result<TraceWriter> TraceWriter::create(const std::string &path, unsigned axis_m
     return writer;
 }
 
-void TraceWriter::write(const motion::TraceSample &sample)
-{
+void TraceWriter::write(const motion::TraceSample &sample) {
     if (start_ns_ < 0) {
         start_ns_ = sample.time_ns;
     }
@@ -66,8 +61,7 @@ void TraceWriter::write(const motion::TraceSample &sample)
     isFailed_ = std::fwrite(row_.data(), 1, row_.size(), file_.get()) != row_.size() || isFailed_;
 }
 
-Result<> TraceWriter::close()
-{
+Result<> TraceWriter::close() {
     std::FILE *file = file_.release();
     const bool isClosed = std::fclose(file) == 0;
     if (!isClosed || isFailed_) {

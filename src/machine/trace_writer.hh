@@ -12,7 +12,8 @@
 
 namespace mw::machine {
 
-/// Columns: time_ns (from program start), line, axis.L per configured axis (carte_pos_cmd), joint.N (pos_cmd).
+/// Columns: time_ns (from program start), line, axis.L per configured axis (carte_pos_cmd), joint.N
+/// (pos_cmd).
 class TraceWriter {
   public:
     static Result<TraceWriter> create(const std::string &path, unsigned axis_mask, int num_joints);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Task: states, modes, programs and single lines; takes operators' commands and coordinates motion and I/O (D1-D3).
+// Task: states, modes, programs and single lines; takes operators' commands and coordinates motion and I/O
+// (D1-D3).
 #pragma once
 
 #include <deque>
@@ -32,8 +33,8 @@ struct Settings {
     unsigned axis_mask = 7;
     int num_joints = 3;
     int num_spindles = 1;
-    bool isHomingForced = true;        ///< programs and MDI need all joints homed
-    std::string parameter_file;        ///< empty: parameters live in memory only
+    bool isHomingForced = true;  ///< programs and MDI need all joints homed
+    std::string parameter_file;  ///< empty: parameters live in memory only
     interp::Settings interpreter;
     SequencerSettings sequencer;
     ToolChangePlace tool_change_place;
@@ -80,8 +81,7 @@ class Task final : public interp::World {
     const diag::Diagnostic *program_error() const { return hasProgramError_ ? &program_error_ : nullptr; }
     const std::string &file_name(std::uint32_t index) const { return canon_.file_name(index); }
     /// Is told of each move when it is handed to the planner (for figures and pictures).
-    void set_move_listener(std::function<void(const motion::PathBody &)> listener)
-    {
+    void set_move_listener(std::function<void(const motion::PathBody &)> listener) {
         sequencer_.set_move_listener(std::move(listener));
     }
 
@@ -138,7 +138,7 @@ class Task final : public interp::World {
     Status status_;
     std::int64_t now_ns_ = 0;
     Run run_ = Run::IDLE;
-    bool isReadingDone_ = false;   ///< the interpreter has come to the end of what runs
+    bool isReadingDone_ = false;  ///< the interpreter has come to the end of what runs
     bool isWaitingForSync_ = false;
     bool isStepMode_ = false;
     bool isStoppedByProgram_ = false;
