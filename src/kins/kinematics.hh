@@ -21,8 +21,7 @@ struct IdentityMap {
     int num_joints = 0;
 
     /// True when a joint drives this axis.
-    constexpr bool has(int axis) const noexcept
-    {
+    constexpr bool has(int axis) const noexcept {
         for (int j = 0; j < num_joints; ++j) {
             if (axis_of_joint[static_cast<std::size_t>(j)] == axis) {
                 return true;
