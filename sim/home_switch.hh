@@ -15,7 +15,7 @@ class HomeSwitch {
         const double beyond = direction * (position - at);
         if (beyond >= 0.0) {
             isTripped_ = true;
-        } else if (beyond < -hysteresis) {
+        } else if (direction * position <= direction * at - hysteresis) {
             isTripped_ = false;
         }
         return isTripped_;
