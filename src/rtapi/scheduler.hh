@@ -10,8 +10,9 @@
 
 namespace mw::rtapi {
 
-/// Who goes first when several are due at the same virtual time. Threads among themselves: shorter period first,
-/// then creation order. Under the realtime clock it is the order of priorities (threads realtime, the rest below).
+/// Who goes first when several are due at the same virtual time. Threads among themselves: shorter period
+/// first, then creation order. Under the realtime clock it is the order of priorities (threads realtime, the
+/// rest below).
 enum class Order : std::uint8_t { THREAD, PLANNER, TASK, UI };
 
 using PeriodicId = StrongId<struct PeriodicTag>;
@@ -28,9 +29,9 @@ struct PeriodicSpec {
 /// What a thread has experienced since it was started.
 struct PeriodicStats {
     std::uint64_t runs = 0;
-    std::uint64_t overruns = 0;         ///< releases skipped because the one before was still running or late
-    std::int64_t max_latency_ns = 0;    ///< of the wake-up; 0 under the virtual clock
-    std::int64_t max_runtime_ns = 0;    ///< 0 under the virtual clock
+    std::uint64_t overruns = 0;       ///< releases skipped because the one before was still running or late
+    std::int64_t max_latency_ns = 0;  ///< of the wake-up; 0 under the virtual clock
+    std::int64_t max_runtime_ns = 0;  ///< 0 under the virtual clock
 };
 
 class Scheduler {

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-2.0-or-later */
+/* What Millwright offers to realtime modules beyond the common API. Keep to it sparingly: a module that
+ * includes this runs under Millwright only. Nothing here is realtime-safe unless it says so. */
+#ifndef MILLWRIGHT_EXT_H
+#define MILLWRIGHT_EXT_H
+
+#include "hal.h"
+
+RTAPI_BEGIN_DECLS
+
+/* The address of a symbol that a loaded module of this instance exports (newest module first), or NULL. It
+ * stays valid while that module is loaded; see mw_ext_use_module. */
+extern void *mw_ext_find_symbol(const char *name);
+
+/* Keeps the module that exports `symbol` loaded until component comp_id has ended. 0, or -ENOENT. */
+extern int mw_ext_use_module(const char *symbol, int comp_id);
+
+/* Calls function(arg, period_ns) every period below all HAL threads: for planners, which may take long but
+ * must not block. Under the virtual clock it runs after the threads that are due at the same time. Runs
+ * whether or not HAL threads are started. An id of at least 1, or a negated errno. */
+extern int mw_ext_planner_new(const char *name, long long period_ns, void (*function)(void *, long long),
+                              void *arg);
+/* After it returns the function is not running and will not be called again. */
+extern int mw_ext_planner_delete(int id);
+
+/* Declares the value that the signal (or the pin itself) takes when the pin's owner dies without hal_exit.
+ * Without a declaration that is 0. The pointer is to a value of the pin's type. */
+extern int mw_ext_pin_safe_value(const char *pin_name, const void *value);
+
+/* 1 under the virtual clock. */
+extern int mw_ext_is_virtual(void);
+
+RTAPI_END_DECLS
+
+#endif

@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: GPL-2.0-or-later */
+/* The realtime layer as components see it: messages, time, shared memory, module parameters.
+ * "realtime-safe" marks what a function that runs in a realtime thread may call. */
+#ifndef RTAPI_H
+#define RTAPI_H
+
+#include <stdarg.h>
+#include <stddef.h>
+
+#include "rtapi_stdint.h"
+
+#ifdef __cplusplus
+#define RTAPI_BEGIN_DECLS extern "C" {
+#define RTAPI_END_DECLS }
+#else
+#define RTAPI_BEGIN_DECLS
+#define RTAPI_END_DECLS
+#endif
+
+#define RTAPI_NAME_LEN 31
+#define RTAPI_NO_FP 0
+#define RTAPI_USES_FP 1
+#define RTAPI_STRINGIFY(x) #x
+/* Before the declaration of what other modules look up, in modules that are compiled with hidden visibility.
+ */
+#define RTAPI_EXPORT __attribute__((visibility("default")))
+/* Checks that the symbol exists; with the compiler's usual visibility every global symbol is exported anyway.
+ */
+#define EXPORT_SYMBOL(x) extern __typeof__(x) x
+#define EXPORT_SYMBOL_GPL(x) EXPORT_SYMBOL(x)
+
+RTAPI_BEGIN_DECLS
+
+/* ---- modules ---- */
+
+/* Registers a module or program with the realtime layer: an id of at least 1, or a negated errno. */
+extern int rtapi_init(const char *modname);
+extern int rtapi_exit(int module_id);
+
+typedef enum {
+    REALTIME_TYPE_UNINITIALIZED = -1,
+    REALTIME_TYPE_NONE = 0,
+    REALTIME_TYPE_UNKNOWN,
+    REALTIME_TYPE_PREEMPT_RT,
+    REALTIME_TYPE_PREEMPT_DYNAMIC,
+    REALTIME_TYPE_RTAI,
+    REALTIME_TYPE_LXRT,
+    REALTIME_TYPE_XENOMAI,
+    REALTIME_TYPE_XENOMAI_EVL
+} rtapi_realtime_type_t;
+
+/* What schedules the threads of this instance; NONE under the virtual clock and without privileges. */
+extern rtapi_realtime_type_t rtapi_get_realtime_type(void);
+/* 1 when threads run with realtime priority, else 0. */
+extern int rtapi_is_realtime(void);
+/* Always 0: modules are shared objects of a process. */
+extern int rtapi_is_kernelspace(void);
+
+/* ---- messages ---- */
+
+typedef enum {
+    RTAPI_MSG_NONE = 0,
+    RTAPI_MSG_ERR,
+    RTAPI_MSG_WARN,
+    RTAPI_MSG_INFO,
+    RTAPI_MSG_DBG,
+    RTAPI_MSG_ALL
+} msg_level_t;
+
+typedef void (*rtapi_msg_handler_t)(msg_level_t level, const char *fmt, va_list ap);
+
+/* Formats as printf does (no positional arguments, no wide characters), always with a decimal point, never
+ * allocating. Answers the length that the whole text has; when that is >= size, it was cut. Realtime-safe. */
+extern int rtapi_snprintf(char *buf, unsigned long size, const char *fmt, ...)
+    __attribute__((format(printf, 3, 4)));
+extern int rtapi_vsnprintf(char *buf, unsigned long size, const char *fmt, va_list ap);
+
+/* Puts a message into the log, whatever the level is. Cut at 240 characters. Realtime-safe. */
+extern void rtapi_print(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
+/* Puts a message into the log if `level` is within the current one (at start: errors only). Realtime-safe. */
+extern void rtapi_print_msg(msg_level_t level, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
+/* -EINVAL for a level outside NONE..ALL. */
+extern int rtapi_set_msg_level(int level);
+extern int rtapi_get_msg_level(void);
+/* Replaces the log by a function of the caller's, called in the thread that prints; NULL: back to the log. */
+extern void rtapi_set_msg_handler(rtapi_msg_handler_t handler);
+extern rtapi_msg_handler_t rtapi_get_msg_handler(void);
+
+/* ---- time ---- */
+
+/* Nanoseconds since an arbitrary start; virtual time under the virtual clock. Realtime-safe. */
+extern long long int rtapi_get_time(void);
+/* Waits by spinning for nsec, at most rtapi_delay_max(); nothing under the virtual clock. Realtime-safe. */
+extern void rtapi_delay(long int nsec);
+extern long int rtapi_delay_max(void);
+/* Answers the period asked for: threads have exactly the periods they are created with. */
+extern long int rtapi_clock_set_period(long int nsecs);
+
+/* ---- shared memory of this instance ---- */
+
+/* Opens the block with this key, created and zeroed when new: an id, or a negated errno (-EINVAL: size 0, or
+ * more than the block that exists). Not realtime-safe. */
+extern int rtapi_shmem_new(int key, int module_id, unsigned long int size);
+/* The block's address in this process. Realtime-safe. */
+extern int rtapi_shmem_getptr(int shmem_id, void **ptr);
+/* Drops this use of the block; it vanishes with its last use. */
+extern int rtapi_shmem_delete(int shmem_id, int module_id);
+
+/* ---- module parameters: name=value words of loadrt, set before rtapi_app_main ---- */
+
+enum rtapi_mp_type { RTAPI_MP_TYPE_INT = 1, RTAPI_MP_TYPE_LONG, RTAPI_MP_TYPE_STRING };
+
+struct rtapi_mp_info {
+    const char *name;
+    const char *description;
+    int type;  /* enum rtapi_mp_type */
+    int count; /* elements; 1 for a scalar */
+    void *address;
+};
+
+/* Called by the macros below while a module is loaded. */
+extern void rtapi_mp_register(const struct rtapi_mp_info *info);
+
+RTAPI_END_DECLS
+
+#define RTAPI_MP_DECLARE_(var, addr, kind, num, descr)                                                       \
+    static __attribute__((constructor)) void rtapi_mp_register_##var(void) {                                 \
+        static struct rtapi_mp_info info;                                                                    \
+        info.name = #var;                                                                                    \
+        info.description = (descr);                                                                          \
+        info.type = (kind);                                                                                  \
+        info.count = (num);                                                                                  \
+        info.address = (void *)(addr);                                                                       \
+        rtapi_mp_register(&info);                                                                            \
+    }                                                                                                        \
+    struct rtapi_mp_info
+
+#define RTAPI_MP_INT(var, descr) RTAPI_MP_DECLARE_(var, &(var), RTAPI_MP_TYPE_INT, 1, descr)
+#define RTAPI_MP_LONG(var, descr) RTAPI_MP_DECLARE_(var, &(var), RTAPI_MP_TYPE_LONG, 1, descr)
+#define RTAPI_MP_STRING(var, descr) RTAPI_MP_DECLARE_(var, &(var), RTAPI_MP_TYPE_STRING, 1, descr)
+#define RTAPI_MP_ARRAY_INT(var, num, descr) RTAPI_MP_DECLARE_(var, (var), RTAPI_MP_TYPE_INT, num, descr)
+#define RTAPI_MP_ARRAY_LONG(var, num, descr) RTAPI_MP_DECLARE_(var, (var), RTAPI_MP_TYPE_LONG, num, descr)
+#define RTAPI_MP_ARRAY_STRING(var, num, descr) RTAPI_MP_DECLARE_(var, (var), RTAPI_MP_TYPE_STRING, num, descr)
+
+/* Facts about a module for people and tools; they leave no trace in the object. */
+#define MODULE_INFO(tag, text) struct rtapi_mp_info
+#define MODULE_INFO1(tag, a, text) struct rtapi_mp_info
+#define MODULE_INFO2(tag, a, b, text) struct rtapi_mp_info
+#define MODULE_LICENSE(text) struct rtapi_mp_info
+#define MODULE_AUTHOR(text) struct rtapi_mp_info
+#define MODULE_DESCRIPTION(text) struct rtapi_mp_info
+#define MODULE_SUPPORTED_DEVICE(text) struct rtapi_mp_info
+#define MODULE_DEVICE_TABLE(bus, table) struct rtapi_mp_info
+#define MODULE_PARM(var, type) struct rtapi_mp_info
+#define MODULE_PARM_DESC(var, text) struct rtapi_mp_info
+
+#define KERNEL_VERSION(a, b, c) (((a) << 16) + ((b) << 8) + (c))
+
+#endif

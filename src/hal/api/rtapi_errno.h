@@ -1,0 +1,6 @@
+/* SPDX-License-Identifier: GPL-2.0-or-later */
+/* Error numbers: functions answer 0 or more for success and a negated one of these for failure. */
+#ifndef RTAPI_ERRNO_H
+#define RTAPI_ERRNO_H
+#include <errno.h>
+#endif

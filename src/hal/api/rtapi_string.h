@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-2.0-or-later */
+/* Bounded string copies, and words of a command line. */
+#ifndef RTAPI_STRING_H
+#define RTAPI_STRING_H
+
+#include <stddef.h>
+#include <string.h>
+
+#include "rtapi_slab.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Copies at most size-1 characters and ends dst with a zero. Answers strlen(src): when that is >= size, it
+ * was cut. */
+extern size_t rtapi_strlcpy(char *dst, const char *src, size_t size);
+/* Appends within a buffer of `size` bytes. Answers the length that the whole text would have had. */
+extern size_t rtapi_strlcat(char *dst, const char *src, size_t size);
+
+/* Splits a text at blanks into a vector ended by NULL; *argc (if given) receives its length. Free it with
+ * rtapi_argv_free. NULL when memory is short. Not for realtime functions. */
+extern char **rtapi_argv_split(int flags, const char *argstr, int *argc);
+extern void rtapi_argv_free(char **argv);
+
+#ifdef __cplusplus
+}
+#endif
+
+#define rtapi_static_assert(condition, message) _Static_assert(condition, message)
+#ifdef __cplusplus
+#undef rtapi_static_assert
+#define rtapi_static_assert(condition, message) static_assert(condition, message)
+#endif
+
+/* For destinations that are arrays: the size is taken from the type. */
+#define rtapi_strxcpy(dst, src) rtapi_strlcpy((dst), (src), sizeof(dst))
+#define rtapi_strxcat(dst, src) rtapi_strlcat((dst), (src), sizeof(dst))
+#define rtapi_kstrdup(text, flags) strdup(text)
+
+#endif

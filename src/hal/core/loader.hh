@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Realtime modules: shared objects with rtapi_app_main and rtapi_app_exit. [one non-realtime thread]
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.hh"
+#include "hal/core/hal.hh"
+
+namespace mw::hal {
+
+class Loader {
+  public:
+    /// Looks for NAME.so in `folders`, first match wins.
+    Loader(Hal &hal, std::vector<std::string> folders);
+    /// Unloads all, newest first.
+    ~Loader();
+    Loader(const Loader &) = delete;
+    Loader &operator=(const Loader &) = delete;
+
+    /// $MILLWRIGHT_MODULE_PATH (colon separated), then the folder of modules beside this program (../lib in a
+    /// build folder, ../lib/millwright/modules installed).
+    static std::vector<std::string> default_folders();
+
+    /// Loads a module and runs its rtapi_app_main with `args` ("count=2", "names=a,b"). Every instance and
+    /// every load has module statics of its own. On failure nothing is left; the message carries what the
+    /// module logged.
+    Result<> load(const std::string &name, const std::vector<std::string> &args);
+    /// Runs rtapi_app_exit. Refused while another module uses its symbols.
+    Result<> unload(const std::string &name);
+    Result<> unload_all();
+    bool isLoaded(std::string_view name) const;
+    /// Newest last.
+    std::vector<std::string> modules() const;
+
+    /// A symbol that a loaded module exports (newest first), or null.
+    void *find_symbol(const char *symbol) const;
+    /// Keeps the module that exports `symbol` loaded until component `comp_id` ends.
+    Result<> use(const char *symbol, int comp_id);
+
+  private:
+    struct Module;
+    Result<> set_parameters(Module &module, const std::vector<std::string> &args);
+    Result<> open(Module &module);
+    Result<> run_main(Module &module);
+    void close(Module &module);
+    std::string find_file(const std::string &name) const;
+
+    Hal &hal_;
+    std::vector<std::string> folders_;
+    std::vector<std::unique_ptr<Module>> modules_;
+};
+
+}  // namespace mw::hal

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The realtime process (millwright-rt) as other processes see it. [one thread]
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/result.hh"
+#include "hal/core/host.hh"
+
+namespace mw::hal {
+
+class HostClient final : public Host {
+  public:
+    /// Joins the realtime process of `instance`; an error when none is alive.
+    static Result<std::unique_ptr<HostClient>> connect(const std::string &instance);
+    /// Starts bin/millwright-rt for `instance` (an error when one is alive) and joins it. It survives this
+    /// process unless control() is called.
+    static Result<std::unique_ptr<HostClient>> start(const std::string &instance);
+    ~HostClient() override;
+
+    Hal &hal() noexcept override;
+    Result<> load_realtime(const std::string &name, const std::vector<std::string> &args) override;
+    Result<> unload_realtime(const std::string &name) override;
+    Result<bool> isModuleLoaded(const std::string &name) override;
+    Result<std::vector<std::string>> modules() override;
+
+    /// From now on the realtime process stops all and ends when this process does.
+    Result<> control();
+    /// Tells the realtime process to stop all and end, and waits until it has.
+    Result<> shut_down();
+    /// Process id of the realtime process.
+    int pid() const noexcept;
+
+  private:
+    struct Impl;
+    explicit HostClient(std::unique_ptr<Impl> impl);
+    Result<std::vector<std::string>> ask(const std::vector<std::string> &request);
+    std::unique_ptr<Impl> impl_;
+};
+
+/// True when a realtime process of this instance is alive.
+bool isHostAlive(const std::string &instance);
+
+}  // namespace mw::hal
