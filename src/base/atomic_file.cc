@@ -17,8 +17,7 @@ class FileHandle {
     explicit FileHandle(int fd) : fd_(fd) {}
     FileHandle(const FileHandle &) = delete;
     FileHandle &operator=(const FileHandle &) = delete;
-    ~FileHandle()
-    {
+    ~FileHandle() {
         if (fd_ >= 0) {
             ::close(fd_);
         }
@@ -29,13 +28,11 @@ class FileHandle {
     int fd_;
 };
 
-std::unexpected<Error> system_failure(const std::string &doing, const std::string &path)
-{
+std::unexpected<Error> system_failure(const std::string &doing, const std::string &path) {
     return fail("cannot " + doing + " '" + path + "': " + std::strerror(errno), {path, 0, 0});
 }
 
-bool write_all(int fd, std::string_view content)
-{
+bool write_all(int fd, std::string_view content) {
     while (!content.empty()) {
         const ssize_t n = ::write(fd, content.data(), content.size());
         if (n < 0 && errno == EINTR) {
@@ -49,8 +46,7 @@ bool write_all(int fd, std::string_view content)
     return true;
 }
 
-std::string folder_of(const std::string &path)
-{
+std::string folder_of(const std::string &path) {
     const auto slash = path.rfind('/');
     if (slash == std::string::npos) {
         return ".";
@@ -59,8 +55,7 @@ std::string folder_of(const std::string &path)
 }
 
 /// A symbolic link stays one: the file that it points to is replaced.
-std::string resolve(const std::string &path)
-{
+std::string resolve(const std::string &path) {
     char *real = ::realpath(path.c_str(), nullptr);
     std::string out = real != nullptr ? real : path;
     std::free(real);
@@ -69,8 +64,7 @@ std::string resolve(const std::string &path)
 
 }  // namespace
 
-Result<> write_file_atomically(const std::string &path, std::string_view content)
-{
+Result<> write_file_atomically(const std::string &path, std::string_view content) {
     const std::string target = resolve(path);
     std::string temporary = target + ".XXXXXX";
     const FileHandle file(::mkstemp(temporary.data()));
@@ -94,8 +88,7 @@ Result<> write_file_atomically(const std::string &path, std::string_view content
     return {};
 }
 
-Result<std::string> read_file(const std::string &path)
-{
+Result<std::string> read_file(const std::string &path) {
     const FileHandle file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
     if (file.get() < 0) {
         return system_failure("open", path);

@@ -9,8 +9,9 @@
 
 namespace mw {
 
-/// Replaces `path` by `content`: writes a temporary file beside it, syncs it, renames it over, syncs the folder.
-/// Permissions of an existing file are kept. On any error the old file is untouched and the temporary is removed.
+/// Replaces `path` by `content`: writes a temporary file beside it, syncs it, renames it over, syncs the
+/// folder. Permissions of an existing file are kept. On any error the old file is untouched and the temporary
+/// is removed.
 Result<> write_file_atomically(const std::string &path, std::string_view content);
 
 /// The whole file as text; the error names the file and the system's reason.

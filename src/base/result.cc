@@ -3,8 +3,7 @@
 
 namespace mw {
 
-std::string SourcePlace::str() const
-{
+std::string SourcePlace::str() const {
     std::string out = file;
     if (line > 0) {
         out += ':' + std::to_string(line);
@@ -15,8 +14,7 @@ std::string SourcePlace::str() const
     return out;
 }
 
-std::string Error::str() const
-{
+std::string Error::str() const {
     std::string out = place.str();
     if (!out.empty()) {
         out += ": ";

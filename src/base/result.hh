@@ -32,8 +32,7 @@ template <class T = void>
 using Result = std::expected<T, Error>;
 
 /// Makes the failure value of a Result.
-inline std::unexpected<Error> fail(std::string message, SourcePlace place = {}, std::string hint = {})
-{
+inline std::unexpected<Error> fail(std::string message, SourcePlace place = {}, std::string hint = {}) {
     return std::unexpected(Error{std::move(message), std::move(place), std::move(hint)});
 }
 

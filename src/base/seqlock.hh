@@ -11,19 +11,19 @@
 
 namespace mw {
 
-/// The payload is stored as relaxed atomic words, so that a torn read is a retry and never undefined behaviour.
-/// write(): one thread only, wait-free. read(): any thread; retries while a write is under way.
+/// The payload is stored as relaxed atomic words, so that a torn read is a retry and never undefined
+/// behaviour. write(): one thread only, wait-free. read(): any thread; retries while a write is under way.
 template <class T>
 class Seqlock {
     static_assert(std::is_trivially_copyable_v<T>);
 
   public:
     /// Publishes `value`. [writer thread]
-    void write(const T &value) noexcept
-    {
+    void write(const T &value) noexcept {
         const std::uint32_t seq = sequence_.load(std::memory_order_relaxed);
         sequence_.store(seq + 1, std::memory_order_relaxed);
-        // Release fence: a reader that sees any new word (after its acquire fence) also sees the odd sequence.
+        // Release fence: a reader that sees any new word (after its acquire fence) also sees the odd
+        // sequence.
         std::atomic_thread_fence(std::memory_order_release);
         const char *from = reinterpret_cast<const char *>(&value);
         for (std::size_t i = 0; i < WORDS; ++i) {
@@ -37,8 +37,7 @@ class Seqlock {
     }
 
     /// Tries once; false when a write was under way. [any thread]
-    bool try_read(T &value) const noexcept
-    {
+    bool try_read(T &value) const noexcept {
         const std::uint32_t before = sequence_.load(std::memory_order_acquire);
         if ((before & 1U) != 0) {
             return false;
@@ -49,14 +48,14 @@ class Seqlock {
             const std::size_t left = sizeof(T) - i * 8;
             std::memcpy(to + i * 8, &word, left < 8 ? left : 8);
         }
-        // Acquire fence: pairs with the writer's release fence, so the check below cannot pass on mixed words.
+        // Acquire fence: pairs with the writer's release fence, so the check below cannot pass on mixed
+        // words.
         std::atomic_thread_fence(std::memory_order_acquire);
         return sequence_.load(std::memory_order_relaxed) == before;
     }
 
     /// Reads with at most `tries` attempts; false when the writer died inside a write. [any thread]
-    bool read(T &value, int tries = 1000000) const noexcept
-    {
+    bool read(T &value, int tries = 1000000) const noexcept {
         for (int i = 0; i < tries; ++i) {
             if (try_read(value)) {
                 return true;

@@ -9,8 +9,8 @@
 
 namespace mw {
 
-/// Wait-free ring of N (a power of two) trivially copyable elements. Holds no pointers, so it may live in shared
-/// memory. Counters run freely and wrap at 2^32, which N divides.
+/// Wait-free ring of N (a power of two) trivially copyable elements. Holds no pointers, so it may live in
+/// shared memory. Counters run freely and wrap at 2^32, which N divides.
 template <class T, std::uint32_t N>
 class SpscRing {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -18,8 +18,7 @@ class SpscRing {
 
   public:
     /// Appends; false when full. [producer]
-    bool push(const T &value) noexcept
-    {
+    bool push(const T &value) noexcept {
         const std::uint32_t head = head_.load(std::memory_order_relaxed);
         // Acquire: pairs with pop's release; the slot has been read before we overwrite it.
         if (head - tail_.load(std::memory_order_acquire) == N) {
@@ -32,8 +31,7 @@ class SpscRing {
     }
 
     /// Takes the oldest; false when empty. [consumer]
-    bool pop(T &value) noexcept
-    {
+    bool pop(T &value) noexcept {
         const std::uint32_t tail = tail_.load(std::memory_order_relaxed);
         // Acquire: pairs with push's release.
         if (head_.load(std::memory_order_acquire) == tail) {
@@ -46,18 +44,18 @@ class SpscRing {
     }
 
     /// The oldest element, or nullptr. Valid until pop or drop. [consumer]
-    const T *front() const noexcept
-    {
+    const T *front() const noexcept {
         const std::uint32_t tail = tail_.load(std::memory_order_relaxed);
         return head_.load(std::memory_order_acquire) == tail ? nullptr : &slots_[tail & (N - 1)];
     }
 
     /// Drops the oldest element, which must exist. [consumer]
-    void drop() noexcept { tail_.store(tail_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
+    void drop() noexcept {
+        tail_.store(tail_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+    }
 
     /// Elements waiting; exact for the calling side at the time of the call. [any]
-    std::uint32_t size() const noexcept
-    {
+    std::uint32_t size() const noexcept {
         return head_.load(std::memory_order_acquire) - tail_.load(std::memory_order_acquire);
     }
     bool isEmpty() const noexcept { return size() == 0; }

@@ -11,8 +11,7 @@ template <class T, std::size_t N>
 class StaticVector {
   public:
     /// Appends; false (and no change) when full.
-    constexpr bool push_back(const T &value) noexcept
-    {
+    constexpr bool push_back(const T &value) noexcept {
         if (size_ == N) {
             return false;
         }

@@ -16,7 +16,7 @@ struct StrongId {
     constexpr auto operator<=>(const StrongId &) const noexcept = default;
 };
 
-using JointId = StrongId<struct JointTag>;    ///< a motor, 0..MAX_JOINTS-1
+using JointId = StrongId<struct JointTag>;      ///< a motor, 0..MAX_JOINTS-1
 using SpindleId = StrongId<struct SpindleTag>;  ///< a spindle, 0..MAX_SPINDLES-1
 
 }  // namespace mw

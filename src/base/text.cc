@@ -8,23 +8,19 @@
 namespace mw {
 namespace {
 
-bool isBlank(char c)
-{
+bool isBlank(char c) {
     return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
 }
 
-char lower(char c)
-{
+char lower(char c) {
     return (c >= 'A' && c <= 'Z') ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-char upper(char c)
-{
+char upper(char c) {
     return (c >= 'a' && c <= 'z') ? static_cast<char>(c - 'a' + 'A') : c;
 }
 
-std::size_t edit_distance(std::string_view a, std::string_view b)
-{
+std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::size_t> row(b.size() + 1);
     for (std::size_t j = 0; j <= b.size(); ++j) {
         row[j] = j;
@@ -43,23 +39,20 @@ std::size_t edit_distance(std::string_view a, std::string_view b)
 }
 
 template <class T>
-std::optional<T> parse_whole(std::string_view digits, int base)
-{
+std::optional<T> parse_whole(std::string_view digits, int base) {
     T value{};
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, base);
     const bool isWhole = error == std::errc() && end == digits.data() + digits.size();
     return isWhole ? std::optional<T>(value) : std::nullopt;
 }
 
-bool hasHexPrefix(std::string_view text)
-{
+bool hasHexPrefix(std::string_view text) {
     return text.size() > 2 && text[0] == '0' && lower(text[1]) == 'x';
 }
 
 }  // namespace
 
-std::optional<double> parse_double(std::string_view text)
-{
+std::optional<double> parse_double(std::string_view text) {
     if (!text.empty() && text.front() == '+') {
         text.remove_prefix(1);
         if (!text.empty() && text.front() == '-') {
@@ -72,8 +65,7 @@ std::optional<double> parse_double(std::string_view text)
     return isWhole && std::isfinite(value) ? std::optional<double>(value) : std::nullopt;
 }
 
-std::optional<std::int64_t> parse_int(std::string_view text)
-{
+std::optional<std::int64_t> parse_int(std::string_view text) {
     if (!text.empty() && text.front() == '+') {
         text.remove_prefix(1);
     }
@@ -83,8 +75,7 @@ std::optional<std::int64_t> parse_int(std::string_view text)
     return parse_whole<std::int64_t>(text, 10);
 }
 
-std::optional<std::uint64_t> parse_uint(std::string_view text)
-{
+std::optional<std::uint64_t> parse_uint(std::string_view text) {
     if (!text.empty() && text.front() == '+') {
         text.remove_prefix(1);
     }
@@ -94,15 +85,13 @@ std::optional<std::uint64_t> parse_uint(std::string_view text)
     return parse_whole<std::uint64_t>(text, 10);
 }
 
-std::string to_text(double value)
-{
+std::string to_text(double value) {
     char buffer[32];
     const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value);
     return error == std::errc() ? std::string(buffer, end) : std::string("?");
 }
 
-std::string_view trim(std::string_view text)
-{
+std::string_view trim(std::string_view text) {
     while (!text.empty() && isBlank(text.front())) {
         text.remove_prefix(1);
     }
@@ -112,27 +101,24 @@ std::string_view trim(std::string_view text)
     return text;
 }
 
-std::string to_lower(std::string_view text)
-{
+std::string to_lower(std::string_view text) {
     std::string out(text);
     std::transform(out.begin(), out.end(), out.begin(), lower);
     return out;
 }
 
-std::string to_upper(std::string_view text)
-{
+std::string to_upper(std::string_view text) {
     std::string out(text);
     std::transform(out.begin(), out.end(), out.begin(), upper);
     return out;
 }
 
-bool equals_ignoring_case(std::string_view a, std::string_view b)
-{
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return lower(x) == lower(y); });
+bool equals_ignoring_case(std::string_view a, std::string_view b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](char x, char y) { return lower(x) == lower(y); });
 }
 
-std::vector<std::string> split_words(std::string_view text)
-{
+std::vector<std::string> split_words(std::string_view text) {
     std::vector<std::string> words;
     std::size_t i = 0;
     while (i < text.size()) {
@@ -150,8 +136,7 @@ std::vector<std::string> split_words(std::string_view text)
     return words;
 }
 
-std::string nearest_name(std::string_view name, const std::vector<std::string> &candidates)
-{
+std::string nearest_name(std::string_view name, const std::vector<std::string> &candidates) {
     std::size_t best = name.size() / 3 + 1;
     std::string found;
     for (const std::string &candidate : candidates) {

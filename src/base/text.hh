@@ -10,8 +10,8 @@
 
 namespace mw {
 
-/// The whole of `text` as a number ("1", "-2.5", "+.15", "4.2e1"); nothing when anything is left over or the value
-/// is not finite. A decimal comma is never accepted.
+/// The whole of `text` as a number ("1", "-2.5", "+.15", "4.2e1"); nothing when anything is left over or the
+/// value is not finite. A decimal comma is never accepted.
 std::optional<double> parse_double(std::string_view text);
 
 /// The whole of `text` as an integer, decimal or with prefix 0x; nothing on leftovers or overflow.

@@ -4,8 +4,7 @@
 namespace mw::diag {
 namespace {
 
-const char *name_of(Severity severity)
-{
+const char *name_of(Severity severity) {
     switch (severity) {
     case Severity::NOTE: return "note";
     case Severity::WARNING: return "warning";
@@ -15,8 +14,7 @@ const char *name_of(Severity severity)
 }
 
 /// Blanks under the text up to the column, tabs kept so that the caret lines up.
-std::string caret_line(const std::string &text, int column)
-{
+std::string caret_line(const std::string &text, int column) {
     std::string out;
     for (int i = 0; i + 1 < column && i < static_cast<int>(text.size()); ++i) {
         out += text[static_cast<std::size_t>(i)] == '\t' ? '\t' : ' ';
@@ -26,8 +24,7 @@ std::string caret_line(const std::string &text, int column)
 
 }  // namespace
 
-std::string Diagnostic::str() const
-{
+std::string Diagnostic::str() const {
     std::string out = what.place.str();
     if (!out.empty()) {
         out += ": ";
@@ -48,8 +45,7 @@ std::string Diagnostic::str() const
     return out;
 }
 
-void Sink::report(Diagnostic diagnostic)
-{
+void Sink::report(Diagnostic diagnostic) {
     if (diagnostic.severity == Severity::ERROR) {
         ++errors_;
     }
@@ -59,23 +55,19 @@ void Sink::report(Diagnostic diagnostic)
     }
 }
 
-void Sink::error(std::string message, SourcePlace place, std::string hint)
-{
+void Sink::error(std::string message, SourcePlace place, std::string hint) {
     report({Severity::ERROR, {std::move(message), std::move(place), std::move(hint)}});
 }
 
-void Sink::warning(std::string message, SourcePlace place, std::string hint)
-{
+void Sink::warning(std::string message, SourcePlace place, std::string hint) {
     report({Severity::WARNING, {std::move(message), std::move(place), std::move(hint)}});
 }
 
-void Sink::note(std::string message, SourcePlace place)
-{
+void Sink::note(std::string message, SourcePlace place) {
     report({Severity::NOTE, {std::move(message), std::move(place), {}}});
 }
 
-void Sink::clear()
-{
+void Sink::clear() {
     all_.clear();
     errors_ = 0;
 }

@@ -15,14 +15,12 @@ inline constexpr char AXIS_LETTERS[] = "XYZABCUVW";
 inline constexpr char AXIS_LETTERS_LOWER[] = "xyzabcuvw";
 
 /// True for A, B and C, whose unit is the degree.
-constexpr bool isAngular(int axis) noexcept
-{
+constexpr bool isAngular(int axis) noexcept {
     return axis >= AXIS_A && axis <= AXIS_C;
 }
 
 /// Index of a letter in either case, or -1.
-constexpr int axis_of_letter(char letter) noexcept
-{
+constexpr int axis_of_letter(char letter) noexcept {
     for (int i = 0; i < AXIS_COUNT; ++i) {
         if (letter == AXIS_LETTERS[i] || letter == AXIS_LETTERS_LOWER[i]) {
             return i;
@@ -31,8 +29,8 @@ constexpr int axis_of_letter(char letter) noexcept
     return -1;
 }
 
-/// Nine coordinates X Y Z A B C U V W; lengths in machine units, angles in degrees, unless a name says otherwise.
-/// Also used for directions, velocities and offsets.
+/// Nine coordinates X Y Z A B C U V W; lengths in machine units, angles in degrees, unless a name says
+/// otherwise. Also used for directions, velocities and offsets.
 struct Pose {
     std::array<double, AXIS_COUNT> c{};
 
@@ -44,8 +42,7 @@ struct Pose {
     constexpr bool operator==(const Pose &) const noexcept = default;
 };
 
-constexpr Pose operator+(const Pose &p, const Pose &q) noexcept
-{
+constexpr Pose operator+(const Pose &p, const Pose &q) noexcept {
     Pose r;
     for (int i = 0; i < AXIS_COUNT; ++i) {
         r[i] = p[i] + q[i];
@@ -53,8 +50,7 @@ constexpr Pose operator+(const Pose &p, const Pose &q) noexcept
     return r;
 }
 
-constexpr Pose operator-(const Pose &p, const Pose &q) noexcept
-{
+constexpr Pose operator-(const Pose &p, const Pose &q) noexcept {
     Pose r;
     for (int i = 0; i < AXIS_COUNT; ++i) {
         r[i] = p[i] - q[i];
@@ -62,8 +58,7 @@ constexpr Pose operator-(const Pose &p, const Pose &q) noexcept
     return r;
 }
 
-constexpr Pose operator*(const Pose &p, double k) noexcept
-{
+constexpr Pose operator*(const Pose &p, double k) noexcept {
     Pose r;
     for (int i = 0; i < AXIS_COUNT; ++i) {
         r[i] = p[i] * k;
@@ -71,8 +66,7 @@ constexpr Pose operator*(const Pose &p, double k) noexcept
     return r;
 }
 
-constexpr double dot(const Pose &p, const Pose &q) noexcept
-{
+constexpr double dot(const Pose &p, const Pose &q) noexcept {
     double sum = 0.0;
     for (int i = 0; i < AXIS_COUNT; ++i) {
         sum += p[i] * q[i];
@@ -81,32 +75,27 @@ constexpr double dot(const Pose &p, const Pose &q) noexcept
 }
 
 /// Euclidean norm over all nine coordinates.
-inline double norm(const Pose &p) noexcept
-{
+inline double norm(const Pose &p) noexcept {
     return std::sqrt(dot(p, p));
 }
 
 /// Euclidean norm over X Y Z. [machine units]
-inline double norm_xyz(const Pose &p) noexcept
-{
+inline double norm_xyz(const Pose &p) noexcept {
     return std::sqrt(p[AXIS_X] * p[AXIS_X] + p[AXIS_Y] * p[AXIS_Y] + p[AXIS_Z] * p[AXIS_Z]);
 }
 
 /// Euclidean norm over U V W. [machine units]
-inline double norm_uvw(const Pose &p) noexcept
-{
+inline double norm_uvw(const Pose &p) noexcept {
     return std::sqrt(p[AXIS_U] * p[AXIS_U] + p[AXIS_V] * p[AXIS_V] + p[AXIS_W] * p[AXIS_W]);
 }
 
 /// Euclidean norm over A B C. [degrees]
-inline double norm_abc(const Pose &p) noexcept
-{
+inline double norm_abc(const Pose &p) noexcept {
     return std::sqrt(p[AXIS_A] * p[AXIS_A] + p[AXIS_B] * p[AXIS_B] + p[AXIS_C] * p[AXIS_C]);
 }
 
 /// Euclidean norm over the six lengths. [machine units]
-inline double norm_linear(const Pose &p) noexcept
-{
+inline double norm_linear(const Pose &p) noexcept {
     return std::hypot(norm_xyz(p), norm_uvw(p));
 }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "geom/pose.hh"
+#include "tool/entry.hh"
 
 namespace mw::interp {
 
@@ -16,42 +17,36 @@ enum class LengthUnits { INCH, MM };
 enum class Plane { XY, YZ, XZ, UV, VW, UW };
 enum class MotionControl { EXACT_STOP, EXACT_PATH, CONTINUOUS };
 enum class FeedMode { UNITS_PER_MINUTE = 0, INVERSE_TIME = 1, UNITS_PER_REVOLUTION = 2 };
-enum class ProbeKind { TOWARD_ERROR, TOWARD, AWAY_ERROR, AWAY };  // G38.2 G38.3 G38.4 G38.5
+enum class ProbeKind { TOWARD_ERROR, TOWARD, AWAY_ERROR, AWAY };               // G38.2 G38.3 G38.4 G38.5
 enum class WaitKind { IMMEDIATE = 0, RISE = 1, FALL = 2, HIGH = 3, LOW = 4 };  // M66 L
 
 /// The block that the calls after it come from. Views live until the call returns.
 struct BlockRef {
     std::string_view file;
-    int line = 0;          ///< from 1, in `file`
-    int sequence = 0;      ///< the N word, else `line`; what operators see as the line number
-    int call_level = 0;    ///< 0 in the main program
+    int line = 0;        ///< from 1, in `file`
+    int sequence = 0;    ///< the N word, else `line`; what operators see as the line number
+    int call_level = 0;  ///< 0 in the main program
     std::string_view text;
+    bool isNumbered = false;  ///< the block has an N word
 };
 
-/// A circular or helical feed move in the selected plane. First and second are the plane's axes in the order of the
-/// field's canon: XY -> X,Y; YZ -> Y,Z; XZ -> Z,X.
+/// A circular or helical feed move in the selected plane. First and second are the plane's axes in the order
+/// of the field's canon: XY -> X,Y; YZ -> Y,Z; XZ -> Z,X.
 struct ArcFeed {
-    double first_end = 0, second_end = 0;    ///< [program units]
+    double first_end = 0, second_end = 0;        ///< [program units]
     double first_centre = 0, second_centre = 0;  ///< absolute, [program units]
-    int rotation = 1;                        ///< full or partial turns; > 0 counterclockwise, < 0 clockwise
-    double axis_end = 0;                     ///< end along the normal [program units]
-    Pose end;                                ///< the whole end pose in XYZABCUVW, consistent with the above
+    int rotation = 1;     ///< full or partial turns; > 0 counterclockwise, < 0 clockwise
+    double axis_end = 0;  ///< end along the normal [program units]
+    Pose end;             ///< the whole end pose in XYZABCUVW, consistent with the above
 };
 
-struct ToolEntry {
-    int toolno = -1;    ///< -1: no tool in this entry
-    int pocketno = 0;
-    Pose offset;        ///< [machine units, degrees]
-    double diameter = 0;
-    double frontangle = 0, backangle = 0;
-    int orientation = 0;
-    std::string comment;
-};
+using tool::ToolEntry;
 
-/// Positions and lengths are in program units (as the last use_length_units said) and in program coordinates, that
-/// is before rotation, G5x, G92 and tool offsets, which are announced by calls of their own; angles in degrees.
-/// No call blocks, and none answers: what the interpreter must know of the machine it asks a `World`.
-/// `interp::MachineFrame` forwards to a `MachineCanon` with all of it converted to machine coordinates and units.
+/// Positions and lengths are in program units (as the last use_length_units said) and in program coordinates,
+/// that is before rotation, G5x, G92 and tool offsets, which are announced by calls of their own; angles in
+/// degrees. No call blocks, and none answers: what the interpreter must know of the machine it asks a
+/// `World`. `interp::MachineFrame` forwards to a `MachineCanon` with all of it converted to machine
+/// coordinates and units.
 class Canon {
   public:
     virtual ~Canon() = default;

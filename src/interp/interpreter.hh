@@ -2,7 +2,10 @@
 // The RS-274/NGC interpreter. Parse once, run many; one block per step; never blocks.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,8 +18,9 @@
 namespace mw::interp {
 
 struct Settings {
-    std::vector<std::string> subroutine_path;  ///< [RS274NGC]SUBROUTINE_PATH and [DISPLAY]PROGRAM_PREFIX, in order
-    std::string startup_code;                  ///< [RS274NGC]RS274NGC_STARTUP_CODE
+    std::vector<std::string>
+        subroutine_path;       ///< [RS274NGC]SUBROUTINE_PATH and [DISPLAY]PROGRAM_PREFIX, in order
+    std::string startup_code;  ///< [RS274NGC]RS274NGC_STARTUP_CODE
     bool isG92PersistenceDisabled = false;
     bool isFanucSubDisabled = false;
     double center_arc_radius_tolerance_mm = 0.00127;
@@ -24,9 +28,11 @@ struct Settings {
     bool isLathe = false;
     double orient_offset_deg = 0;
     double parameter_g73_peck_clearance_mm = 0.254, parameter_g83_peck_clearance_mm = 0.254;
-    std::vector<std::string> remaps;           ///< [RS274NGC]REMAP lines, as written
+    std::vector<std::string> remaps;  ///< [RS274NGC]REMAP lines, as written
     std::string ini_folder;
-    /// Statements per step() and in all; 0: without bound. A bound makes check runs of endless loops end in an error.
+    std::optional<LengthUnits> initial_units;  ///< G20 or G21 at the start; the machine's when not given
+    /// Statements per step() and in all; 0: without bound. A bound makes check runs of endless loops end in
+    /// an error.
     std::uint64_t statement_budget = 0;
 };
 
@@ -40,7 +46,7 @@ enum class Step {
 
 /// The codes in force, in the shapes that status displays rely on (facts.md).
 struct ActiveCodes {
-    std::array<int, 17> g{};   ///< [0] sequence number, then ten times the code, -1 none
+    std::array<int, 17> g{};  ///< [0] sequence number, then ten times the code, -1 none
     std::array<int, 10> m{};
     std::array<double, 5> settings{};  ///< sequence, feed, speed, G64 P, G64 Q
 };
@@ -48,7 +54,8 @@ struct ActiveCodes {
 class Interpreter {
   public:
     /// All references must outlive the interpreter.
-    Interpreter(Canon &canon, World &world, ToolSource &tools, ParameterSource &parameters, Settings settings);
+    Interpreter(Canon &canon, World &world, ToolSource &tools, ParameterSource &parameters,
+                Settings settings);
     ~Interpreter();
 
     /// Reads the parameter file (RS274NGC_VAR); a missing file is an empty one. Errors name line and column.
@@ -58,7 +65,8 @@ class Interpreter {
 
     /// Announces offsets, units and modes to the canon and runs the start-up code.
     Result<> begin();
-    /// Reads and parses a whole file. Syntax errors outside executed blocks are reported when they are reached.
+    /// Reads and parses a whole file. Syntax errors outside executed blocks are reported when they are
+    /// reached.
     Result<> open(const std::string &path);
     void close();
 
@@ -74,7 +82,7 @@ class Interpreter {
     /// The last failure: message, file:line:column, the block's text, the callers.
     const diag::Diagnostic &error() const;
     ActiveCodes active_codes() const;
-    int line() const;              ///< of the block last read, in file()
+    int line() const;  ///< of the block last read, in file()
     const std::string &file() const;
     int call_level() const;
     double parameter(int number) const;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the interpreter asks of the machine around it. Implemented by task, by the standalone program and by tests.
+// What the interpreter asks of the machine around it. Implemented by task, by the standalone program and by
+// tests.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,10 +15,10 @@ namespace mw::interp {
 
 /// The state of the machine at a synchronisation point. Lengths in machine units, machine coordinates.
 struct MachineSnapshot {
-    Pose position;             ///< commanded position, tool offset not taken off
+    Pose position;  ///< commanded position, tool offset not taken off
     Pose probed_position;
     bool isProbeTripped = false;
-    double input_value = 0;    ///< result of the last wait_input; -1 on timeout for digital
+    double input_value = 0;  ///< result of the last wait_input; -1 on timeout for digital
     bool isInputTimedOut = false;
     bool isMistOn = false, isFloodOn = false;
     bool isFeedOverrideEnabled = true, isSpeedOverrideEnabled = true, isFeedHoldEnabled = true;
@@ -39,13 +41,14 @@ class World {
     virtual bool isOptionalStopOn() const = 0;
 };
 
-/// The tool table as the interpreter sees it. Entry 0 is the tool in the spindle. One owner: io (or the standalone).
+/// The tool table as the interpreter sees it. Entry 0 is the tool in the spindle. One owner: io (or the
+/// standalone).
 class ToolSource {
   public:
     virtual ~ToolSource() = default;
-    virtual int count() const = 0;                      ///< entries, the spindle's included
-    virtual ToolEntry entry(int index) const = 0;       ///< index in [0, count())
-    virtual int index_of_tool(int toolno) const = 0;    ///< -1 when the table has no such tool
+    virtual int count() const = 0;                    ///< entries, the spindle's included
+    virtual ToolEntry entry(int index) const = 0;     ///< index in [0, count())
+    virtual int index_of_tool(int toolno) const = 0;  ///< -1 when the table has no such tool
     virtual bool isRandom() const = 0;
 };
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "base/atomic_file.hh"
-
 #include <unistd.h>
 
 #include <filesystem>
 
 #include <gtest/gtest.h>
+
+#include "base/atomic_file.hh"
 
 namespace mw {
 namespace {
@@ -14,8 +14,7 @@ namespace fs = std::filesystem;
 
 class AtomicFile : public testing::Test {
   protected:
-    void SetUp() override
-    {
+    void SetUp() override {
         folder_ = fs::temp_directory_path() / ("mw_atomic_" + std::to_string(::getpid()));
         fs::create_directory(folder_);
     }
@@ -25,15 +24,13 @@ class AtomicFile : public testing::Test {
     fs::path folder_;
 };
 
-TEST_F(AtomicFile, WritesWhatIsReadBack)
-{
+TEST_F(AtomicFile, WritesWhatIsReadBack) {
     ASSERT_TRUE(write_file_atomically(path("a"), "one").has_value());
     ASSERT_TRUE(write_file_atomically(path("a"), "two").has_value());
     EXPECT_EQ(read_file(path("a")).value(), "two");
 }
 
-TEST_F(AtomicFile, KeepsPermissionsAndLeavesNothingBehind)
-{
+TEST_F(AtomicFile, KeepsPermissionsAndLeavesNothingBehind) {
     ASSERT_TRUE(write_file_atomically(path("a"), "one").has_value());
     fs::permissions(path("a"), fs::perms::owner_read | fs::perms::owner_write);
     ASSERT_TRUE(write_file_atomically(path("a"), "two").has_value());
@@ -41,8 +38,7 @@ TEST_F(AtomicFile, KeepsPermissionsAndLeavesNothingBehind)
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
 }
 
-TEST_F(AtomicFile, AFailureNamesTheFile)
-{
+TEST_F(AtomicFile, AFailureNamesTheFile) {
     const auto result = write_file_atomically(path("missing/a"), "x");
     ASSERT_FALSE(result.has_value());
     EXPECT_NE(result.error().message.find("missing/a"), std::string::npos);

@@ -9,8 +9,7 @@
 namespace mw {
 namespace {
 
-TEST(SpscRing, RefusesWhenFullAndKeepsOrder)
-{
+TEST(SpscRing, RefusesWhenFullAndKeepsOrder) {
     SpscRing<int, 4> ring;
     for (int i = 0; i < 4; ++i) {
         EXPECT_TRUE(ring.push(i));
@@ -24,8 +23,7 @@ TEST(SpscRing, RefusesWhenFullAndKeepsOrder)
     EXPECT_FALSE(ring.pop(value));
 }
 
-TEST(SpscRing, TwoThreadsLoseNothing)
-{
+TEST(SpscRing, TwoThreadsLoseNothing) {
     auto ring = std::make_unique<SpscRing<int, 64>>();
     constexpr int COUNT = 100000;
     std::thread producer([&ring] {
@@ -43,8 +41,7 @@ TEST(SpscRing, TwoThreadsLoseNothing)
     producer.join();
 }
 
-TEST(Seqlock, ReadersNeverSeeAMixture)
-{
+TEST(Seqlock, ReadersNeverSeeAMixture) {
     struct Snapshot {
         std::int64_t a[5];
     };

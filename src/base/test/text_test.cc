@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "base/text.hh"
-
 #include <clocale>
 
 #include <gtest/gtest.h>
 
+#include "base/text.hh"
+
 namespace mw {
 namespace {
 
-TEST(Text, NumbersAreReadWholeOrNotAtAll)
-{
+TEST(Text, NumbersAreReadWholeOrNotAtAll) {
     EXPECT_EQ(parse_double(".15"), 0.15);
     EXPECT_EQ(parse_double("4.2e1"), 42.0);
     EXPECT_EQ(parse_double("+3"), 3.0);
@@ -22,16 +21,14 @@ TEST(Text, NumbersAreReadWholeOrNotAtAll)
     EXPECT_FALSE(parse_uint("-1").has_value());
 }
 
-TEST(Text, TheLocaleDoesNotMatter_A8)
-{
+TEST(Text, TheLocaleDoesNotMatter_A8) {
     std::setlocale(LC_ALL, "de_DE.UTF-8");
     EXPECT_EQ(parse_double("1.5"), 1.5);
     EXPECT_EQ(to_text(1.5), "1.5");
     std::setlocale(LC_ALL, "C");
 }
 
-TEST(Text, NearestNameIsOfferedOnlyWhenNear)
-{
+TEST(Text, NearestNameIsOfferedOnlyWhenNear) {
     EXPECT_EQ(nearest_name("MAX_VELOCTY", {"MIN_LIMIT", "MAX_VELOCITY"}), "MAX_VELOCITY");
     EXPECT_EQ(nearest_name("ABC", {"MIN_LIMIT", "MAX_VELOCITY"}), "");
 }

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "geom/pose.hh"
-
 #include <gtest/gtest.h>
+
+#include "geom/pose.hh"
 
 namespace mw::geom {
 namespace {
 
-TEST(Pose, GroupsOfCoordinatesHaveTheirOwnNorms_A4)
-{
+TEST(Pose, GroupsOfCoordinatesHaveTheirOwnNorms_A4) {
     const Pose p{{3, 4, 0, 6, 8, 0, 0, 0, 12}};
     EXPECT_DOUBLE_EQ(norm_xyz(p), 5.0);
     EXPECT_DOUBLE_EQ(norm_abc(p), 10.0);
@@ -15,8 +14,7 @@ TEST(Pose, GroupsOfCoordinatesHaveTheirOwnNorms_A4)
     EXPECT_DOUBLE_EQ(norm_linear(p), 13.0);
 }
 
-TEST(Pose, LettersKeepTheirOrder)
-{
+TEST(Pose, LettersKeepTheirOrder) {
     EXPECT_EQ(axis_of_letter('x'), 0);
     EXPECT_EQ(axis_of_letter('W'), 8);
     EXPECT_EQ(axis_of_letter('q'), -1);

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "config/ini_file.hh"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "base/atomic_file.hh"
+#include "base/text.hh"
+
+namespace mw::config {
+namespace {
+
+constexpr int MAX_INCLUDE_DEPTH = 16;
+
+std::string folder_of(const std::string &path) {
+    const auto slash = path.rfind('/');
+    if (slash == std::string::npos) {
+        return ".";
+    }
+    return slash == 0 ? "/" : path.substr(0, slash);
+}
+
+std::string expand_home(std::string_view name) {
+    const char *home = std::getenv("HOME");
+    if (home != nullptr && (name == "~" || name.substr(0, 2) == "~/")) {
+        return home + std::string(name.substr(1));
+    }
+    return std::string(name);
+}
+
+}  // namespace
+
+/// Reads lines into an IniFile; one instance for a file and all that it includes.
+class IniParser {
+  public:
+    IniParser(IniFile &file, diag::Sink &sink) : file_(file), sink_(sink) {}
+
+    void text(std::string_view text, const std::string &path, int depth) {
+        int line = 0;
+        while (!text.empty()) {
+            ++line;
+            const int first_line = line;
+            std::string joined = take_line(text);
+            while (!joined.empty() && joined.back() == '\\' && !text.empty()) {
+                joined.pop_back();
+                joined += take_line(text);
+                ++line;
+            }
+            one_line(joined, {path, first_line, 1}, depth);
+        }
+    }
+
+  private:
+    static std::string take_line(std::string_view &text) {
+        const auto end = text.find('\n');
+        std::string line(text.substr(0, end));
+        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+        if (!line.empty() && line.back() == '\r') {
+            line.pop_back();
+        }
+        return line;
+    }
+
+    void one_line(const std::string &line, SourcePlace place, int depth) {
+        const std::string_view body = trim(line);
+        place.column = body.empty() ? 1 : static_cast<int>(body.data() - line.data()) + 1;
+        if (body.substr(0, 8) == "#INCLUDE") {
+            include(trim(body.substr(8)), place, depth);
+        } else if (body.empty() || body[0] == '#' || body[0] == ';') {
+            return;
+        } else if (body[0] == '[') {
+            section(body, place);
+        } else {
+            entry(line, body, place);
+        }
+    }
+
+    void section(std::string_view body, const SourcePlace &place) {
+        const auto end = body.find(']');
+        const std::string_view name = end == std::string_view::npos ? "" : trim(body.substr(1, end - 1));
+        const std::string_view rest = end == std::string_view::npos ? "" : trim(body.substr(end + 1));
+        const bool isCommentAfter = rest.empty() || rest[0] == '#' || rest[0] == ';';
+        if (name.empty() || !isCommentAfter) {
+            sink_.error("malformed section header '" + std::string(body) + "'", place, "expected [SECTION]");
+            section_.clear();
+            isInBadSection_ = true;
+            return;
+        }
+        section_ = name;
+        isInBadSection_ = false;
+        if (!file_.hasSection(section_)) {
+            file_.heads_.push_back({section_, place});
+        }
+    }
+
+    void entry(const std::string &line, std::string_view body, SourcePlace place) {
+        const auto equals = body.find('=');
+        const std::string_view key = equals == std::string_view::npos ? "" : trim(body.substr(0, equals));
+        if (key.empty()) {
+            sink_.error("malformed line '" + std::string(body) + "'", place,
+                        "expected KEY = VALUE, [SECTION], or a comment that starts with # or ;");
+            return;
+        }
+        if (section_.empty()) {
+            if (!isInBadSection_) {
+                sink_.error("'" + std::string(key) + "' stands before the first [SECTION]", place);
+            }
+            return;
+        }
+        const std::string_view value = trim(body.substr(equals + 1));
+        place.column =
+            static_cast<int>((value.empty() ? body.data() + equals + 1 : value.data()) - line.data()) + 1;
+        file_.entries_.push_back({section_, std::string(key), std::string(value), place});
+    }
+
+    void include(std::string_view name, const SourcePlace &place, int depth) {
+        if (name.empty()) {
+            sink_.error("#INCLUDE without a file name", place);
+            return;
+        }
+        if (depth >= MAX_INCLUDE_DEPTH) {
+            sink_.error("#INCLUDE nested deeper than " + std::to_string(MAX_INCLUDE_DEPTH) + " files", place);
+            return;
+        }
+        std::string path = expand_home(name);
+        if (path.front() != '/') {
+            const std::string beside = folder_of(place.file) + '/' + path;
+            path = ::access(beside.c_str(), R_OK) == 0 ? beside : path;
+        }
+        const auto content = read_file(path);
+        if (!content.has_value()) {
+            sink_.error("#INCLUDE: " + content.error().message, place);
+            return;
+        }
+        text(*content, path, depth + 1);
+    }
+
+    IniFile &file_;
+    diag::Sink &sink_;
+    std::string section_;
+    bool isInBadSection_ = false;
+};
+
+Result<IniFile> IniFile::load(const std::string &path, diag::Sink &sink) {
+    const auto content = read_file(path);
+    if (!content.has_value()) {
+        return std::unexpected(content.error());
+    }
+    return parse(*content, path, sink);
+}
+
+IniFile IniFile::parse(std::string_view text, const std::string &path, diag::Sink &sink) {
+    IniFile file;
+    file.path_ = path;
+    IniParser(file, sink).text(text, path, 0);
+    return file;
+}
+
+std::string IniFile::folder() const {
+    return folder_of(path_);
+}
+
+std::string IniFile::resolve_path(std::string_view name) const {
+    const std::string expanded = expand_home(name);
+    if (!expanded.empty() && expanded.front() == '/') {
+        return expanded;
+    }
+    return folder() + '/' + expanded;
+}
+
+bool IniFile::hasSection(std::string_view section) const {
+    return std::any_of(heads_.begin(), heads_.end(), [&](const SectionHead &h) { return h.name == section; });
+}
+
+const IniEntry *IniFile::find(std::string_view section, std::string_view key, int number) const {
+    for (const IniEntry &entry : entries_) {
+        if (entry.section == section && entry.key == key && --number == 0) {
+            return &entry;
+        }
+    }
+    return nullptr;
+}
+
+std::vector<const IniEntry *> IniFile::find_all(std::string_view section, std::string_view key) const {
+    std::vector<const IniEntry *> found;
+    for (const IniEntry &entry : entries_) {
+        if (entry.section == section && entry.key == key) {
+            found.push_back(&entry);
+        }
+    }
+    return found;
+}
+
+std::vector<std::string> IniFile::sections() const {
+    std::vector<std::string> names;
+    for (const SectionHead &head : heads_) {
+        names.push_back(head.name);
+    }
+    return names;
+}
+
+std::vector<std::string> IniFile::keys(std::string_view section) const {
+    std::vector<std::string> names;
+    for (const IniEntry &entry : entries_) {
+        const bool isNew = std::find(names.begin(), names.end(), entry.key) == names.end();
+        if (entry.section == section && isNew) {
+            names.push_back(entry.key);
+        }
+    }
+    return names;
+}
+
+SourcePlace IniFile::place_of_section(std::string_view section) const {
+    for (const SectionHead &head : heads_) {
+        if (head.name == section) {
+            return head.place;
+        }
+    }
+    return {path_, 0, 0};
+}
+
+}  // namespace mw::config

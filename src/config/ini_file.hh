@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// An INI file with the place of each entry. Syntax: LinuxCNC Integrator Manual, "INI Configuration" (format
+// facts).
+#pragma once
+
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.hh"
+#include "diag/sink.hh"
+
+namespace mw::config {
+
+struct IniEntry {
+    std::string section;
+    std::string key;
+    std::string value;  ///< trimmed; ';' and '#' inside a value belong to it
+    SourcePlace place;  ///< of the value's first character
+};
+
+/// Sections and keys keep their order and their case; a key may occur several times (then it is a list).
+/// `#INCLUDE file` inserts another file, found beside the including one, in the working folder, or by '~'.
+class IniFile {
+  public:
+    /// Reads `path`. Every malformed line is reported to `sink`; the result is empty-handed only when the
+    /// file itself cannot be read.
+    static Result<IniFile> load(const std::string &path, diag::Sink &sink);
+    /// The same for text in memory; `path` names it in messages and is the base of includes.
+    static IniFile parse(std::string_view text, const std::string &path, diag::Sink &sink);
+
+    const std::string &path() const { return path_; }
+    /// The folder of the path as given (symbolic links are not resolved), "." when it has none.
+    std::string folder() const;
+    /// `name` relative to the folder of the INI file; absolute names and '~' stay what they are.
+    std::string resolve_path(std::string_view name) const;
+
+    bool hasSection(std::string_view section) const;
+    /// The `number`-th entry (from 1) of that key, or nullptr.
+    const IniEntry *find(std::string_view section, std::string_view key, int number = 1) const;
+    std::vector<const IniEntry *> find_all(std::string_view section, std::string_view key) const;
+    const std::vector<IniEntry> &entries() const { return entries_; }
+    std::vector<std::string> sections() const;
+    std::vector<std::string> keys(std::string_view section) const;
+    /// Where the section's header stands; the file alone when there is no such section.
+    SourcePlace place_of_section(std::string_view section) const;
+
+  private:
+    struct SectionHead {
+        std::string name;
+        SourcePlace place;
+    };
+    friend class IniParser;
+
+    std::string path_;
+    std::vector<SectionHead> heads_;
+    std::vector<IniEntry> entries_;
+};
+
+}  // namespace mw::config

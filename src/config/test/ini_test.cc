@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <gtest/gtest.h>
+
+#include "config/ini_reader.hh"
+
+namespace mw::config {
+namespace {
+
+struct Read {
+    explicit Read(std::string_view text)
+        : file(IniFile::parse(text, "dir/m.ini", sink)), reader(file, sink) {}
+    std::string first_message() const { return sink.all().empty() ? "" : sink.all().front().what.str(); }
+
+    diag::Sink sink;
+    IniFile file;
+    IniReader reader;
+};
+
+TEST(Ini, EntriesKeepTheirPlaceAndComments) {
+    Read ini("# c\n[A]\n  K =  v ; kept # too \n[B]\nK=1\nK = 2\n");
+    ASSERT_FALSE(ini.sink.hasErrors());
+    EXPECT_EQ(ini.file.find("A", "K")->value, "v ; kept # too");
+    EXPECT_EQ(ini.file.find("A", "K")->place.str(), "dir/m.ini:3:8");
+    EXPECT_EQ(ini.file.find_all("B", "K").size(), 2U);
+    EXPECT_EQ(ini.file.resolve_path("x.hal"), "dir/x.hal");
+}
+
+TEST(Ini, AContinuedLineIsOneValue) {
+    Read ini("[A]\nK = a \\\nb\nL = 1\n");
+    EXPECT_EQ(ini.file.find("A", "K")->value, "a b");
+    EXPECT_EQ(ini.file.find("A", "L")->place.line, 4);
+}
+
+TEST(Ini, EveryMalformedLineIsReported) {
+    Read ini("K = 1\n[A\nstray\n[A]\n= 5\n");
+    EXPECT_EQ(ini.sink.count_errors(), 4);
+    EXPECT_EQ(ini.sink.all()[1].what.place.line, 2);
+}
+
+TEST(Ini, NumbersAreTypedAndRanged) {
+    Read ini("[J]\nV = 1,5\nA = -3\nF = 2.5 # fast\n");
+    EXPECT_EQ(ini.reader.real("J", "V", 7.0), 7.0);
+    EXPECT_EQ(ini.reader.real("J", "A", 7.0, {0.0}), 7.0);
+    EXPECT_EQ(ini.reader.real("J", "F", 7.0), 2.5);
+    ASSERT_EQ(ini.sink.count_errors(), 2);
+    EXPECT_EQ(ini.first_message(),
+              "dir/m.ini:2:5: [J]V = '1,5' is not a number (expected a number, with a decimal point)");
+}
+
+TEST(Ini, AMissingKeySaysWhatWasExpected) {
+    Read ini("[KINS]\nJOINT = 3\n");
+    ini.reader.required_integer("KINS", "JOINTS", 1, 16);
+    EXPECT_EQ(ini.first_message(),
+              "dir/m.ini:1:1: [KINS]JOINTS is missing (expected [KINS]JOINTS = a whole number "
+              "from 1 to 16; is 'JOINT' a misspelling?)");
+    ini.reader.required_text("HAL", "HALFILE");
+    EXPECT_EQ(ini.sink.all().back().what.message, "section [HAL] is missing");
+}
+
+TEST(Ini, UnknownKeysAreWarnedOnceWithTheNearestName) {
+    Read ini("[J]\nMAX_VELOCTY = 1\n[OTHER]\nX = 1\n");
+    ini.reader.real("J", "MAX_VELOCITY", 1.0);
+    ini.reader.report_unknown(false);
+    ini.reader.report_unknown(false);
+    ASSERT_EQ(ini.sink.all().size(), 1U);
+    EXPECT_EQ(ini.sink.all()[0].what.hint, "did you mean MAX_VELOCITY?");
+    EXPECT_FALSE(ini.sink.hasErrors());
+}
+
+TEST(Ini, AScalarGivenTwiceNamesTheOneUsed) {
+    Read ini("[J]\nV = 1\nV = 2\n");
+    EXPECT_EQ(ini.reader.real("J", "V", 0.0), 1.0);
+    EXPECT_EQ(ini.reader.real("J", "V", 0.0), 1.0);
+    ASSERT_EQ(ini.sink.all().size(), 1U);
+    EXPECT_NE(ini.first_message().find("dir/m.ini:2:5"), std::string::npos);
+}
+
+TEST(Ini, BooleansInAllSpellings) {
+    Read ini("[J]\nA = yes\nB = False\nC = maybe\n");
+    EXPECT_TRUE(ini.reader.boolean("J", "A", false));
+    EXPECT_FALSE(ini.reader.boolean("J", "B", true));
+    EXPECT_TRUE(ini.reader.boolean("J", "C", true));
+    EXPECT_EQ(ini.sink.count_errors(), 1);
+}
+
+}  // namespace
+}  // namespace mw::config

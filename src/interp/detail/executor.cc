@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "interp/detail/executor.hh"
+
+#include <bit>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace mw::interp::detail {
+namespace {
+
+constexpr char LETTERS[] = "abcdefghijklmnopqrstuvwxyz@^$";
+constexpr double CODE_TOLERANCE = 1e-4;
+constexpr double MM_PER_INCH = 25.4;
+
+}  // namespace
+
+Executor::Executor(World &world, ToolSource &tools, ParameterSource &source, const Settings &settings,
+                   Names &names)
+    : world_(world), tools_(tools), source_(source), settings_(settings), names_(names),
+      evaluator_(parameters, names, *this, fault) {}
+
+std::string Executor::code_name(const Code &code) const {
+    if (code.letter == 'g') {
+        return code.number % 10 == 0 ? fmt::format("g{}", code.number / 10)
+                                     : fmt::format("g{}.{}", code.number / 10, code.number % 10);
+    }
+    return fmt::format("{}{}", code.letter, code.number);
+}
+
+double Executor::machine_to_program() const {
+    if (state.units == world_.machine_units()) {
+        return 1.0;
+    }
+    return state.units == LengthUnits::MM ? MM_PER_INCH : 1.0 / MM_PER_INCH;
+}
+
+// ------------------------------------------------------------------------------------------- one block
+
+bool Executor::run(const BlockView &view, std::string_view line_text) {
+    BlockValues values;
+    outcome = Outcome::OK;
+    if (!evaluate(view, values) || !apply_settings(view)) {
+        return false;
+    }
+    if (view.block->comment_count > 0) {
+        run_comments(view, line_text);
+    }
+    if (!choose_motion(values) || !check_words(values)) {
+        return false;
+    }
+    for (const ActiveCode &active : values.codes) {
+        if (active.code->handler == nullptr) {
+            continue;
+        }
+        if (!(this->*active.code->handler)(*active.code, values)) {
+            if (fault.column == 0) {
+                fault.column = active.column;
+            }
+            return false;
+        }
+    }
+    return true;
+}
+
+bool Executor::evaluate(const BlockView &view, BlockValues &values) {
+    const Arena &arena = *view.arena;
+    const Block &block = *view.block;
+    for (std::uint32_t i = 0; i < block.word_count; ++i) {
+        const Word &word = arena.words[block.first_word + i];
+        double value = word.value;
+        if (word.expression != NO_ID && !evaluator_.value(arena, word.expression, value)) {
+            return false;
+        }
+        const char letter_char = LETTERS[word.letter];
+        if (letter_char == 'g' || letter_char == 'm') {
+            if (!add_code(letter_char, value, word.column, values)) {
+                return false;
+            }
+            continue;
+        }
+        values.present |= bit_of(word.letter);
+        values.value[word.letter] = value;
+        values.column[word.letter] = word.column;
+        if (letter_char == 'f' || letter_char == 's' || letter_char == 't') {
+            if (!insert_code(*find_word_code(letter_char), word.column, values)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+bool Executor::add_code(char letter_char, double number, std::uint32_t column, BlockValues &values) {
+    const double scaled = letter_char == 'g' ? number * 10.0 : number;
+    const double rounded = std::round(scaled);
+    if (number < 0.0) {
+        return fault.set(fmt::format("Negative {} code used", letter_char), column);
+    }
+    if (std::fabs(scaled - rounded) > CODE_TOLERANCE * 10 || rounded > 9999) {
+        return fault.set(fmt::format("Unknown {} code used: {}{}", letter_char, letter_char, number), column);
+    }
+    const int whole = static_cast<int>(rounded);
+    if (letter_char == 'm' && whole > 199) {
+        return fault.set(fmt::format("M-code greater than 199: M{}", whole), column);
+    }
+    const Code *code = find_code(letter_char, whole);
+    if (code == nullptr) {
+        return fault.set(
+            fmt::format("Unknown {} code used: {}", letter_char, fmt::format("{}{}", letter_char, number)),
+            column);
+    }
+    if (letter_char == 'g' && whole == 530) {
+        values.isMachineCoordinates = true;
+    }
+    return insert_code(*code, column, values);
+}
+
+/// Keeps the codes in their order of execution; refuses two of one group.
+bool Executor::insert_code(const Code &code, std::uint32_t column, BlockValues &values) {
+    const std::uint32_t bit = 1u << static_cast<unsigned>(code.group);
+    if ((values.groups & bit) != 0) {
+        return fault.set(fmt::format("Two {} codes used from same modal group", code.letter), column);
+    }
+    values.groups |= bit;
+    if (code.group == Group::MOTION) {
+        values.motion = &code;
+    }
+    if (!values.codes.push_back({&code, column})) {
+        return fault.set("Too many codes in one block", column);
+    }
+    for (std::size_t i = values.codes.size() - 1;
+         i > 0 && values.codes[i].code->phase < values.codes[i - 1].code->phase; --i) {
+        std::swap(values.codes[i], values.codes[i - 1]);
+    }
+    return true;
+}
+
+/// Axis words belong to a code of the block that uses them, else to the motion in force.
+bool Executor::choose_motion(BlockValues &values) {
+    if (values.motion != nullptr || !values.hasAxes()) {
+        return true;
+    }
+    for (const ActiveCode &active : values.codes) {
+        if (active.code->usesAxes) {
+            return true;
+        }
+    }
+    if (state.motion == MOTION_NONE) {
+        return fault.set("Cannot use axis values without a g code that uses them");
+    }
+    values.isMotionImplied = true;
+    return insert_code(*find_code('g', state.motion), 0, values);
+}
+
+bool Executor::check_words(const BlockValues &values) {
+    std::uint32_t allowed = letters("fstn");
+    bool isAxisUser = false;
+    for (const ActiveCode &active : values.codes) {
+        const Code &code = *active.code;
+        allowed |= code.words | (code.usesAxes ? AXES : 0);
+        const std::uint32_t missing = code.required & ~values.present;
+        if (missing != 0) {
+            return fault.set(fmt::format("{} needs the word {}", code_name(code),
+                                         static_cast<char>(std::toupper(LETTERS[std::countr_zero(missing)]))),
+                             active.column);
+        }
+        if (code.usesAxes && values.hasAxes()) {
+            if (isAxisUser) {
+                return fault.set("Cannot use two g codes that both use axis values", active.column);
+            }
+            isAxisUser = true;
+        }
+    }
+    const std::uint32_t unused = values.present & ~allowed;
+    if (unused != 0) {
+        const int index = std::countr_zero(unused);
+        return fault.set(fmt::format("{} word with no g code that uses it",
+                                     static_cast<char>(std::toupper(LETTERS[index]))),
+                         values.column[static_cast<std::size_t>(index)]);
+    }
+    return true;
+}
+
+/// All values are computed before any is set.
+bool Executor::apply_settings(const BlockView &view) {
+    const Arena &arena = *view.arena;
+    const Block &block = *view.block;
+    if (block.setting_count == 0) {
+        return true;
+    }
+    struct Made {
+        int number;
+        NameId name;
+        double value;
+    };
+    std::vector<Made> made;
+    made.reserve(block.setting_count);
+    for (std::uint32_t i = 0; i < block.setting_count; ++i) {
+        const Setting &setting = arena.settings[block.first_setting + i];
+        Made entry{0, setting.name, 0.0};
+        if (setting.name != NO_ID && evaluator_.isReadOnly(setting.name)) {
+            return fault.set(
+                fmt::format("Cannot assign to read-only parameter #<{}>", names_.text(setting.name)),
+                setting.column);
+        }
+        if (setting.name == NO_ID) {
+            double index = 0;
+            if (!evaluator_.value(arena, setting.index, index)) {
+                return false;
+            }
+            if (!Evaluator::isNumber(index)) {
+                return fault.set(fmt::format("Parameter number out of range: {}", index), setting.column);
+            }
+            entry.number = static_cast<int>(std::lround(index));
+            if (entry.number >= P_BUILD_FIRST && entry.number <= P_BUILD_LAST) {
+                return fault.set(fmt::format("Parameter is readonly: #{}", entry.number), setting.column);
+            }
+        }
+        if (!evaluator_.value(arena, setting.value, entry.value)) {
+            return false;
+        }
+        made.push_back(entry);
+    }
+    for (const Made &entry : made) {
+        if (entry.name != NO_ID) {
+            parameters.set_named(entry.name, evaluator_.isGlobal(entry.name), entry.value);
+        } else {
+            parameters.set(entry.number, entry.value);
+        }
+    }
+    return true;
+}
+
+void Executor::set_place(int line, int call_level, int remap_level) {
+    line_ = line;
+    call_level_ = call_level;
+    remap_level_ = remap_level;
+}
+
+void Executor::set_returned(double value, bool isReturned) {
+    returned_ = value;
+    isReturned_ = isReturned;
+}
+
+}  // namespace mw::interp::detail

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Why a block failed. Rules and handlers return false after setting it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace mw::interp::detail {
+
+struct Fault {
+    std::string message;
+    std::uint32_t column = 0;  ///< from 1, 0: the whole block
+    std::string hint;
+
+    /// For `return fault.set(...)`: always false.
+    bool set(std::string text, std::uint32_t where = 0, std::string advice = {}) {
+        message = std::move(text);
+        column = where;
+        hint = std::move(advice);
+        return false;
+    }
+};
+
+}  // namespace mw::interp::detail

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "interp/detail/lexer.hh"
+
+#include <charconv>
+
+namespace mw::interp::detail {
+namespace {
+
+constexpr bool isBlank(char c) {
+    return c == ' ' || c == '\t' || c == '\r';
+}
+
+constexpr char lower(char c) {
+    return (c >= 'A' && c <= 'Z') ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+constexpr bool isDigit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+constexpr double POWERS_OF_TEN[] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                    1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+
+}  // namespace
+
+char Lexer::peek() {
+    while (pos_ < line_.size() && isBlank(line_[pos_])) {
+        ++pos_;
+    }
+    return pos_ < line_.size() ? lower(line_[pos_]) : '\0';
+}
+
+bool Lexer::accept(char c) {
+    if (peek() != c) {
+        return false;
+    }
+    take();
+    return true;
+}
+
+bool Lexer::accept_word(std::string_view word) {
+    const std::size_t start = pos_;
+    for (const char c : word) {
+        if (!accept(c)) {
+            pos_ = start;
+            return false;
+        }
+    }
+    return true;
+}
+
+Lexer::Number Lexer::take_number(double &value, std::string &text) {
+    // Digits that a double holds exactly, divided once by an exact power of ten, are correctly rounded.
+    constexpr int EXACT_DIGITS = 15;
+    std::uint64_t digits = 0;
+    int count = 0, decimals = 0;
+    bool isFraction = false;
+    const std::size_t start = pos_;
+    for (char c = peek(); isDigit(c) || (c == '.' && !isFraction); c = peek()) {
+        if (c == '.') {
+            isFraction = true;
+        } else {
+            if (count < EXACT_DIGITS) {
+                digits = digits * 10 + static_cast<std::uint64_t>(c - '0');
+            }
+            ++count;
+            decimals += isFraction ? 1 : 0;
+        }
+        take();
+    }
+    if (count == 0) {
+        text = isFraction ? "." : "";
+        return isFraction ? Number::BAD : Number::NONE;
+    }
+    if (count <= EXACT_DIGITS) {
+        value = static_cast<double>(digits) / POWERS_OF_TEN[decimals];
+        return Number::OK;
+    }
+    std::string whole;
+    for (std::size_t i = start; i < pos_; ++i) {
+        if (!isBlank(line_[i])) {
+            whole += line_[i];
+        }
+    }
+    const auto [end, error] = std::from_chars(whole.data(), whole.data() + whole.size(), value);
+    if (error != std::errc()) {
+        text = whole;
+        return Number::BAD;
+    }
+    return Number::OK;
+}
+
+std::optional<std::string> Lexer::take_name(char closer) {
+    std::string name;
+    for (std::size_t i = pos_; i < line_.size(); ++i) {
+        if (line_[i] == closer) {
+            pos_ = i + 1;
+            return name;
+        }
+        if (!isBlank(line_[i])) {
+            name += lower(line_[i]);
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace mw::interp::detail

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Characters and numbers of one line. Blanks mean nothing outside comments, and case means nothing.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace mw::interp::detail {
+
+class Lexer {
+  public:
+    explicit Lexer(std::string_view line) : line_(line) {}
+
+    /// The next character that is not blank, in lower case; 0 at the end. Takes nothing but blanks.
+    char peek();
+    /// Takes the character that peek() showed.
+    void take() { ++pos_; }
+    /// Takes `c` if it is next.
+    bool accept(char c);
+    /// Takes a word of letters if it is next (blanks allowed inside), else nothing.
+    bool accept_word(std::string_view word);
+
+    enum class Number { OK, NONE, BAD };
+    /// Takes an unsigned decimal number. BAD: dots without a digit; `text` then holds what was seen.
+    Number take_number(double &value, std::string &text);
+    /// Takes everything up to and including `closer`; without the blanks, in lower case. Nothing when there
+    /// is none.
+    std::optional<std::string> take_name(char closer);
+
+    std::uint32_t column() const { return static_cast<std::uint32_t>(pos_) + 1; }
+    std::size_t position() const { return pos_; }
+    void set_position(std::size_t pos) { pos_ = pos; }
+    std::string_view line() const { return line_; }
+
+  private:
+    std::string_view line_;
+    std::size_t pos_ = 0;
+};
+
+}  // namespace mw::interp::detail

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "interp/detail/parameters.hh"
+
+#include <algorithm>
+
+namespace mw::interp::detail {
+
+Parameters::Parameters() : values_(PARAMETER_COUNT, 0.0), frames_(1) {
+    values_[P_COORDINATE_SYSTEM] = 1;
+}
+
+void Parameters::set(int number, double value) {
+    double &slot = values_[static_cast<std::size_t>(number)];
+    log_.push_back({Undo::Kind::NUMBER, number, NO_ID, slot});
+    slot = value;
+}
+
+std::optional<double> Parameters::named(NameId id, bool isGlobal) const {
+    if (isGlobal) {
+        return id < globals_.size() ? globals_[id] : std::nullopt;
+    }
+    for (const Named &local : frames_.back().locals) {
+        if (local.id == id) {
+            return local.value;
+        }
+    }
+    return std::nullopt;
+}
+
+void Parameters::set_named(NameId id, bool isGlobal, double value) {
+    if (isGlobal) {
+        if (id >= globals_.size()) {
+            globals_.resize(id + 1);
+        }
+        log_.push_back({Undo::Kind::GLOBAL, 0, id, globals_[id]});
+        globals_[id] = value;
+        return;
+    }
+    for (Named &local : frames_.back().locals) {
+        if (local.id == id) {
+            log_.push_back({Undo::Kind::LOCAL, 0, id, local.value});
+            local.value = value;
+            return;
+        }
+    }
+    log_.push_back({Undo::Kind::LOCAL, 0, id, std::nullopt});
+    frames_.back().locals.push_back({id, value});
+}
+
+void Parameters::push_call() {
+    Frame frame;
+    std::copy_n(values_.begin() + 1, ARGUMENT_COUNT, frame.arguments);
+    frames_.push_back(std::move(frame));
+}
+
+void Parameters::pop_call() {
+    std::copy_n(frames_.back().arguments, ARGUMENT_COUNT, values_.begin() + 1);
+    frames_.pop_back();
+}
+
+void Parameters::rollback() {
+    for (auto entry = log_.rbegin(); entry != log_.rend(); ++entry) {
+        if (entry->kind == Undo::Kind::NUMBER) {
+            values_[static_cast<std::size_t>(entry->number)] = *entry->old;
+        } else if (entry->kind == Undo::Kind::GLOBAL) {
+            globals_[entry->id] = entry->old;
+        } else {
+            std::vector<Named> &locals = frames_.back().locals;
+            const auto found = std::find_if(locals.begin(), locals.end(),
+                                            [&](const Named &local) { return local.id == entry->id; });
+            if (found != locals.end() && entry->old) {
+                found->value = *entry->old;
+            } else if (found != locals.end()) {
+                locals.erase(found);
+            }
+        }
+    }
+    log_.clear();
+}
+
+}  // namespace mw::interp::detail

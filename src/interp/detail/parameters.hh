@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Numbered and named parameters, with an undo log so that a failed block changes nothing.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.hh"
+#include "interp/detail/names.hh"
+
+namespace mw::interp::detail {
+
+inline constexpr int PARAMETER_COUNT = 5603;  ///< numbers are 1 to 5602
+inline constexpr int ARGUMENT_COUNT = 30;     ///< #1 to #30 belong to the subroutine
+
+/// Numbers of parameters with a meaning. Lengths in machine units unless said.
+enum ParameterNumber : int {
+    P_PROBE_RESULT = 5061,  // nine, program units
+    P_PROBE_SUCCESS = 5070,
+    P_G28 = 5161,  // nine
+    P_G30 = 5181,
+    P_G92_APPLIED = 5210,
+    P_G92 = 5211,
+    P_COORDINATE_SYSTEM = 5220,
+    P_G5X = 5221,  // nine axes and the rotation, twenty apart, nine systems
+    P_INPUT_RESULT = 5399,
+    P_TOOL_NUMBER = 5400,
+    P_TOOL_OFFSET = 5401,  // nine, program units
+    P_TOOL_DIAMETER = 5410,
+    P_TOOL_FRONTANGLE = 5411,
+    P_TOOL_BACKANGLE = 5412,
+    P_TOOL_ORIENTATION = 5413,
+    P_POSITION = 5420,     // nine, program units
+    P_BUILD_FIRST = 5400,  // from here to 5428 read only
+    P_BUILD_LAST = 5428,
+    P_VAR_FIRST = 31,  // kept in the parameter file
+};
+
+class Parameters {
+  public:
+    Parameters();
+
+    double get(int number) const { return values_[static_cast<std::size_t>(number)]; }
+    /// Sets and remembers the old value until commit().
+    void set(int number, double value);
+
+    /// Named parameters: global (first character _) or of the innermost call.
+    std::optional<double> named(NameId id, bool isGlobal) const;
+    void set_named(NameId id, bool isGlobal, double value);
+
+    void push_call();  ///< new local names; #1 to #30 are kept aside
+    void pop_call();   ///< the caller's again
+    int depth() const { return static_cast<int>(frames_.size()); }
+
+    void commit() { log_.clear(); }
+    void rollback();
+
+    Result<> load(const std::string &path);
+    Result<> save(const std::string &path) const;
+
+  private:
+    struct Named {
+        NameId id = NO_ID;
+        double value = 0;
+    };
+    struct Frame {
+        std::vector<Named> locals;
+        double arguments[ARGUMENT_COUNT] = {};
+    };
+    struct Undo {
+        enum class Kind { NUMBER, GLOBAL, LOCAL } kind = Kind::NUMBER;
+        int number = 0;
+        NameId id = NO_ID;
+        std::optional<double> old;
+    };
+
+    std::vector<double> values_;
+    std::vector<std::optional<double>> globals_;  ///< by NameId
+    std::vector<Frame> frames_;
+    std::vector<Undo> log_;
+    std::vector<int> file_numbers_;  ///< numbers that the parameter file had
+};
+
+}  // namespace mw::interp::detail

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// One file (or one MDI line) of G-code: its text, its lines parsed when first reached, and where its O words
+// lead.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "base/result.hh"
+#include "interp/detail/ast.hh"
+#include "interp/detail/names.hh"
+
+namespace mw::interp::detail {
+
+/// A block and the arena that its indices mean. Valid until another line of the same program is asked for.
+struct BlockView {
+    const Block *block = nullptr;
+    const Arena *arena = nullptr;
+};
+
+class Program {
+  public:
+    static Result<std::unique_ptr<Program>> load(const std::string &path, Names &names);
+    Program(std::string path, std::string text, Names &names);
+
+    const std::string &path() const { return path_; }
+    int count_lines() const { return static_cast<int>(lines_.size()); }
+    std::string_view line_text(int line) const;  ///< `line` from 1, without the newline
+    /// Lines inside loops and subroutines are parsed once and kept; others are parsed into a scratch arena.
+    BlockView block(int line);
+    /// A program that begins with % ends at the next one.
+    bool isPercentDelimited() const { return isPercentDelimited_; }
+
+    /// The next line after (or before) `line` with an O word of the same label; 0: none.
+    int next_same(int line) const;
+    int previous_same(int line) const;
+    const OWord *oword_at(int line) const;
+    /// The line of `O<label> sub`, or of a Fanuc-style `O<label>`; 0: none here.
+    int find_sub(NameId label) const;
+    int find_fanuc(NameId label) const;
+    /// The first line after `line` with an O word, 0 when there is none.
+    int next_oword(int line) const;
+
+  private:
+    struct OLine {
+        int line = 0;
+        Block block;
+        int next = 0, previous = 0;
+    };
+    struct Cached {
+        int line = 0;
+        Block block;
+    };
+    void split();
+    void scan_owords();
+    void link_owords();
+    const OLine *find_oline(int line) const;
+    static bool beginsWithO(std::string_view line);
+
+    std::string path_;
+    std::string text_;
+    Names &names_;
+    std::vector<std::size_t> lines_;  ///< where each line begins; one more entry marks the end
+    Arena arena_, scratch_;
+    Block scratch_block_;
+    std::vector<OLine> olines_;
+    std::vector<std::uint32_t> cached_;  ///< by line: index in blocks_, or NO_ID
+    std::vector<std::unique_ptr<Block>> blocks_;
+    std::unordered_map<NameId, int> subs_, fanuc_;
+    bool isPercentDelimited_ = false;
+};
+
+}  // namespace mw::interp::detail

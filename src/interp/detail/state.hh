@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// All that a program's next block depends on, but parameters and calls. Copied before each block, so that a
+// block that fails can be taken back.
+#pragma once
+
+#include <array>
+
+#include "base/limits.hh"
+#include "interp/canon.hh"
+
+namespace mw::interp::detail {
+
+inline constexpr int MOTION_NONE = 800;  // G80
+
+struct SpindleState {
+    double speed = 0;   ///< [rev/min, or surface feet or metres per minute under G96]
+    int direction = 0;  ///< +1 clockwise, -1 counterclockwise, 0 stopped
+    bool isConstantSurface = false;
+    double css_max_rpm = 0;
+    bool isOverridden = true;
+};
+
+/// What canned cycles remember from one block to the next.
+struct CycleWords {
+    double bottom = 0, r = 0, p = 0, q = 0, i = 0, j = 0, k = 0;
+    double initial = 0;      ///< along the tool axis, where the first cycle began
+    bool isRunning = false;  ///< the block before was the same cycle
+};
+
+enum class CompSide { OFF, LEFT, RIGHT };
+
+struct State {
+    Pose position;               ///< program coordinates [program units, degrees]
+    Pose g5x, g92, tool_offset;  ///< [program units, degrees]
+    double rotation_deg = 0;
+    int g5x_index = 1;
+    int motion = MOTION_NONE;  ///< ten times the G code
+    Plane plane = Plane::XY;
+    LengthUnits units = LengthUnits::MM;
+    bool isIncremental = false;
+    bool isCentreAbsolute = false;  ///< G90.1
+    bool isDiameter = false;        ///< G7
+    bool isRetractToR = false;      ///< G99
+    FeedMode feed_mode = FeedMode::UNITS_PER_MINUTE;
+    double feed = 0;  ///< [program units/min, 1/min, program units/rev]
+    MotionControl control = MotionControl::CONTINUOUS;
+    double tolerance = 0, naivecam = 0;  ///< [program units]
+    int active_spindle = 0;
+    std::array<SpindleState, MAX_SPINDLES> spindles{};
+    bool isMist = false, isFlood = false;
+    bool isFeedOverride = true, isFeedHold = false, isAdaptive = false;
+    int tool_offset_code = 490;
+    int selected_tool = -1;  ///< T; -1 none
+    int tool_in_spindle = 0;
+    CompSide comp = CompSide::OFF;
+    int comp_code = 400;
+    double comp_radius = 0;  ///< [program units]
+    int comp_orientation = 0;
+    bool isCompFirst = false;  ///< no move since comp came on
+    CycleWords cycle;
+};
+
+}  // namespace mw::interp::detail

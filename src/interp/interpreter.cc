@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "interp/interpreter.hh"
+
+#include <filesystem>
+
+#include "interp/detail/executor.hh"
+#include "interp/detail/flow.hh"
+
+namespace mw::interp {
+
+struct Interpreter::Impl {
+    Impl(Canon &canon, World &world, ToolSource &tools, ParameterSource &source, Settings given)
+        : settings(std::move(given)), target(canon), executor(world, tools, source, settings, names),
+          flow(executor, names, canon, settings) {}
+
+    Settings settings;
+    Canon &target;
+    detail::Names names;
+    detail::Executor executor;
+    detail::Flow flow;
+};
+
+Interpreter::Interpreter(Canon &canon, World &world, ToolSource &tools, ParameterSource &parameters,
+                         Settings settings)
+    : impl_(std::make_unique<Impl>(canon, world, tools, parameters, std::move(settings))) {}
+
+Interpreter::~Interpreter() = default;
+
+Result<> Interpreter::load_parameters(const std::string &path) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) {
+        return {};
+    }
+    return impl_->executor.parameters.load(path);
+}
+
+Result<> Interpreter::save_parameters(const std::string &path) const {
+    return impl_->executor.parameters.save(path);
+}
+
+Result<> Interpreter::begin() {
+    detail::Executor &executor = impl_->executor;
+    executor.state.units = impl_->settings.initial_units.value_or(executor.world().machine_units());
+    executor.canon.enter_block(nullptr, 0, 0, false, 0);
+    executor.announce();
+    executor.synch();
+    executor.canon.on_reset();
+    executor.canon.flush(impl_->target);
+    if (!impl_->settings.startup_code.empty() && execute(impl_->settings.startup_code) == Step::FAILED) {
+        Error error = impl_->flow.error().what;
+        error.message = "the start-up code [RS274NGC]RS274NGC_STARTUP_CODE failed: " + error.message;
+        return std::unexpected(std::move(error));
+    }
+    return {};
+}
+
+Result<> Interpreter::open(const std::string &path) {
+    return impl_->flow.open(path);
+}
+
+void Interpreter::close() {
+    impl_->flow.close();
+}
+
+Step Interpreter::step() {
+    return impl_->flow.step();
+}
+
+Step Interpreter::execute(std::string_view line) {
+    return impl_->flow.execute(line);
+}
+
+void Interpreter::synch() {
+    impl_->executor.synch();
+}
+
+void Interpreter::abort() {
+    impl_->flow.abort();
+}
+
+const diag::Diagnostic &Interpreter::error() const {
+    return impl_->flow.error();
+}
+
+ActiveCodes Interpreter::active_codes() const {
+    return impl_->executor.active_codes();
+}
+
+int Interpreter::line() const {
+    return impl_->flow.line();
+}
+
+const std::string &Interpreter::file() const {
+    return impl_->flow.file();
+}
+
+int Interpreter::call_level() const {
+    return impl_->flow.call_level();
+}
+
+double Interpreter::parameter(int number) const {
+    const bool isInRange = number >= 1 && number < detail::PARAMETER_COUNT;
+    return isInRange ? impl_->executor.evaluator().numbered(number) : 0.0;
+}
+
+}  // namespace mw::interp

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "interp/machine_frame.hh"
+
+#include <cmath>
+#include <numbers>
+
+#include "interp/detail/frame.hh"
+
+namespace mw::interp {
+namespace {
+
+constexpr double MM_PER_INCH = 25.4;
+constexpr double FULL_TURN = 2.0 * std::numbers::pi;
+/// Less than this between start and end of an arc is a full turn [rad].
+constexpr double SAME_ANGLE = 1e-10;
+
+struct PlaneAxes {
+    int first, second, normal;
+};
+
+constexpr PlaneAxes axes_of(Plane plane) {
+    using namespace geom;
+    switch (plane) {
+    case Plane::XY: return {AXIS_X, AXIS_Y, AXIS_Z};
+    case Plane::YZ: return {AXIS_Y, AXIS_Z, AXIS_X};
+    case Plane::XZ: return {AXIS_Z, AXIS_X, AXIS_Y};
+    case Plane::UV: return {AXIS_U, AXIS_V, AXIS_W};
+    case Plane::VW: return {AXIS_V, AXIS_W, AXIS_U};
+    case Plane::UW: return {AXIS_W, AXIS_U, AXIS_V};
+    }
+    return {AXIS_X, AXIS_Y, AXIS_Z};
+}
+
+struct FeedLength {
+    double length = 0;
+    bool isLinear = true;  ///< false: only A, B or C move
+};
+
+FeedLength feed_length(const Pose &from, const Pose &to) {
+    const Pose way = to - from;
+    if (const double xyz = geom::norm_xyz(way); xyz > 0.0) {
+        return {xyz, true};
+    }
+    if (const double uvw = geom::norm_uvw(way); uvw > 0.0) {
+        return {uvw, true};
+    }
+    return {geom::norm_abc(way), false};
+}
+
+}  // namespace
+
+MachineFrame::MachineFrame(MachineCanon &target, LengthUnits machine_units)
+    : target_(target), machine_units_(machine_units), units_(machine_units) {}
+
+double MachineFrame::length_factor() const {
+    if (units_ == machine_units_) {
+        return 1.0;
+    }
+    return machine_units_ == LengthUnits::MM ? MM_PER_INCH : 1.0 / MM_PER_INCH;
+}
+
+Pose MachineFrame::to_machine_units(const Pose &program) const {
+    return detail::scale_lengths(program, length_factor());
+}
+
+Pose MachineFrame::to_machine(const Pose &program) const {
+    return detail::Frame{g5x_, g92_, tool_, rotation_deg_}.to_machine(to_machine_units(program));
+}
+
+Pose MachineFrame::to_program(const Pose &machine) const {
+    return detail::scale_lengths(detail::Frame{g5x_, g92_, tool_, rotation_deg_}.to_program(machine),
+                                 1.0 / length_factor());
+}
+
+void MachineFrame::use_length_units(LengthUnits units) {
+    units_ = units;
+}
+
+void MachineFrame::announce_offsets() {
+    target_.offsets(g5x_index_, g5x_, g92_, rotation_deg_);
+}
+
+void MachineFrame::set_g5x_offset(int index, const Pose &offset) {
+    g5x_index_ = index;
+    g5x_ = to_machine_units(offset);
+    announce_offsets();
+}
+
+void MachineFrame::set_g92_offset(const Pose &offset) {
+    g92_ = to_machine_units(offset);
+    announce_offsets();
+}
+
+void MachineFrame::set_xy_rotation(double angle_deg) {
+    rotation_deg_ = angle_deg;
+    announce_offsets();
+}
+
+void MachineFrame::use_tool_length_offset(const Pose &offset) {
+    tool_ = to_machine_units(offset);
+    target_.tool_offset(tool_);
+}
+
+void MachineFrame::set_feed_rate(double rate) {
+    feed_ = rate * (feed_mode_ == FeedMode::INVERSE_TIME ? 1.0 : length_factor());
+}
+
+void MachineFrame::set_feed_mode(int spindle, FeedMode mode) {
+    feed_mode_ = mode;
+    if (mode == FeedMode::UNITS_PER_REVOLUTION) {
+        synch_spindle_ = spindle;
+    }
+}
+
+void MachineFrame::set_motion_control_mode(MotionControl mode, double tolerance) {
+    control_ = mode;
+    tolerance_ = tolerance * length_factor();
+}
+
+void MachineFrame::set_naivecam_tolerance(double tolerance) {
+    naivecam_ = tolerance * length_factor();
+}
+
+/// `length` is what the feed is measured along [machine units, or degrees when not isLinear].
+MoveSettings MachineFrame::settings(FeedKind kind, double length, bool isLinear) const {
+    MoveSettings out;
+    out.kind = kind;
+    out.control = control_;
+    out.tolerance = tolerance_;
+    out.naivecam_tolerance = naivecam_;
+    if (kind == FeedKind::RAPID) {
+        return out;
+    }
+    out.feed_per_revolution = synch_feed_;
+    out.synch_spindle = synch_spindle_;
+    out.isVelocitySynched = isVelocitySynched_;
+    constexpr double SECONDS_PER_MINUTE = 60.0;
+    if (feed_mode_ == FeedMode::INVERSE_TIME) {
+        out.feed = length * feed_ / SECONDS_PER_MINUTE;
+    } else {
+        // Degrees per minute are not lengths: the unit's factor is taken off again.
+        out.feed = feed_ / SECONDS_PER_MINUTE / (isLinear ? 1.0 : length_factor());
+    }
+    return out;
+}
+
+void MachineFrame::straight_traverse(const Pose &end) {
+    const Pose to = to_machine(end);
+    target_.line({to, settings(FeedKind::RAPID, 0.0, true)});
+    position_ = to;
+}
+
+void MachineFrame::straight_feed(const Pose &end) {
+    const Pose to = to_machine(end);
+    const FeedLength way = feed_length(position_, to);
+    target_.line({to, settings(FeedKind::FEED, way.length, way.isLinear)});
+    position_ = to;
+}
+
+/// Fills centre, normal and the angle; returns the radius [machine units].
+double MachineFrame::turn(ArcMove &move, const ArcFeed &arc) const {
+    const PlaneAxes axes = axes_of(plane_);
+    const Pose start = to_program(position_);
+    Pose centre = start;
+    centre[axes.first] = arc.first_centre;
+    centre[axes.second] = arc.second_centre;
+    move.centre = to_machine(centre);
+    move.normal = {};
+    move.normal[axes.normal] = 1.0;
+    if (axes.normal < geom::AXIS_A) {
+        detail::rotate_xy(move.normal, rotation_deg_);
+    }
+    const double x0 = start[axes.first] - arc.first_centre, y0 = start[axes.second] - arc.second_centre;
+    const double x1 = arc.first_end - arc.first_centre, y1 = arc.second_end - arc.second_centre;
+    double angle = std::atan2(x0 * y1 - y0 * x1, x0 * x1 + y0 * y1);
+    if (arc.rotation > 0) {
+        angle += angle < SAME_ANGLE ? FULL_TURN : 0.0;
+        angle += FULL_TURN * (arc.rotation - 1);
+    } else {
+        angle -= angle > -SAME_ANGLE ? FULL_TURN : 0.0;
+        angle -= FULL_TURN * (-arc.rotation - 1);
+    }
+    move.angle_rad = angle;
+    return std::hypot(x0, y0) * length_factor();
+}
+
+void MachineFrame::arc_feed(const ArcFeed &arc) {
+    if (arc.rotation == 0) {
+        straight_feed(arc.end);
+        return;
+    }
+    ArcMove move;
+    move.end = to_machine(arc.end);
+    const double radius = turn(move, arc);
+    const int normal = axes_of(plane_).normal;
+    const double climb = arc.end[normal] * length_factor() - to_program(position_)[normal] * length_factor();
+    move.settings = settings(FeedKind::FEED, std::hypot(radius * move.angle_rad, climb), true);
+    target_.arc(move);
+    position_ = move.end;
+}
+
+void MachineFrame::straight_probe(const Pose &end, ProbeKind kind) {
+    const Pose to = to_machine(end);
+    const FeedLength way = feed_length(position_, to);
+    target_.probe({to, settings(FeedKind::FEED, way.length, way.isLinear)}, kind);
+    position_ = to;
+}
+
+void MachineFrame::rigid_tap(double x, double y, double z, double scale) {
+    Pose end = to_program(position_);
+    end[geom::AXIS_X] = x;
+    end[geom::AXIS_Y] = y;
+    end[geom::AXIS_Z] = z;
+    const Pose to = to_machine(end);
+    const FeedLength way = feed_length(position_, to);
+    target_.rigid_tap({to, settings(FeedKind::RIGID_TAP, way.length, way.isLinear)}, scale);
+    // The tool comes back to where it began: the position stays.
+}
+
+void MachineFrame::start_speed_feed_synch(int spindle, double feed_per_revolution, bool isVelocityMode) {
+    synch_spindle_ = spindle;
+    synch_feed_ = feed_per_revolution * length_factor();
+    isVelocitySynched_ = isVelocityMode;
+}
+
+void MachineFrame::stop_speed_feed_synch() {
+    synch_feed_ = 0.0;
+    isVelocitySynched_ = false;
+}
+
+void MachineFrame::set_spindle_speed(int spindle, double speed) {
+    target_.set_spindle_speed(spindle, speed);
+}
+
+void MachineFrame::set_tool_table_entry(int index, const ToolEntry &entry) {
+    target_.set_tool_table_entry(index, entry);
+}
+
+}  // namespace mw::interp

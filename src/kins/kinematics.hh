@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Joints to pose and back. Pure: parameters in the object, no statics; every call answers, none aborts.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "base/limits.hh"
+#include "geom/pose.hh"
+
+namespace mw::kins {
+
+using geom::Pose;
+
+enum class Status : std::uint8_t { OK, UNREACHABLE };
+enum class Kind : std::uint8_t { IDENTITY, FORWARD_ONLY, INVERSE_ONLY, BOTH };
+
+/// Which axis each joint drives, for machines whose joints are axes; -1 drives none.
+struct IdentityMap {
+    std::array<std::int8_t, MAX_JOINTS> axis_of_joint{};
+    int num_joints = 0;
+
+    /// True when a joint drives this axis.
+    constexpr bool has(int axis) const noexcept {
+        for (int j = 0; j < num_joints; ++j) {
+            if (axis_of_joint[static_cast<std::size_t>(j)] == axis) {
+                return true;
+            }
+        }
+        return false;
+    }
+};
+
+/// `joints` has MAX_JOINTS elements [machine units or degrees]. Realtime-safe.
+class Kinematics {
+  public:
+    virtual Kind kind() const noexcept = 0;
+    /// The pose of these joint positions. `pose` holds a guess (the last pose) for iterating models.
+    virtual Status forward(const double *joints, Pose &pose) const noexcept = 0;
+    /// The joint positions of this pose. `joints` holds the last ones, to pick among several solutions.
+    virtual Status inverse(const Pose &pose, double *joints) const noexcept = 0;
+    /// Not null when each joint is one axis: limits then fold together without any Jacobian.
+    virtual const IdentityMap *identity() const noexcept { return nullptr; }
+
+  protected:
+    ~Kinematics() = default;
+};
+
+}  // namespace mw::kins

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What an INI file says of a machine, read and checked once.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/result.hh"
+#include "config/ini_reader.hh"
+#include "interp/interpreter.hh"
+#include "motion/api/command.hh"
+#include "task/task.hh"
+
+namespace mw::machine {
+
+/// A HAL file or command to run, in order.
+struct HalStep {
+    enum class Kind : std::uint8_t { FILE, COMMAND } kind = Kind::FILE;
+    std::string text;  ///< the file name as written (it may start with LIB:), or the command
+    SourcePlace place;
+};
+
+struct MachineConfig {
+    std::string name;
+    std::string coordinates;  ///< upper case letters in the order given, "XYZ", "XYYZ"
+    unsigned axis_mask = 0;
+    int num_joints = 0;
+    int num_spindles = 1;
+    bool isMetric = true;
+    std::vector<std::string> kinematics;  ///< module and its arguments
+    std::int64_t servo_period_ns = 1000000;
+    std::int64_t task_period_ns = 1000000;
+    std::vector<HalStep> hal_steps;
+    bool isTwoPass = false;
+    bool hasHalui = false;
+    std::string display;  ///< the program that the INI names, not started here
+    std::string tool_table_file;
+    bool isRandomToolchanger = false;
+    task::Settings task;
+    /// Every setting of the motion controller that the INI gives or that has a documented default.
+    std::vector<motion::SetParameter> parameters;
+    /// Soft limits per axis for checks without moving [machine units]; infinite where none is given.
+    std::array<double, MAX_AXES> axis_min{}, axis_max{};
+    std::array<double, MAX_AXES> axis_max_velocity{}, axis_max_acceleration{};
+    /// The joint that moves each axis first (trivial kinematics), -1 for none.
+    std::array<int, MAX_AXES> joint_of_axis{};
+};
+
+/// Reads all sections that the system knows. Problems go to the reader's sink; the result is usable only when
+/// the sink has no errors afterwards. Unknown keys are not reported here: HAL files may still refer to them.
+MachineConfig read_machine_config(config::IniReader &reader);
+
+}  // namespace mw::machine

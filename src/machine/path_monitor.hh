@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Watches a run: distance between the programmed path and the commanded one, peaks, lengths, points for a
+// picture.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "geom/pose.hh"
+#include "motion/api/channels.hh"
+#include "motion/api/path_command.hh"
+
+namespace mw::machine {
+
+/// A programmed move with its start.
+struct ProgrammedPiece {
+    geom::Pose start, end;
+    geom::Pose centre, normal;  ///< arcs only
+    double angle_rad = 0;       ///< 0: a line
+    bool isRapid = false;
+};
+
+/// The nearest point of a piece: the position along it and the distances of the two groups of coordinates.
+struct Nearest {
+    double fraction = 0;  ///< 0 start, 1 end
+    double linear = 0;    ///< over XYZUVW [machine units]
+    double angular = 0;   ///< over ABC [degrees]
+    double combined() const { return std::hypot(linear, angular); }
+};
+/// The pose at a fraction of a piece.
+geom::Pose point_at(const ProgrammedPiece &piece, double fraction);
+Nearest nearest_point(const ProgrammedPiece &piece, const geom::Pose &p);
+/// Length over XYZ, else UVW, else ABC: the feed length.
+double feed_length(const ProgrammedPiece &piece);
+
+struct RunFigures {
+    double cutting_length = 0, rapid_length = 0;                        ///< [machine units]
+    std::array<double, MAX_AXES> peak_velocity{}, peak_acceleration{};  ///< [units/s], [units/s2]
+    double deviation_linear = 0, deviation_angular = 0;  ///< largest [machine units], [degrees]
+    std::uint64_t samples = 0;
+};
+
+struct PathPoint {
+    float x, y, z;
+    bool isRapid;
+};
+
+/// One thread. Moves come in the order in which they are handed to the planner, samples in the order of time.
+class PathMonitor {
+  public:
+    explicit PathMonitor(std::int64_t period_ns) : period_s_(static_cast<double>(period_ns) * 1e-9) {}
+
+    void start(const geom::Pose &position);
+    void on_move(const motion::PathBody &body);
+    void on_sample(const motion::TraceSample &sample);
+
+    const RunFigures &figures() const { return figures_; }
+    const std::vector<PathPoint> &points() const { return points_; }
+
+  private:
+    void follow(const geom::Pose &p);
+    void take_point(const geom::Pose &p);
+
+    double period_s_;
+    RunFigures figures_;
+    std::deque<ProgrammedPiece> pieces_;  ///< from the one being followed on
+    geom::Pose last_end_{};
+    std::array<geom::Pose, 2> history_{};  ///< the two samples before
+    std::vector<PathPoint> points_;
+    std::uint64_t stride_ = 1, until_point_ = 0;
+};
+
+}  // namespace mw::machine

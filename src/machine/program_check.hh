@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Interprets a program without moving anything and checks every move against the soft limits.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "diag/sink.hh"
+#include "interp/world.hh"
+#include "machine/machine_config.hh"
+
+namespace mw::machine {
+
+struct CheckResult {
+    std::uint64_t blocks = 0, moves = 0;
+    double cutting_length = 0, rapid_length = 0;       ///< [machine units]
+    std::array<double, MAX_AXES> lowest{}, highest{};  ///< reached, machine coordinates
+    bool hasMoves = false;
+};
+
+/// Runs the interpreter over the whole program. Errors (syntax, limits, endless loops) go to `sink` with
+/// their places; at most `MAX_CHECK_ERRORS` of them. Tool table and parameter file are read and never
+/// written.
+CheckResult check_program(const MachineConfig &machine, const std::string &program, interp::ToolSource &tools,
+                          interp::ParameterSource &parameters, diag::Sink &sink);
+
+inline constexpr int MAX_CHECK_ERRORS = 20;
+
+}  // namespace mw::machine

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What the motion controller tells: one snapshot a servo cycle, answers to commands, error texts.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "base/limits.hh"
+#include "geom/pose.hh"
+#include "motion/api/command.hh"
+#include "motion/api/path_command.hh"
+
+namespace mw::motion {
+
+struct JointStatus {
+    double pos_cmd = 0, pos_fb = 0, vel_cmd = 0;
+    double motor_pos_cmd = 0, motor_pos_fb = 0;
+    double ferror = 0, ferror_highmark = 0;
+    double min_limit = 0, max_limit = 0, max_velocity = 0, max_acceleration = 0;
+    bool isActive = false, isInPosition = true, isEnabled = false, isHoming = false, isHomed = false;
+    bool isFaulted = false, isOnPosSoftLimit = false, isOnNegSoftLimit = false;
+    bool isOnPosHardLimit = false, isOnNegHardLimit = false, isFerrorTripped = false,
+         isOverridingLimits = false;
+};
+
+struct AxisStatus {
+    double velocity = 0, min_limit = 0, max_limit = 0;
+};
+
+struct SpindleStatus {
+    double speed_cmd_rpm = 0;
+    double scale = 1.0;
+    double speed_in_rps = 0, revs = 0;
+    int direction = 0;  ///< +1 cw, 0, -1 ccw
+    bool isOn = false, isAtSpeed = false, isBrakeOn = false, isOverrideEnabled = true;
+    int orient_state = 0, orient_fault = 0;
+};
+
+struct Status {
+    std::uint64_t cycle = 0;  ///< servo cycles since load
+    std::int64_t time_ns = 0;
+    Epoch epoch = 0;
+    CommandId last_immediate_id = 0;  ///< answered or done
+    CommandId last_path_id = 0;       ///< last path command whose motion is complete
+    CommandId active_path_id = 0;     ///< being executed, 0: none
+    Mode mode = Mode::FREE;
+    bool isEnabled = false;
+    bool isInPosition = true;  ///< nothing moves and nothing is committed
+    bool isPaused = false, isStepping = false, isReverse = false;
+    bool isTaskLost = false;  ///< the watchdog or the host says that the task process is gone
+    bool isAllHomed = false;
+    bool isHoming = false;
+    bool isCartePosValid = false;   ///< requirement C3
+    std::uint32_t queue_depth = 0;  ///< path commands accepted by the planner and not complete
+    bool isQueueFull = false;
+    SourceTag source;  ///< of the move being executed
+    MotionType motion_type = MotionType::NONE;
+    double current_velocity = 0;  ///< along the path [machine units/s]
+    double requested_velocity = 0, distance_to_go = 0;
+    geom::Pose carte_pos_cmd, carte_pos_fb, probed_pos, dtg;
+    bool isProbing = false, isProbeTripped = false, probe_value = false;
+    double feed_scale = 1.0, rapid_scale = 1.0, net_feed_scale = 1.0;
+    bool isFeedOverrideEnabled = true, isAdaptiveFeedEnabled = false, isFeedHoldEnabled = true;
+    std::array<JointStatus, MAX_JOINTS> joint{};
+    std::array<AxisStatus, MAX_AXES> axis{};
+    std::array<SpindleStatus, MAX_SPINDLES> spindle{};
+    std::uint64_t digital_in = 0, digital_out = 0;  ///< bit per pin
+    std::array<double, MAX_ANALOG_IO> analog_in{}, analog_out{};
+    int num_joints = 0, num_spindles = 0;
+};
+
+enum class AnswerKind : std::uint8_t { DONE, REFUSED, STALE };
+
+/// Why a command was refused; the text for the operator is made outside realtime by `reason_text`.
+enum class Reason : std::uint16_t {
+    NONE,
+    NOT_ENABLED,
+    WRONG_MODE,
+    MOVING,
+    NOT_HOMED,
+    HOMING,
+    NO_SUCH_JOINT,
+    NO_SUCH_AXIS,
+    NO_SUCH_SPINDLE,
+    NO_SUCH_OUTPUT,
+    NO_SUCH_PARAMETER,
+    OUT_OF_RANGE,
+    BEYOND_SOFT_LIMIT,
+    ON_HARD_LIMIT,
+    UNREACHABLE,
+    AMP_FAULT,
+    EXTERNAL_ENABLE_OFF,
+    JOINT_INACTIVE,
+    QUEUE_FULL,
+    PROBE_ALREADY_TRIPPED,
+    NOT_A_NUMBER,
+    NOT_SUPPORTED,
+    BAD_ARC,
+};
+
+/// Each command gets exactly one. For path commands DONE comes when the motion is complete.
+struct Answer {
+    CommandId id = 0;
+    AnswerKind kind = AnswerKind::DONE;
+    Reason reason = Reason::NONE;
+    std::int16_t index = -1;  ///< joint or axis meant, or -1
+    bool isPath = false;
+};
+
+/// Something that went wrong by itself. `index`: joint, axis or spindle, -1 when none.
+enum class FaultKind : std::uint16_t {
+    FOLLOWING_ERROR,
+    AMP_FAULT,
+    HARD_LIMIT,
+    SOFT_LIMIT,
+    ENABLE_LOST,
+    TASK_LOST,
+    HOMING_FAILED,
+    PROBE_NOT_TRIPPED,
+    PROBE_TRIPPED_IN_MOVE,
+    KINEMATICS_FAILED,
+    PATH_LIMIT,
+    SPINDLE_FAULT,
+};
+struct Fault {
+    FaultKind kind = FaultKind::FOLLOWING_ERROR;
+    std::int16_t index = -1;
+    std::uint16_t detail = 0;  ///< per kind: homing: homing::Failure
+    double value = 0;          ///< per kind: the position, the following error
+    SourceTag source;
+};
+
+}  // namespace mw::motion

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Task's side of the motion channels: ids, epochs, answers.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "motion/api/channels.hh"
+
+namespace mw::task {
+
+/// One thread. Everything refused or failed comes out of update() exactly once.
+class MotionLink {
+  public:
+    explicit MotionLink(motion::Channels &channels);
+
+    struct News {
+        std::vector<motion::Answer> refused;  ///< REFUSED only; STALE ones belong to work that was aborted
+        std::vector<motion::Fault> faults;
+        bool isStatusFresh = false;  ///< false: the realtime side died while writing
+    };
+    /// Takes status, answers and faults, and tells the realtime side that task is alive. Once a task cycle.
+    News update();
+
+    const motion::Status &status() const { return status_; }
+
+    /// Queues an immediate command; they are handed over in order as the channel has room.
+    motion::CommandId send(motion::CommandBody body);
+    /// Hands a path command over; false when the channel is full (nothing happens then).
+    bool push_path(const motion::PathBody &body);
+    /// True while another move may be handed over without filling the planner's queue.
+    bool hasPathRoom() const;
+
+    /// Asks the planner to run to the end of everything handed over.
+    void flush();
+    /// Nothing handed over is still to be executed and the machine is at rest at the end of it.
+    bool isPathComplete() const;
+    bool hasUnflushedPath() const { return last_path_id_ > flushed_id_; }
+
+    /// Stops all motion along the path and makes everything handed over before it stale.
+    void abort();
+    motion::Epoch epoch() const { return epoch_; }
+
+    /// An immediate command has been answered (done or refused).
+    bool isAnswered(motion::CommandId id) const { return pending_.empty() || id < pending_.front(); }
+
+  private:
+    void hand_over();
+    void take_answers(News &news);
+
+    motion::Channels &channels_;
+    motion::Status status_{};
+    std::vector<motion::Command> backlog_;
+    std::vector<motion::CommandId> pending_;  ///< immediate commands not yet answered, in order
+    motion::CommandId next_id_ = 1;
+    motion::CommandId last_path_id_ = 0;  ///< handed over
+    motion::CommandId flushed_id_ = 0;    ///< the last Flush
+    motion::CommandId completed_id_ = 0;  ///< the last path command answered
+    motion::CommandId aborted_id_ = 0;    ///< path commands up to this one belong to aborted work
+    motion::Epoch epoch_ = 0;
+    std::uint32_t path_outstanding_ = 0;
+};
+
+}  // namespace mw::task

@@ -1,0 +1,496 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "task/sequencer.hh"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/atomic_file.hh"
+
+namespace mw::task {
+namespace {
+
+constexpr std::int64_t NS_PER_S = 1000000000;
+/// Items issued in one task cycle at most, so that the cycle stays short.
+constexpr int ITEMS_PER_CYCLE = 500;
+
+template <class... Handlers>
+struct Overloaded : Handlers... {
+    using Handlers::operator()...;
+};
+template <class... Handlers>
+Overloaded(Handlers...) -> Overloaded<Handlers...>;
+
+std::int64_t to_ns(double seconds) {
+    return static_cast<std::int64_t>(std::llround(seconds * static_cast<double>(NS_PER_S)));
+}
+
+motion::PathMode path_mode(interp::MotionControl control) {
+    switch (control) {
+    case interp::MotionControl::EXACT_STOP: return motion::PathMode::EXACT_STOP;
+    case interp::MotionControl::EXACT_PATH: return motion::PathMode::EXACT_PATH;
+    case interp::MotionControl::CONTINUOUS: break;
+    }
+    return motion::PathMode::BLEND;
+}
+
+}  // namespace
+
+Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, ToolStore &tools,
+                     SequencerEvents events, SequencerSettings settings)
+    : queue_(queue), motion_(motion), io_(io), tools_(tools), events_(std::move(events)),
+      settings_(settings) {}
+
+Sequencer::Need Sequencer::need_of(const ItemBody &body) {
+    return std::visit(
+        Overloaded{
+            [](const LineItem &) { return Need::NOTHING; },
+            [](const ArcItem &) { return Need::NOTHING; },
+            [](const ProbeItem &) { return Need::MOTION; },
+            [](const RigidTapItem &) { return Need::MOTION; },
+            [](const SpindleModeItem &) { return Need::NOTHING; },
+            [](const SelectToolItem &) { return Need::NOTHING; },
+            [](const ChangeToolItem &) { return Need::MOTION_AND_IO; },
+            [](const ChangeToolNumberItem &) { return Need::MOTION_AND_IO; },
+            [](const DigitalOutputItem &item) { return item.isSynched ? Need::NOTHING : Need::MOTION; },
+            [](const AnalogOutputItem &item) { return item.isSynched ? Need::NOTHING : Need::MOTION; },
+            [](const StopItem &) { return Need::MOTION_AND_IO; },
+            [](const EndItem &) { return Need::MOTION_AND_IO; },
+            [](const MessageItem &) { return Need::NOTHING; },
+            [](const PrintItem &) { return Need::NOTHING; },
+            [](const LogItem &) { return Need::NOTHING; },
+            [](const auto &) { return Need::MOTION; },
+        },
+        body);
+}
+
+void Sequencer::step(std::int64_t now_ns) {
+    for (int i = 0; i < ITEMS_PER_CYCLE; ++i) {
+        if (!isWaitOver(now_ns) || isStepDone_) {
+            return;
+        }
+        if (queue_.empty()) {
+            motion_.flush();
+            isStepDone_ = isStepping_ && isIdle();
+            return;
+        }
+        const Item &item = queue_.front();
+        if (isStepBoundary(item) || !isReady(item) || !execute(item, now_ns)) {
+            return;
+        }
+        if (!queue_.empty()) {
+            queue_.pop_front();
+        }
+    }
+}
+
+bool Sequencer::isStepBoundary(const Item &item) {
+    if (!isStepping_) {
+        return false;
+    }
+    if (step_block_ == 0) {
+        step_block_ = item.source.block;
+    }
+    if (item.source.block == step_block_) {
+        return false;
+    }
+    motion_.flush();
+    isStepDone_ = motion_.isPathComplete() && io_.action() == io::ToolAction::IDLE;
+    return true;
+}
+
+void Sequencer::start_step() {
+    isStepping_ = true;
+    isStepDone_ = false;
+    step_block_ = 0;
+}
+
+bool Sequencer::isReady(const Item &item) {
+    const Need need = need_of(item.body);
+    if (need == Need::NOTHING) {
+        return true;
+    }
+    motion_.flush();
+    const bool isIoIdle = io_.action() == io::ToolAction::IDLE;
+    return motion_.isPathComplete() && (need == Need::MOTION || isIoIdle);
+}
+
+bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
+    return std::visit(
+        Overloaded{
+            [&](const LineItem &) { return push_move(item); },
+            [&](const ArcItem &) { return push_move(item); },
+            [&](const ProbeItem &) { return push_move(item); },
+            [&](const RigidTapItem &) { return push_move(item); },
+            [&](const DwellItem &dwell) {
+                wait_ = Wait::DWELL;
+                deadline_ns_ = now_ns + to_ns(dwell.seconds);
+                return true;
+            },
+            [&](const WaitInputItem &input) {
+                awaited_input_ = input;
+                wait_ = Wait::INPUT;
+                deadline_ns_ = now_ns + to_ns(input.timeout_s);
+                last_input_ = std::nan("");
+                isInputTimedOut_ = false;
+                return true;
+            },
+            [&](const StopItem &stop) {
+                events_.stop(stop);
+                return true;
+            },
+            [&](const EndItem &end) {
+                events_.end(end);
+                return true;
+            },
+            [&](const MessageItem &message) {
+                events_.message(message.kind, message.text);
+                return true;
+            },
+            [&](const PrintItem &print) {
+                events_.print(print.text);
+                return true;
+            },
+            [&](const LogItem &log) {
+                execute_log(log);
+                return true;
+            },
+            [&](const OffsetsItem &offsets) {
+                events_.offsets(offsets);
+                return true;
+            },
+            [&](const ToolOffsetItem &offset) {
+                events_.tool_offset(offset);
+                return true;
+            },
+            [&](const UserCodeItem &code) {
+                const auto started = events_.start_user_code(code);
+                if (!started.has_value()) {
+                    events_.fail(started.error().str());
+                }
+                wait_ = Wait::USER_CODE;
+                return true;
+            },
+            [&](const DigitalOutputItem &output) {
+                return !output.isSynched ||
+                               motion_.push_path(motion::SynchedDigitalOutput{output.index, output.isOn})
+                           ? (execute_output(item), true)
+                           : false;
+            },
+            [&](const AnalogOutputItem &output) {
+                return !output.isSynched ||
+                               motion_.push_path(motion::SynchedAnalogOutput{output.index, output.value})
+                           ? (execute_output(item), true)
+                           : false;
+            },
+            [&](const SelectToolItem &) { return execute_tool(item), true; },
+            [&](const ChangeToolItem &) { return execute_tool(item), true; },
+            [&](const ChangeToolNumberItem &) { return execute_tool(item), true; },
+            [&](const ToolEntryItem &) { return execute_tool(item), true; },
+            [&](const auto &) { return execute_output(item), true; },
+        },
+        item.body);
+}
+
+motion::MoveTerms Sequencer::terms_of(const interp::MoveSettings &settings, motion::MotionType type,
+                                      const Item &item) {
+    motion::MoveTerms terms;
+    terms.type = settings.kind == interp::FeedKind::RAPID ? motion::MotionType::TRAVERSE : type;
+    terms.mode = path_mode(settings.control);
+    terms.feed = settings.feed;
+    terms.tolerance = settings.tolerance;
+    terms.naivecam_tolerance = settings.naivecam_tolerance;
+    terms.feed_per_revolution = settings.feed_per_revolution;
+    terms.synch_spindle = static_cast<std::int8_t>(settings.synch_spindle);
+    terms.isVelocitySynched = settings.isVelocitySynched;
+    terms.isWaitingForSpindleSpeed = isNextMoveWaitingForSpeed_ && settings.kind != interp::FeedKind::RAPID;
+    terms.source = item.source;
+    return terms;
+}
+
+bool Sequencer::push_move(const Item &item) {
+    if (!motion_.hasPathRoom()) {
+        return false;
+    }
+    motion::PathBody body;
+    if (const auto *line = std::get_if<LineItem>(&item.body)) {
+        body = motion::Line{line->move.end, terms_of(line->move.settings, motion::MotionType::FEED, item)};
+    } else if (const auto *arc = std::get_if<ArcItem>(&item.body)) {
+        body = motion::Arc{arc->move.end,
+                           arc->move.centre,
+                           arc->move.normal,
+                           arc->move.angle_rad,
+                           false,
+                           terms_of(arc->move.settings, motion::MotionType::ARC, item)};
+    } else if (const auto *probe = std::get_if<ProbeItem>(&item.body)) {
+        using interp::ProbeKind;
+        const bool isAway = probe->kind == ProbeKind::AWAY || probe->kind == ProbeKind::AWAY_ERROR;
+        const bool mustTrip = probe->kind == ProbeKind::TOWARD_ERROR || probe->kind == ProbeKind::AWAY_ERROR;
+        body = motion::Probe{probe->move.end, isAway, mustTrip,
+                             terms_of(probe->move.settings, motion::MotionType::PROBING, item)};
+    } else if (const auto *tap = std::get_if<RigidTapItem>(&item.body)) {
+        body = motion::RigidTap{tap->move.end, tap->scale,
+                                terms_of(tap->move.settings, motion::MotionType::FEED, item)};
+    }
+    const bool isFeed = !std::holds_alternative<LineItem>(item.body) ||
+                        std::get<LineItem>(item.body).move.settings.kind != interp::FeedKind::RAPID;
+    if (!motion_.push_path(body)) {
+        return false;
+    }
+    if (move_listener_) {
+        move_listener_(body);
+    }
+    isNextMoveWaitingForSpeed_ = isNextMoveWaitingForSpeed_ && !isFeed;
+    return true;
+}
+
+void Sequencer::execute_output(const Item &item) {
+    std::visit(Overloaded{
+                   [&](const SpindleModeItem &mode) {
+                       spindles_[static_cast<std::size_t>(mode.spindle)].css_max_rpm = mode.css_max_rpm;
+                   },
+                   [&](const SpindleSpeedItem &speed) {
+                       SpindleState &state = spindles_[static_cast<std::size_t>(speed.spindle)];
+                       const bool isNew = state.speed != speed.speed;
+                       state.speed = speed.speed;
+                       if (isNew && state.direction != 0) {
+                           send_spindle(speed.spindle);
+                       }
+                   },
+                   [&](const SpindleOnItem &on) {
+                       SpindleState &state = spindles_[static_cast<std::size_t>(on.spindle)];
+                       state.direction = on.direction;
+                       state.isWaiting = on.isWaiting;
+                       send_spindle(on.spindle);
+                   },
+                   [&](const SpindleOffItem &off) {
+                       spindles_[static_cast<std::size_t>(off.spindle)].direction = 0;
+                       motion_.send(motion::SpindleOff{off.spindle});
+                   },
+                   [&](const SpindleOrientItem &orient) {
+                       motion_.send(motion::SpindleOrient{orient.spindle, orient.angle_deg, orient.mode});
+                   },
+                   [&](const WaitOrientItem &orient) {
+                       wait_ = Wait::ORIENT;
+                       awaited_spindle_ = orient.spindle;
+                   },
+                   [&](const CoolantItem &coolant) {
+                       coolant.isMist ? io_.set_mist(coolant.isOn) : io_.set_flood(coolant.isOn);
+                   },
+                   [&](const OverrideSwitchItem &s) {
+                       motion_.send(motion::SetSwitch{s.what, s.spindle, s.isEnabled});
+                   },
+                   [&](const DigitalOutputItem &output) {
+                       if (!output.isSynched) {
+                           motion_.send(motion::SetDigitalOutput{output.index, output.isOn});
+                       }
+                   },
+                   [&](const AnalogOutputItem &output) {
+                       if (!output.isSynched) {
+                           motion_.send(motion::SetAnalogOutput{output.index, output.value});
+                       }
+                   },
+                   [](const auto &) {},
+               },
+               item.body);
+}
+
+void Sequencer::send_spindle(int spindle) {
+    const SpindleState &state = spindles_[static_cast<std::size_t>(spindle)];
+    motion::SpindleOn on;
+    on.spindle = spindle;
+    on.css_max_rpm = state.css_max_rpm;
+    on.isWaitingForSpeed = state.isWaiting;
+    if (state.css_max_rpm > 0) {
+        // Constant surface speed: S is m/min (or ft/min); the controller divides by the radius.
+        on.css_factor = state.direction * state.speed * 1000.0 / (2.0 * std::numbers::pi);
+        on.speed_rpm = state.direction * state.css_max_rpm;
+    } else {
+        on.speed_rpm = state.direction * state.speed;
+    }
+    motion_.send(on);
+    isNextMoveWaitingForSpeed_ = state.isWaiting;
+}
+
+void Sequencer::command_spindle(int spindle, double signed_rpm, bool isWaiting) {
+    SpindleState &state = spindles_[static_cast<std::size_t>(spindle)];
+    state.css_max_rpm = 0;
+    state.direction = signed_rpm > 0 ? 1 : (signed_rpm < 0 ? -1 : 0);
+    state.isWaiting = isWaiting;
+    if (state.direction == 0) {
+        motion_.send(motion::SpindleOff{spindle});
+        return;
+    }
+    state.speed = std::fabs(signed_rpm);
+    send_spindle(spindle);
+}
+
+void Sequencer::stop_spindles() {
+    for (int i = 0; i < motion_.status().num_spindles; ++i) {
+        spindles_[static_cast<std::size_t>(i)].direction = 0;
+        motion_.send(motion::SpindleOff{i});
+    }
+}
+
+interp::ToolEntry Sequencer::tool_at(int index) const {
+    interp::ToolEntry none;
+    none.toolno = 0;
+    return index > 0 ? tools_.entry(index) : none;
+}
+
+void Sequencer::execute_tool(const Item &item) {
+    if (const auto *select = std::get_if<SelectToolItem>(&item.body)) {
+        const int index = select->toolno == 0 ? 0 : tools_.index_of_tool(select->toolno);
+        if (index < 0) {
+            events_.fail("tool " + std::to_string(select->toolno) + " is not in the tool table");
+            return;
+        }
+        const interp::ToolEntry entry = tool_at(index);
+        selected_index_ = index;
+        io_.start_prepare(select->toolno, entry.pocketno, index);
+    } else if (std::holds_alternative<ChangeToolItem>(item.body)) {
+        if (selected_index_ < 0) {
+            return;  // M6 without T since the last change: the tool in the spindle stays
+        }
+        if (!settings_.isToolChangeWithSpindleOn) {
+            stop_spindles();
+        }
+        changing_index_ = selected_index_;
+        io_.start_change();
+        wait_ = Wait::TOOL;
+    } else if (const auto *number = std::get_if<ChangeToolNumberItem>(&item.body)) {
+        const int index = number->toolno == 0 ? 0 : tools_.index_of_tool(number->toolno);
+        const auto loaded = tools_.load_spindle(index);
+        if (!loaded.has_value()) {
+            events_.fail(loaded.error().str());
+        }
+        io_.set_tool_in_spindle(number->toolno, tool_at(index).pocketno);
+    } else if (const auto *entry = std::get_if<ToolEntryItem>(&item.body)) {
+        const auto saved = tools_.set_entry(entry->index, entry->entry);
+        if (!saved.has_value()) {
+            events_.fail(saved.error().str());
+        }
+    }
+}
+
+void Sequencer::on_tool_event(io::ToolEvent event) {
+    if (event == io::ToolEvent::FAULT) {
+        events_.fail("the tool changer reports a fault (iocontrol.0.toolchanger-reason " +
+                     std::to_string(io_.fault_reason()) + ")");
+    } else if (event == io::ToolEvent::CHANGED && changing_index_ >= 0) {
+        const interp::ToolEntry entry = tool_at(changing_index_);
+        const auto loaded = tools_.load_spindle(changing_index_);
+        if (!loaded.has_value()) {
+            events_.fail(loaded.error().str());
+        }
+        io_.set_tool_in_spindle(entry.toolno, entry.pocketno);
+        changing_index_ = -1;
+        selected_index_ = -1;
+    }
+}
+
+void Sequencer::execute_log(const LogItem &item) {
+    switch (item.what) {
+    case LogItem::What::OPEN:
+    case LogItem::What::APPEND: {
+        log_path_ = item.text;
+        const auto old = item.what == LogItem::What::APPEND ? read_file(log_path_) : Result<std::string>("");
+        log_text_ = old.value_or("");
+        isLogOpen_ = true;
+        break;
+    }
+    case LogItem::What::WRITE:
+        if (isLogOpen_) {
+            log_text_ += item.text + '\n';
+        }
+        break;
+    case LogItem::What::CLOSE:
+        if (isLogOpen_) {
+            const auto written = write_file_atomically(log_path_, log_text_);
+            if (!written.has_value()) {
+                events_.message(MessageKind::OPERATOR_ERROR, written.error().str());
+            }
+        }
+        isLogOpen_ = false;
+        break;
+    }
+}
+
+bool Sequencer::isWaitOver(std::int64_t now_ns) {
+    bool isOver = true;
+    switch (wait_) {
+    case Wait::NONE: break;
+    case Wait::DWELL: isOver = now_ns >= deadline_ns_; break;
+    case Wait::INPUT: isOver = isInputWaitOver(now_ns); break;
+    case Wait::TOOL: isOver = io_.action() == io::ToolAction::IDLE; break;
+    case Wait::ORIENT: {
+        const motion::SpindleStatus &spindle =
+            motion_.status().spindle[static_cast<std::size_t>(awaited_spindle_)];
+        if (spindle.orient_fault != 0) {
+            events_.fail("spindle " + std::to_string(awaited_spindle_) + " reports orient fault " +
+                         std::to_string(spindle.orient_fault));
+        }
+        isOver = spindle.orient_state != 1;
+        break;
+    }
+    case Wait::USER_CODE: isOver = !events_.isUserCodeRunning(); break;
+    }
+    if (isOver) {
+        wait_ = Wait::NONE;
+    }
+    return isOver;
+}
+
+bool Sequencer::isInputWaitOver(std::int64_t now_ns) {
+    const motion::Status &status = motion_.status();
+    const auto index = static_cast<std::size_t>(awaited_input_.index);
+    const double value = awaited_input_.isAnalog ? status.analog_in[index]
+                                                 : static_cast<double>((status.digital_in >> index) & 1U);
+    const bool isFirst = std::isnan(last_input_);
+    bool isMet = false;
+    switch (awaited_input_.kind) {
+    case interp::WaitKind::IMMEDIATE: isMet = true; break;
+    case interp::WaitKind::RISE: isMet = !isFirst && last_input_ == 0 && value != 0; break;
+    case interp::WaitKind::FALL: isMet = !isFirst && last_input_ != 0 && value == 0; break;
+    case interp::WaitKind::HIGH: isMet = value != 0; break;
+    case interp::WaitKind::LOW: isMet = value == 0; break;
+    }
+    last_input_ = value;
+    isInputTimedOut_ = !isMet && now_ns >= deadline_ns_;
+    if (isMet || isInputTimedOut_) {
+        input_value_ = isInputTimedOut_ ? -1.0 : value;
+    }
+    return isMet || isInputTimedOut_;
+}
+
+void Sequencer::abort() {
+    queue_.clear();
+    wait_ = Wait::NONE;
+    changing_index_ = -1;
+    selected_index_ = -1;
+    isNextMoveWaitingForSpeed_ = false;
+    isStepping_ = false;
+    isStepDone_ = false;
+    io_.abort();
+}
+
+bool Sequencer::isIdle() const {
+    return queue_.empty() && wait_ == Wait::NONE && motion_.isPathComplete() &&
+           io_.action() == io::ToolAction::IDLE;
+}
+
+std::string Sequencer::waiting_for() const {
+    switch (wait_) {
+    case Wait::DWELL: return "the end of a dwell";
+    case Wait::INPUT:
+        return std::string("pin motion.") + (awaited_input_.isAnalog ? "analog-in-" : "digital-in-") +
+               (awaited_input_.index < 10 ? "0" : "") + std::to_string(awaited_input_.index);
+    case Wait::ORIENT: return "pin spindle." + std::to_string(awaited_spindle_) + ".is-oriented";
+    case Wait::USER_CODE: return "a user M code to end";
+    case Wait::NONE:
+    case Wait::TOOL: break;
+    }
+    return io_.waiting_for();
+}
+
+}  // namespace mw::task

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Takes the ordered queue to the machine: motion and I/O each at the right time (requirement D2).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "base/result.hh"
+#include "io/controller.hh"
+#include "task/items.hh"
+#include "task/motion_link.hh"
+#include "task/tool_store.hh"
+
+namespace mw::task {
+
+/// What the sequencer tells task that happened, in program order.
+struct SequencerEvents {
+    std::function<void(MessageKind, const std::string &)> message;
+    std::function<void(const std::string &)> print;
+    std::function<void(const StopItem &)> stop;     ///< M0, M1, M60 are reached
+    std::function<void(const EndItem &)> end;       ///< the program is over
+    std::function<void(const std::string &)> fail;  ///< something cannot be done; task aborts
+    std::function<void(const OffsetsItem &)> offsets;
+    std::function<void(const ToolOffsetItem &)> tool_offset;
+    /// Starts a user M code; false when it cannot be started.
+    std::function<Result<>(const UserCodeItem &)> start_user_code;
+    std::function<bool()> isUserCodeRunning;
+};
+
+struct SequencerSettings {
+    bool isToolChangeWithSpindleOn = false;  ///< [EMCIO]TOOL_CHANGE_WITH_SPINDLE_ON
+};
+
+/// One thread; step() once a task cycle, never blocks.
+class Sequencer {
+  public:
+    Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, ToolStore &tools,
+              SequencerEvents events, SequencerSettings settings);
+
+    /// Issues what may be issued now. `now_ns` is the clock of the scheduler.
+    void step(std::int64_t now_ns);
+    /// Drops everything that waits, also handshakes.
+    void abort();
+    /// Nothing queued, nothing waited for, motion complete, no handshake.
+    bool isIdle() const;
+    /// After the current block's items motion comes to rest and isStepDone() is true.
+    void start_step();
+    void end_step() { isStepping_ = false; }
+    bool isStepDone() const { return isStepDone_; }
+
+    void on_tool_event(io::ToolEvent event);
+    /// What is being waited for: a pin or a state; empty for nothing.
+    std::string waiting_for() const;
+
+    double input_value() const { return input_value_; }
+    bool isInputTimedOut() const { return isInputTimedOut_; }
+    /// Commanded spindle state, as programmed (unscaled).
+    double spindle_speed(int spindle) const { return spindles_[static_cast<std::size_t>(spindle)].speed; }
+    int spindle_direction(int spindle) const {
+        return spindles_[static_cast<std::size_t>(spindle)].direction;
+    }
+    /// Starts or stops a spindle at once (operator's command).
+    void command_spindle(int spindle, double signed_rpm, bool isWaiting);
+    void stop_spindles();
+    int selected_index() const { return selected_index_; }
+    void set_move_listener(std::function<void(const motion::PathBody &)> listener) {
+        move_listener_ = std::move(listener);
+    }
+
+  private:
+    enum class Need : std::uint8_t { NOTHING, MOTION, MOTION_AND_IO };
+    enum class Wait : std::uint8_t { NONE, DWELL, INPUT, TOOL, ORIENT, USER_CODE };
+    struct SpindleState {
+        double speed = 0;
+        double css_max_rpm = 0;
+        int direction = 0;
+        bool isWaiting = false;
+    };
+
+    static Need need_of(const ItemBody &body);
+    bool isWaitOver(std::int64_t now_ns);
+    bool isInputWaitOver(std::int64_t now_ns);
+    bool isReady(const Item &item);
+    bool isStepBoundary(const Item &item);
+    /// False when the item must be tried again next cycle.
+    bool execute(const Item &item, std::int64_t now_ns);
+    bool push_move(const Item &item);
+    /// Entry of the table, or "no tool" for index 0.
+    interp::ToolEntry tool_at(int index) const;
+    void execute_tool(const Item &item);
+    void execute_output(const Item &item);
+    void execute_log(const LogItem &item);
+    motion::MoveTerms terms_of(const interp::MoveSettings &settings, motion::MotionType type,
+                               const Item &item);
+    void send_spindle(int spindle);
+
+    ItemQueue &queue_;
+    MotionLink &motion_;
+    io::Controller &io_;
+    ToolStore &tools_;
+    SequencerEvents events_;
+    SequencerSettings settings_;
+    std::function<void(const motion::PathBody &)> move_listener_;
+
+    Wait wait_ = Wait::NONE;
+    std::int64_t deadline_ns_ = 0;  ///< of a dwell or a time limit; 0: none
+    WaitInputItem awaited_input_{};
+    double input_value_ = 0, last_input_ = 0;
+    bool isInputTimedOut_ = false;
+    int awaited_spindle_ = 0;
+    int selected_index_ = -1;  ///< table entry prepared by T, -1: none
+    int changing_index_ = -1;
+    std::array<SpindleState, MAX_SPINDLES> spindles_{};
+    bool isNextMoveWaitingForSpeed_ = false;
+    bool isStepping_ = false, isStepDone_ = false;
+    std::uint32_t step_block_ = 0;
+    std::string log_path_, log_text_;
+    bool isLogOpen_ = false;
+};
+
+}  // namespace mw::task

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "task/task.hh"
+
+#include "motion/api/texts.hh"
+
+namespace mw::task {
+namespace {
+
+constexpr std::size_t REMEMBERED_REQUESTS = 256;
+
+}  // namespace
+
+Task::Task(const Parts &parts, Settings settings)
+    : settings_(std::move(settings)), parts_(parts), motion_(parts.channels),
+      canon_(queue_, settings_.tool_change_place), frame_(canon_, settings_.machine_units),
+      interp_(frame_, *this, parts.tools, parts.parameters, settings_.interpreter),
+      sequencer_(queue_, motion_, io_, parts.tools, make_events(), settings_.sequencer) {}
+
+Task::~Task() = default;
+
+SequencerEvents Task::make_events() {
+    SequencerEvents events;
+    events.message = [this](MessageKind kind, const std::string &text) { post(kind, text); };
+    events.print = [this](const std::string &text) { post(MessageKind::OPERATOR_TEXT, text); };
+    events.stop = [this](const StopItem &stop) { on_stop(stop); };
+    events.end = [this](const EndItem &end) { on_end(end); };
+    events.fail = [this](const std::string &text) {
+        pending_failure_ = pending_failure_.empty() ? text : pending_failure_;
+    };
+    events.offsets = [this](const OffsetsItem &item) {
+        status_.g5x_index = item.g5x_index;
+        status_.g5x_offset = item.g5x;
+        status_.g92_offset = item.g92;
+        status_.rotation_xy_deg = item.rotation_xy_deg;
+    };
+    events.tool_offset = [this](const ToolOffsetItem &item) { status_.tool_offset = item.offset; };
+    events.start_user_code = [](const UserCodeItem &item) -> Result<> {
+        return fail("M" + std::to_string(item.code) + ": user M codes are not supported by this version");
+    };
+    events.isUserCodeRunning = [] { return false; };
+    return events;
+}
+
+Result<> Task::start() {
+    motion_.update();
+    if (!settings_.parameter_file.empty()) {
+        const auto loaded = interp_.load_parameters(settings_.parameter_file);
+        if (!loaded.has_value()) {
+            return loaded;
+        }
+    }
+    synch_interpreter();
+    return interp_.begin();
+}
+
+void Task::synch_interpreter() {
+    canon_.set_position(motion_.status().carte_pos_cmd);
+    frame_.set_position(motion_.status().carte_pos_cmd);
+    interp_.synch();
+}
+
+Result<> Task::save_parameters() const {
+    return settings_.parameter_file.empty() ? Result<>{} : interp_.save_parameters(settings_.parameter_file);
+}
+
+RequestId Task::submit(Command command) {
+    const RequestId id = next_request_++;
+    inbox_.emplace_back(id, std::move(command));
+    requests_[id] = {};
+    while (requests_.size() > REMEMBERED_REQUESTS) {
+        requests_.erase(requests_.begin());
+    }
+    return id;
+}
+
+Progress Task::progress(RequestId id) const {
+    const auto found = requests_.find(id);
+    return found == requests_.end() ? Progress::REFUSED : found->second.progress;
+}
+
+std::string Task::reason(RequestId id) const {
+    const auto found = requests_.find(id);
+    return found == requests_.end() ? "no such request" : found->second.reason;
+}
+
+bool Task::poll_message(Message &message) {
+    if (messages_.empty()) {
+        return false;
+    }
+    message = std::move(messages_.front());
+    messages_.pop_front();
+    return true;
+}
+
+void Task::step(std::int64_t now_ns) {
+    now_ns_ = now_ns;
+    take_motion_news();
+    take_io();
+    update_state();
+    carry_out_commands();
+    update_pending();
+    if (!pending_failure_.empty()) {
+        fail_program(std::exchange(pending_failure_, {}));
+    }
+    if (isRunning() && motion_.status().mode == motion::Mode::COORD) {
+        run_interpreter();
+        if (!status_.isPaused) {
+            sequencer_.step(now_ns_);
+        }
+        if (isStepMode_ && sequencer_.isStepDone()) {
+            status_.isPaused = true;
+        }
+        if (isRunning() && isReadingDone_ && sequencer_.isIdle() && !status_.isPaused) {
+            finish_run(Progress::DONE, {});
+        }
+    }
+    parts_.io_port.write(io_.outputs);
+    update_status();
+}
+
+void Task::take_motion_news() {
+    const MotionLink::News news = motion_.update();
+    for (const motion::Fault &fault : news.faults) {
+        const std::string text = motion::fault_text(fault);
+        post(MessageKind::OPERATOR_ERROR, text);
+        if (isRunning()) {
+            finish_run(Progress::FAILED, text);
+            abort_work();
+        }
+    }
+    for (const motion::Answer &answer : news.refused) {
+        const std::string text = motion::reason_text(answer);
+        if (answer.isPath && isRunning()) {
+            fail_program(text);
+        } else {
+            post(MessageKind::OPERATOR_ERROR, text);
+        }
+        if (answer.id == enable_command_) {
+            finish(state_request_, Progress::REFUSED, text);
+        }
+        if (answer.id == home_command_) {
+            finish(home_request_, Progress::REFUSED, text);
+        }
+    }
+}
+
+void Task::take_io() {
+    const io::ToolEvent event = io_.step(parts_.io_port.read());
+    sequencer_.on_tool_event(event);
+}
+
+void Task::update_state() {
+    const bool isClosed = io_.isChainClosed();
+    const bool isLeavingEstop = state_request_ != 0 && wanted_state_ == State::ESTOP_RESET;
+    if (!isClosed && status_.state != State::ESTOP && !isLeavingEstop) {
+        io_.enter_estop();
+        motion_.send(motion::Disable{});
+        finish(state_request_, Progress::FAILED, "the e-stop chain opened");
+        if (isRunning()) {
+            finish_run(Progress::FAILED, "the e-stop chain opened");
+        }
+        abort_work();
+        status_.state = State::ESTOP;
+        post(MessageKind::OPERATOR_ERROR, "emergency stop: pin iocontrol.0.emc-enable-in is FALSE");
+    } else if (status_.state == State::ESTOP && isClosed && !io_.isEstopRequested()) {
+        status_.state = State::ESTOP_RESET;
+    }
+    const bool isEnabled = motion_.status().isEnabled;
+    if (status_.state == State::ON && !isEnabled) {
+        status_.state = State::ESTOP_RESET;
+        if (isRunning()) {
+            finish_run(Progress::FAILED, "the machine went off");
+        }
+        abort_work();
+    } else if (status_.state == State::ESTOP_RESET && isEnabled && wanted_state_ == State::ON) {
+        status_.state = State::ON;
+    }
+}
+
+void Task::update_pending() {
+    if (state_request_ != 0) {
+        if (status_.state == wanted_state_) {
+            finish(state_request_, Progress::DONE, {});
+        } else if (now_ns_ > state_deadline_ns_) {
+            const bool isChain = wanted_state_ == State::ESTOP_RESET;
+            finish(state_request_, Progress::FAILED,
+                   isChain ? "pin iocontrol.0.emc-enable-in stays FALSE: the e-stop chain is open"
+                           : "the motion controller does not enable: is pin motion.enable TRUE?");
+        }
+    }
+    const motion::Status &motion = motion_.status();
+    if (home_request_ != 0 && motion_.isAnswered(home_command_) && !motion.isHoming) {
+        const bool isHomed = homing_joint_ < 0
+                                 ? motion.isAllHomed
+                                 : motion.joint[static_cast<std::size_t>(homing_joint_)].isHomed;
+        finish(home_request_, isHomed ? Progress::DONE : Progress::FAILED,
+               isHomed ? "" : "homing did not finish");
+    }
+}
+
+bool Task::isReadAheadAllowed() const {
+    const bool isHeld = status_.isPaused && isStoppedByProgram_;
+    return !isReadingDone_ && !isHeld && queue_.size() < settings_.read_ahead_items;
+}
+
+void Task::run_interpreter() {
+    for (int i = 0; i < settings_.blocks_per_cycle && isRunning() && isReadAheadAllowed(); ++i) {
+        if (isWaitingForSync_) {
+            if (!sequencer_.isIdle()) {
+                return;
+            }
+            isWaitingForSync_ = false;
+            synch_interpreter();
+        }
+        on_step_result(interp_.step());
+    }
+}
+
+void Task::on_step_result(interp::Step result) {
+    switch (result) {
+    case interp::Step::OK: break;
+    case interp::Step::SYNC: isWaitingForSync_ = true; break;
+    case interp::Step::PROGRAM_END:
+    case interp::Step::FILE_END: isReadingDone_ = true; break;
+    case interp::Step::FAILED: fail_program(interp_.error()); break;
+    }
+}
+
+void Task::on_stop(const StopItem &stop) {
+    if (stop.isOptional && !status_.isOptionalStop) {
+        return;
+    }
+    status_.isPaused = true;
+    isStoppedByProgram_ = true;
+}
+
+void Task::on_end(const EndItem &) {
+    isReadingDone_ = true;
+}
+
+void Task::fail_program(const std::string &text) {
+    fail_program(diag::Diagnostic{diag::Severity::ERROR, {text}});
+}
+
+void Task::fail_program(diag::Diagnostic what) {
+    post(MessageKind::OPERATOR_ERROR, what.str());
+    program_error_ = std::move(what);
+    hasProgramError_ = true;
+    finish_run(Progress::FAILED, program_error_.what.str());
+    abort_work();
+}
+
+void Task::abort_work() {
+    motion_.abort();
+    sequencer_.abort();
+    sequencer_.stop_spindles();
+    io_.set_flood(false);
+    io_.set_mist(false);
+    interp_.abort();
+    isWaitingForSync_ = false;
+    pending_failure_.clear();
+    finish(home_request_, Progress::FAILED, "aborted");
+}
+
+void Task::finish_run(Progress progress, const std::string &reason) {
+    if (run_ == Run::PROGRAM) {
+        interp_.close();
+        ++status_.programs_ended;
+    }
+    run_ = Run::IDLE;
+    isStepMode_ = false;
+    isStoppedByProgram_ = false;
+    status_.isPaused = false;
+    sequencer_.end_step();
+    finish(run_request_, progress, reason);
+}
+
+void Task::finish(RequestId &id, Progress progress, const std::string &reason) {
+    const auto found = requests_.find(id);
+    if (found != requests_.end()) {
+        found->second = {progress, reason};
+    }
+    id = 0;
+}
+
+void Task::update_status() {
+    const motion::Status &motion = motion_.status();
+    status_.motion_line = motion.source.line;
+    status_.blocks = canon_.blocks();
+    status_.isMistOn = io_.outputs.coolant_mist;
+    status_.isFloodOn = io_.outputs.coolant_flood;
+    status_.tool_in_spindle = io_.outputs.tool_number;
+    status_.interp_state = InterpState::IDLE;
+    if (isRunning()) {
+        status_.interp_state = status_.isPaused ? InterpState::PAUSED
+                               : isReadingDone_ ? InterpState::WAITING
+                                                : InterpState::READING;
+        status_.read_line = interp_.line();
+        status_.call_level = interp_.call_level();
+    }
+    status_.waiting.what = isRunning() ? sequencer_.waiting_for() : std::string();
+    if (home_request_ != 0) {
+        status_.waiting.what = "homing";
+    }
+}
+
+interp::MachineSnapshot Task::snapshot() const {
+    const motion::Status &motion = motion_.status();
+    interp::MachineSnapshot s;
+    s.position = motion.carte_pos_cmd;
+    s.probed_position = motion.probed_pos;
+    s.isProbeTripped = motion.isProbeTripped;
+    s.input_value = sequencer_.input_value();
+    s.isInputTimedOut = sequencer_.isInputTimedOut();
+    s.isMistOn = io_.outputs.coolant_mist;
+    s.isFloodOn = io_.outputs.coolant_flood;
+    s.isFeedOverrideEnabled = motion.isFeedOverrideEnabled;
+    s.isFeedHoldEnabled = motion.isFeedHoldEnabled;
+    s.isAdaptiveFeedEnabled = motion.isAdaptiveFeedEnabled;
+    s.isSpeedOverrideEnabled = motion.spindle[0].isOverrideEnabled;
+    for (std::size_t i = 0; i < s.spindle_speed.size(); ++i) {
+        s.spindle_speed[i] = sequencer_.spindle_speed(static_cast<int>(i));
+        s.spindle_direction[i] = sequencer_.spindle_direction(static_cast<int>(i));
+    }
+    s.tool_in_spindle = io_.outputs.tool_number;
+    s.selected_pocket = sequencer_.selected_index();
+    return s;
+}
+
+}  // namespace mw::task

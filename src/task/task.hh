@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Task: states, modes, programs and single lines; takes operators' commands and coordinates motion and I/O
+// (D1-D3).
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "interp/interpreter.hh"
+#include "interp/machine_frame.hh"
+#include "io/controller.hh"
+#include "task/command.hh"
+#include "task/motion_link.hh"
+#include "task/sequencer.hh"
+#include "task/status.hh"
+#include "task/task_canon.hh"
+#include "task/tool_store.hh"
+
+namespace mw::task {
+
+/// The pins of the I/O controller, as task reads and writes them once a cycle.
+class IoPort {
+  public:
+    virtual ~IoPort() = default;
+    virtual io::Inputs read() = 0;
+    virtual void write(const io::Outputs &outputs) = 0;
+};
+
+struct Settings {
+    interp::LengthUnits machine_units = interp::LengthUnits::MM;
+    unsigned axis_mask = 7;
+    int num_joints = 3;
+    int num_spindles = 1;
+    bool isHomingForced = true;  ///< programs and MDI need all joints homed
+    std::string parameter_file;  ///< empty: parameters live in memory only
+    interp::Settings interpreter;
+    SequencerSettings sequencer;
+    ToolChangePlace tool_change_place;
+    /// Blocks that the interpreter may read in one cycle, and queued items above which it waits.
+    int blocks_per_cycle = 200;
+    std::size_t read_ahead_items = 2000;
+};
+
+/// What task is built from; all must outlive it.
+struct Parts {
+    motion::Channels &channels;
+    IoPort &io_port;
+    ToolStore &tools;
+    interp::ParameterSource &parameters;
+};
+
+using RequestId = std::uint64_t;
+
+/// One thread; step() never blocks.
+class Task final : public interp::World {
+  public:
+    Task(const Parts &parts, Settings settings);
+    ~Task() override;
+
+    /// Loads parameters and announces the start state to the interpreter. Errors name file, line and column.
+    Result<> start();
+    /// Writes the parameter file. Call once at a clean end.
+    Result<> save_parameters() const;
+
+    /// Takes a command; it is carried out in the next cycle.
+    RequestId submit(Command command);
+    Progress progress(RequestId id) const;
+    /// Why a request was refused or failed.
+    std::string reason(RequestId id) const;
+
+    /// One task cycle at clock time `now_ns`.
+    void step(std::int64_t now_ns);
+
+    const Status &status() const { return status_; }
+    const motion::Status &motion_status() const { return motion_.status(); }
+    /// Takes the oldest message for the operator; false when there is none.
+    bool poll_message(Message &message);
+    /// The last program error with its place, callers and text; nullptr when the last program ended well.
+    const diag::Diagnostic *program_error() const { return hasProgramError_ ? &program_error_ : nullptr; }
+    const std::string &file_name(std::uint32_t index) const { return canon_.file_name(index); }
+    /// Is told of each move when it is handed to the planner (for figures and pictures).
+    void set_move_listener(std::function<void(const motion::PathBody &)> listener) {
+        sequencer_.set_move_listener(std::move(listener));
+    }
+
+    // interp::World
+    interp::MachineSnapshot snapshot() const override;
+    interp::LengthUnits machine_units() const override { return settings_.machine_units; }
+    unsigned axis_mask() const override { return settings_.axis_mask; }
+    int count_spindles() const override { return settings_.num_spindles; }
+    bool isBlockDeleteOn() const override { return status_.isBlockDelete; }
+    bool isOptionalStopOn() const override { return status_.isOptionalStop; }
+
+  private:
+    enum class Run : std::uint8_t { IDLE, PROGRAM, MDI };
+    struct Request {
+        Progress progress = Progress::STARTED;
+        std::string reason;
+    };
+    struct Handler;
+    friend struct Handler;
+
+    SequencerEvents make_events();
+    void take_motion_news();
+    void take_io();
+    void update_state();
+    void update_pending();
+    void carry_out_commands();
+    void run_interpreter();
+    bool isReadAheadAllowed() const;
+    void on_step_result(interp::Step result);
+    void on_stop(const StopItem &stop);
+    void on_end(const EndItem &end);
+    void fail_program(diag::Diagnostic what);
+    void fail_program(const std::string &text);
+    void abort_work();
+    void finish_run(Progress progress, const std::string &reason);
+    void finish(RequestId &id, Progress progress, const std::string &reason);
+    void update_status();
+    void post(MessageKind kind, std::string text) { messages_.push_back({kind, std::move(text)}); }
+    bool isRunning() const { return run_ != Run::IDLE; }
+    /// Takes the machine's position and state as the program's.
+    void synch_interpreter();
+    Result<> check_can_run() const;
+
+    Settings settings_;
+    Parts parts_;
+    MotionLink motion_;
+    io::Controller io_;
+    ItemQueue queue_;
+    TaskCanon canon_;
+    interp::MachineFrame frame_;
+    interp::Interpreter interp_;
+    Sequencer sequencer_;
+
+    Status status_;
+    std::int64_t now_ns_ = 0;
+    Run run_ = Run::IDLE;
+    bool isReadingDone_ = false;  ///< the interpreter has come to the end of what runs
+    bool isWaitingForSync_ = false;
+    bool isStepMode_ = false;
+    bool isStoppedByProgram_ = false;
+    std::string pending_failure_;
+    std::deque<std::pair<RequestId, Command>> inbox_;
+    std::map<RequestId, Request> requests_;
+    RequestId next_request_ = 1;
+    RequestId run_request_ = 0, state_request_ = 0, home_request_ = 0;
+    State wanted_state_ = State::ESTOP;
+    int homing_joint_ = -1;
+    motion::CommandId home_command_ = 0, enable_command_ = 0;
+    std::int64_t state_deadline_ns_ = 0;
+    std::deque<Message> messages_;
+    diag::Diagnostic program_error_;
+    bool hasProgramError_ = false;
+};
+
+}  // namespace mw::task

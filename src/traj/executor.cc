@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "traj/executor.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mw::traj {
+
+namespace {
+
+/// Braking that misses a stop at a piece's end by rounding alone is fitted to it; piece accelerations keep
+/// this margin.
+constexpr double STOP_FIT = 1e-7;
+
+double x_at(const Phase &p, double t) noexcept {
+    return p.x0 + t * (p.v0 + t * (0.5 * p.a + t * p.j * (1.0 / 6.0)));
+}
+
+double v_at(const Phase &p, double t) noexcept {
+    return p.v0 + t * (p.a + 0.5 * t * p.j);
+}
+
+}  // namespace
+
+void Executor::take_commits() noexcept {
+    while (const Commit *c = store_.commits.front()) {
+        if (c->isSwitch) {
+            const bool isTimely = c->switch_cycle > state_.cycle && c->brakes == state_.brakes &&
+                                  !state_.isHeld && !state_.isDropping;
+            if (isTimely) {
+                next_switch_ = *c;
+                next_end_ = c->end;
+            }
+        } else if (next_switch_.plan != 0 && c->plan == next_switch_.plan) {
+            next_end_ = c->end;
+        } else if (next_switch_.plan == 0 && c->plan == state_.plan && state_.motion == Motion::FOLLOW) {
+            phase_end_ = c->end;
+        }
+        store_.commits.drop();
+    }
+}
+
+const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
+    take_commits();
+    state_.cycle = cycle;
+    advance(period_);
+    const bool isDue = next_switch_.plan != 0 && next_switch_.switch_cycle <= cycle;
+    if (isDue) {
+        const bool isValid = next_switch_.brakes == state_.brakes && next_switch_.switch_cycle == cycle &&
+                             !state_.isHeld && !state_.isDropping;
+        if (isValid) {
+            state_.motion = Motion::FOLLOW;
+            state_.plan = next_switch_.plan;
+            state_.phase = next_switch_.begin;
+            state_.time_in_phase = 0;
+            phase_end_ = next_end_;
+            state_.piece = store_.phase(state_.phase).piece;
+            state_.x = store_.phase(state_.phase).x0;
+            state_.v = store_.phase(state_.phase).v0;
+        }
+        next_switch_.plan = 0;
+    }
+    locate();
+    store_.snapshot.write(state_);
+    return out_;
+}
+
+void Executor::advance(double dt) noexcept {
+    for (int n = 0; n < MAX_STEPS_PER_CYCLE && dt > 0 && state_.motion != Motion::REST; ++n) {
+        dt = state_.motion == Motion::FOLLOW ? follow(dt) : brake_along(dt);
+    }
+}
+
+/// Goes on within the present phase; returns the time that is left after its end.
+double Executor::follow(double dt) noexcept {
+    const Phase &p = store_.phase(state_.phase);
+    const double left = p.duration - state_.time_in_phase;
+    if (dt < left) {
+        state_.time_in_phase += dt;
+        state_.x = x_at(p, state_.time_in_phase);
+        state_.v = v_at(p, state_.time_in_phase);
+        state_.piece = p.piece;
+        return 0;
+    }
+    if (state_.phase + 1 < phase_end_) {
+        ++state_.phase;
+        const Phase &next = store_.phase(state_.phase);
+        state_.time_in_phase = 0;
+        state_.piece = next.piece;
+        state_.x = next.x0;
+        state_.v = next.v0;
+        return dt - left;
+    }
+    state_.piece = p.piece;
+    state_.x = x_at(p, p.duration);
+    state_.v = v_at(p, p.duration);
+    const double length = store_.piece(p.piece).length;
+    if (std::abs(state_.x - length) <= 1e-12 * (1.0 + length)) {
+        state_.x = length;
+    }
+    // A plan that ends in a stop ends with a speed that is 0 but for rounding.
+    const bool isStop = std::abs(state_.v) <= 1e-9 * std::abs(p.a) * (p.duration + period_) || state_.v <= 0;
+    if (isStop) {
+        come_to_rest();
+    } else {
+        start_brake();
+    }
+    return dt - left;
+}
+
+void Executor::start_brake() noexcept {
+    state_.motion = Motion::BRAKE;
+    ++state_.brakes;
+    next_switch_.plan = 0;
+    brake_on_piece();
+}
+
+/// Sets up braking from the present state to a stop or to the end of the piece.
+void Executor::brake_on_piece() noexcept {
+    const Piece &piece = store_.piece(state_.piece);
+    const double left = std::max(0.0, piece.length - state_.x);
+    const double v2 = state_.v * state_.v;
+    double a = piece.acceleration;
+    const double out2 = v2 - 2.0 * a * left;
+    brake_time_ = 0;
+    isBrakeFinal_ = out2 <= STOP_FIT * v2;
+    if (!isBrakeFinal_) {
+        const double out = std::sqrt(out2);
+        brake_ = {state_.piece, (state_.v - out) / a, state_.x, state_.v, -a, 0};
+        return;
+    }
+    if (out2 > 0 && left > 0) {
+        a = v2 / (2.0 * left);
+    }
+    brake_ = {state_.piece, state_.v / a, state_.x, state_.v, -a, 0};
+}
+
+double Executor::brake_along(double dt) noexcept {
+    const double left = brake_.duration - brake_time_;
+    if (dt < left) {
+        brake_time_ += dt;
+        state_.x = x_at(brake_, brake_time_);
+        state_.v = v_at(brake_, brake_time_);
+        return 0;
+    }
+    const Piece &piece = store_.piece(state_.piece);
+    if (isBrakeFinal_) {
+        const double stop = x_at(brake_, brake_.duration);
+        state_.x = std::abs(stop - piece.length) <= 1e-12 * (1.0 + piece.length)
+                       ? piece.length
+                       : std::min(stop, piece.length);
+        come_to_rest();
+        return 0;
+    }
+    state_.v = v_at(brake_, brake_.duration);
+    if (state_.piece == store_.last_piece.load(std::memory_order_acquire)) {
+        // The planner promises that this does not happen; were it wrong, the end of the path is where we
+        // stop.
+        state_.x = piece.length;
+        come_to_rest();
+        return 0;
+    }
+    ++state_.piece;
+    state_.x = 0;
+    brake_on_piece();
+    return dt - left;
+}
+
+void Executor::come_to_rest() noexcept {
+    state_.motion = Motion::REST;
+    state_.v = 0;
+    if (state_.isDropping) {
+        finish_drop();
+    }
+}
+
+/// Whatever is left of the path is gone; the planner learns it from `drops`.
+void Executor::finish_drop() noexcept {
+    locate();
+    state_.isDropping = false;
+    ++state_.drops;
+    ++state_.brakes;
+    state_.piece = 0;
+    state_.x = 0;
+    next_switch_.plan = 0;
+}
+
+void Executor::hold(bool isHeld) noexcept {
+    if (isHeld && !state_.isHeld && state_.motion == Motion::FOLLOW) {
+        start_brake();
+    }
+    if (isHeld && !state_.isHeld && state_.motion == Motion::REST) {
+        ++state_.brakes;
+        next_switch_.plan = 0;
+    }
+    state_.isHeld = isHeld;
+}
+
+void Executor::drop() noexcept {
+    if (state_.isDropping) {
+        return;
+    }
+    state_.isDropping = true;
+    if (state_.motion == Motion::FOLLOW) {
+        start_brake();
+    } else if (state_.motion == Motion::REST) {
+        finish_drop();
+    }
+}
+
+void Executor::stop_now() noexcept {
+    state_.motion = Motion::REST;
+    state_.v = 0;
+    finish_drop();
+    store_.snapshot.write(state_);
+}
+
+/// Position, the move that it belongs to, and how many moves are complete.
+void Executor::locate() noexcept {
+    out_.velocity = state_.v;
+    out_.isMoving = state_.motion != Motion::REST;
+    out_.isOnProbe = false;
+    if (state_.piece == 0) {
+        out_.move = 0;
+        out_.distance_to_go = 0;
+        return;
+    }
+    const Piece &piece = store_.piece(state_.piece);
+    out_.position = position_at(store_, piece, state_.x);
+    const bool isBlend = piece.blend_d > 0;
+    const bool isSecond = isBlend && state_.x >= piece.blend_d;
+    const Sequence move = piece.move + (isSecond ? 1 : 0);
+    const Primitive &line = store_.primitive(piece.primitive + (isSecond ? 1 : 0));
+    const double y = isBlend ? state_.x * state_.x / (4.0 * piece.blend_d) : 0;
+    const double along = isSecond ? y : piece.offset + state_.x - y;
+    const bool isComplete = piece.isToEnd && state_.x >= piece.length;
+    state_.done_move = std::max(state_.done_move, isComplete ? move : move - 1);
+    out_.move = isComplete && !out_.isMoving ? 0 : move;
+    out_.distance_to_go = isComplete ? 0 : line.length - along;
+    out_.isOnProbe = store_.move(move).isProbe && !isComplete;
+}
+
+const PathEvent *Executor::due_event() noexcept {
+    const PathEvent *event = store_.events.front();
+    while (event != nullptr && event->drops != state_.drops) {
+        store_.events.drop();
+        event = store_.events.front();
+    }
+    return event != nullptr && event->after_move <= state_.done_move ? event : nullptr;
+}
+
+bool Executor::isEmpty() const noexcept {
+    if (state_.piece == 0) {
+        return true;
+    }
+    const bool isAtEnd = state_.piece == store_.last_piece.load(std::memory_order_acquire) &&
+                         state_.x >= store_.piece(state_.piece).length;
+    return state_.motion == Motion::REST && isAtEnd;
+}
+
+}  // namespace mw::traj

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What planner and executor share: geometry, timing and commits from the planner; the state from the
+// executor. Both sides live in one process; each array element has one writer, each counter one writer.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "base/seqlock.hh"
+#include "base/spsc_ring.hh"
+#include "traj/primitive.hh"
+
+namespace mw::traj {
+
+/// Counts moves, pieces, phases and primitives from 1 on; an element n lives in slot n modulo the capacity.
+using Sequence = std::uint64_t;
+
+/// Who a stretch of path belongs to; plain data that planner and executor only carry.
+struct MoveTag {
+    std::uint64_t id = 0;
+    std::int32_t line = 0;
+    std::uint32_t file_index = 0;
+    std::uint32_t block = 0;
+    std::uint8_t type = 0;
+    bool isProbe = false;
+    double requested_velocity = 0;  ///< along the feed length; 0: as fast as the limits allow
+    double feed_ratio = 1;          ///< s per feed length
+    Pose end;
+};
+
+/// A stretch of path with limits of its own: a part of one primitive, or a blend between two.
+///   part:  q(x) = A(offset + x)
+///   blend: q(x) = A(offset + x - x^2/4d) + B(x^2/4d) - corner,  x in [0, 2d]
+struct Piece {
+    Sequence primitive = 0;  ///< A; B is the next one
+    Sequence move = 0;       ///< the move of A; B's is the next one
+    double offset = 0;       ///< s of A where the piece begins
+    double length = 0;
+    double blend_d = 0;    ///< 0: a part of A
+    bool isToEnd = false;  ///< a part of A that reaches A's end
+    double acceleration =
+        0;  ///< limit along x that keeps every axis in its limits up to the piece's speed [1/s^2]
+};
+
+/// x(t) = x0 + v0 t + a t^2 / 2 + j t^3 / 6, t in [0, duration], on one piece.
+struct Phase {
+    Sequence piece = 0;
+    double duration = 0;
+    double x0 = 0, v0 = 0, a = 0, j = 0;
+};
+
+/// Tells the executor which phases to follow. They never end with a stop beyond what is committed: when they
+/// run out, the executor brakes along the pieces, which the planner has made sure is possible within the
+/// limits.
+struct Commit {
+    std::uint64_t plan = 0;  ///< increasing
+    bool isSwitch = false;   ///< leave the present plan at `switch_cycle` for phases [begin, end)
+    std::uint64_t switch_cycle = 0;
+    std::uint64_t brakes = 0;     ///< Snapshot::brakes that the plan was made for; another value voids it
+    Sequence begin = 0, end = 0;  ///< not a switch: the present plan `plan` now goes on to `end`
+};
+
+enum class Motion : std::uint8_t { REST, FOLLOW, BRAKE };
+
+/// The executor's state at the end of a servo cycle.
+struct Snapshot {
+    std::uint64_t cycle = 0;
+    std::uint64_t plan = 0;    ///< the last switch that was taken
+    std::uint64_t brakes = 0;  ///< counts how often the executor left a plan by itself
+    std::uint64_t drops = 0;   ///< counts dropped paths; the planner starts afresh for each
+    Motion motion = Motion::REST;
+    bool isDropping = false;  ///< braking, and what is left will be dropped
+    bool isHeld = false;
+    Sequence phase = 0;  ///< FOLLOW: the phase and the time in it
+    double time_in_phase = 0;
+    Sequence piece = 0;  ///< where on the path; 0: no path
+    double x = 0, v = 0;
+    Sequence done_move = 0;  ///< moves completed
+};
+
+inline constexpr std::size_t PRIMITIVE_CAPACITY = 4096;
+inline constexpr std::size_t PIECE_CAPACITY = 8192;
+inline constexpr std::size_t PHASE_CAPACITY = 16384;
+
+/// An output change at a place of the path.
+struct PathEvent {
+    Sequence after_move = 0;  ///< fires when this move is complete
+    std::uint64_t drops = 0;  ///< Snapshot::drops of the path it belongs to; of another path it never fires
+    bool isAnalog = false;
+    std::int16_t index = 0;
+    double value = 0;
+};
+
+/// Owned by whoever assembles the two sides; some megabytes, so never on a stack.
+struct PathStore {
+    std::array<Primitive, PRIMITIVE_CAPACITY> primitives{};
+    std::array<MoveTag, PRIMITIVE_CAPACITY> moves{};
+    std::array<Piece, PIECE_CAPACITY> pieces{};
+    std::array<Phase, PHASE_CAPACITY> phases{};
+    SpscRing<PathEvent, 1024> events;  ///< planner -> executor
+    SpscRing<Commit, 64> commits;      ///< planner -> executor
+    /// Pieces up to here may be read by the executor. Release by the planner after filling, acquire by the
+    /// executor.
+    std::atomic<Sequence> last_piece{0};
+    Seqlock<Snapshot> snapshot;  ///< executor -> planner
+
+    Primitive &primitive(Sequence n) noexcept { return primitives[n % PRIMITIVE_CAPACITY]; }
+    const Primitive &primitive(Sequence n) const noexcept { return primitives[n % PRIMITIVE_CAPACITY]; }
+    MoveTag &move(Sequence n) noexcept { return moves[n % PRIMITIVE_CAPACITY]; }
+    const MoveTag &move(Sequence n) const noexcept { return moves[n % PRIMITIVE_CAPACITY]; }
+    Piece &piece(Sequence n) noexcept { return pieces[n % PIECE_CAPACITY]; }
+    const Piece &piece(Sequence n) const noexcept { return pieces[n % PIECE_CAPACITY]; }
+    Phase &phase(Sequence n) noexcept { return phases[n % PHASE_CAPACITY]; }
+    const Phase &phase(Sequence n) const noexcept { return phases[n % PHASE_CAPACITY]; }
+};
+
+/// Position at `x` of a piece. [servo, planner]
+Pose position_at(const PathStore &store, const Piece &piece, double x) noexcept;
+
+/// dq/dx at `x` of a piece. [servo, planner]
+Pose derivative_at(const PathStore &store, const Piece &piece, double x) noexcept;
+
+}  // namespace mw::traj

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The planning side of path motion: joins moves, finds the fastest profile within the limits, commits it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "base/limits.hh"
+#include "traj/limits.hh"
+#include "traj/path_store.hh"
+
+namespace mw::traj {
+
+enum class Join : std::uint8_t {
+    STOP,   ///< comes to a stop at the end of the move
+    EXACT,  ///< passes the end without a stop only where the path goes on in the same direction
+    BLEND,  ///< rounds the corner within the tolerance
+};
+
+/// One move besides its geometry.
+struct MoveRequest {
+    MoveTag tag;
+    Join join = Join::BLEND;
+    double tolerance = 0;  ///< of a blend [machine units; degrees over ABC]; 0: as the speed needs
+    bool isRapid = false;  ///< as fast as the limits allow, scaled by Scales::rapid
+    bool isOverridable = true;
+    bool isAngular = false;  ///< the feed length is over ABC: the operator's velocity ceiling does not apply
+    double feed_per_revolution = 0;  ///< > 0: the speed follows a spindle
+    int spindle = 0;
+    bool isGated = false;  ///< a stop before it until the gate opens
+};
+
+/// What may change while the path is under way.
+struct Scales {
+    double feed = 1.0;
+    double rapid = 1.0;
+    double max_feed = 1.0;            ///< highest `feed` that will come; limits are made for it
+    double max_velocity = UNLIMITED;  ///< operator's ceiling along the feed length
+    std::array<double, MAX_SPINDLES> spindle_rps{};
+};
+
+struct PlannerSettings {
+    double period_s = 1e-3;     ///< of the servo
+    std::uint64_t latency = 3;  ///< cycles from a plan's making to its start
+    double horizon_s = 0.1;     ///< how far ahead phases are committed
+};
+
+/// All methods: planner thread only. Allocates at construction only. Same calls with the same values: same
+/// bits.
+class Planner {
+  public:
+    Planner(PathStore &store, const PlannerSettings &settings);
+
+    void set_limits(const Limits &limits) noexcept { limits_ = limits; }
+
+    /// A new path begins at `start`, where the executor rests with nothing left of another.
+    void begin(const Pose &start, const Snapshot &now) noexcept;
+
+    /// There is room for one more move.
+    bool hasRoom(const Snapshot &now) const noexcept;
+    /// Appends a move that starts at `end()`; its length must be greater than 0. Returns its number.
+    Sequence add(const Primitive &primitive, const MoveRequest &request) noexcept;
+    /// Where the next move starts.
+    const Pose &end() const noexcept { return end_; }
+    Sequence last_move() const noexcept { return last_move_; }
+    /// An output change when what has been added so far is complete; false when there is no room.
+    bool add_event(PathEvent event) noexcept;
+    /// Nothing follows for now: the last move is planned to its very end.
+    void release_end() noexcept;
+
+    void set_scales(const Scales &scales) noexcept;
+    /// The gate before gated moves; open it once the executor waits there.
+    void open_gate(Sequence move) noexcept;
+    /// Move whose gate the executor waits at, 0: none.
+    Sequence waiting_gate(const Snapshot &now) const noexcept;
+    /// Single blocks: stops where the source block is another than `block`.
+    void set_step(bool isStepping, std::uint32_t block) noexcept;
+    /// The block that comes next for an executor in state `now`.
+    std::uint32_t next_block(const Snapshot &now) const noexcept;
+
+    /// Commits what the executor needs next. Call once a planner period.
+    void update(const Snapshot &now) noexcept;
+
+    /// The committed plan runs to the end of the known path and there is an open end that could be released.
+    bool isStarving() const noexcept {
+        return open_move_ != 0 && (isAtEndOfPath_ || last_piece_ < oldest_piece_);
+    }
+    std::uint32_t moves_left(const Snapshot &now) const noexcept;
+
+  private:
+    struct MovePlan {
+        double feed = 0;  ///< requested speed in s [1/s]; 0: none
+        MoveRequest request;
+    };
+    struct PiecePlan {
+        double v_limit = 0;  ///< highest speed the limits allow
+        double v2_in = 0;    ///< highest speed at its start from which all that follows can be kept, squared
+        bool isStopBefore = false;
+    };
+    struct State {
+        Sequence piece = 0;
+        double x = 0, v = 0;
+    };
+    struct Joint {
+        double d = 0;
+        bool isStop = false;
+    };
+
+    MovePlan &move_plan(Sequence n) noexcept { return moves_[n % PRIMITIVE_CAPACITY]; }
+    const MovePlan &move_plan(Sequence n) const noexcept { return moves_[n % PRIMITIVE_CAPACITY]; }
+    PiecePlan &piece_plan(Sequence n) noexcept { return pieces_[n % PIECE_CAPACITY]; }
+    const PiecePlan &piece_plan(Sequence n) const noexcept { return pieces_[n % PIECE_CAPACITY]; }
+
+    double wish_of(const MovePlan &m) const noexcept;
+    Joint joint_between(Sequence a, Sequence b) const noexcept;
+    void add_piece(const Piece &piece, SpeedLimit limit, double wish) noexcept;
+    void close_move(double to, bool isToEnd) noexcept;
+
+    double move_cap(const MovePlan &m, double v_limit) const noexcept;
+    double cap_of(Sequence piece) const noexcept;
+    bool isBarrier(Sequence piece) const noexcept;
+    Sequence move_of(Sequence piece) const noexcept;
+    void pass_backward(Sequence from, bool isWhole) noexcept;
+
+    bool start_state(const Snapshot &now, State &state) const noexcept;
+    bool predict(const Snapshot &now, State &state) const noexcept;
+    void replan(const Snapshot &now, const State &from) noexcept;
+    void emit(double until_s) noexcept;
+    bool emit_piece() noexcept;
+    void emit_phase(double length, double v1) noexcept;
+    bool hasPhaseRoom() const noexcept;
+    void append(const Snapshot &now) noexcept;
+
+    PathStore &store_;
+    PlannerSettings settings_;
+    Limits limits_;
+    Scales scales_;
+    std::unique_ptr<std::array<MovePlan, PRIMITIVE_CAPACITY>> move_memory_;
+    std::unique_ptr<std::array<PiecePlan, PIECE_CAPACITY>> piece_memory_;
+    std::array<MovePlan, PRIMITIVE_CAPACITY> &moves_;
+    std::array<PiecePlan, PIECE_CAPACITY> &pieces_;
+
+    Pose end_;
+    Sequence first_move_ = 1;  ///< of this path
+    Sequence last_move_ = 0;
+    Sequence open_move_ = 0;    ///< whose end is not yet joined or released, 0: none
+    double open_offset_ = 0;    ///< where its own part begins
+    bool isOpenStop_ = false;   ///< stop before its part
+    Sequence first_piece_ = 1;  ///< of this path
+    Sequence last_piece_ = 0;
+    std::uint64_t drops_ = 0;
+
+    Sequence changed_from_ = 0;  ///< lowest piece whose v2_in rose or fell since the last plan, 0: none
+    Sequence oldest_piece_ = 1;  ///< the executor's place; earlier ones are free
+    Sequence oldest_phase_ = 1;
+
+    std::uint64_t plan_ = 0;
+    std::uint64_t plan_brakes_ = 0;
+    std::uint64_t switch_cycle_ = 0;
+    Sequence plan_begin_ = 1, plan_end_ = 1;
+    std::array<Sequence, 16> plan_ends_{};  ///< of the last plans, by number: one may turn out to be refused
+    State planned_;                         ///< where the committed plan ends
+    double planned_s_ = 0;                  ///< when, from switch_cycle_ on
+    bool isAtEndOfPath_ = false;
+
+    Sequence open_gate_ = 0;
+    bool isStepping_ = false;
+    std::uint32_t step_block_ = 0;
+};
+
+}  // namespace mw::traj

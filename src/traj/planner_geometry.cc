@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Joining of moves: which corners are rounded, which are stops, and the limits of every stretch.
+#include <algorithm>
+#include <cmath>
+
+#include "traj/planner.hh"
+
+namespace mw::traj {
+
+namespace {
+
+/// Tangents that differ by less are the same but for rounding: the step of speed is below any limit.
+constexpr double SAME_DIRECTION = 1e-11;
+/// Exact path: joints that differ by rounding of a program's figures are passed, within a deviation that no
+/// machine shows.
+constexpr double EXACT_PATH_STEP = 0.02;
+constexpr double EXACT_PATH_DEVIATION = 1e-6;
+/// A path that turns back by more than this (cosine) is a reversal: the end of the move is what matters.
+constexpr double REVERSAL_COSINE = -0.9;
+/// Below this a blend is a stop.
+constexpr double SMALLEST_BLEND = 1e-7;
+/// Pieces passed in one servo cycle at most; with up to four phases each below Executor::MAX_STEPS_PER_CYCLE.
+constexpr double PIECES_PER_CYCLE = 64;
+/// Room that keeps fitted stops (Executor) and rounding inside the limits.
+constexpr double ACCELERATION_MARGIN = 1e-6;
+
+}  // namespace
+
+Planner::Planner(PathStore &store, const PlannerSettings &settings)
+    : store_(store), settings_(settings),
+      move_memory_(std::make_unique<std::array<MovePlan, PRIMITIVE_CAPACITY>>()),
+      piece_memory_(std::make_unique<std::array<PiecePlan, PIECE_CAPACITY>>()), moves_(*move_memory_),
+      pieces_(*piece_memory_) {
+    limits_.velocity.fill(UNLIMITED);
+    limits_.acceleration.fill(UNLIMITED);
+}
+
+void Planner::begin(const Pose &start, const Snapshot &now) noexcept {
+    end_ = start;
+    first_move_ = last_move_ + 1;
+    first_piece_ = last_piece_ + 1;
+    oldest_piece_ = first_piece_;
+    open_move_ = 0;
+    changed_from_ = 0;
+    drops_ = now.drops;
+    plan_ = std::max(plan_, now.plan);
+    plan_begin_ = plan_end_;
+    plan_ends_.fill(plan_end_);
+    switch_cycle_ = 0;
+    planned_ = {};
+    isAtEndOfPath_ = false;
+    isStepping_ = false;
+}
+
+bool Planner::hasRoom(const Snapshot &now) const noexcept {
+    constexpr Sequence PIECES_PER_MOVE = 4;
+    const Sequence oldest_piece = std::max(first_piece_, now.piece);
+    if (last_piece_ + PIECES_PER_MOVE - oldest_piece >= PIECE_CAPACITY) {
+        return false;
+    }
+    const Sequence oldest_move = last_piece_ < oldest_piece ? last_move_ : store_.piece(oldest_piece).move;
+    return last_move_ + 4 - oldest_move < PRIMITIVE_CAPACITY;
+}
+
+double Planner::wish_of(const MovePlan &m) const noexcept {
+    if (m.request.isRapid || m.request.feed_per_revolution > 0 || !(m.feed > 0)) {
+        return UNLIMITED;
+    }
+    return m.request.isOverridable ? m.feed * std::max(1.0, scales_.max_feed) : m.feed;
+}
+
+Sequence Planner::add(const Primitive &primitive, const MoveRequest &request) noexcept {
+    const Sequence n = ++last_move_;
+    store_.primitive(n) = primitive;
+    const FeedLength feed = feed_length(primitive);
+    MovePlan &m = move_plan(n);
+    m.request = request;
+    m.request.isAngular = feed.isAngular;
+    m.request.tag.feed_ratio = primitive.length / feed.length;
+    m.request.tag.end = primitive.end;
+    m.feed = request.tag.requested_velocity * m.request.tag.feed_ratio;
+    store_.move(n) = m.request.tag;
+    end_ = primitive.end;
+
+    Joint joint;
+    if (open_move_ != 0) {
+        joint = joint_between(open_move_, n);
+        const Primitive &before = store_.primitive(open_move_);
+        close_move(before.length - joint.d, !(joint.d > 0));
+        if (joint.d > 0) {
+            const MovePlan &a = move_plan(open_move_);
+            const double wish = std::min(wish_of(a), wish_of(m));
+            Piece blend;
+            blend.primitive = open_move_;
+            blend.move = open_move_;
+            blend.offset = before.length - joint.d;
+            blend.length = 2.0 * joint.d;
+            blend.blend_d = joint.d;
+            isOpenStop_ = false;
+            add_piece(blend, limit_of_blend(before, primitive, joint.d, limits_, wish), wish);
+        }
+    } else if (n > first_move_) {
+        const Pose step = tangent_step(store_.primitive(n - 1), primitive);
+        joint.isStop = geom::norm(step) > SAME_DIRECTION || m.request.isGated ||
+                       move_plan(n - 1).request.join == Join::STOP;
+    }
+    open_move_ = n;
+    open_offset_ = joint.d;
+    isOpenStop_ = joint.isStop;
+    return n;
+}
+
+void Planner::release_end() noexcept {
+    if (open_move_ != 0) {
+        close_move(store_.primitive(open_move_).length, true);
+        open_move_ = 0;
+    }
+}
+
+/// The open move's own part, from the end of the blend before it up to `to`.
+void Planner::close_move(double to, bool isToEnd) noexcept {
+    const Primitive &p = store_.primitive(open_move_);
+    Piece piece;
+    piece.primitive = open_move_;
+    piece.move = open_move_;
+    piece.offset = open_offset_;
+    piece.length = to - open_offset_;
+    piece.isToEnd = isToEnd;
+    if (piece.length <= 1e-12 * p.length) {
+        return;
+    }
+    const double wish = wish_of(move_plan(open_move_));
+    add_piece(piece, limit_of(p, limits_, wish), wish);
+}
+
+void Planner::add_piece(const Piece &piece, SpeedLimit limit, double wish) noexcept {
+    const Sequence k = last_piece_ + 1;
+    Piece &slot = store_.piece(k);
+    slot = piece;
+    slot.acceleration = limit.a * (1.0 - ACCELERATION_MARGIN);
+    PiecePlan &plan = piece_plan(k);
+    plan.v_limit = std::min({limit.v, wish, PIECES_PER_CYCLE * piece.length / settings_.period_s});
+    plan.v2_in = -1;
+    plan.isStopBefore = isOpenStop_;
+    last_piece_ = k;
+    isAtEndOfPath_ = false;
+    // Release: the executor that sees the number (acquire) sees the piece and its primitives filled.
+    store_.last_piece.store(k, std::memory_order_release);
+}
+
+Planner::Joint Planner::joint_between(Sequence na, Sequence nb) const noexcept {
+    const Primitive &a = store_.primitive(na);
+    const Primitive &b = store_.primitive(nb);
+    const MovePlan &ma = move_plan(na);
+    const MovePlan &mb = move_plan(nb);
+    const bool isStop = ma.request.join == Join::STOP || mb.request.isGated || ma.request.tag.isProbe ||
+                        mb.request.tag.isProbe;
+    if (isStop) {
+        return {0, true};
+    }
+    const double step = geom::norm(tangent_step(a, b));
+    if (step <= SAME_DIRECTION) {
+        return {0, false};
+    }
+    const bool isExact = ma.request.join == Join::EXACT || mb.request.join == Join::EXACT;
+    const bool isCorner = isExact && step > EXACT_PATH_STEP;
+    const Pose ta = derivative_at(a, a.length);
+    const Pose tb = derivative_at(b, 0);
+    if (isCorner || geom::dot(ta, tb) < REVERSAL_COSINE * geom::norm(ta) * geom::norm(tb)) {
+        return {0, true};
+    }
+    double d = 0.5 * std::min(a.length, b.length);
+    double tolerance = isExact ? EXACT_PATH_DEVIATION : ma.request.tolerance;
+    const bool isOther = !isExact && mb.request.tolerance > 0;
+    if (isOther) {
+        tolerance = tolerance > 0 ? std::min(tolerance, mb.request.tolerance) : mb.request.tolerance;
+    }
+    if (tolerance > 0) {
+        d = std::min(d, blend_d_for_tolerance(a, b, tolerance));
+    }
+    const double wish_a = wish_of(ma);
+    const double wish_b = wish_of(mb);
+    const double va = std::min(wish_a, limit_of(a, limits_, wish_a).v);
+    const double vb = std::min(wish_b, limit_of(b, limits_, wish_b).v);
+    d = std::min(d, blend_d_for_speed(a, b, limits_, std::min(va, vb)));
+    return d > SMALLEST_BLEND ? Joint{d, false} : Joint{0, true};
+}
+
+bool Planner::add_event(PathEvent event) noexcept {
+    event.after_move = last_move_;
+    event.drops = drops_;
+    return store_.events.push(event);
+}
+
+}  // namespace mw::traj

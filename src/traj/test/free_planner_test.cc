@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "testing/limit_checker.hh"
+#include "traj/free_planner.hh"
+
+namespace mw::traj {
+namespace {
+
+constexpr double T = 1e-3;
+
+TEST(FreePlanner, ReachesItsTargetExactlyInTrapezoidTime_C8) {
+    FreePlanner p;
+    p.max_velocity = 10;
+    p.max_acceleration = 100;
+    p.target = 5.3;
+    int cycles = 0;
+    while (!p.isAtRest() && cycles < 10000) {
+        p.step(T);
+        ++cycles;
+    }
+    EXPECT_EQ(p.position, 5.3);
+    EXPECT_NEAR(cycles * T, 5.3 / 10 + 10.0 / 100, 2 * T);
+}
+
+TEST(FreePlanner, RandomTargetChangesKeepTheLimits_C8) {
+    for (unsigned seed = 1; seed <= 50; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<double> unit(0, 1);
+        FreePlanner p;
+        const double vmax = std::pow(10.0, unit(random) * 3);
+        const double amax = std::pow(10.0, 1 + unit(random) * 3);
+        p.max_velocity = vmax;
+        p.max_acceleration = amax;
+        testing::LimitChecker checker({{vmax, amax}}, T);
+        for (int i = 0; i < 20000; ++i) {
+            if (unit(random) < 0.01) {
+                p.target = unit(random) < 0.2 ? 1e12 : 50 * (unit(random) - 0.5);
+            }
+            if (unit(random) < 0.005) {
+                p.stop();
+            }
+            p.step(T);
+            checker.sample(&p.position);
+        }
+        EXPECT_TRUE(checker.isWithin()) << checker.report();
+        p.target = 1.25;
+        for (int i = 0; i < 2000000 && !p.isAtRest(); ++i) {
+            p.step(T);
+        }
+        EXPECT_EQ(p.position, 1.25);
+    }
+}
+
+}  // namespace
+}  // namespace mw::traj

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Operator's commands as HAL pins: machine, e-stop, mode, home and program pins of `halui` (man page halui).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "base/limits.hh"
+#include "base/result.hh"
+#include "hal/core/user_pin.hh"
+#include "task/task.hh"
+
+namespace mw::ui {
+
+/// A client of task. Input pins act on their rising edge. Not realtime; one thread.
+class Halui {
+  public:
+    /// Makes the component "halui" with pins for `num_joints` joints.
+    Result<> create(hal::Hal &hal, int num_joints);
+    void destroy();
+
+    /// Turns edges into commands, and states into pins. Once a task cycle, after task's own step.
+    void step(task::Task &task);
+
+  private:
+    /// An input pin that means one command.
+    struct Button {
+        hal::UserPin<bool> pin;
+        task::Command command;
+        bool wasOn = false;
+    };
+
+    void add_button(const std::string &name, task::Command command, Result<> &status);
+    Result<> make_buttons();
+    Result<> make_states();
+
+    hal::Hal *hal_ = nullptr;
+    int comp_id_ = 0;
+    int num_joints_ = 0;
+    std::vector<Button> buttons_;
+    hal::UserPin<bool> machine_is_on_, estop_is_activated_;
+    hal::UserPin<bool> is_auto_, is_manual_, is_mdi_, is_joint_, is_teleop_;
+    hal::UserPin<bool> program_is_idle_, program_is_running_, program_is_paused_;
+    std::array<hal::UserPin<bool>, MAX_JOINTS> joint_is_homed_;
+};
+
+}  // namespace mw::ui

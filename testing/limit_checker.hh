@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Checks a stream of commanded positions against limits of speed and acceleration, by differences of the
+// samples. The bound is the limit * (1 + relative) plus what rounding of the positions can make of the
+// differences.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace mw::testing {
+
+struct AxisLimit {
+    double velocity = 1e300;
+    double acceleration = 1e300;
+};
+
+/// Feed one row of positions per period; `worst` and `report` tell how near or how far over the limits it
+/// came.
+class LimitChecker {
+  public:
+    LimitChecker(std::vector<AxisLimit> limits, double period_s, double relative = 1e-6)
+        : limits_(std::move(limits)), period_(period_s), relative_(relative), before_(limits_.size()),
+          last_(limits_.size()) {}
+
+    void sample(const double *positions) {
+        for (std::size_t i = 0; i < limits_.size(); ++i) {
+            const double p = positions[i];
+            const double largest = std::max({std::abs(p), std::abs(last_[i]), std::abs(before_[i])});
+            // A difference of order n adds 2^n roundings of the largest value.
+            const double ulp = std::nextafter(largest, 1e308) - largest;
+            if (count_ >= 1) {
+                const double v = (p - last_[i]) / period_;
+                note(i, 'v', std::abs(v), limits_[i].velocity, 2.0 * ulp / period_);
+            }
+            if (count_ >= 2) {
+                const double a = (p - 2.0 * last_[i] + before_[i]) / (period_ * period_);
+                note(i, 'a', std::abs(a), limits_[i].acceleration, 4.0 * ulp / (period_ * period_));
+            }
+            before_[i] = last_[i];
+            last_[i] = p;
+        }
+        ++count_;
+    }
+
+    /// After a jump that is allowed (a new position taken from feedback).
+    void restart() { count_ = 0; }
+
+    bool isWithin() const { return report_.empty(); }
+    const std::string &report() const { return report_; }
+    /// Largest |v| or |a| over its limit seen, as a ratio.
+    double worst_velocity() const { return worst_v_; }
+    double worst_acceleration() const { return worst_a_; }
+
+  private:
+    void note(std::size_t i, char what, double value, double limit, double rounding) {
+        double &worst = what == 'v' ? worst_v_ : worst_a_;
+        worst = std::max(worst, (value - rounding) / limit);
+        const bool isOver = !(value <= limit * (1.0 + relative_) + rounding);
+        if (isOver && report_.size() < 2000) {
+            char text[160];
+            std::snprintf(text, sizeof text, "sample %zu coordinate %zu: %c = %.9g, limit %.9g\n", count_, i,
+                          what, value, limit);
+            report_ += text;
+        }
+    }
+
+    std::vector<AxisLimit> limits_;
+    double period_, relative_;
+    std::vector<double> before_, last_;
+    std::size_t count_ = 0;
+    double worst_v_ = 0, worst_a_ = 0;
+    std::string report_;
+};
+
+}  // namespace mw::testing
