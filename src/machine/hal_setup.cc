@@ -117,7 +117,7 @@ Result<> HalSetup::run() {
         if (!done.has_value()) {
             // The session has told its own failures already.
             const bool isTold = parts_.sink.count_errors() > errors_before;
-            return isTold ? fail("the HAL files of '" + parts_.ini.path() + "' failed") : done;
+            return isTold ? fail("") : done;
         }
     }
     for (const std::string &text : session.left_out()) {

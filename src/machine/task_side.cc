@@ -58,7 +58,7 @@ Result<> TaskSide::run_hal_files(const MachineOptions &options) {
     if (status.has_value()) {
         parts_.reader.report_unknown(options.isStrict);
     }
-    return status.has_value() && parts_.sink.hasErrors() ? fail("the machine is not started") : status;
+    return status.has_value() && parts_.sink.hasErrors() ? fail("") : status;
 }
 
 Result<> TaskSide::join_motion() {

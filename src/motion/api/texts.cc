@@ -51,6 +51,11 @@ std::string reason_text(const Answer &answer) {
     case Reason::PROBE_ALREADY_TRIPPED: return "the probe is tripped before the probing move begins";
     case Reason::NOT_A_NUMBER: return "a value is not a finite number";
     case Reason::NOT_SUPPORTED: return "not supported by this version";
+    case Reason::JOG_INHIBITED: return "jogs are inhibited by pin motion.jog-inhibit";
+    case Reason::HOMING_INHIBITED: return "homing is inhibited by pin motion.homing-inhibit";
+    case Reason::SYNCHRONISED_JOINT:
+        return joint_name(index) + " homes together with others and cannot be jogged alone before that";
+    case Reason::COUNT: break;
     case Reason::BAD_ARC: return "the arc has no radius";
     }
     return "refused";
@@ -73,6 +78,8 @@ std::string fault_text(const Fault &fault) {
     case FaultKind::KINEMATICS_FAILED: return "the kinematics have no solution for the position" + line;
     case FaultKind::PATH_LIMIT:
         return "the path would go beyond a limit of " + joint_name(fault.index) + line;
+    case FaultKind::MISC_ERROR: return "pin motion.misc-error-" + number(fault.index) + " is TRUE";
+    case FaultKind::COUNT: break;
     case FaultKind::SPINDLE_FAULT: return "spindle " + number(fault.index) + " reports a fault";
     }
     return "unknown motion fault";
