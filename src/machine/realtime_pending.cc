@@ -4,8 +4,7 @@
 
 namespace mw::machine {
 
-Result<std::unique_ptr<Machine>> make_realtime_machine(const MachineParts &, const MachineOptions &)
-{
+Result<std::unique_ptr<Machine>> make_realtime_machine(const MachineParts &, const MachineOptions &) {
     return fail("this build has no realtime host process");
 }
 
