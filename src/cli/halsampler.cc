@@ -5,8 +5,7 @@
 #include "cli/stream_main.hh"
 #include "hal/stream_tools/programs.hh"
 
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
     mw::hal::stream_tools::SamplerOptions options;
     for (int option = 0; (option = getopt(argc, argv, "c:n:th")) != -1;) {
         long value = 0;
@@ -22,13 +21,12 @@ int main(int argc, char **argv)
                 options.channel = static_cast<int>(value);
             }
             break;
-        case 't':
-            options.isTagged = true;
-            break;
+        case 't': options.isTagged = true; break;
         default:
-            std::fprintf(stderr, "usage: halsampler [-c CHANNEL] [-n COUNT] [-t] [FILE]\n"
-                                 "  prints the samples of the component sampler, a line each\n"
-                                 "  -c  queue to read (0)     -n  samples to read, then end     -t  number them\n");
+            std::fprintf(stderr,
+                         "usage: halsampler [-c CHANNEL] [-n COUNT] [-t] [FILE]\n"
+                         "  prints the samples of the component sampler, a line each\n"
+                         "  -c  queue to read (0)     -n  samples to read, then end     -t  number them\n");
             return option == 'h' ? 0 : 1;
         }
     }

@@ -5,15 +5,15 @@
 #include "cli/stream_main.hh"
 #include "hal/stream_tools/programs.hh"
 
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
     mw::hal::stream_tools::StreamerOptions options;
     for (int option = 0; (option = getopt(argc, argv, "c:h")) != -1;) {
         long value = 0;
         if (option != 'c') {
-            std::fprintf(stderr, "usage: halstreamer [-c CHANNEL] [FILE]\n"
-                                 "  sends lines of values (from FILE or standard input) to the component streamer\n"
-                                 "  -c  queue to write (0)\n");
+            std::fprintf(stderr,
+                         "usage: halstreamer [-c CHANNEL] [FILE]\n"
+                         "  sends lines of values (from FILE or standard input) to the component streamer\n"
+                         "  -c  queue to write (0)\n");
             return option == 'h' ? 0 : 1;
         }
         if (!mw::cli::parse_count("halstreamer", optarg, value)) {

@@ -15,8 +15,8 @@ namespace mw::cli {
 inline volatile std::sig_atomic_t stop_requested = 0;
 
 /// Runs `work` attached to the user's instance; the exit status.
-inline int run_attached(const char *program, const std::function<Result<>(volatile std::sig_atomic_t &)> &work)
-{
+inline int run_attached(const char *program,
+                        const std::function<Result<>(volatile std::sig_atomic_t &)> &work) {
     // Without SA_RESTART, so that waiting for input ends too.
     struct sigaction action{};
     action.sa_handler = [](int) { stop_requested = 1; };
@@ -38,8 +38,7 @@ inline int run_attached(const char *program, const std::function<Result<>(volati
 }
 
 /// The number behind an option; false (with a message) when it is none of at least 0.
-inline bool parse_count(const char *program, const char *text, long &value)
-{
+inline bool parse_count(const char *program, const char *text, long &value) {
     const std::optional<std::int64_t> number = parse_int(text);
     if (!number || *number < 0) {
         std::fprintf(stderr, "%s: '%s' is not a number of at least 0\n", program, text);

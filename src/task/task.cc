@@ -41,6 +41,12 @@ SequencerEvents Task::make_events() {
     return events;
 }
 
+void Task::configure(const std::vector<motion::SetParameter> &parameters) {
+    for (const motion::SetParameter &parameter : parameters) {
+        last_setting_ = motion_.send(parameter);
+    }
+}
+
 Result<> Task::start() {
     motion_.update();
     if (!settings_.parameter_file.empty()) {

@@ -59,6 +59,11 @@ class Task final : public interp::World {
     Task(const Parts &parts, Settings settings);
     ~Task() override;
 
+    /// Hands settings to the motion controller; a refused one comes as a message.
+    void configure(const std::vector<motion::SetParameter> &parameters);
+    /// All settings handed over are answered.
+    bool isConfigured() const { return motion_.isAnswered(last_setting_); }
+
     /// Loads parameters and announces the start state to the interpreter. Errors name file, line and column.
     Result<> start();
     /// Writes the parameter file. Call once at a clean end.
@@ -149,7 +154,7 @@ class Task final : public interp::World {
     RequestId run_request_ = 0, state_request_ = 0, home_request_ = 0;
     State wanted_state_ = State::ESTOP;
     int homing_joint_ = -1;
-    motion::CommandId home_command_ = 0, enable_command_ = 0;
+    motion::CommandId home_command_ = 0, enable_command_ = 0, last_setting_ = 0;
     std::int64_t state_deadline_ns_ = 0;
     std::deque<Message> messages_;
     diag::Diagnostic program_error_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "hal/stream_tools/programs.hh"
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -8,8 +10,6 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
-
-#include <unistd.h>
 
 #include <fmt/format.h>
 
@@ -20,8 +20,7 @@ namespace mw::hal::stream_tools {
 
 namespace {
 
-void nap()
-{
+void nap() {
     constexpr long POLL_NS = 1000000;
     const timespec pause{0, POLL_NS};
     nanosleep(&pause, nullptr);
@@ -30,8 +29,7 @@ void nap()
 /// A component of this program with one stream attached.
 class Attachment {
   public:
-    ~Attachment()
-    {
+    ~Attachment() {
         if (isAttached_) {
             hal_stream_detach(&stream);
         }
@@ -40,8 +38,7 @@ class Attachment {
         }
     }
 
-    Result<> open(const char *program, int key, int channel)
-    {
+    Result<> open(const char *program, int key, int channel) {
         if (channel < 0 || channel >= MAX_CHANNELS) {
             return fail(fmt::format("channel {} is not 0 to {}", channel, MAX_CHANNELS - 1));
         }
@@ -72,8 +69,7 @@ class Attachment {
 };
 
 struct CloseFile {
-    void operator()(std::FILE *file) const
-    {
+    void operator()(std::FILE *file) const {
         if (file != stdout) {
             std::fclose(file);
         }
@@ -82,15 +78,14 @@ struct CloseFile {
 
 }  // namespace
 
-Result<> run_sampler(const SamplerOptions &options, volatile std::sig_atomic_t &stop)
-{
+Result<> run_sampler(const SamplerOptions &options, volatile std::sig_atomic_t &stop) {
     Attachment attachment;
     const Result<> opened = attachment.open("halsampler", SAMPLER_KEY, options.channel);
     if (!opened) {
         return opened;
     }
-    const std::unique_ptr<std::FILE, CloseFile> out(options.file.empty() ? stdout
-                                                                         : std::fopen(options.file.c_str(), "w"));
+    const std::unique_ptr<std::FILE, CloseFile> out(
+        options.file.empty() ? stdout : std::fopen(options.file.c_str(), "w"));
     if (!out) {
         return fail(fmt::format("cannot write '{}': {}", options.file, std::strerror(errno)));
     }
@@ -120,8 +115,7 @@ Result<> run_sampler(const SamplerOptions &options, volatile std::sig_atomic_t &
     return {};
 }
 
-Result<> run_streamer(const StreamerOptions &options, volatile std::sig_atomic_t &stop)
-{
+Result<> run_streamer(const StreamerOptions &options, volatile std::sig_atomic_t &stop) {
     Attachment attachment;
     const Result<> opened = attachment.open("halstreamer", STREAMER_KEY, options.channel);
     if (!opened) {

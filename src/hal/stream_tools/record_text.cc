@@ -12,47 +12,33 @@ namespace mw::hal::stream_tools {
 
 namespace {
 
-std::string format_value(hal_type_t type, const hal_stream_data_u &value)
-{
+std::string format_value(hal_type_t type, const hal_stream_data_u &value) {
     switch (type) {
-    case HAL_BIT:
-        return value.b ? "1" : "0";
-    case HAL_FLOAT:
-        return fmt::format("{:f}", value.f);
-    case HAL_S32:
-        return fmt::format("{}", value.s);
-    case HAL_U32:
-        return fmt::format("{}", value.u);
-    case HAL_S64:
-        return fmt::format("{}", value.l);
-    default:
-        return fmt::format("{}", value.k);
+    case HAL_BIT: return value.b ? "1" : "0";
+    case HAL_FLOAT: return fmt::format("{:f}", value.f);
+    case HAL_S32: return fmt::format("{}", value.s);
+    case HAL_U32: return fmt::format("{}", value.u);
+    case HAL_S64: return fmt::format("{}", value.l);
+    default: return fmt::format("{}", value.k);
     }
 }
 
-const char *expected(hal_type_t type)
-{
+const char *expected(hal_type_t type) {
     switch (type) {
-    case HAL_BIT:
-        return "0 or 1";
-    case HAL_FLOAT:
-        return "a number";
+    case HAL_BIT: return "0 or 1";
+    case HAL_FLOAT: return "a number";
     case HAL_S32:
-    case HAL_S64:
-        return "an integer";
-    default:
-        return "an integer of at least 0";
+    case HAL_S64: return "an integer";
+    default: return "an integer of at least 0";
     }
 }
 
 template <class T>
-bool fits(std::int64_t value)
-{
+bool fits(std::int64_t value) {
     return value >= std::numeric_limits<T>::min() && value <= std::numeric_limits<T>::max();
 }
 
-bool parse_value(hal_type_t type, std::string_view text, hal_stream_data_u &value)
-{
+bool parse_value(hal_type_t type, std::string_view text, hal_stream_data_u &value) {
     if (type == HAL_BIT) {
         value.b = text == "1";
         return text == "0" || text == "1";
@@ -85,8 +71,7 @@ bool parse_value(hal_type_t type, std::string_view text, hal_stream_data_u &valu
 
 }  // namespace
 
-std::string format_record(const std::vector<hal_type_t> &types, const hal_stream_data_u *values)
-{
+std::string format_record(const std::vector<hal_type_t> &types, const hal_stream_data_u *values) {
     std::string line;
     for (std::size_t i = 0; i < types.size(); ++i) {
         line += format_value(types[i], values[i]);
@@ -95,14 +80,13 @@ std::string format_record(const std::vector<hal_type_t> &types, const hal_stream
     return line;
 }
 
-bool isSkipped(std::string_view line)
-{
+bool isSkipped(std::string_view line) {
     const std::string_view text = trim(line);
     return text.empty() || text.front() == '#';
 }
 
-Result<std::vector<hal_stream_data_u>> parse_record(const std::vector<hal_type_t> &types, std::string_view line)
-{
+Result<std::vector<hal_stream_data_u>> parse_record(const std::vector<hal_type_t> &types,
+                                                    std::string_view line) {
     const std::vector<std::string> words = split_words(line);
     std::vector<hal_stream_data_u> values(types.size());
     for (std::size_t i = 0; i < types.size(); ++i) {

@@ -18,6 +18,7 @@ std::string format_record(const std::vector<hal_type_t> &types, const hal_stream
 bool isSkipped(std::string_view line);
 
 /// The fields of a line, separated by blanks; text behind the last one is ignored.
-Result<std::vector<hal_stream_data_u>> parse_record(const std::vector<hal_type_t> &types, std::string_view line);
+Result<std::vector<hal_stream_data_u>> parse_record(const std::vector<hal_type_t> &types,
+                                                    std::string_view line);
 
 }  // namespace mw::hal::stream_tools
