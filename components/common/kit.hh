@@ -168,7 +168,8 @@ int load_channels(const Request &request) noexcept {
     T *all = make<T>();
     int status = all == nullptr ? -ENOMEM : all->make_channels(comp_id, request, wanted);
     if (status == 0) {
-        Declare declare(comp_id, Name::of_module(request.module).text, 0);
+        const Name prefix = Name::of_module(request.module);
+        Declare declare(comp_id, prefix.text, 0);
         all->declare(declare);
         status = declare.status();
     }

@@ -50,7 +50,10 @@ bool FastPart::isIndex(const Phases &phases, const FastSettings &settings, int c
     const bool isGap = tooth_interval_ns_ > 0 &&
                        static_cast<double>(interval) > GAP_FACTOR * static_cast<double>(tooth_interval_ns_);
     last_tooth_ns_ = now_ns_;
-    tooth_interval_ns_ = isGap ? tooth_interval_ns_ : interval;
+    if (!isGap && hasTooth_) {
+        tooth_interval_ns_ = interval;
+    }
+    hasTooth_ = true;
     if (isGap) {
         raw_ = plus(raw_, settings.missing_teeth);
     }

@@ -68,7 +68,8 @@ class FastPart {
     std::int32_t raw_ = 0;
     std::int64_t now_ns_ = 0;
     std::int64_t last_tooth_ns_ = 0;
-    std::int64_t tooth_interval_ns_ = 0;
+    std::int64_t tooth_interval_ns_ = 0;  ///< 0: not known yet
+    bool hasTooth_ = false;
     // Written by the fast part, read by the slow one; each word is complete in itself, so relaxed order is
     // enough.
     std::atomic<std::uint64_t> latest_{0};  ///< Stamp of the last change

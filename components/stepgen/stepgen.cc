@@ -45,7 +45,7 @@ struct StepChannel {
     void declare(Declare &d) noexcept;
     void make_pulses(long period_ns) noexcept;
     void capture() noexcept;
-    void update(std::int64_t pulse_period_ns, std::int64_t period_ns) noexcept;
+    void update(std::int64_t pulse_period_ns, std::int64_t period_ns, bool isPeriodKnown) noexcept;
 
   private:
     void declare_outputs(Declare &d) noexcept;
@@ -124,14 +124,16 @@ void StepChannel::capture() noexcept {
     position_fb = pulses.position() / scale();
 }
 
-void StepChannel::update(std::int64_t pulse_period_ns, std::int64_t period_ns) noexcept {
+void StepChannel::update(std::int64_t pulse_period_ns, std::int64_t period_ns, bool isPeriodKnown) noexcept {
     Timing timing{steplen, stepspace, dirsetup, dirhold, dirdelay};
     timing.round_up_to(pulse_period_ns);
-    steplen = timing.steplen;
-    stepspace = timing.stepspace;
-    dirsetup = timing.dirsetup;
-    dirhold = timing.dirhold;
-    dirdelay = timing.dirdelay;
+    if (isPeriodKnown) {
+        steplen = timing.steplen;
+        stepspace = timing.stepspace;
+        dirsetup = timing.dirsetup;
+        dirhold = timing.dirhold;
+        dirdelay = timing.dirdelay;
+    }
     pulses.timing = timing;
     pulses.isEnabled = enable;
     Command command;
@@ -164,6 +166,11 @@ struct Stepgen : Channels<StepChannel, MAX_CHANNELS> {
     }
 
     void make_pulses(long period_ns) noexcept {
+        // A shorter period than was assumed would make the first rate too high.
+        const bool isTooFast = pulse_period_ns == 0 && period_ns < ASSUMED_PERIOD_NS;
+        for (int i = 0; i < count && isTooFast; ++i) {
+            channel[i]->pulses.rate = channel[i]->pulses.rate * period_ns / ASSUMED_PERIOD_NS;
+        }
         pulse_period_ns = period_ns;
         for (int i = 0; i < count; ++i) {
             channel[i]->make_pulses(period_ns);
@@ -174,7 +181,7 @@ struct Stepgen : Channels<StepChannel, MAX_CHANNELS> {
         const bool isKnown = pulse_period_ns > 0;
         for (int i = 0; i < count; ++i) {
             channel[i]->update(isKnown ? pulse_period_ns : ASSUMED_PERIOD_NS,
-                               isKnown ? period_ns : ASSUMED_PERIOD_NS);
+                               isKnown ? period_ns : ASSUMED_PERIOD_NS, isKnown);
         }
     }
 
