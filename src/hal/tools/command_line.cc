@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "hal/tools/command_line.hh"
 
+#include <unistd.h>
+
 #include <cstdio>
 #include <iostream>
-
-#include <unistd.h>
 
 #include <fmt/format.h>
 
@@ -13,58 +13,31 @@ namespace mw::hal::tools {
 namespace {
 
 /// Applies one option letter; false when there is none like it.
-bool apply(CommandLine &line, char option)
-{
+bool apply(CommandLine &line, char option) {
     lang::SessionOptions &session = line.session;
     switch (option) {
-    case 'f':
-        line.readsInput = true;
-        return true;
-    case 'k':
-        session.keepsGoing = true;
-        return true;
-    case 'q':
-        session.verbosity = lang::Verbosity::ERRORS;
-        return true;
-    case 'Q':
-        session.verbosity = lang::Verbosity::SILENT;
-        return true;
-    case 's':
-        session.isScript = true;
-        return true;
-    case 'v':
-        session.verbosity = lang::Verbosity::RESULTS;
-        return true;
-    case 'V':
-        session.verbosity = lang::Verbosity::EVERYTHING;
-        return true;
-    case 'e':
-        session.isEchoing = true;
-        return true;
-    case 'h':
-        line.wantsHelp = true;
-        return true;
-    case 'I':
-        line.isInteractive = true;
-        return true;
-    case 'U':
-        line.isKilling = true;
-        return true;
-    case 'T':
-        line.wantsTcl = true;
-        return true;
+    case 'f': line.readsInput = true; return true;
+    case 'k': session.keepsGoing = true; return true;
+    case 'q': session.verbosity = lang::Verbosity::ERRORS; return true;
+    case 'Q': session.verbosity = lang::Verbosity::SILENT; return true;
+    case 's': session.isScript = true; return true;
+    case 'v': session.verbosity = lang::Verbosity::RESULTS; return true;
+    case 'V': session.verbosity = lang::Verbosity::EVERYTHING; return true;
+    case 'e': session.isEchoing = true; return true;
+    case 'h': line.wantsHelp = true; return true;
+    case 'I': line.isInteractive = true; return true;
+    case 'U': line.isKilling = true; return true;
+    case 'T': line.wantsTcl = true; return true;
     case 'R':
         // The lock of the HAL segment is robust: it frees itself when its holder dies.
         return true;
-    default:
-        return false;
+    default: return false;
     }
 }
 
 }  // namespace
 
-Result<CommandLine> parse_command_line(const std::vector<std::string> &arguments)
-{
+Result<CommandLine> parse_command_line(const std::vector<std::string> &arguments) {
     CommandLine line;
     std::size_t i = 0;
     for (; i < arguments.size(); ++i) {
@@ -96,8 +69,7 @@ Result<CommandLine> parse_command_line(const std::vector<std::string> &arguments
     return line;
 }
 
-Result<> IniOption::load(const std::string &path)
-{
+Result<> IniOption::load(const std::string &path) {
     if (path.empty()) {
         return {};
     }
@@ -113,8 +85,7 @@ Result<> IniOption::load(const std::string &path)
     return {};
 }
 
-Result<> run_standard_input(lang::Session &session)
-{
+Result<> run_standard_input(lang::Session &session) {
     const bool isTerminal = isatty(STDIN_FILENO) == 1;
     Result<> first;
     std::string line;

@@ -16,13 +16,13 @@ namespace mw::hal::tools {
 
 struct CommandLine {
     lang::SessionOptions session;
-    std::string ini_path;               ///< -i
-    bool readsInput = false;            ///< -f: from a file, or standard input without a name
-    std::vector<std::string> words;     ///< what follows the options: files with -f (or halrun), else a command
-    bool wantsHelp = false;             ///< -h
-    bool isInteractive = false;         ///< halrun -I
-    bool isKilling = false;             ///< halrun -U
-    bool wantsTcl = false;              ///< halrun -T
+    std::string ini_path;            ///< -i
+    bool readsInput = false;         ///< -f: from a file, or standard input without a name
+    std::vector<std::string> words;  ///< what follows the options: files with -f (or halrun), else a command
+    bool wantsHelp = false;          ///< -h
+    bool isInteractive = false;      ///< halrun -I
+    bool isKilling = false;          ///< halrun -U
+    bool wantsTcl = false;           ///< halrun -T
 };
 
 /// Reads the options of both programs; single letters, several behind one dash.
