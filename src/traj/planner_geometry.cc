@@ -26,11 +26,8 @@ constexpr double ACCELERATION_MARGIN = 1e-6;
 
 }  // namespace
 
-Planner::Planner(PathStore &store, const PlannerSettings &settings)
-    : store_(store), settings_(settings),
-      move_memory_(std::make_unique<std::array<MovePlan, PRIMITIVE_CAPACITY>>()),
-      piece_memory_(std::make_unique<std::array<PiecePlan, PIECE_CAPACITY>>()), moves_(*move_memory_),
-      pieces_(*piece_memory_) {
+Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept : store_(store), settings_(settings)
+{
     limits_.velocity.fill(UNLIMITED);
     limits_.acceleration.fill(UNLIMITED);
 }

@@ -182,7 +182,7 @@ class Controller {
     bool isProbeTripped_ = false, wasProbeClosed_ = false;
     traj::Sequence probe_move_ = 0;  ///< whose start has cleared the tripped flag
     std::uint32_t probe_trips_ = 0;
-    geom::Pose probed_pos_;
+    geom::Pose probed_pos_, tool_offset_;
 
     std::uint64_t digital_out_ = 0;
     std::array<double, MAX_ANALOG_IO> analog_out_{};

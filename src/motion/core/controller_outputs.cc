@@ -100,6 +100,10 @@ Reason Controller::handle_outputs(const CommandBody &body, bool &isTaken) noexce
         analog_out_[at(c->index)] = c->value;
         return Reason::NONE;
     }
+    if (const auto *c = std::get_if<SetToolOffset>(&body)) {
+        tool_offset_ = c->offset;
+        return Reason::NONE;
+    }
     if (std::holds_alternative<ClearProbeFlag>(body)) {
         isProbeTripped_ = false;
         return Reason::NONE;
