@@ -26,8 +26,8 @@ constexpr double ACCELERATION_MARGIN = 1e-6;
 
 }  // namespace
 
-Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept : store_(store), settings_(settings)
-{
+Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept
+    : store_(store), settings_(settings) {
     limits_.velocity.fill(UNLIMITED);
     limits_.acceleration.fill(UNLIMITED);
 }

@@ -16,8 +16,7 @@ constexpr double HORIZON_S = 0.1;
 /// From a plan's making to its start; a planner that takes longer is late, and the plan is made again.
 constexpr double LATENCY_S = 3e-3;
 
-std::uint64_t latency_cycles(double period_s) noexcept
-{
+std::uint64_t latency_cycles(double period_s) noexcept {
     return std::max<std::uint64_t>(2, static_cast<std::uint64_t>(std::ceil(LATENCY_S / period_s)));
 }
 
@@ -27,12 +26,10 @@ bool isFinite(const geom::Pose &p) noexcept {
 
 }  // namespace
 
-PathPlanner::PathPlanner(const PathPlannerConfig &config, const kins::Kinematics &kinematics, Channels &channels,
-                         PathLink &link) noexcept
+PathPlanner::PathPlanner(const PathPlannerConfig &config, const kins::Kinematics &kinematics,
+                         Channels &channels, PathLink &link) noexcept
     : config_(config), kinematics_(kinematics), channels_(channels), link_(link),
-      planner_(link.store, {config.servo_period_s, latency_cycles(config.servo_period_s), HORIZON_S})
-{
-}
+      planner_(link.store, {config.servo_period_s, latency_cycles(config.servo_period_s), HORIZON_S}) {}
 
 void PathPlanner::update() noexcept {
     if (!link_.view.read(view_, 1000)) {

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "motion/api/texts.hh"
+#include <set>
 
 #include <gtest/gtest.h>
 
-#include <set>
+#include "motion/api/texts.hh"
 
 namespace mw::motion {
 namespace {
 
-TEST(Texts, EveryReasonAndFaultHasOneOfItsOwn_C5)
-{
+TEST(Texts, EveryReasonAndFaultHasOneOfItsOwn_C5) {
     std::set<std::string> seen;
     for (int r = 1; r < static_cast<int>(Reason::COUNT); ++r) {
         Answer a;
