@@ -76,6 +76,10 @@ class Planner {
     Sequence waiting_gate(const Snapshot &now) const noexcept;
     /// Single blocks: stops where the source block is another than `block`.
     void set_step(bool isStepping, std::uint32_t block) noexcept;
+    /// The executor stands, and only the wish for single blocks keeps it from going on.
+    bool isAtStepStop(const Snapshot &now) const noexcept;
+    /// There is something that `next_block` can tell of.
+    bool hasNext(const Snapshot &now) const noexcept;
     /// The block that comes next for an executor in state `now`.
     std::uint32_t next_block(const Snapshot &now) const noexcept;
 

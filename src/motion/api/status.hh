@@ -96,6 +96,10 @@ enum class Reason : std::uint16_t {
     NOT_A_NUMBER,
     NOT_SUPPORTED,
     BAD_ARC,
+    JOG_INHIBITED,
+    HOMING_INHIBITED,
+    SYNCHRONISED_JOINT,  ///< a joint of a negative HOME_SEQUENCE is not jogged alone
+    COUNT,
 };
 
 /// Each command gets exactly one. For path commands DONE comes when the motion is complete.
@@ -121,6 +125,8 @@ enum class FaultKind : std::uint16_t {
     KINEMATICS_FAILED,
     PATH_LIMIT,
     SPINDLE_FAULT,
+    MISC_ERROR,
+    COUNT,
 };
 struct Fault {
     FaultKind kind = FaultKind::FOLLOWING_ERROR;
