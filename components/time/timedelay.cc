@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // timedelay: `out` (bit) becomes true when `in` has been true for `on-delay` seconds, and false when it has
-// been false for `off-delay` seconds (floats, 0.5 at start). `elapsed` is how long `in` has been what it is,
-// up to the delay [s].
+// been false for `off-delay` seconds (floats, 0.5 at start). `elapsed` is the time waited
+// so far, or at last [s].
 #include "components/common/kit.hh"
 
 namespace mw::components {
@@ -24,10 +24,13 @@ struct Timedelay {
 
     void update(long period_ns) noexcept {
         const bool input = in;
-        const double limit = input ? on_delay : off_delay;
-        const double before = input == last_in ? elapsed.get() : 0.0;
-        const double waited = before + static_cast<double>(period_ns) * 1e-9;
+        const bool hasChanged = input != last_in;
         last_in = input;
+        if (input == out.get()) {
+            return;
+        }
+        const double limit = input ? on_delay : off_delay;
+        const double waited = (hasChanged ? 0.0 : elapsed.get()) + static_cast<double>(period_ns) * 1e-9;
         elapsed = waited < limit ? waited : limit;
         if (waited >= limit) {
             out = input;
