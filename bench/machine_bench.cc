@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How much faster than the clock a whole three-axis machine runs in virtual time (1 ms servo, no trace, one core).
+// How much faster than the clock a whole three-axis machine runs in virtual time (1 ms servo, no trace, one
+// core).
 #include <cstdio>
 #include <cstdlib>
 

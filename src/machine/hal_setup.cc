@@ -18,8 +18,7 @@ namespace lang = hal::lang;
 class IniValues final : public lang::IniLookup {
   public:
     explicit IniValues(config::IniReader &reader) : reader_(reader) {}
-    std::optional<std::string> find(std::string_view section, std::string_view name) const override
-    {
+    std::optional<std::string> find(std::string_view section, std::string_view name) const override {
         const config::IniEntry *entry = reader_.file().find(section, name);
         if (entry == nullptr) {
             return std::nullopt;
@@ -28,7 +27,9 @@ class IniValues final : public lang::IniLookup {
         reader_.know_if_ours(section, name);
         return entry->value;
     }
-    std::vector<std::string> names(std::string_view section) const override { return reader_.file().keys(section); }
+    std::vector<std::string> names(std::string_view section) const override {
+        return reader_.file().keys(section);
+    }
 
   private:
     config::IniReader &reader_;
@@ -41,7 +42,9 @@ class SinkOutput final : public lang::Output {
     void data(std::string_view text) override { fmt::print("{}", text); }
     void info(std::string_view) override {}
     void note(std::string_view text) override { fmt::print("{}\n", text); }
-    void warning(const Error &warning) override { sink_.warning(warning.message, warning.place, warning.hint); }
+    void warning(const Error &warning) override {
+        sink_.warning(warning.message, warning.place, warning.hint);
+    }
     void error(const Error &error) override { sink_.error(error); }
 
   private:
@@ -53,8 +56,7 @@ class RealtimePrograms final : public lang::ProgramHost {
   public:
     RealtimePrograms(lang::InProcessProgramHost &parts, std::set<std::string> names, hal::Hal &hal)
         : parts_(parts), names_(std::move(names)), system_(hal) {}
-    Result<lang::ProgramStart> start(const lang::ProgramRequest &request) override
-    {
+    Result<lang::ProgramStart> start(const lang::ProgramRequest &request) override {
         const bool isPart = !request.argv.empty() && names_.count(lang::base_name(request.argv[0])) > 0;
         return isPart ? parts_.start(request) : system_.start(request);
     }
@@ -68,8 +70,7 @@ class RealtimePrograms final : public lang::ProgramHost {
     lang::SystemProgramHost system_;
 };
 
-Result<> run_file_step(lang::Session &session, const HalStep &step)
-{
+Result<> run_file_step(lang::Session &session, const HalStep &step) {
     const std::vector<std::string> words = split_words(step.text);
     if (words.empty()) {
         return fail("[HAL]HALFILE names no file", step.place);
@@ -87,15 +88,16 @@ Result<> run_file_step(lang::Session &session, const HalStep &step)
 
 }  // namespace
 
-Result<> HalSetup::run()
-{
+Result<> HalSetup::run() {
     if (parts_.config.isTwoPass) {
-        return fail("[HAL]TWOPASS is not supported by this version", parts_.ini.find("HAL", "TWOPASS")->place);
+        return fail("[HAL]TWOPASS is not supported by this version",
+                    parts_.ini.find("HAL", "TWOPASS")->place);
     }
     const IniValues ini(parts_.reader);
     SinkOutput output(parts_.sink);
     lang::InProcessProgramHost parts;
-    parts.add_part("hal_manualtoolchange", [this](const lang::ProgramRequest &) { return on_tool_change_program(); });
+    parts.add_part("hal_manualtoolchange",
+                   [this](const lang::ProgramRequest &) { return on_tool_change_program(); });
     RealtimePrograms programs(parts, {"hal_manualtoolchange"}, host_.hal());
     const bool isVirtual = host_.hal().isVirtual();
     lang::SessionOptions session_options;
@@ -115,7 +117,7 @@ Result<> HalSetup::run()
         if (!done.has_value()) {
             // The session has told its own failures already.
             const bool isTold = parts_.sink.count_errors() > errors_before;
-            return isTold ? fail("the HAL files of '" + parts_.ini.path() + "' failed") : done;
+            return isTold ? fail("") : done;
         }
     }
     for (const std::string &text : session.left_out()) {

@@ -17,8 +17,8 @@ class HalSetup {
     /// Makes the in-process part for `loadusr hal_manualtoolchange`.
     std::function<Result<>()> on_tool_change_program;
 
-    /// The first failure ends it; its message has file, line and column of the HAL file. What was left out is told in
-    /// one warning.
+    /// The first failure ends it; its message has file, line and column of the HAL file. What was left out is
+    /// told in one warning.
     Result<> run();
 
   private:

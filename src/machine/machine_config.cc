@@ -230,6 +230,8 @@ void read_periods(IniReader &ini, MachineConfig &machine) {
     ini.know_all("EMCMOT", {"EMCMOT", "HOMEMOD", "BASE_PERIOD", "TRAJ_PERIOD", "COMM_TIMEOUT", "COMM_WAIT",
                             "SHMEM_KEY"});
     const double cycle_s = ini.real("TASK", "CYCLE_TIME", 0.001, {0.0001, 1.0});
+    // A slow task cycle must not look like one that stands still.
+    machine.task.watchdog_s = std::max(0.5, 10.0 * cycle_s);
     machine.task_period_ns = static_cast<std::int64_t>(std::llround(cycle_s * 1e9));
     ini.know_all("TASK", {"TASK", "MDI_QUEUED_COMMANDS"});
 }

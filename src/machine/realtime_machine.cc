@@ -14,8 +14,7 @@ namespace {
 constexpr std::int64_t NS_PER_S = 1000000000;
 constexpr int CONFIGURE_CYCLES = 3000;
 
-std::int64_t monotonic_ns()
-{
+std::int64_t monotonic_ns() {
     timespec now{};
     clock_gettime(CLOCK_MONOTONIC, &now);
     return now.tv_sec * NS_PER_S + now.tv_nsec;
@@ -24,17 +23,16 @@ std::int64_t monotonic_ns()
 class RealtimeMachine final : public Machine {
   public:
     explicit RealtimeMachine(const MachineParts &parts) : parts_(parts), next_ns_(monotonic_ns()) {}
-    ~RealtimeMachine() override
-    {
+    ~RealtimeMachine() override {
         side_.reset();
         if (host_ != nullptr) {
             host_->shut_down();
         }
     }
 
-    Result<> start(const MachineOptions &options)
-    {
-        auto host = hal::HostClient::start(options.instance.empty() ? hal::default_instance() : options.instance);
+    Result<> start(const MachineOptions &options) {
+        auto host =
+            hal::HostClient::start(options.instance.empty() ? hal::default_instance() : options.instance);
         if (!host.has_value()) {
             return std::unexpected(host.error());
         }
@@ -48,8 +46,7 @@ class RealtimeMachine final : public Machine {
         return started.has_value() ? configure() : started;
     }
 
-    void cycle() override
-    {
+    void cycle() override {
         next_ns_ += parts_.config.task_period_ns;
         const std::int64_t now = monotonic_ns();
         if (next_ns_ < now) {
@@ -62,8 +59,7 @@ class RealtimeMachine final : public Machine {
     }
     std::int64_t now_ns() const override { return monotonic_ns(); }
     bool isVirtual() const override { return false; }
-    RealtimeFigures realtime_figures() const override
-    {
+    RealtimeFigures realtime_figures() const override {
         RealtimeFigures figures;
         for (const hal::ThreadInfo &thread : host_->hal().threads()) {
             figures.overruns += thread.overruns;
@@ -75,8 +71,7 @@ class RealtimeMachine final : public Machine {
     hal::Hal &hal() override { return host_->hal(); }
 
   private:
-    Result<> configure()
-    {
+    Result<> configure() {
         for (int i = 0; i < CONFIGURE_CYCLES; ++i) {
             cycle();
             const auto isDone = side_->isConfigured();
@@ -100,8 +95,8 @@ class RealtimeMachine final : public Machine {
 
 }  // namespace
 
-Result<std::unique_ptr<Machine>> make_realtime_machine(const MachineParts &parts, const MachineOptions &options)
-{
+Result<std::unique_ptr<Machine>> make_realtime_machine(const MachineParts &parts,
+                                                       const MachineOptions &options) {
     auto machine = std::make_unique<RealtimeMachine>(parts);
     const auto started = machine->start(options);
     if (!started.has_value()) {

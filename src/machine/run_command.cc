@@ -114,6 +114,13 @@ Result<> run_program(const RunWords &words, LoadedConfig &loaded, Operator &pers
     return status.has_value() ? finished : status;
 }
 
+/// A failure with no message has been told already, where it happened.
+void report(diag::Sink &sink, const Error &error) {
+    if (!error.message.empty()) {
+        sink.error(error);
+    }
+}
+
 }  // namespace
 
 int command_run(const std::vector<std::string> &arguments) {
@@ -136,7 +143,7 @@ int command_run(const std::vector<std::string> &arguments) {
     auto machine =
         words->isRealtime ? make_realtime_machine(parts, options) : make_virtual_machine(parts, options);
     if (!machine.has_value()) {
-        sink.error(machine.error());
+        report(sink, machine.error());
         return 1;
     }
     Operator person(**machine, loaded->machine, sink, words->patience_s);
@@ -147,7 +154,7 @@ int command_run(const std::vector<std::string> &arguments) {
         status = (*machine)->task().save_parameters();
     }
     if (!status.has_value()) {
-        sink.error(status.error());
+        report(sink, status.error());
         return 1;
     }
     print_summary({words->program, loaded->machine, person.figures(), recorder.monitor().figures(),

@@ -12,21 +12,17 @@ constexpr const char *MOTION_ESTOP_PIN = "motion.emc-enable-in";
 }  // namespace
 
 TaskSide::TaskSide(const MachineParts &parts, hal::Host &host)
-    : parts_(parts), host_(host), parameters_(parts.ini, &host.hal())
-{
-}
+    : parts_(parts), host_(host), parameters_(parts.ini, &host.hal()) {}
 
-TaskSide::~TaskSide()
-{
+TaskSide::~TaskSide() {
     task_.reset();
     tool_change_.destroy();
     halui_.destroy();
     io_pins_.destroy();
 }
 
-Result<> TaskSide::start(const MachineOptions &options)
-{
-    auto tools = ToolFile::load(parts_.config.tool_table_file, parts_.config.isRandomToolchanger);
+Result<> TaskSide::start(const MachineOptions &options) {
+    auto tools = ToolFile::load(parts_.config.tool_table_file);
     if (!tools.has_value()) {
         return std::unexpected(tools.error());
     }
@@ -39,13 +35,13 @@ Result<> TaskSide::start(const MachineOptions &options)
     if (!status.has_value()) {
         return status;
     }
-    task_ = std::make_unique<task::Task>(task::Parts{*channels_, *this, *tools_, parameters_}, parts_.config.task);
+    task_ = std::make_unique<task::Task>(task::Parts{*channels_, *this, *tools_, parameters_},
+                                         parts_.config.task);
     task_->configure(parts_.config.parameters);
     return {};
 }
 
-Result<> TaskSide::make_pins()
-{
+Result<> TaskSide::make_pins() {
     auto status = io_pins_.create(host_.hal());
     if (status.has_value() && parts_.config.hasHalui) {
         status = halui_.create(host_.hal(), parts_.config.num_joints);
@@ -53,8 +49,7 @@ Result<> TaskSide::make_pins()
     return status;
 }
 
-Result<> TaskSide::run_hal_files(const MachineOptions &options)
-{
+Result<> TaskSide::run_hal_files(const MachineOptions &options) {
     HalSetup setup(parts_, host_, options);
     setup.on_tool_change_program = [this] {
         return tool_change_.create(host_.hal(), [this](const std::string &text) { parts_.sink.note(text); });
@@ -63,11 +58,10 @@ Result<> TaskSide::run_hal_files(const MachineOptions &options)
     if (status.has_value()) {
         parts_.reader.report_unknown(options.isStrict);
     }
-    return status.has_value() && parts_.sink.hasErrors() ? fail("the machine is not started") : status;
+    return status.has_value() && parts_.sink.hasErrors() ? fail("") : status;
 }
 
-Result<> TaskSide::join_motion()
-{
+Result<> TaskSide::join_motion() {
     const auto block = host_.hal().shared_block(motion::Channels::SHMEM_KEY, sizeof(motion::Channels));
     if (!block.has_value()) {
         return std::unexpected(block.error());
@@ -83,22 +77,21 @@ Result<> TaskSide::join_motion()
     return {};
 }
 
-Result<> TaskSide::link_estop_chain()
-{
+Result<> TaskSide::link_estop_chain() {
     hal::Hal &hal = host_.hal();
     const auto chain = hal.pin(ESTOP_PIN);
     const auto motion_pin = hal.pin(MOTION_ESTOP_PIN);
-    const bool isLinkable = chain.has_value() && !chain->signal.empty() && motion_pin.has_value() &&
-                            motion_pin->signal.empty();
+    const bool isLinkable =
+        chain.has_value() && !chain->signal.empty() && motion_pin.has_value() && motion_pin->signal.empty();
     if (chain.has_value() && chain->signal.empty()) {
-        parts_.sink.warning(std::string("pin ") + ESTOP_PIN + " is not linked: the machine stays in emergency stop",
+        parts_.sink.warning(std::string("pin ") + ESTOP_PIN +
+                                " is not linked: the machine stays in emergency stop",
                             {parts_.ini.path(), 0, 0});
     }
     return isLinkable ? hal.link(MOTION_ESTOP_PIN, chain->signal) : Result<>{};
 }
 
-Result<bool> TaskSide::isConfigured()
-{
+Result<bool> TaskSide::isConfigured() {
     if (!task_->isConfigured()) {
         return false;
     }
@@ -111,8 +104,7 @@ Result<bool> TaskSide::isConfigured()
     return true;
 }
 
-void TaskSide::step(std::int64_t now_ns)
-{
+void TaskSide::step(std::int64_t now_ns) {
     task_->step(now_ns);
     tool_change_.step(now_ns);
     if (parts_.config.hasHalui) {

@@ -17,7 +17,8 @@
 
 namespace mw::machine {
 
-/// One thread. start() leaves a machine whose threads run and whose task takes commands once configure is done.
+/// One thread. start() leaves a machine whose threads run and whose task takes commands once configure is
+/// done.
 class TaskSide final : private task::IoPort {
   public:
     TaskSide(const MachineParts &parts, hal::Host &host);

@@ -14,8 +14,7 @@ constexpr int CONFIGURE_CYCLES = 1000;
 class VirtualMachine final : public Machine {
   public:
     explicit VirtualMachine(const MachineParts &parts) : parts_(parts) {}
-    ~VirtualMachine() override
-    {
+    ~VirtualMachine() override {
         // The task side ends first: its pins live in the host's instance, and its periodic runs it.
         if (periodic_.value != 0) {
             scheduler_.remove(periodic_);
@@ -24,8 +23,7 @@ class VirtualMachine final : public Machine {
         host_.reset();
     }
 
-    Result<> start(const MachineOptions &options)
-    {
+    Result<> start(const MachineOptions &options) {
         hal::HalOptions hal_options;
         hal_options.scheduler = &scheduler_;
         auto host = hal::LocalHost::create(hal_options);
@@ -39,11 +37,9 @@ class VirtualMachine final : public Machine {
         if (!started.has_value()) {
             return started;
         }
-        const auto periodic = scheduler_.add({"task", parts_.config.task_period_ns, rtapi::Order::TASK,
-                                              [](void *self, std::int64_t) {
-                                                  static_cast<VirtualMachine *>(self)->task_cycle();
-                                              },
-                                              this});
+        const auto periodic = scheduler_.add(
+            {"task", parts_.config.task_period_ns, rtapi::Order::TASK,
+             [](void *self, std::int64_t) { static_cast<VirtualMachine *>(self)->task_cycle(); }, this});
         if (!periodic.has_value()) {
             return std::unexpected(periodic.error());
         }
@@ -51,8 +47,7 @@ class VirtualMachine final : public Machine {
         return configure();
     }
 
-    void cycle() override
-    {
+    void cycle() override {
         const std::uint64_t before = cycles_;
         while (cycles_ == before) {
             scheduler_.step();
@@ -66,14 +61,12 @@ class VirtualMachine final : public Machine {
     hal::Hal &hal() override { return host_->hal(); }
 
   private:
-    void task_cycle()
-    {
+    void task_cycle() {
         side_->step(scheduler_.now_ns());
         ++cycles_;
     }
 
-    Result<> configure()
-    {
+    Result<> configure() {
         for (int i = 0; i < CONFIGURE_CYCLES; ++i) {
             cycle();
             const auto isDone = side_->isConfigured();
@@ -99,8 +92,8 @@ class VirtualMachine final : public Machine {
 
 }  // namespace
 
-Result<std::unique_ptr<Machine>> make_virtual_machine(const MachineParts &parts, const MachineOptions &options)
-{
+Result<std::unique_ptr<Machine>> make_virtual_machine(const MachineParts &parts,
+                                                      const MachineOptions &options) {
     auto machine = std::make_unique<VirtualMachine>(parts);
     const auto started = machine->start(options);
     if (!started.has_value()) {

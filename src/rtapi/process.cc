@@ -30,7 +30,7 @@ std::uint64_t start_time_of(std::int32_t pid) {
         return 0;
     }
     ++at;
-    constexpr int FIELDS_TO_SKIP = 20;  // 3..21, and the blank before the first
+    constexpr int FIELDS_TO_SKIP = 19;  // 3..21; `at` is at the blank before each
     for (int i = 0; i < FIELDS_TO_SKIP && at != nullptr; ++i) {
         at = std::strchr(at + 1, ' ');
     }

@@ -45,6 +45,7 @@ void Task::configure(const std::vector<motion::SetParameter> &parameters) {
     for (const motion::SetParameter &parameter : parameters) {
         last_setting_ = motion_.send(parameter);
     }
+    last_setting_ = motion_.send(motion::SetWatchdog{true, settings_.watchdog_s});
 }
 
 Result<> Task::start() {

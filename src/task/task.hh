@@ -38,6 +38,8 @@ struct Settings {
     interp::Settings interpreter;
     SequencerSettings sequencer;
     ToolChangePlace tool_change_place;
+    /// Task's loop standing still for so long stops the machine.
+    double watchdog_s = 0.5;
     /// Blocks that the interpreter may read in one cycle, and queued items above which it waits.
     int blocks_per_cycle = 200;
     std::size_t read_ahead_items = 2000;

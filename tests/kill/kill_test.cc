@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The task process is killed while a program runs in realtime: motion brakes at once, along the path, within the
-// limits, and the amplifiers go off in the cycle after it has stopped (design, "Stops").
+// The task process is killed while a program runs in realtime: motion brakes at once, along the path, within
+// the limits, and the amplifiers go off in the cycle after it has stopped (design, "Stops").
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -30,36 +30,33 @@ using Clock = std::chrono::steady_clock;
 constexpr double MAX_ACCELERATION = 1500.0;  // configs/sim/mill_mm.ini, X and Y
 constexpr std::int64_t BRAKING_WITHIN_NS = 50000000;
 
-int kills()
-{
+int kills() {
     const char *text = std::getenv("MILLWRIGHT_KILLS");
     return text != nullptr ? std::atoi(text) : 2;
 }
 
 /// A square of 200 mm, over and over, at 60 mm/s.
-void write_program(const fs::path &path)
-{
+void write_program(const fs::path &path) {
     std::ofstream out(path);
-    out << "G21 G90 G17 G61\nF3600\nG0 X-100 Y-100\no1 repeat [1000]\nG1 X100\nY100\nX-100\nY-100\no1 endrepeat\nM2\n";
+    out << "G21 G90 G17 G61\nF3600\nG0 X-100 Y-100\no1 repeat [1000]\nG1 X100\nY100\nX-100\nY-100\no1 "
+           "endrepeat\nM2\n";
 }
 
-pid_t start_program(const fs::path &program, const std::string &instance, const fs::path &log)
-{
+pid_t start_program(const fs::path &program, const std::string &instance, const fs::path &log) {
     const pid_t pid = ::fork();
     if (pid == 0) {
         ::setenv("MILLWRIGHT_INSTANCE", instance.c_str(), 1);
         const int fd = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
         ::dup2(fd, 1);
         ::dup2(fd, 2);
-        ::execl(MW_BIN_DIR "/millwright", "millwright", "run", MW_SOURCE_DIR "/configs/sim/mill_mm.ini", program.c_str(),
-                "--realtime", static_cast<char *>(nullptr));
+        ::execl(MW_BIN_DIR "/millwright", "millwright", "run", MW_SOURCE_DIR "/configs/sim/mill_mm.ini",
+                program.c_str(), "--realtime", static_cast<char *>(nullptr));
         ::_exit(127);
     }
     return pid;
 }
 
-std::string content(const fs::path &path)
-{
+std::string content(const fs::path &path) {
     std::ifstream in(path);
     return {std::istreambuf_iterator<char>(in), {}};
 }
@@ -69,8 +66,7 @@ struct Observer {
     std::unique_ptr<hal::Hal> hal;
     motion::Channels *channels = nullptr;
 
-    bool join(const std::string &instance, pid_t task)
-    {
+    bool join(const std::string &instance, pid_t task) {
         const auto deadline = Clock::now() + std::chrono::seconds(30);
         while (Clock::now() < deadline && ::waitpid(task, nullptr, WNOHANG) == 0) {
             if (hal == nullptr) {
@@ -90,8 +86,7 @@ struct Observer {
     }
 
     /// Waits until the program moves at its feed.
-    bool wait_for_motion()
-    {
+    bool wait_for_motion() {
         const auto deadline = Clock::now() + std::chrono::seconds(60);
         while (Clock::now() < deadline) {
             motion::Status status;
@@ -105,8 +100,7 @@ struct Observer {
     }
 
     /// Samples until the amplifiers are off.
-    std::vector<motion::TraceSample> record_until_off()
-    {
+    std::vector<motion::TraceSample> record_until_off() {
         std::vector<motion::TraceSample> samples;
         const auto deadline = Clock::now() + std::chrono::seconds(5);
         bool isOff = false;
@@ -122,21 +116,18 @@ struct Observer {
     }
 };
 
-double speed(const motion::TraceSample &a, const motion::TraceSample &b)
-{
+double speed(const motion::TraceSample &a, const motion::TraceSample &b) {
     const double cycles = static_cast<double>(b.cycle - a.cycle);
     return geom::norm_xyz(b.carte_pos_cmd - a.carte_pos_cmd) / (cycles * 1e-3);
 }
 
 /// Distance from the square's sides.
-double off_path(const geom::Pose &p)
-{
+double off_path(const geom::Pose &p) {
     const double dx = std::fabs(std::fabs(p[0]) - 100.0), dy = std::fabs(std::fabs(p[1]) - 100.0);
     return std::min(dx, dy);
 }
 
-void check_stop(const std::vector<motion::TraceSample> &s, std::int64_t kill_ns)
-{
+void check_stop(const std::vector<motion::TraceSample> &s, std::int64_t kill_ns) {
     ASSERT_GT(s.size(), 10U);
     ASSERT_EQ(s.back().isEnabled, 0) << "the amplifiers stayed on";
     std::int64_t last_fast_ns = 0;
@@ -144,7 +135,8 @@ void check_stop(const std::vector<motion::TraceSample> &s, std::int64_t kill_ns)
     for (std::size_t i = 2; i < s.size(); ++i) {
         EXPECT_LT(off_path(s[i].carte_pos_cmd), 1e-6) << "left the path in cycle " << s[i].cycle;
         const bool isDense = s[i].cycle == s[i - 1].cycle + 1 && s[i - 1].cycle == s[i - 2].cycle + 1;
-        const geom::Pose d2 = (s[i].carte_pos_cmd - s[i - 1].carte_pos_cmd) - (s[i - 1].carte_pos_cmd - s[i - 2].carte_pos_cmd);
+        const geom::Pose d2 =
+            (s[i].carte_pos_cmd - s[i - 1].carte_pos_cmd) - (s[i - 1].carte_pos_cmd - s[i - 2].carte_pos_cmd);
         for (int axis = 0; axis < 2 && isDense; ++axis) {
             EXPECT_LE(std::fabs(d2[axis]) / 1e-6, MAX_ACCELERATION * (1 + 1e-6) + 1e-6);
         }
@@ -160,8 +152,7 @@ void check_stop(const std::vector<motion::TraceSample> &s, std::int64_t kill_ns)
     EXPECT_EQ(last_moving + 2, s.size()) << "the amplifiers go off in the cycle after the stop";
 }
 
-TEST(Kill, TheDeathOfTaskStopsTheMachineAlongThePath)
-{
+TEST(Kill, TheDeathOfTaskStopsTheMachineAlongThePath) {
     std::srand(static_cast<unsigned>(::getpid()));
     const fs::path folder = fs::temp_directory_path() / ("mw_kill_" + std::to_string(::getpid()));
     fs::create_directory(folder);

@@ -288,6 +288,16 @@ int mw_ext_pin_safe_value(const char *pin_name, const void *value) {
     });
 }
 
+int mw_ext_watch_controller(rtapi_u32 *is_gone, const rtapi_u32 *is_safe, int comp_id) {
+    return with_hal([&](Hal &hal) {
+        if (!hal.isHost() || is_gone == nullptr || is_safe == nullptr) {
+            return complain(Error{"only a realtime module can watch the controlling process"});
+        }
+        hal.impl().controller_watches.push_back({is_gone, is_safe, comp_id});
+        return 0;
+    });
+}
+
 int mw_ext_is_virtual(void) {
     const Hal *hal = current();
     return hal != nullptr && hal->isVirtual() ? 1 : 0;

@@ -278,6 +278,7 @@ void Hal::Impl::remove_comp(CompRecord &comp, bool isDead) noexcept {
             remove_param(param);
         }
     });
+    std::erase_if(controller_watches, [&](const ControllerWatch &watch) { return watch.comp_id == comp.id; });
     segment.remove(Kind::COMP, comp);
 }
 

@@ -29,6 +29,13 @@ struct PlannerRunner {
     rtapi::PeriodicId periodic;
 };
 
+/// A module that wants to know of the end of the controlling process, and says when the machine stands.
+struct ControllerWatch {
+    std::uint32_t *is_gone;
+    const std::uint32_t *is_safe;
+    int comp_id;
+};
+
 /// What runs one HAL thread in the host.
 struct ThreadRunner {
     Hal::Impl *hal = nullptr;
@@ -54,6 +61,7 @@ struct Hal::Impl {
     std::vector<std::unique_ptr<detail::ThreadRunner>> runners;    ///< under the segment's lock
     std::vector<std::unique_ptr<detail::PlannerRunner>> planners;  ///< under the segment's lock
     int last_planner_id = 0;
+    std::vector<detail::ControllerWatch> controller_watches;  ///< in the host's thread
 
     // With the lock held:
     detail::CompRecord *find_comp(int id) const noexcept;
