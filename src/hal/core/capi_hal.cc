@@ -21,11 +21,14 @@ rtapi::Log &current_log() noexcept {
     return *process_log;
 }
 
+int complain(int code, const std::string &message) noexcept {
+    current_log().print(rtapi::LogLevel::ERR, "HAL: %s", message.c_str());
+    return -code;
+}
+
 int complain(const Error &error) noexcept {
     const int code = errno > 0 ? errno : EINVAL;
-    current_log().print(rtapi::LogLevel::ERR, "HAL: %s", error.str().c_str());
-    errno = 0;
-    return -code;
+    return complain(code, error.str());
 }
 
 int status_of(const Result<> &result) noexcept {
@@ -227,8 +230,8 @@ int hal_export_functf(void (*funct)(void *, long), void *arg, int uses_fp, int r
     const int length = rtapi::format_text(name, sizeof name, fmt, args);
     va_end(args);
     if (length > static_cast<int>(NAME_LENGTH)) {
-        return complain(Error{fmt::format("function name '{}...' has {} characters, at most {} are allowed",
-                                          name, length, NAME_LENGTH)});
+        return complain(EINVAL, fmt::format("function name '{}...' has {} characters, at most {} are allowed",
+                                            name, length, NAME_LENGTH));
     }
     return hal_export_funct(name, funct, arg, uses_fp, reentrant, comp_id);
 }

@@ -22,8 +22,8 @@ struct FormattedName {
         const int length = rtapi::format_text(text, sizeof text, format, args);
         isGood = length > 0 && length <= static_cast<int>(NAME_LENGTH);
         if (!isGood) {
-            complain(Error{fmt::format("HAL name '{}...' has {} characters, 1 to {} are allowed", text,
-                                       length, NAME_LENGTH)});
+            complain(EINVAL, fmt::format("HAL name '{}...' has {} characters, 1 to {} are allowed", text,
+                                         length, NAME_LENGTH));
         }
     }
 };

@@ -237,7 +237,7 @@ int mw_ext_planner_new(const char *name, long long period_ns, void (*function)(v
     return with_hal([&](Hal &hal) {
         Guard guard(hal.impl());
         if (hal.scheduler() == nullptr) {
-            return complain(Error{"planners can only be made in the realtime process"});
+            return complain(EINVAL, "planners can only be made in the realtime process");
         }
         auto runner = std::make_unique<PlannerRunner>();
         runner->hal = &hal;
@@ -291,7 +291,7 @@ int mw_ext_pin_safe_value(const char *pin_name, const void *value) {
 int mw_ext_watch_controller(rtapi_u32 *is_gone, const rtapi_u32 *is_safe, int comp_id) {
     return with_hal([&](Hal &hal) {
         if (!hal.isHost() || is_gone == nullptr || is_safe == nullptr) {
-            return complain(Error{"only a realtime module can watch the controlling process"});
+            return complain(EINVAL, "only a realtime module can watch the controlling process");
         }
         hal.impl().controller_watches.push_back({is_gone, is_safe, comp_id});
         return 0;

@@ -66,7 +66,7 @@ int parse_types(const char *typestring, std::uint8_t *types) {
         }
         types[count] = static_cast<std::uint8_t>(type);
     }
-    return count > 0 ? count : complain(Error{"a stream needs at least one field"});
+    return count > 0 ? count : complain(EINVAL, "a stream needs at least one field");
 }
 
 hal_stream_fifo *open_fifo(hal_stream_t *stream, int comp, int key, std::size_t size) {
@@ -111,8 +111,7 @@ int hal_stream_create(hal_stream_t *stream, int comp, int key, unsigned depth, c
     }
     if (fifo->magic == STREAM_MAGIC && fifo->creator != comp && hal_comp_name(fifo->creator) != nullptr) {
         close_fifo(stream);
-        errno = EEXIST;
-        return complain(Error{fmt::format("there is a stream with key {} already", key)});
+        return complain(EEXIST, fmt::format("there is a stream with key {} already", key));
     }
     fifo->creator = comp;
     fifo->slots = slots;
@@ -141,15 +140,14 @@ int hal_stream_attach(hal_stream_t *stream, int comp, int key, const char *types
     }
     int status = 0;
     if (fifo->magic != STREAM_MAGIC) {
-        errno = ENOENT;
-        status = complain(Error{fmt::format("there is no stream with key {}", key)});
+        status = complain(ENOENT, fmt::format("there is no stream with key {}", key));
     } else if (typestring != nullptr) {
         std::uint8_t types[HAL_STREAM_MAX_PINS] = {};
         const int fields = parse_types(typestring, types);
         const bool isSame = fields == static_cast<int>(fifo->fields) &&
                             std::memcmp(types, fifo->types, static_cast<std::size_t>(fields)) == 0;
         status =
-            isSame ? 0 : complain(Error{fmt::format("stream {} is not of the types '{}'", key, typestring)});
+            isSame ? 0 : complain(EINVAL, fmt::format("stream {} is not of the types '{}'", key, typestring));
     }
     if (status < 0) {
         close_fifo(stream);

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/un.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -70,6 +71,7 @@ struct HostServer::Impl {
     Message take_control(const Client &client);
     void on_controller_gone();
     bool isSafeToEnd();
+    void take_safe_values();
     void drop(int fd);
     std::vector<pollfd> watched() const;
 };
@@ -238,7 +240,6 @@ void HostServer::Impl::on_controller_gone() {
     for (const auto &watch : hal.impl().controller_watches) {
         __atomic_store_n(watch.is_gone, 1U, __ATOMIC_RELEASE);
     }
-    (void)hal.reap_dead_components();
 }
 
 /// True when every module that watches says that the machine stands and is off.
@@ -248,6 +249,15 @@ bool HostServer::Impl::isSafeToEnd() {
         return __atomic_load_n(watch.is_safe, __ATOMIC_ACQUIRE) != 0;
     });
     return isSafe || !host->hal().isRunning() || host->now_ns() > gone_ns + LONGEST_BRAKING_NS;
+}
+
+/// Outputs of the dead take their safe values, and the threads run on for long enough to hand them to the
+/// hardware. Not before the machine stands: an enable chain through the dead process would cut the braking
+/// short.
+void HostServer::Impl::take_safe_values() {
+    (void)host->hal().reap_dead_components();
+    const timespec some_periods{0, 20'000'000};
+    ::nanosleep(&some_periods, nullptr);
 }
 
 void HostServer::Impl::drop(int fd) {
@@ -306,10 +316,13 @@ void HostServer::run() {
             break;
         }
         if (isBraking && here.isSafeToEnd()) {
+            here.take_safe_values();
             break;
         }
-        if (ready <= 0) {
+        if (ready <= 0 && !isBraking) {
             (void)here.host->hal().reap_dead_components();
+        }
+        if (ready <= 0) {
             continue;
         }
         // The controlling process first: its end is the most urgent.

@@ -9,8 +9,11 @@
 
 namespace mw::hal::detail {
 
-/// Logs the error; the negated errno that Hal left (EINVAL if none).
+/// Logs an error of Hal; the negated errno that Hal left.
 int complain(const Error &error) noexcept;
+
+/// Logs the message; the negated code.
+int complain(int code, const std::string &message) noexcept;
 
 /// 0, or complains.
 int status_of(const Result<> &result) noexcept;
@@ -23,7 +26,7 @@ template <class Work>
 int with_hal(Work work) {
     Hal *hal = current();
     if (hal == nullptr) {
-        return complain(Error{"this process has joined no HAL instance: call hal_init first"});
+        return complain(EINVAL, "this process has joined no HAL instance: call hal_init first");
     }
     return work(*hal);
 }
