@@ -41,6 +41,9 @@ Result<> Interpreter::save_parameters(const std::string &path) const {
 Result<> Interpreter::begin() {
     detail::Executor &executor = impl_->executor;
     executor.state.units = impl_->settings.initial_units.value_or(executor.world().machine_units());
+    if (Result<> loaded = executor.load_remaps(); !loaded) {
+        return loaded;
+    }
     executor.canon.enter_block(nullptr, 0, 0, false, 0);
     executor.announce();
     executor.synch();
@@ -96,6 +99,10 @@ const std::string &Interpreter::file() const {
 
 int Interpreter::call_level() const {
     return impl_->flow.call_level();
+}
+
+bool Interpreter::isAtFileEnd() const {
+    return impl_->flow.isAtFileEnd();
 }
 
 double Interpreter::parameter(int number) const {

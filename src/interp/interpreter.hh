@@ -19,13 +19,16 @@ namespace mw::interp {
 
 struct Settings {
     std::vector<std::string>
-        subroutine_path;       ///< [RS274NGC]SUBROUTINE_PATH and [DISPLAY]PROGRAM_PREFIX, in order
-    std::string startup_code;  ///< [RS274NGC]RS274NGC_STARTUP_CODE
+        subroutine_path;  ///< [RS274NGC]SUBROUTINE_PATH and [DISPLAY]PROGRAM_PREFIX, in order
+    std::vector<std::string> user_m_path;  ///< [RS274NGC]USER_M_PATH and PROGRAM_PREFIX: where M100..M199 are
+    std::string startup_code;              ///< [RS274NGC]RS274NGC_STARTUP_CODE
     bool isG92PersistenceDisabled = false;
     bool isFanucSubDisabled = false;
     double center_arc_radius_tolerance_mm = 0.00127;
     double center_arc_radius_tolerance_inch = 0.00005;
     bool isLathe = false;
+    bool isTask = false;                ///< #<_task>: a machine runs the program
+    bool isArgumentCountNamed = false;  ///< [RS274NGC]OWORD_NARGS: #<n_args> in subroutines
     double orient_offset_deg = 0;
     double parameter_g73_peck_clearance_mm = 0.254, parameter_g83_peck_clearance_mm = 0.254;
     std::vector<std::string> remaps;  ///< [RS274NGC]REMAP lines, as written
@@ -85,6 +88,8 @@ class Interpreter {
     int line() const;  ///< of the block last read, in file()
     const std::string &file() const;
     int call_level() const;
+    /// No line of the open file is left.
+    bool isAtFileEnd() const;
     double parameter(int number) const;
 
   private:

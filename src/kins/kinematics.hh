@@ -42,6 +42,9 @@ class Kinematics {
     /// Not null when each joint is one axis: limits then fold together without any Jacobian.
     virtual const IdentityMap *identity() const noexcept { return nullptr; }
 
+    /// False when calls share hidden state, so that only the servo thread may make them.
+    virtual bool isShareable() const noexcept { return true; }
+
   protected:
     ~Kinematics() = default;
 };

@@ -47,7 +47,7 @@ Result<> ToolFile::set_entry(int index, const interp::ToolEntry &entry) {
         return fail("the tool table has no entry " + std::to_string(index));
     }
     table_.set_entry(index, entry);
-    return index == 0 || path_.empty() ? Result<>{} : write_file_atomically(path_, table_.format());
+    return index == 0 || path_.empty() ? Result<>{} : table_.save(path_);
 }
 
 }  // namespace mw::machine

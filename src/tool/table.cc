@@ -1,184 +1,244 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "tool/table.hh"
 
+#include <cctype>
 #include <cmath>
-#include <optional>
 
+#include <fmt/format.h>
+
+#include "base/atomic_file.hh"
 #include "base/text.hh"
 
 namespace mw::tool {
 namespace {
 
-constexpr int MAX_TOOL_NUMBER = 99999;
-constexpr int MAX_POCKET = 1000;
+constexpr int MAX_NUMBER = 99999999;
 
-/// Reads the words of one line.
+/// One word of a line: a letter and its number.
+struct Word {
+    char letter = ' ';
+    double value = 0;
+    int column = 0;
+};
+
 class LineParser {
   public:
     LineParser(std::string_view text, SourcePlace place) : text_(text), place_(std::move(place)) {}
 
-    Result<ToolEntry> entry() {
-        const auto semicolon = text_.find(';');
-        if (semicolon != std::string_view::npos) {
-            entry_.comment = trim(text_.substr(semicolon + 1));
-        }
-        const std::string_view words = text_.substr(0, semicolon);
-        std::size_t at = 0;
-        while (true) {
-            while (at < words.size() && (words[at] == ' ' || words[at] == '\t' || words[at] == '\r')) {
-                ++at;
-            }
-            if (at >= words.size()) {
-                break;
-            }
-            std::size_t end = words.find_first_of(" \t\r", at);
-            end = end == std::string_view::npos ? words.size() : end;
-            const auto taken = word(words.substr(at, end - at), static_cast<int>(at) + 1);
-            if (!taken.has_value()) {
-                return std::unexpected(taken.error());
-            }
-            at = end;
-        }
-        return check();
-    }
+    Result<ToolEntry> parse();
 
   private:
-    std::unexpected<Error> wrong(int column, std::string message, std::string hint = {}) const {
-        SourcePlace place = place_;
-        place.column = column;
-        return fail(std::move(message), place, std::move(hint));
-    }
-
-    Result<> word(std::string_view word, int column) {
-        const char letter = to_upper(word.substr(0, 1))[0];
-        if (seen_.find(letter) != std::string::npos) {
-            return wrong(column, std::string("word ") + letter + " is given twice in this tool");
-        }
-        seen_ += letter;
-        const auto value = parse_double(word.substr(1));
-        if (!value.has_value()) {
-            return wrong(column, "'" + std::string(word) + "' is not a letter and a number",
-                         "expected words like T1 P1 D6.0 Z40.5, and a comment after ;");
-        }
-        const int axis = geom::axis_of_letter(letter);
-        if (axis >= 0) {
-            entry_.offset[axis] = *value;
-            return {};
-        }
-        switch (letter) {
-        case 'T': return whole(*value, column, 0, MAX_TOOL_NUMBER, entry_.toolno);
-        case 'P': return whole(*value, column, 0, MAX_POCKET, entry_.pocketno);
-        case 'Q': return whole(*value, column, 0, 9, entry_.orientation);
-        case 'D': entry_.diameter = *value; return {};
-        case 'I': entry_.frontangle = *value; return {};
-        case 'J': entry_.backangle = *value; return {};
-        default: break;
-        }
-        return wrong(column, std::string("unknown word ") + letter, "expected T P D X Y Z A B C U V W I J Q");
-    }
-
-    Result<> whole(double value, int column, int lowest, int highest, int &target) const {
-        if (value != std::floor(value) || value < lowest || value > highest) {
-            return wrong(column, "expected a whole number from " + std::to_string(lowest) + " to " +
-                                     std::to_string(highest));
-        }
-        target = static_cast<int>(value);
-        return {};
-    }
-
-    Result<ToolEntry> check() const {
-        if (seen_.find('T') == std::string::npos) {
-            return wrong(1, "a tool without its number (T)");
-        }
-        if (entry_.toolno == 0) {
-            return wrong(1, "T0 means no tool and may not be in the table");
-        }
-        return entry_;
+    Result<Word> word();
+    Result<> apply(const Word &word);
+    Result<> whole(const Word &word, int lowest, int highest, int &out);
+    std::unexpected<Error> error(std::string message, int column) const {
+        return fail(std::move(message), {place_.file, place_.line, column},
+                    "a line is T<number> P<pocket> and offsets X..W, D, I, J, Q, then ;comment");
     }
 
     std::string_view text_;
     SourcePlace place_;
-    ToolEntry entry_{};
+    std::size_t at_ = 0;
+    ToolEntry entry_;
     std::string seen_;
 };
 
-void append_word(std::string &line, char letter, double value, bool isSigned) {
-    if (value != 0) {
-        line += std::string(" ") + letter + (isSigned && value > 0 ? "+" : "") + to_text(value);
+Result<Word> LineParser::word() {
+    Word out;
+    out.column = static_cast<int>(at_) + 1;
+    out.letter = static_cast<char>(std::toupper(static_cast<unsigned char>(text_[at_])));
+    if (std::string_view("TPDXYZABCUVWIJQ").find(out.letter) == std::string_view::npos) {
+        return error(fmt::format("'{}' is not a word of a tool table", text_[at_]), out.column);
     }
+    std::size_t begin = ++at_;
+    while (begin < text_.size() && (text_[begin] == ' ' || text_[begin] == '\t')) {
+        ++begin;
+    }
+    std::size_t end = begin;
+    while (end < text_.size() && (std::isdigit(static_cast<unsigned char>(text_[end])) != 0 ||
+                                  text_[end] == '.' || text_[end] == '+' || text_[end] == '-')) {
+        ++end;
+    }
+    const auto number = parse_double(text_.substr(begin, end - begin));
+    if (!number) {
+        return error(fmt::format("{} needs a number, not '{}'", out.letter, text_.substr(begin, end - begin)),
+                     static_cast<int>(begin) + 1);
+    }
+    out.value = *number;
+    at_ = end;
+    return out;
 }
 
-std::string format_entry(const ToolEntry &entry) {
-    std::string line = 'T' + std::to_string(entry.toolno) + " P" + std::to_string(entry.pocketno);
-    append_word(line, 'D', entry.diameter, true);
-    for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
-        append_word(line, geom::AXIS_LETTERS[axis], entry.offset[axis], true);
+Result<> LineParser::whole(const Word &word, int lowest, int highest, int &out) {
+    const double rounded = std::round(word.value);
+    if (rounded != word.value || rounded < lowest || rounded > highest) {
+        return error(fmt::format("{} must be a whole number from {} to {}", word.letter, lowest, highest),
+                     word.column);
     }
-    append_word(line, 'I', entry.frontangle, true);
-    append_word(line, 'J', entry.backangle, true);
-    append_word(line, 'Q', entry.orientation, false);
-    return entry.comment.empty() ? line : line + " ;" + entry.comment;
+    out = static_cast<int>(rounded);
+    return {};
+}
+
+Result<> LineParser::apply(const Word &word) {
+    if (seen_.find(word.letter) != std::string::npos) {
+        return error(fmt::format("{} stands twice in this line", word.letter), word.column);
+    }
+    seen_ += word.letter;
+    switch (word.letter) {
+    case 'T': return whole(word, 0, MAX_NUMBER, entry_.toolno);
+    case 'P': return whole(word, 0, MAX_NUMBER, entry_.pocketno);
+    case 'Q': return whole(word, 0, 9, entry_.orientation);
+    case 'D': entry_.diameter = word.value; break;
+    case 'I': entry_.frontangle = word.value; break;
+    case 'J': entry_.backangle = word.value; break;
+    default: entry_.offset[geom::axis_of_letter(word.letter)] = word.value; break;
+    }
+    return {};
+}
+
+Result<ToolEntry> LineParser::parse() {
+    while (at_ < text_.size()) {
+        const char c = text_[at_];
+        if (c == ';') {
+            entry_.comment = std::string(trim(text_.substr(at_ + 1)));
+            break;
+        }
+        if (c == ' ' || c == '\t' || c == '\r') {
+            ++at_;
+            continue;
+        }
+        const Result<Word> made = word();
+        if (!made) {
+            return std::unexpected(made.error());
+        }
+        if (const Result<> done = apply(*made); !done) {
+            return std::unexpected(done.error());
+        }
+    }
+    if (entry_.toolno < 0) {
+        return error("the line has no T word", 1);
+    }
+    if (seen_.find('P') == std::string::npos) {
+        return error(fmt::format("tool {} has no P word (its pocket)", entry_.toolno), 1);
+    }
+    return entry_;
+}
+
+bool hasTool(std::string_view line) {
+    const std::string_view content = trim(line.substr(0, line.find(';')));
+    return !content.empty();
 }
 
 }  // namespace
 
+void Table::clear_spindle() {
+    entries_[0] = ToolEntry{};
+    entries_[0].toolno = 0;
+}
+
+Result<Table> Table::load(const std::string &path) {
+    const Result<std::string> text = read_file(path);
+    if (!text) {
+        return std::unexpected(text.error());
+    }
+    return parse(*text, path);
+}
+
 Result<Table> Table::parse(std::string_view text, const std::string &path) {
     Table table;
-    int line = 0;
-    while (!text.empty()) {
-        ++line;
-        const auto end = text.find('\n');
-        const std::string_view one = text.substr(0, end);
-        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-        const std::string_view body = trim(one);
-        if (body.empty() || body[0] == ';') {
-            table.lines_.push_back({0, std::string(body)});
-            continue;
+    int number = 0;
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        Line line{std::string(text.substr(begin, end - begin)), 0, false};
+        begin = end + 1;
+        ++number;
+        if (!line.text.empty() && line.text.back() == '\r') {
+            line.text.pop_back();
         }
-        const auto entry = LineParser(one, {path, line, 1}).entry();
-        if (!entry.has_value()) {
-            return std::unexpected(entry.error());
+        if (hasTool(line.text)) {
+            const Result<ToolEntry> entry = LineParser(line.text, {path, number, 0}).parse();
+            if (!entry) {
+                return std::unexpected(entry.error());
+            }
+            if (table.index_of_tool(entry->toolno) > 0) {
+                return fail(fmt::format("tool {} is in the table twice", entry->toolno), {path, number, 1});
+            }
+            line.entry = table.count();
+            table.entries_.push_back(*entry);
         }
-        if (table.index_of_tool(entry->toolno) > 0) {
-            return fail("tool " + std::to_string(entry->toolno) + " is in the table twice", {path, line, 1});
-        }
-        table.entries_.push_back(*entry);
-        table.lines_.push_back({table.count() - 1, {}});
+        table.lines_.push_back(std::move(line));
     }
     return table;
 }
 
-std::string Table::format() const {
-    std::string text;
-    for (const TextLine &line : lines_) {
-        text += (line.index > 0 ? format_entry(entry(line.index)) : line.comment) + '\n';
-    }
-    return text;
-}
-
 int Table::index_of_tool(int toolno) const {
-    for (int i = 1; i < count(); ++i) {
-        if (entry(i).toolno == toolno) {
-            return i;
+    for (std::size_t i = 1; i < entries_.size(); ++i) {
+        if (entries_[i].toolno == toolno) {
+            return static_cast<int>(i);
         }
     }
     return -1;
 }
 
-void Table::load_spindle(int index) {
-    entries_[0] = ToolEntry{};
-    if (index > 0) {
-        entries_[0] = entry(index);
-    } else {
-        entries_[0].toolno = 0;
+int Table::index_of_pocket(int pocketno) const {
+    for (std::size_t i = 1; i < entries_.size(); ++i) {
+        if (entries_[i].pocketno == pocketno) {
+            return static_cast<int>(i);
+        }
+    }
+    return -1;
+}
+
+void Table::set_entry(int index, const ToolEntry &entry) {
+    entries_[static_cast<std::size_t>(index)] = entry;
+    for (Line &line : lines_) {
+        if (index > 0 && line.entry == index) {
+            line.isChanged = true;
+        }
     }
 }
 
-void Table::set_entry(int index, const ToolEntry &changed) {
-    entries_[static_cast<std::size_t>(index)] = changed;
-    if (index > 0 && entries_[0].toolno == changed.toolno) {
-        entries_[0] = changed;
+void Table::add(const ToolEntry &entry) {
+    lines_.push_back({{}, count(), true});
+    entries_.push_back(entry);
+}
+
+void Table::load_spindle(int index) {
+    if (index <= 0 || index >= count()) {
+        clear_spindle();
+    } else {
+        entries_[0] = entries_[static_cast<std::size_t>(index)];
     }
+}
+
+std::string Table::text() const {
+    std::string out;
+    for (const Line &line : lines_) {
+        out += line.isChanged ? format_entry(entry(line.entry)) : line.text;
+        out += '\n';
+    }
+    return out;
+}
+
+Result<> Table::save(const std::string &path) const {
+    return write_file_atomically(path, text());
+}
+
+std::string format_entry(const ToolEntry &entry) {
+    std::string out = fmt::format("T{} P{}", entry.toolno, entry.pocketno);
+    const auto add = [&out](char letter, double value) {
+        if (value != 0.0) {
+            out += fmt::format(" {}{}", letter, to_text(value));
+        }
+    };
+    for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
+        add(geom::AXIS_LETTERS[axis], entry.offset[axis]);
+    }
+    add('D', entry.diameter);
+    add('I', entry.frontangle);
+    add('J', entry.backangle);
+    add('Q', entry.orientation);
+    return entry.comment.empty() ? out : out + " ;" + entry.comment;
 }
 
 }  // namespace mw::tool

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The tool table of a machine whose tools return to their pockets (requirements G1, G2), and its file.
+// The tool table: the classic text file and what is in the spindle.
 #pragma once
 
 #include <string>
@@ -11,34 +11,46 @@
 
 namespace mw::tool {
 
-/// Entry 0 is the tool in the spindle, the others are the lines of the file in their order. One thread.
+/// Tools with fixed places (not a random changer). Index 0 is the spindle: a copy of the loaded tool's entry,
+/// or toolno 0 when there is none; 1 and on are the file's entries in its order. Not thread-safe. File: one
+/// tool per line, "T1 P1 X0 Y0 Z+0.511 A B C U V W D0.125 I J Q ;comment"; lengths in machine units.
 class Table {
   public:
-    /// Reads a table: `T1 P1 D6.0 Z+40.0 ... ;comment` a line, words in any order. Every line is kept or
-    /// refused with line and column: unknown or repeated words, bad numbers, missing or doubled tool numbers,
-    /// T0.
+    Table() : entries_(1) { clear_spindle(); }
+
+    /// Errors name file, line and column; nothing is dropped silently.
+    static Result<Table> load(const std::string &path);
     static Result<Table> parse(std::string_view text, const std::string &path);
-    /// The text of the file: comment lines in their places, words of zero left out.
-    std::string format() const;
+
+    /// Writes atomically: lines of unchanged tools and comment lines stay as they were.
+    Result<> save(const std::string &path) const;
+    std::string text() const;
 
     int count() const { return static_cast<int>(entries_.size()); }
     const ToolEntry &entry(int index) const { return entries_[static_cast<std::size_t>(index)]; }
-    /// -1 when the table has no such tool.
+    /// Index of tool `toolno`, at least 1; -1 when there is none.
     int index_of_tool(int toolno) const;
+    int index_of_pocket(int pocketno) const;
 
-    /// Copies entry `index` into the spindle; 0 empties it.
-    void load_spindle(int index);
-    /// Changes an entry; one that describes the tool in the spindle changes the spindle's copy too (G4).
+    /// Index 0 changes the spindle's copy only.
     void set_entry(int index, const ToolEntry &entry);
+    void add(const ToolEntry &entry);
+    /// The tool at `index` is in the spindle from here on; 0: none.
+    void load_spindle(int index);
 
   private:
-    struct TextLine {
-        int index = 0;        ///< entry of this line; 0: a line of comment or blank
-        std::string comment;  ///< the whole line when index is 0
+    struct Line {
+        std::string text;
+        int entry = 0;  ///< index of its tool, 0 for a line without one
+        bool isChanged = false;
     };
+    void clear_spindle();
 
-    std::vector<ToolEntry> entries_{ToolEntry{}};
-    std::vector<TextLine> lines_;
+    std::vector<ToolEntry> entries_;
+    std::vector<Line> lines_;
 };
+
+/// One line as the file has it.
+std::string format_entry(const ToolEntry &entry);
 
 }  // namespace mw::tool

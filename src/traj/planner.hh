@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 
 #include "base/limits.hh"
 #include "traj/limits.hh"
@@ -50,7 +49,7 @@ struct PlannerSettings {
 /// bits.
 class Planner {
   public:
-    Planner(PathStore &store, const PlannerSettings &settings);
+    Planner(PathStore &store, const PlannerSettings &settings) noexcept;
 
     void set_limits(const Limits &limits) noexcept { limits_ = limits; }
 
@@ -140,10 +139,8 @@ class Planner {
     PlannerSettings settings_;
     Limits limits_;
     Scales scales_;
-    std::unique_ptr<std::array<MovePlan, PRIMITIVE_CAPACITY>> move_memory_;
-    std::unique_ptr<std::array<PiecePlan, PIECE_CAPACITY>> piece_memory_;
-    std::array<MovePlan, PRIMITIVE_CAPACITY> &moves_;
-    std::array<PiecePlan, PIECE_CAPACITY> &pieces_;
+    std::array<MovePlan, PRIMITIVE_CAPACITY> moves_{};
+    std::array<PiecePlan, PIECE_CAPACITY> pieces_{};
 
     Pose end_;
     Sequence first_move_ = 1;  ///< of this path

@@ -17,6 +17,8 @@ struct ActiveCode {
 };
 
 struct BlockValues {
+    BlockValues() {}  // the arrays stay unset: this is made for every block
+
     std::uint32_t present = 0;               ///< bit per letter, G and M left out
     std::array<double, LETTER_COUNT> value;  ///< only those present
     std::array<std::uint32_t, LETTER_COUNT> column;

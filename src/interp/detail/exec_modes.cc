@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Codes that set modes, and the words F, S and T.
+// Codes that set modes of geometry and feed, and the word F.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -7,6 +7,34 @@
 #include "interp/detail/executor.hh"
 
 namespace mw::interp::detail {
+namespace {
+
+constexpr double MM_PER_INCH = 25.4;
+
+struct PlaneCode {
+    int number;
+    Plane plane;
+};
+
+constexpr PlaneCode PLANES[] = {
+    {170, Plane::XY}, {180, Plane::XZ}, {190, Plane::YZ},
+    {171, Plane::UV}, {181, Plane::UW}, {191, Plane::VW},
+};
+
+}  // namespace
+
+bool Executor::whole_word(const BlockValues &values, char name, int &out) {
+    const double value = values.at(name);
+    const double rounded = std::round(value);
+    constexpr double TOLERANCE = 1e-4;
+    if (std::fabs(value - rounded) > TOLERANCE || std::fabs(value) > 1e9) {
+        return fault.set(fmt::format("{} must be a whole number here, not {}",
+                                     static_cast<char>(std::toupper(name)), value),
+                         values.column_of(name));
+    }
+    out = static_cast<int>(rounded);
+    return true;
+}
 
 bool Executor::do_feed_word(const Code &, const BlockValues &values) {
     const double feed = values.at('f');
@@ -18,63 +46,127 @@ bool Executor::do_feed_word(const Code &, const BlockValues &values) {
     return true;
 }
 
-bool Executor::do_speed_word(const Code &, const BlockValues &) {
-    return fault.set("S is not supported yet");
-}
-
-bool Executor::do_tool_word(const Code &, const BlockValues &) {
-    return fault.set("T is not supported yet");
-}
-
 bool Executor::do_units(const Code &code, const BlockValues &) {
     const LengthUnits units = code.number == 200 ? LengthUnits::INCH : LengthUnits::MM;
     if (units != state.units) {
-        const double factor = units == LengthUnits::MM ? 25.4 : 1.0 / 25.4;
+        const double factor = units == LengthUnits::MM ? MM_PER_INCH : 1.0 / MM_PER_INCH;
         state.units = units;
         state.position = scale_lengths(state.position, factor);
         state.g5x = scale_lengths(state.g5x, factor);
         state.g92 = scale_lengths(state.g92, factor);
         state.tool_offset = scale_lengths(state.tool_offset, factor);
+        state.probed = scale_lengths(state.probed, factor);
+        state.cycle.bottom *= factor;
+        state.cycle.r *= factor;
+        state.cycle.q *= factor;
     }
     canon.use_length_units(units);
     return true;
 }
 
-bool Executor::do_end(const Code &, const BlockValues &) {
-    canon.program_end();
-    outcome = Outcome::PROGRAM_END;
+int Executor::plane_code() const {
+    for (const PlaneCode &row : PLANES) {
+        if (row.plane == state.plane) {
+            return row.number;
+        }
+    }
+    return 170;
+}
+
+bool Executor::do_plane(const Code &code, const BlockValues &) {
+    if (state.comp != CompSide::OFF && code.number != plane_code()) {
+        return fault.set("Cannot change the plane while cutter radius compensation is on");
+    }
+    for (const PlaneCode &row : PLANES) {
+        if (row.number == code.number) {
+            state.plane = row.plane;
+        }
+    }
+    canon.select_plane(state.plane);
     return true;
 }
 
-void Executor::run_comments(const BlockView &, std::string_view) {}
-
-void Executor::announce() {
-    canon.use_length_units(state.units);
-    canon.set_g5x_offset(state.g5x_index, state.g5x);
-    canon.set_g92_offset(state.g92);
-    canon.set_xy_rotation(state.rotation_deg);
-    canon.set_feed_reference_xyz();
+bool Executor::do_distance(const Code &code, const BlockValues &) {
+    const bool isIncremental = code.number == 910;
+    if (isIncremental != state.isIncremental) {
+        canon.comment(isIncremental ? "interpreter: distance mode changed to incremental"
+                                    : "interpreter: distance mode changed to absolute");
+        state.isIncremental = isIncremental;
+    }
+    return true;
 }
 
-void Executor::synch() {
-    const MachineSnapshot snapshot = world_.snapshot();
-    state.position = frame().to_program(scale_lengths(snapshot.position, machine_to_program()));
+bool Executor::do_centre_distance(const Code &code, const BlockValues &) {
+    const bool isAbsolute = code.number == 901;
+    if (isAbsolute != state.isCentreAbsolute) {
+        canon.comment(isAbsolute ? "interpreter: IJK distance mode changed to absolute"
+                                 : "interpreter: IJK distance mode changed to incremental");
+        state.isCentreAbsolute = isAbsolute;
+    }
+    return true;
 }
 
-ActiveCodes Executor::active_codes() const {
-    return {};
+bool Executor::do_diameter(const Code &code, const BlockValues &) {
+    const bool isDiameter = code.number == 70;
+    if (isDiameter != state.isDiameter) {
+        canon.comment(isDiameter ? "interpreter: Lathe diameter mode changed to diameter"
+                                 : "interpreter: Lathe diameter mode changed to radius");
+        state.isDiameter = isDiameter;
+    }
+    return true;
 }
 
-bool Executor::isBuiltInName(std::string_view) const {
-    return false;
+bool Executor::do_feed_mode(const Code &code, const BlockValues &) {
+    if (code.number == 930) {
+        canon.comment("interpreter: feed mode set to inverse time");
+        state.feed_mode = FeedMode::INVERSE_TIME;
+    } else if (code.number == 940) {
+        canon.comment("interpreter: feed mode set to units per minute");
+        state.feed_mode = FeedMode::UNITS_PER_MINUTE;
+    } else {
+        canon.comment("interpreter: feed mode set to units per revolution");
+        state.feed_mode = FeedMode::UNITS_PER_REVOLUTION;
+    }
+    canon.set_feed_mode(state.active_spindle, state.feed_mode);
+    state.feed = 0.0;
+    canon.set_feed_rate(0.0);
+    return true;
 }
 
-std::optional<double> Executor::built_in(std::string_view) const {
-    return std::nullopt;
+bool Executor::do_retract(const Code &code, const BlockValues &) {
+    state.isRetractToR = code.number == 990;
+    canon.comment(state.isRetractToR ? "interpreter: retract mode set to r_plane"
+                                     : "interpreter: retract mode set to old_z");
+    return true;
 }
 
-double Executor::built_in(int) const {
-    return 0.0;
+bool Executor::do_control(const Code &code, const BlockValues &values) {
+    if (state.comp != CompSide::OFF) {
+        return fault.set("Cannot change the path mode while cutter radius compensation is on");
+    }
+    if (code.number != 640) {
+        state.control = code.number == 610 ? MotionControl::EXACT_PATH : MotionControl::EXACT_STOP;
+        state.tolerance = 0.0;
+        canon.set_motion_control_mode(state.control, 0.0);
+        return true;
+    }
+    state.control = MotionControl::CONTINUOUS;
+    state.tolerance = values.at('p', 0.0);
+    state.naivecam = values.at('q', state.tolerance);
+    if (state.tolerance < 0.0 || state.naivecam < 0.0) {
+        return fault.set("The tolerances P and Q of G64 must not be negative",
+                         values.column_of(state.tolerance < 0.0 ? 'p' : 'q'));
+    }
+    canon.set_motion_control_mode(state.control, state.tolerance);
+    canon.set_naivecam_tolerance(state.naivecam);
+    if (values.has('r')) {
+        constexpr double LOWEST_SCALE = 0.1, HIGHEST_SCALE = 1.0;
+        const double r = values.at('r');
+        const bool isJerkLimited = r > 0.0;
+        canon.set_planner_mode(isJerkLimited ? 1 : 0,
+                               isJerkLimited ? std::fmin(std::fmax(r, LOWEST_SCALE), HIGHEST_SCALE) : 1.0);
+    }
+    return true;
 }
 
 }  // namespace mw::interp::detail

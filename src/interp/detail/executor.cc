@@ -43,15 +43,21 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
     if (!evaluate(view, values) || !apply_settings(view)) {
         return false;
     }
-    if (view.block->comment_count > 0) {
-        run_comments(view, line_text);
+    if (view.block->comment_count > 0 && !run_comments(view, line_text)) {
+        return false;
     }
     if (!choose_motion(values) || !check_words(values)) {
         return false;
     }
-    for (const ActiveCode &active : values.codes) {
-        if (active.code->handler == nullptr) {
-            continue;
+    return run_codes(values, 0);
+}
+
+/// The codes from `first` on; stops at a remapped one.
+bool Executor::run_codes(const BlockValues &values, std::size_t first) {
+    for (std::size_t i = first; i < values.codes.size(); ++i) {
+        const ActiveCode &active = values.codes[i];
+        if (active.code->remap != nullptr) {
+            return stop_at_remap(values, i);
         }
         if (!(this->*active.code->handler)(*active.code, values)) {
             if (fault.column == 0) {
@@ -83,7 +89,7 @@ bool Executor::evaluate(const BlockView &view, BlockValues &values) {
         values.value[word.letter] = value;
         values.column[word.letter] = word.column;
         if (letter_char == 'f' || letter_char == 's' || letter_char == 't') {
-            if (!insert_code(*find_word_code(letter_char), word.column, values)) {
+            if (!insert_code(*lookup(letter_char, 0), word.column, values)) {
                 return false;
             }
         }
@@ -101,10 +107,10 @@ bool Executor::add_code(char letter_char, double number, std::uint32_t column, B
         return fault.set(fmt::format("Unknown {} code used: {}{}", letter_char, letter_char, number), column);
     }
     const int whole = static_cast<int>(rounded);
-    if (letter_char == 'm' && whole > 199) {
+    const Code *code = lookup(letter_char, whole);
+    if (code == nullptr && letter_char == 'm' && whole > 199) {
         return fault.set(fmt::format("M-code greater than 199: M{}", whole), column);
     }
-    const Code *code = find_code(letter_char, whole);
     if (code == nullptr) {
         return fault.set(
             fmt::format("Unknown {} code used: {}", letter_char, fmt::format("{}{}", letter_char, number)),
@@ -150,7 +156,7 @@ bool Executor::choose_motion(BlockValues &values) {
         return fault.set("Cannot use axis values without a g code that uses them");
     }
     values.isMotionImplied = true;
-    return insert_code(*find_code('g', state.motion), 0, values);
+    return insert_code(*lookup('g', state.motion), 0, values);
 }
 
 bool Executor::check_words(const BlockValues &values) {
@@ -232,10 +238,10 @@ bool Executor::apply_settings(const BlockView &view) {
     return true;
 }
 
-void Executor::set_place(int line, int call_level, int remap_level) {
+void Executor::set_place(int line, int sequence, int call_level) {
     line_ = line;
+    sequence_ = sequence;
     call_level_ = call_level;
-    remap_level_ = remap_level;
 }
 
 void Executor::set_returned(double value, bool isReturned) {

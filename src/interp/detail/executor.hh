@@ -11,12 +11,25 @@
 #include "interp/detail/evaluator.hh"
 #include "interp/detail/frame.hh"
 #include "interp/detail/program.hh"
+#include "interp/detail/remap.hh"
 #include "interp/detail/state.hh"
 #include "interp/interpreter.hh"
 
 namespace mw::interp::detail {
 
-enum class Outcome { OK, SYNC, PROGRAM_END };
+/// Axes of the selected plane; the normal is where canned cycles move.
+struct PlaneAxes {
+    int first, second, normal;
+};
+
+/// An arc in the selected plane, program coordinates.
+struct ArcPlan {
+    Pose end;
+    double first_centre = 0, second_centre = 0;
+    int rotation = 1;  ///< as in ArcFeed
+};
+
+enum class Outcome { OK, SYNC, PROGRAM_END, CALL_FANUC, RETURN_FANUC, REMAP, RESTART };
 
 class Executor : public BuiltIns {
   public:
@@ -37,14 +50,46 @@ class Executor : public BuiltIns {
     World &world() { return world_; }
     const Settings &settings() const { return settings_; }
 
+    /// Remembers state and queue, so that rollback() can undo the block; commit() keeps what it did.
+    void begin_block();
+    void commit();
+    void rollback();
+    /// The number of queued calls that no later block can change.
+    std::size_t count_final_calls() const;
+    /// After an abort: nothing waits any more.
+    void abort_block();
+    bool run_comments(const BlockView &view, std::string_view line_text);
+
+    // exec_remap.cc
+    Result<> load_remaps();
+    const Remap *remap_reached() const { return remap_; }
+    bool check_remap_words(std::string &missing) const;
+    PendingBlock take_pending();
+    void set_remap_arguments(const Remap &remap, const BlockValues &values);
+    bool resume(const PendingBlock &pending);
+    int fanuc_label = 0, fanuc_count = 1;  ///< of the M98 that the outcome is about
+
     /// Announces the state to the canon, as at the start of a program.
     void announce();
     /// Takes positions, tools and switches from the machine.
     void synch();
     /// Line and depth for #<_line> and #<_call_level>.
-    void set_place(int line, int call_level, int remap_level);
+    void set_place(int line, int sequence, int call_level);
     void set_returned(double value, bool isReturned);
     ActiveCodes active_codes() const;
+    /// New local names and a context of its own for a subroutine; back to the caller's. pop_call() restores
+    /// the modes that M73 saved.
+    void push_call(bool isRemap);
+    bool pop_call();
+    void drop_calls();
+
+    int line() const { return line_; }
+    int call_level() const { return call_level_; }
+    int remap_level() const { return static_cast<int>(running_remaps_.size()); }
+    double returned_value() const { return returned_; }
+    bool isValueReturned() const { return isReturned_; }
+    int plane_code() const;
+    int coordinate_system_code() const;
 
     bool isBuiltInName(std::string_view name) const override;
     std::optional<double> built_in(std::string_view name) const override;
@@ -54,9 +99,44 @@ class Executor : public BuiltIns {
     bool do_feed_word(const Code &code, const BlockValues &values);
     bool do_speed_word(const Code &code, const BlockValues &values);
     bool do_tool_word(const Code &code, const BlockValues &values);
+    // exec_modes.cc
     bool do_units(const Code &code, const BlockValues &values);
-    bool do_straight(const Code &code, const BlockValues &values);
+    bool do_plane(const Code &code, const BlockValues &values);
+    bool do_distance(const Code &code, const BlockValues &values);
+    bool do_centre_distance(const Code &code, const BlockValues &values);
+    bool do_diameter(const Code &code, const BlockValues &values);
+    bool do_feed_mode(const Code &code, const BlockValues &values);
+    bool do_retract(const Code &code, const BlockValues &values);
+    bool do_control(const Code &code, const BlockValues &values);
+    // exec_spindle.cc
+    bool do_spindle_mode(const Code &code, const BlockValues &values);
+    bool do_spindle(const Code &code, const BlockValues &values);
+    bool do_orient(const Code &code, const BlockValues &values);
+    // exec_tools.cc
+    bool do_change_tool(const Code &code, const BlockValues &values);
+    bool do_tool_number(const Code &code, const BlockValues &values);
+    bool do_tool_offset(const Code &code, const BlockValues &values);
+    bool do_g10(const Code &code, const BlockValues &values);
+    // exec_offsets.cc
+    bool do_coordinates(const Code &code, const BlockValues &values);
+    bool do_g92(const Code &code, const BlockValues &values);
+    bool do_reference(const Code &code, const BlockValues &values);
+    // exec_io.cc
+    bool do_coolant(const Code &code, const BlockValues &values);
+    bool do_override(const Code &code, const BlockValues &values);
+    bool do_output(const Code &code, const BlockValues &values);
+    bool do_wait_input(const Code &code, const BlockValues &values);
+    bool do_user(const Code &code, const BlockValues &values);
+    bool do_dwell(const Code &code, const BlockValues &values);
+    bool do_stop(const Code &code, const BlockValues &values);
     bool do_end(const Code &code, const BlockValues &values);
+    bool do_fanuc(const Code &code, const BlockValues &values);
+    bool do_context(const Code &code, const BlockValues &values);
+    // exec_motion.cc
+    bool do_straight(const Code &code, const BlockValues &values);
+    bool do_arc(const Code &code, const BlockValues &values);
+    bool do_cancel_motion(const Code &code, const BlockValues &values);
+    bool do_nothing(const Code &code, const BlockValues &values);
 
   private:
     bool evaluate(const BlockView &view, BlockValues &values);
@@ -65,12 +145,61 @@ class Executor : public BuiltIns {
     bool choose_motion(BlockValues &values);
     bool check_words(const BlockValues &values);
     bool apply_settings(const BlockView &view);
-    void run_comments(const BlockView &view, std::string_view line_text);
+    bool run_codes(const BlockValues &values, std::size_t first);
+    const Code *lookup(char letter_char, int number) const;
+    bool stop_at_remap(const BlockValues &values, std::size_t index);
+    std::string substituted(std::string_view text) const;
+    std::optional<double> comment_parameter(std::string_view text, std::size_t &taken) const;
+
+    /// What M70 and M73 keep at one level of call.
+    struct Context {
+        State saved;
+        bool isValid = false;
+        bool isAutomatic = false;
+        bool isRemap = false;
+    };
+    bool run_code(char letter_char, int number, BlockValues values);
+    bool restore_context(const State &saved_modes);
+    bool restore_geometry(const State &saved);
+    bool restore_spindles(const State &saved);
+    void restore_overrides(const State &saved);
+    void synch_tool(const MachineSnapshot &snapshot);
+    void restore_modes_at_end();
+    bool spindle_of(const BlockValues &values, int &spindle);
+    bool whole_word(const BlockValues &values, char name, int &out);
+
+    ToolEntry tool_entry(int index) const;
+    void put_tool_entry(int index, const ToolEntry &entry);
+    bool find_tool(int toolno, std::uint32_t column, int &index);
+    void load_tool(int index);
+    void apply_tool_offset(const Pose &offset, int code);
+    bool set_tool_data(int l, const BlockValues &values);
+    bool set_coordinate_system(int l, const BlockValues &values);
+    void set_tool_axes(int l, const BlockValues &values, Pose &offset) const;
+
+    Pose parameter_pose(int first) const;  ///< machine units in the file, program units here
+    void set_parameter_pose(int first, const Pose &pose);
+    void change_frame(const Frame &made);
+    void send_coordinates();
+    bool set_g92(const BlockValues &values);
 
     Frame frame() const { return {state.g5x, state.g92, state.tool_offset, state.rotation_deg}; }
-    /// Lengths of the parameter file and the tool table [machine units] to program units and back.
+    /// Factor for lengths of the parameter file and the tool table [machine units] to program units and back.
     double machine_to_program() const;
     Pose target(const BlockValues &values) const;
+    bool polar_target(const BlockValues &values, Pose &end);
+    bool straight_target(const BlockValues &values, Pose &end);
+    bool check_feed(const BlockValues &values, std::string_view code);
+    void send_inverse_time(double length);
+    double straight_length(const Pose &end) const;
+    PlaneAxes plane_axes() const;
+    bool plan_arc(bool isCounterclockwise, const BlockValues &values, ArcPlan &arc);
+    bool plan_centre_arc(const BlockValues &values, ArcPlan &arc);
+    bool plan_radius_arc(double radius, ArcPlan &arc);
+    double arc_sweep(const ArcPlan &arc, double x0, double y0) const;
+    void send_arc(const ArcPlan &arc);
+    bool comp_arc(const ArcPlan &arc);
+    bool comp_straight(bool isRapid, const Pose &end);
     std::string code_name(const Code &code) const;
 
     World &world_;
@@ -79,7 +208,18 @@ class Executor : public BuiltIns {
     const Settings &settings_;
     Names &names_;
     Evaluator evaluator_;
-    int line_ = 0, call_level_ = 0, remap_level_ = 0;
+    std::map<int, ToolEntry> tool_changes_;  ///< of G10, until the owner of the table has them
+    std::map<int, ToolEntry> tool_pending_;  ///< of the block that runs
+    int line_ = 0, call_level_ = 0;
+    int sequence_ = 0;
+    std::vector<Context> contexts_{1};
+    std::vector<Remap> remaps_;
+    std::vector<const Remap *> running_remaps_;
+    const Remap *remap_ = nullptr;  ///< the one that the block has come to
+    std::optional<PendingBlock> pending_;
+    State before_;  ///< as the block found it
+    std::size_t queued_before_ = 0;
+    bool isProbing_ = false, isWaitingInput_ = false;  ///< results are due at the next synch()
     double returned_ = 0;
     bool isReturned_ = false;
 };

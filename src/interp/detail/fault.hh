@@ -11,6 +11,7 @@ struct Fault {
     std::string message;
     std::uint32_t column = 0;  ///< from 1, 0: the whole block
     std::string hint;
+    std::string block_text;  ///< shown instead of the line, for calls that stand in no line
 
     /// For `return fault.set(...)`: always false.
     bool set(std::string text, std::uint32_t where = 0, std::string advice = {}) {

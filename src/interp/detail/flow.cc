@@ -32,13 +32,26 @@ void Flow::close() {
     isFirstPercentSeen_ = false;
 }
 
-void Flow::abort() {
-    while (!calls_.empty()) {
-        program_ = calls_.back().program;
-        executor_.parameters.pop_call();
-        calls_.pop_back();
+/// Drops all calls without running what they would restore.
+void Flow::unwind() {
+    if (!calls_.empty()) {
+        program_ = calls_.front().program;
+        next_ = calls_.front().line + 1;
+        executor_.drop_calls();
+        calls_.clear();
     }
+    repeats_.clear();
+    if (isMdi_) {
+        isMdi_ = false;
+        program_ = outer_program_;
+        next_ = outer_next_;
+    }
+}
+
+void Flow::abort() {
+    unwind();
     executor_.canon.truncate(0);
+    executor_.abort_block();
 }
 
 Step Flow::step() {
@@ -46,52 +59,85 @@ Step Flow::step() {
         return Step::FILE_END;
     }
     if (next_ > program_->count_lines()) {
-        return end_of_file();
+        return end_of_lines();
     }
     return run_line();
 }
 
 Step Flow::execute(std::string_view text) {
+    if (isMdi_) {
+        unwind();
+    }
     if (executor_.canon.empty()) {
         mdi_.clear();
     }
     mdi_.push_back(std::make_unique<Program>("MDI", std::string(text), names_));
-    Program *const outer = program_;
-    const int outer_next = next_;
+    isMdi_ = true;
+    outer_program_ = program_;
+    outer_next_ = next_;
     program_ = mdi_.back().get();
     next_ = 1;
-    const Step step = program_->count_lines() == 0 ? Step::OK : run_line();
-    if (calls_.empty()) {
-        program_ = outer;
-        next_ = outer_next;
+    if (program_->count_lines() == 0) {
+        return finish_mdi();
+    }
+    const Step step = run_line();
+    if (step == Step::OK && calls_.empty() && next_ > program_->count_lines()) {
+        return finish_mdi();
     }
     return step;
 }
 
-Step Flow::end_of_file() {
+Step Flow::finish_mdi() {
+    isMdi_ = false;
+    program_ = outer_program_;
+    next_ = outer_next_;
+    return Step::FILE_END;
+}
+
+Step Flow::fail_here(std::string message) {
     executor_.fault = {};
-    executor_.fault.set("File ended with no percent sign or program end");
-    return fail_block(nullptr);
+    executor_.fault.set(std::move(message));
+    return fail_block();
+}
+
+Step Flow::end_of_lines() {
+    if (!calls_.empty()) {
+        const Call &call = calls_.back();
+        line_read_ = program_->count_lines();
+        return fail_here(
+            fmt::format("The file ends in subroutine o<{}> without its end", names_.text(call.label)));
+    }
+    if (isMdi_) {
+        return finish_mdi();
+    }
+    line_read_ = program_->count_lines();
+    return fail_here("File ended with no percent sign or program end");
+}
+
+/// The first % opens a program that begins with it; any other ends it.
+Step Flow::percent() {
+    if (program_->isPercentDelimited() && line_read_ == program_->first_content_line()) {
+        return Step::OK;
+    }
+    if (!calls_.empty()) {
+        return fail_here(fmt::format("The file ends in subroutine o<{}> without its end",
+                                     names_.text(calls_.back().label)));
+    }
+    executor_.canon.finish();
+    commit();
+    return Step::FILE_END;
 }
 
 Step Flow::run_line() {
     if (settings_.statement_budget > 0 && ++statements_ > settings_.statement_budget) {
-        executor_.fault = {};
-        executor_.fault.set("The program has run for too many statements; is there a loop without end?");
-        return fail_block(nullptr);
+        return fail_here("The program has run for too many statements; is there a loop without end?");
     }
     line_read_ = next_;
     const BlockView view = program_->block(next_);
     ++next_;
     const Block &block = *view.block;
     if (block.isPercent) {
-        if (!isFirstPercentSeen_ && program_->isPercentDelimited()) {
-            isFirstPercentSeen_ = true;
-            return Step::OK;
-        }
-        executor_.canon.finish();
-        commit();
-        return Step::FILE_END;
+        return percent();
     }
     if (block.isDeletable && executor_.world().isBlockDeleteOn()) {
         return Step::OK;
@@ -102,56 +148,64 @@ Step Flow::run_line() {
 Step Flow::run_block(const BlockView &view) {
     const Block &block = *view.block;
     executor_.fault = {};
-    executor_.set_place(line_read_, call_level(), 0);
+    error_line_ = 0;
+    const int sequence = block.isNumbered ? block.sequence : line_read_;
+    executor_.set_place(line_read_, sequence, call_level());
     if (block.error != NO_ID) {
         const SyntaxError &error = view.arena->errors[block.error];
         executor_.fault.set(error.message, error.column);
-        return fail_block(&view);
+        return fail_block();
     }
-    const State before = executor_.state;
-    const std::size_t queued = executor_.canon.size();
-    executor_.canon.enter_block(program_, line_read_, block.isNumbered ? block.sequence : line_read_,
-                                block.isNumbered, call_level());
+    executor_.canon.enter_block(program_, line_read_, sequence, block.isNumbered, call_level());
+    executor_.begin_block();
     const bool isDone =
         block.oword != NO_ID ? run_oword(view) : executor_.run(view, program_->line_text(line_read_));
-    if (!isDone) {
-        executor_.state = before;
-        executor_.canon.truncate(queued);
-        executor_.parameters.rollback();
-        return fail_block(&view);
+    return isDone ? after_block() : fail_block();
+}
+
+/// Keeps what the block did, then calls or ends what it asked for.
+Step Flow::after_block() {
+    bool isDone = true;
+    while (isDone) {
+        commit();
+        const Outcome outcome = executor_.outcome;
+        executor_.outcome = Outcome::OK;
+        switch (outcome) {
+        case Outcome::OK: return Step::OK;
+        case Outcome::SYNC: return Step::SYNC;
+        case Outcome::PROGRAM_END: unwind(); return Step::PROGRAM_END;
+        case Outcome::CALL_FANUC: isDone = call_fanuc(); break;
+        case Outcome::RETURN_FANUC: isDone = return_fanuc(); break;
+        case Outcome::REMAP: isDone = call_remap(); break;
+        case Outcome::RESTART: next_ = 1; break;
+        }
     }
-    commit();
-    switch (executor_.outcome) {
-    case Outcome::OK: break;
-    case Outcome::SYNC: return Step::SYNC;
-    case Outcome::PROGRAM_END: return Step::PROGRAM_END;
-    }
-    return Step::OK;
+    return fail_block();
 }
 
 void Flow::commit() {
-    executor_.parameters.commit();
-    executor_.canon.flush(target_);
+    executor_.commit();
+    executor_.canon.flush(target_, executor_.count_final_calls());
 }
 
-Step Flow::fail_block(const BlockView *) {
+Step Flow::fail_block() {
+    executor_.rollback();
     const Fault &fault = executor_.fault;
+    const int line = error_line_ > 0 ? error_line_ : line_read_;
     error_ = {};
     error_.what.message = fault.message;
     error_.what.hint = fault.hint;
-    error_.what.place = {file(), line_read_, static_cast<int>(fault.column)};
-    if (program_ != nullptr && line_read_ >= 1 && line_read_ <= program_->count_lines()) {
-        error_.line_text = std::string(program_->line_text(line_read_));
+    error_.what.place = {file(), line, static_cast<int>(fault.column)};
+    if (!fault.block_text.empty()) {
+        error_.line_text = fault.block_text;
+    } else if (program_ != nullptr && line >= 1 && line <= program_->count_lines()) {
+        error_.line_text = std::string(program_->line_text(line));
     }
-    error_.called_from.clear();
     for (auto call = calls_.rbegin(); call != calls_.rend(); ++call) {
         error_.called_from.push_back({call->program->path(), call->line, 0});
     }
+    unwind();
     return Step::FAILED;
-}
-
-bool Flow::run_oword(const BlockView &) {
-    return executor_.fault.set("O words are not supported yet");
 }
 
 }  // namespace mw::interp::detail

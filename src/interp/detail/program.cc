@@ -27,6 +27,7 @@ Program::Program(std::string path, std::string text, Names &names)
         const std::size_t first = content.find_first_not_of(" \t\r");
         if (first != std::string_view::npos) {
             isPercentDelimited_ = content[first] == '%';
+            first_content_line_ = line;
             break;
         }
     }

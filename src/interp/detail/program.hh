@@ -33,6 +33,7 @@ class Program {
     BlockView block(int line);
     /// A program that begins with % ends at the next one.
     bool isPercentDelimited() const { return isPercentDelimited_; }
+    int first_content_line() const { return first_content_line_; }  ///< the first that is not blank; 0: none
 
     /// The next line after (or before) `line` with an O word of the same label; 0: none.
     int next_same(int line) const;
@@ -71,6 +72,7 @@ class Program {
     std::vector<std::unique_ptr<Block>> blocks_;
     std::unordered_map<NameId, int> subs_, fanuc_;
     bool isPercentDelimited_ = false;
+    int first_content_line_ = 0;
 };
 
 }  // namespace mw::interp::detail

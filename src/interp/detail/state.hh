@@ -44,20 +44,26 @@ struct State {
     FeedMode feed_mode = FeedMode::UNITS_PER_MINUTE;
     double feed = 0;  ///< [program units/min, 1/min, program units/rev]
     MotionControl control = MotionControl::CONTINUOUS;
-    double tolerance = 0, naivecam = 0;  ///< [program units]
+    double tolerance = 0, naivecam = 0;  ///< G64 P and Q [program units]
     int active_spindle = 0;
     std::array<SpindleState, MAX_SPINDLES> spindles{};
     bool isMist = false, isFlood = false;
     bool isFeedOverride = true, isFeedHold = false, isAdaptive = false;
     int tool_offset_code = 490;
-    int selected_tool = -1;  ///< T; -1 none
+    int selected_tool = 0;    ///< the last T
+    int selected_index = -1;  ///< its place in the tool table; -1 none selected
     int tool_in_spindle = 0;
+    int tool_index = 0;        ///< its place in the tool table
+    Pose loaded_offset;        ///< of the tool in the spindle [machine units]
+    double tool_diameter = 0;  ///< [machine units]
+    double tool_frontangle = 0, tool_backangle = 0;
+    int tool_orientation = 0;
     CompSide comp = CompSide::OFF;
     int comp_code = 400;
     double comp_radius = 0;  ///< [program units]
     int comp_orientation = 0;
-    bool isCompFirst = false;  ///< no move since comp came on
     CycleWords cycle;
+    Pose probed;  ///< [program units]
 };
 
 }  // namespace mw::interp::detail

@@ -138,6 +138,10 @@ struct SetAnalogOutput {
     double value = 0;
 };
 struct ClearProbeFlag {};
+/// The tool offset in force, for the pins motion.tooloffset.L; moves nothing.
+struct SetToolOffset {
+    geom::Pose offset;
+};
 
 // --- configuration
 // ---------------------------------------------------------------------------------------------
@@ -153,7 +157,7 @@ using CommandBody =
                  Heartbeat, Pause, Resume, StepOnce, SetReverse, SetScale, SetSwitch, SetMaxVelocity,
                  JogContinuous, JogIncremental, JogAbsolute, JogStop, Home, Unhome, SetTeleopVector,
                  SpindleOn, SpindleOff, SpindleOrient, SpindleBrake, SetDigitalOutput, SetAnalogOutput,
-                 ClearProbeFlag, SetParameter>;
+                 ClearProbeFlag, SetParameter, SetToolOffset>;
 
 struct Command {
     CommandId id = 0;

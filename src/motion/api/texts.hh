@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Operator's texts for refusals and faults. Not realtime: the servo thread only sends numbers.
+// What the operator reads when a command is refused or something goes wrong. Not realtime.
 #pragma once
 
 #include <string>
@@ -8,9 +8,10 @@
 
 namespace mw::motion {
 
-/// Why a command was refused, and what to do about it.
+/// Why a command was refused, as a sentence with what to do about it. Empty for Reason::NONE.
 std::string reason_text(const Answer &answer);
-/// What went wrong by itself.
+
+/// What went wrong. Texts that existing screens look for are kept ("joint 0 on limit switch error").
 std::string fault_text(const Fault &fault);
 
 }  // namespace mw::motion

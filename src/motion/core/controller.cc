@@ -9,7 +9,12 @@ Controller::Controller(const ControllerConfig &config, const kins::Kinematics &k
                        PathLink &link) noexcept
     : config_(config), kinematics_(kinematics), channels_(channels), link_(link),
       executor_(link.store, config.period_s) {
-    homing_.set_num_joints(config.num_joints);
+    const kins::IdentityMap *map = kinematics.identity();
+    const int used = map != nullptr ? std::min(map->num_joints, config.num_joints) : config.num_joints;
+    homing_.set_num_joints(used);
+    for (int j = used; j < config.num_joints; ++j) {
+        joint(j).isActive = false;  // drives nothing until somebody activates it
+    }
     publish_limits();
 }
 

@@ -80,6 +80,7 @@ class Controller {
     Reason handle_state(const Inputs &in, const CommandBody &body, std::int16_t &index,
                         bool &isTaken) noexcept;
     Reason handle_flow(const CommandBody &body, bool &isTaken) noexcept;
+    Reason handle_spindle(const CommandBody &body, bool &isTaken) noexcept;
     Reason handle_outputs(const CommandBody &body, bool &isTaken) noexcept;
     Reason enable(const Inputs &in, std::int16_t &index) noexcept;
     Reason set_mode(Mode mode) noexcept;
@@ -93,6 +94,9 @@ class Controller {
 
     // --- controller_jog.cc
     Reason handle_jog(const Inputs &in, const CommandBody &body, std::int16_t &index, bool &isTaken) noexcept;
+    Reason handle_homing(const Inputs &in, const CommandBody &body, std::int16_t &index,
+                         bool &isTaken) noexcept;
+    Reason jog_vector(const Inputs &in, const geom::Pose &velocity, std::int16_t &index) noexcept;
     Reason check_jog(const Inputs &in, const JogTarget &target, double direction) const noexcept;
     Reason jog_to(const JogTarget &target, double position, double velocity, JogSource source) noexcept;
     void jog_range(const JogTarget &target, double &low, double &high) const noexcept;
@@ -182,7 +186,7 @@ class Controller {
     bool isProbeTripped_ = false, wasProbeClosed_ = false;
     traj::Sequence probe_move_ = 0;  ///< whose start has cleared the tripped flag
     std::uint32_t probe_trips_ = 0;
-    geom::Pose probed_pos_;
+    geom::Pose probed_pos_, tool_offset_;
 
     std::uint64_t digital_out_ = 0;
     std::array<double, MAX_ANALOG_IO> analog_out_{};

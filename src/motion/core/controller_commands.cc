@@ -42,6 +42,14 @@ Reason Controller::handle(const Inputs &in, const Command &c, std::int16_t &inde
     }
     if (!isTaken) {
         isTaken = true;
+        reason = handle_homing(in, c.body, index, isTaken);
+    }
+    if (!isTaken) {
+        isTaken = true;
+        reason = handle_spindle(c.body, isTaken);
+    }
+    if (!isTaken) {
+        isTaken = true;
         reason = handle_outputs(c.body, isTaken);
     }
     return isTaken ? reason : Reason::NOT_SUPPORTED;

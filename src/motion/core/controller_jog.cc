@@ -182,6 +182,12 @@ Reason Controller::handle_jog(const Inputs &in, const CommandBody &body, std::in
         }
         return Reason::NONE;
     }
+    isTaken = false;
+    return Reason::NONE;
+}
+
+Reason Controller::handle_homing(const Inputs &in, const CommandBody &body, std::int16_t &index,
+                                 bool &isTaken) noexcept {
     if (const auto *c = std::get_if<Home>(&body)) {
         index = static_cast<std::int16_t>(c->joint);
         return home(in, c->joint);
@@ -191,28 +197,33 @@ Reason Controller::handle_jog(const Inputs &in, const CommandBody &body, std::in
         return unhome(c->joint);
     }
     if (const auto *c = std::get_if<SetTeleopVector>(&body)) {
-        for (int i = 0; i < MAX_AXES; ++i) {
-            const JogTarget target{false, i};
-            const double v = c->velocity[i];
-            const bool isUsed = v != 0.0;
-            const Reason reason = isUsed ? check_jog(in, target, v) : Reason::NONE;
-            double low = 0;
-            double high = 0;
-            jog_range(target, low, high);
-            const Reason moved = isUsed && reason == Reason::NONE
-                                     ? jog_to(target, v > 0 ? high : low, v, JogSource::KEYBOARD)
-                                     : reason;
-            if (moved != Reason::NONE) {
-                index = static_cast<std::int16_t>(i);
-                return moved;
-            }
-            if (!isUsed && source_of(target) != JogSource::NONE) {
-                planner_of(target).stop();
-            }
-        }
-        return Reason::NONE;
+        return jog_vector(in, c->velocity, index);
     }
     isTaken = false;
+    return Reason::NONE;
+}
+
+/// Every axis at its own speed, those at 0 stop.
+Reason Controller::jog_vector(const Inputs &in, const geom::Pose &velocity, std::int16_t &index) noexcept {
+    for (int i = 0; i < MAX_AXES; ++i) {
+        const JogTarget target{false, i};
+        const double v = velocity[i];
+        const bool isUsed = v != 0.0;
+        const Reason reason = isUsed ? check_jog(in, target, v) : Reason::NONE;
+        double low = 0;
+        double high = 0;
+        jog_range(target, low, high);
+        const Reason moved = isUsed && reason == Reason::NONE
+                                 ? jog_to(target, v > 0 ? high : low, v, JogSource::KEYBOARD)
+                                 : reason;
+        if (moved != Reason::NONE) {
+            index = static_cast<std::int16_t>(i);
+            return moved;
+        }
+        if (!isUsed && source_of(target) != JogSource::NONE) {
+            planner_of(target).stop();
+        }
+    }
     return Reason::NONE;
 }
 

@@ -14,7 +14,7 @@ constexpr int ORIENT_NONE = 0, ORIENT_IN_PROGRESS = 1, ORIENT_COMPLETE = 2, ORIE
 
 }  // namespace
 
-Reason Controller::handle_outputs(const CommandBody &body, bool &isTaken) noexcept {
+Reason Controller::handle_spindle(const CommandBody &body, bool &isTaken) noexcept {
     const auto isSpindle = [this](int n) { return n >= 0 && n < config_.num_spindles; };
     if (const auto *c = std::get_if<SpindleOn>(&body)) {
         if (!isSpindle(c->spindle)) {
@@ -82,6 +82,11 @@ Reason Controller::handle_outputs(const CommandBody &body, bool &isTaken) noexce
         }
         return Reason::NONE;
     }
+    isTaken = false;
+    return Reason::NONE;
+}
+
+Reason Controller::handle_outputs(const CommandBody &body, bool &isTaken) noexcept {
     if (const auto *c = std::get_if<SetDigitalOutput>(&body)) {
         if (c->index < 0 || c->index >= config_.num_dio) {
             return Reason::NO_SUCH_OUTPUT;
@@ -98,6 +103,10 @@ Reason Controller::handle_outputs(const CommandBody &body, bool &isTaken) noexce
             return Reason::NOT_A_NUMBER;
         }
         analog_out_[at(c->index)] = c->value;
+        return Reason::NONE;
+    }
+    if (const auto *c = std::get_if<SetToolOffset>(&body)) {
+        tool_offset_ = c->offset;
         return Reason::NONE;
     }
     if (std::holds_alternative<ClearProbeFlag>(body)) {

@@ -41,6 +41,7 @@ void Controller::fill(const Inputs &in, Outputs &out) noexcept {
     fill_axes(out);
     fill_spindles(in, out);
     out.isCoordError = isCoordError_;
+    out.tool_offset = tool_offset_;
 }
 
 /// The path: what is being executed, what is left of it.

@@ -82,6 +82,7 @@ struct Outputs {
     std::array<JointOutputs, MAX_JOINTS> joint{};
     std::array<AxisOutputs, MAX_AXES> axis{};
     std::array<SpindleOutputs, MAX_SPINDLES> spindle{};
+    geom::Pose tool_offset;
     bool isJogging = false;
     bool isCoordError = false, isOnSoftLimit = false;
 };

@@ -12,6 +12,14 @@ namespace {
 constexpr int STARVING_UPDATES = 3;
 constexpr double SOFT_LIMIT_ROUNDING = 1e-6;
 
+constexpr double HORIZON_S = 0.1;
+/// From a plan's making to its start; a planner that takes longer is late, and the plan is made again.
+constexpr double LATENCY_S = 3e-3;
+
+std::uint64_t latency_cycles(double period_s) noexcept {
+    return std::max<std::uint64_t>(2, static_cast<std::uint64_t>(std::ceil(LATENCY_S / period_s)));
+}
+
 bool isFinite(const geom::Pose &p) noexcept {
     return std::all_of(p.c.begin(), p.c.end(), [](double x) { return std::isfinite(x); });
 }
@@ -19,13 +27,9 @@ bool isFinite(const geom::Pose &p) noexcept {
 }  // namespace
 
 PathPlanner::PathPlanner(const PathPlannerConfig &config, const kins::Kinematics &kinematics,
-                         Channels &channels, PathLink &link)
+                         Channels &channels, PathLink &link) noexcept
     : config_(config), kinematics_(kinematics), channels_(channels), link_(link),
-      planner_(link.store, {config.servo_period_s,
-                            std::max<std::uint64_t>(
-                                2, static_cast<std::uint64_t>(std::ceil(3e-3 / config.servo_period_s))),
-                            0.1}),
-      pending_(std::make_unique<std::array<Pending, PENDING_CAPACITY>>()) {}
+      planner_(link.store, {config.servo_period_s, latency_cycles(config.servo_period_s), HORIZON_S}) {}
 
 void PathPlanner::update() noexcept {
     if (!link_.view.read(view_, 1000)) {
@@ -260,7 +264,8 @@ Reason PathPlanner::check_reach(const traj::Primitive &p) noexcept {
         }
     }
     refused_index_ = -1;
-    return kinematics_.identity() != nullptr ? Reason::NONE : check_joints(p);
+    const bool isChecked = kinematics_.identity() == nullptr && kinematics_.isShareable();
+    return isChecked ? check_joints(p) : Reason::NONE;
 }
 
 Reason PathPlanner::check_joints(const traj::Primitive &p) noexcept {

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 
 #include "kins/kinematics.hh"
 #include "motion/api/channels.hh"
@@ -26,7 +25,7 @@ struct PathPlannerConfig {
 class PathPlanner {
   public:
     PathPlanner(const PathPlannerConfig &config, const kins::Kinematics &kinematics, Channels &channels,
-                PathLink &link);
+                PathLink &link) noexcept;
 
     /// One planner period. [planner thread]
     void update() noexcept;
@@ -66,14 +65,14 @@ class PathPlanner {
     void answer(CommandId id, AnswerKind kind, Reason reason) noexcept;
 
     std::uint32_t pending_count() const noexcept { return pending_tail_ - pending_head_; }
-    Pending &pending(std::uint32_t n) noexcept { return (*pending_)[n % PENDING_CAPACITY]; }
+    Pending &pending(std::uint32_t n) noexcept { return pending_[n % PENDING_CAPACITY]; }
 
     PathPlannerConfig config_;
     const kins::Kinematics &kinematics_;
     Channels &channels_;
     PathLink &link_;
     traj::Planner planner_;
-    std::unique_ptr<std::array<Pending, PENDING_CAPACITY>> pending_;
+    std::array<Pending, PENDING_CAPACITY> pending_{};
     std::uint32_t pending_head_ = 0, pending_tail_ = 0;
 
     PathView view_;

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// rs274: interprets a program without a machine and prints its canon calls.
+#include <unistd.h>
+
+#include <clocale>
+#include <cstdio>
+#include <cstring>
+
+#include "interp/standalone_run.hh"
+
+namespace {
+
+constexpr char USAGE[] = "Usage: rs274 [-t tool.tbl] [-v parameters.var] [-i machine.ini] [-n 0|1|2] [-b] "
+                         "[-s] [-g] [-T] [-l level]\n"
+                         "             [input file [output file]]\n\n"
+                         "    -t: the tool table file (default: three built-in tools)\n"
+                         "    -v: the parameter file, read at the start and written at the end\n"
+                         "    -i: the INI file (default: none)\n"
+                         "    -n: after an error: 0 continue, 1 read MDI lines, 2 stop (default)\n"
+                         "    -b: switch block delete on (lines with / are skipped)\n"
+                         "    -s: show place and callers of errors\n"
+                         "    -g: go: batch mode\n"
+                         "    -T, -l level: accepted for compatibility\n"
+                         "    -p interp.so: another interpreter (not supported by this build yet)\n";
+
+int usage(const char *message, int status) {
+    std::fprintf(status == 0 ? stdout : stderr, "%s%s%s", message, *message != '\0' ? "\n" : "", USAGE);
+    return status;
+}
+
+}  // namespace
+
+int main(int argc, char **argv) {
+    using Options = mw::interp::StandaloneOptions;
+    Options options;
+    if (argc > 1 && std::strcmp(argv[1], "--help") == 0) {
+        return usage("", 0);
+    }
+    int option = 0;
+    while ((option = getopt(argc, argv, "p:t:v:n:bsgi:Tl:h")) != -1) {
+        switch (option) {
+        case 'p': return usage("rs274: -p: other interpreters are not supported by this build yet", 1);
+        case 't': options.tool_file = optarg; break;
+        case 'v': options.var_file = optarg; break;
+        case 'i': options.ini_file = optarg; break;
+        case 'n':
+            if (std::strlen(optarg) != 1 || optarg[0] < '0' || optarg[0] > '2') {
+                return usage("rs274: -n needs 0, 1 or 2", 2);
+            }
+            options.on_error = static_cast<Options::OnError>(optarg[0] - '0');
+            break;
+        case 'b': options.isBlockDelete = !options.isBlockDelete; break;
+        case 's': options.isStackShown = !options.isStackShown; break;
+        case 'g': options.isBatch = !options.isBatch; break;
+        case 'T':
+        case 'l': break;
+        case 'h': return usage("", 0);
+        default: return usage("", 2);
+        }
+    }
+    if (optind < argc) {
+        options.input = argv[optind++];
+    }
+    if (optind < argc) {
+        options.output = argv[optind++];
+    }
+    if (optind < argc) {
+        return usage("rs274: too many files", 2);
+    }
+    return mw::interp::run_standalone(options);
+}

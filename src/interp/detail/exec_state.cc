@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Between blocks: start, commit, synchronisation with the machine, and the codes in force.
+#include "interp/detail/executor.hh"
+
+namespace mw::interp::detail {
+
+void Executor::announce() {
+    state.g5x_index = static_cast<int>(parameters.get(P_COORDINATE_SYSTEM));
+    const int first = P_G5X + 20 * (state.g5x_index - 1);
+    state.g5x = parameter_pose(first);
+    state.rotation_deg = parameters.get(first + 9);
+    if (parameters.get(P_G92_APPLIED) != 0.0 && settings_.isG92PersistenceDisabled) {
+        parameters.set(P_G92_APPLIED, 0.0);
+        set_parameter_pose(P_G92, {});
+    }
+    state.g92 = parameters.get(P_G92_APPLIED) != 0.0 ? parameter_pose(P_G92) : Pose{};
+    canon.use_length_units(state.units);
+    canon.set_g5x_offset(state.g5x_index, state.g5x);
+    canon.set_g92_offset(state.g92);
+    canon.set_xy_rotation(state.rotation_deg);
+    canon.set_feed_reference_xyz();
+}
+
+void Executor::begin_block() {
+    before_ = state;
+    queued_before_ = canon.size();
+    outcome = Outcome::OK;
+}
+
+void Executor::commit() {
+    parameters.commit();
+    if (!tool_pending_.empty()) {
+        for (auto &[index, entry] : tool_pending_) {
+            tool_changes_[index] = entry;
+        }
+        tool_pending_.clear();
+    }
+    before_ = state;
+}
+
+void Executor::rollback() {
+    state = before_;
+    parameters.rollback();
+    tool_pending_.clear();
+    pending_.reset();
+    canon.truncate(queued_before_);
+    outcome = Outcome::OK;
+}
+
+std::size_t Executor::count_final_calls() const {
+    return canon.size();
+}
+
+void Executor::abort_block() {
+    pending_.reset();
+    outcome = Outcome::OK;
+    isProbing_ = isWaitingInput_ = false;
+    before_ = state;
+    queued_before_ = 0;
+}
+
+void Executor::synch() {
+    const MachineSnapshot snapshot = world_.snapshot();
+    tool_changes_.clear();
+    state.position = frame().to_program(scale_lengths(snapshot.position, machine_to_program()));
+    state.probed = frame().to_program(scale_lengths(snapshot.probed_position, machine_to_program()));
+    if (isProbing_) {
+        for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
+            parameters.set(P_PROBE_RESULT + axis, state.probed[axis]);
+        }
+        parameters.set(P_PROBE_SUCCESS, snapshot.isProbeTripped ? 1.0 : 0.0);
+        isProbing_ = false;
+    }
+    if (isWaitingInput_) {
+        parameters.set(P_INPUT_RESULT, snapshot.isInputTimedOut ? -1.0 : snapshot.input_value);
+        isWaitingInput_ = false;
+    }
+    parameters.commit();
+    state.isMist = snapshot.isMistOn;
+    state.isFlood = snapshot.isFloodOn;
+    state.isFeedOverride = snapshot.isFeedOverrideEnabled;
+    state.isFeedHold = snapshot.isFeedHoldEnabled;
+    state.isAdaptive = snapshot.isAdaptiveFeedEnabled;
+    for (int i = 0; i < world_.count_spindles(); ++i) {
+        SpindleState &spindle = state.spindles[static_cast<std::size_t>(i)];
+        spindle.direction = snapshot.spindle_direction[static_cast<std::size_t>(i)];
+    }
+    state.selected_index = snapshot.selected_pocket;
+    synch_tool(snapshot);
+}
+
+/// The tool in the spindle, by its place in the table.
+void Executor::synch_tool(const MachineSnapshot &snapshot) {
+    const bool isInTable = snapshot.current_pocket > 0 && snapshot.current_pocket < tools_.count();
+    const bool isLoaded = snapshot.tool_in_spindle > 0;
+    if (isLoaded && isInTable) {
+        load_tool(snapshot.current_pocket);
+    } else {
+        load_tool(0);
+        state.tool_index = snapshot.current_pocket;
+    }
+    state.tool_in_spindle = snapshot.tool_in_spindle;
+}
+
+ActiveCodes Executor::active_codes() const {
+    ActiveCodes out;
+    const int feed_code = state.feed_mode == FeedMode::INVERSE_TIME       ? 930
+                          : state.feed_mode == FeedMode::UNITS_PER_MINUTE ? 940
+                                                                          : 950;
+    const int control_code = state.control == MotionControl::EXACT_PATH   ? 610
+                             : state.control == MotionControl::EXACT_STOP ? 611
+                                                                          : 640;
+    const SpindleState &spindle = state.spindles[static_cast<std::size_t>(state.active_spindle)];
+    out.g = {sequence_,
+             state.motion,
+             -1,
+             plane_code(),
+             state.comp_code,
+             state.units == LengthUnits::INCH ? 200 : 210,
+             state.isIncremental ? 910 : 900,
+             feed_code,
+             coordinate_system_code(),
+             state.tool_offset_code,
+             state.isRetractToR ? 990 : 980,
+             control_code,
+             -1,
+             spindle.isConstantSurface ? 960 : 970,
+             state.isCentreAbsolute ? 901 : 911,
+             state.isDiameter ? 70 : 80,
+             parameters.get(P_G92_APPLIED) != 0.0 ? 923 : -1};
+    const bool isSpeedOverride = spindle.isOverridden;
+    out.m = {sequence_,
+             -1,
+             spindle.direction > 0 ? 3 : (spindle.direction < 0 ? 4 : 5),
+             -1,
+             state.isMist ? 7 : (state.isFlood ? -1 : 9),
+             state.isFlood ? 8 : -1,
+             state.isFeedOverride ? (isSpeedOverride ? 48 : 50) : (isSpeedOverride ? 51 : 49),
+             state.isAdaptive ? 52 : -1,
+             state.isFeedHold ? 53 : -1,
+             -1};
+    out.settings = {static_cast<double>(sequence_), state.feed, spindle.speed, state.tolerance,
+                    state.naivecam};
+    return out;
+}
+
+}  // namespace mw::interp::detail

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The interpreter's settings as an INI file has them.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "config/ini_file.hh"
+#include "interp/interpreter.hh"
+
+namespace mw::interp {
+
+/// Reads [RS274NGC] and [DISPLAY]PROGRAM_PREFIX. Values of a wrong form are reported to `sink` with their
+/// place.
+Settings settings_from_ini(const config::IniFile &ini, diag::Sink &sink);
+
+/// The value of #<_ini[section]key>: programs have no case, so upper case is looked for; nothing when there
+/// is no such key or its value is not a number.
+std::optional<double> ini_number(const config::IniFile &ini, std::string_view section, std::string_view key);
+
+}  // namespace mw::interp

@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "interp/print_canon.hh"
+
+#include <iterator>
+
+#include <fmt/format.h>
+
+namespace mw::interp {
+namespace {
+
+std::string pose_text(const Pose &p) {
+    return fmt::format("{:.4f}, {:.4f}, {:.4f}, {:.4f}, {:.4f}, {:.4f}", p[0], p[1], p[2], p[3], p[4], p[5]);
+}
+
+}  // namespace
+
+PrintCanon::~PrintCanon() {
+    log_close();
+}
+
+void PrintCanon::put(std::string_view call) {
+    char buffer[512];
+    const auto made = fmt::format_to_n(buffer, sizeof buffer, "{:5d} {} {}\n", ++count_, prefix_, call);
+    if (made.size <= sizeof buffer) {
+        std::fwrite(buffer, 1, made.size, out_);
+    } else {
+        fmt::print(out_, "{:5d} {} {}\n", count_, prefix_, call);
+    }
+}
+
+void PrintCanon::begin_block(const BlockRef &block) {
+    prefix_ = block.isNumbered ? fmt::format("N{:<5d}", block.sequence) : "N.....";
+}
+
+void PrintCanon::on_reset() {
+    put("ON_RESET()");
+}
+
+void PrintCanon::use_length_units(LengthUnits units) {
+    put(units == LengthUnits::MM ? "USE_LENGTH_UNITS(CANON_UNITS_MM)"
+                                 : "USE_LENGTH_UNITS(CANON_UNITS_INCHES)");
+}
+
+void PrintCanon::select_plane(Plane plane) {
+    switch (plane) {
+    case Plane::XY: put("SELECT_PLANE(CANON_PLANE_XY)"); return;
+    case Plane::XZ: put("SELECT_PLANE(CANON_PLANE_XZ)"); return;
+    case Plane::YZ: put("SELECT_PLANE(CANON_PLANE_YZ)"); return;
+    default: put("SELECT_PLANE(CANON_PLANE_UNKNOWN)"); return;
+    }
+}
+
+void PrintCanon::set_g5x_offset(int index, const Pose &offset) {
+    put(fmt::format("SET_G5X_OFFSET({}, {})", index, pose_text(offset)));
+}
+
+void PrintCanon::set_g92_offset(const Pose &offset) {
+    put(fmt::format("SET_G92_OFFSET({})", pose_text(offset)));
+}
+
+void PrintCanon::set_xy_rotation(double angle_deg) {
+    put(fmt::format("SET_XY_ROTATION({:.4f})", angle_deg));
+}
+
+void PrintCanon::use_tool_length_offset(const Pose &p) {
+    put(fmt::format(
+        "USE_TOOL_LENGTH_OFFSET({:.4f} {:.4f} {:.4f}, {:.4f} {:.4f} {:.4f}, {:.4f} {:.4f} {:.4f})", p[0],
+        p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8]));
+}
+
+void PrintCanon::set_feed_reference_xyz() {
+    put("SET_FEED_REFERENCE(CANON_XYZ)");
+}
+
+void PrintCanon::set_feed_rate(double rate) {
+    put(fmt::format("SET_FEED_RATE({:.4f})", rate));
+}
+
+void PrintCanon::set_feed_mode(int spindle, FeedMode mode) {
+    put(fmt::format("SET_FEED_MODE({}, {})", spindle, mode == FeedMode::UNITS_PER_REVOLUTION ? 1 : 0));
+}
+
+void PrintCanon::set_motion_control_mode(MotionControl mode, double tolerance) {
+    switch (mode) {
+    case MotionControl::EXACT_PATH: put("SET_MOTION_CONTROL_MODE(CANON_EXACT_PATH)"); return;
+    case MotionControl::EXACT_STOP: put("SET_MOTION_CONTROL_MODE(CANON_EXACT_STOP)"); return;
+    case MotionControl::CONTINUOUS: break;
+    }
+    put(fmt::format("SET_MOTION_CONTROL_MODE(CANON_CONTINUOUS, {:.6f})", tolerance));
+}
+
+void PrintCanon::set_naivecam_tolerance(double tolerance) {
+    put(fmt::format("SET_NAIVECAM_TOLERANCE({:.4f})", tolerance));
+}
+
+void PrintCanon::set_planner_mode(int type, double peak_scale) {
+    put(fmt::format("SET_PLANNER_MODE(type={}, peak_scale={:.6f})", type, peak_scale));
+}
+
+void PrintCanon::put_straight(std::string_view name, const Pose &p) {
+    char buffer[512];
+    const auto made = fmt::format_to_n(buffer, sizeof buffer,
+                                       "{:5d} {} {}({:.4f}, {:.4f}, {:.4f}, {:.4f}, {:.4f}, {:.4f})\n",
+                                       ++count_, prefix_, name, p[0], p[1], p[2], p[3], p[4], p[5]);
+    std::fwrite(buffer, 1, std::min(made.size, sizeof buffer), out_);
+}
+
+void PrintCanon::straight_traverse(const Pose &end) {
+    put_straight("STRAIGHT_TRAVERSE", end);
+}
+
+void PrintCanon::straight_feed(const Pose &end) {
+    put_straight("STRAIGHT_FEED", end);
+}
+
+void PrintCanon::arc_feed(const ArcFeed &arc) {
+    put(fmt::format("ARC_FEED({:.4f}, {:.4f}, {:.4f}, {:.4f}, {}, {:.4f}, {:.4f}, {:.4f}, {:.4f})",
+                    arc.first_end, arc.second_end, arc.first_centre, arc.second_centre, arc.rotation,
+                    arc.axis_end, arc.end[3], arc.end[4], arc.end[5]));
+}
+
+void PrintCanon::straight_probe(const Pose &end, ProbeKind) {
+    put("TURN_PROBE_ON()");
+    put_straight("STRAIGHT_PROBE", end);
+    put("TURN_PROBE_OFF()");
+}
+
+void PrintCanon::rigid_tap(double x, double y, double z, double) {
+    put(fmt::format("RIGID_TAP({:.4f}, {:.4f}, {:.4f})", x, y, z));
+}
+
+void PrintCanon::dwell(double seconds) {
+    put(fmt::format("DWELL({:.4f})", seconds));
+}
+
+void PrintCanon::start_speed_feed_synch(int, double feed_per_revolution, bool isVelocityMode) {
+    put(fmt::format("START_SPEED_FEED_SYNC({:.6f},{})", feed_per_revolution, isVelocityMode ? 1 : 0));
+}
+
+void PrintCanon::stop_speed_feed_synch() {
+    put("STOP_SPEED_FEED_SYNCH()");
+}
+
+void PrintCanon::set_spindle_mode(int spindle, double css_max_rpm) {
+    put(fmt::format("SET_SPINDLE_MODE({} {:.4f})", spindle, css_max_rpm));
+}
+
+void PrintCanon::set_spindle_speed(int spindle, double speed) {
+    put(fmt::format("SET_SPINDLE_SPEED({}, {:.4f})", spindle, speed));
+}
+
+void PrintCanon::start_spindle_clockwise(int spindle, bool) {
+    put(fmt::format("START_SPINDLE_CLOCKWISE({})", spindle));
+}
+
+void PrintCanon::start_spindle_counterclockwise(int spindle, bool) {
+    put(fmt::format("START_SPINDLE_COUNTERCLOCKWISE({})", spindle));
+}
+
+void PrintCanon::stop_spindle_turning(int spindle) {
+    put(fmt::format("STOP_SPINDLE_TURNING({})", spindle));
+}
+
+void PrintCanon::orient_spindle(int spindle, double angle_deg, int mode) {
+    put(fmt::format("ORIENT_SPINDLE({}, {:.4f}, {})", spindle, angle_deg, mode));
+}
+
+void PrintCanon::wait_orient_complete(int spindle, double timeout_s) {
+    put(fmt::format("SPINDLE.{}.WAIT_ORIENT_COMPLETE({:.4f})", spindle, timeout_s));
+}
+
+void PrintCanon::select_tool(int toolno) {
+    put(fmt::format("SELECT_TOOL({})", toolno));
+}
+
+void PrintCanon::change_tool() {
+    put("CHANGE_TOOL()");
+}
+
+void PrintCanon::change_tool_number(int toolno) {
+    put(fmt::format("CHANGE_TOOL_NUMBER({})", toolno));
+}
+
+void PrintCanon::set_tool_table_entry(int index, const ToolEntry &entry) {
+    const Pose &p = entry.offset;
+    put(fmt::format("SET_TOOL_TABLE_ENTRY({}, {}, {:.4f} {:.4f} {:.4f} {:.4f} {:.4f} {:.4f} {:.4f} {:.4f} "
+                    "{:.4f}, {:.4f}, "
+                    "{:.4f}, {})",
+                    index, entry.toolno, p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8],
+                    entry.frontangle, entry.backangle, entry.orientation));
+}
+
+void PrintCanon::mist_on() {
+    put("MIST_ON()");
+}
+
+void PrintCanon::mist_off() {
+    put("MIST_OFF()");
+}
+
+void PrintCanon::flood_on() {
+    put("FLOOD_ON()");
+}
+
+void PrintCanon::flood_off() {
+    put("FLOOD_OFF()");
+}
+
+void PrintCanon::enable_feed_override() {
+    put("ENABLE_FEED_OVERRIDE()");
+}
+
+void PrintCanon::disable_feed_override() {
+    put("DISABLE_FEED_OVERRIDE()");
+}
+
+void PrintCanon::enable_speed_override(int spindle) {
+    put(fmt::format("ENABLE_SPEED_OVERRIDE({})", spindle));
+}
+
+void PrintCanon::disable_speed_override(int spindle) {
+    put(fmt::format("DISABLE_SPEED_OVERRIDE({})", spindle));
+}
+
+void PrintCanon::enable_feed_hold() {
+    put("ENABLE_FEED_HOLD()");
+}
+
+void PrintCanon::disable_feed_hold() {
+    put("DISABLE_FEED_HOLD()");
+}
+
+void PrintCanon::enable_adaptive_feed() {
+    put("ENABLE_ADAPTIVE_FEED()");
+}
+
+void PrintCanon::disable_adaptive_feed() {
+    put("DISABLE_ADAPTIVE_FEED()");
+}
+
+void PrintCanon::set_digital_output(int index, bool isOn, bool isSynched) {
+    put(fmt::format("{}_{}_OUTPUT_BIT({})", isOn ? "SET" : "CLEAR", isSynched ? "MOTION" : "AUX", index));
+}
+
+void PrintCanon::set_analog_output(int index, double value, bool isSynched) {
+    put(fmt::format("SET_{}_OUTPUT_VALUE({},{:.6f})", isSynched ? "MOTION" : "AUX", index, value));
+}
+
+void PrintCanon::wait_input(int index, bool isAnalog, WaitKind kind, double timeout_s) {
+    put(fmt::format("WAIT({}, {}, {}, {:.4f})", index, isAnalog ? 0 : 1, static_cast<int>(kind), timeout_s));
+}
+
+void PrintCanon::program_stop() {
+    put("PROGRAM_STOP()");
+}
+
+void PrintCanon::optional_program_stop() {
+    put("OPTIONAL_PROGRAM_STOP()");
+}
+
+void PrintCanon::program_end() {
+    put("PROGRAM_END()");
+}
+
+void PrintCanon::pallet_shuttle() {
+    put("PALLET_SHUTTLE()");
+}
+
+void PrintCanon::finish() {
+    put("FINISH()");
+}
+
+void PrintCanon::comment(std::string_view text) {
+    put(fmt::format("COMMENT(\"{}\")", text));
+}
+
+void PrintCanon::message(std::string_view text) {
+    put(fmt::format("MESSAGE(\"{}\")", text));
+}
+
+void PrintCanon::print(std::string_view text) {
+    fmt::print(out_, "{}\n", text);
+}
+
+void PrintCanon::log_open(std::string_view path, bool isAppending) {
+    log_close();
+    log_ = std::fopen(std::string(path).c_str(), isAppending ? "a" : "w");
+    if (log_ == nullptr) {
+        fmt::print(stderr, "cannot open the log file {}\n", path);
+    }
+}
+
+void PrintCanon::log(std::string_view text) {
+    if (log_ != nullptr) {
+        fmt::print(log_, "{}\n", text);
+    }
+}
+
+void PrintCanon::log_close() {
+    if (log_ != nullptr) {
+        std::fclose(log_);
+        log_ = nullptr;
+    }
+}
+
+void PrintCanon::canon_error(std::string_view text) {
+    put(fmt::format("CANON_ERROR({})", text));
+}
+
+void PrintCanon::user_m_code(int code, double p, double q) {
+    put(fmt::format("USER_DEFINED_FUNCTION({}, {:.4f}, {:.4f})", code, p, q));
+}
+
+}  // namespace mw::interp
