@@ -86,9 +86,12 @@ double SlowPart::velocity_of(const Stamp &latest, std::uint32_t now, const Setti
     const std::int32_t counts = minus(latest.count, last_.count);
     if (counts != 0) {
         const double seconds = static_cast<double>(latest.time - last_.time) * SECONDS_PER_UNIT;
-        // The first count after standing still says nothing about the speed before it.
-        velocity_ = hasMoved_ && seconds > 0.0 ? counts / seconds : 0.0;
+        // The first count after standing still, or after a turn of direction, says nothing about the speed.
+        const bool isForward = counts > 0;
+        const bool goesOn = hasMoved_ && isForward == isForward_;
+        velocity_ = goesOn && seconds > 0.0 ? counts / seconds : 0.0;
         hasMoved_ = true;
+        isForward_ = isForward;
         last_ = latest;
     } else if (hasMoved_) {
         // No count since: not faster than one count in the time that has passed.

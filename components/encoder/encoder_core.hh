@@ -107,6 +107,7 @@ class SlowPart {
     Stamp last_{};
     double velocity_ = 0.0;  ///< [counts/s]
     bool hasMoved_ = false;
+    bool isForward_ = true;  ///< direction of the last counts
 };
 
 }  // namespace mw::encoder

@@ -18,6 +18,7 @@ struct RatioChannel {
 
     unsigned last_master = 0;
     unsigned last_slave = 0;
+    bool isFirst = true;                  ///< where the signals stand at first is no movement
     std::atomic<std::int32_t> master{0};  ///< counts; written by sample, read by update
     std::atomic<std::int32_t> slave{0};
     std::int32_t master_start = 0;  ///< where the master stood when the gear was engaged
@@ -38,6 +39,11 @@ struct RatioChannel {
     void sample() noexcept {
         count(master_a, master_b, last_master, master);
         count(slave_a, slave_b, last_slave, slave);
+        if (isFirst) {
+            isFirst = false;
+            master.store(0, std::memory_order_relaxed);
+            slave.store(0, std::memory_order_relaxed);
+        }
     }
 
     void update() noexcept {
@@ -55,7 +61,7 @@ struct RatioChannel {
   private:
     static double at_least_one(std::uint32_t value) noexcept { return value > 0 ? value : 1.0; }
     static double turns(std::int32_t counts, std::uint32_t ppr) noexcept {
-        return counts / (4.0 * at_least_one(ppr));
+        return counts / at_least_one(ppr);
     }
     static void count(bool a, bool b, unsigned &last, std::atomic<std::int32_t> &counts) noexcept {
         const unsigned now = (a ? 2U : 0U) | (b ? 1U : 0U);

@@ -22,7 +22,7 @@ struct ChargePump {
 
     void update() noexcept {
         const bool isEnabled = enable;
-        calls = isEnabled ? calls + 1 : 0;
+        calls += isEnabled ? 1U : 0U;
         out = isEnabled && (calls & 1U) != 0;
         out_2 = isEnabled && (calls & 2U) != 0;
         out_4 = isEnabled && (calls & 4U) != 0;

@@ -134,7 +134,7 @@ pid::Tuning Pid::tuning() const noexcept {
 void Pid::tune(double dt) noexcept {
     const double difference = command - feedback;
     error = difference;
-    controller.reset(command);
+    controller.reset(command, feedback);
     if (tune_start && !tuner.isRunning()) {
         tuner.start();
     }

@@ -26,7 +26,7 @@ double outside(double error, double band) noexcept {
 
 }  // namespace
 
-void Controller::reset(double command) noexcept {
+void Controller::reset(double command, double feedback) noexcept {
     error_i = 0.0;
     error_d = 0.0;
     command_d = 0.0;
@@ -34,7 +34,9 @@ void Controller::reset(double command) noexcept {
     command_ddd = 0.0;
     previous_command_ = command;
     previous_target_ = command;
-    previous_error_ = 0.0;
+    previous_feedback_ = feedback;
+    raw_command_d_ = 0.0;
+    feedback_d_ = 0.0;
     limit_state_ = 0;
     saturated_s_ = 0.0;
     saturated_count_ = 0;
@@ -45,28 +47,24 @@ void Controller::derive_command(const Inputs &in, const Tuning &tuning, double d
     const double before_d = command_d;
     const double before_dd = command_dd;
     if (in.hasCommandDerivative) {
-        command_d = in.command_derivative;
+        raw_command_d_ = in.command_derivative;
     } else if (!hasJumped) {
-        command_d = (in.command - previous_command_) / dt;
+        raw_command_d_ = (in.command - previous_command_) / dt;
     }
-    command_d = limited(command_d, tuning.max_command_d);
+    command_d = limited(raw_command_d_, tuning.max_command_d);
     command_dd = limited((command_d - before_d) / dt, tuning.max_command_dd);
     command_ddd = limited((command_dd - before_dd) / dt, tuning.max_command_ddd);
     previous_command_ = in.command;
 }
 
-void Controller::derive_error(const Inputs &in, const Tuning &tuning, double error, double dt) noexcept {
+void Controller::derive_error(const Inputs &in, const Tuning &tuning, double dt) noexcept {
     const bool hasJumped = wasIndexEnabled_ && !in.isIndexEnabled;
-    const bool hasGivenDerivative = in.hasCommandDerivative || in.hasFeedbackDerivative;
-    if (hasGivenDerivative) {
-        const double estimate = (error - previous_error_) / dt;
-        const double feedback_d = in.hasFeedbackDerivative ? in.feedback_derivative : command_d - estimate;
-        error_d = command_d - feedback_d;
-    } else if (!hasJumped) {
-        error_d = (error - previous_error_) / dt;
+    if (!hasJumped) {
+        feedback_d_ =
+            in.hasFeedbackDerivative ? in.feedback_derivative : (in.feedback - previous_feedback_) / dt;
     }
-    error_d = limited(error_d, tuning.max_error_d);
-    previous_error_ = error;
+    error_d = limited(raw_command_d_ - feedback_d_, tuning.max_error_d);
+    previous_feedback_ = in.feedback;
 }
 
 Outputs Controller::run(const Inputs &in, const Tuning &tuning, double dt) noexcept {
@@ -75,7 +73,7 @@ Outputs Controller::run(const Inputs &in, const Tuning &tuning, double dt) noexc
     out.error = target - in.feedback;
     previous_target_ = in.command;
     if (!in.isEnabled) {
-        reset(in.command);
+        reset(in.command, in.feedback);
         wasIndexEnabled_ = in.isIndexEnabled;
         return out;
     }
@@ -86,7 +84,7 @@ Outputs Controller::run(const Inputs &in, const Tuning &tuning, double dt) noexc
         error_i = limited(error_i + error * dt, tuning.max_error_i);
     }
     derive_command(in, tuning, dt);
-    derive_error(in, tuning, error, dt);
+    derive_error(in, tuning, dt);
     wasIndexEnabled_ = in.isIndexEnabled;
     const double sum = tuning.bias + tuning.p * error + tuning.i * error_i + tuning.d * error_d +
                        tuning.ff0 * in.command + tuning.ff1 * command_d + tuning.ff2 * command_dd +

@@ -52,8 +52,8 @@ struct Outputs {
 class Controller {
   public:
     Outputs run(const Inputs &in, const Tuning &tuning, double dt) noexcept;
-    /// Forgets everything but the command, as when disabled.
-    void reset(double command) noexcept;
+    /// Forgets everything but where command and feedback are, as when disabled.
+    void reset(double command, double feedback) noexcept;
 
     // For tuning by eye.
     double error_i = 0.0;
@@ -64,11 +64,13 @@ class Controller {
 
   private:
     void derive_command(const Inputs &in, const Tuning &tuning, double dt) noexcept;
-    void derive_error(const Inputs &in, const Tuning &tuning, double error, double dt) noexcept;
+    void derive_error(const Inputs &in, const Tuning &tuning, double dt) noexcept;
 
     double previous_target_ = 0.0;
     double previous_command_ = 0.0;
-    double previous_error_ = 0.0;
+    double previous_feedback_ = 0.0;
+    double raw_command_d_ = 0.0;  ///< not limited
+    double feedback_d_ = 0.0;
     int limit_state_ = 0;  ///< sign of the limited output of the call before
     bool wasIndexEnabled_ = false;
     double saturated_s_ = 0.0;

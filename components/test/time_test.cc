@@ -118,7 +118,7 @@ TEST(EncoderRatio, ErrorIsZeroWhileTheSlaveFollows_B10) {
         "setp s.speed 2\nnet ma m.phase-A encoder-ratio.0.master-A\nnet mb m.phase-B "
         "encoder-ratio.0.master-B\n"
         "net sa s.phase-A encoder-ratio.0.slave-A\nnet sb s.phase-B encoder-ratio.0.slave-B\n"
-        "setp encoder-ratio.0.master-ppr 25\nsetp encoder-ratio.0.slave-ppr 25\n"
+        "setp encoder-ratio.0.master-ppr 100\nsetp encoder-ratio.0.slave-ppr 100\n"
         "setp encoder-ratio.0.master-teeth 2\nsetp encoder-ratio.0.slave-teeth 1\n"
         "setp encoder-ratio.0.enable 1\naddf sim-encoder.update-speed t\naddf sim-encoder.make-pulses t\n"
         "addf encoder-ratio.sample t\naddf encoder-ratio.update t");

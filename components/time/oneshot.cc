@@ -20,7 +20,7 @@ struct Oneshot {
         d.pin(in, "in");
         d.pin(reset, "reset");
         d.pin(out, "out");
-        d.pin(out_not, "out-not", true);
+        d.pin(out_not, "out-not");
         d.pin(width, "width");
         d.pin(time_left, "time-left");
         d.param(retriggerable, "retriggerable", true);
@@ -30,16 +30,20 @@ struct Oneshot {
     }
 
     void update(long period_ns) noexcept {
+        if (reset) {
+            // An input that is still true when the reset ends counts as an edge.
+            last_in = false;
+            out = false;
+            out_not = true;
+            return;
+        }
         const bool input = in;
         const bool isEdge = input != last_in && (input ? rising : falling);
         last_in = input;
-        double left = time_left - static_cast<double>(period_ns) * 1e-9;
+        double left = out ? time_left - static_cast<double>(period_ns) * 1e-9 : 0.0;
         left = left > 0.0 ? left : 0.0;
         if (isEdge && (retriggerable || left == 0.0)) {
             left = width;
-        }
-        if (reset) {
-            left = 0.0;
         }
         time_left = left;
         out = left > 0.0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // timedelay: `out` (bit) becomes true when `in` has been true for `on-delay` seconds, and false when it has
-// been false for `off-delay` seconds (floats, 0.5 at start). `elapsed` is the time waited so far [s].
+// been false for `off-delay` seconds (floats, 0.5 at start). `elapsed` is the time waited
+// so far, or at last [s].
 #include "components/common/kit.hh"
 
 namespace mw::components {
@@ -10,6 +11,7 @@ struct Timedelay {
     Out<bool> out;
     In<double> on_delay, off_delay;
     Out<double> elapsed;
+    bool last_in = false;
 
     void declare(Declare &d) noexcept {
         d.pin(in, "in");
@@ -22,15 +24,16 @@ struct Timedelay {
 
     void update(long period_ns) noexcept {
         const bool input = in;
+        const bool hasChanged = input != last_in;
+        last_in = input;
         if (input == out.get()) {
-            elapsed = 0.0;
             return;
         }
-        const double waited = elapsed + static_cast<double>(period_ns) * 1e-9;
-        elapsed = waited;
-        if (waited >= (input ? on_delay : off_delay)) {
+        const double limit = input ? on_delay : off_delay;
+        const double waited = (hasChanged ? 0.0 : elapsed.get()) + static_cast<double>(period_ns) * 1e-9;
+        elapsed = waited < limit ? waited : limit;
+        if (waited >= limit) {
             out = input;
-            elapsed = 0.0;
         }
     }
 };

@@ -108,8 +108,8 @@ Result<> Operator::wait_for(task::RequestId id, const std::string &what,
         }
         if (progress != task::Progress::STARTED) {
             const std::string reason = task.reason(id);
-            return fail(reason == last_error_ || reason.empty() ? what + " failed"
-                                                                : what + " failed: " + reason);
+            const bool isTold = !last_error_.empty();
+            return fail(isTold ? "" : what + " failed" + (reason.empty() ? "" : ": " + reason));
         }
         if (stop_signal != 0) {
             return stop_on_signal();

@@ -101,7 +101,7 @@ std::string show_pin(Session &session, const Patterns &patterns) {
             text += fmt::format("{} {:<5} {} {} {}{}\n", p.owner, type_name(p.type), dir_name(p.dir),
                                 p.value.str(), p.name, arrow_to(p));
         } else {
-            text += fmt::format("{:>6}  {:<5} {:<3} {:>22}  {}{}\n", p.owner_id, type_name(p.type),
+            text += fmt::format("{:>6}  {:<5} {:<3} {:>21}  {}{}\n", p.owner_id, type_name(p.type),
                                 dir_name(p.dir), shown(p.value), p.name, arrow_to(p));
         }
     }
@@ -120,7 +120,7 @@ std::string show_param(Session &session, const Patterns &patterns) {
             text += fmt::format("{} {:<5} {} {} {}\n", p.owner, type_name(p.type), dir_name(p.dir),
                                 p.value.str(), p.name);
         } else {
-            text += fmt::format("{:>6}  {:<5} {:<3} {:>22}  {}\n", p.owner_id, type_name(p.type),
+            text += fmt::format("{:>6}  {:<5} {:<3} {:>21}  {}\n", p.owner_id, type_name(p.type),
                                 dir_name(p.dir), shown(p.value), p.name);
         }
     }

@@ -26,17 +26,6 @@ void nap() {
     nanosleep(&pause, nullptr);
 }
 
-/// Waits for a child; its status as of waitpid, or -1.
-int wait_for_child(pid_t pid) {
-    int status = 0;
-    while (waitpid(pid, &status, 0) < 0) {
-        if (errno != EINTR) {
-            return -1;
-        }
-    }
-    return status;
-}
-
 std::string how_ended(int status) {
     if (WIFSIGNALED(status)) {
         return fmt::format("was ended by signal {}", WTERMSIG(status));
@@ -87,12 +76,26 @@ Result<> SystemProgramHost::wait_until_ready(const ProgramRequest &request, int 
             return fail(fmt::format("program '{}' {} before its component '{}' was ready", request.argv[0],
                                     how_ended(status), request.component));
         }
+        if (isStopped()) {
+            kill(pid, SIGTERM);
+            return fail(fmt::format("stopped while waiting for component '{}'", request.component));
+        }
         nap();
     }
 }
 
 Result<> SystemProgramHost::wait_for_status(const ProgramRequest &request, int pid) {
-    const int status = wait_for_child(pid);
+    int status = 0;
+    // Signals interrupt the wait, so a stop is seen at once.
+    while (waitpid(pid, &status, 0) < 0) {
+        if (errno != EINTR) {
+            return fail(fmt::format("lost sight of program '{}': {}", request.argv[0], std::strerror(errno)));
+        }
+        if (isStopped()) {
+            kill(pid, SIGTERM);
+            return fail(fmt::format("stopped while waiting for '{}'", request.argv[0]));
+        }
+    }
     const bool isFine = WIFEXITED(status) && WEXITSTATUS(status) == 0;
     if (!isFine && !request.ignoresStatus) {
         return fail(fmt::format("program '{}' {}", request.argv[0], how_ended(status)));
@@ -159,6 +162,9 @@ Result<> SystemProgramHost::wait_for_end(const std::string &component) {
         if (kill(info->pid, 0) != 0 && errno == ESRCH) {
             hal_.reap_dead_components();
             return {};
+        }
+        if (isStopped()) {
+            return fail(fmt::format("stopped while waiting for the end of '{}'", component));
         }
         nap();
     }

@@ -2,6 +2,7 @@
 // Programs that HAL files start with loadusr: as processes, or as parts of this process in their place.
 #pragma once
 
+#include <csignal>
 #include <functional>
 #include <map>
 #include <string>
@@ -40,7 +41,9 @@ class ProgramHost {
 /// Starts processes; finds them through PATH. [one thread, not realtime]
 class SystemProgramHost final : public ProgramHost {
   public:
-    explicit SystemProgramHost(Hal &hal) : hal_(hal) {}
+    /// Waiting ends (as a failure) when `stop` is given and *stop is not zero.
+    explicit SystemProgramHost(Hal &hal, const volatile std::sig_atomic_t *stop = nullptr)
+        : hal_(hal), stop_(stop) {}
 
     Result<ProgramStart> start(const ProgramRequest &request) override;
     Result<> stop(const std::string &component) override;
@@ -54,6 +57,9 @@ class SystemProgramHost final : public ProgramHost {
     void reap();
 
     Hal &hal_;
+    bool isStopped() const { return stop_ != nullptr && *stop_ != 0; }
+
+    const volatile std::sig_atomic_t *stop_;
     std::vector<int> children_;
 };
 

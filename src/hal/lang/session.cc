@@ -180,6 +180,10 @@ Result<> Session::run_text(std::string_view text, const std::string &name) {
 }
 
 Result<> Session::run_line(const LogicalLine &line, const std::string &file) {
+    if (options_.stop != nullptr && *options_.stop != 0) {
+        hasEnded_ = true;
+        return fail("stopped", {file, line.first_line, 0});
+    }
     if (options_.isEchoing) {
         output_.note(fmt::format("({})<echo>: {}", line.first_line, trim(line.text.text())));
     }

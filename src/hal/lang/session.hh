@@ -2,6 +2,7 @@
 // Runs HAL commands: files, lines and single commands, in the process of the machine or attached to one.
 #pragma once
 
+#include <csignal>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,6 +56,7 @@ struct SessionOptions {
     bool hasPlaceholders = false;      ///< pins of programs that were left out are placeholders
     const IniLookup *ini = nullptr;    ///< for [SECTION]NAME; must outlive the session
     std::vector<std::string> folders;  ///< where files are looked for after the working folder
+    const volatile std::sig_atomic_t *stop = nullptr;  ///< not zero: no further command is run
     std::vector<std::string> library;  ///< folders of the prefix LIB:, and looked through last
 };
 

@@ -103,7 +103,8 @@ Result<> run_sampler(const SamplerOptions &options, volatile std::sig_atomic_t &
         }
         const bool isGap = done > 0 && number != expected;
         expected = number + 1;
-        const std::string tag = options.isTagged ? fmt::format("{} ", number) : "";
+        // The stream counts from 1, the text from 0.
+        const std::string tag = options.isTagged ? fmt::format("{} ", number - 1) : "";
         const std::string line = format_record(attachment.types, record);
         const int written =
             std::fprintf(out.get(), "%s%s%s\n", isGap ? "overrun\n" : "", tag.c_str(), line.c_str());
@@ -134,7 +135,9 @@ Result<> run_streamer(const StreamerOptions &options, volatile std::sig_atomic_t
         if (isSkipped(line)) {
             continue;
         }
-        Result<std::vector<hal_stream_data_u>> record = parse_record(attachment.types, line);
+        // A last line without its end may have been cut off.
+        Result<std::vector<hal_stream_data_u>> record =
+            in.eof() ? fail("the line has no end") : parse_record(attachment.types, line);
         if (!record) {
             record.error().place = {options.file.empty() ? "stdin" : options.file, number, 0};
             std::fprintf(stderr, "halstreamer: %s; line skipped\n", record.error().str().c_str());

@@ -160,7 +160,8 @@ TEST_F(HostTest, BrakesAndEndsWhenTheControllingProcessDies) {
     EXPECT_TRUE(isSoon([&] { return hal.get("watcher.gone")->as_bit(); }));
     const auto noticed = std::chrono::steady_clock::now() - killed;
     EXPECT_LT(std::chrono::duration_cast<std::chrono::milliseconds>(noticed).count(), 50);
-    const volatile auto *left = static_cast<volatile std::int32_t *>(*hal.address_of("watcher.left", Type::S32));
+    const volatile auto *left =
+        static_cast<volatile std::int32_t *>(*hal.address_of("watcher.left", Type::S32));
     EXPECT_TRUE(isSoon([&] { return !isHostAlive(instance); }));
     EXPECT_EQ(*left, 0) << "it braked to the end";
 }
