@@ -2,6 +2,7 @@
 // The motion controller as a HAL component: threads base-thread and servo-thread, functions
 // motion-command-handler and motion-controller, the path planner below the threads, and the channels to the
 // task process in shared memory.
+#include <atomic>
 #include <cstdint>
 #include <new>
 
@@ -53,6 +54,7 @@ struct Module {
     motion::Controller *controller = nullptr;
     motion::PathPlanner *planner = nullptr;
     int component = -1, planner_id = -1, shmem_id = -1;
+    rtapi_u32 is_safe = 0;  ///< the task process is gone, motion has stopped and the amplifiers are off
 };
 
 Module module;
@@ -69,6 +71,8 @@ void control(void *, long) {
     module.pins->read(module.in);
     module.controller->step(module.in, module.out);
     module.pins->write(module.out);
+    const bool isSafe = module.out.status.isTaskLost && !module.out.status.isEnabled;
+    std::atomic_ref(module.is_safe).store(isSafe ? 1 : 0, std::memory_order_release);
 }
 
 void plan(void *, long long) {
@@ -178,6 +182,13 @@ int start_planner() {
     return module.planner_id > 0 ? 0 : module.planner_id;
 }
 
+/// The kernel's word that the task process is gone reaches the controller through the channels.
+int watch_task() {
+    static_assert(sizeof(module.channels->isTaskDead) == sizeof(rtapi_u32));
+    auto *is_gone = reinterpret_cast<rtapi_u32 *>(&module.channels->isTaskDead);
+    return mw_ext_watch_controller(is_gone, &module.is_safe, module.component);
+}
+
 void take_down() {
     if (module.planner_id > 0) {
         mw_ext_planner_delete(module.planner_id);
@@ -204,6 +215,7 @@ int rtapi_app_main(void) {
     status = status == 0 ? make_pins() : status;
     status = status == 0 ? make_functions() : status;
     status = status == 0 ? start_planner() : status;
+    status = status == 0 ? watch_task() : status;
     status = status == 0 ? hal_ready(module.component) : status;
     if (status < 0) {
         take_down();

@@ -160,6 +160,9 @@ class CanonQueue final : public Canon {
         Pose pose;
     };
     /// For cutter compensation: the call at `index`, which must be a straight or arc feed.
+    static bool isMove(const Record &record) {
+        return record.op == Op::FEED || record.op == Op::ARC || record.op == Op::TRAVERSE;
+    }
     Record &record(std::size_t index) { return records_[index]; }
 
   private:

@@ -42,6 +42,9 @@ bool Executor::do_arc(const Code &code, const BlockValues &values) {
     if (values.isMachineCoordinates) {
         return fault.set("Cannot use g53 with an arc");
     }
+    if (state.isCompExit) {
+        return fault.set("The move just after exiting cutter compensation mode must be straight, not an arc");
+    }
     ArcPlan arc;
     if (!plan_arc(code.number == 30, values, arc)) {
         return false;
@@ -179,10 +182,6 @@ void Executor::send_arc(const ArcPlan &arc) {
     canon.arc_feed({arc.end[axes.first], arc.end[axes.second], arc.first_centre, arc.second_centre,
                     arc.rotation, arc.end[axes.normal], arc.end});
     state.position = arc.end;
-}
-
-bool Executor::comp_arc(const ArcPlan &) {
-    return fault.set("Cutter radius compensation is not supported yet");
 }
 
 }  // namespace mw::interp::detail

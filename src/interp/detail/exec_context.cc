@@ -23,10 +23,11 @@ void Executor::push_call(bool isRemap) {
     contexts_.back().isRemap = isRemap;
 }
 
-bool Executor::pop_call() {
+/// Fanuc-style calls have no arguments: #1 to #30 are the caller's own.
+bool Executor::pop_call(bool isFanuc) {
     const Context context = contexts_.back();
     contexts_.pop_back();
-    parameters.pop_call();
+    parameters.pop_call(isFanuc);
     if (context.isRemap && !running_remaps_.empty()) {
         running_remaps_.pop_back();
     }
@@ -36,7 +37,7 @@ bool Executor::pop_call() {
 void Executor::drop_calls() {
     while (contexts_.size() > 1) {
         contexts_.pop_back();
-        parameters.pop_call();
+        parameters.pop_call(false);
     }
     running_remaps_.clear();
 }

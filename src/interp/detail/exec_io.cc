@@ -107,6 +107,9 @@ bool Executor::do_wait_input(const Code &, const BlockValues &values) {
     if (kind != 0 && values.at('q', 0.0) == 0.0) {
         return fault.set("M66 that waits needs a timeout Q above 0 seconds");
     }
+    if (state.comp != CompSide::OFF) {
+        return fault.set("Cannot wait for an input with cutter radius compensation on");
+    }
     canon.wait_input(index, isAnalog, static_cast<WaitKind>(kind), values.at('q', 0.0));
     isWaitingInput_ = true;
     outcome = Outcome::SYNC;
@@ -155,6 +158,8 @@ bool Executor::do_stop(const Code &code, const BlockValues &) {
 void Executor::restore_modes_at_end() {
     state.comp = CompSide::OFF;
     state.comp_code = 400;
+    state.comp_last = {};
+    state.isCompExit = false;
     Frame made = frame();
     made.g5x = parameter_pose(P_G5X);
     made.rotation_deg = parameters.get(P_G5X + 9);

@@ -42,13 +42,18 @@ bool Executor::do_feed_word(const Code &, const BlockValues &values) {
         return fault.set("Negative f word used", values.column_of('f'));
     }
     state.feed = feed;
-    canon.set_feed_rate(feed);
+    if (state.feed_mode != FeedMode::INVERSE_TIME) {  // there each move has a rate of its own
+        canon.set_feed_rate(feed);
+    }
     return true;
 }
 
 bool Executor::do_units(const Code &code, const BlockValues &) {
     const LengthUnits units = code.number == 200 ? LengthUnits::INCH : LengthUnits::MM;
     if (units != state.units) {
+        if (state.comp != CompSide::OFF) {
+            return fault.set("Cannot change units while cutter radius compensation is on");
+        }
         const double factor = units == LengthUnits::MM ? MM_PER_INCH : 1.0 / MM_PER_INCH;
         state.units = units;
         state.position = scale_lengths(state.position, factor);
@@ -129,7 +134,9 @@ bool Executor::do_feed_mode(const Code &code, const BlockValues &) {
     }
     canon.set_feed_mode(state.active_spindle, state.feed_mode);
     state.feed = 0.0;
-    canon.set_feed_rate(0.0);
+    if (state.feed_mode != FeedMode::INVERSE_TIME) {
+        canon.set_feed_rate(0.0);
+    }
     return true;
 }
 
@@ -159,7 +166,8 @@ bool Executor::do_control(const Code &code, const BlockValues &values) {
     }
     canon.set_motion_control_mode(state.control, state.tolerance);
     canon.set_naivecam_tolerance(state.naivecam);
-    if (values.has('r')) {
+    const bool isMotionsWord = values.motion != nullptr && (values.motion->words & letters("r")) != 0;
+    if (values.has('r') && !isMotionsWord) {
         constexpr double LOWEST_SCALE = 0.1, HIGHEST_SCALE = 1.0;
         const double r = values.at('r');
         const bool isJerkLimited = r > 0.0;

@@ -125,6 +125,7 @@ bool Executor::do_straight(const Code &code, const BlockValues &values) {
     if (!straight_target(values, end)) {
         return false;
     }
+    state.isCompExit = false;
     if (state.comp != CompSide::OFF) {
         return comp_straight(code.number == 0, end);
     }
@@ -170,10 +171,6 @@ PlaneAxes Executor::plane_axes() const {
     case Plane::UW: return {AXIS_W, AXIS_U, AXIS_V};
     }
     return {AXIS_X, AXIS_Y, AXIS_Z};
-}
-
-bool Executor::comp_straight(bool, const Pose &) {
-    return fault.set("Cutter radius compensation is not supported yet");
 }
 
 }  // namespace mw::interp::detail

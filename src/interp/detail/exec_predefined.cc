@@ -121,9 +121,9 @@ std::optional<double> Executor::built_in(std::string_view name) const {
     }
     if (const int index = position_index(name); index >= 0) {
         if (index < AXES_OF_POSE) {
-            return state.position[index];
+            return reported_position()[index];
         }
-        return frame().to_machine(state.position)[index - AXES_OF_POSE];
+        return frame().to_machine(reported_position())[index - AXES_OF_POSE];
     }
     const Row *row = find_row(name);
     return row == nullptr ? std::nullopt : std::optional<double>(row->read(*this));
@@ -131,7 +131,7 @@ std::optional<double> Executor::built_in(std::string_view name) const {
 
 double Executor::built_in(int number) const {
     if (number >= P_POSITION && number < P_POSITION + AXES_OF_POSE) {
-        return state.position[number - P_POSITION];
+        return reported_position()[number - P_POSITION];
     }
     if (number >= P_TOOL_OFFSET && number < P_TOOL_OFFSET + AXES_OF_POSE) {
         return state.loaded_offset[number - P_TOOL_OFFSET];
@@ -144,6 +144,12 @@ double Executor::built_in(int number) const {
     case P_TOOL_ORIENTATION: return state.tool_orientation;
     default: return parameters.get(number);
     }
+}
+
+/// Where the tool is, compensation included.
+Pose Executor::reported_position() const {
+    const bool isShifted = state.comp != CompSide::OFF && state.comp_last.isSet;
+    return isShifted ? in_plane(state.position, state.comp_last.end) : state.position;
 }
 
 int Executor::coordinate_system_code() const {

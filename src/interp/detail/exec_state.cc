@@ -35,6 +35,7 @@ void Executor::commit() {
         }
         tool_pending_.clear();
     }
+    patched_.clear();
     before_ = state;
 }
 
@@ -44,11 +45,24 @@ void Executor::rollback() {
     tool_pending_.clear();
     pending_.reset();
     canon.truncate(queued_before_);
+    for (auto entry = patched_.rbegin(); entry != patched_.rend(); ++entry) {
+        canon.record(entry->first) = entry->second;
+    }
+    patched_.clear();
     outcome = Outcome::OK;
 }
 
-std::size_t Executor::count_final_calls() const {
-    return canon.size();
+void Executor::flush(Canon &target) {
+    const bool isHeld = state.comp != CompSide::OFF && state.comp_last.isSet;
+    const std::size_t count = isHeld ? state.comp_last.record : canon.size();
+    if (count == 0) {
+        return;
+    }
+    canon.flush(target, count);
+    if (isHeld) {
+        state.comp_last.record -= count;
+        before_.comp_last.record = state.comp_last.record;
+    }
 }
 
 void Executor::abort_block() {
@@ -57,6 +71,8 @@ void Executor::abort_block() {
     isProbing_ = isWaitingInput_ = false;
     before_ = state;
     queued_before_ = 0;
+    patched_.clear();
+    state.comp_last = {};
 }
 
 void Executor::synch() {

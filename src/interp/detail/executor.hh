@@ -29,6 +29,23 @@ struct ArcPlan {
     int rotation = 1;  ///< as in ArcFeed
 };
 
+/// One canned cycle with its heights resolved, program coordinates along the plane's normal.
+struct CyclePlan {
+    int code = 0;
+    double r = 0, bottom = 0, clear = 0;
+};
+
+/// A thread to be cut by G76 [program units, radii].
+struct ThreadPlan {
+    int spindle = 0, springs = 0;
+    double pitch = 0, first_cut = 0, full_depth = 0, degression = 1, taper_length = 0;
+    double tangent = 0;  ///< of the infeed angle
+    double start_x = 0, start_z = 0, end_z = 0, peak_x = 0;
+    double inward = 1;  ///< +1: cuts towards larger X
+    double along = 1;   ///< sign of the cut in Z
+    bool hasEntryTaper = false, hasExitTaper = false;
+};
+
 enum class Outcome { OK, SYNC, PROGRAM_END, CALL_FANUC, RETURN_FANUC, REMAP, RESTART };
 
 class Executor : public BuiltIns {
@@ -53,9 +70,9 @@ class Executor : public BuiltIns {
     /// Remembers state and queue, so that rollback() can undo the block; commit() keeps what it did.
     void begin_block();
     void commit();
+    /// Replays the queued calls that no later block can change.
+    void flush(Canon &target);
     void rollback();
-    /// The number of queued calls that no later block can change.
-    std::size_t count_final_calls() const;
     /// After an abort: nothing waits any more.
     void abort_block();
     bool run_comments(const BlockView &view, std::string_view line_text);
@@ -80,7 +97,7 @@ class Executor : public BuiltIns {
     /// New local names and a context of its own for a subroutine; back to the caller's. pop_call() restores
     /// the modes that M73 saved.
     void push_call(bool isRemap);
-    bool pop_call();
+    bool pop_call(bool isFanuc);
     void drop_calls();
 
     int line() const { return line_; }
@@ -135,6 +152,11 @@ class Executor : public BuiltIns {
     // exec_motion.cc
     bool do_straight(const Code &code, const BlockValues &values);
     bool do_arc(const Code &code, const BlockValues &values);
+    bool do_cycle(const Code &code, const BlockValues &values);
+    bool do_comp(const Code &code, const BlockValues &values);
+    bool do_thread(const Code &code, const BlockValues &values);
+    bool do_thread_cycle(const Code &code, const BlockValues &values);
+    bool do_probe(const Code &code, const BlockValues &values);
     bool do_cancel_motion(const Code &code, const BlockValues &values);
     bool do_nothing(const Code &code, const BlockValues &values);
 
@@ -186,6 +208,7 @@ class Executor : public BuiltIns {
     Frame frame() const { return {state.g5x, state.g92, state.tool_offset, state.rotation_deg}; }
     /// Factor for lengths of the parameter file and the tool table [machine units] to program units and back.
     double machine_to_program() const;
+    Pose reported_position() const;
     Pose target(const BlockValues &values) const;
     bool polar_target(const BlockValues &values, Pose &end);
     bool straight_target(const BlockValues &values, Pose &end);
@@ -198,6 +221,22 @@ class Executor : public BuiltIns {
     bool plan_radius_arc(double radius, ArcPlan &arc);
     double arc_sweep(const ArcPlan &arc, double x0, double y0) const;
     void send_arc(const ArcPlan &arc);
+    bool take_cycle_words(const Code &code, const BlockValues &values);
+    bool check_cycle(const Code &code, const BlockValues &values, int &repeats);
+    void cycle_move(bool isRapid, int axis, double value);
+    void start_spindle(int direction);
+    void run_cycle(const CyclePlan &plan);
+    void run_peck(const CyclePlan &plan);
+    void run_tap(const CyclePlan &plan, int direction);
+    void run_back_bore(const CyclePlan &plan, int direction);
+    bool check_thread_cycle(const BlockValues &values, ThreadPlan &plan);
+    void thread_pass(const ThreadPlan &plan, double depth);
+    Point comp_normal(Point direction) const;
+    Pose in_plane(Pose pose, Point point) const;
+    void end_comp();
+    void patch_comp(Point end);
+    bool join_comp(CompElement &next, Point corner, bool isRapid);
+    bool enter_comp_by_arc(const ArcPlan &arc, CompElement &next);
     bool comp_arc(const ArcPlan &arc);
     bool comp_straight(bool isRapid, const Pose &end);
     std::string code_name(const Code &code) const;
@@ -219,6 +258,8 @@ class Executor : public BuiltIns {
     std::optional<PendingBlock> pending_;
     State before_;  ///< as the block found it
     std::size_t queued_before_ = 0;
+    std::vector<std::pair<std::size_t, CanonQueue::Record>>
+        patched_;                                      ///< calls that the block changed, as they were
     bool isProbing_ = false, isWaitingInput_ = false;  ///< results are due at the next synch()
     double returned_ = 0;
     bool isReturned_ = false;

@@ -185,7 +185,7 @@ Step Flow::after_block() {
 
 void Flow::commit() {
     executor_.commit();
-    executor_.canon.flush(target_, executor_.count_final_calls());
+    executor_.flush(target_);
 }
 
 Step Flow::fail_block() {

@@ -143,9 +143,6 @@ bool Flow::run_call(const BlockView &view, const OWord &oword) {
         return false;
     }
     executor_.set_returned(0.0, false);
-    if (view.block->comment_count > 0 && !executor_.run_comments(view, program_->line_text(line_read_))) {
-        return false;
-    }
     executor_.commit();
     Call call;
     call.label = label;
@@ -171,7 +168,7 @@ bool Flow::leave(double value, bool hasValue) {
     next_ = call.line + 1;
     repeats_ = std::move(call.repeats);
     executor_.set_returned(hasValue ? value : 0.0, hasValue);
-    if (!executor_.pop_call()) {
+    if (!executor_.pop_call(call.kind == CallKind::FANUC)) {
         return false;
     }
     line_read_ = call.line;
@@ -195,14 +192,10 @@ bool Flow::run_return(const BlockView &view, const OWord &oword) {
             fmt::format("Fanuc 'O{}' subroutine definition must end with 'M99'", names_.text(call.label)),
             oword.column);
     }
-    NameId label = NO_ID;
-    if (!label_of(view, oword, label)) {
-        return false;
-    }
-    if (label != call.label) {
-        return executor_.fault.set(fmt::format("o{} ends or returns from o<{}>: the labels differ",
-                                               names_.text(label), names_.text(call.label)),
-                                   oword.column);
+    if (oword.kind == OKind::ENDSUB && oword.label != call.label) {
+        return executor_.fault.set(
+            fmt::format("o{} endsub: this is subroutine o<{}>", label_text(oword), names_.text(call.label)),
+            oword.column);
     }
     double value = 0.0;
     const bool hasValue = oword.value != NO_ID;

@@ -53,8 +53,10 @@ void Parameters::push_call() {
     frames_.push_back(std::move(frame));
 }
 
-void Parameters::pop_call() {
-    std::copy_n(frames_.back().arguments, ARGUMENT_COUNT, values_.begin() + 1);
+void Parameters::pop_call(bool isSharing) {
+    if (!isSharing) {
+        std::copy_n(frames_.back().arguments, ARGUMENT_COUNT, values_.begin() + 1);
+    }
     frames_.pop_back();
 }
 

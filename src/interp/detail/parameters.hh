@@ -50,7 +50,8 @@ class Parameters {
     void set_named(NameId id, bool isGlobal, double value);
 
     void push_call();  ///< new local names; #1 to #30 are kept aside
-    void pop_call();   ///< the caller's again
+    /// Back to the caller's; #1 to #30 too unless `isSharing` them.
+    void pop_call(bool isSharing);
     int depth() const { return static_cast<int>(frames_.size()); }
 
     void commit() { log_.clear(); }

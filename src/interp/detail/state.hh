@@ -29,6 +29,23 @@ struct CycleWords {
 
 enum class CompSide { OFF, LEFT, RIGHT };
 
+/// A point or a vector in the selected plane: along its first and its second axis.
+struct Point {
+    double x = 0, y = 0;
+};
+
+/// The last compensated move: where the tool's centre goes [program units].
+struct CompElement {
+    bool isSet = false;  ///< there was a move since compensation came on
+    bool isArc = false;
+    Point start, end;
+    Point start_direction, end_direction;  ///< unit vectors
+    Point centre;
+    double radius = 0;
+    int rotation = 1;        ///< of an arc, as in ArcFeed
+    std::size_t record = 0;  ///< its call in the queue
+};
+
 struct State {
     Pose position;               ///< program coordinates [program units, degrees]
     Pose g5x, g92, tool_offset;  ///< [program units, degrees]
@@ -62,6 +79,8 @@ struct State {
     int comp_code = 400;
     double comp_radius = 0;  ///< [program units]
     int comp_orientation = 0;
+    CompElement comp_last;
+    bool isCompExit = false;  ///< compensation was on: the next move must be straight
     CycleWords cycle;
     Pose probed;  ///< [program units]
 };

@@ -80,7 +80,9 @@ std::string reason_text(const Answer &answer) {
     return "refused";
 }
 
-std::string fault_text(const Fault &fault) {
+namespace {
+
+std::string what_failed(const Fault &fault) {
     const int i = fault.index;
     switch (fault.kind) {
     case FaultKind::FOLLOWING_ERROR: return fmt::format("joint {} following error", i);
@@ -103,6 +105,13 @@ std::string fault_text(const Fault &fault) {
     case FaultKind::COUNT: break;
     }
     return "unknown motion fault";
+}
+
+}  // namespace
+
+std::string fault_text(const Fault &fault) {
+    const int line = fault.source.line;
+    return line > 0 ? fmt::format("{} (line {})", what_failed(fault), line) : what_failed(fault);
 }
 
 }  // namespace mw::motion

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Cutter radius compensation: the path moved by the tool's radius to its left or right in the selected plane.
+// The end of a move is not final before the next one is known: in a concave corner both offset paths are cut
+// at their intersection, around a convex one an arc is inserted.
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "interp/detail/executor.hh"
+
+namespace mw::interp::detail {
+namespace {
+
+/// Corners turning by less than this are passed as if straight [rad].
+constexpr double STRAIGHT_ANGLE = 0.05;
+constexpr double TINY = 1e-10;
+
+double dot(Point a, Point b) {
+    return a.x * b.x + a.y * b.y;
+}
+
+double cross(Point a, Point b) {
+    return a.x * b.y - a.y * b.x;
+}
+
+Point sum(Point a, Point b, double scale) {
+    return {a.x + b.x * scale, a.y + b.y * scale};
+}
+
+double distance(Point a, Point b) {
+    return std::hypot(b.x - a.x, b.y - a.y);
+}
+
+Point unit(Point from, Point to) {
+    const double length = distance(from, to);
+    return {(to.x - from.x) / length, (to.y - from.y) / length};
+}
+
+/// A point of a line and its direction, and a circle: the crossing nearest to `near`.
+std::optional<Point> cross_line_circle(Point on_line, Point along, Point centre, double radius, Point near) {
+    const Point foot = sum(on_line, along, dot({centre.x - on_line.x, centre.y - on_line.y}, along));
+    const double off = distance(foot, centre);
+    if (off > radius + TINY) {
+        return std::nullopt;
+    }
+    const double half = std::sqrt(std::fmax(0.0, radius * radius - off * off));
+    const Point a = sum(foot, along, half), b = sum(foot, along, -half);
+    return distance(a, near) < distance(b, near) ? a : b;
+}
+
+std::optional<Point> cross_circles(Point c1, double r1, Point c2, double r2, Point near) {
+    const double apart = distance(c1, c2);
+    if (apart < TINY || apart > r1 + r2 + TINY || apart < std::fabs(r1 - r2) - TINY) {
+        return std::nullopt;
+    }
+    const Point along = unit(c1, c2);
+    const double at = (apart * apart + r1 * r1 - r2 * r2) / (2.0 * apart);
+    const double half = std::sqrt(std::fmax(0.0, r1 * r1 - at * at));
+    const Point foot = sum(c1, along, at), across{-along.y, along.x};
+    const Point a = sum(foot, across, half), b = sum(foot, across, -half);
+    return distance(a, near) < distance(b, near) ? a : b;
+}
+
+std::optional<Point> cross_lines(const CompElement &a, const CompElement &b) {
+    const double sine = cross(a.start_direction, b.start_direction);
+    if (std::fabs(sine) < TINY) {
+        return std::nullopt;
+    }
+    const Point gap{b.end.x - a.end.x, b.end.y - a.end.y};
+    return sum(a.end, a.start_direction, cross(gap, b.start_direction) / sine);
+}
+
+/// Where two offset paths cross, nearest to the programmed corner.
+std::optional<Point> crossing(const CompElement &a, const CompElement &b, Point corner) {
+    if (a.isArc && b.isArc) {
+        return cross_circles(a.centre, a.radius, b.centre, b.radius, corner);
+    }
+    if (a.isArc) {
+        return cross_line_circle(b.end, b.start_direction, a.centre, a.radius, corner);
+    }
+    if (b.isArc) {
+        return cross_line_circle(a.end, a.start_direction, b.centre, b.radius, corner);
+    }
+    return cross_lines(a, b);
+}
+
+/// How far an arc turns from `from` to `to` in its direction, 0 to a full turn [rad].
+double sweep(const CompElement &arc, Point from, Point to) {
+    const Point a{from.x - arc.centre.x, from.y - arc.centre.y}, b{to.x - arc.centre.x, to.y - arc.centre.y};
+    double angle = std::atan2(cross(a, b), dot(a, b)) * (arc.rotation > 0 ? 1.0 : -1.0);
+    return angle < -TINY ? angle + 2.0 * std::numbers::pi : angle;
+}
+
+/// Whether the element, ended or begun at `cut` instead, still runs forwards.
+bool isForward(const CompElement &element, Point start, Point end) {
+    if (!element.isArc) {
+        return dot({end.x - start.x, end.y - start.y}, element.start_direction) > -TINY;
+    }
+    return sweep(element, start, end) <= sweep(element, element.start, element.end) + 1e-6 ||
+           distance(element.start, element.end) < TINY;
+}
+
+}  // namespace
+
+/// The unit vector from the path to the tool's side.
+Point Executor::comp_normal(Point direction) const {
+    return state.comp == CompSide::LEFT ? Point{-direction.y, direction.x} : Point{direction.y, -direction.x};
+}
+
+Pose Executor::in_plane(Pose pose, Point point) const {
+    const PlaneAxes axes = plane_axes();
+    pose[axes.first] = point.x;
+    pose[axes.second] = point.y;
+    return pose;
+}
+
+/// G41 and G42 (tool number D), G41.1 and G42.1 (diameter D), G40.
+bool Executor::do_comp(const Code &code, const BlockValues &values) {
+    if (code.number == 400) {
+        end_comp();
+        return true;
+    }
+    if (state.comp != CompSide::OFF) {
+        return fault.set("Cannot turn cutter radius compensation on when it is on");
+    }
+    if (state.plane != Plane::XY && state.plane != Plane::XZ) {
+        return fault.set("Cutter radius compensation allowed only in XY, XZ planes");
+    }
+    const bool isDynamic = code.number % 10 == 1;
+    double diameter = state.tool_diameter * machine_to_program();
+    state.comp_orientation = state.tool_orientation;
+    if (isDynamic) {
+        if (values.has('l') && !whole_word(values, 'l', state.comp_orientation)) {
+            return false;
+        }
+        if (values.has('l') && state.comp_orientation != 0 && state.plane != Plane::XZ) {
+            return fault.set("L, the orientation of a lathe tool, needs the plane G18",
+                             values.column_of('l'));
+        }
+        diameter = values.at('d');
+        state.comp_orientation = values.has('l') ? state.comp_orientation : 0;
+    } else if (values.has('d')) {
+        int toolno = 0, index = 0;
+        if (!whole_word(values, 'd', toolno)) {
+            return false;
+        }
+        if (toolno < 0) {
+            return fault.set("Negative tool number: D must be 0 or more", values.column_of('d'));
+        }
+        if (toolno == 0) {
+            diameter = 0.0;
+        } else if (!find_tool(toolno, values.column_of('d'), index)) {
+            return false;
+        } else {
+            const ToolEntry entry = tool_entry(index);
+            diameter = entry.diameter * machine_to_program();
+            state.comp_orientation = entry.orientation;
+        }
+    }
+    const bool isLeft = (code.number < 420) == (diameter >= 0.0);
+    state.comp = isLeft ? CompSide::LEFT : CompSide::RIGHT;
+    state.comp_code = code.number;
+    state.comp_radius = std::fabs(diameter) / 2.0;
+    state.comp_last = {};
+    canon.comment(isLeft ? "interpreter: cutter radius compensation on left"
+                         : "interpreter: cutter radius compensation on right");
+    return true;
+}
+
+void Executor::end_comp() {
+    canon.comment("interpreter: cutter radius compensation off");
+    state.isCompExit = state.comp != CompSide::OFF && state.comp_last.isSet;
+    state.comp = CompSide::OFF;
+    state.comp_code = 400;
+    state.comp_last = {};
+}
+
+/// The last move ends at `end` instead, and so do moves after it that left the plane alone.
+void Executor::patch_comp(Point end) {
+    for (std::size_t i = state.comp_last.record; i < canon.size(); ++i) {
+        CanonQueue::Record &record = canon.record(i);
+        if (!CanonQueue::isMove(record)) {
+            continue;
+        }
+        patched_.emplace_back(i, record);
+        record.pose = in_plane(record.pose, end);
+        record.u = record.op == CanonQueue::Op::ARC ? end.x : record.u;
+        record.v = record.op == CanonQueue::Op::ARC ? end.y : record.v;
+    }
+    state.comp_last.end = end;
+}
+
+/// Joins the last element to `next`, whose programmed beginning is `corner`; sets where `next` starts.
+bool Executor::join_comp(CompElement &next, Point corner, bool isRapid) {
+    CompElement &last = state.comp_last;
+    const double angle = std::atan2(cross(last.end_direction, next.start_direction),
+                                    dot(last.end_direction, next.start_direction));
+    const double turn = state.comp == CompSide::LEFT ? angle : -angle;  // > 0: towards the tool
+    const bool isReversal = std::fabs(angle) > std::numbers::pi - 1e-9;
+    next.start = last.end;
+    if (std::fabs(turn) <= STRAIGHT_ANGLE) {
+        return true;
+    }
+    if (turn < 0.0 || isReversal) {
+        next.start = sum(corner, comp_normal(next.start_direction), state.comp_radius);
+        const Pose end = in_plane(state.position, next.start);
+        if (isRapid) {
+            canon.straight_traverse(end);
+        } else {
+            canon.arc_feed({next.start.x, next.start.y, corner.x, corner.y,
+                            state.comp == CompSide::LEFT ? -1 : 1, state.position[plane_axes().normal], end});
+        }
+        return true;
+    }
+    const std::optional<Point> cut = crossing(last, next, corner);
+    const bool isReachable = cut && isForward(last, last.start, *cut) && isForward(next, *cut, next.end);
+    if (!isReachable) {
+        return fault.set("Concave corner cannot be reached by the tool without gouging", 0,
+                         "the moves at the corner are too short for this tool radius");
+    }
+    patch_comp(*cut);
+    next.start = *cut;
+    return true;
+}
+
+bool Executor::comp_straight(bool isRapid, const Pose &end) {
+    const PlaneAxes axes = plane_axes();
+    const Point from{state.position[axes.first], state.position[axes.second]};
+    const Point to{end[axes.first], end[axes.second]};
+    const double length = distance(from, to);
+    CompElement next;
+    if (length > TINY) {
+        next.start_direction = next.end_direction = unit(from, to);
+        next.end = sum(to, comp_normal(next.start_direction), state.comp_radius);
+        next.isSet = true;
+        if (!state.comp_last.isSet) {
+            if (length <= state.comp_radius) {
+                return fault.set(
+                    "Length of cutter compensation entry move is not greater than the tool radius");
+            }
+            next.start = from;
+        } else if (!join_comp(next, from, isRapid)) {
+            return false;
+        }
+    }
+    const Point place = length > TINY ? next.end : (state.comp_last.isSet ? state.comp_last.end : to);
+    if (isRapid) {
+        canon.straight_traverse(in_plane(end, place));
+    } else {
+        send_inverse_time(straight_length(end));
+        canon.straight_feed(in_plane(end, place));
+    }
+    if (length > TINY) {
+        next.record = canon.size() - 1;
+        state.comp_last = next;
+    }
+    state.position = end;
+    return true;
+}
+
+/// The first move under compensation as an arc: from where the tool stands, tangent to the offset path at its
+/// end.
+bool Executor::enter_comp_by_arc(const ArcPlan &arc, CompElement &next) {
+    const PlaneAxes axes = plane_axes();
+    const Point from{state.position[axes.first], state.position[axes.second]};
+    const Point normal = comp_normal(next.end_direction);
+    const Point chord{from.x - next.end.x, from.y - next.end.y};
+    const double along = dot(chord, normal);
+    // The centre lies on the normal at the end, as far from the start as from the end.
+    const bool isInside = (arc.rotation > 0) == (state.comp == CompSide::LEFT);
+    const bool isSameSide = (along > TINY) == isInside && std::fabs(along) > TINY;
+    if (!isSameSide) {
+        return fault.set(
+            "This arc cannot be the entry to cutter radius compensation: the tool is too large for it");
+    }
+    next.start = from;
+    next.centre = sum(next.end, normal, dot(chord, chord) / (2.0 * along));
+    next.radius = distance(next.centre, next.end);
+    return true;
+}
+
+bool Executor::comp_arc(const ArcPlan &arc) {
+    const PlaneAxes axes = plane_axes();
+    const Point from{state.position[axes.first], state.position[axes.second]};
+    const Point to{arc.end[axes.first], arc.end[axes.second]};
+    const double turn = arc.rotation > 0 ? 1.0 : -1.0;
+    CompElement next;
+    next.isArc = next.isSet = true;
+    next.rotation = arc.rotation;
+    next.centre = {arc.first_centre, arc.second_centre};
+    const Point out0 = unit(next.centre, from), out1 = unit(next.centre, to);
+    next.start_direction = {-out0.y * turn, out0.x * turn};
+    next.end_direction = {-out1.y * turn, out1.x * turn};
+    const bool isInside = (arc.rotation > 0) == (state.comp == CompSide::LEFT);
+    const double radius = distance(next.centre, to);
+    if (isInside && radius <= state.comp_radius + TINY) {
+        return fault.set("Tool radius not less than arc radius with comp");
+    }
+    next.radius = radius + (isInside ? -state.comp_radius : state.comp_radius);
+    next.end = sum(next.centre, out1, next.radius);
+    next.start = sum(next.centre, out0, next.radius);
+    if (!state.comp_last.isSet) {
+        if (!enter_comp_by_arc(arc, next)) {
+            return false;
+        }
+    } else if (!join_comp(next, from, false)) {
+        return false;
+    }
+    if (state.feed_mode == FeedMode::INVERSE_TIME) {
+        send_inverse_time(std::hypot(radius * arc_sweep(arc, from.x, from.y),
+                                     arc.end[axes.normal] - state.position[axes.normal]));
+    }
+    canon.arc_feed({next.end.x, next.end.y, next.centre.x, next.centre.y, arc.rotation, arc.end[axes.normal],
+                    in_plane(arc.end, next.end)});
+    next.record = canon.size() - 1;
+    state.comp_last = next;
+    state.position = arc.end;
+    return true;
+}
+
+}  // namespace mw::interp::detail
