@@ -16,7 +16,7 @@ LAYER = {
     'cli': 7,
 }
 # Equal layers that may be used, user -> used.
-ALLOWED_EQUAL = {('geom', 'base'), ('diag', 'base'), ('interp', 'tool'), ('task', 'io'), ('nml', 'hal')}
+ALLOWED_EQUAL = {('geom', 'base'), ('diag', 'base'), ('interp', 'tool'), ('task', 'io'), ('nml', 'hal'), ('machine', 'ui')}
 # Domain libraries know neither HAL nor NML.
 FORBIDDEN = {(user, used) for user in ('kins', 'traj', 'homing', 'interp', 'tool') for used in ('hal', 'nml')}
 # Inside a folder: sub-folders in the order in which they may use each other.

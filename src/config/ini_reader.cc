@@ -39,6 +39,13 @@ void IniReader::know_all(std::string_view section, std::initializer_list<std::st
     }
 }
 
+void IniReader::know_if_ours(std::string_view section, std::string_view key) {
+    const auto found = known_.find(section);
+    if (found != known_.end()) {
+        found->second.insert(std::string(key));
+    }
+}
+
 void IniReader::leave_open(std::string_view section) {
     open_.insert(std::string(section));
 }

@@ -49,6 +49,8 @@ class IniReader {
     /// Says that the key is known to the system though nobody reads it here (displays, later parts).
     void know(std::string_view section, std::string_view key);
     void know_all(std::string_view section, std::initializer_list<std::string_view> keys);
+    /// The same for a key that somebody has used; a section that the system does not read stays not ours.
+    void know_if_ours(std::string_view section, std::string_view key);
     /// Says that other programs define keys of this section, so that none of them is unknown.
     void leave_open(std::string_view section);
 

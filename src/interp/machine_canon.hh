@@ -13,15 +13,16 @@ namespace mw::interp {
 
 enum class FeedKind { RAPID, FEED, RIGID_TAP };
 
-/// Settings in force for a move. Speeds are along the programmed feed length (XYZ if it moves, else UVW, else ABC).
+/// Settings in force for a move. Speeds are along the programmed feed length (XYZ if it moves, else UVW, else
+/// ABC).
 struct MoveSettings {
     FeedKind kind = FeedKind::FEED;
     /// [machine units/s, or degrees/s for moves of ABC alone]; 0 for rapids (as fast as the limits allow).
     /// Inverse time (G93) is already turned into the speed of this move.
     double feed = 0;
     MotionControl control = MotionControl::CONTINUOUS;
-    double tolerance = 0;          ///< G64 P [machine units; the same figure in degrees for ABC]; 0: no bound
-    double naivecam_tolerance = 0; ///< [machine units]
+    double tolerance = 0;  ///< G64 P [machine units; the same figure in degrees for ABC]; 0: no bound
+    double naivecam_tolerance = 0;   ///< [machine units]
     double feed_per_revolution = 0;  ///< > 0: position- or velocity-synched to `synch_spindle`
     int synch_spindle = 0;
     bool isVelocitySynched = false;
@@ -35,14 +36,15 @@ struct LineMove {
 /// A helix about `normal` through `centre`, in the XYZ (or UVW) space of machine coordinates.
 struct ArcMove {
     Pose end;
-    Pose centre;   ///< only the three axes of the arc's space count
-    Pose normal;   ///< unit vector; right-handed: a positive angle turns counterclockwise seen against it
+    Pose centre;  ///< only the three axes of the arc's space count
+    Pose normal;  ///< unit vector; right-handed: a positive angle turns counterclockwise seen against it
     double angle_rad = 0;  ///< total signed sweep, full turns included
     MoveSettings settings;
 };
 
 /// One program in machine coordinates. Everything that is not a move keeps its order between moves.
-/// Default bodies forward nothing: an implementation overrides what it needs; `other` sees each remaining call.
+/// Default bodies forward nothing: an implementation overrides what it needs; `other` sees each remaining
+/// call.
 class MachineCanon {
   public:
     virtual ~MachineCanon() = default;

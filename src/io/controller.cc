@@ -3,8 +3,7 @@
 
 namespace mw::io {
 
-ToolEvent Controller::step(const Inputs &inputs)
-{
+ToolEvent Controller::step(const Inputs &inputs) {
     isChainClosed_ = inputs.emc_enable_in;
     outputs.user_request_enable = mustPulseRequest_;
     mustPulseRequest_ = false;
@@ -14,8 +13,7 @@ ToolEvent Controller::step(const Inputs &inputs)
     return step_handshake(inputs);
 }
 
-ToolEvent Controller::step_handshake(const Inputs &inputs)
-{
+ToolEvent Controller::step_handshake(const Inputs &inputs) {
     if (action_ == ToolAction::IDLE) {
         return ToolEvent::NONE;
     }
@@ -40,33 +38,28 @@ ToolEvent Controller::step_handshake(const Inputs &inputs)
     return isPreparing ? ToolEvent::PREPARED : ToolEvent::CHANGED;
 }
 
-void Controller::enter_estop()
-{
+void Controller::enter_estop() {
     outputs.user_enable_out = false;
     mustPulseRequest_ = false;
 }
 
-void Controller::leave_estop()
-{
+void Controller::leave_estop() {
     outputs.user_enable_out = true;
     mustPulseRequest_ = true;
 }
 
-void Controller::start_prepare(int number, int pocket, int index)
-{
+void Controller::start_prepare(int number, int pocket, int index) {
     outputs.tool_prep_number = number;
     outputs.tool_prep_pocket = pocket;
     outputs.tool_prep_index = index;
     action_ = ToolAction::PREPARING;
 }
 
-void Controller::start_change()
-{
+void Controller::start_change() {
     action_ = ToolAction::CHANGING;
 }
 
-void Controller::abort()
-{
+void Controller::abort() {
     if (action_ != ToolAction::IDLE) {
         mustPulseAbort_ = true;
     }
@@ -75,8 +68,7 @@ void Controller::abort()
     action_ = ToolAction::IDLE;
 }
 
-std::string Controller::waiting_for() const
-{
+std::string Controller::waiting_for() const {
     switch (action_) {
     case ToolAction::IDLE: break;
     case ToolAction::PREPARING:
@@ -89,8 +81,7 @@ std::string Controller::waiting_for() const
     return {};
 }
 
-void Controller::set_tool_in_spindle(int number, int from_pocket)
-{
+void Controller::set_tool_in_spindle(int number, int from_pocket) {
     outputs.tool_number = number;
     outputs.tool_from_pocket = from_pocket;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The discrete I/O controller (requirement E1): e-stop chain, coolant, lube, tool prepare and change handshakes.
-// Pure: inputs in, outputs out, time passed in. Pins: io/pins.hh.
+// The discrete I/O controller (requirement E1): e-stop chain, coolant, lube, tool prepare and change
+// handshakes. Pure: inputs in, outputs out, time passed in. Pins: io/pins.hh.
 #pragma once
 
 #include <cstdint>

@@ -3,8 +3,7 @@
 
 namespace mw::io {
 
-Result<> Pins::create(hal::Hal &hal)
-{
+Result<> Pins::create(hal::Hal &hal) {
     const auto id = hal.new_component("iocontrol");
     if (!id.has_value()) {
         return std::unexpected(id.error());
@@ -25,8 +24,7 @@ Result<> Pins::create(hal::Hal &hal)
     return status;
 }
 
-Result<> Pins::make_inputs(hal::Hal &hal)
-{
+Result<> Pins::make_inputs(hal::Hal &hal) {
     Result<> status;
     const auto in = [&](auto &pin, const char *name) {
         pin.make(hal, comp_id_, std::string("iocontrol.0.") + name, hal::Dir::IN, status);
@@ -41,8 +39,7 @@ Result<> Pins::make_inputs(hal::Hal &hal)
     return status;
 }
 
-Result<> Pins::make_outputs(hal::Hal &hal)
-{
+Result<> Pins::make_outputs(hal::Hal &hal) {
     Result<> status;
     const auto out = [&](auto &pin, const char *name) {
         pin.make(hal, comp_id_, std::string("iocontrol.0.") + name, hal::Dir::OUT, status);
@@ -65,16 +62,14 @@ Result<> Pins::make_outputs(hal::Hal &hal)
     return status;
 }
 
-void Pins::destroy()
-{
+void Pins::destroy() {
     if (hal_ != nullptr) {
         hal_->delete_component(comp_id_);
         hal_ = nullptr;
     }
 }
 
-Inputs Pins::read() const
-{
+Inputs Pins::read() const {
     Inputs inputs;
     inputs.emc_enable_in = emc_enable_in_;
     inputs.tool_prepared = tool_prepared_;
@@ -85,8 +80,7 @@ Inputs Pins::read() const
     return inputs;
 }
 
-void Pins::write(const Outputs &outputs)
-{
+void Pins::write(const Outputs &outputs) {
     user_enable_out_ = outputs.user_enable_out;
     user_request_enable_ = outputs.user_request_enable;
     coolant_mist_ = outputs.coolant_mist;

@@ -21,8 +21,7 @@ struct IdentityMap {
     int num_joints = 0;
 
     /// True when a joint drives this axis.
-    constexpr bool has(int axis) const noexcept
-    {
+    constexpr bool has(int axis) const noexcept {
         for (int j = 0; j < num_joints; ++j) {
             if (axis_of_joint[static_cast<std::size_t>(j)] == axis) {
                 return true;
@@ -42,6 +41,9 @@ class Kinematics {
     virtual Status inverse(const Pose &pose, double *joints) const noexcept = 0;
     /// Not null when each joint is one axis: limits then fold together without any Jacobian.
     virtual const IdentityMap *identity() const noexcept { return nullptr; }
+
+    /// False when calls share hidden state, so that only the servo thread may make them.
+    virtual bool isShareable() const noexcept { return true; }
 
   protected:
     ~Kinematics() = default;

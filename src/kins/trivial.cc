@@ -5,8 +5,7 @@
 
 namespace mw::kins {
 
-bool Trivial::configure(const char *letters) noexcept
-{
+bool Trivial::configure(const char *letters) noexcept {
     const std::size_t count = std::strlen(letters);
     if (count == 0 || count > static_cast<std::size_t>(MAX_JOINTS)) {
         return false;
@@ -25,8 +24,7 @@ bool Trivial::configure(const char *letters) noexcept
     return true;
 }
 
-Status Trivial::forward(const double *joints, Pose &pose) const noexcept
-{
+Status Trivial::forward(const double *joints, Pose &pose) const noexcept {
     // Of a gantry the first joint tells; the axes without joint stay as they are.
     for (int j = map_.num_joints - 1; j >= 0; --j) {
         pose[map_.axis_of_joint[static_cast<std::size_t>(j)]] = joints[j];
@@ -34,8 +32,7 @@ Status Trivial::forward(const double *joints, Pose &pose) const noexcept
     return Status::OK;
 }
 
-Status Trivial::inverse(const Pose &pose, double *joints) const noexcept
-{
+Status Trivial::inverse(const Pose &pose, double *joints) const noexcept {
     for (int j = 0; j < map_.num_joints; ++j) {
         joints[j] = pose[map_.axis_of_joint[static_cast<std::size_t>(j)]];
     }

@@ -8,8 +8,8 @@ namespace mw::kins {
 
 class Trivial final : public Kinematics {
   public:
-    /// Joint n drives axis letters[n], in either case ("XYYZ"). False (and no change) for an empty or too long word or
-    /// a letter that is no axis.
+    /// Joint n drives axis letters[n], in either case ("XYYZ"). False (and no change) for an empty or too
+    /// long word or a letter that is no axis.
     bool configure(const char *letters) noexcept;
     void set_kind(Kind kind) noexcept { kind_ = kind; }
 

@@ -16,10 +16,10 @@ using config::IniReader;
 
 constexpr double INF = std::numeric_limits<double>::infinity();
 
-void read_names(IniReader &ini, MachineConfig &machine)
-{
+void read_names(IniReader &ini, MachineConfig &machine) {
     machine.name = ini.text("EMC", "MACHINE", "machine");
-    ini.know_all("EMC", {"VERSION", "DEBUG", "RCS_DEBUG", "RCS_DEBUG_DEST", "RCS_MAX_ERR", "LOG_LEVEL", "NML_FILE"});
+    ini.know_all("EMC",
+                 {"VERSION", "DEBUG", "RCS_DEBUG", "RCS_DEBUG_DEST", "RCS_MAX_ERR", "LOG_LEVEL", "NML_FILE"});
     machine.display = ini.text("DISPLAY", "DISPLAY", "");
     ini.know("DISPLAY", "PROGRAM_PREFIX");
     for (const char *section : {"DISPLAY", "FILTER", "APPLICATIONS", "PYTHON", "MDI_COMMAND_LIST"}) {
@@ -27,8 +27,7 @@ void read_names(IniReader &ini, MachineConfig &machine)
     }
 }
 
-void read_coordinates(IniReader &ini, MachineConfig &machine)
-{
+void read_coordinates(IniReader &ini, MachineConfig &machine) {
     const std::string text = ini.required_text("TRAJ", "COORDINATES");
     for (const char c : text) {
         const int axis = geom::axis_of_letter(c);
@@ -43,8 +42,7 @@ void read_coordinates(IniReader &ini, MachineConfig &machine)
     }
 }
 
-void read_kinematics(IniReader &ini, MachineConfig &machine)
-{
+void read_kinematics(IniReader &ini, MachineConfig &machine) {
     machine.kinematics = split_words(ini.required_text("KINS", "KINEMATICS"));
     machine.num_joints = static_cast<int>(ini.required_integer("KINS", "JOINTS", 1, MAX_JOINTS));
     std::string letters = machine.coordinates;
@@ -54,7 +52,8 @@ void read_kinematics(IniReader &ini, MachineConfig &machine)
         }
     }
     machine.joint_of_axis.fill(-1);
-    for (int joint = static_cast<int>(std::min<std::size_t>(letters.size(), MAX_JOINTS)) - 1; joint >= 0; --joint) {
+    for (int joint = static_cast<int>(std::min<std::size_t>(letters.size(), MAX_JOINTS)) - 1; joint >= 0;
+         --joint) {
         const int axis = geom::axis_of_letter(letters[static_cast<std::size_t>(joint)]);
         if (axis >= 0) {
             machine.joint_of_axis[static_cast<std::size_t>(axis)] = joint;
@@ -64,12 +63,11 @@ void read_kinematics(IniReader &ini, MachineConfig &machine)
 
 /// One setting of the motion controller from its INI key; nothing when the key is absent.
 void read_parameter(IniReader &ini, const std::string &section, const motion::ParameterInfo &info, int index,
-                    MachineConfig &machine)
-{
+                    MachineConfig &machine) {
     if (info.parameter == motion::Parameter::JOINT_IS_ANGULAR) {
         const bool isAngular = ini.choice(section, "TYPE", "LINEAR", {"LINEAR", "ANGULAR"}) == "ANGULAR";
-        machine.parameters.push_back({static_cast<std::uint16_t>(info.parameter), static_cast<std::int16_t>(index),
-                                      isAngular ? 1.0 : 0.0});
+        machine.parameters.push_back({static_cast<std::uint16_t>(info.parameter),
+                                      static_cast<std::int16_t>(index), isAngular ? 1.0 : 0.0});
         return;
     }
     ini.know(section, info.ini_key);
@@ -91,8 +89,7 @@ void read_parameter(IniReader &ini, const std::string &section, const motion::Pa
 }
 
 void read_scope(IniReader &ini, const std::string &section, motion::ParameterScope scope, int index,
-                MachineConfig &machine)
-{
+                MachineConfig &machine) {
     for (const motion::ParameterInfo &info : motion::PARAMETERS) {
         const bool isElsewhere = info.parameter == motion::Parameter::MAX_FEED_SCALE;
         if (info.scope == scope && !isElsewhere) {
@@ -101,42 +98,62 @@ void read_scope(IniReader &ini, const std::string &section, motion::ParameterSco
     }
 }
 
-void need_section(IniReader &ini, const std::string &section, const std::string &why)
-{
+void need_section(IniReader &ini, const std::string &section, const std::string &why) {
     if (!ini.file().hasSection(section)) {
         ini.sink().error("section [" + section + "] is missing", {ini.file().path(), 0, 0}, why);
     }
 }
 
-void read_joints(IniReader &ini, MachineConfig &machine)
-{
+void read_joints(IniReader &ini, MachineConfig &machine) {
     for (int joint = 0; joint < machine.num_joints; ++joint) {
         const std::string section = "JOINT_" + std::to_string(joint);
         need_section(ini, section, "[KINS]JOINTS = " + std::to_string(machine.num_joints) + " needs it");
         read_scope(ini, section, motion::ParameterScope::JOINT, joint, machine);
         for (const char *key : {"MAX_VELOCITY", "MAX_ACCELERATION"}) {
             const bool isMissing = ini.file().hasSection(section) && ini.file().find(section, key) == nullptr;
-            const bool isZero = !isMissing && ini.file().hasSection(section) && ini.real(section, key, 1.0) <= 0.0;
+            const bool isZero =
+                !isMissing && ini.file().hasSection(section) && ini.real(section, key, 1.0) <= 0.0;
             if (isMissing) {
                 ini.sink().warning('[' + section + ']' + key + " is missing; 1 unit is used",
                                    ini.file().place_of_section(section));
             } else if (isZero) {
-                ini.sink().error('[' + section + ']' + key + " must be above 0", ini.file().find(section, key)->place);
+                ini.sink().error('[' + section + ']' + key + " must be above 0",
+                                 ini.file().find(section, key)->place);
             }
         }
-        ini.know_all(section, {"UNITS", "COMP_FILE", "COMP_FILE_TYPE", "LOCKING_INDEXER", "INPUT_SCALE", "OUTPUT_SCALE",
-                               "ENCODER_SCALE", "SCALE", "P", "I", "D", "FF0", "FF1", "FF2", "BIAS", "DEADBAND",
-                               "MAX_OUTPUT", "OUTPUT_OFFSET", "DIRSETUP", "DIRHOLD", "STEPLEN", "STEPSPACE",
-                               "STEPGEN_MAXVEL", "STEPGEN_MAXACCEL"});
+        ini.know_all(section, {"UNITS",
+                               "COMP_FILE",
+                               "COMP_FILE_TYPE",
+                               "LOCKING_INDEXER",
+                               "INPUT_SCALE",
+                               "OUTPUT_SCALE",
+                               "ENCODER_SCALE",
+                               "SCALE",
+                               "P",
+                               "I",
+                               "D",
+                               "FF0",
+                               "FF1",
+                               "FF2",
+                               "BIAS",
+                               "DEADBAND",
+                               "MAX_OUTPUT",
+                               "OUTPUT_OFFSET",
+                               "DIRSETUP",
+                               "DIRHOLD",
+                               "STEPLEN",
+                               "STEPSPACE",
+                               "STEPGEN_MAXVEL",
+                               "STEPGEN_MAXACCEL"});
         if (ini.file().find(section, "COMP_FILE") != nullptr) {
-            ini.sink().warning('[' + section + "]COMP_FILE is not supported by this version; it has no effect",
+            ini.sink().warning('[' + section +
+                                   "]COMP_FILE is not supported by this version; it has no effect",
                                ini.file().find(section, "COMP_FILE")->place);
         }
     }
 }
 
-void read_axes(IniReader &ini, MachineConfig &machine)
-{
+void read_axes(IniReader &ini, MachineConfig &machine) {
     machine.axis_min.fill(-INF);
     machine.axis_max.fill(INF);
     machine.axis_max_velocity.fill(INF);
@@ -152,50 +169,74 @@ void read_axes(IniReader &ini, MachineConfig &machine)
         const std::string joint = "JOINT_" + std::to_string(std::max(machine.joint_of_axis[i], 0));
         machine.axis_min[i] = ini.real(section, "MIN_LIMIT", -INF);
         machine.axis_max[i] = ini.real(section, "MAX_LIMIT", INF);
-        machine.axis_max_velocity[i] = ini.real(section, "MAX_VELOCITY", ini.real(joint, "MAX_VELOCITY", 1.0));
+        machine.axis_max_velocity[i] =
+            ini.real(section, "MAX_VELOCITY", ini.real(joint, "MAX_VELOCITY", 1.0));
         machine.axis_max_acceleration[i] =
             ini.real(section, "MAX_ACCELERATION", ini.real(joint, "MAX_ACCELERATION", 1.0));
         if (machine.axis_min[i] > machine.axis_max[i]) {
-            ini.sink().error('[' + section + "]MIN_LIMIT is above MAX_LIMIT", ini.file().find(section, "MIN_LIMIT")->place);
+            ini.sink().error('[' + section + "]MIN_LIMIT is above MAX_LIMIT",
+                             ini.file().find(section, "MIN_LIMIT")->place);
         }
         read_scope(ini, section, motion::ParameterScope::AXIS, axis, machine);
-        ini.know_all(section, {"HOME", "WRAPPED_ROTARY", "LOCKING_INDEXER_JOINT", "OFFSET_AV_RATIO", "GEOMETRY"});
+        ini.know_all(section,
+                     {"HOME", "WRAPPED_ROTARY", "LOCKING_INDEXER_JOINT", "OFFSET_AV_RATIO", "GEOMETRY"});
     }
 }
 
-void read_trajectory(IniReader &ini, MachineConfig &machine)
-{
-    const std::string units = ini.choice("TRAJ", "LINEAR_UNITS", "mm", {"mm", "inch", "in", "imperial", "metric"});
+void read_trajectory(IniReader &ini, MachineConfig &machine) {
+    const std::string units =
+        ini.choice("TRAJ", "LINEAR_UNITS", "mm", {"mm", "inch", "in", "imperial", "metric"});
     machine.isMetric = units == "mm" || units == "metric";
     ini.choice("TRAJ", "ANGULAR_UNITS", "degree", {"degree", "degrees", "deg"});
     read_scope(ini, "TRAJ", motion::ParameterScope::MACHINE, 0, machine);
     const auto highest_scale = static_cast<std::uint16_t>(motion::Parameter::MAX_FEED_SCALE);
-    machine.parameters.push_back({highest_scale, 0, ini.real("DISPLAY", "MAX_FEED_OVERRIDE", 1.0, {0.0, 1000.0})});
+    machine.parameters.push_back(
+        {highest_scale, 0, ini.real("DISPLAY", "MAX_FEED_OVERRIDE", 1.0, {0.0, 1000.0})});
     machine.num_spindles = static_cast<int>(ini.integer("TRAJ", "SPINDLES", 1, 1, MAX_SPINDLES));
     for (int spindle = 0; spindle < machine.num_spindles; ++spindle) {
         const std::string section = "SPINDLE_" + std::to_string(spindle);
         read_scope(ini, section, motion::ParameterScope::SPINDLE, spindle, machine);
         ini.know_all(section, {"HOME_SEARCH_VELOCITY", "HOME_SEQUENCE", "INCREMENT"});
     }
-    ini.know_all("TRAJ", {"AXES", "CYCLE_TIME", "DEFAULT_LINEAR_VELOCITY", "DEFAULT_LINEAR_ACCELERATION", "MAX_ANGULAR_VELOCITY",
-                          "DEFAULT_ANGULAR_VELOCITY", "DEFAULT_ANGULAR_ACCELERATION", "MAX_ANGULAR_ACCELERATION",
-                          "DEFAULT_VELOCITY", "MAX_VELOCITY", "DEFAULT_ACCELERATION", "MAX_ACCELERATION", "POSITION_FILE",
-                          "HOME", "TPMOD", "NO_PROBE_JOG_ERROR", "NO_PROBE_HOME_ERROR", "ARC_BLEND_ENABLE",
-                          "ARC_BLEND_FALLBACK_ENABLE", "ARC_BLEND_OPTIMIZATION_DEPTH", "ARC_BLEND_GAP_CYCLES",
-                          "ARC_BLEND_RAMP_FREQ", "ARC_BLEND_KINK_RATIO", "SMOOTH_PLANNER", "SCURVE_PEAK_SCALE"});
+    ini.know_all("TRAJ", {"AXES",
+                          "CYCLE_TIME",
+                          "DEFAULT_LINEAR_VELOCITY",
+                          "DEFAULT_LINEAR_ACCELERATION",
+                          "MAX_ANGULAR_VELOCITY",
+                          "DEFAULT_ANGULAR_VELOCITY",
+                          "DEFAULT_ANGULAR_ACCELERATION",
+                          "MAX_ANGULAR_ACCELERATION",
+                          "DEFAULT_VELOCITY",
+                          "MAX_VELOCITY",
+                          "DEFAULT_ACCELERATION",
+                          "MAX_ACCELERATION",
+                          "POSITION_FILE",
+                          "HOME",
+                          "TPMOD",
+                          "NO_PROBE_JOG_ERROR",
+                          "NO_PROBE_HOME_ERROR",
+                          "ARC_BLEND_ENABLE",
+                          "ARC_BLEND_FALLBACK_ENABLE",
+                          "ARC_BLEND_OPTIMIZATION_DEPTH",
+                          "ARC_BLEND_GAP_CYCLES",
+                          "ARC_BLEND_RAMP_FREQ",
+                          "ARC_BLEND_KINK_RATIO",
+                          "SMOOTH_PLANNER",
+                          "SCURVE_PEAK_SCALE"});
 }
 
-void read_periods(IniReader &ini, MachineConfig &machine)
-{
+void read_periods(IniReader &ini, MachineConfig &machine) {
     machine.servo_period_ns = ini.integer("EMCMOT", "SERVO_PERIOD", 1000000, 10000, 100000000);
-    ini.know_all("EMCMOT", {"EMCMOT", "HOMEMOD", "BASE_PERIOD", "TRAJ_PERIOD", "COMM_TIMEOUT", "COMM_WAIT", "SHMEM_KEY"});
+    ini.know_all("EMCMOT", {"EMCMOT", "HOMEMOD", "BASE_PERIOD", "TRAJ_PERIOD", "COMM_TIMEOUT", "COMM_WAIT",
+                            "SHMEM_KEY"});
     const double cycle_s = ini.real("TASK", "CYCLE_TIME", 0.001, {0.0001, 1.0});
+    // A slow task cycle must not look like one that stands still.
+    machine.task.watchdog_s = std::max(0.5, 10.0 * cycle_s);
     machine.task_period_ns = static_cast<std::int64_t>(std::llround(cycle_s * 1e9));
     ini.know_all("TASK", {"TASK", "MDI_QUEUED_COMMANDS"});
 }
 
-void read_hal(IniReader &ini, MachineConfig &machine)
-{
+void read_hal(IniReader &ini, MachineConfig &machine) {
     const auto files = ini.list("HAL", "HALFILE");
     if (files.empty()) {
         ini.required_text("HAL", "HALFILE");
@@ -213,8 +254,7 @@ void read_hal(IniReader &ini, MachineConfig &machine)
 }
 
 /// Folders for subroutines: SUBROUTINE_PATH (colon separated), then the program prefix.
-std::vector<std::string> subroutine_folders(IniReader &ini)
-{
+std::vector<std::string> subroutine_folders(IniReader &ini) {
     std::vector<std::string> folders;
     std::string path = ini.text("RS274NGC", "SUBROUTINE_PATH", "");
     while (!path.empty()) {
@@ -232,8 +272,7 @@ std::vector<std::string> subroutine_folders(IniReader &ini)
     return folders;
 }
 
-void read_interpreter(IniReader &ini, MachineConfig &machine)
-{
+void read_interpreter(IniReader &ini, MachineConfig &machine) {
     interp::Settings &settings = machine.task.interpreter;
     const std::string parameters = ini.text("RS274NGC", "PARAMETER_FILE", "");
     machine.task.parameter_file = parameters.empty() ? "" : ini.file().resolve_path(parameters);
@@ -241,8 +280,10 @@ void read_interpreter(IniReader &ini, MachineConfig &machine)
     settings.startup_code = ini.text("RS274NGC", "RS274NGC_STARTUP_CODE", "");
     settings.isG92PersistenceDisabled = ini.boolean("RS274NGC", "DISABLE_G92_PERSISTENCE", false);
     settings.isFanucSubDisabled = ini.boolean("RS274NGC", "DISABLE_FANUC_STYLE_SUB", false);
-    settings.center_arc_radius_tolerance_mm = ini.real("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_MM", 0.00127, {0.0});
-    settings.center_arc_radius_tolerance_inch = ini.real("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_INCH", 0.00005, {0.0});
+    settings.center_arc_radius_tolerance_mm =
+        ini.real("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_MM", 0.00127, {0.0});
+    settings.center_arc_radius_tolerance_inch =
+        ini.real("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_INCH", 0.00005, {0.0});
     settings.isLathe = ini.boolean("DISPLAY", "LATHE", false);
     settings.orient_offset_deg = ini.real("RS274NGC", "ORIENT_OFFSET", 0.0);
     for (const config::IniEntry *entry : ini.list("RS274NGC", "REMAP")) {
@@ -250,12 +291,11 @@ void read_interpreter(IniReader &ini, MachineConfig &machine)
     }
     settings.ini_folder = ini.file().folder();
     ini.know_all("RS274NGC", {"USER_M_PATH", "LOG_LEVEL", "LOG_FILE", "INI_VARS", "HAL_PIN_VARS", "FEATURES",
-                              "ON_ABORT_COMMAND", "OWORD_NARGS", "OWORD_WARNONLY", "NO_DOWNCASE_OWORD", "RETAIN_G43",
-                              "PARAMETER_G73_PECK_CLEARANCE", "PARAMETER_G83_PECK_CLEARANCE"});
+                              "ON_ABORT_COMMAND", "OWORD_NARGS", "OWORD_WARNONLY", "NO_DOWNCASE_OWORD",
+                              "RETAIN_G43", "PARAMETER_G73_PECK_CLEARANCE", "PARAMETER_G83_PECK_CLEARANCE"});
 }
 
-void read_io(IniReader &ini, MachineConfig &machine)
-{
+void read_io(IniReader &ini, MachineConfig &machine) {
     const std::string table = ini.text("EMCIO", "TOOL_TABLE", "");
     machine.tool_table_file = table.empty() ? "" : ini.file().resolve_path(table);
     machine.isRandomToolchanger = ini.boolean("EMCIO", "RANDOM_TOOLCHANGER", false);
@@ -263,7 +303,8 @@ void read_io(IniReader &ini, MachineConfig &machine)
         ini.sink().error("[EMCIO]RANDOM_TOOLCHANGER = 1 is not supported by this version",
                          ini.file().find("EMCIO", "RANDOM_TOOLCHANGER")->place);
     }
-    machine.task.sequencer.isToolChangeWithSpindleOn = ini.boolean("EMCIO", "TOOL_CHANGE_WITH_SPINDLE_ON", false);
+    machine.task.sequencer.isToolChangeWithSpindleOn =
+        ini.boolean("EMCIO", "TOOL_CHANGE_WITH_SPINDLE_ON", false);
     task::ToolChangePlace &place = machine.task.tool_change_place;
     place.isQuillRaised = ini.boolean("EMCIO", "TOOL_CHANGE_QUILL_UP", false);
     const config::IniEntry *position = ini.file().find("EMCIO", "TOOL_CHANGE_POSITION");
@@ -278,17 +319,18 @@ void read_io(IniReader &ini, MachineConfig &machine)
             place.coordinates = -1;
         }
         if (place.coordinates < 0) {
-            ini.sink().error("[EMCIO]TOOL_CHANGE_POSITION = '" + position->value + "' is malformed", position->place,
-                             "expected 3, 6 or 9 numbers: X Y Z [A B C [U V W]]");
+            ini.sink().error("[EMCIO]TOOL_CHANGE_POSITION = '" + position->value + "' is malformed",
+                             position->place, "expected 3, 6 or 9 numbers: X Y Z [A B C [U V W]]");
             place.coordinates = 0;
         }
     }
-    ini.know_all("EMCIO", {"EMCIO", "CYCLE_TIME", "TOOL_CHANGE_POSITION", "TOOL_CHANGE_QUILL_UP", "TOOL_CHANGE_AT_G30",
-                           "DB_PROGRAM"});
+    ini.know_all("EMCIO", {"EMCIO", "CYCLE_TIME", "TOOL_CHANGE_POSITION", "TOOL_CHANGE_QUILL_UP",
+                           "TOOL_CHANGE_AT_G30", "DB_PROGRAM"});
     for (const char *key : {"TOOL_CHANGE_AT_G30", "DB_PROGRAM"}) {
         const config::IniEntry *entry = ini.file().find("EMCIO", key);
         if (entry != nullptr) {
-            ini.sink().warning(std::string("[EMCIO]") + key + " is not supported by this version; it has no effect",
+            ini.sink().warning(std::string("[EMCIO]") + key +
+                                   " is not supported by this version; it has no effect",
                                entry->place);
         }
     }
@@ -296,8 +338,7 @@ void read_io(IniReader &ini, MachineConfig &machine)
 
 }  // namespace
 
-MachineConfig read_machine_config(config::IniReader &reader)
-{
+MachineConfig read_machine_config(config::IniReader &reader) {
     MachineConfig machine;
     read_names(reader, machine);
     read_coordinates(reader, machine);

@@ -23,7 +23,7 @@ struct HalStep {
 
 struct MachineConfig {
     std::string name;
-    std::string coordinates;   ///< upper case letters in the order given, "XYZ", "XYYZ"
+    std::string coordinates;  ///< upper case letters in the order given, "XYZ", "XYYZ"
     unsigned axis_mask = 0;
     int num_joints = 0;
     int num_spindles = 1;
@@ -34,7 +34,7 @@ struct MachineConfig {
     std::vector<HalStep> hal_steps;
     bool isTwoPass = false;
     bool hasHalui = false;
-    std::string display;                  ///< the program that the INI names, not started here
+    std::string display;  ///< the program that the INI names, not started here
     std::string tool_table_file;
     bool isRandomToolchanger = false;
     task::Settings task;
@@ -47,8 +47,8 @@ struct MachineConfig {
     std::array<int, MAX_AXES> joint_of_axis{};
 };
 
-/// Reads all sections that the system knows. Problems go to the reader's sink; the result is usable only when the
-/// sink has no errors afterwards. Unknown keys are not reported here: HAL files may still refer to them.
+/// Reads all sections that the system knows. Problems go to the reader's sink; the result is usable only when
+/// the sink has no errors afterwards. Unknown keys are not reported here: HAL files may still refer to them.
 MachineConfig read_machine_config(config::IniReader &reader);
 
 }  // namespace mw::machine

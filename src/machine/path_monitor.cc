@@ -19,48 +19,40 @@ struct Vec3 {
     double x, y, z;
 };
 
-Vec3 xyz(const Pose &p)
-{
+Vec3 xyz(const Pose &p) {
     return {p[0], p[1], p[2]};
 }
 
-Vec3 minus(const Vec3 &a, const Vec3 &b)
-{
+Vec3 minus(const Vec3 &a, const Vec3 &b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
-double dot3(const Vec3 &a, const Vec3 &b)
-{
+double dot3(const Vec3 &a, const Vec3 &b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-Vec3 cross(const Vec3 &a, const Vec3 &b)
-{
+Vec3 cross(const Vec3 &a, const Vec3 &b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-Vec3 in_plane(const Vec3 &v, const Vec3 &normal)
-{
+Vec3 in_plane(const Vec3 &v, const Vec3 &normal) {
     const double k = dot3(v, normal);
     return {v.x - k * normal.x, v.y - k * normal.y, v.z - k * normal.z};
 }
 
-Nearest distance_at(const ProgrammedPiece &piece, const Pose &p, double fraction)
-{
+Nearest distance_at(const ProgrammedPiece &piece, const Pose &p, double fraction) {
     const Pose d = p - point_at(piece, fraction);
     return {fraction, geom::norm_linear(d), geom::norm_abc(d)};
 }
 
-Nearest nearest_on_line(const ProgrammedPiece &piece, const Pose &p)
-{
+Nearest nearest_on_line(const ProgrammedPiece &piece, const Pose &p) {
     const Pose d = piece.end - piece.start;
     const double length2 = geom::dot(d, d);
     const double fraction = length2 > 0 ? geom::dot(p - piece.start, d) / length2 : 1.0;
     return distance_at(piece, p, std::clamp(fraction, 0.0, 1.0));
 }
 
-Nearest nearest_on_arc(const ProgrammedPiece &piece, const Pose &p)
-{
+Nearest nearest_on_arc(const ProgrammedPiece &piece, const Pose &p) {
     const Vec3 n = xyz(piece.normal);
     const Vec3 from = in_plane(minus(xyz(piece.start), xyz(piece.centre)), n);
     const Vec3 here = in_plane(minus(xyz(p), xyz(piece.centre)), n);
@@ -81,8 +73,7 @@ Nearest nearest_on_arc(const ProgrammedPiece &piece, const Pose &p)
 
 }  // namespace
 
-geom::Pose point_at(const ProgrammedPiece &piece, double fraction)
-{
+geom::Pose point_at(const ProgrammedPiece &piece, double fraction) {
     Pose p = piece.start + (piece.end - piece.start) * fraction;
     if (piece.angle_rad == 0) {
         return p;
@@ -106,13 +97,11 @@ geom::Pose point_at(const ProgrammedPiece &piece, double fraction)
     return p;
 }
 
-Nearest nearest_point(const ProgrammedPiece &piece, const geom::Pose &p)
-{
+Nearest nearest_point(const ProgrammedPiece &piece, const geom::Pose &p) {
     return piece.angle_rad == 0 ? nearest_on_line(piece, p) : nearest_on_arc(piece, p);
 }
 
-double feed_length(const ProgrammedPiece &piece)
-{
+double feed_length(const ProgrammedPiece &piece) {
     const Pose d = piece.end - piece.start;
     if (piece.angle_rad != 0) {
         const Vec3 n = xyz(piece.normal);
@@ -128,14 +117,12 @@ double feed_length(const ProgrammedPiece &piece)
     return second > 0 ? second : geom::norm_abc(d);
 }
 
-void PathMonitor::start(const Pose &position)
-{
+void PathMonitor::start(const Pose &position) {
     last_end_ = position;
     history_ = {position, position};
 }
 
-void PathMonitor::on_move(const motion::PathBody &body)
-{
+void PathMonitor::on_move(const motion::PathBody &body) {
     ProgrammedPiece piece;
     piece.start = last_end_;
     if (const auto *line = std::get_if<motion::Line>(&body)) {
@@ -159,8 +146,7 @@ void PathMonitor::on_move(const motion::PathBody &body)
     pieces_.push_back(piece);
 }
 
-void PathMonitor::on_sample(const motion::TraceSample &sample)
-{
+void PathMonitor::on_sample(const motion::TraceSample &sample) {
     const Pose &p = sample.carte_pos_cmd;
     const Pose velocity = (p - history_[0]) * (1.0 / period_s_);
     const Pose before = (history_[0] - history_[1]) * (1.0 / period_s_);
@@ -177,8 +163,7 @@ void PathMonitor::on_sample(const motion::TraceSample &sample)
     take_point(p);
 }
 
-void PathMonitor::follow(const Pose &p)
-{
+void PathMonitor::follow(const Pose &p) {
     if (pieces_.empty()) {
         return;
     }
@@ -196,15 +181,15 @@ void PathMonitor::follow(const Pose &p)
     figures_.deviation_angular = std::max(figures_.deviation_angular, here.angular);
 }
 
-void PathMonitor::take_point(const Pose &p)
-{
+void PathMonitor::take_point(const Pose &p) {
     if (until_point_ > 0) {
         --until_point_;
         return;
     }
     until_point_ = stride_ - 1;
     const bool isRapid = !pieces_.empty() && pieces_.front().isRapid;
-    points_.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]), isRapid});
+    points_.push_back(
+        {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]), isRapid});
     if (points_.size() < MAX_POINTS) {
         return;
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Watches a run: distance between the programmed path and the commanded one, peaks, lengths, points for a picture.
+// Watches a run: distance between the programmed path and the commanded one, peaks, lengths, points for a
+// picture.
 #pragma once
 
 #include <array>
@@ -16,16 +17,16 @@ namespace mw::machine {
 /// A programmed move with its start.
 struct ProgrammedPiece {
     geom::Pose start, end;
-    geom::Pose centre, normal;   ///< arcs only
-    double angle_rad = 0;        ///< 0: a line
+    geom::Pose centre, normal;  ///< arcs only
+    double angle_rad = 0;       ///< 0: a line
     bool isRapid = false;
 };
 
 /// The nearest point of a piece: the position along it and the distances of the two groups of coordinates.
 struct Nearest {
-    double fraction = 0;      ///< 0 start, 1 end
-    double linear = 0;        ///< over XYZUVW [machine units]
-    double angular = 0;       ///< over ABC [degrees]
+    double fraction = 0;  ///< 0 start, 1 end
+    double linear = 0;    ///< over XYZUVW [machine units]
+    double angular = 0;   ///< over ABC [degrees]
     double combined() const { return std::hypot(linear, angular); }
 };
 /// The pose at a fraction of a piece.
@@ -35,9 +36,9 @@ Nearest nearest_point(const ProgrammedPiece &piece, const geom::Pose &p);
 double feed_length(const ProgrammedPiece &piece);
 
 struct RunFigures {
-    double cutting_length = 0, rapid_length = 0;        ///< [machine units]
+    double cutting_length = 0, rapid_length = 0;                        ///< [machine units]
     std::array<double, MAX_AXES> peak_velocity{}, peak_acceleration{};  ///< [units/s], [units/s2]
-    double deviation_linear = 0, deviation_angular = 0; ///< largest [machine units], [degrees]
+    double deviation_linear = 0, deviation_angular = 0;  ///< largest [machine units], [degrees]
     std::uint64_t samples = 0;
 };
 
@@ -64,7 +65,7 @@ class PathMonitor {
 
     double period_s_;
     RunFigures figures_;
-    std::deque<ProgrammedPiece> pieces_;   ///< from the one being followed on
+    std::deque<ProgrammedPiece> pieces_;  ///< from the one being followed on
     geom::Pose last_end_{};
     std::array<geom::Pose, 2> history_{};  ///< the two samples before
     std::vector<PathPoint> points_;

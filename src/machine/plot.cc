@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "machine/plot.hh"
 
-#include <cairo-svg.h>
 #include <cairo.h>
 
 #include <algorithm>
 #include <array>
+#include <cairo-svg.h>
 #include <cmath>
 #include <memory>
 
@@ -21,14 +21,12 @@ struct Flat {
 };
 using Projection = Flat (*)(const PathPoint &);
 
-Flat from_above(const PathPoint &p)
-{
+Flat from_above(const PathPoint &p) {
     return {p.x, -p.y};
 }
 
 /// A view from the front right, 35 degrees above.
-Flat from_an_angle(const PathPoint &p)
-{
+Flat from_an_angle(const PathPoint &p) {
     constexpr double C = 0.8660254037844387, S = 0.5;
     constexpr double TILT = 0.574, RISE = 0.819;
     return {C * p.x - S * p.y, -(TILT * (S * p.x + C * p.y) + RISE * p.z)};
@@ -43,8 +41,7 @@ struct Scale {
     Flat operator()(const Flat &p) const { return {p.x * factor + dx, p.y * factor + dy}; }
 };
 
-Scale fit(const std::vector<PathPoint> &points, Projection project, const Window &window)
-{
+Scale fit(const std::vector<PathPoint> &points, Projection project, const Window &window) {
     Flat low{1e300, 1e300}, high{-1e300, -1e300};
     for (const PathPoint &point : points) {
         const Flat p = project(point);
@@ -57,8 +54,8 @@ Scale fit(const std::vector<PathPoint> &points, Projection project, const Window
             window.top + (window.height - height * factor) / 2 - low.y * factor};
 }
 
-void draw_moves(cairo_t *cr, const std::vector<PathPoint> &points, Projection project, const Scale &scale, bool isRapid)
-{
+void draw_moves(cairo_t *cr, const std::vector<PathPoint> &points, Projection project, const Scale &scale,
+                bool isRapid) {
     if (isRapid) {
         cairo_set_source_rgba(cr, 0.85, 0.35, 0.2, 0.5);
     } else {
@@ -87,8 +84,7 @@ void draw_moves(cairo_t *cr, const std::vector<PathPoint> &points, Projection pr
     cairo_stroke(cr);
 }
 
-void draw_scale_bar(cairo_t *cr, const Scale &scale, const Window &window, const std::string &unit)
-{
+void draw_scale_bar(cairo_t *cr, const Scale &scale, const Window &window, const std::string &unit) {
     double length = std::pow(10.0, std::floor(std::log10(window.width / scale.factor / 3.0)));
     length *= window.width / scale.factor / length > 12 ? 2 : 1;
     const double y = window.top + window.height + 24;
@@ -101,8 +97,8 @@ void draw_scale_bar(cairo_t *cr, const Scale &scale, const Window &window, const
     cairo_show_text(cr, fmt::format("{:g} {}", length, unit).c_str());
 }
 
-void draw(cairo_t *cr, const std::vector<PathPoint> &points, const std::string &title, const std::string &unit)
-{
+void draw(cairo_t *cr, const std::vector<PathPoint> &points, const std::string &title,
+          const std::string &unit) {
     cairo_set_source_rgb(cr, 1, 1, 1);
     cairo_paint(cr);
     cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
@@ -130,26 +126,27 @@ void draw(cairo_t *cr, const std::vector<PathPoint> &points, const std::string &
     cairo_show_text(cr, "rapid");
 }
 
-bool hasEnding(const std::string &path, const std::string &ending)
-{
-    return path.size() > ending.size() && path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
+bool hasEnding(const std::string &path, const std::string &ending) {
+    return path.size() > ending.size() &&
+           path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
 }
 
 }  // namespace
 
 Result<> plot_path(const std::vector<PathPoint> &points, const std::string &title, const std::string &unit,
-                   const std::string &path)
-{
+                   const std::string &path) {
     const bool isPng = hasEnding(path, ".png");
     if (!isPng && !hasEnding(path, ".svg")) {
         return fail("a plot is a .png or .svg file, not '" + path + "'");
     }
     const std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> surface(
-        isPng ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(WIDTH), static_cast<int>(HEIGHT))
+        isPng ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(WIDTH),
+                                           static_cast<int>(HEIGHT))
               : cairo_svg_surface_create(path.c_str(), WIDTH, HEIGHT),
         &cairo_surface_destroy);
     {
-        const std::unique_ptr<cairo_t, decltype(&cairo_destroy)> cr(cairo_create(surface.get()), &cairo_destroy);
+        const std::unique_ptr<cairo_t, decltype(&cairo_destroy)> cr(cairo_create(surface.get()),
+                                                                    &cairo_destroy);
         draw(cr.get(), points, title, unit);
     }
     cairo_status_t status = CAIRO_STATUS_SUCCESS;

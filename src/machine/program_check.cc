@@ -21,8 +21,7 @@ constexpr double LIMIT_SLACK = 1e-6;
 
 class CheckCanon final : public interp::MachineCanon {
   public:
-    CheckCanon(const MachineConfig &machine, diag::Sink &sink) : machine_(machine), sink_(sink)
-    {
+    CheckCanon(const MachineConfig &machine, diag::Sink &sink) : machine_(machine), sink_(sink) {
         result.lowest.fill(1e300);
         result.highest.fill(-1e300);
     }
@@ -31,22 +30,19 @@ class CheckCanon final : public interp::MachineCanon {
     geom::Pose position;
     int tool = 0, selected = -1;
 
-    void begin_block(const interp::BlockRef &block) override
-    {
+    void begin_block(const interp::BlockRef &block) override {
         ++result.blocks;
         file_ = block.file;
         text_ = block.text;
         line_ = block.line;
     }
-    void line(const interp::LineMove &move) override
-    {
+    void line(const interp::LineMove &move) override {
         ProgrammedPiece piece;
         piece.start = position;
         piece.end = move.end;
         take(piece, move.settings.kind == interp::FeedKind::RAPID);
     }
-    void arc(const interp::ArcMove &move) override
-    {
+    void arc(const interp::ArcMove &move) override {
         ProgrammedPiece piece;
         piece.start = position;
         piece.end = move.end;
@@ -57,8 +53,7 @@ class CheckCanon final : public interp::MachineCanon {
         take(piece, false);
     }
     void probe(const interp::LineMove &move, interp::ProbeKind) override { line(move); }
-    void rigid_tap(const interp::LineMove &move, double) override
-    {
+    void rigid_tap(const interp::LineMove &move, double) override {
         const geom::Pose back = position;
         line(move);
         position = back;
@@ -100,8 +95,7 @@ class CheckCanon final : public interp::MachineCanon {
     void user_m_code(int, double, double) override {}
 
   private:
-    void take(const ProgrammedPiece &piece, bool isRapid)
-    {
+    void take(const ProgrammedPiece &piece, bool isRapid) {
         ++result.moves;
         result.hasMoves = true;
         (isRapid ? result.rapid_length : result.cutting_length) += feed_length(piece);
@@ -109,8 +103,7 @@ class CheckCanon final : public interp::MachineCanon {
         position = piece.end;
     }
 
-    void check_point(const geom::Pose &p)
-    {
+    void check_point(const geom::Pose &p) {
         for (int axis = 0; axis < MAX_AXES; ++axis) {
             if ((machine_.axis_mask & (1U << axis)) != 0) {
                 check_coordinate(axis, p[axis]);
@@ -118,8 +111,7 @@ class CheckCanon final : public interp::MachineCanon {
         }
     }
 
-    void check_coordinate(int axis, double value)
-    {
+    void check_coordinate(int axis, double value) {
         const auto i = static_cast<std::size_t>(axis);
         result.lowest[i] = std::min(result.lowest[i], value);
         result.highest[i] = std::max(result.highest[i], value);
@@ -128,19 +120,21 @@ class CheckCanon final : public interp::MachineCanon {
             return;
         }
         const double limit = isLow ? machine_.axis_min[i] : machine_.axis_max[i];
-        report(fmt::format("the move goes to {} = {:.4f}, beyond the {} limit {:g} of axis {}", geom::AXIS_LETTERS[i],
-                           value, isLow ? "lower" : "upper", limit, geom::AXIS_LETTERS[i]),
+        report(fmt::format("the move goes to {} = {:.4f}, beyond the {} limit {:g} of axis {}",
+                           geom::AXIS_LETTERS[i], value, isLow ? "lower" : "upper", limit,
+                           geom::AXIS_LETTERS[i]),
                fmt::format("[AXIS_{}]{}_LIMIT", geom::AXIS_LETTERS[i], isLow ? "MIN" : "MAX"));
     }
 
-    /// The quarter points of the circle about each principal axis reach furthest; sixty-four chords bound them.
-    void check_arc(const ProgrammedPiece &piece)
-    {
+    /// The quarter points of the circle about each principal axis reach furthest; sixty-four chords bound
+    /// them.
+    void check_arc(const ProgrammedPiece &piece) {
         constexpr int STEPS = 64;
         const double radius = std::sqrt(std::max(0.0, radius_squared(piece)));
         for (int axis = 0; axis < 3; ++axis) {
             const auto i = static_cast<std::size_t>(axis);
-            const double reach = radius * std::sqrt(std::max(0.0, 1.0 - piece.normal[axis] * piece.normal[axis]));
+            const double reach =
+                radius * std::sqrt(std::max(0.0, 1.0 - piece.normal[axis] * piece.normal[axis]));
             const bool mayReach = piece.centre[axis] - reach < machine_.axis_min[i] ||
                                   piece.centre[axis] + reach > machine_.axis_max[i];
             if (!mayReach) {
@@ -153,8 +147,7 @@ class CheckCanon final : public interp::MachineCanon {
         }
     }
 
-    static double radius_squared(const ProgrammedPiece &piece)
-    {
+    static double radius_squared(const ProgrammedPiece &piece) {
         const geom::Pose d = piece.start - piece.centre;
         double along = 0, all = 0;
         for (int axis = 0; axis < 3; ++axis) {
@@ -164,13 +157,13 @@ class CheckCanon final : public interp::MachineCanon {
         return all - along * along;
     }
 
-    void report(std::string message, std::string hint)
-    {
+    void report(std::string message, std::string hint) {
         if (line_ == reported_line_ || sink_.count_errors() >= MAX_CHECK_ERRORS) {
             return;
         }
         reported_line_ = line_;
-        sink_.report({diag::Severity::ERROR, {std::move(message), {file_, line_, 1}, std::move(hint)}, {}, text_});
+        sink_.report(
+            {diag::Severity::ERROR, {std::move(message), {file_, line_, 1}, std::move(hint)}, {}, text_});
     }
 
     const MachineConfig &machine_;
@@ -183,8 +176,7 @@ class CheckCanon final : public interp::MachineCanon {
 class CheckWorld final : public interp::World {
   public:
     CheckWorld(const MachineConfig &machine, const CheckCanon &canon) : machine_(machine), canon_(canon) {}
-    interp::MachineSnapshot snapshot() const override
-    {
+    interp::MachineSnapshot snapshot() const override {
         interp::MachineSnapshot s;
         s.position = canon_.position;
         s.probed_position = canon_.position;
@@ -206,8 +198,7 @@ class CheckWorld final : public interp::World {
 }  // namespace
 
 CheckResult check_program(const MachineConfig &machine, const std::string &program, interp::ToolSource &tools,
-                          interp::ParameterSource &parameters, diag::Sink &sink)
-{
+                          interp::ParameterSource &parameters, diag::Sink &sink) {
     CheckCanon canon(machine, sink);
     CheckWorld world(machine, canon);
     interp::MachineFrame frame(canon, machine.task.machine_units);

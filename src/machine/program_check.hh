@@ -14,13 +14,14 @@ namespace mw::machine {
 
 struct CheckResult {
     std::uint64_t blocks = 0, moves = 0;
-    double cutting_length = 0, rapid_length = 0;        ///< [machine units]
-    std::array<double, MAX_AXES> lowest{}, highest{};   ///< reached, machine coordinates
+    double cutting_length = 0, rapid_length = 0;       ///< [machine units]
+    std::array<double, MAX_AXES> lowest{}, highest{};  ///< reached, machine coordinates
     bool hasMoves = false;
 };
 
-/// Runs the interpreter over the whole program. Errors (syntax, limits, endless loops) go to `sink` with their places;
-/// at most `MAX_CHECK_ERRORS` of them. Tool table and parameter file are read and never written.
+/// Runs the interpreter over the whole program. Errors (syntax, limits, endless loops) go to `sink` with
+/// their places; at most `MAX_CHECK_ERRORS` of them. Tool table and parameter file are read and never
+/// written.
 CheckResult check_program(const MachineConfig &machine, const std::string &program, interp::ToolSource &tools,
                           interp::ParameterSource &parameters, diag::Sink &sink);
 

@@ -36,7 +36,7 @@ class RealtimeScheduler final : public Scheduler {
     PeriodicStats stats(PeriodicId id) const override;
 
     /// False in simulation mode.
-    bool isRealtime() const noexcept;
+    bool isRealtime() const noexcept override;
     /// Why it is not realtime; empty when it is.
     const std::string &missing() const noexcept;
 

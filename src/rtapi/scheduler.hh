@@ -41,6 +41,8 @@ class Scheduler {
     /// Nanoseconds since an arbitrary start; what rtapi_get_time returns. [any thread, realtime-safe]
     virtual std::int64_t now_ns() const noexcept = 0;
     virtual bool isVirtual() const noexcept = 0;
+    /// True when threads run with realtime priority and locked memory.
+    virtual bool isRealtime() const noexcept { return false; }
     /// Starts calling `spec.function` every period from the next multiple on. [not realtime]
     virtual Result<PeriodicId> add(const PeriodicSpec &spec) = 0;
     /// After it returns the function is not running and will not be called again. [not realtime]

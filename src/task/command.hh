@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What an operator, a screen or another program asks of task. Each command ends as done or refused with a reason.
+// What an operator, a screen or another program asks of task. Each command ends as done or refused with a
+// reason.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +9,12 @@
 
 namespace mw::task {
 
-enum class State : std::uint8_t { ESTOP = 1, ESTOP_RESET = 2, OFF = 3, ON = 4 };  ///< numbers of the reference's status
+enum class State : std::uint8_t {
+    ESTOP = 1,
+    ESTOP_RESET = 2,
+    OFF = 3,
+    ON = 4
+};  ///< numbers of the reference's status
 enum class Mode : std::uint8_t { MANUAL = 1, AUTO = 2, MDI = 3 };
 
 struct SetState {
@@ -78,9 +84,10 @@ struct Coolant {
 };
 struct LoadToolTable {};
 
-using Command = std::variant<SetState, SetMode, OpenProgram, RunProgram, StepProgram, PauseProgram, ResumeProgram, AbortAll,
-                             Mdi, SetOptionalStop, SetBlockDelete, SetOverride, SetMaxVelocity, SetTeleop, HomeJoint,
-                             UnhomeJoint, Jog, OverrideLimits, Spindle, SpindleBrake, Coolant, LoadToolTable>;
+using Command =
+    std::variant<SetState, SetMode, OpenProgram, RunProgram, StepProgram, PauseProgram, ResumeProgram,
+                 AbortAll, Mdi, SetOptionalStop, SetBlockDelete, SetOverride, SetMaxVelocity, SetTeleop,
+                 HomeJoint, UnhomeJoint, Jog, OverrideLimits, Spindle, SpindleBrake, Coolant, LoadToolTable>;
 
 /// How far a command has come. A command that takes time (homing, MDI, a program) is STARTED until it ends.
 enum class Progress : std::uint8_t { STARTED, DONE, REFUSED, FAILED };

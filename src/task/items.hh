@@ -123,10 +123,11 @@ struct OffsetsItem {
 };
 
 using ItemBody =
-    std::variant<LineItem, ArcItem, ProbeItem, RigidTapItem, DwellItem, SpindleModeItem, SpindleSpeedItem, SpindleOnItem,
-                 SpindleOffItem, SpindleOrientItem, WaitOrientItem, SelectToolItem, ChangeToolItem, ChangeToolNumberItem,
-                 ToolEntryItem, CoolantItem, OverrideSwitchItem, DigitalOutputItem, AnalogOutputItem, WaitInputItem,
-                 StopItem, EndItem, MessageItem, PrintItem, LogItem, UserCodeItem, ToolOffsetItem, OffsetsItem>;
+    std::variant<LineItem, ArcItem, ProbeItem, RigidTapItem, DwellItem, SpindleModeItem, SpindleSpeedItem,
+                 SpindleOnItem, SpindleOffItem, SpindleOrientItem, WaitOrientItem, SelectToolItem,
+                 ChangeToolItem, ChangeToolNumberItem, ToolEntryItem, CoolantItem, OverrideSwitchItem,
+                 DigitalOutputItem, AnalogOutputItem, WaitInputItem, StopItem, EndItem, MessageItem,
+                 PrintItem, LogItem, UserCodeItem, ToolOffsetItem, OffsetsItem>;
 
 struct Item {
     motion::SourceTag source;

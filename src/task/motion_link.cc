@@ -11,15 +11,13 @@ constexpr std::uint32_t PATH_WINDOW = 3000;
 
 }  // namespace
 
-MotionLink::MotionLink(motion::Channels &channels) : channels_(channels)
-{
+MotionLink::MotionLink(motion::Channels &channels) : channels_(channels) {
     if (channels_.status.read(status_)) {
         epoch_ = status_.epoch;
     }
 }
 
-MotionLink::News MotionLink::update()
-{
+MotionLink::News MotionLink::update() {
     News news;
     news.isStatusFresh = channels_.status.read(status_);
     channels_.task_loops.fetch_add(1, std::memory_order_relaxed);
@@ -35,8 +33,7 @@ MotionLink::News MotionLink::update()
     return news;
 }
 
-void MotionLink::take_answers(News &news)
-{
+void MotionLink::take_answers(News &news) {
     motion::Answer answer;
     while (channels_.servo_answers.pop(answer)) {
         pending_.erase(std::remove(pending_.begin(), pending_.end(), answer.id), pending_.end());
@@ -56,8 +53,7 @@ void MotionLink::take_answers(News &news)
     }
 }
 
-motion::CommandId MotionLink::send(motion::CommandBody body)
-{
+motion::CommandId MotionLink::send(motion::CommandBody body) {
     backlog_.push_back({next_id_++, epoch_, body});
     pending_.push_back(backlog_.back().id);
     const motion::CommandId id = backlog_.back().id;
@@ -65,8 +61,7 @@ motion::CommandId MotionLink::send(motion::CommandBody body)
     return id;
 }
 
-void MotionLink::hand_over()
-{
+void MotionLink::hand_over() {
     std::size_t sent = 0;
     while (sent < backlog_.size() && channels_.immediate.push(backlog_[sent])) {
         ++sent;
@@ -74,8 +69,7 @@ void MotionLink::hand_over()
     backlog_.erase(backlog_.begin(), backlog_.begin() + static_cast<std::ptrdiff_t>(sent));
 }
 
-bool MotionLink::push_path(const motion::PathBody &body)
-{
+bool MotionLink::push_path(const motion::PathBody &body) {
     if (!channels_.path.push({next_id_, epoch_, body})) {
         return false;
     }
@@ -84,25 +78,21 @@ bool MotionLink::push_path(const motion::PathBody &body)
     return true;
 }
 
-bool MotionLink::hasPathRoom() const
-{
+bool MotionLink::hasPathRoom() const {
     return path_outstanding_ < PATH_WINDOW && channels_.path.size() + 2 < channels_.path.capacity();
 }
 
-void MotionLink::flush()
-{
+void MotionLink::flush() {
     if (hasUnflushedPath() && push_path(motion::Flush{})) {
         flushed_id_ = last_path_id_;
     }
 }
 
-bool MotionLink::isPathComplete() const
-{
+bool MotionLink::isPathComplete() const {
     return completed_id_ >= last_path_id_ && !hasUnflushedPath();
 }
 
-void MotionLink::abort()
-{
+void MotionLink::abort() {
     ++epoch_;
     send(motion::Abort{epoch_});
     // Whatever was handed over is stale now: its answers are not waited for.

@@ -18,7 +18,7 @@ class MotionLink {
     struct News {
         std::vector<motion::Answer> refused;  ///< REFUSED only; STALE ones belong to work that was aborted
         std::vector<motion::Fault> faults;
-        bool isStatusFresh = false;           ///< false: the realtime side died while writing
+        bool isStatusFresh = false;  ///< false: the realtime side died while writing
     };
     /// Takes status, answers and faults, and tells the realtime side that task is alive. Once a task cycle.
     News update();
@@ -54,10 +54,10 @@ class MotionLink {
     std::vector<motion::Command> backlog_;
     std::vector<motion::CommandId> pending_;  ///< immediate commands not yet answered, in order
     motion::CommandId next_id_ = 1;
-    motion::CommandId last_path_id_ = 0;      ///< handed over
-    motion::CommandId flushed_id_ = 0;        ///< the last Flush
-    motion::CommandId completed_id_ = 0;      ///< the last path command answered
-    motion::CommandId aborted_id_ = 0;        ///< path commands up to this one belong to aborted work
+    motion::CommandId last_path_id_ = 0;  ///< handed over
+    motion::CommandId flushed_id_ = 0;    ///< the last Flush
+    motion::CommandId completed_id_ = 0;  ///< the last path command answered
+    motion::CommandId aborted_id_ = 0;    ///< path commands up to this one belong to aborted work
     motion::Epoch epoch_ = 0;
     std::uint32_t path_outstanding_ = 0;
 };

@@ -21,13 +21,11 @@ struct Overloaded : Handlers... {
 template <class... Handlers>
 Overloaded(Handlers...) -> Overloaded<Handlers...>;
 
-std::int64_t to_ns(double seconds)
-{
+std::int64_t to_ns(double seconds) {
     return static_cast<std::int64_t>(std::llround(seconds * static_cast<double>(NS_PER_S)));
 }
 
-motion::PathMode path_mode(interp::MotionControl control)
-{
+motion::PathMode path_mode(interp::MotionControl control) {
     switch (control) {
     case interp::MotionControl::EXACT_STOP: return motion::PathMode::EXACT_STOP;
     case interp::MotionControl::EXACT_PATH: return motion::PathMode::EXACT_PATH;
@@ -38,14 +36,12 @@ motion::PathMode path_mode(interp::MotionControl control)
 
 }  // namespace
 
-Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, ToolStore &tools, SequencerEvents events,
-                     SequencerSettings settings)
-    : queue_(queue), motion_(motion), io_(io), tools_(tools), events_(std::move(events)), settings_(settings)
-{
-}
+Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, ToolStore &tools,
+                     SequencerEvents events, SequencerSettings settings)
+    : queue_(queue), motion_(motion), io_(io), tools_(tools), events_(std::move(events)),
+      settings_(settings) {}
 
-Sequencer::Need Sequencer::need_of(const ItemBody &body)
-{
+Sequencer::Need Sequencer::need_of(const ItemBody &body) {
     return std::visit(
         Overloaded{
             [](const LineItem &) { return Need::NOTHING; },
@@ -68,8 +64,7 @@ Sequencer::Need Sequencer::need_of(const ItemBody &body)
         body);
 }
 
-void Sequencer::step(std::int64_t now_ns)
-{
+void Sequencer::step(std::int64_t now_ns) {
     for (int i = 0; i < ITEMS_PER_CYCLE; ++i) {
         if (!isWaitOver(now_ns) || isStepDone_) {
             return;
@@ -89,8 +84,7 @@ void Sequencer::step(std::int64_t now_ns)
     }
 }
 
-bool Sequencer::isStepBoundary(const Item &item)
-{
+bool Sequencer::isStepBoundary(const Item &item) {
     if (!isStepping_) {
         return false;
     }
@@ -105,15 +99,13 @@ bool Sequencer::isStepBoundary(const Item &item)
     return true;
 }
 
-void Sequencer::start_step()
-{
+void Sequencer::start_step() {
     isStepping_ = true;
     isStepDone_ = false;
     step_block_ = 0;
 }
 
-bool Sequencer::isReady(const Item &item)
-{
+bool Sequencer::isReady(const Item &item) {
     const Need need = need_of(item.body);
     if (need == Need::NOTHING) {
         return true;
@@ -123,8 +115,7 @@ bool Sequencer::isReady(const Item &item)
     return motion_.isPathComplete() && (need == Need::MOTION || isIoIdle);
 }
 
-bool Sequencer::execute(const Item &item, std::int64_t now_ns)
-{
+bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
     return std::visit(
         Overloaded{
             [&](const LineItem &) { return push_move(item); },
@@ -181,12 +172,14 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns)
                 return true;
             },
             [&](const DigitalOutputItem &output) {
-                return !output.isSynched || motion_.push_path(motion::SynchedDigitalOutput{output.index, output.isOn})
+                return !output.isSynched ||
+                               motion_.push_path(motion::SynchedDigitalOutput{output.index, output.isOn})
                            ? (execute_output(item), true)
                            : false;
             },
             [&](const AnalogOutputItem &output) {
-                return !output.isSynched || motion_.push_path(motion::SynchedAnalogOutput{output.index, output.value})
+                return !output.isSynched ||
+                               motion_.push_path(motion::SynchedAnalogOutput{output.index, output.value})
                            ? (execute_output(item), true)
                            : false;
             },
@@ -199,8 +192,8 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns)
         item.body);
 }
 
-motion::MoveTerms Sequencer::terms_of(const interp::MoveSettings &settings, motion::MotionType type, const Item &item)
-{
+motion::MoveTerms Sequencer::terms_of(const interp::MoveSettings &settings, motion::MotionType type,
+                                      const Item &item) {
     motion::MoveTerms terms;
     terms.type = settings.kind == interp::FeedKind::RAPID ? motion::MotionType::TRAVERSE : type;
     terms.mode = path_mode(settings.control);
@@ -215,8 +208,7 @@ motion::MoveTerms Sequencer::terms_of(const interp::MoveSettings &settings, moti
     return terms;
 }
 
-bool Sequencer::push_move(const Item &item)
-{
+bool Sequencer::push_move(const Item &item) {
     if (!motion_.hasPathRoom()) {
         return false;
     }
@@ -224,8 +216,12 @@ bool Sequencer::push_move(const Item &item)
     if (const auto *line = std::get_if<LineItem>(&item.body)) {
         body = motion::Line{line->move.end, terms_of(line->move.settings, motion::MotionType::FEED, item)};
     } else if (const auto *arc = std::get_if<ArcItem>(&item.body)) {
-        body = motion::Arc{arc->move.end,       arc->move.centre, arc->move.normal,
-                           arc->move.angle_rad, false,            terms_of(arc->move.settings, motion::MotionType::ARC, item)};
+        body = motion::Arc{arc->move.end,
+                           arc->move.centre,
+                           arc->move.normal,
+                           arc->move.angle_rad,
+                           false,
+                           terms_of(arc->move.settings, motion::MotionType::ARC, item)};
     } else if (const auto *probe = std::get_if<ProbeItem>(&item.body)) {
         using interp::ProbeKind;
         const bool isAway = probe->kind == ProbeKind::AWAY || probe->kind == ProbeKind::AWAY_ERROR;
@@ -233,7 +229,8 @@ bool Sequencer::push_move(const Item &item)
         body = motion::Probe{probe->move.end, isAway, mustTrip,
                              terms_of(probe->move.settings, motion::MotionType::PROBING, item)};
     } else if (const auto *tap = std::get_if<RigidTapItem>(&item.body)) {
-        body = motion::RigidTap{tap->move.end, tap->scale, terms_of(tap->move.settings, motion::MotionType::FEED, item)};
+        body = motion::RigidTap{tap->move.end, tap->scale,
+                                terms_of(tap->move.settings, motion::MotionType::FEED, item)};
     }
     const bool isFeed = !std::holds_alternative<LineItem>(item.body) ||
                         std::get<LineItem>(item.body).move.settings.kind != interp::FeedKind::RAPID;
@@ -247,8 +244,7 @@ bool Sequencer::push_move(const Item &item)
     return true;
 }
 
-void Sequencer::execute_output(const Item &item)
-{
+void Sequencer::execute_output(const Item &item) {
     std::visit(Overloaded{
                    [&](const SpindleModeItem &mode) {
                        spindles_[static_cast<std::size_t>(mode.spindle)].css_max_rpm = mode.css_max_rpm;
@@ -281,7 +277,9 @@ void Sequencer::execute_output(const Item &item)
                    [&](const CoolantItem &coolant) {
                        coolant.isMist ? io_.set_mist(coolant.isOn) : io_.set_flood(coolant.isOn);
                    },
-                   [&](const OverrideSwitchItem &s) { motion_.send(motion::SetSwitch{s.what, s.spindle, s.isEnabled}); },
+                   [&](const OverrideSwitchItem &s) {
+                       motion_.send(motion::SetSwitch{s.what, s.spindle, s.isEnabled});
+                   },
                    [&](const DigitalOutputItem &output) {
                        if (!output.isSynched) {
                            motion_.send(motion::SetDigitalOutput{output.index, output.isOn});
@@ -297,8 +295,7 @@ void Sequencer::execute_output(const Item &item)
                item.body);
 }
 
-void Sequencer::send_spindle(int spindle)
-{
+void Sequencer::send_spindle(int spindle) {
     const SpindleState &state = spindles_[static_cast<std::size_t>(spindle)];
     motion::SpindleOn on;
     on.spindle = spindle;
@@ -315,8 +312,7 @@ void Sequencer::send_spindle(int spindle)
     isNextMoveWaitingForSpeed_ = state.isWaiting;
 }
 
-void Sequencer::command_spindle(int spindle, double signed_rpm, bool isWaiting)
-{
+void Sequencer::command_spindle(int spindle, double signed_rpm, bool isWaiting) {
     SpindleState &state = spindles_[static_cast<std::size_t>(spindle)];
     state.css_max_rpm = 0;
     state.direction = signed_rpm > 0 ? 1 : (signed_rpm < 0 ? -1 : 0);
@@ -329,23 +325,20 @@ void Sequencer::command_spindle(int spindle, double signed_rpm, bool isWaiting)
     send_spindle(spindle);
 }
 
-void Sequencer::stop_spindles()
-{
+void Sequencer::stop_spindles() {
     for (int i = 0; i < motion_.status().num_spindles; ++i) {
         spindles_[static_cast<std::size_t>(i)].direction = 0;
         motion_.send(motion::SpindleOff{i});
     }
 }
 
-interp::ToolEntry Sequencer::tool_at(int index) const
-{
+interp::ToolEntry Sequencer::tool_at(int index) const {
     interp::ToolEntry none;
     none.toolno = 0;
     return index > 0 ? tools_.entry(index) : none;
 }
 
-void Sequencer::execute_tool(const Item &item)
-{
+void Sequencer::execute_tool(const Item &item) {
     if (const auto *select = std::get_if<SelectToolItem>(&item.body)) {
         const int index = select->toolno == 0 ? 0 : tools_.index_of_tool(select->toolno);
         if (index < 0) {
@@ -380,8 +373,7 @@ void Sequencer::execute_tool(const Item &item)
     }
 }
 
-void Sequencer::on_tool_event(io::ToolEvent event)
-{
+void Sequencer::on_tool_event(io::ToolEvent event) {
     if (event == io::ToolEvent::FAULT) {
         events_.fail("the tool changer reports a fault (iocontrol.0.toolchanger-reason " +
                      std::to_string(io_.fault_reason()) + ")");
@@ -397,8 +389,7 @@ void Sequencer::on_tool_event(io::ToolEvent event)
     }
 }
 
-void Sequencer::execute_log(const LogItem &item)
-{
+void Sequencer::execute_log(const LogItem &item) {
     switch (item.what) {
     case LogItem::What::OPEN:
     case LogItem::What::APPEND: {
@@ -425,56 +416,7 @@ void Sequencer::execute_log(const LogItem &item)
     }
 }
 
-bool Sequencer::isWaitOver(std::int64_t now_ns)
-{
-    bool isOver = true;
-    switch (wait_) {
-    case Wait::NONE: break;
-    case Wait::DWELL: isOver = now_ns >= deadline_ns_; break;
-    case Wait::INPUT: isOver = isInputWaitOver(now_ns); break;
-    case Wait::TOOL: isOver = io_.action() == io::ToolAction::IDLE; break;
-    case Wait::ORIENT: {
-        const motion::SpindleStatus &spindle = motion_.status().spindle[static_cast<std::size_t>(awaited_spindle_)];
-        if (spindle.orient_fault != 0) {
-            events_.fail("spindle " + std::to_string(awaited_spindle_) + " reports orient fault " +
-                         std::to_string(spindle.orient_fault));
-        }
-        isOver = spindle.orient_state != 1;
-        break;
-    }
-    case Wait::USER_CODE: isOver = !events_.isUserCodeRunning(); break;
-    }
-    if (isOver) {
-        wait_ = Wait::NONE;
-    }
-    return isOver;
-}
-
-bool Sequencer::isInputWaitOver(std::int64_t now_ns)
-{
-    const motion::Status &status = motion_.status();
-    const auto index = static_cast<std::size_t>(awaited_input_.index);
-    const double value = awaited_input_.isAnalog ? status.analog_in[index]
-                                                 : static_cast<double>((status.digital_in >> index) & 1U);
-    const bool isFirst = std::isnan(last_input_);
-    bool isMet = false;
-    switch (awaited_input_.kind) {
-    case interp::WaitKind::IMMEDIATE: isMet = true; break;
-    case interp::WaitKind::RISE: isMet = !isFirst && last_input_ == 0 && value != 0; break;
-    case interp::WaitKind::FALL: isMet = !isFirst && last_input_ != 0 && value == 0; break;
-    case interp::WaitKind::HIGH: isMet = value != 0; break;
-    case interp::WaitKind::LOW: isMet = value == 0; break;
-    }
-    last_input_ = value;
-    isInputTimedOut_ = !isMet && now_ns >= deadline_ns_;
-    if (isMet || isInputTimedOut_) {
-        input_value_ = isInputTimedOut_ ? -1.0 : value;
-    }
-    return isMet || isInputTimedOut_;
-}
-
-void Sequencer::abort()
-{
+void Sequencer::abort() {
     queue_.clear();
     wait_ = Wait::NONE;
     changing_index_ = -1;
@@ -485,24 +427,9 @@ void Sequencer::abort()
     io_.abort();
 }
 
-bool Sequencer::isIdle() const
-{
-    return queue_.empty() && wait_ == Wait::NONE && motion_.isPathComplete() && io_.action() == io::ToolAction::IDLE;
-}
-
-std::string Sequencer::waiting_for() const
-{
-    switch (wait_) {
-    case Wait::DWELL: return "the end of a dwell";
-    case Wait::INPUT:
-        return std::string("pin motion.") + (awaited_input_.isAnalog ? "analog-in-" : "digital-in-") +
-               (awaited_input_.index < 10 ? "0" : "") + std::to_string(awaited_input_.index);
-    case Wait::ORIENT: return "pin spindle." + std::to_string(awaited_spindle_) + ".is-oriented";
-    case Wait::USER_CODE: return "a user M code to end";
-    case Wait::NONE:
-    case Wait::TOOL: break;
-    }
-    return io_.waiting_for();
+bool Sequencer::isIdle() const {
+    return queue_.empty() && wait_ == Wait::NONE && motion_.isPathComplete() &&
+           io_.action() == io::ToolAction::IDLE;
 }
 
 }  // namespace mw::task

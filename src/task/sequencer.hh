@@ -19,9 +19,9 @@ namespace mw::task {
 struct SequencerEvents {
     std::function<void(MessageKind, const std::string &)> message;
     std::function<void(const std::string &)> print;
-    std::function<void(const StopItem &)> stop;      ///< M0, M1, M60 are reached
-    std::function<void(const EndItem &)> end;        ///< the program is over
-    std::function<void(const std::string &)> fail;   ///< something cannot be done; task aborts
+    std::function<void(const StopItem &)> stop;     ///< M0, M1, M60 are reached
+    std::function<void(const EndItem &)> end;       ///< the program is over
+    std::function<void(const std::string &)> fail;  ///< something cannot be done; task aborts
     std::function<void(const OffsetsItem &)> offsets;
     std::function<void(const ToolOffsetItem &)> tool_offset;
     /// Starts a user M code; false when it cannot be started.
@@ -36,8 +36,8 @@ struct SequencerSettings {
 /// One thread; step() once a task cycle, never blocks.
 class Sequencer {
   public:
-    Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, ToolStore &tools, SequencerEvents events,
-              SequencerSettings settings);
+    Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, ToolStore &tools,
+              SequencerEvents events, SequencerSettings settings);
 
     /// Issues what may be issued now. `now_ns` is the clock of the scheduler.
     void step(std::int64_t now_ns);
@@ -58,12 +58,16 @@ class Sequencer {
     bool isInputTimedOut() const { return isInputTimedOut_; }
     /// Commanded spindle state, as programmed (unscaled).
     double spindle_speed(int spindle) const { return spindles_[static_cast<std::size_t>(spindle)].speed; }
-    int spindle_direction(int spindle) const { return spindles_[static_cast<std::size_t>(spindle)].direction; }
+    int spindle_direction(int spindle) const {
+        return spindles_[static_cast<std::size_t>(spindle)].direction;
+    }
     /// Starts or stops a spindle at once (operator's command).
     void command_spindle(int spindle, double signed_rpm, bool isWaiting);
     void stop_spindles();
     int selected_index() const { return selected_index_; }
-    void set_move_listener(std::function<void(const motion::PathBody &)> listener) { move_listener_ = std::move(listener); }
+    void set_move_listener(std::function<void(const motion::PathBody &)> listener) {
+        move_listener_ = std::move(listener);
+    }
 
   private:
     enum class Need : std::uint8_t { NOTHING, MOTION, MOTION_AND_IO };
@@ -88,7 +92,8 @@ class Sequencer {
     void execute_tool(const Item &item);
     void execute_output(const Item &item);
     void execute_log(const LogItem &item);
-    motion::MoveTerms terms_of(const interp::MoveSettings &settings, motion::MotionType type, const Item &item);
+    motion::MoveTerms terms_of(const interp::MoveSettings &settings, motion::MotionType type,
+                               const Item &item);
     void send_spindle(int spindle);
 
     ItemQueue &queue_;
@@ -100,12 +105,12 @@ class Sequencer {
     std::function<void(const motion::PathBody &)> move_listener_;
 
     Wait wait_ = Wait::NONE;
-    std::int64_t deadline_ns_ = 0;   ///< of a dwell or a time limit; 0: none
+    std::int64_t deadline_ns_ = 0;  ///< of a dwell or a time limit; 0: none
     WaitInputItem awaited_input_{};
     double input_value_ = 0, last_input_ = 0;
     bool isInputTimedOut_ = false;
     int awaited_spindle_ = 0;
-    int selected_index_ = -1;        ///< table entry prepared by T, -1: none
+    int selected_index_ = -1;  ///< table entry prepared by T, -1: none
     int changing_index_ = -1;
     std::array<SpindleState, MAX_SPINDLES> spindles_{};
     bool isNextMoveWaitingForSpeed_ = false;

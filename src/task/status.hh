@@ -25,10 +25,10 @@ struct Status {
     bool isPaused = false;
     bool isOptionalStop = true;
     bool isBlockDelete = true;
-    std::string program;          ///< path of the open program
-    int read_line = 0;            ///< last line that the interpreter has read
-    int motion_line = 0;          ///< line of the move being executed
-    std::uint64_t blocks = 0;     ///< executed since the program started
+    std::string program;       ///< path of the open program
+    int read_line = 0;         ///< last line that the interpreter has read
+    int motion_line = 0;       ///< line of the move being executed
+    std::uint64_t blocks = 0;  ///< executed since the program started
     int call_level = 0;
     interp::ActiveCodes codes;
     int g5x_index = 1;

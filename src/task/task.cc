@@ -11,17 +11,14 @@ constexpr std::size_t REMEMBERED_REQUESTS = 256;
 }  // namespace
 
 Task::Task(const Parts &parts, Settings settings)
-    : settings_(std::move(settings)), parts_(parts), motion_(parts.channels), canon_(queue_, settings_.tool_change_place),
-      frame_(canon_, settings_.machine_units),
+    : settings_(std::move(settings)), parts_(parts), motion_(parts.channels),
+      canon_(queue_, settings_.tool_change_place), frame_(canon_, settings_.machine_units),
       interp_(frame_, *this, parts.tools, parts.parameters, settings_.interpreter),
-      sequencer_(queue_, motion_, io_, parts.tools, make_events(), settings_.sequencer)
-{
-}
+      sequencer_(queue_, motion_, io_, parts.tools, make_events(), settings_.sequencer) {}
 
 Task::~Task() = default;
 
-SequencerEvents Task::make_events()
-{
+SequencerEvents Task::make_events() {
     SequencerEvents events;
     events.message = [this](MessageKind kind, const std::string &text) { post(kind, text); };
     events.print = [this](const std::string &text) { post(MessageKind::OPERATOR_TEXT, text); };
@@ -44,8 +41,14 @@ SequencerEvents Task::make_events()
     return events;
 }
 
-Result<> Task::start()
-{
+void Task::configure(const std::vector<motion::SetParameter> &parameters) {
+    for (const motion::SetParameter &parameter : parameters) {
+        last_setting_ = motion_.send(parameter);
+    }
+    last_setting_ = motion_.send(motion::SetWatchdog{true, settings_.watchdog_s});
+}
+
+Result<> Task::start() {
     motion_.update();
     if (!settings_.parameter_file.empty()) {
         const auto loaded = interp_.load_parameters(settings_.parameter_file);
@@ -53,17 +56,21 @@ Result<> Task::start()
             return loaded;
         }
     }
-    interp_.synch();
+    synch_interpreter();
     return interp_.begin();
 }
 
-Result<> Task::save_parameters() const
-{
+void Task::synch_interpreter() {
+    canon_.set_position(motion_.status().carte_pos_cmd);
+    frame_.set_position(motion_.status().carte_pos_cmd);
+    interp_.synch();
+}
+
+Result<> Task::save_parameters() const {
     return settings_.parameter_file.empty() ? Result<>{} : interp_.save_parameters(settings_.parameter_file);
 }
 
-RequestId Task::submit(Command command)
-{
+RequestId Task::submit(Command command) {
     const RequestId id = next_request_++;
     inbox_.emplace_back(id, std::move(command));
     requests_[id] = {};
@@ -73,20 +80,17 @@ RequestId Task::submit(Command command)
     return id;
 }
 
-Progress Task::progress(RequestId id) const
-{
+Progress Task::progress(RequestId id) const {
     const auto found = requests_.find(id);
     return found == requests_.end() ? Progress::REFUSED : found->second.progress;
 }
 
-std::string Task::reason(RequestId id) const
-{
+std::string Task::reason(RequestId id) const {
     const auto found = requests_.find(id);
     return found == requests_.end() ? "no such request" : found->second.reason;
 }
 
-bool Task::poll_message(Message &message)
-{
+bool Task::poll_message(Message &message) {
     if (messages_.empty()) {
         return false;
     }
@@ -95,8 +99,7 @@ bool Task::poll_message(Message &message)
     return true;
 }
 
-void Task::step(std::int64_t now_ns)
-{
+void Task::step(std::int64_t now_ns) {
     now_ns_ = now_ns;
     take_motion_news();
     take_io();
@@ -122,8 +125,7 @@ void Task::step(std::int64_t now_ns)
     update_status();
 }
 
-void Task::take_motion_news()
-{
+void Task::take_motion_news() {
     const MotionLink::News news = motion_.update();
     for (const motion::Fault &fault : news.faults) {
         const std::string text = motion::fault_text(fault);
@@ -149,14 +151,12 @@ void Task::take_motion_news()
     }
 }
 
-void Task::take_io()
-{
+void Task::take_io() {
     const io::ToolEvent event = io_.step(parts_.io_port.read());
     sequencer_.on_tool_event(event);
 }
 
-void Task::update_state()
-{
+void Task::update_state() {
     const bool isClosed = io_.isChainClosed();
     const bool isLeavingEstop = state_request_ != 0 && wanted_state_ == State::ESTOP_RESET;
     if (!isClosed && status_.state != State::ESTOP && !isLeavingEstop) {
@@ -184,8 +184,7 @@ void Task::update_state()
     }
 }
 
-void Task::update_pending()
-{
+void Task::update_pending() {
     if (state_request_ != 0) {
         if (status_.state == wanted_state_) {
             finish(state_request_, Progress::DONE, {});
@@ -198,35 +197,33 @@ void Task::update_pending()
     }
     const motion::Status &motion = motion_.status();
     if (home_request_ != 0 && motion_.isAnswered(home_command_) && !motion.isHoming) {
-        const bool isHomed = homing_joint_ < 0 ? motion.isAllHomed
-                                               : motion.joint[static_cast<std::size_t>(homing_joint_)].isHomed;
-        finish(home_request_, isHomed ? Progress::DONE : Progress::FAILED, isHomed ? "" : "homing did not finish");
+        const bool isHomed = homing_joint_ < 0
+                                 ? motion.isAllHomed
+                                 : motion.joint[static_cast<std::size_t>(homing_joint_)].isHomed;
+        finish(home_request_, isHomed ? Progress::DONE : Progress::FAILED,
+               isHomed ? "" : "homing did not finish");
     }
 }
 
-bool Task::isReadAheadAllowed() const
-{
+bool Task::isReadAheadAllowed() const {
     const bool isHeld = status_.isPaused && isStoppedByProgram_;
     return !isReadingDone_ && !isHeld && queue_.size() < settings_.read_ahead_items;
 }
 
-void Task::run_interpreter()
-{
+void Task::run_interpreter() {
     for (int i = 0; i < settings_.blocks_per_cycle && isRunning() && isReadAheadAllowed(); ++i) {
         if (isWaitingForSync_) {
             if (!sequencer_.isIdle()) {
                 return;
             }
             isWaitingForSync_ = false;
-            canon_.set_position(motion_.status().carte_pos_cmd);
-            interp_.synch();
+            synch_interpreter();
         }
         on_step_result(interp_.step());
     }
 }
 
-void Task::on_step_result(interp::Step result)
-{
+void Task::on_step_result(interp::Step result) {
     switch (result) {
     case interp::Step::OK: break;
     case interp::Step::SYNC: isWaitingForSync_ = true; break;
@@ -236,8 +233,7 @@ void Task::on_step_result(interp::Step result)
     }
 }
 
-void Task::on_stop(const StopItem &stop)
-{
+void Task::on_stop(const StopItem &stop) {
     if (stop.isOptional && !status_.isOptionalStop) {
         return;
     }
@@ -245,18 +241,15 @@ void Task::on_stop(const StopItem &stop)
     isStoppedByProgram_ = true;
 }
 
-void Task::on_end(const EndItem &)
-{
+void Task::on_end(const EndItem &) {
     isReadingDone_ = true;
 }
 
-void Task::fail_program(const std::string &text)
-{
+void Task::fail_program(const std::string &text) {
     fail_program(diag::Diagnostic{diag::Severity::ERROR, {text}});
 }
 
-void Task::fail_program(diag::Diagnostic what)
-{
+void Task::fail_program(diag::Diagnostic what) {
     post(MessageKind::OPERATOR_ERROR, what.str());
     program_error_ = std::move(what);
     hasProgramError_ = true;
@@ -264,8 +257,7 @@ void Task::fail_program(diag::Diagnostic what)
     abort_work();
 }
 
-void Task::abort_work()
-{
+void Task::abort_work() {
     motion_.abort();
     sequencer_.abort();
     sequencer_.stop_spindles();
@@ -277,8 +269,7 @@ void Task::abort_work()
     finish(home_request_, Progress::FAILED, "aborted");
 }
 
-void Task::finish_run(Progress progress, const std::string &reason)
-{
+void Task::finish_run(Progress progress, const std::string &reason) {
     if (run_ == Run::PROGRAM) {
         interp_.close();
         ++status_.programs_ended;
@@ -291,8 +282,7 @@ void Task::finish_run(Progress progress, const std::string &reason)
     finish(run_request_, progress, reason);
 }
 
-void Task::finish(RequestId &id, Progress progress, const std::string &reason)
-{
+void Task::finish(RequestId &id, Progress progress, const std::string &reason) {
     const auto found = requests_.find(id);
     if (found != requests_.end()) {
         found->second = {progress, reason};
@@ -300,8 +290,7 @@ void Task::finish(RequestId &id, Progress progress, const std::string &reason)
     id = 0;
 }
 
-void Task::update_status()
-{
+void Task::update_status() {
     const motion::Status &motion = motion_.status();
     status_.motion_line = motion.source.line;
     status_.blocks = canon_.blocks();
@@ -310,9 +299,9 @@ void Task::update_status()
     status_.tool_in_spindle = io_.outputs.tool_number;
     status_.interp_state = InterpState::IDLE;
     if (isRunning()) {
-        status_.interp_state = status_.isPaused   ? InterpState::PAUSED
-                               : isReadingDone_   ? InterpState::WAITING
-                                                  : InterpState::READING;
+        status_.interp_state = status_.isPaused ? InterpState::PAUSED
+                               : isReadingDone_ ? InterpState::WAITING
+                                                : InterpState::READING;
         status_.read_line = interp_.line();
         status_.call_level = interp_.call_level();
     }
@@ -322,8 +311,7 @@ void Task::update_status()
     }
 }
 
-interp::MachineSnapshot Task::snapshot() const
-{
+interp::MachineSnapshot Task::snapshot() const {
     const motion::Status &motion = motion_.status();
     interp::MachineSnapshot s;
     s.position = motion.carte_pos_cmd;

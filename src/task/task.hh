@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Task: states, modes, programs and single lines; takes operators' commands and coordinates motion and I/O (D1-D3).
+// Task: states, modes, programs and single lines; takes operators' commands and coordinates motion and I/O
+// (D1-D3).
 #pragma once
 
 #include <deque>
@@ -32,11 +33,13 @@ struct Settings {
     unsigned axis_mask = 7;
     int num_joints = 3;
     int num_spindles = 1;
-    bool isHomingForced = true;        ///< programs and MDI need all joints homed
-    std::string parameter_file;        ///< empty: parameters live in memory only
+    bool isHomingForced = true;  ///< programs and MDI need all joints homed
+    std::string parameter_file;  ///< empty: parameters live in memory only
     interp::Settings interpreter;
     SequencerSettings sequencer;
     ToolChangePlace tool_change_place;
+    /// Task's loop standing still for so long stops the machine.
+    double watchdog_s = 0.5;
     /// Blocks that the interpreter may read in one cycle, and queued items above which it waits.
     int blocks_per_cycle = 200;
     std::size_t read_ahead_items = 2000;
@@ -57,6 +60,11 @@ class Task final : public interp::World {
   public:
     Task(const Parts &parts, Settings settings);
     ~Task() override;
+
+    /// Hands settings to the motion controller; a refused one comes as a message.
+    void configure(const std::vector<motion::SetParameter> &parameters);
+    /// All settings handed over are answered.
+    bool isConfigured() const { return motion_.isAnswered(last_setting_); }
 
     /// Loads parameters and announces the start state to the interpreter. Errors name file, line and column.
     Result<> start();
@@ -80,8 +88,7 @@ class Task final : public interp::World {
     const diag::Diagnostic *program_error() const { return hasProgramError_ ? &program_error_ : nullptr; }
     const std::string &file_name(std::uint32_t index) const { return canon_.file_name(index); }
     /// Is told of each move when it is handed to the planner (for figures and pictures).
-    void set_move_listener(std::function<void(const motion::PathBody &)> listener)
-    {
+    void set_move_listener(std::function<void(const motion::PathBody &)> listener) {
         sequencer_.set_move_listener(std::move(listener));
     }
 
@@ -121,6 +128,8 @@ class Task final : public interp::World {
     void update_status();
     void post(MessageKind kind, std::string text) { messages_.push_back({kind, std::move(text)}); }
     bool isRunning() const { return run_ != Run::IDLE; }
+    /// Takes the machine's position and state as the program's.
+    void synch_interpreter();
     Result<> check_can_run() const;
 
     Settings settings_;
@@ -136,7 +145,7 @@ class Task final : public interp::World {
     Status status_;
     std::int64_t now_ns_ = 0;
     Run run_ = Run::IDLE;
-    bool isReadingDone_ = false;   ///< the interpreter has come to the end of what runs
+    bool isReadingDone_ = false;  ///< the interpreter has come to the end of what runs
     bool isWaitingForSync_ = false;
     bool isStepMode_ = false;
     bool isStoppedByProgram_ = false;
@@ -147,7 +156,7 @@ class Task final : public interp::World {
     RequestId run_request_ = 0, state_request_ = 0, home_request_ = 0;
     State wanted_state_ = State::ESTOP;
     int homing_joint_ = -1;
-    motion::CommandId home_command_ = 0, enable_command_ = 0;
+    motion::CommandId home_command_ = 0, enable_command_ = 0, last_setting_ = 0;
     std::int64_t state_deadline_ns_ = 0;
     std::deque<Message> messages_;
     diag::Diagnostic program_error_;

@@ -3,14 +3,12 @@
 
 namespace mw::task {
 
-void TaskCanon::reset()
-{
+void TaskCanon::reset() {
     tag_ = {};
     files_.clear();
 }
 
-void TaskCanon::begin_block(const interp::BlockRef &block)
-{
+void TaskCanon::begin_block(const interp::BlockRef &block) {
     const bool isSameFile = tag_.file_index < files_.size() && files_[tag_.file_index] == block.file;
     if (!isSameFile) {
         std::uint32_t index = 0;
@@ -26,26 +24,22 @@ void TaskCanon::begin_block(const interp::BlockRef &block)
     ++tag_.block;
 }
 
-void TaskCanon::line(const interp::LineMove &move)
-{
+void TaskCanon::line(const interp::LineMove &move) {
     last_end_ = move.end;
     add(LineItem{move});
 }
 
-void TaskCanon::arc(const interp::ArcMove &move)
-{
+void TaskCanon::arc(const interp::ArcMove &move) {
     last_end_ = move.end;
     add(ArcItem{move});
 }
 
-void TaskCanon::probe(const interp::LineMove &move, interp::ProbeKind kind)
-{
+void TaskCanon::probe(const interp::LineMove &move, interp::ProbeKind kind) {
     last_end_ = move.end;
     add(ProbeItem{move, kind});
 }
 
-void TaskCanon::rapid_to(const geom::Pose &end)
-{
+void TaskCanon::rapid_to(const geom::Pose &end) {
     interp::LineMove move;
     move.end = end;
     move.settings.kind = interp::FeedKind::RAPID;
@@ -53,8 +47,7 @@ void TaskCanon::rapid_to(const geom::Pose &end)
     line(move);
 }
 
-void TaskCanon::change_tool()
-{
+void TaskCanon::change_tool() {
     if (place_.isQuillRaised) {
         geom::Pose raised = last_end_;
         raised[geom::AXIS_Z] = 0;
@@ -70,58 +63,47 @@ void TaskCanon::change_tool()
     add(ChangeToolItem{});
 }
 
-void TaskCanon::offsets(int g5x_index, const geom::Pose &g5x, const geom::Pose &g92, double rotation_xy_deg)
-{
+void TaskCanon::offsets(int g5x_index, const geom::Pose &g5x, const geom::Pose &g92, double rotation_xy_deg) {
     add(OffsetsItem{g5x_index, g5x, g92, rotation_xy_deg});
 }
 
-void TaskCanon::spindle_on(int spindle, int direction, bool isWaiting)
-{
+void TaskCanon::spindle_on(int spindle, int direction, bool isWaiting) {
     add(SpindleOnItem{spindle, direction, isWaiting});
 }
 
-void TaskCanon::orient_spindle(int spindle, double angle_deg, int mode)
-{
+void TaskCanon::orient_spindle(int spindle, double angle_deg, int mode) {
     add(SpindleOrientItem{spindle, angle_deg, mode});
 }
 
-void TaskCanon::speed_override(int spindle, bool isEnabled)
-{
+void TaskCanon::speed_override(int spindle, bool isEnabled) {
     add_switch(motion::Switch::SPINDLE_OVERRIDE, spindle, isEnabled);
 }
 
-void TaskCanon::set_digital_output(int index, bool isOn, bool isSynched)
-{
+void TaskCanon::set_digital_output(int index, bool isOn, bool isSynched) {
     add(DigitalOutputItem{index, isOn, isSynched});
 }
 
-void TaskCanon::set_analog_output(int index, double value, bool isSynched)
-{
+void TaskCanon::set_analog_output(int index, double value, bool isSynched) {
     add(AnalogOutputItem{index, value, isSynched});
 }
 
-void TaskCanon::wait_input(int index, bool isAnalog, interp::WaitKind kind, double timeout_s)
-{
+void TaskCanon::wait_input(int index, bool isAnalog, interp::WaitKind kind, double timeout_s) {
     add(WaitInputItem{index, isAnalog, kind, timeout_s});
 }
 
-void TaskCanon::comment(std::string_view)
-{
+void TaskCanon::comment(std::string_view) {
     // Comments are for printing canons; a running machine has nothing to do with them.
 }
 
-void TaskCanon::message(std::string_view text)
-{
+void TaskCanon::message(std::string_view text) {
     add(MessageItem{MessageKind::OPERATOR_DISPLAY, std::string(text)});
 }
 
-void TaskCanon::log_open(std::string_view path, bool isAppending)
-{
+void TaskCanon::log_open(std::string_view path, bool isAppending) {
     add(LogItem{isAppending ? LogItem::What::APPEND : LogItem::What::OPEN, std::string(path)});
 }
 
-void TaskCanon::canon_error(std::string_view text)
-{
+void TaskCanon::canon_error(std::string_view text) {
     add(MessageItem{MessageKind::OPERATOR_ERROR, std::string(text)});
 }
 

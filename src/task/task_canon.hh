@@ -10,11 +10,12 @@
 
 namespace mw::task {
 
-/// Where the machine goes for a tool change ([EMCIO]TOOL_CHANGE_POSITION, TOOL_CHANGE_QUILL_UP; requirement G5).
+/// Where the machine goes for a tool change ([EMCIO]TOOL_CHANGE_POSITION, TOOL_CHANGE_QUILL_UP; requirement
+/// G5).
 struct ToolChangePlace {
-    bool isQuillRaised = false;      ///< Z to machine zero first
-    int coordinates = 0;             ///< how many of `position` are given: 0, 3, 6 or 9
-    geom::Pose position;             ///< [machine units], machine coordinates
+    bool isQuillRaised = false;  ///< Z to machine zero first
+    int coordinates = 0;         ///< how many of `position` are given: 0, 3, 6 or 9
+    geom::Pose position;         ///< [machine units], machine coordinates
 };
 
 class TaskCanon final : public interp::MachineCanon {
@@ -36,17 +37,24 @@ class TaskCanon final : public interp::MachineCanon {
     void rigid_tap(const interp::LineMove &move, double scale) override { add(RigidTapItem{move, scale}); }
     void dwell(double seconds) override { add(DwellItem{seconds}); }
     void tool_offset(const geom::Pose &offset) override { add(ToolOffsetItem{offset}); }
-    void offsets(int g5x_index, const geom::Pose &g5x, const geom::Pose &g92, double rotation_xy_deg) override;
-    void set_spindle_mode(int spindle, double css_max_rpm) override { add(SpindleModeItem{spindle, css_max_rpm}); }
+    void offsets(int g5x_index, const geom::Pose &g5x, const geom::Pose &g92,
+                 double rotation_xy_deg) override;
+    void set_spindle_mode(int spindle, double css_max_rpm) override {
+        add(SpindleModeItem{spindle, css_max_rpm});
+    }
     void set_spindle_speed(int spindle, double speed) override { add(SpindleSpeedItem{spindle, speed}); }
     void spindle_on(int spindle, int direction, bool isWaiting) override;
     void spindle_off(int spindle) override { add(SpindleOffItem{spindle}); }
     void orient_spindle(int spindle, double angle_deg, int mode) override;
-    void wait_orient_complete(int spindle, double timeout_s) override { add(WaitOrientItem{spindle, timeout_s}); }
+    void wait_orient_complete(int spindle, double timeout_s) override {
+        add(WaitOrientItem{spindle, timeout_s});
+    }
     void select_tool(int toolno) override { add(SelectToolItem{toolno}); }
     void change_tool() override;
     void change_tool_number(int toolno) override { add(ChangeToolNumberItem{toolno}); }
-    void set_tool_table_entry(int index, const interp::ToolEntry &entry) override { add(ToolEntryItem{index, entry}); }
+    void set_tool_table_entry(int index, const interp::ToolEntry &entry) override {
+        add(ToolEntryItem{index, entry});
+    }
     void coolant(bool isMist, bool isOn) override { add(CoolantItem{isMist, isOn}); }
     void feed_override(bool isEnabled) override { add_switch(motion::Switch::FEED_OVERRIDE, 0, isEnabled); }
     void speed_override(int spindle, bool isEnabled) override;
@@ -71,7 +79,9 @@ class TaskCanon final : public interp::MachineCanon {
 
   private:
     void add(ItemBody body) { queue_.push_back({tag_, std::move(body)}); }
-    void add_switch(motion::Switch what, int spindle, bool isEnabled) { add(OverrideSwitchItem{what, spindle, isEnabled}); }
+    void add_switch(motion::Switch what, int spindle, bool isEnabled) {
+        add(OverrideSwitchItem{what, spindle, isEnabled});
+    }
 
     void rapid_to(const geom::Pose &end);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // One handler for each of the operator's commands: done, started, or refused with the reason (C5).
-#include "task/task.hh"
-
 #include <cmath>
+
+#include "task/task.hh"
 
 namespace mw::task {
 namespace {
@@ -34,18 +34,15 @@ struct Task::Handler {
     Outcome operator()(const Spindle &command);
     Outcome operator()(const LoadToolTable &command);
 
-    Outcome operator()(const SetOptionalStop &command)
-    {
+    Outcome operator()(const SetOptionalStop &command) {
         task.status_.isOptionalStop = command.isOn;
         return Progress::DONE;
     }
-    Outcome operator()(const SetBlockDelete &command)
-    {
+    Outcome operator()(const SetBlockDelete &command) {
         task.status_.isBlockDelete = command.isOn;
         return Progress::DONE;
     }
-    Outcome operator()(const SetOverride &command)
-    {
+    Outcome operator()(const SetOverride &command) {
         if (!std::isfinite(command.factor) || command.factor < 0) {
             return fail("an override must be a number of at least 0");
         }
@@ -55,44 +52,37 @@ struct Task::Handler {
         task.motion_.send(motion::SetScale{what, command.spindle, command.factor});
         return Progress::DONE;
     }
-    Outcome operator()(const SetMaxVelocity &command)
-    {
+    Outcome operator()(const SetMaxVelocity &command) {
         if (!std::isfinite(command.velocity) || command.velocity < 0) {
             return fail("the maximum velocity must be a number of at least 0");
         }
         task.motion_.send(motion::SetMaxVelocity{command.velocity});
         return Progress::DONE;
     }
-    Outcome operator()(const OverrideLimits &)
-    {
+    Outcome operator()(const OverrideLimits &) {
         task.motion_.send(motion::OverrideLimits{true});
         return Progress::DONE;
     }
-    Outcome operator()(const SpindleBrake &command)
-    {
+    Outcome operator()(const SpindleBrake &command) {
         task.motion_.send(motion::SpindleBrake{command.spindle, command.isOn});
         return Progress::DONE;
     }
-    Outcome operator()(const Coolant &command)
-    {
+    Outcome operator()(const Coolant &command) {
         command.isMist ? task.io_.set_mist(command.isOn) : task.io_.set_flood(command.isOn);
         return Progress::DONE;
     }
 
   private:
-    Result<> need_on() const
-    {
+    Result<> need_on() const {
         return task.status_.state == State::ON ? Result<>{} : fail("the machine is not on");
     }
-    Result<> need_manual() const
-    {
+    Result<> need_manual() const {
         if (task.status_.mode != Mode::MANUAL) {
             return fail("this needs manual mode");
         }
         return need_on();
     }
-    void start_run(Run run)
-    {
+    void start_run(Run run) {
         task.run_ = run;
         task.run_request_ = id;
         task.isReadingDone_ = false;
@@ -101,15 +91,13 @@ struct Task::Handler {
         task.hasProgramError_ = false;
         task.status_.isPaused = false;
         task.canon_.reset();
-        task.canon_.set_position(task.motion_.status().carte_pos_cmd);
-        task.interp_.synch();
+        task.synch_interpreter();
     }
 };
 
 using Outcome = Result<Progress>;
 
-void Task::carry_out_commands()
-{
+void Task::carry_out_commands() {
     while (!inbox_.empty()) {
         const auto [id, command] = std::move(inbox_.front());
         inbox_.pop_front();
@@ -124,8 +112,7 @@ void Task::carry_out_commands()
     }
 }
 
-Outcome Task::Handler::operator()(const SetState &command)
-{
+Outcome Task::Handler::operator()(const SetState &command) {
     task.finish(task.state_request_, Progress::FAILED, "another state was asked for");
     task.wanted_state_ = command.state;
     task.state_deadline_ns_ = task.now_ns_ + STATE_TIMEOUT_NS;
@@ -163,8 +150,7 @@ Outcome Task::Handler::operator()(const SetState &command)
     return Progress::STARTED;
 }
 
-Outcome Task::Handler::operator()(const SetMode &command)
-{
+Outcome Task::Handler::operator()(const SetMode &command) {
     if (command.mode == task.status_.mode) {
         return Progress::DONE;
     }
@@ -172,12 +158,12 @@ Outcome Task::Handler::operator()(const SetMode &command)
         return fail("cannot change the mode while a program or MDI line runs");
     }
     task.status_.mode = command.mode;
-    task.motion_.send(motion::SetMode{command.mode == Mode::MANUAL ? motion::Mode::FREE : motion::Mode::COORD});
+    task.motion_.send(
+        motion::SetMode{command.mode == Mode::MANUAL ? motion::Mode::FREE : motion::Mode::COORD});
     return Progress::DONE;
 }
 
-Outcome Task::Handler::operator()(const OpenProgram &command)
-{
+Outcome Task::Handler::operator()(const OpenProgram &command) {
     if (task.isRunning()) {
         return fail("cannot open a program while one runs");
     }
@@ -190,8 +176,7 @@ Outcome Task::Handler::operator()(const OpenProgram &command)
     return Progress::DONE;
 }
 
-Result<> Task::check_can_run() const
-{
+Result<> Task::check_can_run() const {
     if (status_.state != State::ON) {
         return fail("the machine is not on");
     }
@@ -204,13 +189,13 @@ Result<> Task::check_can_run() const
     return {};
 }
 
-Outcome Task::Handler::operator()(const RunProgram &command)
-{
+Outcome Task::Handler::operator()(const RunProgram &command) {
     if (task.status_.mode != Mode::AUTO) {
         return fail("running a program needs auto mode");
     }
     if (command.from_line > 1) {
-        return fail("running from line " + std::to_string(command.from_line) + " is not supported by this version");
+        return fail("running from line " + std::to_string(command.from_line) +
+                    " is not supported by this version");
     }
     if (task.status_.program.empty()) {
         return fail("no program is open");
@@ -227,8 +212,7 @@ Outcome Task::Handler::operator()(const RunProgram &command)
     return Progress::STARTED;
 }
 
-Outcome Task::Handler::operator()(const StepProgram &)
-{
+Outcome Task::Handler::operator()(const StepProgram &) {
     if (!task.isRunning()) {
         const auto started = (*this)(RunProgram{});
         if (!started.has_value()) {
@@ -250,8 +234,7 @@ Outcome Task::Handler::operator()(const StepProgram &)
     return task.run_request_ == id ? Progress::STARTED : Progress::DONE;
 }
 
-Outcome Task::Handler::operator()(const PauseProgram &)
-{
+Outcome Task::Handler::operator()(const PauseProgram &) {
     if (!task.isRunning()) {
         return fail("nothing runs that could be paused");
     }
@@ -260,8 +243,7 @@ Outcome Task::Handler::operator()(const PauseProgram &)
     return Progress::DONE;
 }
 
-Outcome Task::Handler::operator()(const ResumeProgram &)
-{
+Outcome Task::Handler::operator()(const ResumeProgram &) {
     if (!task.isRunning() || !task.status_.isPaused) {
         return fail("nothing is paused");
     }
@@ -273,8 +255,7 @@ Outcome Task::Handler::operator()(const ResumeProgram &)
     return Progress::DONE;
 }
 
-Outcome Task::Handler::operator()(const AbortAll &)
-{
+Outcome Task::Handler::operator()(const AbortAll &) {
     if (task.isRunning()) {
         task.finish_run(Progress::FAILED, "aborted");
     }
@@ -282,8 +263,7 @@ Outcome Task::Handler::operator()(const AbortAll &)
     return Progress::DONE;
 }
 
-Outcome Task::Handler::operator()(const Mdi &command)
-{
+Outcome Task::Handler::operator()(const Mdi &command) {
     if (task.status_.mode != Mode::MDI) {
         return fail("MDI needs MDI mode");
     }
@@ -296,8 +276,7 @@ Outcome Task::Handler::operator()(const Mdi &command)
     return Progress::STARTED;
 }
 
-Outcome Task::Handler::operator()(const SetTeleop &command)
-{
+Outcome Task::Handler::operator()(const SetTeleop &command) {
     const auto allowed = need_manual();
     if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
@@ -306,8 +285,7 @@ Outcome Task::Handler::operator()(const SetTeleop &command)
     return Progress::DONE;
 }
 
-Outcome Task::Handler::operator()(const HomeJoint &command)
-{
+Outcome Task::Handler::operator()(const HomeJoint &command) {
     const auto allowed = need_manual();
     if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
@@ -319,8 +297,7 @@ Outcome Task::Handler::operator()(const HomeJoint &command)
     return Progress::STARTED;
 }
 
-Outcome Task::Handler::operator()(const UnhomeJoint &command)
-{
+Outcome Task::Handler::operator()(const UnhomeJoint &command) {
     const auto allowed = need_manual();
     if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
@@ -329,8 +306,7 @@ Outcome Task::Handler::operator()(const UnhomeJoint &command)
     return Progress::DONE;
 }
 
-Outcome Task::Handler::operator()(const Jog &command)
-{
+Outcome Task::Handler::operator()(const Jog &command) {
     const auto allowed = need_manual();
     if (!allowed.has_value() && command.kind != JogKind::STOP) {
         return std::unexpected(allowed.error());
@@ -349,8 +325,7 @@ Outcome Task::Handler::operator()(const Jog &command)
     return Progress::DONE;
 }
 
-Outcome Task::Handler::operator()(const Spindle &command)
-{
+Outcome Task::Handler::operator()(const Spindle &command) {
     const auto allowed = need_on();
     if (!allowed.has_value() && command.speed_rpm != 0) {
         return std::unexpected(allowed.error());
@@ -362,8 +337,7 @@ Outcome Task::Handler::operator()(const Spindle &command)
     return Progress::DONE;
 }
 
-Outcome Task::Handler::operator()(const LoadToolTable &)
-{
+Outcome Task::Handler::operator()(const LoadToolTable &) {
     if (task.isRunning()) {
         return fail("cannot load the tool table while a program runs");
     }

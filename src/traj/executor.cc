@@ -61,7 +61,6 @@ const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
         next_switch_.plan = 0;
     }
     locate();
-    store_.snapshot.write(state_);
     return out_;
 }
 
@@ -212,7 +211,6 @@ void Executor::stop_now() noexcept {
     state_.motion = Motion::REST;
     state_.v = 0;
     finish_drop();
-    store_.snapshot.write(state_);
 }
 
 /// Position, the move that it belongs to, and how many moves are complete.

@@ -6,21 +6,18 @@
 
 namespace mw::traj {
 
-double stop_position(double position, double velocity, double acceleration) noexcept
-{
+double stop_position(double position, double velocity, double acceleration) noexcept {
     return acceleration > 0 ? position + velocity * std::abs(velocity) / (2.0 * acceleration) : position;
 }
 
-void FreePlanner::stop() noexcept
-{
+void FreePlanner::stop() noexcept {
     target = stop_position(position, velocity, max_acceleration);
 }
 
 namespace {
 
 /// Moves on with constant acceleration for at most `span`; returns the time left of dt.
-double go(double &p, double &v, double a, double span, double dt) noexcept
-{
+double go(double &p, double &v, double a, double span, double dt) noexcept {
     const double t = std::clamp(span, 0.0, dt);
     p += t * (v + 0.5 * a * t);
     v += a * t;
@@ -29,8 +26,7 @@ double go(double &p, double &v, double a, double span, double dt) noexcept
 
 }  // namespace
 
-void FreePlanner::step(double dt) noexcept
-{
+void FreePlanner::step(double dt) noexcept {
     const double a = max_acceleration;
     if (!(a > 0) || isAtRest()) {
         velocity = a > 0 ? velocity : 0.0;

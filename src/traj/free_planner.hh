@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // One coordinate that follows a target which may change at any time, within speed and acceleration.
-// Each cycle evaluates the time-optimal profile from the present position and speed, so samples keep the limits.
+// Each cycle evaluates the time-optimal profile from the present position and speed, so samples keep the
+// limits.
 #pragma once
 
 namespace mw::traj {
@@ -15,8 +16,7 @@ struct FreePlanner {
     bool isAtRest() const noexcept { return velocity == 0.0 && position == target; }
 
     /// Stays at `at`, at rest.
-    void reset(double at) noexcept
-    {
+    void reset(double at) noexcept {
         position = at;
         velocity = 0;
         target = at;

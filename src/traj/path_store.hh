@@ -7,7 +7,6 @@
 #include <atomic>
 #include <cstdint>
 
-#include "base/seqlock.hh"
 #include "base/spsc_ring.hh"
 #include "traj/primitive.hh"
 
@@ -24,6 +23,7 @@ struct MoveTag {
     std::uint32_t block = 0;
     std::uint8_t type = 0;
     bool isProbe = false;
+    bool isProbeAway = false;       ///< trips when contact is lost
     double requested_velocity = 0;  ///< along the feed length; 0: as fast as the limits allow
     double feed_ratio = 1;          ///< s per feed length
     Pose end;
@@ -103,7 +103,6 @@ struct PathStore {
     /// Pieces up to here may be read by the executor. Release by the planner after filling, acquire by the
     /// executor.
     std::atomic<Sequence> last_piece{0};
-    Seqlock<Snapshot> snapshot;  ///< executor -> planner
 
     Primitive &primitive(Sequence n) noexcept { return primitives[n % PRIMITIVE_CAPACITY]; }
     const Primitive &primitive(Sequence n) const noexcept { return primitives[n % PRIMITIVE_CAPACITY]; }

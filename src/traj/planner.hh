@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 
 #include "base/limits.hh"
 #include "traj/limits.hh"
@@ -50,7 +49,7 @@ struct PlannerSettings {
 /// bits.
 class Planner {
   public:
-    Planner(PathStore &store, const PlannerSettings &settings);
+    Planner(PathStore &store, const PlannerSettings &settings) noexcept;
 
     void set_limits(const Limits &limits) noexcept { limits_ = limits; }
 
@@ -76,6 +75,10 @@ class Planner {
     Sequence waiting_gate(const Snapshot &now) const noexcept;
     /// Single blocks: stops where the source block is another than `block`.
     void set_step(bool isStepping, std::uint32_t block) noexcept;
+    /// The executor stands, and only the wish for single blocks keeps it from going on.
+    bool isAtStepStop(const Snapshot &now) const noexcept;
+    /// There is something that `next_block` can tell of.
+    bool hasNext(const Snapshot &now) const noexcept;
     /// The block that comes next for an executor in state `now`.
     std::uint32_t next_block(const Snapshot &now) const noexcept;
 
@@ -136,10 +139,8 @@ class Planner {
     PlannerSettings settings_;
     Limits limits_;
     Scales scales_;
-    std::unique_ptr<std::array<MovePlan, PRIMITIVE_CAPACITY>> move_memory_;
-    std::unique_ptr<std::array<PiecePlan, PIECE_CAPACITY>> piece_memory_;
-    std::array<MovePlan, PRIMITIVE_CAPACITY> &moves_;
-    std::array<PiecePlan, PIECE_CAPACITY> &pieces_;
+    std::array<MovePlan, PRIMITIVE_CAPACITY> moves_{};
+    std::array<PiecePlan, PIECE_CAPACITY> pieces_{};
 
     Pose end_;
     Sequence first_move_ = 1;  ///< of this path

@@ -19,18 +19,16 @@ constexpr double EXACT_PATH_DEVIATION = 1e-6;
 constexpr double REVERSAL_COSINE = -0.9;
 /// Below this a blend is a stop.
 constexpr double SMALLEST_BLEND = 1e-7;
-/// Pieces passed in one servo cycle at most; with up to four phases each below Executor::MAX_STEPS_PER_CYCLE.
-constexpr double PIECES_PER_CYCLE = 64;
+/// Moves passed in one servo cycle at most; with two pieces each and up to four phases a piece this stays
+/// below Executor::MAX_STEPS_PER_CYCLE.
+constexpr double MOVES_PER_CYCLE = 64;
 /// Room that keeps fitted stops (Executor) and rounding inside the limits.
 constexpr double ACCELERATION_MARGIN = 1e-6;
 
 }  // namespace
 
-Planner::Planner(PathStore &store, const PlannerSettings &settings)
-    : store_(store), settings_(settings),
-      move_memory_(std::make_unique<std::array<MovePlan, PRIMITIVE_CAPACITY>>()),
-      piece_memory_(std::make_unique<std::array<PiecePlan, PIECE_CAPACITY>>()), moves_(*move_memory_),
-      pieces_(*piece_memory_) {
+Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept
+    : store_(store), settings_(settings) {
     limits_.velocity.fill(UNLIMITED);
     limits_.acceleration.fill(UNLIMITED);
 }
@@ -139,7 +137,8 @@ void Planner::add_piece(const Piece &piece, SpeedLimit limit, double wish) noexc
     slot = piece;
     slot.acceleration = limit.a * (1.0 - ACCELERATION_MARGIN);
     PiecePlan &plan = piece_plan(k);
-    plan.v_limit = std::min({limit.v, wish, PIECES_PER_CYCLE * piece.length / settings_.period_s});
+    plan.v_limit = std::min(
+        {limit.v, wish, MOVES_PER_CYCLE * store_.primitive(piece.primitive).length / settings_.period_s});
     plan.v2_in = -1;
     plan.isStopBefore = isOpenStop_;
     last_piece_ = k;

@@ -138,6 +138,18 @@ std::uint32_t Planner::next_block(const Snapshot &now) const noexcept {
     return store_.move(state.x > 0 ? store_.piece(state.piece).move : move_of(state.piece)).block;
 }
 
+bool Planner::isAtStepStop(const Snapshot &now) const noexcept {
+    State state;
+    const bool isStanding =
+        isStepping_ && now.motion == Motion::REST && start_state(now, state) && state.x <= 0;
+    return isStanding && move_plan(move_of(state.piece)).request.tag.block != step_block_;
+}
+
+bool Planner::hasNext(const Snapshot &now) const noexcept {
+    State state;
+    return now.motion != Motion::REST || open_move_ != 0 || start_state(now, state);
+}
+
 std::uint32_t Planner::moves_left(const Snapshot &now) const noexcept {
     const Sequence done = std::max(now.done_move, first_move_ - 1);
     return last_move_ > done ? static_cast<std::uint32_t>(last_move_ - done) : 0;

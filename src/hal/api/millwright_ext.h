@@ -27,6 +27,12 @@ extern int mw_ext_planner_delete(int id);
  * Without a declaration that is 0. The pointer is to a value of the pin's type. */
 extern int mw_ext_pin_safe_value(const char *pin_name, const void *value);
 
+/* For the module that moves the machine. When the process that controls the instance dies, *is_gone becomes 1
+ * within milliseconds; the module then stops the machine and sets *is_safe to 1, upon which the realtime
+ * process ends (after 10 s anyway). Read and write both as atomics. They live until component comp_id ends.
+ * Nothing happens under the virtual clock. */
+extern int mw_ext_watch_controller(rtapi_u32 *is_gone, const rtapi_u32 *is_safe, int comp_id);
+
 /* 1 under the virtual clock. */
 extern int mw_ext_is_virtual(void);
 

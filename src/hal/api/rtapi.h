@@ -7,6 +7,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 
+#include "rtapi_errno.h"
 #include "rtapi_stdint.h"
 
 #ifdef __cplusplus

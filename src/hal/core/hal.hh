@@ -128,6 +128,8 @@ class Hal {
     const std::string &name() const noexcept;
     bool isHost() const noexcept;
     bool isVirtual() const noexcept;
+    /// True when the host's threads have realtime priority.
+    bool isRealtime() const noexcept;
     rtapi::Log &log() noexcept;
     /// The scheduler of the host; null in an attached process.
     rtapi::Scheduler *scheduler() noexcept;

@@ -2,6 +2,7 @@
 // The realtime process (millwright-rt) as other processes see it. [one thread]
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,13 +12,18 @@
 
 namespace mw::hal {
 
+/// Where the realtime process writes the messages of modules: to the standard error of who starts it, or, for
+/// one that shall outlive its starter, to INSTANCE.log in the runtime folder.
+enum class MessagesTo : std::uint8_t { STDERR, FILE };
+
 class HostClient final : public Host {
   public:
     /// Joins the realtime process of `instance`; an error when none is alive.
     static Result<std::unique_ptr<HostClient>> connect(const std::string &instance);
     /// Starts bin/millwright-rt for `instance` (an error when one is alive) and joins it. It survives this
     /// process unless control() is called.
-    static Result<std::unique_ptr<HostClient>> start(const std::string &instance);
+    static Result<std::unique_ptr<HostClient>> start(const std::string &instance,
+                                                     MessagesTo messages = MessagesTo::STDERR);
     ~HostClient() override;
 
     Hal &hal() noexcept override;
@@ -26,7 +32,7 @@ class HostClient final : public Host {
     Result<bool> isModuleLoaded(const std::string &name) override;
     Result<std::vector<std::string>> modules() override;
 
-    /// From now on the realtime process stops all and ends when this process does.
+    /// From now on the realtime process brakes, stops all and ends when this process does (see HostServer).
     Result<> control();
     /// Tells the realtime process to stop all and end, and waits until it has.
     Result<> shut_down();

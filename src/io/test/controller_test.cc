@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "io/controller.hh"
-
 #include <gtest/gtest.h>
+
+#include "io/controller.hh"
 
 namespace mw::io {
 namespace {
 
-TEST(IoController, ChangesAToolByHandshake_E1)
-{
+TEST(IoController, ChangesAToolByHandshake_E1) {
     Controller io;
     Inputs in;
     io.start_prepare(3, 5, 2);
@@ -30,8 +29,7 @@ TEST(IoController, ChangesAToolByHandshake_E1)
     EXPECT_EQ(io.waiting_for(), "");
 }
 
-TEST(IoController, AnAnswerLeftFromTheLastChangeDoesNotCount)
-{
+TEST(IoController, AnAnswerLeftFromTheLastChangeDoesNotCount) {
     Controller io;
     Inputs in;
     in.tool_changed = true;
@@ -43,8 +41,7 @@ TEST(IoController, AnAnswerLeftFromTheLastChangeDoesNotCount)
     EXPECT_TRUE(io.outputs.tool_change);
 }
 
-TEST(IoController, AFaultEndsTheHandshake_E1)
-{
+TEST(IoController, AFaultEndsTheHandshake_E1) {
     Controller io;
     Inputs in;
     io.start_change();
@@ -61,8 +58,7 @@ TEST(IoController, AFaultEndsTheHandshake_E1)
     EXPECT_FALSE(io.outputs.emc_abort);
 }
 
-TEST(IoController, LeavingEstopAsksTheChainOnce_D1)
-{
+TEST(IoController, LeavingEstopAsksTheChainOnce_D1) {
     Controller io;
     Inputs in;
     io.leave_estop();

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "kins/trivial.hh"
-
 #include <gtest/gtest.h>
+
+#include "kins/trivial.hh"
 
 namespace mw::kins {
 namespace {
 
-TEST(Trivial, GantryJointsShareAnAxis_C14)
-{
+TEST(Trivial, GantryJointsShareAnAxis_C14) {
     Trivial kins;
     ASSERT_TRUE(kins.configure("xYYz"));
     Pose pose;
@@ -26,8 +25,7 @@ TEST(Trivial, GantryJointsShareAnAxis_C14)
     EXPECT_EQ(back, pose);
 }
 
-TEST(Trivial, RefusesLettersThatAreNoAxis)
-{
+TEST(Trivial, RefusesLettersThatAreNoAxis) {
     Trivial kins;
     EXPECT_FALSE(kins.configure(""));
     EXPECT_FALSE(kins.configure("XQ"));

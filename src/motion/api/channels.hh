@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The shared memory between the task process and the realtime process. Holds no pointers.
-// Task side: one thread pushes commands and pops answers and faults. Realtime side: the servo thread and the planner.
+// Task side: one thread pushes commands and pops answers and faults. Realtime side: the servo thread and the
+// planner.
 #pragma once
 
 #include <atomic>
@@ -14,12 +15,13 @@
 
 namespace mw::motion {
 
-/// One row of the trace: the commanded positions of one servo cycle (requirement C3: carte_pos_cmd and pos_cmd).
+/// One row of the trace: the commanded positions of one servo cycle (requirement C3: carte_pos_cmd and
+/// pos_cmd).
 struct TraceSample {
     std::int64_t time_ns = 0;
     std::uint64_t cycle = 0;
     std::int32_t line = 0;
-    std::uint8_t isEnabled = 0;   ///< amp enables of all active joints on
+    std::uint8_t isEnabled = 0;  ///< amp enables of all active joints on
     std::uint8_t isInMotion = 0;
     Epoch epoch = 0;
     geom::Pose carte_pos_cmd;
@@ -32,13 +34,13 @@ struct Channels {
     std::uint32_t magic = 0;
     std::uint32_t layout_bytes = 0;  ///< sizeof(Channels) of the creator
 
-    SpscRing<Command, 1024> immediate;        ///< task -> servo
-    SpscRing<PathCommand, 4096> path;         ///< task -> planner
-    SpscRing<Answer, 4096> servo_answers;     ///< servo -> task
-    SpscRing<Answer, 8192> planner_answers;   ///< planner -> task
-    SpscRing<Fault, 256> servo_faults;        ///< servo -> task
-    SpscRing<Fault, 256> planner_faults;      ///< planner -> task
-    Seqlock<Status> status;                   ///< servo -> any
+    SpscRing<Command, 1024> immediate;       ///< task -> servo
+    SpscRing<PathCommand, 4096> path;        ///< task -> planner
+    SpscRing<Answer, 4096> servo_answers;    ///< servo -> task
+    SpscRing<Answer, 8192> planner_answers;  ///< planner -> task
+    SpscRing<Fault, 256> servo_faults;       ///< servo -> task
+    SpscRing<Fault, 256> planner_faults;     ///< planner -> task
+    Seqlock<Status> status;                  ///< servo -> any
 
     /// Counts the loops of the task process; standing still for the watchdog's time means that it hangs.
     std::atomic<std::uint64_t> task_loops{0};
@@ -48,7 +50,7 @@ struct Channels {
     /// Filled by the servo thread while `isTracing`; a full ring counts in `trace_lost`.
     std::atomic<std::uint32_t> isTracing{0};
     std::atomic<std::uint64_t> trace_lost{0};
-    SpscRing<TraceSample, 8192> trace;        ///< servo -> whoever traces
+    SpscRing<TraceSample, 8192> trace;  ///< servo -> whoever traces
 };
 
 }  // namespace mw::motion

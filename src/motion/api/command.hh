@@ -17,7 +17,8 @@ using CommandId = std::uint64_t;
 
 enum class Mode : std::uint8_t { FREE, TELEOP, COORD };  ///< requirement A4
 
-// --- state -----------------------------------------------------------------------------------------------------
+// --- state
+// -----------------------------------------------------------------------------------------------------
 /// Stops everything at its own limits (coord: along the path) and makes `new_epoch` the current one.
 struct Abort {
     Epoch new_epoch = 0;
@@ -45,7 +46,8 @@ struct SetWatchdog {
 };
 struct Heartbeat {};
 
-// --- program flow ----------------------------------------------------------------------------------------------
+// --- program flow
+// ----------------------------------------------------------------------------------------------
 struct Pause {};
 struct Resume {};
 struct StepOnce {};  ///< resume, and pause again at the end of the current source block
@@ -53,7 +55,8 @@ struct SetReverse {
     bool isReverse = false;
 };
 
-// --- scaling ---------------------------------------------------------------------------------------------------
+// --- scaling
+// ---------------------------------------------------------------------------------------------------
 enum class Scale : std::uint8_t { FEED, RAPID, SPINDLE };
 struct SetScale {
     Scale what = Scale::FEED;
@@ -70,7 +73,8 @@ struct SetMaxVelocity {
     double velocity = 0;  ///< operator's ceiling [machine units/s]; >= 0
 };
 
-// --- jogs and homing -------------------------------------------------------------------------------------------
+// --- jogs and homing
+// -------------------------------------------------------------------------------------------
 /// A joint in free mode, an axis in teleop mode.
 struct JogTarget {
     bool isJoint = true;
@@ -103,11 +107,12 @@ struct SetTeleopVector {
     geom::Pose velocity;
 };
 
-// --- spindle and outputs, at once ------------------------------------------------------------------------------
+// --- spindle and outputs, at once
+// ------------------------------------------------------------------------------
 struct SpindleOn {
     int spindle = 0;
-    double speed_rpm = 0;       ///< signed: > 0 clockwise
-    double css_factor = 0;      ///< machine units/min * 60/(2 pi); 0: constant rpm
+    double speed_rpm = 0;   ///< signed: > 0 clockwise
+    double css_factor = 0;  ///< machine units/min * 60/(2 pi); 0: constant rpm
     double css_max_rpm = 0;
     double css_x_offset = 0;
     bool isWaitingForSpeed = true;
@@ -133,8 +138,13 @@ struct SetAnalogOutput {
     double value = 0;
 };
 struct ClearProbeFlag {};
+/// The tool offset in force, for the pins motion.tooloffset.L; moves nothing.
+struct SetToolOffset {
+    geom::Pose offset;
+};
 
-// --- configuration ---------------------------------------------------------------------------------------------
+// --- configuration
+// ---------------------------------------------------------------------------------------------
 /// One mechanism for every setting (requirement C7): declared once in motion/api/parameters.hh.
 struct SetParameter {
     std::uint16_t parameter = 0;  ///< motion::Parameter
@@ -143,10 +153,11 @@ struct SetParameter {
 };
 
 using CommandBody =
-    std::variant<Abort, Enable, Disable, SetMode, SetAmplifier, SetJointActive, OverrideLimits, SetWatchdog, Heartbeat,
-                 Pause, Resume, StepOnce, SetReverse, SetScale, SetSwitch, SetMaxVelocity, JogContinuous,
-                 JogIncremental, JogAbsolute, JogStop, Home, Unhome, SetTeleopVector, SpindleOn, SpindleOff,
-                 SpindleOrient, SpindleBrake, SetDigitalOutput, SetAnalogOutput, ClearProbeFlag, SetParameter>;
+    std::variant<Abort, Enable, Disable, SetMode, SetAmplifier, SetJointActive, OverrideLimits, SetWatchdog,
+                 Heartbeat, Pause, Resume, StepOnce, SetReverse, SetScale, SetSwitch, SetMaxVelocity,
+                 JogContinuous, JogIncremental, JogAbsolute, JogStop, Home, Unhome, SetTeleopVector,
+                 SpindleOn, SpindleOff, SpindleOrient, SpindleBrake, SetDigitalOutput, SetAnalogOutput,
+                 ClearProbeFlag, SetParameter, SetToolOffset>;
 
 struct Command {
     CommandId id = 0;

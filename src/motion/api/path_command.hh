@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The path channel: moves, and whatever is to happen in step with them, in program order. Drained by the planner.
-// Machine coordinates; lengths in machine units, angles in degrees.
+// The path channel: moves, and whatever is to happen in step with them, in program order. Drained by the
+// planner. Machine coordinates; lengths in machine units, angles in degrees.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,15 @@
 
 namespace mw::motion {
 
-enum class MotionType : std::uint8_t { NONE = 0, TRAVERSE = 1, FEED = 2, ARC = 3, TOOL_CHANGE = 4, PROBING = 5, INDEX_ROTARY = 6 };
+enum class MotionType : std::uint8_t {
+    NONE = 0,
+    TRAVERSE = 1,
+    FEED = 2,
+    ARC = 3,
+    TOOL_CHANGE = 4,
+    PROBING = 5,
+    INDEX_ROTARY = 6
+};
 enum class PathMode : std::uint8_t { EXACT_STOP, EXACT_PATH, BLEND };
 
 /// Where a move comes from; shown to the operator, written to the trace.
@@ -25,12 +33,13 @@ struct SourceTag {
 struct MoveTerms {
     MotionType type = MotionType::FEED;
     PathMode mode = PathMode::BLEND;
-    /// Requested speed along the feed length (XYZ if it moves, else UVW, else ABC); 0: as fast as the limits allow.
+    /// Requested speed along the feed length (XYZ if it moves, else UVW, else ABC); 0: as fast as the limits
+    /// allow.
     double feed = 0;
     double tolerance = 0;           ///< G64 P; 0 under BLEND: no bound
     double naivecam_tolerance = 0;  ///< G64 Q
     bool isFeedOverridable = true;
-    double feed_per_revolution = 0; ///< > 0: synched to the spindle
+    double feed_per_revolution = 0;  ///< > 0: synched to the spindle
     std::int8_t synch_spindle = 0;
     bool isVelocitySynched = false;
     bool isWaitingForSpindleSpeed = false;  ///< hold before this move until spindle.N.at-speed
@@ -50,8 +59,8 @@ struct Arc {
 };
 struct Probe {
     geom::Pose end;
-    bool isAway = false;     ///< trips when contact is lost
-    bool mustTrip = true;    ///< reaching the end untripped is an error
+    bool isAway = false;   ///< trips when contact is lost
+    bool mustTrip = true;  ///< reaching the end untripped is an error
     MoveTerms terms;
 };
 struct RigidTap {
@@ -68,7 +77,8 @@ struct SynchedAnalogOutput {
     int index = 0;
     double value = 0;
 };
-/// Nothing follows for now: plan to the very end of what is queued. Answered DONE when motion has come to rest there.
+/// Nothing follows for now: plan to the very end of what is queued. Answered DONE when motion has come to
+/// rest there.
 struct Flush {};
 
 using PathBody = std::variant<Line, Arc, Probe, RigidTap, SynchedDigitalOutput, SynchedAnalogOutput, Flush>;

@@ -19,7 +19,8 @@ struct JointStatus {
     double min_limit = 0, max_limit = 0, max_velocity = 0, max_acceleration = 0;
     bool isActive = false, isInPosition = true, isEnabled = false, isHoming = false, isHomed = false;
     bool isFaulted = false, isOnPosSoftLimit = false, isOnNegSoftLimit = false;
-    bool isOnPosHardLimit = false, isOnNegHardLimit = false, isFerrorTripped = false, isOverridingLimits = false;
+    bool isOnPosHardLimit = false, isOnNegHardLimit = false, isFerrorTripped = false,
+         isOverridingLimits = false;
 };
 
 struct AxisStatus {
@@ -36,7 +37,7 @@ struct SpindleStatus {
 };
 
 struct Status {
-    std::uint64_t cycle = 0;        ///< servo cycles since load
+    std::uint64_t cycle = 0;  ///< servo cycles since load
     std::int64_t time_ns = 0;
     Epoch epoch = 0;
     CommandId last_immediate_id = 0;  ///< answered or done
@@ -44,17 +45,17 @@ struct Status {
     CommandId active_path_id = 0;     ///< being executed, 0: none
     Mode mode = Mode::FREE;
     bool isEnabled = false;
-    bool isInPosition = true;       ///< nothing moves and nothing is committed
+    bool isInPosition = true;  ///< nothing moves and nothing is committed
     bool isPaused = false, isStepping = false, isReverse = false;
-    bool isTaskLost = false;        ///< the watchdog or the host says that the task process is gone
+    bool isTaskLost = false;  ///< the watchdog or the host says that the task process is gone
     bool isAllHomed = false;
     bool isHoming = false;
     bool isCartePosValid = false;   ///< requirement C3
     std::uint32_t queue_depth = 0;  ///< path commands accepted by the planner and not complete
     bool isQueueFull = false;
-    SourceTag source;               ///< of the move being executed
+    SourceTag source;  ///< of the move being executed
     MotionType motion_type = MotionType::NONE;
-    double current_velocity = 0;    ///< along the path [machine units/s]
+    double current_velocity = 0;  ///< along the path [machine units/s]
     double requested_velocity = 0, distance_to_go = 0;
     geom::Pose carte_pos_cmd, carte_pos_fb, probed_pos, dtg;
     bool isProbing = false, isProbeTripped = false, probe_value = false;
@@ -95,6 +96,10 @@ enum class Reason : std::uint16_t {
     NOT_A_NUMBER,
     NOT_SUPPORTED,
     BAD_ARC,
+    JOG_INHIBITED,
+    HOMING_INHIBITED,
+    SYNCHRONISED_JOINT,  ///< a joint of a negative HOME_SEQUENCE is not jogged alone
+    COUNT,
 };
 
 /// Each command gets exactly one. For path commands DONE comes when the motion is complete.
@@ -120,6 +125,8 @@ enum class FaultKind : std::uint16_t {
     KINEMATICS_FAILED,
     PATH_LIMIT,
     SPINDLE_FAULT,
+    MISC_ERROR,
+    COUNT,
 };
 struct Fault {
     FaultKind kind = FaultKind::FOLLOWING_ERROR;

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "traj/free_planner.hh"
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <random>
 
+#include <gtest/gtest.h>
+
 #include "testing/limit_checker.hh"
+#include "traj/free_planner.hh"
 
 namespace mw::traj {
 namespace {
 
 constexpr double T = 1e-3;
 
-TEST(FreePlanner, ReachesItsTargetExactlyInTrapezoidTime_C8)
-{
+TEST(FreePlanner, ReachesItsTargetExactlyInTrapezoidTime_C8) {
     FreePlanner p;
     p.max_velocity = 10;
     p.max_acceleration = 100;
@@ -28,8 +26,7 @@ TEST(FreePlanner, ReachesItsTargetExactlyInTrapezoidTime_C8)
     EXPECT_NEAR(cycles * T, 5.3 / 10 + 10.0 / 100, 2 * T);
 }
 
-TEST(FreePlanner, RandomTargetChangesKeepTheLimits_C8)
-{
+TEST(FreePlanner, RandomTargetChangesKeepTheLimits_C8) {
     for (unsigned seed = 1; seed <= 50; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         std::mt19937 random(seed);

@@ -3,8 +3,7 @@
 
 namespace mw::ui {
 
-Result<> Halui::create(hal::Hal &hal, int num_joints)
-{
+Result<> Halui::create(hal::Hal &hal, int num_joints) {
     const auto id = hal.new_component("halui");
     if (!id.has_value()) {
         return std::unexpected(id.error());
@@ -25,15 +24,13 @@ Result<> Halui::create(hal::Hal &hal, int num_joints)
     return status;
 }
 
-void Halui::add_button(const std::string &name, task::Command command, Result<> &status)
-{
+void Halui::add_button(const std::string &name, task::Command command, Result<> &status) {
     Button button{{}, std::move(command)};
     button.pin.make(*hal_, comp_id_, "halui." + name, hal::Dir::IN, status);
     buttons_.push_back(std::move(button));
 }
 
-Result<> Halui::make_buttons()
-{
+Result<> Halui::make_buttons() {
     Result<> status;
     add_button("machine.on", task::SetState{task::State::ON}, status);
     add_button("machine.off", task::SetState{task::State::OFF}, status);
@@ -67,8 +64,7 @@ Result<> Halui::make_buttons()
     return status;
 }
 
-Result<> Halui::make_states()
-{
+Result<> Halui::make_states() {
     Result<> status;
     const auto out = [&](hal::UserPin<bool> &pin, const std::string &name) {
         pin.make(*hal_, comp_id_, "halui." + name, hal::Dir::OUT, status);
@@ -89,8 +85,7 @@ Result<> Halui::make_states()
     return status;
 }
 
-void Halui::destroy()
-{
+void Halui::destroy() {
     if (hal_ != nullptr) {
         hal_->delete_component(comp_id_);
         hal_ = nullptr;
@@ -98,8 +93,7 @@ void Halui::destroy()
     }
 }
 
-void Halui::step(task::Task &task)
-{
+void Halui::step(task::Task &task) {
     for (Button &button : buttons_) {
         const bool isOn = button.pin;
         if (isOn && !button.wasOn) {

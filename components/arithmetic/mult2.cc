@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// mult2: out = in0 * in1. All pins float.
+#include "components/common/kit.hh"
+
+namespace mw::components {
+
+struct Mult2 {
+    In<double> in0, in1;
+    Out<double> out;
+
+    void declare(Declare &d) noexcept {
+        d.pin(in0, "in0");
+        d.pin(in1, "in1");
+        d.pin(out, "out");
+        d.function<&Mult2::update>(this);
+    }
+    void update() noexcept { out = in0 * in1; }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Mult2, "mult2");

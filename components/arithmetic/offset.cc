@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// offset: shifts a command and takes the shift out of the feedback. Pins float.
+//
+// Function update-output: out = in + offset. Function update-feedback: fb-out = fb-in - offset.
+#include "components/common/kit.hh"
+
+namespace mw::components {
+
+struct Offset {
+    In<double> offset, in, fb_in;
+    Out<double> out, fb_out;
+
+    void declare(Declare &d) noexcept {
+        d.pin(offset, "offset");
+        d.pin(in, "in");
+        d.pin(out, "out");
+        d.pin(fb_in, "fb-in");
+        d.pin(fb_out, "fb-out");
+        d.function<&Offset::update_output>(this, "update-output");
+        d.function<&Offset::update_feedback>(this, "update-feedback");
+    }
+    void update_output() noexcept { out = in + offset; }
+    void update_feedback() noexcept { fb_out = fb_in - offset; }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Offset, "offset");

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What our components share beyond the SDK: modules whose name has '_' where pins have '-', channels counted
+// by num_chan=, and module-wide functions over all channels.
+#pragma once
+
+#include <cerrno>
+#include <cstring>
+#include <new>
+
+#include "hal/sdk/component.hh"
+
+namespace mw::components {
+
+using sdk::Declare;
+using sdk::In;
+using sdk::InOut;
+using sdk::Out;
+using sdk::ParamRo;
+using sdk::ParamRw;
+
+/// Most instances of a component that sets no lower limit.
+constexpr int MANY = 256;
+
+/// What the module parameters of a load ask for.
+struct Request {
+    const char *module;      ///< name of the module, as in loadrt
+    const char *count_name;  ///< "count" or "num_chan"
+    int count;               ///< 0: not given
+    char *const *names;      ///< null-terminated unless all `max` are given
+    int fallback;            ///< instances when neither is given
+    int max;
+
+    bool isNamed() const noexcept { return names[0] != nullptr && names[0][0] != '\0'; }
+};
+
+/// The number of instances, or a negated errno with a message in the log.
+inline int instance_count(const Request &request) noexcept {
+    int named = 0;
+    while (named < request.max && request.names[named] != nullptr && request.names[named][0] != '\0') {
+        ++named;
+    }
+    if (named > 0 && request.count != 0) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "%s: give %s= or names=, not both", request.module,
+                        request.count_name);
+        return -EINVAL;
+    }
+    if (request.count < 0 || request.count > request.max) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "%s: %s=%d is out of range, 1 to %d are possible", request.module,
+                        request.count_name, request.count, request.max);
+        return -EINVAL;
+    }
+    return named > 0 ? named : (request.count > 0 ? request.count : request.fallback);
+}
+
+/// A HAL name, built in place.
+struct Name {
+    char text[HAL_NAME_LEN + 1] = {};
+
+    /// MODULE with '-' for '_'.
+    static Name of_module(const char *module) noexcept {
+        Name name;
+        rtapi_snprintf(name.text, sizeof name.text, "%s", module);
+        for (char *c = name.text; *c != '\0'; ++c) {
+            *c = *c == '_' ? '-' : *c;
+        }
+        return name;
+    }
+};
+
+/// The prefix of instance `i`: its name, or MODULE.i. False (and a message) when it is too long.
+inline bool make_prefix(Name &out, const Request &request, int i) noexcept {
+    const int length = request.isNamed() ? rtapi_snprintf(out.text, sizeof out.text, "%s", request.names[i])
+                                         : rtapi_snprintf(out.text, sizeof out.text, "%s.%d",
+                                                          Name::of_module(request.module).text, i);
+    if (length > HAL_NAME_LEN) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "%s: an instance name is longer than %d characters", request.module,
+                        HAL_NAME_LEN);
+        return false;
+    }
+    return true;
+}
+
+/// A new T in HAL memory, or null.
+template <class T>
+T *make() noexcept {
+    static_assert(std::is_trivially_destructible_v<T>, "instances are never destroyed");
+    void *memory = hal_malloc(static_cast<long>(sizeof(T)));
+    return memory == nullptr ? nullptr : new (memory) T();
+}
+
+/// Ends a load: ready, or everything undone. The component id, or a negated errno.
+inline int finish(int comp_id, int status) noexcept {
+    const int final_status = status == 0 ? hal_ready(comp_id) : status;
+    if (final_status < 0) {
+        hal_exit(comp_id);
+        return final_status;
+    }
+    return comp_id;
+}
+
+/// Loads separate instances of T, each with functions of its own.
+template <class T>
+int load_instances(const Request &request) noexcept {
+    const int count = instance_count(request);
+    if (count < 0) {
+        return count;
+    }
+    const int comp_id = hal_init(request.module);
+    if (comp_id < 0) {
+        return comp_id;
+    }
+    int status = 0;
+    for (int i = 0; i < count && status == 0; ++i) {
+        Name prefix;
+        T *instance = make<T>();
+        if (instance == nullptr) {
+            status = -ENOMEM;
+        } else if (!make_prefix(prefix, request, i)) {
+            status = -EINVAL;
+        } else {
+            Declare declare(comp_id, prefix.text, i);
+            instance->declare(declare);
+            status = declare.status();
+        }
+    }
+    return finish(comp_id, status);
+}
+
+/// Channels that module-wide functions work on together.
+template <class Channel, int MAX>
+struct Channels {
+    int count = 0;
+    Channel *channel[MAX] = {};
+
+    /// Makes the channels' pins: 0, or a negated errno.
+    int make_channels(int comp_id, const Request &request, int wanted) noexcept {
+        for (int i = 0; i < wanted; ++i) {
+            Name prefix;
+            channel[i] = make<Channel>();
+            if (channel[i] == nullptr) {
+                return -ENOMEM;
+            }
+            if (!make_prefix(prefix, request, i)) {
+                return -EINVAL;
+            }
+            Declare declare(comp_id, prefix.text, i);
+            channel[i]->declare(declare);
+            if (declare.status() < 0) {
+                return declare.status();
+            }
+            ++count;
+        }
+        return 0;
+    }
+};
+
+/// Loads a T with `Channels` as its base and `declare` for the module-wide functions (prefix MODULE).
+template <class T>
+int load_channels(const Request &request) noexcept {
+    const int wanted = instance_count(request);
+    if (wanted < 0) {
+        return wanted;
+    }
+    const int comp_id = hal_init(request.module);
+    if (comp_id < 0) {
+        return comp_id;
+    }
+    T *all = make<T>();
+    int status = all == nullptr ? -ENOMEM : all->make_channels(comp_id, request, wanted);
+    if (status == 0) {
+        const Name prefix = Name::of_module(request.module);
+        Declare declare(comp_id, prefix.text, 0);
+        all->declare(declare);
+        status = declare.status();
+    }
+    return finish(comp_id, status);
+}
+
+}  // namespace mw::components
+
+/// The module parameters COUNT= and names=, main and exit functions; LOAD is load_instances<T> or
+/// load_channels<T>.
+#define MW_MODULE(module, COUNT, fallback, max, LOAD)                                                        \
+    static int COUNT = 0;                                                                                    \
+    RTAPI_MP_INT(COUNT, "number of instances");                                                              \
+    static char *names[max];                                                                                 \
+    RTAPI_MP_ARRAY_STRING(names, max, "names of instances");                                                 \
+    static int mw_comp_id = -1;                                                                              \
+    int rtapi_app_main(void) {                                                                               \
+        mw_comp_id = mw::components::LOAD({module, #COUNT, COUNT, names, fallback, max});                    \
+        return mw_comp_id < 0 ? mw_comp_id : 0;                                                              \
+    }                                                                                                        \
+    void rtapi_app_exit(void) {                                                                              \
+        hal_exit(mw_comp_id);                                                                                \
+    }                                                                                                        \
+    static_assert(true)
+
+/// count= and names=, one instance by default.
+#define MW_INSTANCES(Type, module)                                                                           \
+    MW_MODULE(module, count, 1, mw::components::MANY, load_instances<mw::components::Type>)

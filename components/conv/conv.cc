@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// conv_FROM_TO: `out` is `in` as another type. Built once for each pair (CONV_FROM, CONV_TO and CONV_MODULE
+// are set by the build).
+//
+// Where TO cannot hold all of FROM there is an output `out-of-range` (bit) and a parameter `clamp` (bit):
+// true makes the nearest value of such a one, false lets it wrap around. A bit is true for any integer but 0
+// and any float but those next to 0.
+#include "components/common/kit.hh"
+#include "components/conv/conv_core.hh"
+
+namespace mw::components {
+
+struct Conv {
+    In<CONV_FROM> in;
+    Out<CONV_TO> out;
+    Out<bool> out_of_range;
+    ParamRw<bool> clamp;
+
+    void declare(Declare &d) noexcept {
+        d.pin(in, "in");
+        d.pin(out, "out");
+        if constexpr (conv::canOverflow<CONV_FROM, CONV_TO>()) {
+            d.pin(out_of_range, "out-of-range");
+            d.param(clamp, "clamp");
+        }
+        d.function<&Conv::update>(this);
+    }
+
+    void update() noexcept {
+        const conv::Converted<CONV_TO> result = conv::convert<CONV_TO>(in.get(), clamp);
+        out = result.value;
+        if constexpr (conv::canOverflow<CONV_FROM, CONV_TO>()) {
+            out_of_range = result.isOutOfRange;
+        }
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Conv, CONV_MODULE);

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// One value of a HAL type as another: bool, double and integers of 32 and 64 bits. Realtime-safe.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+namespace mw::conv {
+
+/// Floats nearer to zero than this count as zero when they become a bit.
+constexpr double FALSE_BELOW = 1e-6;
+
+/// True when some values of `From` do not fit into `To`. Any value fits into a float.
+template <class From, class To>
+constexpr bool canOverflow() noexcept {
+    if constexpr (std::is_same_v<From, bool> || std::is_floating_point_v<To>) {
+        return false;
+    } else if constexpr (std::is_same_v<To, bool> || std::is_floating_point_v<From>) {
+        return true;
+    } else {
+        const bool losesSign = std::is_signed_v<From> && std::is_unsigned_v<To>;
+        return losesSign || std::numeric_limits<From>::digits > std::numeric_limits<To>::digits;
+    }
+}
+
+/// The value, and whether it lay outside the range of `To`.
+template <class To>
+struct Converted {
+    To value{};
+    bool isOutOfRange = false;
+};
+
+/// The nearest value of an integer type; a float is cut towards zero first, not-a-number is 0.
+template <class To, class From>
+Converted<To> clamped(From value) noexcept {
+    using Limits = std::numeric_limits<To>;
+    if constexpr (std::is_floating_point_v<From>) {
+        // 2^digits is exact as a double, max() of 64 bits is not.
+        const double above = std::ldexp(1.0, Limits::digits);
+        const double whole = std::trunc(value);
+        if (std::isnan(value)) {
+            return {0, true};
+        }
+        if (whole >= above) {
+            return {Limits::max(), true};
+        }
+        if (whole < static_cast<double>(Limits::min())) {
+            return {Limits::min(), true};
+        }
+        return {static_cast<To>(whole), false};
+    } else {
+        if constexpr (std::is_signed_v<From>) {
+            if constexpr (std::is_unsigned_v<To>) {
+                if (value < 0) {
+                    return {0, true};
+                }
+            } else if (static_cast<std::int64_t>(value) < static_cast<std::int64_t>(Limits::min())) {
+                return {Limits::min(), true};
+            }
+            if (value < 0) {
+                return {static_cast<To>(value), false};
+            }
+        }
+        if (static_cast<std::uint64_t>(value) > static_cast<std::uint64_t>(Limits::max())) {
+            return {Limits::max(), true};
+        }
+        return {static_cast<To>(value), false};
+    }
+}
+
+/// `value` modulo 2^bits, as copying the low bits of an integer would do it.
+template <class To, class From>
+To wrapped(From value) noexcept {
+    if constexpr (std::is_floating_point_v<From>) {
+        if (!std::isfinite(value)) {
+            return 0;
+        }
+        const double modulus = 18446744073709551616.0;  // 2^64
+        double rest = std::fmod(std::trunc(value), modulus);
+        if (rest < 0.0) {
+            rest += modulus;
+        }
+        return static_cast<To>(rest >= modulus ? 0U : static_cast<std::uint64_t>(rest));
+    } else {
+        return static_cast<To>(value);
+    }
+}
+
+/// Converts; what is out of range is clamped or wrapped around.
+template <class To, class From>
+Converted<To> convert(From value, bool isClamping) noexcept {
+    if constexpr (std::is_same_v<From, bool> || std::is_floating_point_v<To>) {
+        return {static_cast<To>(value), false};
+    } else if constexpr (std::is_same_v<To, bool>) {
+        if constexpr (std::is_floating_point_v<From>) {
+            return {std::fabs(value) > FALSE_BELOW, value < 0.0 || value > 1.0};
+        } else {
+            return {value != 0, value < From{0} || value > From{1}};
+        }
+    } else {
+        Converted<To> result = clamped<To>(value);
+        if (result.isOutOfRange && !isClamping) {
+            result.value = wrapped<To>(value);
+        }
+        return result;
+    }
+}
+
+}  // namespace mw::conv

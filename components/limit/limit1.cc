@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// limit1: `out` is `in` held between `min` and `max`. All pins float; the limits start at -1e20 and 1e20.
+#include "components/common/kit.hh"
+#include "components/limit/limit_core.hh"
+
+namespace mw::components {
+
+struct Limit1 {
+    In<double> in;
+    Out<double> out;
+    In<double> min, max;
+
+    void declare(Declare &d) noexcept {
+        d.pin(in, "in");
+        d.pin(out, "out");
+        d.pin(min, "min", -1e20);
+        d.pin(max, "max", 1e20);
+        d.function<&Limit1::update>(this);
+    }
+    void update() noexcept { out = limit::between(in, min, max); }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Limit1, "limit1");

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// logic: and, or, xor, nand and nor of up to 16 inputs.
+//
+// `personality=` gives one number an instance: the number of inputs (low byte) plus 0x100 for output `and`,
+// 0x200 `or`, 0x400 `xor` (an odd number of inputs is true), 0x800 `nand`, 0x1000 `nor`. Pins: in-00, in-01,
+// ... and those outputs.
+#include "components/common/kit.hh"
+
+static int personality[mw::components::MANY];
+RTAPI_MP_ARRAY_INT(personality, mw::components::MANY, "inputs and outputs of each instance");
+
+namespace mw::components {
+
+constexpr int MAX_INPUTS = 16;
+constexpr int OUTPUTS = 5;
+constexpr const char *OUTPUT_NAMES[OUTPUTS] = {"and", "or", "xor", "nand", "nor"};
+
+struct Logic {
+    In<bool> in[MAX_INPUTS];
+    Out<bool> out[OUTPUTS];
+    int inputs = 0;
+    bool hasOutput[OUTPUTS] = {};
+
+    void declare(Declare &d) noexcept {
+        const int wanted = personality[d.index()];
+        inputs = wanted & 0xff;
+        if (inputs < 1 || inputs > MAX_INPUTS || (wanted & 0x1f00) == 0) {
+            rtapi_print_msg(
+                RTAPI_MSG_ERR,
+                "logic: personality 0x%x of instance %d needs 1 to %d inputs and at least one output",
+                static_cast<unsigned>(wanted), d.index(), MAX_INPUTS);
+            d.keep(-EINVAL);
+            return;
+        }
+        for (int i = 0; i < inputs; ++i) {
+            char name[16];
+            rtapi_snprintf(name, sizeof name, "in-%02d", i);
+            d.pin(in[i], name);
+        }
+        for (int i = 0; i < OUTPUTS; ++i) {
+            hasOutput[i] = (wanted & (0x100 << i)) != 0;
+            if (hasOutput[i]) {
+                d.pin(out[i], OUTPUT_NAMES[i]);
+            }
+        }
+        d.function<&Logic::update>(this);
+    }
+
+    void update() noexcept {
+        int trues = 0;
+        for (int i = 0; i < inputs; ++i) {
+            trues += in[i] ? 1 : 0;
+        }
+        const bool isAll = trues == inputs;
+        const bool isAny = trues > 0;
+        const bool values[OUTPUTS] = {isAll, isAny, (trues & 1) != 0, !isAll, !isAny};
+        for (int i = 0; i < OUTPUTS; ++i) {
+            if (hasOutput[i]) {
+                out[i] = values[i];
+            }
+        }
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Logic, "logic");

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// not: `out` is true while `in` is not. All pins bit.
+#include "components/common/kit.hh"
+
+namespace mw::components {
+
+struct Not {
+    In<bool> in;
+    Out<bool> out;
+
+    void declare(Declare &d) noexcept {
+        d.pin(in, "in");
+        d.pin(out, "out");
+        d.function<&Not::update>(this);
+    }
+    void update() noexcept { out = !in; }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Not, "not");

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// select8: makes true the one of `out0` to `out7` (bit) whose number is in `sel` (s32), while `enable` (bit,
+// true at start) is true; all others are false.
+#include "components/common/kit.hh"
+
+namespace mw::components {
+
+struct Select8 {
+    static constexpr int OUTPUTS = 8;
+    In<bool> enable;
+    In<std::int32_t> sel;
+    Out<bool> out[OUTPUTS];
+
+    void declare(Declare &d) noexcept {
+        d.pin(enable, "enable", true);
+        d.pin(sel, "sel");
+        for (int i = 0; i < OUTPUTS; ++i) {
+            d.pin_numbered(out[i], "out", i);
+        }
+        d.function<&Select8::update>(this);
+    }
+
+    void update() noexcept {
+        const bool isEnabled = enable;
+        const std::int32_t selected = sel;
+        for (int i = 0; i < OUTPUTS; ++i) {
+            out[i] = isEnabled && i == selected;
+        }
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Select8, "select8");

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The motion controller as a HAL component: threads base-thread and servo-thread, functions
+// motion-command-handler and motion-controller, the path planner below the threads, and the channels to the
+// task process in shared memory.
+#include <atomic>
+#include <cstdint>
+#include <new>
+
+#include "hal/api/hal.h"
+#include "hal/api/millwright_ext.h"
+#include "hal/api/rtapi_app.h"
+#include "motion/core/controller.hh"
+#include "motion/core/path_planner.hh"
+#include "motion/rt/module_kinematics.hh"
+#include "motion/rt/pins.hh"
+
+using namespace mw;
+
+static long base_period_nsec = 0;
+RTAPI_MP_LONG(base_period_nsec, "period of base-thread [ns]; 0: none");
+static int base_thread_fp = 0;
+RTAPI_MP_INT(base_thread_fp, "accepted; every thread may use floating point");
+static long servo_period_nsec = 1000000;
+RTAPI_MP_LONG(servo_period_nsec, "period of servo-thread [ns]");
+static long traj_period_nsec = 0;
+RTAPI_MP_LONG(traj_period_nsec, "accepted; the path planner has a period of its own");
+static int num_joints = MAX_JOINTS;
+RTAPI_MP_INT(num_joints, "joints, 1 to 16");
+static int num_spindles = 1;
+RTAPI_MP_INT(num_spindles, "spindles, 1 to 8");
+static int num_dio = 4;
+RTAPI_MP_INT(num_dio, "digital inputs and outputs, 1 to 64");
+static int num_aio = 4;
+RTAPI_MP_INT(num_aio, "analog inputs and outputs, 1 to 64");
+static int num_misc_error = 0;
+RTAPI_MP_INT(num_misc_error, "further error inputs, 0 to 64");
+static int num_extrajoints = 0;
+RTAPI_MP_INT(num_extrajoints, "joints outside the kinematics; not supported yet");
+static int unlock_joints_mask = 0;
+RTAPI_MP_INT(unlock_joints_mask, "joints with unlock pins");
+
+namespace {
+
+constexpr int FAILED = -22;  // EINVAL
+
+/// Everything of this load but the pins and the channels, which live in shared memory.
+struct Module {
+    motion::ModuleKinematics kinematics;
+    motion::PathLink *link = nullptr;
+    motion::Inputs in;
+    motion::Outputs out;
+    motion::MotionPins *pins = nullptr;
+    motion::Channels *channels = nullptr;
+    motion::Controller *controller = nullptr;
+    motion::PathPlanner *planner = nullptr;
+    int component = -1, planner_id = -1, shmem_id = -1;
+    rtapi_u32 is_safe = 0;  ///< the task process is gone, motion has stopped and the amplifiers are off
+};
+
+Module module;
+alignas(motion::PathLink) unsigned char link_memory[sizeof(motion::PathLink)];
+alignas(motion::Controller) unsigned char controller_memory[sizeof(motion::Controller)];
+alignas(motion::PathPlanner) unsigned char planner_memory[sizeof(motion::PathPlanner)];
+
+void handle_commands(void *, long) {
+    module.pins->read(module.in);
+    module.controller->handle_commands(module.in);
+}
+
+void control(void *, long) {
+    module.pins->read(module.in);
+    module.controller->step(module.in, module.out);
+    module.pins->write(module.out);
+    const bool isSafe = module.out.status.isTaskLost && !module.out.status.isEnabled;
+    std::atomic_ref(module.is_safe).store(isSafe ? 1 : 0, std::memory_order_release);
+}
+
+void plan(void *, long long) {
+    module.planner->update();
+}
+
+bool isInRange(const char *name, long value, long low, long high) {
+    if (value < low || value > high) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "motmod: %s=%ld is out of range, %ld to %ld are possible\n", name,
+                        value, low, high);
+        return false;
+    }
+    return true;
+}
+
+bool isConfigured() {
+    const bool isSound = isInRange("num_joints", num_joints, 1, MAX_JOINTS) &&
+                         isInRange("num_spindles", num_spindles, 1, MAX_SPINDLES) &&
+                         isInRange("num_dio", num_dio, 1, MAX_DIGITAL_IO) &&
+                         isInRange("num_aio", num_aio, 1, MAX_ANALOG_IO) &&
+                         isInRange("num_misc_error", num_misc_error, 0, MAX_DIGITAL_IO) &&
+                         isInRange("servo_period_nsec", servo_period_nsec, 1000, 100000000) &&
+                         isInRange("base_period_nsec", base_period_nsec, 0, servo_period_nsec);
+    if (!isSound) {
+        return false;
+    }
+    if (num_extrajoints != 0) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "motmod: num_extrajoints=%d: extra joints are not supported yet\n",
+                        num_extrajoints);
+        return false;
+    }
+    if (unlock_joints_mask != 0) {
+        rtapi_print_msg(
+            RTAPI_MSG_WARN,
+            "motmod: unlock_joints_mask: the pins exist, locking indexers are not supported yet\n");
+    }
+    return true;
+}
+
+int find_kinematics() {
+    const char *missing = module.kinematics.find(num_joints);
+    if (missing != nullptr) {
+        rtapi_print_msg(
+            RTAPI_MSG_ERR,
+            "motmod: no loaded module exports %s: load the kinematics (for instance 'loadrt trivkins') "
+            "before motmod\n",
+            missing);
+        return -2;  // ENOENT
+    }
+    return module.kinematics.hold(module.component);
+}
+
+int make_channels() {
+    module.shmem_id =
+        rtapi_shmem_new(motion::Channels::SHMEM_KEY, module.component, sizeof(motion::Channels));
+    void *memory = nullptr;
+    if (module.shmem_id < 0 || rtapi_shmem_getptr(module.shmem_id, &memory) != 0) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "motmod: no shared memory for the motion channels (%d bytes)\n",
+                        static_cast<int>(sizeof(motion::Channels)));
+        return module.shmem_id < 0 ? module.shmem_id : FAILED;
+    }
+    module.channels = new (memory) motion::Channels();
+    module.channels->layout_bytes = sizeof(motion::Channels);
+    module.channels->magic = motion::Channels::MAGIC;
+    return 0;
+}
+
+int make_pins() {
+    void *memory = hal_malloc(static_cast<long>(sizeof(motion::MotionPins)));
+    if (memory == nullptr) {
+        return -12;  // ENOMEM
+    }
+    module.pins = new (memory) motion::MotionPins();
+    return module.pins->declare(
+        module.component, {num_joints, num_spindles, num_dio, num_aio, num_misc_error, unlock_joints_mask});
+}
+
+int make_functions() {
+    const double period_s = static_cast<double>(servo_period_nsec) * 1e-9;
+    module.link = new (link_memory) motion::PathLink();
+    module.controller =
+        new (controller_memory) motion::Controller({num_joints, num_spindles, num_dio, num_aio, period_s},
+                                                   module.kinematics, *module.channels, *module.link);
+    module.planner =
+        new (planner_memory) motion::PathPlanner({period_s, num_joints, num_spindles, num_dio, num_aio},
+                                                 module.kinematics, *module.channels, *module.link);
+    int status = hal_export_funct("motion-command-handler", handle_commands, nullptr, 1, 0, module.component);
+    if (status == 0) {
+        status = hal_export_funct("motion-controller", control, nullptr, 1, 0, module.component);
+    }
+    if (status == 0 && base_period_nsec > 0) {
+        status =
+            hal_create_thread("base-thread", static_cast<unsigned long>(base_period_nsec), base_thread_fp);
+    }
+    if (status == 0) {
+        status = hal_create_thread("servo-thread", static_cast<unsigned long>(servo_period_nsec), 1);
+    }
+    return status;
+}
+
+int start_planner() {
+    // Long against the servo period, short against what an operator notices.
+    constexpr long long SHORTEST_NS = 5000000;
+    const long long servo = servo_period_nsec;
+    const long long period = servo * ((SHORTEST_NS + servo - 1) / servo);
+    module.planner_id = mw_ext_planner_new("motion-planner", period, plan, nullptr);
+    return module.planner_id > 0 ? 0 : module.planner_id;
+}
+
+/// The kernel's word that the task process is gone reaches the controller through the channels.
+int watch_task() {
+    static_assert(sizeof(module.channels->isTaskDead) == sizeof(rtapi_u32));
+    auto *is_gone = reinterpret_cast<rtapi_u32 *>(&module.channels->isTaskDead);
+    return mw_ext_watch_controller(is_gone, &module.is_safe, module.component);
+}
+
+void take_down() {
+    if (module.planner_id > 0) {
+        mw_ext_planner_delete(module.planner_id);
+    }
+    if (module.channels != nullptr) {
+        module.channels->magic = 0;
+        rtapi_shmem_delete(module.shmem_id, module.component);
+    }
+    hal_exit(module.component);
+}
+
+}  // namespace
+
+int rtapi_app_main(void) {
+    if (!isConfigured()) {
+        return FAILED;
+    }
+    module.component = hal_init("motmod");
+    if (module.component < 0) {
+        return module.component;
+    }
+    int status = find_kinematics();
+    status = status == 0 ? make_channels() : status;
+    status = status == 0 ? make_pins() : status;
+    status = status == 0 ? make_functions() : status;
+    status = status == 0 ? start_planner() : status;
+    status = status == 0 ? watch_task() : status;
+    status = status == 0 ? hal_ready(module.component) : status;
+    if (status < 0) {
+        take_down();
+    }
+    return status;
+}
+
+void rtapi_app_exit(void) {
+    take_down();
+}

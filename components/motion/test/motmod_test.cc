@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The motion controller as a loaded module, under the virtual clock, with its motors looped back through HAL.
+#include <gtest/gtest.h>
+
+#include "hal/core/host.hh"
+#include "motion/api/channels.hh"
+#include "motion/api/parameters.hh"
+#include "rtapi/virtual_scheduler.hh"
+
+namespace mw::motion {
+namespace {
+
+struct Machine {
+    rtapi::VirtualScheduler clock;
+    std::unique_ptr<hal::LocalHost> host;
+    Channels *channels = nullptr;
+    CommandId next_id = 1;
+
+    Machine() {
+        hal::HalOptions options;
+        options.scheduler = &clock;
+        auto made = hal::LocalHost::create(options, {MW_MODULE_FOLDER});
+        if (made.has_value()) {
+            host = std::move(*made);
+        }
+    }
+    std::string load(const std::string &name, const std::vector<std::string> &args = {}) {
+        const auto status = host->load_realtime(name, args);
+        return status.has_value() ? "ok" : status.error().str();
+    }
+    void start() {
+        ASSERT_EQ(load("tpmod"), "ok");
+        ASSERT_EQ(load("homemod"), "ok");
+        ASSERT_EQ(load("trivkins", {"coordinates=XYZ"}), "ok");
+        ASSERT_EQ(load("motmod", {"servo_period_nsec=1000000", "num_joints=3"}), "ok");
+        hal::Hal &hal = host->hal();
+        for (const std::string n : {"0", "1", "2"}) {
+            ASSERT_TRUE(
+                hal.net("pos" + n, {"joint." + n + ".motor-pos-cmd", "joint." + n + ".motor-pos-fb"}));
+        }
+        ASSERT_TRUE(hal.add_function("motion-command-handler", "servo-thread"));
+        ASSERT_TRUE(hal.add_function("motion-controller", "servo-thread"));
+        ASSERT_TRUE(hal.start_threads());
+        const auto block = hal.shared_block(Channels::SHMEM_KEY, sizeof(Channels));
+        ASSERT_TRUE(block.has_value());
+        channels = static_cast<Channels *>(*block);
+        ASSERT_EQ(channels->magic, Channels::MAGIC);
+        ASSERT_EQ(channels->layout_bytes, sizeof(Channels));
+    }
+    void send(const CommandBody &body) { channels->immediate.push({next_id++, 1, body}); }
+    void run(double seconds) { clock.run_until(clock.now_ns() + static_cast<std::int64_t>(seconds * 1e9)); }
+    double value(const std::string &pin) { return host->hal().get(pin)->as_number(); }
+    void ready() {
+        send(Abort{1});
+        for (std::int16_t j = 0; j < 3; ++j) {
+            send(SetParameter{static_cast<std::uint16_t>(Parameter::JOINT_MAX_VELOCITY), j, 100});
+            send(SetParameter{static_cast<std::uint16_t>(Parameter::JOINT_MAX_ACCELERATION), j, 1000});
+            send(SetParameter{static_cast<std::uint16_t>(Parameter::JOINT_HOME_SEQUENCE), j, 0});
+        }
+        send(Enable{});
+        send(Home{-1});
+        run(0.1);
+        send(SetMode{Mode::COORD});
+        run(0.05);
+    }
+};
+
+TEST(Motmod, ALineFromThePathChannelReachesTheMotorPins_C1) {
+    Machine m;
+    ASSERT_NO_FATAL_FAILURE(m.start());
+    m.ready();
+    EXPECT_EQ(m.value("motion.is-all-homed"), 1);
+    EXPECT_EQ(m.value("motion.coord-mode"), 1);
+    EXPECT_EQ(m.value("joint.0.amp-enable-out"), 1);
+    Line line;
+    line.end[0] = 10;
+    line.end[1] = -3;
+    line.terms.feed = 50;
+    m.channels->path.push({m.next_id++, 1, line});
+    m.channels->path.push({m.next_id++, 1, Flush{}});
+    m.run(0.1);
+    EXPECT_EQ(m.value("motion.in-position"), 0);
+    EXPECT_GT(m.value("motion.current-vel"), 10);
+    m.run(1);
+    EXPECT_EQ(m.value("joint.0.motor-pos-cmd"), 10.0);
+    EXPECT_EQ(m.value("joint.1.motor-pos-cmd"), -3.0);
+    EXPECT_EQ(m.value("motion.in-position"), 1);
+}
+
+TEST(Motmod, EstopChainDropsTheAmplifiersInTheSameServoCycle) {
+    Machine m;
+    ASSERT_NO_FATAL_FAILURE(m.start());
+    m.ready();
+    ASSERT_EQ(m.value("joint.2.amp-enable-out"), 1);
+    ASSERT_TRUE(m.host->hal().set("motion.emc-enable-in", "FALSE"));
+    m.run(0.001);
+    EXPECT_EQ(m.value("joint.2.amp-enable-out"), 0);
+    EXPECT_EQ(m.value("motion.motion-enabled"), 0);
+}
+
+TEST(Motmod, WithoutKinematicsItSaysWhatToLoad) {
+    Machine m;
+    EXPECT_NE(m.load("motmod").find("loadrt trivkins"), std::string::npos);
+    EXPECT_TRUE(m.host->hal().components().empty());
+}
+
+TEST(Motmod, RefusesCountsOutOfRange_C12) {
+    Machine m;
+    ASSERT_EQ(m.load("trivkins"), "ok");
+    EXPECT_NE(m.load("motmod", {"num_joints=17"}).find("num_joints=17 is out of range"), std::string::npos);
+    EXPECT_NE(m.load("motmod", {"num_spindles=9"}).find("num_spindles"), std::string::npos);
+    EXPECT_NE(m.load("motmod", {"num_extrajoints=1"}).find("not supported yet"), std::string::npos);
+    ASSERT_EQ(m.load("motmod", {"num_joints=2", "num_dio=7"}), "ok");
+    EXPECT_EQ(m.host->hal().pins("joint.*.motor-pos-cmd").size(), 2U);
+    EXPECT_EQ(m.host->hal().pins("axis.*.pos-cmd").size(), 9U);
+    EXPECT_EQ(m.host->hal().pins("motion.digital-in-*").size(), 7U);
+}
+
+TEST(Motmod, TrivkinsRefusesLettersThatAreNoAxes_C14) {
+    Machine m;
+    EXPECT_NE(m.load("trivkins", {"coordinates=XQ"}).find("XYZABCUVW"), std::string::npos);
+    EXPECT_NE(m.load("trivkins", {"kinstype=z"}).find("kinstype"), std::string::npos);
+    EXPECT_EQ(m.load("trivkins", {"coordinates=xyyz", "kinstype=BOTH"}), "ok");
+}
+
+TEST(Motmod, CanBeUnloadedAndLoadedAgain) {
+    Machine m;
+    ASSERT_NO_FATAL_FAILURE(m.start());
+    m.ready();
+    ASSERT_TRUE(m.host->hal().stop_threads());
+    ASSERT_TRUE(m.host->unload_realtime("motmod"));
+    ASSERT_EQ(m.load("motmod", {"num_joints=3"}), "ok");
+}
+
+}  // namespace
+}  // namespace mw::motion

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// mux_generic: multiplexers of any size, from any type to any type.
+//
+// `config=` is a comma-separated list, one item a multiplexer: two type letters (b bit, f float, s s32, u
+// u32, l s64, k u64), from and to, and the number of inputs (2 to 1024) anywhere in the item, as in
+// "ff8,b2f". Pins of mux-gen.NN: in-TYPE-MM, out-TYPE; sel-int (u32) plus sel-bit-MM give the number of the
+// input, the last one when it is too large; suppress-no-input keeps the output while that number is 0;
+// debounce-us (u32) is how long a selection must be stable [us]. Parameters elapsed [us] and selected (u32)
+// show the debouncing. Values out of the range of the output become its nearest value.
+#include "components/common/kit.hh"
+#include "components/conv/conv_core.hh"
+#include "components/mux/selector.hh"
+
+constexpr int MAX_MUXES = 64;
+static char *config[MAX_MUXES];
+RTAPI_MP_ARRAY_STRING(config, MAX_MUXES, "from, to and size of each multiplexer, such as ff8,b2f");
+
+namespace mw::components {
+
+constexpr int MAX_SIZE = 1024;
+constexpr int MAX_SELECT_BITS = 10;
+
+struct TypeLetter {
+    char letter;
+    hal_type_t type;
+    const char *name;
+};
+constexpr TypeLetter TYPES[] = {{'b', HAL_BIT, "bit"}, {'f', HAL_FLOAT, "float"}, {'s', HAL_S32, "s32"},
+                                {'u', HAL_U32, "u32"}, {'l', HAL_S64, "s64"},     {'k', HAL_U64, "u64"}};
+
+struct Config {
+    const TypeLetter *from = nullptr;
+    const TypeLetter *to = nullptr;
+    int size = 0;
+
+    /// Reads an item of config=; false when it is none.
+    bool parse(const char *text) noexcept {
+        for (; *text != '\0'; ++text) {
+            if (*text >= '0' && *text <= '9') {
+                size = 10 * size + (*text - '0');
+                if (size > MAX_SIZE) {
+                    return false;
+                }
+                continue;
+            }
+            const char letter = static_cast<char>(*text | 0x20);
+            const TypeLetter *found = nullptr;
+            for (const TypeLetter &type : TYPES) {
+                found = type.letter == letter ? &type : found;
+            }
+            if (found == nullptr || to != nullptr) {
+                return false;
+            }
+            (from == nullptr ? from : to) = found;
+        }
+        return to != nullptr && size >= 2;
+    }
+};
+
+struct MuxGeneric {
+    Config shape;
+    int select_bits = 0;
+    mux::Selector selector;
+    In<bool> suppress;
+    In<std::uint32_t> debounce_us, sel_int;
+    In<bool> sel_bit[MAX_SELECT_BITS];
+    ParamRo<std::uint32_t> elapsed, selected;
+    hal_data_u **inputs = nullptr;  ///< `shape.size` slots
+    hal_data_u *output = nullptr;
+
+    void declare(Declare &d) noexcept;
+    void update(long period_ns) noexcept;
+
+  private:
+    template <class From>
+    void copy(From value) noexcept;
+};
+
+void MuxGeneric::declare(Declare &d) noexcept {
+    inputs = static_cast<hal_data_u **>(hal_malloc(static_cast<long>(sizeof(void *)) * shape.size));
+    if (inputs == nullptr) {
+        d.keep(-ENOMEM);
+        return;
+    }
+    char name[HAL_NAME_LEN + 1];
+    for (int i = 0; i < shape.size; ++i) {
+        rtapi_snprintf(name, sizeof name, "%s.in-%s-%02d", d.prefix(), shape.from->name, i);
+        d.keep(
+            hal_pin_new(name, shape.from->type, HAL_IN, reinterpret_cast<void **>(&inputs[i]), d.comp_id()));
+    }
+    rtapi_snprintf(name, sizeof name, "%s.out-%s", d.prefix(), shape.to->name);
+    d.keep(hal_pin_new(name, shape.to->type, HAL_OUT, reinterpret_cast<void **>(&output), d.comp_id()));
+    d.pin(suppress, "suppress-no-input");
+    d.pin(debounce_us, "debounce-us");
+    d.pin(sel_int, "sel-int");
+    while (select_bits < MAX_SELECT_BITS && (2 << select_bits) <= shape.size) {
+        rtapi_snprintf(name, sizeof name, "sel-bit-%02d", select_bits);
+        d.pin(sel_bit[select_bits], name);
+        ++select_bits;
+    }
+    d.param(elapsed, "elapsed");
+    d.param(selected, "selected");
+    d.function<&MuxGeneric::update>(this);
+}
+
+template <class From>
+void MuxGeneric::copy(From value) noexcept {
+    switch (shape.to->type) {
+    case HAL_BIT: output->b = conv::convert<bool>(value, true).value; break;
+    case HAL_FLOAT: output->f = conv::convert<double>(value, true).value; break;
+    case HAL_S32: output->s = conv::convert<std::int32_t>(value, true).value; break;
+    case HAL_U32: output->u = conv::convert<std::uint32_t>(value, true).value; break;
+    case HAL_S64: output->ls = conv::convert<std::int64_t>(value, true).value; break;
+    default: output->lu = conv::convert<std::uint64_t>(value, true).value; break;
+    }
+}
+
+void MuxGeneric::update(long period_ns) noexcept {
+    std::uint32_t wanted = sel_int;
+    for (int i = 0; i < select_bits; ++i) {
+        wanted += sel_bit[i] ? 1U << i : 0U;
+    }
+    const std::uint32_t chosen =
+        selector.run(wanted, static_cast<std::uint32_t>(shape.size), debounce_us, suppress, period_ns);
+    elapsed = selector.waited_us();
+    selected = selector.selected();
+    const hal_data_u *input = inputs[chosen];
+    switch (shape.from->type) {
+    case HAL_BIT: copy(static_cast<bool>(input->b)); break;
+    case HAL_FLOAT: copy(static_cast<double>(input->f)); break;
+    case HAL_S32: copy(static_cast<std::int32_t>(input->s)); break;
+    case HAL_U32: copy(static_cast<std::uint32_t>(input->u)); break;
+    case HAL_S64: copy(static_cast<std::int64_t>(input->ls)); break;
+    default: copy(static_cast<std::uint64_t>(input->lu)); break;
+    }
+}
+
+/// Makes multiplexer `index` from its item of config=: 0, or a negated errno.
+static int make_mux(int comp_id, int index) noexcept {
+    MuxGeneric *mux = make<MuxGeneric>();
+    if (mux == nullptr) {
+        return -ENOMEM;
+    }
+    if (!mux->shape.parse(config[index])) {
+        rtapi_print_msg(
+            RTAPI_MSG_ERR,
+            "mux_generic: config item '%s' is not two of the letters b f s u l k and a size of 2 to %d",
+            config[index], MAX_SIZE);
+        return -EINVAL;
+    }
+    Name prefix;
+    rtapi_snprintf(prefix.text, sizeof prefix.text, "mux-gen.%02d", index);
+    Declare declare(comp_id, prefix.text, index);
+    mux->declare(declare);
+    return declare.status();
+}
+
+static int load_muxes() noexcept {
+    const int comp_id = hal_init("mux_generic");
+    if (comp_id < 0) {
+        return comp_id;
+    }
+    int status = 0;
+    int count = 0;
+    while (status == 0 && count < MAX_MUXES && config[count] != nullptr) {
+        status = make_mux(comp_id, count);
+        ++count;
+    }
+    if (count == 0) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "mux_generic: config= is missing, for example config=ff8");
+        status = -EINVAL;
+    }
+    return finish(comp_id, status);
+}
+
+}  // namespace mw::components
+
+static int mw_comp_id = -1;
+
+int rtapi_app_main(void) {
+    mw_comp_id = mw::components::load_muxes();
+    return mw_comp_id < 0 ? mw_comp_id : 0;
+}
+
+void rtapi_app_exit(void) {
+    hal_exit(mw_comp_id);
+}

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Which input a multiplexer passes on: a number that must hold still for a while before it counts.
+// Realtime-safe.
+#pragma once
+
+#include <cstdint>
+
+namespace mw::mux {
+
+class Selector {
+  public:
+    /// `wanted` is the selection asked for, `debounce_us` how long it must be stable [us].
+    /// With `skipsZero` a selection of 0 changes nothing. Answers the selection in force, below `size`.
+    std::uint32_t run(std::uint32_t wanted, std::uint32_t size, std::uint32_t debounce_us, bool skipsZero,
+                      std::int64_t period_ns) noexcept {
+        const bool isIgnored = skipsZero && wanted == 0;
+        if (isIgnored) {
+            waited_ns_ = 0;
+            return bounded(selected_, size);
+        }
+        if (wanted != wanted_) {
+            wanted_ = wanted;
+            waited_ns_ = 0;
+        } else if (wanted != selected_) {
+            waited_ns_ += period_ns;
+        }
+        if (waited_ns_ >= std::int64_t{debounce_us} * 1000) {
+            selected_ = wanted_;
+            waited_ns_ = 0;
+        }
+        return bounded(selected_, size);
+    }
+
+    /// As asked for, not bounded.
+    std::uint32_t selected() const noexcept { return selected_; }
+    std::uint32_t waited_us() const noexcept { return static_cast<std::uint32_t>(waited_ns_ / 1000); }
+
+  private:
+    static std::uint32_t bounded(std::uint32_t selection, std::uint32_t size) noexcept {
+        return selection < size ? selection : size - 1;
+    }
+
+    std::uint32_t wanted_ = 0;
+    std::uint32_t selected_ = 0;
+    std::int64_t waited_ns_ = 0;
+};
+
+/// Four inputs chosen by two bits, two by one: bit 0 is the first.
+template <class... Bits>
+constexpr unsigned index_of_bits(Bits... bits) noexcept {
+    unsigned index = 0;
+    unsigned shift = 0;
+    ((index |= (bits ? 1U : 0U) << shift++), ...);
+    return index;
+}
+
+}  // namespace mw::mux

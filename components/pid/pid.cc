@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// pid: PID controllers with feed-forward and auto-tuning, up to 16 (`num_chan=`, 3 by default, or `names=`).
+//
+// Function pid.N.do-pid-calcs. Inputs: command, feedback [units], enable (bit), command-deriv and
+// feedback-deriv [units/s] (estimated while not linked), error-previous-target (bit, true at start: compare
+// with the command of the period before), index-enable (bit: its falling edge announces a jump of positions).
+// Outputs: error, output, saturated (bit), saturated-s [s], saturated-count [periods]. Tuning (inputs): Pgain
+// (1 at start), Igain, Dgain, FF0 to FF3, bias, deadband, maxoutput, maxerror, maxerrorI, maxerrorD, maxcmdD,
+// maxcmdDD, maxcmdDDD (0: no limit). Auto-tuning: tune-mode (bit) opens the loop, tune-start (bit, I/O)
+// begins and is set back at the end; tune-type 0 finds P, I, D and 1 finds P, I, FF1; tune-cycles,
+// tune-effort. `debug=1` adds parameters with the inner values.
+#include "components/common/kit.hh"
+#include "components/pid/pid_core.hh"
+
+static int debug = 0;
+RTAPI_MP_INT(debug, "1: export inner values as parameters");
+
+namespace mw::components {
+
+/// A float input that knows whether it is linked: while it is not, its slot points at its own value.
+struct LinkableInput {
+    volatile double *slot = nullptr;
+    const volatile double *own = nullptr;
+
+    void declare(Declare &d, const char *name) noexcept {
+        Name full;
+        rtapi_snprintf(full.text, sizeof full.text, "%s.%s", d.prefix(), name);
+        void **address = reinterpret_cast<void **>(const_cast<double **>(&slot));
+        d.keep(hal_pin_new(full.text, HAL_FLOAT, HAL_IN, address, d.comp_id()));
+        own = slot;
+    }
+    bool isLinked() const noexcept { return slot != own; }
+};
+
+struct Pid {
+    In<double> command, feedback;
+    LinkableInput command_deriv, feedback_deriv;
+    In<bool> enable, error_previous_target, index_enable, tune_mode;
+    Out<double> error, output, saturated_s;
+    Out<bool> saturated;
+    Out<std::int32_t> saturated_count;
+    In<double> p, i, d, ff0, ff1, ff2, ff3, bias, deadband;
+    In<double> max_output, max_error, max_error_i, max_error_d, max_cmd_d, max_cmd_dd, max_cmd_ddd;
+    InOut<bool> tune_start;
+    InOut<std::uint32_t> tune_type, tune_cycles;
+    InOut<double> tune_effort;
+    ParamRo<double> error_i, error_d, command_d, command_dd, command_ddd;
+    Out<double> ultimate_gain, ultimate_period;
+
+    pid::Controller controller;
+    pid::Tuner tuner;
+
+    void declare(Declare &declare) noexcept;
+    void update(long period_ns) noexcept;
+
+  private:
+    void declare_tuning(Declare &declare) noexcept;
+    pid::Tuning tuning() const noexcept;
+    void tune(double dt) noexcept;
+};
+
+void Pid::declare(Declare &declare) noexcept {
+    declare.pin(command, "command");
+    declare.pin(feedback, "feedback");
+    command_deriv.declare(declare, "command-deriv");
+    feedback_deriv.declare(declare, "feedback-deriv");
+    declare.pin(enable, "enable");
+    declare.pin(error_previous_target, "error-previous-target", true);
+    declare.pin(index_enable, "index-enable");
+    declare.pin(error, "error");
+    declare.pin(output, "output");
+    declare.pin(saturated, "saturated");
+    declare.pin(saturated_s, "saturated-s");
+    declare.pin(saturated_count, "saturated-count");
+    declare_tuning(declare);
+    if (debug != 0) {
+        declare.param(error_i, "errorI");
+        declare.param(error_d, "errorD");
+        declare.param(command_d, "commandD");
+        declare.param(command_dd, "commandDD");
+        declare.param(command_ddd, "commandDDD");
+        declare.pin(ultimate_gain, "ultimate-gain");
+        declare.pin(ultimate_period, "ultimate-period");
+    }
+    declare.function<&Pid::update>(this, "do-pid-calcs");
+}
+
+void Pid::declare_tuning(Declare &declare) noexcept {
+    declare.pin(p, "Pgain", 1.0);
+    declare.pin(i, "Igain");
+    declare.pin(d, "Dgain");
+    declare.pin(ff0, "FF0");
+    declare.pin(ff1, "FF1");
+    declare.pin(ff2, "FF2");
+    declare.pin(ff3, "FF3");
+    declare.pin(bias, "bias");
+    declare.pin(deadband, "deadband");
+    declare.pin(max_output, "maxoutput");
+    declare.pin(max_error, "maxerror");
+    declare.pin(max_error_i, "maxerrorI");
+    declare.pin(max_error_d, "maxerrorD");
+    declare.pin(max_cmd_d, "maxcmdD");
+    declare.pin(max_cmd_dd, "maxcmdDD");
+    declare.pin(max_cmd_ddd, "maxcmdDDD");
+    declare.pin(tune_mode, "tune-mode");
+    declare.pin(tune_start, "tune-start");
+    declare.pin(tune_type, "tune-type");
+    declare.pin(tune_cycles, "tune-cycles", 50U);
+    declare.pin(tune_effort, "tune-effort", 0.5);
+}
+
+pid::Tuning Pid::tuning() const noexcept {
+    pid::Tuning result;
+    result.p = p;
+    result.i = i;
+    result.d = d;
+    result.ff0 = ff0;
+    result.ff1 = ff1;
+    result.ff2 = ff2;
+    result.ff3 = ff3;
+    result.bias = bias;
+    result.deadband = deadband;
+    result.max_error = max_error;
+    result.max_error_i = max_error_i;
+    result.max_error_d = max_error_d;
+    result.max_command_d = max_cmd_d;
+    result.max_command_dd = max_cmd_dd;
+    result.max_command_ddd = max_cmd_ddd;
+    result.max_output = max_output;
+    return result;
+}
+
+/// One period in tune-mode: the controller rests, the relay swings while tuning.
+void Pid::tune(double dt) noexcept {
+    const double difference = command - feedback;
+    error = difference;
+    controller.reset(command, feedback);
+    if (tune_start && !tuner.isRunning()) {
+        tuner.start();
+    }
+    if (!tuner.isRunning()) {
+        output = bias.get();
+        return;
+    }
+    pid::Tuning found = tuning();
+    output = tuner.run(difference, {tune_effort, tune_cycles, tune_type, bias}, found, dt);
+    if (!tuner.isRunning()) {
+        tune_start = false;
+        p = found.p;
+        i = found.i;
+        d = found.d;
+        ff1 = found.ff1;
+        if (debug != 0) {
+            ultimate_gain = tuner.ultimate_gain;
+            ultimate_period = tuner.ultimate_period;
+        }
+    }
+}
+
+void Pid::update(long period_ns) noexcept {
+    const double dt = static_cast<double>(period_ns) * 1e-9;
+    if (enable && tune_mode) {
+        tune(dt);
+        return;
+    }
+    if (tuner.isRunning()) {
+        tuner = pid::Tuner{};
+        tune_start = false;
+    }
+    pid::Inputs in;
+    in.isEnabled = enable;
+    in.command = command;
+    in.feedback = feedback;
+    in.hasCommandDerivative = command_deriv.isLinked();
+    in.command_derivative = *command_deriv.slot;
+    in.hasFeedbackDerivative = feedback_deriv.isLinked();
+    in.feedback_derivative = *feedback_deriv.slot;
+    in.usesPreviousTarget = error_previous_target;
+    in.isIndexEnabled = index_enable;
+    const pid::Outputs out = controller.run(in, tuning(), dt);
+    error = out.error;
+    output = out.output;
+    saturated = out.isSaturated;
+    saturated_s = out.saturated_s;
+    saturated_count = out.saturated_count;
+    error_i = controller.error_i;
+    error_d = controller.error_d;
+    command_d = controller.command_d;
+    command_dd = controller.command_dd;
+    command_ddd = controller.command_ddd;
+}
+
+}  // namespace mw::components
+
+MW_MODULE("pid", num_chan, 3, mw::pid::MAX_CHANNELS, load_instances<mw::components::Pid>);

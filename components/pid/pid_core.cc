@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "components/pid/pid_core.hh"
+
+#include <cmath>
+#include <numbers>
+
+namespace mw::pid {
+
+namespace {
+
+double limited(double value, double limit) noexcept {
+    if (limit == 0.0) {
+        return value;
+    }
+    const double most = std::fabs(limit);
+    return value > most ? most : (value < -most ? -most : value);
+}
+
+/// What is left of `error` outside the band, without a step at its edge.
+double outside(double error, double band) noexcept {
+    if (error > band) {
+        return error - band;
+    }
+    return error < -band ? error + band : 0.0;
+}
+
+}  // namespace
+
+void Controller::reset(double command, double feedback) noexcept {
+    error_i = 0.0;
+    error_d = 0.0;
+    command_d = 0.0;
+    command_dd = 0.0;
+    command_ddd = 0.0;
+    previous_command_ = command;
+    previous_target_ = command;
+    previous_feedback_ = feedback;
+    raw_command_d_ = 0.0;
+    feedback_d_ = 0.0;
+    limit_state_ = 0;
+    saturated_s_ = 0.0;
+    saturated_count_ = 0;
+}
+
+void Controller::derive_command(const Inputs &in, const Tuning &tuning, double dt) noexcept {
+    const bool hasJumped = wasIndexEnabled_ && !in.isIndexEnabled;
+    const double before_d = command_d;
+    const double before_dd = command_dd;
+    if (in.hasCommandDerivative) {
+        raw_command_d_ = in.command_derivative;
+    } else if (!hasJumped) {
+        raw_command_d_ = (in.command - previous_command_) / dt;
+    }
+    command_d = limited(raw_command_d_, tuning.max_command_d);
+    command_dd = limited((command_d - before_d) / dt, tuning.max_command_dd);
+    command_ddd = limited((command_dd - before_dd) / dt, tuning.max_command_ddd);
+    previous_command_ = in.command;
+}
+
+void Controller::derive_error(const Inputs &in, const Tuning &tuning, double dt) noexcept {
+    const bool hasJumped = wasIndexEnabled_ && !in.isIndexEnabled;
+    if (!hasJumped) {
+        feedback_d_ =
+            in.hasFeedbackDerivative ? in.feedback_derivative : (in.feedback - previous_feedback_) / dt;
+    }
+    error_d = limited(raw_command_d_ - feedback_d_, tuning.max_error_d);
+    previous_feedback_ = in.feedback;
+}
+
+Outputs Controller::run(const Inputs &in, const Tuning &tuning, double dt) noexcept {
+    Outputs out;
+    const double target = in.usesPreviousTarget ? previous_target_ : in.command;
+    out.error = target - in.feedback;
+    previous_target_ = in.command;
+    if (!in.isEnabled) {
+        reset(in.command, in.feedback);
+        wasIndexEnabled_ = in.isIndexEnabled;
+        return out;
+    }
+    const double error = limited(outside(out.error, tuning.deadband), tuning.max_error);
+    // While the output is limited, error that would push further must not pile up.
+    const bool windsUp = limit_state_ != 0 && (error > 0.0) == (limit_state_ > 0);
+    if (!windsUp) {
+        error_i = limited(error_i + error * dt, tuning.max_error_i);
+    }
+    derive_command(in, tuning, dt);
+    derive_error(in, tuning, dt);
+    wasIndexEnabled_ = in.isIndexEnabled;
+    const double sum = tuning.bias + tuning.p * error + tuning.i * error_i + tuning.d * error_d +
+                       tuning.ff0 * in.command + tuning.ff1 * command_d + tuning.ff2 * command_dd +
+                       tuning.ff3 * command_ddd;
+    out.output = limited(sum, tuning.max_output);
+    limit_state_ =
+        tuning.max_output != 0.0 && std::fabs(sum) >= std::fabs(tuning.max_output) ? (sum > 0.0 ? 1 : -1) : 0;
+    out.isSaturated = limit_state_ != 0;
+    saturated_s_ = out.isSaturated ? saturated_s_ + dt : 0.0;
+    saturated_count_ = out.isSaturated ? saturated_count_ + 1 : 0;
+    out.saturated_s = saturated_s_;
+    out.saturated_count = saturated_count_;
+    return out;
+}
+
+double Tuner::run(double error, const Settings &settings, Tuning &tuning, double dt) noexcept {
+    // The first half cycles bring the loop into its rhythm and are not measured.
+    constexpr std::uint32_t SETTLING = 2;
+    const bool isMeasuring = half_cycles_ > SETTLING;
+    time_ += isMeasuring ? dt : 0.0;
+    peak_ = std::fabs(error) > peak_ ? std::fabs(error) : peak_;
+    const bool hasCrossed = isPositive_ ? error < 0.0 : error > 0.0;
+    if (hasCrossed) {
+        isPositive_ = !isPositive_;
+        if (isMeasuring) {
+            peak_sum_ += peak_;
+        }
+        peak_ = 0.0;
+        ++half_cycles_;
+    }
+    const std::uint32_t cycles = settings.cycles < 2 ? 2 : settings.cycles;
+    const bool isDone = half_cycles_ > SETTLING + cycles;
+    if (!isDone) {
+        return settings.bias + (isPositive_ ? settings.effort : -settings.effort);
+    }
+    isRunning_ = false;
+    const double amplitude = peak_sum_ / cycles;
+    ultimate_period = 2.0 * time_ / cycles;
+    ultimate_gain = amplitude > 0.0 ? 4.0 * settings.effort / (std::numbers::pi * amplitude) : 0.0;
+    if (settings.type == 0) {
+        tuning.p = 0.6 * ultimate_gain;
+        tuning.i = tuning.p / (0.5 * ultimate_period);
+        tuning.d = tuning.p * 0.125 * ultimate_period;
+        tuning.ff1 = 0.0;
+    } else {
+        // Scaled in units per second the plant is an integrator: velocity goes through unchanged.
+        tuning.p = 0.45 * ultimate_gain;
+        tuning.i = tuning.p / (ultimate_period / 1.2);
+        tuning.d = 0.0;
+        tuning.ff1 = 1.0;
+    }
+    return settings.bias;
+}
+
+}  // namespace mw::pid

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A PID controller with feed-forward, limits and relay auto-tuning, without HAL. Realtime-safe.
+#pragma once
+
+#include <cstdint>
+
+namespace mw::pid {
+
+constexpr int MAX_CHANNELS = 16;
+
+/// Gains and limits; a limit of 0 means none. Error is in units of the command, output in what the actuator
+/// takes.
+struct Tuning {
+    double p = 1.0;
+    double i = 0.0;  ///< [1/s]
+    double d = 0.0;  ///< [s]
+    double ff0 = 0.0;
+    double ff1 = 0.0;
+    double ff2 = 0.0;
+    double ff3 = 0.0;
+    double bias = 0.0;
+    double deadband = 0.0;
+    double max_error = 0.0;
+    double max_error_i = 0.0;
+    double max_error_d = 0.0;
+    double max_command_d = 0.0;
+    double max_command_dd = 0.0;
+    double max_command_ddd = 0.0;
+    double max_output = 0.0;
+};
+
+struct Inputs {
+    bool isEnabled = false;
+    double command = 0.0;
+    double feedback = 0.0;
+    bool hasCommandDerivative = false;  ///< else it is estimated
+    double command_derivative = 0.0;
+    bool hasFeedbackDerivative = false;
+    double feedback_derivative = 0.0;
+    bool usesPreviousTarget = true;  ///< compare the feedback with the command of the call before
+    bool isIndexEnabled = false;     ///< its falling edge means that positions have jumped
+};
+
+struct Outputs {
+    double error = 0.0;
+    double output = 0.0;
+    bool isSaturated = false;
+    double saturated_s = 0.0;
+    std::int32_t saturated_count = 0;
+};
+
+class Controller {
+  public:
+    Outputs run(const Inputs &in, const Tuning &tuning, double dt) noexcept;
+    /// Forgets everything but where command and feedback are, as when disabled.
+    void reset(double command, double feedback) noexcept;
+
+    // For tuning by eye.
+    double error_i = 0.0;
+    double error_d = 0.0;
+    double command_d = 0.0;
+    double command_dd = 0.0;
+    double command_ddd = 0.0;
+
+  private:
+    void derive_command(const Inputs &in, const Tuning &tuning, double dt) noexcept;
+    void derive_error(const Inputs &in, const Tuning &tuning, double dt) noexcept;
+
+    double previous_target_ = 0.0;
+    double previous_command_ = 0.0;
+    double previous_feedback_ = 0.0;
+    double raw_command_d_ = 0.0;  ///< not limited
+    double feedback_d_ = 0.0;
+    int limit_state_ = 0;  ///< sign of the limited output of the call before
+    bool wasIndexEnabled_ = false;
+    double saturated_s_ = 0.0;
+    std::int32_t saturated_count_ = 0;
+};
+
+/// Finds gains with a relay in place of the controller (Astrom and Hagglund 1984): the loop swings in a limit
+/// cycle whose amplitude and period give the ultimate gain, and from it gains after Ziegler and Nichols.
+class Tuner {
+  public:
+    struct Settings {
+        double effort = 0.5;        ///< output of the relay
+        std::uint32_t cycles = 50;  ///< half cycles to measure
+        std::uint32_t type = 0;     ///< 0: P, I and D; 1: P, I and FF1
+        double bias = 0.0;
+    };
+
+    /// Starts anew.
+    void start() noexcept {
+        *this = Tuner{};
+        isRunning_ = true;
+    }
+    bool isRunning() const noexcept { return isRunning_; }
+    /// The output for this period. When the last half cycle is over the gains are in `tuning` and it stops.
+    double run(double error, const Settings &settings, Tuning &tuning, double dt) noexcept;
+
+    double ultimate_gain = 0.0;
+    double ultimate_period = 0.0;  ///< [s]
+
+  private:
+    bool isRunning_ = false;
+    bool isPositive_ = true;
+    std::uint32_t half_cycles_ = 0;
+    double peak_ = 0.0;
+    double peak_sum_ = 0.0;
+    double time_ = 0.0;
+};
+
+}  // namespace mw::pid

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// sim_home_switch: a home switch and an index pulse for an axis that exists only in numbers.
+//
+// `home-sw` (bit) is true once `cur-pos` has reached `home-pos` (1 at start; below it for a negative one) and
+// false when it is back by `hysteresis` (0.1 at start), all in machine units. `index-enable` (bit, I/O) is
+// set back `index-delay-ms` (10 at start) milliseconds after it was set.
+#include "components/common/kit.hh"
+#include "sim/home_switch.hh"
+
+namespace mw::components {
+
+struct SimHomeSwitch {
+    In<double> cur_pos, home_pos, hysteresis;
+    Out<bool> home_sw;
+    InOut<bool> index_enable;
+    In<double> index_delay_ms;
+    sim::HomeSwitch home_switch;
+    sim::DelayedIndex index;
+
+    void declare(Declare &d) noexcept {
+        d.pin(cur_pos, "cur-pos");
+        d.pin(home_pos, "home-pos", 1.0);
+        d.pin(hysteresis, "hysteresis", 0.1);
+        d.pin(home_sw, "home-sw");
+        d.pin(index_enable, "index-enable");
+        d.pin(index_delay_ms, "index-delay-ms", 10.0);
+        d.function<&SimHomeSwitch::update>(this);
+    }
+
+    void update(long period_ns) noexcept {
+        home_sw = home_switch.run(cur_pos, home_pos, hysteresis);
+        if (index.run(index_enable, index_delay_ms * 1e-3, static_cast<double>(period_ns) * 1e-9)) {
+            index_enable = false;
+        }
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(SimHomeSwitch, "sim_home_switch");

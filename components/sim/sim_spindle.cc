@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// sim_spindle: a spindle that turns as commanded, with an index.
+//
+// `velocity-cmd` times the parameter `scale` (1 at start) is the speed in turns per second; `position-fb` the
+// position [turns]. With `index-enable` (bit, I/O) set, the position starts anew at the next whole turn and
+// the pin is set back.
+#include "components/common/kit.hh"
+#include "sim/spindle.hh"
+
+namespace mw::components {
+
+struct SimSpindle {
+    In<double> velocity_cmd;
+    Out<double> position_fb;
+    InOut<bool> index_enable;
+    ParamRw<double> scale;
+    sim::Spindle spindle;
+
+    void declare(Declare &d) noexcept {
+        d.pin(velocity_cmd, "velocity-cmd");
+        d.pin(position_fb, "position-fb");
+        d.pin(index_enable, "index-enable");
+        d.param(scale, "scale", 1.0);
+        d.function<&SimSpindle::update>(this);
+    }
+
+    void update(long period_ns) noexcept {
+        if (spindle.run(velocity_cmd * scale, index_enable, static_cast<double>(period_ns) * 1e-9)) {
+            index_enable = false;
+        }
+        position_fb = spindle.position();
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(SimSpindle, "sim_spindle");

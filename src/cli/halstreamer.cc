@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// halstreamer [-c CHANNEL] [FILE]: feeds lines of values to the component streamer.
+#include <unistd.h>
+
+#include "cli/stream_main.hh"
+#include "hal/stream_tools/programs.hh"
+
+int main(int argc, char **argv) {
+    mw::hal::stream_tools::StreamerOptions options;
+    for (int option = 0; (option = getopt(argc, argv, "c:h")) != -1;) {
+        long value = 0;
+        if (option != 'c') {
+            std::fprintf(stderr,
+                         "usage: halstreamer [-c CHANNEL] [FILE]\n"
+                         "  sends lines of values (from FILE or standard input) to the component streamer\n"
+                         "  -c  queue to write (0)\n");
+            return option == 'h' ? 0 : 1;
+        }
+        if (!mw::cli::parse_count("halstreamer", optarg, value)) {
+            return 1;
+        }
+        options.channel = static_cast<int>(value);
+    }
+    if (optind < argc) {
+        options.file = argv[optind];
+    }
+    return mw::cli::run_attached(
+        "halstreamer", [&](auto &stop) { return mw::hal::stream_tools::run_streamer(options, stop); });
+}

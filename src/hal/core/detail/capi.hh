@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Between the C API and the C++ view: failures become a line in the log and a negated errno.
+#pragma once
+
+#include <cerrno>
+
+#include "hal/api/hal.h"
+#include "hal/core/detail/impl.hh"
+
+namespace mw::hal::detail {
+
+/// Logs an error of Hal; the negated errno that Hal left.
+int complain(const Error &error) noexcept;
+
+/// Logs the message; the negated code.
+int complain(int code, const std::string &message) noexcept;
+
+/// 0, or complains.
+int status_of(const Result<> &result) noexcept;
+
+/// The log of the current instance, or of the process.
+rtapi::Log &current_log() noexcept;
+
+/// Runs `work` on the current instance; -EINVAL when there is none.
+template <class Work>
+int with_hal(Work work) {
+    Hal *hal = current();
+    if (hal == nullptr) {
+        return complain(EINVAL, "this process has joined no HAL instance: call hal_init first");
+    }
+    return work(*hal);
+}
+
+}  // namespace mw::hal::detail

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The inside of Hal, shared by its source files only.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "hal/api/rtapi.h"
+#include "hal/core/detail/segment.hh"
+#include "hal/core/hal.hh"
+
+namespace mw::hal {
+
+class Loader;
+
+namespace detail {
+
+/// Calls a planner of mw_ext_planner_new with its instance current.
+struct PlannerRunner {
+    Hal *hal = nullptr;
+    void (*function)(void *, long long) = nullptr;
+    void *argument = nullptr;
+    int id = 0;
+    rtapi::PeriodicId periodic;
+};
+
+/// A module that wants to know of the end of the controlling process, and says when the machine stands.
+struct ControllerWatch {
+    std::uint32_t *is_gone;
+    const std::uint32_t *is_safe;
+    int comp_id;
+};
+
+/// What runs one HAL thread in the host.
+struct ThreadRunner {
+    Hal::Impl *hal = nullptr;
+    ThreadRecord *record = nullptr;
+    rtapi::PeriodicId periodic;
+};
+
+/// A failure whose code the C API hands on.
+std::unexpected<Error> refuse(int code, std::string message, std::string hint = {});
+
+}  // namespace detail
+
+struct Hal::Impl {
+    std::string name;
+    Hal *self = nullptr;
+    bool isHost = false;
+    bool isShared = false;
+    rtapi::Scheduler *scheduler = nullptr;
+    rtapi::Log *log = nullptr;
+    std::unique_ptr<rtapi::Log> own_log;
+    detail::Segment segment;
+    Loader *loader = nullptr;                                      ///< of the host, while there is one
+    std::vector<std::unique_ptr<detail::ThreadRunner>> runners;    ///< under the segment's lock
+    std::vector<std::unique_ptr<detail::PlannerRunner>> planners;  ///< under the segment's lock
+    int last_planner_id = 0;
+    std::vector<detail::ControllerWatch> controller_watches;  ///< in the host's thread
+
+    // With the lock held:
+    detail::CompRecord *find_comp(int id) const noexcept;
+    detail::PinRecord *find_pin(std::string_view name) const noexcept;
+    detail::ParamRecord *find_param(std::string_view name) const noexcept;
+    detail::SignalRecord *find_signal(std::string_view name) const noexcept;
+    Result<> check_name(detail::Kind kind, std::string_view name) const;
+    Result<> check_lock(std::uint8_t lock, const char *what) const;
+    /// "there is no pin 'x'", with the nearest name as the hint.
+    std::unexpected<Error> no_such(detail::Kind kind, std::string_view name) const;
+    Result<int> add_comp(std::string_view name, CompType type);
+    Result<> add_pin(std::string_view name, Type type, Dir dir, void **slot, detail::CompRecord &comp);
+    Result<> add_param(std::string_view name, Type type, Dir dir, void *address, detail::CompRecord &comp);
+    Result<> check_link(const detail::PinRecord &pin, const detail::SignalRecord &signal) const;
+    void link_pin(detail::PinRecord &pin, detail::SignalRecord &signal) noexcept;
+    void unlink_pin(detail::PinRecord &pin) noexcept;
+    void remove_pin(detail::PinRecord &pin) noexcept;
+    void remove_param(detail::ParamRecord &param) noexcept;
+    void remove_funct(detail::FunctRecord &funct) noexcept;
+    void remove_comp(detail::CompRecord &comp, bool isDead) noexcept;
+    void point_slot(const detail::PinRecord &pin, detail::Offset value) noexcept;
+    detail::Offset value_of(const detail::PinRecord &pin) const noexcept;
+    template <class Change>
+    Result<> change_list(detail::ThreadRecord &thread, Change change);
+    void drop_from_lists(detail::Offset funct) noexcept;
+    Result<> add_to_thread(std::string_view function, std::string_view thread, int position, bool isInit);
+    Result<> remove_thread(detail::ThreadRecord &thread);
+    /// Waits until the functions that ran when it was called have ended.
+    void wait_for_cycle(const detail::ThreadRecord &thread) const noexcept;
+    Value read(Type type, detail::Offset value) const noexcept;
+    void write(detail::Offset value, const Value &from) noexcept;
+    std::string comp_name(detail::Offset comp) const;
+    int comp_id(detail::Offset comp) const noexcept;
+    /// The block of this key with one more user; zeroed when it had none.
+    Result<detail::BlockRecord *> open_block(int key, std::size_t bytes);
+    void run_thread(detail::ThreadRecord &thread) noexcept;
+};
+
+namespace detail {
+
+/// The lock of an instance while it lives. Reading needs it too.
+class Guard {
+  public:
+    explicit Guard(const Hal::Impl &hal) noexcept : segment_(const_cast<Segment &>(hal.segment)) {
+        segment_.lock();
+    }
+    ~Guard() { segment_.unlock(); }
+    Guard(const Guard &) = delete;
+    Guard &operator=(const Guard &) = delete;
+
+  private:
+    Segment &segment_;
+};
+
+/// What this thread is doing, for the C API. No heap, so that a realtime thread may use it at once.
+struct ThreadContext {
+    Hal *instance = nullptr;                                   ///< override of the process's
+    bool isRealtime = false;                                   ///< inside a HAL thread
+    const char *loading = nullptr;                             ///< name of the module being loaded
+    std::vector<const rtapi_mp_info *> *parameters = nullptr;  ///< collects those of the module being loaded
+};
+ThreadContext &context() noexcept;
+
+}  // namespace detail
+}  // namespace mw::hal

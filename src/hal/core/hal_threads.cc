@@ -1,0 +1,396 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Threads and the order in which they call functions. run_thread and what it calls are realtime code.
+#include <time.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <limits>
+
+#include "hal/core/detail/impl.hh"
+
+namespace mw::hal {
+
+using namespace detail;
+
+// ---- realtime
+
+namespace {
+
+std::int32_t clamp_s32(std::int64_t ns) noexcept {
+    constexpr std::int64_t MOST = std::numeric_limits<std::int32_t>::max();
+    return static_cast<std::int32_t>(ns < MOST ? ns : MOST);
+}
+
+/// Writes through a pin slot of this process.
+template <class T>
+void put(std::uint64_t &slot, T value) noexcept {
+    // Acquire: pairs with point_slot, which may move the pin to a signal at any time.
+    auto *at = reinterpret_cast<T *>(__atomic_load_n(&slot, __ATOMIC_ACQUIRE));
+    __atomic_store_n(at, value, __ATOMIC_RELAXED);
+}
+
+void record_time(FunctRecord &funct, std::int64_t ns) noexcept {
+    const std::int32_t time = clamp_s32(ns);
+    put(funct.time_slot, time);
+    const bool isIncreased = time > __atomic_load_n(&funct.tmax, __ATOMIC_RELAXED);
+    if (isIncreased) {
+        __atomic_store_n(&funct.tmax, time, __ATOMIC_RELAXED);
+    }
+    __atomic_store_n(&funct.isTmaxIncreased, isIncreased, __ATOMIC_RELAXED);
+}
+
+using Function = void (*)(void *, long);
+
+void call(const ListEntry &entry, std::int64_t period_ns) noexcept {
+    reinterpret_cast<Function>(entry.function)(reinterpret_cast<void *>(entry.argument), period_ns);
+}
+
+/// Runs the init functions that have not run yet.
+void run_init(Segment &segment, const FunctionList &list, std::int64_t period_ns) noexcept {
+    for (std::uint32_t i = 0; i < list.count && list.entries[i].isInit; ++i) {
+        auto *funct = segment.at<FunctRecord>(list.entries[i].funct);
+        if (funct->init_runs.load(std::memory_order_relaxed) == 0) {
+            funct->init_runs.store(1, std::memory_order_relaxed);
+            call(list.entries[i], period_ns);
+        }
+    }
+}
+
+}  // namespace
+
+void Hal::Impl::run_thread(ThreadRecord &thread) noexcept {
+    ThreadContext &here = context();
+    const ThreadContext before = here;
+    here.instance = self;
+    here.isRealtime = true;
+    thread.cycle.fetch_add(1, std::memory_order_seq_cst);
+    // Sequentially consistent with stop_threads: it either stops this cycle or waits for it.
+    if (segment.header().isRunning.load(std::memory_order_seq_cst) != 0) {
+        const std::uint32_t active = thread.active.load(std::memory_order_seq_cst);
+        const auto &list = *segment.at<FunctionList>(thread.lists[active]);
+        run_init(segment, list, thread.period_ns);
+        const bool isTimed = !segment.header().isVirtual;
+        const std::int64_t start = isTimed ? scheduler->now_ns() : 0;
+        std::int64_t last = start;
+        for (std::uint32_t i = 0; i < list.count; ++i) {
+            const ListEntry &entry = list.entries[i];
+            if (entry.isInit) {
+                continue;
+            }
+            call(entry, thread.period_ns);
+            if (isTimed) {
+                const std::int64_t now = scheduler->now_ns();
+                record_time(*segment.at<FunctRecord>(entry.funct), now - last);
+                last = now;
+            }
+        }
+        if (isTimed) {
+            const std::int32_t time = clamp_s32(last - start);
+            put(thread.time_slot, time);
+            if (time > __atomic_load_n(&thread.tmax, __ATOMIC_RELAXED)) {
+                __atomic_store_n(&thread.tmax, time, __ATOMIC_RELAXED);
+            }
+        }
+        auto *beat = reinterpret_cast<std::int64_t *>(__atomic_load_n(&thread.beat_slot, __ATOMIC_ACQUIRE));
+        __atomic_store_n(beat, __atomic_load_n(beat, __ATOMIC_RELAXED) + 1, __ATOMIC_RELAXED);
+    }
+    thread.cycle.fetch_add(1, std::memory_order_seq_cst);
+    here = before;
+}
+
+// ---- not realtime
+
+void Hal::Impl::wait_for_cycle(const ThreadRecord &thread) const noexcept {
+    const std::uint32_t cycle = thread.cycle.load(std::memory_order_seq_cst);
+    if ((cycle & 1U) == 0) {
+        return;
+    }
+    // A thread that hangs in a function for longer is beyond help; a dead process never ends its cycle.
+    constexpr int TRIES = 10000;
+    for (int i = 0; i < TRIES && thread.cycle.load(std::memory_order_seq_cst) == cycle; ++i) {
+        const timespec nap{0, 100'000};
+        ::nanosleep(&nap, nullptr);
+    }
+}
+
+/// Applies `change` to a copy of the thread's list, which the thread takes up with its next period. On return
+/// the old list is no longer in use.
+template <class Change>
+Result<> Hal::Impl::change_list(ThreadRecord &thread, Change change) {
+    if (context().isRealtime) {
+        return refuse(EDEADLK, "the functions of a thread cannot be changed from inside a thread");
+    }
+    const std::uint32_t active = thread.active.load();
+    const auto &list = *segment.at<FunctionList>(thread.lists[active]);
+    auto &spare = *segment.at<FunctionList>(thread.lists[1 - active]);
+    spare.count = list.count;
+    std::copy_n(list.entries.begin(), list.count, spare.entries.begin());
+    if (auto changed = change(spare); !changed) {
+        return changed;
+    }
+    thread.active.store(1 - active, std::memory_order_seq_cst);
+    wait_for_cycle(thread);
+    return {};
+}
+
+void Hal::Impl::drop_from_lists(Offset funct) noexcept {
+    segment.each<ThreadRecord>(Kind::THREAD, [&](ThreadRecord &thread) {
+        const auto &list = *segment.at<FunctionList>(thread.lists[thread.active.load()]);
+        const auto *end = list.entries.begin() + list.count;
+        const auto isIt = [funct](const ListEntry &entry) { return entry.funct == funct; };
+        if (std::none_of(list.entries.begin(), end, isIt)) {
+            return;
+        }
+        (void)change_list(thread, [&](FunctionList &changed) -> Result<> {
+            auto *last =
+                std::remove_if(changed.entries.begin(), changed.entries.begin() + changed.count, isIt);
+            changed.count = static_cast<std::uint32_t>(last - changed.entries.begin());
+            return {};
+        });
+    });
+}
+
+namespace {
+
+/// Where position `wanted` is in [first, first + count]: 1 the first... -1 after the last; -1 when there is
+/// no such.
+int place_of(int wanted, int first, int count) noexcept {
+    const int place = wanted > 0 ? wanted - 1 : count + 1 + wanted;
+    return wanted == 0 || place < 0 || place > count ? -1 : first + place;
+}
+
+}  // namespace
+
+Result<> Hal::Impl::add_to_thread(std::string_view function, std::string_view thread_name, int position,
+                                  bool isInit) {
+    if (auto checked = check_lock(LOCK_CONFIG, "adding functions to threads"); !checked) {
+        return checked;
+    }
+    auto *funct = segment.find_as<FunctRecord>(Kind::FUNCT, function);
+    if (funct == nullptr) {
+        return no_such(Kind::FUNCT, function);
+    }
+    auto *thread = segment.find_as<ThreadRecord>(Kind::THREAD, thread_name);
+    if (thread == nullptr) {
+        return no_such(Kind::THREAD, thread_name);
+    }
+    if (funct->users > 0 && !funct->isReentrant) {
+        return refuse(
+            EINVAL, fmt::format("function '{}' is in a thread already and may be called from one place only",
+                                function));
+    }
+    auto added = change_list(*thread, [&](FunctionList &list) -> Result<> {
+        if (list.count == THREAD_FUNCTIONS) {
+            return refuse(ENOMEM,
+                          fmt::format("thread '{}' has {} functions, no more fit", thread_name, list.count));
+        }
+        // Init functions stand before the others.
+        auto *end = list.entries.begin() + list.count;
+        const auto inits = static_cast<int>(
+            std::count_if(list.entries.begin(), end, [](const ListEntry &entry) { return entry.isInit; }));
+        const int others = static_cast<int>(list.count) - inits;
+        const int place = isInit ? place_of(position, 0, inits) : place_of(position, inits, others);
+        if (place < 0) {
+            return refuse(EINVAL,
+                          fmt::format("position {} is outside of thread '{}', which has {} functions",
+                                      position, thread_name, isInit ? inits : others),
+                          "1 is the first, -1 the last");
+        }
+        std::move_backward(list.entries.begin() + place, end, end + 1);
+        list.entries[static_cast<std::size_t>(place)] =
+            ListEntry{funct->function, funct->argument, segment.offset_of(funct), isInit};
+        ++list.count;
+        return {};
+    });
+    if (added) {
+        ++funct->users;
+    }
+    return added;
+}
+
+Result<> Hal::add_function(std::string_view function, std::string_view thread, int position) {
+    Guard guard(*impl_);
+    return impl_->add_to_thread(function, thread, position, false);
+}
+
+Result<> Hal::add_init_function(std::string_view function, std::string_view thread, int position) {
+    Guard guard(*impl_);
+    return impl_->add_to_thread(function, thread, position, true);
+}
+
+Result<> Hal::remove_function(std::string_view function, std::string_view thread_name) {
+    Guard guard(*impl_);
+    if (auto checked = impl_->check_lock(LOCK_CONFIG, "removing functions from threads"); !checked) {
+        return checked;
+    }
+    auto *funct = impl_->segment.find_as<FunctRecord>(Kind::FUNCT, function);
+    if (funct == nullptr) {
+        return impl_->no_such(Kind::FUNCT, function);
+    }
+    auto *thread = impl_->segment.find_as<ThreadRecord>(Kind::THREAD, thread_name);
+    if (thread == nullptr) {
+        return impl_->no_such(Kind::THREAD, thread_name);
+    }
+    const Offset offset = impl_->segment.offset_of(funct);
+    auto removed = impl_->change_list(*thread, [&](FunctionList &list) -> Result<> {
+        auto *end = list.entries.begin() + list.count;
+        auto *at = std::find_if(list.entries.begin(), end,
+                                [offset](const ListEntry &entry) { return entry.funct == offset; });
+        if (at == end) {
+            return refuse(EINVAL, fmt::format("function '{}' is not in thread '{}'", function, thread_name));
+        }
+        std::move(at + 1, end, at);
+        --list.count;
+        return {};
+    });
+    if (removed) {
+        --funct->users;
+        funct->init_runs.store(0);
+    }
+    return removed;
+}
+
+namespace {
+
+void run_entry(void *argument, std::int64_t /*period_ns*/) {
+    const auto *runner = static_cast<const ThreadRunner *>(argument);
+    runner->hal->run_thread(*runner->record);
+}
+
+/// The record with its two lists, its pseudo component and the component's pins.
+Result<ThreadRecord *> make_thread_record(Hal::Impl &hal, std::string_view name, std::int64_t period_ns) {
+    Segment &segment = hal.segment;
+    auto comp_id = hal.add_comp(fmt::format("__{}", name), CompType::OTHER);
+    if (!comp_id) {
+        return std::unexpected(comp_id.error());
+    }
+    CompRecord &comp = *hal.find_comp(*comp_id);
+    const auto give_up = [&](Error error) -> Result<ThreadRecord *> {
+        hal.remove_comp(comp, false);
+        return std::unexpected(std::move(error));
+    };
+    auto *thread = segment.make<ThreadRecord>(Kind::THREAD, name);
+    const Offset lists = segment.allocate(2 * sizeof(FunctionList), 64);
+    if (thread == nullptr || lists == 0) {
+        return give_up(Error{fmt::format("thread '{}': no HAL memory left", name)});
+    }
+    thread->period_ns = period_ns;
+    thread->comp = segment.offset_of(&comp);
+    thread->lists = {lists, static_cast<Offset>(lists + sizeof(FunctionList))};
+    const std::string prefix(name);
+    auto made = hal.add_pin(prefix + ".time", Type::S32, Dir::OUT,
+                            reinterpret_cast<void **>(&thread->time_slot), comp);
+    if (made) {
+        made = hal.add_param(prefix + ".tmax", Type::S32, Dir::RW, &thread->tmax, comp);
+    }
+    if (made) {
+        made = hal.add_pin(prefix + ".threadbeat", Type::S64, Dir::OUT,
+                           reinterpret_cast<void **>(&thread->beat_slot), comp);
+    }
+    if (!made) {
+        return give_up(made.error());
+    }
+    comp.isReady = true;
+    segment.insert(Kind::THREAD, *thread);
+    return thread;
+}
+
+}  // namespace
+
+Result<> Hal::new_thread(std::string_view name, std::int64_t period_ns, bool /*usesFloat*/) {
+    Guard guard(*impl_);
+    if (!impl_->isHost) {
+        return refuse(EPERM, "threads can only be made in the realtime process", "use loadrt threads");
+    }
+    if (period_ns < 1000 || period_ns > 10'000'000'000) {
+        return refuse(EINVAL, fmt::format("thread '{}': a period of {} ns is outside of 1000 to 10000000000",
+                                          name, period_ns));
+    }
+    for (auto checked :
+         {impl_->check_lock(LOCK_LOAD, "new threads"), impl_->check_name(Kind::THREAD, name)}) {
+        if (!checked) {
+            return checked;
+        }
+    }
+    auto record = make_thread_record(*impl_, name, period_ns);
+    if (!record) {
+        return std::unexpected(record.error());
+    }
+    auto runner = std::make_unique<ThreadRunner>();
+    runner->hal = impl_.get();
+    runner->record = *record;
+    rtapi::PeriodicSpec spec;
+    spec.name = name;
+    spec.period_ns = period_ns;
+    spec.order = rtapi::Order::THREAD;
+    spec.function = &run_entry;
+    spec.argument = runner.get();
+    auto periodic = impl_->scheduler->add(spec);
+    if (!periodic) {
+        (void)impl_->remove_thread(**record);
+        return std::unexpected(periodic.error());
+    }
+    runner->periodic = *periodic;
+    impl_->runners.push_back(std::move(runner));
+    return {};
+}
+
+Result<> Hal::Impl::remove_thread(ThreadRecord &thread) {
+    const auto found = std::find_if(runners.begin(), runners.end(),
+                                    [&](const auto &runner) { return runner->record == &thread; });
+    if (found != runners.end()) {
+        scheduler->remove((*found)->periodic);
+        runners.erase(found);
+    }
+    const auto &list = *segment.at<FunctionList>(thread.lists[thread.active.load()]);
+    for (std::uint32_t i = 0; i < list.count; ++i) {
+        auto *funct = segment.at<FunctRecord>(list.entries[i].funct);
+        --funct->users;
+        funct->init_runs.store(0);
+    }
+    auto *comp = segment.at<CompRecord>(thread.comp);
+    segment.remove(Kind::THREAD, thread);
+    remove_comp(*comp, false);
+    return {};
+}
+
+Result<> Hal::delete_thread(std::string_view name) {
+    Guard guard(*impl_);
+    if (!impl_->isHost || context().isRealtime) {
+        return refuse(EPERM, "threads can only be removed in the realtime process, outside of threads");
+    }
+    auto *thread = impl_->segment.find_as<ThreadRecord>(Kind::THREAD, name);
+    if (thread == nullptr) {
+        return impl_->no_such(Kind::THREAD, name);
+    }
+    return impl_->remove_thread(*thread);
+}
+
+Result<> Hal::start_threads() {
+    Guard guard(*impl_);
+    if (auto checked = impl_->check_lock(LOCK_RUN, "starting threads"); !checked) {
+        return checked;
+    }
+    impl_->segment.header().isRunning.store(1);
+    return {};
+}
+
+Result<> Hal::stop_threads() {
+    Guard guard(*impl_);
+    if (auto checked = impl_->check_lock(LOCK_RUN, "stopping threads"); !checked) {
+        return checked;
+    }
+    impl_->segment.header().isRunning.store(0);
+    if (!context().isRealtime) {
+        impl_->segment.each<ThreadRecord>(Kind::THREAD,
+                                          [&](ThreadRecord &thread) { impl_->wait_for_cycle(thread); });
+    }
+    return {};
+}
+
+bool Hal::isRunning() const noexcept {
+    return impl_->segment.header().isRunning.load() != 0;
+}
+
+}  // namespace mw::hal

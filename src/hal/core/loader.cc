@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "hal/core/loader.hh"
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/sendfile.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <limits>
+#include <mutex>
+
+#include "base/text.hh"
+#include "hal/api/rtapi.h"
+#include "hal/core/detail/impl.hh"
+
+namespace mw::hal {
+
+using namespace detail;
+
+struct Loader::Module {
+    std::string name;
+    std::string file;
+    void *handle = nullptr;
+    std::vector<const rtapi_mp_info *> parameters;
+    std::deque<std::string> texts;  ///< what string parameters point to
+    std::vector<int> comp_ids;      ///< made by its rtapi_app_main
+    std::vector<int> users;         ///< components that hold its symbols
+};
+
+namespace {
+
+/// Errors that a module logs while it is loaded are repeated in the failure.
+struct LogTap {
+    rtapi::Log &log;
+    rtapi::Log::Sink sink = &LogTap::receive;
+    void *context = this;
+    std::string last_error;
+
+    explicit LogTap(rtapi::Log &of) : log(of) { log.swap_sink(sink, context); }
+    ~LogTap() { log.swap_sink(sink, context); }
+    LogTap(const LogTap &) = delete;
+    LogTap &operator=(const LogTap &) = delete;
+
+    static void receive(void *self, rtapi::LogLevel level, const char *text) {
+        auto *tap = static_cast<LogTap *>(self);
+        if (level == rtapi::LogLevel::ERR) {
+            tap->last_error = text;
+        }
+        tap->sink(tap->context, level, text);
+    }
+};
+
+Result<> set_number(const rtapi_mp_info &info, int index, std::string_view text) {
+    const auto value = parse_int(text);
+    const bool isInt = info.type == RTAPI_MP_TYPE_INT;
+    if (!value ||
+        (isInt && (*value < std::numeric_limits<int>::min() || *value > std::numeric_limits<int>::max()))) {
+        return refuse(EINVAL, fmt::format("parameter '{}': '{}' is not a whole number{}", info.name, text,
+                                          isInt ? " of 32 bits" : ""));
+    }
+    if (isInt) {
+        static_cast<int *>(info.address)[index] = static_cast<int>(*value);
+    } else {
+        static_cast<long *>(info.address)[index] = *value;
+    }
+    return {};
+}
+
+Result<> set_parameter(const rtapi_mp_info &info, std::string_view text, std::deque<std::string> &texts) {
+    const bool isText = info.type == RTAPI_MP_TYPE_STRING;
+    if (info.count > 1 && text.empty()) {
+        return {};
+    }
+    for (int index = 0;; ++index) {
+        if (index == info.count) {
+            return refuse(EINVAL,
+                          fmt::format("parameter '{}' takes at most {} values", info.name, info.count));
+        }
+        const std::size_t comma = info.count > 1 ? text.find(',') : std::string_view::npos;
+        const std::string_view word = text.substr(0, comma);
+        if (isText) {
+            static_cast<char **>(info.address)[index] = texts.emplace_back(word).data();
+        } else if (auto set = set_number(info, index, word); !set) {
+            return set;
+        }
+        if (comma == std::string_view::npos) {
+            return {};
+        }
+        text.remove_prefix(comma + 1);
+    }
+}
+
+/// A copy in memory, which the linker takes for another library: statics of its own.
+int copy_in_memory(const std::string &file) {
+    const int from = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    const int to = ::memfd_create("millwright-module", MFD_CLOEXEC);
+    struct stat status{};
+    bool isCopied = from >= 0 && to >= 0 && ::fstat(from, &status) == 0;
+    for (off_t left = isCopied ? status.st_size : 0; left > 0;) {
+        const ssize_t sent = ::sendfile(to, from, nullptr, static_cast<std::size_t>(left));
+        if (sent <= 0) {
+            isCopied = false;
+            break;
+        }
+        left -= sent;
+    }
+    if (from >= 0) {
+        ::close(from);
+    }
+    if (!isCopied && to >= 0) {
+        ::close(to);
+        return -1;
+    }
+    return to;
+}
+
+/// Where a module begins in memory.
+const void *module_base(void *handle) {
+    Dl_info info{};
+    void *main = ::dlsym(handle, "rtapi_app_main");
+    return main != nullptr && ::dladdr(main, &info) != 0 ? info.dli_fbase : nullptr;
+}
+
+std::string program_folder() {
+    char path[4096];
+    const ssize_t length = ::readlink("/proc/self/exe", path, sizeof path - 1);
+    const std::string program(path, length > 0 ? static_cast<std::size_t>(length) : 0);
+    return program.substr(0, program.rfind('/'));
+}
+
+}  // namespace
+
+Loader::Loader(Hal &hal, std::vector<std::string> folders) : hal_(hal), folders_(std::move(folders)) {
+    hal_.impl().loader = this;
+}
+
+Loader::~Loader() {
+    (void)unload_all();
+    hal_.impl().loader = nullptr;
+}
+
+std::vector<std::string> Loader::default_folders() {
+    std::vector<std::string> folders;
+    if (const char *path = std::getenv("MILLWRIGHT_MODULE_PATH")) {
+        std::string_view rest = path;
+        while (!rest.empty()) {
+            const std::size_t colon = rest.find(':');
+            if (colon != 0) {
+                folders.emplace_back(rest.substr(0, colon));
+            }
+            rest.remove_prefix(colon == std::string_view::npos ? rest.size() : colon + 1);
+        }
+    }
+    const std::string here = program_folder();
+    folders.push_back(here + "/../lib");
+    folders.push_back(here + "/../lib/millwright/modules");
+    return folders;
+}
+
+std::string Loader::find_file(const std::string &name) const {
+    for (const std::string &folder : folders_) {
+        const std::string file = folder + '/' + name + ".so";
+        if (::access(file.c_str(), R_OK) == 0) {
+            return file;
+        }
+    }
+    return {};
+}
+
+bool Loader::isLoaded(std::string_view name) const {
+    return std::any_of(modules_.begin(), modules_.end(),
+                       [&](const auto &module) { return module->name == name; });
+}
+
+std::vector<std::string> Loader::modules() const {
+    std::vector<std::string> names;
+    for (const auto &module : modules_) {
+        names.push_back(module->name);
+    }
+    return names;
+}
+
+Result<> Loader::open(Module &module) {
+    // dlopen of one file from two threads must not both take it for the first.
+    static std::mutex opening;
+    const std::lock_guard lock(opening);
+    std::string path = module.file;
+    int copy = -1;
+    if (void *loaded = ::dlopen(path.c_str(), RTLD_NOW | RTLD_NOLOAD)) {
+        ::dlclose(loaded);
+        copy = copy_in_memory(module.file);
+        if (copy < 0) {
+            return refuse(EIO, fmt::format("module '{}': cannot copy {}: {}", module.name, module.file,
+                                           std::strerror(errno)));
+        }
+        path = fmt::format("/proc/self/fd/{}", copy);
+    }
+    context().parameters = &module.parameters;
+    module.handle = ::dlopen(path.c_str(), RTLD_LOCAL | RTLD_NOW);
+    context().parameters = nullptr;
+    const char *why = module.handle == nullptr ? ::dlerror() : nullptr;
+    if (copy >= 0) {
+        ::close(copy);
+    }
+    if (module.handle == nullptr) {
+        return refuse(ENOEXEC, fmt::format("module '{}': {}", module.name, why));
+    }
+    return {};
+}
+
+Result<> Loader::set_parameters(Module &module, const std::vector<std::string> &args) {
+    std::vector<std::string> known;
+    for (const rtapi_mp_info *info : module.parameters) {
+        known.emplace_back(info->name);
+    }
+    for (const std::string &arg : args) {
+        const std::size_t equals = arg.find('=');
+        if (equals == std::string::npos) {
+            return refuse(EINVAL,
+                          fmt::format("module '{}': '{}' is not of the form name=value", module.name, arg));
+        }
+        const std::string name = arg.substr(0, equals);
+        const auto found = std::find(known.begin(), known.end(), name);
+        if (found == known.end()) {
+            std::string list;
+            for (const std::string &one : known) {
+                list += (list.empty() ? "" : ", ") + one;
+            }
+            const std::string near = nearest_name(name, known);
+            return refuse(EINVAL,
+                          fmt::format("module '{}' has no parameter '{}'; it has {}", module.name, name,
+                                      list.empty() ? "none" : list),
+                          near.empty() ? std::string() : fmt::format("did you mean '{}'?", near));
+        }
+        const rtapi_mp_info &info = *module.parameters[static_cast<std::size_t>(found - known.begin())];
+        if (auto set = set_parameter(info, std::string_view(arg).substr(equals + 1), module.texts); !set) {
+            return refuse(EINVAL, fmt::format("module '{}': {}", module.name, set.error().message));
+        }
+    }
+    return {};
+}
+
+Result<> Loader::run_main(Module &module) {
+    auto *main = reinterpret_cast<int (*)()>(::dlsym(module.handle, "rtapi_app_main"));
+    if (main == nullptr) {
+        return refuse(ENOEXEC,
+                      fmt::format("{} is no realtime module: it has no rtapi_app_main", module.file));
+    }
+    const int first_id = [&] {
+        Guard guard(hal_.impl());
+        return hal_.impl().segment.header().next_comp_id;
+    }();
+    LogTap tap(hal_.log());
+    const UseInstance use(&hal_);
+    context().loading = module.name.c_str();
+    const int status = main();
+    context().loading = nullptr;
+    hal_.log().drain();
+    for (const CompInfo &comp : hal_.components()) {
+        if (comp.id >= first_id && comp.type != CompType::USER && comp.pid == ::getpid()) {
+            module.comp_ids.push_back(comp.id);
+        }
+    }
+    if (status < 0) {
+        return refuse(-status,
+                      fmt::format("module '{}': {}{}{} ({})", module.name, tap.last_error,
+                                  tap.last_error.empty() ? "" : ": ", std::strerror(-status), status));
+    }
+    return {};
+}
+
+Result<> Loader::load(const std::string &name, const std::vector<std::string> &args) {
+    if ((hal_.lock() & LOCK_LOAD) != 0) {
+        return refuse(EPERM, "HAL is locked against loading", "unlock it with the command 'unlock'");
+    }
+    if (isLoaded(name)) {
+        return refuse(EEXIST, fmt::format("module '{}' is loaded already", name));
+    }
+    auto module = std::make_unique<Module>();
+    module->name = name;
+    module->file = find_file(name);
+    if (module->file.empty() || name.find('/') != std::string::npos) {
+        std::string places;
+        for (const std::string &folder : folders_) {
+            places += (places.empty() ? "" : ", ") + folder;
+        }
+        return refuse(ENOENT, fmt::format("there is no module '{}.so' in {}", name, places));
+    }
+    auto done = open(*module);
+    if (done) {
+        done = set_parameters(*module, args);
+    }
+    if (done) {
+        done = run_main(*module);
+    }
+    if (!done) {
+        close(*module);
+        return done;
+    }
+    std::string text;
+    for (const std::string &arg : args) {
+        text += (text.empty() ? "" : " ") + arg;
+    }
+    for (const int id : module->comp_ids) {
+        const auto comp = hal_.component(id);
+        if (comp && comp->type == CompType::REALTIME) {
+            (void)hal_.set_insmod_args(id, text);
+        }
+    }
+    modules_.push_back(std::move(module));
+    return {};
+}
+
+/// Takes away what the module left, then the module.
+void Loader::close(Module &module) {
+    for (const int id : module.comp_ids) {
+        const auto comp = hal_.component(id);
+        if (comp && comp->type == CompType::OTHER && comp->name.starts_with("__")) {
+            (void)hal_.delete_thread(std::string_view(comp->name).substr(2));
+        } else if (comp) {
+            (void)hal_.delete_component(id);
+        }
+    }
+    if (module.handle != nullptr) {
+        ::dlclose(module.handle);
+        module.handle = nullptr;
+    }
+}
+
+Result<> Loader::unload(const std::string &name) {
+    const auto found = std::find_if(modules_.begin(), modules_.end(),
+                                    [&](const auto &module) { return module->name == name; });
+    if (found == modules_.end()) {
+        return refuse(ENOENT, fmt::format("module '{}' is not loaded", name));
+    }
+    for (const int user : (*found)->users) {
+        if (const auto comp = hal_.component(user)) {
+            return refuse(EBUSY, fmt::format("module '{}' is used by component '{}'", name, comp->name));
+        }
+    }
+    {
+        const UseInstance use(&hal_);
+        if (auto *exit = reinterpret_cast<void (*)()>(::dlsym((*found)->handle, "rtapi_app_exit"))) {
+            exit();
+        }
+    }
+    close(**found);
+    modules_.erase(found);
+    return {};
+}
+
+Result<> Loader::unload_all() {
+    Result<> first_failure;
+    (void)hal_.stop_threads();
+    // Users stand after what they use, unless modules were unloaded and loaded again in between; so several
+    // rounds.
+    for (std::size_t rounds = modules_.size(); rounds > 0 && !modules_.empty(); --rounds) {
+        for (std::size_t i = modules_.size(); i > 0; --i) {
+            const std::string name = modules_[i - 1]->name;
+            if (auto done = unload(name); !done) {
+                first_failure = done;
+            }
+        }
+    }
+    return modules_.empty() ? Result<>{} : first_failure;
+}
+
+void *Loader::find_symbol(const char *symbol) const {
+    for (auto module = modules_.rbegin(); module != modules_.rend(); ++module) {
+        if (void *address = ::dlsym((*module)->handle, symbol)) {
+            Dl_info info{};
+            // dlsym looks into the libraries that the module needs, too; those are not the module's own.
+            const bool isOwn = ::dladdr(address, &info) != 0 && info.dli_fbase != nullptr &&
+                               info.dli_fbase == module_base((*module)->handle);
+            if (isOwn) {
+                return address;
+            }
+        }
+    }
+    return nullptr;
+}
+
+Result<> Loader::use(const char *symbol, int comp_id) {
+    for (auto module = modules_.rbegin(); module != modules_.rend(); ++module) {
+        if (::dlsym((*module)->handle, symbol) == find_symbol(symbol) && find_symbol(symbol) != nullptr) {
+            (*module)->users.push_back(comp_id);
+            return {};
+        }
+    }
+    return refuse(ENOENT, fmt::format("no loaded module has the symbol '{}'", symbol));
+}
+
+}  // namespace mw::hal

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <gtest/gtest.h>
+
+#include "hal/core/test/machine.hh"
+
+namespace mw::hal {
+namespace {
+
+struct HalTest : testing::Test {
+    TestMachine machine;
+    Hal &hal = machine.hal();
+    int comp = *hal.new_component("comp");
+
+    void **pin(const std::string &name, Type type, Dir dir) {
+        auto made = hal.new_pin(name, type, dir, comp);
+        EXPECT_TRUE(made) << text_of(made ? Result<>{} : std::unexpected(made.error()));
+        return made ? *made : nullptr;
+    }
+    double read(void **slot) { return **reinterpret_cast<double **>(slot); }
+    void write(void **slot, double value) { **reinterpret_cast<double **>(slot) = value; }
+};
+
+TEST_F(HalTest, LinkMovesTheSlotAndUnlinkKeepsTheValue) {
+    void **out = pin("out", Type::FLOAT, Dir::OUT);
+    void **in = pin("in", Type::FLOAT, Dir::IN);
+    write(out, 4.5);
+    ASSERT_EQ(text_of(hal.net("s", {"out", "in"})), "ok");
+    EXPECT_EQ(read(in), 4.5) << "the first pin gives the signal its value";
+    EXPECT_EQ(*in, *out);
+    write(out, 5.5);
+    ASSERT_TRUE(hal.unlink("in"));
+    EXPECT_EQ(read(in), 5.5);
+    write(out, 6.5);
+    EXPECT_EQ(read(in), 5.5);
+    ASSERT_TRUE(hal.delete_signal("s"));
+    EXPECT_EQ(read(out), 6.5);
+}
+
+TEST_F(HalTest, NetRulesRefuseSecondWritersAndChangeNothing) {
+    pin("o1", Type::BIT, Dir::OUT);
+    pin("o2", Type::BIT, Dir::OUT);
+    pin("io", Type::BIT, Dir::IO);
+    pin("io2", Type::BIT, Dir::IO);
+    pin("in", Type::BIT, Dir::IN);
+    pin("f", Type::FLOAT, Dir::IN);
+    EXPECT_NE(text_of(hal.net("s", {"in", "o1", "o2"})).find("another pin of the same net writes it"),
+              std::string::npos);
+    EXPECT_FALSE(hal.signal("s"));
+    EXPECT_EQ(hal.pin("in")->signal, "");
+    ASSERT_EQ(text_of(hal.net("s", {"in", "o1", "in"})), "ok");
+    EXPECT_NE(text_of(hal.net("s", {"o2"})).find("pin 'o1' writes it already"), std::string::npos);
+    EXPECT_NE(text_of(hal.net("s", {"io"})).find("I/O pin 'io'"), std::string::npos);
+    EXPECT_NE(text_of(hal.net("s", {"f"})).find("pin 'f' is of type float, signal 's' of type bit"),
+              std::string::npos);
+    EXPECT_NE(text_of(hal.net("t", {"in"})).find("linked to signal 's' already"), std::string::npos);
+    EXPECT_EQ(text_of(hal.net("b", {"io", "io2"})), "ok");
+    EXPECT_FALSE(hal.net("b", {"o2"}));
+    EXPECT_NE(text_of(hal.net("inn", {"o3"})).find("there is no pin 'o3'"), std::string::npos);
+    EXPECT_FALSE(hal.net("in", {"o2"})) << "a pin's name as the signal's";
+}
+
+TEST_F(HalTest, SetRefusesOutputsLinkedPinsAndReadOnlyParameters) {
+    pin("o", Type::S32, Dir::OUT);
+    pin("i", Type::S32, Dir::IN);
+    auto *memory = static_cast<double *>(hal.allocate(16));
+    ASSERT_TRUE(hal.new_param("ro", Type::FLOAT, Dir::RO, memory, comp));
+    ASSERT_TRUE(hal.new_param("i", Type::FLOAT, Dir::RW, memory + 1, comp));
+    EXPECT_NE(text_of(hal.set("o", "1")).find("is an output"), std::string::npos);
+    EXPECT_NE(text_of(hal.set("ro", "1")).find("read-only"), std::string::npos);
+    ASSERT_TRUE(hal.set("i", "2.5")) << "a parameter comes before a pin of the same name";
+    EXPECT_EQ(memory[1], 2.5);
+    EXPECT_EQ(*hal.get("i"), Value::of_float(2.5));
+    EXPECT_EQ(*hal.get_pin("i"), Value::of_s32(0));
+    pin("p", Type::U32, Dir::IN);
+    EXPECT_NE(text_of(hal.set("p", "-1")).find("from 0 to 4294967295"), std::string::npos);
+    EXPECT_NE(text_of(hal.set("p", "1,5")).find("'1,5'"), std::string::npos);
+    EXPECT_TRUE(hal.set("p", "0xffffffff"));
+    EXPECT_EQ(*hal.get("p"), Value::of_u32(0xffffffff));
+    ASSERT_TRUE(hal.net("n", {"p"}));
+    EXPECT_NE(text_of(hal.set("p", "1")).find("linked to signal 'n'"), std::string::npos);
+    EXPECT_TRUE(hal.set_signal("n", "7"));
+    EXPECT_EQ(*hal.get_signal("n"), Value::of_u32(7));
+    EXPECT_NE(text_of(hal.set("pp", "1")).find("there is no pin or parameter 'pp'"), std::string::npos);
+    ASSERT_TRUE(hal.net("w", {"o"}));
+    EXPECT_EQ(text_of(hal.set_signal("w", "1")), "signal 'w' is written by pin 'o'");
+}
+
+TEST_F(HalTest, AliasesAreSecondNamesThatListsShow) {
+    pin("driver.0.x", Type::BIT, Dir::IN);
+    ASSERT_TRUE(hal.alias_pin("driver.0.x", "lamp"));
+    EXPECT_TRUE(hal.set("lamp", "1"));
+    EXPECT_EQ(*hal.get("driver.0.x"), Value::of_bit(true));
+    EXPECT_EQ(hal.pins()[0].name, "lamp");
+    EXPECT_EQ(hal.pins()[0].original_name, "driver.0.x");
+    EXPECT_EQ(hal.pins("driver*").size(), 1U);
+    EXPECT_FALSE(hal.new_pin("lamp", Type::BIT, Dir::IN, comp));
+    ASSERT_TRUE(hal.alias_pin("lamp", ""));
+    EXPECT_FALSE(hal.get("lamp"));
+    EXPECT_EQ(hal.pins()[0].name, "driver.0.x");
+}
+
+TEST_F(HalTest, NamesAreCheckedAndListsSorted_B1) {
+    pin("b", Type::BIT, Dir::IN);
+    pin("a", Type::BIT, Dir::IN);
+    pin(std::string(127, 'z'), Type::BIT, Dir::IN);
+    EXPECT_FALSE(hal.new_pin(std::string(128, 'z'), Type::BIT, Dir::IN, comp));
+    EXPECT_FALSE(hal.new_pin("", Type::BIT, Dir::IN, comp));
+    EXPECT_FALSE(hal.new_pin("a", Type::BIT, Dir::IN, comp));
+    const auto pins = hal.pins();
+    ASSERT_EQ(pins.size(), 3U);
+    EXPECT_EQ(pins[0].name, "a");
+    EXPECT_EQ(pins[2].name.size(), 127U);
+    EXPECT_EQ(pins[0].owner, "comp");
+    ASSERT_TRUE(hal.set_ready(comp));
+    EXPECT_FALSE(hal.new_pin("late", Type::BIT, Dir::IN, comp));
+    void *elsewhere = nullptr;
+    const int other = *hal.new_component("other");
+    EXPECT_NE(text_of(hal.new_pin("x", Type::BIT, Dir::IN, &elsewhere, other)).find("memory of hal_malloc"),
+              std::string::npos);
+}
+
+TEST_F(HalTest, LocksForbid) {
+    pin("a", Type::BIT, Dir::IN);
+    ASSERT_TRUE(hal.set_lock(LOCK_ALL));
+    EXPECT_FALSE(hal.set("a", "1"));
+    EXPECT_FALSE(hal.net("s", {"a"}));
+    EXPECT_FALSE(hal.start_threads());
+    EXPECT_FALSE(hal.new_component("x"));
+    ASSERT_TRUE(hal.set_lock(LOCK_TUNE));
+    EXPECT_TRUE(hal.set("a", "1"));
+    EXPECT_FALSE(hal.net("s", {"a"}));
+}
+
+/// Appends its letter to a text when it runs.
+struct Recorder {
+    std::string *text;
+    char letter;
+    static void run(void *self, long /*period*/) {
+        auto *recorder = static_cast<Recorder *>(self);
+        *recorder->text += recorder->letter;
+    }
+};
+
+TEST(HalThreads, RunFunctionsInOrderAndInitFunctionsOnce) {
+    TestMachine machine;
+    Hal &hal = machine.hal();
+    const int comp = *hal.new_component("rt", CompType::REALTIME);
+    std::string text;
+    std::vector<Recorder> recorders;
+    for (const char letter : std::string("abcdi")) {
+        recorders.push_back({&text, letter});
+    }
+    for (Recorder &recorder : recorders) {
+        ASSERT_TRUE(hal.new_funct(std::string(1, recorder.letter), &Recorder::run, &recorder, comp));
+    }
+    ASSERT_EQ(text_of(hal.new_thread("t", 1'000'000)), "ok");
+    EXPECT_EQ(text_of(hal.add_function("b", "t")), "ok");
+    EXPECT_EQ(text_of(hal.add_function("d", "t", -1)), "ok");
+    EXPECT_EQ(text_of(hal.add_function("c", "t", -2)), "ok");
+    EXPECT_EQ(text_of(hal.add_function("a", "t", 1)), "ok");
+    EXPECT_EQ(text_of(hal.add_init_function("i", "t")), "ok");
+    EXPECT_FALSE(hal.add_function("a", "t")) << "may be called from one place only";
+    EXPECT_FALSE(hal.add_function("nothing", "t"));
+    EXPECT_FALSE(hal.add_function("b", "nothing"));
+    machine.clock.step();
+    EXPECT_EQ(text, "");
+    ASSERT_TRUE(hal.start_threads());
+    machine.clock.step();
+    EXPECT_EQ(text, "iabcd");
+    ASSERT_TRUE(hal.remove_function("b", "t"));
+    machine.clock.step();
+    EXPECT_EQ(text, "iabcdacd");
+    EXPECT_NE(text_of(hal.add_function("b", "t", 7)).find("position 7 is outside"), std::string::npos);
+    EXPECT_FALSE(hal.add_function("b", "t", 0));
+    ASSERT_TRUE(hal.add_function("b", "t", 2));
+    EXPECT_EQ(hal.threads()[0].functions, (std::vector<std::string>{"a", "b", "c", "d"}));
+    EXPECT_EQ(hal.threads()[0].init_functions, (std::vector<std::string>{"i"}));
+    ASSERT_TRUE(hal.stop_threads());
+    machine.clock.step();
+    EXPECT_EQ(text, "iabcdacd");
+    EXPECT_TRUE(hal.component("__t"));
+    ASSERT_TRUE(hal.delete_thread("t"));
+    EXPECT_FALSE(machine.clock.step());
+    EXPECT_FALSE(hal.component("__t"));
+}
+
+TEST(HalThreads, FasterThreadsRunFirstAtEqualTimes) {
+    TestMachine machine;
+    Hal &hal = machine.hal();
+    const int comp = *hal.new_component("rt", CompType::REALTIME);
+    std::string text;
+    Recorder slow{&text, 's'};
+    Recorder fast{&text, 'f'};
+    ASSERT_TRUE(hal.new_funct("slow.f", &Recorder::run, &slow, comp));
+    ASSERT_TRUE(hal.new_funct("fast.f", &Recorder::run, &fast, comp));
+    ASSERT_TRUE(hal.new_thread("slow", 3000));
+    ASSERT_TRUE(hal.new_thread("fast", 1000));
+    ASSERT_TRUE(hal.add_function("slow.f", "slow"));
+    ASSERT_TRUE(hal.add_function("fast.f", "fast"));
+    ASSERT_TRUE(hal.start_threads());
+    machine.clock.run_until(6000);
+    EXPECT_EQ(text, "fffsfffs");
+    EXPECT_EQ(hal.threads()[0].name, "fast");
+}
+
+TEST(HalValue, ReadsAndPrintsEveryType) {
+    EXPECT_EQ(*parse_value(Type::BIT, "TRUE"), Value::of_bit(true));
+    EXPECT_EQ(*parse_value(Type::BIT, "0"), Value::of_bit(false));
+    EXPECT_FALSE(parse_value(Type::BIT, "2"));
+    EXPECT_EQ(*parse_value(Type::FLOAT, ".15"), Value::of_float(0.15));
+    EXPECT_EQ(*parse_value(Type::FLOAT, "4.2e1"), Value::of_float(42));
+    EXPECT_FALSE(parse_value(Type::FLOAT, "1,5"));
+    EXPECT_EQ(*parse_value(Type::S32, "-2147483648"), Value::of_s32(-2147483647 - 1));
+    EXPECT_FALSE(parse_value(Type::S32, "2147483648"));
+    EXPECT_FALSE(parse_value(Type::S32, "1.5"));
+    EXPECT_EQ(*parse_value(Type::U64, "0xffffffffffffffff"), Value::of_u64(~0ULL));
+    EXPECT_EQ(parse_value(Type::S64, "-9223372036854775808")->str(), "-9223372036854775808");
+    EXPECT_EQ(Value::of_float(2147483647).str(), "2.147484e+09");
+    EXPECT_EQ(Value::of_bit(true).str(), "TRUE");
+}
+
+}  // namespace
+}  // namespace mw::hal

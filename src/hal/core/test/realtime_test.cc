@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What HAL does inside a thread touches neither heap nor locks.
+#include <gtest/gtest.h>
+
+#include "hal/api/hal.h"
+#include "hal/core/test/machine.hh"
+#include "testing/allocation_guard.hh"
+
+namespace mw::hal {
+namespace {
+
+TEST(AllocationGuard, CountsWhatThisThreadDoes) {
+    mw::testing::AllocationGuard guard;
+    EXPECT_EQ(guard.calls(), 0U);
+    int *memory = new int(1);
+    __asm__ volatile("" : : "r"(memory) : "memory");  // the compiler may leave out a pair that nobody sees
+    delete memory;
+    EXPECT_EQ(guard.calls(), 2U);
+}
+
+TEST(RealtimeCode, ThreadsRunWithoutTheHeap) {
+    TestMachine machine;
+    ASSERT_EQ(machine.load("threads2"), "ok");
+    ASSERT_EQ(machine.load("counter"), "ok");
+    ASSERT_EQ(machine.load("sdk_sum", {"count=4"}), "ok");
+    Hal &hal = machine.hal();
+    ASSERT_TRUE(hal.add_init_function("counter.0.update", "fast"));
+    ASSERT_TRUE(hal.add_function("counter.1.update", "slow"));
+    for (int i = 0; i < 4; ++i) {
+        ASSERT_TRUE(hal.add_function("sdk_sum." + std::to_string(i), "fast"));
+    }
+    ASSERT_TRUE(hal.start_threads());
+    mw::testing::AllocationGuard guard;
+    machine.clock.run_until(1'000'000'000);
+    EXPECT_EQ(guard.calls(), 0U);
+    EXPECT_EQ(machine.value("sdk_sum.3.runs"), Value::of_s32(1000));
+}
+
+/// Calls what a realtime function may call.
+struct Talker {
+    hal_stream_t stream{};
+    int runs = 0;
+
+    static void run(void *self, long /*period*/) {
+        auto *talker = static_cast<Talker *>(self);
+        hal_stream_data_u data[2]{};
+        data[0].f = ++talker->runs;
+        data[1].k = static_cast<rtapi_u64>(rtapi_get_time());
+        hal_stream_write(&talker->stream, data);
+        rtapi_print_msg(RTAPI_MSG_DBG, "not printed %d", 1);
+        char text[32];
+        rtapi_snprintf(text, sizeof text, "%d %g %s", 1, 2.5, "three");
+        rtapi_delay(1000);
+    }
+};
+
+TEST(RealtimeCode, StreamsTimeAndFormattingWorkWithoutTheHeap) {
+    TestMachine machine;
+    Hal &hal = machine.hal();
+    const UseInstance use(&hal);
+    const int comp = *hal.new_component("talker", CompType::REALTIME);
+    Talker talker;
+    ASSERT_EQ(hal_stream_create(&talker.stream, comp, 77, 10, "fk"), 0);
+    ASSERT_TRUE(hal.new_funct("talk", &Talker::run, &talker, comp));
+    ASSERT_TRUE(hal.new_thread("t", 1'000'000));
+    ASSERT_TRUE(hal.add_function("talk", "t"));
+    ASSERT_TRUE(hal.start_threads());
+    {
+        mw::testing::AllocationGuard guard;
+        machine.clock.run_until(12'000'000);
+        EXPECT_EQ(guard.calls(), 0U);
+    }
+    hal_stream_t reader{};
+    const int other = *hal.new_component("reader");
+    EXPECT_EQ(hal_stream_attach(&reader, other, 77, "ff"), -EINVAL);
+    EXPECT_EQ(hal_stream_attach(&reader, other, 78, nullptr), -ENOENT);
+    ASSERT_EQ(hal_stream_attach(&reader, other, 77, "FK"), 0);
+    EXPECT_EQ(hal_stream_element_type(&reader, 1), HAL_U64);
+    EXPECT_EQ(hal_stream_depth(&reader), 10U);
+    EXPECT_EQ(hal_stream_num_overruns(&reader), 2);
+    hal_stream_data_u data[2];
+    unsigned sample = 0;
+    for (unsigned i = 1; i <= 10; ++i) {
+        ASSERT_EQ(hal_stream_read(&reader, data, &sample), 0);
+        EXPECT_EQ(sample, i);
+        EXPECT_EQ(data[0].f, i);
+        EXPECT_EQ(data[1].k, i * 1'000'000U);
+    }
+    EXPECT_EQ(hal_stream_read(&reader, data, &sample), -ENOSPC);
+    EXPECT_EQ(hal_stream_num_underruns(&reader), 1);
+    machine.clock.step();
+    ASSERT_EQ(hal_stream_read(&reader, data, &sample), 0);
+    EXPECT_EQ(sample, 13U) << "the gap shows what was lost";
+    EXPECT_EQ(hal_stream_detach(&reader), 0);
+    hal_stream_destroy(&talker.stream);
+    EXPECT_EQ(hal_stream_attach(&reader, other, 77, nullptr), -ENOENT);
+}
+
+TEST(CApi, CountersWidenAcrossTheirWrap) {
+    EXPECT_EQ(hal_extend_counter(0, 5, 16), 5);
+    EXPECT_EQ(hal_extend_counter(0xfffe, 3, 16), 0x10003);
+    EXPECT_EQ(hal_extend_counter(0x10003, 0xfffe, 16), 0xfffe);
+    EXPECT_EQ(hal_extend_counter(-1, 0, 8), 0);
+    EXPECT_EQ(hal_extend_counter(100, 100, 32), 100);
+}
+
+TEST(CApi, ReferencesReadAndWritePins) {
+    TestMachine machine;
+    const UseInstance use(&machine.hal());
+    const int comp = hal_init("refs");
+    ASSERT_GT(comp, 0);
+    struct Refs {
+        hal_real_t real;
+        hal_sint_t wide, narrow;
+        hal_bool_t bit;
+        hal_uint_t param;
+    };
+    auto *refs = static_cast<Refs *>(hal_malloc(sizeof(Refs)));
+    ASSERT_EQ(hal_pin_new_real(comp, HAL_OUT, &refs->real, 2.5, "refs.%d.real", 0), 0);
+    ASSERT_EQ(hal_pin_new_sint(comp, HAL_OUT, &refs->wide, -5, "refs.wide"), 0);
+    ASSERT_EQ(hal_pin_new_si32(comp, HAL_IN, &refs->narrow, -7, "refs.narrow"), 0);
+    ASSERT_EQ(hal_pin_new_bool(comp, HAL_IN, &refs->bit, true, "refs.bit"), 0);
+    ASSERT_EQ(hal_param_new_uint(comp, HAL_RW, &refs->param, 9, "refs.param"), 0);
+    EXPECT_EQ(hal_pin_new_real(comp, HAL_RO, &refs->real, 0, "refs.x"), -EINVAL);
+    EXPECT_EQ(hal_get_real(refs->real), 2.5);
+    EXPECT_EQ(machine.value("refs.narrow"), Value::of_s32(-7));
+    EXPECT_EQ(hal_get_si32(refs->narrow), -7);
+    EXPECT_TRUE(hal_get_bool(refs->bit));
+    hal_set_sint(refs->wide, 1LL << 40);
+    EXPECT_EQ(hal_get_si32_clamped(refs->wide), RTAPI_INT32_MAX);
+    EXPECT_EQ(machine.value("refs.wide"), Value::of_s64(1LL << 40));
+    EXPECT_EQ(machine.value("refs.param"), Value::of_u64(9));
+    EXPECT_EQ(machine.hal().pin("refs.wide")->type, Type::S64);
+    hal_type_t type = HAL_TYPE_UNSPECIFIED;
+    hal_data_u *data = nullptr;
+    bool isConnected = true;
+    ASSERT_EQ(hal_get_pin_value_by_name("refs.0.real", &type, &data, &isConnected), 0);
+    EXPECT_EQ(type, HAL_FLOAT);
+    EXPECT_EQ(data->f, 2.5);
+    EXPECT_FALSE(isConnected);
+    EXPECT_EQ(hal_ready(comp), 0);
+    EXPECT_EQ(hal_exit(comp), 0);
+    EXPECT_EQ(hal_exit(comp), -EINVAL);
+}
+
+TEST(CApi, SharedBlocksAreOnePerKeyAndZeroedAnew) {
+    TestMachine machine;
+    const UseInstance use(&machine.hal());
+    const int id = rtapi_shmem_new(5, 1, 100);
+    void *memory = nullptr;
+    ASSERT_EQ(rtapi_shmem_getptr(id, &memory), 0);
+    *static_cast<int *>(memory) = 7;
+    EXPECT_EQ(*machine.hal().shared_block(5, 50), memory);
+    EXPECT_EQ(rtapi_shmem_new(5, 2, 200), -EINVAL);
+    EXPECT_EQ(rtapi_shmem_delete(id, 1), 0);
+    EXPECT_EQ(rtapi_shmem_delete(id, 2), 0);
+    EXPECT_EQ(rtapi_shmem_delete(id, 2), -EINVAL);
+    const int again = rtapi_shmem_new(5, 1, 200);
+    ASSERT_EQ(rtapi_shmem_getptr(again, &memory), 0);
+    EXPECT_EQ(*static_cast<int *>(memory), 0);
+}
+
+TEST(CApi, SaysWhatIsWrong) {
+    TestMachine machine;
+    const UseInstance use(&machine.hal());
+    EXPECT_EQ(hal_init(std::string(128, 'x').c_str()), -EINVAL);
+    EXPECT_EQ(hal_link("a", "b"), -ENOENT);
+    EXPECT_EQ(machine.messages.lines.back(), "HAL: there is no pin 'a'");
+    EXPECT_EQ(hal_signal_new("s", HAL_FLOAT), 0);
+    EXPECT_EQ(hal_signal_new("s", HAL_FLOAT), -EEXIST);
+    EXPECT_EQ(hal_create_thread("t", 1, 1), -EINVAL);
+    EXPECT_EQ(rtapi_set_msg_level(99), -EINVAL);
+}
+
+}  // namespace
+}  // namespace mw::hal

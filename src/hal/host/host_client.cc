@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "hal/host/host_client.hh"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+
+#include "hal/host/message.hh"
+#include "rtapi/process.hh"
+
+namespace mw::hal {
+namespace {
+
+constexpr int END_TIMEOUT_MS = 15000;
+
+Result<int> connect_to(const std::string &instance) {
+    const auto path = socket_path(instance);
+    if (!path) {
+        return std::unexpected(path.error());
+    }
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    if (path->size() >= sizeof address.sun_path) {
+        return fail("the path of the socket is too long: " + *path);
+    }
+    std::memcpy(address.sun_path, path->data(), path->size());
+    const int fd = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    if (fd < 0 || ::connect(fd, reinterpret_cast<const sockaddr *>(&address), sizeof address) != 0) {
+        if (fd >= 0) {
+            ::close(fd);
+        }
+        return fail("no realtime process of instance '" + instance + "' is alive", {},
+                    "start it with halrun");
+    }
+    return fd;
+}
+
+/// millwright-rt beside this program or in ../bin; else it is looked for along PATH.
+std::string server_program() {
+    char path[4096];
+    const ssize_t length = ::readlink("/proc/self/exe", path, sizeof path - 1);
+    const std::string program(path, length > 0 ? static_cast<std::size_t>(length) : 0);
+    const std::string folder = program.substr(0, program.rfind('/'));
+    for (const std::string &candidate : {folder + "/millwright-rt", folder + "/../bin/millwright-rt"}) {
+        if (::access(candidate.c_str(), X_OK) == 0) {
+            return candidate;
+        }
+    }
+    return "millwright-rt";
+}
+
+/// In the forked child: becomes the server, a child of nobody here. Only async-signal-safe calls.
+[[noreturn]] void become_server(char *const argv[], int ready, int messages) {
+    if (::fork() != 0) {
+        ::_exit(0);
+    }
+    ::setsid();
+    const int null = ::open("/dev/null", O_RDWR);
+    ::dup2(null, STDIN_FILENO);
+    ::dup2(null, STDOUT_FILENO);
+    if (messages >= 0) {
+        ::dup2(messages, STDERR_FILENO);
+    }
+    ::fcntl(ready, F_SETFD, 0);
+    ::execvp(argv[0], argv);
+    const char text[] = "cannot run millwright-rt";
+    (void)!::write(ready, text, sizeof text - 1);
+    ::_exit(127);
+}
+
+/// Reads what the new server says: empty when it is ready, else why not.
+std::string read_all(int fd) {
+    std::string text;
+    char bytes[512];
+    while (true) {
+        const ssize_t got = ::read(fd, bytes, sizeof bytes);
+        if (got < 0 && errno == EINTR) {
+            continue;
+        }
+        if (got <= 0) {
+            return text;
+        }
+        text.append(bytes, static_cast<std::size_t>(got));
+    }
+}
+
+}  // namespace
+
+struct HostClient::Impl {
+    std::string instance;
+    int fd = -1;
+    int pid = 0;
+    std::unique_ptr<Hal> hal;
+
+    ~Impl() {
+        if (fd >= 0) {
+            ::close(fd);
+        }
+    }
+};
+
+HostClient::HostClient(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+HostClient::~HostClient() = default;
+
+Result<std::unique_ptr<HostClient>> HostClient::connect(const std::string &instance) {
+    auto impl = std::make_unique<Impl>();
+    impl->instance = instance;
+    const auto fd = connect_to(instance);
+    if (!fd) {
+        return std::unexpected(fd.error());
+    }
+    impl->fd = *fd;
+    auto client = std::unique_ptr<HostClient>(new HostClient(std::move(impl)));
+    const auto hello = client->ask({"hello"});
+    if (!hello || hello->empty()) {
+        return fail("the realtime process of instance '" + instance + "' does not answer");
+    }
+    client->impl_->pid = std::atoi(hello->front().c_str());
+    auto hal = Hal::attach(instance);
+    if (!hal) {
+        return std::unexpected(hal.error());
+    }
+    client->impl_->hal = std::move(*hal);
+    return client;
+}
+
+Result<std::unique_ptr<HostClient>> HostClient::start(const std::string &instance, MessagesTo messages_to) {
+    if (isHostAlive(instance)) {
+        return fail("a realtime process of instance '" + instance + "' is alive", {},
+                    "end it with 'halrun -U', or choose another name in MILLWRIGHT_INSTANCE");
+    }
+    int ready[2];
+    if (::pipe2(ready, O_CLOEXEC) != 0) {
+        return fail(std::string("cannot make a pipe: ") + std::strerror(errno));
+    }
+    int messages = -1;
+    if (messages_to == MessagesTo::FILE) {
+        const auto folder = rtapi::runtime_folder();
+        if (folder) {
+            messages = ::open((*folder + '/' + instance + ".log").c_str(),
+                              O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0600);
+        }
+    }
+    // Everything is made ready before the fork: the child of a process with threads may not allocate.
+    std::vector<std::string> words = {server_program(), "--instance", instance, "--ready-fd",
+                                      std::to_string(ready[1])};
+    std::vector<char *> argv;
+    for (std::string &word : words) {
+        argv.push_back(word.data());
+    }
+    argv.push_back(nullptr);
+    const pid_t child = ::fork();
+    if (child == 0) {
+        become_server(argv.data(), ready[1], messages);
+    }
+    ::close(ready[1]);
+    if (messages >= 0) {
+        ::close(messages);
+    }
+    if (child > 0) {
+        while (::waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
+        }
+    }
+    const std::string said = read_all(ready[0]);
+    ::close(ready[0]);
+    if (child < 0 || said != "ready") {
+        return fail("the realtime process does not start: " + (said.empty() ? "it ended at once" : said));
+    }
+    return connect(instance);
+}
+
+Hal &HostClient::hal() noexcept {
+    return *impl_->hal;
+}
+
+int HostClient::pid() const noexcept {
+    return impl_->pid;
+}
+
+/// The texts after "ok"; other answers are errors.
+Result<std::vector<std::string>> HostClient::ask(const std::vector<std::string> &request) {
+    if (!isSent(impl_->fd, request)) {
+        errno = EPIPE;
+        return fail("the realtime process of instance '" + impl_->instance + "' is gone");
+    }
+    auto answer = receive(impl_->fd);
+    if (!answer) {
+        errno = EPIPE;
+        return std::unexpected(answer.error());
+    }
+    if (answer->empty() || (*answer)[0] != "ok") {
+        errno = EINVAL;
+        const std::string hint = answer->size() > 2 ? (*answer)[2] : std::string();
+        return fail(answer->size() > 1 ? (*answer)[1] : "the realtime process gave no answer", {}, hint);
+    }
+    answer->erase(answer->begin());
+    return answer;
+}
+
+Result<> HostClient::load_realtime(const std::string &name, const std::vector<std::string> &args) {
+    std::vector<std::string> request = {"load", name};
+    request.insert(request.end(), args.begin(), args.end());
+    const auto answer = ask(request);
+    return answer ? Result<>{} : std::unexpected(answer.error());
+}
+
+Result<> HostClient::unload_realtime(const std::string &name) {
+    const auto answer = ask({"unload", name});
+    return answer ? Result<>{} : std::unexpected(answer.error());
+}
+
+Result<std::vector<std::string>> HostClient::modules() {
+    return ask({"modules"});
+}
+
+Result<bool> HostClient::isModuleLoaded(const std::string &name) {
+    const auto names = modules();
+    if (!names) {
+        return std::unexpected(names.error());
+    }
+    for (const std::string &module : *names) {
+        if (module == name) {
+            return true;
+        }
+    }
+    return false;
+}
+
+Result<> HostClient::control() {
+    const auto answer = ask({"control"});
+    return answer ? Result<>{} : std::unexpected(answer.error());
+}
+
+Result<> HostClient::shut_down() {
+    const int process = static_cast<int>(::syscall(SYS_pidfd_open, impl_->pid, 0));
+    if (process < 0) {
+        return {};  // gone already
+    }
+    const auto answer = ask({"end"});
+    pollfd end{process, POLLIN, 0};
+    const int ready = ::poll(&end, 1, END_TIMEOUT_MS);
+    ::close(process);
+    if (ready <= 0) {
+        return fail("the realtime process " + std::to_string(impl_->pid) + " does not end");
+    }
+    return answer ? Result<>{} : std::unexpected(answer.error());
+}
+
+bool isHostAlive(const std::string &instance) {
+    const auto fd = open_lock(instance);
+    if (!fd) {
+        return false;
+    }
+    struct flock whole{};
+    whole.l_type = F_WRLCK;
+    whole.l_whence = SEEK_SET;
+    const bool isLocked = ::fcntl(*fd, F_OFD_GETLK, &whole) == 0 && whole.l_type != F_UNLCK;
+    ::close(*fd);
+    return isLocked;
+}
+
+}  // namespace mw::hal

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "hal/host/host_server.hh"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/signalfd.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/un.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <vector>
+
+#include "hal/core/detail/impl.hh"
+#include "hal/core/host.hh"
+#include "hal/host/message.hh"
+
+namespace mw::hal {
+namespace {
+
+/// How often the components of processes that died are looked for.
+constexpr int REAP_MS = 100;
+constexpr int ENDING_MS = 10;
+constexpr std::int64_t LONGEST_BRAKING_NS = 10'000'000'000;
+
+struct Client {
+    int fd = -1;
+    std::string buffer;
+};
+
+int close_fd(int fd) {
+    return fd >= 0 ? ::close(fd) : 0;
+}
+
+Message answer_of(const Result<> &result) {
+    if (result) {
+        return {"ok"};
+    }
+    return {"error", result.error().message, result.error().hint};
+}
+
+}  // namespace
+
+struct HostServer::Impl {
+    std::string instance;
+    std::string path;
+    int lock = -1;
+    int listener = -1;
+    int signals = -1;
+    int controller = -1;  ///< its pidfd
+    int controller_socket = -1;
+    bool isEnding = false;
+    std::int64_t gone_ns = 0;  ///< when the controlling process died; 0 while it lives
+    std::vector<Client> clients;
+    std::unique_ptr<rtapi::Log> log;
+    std::unique_ptr<rtapi::RealtimeScheduler> scheduler;
+    std::unique_ptr<LocalHost> host;
+
+    Result<> open(const HostServerOptions &options);
+    Result<> take_lock();
+    Result<> listen();
+    void accept_client();
+    bool isServed(Client &client);
+    Message answer(const Client &client, const Message &request);
+    Message take_control(const Client &client);
+    void on_controller_gone();
+    bool isSafeToEnd();
+    void take_safe_values();
+    void drop(int fd);
+    std::vector<pollfd> watched() const;
+};
+
+Result<> HostServer::Impl::take_lock() {
+    const auto fd = open_lock(instance);
+    if (!fd) {
+        return std::unexpected(fd.error());
+    }
+    lock = *fd;
+    struct flock whole{};
+    whole.l_type = F_WRLCK;
+    whole.l_whence = SEEK_SET;
+    // Belongs to the open file: it goes with this process, however it ends.
+    if (::fcntl(lock, F_OFD_SETLK, &whole) != 0) {
+        return fail("a realtime process of instance '" + instance + "' is alive", {},
+                    "end it with 'halrun -U', or choose another name in MILLWRIGHT_INSTANCE");
+    }
+    return {};
+}
+
+Result<> HostServer::Impl::listen() {
+    const auto wanted = socket_path(instance);
+    if (!wanted) {
+        return std::unexpected(wanted.error());
+    }
+    path = *wanted;
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    if (path.size() >= sizeof address.sun_path) {
+        return fail("the path of the socket is too long: " + path);
+    }
+    std::memcpy(address.sun_path, path.data(), path.size());
+    // Ours by the lock, so what lies there is left from a dead one.
+    ::unlink(path.c_str());
+    listener = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    const bool isBound =
+        listener >= 0 &&
+        ::bind(listener, reinterpret_cast<const sockaddr *>(&address), sizeof address) == 0 &&
+        ::chmod(path.c_str(), 0600) == 0 && ::listen(listener, 16) == 0;
+    return isBound ? Result<>{} : fail("cannot listen at " + path + ": " + std::strerror(errno));
+}
+
+Result<> HostServer::Impl::open(const HostServerOptions &options) {
+    instance = options.instance;
+    if (auto taken = take_lock(); !taken) {
+        return taken;
+    }
+    sigset_t mask;
+    ::sigemptyset(&mask);
+    ::sigaddset(&mask, SIGTERM);
+    ::sigaddset(&mask, SIGINT);
+    ::pthread_sigmask(SIG_BLOCK, &mask, nullptr);
+    signals = ::signalfd(-1, &mask, SFD_CLOEXEC | SFD_NONBLOCK);
+    log = std::make_unique<rtapi::Log>(rtapi::Log::Mode::DRAINED, options.sink, options.sink_context);
+    scheduler = std::make_unique<rtapi::RealtimeScheduler>(*log, options.realtime);
+    HalOptions hal_options;
+    hal_options.name = instance;
+    hal_options.isShared = true;
+    hal_options.scheduler = scheduler.get();
+    hal_options.log = log.get();
+    auto made = LocalHost::create(hal_options);
+    if (!made) {
+        return std::unexpected(made.error());
+    }
+    host = std::move(*made);
+    set_process_instance(&host->hal());
+    return listen();
+}
+
+void HostServer::Impl::accept_client() {
+    const int fd = ::accept4(listener, nullptr, nullptr, SOCK_CLOEXEC);
+    if (fd < 0) {
+        return;
+    }
+    ucred peer{};
+    socklen_t size = sizeof peer;
+    if (::getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0 || peer.uid != ::getuid()) {
+        ::close(fd);
+        return;
+    }
+    clients.push_back({fd, {}});
+}
+
+/// Reads what the client sent and answers it; false when it is gone or talks nonsense.
+bool HostServer::Impl::isServed(Client &client) {
+    char bytes[4096];
+    const ssize_t got = ::recv(client.fd, bytes, sizeof bytes, MSG_DONTWAIT);
+    if (got < 0 && (errno == EAGAIN || errno == EINTR)) {
+        return true;
+    }
+    if (got <= 0) {
+        return false;
+    }
+    client.buffer.append(bytes, static_cast<std::size_t>(got));
+    Message request;
+    while (true) {
+        const auto isWhole = decode(client.buffer, request);
+        if (!isWhole) {
+            return false;
+        }
+        if (!*isWhole) {
+            return true;
+        }
+        if (!isSent(client.fd, answer(client, request))) {
+            return false;
+        }
+    }
+}
+
+Message HostServer::Impl::take_control(const Client &client) {
+    if (controller_socket >= 0 && controller_socket != client.fd) {
+        return {"error", "another process controls the instance already", ""};
+    }
+    ucred peer{};
+    socklen_t size = sizeof peer;
+    ::getsockopt(client.fd, SOL_SOCKET, SO_PEERCRED, &peer, &size);
+    close_fd(controller);
+    controller = static_cast<int>(::syscall(SYS_pidfd_open, peer.pid, 0));
+    if (controller < 0) {
+        return {"error", std::string("cannot watch the controlling process: ") + std::strerror(errno), ""};
+    }
+    controller_socket = client.fd;
+    return {"ok"};
+}
+
+Message HostServer::Impl::answer(const Client &client, const Message &request) {
+    const std::string &what = request.empty() ? std::string() : request[0];
+    const std::string name = request.size() > 1 ? request[1] : std::string();
+    if (what == "load" && request.size() > 1) {
+        Result<> loaded = host->load_realtime(name, {request.begin() + 2, request.end()});
+        log->drain();
+        return answer_of(loaded);
+    }
+    if (what == "unload") {
+        Result<> unloaded = host->unload_realtime(name);
+        log->drain();
+        return answer_of(unloaded);
+    }
+    if (what == "modules") {
+        Message message = {"ok"};
+        for (const std::string &module : host->loader().modules()) {
+            message.push_back(module);
+        }
+        return message;
+    }
+    if (what == "hello") {
+        return {"ok", std::to_string(::getpid())};
+    }
+    if (what == "control") {
+        return take_control(client);
+    }
+    if (what == "end") {
+        isEnding = true;
+        return {"ok"};
+    }
+    return {"error", "unknown request '" + what + "'", ""};
+}
+
+void HostServer::Impl::on_controller_gone() {
+    close_fd(controller);
+    controller = -1;
+    controller_socket = -1;
+    gone_ns = host->now_ns();
+    auto &hal = host->hal();
+    for (const auto &watch : hal.impl().controller_watches) {
+        __atomic_store_n(watch.is_gone, 1U, __ATOMIC_RELEASE);
+    }
+}
+
+/// True when every module that watches says that the machine stands and is off.
+bool HostServer::Impl::isSafeToEnd() {
+    const auto &watches = host->hal().impl().controller_watches;
+    const bool isSafe = std::all_of(watches.begin(), watches.end(), [](const auto &watch) {
+        return __atomic_load_n(watch.is_safe, __ATOMIC_ACQUIRE) != 0;
+    });
+    return isSafe || !host->hal().isRunning() || host->now_ns() > gone_ns + LONGEST_BRAKING_NS;
+}
+
+/// Outputs of the dead take their safe values, and the threads run on for long enough to hand them to the
+/// hardware. Not before the machine stands: an enable chain through the dead process would cut the braking
+/// short.
+void HostServer::Impl::take_safe_values() {
+    (void)host->hal().reap_dead_components();
+    const timespec some_periods{0, 20'000'000};
+    ::nanosleep(&some_periods, nullptr);
+}
+
+void HostServer::Impl::drop(int fd) {
+    if (fd == controller_socket) {
+        on_controller_gone();
+    }
+    ::close(fd);
+    std::erase_if(clients, [fd](const Client &client) { return client.fd == fd; });
+}
+
+std::vector<pollfd> HostServer::Impl::watched() const {
+    // A negative descriptor is left out by poll.
+    std::vector<pollfd> fds = {{signals, POLLIN, 0}, {controller, POLLIN, 0}, {listener, POLLIN, 0}};
+    for (const Client &client : clients) {
+        fds.push_back({client.fd, POLLIN, 0});
+    }
+    return fds;
+}
+
+HostServer::HostServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+Result<std::unique_ptr<HostServer>> HostServer::create(const HostServerOptions &options) {
+    auto impl = std::make_unique<Impl>();
+    auto opened = impl->open(options);
+    auto server = std::unique_ptr<HostServer>(new HostServer(std::move(impl)));
+    if (!opened) {
+        return std::unexpected(opened.error());
+    }
+    return server;
+}
+
+HostServer::~HostServer() {
+    if (impl_->host != nullptr) {
+        set_process_instance(nullptr);
+        impl_->host.reset();
+    }
+    impl_->scheduler.reset();
+    if (!impl_->path.empty()) {
+        ::unlink(impl_->path.c_str());
+    }
+    for (const Client &client : impl_->clients) {
+        ::close(client.fd);
+    }
+    for (const int fd : {impl_->controller, impl_->listener, impl_->signals, impl_->lock}) {
+        close_fd(fd);
+    }
+}
+
+void HostServer::run() {
+    Impl &here = *impl_;
+    while (!here.isEnding) {
+        std::vector<pollfd> fds = here.watched();
+        const bool isBraking = here.gone_ns != 0;
+        const int ready = ::poll(fds.data(), fds.size(), isBraking ? ENDING_MS : REAP_MS);
+        if (ready < 0 && errno != EINTR) {
+            break;
+        }
+        if (isBraking && here.isSafeToEnd()) {
+            here.take_safe_values();
+            break;
+        }
+        if (ready <= 0 && !isBraking) {
+            (void)here.host->hal().reap_dead_components();
+        }
+        if (ready <= 0) {
+            continue;
+        }
+        // The controlling process first: its end is the most urgent.
+        if (fds[1].revents != 0) {
+            here.on_controller_gone();
+        }
+        here.isEnding = here.isEnding || fds[0].revents != 0;
+        if (fds[2].revents != 0) {
+            here.accept_client();
+        }
+        for (std::size_t i = 3; i < fds.size(); ++i) {
+            const auto client = std::find_if(here.clients.begin(), here.clients.end(),
+                                             [&](const Client &one) { return one.fd == fds[i].fd; });
+            if (fds[i].revents != 0 && client != here.clients.end() && !here.isServed(*client)) {
+                here.drop(fds[i].fd);
+            }
+        }
+    }
+}
+
+}  // namespace mw::hal

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The realtime process: owns the HAL instance and its threads, loads modules for others, ends when told.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/result.hh"
+#include "rtapi/realtime_scheduler.hh"
+
+namespace mw::hal {
+
+struct HostServerOptions {
+    std::string instance;
+    rtapi::RealtimeOptions realtime;
+    /// Where messages of modules go; standard error when null.
+    rtapi::Log::Sink sink = nullptr;
+    void *sink_context = nullptr;
+};
+
+/// One per instance. When the process that took control dies, modules that asked for it
+/// (mw_ext_watch_controller) are told at once. When they say that the machine has stopped, at the latest
+/// after 10 s, the outputs of the dead take their safe values and the server ends.
+class HostServer {
+  public:
+    /// Takes the instance and listens; an error when a realtime process of that name is alive. Blocks SIGTERM
+    /// and SIGINT in this thread and those started from it, so that run() can end cleanly.
+    static Result<std::unique_ptr<HostServer>> create(const HostServerOptions &options);
+    /// Stops the threads and unloads everything.
+    ~HostServer();
+    HostServer(const HostServer &) = delete;
+    HostServer &operator=(const HostServer &) = delete;
+
+    /// Serves until told to end, by a client, SIGTERM or SIGINT, or the end of the controlling process.
+    void run();
+
+  private:
+    struct Impl;
+    explicit HostServer(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace mw::hal

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "hal/host/message.hh"
+
+#include <fcntl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+
+#include "rtapi/process.hh"
+
+namespace mw::hal {
+namespace {
+
+void put_count(std::string &out, std::size_t count) {
+    const auto value = static_cast<std::uint32_t>(count);
+    out.append(reinterpret_cast<const char *>(&value), sizeof value);
+}
+
+std::uint32_t count_at(const std::string &buffer, std::size_t at) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, buffer.data() + at, sizeof value);
+    return value;
+}
+
+}  // namespace
+
+std::string encode(const Message &message) {
+    std::string body;
+    for (const std::string &text : message) {
+        put_count(body, text.size());
+        body += text;
+    }
+    std::string out;
+    put_count(out, body.size());
+    return out + body;
+}
+
+Result<bool> decode(std::string &buffer, Message &message) {
+    constexpr std::size_t COUNT = sizeof(std::uint32_t);
+    if (buffer.size() < COUNT) {
+        return false;
+    }
+    const std::size_t length = count_at(buffer, 0);
+    if (length > LONGEST_MESSAGE) {
+        return fail("a message is longer than allowed");
+    }
+    if (buffer.size() < COUNT + length) {
+        return false;
+    }
+    message.clear();
+    const std::size_t end = COUNT + length;
+    for (std::size_t at = COUNT; at < end;) {
+        const std::size_t size = at + COUNT <= end ? count_at(buffer, at) : LONGEST_MESSAGE;
+        at += COUNT;
+        if (at > end || size > end - at) {
+            return fail("a message is broken");
+        }
+        message.emplace_back(buffer, at, size);
+        at += size;
+    }
+    buffer.erase(0, end);
+    return true;
+}
+
+bool isSent(int fd, const Message &message) {
+    const std::string text = encode(message);
+    for (std::size_t at = 0; at < text.size();) {
+        const ssize_t sent = ::send(fd, text.data() + at, text.size() - at, MSG_NOSIGNAL);
+        if (sent < 0 && errno == EINTR) {
+            continue;
+        }
+        if (sent <= 0) {
+            return false;
+        }
+        at += static_cast<std::size_t>(sent);
+    }
+    return true;
+}
+
+Result<Message> receive(int fd) {
+    std::string buffer;
+    Message message;
+    while (true) {
+        auto isWhole = decode(buffer, message);
+        if (!isWhole) {
+            return std::unexpected(isWhole.error());
+        }
+        if (*isWhole) {
+            return message;
+        }
+        char bytes[4096];
+        const ssize_t got = ::recv(fd, bytes, sizeof bytes, 0);
+        if (got < 0 && errno == EINTR) {
+            continue;
+        }
+        if (got <= 0) {
+            return fail("the realtime process is gone");
+        }
+        buffer.append(bytes, static_cast<std::size_t>(got));
+    }
+}
+
+Result<std::string> socket_path(const std::string &instance) {
+    auto folder = rtapi::runtime_folder();
+    if (!folder) {
+        return folder;
+    }
+    return *folder + '/' + instance + ".sock";
+}
+
+Result<std::string> lock_path(const std::string &instance) {
+    auto folder = rtapi::runtime_folder();
+    if (!folder) {
+        return folder;
+    }
+    return *folder + '/' + instance + ".lock";
+}
+
+Result<int> open_lock(const std::string &instance) {
+    const auto path = lock_path(instance);
+    if (!path) {
+        return std::unexpected(path.error());
+    }
+    const int fd = ::open(path->c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+    if (fd < 0) {
+        return fail("cannot open " + *path + ": " + std::strerror(errno));
+    }
+    return fd;
+}
+
+}  // namespace mw::hal

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// show and list. The columns are those that scripts of existing installations cut out.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/text.hh"
+#include "hal/lang/commands.hh"
+
+namespace mw::hal::lang {
+
+namespace {
+
+using Patterns = std::vector<std::string>;
+
+/// A value as show prints it: unsigned numbers in hexadecimal.
+std::string shown(const Value &value) {
+    switch (value.type) {
+    case Type::U32: return fmt::format("0x{:08X}", value.as_u32());
+    case Type::U64: return fmt::format("0x{:016X}", value.as_u64());
+    default: return value.str();
+    }
+}
+
+/// What matches any of the patterns, all without patterns; each once and in order.
+template <class Item, class Query>
+std::vector<Item> matching(const Patterns &patterns, Query query) {
+    if (patterns.size() <= 1) {
+        return query(patterns.empty() ? std::string("*") : patterns[0]);
+    }
+    std::vector<Item> items;
+    std::vector<std::string> wanted;
+    for (const std::string &pattern : patterns) {
+        for (const Item &item : query(pattern)) {
+            wanted.push_back(item.name);
+        }
+    }
+    for (Item &item : query(std::string("*"))) {
+        if (std::find(wanted.begin(), wanted.end(), item.name) != wanted.end()) {
+            items.push_back(std::move(item));
+        }
+    }
+    return items;
+}
+
+std::vector<PinInfo> pins(Hal &hal, const Patterns &patterns) {
+    return matching<PinInfo>(patterns, [&](const std::string &glob) { return hal.pins(glob); });
+}
+std::vector<ParamInfo> params(Hal &hal, const Patterns &patterns) {
+    return matching<ParamInfo>(patterns, [&](const std::string &glob) { return hal.params(glob); });
+}
+std::vector<SignalInfo> signals(Hal &hal, const Patterns &patterns) {
+    return matching<SignalInfo>(patterns, [&](const std::string &glob) { return hal.signals(glob); });
+}
+std::vector<FunctInfo> functs(Hal &hal, const Patterns &patterns) {
+    return matching<FunctInfo>(patterns, [&](const std::string &glob) { return hal.functs(glob); });
+}
+std::vector<ThreadInfo> threads(Hal &hal, const Patterns &patterns) {
+    auto items = matching<ThreadInfo>(patterns, [&](const std::string &glob) { return hal.threads(glob); });
+    return items;
+}
+/// Newest first.
+std::vector<CompInfo> components(Hal &hal, const Patterns &patterns) {
+    auto items = matching<CompInfo>(patterns, [&](const std::string &glob) { return hal.components(glob); });
+    std::sort(items.begin(), items.end(), [](const CompInfo &a, const CompInfo &b) { return a.id > b.id; });
+    return items;
+}
+
+const char *type_word(CompType type) {
+    return type == CompType::REALTIME ? "RT" : (type == CompType::USER ? "User" : "Other");
+}
+
+std::string show_comp(Session &session, const Patterns &patterns) {
+    std::string text;
+    if (!session.options().isScript) {
+        text += "Loaded HAL Components:\n";
+        text += "ID      Type  Name                                            PID   State\n";
+    }
+    for (const CompInfo &c : components(session.hal(), patterns)) {
+        const std::string pid = c.type == CompType::USER ? fmt::format("{}", c.pid) : "";
+        text += fmt::format("{:>6}  {:<4}  {:<47}{:>6} {}\n", c.id, type_word(c.type), c.name, pid,
+                            c.isReady ? "ready" : "initializing");
+    }
+    return text + "\n";
+}
+
+std::string arrow_to(const PinInfo &pin) {
+    const char *arrow = pin.dir == Dir::IN ? "<==" : (pin.dir == Dir::OUT ? "==>" : "<=>");
+    return pin.signal.empty() ? "" : fmt::format(" {} {}", arrow, pin.signal);
+}
+
+std::string show_pin(Session &session, const Patterns &patterns) {
+    const bool isScript = session.options().isScript;
+    std::string text;
+    if (!isScript) {
+        text += "Component Pins:\n";
+        text += "Owner   Type  Dir                 Value  Name\n";
+    }
+    for (const PinInfo &p : pins(session.hal(), patterns)) {
+        if (isScript) {
+            text += fmt::format("{} {:<5} {} {} {}{}\n", p.owner, type_name(p.type), dir_name(p.dir),
+                                p.value.str(), p.name, arrow_to(p));
+        } else {
+            text += fmt::format("{:>6}  {:<5} {:<3} {:>21}  {}{}\n", p.owner_id, type_name(p.type),
+                                dir_name(p.dir), shown(p.value), p.name, arrow_to(p));
+        }
+    }
+    return text + "\n";
+}
+
+std::string show_param(Session &session, const Patterns &patterns) {
+    const bool isScript = session.options().isScript;
+    std::string text;
+    if (!isScript) {
+        text += "Parameters:\n";
+        text += "Owner   Type  Dir                 Value  Name\n";
+    }
+    for (const ParamInfo &p : params(session.hal(), patterns)) {
+        if (isScript) {
+            text += fmt::format("{} {:<5} {} {} {}\n", p.owner, type_name(p.type), dir_name(p.dir),
+                                p.value.str(), p.name);
+        } else {
+            text += fmt::format("{:>6}  {:<5} {:<3} {:>21}  {}\n", p.owner_id, type_name(p.type),
+                                dir_name(p.dir), shown(p.value), p.name);
+        }
+    }
+    return text + "\n";
+}
+
+const char *arrow_of(Dir dir) {
+    return dir == Dir::IN ? "==>" : (dir == Dir::OUT ? "<==" : "<=>");
+}
+
+std::string show_sig(Session &session, const Patterns &patterns) {
+    const bool isScript = session.options().isScript;
+    std::string text;
+    if (!isScript) {
+        text += "Signals:\n";
+        text += "Type                  Value  Name     (linked to)\n";
+    }
+    for (const SignalInfo &s : signals(session.hal(), patterns)) {
+        if (isScript) {
+            text += fmt::format("{:<5}  {}  {}", type_name(s.type), s.value.str(), s.name);
+            for (const SignalPin &pin : s.pins) {
+                text += fmt::format(" {} {}", arrow_of(pin.dir), pin.name);
+            }
+            text += '\n';
+            continue;
+        }
+        text += fmt::format("{:<5} {:>21}  {}\n", type_name(s.type), shown(s.value), s.name);
+        for (const SignalPin &pin : s.pins) {
+            text += fmt::format("{:33}{} {}\n", "", arrow_of(pin.dir), pin.name);
+        }
+    }
+    return text + "\n";
+}
+
+std::string show_funct(Session &session, const Patterns &patterns) {
+    const bool isScript = session.options().isScript;
+    std::string text;
+    if (!isScript) {
+        text += "Exported Functions:\n";
+        text += "Owner   CodeAddr  Arg       FP   Users  Name\n";
+    }
+    for (const FunctInfo &f : functs(session.hal(), patterns)) {
+        const char *fp = f.usesFloat ? "YES" : "NO";
+        if (isScript) {
+            text += fmt::format("{} {:012x} {:012x} {:<3} {:>2} {}\n", f.owner, f.address, f.argument, fp,
+                                f.users, f.name);
+        } else {
+            text += fmt::format(" {:05}  {:012x}  {:012x}  {:<3} {:>6}   {}\n", f.owner_id, f.address,
+                                f.argument, fp, f.users, f.name);
+        }
+    }
+    return text + "\n";
+}
+
+std::string show_thread(Session &session, const Patterns &patterns) {
+    const bool isScript = session.options().isScript;
+    std::string text;
+    if (!isScript) {
+        text += "Realtime Threads:\n";
+        text += "     Period  FP     Name               (     Time, Max-Time )\n";
+    }
+    for (const ThreadInfo &t : threads(session.hal(), patterns)) {
+        if (isScript) {
+            text += fmt::format("{} YES {} {:>8} {}", t.period_ns, t.name, t.time_ns, t.tmax_ns);
+            for (const std::string &function : t.functions) {
+                text += " " + function;
+            }
+            text += '\n';
+            continue;
+        }
+        text +=
+            fmt::format("{:>11}  YES  {:>20} ( {:>8}, {:>8} )\n", t.period_ns, t.name, t.time_ns, t.tmax_ns);
+        int number = 1;
+        for (const std::string &function : t.init_functions) {
+            text += fmt::format("               once {}\n", function);
+        }
+        for (const std::string &function : t.functions) {
+            text += fmt::format("                 {:>2} {}\n", number++, function);
+        }
+    }
+    return text + "\n";
+}
+
+template <class Item>
+std::string alias_block(Session &session, const char *title, const std::vector<Item> &items) {
+    const bool isScript = session.options().isScript;
+    std::string text;
+    if (!isScript) {
+        text += fmt::format("{}:\n {:<48} {}\n", title, "Alias", "Original Name");
+    }
+    for (const Item &item : items) {
+        if (item.original_name.empty()) {
+            continue;
+        }
+        text += isScript ? fmt::format(" {}  {}\n", item.name, item.original_name)
+                         : fmt::format(" {:<48} {}\n", item.name, item.original_name);
+    }
+    return text + "\n";
+}
+
+std::string show_pin_alias(Session &session, const Patterns &patterns) {
+    return alias_block(session, "Pin Aliases", pins(session.hal(), patterns));
+}
+
+std::string show_param_alias(Session &session, const Patterns &patterns) {
+    return alias_block(session, "Parameter Aliases", params(session.hal(), patterns));
+}
+
+std::string show_alias(Session &session, const Patterns &patterns) {
+    return show_pin_alias(session, patterns) + show_param_alias(session, patterns);
+}
+
+std::string show_all(Session &session, const Patterns &patterns) {
+    return show_comp(session, patterns) + show_pin(session, patterns) + show_pin_alias(session, patterns) +
+           show_sig(session, patterns) + show_param(session, patterns) + show_param_alias(session, patterns) +
+           show_funct(session, patterns) + show_thread(session, patterns);
+}
+
+struct ShowKind {
+    std::string_view name;
+    std::string (*text)(Session &session, const Patterns &patterns);
+};
+
+constexpr ShowKind SHOW_KINDS[] = {
+    {"all", show_all},        {"comp", show_comp},     {"pin", show_pin},         {"sig", show_sig},
+    {"signal", show_sig},     {"param", show_param},   {"parameter", show_param}, {"funct", show_funct},
+    {"function", show_funct}, {"thread", show_thread}, {"alias", show_alias},
+};
+
+template <class Item>
+std::string names_of(const std::vector<Item> &items) {
+    std::string text;
+    for (const Item &item : items) {
+        text += item.name + ' ';
+    }
+    return text + '\n';
+}
+
+template <class Item>
+std::vector<Item> of_type(std::vector<Item> items, std::optional<Type> type) {
+    if (type) {
+        std::erase_if(items, [&](const Item &item) { return item.type != *type; });
+    }
+    return items;
+}
+
+/// The names that list prints; nothing for an unknown kind.
+std::optional<std::string> list_text(Hal &hal, const std::string &kind, const Patterns &patterns,
+                                     std::optional<Type> type) {
+    if (kind == "pin") {
+        return names_of(of_type(pins(hal, patterns), type));
+    }
+    if (kind == "param" || kind == "parameter") {
+        return names_of(of_type(params(hal, patterns), type));
+    }
+    if (kind == "sig" || kind == "signal") {
+        return names_of(of_type(signals(hal, patterns), type));
+    }
+    if (kind == "comp") {
+        return names_of(components(hal, patterns));
+    }
+    if (kind == "funct" || kind == "function") {
+        return names_of(functs(hal, patterns));
+    }
+    if (kind == "thread") {
+        return names_of(threads(hal, patterns));
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+Result<> run_show(Session &session, const Call &call) {
+    const std::string kind = call.words.empty() ? "all" : call.text(0);
+    Patterns patterns;
+    for (std::size_t i = 1; i < call.words.size(); ++i) {
+        patterns.push_back(call.text(i));
+    }
+    std::vector<std::string> known;
+    for (const ShowKind &show : SHOW_KINDS) {
+        if (show.name == kind) {
+            session.output().data(show.text(session, patterns));
+            return {};
+        }
+        known.emplace_back(show.name);
+    }
+    return fail(fmt::format("unknown 'show' type '{}'", kind), call.place_of(0), suggestion(kind, known));
+}
+
+Result<> run_list(Session &session, const Call &call) {
+    std::optional<Type> type;
+    Patterns patterns;
+    for (std::size_t i = 1; i < call.words.size(); ++i) {
+        if (i == 1 && call.text(i).starts_with("-t")) {
+            const Result<Type> parsed = parse_type(std::string_view(call.text(i)).substr(2));
+            if (!parsed) {
+                return at(std::unexpected(parsed.error()), call.place_of(i));
+            }
+            type = *parsed;
+        } else {
+            patterns.push_back(call.text(i));
+        }
+    }
+    const std::optional<std::string> text = list_text(session.hal(), call.text(0), patterns, type);
+    if (!text) {
+        return fail(fmt::format("unknown 'list' type '{}'", call.text(0)), call.place_of(0),
+                    suggestion(call.text(0), {"comp", "pin", "sig", "param", "funct", "thread"}));
+    }
+    session.output().data(*text);
+    return {};
+}
+
+}  // namespace mw::hal::lang

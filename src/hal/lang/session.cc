@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "hal/lang/session.hh"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "base/text.hh"
+#include "hal/lang/commands.hh"
+
+namespace mw::hal::lang {
+
+namespace {
+
+/// HAL files that run each other in a circle end here.
+constexpr std::size_t MAX_DEPTH = 32;
+constexpr std::string_view LIBRARY_PREFIX = "LIB:";
+
+bool isFile(const std::string &path) {
+    struct stat info{};
+    return stat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode);
+}
+
+std::string folder_of(const std::string &path) {
+    const std::size_t slash = path.rfind('/');
+    return slash == std::string::npos ? "." : path.substr(0, slash);
+}
+
+std::string joined(const std::vector<std::string> &parts, const char *separator) {
+    std::string text;
+    for (const std::string &part : parts) {
+        text += (text.empty() ? "" : separator) + part;
+    }
+    return text;
+}
+
+std::string program_folder() {
+    char path[4096];
+    const ssize_t length = readlink("/proc/self/exe", path, sizeof path);
+    return length <= 0 ? "." : folder_of(std::string(path, static_cast<std::size_t>(length)));
+}
+
+void print(std::FILE *file, std::string_view text, bool endsLine) {
+    std::fwrite(text.data(), 1, text.size(), file);
+    if (endsLine) {
+        std::fputc('\n', file);
+    }
+    // Programs that loadusr starts write to the same place: keep the order.
+    std::fflush(file);
+}
+
+}  // namespace
+
+void StandardOutput::data(std::string_view text) {
+    print(stdout, text, false);
+}
+
+void StandardOutput::info(std::string_view text) {
+    print(stdout, text, true);
+}
+
+void StandardOutput::note(std::string_view text) {
+    print(stderr, text, true);
+}
+
+void StandardOutput::warning(const Error &warning) {
+    Error shown = warning;
+    shown.message = "warning: " + shown.message;
+    print(stderr, shown.str(), true);
+}
+
+void StandardOutput::error(const Error &error) {
+    print(stderr, error.str(), true);
+}
+
+Session::Session(Host &host, ProgramHost &programs, Output &output, SessionOptions options)
+    : host_(host), programs_(programs), output_(output), options_(std::move(options)),
+      placeholders_(host.hal()) {}
+
+void Session::info(const SourcePlace &place, std::string_view text) {
+    if (options_.verbosity >= Verbosity::RESULTS) {
+        const std::string where = place.str();
+        output_.info(where.empty() ? std::string(text) : fmt::format("{}: {}", where, text));
+    }
+}
+
+void Session::warn(const SourcePlace &place, std::string_view text, std::string hint) {
+    if (options_.verbosity >= Verbosity::ERRORS) {
+        output_.warning(Error{std::string(text), place, std::move(hint)});
+    }
+}
+
+void Session::report(const Error &error) {
+    if (options_.verbosity >= Verbosity::ERRORS) {
+        output_.error(error);
+    }
+}
+
+Result<std::string> Session::find_file(const std::string &name) const {
+    std::vector<std::string> tried;
+    std::string plain = name;
+    if (name.starts_with(LIBRARY_PREFIX)) {
+        plain = name.substr(LIBRARY_PREFIX.size());
+        tried = options_.library;
+    } else {
+        if (isFile(name) || name.starts_with('/')) {
+            return name;
+        }
+        if (!running_.empty()) {
+            tried.push_back(folder_of(running_.back()));
+        }
+        tried.insert(tried.end(), options_.folders.begin(), options_.folders.end());
+        tried.insert(tried.end(), options_.library.begin(), options_.library.end());
+    }
+    for (const std::string &folder : tried) {
+        const std::string path = folder + '/' + plain;
+        if (isFile(path)) {
+            return path;
+        }
+    }
+    const std::string where = name.starts_with(LIBRARY_PREFIX) ? "in " : "in the working folder, ";
+    return fail(fmt::format("HAL file '{}' not found", name), {},
+                fmt::format("looked {}{}", where, tried.empty() ? "no library folder" : joined(tried, ", ")));
+}
+
+Result<> Session::run_file(const std::string &name) {
+    const auto read = [&]() -> Result<std::pair<std::string, std::string>> {
+        const Result<std::string> path = find_file(name);
+        if (!path) {
+            return std::unexpected(path.error());
+        }
+        if (path->ends_with(".tcl")) {
+            return fail(fmt::format("'{}' is a Tcl file; only HAL files can be run here", name));
+        }
+        if (running_.size() >= MAX_DEPTH) {
+            return fail(fmt::format("'{}' runs itself: {} files deep", name, MAX_DEPTH));
+        }
+        std::ifstream file(*path, std::ios::binary);
+        if (!file) {
+            return fail(fmt::format("cannot read HAL file '{}'", *path));
+        }
+        std::ostringstream text;
+        text << file.rdbuf();
+        return std::pair{*path, text.str()};
+    };
+    const auto file = read();
+    if (!file) {
+        // Where a command names the file, the command reports.
+        if (running_.empty()) {
+            report(file.error());
+        }
+        return std::unexpected(file.error());
+    }
+    return run_text(file->second, file->first);
+}
+
+Result<> Session::run_text(std::string_view text, const std::string &name) {
+    Result<> first;
+    running_.push_back(name);
+    for (const LogicalLine &line : split_lines(text)) {
+        const Result<> result = run_line(line, name);
+        if (!result) {
+            first = first ? result : first;
+            if (!options_.keepsGoing) {
+                break;
+            }
+        }
+        if (hasEnded_) {
+            break;
+        }
+    }
+    running_.pop_back();
+    return first;
+}
+
+Result<> Session::run_line(const LogicalLine &line, const std::string &file) {
+    if (options_.stop != nullptr && *options_.stop != 0) {
+        hasEnded_ = true;
+        return fail("stopped", {file, line.first_line, 0});
+    }
+    if (options_.isEchoing) {
+        output_.note(fmt::format("({})<echo>: {}", line.first_line, trim(line.text.text())));
+    }
+    const Result<PlacedText> text = substitute(line.text, file, Variables{nullptr, options_.ini});
+    if (!text) {
+        report(text.error());
+        return std::unexpected(text.error());
+    }
+    const Result<std::vector<Word>> words = split_words(*text, file);
+    if (!words) {
+        report(words.error());
+        return std::unexpected(words.error());
+    }
+    return run_command(*words);
+}
+
+Result<> Session::run_words(const std::vector<std::string> &words) {
+    std::vector<Word> placed;
+    for (const std::string &word : words) {
+        placed.push_back(Word{word, word, {}});
+    }
+    return run_command(placed);
+}
+
+Result<> Session::run_command(const std::vector<Word> &words) {
+    if (words.empty()) {
+        return {};
+    }
+    if (options_.verbosity >= Verbosity::EVERYTHING) {
+        std::string text = words[0].raw;
+        for (std::size_t i = 1; i < words.size(); ++i) {
+            text += " " + words[i].raw;
+        }
+        info(words[0].place, text);
+    }
+    // "name = value" is setp.
+    const bool isAssignment = words.size() >= 2 && words[1].raw == "=";
+    const CommandSpec *spec = find_command(isAssignment ? "setp" : words[0].text);
+    if (spec == nullptr) {
+        const Error error = unknown_command(words[0]);
+        report(error);
+        return std::unexpected(error);
+    }
+    Call call{*spec, words[0].place, {}};
+    for (std::size_t i = isAssignment ? 0 : 1; i < words.size(); ++i) {
+        const bool isSkipped = (isAssignment && i == 1) || (spec->ignoresArrows && isArrow(words[i].raw));
+        if (!isSkipped) {
+            call.words.push_back(words[i]);
+        }
+    }
+    Result<> result = check_words(call);
+    if (result) {
+        const bool isSourcing = spec->run == run_source;
+        const std::size_t depth = running_.size();
+        result = at(spec->run(*this, call), call.place);
+        // What a sourced file's commands reported has been told already; that it could not be run has not.
+        const bool wasReported =
+            isSourcing && !result && running_.size() == depth && result.error().place.file != call.place.file;
+        if (wasReported) {
+            return result;
+        }
+    }
+    if (!result) {
+        report(result.error());
+    }
+    return result;
+}
+
+std::vector<std::string> default_library() {
+    std::vector<std::string> folders;
+    const char *path = std::getenv("MILLWRIGHT_HALLIB");
+    std::string_view rest = path == nullptr ? "" : path;
+    while (!rest.empty()) {
+        const std::size_t colon = rest.find(':');
+        if (colon != 0) {
+            folders.emplace_back(rest.substr(0, colon));
+        }
+        rest = colon == std::string_view::npos ? "" : rest.substr(colon + 1);
+    }
+    const std::string bin = program_folder();
+    folders.push_back(bin + "/../share/hallib");
+    folders.push_back(bin + "/../share/millwright/hallib");
+    return folders;
+}
+
+}  // namespace mw::hal::lang

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "hal/lang/commands.hh"
+#include "hal/lang/session.hh"
+#include "rtapi/virtual_scheduler.hh"
+
+namespace mw::hal::lang {
+namespace {
+
+class TextOutput final : public Output {
+  public:
+    void data(std::string_view text) override { answers += text; }
+    void info(std::string_view text) override { infos += std::string(text) + "\n"; }
+    void note(std::string_view text) override { notes += std::string(text) + "\n"; }
+    void warning(const Error &warning) override { warnings += warning.str() + "\n"; }
+    void error(const Error &error) override { errors += error.str() + "\n"; }
+
+    std::string answers, infos, notes, warnings, errors;
+};
+
+class SessionTest : public ::testing::Test {
+  protected:
+    SessionTest() {
+        HalOptions hal_options;
+        hal_options.name = "session-test";
+        hal_options.scheduler = &clock;
+        host = std::move(*LocalHost::create(hal_options));
+        // Components of other folders are not built for this test: pins of its own.
+        const int id = *host->hal().new_component("board");
+        for (const char *name : {"board.in0", "board.in1", "board.io"}) {
+            slots.push_back(*host->hal().new_pin(name, Type::BIT,
+                                                 name[6] == 'i' && name[7] == 'o' ? Dir::IO : Dir::IN, id));
+        }
+        slots.push_back(*host->hal().new_pin("board.out", Type::BIT, Dir::OUT, id));
+        slots.push_back(*host->hal().new_pin("board.value", Type::FLOAT, Dir::IN, id));
+        slots.push_back(*host->hal().new_pin("board.word", Type::U32, Dir::IN, id));
+        gain = host->hal().allocate(8);
+        EXPECT_TRUE(host->hal().new_param("board.gain", Type::FLOAT, Dir::RW, gain, id));
+        EXPECT_TRUE(host->hal().set_ready(id));
+    }
+
+    /// Runs lines; the answers, or the errors when there are any.
+    std::string run(const std::string &text) {
+        TextOutput out;
+        Session session(*host, programs, out, options);
+        last_result = session.run_text(text, "test.hal");
+        left_out = session.left_out();
+        output = out;
+        return out.errors.empty() ? out.answers : out.errors;
+    }
+
+    rtapi::VirtualScheduler clock;
+    std::unique_ptr<LocalHost> host;
+    InProcessProgramHost programs;
+    SessionOptions options;
+    TextOutput output;
+    Result<> last_result;
+    std::vector<std::string> left_out;
+    std::vector<void **> slots;
+    void *gain = nullptr;
+};
+
+TEST_F(SessionTest, SetsAndReadsValues_B9) {
+    EXPECT_EQ(
+        run("setp board.in0 TRUE\ngetp board.in0\nboard.value = 4.2e1\ngetp board.value\nptype board.value\n"
+            "setp board.gain -.5\ngetp board.gain\nsetp board.word 0xff\ngetp board.word"),
+        "TRUE\n42\nfloat\n-0.5\n255\n");
+    EXPECT_EQ(run("newsig s s32\nsets s -3\ngets s\nstype s"), "-3\ns32\n");
+}
+
+TEST_F(SessionTest, FirstFailureEndsAFileUnlessItKeepsGoing_B9) {
+    EXPECT_EQ(run("newsig a bit\nbogus\nnewsig b bit").find("test.hal:2:1: unknown command 'bogus'"), 0U);
+    EXPECT_FALSE(last_result.has_value());
+    EXPECT_FALSE(host->hal().signal("b").has_value());
+    options.keepsGoing = true;
+    run("bogus\nnewsig b bit\nbogus2");
+    EXPECT_FALSE(last_result.has_value());
+    EXPECT_TRUE(host->hal().signal("b").has_value());
+}
+
+TEST_F(SessionTest, ErrorsNamePlaceExpectationAndNearestName_D2) {
+    EXPECT_EQ(run("\n  net x board.uot"),
+              "test.hal:2:9: pin 'board.uot' does not exist (did you mean 'board.out'?)\n");
+    EXPECT_EQ(run("setp board.gian 1"),
+              "test.hal:1:6: parameter or pin 'board.gian' does not exist (did you mean 'board.gain'?)\n");
+    EXPECT_EQ(run("sept board.gain 1"), "test.hal:1:1: unknown command 'sept' (did you mean 'setp'?)\n");
+    EXPECT_EQ(run("board.gain=1"),
+              "test.hal:1:1: unknown command 'board.gain=1' (an assignment needs blanks around '=')\n");
+    EXPECT_EQ(run("setp board.gain 1 2"),
+              "test.hal:1:19: setp needs 2 arguments, 3 given (setp NAME VALUE)\n");
+    EXPECT_EQ(run("newsig q float4").find("test.hal:1:10: unknown signal type 'float4'"), 0U);
+    EXPECT_EQ(run("addf f t"), "test.hal:1:6: function 'f' does not exist\n");
+    EXPECT_EQ(
+        run("net board.in0 board.in1").find("test.hal:1:5: signal name 'board.in0' is the name of a pin"),
+        0U);
+    EXPECT_EQ(run("setp board.in0 2").find("test.hal:1:16: "), 0U);
+}
+
+TEST_F(SessionTest, NetTakesArrowsAndPinsKeepTheirValueWhenUnlinked_B9) {
+    EXPECT_EQ(run("setp board.in0 1\nnet a <= board.out => board.in0\nunlinkp board.in0\ngetp board.in0\n"
+                  "unlinkp board.out\nsetp board.in1 1\nnet b board.in1\ngets b"),
+              "FALSE\nTRUE\n");
+    EXPECT_EQ(run("setp board.out 1").find("test.hal:1:16: "), 0U) << "outputs are not set";
+    EXPECT_EQ(run("setp board.in1 0").find("test.hal:1:16: "), 0U) << "linked pins neither";
+    EXPECT_EQ(run("linkpp board.in0 board.io\nshow sig board.in0"),
+              "Signals:\nType                  Value  Name     (linked to)\n"
+              "bit                   FALSE  board.in0\n"
+              "                                 ==> board.in0\n"
+              "                                 <=> board.io\n\n");
+    EXPECT_NE(output.warnings.find("linkpp command is deprecated"), std::string::npos);
+}
+
+TEST_F(SessionTest, ShowHasTheColumnsThatScriptsCut_B9) {
+    run("setp board.value 2.5\nsetp board.word 10");
+    EXPECT_EQ(run("show pin board.v* board.w*").substr(0, 63),
+              "Component Pins:\nOwner   Type  Dir                 Value  Name\n");
+    EXPECT_NE(output.answers.find("float IN                    2.5  board.value\n"), std::string::npos);
+    EXPECT_NE(output.answers.find("u32   IN             0x0000000A  board.word\n"), std::string::npos);
+    options.isScript = true;
+    EXPECT_EQ(run("show pin board.v* board.w*"),
+              "board float IN 2.5 board.value\nboard u32   IN 10 board.word\n\n");
+    EXPECT_EQ(run("show param"), "board float RW 0 board.gain\n\n");
+}
+
+TEST_F(SessionTest, ListSortsAndShowsAliases_B9) {
+    EXPECT_EQ(run("alias pin board.in0 zebra\nlist pin board.* zebra"),
+              "board.in1 board.io board.out board.value board.word zebra \n");
+    EXPECT_EQ(run("list pin -tfloat"), "board.value \n");
+    EXPECT_EQ(run("list sig nothing*"), "\n");
+    EXPECT_EQ(run("getp board.in0\ngetp zebra"), "FALSE\nFALSE\n") << "both names work";
+    EXPECT_EQ(run("unalias pin zebra\nlist pin *in0"), "board.in0 \n");
+}
+
+TEST_F(SessionTest, LocksForbidAndStatusTells_B9) {
+    EXPECT_EQ(run("lock tune\nstatus lock"), "HAL locking status:\n  current lock value 3 (03)\n"
+                                             "  HAL_LOCK_LOAD    - loading of new components is locked\n"
+                                             "  HAL_LOCK_CONFIG  - link and addf is locked\n");
+    EXPECT_NE(run("net x board.in0"), "");
+    EXPECT_EQ(run("setp board.in0 1"), "");
+    EXPECT_EQ(run("unlock\nstatus lock"),
+              "HAL locking status:\n  current lock value 0 (00)\n  HAL_LOCK_NONE - nothing is locked\n");
+}
+
+TEST_F(SessionTest, SavedStateRestoresTheSame_B9) {
+    run("net a board.out => board.in0\nnewsig lone u32\nsetp board.gain 1.25\nalias pin board.in1 second");
+    const std::string saved = run("save");
+    EXPECT_NE(saved.find("alias pin board.in1 second\n"), std::string::npos) << saved;
+    EXPECT_NE(saved.find("newsig lone u32  \n"), std::string::npos);
+    EXPECT_NE(saved.find("net a board.out => board.in0\n"), std::string::npos);
+    EXPECT_NE(saved.find("setp board.gain                 1.25\n"), std::string::npos);
+    run("delsig all\nunalias pin second\nsetp board.gain 0");
+    EXPECT_EQ(run(saved), "");
+    EXPECT_EQ(run("save"), saved);
+    EXPECT_EQ(run("save linka"), "# links\nlinkps board.in0 <== a\nlinkps board.out ==> a\n");
+}
+
+TEST_F(SessionTest, SourceFindsFilesBesideTheCallerAndInTheLibrary_B9) {
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("mw-session-" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder / "lib");
+    std::ofstream(folder / "outer.hal") << "source inner.hal\nsource LIB:part.hal\nquit\nbogus\n";
+    std::ofstream(folder / "inner.hal") << "newsig inner bit\n";
+    std::ofstream(folder / "lib" / "part.hal") << "newsig part bit\n";
+    std::ofstream(folder / "bad.hal") << "\nnewsig part bit\n";
+    options.library = {(folder / "lib").string()};
+    EXPECT_EQ(run("source " + (folder / "outer.hal").string()), "");
+    EXPECT_TRUE(host->hal().signal("inner").has_value());
+    EXPECT_TRUE(host->hal().signal("part").has_value());
+    const std::string errors = run("source " + (folder / "bad.hal").string());
+    EXPECT_EQ(errors.find((folder / "bad.hal").string() + ":2:8: "), 0U) << errors;
+    EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << "told once: " << errors;
+    EXPECT_EQ(run("source no.hal").find("test.hal:1:1: HAL file 'no.hal' not found"), 0U);
+    std::filesystem::remove_all(folder);
+}
+
+TEST_F(SessionTest, LeftOutProgramsGetPlaceholders) {
+    options.hasPlaceholders = true;
+    std::string started;
+    programs.add_part("known", [&](const ProgramRequest &request) {
+        started = request.component;
+        return Result<>{};
+    });
+    EXPECT_EQ(run("loadusr -W /some/where/known --option\nloadusr -Wn panel pyvcp -c panel file.xml\n"
+                  "net early panel.button\nnet a board.out => panel.lamp board.in0\nsetp panel.level 3\n"
+                  "net early board.in1\nunlinkp panel.other\ngetp panel.lamp"),
+              "FALSE\n");
+    EXPECT_EQ(started, "known");
+    EXPECT_EQ(host->hal().pin("panel.button")->signal, "early") << "linked once the signal's type was known";
+    ASSERT_EQ(left_out.size(), 1U);
+    EXPECT_EQ(left_out[0],
+              "not started: pyvcp -c panel file.xml; without effect: panel.button, panel.lamp, panel.level");
+    EXPECT_NE(run("net b other.pin"), "") << "unknown pins of nobody stay errors";
+}
+
+TEST_F(SessionTest, UnderTheVirtualClockNoProgramIsStarted) {
+    EXPECT_EQ(run("loadusr -w /bin/false\nloadusr -Wn"), "test.hal:2:9: -Wn needs the name of a component\n");
+    EXPECT_EQ(run("loadusr -x prog").find("test.hal:1:9: unknown option '-x'"), 0U);
+}
+
+TEST_F(SessionTest, EveryCommandHasHelpAndAWorkingSynopsis) {
+    for (const CommandSpec &spec : commands()) {
+        EXPECT_FALSE(spec.help.empty()) << spec.name;
+        EXPECT_EQ(spec.help.back(), '.') << spec.name;
+        EXPECT_EQ(run("help " + std::string(spec.name)).find(spec.name), 0U);
+    }
+}
+
+TEST_F(SessionTest, PrintAndEchoGoToTheNotes) {
+    run("print \"hello there\"\necho\nunecho");
+    EXPECT_EQ(output.notes, "test.hal:1: HALCMD MSG: \"hello there\"\n(3)<echo>: unecho\n");
+}
+
+}  // namespace
+}  // namespace mw::hal::lang

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <csignal>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "hal/host/host_client.hh"
+#include "hal/tools/command_line.hh"
+
+namespace mw::hal::tools {
+
+namespace {
+
+constexpr const char *USAGE = R"(usage: halrun [-I] [OPTIONS] [[-f] FILE]
+       halrun -U
+
+Starts a realtime process, runs the commands of FILE in it, and ends it. Without FILE, or after it with -I, reads
+commands from standard input.
+
+  -i INI  take [SECTION]NAME from this INI file   -k  keep going after failed commands
+  -s      answers for scripts                     -q -Q -v -V  say less or more (see halcmd -h)
+  -U      ends a realtime process that was left running
+)";
+
+volatile std::sig_atomic_t stop_requested = 0;
+
+int fail_with(const Error &error) {
+    std::fprintf(stderr, "halrun: %s\n", error.str().c_str());
+    return 1;
+}
+
+void handle_signals() {
+    // Without SA_RESTART, so that waiting ends too.
+    struct sigaction action{};
+    action.sa_handler = [](int) { stop_requested = 1; };
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+    sigaction(SIGHUP, &action, nullptr);
+}
+
+/// halrun -U.
+int end_running() {
+    const std::string instance = default_instance();
+    if (!isHostAlive(instance)) {
+        return 0;
+    }
+    const auto host = HostClient::connect(instance);
+    if (!host) {
+        return fail_with(host.error());
+    }
+    lang::SystemProgramHost programs((*host)->hal());
+    const Result<> stopped = programs.stop_all();
+    const Result<> ended = (*host)->shut_down();
+    if (!ended) {
+        return fail_with(ended.error());
+    }
+    return stopped ? 0 : fail_with(stopped.error());
+}
+
+Result<> run(const CommandLine &line, lang::Session &session) {
+    Result<> first;
+    for (const std::string &file : line.words) {
+        const Result<> result = session.run_file(file);
+        first = first ? result : first;
+        if (session.hasEnded() || (!result && !line.session.keepsGoing)) {
+            break;
+        }
+    }
+    const bool readsInput = line.words.empty() || line.isInteractive;
+    if (readsInput && first && !session.hasEnded()) {
+        return run_standard_input(session);
+    }
+    return first;
+}
+
+/// Ends programs, threads, modules and the realtime process, whatever state they are in.
+Result<> tear_down(lang::ProgramHost &programs, HostClient &host) {
+    Result<> first = programs.stop_all();
+    const Result<> ended = host.shut_down();
+    return first ? ended : first;
+}
+
+}  // namespace
+
+int halrun(const std::vector<std::string> &arguments) {
+    Result<CommandLine> line = parse_command_line(arguments);
+    if (!line) {
+        std::fputs(USAGE, stderr);
+        return fail_with(line.error());
+    }
+    if (line->wantsHelp) {
+        std::fputs(USAGE, stdout);
+        return 0;
+    }
+    if (line->wantsTcl) {
+        return fail_with(Error{"Tcl sessions are not supported", {}, {}});
+    }
+    if (line->isKilling) {
+        return end_running();
+    }
+    IniOption ini;
+    const Result<> loaded = ini.load(line->ini_path);
+    if (!loaded) {
+        return fail_with(loaded.error());
+    }
+    line->session.ini = ini.lookup();
+    line->session.stop = &stop_requested;
+    const std::string instance = default_instance();
+    if (isHostAlive(instance)) {
+        return fail_with(Error{fmt::format("a realtime process is already running (instance '{}')", instance),
+                               {},
+                               "use it with halcmd, or end it with halrun -U"});
+    }
+    handle_signals();
+    const auto host = HostClient::start(instance);
+    if (!host) {
+        return fail_with(host.error());
+    }
+    // It must not outlive this program.
+    const Result<> controlled = (*host)->control();
+    if (!controlled) {
+        return fail_with(controlled.error());
+    }
+    lang::StandardOutput output;
+    lang::SystemProgramHost programs((*host)->hal(), &stop_requested);
+    Result<> result;
+    {
+        lang::Session session(**host, programs, output, line->session);
+        result = run(*line, session);
+    }
+    const Result<> ended = tear_down(programs, **host);
+    if (!ended) {
+        return fail_with(ended.error());
+    }
+    return result && stop_requested == 0 ? 0 : 1;
+}
+
+}  // namespace mw::hal::tools

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The commands of `millwright`, each from its words to the exit status: 0 done, 1 refused or failed, 2 wrong
+// usage.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace mw::machine {
+
+int command_run(const std::vector<std::string> &words);
+int command_check(const std::vector<std::string> &words);
+
+}  // namespace mw::machine

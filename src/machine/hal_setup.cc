@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "machine/hal_setup.hh"
+
+#include <cstdio>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "base/text.hh"
+#include "hal/lang/session.hh"
+
+namespace mw::machine {
+namespace {
+
+namespace lang = hal::lang;
+
+/// Values for [SECTION]KEY; each key that a HAL file uses counts as known.
+class IniValues final : public lang::IniLookup {
+  public:
+    explicit IniValues(config::IniReader &reader) : reader_(reader) {}
+    std::optional<std::string> find(std::string_view section, std::string_view name) const override {
+        const config::IniEntry *entry = reader_.file().find(section, name);
+        if (entry == nullptr) {
+            return std::nullopt;
+        }
+        // Custom sections stay silent: only the key of a section that the system reads needs to become known.
+        reader_.know_if_ours(section, name);
+        return entry->value;
+    }
+    std::vector<std::string> names(std::string_view section) const override {
+        return reader_.file().keys(section);
+    }
+
+  private:
+    config::IniReader &reader_;
+};
+
+/// Answers of commands to standard output; errors and warnings to the sink.
+class SinkOutput final : public lang::Output {
+  public:
+    explicit SinkOutput(diag::Sink &sink) : sink_(sink) {}
+    void data(std::string_view text) override { fmt::print("{}", text); }
+    void info(std::string_view) override {}
+    void note(std::string_view text) override { fmt::print("{}\n", text); }
+    void warning(const Error &warning) override {
+        sink_.warning(warning.message, warning.place, warning.hint);
+    }
+    void error(const Error &error) override { sink_.error(error); }
+
+  private:
+    diag::Sink &sink_;
+};
+
+/// Parts of this process first, then programs of the system.
+class RealtimePrograms final : public lang::ProgramHost {
+  public:
+    RealtimePrograms(lang::InProcessProgramHost &parts, std::set<std::string> names, hal::Hal &hal)
+        : parts_(parts), names_(std::move(names)), system_(hal) {}
+    Result<lang::ProgramStart> start(const lang::ProgramRequest &request) override {
+        const bool isPart = !request.argv.empty() && names_.count(lang::base_name(request.argv[0])) > 0;
+        return isPart ? parts_.start(request) : system_.start(request);
+    }
+    Result<> stop(const std::string &component) override { return system_.stop(component); }
+    Result<> stop_all() override { return system_.stop_all(); }
+    Result<> wait_for_end(const std::string &component) override { return system_.wait_for_end(component); }
+
+  private:
+    lang::InProcessProgramHost &parts_;
+    std::set<std::string> names_;
+    lang::SystemProgramHost system_;
+};
+
+Result<> run_file_step(lang::Session &session, const HalStep &step) {
+    const std::vector<std::string> words = split_words(step.text);
+    if (words.empty()) {
+        return fail("[HAL]HALFILE names no file", step.place);
+    }
+    const std::string &name = words[0];
+    if (name.size() > 4 && name.substr(name.size() - 4) == ".tcl") {
+        return fail("HAL files in Tcl are not supported by this version: '" + name + "'", step.place);
+    }
+    if (!session.find_file(name).has_value()) {
+        return fail("HAL file '" + name + "' is not found", step.place,
+                    "looked beside the INI file and in the library of HAL files");
+    }
+    return session.run_file(name);
+}
+
+}  // namespace
+
+Result<> HalSetup::run() {
+    if (parts_.config.isTwoPass) {
+        return fail("[HAL]TWOPASS is not supported by this version",
+                    parts_.ini.find("HAL", "TWOPASS")->place);
+    }
+    const IniValues ini(parts_.reader);
+    SinkOutput output(parts_.sink);
+    lang::InProcessProgramHost parts;
+    parts.add_part("hal_manualtoolchange",
+                   [this](const lang::ProgramRequest &) { return on_tool_change_program(); });
+    RealtimePrograms programs(parts, {"hal_manualtoolchange"}, host_.hal());
+    const bool isVirtual = host_.hal().isVirtual();
+    lang::SessionOptions session_options;
+    session_options.hasPlaceholders = isVirtual;
+    session_options.ini = &ini;
+    session_options.folders = {parts_.ini.folder()};
+    session_options.library = options_.hal_library;
+    for (const std::string &folder : lang::default_library()) {
+        session_options.library.push_back(folder);
+    }
+    lang::ProgramHost &program_host = isVirtual ? static_cast<lang::ProgramHost &>(parts) : programs;
+    lang::Session session(host_, program_host, output, session_options);
+    for (const HalStep &step : parts_.config.hal_steps) {
+        const int errors_before = parts_.sink.count_errors();
+        const auto done = step.kind == HalStep::Kind::FILE ? run_file_step(session, step)
+                                                           : session.run_text(step.text, step.place.str());
+        if (!done.has_value()) {
+            // The session has told its own failures already.
+            const bool isTold = parts_.sink.count_errors() > errors_before;
+            return isTold ? fail("") : done;
+        }
+    }
+    for (const std::string &text : session.left_out()) {
+        parts_.sink.warning(text);
+    }
+    return {};
+}
+
+}  // namespace mw::machine

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Runs the HAL files and commands that an INI names, in order.
+#pragma once
+
+#include <functional>
+
+#include "hal/core/host.hh"
+#include "machine/machine.hh"
+
+namespace mw::machine {
+
+class HalSetup {
+  public:
+    HalSetup(const MachineParts &parts, hal::Host &host, const MachineOptions &options)
+        : parts_(parts), host_(host), options_(options) {}
+
+    /// Makes the in-process part for `loadusr hal_manualtoolchange`.
+    std::function<Result<>()> on_tool_change_program;
+
+    /// The first failure ends it; its message has file, line and column of the HAL file. What was left out is
+    /// told in one warning.
+    Result<> run();
+
+  private:
+    const MachineParts &parts_;
+    hal::Host &host_;
+    const MachineOptions &options_;
+};
+
+}  // namespace mw::machine

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "machine/ini_parameters.hh"
+
+#include "base/text.hh"
+
+namespace mw::machine {
+
+std::optional<double> IniParameters::ini_value(std::string_view section, std::string_view key) const {
+    for (const config::IniEntry &entry : ini_.entries()) {
+        if (equals_ignoring_case(entry.section, section) && equals_ignoring_case(entry.key, key)) {
+            const auto words = split_words(entry.value);
+            return words.empty() ? std::nullopt : parse_double(words[0]);
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<double> IniParameters::hal_value(std::string_view name) const {
+    if (hal_ == nullptr) {
+        return std::nullopt;
+    }
+    auto value = hal_->get(name);
+    if (!value.has_value()) {
+        value = hal_->get_signal(name);
+    }
+    return value.has_value() ? std::optional<double>(value->as_number()) : std::nullopt;
+}
+
+}  // namespace mw::machine

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// An INI file together with all that was read from it.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "config/ini_reader.hh"
+#include "machine/machine_config.hh"
+
+namespace mw::machine {
+
+struct LoadedConfig {
+    LoadedConfig(config::IniFile file, diag::Sink &sink)
+        : ini(std::move(file)), reader(ini, sink), machine(read_machine_config(reader)) {}
+    /// Null when the file cannot be read or has errors; they are in the sink.
+    static std::unique_ptr<LoadedConfig> load(const std::string &path, diag::Sink &sink);
+
+    config::IniFile ini;
+    config::IniReader reader;
+    MachineConfig machine;
+};
+
+}  // namespace mw::machine

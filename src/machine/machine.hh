@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A whole machine from an INI, under either clock.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "base/result.hh"
+#include "config/ini_file.hh"
+#include "diag/sink.hh"
+#include "hal/core/host.hh"
+#include "machine/machine_config.hh"
+#include "motion/api/channels.hh"
+#include "task/task.hh"
+
+namespace mw::machine {
+
+/// What the machine is made from. All must outlive it; `ini` has been read into `config` without errors.
+struct MachineParts {
+    const config::IniFile &ini;
+    config::IniReader &reader;
+    const MachineConfig &config;
+    diag::Sink &sink;
+};
+
+struct MachineOptions {
+    bool isStrict = false;  ///< unknown INI keys are errors
+    std::string instance;   ///< HAL instance of a realtime machine; empty: the user's default
+    /// Extra folders for HAL library files, before our own.
+    std::vector<std::string> hal_library;
+};
+
+/// Realtime figures of a run; zero under the virtual clock.
+struct RealtimeFigures {
+    bool isRealtime = false;
+    std::string missing;  ///< why it is not realtime, empty otherwise
+    std::uint64_t overruns = 0;
+    std::int64_t max_latency_ns = 0;
+};
+
+/// One thread. Everything stops when it is destroyed: motion first, then the parts in reverse order of their
+/// start.
+class Machine {
+  public:
+    virtual ~Machine() = default;
+
+    /// Runs up to and including the next task cycle.
+    virtual void cycle() = 0;
+    virtual std::int64_t now_ns() const = 0;
+    virtual bool isVirtual() const = 0;
+    virtual RealtimeFigures realtime_figures() const = 0;
+
+    virtual task::Task &task() = 0;
+    virtual motion::Channels &channels() = 0;
+    virtual hal::Hal &hal() = 0;
+};
+
+/// A failure whose message is empty has been told to the sink already.
+/// The machine in this process, under the virtual clock: deterministic, as fast as the processor allows.
+Result<std::unique_ptr<Machine>> make_virtual_machine(const MachineParts &parts,
+                                                      const MachineOptions &options);
+
+/// The machine as two processes: this one with task, and the realtime process that it starts and that ends
+/// with it.
+Result<std::unique_ptr<Machine>> make_realtime_machine(const MachineParts &parts,
+                                                       const MachineOptions &options);
+
+}  // namespace mw::machine

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The machine as two processes: task here, motion and HAL threads in millwright-rt.
+#include <time.h>
+
+#include <cerrno>
+
+#include "hal/host/host_client.hh"
+#include "machine/machine.hh"
+#include "machine/task_side.hh"
+
+namespace mw::machine {
+namespace {
+
+constexpr std::int64_t NS_PER_S = 1000000000;
+constexpr int CONFIGURE_CYCLES = 3000;
+
+std::int64_t monotonic_ns() {
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return now.tv_sec * NS_PER_S + now.tv_nsec;
+}
+
+class RealtimeMachine final : public Machine {
+  public:
+    explicit RealtimeMachine(const MachineParts &parts) : parts_(parts), next_ns_(monotonic_ns()) {}
+    ~RealtimeMachine() override {
+        side_.reset();
+        if (host_ != nullptr) {
+            host_->shut_down();
+        }
+    }
+
+    Result<> start(const MachineOptions &options) {
+        auto host =
+            hal::HostClient::start(options.instance.empty() ? hal::default_instance() : options.instance);
+        if (!host.has_value()) {
+            return std::unexpected(host.error());
+        }
+        host_ = std::move(*host);
+        const auto controlled = host_->control();
+        if (!controlled.has_value()) {
+            return controlled;
+        }
+        side_ = std::make_unique<TaskSide>(parts_, *host_);
+        const auto started = side_->start(options);
+        return started.has_value() ? configure() : started;
+    }
+
+    void cycle() override {
+        next_ns_ += parts_.config.task_period_ns;
+        const std::int64_t now = monotonic_ns();
+        if (next_ns_ < now) {
+            next_ns_ = now;  // late: the missed cycles are skipped
+        }
+        const timespec until{next_ns_ / NS_PER_S, next_ns_ % NS_PER_S};
+        while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+        }
+        side_->step(monotonic_ns());
+    }
+    std::int64_t now_ns() const override { return monotonic_ns(); }
+    bool isVirtual() const override { return false; }
+    RealtimeFigures realtime_figures() const override {
+        RealtimeFigures figures;
+        for (const hal::ThreadInfo &thread : host_->hal().threads()) {
+            figures.overruns += thread.overruns;
+        }
+        return figures;
+    }
+    task::Task &task() override { return side_->task(); }
+    motion::Channels &channels() override { return side_->channels(); }
+    hal::Hal &hal() override { return host_->hal(); }
+
+  private:
+    Result<> configure() {
+        for (int i = 0; i < CONFIGURE_CYCLES; ++i) {
+            cycle();
+            const auto isDone = side_->isConfigured();
+            if (!isDone.has_value()) {
+                return std::unexpected(isDone.error());
+            }
+            if (*isDone) {
+                cycle();
+                return side_->begin();
+            }
+        }
+        return fail("the motion controller does not run", {parts_.ini.path(), 0, 0},
+                    "are motion-command-handler and motion-controller added to a thread (addf)?");
+    }
+
+    MachineParts parts_;
+    std::unique_ptr<hal::HostClient> host_;
+    std::unique_ptr<TaskSide> side_;
+    std::int64_t next_ns_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Machine>> make_realtime_machine(const MachineParts &parts,
+                                                       const MachineOptions &options) {
+    auto machine = std::make_unique<RealtimeMachine>(parts);
+    const auto started = machine->start(options);
+    if (!started.has_value()) {
+        return std::unexpected(started.error());
+    }
+    return machine;
+}
+
+}  // namespace mw::machine

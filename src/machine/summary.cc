@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "machine/summary.hh"
+
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+namespace mw::machine {
+namespace {
+
+std::string time_text(double seconds) {
+    const int minutes = static_cast<int>(seconds / 60);
+    return minutes > 0 ? fmt::format("{} min {:.3f} s", minutes, seconds - 60.0 * minutes)
+                       : fmt::format("{:.3f} s", seconds);
+}
+
+void print_axes(const char *label, const Summary &summary, const std::array<double, MAX_AXES> &values,
+                const char *power) {
+    std::string text;
+    for (int axis = 0; axis < MAX_AXES; ++axis) {
+        if ((summary.machine.axis_mask & (1U << axis)) == 0) {
+            continue;
+        }
+        const char *unit = geom::isAngular(axis) ? "deg" : (summary.machine.isMetric ? "mm" : "in");
+        text += fmt::format("  {} {:.4g} {}/{}", geom::AXIS_LETTERS[axis],
+                            values[static_cast<std::size_t>(axis)], unit, power);
+    }
+    fmt::print("{:<18}{}\n", label, text);
+}
+
+}  // namespace
+
+void print_summary(const Summary &summary) {
+    const char *unit = summary.machine.isMetric ? "mm" : "in";
+    fmt::print("program             {} on {}\n", summary.program, summary.machine.name);
+    fmt::print("cycle time          {}\n", time_text(summary.run.cycle_time_s));
+    if (!summary.wasRealtime) {
+        fmt::print("simulated in        {:.3f} s, {:.0f} times faster than the clock\n",
+                   summary.run.wall_time_s,
+                   summary.run.cycle_time_s / std::fmax(summary.run.wall_time_s, 1e-9));
+    }
+    fmt::print("cutting             {:.3f} {}\n", summary.path.cutting_length, unit);
+    fmt::print("rapid               {:.3f} {}\n", summary.path.rapid_length, unit);
+    fmt::print("blocks              {}\n", summary.run.blocks);
+    print_axes("peak velocity", summary, summary.path.peak_velocity, "s");
+    print_axes("peak acceleration", summary, summary.path.peak_acceleration, "s2");
+    fmt::print("path deviation      {:.5f} {}", summary.path.deviation_linear, unit);
+    constexpr unsigned ANGULAR_MASK = 0x38;
+    if ((summary.machine.axis_mask & ANGULAR_MASK) != 0) {
+        fmt::print(", {:.5f} deg", summary.path.deviation_angular);
+    }
+    fmt::print("\n");
+    if (summary.run.stops_passed > 0) {
+        fmt::print("program stops       {} passed\n", summary.run.stops_passed);
+    }
+    if (summary.wasRealtime) {
+        fmt::print("realtime            {}\n",
+                   summary.realtime.isRealtime ? "yes" : "no: " + summary.realtime.missing);
+        fmt::print("overruns            {}\n", summary.realtime.overruns);
+        fmt::print("largest latency     {:.1f} us\n",
+                   static_cast<double>(summary.realtime.max_latency_ns) * 1e-3);
+    }
+    fmt::print("warnings            {}\n", summary.run.warnings);
+    std::fflush(stdout);
+}
+
+}  // namespace mw::machine

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "machine/task_side.hh"
+
+#include "machine/hal_setup.hh"
+
+namespace mw::machine {
+namespace {
+
+constexpr const char *ESTOP_PIN = "iocontrol.0.emc-enable-in";
+constexpr const char *MOTION_ESTOP_PIN = "motion.emc-enable-in";
+
+}  // namespace
+
+TaskSide::TaskSide(const MachineParts &parts, hal::Host &host)
+    : parts_(parts), host_(host), parameters_(parts.ini, &host.hal()) {}
+
+TaskSide::~TaskSide() {
+    task_.reset();
+    tool_change_.destroy();
+    halui_.destroy();
+    io_pins_.destroy();
+}
+
+Result<> TaskSide::start(const MachineOptions &options) {
+    auto tools = ToolFile::load(parts_.config.tool_table_file);
+    if (!tools.has_value()) {
+        return std::unexpected(tools.error());
+    }
+    tools_ = std::move(*tools);
+    auto status = make_pins();
+    status = status.has_value() ? run_hal_files(options) : status;
+    status = status.has_value() ? link_estop_chain() : status;
+    status = status.has_value() ? join_motion() : status;
+    status = status.has_value() ? host_.hal().start_threads() : status;
+    if (!status.has_value()) {
+        return status;
+    }
+    task_ = std::make_unique<task::Task>(task::Parts{*channels_, *this, *tools_, parameters_},
+                                         parts_.config.task);
+    task_->configure(parts_.config.parameters);
+    return {};
+}
+
+Result<> TaskSide::make_pins() {
+    auto status = io_pins_.create(host_.hal());
+    if (status.has_value() && parts_.config.hasHalui) {
+        status = halui_.create(host_.hal(), parts_.config.num_joints);
+    }
+    return status;
+}
+
+Result<> TaskSide::run_hal_files(const MachineOptions &options) {
+    HalSetup setup(parts_, host_, options);
+    setup.on_tool_change_program = [this] {
+        return tool_change_.create(host_.hal(), [this](const std::string &text) { parts_.sink.note(text); });
+    };
+    const auto status = setup.run();
+    if (status.has_value()) {
+        parts_.reader.report_unknown(options.isStrict);
+    }
+    return status.has_value() && parts_.sink.hasErrors() ? fail("") : status;
+}
+
+Result<> TaskSide::join_motion() {
+    const auto block = host_.hal().shared_block(motion::Channels::SHMEM_KEY, sizeof(motion::Channels));
+    if (!block.has_value()) {
+        return std::unexpected(block.error());
+    }
+    channels_ = static_cast<motion::Channels *>(*block);
+    if (channels_->magic != motion::Channels::MAGIC) {
+        return fail("no HAL file has loaded the motion controller", {parts_.ini.path(), 0, 0},
+                    "expected 'loadrt [EMCMOT]EMCMOT ...' (motmod) in one of the files of [HAL]HALFILE");
+    }
+    if (channels_->layout_bytes != sizeof(motion::Channels)) {
+        return fail("the motion controller that is loaded belongs to another version of Millwright");
+    }
+    return {};
+}
+
+Result<> TaskSide::link_estop_chain() {
+    hal::Hal &hal = host_.hal();
+    const auto chain = hal.pin(ESTOP_PIN);
+    const auto motion_pin = hal.pin(MOTION_ESTOP_PIN);
+    const bool isLinkable =
+        chain.has_value() && !chain->signal.empty() && motion_pin.has_value() && motion_pin->signal.empty();
+    if (chain.has_value() && chain->signal.empty()) {
+        parts_.sink.warning(std::string("pin ") + ESTOP_PIN +
+                                " is not linked: the machine stays in emergency stop",
+                            {parts_.ini.path(), 0, 0});
+    }
+    return isLinkable ? hal.link(MOTION_ESTOP_PIN, chain->signal) : Result<>{};
+}
+
+Result<bool> TaskSide::isConfigured() {
+    if (!task_->isConfigured()) {
+        return false;
+    }
+    task::Message message;
+    while (task_->poll_message(message)) {
+        if (message.kind == task::MessageKind::OPERATOR_ERROR) {
+            return fail("a setting was refused: " + message.text, {parts_.ini.path(), 0, 0});
+        }
+    }
+    return true;
+}
+
+void TaskSide::step(std::int64_t now_ns) {
+    task_->step(now_ns);
+    tool_change_.step(now_ns);
+    if (parts_.config.hasHalui) {
+        halui_.step(*task_);
+    }
+}
+
+}  // namespace mw::machine

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Everything of a machine that is not realtime: I/O and task pins, halui, HAL files, tool table, task.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hal/core/host.hh"
+#include "io/pins.hh"
+#include "machine/ini_parameters.hh"
+#include "machine/machine.hh"
+#include "machine/tool_changer.hh"
+#include "machine/tool_file.hh"
+#include "task/task.hh"
+#include "ui/halui/halui.hh"
+
+namespace mw::machine {
+
+/// One thread. start() leaves a machine whose threads run and whose task takes commands once configure is
+/// done.
+class TaskSide final : private task::IoPort {
+  public:
+    TaskSide(const MachineParts &parts, hal::Host &host);
+    ~TaskSide() override;
+
+    /// Makes pins, runs the HAL files, starts the threads, makes task and hands it the motion settings.
+    Result<> start(const MachineOptions &options);
+    /// All settings are answered; an error names the first that was refused.
+    Result<bool> isConfigured();
+    /// Reads the parameter file and announces the state to the interpreter. After isConfigured().
+    Result<> begin() { return task_->start(); }
+    /// One task cycle.
+    void step(std::int64_t now_ns);
+
+    task::Task &task() { return *task_; }
+    motion::Channels &channels() { return *channels_; }
+
+  private:
+    io::Inputs read() override { return io_pins_.read(); }
+    void write(const io::Outputs &outputs) override { io_pins_.write(outputs); }
+
+    Result<> make_pins();
+    Result<> run_hal_files(const MachineOptions &options);
+    Result<> join_motion();
+    /// Lets the servo thread itself see the e-stop chain that iocontrol.0.emc-enable-in sees.
+    Result<> link_estop_chain();
+
+    MachineParts parts_;
+    hal::Host &host_;
+    io::Pins io_pins_;
+    ui::Halui halui_;
+    ManualToolChange tool_change_;
+    IniParameters parameters_;
+    std::unique_ptr<ToolFile> tools_;
+    motion::Channels *channels_ = nullptr;
+    std::unique_ptr<task::Task> task_;
+};
+
+}  // namespace mw::machine

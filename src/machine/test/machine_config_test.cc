@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "machine/loaded_config.hh"
+#include "machine/machine_config.hh"
+#include "motion/api/parameters.hh"
+
+namespace mw::machine {
+namespace {
+
+constexpr const char *GOOD =
+    "[TRAJ]\nCOORDINATES = X Z\nLINEAR_UNITS = inch\n[KINS]\nKINEMATICS = trivkins coordinates=XZ\n"
+    "JOINTS = 2\n[HAL]\nHALFILE = LIB:core_sim.hal\n"
+    "[AXIS_X]\nMIN_LIMIT = -1\nMAX_LIMIT = 2\n[AXIS_Z]\nMAX_VELOCITY = 3\n"
+    "[JOINT_0]\nMAX_VELOCITY = 1\nMAX_ACCELERATION = 10\n"
+    "[JOINT_1]\nMAX_VELOCITY = 1\nMAX_ACCELERATION = 10\n";
+
+struct Config {
+    explicit Config(const std::string &text)
+        : ini(config::IniFile::parse(text, "m.ini", sink)), reader(ini, sink),
+          machine(read_machine_config(reader)) {}
+    bool says(const std::string &text) const {
+        return std::any_of(sink.all().begin(), sink.all().end(),
+                           [&](const auto &d) { return d.str().find(text) != std::string::npos; });
+    }
+    double parameter(motion::Parameter which, int index) const {
+        for (const auto &p : machine.parameters) {
+            if (p.parameter == static_cast<std::uint16_t>(which) && p.index == index) {
+                return p.value;
+            }
+        }
+        return -1;
+    }
+
+    diag::Sink sink;
+    config::IniFile ini;
+    config::IniReader reader;
+    MachineConfig machine;
+};
+
+std::string replaced(std::string text, const std::string &from, const std::string &to) {
+    const auto at = text.find(from);
+    return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+TEST(MachineConfig, AxesAndJointsAreDifferentThings_A3) {
+    const Config c(GOOD);
+    ASSERT_FALSE(c.sink.hasErrors());
+    EXPECT_EQ(c.machine.axis_mask, 5U);
+    EXPECT_EQ(c.machine.num_joints, 2);
+    EXPECT_EQ(c.machine.joint_of_axis[2], 1);
+    EXPECT_EQ(c.machine.joint_of_axis[1], -1);
+    EXPECT_FALSE(c.machine.isMetric);
+    EXPECT_EQ(c.parameter(motion::Parameter::AXIS_MAX_LIMIT, 0), 2.0);
+    EXPECT_EQ(c.parameter(motion::Parameter::JOINT_MAX_ACCELERATION, 1), 10.0);
+}
+
+TEST(MachineConfig, EachMissingPartIsOneErrorWithItsPlace) {
+    const Config joint(replaced(GOOD, "[JOINT_1]", "[JOINT_7]"));
+    EXPECT_TRUE(joint.says("section [JOINT_1] is missing"));
+    const Config axis(replaced(GOOD, "[AXIS_X]", "[AXIS_Y]"));
+    EXPECT_TRUE(axis.says("section [AXIS_X] is missing"));
+    const Config kins(replaced(GOOD, "JOINTS = 2", "JOINT = 2"));
+    EXPECT_TRUE(kins.says("[KINS]JOINTS is missing"));
+    const Config hal(replaced(GOOD, "[HAL]", "[HALL]"));
+    EXPECT_TRUE(hal.says("section [HAL] is missing"));
+}
+
+TEST(MachineConfig, ValuesOutOfRangeAreErrorsWithLineAndColumn) {
+    const Config c(replaced(GOOD, "MAX_VELOCITY = 1\n", "MAX_VELOCITY = -1\n"));
+    EXPECT_TRUE(c.says("m.ini:15:16: error: [JOINT_0]MAX_VELOCITY = -1 is out of range"));
+    const Config comma(replaced(GOOD, "MAX_LIMIT = 2", "MAX_LIMIT = 2,5"));
+    EXPECT_TRUE(comma.says("m.ini:11:13: error: [AXIS_X]MAX_LIMIT = '2,5' is not a number"));
+    const Config letter(replaced(GOOD, "X Z", "X Q"));
+    EXPECT_TRUE(letter.says("has the letter 'Q'"));
+}
+
+TEST(MachineConfig, OurOwnConfigurationsHaveNoFindings) {
+    for (const char *name : {"mill_mm", "mill_inch", "lathe", "mill_xyza", "mill_xyzac", "gantry_xyyz"}) {
+        diag::Sink sink;
+        const auto loaded =
+            LoadedConfig::load(std::string(MW_SOURCE_DIR "/configs/sim/") + name + ".ini", sink);
+        ASSERT_NE(loaded, nullptr) << name;
+        loaded->reader.report_unknown(true);
+        for (const auto &d : sink.all()) {
+            ADD_FAILURE() << d.str();
+        }
+    }
+}
+
+}  // namespace
+}  // namespace mw::machine

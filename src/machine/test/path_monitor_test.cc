@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "machine/path_monitor.hh"
+
+namespace mw::machine {
+namespace {
+
+geom::Pose at(double x, double y, double z = 0, double a = 0) {
+    geom::Pose p;
+    p[0] = x;
+    p[1] = y;
+    p[2] = z;
+    p[3] = a;
+    return p;
+}
+
+motion::TraceSample sample(const geom::Pose &p) {
+    motion::TraceSample s;
+    s.carte_pos_cmd = p;
+    return s;
+}
+
+TEST(PathMonitor, ANearestPointOnAHelixIsFoundInTheRightTurn) {
+    ProgrammedPiece helix;
+    helix.start = at(10, 0, 0);
+    helix.end = at(10, 0, 4);
+    helix.centre = at(0, 0);
+    helix.normal = at(0, 0, 1);
+    helix.angle_rad = 4 * std::numbers::pi;
+    const Nearest found = nearest_point(helix, at(0, 10.5, 2.5));
+    EXPECT_NEAR(found.fraction, 0.625, 1e-9);
+    EXPECT_NEAR(found.linear, 0.5, 1e-9);
+    EXPECT_NEAR(feed_length(helix), std::hypot(40 * std::numbers::pi, 4), 1e-9);
+}
+
+TEST(PathMonitor, DeviationIsMeasuredInOrder) {
+    PathMonitor monitor(1000000);
+    monitor.start(at(0, 0));
+    motion::Line line;
+    for (const auto &end : {at(10, 0), at(5, 0), at(5, 5)}) {
+        line.end = end;
+        monitor.on_move(line);
+    }
+    for (double x = 0; x <= 10; x += 0.25) {
+        monitor.on_sample(sample(at(x, 0)));
+    }
+    EXPECT_NEAR(monitor.figures().deviation_linear, 0.0, 1e-12);
+    for (double x = 10; x >= 5.25; x -= 0.25) {
+        monitor.on_sample(sample(at(x, 0)));
+    }
+    monitor.on_sample(sample(at(5.1, 0.1)));
+    EXPECT_NEAR(monitor.figures().deviation_linear, 0.1, 1e-9);
+    EXPECT_NEAR(monitor.figures().cutting_length, 20.0, 1e-12);
+}
+
+TEST(PathMonitor, AnglesAreAGroupOfTheirOwn) {
+    PathMonitor monitor(1000000);
+    monitor.start(at(0, 0));
+    motion::Line line;
+    line.end = at(10, 0, 0, 90);
+    monitor.on_move(line);
+    monitor.on_sample(sample(at(5, 0, 0, 46)));
+    EXPECT_LT(monitor.figures().deviation_linear, 0.12);
+    EXPECT_GT(monitor.figures().deviation_angular, 0.01);
+    EXPECT_LT(monitor.figures().deviation_angular, 1.0);
+}
+
+TEST(PathMonitor, PeaksComeFromDifferences) {
+    PathMonitor monitor(1000000);
+    monitor.start(at(0, 0));
+    monitor.on_sample(sample(at(0.001, 0)));
+    monitor.on_sample(sample(at(0.003, 0)));
+    EXPECT_NEAR(monitor.figures().peak_velocity[0], 2.0, 1e-9);
+    EXPECT_NEAR(monitor.figures().peak_acceleration[0], 1000.0, 1e-6);
+}
+
+}  // namespace
+}  // namespace mw::machine

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "machine/tool_changer.hh"
+
+namespace mw::machine {
+namespace {
+
+constexpr std::int64_t CHANGE_TIME_NS = 100000000;
+
+}  // namespace
+
+Result<> ManualToolChange::create(hal::Hal &hal, Notice notice) {
+    const auto id = hal.new_component("hal_manualtoolchange");
+    if (!id.has_value()) {
+        return std::unexpected(id.error());
+    }
+    hal_ = &hal;
+    comp_id_ = *id;
+    notice_ = std::move(notice);
+    Result<> status;
+    change_.make(hal, comp_id_, "hal_manualtoolchange.change", hal::Dir::IN, status);
+    changed_.make(hal, comp_id_, "hal_manualtoolchange.changed", hal::Dir::OUT, status);
+    change_button_.make(hal, comp_id_, "hal_manualtoolchange.change_button", hal::Dir::IN, status);
+    number_.make(hal, comp_id_, "hal_manualtoolchange.number", hal::Dir::IN, status);
+    return status.has_value() ? hal.set_ready(comp_id_) : status;
+}
+
+void ManualToolChange::destroy() {
+    if (hal_ != nullptr) {
+        hal_->delete_component(comp_id_);
+        hal_ = nullptr;
+    }
+}
+
+void ManualToolChange::step(std::int64_t now_ns) {
+    if (hal_ == nullptr) {
+        return;
+    }
+    if (!change_) {
+        changed_ = false;
+        asked_ns_ = -1;
+        return;
+    }
+    if (asked_ns_ < 0) {
+        asked_ns_ = now_ns;
+        const std::int32_t number = number_;
+        notice_(number > 0 ? "tool change: tool " + std::to_string(number) + " is put in"
+                           : std::string("tool change: the tool is taken out"));
+    }
+    changed_ = now_ns - asked_ns_ >= CHANGE_TIME_NS || change_button_;
+}
+
+}  // namespace mw::machine

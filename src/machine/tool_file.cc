@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "machine/tool_file.hh"
+
+#include <algorithm>
+
+#include "base/atomic_file.hh"
+
+namespace mw::machine {
+
+Result<std::unique_ptr<ToolFile>> ToolFile::load(const std::string &path) {
+    std::unique_ptr<ToolFile> file(new ToolFile(path));
+    const auto loaded = file->reload();
+    if (!loaded.has_value()) {
+        return std::unexpected(loaded.error());
+    }
+    return file;
+}
+
+Result<> ToolFile::reload() {
+    if (path_.empty()) {
+        return {};
+    }
+    const auto text = read_file(path_);
+    if (!text.has_value()) {
+        return std::unexpected(text.error());
+    }
+    auto table = tool::Table::parse(*text, path_);
+    if (!table.has_value()) {
+        return std::unexpected(table.error());
+    }
+    const int in_spindle = table_.entry(0).toolno;
+    table_ = std::move(*table);
+    table_.load_spindle(in_spindle > 0 ? std::max(0, table_.index_of_tool(in_spindle)) : 0);
+    return {};
+}
+
+Result<> ToolFile::load_spindle(int index) {
+    if (index < 0 || index >= table_.count()) {
+        return fail("the tool table has no entry " + std::to_string(index));
+    }
+    table_.load_spindle(index);
+    return {};
+}
+
+Result<> ToolFile::set_entry(int index, const interp::ToolEntry &entry) {
+    if (index < 0 || index >= table_.count()) {
+        return fail("the tool table has no entry " + std::to_string(index));
+    }
+    table_.set_entry(index, entry);
+    return index == 0 || path_.empty() ? Result<>{} : table_.save(path_);
+}
+
+}  // namespace mw::machine

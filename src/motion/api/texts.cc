@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "motion/api/texts.hh"
+
+#include <fmt/core.h>
+
+#include "homing/homing.hh"
+
+namespace mw::motion {
+
+namespace {
+
+std::string joint_name(int index) {
+    return index >= 0 ? fmt::format("joint {}", index) : std::string("all joints");
+}
+
+std::string axis_name(int index) {
+    return index >= 0 && index < geom::AXIS_COUNT ? fmt::format("axis {}", geom::AXIS_LETTERS[index])
+                                                  : std::string("an axis");
+}
+
+/// Path commands speak of axes, immediate ones of joints, or of axes too in teleop; both where that is not
+/// known.
+std::string place_name(const Answer &a) {
+    if (a.index < 0) {
+        return "the move";
+    }
+    return a.isPath ? axis_name(a.index) : fmt::format("joint or axis {}", a.index);
+}
+
+}  // namespace
+
+std::string reason_text(const Answer &answer) {
+    const int i = answer.index;
+    switch (answer.reason) {
+    case Reason::NONE:
+    case Reason::COUNT: return {};
+    case Reason::NOT_ENABLED: return "the machine is off: turn it on first";
+    case Reason::WRONG_MODE:
+        return answer.isPath
+                   ? "programmed moves need coordinated mode"
+                   : "not possible in this mode: joints jog and home in joint mode, axes jog in world mode";
+    case Reason::MOVING: return "the machine is moving: wait until it stands, or stop it";
+    case Reason::NOT_HOMED: return "home all joints first";
+    case Reason::HOMING: return "joints are being homed: wait, or abort homing";
+    case Reason::NO_SUCH_JOINT: return fmt::format("there is no joint {}", i);
+    case Reason::NO_SUCH_AXIS:
+        return i >= 0 && i < geom::AXIS_COUNT
+                   ? fmt::format("no joint drives axis {}: see coordinates= of the kinematics",
+                                 geom::AXIS_LETTERS[i])
+                   : fmt::format("there is no axis {}", i);
+    case Reason::NO_SUCH_SPINDLE: return "there is no such spindle: see num_spindles= of motmod";
+    case Reason::NO_SUCH_OUTPUT: return "there is no such output: see num_dio= and num_aio= of motmod";
+    case Reason::NO_SUCH_PARAMETER: return "there is no such motion parameter";
+    case Reason::OUT_OF_RANGE: return "a value is out of its range";
+    case Reason::BEYOND_SOFT_LIMIT:
+        return fmt::format("{} would exceed its soft limit: see MIN_LIMIT and MAX_LIMIT", place_name(answer));
+    case Reason::ON_HARD_LIMIT:
+        return fmt::format("{} is on a limit switch: jog off it (override limits to turn the machine on)",
+                           joint_name(i));
+    case Reason::UNREACHABLE: return "the kinematics cannot reach the move";
+    case Reason::AMP_FAULT: return fmt::format("the amplifier of {} reports a fault", joint_name(i));
+    case Reason::EXTERNAL_ENABLE_OFF:
+        return "the external enable is off: pin motion.enable or the e-stop chain is FALSE";
+    case Reason::JOINT_INACTIVE: return fmt::format("{} is deactivated", joint_name(i));
+    case Reason::QUEUE_FULL: return "the motion queue is full";
+    case Reason::PROBE_ALREADY_TRIPPED: return "the probe is already tripped before the probing move";
+    case Reason::NOT_A_NUMBER: return "a value is not a finite number";
+    case Reason::NOT_SUPPORTED: return "not supported yet by this motion controller";
+    case Reason::BAD_ARC: return "the arc's centre, normal and end do not make a helix";
+    case Reason::JOG_INHIBITED:
+        return "jogging is inhibited: pin motion.jog-inhibit, motion.jog-stop or motion.jog-stop-immediate "
+               "is TRUE";
+    case Reason::HOMING_INHIBITED: return "homing is inhibited: pin motion.homing-inhibit is TRUE";
+    case Reason::SYNCHRONISED_JOINT:
+        return fmt::format(
+            "{} has a negative HOME_SEQUENCE: jogging it alone would rack the machine; home, then jog "
+            "its axis in world mode",
+            joint_name(i));
+    }
+    return "refused";
+}
+
+namespace {
+
+std::string what_failed(const Fault &fault) {
+    const int i = fault.index;
+    switch (fault.kind) {
+    case FaultKind::FOLLOWING_ERROR: return fmt::format("joint {} following error", i);
+    case FaultKind::AMP_FAULT: return fmt::format("joint {} amplifier fault", i);
+    case FaultKind::HARD_LIMIT: return fmt::format("joint {} on limit switch error", i);
+    case FaultKind::SOFT_LIMIT: return fmt::format("{} exceeded its soft limit", axis_name(i));
+    case FaultKind::ENABLE_LOST: return "motion stopped by enable input";
+    case FaultKind::TASK_LOST: return "the task process is gone or hangs: the machine was stopped";
+    case FaultKind::HOMING_FAILED:
+        return fmt::format("homing of joint {} failed: {}", i,
+                           homing::failure_text(static_cast<homing::Failure>(fault.detail)));
+    case FaultKind::PROBE_NOT_TRIPPED: return "the probing move reached its end without a trip of the probe";
+    case FaultKind::PROBE_TRIPPED_IN_MOVE: return "probe tripped during a move that does not probe";
+    case FaultKind::KINEMATICS_FAILED: return "the kinematics could not reach the commanded pose";
+    case FaultKind::PATH_LIMIT: return "the path left its limits";
+    case FaultKind::SPINDLE_FAULT:
+        return fault.value != 0 ? fmt::format("spindle {} orient fault {}", i, static_cast<int>(fault.value))
+                                : fmt::format("spindle {} amplifier fault", i);
+    case FaultKind::MISC_ERROR: return "an error input of motion is on: see pins motion.misc-error-NN";
+    case FaultKind::COUNT: break;
+    }
+    return "unknown motion fault";
+}
+
+}  // namespace
+
+std::string fault_text(const Fault &fault) {
+    const int line = fault.source.line;
+    return line > 0 ? fmt::format("{} (line {})", what_failed(fault), line) : what_failed(fault);
+}
+
+}  // namespace mw::motion

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What the controller reads and writes each servo cycle; the HAL adapter and the tests fill and take it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "base/limits.hh"
+#include "motion/api/status.hh"
+
+namespace mw::motion {
+
+/// A hand wheel: counts that become distance.
+struct WheelInput {
+    std::int32_t counts = 0;
+    double scale = 0;           ///< [unit per count]
+    double accel_fraction = 1;  ///< of the highest acceleration; outside (0, 1]: 1
+    bool isEnabled = false;
+    bool isVelocityMode = false;
+};
+
+struct JointInputs {
+    double motor_pos_fb = 0;
+    bool isHomeSwitchClosed = false, isPosLimitClosed = false, isNegLimitClosed = false;
+    bool isAmpFaulted = false;
+    bool isIndexEnabled = false;
+    WheelInput wheel;
+};
+
+struct SpindleInputs {
+    bool isAtSpeed = true, isInhibited = false, isOriented = false, isAmpFaulted = false;
+    bool isIndexEnabled = false;
+    double revs = 0, speed_in_rps = 0;
+    std::int32_t orient_fault = 0;
+};
+
+struct Inputs {
+    std::int64_t time_ns = 0;
+    bool isEnableOn = true;  ///< motion.enable
+    bool isProbeClosed = false;
+    bool isFeedHeld = false, isFeedInhibited = false;
+    bool isHomingInhibited = false, isJogInhibited = false;
+    bool isJogStopped = false, isJogStoppedNow = false;
+    double adaptive_feed = 1;
+    std::uint64_t misc_errors = 0;  ///< bit per input
+    std::uint64_t digital_in = 0;
+    std::array<double, MAX_ANALOG_IO> analog_in{};
+    std::array<JointInputs, MAX_JOINTS> joint{};
+    std::array<WheelInput, MAX_AXES> axis_wheel{};
+    std::array<SpindleInputs, MAX_SPINDLES> spindle{};
+};
+
+/// Beside `Status`, which holds most of what the pins show.
+struct JointOutputs {
+    double motor_pos_cmd = 0;
+    double coarse_pos = 0, acc_cmd = 0;
+    double backlash_raw = 0, backlash_filtered = 0, backlash_velocity = 0;
+    double motor_offset = 0;
+    double free_pos_cmd = 0, free_velocity_limit = 0, ferror_limit = 0;
+    bool isAmpEnabled = false;
+    bool isIndexEnabled = false;
+    bool isFreePlanning = false, isKeyboardJogging = false, isWheelJogging = false;
+    int home_state = 0;
+};
+
+struct AxisOutputs {
+    double position = 0, teleop_position = 0, teleop_velocity = 0, teleop_velocity_limit = 0;
+    bool isTeleopPlanning = false, isKeyboardJogging = false, isWheelJogging = false;
+};
+
+struct SpindleOutputs {
+    double speed_rpm = 0;  ///< signed, scale and limits applied
+    bool isOn = false, isForward = false, isReverse = false, isBrakeOn = false;
+    bool isOrienting = false, isLocked = false;
+    double orient_angle = 0;
+    int orient_mode = 0;
+    bool isIndexEnabled = false;
+};
+
+struct Outputs {
+    Status status;
+    std::array<JointOutputs, MAX_JOINTS> joint{};
+    std::array<AxisOutputs, MAX_AXES> axis{};
+    std::array<SpindleOutputs, MAX_SPINDLES> spindle{};
+    geom::Pose tool_offset;
+    bool isJogging = false;
+    bool isCoordError = false, isOnSoftLimit = false;
+};
+
+}  // namespace mw::motion

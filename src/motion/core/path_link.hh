@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Between the controller (servo) and the path planner (below it), in one process.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "base/limits.hh"
+#include "base/seqlock.hh"
+#include "motion/api/status.hh"
+#include "traj/limits.hh"
+#include "traj/path_store.hh"
+
+namespace mw::motion {
+
+/// Written by the controller when a setting changes or a joint is homed or unhomed.
+struct PathLimits {
+    traj::Limits limits;
+    geom::Pose low, high;    ///< soft limits per axis; +-infinity where none holds
+    std::uint32_t axes = 0;  ///< bit per axis that the kinematics drive
+};
+
+/// Written by the controller every servo cycle, one consistent picture.
+struct PathView {
+    traj::Snapshot executor;
+    Epoch epoch = 0;
+    Mode mode = Mode::FREE;
+    bool isEnabled = false;
+    bool isStopping = false;    ///< everything brakes, what is left will be dropped
+    std::uint32_t enables = 0;  ///< counts Enable
+    std::uint32_t limits_version = 0;
+    geom::Pose position;  ///< carte_pos_cmd
+    double feed_scale = 1, rapid_scale = 1, max_feed_scale = 1, max_velocity = 0;
+    std::array<double, MAX_SPINDLES> spindle_rps{};
+    std::uint32_t spindles_ready = 0;  ///< bit per spindle that is at speed or off
+    bool isProbeClosed = false;
+    std::uint32_t probe_trips = 0;  ///< counts probe moves that were tripped
+    std::uint32_t steps = 0;        ///< counts StepOnce
+    bool isStepping = false;
+};
+
+struct PathLink {
+    traj::PathStore store;
+    Seqlock<PathView> view;      ///< controller -> planner
+    Seqlock<PathLimits> limits;  ///< controller -> planner
+    std::atomic<std::uint32_t> steps_done{
+        0};  ///< planner -> controller: StepOnce count whose stop has been reached
+    std::atomic<std::uint32_t> queue_depth{0};   ///< planner -> controller
+    std::atomic<std::uint32_t> isQueueFull{0};   ///< planner -> controller
+    std::atomic<std::uint64_t> last_done_id{0};  ///< planner -> controller: last path command completed
+};
+
+}  // namespace mw::motion

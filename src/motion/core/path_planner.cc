@@ -1,0 +1,434 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "motion/core/path_planner.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mw::motion {
+
+namespace {
+
+/// Updates without a new command after which the open end of the last move is planned to its very end.
+constexpr int STARVING_UPDATES = 3;
+constexpr double SOFT_LIMIT_ROUNDING = 1e-6;
+
+constexpr double HORIZON_S = 0.1;
+/// From a plan's making to its start; a planner that takes longer is late, and the plan is made again.
+constexpr double LATENCY_S = 3e-3;
+
+std::uint64_t latency_cycles(double period_s) noexcept {
+    return std::max<std::uint64_t>(2, static_cast<std::uint64_t>(std::ceil(LATENCY_S / period_s)));
+}
+
+bool isFinite(const geom::Pose &p) noexcept {
+    return std::all_of(p.c.begin(), p.c.end(), [](double x) { return std::isfinite(x); });
+}
+
+}  // namespace
+
+PathPlanner::PathPlanner(const PathPlannerConfig &config, const kins::Kinematics &kinematics,
+                         Channels &channels, PathLink &link) noexcept
+    : config_(config), kinematics_(kinematics), channels_(channels), link_(link),
+      planner_(link.store, {config.servo_period_s, latency_cycles(config.servo_period_s), HORIZON_S}) {}
+
+void PathPlanner::update() noexcept {
+    if (!link_.view.read(view_, 1000)) {
+        return;  // the servo thread is in the middle of it; next time
+    }
+    follow_controller();
+    const bool isInput = take_commands();
+    idle_updates_ = isInput ? 0 : std::min(idle_updates_ + 1, STARVING_UPDATES);
+    if (idle_updates_ >= STARVING_UPDATES && planner_.isStarving()) {
+        planner_.release_end();
+    }
+    follow_steps();
+    open_gates();
+    if (isPathBegun_) {
+        planner_.update(view_.executor);
+    }
+    publish();
+}
+
+void PathPlanner::follow_controller() noexcept {
+    if (view_.limits_version != limits_version_ && link_.limits.read(limits_, 1000)) {
+        limits_version_ = view_.limits_version;
+        planner_.set_limits(limits_.limits);
+    }
+    follow_drops();
+    if (view_.epoch != epoch_) {
+        epoch_ = view_.epoch;
+        isBroken_ = false;
+    }
+    if (view_.enables != enables_) {
+        enables_ = view_.enables;
+        isBroken_ = false;
+    }
+    complete_moves();
+    traj::Scales scales;
+    scales.feed = view_.feed_scale;
+    scales.rapid = view_.rapid_scale;
+    scales.max_feed = view_.max_feed_scale;
+    scales.max_velocity = view_.max_velocity;
+    scales.spindle_rps = view_.spindle_rps;
+    if (isPathBegun_) {
+        planner_.set_scales(scales);
+    }
+}
+
+/// The executor has dropped its path: a tripped probe, or a stop.
+void PathPlanner::follow_drops() noexcept {
+    if (view_.executor.drops == drops_) {
+        return;
+    }
+    const bool isTrip = view_.probe_trips != probe_trips_ && pending_count() > 0 && view_.epoch == epoch_;
+    complete_moves();
+    drops_ = view_.executor.drops;
+    probe_trips_ = view_.probe_trips;
+    if (isTrip && pending_count() > 0 && pending(pending_head_).isProbe) {
+        last_done_ = pending(pending_head_).id;
+        answer(last_done_, AnswerKind::DONE, Reason::NONE);
+        ++pending_head_;
+    }
+    // An abort has begun a new epoch already; any other stop breaks the path of the present one.
+    isBroken_ = isBroken_ || (pending_count() > 0 && pending(pending_tail_ - 1).epoch == view_.epoch);
+    while (pending_count() > 0) {
+        answer(pending(pending_head_++).id, AnswerKind::STALE, Reason::NONE);
+    }
+    isPathBegun_ = false;
+    wasSynched_ = false;
+}
+
+void PathPlanner::complete_moves() noexcept {
+    const traj::Snapshot &e = view_.executor;
+    if (!isPathBegun_) {
+        return;
+    }
+    while (pending_count() > 0) {
+        const Pending &p = pending(pending_head_);
+        const bool isReached = e.done_move >= p.after_move;
+        const bool isStanding = e.motion == traj::Motion::REST && e.done_move >= planner_.last_move();
+        if (!isReached || (p.isFlush && !isStanding)) {
+            return;
+        }
+        if (p.isProbe && p.isTripRequired) {
+            Fault fault;
+            fault.kind = FaultKind::PROBE_NOT_TRIPPED;
+            fault.source = p.source;
+            channels_.planner_faults.push(fault);
+        }
+        last_done_ = p.id;
+        answer(p.id, AnswerKind::DONE, Reason::NONE);
+        ++pending_head_;
+    }
+}
+
+/// Takes what there is room for; true when something was taken.
+bool PathPlanner::take_commands() noexcept {
+    bool isAny = false;
+    isQueueFull_ = false;
+    for (int n = 0; n < MAX_COMMANDS_PER_UPDATE; ++n) {
+        const PathCommand *c = channels_.path.front();
+        const bool isRoom =
+            channels_.planner_answers.size() + pending_count() + 2 < channels_.planner_answers.capacity();
+        if (c == nullptr || !isRoom) {
+            break;
+        }
+        const auto age = static_cast<std::int32_t>(c->epoch - epoch_);
+        if (age > 0) {
+            break;  // of an epoch that the controller has not yet begun
+        }
+        if (age < 0 || isBroken_) {
+            answer(c->id, AnswerKind::STALE, Reason::NONE);
+        } else if (isWaiting(*c)) {
+            break;
+        } else {
+            refused_index_ = -1;
+            const Reason reason = accept(*c);
+            if (reason != Reason::NONE) {
+                answer(c->id, AnswerKind::REFUSED, reason);
+                isBroken_ = true;
+                planner_.release_end();
+            }
+        }
+        channels_.path.drop();
+        isAny = true;
+    }
+    return isAny;
+}
+
+/// True when this command has to wait for something that the executor does first.
+bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
+    if (view_.executor.isDropping) {
+        return true;
+    }
+    const bool isAfterProbe = pending_count() > 0 && pending(pending_tail_ - 1).isProbe;
+    const bool isProbe = std::holds_alternative<Probe>(c.body);
+    if (isAfterProbe || (isProbe && pending_count() > 0)) {
+        planner_.release_end();
+        return true;
+    }
+    isQueueFull_ = isPathBegun_ && !planner_.hasRoom(view_.executor);
+    return isQueueFull_ || pending_count() + 2 >= PENDING_CAPACITY;
+}
+
+Reason PathPlanner::accept(const PathCommand &c) noexcept {
+    if (std::holds_alternative<Flush>(c.body)) {
+        if (!isPathBegun_) {
+            last_done_ = c.id;
+            answer(c.id, AnswerKind::DONE, Reason::NONE);
+            return Reason::NONE;
+        }
+        planner_.release_end();
+        add_pending(c, {});
+        pending(pending_tail_ - 1).isFlush = true;
+        return Reason::NONE;
+    }
+    if (!view_.isEnabled || view_.isStopping) {
+        return Reason::NOT_ENABLED;
+    }
+    if (view_.mode != Mode::COORD) {
+        return Reason::WRONG_MODE;
+    }
+    if (!isPathBegun_) {
+        planner_.begin(view_.position, view_.executor);
+        isPathBegun_ = true;
+    }
+    if (const auto *line = std::get_if<Line>(&c.body)) {
+        return accept_line(c, line->end, line->terms);
+    }
+    if (const auto *arc = std::get_if<Arc>(&c.body)) {
+        return accept_arc(c, *arc);
+    }
+    if (const auto *probe = std::get_if<Probe>(&c.body)) {
+        return accept_probe(c, *probe);
+    }
+    if (const auto *output = std::get_if<SynchedDigitalOutput>(&c.body)) {
+        return accept_digital(c, *output);
+    }
+    if (const auto *output = std::get_if<SynchedAnalogOutput>(&c.body)) {
+        return accept_analog(c, *output);
+    }
+    return Reason::NOT_SUPPORTED;
+}
+
+traj::MoveRequest PathPlanner::request_for(const PathCommand &c, const MoveTerms &terms) const noexcept {
+    traj::MoveRequest r;
+    r.tag.id = c.id;
+    r.tag.line = terms.source.line;
+    r.tag.file_index = terms.source.file_index;
+    r.tag.block = terms.source.block;
+    r.tag.type = static_cast<std::uint8_t>(terms.type);
+    r.tag.requested_velocity = terms.feed;
+    r.join = terms.mode == PathMode::EXACT_STOP   ? traj::Join::STOP
+             : terms.mode == PathMode::EXACT_PATH ? traj::Join::EXACT
+                                                  : traj::Join::BLEND;
+    r.tolerance = terms.tolerance;
+    r.isRapid =
+        terms.type == MotionType::TRAVERSE || terms.type == MotionType::INDEX_ROTARY || terms.feed == 0;
+    r.isOverridable = terms.isFeedOverridable;
+    r.feed_per_revolution = terms.feed_per_revolution;
+    r.spindle = terms.synch_spindle;
+    const bool isChainStart = terms.feed_per_revolution > 0 && !wasSynched_;
+    r.isGated = terms.isWaitingForSpindleSpeed || isChainStart;
+    return r;
+}
+
+void PathPlanner::add_pending(const PathCommand &c, const SourceTag &source) noexcept {
+    Pending p;
+    p.id = c.id;
+    p.after_move = planner_.last_move();
+    p.source = source;
+    p.epoch = c.epoch;
+    pending(pending_tail_++) = p;
+}
+
+/// Soft limits over the whole extent, joints where they are not axes.
+Reason PathPlanner::check_reach(const traj::Primitive &p) noexcept {
+    geom::Pose low;
+    geom::Pose high;
+    traj::extent(p, low, high);
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        refused_index_ = static_cast<std::int16_t>(i);
+        const bool isMoving = high[i] - low[i] > 1e-9;
+        if (isMoving && (limits_.axes & (1U << i)) == 0) {
+            return Reason::NO_SUCH_AXIS;
+        }
+        // A move that leads back in from outside is welcome as far as its end is inside.
+        const double from = p.start[i];
+        const bool isLow = low[i] < std::min(limits_.low[i], from) - SOFT_LIMIT_ROUNDING ||
+                           p.end[i] < limits_.low[i] - SOFT_LIMIT_ROUNDING;
+        const bool isHigh = high[i] > std::max(limits_.high[i], from) + SOFT_LIMIT_ROUNDING ||
+                            p.end[i] > limits_.high[i] + SOFT_LIMIT_ROUNDING;
+        if (isMoving && (isLow || isHigh)) {
+            return Reason::BEYOND_SOFT_LIMIT;
+        }
+    }
+    refused_index_ = -1;
+    const bool isChecked = kinematics_.identity() == nullptr && kinematics_.isShareable();
+    return isChecked ? check_joints(p) : Reason::NONE;
+}
+
+Reason PathPlanner::check_joints(const traj::Primitive &p) noexcept {
+    constexpr int SAMPLES = 64;
+    double joints[MAX_JOINTS] = {};
+    for (int n = 0; n <= SAMPLES; ++n) {
+        if (kinematics_.inverse(traj::position_at(p, p.length * n / SAMPLES), joints) != kins::Status::OK) {
+            return Reason::UNREACHABLE;
+        }
+    }
+    return Reason::NONE;
+}
+
+Reason PathPlanner::accept_line(const PathCommand &c, const geom::Pose &end,
+                                const MoveTerms &terms) noexcept {
+    if (!isFinite(end) || !std::isfinite(terms.feed) || !std::isfinite(terms.tolerance)) {
+        return Reason::NOT_A_NUMBER;
+    }
+    if (terms.feed < 0 || terms.tolerance < 0 || terms.synch_spindle >= config_.num_spindles) {
+        return Reason::OUT_OF_RANGE;
+    }
+    const traj::Primitive p = traj::make_line(planner_.end(), end);
+    const Reason reason = check_reach(p);
+    if (reason != Reason::NONE) {
+        return reason;
+    }
+    if (p.length > 1e-12 * (1.0 + geom::norm(end))) {
+        planner_.add(p, request_for(c, terms));
+        wasSynched_ = terms.feed_per_revolution > 0;
+    }
+    add_pending(c, terms.source);
+    return Reason::NONE;
+}
+
+Reason PathPlanner::accept_arc(const PathCommand &c, const Arc &arc) noexcept {
+    const bool isSound = isFinite(arc.end) && isFinite(arc.centre) && isFinite(arc.normal) &&
+                         std::isfinite(arc.terms.feed) && std::isfinite(arc.terms.tolerance);
+    if (!isSound) {
+        return Reason::NOT_A_NUMBER;
+    }
+    if (arc.terms.feed < 0 || arc.terms.tolerance < 0 || arc.terms.synch_spindle >= config_.num_spindles) {
+        return Reason::OUT_OF_RANGE;
+    }
+    traj::Primitive p;
+    const traj::ArcShape shape{arc.centre, arc.normal, arc.angle_rad, arc.isInUvw};
+    if (traj::make_arc(planner_.end(), arc.end, shape, p) != traj::ArcFault::NONE) {
+        return Reason::BAD_ARC;
+    }
+    const Reason reason = check_reach(p);
+    if (reason != Reason::NONE) {
+        return reason;
+    }
+    planner_.add(p, request_for(c, arc.terms));
+    wasSynched_ = arc.terms.feed_per_revolution > 0;
+    add_pending(c, arc.terms.source);
+    return Reason::NONE;
+}
+
+/// A probe comes alone: what was before it is complete, and nothing is taken until it is.
+Reason PathPlanner::accept_probe(const PathCommand &c, const Probe &probe) noexcept {
+    if (view_.isProbeClosed != probe.isAway) {
+        return Reason::PROBE_ALREADY_TRIPPED;
+    }
+    const traj::Sequence before = planner_.last_move();
+    MoveTerms terms = probe.terms;
+    terms.type = MotionType::PROBING;
+    terms.mode = PathMode::EXACT_STOP;
+    const Reason reason = accept_line(c, probe.end, terms);
+    if (reason != Reason::NONE) {
+        return reason;
+    }
+    if (planner_.last_move() != before) {
+        traj::MoveTag &tag = link_.store.move(planner_.last_move());
+        tag.isProbe = true;
+        tag.isProbeAway = probe.isAway;
+    }
+    planner_.release_end();
+    pending(pending_tail_ - 1).isProbe = true;
+    pending(pending_tail_ - 1).isTripRequired = probe.mustTrip;
+    return Reason::NONE;
+}
+
+Reason PathPlanner::accept_digital(const PathCommand &c, const SynchedDigitalOutput &output) noexcept {
+    if (output.index < 0 || output.index >= config_.num_dio) {
+        return Reason::NO_SUCH_OUTPUT;
+    }
+    traj::PathEvent event;
+    event.index = static_cast<std::int16_t>(output.index);
+    event.value = output.isOn ? 1 : 0;
+    return accept_event(c, event);
+}
+
+Reason PathPlanner::accept_analog(const PathCommand &c, const SynchedAnalogOutput &output) noexcept {
+    if (output.index < 0 || output.index >= config_.num_aio) {
+        return Reason::NO_SUCH_OUTPUT;
+    }
+    if (!std::isfinite(output.value)) {
+        return Reason::NOT_A_NUMBER;
+    }
+    traj::PathEvent event;
+    event.isAnalog = true;
+    event.index = static_cast<std::int16_t>(output.index);
+    event.value = output.value;
+    return accept_event(c, event);
+}
+
+Reason PathPlanner::accept_event(const PathCommand &c, const traj::PathEvent &event) noexcept {
+    if (!planner_.add_event(event)) {
+        return Reason::QUEUE_FULL;
+    }
+    add_pending(c, {});
+    return Reason::NONE;
+}
+
+/// Moves that wait for spindles go on once these are at speed.
+void PathPlanner::open_gates() noexcept {
+    const traj::Sequence gate = isPathBegun_ ? planner_.waiting_gate(view_.executor) : 0;
+    const std::uint32_t all = (1U << config_.num_spindles) - 1U;
+    if (gate != 0 && (view_.spindles_ready & all) == all) {
+        planner_.open_gate(gate);
+    }
+}
+
+void PathPlanner::follow_steps() noexcept {
+    if (!isPathBegun_) {
+        return;
+    }
+    if (view_.steps != steps_) {
+        steps_ = view_.steps;
+        isStepPending_ = view_.isStepping;
+    }
+    if (!view_.isStepping) {
+        isStepPending_ = false;
+        planner_.set_step(false, 0);
+        return;
+    }
+    if (isStepPending_ && planner_.hasNext(view_.executor)) {
+        isStepPending_ = false;
+        step_from_ = view_.executor.done_move;
+        planner_.set_step(true, planner_.next_block(view_.executor));
+        return;
+    }
+    const bool isOver = view_.executor.motion == traj::Motion::REST &&
+                        view_.executor.done_move > step_from_ && !planner_.hasNext(view_.executor);
+    if (!isStepPending_ && (isOver || planner_.isAtStepStop(view_.executor))) {
+        link_.steps_done.store(steps_, std::memory_order_release);
+    }
+}
+
+void PathPlanner::publish() noexcept {
+    link_.queue_depth.store(pending_count(), std::memory_order_relaxed);
+    link_.isQueueFull.store(isQueueFull_ ? 1 : 0, std::memory_order_relaxed);
+    link_.last_done_id.store(last_done_, std::memory_order_release);
+}
+
+void PathPlanner::answer(CommandId id, AnswerKind kind, Reason reason) noexcept {
+    Answer a;
+    a.id = id;
+    a.kind = kind;
+    a.reason = reason;
+    a.index = kind == AnswerKind::REFUSED ? refused_index_ : static_cast<std::int16_t>(-1);
+    a.isPath = true;
+    channels_.planner_answers.push(a);  // take_commands leaves room for every answer that is owed
+}
+
+}  // namespace mw::motion

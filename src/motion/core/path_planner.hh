@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Takes path commands, checks them, has them planned, and answers each. Runs below the servo thread, once a
+// period; allocates at construction only.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "kins/kinematics.hh"
+#include "motion/api/channels.hh"
+#include "motion/core/path_link.hh"
+#include "traj/planner.hh"
+
+namespace mw::motion {
+
+struct PathPlannerConfig {
+    double servo_period_s = 1e-3;
+    int num_joints = 3;
+    int num_spindles = 1;
+    int num_dio = 4, num_aio = 4;
+};
+
+/// After a refusal or a stop the rest of the same epoch's path commands is answered STALE, until a new epoch
+/// or Enable: a path with a hole in it is never driven.
+class PathPlanner {
+  public:
+    PathPlanner(const PathPlannerConfig &config, const kins::Kinematics &kinematics, Channels &channels,
+                PathLink &link) noexcept;
+
+    /// One planner period. [planner thread]
+    void update() noexcept;
+
+    static constexpr int MAX_COMMANDS_PER_UPDATE = 1024;
+
+  private:
+    /// A command that has been accepted and not yet answered.
+    struct Pending {
+        CommandId id = 0;
+        traj::Sequence after_move = 0;  ///< complete when this move is
+        SourceTag source;
+        Epoch epoch = 0;
+        bool isFlush = false, isProbe = false, isTripRequired = false;
+    };
+    static constexpr std::uint32_t PENDING_CAPACITY = 8192;
+
+    void follow_controller() noexcept;
+    void follow_drops() noexcept;
+    void follow_steps() noexcept;
+    void complete_moves() noexcept;
+    bool take_commands() noexcept;
+    bool isWaiting(const PathCommand &c) noexcept;
+    Reason accept(const PathCommand &c) noexcept;
+    Reason accept_line(const PathCommand &c, const geom::Pose &end, const MoveTerms &terms) noexcept;
+    Reason accept_arc(const PathCommand &c, const Arc &arc) noexcept;
+    Reason accept_probe(const PathCommand &c, const Probe &probe) noexcept;
+    Reason accept_digital(const PathCommand &c, const SynchedDigitalOutput &output) noexcept;
+    Reason accept_analog(const PathCommand &c, const SynchedAnalogOutput &output) noexcept;
+    Reason accept_event(const PathCommand &c, const traj::PathEvent &event) noexcept;
+    Reason check_reach(const traj::Primitive &p) noexcept;
+    Reason check_joints(const traj::Primitive &p) noexcept;
+    traj::MoveRequest request_for(const PathCommand &c, const MoveTerms &terms) const noexcept;
+    void add_pending(const PathCommand &c, const SourceTag &source) noexcept;
+    void open_gates() noexcept;
+    void publish() noexcept;
+    void answer(CommandId id, AnswerKind kind, Reason reason) noexcept;
+
+    std::uint32_t pending_count() const noexcept { return pending_tail_ - pending_head_; }
+    Pending &pending(std::uint32_t n) noexcept { return pending_[n % PENDING_CAPACITY]; }
+
+    PathPlannerConfig config_;
+    const kins::Kinematics &kinematics_;
+    Channels &channels_;
+    PathLink &link_;
+    traj::Planner planner_;
+    std::array<Pending, PENDING_CAPACITY> pending_{};
+    std::uint32_t pending_head_ = 0, pending_tail_ = 0;
+
+    PathView view_;
+    PathLimits limits_;
+    std::uint32_t limits_version_ = 0;
+    Epoch epoch_ = 0;
+    bool isBroken_ = false;  ///< the path has a hole: nothing more of this epoch
+    bool isPathBegun_ = false;
+    bool isQueueFull_ = false;
+    bool wasSynched_ = false;
+    std::uint64_t drops_ = 0;
+    std::uint32_t enables_ = 0;
+    std::uint32_t probe_trips_ = 0;
+    std::uint32_t steps_ = 0;
+    bool isStepPending_ = false;
+    traj::Sequence step_from_ = 0;
+    std::int16_t refused_index_ = -1;
+    int idle_updates_ = 0;
+    CommandId last_done_ = 0;
+};
+
+}  // namespace mw::motion

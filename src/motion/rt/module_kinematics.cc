@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "motion/rt/module_kinematics.hh"
+
+#include <cmath>
+
+#include "hal/api/millwright_ext.h"
+
+namespace mw::motion {
+
+namespace {
+
+EmcPose to_c(const geom::Pose &p) noexcept {
+    return {{p[0], p[1], p[2]}, p[3], p[4], p[5], p[6], p[7], p[8]};
+}
+
+geom::Pose from_c(const EmcPose &p) noexcept {
+    return {{p.tran.x, p.tran.y, p.tran.z, p.a, p.b, p.c, p.u, p.v, p.w}};
+}
+
+template <class Function>
+Function find_function(const char *name) noexcept {
+    return reinterpret_cast<Function>(mw_ext_find_symbol(name));
+}
+
+}  // namespace
+
+const char *ModuleKinematics::find(int num_joints) noexcept {
+    forward_ = find_function<decltype(forward_)>("kinematicsForward");
+    inverse_ = find_function<decltype(inverse_)>("kinematicsInverse");
+    const auto type = find_function<decltype(&kinematicsType)>("kinematicsType");
+    if (forward_ == nullptr) {
+        return "kinematicsForward";
+    }
+    if (inverse_ == nullptr) {
+        return "kinematicsInverse";
+    }
+    if (type == nullptr) {
+        return "kinematicsType";
+    }
+    switch (type()) {
+    case KINEMATICS_FORWARD_ONLY: kind_ = kins::Kind::FORWARD_ONLY; break;
+    case KINEMATICS_INVERSE_ONLY: kind_ = kins::Kind::INVERSE_ONLY; break;
+    case KINEMATICS_BOTH: kind_ = kins::Kind::BOTH; break;
+    case KINEMATICS_IDENTITY: kind_ = kins::Kind::IDENTITY; break;
+    }
+    probe_identity(num_joints);
+    return nullptr;
+}
+
+int ModuleKinematics::hold(int comp_id) const noexcept {
+    return mw_ext_use_module("kinematicsInverse", comp_id);
+}
+
+/// Finds which axis each joint follows, whatever the type says: a gantry that calls itself "both" is one as
+/// well. Inverse of unit poses gives it away; anything else than 0 and 1 is no identity.
+void ModuleKinematics::probe_identity(int num_joints) noexcept {
+    double zero[MAX_JOINTS];
+    for (double &x : zero) {
+        x = NAN;  // joints that the module does not set stay so
+    }
+    EmcPose origin = to_c({});
+    isIdentity_ = inverse_(&origin, zero, &inverse_flags_, &forward_flags_) == 0;
+    map_.axis_of_joint.fill(-1);
+    map_.num_joints = 0;
+    for (int axis = 0; axis < geom::AXIS_COUNT && isIdentity_; ++axis) {
+        for (const double length : {1.0, -37.25}) {
+            geom::Pose unit;
+            unit[axis] = length;
+            const EmcPose pose = to_c(unit);
+            double joints[MAX_JOINTS];
+            for (double &x : joints) {
+                x = NAN;
+            }
+            isIdentity_ = isIdentity_ && inverse_(&pose, joints, &inverse_flags_, &forward_flags_) == 0;
+            for (int j = 0; j < num_joints && isIdentity_; ++j) {
+                const auto n = static_cast<std::size_t>(j);
+                const bool isSet = !std::isnan(joints[j]) && zero[j] == 0.0;
+                if (isSet && joints[j] == length) {
+                    map_.axis_of_joint[n] = static_cast<std::int8_t>(axis);
+                    map_.num_joints = j + 1 > map_.num_joints ? j + 1 : map_.num_joints;
+                } else if (!std::isnan(joints[j])) {
+                    isIdentity_ = joints[j] == 0.0 && zero[j] == 0.0;
+                }
+            }
+        }
+    }
+    for (int j = 0; j < map_.num_joints; ++j) {
+        isIdentity_ = isIdentity_ && map_.axis_of_joint[static_cast<std::size_t>(j)] >= 0;
+    }
+    isIdentity_ = isIdentity_ && map_.num_joints > 0;
+}
+
+kins::Status ModuleKinematics::forward(const double *joints, kins::Pose &pose) const noexcept {
+    EmcPose world = to_c(pose);
+    const bool isFound = forward_(joints, &world, &forward_flags_, &inverse_flags_) == 0;
+    const geom::Pose found = from_c(world);
+    for (const double x : found.c) {
+        if (!isFound || !std::isfinite(x)) {
+            return kins::Status::UNREACHABLE;
+        }
+    }
+    pose = found;
+    return kins::Status::OK;
+}
+
+kins::Status ModuleKinematics::inverse(const kins::Pose &pose, double *joints) const noexcept {
+    double found[MAX_JOINTS];
+    for (int j = 0; j < MAX_JOINTS; ++j) {
+        found[j] = joints[j];
+    }
+    const EmcPose world = to_c(pose);
+    bool isFound = inverse_(&world, found, &inverse_flags_, &forward_flags_) == 0;
+    for (const double x : found) {
+        isFound = isFound && std::isfinite(x);
+    }
+    for (int j = 0; j < MAX_JOINTS && isFound; ++j) {
+        joints[j] = found[j];
+    }
+    return isFound ? kins::Status::OK : kins::Status::UNREACHABLE;
+}
+
+}  // namespace mw::motion

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Kinematics of a loaded module, ours or another's, through the C functions of kinematics.h.
+#pragma once
+
+#include "hal/api/kinematics.h"
+#include "kins/kinematics.hh"
+
+namespace mw::motion {
+
+class ModuleKinematics final : public kins::Kinematics {
+  public:
+    /// Finds the functions among the loaded modules. Null, or the name of what is missing. [while loading]
+    const char *find(int num_joints) noexcept;
+    /// Keeps the module loaded as long as component `comp_id` is. 0 or a negated errno. [while loading]
+    int hold(int comp_id) const noexcept;
+
+    kins::Kind kind() const noexcept override { return kind_; }
+    kins::Status forward(const double *joints, kins::Pose &pose) const noexcept override;
+    kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept override;
+    const kins::IdentityMap *identity() const noexcept override { return isIdentity_ ? &map_ : nullptr; }
+    bool isShareable() const noexcept override { return isIdentity_; }
+
+  private:
+    void probe_identity(int num_joints) noexcept;
+
+    decltype(&kinematicsForward) forward_ = nullptr;
+    decltype(&kinematicsInverse) inverse_ = nullptr;
+    kins::Kind kind_ = kins::Kind::IDENTITY;
+    bool isIdentity_ = false;
+    kins::IdentityMap map_;
+    mutable KINEMATICS_FORWARD_FLAGS forward_flags_ = 0;
+    mutable KINEMATICS_INVERSE_FLAGS inverse_flags_ = 0;
+};
+
+}  // namespace mw::motion

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "motion/api/texts.hh"
+
+namespace mw::motion {
+namespace {
+
+TEST(Texts, EveryReasonAndFaultHasOneOfItsOwn_C5) {
+    std::set<std::string> seen;
+    for (int r = 1; r < static_cast<int>(Reason::COUNT); ++r) {
+        Answer a;
+        a.reason = static_cast<Reason>(r);
+        a.index = 1;
+        const std::string text = reason_text(a);
+        EXPECT_FALSE(text.empty());
+        EXPECT_TRUE(seen.insert(text).second) << text;
+    }
+    for (int k = 0; k < static_cast<int>(FaultKind::COUNT); ++k) {
+        Fault f;
+        f.kind = static_cast<FaultKind>(k);
+        f.index = 0;
+        EXPECT_TRUE(seen.insert(fault_text(f)).second) << fault_text(f);
+    }
+    Fault limit;
+    limit.kind = FaultKind::HARD_LIMIT;
+    limit.index = 0;
+    EXPECT_EQ(fault_text(limit), "joint 0 on limit switch error");
+}
+
+}  // namespace
+}  // namespace mw::motion

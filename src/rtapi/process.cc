@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "rtapi/process.hh"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace mw::rtapi {
+namespace {
+
+/// Start time of a process, 0 when it is gone. Source: man 5 proc, /proc/PID/stat, fields 3 and 22.
+std::uint64_t start_time_of(std::int32_t pid) {
+    char path[64];
+    std::snprintf(path, sizeof path, "/proc/%d/stat", pid);
+    std::FILE *file = std::fopen(path, "re");
+    if (file == nullptr) {
+        return 0;
+    }
+    char text[1024];
+    const std::size_t length = std::fread(text, 1, sizeof text - 1, file);
+    std::fclose(file);
+    text[length] = '\0';
+    // The name in parentheses may hold anything, so count from the last one.
+    const char *at = std::strrchr(text, ')');
+    if (at == nullptr || at[1] == '\0' || at[2] == 'Z' || at[2] == 'X') {
+        return 0;
+    }
+    ++at;
+    constexpr int FIELDS_TO_SKIP = 19;  // 3..21; `at` is at the blank before each
+    for (int i = 0; i < FIELDS_TO_SKIP && at != nullptr; ++i) {
+        at = std::strchr(at + 1, ' ');
+    }
+    return at == nullptr ? 0 : std::strtoull(at + 1, nullptr, 10);
+}
+
+}  // namespace
+
+ProcessId this_process() {
+    const auto pid = static_cast<std::int32_t>(::getpid());
+    return {pid, start_time_of(pid)};
+}
+
+bool isAlive(const ProcessId &process) {
+    return process.pid > 0 && process.start_time != 0 && start_time_of(process.pid) == process.start_time;
+}
+
+Result<std::string> runtime_folder() {
+    const char *base = std::getenv("XDG_RUNTIME_DIR");
+    const std::string folder = base != nullptr && base[0] == '/'
+                                   ? std::string(base) + "/millwright"
+                                   : "/tmp/millwright-" + std::to_string(::getuid());
+    if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST) {
+        return fail("runtime folder " + folder + ": " + std::strerror(errno));
+    }
+    struct stat status{};
+    if (::lstat(folder.c_str(), &status) != 0) {
+        return fail("runtime folder " + folder + ": " + std::strerror(errno));
+    }
+    if (!S_ISDIR(status.st_mode) || status.st_uid != ::getuid() || (status.st_mode & 077) != 0) {
+        return fail("runtime folder " + folder + " must be a folder of this user that nobody else may enter",
+                    {}, "remove it, or set XDG_RUNTIME_DIR");
+    }
+    return folder;
+}
+
+}  // namespace mw::rtapi

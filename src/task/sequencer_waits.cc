@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What the sequencer waits for: dwells, inputs, handshakes.
+#include <cmath>
+
+#include "task/sequencer.hh"
+
+namespace mw::task {
+
+bool Sequencer::isWaitOver(std::int64_t now_ns) {
+    bool isOver = true;
+    switch (wait_) {
+    case Wait::NONE: break;
+    case Wait::DWELL: isOver = now_ns >= deadline_ns_; break;
+    case Wait::INPUT: isOver = isInputWaitOver(now_ns); break;
+    case Wait::TOOL: isOver = io_.action() == io::ToolAction::IDLE; break;
+    case Wait::ORIENT: {
+        const motion::SpindleStatus &spindle =
+            motion_.status().spindle[static_cast<std::size_t>(awaited_spindle_)];
+        if (spindle.orient_fault != 0) {
+            events_.fail("spindle " + std::to_string(awaited_spindle_) + " reports orient fault " +
+                         std::to_string(spindle.orient_fault));
+        }
+        isOver = spindle.orient_state != 1;
+        break;
+    }
+    case Wait::USER_CODE: isOver = !events_.isUserCodeRunning(); break;
+    }
+    if (isOver) {
+        wait_ = Wait::NONE;
+    }
+    return isOver;
+}
+
+bool Sequencer::isInputWaitOver(std::int64_t now_ns) {
+    const motion::Status &status = motion_.status();
+    const auto index = static_cast<std::size_t>(awaited_input_.index);
+    const double value = awaited_input_.isAnalog ? status.analog_in[index]
+                                                 : static_cast<double>((status.digital_in >> index) & 1U);
+    const bool isFirst = std::isnan(last_input_);
+    bool isMet = false;
+    switch (awaited_input_.kind) {
+    case interp::WaitKind::IMMEDIATE: isMet = true; break;
+    case interp::WaitKind::RISE: isMet = !isFirst && last_input_ == 0 && value != 0; break;
+    case interp::WaitKind::FALL: isMet = !isFirst && last_input_ != 0 && value == 0; break;
+    case interp::WaitKind::HIGH: isMet = value != 0; break;
+    case interp::WaitKind::LOW: isMet = value == 0; break;
+    }
+    last_input_ = value;
+    isInputTimedOut_ = !isMet && now_ns >= deadline_ns_;
+    if (isMet || isInputTimedOut_) {
+        input_value_ = isInputTimedOut_ ? -1.0 : value;
+    }
+    return isMet || isInputTimedOut_;
+}
+
+std::string Sequencer::waiting_for() const {
+    switch (wait_) {
+    case Wait::DWELL: return "the end of a dwell";
+    case Wait::INPUT:
+        return std::string("pin motion.") + (awaited_input_.isAnalog ? "analog-in-" : "digital-in-") +
+               (awaited_input_.index < 10 ? "0" : "") + std::to_string(awaited_input_.index);
+    case Wait::ORIENT: return "pin spindle." + std::to_string(awaited_spindle_) + ".is-oriented";
+    case Wait::USER_CODE: return "a user M code to end";
+    case Wait::NONE:
+    case Wait::TOOL: break;
+    }
+    return io_.waiting_for();
+}
+
+}  // namespace mw::task

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "task/task.hh"
+
+namespace mw::task {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A motion controller that takes each move in one cycle and writes down what it was asked.
+class FakeMotion {
+  public:
+    explicit FakeMotion(motion::Channels &channels) : channels_(channels) {
+        status.isAllHomed = true;
+        status.num_spindles = 1;
+        status.num_joints = 3;
+        status.isInPosition = true;
+        publish();
+    }
+
+    void step() {
+        motion::Command command;
+        while (channels_.immediate.pop(command)) {
+            take(command);
+        }
+        if (!isHolding) {
+            take_path();
+        }
+        ++status.cycle;
+        publish();
+    }
+
+    motion::Status status;
+    std::vector<std::string> log;
+    bool isHolding = false;
+    bool isRefusingMoves = false;
+
+  private:
+    void take(const motion::Command &command) {
+        if (const auto *abort = std::get_if<motion::Abort>(&command.body)) {
+            status.epoch = abort->new_epoch;
+            log.emplace_back("abort");
+        } else if (std::holds_alternative<motion::Enable>(command.body)) {
+            status.isEnabled = true;
+        } else if (std::holds_alternative<motion::Disable>(command.body)) {
+            status.isEnabled = false;
+        } else if (const auto *mode = std::get_if<motion::SetMode>(&command.body)) {
+            status.mode = mode->mode;
+        } else if (const auto *on = std::get_if<motion::SpindleOn>(&command.body)) {
+            log.push_back("spindle " + std::to_string(static_cast<int>(on->speed_rpm)));
+        } else if (std::holds_alternative<motion::SpindleOff>(command.body)) {
+            log.emplace_back("spindle off");
+        }
+        channels_.servo_answers.push({command.id});
+    }
+
+    void take_path() {
+        motion::PathCommand command;
+        while (channels_.path.pop(command)) {
+            const bool isStale = command.epoch != status.epoch;
+            motion::Answer answer{command.id, isStale ? motion::AnswerKind::STALE : motion::AnswerKind::DONE};
+            answer.isPath = true;
+            const auto *line = std::get_if<motion::Line>(&command.body);
+            if (!isStale && line != nullptr && isRefusingMoves) {
+                answer.kind = motion::AnswerKind::REFUSED;
+                answer.reason = motion::Reason::BEYOND_SOFT_LIMIT;
+                answer.index = 0;
+            } else if (!isStale && line != nullptr) {
+                status.carte_pos_cmd = line->end;
+                log.push_back("line " + std::to_string(static_cast<int>(line->end.x())));
+            }
+            channels_.planner_answers.push(answer);
+        }
+    }
+
+    void publish() { channels_.status.write(status); }
+
+    motion::Channels &channels_;
+};
+
+class NoTools final : public ToolStore {
+  public:
+    int count() const override { return 2; }
+    interp::ToolEntry entry(int index) const override {
+        interp::ToolEntry entry;
+        entry.toolno = index == 0 ? in_spindle : 5;
+        entry.pocketno = index == 0 ? 0 : 3;
+        return entry;
+    }
+    int index_of_tool(int toolno) const override { return toolno == 5 ? 1 : -1; }
+    bool isRandom() const override { return false; }
+    Result<> load_spindle(int index) override {
+        in_spindle = index == 1 ? 5 : 0;
+        return {};
+    }
+    Result<> set_entry(int, const interp::ToolEntry &) override { return {}; }
+    Result<> reload() override { return {}; }
+    int in_spindle = 0;
+};
+
+class NoParameters final : public interp::ParameterSource {
+    std::optional<double> ini_value(std::string_view, std::string_view) const override { return {}; }
+    std::optional<double> hal_value(std::string_view) const override { return {}; }
+};
+
+class LoopedIo final : public IoPort {
+  public:
+    io::Inputs read() override {
+        io::Inputs in;
+        in.emc_enable_in = outputs.user_enable_out && isChainClosed;
+        in.tool_prepared = outputs.tool_prepare;
+        in.tool_changed = outputs.tool_change && isChangerWorking;
+        return in;
+    }
+    void write(const io::Outputs &o) override { outputs = o; }
+    io::Outputs outputs;
+    bool isChainClosed = true;
+    bool isChangerWorking = true;
+};
+
+class TaskTest : public testing::Test {
+  protected:
+    TaskTest()
+        : channels(std::make_unique<motion::Channels>()), motion(*channels),
+          task({*channels, io, tools, parameters}, Settings{}) {
+        folder = fs::temp_directory_path() / ("mw_task_" + std::to_string(::getpid()));
+        fs::create_directory(folder);
+        EXPECT_TRUE(task.start().has_value());
+        EXPECT_EQ(ask(SetState{State::ESTOP_RESET}), Progress::DONE);
+        EXPECT_EQ(ask(SetState{State::ON}), Progress::DONE);
+    }
+    ~TaskTest() override { fs::remove_all(folder); }
+
+    void cycle() {
+        now_ns += 1000000;
+        motion.step();
+        task.step(now_ns);
+    }
+    void cycles(int n) {
+        for (int i = 0; i < n; ++i) {
+            cycle();
+        }
+    }
+    Progress ask(Command command, int limit = 2500) {
+        request = task.submit(std::move(command));
+        for (int i = 0; i < limit; ++i) {
+            cycle();
+            if (task.progress(request) != Progress::STARTED) {
+                break;
+            }
+        }
+        return task.progress(request);
+    }
+    void open(const std::string &text) {
+        std::ofstream(folder / "p.ngc") << text;
+        ASSERT_EQ(ask(SetMode{Mode::AUTO}), Progress::DONE);
+        ASSERT_EQ(ask(OpenProgram{(folder / "p.ngc").string()}), Progress::DONE) << task.reason(request);
+    }
+    std::string joined() const {
+        std::string all;
+        for (const std::string &one : motion.log) {
+            all += (all.empty() ? "" : ", ") + one;
+        }
+        return all;
+    }
+    std::string messages() {
+        std::string all;
+        Message message;
+        while (task.poll_message(message)) {
+            all += message.text + '\n';
+        }
+        return all;
+    }
+
+    fs::path folder;
+    std::unique_ptr<motion::Channels> channels;
+    FakeMotion motion;
+    LoopedIo io;
+    NoTools tools;
+    NoParameters parameters;
+    Task task;
+    std::int64_t now_ns = 0;
+    RequestId request = 0;
+};
+
+TEST_F(TaskTest, AProgramRunsToItsEnd_D1) {
+    open("G21 F600\nG1 X1\nG1 X2\nM2\n");
+    motion.log.clear();
+    EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << task.reason(request);
+    EXPECT_EQ(joined().substr(0, 14), "line 1, line 2");
+    EXPECT_EQ(task.status().interp_state, InterpState::IDLE);
+    EXPECT_EQ(task.status().programs_ended, 1U);
+}
+
+TEST_F(TaskTest, CommandsThatCannotBeDoneAreRefusedWithAReason_C5) {
+    EXPECT_EQ(ask(Mdi{"G0 X1"}), Progress::REFUSED);
+    EXPECT_EQ(task.reason(request), "MDI needs MDI mode");
+    EXPECT_EQ(ask(RunProgram{}), Progress::REFUSED);
+    EXPECT_EQ(ask(PauseProgram{}), Progress::REFUSED);
+    EXPECT_EQ(ask(OpenProgram{"/nowhere.ngc"}), Progress::REFUSED);
+    EXPECT_NE(task.reason(request).find("/nowhere.ngc"), std::string::npos);
+    motion.status.isAllHomed = false;
+    open("M2\n");
+    EXPECT_EQ(ask(RunProgram{}), Progress::REFUSED);
+    EXPECT_NE(task.reason(request).find("not all joints are homed"), std::string::npos);
+}
+
+TEST_F(TaskTest, AnErrorInTheProgramStopsItWithItsPlace_D3) {
+    open("G21 F600\nG1 X1\nG1 X2 X3\nG1 X4\nM2\n");
+    EXPECT_EQ(ask(RunProgram{}), Progress::FAILED);
+    EXPECT_NE(messages().find("p.ngc:3:"), std::string::npos);
+    EXPECT_EQ(joined().find("line 4"), std::string::npos);
+    ASSERT_NE(task.program_error(), nullptr);
+    EXPECT_EQ(task.program_error()->what.place.line, 3);
+}
+
+TEST_F(TaskTest, NothingQueuedBeforeAnAbortMovesAfterwards) {
+    open("G21 F600\nG1 X1\nG1 X2\nG1 X3\nM2\n");
+    motion.isHolding = true;
+    task.submit(RunProgram{});
+    cycles(5);
+    task.submit(AbortAll{});
+    cycles(2);
+    motion.isHolding = false;
+    motion.log.clear();
+    cycles(10);
+    EXPECT_EQ(joined(), "");
+    EXPECT_EQ(ask(RunProgram{}), Progress::DONE);
+    EXPECT_NE(joined().find("line 1, line 2, line 3"), std::string::npos);
+}
+
+TEST_F(TaskTest, ARefusedMoveEndsTheProgram) {
+    open("G21 F600\nG1 X1\nG1 X2\nM2\n");
+    motion.isRefusingMoves = true;
+    EXPECT_EQ(ask(RunProgram{}), Progress::FAILED);
+    EXPECT_NE(messages().find("the move goes beyond the soft limit of axis X"), std::string::npos);
+}
+
+TEST_F(TaskTest, AnOpenEstopChainStopsEverything_E1) {
+    EXPECT_EQ(task.status().state, State::ON);
+    io.isChainClosed = false;
+    cycles(2);
+    EXPECT_EQ(task.status().state, State::ESTOP);
+    EXPECT_FALSE(motion.status.isEnabled);
+    EXPECT_EQ(ask(SetState{State::ON}), Progress::REFUSED);
+    EXPECT_EQ(ask(SetState{State::ESTOP_RESET}), Progress::FAILED);
+    EXPECT_NE(task.reason(request).find("iocontrol.0.emc-enable-in"), std::string::npos);
+    io.isChainClosed = true;
+    EXPECT_EQ(ask(SetState{State::ESTOP_RESET}), Progress::DONE);
+    EXPECT_FALSE(motion.status.isEnabled) << "reset never restarts anything";
+}
+
+}  // namespace
+}  // namespace mw::task

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A scope in which this thread must not touch the heap: every realtime entry point has a test that runs
+// inside one. Link mw_testing_guard, which replaces malloc and free of the test program.
+#pragma once
+
+#include <cstdint>
+
+namespace mw::testing {
+
+/// Counts this thread's calls of malloc, free and their kin (new and delete among them) while it lives.
+///
+///     AllocationGuard guard;
+///     machine.step();
+///     EXPECT_EQ(guard.calls(), 0U);
+class AllocationGuard {
+  public:
+    AllocationGuard() noexcept;
+    ~AllocationGuard();
+    AllocationGuard(const AllocationGuard &) = delete;
+    AllocationGuard &operator=(const AllocationGuard &) = delete;
+
+    std::uint64_t calls() const noexcept;
+
+  private:
+    std::uint64_t before_;
+};
+
+}  // namespace mw::testing

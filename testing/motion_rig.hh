@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A motion controller with its path planner and ideal drives, stepped in virtual time, for tests.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "kins/trivial.hh"
+#include "motion/core/controller.hh"
+#include "motion/core/path_planner.hh"
+
+namespace mw::testing {
+
+/// Drives follow the command one cycle later. Every test may look at and change all of it between steps.
+struct MotionRig {
+    static constexpr double T = 1e-3;
+    static constexpr int PLANNER_PERIOD = 5;
+
+    kins::Trivial kinematics;
+    std::unique_ptr<motion::Channels> channels = std::make_unique<motion::Channels>();
+    std::unique_ptr<motion::PathLink> link = std::make_unique<motion::PathLink>();
+    std::unique_ptr<motion::Controller> controller;
+    std::unique_ptr<motion::PathPlanner> planner;
+    motion::Inputs in;
+    std::unique_ptr<motion::Outputs> out = std::make_unique<motion::Outputs>();
+    std::uint64_t cycle = 0;
+    motion::CommandId next_id = 1;
+    motion::Epoch epoch = 1;
+    std::vector<motion::Answer> answers;
+    std::vector<motion::Fault> faults;
+    bool isPlannerAlive = true;
+    std::function<void(MotionRig &)> before_step = [](MotionRig &) {};
+
+    explicit MotionRig(const char *coordinates = "XYZ", double velocity = 100, double acceleration = 1000) {
+        kinematics.configure(coordinates);
+        const int joints = kinematics.identity()->num_joints;
+        controller = std::make_unique<motion::Controller>(motion::ControllerConfig{joints, 1, 4, 4, T},
+                                                          kinematics, *channels, *link);
+        planner = std::make_unique<motion::PathPlanner>(motion::PathPlannerConfig{T, joints, 1, 4, 4},
+                                                        kinematics, *channels, *link);
+        send(motion::Abort{epoch});
+        for (int j = 0; j < joints; ++j) {
+            set(motion::Parameter::JOINT_MAX_VELOCITY, j, velocity);
+            set(motion::Parameter::JOINT_MAX_ACCELERATION, j, acceleration);
+            set(motion::Parameter::JOINT_MIN_LIMIT, j, -1000);
+            set(motion::Parameter::JOINT_MAX_LIMIT, j, 1000);
+            set(motion::Parameter::JOINT_HOME_SEQUENCE, j, 0);
+        }
+        step(4);
+    }
+
+    motion::CommandId send(const motion::CommandBody &body) {
+        channels->immediate.push({next_id, epoch, body});
+        return next_id++;
+    }
+    motion::CommandId send_path(const motion::PathBody &body) {
+        channels->path.push({next_id, epoch, body});
+        return next_id++;
+    }
+    void set(motion::Parameter p, int index, double value) {
+        send(motion::SetParameter{static_cast<std::uint16_t>(p), static_cast<std::int16_t>(index), value});
+    }
+    motion::CommandId line(const geom::Pose &end, double feed = 50,
+                           motion::PathMode mode = motion::PathMode::BLEND, double tolerance = 0) {
+        motion::Line move;
+        move.end = end;
+        move.terms.feed = feed;
+        move.terms.mode = mode;
+        move.terms.tolerance = tolerance;
+        move.terms.type = feed == 0 ? motion::MotionType::TRAVERSE : motion::MotionType::FEED;
+        move.terms.source.line = static_cast<std::int32_t>(next_id);
+        move.terms.source.block = static_cast<std::uint32_t>(next_id);
+        return send_path(move);
+    }
+
+    void step(int count = 1) {
+        for (int i = 0; i < count; ++i) {
+            ++cycle;
+            in.time_ns = static_cast<std::int64_t>(cycle) * 1000000;
+            before_step(*this);
+            controller->handle_commands(in);
+            controller->step(in, *out);
+            for (std::size_t j = 0; j < MAX_JOINTS; ++j) {
+                in.joint[j].motor_pos_fb = out->joint[j].motor_pos_cmd;
+            }
+            if (isPlannerAlive && cycle % PLANNER_PERIOD == 0) {
+                planner->update();
+            }
+            motion::Answer a;
+            while (channels->servo_answers.pop(a) || channels->planner_answers.pop(a)) {
+                answers.push_back(a);
+            }
+            motion::Fault f;
+            while (channels->servo_faults.pop(f) || channels->planner_faults.pop(f)) {
+                faults.push_back(f);
+            }
+        }
+    }
+    /// Steps until `isDone`; false after `max_s`.
+    bool run_until(const std::function<bool()> &isDone, double max_s = 60) {
+        for (double t = 0; t < max_s; t += T) {
+            if (isDone()) {
+                return true;
+            }
+            step();
+        }
+        return isDone();
+    }
+    const motion::Answer *answer_to(motion::CommandId id) const {
+        for (const motion::Answer &a : answers) {
+            if (a.id == id) {
+                return &a;
+            }
+        }
+        return nullptr;
+    }
+    bool isDone(motion::CommandId id) const {
+        const motion::Answer *a = answer_to(id);
+        return a != nullptr && a->kind == motion::AnswerKind::DONE;
+    }
+    /// The reason of a refusal; NONE when done, stale or not answered.
+    motion::Reason refusal(motion::CommandId id) const {
+        const motion::Answer *a = answer_to(id);
+        return a != nullptr && a->kind == motion::AnswerKind::REFUSED ? a->reason : motion::Reason::NONE;
+    }
+    /// Machine on, homed where it stands, in `mode`.
+    void ready(motion::Mode mode = motion::Mode::COORD) {
+        send(motion::Enable{});
+        step(2);
+        send(motion::Home{-1});
+        step(2);
+        run_until([this] { return out->status.isAllHomed && !out->status.isHoming; });
+        send(motion::SetMode{mode});
+        step(PLANNER_PERIOD);
+    }
+    const motion::Status &status() const { return out->status; }
+};
+
+}  // namespace mw::testing
