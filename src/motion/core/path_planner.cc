@@ -70,9 +70,7 @@ void PathPlanner::follow_controller() noexcept {
     scales.max_feed = view_.max_feed_scale;
     scales.max_velocity = view_.max_velocity;
     scales.spindle_rps = view_.spindle_rps;
-    if (isPathBegun_) {
-        planner_.set_scales(scales);
-    }
+    planner_.set_scales(scales);
 }
 
 /// The executor has dropped its path: a tripped probe, or a stop.
@@ -223,8 +221,8 @@ traj::MoveRequest PathPlanner::request_for(const PathCommand &c, const MoveTerms
              : terms.mode == PathMode::EXACT_PATH ? traj::Join::EXACT
                                                   : traj::Join::BLEND;
     r.tolerance = terms.tolerance;
-    r.isRapid =
-        terms.type == MotionType::TRAVERSE || terms.type == MotionType::INDEX_ROTARY || terms.feed == 0;
+    const bool hasFeed = terms.feed > 0 || terms.feed_per_revolution > 0;
+    r.isRapid = terms.type == MotionType::TRAVERSE || terms.type == MotionType::INDEX_ROTARY || !hasFeed;
     r.isOverridable = terms.isFeedOverridable;
     r.feed_per_revolution = terms.feed_per_revolution;
     r.spindle = terms.synch_spindle;
