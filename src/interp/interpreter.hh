@@ -71,6 +71,8 @@ class Interpreter {
     /// Reads and parses a whole file. Syntax errors outside executed blocks are reported when they are
     /// reached.
     Result<> open(const std::string &path);
+    /// The same for a program in memory; `name` stands for its file in messages.
+    void open_text(const std::string &name, std::string text);
     void close();
 
     /// Executes the next block of the open file. [task]

@@ -135,7 +135,12 @@ MoveSettings MachineFrame::settings(FeedKind kind, double length, bool isLinear)
     out.synch_spindle = synch_spindle_;
     out.isVelocitySynched = isVelocitySynched_;
     constexpr double SECONDS_PER_MINUTE = 60.0;
-    if (feed_mode_ == FeedMode::INVERSE_TIME) {
+    if (feed_mode_ == FeedMode::UNITS_PER_REVOLUTION && synch_feed_ == 0.0) {
+        out.feed_per_revolution = feed_;
+        out.isVelocitySynched = true;
+        // The speed at one revolution per second; the planner takes the spindle's own.
+        out.feed = feed_;
+    } else if (feed_mode_ == FeedMode::INVERSE_TIME) {
         out.feed = length * feed_ / SECONDS_PER_MINUTE;
     } else {
         // Degrees per minute are not lengths: the unit's factor is taken off again.

@@ -199,8 +199,9 @@ bool Executor::join_comp(CompElement &next, Point corner, bool isRapid) {
                                     dot(last.end_direction, next.start_direction));
     const double turn = state.comp == CompSide::LEFT ? angle : -angle;  // > 0: towards the tool
     const bool isReversal = std::fabs(angle) > std::numbers::pi - 1e-9;
+    const CompElement whole = next;
     next.start = last.end;
-    if (std::fabs(turn) <= STRAIGHT_ANGLE) {
+    if (std::fabs(turn) <= STRAIGHT_ANGLE || state.comp_radius < TINY) {
         return true;
     }
     if (turn < 0.0 || isReversal) {
@@ -215,7 +216,7 @@ bool Executor::join_comp(CompElement &next, Point corner, bool isRapid) {
         return true;
     }
     const std::optional<Point> cut = crossing(last, next, corner);
-    const bool isReachable = cut && isForward(last, last.start, *cut) && isForward(next, *cut, next.end);
+    const bool isReachable = cut && isForward(last, last.start, *cut) && isForward(whole, *cut, next.end);
     if (!isReachable) {
         return fault.set("Concave corner cannot be reached by the tool without gouging", 0,
                          "the moves at the corner are too short for this tool radius");

@@ -204,9 +204,7 @@ void Executor::run_cycle(const CyclePlan &plan) {
     switch (plan.code) {
     case 850:
         cycle_move(false, normal, plan.r);
-        if (plan.clear != plan.r) {
-            cycle_move(true, normal, plan.clear);
-        }
+        cycle_move(true, normal, plan.clear);
         break;
     case 860:
         canon.stop_spindle_turning(state.active_spindle);

@@ -114,6 +114,7 @@ bool Executor::do_orient(const Code &, const BlockValues &values) {
     if (values.has('r') || values.has('p')) {
         angle = std::fmod(angle, FULL_CIRCLE);
         angle = angle < 0.0 ? angle + FULL_CIRCLE : angle;
+        state.spindles[static_cast<std::size_t>(spindle)].direction = 0;
         canon.orient_spindle(spindle, angle, mode);
     }
     if (values.has('q')) {

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "base/atomic_file.hh"
+
 namespace mw::interp::detail {
 
 Flow::Flow(Executor &executor, Names &names, Canon &target, const Settings &settings)
@@ -13,15 +15,22 @@ const std::string &Flow::file() const {
     return program_ == nullptr ? NO_FILE : program_->path();
 }
 
-Result<> Flow::open(const std::string &path) {
-    close();
-    Result<std::unique_ptr<Program>> loaded = Program::load(path, names_);
-    if (!loaded) {
-        return std::unexpected(loaded.error());
+Result<> Flow::open(const std::string &path)
+{
+    Result<std::string> text = read_file(path);
+    if (!text) {
+        return std::unexpected(text.error());
     }
-    program_ = loaded->get();
-    programs_[path] = std::move(*loaded);
+    open_text(path, std::move(*text));
     return {};
+}
+
+void Flow::open_text(const std::string &name, std::string text)
+{
+    close();
+    std::unique_ptr<Program> &program = programs_[name];
+    program = std::make_unique<Program>(name, std::move(text), names_);
+    program_ = program.get();
 }
 
 void Flow::close() {
@@ -29,7 +38,7 @@ void Flow::close() {
     programs_.clear();
     program_ = nullptr;
     next_ = 1;
-    isFirstPercentSeen_ = false;
+    statements_ = 0;
 }
 
 /// Drops all calls without running what they would restore.

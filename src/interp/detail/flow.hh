@@ -21,6 +21,7 @@ class Flow {
     Flow(Executor &executor, Names &names, Canon &target, const Settings &settings);
 
     Result<> open(const std::string &path);
+    void open_text(const std::string &name, std::string text);
     void close();
     /// One line of the open file, or of a call made by MDI.
     Step step();
@@ -111,7 +112,6 @@ class Flow {
     bool isMdi_ = false;
     Program *outer_program_ = nullptr;  ///< the open file while MDI runs
     int outer_next_ = 1;
-    bool isFirstPercentSeen_ = false;
     std::vector<Call> calls_;
     std::uint64_t statements_ = 0;
     diag::Diagnostic error_;

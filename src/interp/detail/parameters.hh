@@ -58,6 +58,8 @@ class Parameters {
     void rollback();
 
     Result<> load(const std::string &path);
+    /// The same for text in memory; `path` names it in errors. On an error nothing is changed.
+    Result<> parse(std::string_view text, const std::string &path);
     Result<> save(const std::string &path) const;
 
   private:

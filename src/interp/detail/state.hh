@@ -57,7 +57,7 @@ struct State {
     bool isIncremental = false;
     bool isCentreAbsolute = false;  ///< G90.1
     bool isDiameter = false;        ///< G7
-    bool isRetractToR = false;      ///< G99
+    bool isRetractToR = true;       ///< G99
     FeedMode feed_mode = FeedMode::UNITS_PER_MINUTE;
     double feed = 0;  ///< [program units/min, 1/min, program units/rev]
     MotionControl control = MotionControl::CONTINUOUS;

@@ -65,14 +65,16 @@ Result<Row> parse_row(const std::string &path, int line, std::string_view text) 
 
 Result<> Parameters::load(const std::string &path) {
     const Result<std::string> text = read_file(path);
-    if (!text) {
-        return std::unexpected(text.error());
-    }
+    return text ? parse(*text, path) : std::unexpected(text.error());
+}
+
+Result<> Parameters::parse(std::string_view text, const std::string &path)
+{
     std::vector<Row> rows;
     int line = 0;
-    for (std::size_t begin = 0; begin < text->size();) {
-        const std::size_t end = std::min(text->find('\n', begin), text->size());
-        const std::string_view content = std::string_view(*text).substr(begin, end - begin);
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        const std::string_view content = text.substr(begin, end - begin);
         begin = end + 1;
         ++line;
         if (trim(content).empty()) {

@@ -226,7 +226,8 @@ traj::MoveRequest PathPlanner::request_for(const PathCommand &c, const MoveTerms
     r.isOverridable = terms.isFeedOverridable;
     r.feed_per_revolution = terms.feed_per_revolution;
     r.spindle = terms.synch_spindle;
-    const bool isChainStart = terms.feed_per_revolution > 0 && !wasSynched_;
+    // Position-synched motion begins with the spindle at speed; feed per revolution follows whatever it does.
+    const bool isChainStart = terms.feed_per_revolution > 0 && !terms.isVelocitySynched && !wasSynched_;
     r.isGated = terms.isWaitingForSpindleSpeed || isChainStart;
     return r;
 }
