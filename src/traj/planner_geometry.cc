@@ -48,6 +48,7 @@ void Planner::begin(const Pose &start, const Snapshot &now) noexcept {
     planned_ = {};
     isAtEndOfPath_ = false;
     isStepping_ = false;
+    start_delay_s_ = 0;
 }
 
 bool Planner::hasRoom(const Snapshot &now) const noexcept {

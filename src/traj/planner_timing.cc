@@ -91,7 +91,8 @@ void Planner::set_scales(const Scales &scales) noexcept {
     changed_from_ = oldest_piece_;
 }
 
-void Planner::open_gate(Sequence move) noexcept {
+void Planner::open_gate(Sequence move, double delay_s) noexcept {
+    start_delay_s_ = delay_s;
     move_plan(move).request.isGated = false;
     pass_backward(last_piece_, true);
 }
@@ -270,8 +271,14 @@ void Planner::replan(const Snapshot &now, const State &from) noexcept {
     const Sequence begin = plan_end_;
     planned_ = from;
     planned_s_ = 0;
-    emit(settings_.horizon_s);
-    if (plan_end_ == begin) {
+    if (start_delay_s_ > 0 && from.v <= 0) {
+        store_.phase(plan_end_++) = {from.piece, start_delay_s_, from.x, 0, 0, 0};
+        planned_s_ = start_delay_s_;
+    }
+    const Sequence waited = plan_end_;
+    emit(planned_s_ + settings_.horizon_s);
+    if (plan_end_ == waited) {
+        plan_end_ = begin;
         return;
     }
     Commit commit;
@@ -285,6 +292,7 @@ void Planner::replan(const Snapshot &now, const State &from) noexcept {
         plan_end_ = begin;
         return;
     }
+    start_delay_s_ = 0;
     ++plan_;
     plan_ends_[plan_ % plan_ends_.size()] = plan_end_;
     plan_brakes_ = now.brakes;

@@ -88,6 +88,7 @@ void Controller::publish_view(const Inputs &in) noexcept {
     v.max_velocity = max_velocity_;
     for (int n = 0; n < config_.num_spindles; ++n) {
         v.spindle_rps[at(n)] = in.spindle[at(n)].speed_in_rps;
+        v.spindle_revs[at(n)] = in.spindle[at(n)].revs;
         v.spindles_ready |= isSpindleReady(in, n) ? 1U << n : 0U;
     }
     v.isProbeClosed = in.isProbeClosed;

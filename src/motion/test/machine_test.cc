@@ -157,6 +157,41 @@ TEST(Machine, FeedMovesWaitForTheSpindleAndFollowIt_C15) {
     ASSERT_TRUE(rig.run_until([&] { return rig.isDone(id); }, 20));
 }
 
+TEST(Machine, EveryPassOfAThreadBeginsAtTheSameSpindleAngle_C15) {
+    MotionRig rig;
+    rig.before_step = [](MotionRig &r) {
+        r.in.spindle[0].speed_in_rps = 8.3;
+        r.in.spindle[0].revs = 8.3 * static_cast<double>(r.cycle) * MotionRig::T;
+    };
+    rig.ready();
+    rig.send(SpindleOn{0, 498});
+    double phases[3] = {};
+    for (int pass = 0; pass < 3; ++pass) {
+        Line cut;
+        cut.end[2] = -20;
+        cut.terms.feed_per_revolution = 1.5;
+        rig.send_path(cut);
+        double z = 0;
+        double revs = 0;
+        rig.step(40);
+        ASSERT_TRUE(rig.run_until([&] {
+            z = rig.out->joint[2].motor_pos_cmd;
+            revs = rig.in.spindle[0].revs;
+            return z < -10;
+        }));
+        const double turns = z / 1.5 + revs;  // constant along the thread
+        phases[pass] = turns - std::floor(turns);
+        const CommandId flush = rig.send_path(Flush{});
+        ASSERT_TRUE(rig.run_until([&] { return rig.isDone(flush); }));
+        rig.step(37 * (pass + 1));
+        rig.line({}, 0);
+        const CommandId back = rig.send_path(Flush{});
+        ASSERT_TRUE(rig.run_until([&] { return rig.isDone(back); }));
+    }
+    EXPECT_NEAR(phases[1], phases[0], 1e-6);
+    EXPECT_NEAR(phases[2], phases[0], 1e-6);
+}
+
 TEST(Machine, TheWatchdogStopsTheMachineWhenTaskHangs_C6) {
     MotionRig rig;
     rig.ready();
