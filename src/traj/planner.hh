@@ -151,10 +151,11 @@ class Planner {
     Pose end_;
     Sequence first_move_ = 1;  ///< of this path
     Sequence last_move_ = 0;
-    Sequence open_move_ = 0;    ///< whose end is not yet joined or released, 0: none
-    double open_offset_ = 0;    ///< where its own part begins
-    bool isOpenStop_ = false;   ///< stop before its part
-    Sequence first_piece_ = 1;  ///< of this path
+    Sequence last_synched_ = 0;  ///< the last move that follows a spindle
+    Sequence open_move_ = 0;     ///< whose end is not yet joined or released, 0: none
+    double open_offset_ = 0;     ///< where its own part begins
+    bool isOpenStop_ = false;    ///< stop before its part
+    Sequence first_piece_ = 1;   ///< of this path
     Sequence last_piece_ = 0;
     std::uint64_t drops_ = 0;
 

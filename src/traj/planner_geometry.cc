@@ -80,6 +80,7 @@ Sequence Planner::add(const Primitive &primitive, const MoveRequest &request) no
     m.feed = request.tag.requested_velocity * m.request.tag.feed_ratio;
     store_.move(n) = m.request.tag;
     end_ = primitive.end;
+    last_synched_ = request.feed_per_revolution > 0 ? n : last_synched_;
 
     Joint joint;
     if (open_move_ != 0) {

@@ -77,12 +77,16 @@ void Planner::pass_backward(Sequence from, bool isWhole) noexcept {
 void Planner::set_scales(const Scales &scales) noexcept {
     bool isSame = scales.feed == scales_.feed && scales.rapid == scales_.rapid &&
                   scales.max_velocity == scales_.max_velocity;
-    for (std::size_t i = 0; i < scales.spindle_rps.size() && isSame; ++i) {
+    // Spindle speeds never stand still; they matter only where something follows them.
+    const bool isFollowed = last_synched_ != 0 && last_piece_ >= oldest_piece_ &&
+                            last_synched_ >= store_.piece(oldest_piece_).move;
+    for (std::size_t i = 0; i < scales.spindle_rps.size() && isSame && isFollowed; ++i) {
         const double rps = scales_.spindle_rps[i];
         isSame = std::abs(scales.spindle_rps[i] - rps) <= 1e-3 * std::abs(rps);
     }
     if (isSame) {
         scales_.max_feed = scales.max_feed;
+        scales_.spindle_rps = isFollowed ? scales_.spindle_rps : scales.spindle_rps;
         return;
     }
     scales_ = scales;
