@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "interp/print_canon.hh"
 
+#include <cmath>
+#include <cstdint>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -10,6 +12,33 @@ namespace {
 
 std::string pose_text(const Pose &p) {
     return fmt::format("{:.4f}, {:.4f}, {:.4f}, {:.4f}, {:.4f}, {:.4f}", p[0], p[1], p[2], p[3], p[4], p[5]);
+}
+
+/// Appends `value` as "{:.4f}" would, without its cost for ordinary coordinates.
+void append_fixed4(std::string &out, double value) {
+    constexpr double LARGEST = 1e10, SCALE = 1e4, NEAR_TIE = 1e-3;
+    const double scaled = std::fabs(value) * SCALE;
+    const double whole = std::floor(scaled);
+    const double rest = scaled - whole;
+    const bool isOrdinary = std::fabs(value) < LARGEST && std::fabs(rest - 0.5) > NEAR_TIE;
+    if (!isOrdinary) {  // too large, not a number, or so near a tie that the product's rounding matters
+        fmt::format_to(std::back_inserter(out), "{:.4f}", value);
+        return;
+    }
+    std::uint64_t digits = static_cast<std::uint64_t>(whole) + (rest > 0.5 ? 1 : 0);
+    char buffer[24];
+    char *at = buffer + sizeof buffer;
+    for (int i = 0; digits != 0 || i < 5; ++i) {
+        if (i == 4) {
+            *--at = '.';
+        }
+        *--at = static_cast<char>('0' + digits % 10);
+        digits /= 10;
+    }
+    if (std::signbit(value)) {
+        *--at = '-';
+    }
+    out.append(at, buffer + sizeof buffer);
 }
 
 }  // namespace
@@ -98,11 +127,15 @@ void PrintCanon::set_planner_mode(int type, double peak_scale) {
 }
 
 void PrintCanon::put_straight(std::string_view name, const Pose &p) {
-    char buffer[512];
-    const auto made = fmt::format_to_n(buffer, sizeof buffer,
-                                       "{:5d} {} {}({:.4f}, {:.4f}, {:.4f}, {:.4f}, {:.4f}, {:.4f})\n",
-                                       ++count_, prefix_, name, p[0], p[1], p[2], p[3], p[4], p[5]);
-    std::fwrite(buffer, 1, std::min(made.size, sizeof buffer), out_);
+    line_.clear();
+    fmt::format_to(std::back_inserter(line_), "{:5d} ", ++count_);
+    line_.append(prefix_).append(1, ' ').append(name).append(1, '(');
+    for (int i = 0; i < geom::AXIS_U; ++i) {
+        line_.append(i == 0 ? "" : ", ");
+        append_fixed4(line_, p[i]);
+    }
+    line_.append(")\n");
+    std::fwrite(line_.data(), 1, line_.size(), out_);
 }
 
 void PrintCanon::straight_traverse(const Pose &end) {

@@ -86,6 +86,7 @@ class PrintCanon final : public Canon {
     std::FILE *out_;
     std::FILE *log_ = nullptr;
     std::string prefix_ = "N.....";
+    std::string line_;
     int count_ = 0;
 };
 

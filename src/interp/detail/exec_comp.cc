@@ -38,50 +38,54 @@ Point unit(Point from, Point to) {
     return {(to.x - from.x) / length, (to.y - from.y) / length};
 }
 
-/// A point of a line and its direction, and a circle: the crossing nearest to `near`.
-std::optional<Point> cross_line_circle(Point on_line, Point along, Point centre, double radius, Point near) {
+/// Where two offset paths cross: none, one or two points.
+struct Crossings {
+    int count = 0;
+    Point points[2];
+};
+
+/// A line by a point and its direction, and a circle.
+Crossings cross_line_circle(Point on_line, Point along, Point centre, double radius) {
     const Point foot = sum(on_line, along, dot({centre.x - on_line.x, centre.y - on_line.y}, along));
     const double off = distance(foot, centre);
     if (off > radius + TINY) {
-        return std::nullopt;
+        return {};
     }
     const double half = std::sqrt(std::fmax(0.0, radius * radius - off * off));
-    const Point a = sum(foot, along, half), b = sum(foot, along, -half);
-    return distance(a, near) < distance(b, near) ? a : b;
+    return {2, {sum(foot, along, half), sum(foot, along, -half)}};
 }
 
-std::optional<Point> cross_circles(Point c1, double r1, Point c2, double r2, Point near) {
+Crossings cross_circles(Point c1, double r1, Point c2, double r2) {
     const double apart = distance(c1, c2);
     if (apart < TINY || apart > r1 + r2 + TINY || apart < std::fabs(r1 - r2) - TINY) {
-        return std::nullopt;
+        return {};
     }
     const Point along = unit(c1, c2);
     const double at = (apart * apart + r1 * r1 - r2 * r2) / (2.0 * apart);
     const double half = std::sqrt(std::fmax(0.0, r1 * r1 - at * at));
     const Point foot = sum(c1, along, at), across{-along.y, along.x};
-    const Point a = sum(foot, across, half), b = sum(foot, across, -half);
-    return distance(a, near) < distance(b, near) ? a : b;
+    return {2, {sum(foot, across, half), sum(foot, across, -half)}};
 }
 
-std::optional<Point> cross_lines(const CompElement &a, const CompElement &b) {
+Crossings cross_lines(const CompElement &a, const CompElement &b) {
     const double sine = cross(a.start_direction, b.start_direction);
     if (std::fabs(sine) < TINY) {
-        return std::nullopt;
+        return {};
     }
     const Point gap{b.end.x - a.end.x, b.end.y - a.end.y};
-    return sum(a.end, a.start_direction, cross(gap, b.start_direction) / sine);
+    const Point point = sum(a.end, a.start_direction, cross(gap, b.start_direction) / sine);
+    return {1, {point, point}};
 }
 
-/// Where two offset paths cross, nearest to the programmed corner.
-std::optional<Point> crossing(const CompElement &a, const CompElement &b, Point corner) {
+Crossings crossings(const CompElement &a, const CompElement &b) {
     if (a.isArc && b.isArc) {
-        return cross_circles(a.centre, a.radius, b.centre, b.radius, corner);
+        return cross_circles(a.centre, a.radius, b.centre, b.radius);
     }
     if (a.isArc) {
-        return cross_line_circle(b.end, b.start_direction, a.centre, a.radius, corner);
+        return cross_line_circle(b.end, b.start_direction, a.centre, a.radius);
     }
     if (b.isArc) {
-        return cross_line_circle(a.end, a.start_direction, b.centre, b.radius, corner);
+        return cross_line_circle(a.end, a.start_direction, b.centre, b.radius);
     }
     return cross_lines(a, b);
 }
@@ -100,6 +104,20 @@ bool isForward(const CompElement &element, Point start, Point end) {
     }
     return sweep(element, start, end) <= sweep(element, element.start, element.end) + 1e-6 ||
            distance(element.start, element.end) < TINY;
+}
+
+/// The crossing nearest to the programmed corner at which both elements still run forwards.
+std::optional<Point> cut_corner(const CompElement &last, const CompElement &next, Point corner) {
+    const Crossings found = crossings(last, next);
+    std::optional<Point> best;
+    for (int i = 0; i < found.count; ++i) {
+        const Point point = found.points[i];
+        const bool isUsable = isForward(last, last.start, point) && isForward(next, point, next.end);
+        if (isUsable && (!best || distance(point, corner) < distance(*best, corner))) {
+            best = point;
+        }
+    }
+    return best;
 }
 
 }  // namespace
@@ -202,14 +220,18 @@ bool Executor::join_comp(CompElement &next, Point corner, bool isRapid) {
     CompElement &last = state.comp_last;
     const double angle = std::atan2(cross(last.end_direction, next.start_direction),
                                     dot(last.end_direction, next.start_direction));
-    const double turn = state.comp == CompSide::LEFT ? angle : -angle;  // > 0: towards the tool
-    const bool isReversal = std::fabs(angle) > std::numbers::pi - 1e-9;
+    const bool isReversal = std::fabs(angle) > std::numbers::pi - 1e-6;
+    const double bend = (last.isArc ? std::copysign(1.0, last.rotation) : 0.0) +
+                        (next.isArc ? std::copysign(1.0, next.rotation) : 0.0);
+    // Which way a reversal turns is in the bend of its arcs; between two lines the tool goes around the end.
+    const double leftwards = isReversal ? -bend : angle;
+    const double turn = state.comp == CompSide::LEFT ? leftwards : -leftwards;  // > 0: towards the tool
     const CompElement whole = next;
     next.start = last.end;
-    if (std::fabs(turn) <= STRAIGHT_ANGLE || state.comp_radius < TINY) {
+    if ((!isReversal && std::fabs(turn) <= STRAIGHT_ANGLE) || state.comp_radius < TINY) {
         return true;
     }
-    if (turn < 0.0 || isReversal) {
+    if (turn <= 0.0) {
         next.start = sum(corner, comp_normal(next.start_direction), state.comp_radius);
         const Pose end = in_plane(state.position, next.start);
         if (isRapid) {
@@ -220,9 +242,8 @@ bool Executor::join_comp(CompElement &next, Point corner, bool isRapid) {
         }
         return true;
     }
-    const std::optional<Point> cut = crossing(last, next, corner);
-    const bool isReachable = cut && isForward(last, last.start, *cut) && isForward(whole, *cut, next.end);
-    if (!isReachable) {
+    const std::optional<Point> cut = cut_corner(last, whole, corner);
+    if (!cut) {
         return fault.set("Concave corner cannot be reached by the tool without gouging", 0,
                          "the moves at the corner are too short for this tool radius");
     }

@@ -76,10 +76,6 @@ bool Executor::check_cycle(const Code &code, const BlockValues &values, int &rep
             return fault.set(fmt::format("Cannot put an {} in canned cycle", c), values.column_of(c));
         }
     }
-    if (values.has('@') || values.has('^')) {
-        return fault.set("Polar words cannot be used in canned cycles",
-                         values.column_of(values.has('@') ? '@' : '^'));
-    }
     if (plane_axes().normal > geom::AXIS_Z) {
         return fault.set("Canned cycles need one of the planes G17, G18 or G19");
     }
@@ -139,9 +135,10 @@ bool Executor::do_cycle(const Code &code, const BlockValues &values) {
     }
     state.motion = code.number;
     state.cycle.isRunning = true;
-    const Pose goal = target(values);
-    const double step_first = goal[axes.first] - state.position[axes.first];
-    const double step_second = goal[axes.second] - state.position[axes.second];
+    Pose goal = target(values);
+    if (!polar_target(values, goal)) {
+        return false;
+    }
     const MotionControl control = state.control;
     if (state.position[axes.normal] < plan.r) {
         cycle_move(true, axes.normal, plan.r);
@@ -151,9 +148,15 @@ bool Executor::do_cycle(const Code &code, const BlockValues &values) {
     }
     for (int i = 0; i < repeats; ++i) {
         plan.clear = state.isRetractToR ? plan.r : std::fmax(state.cycle.initial, plan.r);
+        if (state.isIncremental && i > 0) {  // each repeat goes on from the last hole, polar words too
+            goal = target(values);
+            if (!polar_target(values, goal)) {
+                return false;
+            }
+        }
         Pose over = state.position;
-        over[axes.first] += state.isIncremental || i == 0 ? step_first : 0.0;
-        over[axes.second] += state.isIncremental || i == 0 ? step_second : 0.0;
+        over[axes.first] = goal[axes.first];
+        over[axes.second] = goal[axes.second];
         over[axes.normal] = std::fmax(state.position[axes.normal], plan.clear);
         canon.straight_traverse(over);
         state.position = over;

@@ -132,7 +132,9 @@ bool Executor::do_straight(const Code &code, const BlockValues &values) {
     if (code.number == 0) {
         canon.straight_traverse(end);
     } else {
-        send_inverse_time(straight_length(end));
+        if (state.feed_mode == FeedMode::INVERSE_TIME) {
+            send_inverse_time(straight_length(end));
+        }
         canon.straight_feed(end);
     }
     state.position = end;

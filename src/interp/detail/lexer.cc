@@ -6,14 +6,6 @@
 namespace mw::interp::detail {
 namespace {
 
-constexpr bool isBlank(char c) {
-    return c == ' ' || c == '\t' || c == '\r';
-}
-
-constexpr char lower(char c) {
-    return (c >= 'A' && c <= 'Z') ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
 constexpr bool isDigit(char c) {
     return c >= '0' && c <= '9';
 }
@@ -22,21 +14,6 @@ constexpr double POWERS_OF_TEN[] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                     1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
 
 }  // namespace
-
-char Lexer::peek() {
-    while (pos_ < line_.size() && isBlank(line_[pos_])) {
-        ++pos_;
-    }
-    return pos_ < line_.size() ? lower(line_[pos_]) : '\0';
-}
-
-bool Lexer::accept(char c) {
-    if (peek() != c) {
-        return false;
-    }
-    take();
-    return true;
-}
 
 bool Lexer::accept_word(std::string_view word) {
     const std::size_t start = pos_;

@@ -14,11 +14,22 @@ class Lexer {
     explicit Lexer(std::string_view line) : line_(line) {}
 
     /// The next character that is not blank, in lower case; 0 at the end. Takes nothing but blanks.
-    char peek();
+    char peek() {
+        while (pos_ < line_.size() && isBlank(line_[pos_])) {
+            ++pos_;
+        }
+        return pos_ < line_.size() ? lower(line_[pos_]) : '\0';
+    }
     /// Takes the character that peek() showed.
     void take() { ++pos_; }
     /// Takes `c` if it is next.
-    bool accept(char c);
+    bool accept(char c) {
+        if (peek() != c) {
+            return false;
+        }
+        take();
+        return true;
+    }
     /// Takes a word of letters if it is next (blanks allowed inside), else nothing.
     bool accept_word(std::string_view word);
 
@@ -33,6 +44,11 @@ class Lexer {
     std::size_t position() const { return pos_; }
     void set_position(std::size_t pos) { pos_ = pos; }
     std::string_view line() const { return line_; }
+
+    static constexpr bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+    static constexpr char lower(char c) {
+        return (c >= 'A' && c <= 'Z') ? static_cast<char>(c - 'A' + 'a') : c;
+    }
 
   private:
     std::string_view line_;
