@@ -2,6 +2,7 @@
 // The machine as two processes: task here, motion and HAL threads in millwright-rt.
 #include <time.h>
 
+#include <algorithm>
 #include <cerrno>
 
 #include "hal/host/host_client.hh"
@@ -61,8 +62,11 @@ class RealtimeMachine final : public Machine {
     bool isVirtual() const override { return false; }
     RealtimeFigures realtime_figures() const override {
         RealtimeFigures figures;
+        figures.isRealtime = host_->hal().isRealtime();
+        figures.missing = host_->hal().realtime_missing();
         for (const hal::ThreadInfo &thread : host_->hal().threads()) {
             figures.overruns += thread.overruns;
+            figures.max_latency_ns = std::max(figures.max_latency_ns, thread.max_latency_ns);
         }
         return figures;
     }

@@ -173,6 +173,16 @@ bool Hal::isVirtual() const noexcept {
 bool Hal::isRealtime() const noexcept {
     return impl_->segment.header().isRealtime;
 }
+std::string Hal::realtime_missing() const {
+    Guard guard(*impl_);
+    return impl_->segment.header().realtime_missing.data();
+}
+void Hal::set_realtime_missing(std::string_view why) {
+    Guard guard(*impl_);
+    auto &text = impl_->segment.header().realtime_missing;
+    text.fill('\0');
+    std::copy_n(why.begin(), std::min(why.size(), text.size() - 1), text.begin());
+}
 rtapi::Log &Hal::log() noexcept {
     return *impl_->log;
 }

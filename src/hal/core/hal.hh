@@ -86,7 +86,8 @@ struct ThreadInfo {
     int owner_id = 0;                         ///< of the pseudo component __NAME
     std::vector<std::string> init_functions;  ///< run once
     std::vector<std::string> functions;       ///< in order of execution
-    std::uint64_t overruns = 0;
+    std::uint64_t overruns = 0;               ///< releases skipped
+    std::int64_t max_latency_ns = 0;          ///< of the wake-up
     std::int64_t time_ns = 0;
     std::int64_t tmax_ns = 0;
 };
@@ -130,6 +131,10 @@ class Hal {
     bool isVirtual() const noexcept;
     /// True when the host's threads have realtime priority.
     bool isRealtime() const noexcept;
+    /// Why they have none, as the realtime process said at its start; empty when they have, or in virtual
+    /// time.
+    std::string realtime_missing() const;
+    void set_realtime_missing(std::string_view why);
     rtapi::Log &log() noexcept;
     /// The scheduler of the host; null in an attached process.
     rtapi::Scheduler *scheduler() noexcept;
@@ -204,6 +209,8 @@ class Hal {
     Result<> start_threads();
     Result<> stop_threads();
     bool isRunning() const noexcept;
+    /// Lets other processes see the threads' overruns and latencies as they are now. [host]
+    void publish_thread_figures();
 
     Result<> set_lock(std::uint8_t lock);
     std::uint8_t lock() const noexcept;

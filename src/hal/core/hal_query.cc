@@ -174,6 +174,7 @@ std::vector<FunctInfo> Hal::functs(std::string_view glob) const {
 std::vector<ThreadInfo> Hal::threads(std::string_view glob) const {
     std::vector<ThreadInfo> list;
     Guard guard(*impl_);
+    impl_->publish_figures();
     const Segment &segment = impl_->segment;
     segment.each<ThreadRecord>(Kind::THREAD, [&](ThreadRecord &thread) {
         ThreadInfo info;
@@ -183,12 +184,8 @@ std::vector<ThreadInfo> Hal::threads(std::string_view glob) const {
         }
         info.period_ns = thread.period_ns;
         info.owner_id = impl_->comp_id(thread.comp);
-        for (const auto &runner : impl_->runners) {
-            if (runner->record == &thread) {
-                thread.overruns.store(impl_->scheduler->stats(runner->periodic).overruns);
-            }
-        }
         info.overruns = thread.overruns.load();
+        info.max_latency_ns = thread.max_latency_ns.load();
         info.tmax_ns = thread.tmax;
         if (const PinRecord *time = impl_->find_pin(info.name + ".time")) {
             info.time_ns = impl_->read(Type::S32, impl_->value_of(*time)).as_s32();

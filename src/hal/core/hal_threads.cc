@@ -395,6 +395,19 @@ Result<> Hal::stop_threads() {
     return {};
 }
 
+void Hal::Impl::publish_figures() const {
+    for (const auto &runner : runners) {
+        const rtapi::PeriodicStats stats = scheduler->stats(runner->periodic);
+        runner->record->overruns.store(stats.overruns);
+        runner->record->max_latency_ns.store(stats.max_latency_ns);
+    }
+}
+
+void Hal::publish_thread_figures() {
+    Guard guard(*impl_);
+    impl_->publish_figures();
+}
+
 bool Hal::isRunning() const noexcept {
     return impl_->segment.header().isRunning.load() != 0;
 }

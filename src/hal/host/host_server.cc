@@ -138,6 +138,7 @@ Result<> HostServer::Impl::open(const HostServerOptions &options) {
         return std::unexpected(made.error());
     }
     host = std::move(*made);
+    host->hal().set_realtime_missing(scheduler->missing());
     set_process_instance(&host->hal());
     return listen();
 }
@@ -321,6 +322,7 @@ void HostServer::run() {
         }
         if (ready <= 0 && !isBraking) {
             (void)here.host->hal().reap_dead_components();
+            here.host->hal().publish_thread_figures();
         }
         if (ready <= 0) {
             continue;

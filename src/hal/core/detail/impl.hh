@@ -98,6 +98,7 @@ struct Hal::Impl {
     int comp_id(detail::Offset comp) const noexcept;
     /// The block of this key with one more user; zeroed when it had none.
     Result<detail::BlockRecord *> open_block(int key, std::size_t bytes);
+    void publish_figures() const;
     void run_thread(detail::ThreadRecord &thread) noexcept;
 };
 

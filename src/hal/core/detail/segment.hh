@@ -120,9 +120,11 @@ struct ThreadRecord : Record {
     /// next load sees a new list, or the one who changed it sees the thread running and waits for the cycle
     /// to end. realtime
     std::atomic<std::uint32_t> active;
-    std::atomic<std::uint32_t> cycle;     ///< odd while the functions run. realtime
-    std::atomic<std::uint64_t> overruns;  ///< as last seen by the scheduler
-    std::uint64_t time_slot;              ///< pin slots of .time and .threadbeat. realtime
+    std::atomic<std::uint32_t> cycle;  ///< odd while the functions run. realtime
+                                       // As last told by the host (publish_thread_figures).
+    std::atomic<std::uint64_t> overruns;
+    std::atomic<std::int64_t> max_latency_ns;
+    std::uint64_t time_slot;  ///< pin slots of .time and .threadbeat. realtime
     std::uint64_t beat_slot;
     alignas(8) std::int32_t tmax;  ///< realtime
 };
@@ -163,7 +165,8 @@ struct Header {
     std::atomic<std::uint32_t> isRunning;  ///< threads are started. realtime
     std::atomic<std::uint8_t> lock;
     bool isVirtual;
-    bool isRealtime;  ///< threads have realtime priority
+    bool isRealtime;                         ///< threads have realtime priority
+    std::array<char, 256> realtime_missing;  ///< why threads have none
     std::int32_t next_comp_id;
     Offset top;  ///< first byte never handed out
     std::array<Table, static_cast<std::size_t>(Kind::COUNT)> tables;

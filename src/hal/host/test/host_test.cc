@@ -112,6 +112,9 @@ TEST_F(HostTest, RunsModulesInARealtimeProcessOfItsOwn_B5) {
     EXPECT_EQ(*hal.get("counter.0.count"), count) << "it no longer runs once remove_function has returned";
     EXPECT_EQ(text_of(client->unload_realtime("counter")), "ok");
     EXPECT_TRUE(hal.pins("counter*").empty());
+    EXPECT_TRUE(isSoon([&] { return hal.threads("fast")[0].max_latency_ns > 0; }))
+        << "told by the realtime process";
+    EXPECT_EQ(hal.isRealtime(), hal.realtime_missing().empty());
     EXPECT_FALSE(hal.new_thread("x", 1000000)) << "only in the realtime process";
     EXPECT_EQ(text_of(client->shut_down()), "ok");
     EXPECT_FALSE(isHostAlive(instance));
