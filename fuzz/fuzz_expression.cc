@@ -7,8 +7,7 @@
 
 #include "fuzz/null_machine.hh"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
-{
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
     using namespace mw::interp;
     mw::fuzz::NullMachine machine;
     MachineFrame frame(machine, LengthUnits::MM);
@@ -18,7 +17,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     }
     const std::string text(reinterpret_cast<const char *>(data), size);
     interpreter.execute("#1=3 #2=-1.5 #<a>=2 #<_g>=7");
-    if (interpreter.execute("#100=[" + text + "]") == Step::FILE_END && !std::isfinite(interpreter.parameter(100))) {
+    if (interpreter.execute("#100=[" + text + "]") == Step::FILE_END &&
+        !std::isfinite(interpreter.parameter(100))) {
         std::abort();
     }
     return 0;

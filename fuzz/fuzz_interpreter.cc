@@ -6,8 +6,7 @@
 
 #include "fuzz/null_machine.hh"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
-{
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
     using namespace mw::interp;
     mw::fuzz::NullMachine machine;
     MachineFrame frame(machine, LengthUnits::MM);

@@ -7,8 +7,7 @@
 
 #include "tool/table.hh"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
-{
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
     using mw::tool::Table;
     const auto table = Table::parse({reinterpret_cast<const char *>(data), size}, "fuzz.tbl");
     if (!table) {
@@ -24,7 +23,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     }
     for (int i = 1; i < table->count(); ++i) {
         const mw::tool::ToolEntry &a = table->entry(i), &b = again->entry(i);
-        if (a.toolno != b.toolno || a.pocketno != b.pocketno || a.offset != b.offset || a.diameter != b.diameter) {
+        if (a.toolno != b.toolno || a.pocketno != b.pocketno || a.offset != b.offset ||
+            a.diameter != b.diameter) {
             std::abort();
         }
     }

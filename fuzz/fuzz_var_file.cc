@@ -6,8 +6,7 @@
 
 #include "interp/detail/parameters.hh"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
-{
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
     mw::interp::detail::Parameters parameters;
     (void)parameters.parse({reinterpret_cast<const char *>(data), size}, "fuzz.var");
     return 0;

@@ -15,8 +15,7 @@ class NullMachine : public interp::MachineCanon,
                     public interp::ToolSource,
                     public interp::ParameterSource {
   public:
-    NullMachine()
-    {
+    NullMachine() {
         for (int i = 1; i <= 3; ++i) {
             interp::ToolEntry entry;
             entry.toolno = entry.pocketno = i;
@@ -76,7 +75,9 @@ class NullMachine : public interp::MachineCanon,
     interp::ToolEntry entry(int index) const override { return tools_.at(static_cast<std::size_t>(index)); }
     int index_of_tool(int toolno) const override { return toolno >= 1 && toolno < count() ? toolno : -1; }
     bool isRandom() const override { return false; }
-    std::optional<double> ini_value(std::string_view, std::string_view) const override { return std::nullopt; }
+    std::optional<double> ini_value(std::string_view, std::string_view) const override {
+        return std::nullopt;
+    }
     std::optional<double> hal_value(std::string_view) const override { return std::nullopt; }
 
   private:

@@ -63,7 +63,8 @@ class Canon {
     virtual void use_tool_length_offset(const Pose &offset) = 0;
 
     virtual void set_feed_reference_xyz() = 0;
-    /// [program units/min; 1/min under inverse time; program units/rev under units per revolution]
+    /// [program units/min; program units/rev under units per revolution]. Under inverse time (G93) it is
+    /// called before each move, with the rate that this move's length and F make.
     virtual void set_feed_rate(double rate) = 0;
     virtual void set_feed_mode(int spindle, FeedMode mode) = 0;
     /// `tolerance` [program units]: G64 P; 0 when not given.

@@ -61,8 +61,7 @@ Result<> Interpreter::open(const std::string &path) {
     return impl_->flow.open(path);
 }
 
-void Interpreter::open_text(const std::string &name, std::string text)
-{
+void Interpreter::open_text(const std::string &name, std::string text) {
     impl_->flow.open_text(name, std::move(text));
 }
 

@@ -102,7 +102,7 @@ void MachineFrame::use_tool_length_offset(const Pose &offset) {
 }
 
 void MachineFrame::set_feed_rate(double rate) {
-    feed_ = rate * (feed_mode_ == FeedMode::INVERSE_TIME ? 1.0 : length_factor());
+    feed_ = rate * length_factor();
 }
 
 void MachineFrame::set_feed_mode(int spindle, FeedMode mode) {
@@ -121,8 +121,8 @@ void MachineFrame::set_naivecam_tolerance(double tolerance) {
     naivecam_ = tolerance * length_factor();
 }
 
-/// `length` is what the feed is measured along [machine units, or degrees when not isLinear].
-MoveSettings MachineFrame::settings(FeedKind kind, double length, bool isLinear) const {
+/// `isLinear` is false for moves of A, B and C alone, whose feed is in degrees.
+MoveSettings MachineFrame::settings(FeedKind kind, bool isLinear) const {
     MoveSettings out;
     out.kind = kind;
     out.control = control_;
@@ -140,30 +140,28 @@ MoveSettings MachineFrame::settings(FeedKind kind, double length, bool isLinear)
         out.isVelocitySynched = true;
         // The speed at one revolution per second; the planner takes the spindle's own.
         out.feed = feed_;
-    } else if (feed_mode_ == FeedMode::INVERSE_TIME) {
-        out.feed = length * feed_ / SECONDS_PER_MINUTE;
-    } else {
-        // Degrees per minute are not lengths: the unit's factor is taken off again.
-        out.feed = feed_ / SECONDS_PER_MINUTE / (isLinear ? 1.0 : length_factor());
+        return out;
     }
+    // Degrees per minute are not lengths: the unit's factor is taken off again.
+    out.feed = feed_ / SECONDS_PER_MINUTE / (isLinear ? 1.0 : length_factor());
     return out;
 }
 
 void MachineFrame::straight_traverse(const Pose &end) {
     const Pose to = to_machine(end);
-    target_.line({to, settings(FeedKind::RAPID, 0.0, true)});
+    target_.line({to, settings(FeedKind::RAPID, true)});
     position_ = to;
 }
 
 void MachineFrame::straight_feed(const Pose &end) {
     const Pose to = to_machine(end);
     const FeedLength way = feed_length(position_, to);
-    target_.line({to, settings(FeedKind::FEED, way.length, way.isLinear)});
+    target_.line({to, settings(FeedKind::FEED, way.isLinear)});
     position_ = to;
 }
 
-/// Fills centre, normal and the angle; returns the radius [machine units].
-double MachineFrame::turn(ArcMove &move, const ArcFeed &arc) const {
+/// Fills centre, normal and the angle.
+void MachineFrame::turn(ArcMove &move, const ArcFeed &arc) const {
     const PlaneAxes axes = axes_of(plane_);
     const Pose start = to_program(position_);
     Pose centre = start;
@@ -186,7 +184,6 @@ double MachineFrame::turn(ArcMove &move, const ArcFeed &arc) const {
         angle -= FULL_TURN * (-arc.rotation - 1);
     }
     move.angle_rad = angle;
-    return std::hypot(x0, y0) * length_factor();
 }
 
 void MachineFrame::arc_feed(const ArcFeed &arc) {
@@ -196,10 +193,8 @@ void MachineFrame::arc_feed(const ArcFeed &arc) {
     }
     ArcMove move;
     move.end = to_machine(arc.end);
-    const double radius = turn(move, arc);
-    const int normal = axes_of(plane_).normal;
-    const double climb = arc.end[normal] * length_factor() - to_program(position_)[normal] * length_factor();
-    move.settings = settings(FeedKind::FEED, std::hypot(radius * move.angle_rad, climb), true);
+    turn(move, arc);
+    move.settings = settings(FeedKind::FEED, true);
     target_.arc(move);
     position_ = move.end;
 }
@@ -207,7 +202,7 @@ void MachineFrame::arc_feed(const ArcFeed &arc) {
 void MachineFrame::straight_probe(const Pose &end, ProbeKind kind) {
     const Pose to = to_machine(end);
     const FeedLength way = feed_length(position_, to);
-    target_.probe({to, settings(FeedKind::FEED, way.length, way.isLinear)}, kind);
+    target_.probe({to, settings(FeedKind::FEED, way.isLinear)}, kind);
     position_ = to;
 }
 
@@ -218,7 +213,7 @@ void MachineFrame::rigid_tap(double x, double y, double z, double scale) {
     end[geom::AXIS_Z] = z;
     const Pose to = to_machine(end);
     const FeedLength way = feed_length(position_, to);
-    target_.rigid_tap({to, settings(FeedKind::RIGID_TAP, way.length, way.isLinear)}, scale);
+    target_.rigid_tap({to, settings(FeedKind::RIGID_TAP, way.isLinear)}, scale);
     // The tool comes back to where it began: the position stays.
 }
 

@@ -106,8 +106,8 @@ class MachineFrame final : public Canon {
     double length_factor() const;  ///< program units to machine units
     Pose to_machine_units(const Pose &program) const;
     void announce_offsets();
-    MoveSettings settings(FeedKind kind, double length, bool isLinear) const;
-    double turn(ArcMove &move, const ArcFeed &arc) const;
+    MoveSettings settings(FeedKind kind, bool isLinear) const;
+    void turn(ArcMove &move, const ArcFeed &arc) const;
 
     MachineCanon &target_;
     LengthUnits machine_units_;

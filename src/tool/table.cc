@@ -2,6 +2,7 @@
 #include "tool/table.hh"
 
 #include <cctype>
+#include <charconv>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -13,6 +14,14 @@ namespace mw::tool {
 namespace {
 
 constexpr int MAX_NUMBER = 99999999;
+constexpr double MAX_VALUE = 1e9;
+
+/// Shortest text without an exponent that reads back as the same double.
+std::string fixed_text(double value) {
+    char buffer[400];
+    const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed);
+    return error == std::errc() ? std::string(buffer, end) : std::string("0");
+}
 
 /// One word of a line: a letter and its number.
 struct Word {
@@ -63,6 +72,9 @@ Result<Word> LineParser::word() {
     if (!number) {
         return error(fmt::format("{} needs a number, not '{}'", out.letter, text_.substr(begin, end - begin)),
                      static_cast<int>(begin) + 1);
+    }
+    if (std::fabs(*number) > MAX_VALUE) {
+        return error(fmt::format("{} is too large", out.letter), static_cast<int>(begin) + 1);
     }
     out.value = *number;
     at_ = end;
@@ -228,7 +240,7 @@ std::string format_entry(const ToolEntry &entry) {
     std::string out = fmt::format("T{} P{}", entry.toolno, entry.pocketno);
     const auto add = [&out](char letter, double value) {
         if (value != 0.0) {
-            out += fmt::format(" {}{}", letter, to_text(value));
+            out += fmt::format(" {}{}", letter, fixed_text(value));
         }
     };
     for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "interp/detail/canon_queue.hh"
 
+#include <algorithm>
+
 #include "interp/detail/program.hh"
 
 namespace mw::interp::detail {
@@ -32,7 +34,7 @@ std::uint32_t CanonQueue::keep(std::string_view text) {
 }
 
 void CanonQueue::truncate(std::size_t count) {
-    records_.resize(count);
+    records_.resize(std::min(count, records_.size()));
     if (count == 0) {
         texts_.clear();
         tools_.clear();

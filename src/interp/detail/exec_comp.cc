@@ -159,6 +159,11 @@ bool Executor::do_comp(const Code &code, const BlockValues &values) {
             state.comp_orientation = entry.orientation;
         }
     }
+    constexpr int CENTRED = 9;
+    if (state.plane == Plane::XZ && state.comp_orientation != 0 && state.comp_orientation != CENTRED) {
+        return fault.set(
+            "Cutter radius compensation of lathe tools with an orientation is not supported yet");
+    }
     const bool isLeft = (code.number < 420) == (diameter >= 0.0);
     state.comp = isLeft ? CompSide::LEFT : CompSide::RIGHT;
     state.comp_code = code.number;

@@ -139,16 +139,7 @@ bool Executor::do_straight(const Code &code, const BlockValues &values) {
     return true;
 }
 
-bool Executor::do_cancel_motion(const Code &, const BlockValues &values) {
-    if (values.hasAxes()) {
-        bool isUsedElsewhere = false;
-        for (const ActiveCode &active : values.codes) {
-            isUsedElsewhere = isUsedElsewhere || active.code->usesAxes;
-        }
-        if (!isUsedElsewhere) {
-            return fault.set("Cannot use axis values with g80");
-        }
-    }
+bool Executor::do_cancel_motion(const Code &, const BlockValues &) {
     canon.comment("interpreter: motion mode set to none");
     state.motion = MOTION_NONE;
     state.cycle.isRunning = false;

@@ -55,10 +55,8 @@ void Executor::rollback() {
 void Executor::flush(Canon &target) {
     const bool isHeld = state.comp != CompSide::OFF && state.comp_last.isSet;
     const std::size_t count = isHeld ? state.comp_last.record : canon.size();
-    if (count == 0) {
-        return;
-    }
     canon.flush(target, count);
+    queued_before_ = canon.size();
     if (isHeld) {
         state.comp_last.record -= count;
         before_.comp_last.record = state.comp_last.record;
@@ -109,8 +107,11 @@ void Executor::synch() {
 void Executor::synch_tool(const MachineSnapshot &snapshot) {
     const bool isInTable = snapshot.current_pocket > 0 && snapshot.current_pocket < tools_.count();
     const bool isLoaded = snapshot.tool_in_spindle > 0;
+    const int found = isLoaded && !isInTable ? tools_.index_of_tool(snapshot.tool_in_spindle) : -1;
     if (isLoaded && isInTable) {
         load_tool(snapshot.current_pocket);
+    } else if (found > 0) {
+        load_tool(found);
     } else {
         load_tool(0);
         state.tool_index = snapshot.current_pocket;

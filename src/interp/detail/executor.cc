@@ -144,13 +144,17 @@ bool Executor::insert_code(const Code &code, std::uint32_t column, BlockValues &
 
 /// Axis words belong to a code of the block that uses them, else to the motion in force.
 bool Executor::choose_motion(BlockValues &values) {
-    if (values.motion != nullptr || !values.hasAxes()) {
+    const bool isCancelling = values.motion != nullptr && values.motion->number == MOTION_NONE;
+    if ((values.motion != nullptr && !isCancelling) || !values.hasAxes()) {
         return true;
     }
     for (const ActiveCode &active : values.codes) {
         if (active.code->usesAxes) {
             return true;
         }
+    }
+    if (isCancelling) {
+        return fault.set("Cannot use axis values with g80");
     }
     if (state.motion == MOTION_NONE) {
         return fault.set("Cannot use axis values without a g code that uses them");

@@ -15,8 +15,7 @@ const std::string &Flow::file() const {
     return program_ == nullptr ? NO_FILE : program_->path();
 }
 
-Result<> Flow::open(const std::string &path)
-{
+Result<> Flow::open(const std::string &path) {
     Result<std::string> text = read_file(path);
     if (!text) {
         return std::unexpected(text.error());
@@ -25,8 +24,7 @@ Result<> Flow::open(const std::string &path)
     return {};
 }
 
-void Flow::open_text(const std::string &name, std::string text)
-{
+void Flow::open_text(const std::string &name, std::string text) {
     close();
     std::unique_ptr<Program> &program = programs_[name];
     program = std::make_unique<Program>(name, std::move(text), names_);

@@ -68,8 +68,7 @@ Result<> Parameters::load(const std::string &path) {
     return text ? parse(*text, path) : std::unexpected(text.error());
 }
 
-Result<> Parameters::parse(std::string_view text, const std::string &path)
-{
+Result<> Parameters::parse(std::string_view text, const std::string &path) {
     std::vector<Row> rows;
     int line = 0;
     for (std::size_t begin = 0; begin < text.size();) {

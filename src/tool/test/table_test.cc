@@ -43,6 +43,14 @@ TEST(ToolTable, writing_keeps_comments_and_unchanged_lines_I1) {
     EXPECT_EQ(table->text(), ";head\nT1  P1   Z1 ;one\n\nT2 P2 Z2.5 ;two\n");
 }
 
+TEST(ToolTable, small_numbers_are_written_without_exponent_I1) {
+    auto table = Table::parse("T1 P1 Z0.0000125\n", "tool.tbl");
+    ASSERT_TRUE(table);
+    table->set_entry(1, table->entry(1));
+    EXPECT_EQ(table->text(), "T1 P1 Z0.0000125\n");
+    EXPECT_FALSE(Table::parse("T1 P1 Z99999999999999\n", "tool.tbl"));
+}
+
 TEST(ToolTable, spindle_is_entry_zero_D3) {
     auto table = Table::parse("T5 P1 Z1\n", "tool.tbl");
     ASSERT_TRUE(table);

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Each code once as it should be and once as it should not: canon calls in the standalone format.
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "interp/interpreter.hh"
+#include "interp/print_canon.hh"
+#include "interp/standalone.hh"
+
+namespace mw::interp {
+namespace {
+
+struct Outcome {
+    std::vector<std::string> calls;
+    Step step = Step::OK;
+    std::string error;
+    int error_line = 0, error_column = 0;
+};
+
+/// Canon calls of a program that starts in millimetres on a metric machine; those of the start are left out.
+Outcome run(const std::string &program, Settings settings = {}) {
+    Outcome out;
+    std::FILE *file = std::tmpfile();
+    {
+        PrintCanon canon(file);
+        Standalone world;
+        world.units = LengthUnits::MM;
+        world.table = built_in_tools();
+        settings.statement_budget = 100000;
+        Interpreter interpreter(canon, world, world, world, settings);
+        EXPECT_TRUE(interpreter.begin());
+        std::rewind(file);
+        interpreter.open_text("test.ngc", program);
+        do {
+            out.step = interpreter.step();
+        } while (out.step == Step::OK || out.step == Step::SYNC);
+        if (out.step == Step::FAILED) {
+            out.error = interpreter.error().what.message;
+            out.error_line = interpreter.error().what.place.line;
+            out.error_column = interpreter.error().what.place.column;
+        }
+    }
+    const long end = std::ftell(file);
+    std::rewind(file);
+    char line[1024];
+    while (std::ftell(file) < end && std::fgets(line, sizeof line, file) != nullptr) {
+        std::string text = line;
+        text.pop_back();
+        const std::size_t call = text.find("N..... ");
+        out.calls.push_back(call == std::string::npos ? text : text.substr(call + 7));
+    }
+    std::fclose(file);
+    return out;
+}
+
+std::string joined(const std::vector<std::string> &calls) {
+    std::string out;
+    for (const std::string &call : calls) {
+        out += call + '\n';
+    }
+    return out;
+}
+
+struct GoodCase {
+    const char *program;
+    std::vector<std::string> calls;
+};
+
+class GoodCode : public testing::TestWithParam<GoodCase> {};
+
+TEST_P(GoodCode, calls_the_canon_I1) {
+    const Outcome out = run(std::string(GetParam().program) + "\n%\n");
+    EXPECT_EQ(out.step, Step::FILE_END) << out.error;
+    std::vector<std::string> want = GetParam().calls;
+    want.emplace_back("FINISH()");
+    EXPECT_EQ(joined(out.calls), joined(want));
+}
+
+const GoodCase GOOD[] = {
+    {"G0 X1 Y2 Z3 A4 B5 C6", {"STRAIGHT_TRAVERSE(1.0000, 2.0000, 3.0000, 4.0000, 5.0000, 6.0000)"}},
+    {"G1 X1 F10",
+     {"SET_FEED_RATE(10.0000)", "STRAIGHT_FEED(1.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)"}},
+    {"G0 @5 ^90", {"STRAIGHT_TRAVERSE(0.0000, 5.0000, 0.0000, 0.0000, 0.0000, 0.0000)"}},
+    {"G2 X2 I1 F1",
+     {"SET_FEED_RATE(1.0000)",
+      "ARC_FEED(2.0000, 0.0000, 1.0000, 0.0000, -1, 0.0000, 0.0000, 0.0000, 0.0000)"}},
+    {"G3 X2 R-1 Z5 F1",
+     {"SET_FEED_RATE(1.0000)",
+      "ARC_FEED(2.0000, 0.0000, 1.0000, 0.0000, 1, 5.0000, 0.0000, 0.0000, 0.0000)"}},
+    {"G18 G3 X0 Z2 K1 F1",
+     {"SET_FEED_RATE(1.0000)", "SELECT_PLANE(CANON_PLANE_XZ)",
+      "ARC_FEED(2.0000, 0.0000, 1.0000, 0.0000, 1, 0.0000, 0.0000, 0.0000, 0.0000)"}},
+    {"G4 P1.5", {"DWELL(1.5000)"}},
+    {"G7 G0 X2",
+     {"COMMENT(\"interpreter: Lathe diameter mode changed to diameter\")",
+      "STRAIGHT_TRAVERSE(1.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)"}},
+    {"G10 L2 P1 X5 R90\nG0 X0",
+     {"SET_G5X_OFFSET(1, 5.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)", "SET_XY_ROTATION(90.0000)",
+      "STRAIGHT_TRAVERSE(0.0000, 5.0000, 0.0000, 0.0000, 0.0000, 0.0000)"}},
+    {"G0 X3\nG10 L20 P1 X1\nG0 Y1",
+     {"STRAIGHT_TRAVERSE(3.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)",
+      "SET_G5X_OFFSET(1, 2.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)", "SET_XY_ROTATION(0.0000)",
+      "STRAIGHT_TRAVERSE(1.0000, 1.0000, 0.0000, 0.0000, 0.0000, 0.0000)"}},
+    {"G20\nG0 X1\nG21\nG0 Y1",
+     {"USE_LENGTH_UNITS(CANON_UNITS_INCHES)",
+      "STRAIGHT_TRAVERSE(1.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)", "USE_LENGTH_UNITS(CANON_UNITS_MM)",
+      "STRAIGHT_TRAVERSE(25.4000, 1.0000, 0.0000, 0.0000, 0.0000, 0.0000)"}},
+    {"G0 X2\nG28.1\nG0 X9\nG28 Y1",
+     {"STRAIGHT_TRAVERSE(2.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)",
+      "STRAIGHT_TRAVERSE(9.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)",
+      "STRAIGHT_TRAVERSE(9.0000, 1.0000, 0.0000, 0.0000, 0.0000, 0.0000)",
+      "STRAIGHT_TRAVERSE(9.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)"}},
+    {"G43 H3\nG49",
+     {"USE_TOOL_LENGTH_OFFSET(0.0000 0.0000 1.2730, 0.0000 0.0000 0.0000, 0.0000 0.0000 0.0000)",
+      "USE_TOOL_LENGTH_OFFSET(0.0000 0.0000 0.0000, 0.0000 0.0000 0.0000, 0.0000 0.0000 0.0000)"}},
+    {"G43 H3\nG43.2 H2",
+     {"USE_TOOL_LENGTH_OFFSET(0.0000 0.0000 1.2730, 0.0000 0.0000 0.0000, 0.0000 0.0000 0.0000)",
+      "USE_TOOL_LENGTH_OFFSET(0.0000 0.0000 1.3730, 0.0000 0.0000 0.0000, 0.0000 0.0000 0.0000)"}},
+    {"G52 X2\nG53 G0 X0",
+     {"SET_G92_OFFSET(2.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)",
+      "STRAIGHT_TRAVERSE(-2.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)"}},
+    {"G55",
+     {"SET_G5X_OFFSET(2, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)",
+      "SET_G92_OFFSET(0.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)", "SET_XY_ROTATION(0.0000)"}},
+    {"G61\nG61.1\nG64 P0.1 Q0.2",
+     {"SET_MOTION_CONTROL_MODE(CANON_EXACT_PATH)", "SET_MOTION_CONTROL_MODE(CANON_EXACT_STOP)",
+      "SET_MOTION_CONTROL_MODE(CANON_CONTINUOUS, 0.100000)", "SET_NAIVECAM_TOLERANCE(0.2000)"}},
+    {"G61 G73 X1 Z-1 R1 Q1.5 F1",
+     {"SET_FEED_RATE(1.0000)", "SET_MOTION_CONTROL_MODE(CANON_EXACT_PATH)",
+      "STRAIGHT_TRAVERSE(0.0000, 0.0000, 1.0000, 0.0000, 0.0000, 0.0000)",
+      "STRAIGHT_TRAVERSE(1.0000, 0.0000, 1.0000, 0.0000, 0.0000, 0.0000)",
+      "STRAIGHT_FEED(1.0000, 0.0000, -0.5000, 0.0000, 0.0000, 0.0000)",
+      "STRAIGHT_TRAVERSE(1.0000, 0.0000, -0.2460, 0.0000, 0.0000, 0.0000)",
+      "STRAIGHT_FEED(1.0000, 0.0000, -1.0000, 0.0000, 0.0000, 0.0000)",
+      "STRAIGHT_TRAVERSE(1.0000, 0.0000, 1.0000, 0.0000, 0.0000, 0.0000)"}},
+    {"G91 G0 X1\nX1",
+     {"COMMENT(\"interpreter: distance mode changed to incremental\")",
+      "STRAIGHT_TRAVERSE(1.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)",
+      "STRAIGHT_TRAVERSE(2.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)"}},
+    {"G93 G1 X3 F2",
+     {"COMMENT(\"interpreter: feed mode set to inverse time\")", "SET_FEED_MODE(0, 0)",
+      "SET_FEED_RATE(6.0000)", "STRAIGHT_FEED(3.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)"}},
+    {"G96 D500 S100", {"SET_SPINDLE_MODE(0 500.0000)", "SET_SPINDLE_SPEED(0, 100.0000)"}},
+    {"M3 S100\nG33 Z-1 K0.5",
+     {"SET_SPINDLE_SPEED(0, 100.0000)", "START_SPINDLE_CLOCKWISE(0)", "START_SPEED_FEED_SYNC(0.500000,0)",
+      "STRAIGHT_FEED(0.0000, 0.0000, -1.0000, 0.0000, 0.0000, 0.0000)", "STOP_SPEED_FEED_SYNCH()"}},
+    {"T2 M6", {"SELECT_TOOL(2)", "STOP_SPINDLE_TURNING(0)", "CHANGE_TOOL()"}},
+    {"M61 Q3", {"CHANGE_TOOL_NUMBER(3)"}},
+    {"M7\nM8\nM9", {"MIST_ON()", "FLOOD_ON()", "MIST_OFF()", "FLOOD_OFF()"}},
+    {"M19 R90 Q2", {"ORIENT_SPINDLE(0, 90.0000, 0)", "SPINDLE.0.WAIT_ORIENT_COMPLETE(2.0000)"}},
+    {"M49\nM48",
+     {"DISABLE_FEED_OVERRIDE()", "DISABLE_SPEED_OVERRIDE(0)", "ENABLE_FEED_OVERRIDE()",
+      "ENABLE_SPEED_OVERRIDE(0)"}},
+    {"M52\nM53 P0", {"ENABLE_ADAPTIVE_FEED()", "DISABLE_FEED_HOLD()"}},
+    {"M0\nM1\nM60", {"PROGRAM_STOP()", "OPTIONAL_PROGRAM_STOP()", "PALLET_SHUTTLE()", "PROGRAM_STOP()"}},
+    {"M62 P1\nM65 P2\nM67 E1 Q2.5\nM68 E0 Q1",
+     {"SET_MOTION_OUTPUT_BIT(1)", "CLEAR_AUX_OUTPUT_BIT(2)", "SET_MOTION_OUTPUT_VALUE(1,2.500000)",
+      "SET_AUX_OUTPUT_VALUE(0,1.000000)"}},
+    {"M66 P1 L3 Q2", {"WAIT(1, 1, 3, 2.0000)"}},
+    {"G38.2 X5 F1",
+     {"SET_FEED_RATE(1.0000)", "TURN_PROBE_ON()",
+      "STRAIGHT_PROBE(5.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)", "TURN_PROBE_OFF()"}},
+    {"#1=2\n#2=[2**3*#1 mod 5]\n(print,#1 #2)", {"2.000000 1.000000"}},
+};
+
+INSTANTIATE_TEST_SUITE_P(Codes, GoodCode, testing::ValuesIn(GOOD));
+
+struct BadCase {
+    const char *program;
+    const char *error;  ///< a part of the message
+};
+
+class BadCode : public testing::TestWithParam<BadCase> {};
+
+TEST_P(BadCode, names_the_fault_and_its_place_I1) {
+    const Outcome out = run(std::string("(first line)\n") + GetParam().program + "\n%\n");
+    EXPECT_EQ(out.step, Step::FAILED);
+    EXPECT_NE(out.error.find(GetParam().error), std::string::npos) << out.error;
+    EXPECT_EQ(out.error_line, 2);
+    EXPECT_EQ(joined(out.calls), "COMMENT(\"first line\")\n") << "a failed block must not act";
+}
+
+const BadCase BAD[] = {
+    {"G1 X1", "zero feed rate"},
+    {"F1 G2 X1", "all missing for arc"},
+    {"F1 G2 X1 I5", "Radius to end of arc"},
+    {"F1 G2 X1 I1 R1", "Mixed radius"},
+    {"F1 G2 X1 K1", "K word given for arc in xy plane"},
+    {"F1 G2 X5 R1", "too small"},
+    {"F1 G3 I1 P0", "P value should be 1"},
+    {"S5 G4", "Dwell time missing"},
+    {"G10 L3 P1", "L1, L2, L10, L11 or L20"},
+    {"G10 L2 P10", "out of range"},
+    {"G10 L1 P9 Z1", "Requested tool 9"},
+    {"G43 H99", "Requested tool 99"},
+    {"G43.2", "No axes specified and H word missing"},
+    {"G53 G91 G0 X1", "g53 incremental"},
+    {"G64 P-1", "must not be negative"},
+    {"F1 G81 X1 Z0 A1 R1", "Cannot put an a in canned cycle"},
+    {"F1 G81 X1 R1", "needs the depth"},
+    {"F1 G81 Z1 R0", "R value less than z"},
+    {"F1 G83 Z0 R1 Q0", "peck depth"},
+    {"F1 G84 Z0 R1", "Spindle not turning"},
+    {"G80 X1", "Cannot use axis values"},
+    {"X1", "without a g code"},
+    {"G92", "All axes missing"},
+    {"G93 F1 G1 X1 G94", "same modal group"},
+    {"G96 D1", "needs the word S"},
+    {"G33 Z1 K1", "Spindle not turning"},
+    {"G38.2 F1", "All axes missing"},
+    {"G41.1", "needs the word D"},
+    {"G17.5", "Unknown g code"},
+    {"G0 X1 K2", "K word with no g code"},
+    {"G0 X1 X2", "Multiple x words"},
+    {"G28 G0 X1", "both use axis values"},
+    {"T99", "Requested tool 99"},
+    {"M6", "no T word"},
+    {"M61", "needs the word Q"},
+    {"M62", "needs the word P"},
+    {"M62 P64", "0 to 63"},
+    {"M66 P1 E1", "either P"},
+    {"M66 P1 L3", "timeout"},
+    {"M19 R400", "0 to 360"},
+    {"M72", "nothing to restore"},
+    {"M98", "no P-word"},
+    {"M105", "Unknown m code"},
+    {"M300", "greater than 199"},
+    {"S-1", "Negative spindle speed"},
+    {"F-1", "Negative f word"},
+    {"M3 $5", "no spindle 5"},
+    {"#5420=1", "readonly"},
+    {"#<_x>=1", "read-only"},
+    {"#0=1", "out of range"},
+    {"G0 X[1/0]", "divide by zero"},
+    {"G0 X[1", "Unclosed expression"},
+    {"G0 X#<nowhere>", "not defined"},
+    {"G0 Xfoo[1]", "Unknown word starting with f"},
+    {"G0 (open", "Unclosed comment"},
+    {"(abort,stop #1)", "stop 0.000000"},
+    {"O9 call", "no subroutine"},
+    {"O9 endif", "no matching if"},
+    {"O9 while [1]", "no matching endwhile"},
+    {"O9 endsub", "not in a subroutine"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Codes, BadCode, testing::ValuesIn(BAD));
+
+}  // namespace
+}  // namespace mw::interp

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Subroutines, loops, conditions, remaps, errors in callers, parameter files.
+#include <gtest/gtest.h>
+
+#include "interp/test/recorder.hh"
+
+namespace mw::interp {
+namespace {
+
+using test::Machine;
+using Calls = std::vector<std::string>;
+
+TEST(Flow, subroutine_gets_arguments_and_returns_a_value_I1) {
+    Machine machine;
+    EXPECT_EQ(machine.run("O1 sub\n#5=9\nO1 return [#1*10+#2]\nO1 endsub\n#1=7 #5=1\nO1 call [3] [4]\n"
+                          "(print,#<_value> #1 #5 #<_value_returned>)\n"),
+              Step::PROGRAM_END)
+        << machine.error();
+    EXPECT_EQ(machine.record.calls[0], "print34.000000 7.000000 1.000000 1.000000");
+}
+
+TEST(Flow, subroutine_in_a_file_of_its_own_I1) {
+    Machine machine;
+    machine.write("drill.ngc", "o<drill> sub\nG0 X#1\no<other> call\no<drill> endsub\nM2\n");
+    machine.write("other.ngc", "o<other> sub\nG0 Y5\no<other> endsub\n");
+    EXPECT_EQ(machine.run("o<Drill> call [4]\n"), Step::PROGRAM_END) << machine.error();
+    ASSERT_EQ(machine.record.lines.size(), 2u);
+    EXPECT_EQ(machine.record.lines[1].end[0], 4);
+    EXPECT_EQ(machine.record.lines[1].end[1], 5);
+}
+
+TEST(Flow, error_in_a_subroutine_names_place_and_callers_I1) {
+    Machine machine;
+    machine.write("inner.ngc", "o<inner> sub\nG0 X1\nG1 X[2/0] F1\no<inner> endsub\n");
+    EXPECT_EQ(machine.run("o1 sub\no<inner> call\no1 endsub\no1 call\n"), Step::FAILED);
+    const diag::Diagnostic &error = machine.interpreter->error();
+    EXPECT_TRUE(error.what.place.file.ends_with("inner.ngc"));
+    EXPECT_EQ(error.what.place.line, 3);
+    EXPECT_EQ(error.what.place.column, 7);
+    EXPECT_EQ(error.line_text, "G1 X[2/0] F1");
+    ASSERT_EQ(error.called_from.size(), 2u);
+    EXPECT_EQ(error.called_from[0].line, 2);
+    EXPECT_EQ(error.called_from[1].line, 4);
+    EXPECT_EQ(machine.interpreter->call_level(), 0);
+}
+
+TEST(Flow, loops_and_conditions_I1) {
+    Machine machine;
+    EXPECT_EQ(
+        machine.run(
+            "#1=0\n"
+            "o1 while [1]\n#1=[#1+1]\n"
+            "o2 if [#1 eq 2]\no1 continue\no2 elseif [#1 eq 4]\no1 break\no2 else\n(print,w#1)\no2 endif\n"
+            "o1 endwhile\n"
+            "o3 do\n(print,d#1)\n#1=[#1-1]\no3 while [#1 gt 2]\n"
+            "o4 repeat [2]\n(print,r)\no4 endrepeat\n"
+            "o5 repeat [0]\n(print,never)\no5 endrepeat\n"),
+        Step::PROGRAM_END)
+        << machine.error();
+    const Calls want{"printw1.000000", "printw3.000000", "printd4.000000",
+                     "printd3.000000", "printr",         "printr"};
+    EXPECT_EQ(Calls(machine.record.calls.begin(), machine.record.calls.begin() + 6), want);
+}
+
+TEST(Flow, recursion_is_bounded_I1) {
+    Machine machine;
+    EXPECT_EQ(machine.run("o1 sub\no1 call\no1 endsub\no1 call\n"), Step::FAILED);
+    EXPECT_NE(machine.error().find("nested"), std::string::npos);
+}
+
+TEST(Flow, endless_loop_ends_by_the_budget_I1) {
+    Settings settings;
+    settings.statement_budget = 1000;
+    Machine machine(settings);
+    EXPECT_EQ(machine.run("o1 while [1]\no1 endwhile\n"), Step::FAILED);
+}
+
+TEST(Flow, fanuc_calls_share_parameters_I1) {
+    Machine machine;
+    EXPECT_EQ(machine.run("#1=0\nM98 P7 L3\n(print,#1)\nM2\nO7\n#1=[#1+2]\nM99\n"), Step::PROGRAM_END)
+        << machine.error();
+    EXPECT_EQ(machine.record.calls[0], "print6.000000");
+}
+
+TEST(Flow, modes_saved_by_m73_come_back_after_the_call_I1) {
+    Machine machine;
+    EXPECT_EQ(machine.run("G91\no1 sub\nM73\nG90 G20\no1 endsub\no1 call\nG0 X1\nX1\n"), Step::PROGRAM_END)
+        << machine.error();
+    EXPECT_DOUBLE_EQ(machine.record.lines.back().end[0], 2.0);
+}
+
+TEST(Flow, remapped_code_runs_its_subroutine_with_words_I1) {
+    Settings settings;
+    settings.remaps = {"M400 modalgroup=5 argspec=Pq ngc=rm400"};
+    Machine machine(settings);
+    machine.write("rm400.ngc", "o<rm400> sub\n(print,p=#<p> level #<_remap_level>)\no<rm400> endsub\n");
+    EXPECT_EQ(machine.run("M400 P3 G0 X1\n"), Step::PROGRAM_END) << machine.error();
+    EXPECT_EQ(machine.record.calls[0], "printp=3.000000 level 1.000000");
+    EXPECT_EQ(machine.record.lines.size(), 1u);
+    EXPECT_EQ(machine.run("M400 Q3\n"), Step::FAILED);
+    EXPECT_EQ(machine.interpreter->error().what.message, "user-defined M400: missing: P");
+}
+
+TEST(Flow, python_remap_says_that_it_is_not_supported_I1) {
+    Settings settings;
+    settings.remaps = {"M401 modalgroup=5 py=handler"};
+    Machine machine(settings);
+    EXPECT_EQ(machine.run("M401\n"), Step::FAILED);
+    EXPECT_NE(machine.error().find("Python remaps are not supported by this build yet"), std::string::npos);
+}
+
+TEST(Flow, mdi_goes_on_after_a_failed_line_I1) {
+    Machine machine;
+    ASSERT_TRUE(machine.interpreter->begin());
+    EXPECT_EQ(machine.interpreter->execute("G0 X1"), Step::FILE_END);
+    EXPECT_EQ(machine.interpreter->execute("G0 X["), Step::FAILED);
+    EXPECT_EQ(machine.interpreter->execute("G0 Y1"), Step::FILE_END);
+    EXPECT_EQ(machine.record.lines.size(), 2u);
+}
+
+TEST(ParameterFile, comes_back_as_written_I1) {
+    Machine machine;
+    machine.write("a.var", "5221\t12.5\n31 7\n");
+    const std::string path = (machine.folder / "a.var").string();
+    ASSERT_TRUE(machine.interpreter->load_parameters(path));
+    EXPECT_EQ(machine.interpreter->parameter(5221), 12.5);
+    ASSERT_TRUE(machine.interpreter->save_parameters(path));
+    Machine other;
+    ASSERT_TRUE(other.interpreter->load_parameters(path));
+    EXPECT_EQ(other.interpreter->parameter(5221), 12.5);
+    EXPECT_EQ(other.interpreter->parameter(31), 7);
+}
+
+TEST(ParameterFile, bad_lines_are_named_I1) {
+    for (const char *text : {"5221 1\nx 2\n", "5221 1\n5222\n", "5221 1\n5222 1,5\n", "5221 1\n99999 1\n"}) {
+        Machine machine;
+        machine.write("a.var", text);
+        const auto loaded = machine.interpreter->load_parameters((machine.folder / "a.var").string());
+        ASSERT_FALSE(loaded) << text;
+        EXPECT_EQ(loaded.error().place.line, 2);
+        EXPECT_EQ(machine.interpreter->parameter(5221), 0.0) << "nothing is taken from a bad file";
+    }
+}
+
+}  // namespace
+}  // namespace mw::interp
