@@ -171,7 +171,7 @@ double blend_d_for_speed(const Primitive &a, const Primitive &b, const Limits &l
     turn[XYZ_NORM] = norm_xyz(turn);
     double d = 0;
     for (std::size_t i = 0; i < turn.size(); ++i) {
-        d = std::max(d, v * v * turn[i] / limits.acceleration[i]);
+        d = std::max(d, v * v * turn[i] / (2.0 * BLEND_SHARE * limits.acceleration[i]));
     }
     return d;
 }

@@ -19,7 +19,7 @@ struct Machine {
     Machine() {
         hal::HalOptions options;
         options.scheduler = &clock;
-        auto made = hal::LocalHost::create(options, {MW_MODULE_FOLDER});
+        auto made = hal::LocalHost::create(options, {MW_MODULE_FOLDER, MW_TEST_MODULE_FOLDER});
         if (made.has_value()) {
             host = std::move(*made);
         }
@@ -28,10 +28,10 @@ struct Machine {
         const auto status = host->load_realtime(name, args);
         return status.has_value() ? "ok" : status.error().str();
     }
-    void start() {
+    void start(const std::string &kinematics = "trivkins") {
         ASSERT_EQ(load("tpmod"), "ok");
         ASSERT_EQ(load("homemod"), "ok");
-        ASSERT_EQ(load("trivkins", {"coordinates=XYZ"}), "ok");
+        ASSERT_EQ(load(kinematics), "ok");
         ASSERT_EQ(load("motmod", {"servo_period_nsec=1000000", "num_joints=3"}), "ok");
         hal::Hal &hal = host->hal();
         for (const std::string n : {"0", "1", "2"}) {
@@ -96,6 +96,28 @@ TEST(Motmod, EstopChainDropsTheAmplifiersInTheSameServoCycle) {
     m.run(0.001);
     EXPECT_EQ(m.value("joint.2.amp-enable-out"), 0);
     EXPECT_EQ(m.value("motion.motion-enabled"), 0);
+}
+
+TEST(Motmod, KinematicsOfOthersMoveTheJoints_C14) {
+    Machine m;
+    ASSERT_NO_FATAL_FAILURE(m.start("skewkins"));
+    m.send(Abort{1});
+    m.send(Enable{});
+    m.send(SetMode{Mode::COORD});
+    m.run(0.05);
+    EXPECT_EQ(m.value("motion.coord-mode"), 0) << "not before homing";
+    m.ready();
+    EXPECT_EQ(m.value("motion.coord-mode"), 1);
+    Line line;
+    line.end[0] = 10;
+    line.end[1] = 20;
+    line.terms.feed = 50;
+    m.channels->path.push({m.next_id++, 1, line});
+    m.channels->path.push({m.next_id++, 1, Flush{}});
+    m.run(2);
+    EXPECT_EQ(m.value("joint.0.motor-pos-cmd"), 12.0);
+    EXPECT_EQ(m.value("joint.1.motor-pos-cmd"), 20.0);
+    EXPECT_EQ(m.value("axis.x.pos-cmd"), 10.0);
 }
 
 TEST(Motmod, WithoutKinematicsItSaysWhatToLoad) {
