@@ -33,7 +33,10 @@ SequencerEvents Task::make_events() {
         status_.g92_offset = item.g92;
         status_.rotation_xy_deg = item.rotation_xy_deg;
     };
-    events.tool_offset = [this](const ToolOffsetItem &item) { status_.tool_offset = item.offset; };
+    events.tool_offset = [this](const ToolOffsetItem &item) {
+        status_.tool_offset = item.offset;
+        motion_.send(motion::SetToolOffset{item.offset});
+    };
     events.start_user_code = [](const UserCodeItem &item) -> Result<> {
         return fail("M" + std::to_string(item.code) + ": user M codes are not supported by this version");
     };
