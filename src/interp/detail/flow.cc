@@ -35,7 +35,7 @@ void Flow::close() {
     abort();
     programs_.clear();
     program_ = nullptr;
-    next_ = 1;
+    next_ = after_line_ = 1;
     statements_ = 0;
 }
 
