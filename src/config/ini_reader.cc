@@ -64,6 +64,9 @@ const IniEntry *IniReader::scalar(std::string_view section, std::string_view key
 
 void IniReader::missing(std::string_view section, std::string_view key, const std::string &expected) {
     const bool hasSection = file_.hasSection(section);
+    if (!hasSection && !missing_sections_.insert(std::string(section)).second) {
+        return;  // one message for the whole section
+    }
     const std::string near = nearest_name(key, file_.keys(section));
     sink_.error(hasSection ? label(section, key) + " is missing"
                            : "section [" + std::string(section) + "] is missing",

@@ -70,6 +70,7 @@ class IniReader {
     std::map<std::string, std::set<std::string>, std::less<>> known_;
     std::set<std::string, std::less<>> open_;
     std::set<std::string> warned_twice_;
+    std::set<std::string> missing_sections_;
 };
 
 }  // namespace mw::config

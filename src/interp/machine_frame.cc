@@ -135,6 +135,13 @@ MoveSettings MachineFrame::settings(FeedKind kind, bool isLinear) const {
     out.synch_spindle = synch_spindle_;
     out.isVelocitySynched = isVelocitySynched_;
     constexpr double SECONDS_PER_MINUTE = 60.0;
+    if (feed_mode_ == FeedMode::UNITS_PER_REVOLUTION && synch_feed_ == 0.0) {
+        out.feed_per_revolution = feed_;
+        out.isVelocitySynched = true;
+        // The speed at one revolution per second; the planner takes the spindle's own.
+        out.feed = feed_;
+        return out;
+    }
     // Degrees per minute are not lengths: the unit's factor is taken off again.
     out.feed = feed_ / SECONDS_PER_MINUTE / (isLinear ? 1.0 : length_factor());
     return out;

@@ -11,8 +11,6 @@ namespace {
 using geom::Pose;
 
 constexpr double TURN = 2.0 * std::numbers::pi;
-constexpr double END_FRACTION = 1.0 - 1e-9;
-constexpr double BETTER = 1e-9;
 constexpr std::size_t MAX_POINTS = 400000;
 
 struct Vec3 {
@@ -122,7 +120,7 @@ void PathMonitor::start(const Pose &position) {
     history_ = {position, position};
 }
 
-void PathMonitor::on_move(const motion::PathBody &body) {
+void PathMonitor::on_move(motion::CommandId id, const motion::PathBody &body) {
     ProgrammedPiece piece;
     piece.start = last_end_;
     if (const auto *line = std::get_if<motion::Line>(&body)) {
@@ -143,7 +141,7 @@ void PathMonitor::on_move(const motion::PathBody &body) {
         return;
     }
     (piece.isRapid ? figures_.rapid_length : figures_.cutting_length) += feed_length(piece);
-    pieces_.push_back(piece);
+    pieces_.push_back({id, piece});
 }
 
 void PathMonitor::on_sample(const motion::TraceSample &sample) {
@@ -159,26 +157,28 @@ void PathMonitor::on_sample(const motion::TraceSample &sample) {
     history_[1] = history_[0];
     history_[0] = p;
     ++figures_.samples;
-    follow(p);
+    follow(sample);
     take_point(p);
 }
 
-void PathMonitor::follow(const Pose &p) {
+void PathMonitor::follow(const motion::TraceSample &sample) {
+    while (pieces_.size() > 2 && pieces_[2].id <= sample.path_id) {
+        pieces_.pop_front();
+    }
     if (pieces_.empty()) {
         return;
     }
-    Nearest here = nearest_point(pieces_.front(), p);
-    while (pieces_.size() > 1) {
-        const Nearest next = nearest_point(pieces_[1], p);
-        const bool isPassed = here.fraction >= END_FRACTION && next.combined() <= here.combined();
-        if (!isPassed && next.combined() >= here.combined() - BETTER) {
-            break;
-        }
-        pieces_.pop_front();
-        here = next;
+    // A blend lies between the move being executed and one of its neighbours; nothing else may be near by
+    // chance.
+    const std::size_t current = pieces_.size() > 1 && pieces_[1].id <= sample.path_id ? 1 : 0;
+    Nearest best = nearest_point(pieces_[current].piece, sample.carte_pos_cmd);
+    for (std::size_t i = current > 0 ? current - 1 : 0; i < pieces_.size() && i <= current + 1; ++i) {
+        const Nearest other = nearest_point(pieces_[i].piece, sample.carte_pos_cmd);
+        best = other.combined() < best.combined() ? other : best;
     }
-    figures_.deviation_linear = std::max(figures_.deviation_linear, here.linear);
-    figures_.deviation_angular = std::max(figures_.deviation_angular, here.angular);
+    isInRapid_ = pieces_[current].piece.isRapid;
+    figures_.deviation_linear = std::max(figures_.deviation_linear, best.linear);
+    figures_.deviation_angular = std::max(figures_.deviation_angular, best.angular);
 }
 
 void PathMonitor::take_point(const Pose &p) {
@@ -187,9 +187,8 @@ void PathMonitor::take_point(const Pose &p) {
         return;
     }
     until_point_ = stride_ - 1;
-    const bool isRapid = !pieces_.empty() && pieces_.front().isRapid;
     points_.push_back(
-        {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]), isRapid});
+        {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]), isInRapid_});
     if (points_.size() < MAX_POINTS) {
         return;
     }

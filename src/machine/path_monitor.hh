@@ -53,19 +53,24 @@ class PathMonitor {
     explicit PathMonitor(std::int64_t period_ns) : period_s_(static_cast<double>(period_ns) * 1e-9) {}
 
     void start(const geom::Pose &position);
-    void on_move(const motion::PathBody &body);
+    void on_move(motion::CommandId id, const motion::PathBody &body);
     void on_sample(const motion::TraceSample &sample);
 
     const RunFigures &figures() const { return figures_; }
     const std::vector<PathPoint> &points() const { return points_; }
 
   private:
-    void follow(const geom::Pose &p);
+    void follow(const motion::TraceSample &sample);
     void take_point(const geom::Pose &p);
 
     double period_s_;
     RunFigures figures_;
-    std::deque<ProgrammedPiece> pieces_;  ///< from the one being followed on
+    struct NumberedPiece {
+        motion::CommandId id;
+        ProgrammedPiece piece;
+    };
+    std::deque<NumberedPiece> pieces_;  ///< from the one before that being executed on
+    bool isInRapid_ = false;
     geom::Pose last_end_{};
     std::array<geom::Pose, 2> history_{};  ///< the two samples before
     std::vector<PathPoint> points_;

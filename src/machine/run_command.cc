@@ -54,7 +54,8 @@ class Recorder {
   public:
     Recorder(Machine &machine, const MachineConfig &config)
         : machine_(machine), monitor_(config.servo_period_ns) {
-        machine_.task().set_move_listener([this](const motion::PathBody &body) { monitor_.on_move(body); });
+        machine_.task().set_move_listener(
+            [this](motion::CommandId id, const motion::PathBody &body) { monitor_.on_move(id, body); });
     }
 
     Result<> open_trace(const std::string &path, const MachineConfig &config) {

@@ -38,7 +38,7 @@ void MotionLink::take_answers(News &news) {
     while (channels_.servo_answers.pop(answer)) {
         pending_.erase(std::remove(pending_.begin(), pending_.end(), answer.id), pending_.end());
         if (answer.kind == motion::AnswerKind::REFUSED) {
-            news.refused.push_back(answer);
+            news.refused.push_back({answer, {}});
         }
     }
     while (channels_.planner_answers.pop(answer)) {
@@ -47,10 +47,20 @@ void MotionLink::take_answers(News &news) {
         }
         completed_id_ = std::max(completed_id_, answer.id);
         --path_outstanding_;
+        const motion::SourceTag source = take_source(answer.id);
         if (answer.kind == motion::AnswerKind::REFUSED) {
-            news.refused.push_back(answer);
+            news.refused.push_back({answer, source});
         }
     }
+}
+
+motion::SourceTag MotionLink::take_source(motion::CommandId id) {
+    motion::SourceTag source;
+    while (!sources_.empty() && sources_.front().first <= id) {
+        source = sources_.front().first == id ? sources_.front().second : motion::SourceTag{};
+        sources_.pop_front();
+    }
+    return source;
 }
 
 motion::CommandId MotionLink::send(motion::CommandBody body) {
@@ -69,11 +79,12 @@ void MotionLink::hand_over() {
     backlog_.erase(backlog_.begin(), backlog_.begin() + static_cast<std::ptrdiff_t>(sent));
 }
 
-bool MotionLink::push_path(const motion::PathBody &body) {
+bool MotionLink::push_path(const motion::PathBody &body, const motion::SourceTag &source) {
     if (!channels_.path.push({next_id_, epoch_, body})) {
         return false;
     }
     last_path_id_ = next_id_++;
+    sources_.emplace_back(last_path_id_, source);
     ++path_outstanding_;
     return true;
 }
@@ -97,6 +108,7 @@ void MotionLink::abort() {
     send(motion::Abort{epoch_});
     // Whatever was handed over is stale now: its answers are not waited for.
     aborted_id_ = last_path_id_;
+    sources_.clear();
     completed_id_ = std::max(completed_id_, last_path_id_);
     flushed_id_ = std::max(flushed_id_, last_path_id_);
     path_outstanding_ = 0;

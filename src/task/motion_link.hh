@@ -2,8 +2,8 @@
 // Task's side of the motion channels: ids, epochs, answers.
 #pragma once
 
-#include <functional>
-#include <string>
+#include <deque>
+#include <utility>
 #include <vector>
 
 #include "motion/api/channels.hh"
@@ -15,8 +15,12 @@ class MotionLink {
   public:
     explicit MotionLink(motion::Channels &channels);
 
+    struct Refusal {
+        motion::Answer answer;
+        motion::SourceTag source;  ///< of a path command; line 0 when it is none
+    };
     struct News {
-        std::vector<motion::Answer> refused;  ///< REFUSED only; STALE ones belong to work that was aborted
+        std::vector<Refusal> refused;  ///< REFUSED only; STALE ones belong to work that was aborted
         std::vector<motion::Fault> faults;
         bool isStatusFresh = false;  ///< false: the realtime side died while writing
     };
@@ -28,7 +32,7 @@ class MotionLink {
     /// Queues an immediate command; they are handed over in order as the channel has room.
     motion::CommandId send(motion::CommandBody body);
     /// Hands a path command over; false when the channel is full (nothing happens then).
-    bool push_path(const motion::PathBody &body);
+    bool push_path(const motion::PathBody &body, const motion::SourceTag &source = {});
     /// True while another move may be handed over without filling the planner's queue.
     bool hasPathRoom() const;
 
@@ -36,6 +40,7 @@ class MotionLink {
     void flush();
     /// Nothing handed over is still to be executed and the machine is at rest at the end of it.
     bool isPathComplete() const;
+    motion::CommandId last_path_id() const { return last_path_id_; }
     bool hasUnflushedPath() const { return last_path_id_ > flushed_id_; }
 
     /// Stops all motion along the path and makes everything handed over before it stale.
@@ -48,10 +53,13 @@ class MotionLink {
   private:
     void hand_over();
     void take_answers(News &news);
+    motion::SourceTag take_source(motion::CommandId id);
 
     motion::Channels &channels_;
     motion::Status status_{};
     std::vector<motion::Command> backlog_;
+    /// Where the moves handed over and not answered come from, oldest first.
+    std::deque<std::pair<motion::CommandId, motion::SourceTag>> sources_;
     std::vector<motion::CommandId> pending_;  ///< immediate commands not yet answered, in order
     motion::CommandId next_id_ = 1;
     motion::CommandId last_path_id_ = 0;  ///< handed over

@@ -234,11 +234,11 @@ bool Sequencer::push_move(const Item &item) {
     }
     const bool isFeed = !std::holds_alternative<LineItem>(item.body) ||
                         std::get<LineItem>(item.body).move.settings.kind != interp::FeedKind::RAPID;
-    if (!motion_.push_path(body)) {
+    if (!motion_.push_path(body, item.source)) {
         return false;
     }
     if (move_listener_) {
-        move_listener_(body);
+        move_listener_(motion_.last_path_id(), body);
     }
     isNextMoveWaitingForSpeed_ = isNextMoveWaitingForSpeed_ && !isFeed;
     return true;

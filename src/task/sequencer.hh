@@ -29,6 +29,9 @@ struct SequencerEvents {
     std::function<bool()> isUserCodeRunning;
 };
 
+/// Is told of each move when it is handed to the planner.
+using MoveListener = std::function<void(motion::CommandId id, const motion::PathBody &move)>;
+
 struct SequencerSettings {
     bool isToolChangeWithSpindleOn = false;  ///< [EMCIO]TOOL_CHANGE_WITH_SPINDLE_ON
 };
@@ -65,9 +68,7 @@ class Sequencer {
     void command_spindle(int spindle, double signed_rpm, bool isWaiting);
     void stop_spindles();
     int selected_index() const { return selected_index_; }
-    void set_move_listener(std::function<void(const motion::PathBody &)> listener) {
-        move_listener_ = std::move(listener);
-    }
+    void set_move_listener(MoveListener listener) { move_listener_ = std::move(listener); }
 
   private:
     enum class Need : std::uint8_t { NOTHING, MOTION, MOTION_AND_IO };
@@ -102,7 +103,7 @@ class Sequencer {
     ToolStore &tools_;
     SequencerEvents events_;
     SequencerSettings settings_;
-    std::function<void(const motion::PathBody &)> move_listener_;
+    MoveListener move_listener_;
 
     Wait wait_ = Wait::NONE;
     std::int64_t deadline_ns_ = 0;  ///< of a dwell or a time limit; 0: none

@@ -135,10 +135,13 @@ void Task::take_motion_news() {
             abort_work();
         }
     }
-    for (const motion::Answer &answer : news.refused) {
+    for (const auto &[answer, source] : news.refused) {
         const std::string text = motion::reason_text(answer);
         if (answer.isPath && isRunning()) {
-            fail_program(text);
+            const std::string file =
+                run_ == Run::PROGRAM && source.line > 0 ? canon_.file_name(source.file_index) : "";
+            fail_program(
+                {diag::Severity::ERROR, {text, {file, source.line, source.line > 0 ? 1 : 0}, {}}, {}, {}});
         } else {
             post(MessageKind::OPERATOR_ERROR, text);
         }

@@ -88,9 +88,7 @@ class Task final : public interp::World {
     const diag::Diagnostic *program_error() const { return hasProgramError_ ? &program_error_ : nullptr; }
     const std::string &file_name(std::uint32_t index) const { return canon_.file_name(index); }
     /// Is told of each move when it is handed to the planner (for figures and pictures).
-    void set_move_listener(std::function<void(const motion::PathBody &)> listener) {
-        sequencer_.set_move_listener(std::move(listener));
-    }
+    void set_move_listener(MoveListener listener) { sequencer_.set_move_listener(std::move(listener)); }
 
     // interp::World
     interp::MachineSnapshot snapshot() const override;

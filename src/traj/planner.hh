@@ -27,7 +27,8 @@ struct MoveRequest {
     bool isAngular = false;  ///< the feed length is over ABC: the operator's velocity ceiling does not apply
     double feed_per_revolution = 0;  ///< > 0: the speed follows a spindle
     int spindle = 0;
-    bool isGated = false;  ///< a stop before it until the gate opens
+    bool isGated = false;   ///< a stop before it until the gate opens
+    bool isPhased = false;  ///< the gate opens at a spindle phase
 };
 
 /// What may change while the path is under way.
@@ -70,7 +71,12 @@ class Planner {
 
     void set_scales(const Scales &scales) noexcept;
     /// The gate before gated moves; open it once the executor waits there.
-    void open_gate(Sequence move) noexcept;
+    /// Motion begins `delay_s` after the earliest moment.
+    void open_gate(Sequence move, double delay_s) noexcept;
+    bool isPhased(Sequence move) const noexcept { return move_plan(move).request.isPhased; }
+    int spindle_of(Sequence move) const noexcept { return move_plan(move).request.spindle; }
+    /// Seconds from a snapshot to the earliest start of a plan made with it.
+    double latency_s() const noexcept { return static_cast<double>(settings_.latency) * settings_.period_s; }
     /// Move whose gate the executor waits at, 0: none.
     Sequence waiting_gate(const Snapshot &now) const noexcept;
     /// Single blocks: stops where the source block is another than `block`.
@@ -145,10 +151,11 @@ class Planner {
     Pose end_;
     Sequence first_move_ = 1;  ///< of this path
     Sequence last_move_ = 0;
-    Sequence open_move_ = 0;    ///< whose end is not yet joined or released, 0: none
-    double open_offset_ = 0;    ///< where its own part begins
-    bool isOpenStop_ = false;   ///< stop before its part
-    Sequence first_piece_ = 1;  ///< of this path
+    Sequence last_synched_ = 0;  ///< the last move that follows a spindle
+    Sequence open_move_ = 0;     ///< whose end is not yet joined or released, 0: none
+    double open_offset_ = 0;     ///< where its own part begins
+    bool isOpenStop_ = false;    ///< stop before its part
+    Sequence first_piece_ = 1;   ///< of this path
     Sequence last_piece_ = 0;
     std::uint64_t drops_ = 0;
 
@@ -165,7 +172,7 @@ class Planner {
     double planned_s_ = 0;                  ///< when, from switch_cycle_ on
     bool isAtEndOfPath_ = false;
 
-    Sequence open_gate_ = 0;
+    double start_delay_s_ = 0;  ///< of the next plan from rest
     bool isStepping_ = false;
     std::uint32_t step_block_ = 0;
 };

@@ -48,6 +48,7 @@ void Planner::begin(const Pose &start, const Snapshot &now) noexcept {
     planned_ = {};
     isAtEndOfPath_ = false;
     isStepping_ = false;
+    start_delay_s_ = 0;
 }
 
 bool Planner::hasRoom(const Snapshot &now) const noexcept {
@@ -79,6 +80,7 @@ Sequence Planner::add(const Primitive &primitive, const MoveRequest &request) no
     m.feed = request.tag.requested_velocity * m.request.tag.feed_ratio;
     store_.move(n) = m.request.tag;
     end_ = primitive.end;
+    last_synched_ = request.feed_per_revolution > 0 ? n : last_synched_;
 
     Joint joint;
     if (open_move_ != 0) {

@@ -77,12 +77,16 @@ void Planner::pass_backward(Sequence from, bool isWhole) noexcept {
 void Planner::set_scales(const Scales &scales) noexcept {
     bool isSame = scales.feed == scales_.feed && scales.rapid == scales_.rapid &&
                   scales.max_velocity == scales_.max_velocity;
-    for (std::size_t i = 0; i < scales.spindle_rps.size() && isSame; ++i) {
+    // Spindle speeds never stand still; they matter only where something follows them.
+    const bool isFollowed = last_synched_ != 0 && last_piece_ >= oldest_piece_ &&
+                            last_synched_ >= store_.piece(oldest_piece_).move;
+    for (std::size_t i = 0; i < scales.spindle_rps.size() && isSame && isFollowed; ++i) {
         const double rps = scales_.spindle_rps[i];
         isSame = std::abs(scales.spindle_rps[i] - rps) <= 1e-3 * std::abs(rps);
     }
     if (isSame) {
         scales_.max_feed = scales.max_feed;
+        scales_.spindle_rps = isFollowed ? scales_.spindle_rps : scales.spindle_rps;
         return;
     }
     scales_ = scales;
@@ -91,7 +95,8 @@ void Planner::set_scales(const Scales &scales) noexcept {
     changed_from_ = oldest_piece_;
 }
 
-void Planner::open_gate(Sequence move) noexcept {
+void Planner::open_gate(Sequence move, double delay_s) noexcept {
+    start_delay_s_ = delay_s;
     move_plan(move).request.isGated = false;
     pass_backward(last_piece_, true);
 }
@@ -270,8 +275,14 @@ void Planner::replan(const Snapshot &now, const State &from) noexcept {
     const Sequence begin = plan_end_;
     planned_ = from;
     planned_s_ = 0;
-    emit(settings_.horizon_s);
-    if (plan_end_ == begin) {
+    if (start_delay_s_ > 0 && from.v <= 0) {
+        store_.phase(plan_end_++) = {from.piece, start_delay_s_, from.x, 0, 0, 0};
+        planned_s_ = start_delay_s_;
+    }
+    const Sequence waited = plan_end_;
+    emit(planned_s_ + settings_.horizon_s);
+    if (plan_end_ == waited) {
+        plan_end_ = begin;
         return;
     }
     Commit commit;
@@ -285,6 +296,7 @@ void Planner::replan(const Snapshot &now, const State &from) noexcept {
         plan_end_ = begin;
         return;
     }
+    start_delay_s_ = 0;
     ++plan_;
     plan_ends_[plan_ % plan_ends_.size()] = plan_end_;
     plan_brakes_ = now.brakes;

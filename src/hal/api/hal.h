@@ -360,6 +360,27 @@ extern int hal_stream_num_overruns(hal_stream_t *stream);
 extern void hal_stream_wait_readable(hal_stream_t *stream, sig_atomic_t *stop);
 extern void hal_stream_wait_writable(hal_stream_t *stream, sig_atomic_t *stop);
 
+/* ---- ports: a queue of bytes on a signal of type port, between its one OUT pin and its one reader ----
+ * The queue exists once the signal has been given its size (sets SIGNAL N; it holds N-1 bytes, N at most
+ * HAL_PORT_SIZE_MAX). Before, and while the pin is not linked, it has no room and no content. Reads and
+ * writes move all the bytes or none. Realtime-safe but for the waits. */
+extern bool hal_port_read(const hal_port_t *port, char *dest, unsigned count);
+/* As read, but leaves the bytes in the queue. */
+extern bool hal_port_peek(const hal_port_t *port, char *dest, unsigned count);
+/* Takes away bytes that have been peeked. */
+extern bool hal_port_peek_commit(const hal_port_t *port, unsigned count);
+extern bool hal_port_write(const hal_port_t *port, const char *src, unsigned count);
+/* Bytes that can be read (written) now. */
+extern unsigned hal_port_readable(const hal_port_t *port);
+extern unsigned hal_port_writable(const hal_port_t *port);
+/* The size the signal was given. */
+extern unsigned hal_port_buffer_size(const hal_port_t *port);
+/* Drops the content; by the reader. */
+extern void hal_port_clear(const hal_port_t *port);
+/* Wait, looking once a millisecond, until so many bytes can be read (written) or *stop is not zero. */
+extern void hal_port_wait_readable(hal_port_t **port, unsigned count, sig_atomic_t *stop);
+extern void hal_port_wait_writable(hal_port_t **port, unsigned count, sig_atomic_t *stop);
+
 RTAPI_END_DECLS
 
 #endif

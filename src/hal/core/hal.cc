@@ -303,6 +303,9 @@ Result<> Hal::set_ready(int comp_id, bool isReady) {
                                           isReady ? "ready" : "not ready"));
     }
     comp->isReady = isReady;
+    // Release: threads acquire this word every cycle, so they see the component whole, whoever adds its
+    // functions.
+    impl_->segment.header().isRunning.fetch_or(0, std::memory_order_release);
     return {};
 }
 

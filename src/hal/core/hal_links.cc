@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "hal/api/hal.h"
 #include "hal/core/detail/impl.hh"
 
 namespace mw::hal {
@@ -110,6 +111,10 @@ Result<> set_signal_value(Hal::Impl &hal, std::string_view name, const From &fro
     if (signal == nullptr) {
         return hal.no_such(Kind::SIGNAL, name);
     }
+    if (signal->type == Type::PORT) {
+        const auto size = in_type(Type::PORT, name, from);
+        return size ? hal.make_queue(*signal, size->as_u32()) : Result<>(std::unexpected(size.error()));
+    }
     if (signal->writers > 0) {
         return refuse(EPERM, fmt::format("signal '{}' is written by {}", name, writer_of(hal, *signal)));
     }
@@ -152,7 +157,8 @@ void Hal::Impl::link_pin(PinRecord &pin, SignalRecord &signal) noexcept {
     if (pin.signal == segment.offset_of(&signal)) {
         return;
     }
-    if (signal.readers + signal.writers + signal.bidirectionals == 0) {
+    // A port's queue belongs to the signal.
+    if (signal.type != Type::PORT && signal.readers + signal.writers + signal.bidirectionals == 0) {
         write(segment.offset_of(&signal.value), read(pin.type, segment.offset_of(&pin.value)));
     }
     pin.signal = segment.offset_of(&signal);
@@ -165,10 +171,30 @@ void Hal::Impl::unlink_pin(PinRecord &pin) noexcept {
     if (signal == nullptr) {
         return;
     }
-    write(segment.offset_of(&pin.value), read(pin.type, segment.offset_of(&signal->value)));
+    if (signal->type != Type::PORT) {
+        write(segment.offset_of(&pin.value), read(pin.type, segment.offset_of(&signal->value)));
+    }
     pin.signal = 0;
     --count_of(*signal, pin.dir);
     point_slot(pin, segment.offset_of(&pin.value));
+}
+
+Result<> Hal::Impl::make_queue(SignalRecord &signal, std::uint32_t size) {
+    if (signal.value != 0) {
+        return refuse(EBUSY, fmt::format("port signal '{}' has its size already", signal.name_view()));
+    }
+    if (size < 2 || size > HAL_PORT_SIZE_MAX) {
+        return refuse(EINVAL, fmt::format("port signal '{}': a size of {} is outside of 2 to {}",
+                                          signal.name_view(), size, HAL_PORT_SIZE_MAX));
+    }
+    const Offset offset = segment.allocate(sizeof(PortQueue) + size);
+    if (offset == 0) {
+        return refuse(ENOMEM, fmt::format("port signal '{}': no HAL memory left", signal.name_view()));
+    }
+    segment.at<PortQueue>(offset)->size = size;
+    // Release: who sees the queue sees its size.
+    __atomic_store_n(&signal.value, offset, __ATOMIC_RELEASE);
+    return {};
 }
 
 // ---- public

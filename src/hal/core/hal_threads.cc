@@ -121,6 +121,9 @@ Result<> Hal::Impl::change_list(ThreadRecord &thread, Change change) {
     if (context().isRealtime) {
         return refuse(EDEADLK, "the functions of a thread cannot be changed from inside a thread");
     }
+    // Acquire: the thread has read the spare list in cycles that have ended, which another process may have
+    // waited for.
+    (void)thread.cycle.load(std::memory_order_acquire);
     const std::uint32_t active = thread.active.load();
     const auto &list = *segment.at<FunctionList>(thread.lists[active]);
     auto &spare = *segment.at<FunctionList>(thread.lists[1 - active]);
@@ -136,6 +139,9 @@ Result<> Hal::Impl::change_list(ThreadRecord &thread, Change change) {
 
 void Hal::Impl::drop_from_lists(Offset funct) noexcept {
     segment.each<ThreadRecord>(Kind::THREAD, [&](ThreadRecord &thread) {
+        // Acquire: what the thread last did with the function comes before the record is used for something
+        // else.
+        (void)thread.cycle.load(std::memory_order_acquire);
         const auto &list = *segment.at<FunctionList>(thread.lists[thread.active.load()]);
         const auto *end = list.entries.begin() + list.count;
         const auto isIt = [funct](const ListEntry &entry) { return entry.funct == funct; };

@@ -123,7 +123,9 @@ Result<> run_linkpp(Session &session, const Call &call) {
         return result;
     }
     // The signal takes the first pin's name.
-    return at(hal.net(call.text(0), {call.text(0), call.text(1)}), call.place_of(0));
+    result = at(hal.new_signal(call.text(0), hal.pin(call.text(0))->type), call.place_of(0));
+    result = result ? at(hal.link(call.text(0), call.text(0)), call.place_of(0)) : result;
+    return result ? at(hal.link(call.text(1), call.text(0)), call.place_of(1)) : result;
 }
 
 Result<> run_linkps(Session &session, const Call &call) {

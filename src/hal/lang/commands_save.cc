@@ -28,7 +28,7 @@ std::string save_comp(Hal &hal) {
     std::sort(components.begin(), components.end(),
               [](const CompInfo &a, const CompInfo &b) { return a.id < b.id; });
     for (const CompInfo &c : components) {
-        if (c.type != CompType::REALTIME) {
+        if (c.type == CompType::USER) {
             continue;
         }
         if (c.isLoadedByLoadrt) {
@@ -167,7 +167,9 @@ std::string save_param(Hal &hal) {
 
 std::string save_thread(Hal &hal) {
     std::string text = "# realtime thread/function links\n";
-    for (const ThreadInfo &t : hal.threads()) {
+    std::vector<ThreadInfo> threads = hal.threads();
+    std::reverse(threads.begin(), threads.end());
+    for (const ThreadInfo &t : threads) {
         for (const std::string &function : t.init_functions) {
             text += fmt::format("initf {} {}\n", function, t.name);
         }

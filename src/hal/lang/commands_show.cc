@@ -55,8 +55,10 @@ std::vector<SignalInfo> signals(Hal &hal, const Patterns &patterns) {
 std::vector<FunctInfo> functs(Hal &hal, const Patterns &patterns) {
     return matching<FunctInfo>(patterns, [&](const std::string &glob) { return hal.functs(glob); });
 }
+/// Slowest first.
 std::vector<ThreadInfo> threads(Hal &hal, const Patterns &patterns) {
     auto items = matching<ThreadInfo>(patterns, [&](const std::string &glob) { return hal.threads(glob); });
+    std::reverse(items.begin(), items.end());
     return items;
 }
 /// Newest first.
@@ -67,7 +69,8 @@ std::vector<CompInfo> components(Hal &hal, const Patterns &patterns) {
 }
 
 const char *type_word(CompType type) {
-    return type == CompType::REALTIME ? "RT" : (type == CompType::USER ? "User" : "Other");
+    // The pseudo components of threads count as realtime ones.
+    return type == CompType::USER ? "User" : "RT";
 }
 
 std::string show_comp(Session &session, const Patterns &patterns) {

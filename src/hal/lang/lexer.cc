@@ -182,10 +182,10 @@ PlacedText::Position PlacedText::at(std::size_t i) const {
     return last;
 }
 
-std::vector<LogicalLine> split_lines(std::string_view source) {
+std::vector<LogicalLine> split_lines(std::string_view source, int first_line) {
     std::vector<LogicalLine> lines;
     LogicalLine current;
-    int line = 1;
+    int line = first_line;
     int column = 1;
     const auto finish = [&] {
         current.text.truncate(comment_start(current.text.text()));

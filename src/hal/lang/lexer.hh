@@ -60,8 +60,8 @@ struct Word {
     SourcePlace place;
 };
 
-/// Cuts `source` into logical lines; empty ones are left out.
-std::vector<LogicalLine> split_lines(std::string_view source);
+/// Cuts `source`, whose first line has the number `first_line`, into logical lines; empty ones are left out.
+std::vector<LogicalLine> split_lines(std::string_view source, int first_line = 1);
 
 /// The environment and INI file that variables are taken from.
 struct Variables {

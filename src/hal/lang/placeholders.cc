@@ -53,17 +53,16 @@ Result<> Placeholders::make(const std::string &pin, const std::string &signal, T
             return std::unexpected(made.error());
         }
         comp_id_ = *made;
-        const Result<> ready = hal_.set_ready(comp_id_);
-        if (!ready) {
-            return ready;
-        }
     }
+    // Pins can be added only while a component is not ready.
+    (void)hal_.set_ready(comp_id_, false);
     // An input never stands in the way of another pin; as nobody drives it the signal keeps its value.
     const Result<void **> slot = hal_.new_pin(pin, type, Dir::IN, comp_id_);
     if (!slot) {
         return std::unexpected(slot.error());
     }
-    return hal_.link(pin, signal);
+    const Result<> ready = hal_.set_ready(comp_id_);
+    return ready ? hal_.link(pin, signal) : ready;
 }
 
 Result<> Placeholders::link(const std::string &pin, const std::string &signal) {

@@ -160,10 +160,10 @@ Result<> Session::run_file(const std::string &name) {
     return run_text(file->second, file->first);
 }
 
-Result<> Session::run_text(std::string_view text, const std::string &name) {
+Result<> Session::run_text(std::string_view text, const std::string &name, int first_line) {
     Result<> first;
     running_.push_back(name);
-    for (const LogicalLine &line : split_lines(text)) {
+    for (const LogicalLine &line : split_lines(text, first_line)) {
         const Result<> result = run_line(line, name);
         if (!result) {
             first = first ? result : first;

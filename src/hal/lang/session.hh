@@ -68,8 +68,9 @@ class Session {
     /// Runs the commands of a file (name: see find_file) up to the first failure, or all with keepsGoing.
     /// The first failure is the result; all have been told to the output.
     Result<> run_file(const std::string &name);
-    /// The same for text; `name` stands for the file in messages.
-    Result<> run_text(std::string_view text, const std::string &name);
+    /// The same for text; `name` stands for the file in messages, and `first_line` is the number of its first
+    /// line.
+    Result<> run_text(std::string_view text, const std::string &name, int first_line = 1);
     /// One command as given by words (of a command line): no comment, no substitution, no splitting.
     Result<> run_words(const std::vector<std::string> &words);
 

@@ -90,6 +90,8 @@ Result<> run_standard_input(lang::Session &session) {
     Result<> first;
     std::string line;
     std::string text;
+    int number = 0;      // lines read
+    int first_line = 1;  // of the command being read
     while (!session.hasEnded()) {
         if (isTerminal) {
             std::fputs(text.empty() ? "halcmd: " : "      > ", stdout);
@@ -98,12 +100,14 @@ Result<> run_standard_input(lang::Session &session) {
         if (!std::getline(std::cin, line)) {
             break;
         }
+        ++number;
+        first_line = text.empty() ? number : first_line;
         text += line;
         if (!text.empty() && text.back() == '\\') {
             text += '\n';
             continue;
         }
-        const Result<> result = session.run_text(text, isTerminal ? "" : "stdin");
+        const Result<> result = session.run_text(text, isTerminal ? "" : "stdin", first_line);
         text.clear();
         if (!result && first) {
             first = result;

@@ -18,9 +18,10 @@ geom::Pose at(double x, double y, double z = 0, double a = 0) {
     return p;
 }
 
-motion::TraceSample sample(const geom::Pose &p) {
+motion::TraceSample sample(const geom::Pose &p, motion::CommandId id = 1) {
     motion::TraceSample s;
     s.carte_pos_cmd = p;
+    s.path_id = id;
     return s;
 }
 
@@ -41,18 +42,19 @@ TEST(PathMonitor, DeviationIsMeasuredInOrder) {
     PathMonitor monitor(1000000);
     monitor.start(at(0, 0));
     motion::Line line;
+    motion::CommandId id = 0;
     for (const auto &end : {at(10, 0), at(5, 0), at(5, 5)}) {
         line.end = end;
-        monitor.on_move(line);
+        monitor.on_move(++id, line);
     }
     for (double x = 0; x <= 10; x += 0.25) {
         monitor.on_sample(sample(at(x, 0)));
     }
     EXPECT_NEAR(monitor.figures().deviation_linear, 0.0, 1e-12);
     for (double x = 10; x >= 5.25; x -= 0.25) {
-        monitor.on_sample(sample(at(x, 0)));
+        monitor.on_sample(sample(at(x, 0), 2));
     }
-    monitor.on_sample(sample(at(5.1, 0.1)));
+    monitor.on_sample(sample(at(5.1, 0.1), 2));
     EXPECT_NEAR(monitor.figures().deviation_linear, 0.1, 1e-9);
     EXPECT_NEAR(monitor.figures().cutting_length, 20.0, 1e-12);
 }
@@ -62,7 +64,7 @@ TEST(PathMonitor, AnglesAreAGroupOfTheirOwn) {
     monitor.start(at(0, 0));
     motion::Line line;
     line.end = at(10, 0, 0, 90);
-    monitor.on_move(line);
+    monitor.on_move(1, line);
     monitor.on_sample(sample(at(5, 0, 0, 46)));
     EXPECT_LT(monitor.figures().deviation_linear, 0.12);
     EXPECT_GT(monitor.figures().deviation_angular, 0.01);

@@ -20,6 +20,7 @@ namespace mw::motion {
 struct TraceSample {
     std::int64_t time_ns = 0;
     std::uint64_t cycle = 0;
+    CommandId path_id = 0;  ///< the path command being executed, 0: none
     std::int32_t line = 0;
     std::uint8_t isEnabled = 0;  ///< amp enables of all active joints on
     std::uint8_t isInMotion = 0;

@@ -22,7 +22,7 @@ std::string axis_name(int index) {
 /// known.
 std::string place_name(const Answer &a) {
     if (a.index < 0) {
-        return "the move";
+        return "a joint or axis";
     }
     return a.isPath ? axis_name(a.index) : fmt::format("joint or axis {}", a.index);
 }
@@ -53,7 +53,8 @@ std::string reason_text(const Answer &answer) {
     case Reason::NO_SUCH_PARAMETER: return "there is no such motion parameter";
     case Reason::OUT_OF_RANGE: return "a value is out of its range";
     case Reason::BEYOND_SOFT_LIMIT:
-        return fmt::format("{} would exceed its soft limit: see MIN_LIMIT and MAX_LIMIT", place_name(answer));
+        return fmt::format("the move goes beyond the soft limit of {}: see MIN_LIMIT and MAX_LIMIT",
+                           place_name(answer));
     case Reason::ON_HARD_LIMIT:
         return fmt::format("{} is on a limit switch: jog off it (override limits to turn the machine on)",
                            joint_name(i));

@@ -49,6 +49,7 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
         step_homing(in);
         step_wheels(in);
         if (mode_ == Mode::FREE) {
+            check_probe(in);
             move_joints();
         } else {
             step_coord(in);

@@ -52,7 +52,8 @@ class Controller {
         double coarse_pos = 0;
         double motor_pos_cmd = 0, motor_pos_fb = 0, motor_offset = 0;
         double ferror = 0, ferror_limit = 0, ferror_highmark = 0;
-        double backlash_raw = 0;
+        double backlash_raw = 0, backlash_extreme = 0;
+        int backlash_side = 0;       ///< +1 or -1 once the joint has moved
         traj::FreePlanner backlash;  ///< filtered backlash compensation
         traj::FreePlanner free;
         JogSource jog = JogSource::NONE;
@@ -116,6 +117,7 @@ class Controller {
     void check_faults(const Inputs &in) noexcept;
     void check_joint(const Inputs &in, int joint) noexcept;
     void check_watchdog() noexcept;
+    std::uint32_t homed_mask() const noexcept;
     void step_homing(const Inputs &in) noexcept;
     void move_joints() noexcept;
     void move_by_pose(const geom::Pose &pose) noexcept;

@@ -28,11 +28,9 @@ void Controller::step_coord(const Inputs &in) noexcept {
 
 /// What keeps the path from moving on for now.
 void Controller::step_holds(const Inputs &in) noexcept {
-    const MoveTag *tag = active_tag();
-    const bool isRapid = tag != nullptr && tag->type == static_cast<std::uint8_t>(MotionType::TRAVERSE);
     const double adaptive = isAdaptiveFeedEnabled_ ? std::clamp(in.adaptive_feed, 0.0, 1.0) : 1.0;
     net_feed_scale_ = (isFeedOverrideEnabled_ ? feed_scale_ : 1.0) * adaptive;
-    const bool isFeedHeld = (isFeedHoldEnabled_ && in.isFeedHeld && !isRapid) || in.isFeedInhibited;
+    const bool isFeedHeld = (isFeedHoldEnabled_ && in.isFeedHeld) || in.isFeedInhibited;
     executor_.hold(isPaused_ || isFeedHeld);
     const bool isStepOver = isStepping_ && link_.steps_done.load(std::memory_order_acquire) == steps_;
     if (isStepOver) {
@@ -63,6 +61,7 @@ void Controller::check_probe(const Inputs &in) noexcept {
     const bool isRetracting = executor_.snapshot().isDropping && isProbeTripped_;
     if (isTouched && !isRetracting) {
         raise(FaultKind::PROBE_TRIPPED_IN_MOVE, -1, 0);
+        homing_.abort(homing::Failure::ABORTED);
         executor_.drop();
         stop_jogs(false);
         isCoordError_ = true;
@@ -89,6 +88,7 @@ void Controller::publish_view(const Inputs &in) noexcept {
     v.max_velocity = max_velocity_;
     for (int n = 0; n < config_.num_spindles; ++n) {
         v.spindle_rps[at(n)] = in.spindle[at(n)].speed_in_rps;
+        v.spindle_revs[at(n)] = in.spindle[at(n)].revs;
         v.spindles_ready |= isSpindleReady(in, n) ? 1U << n : 0U;
     }
     v.isProbeClosed = in.isProbeClosed;

@@ -100,6 +100,15 @@ void Controller::check_joint(const Inputs &in, int j) noexcept {
     }
 }
 
+/// Bit per homed joint: soft limits hold from there on.
+std::uint32_t Controller::homed_mask() const noexcept {
+    std::uint32_t mask = 0;
+    for (int j = 0; j < config_.num_joints; ++j) {
+        mask |= homing_.isHomed(j) ? 1U << j : 0U;
+    }
+    return mask;
+}
+
 void Controller::step_homing(const Inputs &in) noexcept {
     homing::JointInput inputs[MAX_JOINTS];
     homing::JointCommand commands[MAX_JOINTS];
@@ -108,7 +117,7 @@ void Controller::step_homing(const Inputs &in) noexcept {
         inputs[j] = {pins.isHomeSwitchClosed, pins.isIndexEnabled, joint(j).free.isAtRest(), false,
                      joint(j).pos_fb};
     }
-    const bool wasAllHomed = homing_.isAllHomed();
+    const std::uint32_t homed_before = homed_mask();
     homing_.step(inputs, commands);
     for (int j = 0; j < config_.num_joints; ++j) {
         const homing::JointCommand &c = commands[j];
@@ -120,6 +129,7 @@ void Controller::step_homing(const Inputs &in) noexcept {
             // After an encoder reset the lag behind the command is kept, so that the motor sees no step.
             s.pos_cmd = c.isShifting ? s.pos_cmd + c.shift : fb + s.ferror;
             s.pos_fb = fb;
+            s.backlash_extreme = s.pos_cmd;
             s.free.target += c.isShifting ? c.shift : s.pos_cmd - s.free.position;
             s.free.position = s.pos_cmd;
         }
@@ -137,7 +147,7 @@ void Controller::step_homing(const Inputs &in) noexcept {
     if (failed >= 0 && why != homing::Failure::ABORTED) {
         raise(FaultKind::HOMING_FAILED, failed, 0, static_cast<std::uint16_t>(why));
     }
-    if (wasAllHomed != homing_.isAllHomed() || homing_.isActive()) {
+    if (homed_before != homed_mask()) {
         publish_limits();
     }
 }
@@ -200,17 +210,22 @@ void Controller::output_joints() noexcept {
             s.vel_cmd = 0;
             s.acc_cmd = 0;
             s.ferror = 0;
+            s.backlash_extreme = s.pos_fb;
             s.motor_pos_cmd = s.motor_pos_fb;
             positions[at(j)] = s.pos_cmd;
             continue;
         }
         positions[at(j)] = s.pos_cmd;
         const double backlash = get(Parameter::JOINT_BACKLASH, j);
-        if (s.vel_cmd > 0) {
-            s.backlash_raw = 0.5 * backlash;
-        } else if (s.vel_cmd < 0) {
-            s.backlash_raw = -0.5 * backlash;
+        // The side changes where the joint really turns back, not by the rounding of a stop.
+        const double moved = s.pos_cmd - s.backlash_extreme;
+        const bool isMove = std::abs(moved) > 1e-9 * (1.0 + std::abs(s.pos_cmd));
+        const bool isOnward = s.backlash_side != 0 && moved * s.backlash_side > 0;
+        if (isMove) {
+            s.backlash_side = moved > 0 ? 1 : -1;
         }
+        s.backlash_extreme = isMove || isOnward ? s.pos_cmd : s.backlash_extreme;
+        s.backlash_raw = 0.5 * backlash * s.backlash_side;
         // Taken up within half of the joint's own speed and acceleration, on top of its motion.
         s.backlash.target = s.backlash_raw;
         s.backlash.max_velocity = 0.5 * get(Parameter::JOINT_MAX_VELOCITY, j);

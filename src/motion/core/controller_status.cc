@@ -153,6 +153,7 @@ void Controller::trace(const Inputs &in, const Status &s) noexcept {
     TraceSample sample;
     sample.time_ns = in.time_ns;
     sample.cycle = cycle_;
+    sample.path_id = s.active_path_id;
     sample.line = s.source.line;
     sample.isInMotion = isAnythingMoving() ? 1 : 0;
     sample.epoch = epoch_;

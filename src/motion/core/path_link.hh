@@ -32,7 +32,7 @@ struct PathView {
     std::uint32_t limits_version = 0;
     geom::Pose position;  ///< carte_pos_cmd
     double feed_scale = 1, rapid_scale = 1, max_feed_scale = 1, max_velocity = 0;
-    std::array<double, MAX_SPINDLES> spindle_rps{};
+    std::array<double, MAX_SPINDLES> spindle_rps{}, spindle_revs{};
     std::uint32_t spindles_ready = 0;  ///< bit per spindle that is at speed or off
     bool isProbeClosed = false;
     std::uint32_t probe_trips = 0;  ///< counts probe moves that were tripped

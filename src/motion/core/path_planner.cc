@@ -70,9 +70,7 @@ void PathPlanner::follow_controller() noexcept {
     scales.max_feed = view_.max_feed_scale;
     scales.max_velocity = view_.max_velocity;
     scales.spindle_rps = view_.spindle_rps;
-    if (isPathBegun_) {
-        planner_.set_scales(scales);
-    }
+    planner_.set_scales(scales);
 }
 
 /// The executor has dropped its path: a tripped probe, or a stop.
@@ -223,12 +221,14 @@ traj::MoveRequest PathPlanner::request_for(const PathCommand &c, const MoveTerms
              : terms.mode == PathMode::EXACT_PATH ? traj::Join::EXACT
                                                   : traj::Join::BLEND;
     r.tolerance = terms.tolerance;
-    r.isRapid =
-        terms.type == MotionType::TRAVERSE || terms.type == MotionType::INDEX_ROTARY || terms.feed == 0;
+    const bool hasFeed = terms.feed > 0 || terms.feed_per_revolution > 0;
+    r.isRapid = terms.type == MotionType::TRAVERSE || terms.type == MotionType::INDEX_ROTARY || !hasFeed;
     r.isOverridable = terms.isFeedOverridable;
     r.feed_per_revolution = terms.feed_per_revolution;
     r.spindle = terms.synch_spindle;
-    const bool isChainStart = terms.feed_per_revolution > 0 && !wasSynched_;
+    // Position-synched motion begins with the spindle at speed; feed per revolution follows whatever it does.
+    const bool isChainStart = terms.feed_per_revolution > 0 && !terms.isVelocitySynched && !wasSynched_;
+    r.isPhased = isChainStart && !terms.isVelocitySynched;
     r.isGated = terms.isWaitingForSpindleSpeed || isChainStart;
     return r;
 }
@@ -380,13 +380,26 @@ Reason PathPlanner::accept_event(const PathCommand &c, const traj::PathEvent &ev
     return Reason::NONE;
 }
 
-/// Moves that wait for spindles go on once these are at speed.
+/// Moves that wait for spindles go on once these are at speed; threads at a full turn of theirs, so that
+/// every pass begins at the same angle.
 void PathPlanner::open_gates() noexcept {
     const traj::Sequence gate = isPathBegun_ ? planner_.waiting_gate(view_.executor) : 0;
     const std::uint32_t all = (1U << config_.num_spindles) - 1U;
-    if (gate != 0 && (view_.spindles_ready & all) == all) {
-        planner_.open_gate(gate);
+    if (gate == 0 || (view_.spindles_ready & all) != all) {
+        return;
     }
+    double delay_s = 0;
+    if (planner_.isPhased(gate)) {
+        const auto n = static_cast<std::size_t>(planner_.spindle_of(gate));
+        const double rps = view_.spindle_rps[n];
+        constexpr double SLOWEST_RPS = 1e-3;
+        if (std::abs(rps) < SLOWEST_RPS) {
+            return;
+        }
+        const double turned = (view_.spindle_revs[n] + rps * planner_.latency_s()) * (rps > 0 ? 1.0 : -1.0);
+        delay_s = (std::ceil(turned) - turned) / std::abs(rps);
+    }
+    planner_.open_gate(gate, delay_s);
 }
 
 void PathPlanner::follow_steps() noexcept {

@@ -17,6 +17,9 @@ namespace {
 
 using testing::MotionRig;
 
+/// Cycles after which overrides no longer change, so that slow programs end.
+constexpr int CALM_AFTER = 50000;
+
 class Campaign {
   public:
     explicit Campaign(unsigned seed) : random_(seed), rig_("XYZABCUVW") {
@@ -105,7 +108,7 @@ class Campaign {
         int sent = 0;
         CommandId flush = 0;
         bool isPaused = false;
-        for (int n = 0; n < 400000; ++n) {
+        for (int n = 0; n < 5000000; ++n) {
             while (sent < count && chance(0.2)) {
                 terms.feed = chance(0.2) ? 0 : std::pow(10.0, real(0.3, 2.2));
                 terms.type = terms.feed == 0 ? MotionType::TRAVERSE : MotionType::FEED;
@@ -120,7 +123,10 @@ class Campaign {
                 isPaused = !isPaused;
                 rig_.send(isPaused ? CommandBody(Pause{}) : CommandBody(Resume{}));
             }
-            if (chance(0.003)) {
+            if (n == CALM_AFTER) {
+                rig_.send(SetScale{Scale::FEED, 0, 1.5});
+            }
+            if (n < CALM_AFTER && chance(0.003)) {
                 rig_.send(SetScale{Scale::FEED, 0, real(0.05, 1.5)});
                 rig_.send(SetScale{Scale::RAPID, 0, real(0.1, 1)});
             }

@@ -239,7 +239,7 @@ TEST_F(TaskTest, ARefusedMoveEndsTheProgram) {
     open("G21 F600\nG1 X1\nG1 X2\nM2\n");
     motion.isRefusingMoves = true;
     EXPECT_EQ(ask(RunProgram{}), Progress::FAILED);
-    EXPECT_NE(messages().find("the move goes beyond the soft limit of axis X"), std::string::npos);
+    EXPECT_NE(messages().find("p.ngc:2:1: error: the move goes beyond the soft limit of axis X"), std::string::npos);
 }
 
 TEST_F(TaskTest, AnOpenEstopChainStopsEverything_E1) {

@@ -78,6 +78,7 @@ struct Hal::Impl {
     Result<> check_link(const detail::PinRecord &pin, const detail::SignalRecord &signal) const;
     void link_pin(detail::PinRecord &pin, detail::SignalRecord &signal) noexcept;
     void unlink_pin(detail::PinRecord &pin) noexcept;
+    Result<> make_queue(detail::SignalRecord &signal, std::uint32_t size);
     void remove_pin(detail::PinRecord &pin) noexcept;
     void remove_param(detail::ParamRecord &param) noexcept;
     void remove_funct(detail::FunctRecord &funct) noexcept;

@@ -140,6 +140,17 @@ struct BlockRecord : Record {
     Offset memory;
 };
 
+/// The queue of a port signal, followed by `size` bytes. Positions run from 0 to size - 1 with a byte kept
+/// free.
+struct PortQueue {
+    std::uint32_t size;
+    // Released by its writer after the bytes are in place, acquired by the reader before it copies them.
+    // realtime
+    std::atomic<std::uint32_t> in;
+    // Released by the reader after its copy, acquired by the writer before it fills the bytes anew. realtime
+    std::atomic<std::uint32_t> out;
+};
+
 struct Table {
     Offset first;
     Offset free;

@@ -160,6 +160,49 @@ TEST(CApi, SharedBlocksAreOnePerKeyAndZeroedAnew) {
     EXPECT_EQ(*static_cast<int *>(memory), 0);
 }
 
+TEST(CApi, PortsCarryBytesInOrderAllOrNone) {
+    TestMachine machine;
+    const UseInstance use(&machine.hal());
+    const int comp = hal_init("ports");
+    auto **pins = static_cast<hal_port_t **>(hal_malloc(2 * sizeof(hal_port_t *)));
+    ASSERT_EQ(hal_pin_port_new("ports.out", HAL_OUT, &pins[0], comp), 0);
+    ASSERT_EQ(hal_pin_port_new("ports.in", HAL_IN, &pins[1], comp), 0);
+    EXPECT_FALSE(hal_port_write(pins[0], "x", 1)) << "not linked";
+    ASSERT_EQ(text_of(machine.hal().net("bytes", {"ports.out", "ports.in"})), "ok");
+    EXPECT_EQ(hal_port_writable(pins[0]), 0U) << "no size yet";
+    EXPECT_FALSE(machine.hal().set_signal("bytes", "1"));
+    EXPECT_FALSE(machine.hal().set_signal("bytes", "65537"));
+    ASSERT_EQ(text_of(machine.hal().set_signal("bytes", "8")), "ok");
+    EXPECT_FALSE(machine.hal().set_signal("bytes", "16"));
+    EXPECT_EQ(hal_port_buffer_size(pins[1]), 8U);
+    mw::testing::AllocationGuard guard;
+    std::uint8_t wrote = 0;
+    std::uint8_t seen = 0;
+    for (int round = 0; round < 1000; ++round) {
+        char bytes[8];
+        const unsigned count = static_cast<unsigned>(round) % 7 + 1;
+        for (unsigned i = 0; i < count; ++i) {
+            bytes[i] = static_cast<char>(wrote++);
+        }
+        ASSERT_TRUE(hal_port_write(pins[0], bytes, count));
+        EXPECT_FALSE(hal_port_write(pins[0], bytes, 8 - count)) << "one more than fits";
+        EXPECT_EQ(hal_port_readable(pins[1]), count);
+        EXPECT_FALSE(hal_port_read(pins[1], bytes, count + 1));
+        char peeked[8];
+        ASSERT_TRUE(hal_port_peek(pins[1], peeked, count));
+        EXPECT_EQ(static_cast<std::uint8_t>(peeked[0]), seen);
+        ASSERT_TRUE(round % 2 == 0 ? hal_port_read(pins[1], bytes, count)
+                                   : hal_port_peek_commit(pins[1], count));
+        seen = static_cast<std::uint8_t>(seen + count);
+    }
+    EXPECT_EQ(guard.calls(), 0U);
+    ASSERT_TRUE(hal_port_write(pins[0], "abc", 3));
+    hal_port_clear(pins[1]);
+    EXPECT_EQ(hal_port_readable(pins[1]), 0U);
+    ASSERT_TRUE(machine.hal().unlink("ports.in"));
+    EXPECT_EQ(hal_port_buffer_size(pins[1]), 0U);
+}
+
 TEST(CApi, SaysWhatIsWrong) {
     TestMachine machine;
     const UseInstance use(&machine.hal());

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What HAL itself costs in a period of the virtual clock: the figure bounds how much faster than realtime a
+// machine can be (200 times at 1 ms leaves 5 us for everything).
+#include <string>
+
+#include <benchmark/benchmark.h>
+
+#include "hal/core/hal.hh"
+#include "rtapi/virtual_scheduler.hh"
+
+namespace mw::hal {
+namespace {
+
+void nothing(void * /*argument*/, long /*period_ns*/) {}
+
+/// Argument: functions in the thread.
+void BM_VirtualPeriod(benchmark::State &state) {
+    rtapi::VirtualScheduler clock;
+    HalOptions options;
+    options.scheduler = &clock;
+    auto hal = Hal::create(options).value();
+    const int comp = *hal->new_component("bench", CompType::REALTIME);
+    (void)hal->new_thread("t", 1'000'000);
+    for (int i = 0; i < state.range(0); ++i) {
+        const std::string name = "f" + std::to_string(i);
+        (void)hal->new_funct(name, &nothing, nullptr, comp);
+        (void)hal->add_function(name, "t");
+    }
+    (void)hal->start_threads();
+    for (auto _ : state) {
+        clock.step();
+    }
+}
+BENCHMARK(BM_VirtualPeriod)->Arg(0)->Arg(10)->Arg(50);
+
+void BM_SetAndGetByName(benchmark::State &state) {
+    rtapi::VirtualScheduler clock;
+    HalOptions options;
+    options.scheduler = &clock;
+    auto hal = Hal::create(options).value();
+    const int comp = *hal->new_component("bench");
+    for (int i = 0; i < 2000; ++i) {
+        (void)hal->new_pin("bench.pin-" + std::to_string(i), Type::FLOAT, Dir::IN, comp);
+    }
+    for (auto _ : state) {
+        (void)hal->set("bench.pin-1000", Value::of_float(1.0));
+        benchmark::DoNotOptimize(hal->get("bench.pin-1000"));
+    }
+}
+BENCHMARK(BM_SetAndGetByName);
+
+}  // namespace
+}  // namespace mw::hal

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// halrun and halcmd as processes: what they print, how they end and what they leave behind.
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "base/atomic_file.hh"
+#include "hal/host/host_client.hh"
+
+namespace mw::hal::tools {
+namespace {
+
+struct Ended {
+    int status = -1;
+    std::string out;
+    std::string err;
+};
+
+class Programs : public ::testing::Test {
+  protected:
+    Programs() {
+        folder = std::filesystem::temp_directory_path() / ("mw-halrun-" + std::to_string(getpid()));
+        std::filesystem::create_directories(folder);
+        instance = "tools-test-" + std::to_string(getpid());
+        setenv("MILLWRIGHT_INSTANCE", instance.c_str(), 1);
+        const std::string bin = MW_TEST_BIN;
+        setenv("PATH", (bin + ":/usr/bin:/bin").c_str(), 1);
+    }
+    ~Programs() override {
+        EXPECT_FALSE(isHostAlive(instance)) << "a realtime process was left behind";
+        std::filesystem::remove_all(folder);
+    }
+
+    std::string file(const std::string &name, const std::string &text) {
+        const std::string path = (folder / name).string();
+        std::ofstream(path) << text;
+        return path;
+    }
+
+    pid_t start(const std::vector<std::string> &words) {
+        const pid_t pid = fork();
+        if (pid == 0) {
+            const std::string out = (folder / "out").string();
+            const std::string err = (folder / "err").string();
+            dup2(open("/dev/null", O_RDONLY), 0);
+            dup2(open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), 1);
+            dup2(open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), 2);
+            if (chdir(folder.c_str()) != 0) {
+                _exit(126);
+            }
+            std::vector<char *> argv;
+            for (const std::string &word : words) {
+                argv.push_back(const_cast<char *>(word.c_str()));
+            }
+            argv.push_back(nullptr);
+            execvp(argv[0], argv.data());
+            _exit(127);
+        }
+        return pid;
+    }
+
+    Ended wait(pid_t pid) {
+        int status = 0;
+        waitpid(pid, &status, 0);
+        Ended ended;
+        ended.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+        ended.out = read_file((folder / "out").string()).value_or("");
+        ended.err = read_file((folder / "err").string()).value_or("");
+        return ended;
+    }
+
+    Ended run(const std::vector<std::string> &words) { return wait(start(words)); }
+
+    std::filesystem::path folder;
+    std::string instance;
+};
+
+TEST_F(Programs, HalrunStreamsThroughComponentsInRealtime_B9) {
+    file("in.dat", "# x\n1 0\n-2 1\n-3.5 1\n");
+    const std::string hal =
+        file("a.hal", "loadrt threads name1=t period1=1000000\nloadrt abs\nloadrt not\n"
+                      "loadrt streamer cfg=fb depth=100\nloadrt sampler cfg=fb depth=1000\n"
+                      "net x streamer.0.pin.0 => abs.0.in\nnet y abs.0.out => sampler.0.pin.0\n"
+                      "net b streamer.0.pin.1 => not.0.in\nnet c not.0.out => sampler.0.pin.1\n"
+                      "addf streamer.0 t\naddf abs.0 t\naddf not.0 t\naddf sampler.0 t\n"
+                      "loadusr -w halstreamer in.dat\nstart\nloadusr -w halsampler -t -n 4\n");
+    const Ended ended = run({"halrun", "-f", hal});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    EXPECT_EQ(ended.out, "0 1.000000 1 \n1 2.000000 0 \n2 3.500000 0 \n3 3.500000 0 \n");
+}
+
+TEST_F(Programs, HalrunFailsAtTheFirstErrorAndNamesIt_B9) {
+    const Ended ended = run({"halrun", file("a.hal", "loadrt threads\nloadrt nosuch\nshow pin\n")});
+    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(ended.out, "");
+    EXPECT_NE(ended.err.find("a.hal:2:8: "), std::string::npos) << ended.err;
+    EXPECT_NE(ended.err.find("nosuch"), std::string::npos) << ended.err;
+    const Ended failed = run({"halrun", file("b.hal", "loadusr -w false\n")});
+    EXPECT_EQ(failed.status, 1);
+    EXPECT_NE(failed.err.find("program 'false' ended with status 1"), std::string::npos) << failed.err;
+    EXPECT_EQ(run({"halrun", file("c.hal", "loadusr -w -i false\n")}).status, 0);
+    EXPECT_EQ(run({"halrun", "none.hal"}).status, 1);
+    EXPECT_EQ(run({"halrun", "-x"}).status, 1);
+}
+
+TEST_F(Programs, HalrunTakesIniValuesAndTheEnvironment_B9) {
+    file("m.ini", "[A]\nPERIOD = 500000\nNAMES = one,two\n");
+    setenv("MW_TEST_WORD", "three", 1);
+    const Ended ended =
+        run({"halrun", "-s", "-i", "m.ini",
+             file("a.hal", "loadrt threads name1=fast period1=[A]PERIOD\n"
+                           "loadrt and2 names=[A](NAMES),$MW_TEST_WORD\nlist funct\nlist thread\n")});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    EXPECT_EQ(ended.out, "one three two \nfast \n");
+}
+
+TEST_F(Programs, HalcmdAttachesAndHalrunRefusesASecondOne_B9) {
+    const std::string hal =
+        file("a.hal", "loadrt or2\nloadusr -w halcmd setp or2.0.in0 1\nloadusr -w halcmd getp or2.0.in0\n"
+                      "loadusr -w halcmd -s show pin or2.0.in0\nloadusr -w -i halcmd net x or2.0.nosuch\n"
+                      "loadusr -w halrun b.hal\n");
+    file("b.hal", "show\n");
+    const Ended ended = run({"halrun", hal});
+    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(ended.out, "TRUE\nor2 bit   IN TRUE or2.0.in0\n\n");
+    EXPECT_NE(ended.err.find("pin 'or2.0.nosuch' does not exist"), std::string::npos) << ended.err;
+    EXPECT_NE(ended.err.find("already running"), std::string::npos) << ended.err;
+    const Ended alone = run({"halcmd", "show", "pin"});
+    EXPECT_EQ(alone.status, 1);
+    EXPECT_NE(alone.err.find("no realtime process is running"), std::string::npos) << alone.err;
+}
+
+TEST_F(Programs, SignalsEndHalrunInOrder_B9) {
+    for (const int signal : {SIGTERM, SIGINT, SIGKILL}) {
+        std::ofstream(folder / "b.hal") << "loadrt threads\nstart\nloadusr -w sleep 30\n";
+        const pid_t pid = start({"halrun", "b.hal"});
+        // Up to 10 s for a loaded machine; the usual time is some milliseconds.
+        for (int i = 0; i < 1000 && !isHostAlive(instance); ++i) {
+            usleep(10000);
+        }
+        usleep(50000);
+        kill(pid, signal);
+        const Ended ended = wait(pid);
+        EXPECT_NE(ended.status, 0);
+        for (int i = 0; i < 1000 && isHostAlive(instance); ++i) {
+            usleep(10000);
+        }
+        EXPECT_FALSE(isHostAlive(instance)) << "signal " << signal;
+    }
+}
+
+}  // namespace
+}  // namespace mw::hal::tools

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What surrounds the path: homing by switches, backlash, wheels, spindles, watchdog, overrides.
+#include <gtest/gtest.h>
+
+#include "motion/api/texts.hh"
+#include "testing/limit_checker.hh"
+#include "testing/motion_rig.hh"
+
+namespace mw::motion {
+namespace {
+
+using testing::MotionRig;
+
+/// A home switch on joint 0, closed below motor position -12.
+void set_up_switch(MotionRig &rig) {
+    rig.set(Parameter::JOINT_HOME_SEARCH_VEL, 0, -20);
+    rig.set(Parameter::JOINT_HOME_LATCH_VEL, 0, 2);
+    rig.set(Parameter::JOINT_HOME_OFFSET, 0, -5);
+    rig.set(Parameter::JOINT_HOME, 0, 1);
+    rig.before_step = [](MotionRig &r) {
+        r.in.joint[0].isHomeSwitchClosed = r.in.joint[0].motor_pos_fb <= -12;
+    };
+    rig.step(5);
+}
+
+TEST(Machine, HomesByASwitchAndKeepsTheLimits_C10) {
+    MotionRig rig;
+    set_up_switch(rig);
+    rig.send(Enable{});
+    rig.send(Home{-1});
+    testing::LimitChecker checker(std::vector<testing::AxisLimit>(1, {100, 1000}), MotionRig::T);
+    rig.step(2);
+    ASSERT_TRUE(rig.run_until(
+        [&] {
+            checker.sample(&rig.out->joint[0].motor_pos_cmd);
+            return rig.status().isAllHomed;
+        },
+        30));
+    EXPECT_TRUE(checker.isWithin()) << checker.report();
+    EXPECT_EQ(rig.status().joint[0].pos_cmd, 1.0);
+    // The opening edge at motor -12 is joint position HOME_OFFSET.
+    EXPECT_NEAR(rig.out->joint[0].motor_offset, -12.0 - -5.0, 5e-3);
+    EXPECT_TRUE(rig.faults.empty());
+}
+
+TEST(Machine, AFailedHomingSaysWhyAndStopsTheOthers_C10) {
+    MotionRig rig;
+    set_up_switch(rig);
+    rig.set(Parameter::JOINT_HOME_LATCH_VEL, 0, 0);
+    rig.set(Parameter::JOINT_HOME_SEARCH_VEL, 1, -20);
+    rig.set(Parameter::JOINT_HOME_LATCH_VEL, 1, 2);
+    rig.send(Enable{});
+    rig.send(Home{-1});
+    rig.step(500);
+    ASSERT_EQ(rig.faults.size(), 1U);
+    EXPECT_EQ(rig.faults[0].kind, FaultKind::HOMING_FAILED);
+    EXPECT_NE(fault_text(rig.faults[0]).find("HOME_LATCH_VEL is 0"), std::string::npos);
+    EXPECT_FALSE(rig.status().isHoming);
+    EXPECT_TRUE(rig.status().isInPosition);
+}
+
+TEST(Machine, AbortDuringHomingStopsAllJoints_C10) {
+    MotionRig rig;
+    set_up_switch(rig);
+    rig.send(Enable{});
+    rig.send(Home{-1});
+    rig.step(300);
+    ASSERT_TRUE(rig.status().isHoming);
+    const CommandId again = rig.send(Home{1});
+    rig.send(Abort{2});
+    rig.step(100);
+    EXPECT_EQ(rig.refusal(again), Reason::HOMING);
+    EXPECT_FALSE(rig.status().isHoming);
+    EXPECT_FALSE(rig.status().joint[0].isHomed);
+    const double stood = rig.out->joint[0].motor_pos_cmd;
+    rig.step(100);
+    EXPECT_EQ(rig.out->joint[0].motor_pos_cmd, stood);
+}
+
+TEST(Machine, BacklashIsTakenUpAtReversalWithinHalfTheLimits_C11) {
+    MotionRig rig;
+    rig.set(Parameter::JOINT_BACKLASH, 0, 0.4);
+    rig.ready(Mode::FREE);
+    testing::LimitChecker checker(std::vector<testing::AxisLimit>(1, {150, 1500}), MotionRig::T);
+    const auto jog = [&](double distance) {
+        rig.send(JogIncremental{{true, 0}, 100, distance});
+        for (int i = 0; i < 400; ++i) {
+            rig.step();
+            checker.sample(&rig.out->joint[0].motor_pos_cmd);
+        }
+    };
+    jog(10);
+    EXPECT_DOUBLE_EQ(rig.out->joint[0].motor_pos_cmd, 10.2);
+    EXPECT_EQ(rig.status().joint[0].pos_cmd, 10.0);
+    jog(-4);
+    EXPECT_DOUBLE_EQ(rig.out->joint[0].motor_pos_cmd, 5.8);
+    EXPECT_NEAR(rig.status().joint[0].pos_fb, 6.0, 1e-12);
+    EXPECT_TRUE(checker.isWithin()) << checker.report();
+}
+
+TEST(Machine, AWheelMovesTheJointByItsCounts_C15) {
+    MotionRig rig;
+    rig.ready(Mode::FREE);
+    rig.in.joint[1].wheel.isEnabled = true;
+    rig.in.joint[1].wheel.scale = 0.1;
+    rig.in.joint[1].wheel.counts = 0;
+    rig.step(5);
+    rig.in.joint[1].wheel.counts = 25;
+    rig.step(300);
+    EXPECT_NEAR(rig.out->joint[1].motor_pos_cmd, 2.5, 1e-12);
+    rig.in.joint[1].wheel.isEnabled = false;
+    rig.in.joint[1].wheel.counts = 75;
+    rig.step(300);
+    EXPECT_NEAR(rig.out->joint[1].motor_pos_cmd, 2.5, 1e-12);
+}
+
+TEST(Machine, SpindleSpeedIsScaledAndLimited_C15) {
+    MotionRig rig;
+    rig.set(Parameter::SPINDLE_MAX_FORWARD, 0, 3000);
+    rig.set(Parameter::MAX_FEED_SCALE, 0, 1.2);
+    rig.ready();
+    rig.send(SpindleOn{0, 2000});
+    rig.step(2);
+    EXPECT_EQ(rig.out->spindle[0].speed_rpm, 2000);
+    EXPECT_TRUE(rig.out->spindle[0].isForward);
+    rig.send(SetScale{Scale::SPINDLE, 0, 2.0});
+    rig.step(2);
+    EXPECT_EQ(rig.out->spindle[0].speed_rpm, 3000);
+    rig.send(Disable{});
+    rig.step(2);
+    EXPECT_FALSE(rig.out->spindle[0].isOn);
+    EXPECT_EQ(rig.out->spindle[0].speed_rpm, 0);
+    const CommandId on = rig.send(SpindleOn{0, 500});
+    const CommandId none = rig.send(SpindleOff{3});
+    rig.step(2);
+    EXPECT_EQ(rig.refusal(on), Reason::NOT_ENABLED);
+    EXPECT_EQ(rig.refusal(none), Reason::NO_SUCH_SPINDLE);
+}
+
+TEST(Machine, FeedMovesWaitForTheSpindleAndFollowIt_C15) {
+    MotionRig rig;
+    rig.ready();
+    rig.send(SpindleOn{0, 600});
+    rig.in.spindle[0].isAtSpeed = false;
+    Line line;
+    line.end[2] = -20;
+    line.terms.feed_per_revolution = 0.5;
+    line.terms.isVelocitySynched = true;
+    const CommandId id = rig.send_path(line);
+    rig.send_path(Flush{});
+    rig.step(300);
+    EXPECT_EQ(rig.out->joint[2].motor_pos_cmd, 0.0);
+    rig.in.spindle[0].isAtSpeed = true;
+    rig.in.spindle[0].speed_in_rps = 10;
+    rig.step(300);
+    EXPECT_NEAR(rig.status().current_velocity, 5.0, 1e-6);
+    ASSERT_TRUE(rig.run_until([&] { return rig.isDone(id); }, 20));
+}
+
+TEST(Machine, EveryPassOfAThreadBeginsAtTheSameSpindleAngle_C15) {
+    MotionRig rig;
+    rig.before_step = [](MotionRig &r) {
+        r.in.spindle[0].speed_in_rps = 8.3;
+        r.in.spindle[0].revs = 8.3 * static_cast<double>(r.cycle) * MotionRig::T;
+    };
+    rig.ready();
+    rig.send(SpindleOn{0, 498});
+    double phases[3] = {};
+    for (int pass = 0; pass < 3; ++pass) {
+        Line cut;
+        cut.end[2] = -20;
+        cut.terms.feed_per_revolution = 1.5;
+        rig.send_path(cut);
+        double z = 0;
+        double revs = 0;
+        rig.step(40);
+        ASSERT_TRUE(rig.run_until([&] {
+            z = rig.out->joint[2].motor_pos_cmd;
+            revs = rig.in.spindle[0].revs;
+            return z < -10;
+        }));
+        const double turns = z / 1.5 + revs;  // constant along the thread
+        phases[pass] = turns - std::floor(turns);
+        const CommandId flush = rig.send_path(Flush{});
+        ASSERT_TRUE(rig.run_until([&] { return rig.isDone(flush); }));
+        rig.step(37 * (pass + 1));
+        rig.line({}, 0);
+        const CommandId back = rig.send_path(Flush{});
+        ASSERT_TRUE(rig.run_until([&] { return rig.isDone(back); }));
+    }
+    EXPECT_NEAR(phases[1], phases[0], 1e-6);
+    EXPECT_NEAR(phases[2], phases[0], 1e-6);
+}
+
+TEST(Machine, TheWatchdogStopsTheMachineWhenTaskHangs_C6) {
+    MotionRig rig;
+    rig.ready();
+    rig.send(SetWatchdog{true, 0.1});
+    rig.before_step = [](MotionRig &r) { r.channels->task_loops.fetch_add(1); };
+    geom::Pose end;
+    end[0] = 500;
+    rig.line(end);
+    rig.send_path(Flush{});
+    rig.step(1000);
+    EXPECT_TRUE(rig.status().isEnabled);
+    rig.before_step = [](MotionRig &) {};
+    rig.step(300);
+    EXPECT_FALSE(rig.status().isEnabled);
+    ASSERT_FALSE(rig.faults.empty());
+    EXPECT_EQ(rig.faults[0].kind, FaultKind::TASK_LOST);
+}
+
+TEST(Machine, FeedOverrideZeroStandsAndUpGoesOn_C4) {
+    MotionRig rig;
+    rig.set(Parameter::MAX_FEED_SCALE, 0, 2.0);
+    rig.ready();
+    geom::Pose end;
+    end[0] = 60;
+    rig.line(end, 20);
+    const CommandId flush = rig.send_path(Flush{});
+    rig.step(500);
+    rig.send(SetScale{Scale::FEED, 0, 0});
+    rig.step(200);
+    const double stood = rig.out->joint[0].motor_pos_cmd;
+    rig.step(200);
+    EXPECT_EQ(rig.out->joint[0].motor_pos_cmd, stood);
+    rig.send(SetScale{Scale::FEED, 0, 2.0});
+    rig.step(200);
+    EXPECT_NEAR(rig.status().current_velocity, 40, 1e-9);
+    const CommandId over = rig.send(SetScale{Scale::FEED, 0, 2.1});
+    ASSERT_TRUE(rig.run_until([&] { return rig.isDone(flush); }, 10));
+    EXPECT_EQ(rig.refusal(over), Reason::OUT_OF_RANGE);
+}
+
+TEST(Machine, ProbeContactInAJogStopsIt) {
+    MotionRig rig;
+    rig.ready(Mode::FREE);
+    rig.send(JogContinuous{{true, 2}, -20});
+    rig.step(200);
+    rig.in.isProbeClosed = true;
+    rig.step(200);
+    EXPECT_TRUE(rig.status().isInPosition);
+    ASSERT_EQ(rig.faults.size(), 1U);
+    EXPECT_EQ(rig.faults[0].kind, FaultKind::PROBE_TRIPPED_IN_MOVE);
+}
+
+}  // namespace
+}  // namespace mw::motion
