@@ -263,7 +263,7 @@ bool Executor::comp_straight(bool isRapid, const Pose &end) {
         next.end = sum(to, comp_normal(next.start_direction), state.comp_radius);
         next.isSet = true;
         if (!state.comp_last.isSet) {
-            if (length <= state.comp_radius) {
+            if (length < state.comp_radius - TINY) {
                 return fault.set(
                     "Length of cutter compensation entry move is not greater than the tool radius");
             }

@@ -130,6 +130,13 @@ bool Executor::do_cycle(const Code &code, const BlockValues &values) {
         return fault.set(fmt::format("R value less than {} value in cycle", normal_name),
                          values.column_of('r'));
     }
+    constexpr double MOST_MOVES = 1e6;  // a slip of the keyboard, not a program
+    const double pecks = needsPeck(code.number) ? (plan.r - plan.bottom) / state.cycle.q + 1.0 : 1.0;
+    if (pecks * repeats > MOST_MOVES) {
+        return fault.set(
+            "This canned cycle would make more than a million moves: is L too large or Q too small?",
+            values.column_of(pecks > repeats ? 'q' : 'l'));
+    }
     if (!isCycle(state.motion) || !state.cycle.isRunning) {
         state.cycle.initial = state.position[axes.normal];
     }

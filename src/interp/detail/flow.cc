@@ -35,7 +35,7 @@ void Flow::close() {
     abort();
     programs_.clear();
     program_ = nullptr;
-    next_ = 1;
+    next_ = after_line_ = 1;
     statements_ = 0;
 }
 
@@ -142,6 +142,7 @@ Step Flow::run_line() {
     line_read_ = next_;
     const BlockView view = program_->block(next_);
     ++next_;
+    after_line_ = next_;
     const Block &block = *view.block;
     if (block.isPercent) {
         return percent();
@@ -211,6 +212,7 @@ Step Flow::fail_block() {
     for (auto call = calls_.rbegin(); call != calls_.rend(); ++call) {
         error_.called_from.push_back({call->program->path(), call->line, 0});
     }
+    next_ = calls_.empty() ? after_line_ : next_;  // a jump that failed half way is none
     unwind();
     return Step::FAILED;
 }

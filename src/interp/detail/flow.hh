@@ -105,7 +105,8 @@ class Flow {
     std::map<std::string, std::unique_ptr<Program>> programs_;
     std::vector<std::unique_ptr<Program>> mdi_;
     Program *program_ = nullptr;
-    int next_ = 1;  ///< the line to run next
+    int next_ = 1;        ///< the line to run next
+    int after_line_ = 1;  ///< follows the line that was read
     int line_read_ = 0;
     int error_line_ = 0;  ///< when the error is not in the line that was read
     std::vector<Repeat> repeats_;

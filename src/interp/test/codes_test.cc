@@ -204,6 +204,8 @@ const BadCase BAD[] = {
     {"F1 G81 Z1 R0", "R value less than z"},
     {"F1 G83 Z0 R1 Q0", "peck depth"},
     {"F1 G84 Z0 R1", "Spindle not turning"},
+    {"F1 G81 Z0 R1 L999999999", "more than a million moves"},
+    {"F1 G83 Z0 R1 Q0.0000001", "more than a million moves"},
     {"G80 X1", "Cannot use axis values"},
     {"X1", "without a g code"},
     {"G92", "All axes missing"},

@@ -62,6 +62,17 @@ TEST(Flow, loops_and_conditions_I1) {
     EXPECT_EQ(Calls(machine.record.calls.begin(), machine.record.calls.begin() + 6), want);
 }
 
+TEST(Flow, failed_jump_goes_on_with_the_next_line_I1) {
+    for (const char *line :
+         {"o1 endwhile", "o1 else", "o1 endif", "o1 while [1]", "o1 break", "o1 endrepeat"}) {
+        Machine machine;
+        EXPECT_EQ(machine.run(std::string("G0 X1\n") + line + "\nG0 Y1\n"), Step::FAILED) << line;
+        EXPECT_EQ(machine.interpreter->step(), Step::OK) << line;
+        ASSERT_EQ(machine.record.lines.size(), 2u) << line;
+        EXPECT_EQ(machine.record.lines[1].end[1], 1) << line;
+    }
+}
+
 TEST(Flow, recursion_is_bounded_I1) {
     Machine machine;
     EXPECT_EQ(machine.run("o1 sub\no1 call\no1 endsub\no1 call\n"), Step::FAILED);
