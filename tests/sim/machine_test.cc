@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A whole machine in virtual time, from INI and HAL files: stops, pauses, inputs, errors.
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "machine/loaded_config.hh"
+#include "machine/machine.hh"
+#include "machine/operator.hh"
+
+namespace mw::machine {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double PERIOD_S = 1e-3;
+
+class MachineTest : public testing::Test {
+  protected:
+    MachineTest() {
+        folder_ = fs::temp_directory_path() / ("mw_machine_" + std::to_string(::getpid()));
+        fs::create_directory(folder_);
+        loaded_ = LoadedConfig::load(MW_SOURCE_DIR "/configs/sim/mill_mm.ini", sink_);
+        EXPECT_NE(loaded_, nullptr);
+        loaded_->machine.task.parameter_file.clear();
+        auto made =
+            make_virtual_machine({loaded_->ini, loaded_->reader, loaded_->machine, sink_}, MachineOptions{});
+        EXPECT_TRUE(made.has_value()) << made.error().str();
+        machine_ = std::move(*made);
+        Operator person(*machine_, loaded_->machine, sink_, 60.0);
+        EXPECT_TRUE(person.switch_on().has_value());
+        EXPECT_TRUE(person.home_all().has_value());
+        machine_->channels().isTracing.store(1);
+    }
+    ~MachineTest() override { fs::remove_all(folder_); }
+
+    void start(const std::string &text) {
+        std::ofstream(folder_ / "p.ngc") << text;
+        ask(task::SetMode{task::Mode::AUTO});
+        ask(task::OpenProgram{(folder_ / "p.ngc").string()});
+        run_ = machine_->task().submit(task::RunProgram{});
+    }
+    task::RequestId ask(task::Command command) {
+        const auto id = machine_->task().submit(std::move(command));
+        cycles(3);
+        return id;
+    }
+    void cycles(int n) {
+        for (int i = 0; i < n; ++i) {
+            machine_->cycle();
+            motion::TraceSample sample;
+            while (machine_->channels().trace.pop(sample)) {
+                samples_.push_back(sample);
+            }
+        }
+    }
+    task::Progress finish(int limit = 200000) {
+        for (int i = 0; i < limit && machine_->task().progress(run_) == task::Progress::STARTED; ++i) {
+            cycles(1);
+        }
+        return machine_->task().progress(run_);
+    }
+    const motion::Status &motion() const { return machine_->task().motion_status(); }
+    bool pin(const std::string &name) const { return machine_->hal().get(name)->as_bit(); }
+    std::string messages() {
+        std::string all;
+        task::Message message;
+        while (machine_->task().poll_message(message)) {
+            all += message.text + '\n';
+        }
+        return all;
+    }
+    /// Largest acceleration of X and Y over the samples. [mm/s2]
+    double peak_acceleration() const {
+        double peak = 0;
+        for (std::size_t i = 2; i < samples_.size(); ++i) {
+            for (int axis = 0; axis < 2; ++axis) {
+                const double d2 = samples_[i].carte_pos_cmd[axis] - 2 * samples_[i - 1].carte_pos_cmd[axis] +
+                                  samples_[i - 2].carte_pos_cmd[axis];
+                peak = std::fmax(peak, std::fabs(d2) / (PERIOD_S * PERIOD_S));
+            }
+        }
+        return peak;
+    }
+
+    fs::path folder_;
+    diag::Sink sink_;
+    std::unique_ptr<LoadedConfig> loaded_;
+    std::unique_ptr<Machine> machine_;
+    std::vector<motion::TraceSample> samples_;
+    task::RequestId run_ = 0;
+};
+
+constexpr const char *LONG_MOVES = "G21 G90 G17 G61 F6000\nG1 X100\nY100\nX0\nY0\nM2\n";
+
+TEST_F(MachineTest, AnOpenChainDropsTheAmplifiersInTheSameServoCycle) {
+    start(LONG_MOVES);
+    cycles(500);
+    ASSERT_GT(motion().current_velocity, 50);
+    ASSERT_TRUE(pin("joint.0.amp-enable-out"));
+    hal::Hal &hal = machine_->hal();
+    ASSERT_TRUE(hal.unlink("iocontrol.0.user-enable-out").has_value());
+    ASSERT_TRUE(hal.set_signal("estop-loop", "FALSE").has_value());
+    samples_.clear();
+    cycles(1);
+    ASSERT_EQ(samples_.size(), 1U);
+    EXPECT_EQ(samples_[0].isEnabled, 0);
+    for (int joint = 0; joint < 3; ++joint) {
+        EXPECT_FALSE(pin("joint." + std::to_string(joint) + ".amp-enable-out"));
+    }
+    cycles(3);
+    EXPECT_EQ(machine_->task().status().state, task::State::ESTOP);
+    EXPECT_EQ(machine_->task().progress(run_), task::Progress::FAILED);
+}
+
+TEST_F(MachineTest, AnAbortBrakesAlongThePathWithinTheLimits) {
+    start(LONG_MOVES);
+    cycles(500);
+    ask(task::AbortAll{});
+    cycles(300);
+    EXPECT_TRUE(motion().isInPosition);
+    EXPECT_TRUE(motion().isEnabled);
+    EXPECT_LE(peak_acceleration(), 1500 * (1 + 1e-6) + 1e-6);
+    const double y = samples_.back().carte_pos_cmd.y();
+    EXPECT_NEAR(y, 0.0, 1e-9) << "still on the first side";
+    const geom::Pose rest = samples_.back().carte_pos_cmd;
+    cycles(500);
+    EXPECT_EQ(samples_.back().carte_pos_cmd, rest) << "nothing of the old epoch moves";
+}
+
+TEST_F(MachineTest, PauseHoldsAndResumeGoesOnToTheExactEnd) {
+    start(LONG_MOVES);
+    cycles(700);
+    ask(task::PauseProgram{});
+    cycles(300);
+    const geom::Pose held = samples_.back().carte_pos_cmd;
+    cycles(200);
+    EXPECT_EQ(samples_.back().carte_pos_cmd, held);
+    ask(task::ResumeProgram{});
+    EXPECT_EQ(finish(), task::Progress::DONE);
+    EXPECT_LE(peak_acceleration(), 1500 * (1 + 1e-6) + 1e-6);
+    EXPECT_EQ(samples_.back().carte_pos_cmd.x(), 0.0);
+    EXPECT_EQ(samples_.back().carte_pos_cmd.y(), 0.0);
+}
+
+TEST_F(MachineTest, AProgramErrorStopsTheSpindleToo) {
+    start("G21 G90 S5000 M3\nG1 X50 F1000\nG1 X100 X5\nM2\n");
+    EXPECT_EQ(finish(), task::Progress::FAILED);
+    EXPECT_NE(messages().find("p.ngc:3:"), std::string::npos);
+    cycles(3000);
+    EXPECT_EQ(machine_->hal().get("spindle.0.speed-out")->as_float(), 0.0);
+    EXPECT_TRUE(motion().isEnabled);
+}
+
+TEST_F(MachineTest, FollowingErrorIsAFaultThatSwitchesOff_C13) {
+    start(LONG_MOVES);
+    cycles(300);
+    ASSERT_TRUE(machine_->hal().unlink("joint.0.motor-pos-fb").has_value());
+    cycles(1000);
+    EXPECT_FALSE(motion().isEnabled);
+    EXPECT_NE(messages().find("joint 0 following error"), std::string::npos);
+}
+
+TEST_F(MachineTest, AToolChangeWaitsForItsPin_E1) {
+    ASSERT_TRUE(machine_->hal().unlink("iocontrol.0.tool-changed").has_value());
+    start("G21 G90\nT2 M6\nG0 X5\nM2\n");
+    cycles(4000);
+    EXPECT_EQ(machine_->task().progress(run_), task::Progress::STARTED);
+    EXPECT_EQ(machine_->task().status().waiting.what, "pin iocontrol.0.tool-changed to become TRUE");
+    ASSERT_TRUE(machine_->hal().set("iocontrol.0.tool-changed", "TRUE").has_value());
+    EXPECT_EQ(finish(), task::Progress::DONE);
+    EXPECT_EQ(machine_->task().status().tool_in_spindle, 2);
+}
+
+TEST_F(MachineTest, MoveAndOutputStayInProgramOrder_D2) {
+    start("G21 G90 F3000\nG1 X10\nM64 P0\nG1 X20\nM65 P0\nM2\n");
+    double on_at = -1, off_at = -1;
+    for (int i = 0; i < 3000; ++i) {
+        cycles(1);
+        const bool isOn = pin("motion.digital-out-00");
+        on_at = isOn && on_at < 0 ? motion().carte_pos_cmd.x() : on_at;
+        off_at = !isOn && on_at >= 0 && off_at < 0 ? motion().carte_pos_cmd.x() : off_at;
+    }
+    EXPECT_NEAR(on_at, 10.0, 1e-9);
+    EXPECT_NEAR(off_at, 20.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace mw::machine
