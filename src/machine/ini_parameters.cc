@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "machine/ini_parameters.hh"
 
-#include "base/text.hh"
+#include "interp/ini_settings.hh"
 
 namespace mw::machine {
 
 std::optional<double> IniParameters::ini_value(std::string_view section, std::string_view key) const {
-    for (const config::IniEntry &entry : ini_.entries()) {
-        if (equals_ignoring_case(entry.section, section) && equals_ignoring_case(entry.key, key)) {
-            const auto words = split_words(entry.value);
-            return words.empty() ? std::nullopt : parse_double(words[0]);
-        }
-    }
-    return std::nullopt;
+    return interp::ini_number(ini_, section, key);
 }
 
 std::optional<double> IniParameters::hal_value(std::string_view name) const {

@@ -7,6 +7,7 @@
 
 #include "base/text.hh"
 #include "geom/pose.hh"
+#include "interp/ini_settings.hh"
 #include "motion/api/parameters.hh"
 
 namespace mw::machine {
@@ -104,6 +105,19 @@ void need_section(IniReader &ini, const std::string &section, const std::string 
     }
 }
 
+/// Keys that exist in the field and that this version does not act on: said once, never ignored in silence.
+void warn_without_effect(IniReader &ini, const std::string &section,
+                         std::initializer_list<const char *> keys) {
+    for (const char *key : keys) {
+        const config::IniEntry *entry = ini.file().find(section, key);
+        if (entry != nullptr) {
+            ini.sink().warning('[' + section + ']' + key +
+                                   " is not supported by this version; it has no effect",
+                               entry->place);
+        }
+    }
+}
+
 void read_joints(IniReader &ini, MachineConfig &machine) {
     for (int joint = 0; joint < machine.num_joints; ++joint) {
         const std::string section = "JOINT_" + std::to_string(joint);
@@ -145,11 +159,7 @@ void read_joints(IniReader &ini, MachineConfig &machine) {
                                "STEPSPACE",
                                "STEPGEN_MAXVEL",
                                "STEPGEN_MAXACCEL"});
-        if (ini.file().find(section, "COMP_FILE") != nullptr) {
-            ini.sink().warning('[' + section +
-                                   "]COMP_FILE is not supported by this version; it has no effect",
-                               ini.file().find(section, "COMP_FILE")->place);
-        }
+        warn_without_effect(ini, section, {"COMP_FILE", "LOCKING_INDEXER"});
     }
 }
 
@@ -180,6 +190,7 @@ void read_axes(IniReader &ini, MachineConfig &machine) {
         read_scope(ini, section, motion::ParameterScope::AXIS, axis, machine);
         ini.know_all(section,
                      {"HOME", "WRAPPED_ROTARY", "LOCKING_INDEXER_JOINT", "OFFSET_AV_RATIO", "GEOMETRY"});
+        warn_without_effect(ini, section, {"WRAPPED_ROTARY", "LOCKING_INDEXER_JOINT", "OFFSET_AV_RATIO"});
     }
 }
 
@@ -249,50 +260,43 @@ void read_hal(IniReader &ini, MachineConfig &machine) {
     }
     machine.isTwoPass = !ini.text("HAL", "TWOPASS", "").empty();
     machine.hasHalui = !ini.text("HAL", "HALUI", "").empty();
+    warn_without_effect(ini, "HAL", {"SHUTDOWN"});
     ini.know_all("HAL", {"POSTGUI_HALFILE", "POSTGUI_HALCMD", "SHUTDOWN"});
     ini.list("HALUI", "MDI_COMMAND");
 }
 
-/// Folders for subroutines: SUBROUTINE_PATH (colon separated), then the program prefix.
-std::vector<std::string> subroutine_folders(IniReader &ini) {
-    std::vector<std::string> folders;
-    std::string path = ini.text("RS274NGC", "SUBROUTINE_PATH", "");
-    while (!path.empty()) {
-        const auto colon = path.find(':');
-        const std::string one(trim(path.substr(0, colon)));
-        if (!one.empty()) {
-            folders.push_back(ini.file().resolve_path(one));
-        }
-        path = colon == std::string::npos ? "" : path.substr(colon + 1);
-    }
-    const std::string prefix = ini.text("DISPLAY", "PROGRAM_PREFIX", "");
-    if (!prefix.empty()) {
-        folders.push_back(ini.file().resolve_path(prefix));
-    }
-    return folders;
-}
-
 void read_interpreter(IniReader &ini, MachineConfig &machine) {
-    interp::Settings &settings = machine.task.interpreter;
     const std::string parameters = ini.text("RS274NGC", "PARAMETER_FILE", "");
     machine.task.parameter_file = parameters.empty() ? "" : ini.file().resolve_path(parameters);
-    settings.subroutine_path = subroutine_folders(ini);
-    settings.startup_code = ini.text("RS274NGC", "RS274NGC_STARTUP_CODE", "");
-    settings.isG92PersistenceDisabled = ini.boolean("RS274NGC", "DISABLE_G92_PERSISTENCE", false);
-    settings.isFanucSubDisabled = ini.boolean("RS274NGC", "DISABLE_FANUC_STYLE_SUB", false);
-    settings.center_arc_radius_tolerance_mm =
-        ini.real("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_MM", 0.00127, {0.0});
-    settings.center_arc_radius_tolerance_inch =
-        ini.real("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_INCH", 0.00005, {0.0});
-    settings.isLathe = ini.boolean("DISPLAY", "LATHE", false);
-    settings.orient_offset_deg = ini.real("RS274NGC", "ORIENT_OFFSET", 0.0);
-    for (const config::IniEntry *entry : ini.list("RS274NGC", "REMAP")) {
-        settings.remaps.push_back(entry->value);
+    if (parameters.empty()) {
+        ini.sink().warning(
+            "[RS274NGC]PARAMETER_FILE is missing: offsets and parameters are not kept after a run",
+            ini.file().place_of_section("RS274NGC"));
     }
-    settings.ini_folder = ini.file().folder();
-    ini.know_all("RS274NGC", {"USER_M_PATH", "LOG_LEVEL", "LOG_FILE", "INI_VARS", "HAL_PIN_VARS", "FEATURES",
-                              "ON_ABORT_COMMAND", "OWORD_NARGS", "OWORD_WARNONLY", "NO_DOWNCASE_OWORD",
-                              "RETAIN_G43", "PARAMETER_G73_PECK_CLEARANCE", "PARAMETER_G83_PECK_CLEARANCE"});
+    machine.task.interpreter = interp::settings_from_ini(ini.file(), ini.sink());
+    machine.task.interpreter.isLathe = ini.boolean("DISPLAY", "LATHE", false);
+    ini.know_all("RS274NGC", {"RS274NGC_STARTUP_CODE",
+                              "DISABLE_G92_PERSISTENCE",
+                              "DISABLE_FANUC_STYLE_SUB",
+                              "REMAP",
+                              "CENTER_ARC_RADIUS_TOLERANCE_MM",
+                              "CENTER_ARC_RADIUS_TOLERANCE_INCH",
+                              "ORIENT_OFFSET",
+                              "SUBROUTINE_PATH",
+                              "USER_M_PATH",
+                              "LOG_LEVEL",
+                              "LOG_FILE",
+                              "INI_VARS",
+                              "HAL_PIN_VARS",
+                              "FEATURES",
+                              "ON_ABORT_COMMAND",
+                              "OWORD_NARGS",
+                              "OWORD_WARNONLY",
+                              "NO_DOWNCASE_OWORD",
+                              "RETAIN_G43",
+                              "PARAMETER_G73_PECK_CLEARANCE",
+                              "PARAMETER_G83_PECK_CLEARANCE"});
+    warn_without_effect(ini, "RS274NGC", {"ON_ABORT_COMMAND", "RETAIN_G43"});
 }
 
 void read_io(IniReader &ini, MachineConfig &machine) {
@@ -326,14 +330,7 @@ void read_io(IniReader &ini, MachineConfig &machine) {
     }
     ini.know_all("EMCIO", {"EMCIO", "CYCLE_TIME", "TOOL_CHANGE_POSITION", "TOOL_CHANGE_QUILL_UP",
                            "TOOL_CHANGE_AT_G30", "DB_PROGRAM"});
-    for (const char *key : {"TOOL_CHANGE_AT_G30", "DB_PROGRAM"}) {
-        const config::IniEntry *entry = ini.file().find("EMCIO", key);
-        if (entry != nullptr) {
-            ini.sink().warning(std::string("[EMCIO]") + key +
-                                   " is not supported by this version; it has no effect",
-                               entry->place);
-        }
-    }
+    warn_without_effect(ini, "EMCIO", {"TOOL_CHANGE_AT_G30", "DB_PROGRAM"});
 }
 
 }  // namespace

@@ -27,6 +27,7 @@ def main():
     lines = pathlib.Path(known_file).read_text().splitlines()
     known = {line.strip() for line in lines if line.strip() and not line.startswith('#')}
     done = subprocess.run([sys.executable, str(cases / 'run'), '--bin', bin_dir, '--only', only, '--verbose'],
+                          env=dict(os.environ, MILLWRIGHT_INSTANCE=f'conformance-{os.getpid()}'),
                           capture_output=True, text=True, check=False)
     passed, failed = set(), set()
     for line in done.stdout.splitlines():
