@@ -116,7 +116,7 @@ Result<> Operator::wait_for(task::RequestId id, const std::string &what,
         }
         if (task.status().isPaused) {
             ++figures_.stops_passed;
-            sink_.note(fmt::format("program stop at line {} passed", task.status().read_line));
+            sink_.note(fmt::format("program stop at line {} passed", task.status().stop_line));
             task.submit(task::ResumeProgram{});
         }
         if (hasProgress()) {

@@ -59,7 +59,15 @@ class CheckCanon final : public interp::MachineCanon {
         position = back;
     }
     void select_tool(int toolno) override { selected = toolno; }
-    void change_tool() override { tool = selected >= 0 ? std::exchange(selected, -1) : tool; }
+    void change_tool() override {
+        tool = selected >= 0 ? std::exchange(selected, -1) : tool;
+        for (const geom::Pose &end : task::tool_change_moves(machine_.task.tool_change_place, position)) {
+            ProgrammedPiece piece;
+            piece.start = position;
+            piece.end = end;
+            take(piece, true);
+        }
+    }
     void change_tool_number(int toolno) override { tool = toolno; }
     void canon_error(std::string_view text) override { report(std::string(text), {}); }
 

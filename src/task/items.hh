@@ -93,7 +93,6 @@ struct WaitInputItem {
 };
 struct StopItem {
     bool isOptional;
-    bool isPalletShuttle;
 };
 struct EndItem {
     bool isProgramEnd;  ///< M2 or M30, else the end of the file

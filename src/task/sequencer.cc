@@ -136,7 +136,7 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
                 return true;
             },
             [&](const StopItem &stop) {
-                events_.stop(stop);
+                events_.stop(stop, item.source.line);
                 return true;
             },
             [&](const EndItem &end) {

@@ -19,9 +19,9 @@ namespace mw::task {
 struct SequencerEvents {
     std::function<void(MessageKind, const std::string &)> message;
     std::function<void(const std::string &)> print;
-    std::function<void(const StopItem &)> stop;     ///< M0, M1, M60 are reached
-    std::function<void(const EndItem &)> end;       ///< the program is over
-    std::function<void(const std::string &)> fail;  ///< something cannot be done; task aborts
+    std::function<void(const StopItem &, int line)> stop;  ///< M0, M1, M60 are reached
+    std::function<void(const EndItem &)> end;              ///< the program is over
+    std::function<void(const std::string &)> fail;         ///< something cannot be done; task aborts
     std::function<void(const OffsetsItem &)> offsets;
     std::function<void(const ToolOffsetItem &)> tool_offset;
     /// Starts a user M code; false when it cannot be started.

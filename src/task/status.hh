@@ -27,6 +27,7 @@ struct Status {
     bool isBlockDelete = true;
     std::string program;       ///< path of the open program
     int read_line = 0;         ///< last line that the interpreter has read
+    int stop_line = 0;         ///< of the last M0, M1 or M60 reached
     int motion_line = 0;       ///< line of the move being executed
     std::uint64_t blocks = 0;  ///< executed since the program started
     int call_level = 0;

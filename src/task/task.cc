@@ -22,7 +22,7 @@ SequencerEvents Task::make_events() {
     SequencerEvents events;
     events.message = [this](MessageKind kind, const std::string &text) { post(kind, text); };
     events.print = [this](const std::string &text) { post(MessageKind::OPERATOR_TEXT, text); };
-    events.stop = [this](const StopItem &stop) { on_stop(stop); };
+    events.stop = [this](const StopItem &stop, int line) { on_stop(stop, line); };
     events.end = [this](const EndItem &end) { on_end(end); };
     events.fail = [this](const std::string &text) {
         pending_failure_ = pending_failure_.empty() ? text : pending_failure_;
@@ -239,10 +239,11 @@ void Task::on_step_result(interp::Step result) {
     }
 }
 
-void Task::on_stop(const StopItem &stop) {
+void Task::on_stop(const StopItem &stop, int line) {
     if (stop.isOptional && !status_.isOptionalStop) {
         return;
     }
+    status_.stop_line = line;
     status_.isPaused = true;
     isStoppedByProgram_ = true;
 }

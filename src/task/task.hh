@@ -116,7 +116,7 @@ class Task final : public interp::World {
     void run_interpreter();
     bool isReadAheadAllowed() const;
     void on_step_result(interp::Step result);
-    void on_stop(const StopItem &stop);
+    void on_stop(const StopItem &stop, int line);
     void on_end(const EndItem &end);
     void fail_program(diag::Diagnostic what);
     void fail_program(const std::string &text);

@@ -47,17 +47,24 @@ void TaskCanon::rapid_to(const geom::Pose &end) {
     line(move);
 }
 
-void TaskCanon::change_tool() {
-    if (place_.isQuillRaised) {
-        geom::Pose raised = last_end_;
-        raised[geom::AXIS_Z] = 0;
-        rapid_to(raised);
+std::vector<geom::Pose> tool_change_moves(const ToolChangePlace &place, const geom::Pose &position) {
+    std::vector<geom::Pose> moves;
+    geom::Pose end = position;
+    if (place.isQuillRaised) {
+        end[geom::AXIS_Z] = 0;
+        moves.push_back(end);
     }
-    if (place_.coordinates > 0) {
-        geom::Pose end = last_end_;
-        for (int axis = 0; axis < place_.coordinates; ++axis) {
-            end[axis] = place_.position[axis];
+    if (place.coordinates > 0) {
+        for (int axis = 0; axis < place.coordinates; ++axis) {
+            end[axis] = place.position[axis];
         }
+        moves.push_back(end);
+    }
+    return moves;
+}
+
+void TaskCanon::change_tool() {
+    for (const geom::Pose &end : tool_change_moves(place_, last_end_)) {
         rapid_to(end);
     }
     add(ChangeToolItem{});

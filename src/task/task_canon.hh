@@ -18,6 +18,9 @@ struct ToolChangePlace {
     geom::Pose position;         ///< [machine units], machine coordinates
 };
 
+/// Where a tool change goes from `position`, in order; empty when it stays.
+std::vector<geom::Pose> tool_change_moves(const ToolChangePlace &place, const geom::Pose &position);
+
 class TaskCanon final : public interp::MachineCanon {
   public:
     explicit TaskCanon(ItemQueue &queue, const ToolChangePlace &place = {}) : queue_(queue), place_(place) {}
@@ -63,10 +66,11 @@ class TaskCanon final : public interp::MachineCanon {
     void set_digital_output(int index, bool isOn, bool isSynched) override;
     void set_analog_output(int index, double value, bool isSynched) override;
     void wait_input(int index, bool isAnalog, interp::WaitKind kind, double timeout_s) override;
-    void program_stop() override { add(StopItem{false, false}); }
-    void optional_program_stop() override { add(StopItem{true, false}); }
+    void program_stop() override { add(StopItem{false}); }
+    void optional_program_stop() override { add(StopItem{true}); }
     void program_end() override { add(EndItem{true}); }
-    void pallet_shuttle() override { add(StopItem{false, true}); }
+    /// The stop of M60 is a call of its own; this machine has no shuttle to move.
+    void pallet_shuttle() override {}
     void finish() override { add(EndItem{false}); }
     void comment(std::string_view text) override;
     void message(std::string_view text) override;
