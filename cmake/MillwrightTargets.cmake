@@ -73,7 +73,13 @@ function(mw_test name)
   if(NOT A_LABELS)
     set(A_LABELS unit)
   endif()
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT ${A_TIMEOUT} LABELS "${A_LABELS}")
+  # Kill tests look at the clock of a realtime process: nothing else may run beside them.
+  set(serial FALSE)
+  if("kill" IN_LIST A_LABELS)
+    set(serial TRUE)
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
+    PROPERTIES TIMEOUT ${A_TIMEOUT} LABELS "${A_LABELS}" RUN_SERIAL ${serial})
 endfunction()
 
 # mw_bench(NAME SOURCES ... DEPENDS ...): a Google Benchmark program, bench/NAME in the build folder.

@@ -163,7 +163,7 @@ std::string IniFile::folder() const {
 }
 
 std::string IniFile::resolve_path(std::string_view name) const {
-    const std::string expanded = expand_home(name);
+    std::string expanded = expand_home(name);
     if (!expanded.empty() && expanded.front() == '/') {
         return expanded;
     }
