@@ -64,7 +64,7 @@ Result<> Pins::make_outputs(hal::Hal &hal) {
 
 void Pins::destroy() {
     if (hal_ != nullptr) {
-        hal_->delete_component(comp_id_);
+        static_cast<void>(hal_->delete_component(comp_id_));
         hal_ = nullptr;
     }
 }

@@ -44,7 +44,7 @@ class RealtimeMachine final : public Machine {
         }
         side_ = std::make_unique<TaskSide>(parts_, *host_);
         const auto started = side_->start(options);
-        return started.has_value() ? configure() : started;
+        return started.has_value() ? side_->finish_start([this] { cycle(); }, CONFIGURE_CYCLES) : started;
     }
 
     void cycle() override {
@@ -75,22 +75,6 @@ class RealtimeMachine final : public Machine {
     hal::Hal &hal() override { return host_->hal(); }
 
   private:
-    Result<> configure() {
-        for (int i = 0; i < CONFIGURE_CYCLES; ++i) {
-            cycle();
-            const auto isDone = side_->isConfigured();
-            if (!isDone.has_value()) {
-                return std::unexpected(isDone.error());
-            }
-            if (*isDone) {
-                cycle();
-                return side_->begin();
-            }
-        }
-        return fail("the motion controller does not run", {parts_.ini.path(), 0, 0},
-                    "are motion-command-handler and motion-controller added to a thread (addf)?");
-    }
-
     MachineParts parts_;
     std::unique_ptr<hal::HostClient> host_;
     std::unique_ptr<TaskSide> side_;

@@ -104,6 +104,22 @@ Result<bool> TaskSide::isConfigured() {
     return true;
 }
 
+Result<> TaskSide::finish_start(const std::function<void()> &cycle, int most_cycles) {
+    for (int i = 0; i < most_cycles; ++i) {
+        cycle();
+        const auto isDone = isConfigured();
+        if (!isDone.has_value()) {
+            return std::unexpected(isDone.error());
+        }
+        if (*isDone) {
+            cycle();
+            return task_->start();
+        }
+    }
+    return fail("the motion controller does not run", {parts_.ini.path(), 0, 0},
+                "are motion-command-handler and motion-controller added to a thread (addf)?");
+}
+
 void TaskSide::step(std::int64_t now_ns) {
     task_->step(now_ns);
     tool_change_.step(now_ns);

@@ -2,6 +2,7 @@
 // Everything of a machine that is not realtime: I/O and task pins, halui, HAL files, tool table, task.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,10 +27,9 @@ class TaskSide final : private task::IoPort {
 
     /// Makes pins, runs the HAL files, starts the threads, makes task and hands it the motion settings.
     Result<> start(const MachineOptions &options);
-    /// All settings are answered; an error names the first that was refused.
-    Result<bool> isConfigured();
-    /// Reads the parameter file and announces the state to the interpreter. After isConfigured().
-    Result<> begin() { return task_->start(); }
+    /// Runs cycles until motion has taken all settings, then reads the parameter file and announces the state
+    /// to the interpreter. An error names the first setting that was refused.
+    Result<> finish_start(const std::function<void()> &cycle, int most_cycles);
     /// One task cycle.
     void step(std::int64_t now_ns);
 
@@ -40,6 +40,7 @@ class TaskSide final : private task::IoPort {
     io::Inputs read() override { return io_pins_.read(); }
     void write(const io::Outputs &outputs) override { io_pins_.write(outputs); }
 
+    Result<bool> isConfigured();
     Result<> make_pins();
     Result<> run_hal_files(const MachineOptions &options);
     Result<> join_motion();

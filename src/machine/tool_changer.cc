@@ -26,7 +26,7 @@ Result<> ManualToolChange::create(hal::Hal &hal, Notice notice) {
 
 void ManualToolChange::destroy() {
     if (hal_ != nullptr) {
-        hal_->delete_component(comp_id_);
+        static_cast<void>(hal_->delete_component(comp_id_));
         hal_ = nullptr;
     }
 }

@@ -44,7 +44,7 @@ class VirtualMachine final : public Machine {
             return std::unexpected(periodic.error());
         }
         periodic_ = *periodic;
-        return configure();
+        return side_->finish_start([this] { cycle(); }, CONFIGURE_CYCLES);
     }
 
     void cycle() override {
@@ -64,22 +64,6 @@ class VirtualMachine final : public Machine {
     void task_cycle() {
         side_->step(scheduler_.now_ns());
         ++cycles_;
-    }
-
-    Result<> configure() {
-        for (int i = 0; i < CONFIGURE_CYCLES; ++i) {
-            cycle();
-            const auto isDone = side_->isConfigured();
-            if (!isDone.has_value()) {
-                return std::unexpected(isDone.error());
-            }
-            if (*isDone) {
-                cycle();
-                return side_->begin();
-            }
-        }
-        return fail("the motion controller does not run", {parts_.ini.path(), 0, 0},
-                    "are motion-command-handler and motion-controller added to a thread (addf)?");
     }
 
     MachineParts parts_;

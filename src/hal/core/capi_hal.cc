@@ -73,7 +73,9 @@ Hal *joined() {
 void leave(const Hal *hal) {
     ProcessAttachment &here = attachment();
     const std::lock_guard lock(here.mutex);
-    if (here.hal.get() == hal && here.users > 0 && --here.users == 0) {
+    const bool isUser = here.hal.get() == hal && here.users > 0;
+    here.users -= isUser ? 1 : 0;
+    if (isUser && here.users == 0) {
         here.hal.reset();
     }
 }

@@ -13,7 +13,6 @@
 
 using namespace mw::hal;
 using namespace mw::hal::detail;
-using mw::Error;
 using mw::rtapi::LogLevel;
 
 namespace {

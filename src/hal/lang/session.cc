@@ -119,7 +119,7 @@ Result<std::string> Session::find_file(const std::string &name) const {
         tried.insert(tried.end(), options_.library.begin(), options_.library.end());
     }
     for (const std::string &folder : tried) {
-        const std::string path = folder + '/' + plain;
+        std::string path = folder + '/' + plain;
         if (isFile(path)) {
             return path;
         }

@@ -66,7 +66,7 @@ bool Executor::check_remap_words(std::string &missing) const {
 }
 
 PendingBlock Executor::take_pending() {
-    PendingBlock out = std::move(*pending_);
+    PendingBlock out = *pending_;
     pending_.reset();
     return out;
 }

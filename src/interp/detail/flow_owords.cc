@@ -2,6 +2,7 @@
 // O words: conditions and loops. Those of one label are linked in the order of the file, so a jump is a walk
 // along that chain.
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -165,7 +166,7 @@ bool Flow::run_repeat(const BlockView &view, const OWord &oword) {
         next_ = end + 1;
         return true;
     }
-    repeats_.push_back({line_read_, static_cast<int>(count + 0.5)});
+    repeats_.push_back({line_read_, static_cast<int>(std::lround(count))});
     return true;
 }
 

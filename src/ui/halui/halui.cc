@@ -87,7 +87,7 @@ Result<> Halui::make_states() {
 
 void Halui::destroy() {
     if (hal_ != nullptr) {
-        hal_->delete_component(comp_id_);
+        static_cast<void>(hal_->delete_component(comp_id_));
         hal_ = nullptr;
         buttons_.clear();
     }
