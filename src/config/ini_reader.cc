@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "config/ini_reader.hh"
 
+#include <cmath>
+
 #include "base/text.hh"
 
 namespace mw::config {
@@ -100,7 +102,9 @@ std::optional<std::int64_t> IniReader::whole(const IniEntry &entry, std::int64_t
     if (!value.has_value() && !words.empty()) {
         // "1.0" is a whole number too.
         const auto real = parse_double(words[0]);
-        if (real.has_value() && *real == static_cast<double>(static_cast<std::int64_t>(*real))) {
+        // Beyond 2^53 a double no longer says which whole number is meant.
+        constexpr double LARGEST = 9007199254740992.0;
+        if (real.has_value() && std::fabs(*real) <= LARGEST && *real == std::floor(*real)) {
             value = static_cast<std::int64_t>(*real);
         }
     }

@@ -27,7 +27,7 @@ class RealtimeMachine final : public Machine {
     ~RealtimeMachine() override {
         side_.reset();
         if (host_ != nullptr) {
-            host_->shut_down();
+            static_cast<void>(host_->shut_down());
         }
     }
 

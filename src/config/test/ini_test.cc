@@ -75,6 +75,14 @@ TEST(Ini, AScalarGivenTwiceNamesTheOneUsed) {
     EXPECT_NE(ini.first_message().find("dir/m.ini:2:5"), std::string::npos);
 }
 
+TEST(Ini, WholeNumbersMayBeWrittenAsRealsWithinReason) {
+    Read ini("[J]\nA = 3.0\nB = 1e300\nC = 2.5\n");
+    EXPECT_EQ(ini.reader.integer("J", "A", 0, 0, 9), 3);
+    EXPECT_EQ(ini.reader.integer("J", "B", 7, 0, 9), 7);
+    EXPECT_EQ(ini.reader.integer("J", "C", 7, 0, 9), 7);
+    EXPECT_EQ(ini.sink.count_errors(), 2);
+}
+
 TEST(Ini, BooleansInAllSpellings) {
     Read ini("[J]\nA = yes\nB = False\nC = maybe\n");
     EXPECT_TRUE(ini.reader.boolean("J", "A", false));
