@@ -50,7 +50,7 @@ bool isAlive(const ProcessId &process) {
 
 Result<std::string> runtime_folder() {
     const char *base = std::getenv("XDG_RUNTIME_DIR");
-    const std::string folder = base != nullptr && base[0] == '/'
+    std::string folder = base != nullptr && base[0] == '/'
                                    ? std::string(base) + "/millwright"
                                    : "/tmp/millwright-" + std::to_string(::getuid());
     if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST) {
