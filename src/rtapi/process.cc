@@ -50,9 +50,8 @@ bool isAlive(const ProcessId &process) {
 
 Result<std::string> runtime_folder() {
     const char *base = std::getenv("XDG_RUNTIME_DIR");
-    std::string folder = base != nullptr && base[0] == '/'
-                                   ? std::string(base) + "/millwright"
-                                   : "/tmp/millwright-" + std::to_string(::getuid());
+    std::string folder = base != nullptr && base[0] == '/' ? std::string(base) + "/millwright"
+                                                           : "/tmp/millwright-" + std::to_string(::getuid());
     if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST) {
         return fail("runtime folder " + folder + ": " + std::strerror(errno));
     }
