@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "task/sequencer.hh"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -140,6 +142,7 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
                 return true;
             },
             [&](const EndItem &end) {
+                close_log();
                 events_.end(end);
                 return true;
             },
@@ -393,9 +396,15 @@ void Sequencer::execute_log(const LogItem &item) {
     switch (item.what) {
     case LogItem::What::OPEN:
     case LogItem::What::APPEND: {
+        close_log();
+        const bool isContinued = item.what == LogItem::What::APPEND && ::access(item.text.c_str(), F_OK) == 0;
+        const auto old = isContinued ? read_file(item.text) : Result<std::string>("");
+        if (!old.has_value()) {
+            events_.fail(old.error().str());
+            return;
+        }
         log_path_ = item.text;
-        const auto old = item.what == LogItem::What::APPEND ? read_file(log_path_) : Result<std::string>("");
-        log_text_ = old.value_or("");
+        log_text_ = *old;
         isLogOpen_ = true;
         break;
     }
@@ -404,19 +413,23 @@ void Sequencer::execute_log(const LogItem &item) {
             log_text_ += item.text + '\n';
         }
         break;
-    case LogItem::What::CLOSE:
-        if (isLogOpen_) {
-            const auto written = write_file_atomically(log_path_, log_text_);
-            if (!written.has_value()) {
-                events_.message(MessageKind::OPERATOR_ERROR, written.error().str());
-            }
-        }
-        isLogOpen_ = false;
-        break;
+    case LogItem::What::CLOSE: close_log(); break;
+    }
+}
+
+void Sequencer::close_log() {
+    if (!isLogOpen_) {
+        return;
+    }
+    isLogOpen_ = false;
+    const auto written = write_file_atomically(log_path_, log_text_);
+    if (!written.has_value()) {
+        events_.message(MessageKind::OPERATOR_ERROR, written.error().str());
     }
 }
 
 void Sequencer::abort() {
+    close_log();
     queue_.clear();
     wait_ = Wait::NONE;
     changing_index_ = -1;

@@ -93,6 +93,8 @@ class Sequencer {
     void execute_tool(const Item &item);
     void execute_output(const Item &item);
     void execute_log(const LogItem &item);
+    /// Writes an open log: also at the end of a program and at an abort, so that no line is lost.
+    void close_log();
     motion::MoveTerms terms_of(const interp::MoveSettings &settings, motion::MotionType type,
                                const Item &item);
     void send_spindle(int spindle);
