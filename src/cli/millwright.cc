@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/own_place.hh"
 #include "machine/commands.hh"
 
 namespace {
@@ -30,6 +31,7 @@ constexpr const char *USAGE =
 }  // namespace
 
 int main(int argc, char **argv) {
+    mw::offer_own_programs();
     const std::vector<std::string> words(argv + 1, argv + argc);
     if (words.empty()) {
         std::fputs(USAGE, stderr);

@@ -16,6 +16,7 @@
 #include <limits>
 #include <mutex>
 
+#include "base/own_place.hh"
 #include "base/text.hh"
 #include "hal/api/rtapi.h"
 #include "hal/core/detail/impl.hh"
@@ -126,13 +127,6 @@ const void *module_base(void *handle) {
     Dl_info info{};
     void *main = ::dlsym(handle, "rtapi_app_main");
     return main != nullptr && ::dladdr(main, &info) != 0 ? info.dli_fbase : nullptr;
-}
-
-std::string program_folder() {
-    char path[4096];
-    const ssize_t length = ::readlink("/proc/self/exe", path, sizeof path - 1);
-    const std::string program(path, length > 0 ? static_cast<std::size_t>(length) : 0);
-    return program.substr(0, program.rfind('/'));
 }
 
 }  // namespace

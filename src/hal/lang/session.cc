@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "base/own_place.hh"
 #include "base/text.hh"
 #include "hal/lang/commands.hh"
 
@@ -38,12 +39,6 @@ std::string joined(const std::vector<std::string> &parts, const char *separator)
         text += (text.empty() ? "" : separator) + part;
     }
     return text;
-}
-
-std::string program_folder() {
-    char path[4096];
-    const ssize_t length = readlink("/proc/self/exe", path, sizeof path);
-    return length <= 0 ? "." : folder_of(std::string(path, static_cast<std::size_t>(length)));
 }
 
 void print(std::FILE *file, std::string_view text, bool endsLine) {
