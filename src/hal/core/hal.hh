@@ -102,10 +102,15 @@ struct CompInfo {
     bool isLoadedByLoadrt = false;
 };
 
+struct RecordCount {
+    int active = 0;
+    int recycled = 0;  ///< removed, their memory waiting for the next of their kind
+};
+
 struct HalStatistics {
     std::size_t segment_bytes = 0;  ///< in use now
     std::size_t capacity_bytes = 0;
-    int components = 0, pins = 0, aliases = 0, signals = 0, params = 0, functs = 0, threads = 0;
+    RecordCount components, pins, aliases, signals, params, functs, threads;
 };
 
 struct HalOptions {

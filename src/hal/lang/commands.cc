@@ -26,8 +26,8 @@ constexpr CommandSpec COMMANDS[] = {
     {"unloadusr", 1, 1, false, "COMPONENT|all", "Asks the program of a component to end, or all programs.",
      run_unloadusr},
     {"lock", 0, 1, false, "[none|tune|all]",
-     "Forbids changes: tune leaves setting values and starting; all nothing.", run_lock},
-    {"unlock", 0, 1, false, "[tune|all]", "Allows changes again: tune those of values only; all everything.",
+     "Forbids changes: tune leaves setting values and starting; all (also without a word) nothing.", run_lock},
+    {"unlock", 0, 1, false, "[tune|all]", "Takes back what lock of the same word forbids; all, or no word: everything.",
      run_unlock},
     {"net", 2, ANY, true, "SIGNAL PIN...",
      "Links pins to a signal. A signal that does not exist is made with the type of the first pin. Arrows "
@@ -56,8 +56,9 @@ constexpr CommandSpec COMMANDS[] = {
     {"initf", 2, 3, false, "FUNCTION THREAD [POSITION]",
      "Adds a function that runs once, when the thread starts, before the others.", run_initf},
     {"delf", 2, 2, false, "FUNCTION THREAD", "Takes a function out of a thread.", run_delf},
-    {"show", 0, ANY, false, "[comp|pin|sig|param|funct|thread|alias|all [PATTERN...]]",
-     "Prints what there is, with values and links. PATTERN takes * ? and [abc].", run_show},
+    {"show", 0, ANY, false, "[comp|pin|sig|param|funct|thread|alias|all [-tTYPE] [PATTERN...]]",
+     "Prints what there is, with values and links. PATTERN takes * ? and [abc], or is the beginning of names; -tfloat\n"
+     "shows only those of that type.", run_show},
     {"list", 1, ANY, false, "comp|pin|sig|param|funct|thread [-tTYPE] [PATTERN...]",
      "Prints names in one line; -tfloat only those of that type.", run_list},
     {"save", 0, 2, false,

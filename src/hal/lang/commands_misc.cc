@@ -45,16 +45,16 @@ std::string lock_status(std::uint8_t lock) {
 std::string memory_status(const HalStatistics &s) {
     std::string text = "HAL memory status\n";
     text += fmt::format("  used/total shared memory:   {}/{}\n", s.segment_bytes, s.capacity_bytes);
-    const auto line = [&](const char *title, int count) {
-        text += fmt::format("  {:<28}{}\n", title, count);
+    const auto line = [&](const char *title, const RecordCount &count) {
+        text += fmt::format("  {:<28}{}/{}\n", title, count.active, count.recycled);
     };
-    line("active components:", s.components);
-    line("active pins:", s.pins);
-    line("active parameters:", s.params);
-    line("active aliases:", s.aliases);
-    line("active signals:", s.signals);
-    line("active functions:", s.functs);
-    line("active threads:", s.threads);
+    line("active/recycled components:", s.components);
+    line("active/recycled pins:", s.pins);
+    line("active/recycled parameters:", s.params);
+    line("active/recycled aliases:", s.aliases);
+    line("active/recycled signals:", s.signals);
+    line("active/recycled functions:", s.functs);
+    line("active/recycled threads:", s.threads);
     return text;
 }
 
@@ -88,7 +88,7 @@ Result<> run_unlock(Session &session, const Call &call) {
         return std::unexpected(unlocked.error());
     }
     const auto left =
-        static_cast<std::uint8_t>(*unlocked == LOCK_ALL ? LOCK_NONE : session.hal().lock() & LOCK_TUNE);
+        static_cast<std::uint8_t>(session.hal().lock() & ~*unlocked);
     return at(session.hal().set_lock(left), call.place);
 }
 
