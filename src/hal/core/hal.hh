@@ -227,6 +227,11 @@ class Hal {
     std::vector<FunctInfo> functs(std::string_view glob = "*") const;
     std::vector<ThreadInfo> threads(std::string_view glob = "*") const;  ///< fastest first
     std::vector<CompInfo> components(std::string_view glob = "*") const;
+    /// Quick answers by name (or alias); those below explain a failure with the nearest known name.
+    bool hasPin(std::string_view name) const;
+    bool hasParam(std::string_view name) const;
+    bool hasSignal(std::string_view name) const;
+    bool hasComponent(std::string_view name) const;
     Result<PinInfo> pin(std::string_view name) const;
     Result<ParamInfo> param(std::string_view name) const;
     Result<SignalInfo> signal(std::string_view name) const;

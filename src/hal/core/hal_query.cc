@@ -227,6 +227,26 @@ Result<PinInfo> Hal::pin(std::string_view name) const {
     return info_of(*impl_, *pin);
 }
 
+bool Hal::hasPin(std::string_view name) const {
+    Guard guard(*impl_);
+    return impl_->find_pin(name) != nullptr;
+}
+
+bool Hal::hasParam(std::string_view name) const {
+    Guard guard(*impl_);
+    return impl_->find_param(name) != nullptr;
+}
+
+bool Hal::hasSignal(std::string_view name) const {
+    Guard guard(*impl_);
+    return impl_->find_signal(name) != nullptr;
+}
+
+bool Hal::hasComponent(std::string_view name) const {
+    Guard guard(*impl_);
+    return impl_->segment.find(Kind::COMP, name) != nullptr;
+}
+
 Result<ParamInfo> Hal::param(std::string_view name) const {
     Guard guard(*impl_);
     const ParamRecord *param = impl_->find_param(name);

@@ -36,6 +36,15 @@ struct Loader::Module {
 
 namespace {
 
+/// A parameter as a HAL file has it, its value in quotes where there are blanks in it.
+std::string quoted(const std::string &arg) {
+    const std::size_t equals = arg.find('=');
+    if (equals == std::string::npos || arg.find_first_of(" \t") == std::string::npos) {
+        return arg;
+    }
+    return arg.substr(0, equals + 1) + '"' + arg.substr(equals + 1) + '"';
+}
+
 /// Errors that a module logs while it is loaded are repeated in the failure.
 struct LogTap {
     rtapi::Log &log;
@@ -306,7 +315,7 @@ Result<> Loader::load(const std::string &name, const std::vector<std::string> &a
     }
     std::string text;
     for (const std::string &arg : args) {
-        text += (text.empty() ? "" : " ") + arg;
+        text += (text.empty() ? "" : " ") + quoted(arg);
     }
     for (const int id : module->comp_ids) {
         const auto comp = hal_.component(id);

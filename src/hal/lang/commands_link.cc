@@ -9,7 +9,7 @@ namespace mw::hal::lang {
 namespace {
 
 Result<> check_pin(Hal &hal, const Word &word) {
-    if (hal.pin(word.text)) {
+    if (hal.hasPin(word.text)) {
         return {};
     }
     return fail(fmt::format("pin '{}' does not exist", word.text), word.place,
@@ -17,7 +17,7 @@ Result<> check_pin(Hal &hal, const Word &word) {
 }
 
 Result<> check_signal(Hal &hal, const Word &word) {
-    if (hal.signal(word.text)) {
+    if (hal.hasSignal(word.text)) {
         return {};
     }
     return fail(fmt::format("signal '{}' does not exist", word.text), word.place,
@@ -74,7 +74,7 @@ Result<> set_alias(Session &session, const Call &call, const std::string &alias)
 Result<> run_net(Session &session, const Call &call) {
     Hal &hal = session.hal();
     const Word &signal = call.words[0];
-    if (hal.pin(signal.text)) {
+    if (hal.hasPin(signal.text) && !hal.hasSignal(signal.text)) {
         return fail(fmt::format("signal name '{}' is the name of a pin", signal.text), signal.place,
                     "the signal comes first: net SIGNAL PIN...");
     }
@@ -122,10 +122,21 @@ Result<> run_linkpp(Session &session, const Call &call) {
     if (!result) {
         return result;
     }
-    // The signal takes the first pin's name.
+    // The signal takes the first pin's name and must be new.
+    if (hal.hasSignal(call.text(0))) {
+        return fail(fmt::format("there is a signal '{}' already", call.text(0)), call.place_of(0));
+    }
     result = at(hal.new_signal(call.text(0), hal.pin(call.text(0))->type), call.place_of(0));
-    result = result ? at(hal.link(call.text(0), call.text(0)), call.place_of(0)) : result;
-    return result ? at(hal.link(call.text(1), call.text(0)), call.place_of(1)) : result;
+    if (!result) {
+        return result;
+    }
+    result = at(hal.link(call.text(0), call.text(0)), call.place_of(0));
+    result = result ? at(hal.link(call.text(1), call.text(0)), call.place_of(1)) : result;
+    if (!result) {
+        // Nothing half done stays.
+        (void)hal.delete_signal(call.text(0));
+    }
+    return result;
 }
 
 Result<> run_linkps(Session &session, const Call &call) {

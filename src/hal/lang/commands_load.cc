@@ -165,7 +165,7 @@ Result<> run_loadusr(Session &session, const Call &call) {
 }
 
 Result<> run_waitusr(Session &session, const Call &call) {
-    if (!session.hal().component(call.text(0))) {
+    if (!session.hal().hasComponent(call.text(0))) {
         return warn_not_loaded(session, call.words[0]);
     }
     return at(session.programs().wait_for_end(call.text(0)), call.place_of(0));
