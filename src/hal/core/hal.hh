@@ -102,6 +102,13 @@ struct CompInfo {
     bool isLoadedByLoadrt = false;
 };
 
+/// A component that went with its process, without leaving HAL.
+struct DeathInfo {
+    std::string name;
+    int pid = 0;
+    std::int64_t time_ns = 0;  ///< when it was noticed, as now_ns() of a realtime host
+};
+
 struct RecordCount {
     int active = 0;
     int recycled = 0;  ///< removed, their memory waiting for the next of their kind
@@ -155,6 +162,10 @@ class Hal {
     /// Ends components whose process is gone; their outputs take their safe values first. The names of those
     /// ended.
     std::vector<std::string> reap_dead_components();
+    /// The process of this component is about to be told to end: that it goes is no death.
+    Result<> expect_end(int comp_id);
+    /// The last components (at most 16) whose process died, oldest first; without those that are back.
+    std::vector<DeathInfo> deaths() const;
     Result<> set_insmod_args(int comp_id, std::string_view args);
 
     // ---- things of components

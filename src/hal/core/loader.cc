@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <deque>
 #include <limits>
 #include <mutex>
@@ -43,6 +44,22 @@ std::string quoted(const std::string &arg) {
         return arg;
     }
     return arg.substr(0, equals + 1) + '"' + arg.substr(equals + 1) + '"';
+}
+
+/// Names of the shared objects there are.
+std::vector<std::string> modules_in(const std::vector<std::string> &folders) {
+    constexpr std::string_view ENDING = ".so";
+    std::vector<std::string> names;
+    for (const std::string &folder : folders) {
+        std::error_code ignored;
+        for (const auto &entry : std::filesystem::directory_iterator(folder, ignored)) {
+            std::string name = entry.path().filename().string();
+            if (name.ends_with(ENDING)) {
+                names.push_back(name.substr(0, name.size() - ENDING.size()));
+            }
+        }
+    }
+    return names;
 }
 
 /// Errors that a module logs while it is loaded are repeated in the failure.
@@ -300,7 +317,9 @@ Result<> Loader::load(const std::string &name, const std::vector<std::string> &a
         for (const std::string &folder : folders_) {
             places += (places.empty() ? "" : ", ") + folder;
         }
-        return refuse(ENOENT, fmt::format("there is no module '{}.so' in {}", name, places));
+        const std::string near = nearest_name(name, modules_in(folders_));
+        return refuse(ENOENT, fmt::format("there is no module '{}.so' in {}", name, places),
+                      near.empty() ? "" : fmt::format("did you mean '{}'?", near));
     }
     auto done = open(*module);
     if (done) {

@@ -13,7 +13,7 @@ Result<> check_pin(Hal &hal, const Word &word) {
         return {};
     }
     return fail(fmt::format("pin '{}' does not exist", word.text), word.place,
-                suggestion(word.text, pin_names(hal)));
+                missing_hint(hal, word.text, pin_names(hal)));
 }
 
 Result<> check_signal(Hal &hal, const Word &word) {
@@ -64,9 +64,9 @@ Result<> set_alias(Session &session, const Call &call, const std::string &alias)
     Hal &hal = session.hal();
     const std::string &name = call.text(1);
     if (*kind == Kind::PIN) {
-        return at(hal.alias_pin(name, alias), call.place_of(1), suggestion(name, pin_names(hal)));
+        return at(hal.alias_pin(name, alias), call.place_of(1), missing_hint(hal, name, pin_names(hal)));
     }
-    return at(hal.alias_param(name, alias), call.place_of(1), suggestion(name, param_names(hal)));
+    return at(hal.alias_param(name, alias), call.place_of(1), missing_hint(hal, name, param_names(hal)));
 }
 
 }  // namespace
@@ -180,8 +180,12 @@ Result<> run_delsig(Session &session, const Call &call) {
         }
         return at(result, call.place_of(0));
     }
-    const Result<> found = check_signal(hal, call.words[0]);
-    return found ? at(hal.delete_signal(call.text(0)), call.place_of(0)) : found;
+    Result<> result = check_signal(hal, call.words[0]);
+    result = result ? at(hal.delete_signal(call.text(0)), call.place_of(0)) : result;
+    if (result) {
+        session.info(call.place, fmt::format("Signal '{}' deleted", call.text(0)));
+    }
+    return result;
 }
 
 Result<> run_alias(Session &session, const Call &call) {
@@ -194,7 +198,11 @@ Result<> run_alias(Session &session, const Call &call) {
 }
 
 Result<> run_unalias(Session &session, const Call &call) {
-    return set_alias(session, call, "");
+    const Result<> result = set_alias(session, call, "");
+    if (result) {
+        session.info(call.place, fmt::format("{} '{}' unaliased", call.text(0), call.text(1)));
+    }
+    return result;
 }
 
 }  // namespace mw::hal::lang

@@ -89,7 +89,7 @@ std::vector<std::string> component_names(Session &session, CompType type) {
 
 std::unexpected<Error> not_loaded(Session &session, const Word &word, CompType type) {
     return fail(fmt::format("component '{}' is not loaded", word.text), word.place,
-                suggestion(word.text, component_names(session, type)));
+                missing_hint(session.hal(), word.text, component_names(session, type)));
 }
 
 /// A program may have ended by itself already, which is what was wanted.
@@ -160,7 +160,12 @@ Result<> run_loadusr(Session &session, const Call &call) {
         session.placeholders().add_program(request->component, request->argv);
         return {};
     }
-    session.info(call.place, fmt::format("Program '{}' started", request->argv[0]));
+    const bool hasEnded = request->wait == ProgramRequest::Wait::UNTIL_END;
+    session.info(call.place,
+                 fmt::format("Program '{}' {}", request->argv[0], hasEnded ? "finished" : "started"));
+    if (request->wait == ProgramRequest::Wait::UNTIL_READY) {
+        session.info(call.place, fmt::format("Component '{}' ready", request->component));
+    }
     return {};
 }
 

@@ -58,6 +58,17 @@ std::string memory_status(const HalStatistics &s) {
     return text;
 }
 
+/// Components whose process died: nothing when there are none.
+std::string death_status(Hal &hal) {
+    std::string text;
+    for (const DeathInfo &death : hal.deaths()) {
+        text += text.empty() ? "HAL components that died:\n" : "";
+        text += fmt::format("  {} (process {}, {} s ago)\n", death.name, death.pid,
+                            (hal.now_ns() - death.time_ns) / 1'000'000'000);
+    }
+    return text;
+}
+
 /// The lock of word 0, all without a word; `none` only where it makes sense.
 Result<std::uint8_t> lock_of(const Call &call, bool allowsNone) {
     if (call.words.empty()) {
@@ -79,7 +90,11 @@ Result<> run_lock(Session &session, const Call &call) {
     if (!lock) {
         return std::unexpected(lock.error());
     }
-    return at(session.hal().set_lock(*lock), call.place);
+    const Result<> locked = at(session.hal().set_lock(*lock), call.place);
+    if (locked) {
+        session.info(call.place, "Locking completed");
+    }
+    return locked;
 }
 
 Result<> run_unlock(Session &session, const Call &call) {
@@ -87,9 +102,12 @@ Result<> run_unlock(Session &session, const Call &call) {
     if (!unlocked) {
         return std::unexpected(unlocked.error());
     }
-    const auto left =
-        static_cast<std::uint8_t>(session.hal().lock() & ~*unlocked);
-    return at(session.hal().set_lock(left), call.place);
+    const auto left = static_cast<std::uint8_t>(session.hal().lock() & ~*unlocked);
+    const Result<> unlocked_now = at(session.hal().set_lock(left), call.place);
+    if (unlocked_now) {
+        session.info(call.place, "Unlocking completed");
+    }
+    return unlocked_now;
 }
 
 Result<> run_status(Session &session, const Call &call) {
@@ -105,7 +123,7 @@ Result<> run_status(Session &session, const Call &call) {
     if (isAll || what == "mem") {
         text += memory_status(session.hal().statistics());
     }
-    session.output().data(text);
+    session.output().data(isAll ? text + death_status(session.hal()) : text);
     return {};
 }
 
@@ -140,8 +158,7 @@ Result<> run_debug(Session &session, const Call &call) {
     if (!level || *level < 0 || *level > HIGHEST) {
         return fail(fmt::format("'{}' is no debug level", call.text(0)), call.place_of(0), "0 to 5");
     }
-    session.hal().log().set_level(static_cast<rtapi::LogLevel>(*level));
-    return {};
+    return at(session.host().set_log_level(static_cast<rtapi::LogLevel>(*level)), call.place);
 }
 
 Result<> run_help(Session &session, const Call &call) {

@@ -14,7 +14,7 @@ Result<> no_such_value(Hal &hal, const Word &word) {
         names.push_back(std::move(name));
     }
     return fail(fmt::format("parameter or pin '{}' does not exist", word.text), word.place,
-                suggestion(word.text, names));
+                missing_hint(hal, word.text, names));
 }
 
 Result<> no_such_signal(Hal &hal, const Word &word) {

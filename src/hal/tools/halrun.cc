@@ -112,11 +112,10 @@ int halrun(const std::vector<std::string> &arguments) {
                                "use it with halcmd, or end it with halrun -U"});
     }
     handle_signals();
-    const auto host = HostClient::start(instance);
+    const auto host = HostClient::start(instance, MessagesTo::STDERR, Lifetime::STARTER);
     if (!host) {
         return fail_with(host.error());
     }
-    // It must not outlive this program.
     const Result<> controlled = (*host)->control();
     if (!controlled) {
         return fail_with(controlled.error());
