@@ -20,7 +20,7 @@ ALLOWED_EQUAL = {('geom', 'base'), ('diag', 'base'), ('interp', 'tool'), ('task'
 # Domain libraries know neither HAL nor NML.
 FORBIDDEN = {(user, used) for user in ('kins', 'traj', 'homing', 'interp', 'tool') for used in ('hal', 'nml')}
 # Inside a folder: sub-folders in the order in which they may use each other.
-INNER = {'motion': ['api', 'core', 'rt'], 'hal': ['api', 'sdk', 'core', 'host', 'lang', 'stream_tools']}
+INNER = {'motion': ['api', 'core', 'rt'], 'hal': ['api', 'sdk', 'halcompile', 'core', 'host', 'lang', 'stream_tools']}
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 
 
