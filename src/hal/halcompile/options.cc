@@ -18,7 +18,7 @@ struct Known {
     What what;
     Mode mode = Mode::PREPROCESS;
 };
-constexpr std::array<Known, 15> OPTIONS{{{"preprocess", 'p', false, What::MODE, Mode::PREPROCESS},
+constexpr std::array<Known, 16> OPTIONS{{{"preprocess", 'p', false, What::MODE, Mode::PREPROCESS},
                                          {"compile", 'c', false, What::MODE, Mode::COMPILE},
                                          {"install", 'i', false, What::MODE, Mode::INSTALL},
                                          {"document", 'd', false, What::MODE, Mode::DOCUMENT},
@@ -29,6 +29,7 @@ constexpr std::array<Known, 15> OPTIONS{{{"preprocess", 'p', false, What::MODE, 
                                          {"userspace", 'u', false, What::USERSPACE},
                                          {"require-license", 'l', false, What::REQUIRE_LICENSE},
                                          {"personalities", 'P', true, What::PERSONALITIES},
+                                         {"personality", '\0', true, What::PERSONALITIES},
                                          {"outfile", 'o', true, What::OUTPUT},
                                          {"output", '\0', true, What::OUTPUT},
                                          {"extra-compile-args", '\0', true, What::COMPILE_ARGS},

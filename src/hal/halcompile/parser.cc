@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "base/text.hh"
+#include "hal/halcompile/c_declaration.hh"
 #include "hal/halcompile/scanner.hh"
 
 namespace mw::halcompile {
@@ -339,62 +340,17 @@ class Parser {
         return end();
     }
 
-    /// The words of a C type up to the stars and the name, which is the last word.
-    Result<> type_and_name(std::string &type, std::string &stars, std::string &name) {
-        const SourcePlace place = scanner_.place();
-        std::string last;
-        while (true) {
-            const std::string word = scanner_.take_name();
-            if (word.empty()) {
-                break;
-            }
-            type += (type.empty() || last.empty() ? "" : " ") + last;
-            last = word;
-            scanner_.skip_blank();
-            if (scanner_.peek() == '*') {
-                break;
-            }
-        }
-        if (scanner_.peek() != '*') {
-            name = last;
-        } else {
-            type += (type.empty() ? "" : " ") + last;
-            while (scanner_.accept("*")) {
-                stars += '*';
-                scanner_.skip_blank();
-            }
-            name = scanner_.take_name();
-        }
-        scanner_.skip_blank();
-        if (type.empty() || name.empty()) {
-            return fail("a C type and a name are expected here", place);
-        }
-        return {};
-    }
-
-    Result<> dimensions(std::string &size) {
-        while (scanner_.accept("[")) {
-            scanner_.skip_blank();
-            auto one = scanner_.take_expression("]");
-            if (!one) {
-                return std::unexpected(one.error());
-            }
-            scanner_.accept("]");
-            scanner_.skip_blank();
-            size += (size.empty() ? "" : "][") + *one;
-        }
-        return {};
-    }
-
     Result<> variable(SourcePlace place) {
         Variable variable;
         variable.place = std::move(place);
-        if (auto done = type_and_name(variable.type, variable.stars, variable.name); !done) {
-            return done;
+        auto head = take_c_declaration(scanner_);
+        if (!head) {
+            return std::unexpected(head.error());
         }
-        if (auto done = dimensions(variable.size); !done) {
-            return done;
-        }
+        variable.type = std::move(head->type);
+        variable.stars = std::move(head->stars);
+        variable.name = std::move(head->name);
+        variable.size = std::move(head->size);
         if (scanner_.accept("=")) {
             scanner_.skip_blank();
             auto value = scanner_.take_expression(";");
@@ -410,15 +366,13 @@ class Parser {
     Result<> modparam(SourcePlace place) {
         ModuleParameter parameter;
         parameter.place = std::move(place);
-        std::string stars;
-        if (auto done = type_and_name(parameter.type, stars, parameter.name); !done) {
-            return done;
+        auto head = take_c_declaration(scanner_);
+        if (!head) {
+            return std::unexpected(head.error());
         }
-        parameter.type += stars;
-        if (auto done = dimensions(parameter.size); !done) {
-            return done;
-        }
-        scanner_.skip_blank();
+        parameter.type = head->type + head->stars;
+        parameter.name = std::move(head->name);
+        parameter.size = std::move(head->size);
         const bool isString = parameter.type == "string" || parameter.type == "char*";
         if (isString && scanner_.accept("=")) {
             scanner_.skip_blank();
@@ -460,38 +414,15 @@ class Parser {
         return end();
     }
 
-    Result<> structure(SourcePlace place) {
-        const auto tag = name("struct");
-        if (!tag) {
-            return std::unexpected(tag.error());
-        }
-        const auto body = scanner_.take_braced();
-        if (!body) {
-            return std::unexpected(body.error());
-        }
-        component_.structures.push_back({std::move(place), fmt::format("struct {} {{{}}};", *tag, *body)});
-        return end();
-    }
-
+    Result<> structure(SourcePlace place) { return definition(std::move(place), take_struct(scanner_)); }
     Result<> type_definition(SourcePlace place) {
-        std::string text = "typedef ";
-        auto before = scanner_.take_expression(";{");
-        if (!before) {
-            return std::unexpected(before.error());
+        return definition(std::move(place), take_typedef(scanner_));
+    }
+    Result<> definition(SourcePlace place, Result<std::string> text) {
+        if (!text) {
+            return std::unexpected(text.error());
         }
-        text += *before;
-        if (scanner_.peek() == '{') {
-            const auto body = scanner_.take_braced();
-            if (!body) {
-                return std::unexpected(body.error());
-            }
-            auto after = scanner_.take_expression(";");
-            if (!after) {
-                return std::unexpected(after.error());
-            }
-            text += fmt::format(" {{{}}} {}", *body, *after);
-        }
-        component_.structures.push_back({std::move(place), text + ";"});
+        component_.structures.push_back({std::move(place), std::move(*text)});
         return end();
     }
 
