@@ -21,7 +21,7 @@ ALLOWED_EQUAL = {('geom', 'base'), ('diag', 'base'), ('interp', 'tool'), ('task'
 FORBIDDEN = {(user, used) for user in ('kins', 'traj', 'homing', 'interp', 'tool') for used in ('hal', 'nml')}
 # Inside a folder: sub-folders in the order in which they may use each other.
 INNER = {'motion': ['api', 'core', 'rt'],
-         'hal': ['api', 'sdk', 'core', 'host', 'lang', 'tcl', 'stream_tools', 'view']}
+         'hal': ['api', 'sdk', 'halcompile', 'core', 'host', 'lang', 'tcl', 'stream_tools', 'view']}
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 
 

@@ -25,9 +25,13 @@
 /* Before the declaration of what other modules look up, in modules that are compiled with hidden visibility.
  */
 #define RTAPI_EXPORT __attribute__((visibility("default")))
-/* Checks that the symbol exists; with the compiler's usual visibility every global symbol is exported anyway.
- */
-#define EXPORT_SYMBOL(x) extern __typeof__(x) x
+/* Lets other modules use the symbol: halcompile exports what stands here and the entry points, and keeps
+ * everything else private to the module. Checks that the symbol exists. */
+#define EXPORT_SYMBOL(x) RTAPI_EXPORT_NOTE_(x, __COUNTER__)
+#define RTAPI_EXPORT_NOTE_(x, n) RTAPI_EXPORT_NOTE2_(x, n)
+#define RTAPI_EXPORT_NOTE2_(x, n)                                                                            \
+    static const char rtapi_exported_##n[] __attribute__((section(".rtapi_export"), used)) = #x;             \
+    extern __typeof__(x) x
 #define EXPORT_SYMBOL_GPL(x) EXPORT_SYMBOL(x)
 
 RTAPI_BEGIN_DECLS
