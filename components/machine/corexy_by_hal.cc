@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// corexy_by_hal: CoreXY kinematics between two joints and two motors: alpha = j0 + j1, beta = j0 - j1, and
+// corexy_by_hal: CoreXY kinematics between two joints and two motors: alpha = (j0 + j1) / 2, beta = (j0 - j1) / 2, and
 // back for the feedback. Pins (float) [machine units]: j0-motor-pos-cmd, j1-motor-pos-cmd, alpha-fb, beta-fb;
 // outputs alpha-cmd, beta-cmd, j0-motor-pos-fb, j1-motor-pos-fb.
 #include "components/common/kit.hh"
@@ -27,10 +27,10 @@ struct CorexyByHal {
         const double y = j1_cmd;
         const double alpha = alpha_fb;
         const double beta = beta_fb;
-        alpha_cmd = x + y;
-        beta_cmd = x - y;
-        j0_fb = (alpha + beta) / 2.0;
-        j1_fb = (alpha - beta) / 2.0;
+        alpha_cmd = (x + y) / 2.0;
+        beta_cmd = (x - y) / 2.0;
+        j0_fb = alpha + beta;
+        j1_fb = alpha - beta;
     }
 };
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// differential: kinematics of a differential gear with two motors. The motors turn together for pitch and
-// against each other for roll: motor0 = roll + pitch, motor1 = -roll + pitch, and back for the feedback. Pins
-// (float) [degrees]: roll-cmd, pitch-cmd, motor0-fb, motor1-fb; outputs motor0-cmd, motor1-cmd, roll-fb,
-// pitch-fb.
+// differential: kinematics of a differential gear with two motors. The motors turn together for roll and against
+// each other for pitch: motor0 = roll + pitch, motor1 = roll - pitch, and back for the feedback. Pins (float)
+// [degrees]: roll-cmd, pitch-cmd, motor0-fb, motor1-fb; outputs motor0-cmd, motor1-cmd, roll-fb, pitch-fb.
 #include "components/common/kit.hh"
 
 namespace mw::components {
@@ -28,10 +27,10 @@ struct Differential {
         const double pitch = pitch_cmd;
         const double first = motor0_fb;
         const double second = motor1_fb;
-        motor0_cmd = pitch + roll;
-        motor1_cmd = pitch - roll;
-        roll_fb = (first - second) / 2.0;
-        pitch_fb = (first + second) / 2.0;
+        motor0_cmd = roll + pitch;
+        motor1_cmd = roll - pitch;
+        roll_fb = (first + second) / 2.0;
+        pitch_fb = (first - second) / 2.0;
     }
 };
 
