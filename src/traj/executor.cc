@@ -119,13 +119,14 @@ void Executor::brake_on_piece() noexcept {
     const Piece &piece = store_.piece(state_.piece);
     const double left = std::max(0.0, piece.length - state_.x);
     const double v2 = state_.v * state_.v;
-    double a = piece.acceleration;
+    double a = piece.acceleration.at(v2);
     const double out2 = v2 - 2.0 * a * left;
     brake_time_ = 0;
     isBrakeFinal_ = out2 <= STOP_FIT * v2;
     if (!isBrakeFinal_) {
         const double out = std::sqrt(out2);
-        brake_ = {state_.piece, (state_.v - out) / a, state_.x, state_.v, -a, 0};
+        const double duration = 2.0 * left / (state_.v + out);
+        brake_ = {state_.piece, duration, state_.x, state_.v, -a, 0};
         return;
     }
     if (out2 > 0 && left > 0) {
@@ -226,11 +227,13 @@ void Executor::locate() noexcept {
     const Piece &piece = store_.piece(state_.piece);
     out_.position = position_at(store_, piece, state_.x);
     const bool isBlend = piece.blend_d > 0;
-    const bool isSecond = isBlend && state_.x >= piece.blend_d;
+    const double along_piece = piece.offset + state_.x;
+    const bool isSecond = isBlend && along_piece >= piece.blend_d;
     const Sequence move = piece.move + (isSecond ? 1 : 0);
     const Primitive &line = store_.primitive(piece.primitive + (isSecond ? 1 : 0));
-    const double y = isBlend ? state_.x * state_.x / (4.0 * piece.blend_d) : 0;
-    const double along = isSecond ? y : piece.offset + state_.x - y;
+    const double y = isBlend ? along_piece * along_piece / (4.0 * piece.blend_d) : 0;
+    const double start = isBlend ? line.length - piece.blend_d : 0;
+    const double along = isSecond ? y : start + along_piece - y;
     const bool isComplete = piece.isToEnd && state_.x >= piece.length;
     state_.done_move = std::max(state_.done_move, isComplete ? move : move - 1);
     out_.move = isComplete && !out_.isMoving ? 0 : move;

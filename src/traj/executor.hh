@@ -50,7 +50,7 @@ class Executor {
     const ExecutorOutput &output() const noexcept { return out_; }
 
     /// Upper bound of phases and pieces passed in one cycle; the planner keeps below it.
-    static constexpr int MAX_STEPS_PER_CYCLE = 1024;
+    static constexpr int MAX_STEPS_PER_CYCLE = 4096;
 
   private:
     void take_commits() noexcept;

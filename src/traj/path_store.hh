@@ -29,18 +29,47 @@ struct MoveTag {
     Pose end;
 };
 
-/// A stretch of path with limits of its own: a part of one primitive, or a blend between two.
+/// Path acceleration that a piece allows, by the squared speed b: the least of some lines alpha - beta b.
+struct AccelBound {
+    static constexpr int LINES = 3;
+    std::array<double, LINES> alpha{}, beta{};
+
+    static AccelBound constant(double a) noexcept {
+        AccelBound bound;
+        bound.alpha.fill(a);
+        return bound;
+    }
+    /// At the squared speed b, never negative.
+    double at(double b) const noexcept {
+        double a = alpha[0] - beta[0] * b;
+        for (std::size_t k = 1; k < LINES; ++k) {
+            const double c = alpha[k] - beta[k] * b;
+            a = c < a ? c : a;
+        }
+        return a > 0 ? a : 0;
+    }
+    /// Highest squared speed from which `length` suffices to come down to `b`.
+    double highest_before(double b, double length) const noexcept {
+        double best = (2.0 * length * alpha[0] + b) / (1.0 + 2.0 * length * beta[0]);
+        for (std::size_t k = 1; k < LINES; ++k) {
+            const double c = (2.0 * length * alpha[k] + b) / (1.0 + 2.0 * length * beta[k]);
+            best = c < best ? c : best;
+        }
+        return best > b ? best : b;
+    }
+};
+
+/// A stretch of path with limits of its own: a part of one primitive, or of a blend between two.
 ///   part:  q(x) = A(offset + x)
-///   blend: q(x) = A(offset + x - x^2/4d) + B(x^2/4d) - corner,  x in [0, 2d]
+///   blend: q(x) = A(L - d + z - z^2/4d) + B(z^2/4d) - corner,  z = offset + x in [0, 2d], L the length of A
 struct Piece {
     Sequence primitive = 0;  ///< A; B is the next one
     Sequence move = 0;       ///< the move of A; B's is the next one
-    double offset = 0;       ///< s of A where the piece begins
+    double offset = 0;       ///< s of A, or z of the blend, where the piece begins
     double length = 0;
-    double blend_d = 0;    ///< 0: a part of A
-    bool isToEnd = false;  ///< a part of A that reaches A's end
-    double acceleration =
-        0;  ///< limit along x that keeps every axis in its limits up to the piece's speed [1/s^2]
+    double blend_d = 0;       ///< 0: a part of A
+    bool isToEnd = false;     ///< a part of A that reaches A's end
+    AccelBound acceleration;  ///< along x, such that every axis keeps its limits [1/s^2]
 };
 
 /// x(t) = x0 + v0 t + a t^2 / 2 + j t^3 / 6, t in [0, duration], on one piece.
@@ -80,8 +109,8 @@ struct Snapshot {
 };
 
 inline constexpr std::size_t PRIMITIVE_CAPACITY = 4096;
-inline constexpr std::size_t PIECE_CAPACITY = 8192;
-inline constexpr std::size_t PHASE_CAPACITY = 16384;
+inline constexpr std::size_t PIECE_CAPACITY = 16384;
+inline constexpr std::size_t PHASE_CAPACITY = 32768;
 
 /// An output change at a place of the path.
 struct PathEvent {

@@ -123,7 +123,8 @@ class Planner {
 
     double wish_of(const MovePlan &m) const noexcept;
     Joint joint_between(Sequence a, Sequence b) const noexcept;
-    void add_piece(const Piece &piece, SpeedLimit limit, double wish) noexcept;
+    void add_piece(const Piece &piece, const SpeedLimit &limit) noexcept;
+    void add_blend(const Primitive &a, const Primitive &b, double d, double wish) noexcept;
     void close_move(double to, bool isToEnd) noexcept;
 
     double move_cap(const MovePlan &m, double v_limit) const noexcept;
@@ -137,6 +138,7 @@ class Planner {
     void replan(const Snapshot &now, const State &from) noexcept;
     void emit(double until_s) noexcept;
     bool emit_piece() noexcept;
+    void emit_hill(double left, double cap, double out2) noexcept;
     void emit_phase(double length, double v1) noexcept;
     bool hasPhaseRoom() const noexcept;
     void append(const Snapshot &now) noexcept;

@@ -19,11 +19,15 @@ constexpr double EXACT_PATH_DEVIATION = 1e-6;
 constexpr double REVERSAL_COSINE = -0.9;
 /// Below this a blend is a stop.
 constexpr double SMALLEST_BLEND = 1e-7;
-/// Moves passed in one servo cycle at most; with two pieces each and up to four phases a piece this stays
+/// Moves passed in one servo cycle at most; with all their pieces and up to four phases a piece this stays
 /// below Executor::MAX_STEPS_PER_CYCLE.
-constexpr double MOVES_PER_CYCLE = 64;
-/// Room that keeps fitted stops (Executor) and rounding inside the limits.
-constexpr double ACCELERATION_MARGIN = 1e-6;
+constexpr double MOVES_PER_CYCLE = 12;
+/// Arcs and blends are cut so that the direction of the path changes little on each piece [rad].
+constexpr double ARC_CUT = 0.13;
+constexpr double ARC_CUT_WHEN_SLOW = 0.5;
+constexpr int MOST_ARC_CUTS = 64;
+constexpr double BLEND_CUT = 0.3;
+constexpr int MOST_BLEND_CUTS = 4;
 
 }  // namespace
 
@@ -52,7 +56,7 @@ void Planner::begin(const Pose &start, const Snapshot &now) noexcept {
 }
 
 bool Planner::hasRoom(const Snapshot &now) const noexcept {
-    constexpr Sequence PIECES_PER_MOVE = 4;
+    constexpr Sequence PIECES_PER_MOVE = MOST_ARC_CUTS + MOST_BLEND_CUTS + 2;
     const Sequence oldest_piece = std::max(first_piece_, now.piece);
     if (last_piece_ + PIECES_PER_MOVE - oldest_piece >= PIECE_CAPACITY) {
         return false;
@@ -90,14 +94,8 @@ Sequence Planner::add(const Primitive &primitive, const MoveRequest &request) no
         if (joint.d > 0) {
             const MovePlan &a = move_plan(open_move_);
             const double wish = std::min(wish_of(a), wish_of(m));
-            Piece blend;
-            blend.primitive = open_move_;
-            blend.move = open_move_;
-            blend.offset = before.length - joint.d;
-            blend.length = 2.0 * joint.d;
-            blend.blend_d = joint.d;
             isOpenStop_ = false;
-            add_piece(blend, limit_of_blend(before, primitive, joint.d, limits_, wish), wish);
+            add_blend(before, primitive, joint.d, wish);
         }
     } else if (n > first_move_) {
         const Pose step = tangent_step(store_.primitive(n - 1), primitive);
@@ -117,30 +115,61 @@ void Planner::release_end() noexcept {
     }
 }
 
-/// The open move's own part, from the end of the blend before it up to `to`.
-void Planner::close_move(double to, bool isToEnd) noexcept {
-    const Primitive &p = store_.primitive(open_move_);
+void Planner::add_blend(const Primitive &a, const Primitive &b, double d, double wish) noexcept {
+    const double turn = geom::norm(tangent_step(a, b));
+    const SpeedLimit whole = limit_of_blend(a, b, {d, 0, 2.0 * d}, limits_, wish);
+    const int cuts =
+        whole.v < wish ? std::clamp(static_cast<int>(turn / BLEND_CUT) + 1, 1, MOST_BLEND_CUTS) : 1;
     Piece piece;
     piece.primitive = open_move_;
     piece.move = open_move_;
-    piece.offset = open_offset_;
-    piece.length = to - open_offset_;
-    piece.isToEnd = isToEnd;
-    if (piece.length <= 1e-12 * p.length) {
+    piece.blend_d = d;
+    for (int i = 0; i < cuts; ++i) {
+        const double from = 2.0 * d * i / cuts;
+        const double to = 2.0 * d * (i + 1) / cuts;
+        piece.offset = from;
+        piece.length = to - from;
+        add_piece(piece, cuts == 1 ? whole : limit_of_blend(a, b, {d, from, to}, limits_, wish));
+    }
+}
+
+/// The open move's own part, from the end of the blend before it up to `to`.
+void Planner::close_move(double to, bool isToEnd) noexcept {
+    const Primitive &p = store_.primitive(open_move_);
+    const double from = open_offset_;
+    if (to - from <= 1e-12 * p.length) {
         return;
     }
     const double wish = wish_of(move_plan(open_move_));
-    add_piece(piece, limit_of(p, limits_, wish), wish);
+    const SpeedLimit whole = limit_of(p, from, to, limits_, wish);
+    int cuts = 1;
+    if (p.isArc) {
+        const double cut = whole.v < wish ? ARC_CUT : ARC_CUT_WHEN_SLOW;
+        const double pieces = std::ceil(std::abs(p.omega) * (to - from) / cut);
+        cuts = static_cast<int>(std::clamp(pieces, 1.0, static_cast<double>(MOST_ARC_CUTS)));
+    }
+    Piece piece;
+    piece.primitive = open_move_;
+    piece.move = open_move_;
+    for (int i = 0; i < cuts; ++i) {
+        const double begin = from + (to - from) * i / cuts;
+        const double end = i + 1 == cuts ? to : from + (to - from) * (i + 1) / cuts;
+        piece.offset = begin;
+        piece.length = end - begin;
+        piece.isToEnd = isToEnd && i + 1 == cuts;
+        add_piece(piece, cuts == 1 ? whole : limit_of(p, begin, end, limits_, wish));
+        isOpenStop_ = false;
+    }
 }
 
-void Planner::add_piece(const Piece &piece, SpeedLimit limit, double wish) noexcept {
+void Planner::add_piece(const Piece &piece, const SpeedLimit &limit) noexcept {
     const Sequence k = last_piece_ + 1;
     Piece &slot = store_.piece(k);
     slot = piece;
-    slot.acceleration = limit.a * (1.0 - ACCELERATION_MARGIN);
+    slot.acceleration = limit.a;
     PiecePlan &plan = piece_plan(k);
-    plan.v_limit = std::min(
-        {limit.v, wish, MOVES_PER_CYCLE * store_.primitive(piece.primitive).length / settings_.period_s});
+    plan.v_limit =
+        std::min(limit.v, MOVES_PER_CYCLE * store_.primitive(piece.primitive).length / settings_.period_s);
     plan.v2_in = -1;
     plan.isStopBefore = isOpenStop_;
     last_piece_ = k;
@@ -181,8 +210,8 @@ Planner::Joint Planner::joint_between(Sequence na, Sequence nb) const noexcept {
     }
     const double wish_a = wish_of(ma);
     const double wish_b = wish_of(mb);
-    const double va = std::min(wish_a, limit_of(a, limits_, wish_a).v);
-    const double vb = std::min(wish_b, limit_of(b, limits_, wish_b).v);
+    const double va = limit_of(a, 0, a.length, limits_, wish_a).v;
+    const double vb = limit_of(b, 0, b.length, limits_, wish_b).v;
     d = std::min(d, blend_d_for_speed(a, b, limits_, std::min(va, vb)));
     return d > SMALLEST_BLEND ? Joint{d, false} : Joint{0, true};
 }

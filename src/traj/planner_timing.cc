@@ -56,7 +56,7 @@ void Planner::pass_backward(Sequence from, bool isWhole) noexcept {
     for (Sequence k = from; k >= oldest_piece_ && k > 0; --k) {
         const Piece &p = store_.piece(k);
         PiecePlan &plan = piece_plan(k);
-        double v2 = std::min(cap * cap, next2 + 2.0 * p.acceleration * p.length);
+        double v2 = std::min(cap * cap, p.acceleration.highest_before(next2, p.length));
         if (k > oldest_piece_) {
             cap = cap_of(k - 1);
             v2 = std::min(v2, cap * cap);
@@ -134,7 +134,7 @@ std::uint32_t Planner::next_block(const Snapshot &now) const noexcept {
     State state;
     if (now.motion != Motion::REST && now.piece >= first_piece_) {
         const Piece &p = store_.piece(now.piece);
-        const bool isSecond = p.blend_d > 0 && now.x >= p.blend_d;
+        const bool isSecond = p.blend_d > 0 && p.offset + now.x >= p.blend_d;
         return store_.move(p.move + (isSecond ? 1 : 0)).block;
     }
     if (!start_state(now, state)) {
@@ -215,6 +215,24 @@ void Planner::emit_phase(double length, double v1) noexcept {
     s.v = v1;
 }
 
+/// Up from the planned speed, at most to `cap`, and down again to `out2` (squared) where that is in reach.
+void Planner::emit_hill(double left, double cap, double out2) noexcept {
+    const AccelBound &bound = store_.piece(planned_.piece).acceleration;
+    const double v2 = planned_.v * planned_.v;
+    // The highest squared speed with an acceleration that holds there: 2 b - v2 - end2 = 2 left a(b).
+    const double reach2 = bound.highest_before(v2, left);
+    const double end2 = std::min(out2, reach2);
+    const double peak2 =
+        std::min(cap * cap, std::max(end2, bound.highest_before(0.5 * (v2 + end2), 0.5 * left)));
+    const double a = bound.at(peak2);
+    const double up = peak2 > v2 ? std::min(left, (peak2 - v2) / (2.0 * a)) : 0.0;
+    const double down = peak2 > end2 ? std::min(left - up, (peak2 - end2) / (2.0 * a)) : 0.0;
+    const double peak = std::sqrt(peak2);
+    emit_phase(up, peak);
+    emit_phase(left - up - down, peak);
+    emit_phase(down, std::sqrt(end2));
+}
+
 /// Commits one piece from the planned state on; false when the plan ends here for now.
 bool Planner::emit_piece() noexcept {
     State &s = planned_;
@@ -232,18 +250,19 @@ bool Planner::emit_piece() noexcept {
     if (!hasPhaseRoom() || (s.v <= 0 && cap <= 0)) {
         return false;
     }
-    const double a = p.acceleration;
     const double out2 = isLast ? 0.0 : piece_plan(s.piece + 1).v2_in;
     double left = p.length - s.x;
+    double a = p.acceleration.at(s.v * s.v);
     if (s.v > cap) {
         // Too fast after an override came down: as hard as the limits allow, until it fits.
-        const double brake = (s.v * s.v - cap * cap) / (2.0 * a);
-        if (brake < left) {
-            emit_phase(brake, cap);
+        const double excess = s.v * s.v - cap * cap;
+        if (excess < 2.0 * a * left) {
+            emit_phase(excess / (2.0 * a), cap);
             left = p.length - s.x;
             if (cap <= 0) {
                 return true;
             }
+            a = p.acceleration.at(s.v * s.v);
         }
     }
     const double v2 = s.v * s.v;
@@ -252,14 +271,7 @@ bool Planner::emit_piece() noexcept {
         const bool isFit = slowest2 <= out2 + STOP_FIT * v2;
         emit_phase(left, std::sqrt(isFit ? std::min(out2, v2) : slowest2));
     } else {
-        const double end2 = std::min(out2, v2 + 2.0 * a * left);
-        const double peak2 = std::min(cap * cap, 0.5 * (2.0 * a * left + v2 + end2));
-        const double up = std::max(0.0, (peak2 - v2) / (2.0 * a));
-        const double down = std::max(0.0, (peak2 - end2) / (2.0 * a));
-        const double peak = std::sqrt(peak2);
-        emit_phase(std::min(up, left), peak);
-        emit_phase(std::max(0.0, left - up - down), peak);
-        emit_phase(std::min(down, left), std::sqrt(end2));
+        emit_hill(left, cap, out2);
     }
     s = {s.piece, p.length, s.v};
     return true;

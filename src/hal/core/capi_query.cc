@@ -389,9 +389,16 @@ int hal_statistics(hal_statistics_t *sts) {
             return -EINVAL;
         }
         const HalStatistics figures = hal.statistics();
-        *sts = {figures.components, figures.pins,          figures.params,
-                figures.signals,    figures.functs,        figures.threads,
-                figures.aliases,    figures.segment_bytes, figures.capacity_bytes};
+        *sts = {};
+        sts->components = figures.components.active;
+        sts->pins = figures.pins.active;
+        sts->params = figures.params.active;
+        sts->signals = figures.signals.active;
+        sts->functs = figures.functs.active;
+        sts->threads = figures.threads.active;
+        sts->aliases = figures.aliases.active;
+        sts->memory_used = figures.segment_bytes;
+        sts->memory_size = figures.capacity_bytes;
         return 0;
     });
 }

@@ -270,6 +270,9 @@ Result<int> Hal::Impl::add_comp(std::string_view name_wanted, CompType type) {
 
 void Hal::Impl::remove_comp(CompRecord &comp, bool isDead) noexcept {
     const Offset owner = segment.offset_of(&comp);
+    if (isDead) {
+        note_death(comp);
+    }
     segment.each<FunctRecord>(Kind::FUNCT, [&](FunctRecord &funct) {
         if (funct.comp == owner) {
             remove_funct(funct);

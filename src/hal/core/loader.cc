@@ -13,10 +13,12 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <deque>
 #include <limits>
 #include <mutex>
 
+#include "base/own_place.hh"
 #include "base/text.hh"
 #include "hal/api/rtapi.h"
 #include "hal/core/detail/impl.hh"
@@ -37,6 +39,31 @@ struct Loader::Module {
 };
 
 namespace {
+
+/// A parameter as a HAL file has it, its value in quotes where there are blanks in it.
+std::string quoted(const std::string &arg) {
+    const std::size_t equals = arg.find('=');
+    if (equals == std::string::npos || arg.find_first_of(" \t") == std::string::npos) {
+        return arg;
+    }
+    return arg.substr(0, equals + 1) + '"' + arg.substr(equals + 1) + '"';
+}
+
+/// Names of the shared objects there are.
+std::vector<std::string> modules_in(const std::vector<std::string> &folders) {
+    constexpr std::string_view ENDING = ".so";
+    std::vector<std::string> names;
+    for (const std::string &folder : folders) {
+        std::error_code ignored;
+        for (const auto &entry : std::filesystem::directory_iterator(folder, ignored)) {
+            std::string name = entry.path().filename().string();
+            if (name.ends_with(ENDING)) {
+                names.push_back(name.substr(0, name.size() - ENDING.size()));
+            }
+        }
+    }
+    return names;
+}
 
 /// Errors that a module logs while it is loaded are repeated in the failure.
 struct LogTap {
@@ -139,13 +166,6 @@ std::string missing_symbol(const std::string &message) {
     }
     const std::size_t start = at + MARK.size();
     return message.substr(start, message.find_first_of(" ,(", start) - start);
-}
-
-std::string program_folder() {
-    char path[4096];
-    const ssize_t length = ::readlink("/proc/self/exe", path, sizeof path - 1);
-    const std::string program(path, length > 0 ? static_cast<std::size_t>(length) : 0);
-    return program.substr(0, program.rfind('/'));
 }
 
 }  // namespace
@@ -331,7 +351,9 @@ Result<> Loader::load(const std::string &name, const std::vector<std::string> &a
         for (const std::string &folder : folders_) {
             places += (places.empty() ? "" : ", ") + folder;
         }
-        return refuse(ENOENT, fmt::format("there is no module '{}.so' in {}", name, places));
+        const std::string near = nearest_name(name, modules_in(folders_));
+        return refuse(ENOENT, fmt::format("there is no module '{}.so' in {}", name, places),
+                      near.empty() ? "" : fmt::format("did you mean '{}'?", near));
     }
     auto done = open(*module);
     if (done) {
@@ -346,7 +368,7 @@ Result<> Loader::load(const std::string &name, const std::vector<std::string> &a
     }
     std::string text;
     for (const std::string &arg : args) {
-        text += (text.empty() ? "" : " ") + arg;
+        text += (text.empty() ? "" : " ") + quoted(arg);
     }
     for (const int id : module->comp_ids) {
         const auto comp = hal_.component(id);

@@ -35,7 +35,7 @@ Placeholders::Program *Placeholders::owner_of(const std::string &pin) {
 }
 
 bool Placeholders::covers(const std::string &name) const {
-    return owner_of(name) != nullptr && !hal_.pin(name).has_value();
+    return owner_of(name) != nullptr && !hal_.hasPin(name);
 }
 
 void Placeholders::note(const std::string &pin) {

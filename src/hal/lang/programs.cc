@@ -108,6 +108,7 @@ Result<> SystemProgramHost::stop(const std::string &component) {
     if (!info) {
         return std::unexpected(info.error());
     }
+    (void)hal_.expect_end(info->id);
     if (info->pid > 0 && info->pid != getpid() && kill(info->pid, SIGTERM) != 0 && errno != ESRCH) {
         return fail(fmt::format("cannot end component '{}' (process {}): {}", component, info->pid,
                                 std::strerror(errno)));

@@ -86,6 +86,7 @@ struct Hal::Impl {
     void remove_param(detail::ParamRecord &param) noexcept;
     void remove_funct(detail::FunctRecord &funct) noexcept;
     void remove_comp(detail::CompRecord &comp, bool isDead) noexcept;
+    void note_death(const detail::CompRecord &comp) noexcept;
     void point_slot(const detail::PinRecord &pin, detail::Offset value) noexcept;
     detail::Offset value_of(const detail::PinRecord &pin) const noexcept;
     template <class Change>
