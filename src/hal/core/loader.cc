@@ -3,6 +3,7 @@
 
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <link.h>
 #include <sys/mman.h>
 #include <sys/sendfile.h>
 #include <sys/stat.h>
@@ -34,6 +35,7 @@ struct Loader::Module {
     std::deque<std::string> texts;  ///< what string parameters point to
     std::vector<int> comp_ids;      ///< made by its rtapi_app_main
     std::vector<int> users;         ///< components that hold its symbols
+    std::vector<std::string> uses;  ///< modules whose symbols it is linked to
 };
 
 namespace {
@@ -155,6 +157,17 @@ const void *module_base(void *handle) {
     return main != nullptr && ::dladdr(main, &info) != 0 ? info.dli_fbase : nullptr;
 }
 
+/// The name in a message of the dynamic linker about an undefined symbol; empty for other messages.
+std::string missing_symbol(const std::string &message) {
+    constexpr std::string_view MARK = "undefined symbol: ";
+    const std::size_t at = message.find(MARK);
+    if (at == std::string::npos) {
+        return {};
+    }
+    const std::size_t start = at + MARK.size();
+    return message.substr(start, message.find_first_of(" ,(", start) - start);
+}
+
 }  // namespace
 
 Loader::Loader(Hal &hal, std::vector<std::string> folders) : hal_(hal), folders_(std::move(folders)) {
@@ -222,17 +235,44 @@ Result<> Loader::open(Module &module) {
         }
         path = fmt::format("/proc/self/fd/{}", copy);
     }
-    context().parameters = &module.parameters;
-    module.handle = ::dlopen(path.c_str(), RTLD_LOCAL | RTLD_NOW);
-    context().parameters = nullptr;
-    const char *why = module.handle == nullptr ? ::dlerror() : nullptr;
+    const std::string why = link(module, path);
     if (copy >= 0) {
         ::close(copy);
     }
     if (module.handle == nullptr) {
-        return refuse(ENOEXEC, fmt::format("module '{}': {}", module.name, why));
+        return refuse(ENOEXEC, fmt::format("{}: dlopen: {}", module.name, why));
     }
     return {};
+}
+
+/// Opens the file. A symbol that it lacks and that a loaded module exports is taken from there: that module's
+/// symbols then become visible to later ones, and it stays loaded while this one uses it. Empty, or why not.
+std::string Loader::link(Module &module, const std::string &path) {
+    std::string last_missing;
+    while (true) {
+        context().parameters = &module.parameters;
+        module.handle = ::dlopen(path.c_str(), RTLD_LOCAL | RTLD_NOW);
+        context().parameters = nullptr;
+        if (module.handle != nullptr) {
+            return {};
+        }
+        const std::string why = ::dlerror();
+        const std::string missing = missing_symbol(why);
+        Module *exporter =
+            missing.empty() || missing == last_missing ? nullptr : exporter_of(missing.c_str());
+        if (exporter == nullptr) {
+            return why;
+        }
+        last_missing = missing;
+        module.parameters.clear();
+        link_map *map = nullptr;
+        if (::dlinfo(exporter->handle, RTLD_DI_LINKMAP, &map) == 0) {
+            if (void *again = ::dlopen(map->l_name, RTLD_NOW | RTLD_NOLOAD | RTLD_GLOBAL)) {
+                ::dlclose(again);
+            }
+        }
+        module.uses.push_back(exporter->name);
+    }
 }
 
 Result<> Loader::set_parameters(Module &module, const std::vector<std::string> &args) {
@@ -362,6 +402,11 @@ Result<> Loader::unload(const std::string &name) {
     if (found == modules_.end()) {
         return refuse(ENOENT, fmt::format("module '{}' is not loaded", name));
     }
+    for (const auto &other : modules_) {
+        if (std::find(other->uses.begin(), other->uses.end(), name) != other->uses.end()) {
+            return refuse(EBUSY, fmt::format("module '{}' is used by module '{}'", name, other->name));
+        }
+    }
     for (const int user : (*found)->users) {
         if (const auto comp = hal_.component(user)) {
             return refuse(EBUSY, fmt::format("module '{}' is used by component '{}'", name, comp->name));
@@ -394,7 +439,7 @@ Result<> Loader::unload_all() {
     return modules_.empty() ? Result<>{} : first_failure;
 }
 
-void *Loader::find_symbol(const char *symbol) const {
+Loader::Module *Loader::exporter_of(const char *symbol) const {
     for (auto module = modules_.rbegin(); module != modules_.rend(); ++module) {
         if (void *address = ::dlsym((*module)->handle, symbol)) {
             Dl_info info{};
@@ -402,21 +447,25 @@ void *Loader::find_symbol(const char *symbol) const {
             const bool isOwn = ::dladdr(address, &info) != 0 && info.dli_fbase != nullptr &&
                                info.dli_fbase == module_base((*module)->handle);
             if (isOwn) {
-                return address;
+                return module->get();
             }
         }
     }
     return nullptr;
 }
 
+void *Loader::find_symbol(const char *symbol) const {
+    const Module *exporter = exporter_of(symbol);
+    return exporter == nullptr ? nullptr : ::dlsym(exporter->handle, symbol);
+}
+
 Result<> Loader::use(const char *symbol, int comp_id) {
-    for (auto module = modules_.rbegin(); module != modules_.rend(); ++module) {
-        if (::dlsym((*module)->handle, symbol) == find_symbol(symbol) && find_symbol(symbol) != nullptr) {
-            (*module)->users.push_back(comp_id);
-            return {};
-        }
+    Module *exporter = exporter_of(symbol);
+    if (exporter == nullptr) {
+        return refuse(ENOENT, fmt::format("no loaded module has the symbol '{}'", symbol));
     }
-    return refuse(ENOENT, fmt::format("no loaded module has the symbol '{}'", symbol));
+    exporter->users.push_back(comp_id);
+    return {};
 }
 
 }  // namespace mw::hal

@@ -141,10 +141,33 @@ std::string make_instances(const Component &component, const std::string &prefix
 
 }  // namespace
 
+namespace {
+
+bool isConstructable(const Component &component) {
+    return isCounted(component) && !component.isUserspace() && component.isOn("constructable", true);
+}
+
+/// Makes one more instance after the module was loaded; the argument is its personality.
+std::string constructor(const Component &component) {
+    return fmt::format(R"(
+static int __comp_construct(const char *name, const char *arg) {{
+    static int made;
+    char prefix[HAL_NAME_LEN + 1];
+    (void)arg;
+    if (rtapi_strlcpy(prefix, name, sizeof(prefix)) >= sizeof(prefix)) return -EINVAL;
+    return export(prefix, count + made++{});
+}}
+)",
+                       component.hasPersonality() ? ", simple_strtol(arg, 0, 0)" : "");
+}
+
+}  // namespace
+
 std::string emit_app(const Component &component, const std::string &prefix) {
     const std::string linkage = component.isUserspace() ? "static " : "";
     const std::string cleanup = component.isOn("extra_cleanup") ? "        extra_cleanup();\n" : "";
-    std::string out = fmt::format(R"(
+    std::string out = isConstructable(component) ? constructor(component) : std::string();
+    out += fmt::format(R"(
 {}int rtapi_app_main(void) {{
     int r = 0, i = 0, made = 0;
     (void)i; (void)made;
@@ -155,11 +178,13 @@ std::string emit_app(const Component &component, const std::string &prefix) {
 {}        hal_exit(comp_id);
         return r;
     }}
-    hal_ready(comp_id);
+{}    hal_ready(comp_id);
     return 0;
 }}
 )",
-                                  linkage, component.name, make_instances(component, prefix), cleanup);
+                       linkage, component.name, make_instances(component, prefix), cleanup,
+                       isConstructable(component) ? "    hal_set_constructor(comp_id, __comp_construct);\n"
+                                                  : "");
     out += fmt::format("\n{}void rtapi_app_exit(void) {{\n{}    hal_exit(comp_id);\n}}\n", linkage,
                        component.isOn("extra_cleanup") ? "    extra_cleanup();\n" : "");
     return out;
