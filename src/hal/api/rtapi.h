@@ -26,13 +26,13 @@
 #define RTAPI_STRINGIFY(x) #x
 /* Before the declaration of what other modules look up, in modules that are compiled with hidden visibility.
  */
-#define RTAPI_EXPORT __attribute__((visibility("default")))
+#define RTAPI_EXPORT __attribute__((__visibility__("default")))
 /* Lets other modules use the symbol: halcompile exports what stands here and the entry points, and keeps
  * everything else private to the module. Checks that the symbol exists. */
 #define EXPORT_SYMBOL(x) RTAPI_EXPORT_NOTE_(x, __COUNTER__)
 #define RTAPI_EXPORT_NOTE_(x, n) RTAPI_EXPORT_NOTE2_(x, n)
 #define RTAPI_EXPORT_NOTE2_(x, n)                                                                            \
-    static const char rtapi_exported_##n[] __attribute__((section(".rtapi_export"), used)) = #x;             \
+    static const char rtapi_exported_##n[] __attribute__((__section__(".rtapi_export"), __used__)) = #x;     \
     extern __typeof__(x) x;
 #define EXPORT_SYMBOL_GPL(x) EXPORT_SYMBOL(x)
 #define EXPORT_FUNCTION(x) EXPORT_SYMBOL(x)
@@ -196,12 +196,13 @@ extern int rtapi_shmem_delete(int shmem_id, int module_id);
 
 enum rtapi_mp_type { RTAPI_MP_TYPE_INT = 1, RTAPI_MP_TYPE_LONG, RTAPI_MP_TYPE_STRING };
 
+/* Member names that no pin of a component has. */
 struct rtapi_mp_info {
-    const char *name;
-    const char *description;
-    int type;  /* enum rtapi_mp_type */
-    int count; /* elements; 1 for a scalar */
-    void *address;
+    const char *mp_name;
+    const char *mp_description;
+    int mp_type;  /* enum rtapi_mp_type */
+    int mp_count; /* elements; 1 for a scalar */
+    void *mp_address;
 };
 
 /* Called by the macros below while a module is loaded. */
@@ -211,14 +212,9 @@ RTAPI_END_DECLS
 
 /* These macros stand at file scope, behind the variable, with or without a semicolon. */
 #define RTAPI_MP_DECLARE_(var, addr, kind, num, descr)                                                       \
-    static __attribute__((constructor)) void rtapi_mp_register_##var(void) {                                 \
-        static struct rtapi_mp_info info;                                                                    \
-        info.name = #var;                                                                                    \
-        info.description = (descr);                                                                          \
-        info.type = (kind);                                                                                  \
-        info.count = (num);                                                                                  \
-        info.address = (void *)(addr);                                                                       \
-        rtapi_mp_register(&info);                                                                            \
+    static struct rtapi_mp_info rtapi_mp_info_##var = {#var, (descr), (kind), (num), (void *)(addr)};        \
+    static __attribute__((__constructor__)) void rtapi_mp_register_##var(void) {                             \
+        rtapi_mp_register(&rtapi_mp_info_##var);                                                             \
     }
 
 #define RTAPI_MP_INT(var, descr) RTAPI_MP_DECLARE_(var, &(var), RTAPI_MP_TYPE_INT, 1, descr)
@@ -229,11 +225,13 @@ RTAPI_END_DECLS
 #define RTAPI_MP_ARRAY_STRING(var, num, descr) RTAPI_MP_DECLARE_(var, (var), RTAPI_MP_TYPE_STRING, num, descr)
 /* `type` as a letter in quotes: "i" int, "l" long, "s" string. */
 #define RTAPI_MP_ARRAY(type, var, num, descr)                                                                \
-    RTAPI_MP_DECLARE_(var, (var),                                                                            \
-                      (type)[0] == 's'   ? RTAPI_MP_TYPE_STRING                                              \
-                      : (type)[0] == 'l' ? RTAPI_MP_TYPE_LONG                                                \
-                                         : RTAPI_MP_TYPE_INT,                                                \
-                      num, descr)
+    static struct rtapi_mp_info rtapi_mp_info_##var = {#var, (descr), 0, (num), (void *)(var)};              \
+    static __attribute__((__constructor__)) void rtapi_mp_register_##var(void) {                             \
+        rtapi_mp_info_##var.mp_type = (type)[0] == 's'   ? RTAPI_MP_TYPE_STRING                              \
+                                      : (type)[0] == 'l' ? RTAPI_MP_TYPE_LONG                                \
+                                                         : RTAPI_MP_TYPE_INT;                                \
+        rtapi_mp_register(&rtapi_mp_info_##var);                                                             \
+    }
 
 /* Facts about a module for people and tools; they leave no trace in the object. */
 #define MODULE_INFO(tag, text)

@@ -441,7 +441,12 @@ int hal_comp_invoke_make(const char *compname, const char *newname, const char *
             return complain(ENOSYS,
                             fmt::format("component '{}' makes no instances once it is loaded", compname));
         }
-        return make(newname, arg == nullptr ? "" : arg);
+        // Pins and functions can only be made while the component is not ready.
+        const bool wasReady = comp->isReady;
+        (void)hal.set_ready(comp->id, false);
+        const int status = make(newname, arg == nullptr ? "" : arg);
+        (void)hal.set_ready(comp->id, wasReady);
+        return status;
     });
 }
 

@@ -88,34 +88,34 @@ struct LogTap {
 
 Result<> set_number(const rtapi_mp_info &info, int index, std::string_view text) {
     const auto value = parse_int(text);
-    const bool isInt = info.type == RTAPI_MP_TYPE_INT;
+    const bool isInt = info.mp_type == RTAPI_MP_TYPE_INT;
     if (!value ||
         (isInt && (*value < std::numeric_limits<int>::min() || *value > std::numeric_limits<int>::max()))) {
-        return refuse(EINVAL, fmt::format("parameter '{}': '{}' is not a whole number{}", info.name, text,
+        return refuse(EINVAL, fmt::format("parameter '{}': '{}' is not a whole number{}", info.mp_name, text,
                                           isInt ? " of 32 bits" : ""));
     }
     if (isInt) {
-        static_cast<int *>(info.address)[index] = static_cast<int>(*value);
+        static_cast<int *>(info.mp_address)[index] = static_cast<int>(*value);
     } else {
-        static_cast<long *>(info.address)[index] = *value;
+        static_cast<long *>(info.mp_address)[index] = *value;
     }
     return {};
 }
 
 Result<> set_parameter(const rtapi_mp_info &info, std::string_view text, std::deque<std::string> &texts) {
-    const bool isText = info.type == RTAPI_MP_TYPE_STRING;
-    if (info.count > 1 && text.empty()) {
+    const bool isText = info.mp_type == RTAPI_MP_TYPE_STRING;
+    if (info.mp_count > 1 && text.empty()) {
         return {};
     }
     for (int index = 0;; ++index) {
-        if (index == info.count) {
+        if (index == info.mp_count) {
             return refuse(EINVAL,
-                          fmt::format("parameter '{}' takes at most {} values", info.name, info.count));
+                          fmt::format("parameter '{}' takes at most {} values", info.mp_name, info.mp_count));
         }
-        const std::size_t comma = info.count > 1 ? text.find(',') : std::string_view::npos;
+        const std::size_t comma = info.mp_count > 1 ? text.find(',') : std::string_view::npos;
         const std::string_view word = text.substr(0, comma);
         if (isText) {
-            static_cast<char **>(info.address)[index] = texts.emplace_back(word).data();
+            static_cast<char **>(info.mp_address)[index] = texts.emplace_back(word).data();
         } else if (auto set = set_number(info, index, word); !set) {
             return set;
         }
@@ -278,7 +278,7 @@ std::string Loader::link(Module &module, const std::string &path) {
 Result<> Loader::set_parameters(Module &module, const std::vector<std::string> &args) {
     std::vector<std::string> known;
     for (const rtapi_mp_info *info : module.parameters) {
-        known.emplace_back(info->name);
+        known.emplace_back(info->mp_name);
     }
     for (const std::string &arg : args) {
         const std::size_t equals = arg.find('=');

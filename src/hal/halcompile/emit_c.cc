@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "hal/halcompile/emit_c.hh"
 
+#include <algorithm>
 #include <array>
 #include <iterator>
 
@@ -47,6 +48,7 @@ class Emitter {
         types();
         forward();
         put(emit_module_parameters(component_, personalities_));
+        own_line();
         export_function();
         if (component_.isOn("rtapi_app", true)) {
             put(emit_app(component_, prefix_));
@@ -67,6 +69,12 @@ class Emitter {
     }
     void put(std::string_view text) { out_ += text; }
     void source_line(const SourcePlace &place) { line("#line {} {}", place.line, c_string(place.file)); }
+
+    /// Back to the lines of the C file itself, after code that #line puts elsewhere.
+    void own_line() {
+        const auto lines = std::count(out_.begin(), out_.end(), '\n');
+        line("#line {} {}", lines + 2, c_string(component_.name + ".c"));
+    }
 
     void head() {
         line("/* Made by halcompile from {}.comp. Do not change it here. */", component_.name);
@@ -89,7 +97,8 @@ class Emitter {
         if (!component_.doc.empty()) {
             line("MODULE_DESCRIPTION({});", c_string(component_.doc));
         }
-        put("\nstatic int comp_id __attribute__((unused));\n");
+        own_line();
+        put("\nstatic int comp_id __attribute__((__unused__));\n");
     }
 
     void types() {
@@ -115,16 +124,18 @@ class Emitter {
             source_line(data->place);
             line("    {} _data;", plain_type(data->value));
         }
-        put("};\nstatic struct __comp_state *__comp_first_inst __attribute__((unused));\n"
-            "static struct __comp_state *__comp_last_inst __attribute__((unused));\n");
+        own_line();
+        put("};\nstatic struct __comp_state *__comp_first_inst __attribute__((__unused__));\n"
+            "static struct __comp_state *__comp_last_inst __attribute__((__unused__));\n");
         if (component_.isUserspace()) {
-            put("static struct __comp_state *__comp_inst __attribute__((unused));\n");
+            put("static struct __comp_state *__comp_inst __attribute__((__unused__));\n");
         }
     }
 
     void forward() {
         for (const Function &function : component_.functions) {
-            line("static void {}(struct __comp_state *__comp_inst, long period);", c_name(function.name));
+            line("static void __comp_function_{}(struct __comp_state *__comp_inst, long period);",
+                 c_name(function.name));
         }
         if (component_.isOn("extra_setup")) {
             put("static int extra_setup(struct __comp_state *__comp_inst, char *prefix, long extra_arg);\n");
@@ -258,7 +269,7 @@ class Emitter {
 
     void export_function() {
         const bool hasPersonality = component_.hasPersonality();
-        line("\nstatic __attribute__((unused)) int export(char *prefix, long extra_arg{}) {{",
+        line("\nstatic __attribute__((__unused__)) int export(char *prefix, long extra_arg{}) {{",
              hasPersonality ? ", long __comp_personality" : "");
         put("    int __comp_r = 0, __comp_i = 0, __comp_n = 0;\n"
             "    struct __comp_state *__comp_inst = hal_malloc(sizeof(struct __comp_state));\n"
@@ -273,6 +284,7 @@ class Emitter {
             put("    __comp_r = extra_setup(__comp_inst, prefix, extra_arg);\n"
                 "    if (__comp_r != 0) return __comp_r;\n");
         }
+        own_line();
         if (hasPersonality) {
             put("#define personality (__comp_inst->_personality)\n");
         }
@@ -284,12 +296,14 @@ class Emitter {
         }
         for (const Function &function : component_.functions) {
             source_line(function.place);
-            line("    __comp_r = hal_export_functf((void (*)(void *, long)){}, __comp_inst, {}, 0, comp_id, "
+            line("    __comp_r = hal_export_functf((void (*)(void *, long))__comp_function_{}, __comp_inst, "
+                 "{}, 0, comp_id, "
                  "\"{}\", "
                  "prefix);",
                  c_name(function.name), function.usesFloat ? 1 : 0, name_format(function.name));
             put("    if (__comp_r != 0) return __comp_r;\n");
         }
+        own_line();
         put("    if (__comp_last_inst != 0) __comp_last_inst->_next = __comp_inst; else __comp_first_inst = "
             "__comp_inst;\n    __comp_last_inst = __comp_inst;\n");
         if (component_.isOn("post_export")) {
@@ -299,15 +313,15 @@ class Emitter {
     }
 
     void macros() {
-        put("\n#define FUNCTION(name) static void name(struct __comp_state *__comp_inst "
-            "__attribute__((unused)), "
-            "long period __attribute__((unused)))\n"
+        put("\n#define FUNCTION(name) static void __comp_function_##name(struct __comp_state *__comp_inst "
+            "__attribute__((__unused__)), "
+            "long period __attribute__((__unused__)))\n"
             "#define EXTRA_SETUP() static int extra_setup(struct __comp_state *__comp_inst "
-            "__attribute__((unused)), "
-            "char *prefix __attribute__((unused)), long extra_arg __attribute__((unused)))\n"
+            "__attribute__((__unused__)), "
+            "char *prefix __attribute__((__unused__)), long extra_arg __attribute__((__unused__)))\n"
             "#define POST_EXPORT() static int post_export(struct __comp_state *__comp_inst "
-            "__attribute__((unused)), "
-            "char *prefix __attribute__((unused)), long extra_arg __attribute__((unused)))\n"
+            "__attribute__((__unused__)), "
+            "char *prefix __attribute__((__unused__)), long extra_arg __attribute__((__unused__)))\n"
             "#define EXTRA_CLEANUP() static void extra_cleanup(void)\n"
             "#define fperiod (period * 1e-9)\n");
         if (component_.isUserspace()) {

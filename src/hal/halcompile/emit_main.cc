@@ -53,7 +53,7 @@ std::string declare(const ModuleParameter &parameter, bool isUserspace) {
 
 std::string personality_of_instance(int personalities) {
     return fmt::format(R"(
-static __attribute__((unused)) int __comp_personality_of(int number) {{
+static __attribute__((__unused__)) int __comp_personality_of(int number) {{
     if (number >= {0})
         rtapi_print_msg(RTAPI_MSG_ERR, "instance %d takes personality %d of {0}: 0x%x\n", number, number % {0},
                         (unsigned)personality[number % {0}]);
@@ -78,7 +78,7 @@ std::string emit_module_parameters(const Component &component, int personalities
         }
     }
     if (component.hasPersonality() && component.isOn("rtapi_app", true)) {
-        out += fmt::format("static int personality[{}] __attribute__((unused));\n", personalities);
+        out += fmt::format("static int personality[{}] __attribute__((__unused__));\n", personalities);
         if (!isUserspace) {
             out += fmt::format("RTAPI_MP_ARRAY_INT(personality, {}, \"personality of each instance\");\n",
                                personalities);
@@ -195,7 +195,7 @@ namespace {
 /// C code that takes one argument of the command line if it is of ours.
 std::string take_arguments(const Component &component) {
     std::string out = R"(
-static __attribute__((unused)) int __comp_number(const char *word, const char *text, long *value) {
+static __attribute__((__unused__)) int __comp_number(const char *word, const char *text, long *value) {
     char *end = 0;
     *value = strtol(text, &end, 0);
     if (end != text && *end == '\0') return 0;
