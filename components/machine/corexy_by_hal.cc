@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// corexy_by_hal: CoreXY kinematics between two joints and two motors: alpha = (j0 + j1) / 2, beta = (j0 - j1) / 2, and
-// back for the feedback. Pins (float) [machine units]: j0-motor-pos-cmd, j1-motor-pos-cmd, alpha-fb, beta-fb;
-// outputs alpha-cmd, beta-cmd, j0-motor-pos-fb, j1-motor-pos-fb.
+// corexy_by_hal: CoreXY kinematics between two joints and two motors: alpha = (j0 + j1) / 2, beta = (j0 - j1)
+// / 2, and back for the feedback. Pins (float) [machine units]: j0-motor-pos-cmd, j1-motor-pos-cmd, alpha-fb,
+// beta-fb; outputs alpha-cmd, beta-cmd, j0-motor-pos-fb, j1-motor-pos-fb.
 #include "components/common/kit.hh"
 
 namespace mw::components {

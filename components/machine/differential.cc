@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// differential: kinematics of a differential gear with two motors. The motors turn together for roll and against
-// each other for pitch: motor0 = roll + pitch, motor1 = roll - pitch, and back for the feedback. Pins (float)
-// [degrees]: roll-cmd, pitch-cmd, motor0-fb, motor1-fb; outputs motor0-cmd, motor1-cmd, roll-fb, pitch-fb.
+// differential: kinematics of a differential gear with two motors. The motors turn together for roll and
+// against each other for pitch: motor0 = roll + pitch, motor1 = roll - pitch, and back for the feedback. Pins
+// (float) [degrees]: roll-cmd, pitch-cmd, motor0-fb, motor1-fb; outputs motor0-cmd, motor1-cmd, roll-fb,
+// pitch-fb.
 #include "components/common/kit.hh"
 
 namespace mw::components {

@@ -2,8 +2,8 @@
 // ton, tof: the timers of IEC 61131-3. The parameter `pt` (float) [s] is the delay.
 //
 // ton: `q` (bit) becomes true when `in` has been true for pt, and false with it. tof: q becomes true with in,
-// and false when in has been false for pt. `et` (float) [s] is the time waited, until pt is reached. Built twice
-// (TIMER_MODULE, TIMER_WAITS_FOR: the state of in that is waited for).
+// and false when in has been false for pt. `et` (float) [s] is the time waited, until pt is reached. Built
+// twice (TIMER_MODULE, TIMER_WAITS_FOR: the state of in that is waited for).
 #include "components/common/kit.hh"
 
 namespace mw::components {
