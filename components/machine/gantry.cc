@@ -55,7 +55,7 @@ struct Gantry {
         home = joints > 0 && made == joints;
         limit = made > 0;
         if (made > 0 && made < joints) {
-            fb_joint = first_joint_on_the_way();
+            fb_joint = last_joint_on_the_way();
         }
         if (joints > 0) {
             position_fb = joint[fb_joint].pos_fb + joint[fb_joint].offset;
@@ -87,10 +87,10 @@ struct Gantry {
         }
         return made;
     }
-    int first_joint_on_the_way() const noexcept {
-        int found = 0;
-        while (found < joints - 1 && joint[found].home) {
-            ++found;
+    int last_joint_on_the_way() const noexcept {
+        int found = joints - 1;
+        while (found > 0 && joint[found].home) {
+            --found;
         }
         return found;
     }
