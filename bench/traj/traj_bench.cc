@@ -45,13 +45,16 @@ traj::MoveRequest request_of(const Program &program, const Move &m) {
     return r;
 }
 
-traj::Limits limits_of(const Program &program) {
+traj::Limits limits_of(const Program &program, bool isJerkLimited) {
     traj::Limits l;
     l.velocity.fill(traj::UNLIMITED);
     l.acceleration.fill(traj::UNLIMITED);
+    l.jerk.fill(traj::UNLIMITED);
+    l.isJerkLimited = isJerkLimited;
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
         l.velocity[static_cast<std::size_t>(i)] = program.max_velocity[i];
         l.acceleration[static_cast<std::size_t>(i)] = program.max_acceleration[i];
+        l.jerk[static_cast<std::size_t>(i)] = program.max_jerk[i];
     }
     return l;
 }
@@ -63,12 +66,12 @@ struct Run {
 };
 
 /// The whole program is offered at once, as far as the planner has room.
-Run drive(const Program &program) {
+Run drive(const Program &program, bool isJerkLimited) {
     Run run;
     auto store = std::make_unique<traj::PathStore>();
     traj::Executor executor(*store, T);
     auto planner = std::make_unique<traj::Planner>(*store, traj::PlannerSettings{T, 3, 0.1});
-    planner->set_limits(limits_of(program));
+    planner->set_limits(limits_of(program, isJerkLimited));
     executor.set_position(program.start);
     std::uint64_t cycle = 0;
     executor.step(cycle);
@@ -127,7 +130,7 @@ void write_trace(const Options &options, const Program &program, const Run &run)
 }
 
 bool measure(const Options &options, const Program &program) {
-    const Run run = drive(program);
+    const Run run = drive(program, options.isJerkLimited);
     std::vector<testing::AxisLimit> limits;
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
         limits.push_back({program.max_velocity[i], program.max_acceleration[i],

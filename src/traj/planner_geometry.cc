@@ -33,12 +33,24 @@ constexpr int MOST_BLEND_CUTS = 4;
 
 Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept
     : store_(store), settings_(settings) {
-    limits_.velocity.fill(UNLIMITED);
-    limits_.acceleration.fill(UNLIMITED);
+    Limits none;
+    none.velocity.fill(UNLIMITED);
+    none.acceleration.fill(UNLIMITED);
+    none.jerk.fill(UNLIMITED);
+    set_limits(none);
+}
+
+void Planner::set_limits(const Limits &limits) noexcept {
+    wanted_ = limits;
+    limits_ = limits_for_filter(limits, filter_, settings_.period_s);
 }
 
 void Planner::begin(const Pose &start, const Snapshot &now) noexcept {
     end_ = start;
+    filter_ = filter_length(wanted_, settings_.period_s);
+    set_limits(wanted_);
+    programmed_s_ = 0;
+    isStopPlan_ = false;
     first_move_ = last_move_ + 1;
     first_piece_ = last_piece_ + 1;
     oldest_piece_ = first_piece_;
@@ -62,7 +74,9 @@ bool Planner::hasRoom(const Snapshot &now) const noexcept {
         return false;
     }
     const Sequence oldest_move = last_piece_ < oldest_piece ? last_move_ : store_.piece(oldest_piece).move;
-    return last_move_ + 4 - oldest_move < PRIMITIVE_CAPACITY;
+    // Moves that the mean still covers are kept as well.
+    const Sequence kept = isFiltered() ? PRIMITIVE_CAPACITY / 4 : 4;
+    return last_move_ + kept - oldest_move < PRIMITIVE_CAPACITY;
 }
 
 double Planner::wish_of(const MovePlan &m) const noexcept {
@@ -82,6 +96,8 @@ Sequence Planner::add(const Primitive &primitive, const MoveRequest &request) no
     m.request.tag.feed_ratio = primitive.length / feed.length;
     m.request.tag.end = primitive.end;
     m.feed = request.tag.requested_velocity * m.request.tag.feed_ratio;
+    m.start_s = programmed_s_;
+    programmed_s_ += primitive.length;
     store_.move(n) = m.request.tag;
     end_ = primitive.end;
     last_synched_ = request.feed_per_revolution > 0 ? n : last_synched_;
@@ -95,16 +111,18 @@ Sequence Planner::add(const Primitive &primitive, const MoveRequest &request) no
             const MovePlan &a = move_plan(open_move_);
             const double wish = std::min(wish_of(a), wish_of(m));
             isOpenStop_ = false;
-            add_blend(before, primitive, joint.d, wish);
+            add_blend(before, primitive, joint, wish);
         }
     } else if (n > first_move_) {
         const Pose step = tangent_step(store_.primitive(n - 1), primitive);
         joint.isStop = geom::norm(step) > SAME_DIRECTION || m.request.isGated ||
                        move_plan(n - 1).request.join == Join::STOP;
+        joint.dwell_s = filter_s();
     }
     open_move_ = n;
     open_offset_ = joint.d;
     isOpenStop_ = joint.isStop;
+    open_dwell_s_ = joint.dwell_s;
     return n;
 }
 
@@ -115,7 +133,8 @@ void Planner::release_end() noexcept {
     }
 }
 
-void Planner::add_blend(const Primitive &a, const Primitive &b, double d, double wish) noexcept {
+void Planner::add_blend(const Primitive &a, const Primitive &b, const Joint &joint, double wish) noexcept {
+    const double d = joint.d;
     const double turn = geom::norm(tangent_step(a, b));
     const SpeedLimit whole = limit_of_blend(a, b, {d, 0, 2.0 * d}, limits_, wish);
     const int cuts =
@@ -124,12 +143,19 @@ void Planner::add_blend(const Primitive &a, const Primitive &b, double d, double
     piece.primitive = open_move_;
     piece.move = open_move_;
     piece.blend_d = d;
+    piece.tolerance = tolerance_of(move_plan(open_move_).request);
+    const double other = tolerance_of(move_plan(open_move_ + 1).request);
+    piece.tolerance = piece.tolerance > 0 && other > 0 ? std::min(piece.tolerance, other)
+                                                       : std::max(piece.tolerance, other);
     for (int i = 0; i < cuts; ++i) {
         const double from = 2.0 * d * i / cuts;
         const double to = 2.0 * d * (i + 1) / cuts;
         piece.offset = from;
         piece.length = to - from;
-        add_piece(piece, cuts == 1 ? whole : limit_of_blend(a, b, {d, from, to}, limits_, wish));
+        piece.programmed_s = move_plan(open_move_).start_s + a.length - d + from;
+        SpeedLimit limit = cuts == 1 ? whole : limit_of_blend(a, b, {d, from, to}, limits_, wish);
+        limit.v = std::min(limit.v, joint.v);
+        add_piece(piece, limit);
     }
 }
 
@@ -140,7 +166,8 @@ void Planner::close_move(double to, bool isToEnd) noexcept {
     if (to - from <= 1e-12 * p.length) {
         return;
     }
-    const double wish = wish_of(move_plan(open_move_));
+    const MoveRequest &request = move_plan(open_move_).request;
+    const double wish = std::min(wish_of(move_plan(open_move_)), filtered_arc_speed(p, request));
     const SpeedLimit whole = limit_of(p, from, to, limits_, wish);
     int cuts = 1;
     if (p.isArc) {
@@ -151,10 +178,12 @@ void Planner::close_move(double to, bool isToEnd) noexcept {
     Piece piece;
     piece.primitive = open_move_;
     piece.move = open_move_;
+    piece.tolerance = tolerance_of(request);
     for (int i = 0; i < cuts; ++i) {
         const double begin = from + (to - from) * i / cuts;
         const double end = i + 1 == cuts ? to : from + (to - from) * (i + 1) / cuts;
         piece.offset = begin;
+        piece.programmed_s = move_plan(open_move_).start_s + begin;
         piece.length = end - begin;
         piece.isToEnd = isToEnd && i + 1 == cuts;
         add_piece(piece, cuts == 1 ? whole : limit_of(p, begin, end, limits_, wish));
@@ -172,6 +201,7 @@ void Planner::add_piece(const Piece &piece, const SpeedLimit &limit) noexcept {
         std::min(limit.v, MOVES_PER_CYCLE * store_.primitive(piece.primitive).length / settings_.period_s);
     plan.v2_in = -1;
     plan.isStopBefore = isOpenStop_;
+    plan.dwell_s = isOpenStop_ ? open_dwell_s_ : filter_s();
     last_piece_ = k;
     isAtEndOfPath_ = false;
     // Release: the executor that sees the number (acquire) sees the piece and its primitives filled.
@@ -186,34 +216,43 @@ Planner::Joint Planner::joint_between(Sequence na, Sequence nb) const noexcept {
     const bool isStop = ma.request.join == Join::STOP || mb.request.isGated || ma.request.tag.isProbe ||
                         mb.request.tag.isProbe;
     if (isStop) {
-        return {0, true};
+        return {.isStop = true, .dwell_s = filter_s()};
     }
     const double step = geom::norm(tangent_step(a, b));
     if (step <= SAME_DIRECTION) {
-        return {0, false};
+        return {};
     }
     const bool isExact = ma.request.join == Join::EXACT || mb.request.join == Join::EXACT;
-    const bool isCorner = isExact && step > EXACT_PATH_STEP;
     const Pose ta = derivative_at(a, a.length);
     const Pose tb = derivative_at(b, 0);
-    if (isCorner || geom::dot(ta, tb) < REVERSAL_COSINE * geom::norm(ta) * geom::norm(tb)) {
-        return {0, true};
-    }
-    double d = 0.5 * std::min(a.length, b.length);
+    const bool isCorner = isExact && step > EXACT_PATH_STEP;
+    const bool isReversal = geom::dot(ta, tb) < REVERSAL_COSINE * geom::norm(ta) * geom::norm(tb);
     double tolerance = isExact ? EXACT_PATH_DEVIATION : ma.request.tolerance;
     const bool isOther = !isExact && mb.request.tolerance > 0;
     if (isOther) {
         tolerance = tolerance > 0 ? std::min(tolerance, mb.request.tolerance) : mb.request.tolerance;
     }
+    if (isFiltered()) {
+        return filtered_corner(na, nb, tolerance, isCorner || isReversal);
+    }
+    return corner(na, nb, tolerance, isCorner || isReversal);
+}
+
+/// The blend within the tolerance that is wide enough for the speed; a stop where there is none.
+Planner::Joint Planner::corner(Sequence na, Sequence nb, double tolerance, bool mustStop) const noexcept {
+    if (mustStop) {
+        return {.isStop = true};
+    }
+    const Primitive &a = store_.primitive(na);
+    const Primitive &b = store_.primitive(nb);
+    double d = 0.5 * std::min(a.length, b.length);
     if (tolerance > 0) {
         d = std::min(d, blend_d_for_tolerance(a, b, tolerance));
     }
-    const double wish_a = wish_of(ma);
-    const double wish_b = wish_of(mb);
-    const double va = limit_of(a, 0, a.length, limits_, wish_a).v;
-    const double vb = limit_of(b, 0, b.length, limits_, wish_b).v;
+    const double va = limit_of(a, 0, a.length, limits_, wish_of(move_plan(na))).v;
+    const double vb = limit_of(b, 0, b.length, limits_, wish_of(move_plan(nb))).v;
     d = std::min(d, blend_d_for_speed(a, b, limits_, std::min(va, vb)));
-    return d > SMALLEST_BLEND ? Joint{d, false} : Joint{0, true};
+    return d > SMALLEST_BLEND ? Joint{.d = d} : Joint{.isStop = true};
 }
 
 bool Planner::add_event(PathEvent event) noexcept {
