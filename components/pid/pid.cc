@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // pid: PID controllers with feed-forward and auto-tuning, up to 16 (`num_chan=`, 3 by default, or `names=`).
 //
-// Function pid.N.do-pid-calcs. Inputs: command, feedback [units], enable (bit), command-deriv and
-// feedback-deriv [units/s] (estimated while not linked), error-previous-target (bit, true at start: compare
-// with the command of the period before), index-enable (bit: its falling edge announces a jump of positions).
-// Outputs: error, output, saturated (bit), saturated-s [s], saturated-count [periods]. Tuning (inputs): Pgain
-// (1 at start), Igain, Dgain, FF0 to FF3, bias, deadband, maxoutput, maxerror, maxerrorI, maxerrorD, maxcmdD,
-// maxcmdDD, maxcmdDDD (0: no limit). Auto-tuning: tune-mode (bit) opens the loop, tune-start (bit, I/O)
-// begins and is set back at the end; tune-type 0 finds P, I, D and 1 finds P, I, FF1; tune-cycles,
-// tune-effort. `debug=1` adds parameters with the inner values.
+// Built as at_pid too (PID_MODULE). Function pid.N.do-pid-calcs. Inputs: command, feedback [units], enable
+// (bit), command-deriv and feedback-deriv [units/s] (estimated while not linked), error-previous-target (bit,
+// true at start: compare with the command of the period before), index-enable (bit: its falling edge
+// announces a jump of positions). Outputs: error, output, saturated (bit), saturated-s [s], saturated-count
+// [periods]. Tuning (inputs): Pgain (1 at start), Igain, Dgain, FF0 to FF3, bias, deadband, maxoutput,
+// maxerror, maxerrorI, maxerrorD, maxcmdD, maxcmdDD, maxcmdDDD (0: no limit). Auto-tuning: tune-mode (bit)
+// opens the loop, tune-start (bit, I/O) begins and is set back at the end; tune-type 0 finds P, I, D and 1
+// finds P, I, FF1; tune-cycles, tune-effort. `debug=1` adds parameters with the inner values.
 #include "components/common/kit.hh"
 #include "components/pid/pid_core.hh"
 
@@ -190,6 +190,12 @@ void Pid::update(long period_ns) noexcept {
     command_ddd = controller.command_ddd;
 }
 
+/// at_pid is another name of the module; the pins are those of pid.
+static int load_pids(Request request) noexcept {
+    request.prefix = "pid";
+    return load_instances<Pid>(request);
+}
+
 }  // namespace mw::components
 
-MW_MODULE("pid", num_chan, 3, mw::pid::MAX_CHANNELS, load_instances<mw::components::Pid>);
+MW_MODULE(PID_MODULE, num_chan, 3, mw::pid::MAX_CHANNELS, load_pids);

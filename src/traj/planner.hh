@@ -52,7 +52,10 @@ class Planner {
   public:
     Planner(PathStore &store, const PlannerSettings &settings) noexcept;
 
-    void set_limits(const Limits &limits) noexcept { limits_ = limits; }
+    /// Holds for moves added from now on; jerk limits from the next `begin` on.
+    void set_limits(const Limits &limits) noexcept;
+    /// The jerk limits of the present path are those of the last `set_limits`.
+    bool isFilterCurrent() const noexcept { return filter_length(wanted_, settings_.period_s) == filter_; }
 
     /// A new path begins at `start`, where the executor rests with nothing left of another.
     void begin(const Pose &start, const Snapshot &now) noexcept;
@@ -99,21 +102,26 @@ class Planner {
 
   private:
     struct MovePlan {
-        double feed = 0;  ///< requested speed in s [1/s]; 0: none
+        double feed = 0;     ///< requested speed in s [1/s]; 0: none
+        double start_s = 0;  ///< where the move begins on the programmed path
         MoveRequest request;
     };
     struct PiecePlan {
         double v_limit = 0;  ///< highest speed the limits allow
         double v2_in = 0;    ///< highest speed at its start from which all that follows can be kept, squared
         bool isStopBefore = false;
+        double dwell_s = 0;  ///< with jerk limits: how long it stands there at least
     };
     struct State {
         Sequence piece = 0;
         double x = 0, v = 0;
+        Coasting coasting;
     };
     struct Joint {
         double d = 0;
         bool isStop = false;
+        double dwell_s = 0;
+        double v = UNLIMITED;  ///< highest speed on the blend
     };
 
     MovePlan &move_plan(Sequence n) noexcept { return moves_[n % PRIMITIVE_CAPACITY]; }
@@ -123,7 +131,14 @@ class Planner {
 
     double wish_of(const MovePlan &m) const noexcept;
     Joint joint_between(Sequence a, Sequence b) const noexcept;
-    void add_piece(const Piece &piece, SpeedLimit limit, double wish) noexcept;
+    void add_piece(const Piece &piece, const SpeedLimit &limit) noexcept;
+    void add_blend(const Primitive &a, const Primitive &b, const Joint &joint, double wish) noexcept;
+    Joint corner(Sequence na, Sequence nb, double tolerance, bool mustStop) const noexcept;
+    Joint filtered_corner(Sequence na, Sequence nb, double tolerance, bool mustStop) const noexcept;
+    double filtered_arc_speed(const Primitive &p, const MoveRequest &request) const noexcept;
+    double tolerance_of(const MoveRequest &request) const noexcept;
+    bool isFiltered() const noexcept { return filter_ > 1; }
+    double filter_s() const noexcept { return static_cast<double>(filter_) * settings_.period_s; }
     void close_move(double to, bool isToEnd) noexcept;
 
     double move_cap(const MovePlan &m, double v_limit) const noexcept;
@@ -137,13 +152,39 @@ class Planner {
     void replan(const Snapshot &now, const State &from) noexcept;
     void emit(double until_s) noexcept;
     bool emit_piece() noexcept;
+    void emit_hill(double left, double cap, double out2) noexcept;
     void emit_phase(double length, double v1) noexcept;
+    void emit_wait(double duration) noexcept;
     bool hasPhaseRoom() const noexcept;
+
+    // --- planner_filtered.cc: with jerk limits
+    void update_filtered(const Snapshot &now) noexcept;
+    bool replan_filtered(const Snapshot &now, const State &from, bool isStop) noexcept;
+    bool emit_filtered() noexcept;
+    bool emit_rise(double cap) noexcept;
+    void emit_coast(double cap, double out2) noexcept;
+    bool emit_tail() noexcept;
+    bool canCoast(Sequence piece, double x, double v) noexcept;
+
+    // --- planner_check.cc: what is commanded is tried out before it is committed
+    bool isPlanSound(const Snapshot &now, const State &from, Sequence begin) noexcept;
+    void start_trial(const Snapshot &now, const State &from) noexcept;
+    void try_sample(const Phase &phase, double t) noexcept;
+    void push_sample(const LeaderSample &sample, Sequence piece) noexcept;
+    bool isTrialSound() noexcept;
+    double trial_deviation(std::uint64_t tick) noexcept;
+    bool ease(const State &from) noexcept;
+    void scale_piece(Sequence piece, double speed, double acceleration) noexcept;
+    bool isCurved(Sequence piece) const noexcept;
+    bool isKept(const State &from) const noexcept;
+
     void append(const Snapshot &now) noexcept;
 
     PathStore &store_;
     PlannerSettings settings_;
-    Limits limits_;
+    Limits wanted_;             ///< as set
+    Limits limits_;             ///< the same with accelerations that fit the filter
+    std::uint64_t filter_ = 1;  ///< samples of the mean that is commanded; 1: no jerk limits
     Scales scales_;
     std::array<MovePlan, PRIMITIVE_CAPACITY> moves_{};
     std::array<PiecePlan, PIECE_CAPACITY> pieces_{};
@@ -155,7 +196,9 @@ class Planner {
     Sequence open_move_ = 0;     ///< whose end is not yet joined or released, 0: none
     double open_offset_ = 0;     ///< where its own part begins
     bool isOpenStop_ = false;    ///< stop before its part
-    Sequence first_piece_ = 1;   ///< of this path
+    double open_dwell_s_ = 0;
+    double programmed_s_ = 0;   ///< length of what has been added
+    Sequence first_piece_ = 1;  ///< of this path
     Sequence last_piece_ = 0;
     std::uint64_t drops_ = 0;
 
@@ -171,6 +214,21 @@ class Planner {
     State planned_;                         ///< where the committed plan ends
     double planned_s_ = 0;                  ///< when, from switch_cycle_ on
     bool isAtEndOfPath_ = false;
+    bool isStopPlan_ = false;
+    Sequence looked_at_ = 0;  ///< the farthest piece that the present plan depends on
+
+    struct TrialSample {
+        LeaderSample leader;
+        Pose bend;  ///< second difference of the leader's positions
+        Sequence piece = 0;
+    };
+    std::array<TrialSample, HISTORY_CAPACITY> trial_{};
+    std::uint64_t trial_tick_ = 0;
+    Pose trial_sum_;
+    double trial_s_sum_ = 0;
+    Pose trial_origin_;
+    double trial_s_origin_ = 0;
+    std::uint64_t failed_tick_ = 0;
 
     double start_delay_s_ = 0;  ///< of the next plan from rest
     bool isStepping_ = false;

@@ -329,6 +329,7 @@ Result<> Hal::delete_component(int comp_id) {
         return refuse(EINVAL, fmt::format("there is no component with id {}", comp_id));
     }
     impl_->remove_comp(*comp, false);
+    impl_->constructors.erase(comp_id);
     return {};
 }
 

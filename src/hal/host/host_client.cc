@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "base/own_place.hh"
 #include "hal/host/message.hh"
 #include "rtapi/process.hh"
 
@@ -45,10 +46,7 @@ Result<int> connect_to(const std::string &instance) {
 
 /// millwright-rt beside this program or in ../bin; else it is looked for along PATH.
 std::string server_program() {
-    char path[4096];
-    const ssize_t length = ::readlink("/proc/self/exe", path, sizeof path - 1);
-    const std::string program(path, length > 0 ? static_cast<std::size_t>(length) : 0);
-    const std::string folder = program.substr(0, program.rfind('/'));
+    const std::string folder = program_folder();
     for (const std::string &candidate : {folder + "/millwright-rt", folder + "/../bin/millwright-rt"}) {
         if (::access(candidate.c_str(), X_OK) == 0) {
             return candidate;

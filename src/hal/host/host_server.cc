@@ -79,6 +79,7 @@ struct HostServer::Impl {
     Message answer(const Client &client, const Message &request);
     Message take_control(const Client &client);
     void on_controller_gone();
+    bool isControllerGone();
     void look_for_programs();
     void reap();
     void serve(const std::vector<pollfd> &fds);
@@ -349,8 +350,9 @@ std::vector<pollfd> HostServer::Impl::watched() const {
     for (const Client &client : clients) {
         fds.push_back({client.fd, POLLIN, 0});
     }
+    // While the machine brakes nothing is reaped (see take_safe_values).
     for (const Program &program : programs) {
-        fds.push_back({program.fd, POLLIN, 0});
+        fds.push_back({gone_ns == 0 ? program.fd : -1, POLLIN, 0});
     }
     return fds;
 }
@@ -409,9 +411,19 @@ void HostServer::Impl::serve(const std::vector<pollfd> &fds) {
             drop(fds[i].fd);
         }
     }
-    if (hasDied) {
+    if (hasDied && !isControllerGone()) {
         look_for_programs();
     }
+}
+
+/// Asks anew: a process that controls and has components may have died between the looks at its two
+/// descriptors.
+bool HostServer::Impl::isControllerGone() {
+    pollfd look{controller, POLLIN, 0};
+    if (controller >= 0 && ::poll(&look, 1, 0) > 0) {
+        on_controller_gone();
+    }
+    return gone_ns != 0;
 }
 
 void HostServer::run() {
@@ -427,7 +439,8 @@ void HostServer::run() {
             here.take_safe_values();
             break;
         }
-        if (!isBraking && here.host->now_ns() - here.looked_ns >= LOOK_MS * 1'000'000LL) {
+        if (!isBraking && here.host->now_ns() - here.looked_ns >= LOOK_MS * 1'000'000LL &&
+            !here.isControllerGone()) {
             here.look_for_programs();
         }
         if (ready > 0) {

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "base/own_place.hh"
 #include "base/text.hh"
 #include "hal/lang/commands.hh"
 

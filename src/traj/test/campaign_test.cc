@@ -121,7 +121,9 @@ double worst_blend_deviation(const Rig &rig, Sequence first, Sequence last) {
         const Primitive &b = rig.store->primitive(p.primitive + 1);
         for (int i = 0; i <= 50; ++i) {
             const double x = p.length * i / 50;
-            const Pose on = x < p.blend_d ? position_at(a, p.offset + x) : position_at(b, x - p.blend_d);
+            const double z = p.offset + x;
+            const double from = a.length - p.blend_d;
+            const Pose on = z < p.blend_d ? position_at(a, from + z) : position_at(b, z - p.blend_d);
             worst = std::max(worst, deviation(position_at(*rig.store, p, x), on));
         }
     }

@@ -2,6 +2,7 @@
 // The inside of Hal, shared by its source files only.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -62,6 +63,8 @@ struct Hal::Impl {
     std::vector<std::unique_ptr<detail::PlannerRunner>> planners;  ///< under the segment's lock
     int last_planner_id = 0;
     std::vector<detail::ControllerWatch> controller_watches;  ///< in the host's thread
+    /// Makers of instances, by component id, of components of this process; under the segment's lock.
+    std::map<int, int (*)(const char *, const char *)> constructors;
 
     // With the lock held:
     detail::CompRecord *find_comp(int id) const noexcept;
