@@ -19,6 +19,18 @@ TEST_F(Programs, HalrunStreamsThroughComponentsInRealtime_B9) {
     EXPECT_EQ(ended.out, "0 1.000000 1 \n1 2.000000 0 \n2 3.500000 0 \n3 3.500000 0 \n");
 }
 
+TEST_F(Programs, EveryFunctionOfALongThreadIsTimedInTurn_B4) {
+    std::string text = "loadrt threads name1=t period1=1000000\nloadrt and2 count=70\n";
+    for (int i = 0; i < 70; ++i) {
+        text += "addf and2." + std::to_string(i) + " t\n";
+    }
+    text += "start\nloadusr -w sh poll.sh\n";
+    file("poll.sh", "i=0\nwhile halcmd -s show param and2.*tmax | grep -q ' 0 '; do i=$((i + 1)); [ $i -lt 1000 ]"
+                    " || exit 1; done\n");
+    const Ended ended = run({"halrun", file("a.hal", text)});
+    EXPECT_EQ(ended.status, 0) << ended.err << "a function was never timed";
+}
+
 TEST_F(Programs, HalrunFailsAtTheFirstErrorAndNamesIt_B9) {
     const Ended ended = run({"halrun", file("a.hal", "loadrt threads\nloadrt nosuch\nshow pin\n")});
     EXPECT_EQ(ended.status, 1);
