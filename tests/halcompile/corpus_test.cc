@@ -437,6 +437,35 @@ TEST_F(Corpus, InstallsWhereItIsTold_B2) {
     EXPECT_EQ(::access((to + "/home/man/man1/usrcount.1").c_str(), R_OK), 0);
 }
 
+TEST_F(Corpus, ThePageOfTheLanguage_B2) {
+    std::ifstream page(std::string(MW_CORPUS) + "/../../../docs/hal/comp.md");
+    std::string line;
+    std::string text;
+    bool isExample = false;
+    int examples = 0;
+    while (std::getline(page, line)) {
+        if (!isExample && line == "```comp") {
+            isExample = true;
+            text.clear();
+        } else if (isExample && line == "```") {
+            isExample = false;
+            ++examples;
+            const std::string name = text.substr(10, text.find_first_of(" ;", 10) - 10);
+            const fs::path file = folder.path / (name + ".comp");
+            std::ofstream(file) << text;
+            const Outcome done = halcompile("--compile --extra-compile-args='-O1 -g0' " + file.string());
+            EXPECT_EQ(done.status, 0) << name << ": " << done.text;
+            if (text.find("option userspace") == std::string::npos) {
+                EXPECT_EQ(load_only(name), "ok");
+            }
+        } else if (isExample) {
+            text += line + "\n";
+        }
+    }
+    EXPECT_GE(examples, 5);
+    cycle({"average.0", "batch.0.count"});
+}
+
 TEST_F(Corpus, TheMakefileLinksSeveralFiles_B2) {
     if (run("make --version").status != 0) {
         GTEST_SKIP() << "make is not installed";
