@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Runs generated programs through LinuxCNC's rs274 and ours and compares canon calls and whether they fail.
 
-The last printed digit of a number may differ by one, and -0 is 0. Texts of messages are not compared. A difference that
-is meant is described by a rule in DIFFERENCES, each with its reason in docs/compatibility.md; the rest is listed by the
-line of the program at which the two part, and the exit status is 1.
+The last printed digit of a number may differ by one, and -0 is 0. Texts of messages are not compared, nor what a failing
+block has done before it failed. The differences are listed by the calls at which the two part; any makes the exit status
+1. Those that are meant are described in docs/compatibility.md.
 """
 import argparse
 import collections
@@ -34,8 +34,8 @@ while [ $i -lt {last} ]; do
 done
 '''
 
-# (name, pattern in the program's line at which they part, why): meant differences.
-DIFFERENCES = []
+# Calls that only LinuxCNC 2.9 prints; the newer version, whose outputs the conformance cases hold, does not.
+DROPPED = ('START_CHANGE()',)
 
 
 def run_all(folder, program, tag, first, last, user=None):
@@ -69,7 +69,8 @@ def first_difference(reference, ours):
 
 def read(folder, number, tag):
     base = pathlib.Path(folder, f'{number}.{tag}')
-    return (base.with_suffix(f'.{tag}.out').read_text(errors='replace').splitlines(),
+    lines = base.with_suffix(f'.{tag}.out').read_text(errors='replace').splitlines()
+    return ([line for line in lines if not line.endswith(DROPPED)],
             base.with_suffix(f'.{tag}.err').read_text(errors='replace').splitlines(),
             int(base.with_suffix(f'.{tag}.status').read_text() or 99))
 
@@ -87,6 +88,10 @@ def key_of(reference, ours, at):
 def compare(folder, number):
     ref_out, ref_err, ref_status = read(folder, number, 'ref')
     our_out, our_err, our_status = read(folder, number, 'our')
+    # A block that fails changes nothing here; there, what came before the failure has been done.
+    if ref_status and our_status and ref_err[-1:] == our_err[-1:]:
+        ref_out, our_out = ref_out[:-1], our_out[:-1]  # the last line is ON_RESET of the end
+        ref_out = ref_out[:len(our_out)]
     at = first_difference(ref_out, our_out)
     if at is None and (ref_status == 0) == (our_status == 0):
         return None
