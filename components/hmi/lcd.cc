@@ -147,17 +147,17 @@ void Lcd::refill() noexcept {
     const std::uint32_t wanted = page_num;
     const int chosen = wanted < static_cast<std::uint32_t>(pages) ? static_cast<int>(wanted) : pages - 1;
     const double level = contrast;
-    if (level != last_contrast && level >= 0.0 && level <= 1.0) {
+    if (chosen != page) {
+        page = chosen;
+        item = first_item[page];
+        send(NEW_PAGE_CODES);
+    } else if (level != last_contrast && level >= 0.0 && level <= 1.0) {
         constexpr double LOWEST = 0x20;
         constexpr double HIGHEST = 0xbf;
         last_contrast = level;
         send("\x1b"
              "C");
         pending.add(static_cast<char>(static_cast<int>(LOWEST + level * (HIGHEST - LOWEST))));
-    } else if (chosen != page) {
-        page = chosen;
-        item = first_item[page];
-        send(NEW_PAGE_CODES);
     } else if (item < first_item[page + 1]) {
         send_item(items[item++]);
     } else {

@@ -77,7 +77,7 @@ Text in_field(const Item &item, const Text &digits, bool isNegative) noexcept {
     Text out;
     if (needed > width) {
         for (int i = 0; i < width; ++i) {
-            out.add('*');
+            out.add(i == 0 && sign != '\0' ? sign : '*');
         }
         return out;
     }

@@ -47,6 +47,7 @@ struct MatrixKb {
     void update() noexcept;
 
   private:
+    bool change(Out<bool> &changed, bool isDown) noexcept;
     void take(std::uint32_t code) noexcept;
     void scan() noexcept;
 };
@@ -105,6 +106,16 @@ void MatrixKb::declare(Declare &d) noexcept {
     d.function<&MatrixKb::update>(this);
 }
 
+/// Sets a key; false when that changes nothing or is beyond the rollover.
+bool MatrixKb::change(Out<bool> &changed, bool isDown) noexcept {
+    if (isDown == changed.get() || (isDown && held >= rollover)) {
+        return false;
+    }
+    changed = isDown;
+    held = isDown ? held + 1 : held - 1;
+    return true;
+}
+
 /// Sets the key of a code; a press beyond the rollover is dropped.
 void MatrixKb::take(std::uint32_t code) noexcept {
     const std::uint32_t kind = code & ~KEY_NUMBER;
@@ -114,12 +125,7 @@ void MatrixKb::take(std::uint32_t code) noexcept {
     if ((kind != KEY_DOWN && kind != KEY_UP) || at_row >= rows || at_column >= columns) {
         return;
     }
-    Out<bool> &changed = key[at_row * columns + at_column];
-    const bool isDown = kind == KEY_DOWN;
-    if (isDown != changed.get() && (!isDown || held < rollover)) {
-        changed = isDown;
-        held = isDown ? held + 1 : held - 1;
-    }
+    change(key[at_row * columns + at_column], kind == KEY_DOWN);
 }
 
 void MatrixKb::scan() noexcept {
@@ -130,9 +136,7 @@ void MatrixKb::scan() noexcept {
         const bool isDown = column_in[column] == active;
         const bool isSteady = isDown == lastScan[i];
         lastScan[i] = isDown;
-        if (isSteady && isDown != key[i].get() && (!isDown || held < rollover)) {
-            key[i] = isDown;
-            held = isDown ? held + 1 : held - 1;
+        if (isSteady && change(key[i], isDown)) {
             const std::uint32_t number =
                 (static_cast<std::uint32_t>(row) << column_bits) + static_cast<std::uint32_t>(column);
             code = (isDown ? KEY_DOWN : KEY_UP) + number;

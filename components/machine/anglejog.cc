@@ -89,10 +89,11 @@ void Anglejog::update(long period_ns) noexcept {
     if (isFirst || !isEnabled) {
         take_settings();
     }
+    const bool isStart = isFirst;
     isFirst = false;
     enable_out = isEnabled;
     if (isEnabled) {
-        target += turned * current_scale;
+        target += isStart ? 0.0 : turned * current_scale;
         follower.run(target, max_vel, max_accel, dt);
     } else {
         follower.stop(max_accel, dt);

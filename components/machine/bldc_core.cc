@@ -20,7 +20,8 @@ constexpr std::uint32_t PATTERN_TABLE[PATTERNS] = {
 }  // namespace
 
 double fraction(double turns) noexcept {
-    return turns - std::floor(turns);
+    const double part = turns - std::floor(turns);
+    return part >= 0.0 && part < 1.0 ? part : 0.0;
 }
 
 unsigned hall_of_sector(int pattern, int sector) noexcept {

@@ -9,7 +9,7 @@ namespace mw::bldc {
 constexpr int PATTERNS = 48;
 constexpr int SECTORS = 6;
 
-/// The part of `turns` above the whole number below.
+/// The part of `turns` above the whole number below; 0 for what is not a number.
 double fraction(double turns) noexcept;
 
 /// The hall sensors (H1 is bit 2, H3 bit 0) in sector `sector` of commutation pattern `pattern`. The sectors

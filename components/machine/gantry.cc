@@ -54,8 +54,8 @@ struct Gantry {
         const int made = joints_at_switch();
         home = joints > 0 && made == joints;
         limit = made > 0;
-        if (made > 0 && made < joints) {
-            fb_joint = last_joint_on_the_way();
+        if (made > 0 && made < joints && joint[fb_joint].home) {
+            fb_joint = first_joint_on_the_way();
         }
         if (joints > 0) {
             position_fb = joint[fb_joint].pos_fb + joint[fb_joint].offset;
@@ -87,10 +87,10 @@ struct Gantry {
         }
         return made;
     }
-    int last_joint_on_the_way() const noexcept {
-        int found = joints - 1;
-        while (found > 0 && joint[found].home) {
-            --found;
+    int first_joint_on_the_way() const noexcept {
+        int found = 0;
+        while (found < joints - 1 && joint[found].home) {
+            ++found;
         }
         return found;
     }

@@ -43,12 +43,12 @@ struct SimAxis {
         pin(d, bothsw_homesw_out, axis, "bothsw-homesw-out");
     }
 
-    void update(double limit_offset) noexcept {
+    void update(double limit_offset, bool isHoming) noexcept {
         const double at = current_pos;
         const bool isHome = std::fabs(at - homesw_pos) <= homesw_hyst / 2.0;
         const bool isMax = maxsw_lower + limit_offset < at && at < maxsw_upper;
         const bool isMin = minsw_lower < at && at < minsw_upper - limit_offset;
-        const bool isLimit = (isMax || isMin) && !homing;
+        const bool isLimit = (isMax || isMin) && !isHoming;
         homesw_out = isHome;
         maxsw_out = isMax;
         minsw_out = isMin;
@@ -87,12 +87,16 @@ struct SimAxisHardware {
     }
 
     void update() noexcept {
+        bool isHoming = false;
+        for (const SimAxis &each : axis) {
+            isHoming = isHoming || each.homing;
+        }
         bool isHome = false;
         bool isLimit = false;
         const double offset = limit_offset;
         for (SimAxis &each : axis) {
-            each.update(offset);
-            isHome = isHome || (each.homing && each.homesw_out);
+            each.update(offset, isHoming);
+            isHome = isHome || (isHoming && each.homesw_out);
             isLimit = isLimit || each.bothsw_out;
         }
         homesw_all = isHome;

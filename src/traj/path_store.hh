@@ -70,6 +70,7 @@ struct Piece {
     double length = 0;
     double blend_d = 0;       ///< 0: a part of A
     bool isToEnd = false;     ///< a part of A that reaches A's end
+    bool isAlong = false;     ///< the mean is taken of the place on A, so A is followed exactly
     double programmed_s = 0;  ///< where it begins on the programmed path, measured in s from the path's start
     double tolerance = 0;     ///< deviation from the programmed path that is allowed; 0: any
     AccelBound acceleration;  ///< along x, such that every axis keeps its limits [1/s^2]

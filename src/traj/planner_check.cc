@@ -116,6 +116,12 @@ double Planner::trial_deviation(std::uint64_t tick) noexcept {
 
 bool Planner::isTrialSound() noexcept {
     const std::uint64_t n = trial_tick_;
+    const Sequence piece = trial_[n % HISTORY_CAPACITY].piece;
+    const bool isAlong = piece != 0 && store_.piece(piece).isAlong;
+    along_tick_ = isAlong ? n : along_tick_;
+    if (n < along_tick_ + filter_ + 3) {
+        return true;  // kept by along_limit
+    }
     const Pose swing = trial_[n % HISTORY_CAPACITY].bend - trial_[(n - filter_) % HISTORY_CAPACITY].bend;
     const double span = settings_.period_s * settings_.period_s * filter_s();
     const Pose &at = trial_[n % HISTORY_CAPACITY].leader.pose;
@@ -141,6 +147,7 @@ bool Planner::isTrialSound() noexcept {
 bool Planner::isPlanSound(const Snapshot &now, const State &from, Sequence begin) noexcept {
     start_trial(now, from);
     failed_tick_ = 0;
+    along_tick_ = 0;
     const std::uint64_t start = trial_tick_;
     double t = 0;
     Sequence n = begin;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// With jerk limits: corners and profiles for a leader whose mean is commanded (docs/motion/planner.md).
+// With jerk limits: profiles for a leader whose mean is commanded (docs/motion/planner.md).
 // Between rising and falling the leader keeps its speed for as long as the mean takes, so that the
 // acceleration never swings by more than the mean can spread.
 #include <algorithm>
@@ -13,82 +13,12 @@ namespace {
 
 constexpr double SAME_SPEED = 1e-9;
 constexpr double STOP_FIT = 1e-7;  ///< as in the executor
-constexpr double SMALLEST_BLEND = 1e-7;
-constexpr double EXACT_DEVIATION = 1e-6;
-/// Parts of the tolerance: of the blend's geometry, the rest is for the mean.
-constexpr double GEOMETRY_SHARE = 0.25;
 constexpr int ATTEMPTS = 8;
 constexpr Sequence PHASE_RESERVE = PHASE_CAPACITY / 2;
 /// A plan is renewed when less than this part of the horizon is left.
 constexpr double RENEWAL = 0.6;
 
 }  // namespace
-
-double Planner::tolerance_of(const MoveRequest &request) const noexcept {
-    return request.join == Join::BLEND ? request.tolerance : EXACT_DEVIATION;
-}
-
-/// On an arc the mean runs inside by curvature v^2 tau^2 / 24.
-double Planner::filtered_arc_speed(const Primitive &p, const MoveRequest &request) const noexcept {
-    const double tolerance = tolerance_of(request);
-    if (!isFiltered() || !p.isArc || !(tolerance > 0)) {
-        return UNLIMITED;
-    }
-    const double curvature = p.radius * p.omega * p.omega;
-    return std::sqrt(24.0 * (1.0 - GEOMETRY_SHARE) * tolerance / curvature) / filter_s();
-}
-
-/// Passes the corner on a blend, or stops on it as long as needed, whichever is faster within the tolerance.
-Planner::Joint Planner::filtered_corner(Sequence na, Sequence nb, double tolerance,
-                                        bool mustStop) const noexcept {
-    const Primitive &a = store_.primitive(na);
-    const Primitive &b = store_.primitive(nb);
-    const Pose step = tangent_step(a, b);
-    const double turn = std::max(geom::norm_linear(step), geom::norm_abc(step));
-    const double tau = filter_s();
-    const double share = tolerance > 0 ? tolerance / turn : UNLIMITED;
-    const double wish_a = wish_of(move_plan(na));
-    const double wish_b = wish_of(move_plan(nb));
-    const SpeedLimit la = limit_of(a, 0, a.length, limits_, wish_a);
-    const SpeedLimit lb = limit_of(b, 0, b.length, limits_, wish_b);
-    const double most = std::max(la.a.at(0), lb.a.at(0));
-    // A stop: braking and starting overlap in the mean by `overlap`, which takes it off the corner.
-    const double overlap = std::min(tau, std::cbrt(48.0 * tau * 0.98 * share / most));
-    Joint stop{.isStop = true, .dwell_s = tau - overlap};
-    const Pose ta = derivative_at(a, a.length);
-    const Pose tb = derivative_at(b, 0);
-    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
-        const double swing = std::abs(ta[i] * la.a.at(0) + tb[i] * lb.a.at(0));
-        if (swing > wanted_.jerk[static_cast<std::size_t>(i)] * tau) {
-            stop.dwell_s = tau;
-        }
-    }
-    if (mustStop) {
-        return stop;
-    }
-    double d =
-        std::min(0.5 * std::min(a.length, b.length), blend_d_for_speed(a, b, limits_, std::min(la.v, lb.v)));
-    if (tolerance > 0) {
-        d = std::min(d, blend_d_for_tolerance(a, b, GEOMETRY_SHARE * tolerance));
-    }
-    if (!(d > SMALLEST_BLEND)) {
-        return stop;
-    }
-    Joint pass{.d = d};
-    const double rest = (1.0 - GEOMETRY_SHARE) * share;
-    pass.v = 8.0 * (rest - most * tau * tau / 96.0) / tau;
-    if (!(pass.v > 0)) {
-        return stop;
-    }
-    const double spacing = 0.5 * (a.length + b.length);
-    if (pass.v * tau > 2.0 * spacing) {
-        // Several corners within the mean: they act like a curve.
-        pass.v = std::min(pass.v, std::sqrt(24.0 * rest * spacing) / tau);
-    }
-    const double wish = std::min(wish_a, wish_b);
-    const double v = std::min({pass.v, limit_of_blend(a, b, {d, 0, 2.0 * d}, limits_, wish).v, la.v, lb.v});
-    return v / most + stop.dwell_s > 0.8 * tau ? pass : stop;
-}
 
 /// True when the speed can be kept for the time of the mean from here and everything after that is still
 /// kept.
@@ -147,8 +77,9 @@ void Planner::emit_coast(double cap, double out2) noexcept {
     const double v2 = s.v * s.v;
     const double brake = v2 > out2 ? (v2 - out2) / (2.0 * p.acceleration.at(v2)) : 0.0;
     double way = std::max(0.0, left - brake);
-    const double wait = filter_s() - s.coasting.since_fall_s;
-    if (wait > 0 && s.v < cap) {
+    const double since_s = s.v < cap ? s.coasting.since_fall_s : s.coasting.since_rise_s;
+    const double wait = filter_s() - since_s;
+    if (wait > 0 && s.v != cap) {
         way = std::min(way, s.v * wait);
     }
     emit_phase(std::max(way, 1e-9 * left), s.v);
@@ -231,7 +162,7 @@ bool Planner::emit_tail() noexcept {
         const double wait = filter_s() - s.coasting.since_rise_s;
         const bool mayCoast = v2 < p.acceleration.highest_before(out2, left) * (1.0 - SAME_SPEED);
         if (wait > 1e-9 && mayCoast) {
-            emit_coast(s.v, out2);
+            emit_coast(0, out2);
             if (s.x > p.length * (1.0 - 1e-12)) {
                 s.x = p.length;
             }
@@ -239,7 +170,8 @@ bool Planner::emit_tail() noexcept {
         }
         const double a = p.acceleration.at(v2);
         const double slowest2 = v2 - 2.0 * a * left;
-        if (slowest2 <= STOP_FIT * v2) {
+        const bool isStop = s.piece == last_piece_ || piece_plan(s.piece + 1).isStopBefore;
+        if (isStop || slowest2 <= STOP_FIT * v2) {
             emit_phase(slowest2 < 0 ? v2 / (2.0 * a) : left, 0);
             return true;
         }

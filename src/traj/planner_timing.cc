@@ -142,7 +142,8 @@ std::uint32_t Planner::next_block(const Snapshot &now) const noexcept {
         return store_.move(p.move + (isSecond ? 1 : 0)).block;
     }
     if (!start_state(now, state)) {
-        return open_move_ != 0 ? store_.move(open_move_).block : store_.move(last_move_).block;
+        const Sequence next = open_move_ != 0 ? open_move_ : raw_move_;
+        return store_.move(next != 0 ? next : last_move_).block;
     }
     return store_.move(state.x > 0 ? store_.piece(state.piece).move : move_of(state.piece)).block;
 }
@@ -156,7 +157,7 @@ bool Planner::isAtStepStop(const Snapshot &now) const noexcept {
 
 bool Planner::hasNext(const Snapshot &now) const noexcept {
     State state;
-    return now.motion != Motion::REST || open_move_ != 0 || start_state(now, state);
+    return now.motion != Motion::REST || open_move_ != 0 || raw_move_ != 0 || start_state(now, state);
 }
 
 std::uint32_t Planner::moves_left(const Snapshot &now) const noexcept {

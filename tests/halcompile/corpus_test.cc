@@ -437,6 +437,55 @@ TEST_F(Corpus, InstallsWhereItIsTold_B2) {
     EXPECT_EQ(::access((to + "/home/man/man1/usrcount.1").c_str(), R_OK), 0);
 }
 
+TEST_F(Corpus, ThePageOfTheLanguage_B2) {
+    std::ifstream page(std::string(MW_CORPUS) + "/../../../docs/hal/comp.md");
+    std::string line;
+    std::string text;
+    bool isExample = false;
+    int examples = 0;
+    while (std::getline(page, line)) {
+        if (!isExample && line == "```comp") {
+            isExample = true;
+            text.clear();
+        } else if (isExample && line == "```") {
+            isExample = false;
+            ++examples;
+            const std::string name = text.substr(10, text.find_first_of(" ;", 10) - 10);
+            const fs::path file = folder.path / (name + ".comp");
+            std::ofstream(file) << text;
+            const Outcome done = halcompile("--compile --extra-compile-args='-O1 -g0' " + file.string());
+            EXPECT_EQ(done.status, 0) << name << ": " << done.text;
+            if (text.find("option userspace") == std::string::npos) {
+                EXPECT_EQ(load_only(name), "ok");
+            }
+        } else if (isExample) {
+            text += line + "\n";
+        }
+    }
+    EXPECT_GE(examples, 5);
+    cycle({"average.0", "batch.0.count"});
+}
+
+TEST_F(Corpus, TheMakefileLinksSeveralFiles_B2) {
+    if (run("make --version").status != 0) {
+        GTEST_SKIP() << "make is not installed";
+    }
+    std::ofstream(folder.path / "one.c")
+        << "#include \"rtapi_app.h\"\n#include \"hal.h\"\nint two(void);\nstatic int id;\n"
+           "int shown(void) { return two(); }\nEXPORT_SYMBOL(shown);\n"
+           "int rtapi_app_main(void) { id = hal_init(\"pair\"); hal_ready(id); "
+           "return id < 0 ? id : 0; }\nvoid rtapi_app_exit(void) { hal_exit(id); }\n";
+    std::ofstream(folder.path / "two.c") << "int two(void);\nint two(void) { return 22; }\n";
+    std::ofstream(folder.path / "Makefile") << "obj-m := pair.o\npair-objs := one.o two.o\n"
+                                               "include $(shell $(HALCOMPILE) --print-modinc)\n";
+    const Outcome done =
+        run("make -C " + folder.path.string() + " HALCOMPILE=" + std::string(MW_BIN_DIR) + "/halcompile");
+    ASSERT_EQ(done.status, 0) << done.text;
+    ASSERT_EQ(load_only("pair"), "ok");
+    EXPECT_NE(host->loader().find_symbol("shown"), nullptr);
+    EXPECT_EQ(host->loader().find_symbol("two"), nullptr);
+}
+
 TEST_F(Corpus, ErrorsPointAtTheComponentFile_B2) {
     const fs::path file = folder.path / "wrong.comp";
     std::ofstream(file) << "component wrong;\npin in float in;\nfunction _;\nlicense \"GPL\";\n;;\nin = 5;\n";

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 
 #include <fmt/core.h>
 
@@ -64,7 +63,7 @@ class Emitter {
   private:
     template <class... Args>
     void line(fmt::format_string<Args...> text, Args &&...args) {
-        fmt::format_to(std::back_inserter(out_), text, std::forward<Args>(args)...);
+        out_ += fmt::format(text, std::forward<Args>(args)...);
         out_ += '\n';
     }
     void put(std::string_view text) { out_ += text; }

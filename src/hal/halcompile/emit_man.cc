@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "hal/halcompile/emit_man.hh"
 
-#include <iterator>
 
 #include <fmt/core.h>
 
@@ -75,7 +74,7 @@ class Page {
   private:
     template <class... Args>
     void line(fmt::format_string<Args...> text, Args &&...args) {
-        fmt::format_to(std::back_inserter(out_), text, std::forward<Args>(args)...);
+        out_ += fmt::format(text, std::forward<Args>(args)...);
         out_ += '\n';
     }
     void section(const char *title) { line(".SH {}", title); }
@@ -157,7 +156,7 @@ class Page {
     void show(const Item &item) {
         std::string name = full_name(item.name);
         std::string range;
-        if (item.array) {
+        if (item.array && name.find('#') != std::string::npos) {
             const std::size_t hash = name.find('#');
             const std::size_t digits = name.find_last_of('#') + 1 - hash;
             name.replace(hash, digits, std::string(digits, 'M'));
