@@ -168,6 +168,9 @@ Result<ScriptRunner *> Session::tcl() {
 
 Result<> Session::run_file(const std::string &name, const std::vector<std::string> &arguments) {
     const auto read = [&]() -> Result<std::pair<std::string, std::string>> {
+        if (!options_.hasFiles) {
+            return fail(fmt::format("HAL file '{}' cannot be run: files are out of reach here", name));
+        }
         const Result<std::string> path = find_file(name);
         if (!path) {
             return std::unexpected(path.error());
