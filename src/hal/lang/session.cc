@@ -297,6 +297,9 @@ Result<> Session::run_call(const Call &call) {
         if (spec.run == lang::run_loadrt) {
             return options_.loads->add(call);
         }
+        if (isLoad) {
+            options_.loads->starting(call);
+        }
         const bool isRun = isLoad || spec.run == lang::run_source || spec.run == lang::run_list ||
                            spec.run == lang::run_exit;
         if (!isRun) {

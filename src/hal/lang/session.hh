@@ -64,6 +64,8 @@ class LoadCollector {
   public:
     virtual ~LoadCollector() = default;
     virtual Result<> add(const Call &loadrt) = 0;
+    /// A program is about to be started.
+    virtual void starting(const Call &) {}
 };
 
 struct SessionOptions {
