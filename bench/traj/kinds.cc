@@ -308,6 +308,25 @@ std::vector<Program> all_kinds() {
     return all;
 }
 
+Program dense_nine_axes(int blocks) {
+    Writer w("nine axes 0.01 mm", 0.01);
+    w.feed = 20000.0 / 60.0;
+    const auto pose_at = [](double t) {
+        Pose p;
+        for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+            const double size = i == 0 ? 400.0 : 12.0;
+            p[i] = size * std::sin(t * (i == 0 ? 0.01 : 0.13 + 0.011 * i) + i) - size * std::sin(i);
+        }
+        return p;
+    };
+    for (int i = 1; i <= blocks; ++i) {
+        w.line(pose_at(i * 0.0016));
+    }
+    Program program = w.done();
+    program.max_velocity = {{400, 400, 400, 400, 400, 400, 400, 400, 400}};
+    return program;
+}
+
 Pose position_on(const Pose &from, const Move &move, double part) {
     Pose p = from + (move.end - from) * part;
     if (!move.isArc) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Drives each kind of program with the planner in virtual time: cycle time, limits, deviation, planning rate.
-// traj_bench [--jerk] [--fast] [--trace FOLDER] [--only WORD]; --fast leaves the deviation out.
+// traj_bench [--jerk] [--fast] [--rate] [--trace FOLDER] [--only WORD]; --fast leaves the deviation out;
+// --rate measures planning alone, merging off, on 0.01 mm blocks in nine coordinates.
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -21,6 +22,7 @@ constexpr double T = 1e-3;
 struct Options {
     bool isJerkLimited = false;
     bool isFast = false;
+    bool isRate = false;
     const char *trace = nullptr;
     const char *only = "";
 };
@@ -45,13 +47,16 @@ traj::MoveRequest request_of(const Program &program, const Move &m) {
     return r;
 }
 
-traj::Limits limits_of(const Program &program) {
+traj::Limits limits_of(const Program &program, bool isJerkLimited) {
     traj::Limits l;
     l.velocity.fill(traj::UNLIMITED);
     l.acceleration.fill(traj::UNLIMITED);
+    l.jerk.fill(traj::UNLIMITED);
+    l.isJerkLimited = isJerkLimited;
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
         l.velocity[static_cast<std::size_t>(i)] = program.max_velocity[i];
         l.acceleration[static_cast<std::size_t>(i)] = program.max_acceleration[i];
+        l.jerk[static_cast<std::size_t>(i)] = program.max_jerk[i];
     }
     return l;
 }
@@ -63,12 +68,12 @@ struct Run {
 };
 
 /// The whole program is offered at once, as far as the planner has room.
-Run drive(const Program &program) {
+Run drive(const Program &program, bool isJerkLimited, bool isMerging) {
     Run run;
     auto store = std::make_unique<traj::PathStore>();
     traj::Executor executor(*store, T);
-    auto planner = std::make_unique<traj::Planner>(*store, traj::PlannerSettings{T, 3, 0.1});
-    planner->set_limits(limits_of(program));
+    auto planner = std::make_unique<traj::Planner>(*store, traj::PlannerSettings{T, 3, 0.1, isMerging});
+    planner->set_limits(limits_of(program, isJerkLimited));
     executor.set_position(program.start);
     std::uint64_t cycle = 0;
     executor.step(cycle);
@@ -127,7 +132,7 @@ void write_trace(const Options &options, const Program &program, const Run &run)
 }
 
 bool measure(const Options &options, const Program &program) {
-    const Run run = drive(program);
+    const Run run = drive(program, options.isJerkLimited, !options.isRate);
     std::vector<testing::AxisLimit> limits;
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
         limits.push_back({program.max_velocity[i], program.max_acceleration[i],
@@ -170,18 +175,25 @@ int main(int argc, char **argv) {
             options.isJerkLimited = true;
         } else if (std::strcmp(argv[i], "--fast") == 0) {
             options.isFast = true;
+        } else if (std::strcmp(argv[i], "--rate") == 0) {
+            options.isRate = true;
+            options.isFast = true;
         } else if (std::strcmp(argv[i], "--trace") == 0 && hasValue) {
             options.trace = argv[++i];
         } else if (std::strcmp(argv[i], "--only") == 0 && hasValue) {
             options.only = argv[++i];
         } else {
-            std::fprintf(stderr, "usage: traj_bench [--jerk] [--fast] [--trace FOLDER] [--only WORD]\n");
+            std::fprintf(stderr,
+                         "usage: traj_bench [--jerk] [--fast] [--rate] [--trace FOLDER] [--only WORD]\n");
             return 2;
         }
     }
     std::printf("%-18s %6s %10s  %17s  %12s  %9s\n", "kind", "blocks", "time", "worst v a j", "deviation",
                 "blocks/s");
     bool isOk = true;
+    if (options.isRate) {
+        return mw::bench::measure(options, mw::bench::dense_nine_axes(100000)) ? 0 : 1;
+    }
     for (const mw::bench::Program &program : mw::bench::all_kinds()) {
         if (program.name.find(options.only) != std::string::npos) {
             isOk = mw::bench::measure(options, program) && isOk;

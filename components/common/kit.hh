@@ -19,7 +19,7 @@ using sdk::ParamRo;
 using sdk::ParamRw;
 
 /// Most instances of a component that sets no lower limit.
-constexpr int MANY = 256;
+constexpr int MANY = 1024;
 
 /// What the module parameters of a load ask for.
 struct Request {
@@ -29,6 +29,7 @@ struct Request {
     char *const *names;      ///< null-terminated unless all `max` are given
     int fallback;            ///< instances when neither is given
     int max;
+    const char *prefix = nullptr;  ///< of pins, where it is not the module's name
 
     bool isNamed() const noexcept { return names[0] != nullptr && names[0][0] != '\0'; }
 };
@@ -69,9 +70,12 @@ struct Name {
 
 /// The prefix of instance `i`: its name, or MODULE.i. False (and a message) when it is too long.
 inline bool make_prefix(Name &out, const Request &request, int i) noexcept {
-    const int length = request.isNamed() ? rtapi_snprintf(out.text, sizeof out.text, "%s", request.names[i])
-                                         : rtapi_snprintf(out.text, sizeof out.text, "%s.%d",
-                                                          Name::of_module(request.module).text, i);
+    const int length =
+        request.isNamed()
+            ? rtapi_snprintf(out.text, sizeof out.text, "%s", request.names[i])
+            : rtapi_snprintf(
+                  out.text, sizeof out.text, "%s.%d",
+                  Name::of_module(request.prefix != nullptr ? request.prefix : request.module).text, i);
     if (length > HAL_NAME_LEN) {
         rtapi_print_msg(RTAPI_MSG_ERR, "%s: an instance name is longer than %d characters", request.module,
                         HAL_NAME_LEN);

@@ -7,7 +7,6 @@
 // xk-out and lets the filter rest; `reset` (bit) is stronger: xk-out is 0 and the filter starts again, with
 // variance 1. `debug` (bit) logs zk and xk-out.
 #include <cmath>
-#include <limits>
 
 #include "components/common/kit.hh"
 
@@ -22,7 +21,7 @@ struct FilterKalman {
     double variance = 1.0;
 
     void declare(Declare &d) noexcept {
-        constexpr double SMALLEST = std::numeric_limits<float>::min();
+        constexpr double SMALLEST = 1.17549e-38;
         d.pin(debug, "debug");
         d.pin(passthrough, "passthrough");
         d.pin(reset, "reset");

@@ -4,9 +4,10 @@
 // While `enable-in` (bit) is true each count of `counts-in` (s32) moves a point on the line by the scale,
 // with at most `max-vel` and `max-accel`; `coscounts` and `sincounts` (s32) are its coordinates in units of
 // `current-scale-out`, which is the scale divided by `iscale-factor` (s32, 10000 at start).
-// `angle-degrees-in`, `scale-in` and iscale-factor are looked at while enable-in is false only; those in use
-// are `current-angle-degrees`, `current-scale`. Others: enable-out, active (bit); current-mag, current-vel;
-// cos-accel-fraction, sin-accel-fraction: the parts of `accel-fraction-in` (1). Float where not said.
+// `angle-degrees-in`, `scale-in` and iscale-factor are looked at while enable-in is false and at the start
+// only; those in use are `current-angle-degrees`, `current-scale`. Others: enable-out, active (bit);
+// current-mag, current-vel; cos-accel-fraction, sin-accel-fraction: the parts of `accel-fraction-in` (1).
+// Float where not said.
 #include <cmath>
 #include <numbers>
 
@@ -29,6 +30,7 @@ struct Anglejog {
     double cosine = 1.0;
     double sine = 0.0;
     std::int32_t last_counts = 0;
+    bool isFirst = true;
 
     void declare(Declare &d) noexcept;
     void update(long period_ns) noexcept;
@@ -84,12 +86,16 @@ void Anglejog::update(long period_ns) noexcept {
     const auto turned = static_cast<std::int32_t>(static_cast<std::uint32_t>(counts) -
                                                   static_cast<std::uint32_t>(last_counts));
     last_counts = counts;
+    if (isFirst || !isEnabled) {
+        take_settings();
+    }
+    const bool isStart = isFirst;
+    isFirst = false;
     enable_out = isEnabled;
     if (isEnabled) {
-        target += turned * current_scale;
+        target += isStart ? 0.0 : turned * current_scale;
         follower.run(target, max_vel, max_accel, dt);
     } else {
-        take_settings();
         follower.stop(max_accel, dt);
         target = follower.planner.target;
     }

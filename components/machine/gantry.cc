@@ -54,7 +54,7 @@ struct Gantry {
         const int made = joints_at_switch();
         home = joints > 0 && made == joints;
         limit = made > 0;
-        if (made > 0 && made < joints) {
+        if (made > 0 && made < joints && joint[fb_joint].home) {
             fb_joint = first_joint_on_the_way();
         }
         if (joints > 0) {

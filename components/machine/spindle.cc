@@ -145,7 +145,8 @@ void Spindle::update(long period_ns) noexcept {
     forward = ramp_rpm > 0.0;
     reverse = ramp_rpm < 0.0;
     output = (std::fabs(ramp_rpm) + used.offset) * used.scale;
-    show(isSimulated ? ramp_rpm : measured, wanted, used, dt);
+    const double asked = enable ? commanded_speed.get() : 0.0;
+    show(isSimulated ? ramp_rpm : measured, asked, used, dt);
 }
 
 }  // namespace mw::components

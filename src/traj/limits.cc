@@ -94,6 +94,30 @@ int rows_of(const PerLimited &q1, const PerLimited &q2, const Limits &limits, Li
 
 }  // namespace
 
+std::uint64_t filter_length(const Limits &limits, double period_s) noexcept {
+    if (!limits.isJerkLimited) {
+        return 1;
+    }
+    double longest = 0;
+    for (std::size_t i = 0; i < limits.jerk.size(); ++i) {
+        const bool isLimited = limits.jerk[i] < 1e9 && limits.acceleration[i] < 1e9;
+        if (isLimited && !geom::isAngular(static_cast<int>(i))) {
+            longest = std::max(longest, limits.acceleration[i] / limits.jerk[i]);
+        }
+    }
+    const double samples = std::ceil(longest / period_s - 1e-9);
+    return static_cast<std::uint64_t>(std::clamp(samples, 1.0, static_cast<double>(MAX_FILTER)));
+}
+
+Limits limits_for_filter(const Limits &limits, std::uint64_t filter, double period_s) noexcept {
+    Limits out = limits;
+    for (std::size_t i = 0; i < out.jerk.size() && filter > 1; ++i) {
+        const double built_up = out.jerk[i] * static_cast<double>(filter) * period_s;
+        out.acceleration[i] = std::min(out.acceleration[i], built_up);
+    }
+    return out;
+}
+
 SpeedLimit limit_of_rows(const LimitRow *rows, int count, double wish) noexcept {
     SpeedLimit out;
     out.v = wish;

@@ -12,8 +12,17 @@ namespace mw::traj {
 struct Limits {
     PerLimited velocity{};      ///< [unit/s]; the last is the XYZ norm
     PerLimited acceleration{};  ///< [unit/s^2]
+    PerLimited jerk{};          ///< [unit/s^3]; used when `isJerkLimited`
+    bool isJerkLimited = false;
 };
 inline constexpr double UNLIMITED = 1e300;
+
+/// Samples of the mean that turns acceleration-limited motion into jerk-limited motion: the longest time that
+/// an axis of X Y Z U V W, or the XYZ norm, needs to build up its acceleration. 1 without jerk limits.
+std::uint64_t filter_length(const Limits &limits, double period_s) noexcept;
+
+/// The limits with accelerations that a mean over `filter` samples can build up within the jerk limits.
+Limits limits_for_filter(const Limits &limits, std::uint64_t filter, double period_s) noexcept;
 
 /// v: highest speed along the parameter; a: path acceleration that may be used, by the speed squared.
 struct SpeedLimit {

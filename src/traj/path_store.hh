@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "base/spsc_ring.hh"
+#include "traj/mean_filter.hh"
 #include "traj/primitive.hh"
 
 namespace mw::traj {
@@ -69,6 +70,9 @@ struct Piece {
     double length = 0;
     double blend_d = 0;       ///< 0: a part of A
     bool isToEnd = false;     ///< a part of A that reaches A's end
+    bool isAlong = false;     ///< the mean is taken of the place on A, so A is followed exactly
+    double programmed_s = 0;  ///< where it begins on the programmed path, measured in s from the path's start
+    double tolerance = 0;     ///< deviation from the programmed path that is allowed; 0: any
     AccelBound acceleration;  ///< along x, such that every axis keeps its limits [1/s^2]
 };
 
@@ -88,13 +92,41 @@ struct Commit {
     std::uint64_t switch_cycle = 0;
     std::uint64_t brakes = 0;     ///< Snapshot::brakes that the plan was made for; another value voids it
     Sequence begin = 0, end = 0;  ///< not a switch: the present plan `plan` now goes on to `end`
+    std::uint64_t filter = 1;     ///< samples of the mean that is commanded; changes only at rest
+    bool isStop = false;          ///< made to stop, so taken while held or dropping
 };
 
 enum class Motion : std::uint8_t { REST, FOLLOW, BRAKE };
 
-/// The executor's state at the end of a servo cycle.
+/// Time since the path speed last rose or fell, valid for the later of the two; far past for the other.
+struct Coasting {
+    static constexpr double LONG_AGO = 1e9;
+    double since_rise_s = LONG_AGO, since_fall_s = LONG_AGO;
+
+    void pass(double a, double dt) noexcept {
+        if (a > 0) {
+            since_rise_s = 0;
+            since_fall_s = LONG_AGO;
+        } else if (a < 0) {
+            since_fall_s = 0;
+            since_rise_s = LONG_AGO;
+        } else {
+            since_rise_s += dt;
+            since_fall_s += dt;
+        }
+    }
+};
+
+/// The executor's state at the end of a servo cycle. With a mean over several samples (jerk limits) this is
+/// the leader's state, which is ahead of what is commanded.
 struct Snapshot {
     std::uint64_t cycle = 0;
+    std::uint64_t tick = 0;        ///< counts steps of the executor
+    std::uint64_t filter = 1;      ///< samples of the mean
+    std::uint64_t first_tick = 0;  ///< samples before it are all `origin`
+    Pose origin;
+    bool isSettled = true;  ///< the leader rests and the mean has reached it
+    Coasting coasting;
     std::uint64_t plan = 0;    ///< the last switch that was taken
     std::uint64_t brakes = 0;  ///< counts how often the executor left a plan by itself
     std::uint64_t drops = 0;   ///< counts dropped paths; the planner starts afresh for each
@@ -105,12 +137,12 @@ struct Snapshot {
     double time_in_phase = 0;
     Sequence piece = 0;  ///< where on the path; 0: no path
     double x = 0, v = 0;
-    Sequence done_move = 0;  ///< moves completed
+    Sequence done_move = 0;  ///< moves completed by what is commanded
 };
 
 inline constexpr std::size_t PRIMITIVE_CAPACITY = 4096;
 inline constexpr std::size_t PIECE_CAPACITY = 16384;
-inline constexpr std::size_t PHASE_CAPACITY = 32768;
+inline constexpr std::size_t PHASE_CAPACITY = 65536;
 
 /// An output change at a place of the path.
 struct PathEvent {
@@ -127,6 +159,7 @@ struct PathStore {
     std::array<MoveTag, PRIMITIVE_CAPACITY> moves{};
     std::array<Piece, PIECE_CAPACITY> pieces{};
     std::array<Phase, PHASE_CAPACITY> phases{};
+    LeaderHistory history{};  ///< executor -> planner; the last samples are read long before they are reused
     SpscRing<PathEvent, 1024> events;  ///< planner -> executor
     SpscRing<Commit, 64> commits;      ///< planner -> executor
     /// Pieces up to here may be read by the executor. Release by the planner after filling, acquire by the

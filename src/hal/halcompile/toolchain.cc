@@ -88,6 +88,9 @@ std::vector<std::string> compile_words(const Places &places, const BuildOrder &o
     if (isRealtime) {
         words.insert(words.end(), {"-DREALTIME", "-D__MODULE__"});
     }
+    if (isCxx(order.source)) {
+        words.emplace_back("-std=gnu++20");  // for <millwright/component.hh>
+    }
     if (isCxx(order.source) && isRealtime) {
         words.insert(words.end(), {"-fno-exceptions", "-fno-rtti"});
         if (compiler.empty() || compiler.find("clang") == std::string::npos) {

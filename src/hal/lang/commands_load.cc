@@ -173,7 +173,17 @@ Result<> run_waitusr(Session &session, const Call &call) {
     if (!session.hal().hasComponent(call.text(0))) {
         return warn_not_loaded(session, call.words[0]);
     }
-    return at(session.programs().wait_for_end(call.text(0)), call.place_of(0));
+    const Result<> ended = at(session.programs().wait_for_end(call.text(0)), call.place_of(0));
+    for (const DeathInfo &death : session.hal().deaths()) {
+        if (ended && death.name == call.text(0)) {
+            session.warn(
+                call.place_of(0),
+                fmt::format("component '{}' died: its process {} ended without leaving HAL; its outputs "
+                            "have their safe values",
+                            death.name, death.pid));
+        }
+    }
+    return ended;
 }
 
 Result<> run_unloadusr(Session &session, const Call &call) {

@@ -76,6 +76,9 @@ Result<> Placeholders::link(const std::string &pin, const std::string &signal) {
 }
 
 Result<> Placeholders::signal_made(const std::string &signal) {
+    if (waiting_.empty()) {
+        return {};
+    }
     const Result<SignalInfo> info = hal_.signal(signal);
     if (!info) {
         return {};

@@ -86,21 +86,28 @@ Session::Session(Host &host, ProgramHost &programs, Output &output, SessionOptio
 
 void Session::info(const SourcePlace &place, std::string_view text) {
     if (options_.verbosity >= Verbosity::RESULTS) {
-        const std::string where = place.str();
+        const std::string where = place.file.empty() ? "" : place.str();
         output_->info(where.empty() ? std::string(text) : fmt::format("{}: {}", where, text));
     }
 }
 
 void Session::warn(const SourcePlace &place, std::string_view text, std::string hint) {
     if (options_.verbosity >= Verbosity::ERRORS) {
-        output_->warning(Error{std::string(text), place, std::move(hint)});
+        output_->warning(
+            Error{std::string(text), place.file.empty() ? SourcePlace{} : place, std::move(hint)});
     }
 }
 
 void Session::report(const Error &error) {
-    if (options_.verbosity >= Verbosity::ERRORS) {
-        output_->error(error);
+    if (options_.verbosity < Verbosity::ERRORS) {
+        return;
     }
+    Error shown = error;
+    if (shown.place.file.empty()) {
+        // Typed, or given as words: a number of a line would say nothing.
+        shown.place = {};
+    }
+    output_->error(shown);
 }
 
 Result<std::string> Session::find_file(const std::string &name) const {

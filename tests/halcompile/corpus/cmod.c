@@ -43,24 +43,42 @@ int rtapi_app_main(void) {
     int i, r = 0;
     RTAPI_INIT_LIST_HEAD(&all);
     comp_id = hal_init("cmod");
-    if (comp_id < 0) return comp_id;
+    if (comp_id < 0) {
+        return comp_id;
+    }
     for (i = 0; i < MOST && ch[i] && *ch[i] && r == 0; i++) {
         channel_t *c = hal_malloc(sizeof(channel_t));
-        if (!c) { r = -ENOMEM; break; }
+        if (!c) {
+            r = -ENOMEM;
+            break;
+        }
         rtapi_list_add_tail(&c->list, &all);
         r = hal_pin_s32_newf(HAL_OUT, &c->count, comp_id, "cmod.%s.count", ch[i]);
-        if (r == 0) r = hal_pin_float_newf(HAL_OUT, &c->speed, comp_id, "cmod.%s.speed", ch[i]);
-        if (r == 0) r = hal_param_bit_newf(HAL_RW, &c->reset, comp_id, "cmod.%s.reset", ch[i]);
-        if (r == 0) r = hal_pin_new_bool(comp_id, HAL_OUT, &c->flag, 1, "cmod.%s.flag", ch[i]);
+        if (r == 0) {
+            r = hal_pin_float_newf(HAL_OUT, &c->speed, comp_id, "cmod.%s.speed", ch[i]);
+        }
+        if (r == 0) {
+            r = hal_param_bit_newf(HAL_RW, &c->reset, comp_id, "cmod.%s.reset", ch[i]);
+        }
+        if (r == 0) {
+            r = hal_pin_new_bool(comp_id, HAL_OUT, &c->flag, 1, "cmod.%s.flag", ch[i]);
+        }
     }
     if (i == 0) {
         rtapi_print_msg(RTAPI_MSG_ERR, "cmod: no channels; ch= names them\n");
         r = -ERANGE;
     }
-    if (r == 0) r = hal_export_funct("cmod.run", run, 0, 1, 0, comp_id);
-    if (r != 0) { hal_exit(comp_id); return r; }
+    if (r == 0) {
+        r = hal_export_funct("cmod.run", run, 0, 1, 0, comp_id);
+    }
+    if (r != 0) {
+        hal_exit(comp_id);
+        return r;
+    }
     hal_ready(comp_id);
     return 0;
 }
 
-void rtapi_app_exit(void) { hal_exit(comp_id); }
+void rtapi_app_exit(void) {
+    hal_exit(comp_id);
+}

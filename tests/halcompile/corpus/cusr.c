@@ -21,10 +21,14 @@ int main(void) {
         hal_s32_t *seen;
     } *pins;
     int id = hal_init("cusr");
-    if (id < 0) return 1;
+    if (id < 0) {
+        return 1;
+    }
     signal(SIGTERM, stop);
     pins = hal_malloc(sizeof(*pins));
-    if (!pins || hal_pin_s32_newf(HAL_OUT, &pins->seen, id, "cusr.seen") != 0) return 1;
+    if (!pins || hal_pin_s32_newf(HAL_OUT, &pins->seen, id, "cusr.seen") != 0) {
+        return 1;
+    }
     hal_ready(id);
     while (!done) {
         int count = 0;

@@ -25,11 +25,21 @@ void run(void *arg, long) {
 extern "C" int rtapi_app_main(void) {
     comp_id = hal_init("cxxmod");
     auto *c = static_cast<Channel *>(hal_malloc(sizeof(Channel)));
-    if (comp_id < 0 || c == nullptr) return -1;
+    if (comp_id < 0 || c == nullptr) {
+        return -1;
+    }
     int r = hal_pin_float_newf(HAL_IN, &c->in, comp_id, "cxxmod.in");
-    if (r == 0) r = hal_pin_float_newf(HAL_OUT, &c->out, comp_id, "cxxmod.out");
-    if (r == 0) r = hal_export_funct("cxxmod.run", run, c, 1, 0, comp_id);
-    if (r == 0) r = hal_ready(comp_id);
+    if (r == 0) {
+        r = hal_pin_float_newf(HAL_OUT, &c->out, comp_id, "cxxmod.out");
+    }
+    if (r == 0) {
+        r = hal_export_funct("cxxmod.run", run, c, 1, 0, comp_id);
+    }
+    if (r == 0) {
+        r = hal_ready(comp_id);
+    }
     return r;
 }
-extern "C" void rtapi_app_exit(void) { hal_exit(comp_id); }
+extern "C" void rtapi_app_exit(void) {
+    hal_exit(comp_id);
+}

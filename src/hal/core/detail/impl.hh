@@ -13,6 +13,7 @@
 
 #include "hal/api/rtapi.h"
 #include "hal/core/detail/segment.hh"
+#include "hal/core/detail/ticks.hh"
 #include "hal/core/hal.hh"
 
 namespace mw::hal {
@@ -62,6 +63,7 @@ struct Hal::Impl {
     std::vector<std::unique_ptr<detail::ThreadRunner>> runners;    ///< under the segment's lock
     std::vector<std::unique_ptr<detail::PlannerRunner>> planners;  ///< under the segment's lock
     int last_planner_id = 0;
+    detail::TickCounter counter;                              ///< times the functions of threads
     std::vector<detail::ControllerWatch> controller_watches;  ///< in the host's thread
     /// Makers of instances, by component id, of components of this process; under the segment's lock.
     std::map<int, int (*)(const char *, const char *)> constructors;
@@ -104,6 +106,8 @@ struct Hal::Impl {
     Result<detail::BlockRecord *> open_block(int key, std::size_t bytes);
     void publish_figures() const;
     void run_thread(detail::ThreadRecord &thread) noexcept;
+    void run_timed(detail::ThreadRecord &thread, const detail::FunctionList &list,
+                   std::uint32_t first) noexcept;
 };
 
 namespace detail {

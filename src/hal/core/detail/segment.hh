@@ -128,6 +128,7 @@ struct ThreadRecord : Record {
     std::uint64_t time_slot;  ///< pin slots of .time and .threadbeat. realtime
     std::uint64_t beat_slot;
     alignas(8) std::int32_t tmax;  ///< realtime
+    std::uint32_t next_timed;      ///< first function to be timed in the next period. realtime
 };
 
 struct AliasRecord : Record {
