@@ -417,6 +417,15 @@ TEST_F(Corpus, PythonPrograms_B2) {
     compile("pyusr.py", "--userspace");
     const fs::path program = folder.path / "pyusr";
     EXPECT_EQ(::access(program.c_str(), X_OK), 0);
+    if (!std::string_view(MW_PYTHON_FOLDER).empty()) {
+        ::setenv("MILLWRIGHT_INSTANCE", hal().name().c_str(), 1);
+        ::setenv("PYTHONPATH", MW_PYTHON_FOLDER, 1);
+        const Program doubling({program});
+        ::unsetenv("MILLWRIGHT_INSTANCE");
+        EXPECT_TRUE(isSoon([&] { return hal().component("pyusr") && hal().component("pyusr")->isReady; }));
+        set("pyusr.in", "4");
+        EXPECT_TRUE(isSoon([&] { return number("pyusr.out") == 8; }));
+    }
     std::ofstream(folder.path / "bad.py") << "#!/usr/bin/env python3\ndef (:\n";
     EXPECT_NE(halcompile("--compile --userspace " + (folder.path / "bad.py").string()).status, 0);
 }

@@ -43,9 +43,16 @@ constexpr std::array<std::string_view, 37> C_WORDS{
     "inline",   "int",    "long",   "register", "restrict",  "return",   "short",    "signed",
     "sizeof",   "static", "struct", "switch",   "typedef",   "union",    "unsigned", "void",
     "volatile", "while",  "_Bool",  "_Complex", "_Imaginary"};
-constexpr std::array<std::string_view, 11> RESERVED{
-    "comp_id",       "fperiod",     "rtapi_app_main", "rtapi_app_exit", "extra_setup", "period",
-    "extra_cleanup", "post_export", "extra_arg",      "prefix",         "export"};
+constexpr std::array<std::string_view, 8> RESERVED{"comp_id",        "fperiod",     "rtapi_app_main",
+                                                   "rtapi_app_exit", "extra_setup", "extra_cleanup",
+                                                   "post_export",    "period"};
+/// Taken only in components whose code sees them.
+constexpr std::array<std::string_view, 2> OF_SETUP{"prefix", "extra_arg"};
+
+template <class List>
+bool has(const List &list, std::string_view name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+}
 
 class Checker {
   public:
@@ -122,12 +129,14 @@ class Checker {
             sink_.error(fmt::format("the name '{}' is taken already", name), place,
                         fmt::format("by the declaration in line {}", at->second.line));
         }
-        if (std::find(C_WORDS.begin(), C_WORDS.end(), name) != C_WORDS.end()) {
+        if (has(C_WORDS, name)) {
             sink_.error(fmt::format("'{}' is a word of C", name), place,
                         fmt::format("call the {} {}_; HAL shows it without the trailing _", what, name));
         }
-        if (std::find(RESERVED.begin(), RESERVED.end(), name) != RESERVED.end() ||
-            name.starts_with("__comp")) {
+        const bool isOfSetup =
+            has(OF_SETUP, name) && (component_.isOn("extra_setup") || component_.isOn("post_export"));
+        const bool isExport = name == "export" && !component_.isOn("rtapi_app", true);
+        if (has(RESERVED, name) || isOfSetup || isExport || name.starts_with("__comp")) {
             sink_.error(fmt::format("the name '{}' is reserved", name), place,
                         fmt::format("call the {} {}_", what, name));
         }

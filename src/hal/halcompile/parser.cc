@@ -469,6 +469,10 @@ class Parser {
 }  // namespace
 
 Component parse(std::string_view text, const std::string &file, diag::Sink &sink) {
+    constexpr std::string_view BYTE_ORDER_MARK = "\xef\xbb\xbf";
+    if (text.starts_with(BYTE_ORDER_MARK)) {
+        text.remove_prefix(BYTE_ORDER_MARK.size());
+    }
     return Parser(text, file, sink).run();
 }
 

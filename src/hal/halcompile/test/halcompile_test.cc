@@ -160,6 +160,15 @@ TEST(HalcompileChecker, findsWhatCannotWork_B2) {
     EXPECT_EQ(errors_of("component x; license \"G\";"), (Texts{"0:0 there is no ;;"}));
 }
 
+TEST(HalcompileChecker, reservesNamesOnlyWhereTheyAreSeen_B2) {
+    EXPECT_EQ(errors_of("\xef\xbb\xbf"
+                        "component x;\r\npin in bit prefix;\r\npin in bit export;" +
+                        TAIL),
+              Texts{});
+    EXPECT_EQ(errors_of("component x;\noption extra_setup;\npin in bit prefix;" + TAIL),
+              (Texts{"3:1 the name 'prefix' is reserved"}));
+}
+
 TEST(HalcompileCode, seesFunctionsOnlyInCode) {
     const CodeFacts facts =
         look_at_code("// FUNCTION(a)\n\"FUNCTION(b)\" FUNCTION (c) { '\"' }\n#include \"f.h\"\n");
