@@ -149,11 +149,20 @@ TEST_F(Halcompile, TheMakefileLinksSeveralFiles_B2) {
            "int rtapi_app_main(void) { id = hal_init(\"pair\"); hal_ready(id); "
            "return id < 0 ? id : 0; }\nvoid rtapi_app_exit(void) { hal_exit(id); }\n";
     std::ofstream(folder.path / "two.c") << "int two(void);\nint two(void) { return 22; }\n";
-    std::ofstream(folder.path / "Makefile") << "obj-m := pair.o\npair-objs := one.o two.o\n"
-                                               "include $(shell $(HALCOMPILE) --print-modinc)\n";
+    std::ofstream(folder.path / "Makefile")
+        << "obj-m := pair.o\npair-objs := one.o two.o\n"
+           "include $(shell $(HALCOMPILE) --print-modinc)\n"
+           "viewer: viewer.c\n\t$(CC) -o $@ $(EXTRA_CFLAGS) -URTAPI -U__MODULE__ "
+           "-DULAPI $< -Wl,-rpath,$(LIBDIR) -L$(LIBDIR) -llinuxcnchal\n";
+    std::ofstream(folder.path / "viewer.c")
+        << "#include \"hal.h\"\nint main(void) { return hal_init(\"v\") == -2; }\n";
     const Outcome done =
         run("make -C " + folder.path.string() + " HALCOMPILE=" + std::string(MW_BIN_DIR) + "/halcompile");
     ASSERT_EQ(done.status, 0) << done.text;
+    const Outcome program = run("make -C " + folder.path.string() + " HALCOMPILE=" + std::string(MW_BIN_DIR) +
+                                "/halcompile viewer");
+    ASSERT_EQ(program.status, 0) << program.text;
+    EXPECT_EQ(run("env MILLWRIGHT_INSTANCE=nobody " + (folder.path / "viewer").string()).status, 1);
     ASSERT_EQ(load_only("pair"), "ok");
     EXPECT_NE(host->loader().find_symbol("shown"), nullptr);
     EXPECT_EQ(host->loader().find_symbol("two"), nullptr);
