@@ -76,6 +76,7 @@ class Checker {
             check_parameter(parameter);
         }
         check_functions();
+        check_code_of_options();
     }
 
   private:
@@ -258,6 +259,40 @@ class Checker {
                             near.empty() ? fmt::format("declare it above ;; with: function {};", use.name)
                                          : fmt::format("did you mean '{}'?", near));
             }
+        }
+    }
+
+    /// Options that ask for code need it, and code that an option calls needs the option.
+    void check_code_of_options() {
+        struct Pair {
+            std::string_view option, word;
+            bool isMacro;
+        };
+        static constexpr std::array<Pair, 6> PAIRS{{{"extra_setup", "EXTRA_SETUP", true},
+                                                    {"extra_cleanup", "EXTRA_CLEANUP", true},
+                                                    {"post_export", "POST_EXPORT", true},
+                                                    {"count_function", "get_count", false},
+                                                    {"userinit", "userinit", false},
+                                                    {"userspace", "user_mainloop", false}}};
+        const CodeFacts facts = look_at_code(component_.code);
+        if (facts.hasQuotedInclude || !component_.hasCode) {
+            return;
+        }
+        for (const Pair &pair : PAIRS) {
+            const bool isOn =
+                component_.isOn(pair.option) && (pair.option != "userinit" || component_.isUserspace());
+            const bool isThere = facts.words.contains(pair.word);
+            if (isOn && !isThere) {
+                sink_.error(fmt::format("option {} is on, but there is no {}", pair.option, pair.word),
+                            component_.option(pair.option)->place);
+            } else if (!isOn && isThere && pair.isMacro) {
+                sink_.warning(fmt::format("{} is never called", pair.word), component_.place,
+                              fmt::format("it needs: option {};", pair.option));
+            }
+        }
+        if (!component_.isOn("rtapi_app", true) && !facts.words.contains("rtapi_app_main")) {
+            sink_.error("option rtapi_app is off, but there is no rtapi_app_main",
+                        component_.option("rtapi_app")->place);
         }
     }
 

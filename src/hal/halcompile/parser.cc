@@ -125,7 +125,8 @@ class Parser {
     /// The end of a declaration.
     Result<> end() {
         scanner_.skip_blank();
-        if (scanner_.accept(";")) {
+        const bool isCodeMark = scanner_.isNext(";;") && scanner_.place().column == 1;
+        if (!isCodeMark && scanner_.accept(";")) {
             return {};
         }
         return fail("';' is expected here", scanner_.place(), "it ends the declaration before");
