@@ -19,7 +19,7 @@ using sdk::ParamRo;
 using sdk::ParamRw;
 
 /// Most instances of a component that sets no lower limit.
-constexpr int MANY = 256;
+constexpr int MANY = 1024;
 
 /// What the module parameters of a load ask for.
 struct Request {

@@ -25,8 +25,10 @@ double v_at(const Phase &p, double t) noexcept {
 void Executor::take_commits() noexcept {
     while (const Commit *c = store_.commits.front()) {
         if (c->isSwitch) {
-            const bool isTimely = c->switch_cycle > state_.cycle && c->brakes == state_.brakes &&
-                                  !state_.isHeld && !state_.isDropping;
+            const bool isFree = c->isStop || (!state_.isHeld && !state_.isDropping);
+            const bool isSameMean = c->filter == state_.filter || isAtRest();
+            const bool isTimely =
+                c->switch_cycle > state_.cycle && c->brakes == state_.brakes && isFree && isSameMean;
             if (isTimely) {
                 next_switch_ = *c;
                 next_end_ = c->end;
@@ -43,12 +45,18 @@ void Executor::take_commits() noexcept {
 const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
     take_commits();
     state_.cycle = cycle;
+    ++state_.tick;
     advance(period_);
     const bool isDue = next_switch_.plan != 0 && next_switch_.switch_cycle <= cycle;
     if (isDue) {
-        const bool isValid = next_switch_.brakes == state_.brakes && next_switch_.switch_cycle == cycle &&
-                             !state_.isHeld && !state_.isDropping;
+        const bool isFree = next_switch_.isStop || (!state_.isHeld && !state_.isDropping);
+        const bool isValid =
+            next_switch_.brakes == state_.brakes && next_switch_.switch_cycle == cycle && isFree;
         if (isValid) {
+            if (next_switch_.filter != state_.filter) {
+                state_.filter = next_switch_.filter;
+                mean_.reset(leader_, state_.filter, state_.tick);
+            }
             state_.motion = Motion::FOLLOW;
             state_.plan = next_switch_.plan;
             state_.phase = next_switch_.begin;
@@ -61,7 +69,85 @@ const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
         next_switch_.plan = 0;
     }
     locate();
+    filter();
+    const bool isDropOver = state_.isDropping && isAtRest();
+    if (isDropOver) {
+        finish_drop();
+    }
     return out_;
+}
+
+void Executor::set_position(const Pose &pose) noexcept {
+    leader_ = pose;
+    out_.position = pose;
+    mean_.reset(pose, state_.filter, state_.tick);
+    state_.first_tick = state_.tick;
+    state_.origin = pose;
+    rest_ticks_ = MAX_FILTER;
+    along_ = 0;
+    state_.isSettled = true;
+}
+
+/// Arcs that must be followed exactly: commands the mean place on the arc. The leader stands before and after
+/// for the time of the mean. True while it is under way.
+bool Executor::follow_along() noexcept {
+    const bool isOn = state_.piece != 0 && store_.piece(state_.piece).isAlong && isFiltered();
+    const Sequence primitive = isOn ? store_.piece(state_.piece).primitive : 0;
+    const double length = isOn ? store_.piece(state_.piece).length : 0.0;
+    const bool isWithin = isOn && state_.x > 1e-15 * length && state_.x < length;
+    const bool isNew = isWithin && along_ != primitive;
+    if (isNew) {
+        along_ = primitive;
+        along_first_ = state_.tick;
+        along_last_ = state_.tick;
+    }
+    if (along_ == 0) {
+        return false;
+    }
+    const Primitive &p = store_.primitive(along_);
+    const bool isOnThis = isOn && primitive == along_;
+    const double at = isOnThis ? store_.piece(state_.piece).offset + state_.x : p.length;
+    along_history_[state_.tick % HISTORY_CAPACITY] = at;
+    double sum = 0;
+    for (std::uint64_t i = 0; i < state_.filter; ++i) {
+        const std::uint64_t tick = state_.tick - i;
+        sum += tick >= along_first_ ? along_history_[tick % HISTORY_CAPACITY] : 0.0;
+    }
+    const double along = sum / static_cast<double>(state_.filter);
+    out_.position = position_at(p, along);
+    along_last_ = isOnThis && isWithin ? state_.tick : along_last_;
+    const bool isOver = state_.tick >= along_last_ + state_.filter;
+    along_ = isOver ? 0 : along_;
+    return along_ != 0;
+}
+
+/// What is commanded: the leader itself, or the mean of its last samples.
+void Executor::filter() noexcept {
+    const bool isResting = state_.motion == Motion::REST;
+    LeaderSample &sample = store_.history[state_.tick % HISTORY_CAPACITY];
+    sample = {leader_, leader_s_, leader_tolerance_, out_.move};
+    done_history_[state_.tick % HISTORY_CAPACITY] = leader_done_;
+    rest_ticks_ = isResting ? rest_ticks_ + 1 : 0;
+    if (isResting) {
+        state_.coasting.pass(0, period_);
+    }
+    state_.isSettled = isResting && rest_ticks_ >= state_.filter;
+    const bool isPlain = !isFiltered() || state_.isSettled;
+    const bool isAlong = follow_along();
+    if (isPlain || isAlong) {
+        // Also keeps rounding from gathering in the mean.
+        out_.position = isAlong && !isPlain ? out_.position : leader_;
+        mean_.reset(leader_, state_.filter, state_.tick);
+        const std::uint64_t back = isPlain ? 0 : state_.filter / 2;
+        state_.done_move = std::max(state_.done_move, done_history_[(state_.tick - back) % HISTORY_CAPACITY]);
+    } else {
+        out_.position = mean_.push(store_.history, state_.tick);
+        const std::uint64_t middle = std::max(mean_.first(), state_.tick - state_.filter / 2);
+        state_.done_move = std::max(state_.done_move, done_history_[middle % HISTORY_CAPACITY]);
+    }
+    state_.first_tick = mean_.first();
+    state_.origin = mean_.origin();
+    out_.isMoving = !isAtRest();
 }
 
 void Executor::advance(double dt) noexcept {
@@ -74,6 +160,7 @@ void Executor::advance(double dt) noexcept {
 double Executor::follow(double dt) noexcept {
     const Phase &p = store_.phase(state_.phase);
     const double left = p.duration - state_.time_in_phase;
+    state_.coasting.pass(p.a, std::min(dt, left));
     if (dt < left) {
         state_.time_in_phase += dt;
         state_.x = x_at(p, state_.time_in_phase);
@@ -119,13 +206,14 @@ void Executor::brake_on_piece() noexcept {
     const Piece &piece = store_.piece(state_.piece);
     const double left = std::max(0.0, piece.length - state_.x);
     const double v2 = state_.v * state_.v;
-    double a = piece.acceleration;
+    double a = piece.acceleration.at(v2);
     const double out2 = v2 - 2.0 * a * left;
     brake_time_ = 0;
     isBrakeFinal_ = out2 <= STOP_FIT * v2;
     if (!isBrakeFinal_) {
         const double out = std::sqrt(out2);
-        brake_ = {state_.piece, (state_.v - out) / a, state_.x, state_.v, -a, 0};
+        const double duration = 2.0 * left / (state_.v + out);
+        brake_ = {state_.piece, duration, state_.x, state_.v, -a, 0};
         return;
     }
     if (out2 > 0 && left > 0) {
@@ -168,14 +256,11 @@ double Executor::brake_along(double dt) noexcept {
 void Executor::come_to_rest() noexcept {
     state_.motion = Motion::REST;
     state_.v = 0;
-    if (state_.isDropping) {
-        finish_drop();
-    }
 }
 
 /// Whatever is left of the path is gone; the planner learns it from `drops`.
 void Executor::finish_drop() noexcept {
-    locate();
+    along_ = 0;
     state_.isDropping = false;
     ++state_.drops;
     ++state_.brakes;
@@ -185,7 +270,7 @@ void Executor::finish_drop() noexcept {
 }
 
 void Executor::hold(bool isHeld) noexcept {
-    if (isHeld && !state_.isHeld && state_.motion == Motion::FOLLOW) {
+    if (isHeld && !state_.isHeld && state_.motion == Motion::FOLLOW && !isFiltered()) {
         start_brake();
     }
     if (isHeld && !state_.isHeld && state_.motion == Motion::REST) {
@@ -200,9 +285,9 @@ void Executor::drop() noexcept {
         return;
     }
     state_.isDropping = true;
-    if (state_.motion == Motion::FOLLOW) {
+    if (state_.motion == Motion::FOLLOW && !isFiltered()) {
         start_brake();
-    } else if (state_.motion == Motion::REST) {
+    } else if (isAtRest()) {
         finish_drop();
     }
 }
@@ -210,13 +295,14 @@ void Executor::drop() noexcept {
 void Executor::stop_now() noexcept {
     state_.motion = Motion::REST;
     state_.v = 0;
+    set_position(out_.position);
     finish_drop();
 }
 
 /// Position, the move that it belongs to, and how many moves are complete.
 void Executor::locate() noexcept {
     out_.velocity = state_.v;
-    out_.isMoving = state_.motion != Motion::REST;
+    const bool isMoving = state_.motion != Motion::REST;
     out_.isOnProbe = false;
     if (state_.piece == 0) {
         out_.move = 0;
@@ -224,16 +310,20 @@ void Executor::locate() noexcept {
         return;
     }
     const Piece &piece = store_.piece(state_.piece);
-    out_.position = position_at(store_, piece, state_.x);
+    leader_ = position_at(store_, piece, state_.x);
+    leader_s_ = piece.programmed_s + state_.x;
+    leader_tolerance_ = piece.tolerance;
     const bool isBlend = piece.blend_d > 0;
-    const bool isSecond = isBlend && state_.x >= piece.blend_d;
+    const double along_piece = piece.offset + state_.x;
+    const bool isSecond = isBlend && along_piece >= piece.blend_d;
     const Sequence move = piece.move + (isSecond ? 1 : 0);
     const Primitive &line = store_.primitive(piece.primitive + (isSecond ? 1 : 0));
-    const double y = isBlend ? state_.x * state_.x / (4.0 * piece.blend_d) : 0;
-    const double along = isSecond ? y : piece.offset + state_.x - y;
+    const double y = isBlend ? along_piece * along_piece / (4.0 * piece.blend_d) : 0;
+    const double start = isBlend ? line.length - piece.blend_d : 0;
+    const double along = isSecond ? y : start + along_piece - y;
     const bool isComplete = piece.isToEnd && state_.x >= piece.length;
-    state_.done_move = std::max(state_.done_move, isComplete ? move : move - 1);
-    out_.move = isComplete && !out_.isMoving ? 0 : move;
+    leader_done_ = std::max(leader_done_, isComplete ? move : move - 1);
+    out_.move = isComplete && !isMoving ? 0 : move;
     out_.distance_to_go = isComplete ? 0 : line.length - along;
     out_.isOnProbe = store_.move(move).isProbe && !isComplete;
 }
@@ -253,7 +343,7 @@ bool Executor::isEmpty() const noexcept {
     }
     const bool isAtEnd = state_.piece == store_.last_piece.load(std::memory_order_acquire) &&
                          state_.x >= store_.piece(state_.piece).length;
-    return state_.motion == Motion::REST && isAtEnd;
+    return isAtRest() && isAtEnd;
 }
 
 }  // namespace mw::traj

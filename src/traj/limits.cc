@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace mw::traj {
 
@@ -10,10 +11,10 @@ using geom::AXIS_COUNT;
 
 namespace {
 
-/// Share of an axis's acceleration that turning may take on arcs (the rest adds at right angles) and on
-/// blends (it adds in the worst direction).
-constexpr double ARC_SHARE = 0.8;
+/// Share of an axis's acceleration that turning takes on a blend that is made for a given speed.
 constexpr double BLEND_SHARE = 0.7;
+/// Room that keeps fitted stops (Executor) and rounding inside the limits.
+constexpr double ACCELERATION_MARGIN = 1e-6;
 
 double norm_xyz(const PerLimited &p) noexcept {
     return std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
@@ -23,123 +24,184 @@ double end_radius(const Primitive &p) noexcept {
     return p.radius + std::max(0.0, p.dradius * p.length);
 }
 
-/// Amplitude of the unit circle in each coordinate, 1 for the XYZ norm of an XYZ arc.
-PerLimited circle_amplitude(const Primitive &p) noexcept {
-    PerLimited m{};
-    if (p.isArc) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            m[static_cast<std::size_t>(p.space) + i] = std::hypot(p.u[i], p.v[i]);
-        }
-        m[XYZ_NORM] = p.space == geom::AXIS_X ? 1.0 : 0.0;
-    }
-    return m;
+/// Largest |cos| between two angles.
+double largest_cosine(double from, double to) noexcept {
+    const double low = std::min(from, to) / std::numbers::pi;
+    const double high = std::max(from, to) / std::numbers::pi;
+    const bool isTurningPoint = std::floor(high) >= std::ceil(low);
+    return isTurningPoint ? 1.0 : std::max(std::abs(std::cos(from)), std::abs(std::cos(to)));
 }
 
-/// |lin| plus the radial part, per coordinate.
-PerLimited steady_part(const Primitive &p, const PerLimited &m) noexcept {
-    PerLimited l{};
+/// Largest |dq/ds| and |d2q/ds2| per coordinate on [from, to]; the last of each are those of the XYZ norm.
+void derivative_bounds(const Primitive &p, double from, double to, PerLimited &q1, PerLimited &q2) noexcept {
     for (int i = 0; i < AXIS_COUNT; ++i) {
-        l[static_cast<std::size_t>(i)] = std::abs(p.lin[i]);
+        q1[static_cast<std::size_t>(i)] = std::abs(p.lin[i]);
     }
-    l[XYZ_NORM] = geom::norm_xyz(p.lin);
-    for (std::size_t i = 0; i < l.size(); ++i) {
-        l[i] += m[i] * std::abs(p.dradius);
+    q1[XYZ_NORM] = geom::norm_xyz(p.lin);
+    q2.fill(0.0);
+    if (!p.isArc) {
+        return;
     }
-    return l;
+    const double w = std::abs(p.omega);
+    const double radius = end_radius(p);
+    const double drift = std::abs(p.dradius);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto n = static_cast<std::size_t>(p.space) + i;
+        const double amplitude = std::hypot(p.u[i], p.v[i]);
+        const double phase = std::atan2(p.v[i], p.u[i]);
+        const double a = p.omega * from - phase;
+        const double b = p.omega * to - phase;
+        const double quarter = 0.5 * std::numbers::pi;
+        q1[n] += amplitude * (radius * w * largest_cosine(a + quarter, b + quarter) + drift);
+        q2[n] = amplitude * (radius * w * w * largest_cosine(a, b) + 2.0 * drift * w);
+    }
+    if (p.space == geom::AXIS_X) {
+        q1[XYZ_NORM] = std::hypot(q1[XYZ_NORM] + drift, radius * w);
+        q2[XYZ_NORM] = radius * w * w + 2.0 * drift * w;
+    }
 }
 
-/// Largest |dq/ds| per coordinate.
-PerLimited first_derivative_bound(const Primitive &p) noexcept {
-    const PerLimited m = circle_amplitude(p);
-    PerLimited q = steady_part(p, m);
-    for (std::size_t i = 0; i < q.size(); ++i) {
-        q[i] += m[i] * end_radius(p) * std::abs(p.omega);
+/// Acceleration that row `r` leaves along the path at the squared speed b.
+double acceleration_left(const LimitRow &r, double b) noexcept {
+    const double limit = r.acceleration * (1.0 - ACCELERATION_MARGIN);
+    const double turning = r.q2 * b;
+    if (!(r.q1 > 0)) {
+        return UNLIMITED;
     }
-    return q;
+    if (r.isRightAngled) {
+        return std::sqrt(std::max(0.0, limit * limit - turning * turning)) / r.q1;
+    }
+    return std::max(0.0, limit - turning) / r.q1;
 }
 
-double vmax_of(const PerLimited &q1, const Limits &limits) noexcept {
-    double v = UNLIMITED;
+double acceleration_left(const LimitRow *rows, int count, double b) noexcept {
+    double a = UNLIMITED;
+    for (int i = 0; i < count; ++i) {
+        a = std::min(a, acceleration_left(rows[i], b));
+    }
+    return a;
+}
+
+int rows_of(const PerLimited &q1, const PerLimited &q2, const Limits &limits, LimitRow *rows) noexcept {
+    int count = 0;
     for (std::size_t i = 0; i < q1.size(); ++i) {
-        if (q1[i] > 0) {
-            v = std::min(v, limits.velocity[i] / q1[i]);
+        if (q1[i] > 0 || q2[i] > 0) {
+            rows[count++] = {q1[i], q2[i], limits.velocity[i], limits.acceleration[i]};
         }
     }
-    return v;
-}
-
-SpeedLimit limit_of_line(const Primitive &p, const Limits &limits) noexcept {
-    const PerLimited q1 = first_derivative_bound(p);
-    SpeedLimit out{vmax_of(q1, limits), UNLIMITED};
-    for (std::size_t i = 0; i < q1.size(); ++i) {
-        if (q1[i] > 0) {
-            out.a = std::min(out.a, limits.acceleration[i] / q1[i]);
-        }
-    }
-    return out;
+    return count;
 }
 
 }  // namespace
 
-SpeedLimit limit_of(const Primitive &p, const Limits &limits, double wish) noexcept {
-    if (!p.isArc) {
-        return limit_of_line(p, limits);
+std::uint64_t filter_length(const Limits &limits, double period_s) noexcept {
+    if (!limits.isJerkLimited) {
+        return 1;
     }
-    const PerLimited m = circle_amplitude(p);
-    const PerLimited l = steady_part(p, m);
-    const double w = std::abs(p.omega);
-    const double turn = end_radius(p) * w * w;           // |q''| of the circle
-    const double drift = 2.0 * std::abs(p.dradius) * w;  // |q''| of the change of radius
-    SpeedLimit out{vmax_of(first_derivative_bound(p), limits), UNLIMITED};
-    for (std::size_t i = 0; i < m.size(); ++i) {
-        if (m[i] > 0) {
-            out.v = std::min(out.v, std::sqrt(ARC_SHARE * limits.acceleration[i] / (m[i] * (turn + drift))));
+    double longest = 0;
+    for (std::size_t i = 0; i < limits.jerk.size(); ++i) {
+        const bool isLimited = limits.jerk[i] < 1e9 && limits.acceleration[i] < 1e9;
+        if (isLimited && !geom::isAngular(static_cast<int>(i))) {
+            longest = std::max(longest, limits.acceleration[i] / limits.jerk[i]);
         }
     }
-    const double v = std::min(out.v, wish);
-    for (std::size_t i = 0; i < m.size(); ++i) {
-        // l a + sqrt((c a)^2 + D^2) <= A: the tangential and the turning part of a circle are at right
-        // angles.
-        const double c = m[i] * end_radius(p) * w;
-        const double a_rest = limits.acceleration[i] - m[i] * drift * v * v;
-        const double d = m[i] * turn * v * v;
-        const double span = std::max(0.0, a_rest * a_rest - d * d);
-        const double below = a_rest * l[i] + std::sqrt(c * c * span + l[i] * l[i] * d * d);
-        if (below > 0) {
-            out.a = std::min(out.a, span / below);
-        }
+    const double samples = std::ceil(longest / period_s - 1e-9);
+    return static_cast<std::uint64_t>(std::clamp(samples, 1.0, static_cast<double>(MAX_FILTER)));
+}
+
+Limits limits_for_filter(const Limits &limits, std::uint64_t filter, double period_s) noexcept {
+    Limits out = limits;
+    for (std::size_t i = 0; i < out.jerk.size() && filter > 1; ++i) {
+        const double built_up = out.jerk[i] * static_cast<double>(filter) * period_s;
+        out.acceleration[i] = std::min(out.acceleration[i], built_up);
     }
     return out;
 }
 
-SpeedLimit limit_of_blend(const Primitive &a, const Primitive &b, double d, const Limits &limits,
-                          double wish) noexcept {
-    const PerLimited qa = first_derivative_bound(a);
-    const PerLimited qb = first_derivative_bound(b);
-    const PerLimited ka = second_derivative_bound(a);
-    const PerLimited kb = second_derivative_bound(b);
-    const Pose step = tangent_step(a, b);
-    PerLimited q1{};
-    PerLimited q2{};
-    for (std::size_t i = 0; i < q1.size(); ++i) {
-        const double turn = i == XYZ_NORM ? geom::norm_xyz(step) : std::abs(step[static_cast<int>(i)]);
-        q1[i] = std::max(qa[i], qb[i]);
-        // q'' = A''(1-x)^2 + B'' x^2 + (B' - A')/2d, and B' - A' grows by the curvatures away from the joint.
-        q2[i] = turn / (2.0 * d) + 1.5 * std::max(ka[i], kb[i]);
-    }
-    SpeedLimit out{vmax_of(q1, limits), UNLIMITED};
-    for (std::size_t i = 0; i < q1.size(); ++i) {
-        if (q2[i] > 0) {
-            out.v = std::min(out.v, std::sqrt(BLEND_SHARE * limits.acceleration[i] / q2[i]));
+SpeedLimit limit_of_rows(const LimitRow *rows, int count, double wish) noexcept {
+    SpeedLimit out;
+    out.v = wish;
+    for (int i = 0; i < count; ++i) {
+        const LimitRow &r = rows[i];
+        if (r.q1 > 0) {
+            out.v = std::min(out.v, r.velocity / r.q1);
+        }
+        if (r.q2 > 0) {
+            out.v = std::min(out.v, std::sqrt(r.acceleration * (1.0 - ACCELERATION_MARGIN) / r.q2));
         }
     }
-    const double v = std::min(out.v, wish);
-    for (std::size_t i = 0; i < q1.size(); ++i) {
-        if (q1[i] > 0) {
-            out.a = std::min(out.a, (limits.acceleration[i] - q2[i] * v * v) / q1[i]);
-        }
+    // What is left for the path falls with b = v^2, and ever faster, so chords between points of it are on
+    // the safe side.
+    bool isTurning = false;
+    for (int i = 0; i < count; ++i) {
+        isTurning = isTurning || rows[i].q2 > 0;
+    }
+    const double still = acceleration_left(rows, count, 0);
+    if (!isTurning || !(out.v < 1e100)) {
+        out.a = AccelBound::constant(still);
+        return out;
+    }
+    const double b = out.v * out.v;
+    constexpr double AT[AccelBound::LINES + 1] = {0, 0.5, 0.85, 1};
+    double before = still;
+    for (int k = 0; k < AccelBound::LINES; ++k) {
+        const double after = acceleration_left(rows, count, AT[k + 1] * b);
+        const double beta = std::max(0.0, (before - after) / ((AT[k + 1] - AT[k]) * b));
+        out.a.beta[static_cast<std::size_t>(k)] = beta;
+        out.a.alpha[static_cast<std::size_t>(k)] = after + beta * AT[k + 1] * b;
+        before = after;
     }
     return out;
+}
+
+SpeedLimit limit_of(const Primitive &p, double from, double to, const Limits &limits, double wish) noexcept {
+    PerLimited q1;
+    PerLimited q2;
+    derivative_bounds(p, from, to, q1, q2);
+    LimitRow rows[LIMITED_COUNT];
+    const int count = rows_of(q1, q2, limits, rows);
+    // The normal and the tangent of an arc are at right angles.
+    if (p.isArc && p.dradius == 0.0 && rows[count - 1].q2 == q2[XYZ_NORM] && q2[XYZ_NORM] > 0) {
+        rows[count - 1].isRightAngled = true;
+    }
+    return limit_of_rows(rows, count, wish);
+}
+
+SpeedLimit limit_of_blend(const Primitive &a, const Primitive &b, const BlendPart &part, const Limits &limits,
+                          double wish) noexcept {
+    const double d = part.d;
+    const double from = 0.5 * part.from / d;
+    const double to = 0.5 * part.to / d;
+    PerLimited q1{};
+    PerLimited q2{};
+    const Pose step = tangent_step(a, b);
+    if (a.isArc || b.isArc) {
+        PerLimited a1;
+        PerLimited a2;
+        PerLimited b1;
+        PerLimited b2;
+        derivative_bounds(a, a.length - d, a.length, a1, a2);
+        derivative_bounds(b, 0, d, b1, b2);
+        for (std::size_t i = 0; i < q1.size(); ++i) {
+            const double turn = i == XYZ_NORM ? geom::norm_xyz(step) : std::abs(step[static_cast<int>(i)]);
+            q1[i] = std::max(a1[i], b1[i]);
+            // q'' = A''(1-x)^2 + B'' x^2 + (B' - A')/2d, and B' - A' grows by the curvatures away from the
+            // joint.
+            q2[i] = turn / (2.0 * d) + 1.5 * std::max(a2[i], b2[i]);
+        }
+    } else {
+        const Pose first = a.lin * (1.0 - from) + b.lin * from;
+        const Pose last = a.lin * (1.0 - to) + b.lin * to;
+        for (int i = 0; i < AXIS_COUNT; ++i) {
+            const auto n = static_cast<std::size_t>(i);
+            q1[n] = std::max(std::abs(first[i]), std::abs(last[i]));
+            q2[n] = std::abs(step[i]) / (2.0 * d);
+        }
+        q1[XYZ_NORM] = std::max(geom::norm_xyz(first), geom::norm_xyz(last));
+        q2[XYZ_NORM] = geom::norm_xyz(step) / (2.0 * d);
+    }
+    LimitRow rows[LIMITED_COUNT];
+    return limit_of_rows(rows, rows_of(q1, q2, limits, rows), wish);
 }
 
 Pose tangent_step(const Primitive &a, const Primitive &b) noexcept {

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "base/spsc_ring.hh"
+#include "traj/mean_filter.hh"
 #include "traj/primitive.hh"
 
 namespace mw::traj {
@@ -29,18 +30,50 @@ struct MoveTag {
     Pose end;
 };
 
-/// A stretch of path with limits of its own: a part of one primitive, or a blend between two.
+/// Path acceleration that a piece allows, by the squared speed b: the least of some lines alpha - beta b.
+struct AccelBound {
+    static constexpr int LINES = 3;
+    std::array<double, LINES> alpha{}, beta{};
+
+    static AccelBound constant(double a) noexcept {
+        AccelBound bound;
+        bound.alpha.fill(a);
+        return bound;
+    }
+    /// At the squared speed b, never negative.
+    double at(double b) const noexcept {
+        double a = alpha[0] - beta[0] * b;
+        for (std::size_t k = 1; k < LINES; ++k) {
+            const double c = alpha[k] - beta[k] * b;
+            a = c < a ? c : a;
+        }
+        return a > 0 ? a : 0;
+    }
+    /// Highest squared speed from which `length` suffices to come down to `b`.
+    double highest_before(double b, double length) const noexcept {
+        double best = (2.0 * length * alpha[0] + b) / (1.0 + 2.0 * length * beta[0]);
+        for (std::size_t k = 1; k < LINES; ++k) {
+            const double c = (2.0 * length * alpha[k] + b) / (1.0 + 2.0 * length * beta[k]);
+            best = c < best ? c : best;
+        }
+        return best > b ? best : b;
+    }
+};
+
+/// A stretch of path with limits of its own: a part of one primitive, or of a blend between two.
 ///   part:  q(x) = A(offset + x)
-///   blend: q(x) = A(offset + x - x^2/4d) + B(x^2/4d) - corner,  x in [0, 2d]
+///   blend: q(x) = A(L - d + z - z^2/4d) + B(z^2/4d) - corner,  z = offset + x in [0, 2d], L the length of A
 struct Piece {
     Sequence primitive = 0;  ///< A; B is the next one
     Sequence move = 0;       ///< the move of A; B's is the next one
-    double offset = 0;       ///< s of A where the piece begins
+    double offset = 0;       ///< s of A, or z of the blend, where the piece begins
     double length = 0;
-    double blend_d = 0;    ///< 0: a part of A
-    bool isToEnd = false;  ///< a part of A that reaches A's end
-    double acceleration =
-        0;  ///< limit along x that keeps every axis in its limits up to the piece's speed [1/s^2]
+    double blend_d = 0;       ///< 0: a part of A
+    bool isToEnd = false;     ///< a part of A that reaches A's end
+    bool isAlong = false;     ///< the mean is taken of the place on A, so A is followed exactly
+    double programmed_s = 0;  ///< where it begins on the programmed path, measured in s from the path's start
+    double tolerance = 0;     ///< deviation from the programmed path that is allowed; 0: any
+    AccelBound acceleration;  ///< along x, such that every axis keeps its limits [1/s^2]
 };
 
 /// x(t) = x0 + v0 t + a t^2 / 2 + j t^3 / 6, t in [0, duration], on one piece.
@@ -59,13 +92,41 @@ struct Commit {
     std::uint64_t switch_cycle = 0;
     std::uint64_t brakes = 0;     ///< Snapshot::brakes that the plan was made for; another value voids it
     Sequence begin = 0, end = 0;  ///< not a switch: the present plan `plan` now goes on to `end`
+    std::uint64_t filter = 1;     ///< samples of the mean that is commanded; changes only at rest
+    bool isStop = false;          ///< made to stop, so taken while held or dropping
 };
 
 enum class Motion : std::uint8_t { REST, FOLLOW, BRAKE };
 
-/// The executor's state at the end of a servo cycle.
+/// Time since the path speed last rose or fell, valid for the later of the two; far past for the other.
+struct Coasting {
+    static constexpr double LONG_AGO = 1e9;
+    double since_rise_s = LONG_AGO, since_fall_s = LONG_AGO;
+
+    void pass(double a, double dt) noexcept {
+        if (a > 0) {
+            since_rise_s = 0;
+            since_fall_s = LONG_AGO;
+        } else if (a < 0) {
+            since_fall_s = 0;
+            since_rise_s = LONG_AGO;
+        } else {
+            since_rise_s += dt;
+            since_fall_s += dt;
+        }
+    }
+};
+
+/// The executor's state at the end of a servo cycle. With a mean over several samples (jerk limits) this is
+/// the leader's state, which is ahead of what is commanded.
 struct Snapshot {
     std::uint64_t cycle = 0;
+    std::uint64_t tick = 0;        ///< counts steps of the executor
+    std::uint64_t filter = 1;      ///< samples of the mean
+    std::uint64_t first_tick = 0;  ///< samples before it are all `origin`
+    Pose origin;
+    bool isSettled = true;  ///< the leader rests and the mean has reached it
+    Coasting coasting;
     std::uint64_t plan = 0;    ///< the last switch that was taken
     std::uint64_t brakes = 0;  ///< counts how often the executor left a plan by itself
     std::uint64_t drops = 0;   ///< counts dropped paths; the planner starts afresh for each
@@ -76,12 +137,12 @@ struct Snapshot {
     double time_in_phase = 0;
     Sequence piece = 0;  ///< where on the path; 0: no path
     double x = 0, v = 0;
-    Sequence done_move = 0;  ///< moves completed
+    Sequence done_move = 0;  ///< moves completed by what is commanded
 };
 
 inline constexpr std::size_t PRIMITIVE_CAPACITY = 4096;
-inline constexpr std::size_t PIECE_CAPACITY = 8192;
-inline constexpr std::size_t PHASE_CAPACITY = 16384;
+inline constexpr std::size_t PIECE_CAPACITY = 16384;
+inline constexpr std::size_t PHASE_CAPACITY = 65536;
 
 /// An output change at a place of the path.
 struct PathEvent {
@@ -98,6 +159,7 @@ struct PathStore {
     std::array<MoveTag, PRIMITIVE_CAPACITY> moves{};
     std::array<Piece, PIECE_CAPACITY> pieces{};
     std::array<Phase, PHASE_CAPACITY> phases{};
+    LeaderHistory history{};  ///< executor -> planner; the last samples are read long before they are reused
     SpscRing<PathEvent, 1024> events;  ///< planner -> executor
     SpscRing<Commit, 64> commits;      ///< planner -> executor
     /// Pieces up to here may be read by the executor. Release by the planner after filling, acquire by the

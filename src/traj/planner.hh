@@ -21,8 +21,9 @@ enum class Join : std::uint8_t {
 struct MoveRequest {
     MoveTag tag;
     Join join = Join::BLEND;
-    double tolerance = 0;  ///< of a blend [machine units; degrees over ABC]; 0: as the speed needs
-    bool isRapid = false;  ///< as fast as the limits allow, scaled by Scales::rapid
+    double tolerance = 0;        ///< of a blend [machine units; degrees over ABC]; 0: as the speed needs
+    double merge_tolerance = 0;  ///< lines may be joined to one that is no farther from their ends (G64 Q)
+    bool isRapid = false;        ///< as fast as the limits allow, scaled by Scales::rapid
     bool isOverridable = true;
     bool isAngular = false;  ///< the feed length is over ABC: the operator's velocity ceiling does not apply
     double feed_per_revolution = 0;  ///< > 0: the speed follows a spindle
@@ -44,6 +45,7 @@ struct PlannerSettings {
     double period_s = 1e-3;     ///< of the servo
     std::uint64_t latency = 3;  ///< cycles from a plan's making to its start
     double horizon_s = 0.1;     ///< how far ahead phases are committed
+    bool isMerging = true;      ///< nearly straight lines become one
 };
 
 /// All methods: planner thread only. Allocates at construction only. Same calls with the same values: same
@@ -52,7 +54,10 @@ class Planner {
   public:
     Planner(PathStore &store, const PlannerSettings &settings) noexcept;
 
-    void set_limits(const Limits &limits) noexcept { limits_ = limits; }
+    /// Holds for moves added from now on; jerk limits from the next `begin` on.
+    void set_limits(const Limits &limits) noexcept;
+    /// The jerk limits of the present path are those of the last `set_limits`.
+    bool isFilterCurrent() const noexcept { return filter_length(wanted_, settings_.period_s) == filter_; }
 
     /// A new path begins at `start`, where the executor rests with nothing left of another.
     void begin(const Pose &start, const Snapshot &now) noexcept;
@@ -93,27 +98,34 @@ class Planner {
 
     /// The committed plan runs to the end of the known path and there is an open end that could be released.
     bool isStarving() const noexcept {
-        return open_move_ != 0 && (isAtEndOfPath_ || last_piece_ < oldest_piece_);
+        return (open_move_ != 0 || raw_move_ != 0) && (isAtEndOfPath_ || last_piece_ < oldest_piece_);
     }
     std::uint32_t moves_left(const Snapshot &now) const noexcept;
 
   private:
     struct MovePlan {
-        double feed = 0;  ///< requested speed in s [1/s]; 0: none
+        double feed = 0;       ///< requested speed in s [1/s]; 0: none
+        double start_s = 0;    ///< where the move begins on the programmed path
+        double deviation = 0;  ///< of the primitive from the lines that were joined to it
         MoveRequest request;
     };
     struct PiecePlan {
         double v_limit = 0;  ///< highest speed the limits allow
         double v2_in = 0;    ///< highest speed at its start from which all that follows can be kept, squared
         bool isStopBefore = false;
+        double dwell_s = 0;  ///< with jerk limits: how long it stands there at least
     };
     struct State {
         Sequence piece = 0;
         double x = 0, v = 0;
+        Coasting coasting;
     };
     struct Joint {
         double d = 0;
         bool isStop = false;
+        double dwell_s = 0;
+        double v = UNLIMITED;  ///< highest speed on the blend
+        double turning = 0;    ///< share of the acceleration that it takes at that speed
     };
 
     MovePlan &move_plan(Sequence n) noexcept { return moves_[n % PRIMITIVE_CAPACITY]; }
@@ -123,8 +135,26 @@ class Planner {
 
     double wish_of(const MovePlan &m) const noexcept;
     Joint joint_between(Sequence a, Sequence b) const noexcept;
-    void add_piece(const Piece &piece, SpeedLimit limit, double wish) noexcept;
-    void close_move(double to, bool isToEnd) noexcept;
+    void add_piece(const Piece &piece, const SpeedLimit &limit) noexcept;
+    void add_blend(const Primitive &a, const Primitive &b, const Joint &joint, double wish) noexcept;
+    Joint corner(Sequence na, Sequence nb, double tolerance, bool mustStop) const noexcept;
+    Joint filtered_corner(Sequence na, Sequence nb, double tolerance, bool mustStop) const noexcept;
+    double filtered_arc_speed(const Primitive &p, const MovePlan &m) const noexcept;
+    double tolerance_of(const MovePlan &m) const noexcept;
+    void add_part(Piece piece, double to, bool isToEnd, double v) noexcept;
+    bool isAlongOnly(const Primitive &p, const MoveRequest &request) const noexcept;
+    SpeedLimit along_limit(const Primitive &p, double wish) const noexcept;
+    SpeedLimit shared_limit(const Primitive &a, const Primitive &b, const Joint &joint,
+                            double wish) const noexcept;
+    static double speed_through(double share, double need, double most_d, double tau) noexcept;
+    Joint filtered_stop(const Primitive &a, const Primitive &b, double share) const noexcept;
+    bool canJoin(const Primitive &line, const MoveRequest &request) const noexcept;
+    void join_raw() noexcept;
+    bool join_line(const Primitive &line, const MoveRequest &request) noexcept;
+    void fill_move(Sequence n, const Primitive &primitive, const MoveRequest &request) noexcept;
+    bool isFiltered() const noexcept { return filter_ > 1; }
+    double filter_s() const noexcept { return static_cast<double>(filter_) * settings_.period_s; }
+    void close_move(double to, bool isToEnd, const Joint &after) noexcept;
 
     double move_cap(const MovePlan &m, double v_limit) const noexcept;
     double cap_of(Sequence piece) const noexcept;
@@ -137,13 +167,39 @@ class Planner {
     void replan(const Snapshot &now, const State &from) noexcept;
     void emit(double until_s) noexcept;
     bool emit_piece() noexcept;
+    void emit_hill(double left, double cap, double out2) noexcept;
     void emit_phase(double length, double v1) noexcept;
+    void emit_wait(double duration) noexcept;
     bool hasPhaseRoom() const noexcept;
+
+    // --- planner_filtered.cc: with jerk limits
+    void update_filtered(const Snapshot &now) noexcept;
+    bool replan_filtered(const Snapshot &now, const State &from, bool isStop) noexcept;
+    bool emit_filtered() noexcept;
+    bool emit_rise(double cap) noexcept;
+    void emit_coast(double cap, double out2) noexcept;
+    bool emit_tail() noexcept;
+    bool canCoast(Sequence piece, double x, double v) noexcept;
+
+    // --- planner_check.cc: what is commanded is tried out before it is committed
+    bool isPlanSound(const Snapshot &now, const State &from, Sequence begin) noexcept;
+    void start_trial(const Snapshot &now, const State &from) noexcept;
+    void try_sample(const Phase &phase, double t) noexcept;
+    void push_sample(const LeaderSample &sample, Sequence piece) noexcept;
+    bool isTrialSound() noexcept;
+    double trial_deviation(std::uint64_t tick) noexcept;
+    bool ease(const State &from) noexcept;
+    void scale_piece(Sequence piece, double speed, double acceleration) noexcept;
+    bool isCurved(Sequence piece) const noexcept;
+    bool isKept(const State &from) const noexcept;
+
     void append(const Snapshot &now) noexcept;
 
     PathStore &store_;
     PlannerSettings settings_;
-    Limits limits_;
+    Limits wanted_;             ///< as set
+    Limits limits_;             ///< the same with accelerations that fit the filter
+    std::uint64_t filter_ = 1;  ///< samples of the mean that is commanded; 1: no jerk limits
     Scales scales_;
     std::array<MovePlan, PRIMITIVE_CAPACITY> moves_{};
     std::array<PiecePlan, PIECE_CAPACITY> pieces_{};
@@ -153,9 +209,18 @@ class Planner {
     Sequence last_move_ = 0;
     Sequence last_synched_ = 0;  ///< the last move that follows a spindle
     Sequence open_move_ = 0;     ///< whose end is not yet joined or released, 0: none
+    Sequence raw_move_ = 0;      ///< the newest move, which may still grow, 0: none
     double open_offset_ = 0;     ///< where its own part begins
     bool isOpenStop_ = false;    ///< stop before its part
-    Sequence first_piece_ = 1;   ///< of this path
+    Joint open_joint_;           ///< before it
+    /// With jerk limits, part of the acceleration that is for turning where curves follow each other closely.
+    static constexpr double TURNING_SHARE = 0.75;
+    static constexpr std::size_t MOST_JOINED = 64;
+    std::array<Pose, MOST_JOINED> joined_{};  ///< ends within the open move of the lines that it stands for
+    std::size_t joined_count_ = 0;
+    bool isJoinable_ = false;   ///< nothing else hangs on the end of the open move
+    double programmed_s_ = 0;   ///< length of what has been added
+    Sequence first_piece_ = 1;  ///< of this path
     Sequence last_piece_ = 0;
     std::uint64_t drops_ = 0;
 
@@ -171,6 +236,22 @@ class Planner {
     State planned_;                         ///< where the committed plan ends
     double planned_s_ = 0;                  ///< when, from switch_cycle_ on
     bool isAtEndOfPath_ = false;
+    bool isStopPlan_ = false;
+    Sequence looked_at_ = 0;  ///< the farthest piece that the present plan depends on
+
+    struct TrialSample {
+        LeaderSample leader;
+        Pose bend;  ///< second difference of the leader's positions
+        Sequence piece = 0;
+    };
+    std::array<TrialSample, HISTORY_CAPACITY> trial_{};
+    std::uint64_t trial_tick_ = 0;
+    Pose trial_sum_;
+    double trial_s_sum_ = 0;
+    Pose trial_origin_;
+    double trial_s_origin_ = 0;
+    std::uint64_t failed_tick_ = 0;
+    std::uint64_t along_tick_ = 0;  ///< the last on an arc that is followed exactly
 
     double start_delay_s_ = 0;  ///< of the next plan from rest
     bool isStepping_ = false;

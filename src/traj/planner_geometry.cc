@@ -19,26 +19,45 @@ constexpr double EXACT_PATH_DEVIATION = 1e-6;
 constexpr double REVERSAL_COSINE = -0.9;
 /// Below this a blend is a stop.
 constexpr double SMALLEST_BLEND = 1e-7;
-/// Moves passed in one servo cycle at most; with two pieces each and up to four phases a piece this stays
+/// Moves passed in one servo cycle at most; with all their pieces and up to four phases a piece this stays
 /// below Executor::MAX_STEPS_PER_CYCLE.
-constexpr double MOVES_PER_CYCLE = 64;
-/// Room that keeps fitted stops (Executor) and rounding inside the limits.
-constexpr double ACCELERATION_MARGIN = 1e-6;
+constexpr double MOVES_PER_CYCLE = 12;
+/// Arcs and blends are cut so that the direction of the path changes little on each piece [rad].
+constexpr double ARC_CUT = 0.13;
+constexpr double ARC_CUT_WHEN_SLOW = 0.5;
+constexpr int MOST_ARC_CUTS = 64;
+/// Part of the tolerance that joining lines may take when no other tolerance is given for it.
+constexpr double JOIN_SHARE = 0.1;
+constexpr double BLEND_CUT = 0.3;
+constexpr int MOST_BLEND_CUTS = 4;
 
 }  // namespace
 
 Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept
     : store_(store), settings_(settings) {
-    limits_.velocity.fill(UNLIMITED);
-    limits_.acceleration.fill(UNLIMITED);
+    Limits none;
+    none.velocity.fill(UNLIMITED);
+    none.acceleration.fill(UNLIMITED);
+    none.jerk.fill(UNLIMITED);
+    set_limits(none);
+}
+
+void Planner::set_limits(const Limits &limits) noexcept {
+    wanted_ = limits;
+    limits_ = limits_for_filter(limits, filter_, settings_.period_s);
 }
 
 void Planner::begin(const Pose &start, const Snapshot &now) noexcept {
     end_ = start;
+    filter_ = filter_length(wanted_, settings_.period_s);
+    set_limits(wanted_);
+    programmed_s_ = 0;
+    isStopPlan_ = false;
     first_move_ = last_move_ + 1;
     first_piece_ = last_piece_ + 1;
     oldest_piece_ = first_piece_;
     open_move_ = 0;
+    raw_move_ = 0;
     changed_from_ = 0;
     drops_ = now.drops;
     plan_ = std::max(plan_, now.plan);
@@ -52,13 +71,15 @@ void Planner::begin(const Pose &start, const Snapshot &now) noexcept {
 }
 
 bool Planner::hasRoom(const Snapshot &now) const noexcept {
-    constexpr Sequence PIECES_PER_MOVE = 4;
+    constexpr Sequence PIECES_PER_MOVE = MOST_ARC_CUTS + MOST_BLEND_CUTS + 2;
     const Sequence oldest_piece = std::max(first_piece_, now.piece);
     if (last_piece_ + PIECES_PER_MOVE - oldest_piece >= PIECE_CAPACITY) {
         return false;
     }
     const Sequence oldest_move = last_piece_ < oldest_piece ? last_move_ : store_.piece(oldest_piece).move;
-    return last_move_ + 4 - oldest_move < PRIMITIVE_CAPACITY;
+    // Moves that the mean still covers are kept as well.
+    const Sequence kept = isFiltered() ? PRIMITIVE_CAPACITY / 4 : 4;
+    return last_move_ + kept - oldest_move < PRIMITIVE_CAPACITY;
 }
 
 double Planner::wish_of(const MovePlan &m) const noexcept {
@@ -68,8 +89,7 @@ double Planner::wish_of(const MovePlan &m) const noexcept {
     return m.request.isOverridable ? m.feed * std::max(1.0, scales_.max_feed) : m.feed;
 }
 
-Sequence Planner::add(const Primitive &primitive, const MoveRequest &request) noexcept {
-    const Sequence n = ++last_move_;
+void Planner::fill_move(Sequence n, const Primitive &primitive, const MoveRequest &request) noexcept {
     store_.primitive(n) = primitive;
     const FeedLength feed = feed_length(primitive);
     MovePlan &m = move_plan(n);
@@ -79,70 +99,179 @@ Sequence Planner::add(const Primitive &primitive, const MoveRequest &request) no
     m.request.tag.end = primitive.end;
     m.feed = request.tag.requested_velocity * m.request.tag.feed_ratio;
     store_.move(n) = m.request.tag;
+    programmed_s_ = m.start_s + primitive.length;
     end_ = primitive.end;
+}
+
+Sequence Planner::add(const Primitive &primitive, const MoveRequest &request) noexcept {
+    if (canJoin(primitive, request) && join_line(primitive, request)) {
+        return last_move_;
+    }
+    const Sequence n = ++last_move_;
+    MovePlan &m = move_plan(n);
+    m.start_s = programmed_s_;
+    m.deviation = 0;
+    fill_move(n, primitive, request);
+    joined_count_ = 0;
+    isJoinable_ = true;
     last_synched_ = request.feed_per_revolution > 0 ? n : last_synched_;
 
+    join_raw();
+    raw_move_ = n;
+    return n;
+}
+
+/// Joins the newest move to the one before it, now that it is known to be whole.
+void Planner::join_raw() noexcept {
+    if (raw_move_ == 0) {
+        return;
+    }
+    const Sequence n = raw_move_;
+    raw_move_ = 0;
+    const Primitive &primitive = store_.primitive(n);
+    const MovePlan &m = move_plan(n);
     Joint joint;
     if (open_move_ != 0) {
         joint = joint_between(open_move_, n);
         const Primitive &before = store_.primitive(open_move_);
-        close_move(before.length - joint.d, !(joint.d > 0));
+        close_move(before.length - joint.d, !(joint.d > 0), joint);
         if (joint.d > 0) {
             const MovePlan &a = move_plan(open_move_);
             const double wish = std::min(wish_of(a), wish_of(m));
-            Piece blend;
-            blend.primitive = open_move_;
-            blend.move = open_move_;
-            blend.offset = before.length - joint.d;
-            blend.length = 2.0 * joint.d;
-            blend.blend_d = joint.d;
             isOpenStop_ = false;
-            add_piece(blend, limit_of_blend(before, primitive, joint.d, limits_, wish), wish);
+            add_blend(before, primitive, joint, wish);
         }
     } else if (n > first_move_) {
         const Pose step = tangent_step(store_.primitive(n - 1), primitive);
         joint.isStop = geom::norm(step) > SAME_DIRECTION || m.request.isGated ||
-                       move_plan(n - 1).request.join == Join::STOP;
+                       move_plan(n - 1).request.join == Join::STOP || isAlongOnly(primitive, m.request) ||
+                       isAlongOnly(store_.primitive(n - 1), move_plan(n - 1).request);
+        joint.dwell_s = filter_s();
     }
     open_move_ = n;
     open_offset_ = joint.d;
     isOpenStop_ = joint.isStop;
-    return n;
+    open_joint_ = joint;
 }
 
 void Planner::release_end() noexcept {
+    join_raw();
     if (open_move_ != 0) {
-        close_move(store_.primitive(open_move_).length, true);
+        close_move(store_.primitive(open_move_).length, true, {});
         open_move_ = 0;
     }
 }
 
-/// The open move's own part, from the end of the blend before it up to `to`.
-void Planner::close_move(double to, bool isToEnd) noexcept {
-    const Primitive &p = store_.primitive(open_move_);
+void Planner::add_blend(const Primitive &a, const Primitive &b, const Joint &joint, double wish) noexcept {
+    const double d = joint.d;
+    const double turn = geom::norm(tangent_step(a, b));
+    // A curve among others leaves room for what the mean brings together; one that stands alone is passed
+    // at one speed.
+    const double reach = isFiltered() ? joint.v * filter_s() : 0.0;
+    const bool isShared = isFiltered() && std::min(a.length, b.length) < 3.0 * reach + 2.0 * d;
+    const SpeedLimit whole =
+        isShared ? shared_limit(a, b, joint, wish) : limit_of_blend(a, b, {d, 0, 2.0 * d}, limits_, wish);
+    const int cuts =
+        whole.v < wish ? std::clamp(static_cast<int>(turn / BLEND_CUT) + 1, 1, MOST_BLEND_CUTS) : 1;
     Piece piece;
     piece.primitive = open_move_;
     piece.move = open_move_;
-    piece.offset = open_offset_;
-    piece.length = to - open_offset_;
-    piece.isToEnd = isToEnd;
-    if (piece.length <= 1e-12 * p.length) {
-        return;
+    piece.blend_d = d;
+    piece.tolerance = tolerance_of(move_plan(open_move_));
+    const double other = tolerance_of(move_plan(open_move_ + 1));
+    piece.tolerance = piece.tolerance > 0 && other > 0 ? std::min(piece.tolerance, other)
+                                                       : std::max(piece.tolerance, other);
+    for (int i = 0; i < cuts; ++i) {
+        const double from = 2.0 * d * i / cuts;
+        const double to = 2.0 * d * (i + 1) / cuts;
+        piece.offset = from;
+        piece.length = to - from;
+        piece.programmed_s = move_plan(open_move_).start_s + a.length - d + from;
+        SpeedLimit limit = cuts == 1 ? whole : limit_of_blend(a, b, {d, from, to}, limits_, wish);
+        limit.v = std::min(limit.v, joint.v);
+        add_piece(piece, limit);
     }
-    const double wish = wish_of(move_plan(open_move_));
-    add_piece(piece, limit_of(p, limits_, wish), wish);
 }
 
-void Planner::add_piece(const Piece &piece, SpeedLimit limit, double wish) noexcept {
+/// The open move's own part, from the end of the blend before it up to `to`, where the blend of `next` begins
+/// if there is one.
+void Planner::close_move(double to, bool isToEnd, const Joint &next) noexcept {
+    const Primitive &p = store_.primitive(open_move_);
+    const double from = open_offset_;
+    if (to - from <= 1e-12 * p.length) {
+        return;
+    }
+    const MovePlan &m = move_plan(open_move_);
+    Piece piece;
+    piece.primitive = open_move_;
+    piece.move = open_move_;
+    piece.tolerance = tolerance_of(m);
+    piece.offset = from;
+    const double wish = std::min(wish_of(m), filtered_arc_speed(p, m));
+    const bool isAfterBlend = isFiltered() && open_joint_.d > 0;
+    const bool isBeforeBlend = isFiltered() && next.d > 0;
+    const double before = isAfterBlend ? std::min(open_joint_.v, wish) * filter_s() : 0.0;
+    const double after = isBeforeBlend ? std::min(next.v, wish) * filter_s() : 0.0;
+    const bool isZoned = !p.isArc && before + after > 0 && before + after < 0.9 * (to - from);
+    if (!isZoned) {
+        const Sequence first = last_piece_ + 1;
+        add_part(piece, to, isToEnd, wish);
+        if (before + after > 0 && !p.isArc) {
+            scale_piece(first, 1.0, 1.0 - std::max(open_joint_.turning, next.turning));
+        }
+        return;
+    }
+    // Next to a curve the speed stays as it is there, so that turning and braking do not meet in the mean.
+    if (before > 0) {
+        add_part(piece, from + before, false, open_joint_.v);
+    }
+    piece.offset = from + before;
+    add_part(piece, to - after, isToEnd && !(after > 0), wish);
+    if (after > 0) {
+        piece.offset = to - after;
+        add_part(piece, to, isToEnd, next.v);
+    }
+}
+
+/// The part of the open move from piece.offset up to `to`, at most at the speed v.
+void Planner::add_part(Piece piece, double to, bool isToEnd, double v) noexcept {
+    const Primitive &p = store_.primitive(open_move_);
+    const MovePlan &m = move_plan(open_move_);
+    const double from = piece.offset;
+    const double wish = std::min(v, wish_of(m));
+    SpeedLimit whole = limit_of(p, from, to, limits_, wish);
+    int cuts = 1;
+    piece.isAlong = isAlongOnly(p, m.request);
+    if (piece.isAlong) {
+        whole = along_limit(p, wish);
+    } else if (p.isArc) {
+        const double cut = whole.v < wish ? ARC_CUT : ARC_CUT_WHEN_SLOW;
+        const double pieces = std::ceil(std::abs(p.omega) * (to - from) / cut);
+        cuts = static_cast<int>(std::clamp(pieces, 1.0, static_cast<double>(MOST_ARC_CUTS)));
+    }
+    for (int i = 0; i < cuts; ++i) {
+        const double begin = from + (to - from) * i / cuts;
+        const double end = i + 1 == cuts ? to : from + (to - from) * (i + 1) / cuts;
+        piece.offset = begin;
+        piece.programmed_s = m.start_s + begin;
+        piece.length = end - begin;
+        piece.isToEnd = isToEnd && i + 1 == cuts;
+        add_piece(piece, cuts == 1 ? whole : limit_of(p, begin, end, limits_, wish));
+        isOpenStop_ = false;
+    }
+}
+
+void Planner::add_piece(const Piece &piece, const SpeedLimit &limit) noexcept {
     const Sequence k = last_piece_ + 1;
     Piece &slot = store_.piece(k);
     slot = piece;
-    slot.acceleration = limit.a * (1.0 - ACCELERATION_MARGIN);
+    slot.acceleration = limit.a;
     PiecePlan &plan = piece_plan(k);
-    plan.v_limit = std::min(
-        {limit.v, wish, MOVES_PER_CYCLE * store_.primitive(piece.primitive).length / settings_.period_s});
+    plan.v_limit =
+        std::min(limit.v, MOVES_PER_CYCLE * store_.primitive(piece.primitive).length / settings_.period_s);
     plan.v2_in = -1;
     plan.isStopBefore = isOpenStop_;
+    plan.dwell_s = isOpenStop_ ? open_joint_.dwell_s : filter_s();
     last_piece_ = k;
     isAtEndOfPath_ = false;
     // Release: the executor that sees the number (acquire) sees the piece and its primitives filled.
@@ -157,37 +286,94 @@ Planner::Joint Planner::joint_between(Sequence na, Sequence nb) const noexcept {
     const bool isStop = ma.request.join == Join::STOP || mb.request.isGated || ma.request.tag.isProbe ||
                         mb.request.tag.isProbe;
     if (isStop) {
-        return {0, true};
+        return {.isStop = true, .dwell_s = filter_s()};
     }
     const double step = geom::norm(tangent_step(a, b));
+    const bool isAlong = isAlongOnly(a, ma.request) || isAlongOnly(b, mb.request);
+    if (isAlong) {
+        return {.isStop = true, .dwell_s = filter_s()};
+    }
     if (step <= SAME_DIRECTION) {
-        return {0, false};
+        return {};
     }
     const bool isExact = ma.request.join == Join::EXACT || mb.request.join == Join::EXACT;
-    const bool isCorner = isExact && step > EXACT_PATH_STEP;
     const Pose ta = derivative_at(a, a.length);
     const Pose tb = derivative_at(b, 0);
-    if (isCorner || geom::dot(ta, tb) < REVERSAL_COSINE * geom::norm(ta) * geom::norm(tb)) {
-        return {0, true};
+    const bool isCorner = isExact && step > EXACT_PATH_STEP;
+    const bool isReversal = geom::dot(ta, tb) < REVERSAL_COSINE * geom::norm(ta) * geom::norm(tb);
+    double tolerance = isExact ? EXACT_PATH_DEVIATION : tolerance_of(ma);
+    const double other = tolerance_of(mb);
+    if (!isExact && other > 0) {
+        tolerance = tolerance > 0 ? std::min(tolerance, other) : other;
     }
+    if (isFiltered()) {
+        return filtered_corner(na, nb, tolerance, isCorner || isReversal);
+    }
+    return corner(na, nb, tolerance, isCorner || isReversal);
+}
+
+/// The blend within the tolerance that is wide enough for the speed; a stop where there is none.
+Planner::Joint Planner::corner(Sequence na, Sequence nb, double tolerance, bool mustStop) const noexcept {
+    if (mustStop) {
+        return {.isStop = true};
+    }
+    const Primitive &a = store_.primitive(na);
+    const Primitive &b = store_.primitive(nb);
     double d = 0.5 * std::min(a.length, b.length);
-    double tolerance = isExact ? EXACT_PATH_DEVIATION : ma.request.tolerance;
-    const bool isOther = !isExact && mb.request.tolerance > 0;
-    if (isOther) {
-        tolerance = tolerance > 0 ? std::min(tolerance, mb.request.tolerance) : mb.request.tolerance;
-    }
     if (tolerance > 0) {
         d = std::min(d, blend_d_for_tolerance(a, b, tolerance));
     }
-    const double wish_a = wish_of(ma);
-    const double wish_b = wish_of(mb);
-    const double va = std::min(wish_a, limit_of(a, limits_, wish_a).v);
-    const double vb = std::min(wish_b, limit_of(b, limits_, wish_b).v);
+    const double va = limit_of(a, 0, a.length, limits_, wish_of(move_plan(na))).v;
+    const double vb = limit_of(b, 0, b.length, limits_, wish_of(move_plan(nb))).v;
     d = std::min(d, blend_d_for_speed(a, b, limits_, std::min(va, vb)));
-    return d > SMALLEST_BLEND ? Joint{d, false} : Joint{0, true};
+    return d > SMALLEST_BLEND ? Joint{.d = d} : Joint{.isStop = true};
+}
+
+/// The line may become a part of the open one: same demands, and nothing happens in between.
+bool Planner::canJoin(const Primitive &line, const MoveRequest &request) const noexcept {
+    if (raw_move_ == 0 || !isJoinable_ || isStepping_ || !settings_.isMerging) {
+        return false;
+    }
+    const MoveRequest &open = move_plan(raw_move_).request;
+    const bool isSame = open.tag.requested_velocity == request.tag.requested_velocity &&
+                        open.tolerance == request.tolerance &&
+                        open.merge_tolerance == request.merge_tolerance && open.isRapid == request.isRapid &&
+                        open.isOverridable == request.isOverridable && open.tag.type == request.tag.type;
+    const bool isPlain = open.join == Join::BLEND && request.join == Join::BLEND && !request.isGated &&
+                         !(request.feed_per_revolution > 0) && !(open.feed_per_revolution > 0);
+    return isSame && isPlain && !line.isArc && !store_.primitive(raw_move_).isArc &&
+           joined_count_ < MOST_JOINED;
+}
+
+/// Makes the open line go to the end of `line` if all ends in between stay near it, in order.
+bool Planner::join_line(const Primitive &line, const MoveRequest &request) noexcept {
+    double allowed = request.merge_tolerance;
+    if (request.tolerance > 0) {
+        allowed = std::min(std::max(allowed, JOIN_SHARE * request.tolerance), 0.5 * request.tolerance);
+    }
+    const Primitive &open = store_.primitive(raw_move_);
+    const Primitive whole = make_line(open.start, line.end);
+    joined_[joined_count_] = open.end;
+    double along = 0;
+    double worst = 0;
+    for (std::size_t i = 0; i <= joined_count_; ++i) {
+        const Pose off = joined_[i] - whole.start;
+        const double s = geom::dot(off, whole.lin);
+        const Pose side = off - whole.lin * s;
+        worst = std::max({worst, geom::norm_linear(side), geom::norm_abc(side)});
+        if (!(s > along) || s >= whole.length || worst > allowed) {
+            return false;
+        }
+        along = s;
+    }
+    ++joined_count_;
+    move_plan(raw_move_).deviation = worst;
+    fill_move(raw_move_, whole, request);
+    return true;
 }
 
 bool Planner::add_event(PathEvent event) noexcept {
+    isJoinable_ = false;
     event.after_move = last_move_;
     event.drops = drops_;
     return store_.events.push(event);

@@ -56,7 +56,7 @@ void Planner::pass_backward(Sequence from, bool isWhole) noexcept {
     for (Sequence k = from; k >= oldest_piece_ && k > 0; --k) {
         const Piece &p = store_.piece(k);
         PiecePlan &plan = piece_plan(k);
-        double v2 = std::min(cap * cap, next2 + 2.0 * p.acceleration * p.length);
+        double v2 = std::min(cap * cap, p.acceleration.highest_before(next2, p.length));
         if (k > oldest_piece_) {
             cap = cap_of(k - 1);
             v2 = std::min(v2, cap * cap);
@@ -111,7 +111,8 @@ void Planner::set_step(bool isStepping, std::uint32_t block) noexcept {
 
 /// Where an executor at rest goes on; false when there is nothing more.
 bool Planner::start_state(const Snapshot &now, State &state) const noexcept {
-    state = now.piece < first_piece_ ? State{first_piece_, 0, 0} : State{now.piece, now.x, 0};
+    state =
+        now.piece < first_piece_ ? State{first_piece_, 0, 0, {}} : State{now.piece, now.x, 0, now.coasting};
     if (state.piece > last_piece_) {
         return false;
     }
@@ -119,7 +120,10 @@ bool Planner::start_state(const Snapshot &now, State &state) const noexcept {
         if (state.piece == last_piece_) {
             return false;
         }
-        state = {state.piece + 1, 0, 0};
+        state = {state.piece + 1, 0, 0, state.coasting};
+    }
+    if (now.isSettled) {
+        state.coasting = {};
     }
     return true;
 }
@@ -134,11 +138,12 @@ std::uint32_t Planner::next_block(const Snapshot &now) const noexcept {
     State state;
     if (now.motion != Motion::REST && now.piece >= first_piece_) {
         const Piece &p = store_.piece(now.piece);
-        const bool isSecond = p.blend_d > 0 && now.x >= p.blend_d;
+        const bool isSecond = p.blend_d > 0 && p.offset + now.x >= p.blend_d;
         return store_.move(p.move + (isSecond ? 1 : 0)).block;
     }
     if (!start_state(now, state)) {
-        return open_move_ != 0 ? store_.move(open_move_).block : store_.move(last_move_).block;
+        const Sequence next = open_move_ != 0 ? open_move_ : raw_move_;
+        return store_.move(next != 0 ? next : last_move_).block;
     }
     return store_.move(state.x > 0 ? store_.piece(state.piece).move : move_of(state.piece)).block;
 }
@@ -152,7 +157,7 @@ bool Planner::isAtStepStop(const Snapshot &now) const noexcept {
 
 bool Planner::hasNext(const Snapshot &now) const noexcept {
     State state;
-    return now.motion != Motion::REST || open_move_ != 0 || start_state(now, state);
+    return now.motion != Motion::REST || open_move_ != 0 || raw_move_ != 0 || start_state(now, state);
 }
 
 std::uint32_t Planner::moves_left(const Snapshot &now) const noexcept {
@@ -167,15 +172,20 @@ bool Planner::predict(const Snapshot &now, State &state) const noexcept {
     Sequence n = now.phase;
     double t = now.time_in_phase;
     bool isOver = false;
+    state.coasting = now.coasting;
     for (std::uint64_t c = 0; c < settings_.latency && !isOver; ++c) {
         double dt = settings_.period_s;
         while (!isOver && dt >= store_.phase(n).duration - t) {
+            state.coasting.pass(store_.phase(n).a, store_.phase(n).duration - t);
             dt -= store_.phase(n).duration - t;
             isOver = n + 1 >= end;
             n += isOver ? 0 : 1;
             t = 0;
         }
-        t += isOver ? 0 : dt;
+        if (!isOver) {
+            state.coasting.pass(store_.phase(n).a, dt);
+            t += dt;
+        }
     }
     const Phase &p = store_.phase(n);
     if (isOver) {
@@ -190,7 +200,7 @@ bool Planner::predict(const Snapshot &now, State &state) const noexcept {
         const double length = store_.piece(p.piece).length;
         const bool isAtEnd = std::abs(state.x - length) <= 1e-12 * (1.0 + length);
         if (isAtEnd && p.piece < last_piece_) {
-            state = {p.piece + 1, 0, 0};
+            state = {p.piece + 1, 0, 0, state.coasting};
         }
         return isStop && !(isAtEnd && p.piece == last_piece_);
     }
@@ -211,8 +221,34 @@ void Planner::emit_phase(double length, double v1) noexcept {
         ++plan_end_;
         planned_s_ += dt;
         s.x += length;
+        s.coasting.pass(v1 - s.v, dt);
     }
     s.v = v1;
+}
+
+void Planner::emit_wait(double duration) noexcept {
+    State &s = planned_;
+    store_.phase(plan_end_++) = {s.piece, duration, s.x, 0, 0, 0};
+    planned_s_ += duration;
+    s.coasting.pass(0, duration);
+}
+
+/// Up from the planned speed, at most to `cap`, and down again to `out2` (squared) where that is in reach.
+void Planner::emit_hill(double left, double cap, double out2) noexcept {
+    const AccelBound &bound = store_.piece(planned_.piece).acceleration;
+    const double v2 = planned_.v * planned_.v;
+    // The highest squared speed with an acceleration that holds there: 2 b - v2 - end2 = 2 left a(b).
+    const double reach2 = bound.highest_before(v2, left);
+    const double end2 = std::min(out2, reach2);
+    const double peak2 =
+        std::min(cap * cap, std::max(end2, bound.highest_before(0.5 * (v2 + end2), 0.5 * left)));
+    const double a = bound.at(peak2);
+    const double up = peak2 > v2 ? std::min(left, (peak2 - v2) / (2.0 * a)) : 0.0;
+    const double down = peak2 > end2 ? std::min(left - up, (peak2 - end2) / (2.0 * a)) : 0.0;
+    const double peak = std::sqrt(peak2);
+    emit_phase(up, peak);
+    emit_phase(left - up - down, peak);
+    emit_phase(down, std::sqrt(end2));
 }
 
 /// Commits one piece from the planned state on; false when the plan ends here for now.
@@ -225,25 +261,26 @@ bool Planner::emit_piece() noexcept {
         if (isLast || (s.v <= 0 && isBarrier(s.piece + 1))) {
             return false;
         }
-        s = {s.piece + 1, 0, s.v};
+        s = {s.piece + 1, 0, s.v, s.coasting};
         return true;
     }
     const double cap = cap_of(s.piece);
     if (!hasPhaseRoom() || (s.v <= 0 && cap <= 0)) {
         return false;
     }
-    const double a = p.acceleration;
     const double out2 = isLast ? 0.0 : piece_plan(s.piece + 1).v2_in;
     double left = p.length - s.x;
+    double a = p.acceleration.at(s.v * s.v);
     if (s.v > cap) {
         // Too fast after an override came down: as hard as the limits allow, until it fits.
-        const double brake = (s.v * s.v - cap * cap) / (2.0 * a);
-        if (brake < left) {
-            emit_phase(brake, cap);
+        const double excess = s.v * s.v - cap * cap;
+        if (excess < 2.0 * a * left) {
+            emit_phase(excess / (2.0 * a), cap);
             left = p.length - s.x;
             if (cap <= 0) {
                 return true;
             }
+            a = p.acceleration.at(s.v * s.v);
         }
     }
     const double v2 = s.v * s.v;
@@ -252,16 +289,9 @@ bool Planner::emit_piece() noexcept {
         const bool isFit = slowest2 <= out2 + STOP_FIT * v2;
         emit_phase(left, std::sqrt(isFit ? std::min(out2, v2) : slowest2));
     } else {
-        const double end2 = std::min(out2, v2 + 2.0 * a * left);
-        const double peak2 = std::min(cap * cap, 0.5 * (2.0 * a * left + v2 + end2));
-        const double up = std::max(0.0, (peak2 - v2) / (2.0 * a));
-        const double down = std::max(0.0, (peak2 - end2) / (2.0 * a));
-        const double peak = std::sqrt(peak2);
-        emit_phase(std::min(up, left), peak);
-        emit_phase(std::max(0.0, left - up - down), peak);
-        emit_phase(std::min(down, left), std::sqrt(end2));
+        emit_hill(left, cap, out2);
     }
-    s = {s.piece, p.length, s.v};
+    s.x = p.length;
     return true;
 }
 
@@ -276,8 +306,7 @@ void Planner::replan(const Snapshot &now, const State &from) noexcept {
     planned_ = from;
     planned_s_ = 0;
     if (start_delay_s_ > 0 && from.v <= 0) {
-        store_.phase(plan_end_++) = {from.piece, start_delay_s_, from.x, 0, 0, 0};
-        planned_s_ = start_delay_s_;
+        emit_wait(start_delay_s_);
     }
     const Sequence waited = plan_end_;
     emit(planned_s_ + settings_.horizon_s);
@@ -324,6 +353,10 @@ void Planner::append(const Snapshot &now) noexcept {
 }
 
 void Planner::update(const Snapshot &now) noexcept {
+    if (isFiltered()) {
+        update_filtered(now);
+        return;
+    }
     if (now.drops != drops_ || now.isDropping) {
         return;
     }

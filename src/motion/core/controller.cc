@@ -5,6 +5,14 @@
 
 namespace mw::motion {
 
+namespace {
+
+/// A jerk from here on means none; a linear jerk below the least turns the jerk-limited planner off.
+constexpr double JERK_OFF = 1e9;
+constexpr double LEAST_JERK = 1;
+
+}  // namespace
+
 Controller::Controller(const ControllerConfig &config, const kins::Kinematics &kinematics, Channels &channels,
                        PathLink &link) noexcept
     : config_(config), kinematics_(kinematics), channels_(channels), link_(link),
@@ -156,6 +164,7 @@ void Controller::publish_limits() noexcept {
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
         double v = std::min(get(Parameter::AXIS_MAX_VELOCITY, i), traj::UNLIMITED);
         double a = std::min(get(Parameter::AXIS_MAX_ACCELERATION, i), traj::UNLIMITED);
+        double jerk = get(Parameter::AXIS_MAX_JERK, i);
         out.low[i] = isAllHomed ? get(Parameter::AXIS_MIN_LIMIT, i) : -UNBOUNDED;
         out.high[i] = isAllHomed ? get(Parameter::AXIS_MAX_LIMIT, i) : UNBOUNDED;
         bool isDriven = map == nullptr;
@@ -166,6 +175,7 @@ void Controller::publish_limits() noexcept {
             isDriven = true;
             v = std::min(v, get(Parameter::JOINT_MAX_VELOCITY, j));
             a = std::min(a, get(Parameter::JOINT_MAX_ACCELERATION, j));
+            jerk = std::min(jerk, get(Parameter::JOINT_MAX_JERK, j));
             if (homing_.isHomed(j)) {
                 out.low[i] = std::max(out.low[i], get(Parameter::JOINT_MIN_LIMIT, j));
                 out.high[i] = std::min(out.high[i], get(Parameter::JOINT_MAX_LIMIT, j));
@@ -174,7 +184,11 @@ void Controller::publish_limits() noexcept {
         out.axes |= isDriven ? 1U << i : 0U;
         out.limits.velocity[at(i)] = v;
         out.limits.acceleration[at(i)] = a;
+        out.limits.jerk[at(i)] = jerk < JERK_OFF ? jerk : traj::UNLIMITED;
     }
+    const double jerk = get(Parameter::TRAJ_MAX_JERK);
+    out.limits.jerk[traj::XYZ_NORM] = jerk < JERK_OFF ? jerk : traj::UNLIMITED;
+    out.limits.isJerkLimited = settings_.isSet(Parameter::TRAJ_PLANNER_TYPE) && jerk >= LEAST_JERK;
     out.limits.velocity[traj::XYZ_NORM] = std::min(get(Parameter::TRAJ_MAX_VELOCITY), traj::UNLIMITED);
     out.limits.acceleration[traj::XYZ_NORM] =
         std::min(get(Parameter::TRAJ_MAX_ACCELERATION), traj::UNLIMITED);

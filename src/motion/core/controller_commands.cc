@@ -199,10 +199,6 @@ Reason Controller::set_parameter(const SetParameter &c, std::int16_t &index) noe
     if (homing_.isActive()) {
         return Reason::HOMING;
     }
-    const bool isPlannerType = c.parameter == static_cast<std::uint16_t>(Parameter::TRAJ_PLANNER_TYPE);
-    if (isPlannerType && c.value != 0) {
-        return Reason::NOT_SUPPORTED;  // jerk-limited: not yet
-    }
     const Reason reason = settings_.set(c, config_.num_joints, config_.num_spindles);
     if (reason != Reason::NONE) {
         return reason;

@@ -104,7 +104,8 @@ void PathPlanner::complete_moves() noexcept {
     while (pending_count() > 0) {
         const Pending &p = pending(pending_head_);
         const bool isReached = e.done_move >= p.after_move;
-        const bool isStanding = e.motion == traj::Motion::REST && e.done_move >= planner_.last_move();
+        const bool isStanding =
+            e.motion == traj::Motion::REST && e.isSettled && e.done_move >= planner_.last_move();
         if (!isReached || (p.isFlush && !isStanding)) {
             return;
         }
@@ -187,7 +188,11 @@ Reason PathPlanner::accept(const PathCommand &c) noexcept {
     if (view_.mode != Mode::COORD) {
         return Reason::WRONG_MODE;
     }
-    if (!isPathBegun_) {
+    // Jerk limits change only while everything stands.
+    const traj::Snapshot &e = view_.executor;
+    const bool isIdle = pending_count() == 0 && e.isSettled && e.done_move >= planner_.last_move();
+    const bool isNewFilter = isPathBegun_ && isIdle && !planner_.isFilterCurrent();
+    if (!isPathBegun_ || isNewFilter) {
         planner_.begin(view_.position, view_.executor);
         isPathBegun_ = true;
     }
@@ -221,6 +226,9 @@ traj::MoveRequest PathPlanner::request_for(const PathCommand &c, const MoveTerms
              : terms.mode == PathMode::EXACT_PATH ? traj::Join::EXACT
                                                   : traj::Join::BLEND;
     r.tolerance = terms.tolerance;
+    // A Q as large as P says no more than P does.
+    const bool isOwnQ = !(terms.tolerance > 0) || terms.naivecam_tolerance < terms.tolerance;
+    r.merge_tolerance = isOwnQ ? terms.naivecam_tolerance : 0.0;
     const bool hasFeed = terms.feed > 0 || terms.feed_per_revolution > 0;
     r.isRapid = terms.type == MotionType::TRAVERSE || terms.type == MotionType::INDEX_ROTARY || !hasFeed;
     r.isOverridable = terms.isFeedOverridable;

@@ -22,7 +22,7 @@ constexpr int CALM_AFTER = 50000;
 
 class Campaign {
   public:
-    explicit Campaign(unsigned seed) : random_(seed), rig_("XYZABCUVW") {
+    Campaign(unsigned seed, bool isJerkLimited) : random_(seed), rig_("XYZABCUVW") {
         for (int j = 0; j < geom::AXIS_COUNT; ++j) {
             const double v = std::pow(10.0, real(0.7, 2.5));
             const double a = std::pow(10.0, real(1.7, 4.0));
@@ -30,8 +30,13 @@ class Campaign {
             rig_.set(Parameter::JOINT_MAX_ACCELERATION, j, a);
             rig_.set(Parameter::JOINT_MIN_LIMIT, j, -1e6);
             rig_.set(Parameter::JOINT_MAX_LIMIT, j, 1e6);
-            limits_.push_back({v, a});
+            const double jerk = isJerkLimited ? a * std::pow(10.0, real(1, 2.5)) : 1e300;
+            limits_.push_back({v, a, jerk});
+            if (isJerkLimited) {
+                rig_.set(Parameter::JOINT_MAX_JERK, j, jerk);
+            }
         }
+        rig_.set(Parameter::TRAJ_PLANNER_TYPE, 0, isJerkLimited ? 1 : 0);
         rig_.set(Parameter::MAX_FEED_SCALE, 0, 1.5);
         rig_.ready();
     }
@@ -180,14 +185,22 @@ int number_from(const char *name, int preset) {
     return text != nullptr ? std::atoi(text) : preset;
 }
 
-TEST(MotionCampaign, RandomProgramsWithAbortsKeepTheLimits) {
+void run_all(bool isJerkLimited) {
     const int first = number_from("MW_CAMPAIGN_FIRST", 1);
     const int count = number_from("MW_CAMPAIGN_SEEDS", 30);
     for (int i = 0; i < count && !::testing::Test::HasFailure(); ++i) {
         const auto seed = static_cast<unsigned>(first + i);
         SCOPED_TRACE("seed " + std::to_string(seed));
-        Campaign(seed).run();
+        Campaign(seed, isJerkLimited).run();
     }
+}
+
+TEST(MotionCampaign, RandomProgramsWithAbortsKeepTheLimits) {
+    run_all(false);
+}
+
+TEST(MotionCampaign, RandomProgramsWithAbortsKeepJerkLimits_C13) {
+    run_all(true);
 }
 
 TEST(MotionCampaign, TheSameProgramTwiceGivesTheSameBits) {

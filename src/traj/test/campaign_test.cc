@@ -21,7 +21,7 @@ struct Program {
 
 class Maker {
   public:
-    explicit Maker(unsigned seed) : random_(seed) {}
+    Maker(unsigned seed, bool isJerkLimited) : random_(seed), isJerkLimited_(isJerkLimited) {}
     double real(double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random_);
     }
@@ -36,6 +36,13 @@ class Maker {
         }
         p.limits.velocity[XYZ_NORM] = chance(0.5) ? UNLIMITED : std::pow(10.0, real(1, 2.5));
         p.limits.acceleration[XYZ_NORM] = chance(0.5) ? UNLIMITED : std::pow(10.0, real(2, 4));
+        p.limits.isJerkLimited = isJerkLimited_;
+        p.limits.jerk.fill(UNLIMITED);
+        for (std::size_t i = 0; i < geom::AXIS_COUNT && isJerkLimited_; ++i) {
+            p.limits.jerk[i] =
+                chance(0.2) ? UNLIMITED : p.limits.acceleration[i] * std::pow(10.0, real(0.9, 2.5));
+        }
+        p.limits.jerk[XYZ_NORM] = isJerkLimited_ && chance(0.5) ? std::pow(10.0, real(3, 6)) : UNLIMITED;
         p.tolerance = chance(0.2) ? 0.0 : std::pow(10.0, real(-3, 0));
         p.join = chance(0.15) ? Join::STOP : chance(0.15) ? Join::EXACT : Join::BLEND;
         const double size = std::pow(10.0, real(-2, 1.3));
@@ -102,6 +109,7 @@ class Maker {
         return fault == ArcFault::NONE ? p : Primitive{};
     }
     std::mt19937 random_;
+    bool isJerkLimited_;
 };
 
 double deviation(const Pose &a, const Pose &b) {
@@ -121,7 +129,9 @@ double worst_blend_deviation(const Rig &rig, Sequence first, Sequence last) {
         const Primitive &b = rig.store->primitive(p.primitive + 1);
         for (int i = 0; i <= 50; ++i) {
             const double x = p.length * i / 50;
-            const Pose on = x < p.blend_d ? position_at(a, p.offset + x) : position_at(b, x - p.blend_d);
+            const double z = p.offset + x;
+            const double from = a.length - p.blend_d;
+            const Pose on = z < p.blend_d ? position_at(a, from + z) : position_at(b, z - p.blend_d);
             worst = std::max(worst, deviation(position_at(*rig.store, p, x), on));
         }
     }
@@ -173,6 +183,7 @@ struct Outcome {
 void drive(Maker &maker, const Program &program, Outcome &out, bool isDropped) {
     Rig &rig = out.rig;
     rig.planner.set_limits(program.limits);
+    rig.planner.begin(Pose{}, rig.executor.snapshot());
     Scales scales;
     scales.max_feed = 1.5;
     rig.planner.set_scales(scales);
@@ -218,9 +229,9 @@ void drive(Maker &maker, const Program &program, Outcome &out, bool isDropped) {
     }
 }
 
-void check(unsigned seed) {
+void check(unsigned seed, bool isJerkLimited) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    Maker maker(seed);
+    Maker maker(seed, isJerkLimited);
     const Program program = maker.make();
     if (program.primitives.empty()) {
         return;
@@ -257,12 +268,20 @@ int number_from(const char *name, int preset) {
     return text != nullptr ? std::atoi(text) : preset;
 }
 
-TEST(Campaign, RandomProgramsKeepLimitsToleranceAndOrder) {
+void check_all(bool isJerkLimited) {
     const int first = number_from("MW_CAMPAIGN_FIRST", 1);
     const int count = number_from("MW_CAMPAIGN_SEEDS", 60);
     for (int i = 0; i < count && !::testing::Test::HasFailure(); ++i) {
-        check(static_cast<unsigned>(first + i));
+        check(static_cast<unsigned>(first + i), isJerkLimited);
     }
+}
+
+TEST(Campaign, RandomProgramsKeepLimitsToleranceAndOrder) {
+    check_all(false);
+}
+
+TEST(Campaign, RandomProgramsKeepJerkLimits_C13) {
+    check_all(true);
 }
 
 }  // namespace

@@ -53,7 +53,8 @@ struct Rig {
 inline testing::LimitChecker make_checker(const Limits &limits, double period) {
     std::vector<testing::AxisLimit> axes;
     for (std::size_t i = 0; i < geom::AXIS_COUNT; ++i) {
-        axes.push_back({limits.velocity[i], limits.acceleration[i]});
+        axes.push_back(
+            {limits.velocity[i], limits.acceleration[i], limits.isJerkLimited ? limits.jerk[i] : 1e300});
     }
     return {axes, period};
 }

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Programs that trajectory planners are measured with: twelve kinds of machining, as plain moves. Uses
+// nothing of src/traj, so that bounds and other planners can be measured on the same ground. See README.md.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "geom/pose.hh"
+
+namespace mw::bench {
+
+using geom::Pose;
+
+enum class PathControl { BLEND, EXACT_PATH, EXACT_STOP };
+
+/// One programmed move: a line, or an arc about `centre` in the plane of `normal` (helical by what remains).
+struct Move {
+    Pose end;
+    bool isArc = false;
+    Pose centre, normal;
+    double angle_rad = 0;  ///< signed about `normal`
+    double feed = 0;       ///< along X Y Z, or A B C when these alone move [mm/s, deg/s]; 0: rapid
+    PathControl control = PathControl::BLEND;
+};
+
+struct Program {
+    std::string name;
+    Pose start;
+    std::vector<Move> moves;
+    double tolerance = 0.02;  ///< G64 P [mm; degrees over A B C]
+    /// Limits of each axis [mm or degrees per s, s^2, s^3].
+    Pose max_velocity, max_acceleration, max_jerk;
+};
+
+/// All kinds, always the same moves.
+std::vector<Program> all_kinds();
+
+/// Dense blocks for measuring the planning rate: 0.01 mm apart at F20000 along a smooth curve in nine
+/// coordinates.
+Program dense_nine_axes(int blocks);
+
+/// The programmed path as points no farther than `step` apart, first the start; arcs by their own formula.
+std::vector<Pose> sample_path(const Program &program, double step);
+
+/// Position at `part` in [0, 1] of a move that starts at `from`.
+Pose position_on(const Pose &from, const Move &move, double part);
+
+}  // namespace mw::bench

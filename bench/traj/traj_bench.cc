@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Drives each kind of program with the planner in virtual time: cycle time, limits, deviation, planning rate.
+// traj_bench [--jerk] [--fast] [--rate] [--trace FOLDER] [--only WORD]; --fast leaves the deviation out;
+// --rate measures planning alone, merging off, on 0.01 mm blocks in nine coordinates.
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include "testing/deviation.hh"
+#include "testing/limit_checker.hh"
+#include "traj/executor.hh"
+#include "traj/kinds.hh"
+#include "traj/planner.hh"
+
+namespace mw::bench {
+namespace {
+
+constexpr double T = 1e-3;
+
+struct Options {
+    bool isJerkLimited = false;
+    bool isFast = false;
+    bool isRate = false;
+    const char *trace = nullptr;
+    const char *only = "";
+};
+
+traj::Primitive primitive_of(const Pose &from, const Move &m) {
+    if (!m.isArc) {
+        return traj::make_line(from, m.end);
+    }
+    traj::Primitive p;
+    traj::make_arc(from, m.end, {m.centre, m.normal, m.angle_rad, false}, p);
+    return p;
+}
+
+traj::MoveRequest request_of(const Program &program, const Move &m) {
+    traj::MoveRequest r;
+    r.tag.requested_velocity = m.feed;
+    r.isRapid = m.feed == 0;
+    r.tolerance = program.tolerance;
+    r.join = m.control == PathControl::EXACT_STOP   ? traj::Join::STOP
+             : m.control == PathControl::EXACT_PATH ? traj::Join::EXACT
+                                                    : traj::Join::BLEND;
+    return r;
+}
+
+traj::Limits limits_of(const Program &program, bool isJerkLimited) {
+    traj::Limits l;
+    l.velocity.fill(traj::UNLIMITED);
+    l.acceleration.fill(traj::UNLIMITED);
+    l.jerk.fill(traj::UNLIMITED);
+    l.isJerkLimited = isJerkLimited;
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        l.velocity[static_cast<std::size_t>(i)] = program.max_velocity[i];
+        l.acceleration[static_cast<std::size_t>(i)] = program.max_acceleration[i];
+        l.jerk[static_cast<std::size_t>(i)] = program.max_jerk[i];
+    }
+    return l;
+}
+
+struct Run {
+    std::vector<Pose> samples;
+    double planning_s = 0;
+    bool isFinished = false;
+};
+
+/// The whole program is offered at once, as far as the planner has room.
+Run drive(const Program &program, bool isJerkLimited, bool isMerging) {
+    Run run;
+    auto store = std::make_unique<traj::PathStore>();
+    traj::Executor executor(*store, T);
+    auto planner = std::make_unique<traj::Planner>(*store, traj::PlannerSettings{T, 3, 0.1, isMerging});
+    planner->set_limits(limits_of(program, isJerkLimited));
+    executor.set_position(program.start);
+    std::uint64_t cycle = 0;
+    executor.step(cycle);
+    planner->begin(program.start, executor.snapshot());
+    run.samples.push_back(program.start);
+    std::size_t fed = 0;
+    for (int n = 0; n < 2000000 && !run.isFinished; ++n) {
+        if (n % 5 == 0) {
+            const auto begin = std::chrono::steady_clock::now();
+            for (; fed < program.moves.size() && planner->hasRoom(executor.snapshot()); ++fed) {
+                const Pose from = fed == 0 ? program.start : program.moves[fed - 1].end;
+                planner->add(primitive_of(from, program.moves[fed]), request_of(program, program.moves[fed]));
+            }
+            if (fed == program.moves.size()) {
+                planner->release_end();
+            }
+            planner->update(executor.snapshot());
+            run.planning_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        }
+        run.samples.push_back(executor.step(++cycle).position);
+        run.isFinished = fed == program.moves.size() && executor.isAtRest() &&
+                         executor.snapshot().done_move >= planner->last_move();
+    }
+    return run;
+}
+
+/// Seconds from the first to the last sample that moves.
+double cycle_time(const std::vector<Pose> &samples) {
+    std::size_t first = 0;
+    while (first + 1 < samples.size() && samples[first + 1] == samples[0]) {
+        ++first;
+    }
+    std::size_t last = samples.size() - 1;
+    while (last > first && samples[last - 1] == samples.back()) {
+        --last;
+    }
+    return static_cast<double>(last - first) * T;
+}
+
+void write_trace(const Options &options, const Program &program, const Run &run) {
+    std::string name = std::string(options.trace) + "/" + program.name + ".csv";
+    std::replace(name.begin(), name.end(), ' ', '_');
+    std::FILE *file = std::fopen(name.c_str(), "w");
+    if (file == nullptr) {
+        std::perror(name.c_str());
+        return;
+    }
+    std::fprintf(file, "# period_s=%g tolerance=%g\n", T, program.tolerance);
+    for (const Pose &p : run.samples) {
+        for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+            std::fprintf(file, "%s%.17g", i == 0 ? "" : ",", p[i]);
+        }
+        std::fputc('\n', file);
+    }
+    std::fclose(file);
+}
+
+bool measure(const Options &options, const Program &program) {
+    const Run run = drive(program, options.isJerkLimited, !options.isRate);
+    std::vector<testing::AxisLimit> limits;
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        limits.push_back({program.max_velocity[i], program.max_acceleration[i],
+                          options.isJerkLimited ? program.max_jerk[i] : 1e300});
+    }
+    testing::LimitChecker checker(limits, T);
+    for (const Pose &p : run.samples) {
+        checker.sample(p.c.data());
+    }
+    const bool isAtEnd = run.samples.back() == program.moves.back().end;
+    const bool isBlend = program.moves[0].control == PathControl::BLEND;
+    const double step = isBlend ? program.tolerance / 16 : 1e-3;
+    const double deviation = options.isFast
+                                 ? 0.0
+                                 : testing::deviation_in_order(run.samples, sample_path(program, step), step,
+                                                               10 * program.tolerance);
+    const bool isOk =
+        run.isFinished && isAtEnd && checker.isWithin() && deviation <= program.tolerance + step;
+    std::printf("%-18s %6zu %8.3f s  %5.3f %5.3f %5.3f  %7.4f/%.2f  %9.0f  %s\n", program.name.c_str(),
+                program.moves.size(), cycle_time(run.samples), checker.worst_velocity(),
+                checker.worst_acceleration(), checker.worst_jerk(), deviation, program.tolerance,
+                static_cast<double>(program.moves.size()) / run.planning_s, isOk ? "ok" : "FAILED");
+    if (!isOk) {
+        std::printf("%.400s", checker.report().c_str());
+    }
+    if (options.trace != nullptr) {
+        write_trace(options, program, run);
+    }
+    return isOk;
+}
+
+}  // namespace
+}  // namespace mw::bench
+
+int main(int argc, char **argv) {
+    mw::bench::Options options;
+    for (int i = 1; i < argc; ++i) {
+        const bool hasValue = i + 1 < argc;
+        if (std::strcmp(argv[i], "--jerk") == 0) {
+            options.isJerkLimited = true;
+        } else if (std::strcmp(argv[i], "--fast") == 0) {
+            options.isFast = true;
+        } else if (std::strcmp(argv[i], "--rate") == 0) {
+            options.isRate = true;
+            options.isFast = true;
+        } else if (std::strcmp(argv[i], "--trace") == 0 && hasValue) {
+            options.trace = argv[++i];
+        } else if (std::strcmp(argv[i], "--only") == 0 && hasValue) {
+            options.only = argv[++i];
+        } else {
+            std::fprintf(stderr,
+                         "usage: traj_bench [--jerk] [--fast] [--rate] [--trace FOLDER] [--only WORD]\n");
+            return 2;
+        }
+    }
+    std::printf("%-18s %6s %10s  %17s  %12s  %9s\n", "kind", "blocks", "time", "worst v a j", "deviation",
+                "blocks/s");
+    bool isOk = true;
+    if (options.isRate) {
+        return mw::bench::measure(options, mw::bench::dense_nine_axes(100000)) ? 0 : 1;
+    }
+    for (const mw::bench::Program &program : mw::bench::all_kinds()) {
+        if (program.name.find(options.only) != std::string::npos) {
+            isOk = mw::bench::measure(options, program) && isOk;
+        }
+    }
+    return isOk ? 0 : 1;
+}

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// With jerk limits every plan is tried out before it is committed, sample by sample up to its stop, as the
+// executor will drive it: swing of the acceleration within the mean, and deviation from the programmed path.
+// What fails is made slower where it failed.
+#include <algorithm>
+#include <cmath>
+
+#include "traj/planner.hh"
+
+namespace mw::traj {
+
+namespace {
+
+/// Samples that are tried; the rest of a longer stop is braking alone.
+constexpr std::uint64_t MOST_SAMPLES = 4000;
+constexpr double SLOWER = 0.9;
+constexpr double GENTLER = 0.8;
+constexpr double ROUNDING = 1e-7;
+
+double ulp(double x) noexcept {
+    return std::abs(x) * 0x1p-52;
+}
+
+}  // namespace
+
+void Planner::push_sample(const LeaderSample &sample, Sequence piece) noexcept {
+    const std::uint64_t n = ++trial_tick_;
+    TrialSample &to = trial_[n % HISTORY_CAPACITY];
+    const TrialSample &one = trial_[(n - 1) % HISTORY_CAPACITY];
+    const TrialSample &two = trial_[(n - 2) % HISTORY_CAPACITY];
+    to.leader = sample;
+    to.piece = piece;
+    to.bend = (sample.pose - one.leader.pose) - (one.leader.pose - two.leader.pose);
+    const LeaderSample &old = trial_[(n - filter_) % HISTORY_CAPACITY].leader;
+    trial_sum_ = trial_sum_ + (sample.pose - old.pose);
+    trial_s_sum_ += sample.s - old.s;
+}
+
+/// Fills what was before the plan: the executor's history, then what it still does until the plan begins.
+void Planner::start_trial(const Snapshot &now, const State &from) noexcept {
+    const std::uint64_t known = filter_ + 4;
+    const Piece &piece = store_.piece(from.piece);
+    LeaderSample start{position_at(store_, piece, from.x), piece.programmed_s + from.x, piece.tolerance,
+                       piece.move};
+    trial_tick_ = 2 * HISTORY_CAPACITY;
+    const bool isFresh = now.motion == Motion::REST && now.isSettled;
+    for (std::uint64_t i = 0; i <= known; ++i) {
+        const std::uint64_t back = known - i;
+        const std::uint64_t tick = std::max(now.first_tick, now.tick > back ? now.tick - back : 0);
+        TrialSample &to = trial_[(trial_tick_ - back) % HISTORY_CAPACITY];
+        to.leader = isFresh ? start : store_.history[tick % HISTORY_CAPACITY];
+        to.piece = 0;
+    }
+    trial_origin_ = start.pose;
+    trial_s_origin_ = start.s;
+    trial_sum_ = {};
+    trial_s_sum_ = 0;
+    for (std::uint64_t i = 0; i <= filter_ + 1; ++i) {
+        TrialSample &to = trial_[(trial_tick_ - i) % HISTORY_CAPACITY];
+        const Pose &one = trial_[(trial_tick_ - i - 1) % HISTORY_CAPACITY].leader.pose;
+        const Pose &two = trial_[(trial_tick_ - i - 2) % HISTORY_CAPACITY].leader.pose;
+        to.bend = (to.leader.pose - one) - (one - two);
+        if (i < filter_) {
+            trial_sum_ = trial_sum_ + (to.leader.pose - trial_origin_);
+            trial_s_sum_ += to.leader.s - trial_s_origin_;
+        }
+    }
+    // Until the plan begins.
+    Sequence n = now.phase;
+    double t = now.time_in_phase;
+    const Sequence end = plan_ends_[now.plan % plan_ends_.size()];
+    LeaderSample rest = trial_[trial_tick_ % HISTORY_CAPACITY].leader;
+    for (std::uint64_t c = 1; c < settings_.latency; ++c) {
+        double dt = settings_.period_s;
+        bool isOver = now.motion == Motion::REST;
+        while (!isOver && dt >= store_.phase(n).duration - t) {
+            dt -= store_.phase(n).duration - t;
+            isOver = n + 1 >= end;
+            n += isOver ? 0 : 1;
+            t = 0;
+        }
+        if (now.motion == Motion::REST) {
+            push_sample(rest, 0);
+        } else {
+            t = isOver ? store_.phase(n).duration : t + dt;
+            try_sample(store_.phase(n), t);
+        }
+    }
+}
+
+void Planner::try_sample(const Phase &phase, double t) noexcept {
+    const Piece &piece = store_.piece(phase.piece);
+    const double x = phase.x0 + t * (phase.v0 + t * (0.5 * phase.a + t * phase.j * (1.0 / 6.0)));
+    const bool isSecond = piece.blend_d > 0 && piece.offset + x >= piece.blend_d;
+    push_sample({position_at(store_, piece, x), piece.programmed_s + x, piece.tolerance,
+                 piece.move + (isSecond ? 1 : 0)},
+                phase.piece);
+}
+
+/// Distance of the commanded mean from the programmed path, each matched with the mean place: in order.
+double Planner::trial_deviation(std::uint64_t tick) noexcept {
+    const double n = static_cast<double>(filter_);
+    const Pose mean = trial_origin_ + trial_sum_ * (1.0 / n);
+    const double s = trial_s_origin_ + trial_s_sum_ / n;
+    Sequence m =
+        std::clamp(trial_[(tick + 1 - filter_) % HISTORY_CAPACITY].leader.move, first_move_, last_move_);
+    while (m > first_move_ && s < move_plan(m).start_s) {
+        --m;
+    }
+    while (m < last_move_ && s > move_plan(m).start_s + store_.primitive(m).length) {
+        ++m;
+    }
+    const Pose off = mean - position_at(store_.primitive(m), s - move_plan(m).start_s);
+    return std::max(geom::norm_linear(off), geom::norm_abc(off));
+}
+
+bool Planner::isTrialSound() noexcept {
+    const std::uint64_t n = trial_tick_;
+    const Sequence piece = trial_[n % HISTORY_CAPACITY].piece;
+    const bool isAlong = piece != 0 && store_.piece(piece).isAlong;
+    along_tick_ = isAlong ? n : along_tick_;
+    if (n < along_tick_ + filter_ + 3) {
+        return true;  // kept by along_limit
+    }
+    const Pose swing = trial_[n % HISTORY_CAPACITY].bend - trial_[(n - filter_) % HISTORY_CAPACITY].bend;
+    const double span = settings_.period_s * settings_.period_s * filter_s();
+    const Pose &at = trial_[n % HISTORY_CAPACITY].leader.pose;
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        const double allowed =
+            wanted_.jerk[static_cast<std::size_t>(i)] * span * (1.0 + ROUNDING) + 4.0 * ulp(at[i]);
+        if (std::abs(swing[i]) > allowed) {
+            return false;
+        }
+    }
+    const double xyz = wanted_.jerk[XYZ_NORM] * span * (1.0 + ROUNDING) + 8.0 * ulp(geom::norm_xyz(at));
+    if (geom::norm_xyz(swing) > xyz) {
+        return false;
+    }
+    double tolerance = UNLIMITED;
+    for (std::uint64_t i = 0; i < filter_; ++i) {
+        const double p = trial_[(n - i) % HISTORY_CAPACITY].leader.tolerance;
+        tolerance = p > 0 ? std::min(tolerance, p) : tolerance;
+    }
+    return tolerance >= UNLIMITED || trial_deviation(n) <= tolerance;
+}
+
+bool Planner::isPlanSound(const Snapshot &now, const State &from, Sequence begin) noexcept {
+    start_trial(now, from);
+    failed_tick_ = 0;
+    along_tick_ = 0;
+    const std::uint64_t start = trial_tick_;
+    double t = 0;
+    Sequence n = begin;
+    while (n < plan_end_ && trial_tick_ - start < MOST_SAMPLES) {
+        try_sample(store_.phase(n), t);
+        if (!isTrialSound()) {
+            failed_tick_ = trial_tick_;
+            return false;
+        }
+        t += settings_.period_s;
+        while (n < plan_end_ && t >= store_.phase(n).duration) {
+            t -= store_.phase(n).duration;
+            ++n;
+        }
+    }
+    // The mean catches up while the leader stands.
+    const Phase &last = store_.phase(plan_end_ - 1);
+    for (std::uint64_t i = 0; n == plan_end_ && i <= filter_; ++i) {
+        try_sample(last, last.duration);
+        if (!isTrialSound()) {
+            failed_tick_ = trial_tick_;
+            return false;
+        }
+    }
+    return true;
+}
+
+void Planner::scale_piece(Sequence piece, double speed, double acceleration) noexcept {
+    piece_plan(piece).v_limit *= speed;
+    AccelBound &bound = store_.piece(piece).acceleration;
+    for (std::size_t i = 0; i < AccelBound::LINES; ++i) {
+        bound.alpha[i] *= acceleration;
+        bound.beta[i] *= acceleration;
+    }
+}
+
+/// What follows can still be kept from this state.
+bool Planner::isKept(const State &from) const noexcept {
+    const Piece &p = store_.piece(from.piece);
+    const double out2 = from.piece == last_piece_ ? 0.0 : piece_plan(from.piece + 1).v2_in;
+    return from.v * from.v <= p.acceleration.highest_before(out2, p.length - from.x) * (1.0 + ROUNDING);
+}
+
+/// Makes what the failed sample depends on slower, as far as it is not driven yet: longer stands at stops,
+/// then slower curves, then anything. False when nothing can be done from here.
+bool Planner::ease(const State &from) noexcept {
+    const Sequence first = from.v > 0 ? from.piece + 1 : from.piece;
+    Sequence low = 0;
+    Sequence high = 0;
+    for (std::uint64_t i = 0; i <= filter_ + 2; ++i) {
+        const Sequence k = trial_[(failed_tick_ - i) % HISTORY_CAPACITY].piece;
+        const bool isFree = k >= first && k > 0;
+        high = isFree ? std::max(high, k) : high;
+        low = isFree ? (low == 0 ? k : std::min(low, k)) : low;
+    }
+    if (low == 0) {
+        return false;
+    }
+    const double tau = filter_s();
+    bool isLonger = false;
+    bool isAnyCurved = false;
+    for (Sequence k = low; k <= high; ++k) {
+        PiecePlan &plan = piece_plan(k);
+        if (plan.isStopBefore && plan.dwell_s < tau) {
+            plan.dwell_s = std::min(tau, plan.dwell_s + 0.2 * tau);
+            isLonger = true;
+        }
+        isAnyCurved = isAnyCurved || isCurved(k);
+    }
+    if (isLonger) {
+        return true;
+    }
+    const auto scale = [&](double speed, double acceleration) {
+        for (Sequence k = low; k <= high; ++k) {
+            if (isCurved(k) || !isAnyCurved) {
+                scale_piece(k, speed, acceleration);
+            }
+            piece_plan(k).v2_in = -1;
+        }
+        pass_backward(std::min(high + 1, last_piece_), true);
+    };
+    scale(SLOWER, GENTLER);
+    if (from.v > 0 && !isKept(from)) {
+        scale(1.0 / SLOWER, 1.0 / GENTLER);
+        return false;
+    }
+    return true;
+}
+
+bool Planner::isCurved(Sequence piece) const noexcept {
+    const Piece &p = store_.piece(piece);
+    return p.blend_d > 0 || store_.primitive(p.primitive).isArc;
+}
+
+}  // namespace mw::traj
