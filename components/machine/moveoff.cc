@@ -287,8 +287,8 @@ void Moveoff::write_outputs() noexcept {
     for (int i = 0; i < joints; ++i) {
         const double offset = joint[i].follower.position();
         joint[i].offset_current = offset;
-        joint[i].pos_plusoffset = joint[i].pos + offset;
-        joint[i].fb_minusoffset = joint[i].fb - offset;
+        set_finite(joint[i].pos_plusoffset, joint[i].pos + offset);
+        set_finite(joint[i].fb_minusoffset, joint[i].fb - offset);
     }
 }
 

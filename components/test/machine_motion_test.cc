@@ -256,5 +256,60 @@ TEST_F(MoveoffTest, StopsWithoutRoomAndWithoutPower_B6) {
     EXPECT_EQ(bench.get("mv.waypoint-limit"), 0.0);
 }
 
+TEST(MachineOutputs, StayNumbersWhenInputsAreNone_B6) {
+    const struct {
+        const char *load;
+        const char *function;
+        std::vector<std::string> outputs;
+    } machines[] = {
+        {"corexy_by_hal", "corexy-by-hal.0", {"corexy-by-hal.0.alpha-cmd", "corexy-by-hal.0.beta-cmd"}},
+        {"differential", "differential.0", {"differential.0.motor0-cmd", "differential.0.roll-fb"}},
+        {"gantry personality=2", "gantry.0.write", {"gantry.0.joint.00.pos-cmd"}},
+        {"thc", "thc", {"thc.z-pos-out", "thc.z-fb-out"}},
+        {"thcud", "thcud", {"thcud.z-pos-out", "thcud.z-fb-out"}},
+        {"moveoff", "moveoff.0.write-outputs", {"moveoff.0.pos-plusoffset-0", "moveoff.0.fb-minusoffset-0"}},
+        {"simple_tp", "simple-tp.0.update", {"simple-tp.0.current-pos"}},
+        {"steptest", "steptest.0", {"steptest.0.position-cmd"}},
+        {"spindle", "spindle.0", {"spindle.0.output"}},
+        {"gearchange", "gearchange.0", {"gearchange.0.speed-out"}},
+        {"carousel pockets=3", "carousel.0", {"carousel.0.motor-vel"}},
+        {"pwmgen output_type=1", "pwmgen.update", {"pwmgen.0.curr-dc"}},
+        {"laserpower", "laserpower.0", {"laserpower.0.out"}},
+        {"limit_axis", "limit-axis.0", {"limit-axis.0.min-output", "limit-axis.0.max-output"}},
+        {"bldc cfg=a,hq", "bldc.0", {"bldc.0.a-value", "bldc.0.b-value", "bldc.0.c-value"}},
+        {"integ", "integ.0", {"integ.0.out"}},
+        {"limit1", "limit1.0", {"limit1.0.out"}},
+        {"limit2", "limit2.0", {"limit2.0.out"}},
+        {"limit3", "limit3.0", {"limit3.0.out"}},
+        {"pid num_chan=1", "pid.0.do-pid-calcs", {"pid.0.output"}},
+    };
+    for (const auto &machine : machines) {
+        Bench bench(std::string("loadrt ") + machine.load + "\naddf " + machine.function + " t");
+        for (const hal::PinInfo &pin : bench.hal().pins("*.enable")) {
+            bench.set(pin.name, 1);
+        }
+        bench.pass(3);
+        // The inputs that carry positions, speeds and measured values; not the settings.
+        for (const char *input :
+             {"*-cmd",         "*-fb",      "in",           "*.in",         "command",
+              "*.command",     "*feedback", "*pos-in",      "*target-pos",  "*pos-?",
+              "*fb-?",         "*.value",   "*current-vel", "*encoder-vel", "*commanded-speed",
+              "*actual-speed", "*speed-in", "*.power",      "*.fb",         "*offset-in-?",
+              "*.frequency"}) {
+            for (const hal::PinInfo &pin : bench.hal().pins(input)) {
+                if (pin.dir == hal::Dir::IN && pin.type == hal::Type::FLOAT) {
+                    bench.set(pin.name, std::nan(""));
+                }
+            }
+        }
+        for (int period = 0; period < 5; ++period) {
+            bench.pass();
+            for (const std::string &output : machine.outputs) {
+                EXPECT_TRUE(std::isfinite(bench.get(output))) << output;
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace mw::components::test
