@@ -3,12 +3,14 @@
 #include <dlfcn.h>
 
 #include <cmath>
+#include <memory>
 
 #include <gtest/gtest.h>
 
 #include "components/hmi/lcd_core.hh"
 #include "components/machine/bldc_core.hh"
 #include "components/machine/carousel_core.hh"
+#include "components/machine/raster_core.hh"
 #include "components/machine/thermocouple.hh"
 #include "components/test/bench.hh"
 #include "components/test/modules.hh"
@@ -289,6 +291,41 @@ TEST(Lcd, StreamsThePageThatIsChosen_B6) {
     EXPECT_EQ(stream(14), "\x1e\x1aX  7\x18\r\nY\x1b=  ");
     bench.set("lcd.00.page-num", 1);
     EXPECT_NE(stream(40).find("\x1e\x1asecond\x1b=  second"), std::string::npos);
+}
+
+raster::Line line_of(const std::string &text) {
+    raster::Line line;
+    for (const char byte : text) {
+        line.take(byte);
+    }
+    return line;
+}
+
+TEST(RasterCore, ReadsLinesAndFindsMistakes_B6) {
+    const auto line = std::make_unique<raster::Line>(line_of("\n-1.5;8;10.25;3\n00\n80ff"));
+    EXPECT_EQ(line->reading(), raster::Reading::COMPLETE);
+    EXPECT_EQ(line->offset(), -1.5);
+    EXPECT_EQ(line->pixels_per_unit(), 10.25);
+    EXPECT_EQ(line->count(), 3);
+    EXPECT_EQ(line->pixel(1), 0x80);
+    EXPECT_EQ(line->full_scale(), 255U);
+    EXPECT_EQ(line_of("0;16;-2;1\nABCD").pixel(0), 0xabcd);
+    EXPECT_EQ(line_of("0;8;10;2\n00").reading(), raster::Reading::PIXELS);
+    EXPECT_EQ(line_of("0;8;10;1\n0g").reading(), raster::Reading::BAD_PIXEL);
+    for (const char *header : {"", "0;8;10", "0;7;10;1", "0;8;0;1", "0;8;1;0", "0;8;1;1.5", "0;8;1;99999",
+                               "x;8;1;1", "0;8;--1;1", "1e999;8;1;1"}) {
+        EXPECT_EQ(line_of(std::string(" ") + header + "\n").reading(), raster::Reading::BAD_HEADER) << header;
+    }
+    EXPECT_EQ(line_of(std::string(200, '0')).reading(), raster::Reading::BAD_HEADER);
+}
+
+TEST(Raster, HasNoPowerWithoutALine_B6) {
+    Bench bench("loadrt raster\naddf raster.0 t");
+    EXPECT_EQ(bench.after("raster.0.run", 1, "raster.0.fault"), 1.0);
+    EXPECT_EQ(bench.get("raster.0.fault-code"), 3.0);
+    EXPECT_EQ(bench.get("raster.0.output"), 0.0);
+    EXPECT_EQ(bench.after("raster.0.reset", 1, "raster.0.fault"), 0.0);
+    EXPECT_EQ(bench.get("raster.0.state"), 0.0);
 }
 
 TEST(Millturn, SwitchesBetweenMillAndTurn_B6) {
