@@ -213,6 +213,7 @@ class Executor : public BuiltIns {
     bool polar_target(const BlockValues &values, Pose &end);
     bool straight_target(const BlockValues &values, Pose &end);
     bool check_feed(const BlockValues &values, std::string_view code);
+    bool check_feed_per_revolution();
     void send_inverse_time(double length);
     double straight_length(const Pose &end) const;
     PlaneAxes plane_axes() const;
