@@ -7,6 +7,26 @@ namespace mw::raster {
 
 namespace {
 
+/// The power of ten behind an 'e', to two digits; 1 when there is none. Moves behind it.
+double read_exponent(const char *&text) noexcept {
+    constexpr int MOST = 12;
+    if ((*text | 0x20) != 'e') {
+        return 1.0;
+    }
+    ++text;
+    const bool isNegative = *text == '-';
+    text += isNegative || *text == '+' ? 1 : 0;
+    int exponent = 0;
+    for (int digits = 0; digits < 2 && *text >= '0' && *text <= '9'; ++digits) {
+        exponent = 10 * exponent + (*text++ - '0');
+    }
+    double power = 1.0;
+    for (int i = 0; i < exponent && i <= MOST; ++i) {
+        power *= 10.0;
+    }
+    return isNegative ? 1.0 / power : power;
+}
+
 /// A decimal number up to `end`; moves behind the character there. False when there is none.
 bool read_number(const char *&text, char end, double &out) noexcept {
     constexpr double LARGEST = 1e12;
@@ -15,22 +35,21 @@ bool read_number(const char *&text, char end, double &out) noexcept {
     double number = 0.0;
     double place = 0.0;  // of the last digit behind the point: 10, 100, ...; 0 before the point
     bool hasDigit = false;
-    for (; *text != end; ++text) {
-        if (*text == '.' && place == 0.0) {
+    for (; (*text >= '0' && *text <= '9') || (*text == '.' && place == 0.0); ++text) {
+        if (*text == '.') {
             place = 1.0;
             continue;
-        }
-        if (*text < '0' || *text > '9') {
-            return false;
         }
         hasDigit = true;
         number = 10.0 * number + (*text - '0');
         place *= 10.0;
     }
-    ++text;
     number = place > 1.0 ? number / place : number;
+    number *= hasDigit ? read_exponent(text) : 1.0;
+    const bool isWhole = hasDigit && *text == end && number <= LARGEST;
+    text += isWhole ? 1 : 0;
     out = isNegative ? -number : number;
-    return hasDigit && number <= LARGEST;
+    return isWhole;
 }
 
 }  // namespace

@@ -310,6 +310,7 @@ TEST(RasterCore, ReadsLinesAndFindsMistakes_B6) {
     EXPECT_EQ(line->pixel(1), 0x80);
     EXPECT_EQ(line->full_scale(), 255U);
     EXPECT_EQ(line_of("0;16;-2;1\nABCD").pixel(0), 0xabcd);
+    EXPECT_NEAR(line_of("-2.5e-05;8;1e+3;1\n00").offset(), -2.5e-5, 1e-15);
     EXPECT_EQ(line_of("0;8;10;2\n00").reading(), raster::Reading::PIXELS);
     EXPECT_EQ(line_of("0;8;10;1\n0g").reading(), raster::Reading::BAD_PIXEL);
     for (const char *header : {"", "0;8;10", "0;7;10;1", "0;8;0;1", "0;8;1;0", "0;8;1;1.5", "0;8;1;99999",
