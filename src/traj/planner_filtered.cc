@@ -236,7 +236,7 @@ bool Planner::replan_filtered(const Snapshot &now, const State &from, bool isSto
 
 void Planner::update_filtered(const Snapshot &now) noexcept {
     const bool isGone = now.drops != drops_ || (now.isDropping && now.motion == Motion::REST);
-    if (isGone) {
+    if (isGone || now.motion == Motion::BRAKE) {
         return;
     }
     oldest_piece_ = std::max(first_piece_, now.piece);

@@ -26,6 +26,7 @@ constexpr double MOVES_PER_CYCLE = 12;
 constexpr double ARC_CUT = 0.13;
 constexpr double ARC_CUT_WHEN_SLOW = 0.5;
 constexpr int MOST_ARC_CUTS = 64;
+constexpr double JOINT_CUT_DEG = 1.0;
 /// Part of the tolerance that joining lines may take when no other tolerance is given for it.
 constexpr double JOIN_SHARE = 0.1;
 constexpr double BLEND_CUT = 0.3;
@@ -249,6 +250,11 @@ void Planner::add_part(Piece piece, double to, bool isToEnd, double v) noexcept 
         const double pieces = std::ceil(std::abs(p.omega) * (to - from) / cut);
         cuts = static_cast<int>(std::clamp(pieces, 1.0, static_cast<double>(MOST_ARC_CUTS)));
     }
+    if (joint_map_ != nullptr && !piece.isAlong) {
+        // Joints may run on curves where the path is straight.
+        const double pieces = std::ceil(geom::norm_abc(p.lin) * (to - from) / JOINT_CUT_DEG);
+        cuts = std::max(cuts, static_cast<int>(std::clamp(pieces, 4.0, static_cast<double>(MOST_ARC_CUTS))));
+    }
     for (int i = 0; i < cuts; ++i) {
         const double begin = from + (to - from) * i / cuts;
         const double end = i + 1 == cuts ? to : from + (to - from) * (i + 1) / cuts;
@@ -265,10 +271,11 @@ void Planner::add_piece(const Piece &piece, const SpeedLimit &limit) noexcept {
     const Sequence k = last_piece_ + 1;
     Piece &slot = store_.piece(k);
     slot = piece;
-    slot.acceleration = limit.a;
+    const SpeedLimit lowest = joint_map_ == nullptr ? limit : limit_with_joints(piece, limit);
+    slot.acceleration = lowest.a;
     PiecePlan &plan = piece_plan(k);
     plan.v_limit =
-        std::min(limit.v, MOVES_PER_CYCLE * store_.primitive(piece.primitive).length / settings_.period_s);
+        std::min(lowest.v, MOVES_PER_CYCLE * store_.primitive(piece.primitive).length / settings_.period_s);
     plan.v2_in = -1;
     plan.isStopBefore = isOpenStop_;
     plan.dwell_s = isOpenStop_ ? open_joint_.dwell_s : filter_s();

@@ -353,7 +353,7 @@ void Planner::append(const Snapshot &now) noexcept {
 }
 
 void Planner::update(const Snapshot &now) noexcept {
-    if (isFiltered()) {
+    if (isTried()) {
         update_filtered(now);
         return;
     }
