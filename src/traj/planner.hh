@@ -180,7 +180,7 @@ class Planner {
 
     // --- planner_filtered.cc: with jerk limits
     void update_filtered(const Snapshot &now) noexcept;
-    bool replan_filtered(const Snapshot &now, const State &from, bool isStop) noexcept;
+    bool replan_filtered(const Snapshot &now, State from, bool isStop) noexcept;
     bool emit_filtered() noexcept;
     bool emit_rise(double cap) noexcept;
     void emit_coast(double cap, double out2) noexcept;

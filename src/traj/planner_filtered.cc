@@ -12,6 +12,8 @@ namespace mw::traj {
 namespace {
 
 constexpr double SAME_SPEED = 1e-9;
+/// A speed below this part of what one sample's acceleration gives is rounding.
+constexpr double STANDING = 1e-9;
 constexpr double STOP_FIT = 1e-7;  ///< as in the executor
 constexpr int ATTEMPTS = 8;
 constexpr Sequence PHASE_RESERVE = PHASE_CAPACITY / 2;
@@ -181,8 +183,10 @@ bool Planner::emit_tail() noexcept {
     return true;
 }
 
-bool Planner::replan_filtered(const Snapshot &now, const State &from, bool isStop) noexcept {
+bool Planner::replan_filtered(const Snapshot &now, State from, bool isStop) noexcept {
     const Sequence begin = plan_end_;
+    const double standing = STANDING * store_.piece(from.piece).acceleration.at(0) * settings_.period_s;
+    from.v = from.v < standing ? 0.0 : from.v;
     const double delay = start_delay_s_;
     for (int n = 0; n < ATTEMPTS; ++n) {
         plan_end_ = begin;
@@ -193,6 +197,9 @@ bool Planner::replan_filtered(const Snapshot &now, const State &from, bool isSto
             emit_wait(delay);
         }
         const Sequence waited = plan_end_;
+        if (isStop && from.v <= 0) {
+            emit_wait(settings_.period_s);
+        }
         while (!isStop && planned_s_ < delay + settings_.horizon_s && emit_filtered()) {
         }
         const bool isAtEnd = isAtEndOfPath_;
