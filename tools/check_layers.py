@@ -7,7 +7,7 @@ import sys
 
 LAYER = {
     'base': 0, 'geom': 0, 'diag': 0,
-    'rtapi': 1, 'config': 1, 'msgs': 1,
+    'rtapi': 1, 'config': 1, 'msgs': 1, 'picture': 1,
     'hal': 2, 'nml': 2,
     'kins': 3, 'traj': 3, 'homing': 3, 'interp': 3, 'tool': 3,
     'motion': 4,
@@ -20,7 +20,8 @@ ALLOWED_EQUAL = {('geom', 'base'), ('diag', 'base'), ('interp', 'tool'), ('task'
 # Domain libraries know neither HAL nor NML.
 FORBIDDEN = {(user, used) for user in ('kins', 'traj', 'homing', 'interp', 'tool') for used in ('hal', 'nml')}
 # Inside a folder: sub-folders in the order in which they may use each other.
-INNER = {'motion': ['api', 'core', 'rt'], 'hal': ['api', 'sdk', 'core', 'host', 'lang', 'stream_tools']}
+INNER = {'motion': ['api', 'core', 'rt'],
+         'hal': ['api', 'sdk', 'halcompile', 'core', 'host', 'lang', 'tcl', 'stream_tools', 'view']}
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 
 

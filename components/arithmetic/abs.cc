@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// abs: `out` is the absolute value of `in` (float). `sign` and `is-negative` (bit) are true below zero,
-// `is-positive` above.
-#include <cmath>
+// abs, abs_s32, abs_s64: `out` is the absolute value of `in`. `sign` and `is-negative` (bit) are true below
+// zero, `is-positive` above. The value that has no positive counterpart becomes the largest one.
+// Built once for each type (ABS_TYPE, ABS_MODULE).
+#include <limits>
 
 #include "components/common/kit.hh"
 
 namespace mw::components {
 
 struct Abs {
-    In<double> in;
-    Out<double> out;
+    In<ABS_TYPE> in;
+    Out<ABS_TYPE> out;
     Out<bool> sign, is_positive, is_negative;
 
     void declare(Declare &d) noexcept {
@@ -22,14 +23,16 @@ struct Abs {
     }
 
     void update() noexcept {
-        const double value = in;
-        out = std::fabs(value);
-        sign = value < 0.0;
-        is_positive = value > 0.0;
-        is_negative = value < 0.0;
+        using Limits = std::numeric_limits<ABS_TYPE>;
+        const ABS_TYPE value = in;
+        const bool isLowest = Limits::is_integer && value == Limits::lowest();
+        out = isLowest ? Limits::max() : (value < 0 ? -value : value);
+        sign = value < 0;
+        is_positive = value > 0;
+        is_negative = value < 0;
     }
 };
 
 }  // namespace mw::components
 
-MW_INSTANCES(Abs, "abs");
+MW_INSTANCES(Abs, ABS_MODULE);

@@ -19,7 +19,7 @@ using sdk::ParamRo;
 using sdk::ParamRw;
 
 /// Most instances of a component that sets no lower limit.
-constexpr int MANY = 256;
+constexpr int MANY = 1024;
 
 /// What the module parameters of a load ask for.
 struct Request {
@@ -29,6 +29,7 @@ struct Request {
     char *const *names;      ///< null-terminated unless all `max` are given
     int fallback;            ///< instances when neither is given
     int max;
+    const char *prefix = nullptr;  ///< of pins, where it is not the module's name
 
     bool isNamed() const noexcept { return names[0] != nullptr && names[0][0] != '\0'; }
 };
@@ -69,9 +70,12 @@ struct Name {
 
 /// The prefix of instance `i`: its name, or MODULE.i. False (and a message) when it is too long.
 inline bool make_prefix(Name &out, const Request &request, int i) noexcept {
-    const int length = request.isNamed() ? rtapi_snprintf(out.text, sizeof out.text, "%s", request.names[i])
-                                         : rtapi_snprintf(out.text, sizeof out.text, "%s.%d",
-                                                          Name::of_module(request.module).text, i);
+    const int length =
+        request.isNamed()
+            ? rtapi_snprintf(out.text, sizeof out.text, "%s", request.names[i])
+            : rtapi_snprintf(
+                  out.text, sizeof out.text, "%s.%d",
+                  Name::of_module(request.prefix != nullptr ? request.prefix : request.module).text, i);
     if (length > HAL_NAME_LEN) {
         rtapi_print_msg(RTAPI_MSG_ERR, "%s: an instance name is longer than %d characters", request.module,
                         HAL_NAME_LEN);
@@ -86,6 +90,67 @@ T *make() noexcept {
     static_assert(std::is_trivially_destructible_v<T>, "instances are never destroyed");
     void *memory = hal_malloc(static_cast<long>(sizeof(T)));
     return memory == nullptr ? nullptr : new (memory) T();
+}
+
+/// The pin PREFIX.NAME by the naming rules, which files written before find under `legacy` too.
+template <class T, hal_pin_dir_t DIR>
+void legacy_pin(Declare &d, sdk::Pin<T, DIR> &pin, const char *name, const char *legacy,
+                std::type_identity_t<T> start = T{}) noexcept {
+    d.pin(pin, legacy, start);
+    if (d.status() == 0) {
+        Name old_name, rule_name;
+        rtapi_snprintf(old_name.text, sizeof old_name.text, "%s.%s", d.prefix(), legacy);
+        rtapi_snprintf(rule_name.text, sizeof rule_name.text, "%s.%s", d.prefix(), name);
+        d.keep(hal_pin_alias(old_name.text, rule_name.text));
+    }
+}
+
+/// The parameter PREFIX.NAME by the naming rules, with its `legacy` name.
+template <class T, hal_param_dir_t DIR>
+void legacy_param(Declare &d, sdk::Param<T, DIR> &param, const char *name, const char *legacy,
+                  std::type_identity_t<T> start = T{}) noexcept {
+    d.param(param, legacy, start);
+    if (d.status() == 0) {
+        Name old_name, rule_name;
+        rtapi_snprintf(old_name.text, sizeof old_name.text, "%s.%s", d.prefix(), legacy);
+        rtapi_snprintf(rule_name.text, sizeof rule_name.text, "%s.%s", d.prefix(), name);
+        d.keep(hal_param_alias(old_name.text, rule_name.text));
+    }
+}
+
+/// A pin whose name has its number in `format`, as in "in-%02d".
+template <class T, hal_pin_dir_t DIR>
+void pin_at(Declare &d, sdk::Pin<T, DIR> &pin, const char *format, int number,
+            std::type_identity_t<T> start = T{}) noexcept {
+    char name[HAL_NAME_LEN + 1];
+    rtapi_snprintf(name, sizeof name, format, number);
+    d.pin(pin, name, start);
+}
+
+/// A parameter whose name has its number in `format`.
+template <class T, hal_param_dir_t DIR>
+void param_at(Declare &d, sdk::Param<T, DIR> &param, const char *format, int number,
+              std::type_identity_t<T> start = T{}) noexcept {
+    char name[HAL_NAME_LEN + 1];
+    rtapi_snprintf(name, sizeof name, format, number);
+    d.param(param, name, start);
+}
+
+/// The `wanted` number from personality= (0: `fallback`), from 0 to `max`; else an error naming `what`.
+inline int personality_number(Declare &d, int wanted, int fallback, int max, const char *what) noexcept {
+    const int number = wanted == 0 ? fallback : wanted;
+    if (number < 0 || number > max) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "%s: personality=%d, but the number of %s is 0 to %d", d.prefix(),
+                        number, what, max);
+        d.keep(-EINVAL);
+        return 0;
+    }
+    return number;
+}
+
+/// [s]
+constexpr double seconds(long period_ns) noexcept {
+    return static_cast<double>(period_ns) * 1e-9;
 }
 
 /// Ends a load: ready, or everything undone. The component id, or a negated errno.
@@ -124,6 +189,17 @@ int load_instances(const Request &request) noexcept {
         }
     }
     return finish(comp_id, status);
+}
+
+/// Loads one T, which makes all pins and functions of the module in `load(comp_id)` (0, or a negated errno).
+template <class T>
+int load_single(const char *module) noexcept {
+    const int comp_id = hal_init(module);
+    if (comp_id < 0) {
+        return comp_id;
+    }
+    T *all = make<T>();
+    return finish(comp_id, all == nullptr ? -ENOMEM : all->load(comp_id));
 }
 
 /// Channels that module-wide functions work on together.
@@ -195,6 +271,23 @@ int load_channels(const Request &request) noexcept {
     }                                                                                                        \
     static_assert(true)
 
+/// personality= with one number for each instance.
+#define MW_PERSONALITY(what)                                                                                 \
+    static int personality[mw::components::MANY];                                                            \
+    RTAPI_MP_ARRAY_INT(personality, mw::components::MANY, what)
+
 /// count= and names=, one instance by default.
 #define MW_INSTANCES(Type, module)                                                                           \
     MW_MODULE(module, count, 1, mw::components::MANY, load_instances<mw::components::Type>)
+
+/// A module with parameters of its own instead of count= and names=; see load_single.
+#define MW_SINGLE(Type, module)                                                                              \
+    static int mw_comp_id = -1;                                                                              \
+    int rtapi_app_main(void) {                                                                               \
+        mw_comp_id = mw::components::load_single<mw::components::Type>(module);                              \
+        return mw_comp_id < 0 ? mw_comp_id : 0;                                                              \
+    }                                                                                                        \
+    void rtapi_app_exit(void) {                                                                              \
+        hal_exit(mw_comp_id);                                                                                \
+    }                                                                                                        \
+    static_assert(true)

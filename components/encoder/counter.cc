@@ -21,8 +21,8 @@ struct CounterChannel {
     encoder::SlowPart slow;
 
     void declare(Declare &d) noexcept {
-        d.pin(phase_a, "phase-A");
-        d.pin(phase_z, "phase-Z");
+        legacy_pin(d, phase_a, "phase-a", "phase-A");
+        legacy_pin(d, phase_z, "phase-z", "phase-Z");
         d.pin(reset, "reset");
         d.pin(index_enable, "index-enable");
         d.pin(position_scale, "position-scale", 1.0);

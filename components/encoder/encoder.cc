@@ -27,9 +27,9 @@ struct EncoderChannel {
     encoder::SlowPart slow;
 
     void declare(Declare &d) noexcept {
-        d.pin(phase_a, "phase-A");
-        d.pin(phase_b, "phase-B");
-        d.pin(phase_z, "phase-Z");
+        legacy_pin(d, phase_a, "phase-a", "phase-A");
+        legacy_pin(d, phase_b, "phase-b", "phase-B");
+        legacy_pin(d, phase_z, "phase-z", "phase-Z");
         d.pin(reset, "reset");
         d.pin(latch_input, "latch-input");
         d.pin(latch_rising, "latch-rising", true);

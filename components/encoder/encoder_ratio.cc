@@ -24,10 +24,10 @@ struct RatioChannel {
     std::int32_t master_start = 0;  ///< where the master stood when the gear was engaged
 
     void declare(Declare &d) noexcept {
-        d.pin(master_a, "master-A");
-        d.pin(master_b, "master-B");
-        d.pin(slave_a, "slave-A");
-        d.pin(slave_b, "slave-B");
+        legacy_pin(d, master_a, "master-a", "master-A");
+        legacy_pin(d, master_b, "master-b", "master-B");
+        legacy_pin(d, slave_a, "slave-a", "slave-A");
+        legacy_pin(d, slave_b, "slave-b", "slave-B");
         d.pin(enable, "enable");
         d.pin(error, "error");
         d.pin(master_ppr, "master-ppr");

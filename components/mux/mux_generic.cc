@@ -8,7 +8,7 @@
 // debounce-us (u32) is how long a selection must be stable [us]. Parameters elapsed [us] and selected (u32)
 // show the debouncing. Values out of the range of the output become its nearest value.
 #include "components/common/kit.hh"
-#include "components/conv/conv_core.hh"
+#include "components/mux/generic.hh"
 #include "components/mux/selector.hh"
 
 constexpr int MAX_MUXES = 64;
@@ -16,46 +16,6 @@ static char *config[MAX_MUXES];
 RTAPI_MP_ARRAY_STRING(config, MAX_MUXES, "from, to and size of each multiplexer, such as ff8,b2f");
 
 namespace mw::components {
-
-constexpr int MAX_SIZE = 1024;
-constexpr int MAX_SELECT_BITS = 10;
-
-struct TypeLetter {
-    char letter;
-    hal_type_t type;
-    const char *name;
-};
-constexpr TypeLetter TYPES[] = {{'b', HAL_BIT, "bit"}, {'f', HAL_FLOAT, "float"}, {'s', HAL_S32, "s32"},
-                                {'u', HAL_U32, "u32"}, {'l', HAL_S64, "s64"},     {'k', HAL_U64, "u64"}};
-
-struct Config {
-    const TypeLetter *from = nullptr;
-    const TypeLetter *to = nullptr;
-    int size = 0;
-
-    /// Reads an item of config=; false when it is none.
-    bool parse(const char *text) noexcept {
-        for (; *text != '\0'; ++text) {
-            if (*text >= '0' && *text <= '9') {
-                size = 10 * size + (*text - '0');
-                if (size > MAX_SIZE) {
-                    return false;
-                }
-                continue;
-            }
-            const char letter = static_cast<char>(*text | 0x20);
-            const TypeLetter *found = nullptr;
-            for (const TypeLetter &type : TYPES) {
-                found = type.letter == letter ? &type : found;
-            }
-            if (found == nullptr || to != nullptr) {
-                return false;
-            }
-            (from == nullptr ? from : to) = found;
-        }
-        return to != nullptr && size >= 2;
-    }
-};
 
 struct MuxGeneric {
     Config shape;
@@ -70,10 +30,6 @@ struct MuxGeneric {
 
     void declare(Declare &d) noexcept;
     void update(long period_ns) noexcept;
-
-  private:
-    template <class From>
-    void copy(From value) noexcept;
 };
 
 void MuxGeneric::declare(Declare &d) noexcept {
@@ -103,18 +59,6 @@ void MuxGeneric::declare(Declare &d) noexcept {
     d.function<&MuxGeneric::update>(this);
 }
 
-template <class From>
-void MuxGeneric::copy(From value) noexcept {
-    switch (shape.to->type) {
-    case HAL_BIT: output->b = conv::convert<bool>(value, true).value; break;
-    case HAL_FLOAT: output->f = conv::convert<double>(value, true).value; break;
-    case HAL_S32: output->s = conv::convert<std::int32_t>(value, true).value; break;
-    case HAL_U32: output->u = conv::convert<std::uint32_t>(value, true).value; break;
-    case HAL_S64: output->ls = conv::convert<std::int64_t>(value, true).value; break;
-    default: output->lu = conv::convert<std::uint64_t>(value, true).value; break;
-    }
-}
-
 void MuxGeneric::update(long period_ns) noexcept {
     std::uint32_t wanted = sel_int;
     for (int i = 0; i < select_bits; ++i) {
@@ -124,15 +68,7 @@ void MuxGeneric::update(long period_ns) noexcept {
         selector.run(wanted, static_cast<std::uint32_t>(shape.size), debounce_us, suppress, period_ns);
     elapsed = selector.waited_us();
     selected = selector.selected();
-    const hal_data_u *input = inputs[chosen];
-    switch (shape.from->type) {
-    case HAL_BIT: copy(static_cast<bool>(input->b)); break;
-    case HAL_FLOAT: copy(static_cast<double>(input->f)); break;
-    case HAL_S32: copy(static_cast<std::int32_t>(input->s)); break;
-    case HAL_U32: copy(static_cast<std::uint32_t>(input->u)); break;
-    case HAL_S64: copy(static_cast<std::int64_t>(input->ls)); break;
-    default: copy(static_cast<std::uint64_t>(input->lu)); break;
-    }
+    copy_pin(inputs[chosen], shape.from->type, shape.to->type, output);
 }
 
 /// Makes multiplexer `index` from its item of config=: 0, or a negated errno.

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // pid: PID controllers with feed-forward and auto-tuning, up to 16 (`num_chan=`, 3 by default, or `names=`).
 //
-// Function pid.N.do-pid-calcs. Inputs: command, feedback [units], enable (bit), command-deriv and
-// feedback-deriv [units/s] (estimated while not linked), error-previous-target (bit, true at start: compare
-// with the command of the period before), index-enable (bit: its falling edge announces a jump of positions).
-// Outputs: error, output, saturated (bit), saturated-s [s], saturated-count [periods]. Tuning (inputs): Pgain
-// (1 at start), Igain, Dgain, FF0 to FF3, bias, deadband, maxoutput, maxerror, maxerrorI, maxerrorD, maxcmdD,
-// maxcmdDD, maxcmdDDD (0: no limit). Auto-tuning: tune-mode (bit) opens the loop, tune-start (bit, I/O)
-// begins and is set back at the end; tune-type 0 finds P, I, D and 1 finds P, I, FF1; tune-cycles,
-// tune-effort. `debug=1` adds parameters with the inner values.
+// Built as at_pid too (PID_MODULE). Function pid.N.do-pid-calcs. Inputs: command, feedback [units], enable
+// (bit), command-deriv and feedback-deriv [units/s] (estimated while not linked), error-previous-target (bit,
+// true at start: compare with the command of the period before), index-enable (bit: its falling edge
+// announces a jump of positions). Outputs: error, output, saturated (bit), saturated-s [s], saturated-count
+// [periods]. Tuning (inputs): Pgain (1 at start), Igain, Dgain, FF0 to FF3, bias, deadband, maxoutput,
+// maxerror, maxerrorI, maxerrorD, maxcmdD, maxcmdDD, maxcmdDDD (0: no limit). Auto-tuning: tune-mode (bit)
+// opens the loop, tune-start (bit, I/O) begins and is set back at the end; tune-type 0 finds P, I, D and 1
+// finds P, I, FF1; tune-cycles, tune-effort. `debug=1` adds parameters with the inner values.
 #include "components/common/kit.hh"
 #include "components/pid/pid_core.hh"
 
@@ -74,11 +74,11 @@ void Pid::declare(Declare &declare) noexcept {
     declare.pin(saturated_count, "saturated-count");
     declare_tuning(declare);
     if (debug != 0) {
-        declare.param(error_i, "errorI");
-        declare.param(error_d, "errorD");
-        declare.param(command_d, "commandD");
-        declare.param(command_dd, "commandDD");
-        declare.param(command_ddd, "commandDDD");
+        legacy_param(declare, error_i, "error-i", "errorI");
+        legacy_param(declare, error_d, "error-d", "errorD");
+        legacy_param(declare, command_d, "command-d", "commandD");
+        legacy_param(declare, command_dd, "command-dd", "commandDD");
+        legacy_param(declare, command_ddd, "command-ddd", "commandDDD");
         declare.pin(ultimate_gain, "ultimate-gain");
         declare.pin(ultimate_period, "ultimate-period");
     }
@@ -86,22 +86,22 @@ void Pid::declare(Declare &declare) noexcept {
 }
 
 void Pid::declare_tuning(Declare &declare) noexcept {
-    declare.pin(p, "Pgain", 1.0);
-    declare.pin(i, "Igain");
-    declare.pin(d, "Dgain");
-    declare.pin(ff0, "FF0");
-    declare.pin(ff1, "FF1");
-    declare.pin(ff2, "FF2");
-    declare.pin(ff3, "FF3");
+    legacy_pin(declare, p, "p-gain", "Pgain", 1.0);
+    legacy_pin(declare, i, "i-gain", "Igain");
+    legacy_pin(declare, d, "d-gain", "Dgain");
+    legacy_pin(declare, ff0, "ff0", "FF0");
+    legacy_pin(declare, ff1, "ff1", "FF1");
+    legacy_pin(declare, ff2, "ff2", "FF2");
+    legacy_pin(declare, ff3, "ff3", "FF3");
     declare.pin(bias, "bias");
     declare.pin(deadband, "deadband");
     declare.pin(max_output, "maxoutput");
     declare.pin(max_error, "maxerror");
-    declare.pin(max_error_i, "maxerrorI");
-    declare.pin(max_error_d, "maxerrorD");
-    declare.pin(max_cmd_d, "maxcmdD");
-    declare.pin(max_cmd_dd, "maxcmdDD");
-    declare.pin(max_cmd_ddd, "maxcmdDDD");
+    legacy_pin(declare, max_error_i, "maxerror-i", "maxerrorI");
+    legacy_pin(declare, max_error_d, "maxerror-d", "maxerrorD");
+    legacy_pin(declare, max_cmd_d, "maxcmd-d", "maxcmdD");
+    legacy_pin(declare, max_cmd_dd, "maxcmd-dd", "maxcmdDD");
+    legacy_pin(declare, max_cmd_ddd, "maxcmd-ddd", "maxcmdDDD");
     declare.pin(tune_mode, "tune-mode");
     declare.pin(tune_start, "tune-start");
     declare.pin(tune_type, "tune-type");
@@ -190,6 +190,12 @@ void Pid::update(long period_ns) noexcept {
     command_ddd = controller.command_ddd;
 }
 
+/// at_pid is another name of the module; the pins are those of pid.
+static int load_pids(Request request) noexcept {
+    request.prefix = "pid";
+    return load_instances<Pid>(request);
+}
+
 }  // namespace mw::components
 
-MW_MODULE("pid", num_chan, 3, mw::pid::MAX_CHANNELS, load_instances<mw::components::Pid>);
+MW_MODULE(PID_MODULE, num_chan, 3, mw::pid::MAX_CHANNELS, load_pids);

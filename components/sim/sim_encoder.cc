@@ -26,9 +26,9 @@ struct SimEncoderChannel {
         d.pin(speed, "speed");
         d.pin(scale, "scale", 1.0);
         d.pin(ppr, "ppr", 100U);
-        d.pin(phase_a, "phase-A");
-        d.pin(phase_b, "phase-B");
-        d.pin(phase_z, "phase-Z");
+        legacy_pin(d, phase_a, "phase-a", "phase-A");
+        legacy_pin(d, phase_b, "phase-b", "phase-B");
+        legacy_pin(d, phase_z, "phase-z", "phase-Z");
         d.pin(rawcounts, "rawcounts");
     }
 

@@ -69,8 +69,9 @@ void StepChannel::declare_outputs(Declare &d) noexcept {
         return;
     }
     for (int i = 0; i < pulses.pattern.phases; ++i) {
-        const char name[] = {'p', 'h', 'a', 's', 'e', '-', static_cast<char>('A' + i), '\0'};
-        d.pin(phase[i], name);
+        const char name[] = {'p', 'h', 'a', 's', 'e', '-', static_cast<char>('a' + i), '\0'};
+        const char legacy[] = {'p', 'h', 'a', 's', 'e', '-', static_cast<char>('A' + i), '\0'};
+        legacy_pin(d, phase[i], name, legacy);
     }
 }
 

@@ -5,6 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "base/own_place.hh"
+#include "cli/stop_signals.hh"
+#include "hal/view/commands.hh"
 #include "machine/commands.hh"
 
 namespace {
@@ -23,6 +26,8 @@ constexpr const char *USAGE =
     "  check PROGRAM.ngc --ini MACHINE.ini\n"
     "                                interpret the program and check its moves against the limits, moving "
     "nothing\n"
+    "  hal [watch|capture|graph|latency] ...\n"
+    "                                look at the running HAL; see millwright hal --help\n"
     "  --help, --version\n"
     "\n"
     "exit status: 0 done, 1 refused or failed, 2 wrong usage\n";
@@ -30,6 +35,7 @@ constexpr const char *USAGE =
 }  // namespace
 
 int main(int argc, char **argv) {
+    mw::offer_own_programs();
     const std::vector<std::string> words(argv + 1, argv + argc);
     if (words.empty()) {
         std::fputs(USAGE, stderr);
@@ -49,6 +55,10 @@ int main(int argc, char **argv) {
     }
     if (words[0] == "check") {
         return mw::machine::command_check(rest);
+    }
+    if (words[0] == "hal") {
+        mw::cli::catch_stop_signals();
+        return mw::hal::view::command_hal(rest, mw::cli::stop_requested);
     }
     std::fprintf(stderr, "millwright: unknown command '%s'; see millwright --help\n", words[0].c_str());
     return 2;

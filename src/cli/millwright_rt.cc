@@ -51,6 +51,8 @@ Arguments read_arguments(int argc, char **argv) {
             arguments.options.realtime.cpu = static_cast<int>(*number);
         } else if (option == "--ready-fd" && number && *number >= 0) {
             arguments.ready_fd = static_cast<int>(*number);
+        } else if (option == "--starter-fd" && number && *number >= 0) {
+            arguments.options.controller_fd = static_cast<int>(*number);
         } else {
             arguments.isGood = false;
         }

@@ -8,20 +8,15 @@
 #include <string>
 
 #include "base/text.hh"
+#include "cli/stop_signals.hh"
 #include "hal/core/hal.hh"
 
 namespace mw::cli {
 
-inline volatile std::sig_atomic_t stop_requested = 0;
-
 /// Runs `work` attached to the user's instance; the exit status.
 inline int run_attached(const char *program,
                         const std::function<Result<>(volatile std::sig_atomic_t &)> &work) {
-    // Without SA_RESTART, so that waiting for input ends too.
-    struct sigaction action{};
-    action.sa_handler = [](int) { stop_requested = 1; };
-    sigaction(SIGINT, &action, nullptr);
-    sigaction(SIGTERM, &action, nullptr);
+    catch_stop_signals();
     const auto instance = hal::Hal::attach(hal::default_instance());
     Result<> result;
     if (instance) {

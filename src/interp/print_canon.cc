@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "interp/print_canon.hh"
 
+#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -47,18 +47,35 @@ PrintCanon::~PrintCanon() {
     log_close();
 }
 
-void PrintCanon::put(std::string_view call) {
-    char buffer[512];
-    const auto made = fmt::format_to_n(buffer, sizeof buffer, "{:5d} {} {}\n", ++count_, prefix_, call);
-    if (made.size <= sizeof buffer) {
-        std::fwrite(buffer, 1, made.size, out_);
-    } else {
-        fmt::print(out_, "{:5d} {} {}\n", count_, prefix_, call);
+void PrintCanon::begin_line() {
+    // As "{:5d} {} ", without its cost.
+    char digits[12];
+    char *at = digits + sizeof digits;
+    *--at = ' ';
+    for (int rest = ++count_; rest != 0; rest /= 10) {
+        *--at = static_cast<char>('0' + rest % 10);
     }
+    while (at > digits + sizeof digits - 6) {
+        *--at = ' ';
+    }
+    line_.assign(at, digits + sizeof digits);
+    line_.append(prefix_).append(1, ' ');
+}
+
+void PrintCanon::put(std::string_view call) {
+    begin_line();
+    line_.append(call).append(1, '\n');
+    std::fwrite(line_.data(), 1, line_.size(), out_);
 }
 
 void PrintCanon::begin_block(const BlockRef &block) {
-    prefix_ = block.isNumbered ? fmt::format("N{:<5d}", block.sequence) : "N.....";
+    if (block.isNumbered) {
+        prefix_ = fmt::format("N{:<5d}", block.sequence);
+        isPrefixNumbered_ = true;
+    } else if (isPrefixNumbered_) {
+        prefix_ = "N.....";
+        isPrefixNumbered_ = false;
+    }
 }
 
 void PrintCanon::on_reset() {
@@ -127,12 +144,21 @@ void PrintCanon::set_planner_mode(int type, double peak_scale) {
 }
 
 void PrintCanon::put_straight(std::string_view name, const Pose &p) {
-    line_.clear();
-    fmt::format_to(std::back_inserter(line_), "{:5d} ", ++count_);
-    line_.append(prefix_).append(1, ' ').append(name).append(1, '(');
+    begin_line();
+    line_.append(name).append(1, '(');
     for (int i = 0; i < geom::AXIS_U; ++i) {
-        line_.append(i == 0 ? "" : ", ");
-        append_fixed4(line_, p[i]);
+        if (i > 0) {
+            line_.append(", ", 2);
+        }
+        // Most moves change few coordinates: the text of the others is known.
+        Coordinate &known = coordinates_[static_cast<std::size_t>(i)];
+        const auto bits = std::bit_cast<std::uint64_t>(p[i]);
+        if (bits != known.bits || known.text.empty()) {
+            known.bits = bits;
+            known.text.clear();
+            append_fixed4(known.text, p[i]);
+        }
+        line_.append(known.text);
     }
     line_.append(")\n");
     std::fwrite(line_.data(), 1, line_.size(), out_);

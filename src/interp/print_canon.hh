@@ -2,6 +2,8 @@
 // A canon that prints its calls, one line each, as the standalone interpreter does.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <cstdio>
 #include <string>
 
@@ -80,13 +82,23 @@ class PrintCanon final : public Canon {
     void user_m_code(int code, double p, double q) override;
 
   private:
+    /// A coordinate as it was printed last.
+    struct Coordinate {
+        std::uint64_t bits = 0;
+        std::string text;
+    };
+
+    /// Puts counter and prefix of the next call into line_.
+    void begin_line();
     void put(std::string_view call);
     void put_straight(std::string_view name, const Pose &end);
 
     std::FILE *out_;
     std::FILE *log_ = nullptr;
     std::string prefix_ = "N.....";
+    bool isPrefixNumbered_ = false;
     std::string line_;
+    std::array<Coordinate, geom::AXIS_U> coordinates_;
     int count_ = 0;
 };
 

@@ -8,6 +8,7 @@
 
 #include "base/text.hh"
 #include "hal/lang/session.hh"
+#include "hal/lang/two_pass.hh"
 
 namespace mw::machine {
 namespace {
@@ -30,6 +31,14 @@ class IniValues final : public lang::IniLookup {
     std::vector<std::string> names(std::string_view section) const override {
         return reader_.file().keys(section);
     }
+    std::vector<std::string> values(std::string_view section, std::string_view name) const override {
+        std::vector<std::string> values;
+        for (const config::IniEntry *entry : reader_.file().find_all(section, name)) {
+            values.push_back(entry->value);
+        }
+        return values;
+    }
+    std::vector<std::string> sections() const override { return reader_.file().sections(); }
 
   private:
     config::IniReader &reader_;
@@ -76,23 +85,45 @@ Result<> run_file_step(lang::Session &session, const HalStep &step) {
         return fail("[HAL]HALFILE names no file", step.place);
     }
     const std::string &name = words[0];
-    if (name.size() > 4 && name.substr(name.size() - 4) == ".tcl") {
-        return fail("HAL files in Tcl are not supported by this version: '" + name + "'", step.place);
-    }
     if (!session.find_file(name).has_value()) {
         return fail("HAL file '" + name + "' is not found", step.place,
                     "looked beside the INI file and in the library of HAL files");
     }
-    return session.run_file(name);
+    return session.run_file(name, {words.begin() + 1, words.end()});
+}
+
+/// All files in two passes, then the single commands.
+Result<> run_two_pass_steps(lang::Session &session, const std::vector<HalStep> &steps,
+                            const std::string &keywords) {
+    std::vector<lang::HalFileEntry> files;
+    for (const HalStep &step : steps) {
+        if (step.kind == HalStep::Kind::FILE) {
+            files.push_back({step.text, step.place});
+        }
+    }
+    auto done = lang::run_two_pass(session, files, keywords, lang::TwoPassReport::NOTHING);
+    for (const HalStep &step : steps) {
+        if (done && step.kind == HalStep::Kind::COMMAND) {
+            done = session.run_text(step.text, step.place.str());
+        }
+    }
+    return done;
+}
+
+Result<> run_steps(lang::Session &session, const std::vector<HalStep> &steps) {
+    for (const HalStep &step : steps) {
+        const auto done = step.kind == HalStep::Kind::FILE ? run_file_step(session, step)
+                                                           : session.run_text(step.text, step.place.str());
+        if (!done) {
+            return done;
+        }
+    }
+    return {};
 }
 
 }  // namespace
 
 Result<> HalSetup::run() {
-    if (parts_.config.isTwoPass) {
-        return fail("[HAL]TWOPASS is not supported by this version",
-                    parts_.ini.find("HAL", "TWOPASS")->place);
-    }
     const IniValues ini(parts_.reader);
     SinkOutput output(parts_.sink);
     lang::InProcessProgramHost parts;
@@ -110,15 +141,14 @@ Result<> HalSetup::run() {
     }
     lang::ProgramHost &program_host = isVirtual ? static_cast<lang::ProgramHost &>(parts) : programs;
     lang::Session session(host_, program_host, output, session_options);
-    for (const HalStep &step : parts_.config.hal_steps) {
-        const int errors_before = parts_.sink.count_errors();
-        const auto done = step.kind == HalStep::Kind::FILE ? run_file_step(session, step)
-                                                           : session.run_text(step.text, step.place.str());
-        if (!done.has_value()) {
-            // The session has told its own failures already.
-            const bool isTold = parts_.sink.count_errors() > errors_before;
-            return isTold ? fail("") : done;
-        }
+    const int errors_before = parts_.sink.count_errors();
+    const auto done = parts_.config.two_pass.empty()
+                          ? run_steps(session, parts_.config.hal_steps)
+                          : run_two_pass_steps(session, parts_.config.hal_steps, parts_.config.two_pass);
+    if (!done) {
+        // The session has told its own failures already.
+        const bool isTold = parts_.sink.count_errors() > errors_before;
+        return isTold ? fail("") : done;
     }
     for (const std::string &text : session.left_out()) {
         parts_.sink.warning(text);

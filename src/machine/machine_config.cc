@@ -258,7 +258,7 @@ void read_hal(IniReader &ini, MachineConfig &machine) {
     for (const config::IniEntry *entry : ini.list("HAL", "HALCMD")) {
         machine.hal_steps.push_back({HalStep::Kind::COMMAND, entry->value, entry->place});
     }
-    machine.isTwoPass = !ini.text("HAL", "TWOPASS", "").empty();
+    machine.two_pass = ini.text("HAL", "TWOPASS", "");
     machine.hasHalui = !ini.text("HAL", "HALUI", "").empty();
     warn_without_effect(ini, "HAL", {"SHUTDOWN"});
     ini.know_all("HAL", {"POSTGUI_HALFILE", "POSTGUI_HALCMD", "SHUTDOWN"});

@@ -32,7 +32,7 @@ struct MachineConfig {
     std::int64_t servo_period_ns = 1000000;
     std::int64_t task_period_ns = 1000000;
     std::vector<HalStep> hal_steps;
-    bool isTwoPass = false;
+    std::string two_pass;  ///< [HAL]TWOPASS: not empty when files are gone through twice
     bool hasHalui = false;
     std::string display;  ///< the program that the INI names, not started here
     std::string tool_table_file;

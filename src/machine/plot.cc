@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "machine/plot.hh"
 
-#include <cairo.h>
-
 #include <algorithm>
 #include <array>
-#include <cairo-svg.h>
 #include <cmath>
-#include <memory>
 
 #include <fmt/format.h>
+
+#include "picture/canvas.hh"
 
 namespace mw::machine {
 namespace {
@@ -99,9 +97,6 @@ void draw_scale_bar(cairo_t *cr, const Scale &scale, const Window &window, const
 
 void draw(cairo_t *cr, const std::vector<PathPoint> &points, const std::string &title,
           const std::string &unit) {
-    cairo_set_source_rgb(cr, 1, 1, 1);
-    cairo_paint(cr);
-    cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
     cairo_set_font_size(cr, 18);
     cairo_set_source_rgb(cr, 0.1, 0.1, 0.1);
     cairo_move_to(cr, MARGIN, 34);
@@ -126,40 +121,16 @@ void draw(cairo_t *cr, const std::vector<PathPoint> &points, const std::string &
     cairo_show_text(cr, "rapid");
 }
 
-bool hasEnding(const std::string &path, const std::string &ending) {
-    return path.size() > ending.size() &&
-           path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
-}
-
 }  // namespace
 
 Result<> plot_path(const std::vector<PathPoint> &points, const std::string &title, const std::string &unit,
                    const std::string &path) {
-    const bool isPng = hasEnding(path, ".png");
-    if (!isPng && !hasEnding(path, ".svg")) {
-        return fail("a plot is a .png or .svg file, not '" + path + "'");
+    auto canvas = picture::Canvas::open(path, WIDTH, HEIGHT);
+    if (!canvas) {
+        return std::unexpected(canvas.error());
     }
-    const std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> surface(
-        isPng ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(WIDTH),
-                                           static_cast<int>(HEIGHT))
-              : cairo_svg_surface_create(path.c_str(), WIDTH, HEIGHT),
-        &cairo_surface_destroy);
-    {
-        const std::unique_ptr<cairo_t, decltype(&cairo_destroy)> cr(cairo_create(surface.get()),
-                                                                    &cairo_destroy);
-        draw(cr.get(), points, title, unit);
-    }
-    cairo_status_t status = CAIRO_STATUS_SUCCESS;
-    if (isPng) {
-        status = cairo_surface_write_to_png(surface.get(), path.c_str());
-    } else {
-        cairo_surface_finish(surface.get());
-        status = cairo_surface_status(surface.get());
-    }
-    if (status != CAIRO_STATUS_SUCCESS) {
-        return fail("cannot write the plot '" + path + "': " + cairo_status_to_string(status));
-    }
-    return {};
+    draw(canvas->cairo(), points, title, unit);
+    return canvas->write();
 }
 
 }  // namespace mw::machine

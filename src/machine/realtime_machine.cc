@@ -33,7 +33,8 @@ class RealtimeMachine final : public Machine {
 
     Result<> start(const MachineOptions &options) {
         auto host =
-            hal::HostClient::start(options.instance.empty() ? hal::default_instance() : options.instance);
+            hal::HostClient::start(options.instance.empty() ? hal::default_instance() : options.instance,
+                                   hal::MessagesTo::STDERR, hal::Lifetime::STARTER);
         if (!host.has_value()) {
             return std::unexpected(host.error());
         }

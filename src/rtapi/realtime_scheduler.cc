@@ -144,7 +144,15 @@ struct RealtimeScheduler::Impl {
         std::atomic<std::uint64_t> overruns{0};
         std::atomic<std::int64_t> max_latency_ns{0};
         std::atomic<std::int64_t> max_runtime_ns{0};
+        // The task's thread only.
+        std::int64_t release_ns = 0;
+        std::int64_t correction_ns = 0;
 
+        /// The task whose thread is running.
+        static Task *&current() noexcept {
+            thread_local Task *task = nullptr;
+            return task;
+        }
         void loop() noexcept;
         bool isDue(std::int64_t next) noexcept;
     };
@@ -178,9 +186,11 @@ bool RealtimeScheduler::Impl::Task::isDue(std::int64_t next) noexcept {
 
 void RealtimeScheduler::Impl::Task::loop() noexcept {
     const std::int64_t period = spec.period_ns;
+    current() = this;
     std::int64_t next = (monotonic_ns() / period + 1) * period;
     while (isDue(next)) {
         const std::int64_t start = monotonic_ns();
+        release_ns = next;
         const std::int64_t latency = start - next;
         if (latency > max_latency_ns.load(std::memory_order_relaxed)) {
             max_latency_ns.store(latency, std::memory_order_relaxed);
@@ -196,7 +206,7 @@ void RealtimeScheduler::Impl::Task::loop() noexcept {
         if (passed > 0) {
             overruns.fetch_add(static_cast<std::uint64_t>(passed), std::memory_order_relaxed);
         }
-        next += (passed + 1) * period;
+        next += (passed + 1) * period + correction_ns;
     }
 }
 
@@ -277,6 +287,20 @@ RealtimeScheduler::~RealtimeScheduler() {
 
 std::int64_t RealtimeScheduler::now_ns() const noexcept {
     return monotonic_ns();
+}
+
+std::int64_t RealtimeScheduler::current_release_ns() noexcept {
+    const Impl::Task *task = Impl::Task::current();
+    return task == nullptr ? 0 : task->release_ns;
+}
+
+bool RealtimeScheduler::set_correction_ns(std::int64_t ns) noexcept {
+    Impl::Task *task = Impl::Task::current();
+    if (task != nullptr) {
+        const std::int64_t most = task->spec.period_ns / 100;
+        task->correction_ns = std::clamp(ns, -most, most);
+    }
+    return task != nullptr;
 }
 
 bool RealtimeScheduler::isRealtime() const noexcept {

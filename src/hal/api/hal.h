@@ -12,6 +12,12 @@
 
 #include "rtapi.h"
 
+#ifdef __cplusplus
+#define HAL_STATIC_ASSERT(expression, message) static_assert(expression, message)
+#else
+#define HAL_STATIC_ASSERT(expression, message) _Static_assert(expression, message)
+#endif
+
 RTAPI_BEGIN_DECLS
 
 /* Longest name, without the zero at its end. A longer one is an error, never cut. */
@@ -135,6 +141,34 @@ extern int hal_is_init(void);
 extern void *hal_malloc(long int size);
 extern const char *hal_strerror(int err);
 
+/* Joins and leaves the instance without a component: for programs that only look. 0, or a negated errno. */
+extern int hal_lib_init(void);
+extern void hal_lib_exit(void);
+/* Repairs a lock that a process which died has left taken; waits while a living one holds it. */
+extern int hal_mutex_force_release(void);
+
+/* Makes further instances of a component after it was loaded: `prefix` begins their names, `arg` is the
+ * user's. 0, or a negated errno. */
+typedef int (*hal_constructor_t)(const char *prefix, const char *arg);
+typedef hal_constructor_t constructor;
+extern int hal_set_constructor(int comp_id, constructor make);
+/* Calls the constructor of a component, in the process that has it (-EXDEV elsewhere, -ENOSYS without one).
+ */
+extern int hal_comp_invoke_make(const char *compname, const char *newname, const char *arg);
+/* Notes the words that a component was loaded with, as lists and save show them. */
+extern int hal_comp_insmod_args(const char *compname, const char *args);
+
+typedef rtapi_realtime_type_t hal_realtime_type_t;
+extern hal_realtime_type_t hal_get_realtime_type(void);
+
+/* What there is in the instance now. */
+typedef struct {
+    int components, pins, params, signals, functs, threads, aliases;
+    unsigned long memory_used; /* bytes */
+    unsigned long memory_size; /* bytes that the instance may grow to */
+} hal_statistics_t;
+extern int hal_statistics(hal_statistics_t *sts);
+
 /* ---- pins ----
  * data_ptr_addr lies in memory of hal_malloc; from then on *data_ptr_addr points at the value: the pin's own
  * while it is unlinked, the signal's afterwards. Read the pointer anew at each use. */
@@ -186,6 +220,11 @@ extern int hal_pin_new_ui32(int compid, hal_pdir_t dir, hal_uint_t *ref, rtapi_u
     __attribute__((format(printf, 5, 6)));
 extern int hal_param_new_ui32(int compid, hal_pdir_t dir, hal_uint_t *ref, rtapi_u32 def, const char *fmt,
                               ...) __attribute__((format(printf, 5, 6)));
+/* A port has no start value. */
+extern int hal_pin_new_port(int compid, hal_pin_dir_t dir, hal_sint_t *ref, const char *fmt, ...)
+    __attribute__((format(printf, 4, 5)));
+/* Memory for one value that looks like a parameter to the getters but has no name and is not listed. */
+extern int hal_param_new_fake(int compid, hal_refs_u *refs);
 /* Adds a second name to a pin, or removes it (alias NULL). Either name finds the pin; lists show the alias.
  */
 extern int hal_pin_alias(const char *pin_name, const char *alias);
@@ -309,6 +348,9 @@ extern int hal_del_funct_from_thread(const char *funct_name, const char *thread_
 extern int hal_start_threads(void);
 extern int hal_stop_threads(void);
 
+/* Threads made from now on have the period asked for and nothing near it. They always do here. */
+extern void hal_enforce_exact_base_period(void);
+
 extern int hal_set_lock(unsigned char lock_type);
 extern unsigned char hal_get_lock(void);
 
@@ -332,11 +374,16 @@ typedef union hal_stream_data {
 } hal_stream_data_u;
 
 struct hal_stream_fifo;
-typedef struct {
+typedef struct __hal_stream_t {
     int comp_id;
     int shmem_id;
     struct hal_stream_fifo *fifo;
 } hal_stream_t;
+typedef hal_stream_t *hal_stream_ptr_t;
+typedef union {
+    hal_stream_data_u *data;
+    void *p;
+} hal_stream_data_ptr_u;
 
 extern int hal_stream_create(hal_stream_t *stream, int comp, int key, unsigned depth, const char *typestring);
 extern void hal_stream_destroy(hal_stream_t *stream);
@@ -382,5 +429,22 @@ extern void hal_port_wait_readable(hal_port_t **port, unsigned count, sig_atomic
 extern void hal_port_wait_writable(hal_port_t **port, unsigned count, sig_atomic_t *stop);
 
 RTAPI_END_DECLS
+
+#ifndef __cplusplus
+/* Components give the port's value where the functions above want its address: both are taken. A value is as
+ * good, since a port is a handle. */
+#define HAL_PORT_ARG_(port) ((__typeof__((port) + 0)[1]){(port)})
+#define HAL_PORT_ARG(port) _Generic((port), int: HAL_PORT_ARG_(port), default: *HAL_PORT_ARG_(port))
+#define hal_port_read(port, dest, count) hal_port_read(HAL_PORT_ARG(port), (dest), (count))
+#define hal_port_peek(port, dest, count) hal_port_peek(HAL_PORT_ARG(port), (dest), (count))
+#define hal_port_peek_commit(port, count) hal_port_peek_commit(HAL_PORT_ARG(port), (count))
+#define hal_port_write(port, src, count) hal_port_write(HAL_PORT_ARG(port), (src), (count))
+#define hal_port_readable(port) hal_port_readable(HAL_PORT_ARG(port))
+#define hal_port_writable(port) hal_port_writable(HAL_PORT_ARG(port))
+#define hal_port_buffer_size(port) hal_port_buffer_size(HAL_PORT_ARG(port))
+#define hal_port_clear(port) hal_port_clear(HAL_PORT_ARG(port))
+#endif
+
+#include "hal_query.h"
 
 #endif

@@ -37,6 +37,54 @@ RTAPI_EXPORT extern KINEMATICS_TYPE kinematicsType(void);
 RTAPI_EXPORT extern int kinematicsSwitchable(void);
 RTAPI_EXPORT extern int kinematicsSwitch(int switchkins_type);
 
+/* ---- parts of modules ----
+ * Coordinates are the letters XYZABCUVW; the joint of a letter is its place in the text. */
+
+/* What a module says of itself to the setup functions below. */
+typedef struct kinematics_parms {
+    const char *sparm;                /* the user's own text */
+    const char *kinsname;             /* begins messages */
+    const char *halprefix;            /* begins names of pins */
+    const char *required_coordinates; /* letters that must be there */
+    int allow_duplicates;             /* a letter may stand for several joints */
+    int max_joints;
+    int fwd_iterates_mask; /* bit per type: its forward kinematics iterates from the last pose */
+    int gui_kinstype;      /* the type that previews show, -1: none */
+} kparms;
+
+/* Fills axis_idx_for_jno[0..max_joints-1] with the axis (X 0 ... W 8) of each joint, -1 for joints without
+ * one; NULL or an empty text means XYZABCUVW. 0, or -1 with a message. */
+extern int map_coordinates_to_jnumbers(const char *coordinates, const int max_joints,
+                                       const int allow_duplicates, int axis_idx_for_jno[]);
+/* Between joints and the pose by the mapping made last; 0, or -1 without one. Of several joints of a letter
+ * the first gives the pose. */
+extern int mapped_joints_to_position(const int max_joints, const double *joints, EmcPose *pose);
+extern int position_to_mapped_joints(const int max_joints, const EmcPose *pos, double *joints);
+/* The kinematics where every joint is an axis, as one type of a switchable module. */
+extern int identityKinematicsSetup(const int comp_id, const char *coordinates, kparms *ksetup_parms);
+extern int identityKinematicsForward(const double *joint, struct EmcPose *world,
+                                     const KINEMATICS_FORWARD_FLAGS *fflags,
+                                     KINEMATICS_INVERSE_FLAGS *iflags);
+extern int identityKinematicsInverse(const struct EmcPose *world, double *joint,
+                                     const KINEMATICS_INVERSE_FLAGS *iflags,
+                                     KINEMATICS_FORWARD_FLAGS *fflags);
+
+/* What a module of several types defines itself. */
+extern int userkKinematicsSetup(const int comp_id, const char *coordinates, kparms *ksetup_parms);
+extern int userkKinematicsForward(const double *joint, struct EmcPose *world,
+                                  const KINEMATICS_FORWARD_FLAGS *fflags, KINEMATICS_INVERSE_FLAGS *iflags);
+extern int userkKinematicsInverse(const struct EmcPose *world, double *joint,
+                                  const KINEMATICS_INVERSE_FLAGS *iflags, KINEMATICS_FORWARD_FLAGS *fflags);
+extern int trtKinematicsSetup(const int comp_id, const char *coordinates, kparms *ksetup_parms);
+extern int xyzacKinematicsForward(const double *joints, EmcPose *pos, const KINEMATICS_FORWARD_FLAGS *fflags,
+                                  KINEMATICS_INVERSE_FLAGS *iflags);
+extern int xyzacKinematicsInverse(const EmcPose *pos, double *joints, const KINEMATICS_INVERSE_FLAGS *iflags,
+                                  KINEMATICS_FORWARD_FLAGS *fflags);
+extern int xyzbcKinematicsForward(const double *joints, EmcPose *pos, const KINEMATICS_FORWARD_FLAGS *fflags,
+                                  KINEMATICS_INVERSE_FLAGS *iflags);
+extern int xyzbcKinematicsInverse(const EmcPose *pos, double *joints, const KINEMATICS_INVERSE_FLAGS *iflags,
+                                  KINEMATICS_FORWARD_FLAGS *fflags);
+
 RTAPI_END_DECLS
 
 /* For modules with one type only. */

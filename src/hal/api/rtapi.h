@@ -4,8 +4,10 @@
 #ifndef RTAPI_H
 #define RTAPI_H
 
+#include <spawn.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <sys/types.h>
 
 #include "rtapi_errno.h"
 #include "rtapi_stdint.h"
@@ -24,11 +26,16 @@
 #define RTAPI_STRINGIFY(x) #x
 /* Before the declaration of what other modules look up, in modules that are compiled with hidden visibility.
  */
-#define RTAPI_EXPORT __attribute__((visibility("default")))
-/* Checks that the symbol exists; with the compiler's usual visibility every global symbol is exported anyway.
- */
-#define EXPORT_SYMBOL(x) extern __typeof__(x) x
+#define RTAPI_EXPORT __attribute__((__visibility__("default")))
+/* Lets other modules use the symbol: halcompile exports what stands here and the entry points, and keeps
+ * everything else private to the module. Checks that the symbol exists. */
+#define EXPORT_SYMBOL(x) RTAPI_EXPORT_NOTE_(x, __COUNTER__)
+#define RTAPI_EXPORT_NOTE_(x, n) RTAPI_EXPORT_NOTE2_(x, n)
+#define RTAPI_EXPORT_NOTE2_(x, n)                                                                            \
+    static const char rtapi_exported_##n[] __attribute__((__section__(".rtapi_export"), __used__)) = #x;     \
+    extern __typeof__(x) x;
 #define EXPORT_SYMBOL_GPL(x) EXPORT_SYMBOL(x)
+#define EXPORT_FUNCTION(x) EXPORT_SYMBOL(x)
 
 RTAPI_BEGIN_DECLS
 
@@ -97,6 +104,84 @@ extern long int rtapi_delay_max(void);
 /* Answers the period asked for: threads have exactly the periods they are created with. */
 extern long int rtapi_clock_set_period(long int nsecs);
 
+/* A number as strtol reads it. Realtime-safe. */
+extern long simple_strtol(const char *nptr, char **endptr, int base);
+
+/* ---- tasks: threads of a module's own, below or beside those of HAL ----
+ * For the realtime clock only (-ENOSYS under the virtual one, which cannot step foreign loops). Components
+ * use HAL functions instead. Ids are at least 1. */
+
+/* Opaque priorities; a larger number is not a higher priority. */
+extern int rtapi_prio_highest(void);
+extern int rtapi_prio_lowest(void);
+extern int rtapi_prio_next_higher(int prio);
+extern int rtapi_prio_next_lower(int prio);
+
+/* A task that is not started yet: an id, or a negated errno. */
+extern int rtapi_task_new(void (*taskcode)(void *), void *arg, int prio, int owner,
+                          unsigned long int stacksize, int uses_fp);
+/* Ends the task in its next rtapi_wait; -EBUSY when it reaches none within two seconds. */
+extern int rtapi_task_delete(int task_id);
+/* Starts it with a period; it calls rtapi_wait at the end of each. */
+extern int rtapi_task_start(int task_id, unsigned long int period_nsec);
+/* Lets it run without a period, or goes on after a pause. */
+extern int rtapi_task_resume(int task_id);
+/* The task rests in its next rtapi_wait until it is resumed. */
+extern int rtapi_task_pause(int task_id);
+/* The id of the calling task, or -EINVAL. Realtime-safe. */
+extern int rtapi_task_self(void);
+/* Waits for the next period of the calling task. */
+extern int rtapi_wait(void);
+/* Drops the releases that the calling task has missed. */
+extern void rtapi_task_self_resync(void);
+
+/* The release time of the calling HAL thread's present period [ns], 0 elsewhere; and a correction of its next
+ * releases [ns a period], at most one percent of the period: -EINVAL outside of HAL threads. They let a
+ * thread follow a clock on the other side of a bus. Realtime-safe. */
+#define RTAPI_TASK_PLL_SUPPORT 1
+extern long long rtapi_task_pll_get_reference(void);
+extern int rtapi_task_pll_set_correction(long value);
+
+/* ---- semaphores and queues of bytes by key, within the instance's realtime process ---- */
+
+/* A semaphore that is free: an id, or a negated errno; the same for every caller with this key. */
+extern int rtapi_sem_new(int key, int module_id);
+extern int rtapi_sem_delete(int sem_id, int module_id);
+/* Realtime-safe. */
+extern int rtapi_sem_give(int sem_id);
+/* Waits. Not for realtime functions. */
+extern int rtapi_sem_take(int sem_id);
+/* 0 when taken, -EBUSY when not. Realtime-safe. */
+extern int rtapi_sem_try(int sem_id);
+
+/* A queue between one reader (mode 'R') and one writer ('W'), in all processes of the instance. */
+extern int rtapi_fifo_new(int key, int module_id, unsigned long int size, char mode);
+extern int rtapi_fifo_delete(int fifo_id, int module_id);
+/* Move as many bytes as there are (fit), at most size; the number, or a negated errno. Realtime-safe. */
+extern int rtapi_fifo_read(int fifo_id, char *buf, unsigned long int size);
+extern int rtapi_fifo_write(int fifo_id, char *buf, unsigned long int size);
+
+/* ---- hardware ---- */
+
+/* Interrupts reach no user process: these say -ENOSYS. */
+extern int rtapi_irq_new(unsigned int irq_num, int owner, void (*handler)(void));
+extern int rtapi_irq_delete(unsigned int irq_num);
+extern int rtapi_enable_interrupt(unsigned int irq);
+extern int rtapi_disable_interrupt(unsigned int irq);
+
+/* Claims I/O ports for this process: not NULL, or NULL with a message when the system refuses (it needs the
+ * capability CAP_SYS_RAWIO) or another module has them. */
+extern void *rtapi_request_region(unsigned long base, unsigned long size, const char *name);
+extern void rtapi_release_region(unsigned long base, unsigned long int size);
+
+/* open(2) and posix_spawn(3) with root's rights where the process can take them: a descriptor or a negated
+ * errno; 0 or a negated errno. */
+extern int rtapi_open_as_root(const char *filename, int mode);
+extern int rtapi_spawn_as_root(pid_t *pid, const char *path, const posix_spawn_file_actions_t *file_actions,
+                               const posix_spawnattr_t *attrp, char *const argv[], char *const envp[]);
+extern int rtapi_spawnp_as_root(pid_t *pid, const char *path, const posix_spawn_file_actions_t *file_actions,
+                                const posix_spawnattr_t *attrp, char *const argv[], char *const envp[]);
+
 /* ---- shared memory of this instance ---- */
 
 /* Opens the block with this key, created and zeroed when new: an id, or a negated errno (-EINVAL: size 0, or
@@ -111,12 +196,13 @@ extern int rtapi_shmem_delete(int shmem_id, int module_id);
 
 enum rtapi_mp_type { RTAPI_MP_TYPE_INT = 1, RTAPI_MP_TYPE_LONG, RTAPI_MP_TYPE_STRING };
 
+/* Member names that no pin of a component has. */
 struct rtapi_mp_info {
-    const char *name;
-    const char *description;
-    int type;  /* enum rtapi_mp_type */
-    int count; /* elements; 1 for a scalar */
-    void *address;
+    const char *mp_name;
+    const char *mp_description;
+    int mp_type;  /* enum rtapi_mp_type */
+    int mp_count; /* elements; 1 for a scalar */
+    void *mp_address;
 };
 
 /* Called by the macros below while a module is loaded. */
@@ -124,17 +210,12 @@ extern void rtapi_mp_register(const struct rtapi_mp_info *info);
 
 RTAPI_END_DECLS
 
+/* These macros stand at file scope, behind the variable, with or without a semicolon. */
 #define RTAPI_MP_DECLARE_(var, addr, kind, num, descr)                                                       \
-    static __attribute__((constructor)) void rtapi_mp_register_##var(void) {                                 \
-        static struct rtapi_mp_info info;                                                                    \
-        info.name = #var;                                                                                    \
-        info.description = (descr);                                                                          \
-        info.type = (kind);                                                                                  \
-        info.count = (num);                                                                                  \
-        info.address = (void *)(addr);                                                                       \
-        rtapi_mp_register(&info);                                                                            \
-    }                                                                                                        \
-    struct rtapi_mp_info
+    static struct rtapi_mp_info rtapi_mp_info_##var = {#var, (descr), (kind), (num), (void *)(addr)};        \
+    static __attribute__((__constructor__)) void rtapi_mp_register_##var(void) {                             \
+        rtapi_mp_register(&rtapi_mp_info_##var);                                                             \
+    }
 
 #define RTAPI_MP_INT(var, descr) RTAPI_MP_DECLARE_(var, &(var), RTAPI_MP_TYPE_INT, 1, descr)
 #define RTAPI_MP_LONG(var, descr) RTAPI_MP_DECLARE_(var, &(var), RTAPI_MP_TYPE_LONG, 1, descr)
@@ -142,19 +223,33 @@ RTAPI_END_DECLS
 #define RTAPI_MP_ARRAY_INT(var, num, descr) RTAPI_MP_DECLARE_(var, (var), RTAPI_MP_TYPE_INT, num, descr)
 #define RTAPI_MP_ARRAY_LONG(var, num, descr) RTAPI_MP_DECLARE_(var, (var), RTAPI_MP_TYPE_LONG, num, descr)
 #define RTAPI_MP_ARRAY_STRING(var, num, descr) RTAPI_MP_DECLARE_(var, (var), RTAPI_MP_TYPE_STRING, num, descr)
+/* `type` as a letter in quotes: "i" int, "l" long, "s" string. */
+#define RTAPI_MP_ARRAY(type, var, num, descr)                                                                \
+    static struct rtapi_mp_info rtapi_mp_info_##var = {#var, (descr), 0, (num), (void *)(var)};              \
+    static __attribute__((__constructor__)) void rtapi_mp_register_##var(void) {                             \
+        rtapi_mp_info_##var.mp_type = (type)[0] == 's'   ? RTAPI_MP_TYPE_STRING                              \
+                                      : (type)[0] == 'l' ? RTAPI_MP_TYPE_LONG                                \
+                                                         : RTAPI_MP_TYPE_INT;                                \
+        rtapi_mp_register(&rtapi_mp_info_##var);                                                             \
+    }
 
 /* Facts about a module for people and tools; they leave no trace in the object. */
-#define MODULE_INFO(tag, text) struct rtapi_mp_info
-#define MODULE_INFO1(tag, a, text) struct rtapi_mp_info
-#define MODULE_INFO2(tag, a, b, text) struct rtapi_mp_info
-#define MODULE_LICENSE(text) struct rtapi_mp_info
-#define MODULE_AUTHOR(text) struct rtapi_mp_info
-#define MODULE_DESCRIPTION(text) struct rtapi_mp_info
-#define MODULE_SUPPORTED_DEVICE(text) struct rtapi_mp_info
-#define MODULE_DEVICE_TABLE(bus, table) struct rtapi_mp_info
-#define MODULE_PARM(var, type) struct rtapi_mp_info
-#define MODULE_PARM_DESC(var, text) struct rtapi_mp_info
+#define MODULE_INFO(tag, text)
+#define MODULE_INFO1(tag, a, text)
+#define MODULE_INFO2(tag, a, b, text)
+#define MODULE_INFO2x(tag, a, b, text)
+#define MODULE_LICENSE(text)
+#define MODULE_AUTHOR(text)
+#define MODULE_DESCRIPTION(text)
+#define MODULE_SUPPORTED_DEVICE(text)
+#define MODULE_DEVICE_TABLE(bus, table)
+#define MODULE_PARM(var, type)
+#define MODULE_PARM_DESC(var, text)
 
 #define KERNEL_VERSION(a, b, c) (((a) << 16) + ((b) << 8) + (c))
+/* Modules are shared objects: what code does for old kernels does not apply. */
+#ifndef LINUX_VERSION_CODE
+#define LINUX_VERSION_CODE KERNEL_VERSION(6, 1, 0)
+#endif
 
 #endif

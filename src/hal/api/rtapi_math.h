@@ -52,4 +52,30 @@
 #define M_PI_2l 1.570796326794896619231321691639751442L
 #endif
 
+/* The parts of a double. */
+#if defined(__has_include)
+#if __has_include(<ieee754.h>)
+#include <ieee754.h>
+#endif
+#endif
+#ifndef IEEE754_DOUBLE_BIAS
+#define IEEE754_DOUBLE_BIAS 0x3ff
+union ieee754_double {
+    double d;
+    struct {
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+        unsigned int negative : 1;
+        unsigned int exponent : 11;
+        unsigned int mantissa0 : 20;
+        unsigned int mantissa1 : 32;
+#else
+        unsigned int mantissa1 : 32;
+        unsigned int mantissa0 : 20;
+        unsigned int exponent : 11;
+        unsigned int negative : 1;
+#endif
+    } ieee;
+};
+#endif
+
 #endif

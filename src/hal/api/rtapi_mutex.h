@@ -5,6 +5,10 @@
 
 #include <sched.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef unsigned long rtapi_mutex_t;
 
 /* Releases the lock, which the caller must hold. */
@@ -14,7 +18,8 @@ static inline void rtapi_mutex_give(unsigned long *mutex) {
 
 /* Takes the lock if it is free. Answers 0 when taken, 1 when another holds it. Realtime-safe. */
 static inline int rtapi_mutex_try(unsigned long *mutex) {
-    return __atomic_exchange_n(mutex, 1UL, __ATOMIC_ACQUIRE) != 0UL;
+    unsigned long free_word = 0UL;
+    return !__atomic_compare_exchange_n(mutex, &free_word, 1UL, 0, __ATOMIC_ACQUIRE, __ATOMIC_RELAXED);
 }
 
 /* Waits until the lock is taken. Not for realtime functions. */
@@ -23,5 +28,32 @@ static inline void rtapi_mutex_get(unsigned long *mutex) {
         sched_yield();
     }
 }
+
+/* The same word as a lock for many readers or one writer: the functions above write, these read. Bit 0 is the
+ * writer's, each reader counts 2. */
+static inline void rtapi_mutex_give_rd(unsigned long *mutex) {
+    __atomic_fetch_sub(mutex, 2UL, __ATOMIC_RELEASE);
+}
+
+/* 0 when taken, 1 when a writer holds it. Realtime-safe. */
+static inline int rtapi_mutex_try_rd(unsigned long *mutex) {
+    unsigned long seen = __atomic_load_n(mutex, __ATOMIC_RELAXED);
+    while ((seen & 1UL) == 0UL) {
+        if (__atomic_compare_exchange_n(mutex, &seen, seen + 2UL, 1, __ATOMIC_ACQUIRE, __ATOMIC_RELAXED)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static inline void rtapi_mutex_get_rd(unsigned long *mutex) {
+    while (rtapi_mutex_try_rd(mutex) != 0) {
+        sched_yield();
+    }
+}
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

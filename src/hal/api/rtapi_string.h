@@ -20,7 +20,7 @@ extern size_t rtapi_strlcat(char *dst, const char *src, size_t size);
 
 /* Splits a text at blanks into a vector ended by NULL; *argc (if given) receives its length. Free it with
  * rtapi_argv_free. NULL when memory is short. Not for realtime functions. */
-extern char **rtapi_argv_split(int flags, const char *argstr, int *argc);
+extern char **rtapi_argv_split(rtapi_gfp_t flags, const char *argstr, int *argc);
 extern void rtapi_argv_free(char **argv);
 
 #ifdef __cplusplus
@@ -33,9 +33,21 @@ extern void rtapi_argv_free(char **argv);
 #define rtapi_static_assert(condition, message) static_assert(condition, message)
 #endif
 
-/* For destinations that are arrays: the size is taken from the type. */
+/* For destinations that are arrays: the size is taken from the type, and a pointer does not compile. */
+#ifdef __cplusplus
+#define rtapi_is_array(x) true
 #define rtapi_strxcpy(dst, src) rtapi_strlcpy((dst), (src), sizeof(dst))
 #define rtapi_strxcat(dst, src) rtapi_strlcat((dst), (src), sizeof(dst))
+#else
+#define rtapi_is_array(x) (!__builtin_types_compatible_p(__typeof__(x), __typeof__(&(x)[0])))
+#define RTAPI_ARRAY_SIZE_(x)                                                                                 \
+    (sizeof(x) + 0 * sizeof(struct {                                                                         \
+                     _Static_assert(rtapi_is_array(x), "an array is needed");                                \
+                     int y;                                                                                  \
+                 }))
+#define rtapi_strxcpy(dst, src) rtapi_strlcpy((dst), (src), RTAPI_ARRAY_SIZE_(dst))
+#define rtapi_strxcat(dst, src) rtapi_strlcat((dst), (src), RTAPI_ARRAY_SIZE_(dst))
+#endif
 #define rtapi_kstrdup(text, flags) strdup(text)
 
 #endif

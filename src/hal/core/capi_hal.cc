@@ -128,6 +128,16 @@ int hal_exit(int comp_id) {
     return status;
 }
 
+int hal_lib_init(void) {
+    return joined() == nullptr ? -ENOENT : 0;
+}
+
+void hal_lib_exit(void) {
+    if (Hal *hal = current()) {
+        leave(hal);
+    }
+}
+
 int hal_ready(int comp_id) {
     return with_hal([&](Hal &hal) { return status_of(hal.set_ready(comp_id, true)); });
 }

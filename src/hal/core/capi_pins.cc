@@ -278,6 +278,26 @@ int hal_param_s64_set(const char *name, signed long value) {
     return set_param(name, Value::of_s64(value));
 }
 
+int hal_pin_new_port(int compid, hal_pin_dir_t dir, hal_sint_t *ref, const char *fmt, ...) {
+    std::va_list args;
+    va_start(args, fmt);
+    const FormattedName name(fmt, args);
+    va_end(args);
+    return name.isGood && hal_pdir_is_pin(dir) != 0
+               ? new_pin(name.text, HAL_PORT, dir, reinterpret_cast<void **>(ref), compid)
+               : -EINVAL;
+}
+
+int hal_param_new_fake(int compid, hal_refs_u *refs) {
+    return with_hal([&](Hal &hal) {
+        if (refs == nullptr || !hal.component(compid)) {
+            return complain(EINVAL, fmt::format("there is no component {}", compid));
+        }
+        refs->p = hal.allocate(sizeof(std::uint64_t));
+        return refs->p == nullptr ? complain(ENOMEM, "no HAL memory left") : 0;
+    });
+}
+
 int hal_pin_new_bool(int compid, hal_pdir_t dir, hal_bool_t *ref, rtapi_bool def, const char *fmt, ...) {
     std::va_list args;
     va_start(args, fmt);

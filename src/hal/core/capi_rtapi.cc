@@ -134,6 +134,10 @@ long int rtapi_clock_set_period(long int nsecs) {
     return nsecs;
 }
 
+long simple_strtol(const char *nptr, char **endptr, int base) {
+    return std::strtol(nptr, endptr, base);
+}
+
 int rtapi_shmem_new(int key, int /*module_id*/, unsigned long int size) {
     return with_hal([&](Hal &hal) {
         Guard guard(hal.impl());
@@ -188,7 +192,7 @@ size_t rtapi_strlcat(char *dst, const char *src, size_t size) {
     return start == size ? size + std::strlen(src) : start + rtapi_strlcpy(dst + start, src, size - start);
 }
 
-char **rtapi_argv_split(int /*flags*/, const char *argstr, int *argc) {
+char **rtapi_argv_split(rtapi_gfp_t /*flags*/, const char *argstr, int *argc) {
     // One block: the vector, then the words that it points to.
     const size_t length = std::strlen(argstr);
     const size_t most = length / 2 + 2;

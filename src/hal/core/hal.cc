@@ -270,6 +270,9 @@ Result<int> Hal::Impl::add_comp(std::string_view name_wanted, CompType type) {
 
 void Hal::Impl::remove_comp(CompRecord &comp, bool isDead) noexcept {
     const Offset owner = segment.offset_of(&comp);
+    if (isDead) {
+        note_death(comp);
+    }
     segment.each<FunctRecord>(Kind::FUNCT, [&](FunctRecord &funct) {
         if (funct.comp == owner) {
             remove_funct(funct);
@@ -326,6 +329,7 @@ Result<> Hal::delete_component(int comp_id) {
         return refuse(EINVAL, fmt::format("there is no component with id {}", comp_id));
     }
     impl_->remove_comp(*comp, false);
+    impl_->constructors.erase(comp_id);
     return {};
 }
 

@@ -102,10 +102,22 @@ struct CompInfo {
     bool isLoadedByLoadrt = false;
 };
 
+/// A component that went with its process, without leaving HAL.
+struct DeathInfo {
+    std::string name;
+    int pid = 0;
+    std::int64_t time_ns = 0;  ///< when it was noticed, as now_ns() of a realtime host
+};
+
+struct RecordCount {
+    int active = 0;
+    int recycled = 0;  ///< removed, their memory waiting for the next of their kind
+};
+
 struct HalStatistics {
     std::size_t segment_bytes = 0;  ///< in use now
     std::size_t capacity_bytes = 0;
-    int components = 0, pins = 0, aliases = 0, signals = 0, params = 0, functs = 0, threads = 0;
+    RecordCount components, pins, aliases, signals, params, functs, threads;
 };
 
 struct HalOptions {
@@ -150,6 +162,10 @@ class Hal {
     /// Ends components whose process is gone; their outputs take their safe values first. The names of those
     /// ended.
     std::vector<std::string> reap_dead_components();
+    /// The process of this component is about to be told to end: that it goes is no death.
+    Result<> expect_end(int comp_id);
+    /// The last components (at most 16) whose process died, oldest first; without those that are back.
+    std::vector<DeathInfo> deaths() const;
     Result<> set_insmod_args(int comp_id, std::string_view args);
 
     // ---- things of components
@@ -222,6 +238,11 @@ class Hal {
     std::vector<FunctInfo> functs(std::string_view glob = "*") const;
     std::vector<ThreadInfo> threads(std::string_view glob = "*") const;  ///< fastest first
     std::vector<CompInfo> components(std::string_view glob = "*") const;
+    /// Quick answers by name (or alias); those below explain a failure with the nearest known name.
+    bool hasPin(std::string_view name) const;
+    bool hasParam(std::string_view name) const;
+    bool hasSignal(std::string_view name) const;
+    bool hasComponent(std::string_view name) const;
     Result<PinInfo> pin(std::string_view name) const;
     Result<ParamInfo> param(std::string_view name) const;
     Result<SignalInfo> signal(std::string_view name) const;

@@ -378,14 +378,16 @@ Result<Value> Hal::get_param(std::string_view name) const {
 }
 
 Result<Value> Hal::get(std::string_view name) const {
-    if (auto param = get_param(name)) {
-        return param;
+    Guard guard(*impl_);
+    if (const ParamRecord *param = impl_->find_param(name)) {
+        return impl_->read(param->type, param->value);
     }
-    auto pin = get_pin(name);
-    if (!pin) {
-        pin.error().message = fmt::format("there is no pin or parameter '{}'", name);
+    if (const PinRecord *pin = impl_->find_pin(name)) {
+        return impl_->read(pin->type, impl_->value_of(*pin));
     }
-    return pin;
+    auto error = impl_->no_such(Kind::PIN, name);
+    error.error().message = fmt::format("there is no pin or parameter '{}'", name);
+    return error;
 }
 
 Result<> Hal::set(std::string_view name, const Value &value) {

@@ -227,6 +227,26 @@ Result<PinInfo> Hal::pin(std::string_view name) const {
     return info_of(*impl_, *pin);
 }
 
+bool Hal::hasPin(std::string_view name) const {
+    Guard guard(*impl_);
+    return impl_->find_pin(name) != nullptr;
+}
+
+bool Hal::hasParam(std::string_view name) const {
+    Guard guard(*impl_);
+    return impl_->find_param(name) != nullptr;
+}
+
+bool Hal::hasSignal(std::string_view name) const {
+    Guard guard(*impl_);
+    return impl_->find_signal(name) != nullptr;
+}
+
+bool Hal::hasComponent(std::string_view name) const {
+    Guard guard(*impl_);
+    return impl_->segment.find(Kind::COMP, name) != nullptr;
+}
+
 Result<ParamInfo> Hal::param(std::string_view name) const {
     Guard guard(*impl_);
     const ParamRecord *param = impl_->find_param(name);
@@ -274,13 +294,22 @@ Result<CompInfo> Hal::component(int comp_id) const {
 HalStatistics Hal::statistics() const {
     Guard guard(*impl_);
     const Segment &segment = impl_->segment;
-    const auto count = [&](Kind kind) { return static_cast<int>(segment.table(kind).count); };
+    const auto count = [&](Kind kind) {
+        RecordCount records{static_cast<int>(segment.table(kind).count), 0};
+        for (Offset at = segment.table(kind).free; at != 0; at = segment.at<Record>(at)->next) {
+            ++records.recycled;
+        }
+        return records;
+    };
     HalStatistics statistics;
     statistics.segment_bytes = segment.header().top;
     statistics.capacity_bytes = RESERVE;
     statistics.components = count(Kind::COMP);
     statistics.pins = count(Kind::PIN);
-    statistics.aliases = count(Kind::PIN_ALIAS) + count(Kind::PARAM_ALIAS);
+    const RecordCount pin_aliases = count(Kind::PIN_ALIAS);
+    const RecordCount param_aliases = count(Kind::PARAM_ALIAS);
+    statistics.aliases = {pin_aliases.active + param_aliases.active,
+                          pin_aliases.recycled + param_aliases.recycled};
     statistics.signals = count(Kind::SIGNAL);
     statistics.params = count(Kind::PARAM);
     statistics.functs = count(Kind::FUNCT);

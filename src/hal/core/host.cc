@@ -37,4 +37,9 @@ Result<std::vector<std::string>> LocalHost::modules() {
     return loader_.modules();
 }
 
+Result<> LocalHost::set_log_level(rtapi::LogLevel level) {
+    hal_->log().set_level(level);
+    return {};
+}
+
 }  // namespace mw::hal

@@ -27,6 +27,8 @@ class Host {
     virtual Result<bool> isModuleLoaded(const std::string &name) = 0;
     /// Loaded modules, newest last.
     virtual Result<std::vector<std::string>> modules() = 0;
+    /// What the host's log lets through.
+    virtual Result<> set_log_level(rtapi::LogLevel level) = 0;
     std::int64_t now_ns() noexcept { return hal().now_ns(); }
 };
 
@@ -45,6 +47,7 @@ class LocalHost final : public Host {
     Result<> unload_realtime(const std::string &name) override;
     Result<bool> isModuleLoaded(const std::string &name) override;
     Result<std::vector<std::string>> modules() override;
+    Result<> set_log_level(rtapi::LogLevel level) override;
 
   private:
     LocalHost(std::unique_ptr<Hal> hal, std::vector<std::string> folders);

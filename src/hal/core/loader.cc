@@ -3,6 +3,7 @@
 
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <link.h>
 #include <sys/mman.h>
 #include <sys/sendfile.h>
 #include <sys/stat.h>
@@ -13,9 +14,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <deque>
+#include <filesystem>
 #include <limits>
 #include <mutex>
 
+#include "base/own_place.hh"
 #include "base/text.hh"
 #include "hal/api/rtapi.h"
 #include "hal/core/detail/impl.hh"
@@ -32,9 +35,35 @@ struct Loader::Module {
     std::deque<std::string> texts;  ///< what string parameters point to
     std::vector<int> comp_ids;      ///< made by its rtapi_app_main
     std::vector<int> users;         ///< components that hold its symbols
+    std::vector<std::string> uses;  ///< modules whose symbols it is linked to
 };
 
 namespace {
+
+/// A parameter as a HAL file has it, its value in quotes where there are blanks in it.
+std::string quoted(const std::string &arg) {
+    const std::size_t equals = arg.find('=');
+    if (equals == std::string::npos || arg.find_first_of(" \t") == std::string::npos) {
+        return arg;
+    }
+    return arg.substr(0, equals + 1) + '"' + arg.substr(equals + 1) + '"';
+}
+
+/// Names of the shared objects there are.
+std::vector<std::string> modules_in(const std::vector<std::string> &folders) {
+    constexpr std::string_view ENDING = ".so";
+    std::vector<std::string> names;
+    for (const std::string &folder : folders) {
+        std::error_code ignored;
+        for (const auto &entry : std::filesystem::directory_iterator(folder, ignored)) {
+            std::string name = entry.path().filename().string();
+            if (name.ends_with(ENDING)) {
+                names.push_back(name.substr(0, name.size() - ENDING.size()));
+            }
+        }
+    }
+    return names;
+}
 
 /// Errors that a module logs while it is loaded are repeated in the failure.
 struct LogTap {
@@ -59,34 +88,34 @@ struct LogTap {
 
 Result<> set_number(const rtapi_mp_info &info, int index, std::string_view text) {
     const auto value = parse_int(text);
-    const bool isInt = info.type == RTAPI_MP_TYPE_INT;
+    const bool isInt = info.mp_type == RTAPI_MP_TYPE_INT;
     if (!value ||
         (isInt && (*value < std::numeric_limits<int>::min() || *value > std::numeric_limits<int>::max()))) {
-        return refuse(EINVAL, fmt::format("parameter '{}': '{}' is not a whole number{}", info.name, text,
+        return refuse(EINVAL, fmt::format("parameter '{}': '{}' is not a whole number{}", info.mp_name, text,
                                           isInt ? " of 32 bits" : ""));
     }
     if (isInt) {
-        static_cast<int *>(info.address)[index] = static_cast<int>(*value);
+        static_cast<int *>(info.mp_address)[index] = static_cast<int>(*value);
     } else {
-        static_cast<long *>(info.address)[index] = *value;
+        static_cast<long *>(info.mp_address)[index] = *value;
     }
     return {};
 }
 
 Result<> set_parameter(const rtapi_mp_info &info, std::string_view text, std::deque<std::string> &texts) {
-    const bool isText = info.type == RTAPI_MP_TYPE_STRING;
-    if (info.count > 1 && text.empty()) {
+    const bool isText = info.mp_type == RTAPI_MP_TYPE_STRING;
+    if (info.mp_count > 1 && text.empty()) {
         return {};
     }
     for (int index = 0;; ++index) {
-        if (index == info.count) {
+        if (index == info.mp_count) {
             return refuse(EINVAL,
-                          fmt::format("parameter '{}' takes at most {} values", info.name, info.count));
+                          fmt::format("parameter '{}' takes at most {} values", info.mp_name, info.mp_count));
         }
-        const std::size_t comma = info.count > 1 ? text.find(',') : std::string_view::npos;
+        const std::size_t comma = info.mp_count > 1 ? text.find(',') : std::string_view::npos;
         const std::string_view word = text.substr(0, comma);
         if (isText) {
-            static_cast<char **>(info.address)[index] = texts.emplace_back(word).data();
+            static_cast<char **>(info.mp_address)[index] = texts.emplace_back(word).data();
         } else if (auto set = set_number(info, index, word); !set) {
             return set;
         }
@@ -128,11 +157,15 @@ const void *module_base(void *handle) {
     return main != nullptr && ::dladdr(main, &info) != 0 ? info.dli_fbase : nullptr;
 }
 
-std::string program_folder() {
-    char path[4096];
-    const ssize_t length = ::readlink("/proc/self/exe", path, sizeof path - 1);
-    const std::string program(path, length > 0 ? static_cast<std::size_t>(length) : 0);
-    return program.substr(0, program.rfind('/'));
+/// The name in a message of the dynamic linker about an undefined symbol; empty for other messages.
+std::string missing_symbol(const std::string &message) {
+    constexpr std::string_view MARK = "undefined symbol: ";
+    const std::size_t at = message.find(MARK);
+    if (at == std::string::npos) {
+        return {};
+    }
+    const std::size_t start = at + MARK.size();
+    return message.substr(start, message.find_first_of(" ,(", start) - start);
 }
 
 }  // namespace
@@ -202,23 +235,50 @@ Result<> Loader::open(Module &module) {
         }
         path = fmt::format("/proc/self/fd/{}", copy);
     }
-    context().parameters = &module.parameters;
-    module.handle = ::dlopen(path.c_str(), RTLD_LOCAL | RTLD_NOW);
-    context().parameters = nullptr;
-    const char *why = module.handle == nullptr ? ::dlerror() : nullptr;
+    const std::string why = link(module, path);
     if (copy >= 0) {
         ::close(copy);
     }
     if (module.handle == nullptr) {
-        return refuse(ENOEXEC, fmt::format("module '{}': {}", module.name, why));
+        return refuse(ENOEXEC, fmt::format("{}: dlopen: {}", module.name, why));
     }
     return {};
+}
+
+/// Opens the file. A symbol that it lacks and that a loaded module exports is taken from there: that module's
+/// symbols then become visible to later ones, and it stays loaded while this one uses it. Empty, or why not.
+std::string Loader::link(Module &module, const std::string &path) {
+    std::string last_missing;
+    while (true) {
+        context().parameters = &module.parameters;
+        module.handle = ::dlopen(path.c_str(), RTLD_LOCAL | RTLD_NOW);
+        context().parameters = nullptr;
+        if (module.handle != nullptr) {
+            return {};
+        }
+        const std::string why = ::dlerror();
+        const std::string missing = missing_symbol(why);
+        Module *exporter =
+            missing.empty() || missing == last_missing ? nullptr : exporter_of(missing.c_str());
+        if (exporter == nullptr) {
+            return why;
+        }
+        last_missing = missing;
+        module.parameters.clear();
+        link_map *map = nullptr;
+        if (::dlinfo(exporter->handle, RTLD_DI_LINKMAP, &map) == 0) {
+            if (void *again = ::dlopen(map->l_name, RTLD_NOW | RTLD_NOLOAD | RTLD_GLOBAL)) {
+                ::dlclose(again);
+            }
+        }
+        module.uses.push_back(exporter->name);
+    }
 }
 
 Result<> Loader::set_parameters(Module &module, const std::vector<std::string> &args) {
     std::vector<std::string> known;
     for (const rtapi_mp_info *info : module.parameters) {
-        known.emplace_back(info->name);
+        known.emplace_back(info->mp_name);
     }
     for (const std::string &arg : args) {
         const std::size_t equals = arg.find('=');
@@ -291,7 +351,9 @@ Result<> Loader::load(const std::string &name, const std::vector<std::string> &a
         for (const std::string &folder : folders_) {
             places += (places.empty() ? "" : ", ") + folder;
         }
-        return refuse(ENOENT, fmt::format("there is no module '{}.so' in {}", name, places));
+        const std::string near = nearest_name(name, modules_in(folders_));
+        return refuse(ENOENT, fmt::format("there is no module '{}.so' in {}", name, places),
+                      near.empty() ? "" : fmt::format("did you mean '{}'?", near));
     }
     auto done = open(*module);
     if (done) {
@@ -306,7 +368,7 @@ Result<> Loader::load(const std::string &name, const std::vector<std::string> &a
     }
     std::string text;
     for (const std::string &arg : args) {
-        text += (text.empty() ? "" : " ") + arg;
+        text += (text.empty() ? "" : " ") + quoted(arg);
     }
     for (const int id : module->comp_ids) {
         const auto comp = hal_.component(id);
@@ -340,6 +402,11 @@ Result<> Loader::unload(const std::string &name) {
     if (found == modules_.end()) {
         return refuse(ENOENT, fmt::format("module '{}' is not loaded", name));
     }
+    for (const auto &other : modules_) {
+        if (std::find(other->uses.begin(), other->uses.end(), name) != other->uses.end()) {
+            return refuse(EBUSY, fmt::format("module '{}' is used by module '{}'", name, other->name));
+        }
+    }
     for (const int user : (*found)->users) {
         if (const auto comp = hal_.component(user)) {
             return refuse(EBUSY, fmt::format("module '{}' is used by component '{}'", name, comp->name));
@@ -372,7 +439,7 @@ Result<> Loader::unload_all() {
     return modules_.empty() ? Result<>{} : first_failure;
 }
 
-void *Loader::find_symbol(const char *symbol) const {
+Loader::Module *Loader::exporter_of(const char *symbol) const {
     for (auto module = modules_.rbegin(); module != modules_.rend(); ++module) {
         if (void *address = ::dlsym((*module)->handle, symbol)) {
             Dl_info info{};
@@ -380,21 +447,25 @@ void *Loader::find_symbol(const char *symbol) const {
             const bool isOwn = ::dladdr(address, &info) != 0 && info.dli_fbase != nullptr &&
                                info.dli_fbase == module_base((*module)->handle);
             if (isOwn) {
-                return address;
+                return module->get();
             }
         }
     }
     return nullptr;
 }
 
+void *Loader::find_symbol(const char *symbol) const {
+    const Module *exporter = exporter_of(symbol);
+    return exporter == nullptr ? nullptr : ::dlsym(exporter->handle, symbol);
+}
+
 Result<> Loader::use(const char *symbol, int comp_id) {
-    for (auto module = modules_.rbegin(); module != modules_.rend(); ++module) {
-        if (::dlsym((*module)->handle, symbol) == find_symbol(symbol) && find_symbol(symbol) != nullptr) {
-            (*module)->users.push_back(comp_id);
-            return {};
-        }
+    Module *exporter = exporter_of(symbol);
+    if (exporter == nullptr) {
+        return refuse(ENOENT, fmt::format("no loaded module has the symbol '{}'", symbol));
     }
-    return refuse(ENOENT, fmt::format("no loaded module has the symbol '{}'", symbol));
+    exporter->users.push_back(comp_id);
+    return {};
 }
 
 }  // namespace mw::hal

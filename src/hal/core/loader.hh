@@ -45,6 +45,9 @@ class Loader {
     struct Module;
     Result<> set_parameters(Module &module, const std::vector<std::string> &args);
     Result<> open(Module &module);
+    std::string link(Module &module, const std::string &path);
+    /// The newest loaded module that exports the symbol itself, or null.
+    Module *exporter_of(const char *symbol) const;
     Result<> run_main(Module &module);
     void close(Module &module);
     std::string find_file(const std::string &name) const;

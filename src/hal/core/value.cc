@@ -3,6 +3,7 @@
 
 #include <array>
 #include <bit>
+#include <charconv>
 #include <limits>
 #include <optional>
 
@@ -35,11 +36,23 @@ std::optional<bool> parse_bit(std::string_view text) {
     if (lower == "false") {
         return false;
     }
-    const auto number = parse_double(text);
-    if (number && (*number == 0.0 || *number == 1.0)) {
-        return *number == 1.0;
+    return lower == "0" || lower == "1" ? std::optional<bool>(lower == "1") : std::nullopt;
+}
+
+/// As in C: 0x before hexadecimal, 0 before octal digits.
+std::optional<std::int64_t> parse_whole(std::string_view text) {
+    const bool isSigned = !text.empty() && (text[0] == '-' || text[0] == '+');
+    const std::string_view digits = text.substr(isSigned ? 1 : 0);
+    const bool isOctal = digits.size() > 1 && digits[0] == '0' && digits[1] >= '0' && digits[1] <= '9';
+    if (!isOctal) {
+        return parse_int(text);
     }
-    return std::nullopt;
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 8);
+    if (error != std::errc() || end != digits.data() + digits.size()) {
+        return std::nullopt;
+    }
+    return text[0] == '-' ? -value : value;
 }
 
 }  // namespace
@@ -138,7 +151,7 @@ std::string Value::str() const {
 }
 
 Result<Value> parse_value(Type type, std::string_view text) {
-    const auto whole = parse_int(text);
+    const auto whole = parse_whole(text);
     switch (type) {
     case Type::BIT:
         if (const auto bit = parse_bit(text)) {
@@ -149,8 +162,8 @@ Result<Value> parse_value(Type type, std::string_view text) {
         if (const auto number = parse_double(text)) {
             return Value::of_float(*number);
         }
-        if (whole) {
-            return Value::of_float(static_cast<double>(*whole));
+        if (const auto decimal = parse_int(text)) {
+            return Value::of_float(static_cast<double>(*decimal));
         }
         return not_a(type, text, "a number such as 1, -0.5 or 4.2e1");
     case Type::S32:

@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "base/own_place.hh"
 #include "hal/host/message.hh"
 #include "rtapi/process.hh"
 
@@ -45,10 +46,7 @@ Result<int> connect_to(const std::string &instance) {
 
 /// millwright-rt beside this program or in ../bin; else it is looked for along PATH.
 std::string server_program() {
-    char path[4096];
-    const ssize_t length = ::readlink("/proc/self/exe", path, sizeof path - 1);
-    const std::string program(path, length > 0 ? static_cast<std::size_t>(length) : 0);
-    const std::string folder = program.substr(0, program.rfind('/'));
+    const std::string folder = program_folder();
     for (const std::string &candidate : {folder + "/millwright-rt", folder + "/../bin/millwright-rt"}) {
         if (::access(candidate.c_str(), X_OK) == 0) {
             return candidate;
@@ -58,7 +56,7 @@ std::string server_program() {
 }
 
 /// In the forked child: becomes the server, a child of nobody here. Only async-signal-safe calls.
-[[noreturn]] void become_server(char *const argv[], int ready, int messages) {
+[[noreturn]] void become_server(char *const argv[], int ready, int starter, int messages) {
     if (::fork() != 0) {
         ::_exit(0);
     }
@@ -70,6 +68,9 @@ std::string server_program() {
         ::dup2(messages, STDERR_FILENO);
     }
     ::fcntl(ready, F_SETFD, 0);
+    if (starter >= 0) {
+        ::fcntl(starter, F_SETFD, 0);
+    }
     ::execvp(argv[0], argv);
     const char text[] = "cannot run millwright-rt";
     (void)!::write(ready, text, sizeof text - 1);
@@ -133,7 +134,8 @@ Result<std::unique_ptr<HostClient>> HostClient::connect(const std::string &insta
     return client;
 }
 
-Result<std::unique_ptr<HostClient>> HostClient::start(const std::string &instance, MessagesTo messages_to) {
+Result<std::unique_ptr<HostClient>> HostClient::start(const std::string &instance, MessagesTo messages_to,
+                                                      Lifetime lifetime) {
     if (isHostAlive(instance)) {
         return fail("a realtime process of instance '" + instance + "' is alive", {},
                     "end it with 'halrun -U', or choose another name in MILLWRIGHT_INSTANCE");
@@ -150,9 +152,15 @@ Result<std::unique_ptr<HostClient>> HostClient::start(const std::string &instanc
                               O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0600);
         }
     }
+    // The kernel tells through this of the end of the starter, whenever it comes.
+    const int starter =
+        lifetime == Lifetime::STARTER ? static_cast<int>(::syscall(SYS_pidfd_open, ::getpid(), 0)) : -1;
     // Everything is made ready before the fork: the child of a process with threads may not allocate.
     std::vector<std::string> words = {server_program(), "--instance", instance, "--ready-fd",
                                       std::to_string(ready[1])};
+    if (starter >= 0) {
+        words.insert(words.end(), {"--starter-fd", std::to_string(starter)});
+    }
     std::vector<char *> argv;
     for (std::string &word : words) {
         argv.push_back(word.data());
@@ -160,11 +168,13 @@ Result<std::unique_ptr<HostClient>> HostClient::start(const std::string &instanc
     argv.push_back(nullptr);
     const pid_t child = ::fork();
     if (child == 0) {
-        become_server(argv.data(), ready[1], messages);
+        become_server(argv.data(), ready[1], starter, messages);
     }
     ::close(ready[1]);
-    if (messages >= 0) {
-        ::close(messages);
+    for (const int fd : {messages, starter}) {
+        if (fd >= 0) {
+            ::close(fd);
+        }
     }
     if (child > 0) {
         while (::waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
@@ -233,6 +243,12 @@ Result<bool> HostClient::isModuleLoaded(const std::string &name) {
         }
     }
     return false;
+}
+
+Result<> HostClient::set_log_level(rtapi::LogLevel level) {
+    impl_->hal->log().set_level(level);
+    const auto answer = ask({"debug", std::to_string(static_cast<int>(level))});
+    return answer ? Result<>{} : std::unexpected(answer.error());
 }
 
 Result<> HostClient::control() {

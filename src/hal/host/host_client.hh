@@ -16,14 +16,19 @@ namespace mw::hal {
 /// one that shall outlive its starter, to INSTANCE.log in the runtime folder.
 enum class MessagesTo : std::uint8_t { STDERR, FILE };
 
+/// How long a realtime process lives: until it is told to end, or at most as long as the process that starts
+/// it.
+enum class Lifetime : std::uint8_t { OWN, STARTER };
+
 class HostClient final : public Host {
   public:
     /// Joins the realtime process of `instance`; an error when none is alive.
     static Result<std::unique_ptr<HostClient>> connect(const std::string &instance);
-    /// Starts bin/millwright-rt for `instance` (an error when one is alive) and joins it. It survives this
-    /// process unless control() is called.
+    /// Starts bin/millwright-rt for `instance` (an error when one is alive) and joins it. With
+    /// Lifetime::STARTER it is controlled by this process from its first moment on, as by control().
     static Result<std::unique_ptr<HostClient>> start(const std::string &instance,
-                                                     MessagesTo messages = MessagesTo::STDERR);
+                                                     MessagesTo messages = MessagesTo::STDERR,
+                                                     Lifetime lifetime = Lifetime::OWN);
     ~HostClient() override;
 
     Hal &hal() noexcept override;
@@ -31,6 +36,7 @@ class HostClient final : public Host {
     Result<> unload_realtime(const std::string &name) override;
     Result<bool> isModuleLoaded(const std::string &name) override;
     Result<std::vector<std::string>> modules() override;
+    Result<> set_log_level(rtapi::LogLevel level) override;
 
     /// From now on the realtime process brakes, stops all and ends when this process does (see HostServer).
     Result<> control();

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <vector>
 
@@ -24,14 +25,20 @@
 namespace mw::hal {
 namespace {
 
-/// How often the components of processes that died are looked for.
-constexpr int REAP_MS = 100;
+/// How often processes that have made components are looked for. From then on the kernel tells of their end.
+constexpr int LOOK_MS = 50;
 constexpr int ENDING_MS = 10;
 constexpr std::int64_t LONGEST_BRAKING_NS = 10'000'000'000;
 
 struct Client {
     int fd = -1;
     std::string buffer;
+};
+
+/// A process with components, and its pidfd.
+struct Program {
+    rtapi::ProcessId process;
+    int fd = -1;
 };
 
 int close_fd(int fd) {
@@ -56,8 +63,10 @@ struct HostServer::Impl {
     int controller = -1;  ///< its pidfd
     int controller_socket = -1;
     bool isEnding = false;
-    std::int64_t gone_ns = 0;  ///< when the controlling process died; 0 while it lives
+    std::int64_t gone_ns = 0;    ///< when the controlling process died; 0 while it lives
+    std::int64_t looked_ns = 0;  ///< when programs were looked for
     std::vector<Client> clients;
+    std::vector<Program> programs;
     std::unique_ptr<rtapi::Log> log;
     std::unique_ptr<rtapi::RealtimeScheduler> scheduler;
     std::unique_ptr<LocalHost> host;
@@ -70,6 +79,10 @@ struct HostServer::Impl {
     Message answer(const Client &client, const Message &request);
     Message take_control(const Client &client);
     void on_controller_gone();
+    bool isControllerGone();
+    void look_for_programs();
+    void reap();
+    void serve(const std::vector<pollfd> &fds);
     bool isSafeToEnd();
     void take_safe_values();
     void drop(int fd);
@@ -117,6 +130,10 @@ Result<> HostServer::Impl::listen() {
 
 Result<> HostServer::Impl::open(const HostServerOptions &options) {
     instance = options.instance;
+    controller = options.controller_fd;
+    if (controller >= 0) {
+        ::fcntl(controller, F_SETFD, FD_CLOEXEC);
+    }
     if (auto taken = take_lock(); !taken) {
         return taken;
     }
@@ -225,6 +242,10 @@ Message HostServer::Impl::answer(const Client &client, const Message &request) {
     if (what == "control") {
         return take_control(client);
     }
+    if (what == "debug") {
+        const auto level = static_cast<rtapi::LogLevel>(std::atoi(name.c_str()));
+        return answer_of(host->set_log_level(std::min(level, rtapi::LogLevel::ALL)));
+    }
     if (what == "end") {
         isEnding = true;
         return {"ok"};
@@ -243,6 +264,60 @@ void HostServer::Impl::on_controller_gone() {
     }
 }
 
+/// Opens a pidfd for every process that has components, and closes those of the others.
+void HostServer::Impl::look_for_programs() {
+    std::vector<rtapi::ProcessId> wanted;
+    const rtapi::ProcessId self = rtapi::this_process();
+    {
+        detail::Guard guard(host->hal().impl());
+        host->hal().impl().segment.each<detail::CompRecord>(
+            detail::Kind::COMP, [&](const detail::CompRecord &comp) {
+                if (comp.process != self &&
+                    std::find(wanted.begin(), wanted.end(), comp.process) == wanted.end()) {
+                    wanted.push_back(comp.process);
+                }
+            });
+    }
+    std::erase_if(programs, [&](const Program &program) {
+        const bool isGone = std::find(wanted.begin(), wanted.end(), program.process) == wanted.end();
+        if (isGone) {
+            close_fd(program.fd);
+        }
+        return isGone;
+    });
+    for (const rtapi::ProcessId &process : wanted) {
+        const bool isKnown = std::any_of(programs.begin(), programs.end(),
+                                         [&](const Program &program) { return program.process == process; });
+        const int fd = isKnown ? -1 : static_cast<int>(::syscall(SYS_pidfd_open, process.pid, 0));
+        if (fd >= 0) {
+            programs.push_back({process, fd});
+        }
+    }
+    reap();
+    host->hal().publish_thread_figures();
+    looked_ns = host->now_ns();
+}
+
+/// Ends the components of processes that are gone, and says whose.
+void HostServer::Impl::reap() {
+    const auto known = host->hal().deaths();
+    if (host->hal().reap_dead_components().empty()) {
+        return;
+    }
+    for (const DeathInfo &death : host->hal().deaths()) {
+        const bool isNew = std::none_of(known.begin(), known.end(), [&](const DeathInfo &earlier) {
+            return earlier.name == death.name && earlier.time_ns == death.time_ns;
+        });
+        if (isNew) {
+            log->print(
+                rtapi::LogLevel::ERR,
+                "component '%s' died: its process %d ended without leaving HAL; its outputs have their safe "
+                "values",
+                death.name.c_str(), death.pid);
+        }
+    }
+}
+
 /// True when every module that watches says that the machine stands and is off.
 bool HostServer::Impl::isSafeToEnd() {
     const auto &watches = host->hal().impl().controller_watches;
@@ -256,7 +331,7 @@ bool HostServer::Impl::isSafeToEnd() {
 /// hardware. Not before the machine stands: an enable chain through the dead process would cut the braking
 /// short.
 void HostServer::Impl::take_safe_values() {
-    (void)host->hal().reap_dead_components();
+    reap();
     const timespec some_periods{0, 20'000'000};
     ::nanosleep(&some_periods, nullptr);
 }
@@ -274,6 +349,10 @@ std::vector<pollfd> HostServer::Impl::watched() const {
     std::vector<pollfd> fds = {{signals, POLLIN, 0}, {controller, POLLIN, 0}, {listener, POLLIN, 0}};
     for (const Client &client : clients) {
         fds.push_back({client.fd, POLLIN, 0});
+    }
+    // While the machine brakes nothing is reaped (see take_safe_values).
+    for (const Program &program : programs) {
+        fds.push_back({gone_ns == 0 ? program.fd : -1, POLLIN, 0});
     }
     return fds;
 }
@@ -302,9 +381,49 @@ HostServer::~HostServer() {
     for (const Client &client : impl_->clients) {
         ::close(client.fd);
     }
+    for (const Program &program : impl_->programs) {
+        close_fd(program.fd);
+    }
     for (const int fd : {impl_->controller, impl_->listener, impl_->signals, impl_->lock}) {
         close_fd(fd);
     }
+}
+
+/// Answers those that `watched` has found something for.
+void HostServer::Impl::serve(const std::vector<pollfd> &fds) {
+    // The controlling process first: its end is the most urgent.
+    if (fds[1].revents != 0) {
+        on_controller_gone();
+    }
+    isEnding = isEnding || fds[0].revents != 0;
+    if (fds[2].revents != 0) {
+        accept_client();
+    }
+    bool hasDied = false;
+    for (std::size_t i = 3; i < fds.size(); ++i) {
+        if (fds[i].revents == 0) {
+            continue;
+        }
+        const auto client = std::find_if(clients.begin(), clients.end(),
+                                         [&](const Client &one) { return one.fd == fds[i].fd; });
+        hasDied = hasDied || client == clients.end();
+        if (client != clients.end() && !isServed(*client)) {
+            drop(fds[i].fd);
+        }
+    }
+    if (hasDied && !isControllerGone()) {
+        look_for_programs();
+    }
+}
+
+/// Asks anew: a process that controls and has components may have died between the looks at its two
+/// descriptors.
+bool HostServer::Impl::isControllerGone() {
+    pollfd look{controller, POLLIN, 0};
+    if (controller >= 0 && ::poll(&look, 1, 0) > 0) {
+        on_controller_gone();
+    }
+    return gone_ns != 0;
 }
 
 void HostServer::run() {
@@ -312,7 +431,7 @@ void HostServer::run() {
     while (!here.isEnding) {
         std::vector<pollfd> fds = here.watched();
         const bool isBraking = here.gone_ns != 0;
-        const int ready = ::poll(fds.data(), fds.size(), isBraking ? ENDING_MS : REAP_MS);
+        const int ready = ::poll(fds.data(), fds.size(), isBraking ? ENDING_MS : LOOK_MS);
         if (ready < 0 && errno != EINTR) {
             break;
         }
@@ -320,27 +439,12 @@ void HostServer::run() {
             here.take_safe_values();
             break;
         }
-        if (ready <= 0 && !isBraking) {
-            (void)here.host->hal().reap_dead_components();
-            here.host->hal().publish_thread_figures();
+        if (!isBraking && here.host->now_ns() - here.looked_ns >= LOOK_MS * 1'000'000LL &&
+            !here.isControllerGone()) {
+            here.look_for_programs();
         }
-        if (ready <= 0) {
-            continue;
-        }
-        // The controlling process first: its end is the most urgent.
-        if (fds[1].revents != 0) {
-            here.on_controller_gone();
-        }
-        here.isEnding = here.isEnding || fds[0].revents != 0;
-        if (fds[2].revents != 0) {
-            here.accept_client();
-        }
-        for (std::size_t i = 3; i < fds.size(); ++i) {
-            const auto client = std::find_if(here.clients.begin(), here.clients.end(),
-                                             [&](const Client &one) { return one.fd == fds[i].fd; });
-            if (fds[i].revents != 0 && client != here.clients.end() && !here.isServed(*client)) {
-                here.drop(fds[i].fd);
-            }
+        if (ready > 0) {
+            here.serve(fds);
         }
     }
 }

@@ -26,9 +26,10 @@ constexpr CommandSpec COMMANDS[] = {
     {"unloadusr", 1, 1, false, "COMPONENT|all", "Asks the program of a component to end, or all programs.",
      run_unloadusr},
     {"lock", 0, 1, false, "[none|tune|all]",
-     "Forbids changes: tune leaves setting values and starting; all nothing.", run_lock},
-    {"unlock", 0, 1, false, "[tune|all]", "Allows changes again: tune those of values only; all everything.",
-     run_unlock},
+     "Forbids changes: tune leaves setting values and starting; all (also without a word) nothing.",
+     run_lock},
+    {"unlock", 0, 1, false, "[tune|all]",
+     "Takes back what lock of the same word forbids; all, or no word: everything.", run_unlock},
     {"net", 2, ANY, true, "SIGNAL PIN...",
      "Links pins to a signal. A signal that does not exist is made with the type of the first pin. Arrows "
      "between the\n"
@@ -56,8 +57,11 @@ constexpr CommandSpec COMMANDS[] = {
     {"initf", 2, 3, false, "FUNCTION THREAD [POSITION]",
      "Adds a function that runs once, when the thread starts, before the others.", run_initf},
     {"delf", 2, 2, false, "FUNCTION THREAD", "Takes a function out of a thread.", run_delf},
-    {"show", 0, ANY, false, "[comp|pin|sig|param|funct|thread|alias|all [PATTERN...]]",
-     "Prints what there is, with values and links. PATTERN takes * ? and [abc].", run_show},
+    {"show", 0, ANY, false, "[comp|pin|sig|param|funct|thread|alias|all [-tTYPE] [PATTERN...]]",
+     "Prints what there is, with values and links. PATTERN takes * ? and [abc], or is the beginning of "
+     "names; -tfloat\n"
+     "shows only those of that type.",
+     run_show},
     {"list", 1, ANY, false, "comp|pin|sig|param|funct|thread [-tTYPE] [PATTERN...]",
      "Prints names in one line; -tfloat only those of that type.", run_list},
     {"save", 0, 2, false,
@@ -66,7 +70,8 @@ constexpr CommandSpec COMMANDS[] = {
      "allu: with\n"
      "unconnectedinpins.",
      run_save},
-    {"status", 0, 1, false, "[lock|mem|all]", "Prints what is locked and how much memory is used.",
+    {"status", 0, 1, false, "[lock|mem|all]",
+     "Prints what is locked, how much memory is used, and which components died with their process.",
      run_status},
     {"start", 0, 0, false, "", "Starts the threads: they call their functions.", run_start},
     {"stop", 0, 0, false, "", "Stops the threads.", run_stop},
@@ -168,6 +173,15 @@ Result<> at(Result<> result, const SourcePlace &place, const std::string &hint) 
 std::string suggestion(std::string_view name, const std::vector<std::string> &candidates) {
     const std::string near = nearest_name(name, candidates);
     return near.empty() ? "" : fmt::format("did you mean '{}'?", near);
+}
+
+std::string missing_hint(Hal &hal, std::string_view name, const std::vector<std::string> &candidates) {
+    for (const DeathInfo &death : hal.deaths()) {
+        if (name == death.name || name.starts_with(death.name + ".")) {
+            return fmt::format("component '{}' died with its process {}", death.name, death.pid);
+        }
+    }
+    return suggestion(name, candidates);
 }
 
 std::vector<std::string> pin_names(Hal &hal) {

@@ -53,6 +53,9 @@ Result<> at(Result<> result, const SourcePlace &place, const std::string &hint =
 /// "did you mean 'x'?" for the candidate nearest to `name`, or empty.
 std::string suggestion(std::string_view name, const std::vector<std::string> &candidates);
 
+/// Why there is nothing of that name: its component died, or "did you mean 'x'?", or empty.
+std::string missing_hint(Hal &hal, std::string_view name, const std::vector<std::string> &candidates);
+
 // Names of what exists, for suggestions.
 std::vector<std::string> pin_names(Hal &hal);
 std::vector<std::string> param_names(Hal &hal);

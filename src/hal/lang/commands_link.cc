@@ -9,15 +9,15 @@ namespace mw::hal::lang {
 namespace {
 
 Result<> check_pin(Hal &hal, const Word &word) {
-    if (hal.pin(word.text)) {
+    if (hal.hasPin(word.text)) {
         return {};
     }
     return fail(fmt::format("pin '{}' does not exist", word.text), word.place,
-                suggestion(word.text, pin_names(hal)));
+                missing_hint(hal, word.text, pin_names(hal)));
 }
 
 Result<> check_signal(Hal &hal, const Word &word) {
-    if (hal.signal(word.text)) {
+    if (hal.hasSignal(word.text)) {
         return {};
     }
     return fail(fmt::format("signal '{}' does not exist", word.text), word.place,
@@ -64,9 +64,9 @@ Result<> set_alias(Session &session, const Call &call, const std::string &alias)
     Hal &hal = session.hal();
     const std::string &name = call.text(1);
     if (*kind == Kind::PIN) {
-        return at(hal.alias_pin(name, alias), call.place_of(1), suggestion(name, pin_names(hal)));
+        return at(hal.alias_pin(name, alias), call.place_of(1), missing_hint(hal, name, pin_names(hal)));
     }
-    return at(hal.alias_param(name, alias), call.place_of(1), suggestion(name, param_names(hal)));
+    return at(hal.alias_param(name, alias), call.place_of(1), missing_hint(hal, name, param_names(hal)));
 }
 
 }  // namespace
@@ -74,7 +74,7 @@ Result<> set_alias(Session &session, const Call &call, const std::string &alias)
 Result<> run_net(Session &session, const Call &call) {
     Hal &hal = session.hal();
     const Word &signal = call.words[0];
-    if (hal.pin(signal.text)) {
+    if (hal.hasPin(signal.text) && !hal.hasSignal(signal.text)) {
         return fail(fmt::format("signal name '{}' is the name of a pin", signal.text), signal.place,
                     "the signal comes first: net SIGNAL PIN...");
     }
@@ -122,10 +122,21 @@ Result<> run_linkpp(Session &session, const Call &call) {
     if (!result) {
         return result;
     }
-    // The signal takes the first pin's name.
+    // The signal takes the first pin's name and must be new.
+    if (hal.hasSignal(call.text(0))) {
+        return fail(fmt::format("there is a signal '{}' already", call.text(0)), call.place_of(0));
+    }
     result = at(hal.new_signal(call.text(0), hal.pin(call.text(0))->type), call.place_of(0));
-    result = result ? at(hal.link(call.text(0), call.text(0)), call.place_of(0)) : result;
-    return result ? at(hal.link(call.text(1), call.text(0)), call.place_of(1)) : result;
+    if (!result) {
+        return result;
+    }
+    result = at(hal.link(call.text(0), call.text(0)), call.place_of(0));
+    result = result ? at(hal.link(call.text(1), call.text(0)), call.place_of(1)) : result;
+    if (!result) {
+        // Nothing half done stays.
+        (void)hal.delete_signal(call.text(0));
+    }
+    return result;
 }
 
 Result<> run_linkps(Session &session, const Call &call) {
@@ -169,8 +180,12 @@ Result<> run_delsig(Session &session, const Call &call) {
         }
         return at(result, call.place_of(0));
     }
-    const Result<> found = check_signal(hal, call.words[0]);
-    return found ? at(hal.delete_signal(call.text(0)), call.place_of(0)) : found;
+    Result<> result = check_signal(hal, call.words[0]);
+    result = result ? at(hal.delete_signal(call.text(0)), call.place_of(0)) : result;
+    if (result) {
+        session.info(call.place, fmt::format("Signal '{}' deleted", call.text(0)));
+    }
+    return result;
 }
 
 Result<> run_alias(Session &session, const Call &call) {
@@ -183,7 +198,11 @@ Result<> run_alias(Session &session, const Call &call) {
 }
 
 Result<> run_unalias(Session &session, const Call &call) {
-    return set_alias(session, call, "");
+    const Result<> result = set_alias(session, call, "");
+    if (result) {
+        session.info(call.place, fmt::format("{} '{}' unaliased", call.text(0), call.text(1)));
+    }
+    return result;
 }
 
 }  // namespace mw::hal::lang

@@ -87,9 +87,16 @@ std::vector<std::string> component_names(Session &session, CompType type) {
     return names;
 }
 
-Result<> not_loaded(Session &session, const Word &word, CompType type) {
+std::unexpected<Error> not_loaded(Session &session, const Word &word, CompType type) {
     return fail(fmt::format("component '{}' is not loaded", word.text), word.place,
-                suggestion(word.text, component_names(session, type)));
+                missing_hint(session.hal(), word.text, component_names(session, type)));
+}
+
+/// A program may have ended by itself already, which is what was wanted.
+Result<> warn_not_loaded(Session &session, const Word &word) {
+    const Error error = not_loaded(session, word, CompType::USER).error();
+    session.warn(error.place, error.message, error.hint);
+    return {};
 }
 
 /// The position of addf and initf: not zero.
@@ -153,15 +160,30 @@ Result<> run_loadusr(Session &session, const Call &call) {
         session.placeholders().add_program(request->component, request->argv);
         return {};
     }
-    session.info(call.place, fmt::format("Program '{}' started", request->argv[0]));
+    const bool hasEnded = request->wait == ProgramRequest::Wait::UNTIL_END;
+    session.info(call.place,
+                 fmt::format("Program '{}' {}", request->argv[0], hasEnded ? "finished" : "started"));
+    if (request->wait == ProgramRequest::Wait::UNTIL_READY) {
+        session.info(call.place, fmt::format("Component '{}' ready", request->component));
+    }
     return {};
 }
 
 Result<> run_waitusr(Session &session, const Call &call) {
-    if (!session.hal().component(call.text(0))) {
-        return not_loaded(session, call.words[0], CompType::USER);
+    if (!session.hal().hasComponent(call.text(0))) {
+        return warn_not_loaded(session, call.words[0]);
     }
-    return at(session.programs().wait_for_end(call.text(0)), call.place_of(0));
+    const Result<> ended = at(session.programs().wait_for_end(call.text(0)), call.place_of(0));
+    for (const DeathInfo &death : session.hal().deaths()) {
+        if (ended && death.name == call.text(0)) {
+            session.warn(
+                call.place_of(0),
+                fmt::format("component '{}' died: its process {} ended without leaving HAL; its outputs "
+                            "have their safe values",
+                            death.name, death.pid));
+        }
+    }
+    return ended;
 }
 
 Result<> run_unloadusr(Session &session, const Call &call) {
@@ -169,8 +191,12 @@ Result<> run_unloadusr(Session &session, const Call &call) {
         return at(session.programs().stop_all(), call.place_of(0));
     }
     const Result<CompInfo> component = session.hal().component(call.text(0));
-    if (!component || component->type != CompType::USER) {
-        return not_loaded(session, call.words[0], CompType::USER);
+    if (!component) {
+        return warn_not_loaded(session, call.words[0]);
+    }
+    if (component->type != CompType::USER) {
+        return fail(fmt::format("component '{}' is no program", call.text(0)), call.place_of(0),
+                    "unloadrt unloads realtime modules");
     }
     return at(session.programs().stop(call.text(0)), call.place_of(0));
 }

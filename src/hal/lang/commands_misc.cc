@@ -45,16 +45,27 @@ std::string lock_status(std::uint8_t lock) {
 std::string memory_status(const HalStatistics &s) {
     std::string text = "HAL memory status\n";
     text += fmt::format("  used/total shared memory:   {}/{}\n", s.segment_bytes, s.capacity_bytes);
-    const auto line = [&](const char *title, int count) {
-        text += fmt::format("  {:<28}{}\n", title, count);
+    const auto line = [&](const char *title, const RecordCount &count) {
+        text += fmt::format("  {:<28}{}/{}\n", title, count.active, count.recycled);
     };
-    line("active components:", s.components);
-    line("active pins:", s.pins);
-    line("active parameters:", s.params);
-    line("active aliases:", s.aliases);
-    line("active signals:", s.signals);
-    line("active functions:", s.functs);
-    line("active threads:", s.threads);
+    line("active/recycled components:", s.components);
+    line("active/recycled pins:", s.pins);
+    line("active/recycled parameters:", s.params);
+    line("active/recycled aliases:", s.aliases);
+    line("active/recycled signals:", s.signals);
+    line("active/recycled functions:", s.functs);
+    line("active/recycled threads:", s.threads);
+    return text;
+}
+
+/// Components whose process died: nothing when there are none.
+std::string death_status(Hal &hal) {
+    std::string text;
+    for (const DeathInfo &death : hal.deaths()) {
+        text += text.empty() ? "HAL components that died:\n" : "";
+        text += fmt::format("  {} (process {}, {} s ago)\n", death.name, death.pid,
+                            (hal.now_ns() - death.time_ns) / 1'000'000'000);
+    }
     return text;
 }
 
@@ -79,7 +90,11 @@ Result<> run_lock(Session &session, const Call &call) {
     if (!lock) {
         return std::unexpected(lock.error());
     }
-    return at(session.hal().set_lock(*lock), call.place);
+    const Result<> locked = at(session.hal().set_lock(*lock), call.place);
+    if (locked) {
+        session.info(call.place, "Locking completed");
+    }
+    return locked;
 }
 
 Result<> run_unlock(Session &session, const Call &call) {
@@ -87,9 +102,12 @@ Result<> run_unlock(Session &session, const Call &call) {
     if (!unlocked) {
         return std::unexpected(unlocked.error());
     }
-    const auto left =
-        static_cast<std::uint8_t>(*unlocked == LOCK_ALL ? LOCK_NONE : session.hal().lock() & LOCK_TUNE);
-    return at(session.hal().set_lock(left), call.place);
+    const auto left = static_cast<std::uint8_t>(session.hal().lock() & ~*unlocked);
+    const Result<> unlocked_now = at(session.hal().set_lock(left), call.place);
+    if (unlocked_now) {
+        session.info(call.place, "Unlocking completed");
+    }
+    return unlocked_now;
 }
 
 Result<> run_status(Session &session, const Call &call) {
@@ -105,7 +123,7 @@ Result<> run_status(Session &session, const Call &call) {
     if (isAll || what == "mem") {
         text += memory_status(session.hal().statistics());
     }
-    session.output().data(text);
+    session.output().data(isAll ? text + death_status(session.hal()) : text);
     return {};
 }
 
@@ -140,8 +158,7 @@ Result<> run_debug(Session &session, const Call &call) {
     if (!level || *level < 0 || *level > HIGHEST) {
         return fail(fmt::format("'{}' is no debug level", call.text(0)), call.place_of(0), "0 to 5");
     }
-    session.hal().log().set_level(static_cast<rtapi::LogLevel>(*level));
-    return {};
+    return at(session.host().set_log_level(static_cast<rtapi::LogLevel>(*level)), call.place);
 }
 
 Result<> run_help(Session &session, const Call &call) {

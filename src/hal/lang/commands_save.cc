@@ -109,7 +109,7 @@ std::string single_nets(Hal &hal, Arrows arrows) {
     std::string text = "# nets\n";
     for (const SignalInfo &s : hal.signals()) {
         text += fmt::format("newsig {} {:<5}\n", s.name, type_name(s.type));
-        for (const SignalPin &pin : ordered(s)) {
+        for (const SignalPin &pin : s.pins) {
             const char *arrow = pin.dir == Dir::IN ? "==>" : (pin.dir == Dir::OUT ? "<==" : "<=>");
             text += fmt::format("linksp {} {} {}\n", s.name, arrows == Arrows::YES ? arrow : "", pin.name);
         }
@@ -133,7 +133,7 @@ std::string net_lines(Hal &hal, Arrows arrows) {
         }
         text += "net " + s.name;
         const char *between = "";
-        for (const SignalPin &pin : ordered(s)) {
+        for (const SignalPin &pin : arrows == Arrows::YES ? ordered(s) : s.pins) {
             // One arrow where writers end and readers begin.
             const bool isReader = pin.dir == Dir::IN;
             if (arrows == Arrows::YES && (isReader || pin.dir == Dir::IO)) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // show and list. The columns are those that scripts of existing installations cut out.
+#include <fnmatch.h>
+
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -11,7 +14,18 @@ namespace mw::hal::lang {
 
 namespace {
 
-using Patterns = std::vector<std::string>;
+/// What a listing is about: of one type only, and of names that match one of the patterns (all without any).
+struct Patterns {
+    std::optional<Type> type;
+    std::vector<std::string> globs;
+
+    /// A pattern matches whole names, or is their beginning.
+    bool isMatch(const std::string &name) const {
+        return globs.empty() || std::any_of(globs.begin(), globs.end(), [&](const std::string &glob) {
+                   return name.starts_with(glob) || fnmatch(glob.c_str(), name.c_str(), 0) == 0;
+               });
+    }
+};
 
 /// A value as show prints it: unsigned numbers in hexadecimal.
 std::string shown(const Value &value) {
@@ -22,48 +36,41 @@ std::string shown(const Value &value) {
     }
 }
 
-/// What matches any of the patterns, all without patterns; each once and in order.
-template <class Item, class Query>
-std::vector<Item> matching(const Patterns &patterns, Query query) {
-    if (patterns.size() <= 1) {
-        return query(patterns.empty() ? std::string("*") : patterns[0]);
-    }
-    std::vector<Item> items;
-    std::vector<std::string> wanted;
-    for (const std::string &pattern : patterns) {
-        for (const Item &item : query(pattern)) {
-            wanted.push_back(item.name);
+/// Those that the patterns want, in order.
+template <class Item>
+std::vector<Item> matching(const Patterns &patterns, std::vector<Item> items) {
+    std::erase_if(items, [&](const Item &item) {
+        if constexpr (requires { item.type == *patterns.type; }) {
+            if (patterns.type && item.type != *patterns.type) {
+                return true;
+            }
         }
-    }
-    for (Item &item : query(std::string("*"))) {
-        if (std::find(wanted.begin(), wanted.end(), item.name) != wanted.end()) {
-            items.push_back(std::move(item));
-        }
-    }
+        return !patterns.isMatch(item.name);
+    });
     return items;
 }
 
 std::vector<PinInfo> pins(Hal &hal, const Patterns &patterns) {
-    return matching<PinInfo>(patterns, [&](const std::string &glob) { return hal.pins(glob); });
+    return matching(patterns, hal.pins());
 }
 std::vector<ParamInfo> params(Hal &hal, const Patterns &patterns) {
-    return matching<ParamInfo>(patterns, [&](const std::string &glob) { return hal.params(glob); });
+    return matching(patterns, hal.params());
 }
 std::vector<SignalInfo> signals(Hal &hal, const Patterns &patterns) {
-    return matching<SignalInfo>(patterns, [&](const std::string &glob) { return hal.signals(glob); });
+    return matching(patterns, hal.signals());
 }
 std::vector<FunctInfo> functs(Hal &hal, const Patterns &patterns) {
-    return matching<FunctInfo>(patterns, [&](const std::string &glob) { return hal.functs(glob); });
+    return matching(patterns, hal.functs());
 }
 /// Slowest first.
 std::vector<ThreadInfo> threads(Hal &hal, const Patterns &patterns) {
-    auto items = matching<ThreadInfo>(patterns, [&](const std::string &glob) { return hal.threads(glob); });
+    auto items = matching(patterns, hal.threads());
     std::reverse(items.begin(), items.end());
     return items;
 }
 /// Newest first.
 std::vector<CompInfo> components(Hal &hal, const Patterns &patterns) {
-    auto items = matching<CompInfo>(patterns, [&](const std::string &glob) { return hal.components(glob); });
+    auto items = matching(patterns, hal.components());
     std::sort(items.begin(), items.end(), [](const CompInfo &a, const CompInfo &b) { return a.id > b.id; });
     return items;
 }
@@ -262,25 +269,16 @@ std::string names_of(const std::vector<Item> &items) {
     return text + '\n';
 }
 
-template <class Item>
-std::vector<Item> of_type(std::vector<Item> items, std::optional<Type> type) {
-    if (type) {
-        std::erase_if(items, [&](const Item &item) { return item.type != *type; });
-    }
-    return items;
-}
-
 /// The names that list prints; nothing for an unknown kind.
-std::optional<std::string> list_text(Hal &hal, const std::string &kind, const Patterns &patterns,
-                                     std::optional<Type> type) {
+std::optional<std::string> list_text(Hal &hal, const std::string &kind, const Patterns &patterns) {
     if (kind == "pin") {
-        return names_of(of_type(pins(hal, patterns), type));
+        return names_of(pins(hal, patterns));
     }
     if (kind == "param" || kind == "parameter") {
-        return names_of(of_type(params(hal, patterns), type));
+        return names_of(params(hal, patterns));
     }
     if (kind == "sig" || kind == "signal") {
-        return names_of(of_type(signals(hal, patterns), type));
+        return names_of(signals(hal, patterns));
     }
     if (kind == "comp") {
         return names_of(components(hal, patterns));
@@ -294,18 +292,35 @@ std::optional<std::string> list_text(Hal &hal, const std::string &kind, const Pa
     return std::nullopt;
 }
 
+/// Words 1 and on: -tTYPE first, where one type only is wanted, then patterns.
+Result<Patterns> parse_patterns(const Call &call) {
+    Patterns patterns;
+    for (std::size_t i = 1; i < call.words.size(); ++i) {
+        if (i > 1 || !call.text(i).starts_with("-t")) {
+            patterns.globs.push_back(call.text(i));
+            continue;
+        }
+        const Result<Type> type = parse_type(std::string_view(call.text(i)).substr(2));
+        if (!type) {
+            return fail(type.error().message, call.place_of(i), "-tbit, for example");
+        }
+        patterns.type = *type;
+    }
+    return patterns;
+}
+
 }  // namespace
 
 Result<> run_show(Session &session, const Call &call) {
     const std::string kind = call.words.empty() ? "all" : call.text(0);
-    Patterns patterns;
-    for (std::size_t i = 1; i < call.words.size(); ++i) {
-        patterns.push_back(call.text(i));
+    const Result<Patterns> patterns = parse_patterns(call);
+    if (!patterns) {
+        return std::unexpected(patterns.error());
     }
     std::vector<std::string> known;
     for (const ShowKind &show : SHOW_KINDS) {
         if (show.name == kind) {
-            session.output().data(show.text(session, patterns));
+            session.output().data(show.text(session, *patterns));
             return {};
         }
         known.emplace_back(show.name);
@@ -314,20 +329,11 @@ Result<> run_show(Session &session, const Call &call) {
 }
 
 Result<> run_list(Session &session, const Call &call) {
-    std::optional<Type> type;
-    Patterns patterns;
-    for (std::size_t i = 1; i < call.words.size(); ++i) {
-        if (i == 1 && call.text(i).starts_with("-t")) {
-            const Result<Type> parsed = parse_type(std::string_view(call.text(i)).substr(2));
-            if (!parsed) {
-                return at(std::unexpected(parsed.error()), call.place_of(i));
-            }
-            type = *parsed;
-        } else {
-            patterns.push_back(call.text(i));
-        }
+    const Result<Patterns> patterns = parse_patterns(call);
+    if (!patterns) {
+        return std::unexpected(patterns.error());
     }
-    const std::optional<std::string> text = list_text(session.hal(), call.text(0), patterns, type);
+    const std::optional<std::string> text = list_text(session.hal(), call.text(0), *patterns);
     if (!text) {
         return fail(fmt::format("unknown 'list' type '{}'", call.text(0)), call.place_of(0),
                     suggestion(call.text(0), {"comp", "pin", "sig", "param", "funct", "thread"}));

@@ -14,7 +14,7 @@ Result<> no_such_value(Hal &hal, const Word &word) {
         names.push_back(std::move(name));
     }
     return fail(fmt::format("parameter or pin '{}' does not exist", word.text), word.place,
-                suggestion(word.text, names));
+                missing_hint(hal, word.text, names));
 }
 
 Result<> no_such_signal(Hal &hal, const Word &word) {
@@ -23,7 +23,7 @@ Result<> no_such_signal(Hal &hal, const Word &word) {
 }
 
 bool hasValue(Hal &hal, const std::string &name) {
-    return hal.param(name).has_value() || hal.pin(name).has_value();
+    return hal.hasParam(name) || hal.hasPin(name);
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ Result<> run_setp(Session &session, const Call &call) {
     }
     const Result<> result = at(hal.set(name, std::string_view(call.text(1))), call.place_of(1));
     if (result) {
-        const char *kind = hal.param(name) ? "Parameter" : "Pin";
+        const char *kind = hal.hasParam(name) ? "Parameter" : "Pin";
         session.info(call.place, fmt::format("{} '{}' set to {}", kind, name, call.text(1)));
     }
     return result;
@@ -66,7 +66,7 @@ Result<> run_ptype(Session &session, const Call &call) {
 
 Result<> run_sets(Session &session, const Call &call) {
     Hal &hal = session.hal();
-    if (!hal.signal(call.text(0))) {
+    if (!hal.hasSignal(call.text(0))) {
         return no_such_signal(hal, call.words[0]);
     }
     const Result<> result =

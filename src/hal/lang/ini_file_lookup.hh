@@ -19,6 +19,14 @@ class IniFileLookup final : public IniLookup {
         return entry == nullptr ? std::nullopt : std::optional<std::string>(entry->value);
     }
     std::vector<std::string> names(std::string_view section) const override { return ini_.keys(section); }
+    std::vector<std::string> values(std::string_view section, std::string_view name) const override {
+        std::vector<std::string> values;
+        for (const config::IniEntry *entry : ini_.find_all(section, name)) {
+            values.push_back(entry->value);
+        }
+        return values;
+    }
+    std::vector<std::string> sections() const override { return ini_.sections(); }
 
   private:
     const config::IniFile &ini_;

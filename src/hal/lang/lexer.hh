@@ -22,6 +22,12 @@ class IniLookup {
     virtual std::optional<std::string> find(std::string_view section, std::string_view name) const = 0;
     /// The names in SECTION (for hints); empty when the section does not exist.
     virtual std::vector<std::string> names(std::string_view section) const = 0;
+    /// All values of NAME in SECTION, in order.
+    virtual std::vector<std::string> values(std::string_view section, std::string_view name) const {
+        const std::optional<std::string> value = find(section, name);
+        return value ? std::vector<std::string>{*value} : std::vector<std::string>{};
+    }
+    virtual std::vector<std::string> sections() const { return {}; }
 };
 
 /// Text in which every character remembers its line and column in the file.

@@ -35,7 +35,7 @@ Placeholders::Program *Placeholders::owner_of(const std::string &pin) {
 }
 
 bool Placeholders::covers(const std::string &name) const {
-    return owner_of(name) != nullptr && !hal_.pin(name).has_value();
+    return owner_of(name) != nullptr && !hal_.hasPin(name);
 }
 
 void Placeholders::note(const std::string &pin) {
@@ -76,6 +76,9 @@ Result<> Placeholders::link(const std::string &pin, const std::string &signal) {
 }
 
 Result<> Placeholders::signal_made(const std::string &signal) {
+    if (waiting_.empty()) {
+        return {};
+    }
     const Result<SignalInfo> info = hal_.signal(signal);
     if (!info) {
         return {};

@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
 #include <ctime>
 
@@ -19,7 +20,9 @@ namespace mw::hal::lang {
 
 namespace {
 
-constexpr long POLL_NS = 5000000;
+constexpr long POLL_NS = 2000000;
+/// A program that is not ready by then is mentioned.
+constexpr long PATIENCE_NS = 2000 * POLL_NS;
 
 void nap() {
     const timespec pause{0, POLL_NS};
@@ -66,10 +69,14 @@ Result<ProgramStart> SystemProgramHost::start(const ProgramRequest &request) {
 }
 
 Result<> SystemProgramHost::wait_until_ready(const ProgramRequest &request, int pid) {
-    while (true) {
+    for (long waited_ns = 0;; waited_ns += POLL_NS) {
         const Result<CompInfo> component = hal_.component(request.component);
         if (component && component->isReady) {
             return {};
+        }
+        if (waited_ns == PATIENCE_NS) {
+            std::fprintf(stderr, "still waiting for component '%s' of program '%s'\n",
+                         request.component.c_str(), request.argv[0].c_str());
         }
         int status = 0;
         if (waitpid(pid, &status, WNOHANG) == pid) {
@@ -108,6 +115,7 @@ Result<> SystemProgramHost::stop(const std::string &component) {
     if (!info) {
         return std::unexpected(info.error());
     }
+    (void)hal_.expect_end(info->id);
     if (info->pid > 0 && info->pid != getpid() && kill(info->pid, SIGTERM) != 0 && errno != ESRCH) {
         return fail(fmt::format("cannot end component '{}' (process {}): {}", component, info->pid,
                                 std::strerror(errno)));
@@ -128,7 +136,7 @@ Result<> SystemProgramHost::stop_all() {
         }
     }
     // Give them the time that an orderly end takes.
-    constexpr int TRIES = 200;
+    constexpr int TRIES = 500;
     for (int i = 0; i < TRIES && isProgramLeft(); ++i) {
         reap();
         nap();

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "base/own_place.hh"
 #include "base/text.hh"
 #include "hal/lang/commands.hh"
 
@@ -40,12 +41,6 @@ std::string joined(const std::vector<std::string> &parts, const char *separator)
     return text;
 }
 
-std::string program_folder() {
-    char path[4096];
-    const ssize_t length = readlink("/proc/self/exe", path, sizeof path);
-    return length <= 0 ? "." : folder_of(std::string(path, static_cast<std::size_t>(length)));
-}
-
 void print(std::FILE *file, std::string_view text, bool endsLine) {
     std::fwrite(text.data(), 1, text.size(), file);
     if (endsLine) {
@@ -56,6 +51,12 @@ void print(std::FILE *file, std::string_view text, bool endsLine) {
 }
 
 }  // namespace
+
+std::string program_folder() {
+    char path[4096];
+    const ssize_t length = readlink("/proc/self/exe", path, sizeof path);
+    return length <= 0 ? "." : folder_of(std::string(path, static_cast<std::size_t>(length)));
+}
 
 void StandardOutput::data(std::string_view text) {
     print(stdout, text, false);
@@ -80,26 +81,33 @@ void StandardOutput::error(const Error &error) {
 }
 
 Session::Session(Host &host, ProgramHost &programs, Output &output, SessionOptions options)
-    : host_(host), programs_(programs), output_(output), options_(std::move(options)),
+    : host_(host), programs_(programs), output_(&output), options_(std::move(options)),
       placeholders_(host.hal()) {}
 
 void Session::info(const SourcePlace &place, std::string_view text) {
     if (options_.verbosity >= Verbosity::RESULTS) {
-        const std::string where = place.str();
-        output_.info(where.empty() ? std::string(text) : fmt::format("{}: {}", where, text));
+        const std::string where = place.file.empty() ? "" : place.str();
+        output_->info(where.empty() ? std::string(text) : fmt::format("{}: {}", where, text));
     }
 }
 
 void Session::warn(const SourcePlace &place, std::string_view text, std::string hint) {
     if (options_.verbosity >= Verbosity::ERRORS) {
-        output_.warning(Error{std::string(text), place, std::move(hint)});
+        output_->warning(
+            Error{std::string(text), place.file.empty() ? SourcePlace{} : place, std::move(hint)});
     }
 }
 
 void Session::report(const Error &error) {
-    if (options_.verbosity >= Verbosity::ERRORS) {
-        output_.error(error);
+    if (options_.verbosity < Verbosity::ERRORS) {
+        return;
     }
+    Error shown = error;
+    if (shown.place.file.empty()) {
+        // Typed, or given as words: a number of a line would say nothing.
+        shown.place = {};
+    }
+    output_->error(shown);
 }
 
 Result<std::string> Session::find_file(const std::string &name) const {
@@ -129,17 +137,49 @@ Result<std::string> Session::find_file(const std::string &name) const {
                 fmt::format("looked {}{}", where, tried.empty() ? "no library folder" : joined(tried, ", ")));
 }
 
-Result<> Session::run_file(const std::string &name) {
+Result<> Session::run_script(const std::string &path, const std::vector<std::string> &arguments) {
+    const Result<ScriptRunner *> runner = tcl();
+    if (!runner) {
+        // Where a command names the file, the command reports.
+        if (running_.empty()) {
+            report(runner.error());
+        }
+        return std::unexpected(runner.error());
+    }
+    running_.push_back(path);
+    const Result<> result = (*runner)->run_file(path, arguments);
+    running_.pop_back();
+    if (!result) {
+        report(result.error());
+    }
+    return result;
+}
+
+Result<ScriptRunner *> Session::tcl() {
+    if (tcl_ == nullptr) {
+        auto loaded = load_tcl(*this);
+        if (!loaded) {
+            return std::unexpected(loaded.error());
+        }
+        tcl_ = std::move(*loaded);
+    }
+    return tcl_.get();
+}
+
+Result<> Session::run_file(const std::string &name, const std::vector<std::string> &arguments) {
     const auto read = [&]() -> Result<std::pair<std::string, std::string>> {
         const Result<std::string> path = find_file(name);
         if (!path) {
             return std::unexpected(path.error());
         }
-        if (path->ends_with(".tcl")) {
-            return fail(fmt::format("'{}' is a Tcl file; only HAL files can be run here", name));
-        }
         if (running_.size() >= MAX_DEPTH) {
             return fail(fmt::format("'{}' runs itself: {} files deep", name, MAX_DEPTH));
+        }
+        if (path->ends_with(".tcl")) {
+            return std::pair{*path, std::string()};
+        }
+        if (!arguments.empty()) {
+            return fail(fmt::format("HAL file '{}' takes no arguments, '{}' is given", name, arguments[0]));
         }
         std::ifstream file(*path, std::ios::binary);
         if (!file) {
@@ -156,6 +196,9 @@ Result<> Session::run_file(const std::string &name) {
             report(file.error());
         }
         return std::unexpected(file.error());
+    }
+    if (file->first.ends_with(".tcl")) {
+        return run_script(file->first, arguments);
     }
     return run_text(file->second, file->first);
 }
@@ -185,7 +228,7 @@ Result<> Session::run_line(const LogicalLine &line, const std::string &file) {
         return fail("stopped", {file, line.first_line, 0});
     }
     if (options_.isEchoing) {
-        output_.note(fmt::format("({})<echo>: {}", line.first_line, trim(line.text.text())));
+        output_->note(fmt::format("({})<echo>: {}", line.first_line, trim(line.text.text())));
     }
     const Result<PlacedText> text = substitute(line.text, file, Variables{nullptr, options_.ini});
     if (!text) {
@@ -206,6 +249,58 @@ Result<> Session::run_words(const std::vector<std::string> &words) {
         placed.push_back(Word{word, word, {}});
     }
     return run_command(placed);
+}
+
+namespace {
+
+/// Keeps the answers; what else is said goes where it always goes.
+class AnswerOutput final : public Output {
+  public:
+    explicit AnswerOutput(Output &rest) : rest_(rest) {}
+    void data(std::string_view text) override { answer += text; }
+    void info(std::string_view text) override { rest_.info(text); }
+    void note(std::string_view text) override { rest_.note(text); }
+    void warning(const Error &warning) override { rest_.warning(warning); }
+    void error(const Error &) override {}
+
+    std::string answer;
+
+  private:
+    Output &rest_;
+};
+
+}  // namespace
+
+Result<std::string> Session::call(const std::vector<std::string> &words) {
+    AnswerOutput output(*output_);
+    Output *before = output_;
+    output_ = &output;
+    const Result<> result = run_words(words);
+    output_ = before;
+    if (!result) {
+        return std::unexpected(result.error());
+    }
+    return output.answer;
+}
+
+/// Runs a command whose words have been counted, if it belongs to this pass.
+Result<> Session::run_call(const Call &call) {
+    const CommandSpec &spec = call.spec;
+    const bool isLoad = spec.run == lang::run_loadrt || spec.run == lang::run_loadusr;
+    if (options_.pass == Pass::REST && isLoad) {
+        return {};
+    }
+    if (options_.pass == Pass::LOADS) {
+        if (spec.run == lang::run_loadrt) {
+            return options_.loads->add(call);
+        }
+        const bool isRun = isLoad || spec.run == lang::run_source || spec.run == lang::run_list ||
+                           spec.run == lang::run_exit;
+        if (!isRun) {
+            return {};
+        }
+    }
+    return spec.run(*this, call);
 }
 
 Result<> Session::run_command(const std::vector<Word> &words) {
@@ -238,7 +333,7 @@ Result<> Session::run_command(const std::vector<Word> &words) {
     if (result) {
         const bool isSourcing = spec->run == run_source;
         const std::size_t depth = running_.size();
-        result = at(spec->run(*this, call), call.place);
+        result = at(run_call(call), call.place);
         // What a sourced file's commands reported has been told already; that it could not be run has not.
         const bool wasReported =
             isSourcing && !result && running_.size() == depth && result.error().place.file != call.place.file;

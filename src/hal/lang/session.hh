@@ -3,6 +3,7 @@
 #pragma once
 
 #include <csignal>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "hal/lang/lexer.hh"
 #include "hal/lang/placeholders.hh"
 #include "hal/lang/programs.hh"
+#include "hal/lang/script.hh"
 
 namespace mw::hal::lang {
 
@@ -48,6 +50,22 @@ enum class Verbosity {
     EVERYTHING  ///< each command before it runs
 };
 
+/// Which commands run, for files that are gone through twice (TwoPass).
+enum class Pass {
+    ALL,
+    LOADS,  ///< loadusr and list; loadrt is collected; source; no other
+    REST    ///< all but loadrt and loadusr
+};
+
+struct Call;
+
+/// Takes the loadrt lines of the pass LOADS.
+class LoadCollector {
+  public:
+    virtual ~LoadCollector() = default;
+    virtual Result<> add(const Call &loadrt) = 0;
+};
+
 struct SessionOptions {
     Verbosity verbosity = Verbosity::ERRORS;
     bool keepsGoing = false;           ///< run on after a failed command
@@ -58,6 +76,8 @@ struct SessionOptions {
     std::vector<std::string> folders;  ///< where files are looked for after the working folder
     const volatile std::sig_atomic_t *stop = nullptr;  ///< not zero: no further command is run
     std::vector<std::string> library;  ///< folders of the prefix LIB:, and looked through last
+    Pass pass = Pass::ALL;
+    LoadCollector *loads = nullptr;  ///< with Pass::LOADS
 };
 
 class Session {
@@ -66,13 +86,19 @@ class Session {
     Session(Host &host, ProgramHost &programs, Output &output, SessionOptions options = {});
 
     /// Runs the commands of a file (name: see find_file) up to the first failure, or all with keepsGoing.
-    /// The first failure is the result; all have been told to the output.
-    Result<> run_file(const std::string &name);
+    /// The first failure is the result; all have been told to the output. A file NAME.tcl is run as a Tcl
+    /// script with these arguments; other files have none.
+    Result<> run_file(const std::string &name, const std::vector<std::string> &arguments = {});
     /// The same for text; `name` stands for the file in messages, and `first_line` is the number of its first
     /// line.
     Result<> run_text(std::string_view text, const std::string &name, int first_line = 1);
     /// One command as given by words (of a command line): no comment, no substitution, no splitting.
     Result<> run_words(const std::vector<std::string> &words);
+
+    /// One command for a script: its answer. Failures are the result only; nobody is told.
+    Result<std::string> call(const std::vector<std::string> &words);
+    /// The interpreter for Tcl, loaded when it is first asked for.
+    Result<ScriptRunner *> tcl();
 
     /// The path of a HAL file: `LIB:x` in the library; x as it is, else beside the file that is running, in
     /// the folders, in the library.
@@ -87,7 +113,7 @@ class Session {
     Host &host() { return host_; }
     Hal &hal() { return host_.hal(); }
     ProgramHost &programs() { return programs_; }
-    Output &output() { return output_; }
+    Output &output() { return *output_; }
     SessionOptions &options() { return options_; }
     Placeholders &placeholders() { return placeholders_; }
     void end() { hasEnded_ = true; }
@@ -98,16 +124,22 @@ class Session {
   private:
     Result<> run_line(const LogicalLine &line, const std::string &file);
     Result<> run_command(const std::vector<Word> &words);
+    Result<> run_call(const Call &call);
+    Result<> run_script(const std::string &path, const std::vector<std::string> &arguments);
     void report(const Error &error);
 
     Host &host_;
     ProgramHost &programs_;
-    Output &output_;
+    Output *output_;
     SessionOptions options_;
     Placeholders placeholders_;
     std::vector<std::string> running_;  ///< files being run, outermost first
+    std::unique_ptr<ScriptRunner> tcl_;
     bool hasEnded_ = false;
 };
+
+/// The folder of the running program.
+std::string program_folder();
 
 /// Folders of the HAL library: $MILLWRIGHT_HALLIB (colon separated), then the one beside this program
 /// (../share/hallib in a build folder, ../share/millwright/hallib installed).

@@ -27,8 +27,8 @@
 #include <new>
 #include <type_traits>
 
-#include "hal/api/hal.h"
-#include "hal/api/rtapi_app.h"
+#include "hal.h"
+#include "rtapi_app.h"
 
 namespace mw::sdk {
 

@@ -8,6 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "hal/lang/completion.hh"
+#include "hal/tools/line_editor.hh"
+
 namespace mw::hal::tools {
 
 namespace {
@@ -85,43 +88,72 @@ Result<> IniOption::load(const std::string &path) {
     return {};
 }
 
+namespace {
+
+/// Gives the lines of standard input: from an editor at a terminal, else as they come.
+class InputLines {
+  public:
+    explicit InputLines(lang::Session &session) : isTerminal_(isatty(STDIN_FILENO) == 1) {
+        if (isTerminal_) {
+            LineEditorOptions options;
+            options.history_file = history_file("halcmd");
+            options.complete = [&session](const std::string &line) {
+                return lang::completions(session, line);
+            };
+            options.stop = session.options().stop;
+            editor_ = std::make_unique<LineEditor>(std::move(options));
+        }
+    }
+    bool isTerminal() const { return isTerminal_; }
+    /// The next line; `isContinued`: it goes on with the one before.
+    std::optional<std::string> next(bool isContinued) {
+        if (editor_ != nullptr) {
+            return editor_->read(isContinued ? "      > " : "halcmd: ");
+        }
+        std::string line;
+        return std::getline(std::cin, line) ? std::optional(line) : std::nullopt;
+    }
+
+  private:
+    bool isTerminal_;
+    std::unique_ptr<LineEditor> editor_;
+};
+
+}  // namespace
+
 Result<> run_standard_input(lang::Session &session) {
-    const bool isTerminal = isatty(STDIN_FILENO) == 1;
+    InputLines lines(session);
     Result<> first;
-    std::string line;
     std::string text;
     int number = 0;      // lines read
     int first_line = 1;  // of the command being read
     while (!session.hasEnded()) {
-        if (isTerminal) {
-            std::fputs(text.empty() ? "halcmd: " : "      > ", stdout);
-            std::fflush(stdout);
-        }
-        if (!std::getline(std::cin, line)) {
+        const std::optional<std::string> line = lines.next(!text.empty());
+        if (!line) {
             break;
         }
         ++number;
         first_line = text.empty() ? number : first_line;
-        text += line;
+        text += *line;
         if (!text.empty() && text.back() == '\\') {
             text += '\n';
             continue;
         }
-        const Result<> result = session.run_text(text, isTerminal ? "" : "stdin", first_line);
+        const Result<> result = session.run_text(text, lines.isTerminal() ? "" : "stdin", first_line);
         text.clear();
-        if (!result && first) {
-            first = result;
-        }
-        const bool goesOn = isTerminal || session.options().keepsGoing;
+        first = first ? result : first;
+        const bool goesOn = lines.isTerminal() || session.options().keepsGoing;
         if (!result && !goesOn) {
             break;
         }
     }
-    if (isTerminal) {
-        std::fputc('\n', stdout);
-        return {};
+    if (!lines.isTerminal()) {
+        return first;
     }
-    return first;
+    if (!session.hasEnded()) {
+        std::fputc('\n', stdout);
+    }
+    return {};
 }
 
 }  // namespace mw::hal::tools

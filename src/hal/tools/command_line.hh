@@ -9,6 +9,7 @@
 #include "base/result.hh"
 #include "config/ini_file.hh"
 #include "diag/sink.hh"
+#include "hal/host/host_client.hh"
 #include "hal/lang/ini_file_lookup.hh"
 #include "hal/lang/session.hh"
 
@@ -34,6 +35,8 @@ class IniOption {
     /// Nothing to do without a path.
     Result<> load(const std::string &path);
     const lang::IniLookup *lookup() const { return lookup_.get(); }
+    /// Null without a path.
+    const config::IniFile *file() const { return file_.get(); }
 
   private:
     diag::Sink sink_;
@@ -45,8 +48,18 @@ class IniOption {
 /// The first failure, unless it is a person who types.
 Result<> run_standard_input(lang::Session &session);
 
+/// Runs the HAL files of an INI file in two passes; an error unless it has [HAL]TWOPASS.
+Result<> run_two_pass_ini(lang::Session &session, const config::IniFile &ini);
+
+/// Joins the running realtime process, or starts one, which then stays.
+Result<std::unique_ptr<HostClient>> join_or_start();
+
 /// `halcmd`: attached to the running instance. The exit status.
 int halcmd(const std::vector<std::string> &arguments);
+/// `halcmd_twopass`: attached to the running instance, or starting one. The exit status.
+int halcmd_twopass(const std::vector<std::string> &arguments);
+/// `haltcl`: a Tcl script or session, attached as halcmd is. The exit status.
+int haltcl(const std::vector<std::string> &arguments);
 /// `halrun`: with a realtime process of its own around the commands. The exit status.
 int halrun(const std::vector<std::string> &arguments);
 

@@ -58,12 +58,12 @@ Result<std::unique_ptr<HostClient>> join(const CommandLine &line) {
         return fail(fmt::format("no realtime process is running (instance '{}')", instance), {},
                     "halrun starts one, and so does halcmd loadrt");
     }
-    return HostClient::start(instance, MessagesTo::FILE);
+    return join_or_start();
 }
 
 Result<> run(const CommandLine &line, lang::Session &session) {
     if (line.readsInput && !line.words.empty()) {
-        return session.run_file(line.words[0]);
+        return session.run_file(line.words[0], {line.words.begin() + 1, line.words.end()});
     }
     if (line.readsInput || line.words.empty()) {
         return run_standard_input(session);
@@ -72,6 +72,12 @@ Result<> run(const CommandLine &line, lang::Session &session) {
 }
 
 }  // namespace
+
+Result<std::unique_ptr<HostClient>> join_or_start() {
+    const std::string instance = default_instance();
+    return isHostAlive(instance) ? HostClient::connect(instance)
+                                 : HostClient::start(instance, MessagesTo::FILE);
+}
 
 int halcmd(const std::vector<std::string> &arguments) {
     Result<CommandLine> line = parse_command_line(arguments);

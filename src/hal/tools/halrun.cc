@@ -11,11 +11,12 @@ namespace mw::hal::tools {
 
 namespace {
 
-constexpr const char *USAGE = R"(usage: halrun [-I] [OPTIONS] [[-f] FILE]
+constexpr const char *USAGE = R"(usage: halrun [-I|-T] [OPTIONS] [[-f] FILE]
        halrun -U
 
-Starts a realtime process, runs the commands of FILE in it, and ends it. Without FILE, or after it with -I, reads
-commands from standard input.
+Starts a realtime process, runs the commands of FILE in it, and ends it. FILE is a HAL file, a Tcl script (NAME.tcl,
+followed by its arguments), or an INI file with [HAL]TWOPASS. Without FILE, or after it with -I or -T, reads commands
+from standard input: HAL commands, or Tcl with -T.
 
   -i INI  take [SECTION]NAME from this INI file   -k  keep going after failed commands
   -s      answers for scripts                     -q -Q -v -V  say less or more (see halcmd -h)
@@ -27,6 +28,11 @@ volatile std::sig_atomic_t stop_requested = 0;
 int fail_with(const Error &error) {
     std::fprintf(stderr, "halrun: %s\n", error.str().c_str());
     return 1;
+}
+
+Result<> tell(const Error &error) {
+    (void)fail_with(error);
+    return std::unexpected(error);
 }
 
 void handle_signals() {
@@ -57,20 +63,44 @@ int end_running() {
     return stopped ? 0 : fail_with(stopped.error());
 }
 
-Result<> run(const CommandLine &line, lang::Session &session) {
+/// Files in turn; what follows a Tcl file are its arguments.
+Result<> run_files(const CommandLine &line, lang::Session &session) {
     Result<> first;
-    for (const std::string &file : line.words) {
-        const Result<> result = session.run_file(file);
+    for (std::size_t i = 0; i < line.words.size(); ++i) {
+        std::vector<std::string> arguments;
+        if (line.words[i].ends_with(".tcl")) {
+            arguments.assign(line.words.begin() + static_cast<std::ptrdiff_t>(i) + 1, line.words.end());
+        }
+        const Result<> result = session.run_file(line.words[i], arguments);
         first = first ? result : first;
         if (session.hasEnded() || (!result && !line.session.keepsGoing)) {
             break;
         }
-    }
-    const bool readsInput = line.words.empty() || line.isInteractive;
-    if (readsInput && first && !session.hasEnded()) {
-        return run_standard_input(session);
+        i += arguments.size();
     }
     return first;
+}
+
+Result<> run_tcl_input(lang::Session &session) {
+    const Result<lang::ScriptRunner *> tcl = session.tcl();
+    if (!tcl) {
+        return tell(tcl.error());
+    }
+    return (*tcl)->run_standard_input();
+}
+
+Result<> run(const CommandLine &line, lang::Session &session, const config::IniFile *two_pass) {
+    Result<> first;
+    if (two_pass != nullptr) {
+        first = run_two_pass_ini(session, *two_pass);
+    } else {
+        first = run_files(line, session);
+    }
+    const bool readsInput = line.words.empty() || line.isInteractive || line.wantsTcl;
+    if (!readsInput || !first || session.hasEnded()) {
+        return first;
+    }
+    return line.wantsTcl ? run_tcl_input(session) : run_standard_input(session);
 }
 
 /// Ends programs, threads, modules and the realtime process, whatever state they are in.
@@ -92,16 +122,20 @@ int halrun(const std::vector<std::string> &arguments) {
         std::fputs(USAGE, stdout);
         return 0;
     }
-    if (line->wantsTcl) {
-        return fail_with(Error{"Tcl sessions are not supported", {}, {}});
-    }
     if (line->isKilling) {
         return end_running();
     }
+    // The file itself may be an INI file: then its HAL files run, in two passes.
+    const bool isTwoPass = line->words.size() == 1 && line->words[0].ends_with(".ini");
     IniOption ini;
-    const Result<> loaded = ini.load(line->ini_path);
+    const Result<> loaded = ini.load(isTwoPass ? line->words[0] : line->ini_path);
     if (!loaded) {
         return fail_with(loaded.error());
+    }
+    if (isTwoPass && ini.file()->find("HAL", "TWOPASS") == nullptr) {
+        return fail_with(Error{"an INI file can only be run when it has [HAL]TWOPASS",
+                               ini.file()->place_of_section("HAL"),
+                               "millwright run starts a whole machine from it"});
     }
     line->session.ini = ini.lookup();
     line->session.stop = &stop_requested;
@@ -112,11 +146,10 @@ int halrun(const std::vector<std::string> &arguments) {
                                "use it with halcmd, or end it with halrun -U"});
     }
     handle_signals();
-    const auto host = HostClient::start(instance);
+    const auto host = HostClient::start(instance, MessagesTo::STDERR, Lifetime::STARTER);
     if (!host) {
         return fail_with(host.error());
     }
-    // It must not outlive this program.
     const Result<> controlled = (*host)->control();
     if (!controlled) {
         return fail_with(controlled.error());
@@ -126,7 +159,7 @@ int halrun(const std::vector<std::string> &arguments) {
     Result<> result;
     {
         lang::Session session(**host, programs, output, line->session);
-        result = run(*line, session);
+        result = run(*line, session, isTwoPass ? ini.file() : nullptr);
     }
     const Result<> ended = tear_down(programs, **host);
     if (!ended) {

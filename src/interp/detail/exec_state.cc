@@ -36,7 +36,6 @@ void Executor::commit() {
         tool_pending_.clear();
     }
     patched_.clear();
-    before_ = state;
 }
 
 void Executor::rollback() {

@@ -33,6 +33,21 @@ Lexer::Number Lexer::take_number(double &value, std::string &text) {
     int count = 0, decimals = 0;
     bool isFraction = false;
     const std::size_t start = pos_;
+    // Blanks inside of numbers are rare: without one the digits are taken straight from the line.
+    const char *at = line_.data() + pos_;
+    const char *const end_of_line = line_.data() + line_.size();
+    for (; at != end_of_line && (isDigit(*at) || (*at == '.' && !isFraction)); ++at) {
+        if (*at == '.') {
+            isFraction = true;
+            continue;
+        }
+        if (count < EXACT_DIGITS) {
+            digits = digits * 10 + static_cast<std::uint64_t>(*at - '0');
+        }
+        ++count;
+        decimals += isFraction ? 1 : 0;
+    }
+    pos_ = static_cast<std::size_t>(at - line_.data());
     for (char c = peek(); isDigit(c) || (c == '.' && !isFraction); c = peek()) {
         if (c == '.') {
             isFraction = true;

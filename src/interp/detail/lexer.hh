@@ -30,6 +30,11 @@ class Lexer {
         take();
         return true;
     }
+    /// True when an unsigned number comes next.
+    bool beginsNumber() {
+        const char c = peek();
+        return (c >= '0' && c <= '9') || c == '.';
+    }
     /// Takes a word of letters if it is next (blanks allowed inside), else nothing.
     bool accept_word(std::string_view word);
 

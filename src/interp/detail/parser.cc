@@ -180,6 +180,15 @@ bool Parser::word(Lexer &in, Block &out, char c) {
     if (in.peek() == '\0') {
         return fail("No characters found in reading real value", in.column());
     }
+    if (in.beginsNumber()) {
+        if (!literal(in, made.value)) {
+            return false;
+        }
+        made.expression = NO_ID;
+        arena_.words.push_back(made);
+        ++out.word_count;
+        return true;
+    }
     const std::size_t nodes = arena_.nodes.size();
     NodeId node = NO_ID;
     if (!real_value(in, node)) {

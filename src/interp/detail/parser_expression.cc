@@ -98,11 +98,19 @@ bool Parser::signed_value(Lexer &in, NodeId &out) {
     return true;
 }
 
+bool Parser::literal(Lexer &in, double &value) {
+    const std::uint32_t column = in.column();
+    std::string text;
+    if (in.take_number(value, text) != Lexer::Number::OK) {
+        return fail(fmt::format("bad number format (conversion failed) parsing '{}'", text), column);
+    }
+    return true;
+}
+
 bool Parser::number(Lexer &in, NodeId &out) {
     Node node{.kind = NodeKind::NUMBER, .column = in.column()};
-    std::string text;
-    if (in.take_number(node.value, text) != Lexer::Number::OK) {
-        return fail(fmt::format("bad number format (conversion failed) parsing '{}'", text), node.column);
+    if (!literal(in, node.value)) {
+        return false;
     }
     out = add(node, in);
     return true;

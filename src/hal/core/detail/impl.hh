@@ -2,6 +2,7 @@
 // The inside of Hal, shared by its source files only.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include "hal/api/rtapi.h"
 #include "hal/core/detail/segment.hh"
+#include "hal/core/detail/ticks.hh"
 #include "hal/core/hal.hh"
 
 namespace mw::hal {
@@ -61,7 +63,10 @@ struct Hal::Impl {
     std::vector<std::unique_ptr<detail::ThreadRunner>> runners;    ///< under the segment's lock
     std::vector<std::unique_ptr<detail::PlannerRunner>> planners;  ///< under the segment's lock
     int last_planner_id = 0;
+    detail::TickCounter counter;                              ///< times the functions of threads
     std::vector<detail::ControllerWatch> controller_watches;  ///< in the host's thread
+    /// Makers of instances, by component id, of components of this process; under the segment's lock.
+    std::map<int, int (*)(const char *, const char *)> constructors;
 
     // With the lock held:
     detail::CompRecord *find_comp(int id) const noexcept;
@@ -83,6 +88,7 @@ struct Hal::Impl {
     void remove_param(detail::ParamRecord &param) noexcept;
     void remove_funct(detail::FunctRecord &funct) noexcept;
     void remove_comp(detail::CompRecord &comp, bool isDead) noexcept;
+    void note_death(const detail::CompRecord &comp) noexcept;
     void point_slot(const detail::PinRecord &pin, detail::Offset value) noexcept;
     detail::Offset value_of(const detail::PinRecord &pin) const noexcept;
     template <class Change>
@@ -100,6 +106,8 @@ struct Hal::Impl {
     Result<detail::BlockRecord *> open_block(int key, std::size_t bytes);
     void publish_figures() const;
     void run_thread(detail::ThreadRecord &thread) noexcept;
+    void run_timed(detail::ThreadRecord &thread, const detail::FunctionList &list,
+                   std::uint32_t first) noexcept;
 };
 
 namespace detail {

@@ -56,6 +56,7 @@ struct CompRecord : Record {
     CompType type;
     bool isReady;
     bool isLoadedByLoadrt;
+    bool isAskedToEnd;  ///< its end is no accident
     rtapi::ProcessId process;
     std::uint64_t base;  ///< where the owner has mapped the content
     Offset insmod_args;  ///< a text
@@ -127,6 +128,7 @@ struct ThreadRecord : Record {
     std::uint64_t time_slot;  ///< pin slots of .time and .threadbeat. realtime
     std::uint64_t beat_slot;
     alignas(8) std::int32_t tmax;  ///< realtime
+    std::uint32_t next_timed;      ///< first function to be timed in the next period. realtime
 };
 
 struct AliasRecord : Record {
@@ -153,6 +155,15 @@ struct PortQueue {
     std::atomic<std::uint32_t> out;
 };
 
+/// A component whose process died with it.
+struct DeathRecord {
+    std::array<char, NAME_LENGTH + 1> name;
+    std::int32_t pid;
+    std::int64_t time_ns;  ///< of the monotonic clock
+};
+
+inline constexpr std::size_t DEATHS = 16;
+
 struct Table {
     Offset first;
     Offset free;
@@ -168,6 +179,8 @@ struct Header {
     bool isRealtime;                         ///< threads have realtime priority
     std::array<char, 256> realtime_missing;  ///< why threads have none
     std::int32_t next_comp_id;
+    std::uint32_t death_count;  ///< since the start; the last DEATHS of them are kept
+    std::array<DeathRecord, DEATHS> deaths;
     Offset top;  ///< first byte never handed out
     std::array<Table, static_cast<std::size_t>(Kind::COUNT)> tables;
 };

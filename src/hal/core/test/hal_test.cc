@@ -207,6 +207,11 @@ TEST(HalValue, ReadsAndPrintsEveryType) {
     EXPECT_EQ(*parse_value(Type::BIT, "TRUE"), Value::of_bit(true));
     EXPECT_EQ(*parse_value(Type::BIT, "0"), Value::of_bit(false));
     EXPECT_FALSE(parse_value(Type::BIT, "2"));
+    EXPECT_FALSE(parse_value(Type::BIT, "1.0"));
+    EXPECT_EQ(*parse_value(Type::S32, "010"), Value::of_s32(8));
+    EXPECT_EQ(*parse_value(Type::S32, "-010"), Value::of_s32(-8));
+    EXPECT_FALSE(parse_value(Type::U32, "08"));
+    EXPECT_EQ(*parse_value(Type::FLOAT, "010"), Value::of_float(10));
     EXPECT_EQ(*parse_value(Type::FLOAT, ".15"), Value::of_float(0.15));
     EXPECT_EQ(*parse_value(Type::FLOAT, "4.2e1"), Value::of_float(42));
     EXPECT_FALSE(parse_value(Type::FLOAT, "1,5"));

@@ -37,9 +37,11 @@ TEST(Loader, SetsModuleParametersAndNamesTheKnownOnes) {
     EXPECT_NE(machine.load("counter", {"start"}).find("'start' is not of the form name=value"),
               std::string::npos);
     EXPECT_NE(machine.load("nothing").find("there is no module 'nothing.so'"), std::string::npos);
+    EXPECT_NE(machine.load("countr").find("did you mean 'counter'?"), std::string::npos);
     EXPECT_TRUE(machine.hal().components().empty());
     EXPECT_EQ(machine.load("counter", {"config=any, thing=2", "names="}), "ok");
-    EXPECT_EQ(machine.hal().component("counter")->insmod_args, "config=any, thing=2 names=");
+    EXPECT_EQ(machine.hal().component("counter")->insmod_args, "config=\"any, thing=2\" names=")
+        << "as a HAL file has it";
     EXPECT_TRUE(machine.hal().component("counter")->isReady);
     EXPECT_EQ(machine.hal().component("counter")->type, CompType::REALTIME);
 }

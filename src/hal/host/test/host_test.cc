@@ -196,6 +196,56 @@ TEST_F(HostTest, OutputsOfADeadProgramTakeTheirSafeValues) {
     EXPECT_TRUE(hal.pins("program*").empty());
 }
 
+TEST_F(HostTest, ADeathIsNoticedAtOnceAndNamed_B7) {
+    auto client = start();
+    ASSERT_NE(client, nullptr);
+    Hal &hal = client->hal();
+    const auto add = [this](const char *name) {
+        return run_in_child([this, name] {
+            Hal *own = Hal::attach(instance).value().release();
+            return own->set_ready(*own->new_component(name)).has_value();
+        });
+    };
+    const pid_t victim = add("victim");
+    const pid_t dismissed = add("dismissed");
+    ASSERT_NE(victim, 0);
+    ASSERT_NE(dismissed, 0);
+    // The realtime process has seen them by now.
+    std::this_thread::sleep_for(std::chrono::milliseconds(120));
+    const auto killed = std::chrono::steady_clock::now();
+    ::kill(victim, SIGKILL);
+    EXPECT_TRUE(isSoon([&] { return !hal.hasComponent("victim"); }));
+    const auto noticed = std::chrono::steady_clock::now() - killed;
+    EXPECT_LT(std::chrono::duration_cast<std::chrono::milliseconds>(noticed).count(), 50);
+    ::waitpid(victim, nullptr, 0);
+    ASSERT_EQ(hal.deaths().size(), 1U);
+    EXPECT_EQ(hal.deaths()[0].name, "victim");
+    EXPECT_EQ(hal.deaths()[0].pid, victim);
+    ASSERT_TRUE(hal.expect_end(hal.component("dismissed")->id));
+    kill_now(dismissed);
+    EXPECT_TRUE(isSoon([&] { return !hal.hasComponent("dismissed"); }));
+    EXPECT_EQ(hal.deaths().size(), 1U) << "it was told to";
+    ASSERT_TRUE(hal.new_component("victim"));
+    EXPECT_TRUE(hal.deaths().empty()) << "it is back";
+}
+
+TEST_F(HostTest, EndsWithItsStarterFromTheFirstMomentOn_B7) {
+    const pid_t starter = ::fork();
+    if (starter == 0) {
+        auto mine = HostClient::start(instance, MessagesTo::FILE, Lifetime::STARTER);
+        ::raise(SIGKILL);
+    }
+    ::waitpid(starter, nullptr, 0);
+    EXPECT_TRUE(isSoon([&] { return !isHostAlive(instance); })) << "nobody took control";
+}
+
+TEST_F(HostTest, TheLogLevelReachesTheRealtimeProcess) {
+    auto client = start();
+    ASSERT_NE(client, nullptr);
+    EXPECT_EQ(text_of(client->set_log_level(rtapi::LogLevel::DBG)), "ok");
+    EXPECT_EQ(client->hal().log().level(), rtapi::LogLevel::DBG);
+}
+
 TEST_F(HostTest, ALockHeldByAKilledProcessIsRecovered) {
     auto client = start();
     ASSERT_NE(client, nullptr);
@@ -203,7 +253,7 @@ TEST_F(HostTest, ALockHeldByAKilledProcessIsRecovered) {
     const int comp = *hal.new_component("mine");
     void **slot = *hal.new_pin("mine.pin", Type::S32, Dir::OUT, comp);
     ASSERT_TRUE(hal.net("s", {"mine.pin"}));
-    for (int round = 0; round < 20; ++round) {
+    for (int round = 0; round < 100; ++round) {
         const pid_t program = run_in_child([&] {
             auto mine = Hal::attach(instance);
             Hal *own = mine.value().release();
@@ -249,7 +299,7 @@ TEST_F(HostTest, ThreadsAreChangedSafelyWhileTheyRun) {
         ASSERT_EQ(text_of(hal.remove_function("counter.0.update", "fast")), "ok");
         ASSERT_EQ(text_of(hal.remove_function("counter.1.update", "slow")), "ok");
     }
-    for (int round = 0; round < 20; ++round) {
+    for (int round = 0; round < 100; ++round) {
         ASSERT_EQ(text_of(hal.add_function("counter.0.update", "fast", 1)), "ok");
         ASSERT_EQ(text_of(client->unload_realtime("counter")), "ok");
         ASSERT_EQ(text_of(client->load_realtime("counter", {})), "ok");

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "hal/lang/commands.hh"
+#include "hal/lang/completion.hh"
 #include "hal/lang/session.hh"
 #include "rtapi/virtual_scheduler.hh"
 
@@ -201,6 +202,41 @@ TEST_F(SessionTest, LeftOutProgramsGetPlaceholders) {
 TEST_F(SessionTest, UnderTheVirtualClockNoProgramIsStarted) {
     EXPECT_EQ(run("loadusr -w /bin/false\nloadusr -Wn"), "test.hal:2:9: -Wn needs the name of a component\n");
     EXPECT_EQ(run("loadusr -x prog").find("test.hal:1:9: unknown option '-x'"), 0U);
+}
+
+TEST_F(SessionTest, CompletionOffersWhatThePositionDemands) {
+    using Words = std::vector<std::string>;
+    run("net s board.out\nnewsig word u32\nalias param board.gain boost\n");
+    TextOutput out;
+    Session session(*host, programs, out, options);
+    EXPECT_EQ(completions(session, "unlo"), (Words{"unload", "unloadrt", "unloadusr", "unlock"}));
+    EXPECT_EQ(common_beginning(completions(session, "unlo")), "unlo");
+    EXPECT_EQ(common_beginning(completions(session, "loadr")), "loadrt");
+    EXPECT_EQ(completions(session, "net "), (Words{"s", "word"}));
+    EXPECT_EQ(completions(session, "net s => board."), (Words{"board.in0", "board.in1", "board.io"}))
+        << "of the signal's type, and not linked";
+    EXPECT_EQ(completions(session, "net new board.value "), (Words{"board.value"}));
+    EXPECT_EQ(completions(session, "setp b"),
+              (Words{"board.in0", "board.in1", "board.io", "board.value", "board.word", "boost"}))
+        << "no outputs, no linked pins";
+    EXPECT_EQ(completions(session, "unlinkp "), (Words{"board.out"}));
+    EXPECT_EQ(completions(session, "getp bo").size(), 7U);
+    EXPECT_EQ(completions(session, "newsig x s"), (Words{"s32", "s64"}));
+    EXPECT_EQ(completions(session, "alias p"), (Words{"param", "pin"}));
+    EXPECT_EQ(completions(session, "alias param "), (Words{"boost"}));
+    EXPECT_EQ(completions(session, "show s"), (Words{"sig"}));
+    EXPECT_EQ(completions(session, "show sig w"), (Words{"word"}));
+    EXPECT_EQ(completions(session, "list comp b"), (Words{"board"}));
+    EXPECT_EQ(completions(session, "help sta"), (Words{"start", "status"}));
+    EXPECT_EQ(completions(session, "start "), (Words{}));
+    EXPECT_EQ(completions(session, "nosuch "), (Words{}));
+    const std::filesystem::path folder = std::filesystem::temp_directory_path() / "mw_completion";
+    std::filesystem::create_directories(folder / "sub");
+    std::ofstream(folder / "some.hal") << "";
+    std::ofstream(folder / "some.txt") << "";
+    EXPECT_EQ(completions(session, "source " + (folder / "s").string()),
+              (Words{(folder / "some.hal").string(), (folder / "sub/").string()}));
+    std::filesystem::remove_all(folder);
 }
 
 TEST_F(SessionTest, EveryCommandHasHelpAndAWorkingSynopsis) {

@@ -1,86 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // halrun and halcmd as processes: what they print, how they end and what they leave behind.
-#include <fcntl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <csignal>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-
-#include <gtest/gtest.h>
-
-#include "base/atomic_file.hh"
-#include "hal/host/host_client.hh"
+#include "hal/tools/test/programs.hh"
 
 namespace mw::hal::tools {
 namespace {
-
-struct Ended {
-    int status = -1;
-    std::string out;
-    std::string err;
-};
-
-class Programs : public ::testing::Test {
-  protected:
-    Programs() {
-        folder = std::filesystem::temp_directory_path() / ("mw-halrun-" + std::to_string(getpid()));
-        std::filesystem::create_directories(folder);
-        instance = "tools-test-" + std::to_string(getpid());
-        setenv("MILLWRIGHT_INSTANCE", instance.c_str(), 1);
-        const std::string bin = MW_TEST_BIN;
-        setenv("PATH", (bin + ":/usr/bin:/bin").c_str(), 1);
-    }
-    ~Programs() override {
-        EXPECT_FALSE(isHostAlive(instance)) << "a realtime process was left behind";
-        std::filesystem::remove_all(folder);
-    }
-
-    std::string file(const std::string &name, const std::string &text) {
-        const std::string path = (folder / name).string();
-        std::ofstream(path) << text;
-        return path;
-    }
-
-    pid_t start(const std::vector<std::string> &words) {
-        const pid_t pid = fork();
-        if (pid == 0) {
-            const std::string out = (folder / "out").string();
-            const std::string err = (folder / "err").string();
-            dup2(open("/dev/null", O_RDONLY), 0);
-            dup2(open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), 1);
-            dup2(open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), 2);
-            if (chdir(folder.c_str()) != 0) {
-                _exit(126);
-            }
-            std::vector<char *> argv;
-            for (const std::string &word : words) {
-                argv.push_back(const_cast<char *>(word.c_str()));
-            }
-            argv.push_back(nullptr);
-            execvp(argv[0], argv.data());
-            _exit(127);
-        }
-        return pid;
-    }
-
-    Ended wait(pid_t pid) {
-        int status = 0;
-        waitpid(pid, &status, 0);
-        Ended ended;
-        ended.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-        ended.out = read_file((folder / "out").string()).value_or("");
-        ended.err = read_file((folder / "err").string()).value_or("");
-        return ended;
-    }
-
-    Ended run(const std::vector<std::string> &words) { return wait(start(words)); }
-
-    std::filesystem::path folder;
-    std::string instance;
-};
 
 TEST_F(Programs, HalrunStreamsThroughComponentsInRealtime_B9) {
     file("in.dat", "# x\n1 0\n-2 1\n-3.5 1\n");
@@ -94,6 +17,18 @@ TEST_F(Programs, HalrunStreamsThroughComponentsInRealtime_B9) {
     const Ended ended = run({"halrun", "-f", hal});
     EXPECT_EQ(ended.status, 0) << ended.err;
     EXPECT_EQ(ended.out, "0 1.000000 1 \n1 2.000000 0 \n2 3.500000 0 \n3 3.500000 0 \n");
+}
+
+TEST_F(Programs, EveryFunctionOfALongThreadIsTimedInTurn_B4) {
+    std::string text = "loadrt threads name1=t period1=1000000\nloadrt and2 count=70\n";
+    for (int i = 0; i < 70; ++i) {
+        text += "addf and2." + std::to_string(i) + " t\n";
+    }
+    text += "start\nloadusr -w sh poll.sh\n";
+    file("poll.sh", "i=0\nwhile halcmd -s show param and2.*tmax | grep -q ' 0 '; do i=$((i + 1)); [ $i -lt 1000 ]"
+                    " || exit 1; done\n");
+    const Ended ended = run({"halrun", file("a.hal", text)});
+    EXPECT_EQ(ended.status, 0) << ended.err << "a function was never timed";
 }
 
 TEST_F(Programs, HalrunFailsAtTheFirstErrorAndNamesIt_B9) {

@@ -1,0 +1,160 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""HAL against an installed LinuxCNC: the same work through both sets of programs, interleaved, as an ordinary user.
+
+  dispatch   CPU time of the realtime process (run time of its threads, as the kernel counts it) per function call:
+             that of a cycle with 300 and2 less that of one without, cycles counted by threadtest, at 0.1 ms
+  nets       `halcmd -f` of 3,000 net lines, elapsed
+  read       `halcmd getp`, elapsed per call, one process each
+  reads      the same 3,000 times in one `halcmd -f`
+  start      `halrun` of a file that loads and starts a thread: start and stop of the realtime process, elapsed
+
+Prints the medians and their ratio (ours / reference) with what is aimed at; status 1 when one is not reached.
+Without a reference only our figures.
+"""
+import argparse
+import glob
+import json
+import os
+import pathlib
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+TARGETS = {'dispatch': 0.7, 'nets': 0.3, 'read': None, 'reads': None, 'start': 0.5}
+UNITS = {'dispatch': 'ns', 'nets': 'ms', 'read': 'ms', 'reads': 'ms', 'start': 'ms'}
+FUNCTIONS = 300
+NETS = 3000
+CALLS = 20
+SECONDS = 1.5
+
+
+def elapsed(command):
+    begin = time.perf_counter()
+    subprocess.run(command, check=True, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    return (time.perf_counter() - begin) * 1e3
+
+
+def is_realtime_process(folder):
+    name = pathlib.Path(folder, 'comm').read_text().strip()
+    if name == 'millwright-rt':
+        return b'--instance\0bench\0' in pathlib.Path(folder, 'cmdline').read_bytes()
+    return name == 'rtapi_app'
+
+
+def realtime_cpu_ns():
+    """Run time of all threads of the realtime process."""
+    total = 0
+    for folder in glob.glob('/proc/[0-9]*'):
+        try:
+            if is_realtime_process(folder):
+                for task in glob.glob(folder + '/task/*/schedstat'):
+                    total += int(pathlib.Path(task).read_text().split()[0])
+        except (FileNotFoundError, ProcessLookupError):
+            pass
+    return total
+
+
+def cycles_run():
+    done = subprocess.run(['halcmd', 'getp', 'threadtest.0.count'], check=True, capture_output=True, text=True)
+    return int(done.stdout, 0)
+
+
+def inside(what):
+    """Runs within `halrun` (loadusr -w): measures and leaves its figures in a file."""
+    figures = {}
+    if what == 'dispatch':
+        cycles, cpu = cycles_run(), realtime_cpu_ns()
+        time.sleep(SECONDS)
+        figures['cpu_per_cycle'] = (realtime_cpu_ns() - cpu) / (cycles_run() - cycles)
+    else:
+        figures['nets'] = elapsed(['halcmd', '-f', 'nets.hal'])
+        figures['reads'] = elapsed(['halcmd', '-f', 'reads.hal'])
+        figures['read'] = sum(elapsed(['halcmd', 'getp', 'and2.7.out']) for _ in range(CALLS)) / CALLS
+    pathlib.Path('figures.json').write_text(json.dumps(figures))
+    return 0
+
+
+def one_run():
+    """All measurements for the programs on PATH, in the working folder; prints them."""
+    me = os.path.abspath(__file__)
+    figures = {}
+    pins = [f'and2.{i}.{pin}' for i in range(NETS // 4) for pin in ('in0', 'in1', 'out', 'time')]
+    pathlib.Path('nets.hal').write_text(''.join(f'net signal-{i} {pin}\n' for i, pin in enumerate(pins)))
+    pathlib.Path('reads.hal').write_text('getp and2.7.out\n' * NETS)
+    pathlib.Path('start.hal').write_text('loadrt threads name1=t period1=1000000\nstart\n')
+    figures['start'] = elapsed(['halrun', 'start.hal'])
+    pathlib.Path('nets_run.hal').write_text(
+        f'loadrt and2 count={NETS // 4}\nloadusr -w python3 {me} --inside nets\n')
+    subprocess.run(['halrun', 'nets_run.hal'], check=True, stdin=subprocess.DEVNULL)
+    figures.update(json.loads(pathlib.Path('figures.json').read_text()))
+    per_cycle = {}
+    for count in (0, FUNCTIONS):
+        adds = ''.join(f'addf and2.{i} t\n' for i in range(count))
+        pathlib.Path('dispatch.hal').write_text(
+            f'loadrt threads name1=t period1=100000\nloadrt and2 count={FUNCTIONS}\nloadrt threadtest\n{adds}'
+            f'addf threadtest.0.increment t\nstart\nloadusr -w python3 {me} --inside dispatch\n')
+        subprocess.run(['halrun', 'dispatch.hal'], check=True, stdin=subprocess.DEVNULL)
+        per_cycle[count] = json.loads(pathlib.Path('figures.json').read_text())['cpu_per_cycle']
+    figures['dispatch'] = (per_cycle[FUNCTIONS] - per_cycle[0]) / FUNCTIONS
+    print(json.dumps(figures))
+    return 0
+
+
+def measure(path, user):
+    with tempfile.TemporaryDirectory(prefix='bench-hal-') as folder:
+        os.chmod(folder, 0o777)
+        command = ['env', f'PATH={path}:/usr/bin:/bin:/usr/sbin:/sbin', f'HOME={folder}', 'MILLWRIGHT_INSTANCE=bench',
+                   f'XDG_RUNTIME_DIR={folder}', sys.executable if not user else '/usr/bin/python3',
+                   os.path.join(folder, 'hal.py'), '--one-run']
+        shutil.copy(__file__, os.path.join(folder, 'hal.py'))
+        if user:
+            # A name space of its own: the reference has one realtime process and one shared memory per machine.
+            command = ['unshare', '--ipc', '--pid', '--fork', '--mount-proc', '--kill-child', 'runuser', '-u', user,
+                       '--', *command]
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120)
+        if done.returncode != 0:
+            sys.exit(f'bench: {path}: {done.stdout[-500:]}{done.stderr[-1500:]}')
+        return json.loads(done.stdout.splitlines()[-1])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('--bin', default=str(ROOT / 'build/release/bin'), help='folder of our programs')
+    parser.add_argument('--reference', default='/usr/bin', help='folder of the reference\'s programs')
+    parser.add_argument('--user', default='nobody', help='ordinary user when run by root')
+    parser.add_argument('--runs', type=int, default=5)
+    parser.add_argument('--one-run', action='store_true', help=argparse.SUPPRESS)
+    parser.add_argument('--inside', help=argparse.SUPPRESS)
+    o = parser.parse_args()
+    if o.inside:
+        return inside(o.inside)
+    if o.one_run:
+        return one_run()
+    user = o.user if os.geteuid() == 0 else None
+    sides = {'ours': o.bin}
+    if shutil.which('halrun', path=o.reference):
+        sides = {'reference': o.reference, 'ours': o.bin}
+    results = {side: [] for side in sides}
+    for _ in range(o.runs):
+        for side, path in sides.items():
+            results[side].append(measure(path, user))
+    is_good = True
+    print(f'{"":10}' + ''.join(f'{side:>14}' for side in sides) + f'{"ratio":>9}{"aim":>7}   medians of {o.runs} runs')
+    for name, aim in TARGETS.items():
+        medians = {side: statistics.median(r[name] for r in results[side]) for side in sides}
+        line = f'{name:10}' + ''.join(f'{medians[side]:>11.2f} {UNITS[name]}' for side in sides)
+        if 'reference' in sides:
+            ratio = medians['ours'] / medians['reference']
+            is_good = is_good and (aim is None or ratio <= aim)
+            line += f'{ratio:>9.2f}{aim if aim else "":>7}' + ('   MISSED' if aim and ratio > aim else '')
+        print(line)
+    return 0 if is_good else 1
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// blend: `out` goes from `in2` to `in1` while `select` goes from 0 to 1. Outside of that it stays at the
+// nearer input, or goes on along the line when the parameter `open` (bit) is true. Pins float.
+#include "components/common/kit.hh"
+#include "components/limit/limit_core.hh"
+
+namespace mw::components {
+
+struct Blend {
+    In<double> in1, in2, select;
+    Out<double> out;
+    ParamRw<bool> open;
+
+    void declare(Declare &d) noexcept {
+        d.pin(in1, "in1");
+        d.pin(in2, "in2");
+        d.pin(select, "select");
+        d.pin(out, "out");
+        d.param(open, "open");
+        d.function<&Blend::update>(this);
+    }
+
+    void update() noexcept {
+        const double wanted = select;
+        const double part = open ? wanted : limit::between(wanted, 0.0, 1.0);
+        out = in1 * part + in2 * (1.0 - part);
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Blend, "blend");

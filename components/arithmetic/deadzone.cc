@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// deadzone: `out` is `center` while `in` is within half of `threshold` of it; beyond, it is in less that
+// half, so that it has no jump. Pins and parameters (center 0, threshold 1 at start) are float.
+#include "components/common/kit.hh"
+
+namespace mw::components {
+
+struct Deadzone {
+    In<double> in;
+    Out<double> out;
+    ParamRw<double> center, threshold;
+
+    void declare(Declare &d) noexcept {
+        d.pin(in, "in");
+        d.pin(out, "out");
+        d.param(center, "center");
+        d.param(threshold, "threshold", 1.0);
+        d.function<&Deadzone::update>(this);
+    }
+
+    void update() noexcept {
+        const double value = in;
+        const double half = threshold / 2.0;
+        const double low = center - half;
+        const double high = center + half;
+        out = value < low ? value + half : (value > high ? value - half : center.get());
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Deadzone, "deadzone");

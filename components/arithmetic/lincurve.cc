@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// lincurve: `out` follows `in` along straight lines between points, up to 16 an instance (`personality=`, 2
+// by default).
+//
+// The points are parameters x-val-NN and y-val-NN, x increasing. Left of the first and right of the last
+// point out stays at theirs. `out-io` is the same value as an I/O pin. All float.
+#include "components/common/kit.hh"
+
+MW_PERSONALITY("points of each instance");
+
+namespace mw::components {
+
+struct Lincurve {
+    static constexpr int MAX_POINTS = 16;
+    int points = 0;
+    In<double> in;
+    Out<double> out;
+    InOut<double> out_io;
+    ParamRw<double> x[MAX_POINTS], y[MAX_POINTS];
+
+    void declare(Declare &d) noexcept {
+        points = personality_number(d, personality[d.index()], 2, MAX_POINTS, "points");
+        d.pin(in, "in");
+        d.pin(out, "out");
+        d.pin(out_io, "out-io");
+        for (int i = 0; i < points; ++i) {
+            param_at(d, x[i], "x-val-%02d", i);
+            param_at(d, y[i], "y-val-%02d", i);
+        }
+        d.function<&Lincurve::update>(this);
+    }
+
+    void update() noexcept {
+        const double value = at(in);
+        out = value;
+        out_io = value;
+    }
+
+  private:
+    double at(double wanted) const noexcept {
+        if (!(wanted > x[0])) {
+            return y[0];
+        }
+        for (int i = 1; i < points; ++i) {
+            if (wanted <= x[i]) {
+                const double part = (wanted - x[i - 1]) / (x[i] - x[i - 1]);
+                return y[i - 1] + part * (y[i] - y[i - 1]);
+            }
+        }
+        return y[points - 1];
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Lincurve, "lincurve");

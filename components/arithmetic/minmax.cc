@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// minmax: `min` and `max` are the least and the largest value of `in` since `reset` (bit) was true; while it
+// is true both follow in. Other pins float; both are 0 at start.
+#include "components/common/kit.hh"
+
+namespace mw::components {
+
+struct Minmax {
+    In<double> in;
+    In<bool> reset;
+    Out<double> max, min;
+
+    void declare(Declare &d) noexcept {
+        d.pin(in, "in");
+        d.pin(reset, "reset");
+        d.pin(max, "max");
+        d.pin(min, "min");
+        d.function<&Minmax::update>(this);
+    }
+
+    void update() noexcept {
+        const double value = in;
+        const bool isReset = reset;
+        if (isReset || value > max) {
+            max = value;
+        }
+        if (isReset || value < min) {
+            min = value;
+        }
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Minmax, "minmax");

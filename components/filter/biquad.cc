@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// biquad: a second-order filter, H(z) = (n0 + n1/z + n2/z^2) / (1 + d1/z + d2/z^2).
+//
+// While `enable` (bit) is false `out` is `in`. When it becomes true, `type` (u32) says where the coefficients
+// come from: 0 the parameters n0 n1 n2 d1 d2 as they are, 1 a low-pass, 2 a notch at `f0` [Hz] with quality
+// `q` (old name Q); with 1 and 2 the filter starts from rest. `valid` (bit) is false when that is not
+// possible (f0 must be below half of the sample rate, q from 0.5 to 2): in then passes on. s1, s2: inner
+// state. Coefficients: R. Bristow-Johnson, "Cookbook formulae for audio EQ biquad filter coefficients". The
+// structure is the transposed direct form II.
+#include <cmath>
+#include <numbers>
+
+#include "components/common/kit.hh"
+
+namespace mw::components {
+
+struct Biquad {
+    In<double> in, f0, q;
+    Out<double> out, s1, s2;
+    In<bool> enable;
+    Out<bool> valid;
+    In<std::uint32_t> type;
+    ParamRw<double> d1, d2, n0, n1, n2;
+    bool wasEnabled = false;
+
+    void declare(Declare &d) noexcept;
+    void update(long period_ns) noexcept;
+
+  private:
+    bool design(double period_s) noexcept;
+};
+
+void Biquad::declare(Declare &d) noexcept {
+    d.pin(in, "in");
+    d.pin(out, "out");
+    d.pin(enable, "enable");
+    d.pin(valid, "valid");
+    d.pin(type, "type");
+    d.pin(f0, "f0", 250.0);
+    legacy_pin(d, q, "q", "Q", 0.7071);
+    d.pin(s1, "s1");
+    d.pin(s2, "s2");
+    d.param(d1, "d1");
+    d.param(d2, "d2");
+    d.param(n0, "n0", 1.0);
+    d.param(n1, "n1");
+    d.param(n2, "n2");
+    d.function<&Biquad::update>(this);
+}
+
+bool Biquad::design(double period_s) noexcept {
+    const std::uint32_t kind = type;
+    if (kind == 0) {
+        return true;
+    }
+    const double quality = q;
+    const double frequency = f0;
+    const bool isPossible =
+        kind <= 2 && quality >= 0.5 && quality <= 2.0 && frequency > 0.0 && frequency * period_s < 0.5;
+    if (!isPossible) {
+        return false;
+    }
+    const double angle = 2.0 * std::numbers::pi * frequency * period_s;
+    const double cosine = std::cos(angle);
+    const double alpha = std::sin(angle) / (2.0 * quality);
+    const double scale = 1.0 / (1.0 + alpha);
+    n0 = kind == 1 ? 0.5 * (1.0 - cosine) * scale : scale;
+    n1 = kind == 1 ? (1.0 - cosine) * scale : -2.0 * cosine * scale;
+    n2 = n0.get();
+    d1 = -2.0 * cosine * scale;
+    d2 = (1.0 - alpha) * scale;
+    s1 = 0.0;
+    s2 = 0.0;
+    return true;
+}
+
+void Biquad::update(long period_ns) noexcept {
+    const double input = in;
+    const bool isEnabled = enable;
+    if (isEnabled && !wasEnabled) {
+        valid = design(seconds(period_ns));
+    }
+    wasEnabled = isEnabled;
+    if (!isEnabled || !valid || !std::isfinite(input)) {
+        out = input;
+        return;
+    }
+    const double filtered = n0 * input + s1;
+    s1 = n1 * input - d1 * filtered + s2;
+    s2 = n2 * input - d2 * filtered;
+    out = filtered;
+}
+
+}  // namespace mw::components
+
+MW_INSTANCES(Biquad, "biquad");

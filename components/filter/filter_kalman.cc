@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// filter_kalman: the Kalman filter of one number. `xk-out` estimates the constant behind the noisy `zk`
+// (float).
+//
+// Parameters (float): `qk`, the variance by which the true value may wander in a period, and `rk`, the
+// variance of the noise (old names Qk, Rk; both 1.17549e-38 at start). `passthrough` (bit) copies zk to
+// xk-out and lets the filter rest; `reset` (bit) is stronger: xk-out is 0 and the filter starts again, with
+// variance 1. `debug` (bit) logs zk and xk-out.
+#include <cmath>
+
+#include "components/common/kit.hh"
+
+namespace mw::components {
+
+struct FilterKalman {
+    In<bool> debug, passthrough, reset;
+    In<double> zk;
+    Out<double> xk_out;
+    ParamRw<double> rk, qk;
+    double estimate = 0.0;
+    double variance = 1.0;
+
+    void declare(Declare &d) noexcept {
+        constexpr double SMALLEST = 1.17549e-38;
+        d.pin(debug, "debug");
+        d.pin(passthrough, "passthrough");
+        d.pin(reset, "reset");
+        d.pin(zk, "zk");
+        d.pin(xk_out, "xk-out");
+        legacy_param(d, rk, "rk", "Rk", SMALLEST);
+        legacy_param(d, qk, "qk", "Qk", SMALLEST);
+        d.function<&FilterKalman::update>(this);
+    }
+
+    void update() noexcept {
+        const double measured = zk;
+        if (reset) {
+            estimate = 0.0;
+            variance = 1.0;
+            xk_out = 0.0;
+        } else if (passthrough) {
+            xk_out = measured;
+        } else if (std::isfinite(measured)) {
+            xk_out = filtered(measured);
+        }
+        if (debug) {
+            rtapi_print_msg(RTAPI_MSG_INFO, "filter_kalman: zk %g xk-out %g", measured, xk_out.get());
+        }
+    }
+
+  private:
+    double filtered(double measured) noexcept {
+        const double predicted = variance + qk;
+        const double total = predicted + rk;
+        const double gain = total > 0.0 ? predicted / total : 1.0;
+        estimate += gain * (measured - estimate);
+        variance = (1.0 - gain) * predicted;
+        return estimate;
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(FilterKalman, "filter_kalman");

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// knob2float: a knob without ends sets a value. While `enable` (bit) is true `out` changes by `scale` (float)
+// for each count of `counts` (s32), held between the parameters `min-out` (0) and `max-out` (1). Counts made
+// while enable is false, and those before the first run, are not looked at.
+#include "components/common/kit.hh"
+#include "components/limit/limit_core.hh"
+
+namespace mw::components {
+
+struct Knob2float {
+    In<std::int32_t> counts;
+    In<bool> enable;
+    In<double> scale;
+    Out<double> out;
+    ParamRw<double> max_out, min_out;
+    std::int32_t last_counts = 0;
+    bool isFirst = true;
+
+    void declare(Declare &d) noexcept {
+        d.pin(counts, "counts");
+        d.pin(enable, "enable");
+        d.pin(scale, "scale");
+        d.pin(out, "out");
+        d.param(max_out, "max-out", 1.0);
+        d.param(min_out, "min-out");
+        d.function<&Knob2float::update>(this);
+    }
+
+    void update() noexcept {
+        const std::int32_t now = counts;
+        // Through unsigned, so that a wrap of the counter is one step.
+        const std::int32_t turned = isFirst
+                                        ? 0
+                                        : static_cast<std::int32_t>(static_cast<std::uint32_t>(now) -
+                                                                    static_cast<std::uint32_t>(last_counts));
+        isFirst = false;
+        last_counts = now;
+        if (enable) {
+            out = limit::between(out + turned * scale, min_out, max_out);
+        }
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Knob2float, "knob2float");

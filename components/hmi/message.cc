@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// message: shows a text to the operator when a pin changes. `messages="One,Two"` gives the texts, one an
+// instance.
+//
+// `trigger` (bit): its rising edge, or falling edge while the parameter `edge` (bit, true at start) is false,
+// shows the text; a rising edge of `force` (bit) shows it again while trigger is in that state. Texts go out
+// as errors of the realtime log, which user interfaces show.
+#include "components/common/kit.hh"
+
+static char *messages[mw::components::MANY];
+RTAPI_MP_ARRAY_STRING(messages, mw::components::MANY, "text of each instance");
+
+namespace mw::components {
+
+struct Message {
+    In<bool> trigger, force;
+    ParamRw<bool> edge;
+    const char *text = nullptr;
+    bool wasActive = false;
+    bool last_force = false;
+    bool isFirst = true;
+
+    void declare(Declare &d) noexcept {
+        text = messages[d.index()];
+        if (text == nullptr || text[0] == '\0') {
+            rtapi_print_msg(RTAPI_MSG_ERR, "message: messages= has no text for instance %d", d.index());
+            d.keep(-EINVAL);
+            return;
+        }
+        d.pin(trigger, "trigger");
+        d.pin(force, "force");
+        d.param(edge, "edge", true);
+        d.function<&Message::update>(this);
+    }
+
+    void update() noexcept {
+        const bool isActive = trigger == edge;
+        const bool isForced = force;
+        const bool isNew = isActive && !wasActive && !isFirst;
+        const bool isAgain = isActive && isForced && !last_force;
+        if (isNew || isAgain) {
+            rtapi_print_msg(RTAPI_MSG_ERR, "%s\n", text);
+        }
+        wasActive = isActive;
+        last_force = isForced;
+        isFirst = false;
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Message, "message");

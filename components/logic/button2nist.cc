@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// toggle2nist, momentary2nist: one button for something with inputs to switch on and off. A press of `in`
+// (bit) makes `on` true until `is-on` tells that it is on; a press while is-on is true makes `off` true until
+// is-on is false. All pins bit. Presses in between are ignored. Built twice (BUTTON_MODULE).
+#include "components/common/kit.hh"
+
+namespace mw::components {
+
+struct Button2nist {
+    In<bool> in, is_on;
+    Out<bool> on, off;
+    bool last_in = false;
+
+    void declare(Declare &d) noexcept {
+        d.pin(in, "in");
+        d.pin(is_on, "is-on");
+        d.pin(on, "on");
+        d.pin(off, "off");
+        d.function<&Button2nist::update>(this);
+    }
+
+    void update() noexcept {
+        const bool input = in;
+        const bool isOn = is_on;
+        const bool isPressed = input && !last_in;
+        last_in = input;
+        const bool isBusy = on || off;
+        on = !isOn && (on || (isPressed && !isBusy));
+        off = isOn && (off || (isPressed && !isBusy));
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Button2nist, BUTTON_MODULE);

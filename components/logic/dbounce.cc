@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// dbounce: `out` follows `in` (bit) when that has held still: a counter goes up while in is true and down
+// while it is false; at `delay` (u32, 5 at start) [periods] out becomes true, at 0 false.
+#include "components/common/kit.hh"
+#include "components/logic/debouncer.hh"
+
+namespace mw::components {
+
+struct Dbounce {
+    In<bool> in;
+    Out<bool> out;
+    In<std::uint32_t> delay;
+    logic::Debouncer debouncer;
+
+    void declare(Declare &d) noexcept {
+        d.pin(in, "in");
+        d.pin(out, "out");
+        d.pin(delay, "delay", 5U);
+        d.function<&Dbounce::update>(this);
+    }
+    void update() noexcept { out = debouncer.run(in, static_cast<long>(delay.get())); }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Dbounce, "dbounce");

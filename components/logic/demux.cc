@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// demux: makes true the one of the outputs `out-NN` (bit) whose number is selected; `personality=` gives the
+// number of outputs, up to 32 (the default).
+//
+// The number is `sel-u32` (u32) plus the binary number of sel-bit-00 to sel-bit-04 (bit); one that is too
+// large selects the last output. With the parameter `bargraph` (bit) as many outputs as the number are true.
+#include "components/common/kit.hh"
+
+MW_PERSONALITY("outputs of each instance");
+
+namespace mw::components {
+
+struct Demux {
+    static constexpr int MAX_OUTPUTS = 32;
+    static constexpr int SELECT_BITS = 5;
+    int outputs = 0;
+    In<bool> sel_bit[SELECT_BITS];
+    In<std::uint32_t> sel_u32;
+    Out<bool> out[MAX_OUTPUTS];
+    ParamRw<bool> bargraph;
+
+    void declare(Declare &d) noexcept {
+        outputs = personality_number(d, personality[d.index()], MAX_OUTPUTS, MAX_OUTPUTS, "outputs");
+        for (int i = 0; i < SELECT_BITS; ++i) {
+            pin_at(d, sel_bit[i], "sel-bit-%02d", i);
+        }
+        d.pin(sel_u32, "sel-u32");
+        for (int i = 0; i < outputs; ++i) {
+            pin_at(d, out[i], "out-%02d", i);
+        }
+        d.param(bargraph, "bargraph");
+        d.function<&Demux::update>(this);
+    }
+
+    void update() noexcept {
+        std::uint64_t selected = sel_u32;
+        for (int i = 0; i < SELECT_BITS; ++i) {
+            selected += sel_bit[i] ? 1U << i : 0U;
+        }
+        const std::uint64_t last = static_cast<std::uint64_t>(outputs - 1);
+        const std::uint64_t chosen = selected < last ? selected : last;
+        const bool isBar = bargraph;
+        for (int i = 0; i < outputs; ++i) {
+            const std::uint64_t number = static_cast<std::uint64_t>(i);
+            out[i] = isBar ? number < selected : number == chosen;
+        }
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Demux, "demux");

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// maj3: `out` is what at least two of `in1`, `in2`, `in3` are, inverted while the parameter `invert` is true.
+#include "components/common/kit.hh"
+
+namespace mw::components {
+
+struct Maj3 {
+    In<bool> in1, in2, in3;
+    Out<bool> out;
+    ParamRw<bool> invert;
+
+    void declare(Declare &d) noexcept {
+        d.pin(in1, "in1");
+        d.pin(in2, "in2");
+        d.pin(in3, "in3");
+        d.pin(out, "out");
+        d.param(invert, "invert");
+        d.function<&Maj3::update>(this);
+    }
+
+    void update() noexcept {
+        const int trues = (in1 ? 1 : 0) + (in2 ? 1 : 0) + (in3 ? 1 : 0);
+        out = (trues >= 2) != invert.get();
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Maj3, "maj3");

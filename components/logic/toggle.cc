@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// toggle: each press of the button `in` (bit) changes `out` (bit, I/O), which others may set too. The
+// parameter `debounce` (u32, 2 at start) is how long the button must be held or released [periods].
+#include "components/common/kit.hh"
+#include "components/logic/debouncer.hh"
+
+namespace mw::components {
+
+struct Toggle {
+    In<bool> in;
+    InOut<bool> out;
+    ParamRw<std::uint32_t> debounce;
+    logic::Debouncer debouncer;
+    bool wasPressed = false;
+
+    void declare(Declare &d) noexcept {
+        d.pin(in, "in");
+        d.pin(out, "out");
+        d.param(debounce, "debounce", 2U);
+        d.function<&Toggle::update>(this);
+    }
+
+    void update() noexcept {
+        const bool isPressed = debouncer.run(in, static_cast<long>(debounce.get()));
+        if (isPressed && !wasPressed) {
+            out = !out;
+        }
+        wasPressed = isPressed;
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Toggle, "toggle");

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// updown: `count` (s32) goes up by one at each rising edge of `countup` (bit), down at each of `countdown`;
+// it is 0 while `reset` (bit) is true.
+//
+// Parameters: `clamp` (bit) holds count between `min` (s32, 0) and `max` (s32, 2147483647); `wrap` (bit,
+// stronger than clamp) goes on at the other end instead. Without both it runs over the ends of its type.
+#include "components/common/kit.hh"
+
+namespace mw::components {
+
+struct Updown {
+    In<bool> countup, countdown, reset;
+    Out<std::int32_t> count;
+    ParamRw<bool> clamp, wrap;
+    ParamRw<std::int32_t> max, min;
+    bool last_up = false;
+    bool last_down = false;
+
+    void declare(Declare &d) noexcept {
+        d.pin(countup, "countup");
+        d.pin(countdown, "countdown");
+        d.pin(reset, "reset");
+        d.pin(count, "count");
+        d.param(clamp, "clamp");
+        d.param(wrap, "wrap");
+        d.param(max, "max", 0x7fffffff);
+        d.param(min, "min");
+        d.function<&Updown::update>(this);
+    }
+
+    void update() noexcept {
+        const bool isUp = countup;
+        const bool isDown = countdown;
+        std::int64_t number = count;
+        number += isUp && !last_up ? 1 : 0;
+        number -= isDown && !last_down ? 1 : 0;
+        last_up = isUp;
+        last_down = isDown;
+        count = static_cast<std::int32_t>(bounded(reset ? 0 : number));
+    }
+
+  private:
+    std::int64_t bounded(std::int64_t number) const noexcept {
+        if (wrap) {
+            return number > max ? min.get() : (number < min ? max.get() : number);
+        }
+        if (clamp) {
+            return number > max ? max.get() : (number < min ? min.get() : number);
+        }
+        return number;
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Updown, "updown");

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Commutation of three-phase motors, without HAL. Angles are electrical, in turns from 0 to 1. Realtime-safe.
+#pragma once
+
+#include <cstdint>
+
+namespace mw::bldc {
+
+constexpr int PATTERNS = 48;
+constexpr int SECTORS = 6;
+
+/// The part of `turns` above the whole number below; 0 for what is not a number.
+double fraction(double turns) noexcept;
+
+/// The hall sensors (H1 is bit 2, H3 bit 0) in sector `sector` of commutation pattern `pattern`. The sectors
+/// are, by source and sink, B-A, C-A, C-B, A-B, A-C, B-C.
+unsigned hall_of_sector(int pattern, int sector) noexcept;
+
+/// The sector with those hall sensors, or -1.
+int sector_of_hall(int pattern, unsigned hall) noexcept;
+
+/// The sector of a field at the angle `phase`.
+int sector_of_phase(double phase) noexcept;
+
+struct Phases {
+    double a = 0.0;
+    double b = 0.0;
+    double c = 0.0;
+};
+
+/// Sine-shaped phases of a field at `phase`.
+Phases sine(double phase, double amplitude) noexcept;
+/// One phase is source, one sink, one off.
+Phases trapezoid(int sector, double amplitude) noexcept;
+
+}  // namespace mw::bldc

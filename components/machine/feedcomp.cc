@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// feedcomp: `out` is `in` times `vel` / `feed` while `enable` (bit) is true, else in; as for a laser's power.
+// Pins float; feed is a parameter. A feed of 0 gives 0.
+#include <cmath>
+
+#include "components/common/kit.hh"
+
+namespace mw::components {
+
+struct Feedcomp {
+    Out<double> out;
+    In<double> in;
+    In<bool> enable;
+    In<double> vel;
+    ParamRw<double> feed;
+
+    void declare(Declare &d) noexcept {
+        d.pin(out, "out");
+        d.pin(in, "in");
+        d.pin(enable, "enable");
+        d.pin(vel, "vel");
+        d.param(feed, "feed");
+        d.function<&Feedcomp::update>(this);
+    }
+
+    void update() noexcept {
+        const double value = in;
+        const double scaled = value * (vel / feed);
+        out = !enable ? value : (std::isfinite(scaled) ? scaled : 0.0);
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Feedcomp, "feedcomp");

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// laserpower: scales a laser's power with the speed of the cut, so that corners do not burn.
+//
+// While `enable` (bit) is true `out` is `power` times the part that `current-vel` is of `requested-vel` (at
+// most 1; 1 when requested-vel is 0), at least `min-fraction` of it, held between `min-power` (0) and
+// `max-power` (100). Nearer than `reduce-distance` (0) to the end of a move - `distance-to-go` - it is scaled
+// down to min-fraction too. While enable is false, or an input is not a number, out is 0. All others float.
+#include <cmath>
+
+#include "components/common/kit.hh"
+#include "components/limit/limit_core.hh"
+
+namespace mw::components {
+
+struct Laserpower {
+    In<bool> enable;
+    In<double> power, current_vel, requested_vel, distance_to_go, reduce_distance;
+    In<double> min_fraction, min_power, max_power;
+    Out<double> out;
+
+    void declare(Declare &d) noexcept {
+        d.pin(enable, "enable");
+        d.pin(power, "power");
+        d.pin(current_vel, "current-vel");
+        d.pin(requested_vel, "requested-vel");
+        d.pin(distance_to_go, "distance-to-go");
+        d.pin(reduce_distance, "reduce-distance");
+        d.pin(min_fraction, "min-fraction");
+        d.pin(min_power, "min-power");
+        d.pin(max_power, "max-power", 100.0);
+        d.pin(out, "out");
+        d.function<&Laserpower::update>(this);
+    }
+
+    void update() noexcept {
+        const double wanted_vel = std::fabs(requested_vel);
+        double fraction = wanted_vel > 0.0 ? std::fabs(current_vel) / wanted_vel : 1.0;
+        const double near = reduce_distance;
+        if (near > 0.0 && distance_to_go < near) {
+            fraction *= std::fabs(distance_to_go) / near;
+        }
+        const double bounded = limit::between(fraction, min_fraction, 1.0);
+        const double wanted = limit::between(power * bounded, min_power, max_power);
+        const bool isPossible = std::isfinite(wanted) && std::isfinite(fraction);
+        out = enable && isPossible ? wanted : 0.0;
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(Laserpower, "laserpower");

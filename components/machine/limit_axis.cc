@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// limit_axis: limits of one axis that depend on the position of another. `personality=` gives the number of
+// ranges, 1 to 10 (default 2).
+//
+// `fb` is the position that chooses; range NN is the first one with `enable-NN` (bit, true at start) for
+// which it is between `min-range-NN` and `max-range-NN`, both included. `min-output` and `max-output` are
+// then `min-limit-NN` and `max-limit-NN`, and `current-range` (u32) is NN. With `sticky-NN` (bit) the range
+// in force is kept while fb is in it, though an earlier one matches too. When no range matches, or fb is not
+// a number, `error-no-range` (bit) is true and the limits stay, as they do when the chosen ones are not
+// usable (max below min). Float where not said.
+#include "components/common/kit.hh"
+
+MW_PERSONALITY("ranges of each instance");
+
+namespace mw::components {
+
+struct AxisRange {
+    In<double> min_limit, max_limit, min_range, max_range;
+    In<bool> enable, sticky;
+};
+
+struct LimitAxis {
+    static constexpr int MAX_RANGES = 10;
+    int ranges = 0;
+    Out<bool> error_no_range;
+    Out<double> min_output, max_output;
+    In<double> fb;
+    Out<std::uint32_t> current_range;
+    AxisRange range[MAX_RANGES];
+    int chosen = -1;
+
+    void declare(Declare &d) noexcept {
+        ranges = personality_number(d, personality[d.index()], 2, MAX_RANGES, "ranges");
+        d.pin(error_no_range, "error-no-range");
+        d.pin(min_output, "min-output");
+        d.pin(max_output, "max-output");
+        d.pin(fb, "fb");
+        d.pin(current_range, "current-range");
+        for (int i = 0; i < ranges; ++i) {
+            pin_at(d, range[i].min_limit, "min-limit-%02d", i);
+            pin_at(d, range[i].max_limit, "max-limit-%02d", i);
+            pin_at(d, range[i].min_range, "min-range-%02d", i);
+            pin_at(d, range[i].max_range, "max-range-%02d", i);
+            pin_at(d, range[i].enable, "enable-%02d", i, true);
+            pin_at(d, range[i].sticky, "sticky-%02d", i);
+        }
+        d.function<&LimitAxis::update>(this);
+    }
+
+    void update() noexcept {
+        const double position = fb;
+        int match = -1;
+        if (chosen >= 0 && range[chosen].sticky && isIn(range[chosen], position)) {
+            match = chosen;
+        }
+        for (int i = 0; i < ranges && match < 0; ++i) {
+            match = isIn(range[i], position) ? i : -1;
+        }
+        const bool isUsable = match >= 0 && range[match].min_limit <= range[match].max_limit;
+        error_no_range = !isUsable;
+        if (isUsable) {
+            chosen = match;
+            current_range = static_cast<std::uint32_t>(match);
+            min_output = range[match].min_limit.get();
+            max_output = range[match].max_limit.get();
+        }
+    }
+
+  private:
+    static bool isIn(const AxisRange &tested, double position) noexcept {
+        return tested.enable && tested.min_range <= position && position <= tested.max_range;
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(LimitAxis, "limit_axis");

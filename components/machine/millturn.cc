@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// millturn: kinematics of a machine that mills and turns, with three linear joints X Y Z and one rotary A.
+// Type 0 (mill): joints are the axes X Y Z A. Type 1 (turn): joint 0 is Z, joint 1 is -Y, joint 2 is X, and A
+// is a spindle. Switched through motion.switchkins-type. `millturn.0.fpin` (s32) counts runs of the function
+// millturn.0.fdemo.
+#include "components/common/kit.hh"
+#include "hal/api/kinematics.h"
+
+namespace mw::components {
+
+struct Millturn {
+    Out<std::int32_t> fpin;
+
+    void declare(Declare &d) noexcept {
+        d.pin(fpin, "fpin");
+        d.function<&Millturn::demo>(this, "fdemo");
+    }
+    void demo() noexcept { fpin = static_cast<std::int32_t>(static_cast<std::uint32_t>(fpin.get()) + 1U); }
+};
+
+}  // namespace mw::components
+
+namespace {
+
+enum MillturnType { MILL = 0, TURN = 1 };
+// Written by motion when it switches, in the thread that uses it.
+int current_type = MILL;
+
+}  // namespace
+
+extern "C" {
+
+int kinematicsForward(const double *joint, struct EmcPose *world, const KINEMATICS_FORWARD_FLAGS *,
+                      KINEMATICS_INVERSE_FLAGS *) {
+    const bool isTurn = current_type == TURN;
+    world->tran.x = isTurn ? joint[2] : joint[0];
+    world->tran.y = isTurn ? -joint[1] : joint[1];
+    world->tran.z = isTurn ? joint[0] : joint[2];
+    world->a = joint[3];
+    world->b = world->c = world->u = world->v = world->w = 0.0;
+    return 0;
+}
+
+int kinematicsInverse(const struct EmcPose *world, double *joint, const KINEMATICS_INVERSE_FLAGS *,
+                      KINEMATICS_FORWARD_FLAGS *) {
+    const bool isTurn = current_type == TURN;
+    joint[0] = isTurn ? world->tran.z : world->tran.x;
+    joint[1] = isTurn ? -world->tran.y : world->tran.y;
+    joint[2] = isTurn ? world->tran.x : world->tran.z;
+    joint[3] = world->a;
+    return 0;
+}
+
+int kinematicsHome(struct EmcPose *world, double *joint, KINEMATICS_FORWARD_FLAGS *fflags,
+                   KINEMATICS_INVERSE_FLAGS *iflags) {
+    return kinematicsForward(joint, world, fflags, iflags);
+}
+
+KINEMATICS_TYPE kinematicsType(void) {
+    return KINEMATICS_BOTH;
+}
+
+int kinematicsSwitchable(void) {
+    return 1;
+}
+
+int kinematicsSwitch(int switchkins_type) {
+    if (switchkins_type != MILL && switchkins_type != TURN) {
+        return -1;
+    }
+    current_type = switchkins_type;
+    return 0;
+}
+
+EXPORT_SYMBOL(kinematicsSwitchable);
+EXPORT_SYMBOL(kinematicsSwitch);
+EXPORT_SYMBOL(kinematicsForward);
+EXPORT_SYMBOL(kinematicsInverse);
+EXPORT_SYMBOL(kinematicsType);
+}
+
+MW_INSTANCES(Millturn, "millturn");

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// spindle: ramps for a spindle drive with forward and reverse inputs, up to 16 gears (`numgears=`, 1 by
+// default).
+//
+// The speed follows `commanded-speed` [rpm], its size held between the gear's `min` and `max`, with at most
+// `accel` and `decel` [rpm/s]: with `simulate-encoder` (bit) in ramps; else `output` is at most that many rpm
+// [rpm] ahead of `actual-speed` [turns/s]. While `enable` (bit) is false the speed asked for is 0. The manual
+// page tells all pins. A command that is not a number counts as 0.
+#include <cmath>
+
+#include "components/common/kit.hh"
+#include "components/limit/limit_core.hh"
+
+constexpr int MAX_GEARS = 16;
+static int numgears[mw::components::MANY];
+RTAPI_MP_ARRAY_INT(numgears, mw::components::MANY, "gears of each instance");
+
+namespace mw::components {
+
+struct Gear {
+    In<double> scale, min, max, accel, decel, speed_tolerance, zero_tolerance, offset;
+    In<bool> select;
+};
+
+struct Spindle {
+    int gears = 1;
+    Gear gear[MAX_GEARS];
+    In<std::uint32_t> select_gear;
+    In<double> commanded_speed, actual_speed, spindle_lpf;
+    In<bool> simulate_encoder, enable;
+    Out<double> spindle_rpm, spindle_rpm_abs, output;
+    Out<std::uint32_t> current_gear;
+    Out<bool> at_speed, forward, reverse, brake, zero_speed, limited;
+    double ramp_rpm = 0.0;
+    double smooth_rpm = 0.0;
+
+    void declare(Declare &d) noexcept;
+    void declare_gear(Declare &d, int number) noexcept;
+    void update(long period_ns) noexcept;
+
+  private:
+    std::uint32_t chosen_gear() const noexcept;
+    double target(const Gear &used) noexcept;
+    void show(double rpm, double wanted, const Gear &used, double dt) noexcept;
+};
+
+void Spindle::declare(Declare &d) noexcept {
+    gears = numgears[d.index()] == 0 ? 1 : numgears[d.index()];
+    if (gears < 1 || gears > MAX_GEARS) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "spindle: numgears=%d, possible are 1 to %d", gears, MAX_GEARS);
+        d.keep(-EINVAL);
+        return;
+    }
+    d.pin(select_gear, "select-gear");
+    d.pin(commanded_speed, "commanded-speed");
+    d.pin(actual_speed, "actual-speed");
+    d.pin(simulate_encoder, "simulate-encoder");
+    d.pin(enable, "enable");
+    d.pin(spindle_lpf, "spindle-lpf");
+    d.pin(spindle_rpm, "spindle-rpm");
+    d.pin(spindle_rpm_abs, "spindle-rpm-abs");
+    d.pin(output, "output");
+    d.pin(current_gear, "current-gear");
+    d.pin(at_speed, "at-speed");
+    d.pin(forward, "forward");
+    d.pin(reverse, "reverse");
+    d.pin(brake, "brake");
+    d.pin(zero_speed, "zero-speed");
+    d.pin(limited, "limited");
+    for (int i = 0; i < gears; ++i) {
+        declare_gear(d, i);
+    }
+    d.function<&Spindle::update>(this);
+}
+
+void Spindle::declare_gear(Declare &d, int number) noexcept {
+    Gear &made = gear[number];
+    pin_at(d, made.scale, "scale.%d", number, 1.0);
+    pin_at(d, made.min, "min.%d", number);
+    pin_at(d, made.max, "max.%d", number);
+    pin_at(d, made.accel, "accel.%d", number);
+    pin_at(d, made.decel, "decel.%d", number);
+    pin_at(d, made.speed_tolerance, "speed-tolerance.%d", number, 20.0);
+    pin_at(d, made.zero_tolerance, "zero-tolerance.%d", number, 20.0);
+    pin_at(d, made.offset, "offset.%d", number);
+    pin_at(d, made.select, "select.%d", number, gears == 1);
+}
+
+/// The highest one selected by a bit, else the number of select-gear.
+std::uint32_t Spindle::chosen_gear() const noexcept {
+    for (int i = gears - 1; i > 0; --i) {
+        if (gear[i].select) {
+            return static_cast<std::uint32_t>(i);
+        }
+    }
+    const std::uint32_t wanted = select_gear;
+    return wanted < static_cast<std::uint32_t>(gears) ? wanted : 0U;
+}
+
+/// The speed asked for, within the gear's limits [rpm].
+double Spindle::target(const Gear &used) noexcept {
+    const double command = commanded_speed;
+    const double size = std::isfinite(command) ? std::fabs(command) : 0.0;
+    if (!enable || size == 0.0) {
+        limited = false;
+        return 0.0;
+    }
+    const double held = limit::between(size, used.min, used.max);
+    limited = held != size;
+    return std::copysign(held, command);
+}
+
+void Spindle::show(double rpm, double wanted, const Gear &used, double dt) noexcept {
+    spindle_rpm = rpm;
+    const double size = std::fabs(rpm);
+    const bool isAtSpeed = std::fabs(rpm - wanted) < used.speed_tolerance;
+    const double filter = spindle_lpf * dt;
+    const bool isFiltered = isAtSpeed && filter > 0.0 && filter < 1.0 && std::isfinite(smooth_rpm);
+    smooth_rpm = isFiltered ? smooth_rpm + (size - smooth_rpm) * filter : size;
+    spindle_rpm_abs = smooth_rpm;
+    at_speed = isAtSpeed;
+    zero_speed = size < used.zero_tolerance;
+}
+
+void Spindle::update(long period_ns) noexcept {
+    const double dt = seconds(period_ns);
+    const std::uint32_t number = chosen_gear();
+    const Gear &used = gear[number];
+    current_gear = number;
+    const double wanted = target(used);
+    const bool isSimulated = simulate_encoder;
+    const double measured = actual_speed * 60.0;
+    const double base = isSimulated || !std::isfinite(measured) ? ramp_rpm : measured;
+    // Away from zero with accel, towards it with decel, and through zero in two steps.
+    const double unit = isSimulated ? dt : 1.0;
+    const double up = std::fmax(0.0, used.accel) * unit;
+    const double down = std::fmax(0.0, used.decel) * unit;
+    const double sign = base < 0.0 || (base == 0.0 && wanted < 0.0) ? -1.0 : 1.0;
+    const double size = std::fabs(base);
+    const double goal = wanted * sign;
+    const bool isSlowing = goal < size;
+    const double next = isSlowing ? std::fmax(std::fmax(goal, 0.0), size - down) : std::fmin(goal, size + up);
+    ramp_rpm = sign * next;
+    brake = isSlowing;
+    forward = ramp_rpm > 0.0;
+    reverse = ramp_rpm < 0.0;
+    output = (std::fabs(ramp_rpm) + used.offset) * used.scale;
+    const double asked = enable ? commanded_speed.get() : 0.0;
+    show(isSimulated ? ramp_rpm : measured, asked, used, dt);
+}
+
+}  // namespace mw::components
+
+MW_INSTANCES(Spindle, "spindle");

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What multiplexers and demultiplexers of any type and size share: their config= and copying between types.
+#pragma once
+
+#include "components/common/kit.hh"
+#include "components/conv/conv_core.hh"
+
+namespace mw::components {
+
+constexpr int MAX_SIZE = 1024;
+constexpr int MAX_SELECT_BITS = 10;
+
+struct TypeLetter {
+    char letter;
+    hal_type_t type;
+    const char *name;
+};
+constexpr TypeLetter TYPES[] = {{'b', HAL_BIT, "bit"}, {'f', HAL_FLOAT, "float"}, {'s', HAL_S32, "s32"},
+                                {'u', HAL_U32, "u32"}, {'l', HAL_S64, "s64"},     {'k', HAL_U64, "u64"}};
+
+struct Config {
+    const TypeLetter *from = nullptr;
+    const TypeLetter *to = nullptr;
+    int size = 0;
+
+    /// Reads an item of config=; false when it is none.
+    bool parse(const char *text) noexcept {
+        for (; *text != '\0'; ++text) {
+            if (*text >= '0' && *text <= '9') {
+                size = 10 * size + (*text - '0');
+                if (size > MAX_SIZE) {
+                    return false;
+                }
+                continue;
+            }
+            const char letter = static_cast<char>(*text | 0x20);
+            const TypeLetter *found = nullptr;
+            for (const TypeLetter &type : TYPES) {
+                found = type.letter == letter ? &type : found;
+            }
+            if (found == nullptr || to != nullptr) {
+                return false;
+            }
+            (from == nullptr ? from : to) = found;
+        }
+        return to != nullptr && size >= 2;
+    }
+};
+
+/// Copies a value to one of another type; what does not fit becomes the nearest value.
+template <class From>
+void copy_value(From value, hal_type_t to, hal_data_u *output) noexcept {
+    switch (to) {
+    case HAL_BIT: output->b = conv::convert<bool>(value, true).value; break;
+    case HAL_FLOAT: output->f = conv::convert<double>(value, true).value; break;
+    case HAL_S32: output->s = conv::convert<std::int32_t>(value, true).value; break;
+    case HAL_U32: output->u = conv::convert<std::uint32_t>(value, true).value; break;
+    case HAL_S64: output->ls = conv::convert<std::int64_t>(value, true).value; break;
+    default: output->lu = conv::convert<std::uint64_t>(value, true).value; break;
+    }
+}
+
+/// Copies the value of a pin.
+inline void copy_pin(const hal_data_u *input, hal_type_t from, hal_type_t to, hal_data_u *output) noexcept {
+    switch (from) {
+    case HAL_BIT: copy_value(static_cast<bool>(input->b), to, output); break;
+    case HAL_FLOAT: copy_value(static_cast<double>(input->f), to, output); break;
+    case HAL_S32: copy_value(static_cast<std::int32_t>(input->s), to, output); break;
+    case HAL_U32: copy_value(static_cast<std::uint32_t>(input->u), to, output); break;
+    case HAL_S64: copy_value(static_cast<std::int64_t>(input->ls), to, output); break;
+    default: copy_value(static_cast<std::uint64_t>(input->lu), to, output); break;
+    }
+}
+
+}  // namespace mw::components

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// sim_axis_hardware: home and limit switches of the axes X X2 Y Y2 Z A U V, from their positions. Function
+// sim-axis-hardware.N.update.
+//
+// For each axis, here x (old names have its letter in upper case and no hyphen behind it, as Xcurrent-pos;
+// all pins float where not said): inputs x-current-pos; x-homesw-pos (1) and x-homesw-hyst (0.025), the home
+// switch is true within half of that; x-maxsw-upper, x-maxsw-lower, x-minsw-upper, x-minsw-lower: between
+// which positions the limit switches are true; x-homing (bit). `limit-offset` (0.01) is added to
+// x-maxsw-lower and subtracted from x-minsw-upper. Outputs (bit): x-homesw-out, x-maxsw-out, x-minsw-out;
+// x-bothsw-out one of the limits, but not while homing; x-maxsw-homesw-out, x-minsw-homesw-out,
+// x-bothsw-homesw-out with the home switch too. Over all axes: limitsw-all (any bothsw), homesw-all (any home
+// switch of an axis that homes), limitsw-homesw-all.
+#include <cmath>
+
+#include "components/common/kit.hh"
+
+namespace mw::components {
+
+constexpr const char *AXES[] = {"X", "X2", "Y", "Y2", "Z", "A", "U", "V"};
+constexpr int AXIS_COUNT = sizeof AXES / sizeof AXES[0];
+
+struct SimAxis {
+    In<double> current_pos, homesw_pos, maxsw_upper, maxsw_lower, minsw_upper, minsw_lower, homesw_hyst;
+    In<bool> homing;
+    Out<bool> homesw_out, maxsw_out, minsw_out, bothsw_out;
+    Out<bool> maxsw_homesw_out, minsw_homesw_out, bothsw_homesw_out;
+
+    void declare(Declare &d, const char *axis) noexcept {
+        pin(d, current_pos, axis, "current-pos");
+        pin(d, homesw_pos, axis, "homesw-pos", 1.0);
+        pin(d, maxsw_upper, axis, "maxsw-upper");
+        pin(d, maxsw_lower, axis, "maxsw-lower");
+        pin(d, minsw_upper, axis, "minsw-upper");
+        pin(d, minsw_lower, axis, "minsw-lower");
+        pin(d, homesw_hyst, axis, "homesw-hyst", 0.025);
+        pin(d, homing, axis, "homing");
+        pin(d, homesw_out, axis, "homesw-out");
+        pin(d, maxsw_out, axis, "maxsw-out");
+        pin(d, minsw_out, axis, "minsw-out");
+        pin(d, bothsw_out, axis, "bothsw-out");
+        pin(d, maxsw_homesw_out, axis, "maxsw-homesw-out");
+        pin(d, minsw_homesw_out, axis, "minsw-homesw-out");
+        pin(d, bothsw_homesw_out, axis, "bothsw-homesw-out");
+    }
+
+    void update(double limit_offset, bool isHoming) noexcept {
+        const double at = current_pos;
+        const bool isHome = std::fabs(at - homesw_pos) <= homesw_hyst / 2.0;
+        const bool isMax = maxsw_lower + limit_offset < at && at < maxsw_upper;
+        const bool isMin = minsw_lower < at && at < minsw_upper - limit_offset;
+        const bool isLimit = (isMax || isMin) && !isHoming;
+        homesw_out = isHome;
+        maxsw_out = isMax;
+        minsw_out = isMin;
+        bothsw_out = isLimit;
+        maxsw_homesw_out = isMax || isHome;
+        minsw_homesw_out = isMin || isHome;
+        bothsw_homesw_out = isLimit || isHome;
+    }
+
+  private:
+    template <class P>
+    static void pin(Declare &d, P &made, const char *axis, const char *what,
+                    typename P::Value start = {}) noexcept {
+        char name[32];
+        char legacy[32];
+        rtapi_snprintf(legacy, sizeof legacy, "%s%s", axis, what);
+        rtapi_snprintf(name, sizeof name, "%c%s-%s", axis[0] | 0x20, axis + 1, what);
+        legacy_pin(d, made, name, legacy, start);
+    }
+};
+
+struct SimAxisHardware {
+    SimAxis axis[AXIS_COUNT];
+    Out<bool> homesw_all, limitsw_all, limitsw_homesw_all;
+    In<double> limit_offset;
+
+    void declare(Declare &d) noexcept {
+        for (int i = 0; i < AXIS_COUNT; ++i) {
+            axis[i].declare(d, AXES[i]);
+        }
+        d.pin(homesw_all, "homesw-all");
+        d.pin(limitsw_all, "limitsw-all");
+        d.pin(limitsw_homesw_all, "limitsw-homesw-all");
+        d.pin(limit_offset, "limit-offset", 0.01);
+        d.function<&SimAxisHardware::update>(this, "update");
+    }
+
+    void update() noexcept {
+        bool isHoming = false;
+        for (const SimAxis &each : axis) {
+            isHoming = isHoming || each.homing;
+        }
+        bool isHome = false;
+        bool isLimit = false;
+        const double offset = limit_offset;
+        for (SimAxis &each : axis) {
+            each.update(offset, isHoming);
+            isHome = isHome || (isHoming && each.homesw_out);
+            isLimit = isLimit || each.bothsw_out;
+        }
+        homesw_all = isHome;
+        limitsw_all = isLimit;
+        limitsw_homesw_all = isHome || isLimit;
+    }
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(SimAxisHardware, "sim_axis_hardware");

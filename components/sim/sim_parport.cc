@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// sim_parport: the pins of a parallel port without the port. Load it with names=parport.0.
+//
+// Function N.read: `pin-NN-in` is `pin-NN-in-fake` and `pin-NN-in-not` its inverse. N.write:
+// `pin-NN-out-fake` is `pin-NN-out`, inverted while the parameter `pin-NN-out-invert` is true. N.reset,
+// `reset-time` and `pin-NN-out-reset` have no effect. All pins of inputs and outputs are there, whatever the
+// direction of the port. All bit but reset-time.
+#include "components/common/kit.hh"
+
+namespace mw::components {
+
+constexpr int OUTPUT_NUMBERS[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 14, 16, 17};
+constexpr int INPUT_NUMBERS[] = {2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 15};
+constexpr int OUTPUTS = sizeof OUTPUT_NUMBERS / sizeof OUTPUT_NUMBERS[0];
+constexpr int INPUTS = sizeof INPUT_NUMBERS / sizeof INPUT_NUMBERS[0];
+
+struct SimParport {
+    In<bool> out[OUTPUTS];
+    Out<bool> out_fake[OUTPUTS];
+    ParamRw<bool> out_invert[OUTPUTS], out_reset[OUTPUTS];
+    Out<bool> in[INPUTS], in_not[INPUTS];
+    In<bool> in_fake[INPUTS];
+    In<double> reset_time;
+
+    void declare(Declare &d) noexcept {
+        for (int i = 0; i < OUTPUTS; ++i) {
+            pin_at(d, out[i], "pin-%02d-out", OUTPUT_NUMBERS[i]);
+            pin_at(d, out_fake[i], "pin-%02d-out-fake", OUTPUT_NUMBERS[i]);
+            param_at(d, out_invert[i], "pin-%02d-out-invert", OUTPUT_NUMBERS[i]);
+            param_at(d, out_reset[i], "pin-%02d-out-reset", OUTPUT_NUMBERS[i]);
+        }
+        for (int i = 0; i < INPUTS; ++i) {
+            pin_at(d, in[i], "pin-%02d-in", INPUT_NUMBERS[i]);
+            pin_at(d, in_fake[i], "pin-%02d-in-fake", INPUT_NUMBERS[i]);
+            pin_at(d, in_not[i], "pin-%02d-in-not", INPUT_NUMBERS[i]);
+        }
+        d.pin(reset_time, "reset-time");
+        d.function<&SimParport::read>(this, "read");
+        d.function<&SimParport::write>(this, "write");
+        d.function<&SimParport::reset>(this, "reset");
+    }
+
+    void read() noexcept {
+        for (int i = 0; i < INPUTS; ++i) {
+            const bool isHigh = in_fake[i];
+            in[i] = isHigh;
+            in_not[i] = !isHigh;
+        }
+    }
+    void write() noexcept {
+        for (int i = 0; i < OUTPUTS; ++i) {
+            out_fake[i] = out[i] != out_invert[i];
+        }
+    }
+    void reset() noexcept {}
+};
+
+}  // namespace mw::components
+
+MW_INSTANCES(SimParport, "sim_parport");

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "base/own_place.hh"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <string_view>
+
+namespace mw {
+
+namespace {
+
+/// Prepends `folder` to a list of folders in the environment unless it begins with it.
+void prepend(const char *variable, const std::string &folder, const char *fallback) {
+    const char *set = std::getenv(variable);
+    const std::string before = set != nullptr ? set : fallback;
+    if (before == folder || before.starts_with(folder + ":")) {
+        return;
+    }
+    ::setenv(variable, (before.empty() ? folder : folder + ":" + before).c_str(), 1);
+}
+
+}  // namespace
+
+std::string program_folder() {
+    char path[4096];
+    const ssize_t length = ::readlink("/proc/self/exe", path, sizeof path);
+    const std::string_view program(path, length > 0 ? static_cast<std::size_t>(length) : 0);
+    const std::size_t slash = program.rfind('/');
+    return slash == std::string_view::npos ? "." : std::string(program.substr(0, slash));
+}
+
+void offer_own_programs() {
+    const std::string here = program_folder();
+    prepend("PATH", here, "/usr/local/bin:/usr/bin:/bin");
+    // In the build folder, and installed.
+    for (const char *modules : {"/../lib/python", "/../lib/millwright/python"}) {
+        if (::access((here + modules + "/hal").c_str(), R_OK) == 0) {
+            prepend("PYTHONPATH", here + modules, "");
+            return;
+        }
+    }
+}
+
+}  // namespace mw

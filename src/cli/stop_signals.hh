@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// SIGINT and SIGTERM as a variable that programs look at.
+#pragma once
+
+#include <csignal>
+
+namespace mw::cli {
+
+inline volatile std::sig_atomic_t stop_requested = 0;
+
+/// From now on both signals set stop_requested. Without SA_RESTART, so that waiting for input ends too.
+inline void catch_stop_signals() {
+    struct sigaction action{};
+    action.sa_handler = [](int) { stop_requested = 1; };
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+}
+
+}  // namespace mw::cli

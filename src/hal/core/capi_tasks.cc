@@ -1,0 +1,444 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// rtapi.h: tasks, semaphores, queues of bytes.
+#include <pthread.h>
+#include <sched.h>
+#include <semaphore.h>
+#include <time.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "hal/core/detail/capi.hh"
+#include "rtapi/realtime_scheduler.hh"
+
+using namespace mw;
+using namespace mw::hal;
+using namespace mw::hal::detail;
+
+namespace {
+
+constexpr int PRIORITY_HIGHEST = 80;
+constexpr int PRIORITY_LOWEST = 1;
+constexpr std::int64_t NS_PER_S = 1000000000;
+constexpr int DELETE_TIMEOUT_S = 2;
+
+std::int64_t monotonic_ns() noexcept {
+    timespec now{};
+    ::clock_gettime(CLOCK_MONOTONIC, &now);
+    return now.tv_sec * NS_PER_S + now.tv_nsec;
+}
+
+struct Task {
+    int id = 0;
+    void (*code)(void *) = nullptr;
+    void *argument = nullptr;
+    int priority = PRIORITY_LOWEST;
+    std::size_t stack_size = 0;
+    Hal *hal = nullptr;
+    std::int64_t period_ns = 0;  ///< 0: free-running
+    std::int64_t next_ns = 0;    ///< of the task's thread
+    pthread_t thread{};
+    bool isStarted = false;
+    std::mutex mutex;
+    pthread_cond_t changed = PTHREAD_COND_INITIALIZER;
+    // Released by whoever asks, acquired by the task in rtapi_wait before it acts on it.
+    std::atomic<bool> isPaused{false};
+    std::atomic<bool> isEnding{false};
+};
+
+Task *&own_task() noexcept {
+    thread_local Task *task = nullptr;
+    return task;
+}
+
+/// What the C API numbers, in this process.
+struct Registry {
+    std::mutex mutex;  ///< of making and deleting
+    std::map<int, std::unique_ptr<Task>> tasks;
+    int last_id = 0;
+};
+
+/// A semaphore in a place of its own, so that give and try find it without a lock.
+struct Semaphore {
+    // Released once the rest is filled in; 0: free. An id is its place plus a multiple of SEMAPHORES.
+    std::atomic<int> id{0};
+    const Hal *hal = nullptr;
+    int key = 0;
+    int users = 0;
+    sem_t sem{};
+};
+constexpr int SEMAPHORES = 64;
+
+std::array<Semaphore, SEMAPHORES> &semaphores() {
+    static auto *all = new std::array<Semaphore, SEMAPHORES>;
+    return *all;
+}
+
+Semaphore *find_semaphore(int id) noexcept {
+    if (id <= 0) {
+        return nullptr;
+    }
+    Semaphore &semaphore = semaphores()[static_cast<std::size_t>(id % SEMAPHORES)];
+    return semaphore.id.load(std::memory_order_acquire) == id ? &semaphore : nullptr;
+}
+
+Registry &registry() {
+    // Never destroyed: tasks may outlive main.
+    static auto *the_registry = new Registry;
+    return *the_registry;
+}
+
+Task *find_task(int id) {
+    Registry &all = registry();
+    const std::lock_guard lock(all.mutex);
+    const auto found = all.tasks.find(id);
+    return found == all.tasks.end() ? nullptr : found->second.get();
+}
+
+void *run_task(void *argument) {
+    auto *task = static_cast<Task *>(argument);
+    own_task() = task;
+    const UseInstance use(task->hal);
+    task->code(task->argument);
+    return nullptr;
+}
+
+int start(Task &task, std::int64_t period_ns) {
+    task.period_ns = period_ns;
+    task.next_ns = monotonic_ns() + period_ns;
+    pthread_attr_t attributes;
+    ::pthread_attr_init(&attributes);
+    ::pthread_attr_setstacksize(&attributes, std::max<std::size_t>(task.stack_size, 256 * 1024));
+    const int error = ::pthread_create(&task.thread, &attributes, &run_task, &task);
+    ::pthread_attr_destroy(&attributes);
+    if (error != 0) {
+        return complain(error, fmt::format("task {} does not start: {}", task.id, std::strerror(error)));
+    }
+    task.isStarted = true;
+    if (task.hal->isRealtime()) {
+        sched_param param{};
+        param.sched_priority = task.priority;
+        ::pthread_setschedparam(task.thread, SCHED_FIFO, &param);
+    }
+    return 0;
+}
+
+void wake(Task &task) {
+    const std::lock_guard lock(task.mutex);
+    ::pthread_cond_broadcast(&task.changed);
+}
+
+/// The queue of rtapi_fifo_*, at the start of a block of the instance. Positions run on and wrap at 2^32.
+struct Fifo {
+    std::uint32_t size;  ///< a power of two
+    // Released by the writer after the bytes are in place, acquired by the reader before it copies them.
+    std::atomic<std::uint32_t> in;
+    // Released by the reader after its copy, acquired by the writer before it fills the bytes anew.
+    std::atomic<std::uint32_t> out;
+
+    char *bytes() noexcept { return reinterpret_cast<char *>(this + 1); }
+};
+
+/// Keys of queues must not meet those of rtapi_shmem_new.
+constexpr int FIFO_KEY = 0x52540000;
+
+Fifo *find_fifo(int id) {
+    Hal *hal = current();
+    if (hal == nullptr || id <= 0) {
+        return nullptr;
+    }
+    void *address = hal->impl().segment.at<void>(static_cast<Offset>(id));
+    return hal->impl().segment.contains(address, sizeof(Fifo)) ? static_cast<Fifo *>(address) : nullptr;
+}
+
+}  // namespace
+
+extern "C" {
+
+int rtapi_prio_highest(void) {
+    return PRIORITY_HIGHEST;
+}
+
+int rtapi_prio_lowest(void) {
+    return PRIORITY_LOWEST;
+}
+
+int rtapi_prio_next_higher(int prio) {
+    return std::clamp(prio + 1, PRIORITY_LOWEST, PRIORITY_HIGHEST);
+}
+
+int rtapi_prio_next_lower(int prio) {
+    return std::clamp(prio - 1, PRIORITY_LOWEST, PRIORITY_HIGHEST);
+}
+
+int rtapi_task_new(void (*taskcode)(void *), void *arg, int prio, int /*owner*/, unsigned long int stacksize,
+                   int /*uses_fp*/) {
+    return with_hal([&](Hal &hal) {
+        if (taskcode == nullptr || prio < PRIORITY_LOWEST || prio > PRIORITY_HIGHEST) {
+            return complain(EINVAL, "a task needs code and a priority of rtapi_prio_*");
+        }
+        if (hal.isVirtual()) {
+            return complain(ENOSYS,
+                            "tasks of their own need the realtime clock; export a HAL function instead");
+        }
+        Registry &all = registry();
+        const std::lock_guard lock(all.mutex);
+        auto task = std::make_unique<Task>();
+        task->id = ++all.last_id;
+        task->code = taskcode;
+        task->argument = arg;
+        task->priority = prio;
+        task->stack_size = stacksize;
+        task->hal = &hal;
+        const int id = task->id;
+        all.tasks.emplace(id, std::move(task));
+        return id;
+    });
+}
+
+int rtapi_task_delete(int task_id) {
+    Task *task = find_task(task_id);
+    if (task == nullptr || task == own_task()) {
+        return -EINVAL;
+    }
+    task->isEnding.store(true, std::memory_order_release);
+    wake(*task);
+    if (task->isStarted) {
+        timespec end{};
+        ::clock_gettime(CLOCK_REALTIME, &end);
+        end.tv_sec += DELETE_TIMEOUT_S;
+        if (::pthread_timedjoin_np(task->thread, nullptr, &end) != 0) {
+            return complain(EBUSY,
+                            fmt::format("task {} does not call rtapi_wait, so it cannot be ended", task_id));
+        }
+    }
+    Registry &all = registry();
+    const std::lock_guard lock(all.mutex);
+    all.tasks.erase(task_id);
+    return 0;
+}
+
+int rtapi_task_start(int task_id, unsigned long int period_nsec) {
+    Task *task = find_task(task_id);
+    if (task == nullptr || task->isStarted || period_nsec == 0) {
+        return -EINVAL;
+    }
+    return start(*task, static_cast<std::int64_t>(period_nsec));
+}
+
+int rtapi_task_resume(int task_id) {
+    Task *task = find_task(task_id);
+    if (task == nullptr) {
+        return -EINVAL;
+    }
+    if (!task->isStarted) {
+        return start(*task, 0);
+    }
+    task->isPaused.store(false, std::memory_order_release);
+    wake(*task);
+    return 0;
+}
+
+int rtapi_task_pause(int task_id) {
+    Task *task = find_task(task_id);
+    if (task == nullptr || !task->isStarted) {
+        return -EINVAL;
+    }
+    task->isPaused.store(true, std::memory_order_release);
+    return 0;
+}
+
+int rtapi_task_self(void) {
+    const Task *task = own_task();
+    return task == nullptr ? -EINVAL : task->id;
+}
+
+int rtapi_wait(void) {
+    Task *task = own_task();
+    if (task == nullptr) {
+        return -EINVAL;
+    }
+    if (task->period_ns > 0) {
+        const timespec until{task->next_ns / NS_PER_S, task->next_ns % NS_PER_S};
+        while (!task->isEnding.load(std::memory_order_acquire) &&
+               ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+        }
+        task->next_ns += task->period_ns;
+    }
+    std::unique_lock lock(task->mutex);
+    while (task->isPaused.load(std::memory_order_acquire) &&
+           !task->isEnding.load(std::memory_order_acquire)) {
+        ::pthread_cond_wait(&task->changed, task->mutex.native_handle());
+    }
+    lock.unlock();
+    if (task->isEnding.load(std::memory_order_acquire)) {
+        ::pthread_exit(nullptr);
+    }
+    return 0;
+}
+
+void rtapi_task_self_resync(void) {
+    if (Task *task = own_task(); task != nullptr && task->period_ns > 0) {
+        const std::int64_t now = monotonic_ns();
+        if (task->next_ns < now) {
+            task->next_ns += ((now - task->next_ns) / task->period_ns + 1) * task->period_ns;
+        }
+    }
+}
+
+long long rtapi_task_pll_get_reference(void) {
+    return rtapi::RealtimeScheduler::current_release_ns();
+}
+
+int rtapi_task_pll_set_correction(long value) {
+    return rtapi::RealtimeScheduler::set_correction_ns(value) ? 0 : -EINVAL;
+}
+
+// ---- semaphores
+
+int rtapi_sem_new(int key, int /*module_id*/) {
+    return with_hal([&](Hal &hal) {
+        Registry &all = registry();
+        const std::lock_guard lock(all.mutex);
+        Semaphore *vacant = nullptr;
+        for (Semaphore &one : semaphores()) {
+            const int id = one.id.load(std::memory_order_relaxed);
+            if (id != 0 && one.hal == &hal && one.key == key) {
+                ++one.users;
+                return id;
+            }
+            vacant = id == 0 && vacant == nullptr ? &one : vacant;
+        }
+        if (vacant == nullptr) {
+            return complain(ENOSPC, fmt::format("there are {} semaphores already", SEMAPHORES));
+        }
+        ::sem_init(&vacant->sem, 0, 1);
+        vacant->hal = &hal;
+        vacant->key = key;
+        vacant->users = 1;
+        const int place = static_cast<int>(vacant - semaphores().data());
+        const int id = ++all.last_id * SEMAPHORES + place;
+        vacant->id.store(id, std::memory_order_release);
+        return id;
+    });
+}
+
+int rtapi_sem_delete(int sem_id, int /*module_id*/) {
+    Registry &all = registry();
+    const std::lock_guard lock(all.mutex);
+    Semaphore *semaphore = find_semaphore(sem_id);
+    if (semaphore == nullptr) {
+        return -EINVAL;
+    }
+    if (--semaphore->users == 0) {
+        semaphore->id.store(0, std::memory_order_release);
+        ::sem_destroy(&semaphore->sem);
+    }
+    return 0;
+}
+
+int rtapi_sem_give(int sem_id) {
+    Semaphore *semaphore = find_semaphore(sem_id);
+    if (semaphore == nullptr) {
+        return -EINVAL;
+    }
+    // A semaphore of RTAPI is a lock: given twice it is still free once.
+    int value = 0;
+    ::sem_getvalue(&semaphore->sem, &value);
+    return value > 0 || ::sem_post(&semaphore->sem) == 0 ? 0 : -errno;
+}
+
+int rtapi_sem_take(int sem_id) {
+    Semaphore *semaphore = find_semaphore(sem_id);
+    if (semaphore == nullptr) {
+        return -EINVAL;
+    }
+    while (::sem_wait(&semaphore->sem) != 0) {
+        if (errno != EINTR) {
+            return -errno;
+        }
+    }
+    return 0;
+}
+
+int rtapi_sem_try(int sem_id) {
+    Semaphore *semaphore = find_semaphore(sem_id);
+    if (semaphore == nullptr) {
+        return -EINVAL;
+    }
+    return ::sem_trywait(&semaphore->sem) == 0 ? 0 : -EBUSY;
+}
+
+// ---- queues of bytes
+
+int rtapi_fifo_new(int key, int /*module_id*/, unsigned long int size, char mode) {
+    return with_hal([&](Hal &hal) {
+        const bool isMode = mode == 'R' || mode == 'r' || mode == 'W' || mode == 'w';
+        if (!isMode || size == 0 || size > (1U << 27U) || key == 0) {
+            return complain(EINVAL, "a queue needs a key, a size above 0 and the mode R or W");
+        }
+        const auto room = std::bit_ceil(static_cast<std::uint32_t>(size));
+        Guard guard(hal.impl());
+        const auto block = hal.impl().open_block(key ^ FIFO_KEY, sizeof(Fifo) + room);
+        if (!block) {
+            return complain(block.error());
+        }
+        auto *fifo = hal.impl().segment.at<Fifo>((*block)->memory);
+        if (fifo->size == 0) {
+            fifo->size = room;
+        }
+        return static_cast<int>((*block)->memory);
+    });
+}
+
+int rtapi_fifo_delete(int fifo_id, int /*module_id*/) {
+    return with_hal([&](Hal &hal) {
+        Guard guard(hal.impl());
+        int status = -EINVAL;
+        hal.impl().segment.each<BlockRecord>(Kind::BLOCK, [&](BlockRecord &block) {
+            if (fifo_id > 0 && block.memory == static_cast<Offset>(fifo_id) && block.users > 0) {
+                --block.users;
+                status = 0;
+            }
+        });
+        return status;
+    });
+}
+
+int rtapi_fifo_read(int fifo_id, char *buf, unsigned long int size) {
+    Fifo *fifo = find_fifo(fifo_id);
+    if (fifo == nullptr || buf == nullptr) {
+        return -EINVAL;
+    }
+    const std::uint32_t out = fifo->out.load(std::memory_order_relaxed);
+    const std::uint32_t there = fifo->in.load(std::memory_order_acquire) - out;
+    const auto count = static_cast<std::uint32_t>(std::min<unsigned long>(there, size));
+    for (std::uint32_t i = 0; i < count; ++i) {
+        buf[i] = fifo->bytes()[(out + i) & (fifo->size - 1)];
+    }
+    fifo->out.store(out + count, std::memory_order_release);
+    return static_cast<int>(count);
+}
+
+int rtapi_fifo_write(int fifo_id, char *buf, unsigned long int size) {
+    Fifo *fifo = find_fifo(fifo_id);
+    if (fifo == nullptr || buf == nullptr) {
+        return -EINVAL;
+    }
+    const std::uint32_t in = fifo->in.load(std::memory_order_relaxed);
+    const std::uint32_t room = fifo->size - (in - fifo->out.load(std::memory_order_acquire));
+    const auto count = static_cast<std::uint32_t>(std::min<unsigned long>(room, size));
+    for (std::uint32_t i = 0; i < count; ++i) {
+        fifo->bytes()[(in + i) & (fifo->size - 1)] = buf[i];
+    }
+    fifo->in.store(in + count, std::memory_order_release);
+    return static_cast<int>(count);
+}
+
+}  // extern "C"

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Components whose process died: who they were.
+#include <time.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "hal/core/detail/impl.hh"
+
+namespace mw::hal {
+
+using namespace detail;
+
+void Hal::Impl::note_death(const CompRecord &comp) noexcept {
+    if (comp.isAskedToEnd) {
+        return;
+    }
+    Header &header = segment.header();
+    DeathRecord &death = header.deaths[header.death_count % DEATHS];
+    death.name = comp.name;
+    death.pid = comp.process.pid;
+    timespec now{};
+    ::clock_gettime(CLOCK_MONOTONIC, &now);
+    death.time_ns = now.tv_sec * 1'000'000'000LL + now.tv_nsec;
+    ++header.death_count;
+}
+
+std::vector<DeathInfo> Hal::deaths() const {
+    Guard guard(*impl_);
+    const Header &header = impl_->segment.header();
+    std::vector<DeathInfo> deaths;
+    const std::uint32_t kept = std::min<std::uint32_t>(header.death_count, DEATHS);
+    for (std::uint32_t i = header.death_count - kept; i != header.death_count; ++i) {
+        const DeathRecord &death = header.deaths[i % DEATHS];
+        const std::string name = death.name.data();
+        // Only the last death of a component counts, and none of one that has been started again.
+        std::erase_if(deaths, [&](const DeathInfo &earlier) { return earlier.name == name; });
+        if (impl_->segment.find(Kind::COMP, name) == nullptr) {
+            deaths.push_back({name, death.pid, death.time_ns});
+        }
+    }
+    return deaths;
+}
+
+Result<> Hal::expect_end(int comp_id) {
+    Guard guard(*impl_);
+    CompRecord *comp = impl_->find_comp(comp_id);
+    if (comp == nullptr) {
+        return refuse(EINVAL, fmt::format("there is no component with id {}", comp_id));
+    }
+    comp->isAskedToEnd = true;
+    return {};
+}
+
+}  // namespace mw::hal

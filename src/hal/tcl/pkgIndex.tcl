@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+package ifneeded Hal 1.0 [list load [file join $dir libmillwright_haltcl.so] Hal]

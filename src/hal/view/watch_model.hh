@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What `millwright hal` shows and how keys change it, without a terminal. [one thread]
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "base/result.hh"
+#include "hal/core/hal.hh"
+
+namespace mw::hal::view {
+
+enum class Page { PINS, SIGNALS, THREADS, WATCH };
+
+enum class Key {
+    UP,
+    DOWN,
+    PAGE_UP,
+    PAGE_DOWN,
+    HOME,
+    END,
+    OPEN,
+    CLOSE,
+    TOGGLE,
+    NEXT_PAGE,
+    WATCH,
+    FILTER,
+    SET,
+    ENTER,
+    ESCAPE,
+    ERASE,
+    QUIT,
+    NONE
+};
+
+struct WatchRow {
+    int depth = 0;
+    std::string label;  ///< last part of the name on the page of pins, else the name
+    std::string name;   ///< of what it shows; of a branch what the names below begin with
+    bool isBranch = false;
+    bool isOpen = false;
+    std::string type;  ///< "float IN", "s32 RW", "bit"
+    std::string value;
+    std::string extra;  ///< link of a pin, pins of a signal, times of a function
+};
+
+class WatchModel {
+  public:
+    explicit WatchModel(Hal &hal) : hal_(&hal) {}
+
+    /// Reads everything anew.
+    void refresh();
+    /// A key; letters of a text that is being typed come by type().
+    void press(Key key);
+    void type(const std::string &text);
+    /// Rows that fit on the screen, for the page keys and for scrolling.
+    void set_height(std::size_t rows) { height_ = rows < 1 ? 1 : rows; }
+
+    Page page() const noexcept { return page_; }
+    const std::vector<WatchRow> &rows() const noexcept { return rows_; }
+    std::size_t cursor() const noexcept { return cursor_; }
+    /// First row to show, so that the cursor is on the screen.
+    std::size_t top() const noexcept { return top_; }
+    const std::string &filter() const noexcept { return filter_; }
+    /// The line at the bottom: what is typed, what failed, or which keys there are.
+    std::string status() const;
+    bool isTyping() const noexcept { return isTypingFilter_ || isTypingValue_; }
+    bool isDone() const noexcept { return isDone_; }
+    void watch(const std::string &name);
+    void open_page(Page page);
+
+  private:
+    void add_tree(const std::vector<WatchRow> &leaves);
+    void show_pins();
+    void show_signals();
+    void show_threads();
+    void show_watched();
+    void clamp();
+    void toggle(bool wantsOpen, bool wantsClosed);
+    void finish_text();
+    Result<> assign(const std::string &name, const std::string &text);
+
+    Hal *hal_;
+    Page page_ = Page::PINS;
+    std::vector<WatchRow> rows_;
+    std::size_t cursor_ = 0, top_ = 0, height_ = 20;
+    std::set<std::string> open_;
+    std::vector<std::string> watched_;
+    std::string filter_, text_, message_;
+    bool isTypingFilter_ = false, isTypingValue_ = false, isDone_ = false;
+};
+
+/// One line of a row, cut to `width` columns.
+std::string row_text(const WatchRow &row, std::size_t width);
+
+}  // namespace mw::hal::view

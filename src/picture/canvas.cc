@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "picture/canvas.hh"
+
+#include <cairo-svg.h>
+
+namespace mw::picture {
+
+Result<Canvas> Canvas::open(const std::string &path, double width, double height) {
+    const bool isPng = path.size() > 4 && path.ends_with(".png");
+    if (!isPng && !(path.size() > 4 && path.ends_with(".svg"))) {
+        return fail("a picture is a .png or .svg file, not '" + path + "'");
+    }
+    Canvas canvas;
+    canvas.path_ = path;
+    canvas.isPng_ = isPng;
+    canvas.surface_.reset(isPng ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width),
+                                                             static_cast<int>(height))
+                                : cairo_svg_surface_create(path.c_str(), width, height));
+    canvas.context_.reset(cairo_create(canvas.surface_.get()));
+    cairo_t *cr = canvas.cairo();
+    cairo_set_source_rgb(cr, 1, 1, 1);
+    cairo_paint(cr);
+    cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(cr, 13);
+    return canvas;
+}
+
+Result<> Canvas::write() {
+    context_.reset();
+    cairo_status_t status = CAIRO_STATUS_SUCCESS;
+    if (isPng_) {
+        status = cairo_surface_write_to_png(surface_.get(), path_.c_str());
+    } else {
+        cairo_surface_finish(surface_.get());
+        status = cairo_surface_status(surface_.get());
+    }
+    if (status != CAIRO_STATUS_SUCCESS) {
+        return fail("cannot write the picture '" + path_ + "': " + cairo_status_to_string(status));
+    }
+    return {};
+}
+
+void Canvas::set_color(double red, double green, double blue, double alpha) const {
+    cairo_set_source_rgba(cairo(), red, green, blue, alpha);
+}
+
+void Canvas::text(double x, double y, const std::string &text, double size) const {
+    cairo_set_font_size(cairo(), size);
+    cairo_move_to(cairo(), x, y);
+    cairo_show_text(cairo(), text.c_str());
+}
+
+double Canvas::text_width(const std::string &text, double size) const {
+    cairo_set_font_size(cairo(), size);
+    cairo_text_extents_t extents;
+    cairo_text_extents(cairo(), text.c_str(), &extents);
+    return extents.x_advance;
+}
+
+void Canvas::line(double x1, double y1, double x2, double y2, double width) const {
+    cairo_set_line_width(cairo(), width);
+    cairo_move_to(cairo(), x1, y1);
+    cairo_line_to(cairo(), x2, y2);
+    cairo_stroke(cairo());
+}
+
+}  // namespace mw::picture

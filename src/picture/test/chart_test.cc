@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "picture/chart.hh"
+
+namespace mw::picture {
+namespace {
+
+class ChartTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder = std::filesystem::temp_directory_path() /
+                 ("chart" + std::to_string(::getpid()) +
+                  testing::UnitTest::GetInstance()->current_test_info()->name());
+        std::filesystem::create_directories(folder);
+    }
+    void TearDown() override { std::filesystem::remove_all(folder); }
+    std::string read(const std::string &name) const {
+        std::ifstream in(folder / name);
+        std::ostringstream text;
+        text << in.rdbuf();
+        return text.str();
+    }
+    std::filesystem::path folder;
+};
+
+TEST(Ticks, AreRoundAndInside) {
+    EXPECT_EQ(round_ticks(0, 10, 5), (std::vector<double>{0, 2, 4, 6, 8, 10}));
+    EXPECT_EQ(round_ticks(-1, 1, 4), (std::vector<double>{-1, -0.5, 0, 0.5, 1}));
+    const std::vector<double> fine = round_ticks(0.13, 0.31, 2);
+    ASSERT_EQ(fine.size(), 2U);
+    EXPECT_NEAR(fine[1], 0.3, 1e-12);
+}
+
+TEST_F(ChartTest, StripsShowEveryCurve_B7) {
+    StripChart chart;
+    chart.title = "capture";
+    for (int i = 0; i < 100; ++i) {
+        chart.times_s.push_back(i * 0.001);
+    }
+    chart.curves = {{"siggen.0.sine", std::vector<double>(100, 0.5), false},
+                    {"and2.0.out", std::vector<double>(100, 1.0), true},
+                    {"broken", std::vector<double>(100, NAN), false}};
+    chart.trigger_s = 0.05;
+    ASSERT_TRUE(draw_strips(chart, folder / "a.svg"));
+    // Names are drawn as glyphs; a strip has its frame, so that more curves make a higher picture.
+    const std::string three = read("a.svg");
+    EXPECT_NE(three.find("<svg"), std::string::npos);
+    chart.curves.pop_back();
+    ASSERT_TRUE(draw_strips(chart, folder / "b.svg"));
+    EXPECT_LT(read("b.svg").size(), three.size());
+    ASSERT_TRUE(draw_strips(chart, folder / "a.png"));
+    EXPECT_EQ(read("a.png").substr(1, 3), "PNG");
+}
+
+TEST_F(ChartTest, BadPathsAreRefused) {
+    EXPECT_NE(draw_strips({}, folder / "a.gif").error().str().find(".png or .svg"), std::string::npos);
+    EXPECT_FALSE(draw_strips({}, folder / "no" / "such" / "a.png"));
+    EXPECT_FALSE(draw_histograms({}, folder / "no" / "such" / "a.svg"));
+}
+
+TEST_F(ChartTest, HistogramsStandBelowEachOther) {
+    Histogram histogram{"servo", -5, 1, "us", {0, 1, 10, 1000, 3}, 1, 2};
+    ASSERT_TRUE(draw_histograms({histogram, histogram}, folder / "h.png"));
+    EXPECT_EQ(read("h.png").substr(1, 3), "PNG");
+}
+
+}  // namespace
+}  // namespace mw::picture

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-2.0-or-later */
+/* A program in C that looks at HAL and says what it sees on a pin. */
+#include <signal.h>
+#include <unistd.h>
+
+#include "hal.h"
+#include "rtapi.h"
+
+static volatile sig_atomic_t done;
+static void stop(int sig) {
+    (void)sig;
+    done = 1;
+}
+static int count_one(hal_query_t *query, void *arg) {
+    (void)query;
+    ++*(int *)arg;
+    return 0;
+}
+int main(void) {
+    struct {
+        hal_s32_t *seen;
+    } *pins;
+    int id = hal_init("cusr");
+    if (id < 0) {
+        return 1;
+    }
+    signal(SIGTERM, stop);
+    pins = hal_malloc(sizeof(*pins));
+    if (!pins || hal_pin_s32_newf(HAL_OUT, &pins->seen, id, "cusr.seen") != 0) {
+        return 1;
+    }
+    hal_ready(id);
+    while (!done) {
+        int count = 0;
+        hal_list_p(NULL, count_one, &count);
+        *pins->seen = count;
+        usleep(1000);
+    }
+    hal_exit(id);
+    return 0;
+}
