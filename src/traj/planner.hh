@@ -224,7 +224,9 @@ class Planner {
     bool isOpenStop_ = false;    ///< stop before its part
     Joint open_joint_;           ///< before it
     /// With jerk limits, part of the acceleration that is for turning where curves follow each other closely.
-    static constexpr double TURNING_SHARE = 0.75;
+    static constexpr double TURNING_SHARE = 0.88;
+    /// And what the turning of neighbours may be more than a place's own, and how much is left for that.
+    static constexpr double SHARED_TURNS = 1.1, SHARED_REST = 0.985;
     static constexpr std::size_t MOST_JOINED = 64;
     std::array<Pose, MOST_JOINED> joined_{};  ///< ends within the open move of the lines that it stands for
     std::size_t joined_count_ = 0;

@@ -13,7 +13,9 @@ namespace {
 
 constexpr double SAME_SPEED = 1e-9;
 /// A speed below this part of what one sample's acceleration gives is rounding.
-constexpr double STANDING = 1e-9;
+constexpr double STANDING = 1e-13;
+/// Who stands no farther from the end of a piece is there [machine units].
+constexpr double AT_END = 2e-12;
 constexpr double STOP_FIT = 1e-7;  ///< as in the executor
 constexpr int ATTEMPTS = 8;
 constexpr Sequence PHASE_RESERVE = PHASE_CAPACITY / 2;
@@ -94,7 +96,7 @@ bool Planner::emit_filtered() noexcept {
     const bool isLast = s.piece == last_piece_;
     looked_at_ = std::max(looked_at_, s.piece);
     isAtEndOfPath_ = isLast && s.x >= p.length;
-    if (s.x >= p.length) {
+    if (s.x >= p.length || (s.v <= 0 && p.length - s.x < AT_END)) {
         if (isLast || (s.v <= 0 && isBarrier(s.piece + 1))) {
             return false;
         }
@@ -174,7 +176,8 @@ bool Planner::emit_tail() noexcept {
         const double slowest2 = v2 - 2.0 * a * left;
         const bool isStop = s.piece == last_piece_ || piece_plan(s.piece + 1).isStopBefore;
         if (isStop || slowest2 <= STOP_FIT * v2) {
-            emit_phase(slowest2 < 0 ? v2 / (2.0 * a) : left, 0);
+            // A stop that misses the end by rounding is fitted to it.
+            emit_phase(slowest2 < -STOP_FIT * v2 ? v2 / (2.0 * a) : left, 0);
             return true;
         }
         emit_phase(left, std::sqrt(slowest2));
