@@ -374,6 +374,7 @@ typedef union hal_stream_data {
 } hal_stream_data_u;
 
 struct hal_stream_fifo;
+/* NOLINTNEXTLINE(bugprone-reserved-identifier): existing code names the struct so */
 typedef struct __hal_stream_t {
     int comp_id;
     int shmem_id;

@@ -31,9 +31,11 @@
  * everything else private to the module. Checks that the symbol exists. */
 #define EXPORT_SYMBOL(x) RTAPI_EXPORT_NOTE_(x, __COUNTER__)
 #define RTAPI_EXPORT_NOTE_(x, n) RTAPI_EXPORT_NOTE2_(x, n)
+/* NOLINTBEGIN(bugprone-macro-parentheses): x is declared, not used */
 #define RTAPI_EXPORT_NOTE2_(x, n)                                                                            \
     static const char rtapi_exported_##n[] __attribute__((__section__(".rtapi_export"), __used__)) = #x;     \
     extern __typeof__(x) x;
+/* NOLINTEND(bugprone-macro-parentheses) */
 #define EXPORT_SYMBOL_GPL(x) EXPORT_SYMBOL(x)
 #define EXPORT_FUNCTION(x) EXPORT_SYMBOL(x)
 

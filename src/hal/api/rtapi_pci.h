@@ -55,6 +55,7 @@ struct rtapi_pci_driver {
     struct rtapi_pci_dev *devices; /* taken */
 };
 
+/* NOLINTNEXTLINE(bugprone-reserved-identifier): existing code names it so */
 #define rtapi__iomem volatile
 
 extern const char *rtapi_pci_name(const struct rtapi_pci_dev *pdev);

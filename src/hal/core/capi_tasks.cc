@@ -27,6 +27,7 @@ constexpr int PRIORITY_HIGHEST = 80;
 constexpr int PRIORITY_LOWEST = 1;
 constexpr std::int64_t NS_PER_S = 1000000000;
 constexpr int DELETE_TIMEOUT_S = 2;
+constexpr std::size_t LEAST_STACK = 256UL * 1024;
 
 std::int64_t monotonic_ns() noexcept {
     timespec now{};
@@ -114,7 +115,7 @@ int start(Task &task, std::int64_t period_ns) {
     task.next_ns = monotonic_ns() + period_ns;
     pthread_attr_t attributes;
     ::pthread_attr_init(&attributes);
-    ::pthread_attr_setstacksize(&attributes, std::max<std::size_t>(task.stack_size, 256 * 1024));
+    ::pthread_attr_setstacksize(&attributes, std::max(task.stack_size, LEAST_STACK));
     const int error = ::pthread_create(&task.thread, &attributes, &run_task, &task);
     ::pthread_attr_destroy(&attributes);
     if (error != 0) {

@@ -14,11 +14,10 @@ namespace {
 /// The value of the key in the whole file, wherever the stream stands; null when there is none.
 const std::string *find(FILE *stream, const char *tag, const char *section) {
     thread_local std::string value;
-    if (stream == nullptr || tag == nullptr) {
+    if (stream == nullptr || tag == nullptr || std::fseek(stream, 0, SEEK_SET) != 0) {
         return nullptr;
     }
     std::string text;
-    std::rewind(stream);
     char block[4096];
     for (std::size_t got = 0; (got = std::fread(block, 1, sizeof block, stream)) > 0;) {
         text.append(block, got);
