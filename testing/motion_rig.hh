@@ -35,11 +35,17 @@ struct MotionRig {
 
     explicit MotionRig(const char *coordinates = "XYZ", double velocity = 100, double acceleration = 1000) {
         kinematics.configure(coordinates);
-        const int joints = kinematics.identity()->num_joints;
-        controller = std::make_unique<motion::Controller>(motion::ControllerConfig{joints, 1, 4, 4, T},
-                                                          kinematics, *channels, *link);
-        planner = std::make_unique<motion::PathPlanner>(motion::PathPlannerConfig{T, joints, 1, 4, 4},
-                                                        kinematics, *channels, *link);
+        start(kinematics, kinematics.identity()->num_joints, velocity, acceleration);
+    }
+    /// A machine whose joints are not axes; `model` outlives the rig.
+    MotionRig(const kins::Kinematics &model, int joints, double velocity, double acceleration) {
+        start(model, joints, velocity, acceleration);
+    }
+    void start(const kins::Kinematics &model, int joints, double velocity, double acceleration) {
+        controller = std::make_unique<motion::Controller>(motion::ControllerConfig{joints, 1, 4, 4, T}, model,
+                                                          *channels, *link);
+        planner = std::make_unique<motion::PathPlanner>(motion::PathPlannerConfig{T, joints, 1, 4, 4}, model,
+                                                        *channels, *link);
         send(motion::Abort{epoch});
         for (int j = 0; j < joints; ++j) {
             set(motion::Parameter::JOINT_MAX_VELOCITY, j, velocity);

@@ -27,6 +27,24 @@ void print_result(const std::string &program, const MachineConfig &machine, cons
     }
 }
 
+std::string time_text(double seconds) {
+    const int minutes = static_cast<int>(seconds / 60);
+    return minutes > 0 ? fmt::format("{} min {:.1f} s", minutes, seconds - 60.0 * minutes)
+                       : fmt::format("{:.3f} s", seconds);
+}
+
+void print_times(const TimeFigures &time) {
+    fmt::print("  time {}: cutting {}, rapid {}, dwell {}\n", time_text(time.total_s),
+               time_text(time.cutting_s), time_text(time.rapid_s), time_text(time.dwell_s));
+    for (const auto &[tool, seconds] : time.by_tool) {
+        fmt::print("  tool {}: {}\n", tool, time_text(seconds));
+    }
+    for (const SlowPlace &place : time.slowest) {
+        fmt::print("  {}:{}: {} more than at its feed, bound by {}\n", place.file, place.line,
+                   time_text(place.lost_s), place.limit);
+    }
+}
+
 }  // namespace
 
 int command_check(const std::vector<std::string> &words) {
@@ -58,6 +76,7 @@ int command_check(const std::vector<std::string> &words) {
         return 1;
     }
     print_result(program, loaded->machine, result);
+    print_times(result.time);
     return 0;
 }
 

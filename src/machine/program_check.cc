@@ -21,7 +21,9 @@ constexpr double LIMIT_SLACK = 1e-6;
 
 class CheckCanon final : public interp::MachineCanon {
   public:
-    CheckCanon(const MachineConfig &machine, diag::Sink &sink) : machine_(machine), sink_(sink) {
+    CheckCanon(const MachineConfig &machine, diag::Sink &sink)
+        : machine_(machine), sink_(sink), estimate_(machine) {
+        estimate_.start(position);
         result.lowest.fill(1e300);
         result.highest.fill(-1e300);
     }
@@ -35,11 +37,13 @@ class CheckCanon final : public interp::MachineCanon {
         file_ = block.file;
         text_ = block.text;
         line_ = block.line;
+        estimate_.set_place(file_, line_);
     }
     void line(const interp::LineMove &move) override {
         ProgrammedPiece piece;
         piece.start = position;
         piece.end = move.end;
+        estimate_.line(move.end, timed(move.settings));
         take(piece, move.settings.kind == interp::FeedKind::RAPID);
     }
     void arc(const interp::ArcMove &move) override {
@@ -50,32 +54,46 @@ class CheckCanon final : public interp::MachineCanon {
         piece.normal = move.normal;
         piece.angle_rad = move.angle_rad;
         check_arc(piece);
+        interp::ArcMove timed_move = move;
+        timed_move.settings = timed(move.settings);
+        estimate_.arc(timed_move);
         take(piece, false);
     }
-    void probe(const interp::LineMove &move, interp::ProbeKind) override { line(move); }
+    void probe(const interp::LineMove &move, interp::ProbeKind) override {
+        estimate_.stop();
+        line(move);
+        estimate_.stop();
+    }
     void rigid_tap(const interp::LineMove &move, double) override {
         const geom::Pose back = position;
         line(move);
-        position = back;
+        interp::LineMove out = move;
+        out.end = back;
+        line(out);
     }
     void select_tool(int toolno) override { selected = toolno; }
     void change_tool() override {
         tool = selected >= 0 ? std::exchange(selected, -1) : tool;
+        estimate_.set_tool(tool);
         for (const geom::Pose &end : task::tool_change_moves(machine_.task.tool_change_place, position)) {
             ProgrammedPiece piece;
             piece.start = position;
             piece.end = end;
+            estimate_.line(end, rapid());
             take(piece, true);
         }
     }
-    void change_tool_number(int toolno) override { tool = toolno; }
+    void change_tool_number(int toolno) override {
+        tool = toolno;
+        estimate_.set_tool(toolno);
+    }
     void canon_error(std::string_view text) override { report(std::string(text), {}); }
 
-    void dwell(double) override {}
+    void dwell(double seconds) override { estimate_.dwell(seconds); }
     void tool_offset(const geom::Pose &) override {}
     void offsets(int, const geom::Pose &, const geom::Pose &, double) override {}
     void set_spindle_mode(int, double) override {}
-    void set_spindle_speed(int, double) override {}
+    void set_spindle_speed(int, double speed) override { spindle_rpm_ = std::abs(speed); }
     void spindle_on(int, int, bool) override {}
     void spindle_off(int) override {}
     void orient_spindle(int, double, int) override {}
@@ -89,8 +107,8 @@ class CheckCanon final : public interp::MachineCanon {
     void set_digital_output(int, bool, bool) override {}
     void set_analog_output(int, double, bool) override {}
     void wait_input(int, bool, interp::WaitKind, double) override {}
-    void program_stop() override {}
-    void optional_program_stop() override {}
+    void program_stop() override { estimate_.stop(); }
+    void optional_program_stop() override { estimate_.stop(); }
     void program_end() override {}
     void pallet_shuttle() override {}
     void finish() override {}
@@ -102,7 +120,22 @@ class CheckCanon final : public interp::MachineCanon {
     void log_close() override {}
     void user_m_code(int, double, double) override {}
 
+    void finish_time() { result.time = estimate_.finish(); }
+
   private:
+    static interp::MoveSettings rapid() {
+        interp::MoveSettings settings;
+        settings.kind = interp::FeedKind::RAPID;
+        return settings;
+    }
+    /// Moves that follow the spindle are timed at its programmed speed.
+    interp::MoveSettings timed(const interp::MoveSettings &settings) const {
+        interp::MoveSettings out = settings;
+        if (settings.feed_per_revolution > 0 && spindle_rpm_ > 0) {
+            out.feed = settings.feed_per_revolution * spindle_rpm_ / 60.0;
+        }
+        return out;
+    }
     void take(const ProgrammedPiece &piece, bool isRapid) {
         ++result.moves;
         result.hasMoves = true;
@@ -176,6 +209,8 @@ class CheckCanon final : public interp::MachineCanon {
 
     const MachineConfig &machine_;
     diag::Sink &sink_;
+    TimeEstimate estimate_;
+    double spindle_rpm_ = 0;
     std::string file_, text_;
     int line_ = 0, reported_line_ = -1;
 };
@@ -235,6 +270,9 @@ CheckResult check_program(const MachineConfig &machine, const std::string &progr
         } else if (step != interp::Step::OK) {
             break;
         }
+    }
+    if (!sink.hasErrors()) {
+        canon.finish_time();
     }
     return canon.result;
 }

@@ -9,6 +9,7 @@
 #include "diag/sink.hh"
 #include "interp/world.hh"
 #include "machine/machine_config.hh"
+#include "machine/time_estimate.hh"
 
 namespace mw::machine {
 
@@ -17,6 +18,7 @@ struct CheckResult {
     double cutting_length = 0, rapid_length = 0;       ///< [machine units]
     std::array<double, MAX_AXES> lowest{}, highest{};  ///< reached, machine coordinates
     bool hasMoves = false;
+    TimeFigures time;  ///< of a program without errors
 };
 
 /// Runs the interpreter over the whole program. Errors (syntax, limits, endless loops) go to `sink` with

@@ -181,7 +181,7 @@ double Executor::follow(double dt) noexcept {
     state_.x = x_at(p, p.duration);
     state_.v = v_at(p, p.duration);
     const double length = store_.piece(p.piece).length;
-    if (std::abs(state_.x - length) <= 1e-12 * (1.0 + length)) {
+    if (std::abs(state_.x - length) <= 4e-12 * (1.0 + length)) {
         state_.x = length;
     }
     // A plan that ends in a stop ends with a speed that is 0 but for rounding.
@@ -233,7 +233,7 @@ double Executor::brake_along(double dt) noexcept {
     const Piece &piece = store_.piece(state_.piece);
     if (isBrakeFinal_) {
         const double stop = x_at(brake_, brake_.duration);
-        state_.x = std::abs(stop - piece.length) <= 1e-12 * (1.0 + piece.length)
+        state_.x = std::abs(stop - piece.length) <= 4e-12 * (1.0 + piece.length)
                        ? piece.length
                        : std::min(stop, piece.length);
         come_to_rest();

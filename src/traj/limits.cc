@@ -92,7 +92,32 @@ int rows_of(const PerLimited &q1, const PerLimited &q2, const Limits &limits, Li
     return count;
 }
 
+/// Parts of the highest squared speed between which the acceleration that is left is a chord.
+constexpr double CHORDS[AccelBound::LINES + 1] = {0, 0.5, 0.85, 1};
+
+AccelBound through_chords(const double *left, double v) noexcept {
+    AccelBound out;
+    const double b = v * v;
+    for (int k = 0; k < AccelBound::LINES; ++k) {
+        const double beta = std::max(0.0, (left[k] - left[k + 1]) / ((CHORDS[k + 1] - CHORDS[k]) * b));
+        out.beta[static_cast<std::size_t>(k)] = beta;
+        out.alpha[static_cast<std::size_t>(k)] = left[k + 1] + beta * CHORDS[k + 1] * b;
+    }
+    return out;
+}
+
 }  // namespace
+
+AccelBound AccelBound::least(const AccelBound &x, const AccelBound &y, double v) noexcept {
+    if (!(v < 1e100) || !(v > 0)) {
+        return constant(std::min(x.at(0), y.at(0)));
+    }
+    double left[LINES + 1];
+    for (int k = 0; k <= LINES; ++k) {
+        left[k] = std::min(x.at(CHORDS[k] * v * v), y.at(CHORDS[k] * v * v));
+    }
+    return through_chords(left, v);
+}
 
 std::uint64_t filter_length(const Limits &limits, double period_s) noexcept {
     if (!limits.isJerkLimited) {
@@ -141,16 +166,11 @@ SpeedLimit limit_of_rows(const LimitRow *rows, int count, double wish) noexcept 
         out.a = AccelBound::constant(still);
         return out;
     }
-    const double b = out.v * out.v;
-    constexpr double AT[AccelBound::LINES + 1] = {0, 0.5, 0.85, 1};
-    double before = still;
-    for (int k = 0; k < AccelBound::LINES; ++k) {
-        const double after = acceleration_left(rows, count, AT[k + 1] * b);
-        const double beta = std::max(0.0, (before - after) / ((AT[k + 1] - AT[k]) * b));
-        out.a.beta[static_cast<std::size_t>(k)] = beta;
-        out.a.alpha[static_cast<std::size_t>(k)] = after + beta * AT[k + 1] * b;
-        before = after;
+    double left[AccelBound::LINES + 1];
+    for (int k = 0; k <= AccelBound::LINES; ++k) {
+        left[k] = acceleration_left(rows, count, CHORDS[k] * out.v * out.v);
     }
+    out.a = through_chords(left, out.v);
     return out;
 }
 

@@ -40,6 +40,8 @@ struct AccelBound {
         bound.alpha.fill(a);
         return bound;
     }
+    /// The lesser of two up to the speed v; chords of it, so on the safe side.
+    static AccelBound least(const AccelBound &x, const AccelBound &y, double v) noexcept;
     /// At the squared speed b, never negative.
     double at(double b) const noexcept {
         double a = alpha[0] - beta[0] * b;

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "base/limits.hh"
+#include "traj/joint_map.hh"
 #include "traj/limits.hh"
 #include "traj/path_store.hh"
 
@@ -58,6 +59,9 @@ class Planner {
     void set_limits(const Limits &limits) noexcept;
     /// The jerk limits of the present path are those of the last `set_limits`.
     bool isFilterCurrent() const noexcept { return filter_length(wanted_, settings_.period_s) == filter_; }
+
+    /// For machines whose joints are not axes; `map` stays valid. Null: the axes' limits are all there are.
+    void set_joints(const JointMap *map, const JointLimits &limits) noexcept;
 
     /// A new path begins at `start`, where the executor rests with nothing left of another.
     void begin(const Pose &start, const Snapshot &now) noexcept;
@@ -153,7 +157,9 @@ class Planner {
     bool join_line(const Primitive &line, const MoveRequest &request) noexcept;
     void fill_move(Sequence n, const Primitive &primitive, const MoveRequest &request) noexcept;
     bool isFiltered() const noexcept { return filter_ > 1; }
-    double filter_s() const noexcept { return static_cast<double>(filter_) * settings_.period_s; }
+    double filter_s() const noexcept {
+        return isFiltered() ? static_cast<double>(filter_) * settings_.period_s : 0.0;
+    }
     void close_move(double to, bool isToEnd, const Joint &after) noexcept;
 
     double move_cap(const MovePlan &m, double v_limit) const noexcept;
@@ -174,7 +180,7 @@ class Planner {
 
     // --- planner_filtered.cc: with jerk limits
     void update_filtered(const Snapshot &now) noexcept;
-    bool replan_filtered(const Snapshot &now, const State &from, bool isStop) noexcept;
+    bool replan_filtered(const Snapshot &now, State from, bool isStop) noexcept;
     bool emit_filtered() noexcept;
     bool emit_rise(double cap) noexcept;
     void emit_coast(double cap, double out2) noexcept;
@@ -191,6 +197,10 @@ class Planner {
     bool ease(const State &from) noexcept;
     void scale_piece(Sequence piece, double speed, double acceleration) noexcept;
     bool isCurved(Sequence piece) const noexcept;
+    SpeedLimit limit_with_joints(const Piece &piece, const SpeedLimit &limit) const noexcept;
+    bool areJointsSound() noexcept;
+    /// Plans are tried out before they are committed.
+    bool isTried() const noexcept { return isFiltered() || joint_map_ != nullptr; }
     bool isKept(const State &from) const noexcept;
 
     void append(const Snapshot &now) noexcept;
@@ -214,7 +224,9 @@ class Planner {
     bool isOpenStop_ = false;    ///< stop before its part
     Joint open_joint_;           ///< before it
     /// With jerk limits, part of the acceleration that is for turning where curves follow each other closely.
-    static constexpr double TURNING_SHARE = 0.75;
+    static constexpr double TURNING_SHARE = 0.88;
+    /// And what the turning of neighbours may be more than a place's own, and how much is left for that.
+    static constexpr double SHARED_TURNS = 1.1, SHARED_REST = 0.985;
     static constexpr std::size_t MOST_JOINED = 64;
     std::array<Pose, MOST_JOINED> joined_{};  ///< ends within the open move of the lines that it stands for
     std::size_t joined_count_ = 0;
@@ -251,6 +263,12 @@ class Planner {
     Pose trial_origin_;
     double trial_s_origin_ = 0;
     std::uint64_t failed_tick_ = 0;
+    /// Relative slack of what the trial compares, half of what checkers of the trajectory allow.
+    static constexpr double SLACK = 1.0 + 5e-7;
+    const JointMap *joint_map_ = nullptr;
+    JointLimits joint_limits_;
+    std::array<std::array<double, MAX_JOINTS>, 4> trial_joints_{};
+    std::uint64_t joint_tick_ = 0, joint_samples_ = 0;
     std::uint64_t along_tick_ = 0;  ///< the last on an arc that is followed exactly
 
     double start_delay_s_ = 0;  ///< of the next plan from rest

@@ -65,6 +65,7 @@ void Planner::start_trial(const Snapshot &now, const State &from) noexcept {
             trial_s_sum_ += to.leader.s - trial_s_origin_;
         }
     }
+    joint_tick_ = 0;
     // Until the plan begins.
     Sequence n = now.phase;
     double t = now.time_in_phase;
@@ -84,6 +85,9 @@ void Planner::start_trial(const Snapshot &now, const State &from) noexcept {
         } else {
             t = isOver ? store_.phase(n).duration : t + dt;
             try_sample(store_.phase(n), t);
+        }
+        if (joint_map_ != nullptr) {
+            areJointsSound();  // committed already; what follows is compared with it
         }
     }
 }
@@ -116,6 +120,12 @@ double Planner::trial_deviation(std::uint64_t tick) noexcept {
 
 bool Planner::isTrialSound() noexcept {
     const std::uint64_t n = trial_tick_;
+    if (joint_map_ != nullptr && !areJointsSound()) {
+        return false;
+    }
+    if (!isFiltered()) {
+        return true;
+    }
     const Sequence piece = trial_[n % HISTORY_CAPACITY].piece;
     const bool isAlong = piece != 0 && store_.piece(piece).isAlong;
     along_tick_ = isAlong ? n : along_tick_;
@@ -239,7 +249,7 @@ bool Planner::ease(const State &from) noexcept {
 
 bool Planner::isCurved(Sequence piece) const noexcept {
     const Piece &p = store_.piece(piece);
-    return p.blend_d > 0 || store_.primitive(p.primitive).isArc;
+    return p.blend_d > 0 || store_.primitive(p.primitive).isArc || joint_map_ != nullptr;
 }
 
 }  // namespace mw::traj

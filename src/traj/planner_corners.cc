@@ -79,13 +79,15 @@ SpeedLimit Planner::shared_limit(const Primitive &a, const Primitive &b, const J
                                  double wish) const noexcept {
     const BlendPart part{joint.d, 0, 2.0 * joint.d};
     Limits turning = limits_;
-    Limits along = limits_;
-    for (std::size_t i = 0; i < turning.acceleration.size(); ++i) {
-        turning.acceleration[i] *= joint.turning;
-        along.acceleration[i] *= 1.0 - joint.turning;
+    for (double &x : turning.acceleration) {
+        x *= joint.turning;
     }
-    SpeedLimit out = limit_of_blend(a, b, part, turning, wish);
-    out.a = AccelBound::constant(limit_of_blend(a, b, part, along, wish).a.at(0));
+    const double v = limit_of_blend(a, b, part, turning, wish).v;
+    SpeedLimit out = limit_of_blend(a, b, part, limits_, v);
+    for (std::size_t i = 0; i < AccelBound::LINES; ++i) {
+        out.a.beta[i] *= SHARED_TURNS;
+        out.a.alpha[i] *= SHARED_REST;
+    }
     return out;
 }
 

@@ -12,6 +12,10 @@ namespace mw::traj {
 namespace {
 
 constexpr double SAME_SPEED = 1e-9;
+/// A speed below this part of what one sample's acceleration gives is rounding.
+constexpr double STANDING = 1e-13;
+/// Who stands no farther from the end of a piece is there [machine units].
+constexpr double AT_END = 2e-12;
 constexpr double STOP_FIT = 1e-7;  ///< as in the executor
 constexpr int ATTEMPTS = 8;
 constexpr Sequence PHASE_RESERVE = PHASE_CAPACITY / 2;
@@ -92,7 +96,7 @@ bool Planner::emit_filtered() noexcept {
     const bool isLast = s.piece == last_piece_;
     looked_at_ = std::max(looked_at_, s.piece);
     isAtEndOfPath_ = isLast && s.x >= p.length;
-    if (s.x >= p.length) {
+    if (s.x >= p.length || (s.v <= 0 && p.length - s.x < AT_END)) {
         if (isLast || (s.v <= 0 && isBarrier(s.piece + 1))) {
             return false;
         }
@@ -172,7 +176,8 @@ bool Planner::emit_tail() noexcept {
         const double slowest2 = v2 - 2.0 * a * left;
         const bool isStop = s.piece == last_piece_ || piece_plan(s.piece + 1).isStopBefore;
         if (isStop || slowest2 <= STOP_FIT * v2) {
-            emit_phase(slowest2 < 0 ? v2 / (2.0 * a) : left, 0);
+            // A stop that misses the end by rounding is fitted to it.
+            emit_phase(slowest2 < -STOP_FIT * v2 ? v2 / (2.0 * a) : left, 0);
             return true;
         }
         emit_phase(left, std::sqrt(slowest2));
@@ -181,8 +186,10 @@ bool Planner::emit_tail() noexcept {
     return true;
 }
 
-bool Planner::replan_filtered(const Snapshot &now, const State &from, bool isStop) noexcept {
+bool Planner::replan_filtered(const Snapshot &now, State from, bool isStop) noexcept {
     const Sequence begin = plan_end_;
+    const double standing = STANDING * store_.piece(from.piece).acceleration.at(0) * settings_.period_s;
+    from.v = from.v < standing ? 0.0 : from.v;
     const double delay = start_delay_s_;
     for (int n = 0; n < ATTEMPTS; ++n) {
         plan_end_ = begin;
@@ -193,6 +200,9 @@ bool Planner::replan_filtered(const Snapshot &now, const State &from, bool isSto
             emit_wait(delay);
         }
         const Sequence waited = plan_end_;
+        if (isStop && from.v <= 0) {
+            emit_wait(settings_.period_s);
+        }
         while (!isStop && planned_s_ < delay + settings_.horizon_s && emit_filtered()) {
         }
         const bool isAtEnd = isAtEndOfPath_;
@@ -236,7 +246,7 @@ bool Planner::replan_filtered(const Snapshot &now, const State &from, bool isSto
 
 void Planner::update_filtered(const Snapshot &now) noexcept {
     const bool isGone = now.drops != drops_ || (now.isDropping && now.motion == Motion::REST);
-    if (isGone) {
+    if (isGone || now.motion == Motion::BRAKE) {
         return;
     }
     oldest_piece_ = std::max(first_piece_, now.piece);

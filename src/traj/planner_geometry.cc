@@ -26,6 +26,9 @@ constexpr double MOVES_PER_CYCLE = 12;
 constexpr double ARC_CUT = 0.13;
 constexpr double ARC_CUT_WHEN_SLOW = 0.5;
 constexpr int MOST_ARC_CUTS = 64;
+constexpr double JOINT_CUT_DEG = 1.0;
+/// A line has a part of its own next to a blend if that is no longer than this part of it.
+constexpr double ZONE_SHARE = 0.45;
 /// Part of the tolerance that joining lines may take when no other tolerance is given for it.
 constexpr double JOIN_SHARE = 0.1;
 constexpr double BLEND_CUT = 0.3;
@@ -210,23 +213,31 @@ void Planner::close_move(double to, bool isToEnd, const Joint &next) noexcept {
     const double wish = std::min(wish_of(m), filtered_arc_speed(p, m));
     const bool isAfterBlend = isFiltered() && open_joint_.d > 0;
     const bool isBeforeBlend = isFiltered() && next.d > 0;
-    const double before = isAfterBlend ? std::min(open_joint_.v, wish) * filter_s() : 0.0;
-    const double after = isBeforeBlend ? std::min(next.v, wish) * filter_s() : 0.0;
-    const bool isZoned = !p.isArc && before + after > 0 && before + after < 0.9 * (to - from);
-    if (!isZoned) {
-        const Sequence first = last_piece_ + 1;
-        add_part(piece, to, isToEnd, wish);
-        if (before + after > 0 && !p.isArc) {
-            scale_piece(first, 1.0, 1.0 - std::max(open_joint_.turning, next.turning));
-        }
-        return;
-    }
-    // Next to a curve the speed stays as it is there, so that turning and braking do not meet in the mean.
+    // Next to a curve that stands alone the speed stays as it is there, so that turning and braking do not
+    // meet in the mean; what curves close by take of the acceleration at the same speed is not there for the
+    // path.
+    const auto zone = [&](bool isBlend, const Joint &joint) {
+        const double way = std::min(joint.v, wish) * filter_s();
+        return isBlend && !p.isArc && way < ZONE_SHARE * (to - from) ? way : 0.0;
+    };
+    const double before = zone(isAfterBlend, open_joint_);
+    const double after = zone(isBeforeBlend, next);
     if (before > 0) {
         add_part(piece, from + before, false, open_joint_.v);
     }
+    const Sequence first = last_piece_ + 1;
     piece.offset = from + before;
     add_part(piece, to - after, isToEnd && !(after > 0), wish);
+    const auto taken_by = [](bool isNear, const Joint &j) { return isNear ? j.turning / (j.v * j.v) : 0.0; };
+    const double taken = std::max(taken_by(isAfterBlend && !(before > 0), open_joint_),
+                                  taken_by(isBeforeBlend && !(after > 0), next));
+    for (Sequence k = first; k <= last_piece_ && taken > 0 && !p.isArc; ++k) {
+        AccelBound &bound = store_.piece(k).acceleration;
+        for (std::size_t i = 0; i < AccelBound::LINES; ++i) {
+            bound.beta[i] += SHARED_TURNS * bound.alpha[i] * taken;
+            bound.alpha[i] *= SHARED_REST;
+        }
+    }
     if (after > 0) {
         piece.offset = to - after;
         add_part(piece, to, isToEnd, next.v);
@@ -249,6 +260,11 @@ void Planner::add_part(Piece piece, double to, bool isToEnd, double v) noexcept 
         const double pieces = std::ceil(std::abs(p.omega) * (to - from) / cut);
         cuts = static_cast<int>(std::clamp(pieces, 1.0, static_cast<double>(MOST_ARC_CUTS)));
     }
+    if (joint_map_ != nullptr && !piece.isAlong) {
+        // Joints may run on curves where the path is straight.
+        const double pieces = std::ceil(geom::norm_abc(p.lin) * (to - from) / JOINT_CUT_DEG);
+        cuts = std::max(cuts, static_cast<int>(std::clamp(pieces, 4.0, static_cast<double>(MOST_ARC_CUTS))));
+    }
     for (int i = 0; i < cuts; ++i) {
         const double begin = from + (to - from) * i / cuts;
         const double end = i + 1 == cuts ? to : from + (to - from) * (i + 1) / cuts;
@@ -265,10 +281,11 @@ void Planner::add_piece(const Piece &piece, const SpeedLimit &limit) noexcept {
     const Sequence k = last_piece_ + 1;
     Piece &slot = store_.piece(k);
     slot = piece;
-    slot.acceleration = limit.a;
+    const SpeedLimit lowest = joint_map_ == nullptr ? limit : limit_with_joints(piece, limit);
+    slot.acceleration = lowest.a;
     PiecePlan &plan = piece_plan(k);
     plan.v_limit =
-        std::min(limit.v, MOVES_PER_CYCLE * store_.primitive(piece.primitive).length / settings_.period_s);
+        std::min(lowest.v, MOVES_PER_CYCLE * store_.primitive(piece.primitive).length / settings_.period_s);
     plan.v2_in = -1;
     plan.isStopBefore = isOpenStop_;
     plan.dwell_s = isOpenStop_ ? open_joint_.dwell_s : filter_s();

@@ -198,7 +198,7 @@ bool Planner::predict(const Snapshot &now, State &state) const noexcept {
         const bool isStop = state.v <= 1e-9 * std::abs(p.a) * (p.duration + settings_.period_s);
         state.v = 0;
         const double length = store_.piece(p.piece).length;
-        const bool isAtEnd = std::abs(state.x - length) <= 1e-12 * (1.0 + length);
+        const bool isAtEnd = std::abs(state.x - length) <= 4e-12 * (1.0 + length);
         if (isAtEnd && p.piece < last_piece_) {
             state = {p.piece + 1, 0, 0, state.coasting};
         }
@@ -353,7 +353,7 @@ void Planner::append(const Snapshot &now) noexcept {
 }
 
 void Planner::update(const Snapshot &now) noexcept {
-    if (isFiltered()) {
+    if (isTried()) {
         update_filtered(now);
         return;
     }

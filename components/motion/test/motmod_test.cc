@@ -145,6 +145,18 @@ TEST(Motmod, TrivkinsRefusesLettersThatAreNoAxes_C14) {
     EXPECT_EQ(m.load("trivkins", {"coordinates=xyyz", "kinstype=BOTH"}), "ok");
 }
 
+TEST(Motmod, ModelsOfOtherMachinesLoad_C14) {
+    {
+        Machine m;
+        ASSERT_EQ(m.load("corexykins"), "ok");
+        EXPECT_EQ(m.load("motmod", {"num_joints=3"}), "ok");
+    }
+    Machine m;
+    EXPECT_NE(m.load("tablekins", {"tilt_y=near"}).find("expected a number"), std::string::npos);
+    ASSERT_EQ(m.load("tablekins", {"tilt_y=12.5", "tilt_z=-40"}), "ok");
+    EXPECT_EQ(m.load("motmod", {"num_joints=5"}), "ok");
+}
+
 TEST(Motmod, CanBeUnloadedAndLoadedAgain) {
     Machine m;
     ASSERT_NO_FATAL_FAILURE(m.start());

@@ -88,6 +88,7 @@ enum class Reason : std::uint16_t {
     BEYOND_SOFT_LIMIT,
     ON_HARD_LIMIT,
     UNREACHABLE,
+    JOINT_BEYOND_LIMIT,  ///< index is the joint
     AMP_FAULT,
     EXTERNAL_ENABLE_OFF,
     JOINT_INACTIVE,

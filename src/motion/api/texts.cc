@@ -58,6 +58,7 @@ std::string reason_text(const Answer &answer) {
     case Reason::ON_HARD_LIMIT:
         return fmt::format("{} is on a limit switch: jog off it (override limits to turn the machine on)",
                            joint_name(i));
+    case Reason::JOINT_BEYOND_LIMIT: return "the move takes a joint beyond its soft limit";
     case Reason::UNREACHABLE: return "the kinematics cannot reach the move";
     case Reason::AMP_FAULT: return fmt::format("the amplifier of {} reports a fault", joint_name(i));
     case Reason::EXTERNAL_ENABLE_OFF:

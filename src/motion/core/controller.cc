@@ -192,6 +192,15 @@ void Controller::publish_limits() noexcept {
     out.limits.velocity[traj::XYZ_NORM] = std::min(get(Parameter::TRAJ_MAX_VELOCITY), traj::UNLIMITED);
     out.limits.acceleration[traj::XYZ_NORM] =
         std::min(get(Parameter::TRAJ_MAX_ACCELERATION), traj::UNLIMITED);
+    for (int j = 0; j < config_.num_joints; ++j) {
+        const double own = get(Parameter::JOINT_MAX_JERK, j);
+        out.joints.velocity[at(j)] = get(Parameter::JOINT_MAX_VELOCITY, j);
+        out.joints.acceleration[at(j)] = get(Parameter::JOINT_MAX_ACCELERATION, j);
+        out.joints.jerk[at(j)] = own < JERK_OFF ? own : traj::UNLIMITED;
+        out.joint_low[at(j)] = homing_.isHomed(j) ? get(Parameter::JOINT_MIN_LIMIT, j) : -UNBOUNDED;
+        out.joint_high[at(j)] = homing_.isHomed(j) ? get(Parameter::JOINT_MAX_LIMIT, j) : UNBOUNDED;
+    }
+    out.joints.count = config_.num_joints;
     link_.limits.write(out);
     ++limits_version_;
 }

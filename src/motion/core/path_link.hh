@@ -9,6 +9,7 @@
 #include "base/limits.hh"
 #include "base/seqlock.hh"
 #include "motion/api/status.hh"
+#include "traj/joint_map.hh"
 #include "traj/limits.hh"
 #include "traj/path_store.hh"
 
@@ -17,8 +18,10 @@ namespace mw::motion {
 /// Written by the controller when a setting changes or a joint is homed or unhomed.
 struct PathLimits {
     traj::Limits limits;
-    geom::Pose low, high;    ///< soft limits per axis; +-infinity where none holds
-    std::uint32_t axes = 0;  ///< bit per axis that the kinematics drive
+    geom::Pose low, high;      ///< soft limits per axis; +-infinity where none holds
+    std::uint32_t axes = 0;    ///< bit per axis that the kinematics drive
+    traj::JointLimits joints;  ///< where joints are not axes
+    std::array<double, MAX_JOINTS> joint_low{}, joint_high{};  ///< soft limits; +-infinity where none holds
 };
 
 /// Written by the controller every servo cycle, one consistent picture.

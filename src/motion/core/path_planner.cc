@@ -28,7 +28,7 @@ bool isFinite(const geom::Pose &p) noexcept {
 
 PathPlanner::PathPlanner(const PathPlannerConfig &config, const kins::Kinematics &kinematics,
                          Channels &channels, PathLink &link) noexcept
-    : config_(config), kinematics_(kinematics), channels_(channels), link_(link),
+    : config_(config), kinematics_(kinematics), map_(kinematics), channels_(channels), link_(link),
       planner_(link.store, {config.servo_period_s, latency_cycles(config.servo_period_s), HORIZON_S}) {}
 
 void PathPlanner::update() noexcept {
@@ -53,6 +53,8 @@ void PathPlanner::follow_controller() noexcept {
     if (view_.limits_version != limits_version_ && link_.limits.read(limits_, 1000)) {
         limits_version_ = view_.limits_version;
         planner_.set_limits(limits_.limits);
+        const bool isMapped = kinematics_.identity() == nullptr && kinematics_.isShareable();
+        planner_.set_joints(isMapped ? &map_ : nullptr, limits_.joints);
     }
     follow_drops();
     if (view_.epoch != epoch_) {
@@ -282,6 +284,14 @@ Reason PathPlanner::check_joints(const traj::Primitive &p) noexcept {
     for (int n = 0; n <= SAMPLES; ++n) {
         if (kinematics_.inverse(traj::position_at(p, p.length * n / SAMPLES), joints) != kins::Status::OK) {
             return Reason::UNREACHABLE;
+        }
+        for (int j = 0; j < config_.num_joints; ++j) {
+            const auto i = static_cast<std::size_t>(j);
+            if (joints[j] < limits_.joint_low[i] - SOFT_LIMIT_ROUNDING ||
+                joints[j] > limits_.joint_high[i] + SOFT_LIMIT_ROUNDING) {
+                refused_index_ = static_cast<std::int16_t>(j);
+                return Reason::JOINT_BEYOND_LIMIT;
+            }
         }
     }
     return Reason::NONE;

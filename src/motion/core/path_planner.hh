@@ -20,6 +20,18 @@ struct PathPlannerConfig {
     int num_dio = 4, num_aio = 4;
 };
 
+/// The inverse of pure kinematics, for the planner.
+class KinematicsMap final : public traj::JointMap {
+  public:
+    explicit KinematicsMap(const kins::Kinematics &kinematics) noexcept : kinematics_(kinematics) {}
+    bool joints_at(const geom::Pose &pose, double *joints) const noexcept override {
+        return kinematics_.inverse(pose, joints) == kins::Status::OK;
+    }
+
+  private:
+    const kins::Kinematics &kinematics_;
+};
+
 /// After a refusal or a stop the rest of the same epoch's path commands is answered STALE, until a new epoch
 /// or Enable: a path with a hole in it is never driven.
 class PathPlanner {
@@ -69,6 +81,7 @@ class PathPlanner {
 
     PathPlannerConfig config_;
     const kins::Kinematics &kinematics_;
+    KinematicsMap map_;
     Channels &channels_;
     PathLink &link_;
     traj::Planner planner_;

@@ -43,6 +43,8 @@ const char *ModuleKinematics::find(int num_joints) noexcept {
     case KINEMATICS_BOTH: kind_ = kins::Kind::BOTH; break;
     case KINEMATICS_IDENTITY: kind_ = kins::Kind::IDENTITY; break;
     }
+    const auto is_pure = find_function<int (*)()>("mw_kinematics_is_pure");
+    isPure_ = is_pure != nullptr && is_pure() != 0;
     probe_identity(num_joints);
     return nullptr;
 }

@@ -18,7 +18,8 @@ class ModuleKinematics final : public kins::Kinematics {
     kins::Status forward(const double *joints, kins::Pose &pose) const noexcept override;
     kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept override;
     const kins::IdentityMap *identity() const noexcept override { return isIdentity_ ? &map_ : nullptr; }
-    bool isShareable() const noexcept override { return isIdentity_; }
+    /// Modules that export mw_kinematics_is_pure say so themselves.
+    bool isShareable() const noexcept override { return isIdentity_ || isPure_; }
 
   private:
     void probe_identity(int num_joints) noexcept;
@@ -26,7 +27,7 @@ class ModuleKinematics final : public kins::Kinematics {
     decltype(&kinematicsForward) forward_ = nullptr;
     decltype(&kinematicsInverse) inverse_ = nullptr;
     kins::Kind kind_ = kins::Kind::IDENTITY;
-    bool isIdentity_ = false;
+    bool isIdentity_ = false, isPure_ = false;
     kins::IdentityMap map_;
     mutable KINEMATICS_FORWARD_FLAGS forward_flags_ = 0;
     mutable KINEMATICS_INVERSE_FLAGS inverse_flags_ = 0;

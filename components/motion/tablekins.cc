@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Kinematics of five-axis machines with a tilting rotary table (kins/rotary_table.hh): joints 0 to 4 = X Y Z
+// A C. tilt_y=, tilt_z=: where the axis A passes the axis C, from the origin [machine units].
+#include <stdlib.h>
+
+#include "hal/api/hal.h"
+#include "hal/api/kinematics.h"
+#include "hal/api/rtapi_app.h"
+#include "kins/rotary_table.hh"
+
+using mw::geom::Pose;
+
+static char *tilt_y;
+RTAPI_MP_STRING(tilt_y, "Y of the tilting axis [machine units]");
+static char *tilt_z;
+RTAPI_MP_STRING(tilt_z, "Z of the tilting axis [machine units]");
+
+static mw::kins::RotaryTable model;
+static int component = -1;
+
+extern "C" int kinematicsForward(const double *joint, struct EmcPose *world, const KINEMATICS_FORWARD_FLAGS *,
+                                 KINEMATICS_INVERSE_FLAGS *) {
+    Pose pose;
+    model.forward(joint, pose);
+    *world = {{pose[0], pose[1], pose[2]}, pose[3], pose[4], pose[5], pose[6], pose[7], pose[8]};
+    return 0;
+}
+
+extern "C" int kinematicsInverse(const struct EmcPose *world, double *joint, const KINEMATICS_INVERSE_FLAGS *,
+                                 KINEMATICS_FORWARD_FLAGS *) {
+    const Pose pose{{world->tran.x, world->tran.y, world->tran.z, world->a, world->b, world->c, world->u,
+                     world->v, world->w}};
+    model.inverse(pose, joint);
+    return 0;
+}
+
+extern "C" int kinematicsHome(struct EmcPose *world, double *joint, KINEMATICS_FORWARD_FLAGS *fflags,
+                              KINEMATICS_INVERSE_FLAGS *iflags) {
+    return kinematicsForward(joint, world, fflags, iflags);
+}
+
+extern "C" KINEMATICS_TYPE kinematicsType(void) {
+    return KINEMATICS_BOTH;
+}
+
+/// No hidden state: the planner may call these functions while the servo thread does.
+extern "C" RTAPI_EXPORT int mw_kinematics_is_pure(void) {
+    return 1;
+}
+
+extern "C" {
+KINS_NOT_SWITCHABLE
+}
+
+/// False when the text is no number. The realtime process keeps the locale C.
+static bool read_number(const char *name, const char *text, double &value) {
+    if (text == nullptr || text[0] == '\0') {
+        return true;
+    }
+    char *end = nullptr;
+    value = strtod(text, &end);
+    if (*end != '\0') {
+        rtapi_print_msg(RTAPI_MSG_ERR, "tablekins: %s=%s: expected a number\n", name, text);
+    }
+    return *end == '\0';
+}
+
+int rtapi_app_main(void) {
+    double y = 0;
+    double z = 0;
+    if (!read_number("tilt_y", tilt_y, y) || !read_number("tilt_z", tilt_z, z)) {
+        return -22;  // EINVAL
+    }
+    model.set_tilt_axis(y, z);
+    component = hal_init("tablekins");
+    return component < 0 ? component : hal_ready(component);
+}
+
+void rtapi_app_exit(void) {
+    hal_exit(component);
+}

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Cycle time of a program before it runs: per tool and in all, and where the time is lost.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "interp/machine_canon.hh"
+#include "machine/machine_config.hh"
+#include "traj/estimator.hh"
+
+namespace mw::machine {
+
+struct SlowPlace {
+    std::string file;
+    int line = 0;
+    double lost_s = 0;  ///< against the programmed feed
+    std::string limit;  ///< "acceleration of X", "tolerance"...
+};
+
+struct TimeFigures {
+    double total_s = 0, cutting_s = 0, rapid_s = 0, dwell_s = 0;
+    std::map<int, double> by_tool;
+    std::vector<SlowPlace> slowest;  ///< at most SLOW_PLACES, the worst first
+};
+inline constexpr std::size_t SLOW_PLACES = 5;
+
+/// The limits of the axes as the motion controller folds them, for machines whose joints are axes.
+traj::Limits path_limits(const MachineConfig &machine);
+
+/// Fed with the moves in order; one thread.
+class TimeEstimate {
+  public:
+    explicit TimeEstimate(const MachineConfig &machine);
+
+    void start(const geom::Pose &position);
+    void set_place(const std::string &file, int line);
+    void line(const geom::Pose &end, const interp::MoveSettings &settings);
+    void arc(const interp::ArcMove &move);
+    void dwell(double seconds);
+    /// Motion stands here: tool changes, stops, probes.
+    void stop();
+    void set_tool(int tool);
+    const TimeFigures &finish();
+
+  private:
+    void take(const traj::MoveEstimate &move);
+    traj::MoveRequest request_of(const interp::MoveSettings &settings);
+
+    const MachineConfig &machine_;
+    TimeFigures figures_;
+    int tool_ = 0;
+    std::vector<std::string> files_;
+    std::uint32_t file_ = 0;
+    int line_ = 0;
+    geom::Pose position_;
+    std::unique_ptr<traj::Estimator> estimator_;
+    std::map<std::pair<std::uint32_t, int>, SlowPlace> places_;
+};
+
+}  // namespace mw::machine

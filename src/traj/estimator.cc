@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "traj/estimator.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mw::traj {
+
+namespace {
+
+constexpr std::uint64_t PLANNER_CYCLES = 5;
+constexpr std::uint64_t LATENCY = 3;
+constexpr double HORIZON_S = 0.1;
+/// A limit counts as binding from this part of it on.
+constexpr double NEAR = 0.93;
+/// A move that takes this much of the time at its feed runs at its feed.
+constexpr double AT_FEED = 1.02;
+
+}  // namespace
+
+Estimator::Estimator(const Limits &limits, double period_s, Listener listener)
+    : limits_(limits), period_s_(period_s), listener_(std::move(listener)),
+      store_(std::make_unique<PathStore>()), executor_(std::make_unique<Executor>(*store_, period_s)),
+      planner_(std::make_unique<Planner>(*store_, PlannerSettings{period_s, LATENCY, HORIZON_S, true})) {
+    planner_->set_limits(limits);
+}
+
+void Estimator::begin(const Pose &pose) {
+    executor_->set_position(pose);
+    executor_->step(++cycle_);
+    planner_->begin(pose, executor_->snapshot());
+    last_.fill(pose);
+}
+
+void Estimator::add(const Primitive &primitive, const MoveRequest &request) {
+    if (!(primitive.length > 1e-12)) {
+        return;
+    }
+    while (!planner_->hasRoom(executor_->snapshot())) {
+        step();
+    }
+    MoveRequest plain = request;
+    plain.isGated = false;
+    planner_->add(primitive, plain);
+}
+
+void Estimator::finish() {
+    planner_->release_end();
+    while (executor_->snapshot().done_move < planner_->last_move() || !executor_->isAtRest()) {
+        step();
+    }
+    close_move();
+}
+
+void Estimator::step() {
+    if (cycle_ % PLANNER_CYCLES == 0) {
+        planner_->update(executor_->snapshot());
+    }
+    const ExecutorOutput &out = executor_->step(++cycle_);
+    count(out);
+}
+
+/// |n-th difference| over its limit; `order` 0 velocity, 1 acceleration, 2 jerk.
+double Estimator::ratio(int i, int order) const {
+    const auto along = [&](int axis) {
+        const double v = last_[0][axis] - last_[1][axis];
+        const double before = last_[1][axis] - last_[2][axis];
+        const double oldest = last_[2][axis] - last_[3][axis];
+        return order == 0 ? v : order == 1 ? v - before : v - 2.0 * before + oldest;
+    };
+    const auto n = static_cast<std::size_t>(i);
+    const double value = i == XYZ_NORM ? std::hypot(along(0), along(1), along(2)) : std::abs(along(i));
+    const double limit = order == 0   ? limits_.velocity[n]
+                         : order == 1 ? limits_.acceleration[n]
+                                      : limits_.jerk[n];
+    return value / (std::pow(period_s_, order + 1) * limit);
+}
+
+void Estimator::count(const ExecutorOutput &out) {
+    last_ = {out.position, last_[0], last_[1], last_[2]};
+    if (out.move != 0 && out.move != move_) {
+        close_move();
+        move_ = out.move;
+    }
+    ++move_cycles_;
+    const int orders = limits_.isJerkLimited ? 3 : 2;
+    for (int order = 0; order < orders; ++order) {
+        for (int i = 0; i < LIMITED_COUNT; ++i) {
+            bound_[static_cast<std::size_t>(order)][static_cast<std::size_t>(i)] +=
+                ratio(i, order) > NEAR ? 1 : 0;
+        }
+    }
+}
+
+void Estimator::close_move() {
+    if (move_ == 0 || move_cycles_ == 0) {
+        return;
+    }
+    MoveEstimate e;
+    e.tag = store_->move(move_);
+    e.seconds = static_cast<double>(move_cycles_) * period_s_;
+    const double length = store_->primitive(move_).length / std::max(e.tag.feed_ratio, 1e-300);
+    e.seconds_at_feed = e.tag.requested_velocity > 0 ? length / e.tag.requested_velocity : 0.0;
+    const bool isAtFeed = e.tag.requested_velocity > 0 && e.seconds <= AT_FEED * e.seconds_at_feed;
+    if (!isAtFeed) {
+        e.binding = Binding::TOLERANCE;
+        std::uint64_t most = 0;
+        for (std::size_t order = 0; order < bound_.size(); ++order) {
+            for (std::size_t i = 0; i < bound_[order].size(); ++i) {
+                if (bound_[order][i] > most) {
+                    most = bound_[order][i];
+                    e.binding = static_cast<Binding>(static_cast<std::size_t>(Binding::VELOCITY) + order);
+                    e.axis = static_cast<int>(i);
+                }
+            }
+        }
+    }
+    bound_ = {};
+    move_cycles_ = 0;
+    listener_(e);
+}
+
+}  // namespace mw::traj

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// How long a path takes, by the planner and executor that drive it, without controller, drives or HAL. Not
+// realtime.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+
+#include "traj/executor.hh"
+#include "traj/planner.hh"
+
+namespace mw::traj {
+
+/// What keeps a move from being faster.
+enum class Binding : std::uint8_t { FEED, VELOCITY, ACCELERATION, JERK, TOLERANCE };
+
+struct MoveEstimate {
+    MoveTag tag;
+    double seconds = 0;
+    double seconds_at_feed = 0;  ///< if it ran at its feed throughout; 0 for rapids
+    Binding binding = Binding::FEED;
+    int axis = -1;  ///< geom::Axis of the binding limit, XYZ_NORM for the norm, -1 for none
+};
+
+class Estimator {
+  public:
+    using Listener = std::function<void(const MoveEstimate &)>;
+    Estimator(const Limits &limits, double period_s, Listener listener);
+
+    /// The path begins or goes on at `pose` after whatever is not motion.
+    void begin(const Pose &pose);
+    const Pose &end() const { return planner_->end(); }
+    /// Appends a move; drives what there is no room for. Moves of length 0 are left out.
+    void add(const Primitive &primitive, const MoveRequest &request);
+    /// Drives to the end of what has been added and stands.
+    void finish();
+    /// All time so far [s].
+    double seconds() const { return static_cast<double>(cycle_) * period_s_; }
+
+  private:
+    void step();
+    void count(const ExecutorOutput &out);
+    void close_move();
+    double ratio(int i, int order) const;
+
+    Limits limits_;
+    double period_s_;
+    Listener listener_;
+    std::unique_ptr<PathStore> store_;
+    std::unique_ptr<Executor> executor_;
+    std::unique_ptr<Planner> planner_;
+    std::uint64_t cycle_ = 0;
+    Sequence move_ = 0;  ///< the one whose time is counted
+    std::uint64_t move_cycles_ = 0;
+    std::array<Pose, 4> last_{};
+    std::array<std::array<std::uint64_t, LIMITED_COUNT>, 3>
+        bound_{};  ///< cycles near a limit, by order and axis
+};
+
+}  // namespace mw::traj

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Machines whose joints are not axes: what the planner needs to keep the limits of each joint.
+#pragma once
+
+#include <array>
+
+#include "base/limits.hh"
+#include "geom/pose.hh"
+
+namespace mw::traj {
+
+/// Pure; called from the planner's thread.
+class JointMap {
+  public:
+    /// The positions of all joints at a pose; false where there is none.
+    virtual bool joints_at(const geom::Pose &pose, double *joints) const noexcept = 0;
+
+  protected:
+    ~JointMap() = default;
+};
+
+struct JointLimits {
+    int count = 0;
+    std::array<double, MAX_JOINTS> velocity{}, acceleration{}, jerk{};
+};
+
+}  // namespace mw::traj

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What jerk limits do to single moves, corners and arcs, and joining of lines.
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "traj/test/path_rig.hh"
+
+namespace mw::traj::test {
+namespace {
+
+constexpr double V = 100, A = 1000, J = 50000;
+
+Limits jerk_limits() {
+    Limits l;
+    l.velocity.fill(V);
+    l.acceleration.fill(A);
+    l.jerk.fill(J);
+    l.velocity[XYZ_NORM] = UNLIMITED;
+    l.acceleration[XYZ_NORM] = UNLIMITED;
+    l.jerk[XYZ_NORM] = UNLIMITED;
+    l.isJerkLimited = true;
+    return l;
+}
+
+Pose at(double x, double y = 0) {
+    Pose p;
+    p[0] = x;
+    p[1] = y;
+    return p;
+}
+
+MoveRequest request(Join join, double tolerance = 0) {
+    MoveRequest r;
+    r.tag.requested_velocity = 80;
+    r.join = join;
+    r.tolerance = tolerance;
+    return r;
+}
+
+struct JerkRig : Rig {
+    JerkRig() : Rig(Pose{}) {
+        planner.set_limits(jerk_limits());
+        planner.begin(Pose{}, executor.snapshot());
+    }
+    void expect_within() const {
+        auto checker = make_checker(jerk_limits(), T);
+        for (const Pose &p : samples) {
+            checker.sample(p.c.data());
+        }
+        EXPECT_TRUE(checker.isWithin()) << checker.report();
+    }
+};
+
+TEST(Filtered, AMoveFromStopToStopTakesTheTimeOfAnSCurve_C13) {
+    JerkRig rig;
+    rig.planner.add(make_line(Pose{}, at(20)), request(Join::STOP));
+    ASSERT_TRUE(rig.run(10));
+    rig.expect_within();
+    EXPECT_EQ(rig.samples.back(), at(20));
+    const double best = 20.0 / 80 + 80 / A + A / J;
+    EXPECT_NEAR(static_cast<double>(rig.cycle) * Rig::T, best, 0.012);  // planner period and latency
+}
+
+TEST(Filtered, AShortMoveIsAnSCurveWithoutAPlateau_C13) {
+    JerkRig rig;
+    rig.planner.add(make_line(Pose{}, at(1)), request(Join::STOP));
+    ASSERT_TRUE(rig.run(10));
+    rig.expect_within();
+    // Up and down with a coast of A/J between: L = a t^2 + a t A/J.
+    const double tau = A / J;
+    const double t = 0.5 * (-tau + std::sqrt(tau * tau + 4.0 * 1 / A));
+    EXPECT_NEAR(static_cast<double>(rig.cycle) * Rig::T, 2 * t + 2 * tau, 0.012);
+}
+
+TEST(Filtered, ACornerUsesTheToleranceAndNoMore_C13) {
+    JerkRig rig;
+    rig.planner.add(make_line(Pose{}, at(10)), request(Join::BLEND, 0.005));
+    rig.planner.add(make_line(at(10), at(10, 10)), request(Join::BLEND, 0.005));
+    ASSERT_TRUE(rig.run(10));
+    rig.expect_within();
+    double nearest = 100;
+    for (const Pose &p : rig.samples) {
+        nearest = std::min(nearest, geom::norm(p - at(10)));
+    }
+    EXPECT_LT(nearest, 0.0055);
+    EXPECT_GT(nearest, 0.002);
+}
+
+TEST(Filtered, AnExactArcIsFollowedExactly_C13) {
+    JerkRig rig;
+    ArcShape shape;
+    shape.centre = at(0, 5);
+    shape.normal[2] = 1;
+    shape.angle_rad = std::numbers::pi;
+    Primitive arc;
+    ASSERT_EQ(make_arc(Pose{}, at(0, 10), shape, arc), ArcFault::NONE);
+    rig.planner.add(arc, request(Join::EXACT));
+    rig.planner.add(make_line(at(0, 10), at(-20, 10)), request(Join::EXACT));
+    ASSERT_TRUE(rig.run(10));
+    rig.expect_within();
+    EXPECT_EQ(rig.samples.back(), at(-20, 10));
+    for (const Pose &p : rig.samples) {
+        if (p[0] > 1e-6) {
+            EXPECT_NEAR(geom::norm(p - at(0, 5)), 5, 1e-12);
+        }
+    }
+}
+
+TEST(Filtered, AHoldStopsWithinTheJerkLimitAndGoesOn_C13) {
+    JerkRig rig;
+    rig.planner.add(make_line(Pose{}, at(60)), request(Join::STOP));
+    rig.planner.release_end();
+    for (int i = 0; i < 300; ++i) {
+        rig.step();
+    }
+    rig.executor.hold(true);
+    const std::uint64_t asked = rig.cycle;
+    while (!rig.executor.isAtRest() && rig.cycle < asked + 1000) {
+        rig.step();
+    }
+    // Planner period, latency, v/a and twice the mean.
+    EXPECT_LT(rig.cycle - asked, 5U + 3U + 80U + 45U);
+    rig.executor.hold(false);
+    ASSERT_TRUE(rig.run(10));
+    rig.expect_within();
+    EXPECT_EQ(rig.samples.back(), at(60));
+}
+
+TEST(Joining, NearlyStraightLinesBecomeOneWithinTheTolerance_C2) {
+    Rig rig{Pose{}};
+    Limits limits = jerk_limits();
+    limits.isJerkLimited = false;
+    rig.planner.set_limits(limits);
+    Pose from;
+    for (int i = 1; i <= 50; ++i) {
+        const Pose to = at(0.05 * i, i % 2 == 0 ? 0.0 : 0.0004);
+        rig.planner.add(make_line(from, to), request(Join::BLEND, 0.01));
+        from = to;
+    }
+    EXPECT_LE(rig.planner.last_move(), 2U);
+    ASSERT_TRUE(rig.run(10));
+    EXPECT_EQ(rig.samples.back(), from);
+}
+
+TEST(Joining, AnEventKeepsItsPlace_C2) {
+    Rig rig{Pose{}};
+    rig.planner.set_limits(jerk_limits());
+    rig.planner.add(make_line(Pose{}, at(5)), request(Join::BLEND, 0.01));
+    ASSERT_TRUE(rig.planner.add_event({}));
+    rig.planner.add(make_line(at(5), at(10)), request(Join::BLEND, 0.01));
+    EXPECT_EQ(rig.planner.last_move(), 2U);
+}
+
+}  // namespace
+}  // namespace mw::traj::test
