@@ -155,6 +155,11 @@ inline void set_finite(Out<double> &out, double value) noexcept {
     }
 }
 
+/// The next number of a counter that runs over the end of its type.
+constexpr std::int32_t next_count(std::int32_t count) noexcept {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(count) + 1U);
+}
+
 /// [s]
 constexpr double seconds(long period_ns) noexcept {
     return static_cast<double>(period_ns) * 1e-9;

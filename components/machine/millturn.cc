@@ -15,7 +15,7 @@ struct Millturn {
         d.pin(fpin, "fpin");
         d.function<&Millturn::demo>(this, "fdemo");
     }
-    void demo() noexcept { fpin = static_cast<std::int32_t>(static_cast<std::uint32_t>(fpin.get()) + 1U); }
+    void demo() noexcept { fpin = next_count(fpin); }
 };
 
 }  // namespace mw::components

@@ -7,9 +7,9 @@
 // switch is true within half of that; x-maxsw-upper, x-maxsw-lower, x-minsw-upper, x-minsw-lower: between
 // which positions the limit switches are true; x-homing (bit). `limit-offset` (0.01) is added to
 // x-maxsw-lower and subtracted from x-minsw-upper. Outputs (bit): x-homesw-out, x-maxsw-out, x-minsw-out;
-// x-bothsw-out one of the limits, but not while homing; x-maxsw-homesw-out, x-minsw-homesw-out,
+// x-bothsw-out one of the limits, but not while any axis homes; x-maxsw-homesw-out, x-minsw-homesw-out,
 // x-bothsw-homesw-out with the home switch too. Over all axes: limitsw-all (any bothsw), homesw-all (any home
-// switch of an axis that homes), limitsw-homesw-all.
+// switch while an axis homes), limitsw-homesw-all.
 #include <cmath>
 
 #include "components/common/kit.hh"

@@ -40,9 +40,9 @@ struct Sampler {
         const bool isStored = hal_stream_write(&pins.stream, record) >= 0;
         full = !isStored;
         if (!isStored) {
-            overruns = overruns + 1;
+            overruns = next_count(overruns);
         }
-        sample_num = sample_num + 1;
+        sample_num = next_count(sample_num);
         curr_depth = static_cast<std::int32_t>(hal_stream_depth(&pins.stream));
     }
 };

@@ -46,7 +46,7 @@ struct Streamer {
         }
         hal_stream_data_u record[HAL_STREAM_MAX_PINS];
         if (hal_stream_read(&pins.stream, record, nullptr) < 0) {
-            underruns = underruns + 1;
+            underruns = next_count(underruns);
             return;
         }
         pins.write(record);

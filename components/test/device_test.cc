@@ -14,6 +14,7 @@
 #include "components/machine/thermocouple.hh"
 #include "components/test/bench.hh"
 #include "components/test/modules.hh"
+#include "hal/api/kinematics.h"
 
 namespace mw::components::test {
 namespace {
@@ -332,25 +333,18 @@ TEST(Raster, HasNoPowerWithoutALine_B6) {
 TEST(Millturn, SwitchesBetweenMillAndTurn_B6) {
     void *module = dlopen(MW_MODULES_FOLDER "/millturn.so", RTLD_NOW | RTLD_LOCAL);
     ASSERT_NE(module, nullptr) << dlerror();
-    struct Pose {
-        double x, y, z, a, b, c, u, v, w;
-    };
-    const auto forward =
-        reinterpret_cast<int (*)(const double *, Pose *, const unsigned long *, unsigned long *)>(
-            dlsym(module, "kinematicsForward"));
-    const auto inverse =
-        reinterpret_cast<int (*)(const Pose *, double *, const unsigned long *, unsigned long *)>(
-            dlsym(module, "kinematicsInverse"));
-    const auto change = reinterpret_cast<int (*)(int)>(dlsym(module, "kinematicsSwitch"));
+    const auto forward = reinterpret_cast<decltype(&kinematicsForward)>(dlsym(module, "kinematicsForward"));
+    const auto inverse = reinterpret_cast<decltype(&kinematicsInverse)>(dlsym(module, "kinematicsInverse"));
+    const auto change = reinterpret_cast<decltype(&kinematicsSwitch)>(dlsym(module, "kinematicsSwitch"));
     ASSERT_TRUE(forward != nullptr && inverse != nullptr && change != nullptr);
     for (int type = 0; type < 2; ++type) {
         ASSERT_EQ(change(type), 0);
         const double joint[] = {1, 2, 3, 4};
-        Pose pose{};
+        EmcPose pose{};
         ASSERT_EQ(forward(joint, &pose, nullptr, nullptr), 0);
-        EXPECT_EQ(pose.x, type == 0 ? 1 : 3);
-        EXPECT_EQ(pose.y, type == 0 ? 2 : -2);
-        EXPECT_EQ(pose.z, type == 0 ? 3 : 1);
+        EXPECT_EQ(pose.tran.x, type == 0 ? 1 : 3);
+        EXPECT_EQ(pose.tran.y, type == 0 ? 2 : -2);
+        EXPECT_EQ(pose.tran.z, type == 0 ? 3 : 1);
         double back[4] = {};
         ASSERT_EQ(inverse(&pose, back, nullptr, nullptr), 0);
         for (int i = 0; i < 4; ++i) {

@@ -91,9 +91,9 @@ void Latencybins::count(std::int32_t ns) noexcept {
     if (bin <= last_bin()) {
         ++(isLate ? late : early)[bin];
     } else if (isLate) {
-        pextra = pextra + 1;
+        pextra = next_count(pextra);
     } else {
-        nextra = nextra + 1;
+        nextra = next_count(nextra);
     }
 }
 
