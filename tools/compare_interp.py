@@ -41,7 +41,8 @@ DROPPED = ('START_CHANGE()',)
 CHANGE_TOOL = re.compile(r'CHANGE_TOOL\(\d+\)')
 
 # What ours refuses and the reference does not; docs/compatibility.md says why.
-STRICTER = ('Concave corner cannot be reached', 'M6 needs a tool', 'The feed is per revolution')
+STRICTER = ('Concave corner cannot be reached', 'M6 needs a tool', 'The feed is per revolution',
+            'The first G5 of a series', 'G64 must not be negative')
 
 
 def run_all(folder, program, tag, first, last, user=None):

@@ -179,6 +179,10 @@ void PrintCanon::arc_feed(const ArcFeed &arc) {
                     arc.axis_end, arc.end[3], arc.end[4], arc.end[5]));
 }
 
+void PrintCanon::nurbs_feed(const NurbsFeed &nurbs) {
+    put(fmt::format("NURBS_FEED({}, ...)", nurbs.points.size()));
+}
+
 void PrintCanon::straight_probe(const Pose &end, ProbeKind) {
     put("TURN_PROBE_ON()");
     put_straight("STRAIGHT_PROBE", end);
