@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """HAL against an installed LinuxCNC: the same work through both sets of programs, interleaved, as an ordinary user.
 
-  dispatch   CPU time of the realtime process (run time of its threads, as the kernel counts it) per function call:
-             that of a cycle with 300 and2 less that of one without, cycles counted by threadtest, at 0.1 ms
+  dispatch   run time of a thread of 300 and2 per function, as the thread's own pin .time has it (median of 800 reads):
+             calls and their timing. The reference counts ticks of the processor's time stamp counter, ours nanoseconds;
+             ticks are converted by the rate in /proc/cpuinfo
   nets       `halcmd -f` of 3,000 net lines, elapsed
   read       `halcmd getp`, elapsed per call, one process each
   reads      the same 3,000 times in one `halcmd -f`
@@ -13,7 +14,6 @@ Prints the medians and their ratio (ours / reference) with what is aimed at; sta
 Without a reference only our figures.
 """
 import argparse
-import glob
 import json
 import os
 import pathlib
@@ -30,7 +30,6 @@ UNITS = {'dispatch': 'ns', 'nets': 'ms', 'read': 'ms', 'reads': 'ms', 'start': '
 FUNCTIONS = 300
 NETS = 3000
 CALLS = 20
-SECONDS = 1.5
 
 
 def elapsed(command):
@@ -39,38 +38,30 @@ def elapsed(command):
     return (time.perf_counter() - begin) * 1e3
 
 
-def is_realtime_process(folder):
-    name = pathlib.Path(folder, 'comm').read_text().strip()
-    if name == 'millwright-rt':
-        return b'--instance\0bench\0' in pathlib.Path(folder, 'cmdline').read_bytes()
-    return name == 'rtapi_app'
+def clock_mhz():
+    """Rate of the processor's time stamp counter."""
+    for line in pathlib.Path('/proc/cpuinfo').read_text().splitlines():
+        if line.startswith('cpu MHz'):
+            return float(line.split(':')[1])
+    return 1000.0
 
 
-def realtime_cpu_ns():
-    """Run time of all threads of the realtime process."""
-    total = 0
-    for folder in glob.glob('/proc/[0-9]*'):
-        try:
-            if is_realtime_process(folder):
-                for task in glob.glob(folder + '/task/*/schedstat'):
-                    total += int(pathlib.Path(task).read_text().split()[0])
-        except (FileNotFoundError, ProcessLookupError):
-            pass
-    return total
-
-
-def cycles_run():
-    done = subprocess.run(['halcmd', 'getp', 'threadtest.0.count'], check=True, capture_output=True, text=True)
-    return int(done.stdout, 0)
+def thread_time():
+    """Median of what the thread says of its own run time, over some hundred periods."""
+    pathlib.Path('times.hal').write_text('getp t.time\n' * 100)
+    times = []
+    for _ in range(8):
+        done = subprocess.run(['halcmd', '-f', 'times.hal'], check=True, capture_output=True, text=True)
+        times += [int(line) for line in done.stdout.split()]
+        time.sleep(0.05)
+    return statistics.median(times)
 
 
 def inside(what):
     """Runs within `halrun` (loadusr -w): measures and leaves its figures in a file."""
     figures = {}
     if what == 'dispatch':
-        cycles, cpu = cycles_run(), realtime_cpu_ns()
-        time.sleep(SECONDS)
-        figures['cpu_per_cycle'] = (realtime_cpu_ns() - cpu) / (cycles_run() - cycles)
+        figures['thread_time'] = thread_time()
     else:
         figures['nets'] = elapsed(['halcmd', '-f', 'nets.hal'])
         figures['reads'] = elapsed(['halcmd', '-f', 'reads.hal'])
@@ -79,7 +70,7 @@ def inside(what):
     return 0
 
 
-def one_run():
+def one_run(counts_ticks):
     """All measurements for the programs on PATH, in the working folder; prints them."""
     me = os.path.abspath(__file__)
     figures = {}
@@ -92,25 +83,24 @@ def one_run():
         f'loadrt and2 count={NETS // 4}\nloadusr -w python3 {me} --inside nets\n')
     subprocess.run(['halrun', 'nets_run.hal'], check=True, stdin=subprocess.DEVNULL)
     figures.update(json.loads(pathlib.Path('figures.json').read_text()))
-    per_cycle = {}
-    for count in (0, FUNCTIONS):
-        adds = ''.join(f'addf and2.{i} t\n' for i in range(count))
-        pathlib.Path('dispatch.hal').write_text(
-            f'loadrt threads name1=t period1=100000\nloadrt and2 count={FUNCTIONS}\nloadrt threadtest\n{adds}'
-            f'addf threadtest.0.increment t\nstart\nloadusr -w python3 {me} --inside dispatch\n')
-        subprocess.run(['halrun', 'dispatch.hal'], check=True, stdin=subprocess.DEVNULL)
-        per_cycle[count] = json.loads(pathlib.Path('figures.json').read_text())['cpu_per_cycle']
-    figures['dispatch'] = (per_cycle[FUNCTIONS] - per_cycle[0]) / FUNCTIONS
+    adds = ''.join(f'addf and2.{i} t\n' for i in range(FUNCTIONS))
+    pathlib.Path('dispatch.hal').write_text(
+        f'loadrt threads name1=t period1=200000\nloadrt and2 count={FUNCTIONS}\n{adds}start\n'
+        f'loadusr -w python3 {me} --inside dispatch\n')
+    subprocess.run(['halrun', 'dispatch.hal'], check=True, stdin=subprocess.DEVNULL)
+    thread_time = json.loads(pathlib.Path('figures.json').read_text())['thread_time']
+    figures['dispatch'] = thread_time / FUNCTIONS * (1000 / clock_mhz() if counts_ticks else 1)
     print(json.dumps(figures))
     return 0
 
 
-def measure(path, user):
+def measure(path, user, counts_ticks):
     with tempfile.TemporaryDirectory(prefix='bench-hal-') as folder:
         os.chmod(folder, 0o777)
         command = ['env', f'PATH={path}:/usr/bin:/bin:/usr/sbin:/sbin', f'HOME={folder}', 'MILLWRIGHT_INSTANCE=bench',
                    f'XDG_RUNTIME_DIR={folder}', sys.executable if not user else '/usr/bin/python3',
                    os.path.join(folder, 'hal.py'), '--one-run']
+        command += ['--ticks'] if counts_ticks else []
         shutil.copy(__file__, os.path.join(folder, 'hal.py'))
         if user:
             # A name space of its own: the reference has one realtime process and one shared memory per machine.
@@ -129,12 +119,13 @@ def main():
     parser.add_argument('--user', default='nobody', help='ordinary user when run by root')
     parser.add_argument('--runs', type=int, default=5)
     parser.add_argument('--one-run', action='store_true', help=argparse.SUPPRESS)
+    parser.add_argument('--ticks', action='store_true', help=argparse.SUPPRESS)
     parser.add_argument('--inside', help=argparse.SUPPRESS)
     o = parser.parse_args()
     if o.inside:
         return inside(o.inside)
     if o.one_run:
-        return one_run()
+        return one_run(o.ticks)
     user = o.user if os.geteuid() == 0 else None
     sides = {'ours': o.bin}
     if shutil.which('halrun', path=o.reference):
@@ -142,7 +133,7 @@ def main():
     results = {side: [] for side in sides}
     for _ in range(o.runs):
         for side, path in sides.items():
-            results[side].append(measure(path, user))
+            results[side].append(measure(path, user, side == 'reference'))
     is_good = True
     print(f'{"":10}' + ''.join(f'{side:>14}' for side in sides) + f'{"ratio":>9}{"aim":>7}   medians of {o.runs} runs')
     for name, aim in TARGETS.items():

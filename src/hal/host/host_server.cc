@@ -82,6 +82,7 @@ struct HostServer::Impl {
     bool isControllerGone();
     void look_for_programs();
     void reap();
+    void dismiss_programs() const;
     void serve(const std::vector<pollfd> &fds);
     bool isSafeToEnd();
     void take_safe_values();
@@ -318,6 +319,13 @@ void HostServer::Impl::reap() {
     }
 }
 
+/// Asks the processes with components to end: there is nothing left that they could be components of.
+void HostServer::Impl::dismiss_programs() const {
+    for (const Program &program : programs) {
+        (void)::syscall(SYS_pidfd_send_signal, program.fd, SIGTERM, nullptr, 0);
+    }
+}
+
 /// True when every module that watches says that the machine stands and is off.
 bool HostServer::Impl::isSafeToEnd() {
     const auto &watches = host->hal().impl().controller_watches;
@@ -437,6 +445,8 @@ void HostServer::run() {
         }
         if (isBraking && here.isSafeToEnd()) {
             here.take_safe_values();
+            here.look_for_programs();
+            here.dismiss_programs();
             break;
         }
         if (!isBraking && here.host->now_ns() - here.looked_ns >= LOOK_MS * 1'000'000LL &&

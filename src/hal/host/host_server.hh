@@ -23,7 +23,8 @@ struct HostServerOptions {
 /// One per instance. The end of a process that has components is noticed at once (pidfd): their outputs take
 /// their safe values, they vanish, and the log names them. When the process that took control dies, modules
 /// that asked for it (mw_ext_watch_controller) are told at once. When they say that the machine has stopped,
-/// at the latest after 10 s, the outputs of the dead take their safe values and the server ends.
+/// at the latest after 10 s, the outputs of the dead take their safe values, other processes with components
+/// are asked to end (SIGTERM), and the server ends.
 class HostServer {
   public:
     /// Takes the instance and listens; an error when a realtime process of that name is alive. Blocks SIGTERM

@@ -6,6 +6,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -31,6 +32,21 @@ bool isFile(const std::string &path) {
 std::string folder_of(const std::string &path) {
     const std::size_t slash = path.rfind('/');
     return slash == std::string::npos ? "." : path.substr(0, slash);
+}
+
+/// Names of the HAL files in these folders.
+std::vector<std::string> hal_files_in(const std::vector<std::string> &folders) {
+    std::vector<std::string> names;
+    for (const std::string &folder : folders) {
+        std::error_code ignored;
+        for (const auto &entry : std::filesystem::directory_iterator(folder, ignored)) {
+            const std::string name = entry.path().filename().string();
+            if (name.ends_with(".hal") || name.ends_with(".tcl")) {
+                names.push_back(name);
+            }
+        }
+    }
+    return names;
 }
 
 std::string joined(const std::vector<std::string> &parts, const char *separator) {
@@ -132,9 +148,15 @@ Result<std::string> Session::find_file(const std::string &name) const {
             return path;
         }
     }
-    const std::string where = name.starts_with(LIBRARY_PREFIX) ? "in " : "in the working folder, ";
+    const bool isInLibrary = name.starts_with(LIBRARY_PREFIX);
+    const std::string where = isInLibrary ? "in " : "in the working folder, ";
+    const std::string looked =
+        fmt::format("looked {}{}", where, tried.empty() ? "no library folder" : joined(tried, ", "));
+    tried.push_back(isInLibrary ? "" : ".");
+    const std::string near = nearest_name(plain, hal_files_in(tried));
+    const std::string prefix = isInLibrary ? std::string(LIBRARY_PREFIX) : "";
     return fail(fmt::format("HAL file '{}' not found", name), {},
-                fmt::format("looked {}{}", where, tried.empty() ? "no library folder" : joined(tried, ", ")));
+                near.empty() ? looked : fmt::format("did you mean '{}{}'? {}", prefix, near, looked));
 }
 
 Result<> Session::run_script(const std::string &path, const std::vector<std::string> &arguments) {

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <thread>
 
@@ -56,6 +57,22 @@ pid_t run_in_child(const std::function<bool()> &work) {
         ::waitpid(child, nullptr, 0);
     }
     return isDone ? child : 0;
+}
+
+/// True when `watcher` holds a pidfd of `process`.
+bool isWatched(pid_t watcher, pid_t process) {
+    const std::string wanted = "Pid:\t" + std::to_string(process);
+    std::error_code ignored;
+    for (const auto &entry :
+         fs::directory_iterator("/proc/" + std::to_string(watcher) + "/fdinfo", ignored)) {
+        std::ifstream file(entry.path());
+        for (std::string line; std::getline(file, line);) {
+            if (line == wanted) {
+                return true;
+            }
+        }
+    }
+    return false;
 }
 
 void kill_now(pid_t process) {
@@ -210,8 +227,7 @@ TEST_F(HostTest, ADeathIsNoticedAtOnceAndNamed_B7) {
     const pid_t dismissed = add("dismissed");
     ASSERT_NE(victim, 0);
     ASSERT_NE(dismissed, 0);
-    // The realtime process has seen them by now.
-    std::this_thread::sleep_for(std::chrono::milliseconds(120));
+    ASSERT_TRUE(isSoon([&] { return isWatched(client->pid(), victim); }));
     const auto killed = std::chrono::steady_clock::now();
     ::kill(victim, SIGKILL);
     EXPECT_TRUE(isSoon([&] { return !hal.hasComponent("victim"); }));

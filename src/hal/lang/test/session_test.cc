@@ -123,6 +123,7 @@ TEST_F(SessionTest, SourceFindsFilesBesideTheCallerAndInTheLibrary_B9) {
     const std::string errors = run("source " + (folder / "bad.hal").string());
     EXPECT_EQ(errors.find((folder / "bad.hal").string() + ":2:8: "), 0U) << errors;
     EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << "told once: " << errors;
+    EXPECT_NE(run("source LIB:pard.hal").find("did you mean 'LIB:part.hal'?"), std::string::npos);
     EXPECT_EQ(run("source no.hal").find("test.hal:1:1: HAL file 'no.hal' not found"), 0U);
     std::filesystem::remove_all(folder);
 }

@@ -73,6 +73,36 @@ TEST_F(Programs, HalcmdAttachesAndHalrunRefusesASecondOne_B9) {
     EXPECT_NE(alone.err.find("no realtime process is running"), std::string::npos) << alone.err;
 }
 
+TEST_F(Programs, NothingSurvivesAKilledHalrun_B7) {
+    const pid_t pid = start(
+        {"halrun", file("a.hal", "loadrt threads\nstart\nloadusr -W user_component\n"
+                                 "loadusr -w sh -c \"halcmd getp user_component.out > ready; sleep 60\"\n")});
+    const auto isReady = [&] { return read_file((folder / "ready").string()).value_or("") == "TRUE\n"; };
+    for (int i = 0; i < 1000 && !isReady(); ++i) {
+        usleep(10000);
+    }
+    ASSERT_TRUE(isReady());
+    int program = 0;
+    {
+        const auto host = HostClient::connect(instance);
+        ASSERT_TRUE(host);
+        program = (*host)->hal().component("user_component")->pid;
+    }
+    kill(pid, SIGKILL);
+    (void)wait(pid);
+    for (int i = 0; i < 1000 && (isHostAlive(instance) || kill(program, 0) == 0); ++i) {
+        usleep(10000);
+        // An orphan of this test's process group may stay a zombie where nobody collects it.
+        const auto state = read_file("/proc/" + std::to_string(program) + "/stat").value_or("");
+        if (!isHostAlive(instance) && state.find(") Z ") != std::string::npos) {
+            break;
+        }
+    }
+    EXPECT_FALSE(isHostAlive(instance));
+    const auto state = read_file("/proc/" + std::to_string(program) + "/stat").value_or(") Z ");
+    EXPECT_NE(state.find(") Z "), std::string::npos) << "the program was asked to end";
+}
+
 TEST_F(Programs, SignalsEndHalrunInOrder_B9) {
     for (const int signal : {SIGTERM, SIGINT, SIGKILL}) {
         std::ofstream(folder / "b.hal") << "loadrt threads\nstart\nloadusr -w sleep 30\n";
