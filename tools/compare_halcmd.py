@@ -372,6 +372,81 @@ list sig
         'start stop lock unlock source').split()) + '\nstop\nunlock all\n' + DUMP,
 }
 
+# Programs started by hand: statuses and answers.
+SHELL = """r() { "$@" 2>/dev/null; echo "rc=$? $*"; }
+r halcmd setp and2.0.in0 1
+r halcmd getp and2.0.in0
+r halcmd "setp and2.0.in1 1"
+r halcmd setp and2.0.in0 = 0
+r halcmd and2.0.in1 = 1
+r halcmd getp and2.0.in1
+r halcmd net foo and2.0.out '=>' and2.1.in0
+r halcmd -s show sig
+r halcmd show sig foo
+r halcmd getp nosuch
+r halcmd bogus
+r halcmd -k getp nosuch
+r halcmd source sourced.hal
+r halcmd delsig from-source
+r halcmd -f sourced.hal
+r halcmd delsig from-source
+r halcmd -f < sourced.hal
+r halcmd list pin 'and2.0*'
+r halcmd -q getp and2.0.in0
+r halcmd loadrt not names=a,b
+r halcmd addf a fast
+r halcmd -s show thread
+r halcmd start
+r halcmd stop
+r halcmd unloadrt not
+r halcmd save netl
+r halcmd save netl out.hal
+cat out.hal
+r halcmd sets foo 1
+r halcmd setp and2.1.in1 '$HOME'
+r halcmd setp and2.1.in1 '[S]PIN'
+r halcmd -i case.ini setp and2.1.in1 '[S](NUMBER)'
+r halcmd '#comment'
+r halcmd getp and2.1.in1 '#comment'
+r halcmd status lock
+printf 'getp and2.0.in0\\n' | r halcmd -kf
+printf 'bogus\\ngetp and2.0.in0\\n' | r halcmd -f
+printf 'bogus\\ngetp and2.0.in0\\n' | r halcmd -k -f
+printf 'getp and2.0.in0\\nexit\\ngetp and2.0.in1\\n' | r halcmd -f
+"""
+
+TWO_PASS_INI = """[HAL]
+TWOPASS = on
+HALFILE = one.hal
+HALFILE = two.hal
+[S]
+VALUE = 1
+"""
+TWO_PASS_FILES = {
+    'one.hal': 'loadrt threads name1=servo period1=1000000\nloadrt and2 names=aa\nloadrt or2 count=2\n'
+               'loadrt logic names=l1 personality=0x102\naddf aa servo\nnet s1 aa.out => or2.0.in0\n'
+               'setp aa.in0 1\nshow pin aa\nloadusr -w echo from a program\n',
+    'two.hal': 'loadrt and2 names=bb,cc\nloadrt or2 count=1\naddf bb servo\naddf or2.2 servo\n'
+               'setp bb.in0 [S]VALUE\nloadrt logic names=l2 personality=0x104\nlist pin\nshow thread\nsave netla\n',
+}
+
+TCL = """loadrt threads name1=servo period1=1000000
+loadrt and2 count=2
+loadrt siggen
+puts "[llength [list 1 2]] [llength [hal list pin and2*]] [getp and2.0.in0]"
+setp siggen.0.amplitude 6.28/2*3
+setp siggen.0.frequency "1 + 2"
+setp and2.1.in0 2>1
+newsig f float
+sets f 3*2
+puts "[getp siggen.0.amplitude] [getp siggen.0.frequency] [getp and2.1.in0] [hal gets f] [stype f] [ptype and2.0.in0]"
+net a and2.0.out => and2.1.in1
+for {set i 0} {$i < 2} {incr i} { addf and2.$i servo }
+puts "[catch {setp nosuch 1}] [catch {bogus 1}] [catch {hal bogus}] [catch {net}]"
+puts "$::S(NUMBER) [lindex $::S(VALUE) 0] [llength $::S(PIN)]"
+puts "[status lock]"
+"""
+
 NAMES = ['and2.0.in0', 'and2.0.in1', 'and2.0.out', 'and2.1.in0', 'and2.1.out', 'and2.2.in1', 'left.in0', 'left.out',
          'right.one.in1', 'siggen.0.sine', 'siggen.0.offset', 'siggen.1.amplitude', 'siggen.1.cosine',
          'conv-float-s32.0.in', 'conv-float-s32.0.out', 'conv-u32-bit.0.in', 'conv-s32-u32.0.in', 'conv-s32-u32.0.out',
@@ -475,7 +550,7 @@ class Side:
         return done.returncode, done.stdout, done.stderr
 
 
-def compare(name, text, sides, options, verbose):
+def compare(name, text, sides, options, verbose, arguments=('-i', 'case.ini', '-f', 'case.hal')):
     results = []
     for side in sides:
         # Not among the sequences: loadusr of a program that does not exist (the reference's child runs the file on).
@@ -487,7 +562,10 @@ def compare(name, text, sides, options, verbose):
             (folder / 'case.ini').write_text('[S]\nPIN = and2.0.in0\nNUMBER = 0\nCOMMAND = getp and2.0.in0\n'
                                              'MODULE = not names=n1,n2\nVALUE = 4.5\n')
             try:
-                results.append(side.run(folder, [*options, '-i', 'case.ini', '-f', 'case.hal']))
+                for file, lines in (*TWO_PASS_FILES.items(), ('two.ini', TWO_PASS_INI), ('case.tcl', TCL),
+                                    ('cmds.sh', SHELL)):
+                    (folder / file).write_text(lines)
+                results.append(side.run(folder, [*options, *arguments]))
             except subprocess.TimeoutExpired:
                 print(f'differs {name} {" ".join(options)}: {side.name} does not end')
                 return False
@@ -533,6 +611,11 @@ def main():
             for options in (['-k'], ['-k', '-s'], []):
                 total += 1
                 same += compare(name, SETUP + text, sides, options, o.verbose)
+    for name, text, arguments in (('shell', SETUP + 'loadusr -w sh cmds.sh\n', ('-i', 'case.ini', '-f', 'case.hal')),
+                                  ('two passes', '', ('two.ini',)), ('Tcl', '', ('-i', 'case.ini', 'case.tcl'))):
+        if o.only in name:
+            total += 1
+            same += compare(name, text, sides, [], o.verbose, arguments)
     for seed in range(o.first_seed, o.first_seed + (0 if o.only else o.seeds)):
         rng = random.Random(seed)
         text = SETUP + '\n'.join(random_line(rng) for _ in range(o.lines)) + '\n' + DUMP

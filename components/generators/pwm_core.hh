@@ -2,6 +2,8 @@
 // Pulses with a duty cycle, without HAL. Realtime-safe.
 #pragma once
 
+#include <cmath>
+
 namespace mw::pwm {
 
 /// One output. `plan` sets the duty cycle, `tick` is one step of the time base.
@@ -43,7 +45,7 @@ class Generator {
   private:
     void start_period() noexcept {
         const double wanted = duty_ * static_cast<double>(period_ticks_) + (isDithered_ ? owed_ : 0.0);
-        high_ticks_ = static_cast<long>(wanted + 0.5);
+        high_ticks_ = std::lround(wanted);
         owed_ = isDithered_ ? wanted - static_cast<double>(high_ticks_) : 0.0;
     }
 

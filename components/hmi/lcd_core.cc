@@ -129,8 +129,11 @@ bool parse_item(const char *&text, Item &out) noexcept {
     if (!parse_number(text, out.width, MAX_FIELD)) {
         return false;
     }
-    if (*text == '.' && !parse_number(++text, out.decimals, MAX_FIELD - 2)) {
-        return false;
+    if (*text == '.') {
+        ++text;
+        if (!parse_number(text, out.decimals, MAX_FIELD - 2)) {
+            return false;
+        }
     }
     return parse_kind(text, out);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // limit1: `out` is `in` held between `min` and `max`. All pins float; the limits start at -1e20 and 1e20.
+// An input that is not a number keeps the output where it is.
 #include "components/common/kit.hh"
 #include "components/limit/limit_core.hh"
 
@@ -17,7 +18,11 @@ struct Limit1 {
         d.pin(max, "max", 1e20);
         d.function<&Limit1::update>(this);
     }
-    void update() noexcept { out = limit::between(in, min, max); }
+    void update() noexcept {
+        set_finite(out, limit::between(in, min, max));
+        // A limit that came nearer holds for the value before too.
+        out = limit::between(out, min, max);
+    }
 };
 
 }  // namespace mw::components

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // limit2: `out` follows `in`, held between `min` and `max`, and changes by at most `maxv` per second. `load`
 // (bit) sets out to in at once (within min and max). Other pins float; the limits start at -1e20 and 1e20.
+// An input that is not a number keeps the output where it is.
 #include "components/common/kit.hh"
 #include "components/limit/limit_core.hh"
 
@@ -24,7 +25,8 @@ struct Limit2 {
     }
 
     void update(long period_ns) noexcept {
-        const double wanted = limit::between(in, min, max);
+        const double input = in;
+        const double wanted = limit::between(std::isfinite(input) ? input : last, min, max);
         const double step = maxv * static_cast<double>(period_ns) * 1e-9;
         last = load ? wanted : limit::between(wanted, last - step, last + step);
         out = last;

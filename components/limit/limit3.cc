@@ -3,6 +3,7 @@
 // change of that per second. While `enable` (bit, true at start) is false out returns to 0 within the limits;
 // `load` (bit) sets out to in at once. `smooth-steps` (u32, 2 at start): how many periods the end of a move
 // is spread over. Other pins float, the limits start at -1e20 and 1e20.
+// An input that is not a number keeps the output where it is.
 #include "components/common/kit.hh"
 #include "components/limit/limit_core.hh"
 
@@ -32,7 +33,8 @@ struct Limit3 {
 
     void update(long period_ns) noexcept {
         const limit::Limit3::Bounds bounds{min, max, maxv, maxa};
-        const double target = enable ? in.get() : 0.0;
+        const double input = enable ? in.get() : 0.0;
+        const double target = std::isfinite(input) ? input : state.out;
         if (load) {
             state.load(limit::between(target, bounds.min, bounds.max));
         } else {

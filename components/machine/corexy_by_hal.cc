@@ -27,10 +27,10 @@ struct CorexyByHal {
         const double y = j1_cmd;
         const double alpha = alpha_fb;
         const double beta = beta_fb;
-        alpha_cmd = (x + y) / 2.0;
-        beta_cmd = (x - y) / 2.0;
-        j0_fb = alpha + beta;
-        j1_fb = alpha - beta;
+        set_finite(alpha_cmd, (x + y) / 2.0);
+        set_finite(beta_cmd, (x - y) / 2.0);
+        set_finite(j0_fb, alpha + beta);
+        set_finite(j1_fb, alpha - beta);
     }
 };
 

@@ -28,10 +28,10 @@ struct Differential {
         const double pitch = pitch_cmd;
         const double first = motor0_fb;
         const double second = motor1_fb;
-        motor0_cmd = roll + pitch;
-        motor1_cmd = roll - pitch;
-        roll_fb = (first + second) / 2.0;
-        pitch_fb = (first - second) / 2.0;
+        set_finite(motor0_cmd, roll + pitch);
+        set_finite(motor1_cmd, roll - pitch);
+        set_finite(roll_fb, (first + second) / 2.0);
+        set_finite(pitch_fb, (first - second) / 2.0);
     }
 };
 

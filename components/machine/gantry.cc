@@ -58,7 +58,7 @@ struct Gantry {
             fb_joint = first_joint_on_the_way();
         }
         if (joints > 0) {
-            position_fb = joint[fb_joint].pos_fb + joint[fb_joint].offset;
+            set_finite(position_fb, joint[fb_joint].pos_fb + joint[fb_joint].offset);
         }
     }
 

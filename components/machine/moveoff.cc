@@ -22,6 +22,7 @@ enum MoveoffState : std::int32_t {
 constexpr int MAX_JOINTS = 9;
 constexpr int MAX_WAYPOINTS = 1000;
 constexpr int TEST_WAYPOINTS = 10;
+constexpr double NEGLIGIBLE = 1e-9;
 
 struct MoveoffJoint {
     In<double> offset_in, pos, fb, vel, accel, min, max;
@@ -184,10 +185,13 @@ void Moveoff::start_leg() noexcept {
     for (int i = 0; i < joints; ++i) {
         joint[i].leg_target = isLast ? 0.0 : waypoint[waypoints][i];
         const double way = std::fabs(joint[i].leg_target - joint[i].follower.position());
-        if (way > 0.0) {
-            rate = std::fmin(rate, joint[i].vel / way);
-            rate2 = std::fmin(rate2, joint[i].accel / way);
+        if (way < NEGLIGIBLE) {
+            // Its part of the line would be slower than positions can be told apart.
+            joint[i].follower.planner.reset(joint[i].leg_target);
+            continue;
         }
+        rate = std::fmin(rate, joint[i].vel / way);
+        rate2 = std::fmin(rate2, joint[i].accel / way);
     }
     for (int i = 0; i < joints; ++i) {
         const double way = std::fabs(joint[i].leg_target - joint[i].follower.position());
@@ -283,8 +287,8 @@ void Moveoff::write_outputs() noexcept {
     for (int i = 0; i < joints; ++i) {
         const double offset = joint[i].follower.position();
         joint[i].offset_current = offset;
-        joint[i].pos_plusoffset = joint[i].pos + offset;
-        joint[i].fb_minusoffset = joint[i].fb - offset;
+        set_finite(joint[i].pos_plusoffset, joint[i].pos + offset);
+        set_finite(joint[i].fb_minusoffset, joint[i].fb - offset);
     }
 }
 

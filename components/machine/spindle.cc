@@ -144,7 +144,7 @@ void Spindle::update(long period_ns) noexcept {
     brake = isSlowing;
     forward = ramp_rpm > 0.0;
     reverse = ramp_rpm < 0.0;
-    output = (std::fabs(ramp_rpm) + used.offset) * used.scale;
+    set_finite(output, (std::fabs(ramp_rpm) + used.offset) * used.scale);
     const double asked = enable ? commanded_speed.get() : 0.0;
     show(isSimulated ? ramp_rpm : measured, asked, used, dt);
 }

@@ -60,8 +60,8 @@ struct Thc {
                                                               : 0;
         }
         const double z = z_pos_in;
-        z_pos_out = correction.run(z, enable, isCutting, direction, correction_vel);
-        z_fb_out = z;
+        set_finite(z_pos_out, correction.run(z, enable, isCutting, direction, correction_vel));
+        set_finite(z_fb_out, z);
         offset_value = correction.offset;
     }
 };

@@ -48,8 +48,9 @@ struct Thcud {
         vel_status = torch::isAtSpeed(current_vel, requested_vel, velocity_tol);
         const int wanted = (torch_up ? 1 : 0) - (torch_down ? 1 : 0);
         const double z = z_pos_in;
-        z_pos_out = correction.run(z, enable, torch_on && arc_ok, vel_status ? wanted : 0, correction_vel);
-        z_fb_out = z;
+        set_finite(z_pos_out,
+                   correction.run(z, enable, torch_on && arc_ok, vel_status ? wanted : 0, correction_vel));
+        set_finite(z_fb_out, z);
         cur_offset = correction.offset;
         removing_offset = correction.isRemoving;
     }

@@ -20,6 +20,9 @@ struct Correction {
     /// correction is taken back as far as Z rises; while disabled it is taken back by `step`. The position
     /// for the motor never jumps.
     double run(double z, bool isEnabled, bool isCutting, int direction, double step) noexcept {
+        if (!std::isfinite(z)) {
+            return z;
+        }
         const double rise = z - last_z;
         last_z = z;
         const double possible = std::isfinite(step) ? std::fabs(step) : 0.0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // demux_generic: demultiplexers of any size, from any type to any type.
 //
-// `config=` as for demux_generic: two type letters (b bit, f float, s s32, u u32, l s64, k u64), from and to,
+// `config=` as for mux_generic: two type letters (b bit, f float, s s32, u u32, l s64, k u64), from and to,
 // and the number of outputs (2 to 1024), as in "ff8,b2f". Pins of demux-gen.NN: in-TYPE, out-TYPE-MM; sel-int
 // (u32) plus sel-bit-MM give the number of the output that follows the input, the last one when it is too
 // large; the others keep their value, or are 0 while the parameter zero-others (bit) is true.

@@ -9,6 +9,9 @@
 // maxerror, maxerrorI, maxerrorD, maxcmdD, maxcmdDD, maxcmdDDD (0: no limit). Auto-tuning: tune-mode (bit)
 // opens the loop, tune-start (bit, I/O) begins and is set back at the end; tune-type 0 finds P, I, D and 1
 // finds P, I, FF1; tune-cycles, tune-effort. `debug=1` adds parameters with the inner values.
+// While command or feedback is not a number the controller counts as disabled.
+#include <cmath>
+
 #include "components/common/kit.hh"
 #include "components/pid/pid_core.hh"
 
@@ -48,6 +51,8 @@ struct Pid {
     Out<double> ultimate_gain, ultimate_period;
 
     pid::Controller controller;
+    double last_command = 0.0;
+    double last_feedback = 0.0;
     pid::Tuner tuner;
 
     void declare(Declare &declare) noexcept;
@@ -168,9 +173,15 @@ void Pid::update(long period_ns) noexcept {
         tune_start = false;
     }
     pid::Inputs in;
-    in.isEnabled = enable;
-    in.command = command;
-    in.feedback = feedback;
+    const double wanted = command;
+    const double measured = feedback;
+    // A sensor that is broken must not reach the motor, nor stay in the integrator.
+    const bool isSane = std::isfinite(wanted) && std::isfinite(measured);
+    last_command = std::isfinite(wanted) ? wanted : last_command;
+    last_feedback = std::isfinite(measured) ? measured : last_feedback;
+    in.isEnabled = enable && isSane;
+    in.command = last_command;
+    in.feedback = last_feedback;
     in.hasCommandDerivative = command_deriv.isLinked();
     in.command_derivative = *command_deriv.slot;
     in.hasFeedbackDerivative = feedback_deriv.isLinked();

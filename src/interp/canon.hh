@@ -5,6 +5,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "geom/pose.hh"
 #include "tool/entry.hh"
@@ -39,6 +40,20 @@ struct ArcFeed {
     double axis_end = 0;  ///< end along the normal [program units]
     Pose end;             ///< the whole end pose in XYZABCUVW, consistent with the above
 };
+
+/// A control point in the selected plane, absolute. [program units]
+struct NurbsPoint {
+    double first = 0, second = 0;
+    double weight = 1;
+};
+
+/// A curve in the selected plane; its first control point is where the tool is, its last one where it ends.
+struct NurbsFeed {
+    std::vector<NurbsPoint> points;  ///< at least `order`
+    int order = 3;                   ///< degree + 1: 2 to MAX_NURBS_ORDER
+    Pose end;                        ///< the whole end pose
+};
+inline constexpr int MAX_NURBS_ORDER = 32;
 
 using tool::ToolEntry;
 
@@ -75,6 +90,7 @@ class Canon {
     virtual void straight_traverse(const Pose &end) = 0;
     virtual void straight_feed(const Pose &end) = 0;
     virtual void arc_feed(const ArcFeed &arc) = 0;
+    virtual void nurbs_feed(const NurbsFeed &nurbs) = 0;
     virtual void straight_probe(const Pose &end, ProbeKind kind) = 0;
     virtual void rigid_tap(double x, double y, double z, double scale) = 0;
     virtual void dwell(double seconds) = 0;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "interp/detail/frame.hh"
+#include "interp/nurbs.hh"
 
 namespace mw::interp {
 namespace {
@@ -197,6 +198,29 @@ void MachineFrame::arc_feed(const ArcFeed &arc) {
     move.settings = settings(FeedKind::FEED, true);
     target_.arc(move);
     position_ = move.end;
+}
+
+void MachineFrame::nurbs_feed(const NurbsFeed &nurbs) {
+    // Far below what a machine can resolve.
+    constexpr double TOLERANCE_MM = 0.0002;
+    const PlaneAxes axes = axes_of(plane_);
+    const double inches = TOLERANCE_MM / 25.4;
+    const std::vector<PlanePiece> pieces =
+        approximate(nurbs, units_ == LengthUnits::MM ? TOLERANCE_MM : inches);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        const PlanePiece &piece = pieces[i];
+        Pose end = nurbs.end;
+        if (i + 1 < pieces.size()) {
+            end[axes.first] = piece.first_end;
+            end[axes.second] = piece.second_end;
+        }
+        if (piece.rotation == 0) {
+            straight_feed(end);
+        } else {
+            arc_feed({end[axes.first], end[axes.second], piece.first_centre, piece.second_centre,
+                      piece.rotation, end[axes.normal], end});
+        }
+    }
 }
 
 void MachineFrame::straight_probe(const Pose &end, ProbeKind kind) {

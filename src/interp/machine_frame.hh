@@ -41,6 +41,7 @@ class MachineFrame final : public Canon {
     void straight_traverse(const Pose &end) override;
     void straight_feed(const Pose &end) override;
     void arc_feed(const ArcFeed &arc) override;
+    void nurbs_feed(const NurbsFeed &nurbs) override;
     void straight_probe(const Pose &end, ProbeKind kind) override;
     void rigid_tap(double x, double y, double z, double scale) override;
     void dwell(double seconds) override { target_.dwell(seconds); }

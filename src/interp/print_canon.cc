@@ -79,6 +79,7 @@ void PrintCanon::begin_block(const BlockRef &block) {
 }
 
 void PrintCanon::on_reset() {
+    begin_block({});
     put("ON_RESET()");
 }
 
@@ -176,6 +177,10 @@ void PrintCanon::arc_feed(const ArcFeed &arc) {
     put(fmt::format("ARC_FEED({:.4f}, {:.4f}, {:.4f}, {:.4f}, {}, {:.4f}, {:.4f}, {:.4f}, {:.4f})",
                     arc.first_end, arc.second_end, arc.first_centre, arc.second_centre, arc.rotation,
                     arc.axis_end, arc.end[3], arc.end[4], arc.end[5]));
+}
+
+void PrintCanon::nurbs_feed(const NurbsFeed &nurbs) {
+    put(fmt::format("NURBS_FEED({}, ...)", nurbs.points.size()));
 }
 
 void PrintCanon::straight_probe(const Pose &end, ProbeKind) {
@@ -305,9 +310,8 @@ void PrintCanon::set_analog_output(int index, double value, bool isSynched) {
     put(fmt::format("SET_{}_OUTPUT_VALUE({},{:.6f})", isSynched ? "MOTION" : "AUX", index, value));
 }
 
-void PrintCanon::wait_input(int index, bool isAnalog, WaitKind kind, double timeout_s) {
-    put(fmt::format("WAIT({}, {}, {}, {:.4f})", index, isAnalog ? 0 : 1, static_cast<int>(kind), timeout_s));
-}
+/// The standalone program has no inputs: it waits for nothing and says nothing.
+void PrintCanon::wait_input(int, bool, WaitKind, double) {}
 
 void PrintCanon::program_stop() {
     put("PROGRAM_STOP()");
@@ -326,6 +330,7 @@ void PrintCanon::pallet_shuttle() {
 }
 
 void PrintCanon::finish() {
+    begin_block({});
     put("FINISH()");
 }
 

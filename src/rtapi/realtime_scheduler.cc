@@ -289,7 +289,7 @@ std::int64_t RealtimeScheduler::now_ns() const noexcept {
     return monotonic_ns();
 }
 
-std::int64_t RealtimeScheduler::current_release_ns() noexcept {
+std::int64_t RealtimeScheduler::current_release_ns() const noexcept {
     const Impl::Task *task = Impl::Task::current();
     return task == nullptr ? 0 : task->release_ns;
 }

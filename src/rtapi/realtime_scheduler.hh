@@ -40,12 +40,8 @@ class RealtimeScheduler final : public Scheduler {
     /// Why it is not realtime; empty when it is.
     const std::string &missing() const noexcept;
 
-    /// The release time of the calling periodic's present period; 0 in other threads. [any thread,
-    /// realtime-safe]
-    static std::int64_t current_release_ns() noexcept;
-    /// Moves the next releases of the calling periodic by `ns` a period, at most one percent of it, until it
-    /// is set anew. False in other threads. [realtime-safe]
-    static bool set_correction_ns(std::int64_t ns) noexcept;
+    std::int64_t current_release_ns() const noexcept override;
+    bool set_correction_ns(std::int64_t ns) noexcept override;
 
   private:
     struct Impl;

@@ -48,6 +48,12 @@ class Scheduler {
     /// After it returns the function is not running and will not be called again. [not realtime]
     virtual void remove(PeriodicId id) = 0;
     virtual PeriodicStats stats(PeriodicId id) const = 0;
+    /// The release time of the calling periodic's present period; 0 in other threads and under the virtual
+    /// clock. [any thread, realtime-safe]
+    virtual std::int64_t current_release_ns() const noexcept { return 0; }
+    /// Moves the next releases of the calling periodic by `ns` a period, at most one percent of it, until it
+    /// is set anew. False in other threads and under the virtual clock. [realtime-safe]
+    virtual bool set_correction_ns(std::int64_t /*ns*/) noexcept { return false; }
 };
 
 }  // namespace mw::rtapi

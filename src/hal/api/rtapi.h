@@ -98,6 +98,9 @@ extern rtapi_msg_handler_t rtapi_get_msg_handler(void);
 
 /* Nanoseconds since an arbitrary start; virtual time under the virtual clock. Realtime-safe. */
 extern long long int rtapi_get_time(void);
+/* The processor's cycle counter; nanoseconds where there is none and under the virtual clock. Realtime-safe.
+ */
+extern long long int rtapi_get_clocks(void);
 /* Waits by spinning for nsec, at most rtapi_delay_max(); nothing under the virtual clock. Realtime-safe. */
 extern void rtapi_delay(long int nsec);
 extern long int rtapi_delay_max(void);
@@ -132,6 +135,7 @@ extern int rtapi_task_pause(int task_id);
 extern int rtapi_task_self(void);
 /* Waits for the next period of the calling task. */
 extern int rtapi_wait(void);
+#define rtapi_task_wait() ((void)rtapi_wait())
 /* Drops the releases that the calling task has missed. */
 extern void rtapi_task_self_resync(void);
 

@@ -12,6 +12,10 @@ RTAPI_EXPORT extern int rtapi_app_main(void);
 /* Called before unloading, with no function of the module running. */
 RTAPI_EXPORT extern void rtapi_app_exit(void);
 
+/* Build lines of modules with several files take the exported names from the objects. */
+EXPORT_SYMBOL(rtapi_app_main)
+EXPORT_SYMBOL(rtapi_app_exit)
+
 RTAPI_END_DECLS
 
 #endif

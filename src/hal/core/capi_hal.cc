@@ -50,13 +50,14 @@ ProcessAttachment &attachment() {
     return *the_attachment;
 }
 
-/// The current instance; joins that of the environment if the process has none.
+/// The current instance; joins that of the environment if the process has none. Each call needs its leave().
 Hal *joined() {
-    if (Hal *hal = current()) {
-        return hal;
-    }
     ProcessAttachment &here = attachment();
     const std::lock_guard lock(here.mutex);
+    Hal *own = current();
+    if (own != nullptr && own != here.hal.get()) {
+        return own;
+    }
     if (here.hal == nullptr) {
         auto attached = Hal::attach(default_instance());
         if (!attached) {

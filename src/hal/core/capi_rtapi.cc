@@ -116,6 +116,16 @@ long long int rtapi_get_time(void) {
     return hal == nullptr ? 0 : hal->now_ns();
 }
 
+long long int rtapi_get_clocks(void) {
+#if defined(__x86_64__) || defined(__i386__)
+    const Hal *hal = current();
+    if (hal == nullptr || !hal->isVirtual()) {
+        return static_cast<long long>(__builtin_ia32_rdtsc());
+    }
+#endif
+    return rtapi_get_time();
+}
+
 long int rtapi_delay_max(void) {
     return 10000;
 }

@@ -15,7 +15,7 @@
 #include <mutex>
 
 #include "hal/core/detail/capi.hh"
-#include "rtapi/realtime_scheduler.hh"
+#include "rtapi/scheduler.hh"
 
 using namespace mw;
 using namespace mw::hal;
@@ -293,11 +293,15 @@ void rtapi_task_self_resync(void) {
 }
 
 long long rtapi_task_pll_get_reference(void) {
-    return rtapi::RealtimeScheduler::current_release_ns();
+    Hal *hal = current();
+    return hal == nullptr || hal->scheduler() == nullptr ? 0 : hal->scheduler()->current_release_ns();
 }
 
 int rtapi_task_pll_set_correction(long value) {
-    return rtapi::RealtimeScheduler::set_correction_ns(value) ? 0 : -EINVAL;
+    Hal *hal = current();
+    const bool isSet =
+        hal != nullptr && hal->scheduler() != nullptr && hal->scheduler()->set_correction_ns(value);
+    return isSet ? 0 : -EINVAL;
 }
 
 // ---- semaphores

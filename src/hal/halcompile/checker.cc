@@ -43,9 +43,16 @@ constexpr std::array<std::string_view, 37> C_WORDS{
     "inline",   "int",    "long",   "register", "restrict",  "return",   "short",    "signed",
     "sizeof",   "static", "struct", "switch",   "typedef",   "union",    "unsigned", "void",
     "volatile", "while",  "_Bool",  "_Complex", "_Imaginary"};
-constexpr std::array<std::string_view, 11> RESERVED{
-    "comp_id",       "fperiod",     "rtapi_app_main", "rtapi_app_exit", "extra_setup", "period",
-    "extra_cleanup", "post_export", "extra_arg",      "prefix",         "export"};
+constexpr std::array<std::string_view, 8> RESERVED{"comp_id",        "fperiod",     "rtapi_app_main",
+                                                   "rtapi_app_exit", "extra_setup", "extra_cleanup",
+                                                   "post_export",    "period"};
+/// Taken only in components whose code sees them.
+constexpr std::array<std::string_view, 2> OF_SETUP{"prefix", "extra_arg"};
+
+template <class List>
+bool has(const List &list, std::string_view name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+}
 
 class Checker {
   public:
@@ -69,6 +76,7 @@ class Checker {
             check_parameter(parameter);
         }
         check_functions();
+        check_code_of_options();
     }
 
   private:
@@ -122,12 +130,14 @@ class Checker {
             sink_.error(fmt::format("the name '{}' is taken already", name), place,
                         fmt::format("by the declaration in line {}", at->second.line));
         }
-        if (std::find(C_WORDS.begin(), C_WORDS.end(), name) != C_WORDS.end()) {
+        if (has(C_WORDS, name)) {
             sink_.error(fmt::format("'{}' is a word of C", name), place,
                         fmt::format("call the {} {}_; HAL shows it without the trailing _", what, name));
         }
-        if (std::find(RESERVED.begin(), RESERVED.end(), name) != RESERVED.end() ||
-            name.starts_with("__comp")) {
+        const bool isOfSetup =
+            has(OF_SETUP, name) && (component_.isOn("extra_setup") || component_.isOn("post_export"));
+        const bool isExport = name == "export" && !component_.isOn("rtapi_app", true);
+        if (has(RESERVED, name) || isOfSetup || isExport || name.starts_with("__comp")) {
             sink_.error(fmt::format("the name '{}' is reserved", name), place,
                         fmt::format("call the {} {}_", what, name));
         }
@@ -249,6 +259,40 @@ class Checker {
                             near.empty() ? fmt::format("declare it above ;; with: function {};", use.name)
                                          : fmt::format("did you mean '{}'?", near));
             }
+        }
+    }
+
+    /// Options that ask for code need it, and code that an option calls needs the option.
+    void check_code_of_options() {
+        struct Pair {
+            std::string_view option, word;
+            bool isMacro;
+        };
+        static constexpr std::array<Pair, 6> PAIRS{{{"extra_setup", "EXTRA_SETUP", true},
+                                                    {"extra_cleanup", "EXTRA_CLEANUP", true},
+                                                    {"post_export", "POST_EXPORT", true},
+                                                    {"count_function", "get_count", false},
+                                                    {"userinit", "userinit", false},
+                                                    {"userspace", "user_mainloop", false}}};
+        const CodeFacts facts = look_at_code(component_.code);
+        if (facts.hasQuotedInclude || !component_.hasCode) {
+            return;
+        }
+        for (const Pair &pair : PAIRS) {
+            const bool isOn =
+                component_.isOn(pair.option) && (pair.option != "userinit" || component_.isUserspace());
+            const bool isThere = facts.words.contains(pair.word);
+            if (isOn && !isThere) {
+                sink_.error(fmt::format("option {} is on, but there is no {}", pair.option, pair.word),
+                            component_.option(pair.option)->place);
+            } else if (!isOn && isThere && pair.isMacro) {
+                sink_.warning(fmt::format("{} is never called", pair.word), component_.place,
+                              fmt::format("it needs: option {};", pair.option));
+            }
+        }
+        if (!component_.isOn("rtapi_app", true) && !facts.words.contains("rtapi_app_main")) {
+            sink_.error("option rtapi_app is off, but there is no rtapi_app_main",
+                        component_.option("rtapi_app")->place);
         }
     }
 

@@ -90,6 +90,7 @@ CodeFacts look_at_code(std::string_view code) {
         while (at < code.size() && isWordChar(code[at])) {
             ++at;
         }
+        facts.words.emplace(code.substr(start, at - start));
         if (code.substr(start, at - start) == "FUNCTION") {
             facts.hasFunctionWord = true;
             const std::string name = bracketed_name(code, at);

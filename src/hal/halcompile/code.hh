@@ -2,6 +2,7 @@
 // What has to be known of a component's C code before a compiler sees it.
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,7 +17,8 @@ struct CodeFacts {
     };
     bool hasFunctionWord = false;  ///< FUNCTION stands somewhere, comments excepted
     bool hasQuotedInclude = false;
-    std::vector<Use> functions;  ///< FUNCTION(name) outside comments, strings and directives
+    std::set<std::string, std::less<>> words;  ///< all of them, outside comments and strings
+    std::vector<Use> functions;                ///< FUNCTION(name) outside comments, strings and directives
 };
 
 CodeFacts look_at_code(std::string_view code);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "hal/halcompile/emit_man.hh"
 
-
 #include <fmt/core.h>
 
 #include "base/text.hh"

@@ -125,7 +125,8 @@ class Parser {
     /// The end of a declaration.
     Result<> end() {
         scanner_.skip_blank();
-        if (scanner_.accept(";")) {
+        const bool isCodeMark = scanner_.isNext(";;") && scanner_.place().column == 1;
+        if (!isCodeMark && scanner_.accept(";")) {
             return {};
         }
         return fail("';' is expected here", scanner_.place(), "it ends the declaration before");
@@ -469,6 +470,10 @@ class Parser {
 }  // namespace
 
 Component parse(std::string_view text, const std::string &file, diag::Sink &sink) {
+    constexpr std::string_view BYTE_ORDER_MARK = "\xef\xbb\xbf";
+    if (text.starts_with(BYTE_ORDER_MARK)) {
+        text.remove_prefix(BYTE_ORDER_MARK.size());
+    }
     return Parser(text, file, sink).run();
 }
 

@@ -229,7 +229,11 @@ Result<> run_save(Session &session, const Call &call) {
             session.output().data(text);
             return {};
         }
-        return at(write_file_atomically(call.text(1), text), call.place_of(1));
+        if (!session.options().hasFiles) {
+            return fail("files are out of reach here", call.place_of(1));
+        }
+        const Result<> written = write_file_atomically(call.text(1), text);
+        return written ? written : fail(written.error().message, call.place_of(1), written.error().hint);
     }
     return fail(fmt::format("unknown 'save' type '{}'", kind), call.place_of(0), suggestion(kind, known));
 }

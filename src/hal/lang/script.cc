@@ -26,6 +26,10 @@ std::vector<std::string> places() {
 
 }  // namespace
 
+std::size_t session_layout() {
+    return sizeof(Session) * 65536 + sizeof(SessionOptions);
+}
+
 Result<std::unique_ptr<ScriptRunner>> load_tcl(Session &session) {
     std::string why = "it is not there";
     for (const std::string &path : places()) {
@@ -40,8 +44,9 @@ Result<std::unique_ptr<ScriptRunner>> load_tcl(Session &session) {
             continue;
         }
         const auto make = reinterpret_cast<NewScriptRunner>(dlsym(library, NEW_SCRIPT_RUNNER));
-        if (make != nullptr) {
-            return std::unique_ptr<ScriptRunner>(make(&session));
+        ScriptRunner *runner = make == nullptr ? nullptr : make(&session, session_layout());
+        if (runner != nullptr) {
+            return std::unique_ptr<ScriptRunner>(runner);
         }
         why = "it belongs to another version";
     }

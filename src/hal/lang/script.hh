@@ -3,6 +3,7 @@
 // needed, so that everything else works without it.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,8 +27,10 @@ class ScriptRunner {
 /// The Tcl interpreter of hal/tcl; an error when that part (or Tcl) is not installed.
 Result<std::unique_ptr<ScriptRunner>> load_tcl(Session &session);
 
-/// What the shared part exports, by this name.
+/// What the shared part exports, by this name; null when it was built with another `layout` of Session.
 inline constexpr const char *NEW_SCRIPT_RUNNER = "mw_new_script_runner";
-using NewScriptRunner = ScriptRunner *(*)(Session *session);
+using NewScriptRunner = ScriptRunner *(*)(Session *session, std::size_t layout);
+/// Differs when the program and the shared part were built from different sources.
+std::size_t session_layout();
 
 }  // namespace mw::hal::lang

@@ -168,6 +168,9 @@ Result<ScriptRunner *> Session::tcl() {
 
 Result<> Session::run_file(const std::string &name, const std::vector<std::string> &arguments) {
     const auto read = [&]() -> Result<std::pair<std::string, std::string>> {
+        if (!options_.hasFiles) {
+            return fail(fmt::format("HAL file '{}' cannot be run: files are out of reach here", name));
+        }
         const Result<std::string> path = find_file(name);
         if (!path) {
             return std::unexpected(path.error());
@@ -293,6 +296,9 @@ Result<> Session::run_call(const Call &call) {
     if (options_.pass == Pass::LOADS) {
         if (spec.run == lang::run_loadrt) {
             return options_.loads->add(call);
+        }
+        if (isLoad) {
+            options_.loads->starting(call);
         }
         const bool isRun = isLoad || spec.run == lang::run_source || spec.run == lang::run_list ||
                            spec.run == lang::run_exit;

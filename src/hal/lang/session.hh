@@ -64,6 +64,8 @@ class LoadCollector {
   public:
     virtual ~LoadCollector() = default;
     virtual Result<> add(const Call &loadrt) = 0;
+    /// A program is about to be started.
+    virtual void starting(const Call &) {}
 };
 
 struct SessionOptions {
@@ -76,6 +78,7 @@ struct SessionOptions {
     std::vector<std::string> folders;  ///< where files are looked for after the working folder
     const volatile std::sig_atomic_t *stop = nullptr;  ///< not zero: no further command is run
     std::vector<std::string> library;  ///< folders of the prefix LIB:, and looked through last
+    bool hasFiles = true;              ///< false: commands that read or write files are refused
     Pass pass = Pass::ALL;
     LoadCollector *loads = nullptr;  ///< with Pass::LOADS
 };

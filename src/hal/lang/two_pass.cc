@@ -182,12 +182,12 @@ Result<> MergedLoads::add_other(Load &load, const Parameter &parameter) {
 namespace {
 
 /// Does the work of run_two_pass.
-class TwoPass {
+class TwoPass final : private LoadCollector {
   public:
     TwoPass(Session &session, const std::vector<HalFileEntry> &files, TwoPassReport report)
         : session_(session), entries_(files), report_(report), before_(session.options()) {}
 
-    ~TwoPass() {
+    ~TwoPass() override {
         session_.options().pass = before_.pass;
         session_.options().loads = before_.loads;
     }
@@ -228,6 +228,16 @@ class TwoPass {
         std::size_t modules_before = 0;  ///< modules that files before it load
     };
 
+    Result<> add(const Call &loadrt) override { return loads_.add(loadrt); }
+    void starting(const Call &loadusr) override {
+        std::string text = "pass0: loadusr";
+        for (const Word &word : loadusr.words) {
+            text += " " + word.raw;
+        }
+        if (report_ != TwoPassReport::NOTHING) {
+            say(text);
+        }
+    }
     void say(const std::string &text) { session_.output().data("twopass:" + text + "\n"); }
     void step(const std::string &text) {
         if (report_ == TwoPassReport::VERBOSE) {
@@ -267,7 +277,7 @@ class TwoPass {
 
     Result<> collect() {
         session_.options().pass = Pass::LOADS;
-        session_.options().loads = &loads_;
+        session_.options().loads = this;
         for (File &file : files_) {
             file.modules_before = loads_.loads().size();
             if (file.isExcluded) {

@@ -113,6 +113,11 @@ int run_hal(ClientData data, Tcl_Interp *interpreter, int count, Tcl_Obj *const 
         set_result(interpreter, command_list());
         return TCL_OK;
     }
+    if (words[0] == "--pass") {
+        const lang::Pass pass = session_of(data).options().pass;
+        set_result(interpreter, pass == lang::Pass::ALL ? "" : pass == lang::Pass::LOADS ? "0" : "1");
+        return TCL_OK;
+    }
     return run(interpreter, session_of(data), std::move(words));
 }
 

@@ -28,8 +28,9 @@ void delete_session(ClientData data, Tcl_Interp *) {
 
 extern "C" {
 
-MW_EXPORT mw::hal::lang::ScriptRunner *mw_new_script_runner(mw::hal::lang::Session *session) {
-    return new mw::hal::tcl::Interpreter(*session);
+MW_EXPORT mw::hal::lang::ScriptRunner *mw_new_script_runner(mw::hal::lang::Session *session,
+                                                            std::size_t layout) {
+    return layout != lang::session_layout() ? nullptr : new mw::hal::tcl::Interpreter(*session);
 }
 
 MW_EXPORT int Hal_Init(Tcl_Interp *interpreter) {

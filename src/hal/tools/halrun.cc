@@ -96,11 +96,13 @@ Result<> run(const CommandLine &line, lang::Session &session, const config::IniF
     } else {
         first = run_files(line, session);
     }
+    // After a failure too: to see what is there.
     const bool readsInput = line.words.empty() || line.isInteractive || line.wantsTcl;
-    if (!readsInput || !first || session.hasEnded()) {
+    if (!readsInput || session.hasEnded() || stop_requested != 0) {
         return first;
     }
-    return line.wantsTcl ? run_tcl_input(session) : run_standard_input(session);
+    const Result<> input = line.wantsTcl ? run_tcl_input(session) : run_standard_input(session);
+    return first ? input : first;
 }
 
 /// Ends programs, threads, modules and the realtime process, whatever state they are in.

@@ -38,6 +38,7 @@ void CanonQueue::truncate(std::size_t count) {
     if (count == 0) {
         texts_.clear();
         tools_.clear();
+        points_.clear();
     }
     isBlockAnnounced_ = false;
 }
@@ -50,6 +51,7 @@ void CanonQueue::flush(Canon &target, std::size_t count) {
         records_.clear();
         texts_.clear();
         tools_.clear();
+        points_.clear();
     } else {
         records_.erase(records_.begin(), records_.begin() + static_cast<std::ptrdiff_t>(count));
     }
@@ -132,6 +134,15 @@ void CanonQueue::arc_feed(const ArcFeed &arc) {
     r.x = arc.second_centre;
     r.y = arc.axis_end;
     r.pose = arc.end;
+}
+
+void CanonQueue::nurbs_feed(const NurbsFeed &nurbs) {
+    Record &r = add(Op::NURBS);
+    r.a = nurbs.order;
+    r.b = static_cast<int>(nurbs.points.size());
+    r.text = static_cast<std::uint32_t>(points_.size());
+    r.pose = nurbs.end;
+    points_.insert(points_.end(), nurbs.points.begin(), nurbs.points.end());
 }
 
 void CanonQueue::straight_probe(const Pose &end, ProbeKind kind) {

@@ -43,6 +43,7 @@ class CanonQueue final : public Canon {
     void straight_traverse(const Pose &end) override;
     void straight_feed(const Pose &end) override;
     void arc_feed(const ArcFeed &arc) override;
+    void nurbs_feed(const NurbsFeed &nurbs) override;
     void straight_probe(const Pose &end, ProbeKind kind) override;
     void rigid_tap(double x, double y, double z, double scale) override;
     void dwell(double seconds) override;
@@ -108,6 +109,7 @@ class CanonQueue final : public Canon {
         TRAVERSE,
         FEED,
         ARC,
+        NURBS,
         PROBE,
         RIGID_TAP,
         DWELL,
@@ -154,7 +156,7 @@ class CanonQueue final : public Canon {
         Op op{};
         bool isSet = false, isAlso = false;
         int a = 0, b = 0;
-        std::uint32_t text = 0;  ///< index in texts_ or tools_
+        std::uint32_t text = 0;  ///< index in texts_, tools_ or points_
         const Program *program = nullptr;
         double u = 0, v = 0, w = 0, x = 0, y = 0;
         Pose pose;
@@ -178,6 +180,7 @@ class CanonQueue final : public Canon {
     std::vector<Record> records_;
     std::vector<std::string> texts_;
     std::vector<ToolEntry> tools_;
+    std::vector<NurbsPoint> points_;
     Record block_;
     bool isBlockAnnounced_ = false;
 };

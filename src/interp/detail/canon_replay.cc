@@ -43,6 +43,9 @@ bool CanonQueue::replay_motion(Canon &target, const Record &r) const {
     case Op::TRAVERSE: target.straight_traverse(r.pose); break;
     case Op::FEED: target.straight_feed(r.pose); break;
     case Op::ARC: target.arc_feed({r.u, r.v, r.w, r.x, r.a, r.y, r.pose}); break;
+    case Op::NURBS:
+        target.nurbs_feed({{points_.begin() + r.text, points_.begin() + r.text + r.b}, r.a, r.pose});
+        break;
     case Op::PROBE: target.straight_probe(r.pose, static_cast<ProbeKind>(r.a)); break;
     case Op::RIGID_TAP: target.rigid_tap(r.u, r.v, r.w, r.x); break;
     case Op::DWELL: target.dwell(r.u); break;

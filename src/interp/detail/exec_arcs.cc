@@ -39,6 +39,9 @@ bool Executor::do_arc(const Code &code, const BlockValues &values) {
         return state.feed == 0.0 ? fault.set("Cannot make arc with zero feed rate")
                                  : fault.set("F word missing with inverse time arc move");
     }
+    if (!check_feed_per_revolution()) {
+        return false;
+    }
     if (values.isMachineCoordinates) {
         return fault.set("Cannot use g53 with an arc");
     }

@@ -141,7 +141,9 @@ bool Executor::run_comments(const BlockView &view, std::string_view line_text) {
     const Active active = split_comment(comment);
     if (active.keyword.empty()) {
         const std::size_t begin = comment.find_first_not_of(" \t");
-        canon.comment(begin == std::string_view::npos ? std::string_view{} : comment.substr(begin));
+        if (begin != std::string_view::npos) {
+            canon.comment(comment.substr(begin));
+        }
     } else if (active.keyword == "msg") {
         canon.message(active.text);
     } else if (active.keyword == "debug") {

@@ -91,6 +91,9 @@ bool Executor::check_cycle(const Code &code, const BlockValues &values, int &rep
     if (state.feed == 0.0) {
         return fault.set(fmt::format("Cannot do {} with zero feed rate", code_name(code)));
     }
+    if (!check_feed_per_revolution()) {
+        return false;
+    }
     repeats = 1;
     if (values.has('l')) {
         if (!whole_word(values, 'l', repeats)) {
@@ -122,9 +125,13 @@ bool Executor::do_cycle(const Code &code, const BlockValues &values) {
     }
     const PlaneAxes axes = plane_axes();
     const char normal_name = geom::AXIS_LETTERS_LOWER[axes.normal];
+    if (!isCycle(state.motion) || !state.cycle.isRunning) {
+        state.cycle.initial = state.position[axes.normal];
+    }
     CyclePlan plan;
     plan.code = code.number;
-    plan.r = state.cycle.r + (state.isIncremental ? state.position[axes.normal] : 0.0);
+    // Incremental R counts from where the sequence of cycles began, so that all holes are alike.
+    plan.r = state.cycle.r + (state.isIncremental ? state.cycle.initial : 0.0);
     plan.bottom = state.cycle.bottom + (state.isIncremental ? plan.r : 0.0);
     if (plan.r < plan.bottom) {
         return fault.set(fmt::format("R value less than {} value in cycle", normal_name),
@@ -137,9 +144,6 @@ bool Executor::do_cycle(const Code &code, const BlockValues &values) {
             "This canned cycle would make more than a million moves: is L too large or Q too small?",
             values.column_of(pecks > repeats ? 'q' : 'l'));
     }
-    if (!isCycle(state.motion) || !state.cycle.isRunning) {
-        state.cycle.initial = state.position[axes.normal];
-    }
     state.motion = code.number;
     state.cycle.isRunning = true;
     Pose goal = target(values);
@@ -147,7 +151,9 @@ bool Executor::do_cycle(const Code &code, const BlockValues &values) {
         return false;
     }
     const MotionControl control = state.control;
-    if (state.position[axes.normal] < plan.r) {
+    // In a sequence that began below R every cycle makes this move, though without length but for the first.
+    const double height = state.position[axes.normal];
+    if (height < plan.r || (height == plan.r && state.cycle.initial < plan.r)) {
         cycle_move(true, axes.normal, plan.r);
     }
     if (control != MotionControl::EXACT_PATH) {

@@ -216,7 +216,6 @@ bool Executor::do_end(const Code &code, const BlockValues &) {
         canon.pallet_shuttle();
     }
     canon.program_end();
-    canon.on_reset();
     outcome = Outcome::PROGRAM_END;
     return true;
 }

@@ -90,6 +90,15 @@ bool Executor::check_feed(const BlockValues &values, std::string_view code) {
     if (state.feed == 0.0) {
         return fault.set(fmt::format("Cannot do {} with zero feed rate", code));
     }
+    return check_feed_per_revolution();
+}
+
+/// G95 without a spindle speed would stand still.
+bool Executor::check_feed_per_revolution() {
+    const SpindleState &spindle = state.spindles[static_cast<std::size_t>(state.active_spindle)];
+    if (state.feed_mode == FeedMode::UNITS_PER_REVOLUTION && spindle.speed == 0.0) {
+        return fault.set("The feed is per revolution (G95) and the spindle speed is 0: give S first");
+    }
     return true;
 }
 

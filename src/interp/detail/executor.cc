@@ -164,6 +164,9 @@ bool Executor::choose_motion(BlockValues &values) {
 }
 
 bool Executor::check_words(const BlockValues &values) {
+    if (!check_open_nurbs(values)) {
+        return false;
+    }
     std::uint32_t allowed = letters("fstn");
     bool isAxisUser = false;
     for (const ActiveCode &active : values.codes) {

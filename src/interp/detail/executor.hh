@@ -151,6 +151,10 @@ class Executor : public BuiltIns {
     bool do_context(const Code &code, const BlockValues &values);
     // exec_motion.cc
     bool do_straight(const Code &code, const BlockValues &values);
+    bool do_cubic_spline(const Code &code, const BlockValues &values);
+    bool do_quadratic_spline(const Code &code, const BlockValues &values);
+    bool do_nurbs_point(const Code &code, const BlockValues &values);
+    bool do_nurbs_end(const Code &code, const BlockValues &values);
     bool do_arc(const Code &code, const BlockValues &values);
     bool do_cycle(const Code &code, const BlockValues &values);
     bool do_comp(const Code &code, const BlockValues &values);
@@ -213,6 +217,11 @@ class Executor : public BuiltIns {
     bool polar_target(const BlockValues &values, Pose &end);
     bool straight_target(const BlockValues &values, Pose &end);
     bool check_feed(const BlockValues &values, std::string_view code);
+    bool check_feed_per_revolution();
+    bool check_spline(const BlockValues &values, std::string_view code, bool isPlaneFree);
+    bool check_open_nurbs(const BlockValues &values);
+    void keep_control_point(const NurbsPoint &point);
+    bool send_nurbs(NurbsFeed nurbs);
     void send_inverse_time(double length);
     double straight_length(const Pose &end) const;
     PlaneAxes plane_axes() const;
@@ -257,6 +266,7 @@ class Executor : public BuiltIns {
     const Remap *remap_ = nullptr;  ///< the one that the block has come to
     std::optional<PendingBlock> pending_;
     State before_;  ///< as the block found it
+    std::vector<NurbsPoint> control_points_;
     std::size_t queued_before_ = 0;
     std::vector<std::pair<std::size_t, CanonQueue::Record>>
         patched_;                                      ///< calls that the block changed, as they were

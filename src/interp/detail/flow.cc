@@ -181,7 +181,7 @@ Step Flow::after_block() {
         switch (outcome) {
         case Outcome::OK: return Step::OK;
         case Outcome::SYNC: return Step::SYNC;
-        case Outcome::PROGRAM_END: unwind(); return Step::PROGRAM_END;
+        case Outcome::PROGRAM_END: end_program(); return Step::PROGRAM_END;
         case Outcome::CALL_FANUC: isDone = call_fanuc(); break;
         case Outcome::RETURN_FANUC: isDone = return_fanuc(); break;
         case Outcome::REMAP: isDone = call_remap(); break;
@@ -189,6 +189,16 @@ Step Flow::after_block() {
         }
     }
     return fail_block();
+}
+
+void Flow::end_program() {
+    const Program *main = calls_.empty() ? program_ : calls_.front().program;
+    if (main != nullptr && !isMdi_ && !main->hasClosingPercent()) {
+        executor_.canon.comment("interpreter: percent sign missing from end of file");
+    }
+    executor_.canon.on_reset();
+    commit();
+    unwind();
 }
 
 void Flow::commit() {

@@ -68,6 +68,7 @@ class Flow {
     Step percent();
     Step finish_mdi();
     void commit();
+    void end_program();
     void unwind();
 
     // flow_owords.cc

@@ -54,6 +54,17 @@ std::string_view Program::line_text(int line) const {
     return {text_.data() + begin, end - begin};
 }
 
+bool Program::hasClosingPercent() const {
+    for (int line = count_lines(); isPercentDelimited_ && line > first_content_line_; --line) {
+        const std::string_view content = line_text(line);
+        const std::size_t first = content.find_first_not_of(" \t\r");
+        if (first != std::string_view::npos && content[first] == '%') {
+            return true;
+        }
+    }
+    return !isPercentDelimited_;
+}
+
 /// After blanks, a slash and an N word.
 bool Program::beginsWithO(std::string_view line) {
     std::size_t i = line.find_first_not_of(" \t/");

@@ -33,6 +33,8 @@ class Program {
     BlockView block(int line);
     /// A program that begins with % ends at the next one.
     bool isPercentDelimited() const { return isPercentDelimited_; }
+    /// False when the file begins with % and no other line does.
+    bool hasClosingPercent() const;
     int first_content_line() const { return first_content_line_; }  ///< the first that is not blank; 0: none
 
     /// The next line after (or before) `line` with an O word of the same label; 0: none.

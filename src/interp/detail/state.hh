@@ -82,7 +82,11 @@ struct State {
     CompElement comp_last;
     bool isCompExit = false;  ///< compensation was on: the next move must be straight
     CycleWords cycle;
-    Pose probed;  ///< [program units]
+    Point spline_out;             ///< where a G5 without I and J leaves its start to [program units]
+    int nurbs_order = 0;          ///< of the NURBS between G5.2 and G5.3; 0: none is open
+    std::size_t nurbs_count = 0;  ///< its control points so far
+    Pose nurbs_end;               ///< the last of them [program units]
+    Pose probed;                  ///< [program units]
 };
 
 }  // namespace mw::interp::detail

@@ -173,7 +173,7 @@ class FunctionsTest(unittest.TestCase):
         self.assertEqual(hal.query.comp(hal.query.comp("and2")["id"])["name"], "and2")
         ids = [row["id"] for row in hal.query.comps()]
         self.assertEqual(ids, sorted(ids, reverse=True))
-        self.assertEqual(hal.query.thread("servo")["functs"], ["and2.0"])
+        self.assertEqual(hal.query.thread("servo")["functs"], ["and2.0", "raster.0"])
         self.assertEqual(hal.query.funct("and2.0")["users"], 1)
         self.assertEqual(hal.query.pins("and2.0.in*")[0]["name"], "and2.0.in0")
         self.assertEqual(hal.query.signalpins("both")[0]["name"], "and2.0.out")
@@ -251,6 +251,25 @@ class PortTest(unittest.TestCase):
         comp.exit()
 
 
+class RasterTest(unittest.TestCase):
+    def test_a_line_reaches_the_component(self):
+        programmer = raster.RasterProgrammer("pyraster")
+        hal.new_sig("lines", hal.HAL_PORT)
+        for pin in ("pyraster.program", "raster.0.program"):
+            self.assertTrue(hal.connect(pin, "lines"))
+        hal.set_s("lines", 512)
+        programmer.begin(0, 8, 10, 3, timeout=5)
+        with self.assertRaises(ValueError):
+            programmer.data([256])
+        programmer.data([0, 128, 255], timeout=5)
+        end = time.monotonic() + 10
+        while hal.get_value("raster.0.state") != 3 and time.monotonic() < end:
+            time.sleep(0.002)
+        self.assertEqual(hal.get_value("raster.0.state"), 3)
+        self.assertEqual(hal.get_value("raster.0.fault-code"), raster.FaultCodes.NONE)
+        programmer.exit()
+
+
 class UnloadTest(unittest.TestCase):
     def test_unload_comes_as_keyboard_interrupt(self):
         code = ("import hal, time\nc = hal.component('stopme')\nc.ready()\n"
@@ -267,6 +286,8 @@ HAL_FILE = """
 loadrt threads name1=servo period1=1000000
 loadrt and2
 addf and2.0 servo
+loadrt raster
+addf raster.0 servo
 net both and2.0.out
 start
 loadusr -w {python} {script} --inside
@@ -288,4 +309,5 @@ if __name__ == "__main__":
     if "--inside" in sys.argv:
         import hal
         import pyhal
+        import raster
     sys.exit(main())

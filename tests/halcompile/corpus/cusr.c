@@ -20,10 +20,12 @@ int main(void) {
     struct {
         hal_s32_t *seen;
     } *pins;
-    int id = hal_init("cusr");
-    if (id < 0) {
+    int id = hal_lib_init() == 0 ? hal_init("cusr") : -1;
+    int other = hal_init("cusr-other"); /* a second one, which ends first */
+    if (id < 0 || other < 0 || hal_exit(other) != 0) {
         return 1;
     }
+    hal_lib_exit();
     signal(SIGTERM, stop);
     pins = hal_malloc(sizeof(*pins));
     if (!pins || hal_pin_s32_newf(HAL_OUT, &pins->seen, id, "cusr.seen") != 0) {

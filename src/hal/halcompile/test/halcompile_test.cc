@@ -155,9 +155,30 @@ TEST(HalcompileChecker, findsWhatCannotWork_B2) {
         errors_of(
             "component x;\nfunction a;\nfunction b;\nlicense \"G\";\n;;\nFUNCTION(a) {}\n FUNCTION(c) {}"),
         (Texts{"3:1 function 'b' is not defined", "7:2 FUNCTION(c) is not declared"}));
-    EXPECT_EQ(errors_of("component x;\noption userspace;\nfunction _; license \"G\";\n;;"),
+    EXPECT_EQ(errors_of("component x;\noption userspace;\nfunction _; license \"G\";\n;;user_mainloop"),
               (Texts{"3:1 a userspace component has no functions"}));
     EXPECT_EQ(errors_of("component x; license \"G\";"), (Texts{"0:0 there is no ;;"}));
+}
+
+TEST(HalcompileChecker, wantsTheCodeThatOptionsCall_B2) {
+    EXPECT_EQ(errors_of("component x;\noption userspace;\nlicense \"G\";\n;;\nint user_main;"),
+              (Texts{"2:1 option userspace is on, but there is no user_mainloop"}));
+    EXPECT_EQ(errors_of("component x;\noption extra_setup;" + TAIL + "// EXTRA_SETUP"),
+              (Texts{"2:1 option extra_setup is on, but there is no EXTRA_SETUP"}));
+    EXPECT_EQ(errors_of("component x;\noption rtapi_app no;" + TAIL),
+              (Texts{"2:1 option rtapi_app is off, but there is no rtapi_app_main"}));
+    EXPECT_EQ(errors_of("component x;\noption extra_setup;" + TAIL + "#include \"setup.c\""), Texts{});
+    EXPECT_EQ(errors_of("component x;\nfunction _; license \"G\"\n;;\n"),
+              (Texts{"3:1 ';' is expected here"}));
+}
+
+TEST(HalcompileChecker, reservesNamesOnlyWhereTheyAreSeen_B2) {
+    EXPECT_EQ(errors_of("\xef\xbb\xbf"
+                        "component x;\r\npin in bit prefix;\r\npin in bit export;" +
+                        TAIL),
+              Texts{});
+    EXPECT_EQ(errors_of("component x;\noption extra_setup;\npin in bit prefix;" + TAIL + "EXTRA_SETUP"),
+              (Texts{"3:1 the name 'prefix' is reserved"}));
 }
 
 TEST(HalcompileCode, seesFunctionsOnlyInCode) {

@@ -154,6 +154,26 @@ TEST_F(Options, TclFilesAndSessions_B1) {
     EXPECT_EQ(run({"halrun", "c.hal"}).out, "one or2 \n");
 }
 
+TEST_F(Options, AfterAFailedFileInputIsReadWhenAskedFor_B1) {
+    file("a.hal", "newsig a bit\nbogus\n");
+    file("in.txt", "list sig\n");
+    const Ended ended = run({"sh", "-c", "halrun -I -f a.hal < in.txt"});
+    EXPECT_EQ(ended.out, "a \n");
+    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(run({"sh", "-c", "halrun < in.txt"}).status, 0);
+    EXPECT_EQ(run({"sh", "-c", "halcmd -f < in.txt; halrun -U"}).out, "\n")
+        << "a realtime process of its own";
+}
+
+TEST_F(Options, WhatWasLeftRunningIsEnded_B1) {
+    EXPECT_EQ(run({"halcmd", "loadrt", "and2"}).status, 0);
+    EXPECT_EQ(run({"halcmd", "list", "comp"}).out, "and2 \n");
+    EXPECT_NE(run({"halrun", "nothing.hal"}).err.find("is already running"), std::string::npos);
+    EXPECT_EQ(run({"halrun", "-U"}).status, 0);
+    EXPECT_EQ(run({"halrun", "-U"}).status, 0) << "nothing to do";
+    EXPECT_EQ(run({"halcmd", "list", "comp"}).status, 1);
+}
+
 /// halrun at a terminal.
 class Prompt : public Programs {
   protected:

@@ -25,8 +25,9 @@ TEST_F(Programs, EveryFunctionOfALongThreadIsTimedInTurn_B4) {
         text += "addf and2." + std::to_string(i) + " t\n";
     }
     text += "start\nloadusr -w sh poll.sh\n";
-    file("poll.sh", "i=0\nwhile halcmd -s show param and2.*tmax | grep -q ' 0 '; do i=$((i + 1)); [ $i -lt 1000 ]"
-                    " || exit 1; done\n");
+    file("poll.sh",
+         "i=0\nwhile halcmd -s show param and2.*tmax | grep -q ' 0 '; do i=$((i + 1)); [ $i -lt 1000 ]"
+         " || exit 1; done\n");
     const Ended ended = run({"halrun", file("a.hal", text)});
     EXPECT_EQ(ended.status, 0) << ended.err << "a function was never timed";
 }

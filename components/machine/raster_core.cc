@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "components/machine/raster_core.hh"
+
+#include <cmath>
+
+namespace mw::raster {
+
+namespace {
+
+/// The power of ten behind an 'e', to two digits; 1 when there is none. Moves behind it.
+double read_exponent(const char *&text) noexcept {
+    constexpr int MOST = 12;
+    if ((*text | 0x20) != 'e') {
+        return 1.0;
+    }
+    ++text;
+    const bool isNegative = *text == '-';
+    text += isNegative || *text == '+' ? 1 : 0;
+    int exponent = 0;
+    for (int digits = 0; digits < 2 && *text >= '0' && *text <= '9'; ++digits) {
+        exponent = 10 * exponent + (*text++ - '0');
+    }
+    double power = 1.0;
+    for (int i = 0; i < exponent && i <= MOST; ++i) {
+        power *= 10.0;
+    }
+    return isNegative ? 1.0 / power : power;
+}
+
+/// A decimal number up to `end`; moves behind the character there. False when there is none.
+bool read_number(const char *&text, char end, double &out) noexcept {
+    constexpr double LARGEST = 1e12;
+    const bool isNegative = *text == '-';
+    text += isNegative ? 1 : 0;
+    double number = 0.0;
+    double place = 0.0;  // of the last digit behind the point: 10, 100, ...; 0 before the point
+    bool hasDigit = false;
+    for (; (*text >= '0' && *text <= '9') || (*text == '.' && place == 0.0); ++text) {
+        if (*text == '.') {
+            place = 1.0;
+            continue;
+        }
+        hasDigit = true;
+        number = 10.0 * number + (*text - '0');
+        place *= 10.0;
+    }
+    number = place > 1.0 ? number / place : number;
+    number *= hasDigit ? read_exponent(text) : 1.0;
+    const bool isWhole = hasDigit && *text == end && number <= LARGEST;
+    text += isWhole ? 1 : 0;
+    out = isNegative ? -number : number;
+    return isWhole;
+}
+
+}  // namespace
+
+bool Line::parse_header() noexcept {
+    header_[header_size_] = '\n';
+    const char *text = header_;
+    double bits = 0.0;
+    double number = 0.0;
+    const bool isRead = read_number(text, ';', offset_) && read_number(text, ';', bits) &&
+                        read_number(text, ';', per_unit_) && read_number(text, '\n', number);
+    const bool isPossible = isRead && (bits == 4.0 || bits == 8.0 || bits == 12.0 || bits == 16.0) &&
+                            per_unit_ != 0.0 && number >= 1.0 && number <= MAX_PIXELS &&
+                            number == std::floor(number);
+    if (isPossible) {
+        digits_ = static_cast<int>(bits) / 4;
+        count_ = static_cast<int>(number);
+    }
+    return isPossible;
+}
+
+void Line::take_header(char byte) noexcept {
+    if (byte == '\n') {
+        pixels_ = 0;
+        digit_ = 0;
+        reading_ = parse_header() ? Reading::PIXELS : Reading::BAD_HEADER;
+    } else if (header_size_ >= MAX_HEADER - 1) {
+        reading_ = Reading::BAD_HEADER;
+    } else {
+        header_[header_size_++] = byte;
+    }
+}
+
+void Line::take_pixel(char byte) noexcept {
+    const char lower = static_cast<char>(byte | 0x20);
+    const bool isDecimal = byte >= '0' && byte <= '9';
+    const bool isLetter = lower >= 'a' && lower <= 'f';
+    if (!isDecimal && !isLetter) {
+        reading_ = Reading::BAD_PIXEL;
+        return;
+    }
+    const unsigned nibble = static_cast<unsigned>(isDecimal ? byte - '0' : lower - 'a' + 10);
+    const unsigned before = digit_ == 0 ? 0U : pixel_[pixels_];
+    pixel_[pixels_] = static_cast<std::uint16_t>(before << 4U | nibble);
+    if (++digit_ == digits_) {
+        digit_ = 0;
+        if (++pixels_ == count_) {
+            reading_ = Reading::COMPLETE;
+        }
+    }
+}
+
+void Line::take(char byte) noexcept {
+    if (reading_ == Reading::NOTHING && byte != '\n') {
+        header_size_ = 0;
+        reading_ = Reading::HEADER;
+    }
+    if (reading_ == Reading::HEADER) {
+        take_header(byte);
+    } else if (reading_ == Reading::PIXELS && byte != '\n') {
+        take_pixel(byte);
+    }
+}
+
+}  // namespace mw::raster
