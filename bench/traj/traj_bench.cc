@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Drives each kind of program with the planner in virtual time: cycle time, limits, deviation, planning rate.
-// traj_bench [--jerk] [--fast] [--rate] [--trace FOLDER] [--only WORD]; --fast leaves the deviation out;
+// traj_bench [--jerk] [--fast] [--bound] [--rate] [--trace FOLDER] [--only WORD]; --fast leaves the deviation
+// out;
 // --rate measures planning alone, merging off, on 0.01 mm blocks in nine coordinates.
 #include <chrono>
 #include <cstdio>
@@ -10,6 +11,7 @@
 
 #include "testing/deviation.hh"
 #include "testing/limit_checker.hh"
+#include "traj/bound.hh"
 #include "traj/executor.hh"
 #include "traj/kinds.hh"
 #include "traj/planner.hh"
@@ -23,6 +25,7 @@ struct Options {
     bool isJerkLimited = false;
     bool isFast = false;
     bool isRate = false;
+    bool isBound = false;
     const char *trace = nullptr;
     const char *only = "";
 };
@@ -155,6 +158,11 @@ bool measure(const Options &options, const Program &program) {
                 program.moves.size(), cycle_time(run.samples), checker.worst_velocity(),
                 checker.worst_acceleration(), checker.worst_jerk(), deviation, program.tolerance,
                 static_cast<double>(program.moves.size()) / run.planning_s, isOk ? "ok" : "FAILED");
+    if (options.isBound) {
+        const double best = best_known_time(program);
+        std::printf("%-18s best known with acceleration limits %8.3f s, ratio %6.3f\n", "", best,
+                    cycle_time(run.samples) / best);
+    }
     if (!isOk) {
         std::printf("%.400s", checker.report().c_str());
     }
@@ -175,6 +183,8 @@ int main(int argc, char **argv) {
             options.isJerkLimited = true;
         } else if (std::strcmp(argv[i], "--fast") == 0) {
             options.isFast = true;
+        } else if (std::strcmp(argv[i], "--bound") == 0) {
+            options.isBound = true;
         } else if (std::strcmp(argv[i], "--rate") == 0) {
             options.isRate = true;
             options.isFast = true;
@@ -183,8 +193,9 @@ int main(int argc, char **argv) {
         } else if (std::strcmp(argv[i], "--only") == 0 && hasValue) {
             options.only = argv[++i];
         } else {
-            std::fprintf(stderr,
-                         "usage: traj_bench [--jerk] [--fast] [--rate] [--trace FOLDER] [--only WORD]\n");
+            std::fprintf(
+                stderr,
+                "usage: traj_bench [--jerk] [--fast] [--bound] [--rate] [--trace FOLDER] [--only WORD]\n");
             return 2;
         }
     }

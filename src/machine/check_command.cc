@@ -36,6 +36,9 @@ std::string time_text(double seconds) {
 void print_times(const TimeFigures &time) {
     fmt::print("  time {}: cutting {}, rapid {}, dwell {}\n", time_text(time.total_s),
                time_text(time.cutting_s), time_text(time.rapid_s), time_text(time.dwell_s));
+    if (!time.isComplete) {
+        fmt::print("  the time lacks moves that the planner could not drive: please report this program\n");
+    }
     for (const auto &[tool, seconds] : time.by_tool) {
         fmt::print("  tool {}: {}\n", tool, time_text(seconds));
     }

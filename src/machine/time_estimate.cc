@@ -162,6 +162,7 @@ void TimeEstimate::take(const traj::MoveEstimate &move) {
 
 const TimeFigures &TimeEstimate::finish() {
     estimator_->finish();
+    figures_.isComplete = estimator_->isComplete();
     figures_.total_s = figures_.cutting_s + figures_.rapid_s + figures_.dwell_s;
     std::vector<SlowPlace> all;
     for (const auto &[key, place] : places_) {

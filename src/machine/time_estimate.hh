@@ -22,6 +22,7 @@ struct SlowPlace {
 
 struct TimeFigures {
     double total_s = 0, cutting_s = 0, rapid_s = 0, dwell_s = 0;
+    bool isComplete = true;  ///< false: the planner could not drive all of it
     std::map<int, double> by_tool;
     std::vector<SlowPlace> slowest;  ///< at most SLOW_PLACES, the worst first
 };

@@ -11,6 +11,7 @@ namespace {
 constexpr std::uint64_t PLANNER_CYCLES = 5;
 constexpr std::uint64_t LATENCY = 3;
 constexpr double HORIZON_S = 0.1;
+constexpr double LONGEST_STAND_S = 5;
 /// A limit counts as binding from this part of it on.
 constexpr double NEAR = 0.93;
 /// A move that takes this much of the time at its feed runs at its feed.
@@ -37,7 +38,9 @@ void Estimator::add(const Primitive &primitive, const MoveRequest &request) {
         return;
     }
     while (!planner_->hasRoom(executor_->snapshot())) {
-        step();
+        if (!step()) {
+            return;
+        }
     }
     MoveRequest plain = request;
     plain.isGated = false;
@@ -47,17 +50,23 @@ void Estimator::add(const Primitive &primitive, const MoveRequest &request) {
 void Estimator::finish() {
     planner_->release_end();
     while (executor_->snapshot().done_move < planner_->last_move() || !executor_->isAtRest()) {
-        step();
+        if (!step()) {
+            break;
+        }
     }
     close_move();
 }
 
-void Estimator::step() {
+bool Estimator::step() {
     if (cycle_ % PLANNER_CYCLES == 0) {
         planner_->update(executor_->snapshot());
     }
     const ExecutorOutput &out = executor_->step(++cycle_);
     count(out);
+    standing_cycles_ = executor_->isAtRest() ? standing_cycles_ + 1 : 0;
+    const bool isStuck = static_cast<double>(standing_cycles_) * period_s_ > LONGEST_STAND_S;
+    isComplete_ = isComplete_ && !isStuck;
+    return !isStuck;
 }
 
 /// |n-th difference| over its limit; `order` 0 velocity, 1 acceleration, 2 jerk.

@@ -35,11 +35,14 @@ class Estimator {
     void add(const Primitive &primitive, const MoveRequest &request);
     /// Drives to the end of what has been added and stands.
     void finish();
+    /// False when a path came to a stand that nothing ended: the time then lacks what was left of it.
+    bool isComplete() const { return isComplete_; }
     /// All time so far [s].
     double seconds() const { return static_cast<double>(cycle_) * period_s_; }
 
   private:
-    void step();
+    /// False when the path stands for longer than any plan can need.
+    bool step();
     void count(const ExecutorOutput &out);
     void close_move();
     double ratio(int i, int order) const;
@@ -53,6 +56,8 @@ class Estimator {
     std::uint64_t cycle_ = 0;
     Sequence move_ = 0;  ///< the one whose time is counted
     std::uint64_t move_cycles_ = 0;
+    std::uint64_t standing_cycles_ = 0;
+    bool isComplete_ = true;
     std::array<Pose, 4> last_{};
     std::array<std::array<std::uint64_t, LIMITED_COUNT>, 3>
         bound_{};  ///< cycles near a limit, by order and axis

@@ -15,6 +15,8 @@ constexpr double EXACT_DEVIATION = 1e-6;
 /// Part of the tolerance that blends may take where corners follow each other closely.
 constexpr double GEOMETRY_SHARE = 0.25;
 constexpr double SPREAD_SHARE = 0.05;
+/// Part that the mean may take on an arc.
+constexpr double ARC_SHARE = 0.92;
 /// Part of the tolerance that is planned with; the rest is for what the formulas leave out.
 constexpr double TOLERANCE_SHARE = 0.95;
 /// From the width of a blend that takes 0.7 of the acceleration to one that takes 0.95.
@@ -98,7 +100,7 @@ double Planner::filtered_arc_speed(const Primitive &p, const MovePlan &m) const 
         return UNLIMITED;
     }
     const double curvature = p.radius * p.omega * p.omega;
-    return std::sqrt(24.0 * (1.0 - GEOMETRY_SHARE) * tolerance / curvature) / filter_s();
+    return std::sqrt(24.0 * ARC_SHARE * tolerance / curvature) / filter_s();
 }
 
 /// A stop on the corner as long as needed: braking and starting overlap in the mean, which takes it off the

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "traj/bound.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mw::bench {
+
+namespace {
+
+constexpr double FINEST = 0.004, COARSEST = 0.02, POINTS = 120000;
+constexpr double REVERSAL = -0.9;
+
+struct Path {
+    std::vector<Pose> points;
+    std::vector<double> feed;  ///< highest |dq/ds|-speed wanted at each point, 0: none
+    std::vector<bool> isStop;
+    std::vector<bool> isFixed;  ///< exact path: not to be smoothed
+};
+
+/// The programmed path cut finely, with stops where the mode or a reversal asks for them.
+Path cut_path(const Program &program) {
+    double length = 0;
+    Pose from = program.start;
+    for (const Move &m : program.moves) {
+        const double around = m.isArc ? std::abs(m.angle_rad) * geom::norm_xyz(from - m.centre) : 0.0;
+        length += std::max(around, geom::norm(m.end - from));
+        from = m.end;
+    }
+    const double step = std::clamp(length / POINTS, FINEST, COARSEST);
+    Path path;
+    path.points.push_back(program.start);
+    path.feed.push_back(0);
+    path.isStop.push_back(true);
+    path.isFixed.push_back(true);
+    from = program.start;
+    Pose last_tangent;
+    for (const Move &m : program.moves) {
+        const double around = m.isArc ? std::abs(m.angle_rad) * geom::norm_xyz(from - m.centre) : 0.0;
+        const int n =
+            std::max(2, static_cast<int>(std::ceil(std::max(around, geom::norm(m.end - from)) / step)));
+        const Pose out = position_on(from, m, 1e-6) - from;
+        const Pose tangent = out * (1.0 / geom::norm(out));
+        const double turn = geom::dot(tangent, last_tangent);
+        const bool isExactCorner = m.control == PathControl::EXACT_PATH && turn < 0.9998;
+        if (isExactCorner || m.control == PathControl::EXACT_STOP || turn < REVERSAL) {
+            path.isStop.back() = true;
+        }
+        const double moved = geom::norm(m.end - from);
+        const double xyz = geom::norm_xyz(m.end - from);
+        const double ratio = m.isArc || !(xyz > 0) ? 1.0 : moved / xyz;
+        for (int i = 1; i <= n; ++i) {
+            path.points.push_back(position_on(from, m, static_cast<double>(i) / n));
+            path.feed.push_back(m.feed * ratio);
+            path.isStop.push_back(false);
+            path.isFixed.push_back(m.control != PathControl::BLEND);
+        }
+        const Pose in = m.end - position_on(from, m, 1.0 - 1e-6);
+        last_tangent = in * (1.0 / geom::norm(in));
+        from = m.end;
+    }
+    path.isStop.back() = true;
+    return path;
+}
+
+double distance(const Pose &a, const Pose &b) {
+    const Pose d = a - b;
+    return std::max(geom::norm_linear(d), geom::norm_abc(d));
+}
+
+/// Each point moves to the middle of its neighbours, `count` times, never farther than P from where it was.
+void smooth(const std::vector<Pose> &original, const Path &path, double tolerance, int count,
+            std::vector<Pose> &p) {
+    for (int n = 0; n < count; ++n) {
+        Pose before = p[0];
+        for (std::size_t i = 1; i + 1 < p.size(); ++i) {
+            const Pose old = p[i];
+            if (!path.isFixed[i] && !path.isStop[i]) {
+                Pose to = (before + p[i + 1]) * 0.25 + p[i] * 0.5;
+                const double off = distance(to, original[i]);
+                if (off > tolerance) {
+                    to = original[i] + (to - original[i]) * (tolerance / off);
+                }
+                p[i] = to;
+            }
+            before = old;
+        }
+    }
+}
+
+/// Allowed accelerations along the path at the squared speed b: low <= a <= high; false when there are none.
+struct Cell {
+    Pose q1, q2;
+};
+bool range_of(const Cell &c, const Program &program, double b, double &low, double &high) {
+    low = -1e300;
+    high = 1e300;
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        const double limit = program.max_acceleration[i];
+        const double turning = c.q2[i] * b;
+        if (std::abs(c.q1[i]) < 1e-9) {
+            if (std::abs(turning) > limit) {
+                return false;
+            }
+            continue;
+        }
+        const double one = (-limit - turning) / c.q1[i];
+        const double two = (limit - turning) / c.q1[i];
+        low = std::max(low, std::min(one, two));
+        high = std::min(high, std::max(one, two));
+    }
+    return low <= high;
+}
+
+double time_of(const std::vector<Pose> &p, const Path &path, const Program &program) {
+    const std::size_t n = p.size();
+    std::vector<Cell> cells(n);
+    std::vector<double> gap(n, 0.0);
+    std::vector<double> most(n, 0.0);
+    for (std::size_t i = 0; i + 1 < n; ++i) {
+        gap[i] = std::max(1e-9, geom::norm(p[i + 1] - p[i]));
+    }
+    for (std::size_t i = 1; i + 1 < n; ++i) {
+        const Pose in = (p[i] - p[i - 1]) * (1.0 / gap[i - 1]);
+        const Pose out = (p[i + 1] - p[i]) * (1.0 / gap[i]);
+        cells[i] = {(in + out) * 0.5, (out - in) * (2.0 / (gap[i] + gap[i - 1]))};
+        double v = path.feed[i] > 0 ? path.feed[i] : 1e300;
+        for (int k = 0; k < geom::AXIS_COUNT; ++k) {
+            v = std::abs(cells[i].q1[k]) > 0 ? std::min(v, program.max_velocity[k] / std::abs(cells[i].q1[k]))
+                                             : v;
+        }
+        most[i] = path.isStop[i] ? 0.0 : v * v;
+    }
+    for (std::size_t i = n - 1; i-- > 1;) {
+        // The highest b from which some allowed a leads to what can be kept next.
+        double low_b = 0;
+        double high_b = most[i];
+        for (int k = 0; k < 50 && high_b > 0; ++k) {
+            const double b = k == 0 ? high_b : 0.5 * (low_b + high_b);
+            double low = 0;
+            double high = 0;
+            const bool isKept =
+                range_of(cells[i], program, b, low, high) && b + 2.0 * low * gap[i] <= most[i + 1];
+            (isKept ? low_b : high_b) = b;
+            if (k == 0 && isKept) {
+                break;
+            }
+        }
+        most[i] = low_b;
+    }
+    std::vector<double> b(n, 0.0);
+    double time = 0;
+    for (std::size_t i = 0; i + 1 < n; ++i) {
+        double low = 0;
+        double high = 0;
+        Cell c = cells[i];
+        if (i == 0 || path.isStop[i]) {
+            c = {(p[i + 1] - p[i]) * (1.0 / gap[i]), Pose{}};
+        }
+        range_of(c, program, b[i], low, high);
+        b[i + 1] = std::clamp(b[i] + 2.0 * high * gap[i], 0.0, most[i + 1]);
+        const double sum = std::sqrt(b[i]) + std::sqrt(b[i + 1]);
+        time += sum > 0 ? 2.0 * gap[i] / sum : 1e3;
+    }
+    return time;
+}
+
+}  // namespace
+
+double best_known_time(const Program &program) {
+    const Path path = cut_path(program);
+    std::vector<Pose> points = path.points;
+    double best = 1e300;
+    int done = 0;
+    for (const int count : {0, 4, 12, 36, 108, 324, 972, 2400}) {
+        smooth(path.points, path, program.tolerance, count - done, points);
+        done = count;
+        best = std::min(best, time_of(points, path, program));
+    }
+    return best;
+}
+
+}  // namespace mw::bench
