@@ -13,6 +13,8 @@ namespace {
 
 /// Samples that are tried; the rest of a longer stop is braking alone.
 constexpr std::uint64_t MOST_SAMPLES = 4000;
+/// Phases in one sample; the executor passes twice as many at most.
+constexpr Sequence MOST_PHASES = 2000;
 constexpr double SLOWER = 0.9;
 constexpr double GENTLER = 0.8;
 constexpr double ROUNDING = 1e-7;
@@ -168,9 +170,15 @@ bool Planner::isPlanSound(const Snapshot &now, const State &from, Sequence begin
             return false;
         }
         t += settings_.period_s;
+        const Sequence before = n;
         while (n < plan_end_ && t >= store_.phase(n).duration) {
             t -= store_.phase(n).duration;
             ++n;
+        }
+        // More than the executor would pass in one cycle.
+        if (n - before > MOST_PHASES) {
+            failed_tick_ = trial_tick_;
+            return false;
         }
     }
     // The mean catches up while the leader stands.

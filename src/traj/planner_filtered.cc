@@ -83,7 +83,7 @@ void Planner::emit_coast(double cap, double out2) noexcept {
     double way = std::max(0.0, left - brake);
     const double since_s = s.v < cap ? s.coasting.since_fall_s : s.coasting.since_rise_s;
     const double wait = filter_s() - since_s;
-    if (wait > 0 && s.v != cap) {
+    if (wait > 1e-9 && s.v != cap) {
         way = std::min(way, s.v * wait);
     }
     emit_phase(std::max(way, 1e-9 * left), s.v);

@@ -280,6 +280,12 @@ TEST(Campaign, RandomProgramsKeepLimitsToleranceAndOrder) {
     check_all(false);
 }
 
+TEST(Campaign, SeedsThatOnceFailedKeepJerkLimits_C13) {
+    for (const unsigned seed : {30U, 69U, 159U, 9127U, 50521U, 500252U}) {
+        check(seed, true);
+    }
+}
+
 TEST(Campaign, RandomProgramsKeepJerkLimits_C13) {
     check_all(true);
 }
