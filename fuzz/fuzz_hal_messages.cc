@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Bytes from other processes: messages to the realtime process, records for halstreamer, periods of the command line.
+// Bytes from other processes: messages to the realtime process, records for halstreamer, periods of the
+// command line.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
