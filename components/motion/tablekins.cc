@@ -3,12 +3,8 @@
 // A C. tilt_y=, tilt_z=: where the axis A passes the axis C, from the origin [machine units].
 #include <stdlib.h>
 
-#include "hal/api/hal.h"
-#include "hal/api/kinematics.h"
-#include "hal/api/rtapi_app.h"
+#include "components/motion/kinematics_module.hh"
 #include "kins/rotary_table.hh"
-
-using mw::geom::Pose;
 
 static char *tilt_y;
 RTAPI_MP_STRING(tilt_y, "Y of the tilting axis [machine units]");
@@ -18,26 +14,7 @@ RTAPI_MP_STRING(tilt_z, "Z of the tilting axis [machine units]");
 static mw::kins::RotaryTable model;
 static int component = -1;
 
-extern "C" int kinematicsForward(const double *joint, struct EmcPose *world, const KINEMATICS_FORWARD_FLAGS *,
-                                 KINEMATICS_INVERSE_FLAGS *) {
-    Pose pose;
-    model.forward(joint, pose);
-    *world = {{pose[0], pose[1], pose[2]}, pose[3], pose[4], pose[5], pose[6], pose[7], pose[8]};
-    return 0;
-}
-
-extern "C" int kinematicsInverse(const struct EmcPose *world, double *joint, const KINEMATICS_INVERSE_FLAGS *,
-                                 KINEMATICS_FORWARD_FLAGS *) {
-    const Pose pose{{world->tran.x, world->tran.y, world->tran.z, world->a, world->b, world->c, world->u,
-                     world->v, world->w}};
-    model.inverse(pose, joint);
-    return 0;
-}
-
-extern "C" int kinematicsHome(struct EmcPose *world, double *joint, KINEMATICS_FORWARD_FLAGS *fflags,
-                              KINEMATICS_INVERSE_FLAGS *iflags) {
-    return kinematicsForward(joint, world, fflags, iflags);
-}
+MW_KINEMATICS(model);
 
 extern "C" KINEMATICS_TYPE kinematicsType(void) {
     return KINEMATICS_BOTH;
@@ -46,10 +23,6 @@ extern "C" KINEMATICS_TYPE kinematicsType(void) {
 /// No hidden state: the planner may call these functions while the servo thread does.
 extern "C" RTAPI_EXPORT int mw_kinematics_is_pure(void) {
     return 1;
-}
-
-extern "C" {
-KINS_NOT_SWITCHABLE
 }
 
 /// False when the text is no number. The realtime process keeps the locale C.

@@ -2,12 +2,8 @@
 // Kinematics of machines whose joints are axes. coordinates=XYYZ: joint n drives the n-th letter.
 // kinstype=1 identity (default), both: joints and axes differ for operators (gantries), f: forward only, i:
 // inverse only.
-#include "hal/api/hal.h"
-#include "hal/api/kinematics.h"
-#include "hal/api/rtapi_app.h"
+#include "components/motion/kinematics_module.hh"
 #include "kins/trivial.hh"
-
-using mw::geom::Pose;
 
 static char *coordinates;
 RTAPI_MP_STRING(coordinates, "axis letters in the order of the joints");
@@ -18,34 +14,10 @@ static mw::kins::Trivial model;
 static KINEMATICS_TYPE type = KINEMATICS_IDENTITY;
 static int component = -1;
 
-extern "C" int kinematicsForward(const double *joint, struct EmcPose *world, const KINEMATICS_FORWARD_FLAGS *,
-                                 KINEMATICS_INVERSE_FLAGS *) {
-    Pose pose{{world->tran.x, world->tran.y, world->tran.z, world->a, world->b, world->c, world->u, world->v,
-               world->w}};
-    model.forward(joint, pose);
-    *world = {{pose[0], pose[1], pose[2]}, pose[3], pose[4], pose[5], pose[6], pose[7], pose[8]};
-    return 0;
-}
-
-extern "C" int kinematicsInverse(const struct EmcPose *world, double *joint, const KINEMATICS_INVERSE_FLAGS *,
-                                 KINEMATICS_FORWARD_FLAGS *) {
-    const Pose pose{{world->tran.x, world->tran.y, world->tran.z, world->a, world->b, world->c, world->u,
-                     world->v, world->w}};
-    model.inverse(pose, joint);
-    return 0;
-}
-
-extern "C" int kinematicsHome(struct EmcPose *world, double *joint, KINEMATICS_FORWARD_FLAGS *fflags,
-                              KINEMATICS_INVERSE_FLAGS *iflags) {
-    return kinematicsForward(joint, world, fflags, iflags);
-}
+MW_KINEMATICS(model);
 
 extern "C" KINEMATICS_TYPE kinematicsType(void) {
     return type;
-}
-
-extern "C" {
-KINS_NOT_SWITCHABLE
 }
 
 int rtapi_app_main(void) {

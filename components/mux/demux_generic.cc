@@ -79,50 +79,13 @@ void DemuxGeneric::update(long period_ns) noexcept {
     }
 }
 
-/// Makes demultiplexer `index` from its item of config=: 0, or a negated errno.
-static int make_demux(int comp_id, int index) noexcept {
-    DemuxGeneric *mux = make<DemuxGeneric>();
-    if (mux == nullptr) {
-        return -ENOMEM;
-    }
-    if (!mux->shape.parse(config[index])) {
-        rtapi_print_msg(
-            RTAPI_MSG_ERR,
-            "demux_generic: config item '%s' is not two of the letters b f s u l k and a size of 2 to %d",
-            config[index], MAX_SIZE);
-        return -EINVAL;
-    }
-    Name prefix;
-    rtapi_snprintf(prefix.text, sizeof prefix.text, "demux-gen.%02d", index);
-    Declare declare(comp_id, prefix.text, index);
-    mux->declare(declare);
-    return declare.status();
-}
-
-static int load_demuxes() noexcept {
-    const int comp_id = hal_init("demux_generic");
-    if (comp_id < 0) {
-        return comp_id;
-    }
-    int status = 0;
-    int count = 0;
-    while (status == 0 && count < MAX_MUXES && config[count] != nullptr) {
-        status = make_demux(comp_id, count);
-        ++count;
-    }
-    if (count == 0) {
-        rtapi_print_msg(RTAPI_MSG_ERR, "demux_generic: config= is missing, for example config=ff8");
-        status = -EINVAL;
-    }
-    return finish(comp_id, status);
-}
-
 }  // namespace mw::components
 
 static int mw_comp_id = -1;
 
 int rtapi_app_main(void) {
-    mw_comp_id = mw::components::load_demuxes();
+    mw_comp_id = mw::components::load_generic<mw::components::DemuxGeneric>("demux_generic", "demux-gen",
+                                                                            config, MAX_MUXES);
     return mw_comp_id < 0 ? mw_comp_id : 0;
 }
 

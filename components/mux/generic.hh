@@ -72,4 +72,39 @@ inline void copy_pin(const hal_data_u *input, hal_type_t from, hal_type_t to, ha
     }
 }
 
+/// Loads a T, which has a `shape` and declares its pins, for each item of config=: PREFIX.00, PREFIX.01, ...
+/// The component id, or a negated errno.
+template <class T>
+int load_generic(const char *module, const char *prefix, char *const *config, int max) noexcept {
+    const int comp_id = hal_init(module);
+    if (comp_id < 0) {
+        return comp_id;
+    }
+    int status = 0;
+    int count = 0;
+    for (; status == 0 && count < max && config[count] != nullptr; ++count) {
+        T *made = make<T>();
+        if (made == nullptr) {
+            status = -ENOMEM;
+        } else if (!made->shape.parse(config[count])) {
+            rtapi_print_msg(
+                RTAPI_MSG_ERR,
+                "%s: config item '%s' is not two of the letters b f s u l k and a size of 2 to %d", module,
+                config[count], MAX_SIZE);
+            status = -EINVAL;
+        } else {
+            Name name;
+            rtapi_snprintf(name.text, sizeof name.text, "%s.%02d", prefix, count);
+            Declare declare(comp_id, name.text, count);
+            made->declare(declare);
+            status = declare.status();
+        }
+    }
+    if (count == 0) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "%s: config= is missing, for example config=ff8", module);
+        status = -EINVAL;
+    }
+    return finish(comp_id, status);
+}
+
 }  // namespace mw::components

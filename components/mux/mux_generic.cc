@@ -71,50 +71,13 @@ void MuxGeneric::update(long period_ns) noexcept {
     copy_pin(inputs[chosen], shape.from->type, shape.to->type, output);
 }
 
-/// Makes multiplexer `index` from its item of config=: 0, or a negated errno.
-static int make_mux(int comp_id, int index) noexcept {
-    MuxGeneric *mux = make<MuxGeneric>();
-    if (mux == nullptr) {
-        return -ENOMEM;
-    }
-    if (!mux->shape.parse(config[index])) {
-        rtapi_print_msg(
-            RTAPI_MSG_ERR,
-            "mux_generic: config item '%s' is not two of the letters b f s u l k and a size of 2 to %d",
-            config[index], MAX_SIZE);
-        return -EINVAL;
-    }
-    Name prefix;
-    rtapi_snprintf(prefix.text, sizeof prefix.text, "mux-gen.%02d", index);
-    Declare declare(comp_id, prefix.text, index);
-    mux->declare(declare);
-    return declare.status();
-}
-
-static int load_muxes() noexcept {
-    const int comp_id = hal_init("mux_generic");
-    if (comp_id < 0) {
-        return comp_id;
-    }
-    int status = 0;
-    int count = 0;
-    while (status == 0 && count < MAX_MUXES && config[count] != nullptr) {
-        status = make_mux(comp_id, count);
-        ++count;
-    }
-    if (count == 0) {
-        rtapi_print_msg(RTAPI_MSG_ERR, "mux_generic: config= is missing, for example config=ff8");
-        status = -EINVAL;
-    }
-    return finish(comp_id, status);
-}
-
 }  // namespace mw::components
 
 static int mw_comp_id = -1;
 
 int rtapi_app_main(void) {
-    mw_comp_id = mw::components::load_muxes();
+    mw_comp_id =
+        mw::components::load_generic<mw::components::MuxGeneric>("mux_generic", "mux-gen", config, MAX_MUXES);
     return mw_comp_id < 0 ? mw_comp_id : 0;
 }
 

@@ -54,10 +54,10 @@ class Curve {
     /// De Boor's scheme in homogeneous coordinates.
     Vec point(double u) const {
         const int span = std::min(static_cast<int>(u), spans_ - 1) + degree_;
-        std::vector<Homogeneous> d;
+        std::array<Homogeneous, MAX_NURBS_ORDER> d;
         for (int i = 0; i <= degree_; ++i) {
             const NurbsPoint &p = nurbs_.points[static_cast<std::size_t>(span - degree_ + i)];
-            d.push_back({p.first * p.weight, p.second * p.weight, p.weight});
+            d[static_cast<std::size_t>(i)] = {p.first * p.weight, p.second * p.weight, p.weight};
         }
         for (int level = 1; level <= degree_; ++level) {
             for (int i = degree_; i >= level; --i) {

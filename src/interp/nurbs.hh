@@ -18,8 +18,9 @@ struct PlanePiece {
 
 /// The curve of order `nurbs.order` over its control points, with a clamped uniform knot vector: it begins at
 /// the first control point and ends at the last. Wherever it has a tangent the pieces have it, too (biarcs),
-/// and they stay within `tolerance` [program units] of it. Sources: L. Piegl, W. Tiller, The NURBS Book, 2nd
-/// ed., algorithm A4.1; K. Bolton, Biarc curves, Computer-Aided Design 7 (1975).
+/// and they stay within `tolerance` [program units] of it, but for a cusp, which lines cut at 2^-14 of a
+/// span. Sources: L. Piegl, W. Tiller, The NURBS Book, 2nd ed., algorithm A4.1; K. Bolton, Biarc curves,
+/// Computer-Aided Design 7 (1975).
 std::vector<PlanePiece> approximate(const NurbsFeed &nurbs, double tolerance);
 
 }  // namespace mw::interp

@@ -200,7 +200,8 @@ Result<CaptureCommand> parse_capture(const Words &words) {
 }
 
 /// Waits for the end of the record; after the timeout it is forced, or given up.
-Result<> wait_for_record(Capture &capture, const CaptureCommand &command, volatile std::sig_atomic_t &stop) {
+Result<> wait_for_record(const Hal &hal, Capture &capture, const CaptureCommand &command,
+                         volatile std::sig_atomic_t &stop) {
     constexpr double STEP_S = 0.01;
     double waited_s = 0;
     bool isForced = false;
@@ -210,6 +211,9 @@ Result<> wait_for_record(Capture &capture, const CaptureCommand &command, volati
         }
         if (capture.state() == CaptureState::REFUSED) {
             return fail("the module capture refused the settings");
+        }
+        if (waited_s > command.timeout_s && !hal.isRunning()) {
+            return fail("the threads are stopped", {}, "halcmd start starts them");
         }
         if (waited_s > command.timeout_s && capture.state() != CaptureState::TRIGGERED) {
             if (!command.isForced || isForced) {
@@ -241,7 +245,7 @@ Result<> capture(const Words &words, volatile std::sig_atomic_t &stop) {
     }
     Result<> done = capture->begin(command->request);
     if (done) {
-        done = wait_for_record(*capture, *command, stop);
+        done = wait_for_record((*host)->hal(), *capture, *command, stop);
     }
     if (!done) {
         return done;

@@ -2,9 +2,11 @@
 #include "hal/view/netlist.hh"
 
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstring>
 #include <map>
 #include <vector>
@@ -122,25 +124,33 @@ std::string signal_text(const SignalInfo &signal, const std::map<std::string, st
     return text;
 }
 
-/// Runs dot; the text goes through a file, so that nothing can block.
+/// Runs dot with the text as its input, in memory, so that nothing can block and no other file is touched.
 Result<> run_dot(const std::string &text, const std::string &format, const std::string &path) {
-    const std::string source = path + ".dot";
-    const Result<> written = write_file_atomically(source, text);
-    if (!written) {
-        return written;
-    }
-    std::string option = "-T" + format, out = "-o" + path, program = "dot", in = source;
-    char *const argv[] = {program.data(), option.data(), out.data(), in.data(), nullptr};
+    const int input = ::memfd_create("netlist", MFD_CLOEXEC);
+    const bool isWritten = input >= 0 &&
+                           ::write(input, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
+                           ::lseek(input, 0, SEEK_SET) == 0;
+    int error = isWritten ? 0 : errno;
     pid_t pid = 0;
-    const int error = ::posix_spawnp(&pid, "dot", nullptr, nullptr, argv, environ);
-    if (error != 0) {
-        ::unlink(source.c_str());
+    if (isWritten) {
+        posix_spawn_file_actions_t actions;
+        ::posix_spawn_file_actions_init(&actions);
+        ::posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
+        std::string option = "-T" + format, out = "-o" + path, program = "dot";
+        char *const argv[] = {program.data(), option.data(), out.data(), nullptr};
+        error = ::posix_spawnp(&pid, "dot", &actions, nullptr, argv, environ);
+        ::posix_spawn_file_actions_destroy(&actions);
+    }
+    if (input >= 0) {
+        ::close(input);
+    }
+    if (error != 0 || !isWritten) {
         return fail(fmt::format("cannot run Graphviz' program dot: {}", std::strerror(error)), {},
                     "install the package graphviz, or write a .dot file");
     }
     int status = 0;
-    ::waitpid(pid, &status, 0);
-    ::unlink(source.c_str());
+    while (::waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+    }
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
         return fail(fmt::format("dot could not write '{}'", path));
     }

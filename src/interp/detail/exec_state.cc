@@ -66,6 +66,7 @@ void Executor::abort_block() {
     pending_.reset();
     outcome = Outcome::OK;
     isProbing_ = isWaitingInput_ = false;
+    state.nurbs_order = 0;
     before_ = state;
     queued_before_ = 0;
     patched_.clear();

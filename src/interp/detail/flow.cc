@@ -130,6 +130,9 @@ Step Flow::percent() {
         return fail_here(fmt::format("The file ends in subroutine o<{}> without its end",
                                      names_.text(calls_.back().label)));
     }
+    if (executor_.state.nurbs_order != 0) {
+        return fail_here("The file ends inside of a NURBS: G5.3 ends it");
+    }
     executor_.canon.finish();
     commit();
     return Step::FILE_END;

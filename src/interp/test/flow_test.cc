@@ -19,6 +19,14 @@ TEST(Flow, subroutine_gets_arguments_and_returns_a_value_I1) {
     EXPECT_EQ(machine.record.calls[0], "print34.000000 7.000000 1.000000 1.000000");
 }
 
+TEST(Flow, a_nurbs_without_its_end_is_told_and_leaves_nothing_behind_I1) {
+    Machine machine;
+    EXPECT_EQ(machine.run("F10\nG5.2 P1 L2\nX1 Y1\n%\n"), Step::FAILED);
+    EXPECT_NE(machine.error().find("G5.3"), std::string::npos) << machine.error();
+    EXPECT_EQ(machine.run("F10\nG5.2 P1 L2\nX1 Y1\nM2\n"), Step::FAILED);
+    EXPECT_EQ(machine.run("G0 X1\n"), Step::PROGRAM_END) << machine.error();
+}
+
 TEST(Flow, subroutine_in_a_file_of_its_own_I1) {
     Machine machine;
     machine.write("drill.ngc", "o<drill> sub\nG0 X#1\no<other> call\no<drill> endsub\nM2\n");

@@ -40,10 +40,12 @@ TEST(Netlist, EndingsSayTheFormat) {
         std::filesystem::temp_directory_path() / ("net" + std::to_string(::getpid()));
     std::filesystem::create_directories(folder);
     ASSERT_TRUE(write_netlist(bench.hal(), {}, folder / "a.dot"));
+    // A file of the user's beside it stays.
+    ASSERT_TRUE(write_file_atomically(folder / "a.svg.dot", "mine"));
     const Result<> drawn = write_netlist(bench.hal(), {}, folder / "a.svg");
     ASSERT_TRUE(drawn) << drawn.error().str();
     EXPECT_NE(read_file(folder / "a.svg").value_or("").find("and2.1"), std::string::npos);
-    EXPECT_FALSE(std::filesystem::exists(folder / "a.svg.dot"));
+    EXPECT_EQ(read_file(folder / "a.svg.dot").value_or(""), "mine");
     EXPECT_FALSE(write_netlist(bench.hal(), {}, folder / "a.txt"));
     EXPECT_FALSE(write_netlist(bench.hal(), {}, folder / "no" / "a.svg"));
     std::filesystem::remove_all(folder);
