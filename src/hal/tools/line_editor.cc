@@ -64,7 +64,9 @@ struct LineEditor::Impl {
             if (ready <= 0 || ::read(STDIN_FILENO, &byte, 1) != 1) {
                 return 0;
             }
-            *character = byte;
+            // An end of input typed before the editor took the terminal over comes as 0 (Linux, n_tty).
+            constexpr unsigned char END_OF_INPUT = 4;
+            *character = byte == 0 ? END_OF_INPUT : byte;
             return 1;
         }
         return 0;
