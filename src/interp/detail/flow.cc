@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "base/atomic_file.hh"
-
 namespace mw::interp::detail {
 
 Flow::Flow(Executor &executor, Names &names, Canon &target, const Settings &settings)
@@ -16,11 +14,14 @@ const std::string &Flow::file() const {
 }
 
 Result<> Flow::open(const std::string &path) {
-    Result<std::string> text = read_file(path);
-    if (!text) {
-        return std::unexpected(text.error());
+    Result<std::unique_ptr<Program>> loaded = Program::load(path, names_);
+    if (!loaded) {
+        return std::unexpected(loaded.error());
     }
-    open_text(path, std::move(*text));
+    close();
+    std::unique_ptr<Program> &program = programs_[path];
+    program = std::move(*loaded);
+    program_ = program.get();
     return {};
 }
 
