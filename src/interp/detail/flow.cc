@@ -40,6 +40,25 @@ void Flow::close() {
     statements_ = 0;
 }
 
+FilePlace Flow::place_in_file() const {
+    const Program *const main = calls_.empty() ? program_ : calls_.front().program;
+    if (main == nullptr) {
+        return {};
+    }
+    const ProgramText &text = main->text();
+    return {text.place_of(calls_.empty() ? next_ : calls_.front().line), text.count_bytes()};
+}
+
+std::string_view Flow::subroutine() const {
+    return calls_.empty() ? std::string_view() : std::string_view(names_.text(calls_.back().label));
+}
+
+std::string Flow::line_text(const std::string &file, int line) const {
+    const auto found = programs_.find(file);
+    const bool isThere = found != programs_.end() && line >= 1 && line <= found->second->count_lines();
+    return isThere ? std::string(found->second->line_text(line)) : std::string();
+}
+
 /// Drops all calls without running what they would restore.
 void Flow::unwind() {
     if (!calls_.empty()) {
