@@ -15,8 +15,7 @@ TEST(Format, writes_words_in_one_form_I1) {
     expect_format("g01x 1.50y-.5  z0f1 00", "G1 X1.5 Y-0.5 Z0 F100");
     expect_format("n0010 G 38.20 Z-5 (probe)M3", "N10 G38.2 Z-5 M3 (probe)");
     expect_format("/ g0 x+3 @5 ^30 s200$1", "/G0 X3 @5 ^30 S200 $1");
-    expect_format("G0 X-0 Y1000000000000 Z.0000001",
-                  "G0 X-0 Y1000000000000 Z0.0000001");
+    expect_format("G0 X-0 Y1000000000000 Z.0000001", "G0 X-0 Y1000000000000 Z0.0000001");
     expect_format("", "");
     expect_format("  \r\n\n(only this)  \nG0X1;to the end  \r\n", "\n\n(only this)\nG0 X1 ;to the end\n");
     expect_format("%  part 7\nM2\n%", "%  part 7\nM2\n%");
