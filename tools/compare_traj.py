@@ -77,12 +77,12 @@ with open("samples.txt", "w") as file:
 """
 
 
-def ini_text(geometry, with_jerk):
+def ini_text(geometry, with_jerk, letters=LETTERS, period_ns=1000000):
     def axis(name, i, number_of_limits):
-        lines = [f"[{name}]"] + ([f"TYPE = {'ANGULAR' if LETTERS[i] in 'ABC' else 'LINEAR'}", "HOME = 0",
+        lines = [f"[{name}]"] + ([f"TYPE = {'ANGULAR' if letters[i] in 'ABC' else 'LINEAR'}", "HOME = 0",
                                   "HOME_OFFSET = 0", "HOME_SEARCH_VEL = 0", "HOME_LATCH_VEL = 0", "HOME_SEQUENCE = 0",
                                   "FERROR = 100", "MIN_FERROR = 100"] if number_of_limits else [])
-        at = "XYZABCUVW".index(LETTERS[i])
+        at = "XYZABCUVW".index(letters[i])
         lines += [f"MAX_VELOCITY = {geometry['max_velocity'][at]:g}",
                   f"MAX_ACCELERATION = {geometry['max_acceleration'][at]:g}", "MIN_LIMIT = -9999", "MAX_LIMIT = 9999"]
         if with_jerk:
@@ -103,7 +103,7 @@ CYCLE_TIME = 0.001
 PARAMETER_FILE = compare.var
 [EMCMOT]
 EMCMOT = motmod
-SERVO_PERIOD = 1000000
+SERVO_PERIOD = {period_ns}
 BASE_PERIOD = 0
 COMM_TIMEOUT = 1.0
 [EMCIO]
@@ -113,17 +113,17 @@ CYCLE_TIME = 0.1
 [HAL]
 HALFILE = compare.hal
 [TRAJ]
-COORDINATES = {' '.join(LETTERS)}
+COORDINATES = {' '.join(letters)}
 LINEAR_UNITS = mm
 ANGULAR_UNITS = degree
 DEFAULT_LINEAR_VELOCITY = 50
 MAX_LINEAR_VELOCITY = {wide[0]:g}
 MAX_LINEAR_ACCELERATION = {wide[1]:g}
 {planner}[KINS]
-KINEMATICS = trivkins coordinates={LETTERS}
-JOINTS = {len(LETTERS)}
+KINEMATICS = trivkins coordinates={letters}
+JOINTS = {len(letters)}
 """
-    for i, letter in enumerate(LETTERS):
+    for i, letter in enumerate(letters):
         text += axis(f"AXIS_{letter}", i, False) + axis(f"JOINT_{i}", i, True)
     return text
 
@@ -171,7 +171,8 @@ def read_ours(path, geometry):
     return from_start(rows, geometry)
 
 
-def reference(folder, geometry):
+def run_reference(folder):
+    """Starts LinuxCNC on compare.ini, as an ordinary user, until its driver ends; returns what it printed."""
     folder.chmod(0o777)
     command = ["linuxcnc", "compare.ini"]
     if os.geteuid() == 0:
@@ -182,13 +183,22 @@ def reference(folder, geometry):
     with open(log, "w", encoding="utf-8") as file:
         subprocess.run(["timeout", "180", *command], cwd=folder, env={**os.environ, "HOME": str(folder), "DISPLAY": ""},
                        stdin=subprocess.DEVNULL, stdout=file, stderr=subprocess.STDOUT, check=False)
+    return log.read_text(encoding="utf-8", errors="replace")
+
+
+def read_samples(folder, log, columns):
+    """The rows that halsampler wrote; a line that the end of the run has cut is left out."""
     samples = folder / "samples.txt"
     if not samples.exists() or samples.stat().st_size == 0:
-        raise ValueError("the reference gave no samples: " + log.read_text(encoding="utf-8", errors="replace")[-800:])
+        raise ValueError("no samples: " + log[-800:])
     lines = samples.read_text().splitlines()
     if "overrun" in lines:
-        raise ValueError("the reference's sampler ran over")
-    table = np.array([[float(word) for word in line.split()] for line in lines if len(line.split()) == len(LETTERS)])
+        raise ValueError("the sampler ran over")
+    return np.array([[float(word) for word in line.split()] for line in lines[:-1] if len(line.split()) == columns])
+
+
+def reference(folder, geometry):
+    table = read_samples(folder, run_reference(folder), len(LETTERS))
     rows = np.zeros((len(table), 9))
     rows[:, :len(LETTERS)] = table
     return from_start(rows, geometry)
