@@ -234,6 +234,7 @@ class Executor : public BuiltIns {
     bool check_cycle(const Code &code, const BlockValues &values, int &repeats);
     void cycle_move(bool isRapid, int axis, double value);
     void start_spindle(int direction);
+    void tap_move(double height);
     void run_cycle(const CyclePlan &plan);
     void run_peck(const CyclePlan &plan);
     void run_tap(const CyclePlan &plan, int direction);
