@@ -54,6 +54,11 @@ struct ActiveCodes {
     std::array<double, 5> settings{};  ///< sequence, feed, speed, G64 P, G64 Q
 };
 
+/// How far the main program has been read.
+struct FilePlace {
+    std::uint64_t bytes = 0, bytes_in_all = 0;
+};
+
 class Interpreter {
   public:
     /// All references must outlive the interpreter.
@@ -92,6 +97,13 @@ class Interpreter {
     int call_level() const;
     /// No line of the open file is left.
     bool isAtFileEnd() const;
+    /// The statement budget is used up: no more statement will run.
+    bool isBudgetSpent() const;
+    FilePlace place_in_file() const;
+    /// The subroutine that runs, without brackets; empty in the main program.
+    std::string_view subroutine() const;
+    /// A line of a file that the interpreter has read, empty when it has not.
+    std::string line_text(const std::string &file, int line) const;
     double parameter(int number) const;
 
   private:

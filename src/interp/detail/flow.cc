@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "base/atomic_file.hh"
-
 namespace mw::interp::detail {
 
 Flow::Flow(Executor &executor, Names &names, Canon &target, const Settings &settings)
@@ -16,11 +14,14 @@ const std::string &Flow::file() const {
 }
 
 Result<> Flow::open(const std::string &path) {
-    Result<std::string> text = read_file(path);
-    if (!text) {
-        return std::unexpected(text.error());
+    Result<std::unique_ptr<Program>> loaded = Program::load(path, names_);
+    if (!loaded) {
+        return std::unexpected(loaded.error());
     }
-    open_text(path, std::move(*text));
+    close();
+    std::unique_ptr<Program> &program = programs_[path];
+    program = std::move(*loaded);
+    program_ = program.get();
     return {};
 }
 
@@ -37,6 +38,25 @@ void Flow::close() {
     program_ = nullptr;
     next_ = after_line_ = 1;
     statements_ = 0;
+}
+
+FilePlace Flow::place_in_file() const {
+    const Program *const main = calls_.empty() ? program_ : calls_.front().program;
+    if (main == nullptr) {
+        return {};
+    }
+    const ProgramText &text = main->text();
+    return {text.place_of(calls_.empty() ? next_ : calls_.front().line), text.count_bytes()};
+}
+
+std::string_view Flow::subroutine() const {
+    return calls_.empty() ? std::string_view() : std::string_view(names_.text(calls_.back().label));
+}
+
+std::string Flow::line_text(const std::string &file, int line) const {
+    const auto found = programs_.find(file);
+    const bool isThere = found != programs_.end() && line >= 1 && line <= found->second->count_lines();
+    return isThere ? std::string(found->second->line_text(line)) : std::string();
 }
 
 /// Drops all calls without running what they would restore.

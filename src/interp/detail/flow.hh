@@ -34,6 +34,12 @@ class Flow {
     const std::string &file() const;
     bool isAtFileEnd() const { return program_ == nullptr || next_ > program_->count_lines(); }
     int call_level() const { return static_cast<int>(calls_.size()); }
+    bool isBudgetSpent() const {
+        return settings_.statement_budget > 0 && statements_ > settings_.statement_budget;
+    }
+    FilePlace place_in_file() const;
+    std::string_view subroutine() const;
+    std::string line_text(const std::string &file, int line) const;
 
   private:
     struct Repeat {
