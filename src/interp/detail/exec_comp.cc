@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "interp/detail/executor.hh"
+#include "interp/detail/plane_geometry.hh"
 
 namespace mw::interp::detail {
 namespace {
@@ -16,56 +17,6 @@ namespace {
 /// Corners turning by less than this are passed as if straight [rad].
 constexpr double STRAIGHT_ANGLE = 0.05;
 constexpr double TINY = 1e-10;
-
-double dot(Point a, Point b) {
-    return a.x * b.x + a.y * b.y;
-}
-
-double cross(Point a, Point b) {
-    return a.x * b.y - a.y * b.x;
-}
-
-Point sum(Point a, Point b, double scale) {
-    return {a.x + b.x * scale, a.y + b.y * scale};
-}
-
-double distance(Point a, Point b) {
-    return std::hypot(b.x - a.x, b.y - a.y);
-}
-
-Point unit(Point from, Point to) {
-    const double length = distance(from, to);
-    return {(to.x - from.x) / length, (to.y - from.y) / length};
-}
-
-/// Where two offset paths cross: none, one or two points.
-struct Crossings {
-    int count = 0;
-    Point points[2];
-};
-
-/// A line by a point and its direction, and a circle.
-Crossings cross_line_circle(Point on_line, Point along, Point centre, double radius) {
-    const Point foot = sum(on_line, along, dot({centre.x - on_line.x, centre.y - on_line.y}, along));
-    const double off = distance(foot, centre);
-    if (off > radius + TINY) {
-        return {};
-    }
-    const double half = std::sqrt(std::fmax(0.0, radius * radius - off * off));
-    return {2, {sum(foot, along, half), sum(foot, along, -half)}};
-}
-
-Crossings cross_circles(Point c1, double r1, Point c2, double r2) {
-    const double apart = distance(c1, c2);
-    if (apart < TINY || apart > r1 + r2 + TINY || apart < std::fabs(r1 - r2) - TINY) {
-        return {};
-    }
-    const Point along = unit(c1, c2);
-    const double at = (apart * apart + r1 * r1 - r2 * r2) / (2.0 * apart);
-    const double half = std::sqrt(std::fmax(0.0, r1 * r1 - at * at));
-    const Point foot = sum(c1, along, at), across{-along.y, along.x};
-    return {2, {sum(foot, across, half), sum(foot, across, -half)}};
-}
 
 Crossings cross_lines(const CompElement &a, const CompElement &b) {
     const double sine = cross(a.start_direction, b.start_direction);
