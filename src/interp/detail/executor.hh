@@ -253,6 +253,8 @@ class Executor : public BuiltIns {
     bool check_thread_cycle(const BlockValues &values, ThreadPlan &plan);
     void thread_pass(const ThreadPlan &plan, double depth);
     Point comp_normal(Point direction) const;
+    Point comp_shift() const;
+    void send_comp_arc(Point to, Point centre, int rotation, const Pose &end);
     Pose in_plane(Pose pose, Point point) const;
     void end_comp();
     void patch_comp(Point end);

@@ -149,6 +149,48 @@ TEST(LatheCycle, refuses_what_cannot_be_cut_I1) {
               std::string::npos);
 }
 
+/// The controlled point of a lathe tool lies beside the centre of its nose, by the tool's orientation.
+TEST(LatheCompensation, orientation_moves_the_path_I1) {
+    const double shifts[][2] = {{0, 0}, {-1, 1}, {-1, -1}, {1, -1}, {1, 1},
+                                {0, 1}, {-1, 0}, {0, -1},  {1, 0},  {0, 0}};
+    for (int orientation = 0; orientation <= 9; ++orientation) {
+        Machine machine;
+        ASSERT_EQ(machine.run(fmt::format("G18 G21 F100\nG0 X20 Z10\nG42.1 D2 L{}\nG1 X10 Z5\nG1 Z-10\n"
+                                          "G1 X15\nG3 X20 Z-15 K-5\nG40\nG0 X40 Z0\n",
+                                          orientation)),
+                  Step::PROGRAM_END)
+            << machine.error();
+        const double dx = shifts[orientation][0], dz = shifts[orientation][1];
+        const auto &lines = machine.record.lines;
+        EXPECT_NEAR(lines[2].end[0], 11.0 + dx, 1e-9) << orientation;
+        EXPECT_NEAR(lines[2].end[2], -9.0 + dz, 1e-9) << orientation;
+        EXPECT_NEAR(machine.record.arcs[0].end[0], 21.0 + dx, 1e-9) << orientation;
+        EXPECT_NEAR(machine.record.arcs[0].end[2], -15.0 + dz, 1e-9) << orientation;
+        EXPECT_NEAR(machine.record.arcs[0].centre[0], 15.0 + dx, 1e-9) << orientation;
+        EXPECT_NEAR(lines.back().end[0], 40.0, 1e-9) << "after G40 there is no shift";
+    }
+}
+
+TEST(LatheCompensation, orientation_comes_from_the_tool_table_I1) {
+    Machine machine;
+    ToolEntry tool;
+    tool.toolno = 1;
+    tool.diameter = 2;
+    tool.orientation = 2;
+    machine.mill.tools.push_back(tool);
+    ASSERT_EQ(machine.run("G18 G21 F100\nG0 X20 Z10\nG42 D1\nG1 X10 Z5\nG1 Z-10\nG1 X15\nG40\nG0 X40\n"),
+              Step::PROGRAM_END)
+        << machine.error();
+    EXPECT_NEAR(machine.record.lines[2].end[0], 10.0, 1e-9);
+    EXPECT_NEAR(machine.record.lines[2].end[2], -10.0, 1e-9);
+}
+
+TEST(LatheCompensation, refuses_other_orientations_I1) {
+    EXPECT_NE(error_of("", "G42.1 D1 L10").find("0 to 9"), std::string::npos);
+    EXPECT_NE(error_of("", "G42.1 D1 L-1").find("0 to 9"), std::string::npos);
+    EXPECT_NE(error_of("", "G17 G42.1 D1 L1").find("G18"), std::string::npos);
+}
+
 /// Whatever the profile, the cycles end, and no layer goes below it.
 TEST(LatheCycle, random_profiles_are_never_cut_into_I1) {
     constexpr unsigned SEED = 4711;
