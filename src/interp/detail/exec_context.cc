@@ -40,6 +40,7 @@ void Executor::drop_calls() {
         parameters.pop_call(false);
     }
     running_remaps_.clear();
+    lathe_.reset();
 }
 
 bool Executor::do_context(const Code &code, const BlockValues &) {

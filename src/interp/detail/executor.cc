@@ -41,6 +41,9 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
     if (!evaluate(view, values) || !apply_settings(view)) {
         return false;
     }
+    if (lathe_) {
+        return record_profile(values);
+    }
     if (view.block->comment_count > 0 && !run_comments(view, line_text)) {
         return false;
     }

@@ -10,6 +10,7 @@
 #include "interp/detail/canon_queue.hh"
 #include "interp/detail/evaluator.hh"
 #include "interp/detail/frame.hh"
+#include "interp/detail/lathe_profile.hh"
 #include "interp/detail/program.hh"
 #include "interp/detail/remap.hh"
 #include "interp/detail/state.hh"
@@ -46,7 +47,7 @@ struct ThreadPlan {
     bool hasEntryTaper = false, hasExitTaper = false;
 };
 
-enum class Outcome { OK, SYNC, PROGRAM_END, CALL_FANUC, RETURN_FANUC, REMAP, RESTART };
+enum class Outcome { OK, SYNC, PROGRAM_END, CALL_FANUC, RETURN_FANUC, REMAP, RESTART, PROFILE };
 
 class Executor : public BuiltIns {
   public:
@@ -84,6 +85,11 @@ class Executor : public BuiltIns {
     PendingBlock take_pending();
     void set_remap_arguments(const Remap &remap, const BlockValues &values);
     bool resume(const PendingBlock &pending);
+    // exec_lathe.cc
+    /// The cycle whose profile the blocks to come give; null outside of one.
+    const LatheRequest *lathe_request() const { return lathe_ ? &*lathe_ : nullptr; }
+    /// The profile is complete: cuts it.
+    bool finish_lathe_cycle();
     int fanuc_label = 0, fanuc_count = 1;  ///< of the M98 that the outcome is about
 
     /// Announces the state to the canon, as at the start of a program.
@@ -161,6 +167,7 @@ class Executor : public BuiltIns {
     bool do_thread(const Code &code, const BlockValues &values);
     bool do_thread_cycle(const Code &code, const BlockValues &values);
     bool do_probe(const Code &code, const BlockValues &values);
+    bool do_lathe_cycle(const Code &code, const BlockValues &values);
     bool do_cancel_motion(const Code &code, const BlockValues &values);
     bool do_nothing(const Code &code, const BlockValues &values);
 
@@ -239,9 +246,15 @@ class Executor : public BuiltIns {
     void run_peck(const CyclePlan &plan);
     void run_tap(const CyclePlan &plan, int direction);
     void run_back_bore(const CyclePlan &plan, int direction);
+    bool record_profile(BlockValues values);
+    bool record_arc(const BlockValues &values, const Pose &from);
+    bool take_corner_word(const BlockValues &values);
+    bool run_lathe_cycle(const LatheRequest &request);
     bool check_thread_cycle(const BlockValues &values, ThreadPlan &plan);
     void thread_pass(const ThreadPlan &plan, double depth);
     Point comp_normal(Point direction) const;
+    Point comp_shift() const;
+    void send_comp_arc(Point to, Point centre, int rotation, const Pose &end);
     Pose in_plane(Pose pose, Point point) const;
     void end_comp();
     void patch_comp(Point end);
@@ -268,6 +281,7 @@ class Executor : public BuiltIns {
     std::optional<PendingBlock> pending_;
     State before_;  ///< as the block found it
     std::vector<NurbsPoint> control_points_;
+    std::optional<LatheRequest> lathe_;
     std::size_t queued_before_ = 0;
     std::vector<std::pair<std::size_t, CanonQueue::Record>>
         patched_;                                      ///< calls that the block changed, as they were

@@ -208,6 +208,7 @@ Step Flow::after_block() {
         case Outcome::CALL_FANUC: isDone = call_fanuc(); break;
         case Outcome::RETURN_FANUC: isDone = return_fanuc(); break;
         case Outcome::REMAP: isDone = call_remap(); break;
+        case Outcome::PROFILE: isDone = call_profile(); break;
         case Outcome::RESTART: next_ = 1; break;
         }
     }

@@ -46,7 +46,7 @@ class Flow {
         int line = 0;  ///< of the O- repeat
         int left = 0;
     };
-    enum class CallKind { OWORD, FANUC, REMAP };
+    enum class CallKind { OWORD, FANUC, REMAP, PROFILE };
     /// Where a program goes on after a call.
     struct Call {
         CallKind kind = CallKind::OWORD;
@@ -104,6 +104,7 @@ class Flow {
     bool call_fanuc();
     bool return_fanuc();
     bool call_remap();
+    bool call_profile();
 
     Executor &executor_;
     Names &names_;

@@ -177,6 +177,10 @@ bool Flow::leave(double value, bool hasValue) {
         executor_.canon.enter_block(program_, call.line, call.line, false, call_level());
         return executor_.resume(*call.pending);
     }
+    if (call.kind == CallKind::PROFILE) {
+        executor_.canon.enter_block(program_, call.line, call.line, false, call_level());
+        return executor_.finish_lathe_cycle();
+    }
     return true;
 }
 
@@ -244,6 +248,19 @@ bool Flow::return_fanuc() {
         return true;
     }
     return leave(0.0, false);
+}
+
+/// G70 to G72 read their profile from a subroutine, then cut it.
+bool Flow::call_profile() {
+    Call call;
+    Sub sub;
+    call.kind = CallKind::PROFILE;
+    call.label = names_.intern(fmt::format("{}", executor_.lathe_request()->label));
+    if (!find_sub(call.label, 0, sub) || !enter(std::move(call), sub)) {
+        return false;
+    }
+    next_ = sub.line + 1;
+    return true;
 }
 
 /// The block has come to a remapped code: its subroutine runs before the rest.
