@@ -44,9 +44,16 @@ Result<> Interpreter::begin() {
     if (Result<> loaded = executor.load_remaps(); !loaded) {
         return loaded;
     }
+    if (Result<> loaded = impl_->flow.load_scripts(); !loaded) {
+        return loaded;
+    }
     executor.canon.enter_block(nullptr, 0, 0, false, 0);
     executor.announce();
     executor.synch();
+    executor.canon.flush(impl_->target);
+    if (Result<> begun = impl_->flow.begin_scripts(); !begun) {
+        return begun;
+    }
     executor.canon.on_reset();
     executor.canon.flush(impl_->target);
     if (!impl_->settings.startup_code.empty() && execute(impl_->settings.startup_code) == Step::FAILED) {
@@ -83,6 +90,10 @@ void Interpreter::synch() {
 
 void Interpreter::abort() {
     impl_->flow.abort();
+}
+
+const std::vector<std::string> &Interpreter::warnings() const {
+    return impl_->flow.warnings();
 }
 
 const diag::Diagnostic &Interpreter::error() const {

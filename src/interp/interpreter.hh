@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +17,28 @@
 #include "interp/world.hh"
 
 namespace mw::interp {
+
+class ScriptHost;
+
+/// Scripts of the machine: [PYTHON].
+struct ScriptSettings {
+    std::string top_level;                  ///< file run first; empty: scripts are not set up
+    std::vector<std::string> path_prepend;  ///< folders searched before all others
+    std::vector<std::string> path_append;   ///< and after them
+    bool isReloading = false;               ///< run the top-level script again when its file has changed
+    int log_level = 0;
+    SourcePlace place;  ///< of the section, for errors
+};
+/// Makes a script host; by default the shared object for Python is opened.
+using MakeScriptHost = std::function<Result<std::unique_ptr<ScriptHost>>()>;
+
+/// One REMAP line as written and where it stands.
+struct RemapLine {
+    RemapLine(std::string line, SourcePlace where = {}) : text(std::move(line)), place(std::move(where)) {}
+    RemapLine(const char *line) : text(line) {}
+    std::string text;
+    SourcePlace place;
+};
 
 struct Settings {
     std::vector<std::string>
@@ -32,7 +55,11 @@ struct Settings {
     bool isArgumentCountNamed = false;  ///< [RS274NGC]OWORD_NARGS: #<n_args> in subroutines
     double orient_offset_deg = 0;
     double parameter_g73_peck_clearance_mm = 0.254, parameter_g83_peck_clearance_mm = 0.254;
-    std::vector<std::string> remaps;  ///< [RS274NGC]REMAP lines, as written
+    std::vector<RemapLine> remaps;  ///< [RS274NGC]REMAP
+    ScriptSettings scripts;
+    MakeScriptHost make_script_host;
+    int debug_mask = 0;     ///< [EMC]DEBUG
+    int logging_level = 0;  ///< [RS274NGC]LOG_LEVEL
     std::string ini_folder;
     std::optional<LengthUnits> initial_units;  ///< G20 or G21 at the start; the machine's when not given
     /// Statements per step() and in all; 0: without bound. A bound makes check runs of endless loops end in
@@ -87,7 +114,9 @@ class Interpreter {
     Step execute(std::string_view line);
     /// Takes the machine's state as the current one (after a stop, a probe, a tool change). [task]
     void synch();
-    /// Back to the top level after an abort: drops calls and loops, keeps modes.
+    /// Warnings of begin(): names that scripts redefine.
+    const std::vector<std::string> &warnings() const;
+    /// Back to the top level after an abort: drops calls and loops, keeps modes; suspended scripts end.
     void abort();
 
     /// The last failure: message, file:line:column, the block's text, the callers.
