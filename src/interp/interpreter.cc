@@ -120,6 +120,22 @@ bool Interpreter::isAtFileEnd() const {
     return impl_->flow.isAtFileEnd();
 }
 
+bool Interpreter::isBudgetSpent() const {
+    return impl_->flow.isBudgetSpent();
+}
+
+FilePlace Interpreter::place_in_file() const {
+    return impl_->flow.place_in_file();
+}
+
+std::string_view Interpreter::subroutine() const {
+    return impl_->flow.subroutine();
+}
+
+std::string Interpreter::line_text(const std::string &file, int line) const {
+    return impl_->flow.line_text(file, line);
+}
+
 double Interpreter::parameter(int number) const {
     const bool isInRange = number >= 1 && number < detail::PARAMETER_COUNT;
     return isInRange ? impl_->executor.evaluator().numbered(number) : 0.0;

@@ -44,6 +44,7 @@ struct Settings {
     std::vector<std::string>
         subroutine_path;  ///< [RS274NGC]SUBROUTINE_PATH and [DISPLAY]PROGRAM_PREFIX, in order
     std::vector<std::string> user_m_path;  ///< [RS274NGC]USER_M_PATH and PROGRAM_PREFIX: where M100..M199 are
+    bool isUserCodeAssumed = false;        ///< M100..M199 need no program: for previews elsewhere
     std::string startup_code;              ///< [RS274NGC]RS274NGC_STARTUP_CODE
     bool isG92PersistenceDisabled = false;
     bool isFanucSubDisabled = false;
@@ -79,6 +80,11 @@ struct ActiveCodes {
     std::array<int, 17> g{};  ///< [0] sequence number, then ten times the code, -1 none
     std::array<int, 10> m{};
     std::array<double, 5> settings{};  ///< sequence, feed, speed, G64 P, G64 Q
+};
+
+/// How far the main program has been read.
+struct FilePlace {
+    std::uint64_t bytes = 0, bytes_in_all = 0;
 };
 
 class Interpreter {
@@ -121,6 +127,13 @@ class Interpreter {
     int call_level() const;
     /// No line of the open file is left.
     bool isAtFileEnd() const;
+    /// The statement budget is used up: no more statement will run.
+    bool isBudgetSpent() const;
+    FilePlace place_in_file() const;
+    /// The subroutine that runs, without brackets; empty in the main program.
+    std::string_view subroutine() const;
+    /// A line of a file that the interpreter has read, empty when it has not.
+    std::string line_text(const std::string &file, int line) const;
     double parameter(int number) const;
 
   private:

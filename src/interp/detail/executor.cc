@@ -29,10 +29,8 @@ std::string Executor::code_name(const Code &code) const {
 }
 
 double Executor::machine_to_program() const {
-    if (state.units == world_.machine_units()) {
-        return 1.0;
-    }
-    return state.units == LengthUnits::MM ? MM_PER_INCH : 1.0 / MM_PER_INCH;
+    const double mm = world_.mm_per_machine_unit();
+    return state.units == LengthUnits::MM ? mm : mm / MM_PER_INCH;
 }
 
 // ------------------------------------------------------------------------------------------- one block
@@ -45,6 +43,9 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
     }
     comment_.clear();
     block_number_ = view.block->isNumbered ? view.block->sequence : -1;
+    if (lathe_) {
+        return record_profile(values);
+    }
     if (view.block->comment_count > 0 && !run_comments(view, line_text)) {
         return false;
     }

@@ -10,6 +10,7 @@
 #include "interp/detail/canon_queue.hh"
 #include "interp/detail/evaluator.hh"
 #include "interp/detail/frame.hh"
+#include "interp/detail/lathe_profile.hh"
 #include "interp/detail/program.hh"
 #include "interp/detail/remap.hh"
 #include "interp/detail/state.hh"
@@ -46,7 +47,7 @@ struct ThreadPlan {
     bool hasEntryTaper = false, hasExitTaper = false;
 };
 
-enum class Outcome { OK, SYNC, PROGRAM_END, CALL_FANUC, RETURN_FANUC, REMAP, RESTART, SCRIPT };
+enum class Outcome { OK, SYNC, PROGRAM_END, CALL_FANUC, RETURN_FANUC, REMAP, RESTART, SCRIPT, PROFILE };
 
 /// Values of named parameters that scripts define.
 class ScriptNames {
@@ -119,7 +120,13 @@ class Executor : public BuiltIns {
     int plane_number() const;
     int debug_mask = 0, logging_level = 0;  ///< for scripts
     bool isToolChanged = false;             ///< a script has changed the tool: a waiting point is due
-    int fanuc_label = 0, fanuc_count = 1;   ///< of the M98 that the outcome is about
+    // exec_lathe.cc
+    /// The cycle whose profile the blocks to come give; null outside of one.
+    const LatheRequest *lathe_request() const { return lathe_ ? &*lathe_ : nullptr; }
+    /// The profile is complete: cuts it.
+    bool finish_lathe_cycle();
+    void drop_lathe_cycle() { lathe_.reset(); }
+    int fanuc_label = 0, fanuc_count = 1;  ///< of the M98 that the outcome is about
 
     /// Announces the state to the canon, as at the start of a program.
     void announce();
@@ -202,6 +209,7 @@ class Executor : public BuiltIns {
     bool do_thread(const Code &code, const BlockValues &values);
     bool do_thread_cycle(const Code &code, const BlockValues &values);
     bool do_probe(const Code &code, const BlockValues &values);
+    bool do_lathe_cycle(const Code &code, const BlockValues &values);
     bool do_cancel_motion(const Code &code, const BlockValues &values);
     bool do_nothing(const Code &code, const BlockValues &values);
 
@@ -275,13 +283,20 @@ class Executor : public BuiltIns {
     bool check_cycle(const Code &code, const BlockValues &values, int &repeats);
     void cycle_move(bool isRapid, int axis, double value);
     void start_spindle(int direction);
+    void tap_move(double height);
     void run_cycle(const CyclePlan &plan);
     void run_peck(const CyclePlan &plan);
     void run_tap(const CyclePlan &plan, int direction);
     void run_back_bore(const CyclePlan &plan, int direction);
+    bool record_profile(BlockValues values);
+    bool record_arc(const BlockValues &values, const Pose &from);
+    bool take_corner_word(const BlockValues &values);
+    bool run_lathe_cycle(const LatheRequest &request);
     bool check_thread_cycle(const BlockValues &values, ThreadPlan &plan);
     void thread_pass(const ThreadPlan &plan, double depth);
     Point comp_normal(Point direction) const;
+    Point comp_shift() const;
+    void send_comp_arc(Point to, Point centre, int rotation, const Pose &end);
     Pose in_plane(Pose pose, Point point) const;
     void end_comp();
     void patch_comp(Point end);
@@ -318,6 +333,7 @@ class Executor : public BuiltIns {
     std::optional<PendingBlock> pending_;
     State before_;  ///< as the block found it
     std::vector<NurbsPoint> control_points_;
+    std::optional<LatheRequest> lathe_;
     std::size_t queued_before_ = 0;
     std::vector<std::pair<std::size_t, CanonQueue::Record>>
         patched_;                                      ///< calls that the block changed, as they were

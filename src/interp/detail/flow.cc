@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "base/atomic_file.hh"
 #include "interp/detail/script_view.hh"
 
 namespace mw::interp::detail {
@@ -25,11 +24,14 @@ const std::string &Flow::file() const {
 }
 
 Result<> Flow::open(const std::string &path) {
-    Result<std::string> text = read_file(path);
-    if (!text) {
-        return std::unexpected(text.error());
+    Result<std::unique_ptr<Program>> loaded = Program::load(path, names_);
+    if (!loaded) {
+        return std::unexpected(loaded.error());
     }
-    open_text(path, std::move(*text));
+    close();
+    std::unique_ptr<Program> &program = programs_[path];
+    program = std::move(*loaded);
+    program_ = program.get();
     return {};
 }
 
@@ -48,6 +50,30 @@ void Flow::close() {
     statements_ = 0;
 }
 
+FilePlace Flow::place_in_file() const {
+    const Program *const main = calls_.empty() ? program_ : calls_.front().program;
+    if (main == nullptr) {
+        return {};
+    }
+    const ProgramText &text = main->text();
+    return {text.place_of(calls_.empty() ? next_ : calls_.front().line), text.count_bytes()};
+}
+
+std::string_view Flow::subroutine() const {
+    for (auto call = calls_.rbegin(); call != calls_.rend(); ++call) {
+        if (call->label != NO_ID) {
+            return names_.text(call->label);
+        }
+    }
+    return {};
+}
+
+std::string Flow::line_text(const std::string &file, int line) const {
+    const auto found = programs_.find(file);
+    const bool isThere = found != programs_.end() && line >= 1 && line <= found->second->count_lines();
+    return isThere ? std::string(found->second->line_text(line)) : std::string();
+}
+
 /// Drops calls without running what they would restore.
 void Flow::unwind(std::size_t depth) {
     if (calls_.size() > depth) {
@@ -62,6 +88,9 @@ void Flow::unwind(std::size_t depth) {
         text_levels_ = static_cast<int>(
             std::ranges::count(calls_, CallKind::TEXT, [](const Call &call) { return call.kind; }));
         executor_.drop_calls(static_cast<std::size_t>(call_level()));
+        if (std::ranges::none_of(calls_, [](const Call &call) { return call.kind == CallKind::PROFILE; })) {
+            executor_.drop_lathe_cycle();
+        }
         while (!dropped.empty()) {
             dropped.pop_back();  // the innermost script ends first
         }
@@ -234,6 +263,7 @@ Step Flow::after_block() {
         case Outcome::CALL_FANUC: isDone = call_fanuc(); break;
         case Outcome::RETURN_FANUC: isDone = return_fanuc(); break;
         case Outcome::REMAP: isDone = call_remap(); break;
+        case Outcome::PROFILE: isDone = call_profile(); break;
         case Outcome::RESTART: next_ = 1; break;
         }
     }

@@ -38,6 +38,12 @@ class Flow : private ScriptNames {
     const std::string &file() const;
     bool isAtFileEnd() const { return program_ == nullptr || next_ > program_->count_lines(); }
     int call_level() const { return static_cast<int>(calls_.size()) - text_levels_; }
+    bool isBudgetSpent() const {
+        return settings_.statement_budget > 0 && statements_ > settings_.statement_budget;
+    }
+    FilePlace place_in_file() const;
+    std::string_view subroutine() const;
+    std::string line_text(const std::string &file, int line) const;
 
     // flow_scripts.cc
     /// Opens the script host when the settings or a remap need one, runs the top-level script, and checks
@@ -55,7 +61,7 @@ class Flow : private ScriptNames {
         int line = 0;  ///< of the O- repeat
         int left = 0;
     };
-    enum class CallKind { OWORD, FANUC, REMAP, SCRIPT, TEXT };
+    enum class CallKind { OWORD, FANUC, REMAP, SCRIPT, TEXT, PROFILE };
     /// How far a remapped code or an O word in a script is.
     enum class Stage { NONE, PROLOG, PROCEDURE, FUNCTION, EPILOG };
     /// Where a program goes on after a call.
@@ -129,6 +135,8 @@ class Flow : private ScriptNames {
     bool pop_call(double value, bool hasValue);
     bool call_fanuc();
     bool return_fanuc();
+    bool call_profile();
+
     // flow_scripts.cc
     bool call_remap();
     bool run_script_oword(NameId label, const double *arguments, std::uint32_t count);

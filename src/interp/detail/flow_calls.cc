@@ -193,6 +193,10 @@ bool Flow::pop_call(double value, bool hasValue) {
         executor_.canon.enter_block(program_, call.line, call.line, false, call_level());
         return executor_.resume(*call.pending);
     }
+    if (call.kind == CallKind::PROFILE) {
+        executor_.canon.enter_block(program_, call.line, call.line, false, call_level());
+        return executor_.finish_lathe_cycle();
+    }
     return true;
 }
 
@@ -263,6 +267,19 @@ bool Flow::return_fanuc() {
         return true;
     }
     return leave(0.0, false);
+}
+
+/// G70 to G72 read their profile from a subroutine, then cut it.
+bool Flow::call_profile() {
+    Call call;
+    Sub sub;
+    call.kind = CallKind::PROFILE;
+    call.label = names_.intern(fmt::format("{}", executor_.lathe_request()->label));
+    if (!find_sub(call.label, 0, sub) || !enter(std::move(call), sub)) {
+        return false;
+    }
+    next_ = sub.line + 1;
+    return true;
 }
 
 }  // namespace mw::interp::detail
