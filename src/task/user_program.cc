@@ -65,8 +65,9 @@ bool UserProgram::isRunning() {
     if (ended == 0) {
         return true;
     }
-    result_ = ended == pid_ ? result_of(path_, status)
-                            : fail(fmt::format("lost sight of user M code {}: {}", path_, std::strerror(errno)));
+    result_ = ended == pid_
+                  ? result_of(path_, status)
+                  : fail(fmt::format("lost sight of user M code {}: {}", path_, std::strerror(errno)));
     pid_ = 0;
     return false;
 }

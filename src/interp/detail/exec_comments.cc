@@ -19,9 +19,8 @@ struct Active {
 
 /// "keyword," or a keyword alone, at the beginning.
 Active split_comment(std::string_view comment) {
-    static constexpr std::string_view KEYWORDS[] = {"msg",       "debug",     "print",    "log",
-                                                    "logopen",   "logappend", "logclose", "abort",
-                                                    "probeclose"};
+    static constexpr std::string_view KEYWORDS[] = {"msg",       "debug",    "print", "log",       "logopen",
+                                                    "logappend", "logclose", "abort", "probeclose"};
     static constexpr std::string_view PROBE_OPEN = "probeopen";
     const std::string_view trimmed = trim(comment);
     if (equals_ignoring_case(trimmed.substr(0, PROBE_OPEN.size()), PROBE_OPEN)) {  // its file follows a blank

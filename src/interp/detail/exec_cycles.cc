@@ -66,7 +66,8 @@ bool Executor::take_cycle_words(const Code &code, const BlockValues &values) {
     }
     if (cycle.p < 0.0) {
         return fault.set(needsPeck(code.number) ? "The peck clearance P must not be negative"
-                                                : "The dwell time P must not be negative", values.column_of('p'));
+                                                : "The dwell time P must not be negative",
+                         values.column_of('p'));
     }
     return true;
 }

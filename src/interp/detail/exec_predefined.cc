@@ -134,7 +134,7 @@ double Executor::built_in(int number) const {
         return reported_position()[number - P_POSITION];
     }
     if (number >= P_TOOL_OFFSET && number < P_TOOL_OFFSET + AXES_OF_POSE) {
-        return state.tool_offset[number - P_TOOL_OFFSET];
+        return state.loaded_offset[number - P_TOOL_OFFSET];
     }
     if (number >= P_MACHINE_POSITION && number < P_MACHINE_POSITION + AXES_OF_POSE) {
         return frame().to_machine(reported_position())[number - P_MACHINE_POSITION];

@@ -26,10 +26,11 @@ bool Executor::check_pitch(int spindle, double pitch, std::uint32_t column) {
     if (needed <= settings_.max_velocity_mm_s) {
         return true;
     }
-    return fault.set(fmt::format("A pitch of {:g} at {:g} turns a minute needs {:.4g} mm/s; the machine's limit is "
-                                 "{:.4g} mm/s",
-                                 pitch, turning.speed, needed, settings_.max_velocity_mm_s),
-                     column, "turn the spindle more slowly");
+    return fault.set(
+        fmt::format("A pitch of {:g} at {:g} turns a minute needs {:.4g} mm/s; the machine's limit is "
+                    "{:.4g} mm/s",
+                    pitch, turning.speed, needed, settings_.max_velocity_mm_s),
+        column, "turn the spindle more slowly");
 }
 
 /// G33 (a synchronised straight move) and G33.1 (rigid tapping: there and back).

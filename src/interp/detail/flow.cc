@@ -178,9 +178,11 @@ Step Flow::run_block(const BlockView &view) {
 Step Flow::after_block() {
     bool isDone = true;
     while (isDone) {
-        commit();
         const Outcome outcome = executor_.outcome;
         executor_.outcome = Outcome::OK;
+        if (outcome != Outcome::CALL_FANUC && outcome != Outcome::PROFILE) {
+            commit();  // those two may still fail
+        }
         switch (outcome) {
         case Outcome::OK: return Step::OK;
         case Outcome::SYNC: return Step::SYNC;

@@ -27,7 +27,7 @@ enum ParameterNumber : int {
     P_INPUT_RESULT = 5399,
     P_TOOL_NUMBER = 5400,
     P_MACHINE_POSITION = 5021,  // nine, program units, read only
-    P_TOOL_OFFSET = 5401,  // nine, program units
+    P_TOOL_OFFSET = 5401,       // nine, of the loaded tool in the table
     P_TOOL_DIAMETER = 5410,
     P_TOOL_FRONTANGLE = 5411,
     P_TOOL_BACKANGLE = 5412,
