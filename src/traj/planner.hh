@@ -108,9 +108,10 @@ class Planner {
 
   private:
     struct MovePlan {
-        double feed = 0;       ///< requested speed in s [1/s]; 0: none
-        double start_s = 0;    ///< where the move begins on the programmed path
-        double deviation = 0;  ///< of the primitive from the lines that were joined to it
+        double feed = 0;           ///< requested speed in s [1/s]; 0: none
+        double start_s = 0;        ///< where the move begins on the programmed path
+        double deviation = 0;      ///< of the primitive from the lines that were joined to it
+        Pose shift_in, shift_out;  ///< of its start and its end from where they were programmed
         MoveRequest request;
     };
     struct PiecePlan {
@@ -187,6 +188,12 @@ class Planner {
     bool emit_tail() noexcept;
     bool canCoast(Sequence piece, double x, double v) noexcept;
 
+    // --- planner_shape.cc: with jerk limits, the corners of dense curves
+    bool wanted_shift(Sequence nb, Sequence nc, Pose &shift, double &reach) const noexcept;
+    void shape_corner(Sequence nb, Sequence nc) noexcept;
+    void reshape(Sequence n, const Pose &in, const Pose &out) noexcept;
+    Pose programmed_at(Sequence n, double s) const noexcept;
+
     // --- planner_check.cc: what is commanded is tried out before it is committed
     bool isPlanSound(const Snapshot &now, const State &from, Sequence begin) noexcept;
     void start_trial(const Snapshot &now, const State &from) noexcept;
@@ -224,12 +231,13 @@ class Planner {
     bool isOpenStop_ = false;    ///< stop before its part
     Joint open_joint_;           ///< before it
     /// With jerk limits, part of the acceleration that is for turning where curves follow each other closely.
-    static constexpr double TURNING_SHARE = 0.88;
+    static constexpr double TURNING_SHARE = 0.97;
     /// And what the turning of neighbours may be more than a place's own, and how much is left for that.
     static constexpr double SHARED_TURNS = 1.1, SHARED_REST = 0.985;
     static constexpr std::size_t MOST_JOINED = 64;
     std::array<Pose, MOST_JOINED> joined_{};  ///< ends within the open move of the lines that it stands for
     std::size_t joined_count_ = 0;
+    Pose shift_, shift_drive_;  ///< of the last corner, and what it follows
     bool isJoinable_ = false;   ///< nothing else hangs on the end of the open move
     double programmed_s_ = 0;   ///< length of what has been added
     Sequence first_piece_ = 1;  ///< of this path

@@ -13,7 +13,7 @@ namespace {
 constexpr double SMALLEST_BLEND = 1e-7;
 constexpr double EXACT_DEVIATION = 1e-6;
 /// Part of the tolerance that blends may take where corners follow each other closely.
-constexpr double GEOMETRY_SHARE = 0.25;
+constexpr double GEOMETRY_SHARE = 0.35;
 constexpr double SPREAD_SHARE = 0.05;
 /// Part that the mean may take on an arc.
 constexpr double ARC_SHARE = 0.92;
@@ -150,7 +150,8 @@ Planner::Joint Planner::filtered_corner(Sequence na, Sequence nb, double toleran
     if (isDense && tolerance > 0) {
         // Several corners within the mean: they act like a curve, which wide blends make smooth.
         d = std::max(d, std::min(half, blend_d_for_tolerance(a, b, GEOMETRY_SHARE * tolerance)));
-        const double room = 24.0 * TOLERANCE_SHARE * share * spacing - 4.0 * d * d;
+        const double outside = std::max(0.0, -geom::dot(move_plan(nb).shift_in, step) / (turn * turn));
+        const double room = 24.0 * (TOLERANCE_SHARE * share + outside) * spacing - 4.0 * d * d;
         v = std::min(v, std::sqrt(std::max(0.0, room)) / tau);
     }
     if (!(d > SMALLEST_BLEND) || !(v > 0)) {

@@ -61,6 +61,8 @@ void Planner::begin(const Pose &start, const Snapshot &now) noexcept {
     oldest_piece_ = first_piece_;
     open_move_ = 0;
     raw_move_ = 0;
+    shift_ = {};
+    shift_drive_ = {};
     changed_from_ = 0;
     drops_ = now.drops;
     plan_ = std::max(plan_, now.plan);
@@ -114,7 +116,10 @@ Sequence Planner::add(const Primitive &primitive, const MoveRequest &request) no
     MovePlan &m = move_plan(n);
     m.start_s = programmed_s_;
     m.deviation = 0;
+    m.shift_in = {};
+    m.shift_out = {};
     fill_move(n, primitive, request);
+    shape_corner(raw_move_, n);
     joined_count_ = 0;
     isJoinable_ = true;
     last_synched_ = request.feed_per_revolution > 0 ? n : last_synched_;
@@ -369,7 +374,8 @@ bool Planner::join_line(const Primitive &line, const MoveRequest &request) noexc
         allowed = std::min(std::max(allowed, JOIN_SHARE * request.tolerance), 0.5 * request.tolerance);
     }
     const Primitive &open = store_.primitive(raw_move_);
-    const Primitive whole = make_line(open.start, line.end);
+    const Pose shift = move_plan(raw_move_).shift_in;
+    const Primitive whole = make_line(open.start - shift, line.end);
     joined_[joined_count_] = open.end;
     double along = 0;
     double worst = 0;
@@ -386,6 +392,9 @@ bool Planner::join_line(const Primitive &line, const MoveRequest &request) noexc
     ++joined_count_;
     move_plan(raw_move_).deviation = worst;
     fill_move(raw_move_, whole, request);
+    if (shift != Pose{}) {
+        reshape(raw_move_, shift, {});
+    }
     return true;
 }
 

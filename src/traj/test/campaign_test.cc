@@ -29,22 +29,7 @@ class Maker {
     bool chance(double p) { return real(0, 1) < p; }
 
     Program make() {
-        Program p;
-        for (std::size_t i = 0; i < geom::AXIS_COUNT; ++i) {
-            p.limits.velocity[i] = std::pow(10.0, real(0.7, 2.7));
-            p.limits.acceleration[i] = std::pow(10.0, real(1.5, 4.0));
-        }
-        p.limits.velocity[XYZ_NORM] = chance(0.5) ? UNLIMITED : std::pow(10.0, real(1, 2.5));
-        p.limits.acceleration[XYZ_NORM] = chance(0.5) ? UNLIMITED : std::pow(10.0, real(2, 4));
-        p.limits.isJerkLimited = isJerkLimited_;
-        p.limits.jerk.fill(UNLIMITED);
-        for (std::size_t i = 0; i < geom::AXIS_COUNT && isJerkLimited_; ++i) {
-            p.limits.jerk[i] =
-                chance(0.2) ? UNLIMITED : p.limits.acceleration[i] * std::pow(10.0, real(0.9, 2.5));
-        }
-        p.limits.jerk[XYZ_NORM] = isJerkLimited_ && chance(0.5) ? std::pow(10.0, real(3, 6)) : UNLIMITED;
-        p.tolerance = chance(0.2) ? 0.0 : std::pow(10.0, real(-3, 0));
-        p.join = chance(0.15) ? Join::STOP : chance(0.15) ? Join::EXACT : Join::BLEND;
+        Program p = frame();
         const double size = std::pow(10.0, real(-2, 1.3));
         const int axes = whole(1, 9);
         Pose at;
@@ -67,7 +52,75 @@ class Maker {
         return p;
     }
 
+    /// Chords of a smooth curve, as close as CAM systems set them, with their figures rounded.
+    Program make_curve() {
+        Program p = frame();
+        p.tolerance = std::pow(10.0, real(-2.5, -1));
+        p.join = Join::BLEND;
+        for (double &a : p.limits.acceleration) {
+            a = std::max(a, 200.0);
+        }
+        const int axes = whole(2, 5);
+        const double spacing = std::pow(10.0, real(-1.7, 0));
+        const double grid = chance(0.7) ? 1e-4 : 1e-9;
+        std::array<double, 5> size{};
+        std::array<double, 5> turns{};
+        std::array<double, 5> phase{};
+        for (std::size_t i = 0; i < 5; ++i) {
+            size[i] = std::pow(10.0, real(-0.5, 1));
+            turns[i] = std::pow(10.0, real(-1, 0.5)) / size[i];
+            phase[i] = real(0, 6);
+        }
+        const double feed = std::pow(10.0, real(0.5, 2.5));
+        Pose at;
+        const int count = whole(100, 600);
+        for (int n = 1; n <= count; ++n) {
+            Pose to;
+            to[0] = chance(0.9) ? spacing * n : at[0];
+            for (int i = 1; i < axes; ++i) {
+                const auto k = static_cast<std::size_t>(i);
+                const double y = size[k] * (std::sin(turns[k] * spacing * n + phase[k]) - std::sin(phase[k]));
+                to[i] = std::round(y / grid) * grid;
+            }
+            push(p, make_line(at, to), feed, n);
+            at = to;
+        }
+        return p;
+    }
+
   private:
+    /// Limits, tolerance and path mode.
+    Program frame() {
+        Program p;
+        for (std::size_t i = 0; i < geom::AXIS_COUNT; ++i) {
+            p.limits.velocity[i] = std::pow(10.0, real(0.7, 2.7));
+            p.limits.acceleration[i] = std::pow(10.0, real(1.5, 4.0));
+        }
+        p.limits.velocity[XYZ_NORM] = chance(0.5) ? UNLIMITED : std::pow(10.0, real(1, 2.5));
+        p.limits.acceleration[XYZ_NORM] = chance(0.5) ? UNLIMITED : std::pow(10.0, real(2, 4));
+        p.limits.isJerkLimited = isJerkLimited_;
+        p.limits.jerk.fill(UNLIMITED);
+        for (std::size_t i = 0; i < geom::AXIS_COUNT && isJerkLimited_; ++i) {
+            p.limits.jerk[i] =
+                chance(0.2) ? UNLIMITED : p.limits.acceleration[i] * std::pow(10.0, real(0.9, 2.5));
+        }
+        p.limits.jerk[XYZ_NORM] = isJerkLimited_ && chance(0.5) ? std::pow(10.0, real(3, 6)) : UNLIMITED;
+        p.tolerance = chance(0.2) ? 0.0 : std::pow(10.0, real(-3, 0));
+        p.join = chance(0.15) ? Join::STOP : chance(0.15) ? Join::EXACT : Join::BLEND;
+        return p;
+    }
+    static void push(Program &p, const Primitive &q, double feed, int n) {
+        if (!(q.length > 1e-9)) {
+            return;
+        }
+        MoveRequest r;
+        r.join = p.join;
+        r.tolerance = p.tolerance;
+        r.tag.requested_velocity = feed;
+        r.tag.block = static_cast<std::uint32_t>(n);
+        p.primitives.push_back(q);
+        p.requests.push_back(r);
+    }
     Primitive line(const Pose &from, double size, int axes) {
         Pose to = from;
         for (int i = 0; i < axes; ++i) {
@@ -229,10 +282,10 @@ void drive(Maker &maker, const Program &program, Outcome &out, bool isDropped) {
     }
 }
 
-void check(unsigned seed, bool isJerkLimited) {
+void check(unsigned seed, bool isJerkLimited, bool isCurve = false) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Maker maker(seed, isJerkLimited);
-    const Program program = maker.make();
+    const Program program = isCurve ? maker.make_curve() : maker.make();
     if (program.primitives.empty()) {
         return;
     }
@@ -268,11 +321,11 @@ int number_from(const char *name, int preset) {
     return text != nullptr ? std::atoi(text) : preset;
 }
 
-void check_all(bool isJerkLimited) {
+void check_all(bool isJerkLimited, bool isCurve = false) {
     const int first = number_from("MW_CAMPAIGN_FIRST", 1);
     const int count = number_from("MW_CAMPAIGN_SEEDS", 60);
     for (int i = 0; i < count && !::testing::Test::HasFailure(); ++i) {
-        check(static_cast<unsigned>(first + i), isJerkLimited);
+        check(static_cast<unsigned>(first + i), isJerkLimited, isCurve);
     }
 }
 
@@ -288,6 +341,14 @@ TEST(Campaign, SeedsThatOnceFailedKeepJerkLimits_C13) {
 
 TEST(Campaign, RandomProgramsKeepJerkLimits_C13) {
     check_all(true);
+}
+
+TEST(Campaign, DenseCurvesKeepLimitsToleranceAndOrder_C2) {
+    check_all(false, true);
+}
+
+TEST(Campaign, DenseCurvesKeepJerkLimits_C13) {
+    check_all(true, true);
 }
 
 }  // namespace
