@@ -131,6 +131,7 @@ class Planner {
         double dwell_s = 0;
         double v = UNLIMITED;  ///< highest speed on the blend
         double turning = 0;    ///< share of the acceleration that it takes at that speed
+        double gentle = 1;     ///< part of the acceleration next to a stop that the mean can bring together
     };
 
     MovePlan &move_plan(Sequence n) noexcept { return moves_[n % PRIMITIVE_CAPACITY]; }
@@ -147,6 +148,8 @@ class Planner {
     double filtered_arc_speed(const Primitive &p, const MovePlan &m) const noexcept;
     double tolerance_of(const MovePlan &m) const noexcept;
     void add_part(Piece piece, double to, bool isToEnd, double v) noexcept;
+    double zone_length(const Primitive &p, const Joint &joint, double wish) const noexcept;
+    void make_gentle(Sequence from, double part) noexcept;
     bool isAlongOnly(const Primitive &p, const MoveRequest &request) const noexcept;
     SpeedLimit along_limit(const Primitive &p, double wish) const noexcept;
     SpeedLimit shared_limit(const Primitive &a, const Primitive &b, const Joint &joint,

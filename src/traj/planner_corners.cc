@@ -19,6 +19,8 @@ constexpr double SPREAD_SHARE = 0.05;
 constexpr double ARC_SHARE = 0.92;
 /// Part of the tolerance that is planned with; the rest is for what the formulas leave out.
 constexpr double TOLERANCE_SHARE = 0.95;
+/// Up to this swing over what the mean can spread, less acceleration costs less time than standing does.
+constexpr double MOST_SWING = 1.7, GENTLE_ROOM = 0.999;
 /// From the width of a blend that takes 0.7 of the acceleration to one that takes 0.95.
 constexpr double TURNING_FIT = 0.7 / 0.95;
 
@@ -109,16 +111,21 @@ Planner::Joint Planner::filtered_stop(const Primitive &a, const Primitive &b, do
     const double tau = filter_s();
     const double out = limit_of(a, 0, a.length, limits_, UNLIMITED).a.at(0);
     const double in = limit_of(b, 0, b.length, limits_, UNLIMITED).a.at(0);
-    const double overlap = std::min(tau, std::cbrt(48.0 * tau * TOLERANCE_SHARE * share / std::max(out, in)));
-    Joint stop{.isStop = true, .dwell_s = tau - overlap};
     const Pose ta = derivative_at(a, a.length);
     const Pose tb = derivative_at(b, 0);
+    double swing = 0;
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
-        const double swing = std::abs(ta[i] * out + tb[i] * in);
-        if (swing > wanted_.jerk[static_cast<std::size_t>(i)] * tau) {
-            stop.dwell_s = tau;
-        }
+        const double most = wanted_.jerk[static_cast<std::size_t>(i)] * tau;
+        swing = std::max(swing, std::abs(ta[i] * out + tb[i] * in) / most);
     }
+    swing = std::max(swing, geom::norm_xyz(ta * out + tb * in) / (wanted_.jerk[XYZ_NORM] * tau));
+    Joint stop{.isStop = true, .dwell_s = tau};
+    if (swing > MOST_SWING) {
+        return stop;
+    }
+    stop.gentle = swing > 1.0 ? GENTLE_ROOM / swing : 1.0;
+    const double most = stop.gentle * std::max(out, in);
+    stop.dwell_s = tau - std::min(tau, std::cbrt(48.0 * tau * TOLERANCE_SHARE * share / most));
     return stop;
 }
 

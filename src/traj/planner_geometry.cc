@@ -218,17 +218,18 @@ void Planner::close_move(double to, bool isToEnd, const Joint &next) noexcept {
     const double wish = std::min(wish_of(m), filtered_arc_speed(p, m));
     const bool isAfterBlend = isFiltered() && open_joint_.d > 0;
     const bool isBeforeBlend = isFiltered() && next.d > 0;
-    // Next to a curve that stands alone the speed stays as it is there, so that turning and braking do not
-    // meet in the mean; what curves close by take of the acceleration at the same speed is not there for the
-    // path.
-    const auto zone = [&](bool isBlend, const Joint &joint) {
-        const double way = std::min(joint.v, wish) * filter_s();
-        return isBlend && !p.isArc && way < ZONE_SHARE * (to - from) ? way : 0.0;
+    const double length = to - from;
+    const auto zone = [&](const Joint &joint) {
+        const double way = zone_length(p, joint, wish);
+        const bool isFit = way < ZONE_SHARE * length;
+        return joint.isStop ? std::min(way, ZONE_SHARE * length) : isFit ? way : 0.0;
     };
-    const double before = zone(isAfterBlend, open_joint_);
-    const double after = zone(isBeforeBlend, next);
+    const double before = zone(open_joint_);
+    const double after = zone(next);
     if (before > 0) {
-        add_part(piece, from + before, false, open_joint_.v);
+        const Sequence first = last_piece_ + 1;
+        add_part(piece, from + before, false, open_joint_.isStop ? wish : open_joint_.v);
+        make_gentle(first, open_joint_.gentle);
     }
     const Sequence first = last_piece_ + 1;
     piece.offset = from + before;
@@ -244,8 +245,31 @@ void Planner::close_move(double to, bool isToEnd, const Joint &next) noexcept {
         }
     }
     if (after > 0) {
+        const Sequence last = last_piece_ + 1;
         piece.offset = to - after;
-        add_part(piece, to, isToEnd, next.v);
+        add_part(piece, to, isToEnd, next.isStop ? wish : next.v);
+        make_gentle(last, next.gentle);
+    }
+}
+
+/// Next to a curve that stands alone the speed stays as it is there, so that turning and braking do not meet
+/// in the mean; what curves close by take of the acceleration at the same speed is not there for the path.
+/// Next to a stop that overlaps in the mean the acceleration may have to be less.
+double Planner::zone_length(const Primitive &p, const Joint &joint, double wish) const noexcept {
+    const bool isNone = !isFiltered() || p.isArc;
+    if (!isNone && joint.d > 0) {
+        return std::min(joint.v, wish) * filter_s();
+    }
+    if (isNone || !joint.isStop || joint.gentle >= 1.0) {
+        return 0;
+    }
+    const double shared = filter_s() - joint.dwell_s + settings_.period_s;
+    return 0.5 * limit_of(p, 0, p.length, limits_, wish).a.at(0) * joint.gentle * shared * shared;
+}
+
+void Planner::make_gentle(Sequence from, double part) noexcept {
+    for (Sequence k = from; k <= last_piece_ && part < 1.0; ++k) {
+        scale_piece(k, 1.0, part);
     }
 }
 

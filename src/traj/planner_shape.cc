@@ -13,7 +13,7 @@ namespace {
 /// A corner of a curve turns by less [rad].
 constexpr double MOST_TURN = 0.4;
 /// Part of the tolerance that the mean may take without help, and the most that corners are moved by.
-constexpr double FREE_SHARE = 0.8, MOST_SHARE = 0.75;
+constexpr double FREE_SHARE = 0.95, MOST_SHARE = 0.75;
 /// Shifts follow the curvature over this part of the way in the time of the mean.
 constexpr double FOLLOWING = 0.3;
 
