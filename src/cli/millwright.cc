@@ -22,6 +22,7 @@ constexpr const char *USAGE =
     "      --plot FILE.png|FILE.svg  draw the tool path\n"
     "      --patience SECONDS        give up after so long without progress (default 60, in the machine's "
     "time)\n"
+    "      --no-estimate             do not ask the planner for the expected time first\n"
     "      --strict                  unknown INI keys are errors\n"
     "  check PROGRAM.ngc --ini MACHINE.ini\n"
     "                                interpret the program and check its moves against the limits, moving "

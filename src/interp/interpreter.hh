@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,10 +18,33 @@
 
 namespace mw::interp {
 
+class ScriptHost;
+
+/// Scripts of the machine: [PYTHON].
+struct ScriptSettings {
+    std::string top_level;                  ///< file run first; empty: scripts are not set up
+    std::vector<std::string> path_prepend;  ///< folders searched before all others
+    std::vector<std::string> path_append;   ///< and after them
+    bool isReloading = false;               ///< run the top-level script again when its file has changed
+    int log_level = 0;
+    SourcePlace place;  ///< of the section, for errors
+};
+/// Makes a script host; by default the shared object for Python is opened.
+using MakeScriptHost = std::function<Result<std::unique_ptr<ScriptHost>>()>;
+
+/// One REMAP line as written and where it stands.
+struct RemapLine {
+    RemapLine(std::string line, SourcePlace where = {}) : text(std::move(line)), place(std::move(where)) {}
+    RemapLine(const char *line) : text(line) {}
+    std::string text;
+    SourcePlace place;
+};
+
 struct Settings {
     std::vector<std::string>
         subroutine_path;  ///< [RS274NGC]SUBROUTINE_PATH and [DISPLAY]PROGRAM_PREFIX, in order
     std::vector<std::string> user_m_path;  ///< [RS274NGC]USER_M_PATH and PROGRAM_PREFIX: where M100..M199 are
+    bool isUserCodeAssumed = false;        ///< M100..M199 need no program: for previews elsewhere
     std::string startup_code;              ///< [RS274NGC]RS274NGC_STARTUP_CODE
     bool isG92PersistenceDisabled = false;
     bool isFanucSubDisabled = false;
@@ -31,7 +55,11 @@ struct Settings {
     bool isArgumentCountNamed = false;  ///< [RS274NGC]OWORD_NARGS: #<n_args> in subroutines
     double orient_offset_deg = 0;
     double parameter_g73_peck_clearance_mm = 0.254, parameter_g83_peck_clearance_mm = 0.254;
-    std::vector<std::string> remaps;  ///< [RS274NGC]REMAP lines, as written
+    std::vector<RemapLine> remaps;  ///< [RS274NGC]REMAP
+    ScriptSettings scripts;
+    MakeScriptHost make_script_host;
+    int debug_mask = 0;     ///< [EMC]DEBUG
+    int logging_level = 0;  ///< [RS274NGC]LOG_LEVEL
     std::string ini_folder;
     std::optional<LengthUnits> initial_units;  ///< G20 or G21 at the start; the machine's when not given
     /// Statements per step() and in all; 0: without bound. A bound makes check runs of endless loops end in
@@ -52,6 +80,11 @@ struct ActiveCodes {
     std::array<int, 17> g{};  ///< [0] sequence number, then ten times the code, -1 none
     std::array<int, 10> m{};
     std::array<double, 5> settings{};  ///< sequence, feed, speed, G64 P, G64 Q
+};
+
+/// How far the main program has been read.
+struct FilePlace {
+    std::uint64_t bytes = 0, bytes_in_all = 0;
 };
 
 class Interpreter {
@@ -81,7 +114,9 @@ class Interpreter {
     Step execute(std::string_view line);
     /// Takes the machine's state as the current one (after a stop, a probe, a tool change). [task]
     void synch();
-    /// Back to the top level after an abort: drops calls and loops, keeps modes.
+    /// Warnings of begin(): names that scripts redefine.
+    const std::vector<std::string> &warnings() const;
+    /// Back to the top level after an abort: drops calls and loops, keeps modes; suspended scripts end.
     void abort();
 
     /// The last failure: message, file:line:column, the block's text, the callers.
@@ -92,6 +127,13 @@ class Interpreter {
     int call_level() const;
     /// No line of the open file is left.
     bool isAtFileEnd() const;
+    /// The statement budget is used up: no more statement will run.
+    bool isBudgetSpent() const;
+    FilePlace place_in_file() const;
+    /// The subroutine that runs, without brackets; empty in the main program.
+    std::string_view subroutine() const;
+    /// A line of a file that the interpreter has read, empty when it has not.
+    std::string line_text(const std::string &file, int line) const;
     double parameter(int number) const;
 
   private:

@@ -24,10 +24,17 @@ class Standalone : public World, public ToolSource, public ParameterSource {
 
     MachineSnapshot snapshot() const override { return state; }
     LengthUnits machine_units() const override { return units; }
+    /// The field's standalone machine counts 0.03937007874016 inch to the millimetre; in places where a
+    /// coordinate lies halfway between two printed digits, programs' outputs depend on it.
+    double mm_per_machine_unit() const override {
+        constexpr double INCH_PER_MM = 0.03937007874016;
+        return units == LengthUnits::MM ? 1.0 : 1.0 / INCH_PER_MM;
+    }
     unsigned axis_mask() const override { return 0x1ff; }
     int count_spindles() const override { return spindles; }
     bool isBlockDeleteOn() const override { return isBlockDelete; }
     bool isOptionalStopOn() const override { return false; }
+    bool isSynchedAtOnce() const override { return true; }
 
     int count() const override { return table.count(); }
     ToolEntry entry(int index) const override { return table.entry(index); }

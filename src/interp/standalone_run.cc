@@ -197,6 +197,9 @@ int Run::go() {
         fmt::print(stderr, "{}\n", begun.error().str());
         return close(1);
     }
+    for (const std::string &warning : interpreter_->warnings()) {
+        fmt::print(stderr, "warning: {}\n", warning);
+    }
     return close(options_.input.empty() ? run_mdi() : run_file());
 }
 

@@ -36,10 +36,17 @@ class World {
     virtual ~World() = default;
     virtual MachineSnapshot snapshot() const = 0;
     virtual LengthUnits machine_units() const = 0;
+    /// Length of the unit that the parameter file and the tool table are written in [mm].
+    virtual double mm_per_machine_unit() const {
+        constexpr double MM_PER_INCH = 25.4;
+        return machine_units() == LengthUnits::MM ? 1.0 : MM_PER_INCH;
+    }
     virtual unsigned axis_mask() const = 0;  ///< bit per axis, X = 1
     virtual int count_spindles() const = 0;
     virtual bool isBlockDeleteOn() const = 0;
     virtual bool isOptionalStopOn() const = 0;
+    /// Waiting points cost no time: nothing moves (printing, checking). Scripts then go on at once.
+    virtual bool isSynchedAtOnce() const { return false; }
 };
 
 /// The tool table as the interpreter sees it. Entry 0 is the tool in the spindle. One owner: io (or the

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "interp/detail/executor.hh"
+#include "interp/detail/plane_geometry.hh"
 
 namespace mw::interp::detail {
 namespace {
@@ -16,56 +17,6 @@ namespace {
 /// Corners turning by less than this are passed as if straight [rad].
 constexpr double STRAIGHT_ANGLE = 0.05;
 constexpr double TINY = 1e-10;
-
-double dot(Point a, Point b) {
-    return a.x * b.x + a.y * b.y;
-}
-
-double cross(Point a, Point b) {
-    return a.x * b.y - a.y * b.x;
-}
-
-Point sum(Point a, Point b, double scale) {
-    return {a.x + b.x * scale, a.y + b.y * scale};
-}
-
-double distance(Point a, Point b) {
-    return std::hypot(b.x - a.x, b.y - a.y);
-}
-
-Point unit(Point from, Point to) {
-    const double length = distance(from, to);
-    return {(to.x - from.x) / length, (to.y - from.y) / length};
-}
-
-/// Where two offset paths cross: none, one or two points.
-struct Crossings {
-    int count = 0;
-    Point points[2];
-};
-
-/// A line by a point and its direction, and a circle.
-Crossings cross_line_circle(Point on_line, Point along, Point centre, double radius) {
-    const Point foot = sum(on_line, along, dot({centre.x - on_line.x, centre.y - on_line.y}, along));
-    const double off = distance(foot, centre);
-    if (off > radius + TINY) {
-        return {};
-    }
-    const double half = std::sqrt(std::fmax(0.0, radius * radius - off * off));
-    return {2, {sum(foot, along, half), sum(foot, along, -half)}};
-}
-
-Crossings cross_circles(Point c1, double r1, Point c2, double r2) {
-    const double apart = distance(c1, c2);
-    if (apart < TINY || apart > r1 + r2 + TINY || apart < std::fabs(r1 - r2) - TINY) {
-        return {};
-    }
-    const Point along = unit(c1, c2);
-    const double at = (apart * apart + r1 * r1 - r2 * r2) / (2.0 * apart);
-    const double half = std::sqrt(std::fmax(0.0, r1 * r1 - at * at));
-    const Point foot = sum(c1, along, at), across{-along.y, along.x};
-    return {2, {sum(foot, across, half), sum(foot, across, -half)}};
-}
 
 Crossings cross_lines(const CompElement &a, const CompElement &b) {
     const double sine = cross(a.start_direction, b.start_direction);
@@ -127,11 +78,31 @@ Point Executor::comp_normal(Point direction) const {
     return state.comp == CompSide::LEFT ? Point{-direction.y, direction.x} : Point{direction.y, -direction.x};
 }
 
+/// From the centre of a lathe tool's nose to its controlled point, by the tool's orientation 1 to 8.
+Point Executor::comp_shift() const {
+    static constexpr Point SHIFTS[] = {{0, 0}, {1, -1}, {-1, -1}, {-1, 1}, {1, 1},
+                                       {1, 0}, {0, -1}, {-1, 0},  {0, 1},  {0, 0}};  // Z, X
+    const bool isLathe = state.comp != CompSide::OFF && state.plane == Plane::XZ;
+    const Point shift = SHIFTS[isLathe ? state.comp_orientation : 0];
+    return {shift.x * state.comp_radius, shift.y * state.comp_radius};
+}
+
+/// The pose at which the tool's centre is at `point`.
 Pose Executor::in_plane(Pose pose, Point point) const {
     const PlaneAxes axes = plane_axes();
-    pose[axes.first] = point.x;
-    pose[axes.second] = point.y;
+    const Point shift = comp_shift();
+    pose[axes.first] = point.x + shift.x;
+    pose[axes.second] = point.y + shift.y;
     return pose;
+}
+
+/// An arc of the tool's centre, with the end's other axes as in `end`.
+void Executor::send_comp_arc(Point to, Point centre, int rotation, const Pose &end) {
+    const PlaneAxes axes = plane_axes();
+    const Point shift = comp_shift();
+    const Pose place = in_plane(end, to);
+    canon.arc_feed({place[axes.first], place[axes.second], centre.x + shift.x, centre.y + shift.y, rotation,
+                    place[axes.normal], place});
 }
 
 /// G41 and G42 (tool number D), G41.1 and G42.1 (diameter D), G40.
@@ -153,7 +124,7 @@ bool Executor::do_comp(const Code &code, const BlockValues &values) {
         if (values.has('l') && !whole_word(values, 'l', state.comp_orientation)) {
             return false;
         }
-        if (values.has('l') && state.comp_orientation != 0 && state.plane != Plane::XZ) {
+        if (values.has('l') && state.plane != Plane::XZ) {
             return fault.set("L, the orientation of a lathe tool, needs the plane G18",
                              values.column_of('l'));
         }
@@ -177,10 +148,9 @@ bool Executor::do_comp(const Code &code, const BlockValues &values) {
             state.comp_orientation = entry.orientation;
         }
     }
-    constexpr int CENTRED = 9;
-    if (state.plane == Plane::XZ && state.comp_orientation != 0 && state.comp_orientation != CENTRED) {
-        return fault.set(
-            "Cutter radius compensation of lathe tools with an orientation is not supported yet");
+    constexpr int HIGHEST_ORIENTATION = 9;
+    if (state.comp_orientation < 0 || state.comp_orientation > HIGHEST_ORIENTATION) {
+        return fault.set("The orientation of a lathe tool must be 0 to 9", values.column_of('l'));
     }
     const bool isLeft = (code.number < 420) == (diameter >= 0.0);
     state.comp = isLeft ? CompSide::LEFT : CompSide::RIGHT;
@@ -209,8 +179,9 @@ void Executor::patch_comp(Point end) {
         }
         patched_.emplace_back(i, record);
         record.pose = in_plane(record.pose, end);
-        record.u = record.op == CanonQueue::Op::ARC ? end.x : record.u;
-        record.v = record.op == CanonQueue::Op::ARC ? end.y : record.v;
+        const bool isArc = record.op == CanonQueue::Op::ARC;
+        record.u = isArc ? record.pose[plane_axes().first] : record.u;
+        record.v = isArc ? record.pose[plane_axes().second] : record.v;
     }
     state.comp_last.end = end;
 }
@@ -233,12 +204,10 @@ bool Executor::join_comp(CompElement &next, Point corner, bool isRapid) {
     }
     if (turn <= 0.0) {
         next.start = sum(corner, comp_normal(next.start_direction), state.comp_radius);
-        const Pose end = in_plane(state.position, next.start);
         if (isRapid) {
-            canon.straight_traverse(end);
+            canon.straight_traverse(in_plane(state.position, next.start));
         } else {
-            canon.arc_feed({next.start.x, next.start.y, corner.x, corner.y,
-                            state.comp == CompSide::LEFT ? -1 : 1, state.position[plane_axes().normal], end});
+            send_comp_arc(next.start, corner, state.comp == CompSide::LEFT ? -1 : 1, state.position);
         }
         return true;
     }
@@ -267,12 +236,14 @@ bool Executor::comp_straight(bool isRapid, const Pose &end) {
                 return fault.set(
                     "Length of cutter compensation entry move is not greater than the tool radius");
             }
-            next.start = from;
+            next.start = sum(from, comp_shift(), -1.0);
         } else if (!join_comp(next, from, isRapid)) {
             return false;
         }
     }
-    const Point place = length > TINY ? next.end : (state.comp_last.isSet ? state.comp_last.end : to);
+    const Point place = length > TINY
+                            ? next.end
+                            : (state.comp_last.isSet ? state.comp_last.end : sum(to, comp_shift(), -1.0));
     if (isRapid) {
         canon.straight_traverse(in_plane(end, place));
     } else {
@@ -291,7 +262,8 @@ bool Executor::comp_straight(bool isRapid, const Pose &end) {
 /// end.
 bool Executor::enter_comp_by_arc(const ArcPlan &arc, CompElement &next) {
     const PlaneAxes axes = plane_axes();
-    const Point from{state.position[axes.first], state.position[axes.second]};
+    const Point shift = comp_shift();
+    const Point from{state.position[axes.first] - shift.x, state.position[axes.second] - shift.y};
     const Point normal = comp_normal(next.end_direction);
     const Point chord{from.x - next.end.x, from.y - next.end.y};
     const double along = dot(chord, normal);
@@ -339,8 +311,7 @@ bool Executor::comp_arc(const ArcPlan &arc) {
         send_inverse_time(std::hypot(radius * arc_sweep(arc, from.x, from.y),
                                      arc.end[axes.normal] - state.position[axes.normal]));
     }
-    canon.arc_feed({next.end.x, next.end.y, next.centre.x, next.centre.y, arc.rotation, arc.end[axes.normal],
-                    in_plane(arc.end, next.end)});
+    send_comp_arc(next.end, next.centre, arc.rotation, arc.end);
     next.record = canon.size() - 1;
     state.comp_last = next;
     state.position = arc.end;

@@ -257,9 +257,23 @@ void Executor::run_peck(const CyclePlan &plan) {
     cycle_move(true, normal, plan.clear);
 }
 
+/// The two feeds of a tap. In G18 and G19 their X, Y and Z stand in the order that the field's programs have
+/// always given: plane coordinates turned into machine ones twice. Only G17 taps along the plane's normal.
+void Executor::tap_move(double height) {
+    const int normal = plane_axes().normal;
+    state.position[normal] = height;
+    const Pose &place = state.position;
+    Pose sent = place;
+    for (int axis = geom::AXIS_X; axis <= geom::AXIS_Z && normal != geom::AXIS_Z; ++axis) {
+        constexpr int LENGTHS = 3;
+        sent[axis] = place[(axis + (normal == geom::AXIS_Y ? 1 : 2)) % LENGTHS];
+    }
+    canon.straight_feed(sent);
+}
+
 /// Tapping with a floating chuck: the spindle turns back at the bottom.
 void Executor::run_tap(const CyclePlan &plan, int direction) {
-    const int normal = plane_axes().normal, spindle = state.active_spindle;
+    const int spindle = state.active_spindle;
     const bool isSpeedOverride = state.spindles[static_cast<std::size_t>(spindle)].isOverridden;
     if (state.isFeedOverride) {
         canon.disable_feed_override();
@@ -267,11 +281,11 @@ void Executor::run_tap(const CyclePlan &plan, int direction) {
     if (isSpeedOverride) {
         canon.disable_speed_override(spindle);
     }
-    cycle_move(false, normal, plan.bottom);
+    tap_move(plan.bottom);
     canon.stop_spindle_turning(spindle);
     start_spindle(-direction);
     canon.dwell(state.cycle.p);
-    cycle_move(false, normal, plan.clear);
+    tap_move(plan.clear);
     canon.stop_spindle_turning(spindle);
     start_spindle(direction);
     if (state.isFeedOverride) {

@@ -2,6 +2,7 @@
 // Coolant, overrides, outputs and inputs, dwell, stops and the end.
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -119,13 +120,13 @@ bool Executor::do_wait_input(const Code &, const BlockValues &values) {
 /// M100 to M199: a program of that name in one of the folders for them.
 bool Executor::do_user(const Code &code, const BlockValues &values) {
     const std::string name = fmt::format("M{}", code.number);
-    for (const std::string &folder : settings_.user_m_path) {
-        const std::filesystem::path path = std::filesystem::path(folder) / name;
-        if (::access(path.c_str(), X_OK) == 0) {
-            constexpr double NOT_GIVEN = -1.0;
-            canon.user_m_code(code.number, values.at('p', NOT_GIVEN), values.at('q', NOT_GIVEN));
-            return true;
-        }
+    const auto isIn = [&name](const std::string &folder) {
+        return ::access((std::filesystem::path(folder) / name).c_str(), X_OK) == 0;
+    };
+    if (settings_.isUserCodeAssumed || std::ranges::any_of(settings_.user_m_path, isIn)) {
+        constexpr double NOT_GIVEN = -1.0;
+        canon.user_m_code(code.number, values.at('p', NOT_GIVEN), values.at('q', NOT_GIVEN));
+        return true;
     }
     return fault.set(fmt::format("Unknown m code used: {}", name), 0,
                      "no executable program of this name in the folders of USER_M_PATH");
