@@ -18,6 +18,7 @@ TaskSide::~TaskSide() {
     task_.reset();
     tool_change_.destroy();
     halui_.destroy();
+    ini_pins_.destroy();
     io_pins_.destroy();
 }
 
@@ -43,6 +44,9 @@ Result<> TaskSide::start(const MachineOptions &options) {
 
 Result<> TaskSide::make_pins() {
     auto status = io_pins_.create(host_.hal());
+    if (status.has_value()) {
+        status = ini_pins_.create(host_.hal(), parts_.config.parameters);
+    }
     if (status.has_value() && parts_.config.hasHalui) {
         status = halui_.create(host_.hal(), parts_.config.num_joints);
     }
@@ -121,6 +125,7 @@ Result<> TaskSide::finish_start(const std::function<void()> &cycle, int most_cyc
 }
 
 void TaskSide::step(std::int64_t now_ns) {
+    ini_pins_.step(*task_);
     task_->step(now_ns);
     tool_change_.step(now_ns);
     if (parts_.config.hasHalui) {

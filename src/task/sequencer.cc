@@ -166,6 +166,12 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
                 events_.tool_offset(offset);
                 return true;
             },
+            [&](const PlannerModeItem &mode) {
+                const auto setting = events_.planner_mode(mode);
+                awaited_setting_ = setting.value_or(0);
+                wait_ = awaited_setting_ != 0 ? Wait::SETTING : Wait::NONE;
+                return setting.has_value();
+            },
             [&](const UserCodeItem &code) {
                 const auto started = events_.start_user_code(code);
                 if (!started.has_value()) {
@@ -203,6 +209,7 @@ motion::MoveTerms Sequencer::terms_of(const interp::MoveSettings &settings, moti
     terms.feed = settings.feed;
     terms.tolerance = settings.tolerance;
     terms.naivecam_tolerance = settings.naivecam_tolerance;
+    terms.corner_scale = settings.corner_scale;
     terms.feed_per_revolution = settings.feed_per_revolution;
     terms.synch_spindle = static_cast<std::int8_t>(settings.synch_spindle);
     terms.isVelocitySynched = settings.isVelocitySynched;

@@ -14,7 +14,9 @@ Task::Task(const Parts &parts, Settings settings)
     : settings_(std::move(settings)), parts_(parts), motion_(parts.channels),
       canon_(queue_, settings_.tool_change_place), frame_(canon_, settings_.machine_units),
       interp_(frame_, *this, parts.tools, parts.parameters, settings_.interpreter),
-      sequencer_(queue_, motion_, io_, parts.tools, make_events(), settings_.sequencer) {}
+      sequencer_(queue_, motion_, io_, parts.tools, make_events(), settings_.sequencer),
+      planner_mode_({[this](const motion::SetParameter &p) { return motion_.send(p); },
+                     [this](MessageKind kind, const std::string &text) { post(kind, text); }}) {}
 
 Task::~Task() = default;
 
@@ -37,6 +39,16 @@ SequencerEvents Task::make_events() {
         status_.tool_offset = item.offset;
         motion_.send(motion::SetToolOffset{item.offset});
     };
+    events.planner_mode = [this](const PlannerModeItem &item) -> std::optional<motion::CommandId> {
+        const int smooth = settings_.sequencer.smooth_planner;
+        if (item.isSmooth && smooth == 0) {
+            pending_failure_ =
+                "G64 R above 0 asks for the jerk-limited planner, which [TRAJ]SMOOTH_PLANNER = 0 "
+                "does not allow; use G64 R0 or no R";
+            return std::nullopt;
+        }
+        return planner_mode_.set(item.isSmooth ? smooth : 0);
+    };
     events.start_user_code = [](const UserCodeItem &item) -> Result<> {
         return fail("M" + std::to_string(item.code) + ": user M codes are not supported by this version");
     };
@@ -45,6 +57,7 @@ SequencerEvents Task::make_events() {
 }
 
 void Task::configure(const std::vector<motion::SetParameter> &parameters) {
+    planner_mode_.configure(parameters);
     for (const motion::SetParameter &parameter : parameters) {
         last_setting_ = motion_.send(parameter);
     }
@@ -60,6 +73,7 @@ Result<> Task::start() {
         }
     }
     synch_interpreter();
+    planner_mode_.announce();
     return interp_.begin();
 }
 
@@ -124,6 +138,7 @@ void Task::step(std::int64_t now_ns) {
             finish_run(Progress::DONE, {});
         }
     }
+    planner_mode_.step(!isRunning() && sequencer_.isIdle());
     parts_.io_port.write(io_.outputs);
     update_status();
 }

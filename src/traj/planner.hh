@@ -23,6 +23,8 @@ struct MoveRequest {
     MoveTag tag;
     Join join = Join::BLEND;
     double tolerance = 0;        ///< of a blend [machine units; degrees over ABC]; 0: as the speed needs
+    double corner_scale = 1;     ///< with jerk limits: part of the reachable speed in corners (G64 R)
+    bool isMergeAdded = false;   ///< joining may take all of merge_tolerance, on top of `tolerance`
     double merge_tolerance = 0;  ///< lines may be joined to one that is no farther from their ends (G64 Q)
     bool isRapid = false;        ///< as fast as the limits allow, scaled by Scales::rapid
     bool isOverridable = true;

@@ -161,6 +161,7 @@ Planner::Joint Planner::filtered_corner(Sequence na, Sequence nb, double toleran
         const double room = 24.0 * (TOLERANCE_SHARE * share + outside) * spacing - 4.0 * d * d;
         v = std::min(v, std::sqrt(std::max(0.0, room)) / tau);
     }
+    v *= std::min(move_plan(na).request.corner_scale, move_plan(nb).request.corner_scale);
     if (!(d > SMALLEST_BLEND) || !(v > 0)) {
         return stop;
     }

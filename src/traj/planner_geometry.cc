@@ -383,7 +383,8 @@ bool Planner::canJoin(const Primitive &line, const MoveRequest &request) const n
     const MoveRequest &open = move_plan(raw_move_).request;
     const bool isSame = open.tag.requested_velocity == request.tag.requested_velocity &&
                         open.tolerance == request.tolerance &&
-                        open.merge_tolerance == request.merge_tolerance && open.isRapid == request.isRapid &&
+                        open.merge_tolerance == request.merge_tolerance &&
+                        open.corner_scale == request.corner_scale && open.isRapid == request.isRapid &&
                         open.isOverridable == request.isOverridable && open.tag.type == request.tag.type;
     const bool isPlain = open.join == Join::BLEND && request.join == Join::BLEND && !request.isGated &&
                          !(request.feed_per_revolution > 0) && !(open.feed_per_revolution > 0);
@@ -394,7 +395,7 @@ bool Planner::canJoin(const Primitive &line, const MoveRequest &request) const n
 /// Makes the open line go to the end of `line` if all ends in between stay near it, in order.
 bool Planner::join_line(const Primitive &line, const MoveRequest &request) noexcept {
     double allowed = request.merge_tolerance;
-    if (request.tolerance > 0) {
+    if (request.tolerance > 0 && !request.isMergeAdded) {
         allowed = std::min(std::max(allowed, JOIN_SHARE * request.tolerance), 0.5 * request.tolerance);
     }
     const Primitive &open = store_.primitive(raw_move_);
@@ -414,7 +415,7 @@ bool Planner::join_line(const Primitive &line, const MoveRequest &request) noexc
         along = s;
     }
     ++joined_count_;
-    move_plan(raw_move_).deviation = worst;
+    move_plan(raw_move_).deviation = request.isMergeAdded ? 0.0 : worst;
     fill_move(raw_move_, whole, request);
     if (shift != Pose{}) {
         reshape(raw_move_, shift, {});

@@ -189,6 +189,8 @@ void Controller::publish_limits() noexcept {
     const double jerk = get(Parameter::TRAJ_MAX_JERK);
     out.limits.jerk[traj::XYZ_NORM] = jerk < JERK_OFF ? jerk : traj::UNLIMITED;
     out.limits.isJerkLimited = settings_.isSet(Parameter::TRAJ_PLANNER_TYPE) && jerk >= LEAST_JERK;
+    out.corner_scale = get(Parameter::TRAJ_CORNER_SCALE);
+    out.areTolerancesAdded = settings_.isSet(Parameter::TRAJ_ADDED_TOLERANCES);
     out.limits.velocity[traj::XYZ_NORM] = std::min(get(Parameter::TRAJ_MAX_VELOCITY), traj::UNLIMITED);
     out.limits.acceleration[traj::XYZ_NORM] =
         std::min(get(Parameter::TRAJ_MAX_ACCELERATION), traj::UNLIMITED);
