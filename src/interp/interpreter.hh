@@ -115,7 +115,7 @@ class Interpreter final : public ProgramInterpreter {
     std::string_view subroutine() const;
     /// A line of a file that the interpreter has read, empty when it has not.
     std::string line_text(const std::string &file, int line) const;
-    double parameter(int number) const;
+    double parameter(int number) const override;
 
   private:
     struct Impl;
