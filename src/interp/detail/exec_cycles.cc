@@ -279,12 +279,8 @@ void Executor::tap_move(double height) {
 void Executor::run_tap(const CyclePlan &plan, int direction) {
     const int spindle = state.active_spindle;
     const bool isSpeedOverride = state.spindles[static_cast<std::size_t>(spindle)].isOverridden;
-    if (state.isFeedOverride) {
-        canon.disable_feed_override();
-    }
-    if (isSpeedOverride) {
-        canon.disable_speed_override(spindle);
-    }
+    canon.disable_feed_override();
+    canon.disable_speed_override(spindle);
     tap_move(plan.bottom);
     canon.stop_spindle_turning(spindle);
     start_spindle(-direction);

@@ -113,8 +113,7 @@ Program *Flow::load_sub_file(NameId label) {
 
 bool Flow::check_depth() {
     return call_level() < MAX_CALL_DEPTH ||
-           executor_.fault.set(
-               fmt::format("Subroutine calls are nested more than {} deep", MAX_CALL_DEPTH));
+           executor_.fault.set(fmt::format("Subroutine calls are nested more than {} deep", MAX_CALL_DEPTH));
 }
 
 bool Flow::enter(Call call, const Sub &sub) {
