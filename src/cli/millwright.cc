@@ -8,6 +8,7 @@
 #include "base/own_place.hh"
 #include "cli/stop_signals.hh"
 #include "hal/view/commands.hh"
+#include "interp/commands.hh"
 #include "machine/commands.hh"
 
 namespace {
@@ -22,10 +23,14 @@ constexpr const char *USAGE =
     "      --plot FILE.png|FILE.svg  draw the tool path\n"
     "      --patience SECONDS        give up after so long without progress (default 60, in the machine's "
     "time)\n"
+    "      --no-estimate             do not ask the planner for the expected time first\n"
     "      --strict                  unknown INI keys are errors\n"
     "  check PROGRAM.ngc --ini MACHINE.ini\n"
     "                                interpret the program and check its moves against the limits, moving "
     "nothing\n"
+    "  format [--check | --in-place] PROGRAM.ngc ...\n"
+    "                                write programs in one form, without a change of meaning\n"
+    "  explain [--before LINES] LINE say in words what a line of G-code does\n"
     "  hal [watch|capture|graph|latency] ...\n"
     "                                look at the running HAL; see millwright hal --help\n"
     "  --help, --version\n"
@@ -55,6 +60,12 @@ int main(int argc, char **argv) {
     }
     if (words[0] == "check") {
         return mw::machine::command_check(rest);
+    }
+    if (words[0] == "format") {
+        return mw::interp::command_format(rest);
+    }
+    if (words[0] == "explain") {
+        return mw::interp::command_explain(rest);
     }
     if (words[0] == "hal") {
         mw::cli::catch_stop_signals();

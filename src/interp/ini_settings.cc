@@ -56,6 +56,35 @@ bool flag_of(const config::IniFile &ini, std::string_view key, diag::Sink &sink)
     return false;
 }
 
+/// [PYTHON], with [EMC]DEBUG and [RS274NGC]LOG_LEVEL, which scripts can ask for.
+void read_scripts(const config::IniFile &ini, Settings &out, diag::Sink &sink) {
+    constexpr std::string_view PYTHON = "PYTHON";
+    ScriptSettings &scripts = out.scripts;
+    if (const config::IniEntry *entry = ini.find(PYTHON, "TOPLEVEL"); entry != nullptr) {
+        scripts.top_level = ini.resolve_path(entry->value);
+        scripts.place = entry->place;
+    }
+    for (const config::IniEntry *entry : ini.find_all(PYTHON, "PATH_PREPEND")) {
+        scripts.path_prepend.push_back(ini.resolve_path(entry->value));
+    }
+    for (const config::IniEntry *entry : ini.find_all(PYTHON, "PATH_APPEND")) {
+        scripts.path_append.push_back(ini.resolve_path(entry->value));
+    }
+    const auto whole = [&](std::string_view section, std::string_view key) {
+        const config::IniEntry *entry = ini.find(section, key);
+        const auto value = entry == nullptr ? std::optional<std::int64_t>(0) : parse_int(entry->value);
+        if (!value) {
+            sink.error(fmt::format("[{}]{} needs a whole number, not '{}'", section, key, entry->value),
+                       entry->place);
+        }
+        return static_cast<int>(value.value_or(0));
+    };
+    scripts.isReloading = whole(PYTHON, "RELOAD_ON_CHANGE") != 0;
+    scripts.log_level = whole(PYTHON, "LOG_LEVEL");
+    out.debug_mask = whole("EMC", "DEBUG");
+    out.logging_level = whole(SECTION, "LOG_LEVEL");
+}
+
 }  // namespace
 
 Settings settings_from_ini(const config::IniFile &ini, diag::Sink &sink) {
@@ -69,8 +98,9 @@ Settings settings_from_ini(const config::IniFile &ini, diag::Sink &sink) {
         out.startup_code = entry->value;
     }
     for (const config::IniEntry *entry : ini.find_all(SECTION, "REMAP")) {
-        out.remaps.push_back(entry->value);
+        out.remaps.emplace_back(entry->value, entry->place);
     }
+    read_scripts(ini, out, sink);
     out.isG92PersistenceDisabled = flag_of(ini, "DISABLE_G92_PERSISTENCE", sink);
     out.isCoordinateSystemKept = flag_of(ini, "KEEP_COORDINATE_SYSTEM", sink);
     out.isFanucSubDisabled = flag_of(ini, "DISABLE_FANUC_STYLE_SUB", sink);

@@ -44,9 +44,16 @@ Result<> Interpreter::begin() {
     if (Result<> loaded = executor.load_remaps(); !loaded) {
         return loaded;
     }
+    if (Result<> loaded = impl_->flow.load_scripts(); !loaded) {
+        return loaded;
+    }
     executor.canon.enter_block(nullptr, 0, 0, false, 0);
     executor.announce();
     executor.synch();
+    executor.canon.flush(impl_->target);
+    if (Result<> begun = impl_->flow.begin_scripts(); !begun) {
+        return begun;
+    }
     executor.canon.on_reset();
     executor.canon.flush(impl_->target);
     if (!impl_->settings.startup_code.empty() && execute(impl_->settings.startup_code) == Step::FAILED) {
@@ -85,6 +92,10 @@ void Interpreter::abort() {
     impl_->flow.abort();
 }
 
+const std::vector<std::string> &Interpreter::warnings() const {
+    return impl_->flow.warnings();
+}
+
 const diag::Diagnostic &Interpreter::error() const {
     return impl_->flow.error();
 }
@@ -107,6 +118,22 @@ int Interpreter::call_level() const {
 
 bool Interpreter::isAtFileEnd() const {
     return impl_->flow.isAtFileEnd();
+}
+
+bool Interpreter::isBudgetSpent() const {
+    return impl_->flow.isBudgetSpent();
+}
+
+FilePlace Interpreter::place_in_file() const {
+    return impl_->flow.place_in_file();
+}
+
+std::string_view Interpreter::subroutine() const {
+    return impl_->flow.subroutine();
+}
+
+std::string Interpreter::line_text(const std::string &file, int line) const {
+    return impl_->flow.line_text(file, line);
 }
 
 double Interpreter::parameter(int number) const {

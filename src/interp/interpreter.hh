@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,14 +14,38 @@
 #include "base/result.hh"
 #include "diag/sink.hh"
 #include "interp/canon.hh"
+#include "interp/program_interpreter.hh"
 #include "interp/world.hh"
 
 namespace mw::interp {
+
+class ScriptHost;
+
+/// Scripts of the machine: [PYTHON].
+struct ScriptSettings {
+    std::string top_level;                  ///< file run first; empty: scripts are not set up
+    std::vector<std::string> path_prepend;  ///< folders searched before all others
+    std::vector<std::string> path_append;   ///< and after them
+    bool isReloading = false;               ///< run the top-level script again when its file has changed
+    int log_level = 0;
+    SourcePlace place;  ///< of the section, for errors
+};
+/// Makes a script host; by default the shared object for Python is opened.
+using MakeScriptHost = std::function<Result<std::unique_ptr<ScriptHost>>()>;
+
+/// One REMAP line as written and where it stands.
+struct RemapLine {
+    RemapLine(std::string line, SourcePlace where = {}) : text(std::move(line)), place(std::move(where)) {}
+    RemapLine(const char *line) : text(line) {}
+    std::string text;
+    SourcePlace place;
+};
 
 struct Settings {
     std::vector<std::string>
         subroutine_path;  ///< [RS274NGC]SUBROUTINE_PATH and [DISPLAY]PROGRAM_PREFIX, in order
     std::vector<std::string> user_m_path;  ///< [RS274NGC]USER_M_PATH and PROGRAM_PREFIX: where M100..M199 are
+    bool isUserCodeAssumed = false;        ///< M100..M199 need no program: for previews elsewhere
     std::string startup_code;              ///< [RS274NGC]RS274NGC_STARTUP_CODE
     bool isG92PersistenceDisabled = false;
     bool isFanucSubDisabled = false;
@@ -33,7 +58,11 @@ struct Settings {
     bool isArgumentCountNamed = false;  ///< [RS274NGC]OWORD_NARGS: #<n_args> in subroutines
     double orient_offset_deg = 0;
     double parameter_g73_peck_clearance_mm = 0.254, parameter_g83_peck_clearance_mm = 0.254;
-    std::vector<std::string> remaps;  ///< [RS274NGC]REMAP lines, as written
+    std::vector<RemapLine> remaps;  ///< [RS274NGC]REMAP
+    ScriptSettings scripts;
+    MakeScriptHost make_script_host;
+    int debug_mask = 0;     ///< [EMC]DEBUG
+    int logging_level = 0;  ///< [RS274NGC]LOG_LEVEL
     std::string ini_folder;
     std::optional<LengthUnits> initial_units;  ///< G20 or G21 at the start; the machine's when not given
     /// Statements per step() and in all; 0: without bound. A bound makes check runs of endless loops end in
@@ -41,60 +70,52 @@ struct Settings {
     std::uint64_t statement_budget = 0;
 };
 
-enum class Step {
-    OK,           ///< one block done; call again
-    SYNC,         ///< the caller must let queued work finish, then call synch() and step() again
-    PROGRAM_END,  ///< M2 or M30
-    FILE_END,     ///< the closing % or the end of the file
-    FAILED,       ///< see error(); the block changed nothing
+/// How far the main program has been read.
+struct FilePlace {
+    std::uint64_t bytes = 0, bytes_in_all = 0;
 };
 
-/// The codes in force, in the shapes that status displays rely on (facts.md).
-struct ActiveCodes {
-    std::array<int, 17> g{};  ///< [0] sequence number, then ten times the code, -1 none
-    std::array<int, 10> m{};
-    std::array<double, 5> settings{};  ///< sequence, feed, speed, G64 P, G64 Q
-};
-
-class Interpreter {
+/// The interpreter of RS-274/NGC.
+class Interpreter final : public ProgramInterpreter {
   public:
     /// All references must outlive the interpreter.
     Interpreter(Canon &canon, World &world, ToolSource &tools, ParameterSource &parameters,
                 Settings settings);
-    ~Interpreter();
+    ~Interpreter() override;
 
-    /// Reads the parameter file (RS274NGC_VAR); a missing file is an empty one. Errors name line and column.
-    Result<> load_parameters(const std::string &path);
-    /// Writes it atomically; keeps the numbers that the file had and those that must be there.
-    Result<> save_parameters(const std::string &path) const;
+    Result<> load_parameters(const std::string &path) override;
+    Result<> save_parameters(const std::string &path) const override;
 
-    /// Announces offsets, units and modes to the canon and runs the start-up code.
-    Result<> begin();
-    /// Reads and parses a whole file. Syntax errors outside executed blocks are reported when they are
-    /// reached.
-    Result<> open(const std::string &path);
+    /// Loads scripts, announces offsets, units and modes to the canon and runs the start-up code.
+    Result<> begin() override;
+    /// Syntax errors outside executed blocks are reported when they are reached.
+    Result<> open(const std::string &path) override;
     /// The same for a program in memory; `name` stands for its file in messages.
     void open_text(const std::string &name, std::string text);
-    void close();
+    void close() override;
 
-    /// Executes the next block of the open file. [task]
-    Step step();
-    /// Executes one line of MDI; subroutine calls in it go on with step() until FILE_END.
-    Step execute(std::string_view line);
-    /// Takes the machine's state as the current one (after a stop, a probe, a tool change). [task]
-    void synch();
-    /// Back to the top level after an abort: drops calls and loops, keeps modes.
-    void abort();
+    Step step() override;
+    Step execute(std::string_view line) override;
+    void synch() override;
+    /// Warnings of begin(): names that scripts redefine.
+    const std::vector<std::string> &warnings() const override;
+    /// Drops calls and loops, keeps modes; suspended scripts end.
+    void abort() override;
 
-    /// The last failure: message, file:line:column, the block's text, the callers.
-    const diag::Diagnostic &error() const;
-    ActiveCodes active_codes() const;
-    int line() const;  ///< of the block last read, in file()
-    const std::string &file() const;
-    int call_level() const;
-    /// No line of the open file is left.
-    bool isAtFileEnd() const;
-    double parameter(int number) const;
+    const diag::Diagnostic &error() const override;
+    ActiveCodes active_codes() const override;
+    int line() const override;
+    const std::string &file() const override;
+    int call_level() const override;
+    bool isAtFileEnd() const override;
+    /// The statement budget is used up: no more statement will run.
+    bool isBudgetSpent() const;
+    FilePlace place_in_file() const;
+    /// The subroutine that runs, without brackets; empty in the main program.
+    std::string_view subroutine() const;
+    /// A line of a file that the interpreter has read, empty when it has not.
+    std::string line_text(const std::string &file, int line) const;
+    double parameter(int number) const override;
 
   private:
     struct Impl;

@@ -34,6 +34,7 @@ class Standalone : public World, public ToolSource, public ParameterSource {
     int count_spindles() const override { return spindles; }
     bool isBlockDeleteOn() const override { return isBlockDelete; }
     bool isOptionalStopOn() const override { return false; }
+    bool isSynchedAtOnce() const override { return true; }
 
     int count() const override { return table.count(); }
     ToolEntry entry(int index) const override { return table.entry(index); }

@@ -45,6 +45,8 @@ class World {
     virtual int count_spindles() const = 0;
     virtual bool isBlockDeleteOn() const = 0;
     virtual bool isOptionalStopOn() const = 0;
+    /// Waiting points cost no time: nothing moves (printing, checking). Scripts then go on at once.
+    virtual bool isSynchedAtOnce() const { return false; }
 };
 
 /// The tool table as the interpreter sees it. Entry 0 is the tool in the spindle. One owner: io (or the

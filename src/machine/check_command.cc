@@ -9,6 +9,7 @@
 #include "machine/loaded_config.hh"
 #include "machine/options.hh"
 #include "machine/program_check.hh"
+#include "machine/time_report.hh"
 #include "machine/tool_file.hh"
 
 namespace mw::machine {
@@ -24,27 +25,6 @@ void print_result(const std::string &program, const MachineConfig &machine, cons
             fmt::print("  {} from {:.4f} to {:.4f} {}\n", geom::AXIS_LETTERS[axis], result.lowest[i],
                        result.highest[i], geom::isAngular(axis) ? "deg" : unit);
         }
-    }
-}
-
-std::string time_text(double seconds) {
-    const int minutes = static_cast<int>(seconds / 60);
-    return minutes > 0 ? fmt::format("{} min {:.1f} s", minutes, seconds - 60.0 * minutes)
-                       : fmt::format("{:.3f} s", seconds);
-}
-
-void print_times(const TimeFigures &time) {
-    fmt::print("  time {}: cutting {}, rapid {}, dwell {}\n", time_text(time.total_s),
-               time_text(time.cutting_s), time_text(time.rapid_s), time_text(time.dwell_s));
-    if (!time.isComplete) {
-        fmt::print("  the time lacks moves that the planner could not drive: please report this program\n");
-    }
-    for (const auto &[tool, seconds] : time.by_tool) {
-        fmt::print("  tool {}: {}\n", tool, time_text(seconds));
-    }
-    for (const SlowPlace &place : time.slowest) {
-        fmt::print("  {}:{}: {} more than at its feed, bound by {}\n", place.file, place.line,
-                   time_text(place.lost_s), place.limit);
     }
 }
 

@@ -4,10 +4,11 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "diag/sink.hh"
-#include "interp/world.hh"
+#include "interp/preview.hh"
 #include "machine/machine_config.hh"
 #include "machine/time_estimate.hh"
 
@@ -23,9 +24,10 @@ struct CheckResult {
 
 /// Runs the interpreter over the whole program. Errors (syntax, limits, endless loops) go to `sink` with
 /// their places; at most `MAX_CHECK_ERRORS` of them. Tool table and parameter file are read and never
-/// written.
+/// written. `progress` may be empty; when it answers false the check ends with what it has.
 CheckResult check_program(const MachineConfig &machine, const std::string &program, interp::ToolSource &tools,
-                          interp::ParameterSource &parameters, diag::Sink &sink);
+                          interp::ParameterSource &parameters, diag::Sink &sink,
+                          const std::function<bool(const interp::PreviewProgress &)> &progress = {});
 
 inline constexpr int MAX_CHECK_ERRORS = 20;
 

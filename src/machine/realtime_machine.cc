@@ -6,6 +6,7 @@
 #include <cerrno>
 
 #include "hal/host/host_client.hh"
+#include "hal/lang/programs.hh"
 #include "machine/machine.hh"
 #include "machine/task_side.hh"
 
@@ -27,6 +28,8 @@ class RealtimeMachine final : public Machine {
     ~RealtimeMachine() override {
         side_.reset();
         if (host_ != nullptr) {
+            // Programs of loadusr live on the HAL of this machine: they end with it.
+            static_cast<void>(hal::lang::SystemProgramHost(host_->hal()).stop_all());
             static_cast<void>(host_->shut_down());
         }
     }

@@ -9,12 +9,16 @@
 
 #include "base/text.hh"
 #include "machine/commands.hh"
+#include "machine/ini_parameters.hh"
 #include "machine/loaded_config.hh"
 #include "machine/machine.hh"
 #include "machine/operator.hh"
 #include "machine/options.hh"
 #include "machine/plot.hh"
+#include "machine/program_check.hh"
 #include "machine/summary.hh"
+#include "machine/time_report.hh"
+#include "machine/tool_file.hh"
 #include "machine/trace_writer.hh"
 
 namespace mw::machine {
@@ -24,13 +28,13 @@ constexpr double DEFAULT_PATIENCE_S = 60.0;
 
 struct RunWords {
     std::string ini, program, trace, plot;
-    bool isRealtime = false, isStrict = false;
+    bool isRealtime = false, isStrict = false, isEstimated = true;
     double patience_s = DEFAULT_PATIENCE_S;
 };
 
 Result<RunWords> parse_run(const std::vector<std::string> &words) {
-    const auto options =
-        parse_options(words, {{"--realtime", "--strict"}, {"--trace", "--plot", "--patience"}});
+    const auto options = parse_options(
+        words, {{"--realtime", "--strict", "--no-estimate"}, {"--trace", "--plot", "--patience"}});
     if (!options.has_value()) {
         return std::unexpected(options.error());
     }
@@ -41,6 +45,7 @@ Result<RunWords> parse_run(const std::vector<std::string> &words) {
     RunWords run{options->rest[0], options->rest[1], options->value("--trace"), options->value("--plot")};
     run.isRealtime = options->has("--realtime");
     run.isStrict = options->has("--strict");
+    run.isEstimated = !options->has("--no-estimate");
     const auto patience = parse_double(options->value("--patience", to_text(DEFAULT_PATIENCE_S)));
     if (!patience.has_value() || *patience <= 0) {
         return fail("--patience needs a number of seconds above 0");
@@ -115,6 +120,18 @@ Result<> run_program(const RunWords &words, LoadedConfig &loaded, Operator &pers
     return status.has_value() ? finished : status;
 }
 
+/// The time that the planner expects. Nothing when the program has errors: running it tells them.
+std::optional<TimeFigures> estimate(const RunWords &words, LoadedConfig &loaded) {
+    auto tools = ToolFile::load(loaded.machine.tool_table_file);
+    if (!words.isEstimated || !tools.has_value()) {
+        return std::nullopt;
+    }
+    diag::Sink silent;
+    IniParameters values(loaded.ini, nullptr);
+    const CheckResult result = check_program(loaded.machine, words.program, **tools, values, silent);
+    return silent.hasErrors() ? std::nullopt : std::optional(result.time);
+}
+
 /// A failure with no message has been told already, where it happened.
 void report(diag::Sink &sink, const Error &error) {
     if (!error.message.empty()) {
@@ -147,6 +164,7 @@ int command_run(const std::vector<std::string> &arguments) {
         report(sink, machine.error());
         return 1;
     }
+    const std::optional<TimeFigures> expected = estimate(*words, *loaded);
     Operator person(**machine, loaded->machine, sink, words->patience_s);
     Recorder recorder(**machine, loaded->machine);
     auto status = run_program(*words, *loaded, person, recorder);
@@ -160,6 +178,10 @@ int command_run(const std::vector<std::string> &arguments) {
     }
     print_summary({words->program, loaded->machine, person.figures(), recorder.monitor().figures(),
                    (*machine)->realtime_figures(), words->isRealtime});
+    if (expected.has_value()) {
+        fmt::print("expected by the planner\n");
+        print_times(*expected);
+    }
     if (!words->plot.empty()) {
         const auto drawn =
             plot_path(recorder.monitor().points(), words->program + " on " + loaded->machine.name,

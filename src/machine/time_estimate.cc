@@ -86,13 +86,22 @@ void TimeEstimate::start(const geom::Pose &position) {
     estimator_->begin(position);
 }
 
-void TimeEstimate::set_place(const std::string &file, int line) {
+void TimeEstimate::set_place(const std::string &file, int line, const std::string &section) {
     line_ = line;
     if (files_.empty() || files_[file_] != file) {
         const auto found = std::find(files_.begin(), files_.end(), file);
         file_ = static_cast<std::uint32_t>(found - files_.begin());
         if (found == files_.end()) {
             files_.push_back(file);
+        }
+    }
+    auto &sections = figures_.by_section;
+    if (sections.empty() || sections[section_].first != section) {
+        const auto found =
+            std::find_if(sections.begin(), sections.end(), [&](const auto &s) { return s.first == section; });
+        section_ = static_cast<std::size_t>(found - sections.begin());
+        if (found == sections.end()) {
+            sections.emplace_back(section, 0.0);
         }
     }
 }
@@ -102,6 +111,7 @@ traj::MoveRequest TimeEstimate::request_of(const interp::MoveSettings &settings)
     r.tag.requested_velocity = settings.feed;
     r.tag.line = line_;
     r.tag.file_index = file_;
+    r.tag.block = static_cast<std::uint32_t>(section_);
     r.isRapid = settings.kind == interp::FeedKind::RAPID || !(settings.feed > 0);
     r.tolerance = settings.tolerance;
     r.join = settings.control == interp::MotionControl::EXACT_STOP   ? traj::Join::STOP
@@ -128,6 +138,9 @@ void TimeEstimate::dwell(double seconds) {
     stop();
     figures_.dwell_s += seconds;
     figures_.by_tool[tool_] += seconds;
+    if (section_ < figures_.by_section.size()) {
+        figures_.by_section[section_].second += seconds;
+    }
 }
 
 void TimeEstimate::stop() {
@@ -143,6 +156,9 @@ void TimeEstimate::set_tool(int tool) {
 void TimeEstimate::take(const traj::MoveEstimate &move) {
     (move.tag.requested_velocity > 0 ? figures_.cutting_s : figures_.rapid_s) += move.seconds;
     figures_.by_tool[tool_] += move.seconds;
+    if (move.tag.block < figures_.by_section.size()) {
+        figures_.by_section[move.tag.block].second += move.seconds;
+    }
     const double lost = move.seconds - move.seconds_at_feed;
     if (move.binding == traj::Binding::FEED || !(move.seconds_at_feed > 0) || !(lost > 0)) {
         return;

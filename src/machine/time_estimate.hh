@@ -24,7 +24,8 @@ struct TimeFigures {
     double total_s = 0, cutting_s = 0, rapid_s = 0, dwell_s = 0;
     bool isComplete = true;  ///< false: the planner could not drive all of it
     std::map<int, double> by_tool;
-    std::vector<SlowPlace> slowest;  ///< at most SLOW_PLACES, the worst first
+    std::vector<std::pair<std::string, double>> by_section;  ///< in the order in which they begin
+    std::vector<SlowPlace> slowest;                          ///< at most SLOW_PLACES, the worst first
 };
 inline constexpr std::size_t SLOW_PLACES = 5;
 
@@ -37,7 +38,8 @@ class TimeEstimate {
     explicit TimeEstimate(const MachineConfig &machine);
 
     void start(const geom::Pose &position);
-    void set_place(const std::string &file, int line);
+    /// `section` as Preview::section names it.
+    void set_place(const std::string &file, int line, const std::string &section);
     void line(const geom::Pose &end, const interp::MoveSettings &settings);
     void arc(const interp::ArcMove &move);
     void dwell(double seconds);
@@ -55,6 +57,7 @@ class TimeEstimate {
     int tool_ = 0;
     std::vector<std::string> files_;
     std::uint32_t file_ = 0;
+    std::size_t section_ = 0;
     int line_ = 0;
     geom::Pose position_;
     std::unique_ptr<traj::Estimator> estimator_;

@@ -37,6 +37,7 @@ struct Settings {
     bool isHomingForced = true;  ///< programs and MDI need all joints homed
     std::string parameter_file;  ///< empty: parameters live in memory only
     interp::Settings interpreter;
+    std::string interpreter_plugin;  ///< [TASK]INTERPRETER: a shared object; empty: RS-274/NGC
     SequencerSettings sequencer;
     ToolChangePlace tool_change_place;
     /// A program of a user M code is waited for within a cycle: for virtual clocks.
@@ -141,7 +142,7 @@ class Task final : public interp::World {
     ItemQueue queue_;
     TaskCanon canon_;
     interp::MachineFrame frame_;
-    interp::Interpreter interp_;
+    std::unique_ptr<interp::ProgramInterpreter> interp_;
     UserProgram user_program_;
     Sequencer sequencer_;
 

@@ -4,6 +4,7 @@
 
 usage: hal_files.py MILLWRIGHT SOURCE_FOLDER [tcl]    tcl: the Tcl part has been built
 """
+import os
 import pathlib
 import shutil
 import subprocess
@@ -25,6 +26,7 @@ FILES = {
                   'if {[hal --pass] == 0} { return }\n'
                   'if {[getp n2.difference] != 6} { error "difference is [getp n2.difference]" }\n'
                   'puts "script has run"\n',
+    'program.hal': 'loadrt sampler depth=100 cfg=f\nsetp sampler.0.enable 0\nloadusr halsampler samples.txt\n',
     'broken.tcl': 'set x 1\nsetp joint.0.nosuch 1\n',
 }
 
@@ -42,12 +44,14 @@ def main():
         (machine / 'part.ngc').write_text(PROGRAM)
         plain = (machine / 'mill_mm.ini').read_text()
 
-        def run(what, hal_lines, status, texts, two_pass=''):
+        def run(what, hal_lines, status, texts, two_pass='', mode=()):
             ini = machine / 'case.ini'
             ini.write_text(plain.replace('[HAL]\n', '[HAL]\n' + two_pass).replace(
                 'HALFILE = spindle_sim.hal\n', 'HALFILE = spindle_sim.hal\n' + hal_lines))
-            done = subprocess.run([millwright, 'run', str(ini), str(machine / 'part.ngc')], capture_output=True,
-                                  text=True, check=False, timeout=120)
+            # Until the end of its output: a program of loadusr that is left running would hold that open.
+            done = subprocess.run([millwright, 'run', str(ini), str(machine / 'part.ngc'), *mode], capture_output=True,
+                                  env=dict(os.environ, MILLWRIGHT_INSTANCE=f'hal-files-{os.getpid()}'), cwd=folder,
+                                  text=True, check=False, timeout=60)
             said = done.stdout + done.stderr
             missing = [text for text in texts if text not in said]
             if (done.returncode == 0) != (status == 0) or missing:
@@ -59,12 +63,13 @@ def main():
             ['twice.hal:1:12', "has the name 'extra' twice", 'more.hal:1:12'], 'TWOPASS = on\n')
         run('an error in the second pass', 'HALFILE = wrong.hal\n', 1,
             ['wrong.hal:2:13', "did you mean 'more.out'?"], 'TWOPASS = on\n')
+        run('programs end with the machine', 'HALFILE = program.hal\n', 0, ['cycle time'], mode=['--realtime'])
         if has_tcl:
             run('Tcl', 'HALFILE = script.tcl 3\n', 0, ['script has run', 'cycle time'], 'TWOPASS = on\n')
             run('an error in Tcl', 'HALFILE = broken.tcl\n', 1, ['broken.tcl:2', "'joint.0.nosuch' does not exist"])
     for failure in failures:
         print('FAILED', failure)
-    print(f'{6 if has_tcl else 4} cases, {len(failures)} failed')
+    print(f'{7 if has_tcl else 5} cases, {len(failures)} failed')
     return 1 if failures else 0
 
 

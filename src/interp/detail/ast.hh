@@ -78,6 +78,7 @@ struct Setting {
 /// A comment's text lies in the line at [begin, end), counted from 0.
 struct Comment {
     std::uint32_t begin = 0, end = 0;
+    bool isScript = false;  ///< the statements of a line that begins with ;py,
 };
 
 enum class OKind : std::uint8_t {

@@ -77,6 +77,10 @@ bool Evaluator::value(const Arena &arena, NodeId id, double &out) const {
     case NodeKind::PARAMETER: return parameter(arena, node, out);
     case NodeKind::NAMED: {
         const std::optional<double> found = named(node.a);
+        if (!found && !fault_.message.empty()) {
+            fault_.column = node.column;  // a script that gives the value has failed
+            return false;
+        }
         if (!found) {
             return fault_.set(fmt::format("Named parameter #<{}> not defined", names_.text(node.a)),
                               node.column);

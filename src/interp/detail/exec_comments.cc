@@ -145,6 +145,14 @@ std::string Executor::substituted(std::string_view text) const {
 bool Executor::run_comments(const BlockView &view, std::string_view line_text) {
     const Comment &last = view.arena->comments[view.block->first_comment + view.block->comment_count - 1u];
     const std::string_view comment = line_text.substr(last.begin, last.end - last.begin);
+    if (last.isScript) {
+        script_text_ = comment;
+        outcome = Outcome::SCRIPT;
+        return true;
+    }
+    if (!remaps_.empty()) {
+        comment_ = comment;
+    }
     const Active active = split_comment(comment);
     if (active.keyword.empty()) {
         const std::size_t begin = comment.find_first_not_of(" \t");

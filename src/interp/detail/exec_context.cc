@@ -34,13 +34,22 @@ bool Executor::pop_call(bool isFanuc) {
     return !(context.isValid && context.isAutomatic) || restore_context(context.saved);
 }
 
-void Executor::drop_calls() {
-    while (contexts_.size() > 1) {
+void Executor::drop_calls(std::size_t depth) {
+    while (contexts_.size() > depth + 1) {
+        if (contexts_.back().isRemap && !running_remaps_.empty()) {
+            running_remaps_.pop_back();
+        }
         contexts_.pop_back();
         parameters.pop_call(false);
     }
-    running_remaps_.clear();
-    lathe_.reset();
+    if (depth == 0) {
+        lathe_.reset();
+    }
+}
+
+int Executor::context_status(std::size_t level) const {
+    const Context &context = contexts_[level];
+    return (context.isValid ? 1 : 0) | (context.isAutomatic ? 2 : 0);
 }
 
 bool Executor::do_context(const Code &code, const BlockValues &) {

@@ -118,7 +118,7 @@ bool Executor::do_wait_input(const Code &, const BlockValues &values) {
 
 /// M100 to M199: a program of that name in one of the folders for them.
 bool Executor::do_user(const Code &code, const BlockValues &values) {
-    if (!find_user_program(settings_, code.number).empty()) {
+    if (settings_.isUserCodeAssumed || !find_user_program(settings_, code.number).empty()) {
         constexpr double NOT_GIVEN = -1.0;
         canon.user_m_code(code.number, values.at('p', NOT_GIVEN), values.at('q', NOT_GIVEN));
         return true;

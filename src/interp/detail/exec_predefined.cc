@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Parameters that the interpreter keeps: #<_name> and #5400 to #5428.
+#include <algorithm>
 #include <array>
 
 #include "base/text.hh"
@@ -104,11 +105,32 @@ bool isHalName(std::string_view name) {
 
 }  // namespace
 
+std::vector<std::string> Executor::predefined_names() {
+    std::vector<std::string> out;
+    for (const Row &row : ROWS) {
+        out.emplace_back(row.name);
+    }
+    for (const char axis : std::string_view(geom::AXIS_LETTERS_LOWER, AXES_OF_POSE)) {
+        out.push_back(std::string("_") + axis);
+        if (axis < 'u' || axis > 'w') {
+            out.push_back(std::string("_abs_") + axis);
+        }
+    }
+    std::ranges::sort(out);
+    return out;
+}
+
 bool Executor::isBuiltInName(std::string_view name) const {
+    if (script_names_ != nullptr && script_names_->hasName(name)) {
+        return true;
+    }
     return isIniName(name) || isHalName(name) || position_index(name) >= 0 || find_row(name) != nullptr;
 }
 
 std::optional<double> Executor::built_in(std::string_view name) const {
+    if (script_names_ != nullptr && script_names_->hasName(name)) {
+        return script_names_->value_of(name);
+    }
     if (isIniName(name)) {
         const std::size_t close = name.find(']');
         if (close == std::string_view::npos) {

@@ -17,8 +17,8 @@ constexpr double MM_PER_INCH = 25.4;
 
 Executor::Executor(World &world, ToolSource &tools, ParameterSource &source, const Settings &settings,
                    Names &names)
-    : world_(world), tools_(tools), source_(source), settings_(settings), names_(names),
-      evaluator_(parameters, names, *this, fault) {}
+    : debug_mask(settings.debug_mask), logging_level(settings.logging_level), world_(world), tools_(tools),
+      source_(source), settings_(settings), names_(names), evaluator_(parameters, names, *this, fault) {}
 
 std::string Executor::code_name(const Code &code) const {
     if (code.letter == 'g') {
@@ -41,6 +41,8 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
     if (!evaluate(view, values) || !apply_settings(view)) {
         return false;
     }
+    comment_.clear();
+    block_number_ = view.block->isNumbered ? view.block->sequence : -1;
     if (lathe_) {
         return record_profile(values);
     }
@@ -65,6 +67,9 @@ bool Executor::run_codes(const BlockValues &values, std::size_t first) {
                 fault.column = active.column;
             }
             return false;
+        }
+        if (!running_remaps_.empty()) {
+            count_builtin(*active.code);
         }
     }
     return true;
@@ -109,6 +114,11 @@ bool Executor::add_code(char letter_char, double number, std::uint32_t column, B
     }
     const int whole = static_cast<int>(rounded);
     const Code *code = lookup(letter_char, whole);
+    if (code == nullptr && !running_remaps_.empty()) {
+        if (std::string recursion = recursion_text(letter_char, whole); !recursion.empty()) {
+            return fault.set(std::move(recursion), column);
+        }
+    }
     if (code == nullptr && letter_char == 'm' && whole > 199) {
         return fault.set(fmt::format("M-code greater than 199: M{}", whole), column);
     }

@@ -47,7 +47,16 @@ struct ThreadPlan {
     bool hasEntryTaper = false, hasExitTaper = false;
 };
 
-enum class Outcome { OK, SYNC, PROGRAM_END, CALL_FANUC, RETURN_FANUC, REMAP, RESTART, PROFILE };
+enum class Outcome { OK, SYNC, PROGRAM_END, CALL_FANUC, RETURN_FANUC, REMAP, RESTART, SCRIPT, PROFILE };
+
+/// Values of named parameters that scripts define.
+class ScriptNames {
+  public:
+    virtual ~ScriptNames() = default;
+    virtual bool hasName(std::string_view name) const = 0;
+    /// Nothing after setting the fault.
+    virtual std::optional<double> value_of(std::string_view name) = 0;
+};
 
 class Executor : public BuiltIns {
   public:
@@ -65,7 +74,7 @@ class Executor : public BuiltIns {
     Outcome outcome = Outcome::OK;
 
     Evaluator &evaluator() { return evaluator_; }
-    World &world() { return world_; }
+    World &world() const { return world_; }
     const Settings &settings() const { return settings_; }
 
     /// Remembers state and queue, so that rollback() can undo the block; commit() keeps what it did.
@@ -80,16 +89,43 @@ class Executor : public BuiltIns {
 
     // exec_remap.cc
     Result<> load_remaps();
+    const std::vector<Remap> &remaps() const { return remaps_; }
     const Remap *remap_reached() const { return remap_; }
     bool check_remap_words(std::string &missing) const;
     PendingBlock take_pending();
-    void set_remap_arguments(const Remap &remap, const BlockValues &values);
+    void set_remap_arguments(const Remap &remap, const PendingBlock &pending);
     bool resume(const PendingBlock &pending);
+    /// How often the procedure of the `level`-th running remap (from 1) has used its code's own meaning.
+    int builtin_uses(int level) const {
+        return running_remaps_[static_cast<std::size_t>(level) - 1].builtins;
+    }
+    void set_script_names(ScriptNames *names) { script_names_ = names; }
+    /// The statements of the ;py, line that the outcome is about.
+    const std::string &script_text() const { return script_text_; }
+    // exec_attributes.cc: the state by the names that scripts use.
+    std::optional<ScriptValue> attribute(std::string_view name) const;
+    Result<> set_attribute(std::string_view name, const ScriptValue &value);
+    static std::vector<std::string_view> attribute_names();
+    /// The entry of a table as this program has changed it; number of its entries; the place of a tool or -1.
+    ToolEntry table_entry(int index) const { return tool_entry(index); }
+    ToolSource &tools() const { return tools_; }
+    /// The tool at state.tool_index is in the spindle.
+    void load_indexed_tool();
+    void set_tool_offset(const Pose &offset);
+    /// The next synch() takes the results of an input or a probe.
+    void expect_input(bool isExpected) { isWaitingInput_ = isExpected; }
+    void expect_probe(bool isExpected) { isProbing_ = isExpected; }
+    bool isInputExpected() const { return isWaitingInput_; }
+    bool isProbeExpected() const { return isProbing_; }
+    int plane_number() const;
+    int debug_mask = 0, logging_level = 0;  ///< for scripts
+    bool isToolChanged = false;             ///< a script has changed the tool: a waiting point is due
     // exec_lathe.cc
     /// The cycle whose profile the blocks to come give; null outside of one.
     const LatheRequest *lathe_request() const { return lathe_ ? &*lathe_ : nullptr; }
     /// The profile is complete: cuts it.
     bool finish_lathe_cycle();
+    void drop_lathe_cycle() { lathe_.reset(); }
     int fanuc_label = 0, fanuc_count = 1;  ///< of the M98 that the outcome is about
 
     /// Announces the state to the canon, as at the start of a program.
@@ -104,16 +140,22 @@ class Executor : public BuiltIns {
     /// the modes that M73 saved.
     void push_call(bool isRemap);
     bool pop_call(bool isFanuc);
-    void drop_calls();
+    /// Back to `depth` calls, without restoring what M73 saved.
+    void drop_calls(std::size_t depth = 0);
+    /// Modes saved at a level of call: bit 0 of the status: saved; bit 1: restored at the return.
+    int context_status(std::size_t level) const;
 
     int line() const { return line_; }
     int call_level() const { return call_level_; }
     int remap_level() const { return static_cast<int>(running_remaps_.size()); }
+    int sequence() const { return sequence_; }
     double returned_value() const { return returned_; }
     bool isValueReturned() const { return isReturned_; }
     int plane_code() const;
     int coordinate_system_code() const;
 
+    /// Names of the parameters that the interpreter keeps, sorted.
+    static std::vector<std::string> predefined_names();
     bool isBuiltInName(std::string_view name) const override;
     std::optional<double> built_in(std::string_view name) const override;
     double built_in(int number) const override;
@@ -276,10 +318,20 @@ class Executor : public BuiltIns {
     std::map<int, ToolEntry> tool_pending_;  ///< of the block that runs
     int line_ = 0, call_level_ = 0;
     int sequence_ = 0;
+    int block_number_ = -1;  ///< the N word of the block
     std::vector<Context> contexts_{1};
     std::vector<Remap> remaps_;
-    std::vector<const Remap *> running_remaps_;
-    const Remap *remap_ = nullptr;  ///< the one that the block has come to
+    struct RunningRemap {
+        const Remap *remap = nullptr;
+        int builtins = 0;
+    };
+    bool isRunning(const Remap &remap) const;
+    std::string recursion_text(char letter_char, int number) const;
+    void count_builtin(const Code &code);
+    std::vector<RunningRemap> running_remaps_;
+    ScriptNames *script_names_ = nullptr;
+    std::string script_text_, comment_;  ///< of the block
+    const Remap *remap_ = nullptr;       ///< the one that the block has come to
     std::optional<PendingBlock> pending_;
     State before_;  ///< as the block found it
     std::vector<NurbsPoint> control_points_;

@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "interp/detail/flow.hh"
 
+#include <algorithm>
+#include <iterator>
+
 #include <fmt/format.h>
 
-#include "base/atomic_file.hh"
+#include "interp/detail/script_view.hh"
 
 namespace mw::interp::detail {
 
 Flow::Flow(Executor &executor, Names &names, Canon &target, const Settings &settings)
-    : executor_(executor), names_(names), target_(target), settings_(settings) {}
+    : executor_(executor), names_(names), target_(target), settings_(settings),
+      view_(std::make_unique<ScriptView>(*this)) {}
+
+Flow::~Flow() {
+    end_scripts();
+}
 
 const std::string &Flow::file() const {
     static const std::string NO_FILE;
@@ -16,11 +24,14 @@ const std::string &Flow::file() const {
 }
 
 Result<> Flow::open(const std::string &path) {
-    Result<std::string> text = read_file(path);
-    if (!text) {
-        return std::unexpected(text.error());
+    Result<std::unique_ptr<Program>> loaded = Program::load(path, names_);
+    if (!loaded) {
+        return std::unexpected(loaded.error());
     }
-    open_text(path, std::move(*text));
+    close();
+    std::unique_ptr<Program> &program = programs_[path];
+    program = std::move(*loaded);
+    program_ = program.get();
     return {};
 }
 
@@ -39,13 +50,53 @@ void Flow::close() {
     statements_ = 0;
 }
 
-/// Drops all calls without running what they would restore.
-void Flow::unwind() {
-    if (!calls_.empty()) {
-        program_ = calls_.front().program;
-        next_ = calls_.front().line + 1;
-        executor_.drop_calls();
-        calls_.clear();
+FilePlace Flow::place_in_file() const {
+    const Program *const main = calls_.empty() ? program_ : calls_.front().program;
+    if (main == nullptr) {
+        return {};
+    }
+    const ProgramText &text = main->text();
+    return {text.place_of(calls_.empty() ? next_ : calls_.front().line), text.count_bytes()};
+}
+
+std::string_view Flow::subroutine() const {
+    for (auto call = calls_.rbegin(); call != calls_.rend(); ++call) {
+        if (call->label != NO_ID) {
+            return names_.text(call->label);
+        }
+    }
+    return {};
+}
+
+std::string Flow::line_text(const std::string &file, int line) const {
+    const auto found = programs_.find(file);
+    const bool isThere = found != programs_.end() && line >= 1 && line <= found->second->count_lines();
+    return isThere ? std::string(found->second->line_text(line)) : std::string();
+}
+
+/// Drops calls without running what they would restore.
+void Flow::unwind(std::size_t depth) {
+    if (calls_.size() > depth) {
+        Call &outermost = calls_[depth];
+        program_ = outermost.program;
+        next_ = outermost.kind == CallKind::TEXT ? outermost.next : outermost.line + 1;
+        repeats_ = std::move(outermost.repeats);
+        std::vector<Call> dropped(
+            std::make_move_iterator(calls_.begin() + static_cast<std::ptrdiff_t>(depth)),
+            std::make_move_iterator(calls_.end()));
+        calls_.erase(calls_.begin() + static_cast<std::ptrdiff_t>(depth), calls_.end());
+        text_levels_ = static_cast<int>(
+            std::ranges::count(calls_, CallKind::TEXT, [](const Call &call) { return call.kind; }));
+        executor_.drop_calls(static_cast<std::size_t>(call_level()));
+        if (std::ranges::none_of(calls_, [](const Call &call) { return call.kind == CallKind::PROFILE; })) {
+            executor_.drop_lathe_cycle();
+        }
+        while (!dropped.empty()) {
+            dropped.pop_back();  // the innermost script ends first
+        }
+    }
+    if (depth > 0) {
+        return;
     }
     repeats_.clear();
     if (isMdi_) {
@@ -55,13 +106,24 @@ void Flow::unwind() {
     }
 }
 
+std::string Flow::call_name(const Call &call) const {
+    return call.label == NO_ID ? std::string("the block of a script") : names_.text(call.label);
+}
+
 void Flow::abort() {
     unwind();
     executor_.canon.truncate(0);
     executor_.abort_block();
+    isSyncDue_ = isEndDue_ = false;
 }
 
 Step Flow::step() {
+    if (script_depth_ == 0) {
+        isSyncDue_ = false;
+    }
+    if (!calls_.empty() && calls_.back().isInScript()) {
+        return go_on_with_script();
+    }
     if (program_ == nullptr) {
         return Step::FILE_END;
     }
@@ -108,11 +170,14 @@ Step Flow::fail_here(std::string message) {
 }
 
 Step Flow::end_of_lines() {
+    if (!calls_.empty() && calls_.back().kind == CallKind::TEXT) {
+        end_text();
+        return Step::OK;
+    }
     if (!calls_.empty()) {
-        const Call &call = calls_.back();
         line_read_ = program_->count_lines();
         return fail_here(
-            fmt::format("The file ends in subroutine o<{}> without its end", names_.text(call.label)));
+            fmt::format("The file ends in subroutine o<{}> without its end", call_name(calls_.back())));
     }
     if (isMdi_) {
         return finish_mdi();
@@ -127,8 +192,8 @@ Step Flow::percent() {
         return Step::OK;
     }
     if (!calls_.empty()) {
-        return fail_here(fmt::format("The file ends in subroutine o<{}> without its end",
-                                     names_.text(calls_.back().label)));
+        return fail_here(
+            fmt::format("The file ends in subroutine o<{}> without its end", call_name(calls_.back())));
     }
     if (executor_.state.nurbs_order != 0) {
         return fail_here("The file ends inside of a NURBS: G5.3 ends it");
@@ -161,7 +226,8 @@ Step Flow::run_block(const BlockView &view) {
     executor_.fault = {};
     error_line_ = 0;
     const int sequence = block.isNumbered ? block.sequence : line_read_;
-    executor_.set_place(line_read_, sequence, call_level());
+    const bool isText = !calls_.empty() && calls_.back().kind == CallKind::TEXT;
+    executor_.set_place(isText ? calls_.back().reported_line : line_read_, sequence, call_level());
     if (block.error != NO_ID) {
         const SyntaxError &error = view.arena->errors[block.error];
         executor_.fault.set(error.message, error.column);
@@ -178,15 +244,24 @@ Step Flow::run_block(const BlockView &view) {
 Step Flow::after_block() {
     bool isDone = true;
     while (isDone) {
-        const Outcome outcome = executor_.outcome;
-        executor_.outcome = Outcome::OK;
-        if (outcome != Outcome::CALL_FANUC && outcome != Outcome::PROFILE) {
+        if (const Outcome next = executor_.outcome; next != Outcome::CALL_FANUC && next != Outcome::PROFILE) {
             commit();  // those two may still fail
         }
+        if (isEndDue_ && script_depth_ == 0) {  // a script has ended the program
+            isEndDue_ = false;
+            unwind();
+            return Step::PROGRAM_END;
+        }
+        const Outcome outcome = executor_.outcome;
+        executor_.outcome = Outcome::OK;
         switch (outcome) {
         case Outcome::OK: return Step::OK;
         case Outcome::SYNC: return Step::SYNC;
-        case Outcome::PROGRAM_END: end_program(); return Step::PROGRAM_END;
+        case Outcome::PROGRAM_END:
+            end_program();
+            isEndDue_ = script_depth_ > 0;
+            return Step::PROGRAM_END;
+        case Outcome::SCRIPT: isDone = run_script_text(); break;
         case Outcome::CALL_FANUC: isDone = call_fanuc(); break;
         case Outcome::RETURN_FANUC: isDone = return_fanuc(); break;
         case Outcome::REMAP: isDone = call_remap(); break;
@@ -204,7 +279,7 @@ void Flow::end_program() {
     }
     executor_.canon.on_reset();
     commit();
-    unwind();
+    unwind(nested_base_);
 }
 
 void Flow::commit() {
@@ -229,7 +304,7 @@ Step Flow::fail_block() {
         error_.called_from.push_back({call->program->path(), call->line, 0});
     }
     next_ = calls_.empty() ? after_line_ : next_;  // a jump that failed half way is none
-    unwind();
+    unwind(nested_base_);
     return Step::FAILED;
 }
 

@@ -13,12 +13,16 @@
 #include "interp/detail/program.hh"
 #include "interp/detail/remap.hh"
 #include "interp/interpreter.hh"
+#include "interp/script_host.hh"
 
 namespace mw::interp::detail {
 
-class Flow {
+class ScriptView;
+
+class Flow : private ScriptNames {
   public:
     Flow(Executor &executor, Names &names, Canon &target, const Settings &settings);
+    ~Flow() override;
 
     Result<> open(const std::string &path);
     void open_text(const std::string &name, std::string text);
@@ -33,14 +37,33 @@ class Flow {
     int line() const { return line_read_; }
     const std::string &file() const;
     bool isAtFileEnd() const { return program_ == nullptr || next_ > program_->count_lines(); }
-    int call_level() const { return static_cast<int>(calls_.size()); }
+    int call_level() const { return static_cast<int>(calls_.size()) - text_levels_; }
+    bool isBudgetSpent() const {
+        return settings_.statement_budget > 0 && statements_ > settings_.statement_budget;
+    }
+    FilePlace place_in_file() const;
+    std::string_view subroutine() const;
+    std::string line_text(const std::string &file, int line) const;
+
+    // flow_scripts.cc
+    /// Opens the script host when the settings or a remap need one, runs the top-level script, and checks
+    /// that all that the remaps name exists. Errors name the place in the INI file.
+    Result<> load_scripts();
+    Result<> begin_scripts();
+    /// Ends suspended scripts and the host. Call before the parts that scripts see go away.
+    void end_scripts();
+    const std::vector<std::string> &warnings() const { return warnings_; }
 
   private:
+    friend class ScriptView;
+
     struct Repeat {
         int line = 0;  ///< of the O- repeat
         int left = 0;
     };
-    enum class CallKind { OWORD, FANUC, REMAP, PROFILE };
+    enum class CallKind { OWORD, FANUC, REMAP, SCRIPT, TEXT, PROFILE };
+    /// How far a remapped code or an O word in a script is.
+    enum class Stage { NONE, PROLOG, PROCEDURE, FUNCTION, EPILOG };
     /// Where a program goes on after a call.
     struct Call {
         CallKind kind = CallKind::OWORD;
@@ -52,6 +75,18 @@ class Flow {
         int again = 0;  ///< M98 L: calls still to come
         int sub_end = 0;
         std::optional<PendingBlock> pending;  ///< the rest of a block with a remapped code
+        const Remap *remap = nullptr;
+        Stage stage = Stage::NONE;
+        Program *procedure = nullptr;             ///< of a remap with ngc=
+        std::unique_ptr<SuspendedScript> script;  ///< waits for the machine
+        bool isScriptDone = false;
+        int script_line = 0;  ///< where the script was called
+        ScriptOutcome outcome;
+        std::vector<double> arguments;  ///< of an O word in a script
+        int next = 0;                   ///< TEXT: where the one that had it executed stood
+        int reported_line = 0;          ///< TEXT: the line that the script gave
+
+        bool isInScript() const { return stage != Stage::NONE && stage != Stage::PROCEDURE; }
     };
     /// A subroutine's place.
     struct Sub {
@@ -69,7 +104,9 @@ class Flow {
     Step finish_mdi();
     void commit();
     void end_program();
-    void unwind();
+    /// Drops all calls above `depth`; suspended scripts among them end.
+    void unwind(std::size_t depth = 0);
+    std::string call_name(const Call &call) const;
 
     // flow_owords.cc
     bool run_oword(const BlockView &view);
@@ -96,10 +133,28 @@ class Flow {
     bool check_depth();
     bool enter(Call call, const Sub &sub);
     bool leave(double value, bool hasValue);
+    bool pop_call(double value, bool hasValue);
     bool call_fanuc();
     bool return_fanuc();
-    bool call_remap();
     bool call_profile();
+
+    // flow_scripts.cc
+    bool call_remap();
+    bool run_script_oword(NameId label, const double *arguments, std::uint32_t count);
+    bool run_script_text();
+    Step go_on_with_script();
+    bool call_handler(ScriptModule module, const std::string &name);
+    bool take_outcome(std::size_t index, ScriptOutcome outcome);
+    bool start_stage(Stage stage);
+    bool advance_call();
+    void settle_after_script();
+    void end_text();
+    Result<> check_remap(const Remap &remap);
+    Result<> need_scripts(const std::string &what, const SourcePlace &place);
+    std::expected<bool, ScriptFault> execute_for_script(std::string_view text, int line);
+    std::expected<bool, ScriptFault> run_nested(std::size_t base);
+    bool hasName(std::string_view name) const override;
+    std::optional<double> value_of(std::string_view name) override;
 
     Executor &executor_;
     Names &names_;
@@ -117,6 +172,17 @@ class Flow {
     Program *outer_program_ = nullptr;  ///< the open file while MDI runs
     int outer_next_ = 1;
     std::vector<Call> calls_;
+    int text_levels_ = 0;  ///< TEXT among calls_
+
+    std::unique_ptr<ScriptView> view_;
+    std::unique_ptr<ScriptHost> scripts_;
+    std::vector<std::string> script_names_, warnings_;
+    std::vector<std::unique_ptr<Program>> texts_;  ///< that scripts had executed
+    std::size_t nested_base_ = 0;                  ///< calls below it belong to scripts that run now
+    int script_depth_ = 0;                         ///< scripts that run now, one inside the other
+    bool isReadingName_ = false;                   ///< a named parameter's script runs: it may only look
+    bool isSyncDue_ = false, isEndDue_ = false;    ///< what a script had executed came to such a point
+    std::string script_error_;                     ///< as a script has set it
     std::uint64_t statements_ = 0;
     diag::Diagnostic error_;
 };

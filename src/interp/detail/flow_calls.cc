@@ -127,8 +127,10 @@ bool Flow::enter(Call call, const Sub &sub) {
     repeats_.clear();
     calls_.push_back(std::move(call));
     executor_.push_call(calls_.back().kind == CallKind::REMAP);
-    program_ = sub.program;
-    next_ = sub.line;
+    if (sub.program != nullptr) {
+        program_ = sub.program;
+        next_ = sub.line;
+    }
     return true;
 }
 
@@ -143,7 +145,13 @@ bool Flow::run_call(const BlockView &view, const OWord &oword) {
         }
     }
     const std::uint32_t count = oword.argument_count;
-    if (!label_of(view, oword, label) || !find_sub(label, oword.column, sub)) {
+    if (!label_of(view, oword, label)) {
+        return false;
+    }
+    if (scripts_ != nullptr && scripts_->hasFunction(ScriptModule::OWORD, names_.text(label))) {
+        return run_script_oword(label, arguments, count);
+    }
+    if (!find_sub(label, oword.column, sub)) {
         return false;
     }
     executor_.set_returned(0.0, false);
@@ -166,6 +174,14 @@ bool Flow::run_call(const BlockView &view, const OWord &oword) {
 
 /// Back to the caller: the line after the call, or the rest of the block with the remapped code.
 bool Flow::leave(double value, bool hasValue) {
+    if (calls_.back().stage == Stage::PROCEDURE && !calls_.back().remap->epilog.empty()) {
+        executor_.set_returned(hasValue ? value : 0.0, hasValue);
+        return start_stage(Stage::EPILOG);
+    }
+    return pop_call(value, hasValue);
+}
+
+bool Flow::pop_call(double value, bool hasValue) {
     Call call = std::move(calls_.back());
     calls_.pop_back();
     program_ = call.program;
@@ -189,7 +205,7 @@ bool Flow::leave(double value, bool hasValue) {
 }
 
 bool Flow::run_return(const BlockView &view, const OWord &oword) {
-    if (calls_.empty()) {
+    if (calls_.empty() || calls_.back().kind == CallKind::TEXT) {
         return executor_.fault.set(fmt::format("'O{}' {}: not in a subroutine", label_text(oword),
                                                oword.kind == OKind::ENDSUB ? "endsub" : "return"),
                                    oword.column);
@@ -245,6 +261,9 @@ bool Flow::call_fanuc() {
 }
 
 bool Flow::return_fanuc() {
+    if (calls_.back().kind == CallKind::TEXT) {
+        return executor_.fault.set("M99 must stand in a subroutine, not in a block that a script executes");
+    }
     if (calls_.back().kind != CallKind::FANUC) {
         return executor_.fault.set(
             fmt::format("'O{0} endsub' or 'O{0} return' must follow 'O{0} sub' subroutine definition",
@@ -271,36 +290,6 @@ bool Flow::call_profile() {
     if (!enter(std::move(call), sub)) {
         return false;
     }
-    next_ = sub.line + 1;
-    return true;
-}
-
-/// The block has come to a remapped code: its subroutine runs before the rest.
-bool Flow::call_remap() {
-    const Remap &remap = *executor_.remap_reached();
-    Sub sub;
-    if (!remap.error.empty()) {
-        return executor_.fault.set(remap.error);
-    }
-    const NameId label = names_.intern(remap.ngc);
-    if (!find_sub(label, 0, sub)) {
-        return false;
-    }
-    std::string missing;
-    if (!executor_.check_remap_words(missing)) {
-        executor_.fault.set(fmt::format("user-defined {}: missing: {}", remap.name, missing));
-        executor_.fault.block_text = fmt::format("O <{}> call ", remap.ngc);
-        return false;
-    }
-    Call call;
-    call.kind = CallKind::REMAP;
-    call.label = label;
-    call.pending = executor_.take_pending();
-    const BlockValues values = call.pending->values;
-    if (!enter(std::move(call), sub)) {
-        return false;
-    }
-    executor_.set_remap_arguments(remap, values);
     next_ = sub.line + 1;
     return true;
 }

@@ -60,6 +60,30 @@ void Parameters::pop_call(bool isSharing) {
     frames_.pop_back();
 }
 
+std::vector<std::pair<NameId, double>> Parameters::locals(int level) const {
+    std::vector<std::pair<NameId, double>> out;
+    for (const Named &local : frames_[static_cast<std::size_t>(level)].locals) {
+        out.emplace_back(local.id, local.value);
+    }
+    return out;
+}
+
+std::vector<std::pair<NameId, double>> Parameters::globals() const {
+    std::vector<std::pair<NameId, double>> out;
+    for (std::size_t id = 0; id < globals_.size(); ++id) {
+        if (globals_[id]) {
+            out.emplace_back(static_cast<NameId>(id), *globals_[id]);
+        }
+    }
+    return out;
+}
+
+std::array<double, ARGUMENT_COUNT> Parameters::saved_arguments(int level) const {
+    std::array<double, ARGUMENT_COUNT> out{};
+    std::ranges::copy(frames_[static_cast<std::size_t>(level)].arguments, out.begin());
+    return out;
+}
+
 void Parameters::rollback() {
     for (auto entry = log_.rbegin(); entry != log_.rend(); ++entry) {
         if (entry->kind == Undo::Kind::NUMBER) {

@@ -2,8 +2,10 @@
 // Numbered and named parameters, with an undo log so that a failed block changes nothing.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/result.hh"
@@ -61,6 +63,11 @@ class Parameters {
     /// Back to the caller's; #1 to #30 too unless `isSharing` them.
     void pop_call(bool isSharing);
     int depth() const { return static_cast<int>(frames_.size()); }
+    /// Names and values of a level of call (0: the main program), and of all globals.
+    std::vector<std::pair<NameId, double>> locals(int level) const;
+    std::vector<std::pair<NameId, double>> globals() const;
+    /// #1 to #30 as the caller of that level had them.
+    std::array<double, ARGUMENT_COUNT> saved_arguments(int level) const;
 
     void commit() { log_.clear(); }
     void rollback();

@@ -130,6 +130,12 @@ bool Parser::comment(Lexer &in, Block &out) {
     if (end == std::string_view::npos) {
         return fail("Unclosed comment found", column);
     }
+    constexpr std::string_view SCRIPT = ";py,";
+    if (isToEnd && line.starts_with(SCRIPT)) {
+        arena_.comments.push_back(
+            {static_cast<std::uint32_t>(SCRIPT.size()), static_cast<std::uint32_t>(end), true});
+        ++out.comment_count;
+    }
     if (!isToEnd) {
         if (line.substr(begin, end - begin).find('(') != std::string_view::npos) {
             return fail("Nested comment found", column);

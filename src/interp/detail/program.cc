@@ -2,67 +2,79 @@
 #include "interp/detail/program.hh"
 
 #include <algorithm>
-#include <cstring>
 
-#include "base/atomic_file.hh"
 #include "interp/detail/parser.hh"
 
 namespace mw::interp::detail {
 
 Result<std::unique_ptr<Program>> Program::load(const std::string &path, Names &names) {
-    Result<std::string> text = read_file(path);
+    Result<ProgramText> text = ProgramText::open(path);
     if (!text) {
         return std::unexpected(text.error());
     }
-    return std::make_unique<Program>(path, std::move(*text), names);
+    std::unique_ptr<Program> program(new Program(path, std::move(*text), names));
+    if (Result<> prepared = program->prepare(); !prepared) {
+        return std::unexpected(prepared.error());
+    }
+    return program;
 }
 
 Program::Program(std::string path, std::string text, Names &names)
-    : path_(std::move(path)), text_(std::move(text)), names_(names) {
-    split();
-    scan_owords();
-    link_owords();
-    for (int line = 1; line <= count_lines(); ++line) {
-        const std::string_view content = line_text(line);
-        const std::size_t first = content.find_first_not_of(" \t\r");
-        if (first != std::string_view::npos) {
-            isPercentDelimited_ = content[first] == '%';
-            first_content_line_ = line;
-            break;
+    : Program(std::move(path), ProgramText(std::move(text)), names) {
+    (void)prepare();  // text in memory can always be read
+}
+
+Program::Program(std::string path, ProgramText text, Names &names)
+    : path_(std::move(path)), text_(std::move(text)), names_(names) {}
+
+/// One pass over the text finds its lines, its O words and its percent signs.
+Result<> Program::prepare() {
+    Result<bool> scanned = text_.scan(
+        [this](int line, std::string_view content) { return look_at(line, content) || text_.isHeld(); });
+    if (scanned && !*scanned) {  // O words: lines will be asked for in any order
+        if (Result<> held = text_.hold(); !held) {
+            return held;
         }
+        first_content_line_ = last_percent_line_ = 0;
+        isPercentDelimited_ = false;
+        olines_.clear();
+        arena_.clear();
+        scanned = text_.scan([this](int line, std::string_view content) {
+            look_at(line, content);
+            return true;
+        });
     }
+    if (!scanned) {
+        return std::unexpected(scanned.error());
+    }
+    link_owords();
+    return {};
 }
 
-void Program::split() {
-    std::size_t begin = 0;
-    while (begin < text_.size()) {
-        lines_.push_back(begin);
-        const void *newline = std::memchr(text_.data() + begin, '\n', text_.size() - begin);
-        begin = newline == nullptr
-                    ? text_.size()
-                    : static_cast<std::size_t>(static_cast<const char *>(newline) - text_.data()) + 1;
+/// @return false when the line has an O word
+bool Program::look_at(int line, std::string_view content) {
+    const std::size_t first = content.find_first_not_of(" \t\r");
+    if (first == std::string_view::npos) {
+        return true;
     }
-}
-
-std::string_view Program::line_text(int line) const {
-    const std::size_t index = static_cast<std::size_t>(line - 1);
-    const std::size_t begin = lines_[index];
-    std::size_t end = index + 1 < lines_.size() ? lines_[index + 1] : text_.size();
-    while (end > begin && (text_[end - 1] == '\n' || text_[end - 1] == '\r')) {
-        --end;
+    const bool isPercent = content[first] == '%';
+    if (first_content_line_ == 0) {
+        first_content_line_ = line;
+        isPercentDelimited_ = isPercent;
     }
-    return {text_.data() + begin, end - begin};
+    last_percent_line_ = isPercent ? line : last_percent_line_;
+    if (!beginsWithO(content)) {
+        return true;
+    }
+    OLine oline;
+    oline.line = line;
+    oline.block = Parser(arena_, names_).parse_line(content, static_cast<std::uint32_t>(line));
+    olines_.push_back(oline);
+    return false;
 }
 
 bool Program::hasClosingPercent() const {
-    for (int line = count_lines(); isPercentDelimited_ && line > first_content_line_; --line) {
-        const std::string_view content = line_text(line);
-        const std::size_t first = content.find_first_not_of(" \t\r");
-        if (first != std::string_view::npos && content[first] == '%') {
-            return true;
-        }
-    }
-    return !isPercentDelimited_;
+    return !isPercentDelimited_ || last_percent_line_ > first_content_line_;
 }
 
 /// After blanks, a slash and an N word.
@@ -72,20 +84,6 @@ bool Program::beginsWithO(std::string_view line) {
         i = line.find_first_not_of(" \t0123456789.", i + 1);
     }
     return i != std::string_view::npos && (line[i] == 'o' || line[i] == 'O');
-}
-
-void Program::scan_owords() {
-    Parser parser(arena_, names_);
-    for (int line = 1; line <= count_lines(); ++line) {
-        const std::string_view content = line_text(line);
-        if (!beginsWithO(content)) {
-            continue;
-        }
-        OLine oline;
-        oline.line = line;
-        oline.block = parser.parse_line(content, static_cast<std::uint32_t>(line));
-        olines_.push_back(oline);
-    }
 }
 
 void Program::link_owords() {
@@ -110,8 +108,38 @@ void Program::link_owords() {
             fanuc_.try_emplace(oword.label, oline.line);
         }
     }
-    const bool hasLoops = !olines_.empty();
-    cached_.assign(hasLoops ? lines_.size() + 1 : 0, NO_ID);
+    mark_kept();
+}
+
+/// Lines that may run more than once are kept parsed: those of loops and subroutines. A Fanuc-style one ends
+/// wherever its M99 stands.
+void Program::mark_kept() {
+    cached_.assign(olines_.empty() ? 0 : static_cast<std::size_t>(count_lines()) + 1, NOT_KEPT);
+    int kept_to = 0;
+    for (const OLine &oline : olines_) {
+        int last = oline.line;
+        if (oline.block.oword != NO_ID) {
+            switch (arena_.owords[oline.block.oword].kind) {
+            case OKind::FANUC: last = count_lines(); break;
+            case OKind::NONE:
+            case OKind::CALL:
+            case OKind::RETURN:
+            case OKind::IF:
+            case OKind::ELSEIF:
+            case OKind::ELSE:
+            case OKind::ENDIF:
+            case OKind::ENDSUB:
+            case OKind::ENDWHILE:
+            case OKind::ENDREPEAT: break;
+            default: last = std::max(last, oline.next); break;
+            }
+        }
+        const int first = std::max(oline.line, kept_to + 1);
+        kept_to = std::max(kept_to, last);
+        for (int line = first; line <= kept_to; ++line) {
+            cached_[static_cast<std::size_t>(line)] = NO_ID;
+        }
+    }
 }
 
 const Program::OLine *Program::find_oline(int line) const {
@@ -121,22 +149,26 @@ const Program::OLine *Program::find_oline(int line) const {
 }
 
 BlockView Program::block(int line) {
-    if (cached_.empty()) {
+    if (cached_.empty() || cached_[static_cast<std::size_t>(line)] == NOT_KEPT) {
         scratch_.clear();
         scratch_block_ =
             Parser(scratch_, names_).parse_line(line_text(line), static_cast<std::uint32_t>(line));
+        if (!text_.failure().empty()) {
+            scratch_block_.error = static_cast<std::uint32_t>(scratch_.errors.size());
+            scratch_.errors.push_back({text_.failure(), 0});
+        }
         return {&scratch_block_, &scratch_};
     }
     std::uint32_t &index = cached_[static_cast<std::size_t>(line)];
     if (index == NO_ID) {
         index = static_cast<std::uint32_t>(blocks_.size());
         const OLine *oline = find_oline(line);
-        blocks_.push_back(std::make_unique<Block>(
+        blocks_.push_back(
             oline != nullptr
                 ? oline->block
-                : Parser(arena_, names_).parse_line(line_text(line), static_cast<std::uint32_t>(line))));
+                : Parser(arena_, names_).parse_line(line_text(line), static_cast<std::uint32_t>(line)));
     }
-    return {blocks_[index].get(), &arena_};
+    return {&blocks_[index], &arena_};
 }
 
 const OWord *Program::oword_at(int line) const {

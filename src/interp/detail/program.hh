@@ -3,6 +3,7 @@
 // lead.
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -12,6 +13,7 @@
 #include "base/result.hh"
 #include "interp/detail/ast.hh"
 #include "interp/detail/names.hh"
+#include "interp/detail/program_text.hh"
 
 namespace mw::interp::detail {
 
@@ -27,9 +29,13 @@ class Program {
     Program(std::string path, std::string text, Names &names);
 
     const std::string &path() const { return path_; }
-    int count_lines() const { return static_cast<int>(lines_.size()); }
-    std::string_view line_text(int line) const;  ///< `line` from 1, without the newline
-    /// Lines inside loops and subroutines are parsed once and kept; others are parsed into a scratch arena.
+    int count_lines() const { return text_.count_lines(); }
+    const ProgramText &text() const { return text_; }
+    /// `line` from 1, without the newline.
+    std::string_view line_text(int line) const { return text_.line(line); }
+    /// Lines inside loops and subroutines are parsed once and kept; others are parsed into a scratch arena,
+    /// so that memory is bounded by the text and those. A file without O words is not even held as text when
+    /// it is large.
     BlockView block(int line);
     /// A program that begins with % ends at the next one.
     bool isPercentDelimited() const { return isPercentDelimited_; }
@@ -53,28 +59,26 @@ class Program {
         Block block;
         int next = 0, previous = 0;
     };
-    struct Cached {
-        int line = 0;
-        Block block;
-    };
-    void split();
-    void scan_owords();
+    static constexpr std::uint32_t NOT_KEPT = NO_ID - 1;
+    Program(std::string path, ProgramText text, Names &names);
+    Result<> prepare();
+    bool look_at(int line, std::string_view content);
     void link_owords();
+    void mark_kept();
     const OLine *find_oline(int line) const;
     static bool beginsWithO(std::string_view line);
 
     std::string path_;
-    std::string text_;
+    ProgramText text_;
     Names &names_;
-    std::vector<std::size_t> lines_;  ///< where each line begins; one more entry marks the end
     Arena arena_, scratch_;
     Block scratch_block_;
     std::vector<OLine> olines_;
-    std::vector<std::uint32_t> cached_;  ///< by line: index in blocks_, or NO_ID
-    std::vector<std::unique_ptr<Block>> blocks_;
+    std::vector<std::uint32_t> cached_;  ///< by line: index in blocks_, NO_ID: not parsed yet, or NOT_KEPT
+    std::deque<Block> blocks_;
     std::unordered_map<NameId, int> subs_, fanuc_;
     bool isPercentDelimited_ = false;
-    int first_content_line_ = 0;
+    int first_content_line_ = 0, last_percent_line_ = 0;
 };
 
 }  // namespace mw::interp::detail

@@ -120,14 +120,6 @@ TEST(Flow, remapped_code_runs_its_subroutine_with_words_I1) {
     EXPECT_EQ(machine.interpreter->error().what.message, "user-defined M400: missing: P");
 }
 
-TEST(Flow, python_remap_says_that_it_is_not_supported_I1) {
-    Settings settings;
-    settings.remaps = {"M401 modalgroup=5 py=handler"};
-    Machine machine(settings);
-    EXPECT_EQ(machine.run("M401\n"), Step::FAILED);
-    EXPECT_NE(machine.error().find("Python remaps are not supported by this build yet"), std::string::npos);
-}
-
 TEST(Flow, mdi_goes_on_after_a_failed_line_I1) {
     Machine machine;
     ASSERT_TRUE(machine.interpreter->begin());

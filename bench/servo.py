@@ -1,0 +1,129 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What the functions of motion cost in the servo thread, beside those of an installed LinuxCNC.
+
+Three joints run the same program of arcs and short lines by the clock; in every servo cycle the component sampler takes
+motion-controller.time and motion-command-handler.time. Runs are interleaved; the first second of each is left out.
+Prints median, 99th percentile and worst case of their sum [ns]; the reference counts ticks of the time stamp counter,
+which are converted by /proc/cpuinfo. usage: script/bench servo [--runs 5] [--cycles 200000] [--period 200000]
+"""
+import argparse
+import math
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tools"))
+try:
+    import numpy as np
+except ImportError:
+    sys.exit("servo: python3-numpy is missing; script/bootstrap installs it")
+import compare_traj
+
+LETTERS = "XYZ"
+LIMITS = {"max_velocity": [200] * 9, "max_acceleration": [1000] * 9, "max_jerk": [50000] * 9}
+
+HAL = """loadrt [KINS]KINEMATICS
+loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD num_joints=[KINS]JOINTS
+loadrt sampler depth=100000 cfg=ss
+addf motion-command-handler servo-thread
+addf motion-controller servo-thread
+addf sampler.0 servo-thread
+net estop-loop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in
+net tool-prep-loop iocontrol.0.tool-prepare => iocontrol.0.tool-prepared
+net tool-change-loop iocontrol.0.tool-change => iocontrol.0.tool-changed
+net controller-time motion-controller.time => sampler.0.pin.0
+net handler-time motion-command-handler.time => sampler.0.pin.1
+""" + "".join(f"net joint-{i} joint.{i}.motor-pos-cmd => joint.{i}.motor-pos-fb\n" for i in range(len(LETTERS)))
+
+
+def program(seconds):
+    """Arcs and lines of half a millimetre at 20 mm/s, for at least so long."""
+    lines, speed, length, x = ["G21 G17 G90 G64 P0.01 F1200"], 20.0, 0.0, 0.0
+    while length < speed * seconds:
+        lines += [f"G3 X{x + 4:.4f} Y0 I2 J0", f"G2 X{x + 8:.4f} Y0 I2 J0"]
+        x += 8
+        length += 4 * math.pi
+        for i in range(1, 41):
+            lines.append(f"G1 X{x - i * 0.2:.4f} Y{0.5 * math.sin(i * math.pi / 20):.4f} Z{0.3 * math.sin(i * 0.3):.4f}")
+        x -= 8
+        lines.append(f"G1 X{x:.4f} Y0 Z0")
+        length += 9
+    return "\n".join(lines + ["M2", ""])
+
+
+def prepare(folder, options):
+    folder.mkdir()
+    seconds = options.cycles * options.period * 1e-9 + 3
+    (folder / "compare.ini").write_text(compare_traj.ini_text(LIMITS, options.jerk, LETTERS, options.period))
+    (folder / "compare.hal").write_text(HAL)
+    (folder / "compare.tbl").write_text("")
+    (folder / "compare.var").write_text("")
+    (folder / "driver.py").write_text(compare_traj.DRIVER.replace("homed[:5]", "homed[:3]"))
+    (folder / "driver.py").chmod(0o755)
+    (folder / "program.ngc").write_text(program(seconds))
+
+
+def run_ours(folder):
+    hal = (folder / "compare.hal").read_text()
+    (folder / "compare.hal").write_text(hal + "loadusr halsampler samples.txt\n")
+    command = [compare_traj.RELEASE / "bin" / "millwright", "run", "--realtime", "compare.ini", "program.ngc"]
+    done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    if done.returncode != 0:
+        raise ValueError(done.stdout[-800:])
+    return done.stdout
+
+
+def ticks_per_ns():
+    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("cpu MHz"):
+            return float(line.split(":")[1]) * 1e-3
+    return 1.0
+
+
+def figures(folder, log, options, unit):
+    table = compare_traj.read_samples(folder, log, 2)
+    first = round(1e9 / options.period)
+    total = np.sum(table, axis=1)[first:first + options.cycles] * unit
+    if len(total) < options.cycles:
+        raise ValueError(f"{len(total)} cycles instead of {options.cycles}")
+    return np.percentile(total, 50), np.percentile(total, 99), np.max(total)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--runs", type=int, default=5)
+    parser.add_argument("--cycles", type=int, default=200000)
+    parser.add_argument("--period", type=int, default=200000, help="servo period [ns]")
+    parser.add_argument("--jerk", action="store_true", help="ours with jerk limits")
+    options = parser.parse_args()
+    has_reference = shutil.which("linuxcnc") is not None
+    ours, theirs = [], []
+    with tempfile.TemporaryDirectory() as name:
+        work = pathlib.Path(name)
+        work.chmod(0o755)
+        for run in range(options.runs):
+            folder = work / f"ours-{run}"
+            prepare(folder, options)
+            ours.append(figures(folder, run_ours(folder), options, 1.0))
+            print("ours       median {:7.0f}  99 % {:7.0f}  worst {:9.0f} ns".format(*ours[-1]), flush=True)
+            if has_reference:
+                folder = work / f"reference-{run}"
+                prepare(folder, argparse.Namespace(**{**vars(options), "jerk": False}))
+                theirs.append(figures(folder, compare_traj.run_reference(folder), options, 1.0 / ticks_per_ns()))
+                print("reference  median {:7.0f}  99 % {:7.0f}  worst {:9.0f} ns".format(*theirs[-1]), flush=True)
+    print("\nmedian of the runs: ours {:.0f}, {:.0f}; worst of all {:.0f} ns".format(
+        *np.median(np.array(ours), axis=0)[:2], np.max(np.array(ours)[:, 2])))
+    if not theirs:
+        return 0
+    mine, other = np.median(np.array(ours), axis=0), np.median(np.array(theirs), axis=0)
+    print("reference {:.0f}, {:.0f}; worst of all {:.0f} ns\nratio: median {:.2f}, 99 % {:.2f}".format(
+        *other[:2], np.max(np.array(theirs)[:, 2]), mine[0] / other[0], mine[1] / other[1]))
+    return 0 if mine[0] <= other[0] and mine[1] <= other[1] else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

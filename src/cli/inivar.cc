@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// inivar: a value of an INI file, for scripts.
+#include <cstdio>
+
+#include "config/ini_programs.hh"
+
+int main(int argc, char **argv) {
+    const mw::config::ProgramOutput result = mw::config::run_inivar({argv + 1, argv + argc});
+    std::fputs(result.out.c_str(), stdout);
+    std::fputs(result.err.c_str(), stderr);
+    return result.status;
+}

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "interp/preview.hh"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/text.hh"
+#include "interp/detail/frame.hh"
+#include "interp/machine_frame.hh"
+#include "interp/quiet_canon.hh"
+
+namespace mw::interp {
+namespace {
+
+/// Names with numbers, in the order in which they came.
+class NameList {
+  public:
+    std::uint32_t number_of(std::string_view name) {
+        if (last_ < names_.size() && names_[last_] == name) {
+            return last_;
+        }
+        const auto found = std::find(names_.begin(), names_.end(), name);
+        last_ = static_cast<std::uint32_t>(found - names_.begin());
+        if (found == names_.end()) {
+            names_.emplace_back(name);
+        }
+        return last_;
+    }
+    const std::string &name(std::uint32_t number) const {
+        static const std::string NONE;
+        return number < names_.size() ? names_[number] : NONE;
+    }
+
+  private:
+    std::vector<std::string> names_;
+    std::uint32_t last_ = 0;
+};
+
+/// The text after "section," in a comment; nothing when it is another comment.
+std::string_view section_name(std::string_view comment) {
+    constexpr std::string_view KEY = "section,";
+    comment = trim(comment);
+    if (comment.size() < KEY.size() || !equals_ignoring_case(comment.substr(0, KEY.size()), KEY)) {
+        return {};
+    }
+    return trim(comment.substr(KEY.size()));
+}
+
+}  // namespace
+
+class Preview::Impl final : public QuietMachineCanon, public World {
+  public:
+    Impl(PreviewMachine machine, ToolSource &tools, ParameterSource &parameters, PreviewOptions options,
+         Listener listener)
+        : machine_(std::move(machine)), options_(options), listener_(std::move(listener)),
+          frame_(*this, machine_.units),
+          interpreter_(frame_, *this, tools, parameters, with_budget(machine_.interpreter, options)),
+          tool_(machine_.tool_in_spindle), position_(machine_.position) {
+        batch_.reserve(options_.batch);
+        frame_.set_position(position_);
+    }
+
+    PreviewEnd run(const Result<> &opened, diag::Sink &sink) {
+        if (!opened) {
+            sink.error(opened.error());
+            return PreviewEnd::FAILED;
+        }
+        progress_ = {};
+        const PreviewEnd end = go(sink);
+        send();
+        report_progress();
+        return end;
+    }
+    Result<> begin() {
+        Result<> status;
+        if (!machine_.parameter_file.empty()) {
+            status = interpreter_.load_parameters(machine_.parameter_file);
+        }
+        return status ? interpreter_.begin() : status;
+    }
+    Interpreter &interpreter() { return interpreter_; }
+    const PreviewProgress &progress() const { return progress_; }
+    const NameList &files() const { return files_; }
+    const NameList &sections() const { return sections_; }
+
+    // MachineCanon
+    void begin_block(const BlockRef &block) override {
+        ++progress_.blocks;
+        place_.file = files_.number_of(block.file);
+        place_.line = block.line;
+        place_.sequence = block.sequence;
+        place_.call_level = block.call_level;
+        place_.section = block.call_level > 0 ? sections_.number_of(interpreter_.subroutine()) : section_;
+    }
+    void line(const LineMove &move) override {
+        add_move(move.settings.kind == FeedKind::RAPID ? PreviewKind::RAPID : PreviewKind::FEED, move.end,
+                 move.settings);
+    }
+    void arc(const ArcMove &move) override {
+        PreviewEvent event = place_;
+        event.kind = PreviewKind::ARC;
+        event.centre = convert(move.centre);
+        event.normal = convert_direction(move.normal);
+        event.angle_rad = move.angle_rad;
+        event.settings = move.settings;
+        go_to(event, move.end);
+    }
+    void probe(const LineMove &move, ProbeKind) override {
+        add_move(PreviewKind::PROBE, move.end, move.settings);
+    }
+    void rigid_tap(const LineMove &move, double) override {
+        const Pose back = position_;
+        add_move(PreviewKind::RIGID_TAP, move.end, move.settings);
+        position_ = back;
+    }
+    void dwell(double seconds) override { add_standing(PreviewKind::DWELL, 0, seconds); }
+    void tool_offset(const Pose &offset) override { tool_offset_ = offset; }
+    void offsets(int, const Pose &, const Pose &, double rotation_deg) override {
+        rotation_deg_ = rotation_deg;
+    }
+    void set_spindle_speed(int spindle, double speed) override {
+        add_standing(PreviewKind::SPINDLE_SPEED, spindle, speed);
+    }
+    void select_tool(int toolno) override { selected_ = toolno; }
+    void change_tool() override {
+        change_tool_number(selected_ >= 0 ? std::exchange(selected_, -1) : tool_);
+        if (machine_.tool_change_moves) {
+            MoveSettings rapid;
+            rapid.kind = FeedKind::RAPID;
+            for (const Pose &end : machine_.tool_change_moves(position_)) {
+                place_.isByMachine = true;
+                add_move(PreviewKind::RAPID, end, rapid);
+                place_.isByMachine = false;
+            }
+            frame_.set_position(position_);
+        }
+    }
+    void change_tool_number(int toolno) override {
+        tool_ = toolno;
+        add_standing(PreviewKind::TOOL_CHANGE, toolno, 0);
+    }
+    void program_stop() override { add_standing(PreviewKind::STOP, 0, 0); }
+    void optional_program_stop() override { program_stop(); }
+    void pallet_shuttle() override { program_stop(); }
+    void comment(std::string_view text) override {
+        if (const std::string_view name = section_name(text); !name.empty()) {
+            section_ = sections_.number_of(name);
+        }
+    }
+    void canon_error(std::string_view text) override {
+        if (sink_ != nullptr) {
+            sink_->error(std::string(text), {files_.name(place_.file), place_.line, 0});
+        }
+    }
+
+    // World: everything is where the program put it, probes trip at their end.
+    MachineSnapshot snapshot() const override {
+        MachineSnapshot s;
+        s.position = s.probed_position = position_;
+        s.isProbeTripped = true;
+        s.tool_in_spindle = tool_;
+        return s;
+    }
+    LengthUnits machine_units() const override { return machine_.units; }
+    unsigned axis_mask() const override { return machine_.axis_mask; }
+    int count_spindles() const override { return machine_.spindles; }
+    bool isBlockDeleteOn() const override { return machine_.isBlockDeleteOn; }
+    bool isOptionalStopOn() const override { return true; }
+
+  private:
+    static Settings with_budget(Settings settings, const PreviewOptions &options) {
+        settings.statement_budget = options.statement_budget;
+        return settings;
+    }
+
+    PreviewEnd go(diag::Sink &sink) {
+        sink_ = &sink;
+        int errors = 0;
+        for (std::uint64_t steps = 1;; ++steps) {
+            const Step step = interpreter_.step();
+            if (step == Step::FAILED) {
+                sink.report(interpreter_.error());
+                if (++errors >= options_.max_errors || interpreter_.isBudgetSpent() ||
+                    interpreter_.isAtFileEnd()) {
+                    break;
+                }
+            } else if (step == Step::SYNC) {
+                interpreter_.synch();
+            } else if (step != Step::OK) {
+                break;
+            }
+            if (steps % options_.blocks_per_report == 0 && !report_progress()) {
+                return PreviewEnd::CANCELLED;
+            }
+        }
+        return errors > 0 ? PreviewEnd::FAILED : PreviewEnd::DONE;
+    }
+
+    bool report_progress() {
+        const FilePlace place = interpreter_.place_in_file();
+        progress_.bytes = place.bytes;
+        progress_.bytes_in_all = place.bytes_in_all;
+        return !listener_.progress || listener_.progress(progress_);
+    }
+
+    Pose convert(const Pose &machine) const {
+        switch (options_.coordinates) {
+        case PreviewCoordinates::MACHINE: return machine;
+        case PreviewCoordinates::TIP: return machine - tool_offset_;
+        case PreviewCoordinates::PROGRAM: return frame_.to_program(machine);
+        }
+        return machine;
+    }
+    Pose convert_direction(Pose direction) const {
+        if (options_.coordinates == PreviewCoordinates::PROGRAM) {
+            detail::rotate_xy(direction, -rotation_deg_);
+        }
+        return direction;
+    }
+
+    void add_move(PreviewKind kind, const Pose &end, const MoveSettings &settings) {
+        PreviewEvent event = place_;
+        event.kind = kind;
+        event.settings = settings;
+        go_to(event, end);
+    }
+    void go_to(PreviewEvent &event, const Pose &end) {
+        event.start = convert(position_);
+        event.end = convert(end);
+        position_ = end;
+        add(event);
+    }
+    void add_standing(PreviewKind kind, int number, double value) {
+        PreviewEvent event = place_;
+        event.kind = kind;
+        event.number = number;
+        event.value = value;
+        event.start = event.end = convert(position_);
+        add(event);
+    }
+    void add(const PreviewEvent &event) {
+        ++progress_.events;
+        batch_.push_back(event);
+        if (batch_.size() >= options_.batch) {
+            send();
+        }
+    }
+    void send() {
+        if (!batch_.empty() && listener_.events) {
+            listener_.events(batch_);
+        }
+        batch_.clear();
+    }
+
+    PreviewMachine machine_;
+    PreviewOptions options_;
+    Listener listener_;
+    MachineFrame frame_;
+    Interpreter interpreter_;
+    PreviewProgress progress_;
+    std::vector<PreviewEvent> batch_;
+    PreviewEvent place_;  ///< the place of the current block, copied into each event
+    NameList files_, sections_;
+    std::uint32_t section_ = sections_.number_of("");
+    int tool_, selected_ = -1;
+    Pose position_, tool_offset_;
+    double rotation_deg_ = 0;
+    diag::Sink *sink_ = nullptr;
+};
+
+Preview::Preview(PreviewMachine machine, ToolSource &tools, ParameterSource &parameters,
+                 PreviewOptions options, Listener listener)
+    : impl_(std::make_unique<Impl>(std::move(machine), tools, parameters, options, std::move(listener))) {}
+
+Preview::~Preview() = default;
+
+PreviewEnd Preview::run(const std::string &path, diag::Sink &sink) {
+    Result<> status = impl_->begin();
+    status = status ? impl_->interpreter().open(path) : status;
+    return impl_->run(status, sink);
+}
+
+PreviewEnd Preview::run_text(const std::string &name, std::string text, diag::Sink &sink) {
+    const Result<> status = impl_->begin();
+    if (status) {
+        impl_->interpreter().open_text(name, std::move(text));
+    }
+    return impl_->run(status, sink);
+}
+
+const PreviewProgress &Preview::progress() const {
+    return impl_->progress();
+}
+
+const std::string &Preview::file(std::uint32_t index) const {
+    return impl_->files().name(index);
+}
+
+const std::string &Preview::section(std::uint32_t index) const {
+    return impl_->sections().name(index);
+}
+
+std::string Preview::line_text(std::uint32_t file, int line) const {
+    return impl_->interpreter().line_text(impl_->files().name(file), line);
+}
+
+}  // namespace mw::interp

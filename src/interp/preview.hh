@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What a program would do, without doing it: its moves with their places in the source, as a stream.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "diag/sink.hh"
+#include "interp/interpreter.hh"
+#include "interp/machine_canon.hh"
+
+namespace mw::interp {
+
+enum class PreviewKind : std::uint8_t {
+    RAPID,
+    FEED,
+    ARC,
+    PROBE,
+    RIGID_TAP,      ///< to `end` and back to `start`
+    DWELL,          ///< `value` [s]
+    TOOL_CHANGE,    ///< tool `number` is in the spindle from here on
+    SPINDLE_SPEED,  ///< of spindle `number` [rev/min or surface speed]
+    STOP,           ///< M0, M1 and M60: motion stands
+};
+
+/// A move, or what stands between moves. Poses are in the coordinates that were asked for.
+struct PreviewEvent {
+    PreviewKind kind = PreviewKind::RAPID;
+    bool isByMachine = false;  ///< a move that the machine makes by itself, at a tool change
+    Pose start, end;           ///< the same for what is no move
+    Pose centre, normal;       ///< of an arc, as in ArcMove
+    double angle_rad = 0;
+    MoveSettings settings;  ///< of a move [machine units]
+    double value = 0;
+    int number = 0;
+    int line = 0, sequence = 0, call_level = 0;  ///< as in BlockRef
+    std::uint32_t file = 0;                      ///< see Preview::file
+    std::uint32_t section = 0;                   ///< see Preview::section
+};
+
+enum class PreviewCoordinates {
+    MACHINE,  ///< machine units; the controlled point of the machine
+    TIP,      ///< the same without the tool offset: where the tool cuts
+    PROGRAM,  ///< program units and coordinates, as written
+};
+
+/// The machine that a program is interpreted for.
+struct PreviewMachine {
+    Settings interpreter;
+    LengthUnits units = LengthUnits::MM;
+    unsigned axis_mask = 0x1ff;
+    int spindles = 1;
+    bool isBlockDeleteOn = true;
+    std::string parameter_file;  ///< read and never written; empty: none
+    Pose position;               ///< where it stands [machine units]
+    int tool_in_spindle = 0;
+    /// The moves that it makes for a tool change, from a position; none when not set.
+    std::function<std::vector<Pose>(const Pose &)> tool_change_moves;
+};
+
+struct PreviewProgress {
+    std::uint64_t blocks = 0, events = 0;
+    std::uint64_t bytes = 0, bytes_in_all = 0;  ///< of the main file; loops and calls stand still in it
+};
+
+struct PreviewOptions {
+    PreviewCoordinates coordinates = PreviewCoordinates::MACHINE;
+    std::size_t batch = 1024;  ///< most events per call of the listener
+    /// Statements after which a program counts as endless, which is an error.
+    std::uint64_t statement_budget = 200000000;
+    int max_errors = 20;                     ///< interpretation goes on behind a failed block until then
+    std::uint64_t blocks_per_report = 4096;  ///< between two calls of `progress`
+};
+
+enum class PreviewEnd { DONE, FAILED, CANCELLED };
+
+/// Interprets one program. Memory is bounded by a batch and the interpreter's own (interp/README.md); the
+/// listener may take as long as it likes. One thread.
+class Preview {
+  public:
+    struct Listener {
+        std::function<void(std::span<const PreviewEvent>)> events;
+        std::function<bool(const PreviewProgress &)> progress;  ///< false cancels; may be empty
+    };
+
+    /// The references must outlive it.
+    Preview(PreviewMachine machine, ToolSource &tools, ParameterSource &parameters, PreviewOptions options,
+            Listener listener);
+    ~Preview();
+
+    /// Runs a file to its end. Errors go to `sink` with their places, also when the preview goes on after
+    /// them. Any thread, but one at a time.
+    PreviewEnd run(const std::string &path, diag::Sink &sink);
+    /// The same for a text; `name` stands for its file.
+    PreviewEnd run_text(const std::string &name, std::string text, diag::Sink &sink);
+
+    const PreviewProgress &progress() const;
+    const std::string &file(std::uint32_t index) const;
+    /// The innermost subroutine, or in the main program what the last comment (section, NAME) said; empty at
+    /// the beginning. Under cutter compensation the last move of a section may count for the next.
+    const std::string &section(std::uint32_t index) const;
+    std::string line_text(std::uint32_t file, int line) const;
+
+  private:
+    class Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace mw::interp

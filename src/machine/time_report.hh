@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A time estimate as text for a person.
+#pragma once
+
+#include "machine/time_estimate.hh"
+
+namespace mw::machine {
+
+/// Prints total, tools, sections and the slowest places to standard output, indented by two blanks.
+void print_times(const TimeFigures &time);
+
+}  // namespace mw::machine

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// _millwright_canon: canon calls for scripts. Names and arguments are those of the field's scripts; `line` as
+// the first argument of moves is accepted and not used, as calls belong to the block that called the script.
+#include <pybind11/stl.h>
+
+#include <algorithm>
+
+#include "pyhost/modules.hh"
+
+namespace mw::pyhost {
+namespace {
+
+using interp::Canon;
+using interp::MachineSnapshot;
+
+geom::Pose pose_of(double x, double y, double z, double a, double b, double c, double u, double v, double w) {
+    geom::Pose out;
+    const double values[] = {x, y, z, a, b, c, u, v, w};
+    for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
+        out[axis] = values[axis];
+    }
+    return out;
+}
+
+/// Anything with nine items: EmcPose, tuple, list.
+geom::Pose pose_from(const py::iterable &items) {
+    geom::Pose out;
+    int axis = 0;
+    for (const py::handle item : items) {
+        if (axis == geom::AXIS_COUNT) {
+            throw py::value_error("a pose has nine coordinates");
+        }
+        out[axis++] = item.cast<double>();
+    }
+    return out;
+}
+
+MachineSnapshot machine() {
+    return current_view().world().snapshot();
+}
+
+/// Runs `what` with the canon and hands the call on.
+template <class What>
+void with_canon(What what) {
+    interp::InterpreterView &view = current_view();
+    what(view.canon());
+    view.deliver();
+}
+
+template <class... Arguments>
+void def(py::module_ &m, const char *name, void (Canon::*function)(Arguments...)) {
+    m.def(name, [function](std::decay_t<Arguments>... arguments) {
+        with_canon([&](Canon &canon) { (canon.*function)(arguments...); });
+    });
+}
+
+void define_moves(py::module_ &m) {
+    using D = double;
+    m.def("STRAIGHT_TRAVERSE", [](int, D x, D y, D z, D a, D b, D c, D u, D v, D w) {
+        with_canon([&](Canon &canon) { canon.straight_traverse(pose_of(x, y, z, a, b, c, u, v, w)); });
+    });
+    m.def("STRAIGHT_FEED", [](int, D x, D y, D z, D a, D b, D c, D u, D v, D w) {
+        with_canon([&](Canon &canon) { canon.straight_feed(pose_of(x, y, z, a, b, c, u, v, w)); });
+    });
+    m.def("STRAIGHT_PROBE", [](int, D x, D y, D z, D a, D b, D c, D u, D v, D w, int kind) {
+        with_canon([&](Canon &canon) {
+            canon.straight_probe(pose_of(x, y, z, a, b, c, u, v, w),
+                                 static_cast<interp::ProbeKind>(kind & 3));
+        });
+        current_view().expect_probe();
+    });
+    m.def("ARC_FEED", [](int, D first, D second, D first_axis, D second_axis, int rotation, D end, D a, D b,
+                         D c, D u, D v, D w) {
+        with_canon([&](Canon &canon) {
+            const auto plane = current_view().attribute("plane");
+            const std::int64_t number = plane ? std::get<std::int64_t>(*plane) : 1;
+            const geom::Pose pose = number == 2   ? pose_of(end, first, second, a, b, c, u, v, w)
+                                    : number == 3 ? pose_of(second, end, first, a, b, c, u, v, w)
+                                                  : pose_of(first, second, end, a, b, c, u, v, w);
+            canon.arc_feed({first, second, first_axis, second_axis, rotation, end, pose});
+        });
+    });
+    m.def("RIGID_TAP", [](int, D x, D y, D z, D scale) {
+        with_canon([&](Canon &canon) { canon.rigid_tap(x, y, z, scale); });
+    });
+    for (const char *name : {"DWELL", "enqueue_DWELL"}) {
+        def(m, name, &Canon::dwell);
+    }
+    def(m, "START_SPEED_FEED_SYNCH", &Canon::start_speed_feed_synch);
+    def(m, "STOP_SPEED_FEED_SYNCH", &Canon::stop_speed_feed_synch);
+    def(m, "FINISH", &Canon::finish);
+}
+
+void define_modes(py::module_ &m) {
+    using D = double;
+    def(m, "ON_RESET", &Canon::on_reset);
+    m.def("USE_LENGTH_UNITS", [](int units) {
+        if (units != 1 && units != 2) {
+            throw py::value_error("units must be CANON_UNITS_INCHES or CANON_UNITS_MM");
+        }
+        with_canon([&](Canon &canon) {
+            canon.use_length_units(units == 1 ? interp::LengthUnits::INCH : interp::LengthUnits::MM);
+        });
+    });
+    m.def("SELECT_PLANE", [](int plane) {
+        using interp::Plane;
+        constexpr Plane PLANES[] = {Plane::XY, Plane::YZ, Plane::XZ, Plane::UV, Plane::VW, Plane::UW};
+        if (plane < 1 || plane > 6) {
+            throw py::value_error("a plane is CANON_PLANE_XY to CANON_PLANE_UW");
+        }
+        with_canon([&](Canon &canon) { canon.select_plane(PLANES[plane - 1]); });
+    });
+    m.def("SET_G5X_OFFSET", [](int index, D x, D y, D z, D a, D b, D c, D u, D v, D w) {
+        with_canon([&](Canon &canon) { canon.set_g5x_offset(index, pose_of(x, y, z, a, b, c, u, v, w)); });
+    });
+    m.def("SET_G92_OFFSET", [](D x, D y, D z, D a, D b, D c, D u, D v, D w) {
+        with_canon([&](Canon &canon) { canon.set_g92_offset(pose_of(x, y, z, a, b, c, u, v, w)); });
+    });
+    def(m, "SET_XY_ROTATION", &Canon::set_xy_rotation);
+    m.def("USE_TOOL_LENGTH_OFFSET", [](const py::iterable &pose) {
+        with_canon([&](Canon &canon) { canon.use_tool_length_offset(pose_from(pose)); });
+    });
+    def(m, "SET_NAIVECAM_TOLERANCE", &Canon::set_naivecam_tolerance);
+    for (const char *name : {"SET_FEED_RATE", "enqueue_SET_FEED_RATE"}) {
+        def(m, name, &Canon::set_feed_rate);
+    }
+    for (const char *name : {"SET_FEED_MODE", "enqueue_SET_FEED_MODE"}) {
+        m.def(name, [](int spindle, int mode) {
+            with_canon([&](Canon &canon) {
+                canon.set_feed_mode(spindle, static_cast<interp::FeedMode>(std::clamp(mode, 0, 2)));
+            });
+        });
+    }
+}
+
+void define_spindles(py::module_ &m) {
+    for (const char *name : {"SET_SPINDLE_MODE", "enqueue_SET_SPINDLE_MODE"}) {
+        def(m, name, &Canon::set_spindle_mode);
+    }
+    for (const char *name : {"SET_SPINDLE_SPEED", "enqueue_SET_SPINDLE_SPEED"}) {
+        def(m, name, &Canon::set_spindle_speed);
+    }
+    for (const char *prefix : {"", "enqueue_"}) {
+        const std::string before = prefix;
+        m.def((before + "START_SPINDLE_CLOCKWISE").c_str(),
+              [](int spindle, int wait) {
+                  with_canon([&](Canon &canon) { canon.start_spindle_clockwise(spindle, wait != 0); });
+              },
+              py::arg("spindle"), py::arg("wait_for_atspeed") = 1);
+        m.def((before + "START_SPINDLE_COUNTERCLOCKWISE").c_str(),
+              [](int spindle, int wait) {
+                  with_canon([&](Canon &canon) { canon.start_spindle_counterclockwise(spindle, wait != 0); });
+              },
+              py::arg("spindle"), py::arg("wait_for_atspeed") = 1);
+        def(m, (before + "STOP_SPINDLE_TURNING").c_str(), &Canon::stop_spindle_turning);
+        def(m, (before + "MIST_ON").c_str(), &Canon::mist_on);
+        def(m, (before + "MIST_OFF").c_str(), &Canon::mist_off);
+        def(m, (before + "FLOOD_ON").c_str(), &Canon::flood_on);
+        def(m, (before + "FLOOD_OFF").c_str(), &Canon::flood_off);
+    }
+    m.def("ORIENT_SPINDLE", [](int spindle, double angle, int mode) {
+        with_canon([&](Canon &canon) { canon.orient_spindle(spindle, angle, mode); });
+    });
+}
+
+void define_tools(py::module_ &m) {
+    def(m, "SELECT_TOOL", &Canon::select_tool);
+    // The tool that changes is the one selected; the argument, its place in the table, is taken for
+    // compatibility.
+    m.def(
+        "CHANGE_TOOL", [](int) { with_canon([](Canon &canon) { canon.change_tool(); }); },
+        py::arg("slot") = 0);
+    def(m, "CHANGE_TOOL_NUMBER", &Canon::change_tool_number);
+    m.def("SET_TOOL_TABLE_ENTRY", [](int index, int toolno, const py::iterable &offset, double diameter,
+                                     double frontangle, double backangle, int orientation) {
+        interp::ToolEntry entry = current_view().tool(index);
+        entry.toolno = toolno;
+        entry.offset = pose_from(offset);
+        entry.diameter = diameter;
+        entry.frontangle = frontangle;
+        entry.backangle = backangle;
+        entry.orientation = orientation;
+        with_canon([&](Canon &canon) { canon.set_tool_table_entry(index, entry); });
+    });
+    for (const char *name : {"START_CHANGE", "TURN_PROBE_ON", "TURN_PROBE_OFF"}) {
+        m.def(name, [] {});  // CHANGE_TOOL and STRAIGHT_PROBE say all there is
+    }
+}
+
+void define_switches(py::module_ &m) {
+    def(m, "ENABLE_FEED_OVERRIDE", &Canon::enable_feed_override);
+    def(m, "DISABLE_FEED_OVERRIDE", &Canon::disable_feed_override);
+    def(m, "ENABLE_SPEED_OVERRIDE", &Canon::enable_speed_override);
+    def(m, "DISABLE_SPEED_OVERRIDE", &Canon::disable_speed_override);
+    def(m, "ENABLE_FEED_HOLD", &Canon::enable_feed_hold);
+    def(m, "DISABLE_FEED_HOLD", &Canon::disable_feed_hold);
+    def(m, "ENABLE_ADAPTIVE_FEED", &Canon::enable_adaptive_feed);
+    def(m, "DISABLE_ADAPTIVE_FEED", &Canon::disable_adaptive_feed);
+    const auto digital = [&m](const char *name, bool isOn, bool isSynched) {
+        m.def(name, [isOn, isSynched](int index) {
+            with_canon([&](Canon &canon) { canon.set_digital_output(index, isOn, isSynched); });
+        });
+    };
+    digital("SET_MOTION_OUTPUT_BIT", true, true);
+    digital("CLEAR_MOTION_OUTPUT_BIT", false, true);
+    digital("SET_AUX_OUTPUT_BIT", true, false);
+    digital("CLEAR_AUX_OUTPUT_BIT", false, false);
+    m.def("SET_MOTION_OUTPUT_VALUE", [](int index, double value) {
+        with_canon([&](Canon &canon) { canon.set_analog_output(index, value, true); });
+    });
+    m.def("SET_AUX_OUTPUT_VALUE", [](int index, double value) {
+        with_canon([&](Canon &canon) { canon.set_analog_output(index, value, false); });
+    });
+    m.def("WAIT", [](int index, int type, int kind, double timeout) {
+        with_canon([&](Canon &canon) {
+            canon.wait_input(index, type == 0, static_cast<interp::WaitKind>(std::clamp(kind, 0, 4)),
+                             timeout);
+        });
+        current_view().expect_input();
+        return 0;
+    });
+}
+
+void define_rest(py::module_ &m) {
+    def(m, "PROGRAM_STOP", &Canon::program_stop);
+    def(m, "OPTIONAL_PROGRAM_STOP", &Canon::optional_program_stop);
+    def(m, "PROGRAM_END", &Canon::program_end);
+    def(m, "PALLET_SHUTTLE", &Canon::pallet_shuttle);
+    const auto text = [&m](const char *name, void (Canon::*function)(std::string_view)) {
+        m.def(name, [function](const std::string &what) {
+            with_canon([&](Canon &canon) { (canon.*function)(what); });
+        });
+    };
+    text("COMMENT", &Canon::comment);
+    text("enqueue_COMMENT", &Canon::comment);
+    text("MESSAGE", &Canon::message);
+    text("LOG", &Canon::log);
+    text("CANON_ERROR", &Canon::canon_error);
+    m.def("LOGOPEN",
+          [](const std::string &path) { with_canon([&](Canon &canon) { canon.log_open(path, false); }); });
+    m.def("LOGAPPEND",
+          [](const std::string &path) { with_canon([&](Canon &canon) { canon.log_open(path, true); }); });
+    def(m, "LOGCLOSE", &Canon::log_close);
+    for (const char *name : {"CLAMP_AXIS",
+                             "GET_EXTERNAL_MOTION_CONTROL_MODE",
+                             "GET_EXTERNAL_MOTION_CONTROL_NAIVECAM_TOLERANCE",
+                             "GET_EXTERNAL_MOTION_CONTROL_TOLERANCE",
+                             "GET_EXTERNAL_OFFSETS",
+                             "GET_EXTERNAL_OFFSET_APPLIED",
+                             "GET_EXTERNAL_PARAMETER_FILE_NAME",
+                             "GET_EXTERNAL_QUEUE_EMPTY",
+                             "GET_EXTERNAL_TRAVERSE_RATE",
+                             "INIT_CANON",
+                             "IO_PLUGIN_CALL",
+                             "LOCK_ROTARY",
+                             "NURBS_FEED",
+                             "PLUGIN_CALL",
+                             "RELOAD_TOOLDATA",
+                             "SET_BLOCK_DELETE",
+                             "SET_CUTTER_RADIUS_COMPENSATION",
+                             "SET_OPTIONAL_PROGRAM_STOP",
+                             "SET_PARAMETER_FILE_NAME",
+                             "SET_TRAVERSE_RATE",
+                             "SPINDLE_RETRACT",
+                             "SPINDLE_RETRACT_TRAVERSE",
+                             "START_CUTTER_RADIUS_COMPENSATION",
+                             "STOP_CUTTER_RADIUS_COMPENSATION",
+                             "UNLOCK_ROTARY",
+                             "UPDATE_TAG",
+                             "USE_NO_SPINDLE_FORCE"}) {
+        m.def(name, [name](const py::args &, const py::kwargs &) {
+            PyErr_SetString(PyExc_NotImplementedError,
+                            (std::string("emccanon.") + name + " is not supported by Millwright").c_str());
+            throw py::error_already_set();
+        });
+    }
+}
+
+/// Asking the machine: as of the last synchronisation.
+void define_questions(py::module_ &m) {
+    m.def("GET_BLOCK_DELETE", [] { return current_view().world().isBlockDeleteOn(); });
+    m.def("GET_OPTIONAL_PROGRAM_STOP", [] { return current_view().world().isOptionalStopOn(); });
+    for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
+        const std::string letter(1, geom::AXIS_LETTERS[axis]);
+        m.def(("GET_EXTERNAL_POSITION_" + letter).c_str(), [axis] { return machine().position[axis]; });
+        m.def(("GET_EXTERNAL_PROBE_POSITION_" + letter).c_str(),
+              [axis] { return machine().probed_position[axis]; });
+        m.def(("GET_EXTERNAL_TOOL_LENGTH_" + letter + "OFFSET").c_str(),
+              [axis] { return current_view().tool_offset()[axis]; });
+    }
+    m.def("GET_EXTERNAL_PROBE_TRIPPED_VALUE", [] { return machine().isProbeTripped ? 1 : 0; });
+    m.def("GET_EXTERNAL_PROBE_VALUE", [] { return machine().isProbeTripped ? 1.0 : 0.0; });
+    // Results of the last input that was waited for; the default when there is none or it timed out.
+    m.def("GET_EXTERNAL_DIGITAL_INPUT", [](int, int missing) {
+        const MachineSnapshot now = machine();
+        return now.isInputTimedOut ? missing : (now.input_value != 0.0 ? 1 : 0);
+    });
+    m.def("GET_EXTERNAL_ANALOG_INPUT", [](int, double missing) {
+        const MachineSnapshot now = machine();
+        return now.isInputTimedOut ? missing : now.input_value;
+    });
+    m.def("GET_EXTERNAL_FEED_RATE", [] { return machine().feed_rate; });
+    m.def("GET_EXTERNAL_SPEED", [](std::size_t spindle) { return machine().spindle_speed.at(spindle); });
+    m.def("GET_EXTERNAL_SPINDLE", [](std::size_t spindle) {
+        const int direction = machine().spindle_direction.at(spindle);
+        return direction == 0 ? 1 : (direction > 0 ? 2 : 3);
+    });
+    m.def("GET_EXTERNAL_TOOL_SLOT", [] { return machine().current_pocket; });
+    m.def("GET_EXTERNAL_SELECTED_TOOL_SLOT", [] { return machine().selected_pocket; });
+    m.def("GET_EXTERNAL_TOOL_TABLE", [](int index) {
+        return py::module_::import("interpreter").attr("this").attr("tool_table").attr("__getitem__")(index);
+    });
+    m.def("GET_EXTERNAL_AXIS_MASK", [] { return current_view().world().axis_mask(); });
+    m.def("GET_EXTERNAL_LENGTH_UNITS", [] {
+        return current_view().world().machine_units() == interp::LengthUnits::MM ? 1.0 : 1.0 / 25.4;
+    });
+    m.def("GET_EXTERNAL_ANGLE_UNITS", [] { return 1.0; });
+    m.def("GET_EXTERNAL_PLANE", [] { return std::get<std::int64_t>(*current_view().attribute("plane")); });
+    m.def("GET_EXTERNAL_MIST", [] { return machine().isMistOn ? 1 : 0; });
+    m.def("GET_EXTERNAL_FLOOD", [] { return machine().isFloodOn ? 1 : 0; });
+    m.def("GET_EXTERNAL_FEED_OVERRIDE_ENABLE", [] { return machine().isFeedOverrideEnabled ? 1 : 0; });
+    m.def("GET_EXTERNAL_SPINDLE_OVERRIDE_ENABLE",
+          [](int) { return machine().isSpeedOverrideEnabled ? 1 : 0; });
+    m.def("GET_EXTERNAL_FEED_HOLD_ENABLE", [] { return machine().isFeedHoldEnabled ? 1 : 0; });
+    m.def("GET_EXTERNAL_ADAPTIVE_FEED_ENABLE", [] { return machine().isAdaptiveFeedEnabled ? 1 : 0; });
+    m.def("GET_EXTERNAL_TC_FAULT", [] { return 0; });
+}
+
+}  // namespace
+
+void define_canon(py::module_ &module) {
+    define_moves(module);
+    define_modes(module);
+    define_spindles(module);
+    define_tools(module);
+    define_switches(module);
+    define_rest(module);
+    define_questions(module);
+}
+
+}  // namespace mw::pyhost

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The native parts of the modules `interpreter` and `emccanon`.
+#pragma once
+
+#include <memory>
+
+#include "pyhost/current.hh"
+#include "pyhost/runtime.hh"
+
+namespace mw::pyhost {
+
+/// Puts _millwright_script and _millwright_canon into sys.modules, once. Needs the GIL.
+void add_native_modules();
+void define_canon(py::module_ &module);
+
+/// The object that scripts know as `self` and `this`.
+py::object make_interpreter(const std::shared_ptr<ViewHandle> &handle);
+
+}  // namespace mw::pyhost
