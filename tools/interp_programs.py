@@ -2,7 +2,7 @@
 """Seeded generator of G-code programs over all codes and modal combinations of the dialect.
 
 What the reference's standalone program gets wrong on its own is left out: it takes its position from its canon at a tool
-change, forgets the tool offset then and does not convert it with the units (so G49 stands before those), and lets a probe stop short of its end (so a
+change (so a move of all axes follows), forgets the tool offset then and does not convert it with the units (so G49 stands before those), and lets a probe stop short of its end (so a
 move of all axes follows); it refuses L in G74 and axis words in G43.2; it loses its way in lathe profiles of one segment,
 with collinear or nearly collinear segments, arcs beside an allowance.
 """
@@ -300,6 +300,8 @@ class Program:
         if change:
             self.add('G49')
             self.add(change)
+            self.is_incremental, self.motion = False, 'G1'
+            self.lines.append(f'G90 G1 {self.words("XYZABC")} F{self.number(1, 90)}')
             return
         self.add(self.random.choice((
             f'T{self.random.randint(1, 3)}', 'G43', f'G43 H{self.random.randint(1, 3)}',
