@@ -160,6 +160,20 @@ def name_of(one):
     return ' '.join(one.__doc__.split())
 
 
+def peck_at_the_bottom(pair):
+    """G73 and G83 whose last peck ends at the bottom: rounding makes the reference come back to it once more."""
+    if not pair.has(r'g[78]3'):
+        return
+    out = []
+    for call in pair.reference:
+        back = [i for i in (-2, -3) if len(out) >= -i and call.startswith('STRAIGHT_FEED(') and isSameCall(out[i], call)]
+        if back and all(one.startswith('STRAIGHT_TRAVERSE(') for one in out[back[0] + 1:]):
+            del out[back[0] + 1:]
+            continue
+        out.append(call)
+    pair.reference = out
+
+
 def long_numbers(pair):
     """In comments the reference writes ###### for numbers of 30 characters and more."""
     pair.ours = [re.sub(r'-?[\d.]{30,}', '######', call) if call.startswith('MESSAGE(') or '(' not in call else call
@@ -174,7 +188,7 @@ def orientation_of_back_boring(pair):
 
 
 CLASSES = (speed_override_at_end, order_under_compensation, context_announced, threading_enables_override,
-           lathe_pieces, long_numbers, orientation_of_back_boring)
+           lathe_pieces, peck_at_the_bottom, long_numbers, orientation_of_back_boring)
 
 # What ours refuses and the reference does not, and what it refuses it with. What was done before must be equal.
 STRICTER = {
