@@ -52,7 +52,8 @@ bool Executor::take_cycle_words(const Code &code, const BlockValues &values) {
     };
     for (const Need &need : needs) {
         if (values.has(need.word)) {
-            need.value = values.at(need.word);
+            const bool isHalved = need.word == 'x' && state.isDiameter;
+            need.value = values.at(need.word) * (isHalved ? 0.5 : 1.0);
         } else if (isFirst && need.isNeeded) {
             return fault.set(fmt::format("{} needs {}{}", name, need.text,
                                          need.word == depth
@@ -279,12 +280,8 @@ void Executor::tap_move(double height) {
 void Executor::run_tap(const CyclePlan &plan, int direction) {
     const int spindle = state.active_spindle;
     const bool isSpeedOverride = state.spindles[static_cast<std::size_t>(spindle)].isOverridden;
-    if (state.isFeedOverride) {
-        canon.disable_feed_override();
-    }
-    if (isSpeedOverride) {
-        canon.disable_speed_override(spindle);
-    }
+    canon.disable_feed_override();
+    canon.disable_speed_override(spindle);
     tap_move(plan.bottom);
     canon.stop_spindle_turning(spindle);
     start_spindle(-direction);

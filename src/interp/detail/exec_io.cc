@@ -41,8 +41,11 @@ bool Executor::do_override(const Code &code, const BlockValues &values) {
         isOn ? canon.enable_feed_override() : canon.disable_feed_override();
     }
     if (isSpeed) {
-        state.spindles[static_cast<std::size_t>(spindle)].isOverridden = isOn;
-        isOn ? canon.enable_speed_override(spindle) : canon.disable_speed_override(spindle);
+        const bool isAll = !values.has('$') || values.at('$') < 0.0;
+        for (int i = isAll ? 0 : spindle; i < (isAll ? world_.count_spindles() : spindle + 1); ++i) {
+            state.spindles[static_cast<std::size_t>(i)].isOverridden = isOn;
+            isOn ? canon.enable_speed_override(i) : canon.disable_speed_override(i);
+        }
     }
     if (code.number == 52) {
         state.isAdaptive = isOn;
