@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "task/task.hh"
 
+#include "interp/plugin.hh"
 #include "motion/api/texts.hh"
 
 namespace mw::task {
@@ -8,12 +9,19 @@ namespace {
 
 constexpr std::size_t REMEMBERED_REQUESTS = 256;
 
+/// Programs and scripts can tell a machine from a preview (#<_task>, self.task).
+Settings as_task(Settings settings) {
+    settings.interpreter.isTask = true;
+    return settings;
+}
+
 }  // namespace
 
 Task::Task(const Parts &parts, Settings settings)
-    : settings_(std::move(settings)), parts_(parts), motion_(parts.channels),
+    : settings_(as_task(std::move(settings))), parts_(parts), motion_(parts.channels),
       canon_(queue_, settings_.tool_change_place), frame_(canon_, settings_.machine_units),
-      interp_(frame_, *this, parts.tools, parts.parameters, settings_.interpreter),
+      interp_(std::make_unique<interp::Interpreter>(frame_, *this, parts.tools, parts.parameters,
+                                                    settings_.interpreter)),
       sequencer_(queue_, motion_, io_, parts.tools, make_events(), settings_.sequencer) {}
 
 Task::~Task() = default;
@@ -53,24 +61,37 @@ void Task::configure(const std::vector<motion::SetParameter> &parameters) {
 
 Result<> Task::start() {
     motion_.update();
+    if (!settings_.interpreter_plugin.empty()) {
+        auto opened = interp::open_plugin(settings_.interpreter_plugin,
+                                          {frame_, *this, parts_.tools, parts_.parameters});
+        if (!opened) {
+            opened.error().message = "[TASK]INTERPRETER: " + opened.error().message;
+            return std::unexpected(opened.error());
+        }
+        interp_ = std::move(*opened);
+    }
     if (!settings_.parameter_file.empty()) {
-        const auto loaded = interp_.load_parameters(settings_.parameter_file);
+        const auto loaded = interp_->load_parameters(settings_.parameter_file);
         if (!loaded.has_value()) {
             return loaded;
         }
     }
     synch_interpreter();
-    return interp_.begin();
+    Result<> begun = interp_->begin();
+    for (const std::string &warning : interp_->warnings()) {
+        post(MessageKind::OPERATOR_TEXT, warning);
+    }
+    return begun;
 }
 
 void Task::synch_interpreter() {
     canon_.set_position(motion_.status().carte_pos_cmd);
     frame_.set_position(motion_.status().carte_pos_cmd);
-    interp_.synch();
+    interp_->synch();
 }
 
 Result<> Task::save_parameters() const {
-    return settings_.parameter_file.empty() ? Result<>{} : interp_.save_parameters(settings_.parameter_file);
+    return settings_.parameter_file.empty() ? Result<>{} : interp_->save_parameters(settings_.parameter_file);
 }
 
 RequestId Task::submit(Command command) {
@@ -225,7 +246,7 @@ void Task::run_interpreter() {
             isWaitingForSync_ = false;
             synch_interpreter();
         }
-        on_step_result(interp_.step());
+        on_step_result(interp_->step());
     }
 }
 
@@ -235,7 +256,7 @@ void Task::on_step_result(interp::Step result) {
     case interp::Step::SYNC: isWaitingForSync_ = true; break;
     case interp::Step::PROGRAM_END:
     case interp::Step::FILE_END: isReadingDone_ = true; break;
-    case interp::Step::FAILED: fail_program(interp_.error()); break;
+    case interp::Step::FAILED: fail_program(interp_->error()); break;
     }
 }
 
@@ -270,7 +291,7 @@ void Task::abort_work() {
     sequencer_.stop_spindles();
     io_.set_flood(false);
     io_.set_mist(false);
-    interp_.abort();
+    interp_->abort();
     isWaitingForSync_ = false;
     pending_failure_.clear();
     finish(home_request_, Progress::FAILED, "aborted");
@@ -278,7 +299,7 @@ void Task::abort_work() {
 
 void Task::finish_run(Progress progress, const std::string &reason) {
     if (run_ == Run::PROGRAM) {
-        interp_.close();
+        interp_->close();
         ++status_.programs_ended;
     }
     run_ = Run::IDLE;
@@ -309,8 +330,8 @@ void Task::update_status() {
         status_.interp_state = status_.isPaused ? InterpState::PAUSED
                                : isReadingDone_ ? InterpState::WAITING
                                                 : InterpState::READING;
-        status_.read_line = interp_.line();
-        status_.call_level = interp_.call_level();
+        status_.read_line = interp_->line();
+        status_.call_level = interp_->call_level();
     }
     status_.waiting.what = isRunning() ? sequencer_.waiting_for() : std::string();
     if (home_request_ != 0) {

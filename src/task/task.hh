@@ -36,6 +36,7 @@ struct Settings {
     bool isHomingForced = true;  ///< programs and MDI need all joints homed
     std::string parameter_file;  ///< empty: parameters live in memory only
     interp::Settings interpreter;
+    std::string interpreter_plugin;  ///< [TASK]INTERPRETER: a shared object; empty: RS-274/NGC
     SequencerSettings sequencer;
     ToolChangePlace tool_change_place;
     /// Task's loop standing still for so long stops the machine.
@@ -137,7 +138,7 @@ class Task final : public interp::World {
     ItemQueue queue_;
     TaskCanon canon_;
     interp::MachineFrame frame_;
-    interp::Interpreter interp_;
+    std::unique_ptr<interp::ProgramInterpreter> interp_;
     Sequencer sequencer_;
 
     Status status_;

@@ -42,7 +42,9 @@ void Executor::drop_calls(std::size_t depth) {
         contexts_.pop_back();
         parameters.pop_call(false);
     }
-    lathe_.reset();
+    if (depth == 0) {
+        lathe_.reset();
+    }
 }
 
 int Executor::context_status(std::size_t level) const {

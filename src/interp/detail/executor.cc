@@ -41,11 +41,11 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
     if (!evaluate(view, values) || !apply_settings(view)) {
         return false;
     }
+    comment_.clear();
+    block_number_ = view.block->isNumbered ? view.block->sequence : -1;
     if (lathe_) {
         return record_profile(values);
     }
-    comment_.clear();
-    block_number_ = view.block->isNumbered ? view.block->sequence : -1;
     if (view.block->comment_count > 0 && !run_comments(view, line_text)) {
         return false;
     }

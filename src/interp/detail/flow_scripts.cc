@@ -357,11 +357,11 @@ std::expected<bool, ScriptFault> Flow::execute_for_script(std::string_view text,
     const auto refuse = [&](std::string why) {
         return std::unexpected(ScriptFault{std::move(why), line, std::string(text)});
     };
-    if (script_depth_ == 0) {
-        return refuse("nothing can be executed now: the program was ended");
-    }
     if (isReadingName_) {
         return refuse("the function of a named parameter cannot execute blocks");
+    }
+    if (script_depth_ == 0) {
+        return refuse("nothing can be executed now: the program was ended");
     }
     if (isEndDue_) {
         return refuse("the program has ended: a block executed before was M2 or M30");
