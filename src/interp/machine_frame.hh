@@ -100,6 +100,8 @@ class MachineFrame final : public Canon {
     void log_open(std::string_view path, bool isAppending) override { target_.log_open(path, isAppending); }
     void log(std::string_view text) override { target_.log(text); }
     void log_close() override { target_.log_close(); }
+    void probe_log(std::string_view path) override { target_.probe_log(path); }
+    void reload_tools() override { target_.reload_tools(); }
     void canon_error(std::string_view text) override { target_.canon_error(text); }
     void user_m_code(int code, double p, double q) override { target_.user_m_code(code, p, q); }
 

@@ -66,10 +66,6 @@ std::size_t write_fixed4(char *out, std::size_t size, double value) {
 
 }  // namespace
 
-PrintCanon::~PrintCanon() {
-    log_close();
-}
-
 void PrintCanon::begin_line() {
     // As "{:5d} {} ", without its cost.
     char digits[12];
@@ -378,24 +374,19 @@ void PrintCanon::print(std::string_view text) {
 }
 
 void PrintCanon::log_open(std::string_view path, bool isAppending) {
-    log_close();
-    log_ = std::fopen(std::string(path).c_str(), isAppending ? "a" : "w");
-    if (log_ == nullptr) {
-        fmt::print(stderr, "cannot open the log file {}\n", path);
-    }
+    put(fmt::format("{}(\"{}\")", isAppending ? "LOGAPPEND" : "LOGOPEN", path));
 }
 
 void PrintCanon::log(std::string_view text) {
-    if (log_ != nullptr) {
-        fmt::print(log_, "{}\n", text);
-    }
+    put(fmt::format("LOG(\"{}\")", text));
 }
 
 void PrintCanon::log_close() {
-    if (log_ != nullptr) {
-        std::fclose(log_);
-        log_ = nullptr;
-    }
+    put("LOGCLOSE()");
+}
+
+void PrintCanon::reload_tools() {
+    put("RELOAD_TOOLDATA()");
 }
 
 void PrintCanon::canon_error(std::string_view text) {

@@ -11,11 +11,10 @@
 
 namespace mw::interp {
 
-/// "%5d N..... CALL(arguments)" per call; (print,...) as it stands; (log...) into its file.
+/// "%5d N..... CALL(arguments)" per call; (print,...) as it stands. (log...) are calls as well: it writes no files.
 class PrintCanon final : public Canon {
   public:
     explicit PrintCanon(std::FILE *out) : out_(out) {}
-    ~PrintCanon() override;
     PrintCanon(const PrintCanon &) = delete;
     PrintCanon &operator=(const PrintCanon &) = delete;
 
@@ -79,6 +78,7 @@ class PrintCanon final : public Canon {
     void log_open(std::string_view path, bool isAppending) override;
     void log(std::string_view text) override;
     void log_close() override;
+    void reload_tools() override;
     void canon_error(std::string_view text) override;
     void user_m_code(int code, double p, double q) override;
 
@@ -96,7 +96,6 @@ class PrintCanon final : public Canon {
     void put_straight(std::string_view name, const Pose &end);
 
     std::FILE *out_;
-    std::FILE *log_ = nullptr;
     std::string prefix_ = "N.....";
     bool isPrefixNumbered_ = false;
     std::string line_;

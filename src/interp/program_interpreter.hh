@@ -40,6 +40,8 @@ class ProgramInterpreter {
     virtual Result<> load_parameters(const std::string &) { return {}; }
     /// Writes it atomically; keeps the numbers that the file had and those that must be there.
     virtual Result<> save_parameters(const std::string &) const { return {}; }
+    /// The value of #number; 0 where there are no parameters.
+    virtual double parameter(int) const { return 0.0; }
 
     /// Before the first program.
     virtual Result<> begin() = 0;

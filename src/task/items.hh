@@ -106,8 +106,10 @@ struct PrintItem {
 };
 struct LogItem {
     enum class What : std::uint8_t { OPEN, APPEND, WRITE, CLOSE } what;
-    std::string text;  ///< path or line
+    std::string text;      ///< path or line
+    bool isProbe = false;  ///< for results of probes, not for (log,...)
 };
+struct ReloadToolsItem {};
 struct UserCodeItem {
     int code;
     double p, q;
@@ -126,7 +128,7 @@ using ItemBody =
                  SpindleOnItem, SpindleOffItem, SpindleOrientItem, WaitOrientItem, SelectToolItem,
                  ChangeToolItem, ChangeToolNumberItem, ToolEntryItem, CoolantItem, OverrideSwitchItem,
                  DigitalOutputItem, AnalogOutputItem, WaitInputItem, StopItem, EndItem, MessageItem,
-                 PrintItem, LogItem, UserCodeItem, ToolOffsetItem, OffsetsItem>;
+                 PrintItem, LogItem, ReloadToolsItem, UserCodeItem, ToolOffsetItem, OffsetsItem>;
 
 struct Item {
     motion::SourceTag source;

@@ -122,7 +122,7 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
         Overloaded{
             [&](const LineItem &) { return push_move(item); },
             [&](const ArcItem &) { return push_move(item); },
-            [&](const ProbeItem &) { return push_move(item); },
+            [&](const ProbeItem &) { return isProbeMade_ = push_move(item), isProbeMade_; },
             [&](const RigidTapItem &) { return push_move(item); },
             [&](const DwellItem &dwell) {
                 wait_ = Wait::DWELL;
@@ -142,7 +142,7 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
                 return true;
             },
             [&](const EndItem &end) {
-                close_log();
+                close_logs();
                 events_.end(end);
                 return true;
             },
@@ -170,6 +170,7 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
                 const auto started = events_.start_user_code(code);
                 if (!started.has_value()) {
                     events_.fail(started.error().str());
+                    return true;
                 }
                 wait_ = Wait::USER_CODE;
                 return true;
@@ -185,6 +186,12 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
                                motion_.push_path(motion::SynchedAnalogOutput{output.index, output.value})
                            ? (execute_output(item), true)
                            : false;
+            },
+            [&](const ReloadToolsItem &) {
+                if (const auto reloaded = tools_.reload(); !reloaded.has_value()) {
+                    events_.fail(reloaded.error().str());
+                }
+                return true;
             },
             [&](const SelectToolItem &) { return execute_tool(item), true; },
             [&](const ChangeToolItem &) { return execute_tool(item), true; },
@@ -393,43 +400,52 @@ void Sequencer::on_tool_event(io::ToolEvent event) {
 }
 
 void Sequencer::execute_log(const LogItem &item) {
+    LogFile &log = logs_[item.isProbe ? 1 : 0];
     switch (item.what) {
     case LogItem::What::OPEN:
     case LogItem::What::APPEND: {
-        close_log();
+        close_log(log);
         const bool isContinued = item.what == LogItem::What::APPEND && ::access(item.text.c_str(), F_OK) == 0;
         const auto old = isContinued ? read_file(item.text) : Result<std::string>("");
         if (!old.has_value()) {
             events_.fail(old.error().str());
             return;
         }
-        log_path_ = item.text;
-        log_text_ = *old;
-        isLogOpen_ = true;
+        log = {item.text, *old, true};
         break;
     }
     case LogItem::What::WRITE:
-        if (isLogOpen_) {
-            log_text_ += item.text + '\n';
+        if (log.isOpen) {
+            log.text += item.text + '\n';
         }
         break;
-    case LogItem::What::CLOSE: close_log(); break;
+    case LogItem::What::CLOSE: close_log(log); break;
     }
 }
 
-void Sequencer::close_log() {
-    if (!isLogOpen_) {
+void Sequencer::log_probe(const std::string &line) {
+    execute_log({LogItem::What::WRITE, line, true});
+}
+
+void Sequencer::close_log(LogFile &log) {
+    if (!log.isOpen) {
         return;
     }
-    isLogOpen_ = false;
-    const auto written = write_file_atomically(log_path_, log_text_);
+    log.isOpen = false;
+    const auto written = write_file_atomically(log.path, log.text);
     if (!written.has_value()) {
         events_.message(MessageKind::OPERATOR_ERROR, written.error().str());
     }
 }
 
+void Sequencer::close_logs() {
+    for (LogFile &log : logs_) {
+        close_log(log);
+    }
+}
+
 void Sequencer::abort() {
-    close_log();
+    close_logs();
     queue_.clear();
     wait_ = Wait::NONE;
     changing_index_ = -1;

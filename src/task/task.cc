@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "task/task.hh"
 
+#include <fmt/format.h>
+
 #include "interp/plugin.hh"
+#include "interp/user_codes.hh"
 #include "motion/api/texts.hh"
 
 namespace mw::task {
@@ -22,6 +25,7 @@ Task::Task(const Parts &parts, Settings settings)
       canon_(queue_, settings_.tool_change_place), frame_(canon_, settings_.machine_units),
       interp_(std::make_unique<interp::Interpreter>(frame_, *this, parts.tools, parts.parameters,
                                                     settings_.interpreter)),
+      user_program_(settings_.isClockHeldByUserPrograms),
       sequencer_(queue_, motion_, io_, parts.tools, make_events(), settings_.sequencer) {}
 
 Task::~Task() = default;
@@ -45,10 +49,20 @@ SequencerEvents Task::make_events() {
         status_.tool_offset = item.offset;
         motion_.send(motion::SetToolOffset{item.offset});
     };
-    events.start_user_code = [](const UserCodeItem &item) -> Result<> {
-        return fail("M" + std::to_string(item.code) + ": user M codes are not supported by this version");
+    events.start_user_code = [this](const UserCodeItem &item) -> Result<> {
+        const std::string path = interp::find_user_program(settings_.interpreter, item.code);
+        return path.empty() ? fail("M" + std::to_string(item.code) + ": its program is gone")
+                            : user_program_.start(path, item.p, item.q);
     };
-    events.isUserCodeRunning = [] { return false; };
+    events.isUserCodeRunning = [this] {
+        if (user_program_.isRunning()) {
+            return true;
+        }
+        if (const Result<> ended = user_program_.take_result(); !ended.has_value()) {
+            post(MessageKind::OPERATOR_ERROR, ended.error().str());
+        }
+        return false;
+    };
     return events;
 }
 
@@ -232,6 +246,19 @@ void Task::update_pending() {
     }
 }
 
+/// The result of a probe that has tripped goes into the file of (probeopen).
+void Task::log_probe() {
+    constexpr int RESULT = 5061, SUCCESS = 5070, AXES = 9;
+    if (!sequencer_.take_probe() || interp_->parameter(SUCCESS) == 0.0) {
+        return;
+    }
+    std::string line;
+    for (int axis = 0; axis < AXES; ++axis) {
+        line += (axis == 0 ? "" : " ") + fmt::format("{:.6f}", interp_->parameter(RESULT + axis));
+    }
+    sequencer_.log_probe(line);
+}
+
 bool Task::isReadAheadAllowed() const {
     const bool isHeld = status_.isPaused && isStoppedByProgram_;
     return !isReadingDone_ && !isHeld && queue_.size() < settings_.read_ahead_items;
@@ -245,6 +272,7 @@ void Task::run_interpreter() {
             }
             isWaitingForSync_ = false;
             synch_interpreter();
+            log_probe();
         }
         on_step_result(interp_->step());
     }
@@ -288,6 +316,7 @@ void Task::fail_program(diag::Diagnostic what) {
 void Task::abort_work() {
     motion_.abort();
     sequencer_.abort();
+    user_program_.stop();
     sequencer_.stop_spindles();
     io_.set_flood(false);
     io_.set_mist(false);

@@ -17,6 +17,7 @@
 #include "task/status.hh"
 #include "task/task_canon.hh"
 #include "task/tool_store.hh"
+#include "task/user_program.hh"
 
 namespace mw::task {
 
@@ -39,6 +40,8 @@ struct Settings {
     std::string interpreter_plugin;  ///< [TASK]INTERPRETER: a shared object; empty: RS-274/NGC
     SequencerSettings sequencer;
     ToolChangePlace tool_change_place;
+    /// A program of a user M code is waited for within a cycle: for virtual clocks.
+    bool isClockHeldByUserPrograms = false;
     /// Task's loop standing still for so long stops the machine.
     double watchdog_s = 0.5;
     /// Blocks that the interpreter may read in one cycle, and queued items above which it waits.
@@ -115,6 +118,7 @@ class Task final : public interp::World {
     void update_pending();
     void carry_out_commands();
     void run_interpreter();
+    void log_probe();
     bool isReadAheadAllowed() const;
     void on_step_result(interp::Step result);
     void on_stop(const StopItem &stop, int line);
@@ -139,6 +143,7 @@ class Task final : public interp::World {
     TaskCanon canon_;
     interp::MachineFrame frame_;
     std::unique_ptr<interp::ProgramInterpreter> interp_;
+    UserProgram user_program_;
     Sequencer sequencer_;
 
     Status status_;

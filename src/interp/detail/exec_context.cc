@@ -138,7 +138,9 @@ bool Executor::restore_spindles(const State &saved) {
         }
     }
     state.feed = saved.feed;
-    canon.set_feed_rate(state.feed);
+    if (state.feed_mode != FeedMode::INVERSE_TIME) {  // there each move has a rate of its own
+        canon.set_feed_rate(state.feed);
+    }
     for (int i = 0; i < world_.count_spindles(); ++i) {
         const SpindleState &want = saved.spindles[static_cast<std::size_t>(i)];
         SpindleState &have = state.spindles[static_cast<std::size_t>(i)];

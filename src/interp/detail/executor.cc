@@ -237,7 +237,7 @@ bool Executor::apply_settings(const BlockView &view) {
                 return fault.set(fmt::format("Parameter number out of range: {}", index), setting.column);
             }
             entry.number = static_cast<int>(std::lround(index));
-            if (entry.number >= P_BUILD_FIRST && entry.number <= P_BUILD_LAST) {
+            if (isBuiltInNumber(entry.number)) {
                 return fault.set(fmt::format("Parameter is readonly: #{}", entry.number), setting.column);
             }
         }

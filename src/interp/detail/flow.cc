@@ -244,7 +244,9 @@ Step Flow::run_block(const BlockView &view) {
 Step Flow::after_block() {
     bool isDone = true;
     while (isDone) {
-        commit();
+        if (const Outcome next = executor_.outcome; next != Outcome::CALL_FANUC && next != Outcome::PROFILE) {
+            commit();  // those two may still fail
+        }
         if (isEndDue_ && script_depth_ == 0) {  // a script has ended the program
             isEndDue_ = false;
             unwind();

@@ -187,6 +187,9 @@ Profile split_arcs(const Profile &profile) {
 
 /// Where a segment without extremes is at height `y`, which lies between its ends.
 Point at_height(const ProfileSegment &segment, double y) {
+    if (std::fabs(y - segment.start.y) < TINY || std::fabs(y - segment.end.y) < TINY) {
+        return std::fabs(y - segment.start.y) < TINY ? segment.start : segment.end;
+    }
     if (segment.isArc) {
         const double rise = y - segment.centre.y, radius = radius_of(segment);
         const double half = std::sqrt(std::fmax(0.0, radius * radius - rise * rise));
@@ -222,6 +225,7 @@ class Rougher {
     std::vector<ProfileMove> moves_;
     double level_ = 0, highest_ = 0;  ///< of the layers
     double rim_ = 0;                  ///< of the pocket that it is in
+    bool isPastBeginning_ = false;    ///< the first descent is over: what goes down from here on are pockets
     bool isInPocket_ = false, isTooLong_ = false;
 };
 
@@ -257,13 +261,18 @@ void Rougher::descend(std::size_t index) {
     const ProfileSegment &segment = profile_[index];
     const bool isEntry = index == 0;
     bool isCut = false;
-    if (plan_.pockets == RoughingPlan::Pockets::ONLY && !isInPocket_) {
+    const bool isForPocketsOnly = plan_.pockets == RoughingPlan::Pockets::ONLY;
+    if (isForPocketsOnly && !isPastBeginning_) {  // the other cycle has cut what lies before the first pocket
+        move_to(segment, segment.end, false);
+        return;
+    }
+    if (isForPocketsOnly && !isInPocket_) {
         level_ = highest_ = rim_ = segment.start.y;
         isInPocket_ = true;
     }
     while (!isTooLong_ && level_ <= segment.start.y + TINY && level_ > segment.end.y + TINY) {
         const std::optional<Crossing> other = rise_through(index, level_);
-        if (!other) {
+        if (!other || std::fabs(other->point.x - at_height(segment, level_).x) < TINY) {
             break;
         }
         const Point from = at_height(segment, level_);
@@ -280,6 +289,7 @@ void Rougher::descend(std::size_t index) {
 
 void Rougher::rise(const ProfileSegment &segment) {
     move_to(segment, segment.end, false);
+    isPastBeginning_ = true;
     const double steps = std::floor((segment.end.y - level_ + TINY) / plan_.increment);
     level_ = std::fmin(highest_, level_ + std::fmax(0.0, steps) * plan_.increment);
     isInPocket_ = isInPocket_ && segment.end.y < rim_ - TINY;
@@ -323,6 +333,10 @@ std::optional<std::vector<ProfileMove>> Rougher::run() {
         first = 1;
     }
     if (plan_.pockets == Pockets::SKIP) {
+        while (first > 0 && first < profile_.size() && isDescending(profile_[first])) {
+            descend(first);
+            ++first;
+        }
         follow_envelope(first);
         first = profile_.size();
     }
