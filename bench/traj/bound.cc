@@ -4,69 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "traj/path_cut.hh"
+
 namespace mw::bench {
 
 namespace {
-
-constexpr double FINEST = 0.004, COARSEST = 0.02, POINTS = 120000;
-constexpr double REVERSAL = -0.9;
-
-struct Path {
-    std::vector<Pose> points;
-    std::vector<double> feed;  ///< highest |dq/ds|-speed wanted at each point, 0: none
-    std::vector<bool> isStop;
-    std::vector<bool> isFixed;  ///< exact path: not to be smoothed
-};
-
-/// The programmed path cut finely, with stops where the mode or a reversal asks for them.
-Path cut_path(const Program &program) {
-    double length = 0;
-    Pose from = program.start;
-    for (const Move &m : program.moves) {
-        const double around = m.isArc ? std::abs(m.angle_rad) * geom::norm_xyz(from - m.centre) : 0.0;
-        length += std::max(around, geom::norm(m.end - from));
-        from = m.end;
-    }
-    const double step = std::clamp(length / POINTS, FINEST, COARSEST);
-    Path path;
-    path.points.push_back(program.start);
-    path.feed.push_back(0);
-    path.isStop.push_back(true);
-    path.isFixed.push_back(true);
-    from = program.start;
-    Pose last_tangent;
-    for (const Move &m : program.moves) {
-        const double around = m.isArc ? std::abs(m.angle_rad) * geom::norm_xyz(from - m.centre) : 0.0;
-        const int n =
-            std::max(2, static_cast<int>(std::ceil(std::max(around, geom::norm(m.end - from)) / step)));
-        const Pose out = position_on(from, m, 1e-6) - from;
-        const Pose tangent = out * (1.0 / geom::norm(out));
-        const double turn = geom::dot(tangent, last_tangent);
-        const bool isExactCorner = m.control == PathControl::EXACT_PATH && turn < 0.9998;
-        if (isExactCorner || m.control == PathControl::EXACT_STOP || turn < REVERSAL) {
-            path.isStop.back() = true;
-        }
-        const double moved = geom::norm(m.end - from);
-        const double xyz = geom::norm_xyz(m.end - from);
-        const double ratio = m.isArc || !(xyz > 0) ? 1.0 : moved / xyz;
-        for (int i = 1; i <= n; ++i) {
-            path.points.push_back(position_on(from, m, static_cast<double>(i) / n));
-            path.feed.push_back(m.feed * ratio);
-            path.isStop.push_back(false);
-            path.isFixed.push_back(m.control != PathControl::BLEND);
-        }
-        const Pose in = m.end - position_on(from, m, 1.0 - 1e-6);
-        last_tangent = in * (1.0 / geom::norm(in));
-        from = m.end;
-    }
-    path.isStop.back() = true;
-    return path;
-}
-
-double distance(const Pose &a, const Pose &b) {
-    const Pose d = a - b;
-    return std::max(geom::norm_linear(d), geom::norm_abc(d));
-}
 
 /// Each point moves to the middle of its neighbours, `count` times, never farther than P from where it was.
 void smooth(const std::vector<Pose> &original, const Path &path, double tolerance, int count,

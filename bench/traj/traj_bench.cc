@@ -13,6 +13,7 @@
 #include "testing/limit_checker.hh"
 #include "traj/bound.hh"
 #include "traj/executor.hh"
+#include "traj/jerk_bound.hh"
 #include "traj/kinds.hh"
 #include "traj/planner.hh"
 
@@ -134,14 +135,41 @@ void write_trace(const Options &options, const Program &program, const Run &run)
     std::fclose(file);
 }
 
-bool measure(const Options &options, const Program &program) {
-    const Run run = drive(program, options.isJerkLimited, !options.isRate);
+std::vector<testing::AxisLimit> axis_limits(const Program &program, bool isJerkLimited) {
     std::vector<testing::AxisLimit> limits;
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
         limits.push_back({program.max_velocity[i], program.max_acceleration[i],
-                          options.isJerkLimited ? program.max_jerk[i] : 1e300});
+                          isJerkLimited ? program.max_jerk[i] : 1e300});
     }
-    testing::LimitChecker checker(limits, T);
+    return limits;
+}
+
+/// Ours over the best known. Of the second code's trajectory, limits and deviation are checked like ours.
+void print_bound(const Options &options, const Program &program, double time_s) {
+    if (!options.isJerkLimited) {
+        const double best = best_known_time(program);
+        std::printf("%-18s best known with acceleration limits %8.3f s, ratio %6.3f\n", "", best,
+                    time_s / best);
+        return;
+    }
+    const Trajectory best = best_known_trajectory(program);
+    testing::LimitChecker checker(axis_limits(program, true), best.period_s);
+    for (const Pose &p : best.samples) {
+        checker.sample(p.c.data());
+    }
+    const double step = program.tolerance / 16;
+    const double deviation = options.isFast
+                                 ? 0.0
+                                 : testing::deviation_in_order(best.samples, sample_path(program, step), step,
+                                                               10 * program.tolerance);
+    std::printf("%-18s best known with jerk limits %8.3f s%s, deviation %.4f, ratio %6.3f\n", "", best.time_s,
+                checker.isWithin() ? "" : " BEYOND LIMITS", deviation, time_s / best.time_s);
+    std::printf("%.200s", checker.report().c_str());
+}
+
+bool measure(const Options &options, const Program &program) {
+    const Run run = drive(program, options.isJerkLimited, !options.isRate);
+    testing::LimitChecker checker(axis_limits(program, options.isJerkLimited), T);
     for (const Pose &p : run.samples) {
         checker.sample(p.c.data());
     }
@@ -159,9 +187,7 @@ bool measure(const Options &options, const Program &program) {
                 checker.worst_acceleration(), checker.worst_jerk(), deviation, program.tolerance,
                 static_cast<double>(program.moves.size()) / run.planning_s, isOk ? "ok" : "FAILED");
     if (options.isBound) {
-        const double best = best_known_time(program);
-        std::printf("%-18s best known with acceleration limits %8.3f s, ratio %6.3f\n", "", best,
-                    cycle_time(run.samples) / best);
+        print_bound(options, program, cycle_time(run.samples));
     }
     if (!isOk) {
         std::printf("%.400s", checker.report().c_str());

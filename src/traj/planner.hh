@@ -263,6 +263,7 @@ class Planner {
     Pose trial_origin_;
     double trial_s_origin_ = 0;
     std::uint64_t failed_tick_ = 0;
+    double excess_ = 1;  ///< what the failed sample has over what is allowed
     /// Relative slack of what the trial compares, half of what checkers of the trajectory allow.
     static constexpr double SLACK = 1.0 + 5e-7;
     const JointMap *joint_map_ = nullptr;

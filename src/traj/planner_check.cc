@@ -17,6 +17,8 @@ constexpr std::uint64_t MOST_SAMPLES = 4000;
 constexpr Sequence MOST_PHASES = 2000;
 constexpr double SLOWER = 0.9;
 constexpr double GENTLER = 0.8;
+/// An excess that less acceleration about a stop may cure.
+constexpr double MOST_GENTLE = 1.3;
 constexpr double ROUNDING = 1e-7;
 
 double ulp(double x) noexcept {
@@ -123,6 +125,7 @@ double Planner::trial_deviation(std::uint64_t tick) noexcept {
 bool Planner::isTrialSound() noexcept {
     const std::uint64_t n = trial_tick_;
     if (joint_map_ != nullptr && !areJointsSound()) {
+        excess_ = 2;
         return false;
     }
     if (!isFiltered()) {
@@ -141,11 +144,13 @@ bool Planner::isTrialSound() noexcept {
         const double allowed =
             wanted_.jerk[static_cast<std::size_t>(i)] * span * (1.0 + ROUNDING) + 4.0 * ulp(at[i]);
         if (std::abs(swing[i]) > allowed) {
+            excess_ = std::abs(swing[i]) / allowed;
             return false;
         }
     }
     const double xyz = wanted_.jerk[XYZ_NORM] * span * (1.0 + ROUNDING) + 8.0 * ulp(geom::norm_xyz(at));
     if (geom::norm_xyz(swing) > xyz) {
+        excess_ = geom::norm_xyz(swing) / xyz;
         return false;
     }
     double tolerance = UNLIMITED;
@@ -153,7 +158,11 @@ bool Planner::isTrialSound() noexcept {
         const double p = trial_[(n - i) % HISTORY_CAPACITY].leader.tolerance;
         tolerance = p > 0 ? std::min(tolerance, p) : tolerance;
     }
-    return tolerance >= UNLIMITED || trial_deviation(n) <= tolerance;
+    if (tolerance >= UNLIMITED) {
+        return true;
+    }
+    excess_ = trial_deviation(n) / tolerance;
+    return excess_ <= 1.0;
 }
 
 bool Planner::isPlanSound(const Snapshot &now, const State &from, Sequence begin) noexcept {
@@ -225,31 +234,38 @@ bool Planner::ease(const State &from) noexcept {
         return false;
     }
     const double tau = filter_s();
-    bool isLonger = false;
+    double most_dwell = 0;  // that a stop may still become longer
+    double rising_s = 0;    // what the pieces take to come to speed
     bool isAnyCurved = false;
     for (Sequence k = low; k <= high; ++k) {
-        PiecePlan &plan = piece_plan(k);
-        if (plan.isStopBefore && plan.dwell_s < tau) {
-            plan.dwell_s = std::min(tau, plan.dwell_s + 0.2 * tau);
-            isLonger = true;
-        }
+        const PiecePlan &plan = piece_plan(k);
+        most_dwell = plan.isStopBefore ? std::max(most_dwell, tau - plan.dwell_s) : most_dwell;
         isAnyCurved = isAnyCurved || isCurved(k);
+        const double a = store_.piece(k).acceleration.at(0);
+        rising_s += std::min(cap_of(k) / a, std::sqrt(2.0 * store_.piece(k).length / a));
     }
-    if (isLonger) {
+    const bool isGentle = (excess_ - 1.0) * rising_s < 0.5 * most_dwell && excess_ < MOST_GENTLE;
+    if (most_dwell > 0 && !isGentle) {
+        for (Sequence k = low; k <= high; ++k) {
+            PiecePlan &plan = piece_plan(k);
+            plan.dwell_s = plan.isStopBefore ? std::min(tau, plan.dwell_s + 0.2 * tau) : plan.dwell_s;
+        }
         return true;
     }
     const auto scale = [&](double speed, double acceleration) {
         for (Sequence k = low; k <= high; ++k) {
-            if (isCurved(k) || !isAnyCurved) {
+            if (isCurved(k) || !isAnyCurved || most_dwell > 0) {
                 scale_piece(k, speed, acceleration);
             }
             piece_plan(k).v2_in = -1;
         }
         pass_backward(std::min(high + 1, last_piece_), true);
     };
-    scale(SLOWER, GENTLER);
+    const double slower = most_dwell > 0 ? 1.0 : std::clamp(0.99 / std::sqrt(excess_), SLOWER, 0.99);
+    const double gentler = std::clamp(0.98 / excess_, GENTLER, 0.98);
+    scale(slower, gentler);
     if (from.v > 0 && !isKept(from)) {
-        scale(1.0 / SLOWER, 1.0 / GENTLER);
+        scale(1.0 / slower, 1.0 / gentler);
         return false;
     }
     return true;

@@ -17,7 +17,7 @@ constexpr double STANDING = 1e-13;
 /// Who stands no farther from the end of a piece is there [machine units].
 constexpr double AT_END = 2e-12;
 constexpr double STOP_FIT = 1e-7;  ///< as in the executor
-constexpr int ATTEMPTS = 8;
+constexpr int ATTEMPTS = 24;
 constexpr Sequence PHASE_RESERVE = PHASE_CAPACITY / 2;
 /// A plan is renewed when less than this part of the horizon is left.
 constexpr double RENEWAL = 0.6;
