@@ -82,22 +82,18 @@ def compare(folder, number, program):
         for text, name in interp_differences.STRICTER.items():
             if our_status and text in '\n'.join(our_err):
                 names.append(name)
-                ref_calls = ref_calls[:len(our_calls)] if not names[1:] else ref_calls
                 ref_status = our_status
     if 'G7X error' in error_of(ref_err) and 'profile of g7' in '\n'.join(our_err) and our_status:
         names.append('a lathe cycle that is refused has made no move')
         ref_calls = ref_calls[:len(our_calls)]
-    # A block that fails changes nothing here; there, what came before the failure has been done.
-    if ref_status and our_status and (names or ref_err[-1:] == our_err[-1:]):
-        ref_calls = ref_calls[:len(our_calls)]
-    if ref_status and our_status and not names and ref_err[-1:] != our_err[-1:]:
+    hasFailed = bool(ref_status and our_status)
+    if hasFailed and not names and ref_err[-1:] != our_err[-1:]:
         return None, f'program {number} fails in other blocks: {error_of(ref_err)} / {error_of(our_err)}'
-    if interp_differences.isSame(ref_calls, our_calls) and (ref_status == 0) == (our_status == 0):
-        return (names, '') if names else None
     pair = interp_differences.Pair(program, list(ref_calls), list(our_calls))
-    used = interp_differences.explain(pair)
+    used = interp_differences.explain(pair, hasFailed)
     if used is not None and (ref_status == 0) == (our_status == 0):
-        return names + [interp_differences.name_of(one) for one in used], ''
+        names += [interp_differences.name_of(one) for one in used]
+        return (names, '') if names else None
     ref_calls, our_calls = pair.reference, pair.ours
     at = next((i for i, (a, b) in enumerate(zip(ref_calls, our_calls)) if not interp_differences.isSameCall(a, b)),
               min(len(ref_calls), len(our_calls)))

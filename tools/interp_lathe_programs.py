@@ -12,7 +12,7 @@ def profile_points(random):
     for _ in range(60):
         u, h = points[-1]
         du, dh = random.choice((0.0, 1.0, 1.0, 1.0)) * random.uniform(0.8, 6), random.choice((0.0, 1.0, 1.0)) * random.uniform(-3, 5)
-        if (du == 0.0 and abs(dh) < 0.5) or h + dh < 0.5:
+        if (du == 0.0 and abs(dh) < 1.2) or h + dh < 0.5:
             continue
         direction = math.atan2(dh, du)
         isFirst = heading is None
@@ -55,7 +55,7 @@ def lathe_cycle(random, label):
         cycle += f' {start}'
     if is_final:
         if not has_arcs and not is_facing:
-            cycle += f' D{random.uniform(0.2, 0.6):.2f} E{random.choice((0, 0.2))} P{random.randint(1, 3)}'
+            cycle += f' D{random.uniform(0.2, 0.4):.2f} E{random.choice((0, 0.2))} P{random.randint(1, 3)}'
     else:
         if not has_arcs and random.random() < 0.6:
             cycle += f' D{random.uniform(0.1, 0.4):.2f}'

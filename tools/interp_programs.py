@@ -2,8 +2,9 @@
 """Seeded generator of G-code programs over all codes and modal combinations of the dialect.
 
 What the reference's standalone program gets wrong on its own is left out: it takes its position from its canon at a tool
-change, forgets the tool offset then and does not convert it with the units (so G49 stands before those), and lets a probe stop short of its end (so a
-move of all axes follows); it refuses L in G74 and axis words in G43.2; it loses its way in lathe profiles of one segment,
+change (so a move of all axes follows), forgets the tool offset then and does not convert it with the units (so G49 stands before those), and lets a probe stop short of its end (so a
+move of all axes follows); it refuses L in G74 and axis words in G43.2; after a break a do loop runs
+once; M61 leaves the data of the tool; it loses its way in lathe profiles of one segment,
 with collinear or nearly collinear segments, arcs beside an allowance.
 """
 import math
@@ -32,7 +33,8 @@ class Program:
         self.is_compensated = False
         self.labels = 100
         self.motion = 'G80'  # what axis words alone mean
-        self.has_offset = False
+        self.has_break = False
+        self.is_numbered = False  # M61: the tool's data are not those in force
         self.spindles = 3 if seed % 2 == 1 else 1
         count = self.random.randint(5, 40)
         self.header()
@@ -271,10 +273,12 @@ class Program:
             self.lines += ['#30=0', f'{label} while [#30 lt {self.random.randint(0, 4)}]', '#30=[#30+1]']
             if self.chance(0.2):
                 inner = self.label()
-                self.lines += [f'{inner} if [#30 eq 2]', f'{label} {self.random.choice(("break", "continue"))}', f'{inner} endif']
+                leave = self.random.choice(('break', 'continue'))
+                self.has_break = self.has_break or leave == 'break'
+                self.lines += [f'{inner} if [#30 eq 2]', f'{label} {leave}', f'{inner} endif']
             self.body()
             self.lines.append(f'{label} endwhile')
-        elif kind == 'do':
+        elif kind == 'do' and not self.has_break:
             self.lines += ['#30=0', f'{label} do', '#30=[#30+1]']
             self.body()
             self.lines.append(f'{label} while [#30 lt {self.random.randint(0, 4)}]')
@@ -300,9 +304,12 @@ class Program:
         if change:
             self.add('G49')
             self.add(change)
+            self.is_numbered = change.startswith('M61')
+            self.is_incremental, self.motion = False, 'G1'
+            self.lines.append(f'G90 G1 {self.words("XYZABC")} F{self.number(1, 90)}')
             return
         self.add(self.random.choice((
-            f'T{self.random.randint(1, 3)}', 'G43', f'G43 H{self.random.randint(1, 3)}',
+            f'T{self.random.randint(1, 3)}', 'G43 H1' if self.is_numbered else 'G43', f'G43 H{self.random.randint(1, 3)}',
             f'G43.1 {self.words(self.axes())}', f'G43.2 H{self.random.randint(1, 3)}', 'G49',
             f'G10 L1 P{self.random.randint(1, 3)} {self.words(("X", "Z"))} I{self.number(0, 90)} J{self.number(0, 90)} Q{self.random.randint(0, 9)}',
             f'G10 L1 P{self.random.randint(1, 3)} {self.words(("Z",))} R{self.number(0, 0.5)}',

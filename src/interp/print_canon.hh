@@ -11,7 +11,8 @@
 
 namespace mw::interp {
 
-/// "%5d N..... CALL(arguments)" per call; (print,...) as it stands. (log...) are calls as well: it writes no files.
+/// "%5d N..... CALL(arguments)" per call; (print,...) as it stands. (log...) are calls as well: it writes no
+/// files.
 class PrintCanon final : public Canon {
   public:
     explicit PrintCanon(std::FILE *out) : out_(out) {}

@@ -194,12 +194,13 @@ bool Executor::restore_context(const State &saved_modes) {
     if (!restore_geometry(saved)) {
         return false;
     }
-    const bool isToStop = (state.isMist && !saved.isMist) || (state.isFlood && !saved.isFlood);
-    if (isToStop) {
-        run_code('m', 9, {});
-        if (saved.isMist) {
-            run_code('m', 7, {});
-        }
+    if (state.isMist && !saved.isMist) {
+        state.isMist = false;
+        canon.mist_off();
+    }
+    if (state.isFlood && !saved.isFlood) {
+        state.isFlood = false;
+        canon.flood_off();
     }
     if (saved.isFlood && !state.isFlood) {
         run_code('m', 8, {});

@@ -52,7 +52,8 @@ bool Executor::take_cycle_words(const Code &code, const BlockValues &values) {
     };
     for (const Need &need : needs) {
         if (values.has(need.word)) {
-            need.value = values.at(need.word);
+            const bool isHalved = need.word == 'x' && state.isDiameter;
+            need.value = values.at(need.word) * (isHalved ? 0.5 : 1.0);
         } else if (isFirst && need.isNeeded) {
             return fault.set(fmt::format("{} needs {}{}", name, need.text,
                                          need.word == depth

@@ -171,6 +171,7 @@ bool Flow::call_handler(ScriptModule module, const std::string &name) {
     script_error_.clear();
     commit();
     executor_.outcome = Outcome::OK;
+    executor_.canon.enter_block(program_, line_read_, line_read_, false, call_level());
     std::unique_ptr<SuspendedScript> rest;
     ++script_depth_;
     ScriptOutcome outcome = scripts_->call(module, name, arguments, rest);

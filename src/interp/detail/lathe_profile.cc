@@ -10,6 +10,7 @@ namespace mw::interp::detail {
 namespace {
 
 constexpr double TINY = 1e-9;
+constexpr std::size_t MOST_MOVES = 1000000;  // of one cycle
 
 double radius_of(const ProfileSegment &arc) {
     return distance(arc.centre, arc.end);
@@ -246,7 +247,6 @@ std::optional<Rougher::Crossing> Rougher::rise_through(std::size_t after, double
 
 /// Across at one level, aside and back to where it began.
 void Rougher::cut(Point from, Point to, bool isRapid) {
-    constexpr std::size_t MOST_MOVES = 1000000;
     const double half = std::fabs(to.x - from.x) / 2.0;
     const double away = plan_.retract < 0.0 || plan_.retract > half ? half : plan_.retract;
     const double forwards = to.x < from.x ? -1.0 : 1.0;
@@ -254,7 +254,6 @@ void Rougher::cut(Point from, Point to, bool isRapid) {
     moves_.push_back({true, false, {to.x - away * forwards, to.y + away}, {}, 1});
     moves_.push_back({true, false, {from.x + away * forwards, from.y + away}, {}, 1});
     moves_.push_back({isRapid, false, from, {}, 1});
-    isTooLong_ = moves_.size() > MOST_MOVES;
 }
 
 void Rougher::descend(std::size_t index) {
@@ -272,7 +271,7 @@ void Rougher::descend(std::size_t index) {
     }
     while (!isTooLong_ && level_ <= segment.start.y + TINY && level_ > segment.end.y + TINY) {
         const std::optional<Crossing> other = rise_through(index, level_);
-        if (!other || std::fabs(other->point.x - at_height(segment, level_).x) < TINY) {
+        if (!other) {
             break;
         }
         const Point from = at_height(segment, level_);
@@ -280,7 +279,10 @@ void Rougher::descend(std::size_t index) {
         if (!isThere || isEntry) {
             move_to(segment, from, isEntry);
         }
-        cut(from, other->point, isEntry);
+        if (std::fabs(other->point.x - from.x) > TINY) {
+            cut(from, other->point, isEntry);
+        }
+        isTooLong_ = isTooLong_ || moves_.size() > MOST_MOVES;
         level_ -= plan_.increment;
         isCut = true;
     }
