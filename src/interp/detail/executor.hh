@@ -218,6 +218,7 @@ class Executor : public BuiltIns {
     bool add_code(char letter, double number, std::uint32_t column, BlockValues &values);
     bool insert_code(const Code &code, std::uint32_t column, BlockValues &values);
     bool choose_motion(BlockValues &values);
+    bool check_axes(const BlockValues &values);
     bool check_words(const BlockValues &values);
     bool apply_settings(const BlockView &view);
     bool run_codes(const BlockValues &values, std::size_t first);
