@@ -49,6 +49,8 @@ struct Settings {
     std::string startup_code;              ///< [RS274NGC]RS274NGC_STARTUP_CODE
     bool isG92PersistenceDisabled = false;
     bool isFanucSubDisabled = false;
+    bool isCoordinateSystemKept = false;  ///< M2 and M30 do not go back to G54
+    double max_velocity_mm_s = 0;         ///< threads that need more are refused; 0: not known
     double center_arc_radius_tolerance_mm = 0.00127;
     double center_arc_radius_tolerance_inch = 0.00005;
     bool isLathe = false;
@@ -113,7 +115,7 @@ class Interpreter final : public ProgramInterpreter {
     std::string_view subroutine() const;
     /// A line of a file that the interpreter has read, empty when it has not.
     std::string line_text(const std::string &file, int line) const;
-    double parameter(int number) const;
+    double parameter(int number) const override;
 
   private:
     struct Impl;

@@ -37,7 +37,7 @@ class MachineFrame final : public Canon {
     void set_feed_mode(int spindle, FeedMode mode) override;
     void set_motion_control_mode(MotionControl mode, double tolerance) override;
     void set_naivecam_tolerance(double tolerance) override;
-    void set_planner_mode(int, double) override {}
+    void set_planner_mode(int type, double peak_scale) override;
     void straight_traverse(const Pose &end) override;
     void straight_feed(const Pose &end) override;
     void arc_feed(const ArcFeed &arc) override;
@@ -100,6 +100,8 @@ class MachineFrame final : public Canon {
     void log_open(std::string_view path, bool isAppending) override { target_.log_open(path, isAppending); }
     void log(std::string_view text) override { target_.log(text); }
     void log_close() override { target_.log_close(); }
+    void probe_log(std::string_view path) override { target_.probe_log(path); }
+    void reload_tools() override { target_.reload_tools(); }
     void canon_error(std::string_view text) override { target_.canon_error(text); }
     void user_m_code(int code, double p, double q) override { target_.user_m_code(code, p, q); }
 
@@ -122,7 +124,8 @@ class MachineFrame final : public Canon {
     FeedMode feed_mode_ = FeedMode::UNITS_PER_MINUTE;
     MotionControl control_ = MotionControl::CONTINUOUS;
     double tolerance_ = 0, naivecam_ = 0;  ///< machine units
-    double synch_feed_ = 0;                ///< machine units per revolution; 0 off
+    double corner_scale_ = 0;
+    double synch_feed_ = 0;  ///< machine units per revolution; 0 off
     int synch_spindle_ = 0;
     bool isVelocitySynched_ = false;
 };

@@ -40,6 +40,8 @@ class ProgramInterpreter {
     virtual Result<> load_parameters(const std::string &) { return {}; }
     /// Writes it atomically; keeps the numbers that the file had and those that must be there.
     virtual Result<> save_parameters(const std::string &) const { return {}; }
+    /// The value of #number; 0 where there are no parameters.
+    virtual double parameter(int) const { return 0.0; }
 
     /// Before the first program.
     virtual Result<> begin() = 0;
@@ -61,6 +63,8 @@ class ProgramInterpreter {
     virtual int line() const = 0;  ///< of the block last read, in file()
     virtual const std::string &file() const = 0;
     virtual int call_level() const { return 0; }
+    /// A numbered parameter; 0 in languages without them.
+    virtual double parameter(int) const { return 0.0; }
     /// No line of the open file is left.
     virtual bool isAtFileEnd() const = 0;
     /// Warnings of begin().

@@ -231,9 +231,8 @@ void read_trajectory(IniReader &ini, MachineConfig &machine) {
                           "ARC_BLEND_OPTIMIZATION_DEPTH",
                           "ARC_BLEND_GAP_CYCLES",
                           "ARC_BLEND_RAMP_FREQ",
-                          "ARC_BLEND_KINK_RATIO",
-                          "SMOOTH_PLANNER",
-                          "SCURVE_PEAK_SCALE"});
+                          "ARC_BLEND_KINK_RATIO"});
+    machine.task.sequencer.smooth_planner = static_cast<int>(ini.integer("TRAJ", "SMOOTH_PLANNER", 1, 0, 1));
 }
 
 void read_periods(IniReader &ini, MachineConfig &machine) {
@@ -275,10 +274,19 @@ void read_interpreter(IniReader &ini, MachineConfig &machine) {
             ini.file().place_of_section("RS274NGC"));
     }
     machine.task.interpreter = interp::settings_from_ini(ini.file(), ini.sink());
+    const auto fastest = static_cast<std::uint16_t>(motion::Parameter::TRAJ_MAX_VELOCITY);
+    for (const motion::SetParameter &parameter : machine.parameters) {
+        if (parameter.parameter == fastest && std::isfinite(parameter.value)) {
+            constexpr double MM_PER_INCH = 25.4;
+            machine.task.interpreter.max_velocity_mm_s =
+                parameter.value * (machine.isMetric ? 1.0 : MM_PER_INCH);
+        }
+    }
     machine.task.interpreter.isLathe = ini.boolean("DISPLAY", "LATHE", false);
     ini.know_all("RS274NGC", {"RS274NGC_STARTUP_CODE",
                               "DISABLE_G92_PERSISTENCE",
                               "DISABLE_FANUC_STYLE_SUB",
+                              "KEEP_COORDINATE_SYSTEM",
                               "REMAP",
                               "CENTER_ARC_RADIUS_TOLERANCE_MM",
                               "CENTER_ARC_RADIUS_TOLERANCE_INCH",

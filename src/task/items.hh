@@ -75,6 +75,9 @@ struct OverrideSwitchItem {
     int spindle;
     bool isEnabled;
 };
+struct PlannerModeItem {
+    bool isSmooth;
+};
 struct DigitalOutputItem {
     int index;
     bool isOn;
@@ -106,8 +109,10 @@ struct PrintItem {
 };
 struct LogItem {
     enum class What : std::uint8_t { OPEN, APPEND, WRITE, CLOSE } what;
-    std::string text;  ///< path or line
+    std::string text;      ///< path or line
+    bool isProbe = false;  ///< for results of probes, not for (log,...)
 };
+struct ReloadToolsItem {};
 struct UserCodeItem {
     int code;
     double p, q;
@@ -125,8 +130,8 @@ using ItemBody =
     std::variant<LineItem, ArcItem, ProbeItem, RigidTapItem, DwellItem, SpindleModeItem, SpindleSpeedItem,
                  SpindleOnItem, SpindleOffItem, SpindleOrientItem, WaitOrientItem, SelectToolItem,
                  ChangeToolItem, ChangeToolNumberItem, ToolEntryItem, CoolantItem, OverrideSwitchItem,
-                 DigitalOutputItem, AnalogOutputItem, WaitInputItem, StopItem, EndItem, MessageItem,
-                 PrintItem, LogItem, UserCodeItem, ToolOffsetItem, OffsetsItem>;
+                 PlannerModeItem, DigitalOutputItem, AnalogOutputItem, WaitInputItem, StopItem, EndItem,
+                 MessageItem, PrintItem, LogItem, ReloadToolsItem, UserCodeItem, ToolOffsetItem, OffsetsItem>;
 
 struct Item {
     motion::SourceTag source;

@@ -5,7 +5,9 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "base/result.hh"
 #include "io/controller.hh"
@@ -24,6 +26,9 @@ struct SequencerEvents {
     std::function<void(const std::string &)> fail;         ///< something cannot be done; task aborts
     std::function<void(const OffsetsItem &)> offsets;
     std::function<void(const ToolOffsetItem &)> tool_offset;
+    /// Changes the planner at rest; the command whose answer is to be awaited, 0: nothing to wait for;
+    /// nothing when it cannot be, and task aborts.
+    std::function<std::optional<motion::CommandId>(const PlannerModeItem &)> planner_mode;
     /// Starts a user M code; false when it cannot be started.
     std::function<Result<>(const UserCodeItem &)> start_user_code;
     std::function<bool()> isUserCodeRunning;
@@ -34,6 +39,7 @@ using MoveListener = std::function<void(motion::CommandId id, const motion::Path
 
 struct SequencerSettings {
     bool isToolChangeWithSpindleOn = false;  ///< [EMCIO]TOOL_CHANGE_WITH_SPINDLE_ON
+    int smooth_planner = 1;  ///< [TRAJ]SMOOTH_PLANNER: what G64 R above 0 means; 0: it is refused
 };
 
 /// One thread; step() once a task cycle, never blocks.
@@ -67,12 +73,16 @@ class Sequencer {
     /// Starts or stops a spindle at once (operator's command).
     void command_spindle(int spindle, double signed_rpm, bool isWaiting);
     void stop_spindles();
+    /// Whether a probe was made since the last call.
+    bool take_probe() { return std::exchange(isProbeMade_, false); }
+    /// A line for the file of (probeopen); without one nothing happens.
+    void log_probe(const std::string &line);
     int selected_index() const { return selected_index_; }
     void set_move_listener(MoveListener listener) { move_listener_ = std::move(listener); }
 
   private:
     enum class Need : std::uint8_t { NOTHING, MOTION, MOTION_AND_IO };
-    enum class Wait : std::uint8_t { NONE, DWELL, INPUT, TOOL, ORIENT, USER_CODE };
+    enum class Wait : std::uint8_t { NONE, DWELL, INPUT, TOOL, ORIENT, USER_CODE, SETTING };
     struct SpindleState {
         double speed = 0;
         double css_max_rpm = 0;
@@ -87,6 +97,10 @@ class Sequencer {
     bool isStepBoundary(const Item &item);
     /// False when the item must be tried again next cycle.
     bool execute(const Item &item, std::int64_t now_ns);
+    bool begin(const DwellItem &dwell, std::int64_t now_ns);
+    bool begin(const WaitInputItem &input, std::int64_t now_ns);
+    bool begin(const PlannerModeItem &mode);
+    bool begin(const UserCodeItem &code);
     bool push_move(const Item &item);
     /// Entry of the table, or "no tool" for index 0.
     interp::ToolEntry tool_at(int index) const;
@@ -94,7 +108,12 @@ class Sequencer {
     void execute_output(const Item &item);
     void execute_log(const LogItem &item);
     /// Writes an open log: also at the end of a program and at an abort, so that no line is lost.
-    void close_log();
+    struct LogFile {
+        std::string path, text;
+        bool isOpen = false;
+    };
+    void close_log(LogFile &log);
+    void close_logs();
     motion::MoveTerms terms_of(const interp::MoveSettings &settings, motion::MotionType type,
                                const Item &item);
     void send_spindle(int spindle);
@@ -113,14 +132,15 @@ class Sequencer {
     double input_value_ = 0, last_input_ = 0;
     bool isInputTimedOut_ = false;
     int awaited_spindle_ = 0;
+    motion::CommandId awaited_setting_ = 0;
     int selected_index_ = -1;  ///< table entry prepared by T, -1: none
     int changing_index_ = -1;
     std::array<SpindleState, MAX_SPINDLES> spindles_{};
     bool isNextMoveWaitingForSpeed_ = false;
     bool isStepping_ = false, isStepDone_ = false;
     std::uint32_t step_block_ = 0;
-    std::string log_path_, log_text_;
-    bool isLogOpen_ = false;
+    std::array<LogFile, 2> logs_;  ///< of (log,...), of probes
+    bool isProbeMade_ = false;
 };
 
 }  // namespace mw::task

@@ -13,10 +13,12 @@
 #include "io/controller.hh"
 #include "task/command.hh"
 #include "task/motion_link.hh"
+#include "task/planner_mode.hh"
 #include "task/sequencer.hh"
 #include "task/status.hh"
 #include "task/task_canon.hh"
 #include "task/tool_store.hh"
+#include "task/user_program.hh"
 
 namespace mw::task {
 
@@ -39,6 +41,8 @@ struct Settings {
     std::string interpreter_plugin;  ///< [TASK]INTERPRETER: a shared object; empty: RS-274/NGC
     SequencerSettings sequencer;
     ToolChangePlace tool_change_place;
+    /// A program of a user M code is waited for within a cycle: for virtual clocks.
+    bool isClockHeldByUserPrograms = false;
     /// Task's loop standing still for so long stops the machine.
     double watchdog_s = 0.5;
     /// Blocks that the interpreter may read in one cycle, and queued items above which it waits.
@@ -82,6 +86,8 @@ class Task final : public interp::World {
     void step(std::int64_t now_ns);
 
     const Status &status() const { return status_; }
+    /// The planner in force, and wishes of the operator about it.
+    PlannerMode &planner_mode() { return planner_mode_; }
     const motion::Status &motion_status() const { return motion_.status(); }
     /// Takes the oldest message for the operator; false when there is none.
     bool poll_message(Message &message);
@@ -115,6 +121,7 @@ class Task final : public interp::World {
     void update_pending();
     void carry_out_commands();
     void run_interpreter();
+    void log_probe();
     bool isReadAheadAllowed() const;
     void on_step_result(interp::Step result);
     void on_stop(const StopItem &stop, int line);
@@ -139,7 +146,9 @@ class Task final : public interp::World {
     TaskCanon canon_;
     interp::MachineFrame frame_;
     std::unique_ptr<interp::ProgramInterpreter> interp_;
+    UserProgram user_program_;
     Sequencer sequencer_;
+    PlannerMode planner_mode_;
 
     Status status_;
     std::int64_t now_ns_ = 0;

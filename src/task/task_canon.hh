@@ -42,6 +42,7 @@ class TaskCanon final : public interp::MachineCanon {
     void tool_offset(const geom::Pose &offset) override { add(ToolOffsetItem{offset}); }
     void offsets(int g5x_index, const geom::Pose &g5x, const geom::Pose &g92,
                  double rotation_xy_deg) override;
+    void planner_mode(bool isSmooth) override { add(PlannerModeItem{isSmooth}); }
     void set_spindle_mode(int spindle, double css_max_rpm) override {
         add(SpindleModeItem{spindle, css_max_rpm});
     }
@@ -78,6 +79,10 @@ class TaskCanon final : public interp::MachineCanon {
     void log_open(std::string_view path, bool isAppending) override;
     void log(std::string_view text) override { add(LogItem{LogItem::What::WRITE, std::string(text)}); }
     void log_close() override { add(LogItem{LogItem::What::CLOSE, {}}); }
+    void probe_log(std::string_view path) override {
+        add(LogItem{path.empty() ? LogItem::What::CLOSE : LogItem::What::OPEN, std::string(path), true});
+    }
+    void reload_tools() override { add(ReloadToolsItem{}); }
     void canon_error(std::string_view text) override;
     void user_m_code(int code, double p, double q) override { add(UserCodeItem{code, p, q}); }
 

@@ -118,7 +118,7 @@ double Planner::trial_deviation(std::uint64_t tick) noexcept {
     while (m < last_move_ && s > move_plan(m).start_s + store_.primitive(m).length) {
         ++m;
     }
-    const Pose off = mean - position_at(store_.primitive(m), s - move_plan(m).start_s);
+    const Pose off = mean - programmed_at(m, s - move_plan(m).start_s);
     return std::max(geom::norm_linear(off), geom::norm_abc(off));
 }
 

@@ -159,6 +159,9 @@ double Executor::built_in(int number) const {
     if (number >= P_TOOL_OFFSET && number < P_TOOL_OFFSET + AXES_OF_POSE) {
         return state.loaded_offset[number - P_TOOL_OFFSET];
     }
+    if (number >= P_MACHINE_POSITION && number < P_MACHINE_POSITION + AXES_OF_POSE) {
+        return frame().to_machine(reported_position())[number - P_MACHINE_POSITION];
+    }
     switch (number) {
     case P_TOOL_NUMBER: return state.tool_in_spindle;
     case P_TOOL_DIAMETER: return state.tool_diameter;

@@ -250,6 +250,8 @@ class Executor : public BuiltIns {
     bool find_tool(int toolno, std::uint32_t column, int &index);
     void load_tool(int index);
     void apply_tool_offset(const Pose &offset, int code);
+    bool reload_tools();
+    bool check_pitch(int spindle, double pitch, std::uint32_t column);
     bool set_tool_data(int l, const BlockValues &values);
     bool set_coordinate_system(int l, const BlockValues &values);
     void set_tool_axes(int l, const BlockValues &values, Pose &offset) const;

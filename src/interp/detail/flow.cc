@@ -244,14 +244,16 @@ Step Flow::run_block(const BlockView &view) {
 Step Flow::after_block() {
     bool isDone = true;
     while (isDone) {
-        commit();
+        const Outcome outcome = executor_.outcome;
+        executor_.outcome = Outcome::OK;
+        if (outcome != Outcome::CALL_FANUC && outcome != Outcome::PROFILE) {
+            commit();  // those two may still fail
+        }
         if (isEndDue_ && script_depth_ == 0) {  // a script has ended the program
             isEndDue_ = false;
             unwind();
             return Step::PROGRAM_END;
         }
-        const Outcome outcome = executor_.outcome;
-        executor_.outcome = Outcome::OK;
         switch (outcome) {
         case Outcome::OK: return Step::OK;
         case Outcome::SYNC: return Step::SYNC;

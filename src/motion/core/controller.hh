@@ -40,6 +40,7 @@ class Controller {
 
   private:
     using MoveTag = traj::MoveTag;
+    static constexpr double JERK_OFF = 1e9;  ///< jerk limits of this much and more are none
     /// What a joint or axis jog is driven by.
     enum class JogSource : std::uint8_t { NONE, KEYBOARD, WHEEL };
 
@@ -55,12 +56,12 @@ class Controller {
         double backlash_raw = 0, backlash_extreme = 0;
         int backlash_side = 0;       ///< +1 or -1 once the joint has moved
         traj::FreePlanner backlash;  ///< filtered backlash compensation
-        traj::FreePlanner free;
+        traj::JogPlanner free;
         JogSource jog = JogSource::NONE;
         std::int32_t wheel_counts = 0;
     };
     struct AxisState {
-        traj::FreePlanner teleop;
+        traj::JogPlanner teleop;
         JogSource jog = JogSource::NONE;
         std::int32_t wheel_counts = 0;
     };
@@ -107,10 +108,12 @@ class Controller {
                     std::int32_t &counts) noexcept;
     void step_wheels(const Inputs &in) noexcept;
     void stop_jogs(bool isAtOnce) noexcept;
-    traj::FreePlanner &planner_of(const JogTarget &target) noexcept;
+    traj::JogPlanner &planner_of(const JogTarget &target) noexcept;
     JogSource &source_of(const JogTarget &target) noexcept;
     double max_velocity_of(const JogTarget &target) const noexcept;
     double max_acceleration_of(const JogTarget &target) const noexcept;
+    double max_jerk_of(const JogTarget &target) const noexcept;
+    bool isJerkLimited() const noexcept;
 
     // --- controller_joints.cc
     void read_feedback(const Inputs &in) noexcept;

@@ -14,7 +14,7 @@ void Controller::step_coord(const Inputs &in) noexcept {
         executor_.step(cycle_);
         executor_.set_position(carte_pos_cmd_);
         for (int i = 0; i < MAX_AXES; ++i) {
-            traj::FreePlanner &p = axes_[at(i)].teleop;
+            traj::JogPlanner &p = axes_[at(i)].teleop;
             p.step(config_.period_s);
             pose[i] = p.position;
         }

@@ -40,6 +40,7 @@ class FakeMotion {
     std::vector<std::string> log;
     bool isHolding = false;
     bool isRefusingMoves = false;
+    double corner_scale = -1;  ///< of the last move
 
   private:
     void take(const motion::Command &command) {
@@ -56,6 +57,9 @@ class FakeMotion {
             log.push_back("spindle " + std::to_string(static_cast<int>(on->speed_rpm)));
         } else if (std::holds_alternative<motion::SpindleOff>(command.body)) {
             log.emplace_back("spindle off");
+        } else if (const auto *p = std::get_if<motion::SetParameter>(&command.body)) {
+            const bool isType = p->parameter == static_cast<int>(motion::Parameter::TRAJ_PLANNER_TYPE);
+            log.push_back((isType ? "planner " : "setting ") + std::to_string(static_cast<int>(p->value)));
         }
         channels_.servo_answers.push({command.id});
     }
@@ -72,6 +76,7 @@ class FakeMotion {
                 answer.reason = motion::Reason::BEYOND_SOFT_LIMIT;
                 answer.index = 0;
             } else if (!isStale && line != nullptr) {
+                corner_scale = line->terms.corner_scale;
                 status.carte_pos_cmd = line->end;
                 log.push_back("line " + std::to_string(static_cast<int>(line->end.x())));
             }
@@ -126,16 +131,29 @@ class LoopedIo final : public IoPort {
 
 class TaskTest : public testing::Test {
   protected:
-    TaskTest()
-        : channels(std::make_unique<motion::Channels>()), motion(*channels),
-          task({*channels, io, tools, parameters}, Settings{}) {
-        folder = fs::temp_directory_path() / ("mw_task_" + std::to_string(::getpid()));
-        fs::create_directory(folder);
+    explicit TaskTest(const Settings &settings = {})
+        : channels(std::make_unique<motion::Channels>()), motion(*channels), folder(made_folder()),
+          task({*channels, io, tools, parameters}, settings_for(folder, settings)) {
         EXPECT_TRUE(task.start().has_value());
         EXPECT_EQ(ask(SetState{State::ESTOP_RESET}), Progress::DONE);
         EXPECT_EQ(ask(SetState{State::ON}), Progress::DONE);
     }
     ~TaskTest() override { fs::remove_all(folder); }
+
+    static fs::path made_folder() {
+        const fs::path path = fs::temp_directory_path() / ("mw_task_" + std::to_string(::getpid()));
+        fs::create_directory(path);
+        return path;
+    }
+    static Settings settings_for(const fs::path &folder, Settings settings) {
+        settings.interpreter.user_m_path = {folder.string()};
+        settings.isClockHeldByUserPrograms = true;
+        return settings;
+    }
+    void make_program(const std::string &name, const std::string &script) const {
+        std::ofstream(folder / name) << "#!/bin/sh\n" << script;
+        fs::permissions(folder / name, fs::perms::owner_all);
+    }
 
     void cycle() {
         now_ns += 1000000;
@@ -178,9 +196,9 @@ class TaskTest : public testing::Test {
         return all;
     }
 
-    fs::path folder;
     std::unique_ptr<motion::Channels> channels;
     FakeMotion motion;
+    fs::path folder;
     LoopedIo io;
     NoTools tools;
     NoParameters parameters;
@@ -189,6 +207,53 @@ class TaskTest : public testing::Test {
     RequestId request = 0;
 };
 
+TEST_F(TaskTest, AUserCodeRunsWithItsWordsAndIsAwaited_I1) {
+    make_program("M101", "echo \"$1 $2\" >> " + (folder / "said").string() + "\n");
+    open("G21 F600\nG1 X1\nM101 P2.5\nM101 P1 Q2\nG1 X2\nM2\n");
+    motion.log.clear();
+    EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << task.reason(request);
+    std::ifstream said(folder / "said");
+    std::string first, second;
+    std::getline(said, first);
+    std::getline(said, second);
+    EXPECT_EQ(first, "2.500000 -1.000000");
+    EXPECT_EQ(second, "1.000000 2.000000");
+}
+
+TEST_F(TaskTest, AUserCodeThatFailsIsTold_I1) {
+    make_program("M102", "exit 3\n");
+    open("M102\nM2\n");
+    ask(RunProgram{});
+    EXPECT_NE(messages().find("ended with status 3"), std::string::npos);
+}
+
+TEST_F(TaskTest, AUserCodeNeedsAnExecutableFile_I1) {
+    std::ofstream(folder / "M103") << "#!/bin/sh\n";
+    open("M103\nM2\n");
+    EXPECT_EQ(ask(RunProgram{}), Progress::FAILED);
+    EXPECT_NE(messages().find("Unknown m code used: M103"), std::string::npos);
+}
+
+TEST(UserProgram, is_ended_with_all_that_it_started_I1) {
+    const fs::path path = fs::temp_directory_path() / ("mw_user_" + std::to_string(::getpid()));
+    std::ofstream(path) << "#!/bin/sh\nsleep 1000 & sleep 1000\n";
+    fs::permissions(path, fs::perms::owner_all);
+    UserProgram program(false);
+    ASSERT_TRUE(program.start(path.string(), 1, 2).has_value());
+    EXPECT_TRUE(program.isRunning());
+    program.stop();
+    EXPECT_FALSE(program.isRunning());
+    fs::remove(path);
+    EXPECT_FALSE(program.start(path.string(), 1, 2).has_value());
+}
+
+TEST_F(TaskTest, M99InTheMainProgramBeginsItAgain_I1) {
+    open("G21 F600\n#1=[#1+1]\nO1 if [#1 ge 3]\nM2\nO1 endif\nG1 X#1\nM99\n");
+    motion.log.clear();
+    EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << task.reason(request);
+    EXPECT_EQ(joined().substr(0, 14), "line 1, line 2");
+}
+
 TEST_F(TaskTest, AProgramRunsToItsEnd_D1) {
     open("G21 F600\nG1 X1\nG1 X2\nM2\n");
     motion.log.clear();
@@ -196,6 +261,58 @@ TEST_F(TaskTest, AProgramRunsToItsEnd_D1) {
     EXPECT_EQ(joined().substr(0, 14), "line 1, line 2");
     EXPECT_EQ(task.status().interp_state, InterpState::IDLE);
     EXPECT_EQ(task.status().programs_ended, 1U);
+}
+
+TEST_F(TaskTest, AProgramChoosesThePlannerInItsPlace_C2) {
+    open("G21 F600\nG1 X1\nG64 P0.1 R0.5\nG1 X2\nG64 P0.1\nG1 X3\nG64 R0\nG1 X4\nG64 R0\nG1 X5\nM2\n");
+    motion.log.clear();
+    EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << task.reason(request);
+    EXPECT_EQ(joined().substr(0, 59), "line 1, planner 1, line 2, line 3, planner 0, line 4, line ");
+    EXPECT_EQ(motion.corner_scale, 0.0);
+    EXPECT_NE(messages().find("MAX_LINEAR_JERK"), std::string::npos);
+}
+
+TEST_F(TaskTest, CornerSpeedOfG64RTravelsWithTheMoves_C2) {
+    open("G21 F600\nG64 P0.1 R0.5\nG1 X2\nM2\n");
+    EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << task.reason(request);
+    EXPECT_EQ(motion.corner_scale, 0.5);
+}
+
+TEST_F(TaskTest, TheOperatorsPlannerComesWhenAllIsIdle_C2) {
+    motion.isHolding = true;
+    open("G21 F600\nG1 X1\nM2\n");
+    request = task.submit(RunProgram{});
+    cycles(20);
+    motion.log.clear();
+    task.planner_mode().wish(1);
+    cycles(20);
+    EXPECT_EQ(joined(), "");
+    EXPECT_NE(messages().find("waits until motion is idle"), std::string::npos);
+    motion.isHolding = false;
+    cycles(30);
+    EXPECT_EQ(joined(), "line 1, spindle off, planner 1");
+    task.planner_mode().wish(7);
+    cycles(2);
+    EXPECT_EQ(joined(), "line 1, spindle off, planner 1");
+    EXPECT_NE(messages().find("0 (trapezoidal) or 1"), std::string::npos);
+}
+
+class NoSmoothPlanner : public TaskTest {
+  protected:
+    NoSmoothPlanner() : TaskTest(without()) {}
+    static Settings without() {
+        Settings settings;
+        settings.sequencer.smooth_planner = 0;
+        return settings;
+    }
+};
+
+TEST_F(NoSmoothPlanner, G64RIsRefused_C2) {
+    open("G21 F600\nG1 X1\nG64 P0.1 R0.5\nG1 X2\nM2\n");
+    motion.log.clear();
+    EXPECT_NE(ask(RunProgram{}), Progress::DONE);
+    EXPECT_EQ(joined().find("line 2"), std::string::npos);
+    EXPECT_NE(messages().find("SMOOTH_PLANNER"), std::string::npos);
 }
 
 TEST_F(TaskTest, CommandsThatCannotBeDoneAreRefusedWithAReason_C5) {
