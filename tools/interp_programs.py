@@ -1,7 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Seeded generator of G-code programs over all codes and modal combinations of the dialect."""
+"""Seeded generator of G-code programs over all codes and modal combinations of the dialect.
+
+What the reference's standalone program gets wrong on its own is left out: it takes its position from its canon at a tool
+change (so a move of all axes follows), forgets the tool offset then and does not convert it with the units (so G49 stands before those), and lets a probe stop short of its end (so a
+move of all axes follows); it refuses L in G74 and axis words in G43.2; after a break a do loop runs
+once; M61 leaves the data of the tool; it loses its way in lathe profiles of one segment,
+with collinear or nearly collinear segments, arcs beside an allowance.
+"""
 import math
 import random
+
+import interp_lathe_programs
 
 PLANES = {'G17': ('X', 'Y', 'Z', 'I', 'J', 'K'), 'G18': ('Z', 'X', 'Y', 'K', 'I', 'J'),
           'G19': ('Y', 'Z', 'X', 'J', 'K', 'I')}
@@ -23,6 +32,10 @@ class Program:
         self.feed_mode = 'G94'
         self.is_compensated = False
         self.labels = 100
+        self.motion = 'G80'  # what axis words alone mean
+        self.has_break = False
+        self.is_numbered = False  # M61: the tool's data are not those in force
+        self.spindles = 3 if seed % 2 == 1 else 1
         count = self.random.randint(5, 40)
         self.header()
         while len(self.lines) < count:
@@ -88,12 +101,15 @@ class Program:
         kinds = ((12, self.straight), (8, self.arc), (7, self.cycle), (5, self.modal), (4, self.coordinates),
                  (4, self.machine_code), (3, self.parameters), (3, self.flow), (2, self.tool), (2, self.compensation),
                  (2, self.comment), (1, self.polar), (1, self.threading), (1, self.feed), (1, self.nonsense),
-                 (1, self.spline), (1, self.home))
+                 (1, self.spline), (1, self.home), (1, self.lathe), (1, self.probe), (1, self.oriented), (1, self.call))
         chosen = self.random.choices([k for _, k in kinds], [w for w, _ in kinds])[0]
         chosen()
 
     def straight(self):
         code = self.random.choice(('G0', 'G1', 'G1', 'G1', ''))
+        if code == '' and self.motion not in ('G0', 'G1') and self.chance(0.98):
+            code = 'G1'
+        self.motion = code or self.motion
         extra = f' F{self.value(1, 500)}' if self.chance(0.15) or self.feed_mode == 'G93' else ''
         prefix = 'G53 ' if code in ('G0', 'G1') and self.chance(0.03) else ''
         self.add(f'{prefix}{code} {self.words(self.axes())}{extra}'.strip())
@@ -101,6 +117,7 @@ class Program:
     def arc(self):
         first, second, third, first_offset, second_offset, _ = PLANES[self.plane]
         code = self.random.choice(('G2', 'G3'))
+        self.motion = code
         helix = f' {third}{self.value(-3, 3)}' if self.chance(0.25) else ''
         turns = f' P{self.random.randint(1, 4)}' if self.chance(0.1) else ''
         feed = f' F{self.value(1, 500)}' if self.feed_mode == 'G93' else ''
@@ -133,14 +150,21 @@ class Program:
         code = self.random.choice(('G73', 'G81', 'G82', 'G83', 'G85', 'G86', 'G88', 'G89', 'G74', 'G84', 'G87'))
         if code in ('G74', 'G84', 'G87') and self.chance(0.6):
             code = 'G81'
+        if self.feed_mode == 'G93' and self.chance(0.95):
+            self.feed_mode = 'G94'
+            self.add(f'G94 F{self.number(1, 50)}')
+        if code in ('G74', 'G84', 'G86', 'G87', 'G88') and self.chance(0.95):
+            self.add('S500 ' + ('M4' if code == 'G74' else 'M3'))
         retract, depth = self.random.uniform(0, 3), self.random.uniform(-3, 0)
         line = f'{self.random.choice(("", "G98 ", "G99 "))}{code} {self.words((first, second))} ' \
                f'{third}{depth:.3f} R{retract:.3f}'
-        if code in ('G82', 'G86', 'G88', 'G89', 'G84', 'G74') and self.chance(0.9):
+        if code in ('G82', 'G86', 'G88', 'G89', 'G84', 'G74') and self.chance(0.98):
             line += f' P{self.number(0, 2)}'
+        if code == 'G87' and self.chance(0.95):
+            line += f' I{self.number(-1, 1)} J{self.number(-1, 1)} K{self.number(-1, 1)}'
         if code in ('G73', 'G83'):
             line += f' Q{self.random.uniform(0.2, 2):.3f}'
-        if self.chance(0.15):
+        if self.chance(0.15) and code != 'G74':
             line += f' L{self.random.randint(1, 3)}'
         if self.feed_mode == 'G93':
             line += ' F10'
@@ -148,6 +172,7 @@ class Program:
         for _ in range(self.random.randint(0, 2)):
             self.add(self.words((self.random.choice((first, second)),)) + (' F10' if self.feed_mode == 'G93' else ''))
         self.add('G80')
+        self.motion = 'G80'
 
     def modal(self):
         choice = self.random.choice(('plane', 'distance', 'units', 'arc', 'path', 'feed', 'return', 'lathe'))
@@ -159,6 +184,7 @@ class Program:
             self.add('G91' if self.is_incremental else 'G90')
         elif choice == 'units':
             self.is_metric = self.chance(0.5)
+            self.lines.append('G49')
             self.add('G21' if self.is_metric else 'G20')
         elif choice == 'arc':
             self.is_arc_absolute = self.chance(0.3)
@@ -168,7 +194,10 @@ class Program:
                                          f'G64 P{self.number(0, 1)} Q{self.number(0, 1)}')))
         elif choice == 'feed':
             self.feed_mode = self.random.choice(('G93', 'G94', 'G94', 'G95'))
+            if self.feed_mode == 'G95':
+                self.add(f'S{self.random.randint(100, 2000)} M3')
             self.add(self.feed_mode)
+            self.motion = 'G1'
             self.add(f'G1 {self.words(self.axes())} F{self.number(1, 50)}')
         elif choice == 'return':
             self.add(self.random.choice(('G98', 'G99')))
@@ -179,18 +208,21 @@ class Program:
         number = self.random.randint(1, 9)
         self.add(self.random.choice((
             f'G10 L2 P{number} {self.words(self.axes())}',
-            f'G10 L2 P{number} R{self.number(-90, 90)}',
+            f'G10 L2 P{number} R{self.number(-90, 90)}', f'G10 L2 P0 {self.words(self.axes())}', f'G10 L20 P0 {self.words(self.axes())}',
             f'G10 L20 P{number} {self.words(self.axes())}',
             f'G92 {self.words(self.axes())}', 'G92.1', 'G92.2', 'G92.3', f'G52 {self.words(self.axes())}', 'G52 X0 Y0 Z0',
             self.random.choice(('G54', 'G55', 'G56', 'G57', 'G58', 'G59', 'G59.1', 'G59.2', 'G59.3')))))
 
     def machine_code(self):
+        spindle = self.random.choice(('', '', f' ${self.random.randint(0, self.spindles - 1)}', ' $-1' if self.spindles > 1 else ''))
         self.add(self.random.choice((
+            f'M3{spindle}', f'M4{spindle}', f'M5{spindle}', f'S{self.number(1, 900)}{spindle}', f'S300 M3{spindle}',
+            f'G96 D500 S90{spindle}', f'G97 S90{spindle}',
             'M3', 'M4', 'M5', 'M7', 'M8', 'M9', 'M0', 'M1', 'M60', 'M48', 'M49', 'M50 P0', 'M50 P1', 'M51 P0', 'M51 P1',
             'M52 P0', 'M52 P1', 'M53 P0', 'M53 P1', f'M62 P{self.random.randint(0, 3)}', f'M63 P{self.random.randint(0, 3)}',
             f'M64 P{self.random.randint(0, 3)}', f'M65 P{self.random.randint(0, 3)}', f'M67 E{self.random.randint(0, 3)} Q{self.number(-5, 5)}',
             f'M68 E{self.random.randint(0, 3)} Q{self.number(-5, 5)}', f'M66 P{self.random.randint(0, 3)} L{self.random.randint(0, 4)} Q{self.number(0, 2)}',
-            f'M66 E{self.random.randint(0, 3)} L0', f'G4 P{self.number(0, 3)}', f'S{self.number(1, 3000)}', 'M70', 'M72', 'M71', 'M73',
+            f'M66 E{self.random.randint(0, 3)} L0', f'G4 P{self.number(0, 3)}', f'S{self.number(1, 3000)}', 'M70', 'M71', 'M73',
             f'M19 R{self.number(0, 359)}', f'G96 D{self.number(100, 3000)} S{self.number(1, 300)}', f'G97 S{self.number(1, 3000)}')))
 
     def expression(self, depth=0):
@@ -225,6 +257,7 @@ class Program:
 
     def flow(self):
         label = self.label()
+        self.motion = 'G80'
         kind = self.random.choice(('if', 'while', 'do', 'repeat', 'sub', 'sub'))
         if kind == 'if':
             self.lines.append(f'{label} if [{self.expression()} gt {self.number(-1, 3)}]')
@@ -240,10 +273,12 @@ class Program:
             self.lines += ['#30=0', f'{label} while [#30 lt {self.random.randint(0, 4)}]', '#30=[#30+1]']
             if self.chance(0.2):
                 inner = self.label()
-                self.lines += [f'{inner} if [#30 eq 2]', f'{label} {self.random.choice(("break", "continue"))}', f'{inner} endif']
+                leave = self.random.choice(('break', 'continue'))
+                self.has_break = self.has_break or leave == 'break'
+                self.lines += [f'{inner} if [#30 eq 2]', f'{label} {leave}', f'{inner} endif']
             self.body()
             self.lines.append(f'{label} endwhile')
-        elif kind == 'do':
+        elif kind == 'do' and not self.has_break:
             self.lines += ['#30=0', f'{label} do', '#30=[#30+1]']
             self.body()
             self.lines.append(f'{label} while [#30 lt {self.random.randint(0, 4)}]')
@@ -255,6 +290,8 @@ class Program:
             self.lines.append(f'{label} sub')
             self.lines.append('#<x>=[#1*2+#2]')
             self.body()
+            if self.chance(0.2):
+                self.lines += ['M70' if self.chance(0.5) else 'M73', self.random.choice(('G91', 'G61', 'F77', 'G18', 'M8', 'G98')), 'M72']
             if self.chance(0.3):
                 self.lines.append(f'{label} return [#<x>]')
             self.lines.append(f'{label} endsub' + (' [#<x>]' if self.chance(0.5) else ''))
@@ -263,9 +300,18 @@ class Program:
                 self.lines.append('(print, %.3f#<_value> %d#<_value_returned>)')
 
     def tool(self):
+        change = self.random.choice(('', '', f'T{self.random.randint(1, 3)} M6', f'M61 Q{self.random.randint(1, 3)}'))
+        if change:
+            self.add('G49')
+            self.add(change)
+            self.is_numbered = change.startswith('M61')
+            self.is_incremental, self.motion = False, 'G1'
+            self.lines.append(f'G90 G1 {self.words("XYZABC")} F{self.number(1, 90)}')
+            return
         self.add(self.random.choice((
-            f'T{self.random.randint(1, 3)} M6', f'T{self.random.randint(1, 3)}', 'M6', 'G43', f'G43 H{self.random.randint(1, 3)}',
-            f'G43.1 {self.words(self.axes())}', f'G43.2 H{self.random.randint(1, 3)}', 'G49', f'M61 Q{self.random.randint(1, 3)}',
+            f'T{self.random.randint(1, 3)}', 'G43 H1' if self.is_numbered else 'G43', f'G43 H{self.random.randint(1, 3)}',
+            f'G43.1 {self.words(self.axes())}', f'G43.2 H{self.random.randint(1, 3)}', 'G49',
+            f'G10 L1 P{self.random.randint(1, 3)} {self.words(("X", "Z"))} I{self.number(0, 90)} J{self.number(0, 90)} Q{self.random.randint(0, 9)}',
             f'G10 L1 P{self.random.randint(1, 3)} {self.words(("Z",))} R{self.number(0, 0.5)}',
             f'G10 L10 P{self.random.randint(1, 3)} {self.words(("Z",))}',
             f'G10 L11 P{self.random.randint(1, 3)} {self.words(("Z",))}')))
@@ -279,11 +325,18 @@ class Program:
         self.add('G90')
         self.is_incremental = False
         first, second = PLANES[self.plane][:2]
-        self.add(f'G40 G1 {first}{self.number(-3, 3)} {second}{self.number(-3, 3)}')
+        at = [float(self.number(-3, 3)), float(self.number(-3, 3))]
+        self.add(f'G40 G1 {first}{at[0]} {second}{at[1]}')
         self.add(self.random.choice(('G41.1', 'G42.1')) + f' D{self.random.uniform(0.05, 0.3):.3f}')
         self.is_compensated = True
+        heading = None
         for _ in range(self.random.randint(1, 6)):
-            self.add(f'{self.random.choice(("G1", "G1", "G0"))} {first}{self.number(-5, 5)} {second}{self.number(-5, 5)}')
+            to = [self.random.uniform(-5, 5), self.random.uniform(-5, 5)]
+            direction = math.atan2(to[1] - at[1], to[0] - at[0])
+            if heading is not None and abs(math.remainder(direction - heading, 2 * math.pi)) > math.radians(165):
+                continue
+            at, heading = to, direction
+            self.add(f'{self.random.choice(("G1", "G1", "G0"))} {first}{to[0]:.3f} {second}{to[1]:.3f}')
         self.add('G40')
         self.is_compensated = False
         if self.chance(0.7):
@@ -294,10 +347,16 @@ class Program:
 
     def polar(self):
         if self.plane == 'G17':
+            self.motion = 'G1'
             self.add(f'G1 @{self.number(0.5, 4)} ^{self.number(-180, 180)}' + (' F10' if self.feed_mode == 'G93' else ''))
+            if self.chance(0.4):
+                self.add(self.random.choice((f'^{self.number(-180, 180)}', f'@{self.number(1, 5)}', f'G0 @{self.number(1, 5)} Z1')) +
+                         (' F10' if self.feed_mode == 'G93' else ''))
+                self.motion = 'G80'
 
     def threading(self):
         self.add('S100 M3')
+        self.motion = 'G80'
         self.add(self.random.choice((f'G33 Z{self.number(-3, 3)} K{self.random.uniform(0.02, 0.2):.3f}',
                                      f'G33.1 Z{self.number(-3, 3)} K{self.random.uniform(0.02, 0.2):.3f}',
                                      f'G18 G76 P{self.random.uniform(0.05, 0.2):.3f} Z{self.number(-3, -1)} I-0.1 J0.01 K0.05 R{self.number(1, 2)} Q29.5 H{self.random.randint(0, 2)} E0.05 L{self.random.randint(0, 3)}')))
@@ -316,6 +375,7 @@ class Program:
 
     def spline(self):
         kind = self.random.choice(('G5', 'G5.1', 'G5.2', 'G5'))
+        self.motion = 'G80'
         if self.plane != 'G17' or self.feed_mode != 'G94':
             return
         if kind == 'G5':
@@ -329,6 +389,55 @@ class Program:
             for _ in range(self.random.randint(2, 5)):
                 self.add(f'X{self.number(-3, 3)} Y{self.number(-3, 3)} P{self.number(1, 2)}')
             self.add('G5.3')
+            self.lines.append('G90 G1 X1 Y1' + (' F10' if self.feed_mode == 'G93' else ''))
+            self.is_incremental = False
 
     def home(self):
         self.add(self.random.choice(('G28', 'G30', 'G28.1', 'G30.1', f'G28 {self.words(self.axes())}', f'G30 {self.words(self.axes())}')))
+
+    def probe(self):
+        if self.feed_mode != 'G94':
+            return
+        self.motion, self.is_incremental = 'G1', False
+        self.lines.append(f'{self.random.choice(("G38.2", "G38.3", "G38.4", "G38.5"))} {self.words(self.axes())} F{self.number(1, 90)}')
+        self.lines.append(f'G90 G1 {self.words("XYZABC")}')
+
+    def lathe(self):
+        if self.is_compensated or self.feed_mode == 'G93':
+            return
+        self.lines += ['G80', 'G18', 'G90', 'G91.1', 'G8', f'F{self.number(1, 300)}']
+        if self.feed_mode == 'G95':
+            self.lines.append('S100')
+        self.plane, self.is_incremental, self.is_arc_absolute, self.motion = 'G18', False, False, 'G80'
+        self.labels += 1
+        self.lines += interp_lathe_programs.lathe_cycle(self.random, self.labels)
+
+    def oriented(self):
+        """Compensation of a lathe tool."""
+        if self.feed_mode == 'G93' or self.is_compensated:
+            return
+        self.lines += ['G80', 'G18', 'G90', 'G8', 'G40 G1 X20 Z10 F100' + (' S100' if self.feed_mode == 'G95' else '')]
+        self.plane, self.is_incremental, self.motion = 'G18', False, 'G80'
+        self.lines.append(f'{self.random.choice(("G41.1", "G42.1"))} D{self.random.uniform(0.1, 0.6):.3f} L{self.random.randint(0, 9)}')
+        x, z = 10.0, 5.0
+        for _ in range(self.random.randint(1, 5)):
+            self.lines.append(f'G1 X{x:.3f} Z{z:.3f}')
+            x += self.random.uniform(1, 4)
+            z -= self.random.uniform(0.5, 4)
+        self.lines += ['G40', f'G0 X{self.number(20, 30)} Z{self.number(5, 10)}']
+
+    def call(self):
+        """Subroutines that call each other, by number and by expression; M98."""
+        self.motion = 'G80'
+        self.labels += 2
+        inner, outer = self.labels - 1, self.labels
+        if self.chance(0.3):
+            self.lines += [f'o{inner} sub', f'G0 X#1 Y[#2+{self.number(0, 2)}]', f'o{inner} endsub [#1*2]',
+                           f'o{outer} sub', '#<a>=#1', f'o{inner} call [#<a>] [3]', f'o{outer} if [#<_value> gt 1]', 'G0 Z1',
+                           f'o{outer} else', 'G0 Z2', f'o{outer} endif', f'o{outer} endsub']
+            self.lines.append(f'o[{outer - 1}+1] call [{self.number(0, 2)}]')
+            self.lines.append(f'(debug, %.4f#<_value> #5420)')
+        else:
+            self.lines.append(f'#{self.random.randint(31, 35)}=[{self.number(1, 5)}] #[31+5]={self.number(0, 3)}')
+            self.lines.append(f'#<_g{self.labels}>=##36' if self.chance(0.2) else f'#<_g{self.labels}>=[#36+1]')
+            self.lines.append(f'G0 X#<_g{self.labels}> Y[#<_g{self.labels}>/2]')

@@ -8,6 +8,7 @@
 #include "base/own_place.hh"
 #include "cli/stop_signals.hh"
 #include "hal/view/commands.hh"
+#include "interp/commands.hh"
 #include "machine/commands.hh"
 
 namespace {
@@ -27,6 +28,9 @@ constexpr const char *USAGE =
     "  check PROGRAM.ngc --ini MACHINE.ini\n"
     "                                interpret the program and check its moves against the limits, moving "
     "nothing\n"
+    "  format [--check | --in-place] PROGRAM.ngc ...\n"
+    "                                write programs in one form, without a change of meaning\n"
+    "  explain [--before LINES] LINE say in words what a line of G-code does\n"
     "  hal [watch|capture|graph|latency] ...\n"
     "                                look at the running HAL; see millwright hal --help\n"
     "  --help, --version\n"
@@ -56,6 +60,12 @@ int main(int argc, char **argv) {
     }
     if (words[0] == "check") {
         return mw::machine::command_check(rest);
+    }
+    if (words[0] == "format") {
+        return mw::interp::command_format(rest);
+    }
+    if (words[0] == "explain") {
+        return mw::interp::command_explain(rest);
     }
     if (words[0] == "hal") {
         mw::cli::catch_stop_signals();

@@ -11,7 +11,7 @@
 namespace {
 
 constexpr char USAGE[] = "Usage: rs274 [-t tool.tbl] [-v parameters.var] [-i machine.ini] [-n 0|1|2] [-b] "
-                         "[-s] [-g] [-T] [-l level]\n"
+                         "[-s] [-g] [-T] [-l level] [-p interp.so]\n"
                          "             [input file [output file]]\n\n"
                          "    -t: the tool table file (default: three built-in tools)\n"
                          "    -v: the parameter file, read at the start and written at the end\n"
@@ -21,7 +21,7 @@ constexpr char USAGE[] = "Usage: rs274 [-t tool.tbl] [-v parameters.var] [-i mac
                          "    -s: show place and callers of errors\n"
                          "    -g: go: batch mode\n"
                          "    -T, -l level: accepted for compatibility\n"
-                         "    -p interp.so: another interpreter (not supported by this build yet)\n";
+                         "    -p interp.so: another interpreter, a plug-in\n";
 
 int usage(const char *message, int status) {
     std::fprintf(status == 0 ? stdout : stderr, "%s%s%s", message, *message != '\0' ? "\n" : "", USAGE);
@@ -39,7 +39,7 @@ int main(int argc, char **argv) {
     int option = 0;
     while ((option = getopt(argc, argv, "p:t:v:n:bsgi:Tl:h")) != -1) {
         switch (option) {
-        case 'p': return usage("rs274: -p: other interpreters are not supported by this build yet", 1);
+        case 'p': options.plugin = optarg; break;
         case 't': options.tool_file = optarg; break;
         case 'v': options.var_file = optarg; break;
         case 'i': options.ini_file = optarg; break;

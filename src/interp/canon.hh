@@ -144,6 +144,11 @@ class Canon {
     virtual void log_open(std::string_view path, bool isAppending) = 0;
     virtual void log(std::string_view text) = 0;
     virtual void log_close() = 0;
+    /// (probeopen FILE): each successful probe from here on is written there, nine coordinates a line; empty:
+    /// (probeclose). Only canons that move a machine need it.
+    virtual void probe_log(std::string_view) {}
+    /// G10 L0: the tool table is to be read from its file again.
+    virtual void reload_tools() {}
     virtual void canon_error(std::string_view text) = 0;
     /// A user M code M100..M199 with its P and Q words.
     virtual void user_m_code(int code, double p, double q) = 0;

@@ -102,6 +102,7 @@ Settings settings_from_ini(const config::IniFile &ini, diag::Sink &sink) {
     }
     read_scripts(ini, out, sink);
     out.isG92PersistenceDisabled = flag_of(ini, "DISABLE_G92_PERSISTENCE", sink);
+    out.isCoordinateSystemKept = flag_of(ini, "KEEP_COORDINATE_SYSTEM", sink);
     out.isFanucSubDisabled = flag_of(ini, "DISABLE_FANUC_STYLE_SUB", sink);
     out.isArgumentCountNamed = flag_of(ini, "OWORD_NARGS", sink);
     out.orient_offset_deg = number_of(ini, "ORIENT_OFFSET", 0.0, sink);

@@ -14,6 +14,7 @@
 #include "base/result.hh"
 #include "diag/sink.hh"
 #include "interp/canon.hh"
+#include "interp/program_interpreter.hh"
 #include "interp/world.hh"
 
 namespace mw::interp {
@@ -48,6 +49,8 @@ struct Settings {
     std::string startup_code;              ///< [RS274NGC]RS274NGC_STARTUP_CODE
     bool isG92PersistenceDisabled = false;
     bool isFanucSubDisabled = false;
+    bool isCoordinateSystemKept = false;  ///< M2 and M30 do not go back to G54
+    double max_velocity_mm_s = 0;         ///< threads that need more are refused; 0: not known
     double center_arc_radius_tolerance_mm = 0.00127;
     double center_arc_radius_tolerance_inch = 0.00005;
     bool isLathe = false;
@@ -67,66 +70,44 @@ struct Settings {
     std::uint64_t statement_budget = 0;
 };
 
-enum class Step {
-    OK,           ///< one block done; call again
-    SYNC,         ///< the caller must let queued work finish, then call synch() and step() again
-    PROGRAM_END,  ///< M2 or M30
-    FILE_END,     ///< the closing % or the end of the file
-    FAILED,       ///< see error(); the block changed nothing
-};
-
-/// The codes in force, in the shapes that status displays rely on (facts.md).
-struct ActiveCodes {
-    std::array<int, 17> g{};  ///< [0] sequence number, then ten times the code, -1 none
-    std::array<int, 10> m{};
-    std::array<double, 5> settings{};  ///< sequence, feed, speed, G64 P, G64 Q
-};
-
 /// How far the main program has been read.
 struct FilePlace {
     std::uint64_t bytes = 0, bytes_in_all = 0;
 };
 
-class Interpreter {
+/// The interpreter of RS-274/NGC.
+class Interpreter final : public ProgramInterpreter {
   public:
     /// All references must outlive the interpreter.
     Interpreter(Canon &canon, World &world, ToolSource &tools, ParameterSource &parameters,
                 Settings settings);
-    ~Interpreter();
+    ~Interpreter() override;
 
-    /// Reads the parameter file (RS274NGC_VAR); a missing file is an empty one. Errors name line and column.
-    Result<> load_parameters(const std::string &path);
-    /// Writes it atomically; keeps the numbers that the file had and those that must be there.
-    Result<> save_parameters(const std::string &path) const;
+    Result<> load_parameters(const std::string &path) override;
+    Result<> save_parameters(const std::string &path) const override;
 
-    /// Announces offsets, units and modes to the canon and runs the start-up code.
-    Result<> begin();
-    /// Reads and parses a whole file. Syntax errors outside executed blocks are reported when they are
-    /// reached.
-    Result<> open(const std::string &path);
+    /// Loads scripts, announces offsets, units and modes to the canon and runs the start-up code.
+    Result<> begin() override;
+    /// Syntax errors outside executed blocks are reported when they are reached.
+    Result<> open(const std::string &path) override;
     /// The same for a program in memory; `name` stands for its file in messages.
     void open_text(const std::string &name, std::string text);
-    void close();
+    void close() override;
 
-    /// Executes the next block of the open file. [task]
-    Step step();
-    /// Executes one line of MDI; subroutine calls in it go on with step() until FILE_END.
-    Step execute(std::string_view line);
-    /// Takes the machine's state as the current one (after a stop, a probe, a tool change). [task]
-    void synch();
+    Step step() override;
+    Step execute(std::string_view line) override;
+    void synch() override;
     /// Warnings of begin(): names that scripts redefine.
-    const std::vector<std::string> &warnings() const;
-    /// Back to the top level after an abort: drops calls and loops, keeps modes; suspended scripts end.
-    void abort();
+    const std::vector<std::string> &warnings() const override;
+    /// Drops calls and loops, keeps modes; suspended scripts end.
+    void abort() override;
 
-    /// The last failure: message, file:line:column, the block's text, the callers.
-    const diag::Diagnostic &error() const;
-    ActiveCodes active_codes() const;
-    int line() const;  ///< of the block last read, in file()
-    const std::string &file() const;
-    int call_level() const;
-    /// No line of the open file is left.
-    bool isAtFileEnd() const;
+    const diag::Diagnostic &error() const override;
+    ActiveCodes active_codes() const override;
+    int line() const override;
+    const std::string &file() const override;
+    int call_level() const override;
+    bool isAtFileEnd() const override;
     /// The statement budget is used up: no more statement will run.
     bool isBudgetSpent() const;
     FilePlace place_in_file() const;
@@ -134,7 +115,7 @@ class Interpreter {
     std::string_view subroutine() const;
     /// A line of a file that the interpreter has read, empty when it has not.
     std::string line_text(const std::string &file, int line) const;
-    double parameter(int number) const;
+    double parameter(int number) const override;
 
   private:
     struct Impl;

@@ -91,6 +91,8 @@ class MachineCanon {
     virtual void log_open(std::string_view path, bool isAppending) = 0;
     virtual void log(std::string_view text) = 0;
     virtual void log_close() = 0;
+    virtual void probe_log(std::string_view) {}
+    virtual void reload_tools() {}
     virtual void canon_error(std::string_view text) = 0;
     virtual void user_m_code(int code, double p, double q) = 0;
 };

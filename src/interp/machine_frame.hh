@@ -100,6 +100,8 @@ class MachineFrame final : public Canon {
     void log_open(std::string_view path, bool isAppending) override { target_.log_open(path, isAppending); }
     void log(std::string_view text) override { target_.log(text); }
     void log_close() override { target_.log_close(); }
+    void probe_log(std::string_view path) override { target_.probe_log(path); }
+    void reload_tools() override { target_.reload_tools(); }
     void canon_error(std::string_view text) override { target_.canon_error(text); }
     void user_m_code(int code, double p, double q) override { target_.user_m_code(code, p, q); }
 
@@ -123,7 +125,7 @@ class MachineFrame final : public Canon {
     MotionControl control_ = MotionControl::CONTINUOUS;
     double tolerance_ = 0, naivecam_ = 0;  ///< machine units
     double corner_scale_ = 0;
-    double synch_feed_ = 0;                ///< machine units per revolution; 0 off
+    double synch_feed_ = 0;  ///< machine units per revolution; 0 off
     int synch_spindle_ = 0;
     bool isVelocitySynched_ = false;
 };

@@ -11,11 +11,11 @@
 
 namespace mw::interp {
 
-/// "%5d N..... CALL(arguments)" per call; (print,...) as it stands; (log...) into its file.
+/// "%5d N..... CALL(arguments)" per call; (print,...) as it stands. (log...) are calls as well: it writes no
+/// files.
 class PrintCanon final : public Canon {
   public:
     explicit PrintCanon(std::FILE *out) : out_(out) {}
-    ~PrintCanon() override;
     PrintCanon(const PrintCanon &) = delete;
     PrintCanon &operator=(const PrintCanon &) = delete;
 
@@ -79,6 +79,7 @@ class PrintCanon final : public Canon {
     void log_open(std::string_view path, bool isAppending) override;
     void log(std::string_view text) override;
     void log_close() override;
+    void reload_tools() override;
     void canon_error(std::string_view text) override;
     void user_m_code(int code, double p, double q) override;
 
@@ -86,7 +87,8 @@ class PrintCanon final : public Canon {
     /// A coordinate as it was printed last.
     struct Coordinate {
         std::uint64_t bits = 0;
-        std::string text;
+        std::size_t length = 0;
+        std::array<char, 320> text{};  ///< the largest double has 315 characters
     };
 
     /// Puts counter and prefix of the next call into line_.
@@ -95,7 +97,6 @@ class PrintCanon final : public Canon {
     void put_straight(std::string_view name, const Pose &end);
 
     std::FILE *out_;
-    std::FILE *log_ = nullptr;
     std::string prefix_ = "N.....";
     bool isPrefixNumbered_ = false;
     std::string line_;

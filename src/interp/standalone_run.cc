@@ -11,6 +11,7 @@
 #include "base/text.hh"
 #include "interp/ini_settings.hh"
 #include "interp/interpreter.hh"
+#include "interp/plugin.hh"
 #include "interp/print_canon.hh"
 #include "interp/standalone.hh"
 
@@ -30,6 +31,12 @@ class Run {
     Result<> read_ini();
     Result<> read_tools();
     void report_failure();
+    /// Plug-ins say all that is to be said themselves.
+    void reset_canon() {
+        if (options_.plugin.empty()) {
+            canon_->on_reset();
+        }
+    }
     int run_file();
     int run_mdi();
     int close(int status);
@@ -40,7 +47,7 @@ class Run {
     Standalone world_;
     std::FILE *out_ = stdout;
     std::unique_ptr<PrintCanon> canon_;
-    std::unique_ptr<Interpreter> interpreter_;
+    std::unique_ptr<ProgramInterpreter> interpreter_;
     std::string var_file_;
 };
 
@@ -109,7 +116,15 @@ Result<> Run::prepare() {
         }
     }
     canon_ = std::make_unique<PrintCanon>(out_);
-    interpreter_ = std::make_unique<Interpreter>(*canon_, world_, world_, world_, settings_);
+    if (options_.plugin.empty()) {
+        interpreter_ = std::make_unique<Interpreter>(*canon_, world_, world_, world_, settings_);
+    } else {
+        auto opened = open_plugin(options_.plugin, {*canon_, world_, world_, world_});
+        if (!opened) {
+            return std::unexpected(opened.error());
+        }
+        interpreter_ = std::move(*opened);
+    }
     if (!var_file_.empty()) {
         if (Result<> done = interpreter_->load_parameters(var_file_); !done) {
             return done;
@@ -141,7 +156,7 @@ int Run::run_file() {
         case Step::OK:
         case Step::SYNC: break;
         case Step::PROGRAM_END: return 0;
-        case Step::FILE_END: canon_->on_reset(); return 0;
+        case Step::FILE_END: reset_canon(); return 0;
         case Step::FAILED:
             report_failure();
             if (options_.on_error == Options::OnError::CONTINUE && !interpreter_->isAtFileEnd()) {
@@ -150,7 +165,7 @@ int Run::run_file() {
             if (options_.on_error == Options::OnError::MDI) {
                 return run_mdi();
             }
-            canon_->on_reset();
+            reset_canon();
             return 1;
         }
     }
@@ -175,7 +190,7 @@ int Run::run_mdi() {
 
 int Run::close(int status) {
     if (options_.ini_file.empty()) {
-        canon_->on_reset();
+        reset_canon();
     }
     std::fflush(out_);
     if (!var_file_.empty()) {

@@ -13,6 +13,7 @@ struct StandaloneOptions {
     enum class OnError { CONTINUE, MDI, STOP };
     std::string input, output;
     std::string tool_file, var_file, ini_file;
+    std::string plugin;  ///< another interpreter, a shared object
     OnError on_error = OnError::STOP;
     bool isBlockDelete = false;
     bool isStackShown = false;

@@ -243,6 +243,7 @@ void read_periods(IniReader &ini, MachineConfig &machine) {
     // A slow task cycle must not look like one that stands still.
     machine.task.watchdog_s = std::max(0.5, 10.0 * cycle_s);
     machine.task_period_ns = static_cast<std::int64_t>(std::llround(cycle_s * 1e9));
+    machine.task.interpreter_plugin = ini.text("TASK", "INTERPRETER", "");
     ini.know_all("TASK", {"TASK", "MDI_QUEUED_COMMANDS"});
 }
 
@@ -273,10 +274,19 @@ void read_interpreter(IniReader &ini, MachineConfig &machine) {
             ini.file().place_of_section("RS274NGC"));
     }
     machine.task.interpreter = interp::settings_from_ini(ini.file(), ini.sink());
+    const auto fastest = static_cast<std::uint16_t>(motion::Parameter::TRAJ_MAX_VELOCITY);
+    for (const motion::SetParameter &parameter : machine.parameters) {
+        if (parameter.parameter == fastest && std::isfinite(parameter.value)) {
+            constexpr double MM_PER_INCH = 25.4;
+            machine.task.interpreter.max_velocity_mm_s =
+                parameter.value * (machine.isMetric ? 1.0 : MM_PER_INCH);
+        }
+    }
     machine.task.interpreter.isLathe = ini.boolean("DISPLAY", "LATHE", false);
     ini.know_all("RS274NGC", {"RS274NGC_STARTUP_CODE",
                               "DISABLE_G92_PERSISTENCE",
                               "DISABLE_FANUC_STYLE_SUB",
+                              "KEEP_COORDINATE_SYSTEM",
                               "REMAP",
                               "CENTER_ARC_RADIUS_TOLERANCE_MM",
                               "CENTER_ARC_RADIUS_TOLERANCE_INCH",

@@ -36,8 +36,10 @@ Result<> TaskSide::start(const MachineOptions &options) {
     if (!status.has_value()) {
         return status;
     }
+    task::Settings settings = parts_.config.task;
+    settings.isClockHeldByUserPrograms = options.isClockVirtual;
     task_ = std::make_unique<task::Task>(task::Parts{*channels_, *this, *tools_, parameters_},
-                                         parts_.config.task);
+                                         std::move(settings));
     task_->configure(parts_.config.parameters);
     return {};
 }

@@ -33,7 +33,9 @@ class VirtualMachine final : public Machine {
         host_ = std::move(*host);
         side_ = std::make_unique<TaskSide>(parts_, *host_);
         const hal::UseInstance use(&host_->hal());
-        const auto started = side_->start(options);
+        MachineOptions mine = options;
+        mine.isClockVirtual = true;
+        const auto started = side_->start(mine);
         if (!started.has_value()) {
             return started;
         }

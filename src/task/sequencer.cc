@@ -122,27 +122,16 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
         Overloaded{
             [&](const LineItem &) { return push_move(item); },
             [&](const ArcItem &) { return push_move(item); },
-            [&](const ProbeItem &) { return push_move(item); },
+            [&](const ProbeItem &) { return isProbeMade_ = push_move(item), isProbeMade_; },
             [&](const RigidTapItem &) { return push_move(item); },
-            [&](const DwellItem &dwell) {
-                wait_ = Wait::DWELL;
-                deadline_ns_ = now_ns + to_ns(dwell.seconds);
-                return true;
-            },
-            [&](const WaitInputItem &input) {
-                awaited_input_ = input;
-                wait_ = Wait::INPUT;
-                deadline_ns_ = now_ns + to_ns(input.timeout_s);
-                last_input_ = std::nan("");
-                isInputTimedOut_ = false;
-                return true;
-            },
+            [&](const DwellItem &dwell) { return begin(dwell, now_ns); },
+            [&](const WaitInputItem &input) { return begin(input, now_ns); },
             [&](const StopItem &stop) {
                 events_.stop(stop, item.source.line);
                 return true;
             },
             [&](const EndItem &end) {
-                close_log();
+                close_logs();
                 events_.end(end);
                 return true;
             },
@@ -166,20 +155,8 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
                 events_.tool_offset(offset);
                 return true;
             },
-            [&](const PlannerModeItem &mode) {
-                const auto setting = events_.planner_mode(mode);
-                awaited_setting_ = setting.value_or(0);
-                wait_ = awaited_setting_ != 0 ? Wait::SETTING : Wait::NONE;
-                return setting.has_value();
-            },
-            [&](const UserCodeItem &code) {
-                const auto started = events_.start_user_code(code);
-                if (!started.has_value()) {
-                    events_.fail(started.error().str());
-                }
-                wait_ = Wait::USER_CODE;
-                return true;
-            },
+            [&](const PlannerModeItem &mode) { return begin(mode); },
+            [&](const UserCodeItem &code) { return begin(code); },
             [&](const DigitalOutputItem &output) {
                 return !output.isSynched ||
                                motion_.push_path(motion::SynchedDigitalOutput{output.index, output.isOn})
@@ -192,6 +169,12 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
                            ? (execute_output(item), true)
                            : false;
             },
+            [&](const ReloadToolsItem &) {
+                if (const auto reloaded = tools_.reload(); !reloaded.has_value()) {
+                    events_.fail(reloaded.error().str());
+                }
+                return true;
+            },
             [&](const SelectToolItem &) { return execute_tool(item), true; },
             [&](const ChangeToolItem &) { return execute_tool(item), true; },
             [&](const ChangeToolNumberItem &) { return execute_tool(item), true; },
@@ -199,6 +182,38 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
             [&](const auto &) { return execute_output(item), true; },
         },
         item.body);
+}
+
+bool Sequencer::begin(const DwellItem &dwell, std::int64_t now_ns) {
+    wait_ = Wait::DWELL;
+    deadline_ns_ = now_ns + to_ns(dwell.seconds);
+    return true;
+}
+
+bool Sequencer::begin(const WaitInputItem &input, std::int64_t now_ns) {
+    awaited_input_ = input;
+    wait_ = Wait::INPUT;
+    deadline_ns_ = now_ns + to_ns(input.timeout_s);
+    last_input_ = std::nan("");
+    isInputTimedOut_ = false;
+    return true;
+}
+
+bool Sequencer::begin(const PlannerModeItem &mode) {
+    const auto setting = events_.planner_mode(mode);
+    awaited_setting_ = setting.value_or(0);
+    wait_ = awaited_setting_ != 0 ? Wait::SETTING : Wait::NONE;
+    return setting.has_value();
+}
+
+bool Sequencer::begin(const UserCodeItem &code) {
+    const auto started = events_.start_user_code(code);
+    if (!started.has_value()) {
+        events_.fail(started.error().str());
+        return true;
+    }
+    wait_ = Wait::USER_CODE;
+    return true;
 }
 
 motion::MoveTerms Sequencer::terms_of(const interp::MoveSettings &settings, motion::MotionType type,
@@ -400,43 +415,52 @@ void Sequencer::on_tool_event(io::ToolEvent event) {
 }
 
 void Sequencer::execute_log(const LogItem &item) {
+    LogFile &log = logs_[item.isProbe ? 1 : 0];
     switch (item.what) {
     case LogItem::What::OPEN:
     case LogItem::What::APPEND: {
-        close_log();
+        close_log(log);
         const bool isContinued = item.what == LogItem::What::APPEND && ::access(item.text.c_str(), F_OK) == 0;
         const auto old = isContinued ? read_file(item.text) : Result<std::string>("");
         if (!old.has_value()) {
             events_.fail(old.error().str());
             return;
         }
-        log_path_ = item.text;
-        log_text_ = *old;
-        isLogOpen_ = true;
+        log = {item.text, *old, true};
         break;
     }
     case LogItem::What::WRITE:
-        if (isLogOpen_) {
-            log_text_ += item.text + '\n';
+        if (log.isOpen) {
+            log.text += item.text + '\n';
         }
         break;
-    case LogItem::What::CLOSE: close_log(); break;
+    case LogItem::What::CLOSE: close_log(log); break;
     }
 }
 
-void Sequencer::close_log() {
-    if (!isLogOpen_) {
+void Sequencer::log_probe(const std::string &line) {
+    execute_log({LogItem::What::WRITE, line, true});
+}
+
+void Sequencer::close_log(LogFile &log) {
+    if (!log.isOpen) {
         return;
     }
-    isLogOpen_ = false;
-    const auto written = write_file_atomically(log_path_, log_text_);
+    log.isOpen = false;
+    const auto written = write_file_atomically(log.path, log.text);
     if (!written.has_value()) {
         events_.message(MessageKind::OPERATOR_ERROR, written.error().str());
     }
 }
 
+void Sequencer::close_logs() {
+    for (LogFile &log : logs_) {
+        close_log(log);
+    }
+}
+
 void Sequencer::abort() {
-    close_log();
+    close_logs();
     queue_.clear();
     wait_ = Wait::NONE;
     changing_index_ = -1;

@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "base/result.hh"
 #include "io/controller.hh"
@@ -72,6 +73,10 @@ class Sequencer {
     /// Starts or stops a spindle at once (operator's command).
     void command_spindle(int spindle, double signed_rpm, bool isWaiting);
     void stop_spindles();
+    /// Whether a probe was made since the last call.
+    bool take_probe() { return std::exchange(isProbeMade_, false); }
+    /// A line for the file of (probeopen); without one nothing happens.
+    void log_probe(const std::string &line);
     int selected_index() const { return selected_index_; }
     void set_move_listener(MoveListener listener) { move_listener_ = std::move(listener); }
 
@@ -92,6 +97,10 @@ class Sequencer {
     bool isStepBoundary(const Item &item);
     /// False when the item must be tried again next cycle.
     bool execute(const Item &item, std::int64_t now_ns);
+    bool begin(const DwellItem &dwell, std::int64_t now_ns);
+    bool begin(const WaitInputItem &input, std::int64_t now_ns);
+    bool begin(const PlannerModeItem &mode);
+    bool begin(const UserCodeItem &code);
     bool push_move(const Item &item);
     /// Entry of the table, or "no tool" for index 0.
     interp::ToolEntry tool_at(int index) const;
@@ -99,7 +108,12 @@ class Sequencer {
     void execute_output(const Item &item);
     void execute_log(const LogItem &item);
     /// Writes an open log: also at the end of a program and at an abort, so that no line is lost.
-    void close_log();
+    struct LogFile {
+        std::string path, text;
+        bool isOpen = false;
+    };
+    void close_log(LogFile &log);
+    void close_logs();
     motion::MoveTerms terms_of(const interp::MoveSettings &settings, motion::MotionType type,
                                const Item &item);
     void send_spindle(int spindle);
@@ -125,8 +139,8 @@ class Sequencer {
     bool isNextMoveWaitingForSpeed_ = false;
     bool isStepping_ = false, isStepDone_ = false;
     std::uint32_t step_block_ = 0;
-    std::string log_path_, log_text_;
-    bool isLogOpen_ = false;
+    std::array<LogFile, 2> logs_;  ///< of (log,...), of probes
+    bool isProbeMade_ = false;
 };
 
 }  // namespace mw::task

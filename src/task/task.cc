@@ -1,19 +1,31 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "task/task.hh"
 
+#include <fmt/format.h>
+
+#include "interp/plugin.hh"
+#include "interp/user_codes.hh"
 #include "motion/api/texts.hh"
 
 namespace mw::task {
 namespace {
+
+/// A machine runs its programs: #<_task>, self.task of scripts, and M99 in the main program begins it again.
+Settings for_machine(Settings settings) {
+    settings.interpreter.isTask = true;
+    return settings;
+}
 
 constexpr std::size_t REMEMBERED_REQUESTS = 256;
 
 }  // namespace
 
 Task::Task(const Parts &parts, Settings settings)
-    : settings_(std::move(settings)), parts_(parts), motion_(parts.channels),
+    : settings_(for_machine(std::move(settings))), parts_(parts), motion_(parts.channels),
       canon_(queue_, settings_.tool_change_place), frame_(canon_, settings_.machine_units),
-      interp_(frame_, *this, parts.tools, parts.parameters, settings_.interpreter),
+      interp_(std::make_unique<interp::Interpreter>(frame_, *this, parts.tools, parts.parameters,
+                                                    settings_.interpreter)),
+      user_program_(settings_.isClockHeldByUserPrograms),
       sequencer_(queue_, motion_, io_, parts.tools, make_events(), settings_.sequencer),
       planner_mode_({[this](const motion::SetParameter &p) { return motion_.send(p); },
                      [this](MessageKind kind, const std::string &text) { post(kind, text); }}) {}
@@ -49,10 +61,20 @@ SequencerEvents Task::make_events() {
         }
         return planner_mode_.set(item.isSmooth ? smooth : 0);
     };
-    events.start_user_code = [](const UserCodeItem &item) -> Result<> {
-        return fail("M" + std::to_string(item.code) + ": user M codes are not supported by this version");
+    events.start_user_code = [this](const UserCodeItem &item) -> Result<> {
+        const std::string path = interp::find_user_program(settings_.interpreter, item.code);
+        return path.empty() ? fail("M" + std::to_string(item.code) + ": its program is gone")
+                            : user_program_.start(path, item.p, item.q);
     };
-    events.isUserCodeRunning = [] { return false; };
+    events.isUserCodeRunning = [this] {
+        if (user_program_.isRunning()) {
+            return true;
+        }
+        if (const Result<> ended = user_program_.take_result(); !ended.has_value()) {
+            post(MessageKind::OPERATOR_ERROR, ended.error().str());
+        }
+        return false;
+    };
     return events;
 }
 
@@ -66,25 +88,38 @@ void Task::configure(const std::vector<motion::SetParameter> &parameters) {
 
 Result<> Task::start() {
     motion_.update();
+    if (!settings_.interpreter_plugin.empty()) {
+        auto opened = interp::open_plugin(settings_.interpreter_plugin,
+                                          {frame_, *this, parts_.tools, parts_.parameters});
+        if (!opened) {
+            opened.error().message = "[TASK]INTERPRETER: " + opened.error().message;
+            return std::unexpected(opened.error());
+        }
+        interp_ = std::move(*opened);
+    }
     if (!settings_.parameter_file.empty()) {
-        const auto loaded = interp_.load_parameters(settings_.parameter_file);
+        const auto loaded = interp_->load_parameters(settings_.parameter_file);
         if (!loaded.has_value()) {
             return loaded;
         }
     }
     synch_interpreter();
     planner_mode_.announce();
-    return interp_.begin();
+    Result<> begun = interp_->begin();
+    for (const std::string &warning : interp_->warnings()) {
+        post(MessageKind::OPERATOR_TEXT, warning);
+    }
+    return begun;
 }
 
 void Task::synch_interpreter() {
     canon_.set_position(motion_.status().carte_pos_cmd);
     frame_.set_position(motion_.status().carte_pos_cmd);
-    interp_.synch();
+    interp_->synch();
 }
 
 Result<> Task::save_parameters() const {
-    return settings_.parameter_file.empty() ? Result<>{} : interp_.save_parameters(settings_.parameter_file);
+    return settings_.parameter_file.empty() ? Result<>{} : interp_->save_parameters(settings_.parameter_file);
 }
 
 RequestId Task::submit(Command command) {
@@ -226,6 +261,19 @@ void Task::update_pending() {
     }
 }
 
+/// The result of a probe that has tripped goes into the file of (probeopen).
+void Task::log_probe() {
+    constexpr int RESULT = 5061, SUCCESS = 5070, AXES = 9;
+    if (!sequencer_.take_probe() || interp_->parameter(SUCCESS) == 0.0) {
+        return;
+    }
+    std::string line;
+    for (int axis = 0; axis < AXES; ++axis) {
+        line += (axis == 0 ? "" : " ") + fmt::format("{:.6f}", interp_->parameter(RESULT + axis));
+    }
+    sequencer_.log_probe(line);
+}
+
 bool Task::isReadAheadAllowed() const {
     const bool isHeld = status_.isPaused && isStoppedByProgram_;
     return !isReadingDone_ && !isHeld && queue_.size() < settings_.read_ahead_items;
@@ -239,8 +287,9 @@ void Task::run_interpreter() {
             }
             isWaitingForSync_ = false;
             synch_interpreter();
+            log_probe();
         }
-        on_step_result(interp_.step());
+        on_step_result(interp_->step());
     }
 }
 
@@ -250,7 +299,7 @@ void Task::on_step_result(interp::Step result) {
     case interp::Step::SYNC: isWaitingForSync_ = true; break;
     case interp::Step::PROGRAM_END:
     case interp::Step::FILE_END: isReadingDone_ = true; break;
-    case interp::Step::FAILED: fail_program(interp_.error()); break;
+    case interp::Step::FAILED: fail_program(interp_->error()); break;
     }
 }
 
@@ -282,10 +331,11 @@ void Task::fail_program(diag::Diagnostic what) {
 void Task::abort_work() {
     motion_.abort();
     sequencer_.abort();
+    user_program_.stop();
     sequencer_.stop_spindles();
     io_.set_flood(false);
     io_.set_mist(false);
-    interp_.abort();
+    interp_->abort();
     isWaitingForSync_ = false;
     pending_failure_.clear();
     finish(home_request_, Progress::FAILED, "aborted");
@@ -293,7 +343,7 @@ void Task::abort_work() {
 
 void Task::finish_run(Progress progress, const std::string &reason) {
     if (run_ == Run::PROGRAM) {
-        interp_.close();
+        interp_->close();
         ++status_.programs_ended;
     }
     run_ = Run::IDLE;
@@ -324,8 +374,8 @@ void Task::update_status() {
         status_.interp_state = status_.isPaused ? InterpState::PAUSED
                                : isReadingDone_ ? InterpState::WAITING
                                                 : InterpState::READING;
-        status_.read_line = interp_.line();
-        status_.call_level = interp_.call_level();
+        status_.read_line = interp_->line();
+        status_.call_level = interp_->call_level();
     }
     status_.waiting.what = isRunning() ? sequencer_.waiting_for() : std::string();
     if (home_request_ != 0) {

@@ -18,6 +18,7 @@
 #include "task/status.hh"
 #include "task/task_canon.hh"
 #include "task/tool_store.hh"
+#include "task/user_program.hh"
 
 namespace mw::task {
 
@@ -37,8 +38,11 @@ struct Settings {
     bool isHomingForced = true;  ///< programs and MDI need all joints homed
     std::string parameter_file;  ///< empty: parameters live in memory only
     interp::Settings interpreter;
+    std::string interpreter_plugin;  ///< [TASK]INTERPRETER: a shared object; empty: RS-274/NGC
     SequencerSettings sequencer;
     ToolChangePlace tool_change_place;
+    /// A program of a user M code is waited for within a cycle: for virtual clocks.
+    bool isClockHeldByUserPrograms = false;
     /// Task's loop standing still for so long stops the machine.
     double watchdog_s = 0.5;
     /// Blocks that the interpreter may read in one cycle, and queued items above which it waits.
@@ -117,6 +121,7 @@ class Task final : public interp::World {
     void update_pending();
     void carry_out_commands();
     void run_interpreter();
+    void log_probe();
     bool isReadAheadAllowed() const;
     void on_step_result(interp::Step result);
     void on_stop(const StopItem &stop, int line);
@@ -140,7 +145,8 @@ class Task final : public interp::World {
     ItemQueue queue_;
     TaskCanon canon_;
     interp::MachineFrame frame_;
-    interp::Interpreter interp_;
+    std::unique_ptr<interp::ProgramInterpreter> interp_;
+    UserProgram user_program_;
     Sequencer sequencer_;
     PlannerMode planner_mode_;
 

@@ -79,6 +79,10 @@ class TaskCanon final : public interp::MachineCanon {
     void log_open(std::string_view path, bool isAppending) override;
     void log(std::string_view text) override { add(LogItem{LogItem::What::WRITE, std::string(text)}); }
     void log_close() override { add(LogItem{LogItem::What::CLOSE, {}}); }
+    void probe_log(std::string_view path) override {
+        add(LogItem{path.empty() ? LogItem::What::CLOSE : LogItem::What::OPEN, std::string(path), true});
+    }
+    void reload_tools() override { add(ReloadToolsItem{}); }
     void canon_error(std::string_view text) override;
     void user_m_code(int code, double p, double q) override { add(UserCodeItem{code, p, q}); }
 

@@ -167,11 +167,11 @@ Outcome Task::Handler::operator()(const OpenProgram &command) {
     if (task.isRunning()) {
         return fail("cannot open a program while one runs");
     }
-    const auto opened = task.interp_.open(command.path);
+    const auto opened = task.interp_->open(command.path);
     if (!opened.has_value()) {
         return std::unexpected(opened.error());
     }
-    task.interp_.close();
+    task.interp_->close();
     task.status_.program = command.path;
     return Progress::DONE;
 }
@@ -204,7 +204,7 @@ Outcome Task::Handler::operator()(const RunProgram &command) {
     if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
     }
-    const auto opened = task.interp_.open(task.status_.program);
+    const auto opened = task.interp_->open(task.status_.program);
     if (!opened.has_value()) {
         return std::unexpected(opened.error());
     }
@@ -272,7 +272,7 @@ Outcome Task::Handler::operator()(const Mdi &command) {
         return std::unexpected(allowed.error());
     }
     start_run(Run::MDI);
-    task.on_step_result(task.interp_.execute(command.line));
+    task.on_step_result(task.interp_->execute(command.line));
     return Progress::STARTED;
 }
 

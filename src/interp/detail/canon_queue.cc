@@ -354,6 +354,14 @@ void CanonQueue::log_close() {
     add(Op::LOG_CLOSE);
 }
 
+void CanonQueue::probe_log(std::string_view path) {
+    add(Op::PROBE_LOG).text = keep(path);
+}
+
+void CanonQueue::reload_tools() {
+    add(Op::RELOAD_TOOLS);
+}
+
 void CanonQueue::canon_error(std::string_view text) {
     add(Op::CANON_ERROR).text = keep(text);
 }

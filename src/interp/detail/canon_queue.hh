@@ -86,6 +86,8 @@ class CanonQueue final : public Canon {
     void log_open(std::string_view path, bool isAppending) override;
     void log(std::string_view text) override;
     void log_close() override;
+    void probe_log(std::string_view path) override;
+    void reload_tools() override;
     void canon_error(std::string_view text) override;
     void user_m_code(int code, double p, double q) override;
 
@@ -149,6 +151,8 @@ class CanonQueue final : public Canon {
         LOG_OPEN,
         LOG,
         LOG_CLOSE,
+        PROBE_LOG,
+        RELOAD_TOOLS,
         CANON_ERROR,
         USER_M,
     };

@@ -105,6 +105,8 @@ void CanonQueue::replay_rest(Canon &target, const Record &r) const {
     case Op::LOG_OPEN: target.log_open(texts_[r.text], r.isSet); break;
     case Op::LOG: target.log(texts_[r.text]); break;
     case Op::LOG_CLOSE: target.log_close(); break;
+    case Op::PROBE_LOG: target.probe_log(texts_[r.text]); break;
+    case Op::RELOAD_TOOLS: target.reload_tools(); break;
     case Op::CANON_ERROR: target.canon_error(texts_[r.text]); break;
     case Op::USER_M: target.user_m_code(r.a, r.u, r.v); break;
     default: return;

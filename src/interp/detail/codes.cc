@@ -168,6 +168,10 @@ struct Index {
 
 }  // namespace
 
+std::span<const Code> all_codes() {
+    return TABLE;
+}
+
 const Code *find_code(char letter_char, int number) {
     static const Index INDEX;
     const int limit = letter_char == 'g' ? MAX_G : MAX_M;

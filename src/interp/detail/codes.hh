@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -90,6 +91,8 @@ struct Code {
 };
 
 /// The row of a code, or null. `number` as in Code.
+/// All rows of the table, user codes left out.
+std::span<const Code> all_codes();
 const Code *find_code(char letter, int number);
 /// F, S or T.
 const Code *find_word_code(char letter);

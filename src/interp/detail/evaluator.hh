@@ -40,8 +40,7 @@ class Evaluator {
     /// In range for reading.
     static bool isNumber(double index);
     double numbered(int number) const {
-        return number >= P_BUILD_FIRST && number <= P_BUILD_LAST ? built_ins_.built_in(number)
-                                                                 : parameters_.get(number);
+        return isBuiltInNumber(number) ? built_ins_.built_in(number) : parameters_.get(number);
     }
 
   private:

@@ -19,9 +19,16 @@ struct Active {
 
 /// "keyword," or a keyword alone, at the beginning.
 Active split_comment(std::string_view comment) {
-    static constexpr std::string_view KEYWORDS[] = {"msg",       "debug",     "print",    "log",
-                                                    "logopen",   "logappend", "logclose", "abort",
-                                                    "probeopen", "probeclose"};
+    static constexpr std::string_view KEYWORDS[] = {"msg",       "debug",    "print", "log",       "logopen",
+                                                    "logappend", "logclose", "abort", "probeclose"};
+    static constexpr std::string_view PROBE_OPEN = "probeopen";
+    const std::string_view trimmed = trim(comment);
+    if (equals_ignoring_case(trimmed.substr(0, PROBE_OPEN.size()), PROBE_OPEN)) {  // its file follows a blank
+        const std::string_view rest = trimmed.substr(PROBE_OPEN.size());
+        if (rest.empty() || rest[0] == ' ' || rest[0] == '\t' || rest[0] == ',') {
+            return {std::string(PROBE_OPEN), rest.substr(!rest.empty() && rest[0] == ',' ? 1 : 0)};
+        }
+    }
     const std::size_t comma = comment.find(',');
     std::string head;
     for (const char c : comment.substr(0, comma)) {
@@ -171,7 +178,12 @@ bool Executor::run_comments(const BlockView &view, std::string_view line_text) {
     } else if (active.keyword == "abort") {
         return fault.set(substituted(active.text), last.begin + 1);
     } else {
-        return fault.set("(probeopen) and (probeclose) are not supported yet", last.begin + 1);
+        const std::string_view path = trim(active.text);
+        if (active.keyword == "probeopen" && path.empty()) {
+            return fault.set("(probeopen FILE) needs the name of a file", last.begin + 1);
+        }
+        canon.comment(trim(comment));
+        canon.probe_log(active.keyword == "probeopen" ? path : std::string_view());
     }
     return true;
 }

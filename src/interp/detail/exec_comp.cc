@@ -57,15 +57,22 @@ bool isForward(const CompElement &element, Point start, Point end) {
            distance(element.start, element.end) < TINY;
 }
 
-/// The crossing nearest to the programmed corner at which both elements still run forwards.
+/// The crossing nearest to the programmed corner at which both elements still run forwards; of two as near,
+/// the one that comes first.
 std::optional<Point> cut_corner(const CompElement &last, const CompElement &next, Point corner) {
     const Crossings found = crossings(last, next);
     std::optional<Point> best;
+    double least = 0.0;
     for (int i = 0; i < found.count; ++i) {
         const Point point = found.points[i];
+        const bool isBeyond =
+            !last.isArc && dot({point.x - last.end.x, point.y - last.end.y}, last.end_direction) > TINY;
+        constexpr double TIE = 1e-6;
+        const double far = distance(point, corner) + (isBeyond ? TIE : 0.0);
         const bool isUsable = isForward(last, last.start, point) && isForward(next, point, next.end);
-        if (isUsable && (!best || distance(point, corner) < distance(*best, corner))) {
+        if (isUsable && (!best || far < least)) {
             best = point;
+            least = far;
         }
     }
     return best;

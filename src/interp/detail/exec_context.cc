@@ -42,7 +42,9 @@ void Executor::drop_calls(std::size_t depth) {
         contexts_.pop_back();
         parameters.pop_call(false);
     }
-    lathe_.reset();
+    if (depth == 0) {
+        lathe_.reset();
+    }
 }
 
 int Executor::context_status(std::size_t level) const {
@@ -136,7 +138,9 @@ bool Executor::restore_spindles(const State &saved) {
         }
     }
     state.feed = saved.feed;
-    canon.set_feed_rate(state.feed);
+    if (state.feed_mode != FeedMode::INVERSE_TIME) {  // there each move has a rate of its own
+        canon.set_feed_rate(state.feed);
+    }
     for (int i = 0; i < world_.count_spindles(); ++i) {
         const SpindleState &want = saved.spindles[static_cast<std::size_t>(i)];
         SpindleState &have = state.spindles[static_cast<std::size_t>(i)];
@@ -190,12 +194,13 @@ bool Executor::restore_context(const State &saved_modes) {
     if (!restore_geometry(saved)) {
         return false;
     }
-    const bool isToStop = (state.isMist && !saved.isMist) || (state.isFlood && !saved.isFlood);
-    if (isToStop) {
-        run_code('m', 9, {});
-        if (saved.isMist) {
-            run_code('m', 7, {});
-        }
+    if (state.isMist && !saved.isMist) {
+        state.isMist = false;
+        canon.mist_off();
+    }
+    if (state.isFlood && !saved.isFlood) {
+        state.isFlood = false;
+        canon.flood_off();
     }
     if (saved.isFlood && !state.isFlood) {
         run_code('m', 8, {});

@@ -52,7 +52,8 @@ bool Executor::take_cycle_words(const Code &code, const BlockValues &values) {
     };
     for (const Need &need : needs) {
         if (values.has(need.word)) {
-            need.value = values.at(need.word);
+            const bool isHalved = need.word == 'x' && state.isDiameter;
+            need.value = values.at(need.word) * (isHalved ? 0.5 : 1.0);
         } else if (isFirst && need.isNeeded) {
             return fault.set(fmt::format("{} needs {}{}", name, need.text,
                                          need.word == depth
@@ -60,11 +61,14 @@ bool Executor::take_cycle_words(const Code &code, const BlockValues &values) {
                                              : std::string()));
         }
     }
+    cycle.hasClearance = needsPeck(code.number) && (values.has('p') || (cycle.hasClearance && !isFirst));
     if (needsPeck(code.number) && cycle.q <= 0.0) {
         return fault.set(fmt::format("The peck depth Q of {} must be above 0", name), values.column_of('q'));
     }
     if (cycle.p < 0.0) {
-        return fault.set("The dwell time P must not be negative", values.column_of('p'));
+        return fault.set(needsPeck(code.number) ? "The peck clearance P must not be negative"
+                                                : "The dwell time P must not be negative",
+                         values.column_of('p'));
     }
     return true;
 }
@@ -244,7 +248,8 @@ void Executor::run_peck(const CyclePlan &plan) {
     const bool isDeep = plan.code == 830;
     const double clearance_mm =
         isDeep ? settings_.parameter_g83_peck_clearance_mm : settings_.parameter_g73_peck_clearance_mm;
-    const double clearance = clearance_mm / (state.units == LengthUnits::MM ? 1.0 : MM_PER_INCH);
+    const double configured = clearance_mm / (state.units == LengthUnits::MM ? 1.0 : MM_PER_INCH);
+    const double clearance = state.cycle.hasClearance ? state.cycle.p : configured;
     constexpr double SAME = 1e-9;
     for (double depth = plan.r - state.cycle.q; depth > plan.bottom + SAME; depth -= state.cycle.q) {
         cycle_move(false, normal, depth);
@@ -275,12 +280,8 @@ void Executor::tap_move(double height) {
 void Executor::run_tap(const CyclePlan &plan, int direction) {
     const int spindle = state.active_spindle;
     const bool isSpeedOverride = state.spindles[static_cast<std::size_t>(spindle)].isOverridden;
-    if (state.isFeedOverride) {
-        canon.disable_feed_override();
-    }
-    if (isSpeedOverride) {
-        canon.disable_speed_override(spindle);
-    }
+    canon.disable_feed_override();
+    canon.disable_speed_override(spindle);
     tap_move(plan.bottom);
     canon.stop_spindle_turning(spindle);
     start_spindle(-direction);

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Coolant, overrides, outputs and inputs, dwell, stops and the end.
-#include <unistd.h>
-
-#include <algorithm>
-#include <filesystem>
-
 #include <fmt/format.h>
 
 #include "interp/detail/executor.hh"
+#include "interp/user_codes.hh"
 
 namespace mw::interp::detail {
 
@@ -45,8 +41,11 @@ bool Executor::do_override(const Code &code, const BlockValues &values) {
         isOn ? canon.enable_feed_override() : canon.disable_feed_override();
     }
     if (isSpeed) {
-        state.spindles[static_cast<std::size_t>(spindle)].isOverridden = isOn;
-        isOn ? canon.enable_speed_override(spindle) : canon.disable_speed_override(spindle);
+        const bool isAll = !values.has('$') || values.at('$') < 0.0;
+        for (int i = isAll ? 0 : spindle; i < (isAll ? world_.count_spindles() : spindle + 1); ++i) {
+            state.spindles[static_cast<std::size_t>(i)].isOverridden = isOn;
+            isOn ? canon.enable_speed_override(i) : canon.disable_speed_override(i);
+        }
     }
     if (code.number == 52) {
         state.isAdaptive = isOn;
@@ -119,16 +118,12 @@ bool Executor::do_wait_input(const Code &, const BlockValues &values) {
 
 /// M100 to M199: a program of that name in one of the folders for them.
 bool Executor::do_user(const Code &code, const BlockValues &values) {
-    const std::string name = fmt::format("M{}", code.number);
-    const auto isIn = [&name](const std::string &folder) {
-        return ::access((std::filesystem::path(folder) / name).c_str(), X_OK) == 0;
-    };
-    if (settings_.isUserCodeAssumed || std::ranges::any_of(settings_.user_m_path, isIn)) {
+    if (settings_.isUserCodeAssumed || !find_user_program(settings_, code.number).empty()) {
         constexpr double NOT_GIVEN = -1.0;
         canon.user_m_code(code.number, values.at('p', NOT_GIVEN), values.at('q', NOT_GIVEN));
         return true;
     }
-    return fault.set(fmt::format("Unknown m code used: {}", name), 0,
+    return fault.set(fmt::format("Unknown m code used: M{}", code.number), 0,
                      "no executable program of this name in the folders of USER_M_PATH");
 }
 
@@ -162,11 +157,13 @@ void Executor::restore_modes_at_end() {
     state.comp_last = {};
     state.isCompExit = false;
     Frame made = frame();
-    made.g5x = parameter_pose(P_G5X);
-    made.rotation_deg = parameters.get(P_G5X + 9);
-    change_frame(made);
-    state.g5x_index = 1;
-    parameters.set(P_COORDINATE_SYSTEM, 1.0);
+    if (!settings_.isCoordinateSystemKept) {
+        made.g5x = parameter_pose(P_G5X);
+        made.rotation_deg = parameters.get(P_G5X + 9);
+        change_frame(made);
+        state.g5x_index = 1;
+        parameters.set(P_COORDINATE_SYSTEM, 1.0);
+    }
     send_coordinates();
     if (state.plane != Plane::XY) {
         state.plane = Plane::XY;

@@ -166,6 +166,10 @@ bool Executor::do_control(const Code &code, const BlockValues &values) {
     }
     canon.set_motion_control_mode(state.control, state.tolerance);
     canon.set_naivecam_tolerance(state.naivecam);
+    if (values.has('r') && values.hasGroup(Group::SPINDLE)) {
+        return fault.set("The R word could belong to G64 or to M19: put them into two lines",
+                         values.column_of('r'));
+    }
     const bool isMotionsWord = values.motion != nullptr && (values.motion->words & letters("r")) != 0;
     if (values.has('r') && !isMotionsWord) {
         constexpr double LOWEST_SCALE = 0.1, HIGHEST_SCALE = 1.0;

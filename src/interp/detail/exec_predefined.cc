@@ -37,6 +37,7 @@ constexpr Row ROWS[] = {
     {"_plane", [](const Executor &e) { return static_cast<double>(e.plane_code()); }},
     {"_ccomp", [](const Executor &e) { return static_cast<double>(e.state.comp_code); }},
     {"_metric", [](const Executor &e) { return flag(e.state.units == LengthUnits::MM); }},
+    {"_metric_machine", [](const Executor &e) { return flag(e.world().machine_units() == LengthUnits::MM); }},
     {"_imperial", [](const Executor &e) { return flag(e.state.units == LengthUnits::INCH); }},
     {"_absolute", [](const Executor &e) { return flag(!e.state.isIncremental); }},
     {"_incremental", [](const Executor &e) { return flag(e.state.isIncremental); }},
@@ -157,6 +158,9 @@ double Executor::built_in(int number) const {
     }
     if (number >= P_TOOL_OFFSET && number < P_TOOL_OFFSET + AXES_OF_POSE) {
         return state.loaded_offset[number - P_TOOL_OFFSET];
+    }
+    if (number >= P_MACHINE_POSITION && number < P_MACHINE_POSITION + AXES_OF_POSE) {
+        return frame().to_machine(reported_position())[number - P_MACHINE_POSITION];
     }
     switch (number) {
     case P_TOOL_NUMBER: return state.tool_in_spindle;

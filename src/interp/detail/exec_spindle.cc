@@ -55,17 +55,16 @@ bool Executor::do_spindle_mode(const Code &code, const BlockValues &values) {
     if (!spindle_of(values, spindle)) {
         return false;
     }
+    if (spindle == ALL_SPINDLES) {
+        return fault.set(fmt::format("{} is for one spindle: $ must not be negative", code_name(code)),
+                         values.column_of('$'));
+    }
     const bool isConstantSurface = code.number == 960;
     const double limit = values.has('d') ? std::fabs(values.at('d')) : UNLIMITED_RPM;
-    for (int i = 0; i < world_.count_spindles(); ++i) {
-        if (spindle != i && spindle != ALL_SPINDLES) {
-            continue;
-        }
-        SpindleState &one = state.spindles[static_cast<std::size_t>(i)];
-        one.isConstantSurface = isConstantSurface;
-        one.css_max_rpm = isConstantSurface ? limit : 0.0;
-        canon.set_spindle_mode(i, one.css_max_rpm);
-    }
+    SpindleState &one = state.spindles[static_cast<std::size_t>(spindle)];
+    one.isConstantSurface = isConstantSurface;
+    one.css_max_rpm = isConstantSurface ? limit : 0.0;
+    canon.set_spindle_mode(spindle, one.css_max_rpm);
     return true;
 }
 

@@ -145,11 +145,7 @@ bool Executor::do_nurbs_point(const Code &code, const BlockValues &values) {
     if (state.nurbs_count >= MOST_POINTS) {
         return fault.set(fmt::format("A NURBS has at most {} control points", MOST_POINTS));
     }
-    // Incremental points count from the one before.
-    const Pose start = state.position;
-    state.position = state.nurbs_end;
-    state.nurbs_end = target(values);
-    state.position = start;
+    state.nurbs_end = target(values);  // incremental points count from the start
     keep_control_point({state.nurbs_end[axes.first], state.nurbs_end[axes.second], weight});
     return true;
 }

@@ -14,6 +14,25 @@ constexpr double DEGREE = std::numbers::pi / 180.0;
 
 }  // namespace
 
+/// The feed that the pitch makes at the programmed speed must be within the machine's.
+bool Executor::check_pitch(int spindle, double pitch, std::uint32_t column) {
+    const SpindleState &turning = state.spindles[static_cast<std::size_t>(spindle)];
+    if (settings_.max_velocity_mm_s <= 0.0 || turning.isConstantSurface) {
+        return true;
+    }
+    constexpr double MM_PER_INCH = 25.4, SECONDS_PER_MINUTE = 60.0;
+    const double unit = state.units == LengthUnits::MM ? 1.0 : MM_PER_INCH;
+    const double needed = std::fabs(pitch) * unit * turning.speed / SECONDS_PER_MINUTE;
+    if (needed <= settings_.max_velocity_mm_s) {
+        return true;
+    }
+    return fault.set(
+        fmt::format("A pitch of {:g} at {:g} turns a minute needs {:.4g} mm/s; the machine's limit is "
+                    "{:.4g} mm/s",
+                    pitch, turning.speed, needed, settings_.max_velocity_mm_s),
+        column, "turn the spindle more slowly");
+}
+
 /// G33 (a synchronised straight move) and G33.1 (rigid tapping: there and back).
 bool Executor::do_thread(const Code &code, const BlockValues &values) {
     int spindle = 0;
@@ -38,7 +57,7 @@ bool Executor::do_thread(const Code &code, const BlockValues &values) {
         return fault.set(fmt::format("The pitch K of {} must not be 0", name), values.column_of('k'));
     }
     Pose end;
-    if (!straight_target(values, end)) {
+    if (!check_pitch(spindle, values.at('k'), values.column_of('k')) || !straight_target(values, end)) {
         return false;
     }
     state.motion = code.number;
@@ -138,7 +157,7 @@ bool Executor::check_thread_cycle(const BlockValues &values, ThreadPlan &plan) {
             return fault.set(check.text, values.column_of(check.word));
         }
     }
-    return true;
+    return check_pitch(plan.spindle, plan.pitch, values.column_of('p'));
 }
 
 bool Executor::do_thread_cycle(const Code &code, const BlockValues &values) {

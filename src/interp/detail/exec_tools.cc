@@ -222,12 +222,23 @@ bool Executor::set_tool_data(int l, const BlockValues &values) {
     return true;
 }
 
+/// G10 L0.
+bool Executor::reload_tools() {
+    if (state.tool_in_spindle > 0) {
+        return fault.set(fmt::format("G10 L0 not allowed with loaded tool <{}>", state.tool_in_spindle));
+    }
+    canon.reload_tools();
+    outcome = Outcome::SYNC;
+    return true;
+}
+
 bool Executor::do_g10(const Code &, const BlockValues &values) {
     int l = 0;
     if (!whole_word(values, 'l', l)) {
         return false;
     }
     switch (l) {
+    case 0: return reload_tools();
     case 1:
     case 10:
     case 11: return set_tool_data(l, values);
@@ -235,7 +246,7 @@ bool Executor::do_g10(const Code &, const BlockValues &values) {
     case 20: return set_coordinate_system(l, values);
     default: break;
     }
-    return fault.set("Line with G10 does not have L1, L2, L10, L11 or L20", values.column_of('l'));
+    return fault.set("Line with G10 does not have L0, L1, L2, L10, L11 or L20", values.column_of('l'));
 }
 
 }  // namespace mw::interp::detail

@@ -41,11 +41,11 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
     if (!evaluate(view, values) || !apply_settings(view)) {
         return false;
     }
+    comment_.clear();
+    block_number_ = view.block->isNumbered ? view.block->sequence : -1;
     if (lathe_) {
         return record_profile(values);
     }
-    comment_.clear();
-    block_number_ = view.block->isNumbered ? view.block->sequence : -1;
     if (view.block->comment_count > 0 && !run_comments(view, line_text)) {
         return false;
     }
@@ -136,6 +136,19 @@ bool Executor::add_code(char letter_char, double number, std::uint32_t column, B
 /// Keeps the codes in their order of execution; refuses two of one group.
 bool Executor::insert_code(const Code &code, std::uint32_t column, BlockValues &values) {
     const std::uint32_t bit = 1u << static_cast<unsigned>(code.group);
+    if (code.group == Group::MOTION && values.motion != nullptr) {
+        // G80 beside another motion code says nothing that this one does not say.
+        if (code.number == MOTION_NONE) {
+            return true;
+        }
+        if (values.motion->number == MOTION_NONE && values.motion->phase == code.phase) {
+            for (ActiveCode &active : values.codes) {
+                active = active.code == values.motion ? ActiveCode{&code, column} : active;
+            }
+            values.motion = &code;
+            return true;
+        }
+    }
     if ((values.groups & bit) != 0) {
         return fault.set(fmt::format("Two {} codes used from same modal group", code.letter), column);
     }
@@ -237,7 +250,7 @@ bool Executor::apply_settings(const BlockView &view) {
                 return fault.set(fmt::format("Parameter number out of range: {}", index), setting.column);
             }
             entry.number = static_cast<int>(std::lround(index));
-            if (entry.number >= P_BUILD_FIRST && entry.number <= P_BUILD_LAST) {
+            if (isBuiltInNumber(entry.number)) {
                 return fault.set(fmt::format("Parameter is readonly: #{}", entry.number), setting.column);
             }
         }

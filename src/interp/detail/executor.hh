@@ -47,7 +47,7 @@ struct ThreadPlan {
     bool hasEntryTaper = false, hasExitTaper = false;
 };
 
-enum class Outcome { OK, SYNC, PROGRAM_END, CALL_FANUC, RETURN_FANUC, REMAP, RESTART, PROFILE, SCRIPT };
+enum class Outcome { OK, SYNC, PROGRAM_END, CALL_FANUC, RETURN_FANUC, REMAP, RESTART, SCRIPT, PROFILE };
 
 /// Values of named parameters that scripts define.
 class ScriptNames {
@@ -95,11 +95,6 @@ class Executor : public BuiltIns {
     PendingBlock take_pending();
     void set_remap_arguments(const Remap &remap, const PendingBlock &pending);
     bool resume(const PendingBlock &pending);
-    // exec_lathe.cc
-    /// The cycle whose profile the blocks to come give; null outside of one.
-    const LatheRequest *lathe_request() const { return lathe_ ? &*lathe_ : nullptr; }
-    /// The profile is complete: cuts it.
-    bool finish_lathe_cycle();
     /// How often the procedure of the `level`-th running remap (from 1) has used its code's own meaning.
     int builtin_uses(int level) const {
         return running_remaps_[static_cast<std::size_t>(level) - 1].builtins;
@@ -125,7 +120,13 @@ class Executor : public BuiltIns {
     int plane_number() const;
     int debug_mask = 0, logging_level = 0;  ///< for scripts
     bool isToolChanged = false;             ///< a script has changed the tool: a waiting point is due
-    int fanuc_label = 0, fanuc_count = 1;   ///< of the M98 that the outcome is about
+    // exec_lathe.cc
+    /// The cycle whose profile the blocks to come give; null outside of one.
+    const LatheRequest *lathe_request() const { return lathe_ ? &*lathe_ : nullptr; }
+    /// The profile is complete: cuts it.
+    bool finish_lathe_cycle();
+    void drop_lathe_cycle() { lathe_.reset(); }
+    int fanuc_label = 0, fanuc_count = 1;  ///< of the M98 that the outcome is about
 
     /// Announces the state to the canon, as at the start of a program.
     void announce();
@@ -247,6 +248,8 @@ class Executor : public BuiltIns {
     bool find_tool(int toolno, std::uint32_t column, int &index);
     void load_tool(int index);
     void apply_tool_offset(const Pose &offset, int code);
+    bool reload_tools();
+    bool check_pitch(int spindle, double pitch, std::uint32_t column);
     bool set_tool_data(int l, const BlockValues &values);
     bool set_coordinate_system(int l, const BlockValues &values);
     void set_tool_axes(int l, const BlockValues &values, Pose &offset) const;

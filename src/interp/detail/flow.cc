@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "base/atomic_file.hh"
 #include "interp/detail/script_view.hh"
 
 namespace mw::interp::detail {
@@ -61,8 +60,12 @@ FilePlace Flow::place_in_file() const {
 }
 
 std::string_view Flow::subroutine() const {
-    const bool isNamed = !calls_.empty() && calls_.back().label != NO_ID;
-    return isNamed ? std::string_view(names_.text(calls_.back().label)) : std::string_view();
+    for (auto call = calls_.rbegin(); call != calls_.rend(); ++call) {
+        if (call->label != NO_ID) {
+            return names_.text(call->label);
+        }
+    }
+    return {};
 }
 
 std::string Flow::line_text(const std::string &file, int line) const {
@@ -85,6 +88,9 @@ void Flow::unwind(std::size_t depth) {
         text_levels_ = static_cast<int>(
             std::ranges::count(calls_, CallKind::TEXT, [](const Call &call) { return call.kind; }));
         executor_.drop_calls(static_cast<std::size_t>(call_level()));
+        if (std::ranges::none_of(calls_, [](const Call &call) { return call.kind == CallKind::PROFILE; })) {
+            executor_.drop_lathe_cycle();
+        }
         while (!dropped.empty()) {
             dropped.pop_back();  // the innermost script ends first
         }
@@ -238,14 +244,16 @@ Step Flow::run_block(const BlockView &view) {
 Step Flow::after_block() {
     bool isDone = true;
     while (isDone) {
-        commit();
+        const Outcome outcome = executor_.outcome;
+        executor_.outcome = Outcome::OK;
+        if (outcome != Outcome::CALL_FANUC && outcome != Outcome::PROFILE) {
+            commit();  // those two may still fail
+        }
         if (isEndDue_ && script_depth_ == 0) {  // a script has ended the program
             isEndDue_ = false;
             unwind();
             return Step::PROGRAM_END;
         }
-        const Outcome outcome = executor_.outcome;
-        executor_.outcome = Outcome::OK;
         switch (outcome) {
         case Outcome::OK: return Step::OK;
         case Outcome::SYNC: return Step::SYNC;

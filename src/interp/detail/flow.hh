@@ -37,13 +37,13 @@ class Flow : private ScriptNames {
     int line() const { return line_read_; }
     const std::string &file() const;
     bool isAtFileEnd() const { return program_ == nullptr || next_ > program_->count_lines(); }
+    int call_level() const { return static_cast<int>(calls_.size()) - text_levels_; }
     bool isBudgetSpent() const {
         return settings_.statement_budget > 0 && statements_ > settings_.statement_budget;
     }
     FilePlace place_in_file() const;
     std::string_view subroutine() const;
     std::string line_text(const std::string &file, int line) const;
-    int call_level() const { return static_cast<int>(calls_.size()) - text_levels_; }
 
     // flow_scripts.cc
     /// Opens the script host when the settings or a remap need one, runs the top-level script, and checks
@@ -61,7 +61,7 @@ class Flow : private ScriptNames {
         int line = 0;  ///< of the O- repeat
         int left = 0;
     };
-    enum class CallKind { OWORD, FANUC, REMAP, PROFILE, SCRIPT, TEXT };
+    enum class CallKind { OWORD, FANUC, REMAP, SCRIPT, TEXT, PROFILE };
     /// How far a remapped code or an O word in a script is.
     enum class Stage { NONE, PROLOG, PROCEDURE, FUNCTION, EPILOG };
     /// Where a program goes on after a call.
@@ -130,14 +130,16 @@ class Flow : private ScriptNames {
     bool find_sub(NameId label, std::uint32_t column, Sub &sub);
     bool find_fanuc(NameId label, Sub &sub);
     Program *load_sub_file(NameId label);
+    bool check_depth();
     bool enter(Call call, const Sub &sub);
     bool leave(double value, bool hasValue);
     bool pop_call(double value, bool hasValue);
     bool call_fanuc();
     bool return_fanuc();
+    bool call_profile();
+
     // flow_scripts.cc
     bool call_remap();
-    bool call_profile();
     bool run_script_oword(NameId label, const double *arguments, std::uint32_t count);
     bool run_script_text();
     Step go_on_with_script();

@@ -111,10 +111,14 @@ Program *Flow::load_sub_file(NameId label) {
     return nullptr;
 }
 
+bool Flow::check_depth() {
+    return call_level() < MAX_CALL_DEPTH ||
+           executor_.fault.set(fmt::format("Subroutine calls are nested more than {} deep", MAX_CALL_DEPTH));
+}
+
 bool Flow::enter(Call call, const Sub &sub) {
-    if (call_level() >= MAX_CALL_DEPTH) {
-        return executor_.fault.set(
-            fmt::format("Subroutine calls are nested more than {} deep", MAX_CALL_DEPTH));
+    if (!check_depth()) {
+        return false;
     }
     call.program = program_;
     call.line = line_read_;
@@ -237,6 +241,10 @@ bool Flow::call_fanuc() {
                                   names_.text(label))
                     : fmt::format("There is no subroutine O{} for this M98", names_.text(label)));
     }
+    if (!check_depth()) {
+        return false;
+    }
+    commit();
     if (executor_.fanuc_count <= 0) {
         return true;
     }
@@ -275,7 +283,11 @@ bool Flow::call_profile() {
     Sub sub;
     call.kind = CallKind::PROFILE;
     call.label = names_.intern(fmt::format("{}", executor_.lathe_request()->label));
-    if (!find_sub(call.label, 0, sub) || !enter(std::move(call), sub)) {
+    if (!find_sub(call.label, 0, sub) || !check_depth()) {
+        return false;
+    }
+    commit();
+    if (!enter(std::move(call), sub)) {
         return false;
     }
     next_ = sub.line + 1;

@@ -171,6 +171,7 @@ bool Flow::call_handler(ScriptModule module, const std::string &name) {
     script_error_.clear();
     commit();
     executor_.outcome = Outcome::OK;
+    executor_.canon.enter_block(program_, line_read_, line_read_, false, call_level());
     std::unique_ptr<SuspendedScript> rest;
     ++script_depth_;
     ScriptOutcome outcome = scripts_->call(module, name, arguments, rest);
@@ -357,11 +358,11 @@ std::expected<bool, ScriptFault> Flow::execute_for_script(std::string_view text,
     const auto refuse = [&](std::string why) {
         return std::unexpected(ScriptFault{std::move(why), line, std::string(text)});
     };
-    if (script_depth_ == 0) {
-        return refuse("nothing can be executed now: the program was ended");
-    }
     if (isReadingName_) {
         return refuse("the function of a named parameter cannot execute blocks");
+    }
+    if (script_depth_ == 0) {
+        return refuse("nothing can be executed now: the program was ended");
     }
     if (isEndDue_) {
         return refuse("the program has ended: a block executed before was M2 or M30");

@@ -10,6 +10,7 @@ namespace mw::interp::detail {
 namespace {
 
 constexpr double TINY = 1e-9;
+constexpr std::size_t MOST_MOVES = 1000000;  // of one cycle
 
 double radius_of(const ProfileSegment &arc) {
     return distance(arc.centre, arc.end);
@@ -187,6 +188,9 @@ Profile split_arcs(const Profile &profile) {
 
 /// Where a segment without extremes is at height `y`, which lies between its ends.
 Point at_height(const ProfileSegment &segment, double y) {
+    if (std::fabs(y - segment.start.y) < TINY || std::fabs(y - segment.end.y) < TINY) {
+        return std::fabs(y - segment.start.y) < TINY ? segment.start : segment.end;
+    }
     if (segment.isArc) {
         const double rise = y - segment.centre.y, radius = radius_of(segment);
         const double half = std::sqrt(std::fmax(0.0, radius * radius - rise * rise));
@@ -222,6 +226,7 @@ class Rougher {
     std::vector<ProfileMove> moves_;
     double level_ = 0, highest_ = 0;  ///< of the layers
     double rim_ = 0;                  ///< of the pocket that it is in
+    bool isPastBeginning_ = false;    ///< the first descent is over: what goes down from here on are pockets
     bool isInPocket_ = false, isTooLong_ = false;
 };
 
@@ -242,7 +247,6 @@ std::optional<Rougher::Crossing> Rougher::rise_through(std::size_t after, double
 
 /// Across at one level, aside and back to where it began.
 void Rougher::cut(Point from, Point to, bool isRapid) {
-    constexpr std::size_t MOST_MOVES = 1000000;
     const double half = std::fabs(to.x - from.x) / 2.0;
     const double away = plan_.retract < 0.0 || plan_.retract > half ? half : plan_.retract;
     const double forwards = to.x < from.x ? -1.0 : 1.0;
@@ -250,14 +254,18 @@ void Rougher::cut(Point from, Point to, bool isRapid) {
     moves_.push_back({true, false, {to.x - away * forwards, to.y + away}, {}, 1});
     moves_.push_back({true, false, {from.x + away * forwards, from.y + away}, {}, 1});
     moves_.push_back({isRapid, false, from, {}, 1});
-    isTooLong_ = moves_.size() > MOST_MOVES;
 }
 
 void Rougher::descend(std::size_t index) {
     const ProfileSegment &segment = profile_[index];
     const bool isEntry = index == 0;
     bool isCut = false;
-    if (plan_.pockets == RoughingPlan::Pockets::ONLY && !isInPocket_) {
+    const bool isForPocketsOnly = plan_.pockets == RoughingPlan::Pockets::ONLY;
+    if (isForPocketsOnly && !isPastBeginning_) {  // the other cycle has cut what lies before the first pocket
+        move_to(segment, segment.end, false);
+        return;
+    }
+    if (isForPocketsOnly && !isInPocket_) {
         level_ = highest_ = rim_ = segment.start.y;
         isInPocket_ = true;
     }
@@ -271,7 +279,10 @@ void Rougher::descend(std::size_t index) {
         if (!isThere || isEntry) {
             move_to(segment, from, isEntry);
         }
-        cut(from, other->point, isEntry);
+        if (std::fabs(other->point.x - from.x) > TINY) {
+            cut(from, other->point, isEntry);
+        }
+        isTooLong_ = isTooLong_ || moves_.size() > MOST_MOVES;
         level_ -= plan_.increment;
         isCut = true;
     }
@@ -280,6 +291,7 @@ void Rougher::descend(std::size_t index) {
 
 void Rougher::rise(const ProfileSegment &segment) {
     move_to(segment, segment.end, false);
+    isPastBeginning_ = true;
     const double steps = std::floor((segment.end.y - level_ + TINY) / plan_.increment);
     level_ = std::fmin(highest_, level_ + std::fmax(0.0, steps) * plan_.increment);
     isInPocket_ = isInPocket_ && segment.end.y < rim_ - TINY;
@@ -323,6 +335,10 @@ std::optional<std::vector<ProfileMove>> Rougher::run() {
         first = 1;
     }
     if (plan_.pockets == Pockets::SKIP) {
+        while (first > 0 && first < profile_.size() && isDescending(profile_[first])) {
+            descend(first);
+            ++first;
+        }
         follow_envelope(first);
         first = profile_.size();
     }

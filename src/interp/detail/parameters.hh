@@ -28,7 +28,8 @@ enum ParameterNumber : int {
     P_G5X = 5221,  // nine axes and the rotation, twenty apart, nine systems
     P_INPUT_RESULT = 5399,
     P_TOOL_NUMBER = 5400,
-    P_TOOL_OFFSET = 5401,  // nine, program units
+    P_MACHINE_POSITION = 5021,  // nine, program units, read only
+    P_TOOL_OFFSET = 5401,       // nine, of the loaded tool in the table
     P_TOOL_DIAMETER = 5410,
     P_TOOL_FRONTANGLE = 5411,
     P_TOOL_BACKANGLE = 5412,
@@ -38,6 +39,13 @@ enum ParameterNumber : int {
     P_BUILD_LAST = 5428,
     P_VAR_FIRST = 31,  // kept in the parameter file
 };
+
+/// Numbers whose values the interpreter keeps itself.
+constexpr bool isBuiltInNumber(int number) {
+    constexpr int AXIS_NUMBERS = 9;
+    return (number >= P_BUILD_FIRST && number <= P_BUILD_LAST) ||
+           (number >= P_MACHINE_POSITION && number < P_MACHINE_POSITION + AXIS_NUMBERS);
+}
 
 class Parameters {
   public:

@@ -23,8 +23,9 @@ struct SpindleState {
 /// What canned cycles remember from one block to the next.
 struct CycleWords {
     double bottom = 0, r = 0, p = 0, q = 0, i = 0, j = 0, k = 0;
-    double initial = 0;      ///< along the tool axis, where the first cycle began
-    bool isRunning = false;  ///< the block before was the same cycle
+    double initial = 0;         ///< along the tool axis, where the first cycle began
+    bool isRunning = false;     ///< the block before was the same cycle
+    bool hasClearance = false;  ///< P of G73 and G83: how far above the hole's bottom a peck begins
 };
 
 enum class CompSide { OFF, LEFT, RIGHT };

@@ -30,7 +30,7 @@ std::set<int> required_numbers() {
 }
 
 bool isBuiltIn(int number) {
-    return number >= P_BUILD_FIRST && number <= P_BUILD_LAST;
+    return isBuiltInNumber(number);
 }
 
 struct Row {

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Each code once as it should be and once as it should not: canon calls in the standalone format.
+#include <algorithm>
+#include <cctype>
 #include <cstdio>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "code_cases.hh"
+#include "interp/detail/codes.hh"
 #include "interp/interpreter.hh"
 #include "interp/print_canon.hh"
 #include "interp/standalone.hh"
@@ -64,18 +70,16 @@ std::string joined(const std::vector<std::string> &calls) {
     return out;
 }
 
-struct GoodCase {
-    const char *program;
-    std::vector<std::string> calls;
-};
-
 class GoodCode : public testing::TestWithParam<GoodCase> {};
 
 TEST_P(GoodCode, calls_the_canon_I1) {
     const Outcome out = run(std::string(GetParam().program) + "\n%\n");
-    EXPECT_EQ(out.step, Step::FILE_END) << out.error;
     std::vector<std::string> want = GetParam().calls;
-    want.emplace_back("FINISH()");
+    const bool isEnded = std::ranges::count(want, "PROGRAM_END()") > 0;
+    EXPECT_EQ(out.step, isEnded ? Step::PROGRAM_END : Step::FILE_END) << out.error;
+    if (!isEnded) {
+        want.emplace_back("FINISH()");
+    }
     EXPECT_EQ(joined(out.calls), joined(want));
 }
 
@@ -176,11 +180,7 @@ const GoodCase GOOD[] = {
 };
 
 INSTANTIATE_TEST_SUITE_P(Codes, GoodCode, testing::ValuesIn(GOOD));
-
-struct BadCase {
-    const char *program;
-    const char *error;  ///< a part of the message
-};
+INSTANTIATE_TEST_SUITE_P(MoreCodes, GoodCode, testing::ValuesIn(MORE_GOOD));
 
 class BadCode : public testing::TestWithParam<BadCase> {};
 
@@ -270,6 +270,53 @@ const BadCase BAD[] = {
 };
 
 INSTANTIATE_TEST_SUITE_P(Codes, BadCode, testing::ValuesIn(BAD));
+INSTANTIATE_TEST_SUITE_P(MoreCodes, BadCode, testing::ValuesIn(MORE_BAD));
+
+/// "g38.2" and the like in a program, comments left out.
+std::set<std::string> codes_in(const std::string &program) {
+    std::set<std::string> found;
+    bool isComment = false;
+    for (std::size_t i = 0; i < program.size(); ++i) {
+        isComment = program[i] == '(' || (isComment && program[i] != ')');
+        const char letter = static_cast<char>(std::tolower(program[i]));
+        const bool isCode = !isComment && (letter == 'g' || letter == 'm') && i + 1 < program.size() &&
+                            std::isdigit(program[i + 1]) != 0;
+        if (!isCode) {
+            continue;
+        }
+        std::string code(1, letter);
+        while (i + 1 < program.size() && (std::isdigit(program[i + 1]) != 0 || program[i + 1] == '.')) {
+            code += program[++i];
+        }
+        found.insert(code);
+    }
+    return found;
+}
+
+/// Each code of the table stands in a program above that works, and in one that is refused.
+TEST(CodesTable, every_code_has_a_good_and_a_bad_case_I1) {
+    std::set<std::string> good, bad;
+    for (const std::span<const GoodCase> cases :
+         {std::span<const GoodCase>(GOOD), std::span<const GoodCase>(MORE_GOOD)}) {
+        for (const GoodCase &one : cases) {
+            good.merge(codes_in(one.program));
+        }
+    }
+    for (const std::span<const BadCase> cases :
+         {std::span<const BadCase>(BAD), std::span<const BadCase>(MORE_BAD)}) {
+        for (const BadCase &one : cases) {
+            bad.merge(codes_in(one.program));
+        }
+    }
+    for (const detail::Code &code : detail::all_codes()) {
+        const int part = code.letter == 'g' ? code.number % 10 : 0;
+        const int whole = code.letter == 'g' ? code.number / 10 : code.number;
+        const std::string name =
+            code.letter + std::to_string(whole) + (part != 0 ? "." + std::to_string(part) : std::string());
+        EXPECT_TRUE(good.contains(name)) << name << " has no good case";
+        EXPECT_TRUE(bad.contains(name)) << name << " has no bad case";
+    }
+}
 
 }  // namespace
 }  // namespace mw::interp

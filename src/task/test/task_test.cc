@@ -132,15 +132,28 @@ class LoopedIo final : public IoPort {
 class TaskTest : public testing::Test {
   protected:
     explicit TaskTest(const Settings &settings = {})
-        : channels(std::make_unique<motion::Channels>()), motion(*channels),
-          task({*channels, io, tools, parameters}, settings) {
-        folder = fs::temp_directory_path() / ("mw_task_" + std::to_string(::getpid()));
-        fs::create_directory(folder);
+        : channels(std::make_unique<motion::Channels>()), motion(*channels), folder(made_folder()),
+          task({*channels, io, tools, parameters}, settings_for(folder, settings)) {
         EXPECT_TRUE(task.start().has_value());
         EXPECT_EQ(ask(SetState{State::ESTOP_RESET}), Progress::DONE);
         EXPECT_EQ(ask(SetState{State::ON}), Progress::DONE);
     }
     ~TaskTest() override { fs::remove_all(folder); }
+
+    static fs::path made_folder() {
+        const fs::path path = fs::temp_directory_path() / ("mw_task_" + std::to_string(::getpid()));
+        fs::create_directory(path);
+        return path;
+    }
+    static Settings settings_for(const fs::path &folder, Settings settings) {
+        settings.interpreter.user_m_path = {folder.string()};
+        settings.isClockHeldByUserPrograms = true;
+        return settings;
+    }
+    void make_program(const std::string &name, const std::string &script) const {
+        std::ofstream(folder / name) << "#!/bin/sh\n" << script;
+        fs::permissions(folder / name, fs::perms::owner_all);
+    }
 
     void cycle() {
         now_ns += 1000000;
@@ -183,9 +196,9 @@ class TaskTest : public testing::Test {
         return all;
     }
 
-    fs::path folder;
     std::unique_ptr<motion::Channels> channels;
     FakeMotion motion;
+    fs::path folder;
     LoopedIo io;
     NoTools tools;
     NoParameters parameters;
@@ -193,6 +206,53 @@ class TaskTest : public testing::Test {
     std::int64_t now_ns = 0;
     RequestId request = 0;
 };
+
+TEST_F(TaskTest, AUserCodeRunsWithItsWordsAndIsAwaited_I1) {
+    make_program("M101", "echo \"$1 $2\" >> " + (folder / "said").string() + "\n");
+    open("G21 F600\nG1 X1\nM101 P2.5\nM101 P1 Q2\nG1 X2\nM2\n");
+    motion.log.clear();
+    EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << task.reason(request);
+    std::ifstream said(folder / "said");
+    std::string first, second;
+    std::getline(said, first);
+    std::getline(said, second);
+    EXPECT_EQ(first, "2.500000 -1.000000");
+    EXPECT_EQ(second, "1.000000 2.000000");
+}
+
+TEST_F(TaskTest, AUserCodeThatFailsIsTold_I1) {
+    make_program("M102", "exit 3\n");
+    open("M102\nM2\n");
+    ask(RunProgram{});
+    EXPECT_NE(messages().find("ended with status 3"), std::string::npos);
+}
+
+TEST_F(TaskTest, AUserCodeNeedsAnExecutableFile_I1) {
+    std::ofstream(folder / "M103") << "#!/bin/sh\n";
+    open("M103\nM2\n");
+    EXPECT_EQ(ask(RunProgram{}), Progress::FAILED);
+    EXPECT_NE(messages().find("Unknown m code used: M103"), std::string::npos);
+}
+
+TEST(UserProgram, is_ended_with_all_that_it_started_I1) {
+    const fs::path path = fs::temp_directory_path() / ("mw_user_" + std::to_string(::getpid()));
+    std::ofstream(path) << "#!/bin/sh\nsleep 1000 & sleep 1000\n";
+    fs::permissions(path, fs::perms::owner_all);
+    UserProgram program(false);
+    ASSERT_TRUE(program.start(path.string(), 1, 2).has_value());
+    EXPECT_TRUE(program.isRunning());
+    program.stop();
+    EXPECT_FALSE(program.isRunning());
+    fs::remove(path);
+    EXPECT_FALSE(program.start(path.string(), 1, 2).has_value());
+}
+
+TEST_F(TaskTest, M99InTheMainProgramBeginsItAgain_I1) {
+    open("G21 F600\n#1=[#1+1]\nO1 if [#1 ge 3]\nM2\nO1 endif\nG1 X#1\nM99\n");
+    motion.log.clear();
+    EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << task.reason(request);
+    EXPECT_EQ(joined().substr(0, 14), "line 1, line 2");
+}
 
 TEST_F(TaskTest, AProgramRunsToItsEnd_D1) {
     open("G21 F600\nG1 X1\nG1 X2\nM2\n");

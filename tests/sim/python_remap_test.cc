@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Remaps with Python on a whole machine in virtual time: program order, waiting, abort (I2).
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "machine/loaded_config.hh"
+#include "machine/machine.hh"
+#include "machine/operator.hh"
+
+namespace mw::machine {
+namespace {
+
+namespace fs = std::filesystem;
+
+class PythonRemapTest : public testing::Test {
+  protected:
+    PythonRemapTest() {
+        folder_ = fs::temp_directory_path() / ("mw_pyremap_" + std::to_string(::getpid()));
+        fs::create_directory(folder_);
+        write("toplevel.py", "import remap, oword\n");
+        write("oword.py", "");
+    }
+    ~PythonRemapTest() override {
+        machine_.reset();
+        fs::remove_all(folder_);
+    }
+
+    void write(const std::string &name, const std::string &text) const {
+        std::ofstream(folder_ / name) << text;
+    }
+
+    void switch_on(const std::vector<std::string> &remaps) {
+        loaded_ = LoadedConfig::load(MW_SOURCE_DIR "/configs/sim/mill_mm.ini", sink_);
+        ASSERT_NE(loaded_, nullptr);
+        task::Settings &task = loaded_->machine.task;
+        task.parameter_file.clear();
+        task.interpreter.remaps.assign(remaps.begin(), remaps.end());
+        task.interpreter.scripts.top_level = (folder_ / "toplevel.py").string();
+        task.interpreter.scripts.path_prepend = {folder_.string()};
+        task.interpreter.subroutine_path.push_back(folder_.string());
+        auto made =
+            make_virtual_machine({loaded_->ini, loaded_->reader, loaded_->machine, sink_}, MachineOptions{});
+        ASSERT_TRUE(made.has_value()) << made.error().str();
+        machine_ = std::move(*made);
+        Operator person(*machine_, loaded_->machine, sink_, 60.0);
+        ASSERT_TRUE(person.switch_on().has_value());
+        ASSERT_TRUE(person.home_all().has_value());
+    }
+    task::RequestId ask(task::Command command) {
+        const auto id = machine_->task().submit(std::move(command));
+        cycles(3);
+        return id;
+    }
+    void cycles(int n) {
+        for (int i = 0; i < n; ++i) {
+            machine_->cycle();
+        }
+    }
+    void start(const std::string &text) {
+        write("p.ngc", text);
+        ask(task::SetMode{task::Mode::AUTO});
+        ask(task::OpenProgram{(folder_ / "p.ngc").string()});
+        run_ = machine_->task().submit(task::RunProgram{});
+    }
+    task::Progress finish(int limit = 200000) {
+        for (int i = 0; i < limit && machine_->task().progress(run_) == task::Progress::STARTED; ++i) {
+            cycles(1);
+        }
+        return machine_->task().progress(run_);
+    }
+    std::string messages() {
+        std::string all;
+        task::Message message;
+        while (machine_->task().poll_message(message)) {
+            all += message.text + '\n';
+        }
+        return all;
+    }
+    double x() const { return machine_->task().motion_status().carte_pos_cmd.x(); }
+
+    fs::path folder_;
+    diag::Sink sink_;
+    std::unique_ptr<LoadedConfig> loaded_;
+    std::unique_ptr<Machine> machine_;
+    task::RequestId run_ = 0;
+};
+
+TEST_F(PythonRemapTest, AToolChangeThroughPythonAndAProcedureKeepsProgramOrder_I2) {
+    write("remap.py", "from stdglue import *\n");
+    write("change.ngc", "o<change> sub\nG53 G0 Z40\nG53 G0 X-20\nM64 P1\no<change> endsub [1]\n");
+    switch_on({"M6 modalgroup=6 prolog=change_prolog ngc=change epilog=change_epilog"});
+    ASSERT_TRUE(machine_->hal().unlink("iocontrol.0.tool-changed").has_value());
+    start("G21 G90\nG0 X10\nT2 M6\n(debug,tool %d#5400)\nG0 X30\nM2\n");
+    for (int i = 0; i < 20000 && !machine_->hal().get("iocontrol.0.tool-change")->as_bit(); ++i) {
+        cycles(1);
+    }
+    ASSERT_TRUE(machine_->hal().get("iocontrol.0.tool-change")->as_bit());
+    EXPECT_TRUE(machine_->task().motion_status().isInPosition);
+    EXPECT_TRUE(machine_->hal().get("motion.digital-out-01")->as_bit())
+        << "the procedure ran before the change";
+    EXPECT_EQ(machine_->task().progress(run_), task::Progress::STARTED);
+    EXPECT_EQ(messages().find("tool 2"), std::string::npos) << "nothing after the change is read before it";
+    const double waiting_at = x();
+    cycles(2000);
+    EXPECT_EQ(x(), waiting_at);
+    ASSERT_TRUE(machine_->hal().set("iocontrol.0.tool-changed", "TRUE").has_value());
+    EXPECT_EQ(finish(), task::Progress::DONE);
+    EXPECT_EQ(machine_->task().status().tool_in_spindle, 2);
+    EXPECT_DOUBLE_EQ(x(), 30.0);
+    EXPECT_NE(messages().find("tool 2"), std::string::npos);
+}
+
+TEST_F(PythonRemapTest, AYieldResumesWhenTheMachineIsThere_I2) {
+    write("remap.py", "import emccanon\nfrom interpreter import *\n"
+                      "def there(self, **words):\n"
+                      "    assert self.task == 1\n"
+                      "    self.execute('G1 F3000 X%g' % words['p'])\n"
+                      "    yield INTERP_EXECUTE_FINISH\n"
+                      "    emccanon.MESSAGE('machine at %.4f' % emccanon.GET_EXTERNAL_POSITION_X())\n"
+                      "    emccanon.WAIT(0, 1, 3, 5.0)\n"
+                      "    yield INTERP_EXECUTE_FINISH\n"
+                      "    emccanon.MESSAGE('input %g' % self.params[5399])\n");
+    switch_on({"M400 argspec=P py=there"});
+    ASSERT_TRUE(machine_->hal().set("motion.digital-in-00", "TRUE").has_value());
+    start("G21 G90\nG0 X10\nM400 P25\nM400 P5\nG0 X7\nM2\n");
+    EXPECT_EQ(finish(), task::Progress::DONE);
+    EXPECT_EQ(messages(), "machine at 25.0000\ninput 1\nmachine at 5.0000\ninput 1\n");
+    EXPECT_DOUBLE_EQ(x(), 7.0);
+}
+
+TEST_F(PythonRemapTest, AbortDuringAYieldEndsTheScriptAndTheNextProgramRuns_I2) {
+    write("remap.py", "from interpreter import *\nstate = []\n"
+                      "def wait(self, **words):\n"
+                      "    try:\n        yield INTERP_EXECUTE_FINISH\n        state.append('resumed')\n"
+                      "    finally:\n        state.append('closed')\n");
+    write("oword.py", "import remap\nfrom emccanon import MESSAGE\n"
+                      "def tell(self):\n    MESSAGE(' '.join(remap.state))\n");
+    switch_on({"M400 py=wait"});
+    start("G21 G90\nG1 F60 X100\nM400\nG0 X0\nM2\n");
+    cycles(1500);
+    EXPECT_EQ(machine_->task().status().call_level, 1);
+    ask(task::AbortAll{});
+    EXPECT_EQ(machine_->task().progress(run_), task::Progress::FAILED);
+    cycles(500);
+    messages();
+    start("G21 G90\no<tell> call\nG0 X3\nM2\n");
+    EXPECT_EQ(finish(), task::Progress::DONE);
+    EXPECT_EQ(messages(), "closed\n");
+    EXPECT_DOUBLE_EQ(x(), 3.0);
+}
+
+TEST_F(PythonRemapTest, AnErrorInPythonStopsTheProgramWithItsPlace_I2) {
+    write("remap.py", "def bad(self, **words):\n    return 1 / 0\n");
+    switch_on({"M400 py=bad"});
+    start("G21 G90\nG0 X1\nM400\nG0 X100\nM2\n");
+    EXPECT_EQ(finish(), task::Progress::FAILED);
+    const std::string all = messages();
+    EXPECT_NE(all.find("p.ngc:3"), std::string::npos) << all;
+    EXPECT_NE(all.find("remap.py:2 in bad"), std::string::npos) << all;
+}
+
+TEST_F(PythonRemapTest, MdiRunsRemapsAndWaits_I2) {
+    write("remap.py", "from interpreter import *\n"
+                      "def move(self, **words):\n    self.execute('G0 X8')\n    yield INTERP_EXECUTE_FINISH\n"
+                      "    self.execute('G0 X9')\n");
+    switch_on({"M400 py=move"});
+    ask(task::SetMode{task::Mode::MDI});
+    run_ = machine_->task().submit(task::Mdi{"M400"});
+    cycles(3);
+    EXPECT_EQ(finish(), task::Progress::DONE);
+    EXPECT_DOUBLE_EQ(x(), 9.0);
+}
+
+}  // namespace
+}  // namespace mw::machine

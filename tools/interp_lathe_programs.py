@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Lathe cycles for the generator of programs: a profile as a subroutine and G70 to G72 over it."""
+import math
+
+LEAST_TURN = math.radians(25)
+
+
+def profile_points(random):
+    """Points along the cut (u) and away from the axis (h): no collinear or nearly collinear neighbours."""
+    points = [(0.0, random.uniform(3, 8))]
+    heading = None
+    for _ in range(60):
+        u, h = points[-1]
+        du, dh = random.choice((0.0, 1.0, 1.0, 1.0)) * random.uniform(0.8, 6), random.choice((0.0, 1.0, 1.0)) * random.uniform(-3, 5)
+        if (du == 0.0 and abs(dh) < 1.2) or h + dh < 0.5:
+            continue
+        direction = math.atan2(dh, du)
+        isFirst = heading is None
+        if isFirst and du == 0.0:
+            continue
+        if not isFirst and not LEAST_TURN < abs(direction - heading) < math.radians(150):
+            continue
+        points.append((u + du, h + dh))
+        heading = direction
+        if len(points) > random.randint(3, 7):
+            break
+    return points
+
+
+def lathe_cycle(random, label):
+    """The lines of a subroutine and of a cycle with it. G18, G90 and a feed must be in force."""
+    is_facing = random.random() < 0.4
+    sign = random.choice((-1, -1, 1))
+    is_final = random.random() < 0.3
+    code = random.choice(('G70',) if is_final else ('', '', '.1', '.2'))
+    code = code if is_final else ('G72' if is_facing else 'G71') + code
+    points = profile_points(random)
+    while len(points) < 3 or points[-1][1] <= points[0][1] + 0.1:
+        points = profile_points(random)
+    along, across = ('X', 'Z') if is_facing else ('Z', 'X')
+    lines = [f'o{label} sub', f'G0 {across}{points[0][1]:.3f} {along}0']
+    has_arcs = random.random() < 0.3
+    for (u0, h0), (u, h) in zip(points, points[1:]):
+        where = f'{along}{sign * u:.3f} {across}{h:.3f}'
+        if has_arcs and u > u0 and abs(h - h0) > 0.5:
+            lines.append(f'{random.choice(("G2", "G3"))} {where} R{math.hypot(u - u0, h - h0) * random.uniform(1.2, 4):.3f}')
+        else:
+            lines.append(f'G1 {where}')
+    lines.append(f'o{label} endsub')
+    highest = max(h for _, h in points)
+    start = f'{across}{highest + random.uniform(2, 6):.3f} {along}{-sign * random.uniform(0.5, 3):.3f}'
+    lines.append(f'G0 {start}')
+    cycle = f'{code} Q{label}'
+    if random.random() < 0.3:
+        cycle += f' {start}'
+    if is_final:
+        if not has_arcs and not is_facing:
+            cycle += f' D{random.uniform(0.2, 0.4):.2f} E{random.choice((0, 0.2))} P{random.randint(1, 3)}'
+    else:
+        if not has_arcs and random.random() < 0.6:
+            cycle += f' D{random.uniform(0.1, 0.4):.2f}'
+        cycle += f' I{random.uniform(0.7, 3):.2f}'
+        if random.random() < 0.6:
+            cycle += f' R{random.uniform(0, 1):.2f}'
+    return lines + [cycle, random.choice(('G0 X40', 'G1 Z20'))]
