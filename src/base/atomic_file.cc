@@ -94,6 +94,10 @@ Result<std::string> read_file(const std::string &path) {
         return system_failure("open", path);
     }
     std::string content;
+    struct stat status{};
+    if (::fstat(file.get(), &status) == 0 && status.st_size > 0) {
+        content.reserve(static_cast<std::size_t>(status.st_size) + 1);
+    }
     char buffer[65536];
     while (true) {
         const ssize_t n = ::read(file.get(), buffer, sizeof buffer);

@@ -23,6 +23,7 @@ struct MoveSettings {
     MotionControl control = MotionControl::CONTINUOUS;
     double tolerance = 0;  ///< G64 P [machine units; the same figure in degrees for ABC]; 0: no bound
     double naivecam_tolerance = 0;   ///< [machine units]
+    double corner_scale = 0;         ///< G64 R: part of the reachable corner speed; 0: as the machine is set
     double feed_per_revolution = 0;  ///< > 0: position- or velocity-synched to `synch_spindle`
     int synch_spindle = 0;
     bool isVelocitySynched = false;
@@ -58,6 +59,9 @@ class MachineCanon {
     virtual void tool_offset(const Pose &offset) = 0;
     /// Coordinate systems in force from here on [machine units], for status displays.
     virtual void offsets(int g5x_index, const Pose &g5x, const Pose &g92, double rotation_xy_deg) = 0;
+    /// G64 R: from here on motion is planned with jerk limits, or without. The corner speed is in
+    /// MoveSettings.
+    virtual void planner_mode(bool isSmooth) { static_cast<void>(isSmooth); }
     virtual void set_spindle_mode(int spindle, double css_max_rpm) = 0;
     virtual void set_spindle_speed(int spindle, double speed) = 0;
     virtual void spindle_on(int spindle, int direction, bool isWaiting) = 0;  ///< direction +1 cw, -1 ccw

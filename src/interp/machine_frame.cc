@@ -122,6 +122,11 @@ void MachineFrame::set_naivecam_tolerance(double tolerance) {
     naivecam_ = tolerance * length_factor();
 }
 
+void MachineFrame::set_planner_mode(int type, double peak_scale) {
+    corner_scale_ = type != 0 ? peak_scale : 0.0;
+    target_.planner_mode(type != 0);
+}
+
 /// `isLinear` is false for moves of A, B and C alone, whose feed is in degrees.
 MoveSettings MachineFrame::settings(FeedKind kind, bool isLinear) const {
     MoveSettings out;
@@ -129,6 +134,7 @@ MoveSettings MachineFrame::settings(FeedKind kind, bool isLinear) const {
     out.control = control_;
     out.tolerance = tolerance_;
     out.naivecam_tolerance = naivecam_;
+    out.corner_scale = corner_scale_;
     if (kind == FeedKind::RAPID) {
         return out;
     }

@@ -37,7 +37,7 @@ class MachineFrame final : public Canon {
     void set_feed_mode(int spindle, FeedMode mode) override;
     void set_motion_control_mode(MotionControl mode, double tolerance) override;
     void set_naivecam_tolerance(double tolerance) override;
-    void set_planner_mode(int, double) override {}
+    void set_planner_mode(int type, double peak_scale) override;
     void straight_traverse(const Pose &end) override;
     void straight_feed(const Pose &end) override;
     void arc_feed(const ArcFeed &arc) override;
@@ -124,7 +124,8 @@ class MachineFrame final : public Canon {
     FeedMode feed_mode_ = FeedMode::UNITS_PER_MINUTE;
     MotionControl control_ = MotionControl::CONTINUOUS;
     double tolerance_ = 0, naivecam_ = 0;  ///< machine units
-    double synch_feed_ = 0;                ///< machine units per revolution; 0 off
+    double corner_scale_ = 0;
+    double synch_feed_ = 0;  ///< machine units per revolution; 0 off
     int synch_spindle_ = 0;
     bool isVelocitySynched_ = false;
 };

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "interp/print_canon.hh"
 
+#include <array>
 #include <bit>
 #include <cmath>
-#include <iterator>
+#include <cstring>
 
 #include <fmt/format.h>
 
@@ -14,31 +15,53 @@ std::string pose_text(const Pose &p) {
     return fmt::format("{:.4f}, {:.4f}, {:.4f}, {:.4f}, {:.4f}, {:.4f}", p[0], p[1], p[2], p[3], p[4], p[5]);
 }
 
-/// Appends `value` as "{:.4f}" would, without its cost for ordinary coordinates.
-void append_fixed4(std::string &out, double value) {
+/// Two digits for each number below 100.
+constexpr std::array<char, 200> make_pairs() {
+    std::array<char, 200> pairs{};
+    for (std::size_t i = 0; i < 100; ++i) {
+        pairs[2 * i] = static_cast<char>('0' + i / 10);
+        pairs[2 * i + 1] = static_cast<char>('0' + i % 10);
+    }
+    return pairs;
+}
+constexpr std::array<char, 200> PAIRS = make_pairs();
+
+/// Writes `value` as "{:.4f}" would, without its cost for ordinary coordinates.
+std::size_t write_fixed4(char *out, std::size_t size, double value) {
     constexpr double LARGEST = 1e10, SCALE = 1e4, NEAR_TIE = 1e-3;
     const double scaled = std::fabs(value) * SCALE;
-    const double whole = std::floor(scaled);
-    const double rest = scaled - whole;
+    const auto whole = static_cast<std::uint64_t>(scaled < LARGEST * SCALE ? scaled : 0.0);
+    const double rest = scaled - static_cast<double>(whole);
     const bool isOrdinary = std::fabs(value) < LARGEST && std::fabs(rest - 0.5) > NEAR_TIE;
     if (!isOrdinary) {  // too large, not a number, or so near a tie that the product's rounding matters
-        fmt::format_to(std::back_inserter(out), "{:.4f}", value);
-        return;
+        return static_cast<std::size_t>(fmt::format_to_n(out, size, "{:.4f}", value).out - out);
     }
-    std::uint64_t digits = static_cast<std::uint64_t>(whole) + (rest > 0.5 ? 1 : 0);
+    const std::uint64_t digits = whole + (rest > 0.5 ? 1 : 0);
     char buffer[24];
     char *at = buffer + sizeof buffer;
-    for (int i = 0; digits != 0 || i < 5; ++i) {
-        if (i == 4) {
-            *--at = '.';
-        }
-        *--at = static_cast<char>('0' + digits % 10);
-        digits /= 10;
+    const auto put_pair = [&at](std::uint64_t pair) {
+        at -= 2;
+        std::memcpy(at, &PAIRS[2 * pair], 2);
+    };
+    constexpr std::uint64_t DECIMALS = 10000;
+    put_pair(digits % 100);
+    put_pair(digits % DECIMALS / 100);
+    *--at = '.';
+    std::uint64_t before = digits / DECIMALS;
+    for (; before >= 100; before /= 100) {
+        put_pair(before % 100);
+    }
+    if (before >= 10) {
+        put_pair(before);
+    } else {
+        *--at = static_cast<char>('0' + before);
     }
     if (std::signbit(value)) {
         *--at = '-';
     }
-    out.append(at, buffer + sizeof buffer);
+    const auto length = static_cast<std::size_t>(buffer + sizeof buffer - at);
+    std::memcpy(out, at, length);
+    return length;
 }
 
 }  // namespace
@@ -61,7 +84,7 @@ void PrintCanon::begin_line() {
 void PrintCanon::put(std::string_view call) {
     begin_line();
     line_.append(call).append(1, '\n');
-    std::fwrite(line_.data(), 1, line_.size(), out_);
+    fwrite_unlocked(line_.data(), 1, line_.size(), out_);
 }
 
 void PrintCanon::begin_block(const BlockRef &block) {
@@ -142,23 +165,31 @@ void PrintCanon::set_planner_mode(int type, double peak_scale) {
 
 void PrintCanon::put_straight(std::string_view name, const Pose &p) {
     begin_line();
-    line_.append(name).append(1, '(');
+    constexpr std::size_t MOST = 2048;  // the name and six coordinates
+    char text[MOST];
+    char *at = text;
+    const auto put_text = [&at](const char *from, std::size_t length) {
+        std::memcpy(at, from, length);
+        at += length;
+    };
+    put_text(name.data(), name.size());
+    *at++ = '(';
     for (int i = 0; i < geom::AXIS_U; ++i) {
         if (i > 0) {
-            line_.append(", ", 2);
+            put_text(", ", 2);
         }
         // Most moves change few coordinates: the text of the others is known.
         Coordinate &known = coordinates_[static_cast<std::size_t>(i)];
         const auto bits = std::bit_cast<std::uint64_t>(p[i]);
-        if (bits != known.bits || known.text.empty()) {
+        if (bits != known.bits || known.length == 0) {
             known.bits = bits;
-            known.text.clear();
-            append_fixed4(known.text, p[i]);
+            known.length = write_fixed4(known.text.data(), known.text.size(), p[i]);
         }
-        line_.append(known.text);
+        put_text(known.text.data(), known.length);
     }
-    line_.append(")\n");
-    std::fwrite(line_.data(), 1, line_.size(), out_);
+    put_text(")\n", 2);
+    line_.append(text, at);
+    fwrite_unlocked(line_.data(), 1, line_.size(), out_);
 }
 
 void PrintCanon::straight_traverse(const Pose &end) {

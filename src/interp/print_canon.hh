@@ -87,7 +87,8 @@ class PrintCanon final : public Canon {
     /// A coordinate as it was printed last.
     struct Coordinate {
         std::uint64_t bits = 0;
-        std::string text;
+        std::size_t length = 0;
+        std::array<char, 320> text{};  ///< the largest double has 315 characters
     };
 
     /// Puts counter and prefix of the next call into line_.

@@ -26,8 +26,8 @@ struct MachineParts {
 
 struct MachineOptions {
     bool isClockVirtual = false;  ///< set by make_virtual_machine()
-    bool isStrict = false;  ///< unknown INI keys are errors
-    std::string instance;   ///< HAL instance of a realtime machine; empty: the user's default
+    bool isStrict = false;        ///< unknown INI keys are errors
+    std::string instance;         ///< HAL instance of a realtime machine; empty: the user's default
     /// Extra folders for HAL library files, before our own.
     std::vector<std::string> hal_library;
 };

@@ -231,9 +231,8 @@ void read_trajectory(IniReader &ini, MachineConfig &machine) {
                           "ARC_BLEND_OPTIMIZATION_DEPTH",
                           "ARC_BLEND_GAP_CYCLES",
                           "ARC_BLEND_RAMP_FREQ",
-                          "ARC_BLEND_KINK_RATIO",
-                          "SMOOTH_PLANNER",
-                          "SCURVE_PEAK_SCALE"});
+                          "ARC_BLEND_KINK_RATIO"});
+    machine.task.sequencer.smooth_planner = static_cast<int>(ini.integer("TRAJ", "SMOOTH_PLANNER", 1, 0, 1));
 }
 
 void read_periods(IniReader &ini, MachineConfig &machine) {

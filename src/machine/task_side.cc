@@ -18,6 +18,7 @@ TaskSide::~TaskSide() {
     task_.reset();
     tool_change_.destroy();
     halui_.destroy();
+    ini_pins_.destroy();
     io_pins_.destroy();
 }
 
@@ -37,14 +38,17 @@ Result<> TaskSide::start(const MachineOptions &options) {
     }
     task::Settings settings = parts_.config.task;
     settings.isClockHeldByUserPrograms = options.isClockVirtual;
-    task_ =
-        std::make_unique<task::Task>(task::Parts{*channels_, *this, *tools_, parameters_}, std::move(settings));
+    task_ = std::make_unique<task::Task>(task::Parts{*channels_, *this, *tools_, parameters_},
+                                         std::move(settings));
     task_->configure(parts_.config.parameters);
     return {};
 }
 
 Result<> TaskSide::make_pins() {
     auto status = io_pins_.create(host_.hal());
+    if (status.has_value()) {
+        status = ini_pins_.create(host_.hal(), parts_.config.parameters);
+    }
     if (status.has_value() && parts_.config.hasHalui) {
         status = halui_.create(host_.hal(), parts_.config.num_joints);
     }
@@ -123,6 +127,7 @@ Result<> TaskSide::finish_start(const std::function<void()> &cycle, int most_cyc
 }
 
 void TaskSide::step(std::int64_t now_ns) {
+    ini_pins_.step(*task_);
     task_->step(now_ns);
     tool_change_.step(now_ns);
     if (parts_.config.hasHalui) {

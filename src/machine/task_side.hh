@@ -10,6 +10,7 @@
 #include "hal/core/host.hh"
 #include "io/pins.hh"
 #include "machine/ini_parameters.hh"
+#include "machine/ini_pins.hh"
 #include "machine/machine.hh"
 #include "machine/tool_changer.hh"
 #include "machine/tool_file.hh"
@@ -50,6 +51,7 @@ class TaskSide final : private task::IoPort {
     MachineParts parts_;
     hal::Host &host_;
     io::Pins io_pins_;
+    IniPins ini_pins_;
     ui::Halui halui_;
     ManualToolChange tool_change_;
     IniParameters parameters_;

@@ -76,7 +76,7 @@ traj::Limits path_limits(const MachineConfig &machine) {
 }
 
 TimeEstimate::TimeEstimate(const MachineConfig &machine)
-    : machine_(machine),
+    : machine_(machine), corner_scale_(setting(machine, motion::Parameter::TRAJ_CORNER_SCALE, 0)),
       estimator_(std::make_unique<traj::Estimator>(path_limits(machine),
                                                    static_cast<double>(machine.servo_period_ns) * 1e-9,
                                                    [this](const traj::MoveEstimate &move) { take(move); })) {}
@@ -114,6 +114,7 @@ traj::MoveRequest TimeEstimate::request_of(const interp::MoveSettings &settings)
     r.tag.block = static_cast<std::uint32_t>(section_);
     r.isRapid = settings.kind == interp::FeedKind::RAPID || !(settings.feed > 0);
     r.tolerance = settings.tolerance;
+    r.corner_scale = settings.corner_scale > 0 ? settings.corner_scale : corner_scale_;
     r.join = settings.control == interp::MotionControl::EXACT_STOP   ? traj::Join::STOP
              : settings.control == interp::MotionControl::EXACT_PATH ? traj::Join::EXACT
                                                                      : traj::Join::BLEND;

@@ -53,6 +53,7 @@ class TimeEstimate {
     traj::MoveRequest request_of(const interp::MoveSettings &settings);
 
     const MachineConfig &machine_;
+    double corner_scale_;  ///< of moves that name none
     TimeFigures figures_;
     int tool_ = 0;
     std::vector<std::string> files_;

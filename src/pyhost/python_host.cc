@@ -46,15 +46,31 @@ py::list base_path() {
 
 const PythonHost *PythonHost::active = nullptr;
 int PythonHost::hosts = 0;
+int PythonHost::entries = 0;
 
 /// Around every entry from the interpreter: the GIL, the current view, and this host's modules.
 class PythonHost::Entry {
   public:
-    explicit Entry(const PythonHost &host) : scope_(*host.view_) { host.activate(); }
+    explicit Entry(const PythonHost &host) : scope_(*host.view_) {
+        if (entries++ == 0 && isForeignPython()) {
+            path_ = py::module_::import("sys").attr("path");
+            main_ = loaded_modules()["__main__"];
+        }
+        host.activate();
+    }
+    ~Entry() {
+        if (--entries == 0 && path_) {
+            py::module_::import("sys").attr("path") = path_;
+            loaded_modules()["__main__"] = main_;
+        }
+    }
+    Entry(const Entry &) = delete;
+    Entry &operator=(const Entry &) = delete;
 
   private:
     py::gil_scoped_acquire gil_;
     CurrentScope scope_;
+    py::object path_, main_;  ///< of the process, when Python is its own
 };
 
 /// A generator at its yield.
@@ -116,7 +132,7 @@ PythonHost::~PythonHost() {
         py::module_::import("interpreter").attr("this") = py::none();
     }
     --hosts;
-    if (hosts == 0) {
+    if (hosts == 0 && !isForeignPython()) {
         run_exit_functions();
     }
     if (handle_ != nullptr) {
@@ -157,14 +173,16 @@ void PythonHost::stash() const {
 }
 
 void PythonHost::activate() const {
-    if (active == this) {
+    if (active == this && !isForeignPython()) {
         return;
     }
-    if (active != nullptr) {
+    if (active != nullptr && active != this) {
         active->stash();
     }
-    active = this;
-    loaded_modules().attr("update")(modules_);
+    if (active != this) {
+        active = this;
+        loaded_modules().attr("update")(modules_);
+    }
     loaded_modules()["__main__"] = main_;
     py::module_::import("sys").attr("path") = path_;
     py::module_::import("interpreter").attr("this") = self_;
@@ -179,13 +197,9 @@ Result<> PythonHost::load(const interp::ScriptSettings &settings, interp::Interp
     handle_ = std::make_shared<ViewHandle>();
     handle_->view = &view;
     const py::gil_scoped_acquire gil;
-    const CurrentScope scope(view);
     try {
-        self_ = make_interpreter(handle_);
         main_ = py::module_::import("types").attr("ModuleType")("__main__");
         main_.attr("__builtins__") = py::module_::import("builtins");
-        main_.attr("this") = self_;
-        main_.attr("self") = self_;
         py::list path;
         for (const std::string &folder : settings.path_prepend) {
             path.append(full_path(folder));
@@ -197,7 +211,11 @@ Result<> PythonHost::load(const interp::ScriptSettings &settings, interp::Interp
             path.append(full_path(folder));
         }
         path_ = path;
-        activate();
+        const Entry entry(*this);
+        self_ = make_interpreter(handle_);
+        main_.attr("this") = self_;
+        main_.attr("self") = self_;
+        py::module_::import("interpreter").attr("this") = self_;
         run_top_level();
     } catch (py::error_already_set &error) {
         return fail(fmt::format("[PYTHON]TOPLEVEL={} failed: {}", settings.top_level,

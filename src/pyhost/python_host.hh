@@ -49,6 +49,7 @@ class PythonHost final : public interp::ScriptHost {
     interp::ScriptOutcome failed(std::string message) const;
 
     static const PythonHost *active;  ///< whose modules stand in sys.modules
+    static int entries;               ///< calls into Python, one inside the other
     static int hosts;
 
     interp::ScriptSettings settings_;

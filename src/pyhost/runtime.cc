@@ -15,6 +15,8 @@
 namespace mw::pyhost {
 namespace {
 
+bool isStarted = false, isForeign = false;
+
 /// Python's standard output and error through the C library's, so that their lines and ours keep their order.
 class Stream {
   public:
@@ -99,10 +101,16 @@ std::vector<std::string> places_of(const py::error_already_set &error) {
 
 }  // namespace
 
+bool isForeignPython() {
+    return isForeign;
+}
+
 void start_python() {
     if (Py_IsInitialized() != 0) {
+        isForeign = !isStarted;
         return;
     }
+    isStarted = true;
     py::initialize_interpreter(false);
     redirect_streams();
     PyEval_SaveThread();  // from now on every call takes the GIL itself

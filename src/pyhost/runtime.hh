@@ -13,6 +13,9 @@ namespace py = pybind11;
 
 /// Starts Python unless it runs already. On return the calling thread does not hold the GIL (unless it did).
 void start_python();
+/// Python ran before start_python(): it belongs to the process, which must find sys.path and __main__ as they
+/// were.
+bool isForeignPython();
 
 /// Folders with our own modules, to be searched last.
 void add_own_modules();

@@ -75,6 +75,9 @@ struct OverrideSwitchItem {
     int spindle;
     bool isEnabled;
 };
+struct PlannerModeItem {
+    bool isSmooth;
+};
 struct DigitalOutputItem {
     int index;
     bool isOn;
@@ -127,8 +130,8 @@ using ItemBody =
     std::variant<LineItem, ArcItem, ProbeItem, RigidTapItem, DwellItem, SpindleModeItem, SpindleSpeedItem,
                  SpindleOnItem, SpindleOffItem, SpindleOrientItem, WaitOrientItem, SelectToolItem,
                  ChangeToolItem, ChangeToolNumberItem, ToolEntryItem, CoolantItem, OverrideSwitchItem,
-                 DigitalOutputItem, AnalogOutputItem, WaitInputItem, StopItem, EndItem, MessageItem,
-                 PrintItem, LogItem, ReloadToolsItem, UserCodeItem, ToolOffsetItem, OffsetsItem>;
+                 PlannerModeItem, DigitalOutputItem, AnalogOutputItem, WaitInputItem, StopItem, EndItem,
+                 MessageItem, PrintItem, LogItem, ReloadToolsItem, UserCodeItem, ToolOffsetItem, OffsetsItem>;
 
 struct Item {
     motion::SourceTag source;

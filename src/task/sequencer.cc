@@ -124,19 +124,8 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
             [&](const ArcItem &) { return push_move(item); },
             [&](const ProbeItem &) { return isProbeMade_ = push_move(item), isProbeMade_; },
             [&](const RigidTapItem &) { return push_move(item); },
-            [&](const DwellItem &dwell) {
-                wait_ = Wait::DWELL;
-                deadline_ns_ = now_ns + to_ns(dwell.seconds);
-                return true;
-            },
-            [&](const WaitInputItem &input) {
-                awaited_input_ = input;
-                wait_ = Wait::INPUT;
-                deadline_ns_ = now_ns + to_ns(input.timeout_s);
-                last_input_ = std::nan("");
-                isInputTimedOut_ = false;
-                return true;
-            },
+            [&](const DwellItem &dwell) { return begin(dwell, now_ns); },
+            [&](const WaitInputItem &input) { return begin(input, now_ns); },
             [&](const StopItem &stop) {
                 events_.stop(stop, item.source.line);
                 return true;
@@ -166,15 +155,8 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
                 events_.tool_offset(offset);
                 return true;
             },
-            [&](const UserCodeItem &code) {
-                const auto started = events_.start_user_code(code);
-                if (!started.has_value()) {
-                    events_.fail(started.error().str());
-                    return true;
-                }
-                wait_ = Wait::USER_CODE;
-                return true;
-            },
+            [&](const PlannerModeItem &mode) { return begin(mode); },
+            [&](const UserCodeItem &code) { return begin(code); },
             [&](const DigitalOutputItem &output) {
                 return !output.isSynched ||
                                motion_.push_path(motion::SynchedDigitalOutput{output.index, output.isOn})
@@ -202,6 +184,38 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
         item.body);
 }
 
+bool Sequencer::begin(const DwellItem &dwell, std::int64_t now_ns) {
+    wait_ = Wait::DWELL;
+    deadline_ns_ = now_ns + to_ns(dwell.seconds);
+    return true;
+}
+
+bool Sequencer::begin(const WaitInputItem &input, std::int64_t now_ns) {
+    awaited_input_ = input;
+    wait_ = Wait::INPUT;
+    deadline_ns_ = now_ns + to_ns(input.timeout_s);
+    last_input_ = std::nan("");
+    isInputTimedOut_ = false;
+    return true;
+}
+
+bool Sequencer::begin(const PlannerModeItem &mode) {
+    const auto setting = events_.planner_mode(mode);
+    awaited_setting_ = setting.value_or(0);
+    wait_ = awaited_setting_ != 0 ? Wait::SETTING : Wait::NONE;
+    return setting.has_value();
+}
+
+bool Sequencer::begin(const UserCodeItem &code) {
+    const auto started = events_.start_user_code(code);
+    if (!started.has_value()) {
+        events_.fail(started.error().str());
+        return true;
+    }
+    wait_ = Wait::USER_CODE;
+    return true;
+}
+
 motion::MoveTerms Sequencer::terms_of(const interp::MoveSettings &settings, motion::MotionType type,
                                       const Item &item) {
     motion::MoveTerms terms;
@@ -210,6 +224,7 @@ motion::MoveTerms Sequencer::terms_of(const interp::MoveSettings &settings, moti
     terms.feed = settings.feed;
     terms.tolerance = settings.tolerance;
     terms.naivecam_tolerance = settings.naivecam_tolerance;
+    terms.corner_scale = settings.corner_scale;
     terms.feed_per_revolution = settings.feed_per_revolution;
     terms.synch_spindle = static_cast<std::int8_t>(settings.synch_spindle);
     terms.isVelocitySynched = settings.isVelocitySynched;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -25,6 +26,9 @@ struct SequencerEvents {
     std::function<void(const std::string &)> fail;         ///< something cannot be done; task aborts
     std::function<void(const OffsetsItem &)> offsets;
     std::function<void(const ToolOffsetItem &)> tool_offset;
+    /// Changes the planner at rest; the command whose answer is to be awaited, 0: nothing to wait for;
+    /// nothing when it cannot be, and task aborts.
+    std::function<std::optional<motion::CommandId>(const PlannerModeItem &)> planner_mode;
     /// Starts a user M code; false when it cannot be started.
     std::function<Result<>(const UserCodeItem &)> start_user_code;
     std::function<bool()> isUserCodeRunning;
@@ -35,6 +39,7 @@ using MoveListener = std::function<void(motion::CommandId id, const motion::Path
 
 struct SequencerSettings {
     bool isToolChangeWithSpindleOn = false;  ///< [EMCIO]TOOL_CHANGE_WITH_SPINDLE_ON
+    int smooth_planner = 1;  ///< [TRAJ]SMOOTH_PLANNER: what G64 R above 0 means; 0: it is refused
 };
 
 /// One thread; step() once a task cycle, never blocks.
@@ -77,7 +82,7 @@ class Sequencer {
 
   private:
     enum class Need : std::uint8_t { NOTHING, MOTION, MOTION_AND_IO };
-    enum class Wait : std::uint8_t { NONE, DWELL, INPUT, TOOL, ORIENT, USER_CODE };
+    enum class Wait : std::uint8_t { NONE, DWELL, INPUT, TOOL, ORIENT, USER_CODE, SETTING };
     struct SpindleState {
         double speed = 0;
         double css_max_rpm = 0;
@@ -92,6 +97,10 @@ class Sequencer {
     bool isStepBoundary(const Item &item);
     /// False when the item must be tried again next cycle.
     bool execute(const Item &item, std::int64_t now_ns);
+    bool begin(const DwellItem &dwell, std::int64_t now_ns);
+    bool begin(const WaitInputItem &input, std::int64_t now_ns);
+    bool begin(const PlannerModeItem &mode);
+    bool begin(const UserCodeItem &code);
     bool push_move(const Item &item);
     /// Entry of the table, or "no tool" for index 0.
     interp::ToolEntry tool_at(int index) const;
@@ -123,6 +132,7 @@ class Sequencer {
     double input_value_ = 0, last_input_ = 0;
     bool isInputTimedOut_ = false;
     int awaited_spindle_ = 0;
+    motion::CommandId awaited_setting_ = 0;
     int selected_index_ = -1;  ///< table entry prepared by T, -1: none
     int changing_index_ = -1;
     std::array<SpindleState, MAX_SPINDLES> spindles_{};

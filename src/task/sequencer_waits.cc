@@ -23,6 +23,7 @@ bool Sequencer::isWaitOver(std::int64_t now_ns) {
         isOver = spindle.orient_state != 1;
         break;
     }
+    case Wait::SETTING: isOver = motion_.isAnswered(awaited_setting_); break;
     case Wait::USER_CODE: isOver = !events_.isUserCodeRunning(); break;
     }
     if (isOver) {
@@ -60,6 +61,7 @@ std::string Sequencer::waiting_for() const {
         return std::string("pin motion.") + (awaited_input_.isAnalog ? "analog-in-" : "digital-in-") +
                (awaited_input_.index < 10 ? "0" : "") + std::to_string(awaited_input_.index);
     case Wait::ORIENT: return "pin spindle." + std::to_string(awaited_spindle_) + ".is-oriented";
+    case Wait::SETTING: return "the motion controller to take a setting";
     case Wait::USER_CODE: return "a user M code to end";
     case Wait::NONE:
     case Wait::TOOL: break;

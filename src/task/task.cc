@@ -10,23 +10,25 @@
 namespace mw::task {
 namespace {
 
-constexpr std::size_t REMEMBERED_REQUESTS = 256;
-
-/// Programs and scripts can tell a machine from a preview (#<_task>, self.task).
-Settings as_task(Settings settings) {
+/// A machine runs its programs: #<_task>, self.task of scripts, and M99 in the main program begins it again.
+Settings for_machine(Settings settings) {
     settings.interpreter.isTask = true;
     return settings;
 }
 
+constexpr std::size_t REMEMBERED_REQUESTS = 256;
+
 }  // namespace
 
 Task::Task(const Parts &parts, Settings settings)
-    : settings_(as_task(std::move(settings))), parts_(parts), motion_(parts.channels),
+    : settings_(for_machine(std::move(settings))), parts_(parts), motion_(parts.channels),
       canon_(queue_, settings_.tool_change_place), frame_(canon_, settings_.machine_units),
       interp_(std::make_unique<interp::Interpreter>(frame_, *this, parts.tools, parts.parameters,
                                                     settings_.interpreter)),
       user_program_(settings_.isClockHeldByUserPrograms),
-      sequencer_(queue_, motion_, io_, parts.tools, make_events(), settings_.sequencer) {}
+      sequencer_(queue_, motion_, io_, parts.tools, make_events(), settings_.sequencer),
+      planner_mode_({[this](const motion::SetParameter &p) { return motion_.send(p); },
+                     [this](MessageKind kind, const std::string &text) { post(kind, text); }}) {}
 
 Task::~Task() = default;
 
@@ -49,6 +51,16 @@ SequencerEvents Task::make_events() {
         status_.tool_offset = item.offset;
         motion_.send(motion::SetToolOffset{item.offset});
     };
+    events.planner_mode = [this](const PlannerModeItem &item) -> std::optional<motion::CommandId> {
+        const int smooth = settings_.sequencer.smooth_planner;
+        if (item.isSmooth && smooth == 0) {
+            pending_failure_ =
+                "G64 R above 0 asks for the jerk-limited planner, which [TRAJ]SMOOTH_PLANNER = 0 "
+                "does not allow; use G64 R0 or no R";
+            return std::nullopt;
+        }
+        return planner_mode_.set(item.isSmooth ? smooth : 0);
+    };
     events.start_user_code = [this](const UserCodeItem &item) -> Result<> {
         const std::string path = interp::find_user_program(settings_.interpreter, item.code);
         return path.empty() ? fail("M" + std::to_string(item.code) + ": its program is gone")
@@ -67,6 +79,7 @@ SequencerEvents Task::make_events() {
 }
 
 void Task::configure(const std::vector<motion::SetParameter> &parameters) {
+    planner_mode_.configure(parameters);
     for (const motion::SetParameter &parameter : parameters) {
         last_setting_ = motion_.send(parameter);
     }
@@ -91,6 +104,7 @@ Result<> Task::start() {
         }
     }
     synch_interpreter();
+    planner_mode_.announce();
     Result<> begun = interp_->begin();
     for (const std::string &warning : interp_->warnings()) {
         post(MessageKind::OPERATOR_TEXT, warning);
@@ -159,6 +173,7 @@ void Task::step(std::int64_t now_ns) {
             finish_run(Progress::DONE, {});
         }
     }
+    planner_mode_.step(!isRunning() && sequencer_.isIdle());
     parts_.io_port.write(io_.outputs);
     update_status();
 }

@@ -13,6 +13,7 @@
 #include "io/controller.hh"
 #include "task/command.hh"
 #include "task/motion_link.hh"
+#include "task/planner_mode.hh"
 #include "task/sequencer.hh"
 #include "task/status.hh"
 #include "task/task_canon.hh"
@@ -85,6 +86,8 @@ class Task final : public interp::World {
     void step(std::int64_t now_ns);
 
     const Status &status() const { return status_; }
+    /// The planner in force, and wishes of the operator about it.
+    PlannerMode &planner_mode() { return planner_mode_; }
     const motion::Status &motion_status() const { return motion_.status(); }
     /// Takes the oldest message for the operator; false when there is none.
     bool poll_message(Message &message);
@@ -145,6 +148,7 @@ class Task final : public interp::World {
     std::unique_ptr<interp::ProgramInterpreter> interp_;
     UserProgram user_program_;
     Sequencer sequencer_;
+    PlannerMode planner_mode_;
 
     Status status_;
     std::int64_t now_ns_ = 0;

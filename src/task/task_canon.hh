@@ -42,6 +42,7 @@ class TaskCanon final : public interp::MachineCanon {
     void tool_offset(const geom::Pose &offset) override { add(ToolOffsetItem{offset}); }
     void offsets(int g5x_index, const geom::Pose &g5x, const geom::Pose &g92,
                  double rotation_xy_deg) override;
+    void planner_mode(bool isSmooth) override { add(PlannerModeItem{isSmooth}); }
     void set_spindle_mode(int spindle, double css_max_rpm) override {
         add(SpindleModeItem{spindle, css_max_rpm});
     }

@@ -63,4 +63,61 @@ void FreePlanner::step(double dt) noexcept {
     velocity = v * sign;
 }
 
+void JogPlanner::stop() noexcept {
+    if (length_ <= 1) {
+        FreePlanner::stop();
+        return;
+    }
+    leader_.stop();
+    target = leader_.target;
+}
+
+/// From rest: the mean is as long as the acceleration needs to turn about.
+void JogPlanner::begin(double dt) noexcept {
+    const double samples = std::ceil(2.0 * max_acceleration / (max_jerk * dt) - 1e-9);
+    length_ = static_cast<std::uint32_t>(std::clamp(samples, 2.0, static_cast<double>(MOST_SAMPLES)));
+    jerk_ = max_jerk;
+    leader_.reset(position);
+    origin_ = position;
+    way_.fill(0.0);
+    sum_ = 0;
+    rest_ = 0;
+    next_ = 0;
+    standing_ = 0;
+}
+
+/// Adds without losing what a double cannot hold (two-sum).
+void JogPlanner::add(double x) noexcept {
+    const double s = sum_ + x;
+    const double back = s - sum_;
+    rest_ += (sum_ - (s - back)) + (x - back);
+    sum_ = s;
+}
+
+void JogPlanner::step(double dt) noexcept {
+    const bool isBeginning = length_ <= 1 && max_jerk > 0 && max_acceleration > 0 && velocity == 0.0;
+    if (isBeginning && position != target) {
+        begin(dt);
+    }
+    if (length_ <= 1) {
+        FreePlanner::step(dt);
+        return;
+    }
+    leader_.target = target;
+    leader_.max_velocity = max_velocity;
+    leader_.max_acceleration = std::min(max_acceleration, 0.5 * jerk_ * length_ * dt);
+    leader_.step(dt);
+    const double way = leader_.position - origin_;
+    add(way);
+    add(-way_[next_]);
+    way_[next_] = way;
+    next_ = next_ + 1 == length_ ? 0 : next_ + 1;
+    standing_ = leader_.isAtRest() ? standing_ + 1 : 0;
+    const double before = position;
+    const bool isOver = standing_ >= length_;
+    position = isOver ? target : origin_ + (sum_ + rest_) / length_;
+    velocity = isOver ? 0.0 : (position - before) / dt;
+    length_ = isOver ? 1 : length_;
+}
+
 }  // namespace mw::traj

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // One coordinate that follows a target which may change at any time, within speed and acceleration.
 // Each cycle evaluates the time-optimal profile from the present position and speed, so samples keep the
-// limits.
+// limits. JogPlanner adds a jerk limit: the mean of such a profile's last samples is commanded.
 #pragma once
+
+#include <array>
+#include <cstdint>
 
 namespace mw::traj {
 
@@ -25,6 +28,34 @@ struct FreePlanner {
     void stop() noexcept;
     /// Advances by `dt` [s]. [servo]
     void step(double dt) noexcept;
+};
+
+/// The same with a jerk limit. A mean over tau swings its acceleration by at most 2 A within tau, whatever
+/// the target does, so tau = 2 A / J keeps the limit; the place ends where the leader does, tau later.
+class JogPlanner : public FreePlanner {
+  public:
+    /// 0: none. Taken when a move begins at rest. [unit/s^3]
+    double max_jerk = 0;
+
+    bool isAtRest() const noexcept { return length_ <= 1 && FreePlanner::isAtRest(); }
+    void reset(double at) noexcept {
+        FreePlanner::reset(at);
+        length_ = 1;
+    }
+    void stop() noexcept;
+    /// Advances by `dt` [s]. [servo]
+    void step(double dt) noexcept;
+
+  private:
+    static constexpr std::uint32_t MOST_SAMPLES = 400;
+    void begin(double dt) noexcept;
+    void add(double x) noexcept;
+
+    FreePlanner leader_;
+    std::array<double, MOST_SAMPLES> way_{};  ///< of the leader from origin_, the last samples
+    std::uint32_t length_ = 1;                ///< of the mean; 1: the leader itself is commanded
+    std::uint32_t next_ = 0, standing_ = 0;
+    double jerk_ = 0, origin_ = 0, sum_ = 0, rest_ = 0;
 };
 
 /// Position that braking at `acceleration` from here leads to.

@@ -23,6 +23,8 @@ struct MoveRequest {
     MoveTag tag;
     Join join = Join::BLEND;
     double tolerance = 0;        ///< of a blend [machine units; degrees over ABC]; 0: as the speed needs
+    double corner_scale = 1;     ///< with jerk limits: part of the reachable speed in corners (G64 R)
+    bool isMergeAdded = false;   ///< joining may take all of merge_tolerance, on top of `tolerance`
     double merge_tolerance = 0;  ///< lines may be joined to one that is no farther from their ends (G64 Q)
     bool isRapid = false;        ///< as fast as the limits allow, scaled by Scales::rapid
     bool isOverridable = true;
@@ -108,9 +110,10 @@ class Planner {
 
   private:
     struct MovePlan {
-        double feed = 0;       ///< requested speed in s [1/s]; 0: none
-        double start_s = 0;    ///< where the move begins on the programmed path
-        double deviation = 0;  ///< of the primitive from the lines that were joined to it
+        double feed = 0;           ///< requested speed in s [1/s]; 0: none
+        double start_s = 0;        ///< where the move begins on the programmed path
+        double deviation = 0;      ///< of the primitive from the lines that were joined to it
+        Pose shift_in, shift_out;  ///< of its start and its end from where they were programmed
         MoveRequest request;
     };
     struct PiecePlan {
@@ -130,6 +133,7 @@ class Planner {
         double dwell_s = 0;
         double v = UNLIMITED;  ///< highest speed on the blend
         double turning = 0;    ///< share of the acceleration that it takes at that speed
+        double gentle = 1;     ///< part of the acceleration next to a stop that the mean can bring together
     };
 
     MovePlan &move_plan(Sequence n) noexcept { return moves_[n % PRIMITIVE_CAPACITY]; }
@@ -146,6 +150,8 @@ class Planner {
     double filtered_arc_speed(const Primitive &p, const MovePlan &m) const noexcept;
     double tolerance_of(const MovePlan &m) const noexcept;
     void add_part(Piece piece, double to, bool isToEnd, double v) noexcept;
+    double zone_length(const Primitive &p, const Joint &joint, double wish) const noexcept;
+    void make_gentle(Sequence from, double part) noexcept;
     bool isAlongOnly(const Primitive &p, const MoveRequest &request) const noexcept;
     SpeedLimit along_limit(const Primitive &p, double wish) const noexcept;
     SpeedLimit shared_limit(const Primitive &a, const Primitive &b, const Joint &joint,
@@ -187,12 +193,19 @@ class Planner {
     bool emit_tail() noexcept;
     bool canCoast(Sequence piece, double x, double v) noexcept;
 
+    // --- planner_shape.cc: with jerk limits, the corners of dense curves
+    bool wanted_shift(Sequence nb, Sequence nc, Pose &shift, double &reach) const noexcept;
+    void shape_corner(Sequence nb, Sequence nc) noexcept;
+    void reshape(Sequence n, const Pose &in, const Pose &out) noexcept;
+    Pose programmed_at(Sequence n, double s) const noexcept;
+
     // --- planner_check.cc: what is commanded is tried out before it is committed
     bool isPlanSound(const Snapshot &now, const State &from, Sequence begin) noexcept;
     void start_trial(const Snapshot &now, const State &from) noexcept;
     void try_sample(const Phase &phase, double t) noexcept;
     void push_sample(const LeaderSample &sample, Sequence piece) noexcept;
     bool isTrialSound() noexcept;
+    bool isLeaderSound() const noexcept;
     double trial_deviation(std::uint64_t tick) noexcept;
     bool ease(const State &from) noexcept;
     void scale_piece(Sequence piece, double speed, double acceleration) noexcept;
@@ -208,6 +221,7 @@ class Planner {
     PathStore &store_;
     PlannerSettings settings_;
     Limits wanted_;             ///< as set
+    Limits highest_;            ///< of all that were set since the path began
     Limits limits_;             ///< the same with accelerations that fit the filter
     std::uint64_t filter_ = 1;  ///< samples of the mean that is commanded; 1: no jerk limits
     Scales scales_;
@@ -224,12 +238,13 @@ class Planner {
     bool isOpenStop_ = false;    ///< stop before its part
     Joint open_joint_;           ///< before it
     /// With jerk limits, part of the acceleration that is for turning where curves follow each other closely.
-    static constexpr double TURNING_SHARE = 0.88;
+    static constexpr double TURNING_SHARE = 0.97;
     /// And what the turning of neighbours may be more than a place's own, and how much is left for that.
     static constexpr double SHARED_TURNS = 1.1, SHARED_REST = 0.985;
     static constexpr std::size_t MOST_JOINED = 64;
     std::array<Pose, MOST_JOINED> joined_{};  ///< ends within the open move of the lines that it stands for
     std::size_t joined_count_ = 0;
+    Pose shift_, shift_drive_;  ///< of the last corner, and what it follows
     bool isJoinable_ = false;   ///< nothing else hangs on the end of the open move
     double programmed_s_ = 0;   ///< length of what has been added
     Sequence first_piece_ = 1;  ///< of this path

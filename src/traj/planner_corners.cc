@@ -13,12 +13,14 @@ namespace {
 constexpr double SMALLEST_BLEND = 1e-7;
 constexpr double EXACT_DEVIATION = 1e-6;
 /// Part of the tolerance that blends may take where corners follow each other closely.
-constexpr double GEOMETRY_SHARE = 0.25;
+constexpr double GEOMETRY_SHARE = 0.35;
 constexpr double SPREAD_SHARE = 0.05;
 /// Part that the mean may take on an arc.
 constexpr double ARC_SHARE = 0.92;
 /// Part of the tolerance that is planned with; the rest is for what the formulas leave out.
 constexpr double TOLERANCE_SHARE = 0.95;
+/// Up to this swing over what the mean can spread, less acceleration costs less time than standing does.
+constexpr double MOST_SWING = 1.7, GENTLE_ROOM = 0.999;
 /// From the width of a blend that takes 0.7 of the acceleration to one that takes 0.95.
 constexpr double TURNING_FIT = 0.7 / 0.95;
 
@@ -109,16 +111,21 @@ Planner::Joint Planner::filtered_stop(const Primitive &a, const Primitive &b, do
     const double tau = filter_s();
     const double out = limit_of(a, 0, a.length, limits_, UNLIMITED).a.at(0);
     const double in = limit_of(b, 0, b.length, limits_, UNLIMITED).a.at(0);
-    const double overlap = std::min(tau, std::cbrt(48.0 * tau * TOLERANCE_SHARE * share / std::max(out, in)));
-    Joint stop{.isStop = true, .dwell_s = tau - overlap};
     const Pose ta = derivative_at(a, a.length);
     const Pose tb = derivative_at(b, 0);
+    double swing = 0;
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
-        const double swing = std::abs(ta[i] * out + tb[i] * in);
-        if (swing > wanted_.jerk[static_cast<std::size_t>(i)] * tau) {
-            stop.dwell_s = tau;
-        }
+        const double most = wanted_.jerk[static_cast<std::size_t>(i)] * tau;
+        swing = std::max(swing, std::abs(ta[i] * out + tb[i] * in) / most);
     }
+    swing = std::max(swing, geom::norm_xyz(ta * out + tb * in) / (wanted_.jerk[XYZ_NORM] * tau));
+    Joint stop{.isStop = true, .dwell_s = tau};
+    if (swing > MOST_SWING) {
+        return stop;
+    }
+    stop.gentle = swing > 1.0 ? GENTLE_ROOM / swing : 1.0;
+    const double most = stop.gentle * std::max(out, in);
+    stop.dwell_s = tau - std::min(tau, std::cbrt(48.0 * tau * TOLERANCE_SHARE * share / most));
     return stop;
 }
 
@@ -150,9 +157,11 @@ Planner::Joint Planner::filtered_corner(Sequence na, Sequence nb, double toleran
     if (isDense && tolerance > 0) {
         // Several corners within the mean: they act like a curve, which wide blends make smooth.
         d = std::max(d, std::min(half, blend_d_for_tolerance(a, b, GEOMETRY_SHARE * tolerance)));
-        const double room = 24.0 * TOLERANCE_SHARE * share * spacing - 4.0 * d * d;
+        const double outside = std::max(0.0, -geom::dot(move_plan(nb).shift_in, step) / (turn * turn));
+        const double room = 24.0 * (TOLERANCE_SHARE * share + outside) * spacing - 4.0 * d * d;
         v = std::min(v, std::sqrt(std::max(0.0, room)) / tau);
     }
+    v *= std::min(move_plan(na).request.corner_scale, move_plan(nb).request.corner_scale);
     if (!(d > SMALLEST_BLEND) || !(v > 0)) {
         return stop;
     }

@@ -47,12 +47,17 @@ Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept
 
 void Planner::set_limits(const Limits &limits) noexcept {
     wanted_ = limits;
+    for (std::size_t i = 0; i < limits.velocity.size(); ++i) {
+        highest_.velocity[i] = std::max(highest_.velocity[i], limits.velocity[i]);
+        highest_.acceleration[i] = std::max(highest_.acceleration[i], limits.acceleration[i]);
+    }
     limits_ = limits_for_filter(limits, filter_, settings_.period_s);
 }
 
 void Planner::begin(const Pose &start, const Snapshot &now) noexcept {
     end_ = start;
     filter_ = filter_length(wanted_, settings_.period_s);
+    highest_ = wanted_;
     set_limits(wanted_);
     programmed_s_ = 0;
     isStopPlan_ = false;
@@ -61,6 +66,8 @@ void Planner::begin(const Pose &start, const Snapshot &now) noexcept {
     oldest_piece_ = first_piece_;
     open_move_ = 0;
     raw_move_ = 0;
+    shift_ = {};
+    shift_drive_ = {};
     changed_from_ = 0;
     drops_ = now.drops;
     plan_ = std::max(plan_, now.plan);
@@ -114,7 +121,10 @@ Sequence Planner::add(const Primitive &primitive, const MoveRequest &request) no
     MovePlan &m = move_plan(n);
     m.start_s = programmed_s_;
     m.deviation = 0;
+    m.shift_in = {};
+    m.shift_out = {};
     fill_move(n, primitive, request);
+    shape_corner(raw_move_, n);
     joined_count_ = 0;
     isJoinable_ = true;
     last_synched_ = request.feed_per_revolution > 0 ? n : last_synched_;
@@ -213,17 +223,18 @@ void Planner::close_move(double to, bool isToEnd, const Joint &next) noexcept {
     const double wish = std::min(wish_of(m), filtered_arc_speed(p, m));
     const bool isAfterBlend = isFiltered() && open_joint_.d > 0;
     const bool isBeforeBlend = isFiltered() && next.d > 0;
-    // Next to a curve that stands alone the speed stays as it is there, so that turning and braking do not
-    // meet in the mean; what curves close by take of the acceleration at the same speed is not there for the
-    // path.
-    const auto zone = [&](bool isBlend, const Joint &joint) {
-        const double way = std::min(joint.v, wish) * filter_s();
-        return isBlend && !p.isArc && way < ZONE_SHARE * (to - from) ? way : 0.0;
+    const double length = to - from;
+    const auto zone = [&](const Joint &joint) {
+        const double way = zone_length(p, joint, wish);
+        const bool isFit = way < ZONE_SHARE * length;
+        return joint.isStop ? std::min(way, ZONE_SHARE * length) : isFit ? way : 0.0;
     };
-    const double before = zone(isAfterBlend, open_joint_);
-    const double after = zone(isBeforeBlend, next);
+    const double before = zone(open_joint_);
+    const double after = zone(next);
     if (before > 0) {
-        add_part(piece, from + before, false, open_joint_.v);
+        const Sequence first = last_piece_ + 1;
+        add_part(piece, from + before, false, open_joint_.isStop ? wish : open_joint_.v);
+        make_gentle(first, open_joint_.gentle);
     }
     const Sequence first = last_piece_ + 1;
     piece.offset = from + before;
@@ -239,8 +250,31 @@ void Planner::close_move(double to, bool isToEnd, const Joint &next) noexcept {
         }
     }
     if (after > 0) {
+        const Sequence last = last_piece_ + 1;
         piece.offset = to - after;
-        add_part(piece, to, isToEnd, next.v);
+        add_part(piece, to, isToEnd, next.isStop ? wish : next.v);
+        make_gentle(last, next.gentle);
+    }
+}
+
+/// Next to a curve that stands alone the speed stays as it is there, so that turning and braking do not meet
+/// in the mean; what curves close by take of the acceleration at the same speed is not there for the path.
+/// Next to a stop that overlaps in the mean the acceleration may have to be less.
+double Planner::zone_length(const Primitive &p, const Joint &joint, double wish) const noexcept {
+    const bool isNone = !isFiltered() || p.isArc;
+    if (!isNone && joint.d > 0) {
+        return std::min(joint.v, wish) * filter_s();
+    }
+    if (isNone || !joint.isStop || joint.gentle >= 1.0) {
+        return 0;
+    }
+    const double shared = filter_s() - joint.dwell_s + settings_.period_s;
+    return 0.5 * limit_of(p, 0, p.length, limits_, wish).a.at(0) * joint.gentle * shared * shared;
+}
+
+void Planner::make_gentle(Sequence from, double part) noexcept {
+    for (Sequence k = from; k <= last_piece_ && part < 1.0; ++k) {
+        scale_piece(k, 1.0, part);
     }
 }
 
@@ -354,7 +388,8 @@ bool Planner::canJoin(const Primitive &line, const MoveRequest &request) const n
     const MoveRequest &open = move_plan(raw_move_).request;
     const bool isSame = open.tag.requested_velocity == request.tag.requested_velocity &&
                         open.tolerance == request.tolerance &&
-                        open.merge_tolerance == request.merge_tolerance && open.isRapid == request.isRapid &&
+                        open.merge_tolerance == request.merge_tolerance &&
+                        open.corner_scale == request.corner_scale && open.isRapid == request.isRapid &&
                         open.isOverridable == request.isOverridable && open.tag.type == request.tag.type;
     const bool isPlain = open.join == Join::BLEND && request.join == Join::BLEND && !request.isGated &&
                          !(request.feed_per_revolution > 0) && !(open.feed_per_revolution > 0);
@@ -365,11 +400,12 @@ bool Planner::canJoin(const Primitive &line, const MoveRequest &request) const n
 /// Makes the open line go to the end of `line` if all ends in between stay near it, in order.
 bool Planner::join_line(const Primitive &line, const MoveRequest &request) noexcept {
     double allowed = request.merge_tolerance;
-    if (request.tolerance > 0) {
+    if (request.tolerance > 0 && !request.isMergeAdded) {
         allowed = std::min(std::max(allowed, JOIN_SHARE * request.tolerance), 0.5 * request.tolerance);
     }
     const Primitive &open = store_.primitive(raw_move_);
-    const Primitive whole = make_line(open.start, line.end);
+    const Pose shift = move_plan(raw_move_).shift_in;
+    const Primitive whole = make_line(open.start - shift, line.end);
     joined_[joined_count_] = open.end;
     double along = 0;
     double worst = 0;
@@ -384,8 +420,11 @@ bool Planner::join_line(const Primitive &line, const MoveRequest &request) noexc
         along = s;
     }
     ++joined_count_;
-    move_plan(raw_move_).deviation = worst;
+    move_plan(raw_move_).deviation = request.isMergeAdded ? 0.0 : worst;
     fill_move(raw_move_, whole, request);
+    if (shift != Pose{}) {
+        reshape(raw_move_, shift, {});
+    }
     return true;
 }
 

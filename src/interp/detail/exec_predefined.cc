@@ -37,6 +37,7 @@ constexpr Row ROWS[] = {
     {"_plane", [](const Executor &e) { return static_cast<double>(e.plane_code()); }},
     {"_ccomp", [](const Executor &e) { return static_cast<double>(e.state.comp_code); }},
     {"_metric", [](const Executor &e) { return flag(e.state.units == LengthUnits::MM); }},
+    {"_metric_machine", [](const Executor &e) { return flag(e.world().machine_units() == LengthUnits::MM); }},
     {"_imperial", [](const Executor &e) { return flag(e.state.units == LengthUnits::INCH); }},
     {"_absolute", [](const Executor &e) { return flag(!e.state.isIncremental); }},
     {"_incremental", [](const Executor &e) { return flag(e.state.isIncremental); }},

@@ -136,6 +136,19 @@ bool Executor::add_code(char letter_char, double number, std::uint32_t column, B
 /// Keeps the codes in their order of execution; refuses two of one group.
 bool Executor::insert_code(const Code &code, std::uint32_t column, BlockValues &values) {
     const std::uint32_t bit = 1u << static_cast<unsigned>(code.group);
+    if (code.group == Group::MOTION && values.motion != nullptr) {
+        // G80 beside another motion code says nothing that this one does not say.
+        if (code.number == MOTION_NONE) {
+            return true;
+        }
+        if (values.motion->number == MOTION_NONE && values.motion->phase == code.phase) {
+            for (ActiveCode &active : values.codes) {
+                active = active.code == values.motion ? ActiveCode{&code, column} : active;
+            }
+            values.motion = &code;
+            return true;
+        }
+    }
     if ((values.groups & bit) != 0) {
         return fault.set(fmt::format("Two {} codes used from same modal group", code.letter), column);
     }
@@ -174,8 +187,25 @@ bool Executor::choose_motion(BlockValues &values) {
     return insert_code(*lookup('g', state.motion), 0, values);
 }
 
+/// The machine must have the axes that the block names.
+bool Executor::check_axes(const BlockValues &values) {
+    std::uint32_t axes = values.present & letters("xyzabcuvw");
+    const unsigned mask = world_.axis_mask();
+    for (; axes != 0; axes &= axes - 1) {
+        const int index = std::countr_zero(axes);
+        const char axis = LETTERS[index];
+        if ((mask & (1U << static_cast<unsigned>(geom::axis_of_letter(axis)))) == 0) {
+            return fault.set(fmt::format("Bad character '{}' used", axis),
+                             values.column[static_cast<std::size_t>(index)],
+                             fmt::format("this machine has no axis {}: see [TRAJ]COORDINATES",
+                                         static_cast<char>(std::toupper(axis))));
+        }
+    }
+    return true;
+}
+
 bool Executor::check_words(const BlockValues &values) {
-    if (!check_open_nurbs(values)) {
+    if (!check_open_nurbs(values) || !check_axes(values)) {
         return false;
     }
     std::uint32_t allowed = letters("fstn");

@@ -256,7 +256,9 @@ Step Flow::run_block(const BlockView &view) {
 Step Flow::after_block() {
     bool isDone = true;
     while (isDone) {
-        if (const Outcome next = executor_.outcome; next != Outcome::CALL_FANUC && next != Outcome::PROFILE) {
+        const Outcome outcome = executor_.outcome;
+        executor_.outcome = Outcome::OK;
+        if (outcome != Outcome::CALL_FANUC && outcome != Outcome::PROFILE) {
             commit();  // those two may still fail
         }
         if (isEndDue_ && script_depth_ == 0) {  // a script has ended the program
@@ -264,8 +266,6 @@ Step Flow::after_block() {
             unwind();
             return Step::PROGRAM_END;
         }
-        const Outcome outcome = executor_.outcome;
-        executor_.outcome = Outcome::OK;
         switch (outcome) {
         case Outcome::OK: return Step::OK;
         case Outcome::SYNC: return Step::SYNC;

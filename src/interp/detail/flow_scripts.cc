@@ -79,6 +79,7 @@ Result<> Flow::check_remap(const Remap &remap) {
 
 Result<> Flow::load_scripts() {
     const ScriptSettings &wanted = settings_.scripts;
+    warnings_ = executor_.refused_remaps();
     if (!wanted.top_level.empty()) {
         if (Result<> made = need_scripts("[PYTHON]TOPLEVEL", wanted.place); !made) {
             return made;
@@ -171,6 +172,7 @@ bool Flow::call_handler(ScriptModule module, const std::string &name) {
     script_error_.clear();
     commit();
     executor_.outcome = Outcome::OK;
+    executor_.canon.enter_block(program_, line_read_, line_read_, false, call_level());
     std::unique_ptr<SuspendedScript> rest;
     ++script_depth_;
     ScriptOutcome outcome = scripts_->call(module, name, arguments, rest);

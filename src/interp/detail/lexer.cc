@@ -36,16 +36,20 @@ Lexer::Number Lexer::take_number(double &value, std::string &text) {
     // Blanks inside of numbers are rare: without one the digits are taken straight from the line.
     const char *at = line_.data() + pos_;
     const char *const end_of_line = line_.data() + line_.size();
-    for (; at != end_of_line && (isDigit(*at) || (*at == '.' && !isFraction)); ++at) {
-        if (*at == '.') {
-            isFraction = true;
-            continue;
+    const auto take_digits = [&] {
+        const char *const first = at;
+        for (; at != end_of_line && isDigit(*at); ++at) {
+            digits =
+                digits * 10 + static_cast<std::uint64_t>(*at - '0');  // wraps beyond EXACT_DIGITS: not used
         }
-        if (count < EXACT_DIGITS) {
-            digits = digits * 10 + static_cast<std::uint64_t>(*at - '0');
-        }
-        ++count;
-        decimals += isFraction ? 1 : 0;
+        return static_cast<int>(at - first);
+    };
+    count = take_digits();
+    if (at != end_of_line && *at == '.') {
+        isFraction = true;
+        ++at;
+        decimals = take_digits();
+        count += decimals;
     }
     pos_ = static_cast<std::size_t>(at - line_.data());
     for (char c = peek(); isDigit(c) || (c == '.' && !isFraction); c = peek()) {

@@ -32,6 +32,8 @@ inline constexpr double UNBOUNDED = std::numeric_limits<double>::infinity();
     X(TRAJ_MAX_ACCELERATION, MACHINE, "MAX_LINEAR_ACCELERATION", ACCELERATION, 0, UNBOUNDED, UNBOUNDED)      \
     X(TRAJ_MAX_JERK, MACHINE, "MAX_LINEAR_JERK", JERK, 0, UNBOUNDED, 1e9)                                    \
     X(TRAJ_PLANNER_TYPE, MACHINE, "PLANNER_TYPE", COUNT, 0, 1, 0)                                            \
+    X(TRAJ_CORNER_SCALE, MACHINE, "SCURVE_PEAK_SCALE", NONE, 0.1, 1, 1)                                      \
+    X(TRAJ_ADDED_TOLERANCES, MACHINE, "ADDED_TOLERANCES", FLAG, 0, 1, 0)                                     \
     X(TRAJ_NO_FORCE_HOMING, MACHINE, "NO_FORCE_HOMING", FLAG, 0, 1, 0)                                       \
     X(MAX_FEED_SCALE, MACHINE, "MAX_FEED_OVERRIDE", NONE, 0, 1000, 1)                                        \
     X(JOINT_MIN_LIMIT, JOINT, "MIN_LIMIT", LENGTH, -UNBOUNDED, UNBOUNDED, -1e99)                             \

@@ -38,6 +38,7 @@ struct MoveTerms {
     double feed = 0;
     double tolerance = 0;           ///< G64 P; 0 under BLEND: no bound
     double naivecam_tolerance = 0;  ///< G64 Q
+    double corner_scale = 0;        ///< G64 R: part of the reachable corner speed; 0: TRAJ_CORNER_SCALE
     bool isFeedOverridable = true;
     double feed_per_revolution = 0;  ///< > 0: synched to the spindle
     std::int8_t synch_spindle = 0;

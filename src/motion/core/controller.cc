@@ -8,7 +8,6 @@ namespace mw::motion {
 namespace {
 
 /// A jerk from here on means none; a linear jerk below the least turns the jerk-limited planner off.
-constexpr double JERK_OFF = 1e9;
 constexpr double LEAST_JERK = 1;
 
 }  // namespace
@@ -27,7 +26,7 @@ Controller::Controller(const ControllerConfig &config, const kins::Kinematics &k
 }
 
 bool Controller::isAnythingMoving() const noexcept {
-    if (!executor_.isAtRest()) {
+    if (!executor_.isAtRest() || link_.retrace.isMoving()) {
         return true;
     }
     for (int j = 0; j < config_.num_joints; ++j) {
@@ -156,6 +155,10 @@ void Controller::answer(CommandId id, AnswerKind kind, Reason reason, std::int16
     last_id_ = id;
 }
 
+bool Controller::isJerkLimited() const noexcept {
+    return settings_.isSet(Parameter::TRAJ_PLANNER_TYPE) && get(Parameter::TRAJ_MAX_JERK) >= LEAST_JERK;
+}
+
 /// Limits of axes and joints folded together, for the path planner.
 void Controller::publish_limits() noexcept {
     PathLimits out;
@@ -188,7 +191,9 @@ void Controller::publish_limits() noexcept {
     }
     const double jerk = get(Parameter::TRAJ_MAX_JERK);
     out.limits.jerk[traj::XYZ_NORM] = jerk < JERK_OFF ? jerk : traj::UNLIMITED;
-    out.limits.isJerkLimited = settings_.isSet(Parameter::TRAJ_PLANNER_TYPE) && jerk >= LEAST_JERK;
+    out.limits.isJerkLimited = isJerkLimited();
+    out.corner_scale = get(Parameter::TRAJ_CORNER_SCALE);
+    out.areTolerancesAdded = settings_.isSet(Parameter::TRAJ_ADDED_TOLERANCES);
     out.limits.velocity[traj::XYZ_NORM] = std::min(get(Parameter::TRAJ_MAX_VELOCITY), traj::UNLIMITED);
     out.limits.acceleration[traj::XYZ_NORM] =
         std::min(get(Parameter::TRAJ_MAX_ACCELERATION), traj::UNLIMITED);
@@ -201,6 +206,7 @@ void Controller::publish_limits() noexcept {
         out.joint_high[at(j)] = homing_.isHomed(j) ? get(Parameter::JOINT_MAX_LIMIT, j) : UNBOUNDED;
     }
     out.joints.count = config_.num_joints;
+    path_limits_ = out;
     link_.limits.write(out);
     ++limits_version_;
 }

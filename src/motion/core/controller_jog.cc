@@ -7,7 +7,7 @@
 
 namespace mw::motion {
 
-traj::FreePlanner &Controller::planner_of(const JogTarget &target) noexcept {
+traj::JogPlanner &Controller::planner_of(const JogTarget &target) noexcept {
     return target.isJoint ? joint(target.index).free : axes_[at(target.index)].teleop;
 }
 
@@ -41,6 +41,25 @@ double Controller::max_acceleration_of(const JogTarget &target) const noexcept {
         }
     }
     return a;
+}
+
+/// 0 where none holds.
+double Controller::max_jerk_of(const JogTarget &target) const noexcept {
+    if (!isJerkLimited()) {
+        return 0;
+    }
+    const bool isAngular = target.isJoint ? settings_.isSet(Parameter::JOINT_IS_ANGULAR, target.index)
+                                          : geom::isAngular(target.index);
+    double jerk = isAngular ? JERK_OFF : get(Parameter::TRAJ_MAX_JERK);
+    jerk = std::min(jerk, target.isJoint ? get(Parameter::JOINT_MAX_JERK, target.index)
+                                         : get(Parameter::AXIS_MAX_JERK, target.index));
+    const kins::IdentityMap *map = kinematics_.identity();
+    for (int j = 0; !target.isJoint && map != nullptr && j < map->num_joints; ++j) {
+        if (map->axis_of_joint[at(j)] == target.index) {
+            jerk = std::min(jerk, get(Parameter::JOINT_MAX_JERK, j));
+        }
+    }
+    return jerk < JERK_OFF ? jerk : 0.0;
 }
 
 /// Where a jog may go: soft limits once homed, before that twice the travel around the present place.
@@ -115,7 +134,7 @@ Reason Controller::jog_to(const JogTarget &target, double position, double veloc
     double low = 0;
     double high = 0;
     jog_range(target, low, high);
-    traj::FreePlanner &p = planner_of(target);
+    traj::JogPlanner &p = planner_of(target);
     // From outside the limits every move back in is welcome, none further out.
     low = std::min(low, p.position);
     high = std::max(high, p.position);
@@ -125,6 +144,7 @@ Reason Controller::jog_to(const JogTarget &target, double position, double veloc
     p.target = std::clamp(position, low, high);
     p.max_velocity = std::min(std::abs(velocity), max_velocity_of(target));
     p.max_acceleration = max_acceleration_of(target);
+    p.max_jerk = max_jerk_of(target);
     source_of(target) = source;
     isOverrideInJog_ = isOverrideInJog_ || isOverridingLimits_;
     return Reason::NONE;
@@ -273,7 +293,7 @@ Reason Controller::unhome(int j) noexcept {
 /// Every jog brakes; at once: stands in this cycle, whatever that asks of the drives.
 void Controller::stop_jogs(bool isAtOnce) noexcept {
     for (int j = 0; j < config_.num_joints; ++j) {
-        traj::FreePlanner &p = joint(j).free;
+        traj::JogPlanner &p = joint(j).free;
         if (isAtOnce) {
             p.reset(p.position);
         } else {
@@ -296,7 +316,7 @@ void Controller::step_wheel(const Inputs &in, const JogTarget &target, const Whe
                                                  static_cast<std::uint32_t>(counts));
     counts = wheel.counts;
     const double distance = delta * wheel.scale;
-    traj::FreePlanner &p = planner_of(target);
+    traj::JogPlanner &p = planner_of(target);
     const bool isStill = !wheel.isEnabled || distance == 0.0;
     if (isStill) {
         const bool isVelocityWheel = source_of(target) == JogSource::WHEEL && wheel.isVelocityMode;

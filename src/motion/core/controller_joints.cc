@@ -133,7 +133,10 @@ void Controller::step_homing(const Inputs &in) noexcept {
             s.free.target += c.isShifting ? c.shift : s.pos_cmd - s.free.position;
             s.free.position = s.pos_cmd;
         }
-        s.free.max_acceleration = get(Parameter::JOINT_MAX_ACCELERATION, j);
+        if (c.move != homing::Move::NONE) {
+            s.free.max_acceleration = get(Parameter::JOINT_MAX_ACCELERATION, j);
+            s.free.max_jerk = 0;  // homing stops where a switch says
+        }
         if (c.move == homing::Move::STOP) {
             s.free.stop();
         } else if (c.move != homing::Move::NONE) {

@@ -12,15 +12,18 @@
 #include "traj/joint_map.hh"
 #include "traj/limits.hh"
 #include "traj/path_store.hh"
+#include "traj/retrace.hh"
 
 namespace mw::motion {
 
 /// Written by the controller when a setting changes or a joint is homed or unhomed.
 struct PathLimits {
     traj::Limits limits;
-    geom::Pose low, high;      ///< soft limits per axis; +-infinity where none holds
-    std::uint32_t axes = 0;    ///< bit per axis that the kinematics drive
-    traj::JointLimits joints;  ///< where joints are not axes
+    double corner_scale = 1;          ///< of moves that name none
+    bool areTolerancesAdded = false;  ///< what joining takes is on top of P
+    geom::Pose low, high;             ///< soft limits per axis; +-infinity where none holds
+    std::uint32_t axes = 0;           ///< bit per axis that the kinematics drive
+    traj::JointLimits joints;         ///< where joints are not axes
     std::array<double, MAX_JOINTS> joint_low{}, joint_high{};  ///< soft limits; +-infinity where none holds
 };
 
@@ -45,6 +48,7 @@ struct PathView {
 
 struct PathLink {
     traj::PathStore store;
+    traj::Retrace retrace;       ///< the controller's own; here for its size
     Seqlock<PathView> view;      ///< controller -> planner
     Seqlock<PathLimits> limits;  ///< controller -> planner
     std::atomic<std::uint32_t> steps_done{

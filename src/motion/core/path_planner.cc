@@ -228,8 +228,11 @@ traj::MoveRequest PathPlanner::request_for(const PathCommand &c, const MoveTerms
              : terms.mode == PathMode::EXACT_PATH ? traj::Join::EXACT
                                                   : traj::Join::BLEND;
     r.tolerance = terms.tolerance;
+    r.corner_scale = terms.corner_scale > 0 ? terms.corner_scale : limits_.corner_scale;
+    r.isMergeAdded = limits_.areTolerancesAdded;
     // A Q as large as P says no more than P does.
-    const bool isOwnQ = !(terms.tolerance > 0) || terms.naivecam_tolerance < terms.tolerance;
+    const bool isOwnQ =
+        r.isMergeAdded || !(terms.tolerance > 0) || terms.naivecam_tolerance < terms.tolerance;
     r.merge_tolerance = isOwnQ ? terms.naivecam_tolerance : 0.0;
     const bool hasFeed = terms.feed > 0 || terms.feed_per_revolution > 0;
     r.isRapid = terms.type == MotionType::TRAVERSE || terms.type == MotionType::INDEX_ROTARY || !hasFeed;
@@ -299,7 +302,8 @@ Reason PathPlanner::check_joints(const traj::Primitive &p) noexcept {
 
 Reason PathPlanner::accept_line(const PathCommand &c, const geom::Pose &end,
                                 const MoveTerms &terms) noexcept {
-    if (!isFinite(end) || !std::isfinite(terms.feed) || !std::isfinite(terms.tolerance)) {
+    if (!isFinite(end) || !std::isfinite(terms.feed) || !std::isfinite(terms.tolerance) ||
+        !std::isfinite(terms.corner_scale)) {
         return Reason::NOT_A_NUMBER;
     }
     if (terms.feed < 0 || terms.tolerance < 0 || terms.synch_spindle >= config_.num_spindles) {

@@ -210,6 +210,72 @@ TEST(Machine, TheWatchdogStopsTheMachineWhenTaskHangs_C6) {
     EXPECT_EQ(rig.faults[0].kind, FaultKind::TASK_LOST);
 }
 
+TEST(Machine, ThePlannerChangesBetweenMovesAtRest_C2) {
+    MotionRig rig;
+    constexpr double JERK = 20000;
+    rig.set(Parameter::TRAJ_MAX_JERK, 0, JERK);
+    for (int i = 0; i < 3; ++i) {
+        rig.set(Parameter::AXIS_MAX_JERK, i, JERK);
+    }
+    rig.ready();
+    const auto highest_jerk = [&rig](double x) {
+        geom::Pose end;
+        end[0] = x;
+        rig.line(end, 50);
+        const CommandId flush = rig.send_path(Flush{});
+        std::vector<double> p;
+        EXPECT_TRUE(rig.run_until([&] {
+            p.push_back(rig.out->joint[0].motor_pos_cmd);
+            return rig.isDone(flush);
+        }));
+        double worst = 0;
+        for (std::size_t i = 3; i < p.size(); ++i) {
+            worst = std::max(worst, std::abs(p[i] - 3 * p[i - 1] + 3 * p[i - 2] - p[i - 3]) * 1e9);
+        }
+        return worst;
+    };
+    EXPECT_GT(highest_jerk(10), 5 * JERK);
+    rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, 1);
+    rig.step(10);
+    EXPECT_LE(highest_jerk(0), JERK * (1 + 1e-5));
+    rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, 0);
+    rig.step(10);
+    EXPECT_GT(highest_jerk(10), 5 * JERK);
+}
+
+TEST(Machine, JogsKeepTheJerkLimit_C8_C13) {
+    MotionRig rig;
+    constexpr double JERK = 20000;
+    rig.set(Parameter::TRAJ_MAX_JERK, 0, JERK);
+    rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, 1);
+    rig.ready(Mode::FREE);
+    std::vector<double> p;
+    rig.send(JogContinuous{{true, 0}, 50});
+    for (int i = 0; i < 400; ++i) {
+        rig.step();
+        p.push_back(rig.out->joint[0].motor_pos_cmd);
+    }
+    EXPECT_NEAR(p[399] - p[398], 0.05, 1e-9);
+    rig.send(JogStop{{true, 0}});
+    for (int i = 0; i < 400; ++i) {
+        rig.step();
+        p.push_back(rig.out->joint[0].motor_pos_cmd);
+    }
+    EXPECT_EQ(p[799], p[798]);
+    const CommandId jog = rig.send(JogIncremental{{true, 0}, 80, -3});
+    for (int i = 0; i < 600; ++i) {
+        rig.step();
+        p.push_back(rig.out->joint[0].motor_pos_cmd);
+    }
+    EXPECT_EQ(rig.refusal(jog), Reason::NONE);
+    EXPECT_NEAR(p.back() - p[799], -3, 1e-9);
+    double worst = 0;
+    for (std::size_t i = 3; i < p.size(); ++i) {
+        worst = std::max(worst, std::abs(p[i] - 3 * p[i - 1] + 3 * p[i - 2] - p[i - 3]) * 1e9);
+    }
+    EXPECT_LE(worst, JERK * (1 + 1e-5));
+}
+
 TEST(Machine, FeedOverrideZeroStandsAndUpGoesOn_C4) {
     MotionRig rig;
     rig.set(Parameter::MAX_FEED_SCALE, 0, 2.0);

@@ -33,6 +33,8 @@ class Recorder:
                 return False
             if name == "get_tool":
                 return (-1,) + (0.0,) * 12 + (0,)
+            if name == "get_axis_mask":
+                return 0x1ff
             if name.startswith("get_"):
                 return 1
             self.calls.append((name, args))
@@ -153,6 +155,20 @@ class GcodeTest(unittest.TestCase):
         self.parse("G0 X#100\nM2\n", canon)
         self.assertAlmostEqual(canon.named("straight_traverse")[0][0], 3 / 25.4)
         self.assertEqual(self.read(path), before)
+
+    def test_remaps_of_the_ini_file(self):
+        self.write("from interpreter import *\ndef m400(self, **words):\n    self.execute('G0 X%g' % words['p'])\n"
+                   "    return INTERP_OK\n", "remap.py")
+        self.write("import remap\n", "toplevel.py")
+        self.write("o<deep> sub\nG0 Z#<z>\no<deep> endsub\nM2\n", "deep.ngc")
+        ini = self.write("[PYTHON]\nTOPLEVEL = toplevel.py\nPATH_APPEND = .\n[RS274NGC]\n"
+                         "SUBROUTINE_PATH = %s\nREMAP = M400 modalgroup=10 argspec=P py=m400\n"
+                         "REMAP = G88.1 modalgroup=1 argspec=z ngc=deep\n" % self.folder.name, "m.ini")
+        os.environ["INI_FILE_NAME"] = ini
+        self.addCleanup(os.environ.pop, "INI_FILE_NAME")
+        canon, result = self.parse("G20\nM400 P5\nG88.1 Z-2\nM2\n")
+        self.assertEqual(result, (1, 4), gcode.strerror(result[0]))
+        self.assertEqual([args[:3] for args in canon.named("straight_traverse")], [(5, 0, 0), (5, 0, -2)])
 
     def test_extents(self):
         nothing = gcode.calc_extents([])

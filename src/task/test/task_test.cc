@@ -40,6 +40,7 @@ class FakeMotion {
     std::vector<std::string> log;
     bool isHolding = false;
     bool isRefusingMoves = false;
+    double corner_scale = -1;  ///< of the last move
 
   private:
     void take(const motion::Command &command) {
@@ -56,6 +57,9 @@ class FakeMotion {
             log.push_back("spindle " + std::to_string(static_cast<int>(on->speed_rpm)));
         } else if (std::holds_alternative<motion::SpindleOff>(command.body)) {
             log.emplace_back("spindle off");
+        } else if (const auto *p = std::get_if<motion::SetParameter>(&command.body)) {
+            const bool isType = p->parameter == static_cast<int>(motion::Parameter::TRAJ_PLANNER_TYPE);
+            log.push_back((isType ? "planner " : "setting ") + std::to_string(static_cast<int>(p->value)));
         }
         channels_.servo_answers.push({command.id});
     }
@@ -72,6 +76,7 @@ class FakeMotion {
                 answer.reason = motion::Reason::BEYOND_SOFT_LIMIT;
                 answer.index = 0;
             } else if (!isStale && line != nullptr) {
+                corner_scale = line->terms.corner_scale;
                 status.carte_pos_cmd = line->end;
                 log.push_back("line " + std::to_string(static_cast<int>(line->end.x())));
             }
@@ -126,9 +131,9 @@ class LoopedIo final : public IoPort {
 
 class TaskTest : public testing::Test {
   protected:
-    TaskTest()
-        : channels(std::make_unique<motion::Channels>()), motion(*channels),
-          folder(made_folder()), task({*channels, io, tools, parameters}, settings_for(folder)) {
+    explicit TaskTest(const Settings &settings = {})
+        : channels(std::make_unique<motion::Channels>()), motion(*channels), folder(made_folder()),
+          task({*channels, io, tools, parameters}, settings_for(folder, settings)) {
         EXPECT_TRUE(task.start().has_value());
         EXPECT_EQ(ask(SetState{State::ESTOP_RESET}), Progress::DONE);
         EXPECT_EQ(ask(SetState{State::ON}), Progress::DONE);
@@ -140,8 +145,7 @@ class TaskTest : public testing::Test {
         fs::create_directory(path);
         return path;
     }
-    static Settings settings_for(const fs::path &folder) {
-        Settings settings;
+    static Settings settings_for(const fs::path &folder, Settings settings) {
         settings.interpreter.user_m_path = {folder.string()};
         settings.isClockHeldByUserPrograms = true;
         return settings;
@@ -257,6 +261,58 @@ TEST_F(TaskTest, AProgramRunsToItsEnd_D1) {
     EXPECT_EQ(joined().substr(0, 14), "line 1, line 2");
     EXPECT_EQ(task.status().interp_state, InterpState::IDLE);
     EXPECT_EQ(task.status().programs_ended, 1U);
+}
+
+TEST_F(TaskTest, AProgramChoosesThePlannerInItsPlace_C2) {
+    open("G21 F600\nG1 X1\nG64 P0.1 R0.5\nG1 X2\nG64 P0.1\nG1 X3\nG64 R0\nG1 X4\nG64 R0\nG1 X5\nM2\n");
+    motion.log.clear();
+    EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << task.reason(request);
+    EXPECT_EQ(joined().substr(0, 59), "line 1, planner 1, line 2, line 3, planner 0, line 4, line ");
+    EXPECT_EQ(motion.corner_scale, 0.0);
+    EXPECT_NE(messages().find("MAX_LINEAR_JERK"), std::string::npos);
+}
+
+TEST_F(TaskTest, CornerSpeedOfG64RTravelsWithTheMoves_C2) {
+    open("G21 F600\nG64 P0.1 R0.5\nG1 X2\nM2\n");
+    EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << task.reason(request);
+    EXPECT_EQ(motion.corner_scale, 0.5);
+}
+
+TEST_F(TaskTest, TheOperatorsPlannerComesWhenAllIsIdle_C2) {
+    motion.isHolding = true;
+    open("G21 F600\nG1 X1\nM2\n");
+    request = task.submit(RunProgram{});
+    cycles(20);
+    motion.log.clear();
+    task.planner_mode().wish(1);
+    cycles(20);
+    EXPECT_EQ(joined(), "");
+    EXPECT_NE(messages().find("waits until motion is idle"), std::string::npos);
+    motion.isHolding = false;
+    cycles(30);
+    EXPECT_EQ(joined(), "line 1, spindle off, planner 1");
+    task.planner_mode().wish(7);
+    cycles(2);
+    EXPECT_EQ(joined(), "line 1, spindle off, planner 1");
+    EXPECT_NE(messages().find("0 (trapezoidal) or 1"), std::string::npos);
+}
+
+class NoSmoothPlanner : public TaskTest {
+  protected:
+    NoSmoothPlanner() : TaskTest(without()) {}
+    static Settings without() {
+        Settings settings;
+        settings.sequencer.smooth_planner = 0;
+        return settings;
+    }
+};
+
+TEST_F(NoSmoothPlanner, G64RIsRefused_C2) {
+    open("G21 F600\nG1 X1\nG64 P0.1 R0.5\nG1 X2\nM2\n");
+    motion.log.clear();
+    EXPECT_NE(ask(RunProgram{}), Progress::DONE);
+    EXPECT_EQ(joined().find("line 2"), std::string::npos);
+    EXPECT_NE(messages().find("SMOOTH_PLANNER"), std::string::npos);
 }
 
 TEST_F(TaskTest, CommandsThatCannotBeDoneAreRefusedWithAReason_C5) {

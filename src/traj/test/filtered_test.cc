@@ -87,6 +87,21 @@ TEST(Filtered, ACornerUsesTheToleranceAndNoMore_C13) {
     EXPECT_GT(nearest, 0.002);
 }
 
+double corner_time(double corner_scale) {
+    JerkRig rig;
+    MoveRequest r = request(Join::BLEND, 0.5);
+    r.corner_scale = corner_scale;
+    rig.planner.add(make_line(Pose{}, at(20)), r);
+    rig.planner.add(make_line(at(20), at(35, 15)), r);
+    EXPECT_TRUE(rig.run(10));
+    rig.expect_within();
+    return static_cast<double>(rig.cycle) * Rig::T;
+}
+
+TEST(Filtered, CornersArePassedAtTheScaledSpeed_C2) {
+    EXPECT_GT(corner_time(0.2), corner_time(1.0) + 0.01);
+}
+
 TEST(Filtered, AnExactArcIsFollowedExactly_C13) {
     JerkRig rig;
     ArcShape shape;

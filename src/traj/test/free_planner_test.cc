@@ -56,5 +56,54 @@ TEST(FreePlanner, RandomTargetChangesKeepTheLimits_C8) {
     }
 }
 
+TEST(JogPlanner, RandomTargetChangesKeepTheJerkLimitToo_C8_C13) {
+    for (unsigned seed = 1; seed <= 50; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<double> unit(0, 1);
+        JogPlanner p;
+        const double vmax = std::pow(10.0, unit(random) * 3);
+        const double amax = std::pow(10.0, 1 + unit(random) * 3);
+        const double jmax = amax * std::pow(10.0, 0.5 + unit(random) * 3);
+        p.max_velocity = vmax;
+        p.max_acceleration = amax;
+        p.max_jerk = jmax;
+        testing::LimitChecker checker({{vmax, amax, jmax}}, T);
+        for (int i = 0; i < 20000; ++i) {
+            if (unit(random) < 0.01) {
+                p.target = unit(random) < 0.2 ? 1e12 : 50 * (unit(random) - 0.5);
+            }
+            if (unit(random) < 0.005) {
+                p.stop();
+            }
+            p.step(T);
+            checker.sample(&p.position);
+        }
+        p.target = 1.25;
+        for (int i = 0; i < 2000000 && !p.isAtRest(); ++i) {
+            p.step(T);
+            checker.sample(&p.position);
+        }
+        EXPECT_EQ(p.position, 1.25);
+        EXPECT_TRUE(checker.isWithin()) << checker.report();
+    }
+}
+
+TEST(JogPlanner, WithoutJerkLimitItIsThePlainOne_C8) {
+    FreePlanner plain;
+    JogPlanner jog;
+    for (FreePlanner *p : {&plain, static_cast<FreePlanner *>(&jog)}) {
+        p->max_velocity = 10;
+        p->max_acceleration = 100;
+        p->target = 5.3;
+    }
+    for (int i = 0; i < 1000; ++i) {
+        plain.step(T);
+        jog.step(T);
+        ASSERT_EQ(plain.position, jog.position);
+    }
+    EXPECT_TRUE(jog.isAtRest());
+}
+
 }  // namespace
 }  // namespace mw::traj

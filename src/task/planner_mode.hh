@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Which planner is in force: as the INI file says, as a program asks (G64 R), as pin ini.traj-planner-type
+// asks.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "motion/api/command.hh"
+#include "motion/api/parameters.hh"
+#include "task/status.hh"
+
+namespace mw::task {
+
+/// One thread. Changes reach motion only at rest; what cannot be done, or not yet, is said once.
+class PlannerMode {
+  public:
+    struct Hooks {
+        std::function<motion::CommandId(const motion::SetParameter &)> send;
+        std::function<void(MessageKind, const std::string &)> post;
+    };
+    explicit PlannerMode(Hooks hooks) : hooks_(std::move(hooks)) {}
+
+    /// Learns the settings that the machine starts with.
+    void configure(const std::vector<motion::SetParameter> &parameters);
+    /// Says it when jerk limits are asked for and there are none.
+    void announce();
+    /// Motion is at rest. The command whose answer is to be awaited, 0 when nothing changes.
+    motion::CommandId set(int type);
+    /// An operator's wish (a pin), granted as soon as `step` is told that all is idle.
+    void wish(int type);
+    /// Part of the reachable speed in corners of moves that name none, 0.1 to 1; at once.
+    void set_corner_scale(double scale);
+    void step(bool isIdle);
+    int type() const { return type_; }
+    double corner_scale() const { return corner_scale_; }
+
+  private:
+    bool isJerkOff() const;
+
+    Hooks hooks_;
+    int type_ = 0, wish_ = 0;
+    bool isWaitAnnounced_ = false;
+    double linear_jerk_ = 1e9, least_jerk_ = 1e9, corner_scale_ = 1;
+};
+
+}  // namespace mw::task

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// With jerk limits the mean runs inside of dense curves. Their corners are therefore moved outwards, within
+// the tolerance, by a part of what the mean takes (docs/motion/planner.md).
+#include <algorithm>
+#include <cmath>
+
+#include "traj/planner.hh"
+
+namespace mw::traj {
+
+namespace {
+
+/// A corner of a curve turns by less [rad].
+constexpr double MOST_TURN = 0.4;
+/// Part of the tolerance that the mean may take without help, and the most that corners are moved by.
+constexpr double FREE_SHARE = 0.95, MOST_SHARE = 0.75;
+/// Shifts follow the curvature over this part of the way in the time of the mean.
+constexpr double FOLLOWING = 0.3;
+
+}  // namespace
+
+/// How far the corner between two lines is to be moved, by its curvature alone; false where there is no
+/// curve.
+bool Planner::wanted_shift(Sequence nb, Sequence nc, Pose &shift, double &reach) const noexcept {
+    const Primitive &b = store_.primitive(nb);
+    const Primitive &c = store_.primitive(nc);
+    const MovePlan &mb = move_plan(nb);
+    const MovePlan &mc = move_plan(nc);
+    const auto isPlain = [](const Primitive &p, const MoveRequest &r) {
+        return !p.isArc && r.join == Join::BLEND && !r.isGated && !r.tag.isProbe && r.tolerance > 0;
+    };
+    if (!isFiltered() || isStepping_ || !isPlain(b, mb.request) || !isPlain(c, mc.request)) {
+        return false;
+    }
+    const Pose step = c.lin - b.lin;
+    const double turn = geom::norm(step);
+    const double spacing = 0.5 * (b.length + c.length);
+    double v2 = std::min(wish_of(mb), wish_of(mc));
+    v2 *= v2;
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        const double bend = std::abs(step[i]) / spacing;
+        const double speed = limits_.velocity[static_cast<std::size_t>(i)];
+        const double along = std::max(std::abs(b.lin[i]), std::abs(c.lin[i]));
+        v2 = bend > 0 ? std::min(v2, limits_.acceleration[static_cast<std::size_t>(i)] / bend) : v2;
+        v2 = along > 0 ? std::min(v2, speed * speed / (along * along)) : v2;
+    }
+    const double tau = filter_s();
+    reach = std::sqrt(v2) * tau;
+    if (turn > MOST_TURN || reach < 0.7 * spacing) {
+        return false;
+    }
+    const double tolerance = std::min(tolerance_of(mb), tolerance_of(mc));
+    const double size = std::max(geom::norm_linear(step), geom::norm_abc(step));
+    const double inside = size / spacing * reach * reach / 24.0;
+    const double out = std::clamp(inside - FREE_SHARE * tolerance, 0.0, MOST_SHARE * tolerance);
+    shift = size > 0 ? step * (-out / size) : Pose{};
+    return true;
+}
+
+/// Moves the corner between the newest whole line and the one that has come.
+void Planner::shape_corner(Sequence nb, Sequence nc) noexcept {
+    if (nb == 0) {
+        shift_ = {};
+        shift_drive_ = {};
+        return;
+    }
+    Pose wanted;
+    double reach = 0;
+    if (!wanted_shift(nb, nc, wanted, reach)) {
+        shift_ = {};
+        shift_drive_ = {};
+        return;
+    }
+    // Two lags in a row, by length: what the shift adds to the curvature stays small.
+    const double way = store_.primitive(nb).length;
+    const double part = 1.0 - std::exp(-way / (FOLLOWING * reach));
+    shift_drive_ = shift_drive_ + (wanted - shift_drive_) * part;
+    shift_ = shift_ + (shift_drive_ - shift_) * part;
+    if (geom::norm(shift_) < 1e-9) {
+        return;
+    }
+    MovePlan &mb = move_plan(nb);
+    MovePlan &mc = move_plan(nc);
+    mb.shift_out = shift_;
+    mc.shift_in = shift_;
+    reshape(nb, {}, shift_);
+    mc.start_s = mb.start_s + store_.primitive(nb).length;
+    reshape(nc, shift_, {});
+}
+
+/// The line with its ends moved; what is told of it stays as programmed.
+void Planner::reshape(Sequence n, const Pose &in, const Pose &out) noexcept {
+    Primitive &p = store_.primitive(n);
+    MovePlan &m = move_plan(n);
+    const double before = p.length;
+    p = make_line(p.start + in, p.end + out);
+    const double longer = p.length / before;
+    m.feed *= longer;
+    m.request.tag.feed_ratio *= longer;
+    store_.move(n).feed_ratio = m.request.tag.feed_ratio;
+    programmed_s_ = m.start_s + p.length;
+}
+
+/// The programmed place that answers to `s` on a move.
+Pose Planner::programmed_at(Sequence n, double s) const noexcept {
+    const Primitive &p = store_.primitive(n);
+    const MovePlan &m = move_plan(n);
+    const double part = p.length > 0 ? std::clamp(s / p.length, 0.0, 1.0) : 0.0;
+    return position_at(p, s) - m.shift_in * (1.0 - part) - m.shift_out * part;
+}
+
+}  // namespace mw::traj

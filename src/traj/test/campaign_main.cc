@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A campaign of random programs of at least 50 blocks and 5 s of motion each, in virtual time.
+// traj_campaign --first N --count M --log FILE [--processes P]: one line per seed in the log; seeds that it
+// has are not driven again. Ends with 1 when a program has left its limits, its tolerance or its order.
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <optional>
+#include <set>
+
+#include "base/text.hh"
+#include "traj/test/campaign.hh"
+
+namespace mw::traj::test {
+namespace {
+
+constexpr double SECONDS = 6.5, LEAST_SECONDS = 5;
+constexpr std::size_t LEAST_BLOCKS = 50;
+
+struct Verdict {
+    std::size_t blocks = 0;
+    double seconds = 0;
+    std::string fault;
+};
+
+/// Nearest places, each no earlier than the one before: enough to say yes. A no is asked again of isInOrder.
+class Follower {
+  public:
+    Follower(const Program &program, double tolerance) : program_(program), tolerance_(tolerance) {}
+
+    bool follow(const Pose &p) {
+        const double moved = deviation(p, last_);
+        const double reach = 3.0 * moved + 2.0 * tolerance_;
+        const int steps = std::clamp(static_cast<int>(2.0 * reach / tolerance_), 4, 64);
+        std::size_t best_move = move_;
+        double best_s = s_;
+        double best = deviation(p, position_at(program_.primitives[move_], s_));
+        std::size_t m = move_;
+        double s = s_;
+        for (int i = 1; i <= steps; ++i) {
+            s += reach / steps;
+            while (m + 1 < program_.primitives.size() && s > program_.primitives[m].length) {
+                s -= program_.primitives[m++].length;
+            }
+            const double off = deviation(p, position_at(program_.primitives[m], s));
+            if (off < best) {
+                best = off;
+                best_move = m;
+                best_s = std::min(s, program_.primitives[m].length);
+            }
+        }
+        bool isNear = best <= tolerance_ * 1.25;
+        for (std::size_t k = move_; k < best_move; ++k) {
+            const Pose &end = program_.primitives[k].end;
+            isNear =
+                isNear && std::min(deviation(end, p), deviation(end, last_)) <= tolerance_ * 1.25 + moved;
+        }
+        move_ = best_move;
+        s_ = best_s;
+        last_ = p;
+        return isNear;
+    }
+    bool isAtEnd() const { return deviation(last_, program_.primitives.back().end) <= tolerance_; }
+
+  private:
+    const Program &program_;
+    double tolerance_;
+    std::size_t move_ = 0;
+    double s_ = 0;
+    Pose last_;
+};
+
+Verdict judge(const Program &program, const Outcome &out, bool isDropped) {
+    Verdict v;
+    v.blocks = program.primitives.size();
+    v.seconds = static_cast<double>(out.rig.samples.size()) * Rig::T;
+    if (!out.isFinished) {
+        v.fault = "not finished";
+        return v;
+    }
+    auto checker = make_checker(program.limits, Rig::T);
+    double longest_step = 0;
+    const Pose *before = &out.rig.samples.front();
+    for (const Pose &p : out.rig.samples) {
+        checker.sample(p.c.data());
+        longest_step = std::max(longest_step, deviation(p, *before));
+        before = &p;
+    }
+    if (!checker.isWithin()) {
+        v.fault = "limits: " + checker.report().substr(0, checker.report().find('\n'));
+        return v;
+    }
+    const bool isBlend = program.join == Join::BLEND;
+    if (!isDropped && !(out.rig.samples.back() == program.primitives.back().end)) {
+        v.fault = "not at its end";
+    } else if (!isDropped && (program.tolerance > 0 || !isBlend)) {
+        const double near = (isBlend ? program.tolerance : 1e-6) + 0.5 * longest_step;
+        Follower follower(program, near);
+        bool isNear = true;
+        for (const Pose &p : out.rig.samples) {
+            isNear = isNear && follower.follow(p);
+        }
+        const bool isInTube =
+            (isNear && follower.isAtEnd()) || isInOrder(out.rig.samples, program, near * 1.3 + 1e-9);
+        v.fault = isInTube ? "" : "tolerance or order";
+    }
+    return v;
+}
+
+/// The program of a seed, longer and slower until it moves for LEAST_SECONDS.
+Verdict drive_seed(unsigned seed) {
+    const bool isJerkLimited = seed % 4 != 0;
+    const bool isCurve = seed % 4 == 1;
+    Verdict v;
+    for (double seconds = SECONDS; seconds < 40; seconds *= 2) {
+        Maker maker(seed, isJerkLimited);
+        const Program program = maker.make_long(isCurve, seconds);
+        const bool isDropped = maker.chance(0.05);
+        Outcome out;
+        drive(maker, program, out, isDropped);
+        v = judge(program, out, isDropped);
+        if (!v.fault.empty() || v.seconds >= LEAST_SECONDS || isDropped) {
+            break;
+        }
+    }
+    return v;
+}
+
+std::optional<unsigned> number_in(std::string_view text) {
+    const auto number = parse_uint(text);
+    return number.has_value() && *number < 0xffffffffU ? std::optional<unsigned>(*number) : std::nullopt;
+}
+
+std::set<unsigned> seeds_in(const char *name) {
+    std::set<unsigned> seeds;
+    std::ifstream file(name);
+    for (std::string line; std::getline(file, line);) {
+        if (const auto seed = number_in(line.substr(0, line.find(' ')))) {
+            seeds.insert(*seed);
+        }
+    }
+    return seeds;
+}
+
+struct Task {
+    unsigned first = 1, count = 100, processes = 2;
+    const char *log = nullptr;
+};
+
+/// Every `processes`-th seed; how many failed.
+int work(const Task &task, unsigned part, const std::set<unsigned> &done) {
+    const int file = ::open(task.log, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+    if (file < 0) {
+        std::perror(task.log);
+        return 1;
+    }
+    int failed = 0;
+    for (unsigned seed = task.first; seed < task.first + task.count; ++seed) {
+        if (seed % task.processes != part || done.contains(seed)) {
+            continue;
+        }
+        const Verdict v = drive_seed(seed);
+        const bool isCounted = v.blocks >= LEAST_BLOCKS && v.seconds >= LEAST_SECONDS;
+        char line[400];
+        const int size =
+            std::snprintf(line, sizeof line, "%u %zu blocks %.2f s %s%s\n", seed, v.blocks, v.seconds,
+                          !v.fault.empty() ? "FAILED "
+                          : isCounted      ? "ok"
+                                           : "short",
+                          v.fault.c_str());
+        failed += v.fault.empty() ? 0 : 1;
+        if (::write(file, line, static_cast<std::size_t>(size)) != size) {
+            std::perror(task.log);
+            return 1;
+        }
+    }
+    ::close(file);
+    return failed;
+}
+
+int run(const Task &task) {
+    const std::set<unsigned> done = seeds_in(task.log);
+    std::vector<pid_t> children;
+    for (unsigned part = 0; part < task.processes; ++part) {
+        const pid_t child = ::fork();
+        if (child == 0) {
+            ::_exit(work(task, part, done) == 0 ? 0 : 1);
+        }
+        children.push_back(child);
+    }
+    bool isSound = true;
+    for (const pid_t child : children) {
+        int status = 0;
+        isSound =
+            ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0 && isSound;
+    }
+    return isSound ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace mw::traj::test
+
+int main(int argc, char **argv) {
+    mw::traj::test::Task task;
+    for (int i = 1; i + 1 < argc; i += 2) {
+        const auto number = mw::traj::test::number_in(argv[i + 1]);
+        if (std::strcmp(argv[i], "--log") == 0) {
+            task.log = argv[i + 1];
+        } else if (std::strcmp(argv[i], "--first") == 0 && number) {
+            task.first = *number;
+        } else if (std::strcmp(argv[i], "--count") == 0 && number) {
+            task.count = *number;
+        } else if (std::strcmp(argv[i], "--processes") == 0 && number && *number > 0) {
+            task.processes = *number;
+        } else {
+            task.log = nullptr;
+            break;
+        }
+    }
+    if (task.log == nullptr) {
+        std::fprintf(stderr, "usage: traj_campaign --first N --count M --log FILE [--processes P]\n");
+        return 2;
+    }
+    return mw::traj::test::run(task);
+}
