@@ -63,8 +63,6 @@ class ProgramInterpreter {
     virtual int line() const = 0;  ///< of the block last read, in file()
     virtual const std::string &file() const = 0;
     virtual int call_level() const { return 0; }
-    /// A numbered parameter; 0 in languages without them.
-    virtual double parameter(int) const { return 0.0; }
     /// No line of the open file is left.
     virtual bool isAtFileEnd() const = 0;
     /// Warnings of begin().
