@@ -94,7 +94,7 @@ bool Executor::follow_along() noexcept {
     const bool isOn = state_.piece != 0 && store_.piece(state_.piece).isAlong && isFiltered();
     const Sequence primitive = isOn ? store_.piece(state_.piece).primitive : 0;
     const double length = isOn ? store_.piece(state_.piece).length : 0.0;
-    const bool isWithin = isOn && state_.x > 1e-15 * length && state_.x < length;
+    const bool isWithin = isOn && state_.x > on_along(length) && state_.x < length;
     const bool isNew = isWithin && along_ != primitive;
     if (isNew) {
         along_ = primitive;

@@ -178,6 +178,12 @@ struct PathStore {
     const Phase &phase(Sequence n) const noexcept { return phases[n % PHASE_CAPACITY]; }
 };
 
+/// Nearer to the start of a piece that is followed exactly, the leader still stands before it but for
+/// rounding.
+constexpr double on_along(double length) noexcept {
+    return 1e-11 * (1.0 + length);
+}
+
 /// Position at `x` of a piece. [servo, planner]
 Pose position_at(const PathStore &store, const Piece &piece, double x) noexcept;
 

@@ -205,6 +205,7 @@ class Planner {
     void try_sample(const Phase &phase, double t) noexcept;
     void push_sample(const LeaderSample &sample, Sequence piece) noexcept;
     bool isTrialSound() noexcept;
+    bool isLeaderSound() const noexcept;
     double trial_deviation(std::uint64_t tick) noexcept;
     bool ease(const State &from) noexcept;
     void scale_piece(Sequence piece, double speed, double acceleration) noexcept;
@@ -220,6 +221,7 @@ class Planner {
     PathStore &store_;
     PlannerSettings settings_;
     Limits wanted_;             ///< as set
+    Limits highest_;            ///< of all that were set since the path began
     Limits limits_;             ///< the same with accelerations that fit the filter
     std::uint64_t filter_ = 1;  ///< samples of the mean that is commanded; 1: no jerk limits
     Scales scales_;

@@ -122,6 +122,27 @@ double Planner::trial_deviation(std::uint64_t tick) noexcept {
     return std::max(geom::norm_linear(off), geom::norm_abc(off));
 }
 
+/// Speed and acceleration of the leader itself: a plan from a state that bounds made lower since no longer
+/// allow for brakes too late.
+bool Planner::isLeaderSound() const noexcept {
+    const std::uint64_t n = trial_tick_;
+    const Pose &at = trial_[n % HISTORY_CAPACITY].leader.pose;
+    const Pose step = at - trial_[(n - 1) % HISTORY_CAPACITY].leader.pose;
+    const Pose &bend = trial_[n % HISTORY_CAPACITY].bend;
+    const double period = settings_.period_s;
+    const bool isAccelerationTried = n >= along_tick_ + 3;
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const double rounding = 4.0 * ulp(at[i]);
+        const double v = highest_.velocity[k] * period * SLACK + rounding;
+        const double a = highest_.acceleration[k] * period * period * SLACK + rounding;
+        if (std::abs(step[i]) > v || (isAccelerationTried && std::abs(bend[i]) > a)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 bool Planner::isTrialSound() noexcept {
     const std::uint64_t n = trial_tick_;
     if (joint_map_ != nullptr && !areJointsSound()) {
@@ -132,8 +153,14 @@ bool Planner::isTrialSound() noexcept {
         return true;
     }
     const Sequence piece = trial_[n % HISTORY_CAPACITY].piece;
-    const bool isAlong = piece != 0 && store_.piece(piece).isAlong;
+    const Piece &on = store_.piece(piece);
+    const double x = trial_[n % HISTORY_CAPACITY].leader.s - on.programmed_s;
+    const bool isAlong = piece != 0 && on.isAlong && x > 2.0 * on_along(on.length) && x < on.length;
     along_tick_ = isAlong ? n : along_tick_;
+    if (!isLeaderSound()) {
+        excess_ = 2;
+        return false;
+    }
     if (n < along_tick_ + filter_ + 3) {
         return true;  // kept by along_limit
     }

@@ -139,8 +139,14 @@ bool Planner::emit_filtered() noexcept {
             emit_coast(cap, out2);
         }
     }
-    const bool isAtEnd = p.length - s.x <= 1e-12 * p.length;
+    const double rounding = 1e-12 * p.length;
+    const bool isAtEnd = p.length - s.x <= rounding;
     s.x = isAtEnd ? p.length : s.x;
+    if (isAtEnd && s.v > 0 && out2 <= 0 && s.v * s.v <= 4.0 * p.acceleration.at(0) * rounding) {
+        // Braking from here takes less way than rounding.
+        s.v = 0;
+        emit_wait(settings_.period_s);
+    }
     return true;
 }
 

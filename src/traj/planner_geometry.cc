@@ -47,12 +47,17 @@ Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept
 
 void Planner::set_limits(const Limits &limits) noexcept {
     wanted_ = limits;
+    for (std::size_t i = 0; i < limits.velocity.size(); ++i) {
+        highest_.velocity[i] = std::max(highest_.velocity[i], limits.velocity[i]);
+        highest_.acceleration[i] = std::max(highest_.acceleration[i], limits.acceleration[i]);
+    }
     limits_ = limits_for_filter(limits, filter_, settings_.period_s);
 }
 
 void Planner::begin(const Pose &start, const Snapshot &now) noexcept {
     end_ = start;
     filter_ = filter_length(wanted_, settings_.period_s);
+    highest_ = wanted_;
     set_limits(wanted_);
     programmed_s_ = 0;
     isStopPlan_ = false;

@@ -26,7 +26,7 @@ Controller::Controller(const ControllerConfig &config, const kins::Kinematics &k
 }
 
 bool Controller::isAnythingMoving() const noexcept {
-    if (!executor_.isAtRest()) {
+    if (!executor_.isAtRest() || link_.retrace.isMoving()) {
         return true;
     }
     for (int j = 0; j < config_.num_joints; ++j) {
@@ -206,6 +206,7 @@ void Controller::publish_limits() noexcept {
         out.joint_high[at(j)] = homing_.isHomed(j) ? get(Parameter::JOINT_MAX_LIMIT, j) : UNBOUNDED;
     }
     out.joints.count = config_.num_joints;
+    path_limits_ = out;
     link_.limits.write(out);
     ++limits_version_;
 }

@@ -112,6 +112,11 @@ class Controller {
     JogSource &source_of(const JogTarget &target) noexcept;
     double max_velocity_of(const JogTarget &target) const noexcept;
     double max_acceleration_of(const JogTarget &target) const noexcept;
+    /// Negative adaptive feed or reverse run is asked for, or the path is not yet back where it was left.
+    bool isReversing() const noexcept { return isReverseWanted_ || link_.retrace.isAway(); }
+    geom::Pose step_retrace(const geom::Pose &pose) noexcept;
+    void follow_dropped_path() noexcept;
+    traj::Retrace::Use use_of(const geom::Pose &pose) noexcept;
     double max_jerk_of(const JogTarget &target) const noexcept;
     bool isJerkLimited() const noexcept;
 
@@ -180,6 +185,14 @@ class Controller {
     bool isOverridingLimits_ = false;
     bool isOverrideInJog_ = false;  ///< the jog that ends the override has begun
     bool isPaused_ = false, isStepping_ = false;
+    bool isReverse_ = false;         ///< reverse run by command
+    bool isReverseWanted_ = false;   ///< that, or adaptive feed below 0
+    bool isStandingWanted_ = false;  ///< paused or held
+    bool isPathLeft_ = false;        ///< the path was dropped while going back
+    double reverse_rate_ = 0;        ///< of the commanded speed, without its sign
+    std::uint64_t drops_seen_ = 0;
+    geom::Pose last_pose_, last_step_;  ///< of coordinated motion
+    PathLimits path_limits_;
     std::uint32_t steps_ = 0;
     double feed_scale_ = 1, rapid_scale_ = 1, net_feed_scale_ = 1, max_velocity_ = 1e300;
     bool isFeedOverrideEnabled_ = true, isAdaptiveFeedEnabled_ = false, isFeedHoldEnabled_ = true;

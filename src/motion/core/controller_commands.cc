@@ -159,6 +159,7 @@ Reason Controller::enable(const Inputs &in, std::int16_t &index) noexcept {
     }
     executor_.drop();
     executor_.set_position(carte_pos_cmd_);
+    link_.retrace.clear();
     return Reason::NONE;
 }
 
@@ -180,6 +181,7 @@ Reason Controller::set_mode(Mode mode) noexcept {
     executor_.drop();
     executor_.hold(false);
     executor_.set_position(carte_pos_cmd_);
+    link_.retrace.clear();
     for (int j = 0; j < config_.num_joints; ++j) {
         joint(j).free.reset(joint(j).pos_cmd);
         joint(j).jog = JogSource::NONE;
@@ -190,6 +192,7 @@ Reason Controller::set_mode(Mode mode) noexcept {
     }
     isPaused_ = false;
     isStepping_ = false;
+    isReverse_ = false;
     mode_ = mode;
     return Reason::NONE;
 }
@@ -246,7 +249,8 @@ Reason Controller::handle_flow(const CommandBody &body, bool &isTaken) noexcept 
         return Reason::NONE;
     }
     if (const auto *c = std::get_if<SetReverse>(&body)) {
-        return c->isReverse ? Reason::NOT_SUPPORTED : Reason::NONE;
+        isReverse_ = c->isReverse;
+        return Reason::NONE;
     }
     if (const auto *c = std::get_if<SetScale>(&body)) {
         return set_scale(*c);

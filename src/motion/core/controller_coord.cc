@@ -19,19 +19,92 @@ void Controller::step_coord(const Inputs &in) noexcept {
             pose[i] = p.position;
         }
     } else {
-        pose = executor_.step(cycle_).position;
+        pose = step_retrace(executor_.step(cycle_).position);
     }
     check_probe(in);
     move_by_pose(pose);
+    if (mode_ == Mode::COORD && !link_.retrace.isAway()) {
+        link_.retrace.record(pose, use_of(pose));
+    }
     fire_events();
+}
+
+/// From the pose of the path to the one that is commanded: behind it while the path is gone back.
+geom::Pose Controller::step_retrace(const geom::Pose &pose) noexcept {
+    follow_dropped_path();
+    traj::Retrace &retrace = link_.retrace;
+    const bool isFirst = !retrace.isAway() && isReverseWanted_ && !isStandingWanted_ && stop_ == Stop::NONE;
+    if (!retrace.isAway() && !(isFirst && executor_.isAtRest() && retrace.isReady())) {
+        return pose;
+    }
+    const bool isStill = isStandingWanted_ || isPathLeft_ || stop_ != Stop::NONE;
+    const geom::Pose out = retrace.step(config_.period_s,
+                                        isStill            ? 0
+                                        : isReverseWanted_ ? -1
+                                                           : 1,
+                                        reverse_rate_);
+    if (isPathLeft_ && !retrace.isMoving()) {
+        isPathLeft_ = false;
+        executor_.set_position(out);
+        retrace.clear();
+    }
+    return out;
+}
+
+/// A path that is dropped while it is gone back ends where that comes to a stand.
+void Controller::follow_dropped_path() noexcept {
+    const std::uint64_t drops = executor_.snapshot().drops;
+    if (drops == drops_seen_) {
+        return;
+    }
+    drops_seen_ = drops;
+    if (link_.retrace.isAway()) {
+        isPathLeft_ = true;
+    } else {
+        link_.retrace.clear();
+    }
+}
+
+/// How much of the limits the step to `pose` uses.
+traj::Retrace::Use Controller::use_of(const geom::Pose &pose) noexcept {
+    traj::Retrace::Use use;
+    const double per_s = 1.0 / config_.period_s;
+    const geom::Pose step = pose - last_pose_;
+    const geom::Pose bend = step - last_step_;
+    last_pose_ = pose;
+    last_step_ = step;
+    const auto add = [&](double v, double a, double most_a, double most_j) {
+        use.v_over_a = std::max(use.v_over_a, std::abs(v) * per_s / most_a);
+        if (isJerkLimited()) {
+            use.v_over_j = std::max(use.v_over_j, std::abs(v) * per_s / most_j);
+            use.a_over_j = std::max(use.a_over_j, std::abs(a) * per_s * per_s / most_j);
+        }
+    };
+    const traj::Limits &limits = path_limits_.limits;
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        add(step[i], bend[i], limits.acceleration[at(i)], limits.jerk[at(i)]);
+    }
+    add(geom::norm_xyz(step), geom::norm_xyz(bend), limits.acceleration[traj::XYZ_NORM],
+        limits.jerk[traj::XYZ_NORM]);
+    for (int j = 0; j < config_.num_joints && !isIdentity(); ++j) {
+        const JointState &s = joint(j);
+        add(s.vel_cmd * config_.period_s, s.acc_cmd * config_.period_s * config_.period_s,
+            path_limits_.joints.acceleration[at(j)], path_limits_.joints.jerk[at(j)]);
+    }
+    return use;
 }
 
 /// What keeps the path from moving on for now.
 void Controller::step_holds(const Inputs &in) noexcept {
-    const double adaptive = isAdaptiveFeedEnabled_ ? std::clamp(in.adaptive_feed, 0.0, 1.0) : 1.0;
-    net_feed_scale_ = (isFeedOverrideEnabled_ ? feed_scale_ : 1.0) * adaptive;
+    const bool isAdaptive = isAdaptiveFeedEnabled_ && std::isfinite(in.adaptive_feed);
+    const double adaptive = isAdaptive ? std::clamp(in.adaptive_feed, -1.0, 1.0) : 1.0;
+    isReverseWanted_ = (adaptive < 0) != isReverse_;
+    reverse_rate_ = traj::Retrace::HIGHEST_RATE * std::abs(adaptive);
+    // What waits for its turn while going back keeps its speed.
+    net_feed_scale_ = (isFeedOverrideEnabled_ ? feed_scale_ : 1.0) * std::abs(adaptive);
     const bool isFeedHeld = (isFeedHoldEnabled_ && in.isFeedHeld) || in.isFeedInhibited;
-    executor_.hold(isPaused_ || isFeedHeld);
+    isStandingWanted_ = isPaused_ || isFeedHeld;
+    executor_.hold(isStandingWanted_ || (mode_ == Mode::COORD && isReversing()));
     const bool isStepOver = isStepping_ && link_.steps_done.load(std::memory_order_acquire) == steps_;
     if (isStepOver) {
         isStepping_ = false;
@@ -78,7 +151,7 @@ void Controller::publish_view(const Inputs &in) noexcept {
     v.epoch = epoch_;
     v.mode = mode_;
     v.isEnabled = isEnabled_;
-    v.isStopping = stop_ != Stop::NONE;
+    v.isStopping = stop_ != Stop::NONE || isPathLeft_;
     v.enables = enables_;
     v.limits_version = limits_version_;
     v.position = carte_pos_cmd_;

@@ -48,7 +48,7 @@ void Controller::fill(const Inputs &in, Outputs &out) noexcept {
 void Controller::fill_motion(Status &s) const noexcept {
     s.isPaused = isPaused_;
     s.isStepping = isStepping_;
-    s.isReverse = false;
+    s.isReverse = isReverseWanted_;
     s.queue_depth = link_.queue_depth.load(std::memory_order_relaxed);
     s.isQueueFull = link_.isQueueFull.load(std::memory_order_relaxed) != 0;
     s.last_path_id = link_.last_done_id.load(std::memory_order_acquire);

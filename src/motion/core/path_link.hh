@@ -12,6 +12,7 @@
 #include "traj/joint_map.hh"
 #include "traj/limits.hh"
 #include "traj/path_store.hh"
+#include "traj/retrace.hh"
 
 namespace mw::motion {
 
@@ -47,6 +48,7 @@ struct PathView {
 
 struct PathLink {
     traj::PathStore store;
+    traj::Retrace retrace;       ///< the controller's own; here for its size
     Seqlock<PathView> view;      ///< controller -> planner
     Seqlock<PathLimits> limits;  ///< controller -> planner
     std::atomic<std::uint32_t> steps_done{

@@ -11,14 +11,18 @@
 namespace mw::traj::test {
 namespace {
 
-void check(unsigned seed, bool isJerkLimited, bool isCurve = false) {
+enum class Kind { RANDOM, CURVE, LONG };
+
+void check(unsigned seed, bool isJerkLimited, Kind kind = Kind::RANDOM) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Maker maker(seed, isJerkLimited);
-    const Program program = isCurve ? maker.make_curve() : maker.make();
+    const Program program = kind == Kind::CURVE  ? maker.make_curve()
+                            : kind == Kind::LONG ? maker.make_long(seed % 4 == 1, 6.5)
+                                                 : maker.make();
     if (program.primitives.empty()) {
         return;
     }
-    const bool isDropped = maker.chance(0.2);
+    const bool isDropped = maker.chance(kind == Kind::LONG ? 0.05 : 0.2);
     Outcome out;
     drive(maker, program, out, isDropped);
     ASSERT_TRUE(out.isFinished);
@@ -50,11 +54,11 @@ int number_from(const char *name, int preset) {
     return text != nullptr ? std::atoi(text) : preset;
 }
 
-void check_all(bool isJerkLimited, bool isCurve = false) {
+void check_all(bool isJerkLimited, Kind kind = Kind::RANDOM) {
     const int first = number_from("MW_CAMPAIGN_FIRST", 1);
     const int count = number_from("MW_CAMPAIGN_SEEDS", 60);
     for (int i = 0; i < count && !::testing::Test::HasFailure(); ++i) {
-        check(static_cast<unsigned>(first + i), isJerkLimited, isCurve);
+        check(static_cast<unsigned>(first + i), isJerkLimited, kind);
     }
 }
 
@@ -68,16 +72,22 @@ TEST(Campaign, SeedsThatOnceFailedKeepJerkLimits_C13) {
     }
 }
 
+TEST(Campaign, LongProgramsThatOnceFailedKeepJerkLimits_C13) {
+    for (const unsigned seed : {4463U, 4893U, 6338U}) {
+        check(seed, true, Kind::LONG);
+    }
+}
+
 TEST(Campaign, RandomProgramsKeepJerkLimits_C13) {
     check_all(true);
 }
 
 TEST(Campaign, DenseCurvesKeepLimitsToleranceAndOrder_C2) {
-    check_all(false, true);
+    check_all(false, Kind::CURVE);
 }
 
 TEST(Campaign, DenseCurvesKeepJerkLimits_C13) {
-    check_all(true, true);
+    check_all(true, Kind::CURVE);
 }
 
 }  // namespace

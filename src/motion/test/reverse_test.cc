@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Negative adaptive feed: back along the path that was commanded and forward again, within every limit.
+#include <optional>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "testing/limit_checker.hh"
+#include "testing/motion_rig.hh"
+
+namespace mw::motion {
+namespace {
+
+using testing::MotionRig;
+
+constexpr double V = 100, A = 1000, J = 30000;
+
+struct ReverseRig : MotionRig {
+    explicit ReverseRig(bool isJerkLimited) {
+        if (isJerkLimited) {
+            set(Parameter::TRAJ_MAX_JERK, 0, 3 * J);
+            set(Parameter::TRAJ_PLANNER_TYPE, 0, 1);
+        }
+        for (int i = 0; i < 3 && isJerkLimited; ++i) {
+            set(Parameter::AXIS_MAX_JERK, i, J);
+        }
+        for (int i = 0; i < 3; ++i) {
+            limits.push_back({V, A, isJerkLimited ? J : 1e300});
+        }
+        checker.emplace(limits, T);
+        ready();
+        send(SetSwitch{Switch::ADAPTIVE_FEED, 0, true});
+    }
+    /// A zigzag with rounded corners; returns its flush.
+    CommandId zigzag(int count) {
+        for (int i = 1; i <= count; ++i) {
+            geom::Pose end;
+            end[0] = 4.0 * i;
+            end[1] = i % 2 == 0 ? 0 : 6;
+            end[2] = 0.5 * i;
+            line(end, 60, PathMode::BLEND, 0.1);
+            last = end;
+        }
+        return send_path(Flush{});
+    }
+    void go(int cycles) {
+        for (int i = 0; i < cycles; ++i) {
+            step();
+            const double p[3] = {x(0), x(1), x(2)};
+            checker->sample(p);
+        }
+    }
+    bool finish(CommandId id, int most_s) {
+        for (int i = 0; i < 1000 * most_s && !isDone(id); ++i) {
+            go(1);
+        }
+        return isDone(id);
+    }
+    double x(std::size_t j) const { return out->joint[j].motor_pos_cmd; }
+
+    geom::Pose last;
+    std::vector<mw::testing::AxisLimit> limits;
+    std::optional<mw::testing::LimitChecker> checker;
+};
+
+class Reverse : public ::testing::TestWithParam<bool> {};
+
+TEST_P(Reverse, GoesBackToTheStartAndForwardToTheEnd_C4) {
+    ReverseRig rig(GetParam());
+    const CommandId flush = rig.zigzag(6);
+    rig.go(400);
+    const double reached = rig.x(0);
+    EXPECT_GT(reached, 4);
+    rig.in.adaptive_feed = -1;
+    rig.go(100);
+    EXPECT_TRUE(rig.status().isReverse);
+    rig.go(3000);
+    EXPECT_LT(rig.x(0), 0.2);
+    EXPECT_FALSE(rig.isDone(flush));
+    rig.in.adaptive_feed = 0.5;
+    rig.go(300);
+    EXPECT_GT(rig.x(0), 0.3);
+    rig.in.adaptive_feed = 1;
+    ASSERT_TRUE(rig.finish(flush, 30));
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(rig.x(static_cast<std::size_t>(i)), rig.last[i]);
+    }
+    EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
+}
+
+TEST_P(Reverse, AnyChangesKeepTheLimits_C4) {
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        ReverseRig rig(GetParam());
+        const CommandId flush = rig.zigzag(30);
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<double> unit(0, 1);
+        bool isPaused = false;
+        for (int i = 0; i < 20000; ++i) {
+            if (unit(random) < 0.005) {
+                rig.in.adaptive_feed = unit(random) < 0.2 ? 0 : 2 * unit(random) - 0.9;
+            }
+            if (unit(random) < 0.001) {
+                isPaused = !isPaused;
+                isPaused ? rig.send(Pause{}) : rig.send(Resume{});
+            }
+            rig.go(1);
+        }
+        rig.send(Resume{});
+        rig.in.adaptive_feed = 1;
+        ASSERT_TRUE(rig.finish(flush, 60));
+        EXPECT_EQ(rig.x(0), rig.last[0]);
+        EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
+    }
+}
+
+TEST_P(Reverse, AnAbortOnTheWayBackStopsThereAndANewPathBeginsThere_C4) {
+    ReverseRig rig(GetParam());
+    rig.zigzag(6);
+    rig.go(600);
+    rig.in.adaptive_feed = -1;
+    rig.go(500);
+    rig.send(Abort{++rig.epoch});
+    rig.go(1000);
+    const double stood = rig.x(0);
+    rig.go(100);
+    EXPECT_EQ(rig.x(0), stood);
+    rig.in.adaptive_feed = 1;
+    geom::Pose end;
+    end[0] = 1;
+    rig.line(end, 50);
+    const CommandId flush = rig.send_path(Flush{});
+    ASSERT_TRUE(rig.finish(flush, 30));
+    EXPECT_EQ(rig.x(0), 1);
+    EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
+}
+
+INSTANTIATE_TEST_SUITE_P(WithAndWithoutJerk, Reverse, ::testing::Bool());
+
+}  // namespace
+}  // namespace mw::motion
