@@ -15,8 +15,8 @@ inline constexpr std::size_t PAD = 8;  ///< nodes at each end where nothing move
 inline constexpr double REACH = 3;     ///< nodes that a blended value depends on, each way
 inline constexpr double ROOM = 1.0 - 2e-7;
 inline constexpr double
-    TUBE = 0.985,
-    MOST = 1.012;  ///< part of P that is used, and how much more where laying anew has taken it
+    TUBE = 0.95,
+    MOST = 1.02;  ///< part of P that is used, and how much more where laying anew has taken it
 inline constexpr double PERIOD = 1e-3, FINE_PERIOD = 0.25e-3;
 
 using Row = std::array<double, MOST_AXES>;

@@ -29,6 +29,7 @@ class Retrace {
     /// A sample of the path itself; ones that stand are kept only as far as needed.
     void record(const geom::Pose &pose, const Use &use) noexcept;
     void clear() noexcept;
+    bool isEmpty() const noexcept { return count_ == 0; }
     /// Nothing has been recorded for some samples but standing: one may go back from here.
     bool isReady() const noexcept { return standing_ >= STANDING && count_ > 2 * STANDING; }
     /// Gone back and not yet where the path was left.

@@ -249,8 +249,10 @@ Reason Controller::handle_flow(const CommandBody &body, bool &isTaken) noexcept 
         return Reason::NONE;
     }
     if (const auto *c = std::get_if<SetReverse>(&body)) {
-        isReverse_ = c->isReverse;
-        return Reason::NONE;
+        // Nothing is recorded to go back along without adaptive feed.
+        const bool isRefused = c->isReverse && !isAdaptiveFeedEnabled_;
+        isReverse_ = c->isReverse && !isRefused;
+        return isRefused ? Reason::NOT_SUPPORTED : Reason::NONE;
     }
     if (const auto *c = std::get_if<SetScale>(&body)) {
         return set_scale(*c);

@@ -24,7 +24,7 @@ void Controller::step_coord(const Inputs &in) noexcept {
     check_probe(in);
     move_by_pose(pose);
     if (mode_ == Mode::COORD && !link_.retrace.isAway()) {
-        link_.retrace.record(pose, use_of(pose));
+        isAdaptiveFeedEnabled_ ? link_.retrace.record(pose, use_of(pose)) : link_.retrace.clear();
     }
     fire_events();
 }
@@ -68,6 +68,11 @@ void Controller::follow_dropped_path() noexcept {
 /// How much of the limits the step to `pose` uses.
 traj::Retrace::Use Controller::use_of(const geom::Pose &pose) noexcept {
     traj::Retrace::Use use;
+    if (link_.retrace.isEmpty()) {
+        last_pose_ = pose;
+        last_step_ = {};
+        return use;
+    }
     const double per_s = 1.0 / config_.period_s;
     const geom::Pose step = pose - last_pose_;
     const geom::Pose bend = step - last_step_;

@@ -135,6 +135,33 @@ TEST_P(Reverse, AnAbortOnTheWayBackStopsThereAndANewPathBeginsThere_C4) {
     EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
 }
 
+TEST_P(Reverse, ByCommandWhereAdaptiveFeedIsOn_C4) {
+    ReverseRig rig(GetParam());
+    geom::Pose far;
+    far[0] = 30;
+    far[1] = -20;
+    rig.line(far, 0);
+    ASSERT_TRUE(rig.finish(rig.send_path(Flush{}), 5));
+    rig.send(SetSwitch{Switch::ADAPTIVE_FEED, 0, false});
+    rig.go(5);
+    const CommandId refused = rig.send(SetReverse{true});
+    rig.send(SetSwitch{Switch::ADAPTIVE_FEED, 0, true});
+    rig.go(5);
+    EXPECT_EQ(rig.refusal(refused), Reason::NOT_SUPPORTED);
+    geom::Pose end = far;
+    end[0] = 60;
+    rig.line(end, 50);
+    const CommandId flush = rig.send_path(Flush{});
+    rig.go(300);
+    rig.send(SetReverse{true});
+    rig.go(1500);
+    EXPECT_NEAR(rig.x(0), 30, 1e-2);
+    rig.send(SetReverse{false});
+    ASSERT_TRUE(rig.finish(flush, 10));
+    EXPECT_EQ(rig.x(0), 60);
+    EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
+}
+
 INSTANTIATE_TEST_SUITE_P(WithAndWithoutJerk, Reverse, ::testing::Bool());
 
 }  // namespace
