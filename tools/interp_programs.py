@@ -208,7 +208,7 @@ class Program:
         number = self.random.randint(1, 9)
         self.add(self.random.choice((
             f'G10 L2 P{number} {self.words(self.axes())}',
-            f'G92.1 G4 P0\nG10 L2 P{number} R{self.number(-90, 90)}', f'G10 L2 P0 {self.words(self.axes())}', f'G10 L20 P0 {self.words(self.axes())}',
+            f'G92.1\nG10 L2 P{number} R{self.number(-90, 90)}', f'G10 L2 P0 {self.words(self.axes())}', f'G10 L20 P0 {self.words(self.axes())}',
             f'G10 L20 P{number} {self.words(self.axes())}',
             f'G92 {self.words(self.axes())}', 'G92.1', 'G92.2', 'G92.3', f'G52 {self.words(self.axes())}', 'G52 X0 Y0 Z0',
             self.random.choice(('G54', 'G55', 'G56', 'G57', 'G58', 'G59', 'G59.1', 'G59.2', 'G59.3')))))

@@ -65,6 +65,8 @@ class ProgramInterpreter {
     virtual int call_level() const { return 0; }
     /// No line of the open file is left.
     virtual bool isAtFileEnd() const = 0;
+    /// Cutter compensation holds the last move back until the next one, or G40, says where it ends.
+    virtual bool isMoveHeld() const { return false; }
     /// Warnings of begin().
     virtual const std::vector<std::string> &warnings() const {
         static const std::vector<std::string> NONE;

@@ -345,6 +345,9 @@ void Task::finish_run(Progress progress, const std::string &reason) {
     if (run_ == Run::PROGRAM) {
         interp_->close();
         ++status_.programs_ended;
+    } else if (run_ == Run::MDI && progress == Progress::DONE && interp_->isMoveHeld()) {
+        post(MessageKind::OPERATOR_TEXT,
+             "cutter compensation holds this move back until the next one or G40 says where it ends");
     }
     run_ = Run::IDLE;
     isStepMode_ = false;

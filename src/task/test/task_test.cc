@@ -247,6 +247,18 @@ TEST(UserProgram, is_ended_with_all_that_it_started_I1) {
     EXPECT_FALSE(program.start(path.string(), 1, 2).has_value());
 }
 
+TEST_F(TaskTest, AMoveThatCompensationHoldsBackIsTold_I1) {
+    ASSERT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);
+    EXPECT_EQ(ask(Mdi{"G21 F600 G41.1 D1"}), Progress::DONE) << task.reason(request);
+    EXPECT_EQ(messages().find("holds this move back"), std::string::npos);
+    motion.log.clear();
+    EXPECT_EQ(ask(Mdi{"G1 X10 Y10"}), Progress::DONE) << task.reason(request);
+    EXPECT_NE(messages().find("holds this move back"), std::string::npos);
+    EXPECT_EQ(joined().find("line"), std::string::npos);
+    EXPECT_EQ(ask(Mdi{"G40"}), Progress::DONE);
+    EXPECT_EQ(joined().substr(0, 4), "line");
+}
+
 TEST_F(TaskTest, M99InTheMainProgramBeginsItAgain_I1) {
     open("G21 F600\n#1=[#1+1]\nO1 if [#1 ge 3]\nM2\nO1 endif\nG1 X#1\nM99\n");
     motion.log.clear();
