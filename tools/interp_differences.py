@@ -47,14 +47,12 @@ def isSame(a, b):
 
 def speed_override_at_end(pair):
     """M2 and M30 enable the speed overrides that M49 or M51 P0 had disabled, as the manual says."""
-    out, isAtEnd = [], False
-    for i, call in enumerate(pair.ours):
-        isAtEnd = isAtEnd or call.startswith('SET_FEED_MODE(') and pair.ours[i + 1:i + 2] == ['SET_FEED_RATE(0.0000)']
-        isAtEnd = isAtEnd and call != 'PROGRAM_END()'
-        if not (isAtEnd and call.startswith('ENABLE_SPEED_OVERRIDE(')):
-            out.append(call)
-    if 'PROGRAM_END()' in pair.ours:
-        pair.ours = out
+    if 'PROGRAM_END()' not in pair.ours:
+        return
+    end = pair.ours.index('PROGRAM_END()')
+    first = max(i for i in range(end) if pair.ours[i].startswith('SET_FEED_MODE('))
+    pair.ours = [call for i, call in enumerate(pair.ours)
+                 if not (first < i < end and call.startswith('ENABLE_SPEED_OVERRIDE('))]
 
 
 def order_under_compensation(pair):
@@ -198,6 +196,9 @@ STRICTER = {
     'The first G5 of a series': 'first G5 without I and J',
     'The tapers of G76 are longer': 'a G76 whose tapers are longer than the thread',
     'The probe would not move': 'a probe that would not move',
+    'G5.1 moves only the axes': 'lines after a G5.1',
+    'g5.1 needs': 'lines after a G5.1',
+    'G5.1 needs I or J': 'G5.1 with I0 J0',
     'g5 needs the word': 'lines after a G5 that lack P and Q',
     'G64 must not be negative': 'G64 with a negative tolerance',
 }

@@ -4,7 +4,7 @@
 What the reference's standalone program gets wrong on its own is left out: it takes its position from its canon at a tool
 change (so a move of all axes follows), forgets the tool offset then and does not convert it with the units (so G49 stands before those), and lets a probe stop short of its end (so a
 move of all axes follows); it refuses L in G74 and axis words in G43.2; after a break a do loop runs
-once; M61 leaves the data of the tool; it loses its way in lathe profiles of one segment,
+once; M61 leaves the data of the tool; G10 L2 R does not know G92; it loses its way in lathe profiles of one segment,
 with collinear or nearly collinear segments, arcs beside an allowance.
 """
 import math
@@ -208,7 +208,7 @@ class Program:
         number = self.random.randint(1, 9)
         self.add(self.random.choice((
             f'G10 L2 P{number} {self.words(self.axes())}',
-            f'G10 L2 P{number} R{self.number(-90, 90)}', f'G10 L2 P0 {self.words(self.axes())}', f'G10 L20 P0 {self.words(self.axes())}',
+            f'G92.1 G4 P0\nG10 L2 P{number} R{self.number(-90, 90)}', f'G10 L2 P0 {self.words(self.axes())}', f'G10 L20 P0 {self.words(self.axes())}',
             f'G10 L20 P{number} {self.words(self.axes())}',
             f'G92 {self.words(self.axes())}', 'G92.1', 'G92.2', 'G92.3', f'G52 {self.words(self.axes())}', 'G52 X0 Y0 Z0',
             self.random.choice(('G54', 'G55', 'G56', 'G57', 'G58', 'G59', 'G59.1', 'G59.2', 'G59.3')))))
@@ -291,7 +291,7 @@ class Program:
             self.lines.append('#<x>=[#1*2+#2]')
             self.body()
             if self.chance(0.2):
-                self.lines += ['M70' if self.chance(0.5) else 'M73', self.random.choice(('G91', 'G61', 'F77', 'G18', 'M8', 'G98')), 'M72']
+                self.lines += ['M70' if self.chance(0.5) else 'M73', self.random.choice(('G91', 'G61', 'F77', 'G18', 'M9', 'G98')), 'M72']
             if self.chance(0.3):
                 self.lines.append(f'{label} return [#<x>]')
             self.lines.append(f'{label} endsub' + (' [#<x>]' if self.chance(0.5) else ''))
@@ -302,6 +302,9 @@ class Program:
     def tool(self):
         change = self.random.choice(('', '', f'T{self.random.randint(1, 3)} M6', f'M61 Q{self.random.randint(1, 3)}'))
         if change:
+            if self.feed_mode == 'G93':
+                self.feed_mode = 'G94'
+                self.add('G94')
             self.add('G49')
             self.add(change)
             self.is_numbered = change.startswith('M61')

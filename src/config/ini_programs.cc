@@ -185,20 +185,6 @@ std::optional<std::string> typed(const std::string &value, const std::string &ty
 
 }  // namespace
 
-std::optional<bool> ini_bool(std::string_view value) {
-    for (const char *word : {"TRUE", "YES", "ON", "1"}) {
-        if (equals_ignoring_case(value, word)) {
-            return true;
-        }
-    }
-    for (const char *word : {"FALSE", "NO", "OFF", "0"}) {
-        if (equals_ignoring_case(value, word)) {
-            return false;
-        }
-    }
-    return std::nullopt;
-}
-
 ProgramOutput run_inivar(const std::vector<std::string> &words) {
     Query query;
     query.file = "emc.ini";

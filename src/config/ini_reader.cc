@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/text.hh"
+#include "config/ini_value.hh"
 
 namespace mw::config {
 namespace {
@@ -158,12 +159,8 @@ bool IniReader::boolean(std::string_view section, std::string_view key, bool pre
         return preset;
     }
     const std::vector<std::string> words = split_words(entry->value);
-    const std::string word = words.empty() ? "" : to_upper(words[0]);
-    if (word == "TRUE" || word == "YES" || word == "1" || word == "ON") {
-        return true;
-    }
-    if (word == "FALSE" || word == "NO" || word == "0" || word == "OFF") {
-        return false;
+    if (const auto truth = ini_bool(words.empty() ? "" : words[0])) {
+        return *truth;
     }
     sink_.error(label(section, key) + " = '" + entry->value + "' is neither true nor false", entry->place,
                 "expected YES, TRUE or 1, or NO, FALSE or 0");

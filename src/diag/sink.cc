@@ -33,6 +33,12 @@ std::string Diagnostic::str() const {
     if (!what.hint.empty()) {
         out += " (" + what.hint + ')';
     }
+    const std::string rest = context();
+    return rest.empty() ? out : out + '\n' + rest;
+}
+
+std::string Diagnostic::context() const {
+    std::string out;
     if (!line_text.empty()) {
         out += "\n  " + line_text;
         if (what.place.column > 0) {
@@ -42,7 +48,7 @@ std::string Diagnostic::str() const {
     for (const SourcePlace &caller : called_from) {
         out += "\n  called from " + caller.str();
     }
-    return out;
+    return out.empty() ? out : out.substr(1);
 }
 
 void Sink::report(Diagnostic diagnostic) {

@@ -22,6 +22,8 @@ struct Diagnostic {
 
     /// Several lines: "file:line:col: error: message", the text with a caret, "  called from ...".
     std::string str() const;
+    /// The part of str() after its first line, indented; empty when there is neither text nor caller.
+    std::string context() const;
 };
 
 /// Collects diagnostics; work goes on after an error so that several are reported in one run.

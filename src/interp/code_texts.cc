@@ -15,6 +15,9 @@ constexpr std::string_view CYCLE = "r=height to which it retracts and from which
 constexpr std::string_view DWELL_CYCLE =
     "r=height to which it retracts and from which it feeds|l=repeats|p=time to wait at the "
     "bottom [s]";
+constexpr std::string_view SPINDLE_CYCLE =
+    "r=height to which it retracts and from which it feeds|l=repeats|p=time to wait at the "
+    "bottom [s]|$=spindle";
 constexpr std::string_view PECK_CYCLE =
     "r=height to which it retracts and from which it feeds|l=repeats|q=depth of one peck|p=way "
     "back between pecks";
@@ -104,7 +107,7 @@ constexpr CodeText TEXTS[] = {
     {'g', 721, "lathe roughing with cuts along X, first pocket", PROFILE},
     {'g', 722, "lathe roughing with cuts along X, all pockets", PROFILE},
     {'g', 730, "drilling that breaks the chip", PECK_CYCLE},
-    {'g', 740, "left-hand tapping with a floating chuck", DWELL_CYCLE},
+    {'g', 740, "left-hand tapping with a floating chuck", SPINDLE_CYCLE},
     {'g', 760, "lathe threading in several cuts",
      "p=way per revolution of the spindle|i=height of the thread's crest from the drive line|j=depth of the "
      "first cut|k=depth of the "
@@ -115,9 +118,9 @@ constexpr CodeText TEXTS[] = {
     {'g', 810, "drilling", CYCLE},
     {'g', 820, "drilling with a dwell at the bottom", DWELL_CYCLE},
     {'g', 830, "deep drilling with full retracts", PECK_CYCLE},
-    {'g', 840, "right-hand tapping with a floating chuck", DWELL_CYCLE},
+    {'g', 840, "right-hand tapping with a floating chuck", SPINDLE_CYCLE},
     {'g', 850, "boring, out at the feed rate", CYCLE},
-    {'g', 860, "boring with a dwell, spindle stop and rapid out", DWELL_CYCLE},
+    {'g', 860, "boring with a dwell, spindle stop and rapid out", SPINDLE_CYCLE},
     {'g', 870, "back boring",
      "r=height to which it retracts|l=repeats|i=sidestep along X|j=sidestep along Y|k=upper end of the "
      "bore|p=time to "

@@ -81,7 +81,8 @@ void read_scripts(const config::IniFile &ini, Settings &out, diag::Sink &sink) {
     };
     scripts.isReloading = whole(PYTHON, "RELOAD_ON_CHANGE") != 0;
     scripts.log_level = whole(PYTHON, "LOG_LEVEL");
-    out.debug_mask = whole("EMC", "DEBUG");
+    constexpr int ALWAYS = 0x40000000;  // the field's scripts find this bit set
+    out.debug_mask = whole("EMC", "DEBUG") | ALWAYS;
     out.logging_level = whole(SECTION, "LOG_LEVEL");
 }
 

@@ -116,6 +116,10 @@ int Interpreter::call_level() const {
     return impl_->flow.call_level();
 }
 
+bool Interpreter::isContinuable() const {
+    return impl_->flow.isContinuable();
+}
+
 bool Interpreter::isAtFileEnd() const {
     return impl_->flow.isAtFileEnd();
 }

@@ -108,6 +108,8 @@ class Interpreter final : public ProgramInterpreter {
     const std::string &file() const override;
     int call_level() const override;
     bool isAtFileEnd() const override;
+    /// After a failure: the block did not decide which one is next, so that checks may go on behind it.
+    bool isContinuable() const;
     /// The statement budget is used up: no more statement will run.
     bool isBudgetSpent() const;
     FilePlace place_in_file() const;

@@ -180,7 +180,7 @@ class Preview::Impl final : public QuietMachineCanon, public World {
             const Step step = interpreter_.step();
             if (step == Step::FAILED) {
                 sink.report(interpreter_.error());
-                if (++errors >= options_.max_errors || interpreter_.isBudgetSpent() ||
+                if (++errors >= options_.max_errors || !interpreter_.isContinuable() ||
                     interpreter_.isAtFileEnd()) {
                     break;
                 }

@@ -49,8 +49,8 @@ struct ScriptBlock {
 struct ScriptContext {
     std::string name, file;
     int line = 0;
-    int kind = 0;    ///< 0 main, 2 procedure, 3 script of an O word, 4 remap
-    int status = 0;  ///< bit 0: modes saved (M70, M73); bit 1: to be restored at the return
+    int kind = 0;    ///< 0 main, 1 procedure, 2 by M98, 3 script of an O word, 4 remap
+    int status = 0;  ///< bit 0: modes saved (M70, M73); bit 1: restored at the return; bit 2: a remap
     ActiveCodes saved;
     std::array<double, 30> arguments{};  ///< #1 to #30 of the caller
     std::vector<std::pair<std::string, double>> named;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "interp/standalone_run.hh"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -133,16 +136,23 @@ Result<> Run::prepare() {
     return {};
 }
 
+/// Errors stand in a stream of their own or on a terminal. In one file with the canon calls they are the two
+/// lines that programs expect there.
+bool isForPeople() {
+    struct stat out{}, err{};
+    const bool isKnown = ::fstat(STDOUT_FILENO, &out) == 0 && ::fstat(STDERR_FILENO, &err) == 0;
+    return ::isatty(STDERR_FILENO) == 1 || !isKnown || out.st_dev != err.st_dev || out.st_ino != err.st_ino;
+}
+
+/// The place, the block with a caret and its callers; then the message and the block, which programs read.
 void Run::report_failure() {
     std::fflush(out_);
     const diag::Diagnostic &error = interpreter_->error();
-    fmt::print(stderr, "{}\n{}\n", error.what.message, error.line_text);
-    if (options_.isStackShown) {
-        fmt::print(stderr, "{}\n", error.what.place.str());
-        for (const SourcePlace &caller : error.called_from) {
-            fmt::print(stderr, "  called from {}\n", caller.str());
-        }
+    if (options_.isStackShown || isForPeople()) {
+        const std::string context = error.context();
+        fmt::print(stderr, "{}{}{}\n", error.what.place.str(), context.empty() ? "" : "\n", context);
     }
+    fmt::print(stderr, "{}\n{}\n", error.what.message, error.line_text);
 }
 
 /// The whole file. At its end without M2, M30 or % an error cannot be passed over.

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // millwright check: interprets a program for a machine and checks its moves, moving nothing.
+#include <unistd.h>
+
+#include <chrono>
 #include <cstdio>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -28,6 +32,33 @@ void print_result(const std::string &program, const MachineConfig &machine, cons
     }
 }
 
+/// How far a long check is, on a terminal: a line that is written over twice a second.
+class ProgressLine {
+  public:
+    bool operator()(const interp::PreviewProgress &now) {
+        constexpr std::chrono::milliseconds EVERY{500};
+        const auto time = std::chrono::steady_clock::now();
+        if (isTerminal_ && time - last_ >= EVERY && now.bytes_in_all > 0) {
+            last_ = time;
+            isShown_ = true;
+            fmt::print(stderr, "\r{:3.0f} % of the file, {} blocks ",
+                       100.0 * static_cast<double>(now.bytes) / static_cast<double>(now.bytes_in_all),
+                       now.blocks);
+        }
+        return true;
+    }
+    void clear() const {
+        if (isShown_) {
+            fmt::print(stderr, "\r{:60}\r", "");
+        }
+    }
+
+  private:
+    bool isTerminal_ = ::isatty(STDERR_FILENO) == 1;
+    bool isShown_ = false;
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
 }  // namespace
 
 int command_check(const std::vector<std::string> &words) {
@@ -53,7 +84,10 @@ int command_check(const std::vector<std::string> &words) {
     }
     const std::string &program = options->rest[0];
     IniParameters values(loaded->ini, nullptr);
-    const CheckResult result = check_program(loaded->machine, program, **tools, values, sink);
+    ProgressLine progress;
+    const CheckResult result =
+        check_program(loaded->machine, program, **tools, values, sink, std::ref(progress));
+    progress.clear();
     if (sink.hasErrors()) {
         fmt::print(stderr, "{}: {} error(s)\n", program, sink.count_errors());
         return 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Remaps with Python on a whole machine in virtual time: program order, waiting, abort (I2).
+// Remaps with Python on a whole machine in virtual time: program order, waiting, abort (I1).
 #include <unistd.h>
 
 #include <filesystem>
@@ -89,7 +89,7 @@ class PythonRemapTest : public testing::Test {
     task::RequestId run_ = 0;
 };
 
-TEST_F(PythonRemapTest, AToolChangeThroughPythonAndAProcedureKeepsProgramOrder_I2) {
+TEST_F(PythonRemapTest, AToolChangeThroughPythonAndAProcedureKeepsProgramOrder_I1) {
     write("remap.py", "from stdglue import *\n");
     write("change.ngc", "o<change> sub\nG53 G0 Z40\nG53 G0 X-20\nM64 P1\no<change> endsub [1]\n");
     switch_on({"M6 modalgroup=6 prolog=change_prolog ngc=change epilog=change_epilog"});
@@ -114,7 +114,7 @@ TEST_F(PythonRemapTest, AToolChangeThroughPythonAndAProcedureKeepsProgramOrder_I
     EXPECT_NE(messages().find("tool 2"), std::string::npos);
 }
 
-TEST_F(PythonRemapTest, AYieldResumesWhenTheMachineIsThere_I2) {
+TEST_F(PythonRemapTest, AYieldResumesWhenTheMachineIsThere_I1) {
     write("remap.py", "import emccanon\nfrom interpreter import *\n"
                       "def there(self, **words):\n"
                       "    assert self.task == 1\n"
@@ -132,7 +132,7 @@ TEST_F(PythonRemapTest, AYieldResumesWhenTheMachineIsThere_I2) {
     EXPECT_DOUBLE_EQ(x(), 7.0);
 }
 
-TEST_F(PythonRemapTest, AbortDuringAYieldEndsTheScriptAndTheNextProgramRuns_I2) {
+TEST_F(PythonRemapTest, AbortDuringAYieldEndsTheScriptAndTheNextProgramRuns_I1) {
     write("remap.py", "from interpreter import *\nstate = []\n"
                       "def wait(self, **words):\n"
                       "    try:\n        yield INTERP_EXECUTE_FINISH\n        state.append('resumed')\n"
@@ -153,7 +153,7 @@ TEST_F(PythonRemapTest, AbortDuringAYieldEndsTheScriptAndTheNextProgramRuns_I2) 
     EXPECT_DOUBLE_EQ(x(), 3.0);
 }
 
-TEST_F(PythonRemapTest, AnErrorInPythonStopsTheProgramWithItsPlace_I2) {
+TEST_F(PythonRemapTest, AnErrorInPythonStopsTheProgramWithItsPlace_I1) {
     write("remap.py", "def bad(self, **words):\n    return 1 / 0\n");
     switch_on({"M400 py=bad"});
     start("G21 G90\nG0 X1\nM400\nG0 X100\nM2\n");
@@ -163,7 +163,7 @@ TEST_F(PythonRemapTest, AnErrorInPythonStopsTheProgramWithItsPlace_I2) {
     EXPECT_NE(all.find("remap.py:2 in bad"), std::string::npos) << all;
 }
 
-TEST_F(PythonRemapTest, MdiRunsRemapsAndWaits_I2) {
+TEST_F(PythonRemapTest, MdiRunsRemapsAndWaits_I1) {
     write("remap.py", "from interpreter import *\n"
                       "def move(self, **words):\n    self.execute('G0 X8')\n    yield INTERP_EXECUTE_FINISH\n"
                       "    self.execute('G0 X9')\n");

@@ -7,6 +7,7 @@
 
 #include "base/text.hh"
 #include "config/ini_file.hh"
+#include "config/ini_value.hh"
 #include "hal/api/inifile.h"
 
 namespace {
@@ -85,19 +86,7 @@ int iniFindBool(FILE *fp, const char *tag, const char *section, bool *result) {
     if (value == nullptr) {
         return -ENOENT;
     }
-    for (const char *word : {"TRUE", "YES", "ON", "1"}) {
-        if (mw::equals_ignoring_case(*value, word)) {
-            *result = true;
-            return 0;
-        }
-    }
-    for (const char *word : {"FALSE", "NO", "OFF", "0"}) {
-        if (mw::equals_ignoring_case(*value, word)) {
-            *result = false;
-            return 0;
-        }
-    }
-    return -EINVAL;
+    return hand_over(mw::config::ini_bool(*value), result);
 }
 
 int iniFindString(FILE *fp, const char *tag, const char *section, char *dest, size_t n) {

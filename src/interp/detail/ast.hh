@@ -8,6 +8,10 @@
 
 namespace mw::interp::detail {
 
+/// A call with more than 30 arguments makes as many numbers the subroutine's own.
+inline constexpr std::size_t MAX_CALL_ARGUMENTS = 1000;
+inline constexpr std::size_t MAX_LINE_LENGTH = 1000000;  // characters
+
 using NodeId = std::uint32_t;
 using NameId = std::uint32_t;
 inline constexpr std::uint32_t NO_ID = 0xffffffffu;

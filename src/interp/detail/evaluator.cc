@@ -17,7 +17,7 @@ long double radians(double degrees) {
     return degrees * (std::numbers::pi_v<long double> / 180.0L);
 }
 constexpr double WHOLE_TOLERANCE = 1e-4;
-constexpr double EQUAL_TOLERANCE = 1e-6;  // of EQ and its kin
+constexpr double EQUAL_TOLERANCE = 1e-4;  // of EQ and NE
 
 double modulo(double a, double b) {
     const double rest = std::fmod(a, b);
@@ -208,10 +208,10 @@ bool Evaluator::binary(const Arena &arena, const Node &node, double &out) const 
     case Operator::MINUS: out = a - b; break;
     case Operator::EQ: out = std::fabs(a - b) < EQUAL_TOLERANCE ? 1.0 : 0.0; break;
     case Operator::NE: out = std::fabs(a - b) >= EQUAL_TOLERANCE ? 1.0 : 0.0; break;
-    case Operator::GT: out = a - b >= EQUAL_TOLERANCE ? 1.0 : 0.0; break;
-    case Operator::GE: out = a - b > -EQUAL_TOLERANCE ? 1.0 : 0.0; break;
-    case Operator::LT: out = b - a >= EQUAL_TOLERANCE ? 1.0 : 0.0; break;
-    case Operator::LE: out = b - a > -EQUAL_TOLERANCE ? 1.0 : 0.0; break;
+    case Operator::GT: out = a > b ? 1.0 : 0.0; break;
+    case Operator::GE: out = a >= b ? 1.0 : 0.0; break;
+    case Operator::LT: out = a < b ? 1.0 : 0.0; break;
+    case Operator::LE: out = a <= b ? 1.0 : 0.0; break;
     case Operator::AND: out = a != 0.0 && b != 0.0 ? 1.0 : 0.0; break;
     case Operator::OR: out = a != 0.0 || b != 0.0 ? 1.0 : 0.0; break;
     case Operator::XOR: out = (a != 0.0) != (b != 0.0) ? 1.0 : 0.0; break;

@@ -194,6 +194,9 @@ bool Executor::restore_context(const State &saved_modes) {
     if (!restore_geometry(saved)) {
         return false;
     }
+    if (!saved.isMist && !saved.isFlood && (state.isMist || state.isFlood)) {
+        run_code('m', 9, {});
+    }
     if (state.isMist && !saved.isMist) {
         state.isMist = false;
         canon.mist_off();

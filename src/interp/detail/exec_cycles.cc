@@ -108,6 +108,17 @@ bool Executor::check_cycle(const Code &code, const BlockValues &values, int &rep
                              values.column_of('l'));
         }
     }
+    if (values.has('$')) {
+        int chosen = 0;
+        if (!spindle_of(values, chosen)) {
+            return false;
+        }
+        if (chosen < 0) {
+            return fault.set(fmt::format("{} is for one spindle: $ must not be negative", code_name(code)),
+                             values.column_of('$'));
+        }
+        state.active_spindle = chosen;
+    }
     const SpindleState &spindle = state.spindles[static_cast<std::size_t>(state.active_spindle)];
     if (needsSpindle(code.number) && spindle.direction == 0) {
         return fault.set(fmt::format("Spindle not turning in {}", code_name(code)));

@@ -11,10 +11,15 @@ namespace mw::interp::detail {
 
 Result<> Executor::load_remaps() {
     remaps_.clear();
+    refused_remaps_.clear();
     for (const RemapLine &line : settings_.remaps) {
         Result<Remap> made = parse_remap(line);
         if (!made) {
             return std::unexpected(made.error());
+        }
+        if (!made->refusal.empty()) {
+            refused_remaps_.push_back(std::move(made->refusal));
+            continue;
         }
         for (const Remap &other : remaps_) {
             if (other.letter == made->letter && other.number == made->number) {

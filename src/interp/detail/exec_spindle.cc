@@ -61,6 +61,7 @@ bool Executor::do_spindle_mode(const Code &code, const BlockValues &values) {
     }
     const bool isConstantSurface = code.number == 960;
     const double limit = values.has('d') ? std::fabs(values.at('d')) : UNLIMITED_RPM;
+    state.active_spindle = spindle;  // what canned cycles and G95 go by
     SpindleState &one = state.spindles[static_cast<std::size_t>(spindle)];
     one.isConstantSurface = isConstantSurface;
     one.css_max_rpm = isConstantSurface ? limit : 0.0;

@@ -172,7 +172,10 @@ bool Executor::do_thread_cycle(const Code &code, const BlockValues &values) {
     plan.start_x = start[geom::AXIS_X];
     plan.start_z = start[geom::AXIS_Z];
     plan.end_z = target(values)[geom::AXIS_Z];
-    plan.peak_x = plan.start_x + values.at('i');
+    const double scale = state.isDiameter ? 0.5 : 1.0;
+    plan.peak_x = plan.start_x + values.at('i') * scale;
+    plan.first_cut *= scale;
+    plan.full_depth *= scale;
     plan.inward = values.at('i') < 0.0 ? -1.0 : 1.0;
     plan.along = plan.end_z < plan.start_z ? -1.0 : 1.0;
     const int tapers = (plan.hasEntryTaper ? 1 : 0) + (plan.hasExitTaper ? 1 : 0);

@@ -187,8 +187,25 @@ bool Executor::choose_motion(BlockValues &values) {
     return insert_code(*lookup('g', state.motion), 0, values);
 }
 
+/// The machine must have the axes that the block names.
+bool Executor::check_axes(const BlockValues &values) {
+    std::uint32_t axes = values.present & letters("xyzabcuvw");
+    const unsigned mask = world_.axis_mask();
+    for (; axes != 0; axes &= axes - 1) {
+        const int index = std::countr_zero(axes);
+        const char axis = LETTERS[index];
+        if ((mask & (1U << static_cast<unsigned>(geom::axis_of_letter(axis)))) == 0) {
+            return fault.set(fmt::format("Bad character '{}' used", axis),
+                             values.column[static_cast<std::size_t>(index)],
+                             fmt::format("this machine has no axis {}: see [TRAJ]COORDINATES",
+                                         static_cast<char>(std::toupper(axis))));
+        }
+    }
+    return true;
+}
+
 bool Executor::check_words(const BlockValues &values) {
-    if (!check_open_nurbs(values)) {
+    if (!check_open_nurbs(values) || !check_axes(values)) {
         return false;
     }
     std::uint32_t allowed = letters("fstn");

@@ -90,6 +90,8 @@ class Executor : public BuiltIns {
     // exec_remap.cc
     Result<> load_remaps();
     const std::vector<Remap> &remaps() const { return remaps_; }
+    /// Why REMAP lines have no effect.
+    const std::vector<std::string> &refused_remaps() const { return refused_remaps_; }
     const Remap *remap_reached() const { return remap_; }
     bool check_remap_words(std::string &missing) const;
     PendingBlock take_pending();
@@ -218,6 +220,7 @@ class Executor : public BuiltIns {
     bool add_code(char letter, double number, std::uint32_t column, BlockValues &values);
     bool insert_code(const Code &code, std::uint32_t column, BlockValues &values);
     bool choose_motion(BlockValues &values);
+    bool check_axes(const BlockValues &values);
     bool check_words(const BlockValues &values);
     bool apply_settings(const BlockView &view);
     bool run_codes(const BlockValues &values, std::size_t first);
@@ -329,6 +332,7 @@ class Executor : public BuiltIns {
     std::string recursion_text(char letter_char, int number) const;
     void count_builtin(const Code &code);
     std::vector<RunningRemap> running_remaps_;
+    std::vector<std::string> refused_remaps_;
     ScriptNames *script_names_ = nullptr;
     std::string script_text_, comment_;  ///< of the block
     const Remap *remap_ = nullptr;       ///< the one that the block has come to

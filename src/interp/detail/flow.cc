@@ -9,6 +9,15 @@
 #include "interp/detail/script_view.hh"
 
 namespace mw::interp::detail {
+namespace {
+
+/// A line that begins with an O word, well-formed or not.
+bool mentionsOWord(std::string_view line) {
+    const std::size_t first = line.find_first_not_of(" \t/nN0123456789.");
+    return first != std::string_view::npos && (line[first] == 'o' || line[first] == 'O');
+}
+
+}  // namespace
 
 Flow::Flow(Executor &executor, Names &names, Canon &target, const Settings &settings)
     : executor_(executor), names_(names), target_(target), settings_(settings),
@@ -164,8 +173,10 @@ Step Flow::finish_mdi() {
 }
 
 Step Flow::fail_here(std::string message) {
+    executor_.begin_block();
     executor_.fault = {};
     executor_.fault.set(std::move(message));
+    isContinuable_ = false;
     return fail_block();
 }
 
@@ -225,16 +236,17 @@ Step Flow::run_block(const BlockView &view) {
     const Block &block = *view.block;
     executor_.fault = {};
     error_line_ = 0;
+    isContinuable_ = block.oword == NO_ID && !mentionsOWord(program_->line_text(line_read_));
     const int sequence = block.isNumbered ? block.sequence : line_read_;
     const bool isText = !calls_.empty() && calls_.back().kind == CallKind::TEXT;
     executor_.set_place(isText ? calls_.back().reported_line : line_read_, sequence, call_level());
+    executor_.begin_block();
     if (block.error != NO_ID) {
         const SyntaxError &error = view.arena->errors[block.error];
         executor_.fault.set(error.message, error.column);
         return fail_block();
     }
     executor_.canon.enter_block(program_, line_read_, sequence, block.isNumbered, call_level());
-    executor_.begin_block();
     const bool isDone =
         block.oword != NO_ID ? run_oword(view) : executor_.run(view, program_->line_text(line_read_));
     return isDone ? after_block() : fail_block();

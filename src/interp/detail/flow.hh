@@ -36,6 +36,8 @@ class Flow : private ScriptNames {
     const diag::Diagnostic &error() const { return error_; }
     int line() const { return line_read_; }
     const std::string &file() const;
+    /// The block that failed did not decide which one is next: later ones can still be looked at.
+    bool isContinuable() const { return isContinuable_; }
     bool isAtFileEnd() const { return program_ == nullptr || next_ > program_->count_lines(); }
     int call_level() const { return static_cast<int>(calls_.size()) - text_levels_; }
     bool isBudgetSpent() const {
@@ -184,6 +186,7 @@ class Flow : private ScriptNames {
     bool isSyncDue_ = false, isEndDue_ = false;    ///< what a script had executed came to such a point
     std::string script_error_;                     ///< as a script has set it
     std::uint64_t statements_ = 0;
+    bool isContinuable_ = false;
     diag::Diagnostic error_;
 };
 

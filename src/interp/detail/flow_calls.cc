@@ -137,14 +137,16 @@ bool Flow::enter(Call call, const Sub &sub) {
 bool Flow::run_call(const BlockView &view, const OWord &oword) {
     NameId label = NO_ID;
     Sub sub;
-    double arguments[ARGUMENT_COUNT] = {};
-    for (std::uint32_t i = 0; i < oword.argument_count; ++i) {
+    const std::uint32_t count = oword.argument_count;
+    double few[ARGUMENT_COUNT] = {};
+    std::vector<double> many(count > ARGUMENT_COUNT ? count : 0);
+    double *const arguments = many.empty() ? few : many.data();
+    for (std::uint32_t i = 0; i < count; ++i) {
         if (!executor_.evaluator().value(*view.arena, view.arena->arguments[oword.first_argument + i],
                                          arguments[i])) {
             return false;
         }
     }
-    const std::uint32_t count = oword.argument_count;
     if (!label_of(view, oword, label)) {
         return false;
     }
@@ -161,7 +163,10 @@ bool Flow::run_call(const BlockView &view, const OWord &oword) {
     if (!enter(std::move(call), sub)) {
         return false;
     }
-    for (int i = 0; i < ARGUMENT_COUNT; ++i) {
+    if (!many.empty()) {
+        executor_.parameters.keep_aside(count);
+    }
+    for (int i = 0; i < std::max(ARGUMENT_COUNT, static_cast<int>(count)); ++i) {
         executor_.parameters.set(i + 1, arguments[i]);
     }
     if (settings_.isArgumentCountNamed) {

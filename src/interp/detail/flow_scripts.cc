@@ -79,6 +79,7 @@ Result<> Flow::check_remap(const Remap &remap) {
 
 Result<> Flow::load_scripts() {
     const ScriptSettings &wanted = settings_.scripts;
+    warnings_ = executor_.refused_remaps();
     if (!wanted.top_level.empty()) {
         if (Result<> made = need_scripts("[PYTHON]TOPLEVEL", wanted.place); !made) {
             return made;

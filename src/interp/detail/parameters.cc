@@ -53,7 +53,13 @@ void Parameters::push_call() {
     frames_.push_back(std::move(frame));
 }
 
+void Parameters::keep_aside(std::size_t count) {
+    const auto first = values_.begin() + 1 + ARGUMENT_COUNT;
+    frames_.back().more.assign(first, first + static_cast<std::ptrdiff_t>(count) - ARGUMENT_COUNT);
+}
+
 void Parameters::pop_call(bool isSharing) {
+    std::ranges::copy(frames_.back().more, values_.begin() + 1 + ARGUMENT_COUNT);
     if (!isSharing) {
         std::copy_n(frames_.back().arguments, ARGUMENT_COUNT, values_.begin() + 1);
     }

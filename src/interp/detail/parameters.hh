@@ -60,6 +60,8 @@ class Parameters {
     void set_named(NameId id, bool isGlobal, double value);
 
     void push_call();  ///< new local names; #1 to #30 are kept aside
+    /// For the call just made: #31 to #count are kept aside, too.
+    void keep_aside(std::size_t count);
     /// Back to the caller's; #1 to #30 too unless `isSharing` them.
     void pop_call(bool isSharing);
     int depth() const { return static_cast<int>(frames_.size()); }
@@ -85,6 +87,7 @@ class Parameters {
     struct Frame {
         std::vector<Named> locals;
         double arguments[ARGUMENT_COUNT] = {};
+        std::vector<double> more;  ///< the caller's #31 and on, for calls with more arguments
     };
     struct Undo {
         enum class Kind { NUMBER, GLOBAL, LOCAL } kind = Kind::NUMBER;

@@ -54,7 +54,11 @@ Block Parser::parse_line(std::string_view line, std::uint32_t line_number_) {
     letters_seen_ = 0;
     depth_ = 0;
     Lexer in(line);
-    if (!block(in, out)) {
+    const bool isTooLong = line.size() > MAX_LINE_LENGTH;
+    if (isTooLong) {
+        fail(fmt::format("The line is longer than {} characters", MAX_LINE_LENGTH), 1);
+    }
+    if (isTooLong || !block(in, out)) {
         out.error = static_cast<std::uint32_t>(arena_.errors.size());
         arena_.errors.push_back({error_, error_column_});
     }
@@ -321,9 +325,9 @@ bool Parser::oword_call(Lexer &in, Block &out, OWord &made) {
         }
         arguments.push_back(node);
     }
-    constexpr std::size_t MAX_ARGUMENTS = 30;
-    if (arguments.size() > MAX_ARGUMENTS) {
-        return fail("Too many subroutine parameters: at most 30", made.column);
+    if (arguments.size() > MAX_CALL_ARGUMENTS) {
+        return fail(fmt::format("Too many subroutine parameters: at most {}", MAX_CALL_ARGUMENTS),
+                    made.column);
     }
     made.first_argument = static_cast<std::uint32_t>(arena_.arguments.size());
     made.argument_count = static_cast<std::uint32_t>(arguments.size());

@@ -104,8 +104,9 @@ Result<> Reader::read_code(std::string_view word) {
         isUser || find_code(out_.letter, out_.number) == nullptr ||
         (out_.letter == 'm' && std::ranges::find(REMAPPABLE_M, out_.number) != std::end(REMAPPABLE_M));
     if (!isAllowed) {
-        return error(fmt::format("{} has a meaning that cannot be changed", out_.name), offset_of(word),
-                     "T, S, F, M0, M1, M6, M7, M8, M9, M60, M61 and codes that are not used can be remapped");
+        out_.refusal =
+            fmt::format("{}: REMAP={}: {} has a meaning that cannot be changed; the line has no effect",
+                        line_.place.str(), line_.text, out_.name);
     }
     return {};
 }

@@ -35,6 +35,7 @@ struct Remap {
     bool needsSpeed = false;       ///< ^
     bool wantsLine = false;        ///< n: the number of the line becomes #<n>
     SourcePlace place;
+    std::string refusal;  ///< why the line has no effect
 
     bool needsScripts() const { return !function.empty() || !prolog.empty() || !epilog.empty(); }
     /// What stands in messages as the block that failed.

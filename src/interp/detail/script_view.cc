@@ -265,14 +265,17 @@ std::vector<ScriptContext> ScriptView::contexts() const {
             continue;
         }
         ScriptContext &context = out.emplace_back();
-        constexpr int PROCEDURE = 2, SCRIPT = 3, REMAP = 4;
-        context.kind = call.kind == Flow::CallKind::REMAP    ? REMAP
+        constexpr int PROCEDURE = 1, FANUC = 2, SCRIPT = 3, REMAP = 4, REMAP_STATUS = 4;
+        const bool isRemap = call.kind == Flow::CallKind::REMAP;
+        context.kind = isRemap                               ? REMAP
                        : call.kind == Flow::CallKind::SCRIPT ? SCRIPT
+                       : call.kind == Flow::CallKind::FANUC  ? FANUC
                                                              : PROCEDURE;
         context.name = flow_.call_name(call);
         context.file = call.program != nullptr ? call.program->path() : std::string();
         context.line = call.line;
         fill(context, out.size() - 1);
+        context.status |= isRemap ? REMAP_STATUS : 0;
     }
     return out;
 }

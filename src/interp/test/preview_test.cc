@@ -20,6 +20,7 @@ class PreviewRun : public testing::Test {
     PreviewEnd run(const std::string &program, PreviewOptions options = {}) {
         PreviewMachine machine;
         machine.tool_change_moves = tool_change_moves;
+        machine.axis_mask = axis_mask;
         preview = std::make_unique<Preview>(
             machine, world, world, options,
             Preview::Listener{[this](std::span<const PreviewEvent> batch) {
@@ -37,6 +38,7 @@ class PreviewRun : public testing::Test {
     std::function<bool(const PreviewProgress &)> progress;
     std::function<std::vector<Pose>(const Pose &)> tool_change_moves;
     std::unique_ptr<Preview> preview;
+    unsigned axis_mask = 0x1ff;
 };
 
 TEST_F(PreviewRun, yields_moves_with_their_places_I1) {
@@ -103,6 +105,16 @@ TEST_F(PreviewRun, adds_the_moves_of_the_machine_at_a_tool_change_I1) {
     EXPECT_TRUE(events[2].isByMachine);
     EXPECT_DOUBLE_EQ(events[3].end.z(), 100.0);
     EXPECT_DOUBLE_EQ(events[3].end.x(), 4.0);
+}
+
+TEST_F(PreviewRun, refuses_axes_that_the_machine_does_not_have_I3) {
+    axis_mask = 7;
+    EXPECT_EQ(run("G21\nG0 X1\nG0 X2 A10\nM2\n"), PreviewEnd::FAILED);
+    ASSERT_EQ(sink.count_errors(), 1);
+    EXPECT_EQ(sink.all()[0].what.message, "Bad character 'a' used");
+    EXPECT_EQ(sink.all()[0].what.place.line, 3);
+    EXPECT_EQ(sink.all()[0].what.place.column, 7);
+    EXPECT_EQ(events.size(), 1U);
 }
 
 TEST_F(PreviewRun, goes_on_behind_errors_and_tells_them_all_I3) {

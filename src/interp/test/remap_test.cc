@@ -114,8 +114,6 @@ TEST(Remap, remapped_motion_is_not_modal_by_itself_I1) {
 }
 
 TEST(Remap, bad_lines_name_their_place_I1) {
-    EXPECT_NE(begin_error("G1 ngc=x").find("test.ini:10:7:"), std::string::npos);
-    EXPECT_NE(begin_error("G1 ngc=x").find("cannot be changed"), std::string::npos);
     EXPECT_NE(begin_error("M400 argspec=P? ngc=x").find("test.ini:10:21:"), std::string::npos)
         << begin_error("M400 argspec=P? ngc=x");
     EXPECT_NE(begin_error("M400 argspec=Pp ngc=x").find("twice"), std::string::npos);
@@ -127,6 +125,15 @@ TEST(Remap, bad_lines_name_their_place_I1) {
     EXPECT_NE(begin_error("X12 ngc=a").find("a code such as M400"), std::string::npos);
     EXPECT_NE(begin_error("M1000 ngc=a").find("below 1000"), std::string::npos);
     EXPECT_NE(begin_error("").find("must come first"), std::string::npos);
+}
+
+TEST(Remap, code_whose_meaning_cannot_change_is_warned_about_I1) {
+    Machine machine(with_remaps({"G1 ngc=x", "M400 ngc=rm400"}));
+    machine.write("rm400.ngc", "o<rm400> sub\n(print,ran)\no<rm400> endsub\n");
+    EXPECT_EQ(calls_of(machine, "F100 G1 X1\nM400\n").front(), "printran");
+    ASSERT_EQ(machine.interpreter->warnings().size(), 1u);
+    EXPECT_NE(machine.interpreter->warnings()[0].find("test.ini:10:7: REMAP=G1 ngc=x: G1 has a meaning"),
+              std::string::npos);
 }
 
 TEST(Remap, two_lines_for_one_code_are_refused_I1) {

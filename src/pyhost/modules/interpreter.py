@@ -289,7 +289,7 @@ class ParameterMap:
 
 class Context:
     """One level of call: self.sub_context[0] is the main program, [self.call_level] the innermost."""
-    _GLOBAL, _READONLY, _COMPUTED = 1, 2, 8
+    _READONLY, _GLOBAL, _COMPUTED = 1, 2, 8
 
     def __init__(self, data, predefined):
         def attributes(name):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Remaps with Python inside gcode.parse: a Python program whose previews run other people's scripts (I2)."""
+"""Remaps with Python inside gcode.parse: a Python program whose previews run other people's scripts (I1)."""
 import os
 import sys
 import tempfile

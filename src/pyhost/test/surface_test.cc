@@ -17,7 +17,7 @@ void check(Scripted &it, const std::string &program, const std::string &body) {
     EXPECT_EQ(it.run(program), Step::PROGRAM_END) << it.error();
 }
 
-TEST(PythonSurface, parameters_by_number_and_name_I2) {
+TEST(PythonSurface, parameters_by_number_and_name_I1) {
     Scripted it;
     it.world.ini = [](std::string_view section, std::string_view key) -> std::optional<double> {
         return section == "FOO" && key == "BAR" ? std::optional(3.5) : std::nullopt;
@@ -37,7 +37,7 @@ TEST(PythonSurface, parameters_by_number_and_name_I2) {
     EXPECT_EQ(it.story().back(), "MESSAGE(\"8 9 10\")");
 }
 
-TEST(PythonSurface, attributes_of_state_and_own_ones_I2) {
+TEST(PythonSurface, attributes_of_state_and_own_ones_I1) {
     Scripted it;
     it.write("toplevel.py", "import remap, oword\ndef __init__(self):\n    self.mine = 41\n");
     check(it, "G20 G91 G0 X1 F50 S60\nG17\no<check> call\nX1\n",
@@ -64,7 +64,7 @@ TEST(PythonSurface, attributes_of_state_and_own_ones_I2) {
     EXPECT_EQ(it.story().back(), "STRAIGHT_TRAVERSE(1.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)");
 }
 
-TEST(PythonSurface, blocks_levels_of_call_and_tools_I2) {
+TEST(PythonSurface, blocks_levels_of_call_and_tools_I1) {
     Scripted it;
     it.remap("M400 modalgroup=10 argspec=Pq py=look");
     it.handlers(
@@ -87,7 +87,7 @@ TEST(PythonSurface, blocks_levels_of_call_and_tools_I2) {
     EXPECT_EQ(it.run("o<outer> call\n"), Step::PROGRAM_END) << it.error();
 }
 
-TEST(PythonSurface, oword_values_and_errors_I2) {
+TEST(PythonSurface, oword_values_and_errors_I1) {
     Scripted it;
     it.owords("def none(self, *a):\n    pass\n"
               "def number(self, a, b):\n    return a * b\n"
@@ -108,7 +108,7 @@ TEST(PythonSurface, oword_values_and_errors_I2) {
     EXPECT_NE(it.error().find("There is no subroutine o<value>"), std::string::npos);
 }
 
-TEST(PythonSurface, named_parameters_come_from_functions_I2) {
+TEST(PythonSurface, named_parameters_come_from_functions_I1) {
     Scripted it;
     it.write("toplevel.py", "import remap, oword, namedparams\n");
     it.write("namedparams.py", "def _twice_x(self):\n    return 2 * self.current_x\n"
@@ -132,7 +132,7 @@ TEST(PythonSurface, named_parameters_come_from_functions_I2) {
     EXPECT_EQ(it.error(), "Cannot assign to read-only parameter #<_twice_x>");
 }
 
-TEST(PythonSurface, lines_that_begin_with_py_run_and_others_are_comments_I2) {
+TEST(PythonSurface, lines_that_begin_with_py_run_and_others_are_comments_I1) {
     Scripted it;
     ASSERT_EQ(
         it.run(";py,import emccanon; x = 5\n;py,emccanon.MESSAGE('x is %d' % x)\n ;py,boom\nG0 X1 ;py,boom\n"
@@ -148,7 +148,7 @@ TEST(PythonSurface, lines_that_begin_with_py_run_and_others_are_comments_I2) {
     EXPECT_EQ(it.error(), "ZeroDivisionError: division by zero (;py,:1)");
 }
 
-TEST(PythonSurface, canon_calls_stand_in_program_order_I2) {
+TEST(PythonSurface, canon_calls_stand_in_program_order_I1) {
     Scripted it;
     check(it, "G0 X1\no<check> call\nG0 X2\n",
           "    emccanon.STRAIGHT_FEED(5, 1, 2, 3, 4, 5, 6, 7, 8, 9)\n"
@@ -167,7 +167,7 @@ TEST(PythonSurface, canon_calls_stand_in_program_order_I2) {
                       "STRAIGHT_TRAVERSE(2.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)"}));
 }
 
-TEST(PythonSurface, two_interpreters_have_modules_of_their_own_I2) {
+TEST(PythonSurface, two_interpreters_have_modules_of_their_own_I1) {
     Scripted first("a"), second("b");
     for (Scripted *it : {&first, &second}) {
         it->owords(std::string("count = 0\ndef next(self):\n    global count\n    count += 1\n") +
@@ -183,7 +183,7 @@ TEST(PythonSurface, two_interpreters_have_modules_of_their_own_I2) {
     }
 }
 
-TEST(PythonSurface, hooks_run_at_the_start_and_at_the_end_I2) {
+TEST(PythonSurface, hooks_run_at_the_start_and_at_the_end_I1) {
     std::string note;
     {
         Scripted it;
@@ -203,7 +203,7 @@ TEST(PythonSurface, hooks_run_at_the_start_and_at_the_end_I2) {
     std::filesystem::remove(note);
 }
 
-TEST(PythonSurface, changed_scripts_are_loaded_again_when_asked_I2) {
+TEST(PythonSurface, changed_scripts_are_loaded_again_when_asked_I1) {
     Scripted it;
     it.settings.scripts.isReloading = true;
     it.owords("def value(self):\n    return 1\n");
@@ -216,7 +216,7 @@ TEST(PythonSurface, changed_scripts_are_loaded_again_when_asked_I2) {
     EXPECT_EQ(it.story()[0], "MESSAGE(\"22222\")");
 }
 
-TEST(PythonSurface, interpreter_is_refused_outside_of_handlers_I2) {
+TEST(PythonSurface, interpreter_is_refused_outside_of_handlers_I1) {
     Scripted it;
     it.owords("import threading\nseen = []\n"
               "def thread(self):\n"
