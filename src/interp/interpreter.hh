@@ -54,7 +54,9 @@ struct Settings {
     double center_arc_radius_tolerance_mm = 0.00127;
     double center_arc_radius_tolerance_inch = 0.00005;
     bool isLathe = false;
-    bool isTask = false;                ///< #<_task>: a machine runs the program
+    bool isTask = false;  ///< #<_task>: a machine runs the program
+    /// G74 and G84 in G18 and G19 print their X Y Z in the order of the field's rs274, which is no tool path.
+    bool isTapOrderOfField = false;
     bool isArgumentCountNamed = false;  ///< [RS274NGC]OWORD_NARGS: #<n_args> in subroutines
     double orient_offset_deg = 0;
     double parameter_g73_peck_clearance_mm = 0.254, parameter_g83_peck_clearance_mm = 0.254;

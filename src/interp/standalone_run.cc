@@ -55,6 +55,7 @@ class Run {
 };
 
 Result<> Run::read_ini() {
+    settings_.isTapOrderOfField = true;
     if (options_.ini_file.empty()) {
         return {};
     }
@@ -65,6 +66,7 @@ Result<> Run::read_ini() {
     }
     ini_ = std::move(*ini);
     settings_ = settings_from_ini(*ini_, sink);
+    settings_.isTapOrderOfField = true;
     if (const config::IniEntry *entry = ini_->find("TRAJ", "SPINDLES"); entry != nullptr) {
         const auto count = parse_int(entry->value);
         if (!count || *count < 1 || *count > MAX_SPINDLES) {

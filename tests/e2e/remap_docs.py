@@ -22,7 +22,7 @@ def run(rs274, folder, program):
     done = subprocess.run([rs274, '-g', '-i', 'docs.ini', 'docs.ngc'], cwd=folder, capture_output=True, text=True, check=False,
                           timeout=20)
     return ([re.sub(r'^ *\d+ N\S* +', '', line) for line in done.stdout.splitlines()],
-            [line for line in done.stderr.splitlines() if line != 'executing'])
+            [line for line in done.stderr.splitlines() if line != 'executing'][-2:])
 
 
 def outcome(rs274, folder, program):

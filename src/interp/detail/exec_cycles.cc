@@ -273,14 +273,16 @@ void Executor::run_peck(const CyclePlan &plan) {
     cycle_move(true, normal, plan.clear);
 }
 
-/// The two feeds of a tap. In G18 and G19 their X, Y and Z stand in the order that the field's programs have
-/// always given: plane coordinates turned into machine ones twice. Only G17 taps along the plane's normal.
+/// The two feeds of a tap, along the plane's normal. The field's rs274 turns plane coordinates into machine
+/// ones twice in G18 and G19: moved like that the tap would be dragged through the part, so only what is
+/// printed and never moved follows it.
 void Executor::tap_move(double height) {
     const int normal = plane_axes().normal;
     state.position[normal] = height;
     const Pose &place = state.position;
     Pose sent = place;
-    for (int axis = geom::AXIS_X; axis <= geom::AXIS_Z && normal != geom::AXIS_Z; ++axis) {
+    const bool isTurnedTwice = settings_.isTapOrderOfField && normal != geom::AXIS_Z;
+    for (int axis = geom::AXIS_X; axis <= geom::AXIS_Z && isTurnedTwice; ++axis) {
         constexpr int LENGTHS = 3;
         sent[axis] = place[(axis + (normal == geom::AXIS_Y ? 1 : 2)) % LENGTHS];
     }

@@ -318,5 +318,22 @@ TEST(CodesTable, every_code_has_a_good_and_a_bad_case_I1) {
     }
 }
 
+TEST(Codes, TapsAlongTheNormalOfThePlane_I1) {
+    const std::string program = "G18 F100 S100 M3\nG0 X1 Z2 Y5\nG84 X1 Z2 Y-3 R4\nM2\n";
+    const auto feeds = [](const Outcome &outcome) {
+        std::vector<std::string> found;
+        std::ranges::copy_if(outcome.calls, std::back_inserter(found),
+                             [](const std::string &call) { return call.starts_with("STRAIGHT_FEED"); });
+        return found;
+    };
+    const std::vector<std::string> along{"STRAIGHT_FEED(1.0000, -3.0000, 2.0000, 0.0000, 0.0000, 0.0000)",
+                                         "STRAIGHT_FEED(1.0000, 4.0000, 2.0000, 0.0000, 0.0000, 0.0000)"};
+    EXPECT_EQ(feeds(run(program)), along);
+    Settings printed;
+    printed.isTapOrderOfField = true;
+    EXPECT_EQ(feeds(run(program, printed)).front(),
+              "STRAIGHT_FEED(-3.0000, 2.0000, 1.0000, 0.0000, 0.0000, 0.0000)");
+}
+
 }  // namespace
 }  // namespace mw::interp
