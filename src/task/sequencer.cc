@@ -68,7 +68,7 @@ Sequencer::Need Sequencer::need_of(const ItemBody &body) {
 
 void Sequencer::step(std::int64_t now_ns) {
     for (int i = 0; i < ITEMS_PER_CYCLE; ++i) {
-        if (!isWaitOver(now_ns) || isStepDone_) {
+        if (hasFailed_ || !isWaitOver(now_ns) || hasFailed_ || isStepDone_) {
             return;
         }
         if (queue_.empty()) {
@@ -84,6 +84,11 @@ void Sequencer::step(std::int64_t now_ns) {
             queue_.pop_front();
         }
     }
+}
+
+void Sequencer::fail_item(const std::string &text) {
+    hasFailed_ = true;
+    events_.fail(text);
 }
 
 bool Sequencer::isStepBoundary(const Item &item) {
@@ -171,7 +176,7 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
             },
             [&](const ReloadToolsItem &) {
                 if (const auto reloaded = tools_.reload(); !reloaded.has_value()) {
-                    events_.fail(reloaded.error().str());
+                    fail_item(reloaded.error().str());
                 }
                 return true;
             },
@@ -209,7 +214,7 @@ bool Sequencer::begin(const PlannerModeItem &mode) {
 bool Sequencer::begin(const UserCodeItem &code) {
     const auto started = events_.start_user_code(code);
     if (!started.has_value()) {
-        events_.fail(started.error().str());
+        fail_item(started.error().str());
         return true;
     }
     wait_ = Wait::USER_CODE;
@@ -367,7 +372,7 @@ void Sequencer::execute_tool(const Item &item) {
     if (const auto *select = std::get_if<SelectToolItem>(&item.body)) {
         const int index = select->toolno == 0 ? 0 : tools_.index_of_tool(select->toolno);
         if (index < 0) {
-            events_.fail("tool " + std::to_string(select->toolno) + " is not in the tool table");
+            fail_item("tool " + std::to_string(select->toolno) + " is not in the tool table");
             return;
         }
         const interp::ToolEntry entry = tool_at(index);
@@ -387,26 +392,26 @@ void Sequencer::execute_tool(const Item &item) {
         const int index = number->toolno == 0 ? 0 : tools_.index_of_tool(number->toolno);
         const auto loaded = tools_.load_spindle(index);
         if (!loaded.has_value()) {
-            events_.fail(loaded.error().str());
+            fail_item(loaded.error().str());
         }
         io_.set_tool_in_spindle(number->toolno, tool_at(index).pocketno);
     } else if (const auto *entry = std::get_if<ToolEntryItem>(&item.body)) {
         const auto saved = tools_.set_entry(entry->index, entry->entry);
         if (!saved.has_value()) {
-            events_.fail(saved.error().str());
+            fail_item(saved.error().str());
         }
     }
 }
 
 void Sequencer::on_tool_event(io::ToolEvent event) {
     if (event == io::ToolEvent::FAULT) {
-        events_.fail("the tool changer reports a fault (iocontrol.0.toolchanger-reason " +
-                     std::to_string(io_.fault_reason()) + ")");
+        fail_item("the tool changer reports a fault (iocontrol.0.toolchanger-reason " +
+                  std::to_string(io_.fault_reason()) + ")");
     } else if (event == io::ToolEvent::CHANGED && changing_index_ >= 0) {
         const interp::ToolEntry entry = tool_at(changing_index_);
         const auto loaded = tools_.load_spindle(changing_index_);
         if (!loaded.has_value()) {
-            events_.fail(loaded.error().str());
+            fail_item(loaded.error().str());
         }
         io_.set_tool_in_spindle(entry.toolno, entry.pocketno);
         changing_index_ = -1;
@@ -423,7 +428,7 @@ void Sequencer::execute_log(const LogItem &item) {
         const bool isContinued = item.what == LogItem::What::APPEND && ::access(item.text.c_str(), F_OK) == 0;
         const auto old = isContinued ? read_file(item.text) : Result<std::string>("");
         if (!old.has_value()) {
-            events_.fail(old.error().str());
+            fail_item(old.error().str());
             return;
         }
         log = {item.text, *old, true};
@@ -468,6 +473,7 @@ void Sequencer::abort() {
     isNextMoveWaitingForSpeed_ = false;
     isStepping_ = false;
     isStepDone_ = false;
+    hasFailed_ = false;
     io_.abort();
 }
 

@@ -31,7 +31,8 @@ struct SequencerEvents {
     std::function<std::optional<motion::CommandId>(const PlannerModeItem &)> planner_mode;
     /// Starts a user M code; false when it cannot be started.
     std::function<Result<>(const UserCodeItem &)> start_user_code;
-    std::function<bool()> isUserCodeRunning;
+    /// Nothing while the program of a user M code runs, then how it ended.
+    std::function<std::optional<Result<>>()> user_code_result;
 };
 
 /// Is told of each move when it is handed to the planner.
@@ -96,6 +97,8 @@ class Sequencer {
     bool isReady(const Item &item);
     bool isStepBoundary(const Item &item);
     /// False when the item must be tried again next cycle.
+    /// Tells the failure and begins nothing after it.
+    void fail_item(const std::string &text);
     bool execute(const Item &item, std::int64_t now_ns);
     bool begin(const DwellItem &dwell, std::int64_t now_ns);
     bool begin(const WaitInputItem &input, std::int64_t now_ns);
@@ -138,6 +141,7 @@ class Sequencer {
     std::array<SpindleState, MAX_SPINDLES> spindles_{};
     bool isNextMoveWaitingForSpeed_ = false;
     bool isStepping_ = false, isStepDone_ = false;
+    bool hasFailed_ = false;  ///< nothing more is begun until abort()
     std::uint32_t step_block_ = 0;
     std::array<LogFile, 2> logs_;  ///< of (log,...), of probes
     bool isProbeMade_ = false;

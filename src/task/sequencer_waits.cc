@@ -17,14 +17,21 @@ bool Sequencer::isWaitOver(std::int64_t now_ns) {
         const motion::SpindleStatus &spindle =
             motion_.status().spindle[static_cast<std::size_t>(awaited_spindle_)];
         if (spindle.orient_fault != 0) {
-            events_.fail("spindle " + std::to_string(awaited_spindle_) + " reports orient fault " +
-                         std::to_string(spindle.orient_fault));
+            fail_item("spindle " + std::to_string(awaited_spindle_) + " reports orient fault " +
+                      std::to_string(spindle.orient_fault));
         }
         isOver = spindle.orient_state != 1;
         break;
     }
     case Wait::SETTING: isOver = motion_.isAnswered(awaited_setting_); break;
-    case Wait::USER_CODE: isOver = !events_.isUserCodeRunning(); break;
+    case Wait::USER_CODE: {
+        const std::optional<Result<>> result = events_.user_code_result();
+        isOver = result.has_value();
+        if (isOver && !result->has_value()) {
+            fail_item(result->error().str());
+        }
+        break;
+    }
     }
     if (isOver) {
         wait_ = Wait::NONE;

@@ -66,14 +66,11 @@ SequencerEvents Task::make_events() {
         return path.empty() ? fail("M" + std::to_string(item.code) + ": its program is gone")
                             : user_program_.start(path, item.p, item.q);
     };
-    events.isUserCodeRunning = [this] {
+    events.user_code_result = [this]() -> std::optional<Result<>> {
         if (user_program_.isRunning()) {
-            return true;
+            return std::nullopt;
         }
-        if (const Result<> ended = user_program_.take_result(); !ended.has_value()) {
-            post(MessageKind::OPERATOR_ERROR, ended.error().str());
-        }
-        return false;
+        return user_program_.take_result();
     };
     return events;
 }

@@ -220,11 +220,14 @@ TEST_F(TaskTest, AUserCodeRunsWithItsWordsAndIsAwaited_I1) {
     EXPECT_EQ(second, "1.000000 2.000000");
 }
 
-TEST_F(TaskTest, AUserCodeThatFailsIsTold_I1) {
+/// A collet that does not close: no move may follow.
+TEST_F(TaskTest, AUserCodeThatFailsStopsTheProgram_I1) {
     make_program("M102", "exit 3\n");
-    open("M102\nM2\n");
-    ask(RunProgram{});
+    open("G21 F600\nG1 X1\nM102\nG0 X77\nM2\n");
+    motion.log.clear();
+    EXPECT_EQ(ask(RunProgram{}), Progress::FAILED);
     EXPECT_NE(messages().find("ended with status 3"), std::string::npos);
+    EXPECT_EQ(joined().find("77"), std::string::npos);
 }
 
 TEST_F(TaskTest, AUserCodeNeedsAnExecutableFile_I1) {
