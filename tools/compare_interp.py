@@ -89,9 +89,11 @@ def compare(folder, number, program):
     hasFailed = bool(ref_status and our_status)
     if hasFailed and not names and ref_err[-1:] != our_err[-1:]:
         return None, f'program {number} fails in other blocks: {error_of(ref_err)} / {error_of(our_err)}'
-    pair = interp_differences.Pair(program, list(ref_calls), list(our_calls))
+    refusal = error_of(ref_err) if ref_status else ''
+    pair = interp_differences.Pair(program, list(ref_calls), list(our_calls), refusal)
     used = interp_differences.explain(pair, hasFailed)
-    if used is not None and (ref_status == 0) == (our_status == 0):
+    isSpindle = used is not None and interp_differences.chosen_spindle in used
+    if used is not None and (isSpindle or (ref_status == 0) == (our_status == 0)):
         names += [interp_differences.name_of(one) for one in used]
         return (names, '') if names else None
     ref_calls, our_calls = pair.reference, pair.ours

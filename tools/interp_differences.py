@@ -15,8 +15,8 @@ LATHE_CYCLE = re.compile(r'\bg7[012](\.[12])?\s*q', re.I)
 class Pair:
     """The calls of both, without counters and N."""
 
-    def __init__(self, program, reference, ours):
-        self.program, self.reference, self.ours = program, reference, ours
+    def __init__(self, program, reference, ours, refusal=''):
+        self.program, self.reference, self.ours, self.refusal = program, reference, ours, refusal
 
     def has(self, pattern):
         return re.search(pattern, self.program, re.I) is not None
@@ -178,6 +178,18 @@ def long_numbers(pair):
                  for call in pair.ours]
 
 
+def small_numbers(pair):
+    """In comments the reference writes numbers below 0.0001 as 0."""
+    pair.ours = [re.sub(r'(?<![\d.])-?0\.0000\d+', lambda m: '0.' + '0' * (len(m[0].split('.')[1])), call)
+                 if call.startswith('MESSAGE(') or '(' not in call else call for call in pair.ours]
+
+
+def chosen_spindle(pair):
+    """After G96 or G97 $n the reference's G33 and G76 without $ go by spindle n; here by spindle 0, as the manual says."""
+    if pair.has(r'g9[67]\b[^\n]*\$') and pair.refusal.startswith('Chosen spindle (') and len(pair.reference) < len(pair.ours):
+        pair.ours = pair.ours[:len(pair.reference)]
+
+
 def orientation_of_back_boring(pair):
     """G87 with a spindle that turns counterclockwise: the reference orients with a mode that M19 does not have."""
     if pair.has('g87'):
@@ -186,7 +198,7 @@ def orientation_of_back_boring(pair):
 
 
 CLASSES = (speed_override_at_end, order_under_compensation, context_announced, threading_enables_override,
-           lathe_pieces, peck_at_the_bottom, long_numbers, orientation_of_back_boring)
+           lathe_pieces, peck_at_the_bottom, long_numbers, small_numbers, orientation_of_back_boring, chosen_spindle)
 
 # What ours refuses and the reference does not, and what it refuses it with. What was done before must be equal.
 STRICTER = {

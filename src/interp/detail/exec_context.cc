@@ -133,10 +133,14 @@ bool Executor::restore_spindles(const State &saved) {
         const int code = saved.feed_mode == FeedMode::INVERSE_TIME       ? 930
                          : saved.feed_mode == FeedMode::UNITS_PER_MINUTE ? 940
                                                                          : 950;
-        if (!run_code('g', code, {})) {
+        BlockValues chosen;
+        chosen.present = letters("$");
+        chosen.value[LETTER_DOLLAR] = saved.active_spindle;
+        if (!run_code('g', code, chosen)) {
             return false;
         }
     }
+    state.active_spindle = saved.active_spindle;
     state.feed = saved.feed;
     if (state.feed_mode != FeedMode::INVERSE_TIME) {  // there each move has a rate of its own
         canon.set_feed_rate(state.feed);

@@ -121,7 +121,15 @@ bool Executor::do_diameter(const Code &code, const BlockValues &) {
     return true;
 }
 
-bool Executor::do_feed_mode(const Code &code, const BlockValues &) {
+bool Executor::do_feed_mode(const Code &code, const BlockValues &values) {
+    int spindle = 0;
+    if (!spindle_of(values, spindle)) {
+        return false;
+    }
+    if (spindle < 0) {
+        return fault.set("The feed follows one spindle: $ must not be negative", values.column_of('$'));
+    }
+    state.active_spindle = spindle;
     if (code.number == 930) {
         canon.comment("interpreter: feed mode set to inverse time");
         state.feed_mode = FeedMode::INVERSE_TIME;

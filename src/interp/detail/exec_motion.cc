@@ -23,7 +23,7 @@ Pose Executor::target(const BlockValues &values) const {
     return end;
 }
 
-/// The words @ (radius) and ^ (angle in degrees) in the plane; each keeps what the other does not name.
+/// The words @ (radius) and ^ (angle in degrees) in X Y; each keeps what the other does not name.
 bool Executor::polar_target(const BlockValues &values, Pose &end) {
     if (!values.has('@') && !values.has('^')) {
         return true;
@@ -31,6 +31,9 @@ bool Executor::polar_target(const BlockValues &values, Pose &end) {
     const PlaneAxes axes = plane_axes();
     const char first = geom::AXIS_LETTERS_LOWER[axes.first], second = geom::AXIS_LETTERS_LOWER[axes.second];
     const std::uint32_t column = values.column_of(values.has('@') ? '@' : '^');
+    if (state.plane != Plane::XY) {
+        return fault.set("Polar words @ and ^ are for G17 alone", column);
+    }
     if (values.has(first) || values.has(second)) {
         return fault.set("Polar words @ and ^ cannot be combined with the axis words of their plane", column);
     }
