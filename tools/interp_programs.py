@@ -5,7 +5,7 @@ What the reference's standalone program gets wrong on its own is left out: it ta
 change (so a move of all axes follows), forgets the tool offset then and does not convert it with the units (so G49 stands before those), and lets a probe stop short of its end (so a
 move of all axes follows); it refuses L in G74 and axis words in G43.2; after a break a do loop runs
 once; M61 leaves the data of the tool; G10 L2 R does not know G92; it loses its way in lathe profiles of one segment,
-with collinear or nearly collinear segments, arcs beside an allowance.
+with collinear or nearly collinear segments, arcs beside an allowance, arcs whose lowest point lies inside them.
 """
 import math
 import random
