@@ -230,6 +230,16 @@ TEST_F(TaskTest, AUserCodeThatFailsStopsTheProgram_I1) {
     EXPECT_EQ(joined().find("77"), std::string::npos);
 }
 
+/// Reading ahead is bounded in each cycle, so that task hears the operator.
+TEST_F(TaskTest, AnEndlessLoopEndsWithAnAbort_I1) {
+    open("o1 while [1]\n#1=[#1+1]\no1 endwhile\nM2\n");
+    const RequestId run = task.submit(RunProgram{});
+    cycles(100);
+    EXPECT_EQ(task.progress(run), Progress::STARTED);
+    EXPECT_EQ(ask(AbortAll{}), Progress::DONE);
+    EXPECT_NE(task.progress(run), Progress::STARTED);
+}
+
 TEST_F(TaskTest, AUserCodeNeedsAnExecutableFile_I1) {
     std::ofstream(folder / "M103") << "#!/bin/sh\n";
     open("M103\nM2\n");
