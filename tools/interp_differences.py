@@ -186,17 +186,17 @@ def small_numbers(pair):
 
 def angles_of_home(pair):
     """G28 and G30 do not take the angles of the tool offset off the stored place in the reference, though its lengths."""
-    if not pair.has(r'g(28|30)\b') or len(pair.reference) != len(pair.ours):
+    if not pair.has(r'g(28|30)\b'):
         return
     offset = [0.0, 0.0, 0.0]
     for i, (theirs, mine) in enumerate(zip(pair.reference, pair.ours)):
         if mine.startswith('USE_TOOL_LENGTH_OFFSET('):
             offset = numbers(mine)[3:6]
-        if mine == theirs or not mine.startswith('STRAIGHT_') or not theirs.startswith(mine.split('(', 1)[0]):
+        if mine == theirs or not MOVE.match(mine) or not theirs.startswith(mine.split('(', 1)[0]):
             continue
         a, b = numbers(mine), numbers(theirs)
-        if len(a) == len(b) == 6 and all(abs(x - y) < 2e-4 for x, y in zip(a[:3], b[:3])) and all(
-                abs(x - y) < 2e-4 or abs(x - y + part) < 2e-4 for x, y, part in zip(a[3:], b[3:], offset)):
+        if len(a) == len(b) and all(abs(x - y) < 2e-4 for x, y in zip(a[:-3], b[:-3])) and all(
+                abs(x - y) < 2e-4 or abs(x - y + part) < 2e-4 for x, y, part in zip(a[-3:], b[-3:], offset)):
             pair.ours[i] = theirs
 
 

@@ -10,6 +10,8 @@
 namespace mw::interp::detail {
 namespace {
 
+constexpr int MAX_PASSES = 10000;
+
 constexpr double DEGREE = std::numbers::pi / 180.0;
 
 }  // namespace
@@ -141,7 +143,8 @@ bool Executor::check_thread_cycle(const BlockValues &values, ThreadPlan &plan) {
         {plan.full_depth <= 0.0, 'k', "The depth K of G76 must be above 0"},
         {plan.first_cut > plan.full_depth, 'j', "The first cut J of G76 must not be deeper than K"},
         {plan.degression < 1.0, 'r', "The degression R of G76 must be at least 1"},
-        {plan.springs < 0, 'h', "The number of spring passes H of G76 must not be negative"},
+        {plan.springs < 0 || plan.springs > MAX_PASSES, 'h',
+         "The number of spring passes H of G76 must be 0 to 10000"},
         {taper < 0 || taper > 3, 'l', "The taper L of G76 must be 0, 1, 2 or 3"},
         {plan.taper_length < 0.0, 'e', "The taper length E of G76 must not be negative"},
         {taper != 0 && plan.taper_length == 0.0, 'l', "A taper L of G76 needs its length E"},
@@ -182,7 +185,6 @@ bool Executor::do_thread_cycle(const Code &code, const BlockValues &values) {
     if (tapers * plan.taper_length > std::fabs(plan.end_z - plan.start_z)) {
         return fault.set("The tapers of G76 are longer than the thread", values.column_of('e'));
     }
-    constexpr int MAX_PASSES = 10000;
     state.motion = code.number;
     state.cycle.isRunning = false;
     double depth = plan.first_cut;

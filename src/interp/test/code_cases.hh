@@ -152,6 +152,7 @@ inline const BadCase MORE_BAD[] = {
     {"G59.3 G54", "same modal group"},
     {"G61 G61.1", "same modal group"},
     {"M3 G18 G76 P0 Z-1 I-1 J1 K1", "pitch P"},
+    {"M3 S9 G18 G76 P1 Z-1 I-1 J1 K1 H3320002", "spring passes H"},
     {"G70 X1", "needs the word Q"},
     {"G71 Q1", "needs the plane G18"},
     {"G18 F1 G71.1 Q1 I0", "increment I above 0"},
