@@ -189,19 +189,25 @@ bool Executor::choose_motion(BlockValues &values) {
 
 /// The machine must have the axes that the block names.
 bool Executor::check_axes(const BlockValues &values) {
-    std::uint32_t axes = values.present & letters("xyzabcuvw");
     const unsigned mask = world_.axis_mask();
-    for (; axes != 0; axes &= axes - 1) {
-        const int index = std::countr_zero(axes);
-        const char axis = LETTERS[index];
-        if ((mask & (1U << static_cast<unsigned>(geom::axis_of_letter(axis)))) == 0) {
-            return fault.set(fmt::format("Bad character '{}' used", axis),
-                             values.column[static_cast<std::size_t>(index)],
-                             fmt::format("this machine has no axis {}: see [TRAJ]COORDINATES",
-                                         static_cast<char>(std::toupper(axis))));
+    if (mask != axis_mask_) {
+        axis_mask_ = mask;
+        absent_axes_ = 0;
+        for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
+            const bool isThere = (mask & (1U << static_cast<unsigned>(axis))) != 0;
+            absent_axes_ |= isThere ? 0U : bit_of(letter(geom::AXIS_LETTERS_LOWER[axis]));
         }
     }
-    return true;
+    const std::uint32_t absent = values.present & absent_axes_;
+    if (absent == 0) {
+        return true;
+    }
+    const int index = std::countr_zero(absent);
+    const char axis = LETTERS[index];
+    return fault.set(fmt::format("Bad character '{}' used", axis),
+                     values.column[static_cast<std::size_t>(index)],
+                     fmt::format("this machine has no axis {}: see [TRAJ]COORDINATES",
+                                 static_cast<char>(std::toupper(axis))));
 }
 
 bool Executor::check_words(const BlockValues &values) {

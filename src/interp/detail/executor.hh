@@ -311,6 +311,8 @@ class Executor : public BuiltIns {
     bool comp_straight(bool isRapid, const Pose &end);
     std::string code_name(const Code &code) const;
 
+    unsigned axis_mask_ = ~0U;       ///< of the machine, when absent_axes_ was made
+    std::uint32_t absent_axes_ = 0;  ///< letters of the axes that it lacks
     World &world_;
     ToolSource &tools_;
     ParameterSource &source_;
