@@ -6,16 +6,13 @@
 
 #include <fmt/format.h>
 
+#include "interp/detail/degrees.hh"
+
 namespace mw::interp::detail {
 namespace {
 
 constexpr double DEGREE = std::numbers::pi / 180.0;
 
-/// Of an angle in degrees. In double precision sin[180] would not be 0 by far: what is rounded up or compared
-/// with 0 would differ from the field's results.
-long double radians(double degrees) {
-    return degrees * (std::numbers::pi_v<long double> / 180.0L);
-}
 constexpr double WHOLE_TOLERANCE = 1e-4;
 constexpr double EQUAL_TOLERANCE = 1e-4;  // of EQ and NE
 
@@ -158,7 +155,7 @@ bool Evaluator::function(const Arena &arena, const Node &node, double &out) cons
         }
         out = std::asin(x) / DEGREE;
         break;
-    case Function::COS: out = static_cast<double>(std::cos(radians(x))); break;
+    case Function::COS: out = cosine_of_degrees(x); break;
     case Function::EXP: out = std::exp(x); break;
     case Function::FIX: out = std::floor(x); break;
     case Function::FUP: out = std::ceil(x); break;
@@ -169,14 +166,14 @@ bool Evaluator::function(const Arena &arena, const Node &node, double &out) cons
         out = std::log(x);
         break;
     case Function::ROUND: out = x < 0.0 ? -std::floor(-x + 0.5) : std::floor(x + 0.5); break;
-    case Function::SIN: out = static_cast<double>(std::sin(radians(x))); break;
+    case Function::SIN: out = sine_of_degrees(x); break;
     case Function::SQRT:
         if (!(x >= 0.0)) {
             return fault_.set("Negative argument to sqrt", node.column);
         }
         out = std::sqrt(x);
         break;
-    case Function::TAN: out = static_cast<double>(std::tan(radians(x))); break;
+    case Function::TAN: out = tangent_of_degrees(x); break;
     }
     if (!std::isfinite(out)) {
         return fault_.set("The result of this function is not a finite number", node.column);
