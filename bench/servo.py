@@ -26,18 +26,8 @@ import compare_traj
 LETTERS = "XYZ"
 LIMITS = {"max_velocity": [200] * 9, "max_acceleration": [1000] * 9, "max_jerk": [50000] * 9}
 
-HAL = """loadrt [KINS]KINEMATICS
-loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD num_joints=[KINS]JOINTS
-loadrt sampler depth=100000 cfg=ss
-addf motion-command-handler servo-thread
-addf motion-controller servo-thread
-addf sampler.0 servo-thread
-net estop-loop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in
-net tool-prep-loop iocontrol.0.tool-prepare => iocontrol.0.tool-prepared
-net tool-change-loop iocontrol.0.tool-change => iocontrol.0.tool-changed
-net controller-time motion-controller.time => sampler.0.pin.0
-net handler-time motion-command-handler.time => sampler.0.pin.1
-""" + "".join(f"net joint-{i} joint.{i}.motor-pos-cmd => joint.{i}.motor-pos-fb\n" for i in range(len(LETTERS)))
+HAL = compare_traj.hal_text("ss", LETTERS, "net controller-time motion-controller.time => sampler.0.pin.0\n"
+                            "net handler-time motion-command-handler.time => sampler.0.pin.1\n")
 
 
 def program(seconds):

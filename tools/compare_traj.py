@@ -29,17 +29,21 @@ LETTERS = "XYZAB"
 REST_SAMPLES = 200  # a rest of this many cycles parts the way to the start from the program
 PRINTED = 1e-6  # halsampler prints six decimals
 
-HAL = """loadrt [KINS]KINEMATICS
+# A machine of `letters` whose motors follow at once; `lines` go in after the motion functions.
+def hal_text(sampler_cfg, letters, lines=""):
+    return f"""loadrt [KINS]KINEMATICS
 loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD num_joints=[KINS]JOINTS
-loadrt sampler depth=60000 cfg=fffff
+loadrt sampler depth=100000 cfg={sampler_cfg}
 addf motion-command-handler servo-thread
 addf motion-controller servo-thread
 addf sampler.0 servo-thread
 net estop-loop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in
 net tool-prep-loop iocontrol.0.tool-prepare => iocontrol.0.tool-prepared
 net tool-change-loop iocontrol.0.tool-change => iocontrol.0.tool-changed
-""" + "".join(f"net joint-{i} joint.{i}.motor-pos-cmd => joint.{i}.motor-pos-fb sampler.0.pin.{i}\n"
-              for i in range(len(LETTERS)))
+""" + "".join(f"net joint-{i} joint.{i}.motor-pos-cmd => joint.{i}.motor-pos-fb\n" for i in range(len(letters))) + lines
+
+
+HAL = hal_text("f" * len(LETTERS), LETTERS, "".join(f"net joint-{i} sampler.0.pin.{i}\n" for i in range(len(LETTERS))))
 
 # The reference's screen: homes, runs the program, samples beside it.
 DRIVER = """#!/usr/bin/python3

@@ -55,7 +55,6 @@ class Run {
 };
 
 Result<> Run::read_ini() {
-    settings_.isTapOrderOfField = true;
     if (options_.ini_file.empty()) {
         return {};
     }
@@ -66,7 +65,6 @@ Result<> Run::read_ini() {
     }
     ini_ = std::move(*ini);
     settings_ = settings_from_ini(*ini_, sink);
-    settings_.isTapOrderOfField = true;
     if (const config::IniEntry *entry = ini_->find("TRAJ", "SPINDLES"); entry != nullptr) {
         const auto count = parse_int(entry->value);
         if (!count || *count < 1 || *count > MAX_SPINDLES) {
@@ -112,6 +110,7 @@ Result<> Run::prepare() {
     // The standalone program has always taken the entry of index 1 for the tool that may be in the spindle.
     world_.state.current_pocket = 1;
     settings_.initial_units = LengthUnits::MM;
+    settings_.isTapOrderOfField = true;
     settings_.startup_code.clear();
     settings_.subroutine_path.emplace_back(".");
     if (!options_.output.empty()) {

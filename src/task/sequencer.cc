@@ -68,7 +68,7 @@ Sequencer::Need Sequencer::need_of(const ItemBody &body) {
 
 void Sequencer::step(std::int64_t now_ns) {
     for (int i = 0; i < ITEMS_PER_CYCLE; ++i) {
-        if (hasFailed_ || !isWaitOver(now_ns) || hasFailed_ || isStepDone_) {
+        if (hasFailed_ || !isWaitOver(now_ns) || isStepDone_) {
             return;
         }
         if (queue_.empty()) {

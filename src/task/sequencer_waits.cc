@@ -36,7 +36,7 @@ bool Sequencer::isWaitOver(std::int64_t now_ns) {
     if (isOver) {
         wait_ = Wait::NONE;
     }
-    return isOver;
+    return isOver && !hasFailed_;
 }
 
 bool Sequencer::isInputWaitOver(std::int64_t now_ns) {

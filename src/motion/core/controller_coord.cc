@@ -101,8 +101,9 @@ traj::Retrace::Use Controller::use_of(const geom::Pose &pose) noexcept {
 
 /// What keeps the path from moving on for now.
 void Controller::step_holds(const Inputs &in) noexcept {
-    const bool isAdaptive = isAdaptiveFeedEnabled_ && std::isfinite(in.adaptive_feed);
-    const double adaptive = isAdaptive ? std::clamp(in.adaptive_feed, -1.0, 1.0) : 1.0;
+    // What is not a number stands for no feed: a broken sensor must not let the machine run.
+    const double wanted = std::isfinite(in.adaptive_feed) ? std::clamp(in.adaptive_feed, -1.0, 1.0) : 0.0;
+    const double adaptive = isAdaptiveFeedEnabled_ ? wanted : 1.0;
     isReverseWanted_ = (adaptive < 0) != isReverse_;
     reverse_rate_ = traj::Retrace::HIGHEST_RATE * std::abs(adaptive);
     // What waits for its turn while going back keeps its speed.

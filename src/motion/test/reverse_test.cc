@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Negative adaptive feed: back along the path that was commanded and forward again, within every limit.
+#include <cmath>
 #include <optional>
 #include <random>
 
@@ -85,6 +86,22 @@ TEST_P(Reverse, GoesBackToTheStartAndForwardToTheEnd_C4) {
     for (int i = 0; i < 3; ++i) {
         EXPECT_EQ(rig.x(static_cast<std::size_t>(i)), rig.last[i]);
     }
+    EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
+}
+
+TEST_P(Reverse, AFeedThatIsNotANumberStandsStill_C4) {
+    ReverseRig rig(GetParam());
+    rig.in.adaptive_feed = 1;
+    const CommandId flush = rig.zigzag(6);
+    rig.go(400);
+    rig.in.adaptive_feed = std::nan("");
+    rig.go(500);
+    const double stood = rig.x(0);
+    rig.go(500);
+    EXPECT_EQ(rig.x(0), stood);
+    EXPECT_FALSE(rig.isDone(flush));
+    rig.in.adaptive_feed = 1;
+    ASSERT_TRUE(rig.finish(flush, 30));
     EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "testing/deviation.hh"
 #include "traj/test/path_rig.hh"
 
 namespace mw::traj::test {
@@ -207,11 +208,6 @@ class Maker {
     bool isJerkLimited_;
 };
 
-inline double deviation(const Pose &a, const Pose &b) {
-    const Pose d = a - b;
-    return std::max(geom::norm_linear(d), geom::norm_abc(d));
-}
-
 /// Blends against the corner path they replace, point by point: an upper bound of the Frechet distance.
 inline double worst_blend_deviation(const Rig &rig, Sequence first, Sequence last) {
     double worst = 0;
@@ -227,7 +223,7 @@ inline double worst_blend_deviation(const Rig &rig, Sequence first, Sequence las
             const double z = p.offset + x;
             const double from = a.length - p.blend_d;
             const Pose on = z < p.blend_d ? position_at(a, from + z) : position_at(b, z - p.blend_d);
-            worst = std::max(worst, deviation(position_at(*rig.store, p, x), on));
+            worst = std::max(worst, testing::pose_distance(position_at(*rig.store, p, x), on));
         }
     }
     return worst;
@@ -242,30 +238,7 @@ inline bool isInOrder(const std::vector<Pose> &samples, const Program &program, 
             path.push_back(position_at(q, q.length * i / n));
         }
     }
-    std::vector<std::size_t> reach{0};
-    std::vector<std::size_t> next;
-    if (deviation(samples[0], path[0]) > tolerance) {
-        return false;
-    }
-    for (const Pose &s : samples) {
-        next.clear();
-        for (std::size_t j : reach) {
-            // With this sample the walk on the path stays or goes one on, and on while it is near.
-            std::size_t k = deviation(s, path[j]) <= tolerance ? j : j + 1;
-            if (!next.empty()) {
-                k = std::max(k, next.back() + 1);
-            }
-            const bool isReached = k <= j + 1 || (!next.empty() && next.back() + 1 == k);
-            while (isReached && k < path.size() && deviation(s, path[k]) <= tolerance) {
-                next.push_back(k++);
-            }
-        }
-        if (next.empty()) {
-            return false;
-        }
-        reach.swap(next);
-    }
-    return reach.back() == path.size() - 1;
+    return testing::isWithinInOrder(samples, path, tolerance);
 }
 
 struct Outcome {

@@ -33,12 +33,12 @@ class Follower {
     Follower(const Program &program, double tolerance) : program_(program), tolerance_(tolerance) {}
 
     bool follow(const Pose &p) {
-        const double moved = deviation(p, last_);
+        const double moved = testing::pose_distance(p, last_);
         const double reach = 3.0 * moved + 2.0 * tolerance_;
         const int steps = std::clamp(static_cast<int>(2.0 * reach / tolerance_), 4, 64);
         std::size_t best_move = move_;
         double best_s = s_;
-        double best = deviation(p, position_at(program_.primitives[move_], s_));
+        double best = testing::pose_distance(p, position_at(program_.primitives[move_], s_));
         std::size_t m = move_;
         double s = s_;
         for (int i = 1; i <= steps; ++i) {
@@ -46,7 +46,7 @@ class Follower {
             while (m + 1 < program_.primitives.size() && s > program_.primitives[m].length) {
                 s -= program_.primitives[m++].length;
             }
-            const double off = deviation(p, position_at(program_.primitives[m], s));
+            const double off = testing::pose_distance(p, position_at(program_.primitives[m], s));
             if (off < best) {
                 best = off;
                 best_move = m;
@@ -56,15 +56,17 @@ class Follower {
         bool isNear = best <= tolerance_ * 1.25;
         for (std::size_t k = move_; k < best_move; ++k) {
             const Pose &end = program_.primitives[k].end;
-            isNear =
-                isNear && std::min(deviation(end, p), deviation(end, last_)) <= tolerance_ * 1.25 + moved;
+            isNear = isNear && std::min(testing::pose_distance(end, p), testing::pose_distance(end, last_)) <=
+                                   tolerance_ * 1.25 + moved;
         }
         move_ = best_move;
         s_ = best_s;
         last_ = p;
         return isNear;
     }
-    bool isAtEnd() const { return deviation(last_, program_.primitives.back().end) <= tolerance_; }
+    bool isAtEnd() const {
+        return testing::pose_distance(last_, program_.primitives.back().end) <= tolerance_;
+    }
 
   private:
     const Program &program_;
@@ -87,7 +89,7 @@ Verdict judge(const Program &program, const Outcome &out, bool isDropped) {
     const Pose *before = &out.rig.samples.front();
     for (const Pose &p : out.rig.samples) {
         checker.sample(p.c.data());
-        longest_step = std::max(longest_step, deviation(p, *before));
+        longest_step = std::max(longest_step, testing::pose_distance(p, *before));
         before = &p;
     }
     if (!checker.isWithin()) {

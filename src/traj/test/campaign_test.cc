@@ -30,8 +30,9 @@ void check(unsigned seed, bool isJerkLimited, Kind kind = Kind::RANDOM) {
     double longest_step = 0;
     for (std::size_t i = 0; i < out.rig.samples.size(); ++i) {
         checker.sample(out.rig.samples[i].c.data());
-        longest_step =
-            i == 0 ? 0 : std::max(longest_step, deviation(out.rig.samples[i], out.rig.samples[i - 1]));
+        longest_step = i == 0 ? 0
+                              : std::max(longest_step,
+                                         testing::pose_distance(out.rig.samples[i], out.rig.samples[i - 1]));
     }
     EXPECT_TRUE(checker.isWithin()) << checker.report();
     const Sequence last = out.rig.store->last_piece.load();
