@@ -30,12 +30,22 @@ void Estimator::begin(const Pose &pose) {
     executor_->set_position(pose);
     executor_->step(++cycle_);
     planner_->begin(pose, executor_->snapshot());
+    isFresh_ = true;
     last_.fill(pose);
 }
 
 void Estimator::add(const Primitive &primitive, const MoveRequest &request) {
     if (!(primitive.length > 1e-12)) {
         return;
+    }
+    const double tolerance = request.kept_tolerance();
+    if (!isFresh_ && !planner_->suits(tolerance)) {
+        finish();
+        isFresh_ = true;
+    }
+    if (isFresh_) {
+        planner_->begin(planner_->end(), executor_->snapshot(), tolerance);
+        isFresh_ = false;
     }
     while (!planner_->hasRoom(executor_->snapshot())) {
         if (!step()) {

@@ -26,7 +26,8 @@ struct Program {
 class Maker {
   public:
     Maker(unsigned seed, bool isJerkLimited)
-        : random_(seed), isJerkLimited_(isJerkLimited), isBoxed_(seed / 4 % 2 == 0) {}
+        : random_(seed), isJerkLimited_(isJerkLimited), isBoxed_(seed / 4 % 2 == 0),
+          isMixed_(seed % 8 == 4 || seed % 8 == 6) {}
     double real(double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random_);
     }
@@ -65,6 +66,9 @@ class Maker {
                 wander(p, whole(50, 90), size, axes, at);
             }
         }
+        if (isMixed_) {
+            mix(p);
+        }
         double expected = 0;
         for (std::size_t i = 0; i < p.primitives.size(); ++i) {
             MoveRequest &r = p.requests[i];
@@ -91,6 +95,21 @@ class Maker {
     }
 
   private:
+    /// Path mode and tolerance change on the way; none is wider than that of the program.
+    void mix(Program &p) {
+        p.join = Join::BLEND;
+        p.tolerance = std::pow(10.0, real(-2.5, 0));
+        Join join = p.join;
+        double tolerance = p.tolerance;
+        for (MoveRequest &r : p.requests) {
+            if (chance(0.1)) {
+                join = chance(0.6) ? Join::BLEND : chance(0.5) ? Join::EXACT : Join::STOP;
+                tolerance = p.tolerance * std::pow(10.0, real(-1, 0));
+            }
+            r.join = join;
+            r.tolerance = tolerance;
+        }
+    }
     void wander(Program &p, int count, double size, int axes, Pose &at) {
         for (int n = 0; n < count; ++n) {
             const Primitive q = chance(0.3) && axes >= 2 ? arc(at, size, axes) : line(at, size, axes);
@@ -210,6 +229,7 @@ class Maker {
     std::mt19937 random_;
     bool isJerkLimited_;
     bool isBoxed_;
+    bool isMixed_;
 };
 
 /// Blends against the corner path they replace, point by point: an upper bound of the Frechet distance.
@@ -258,8 +278,8 @@ inline void room_of(const Program &program, Pose &low, Pose &high) {
     }
 }
 
-/// How far samples leave the soft limits, where lines stay within them. Rounded joints with arcs may leave them
-/// by a part of the tolerance.
+/// How far samples leave the soft limits, where lines stay within them. Rounded joints with arcs may leave
+/// them by a part of the tolerance.
 inline double worst_excursion(const std::vector<Pose> &samples, const Program &program) {
     const auto isArc = [](const Primitive &p) { return p.isArc; };
     if (!program.isBoxed || std::ranges::any_of(program.primitives, isArc)) {
@@ -293,7 +313,7 @@ inline void drive(Maker &maker, const Program &program, Outcome &out, bool isDro
         room_of(program, low, high);
         rig.planner.set_room(low, high);
     }
-    rig.planner.begin(Pose{}, rig.executor.snapshot());
+    rig.planner.begin(Pose{}, rig.executor.snapshot(), program.requests.front().kept_tolerance());
     Scales scales;
     scales.max_feed = 1.5;
     rig.planner.set_scales(scales);

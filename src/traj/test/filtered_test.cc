@@ -175,6 +175,30 @@ TEST(Filtered, CurvesAreNotMovedBeyondSoftLimits_C13) {
     EXPECT_GT(circle_excursion(false), 1e-4);
 }
 
+/// Seconds for a circle of short chords after a path has begun with the tolerance `first`.
+double circle_time(double first) {
+    constexpr double RADIUS = 5, P = 0.01;
+    Limits limits = jerk_limits();
+    limits.jerk.fill(5000);  // 0.2 s to the full acceleration
+    Rig rig{Pose{}};
+    rig.planner.set_limits(limits);
+    rig.planner.begin(Pose{}, rig.executor.snapshot(), first);
+    EXPECT_EQ(rig.planner.suits(P), first == P);
+    Pose from;
+    for (int i = 1; i <= 180; ++i) {
+        const double angle = 2 * std::numbers::pi * i / 180;
+        const Pose to = at(RADIUS * std::sin(angle), RADIUS * (1 - std::cos(angle)));
+        rig.planner.add(make_line(from, to), request(Join::BLEND, P));
+        from = to;
+    }
+    EXPECT_TRUE(rig.run(60));
+    return static_cast<double>(rig.cycle) * Rig::T;
+}
+
+TEST(Filtered, APathMadeForItsToleranceIsTwiceAsFastOnCurves_C13) {
+    EXPECT_LT(2 * circle_time(0.01), circle_time(0));
+}
+
 TEST(Joining, NearlyStraightLinesBecomeOneWithinTheTolerance_C2) {
     Rig rig{Pose{}};
     Limits limits = jerk_limits();
