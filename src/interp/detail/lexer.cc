@@ -26,7 +26,13 @@ bool Lexer::accept_word(std::string_view word) {
     return true;
 }
 
-Lexer::Number Lexer::take_number(double &value, std::string &text) {
+std::string Lexer::text_from(std::size_t start) const {
+    std::string text(line_.substr(start, pos_ - start));
+    std::erase_if(text, isBlank);
+    return text;
+}
+
+Lexer::Number Lexer::take_number(double &value) {
     // Digits that a double holds exactly, divided once by an exact power of ten, are correctly rounded.
     constexpr int EXACT_DIGITS = 15;
     std::uint64_t digits = 0;
@@ -65,25 +71,16 @@ Lexer::Number Lexer::take_number(double &value, std::string &text) {
         take();
     }
     if (count == 0) {
-        text = isFraction ? "." : "";
         return isFraction ? Number::BAD : Number::NONE;
     }
     if (count <= EXACT_DIGITS) {
-        value = static_cast<double>(digits) / POWERS_OF_TEN[decimals];
+        // Signed numbers are the faster ones to convert.
+        value = static_cast<double>(static_cast<std::int64_t>(digits)) / POWERS_OF_TEN[decimals];
         return Number::OK;
     }
-    std::string whole;
-    for (std::size_t i = start; i < pos_; ++i) {
-        if (!isBlank(line_[i])) {
-            whole += line_[i];
-        }
-    }
+    const std::string whole = text_from(start);
     const auto [end, error] = std::from_chars(whole.data(), whole.data() + whole.size(), value);
-    if (error != std::errc()) {
-        text = whole;
-        return Number::BAD;
-    }
-    return Number::OK;
+    return error == std::errc() ? Number::OK : Number::BAD;
 }
 
 std::optional<std::string> Lexer::take_name(char closer) {

@@ -22,7 +22,7 @@ class Parser {
     // Every rule returns false after fail(); the line's error then says why.
     bool block(Lexer &in, Block &out);
     bool line_number(Lexer &in, Block &out);
-    bool item(Lexer &in, Block &out);
+    bool item(Lexer &in, Block &out, char c);
     bool comment(Lexer &in, Block &out);
     bool setting(Lexer &in, Block &out);
     bool word(Lexer &in, Block &out, char c);

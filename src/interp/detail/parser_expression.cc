@@ -100,9 +100,10 @@ bool Parser::signed_value(Lexer &in, NodeId &out) {
 
 bool Parser::literal(Lexer &in, double &value) {
     const std::uint32_t column = in.column();
-    std::string text;
-    if (in.take_number(value, text) != Lexer::Number::OK) {
-        return fail(fmt::format("bad number format (conversion failed) parsing '{}'", text), column);
+    const std::size_t start = in.position();
+    if (in.take_number(value) != Lexer::Number::OK) {
+        return fail(fmt::format("bad number format (conversion failed) parsing '{}'", in.text_from(start)),
+                    column);
     }
     return true;
 }
