@@ -202,6 +202,7 @@ bool Flow::pop_call(double value, bool hasValue) {
         executor_.canon.enter_block(program_, call.line, call.line, false, call_level());
         return executor_.resume(*call.pending);
     }
+        executor_.keep_state();
     if (call.kind == CallKind::PROFILE) {
         executor_.canon.enter_block(program_, call.line, call.line, false, call_level());
         return executor_.finish_lathe_cycle();
