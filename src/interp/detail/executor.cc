@@ -232,7 +232,8 @@ bool Executor::check_words(const BlockValues &values) {
     if (!check_open_nurbs(values) || !check_axes(values)) {
         return false;
     }
-    std::uint32_t allowed = letters("fstn");
+    constexpr std::uint32_t ALWAYS = letters("fstn");
+    std::uint32_t allowed = ALWAYS;
     bool isAxisUser = false;
     for (const ActiveCode &active : values.codes) {
         const Code &code = *active.code;

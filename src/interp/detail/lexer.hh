@@ -32,11 +32,8 @@ class Lexer {
         take();
         return true;
     }
-    /// True when an unsigned number comes next.
-    bool beginsNumber() {
-        const char c = peek();
-        return (c >= '0' && c <= '9') || c == '.';
-    }
+    /// What unsigned numbers begin with.
+    static constexpr bool beginsNumber(char c) { return isDigit(c) || c == '.'; }
     /// Takes a word of letters if it is next (blanks allowed inside), else nothing.
     bool accept_word(std::string_view word);
 
@@ -55,11 +52,14 @@ class Lexer {
     std::string_view line() const { return line_; }
 
     static constexpr bool isBlank(char c) { return c <= ' ' && (c == ' ' || c == '\t' || c == '\r'); }
+    static constexpr bool isDigit(char c) { return c >= '0' && c <= '9'; }
     static constexpr char lower(char c) {
         return (c >= 'A' && c <= 'Z') ? static_cast<char>(c - 'A' + 'a') : c;
     }
 
   private:
+    Number take_odd_number(double &value);
+
     std::string_view line_;
     std::size_t pos_ = 0;
 };

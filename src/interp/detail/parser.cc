@@ -190,7 +190,7 @@ bool Parser::word(Lexer &in, Block &out, char c) {
         letters_seen_ |= bit;
     }
     in.take();
-    const char first = in.peek();
+    char first = in.peek();
     if (first == '\0') {
         return fail("No characters found in reading real value", in.column());
     }
@@ -198,10 +198,12 @@ bool Parser::word(Lexer &in, Block &out, char c) {
     const bool isNegative = first == '-';
     if (isNegative) {
         in.take();
+        first = in.peek();
     }
-    if (in.beginsNumber()) {  // as nearly all words have it: no node is needed
-        if (!literal(in, made.value)) {
-            return false;
+    if (Lexer::beginsNumber(first)) {  // as nearly all words have it: no node is needed
+        const std::size_t digits = in.position();
+        if (in.take_number(made.value) != Lexer::Number::OK) {
+            return bad_number(in, digits);
         }
         made.value = isNegative ? -made.value : made.value;
     } else {

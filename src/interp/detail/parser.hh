@@ -34,7 +34,7 @@ class Parser {
 
     bool real_value(Lexer &in, NodeId &out);
     bool signed_value(Lexer &in, NodeId &out);
-    bool literal(Lexer &in, double &value);
+    bool bad_number(const Lexer &in, std::size_t start);
     bool number(Lexer &in, NodeId &out);
     bool parameter(Lexer &in, NodeId &out);
     bool expression(Lexer &in, NodeId &out);
