@@ -16,6 +16,11 @@ std::string pose_text(const Pose &p) {
     return fmt::format("{:.4f}, {:.4f}, {:.4f}, {:.4f}, {:.4f}, {:.4f}", p[0], p[1], p[2], p[3], p[4], p[5]);
 }
 
+void append_fixed4(std::string &text, double value) {
+    std::array<char, FIXED4_SIZE> digits;  // those that are not written stay unset
+    text.append(digits.data(), write_fixed4(digits, value));
+}
+
 constexpr std::string_view NO_NUMBER = "N.....";
 
 }  // namespace
@@ -102,7 +107,9 @@ void PrintCanon::set_feed_reference_xyz() {
 }
 
 void PrintCanon::set_feed_rate(double rate) {
-    put(fmt::format("SET_FEED_RATE({:.4f})", rate));
+    std::string call = "SET_FEED_RATE(";
+    append_fixed4(call, rate);
+    put(call += ')');
 }
 
 void PrintCanon::set_feed_mode(int spindle, FeedMode mode) {
@@ -169,9 +176,18 @@ void PrintCanon::straight_feed(const Pose &end) {
 }
 
 void PrintCanon::arc_feed(const ArcFeed &arc) {
-    put(fmt::format("ARC_FEED({:.4f}, {:.4f}, {:.4f}, {:.4f}, {}, {:.4f}, {:.4f}, {:.4f}, {:.4f})",
-                    arc.first_end, arc.second_end, arc.first_centre, arc.second_centre, arc.rotation,
-                    arc.axis_end, arc.end[3], arc.end[4], arc.end[5]));
+    std::string call = "ARC_FEED(";
+    call.reserve(160);
+    for (const double value : {arc.first_end, arc.second_end, arc.first_centre, arc.second_centre}) {
+        append_fixed4(call, value);
+        call += ", ";
+    }
+    call += std::to_string(arc.rotation);
+    for (const double value : {arc.axis_end, arc.end[3], arc.end[4], arc.end[5]}) {
+        call += ", ";
+        append_fixed4(call, value);
+    }
+    put(call += ')');
 }
 
 void PrintCanon::nurbs_feed(const NurbsFeed &nurbs) {
