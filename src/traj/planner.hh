@@ -65,6 +65,10 @@ class Planner {
     /// For machines whose joints are not axes; `map` stays valid. Null: the axes' limits are all there are.
     void set_joints(const JointMap *map, const JointLimits &limits) noexcept;
 
+    /// Soft limits of the axes: the path is not moved beyond them, wherever the program leads. None to begin
+    /// with; +-infinity where none holds.
+    void set_room(const Pose &low, const Pose &high) noexcept;
+
     /// A new path begins at `start`, where the executor rests with nothing left of another.
     void begin(const Pose &start, const Snapshot &now) noexcept;
 
@@ -196,6 +200,7 @@ class Planner {
     // --- planner_shape.cc: with jerk limits, the corners of dense curves
     bool wanted_shift(Sequence nb, Sequence nc, Pose &shift, double &reach) const noexcept;
     void shape_corner(Sequence nb, Sequence nc) noexcept;
+    Pose within_room(const Pose &corner, const Pose &shift) const noexcept;
     void reshape(Sequence n, const Pose &in, const Pose &out) noexcept;
     Pose programmed_at(Sequence n, double s) const noexcept;
 
@@ -283,6 +288,7 @@ class Planner {
     static constexpr double SLACK = 1.0 + 5e-7;
     const JointMap *joint_map_ = nullptr;
     JointLimits joint_limits_;
+    Pose room_low_, room_high_;
     std::array<std::array<double, MAX_JOINTS>, 4> trial_joints_{};
     std::uint64_t joint_tick_ = 0, joint_samples_ = 0;
     std::uint64_t along_tick_ = 0;  ///< the last on an arc that is followed exactly

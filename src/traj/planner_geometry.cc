@@ -43,6 +43,8 @@ Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept
     none.acceleration.fill(UNLIMITED);
     none.jerk.fill(UNLIMITED);
     set_limits(none);
+    room_low_.c.fill(-UNLIMITED);
+    room_high_.c.fill(UNLIMITED);
 }
 
 void Planner::set_limits(const Limits &limits) noexcept {

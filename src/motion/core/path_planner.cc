@@ -54,6 +54,7 @@ void PathPlanner::follow_controller() noexcept {
         limits_version_ = view_.limits_version;
         planner_.set_limits(limits_.limits);
         const bool isMapped = kinematics_.identity() == nullptr && kinematics_.isShareable();
+        planner_.set_room(limits_.low, limits_.high);
         planner_.set_joints(isMapped ? &map_ : nullptr, limits_.joints);
     }
     follow_drops();
@@ -290,8 +291,8 @@ Reason PathPlanner::check_joints(const traj::Primitive &p) noexcept {
         }
         for (int j = 0; j < config_.num_joints; ++j) {
             const auto i = static_cast<std::size_t>(j);
-            if (joints[j] < limits_.joint_low[i] - SOFT_LIMIT_ROUNDING ||
-                joints[j] > limits_.joint_high[i] + SOFT_LIMIT_ROUNDING) {
+            if (joints[j] < limits_.joints.low[i] - SOFT_LIMIT_ROUNDING ||
+                joints[j] > limits_.joints.high[i] + SOFT_LIMIT_ROUNDING) {
                 refused_index_ = static_cast<std::int16_t>(j);
                 return Reason::JOINT_BEYOND_LIMIT;
             }
