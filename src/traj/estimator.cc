@@ -20,8 +20,10 @@ constexpr double AT_FEED = 1.02;
 }  // namespace
 
 Estimator::Estimator(const Limits &limits, double period_s, Listener listener)
-    : limits_(limits), period_s_(period_s), listener_(std::move(listener)),
-      store_(std::make_unique<PathStore>()), executor_(std::make_unique<Executor>(*store_, period_s)),
+    : limits_(limits), period_s_(period_s),
+      period_power_{period_s, period_s * period_s, period_s * period_s * period_s},
+      listener_(std::move(listener)), store_(std::make_unique<PathStore>()),
+      executor_(std::make_unique<Executor>(*store_, period_s)),
       planner_(std::make_unique<Planner>(*store_, PlannerSettings{period_s, LATENCY, HORIZON_S, true})) {
     planner_->set_limits(limits);
 }
@@ -92,7 +94,7 @@ double Estimator::ratio(int i, int order) const {
     const double limit = order == 0   ? limits_.velocity[n]
                          : order == 1 ? limits_.acceleration[n]
                                       : limits_.jerk[n];
-    return value / (std::pow(period_s_, order + 1) * limit);
+    return value / (period_power_[static_cast<std::size_t>(order)] * limit);
 }
 
 void Estimator::count(const ExecutorOutput &out) {

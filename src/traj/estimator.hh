@@ -49,6 +49,7 @@ class Estimator {
 
     Limits limits_;
     double period_s_;
+    std::array<double, 3> period_power_;  ///< [s, s^2, s^3]
     Listener listener_;
     std::unique_ptr<PathStore> store_;
     std::unique_ptr<Executor> executor_;
