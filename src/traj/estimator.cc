@@ -40,7 +40,7 @@ void Estimator::add(const Primitive &primitive, const MoveRequest &request) {
     if (!(primitive.length > 1e-12)) {
         return;
     }
-    const double tolerance = request.kept_tolerance();
+    const double tolerance = planner_->path_tolerance(request);
     if (!isFresh_ && !planner_->suits(tolerance)) {
         finish();
         isFresh_ = true;

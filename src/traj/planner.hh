@@ -22,7 +22,8 @@ enum class Join : std::uint8_t {
 struct MoveRequest {
     MoveTag tag;
     Join join = Join::BLEND;
-    double tolerance = 0;        ///< of a blend [machine units; degrees over ABC]; 0: as the speed needs
+    /// Of a blend [machine units; degrees over ABC]; 0: as the speed needs, in proportion to the move.
+    double tolerance = 0;
     double corner_scale = 1;     ///< with jerk limits: part of the reachable speed in corners (G64 R)
     bool isMergeAdded = false;   ///< joining may take all of merge_tolerance, on top of `tolerance`
     double merge_tolerance = 0;  ///< lines may be joined to one that is no farther from their ends (G64 Q)
@@ -33,9 +34,6 @@ struct MoveRequest {
     int spindle = 0;
     bool isGated = false;   ///< a stop before it until the gate opens
     bool isPhased = false;  ///< the gate opens at a spindle phase
-
-    /// The tolerance of a blend, 0 where the move has none.
-    double kept_tolerance() const noexcept { return join == Join::BLEND ? tolerance : 0.0; }
 };
 
 /// What may change while the path is under way.
@@ -66,6 +64,8 @@ class Planner {
     bool isFilterCurrent(double tolerance) const noexcept {
         return filter_length(wanted_, settings_.period_s, tolerance) == filter_;
     }
+    /// The tolerance that a path of such moves is made for; 0: any suits.
+    double path_tolerance(const MoveRequest &request) const noexcept;
     /// With jerk limits a path is made for the tolerance that it began with; a much smaller one asks for
     /// another path, from a stop. 0: none is kept.
     bool suits(double tolerance) const noexcept;
@@ -123,10 +123,11 @@ class Planner {
 
   private:
     struct MovePlan {
-        double feed = 0;           ///< requested speed in s [1/s]; 0: none
-        double start_s = 0;        ///< where the move begins on the programmed path
-        double deviation = 0;      ///< of the primitive from the lines that were joined to it
-        Pose shift_in, shift_out;  ///< of its start and its end from where they were programmed
+        double feed = 0;            ///< requested speed in s [1/s]; 0: none
+        double start_s = 0;         ///< where the move begins on the programmed path
+        double free_tolerance = 0;  ///< with jerk limits, where the program gives none
+        double deviation = 0;       ///< of the primitive from the lines that were joined to it
+        Pose shift_in, shift_out;   ///< of its start and its end from where they were programmed
         MoveRequest request;
     };
     struct PiecePlan {
@@ -308,6 +309,7 @@ class Planner {
     const JointMap *joint_map_ = nullptr;
     JointLimits joint_limits_;
     Pose room_low_, room_high_;
+    double nominal_tolerance_ = 0;  ///< of moves without one on a path with jerk limits, at least
     std::array<std::array<double, MAX_JOINTS>, 4> trial_joints_{};
     std::uint64_t joint_tick_ = 0, joint_samples_ = 0;
     std::uint64_t along_tick_ = 0;  ///< the last on an arc that is followed exactly

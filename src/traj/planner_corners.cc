@@ -30,7 +30,10 @@ double Planner::tolerance_of(const MovePlan &m) const noexcept {
     if (m.request.join != Join::BLEND) {
         return EXACT_DEVIATION;
     }
-    return m.request.tolerance > 0 ? m.request.tolerance - m.deviation : 0.0;
+    if (m.request.tolerance > 0) {
+        return m.request.tolerance - m.deviation;
+    }
+    return isFiltered() ? m.free_tolerance : 0.0;
 }
 
 /// Arcs that must be followed exactly lie between stops, and the mean is taken of the place on them.

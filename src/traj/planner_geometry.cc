@@ -31,6 +31,9 @@ constexpr double JOINT_CUT_DEG = 1.0;
 constexpr double ZONE_SHARE = 0.45;
 /// Part of the tolerance that joining lines may take when no other tolerance is given for it.
 constexpr double JOIN_SHARE = 0.1;
+/// What the mean may take where the program gives no tolerance: of a line's length, of an arc's radius, and
+/// at least the way in this time at the highest speed.
+constexpr double FREE_OF_LENGTH = 0.1, FREE_OF_RADIUS = 1e-3, NOMINAL_S = 1e-4;
 /// How much longer than what suits a move the mean may be.
 constexpr double MOST_UNSUITED = 1.25;
 constexpr double BLEND_CUT = 0.3;
@@ -56,6 +59,16 @@ void Planner::set_limits(const Limits &limits) noexcept {
         highest_.acceleration[i] = std::max(highest_.acceleration[i], limits.acceleration[i]);
     }
     limits_ = limits_for_filter(limits, filter_, settings_.period_s);
+    nominal_tolerance_ = 0;
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        const double v = limits.velocity[static_cast<std::size_t>(i)];
+        const bool isCounted = !geom::isAngular(i) && v < UNLIMITED;
+        nominal_tolerance_ = isCounted ? std::max(nominal_tolerance_, v * NOMINAL_S) : nominal_tolerance_;
+    }
+}
+
+double Planner::path_tolerance(const MoveRequest &request) const noexcept {
+    return request.join != Join::BLEND ? 0.0 : request.tolerance > 0 ? request.tolerance : nominal_tolerance_;
 }
 
 bool Planner::suits(double tolerance) const noexcept {
@@ -115,6 +128,8 @@ void Planner::fill_move(Sequence n, const Primitive &primitive, const MoveReques
     m.request.isAngular = feed.isAngular;
     m.request.tag.feed_ratio = primitive.length / feed.length;
     m.request.tag.end = primitive.end;
+    m.free_tolerance = std::max(nominal_tolerance_, primitive.isArc ? FREE_OF_RADIUS * primitive.radius
+                                                                    : FREE_OF_LENGTH * primitive.length);
     m.feed = request.tag.requested_velocity * m.request.tag.feed_ratio;
     store_.move(n) = m.request.tag;
     programmed_s_ = m.start_s + primitive.length;

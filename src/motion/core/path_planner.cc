@@ -24,16 +24,6 @@ bool isFinite(const geom::Pose &p) noexcept {
     return std::all_of(p.c.begin(), p.c.end(), [](double x) { return std::isfinite(x); });
 }
 
-/// That the rounded corners of a move keep; 0: it has none to keep.
-double tolerance_of(const PathCommand &c) noexcept {
-    const auto *line = std::get_if<Line>(&c.body);
-    const auto *arc = std::get_if<Arc>(&c.body);
-    const MoveTerms *terms = line != nullptr ? &line->terms : arc != nullptr ? &arc->terms : nullptr;
-    const bool isBlend =
-        terms != nullptr && terms->mode != PathMode::EXACT_STOP && terms->mode != PathMode::EXACT_PATH;
-    return isBlend ? terms->tolerance : 0.0;
-}
-
 }  // namespace
 
 PathPlanner::PathPlanner(const PathPlannerConfig &config, const kins::Kinematics &kinematics,
@@ -185,6 +175,14 @@ bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
     }
     isQueueFull_ = isPathBegun_ && !planner_.hasRoom(view_.executor);
     return isQueueFull_ || pending_count() + 2 >= PENDING_CAPACITY;
+}
+
+/// The tolerance that a path of such moves is made for; 0: any suits.
+double PathPlanner::tolerance_of(const PathCommand &c) const noexcept {
+    const auto *line = std::get_if<Line>(&c.body);
+    const auto *arc = std::get_if<Arc>(&c.body);
+    const MoveTerms *terms = line != nullptr ? &line->terms : arc != nullptr ? &arc->terms : nullptr;
+    return terms != nullptr ? planner_.path_tolerance(request_for(c, *terms)) : 0.0;
 }
 
 /// Everything that was accepted is driven.

@@ -62,6 +62,7 @@ class PathPlanner {
     bool take_commands() noexcept;
     bool isWaiting(const PathCommand &c) noexcept;
     bool isIdle() const noexcept;
+    double tolerance_of(const PathCommand &c) const noexcept;
     void begin_path(const PathCommand &c) noexcept;
     Reason accept(const PathCommand &c) noexcept;
     Reason accept_line(const PathCommand &c, const geom::Pose &end, const MoveTerms &terms) noexcept;

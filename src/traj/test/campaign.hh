@@ -297,6 +297,25 @@ inline double worst_excursion(const std::vector<Pose> &samples, const Program &p
     return worst;
 }
 
+/// How far the path may be from the programmed one; 0: any.
+inline double allowed_deviation(const Program &program) {
+    if (program.join != Join::BLEND) {
+        return 1e-6;
+    }
+    if (program.tolerance > 0 || !program.limits.isJerkLimited) {
+        return program.tolerance;
+    }
+    double allowed = 0;
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        const double nominal = 1e-4 * program.limits.velocity[static_cast<std::size_t>(i)];
+        allowed = geom::isAngular(i) ? allowed : std::max(allowed, nominal);
+    }
+    for (const Primitive &p : program.primitives) {
+        allowed = std::max(allowed, p.isArc ? 1e-3 * p.radius : 0.1 * p.length);
+    }
+    return allowed;
+}
+
 struct Outcome {
     Rig rig{Pose{}};
     bool isFinished = false;
@@ -313,7 +332,7 @@ inline void drive(Maker &maker, const Program &program, Outcome &out, bool isDro
         room_of(program, low, high);
         rig.planner.set_room(low, high);
     }
-    rig.planner.begin(Pose{}, rig.executor.snapshot(), program.requests.front().kept_tolerance());
+    rig.planner.begin(Pose{}, rig.executor.snapshot(), rig.planner.path_tolerance(program.requests.front()));
     Scales scales;
     scales.max_feed = 1.5;
     rig.planner.set_scales(scales);

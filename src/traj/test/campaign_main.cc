@@ -100,11 +100,11 @@ Verdict judge(const Program &program, const Outcome &out, bool isDropped) {
         v.fault = "soft limits";
         return v;
     }
-    const bool isBlend = program.join == Join::BLEND;
+    const double allowed = allowed_deviation(program);
     if (!isDropped && !(out.rig.samples.back() == program.primitives.back().end)) {
         v.fault = "not at its end";
-    } else if (!isDropped && (program.tolerance > 0 || !isBlend)) {
-        const double near = (isBlend ? program.tolerance : 1e-6) + 0.5 * longest_step;
+    } else if (!isDropped && allowed > 0) {
+        const double near = allowed + 0.5 * longest_step;
         Follower follower(program, near);
         bool isNear = true;
         for (const Pose &p : out.rig.samples) {

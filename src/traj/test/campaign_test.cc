@@ -37,8 +37,8 @@ void check(unsigned seed, bool isJerkLimited, Kind kind = Kind::RANDOM) {
     EXPECT_TRUE(checker.isWithin()) << checker.report();
     EXPECT_LE(worst_excursion(out.rig.samples, program), 1e-9);
     const Sequence last = out.rig.store->last_piece.load();
-    const double allowed = program.join == Join::BLEND ? program.tolerance : 1e-6;
-    const bool isBounded = program.tolerance > 0 || program.join != Join::BLEND;
+    const double allowed = allowed_deviation(program);
+    const bool isBounded = allowed > 0;
     if (isBounded && last < PIECE_CAPACITY) {
         EXPECT_LE(worst_blend_deviation(out.rig, 1, last), allowed * (1 + 1e-9) + 1e-12);
     }

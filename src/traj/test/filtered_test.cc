@@ -199,6 +199,27 @@ TEST(Filtered, APathMadeForItsToleranceIsTwiceAsFastOnCurves_C13) {
     EXPECT_LT(2 * circle_time(0.01), circle_time(0));
 }
 
+TEST(Filtered, AnArcWithoutAToleranceKeepsItsSize_C13) {
+    constexpr double RADIUS = 20;
+    Limits limits = jerk_limits();
+    limits.jerk.fill(5000);
+    Rig rig{Pose{}};
+    rig.planner.set_limits(limits);
+    ArcShape shape;
+    shape.centre = at(0, RADIUS);
+    shape.normal[2] = 1;
+    shape.angle_rad = 2 * std::numbers::pi;
+    Primitive arc;
+    ASSERT_EQ(make_arc(Pose{}, Pose{}, shape, arc), ArcFault::NONE);
+    rig.planner.begin(Pose{}, rig.executor.snapshot(), rig.planner.path_tolerance(request(Join::BLEND)));
+    rig.planner.add(arc, request(Join::BLEND));
+    ASSERT_TRUE(rig.run(30));
+    for (const Pose &p : rig.samples) {
+        EXPECT_NEAR(geom::norm(p - at(0, RADIUS)), RADIUS, 1e-3 * RADIUS);
+    }
+    EXPECT_LT(static_cast<double>(rig.cycle) * Rig::T, 6);
+}
+
 TEST(Joining, NearlyStraightLinesBecomeOneWithinTheTolerance_C2) {
     Rig rig{Pose{}};
     Limits limits = jerk_limits();
