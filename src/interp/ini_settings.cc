@@ -98,6 +98,9 @@ Settings settings_from_ini(const config::IniFile &ini, diag::Sink &sink) {
     if (const config::IniEntry *entry = ini.find(SECTION, "RS274NGC_STARTUP_CODE"); entry != nullptr) {
         out.startup_code = entry->value;
     }
+    if (const config::IniEntry *entry = ini.find(SECTION, "ON_ABORT_COMMAND"); entry != nullptr) {
+        out.on_abort_command = trim(entry->value);
+    }
     for (const config::IniEntry *entry : ini.find_all(SECTION, "REMAP")) {
         out.remaps.emplace_back(entry->value, entry->place);
     }

@@ -56,6 +56,8 @@ class ProgramInterpreter {
     virtual void synch() = 0;
     /// Back to the top level after an abort.
     virtual void abort() = 0;
+    /// Tells the canon the offsets, speeds and switches in force, for one that has lost what was read ahead.
+    virtual void announce() {}
 
     /// The last failure: message, file:line:column, the block's text, the callers.
     virtual const diag::Diagnostic &error() const = 0;

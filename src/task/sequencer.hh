@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cstdint>
+#include <cstdio>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -110,12 +112,15 @@ class Sequencer {
     void execute_tool(const Item &item);
     void execute_output(const Item &item);
     void execute_log(const LogItem &item);
-    /// Writes an open log: also at the end of a program and at an abort, so that no line is lost.
-    struct LogFile {
-        std::string path, text;
-        bool isOpen = false;
+    struct CloseFile {
+        void operator()(std::FILE *file) const { std::fclose(file); }
     };
-    void close_log(LogFile &log);
+    /// Each line reaches the file at once, so that none is lost and all can be watched.
+    struct LogFile {
+        std::string path;
+        std::unique_ptr<std::FILE, CloseFile> file;
+    };
+    void open_log(LogFile &log, const LogItem &item);
     void close_logs();
     motion::MoveTerms terms_of(const interp::MoveSettings &settings, motion::MotionType type,
                                const Item &item);

@@ -132,6 +132,8 @@ class Executor : public BuiltIns {
 
     /// Announces the state to the canon, as at the start of a program.
     void announce();
+    /// Offsets, spindles' speeds and switches once more: the canon has lost some of them.
+    void announce_modes();
     /// Takes positions, tools and switches from the machine.
     void synch();
     /// Line and depth for #<_line> and #<_call_level>.

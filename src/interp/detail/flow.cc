@@ -21,7 +21,7 @@ bool mentionsOWord(std::string_view line) {
 
 Flow::Flow(Executor &executor, Names &names, Canon &target, const Settings &settings)
     : executor_(executor), names_(names), target_(target), settings_(settings),
-      view_(std::make_unique<ScriptView>(*this)) {}
+      view_(std::make_unique<ScriptView>(*this)), budget_(settings) {}
 
 Flow::~Flow() {
     end_scripts();
@@ -56,7 +56,7 @@ void Flow::close() {
     programs_.clear();
     program_ = nullptr;
     next_ = after_line_ = 1;
-    statements_ = 0;
+    budget_.restart();
 }
 
 FilePlace Flow::place_in_file() const {
@@ -215,8 +215,8 @@ Step Flow::percent() {
 }
 
 Step Flow::run_line() {
-    if (settings_.statement_budget > 0 && ++statements_ > settings_.statement_budget) {
-        return fail_here("The program has run for too many statements; is there a loop without end?");
+    if (budget_.isBounded() && !budget_.take_statement(calls_.empty() ? next_ : 0)) {
+        return fail_budget();
     }
     line_read_ = next_;
     const BlockView view = program_->block(next_);

@@ -10,6 +10,7 @@
 
 #include "diag/sink.hh"
 #include "interp/detail/executor.hh"
+#include "interp/detail/loop_budget.hh"
 #include "interp/detail/program.hh"
 #include "interp/detail/remap.hh"
 #include "interp/interpreter.hh"
@@ -40,9 +41,8 @@ class Flow : private ScriptNames {
     bool isContinuable() const { return isContinuable_; }
     bool isAtFileEnd() const { return program_ == nullptr || next_ > program_->count_lines(); }
     int call_level() const { return static_cast<int>(calls_.size()) - text_levels_; }
-    bool isBudgetSpent() const {
-        return settings_.statement_budget > 0 && statements_ > settings_.statement_budget;
-    }
+    void mark_progress(double seconds) { budget_.mark_progress(seconds); }
+    bool isBudgetSpent() const { return budget_.isSpent(); }
     FilePlace place_in_file() const;
     std::string_view subroutine() const;
     std::string line_text(const std::string &file, int line) const;
@@ -109,6 +109,15 @@ class Flow : private ScriptNames {
     /// Drops all calls above `depth`; suspended scripts among them end.
     void unwind(std::size_t depth = 0);
     std::string call_name(const Call &call) const;
+
+    // flow_budget.cc
+    /// A loop begins again: between these lines of the present program, this one included.
+    void note_pass(int first, int last) {
+        if (budget_.isWatching()) {
+            budget_.note_pass({program_, calls_.size(), first, last});
+        }
+    }
+    Step fail_budget();
 
     // flow_owords.cc
     bool run_oword(const BlockView &view);
@@ -185,7 +194,7 @@ class Flow : private ScriptNames {
     bool isReadingName_ = false;                   ///< a named parameter's script runs: it may only look
     bool isSyncDue_ = false, isEndDue_ = false;    ///< what a script had executed came to such a point
     std::string script_error_;                     ///< as a script has set it
-    std::uint64_t statements_ = 0;
+    LoopBudget budget_;
     bool isContinuable_ = false;
     diag::Diagnostic error_;
 };

@@ -122,6 +122,7 @@ bool Flow::run_loop(const BlockView &view, const OWord &oword) {
     case OKind::ENDWHILE: {
         const int begin = find_before(line_read_, {OKind::WHILE});
         next_ = begin;
+        note_pass(begin, line_read_);
         return begin != 0 || unmatched(oword, "while");
     }
     case OKind::REPEAT: return run_repeat(view, oword);
@@ -139,6 +140,7 @@ bool Flow::run_while(const BlockView &view, const OWord &oword) {
     const int opener = find_before(line_read_, {OKind::DO, OKind::WHILE, OKind::ENDWHILE});
     if (opener != 0 && program_->oword_at(opener)->kind == OKind::DO) {
         next_ = isTrue ? opener + 1 : next_;
+        note_pass(opener, line_read_);
         return true;
     }
     const int end = find_after(line_read_, {OKind::ENDWHILE});
@@ -180,6 +182,7 @@ bool Flow::run_end_repeat(const OWord &oword) {
     }
     if (--repeats_.back().left > 0) {
         next_ = begin + 1;
+        note_pass(begin, line_read_);
     } else {
         repeats_.pop_back();
     }
