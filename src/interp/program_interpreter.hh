@@ -84,7 +84,7 @@ struct PluginParts {
     ParameterSource &parameters;
 };
 
-inline constexpr int PLUGIN_VERSION = 1;
+inline constexpr int PLUGIN_VERSION = 2;
 /// Symbols that a plug-in exports, with C linkage: `int millwright_plugin_version`, which must be
 /// PLUGIN_VERSION, and makeInterp, which makes an interpreter (to be deleted by the caller).
 inline constexpr char PLUGIN_VERSION_SYMBOL[] = "millwright_plugin_version";

@@ -160,6 +160,7 @@ class Executor : public BuiltIns {
 
     /// Names of the parameters that the interpreter keeps, sorted.
     static std::vector<std::string> predefined_names();
+    bool hasToolChanges() const { return !tool_changes_.empty(); }
     bool isBuiltInName(std::string_view name) const override;
     std::optional<double> built_in(std::string_view name) const override;
     double built_in(int number) const override;

@@ -117,6 +117,8 @@ class Flow : private ScriptNames {
             budget_.note_pass({program_, calls_.size(), first, last});
         }
     }
+    /// The same for a loop that only its condition ends; false when it never will.
+    bool note_conditional_pass(int first, int last);
     Step fail_budget();
 
     // flow_owords.cc

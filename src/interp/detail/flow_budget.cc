@@ -6,6 +6,21 @@
 
 namespace mw::interp::detail {
 
+bool Flow::note_conditional_pass(int first, int last) {
+    note_pass(first, last);
+    // Scripts and changed tool tables have states that are not seen here.
+    const bool isAllSeen = budget_.isBounded() && scripts_ == nullptr && !executor_.hasToolChanges();
+    const LoopPass pass{program_, calls_.size(), first, last};
+    if (!isAllSeen || !budget_.isRepeating(pass, executor_.state, executor_.parameters)) {
+        return true;
+    }
+    error_line_ = first;
+    return executor_.fault.set("This is a loop without end: nothing has changed from one pass to the next", 0,
+                               "in a check, inputs, HAL pins and probes stay as they are: a loop that waits "
+                               "for one of them must end "
+                               "when #<_task> is 0");
+}
+
 /// The outermost loop that has lately begun again is the one that does not end.
 Step Flow::fail_budget() {
     line_read_ = next_;

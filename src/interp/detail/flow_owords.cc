@@ -122,8 +122,7 @@ bool Flow::run_loop(const BlockView &view, const OWord &oword) {
     case OKind::ENDWHILE: {
         const int begin = find_before(line_read_, {OKind::WHILE});
         next_ = begin;
-        note_pass(begin, line_read_);
-        return begin != 0 || unmatched(oword, "while");
+        return begin == 0 ? unmatched(oword, "while") : note_conditional_pass(begin, line_read_);
     }
     case OKind::REPEAT: return run_repeat(view, oword);
     case OKind::ENDREPEAT: return run_end_repeat(oword);
@@ -140,8 +139,7 @@ bool Flow::run_while(const BlockView &view, const OWord &oword) {
     const int opener = find_before(line_read_, {OKind::DO, OKind::WHILE, OKind::ENDWHILE});
     if (opener != 0 && program_->oword_at(opener)->kind == OKind::DO) {
         next_ = isTrue ? opener + 1 : next_;
-        note_pass(opener, line_read_);
-        return true;
+        return !isTrue || note_conditional_pass(opener, line_read_);
     }
     const int end = find_after(line_read_, {OKind::ENDWHILE});
     if (end == 0) {

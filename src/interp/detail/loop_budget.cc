@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "interp/detail/loop_budget.hh"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace mw::interp::detail {
@@ -17,6 +19,32 @@ void LoopBudget::begin_stretch(int main_line) {
     if (!passes_.empty()) {
         passes_.clear();
     }
+    if (!watched_.empty()) {
+        watched_.clear();
+    }
+}
+
+bool LoopBudget::isRepeating(const LoopPass &pass, const State &state, const Parameters &parameters) {
+    constexpr std::uint64_t LESS_OFTEN = 4;
+    if (latest_ >= watched_.size() || !(watched_[latest_].pass == pass)) {
+        const auto found = std::ranges::find(watched_, pass, &Watched::pass);
+        latest_ = static_cast<std::size_t>(found - watched_.begin());
+        if (found == watched_.end()) {
+            watched_.emplace_back().pass = pass;
+        }
+    }
+    Watched &loop = watched_[latest_];
+    if (loop.last != nullptr) {
+        if (loop.last->state == state && parameters.hasValues(loop.last->values)) {
+            return true;
+        }
+        loop.last.reset();
+    }
+    if (++loop.count == loop.next) {
+        loop.next *= LESS_OFTEN;
+        loop.last = std::make_unique<LoopSnapshot>(LoopSnapshot{state, parameters.values()});
+    }
+    return false;
 }
 
 std::optional<LoopPass> LoopBudget::loop_around(const Program *program, std::size_t depth, int line) const {

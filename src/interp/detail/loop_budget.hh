@@ -6,10 +6,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <tuple>
+#include <vector>
 
+#include "interp/detail/parameters.hh"
+#include "interp/detail/state.hh"
 #include "interp/interpreter.hh"
 
 namespace mw::interp::detail {
@@ -22,9 +26,16 @@ struct LoopPass {
     std::size_t depth = 0;
     int first = 0, last = 0;
 
+    bool operator==(const LoopPass &) const = default;
     bool operator<(const LoopPass &o) const {
         return std::tie(program, depth, first, last) < std::tie(o.program, o.depth, o.first, o.last);
     }
+};
+
+/// What a loop's next pass depends on.
+struct LoopSnapshot {
+    State state;
+    Parameters::Values values;
 };
 
 class LoopBudget {
@@ -59,6 +70,9 @@ class LoopBudget {
                                (seconds_ > 0 && taken_seconds_ > seconds_ / 2));
     }
     void note_pass(const LoopPass &pass) { ++passes_[pass]; }
+    /// For loops that only a condition ends: whether two passes in a row began with the same values and
+    /// modes, so that no pass will ever differ. Looks at few passes, ever fewer.
+    bool isRepeating(const LoopPass &pass, const State &state, const Parameters &parameters);
     /// The longest loop around `line` that was noted.
     std::optional<LoopPass> loop_around(const Program *program, std::size_t depth, int line) const;
     int furthest_line() const { return furthest_line_; }
@@ -76,6 +90,13 @@ class LoopBudget {
     int furthest_line_ = 0;
     bool isSpent_ = false;
     std::map<LoopPass, std::uint64_t> passes_;
+    struct Watched {
+        LoopPass pass;
+        std::uint64_t count = 0, next = 16;
+        std::unique_ptr<LoopSnapshot> last;
+    };
+    std::vector<Watched> watched_;
+    std::size_t latest_ = 0;  ///< of watched_
 };
 
 }  // namespace mw::interp::detail

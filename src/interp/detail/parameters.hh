@@ -48,8 +48,27 @@ constexpr bool isBuiltInNumber(int number) {
 }
 
 class Parameters {
+    struct Named {
+        NameId id = NO_ID;
+        double value = 0;
+
+        bool operator==(const Named &) const = default;
+    };
+
   public:
     Parameters();
+
+    /// All that the subroutine that runs can see.
+    struct Values {
+        std::vector<double> numbers;
+        std::vector<std::optional<double>> globals;
+        std::vector<Named> locals;
+    };
+    Values values() const { return {values_, globals_, frames_.back().locals}; }
+    bool hasValues(const Values &values) const {
+        return values.numbers == values_ && values.globals == globals_ &&
+               values.locals == frames_.back().locals;
+    }
 
     double get(int number) const { return values_[static_cast<std::size_t>(number)]; }
     /// Sets and remembers the old value until commit().
@@ -80,10 +99,6 @@ class Parameters {
     Result<> save(const std::string &path) const;
 
   private:
-    struct Named {
-        NameId id = NO_ID;
-        double value = 0;
-    };
     struct Frame {
         std::vector<Named> locals;
         double arguments[ARGUMENT_COUNT] = {};

@@ -128,9 +128,39 @@ TEST_F(PreviewRun, goes_on_behind_errors_and_tells_them_all_I3) {
 TEST_F(PreviewRun, ends_endless_loops_with_an_error_I1) {
     PreviewOptions options;
     options.statement_budget = 10000;
-    EXPECT_EQ(run("o1 while [1]\nG4 P0\no1 endwhile\nM2\n", options), PreviewEnd::FAILED);
+    EXPECT_EQ(run("o1 while [1]\n#1=[#1+1]\no1 endwhile\nM2\n", options), PreviewEnd::FAILED);
     ASSERT_EQ(sink.count_errors(), 1);
     EXPECT_NE(sink.all()[0].what.message.find("loop without end"), std::string::npos);
+}
+
+/// Such loops are found at once, however they move: nothing changes from pass to pass.
+TEST_F(PreviewRun, finds_loops_that_repeat_themselves_I1) {
+    const struct {
+        const char *program;
+        int line;
+    } cases[] = {
+        {"G21 G90 F600\no1 while [1]\nG1 X10\nX0\nM0\no1 endwhile\nM2\n", 2},
+        {"G21 G90 F600\no1 while [1]\n#1=0\no2 while [#1 lt 5]\nG1 X#1\n#1=[#1+1]\no2 endwhile\no1 "
+         "endwhile\n",
+         2},
+        {"G21\no9 sub\no1 do\nM66 P0 L0\n#<a>=#5399\no1 while [#<a> eq 0]\no9 endsub\no9 call\nM2\n", 3},
+    };
+    for (const auto &one : cases) {
+        PreviewOptions options;
+        options.statement_budget = 10000;
+        options.idle_budget = 0;
+        diag::Sink errors;
+        Preview check(PreviewMachine{}, world, world, options, {});
+        EXPECT_EQ(check.run_text("part.ngc", one.program, errors), PreviewEnd::FAILED);
+        ASSERT_EQ(errors.count_errors(), 1) << one.program;
+        EXPECT_NE(errors.all()[0].what.message.find("nothing has changed"), std::string::npos);
+        EXPECT_EQ(errors.all()[0].what.place.line, one.line);
+        EXPECT_LT(check.progress().blocks, 1000U);
+    }
+    EXPECT_EQ(run("G21 F600\no1 while [#1 lt 100000]\nG91 G1 X0\n#1=[#1+1]\no1 endwhile\n"
+                  "o2 do\nG91 G1 X1\no2 while [#5420 lt 5000]\nM2\n"),
+              PreviewEnd::DONE)
+        << sink.all().back().str();
 }
 
 /// Which loop it is: not an inner one that ends, not one before it, and in a subroutine with its callers.
@@ -141,9 +171,10 @@ TEST_F(PreviewRun, names_the_loop_that_does_not_end_I1) {
     } cases[] = {
         {"#1=0\no1 while [#1 lt 900]\n#1=[#1+1]\no1 endwhile\no2 while [1]\n#2=[#2+1]\no2 endwhile\nM2\n", 5,
          0},
-        {"\no1 do\no2 repeat [3]\n#1=[#1+1]\no2 endrepeat\n(msg,on)\no1 while [1]\nM2\n", 2, 0},
-        {"o1 while [#1 lt 5]\no2 while [1]\n#3=1\no2 endwhile\n#1=[#1+1]\no1 endwhile\nM2\n", 2, 0},
-        {"o9 sub\no3 while [1]\no8 call\no3 endwhile\no9 endsub\no8 sub\no4 repeat [2]\no4 endrepeat\n"
+        {"\no1 do\no2 repeat [3]\n#1=[#1+1]\no2 endrepeat\n(msg,on)\n#5=[#5+1]\no1 while [1]\nM2\n", 2, 0},
+        {"o1 while [#1 lt 5]\no2 while [1]\n#3=[#3+1]\no2 endwhile\n#1=[#1+1]\no1 endwhile\nM2\n", 2, 0},
+        {"o9 sub\no3 while [1]\no8 call\n#3=[#3+1]\no3 endwhile\no9 endsub\no8 sub\no4 repeat [2]\no4 "
+         "endrepeat\n"
          "o8 endsub\no7 repeat [2]\no9 call\no7 endrepeat\nM2\n",
          2, 1},
         {"M98 P5 L1000000\nM2\nO5\n#1=2\nM99\n", 3, 1},
@@ -189,7 +220,8 @@ TEST_F(PreviewRun, loops_that_move_without_end_are_found_by_their_time_I1) {
     PreviewOptions options;
     options.time_budget_s = 3600;
     EXPECT_EQ(
-        run("G21 G90 F60\n(a part)\no1 while [1]\nG1 X10\nG0 X0\nG2 I1\nM0\no1 endwhile\nM2\n", options),
+        run("G21 G90 F60\n(a part)\no1 while [1]\n#1=[#1+1]\nG1 X10\nG0 X0\nG2 I1\nM0\no1 endwhile\nM2\n",
+            options),
         PreviewEnd::FAILED);
     ASSERT_EQ(sink.count_errors(), 1);
     EXPECT_EQ(sink.all()[0].what.place.line, 3);
