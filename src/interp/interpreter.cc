@@ -135,6 +135,10 @@ bool Interpreter::isAtFileEnd() const {
     return impl_->flow.isAtFileEnd();
 }
 
+std::vector<diag::Diagnostic> Interpreter::syntax_errors(int after, int most) {
+    return impl_->flow.syntax_errors(after, most);
+}
+
 void Interpreter::mark_progress(double seconds) {
     impl_->flow.mark_progress(seconds);
 }

@@ -49,6 +49,8 @@ struct Settings {
     std::string startup_code;              ///< [RS274NGC]RS274NGC_STARTUP_CODE
     std::string on_abort_command;          ///< [RS274NGC]ON_ABORT_COMMAND: task runs it after each abort
     bool isG92PersistenceDisabled = false;
+    bool isIniReadable = true;  ///< [RS274NGC]INI_VARS: #<_ini[section]key>
+    bool isHalReadable = true;  ///< [RS274NGC]HAL_PIN_VARS: #<_hal[name]>
     bool isFanucSubDisabled = false;
     bool isCoordinateSystemKept = false;  ///< M2 and M30 do not go back to G54
     double max_velocity_mm_s = 0;         ///< threads that need more are refused; 0: not known
@@ -118,6 +120,8 @@ class Interpreter final : public ProgramInterpreter {
     bool isMoveHeld() const override;
     /// After a failure: the block did not decide which one is next, so that checks may go on behind it.
     bool isContinuable() const;
+    /// Syntax errors of the open file behind a line, at most so many: for checks that cannot go on otherwise.
+    std::vector<diag::Diagnostic> syntax_errors(int after, int most);
     /// Tells that the program has made the machine do something, for so long. [s]
     void mark_progress(double seconds);
     /// A budget is used up: no more statement will run.

@@ -208,6 +208,9 @@ class Preview::Impl final : public QuietMachineCanon, public World {
             const Step step = interpreter_.step();
             if (step == Step::FAILED) {
                 sink.report(interpreter_.error());
+                if (!interpreter_.isContinuable()) {
+                    report_rest(sink, options_.max_errors - errors - 1);
+                }
                 if (++errors >= options_.max_errors || !interpreter_.isContinuable() ||
                     interpreter_.isAtFileEnd()) {
                     break;
@@ -222,6 +225,15 @@ class Preview::Impl final : public QuietMachineCanon, public World {
             }
         }
         return errors > 0 ? PreviewEnd::FAILED : PreviewEnd::DONE;
+    }
+
+    /// The way is lost: what cannot be read further down is told all the same.
+    void report_rest(diag::Sink &sink, int most) {
+        const diag::Diagnostic failed = interpreter_.error();
+        const SourcePlace &place = failed.called_from.empty() ? failed.what.place : failed.called_from.back();
+        for (diag::Diagnostic &one : interpreter_.syntax_errors(place.line, most)) {
+            sink.report(std::move(one));
+        }
     }
 
     bool report_progress() {

@@ -75,7 +75,7 @@ struct PreviewOptions {
     /// the programmed feed, rapids at least at the machine's speed).
     std::uint64_t statement_budget = 50000000;
     std::uint64_t idle_budget = 20000000;
-    double time_budget_s = 240 * 3600.0;
+    double time_budget_s = 100 * 3600.0;
     int max_errors = 20;                     ///< interpretation goes on behind a failed block until then
     std::uint64_t blocks_per_report = 4096;  ///< between two calls of `progress`
 };

@@ -213,6 +213,12 @@ void Task::take_motion_news() {
 
 void Task::take_io() {
     const io::ToolEvent event = io_.step(parts_.io_port.read());
+    if (event != io::ToolEvent::NONE) {
+        tool_fault_.reset();
+    }
+    if (event == io::ToolEvent::FAULT) {
+        tool_fault_ = io_.fault_reason();
+    }
     sequencer_.on_tool_event(event);
 }
 
@@ -405,6 +411,8 @@ interp::MachineSnapshot Task::snapshot() const {
         s.spindle_direction[i] = sequencer_.spindle_direction(static_cast<int>(i));
     }
     s.tool_in_spindle = io_.outputs.tool_number;
+    s.isToolFaulted = tool_fault_.has_value();
+    s.tool_fault_reason = tool_fault_.value_or(0);
     s.selected_pocket = sequencer_.selected_index();
     return s;
 }

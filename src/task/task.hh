@@ -6,6 +6,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "interp/interpreter.hh"
@@ -168,8 +169,9 @@ class Task final : public interp::World {
     bool isStepMode_ = false;
     bool isStoppedByProgram_ = false;
     std::string pending_failure_;
-    bool isCleaningUp_ = false;  ///< what the on-abort command asked for is on its way
-    bool isCleanedUp_ = false;   ///< nothing has run since the last abort
+    std::optional<int> tool_fault_;  ///< reason, when the last work of the changer ended with a fault
+    bool isCleaningUp_ = false;      ///< what the on-abort command asked for is on its way
+    bool isCleanedUp_ = false;       ///< nothing has run since the last abort
     std::deque<std::pair<RequestId, Command>> inbox_;
     std::map<RequestId, Request> requests_;
     RequestId next_request_ = 1;

@@ -123,6 +123,22 @@ TEST_F(AbortTest, AMissingOnAbortProcedureIsToldAndNothingElse_I1) {
     EXPECT_NE(messages().find("no subroutine o<nowhere>"), std::string::npos);
 }
 
+TEST_F(AbortTest, AFaultOfTheToolChangerIsInTheParameters_E1) {
+    switch_on_with("(debug,because %d#1: %d#5600 %d#5601)\n");
+    ASSERT_TRUE(machine_->hal().unlink("iocontrol.0.tool-changed").has_value());
+    set_pin("iocontrol.0.toolchanger-reason", "7");
+    start("G21 G90\nT2 M6\nG0 X5\nM2\n");
+    cycles(2000);
+    set_pin("iocontrol.0.toolchanger-fault", "TRUE");
+    EXPECT_EQ(finish(), task::Progress::FAILED);
+    cycles(10);
+    EXPECT_NE(messages().find("because 1: 1 7\n"), std::string::npos);
+    set_pin("iocontrol.0.toolchanger-fault", "FALSE");
+    EXPECT_EQ(mdi("T1"), task::Progress::DONE);
+    EXPECT_EQ(mdi("(debug,%d#5600 %d#5601)"), task::Progress::DONE);
+    EXPECT_EQ(messages(), "0 0\n");
+}
+
 /// The axes still brake when the next line comes: it begins where they come to rest.
 TEST_F(AbortTest, WorkRightAfterAnAbortBeginsWhereTheMachineComesToRest_D1) {
     switch_on();

@@ -101,6 +101,8 @@ void Executor::synch() {
         parameters.set(P_INPUT_RESULT, snapshot.isInputTimedOut ? -1.0 : snapshot.input_value);
         isWaitingInput_ = false;
     }
+    parameters.set(P_TOOL_FAULT, snapshot.isToolFaulted ? 1.0 : 0.0);
+    parameters.set(P_TOOL_FAULT_REASON, snapshot.tool_fault_reason);
     parameters.commit();
     state.isMist = snapshot.isMistOn;
     state.isFlood = snapshot.isFloodOn;

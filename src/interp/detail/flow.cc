@@ -68,6 +68,26 @@ FilePlace Flow::place_in_file() const {
     return {text.place_of(calls_.empty() ? next_ : calls_.front().line), text.count_bytes()};
 }
 
+std::vector<diag::Diagnostic> Flow::syntax_errors(int after, int most) {
+    std::vector<diag::Diagnostic> out;
+    Program *const main = calls_.empty() ? program_ : calls_.front().program;
+    const int last = main == nullptr ? 0 : main->count_lines();
+    for (int line = after + 1; line <= last && static_cast<int>(out.size()) < most; ++line) {
+        const BlockView view = main->block(line);
+        if (view.block->error != NO_ID) {
+            const SyntaxError &error = view.arena->errors[view.block->error];
+            out.push_back({diag::Severity::ERROR,
+                           {error.message, {main->path(), line, static_cast<int>(error.column)}, {}},
+                           {},
+                           std::string(main->line_text(line))});
+        }
+        if (view.block->isPercent && line > main->first_content_line()) {
+            break;
+        }
+    }
+    return out;
+}
+
 std::string_view Flow::subroutine() const {
     for (auto call = calls_.rbegin(); call != calls_.rend(); ++call) {
         if (call->label != NO_ID) {

@@ -39,6 +39,8 @@ class Flow : private ScriptNames {
     const std::string &file() const;
     /// The block that failed did not decide which one is next: later ones can still be looked at.
     bool isContinuable() const { return isContinuable_; }
+    /// Syntax errors of the open file behind a line, at most so many.
+    std::vector<diag::Diagnostic> syntax_errors(int after, int most);
     bool isAtFileEnd() const { return program_ == nullptr || next_ > program_->count_lines(); }
     int call_level() const { return static_cast<int>(calls_.size()) - text_levels_; }
     void mark_progress(double seconds) { budget_.mark_progress(seconds); }
@@ -123,6 +125,8 @@ class Flow : private ScriptNames {
 
     // flow_owords.cc
     bool run_oword(const BlockView &view);
+    bool run_oword_kind(const BlockView &view, const OWord &oword);
+    bool fail_bad_oword(int line);
     bool run_sub(const OWord &oword);
     bool run_call(const BlockView &view, const OWord &oword);
     bool run_return(const BlockView &view, const OWord &oword);

@@ -37,7 +37,10 @@ enum ParameterNumber : int {
     P_POSITION = 5420,     // nine, program units
     P_BUILD_FIRST = 5400,  // from here to 5428 read only
     P_BUILD_LAST = 5428,
-    P_VAR_FIRST = 31,  // kept in the parameter file
+    P_DEBUG_SHOWN = 5599,        // 0: (debug,...) says nothing
+    P_TOOL_FAULT = 5600,         // 1 after the changer has reported a fault
+    P_TOOL_FAULT_REASON = 5601,  // its pin toolchanger-reason
+    P_VAR_FIRST = 31,            // kept in the parameter file
 };
 
 /// Numbers whose values the interpreter keeps itself.

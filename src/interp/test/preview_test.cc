@@ -125,6 +125,15 @@ TEST_F(PreviewRun, goes_on_behind_errors_and_tells_them_all_I3) {
     EXPECT_EQ(events.size(), 2U);
 }
 
+TEST_F(PreviewRun, tells_syntax_errors_behind_an_error_that_ends_it_I3) {
+    EXPECT_EQ(run("G21\nG0 X1\no1 endif\nG0 X[1\nG999\no2 while [1\nG1 X1\nG0 X\nM2\n"), PreviewEnd::FAILED);
+    std::vector<int> lines;
+    for (const diag::Diagnostic &one : sink.all()) {
+        lines.push_back(one.what.place.line);
+    }
+    EXPECT_EQ(lines, (std::vector<int>{3, 4, 6, 8}));
+}
+
 TEST_F(PreviewRun, ends_endless_loops_with_an_error_I1) {
     PreviewOptions options;
     options.statement_budget = 10000;
