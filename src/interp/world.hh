@@ -29,8 +29,8 @@ struct MachineSnapshot {
     int tool_in_spindle = 0;
     bool isToolFaulted = false;  ///< the last tool change ended with a fault
     int tool_fault_reason = 0;   ///< as the changer has told it
-    int selected_pocket = -1;  ///< index in the tool table of the tool that T prepared; -1 none
-    int current_pocket = 0;    ///< index in the tool table of the tool in the spindle
+    int selected_pocket = -1;    ///< index in the tool table of the tool that T prepared; -1 none
+    int current_pocket = 0;      ///< index in the tool table of the tool in the spindle
 };
 
 class World {
