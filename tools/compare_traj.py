@@ -5,7 +5,7 @@
 The twelve kinds of programs of bench/traj run through both whole systems: ours by `millwright run --trace` in virtual
 time, the reference without a screen, by its clock, its joint positions taken in every servo cycle by its own `sampler`
 (it runs as an ordinary user in namespaces of its own). tools/trajcheck.py judges both. Run it on a quiet machine: the
-reference's task feeds its planner by the clock. usage: script/compare traj [--only WORD] [--repeat N] [--markdown]
+reference's task feeds its planner by the clock. usage: script/compare traj [--only WORD] [--repeat N] [--keep FOLDER]
 """
 import argparse
 import json

@@ -81,7 +81,8 @@ Run drive(const Program &program, bool isJerkLimited, bool isMerging) {
     executor.set_position(program.start);
     std::uint64_t cycle = 0;
     executor.step(cycle);
-    planner->begin(program.start, executor.snapshot());
+    planner->begin(program.start, executor.snapshot(),
+                   request_of(program, program.moves.front()).kept_tolerance());
     run.samples.push_back(program.start);
     std::size_t fed = 0;
     for (int n = 0; n < 2000000 && !run.isFinished; ++n) {

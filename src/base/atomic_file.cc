@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -98,9 +99,16 @@ Result<std::string> read_file(const std::string &path) {
     if (::fstat(file.get(), &status) == 0 && status.st_size > 0) {
         content.reserve(static_cast<std::size_t>(status.st_size) + 1);
     }
-    char buffer[65536];
     while (true) {
-        const ssize_t n = ::read(file.get(), buffer, sizeof buffer);
+        constexpr std::size_t STEP = 65536;  // of what does not tell its size
+        const std::size_t had = content.size();
+        ssize_t n = 0;
+        // Straight into the string: large programs are not copied once more.
+        content.resize_and_overwrite(had < content.capacity() ? content.capacity() : had + STEP,
+                                     [&](char *bytes, std::size_t size) {
+                                         n = ::read(file.get(), bytes + had, size - had);
+                                         return had + static_cast<std::size_t>(std::max<ssize_t>(n, 0));
+                                     });
         if (n < 0 && errno == EINTR) {
             continue;
         }
@@ -110,7 +118,6 @@ Result<std::string> read_file(const std::string &path) {
         if (n == 0) {
             return content;
         }
-        content.append(buffer, static_cast<std::size_t>(n));
     }
 }
 

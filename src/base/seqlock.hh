@@ -26,11 +26,16 @@ class Seqlock {
         // sequence.
         std::atomic_thread_fence(std::memory_order_release);
         const char *from = reinterpret_cast<const char *>(&value);
-        for (std::size_t i = 0; i < WORDS; ++i) {
+#pragma GCC unroll 8
+        for (std::size_t i = 0; i < WHOLE_WORDS; ++i) {
             std::uint64_t word = 0;
-            const std::size_t left = sizeof(T) - i * 8;
-            std::memcpy(&word, from + i * 8, left < 8 ? left : 8);
+            std::memcpy(&word, from + i * 8, 8);
             words_[i].store(word, std::memory_order_relaxed);
+        }
+        if constexpr (REST > 0) {
+            std::uint64_t word = 0;
+            std::memcpy(&word, from + WHOLE_WORDS * 8, REST);
+            words_[WHOLE_WORDS].store(word, std::memory_order_relaxed);
         }
         // Release: a reader that sees the even sequence (acquire) sees every word of this write.
         sequence_.store(seq + 2, std::memory_order_release);
@@ -43,10 +48,14 @@ class Seqlock {
             return false;
         }
         char *to = reinterpret_cast<char *>(&value);
-        for (std::size_t i = 0; i < WORDS; ++i) {
+#pragma GCC unroll 8
+        for (std::size_t i = 0; i < WHOLE_WORDS; ++i) {
             const std::uint64_t word = words_[i].load(std::memory_order_relaxed);
-            const std::size_t left = sizeof(T) - i * 8;
-            std::memcpy(to + i * 8, &word, left < 8 ? left : 8);
+            std::memcpy(to + i * 8, &word, 8);
+        }
+        if constexpr (REST > 0) {
+            const std::uint64_t word = words_[WHOLE_WORDS].load(std::memory_order_relaxed);
+            std::memcpy(to + WHOLE_WORDS * 8, &word, REST);
         }
         // Acquire fence: pairs with the writer's release fence, so the check below cannot pass on mixed
         // words.
@@ -65,6 +74,7 @@ class Seqlock {
     }
 
   private:
+    static constexpr std::size_t WHOLE_WORDS = sizeof(T) / 8, REST = sizeof(T) % 8;
     static constexpr std::size_t WORDS = (sizeof(T) + 7) / 8;
     std::atomic<std::uint32_t> sequence_{0};
     std::array<std::atomic<std::uint64_t>, WORDS> words_{};

@@ -2,8 +2,10 @@
 #include "base/text.hh"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 
 namespace mw {
 namespace {
@@ -45,6 +47,16 @@ std::optional<T> parse_whole(std::string_view digits, int base) {
     const bool isWhole = error == std::errc() && end == digits.data() + digits.size();
     return isWhole ? std::optional<T>(value) : std::nullopt;
 }
+
+/// Two digits for each number below 100.
+constexpr std::array<char, 200> PAIRS = [] {
+    std::array<char, 200> pairs{};
+    for (std::size_t i = 0; i < 100; ++i) {
+        pairs[2 * i] = static_cast<char>('0' + i / 10);
+        pairs[2 * i + 1] = static_cast<char>('0' + i % 10);
+    }
+    return pairs;
+}();
 
 bool hasHexPrefix(std::string_view text) {
     return text.size() > 2 && text[0] == '0' && lower(text[1]) == 'x';
@@ -89,6 +101,48 @@ std::string to_text(double value) {
     char buffer[32];
     const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value);
     return error == std::errc() ? std::string(buffer, end) : std::string("?");
+}
+
+std::size_t write_fixed4(std::span<char, FIXED4_SIZE> out, double value) {
+    // The nearest whole number to the value times 10,000 is right unless a tie is near. The product's
+    // rounding moves it by less than NEAR_TIE, or (from 2^44 on, where products lie further apart than that
+    // and a tie is one of them) by less than their distance from the tie.
+    constexpr double SCALE = 1e4, LARGEST = 1e14, NEAR_TIE = 1e-3;
+    const double scaled = std::fabs(value) * SCALE;
+    const bool isSmall = scaled < LARGEST;  // not so for what is not a number
+    const auto whole = static_cast<std::int64_t>(isSmall ? scaled : 0.0);
+    const double rest = scaled - static_cast<double>(whole);
+    if (!isSmall || std::fabs(rest - 0.5) <= NEAR_TIE) {
+        char *const begin = out.data();
+        const auto made = std::to_chars(begin, begin + out.size(), value, std::chars_format::fixed, 4);
+        return static_cast<std::size_t>(made.ptr - begin);
+    }
+    constexpr std::uint64_t DECIMALS = 10000;
+    constexpr std::size_t MOST = 24;  // sign, eleven digits, point and four digits are 17
+    const std::uint64_t digits = static_cast<std::uint64_t>(whole) + (rest > 0.5 ? 1 : 0);
+    char buffer[2 * MOST];  // twice, so that MOST characters can be copied from anywhere in the first half
+    char *at = buffer + MOST;
+    const auto put_pair = [&at](std::uint64_t pair) {
+        at -= 2;
+        std::memcpy(at, &PAIRS[2 * pair], 2);
+    };
+    put_pair(digits % 100);
+    put_pair(digits % DECIMALS / 100);
+    *--at = '.';
+    std::uint64_t before = digits / DECIMALS;
+    for (; before >= 100; before /= 100) {
+        put_pair(before % 100);
+    }
+    if (before >= 10) {
+        put_pair(before);
+    } else {
+        *--at = static_cast<char>('0' + before);
+    }
+    if (std::signbit(value)) {
+        *--at = '-';
+    }
+    std::memcpy(out.data(), at, MOST);
+    return static_cast<std::size_t>(buffer + MOST - at);
 }
 
 std::string_view trim(std::string_view text) {

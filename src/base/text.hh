@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,11 @@ std::optional<std::uint64_t> parse_uint(std::string_view text);
 
 /// Shortest text that reads back as the same double.
 std::string to_text(double value);
+
+/// Room for any number that write_fixed4() writes: the largest double has 309 digits before the point.
+inline constexpr std::size_t FIXED4_SIZE = 320;
+/// Writes `value` as printf's "%.4f" does in the C locale, without an end. @return its length
+std::size_t write_fixed4(std::span<char, FIXED4_SIZE> out, double value);
 
 std::string_view trim(std::string_view text);
 std::string to_lower(std::string_view text);

@@ -26,6 +26,14 @@ bool Homing::isActive() const noexcept {
     return sequence_ >= 0;
 }
 
+bool Homing::hasWork() const noexcept {
+    bool isStopping = false;
+    for (int j = 0; j < num_joints_; ++j) {
+        isStopping = isStopping || isStopping_[j];
+    }
+    return isStopping || isActive();
+}
+
 bool Homing::isAllHomed() const noexcept {
     for (int j = 0; j < num_joints_; ++j) {
         if (!isHomed(j)) {

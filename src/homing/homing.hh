@@ -95,6 +95,8 @@ class Homing {
     bool isHoming(int joint) const noexcept { return joints_[index(joint)].state != State::IDLE; }
     bool isHomed(int joint) const noexcept { return joints_[index(joint)].isHomed; }
     bool isActive() const noexcept;
+    /// `step` has something to do: it is active, or a joint is still to be told to stop.
+    bool hasWork() const noexcept;
     bool isAllHomed() const noexcept;
     State state(int joint) const noexcept { return joints_[index(joint)].state; }
     bool isIndexWanted(int joint) const noexcept { return joints_[index(joint)].isIndexWanted; }

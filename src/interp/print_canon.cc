@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "interp/print_canon.hh"
 
-#include <array>
+#include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
 
 #include <fmt/format.h>
+
+#include "base/text.hh"
 
 namespace mw::interp {
 namespace {
@@ -15,84 +16,51 @@ std::string pose_text(const Pose &p) {
     return fmt::format("{:.4f}, {:.4f}, {:.4f}, {:.4f}, {:.4f}, {:.4f}", p[0], p[1], p[2], p[3], p[4], p[5]);
 }
 
-/// Two digits for each number below 100.
-constexpr std::array<char, 200> make_pairs() {
-    std::array<char, 200> pairs{};
-    for (std::size_t i = 0; i < 100; ++i) {
-        pairs[2 * i] = static_cast<char>('0' + i / 10);
-        pairs[2 * i + 1] = static_cast<char>('0' + i % 10);
-    }
-    return pairs;
+void append_fixed4(std::string &text, double value) {
+    std::array<char, FIXED4_SIZE> digits;  // those that are not written stay unset
+    text.append(digits.data(), write_fixed4(digits, value));
 }
-constexpr std::array<char, 200> PAIRS = make_pairs();
 
-/// Writes `value` as "{:.4f}" would, without its cost for ordinary coordinates.
-std::size_t write_fixed4(char *out, std::size_t size, double value) {
-    constexpr double LARGEST = 1e10, SCALE = 1e4, NEAR_TIE = 1e-3;
-    const double scaled = std::fabs(value) * SCALE;
-    const auto whole = static_cast<std::uint64_t>(scaled < LARGEST * SCALE ? scaled : 0.0);
-    const double rest = scaled - static_cast<double>(whole);
-    const bool isOrdinary = std::fabs(value) < LARGEST && std::fabs(rest - 0.5) > NEAR_TIE;
-    if (!isOrdinary) {  // too large, not a number, or so near a tie that the product's rounding matters
-        return static_cast<std::size_t>(fmt::format_to_n(out, size, "{:.4f}", value).out - out);
-    }
-    const std::uint64_t digits = whole + (rest > 0.5 ? 1 : 0);
-    char buffer[24];
-    char *at = buffer + sizeof buffer;
-    const auto put_pair = [&at](std::uint64_t pair) {
-        at -= 2;
-        std::memcpy(at, &PAIRS[2 * pair], 2);
-    };
-    constexpr std::uint64_t DECIMALS = 10000;
-    put_pair(digits % 100);
-    put_pair(digits % DECIMALS / 100);
-    *--at = '.';
-    std::uint64_t before = digits / DECIMALS;
-    for (; before >= 100; before /= 100) {
-        put_pair(before % 100);
-    }
-    if (before >= 10) {
-        put_pair(before);
-    } else {
-        *--at = static_cast<char>('0' + before);
-    }
-    if (std::signbit(value)) {
-        *--at = '-';
-    }
-    const auto length = static_cast<std::size_t>(buffer + sizeof buffer - at);
-    std::memcpy(out, at, length);
-    return length;
-}
+constexpr std::string_view NO_NUMBER = "N.....";
 
 }  // namespace
 
-void PrintCanon::begin_line() {
-    // As "{:5d} {} ", without its cost.
-    char digits[12];
-    char *at = digits + sizeof digits;
-    *--at = ' ';
-    for (int rest = ++count_; rest != 0; rest /= 10) {
-        *--at = static_cast<char>('0' + rest % 10);
+PrintCanon::PrintCanon(std::FILE *out) : out_(out) {
+    head_.fill(' ');
+    head_[COUNTER_WIDTH - 1] = '0';
+    set_prefix(NO_NUMBER);
+}
+
+/// Adds one to the counter where it stands, in decimal digits.
+void PrintCanon::count_line() {
+    char *digit = &head_[COUNTER_WIDTH - 1];
+    for (; *digit == '9'; --digit) {
+        *digit = '0';
     }
-    while (at > digits + sizeof digits - 6) {
-        *--at = ' ';
-    }
-    line_.assign(at, digits + sizeof digits);
-    line_.append(prefix_).append(1, ' ');
+    *digit = *digit == ' ' ? '1' : static_cast<char>(*digit + 1);
+    head_begin_ = std::min(head_begin_, static_cast<std::size_t>(digit - head_.data()));
+}
+
+void PrintCanon::set_prefix(std::string_view prefix) {
+    head_[COUNTER_WIDTH] = ' ';
+    prefix.copy(&head_[COUNTER_WIDTH + 1], MOST_PREFIX);
+    head_end_ = COUNTER_WIDTH + 1 + prefix.size();
+    head_[head_end_++] = ' ';
 }
 
 void PrintCanon::put(std::string_view call) {
-    begin_line();
+    count_line();
+    line_.assign(&head_[head_begin_], head_end_ - head_begin_);
     line_.append(call).append(1, '\n');
     fwrite_unlocked(line_.data(), 1, line_.size(), out_);
 }
 
 void PrintCanon::begin_block(const BlockRef &block) {
     if (block.isNumbered) {
-        prefix_ = fmt::format("N{:<5d}", block.sequence);
+        set_prefix(fmt::format("N{:<5d}", block.sequence));
         isPrefixNumbered_ = true;
     } else if (isPrefixNumbered_) {
-        prefix_ = "N.....";
+        set_prefix(NO_NUMBER);
         isPrefixNumbered_ = false;
     }
 }
@@ -139,7 +107,9 @@ void PrintCanon::set_feed_reference_xyz() {
 }
 
 void PrintCanon::set_feed_rate(double rate) {
-    put(fmt::format("SET_FEED_RATE({:.4f})", rate));
+    std::string call = "SET_FEED_RATE(";
+    append_fixed4(call, rate);
+    put(call += ')');
 }
 
 void PrintCanon::set_feed_mode(int spindle, FeedMode mode) {
@@ -163,47 +133,61 @@ void PrintCanon::set_planner_mode(int type, double peak_scale) {
     put(fmt::format("SET_PLANNER_MODE(type={}, peak_scale={:.6f})", type, peak_scale));
 }
 
-void PrintCanon::put_straight(std::string_view name, const Pose &p) {
-    begin_line();
-    constexpr std::size_t MOST = 2048;  // the name and six coordinates
+/// `name` has the opening bracket. All moves of a program pass here: what is known to be short is copied in
+/// pieces of a fixed size, which overlap.
+template <std::size_t SIZE>
+void PrintCanon::put_straight(const char (&name)[SIZE], const Pose &p) {
+    constexpr std::size_t MOST = 2304;  // head, name, and six coordinates of at most 317 characters
+    constexpr std::size_t SHORT = 24;   // ordinary coordinates
     char text[MOST];
-    char *at = text;
-    const auto put_text = [&at](const char *from, std::size_t length) {
-        std::memcpy(at, from, length);
-        at += length;
-    };
-    put_text(name.data(), name.size());
-    *at++ = '(';
+    count_line();
+    std::memcpy(text, &head_[head_begin_], MOST_HEAD);
+    char *at = text + (head_end_ - head_begin_);
+    std::memcpy(at, name, SIZE);
+    at += SIZE - 1;
     for (int i = 0; i < geom::AXIS_U; ++i) {
-        if (i > 0) {
-            put_text(", ", 2);
-        }
         // Most moves change few coordinates: the text of the others is known.
         Coordinate &known = coordinates_[static_cast<std::size_t>(i)];
         const auto bits = std::bit_cast<std::uint64_t>(p[i]);
         if (bits != known.bits || known.length == 0) {
             known.bits = bits;
-            known.length = write_fixed4(known.text.data(), known.text.size(), p[i]);
+            known.length = write_fixed4(known.text, p[i]);
         }
-        put_text(known.text.data(), known.length);
+        std::memcpy(at, known.text.data(), SHORT);
+        if (known.length > SHORT) {
+            std::memcpy(at, known.text.data(), known.length);
+        }
+        at += known.length;
+        std::memcpy(at, ", ", 2);
+        at += 2;
     }
-    put_text(")\n", 2);
-    line_.append(text, at);
-    fwrite_unlocked(line_.data(), 1, line_.size(), out_);
+    at -= 2;  // no comma after the last
+    std::memcpy(at, ")\n", 2);
+    at += 2;
+    fwrite_unlocked(text, 1, static_cast<std::size_t>(at - text), out_);
 }
 
 void PrintCanon::straight_traverse(const Pose &end) {
-    put_straight("STRAIGHT_TRAVERSE", end);
+    put_straight("STRAIGHT_TRAVERSE(", end);
 }
 
 void PrintCanon::straight_feed(const Pose &end) {
-    put_straight("STRAIGHT_FEED", end);
+    put_straight("STRAIGHT_FEED(", end);
 }
 
 void PrintCanon::arc_feed(const ArcFeed &arc) {
-    put(fmt::format("ARC_FEED({:.4f}, {:.4f}, {:.4f}, {:.4f}, {}, {:.4f}, {:.4f}, {:.4f}, {:.4f})",
-                    arc.first_end, arc.second_end, arc.first_centre, arc.second_centre, arc.rotation,
-                    arc.axis_end, arc.end[3], arc.end[4], arc.end[5]));
+    std::string call = "ARC_FEED(";
+    call.reserve(160);
+    for (const double value : {arc.first_end, arc.second_end, arc.first_centre, arc.second_centre}) {
+        append_fixed4(call, value);
+        call += ", ";
+    }
+    call += std::to_string(arc.rotation);
+    for (const double value : {arc.axis_end, arc.end[3], arc.end[4], arc.end[5]}) {
+        call += ", ";
+        append_fixed4(call, value);
+    }
+    put(call += ')');
 }
 
 void PrintCanon::nurbs_feed(const NurbsFeed &nurbs) {
@@ -212,7 +196,7 @@ void PrintCanon::nurbs_feed(const NurbsFeed &nurbs) {
 
 void PrintCanon::straight_probe(const Pose &end, ProbeKind) {
     put("TURN_PROBE_ON()");
-    put_straight("STRAIGHT_PROBE", end);
+    put_straight("STRAIGHT_PROBE(", end);
     put("TURN_PROBE_OFF()");
 }
 

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <string>
 
+#include "base/text.hh"
 #include "interp/canon.hh"
 
 namespace mw::interp {
@@ -15,7 +16,7 @@ namespace mw::interp {
 /// files.
 class PrintCanon final : public Canon {
   public:
-    explicit PrintCanon(std::FILE *out) : out_(out) {}
+    explicit PrintCanon(std::FILE *out);
     PrintCanon(const PrintCanon &) = delete;
     PrintCanon &operator=(const PrintCanon &) = delete;
 
@@ -88,20 +89,26 @@ class PrintCanon final : public Canon {
     struct Coordinate {
         std::uint64_t bits = 0;
         std::size_t length = 0;
-        std::array<char, 320> text{};  ///< the largest double has 315 characters
+        std::array<char, FIXED4_SIZE> text{};
     };
+    static constexpr std::size_t COUNTER_WIDTH = 15, MOST_PREFIX = 12;
+    static constexpr std::size_t MOST_HEAD = COUNTER_WIDTH + MOST_PREFIX + 2;
 
-    /// Puts counter and prefix of the next call into line_.
-    void begin_line();
+    void count_line();
+    void set_prefix(std::string_view prefix);
     void put(std::string_view call);
-    void put_straight(std::string_view name, const Pose &end);
+    template <std::size_t SIZE>
+    void put_straight(const char (&name)[SIZE], const Pose &end);
 
     std::FILE *out_;
-    std::string prefix_ = "N.....";
     bool isPrefixNumbered_ = false;
     std::string line_;
     std::array<Coordinate, geom::AXIS_U> coordinates_;
-    int count_ = 0;
+    /// What the next line begins with: the counter, to the right; the block's number; a blank after each. As
+    /// long again as it may be, so that a piece of a fixed size can be copied from anywhere in the counter.
+    std::array<char, 2 * MOST_HEAD> head_{};
+    std::size_t head_begin_ = COUNTER_WIDTH - 5;  ///< five places at least
+    std::size_t head_end_ = 0;
 };
 
 }  // namespace mw::interp

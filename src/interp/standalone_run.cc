@@ -98,6 +98,15 @@ Result<> Run::read_tools() {
     return {};
 }
 
+/// Fewer and larger writes than the library would make; but line by line where someone looks on.
+void buffer_output(std::FILE *out) {
+    constexpr std::size_t SIZE = 65536;
+    static char buffer[SIZE];  // stdout uses it until the process is over
+    if (::isatty(::fileno(out)) == 0) {
+        std::setvbuf(out, buffer, _IOFBF, SIZE);
+    }
+}
+
 Result<> Run::prepare() {
     if (Result<> done = read_ini(); !done) {
         return done;
@@ -119,6 +128,7 @@ Result<> Run::prepare() {
             return fail(fmt::format("cannot write {}", options_.output));
         }
     }
+    buffer_output(out_);
     canon_ = std::make_unique<PrintCanon>(out_);
     if (options_.plugin.empty()) {
         interpreter_ = std::make_unique<Interpreter>(*canon_, world_, world_, world_, settings_);

@@ -20,8 +20,10 @@ constexpr double AT_FEED = 1.02;
 }  // namespace
 
 Estimator::Estimator(const Limits &limits, double period_s, Listener listener)
-    : limits_(limits), period_s_(period_s), listener_(std::move(listener)),
-      store_(std::make_unique<PathStore>()), executor_(std::make_unique<Executor>(*store_, period_s)),
+    : limits_(limits), period_s_(period_s),
+      period_power_{period_s, period_s * period_s, period_s * period_s * period_s},
+      listener_(std::move(listener)), store_(std::make_unique<PathStore>()),
+      executor_(std::make_unique<Executor>(*store_, period_s)),
       planner_(std::make_unique<Planner>(*store_, PlannerSettings{period_s, LATENCY, HORIZON_S, true})) {
     planner_->set_limits(limits);
 }
@@ -30,12 +32,22 @@ void Estimator::begin(const Pose &pose) {
     executor_->set_position(pose);
     executor_->step(++cycle_);
     planner_->begin(pose, executor_->snapshot());
+    isFresh_ = true;
     last_.fill(pose);
 }
 
 void Estimator::add(const Primitive &primitive, const MoveRequest &request) {
     if (!(primitive.length > 1e-12)) {
         return;
+    }
+    const double tolerance = request.kept_tolerance();
+    if (!isFresh_ && !planner_->suits(tolerance)) {
+        finish();
+        isFresh_ = true;
+    }
+    if (isFresh_) {
+        planner_->begin(planner_->end(), executor_->snapshot(), tolerance);
+        isFresh_ = false;
     }
     while (!planner_->hasRoom(executor_->snapshot())) {
         if (!step()) {
@@ -82,7 +94,7 @@ double Estimator::ratio(int i, int order) const {
     const double limit = order == 0   ? limits_.velocity[n]
                          : order == 1 ? limits_.acceleration[n]
                                       : limits_.jerk[n];
-    return value / (std::pow(period_s_, order + 1) * limit);
+    return value / (period_power_[static_cast<std::size_t>(order)] * limit);
 }
 
 void Estimator::count(const ExecutorOutput &out) {

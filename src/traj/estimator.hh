@@ -49,6 +49,7 @@ class Estimator {
 
     Limits limits_;
     double period_s_;
+    std::array<double, 3> period_power_;  ///< [s, s^2, s^3]
     Listener listener_;
     std::unique_ptr<PathStore> store_;
     std::unique_ptr<Executor> executor_;
@@ -58,6 +59,7 @@ class Estimator {
     std::uint64_t move_cycles_ = 0;
     std::uint64_t standing_cycles_ = 0;
     bool isComplete_ = true;
+    bool isFresh_ = true;  ///< nothing has been added to the path
     std::array<Pose, 4> last_{};
     std::array<std::array<std::uint64_t, LIMITED_COUNT>, 3>
         bound_{};  ///< cycles near a limit, by order and axis

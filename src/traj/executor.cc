@@ -312,7 +312,7 @@ void Executor::locate() noexcept {
     const Piece &piece = store_.piece(state_.piece);
     leader_ = position_at(store_, piece, state_.x);
     leader_s_ = piece.programmed_s + state_.x;
-    leader_tolerance_ = piece.tolerance;
+    leader_tolerance_ = tolerance_at(piece, state_.x);
     const bool isBlend = piece.blend_d > 0;
     const double along_piece = piece.offset + state_.x;
     const bool isSecond = isBlend && along_piece >= piece.blend_d;

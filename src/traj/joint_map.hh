@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 
 #include "base/limits.hh"
 #include "geom/pose.hh"
@@ -22,6 +23,12 @@ class JointMap {
 struct JointLimits {
     int count = 0;
     std::array<double, MAX_JOINTS> velocity{}, acceleration{}, jerk{};
+    std::array<double, MAX_JOINTS> low{}, high{};  ///< soft limits; +-infinity where none holds
+
+    JointLimits() noexcept {
+        low.fill(-std::numeric_limits<double>::infinity());
+        high.fill(std::numeric_limits<double>::infinity());
+    }
 };
 
 }  // namespace mw::traj

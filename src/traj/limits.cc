@@ -13,6 +13,8 @@ namespace {
 
 /// Share of an axis's acceleration that turning takes on a blend that is made for a given speed.
 constexpr double BLEND_SHARE = 0.7;
+/// The mean is at most this part longer than what is best on curves: see docs/motion/planner.md.
+constexpr double CURVE_SHARE = 1.2;
 /// Room that keeps fitted stops (Executor) and rounding inside the limits.
 constexpr double ACCELERATION_MARGIN = 1e-6;
 
@@ -119,16 +121,22 @@ AccelBound AccelBound::least(const AccelBound &x, const AccelBound &y, double v)
     return through_chords(left, v);
 }
 
-std::uint64_t filter_length(const Limits &limits, double period_s) noexcept {
+std::uint64_t filter_length(const Limits &limits, double period_s, double tolerance) noexcept {
     if (!limits.isJerkLimited) {
         return 1;
     }
     double longest = 0;
     for (std::size_t i = 0; i < limits.jerk.size(); ++i) {
         const bool isLimited = limits.jerk[i] < 1e9 && limits.acceleration[i] < 1e9;
-        if (isLimited && !geom::isAngular(static_cast<int>(i))) {
-            longest = std::max(longest, limits.acceleration[i] / limits.jerk[i]);
+        if (!isLimited || geom::isAngular(static_cast<int>(i))) {
+            continue;
         }
+        double length =
+            std::min(limits.acceleration[i] / limits.jerk[i], std::sqrt(limits.velocity[i] / limits.jerk[i]));
+        if (tolerance > 0) {
+            length = std::min(length, CURVE_SHARE * std::cbrt(24.0 * tolerance / limits.jerk[i]));
+        }
+        longest = std::max(longest, length);
     }
     const double samples = std::ceil(longest / period_s - 1e-9);
     return static_cast<std::uint64_t>(std::clamp(samples, 1.0, static_cast<double>(MAX_FILTER)));

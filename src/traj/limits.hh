@@ -18,8 +18,10 @@ struct Limits {
 inline constexpr double UNLIMITED = 1e300;
 
 /// Samples of the mean that turns acceleration-limited motion into jerk-limited motion: the longest time that
-/// an axis of X Y Z U V W, or the XYZ norm, needs to build up its acceleration. 1 without jerk limits.
-std::uint64_t filter_length(const Limits &limits, double period_s) noexcept;
+/// an axis of X Y Z U V W, or the XYZ norm, needs to build up its acceleration, or the acceleration with
+/// which it gets to its speed soonest; no longer than what suits curves within `tolerance` (0: none is kept).
+/// 1 without jerk limits. Formulas: docs/motion/planner.md.
+std::uint64_t filter_length(const Limits &limits, double period_s, double tolerance) noexcept;
 
 /// The limits with accelerations that a mean over `filter` samples can build up within the jerk limits.
 Limits limits_for_filter(const Limits &limits, std::uint64_t filter, double period_s) noexcept;

@@ -184,6 +184,12 @@ constexpr double on_along(double length) noexcept {
     return 1e-11 * (1.0 + length);
 }
 
+/// What the path is allowed to deviate at `x`; 0: any. Who stands at the start of a piece is still on the way
+/// that led there, and asks for nothing of its own.
+constexpr double tolerance_at(const Piece &piece, double x) noexcept {
+    return x > 0 ? piece.tolerance : 0.0;
+}
+
 /// Position at `x` of a piece. [servo, planner]
 Pose position_at(const PathStore &store, const Piece &piece, double x) noexcept;
 

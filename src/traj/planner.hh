@@ -33,6 +33,9 @@ struct MoveRequest {
     int spindle = 0;
     bool isGated = false;   ///< a stop before it until the gate opens
     bool isPhased = false;  ///< the gate opens at a spindle phase
+
+    /// The tolerance of a blend, 0 where the move has none.
+    double kept_tolerance() const noexcept { return join == Join::BLEND ? tolerance : 0.0; }
 };
 
 /// What may change while the path is under way.
@@ -59,14 +62,24 @@ class Planner {
 
     /// Holds for moves added from now on; jerk limits from the next `begin` on.
     void set_limits(const Limits &limits) noexcept;
-    /// The jerk limits of the present path are those of the last `set_limits`.
-    bool isFilterCurrent() const noexcept { return filter_length(wanted_, settings_.period_s) == filter_; }
+    /// The path that begins now with `tolerance` would be made as the present one.
+    bool isFilterCurrent(double tolerance) const noexcept {
+        return filter_length(wanted_, settings_.period_s, tolerance) == filter_;
+    }
+    /// With jerk limits a path is made for the tolerance that it began with; a much smaller one asks for
+    /// another path, from a stop. 0: none is kept.
+    bool suits(double tolerance) const noexcept;
 
     /// For machines whose joints are not axes; `map` stays valid. Null: the axes' limits are all there are.
     void set_joints(const JointMap *map, const JointLimits &limits) noexcept;
 
-    /// A new path begins at `start`, where the executor rests with nothing left of another.
-    void begin(const Pose &start, const Snapshot &now) noexcept;
+    /// Soft limits of the axes: the path is not moved beyond them, wherever the program leads. None to begin
+    /// with; +-infinity where none holds.
+    void set_room(const Pose &low, const Pose &high) noexcept;
+
+    /// A new path begins at `start`, where the executor rests with nothing left of another. `tolerance`: of
+    /// its first move, 0 when that keeps none.
+    void begin(const Pose &start, const Snapshot &now, double tolerance = 0) noexcept;
 
     /// There is room for one more move.
     bool hasRoom(const Snapshot &now) const noexcept;
@@ -120,7 +133,9 @@ class Planner {
         double v_limit = 0;  ///< highest speed the limits allow
         double v2_in = 0;    ///< highest speed at its start from which all that follows can be kept, squared
         bool isStopBefore = false;
-        double dwell_s = 0;  ///< with jerk limits: how long it stands there at least
+        double dwell_s = 0;          ///< with jerk limits: how long it stands there at least
+        std::uint64_t eased_in = 0;  ///< the replanning that made the piece slower by these factors
+        double eased_speed = 1, eased_acceleration = 1;
     };
     struct State {
         Sequence piece = 0;
@@ -196,18 +211,23 @@ class Planner {
     // --- planner_shape.cc: with jerk limits, the corners of dense curves
     bool wanted_shift(Sequence nb, Sequence nc, Pose &shift, double &reach) const noexcept;
     void shape_corner(Sequence nb, Sequence nc) noexcept;
+    Pose within_room(const Pose &corner, const Pose &shift) const noexcept;
     void reshape(Sequence n, const Pose &in, const Pose &out) noexcept;
     Pose programmed_at(Sequence n, double s) const noexcept;
 
     // --- planner_check.cc: what is commanded is tried out before it is committed
     bool isPlanSound(const Snapshot &now, const State &from, Sequence begin) noexcept;
+    bool isStopPassed(Sequence begin) const noexcept;
     void start_trial(const Snapshot &now, const State &from) noexcept;
     void try_sample(const Phase &phase, double t) noexcept;
     void push_sample(const LeaderSample &sample, Sequence piece) noexcept;
     bool isTrialSound() noexcept;
     bool isLeaderSound() const noexcept;
     double trial_deviation(std::uint64_t tick) noexcept;
+    double trial_tolerance() const noexcept;
     bool ease(const State &from) noexcept;
+    void ease_piece(Sequence piece, double speed, double acceleration) noexcept;
+    void take_back_easing() noexcept;
     void scale_piece(Sequence piece, double speed, double acceleration) noexcept;
     bool isCurved(Sequence piece) const noexcept;
     SpeedLimit limit_with_joints(const Piece &piece, const SpeedLimit &limit) const noexcept;
@@ -277,12 +297,16 @@ class Planner {
     double trial_s_sum_ = 0;
     Pose trial_origin_;
     double trial_s_origin_ = 0;
+    std::uint64_t tolerance_tick_ = 0;  ///< the newest sample whose tolerance differs from the one before
     std::uint64_t failed_tick_ = 0;
-    double excess_ = 1;  ///< what the failed sample has over what is allowed
+    std::uint64_t replan_ = 0;    ///< counts replanning
+    bool isAfterDriven_ = false;  ///< the failed sample depends on what has been driven already
+    double excess_ = 1;           ///< what the failed sample has over what is allowed
     /// Relative slack of what the trial compares, half of what checkers of the trajectory allow.
     static constexpr double SLACK = 1.0 + 5e-7;
     const JointMap *joint_map_ = nullptr;
     JointLimits joint_limits_;
+    Pose room_low_, room_high_;
     std::array<std::array<double, MAX_JOINTS>, 4> trial_joints_{};
     std::uint64_t joint_tick_ = 0, joint_samples_ = 0;
     std::uint64_t along_tick_ = 0;  ///< the last on an arc that is followed exactly

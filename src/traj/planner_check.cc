@@ -34,6 +34,7 @@ void Planner::push_sample(const LeaderSample &sample, Sequence piece) noexcept {
     const TrialSample &two = trial_[(n - 2) % HISTORY_CAPACITY];
     to.leader = sample;
     to.piece = piece;
+    tolerance_tick_ = sample.tolerance != one.leader.tolerance ? n : tolerance_tick_;
     to.bend = (sample.pose - one.leader.pose) - (one.leader.pose - two.leader.pose);
     const LeaderSample &old = trial_[(n - filter_) % HISTORY_CAPACITY].leader;
     trial_sum_ = trial_sum_ + (sample.pose - old.pose);
@@ -44,8 +45,8 @@ void Planner::push_sample(const LeaderSample &sample, Sequence piece) noexcept {
 void Planner::start_trial(const Snapshot &now, const State &from) noexcept {
     const std::uint64_t known = filter_ + 4;
     const Piece &piece = store_.piece(from.piece);
-    LeaderSample start{position_at(store_, piece, from.x), piece.programmed_s + from.x, piece.tolerance,
-                       piece.move};
+    LeaderSample start{position_at(store_, piece, from.x), piece.programmed_s + from.x,
+                       tolerance_at(piece, from.x), piece.move};
     trial_tick_ = 2 * HISTORY_CAPACITY;
     const bool isFresh = now.motion == Motion::REST && now.isSettled;
     for (std::uint64_t i = 0; i <= known; ++i) {
@@ -70,6 +71,7 @@ void Planner::start_trial(const Snapshot &now, const State &from) noexcept {
         }
     }
     joint_tick_ = 0;
+    tolerance_tick_ = trial_tick_;
     // Until the plan begins.
     Sequence n = now.phase;
     double t = now.time_in_phase;
@@ -100,9 +102,21 @@ void Planner::try_sample(const Phase &phase, double t) noexcept {
     const Piece &piece = store_.piece(phase.piece);
     const double x = phase.x0 + t * (phase.v0 + t * (0.5 * phase.a + t * phase.j * (1.0 / 6.0)));
     const bool isSecond = piece.blend_d > 0 && piece.offset + x >= piece.blend_d;
-    push_sample({position_at(store_, piece, x), piece.programmed_s + x, piece.tolerance,
+    push_sample({position_at(store_, piece, x), piece.programmed_s + x, tolerance_at(piece, x),
                  piece.move + (isSecond ? 1 : 0)},
                 phase.piece);
+}
+
+/// The least tolerance of the samples in the mean.
+double Planner::trial_tolerance() const noexcept {
+    const std::uint64_t n = trial_tick_;
+    const std::uint64_t differing = n >= tolerance_tick_ + filter_ ? 1 : filter_;
+    double tolerance = UNLIMITED;
+    for (std::uint64_t i = 0; i < differing; ++i) {
+        const double p = trial_[(n - i) % HISTORY_CAPACITY].leader.tolerance;
+        tolerance = p > 0 ? std::min(tolerance, p) : tolerance;
+    }
+    return tolerance;
 }
 
 /// Distance of the commanded mean from the programmed path, each matched with the mean place: in order.
@@ -180,16 +194,24 @@ bool Planner::isTrialSound() noexcept {
         excess_ = geom::norm_xyz(swing) / xyz;
         return false;
     }
-    double tolerance = UNLIMITED;
-    for (std::uint64_t i = 0; i < filter_; ++i) {
-        const double p = trial_[(n - i) % HISTORY_CAPACITY].leader.tolerance;
-        tolerance = p > 0 ? std::min(tolerance, p) : tolerance;
-    }
+    const double tolerance = trial_tolerance();
     if (tolerance >= UNLIMITED) {
         return true;
     }
     excess_ = trial_deviation(n) / tolerance;
     return excess_ <= 1.0;
+}
+
+/// The plan since phase `begin` runs through a place where it has to stand: an attempt that made
+/// accelerations less left no way to stop from where the plan before it leads.
+bool Planner::isStopPassed(Sequence begin) const noexcept {
+    for (Sequence n = begin; n < plan_end_; ++n) {
+        const Phase &p = store_.phase(n);
+        if (p.x0 <= 0 && p.v0 > 0 && piece_plan(p.piece).isStopBefore) {
+            return true;
+        }
+    }
+    return false;
 }
 
 bool Planner::isPlanSound(const Snapshot &now, const State &from, Sequence begin) noexcept {
@@ -238,6 +260,33 @@ void Planner::scale_piece(Sequence piece, double speed, double acceleration) noe
     }
 }
 
+/// As scale_piece, and can be taken back.
+void Planner::ease_piece(Sequence piece, double speed, double acceleration) noexcept {
+    PiecePlan &plan = piece_plan(piece);
+    if (plan.eased_in != replan_) {
+        plan.eased_in = replan_;
+        plan.eased_speed = 1;
+        plan.eased_acceleration = 1;
+    }
+    plan.eased_speed *= speed;
+    plan.eased_acceleration *= acceleration;
+    scale_piece(piece, speed, acceleration);
+}
+
+/// Takes back what this replanning has eased: it did not help, since the trial failed for what was driven
+/// before.
+void Planner::take_back_easing() noexcept {
+    for (Sequence k = oldest_piece_; k <= last_piece_; ++k) {
+        PiecePlan &plan = piece_plan(k);
+        if (plan.eased_in == replan_) {
+            scale_piece(k, 1.0 / plan.eased_speed, 1.0 / plan.eased_acceleration);
+            plan.eased_in = 0;
+            plan.v2_in = -1;
+        }
+    }
+    pass_backward(last_piece_, true);
+}
+
 /// What follows can still be kept from this state.
 bool Planner::isKept(const State &from) const noexcept {
     const Piece &p = store_.piece(from.piece);
@@ -251,9 +300,11 @@ bool Planner::ease(const State &from) noexcept {
     const Sequence first = from.v > 0 ? from.piece + 1 : from.piece;
     Sequence low = 0;
     Sequence high = 0;
+    isAfterDriven_ = false;
     for (std::uint64_t i = 0; i <= filter_ + 2; ++i) {
         const Sequence k = trial_[(failed_tick_ - i) % HISTORY_CAPACITY].piece;
         const bool isFree = k >= first && k > 0;
+        isAfterDriven_ = isAfterDriven_ || !isFree;
         high = isFree ? std::max(high, k) : high;
         low = isFree ? (low == 0 ? k : std::min(low, k)) : low;
     }
@@ -282,7 +333,7 @@ bool Planner::ease(const State &from) noexcept {
     const auto scale = [&](double speed, double acceleration) {
         for (Sequence k = low; k <= high; ++k) {
             if (isCurved(k) || !isAnyCurved || most_dwell > 0) {
-                scale_piece(k, speed, acceleration);
+                ease_piece(k, speed, acceleration);
             }
             piece_plan(k).v2_in = -1;
         }

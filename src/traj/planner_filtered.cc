@@ -197,6 +197,8 @@ bool Planner::replan_filtered(const Snapshot &now, State from, bool isStop) noex
     const double standing = STANDING * store_.piece(from.piece).acceleration.at(0) * settings_.period_s;
     from.v = from.v < standing ? 0.0 : from.v;
     const double delay = start_delay_s_;
+    ++replan_;
+    isAfterDriven_ = false;
     for (int n = 0; n < ATTEMPTS; ++n) {
         plan_end_ = begin;
         planned_ = from;
@@ -214,8 +216,8 @@ bool Planner::replan_filtered(const Snapshot &now, State from, bool isStop) noex
         const bool isAtEnd = isAtEndOfPath_;
         const double until_s = planned_s_;
         const bool isEmpty = plan_end_ == waited && from.v <= 0;
-        if (isEmpty || !emit_tail()) {
-            break;
+        if (isEmpty || !emit_tail() || isStopPassed(begin)) {
+            break;  // the plan before this one stays in force, with its stop
         }
         isAtEndOfPath_ = isAtEnd;
         planned_s_ = until_s;
@@ -247,6 +249,9 @@ bool Planner::replan_filtered(const Snapshot &now, State from, bool isStop) noex
         }
     }
     plan_end_ = begin;
+    if (isAfterDriven_) {
+        take_back_easing();
+    }
     return false;
 }
 

@@ -31,6 +31,8 @@ constexpr double JOINT_CUT_DEG = 1.0;
 constexpr double ZONE_SHARE = 0.45;
 /// Part of the tolerance that joining lines may take when no other tolerance is given for it.
 constexpr double JOIN_SHARE = 0.1;
+/// How much longer than what suits a move the mean may be.
+constexpr double MOST_UNSUITED = 1.25;
 constexpr double BLEND_CUT = 0.3;
 constexpr int MOST_BLEND_CUTS = 4;
 
@@ -43,6 +45,8 @@ Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept
     none.acceleration.fill(UNLIMITED);
     none.jerk.fill(UNLIMITED);
     set_limits(none);
+    room_low_.c.fill(-UNLIMITED);
+    room_high_.c.fill(UNLIMITED);
 }
 
 void Planner::set_limits(const Limits &limits) noexcept {
@@ -54,9 +58,14 @@ void Planner::set_limits(const Limits &limits) noexcept {
     limits_ = limits_for_filter(limits, filter_, settings_.period_s);
 }
 
-void Planner::begin(const Pose &start, const Snapshot &now) noexcept {
+bool Planner::suits(double tolerance) const noexcept {
+    const auto wanted = static_cast<double>(filter_length(wanted_, settings_.period_s, tolerance));
+    return tolerance <= 0 || static_cast<double>(filter_) <= wanted * MOST_UNSUITED;
+}
+
+void Planner::begin(const Pose &start, const Snapshot &now, double tolerance) noexcept {
     end_ = start;
-    filter_ = filter_length(wanted_, settings_.period_s);
+    filter_ = filter_length(wanted_, settings_.period_s, tolerance);
     highest_ = wanted_;
     set_limits(wanted_);
     programmed_s_ = 0;
@@ -322,6 +331,7 @@ void Planner::add_piece(const Piece &piece, const SpeedLimit &limit) noexcept {
         std::min(lowest.v, MOVES_PER_CYCLE * store_.primitive(piece.primitive).length / settings_.period_s);
     plan.v2_in = -1;
     plan.isStopBefore = isOpenStop_;
+    plan.eased_in = 0;
     plan.dwell_s = isOpenStop_ ? open_joint_.dwell_s : filter_s();
     last_piece_ = k;
     isAtEndOfPath_ = false;
@@ -347,7 +357,7 @@ Planner::Joint Planner::joint_between(Sequence na, Sequence nb) const noexcept {
     if (step <= SAME_DIRECTION) {
         return {};
     }
-    const bool isExact = ma.request.join == Join::EXACT || mb.request.join == Join::EXACT;
+    const bool isExact = ma.request.join != Join::BLEND || mb.request.join != Join::BLEND;
     const Pose ta = derivative_at(a, a.length);
     const Pose tb = derivative_at(b, 0);
     const bool isCorner = isExact && step > EXACT_PATH_STEP;

@@ -57,6 +57,34 @@ bool Planner::wanted_shift(Sequence nb, Sequence nc, Pose &shift, double &reach)
     return true;
 }
 
+void Planner::set_room(const Pose &low, const Pose &high) noexcept {
+    room_low_ = low;
+    room_high_ = high;
+}
+
+/// What of `shift` leaves the moved corner within the soft limits. The commanded path runs inside of the
+/// corners, so it keeps them as well.
+Pose Planner::within_room(const Pose &corner, const Pose &shift) const noexcept {
+    Pose kept;
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        const double low = std::min(room_low_[i] - corner[i], 0.0);
+        const double high = std::max(room_high_[i] - corner[i], 0.0);
+        kept[i] = std::clamp(shift[i], low, high);
+    }
+    double as_programmed[MAX_JOINTS] = {};
+    double moved[MAX_JOINTS] = {};
+    if (joint_map_ == nullptr || !joint_map_->joints_at(corner, as_programmed)) {
+        return kept;
+    }
+    bool isInside = joint_map_->joints_at(corner + kept, moved);
+    for (int j = 0; j < joint_limits_.count && isInside; ++j) {
+        const auto n = static_cast<std::size_t>(j);
+        isInside = moved[j] >= std::min(joint_limits_.low[n], as_programmed[j]) &&
+                   moved[j] <= std::max(joint_limits_.high[n], as_programmed[j]);
+    }
+    return isInside ? kept : Pose{};
+}
+
 /// Moves the corner between the newest whole line and the one that has come.
 void Planner::shape_corner(Sequence nb, Sequence nc) noexcept {
     if (nb == 0) {
@@ -81,11 +109,12 @@ void Planner::shape_corner(Sequence nb, Sequence nc) noexcept {
     }
     MovePlan &mb = move_plan(nb);
     MovePlan &mc = move_plan(nc);
-    mb.shift_out = shift_;
-    mc.shift_in = shift_;
-    reshape(nb, {}, shift_);
+    const Pose shift = within_room(store_.primitive(nb).end, shift_);
+    mb.shift_out = shift;
+    mc.shift_in = shift;
+    reshape(nb, {}, shift);
     mc.start_s = mb.start_s + store_.primitive(nb).length;
-    reshape(nc, shift_, {});
+    reshape(nc, shift, {});
 }
 
 /// The line with its ends moved; what is told of it stays as programmed.

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <array>
+#include <bit>
 #include <clocale>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <random>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -26,6 +33,80 @@ TEST(Text, TheLocaleDoesNotMatter_A8) {
     EXPECT_EQ(parse_double("1.5"), 1.5);
     EXPECT_EQ(to_text(1.5), "1.5");
     std::setlocale(LC_ALL, "C");
+}
+
+std::string fixed4(double value) {
+    std::array<char, FIXED4_SIZE> text{};
+    return {text.data(), write_fixed4(text, value)};
+}
+
+std::string printf_fixed4(double value) {
+    std::array<char, FIXED4_SIZE> text{};
+    return {text.data(), static_cast<std::size_t>(std::snprintf(text.data(), text.size(), "%.4f", value))};
+}
+
+TEST(Text, FourDecimalsOfSpecialValuesAreThoseOfPrintf) {
+    using Limits = std::numeric_limits<double>;
+    for (const double value : {0.0,
+                               0.5,
+                               0.00005,
+                               0.00015,
+                               0.03125,
+                               0.5 / 65536,
+                               1.00005,
+                               12345.67895,
+                               9999.99995,
+                               99999.99999,
+                               1e9,
+                               9999999999.9999,
+                               9999999999.99995,
+                               1e10,
+                               1e14,
+                               1e15,
+                               1e16,
+                               1e18,
+                               1e19,
+                               1e22,
+                               1e300,
+                               Limits::max(),
+                               Limits::min(),
+                               Limits::denorm_min(),
+                               Limits::infinity(),
+                               Limits::quiet_NaN()}) {
+        for (const double one :
+             {value, -value, std::nextafter(value, 1e308), std::nextafter(value, -1e308)}) {
+            EXPECT_EQ(fixed4(one), printf_fixed4(one));
+        }
+    }
+}
+
+TEST(Text, FourDecimalsOfAnyValueAreThoseOfPrintf) {
+    static constexpr unsigned SEED = 4;
+    constexpr int COUNT = 300000;
+    std::mt19937_64 random(SEED);
+    const auto pick = [&random](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    const auto check = [](double value) {
+        // EXPECT_EQ on each would take most of the time.
+        if (fixed4(value) != printf_fixed4(value)) {
+            ADD_FAILURE() << "seed " << SEED << ": " << to_text(value) << " is " << fixed4(value);
+        }
+    };
+    for (int i = 0; i < COUNT; ++i) {
+        const double size = std::pow(10.0, pick(-6.0, 16.0));
+        check(pick(-size, size));
+        check(std::round(pick(-1e6, 1e6)) / 1000.0);  // as programs have them
+        // Ties of the fifth decimal as near as a double comes, and their neighbours on both sides.
+        const double tie = (std::floor(pick(0.0, std::fmin(size * 1e4, 4e15))) + 0.5) / 1e4;
+        check(tie);
+        check(std::nextafter(tie, 0.0));
+        check(-std::nextafter(tie, 1e300));
+        check(tie + pick(-2e-7, 2e-7));
+        // Exact ties: odd multiples of 1/32 of which four decimals are a half short.
+        check(std::floor(pick(-1e9, 1e9)) / 32.0);
+        check(std::bit_cast<double>(random()));
+    }
 }
 
 TEST(Text, NearestNameIsOfferedOnlyWhenNear) {

@@ -17,7 +17,14 @@ struct ActiveCode {
 };
 
 struct BlockValues {
-    BlockValues() {}  // the arrays stay unset: this is made for every block
+    BlockValues() {}  // the arrays stay unset
+    /// As made new, without the cost of setting all that is not looked at.
+    void clear() {
+        present = groups = 0;
+        codes.clear();
+        motion = nullptr;
+        isMotionImplied = isMachineCoordinates = false;
+    }
 
     std::uint32_t present = 0;               ///< bit per letter, G and M left out
     std::array<double, LETTER_COUNT> value;  ///< only those present

@@ -23,9 +23,13 @@ double modulo(double a, double b) {
 
 }  // namespace
 
-bool Evaluator::isNumber(double index) {
-    return index >= 1.0 - WHOLE_TOLERANCE && index < PARAMETER_COUNT - 0.5 &&
-           std::fabs(index - std::round(index)) <= WHOLE_TOLERANCE;
+bool Evaluator::round_number(double index, int &number) {
+    const bool isInRange = index >= 1.0 - WHOLE_TOLERANCE && index < PARAMETER_COUNT - 0.5;
+    if (!isInRange || std::fabs(index - std::round(index)) > WHOLE_TOLERANCE) {
+        return false;
+    }
+    number = static_cast<int>(std::lround(index));
+    return true;
 }
 
 Evaluator::NameClass Evaluator::classify(NameId name) const {
@@ -123,7 +127,8 @@ bool Evaluator::parameter(const Arena &arena, const Node &node, double &out) con
     if (!value(arena, node.a, index)) {
         return false;
     }
-    if (!isNumber(index)) {
+    int number = 0;
+    if (!take_number(index, number)) {
         if (std::fabs(index - std::round(index)) > WHOLE_TOLERANCE) {
             return fault_.set(fmt::format("{} is not the number of a parameter: it must be whole", index),
                               node.column);
@@ -132,7 +137,7 @@ bool Evaluator::parameter(const Arena &arena, const Node &node, double &out) con
             fmt::format("Parameter number out of range: {} is not in 1..{}", index, PARAMETER_COUNT - 1),
             node.column);
     }
-    out = numbered(static_cast<int>(std::lround(index)));
+    out = numbered(number);
     return true;
 }
 

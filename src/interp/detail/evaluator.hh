@@ -38,13 +38,29 @@ class Evaluator {
     bool isReadOnly(NameId name) const;
     bool isGlobal(NameId name) const;
     /// In range for reading.
-    static bool isNumber(double index);
+    static bool isNumber(double index) {
+        int number = 0;
+        return take_number(index, number);
+    }
+    /// The parameter that `index` names; false when it is not isNumber().
+    static bool take_number(double index, int &number) {
+        // Nearly all are whole numbers: those need no rounding.
+        constexpr double MOST = PARAMETER_COUNT - 1;
+        if (index >= 1.0 && index <= MOST) {
+            number = static_cast<int>(index);
+            if (number == index) {
+                return true;
+            }
+        }
+        return round_number(index, number);
+    }
     double numbered(int number) const {
         return isBuiltInNumber(number) ? built_ins_.built_in(number) : parameters_.get(number);
     }
 
   private:
     enum class NameClass : std::uint8_t { UNKNOWN, LOCAL, GLOBAL, BUILT_IN };
+    static bool round_number(double index, int &number);
     NameClass classify(NameId name) const;
     bool parameter(const Arena &arena, const Node &node, double &out) const;
     bool function(const Arena &arena, const Node &node, double &out) const;

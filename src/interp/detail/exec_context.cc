@@ -25,13 +25,17 @@ void Executor::push_call(bool isRemap) {
 
 /// Fanuc-style calls have no arguments: #1 to #30 are the caller's own.
 bool Executor::pop_call(bool isFanuc) {
-    const Context context = contexts_.back();
+    const Context context = std::move(contexts_.back());
     contexts_.pop_back();
     parameters.pop_call(isFanuc);
     if (context.isRemap && !running_remaps_.empty()) {
         running_remaps_.pop_back();
     }
-    return !(context.isValid && context.isAutomatic) || restore_context(context.saved);
+    if (!context.saved || !context.isAutomatic) {
+        return true;
+    }
+    keep_state();
+    return restore_context(*context.saved);
 }
 
 void Executor::drop_calls(std::size_t depth) {
@@ -49,7 +53,7 @@ void Executor::drop_calls(std::size_t depth) {
 
 int Executor::context_status(std::size_t level) const {
     const Context &context = contexts_[level];
-    return (context.isValid ? 1 : 0) | (context.isAutomatic ? 2 : 0);
+    return (context.saved ? 1 : 0) | (context.isAutomatic ? 2 : 0);
 }
 
 bool Executor::do_context(const Code &code, const BlockValues &) {
@@ -58,17 +62,16 @@ bool Executor::do_context(const Code &code, const BlockValues &) {
     case 70:
     case 73:
         context.saved = state;
-        context.isValid = true;
         context.isAutomatic = code.number == 73;
         return true;
-    case 71: context.isValid = false; return true;
+    case 71: context.saved.reset(); return true;
     default: break;
     }
-    if (!context.isValid) {
+    if (!context.saved) {
         return fault.set(
             "M72 has nothing to restore: there is no M70 or M73 at this level, or M71 dropped it");
     }
-    return restore_context(context.saved);
+    return restore_context(*context.saved);
 }
 
 /// Runs one code as if it stood alone.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Straight moves: G0, G1, G53, polar words, G80.
+#include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -8,17 +10,30 @@
 #include "interp/detail/executor.hh"
 
 namespace mw::interp::detail {
+namespace {
+
+constexpr std::uint32_t AXIS_LETTERS = letters(geom::AXIS_LETTERS_LOWER);
+
+/// By the index of the letter.
+constexpr std::array<int, LETTER_COUNT> AXIS_OF_LETTER = [] {
+    std::array<int, LETTER_COUNT> axes{};
+    for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
+        axes[static_cast<std::size_t>(letter(geom::AXIS_LETTERS_LOWER[axis]))] = axis;
+    }
+    return axes;
+}();
+
+}  // namespace
 
 /// Where the axis words lead, in program coordinates.
 Pose Executor::target(const BlockValues &values) const {
     Pose end = state.position;
-    for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
-        const char name = geom::AXIS_LETTERS_LOWER[axis];
-        if (values.has(name)) {
-            const bool isHalved = axis == geom::AXIS_X && state.isDiameter;
-            const double given = values.at(name) * (isHalved ? 0.5 : 1.0);
-            end[axis] = state.isIncremental ? end[axis] + given : given;
-        }
+    for (std::uint32_t left = values.present & AXIS_LETTERS; left != 0; left &= left - 1) {
+        const auto index = static_cast<std::size_t>(std::countr_zero(left));
+        const int axis = AXIS_OF_LETTER[index];
+        const bool isHalved = axis == geom::AXIS_X && state.isDiameter;
+        const double given = values.value[index] * (isHalved ? 0.5 : 1.0);
+        end[axis] = state.isIncremental ? end[axis] + given : given;
     }
     return end;
 }
@@ -128,14 +143,15 @@ bool Executor::do_straight(const Code &code, const BlockValues &values) {
     if (code.number == 10 && !check_feed(values, "g1")) {
         return false;
     }
+    Pose end;
+    if (values.hasAxes() && !straight_target(values, end)) {
+        return false;
+    }
+    // Without compensation nothing fails from here on: see isStateSafe().
     state.motion = code.number;
     state.cycle.isRunning = false;
     if (!values.hasAxes()) {
         return true;
-    }
-    Pose end;
-    if (!straight_target(values, end)) {
-        return false;
     }
     state.isCompExit = false;
     if (state.comp != CompSide::OFF) {

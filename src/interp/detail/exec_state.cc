@@ -34,9 +34,22 @@ void Executor::announce_modes() {
 }
 
 void Executor::begin_block() {
-    before_ = state;
+    begin_light_block();
+    keep_state();
+}
+
+void Executor::begin_light_block() {
+    isStateKept_ = false;
     queued_before_ = canon.size();
     outcome = Outcome::OK;
+}
+
+/// The state is large: blocks that leave it alone are spared the copy.
+void Executor::keep_state() {
+    if (!isStateKept_) {
+        before_ = state;
+        isStateKept_ = true;
+    }
 }
 
 void Executor::commit() {
@@ -51,7 +64,9 @@ void Executor::commit() {
 }
 
 void Executor::rollback() {
-    state = before_;
+    if (isStateKept_) {
+        state = before_;
+    }
     parameters.rollback();
     tool_pending_.clear();
     pending_.reset();
@@ -79,7 +94,7 @@ void Executor::abort_block() {
     outcome = Outcome::OK;
     isProbing_ = isWaitingInput_ = false;
     state.nurbs_order = 0;
-    before_ = state;
+    isStateKept_ = false;
     queued_before_ = 0;
     patched_.clear();
     state.comp_last = {};

@@ -36,7 +36,8 @@ double Executor::machine_to_program() const {
 // ------------------------------------------------------------------------------------------- one block
 
 bool Executor::run(const BlockView &view, std::string_view line_text) {
-    BlockValues values;
+    BlockValues &values = values_;
+    values.clear();
     outcome = Outcome::OK;
     if (!evaluate(view, values) || !apply_settings(view)) {
         return false;
@@ -44,6 +45,7 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
     comment_.clear();
     block_number_ = view.block->isNumbered ? view.block->sequence : -1;
     if (lathe_) {
+        keep_state();
         return record_profile(values);
     }
     if (view.block->comment_count > 0 && !run_comments(view, line_text)) {
@@ -55,8 +57,19 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
     return run_codes(values, 0);
 }
 
+/// Nothing, or a straight move alone, which fails before it changes anything.
+bool Executor::isStateSafe(const BlockValues &values) const {
+    constexpr int G1 = 10;
+    const bool isStraight = values.codes.size() == 1 && values.motion != nullptr &&
+                            values.motion->number <= G1 && state.comp == CompSide::OFF;
+    return values.codes.empty() || isStraight;
+}
+
 /// The codes from `first` on; stops at a remapped one.
 bool Executor::run_codes(const BlockValues &values, std::size_t first) {
+    if (!isStateSafe(values)) {
+        keep_state();
+    }
     for (std::size_t i = first; i < values.codes.size(); ++i) {
         const ActiveCode &active = values.codes[i];
         if (active.code->remap != nullptr) {
@@ -104,15 +117,20 @@ bool Executor::evaluate(const BlockView &view, BlockValues &values) {
 }
 
 bool Executor::add_code(char letter_char, double number, std::uint32_t column, BlockValues &values) {
+    constexpr double MOST = 9999;
     const double scaled = letter_char == 'g' ? number * 10.0 : number;
-    const double rounded = std::round(scaled);
     if (number < 0.0) {
         return fault.set(fmt::format("Negative {} code used", letter_char), column);
     }
-    if (std::fabs(scaled - rounded) > CODE_TOLERANCE * 10 || rounded > 9999) {
-        return fault.set(fmt::format("Unknown {} code used: {}{}", letter_char, letter_char, number), column);
+    int whole = scaled <= MOST ? static_cast<int>(scaled) : -1;
+    if (whole != scaled) {
+        const double rounded = std::round(scaled);
+        if (std::fabs(scaled - rounded) > CODE_TOLERANCE * 10 || rounded > MOST) {
+            return fault.set(fmt::format("Unknown {} code used: {}{}", letter_char, letter_char, number),
+                             column);
+        }
+        whole = static_cast<int>(rounded);
     }
-    const int whole = static_cast<int>(rounded);
     const Code *code = lookup(letter_char, whole);
     if (code == nullptr && !running_remaps_.empty()) {
         if (std::string recursion = recursion_text(letter_char, whole); !recursion.empty()) {
@@ -214,7 +232,8 @@ bool Executor::check_words(const BlockValues &values) {
     if (!check_open_nurbs(values) || !check_axes(values)) {
         return false;
     }
-    std::uint32_t allowed = letters("fstn");
+    constexpr std::uint32_t ALWAYS = letters("fstn");
+    std::uint32_t allowed = ALWAYS;
     bool isAxisUser = false;
     for (const ActiveCode &active : values.codes) {
         const Code &code = *active.code;
@@ -249,40 +268,15 @@ bool Executor::apply_settings(const BlockView &view) {
     if (block.setting_count == 0) {
         return true;
     }
-    struct Made {
-        int number;
-        NameId name;
-        double value;
-    };
-    std::vector<Made> made;
-    made.reserve(block.setting_count);
+    made_.clear();
     for (std::uint32_t i = 0; i < block.setting_count; ++i) {
-        const Setting &setting = arena.settings[block.first_setting + i];
-        Made entry{0, setting.name, 0.0};
-        if (setting.name != NO_ID && evaluator_.isReadOnly(setting.name)) {
-            return fault.set(
-                fmt::format("Cannot assign to read-only parameter #<{}>", names_.text(setting.name)),
-                setting.column);
-        }
-        if (setting.name == NO_ID) {
-            double index = 0;
-            if (!evaluator_.value(arena, setting.index, index)) {
-                return false;
-            }
-            if (!Evaluator::isNumber(index)) {
-                return fault.set(fmt::format("Parameter number out of range: {}", index), setting.column);
-            }
-            entry.number = static_cast<int>(std::lround(index));
-            if (isBuiltInNumber(entry.number)) {
-                return fault.set(fmt::format("Parameter is readonly: #{}", entry.number), setting.column);
-            }
-        }
-        if (!evaluator_.value(arena, setting.value, entry.value)) {
+        MadeSetting entry;
+        if (!compute_setting(arena, arena.settings[block.first_setting + i], entry)) {
             return false;
         }
-        made.push_back(entry);
+        made_.push_back(entry);
     }
-    for (const Made &entry : made) {
+    for (const MadeSetting &entry : made_) {
         if (entry.name != NO_ID) {
             parameters.set_named(entry.name, evaluator_.isGlobal(entry.name), entry.value);
         } else {
@@ -290,6 +284,27 @@ bool Executor::apply_settings(const BlockView &view) {
         }
     }
     return true;
+}
+
+bool Executor::compute_setting(const Arena &arena, const Setting &setting, MadeSetting &out) {
+    out.name = setting.name;
+    if (setting.name != NO_ID && evaluator_.isReadOnly(setting.name)) {
+        return fault.set(fmt::format("Cannot assign to read-only parameter #<{}>", names_.text(setting.name)),
+                         setting.column);
+    }
+    if (setting.name == NO_ID) {
+        double index = 0;
+        if (!evaluator_.value(arena, setting.index, index)) {
+            return false;
+        }
+        if (!Evaluator::take_number(index, out.number)) {
+            return fault.set(fmt::format("Parameter number out of range: {}", index), setting.column);
+        }
+        if (isBuiltInNumber(out.number)) {
+            return fault.set(fmt::format("Parameter is readonly: #{}", out.number), setting.column);
+        }
+    }
+    return evaluator_.value(arena, setting.value, out.value);
 }
 
 void Executor::set_place(int line, int sequence, int call_level) {

@@ -63,7 +63,8 @@ class Executor : public BuiltIns {
     Executor(World &world, ToolSource &tools, ParameterSource &source, const Settings &settings,
              Names &names);
 
-    /// Words, settings and comments of a block; then its codes. False after setting the fault.
+    /// Words, settings and comments of a block; then its codes. False after setting the fault. `line_text` is
+    /// looked at when the block has comments.
     bool run(const BlockView &view, std::string_view line_text);
 
     // What the parts share. The state is copied before a block and put back when it fails.
@@ -79,6 +80,9 @@ class Executor : public BuiltIns {
 
     /// Remembers state and queue, so that rollback() can undo the block; commit() keeps what it did.
     void begin_block();
+    /// The same for a block that may change no state: whoever changes it calls keep_state() before.
+    void begin_light_block();
+    void keep_state();
     void commit();
     /// Replays the queued calls that no later block can change.
     void flush(Canon &target);
@@ -225,7 +229,15 @@ class Executor : public BuiltIns {
     bool choose_motion(BlockValues &values);
     bool check_axes(const BlockValues &values);
     bool check_words(const BlockValues &values);
+    /// A parameter and the value that it is to have.
+    struct MadeSetting {
+        int number = 0;
+        NameId name = NO_ID;
+        double value = 0;
+    };
     bool apply_settings(const BlockView &view);
+    bool compute_setting(const Arena &arena, const Setting &setting, MadeSetting &out);
+    bool isStateSafe(const BlockValues &values) const;
     bool run_codes(const BlockValues &values, std::size_t first);
     const Code *lookup(char letter_char, int number) const;
     bool stop_at_remap(const BlockValues &values, std::size_t index);
@@ -234,8 +246,7 @@ class Executor : public BuiltIns {
 
     /// What M70 and M73 keep at one level of call.
     struct Context {
-        State saved;
-        bool isValid = false;
+        std::optional<State> saved;
         bool isAutomatic = false;
         bool isRemap = false;
     };
@@ -342,7 +353,10 @@ class Executor : public BuiltIns {
     std::string script_text_, comment_;  ///< of the block
     const Remap *remap_ = nullptr;       ///< the one that the block has come to
     std::optional<PendingBlock> pending_;
-    State before_;  ///< as the block found it
+    BlockValues values_;             ///< of the block that runs
+    std::vector<MadeSetting> made_;  ///< of the block that runs
+    State before_;                   ///< as the block found it, once keep_state() was called for it
+    bool isStateKept_ = false;
     std::vector<NurbsPoint> control_points_;
     std::optional<LatheRequest> lathe_;
     std::size_t queued_before_ = 0;

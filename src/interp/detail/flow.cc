@@ -254,21 +254,25 @@ Step Flow::run_line() {
 
 Step Flow::run_block(const BlockView &view) {
     const Block &block = *view.block;
-    executor_.fault = {};
+    executor_.fault.clear();
     error_line_ = 0;
-    isContinuable_ = block.oword == NO_ID && !mentionsOWord(program_->line_text(line_read_));
+    isContinuable_ = block.oword == NO_ID;
     const int sequence = block.isNumbered ? block.sequence : line_read_;
     const bool isText = !calls_.empty() && calls_.back().kind == CallKind::TEXT;
     executor_.set_place(isText ? calls_.back().reported_line : line_read_, sequence, call_level());
-    executor_.begin_block();
+    executor_.begin_light_block();
+    if (scripts_ != nullptr) {
+        executor_.keep_state();  // scripts change what they like
+    }
     if (block.error != NO_ID) {
         const SyntaxError &error = view.arena->errors[block.error];
+        isContinuable_ = isContinuable_ && !mentionsOWord(program_->line_text(line_read_));
         executor_.fault.set(error.message, error.column);
         return fail_block();
     }
     executor_.canon.enter_block(program_, line_read_, sequence, block.isNumbered, call_level());
-    const bool isDone =
-        block.oword != NO_ID ? run_oword(view) : executor_.run(view, program_->line_text(line_read_));
+    const std::string_view text = block.comment_count > 0 ? program_->line_text(line_read_) : "";
+    const bool isDone = block.oword != NO_ID ? run_oword(view) : executor_.run(view, text);
     return isDone ? after_block() : fail_block();
 }
 

@@ -148,7 +148,7 @@ class Flow : private ScriptNames {
     bool find_fanuc(NameId label, Sub &sub);
     Program *load_sub_file(NameId label);
     bool check_depth();
-    bool enter(Call call, const Sub &sub);
+    bool enter(Call &&call, const Sub &sub);
     bool leave(double value, bool hasValue);
     bool pop_call(double value, bool hasValue);
     bool call_fanuc();

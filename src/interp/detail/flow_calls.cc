@@ -116,7 +116,7 @@ bool Flow::check_depth() {
            executor_.fault.set(fmt::format("Subroutine calls are nested more than {} deep", MAX_CALL_DEPTH));
 }
 
-bool Flow::enter(Call call, const Sub &sub) {
+bool Flow::enter(Call &&call, const Sub &sub) {
     if (!check_depth()) {
         return false;
     }
@@ -166,9 +166,7 @@ bool Flow::run_call(const BlockView &view, const OWord &oword) {
     if (!many.empty()) {
         executor_.parameters.keep_aside(count);
     }
-    for (int i = 0; i < std::max(ARGUMENT_COUNT, static_cast<int>(count)); ++i) {
-        executor_.parameters.set(i + 1, arguments[i]);
-    }
+    executor_.parameters.set_arguments({arguments, std::max<std::size_t>(ARGUMENT_COUNT, count)});
     if (settings_.isArgumentCountNamed) {
         executor_.parameters.set_named(names_.intern("n_args"), false, count);
     }
@@ -204,6 +202,7 @@ bool Flow::pop_call(double value, bool hasValue) {
     }
     if (call.kind == CallKind::PROFILE) {
         executor_.canon.enter_block(program_, call.line, call.line, false, call_level());
+        executor_.keep_state();
         return executor_.finish_lathe_cycle();
     }
     return true;

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "interp/detail/lexer.hh"
 
+#include <algorithm>
 #include <charconv>
+#include <cstddef>
 
 namespace mw::interp::detail {
 namespace {
-
-constexpr bool isDigit(char c) {
-    return c >= '0' && c <= '9';
-}
 
 constexpr double POWERS_OF_TEN[] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                     1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
@@ -26,64 +24,65 @@ bool Lexer::accept_word(std::string_view word) {
     return true;
 }
 
-Lexer::Number Lexer::take_number(double &value, std::string &text) {
+std::string Lexer::text_from(std::size_t start) const {
+    std::string text(line_.substr(start, pos_ - start));
+    std::erase_if(text, isBlank);
+    return text;
+}
+
+Lexer::Number Lexer::take_number(double &value) {
     // Digits that a double holds exactly, divided once by an exact power of ten, are correctly rounded.
-    constexpr int EXACT_DIGITS = 15;
-    std::uint64_t digits = 0;
-    int count = 0, decimals = 0;
-    bool isFraction = false;
-    const std::size_t start = pos_;
-    // Blanks inside of numbers are rare: without one the digits are taken straight from the line.
-    const char *at = line_.data() + pos_;
-    const char *const end_of_line = line_.data() + line_.size();
-    const auto take_digits = [&] {
+    constexpr std::ptrdiff_t EXACT_DIGITS = 15;
+    const char *const begin = line_.data() + pos_;
+    const char *const end = line_.data() + line_.size();
+    const char *at = begin;
+    std::int64_t digits = 0;
+    const auto take_digits = [&at, &digits, end](std::ptrdiff_t most) {
         const char *const first = at;
-        for (; at != end_of_line && isDigit(*at); ++at) {
-            digits =
-                digits * 10 + static_cast<std::uint64_t>(*at - '0');  // wraps beyond EXACT_DIGITS: not used
+        const char *const last = at + std::min(most, end - at);
+        for (; at != last; ++at) {
+            const unsigned digit = static_cast<unsigned char>(*at) - static_cast<unsigned>('0');
+            if (digit > 9) {
+                break;
+            }
+            digits = digits * 10 + digit;
         }
-        return static_cast<int>(at - first);
+        return at - first;
     };
-    count = take_digits();
-    if (at != end_of_line && *at == '.') {
-        isFraction = true;
+    std::ptrdiff_t count = take_digits(EXACT_DIGITS), decimals = 0;
+    const bool isFraction = at != end && *at == '.';
+    if (isFraction) {
         ++at;
-        decimals = take_digits();
+        decimals = take_digits(EXACT_DIGITS - count);
         count += decimals;
     }
+    while (at != end && isBlank(*at)) {
+        ++at;
+    }
+    const bool isOver = at == end || !(isDigit(*at) || *at == '.');
+    if (count == 0 || !isOver) {
+        return take_odd_number(value);
+    }
     pos_ = static_cast<std::size_t>(at - line_.data());
+    value = static_cast<double>(digits) / POWERS_OF_TEN[decimals];
+    return Number::OK;
+}
+
+/// Any number: with blanks inside, with many digits, or none at all.
+Lexer::Number Lexer::take_odd_number(double &value) {
+    std::string text;
+    bool isFraction = false, isNumber = false;
     for (char c = peek(); isDigit(c) || (c == '.' && !isFraction); c = peek()) {
-        if (c == '.') {
-            isFraction = true;
-        } else {
-            if (count < EXACT_DIGITS) {
-                digits = digits * 10 + static_cast<std::uint64_t>(c - '0');
-            }
-            ++count;
-            decimals += isFraction ? 1 : 0;
-        }
+        isFraction = isFraction || c == '.';
+        isNumber = isNumber || c != '.';
+        text += c;
         take();
     }
-    if (count == 0) {
-        text = isFraction ? "." : "";
+    if (!isNumber) {
         return isFraction ? Number::BAD : Number::NONE;
     }
-    if (count <= EXACT_DIGITS) {
-        value = static_cast<double>(digits) / POWERS_OF_TEN[decimals];
-        return Number::OK;
-    }
-    std::string whole;
-    for (std::size_t i = start; i < pos_; ++i) {
-        if (!isBlank(line_[i])) {
-            whole += line_[i];
-        }
-    }
-    const auto [end, error] = std::from_chars(whole.data(), whole.data() + whole.size(), value);
-    if (error != std::errc()) {
-        text = whole;
-        return Number::BAD;
-    }
-    return Number::OK;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() ? Number::OK : Number::BAD;
 }
 
 std::optional<std::string> Lexer::take_name(char closer) {

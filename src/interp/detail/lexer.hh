@@ -15,10 +15,12 @@ class Lexer {
 
     /// The next character that is not blank, in lower case; 0 at the end. Takes nothing but blanks.
     char peek() {
-        while (pos_ < line_.size() && isBlank(line_[pos_])) {
-            ++pos_;
+        for (; pos_ < line_.size(); ++pos_) {
+            if (!isBlank(line_[pos_])) {
+                return lower(line_[pos_]);
+            }
         }
-        return pos_ < line_.size() ? lower(line_[pos_]) : '\0';
+        return '\0';
     }
     /// Takes the character that peek() showed.
     void take() { ++pos_; }
@@ -30,17 +32,16 @@ class Lexer {
         take();
         return true;
     }
-    /// True when an unsigned number comes next.
-    bool beginsNumber() {
-        const char c = peek();
-        return (c >= '0' && c <= '9') || c == '.';
-    }
+    /// What unsigned numbers begin with.
+    static constexpr bool beginsNumber(char c) { return isDigit(c) || c == '.'; }
     /// Takes a word of letters if it is next (blanks allowed inside), else nothing.
     bool accept_word(std::string_view word);
 
     enum class Number { OK, NONE, BAD };
-    /// Takes an unsigned decimal number. BAD: dots without a digit; `text` then holds what was seen.
-    Number take_number(double &value, std::string &text);
+    /// Takes an unsigned decimal number. BAD: dots without a digit, or too large.
+    Number take_number(double &value);
+    /// What stands from `start` up to here, without the blanks.
+    std::string text_from(std::size_t start) const;
     /// Takes everything up to and including `closer`; without the blanks, in lower case. Nothing when there
     /// is none.
     std::optional<std::string> take_name(char closer);
@@ -50,12 +51,15 @@ class Lexer {
     void set_position(std::size_t pos) { pos_ = pos; }
     std::string_view line() const { return line_; }
 
-    static constexpr bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+    static constexpr bool isBlank(char c) { return c <= ' ' && (c == ' ' || c == '\t' || c == '\r'); }
+    static constexpr bool isDigit(char c) { return c >= '0' && c <= '9'; }
     static constexpr char lower(char c) {
         return (c >= 'A' && c <= 'Z') ? static_cast<char>(c - 'A' + 'a') : c;
     }
 
   private:
+    Number take_odd_number(double &value);
+
     std::string_view line_;
     std::size_t pos_ = 0;
 };

@@ -20,7 +20,7 @@ std::optional<double> Parameters::named(NameId id, bool isGlobal) const {
     if (isGlobal) {
         return id < globals_.size() ? globals_[id] : std::nullopt;
     }
-    for (const Named &local : frames_.back().locals) {
+    for (const Named &local : frames_[depth_ - 1].locals) {
         if (local.id == id) {
             return local.value;
         }
@@ -37,7 +37,8 @@ void Parameters::set_named(NameId id, bool isGlobal, double value) {
         globals_[id] = value;
         return;
     }
-    for (Named &local : frames_.back().locals) {
+    std::vector<Named> &locals = frames_[depth_ - 1].locals;
+    for (Named &local : locals) {
         if (local.id == id) {
             log_.push_back({Undo::Kind::LOCAL, 0, id, local.value});
             local.value = value;
@@ -45,26 +46,34 @@ void Parameters::set_named(NameId id, bool isGlobal, double value) {
         }
     }
     log_.push_back({Undo::Kind::LOCAL, 0, id, std::nullopt});
-    frames_.back().locals.push_back({id, value});
+    locals.push_back({id, value});
 }
 
 void Parameters::push_call() {
-    Frame frame;
+    if (depth_ == frames_.size()) {
+        frames_.emplace_back();
+    }
+    Frame &frame = frames_[depth_++];
+    frame.locals.clear();
+    frame.more.clear();
     std::copy_n(values_.begin() + 1, ARGUMENT_COUNT, frame.arguments);
-    frames_.push_back(std::move(frame));
+}
+
+void Parameters::set_arguments(std::span<const double> given) {
+    std::ranges::copy(given, values_.begin() + 1);
 }
 
 void Parameters::keep_aside(std::size_t count) {
     const auto first = values_.begin() + 1 + ARGUMENT_COUNT;
-    frames_.back().more.assign(first, first + static_cast<std::ptrdiff_t>(count) - ARGUMENT_COUNT);
+    frames_[depth_ - 1].more.assign(first, first + static_cast<std::ptrdiff_t>(count) - ARGUMENT_COUNT);
 }
 
 void Parameters::pop_call(bool isSharing) {
-    std::ranges::copy(frames_.back().more, values_.begin() + 1 + ARGUMENT_COUNT);
+    const Frame &frame = frames_[--depth_];
+    std::ranges::copy(frame.more, values_.begin() + 1 + ARGUMENT_COUNT);
     if (!isSharing) {
-        std::copy_n(frames_.back().arguments, ARGUMENT_COUNT, values_.begin() + 1);
+        std::copy_n(frame.arguments, ARGUMENT_COUNT, values_.begin() + 1);
     }
-    frames_.pop_back();
 }
 
 std::vector<std::pair<NameId, double>> Parameters::locals(int level) const {
@@ -98,7 +107,7 @@ void Parameters::rollback() {
         } else if (entry->kind == Undo::Kind::GLOBAL) {
             globals_[entry->id] = entry->old;
         } else {
-            std::vector<Named> &locals = frames_.back().locals;
+            std::vector<Named> &locals = frames_[depth_ - 1].locals;
             const auto found = std::find_if(locals.begin(), locals.end(),
                                             [&](const Named &local) { return local.id == entry->id; });
             if (found != locals.end() && entry->old) {

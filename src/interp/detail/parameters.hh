@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -82,11 +83,13 @@ class Parameters {
     void set_named(NameId id, bool isGlobal, double value);
 
     void push_call();  ///< new local names; #1 to #30 are kept aside
+    /// #1 and on of the call just made, for good: rollback() leaves them.
+    void set_arguments(std::span<const double> given);
     /// For the call just made: #31 to #count are kept aside, too.
     void keep_aside(std::size_t count);
     /// Back to the caller's; #1 to #30 too unless `isSharing` them.
     void pop_call(bool isSharing);
-    int depth() const { return static_cast<int>(frames_.size()); }
+    int depth() const { return static_cast<int>(depth_); }
     /// Names and values of a level of call (0: the main program), and of all globals.
     std::vector<std::pair<NameId, double>> locals(int level) const;
     std::vector<std::pair<NameId, double>> globals() const;
@@ -116,7 +119,8 @@ class Parameters {
 
     std::vector<double> values_;
     std::vector<std::optional<double>> globals_;  ///< by NameId
-    std::vector<Frame> frames_;
+    std::vector<Frame> frames_;  ///< those above depth_ wait for the next call, with their room
+    std::size_t depth_ = 1;
     std::vector<Undo> log_;
     std::vector<int> file_numbers_;  ///< numbers that the parameter file had
 };

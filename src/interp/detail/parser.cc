@@ -81,15 +81,19 @@ bool Parser::block(Lexer &in, Block &out) {
     if (in.accept('/')) {
         out.isDeletable = true;
     }
-    if (in.peek() == '%') {
+    char c = in.peek();
+    if (c == '%') {
         out.isPercent = true;
         return true;
     }
-    if (in.peek() == 'n' && !line_number(in, out)) {
-        return false;
+    if (c == 'n') {
+        if (!line_number(in, out)) {
+            return false;
+        }
+        c = in.peek();
     }
-    while (in.peek() != '\0') {
-        if (!item(in, out)) {
+    for (; c != '\0'; c = in.peek()) {
+        if (!item(in, out, c)) {
             return false;
         }
     }
@@ -100,8 +104,7 @@ bool Parser::line_number(Lexer &in, Block &out) {
     const std::uint32_t column = in.column();
     in.take();
     double value = 0;
-    std::string text;
-    if (in.take_number(value, text) != Lexer::Number::OK || value > 2147483647.0) {
+    if (in.take_number(value) != Lexer::Number::OK || value > 2147483647.0) {
         return fail("N needs a number that is not negative and at most 2147483647", column);
     }
     out.isNumbered = true;
@@ -109,19 +112,15 @@ bool Parser::line_number(Lexer &in, Block &out) {
     return true;
 }
 
-bool Parser::item(Lexer &in, Block &out) {
-    const char c = in.peek();
+/// `c` is the character that peek() showed.
+bool Parser::item(Lexer &in, Block &out, char c) {
     switch (c) {
     case '(': return comment(in, out);
     case ';': return comment(in, out);
     case '#': return setting(in, out);
     case 'o': return oword(in, out);
-    default: break;
+    default: return word(in, out, c);
     }
-    if (index_of_letter(c) < 0 || c == 'n') {
-        return fail(fmt::format("Bad character '{}' used", c), in.column());
-    }
-    return word(in, out, c);
 }
 
 /// ( to ) or ; to the end of the line. Only the last one of a line counts, but all are kept.
@@ -176,8 +175,12 @@ bool Parser::setting(Lexer &in, Block &out) {
 }
 
 bool Parser::word(Lexer &in, Block &out, char c) {
+    const int index = index_of_letter(c);
+    if (index < 0 || c == 'n') {
+        return fail(fmt::format("Bad character '{}' used", c), in.column());
+    }
     Word made;
-    made.letter = static_cast<std::uint8_t>(index_of_letter(c));
+    made.letter = static_cast<std::uint8_t>(index);
     made.column = in.column();
     const std::uint32_t bit = 1u << made.letter;
     if (c != 'g' && c != 'm') {
@@ -187,28 +190,33 @@ bool Parser::word(Lexer &in, Block &out, char c) {
         letters_seen_ |= bit;
     }
     in.take();
-    if (in.peek() == '\0') {
+    char first = in.peek();
+    if (first == '\0') {
         return fail("No characters found in reading real value", in.column());
     }
-    if (in.beginsNumber()) {
-        if (!literal(in, made.value)) {
+    const std::size_t start = in.position();
+    const bool isNegative = first == '-';
+    if (isNegative) {
+        in.take();
+        first = in.peek();
+    }
+    if (Lexer::beginsNumber(first)) {  // as nearly all words have it: no node is needed
+        const std::size_t digits = in.position();
+        if (in.take_number(made.value) != Lexer::Number::OK) {
+            return bad_number(in, digits);
+        }
+        made.value = isNegative ? -made.value : made.value;
+    } else {
+        in.set_position(start);
+        const std::size_t nodes = arena_.nodes.size();
+        if (!real_value(in, made.expression)) {
             return false;
         }
-        made.expression = NO_ID;
-        arena_.words.push_back(made);
-        ++out.word_count;
-        return true;
-    }
-    const std::size_t nodes = arena_.nodes.size();
-    NodeId node = NO_ID;
-    if (!real_value(in, node)) {
-        return false;
-    }
-    made.expression = node;
-    if (arena_.nodes[node].kind == NodeKind::NUMBER) {
-        made.expression = NO_ID;
-        made.value = arena_.nodes[node].value;
-        arena_.nodes.resize(nodes);
+        if (const Node &node = arena_.nodes[made.expression]; node.kind == NodeKind::NUMBER) {
+            made.expression = NO_ID;
+            made.value = node.value;
+            arena_.nodes.resize(nodes);
+        }
     }
     arena_.words.push_back(made);
     ++out.word_count;
@@ -268,8 +276,7 @@ bool Parser::oword_label(Lexer &in, OWord &out) {
         return real_value(in, out.label_expression);
     }
     double value = 0;
-    std::string text;
-    if (in.take_number(value, text) != Lexer::Number::OK || value > 1e9) {
+    if (in.take_number(value) != Lexer::Number::OK || value > 1e9) {
         return fail("An O word needs a number, a <name>, a parameter or an [expression]", in.column());
     }
     out.label = names_.intern(fmt::format("{}", static_cast<long>(value)));

@@ -22,7 +22,7 @@ class Parser {
     // Every rule returns false after fail(); the line's error then says why.
     bool block(Lexer &in, Block &out);
     bool line_number(Lexer &in, Block &out);
-    bool item(Lexer &in, Block &out);
+    bool item(Lexer &in, Block &out, char c);
     bool comment(Lexer &in, Block &out);
     bool setting(Lexer &in, Block &out);
     bool word(Lexer &in, Block &out, char c);
@@ -34,7 +34,7 @@ class Parser {
 
     bool real_value(Lexer &in, NodeId &out);
     bool signed_value(Lexer &in, NodeId &out);
-    bool literal(Lexer &in, double &value);
+    bool bad_number(const Lexer &in, std::size_t start);
     bool number(Lexer &in, NodeId &out);
     bool parameter(Lexer &in, NodeId &out);
     bool expression(Lexer &in, NodeId &out);

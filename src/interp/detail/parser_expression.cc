@@ -98,19 +98,17 @@ bool Parser::signed_value(Lexer &in, NodeId &out) {
     return true;
 }
 
-bool Parser::literal(Lexer &in, double &value) {
-    const std::uint32_t column = in.column();
-    std::string text;
-    if (in.take_number(value, text) != Lexer::Number::OK) {
-        return fail(fmt::format("bad number format (conversion failed) parsing '{}'", text), column);
-    }
-    return true;
+/// take_number() has failed, at the position `start` or after blanks there.
+bool Parser::bad_number(const Lexer &in, std::size_t start) {
+    return fail(fmt::format("bad number format (conversion failed) parsing '{}'", in.text_from(start)),
+                static_cast<std::uint32_t>(start) + 1);
 }
 
 bool Parser::number(Lexer &in, NodeId &out) {
     Node node{.kind = NodeKind::NUMBER, .column = in.column()};
-    if (!literal(in, node.value)) {
-        return false;
+    const std::size_t start = in.position();
+    if (in.take_number(node.value) != Lexer::Number::OK) {
+        return bad_number(in, start);
     }
     out = add(node, in);
     return true;

@@ -55,8 +55,11 @@ Result<> Program::prepare() {
 
 /// @return false when the line has an O word
 bool Program::look_at(int line, std::string_view content) {
-    const std::size_t first = content.find_first_not_of(" \t\r");
-    if (first == std::string_view::npos) {
+    std::size_t first = 0;
+    while (first < content.size() && Lexer::isBlank(content[first])) {
+        ++first;
+    }
+    if (first == content.size()) {
         return true;
     }
     const bool isPercent = content[first] == '%';
@@ -65,7 +68,9 @@ bool Program::look_at(int line, std::string_view content) {
         isPercentDelimited_ = isPercent;
     }
     last_percent_line_ = isPercent ? line : last_percent_line_;
-    if (!beginsWithO(content)) {
+    const char c = Lexer::lower(content[first]);
+    const bool mayBeginWithO = c == 'o' || c == 'n' || c == '/';
+    if (!mayBeginWithO || !beginsWithO(content)) {
         return true;
     }
     OLine oline;
@@ -211,7 +216,7 @@ BlockView Program::block(int line) {
         scratch_.clear();
         scratch_block_ =
             Parser(scratch_, names_).parse_line(line_text(line), static_cast<std::uint32_t>(line));
-        if (!text_.failure().empty()) {
+        if (!text_.isHeld() && !text_.failure().empty()) {
             scratch_block_.error = static_cast<std::uint32_t>(scratch_.errors.size());
             scratch_.errors.push_back({text_.failure(), 0});
         }

@@ -97,7 +97,7 @@ TEST(FailedBlock, changes_nothing_I2) {
         "G49",      "G64 P0.1",   "G61",         "G98",          "G81 X1 Z-1 R1 F5",
         "G80",      "M49",        "M48",         "G17",          "G18",
         "M70",      "F50",        "G41.1 D0.2",  "G40"};
-    const std::array<const char *, 30> bad = {"G1 X5 Y[1/0]",
+    const std::array<const char *, 34> bad = {"G1 X5 Y[1/0]",
                                               "#32=9 #33=[ln[0]]",
                                               "G0 X1 X2",
                                               "S900 M3 G43 H99",
@@ -126,7 +126,11 @@ TEST(FailedBlock, changes_nothing_I2) {
                                               "G52 X1 G53 Y1",
                                               "o77 call",
                                               "(msg,a) G999",
-                                              "G28 X[acos[2]]"};
+                                              "G28 X[acos[2]]",
+                                              "G1 X5 ^20",
+                                              "G0 @5 Y1",
+                                              "#36=1 #[0]=2",
+                                              "o1 endsub"};
     for (int round = 0; round < 400; ++round) {
         Machine machine;
         ToolEntry tool;

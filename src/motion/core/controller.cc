@@ -202,8 +202,8 @@ void Controller::publish_limits() noexcept {
         out.joints.velocity[at(j)] = get(Parameter::JOINT_MAX_VELOCITY, j);
         out.joints.acceleration[at(j)] = get(Parameter::JOINT_MAX_ACCELERATION, j);
         out.joints.jerk[at(j)] = own < JERK_OFF ? own : traj::UNLIMITED;
-        out.joint_low[at(j)] = homing_.isHomed(j) ? get(Parameter::JOINT_MIN_LIMIT, j) : -UNBOUNDED;
-        out.joint_high[at(j)] = homing_.isHomed(j) ? get(Parameter::JOINT_MAX_LIMIT, j) : UNBOUNDED;
+        out.joints.low[at(j)] = homing_.isHomed(j) ? get(Parameter::JOINT_MIN_LIMIT, j) : -UNBOUNDED;
+        out.joints.high[at(j)] = homing_.isHomed(j) ? get(Parameter::JOINT_MAX_LIMIT, j) : UNBOUNDED;
     }
     out.joints.count = config_.num_joints;
     path_limits_ = out;

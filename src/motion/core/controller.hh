@@ -127,6 +127,7 @@ class Controller {
     void check_watchdog() noexcept;
     std::uint32_t homed_mask() const noexcept;
     void step_homing(const Inputs &in) noexcept;
+    void drive_homing(const Inputs &in) noexcept;
     void move_joints() noexcept;
     void move_by_pose(const geom::Pose &pose) noexcept;
     void output_joints() noexcept;

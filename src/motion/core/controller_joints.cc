@@ -110,6 +110,22 @@ std::uint32_t Controller::homed_mask() const noexcept {
 }
 
 void Controller::step_homing(const Inputs &in) noexcept {
+    const std::uint32_t homed_before = homed_mask();
+    if (homing_.hasWork()) {
+        drive_homing(in);
+    }
+    homing::Failure why{};
+    const int failed = homing_.take_failure(why);
+    if (failed >= 0 && why != homing::Failure::ABORTED) {
+        raise(FaultKind::HOMING_FAILED, failed, 0, static_cast<std::uint16_t>(why));
+    }
+    if (homed_before != homed_mask()) {
+        publish_limits();
+    }
+}
+
+/// One cycle of the joints that home.
+void Controller::drive_homing(const Inputs &in) noexcept {
     homing::JointInput inputs[MAX_JOINTS];
     homing::JointCommand commands[MAX_JOINTS];
     for (int j = 0; j < config_.num_joints; ++j) {
@@ -117,7 +133,6 @@ void Controller::step_homing(const Inputs &in) noexcept {
         inputs[j] = {pins.isHomeSwitchClosed, pins.isIndexEnabled, joint(j).free.isAtRest(), false,
                      joint(j).pos_fb};
     }
-    const std::uint32_t homed_before = homed_mask();
     homing_.step(inputs, commands);
     for (int j = 0; j < config_.num_joints; ++j) {
         const homing::JointCommand &c = commands[j];
@@ -144,14 +159,6 @@ void Controller::step_homing(const Inputs &in) noexcept {
             s.free.max_velocity = c.velocity > 0 ? std::min(c.velocity, vmax) : vmax;
             s.free.target = c.move == homing::Move::TO ? c.value : s.free.position + c.value;
         }
-    }
-    homing::Failure why{};
-    const int failed = homing_.take_failure(why);
-    if (failed >= 0 && why != homing::Failure::ABORTED) {
-        raise(FaultKind::HOMING_FAILED, failed, 0, static_cast<std::uint16_t>(why));
-    }
-    if (homed_before != homed_mask()) {
-        publish_limits();
     }
 }
 

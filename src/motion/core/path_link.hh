@@ -24,7 +24,6 @@ struct PathLimits {
     geom::Pose low, high;             ///< soft limits per axis; +-infinity where none holds
     std::uint32_t axes = 0;           ///< bit per axis that the kinematics drive
     traj::JointLimits joints;         ///< where joints are not axes
-    std::array<double, MAX_JOINTS> joint_low{}, joint_high{};  ///< soft limits; +-infinity where none holds
 };
 
 /// Written by the controller every servo cycle, one consistent picture.

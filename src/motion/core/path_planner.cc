@@ -24,6 +24,16 @@ bool isFinite(const geom::Pose &p) noexcept {
     return std::all_of(p.c.begin(), p.c.end(), [](double x) { return std::isfinite(x); });
 }
 
+/// That the rounded corners of a move keep; 0: it has none to keep.
+double tolerance_of(const PathCommand &c) noexcept {
+    const auto *line = std::get_if<Line>(&c.body);
+    const auto *arc = std::get_if<Arc>(&c.body);
+    const MoveTerms *terms = line != nullptr ? &line->terms : arc != nullptr ? &arc->terms : nullptr;
+    const bool isBlend =
+        terms != nullptr && terms->mode != PathMode::EXACT_STOP && terms->mode != PathMode::EXACT_PATH;
+    return isBlend ? terms->tolerance : 0.0;
+}
+
 }  // namespace
 
 PathPlanner::PathPlanner(const PathPlannerConfig &config, const kins::Kinematics &kinematics,
@@ -54,6 +64,7 @@ void PathPlanner::follow_controller() noexcept {
         limits_version_ = view_.limits_version;
         planner_.set_limits(limits_.limits);
         const bool isMapped = kinematics_.identity() == nullptr && kinematics_.isShareable();
+        planner_.set_room(limits_.low, limits_.high);
         planner_.set_joints(isMapped ? &map_ : nullptr, limits_.joints);
     }
     follow_drops();
@@ -168,8 +179,30 @@ bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
         planner_.release_end();
         return true;
     }
+    if (isPathBegun_ && !isIdle() && !planner_.suits(tolerance_of(c))) {
+        planner_.release_end();
+        return true;
+    }
     isQueueFull_ = isPathBegun_ && !planner_.hasRoom(view_.executor);
     return isQueueFull_ || pending_count() + 2 >= PENDING_CAPACITY;
+}
+
+/// Everything that was accepted is driven.
+bool PathPlanner::isIdle() const noexcept {
+    const traj::Snapshot &e = view_.executor;
+    return pending_count() == 0 && e.isSettled && e.done_move >= planner_.last_move();
+}
+
+/// Begins a path if there is none. Jerk limits, and what is made for a tolerance, change only while
+/// everything stands.
+void PathPlanner::begin_path(const PathCommand &c) noexcept {
+    const bool isOutput = std::holds_alternative<SynchedDigitalOutput>(c.body) ||
+                          std::holds_alternative<SynchedAnalogOutput>(c.body);
+    const double tolerance = tolerance_of(c);
+    if (!isPathBegun_ || (!isOutput && isIdle() && !planner_.isFilterCurrent(tolerance))) {
+        planner_.begin(view_.position, view_.executor, tolerance);
+        isPathBegun_ = true;
+    }
 }
 
 Reason PathPlanner::accept(const PathCommand &c) noexcept {
@@ -190,14 +223,7 @@ Reason PathPlanner::accept(const PathCommand &c) noexcept {
     if (view_.mode != Mode::COORD) {
         return Reason::WRONG_MODE;
     }
-    // Jerk limits change only while everything stands.
-    const traj::Snapshot &e = view_.executor;
-    const bool isIdle = pending_count() == 0 && e.isSettled && e.done_move >= planner_.last_move();
-    const bool isNewFilter = isPathBegun_ && isIdle && !planner_.isFilterCurrent();
-    if (!isPathBegun_ || isNewFilter) {
-        planner_.begin(view_.position, view_.executor);
-        isPathBegun_ = true;
-    }
+    begin_path(c);
     if (const auto *line = std::get_if<Line>(&c.body)) {
         return accept_line(c, line->end, line->terms);
     }
@@ -290,8 +316,8 @@ Reason PathPlanner::check_joints(const traj::Primitive &p) noexcept {
         }
         for (int j = 0; j < config_.num_joints; ++j) {
             const auto i = static_cast<std::size_t>(j);
-            if (joints[j] < limits_.joint_low[i] - SOFT_LIMIT_ROUNDING ||
-                joints[j] > limits_.joint_high[i] + SOFT_LIMIT_ROUNDING) {
+            if (joints[j] < limits_.joints.low[i] - SOFT_LIMIT_ROUNDING ||
+                joints[j] > limits_.joints.high[i] + SOFT_LIMIT_ROUNDING) {
                 refused_index_ = static_cast<std::int16_t>(j);
                 return Reason::JOINT_BEYOND_LIMIT;
             }

@@ -61,6 +61,8 @@ class PathPlanner {
     void complete_moves() noexcept;
     bool take_commands() noexcept;
     bool isWaiting(const PathCommand &c) noexcept;
+    bool isIdle() const noexcept;
+    void begin_path(const PathCommand &c) noexcept;
     Reason accept(const PathCommand &c) noexcept;
     Reason accept_line(const PathCommand &c, const geom::Pose &end, const MoveTerms &terms) noexcept;
     Reason accept_arc(const PathCommand &c, const Arc &arc) noexcept;

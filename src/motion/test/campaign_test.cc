@@ -115,6 +115,10 @@ class Campaign {
         bool isPaused = false;
         for (int n = 0; n < 5000000; ++n) {
             while (sent < count && chance(0.2)) {
+                if (chance(0.05)) {
+                    terms.mode = static_cast<PathMode>(whole(0, 2));
+                    terms.tolerance = chance(0.2) ? 0 : std::pow(10.0, real(-3, 0));
+                }
                 terms.feed = chance(0.2) ? 0 : std::pow(10.0, real(0.3, 2.2));
                 terms.type = terms.feed == 0 ? MotionType::TRAVERSE : MotionType::FEED;
                 terms.source.block = static_cast<std::uint32_t>(sent);

@@ -20,11 +20,14 @@ struct Program {
     Limits limits;
     double tolerance = 0;
     Join join = Join::BLEND;
+    bool isBoxed = false;  ///< the soft limits are those of the path
 };
 
 class Maker {
   public:
-    Maker(unsigned seed, bool isJerkLimited) : random_(seed), isJerkLimited_(isJerkLimited) {}
+    Maker(unsigned seed, bool isJerkLimited)
+        : random_(seed), isJerkLimited_(isJerkLimited), isBoxed_(seed / 4 % 2 == 0),
+          isMixed_(seed % 8 == 4 || seed % 8 == 6) {}
     double real(double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random_);
     }
@@ -63,6 +66,9 @@ class Maker {
                 wander(p, whole(50, 90), size, axes, at);
             }
         }
+        if (isMixed_) {
+            mix(p);
+        }
         double expected = 0;
         for (std::size_t i = 0; i < p.primitives.size(); ++i) {
             MoveRequest &r = p.requests[i];
@@ -89,6 +95,21 @@ class Maker {
     }
 
   private:
+    /// Path mode and tolerance change on the way; none is wider than that of the program.
+    void mix(Program &p) {
+        p.join = Join::BLEND;
+        p.tolerance = std::pow(10.0, real(-2.5, 0));
+        Join join = p.join;
+        double tolerance = p.tolerance;
+        for (MoveRequest &r : p.requests) {
+            if (chance(0.1)) {
+                join = chance(0.6) ? Join::BLEND : chance(0.5) ? Join::EXACT : Join::STOP;
+                tolerance = p.tolerance * std::pow(10.0, real(-1, 0));
+            }
+            r.join = join;
+            r.tolerance = tolerance;
+        }
+    }
     void wander(Program &p, int count, double size, int axes, Pose &at) {
         for (int n = 0; n < count; ++n) {
             const Primitive q = chance(0.3) && axes >= 2 ? arc(at, size, axes) : line(at, size, axes);
@@ -142,6 +163,7 @@ class Maker {
         p.limits.velocity[XYZ_NORM] = chance(0.5) ? UNLIMITED : std::pow(10.0, real(1, 2.5));
         p.limits.acceleration[XYZ_NORM] = chance(0.5) ? UNLIMITED : std::pow(10.0, real(2, 4));
         p.limits.isJerkLimited = isJerkLimited_;
+        p.isBoxed = isBoxed_;
         p.limits.jerk.fill(UNLIMITED);
         for (std::size_t i = 0; i < geom::AXIS_COUNT && isJerkLimited_; ++i) {
             p.limits.jerk[i] =
@@ -206,6 +228,8 @@ class Maker {
     }
     std::mt19937 random_;
     bool isJerkLimited_;
+    bool isBoxed_;
+    bool isMixed_;
 };
 
 /// Blends against the corner path they replace, point by point: an upper bound of the Frechet distance.
@@ -241,6 +265,38 @@ inline bool isInOrder(const std::vector<Pose> &samples, const Program &program, 
     return testing::isWithinInOrder(samples, path, tolerance);
 }
 
+/// The box of the programmed path.
+inline void room_of(const Program &program, Pose &low, Pose &high) {
+    for (const Primitive &q : program.primitives) {
+        Pose from;
+        Pose to;
+        extent(q, from, to);
+        for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+            low[i] = std::min(low[i], from[i]);
+            high[i] = std::max(high[i], to[i]);
+        }
+    }
+}
+
+/// How far samples leave the soft limits, where lines stay within them. Rounded joints with arcs may leave
+/// them by a part of the tolerance.
+inline double worst_excursion(const std::vector<Pose> &samples, const Program &program) {
+    const auto isArc = [](const Primitive &p) { return p.isArc; };
+    if (!program.isBoxed || std::ranges::any_of(program.primitives, isArc)) {
+        return 0;
+    }
+    Pose low;
+    Pose high;
+    room_of(program, low, high);
+    double worst = 0;
+    for (const Pose &p : samples) {
+        for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+            worst = std::max({worst, low[i] - p[i], p[i] - high[i]});
+        }
+    }
+    return worst;
+}
+
 struct Outcome {
     Rig rig{Pose{}};
     bool isFinished = false;
@@ -251,7 +307,13 @@ struct Outcome {
 inline void drive(Maker &maker, const Program &program, Outcome &out, bool isDropped) {
     Rig &rig = out.rig;
     rig.planner.set_limits(program.limits);
-    rig.planner.begin(Pose{}, rig.executor.snapshot());
+    if (program.isBoxed) {
+        Pose low;
+        Pose high;
+        room_of(program, low, high);
+        rig.planner.set_room(low, high);
+    }
+    rig.planner.begin(Pose{}, rig.executor.snapshot(), program.requests.front().kept_tolerance());
     Scales scales;
     scales.max_feed = 1.5;
     rig.planner.set_scales(scales);

@@ -96,6 +96,10 @@ Verdict judge(const Program &program, const Outcome &out, bool isDropped) {
         v.fault = "limits: " + checker.report().substr(0, checker.report().find('\n'));
         return v;
     }
+    if (worst_excursion(out.rig.samples, program) > 1e-9) {
+        v.fault = "soft limits";
+        return v;
+    }
     const bool isBlend = program.join == Join::BLEND;
     if (!isDropped && !(out.rig.samples.back() == program.primitives.back().end)) {
         v.fault = "not at its end";

@@ -35,6 +35,7 @@ void check(unsigned seed, bool isJerkLimited, Kind kind = Kind::RANDOM) {
                                          testing::pose_distance(out.rig.samples[i], out.rig.samples[i - 1]));
     }
     EXPECT_TRUE(checker.isWithin()) << checker.report();
+    EXPECT_LE(worst_excursion(out.rig.samples, program), 1e-9);
     const Sequence last = out.rig.store->last_piece.load();
     const double allowed = program.join == Join::BLEND ? program.tolerance : 1e-6;
     const bool isBounded = program.tolerance > 0 || program.join != Join::BLEND;

@@ -142,6 +142,63 @@ TEST(Filtered, AHoldStopsWithinTheJerkLimitAndGoesOn_C13) {
     EXPECT_EQ(rig.samples.back(), at(60));
 }
 
+/// How far a circle of short chords, slowed down by an override, leaves its own box.
+double circle_excursion(bool isBoxed) {
+    constexpr double RADIUS = 5, P = 0.01;
+    JerkRig rig;
+    if (isBoxed) {
+        Pose low = at(-RADIUS, 0);
+        Pose high = at(RADIUS, 2 * RADIUS);
+        rig.planner.set_room(low, high);
+    }
+    Scales scales;
+    scales.feed = 0.1;
+    rig.planner.set_scales(scales);
+    Pose from;
+    for (int i = 1; i <= 180; ++i) {
+        const double angle = 2 * std::numbers::pi * i / 180;
+        const Pose to = at(RADIUS * std::sin(angle), RADIUS * (1 - std::cos(angle)));
+        rig.planner.add(make_line(from, to), request(Join::BLEND, P));
+        from = to;
+    }
+    EXPECT_TRUE(rig.run(30));
+    rig.expect_within();
+    double worst = 0;
+    for (const Pose &p : rig.samples) {
+        worst = std::max({worst, std::abs(p[0]) - RADIUS, -p[1], p[1] - 2 * RADIUS});
+    }
+    return worst;
+}
+
+TEST(Filtered, CurvesAreNotMovedBeyondSoftLimits_C13) {
+    EXPECT_LE(circle_excursion(true), 1e-9);
+    EXPECT_GT(circle_excursion(false), 1e-4);
+}
+
+/// Seconds for a circle of short chords after a path has begun with the tolerance `first`.
+double circle_time(double first) {
+    constexpr double RADIUS = 5, P = 0.01;
+    Limits limits = jerk_limits();
+    limits.jerk.fill(5000);  // 0.2 s to the full acceleration
+    Rig rig{Pose{}};
+    rig.planner.set_limits(limits);
+    rig.planner.begin(Pose{}, rig.executor.snapshot(), first);
+    EXPECT_EQ(rig.planner.suits(P), first == P);
+    Pose from;
+    for (int i = 1; i <= 180; ++i) {
+        const double angle = 2 * std::numbers::pi * i / 180;
+        const Pose to = at(RADIUS * std::sin(angle), RADIUS * (1 - std::cos(angle)));
+        rig.planner.add(make_line(from, to), request(Join::BLEND, P));
+        from = to;
+    }
+    EXPECT_TRUE(rig.run(60));
+    return static_cast<double>(rig.cycle) * Rig::T;
+}
+
+TEST(Filtered, APathMadeForItsToleranceIsTwiceAsFastOnCurves_C13) {
+    EXPECT_LT(2 * circle_time(0.01), circle_time(0));
+}
+
 TEST(Joining, NearlyStraightLinesBecomeOneWithinTheTolerance_C2) {
     Rig rig{Pose{}};
     Limits limits = jerk_limits();
