@@ -92,7 +92,7 @@ class LoopBudget {
     std::map<LoopPass, std::uint64_t> passes_;
     struct Watched {
         LoopPass pass;
-        std::uint64_t count = 0, next = 16;
+        std::uint64_t count = 0, next = 64;
         std::unique_ptr<LoopSnapshot> last;
     };
     std::vector<Watched> watched_;

@@ -156,7 +156,7 @@ TEST_F(PreviewRun, finds_loops_that_repeat_themselves_I1) {
     };
     for (const auto &one : cases) {
         PreviewOptions options;
-        options.statement_budget = 10000;
+        options.statement_budget = 100000;
         options.idle_budget = 0;
         diag::Sink errors;
         Preview check(PreviewMachine{}, world, world, options, {});
@@ -164,7 +164,7 @@ TEST_F(PreviewRun, finds_loops_that_repeat_themselves_I1) {
         ASSERT_EQ(errors.count_errors(), 1) << one.program;
         EXPECT_NE(errors.all()[0].what.message.find("nothing has changed"), std::string::npos);
         EXPECT_EQ(errors.all()[0].what.place.line, one.line);
-        EXPECT_LT(check.progress().blocks, 1000U);
+        EXPECT_LT(check.progress().blocks, 5000U);
     }
     EXPECT_EQ(run("G21 F600\no1 while [#1 lt 100000]\nG91 G1 X0\n#1=[#1+1]\no1 endwhile\n"
                   "o2 do\nG91 G1 X1\no2 while [#5420 lt 5000]\nM2\n"),
