@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // After an abort, on a whole machine in virtual time: [RS274NGC]ON_ABORT_COMMAND and the next work (I1, D1).
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "sim/virtual_machine.hh"
@@ -160,6 +162,46 @@ TEST_F(AbortTest, WorkRightAfterAnAbortBeginsWhereTheMachineComesToRest_D1) {
         if (sample.carte_pos_cmd.y() > 0) {
             EXPECT_NEAR(sample.carte_pos_cmd.x(), x(), 1e-9) << "X moves on with Y";
         }
+    }
+}
+
+/// Whenever the abort comes: the machine stops, cleans up once, and takes the next line.
+TEST_F(AbortTest, AnAbortInAnyCycleLeavesAMachineThatGoesOn_D1) {
+    switch_on_with("(debug,because %d#1)\nM65 P0\n");
+    constexpr double FASTEST_MM_S = 200.0, PERIOD_S = 1e-3;
+    for (int when = 1; when < 2600; when += 37) {
+        SCOPED_TRACE(when);
+        ASSERT_EQ(mdi("G90 G54 G49 G0 X0 Y0 Z0"), task::Progress::DONE) << messages();
+        messages();
+        start("G21 G90 G64 P0.1 F3000 S500 M3\nM64 P0\nG1 X5 Y1\nX9\nG3 X12 Y4 J3\nM62 P1\nG1 X14\nG4 "
+              "P0.1\nT2 M6\n"
+              "G43 H2 G1 X16\nM66 P0 L3 Q0.2\nG38.3 X18 F2000\nM63 P1\nG0 X25 Y9\nM65 P0\nG55 G1 X30 "
+              "F3000\nM2\n");
+        cycles(when);
+        const bool isRunning = machine_->task().progress(run_) == task::Progress::STARTED;
+        samples_.clear();
+        machine_->task().submit(task::AbortAll{});
+        machine_->task().submit(task::SetMode{task::Mode::MDI});
+        run_ = machine_->task().submit(task::Mdi{"G53 G0 Z1"});
+        cycles(2);
+        ASSERT_EQ(finish(), task::Progress::DONE) << messages();
+        cycles(400);
+        ASSERT_EQ(motion().carte_pos_cmd.z(), 1.0);
+        ASSERT_FALSE(pin("motion.digital-out-00"));
+        ASSERT_NEAR(machine_->hal().get("spindle.0.speed-out")->as_float(), 0.0, 1e-9);
+        if (isRunning) {
+            const std::string all = messages();
+            ASSERT_EQ(all.find("because 8"), all.rfind("because")) << all;
+        }
+        double way = 0;  // the sign of X's last step
+        int turns = 0;
+        for (std::size_t i = 1; i < samples_.size(); ++i) {
+            const double step = samples_[i].carte_pos_cmd.x() - samples_[i - 1].carte_pos_cmd.x();
+            ASSERT_LE(std::fabs(step), FASTEST_MM_S * PERIOD_S * 1.001);
+            turns += step * way < 0 ? 1 : 0;
+            way = std::fabs(step) > 1e-9 ? step : way;
+        }
+        ASSERT_EQ(turns, 0) << "X came back";
     }
 }
 
