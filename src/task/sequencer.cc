@@ -158,6 +158,7 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
                 events_.tool_offset(offset);
                 return true;
             },
+            [&](const WaitOrientItem &orient) { return begin(orient, now_ns); },
             [&](const PlannerModeItem &mode) { return begin(mode); },
             [&](const UserCodeItem &code) { return begin(code); },
             [&](const DigitalOutputItem &output) {
@@ -199,6 +200,15 @@ bool Sequencer::begin(const WaitInputItem &input, std::int64_t now_ns) {
     deadline_ns_ = now_ns + to_ns(input.timeout_s);
     last_input_ = std::nan("");
     isInputTimedOut_ = false;
+    return true;
+}
+
+bool Sequencer::begin(const WaitOrientItem &orient, std::int64_t now_ns) {
+    wait_ = Wait::ORIENT;
+    awaited_spindle_ = orient.spindle;
+    orient_timeout_s_ = orient.timeout_s;
+    deadline_ns_ = now_ns + to_ns(orient.timeout_s);
+    isOrientTold_ = false;
     return true;
 }
 
@@ -296,11 +306,8 @@ void Sequencer::execute_output(const Item &item) {
                        motion_.send(motion::SpindleOff{off.spindle});
                    },
                    [&](const SpindleOrientItem &orient) {
-                       motion_.send(motion::SpindleOrient{orient.spindle, orient.angle_deg, orient.mode});
-                   },
-                   [&](const WaitOrientItem &orient) {
-                       wait_ = Wait::ORIENT;
-                       awaited_spindle_ = orient.spindle;
+                       orient_command_ =
+                           motion_.send(motion::SpindleOrient{orient.spindle, orient.angle_deg, orient.mode});
                    },
                    [&](const CoolantItem &coolant) {
                        coolant.isMist ? io_.set_mist(coolant.isOn) : io_.set_flood(coolant.isOn);

@@ -104,6 +104,8 @@ class Sequencer {
     bool execute(const Item &item, std::int64_t now_ns);
     bool begin(const DwellItem &dwell, std::int64_t now_ns);
     bool begin(const WaitInputItem &input, std::int64_t now_ns);
+    bool begin(const WaitOrientItem &orient, std::int64_t now_ns);
+    bool isOrientWaitOver(std::int64_t now_ns);
     bool begin(const PlannerModeItem &mode);
     bool begin(const UserCodeItem &code);
     bool push_move(const Item &item);
@@ -140,6 +142,9 @@ class Sequencer {
     double input_value_ = 0, last_input_ = 0;
     bool isInputTimedOut_ = false;
     int awaited_spindle_ = 0;
+    motion::CommandId orient_command_ = 0;  ///< the last M19
+    bool isOrientTold_ = false;             ///< status is of a time after it
+    double orient_timeout_s_ = 0;
     motion::CommandId awaited_setting_ = 0;
     int selected_index_ = -1;  ///< table entry prepared by T, -1: none
     int changing_index_ = -1;

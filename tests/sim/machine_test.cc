@@ -107,6 +107,42 @@ TEST_F(MachineTest, AToolChangeWaitsForItsPin_E1) {
     EXPECT_EQ(machine_->task().status().tool_in_spindle, 2);
 }
 
+/// A tool arm must not come before the spindle has its angle.
+TEST_F(MachineTest, OrientingASpindleIsAwaitedUpToItsTime_E1) {
+    const std::string program = "G21 G90\nM19 R90 Q2\nG0 X5\nM19 R180 Q2\nG0 X9\nM2\n";
+    start(program);
+    for (const double angle : {90.0, 180.0}) {
+        cycles(600);
+        EXPECT_TRUE(pin("spindle.0.orient"));
+        EXPECT_EQ(machine_->hal().get("spindle.0.orient-angle")->as_float(), angle);
+        EXPECT_EQ(machine_->task().status().waiting.what, "pin spindle.0.is-oriented");
+        EXPECT_EQ(x(), angle == 90.0 ? 0.0 : 5.0) << "moved before the spindle was there";
+        set_pin("spindle.0.is-oriented", "TRUE");
+        cycles(5);
+        set_pin("spindle.0.is-oriented", "FALSE");
+    }
+    EXPECT_EQ(finish(), task::Progress::DONE) << messages();
+    EXPECT_DOUBLE_EQ(x(), 9.0);
+    start(program);
+    cycles(1900);
+    EXPECT_EQ(machine_->task().progress(run_), task::Progress::STARTED);
+    cycles(300);
+    EXPECT_EQ(machine_->task().progress(run_), task::Progress::FAILED);
+    EXPECT_NE(messages().find("spindle 0 is not oriented within 2 seconds"), std::string::npos);
+    EXPECT_DOUBLE_EQ(x(), 9.0);
+    start("G21 G90\nM19 R90\nG0 X3\nM2\n");
+    EXPECT_EQ(finish(), task::Progress::DONE) << "without Q nothing is awaited";
+}
+
+TEST_F(MachineTest, BackBoringMovesAsideOnlyWithAnOrientedSpindle_I1) {
+    start("G21 G90 G0 X0 Y0 Z5\nS1000 M3\nF3000 G87 X0 Y0 Z-3 R1 I2 J0 K-1\nG80\nM2\n");
+    cycles(5000);
+    EXPECT_EQ(machine_->task().status().waiting.what, "pin spindle.0.is-oriented");
+    EXPECT_GT(motion().carte_pos_cmd.z(), 0.5);
+    set_pin("spindle.0.is-oriented", "TRUE");
+    EXPECT_EQ(finish(), task::Progress::DONE) << messages();
+}
+
 TEST_F(MachineTest, MoveAndOutputStayInProgramOrder_D2) {
     start("G21 G90 F3000\nG1 X10\nM64 P0\nG1 X20\nM65 P0\nM2\n");
     double on_at = -1, off_at = -1;
