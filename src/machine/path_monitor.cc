@@ -8,6 +8,8 @@
 namespace mw::machine {
 namespace {
 
+constexpr double ROUNDING = 1e-9;
+
 using geom::Pose;
 
 constexpr double TURN = 2.0 * std::numbers::pi;
@@ -141,7 +143,7 @@ void PathMonitor::on_move(motion::CommandId id, const motion::PathBody &body) {
         return;
     }
     (piece.isRapid ? figures_.rapid_length : figures_.cutting_length) += feed_length(piece);
-    pieces_.push_back({id, piece});
+    pieces_.push_back({id, piece, feed_length(piece)});
 }
 
 void PathMonitor::on_sample(const motion::TraceSample &sample) {
@@ -161,24 +163,58 @@ void PathMonitor::on_sample(const motion::TraceSample &sample) {
     take_point(p);
 }
 
+/// The present place is looked for from the last one on. As long as one near by is no farther off than any
+/// before, nothing beyond is looked at: a path may cross itself. Else it is any up to where the planner's
+/// leader is: it may have joined many lines and be ahead of the commanded mean, and a corner's blend reaches
+/// into the next line by no more than the length of its own.
 void PathMonitor::follow(const motion::TraceSample &sample) {
-    while (pieces_.size() > 2 && pieces_[2].id <= sample.path_id) {
-        pieces_.pop_front();
+    if (sample.path_id > current_id_) {
+        group_length_ = 0;
+        for (std::size_t i = place_; i < pieces_.size() && pieces_[i].id <= sample.path_id; ++i) {
+            group_length_ += pieces_[i].id > current_id_ ? pieces_[i].length : 0.0;
+        }
+        current_id_ = sample.path_id;
     }
     if (pieces_.empty()) {
         return;
     }
-    // A blend lies between the move being executed and one of its neighbours; nothing else may be near by
-    // chance.
-    const std::size_t current = pieces_.size() > 1 && pieces_[1].id <= sample.path_id ? 1 : 0;
-    Nearest best = nearest_point(pieces_[current].piece, sample.carte_pos_cmd);
-    for (std::size_t i = current > 0 ? current - 1 : 0; i < pieces_.size() && i <= current + 1; ++i) {
-        const Nearest other = nearest_point(pieces_[i].piece, sample.carte_pos_cmd);
-        best = other.combined() < best.combined() ? other : best;
+    const double moved = geom::norm(history_[0] - history_[1]);
+    const double known = std::hypot(figures_.deviation_linear, figures_.deviation_angular) + ROUNDING;
+    Nearest best = nearest_point(pieces_[place_].piece, sample.carte_pos_cmd);
+    std::size_t place = place_;
+    double way = 0;  // from the best place on
+    double beyond = 0;
+    for (std::size_t i = place_ + 1; i < pieces_.size(); ++i) {
+        const bool isBeyond = pieces_[i].id > current_id_;
+        if ((best.combined() <= known && way > LOCAL * moved) || (isBeyond && beyond > group_length_)) {
+            break;
+        }
+        beyond += isBeyond ? pieces_[i].length : 0.0;
+        way += pieces_[i].length;
+        look_at(i, sample.carte_pos_cmd, best, place);
+        way = place == i ? 0.0 : way;
     }
-    isInRapid_ = pieces_[current].piece.isRapid;
+    // Back, as on a reverse run.
+    way = 0;
+    for (std::size_t i = place_; i > 0 && way <= LOCAL * moved; --i) {
+        look_at(i - 1, sample.carte_pos_cmd, best, place);
+        way += pieces_[i - 1].length;
+    }
+    isInRapid_ = pieces_[place].piece.isRapid;
     figures_.deviation_linear = std::max(figures_.deviation_linear, best.linear);
     figures_.deviation_angular = std::max(figures_.deviation_angular, best.angular);
+    place_ = place;
+    for (; place_ > MOST_BEHIND; --place_) {
+        pieces_.pop_front();
+    }
+}
+
+void PathMonitor::look_at(std::size_t i, const Pose &p, Nearest &best, std::size_t &place) const {
+    const Nearest other = nearest_point(pieces_[i].piece, p);
+    if (other.combined() < best.combined()) {
+        best = other;
+        place = i;
+    }
 }
 
 void PathMonitor::take_point(const Pose &p) {

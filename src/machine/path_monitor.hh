@@ -61,6 +61,7 @@ class PathMonitor {
 
   private:
     void follow(const motion::TraceSample &sample);
+    void look_at(std::size_t i, const geom::Pose &p, Nearest &best, std::size_t &place) const;
     void take_point(const geom::Pose &p);
 
     double period_s_;
@@ -68,8 +69,14 @@ class PathMonitor {
     struct NumberedPiece {
         motion::CommandId id;
         ProgrammedPiece piece;
+        double length;
     };
-    std::deque<NumberedPiece> pieces_;  ///< from the one before that being executed on
+    static constexpr std::size_t MOST_BEHIND = 4096;
+    static constexpr double LOCAL = 3;  ///< places near by are within so many steps of the last sample
+    std::deque<NumberedPiece> pieces_;
+    std::size_t place_ = 0;             ///< of the last sample in pieces_
+    motion::CommandId current_id_ = 0;  ///< of the move being executed, which may stand for those before it
+    double group_length_ = 0;           ///< of what it stands for
     bool isInRapid_ = false;
     geom::Pose last_end_{};
     std::array<geom::Pose, 2> history_{};  ///< the two samples before

@@ -299,9 +299,10 @@ class Planner {
     double trial_s_origin_ = 0;
     std::uint64_t tolerance_tick_ = 0;  ///< the newest sample whose tolerance differs from the one before
     std::uint64_t failed_tick_ = 0;
-    std::uint64_t replan_ = 0;    ///< counts replanning
-    bool isAfterDriven_ = false;  ///< the failed sample depends on what has been driven already
-    double excess_ = 1;           ///< what the failed sample has over what is allowed
+    std::uint64_t replan_ = 0;         ///< counts replanning
+    bool isAfterDriven_ = false;       ///< the failed sample depends on what has been driven already
+    double eased_excess_ = UNLIMITED;  ///< of the attempt before
+    double excess_ = 1;                ///< what the failed sample has over what is allowed
     /// Relative slack of what the trial compares, half of what checkers of the trajectory allow.
     static constexpr double SLACK = 1.0 + 5e-7;
     const JointMap *joint_map_ = nullptr;

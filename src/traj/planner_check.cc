@@ -330,9 +330,12 @@ bool Planner::ease(const State &from) noexcept {
         }
         return true;
     }
+    // Where slower curves alone make it no better, it is what leads to them.
+    const bool isEverything = !isAnyCurved || most_dwell > 0 || excess_ >= eased_excess_;
+    eased_excess_ = excess_;
     const auto scale = [&](double speed, double acceleration) {
         for (Sequence k = low; k <= high; ++k) {
-            if (isCurved(k) || !isAnyCurved || most_dwell > 0) {
+            if (isCurved(k) || isEverything) {
                 ease_piece(k, speed, acceleration);
             }
             piece_plan(k).v2_in = -1;

@@ -199,6 +199,7 @@ bool Planner::replan_filtered(const Snapshot &now, State from, bool isStop) noex
     const double delay = start_delay_s_;
     ++replan_;
     isAfterDriven_ = false;
+    eased_excess_ = UNLIMITED;
     for (int n = 0; n < ATTEMPTS; ++n) {
         plan_end_ = begin;
         planned_ = from;

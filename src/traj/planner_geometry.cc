@@ -85,7 +85,6 @@ void Planner::begin(const Pose &start, const Snapshot &now, double tolerance) no
     switch_cycle_ = 0;
     planned_ = {};
     isAtEndOfPath_ = false;
-    isStepping_ = false;
     start_delay_s_ = 0;
 }
 

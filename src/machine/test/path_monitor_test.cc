@@ -59,6 +59,50 @@ TEST(PathMonitor, DeviationIsMeasuredInOrder) {
     EXPECT_NEAR(monitor.figures().cutting_length, 20.0, 1e-12);
 }
 
+TEST(PathMonitor, LinesThatThePlannerHasJoinedAreAllLookedAt_C2) {
+    PathMonitor monitor(1000000);
+    monitor.start(at(0, 0));
+    motion::Line line;
+    for (int i = 1; i <= 100; ++i) {
+        line.end = at(0.1 * i, std::sin(0.1 * i));
+        monitor.on_move(static_cast<motion::CommandId>(i), line);
+    }
+    // One move stands for ten lines, and the commanded mean is 0.35 behind the leader.
+    for (int i = 0; i <= 1000; ++i) {
+        const double x = 0.01 * i;
+        const int leader = std::min(100, i / 10 + 4);
+        const double y0 = std::sin(0.1 * std::floor(x / 0.1 + 1e-9));
+        const double y1 = std::sin(0.1 * (std::floor(x / 0.1 + 1e-9) + 1));
+        const double part = x / 0.1 - std::floor(x / 0.1 + 1e-9);
+        monitor.on_sample(
+            sample(at(x, y0 + (y1 - y0) * part), static_cast<motion::CommandId>((leader + 9) / 10 * 10)));
+    }
+    EXPECT_NEAR(monitor.figures().deviation_linear, 0.0, 1e-9);
+    monitor.on_sample(sample(at(9.95, std::sin(10.0) - 1), 100));
+    EXPECT_GT(monitor.figures().deviation_linear, 0.5);
+}
+
+TEST(PathMonitor, AWayBackOverTheSameLineIsLeftAgain) {
+    PathMonitor monitor(1000000);
+    monitor.start(at(0, 0));
+    motion::Line line;
+    motion::CommandId id = 0;
+    for (const auto &end : {at(10, 0), at(0, 0), at(0, 10)}) {
+        line.end = end;
+        monitor.on_move(++id, line);
+    }
+    for (int i = 0; i <= 100; ++i) {
+        monitor.on_sample(sample(at(0.1 * i, 0), 1));
+    }
+    for (int i = 99; i >= 0; --i) {
+        monitor.on_sample(sample(at(0.1 * i, 0), 2));
+    }
+    for (int i = 0; i <= 100; ++i) {
+        monitor.on_sample(sample(at(0, 0.1 * i), 3));
+    }
+    EXPECT_NEAR(monitor.figures().deviation_linear, 0.0, 1e-9);
+}
+
 TEST(PathMonitor, AnglesAreAGroupOfTheirOwn) {
     PathMonitor monitor(1000000);
     monitor.start(at(0, 0));

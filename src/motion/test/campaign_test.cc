@@ -191,7 +191,7 @@ int number_from(const char *name, int preset) {
 
 void run_all(bool isJerkLimited) {
     const int first = number_from("MW_CAMPAIGN_FIRST", 1);
-    const int count = number_from("MW_CAMPAIGN_SEEDS", 30);
+    const int count = number_from("MW_CAMPAIGN_SEEDS", 40);
     for (int i = 0; i < count && !::testing::Test::HasFailure(); ++i) {
         const auto seed = static_cast<unsigned>(first + i);
         SCOPED_TRACE("seed " + std::to_string(seed));

@@ -59,5 +59,29 @@ TEST(Tolerance, ASmallerOneOnTheWayCostsAStopAndNotTheSpeedOfTheCurves_C13) {
     EXPECT_LT(run_program(1.0), alone + 0.2);
 }
 
+TEST(Tolerance, ASmallerOneOnTheWayKeepsSingleSteps_C13) {
+    MotionRig rig("XYZ", V, A);
+    for (int j = 0; j < 3; ++j) {
+        rig.set(Parameter::AXIS_MAX_JERK, j, J);
+        rig.set(Parameter::JOINT_MAX_JERK, j, J);
+    }
+    rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, 1);
+    rig.ready();
+    rig.send(Pause{});
+    rig.step(2);
+    for (int i = 1; i <= 3; ++i) {
+        geom::Pose at;
+        at[0] = 10.0 * i;
+        rig.line(at, 50, PathMode::BLEND, std::pow(0.01, i));
+    }
+    rig.send_path(Flush{});
+    for (int i = 1; i <= 3; ++i) {
+        rig.send(StepOnce{});
+        rig.step(2000);
+        EXPECT_NEAR(rig.out->joint[0].motor_pos_cmd, 10.0 * i, 1e-9);
+        EXPECT_TRUE(rig.status().isPaused || i == 3);
+    }
+}
+
 }  // namespace
 }  // namespace mw::motion
