@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "diag/sink.hh"
 
+#include <algorithm>
+
 namespace mw::diag {
 namespace {
 
@@ -22,6 +24,36 @@ std::string caret_line(const std::string &text, int column) {
     return out + '^';
 }
 
+/// The part of a line around a column that fits on a screen, and the column there.
+std::string shortened(const std::string &line, int &column) {
+    constexpr std::size_t LONGEST = 200, BEFORE = 100;
+    constexpr const char *MORE = "...";
+    if (line.size() <= LONGEST) {
+        return line;
+    }
+    const std::size_t at = static_cast<std::size_t>(column > 0 ? column - 1 : 0);
+    const std::size_t first = at > BEFORE ? std::min(at - BEFORE, line.size()) : 0;
+    const std::string before = first > 0 ? MORE : "";
+    const std::string after = line.size() - first > LONGEST ? MORE : "";
+    column = column > 0 ? static_cast<int>(at - first + before.size()) + 1 : 0;
+    return before + line.substr(first, LONGEST) + after;
+}
+
+/// One line for each caller, but one for a run of the same.
+std::string callers_text(const std::vector<SourcePlace> &callers) {
+    std::string out;
+    for (std::size_t i = 0; i < callers.size();) {
+        std::size_t end = i + 1;
+        while (end < callers.size() && callers[end].str() == callers[i].str()) {
+            ++end;
+        }
+        out += "\n  called from " + callers[i].str();
+        out += end - i > 1 ? ", " + std::to_string(end - i) + " times" : "";
+        i = end;
+    }
+    return out;
+}
+
 }  // namespace
 
 std::string Diagnostic::str() const {
@@ -40,14 +72,14 @@ std::string Diagnostic::str() const {
 std::string Diagnostic::context() const {
     std::string out;
     if (!line_text.empty()) {
-        out += "\n  " + line_text;
-        if (what.place.column > 0) {
-            out += "\n  " + caret_line(line_text, what.place.column);
+        int column = what.place.column;
+        const std::string text = shortened(line_text, column);
+        out += "\n  " + text;
+        if (column > 0) {
+            out += "\n  " + caret_line(text, column);
         }
     }
-    for (const SourcePlace &caller : called_from) {
-        out += "\n  called from " + caller.str();
-    }
+    out += callers_text(called_from);
     return out.empty() ? out : out.substr(1);
 }
 

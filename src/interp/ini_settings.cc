@@ -37,10 +37,10 @@ double number_of(const config::IniFile &ini, std::string_view key, double missin
     return value.value_or(missing);
 }
 
-bool flag_of(const config::IniFile &ini, std::string_view key, diag::Sink &sink) {
+bool flag_of(const config::IniFile &ini, std::string_view key, diag::Sink &sink, bool missing = false) {
     const config::IniEntry *entry = ini.find(SECTION, key);
     if (entry == nullptr) {
-        return false;
+        return missing;
     }
     for (const std::string_view yes : {"1", "yes", "true", "on"}) {
         if (equals_ignoring_case(entry->value, yes)) {
@@ -98,6 +98,9 @@ Settings settings_from_ini(const config::IniFile &ini, diag::Sink &sink) {
     if (const config::IniEntry *entry = ini.find(SECTION, "RS274NGC_STARTUP_CODE"); entry != nullptr) {
         out.startup_code = entry->value;
     }
+    if (const config::IniEntry *entry = ini.find(SECTION, "ON_ABORT_COMMAND"); entry != nullptr) {
+        out.on_abort_command = trim(entry->value);
+    }
     for (const config::IniEntry *entry : ini.find_all(SECTION, "REMAP")) {
         out.remaps.emplace_back(entry->value, entry->place);
     }
@@ -105,6 +108,8 @@ Settings settings_from_ini(const config::IniFile &ini, diag::Sink &sink) {
     out.isG92PersistenceDisabled = flag_of(ini, "DISABLE_G92_PERSISTENCE", sink);
     out.isCoordinateSystemKept = flag_of(ini, "KEEP_COORDINATE_SYSTEM", sink);
     out.isFanucSubDisabled = flag_of(ini, "DISABLE_FANUC_STYLE_SUB", sink);
+    out.isIniReadable = flag_of(ini, "INI_VARS", sink, true);
+    out.isHalReadable = flag_of(ini, "HAL_PIN_VARS", sink, true);
     out.isArgumentCountNamed = flag_of(ini, "OWORD_NARGS", sink);
     out.orient_offset_deg = number_of(ini, "ORIENT_OFFSET", 0.0, sink);
     out.center_arc_radius_tolerance_inch =

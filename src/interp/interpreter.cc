@@ -92,6 +92,13 @@ void Interpreter::abort() {
     impl_->flow.abort();
 }
 
+void Interpreter::announce() {
+    detail::Executor &executor = impl_->executor;
+    executor.canon.enter_block(nullptr, 0, 0, false, 0);
+    executor.announce_modes();
+    executor.canon.flush(impl_->target);
+}
+
 const std::vector<std::string> &Interpreter::warnings() const {
     return impl_->flow.warnings();
 }
@@ -126,6 +133,14 @@ bool Interpreter::isContinuable() const {
 
 bool Interpreter::isAtFileEnd() const {
     return impl_->flow.isAtFileEnd();
+}
+
+std::vector<diag::Diagnostic> Interpreter::syntax_errors(int after, int most) {
+    return impl_->flow.syntax_errors(after, most);
+}
+
+void Interpreter::mark_progress(double seconds) {
+    impl_->flow.mark_progress(seconds);
 }
 
 bool Interpreter::isBudgetSpent() const {

@@ -47,7 +47,10 @@ struct Settings {
     std::vector<std::string> user_m_path;  ///< [RS274NGC]USER_M_PATH and PROGRAM_PREFIX: where M100..M199 are
     bool isUserCodeAssumed = false;        ///< M100..M199 need no program: for previews elsewhere
     std::string startup_code;              ///< [RS274NGC]RS274NGC_STARTUP_CODE
+    std::string on_abort_command;          ///< [RS274NGC]ON_ABORT_COMMAND: task runs it after each abort
     bool isG92PersistenceDisabled = false;
+    bool isIniReadable = true;  ///< [RS274NGC]INI_VARS: #<_ini[section]key>
+    bool isHalReadable = true;  ///< [RS274NGC]HAL_PIN_VARS: #<_hal[name]>
     bool isFanucSubDisabled = false;
     bool isCoordinateSystemKept = false;  ///< M2 and M30 do not go back to G54
     double max_velocity_mm_s = 0;         ///< threads that need more are refused; 0: not known
@@ -67,9 +70,12 @@ struct Settings {
     int logging_level = 0;  ///< [RS274NGC]LOG_LEVEL
     std::string ini_folder;
     std::optional<LengthUnits> initial_units;  ///< G20 or G21 at the start; the machine's when not given
-    /// Statements per step() and in all; 0: without bound. A bound makes check runs of endless loops end in
-    /// an error.
+    /// For checks: what one loop or call of the main program may take before it counts as endless, which is
+    /// an error that names it. Each counts anew whenever the main program comes to a line further down. 0:
+    /// without bound, for all three.
     std::uint64_t statement_budget = 0;
+    std::uint64_t idle_budget = 0;  ///< statements since the last call of mark_progress()
+    double time_budget_s = 0;       ///< of machine time, as mark_progress() tells it
 };
 
 /// How far the main program has been read.
@@ -103,6 +109,7 @@ class Interpreter final : public ProgramInterpreter {
     const std::vector<std::string> &warnings() const override;
     /// Drops calls and loops, keeps modes; suspended scripts end.
     void abort() override;
+    void announce() override;
 
     const diag::Diagnostic &error() const override;
     ActiveCodes active_codes() const override;
@@ -113,7 +120,11 @@ class Interpreter final : public ProgramInterpreter {
     bool isMoveHeld() const override;
     /// After a failure: the block did not decide which one is next, so that checks may go on behind it.
     bool isContinuable() const;
-    /// The statement budget is used up: no more statement will run.
+    /// Syntax errors of the open file behind a line, at most so many: for checks that cannot go on otherwise.
+    std::vector<diag::Diagnostic> syntax_errors(int after, int most);
+    /// Tells that the program has made the machine do something, for so long. [s]
+    void mark_progress(double seconds);
+    /// A budget is used up: no more statement will run.
     bool isBudgetSpent() const;
     FilePlace place_in_file() const;
     /// The subroutine that runs, without brackets; empty in the main program.

@@ -2,6 +2,7 @@
 #include "interp/preview.hh"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/text.hh"
@@ -44,6 +45,31 @@ std::string_view section_name(std::string_view comment) {
         return {};
     }
     return trim(comment.substr(KEY.size()));
+}
+
+/// Over all axes, lengths and degrees alike. [machine units]
+double distance(const Pose &a, const Pose &b) {
+    double squares = 0;
+    for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
+        squares += (a[axis] - b[axis]) * (a[axis] - b[axis]);
+    }
+    return std::sqrt(squares);
+}
+
+/// Of an arc in XYZ or UVW that begins at `start`: what is across its normal. [machine units]
+double arc_radius(const ArcMove &arc, const Pose &start) {
+    double longest = 0;
+    for (const int first : {geom::AXIS_X, geom::AXIS_U}) {
+        double across = 0, along = 0, normal = 0;
+        for (int axis = first; axis < first + 3; ++axis) {
+            const double d = start[axis] - arc.centre[axis];
+            across += d * d;
+            along += d * arc.normal[axis];
+            normal += arc.normal[axis] * arc.normal[axis];
+        }
+        longest = normal > 0 ? std::max(longest, std::sqrt(std::max(0.0, across - along * along))) : longest;
+    }
+    return longest;
 }
 
 }  // namespace
@@ -103,7 +129,7 @@ class Preview::Impl final : public QuietMachineCanon, public World {
         event.normal = convert_direction(move.normal);
         event.angle_rad = move.angle_rad;
         event.settings = move.settings;
-        go_to(event, move.end);
+        go_to(event, move.end, std::abs(move.angle_rad) * arc_radius(move, position_));
     }
     void probe(const LineMove &move, ProbeKind) override {
         add_move(PreviewKind::PROBE, move.end, move.settings);
@@ -170,6 +196,8 @@ class Preview::Impl final : public QuietMachineCanon, public World {
   private:
     static Settings with_budget(Settings settings, const PreviewOptions &options) {
         settings.statement_budget = options.statement_budget;
+        settings.idle_budget = options.idle_budget;
+        settings.time_budget_s = options.time_budget_s;
         return settings;
     }
 
@@ -180,6 +208,9 @@ class Preview::Impl final : public QuietMachineCanon, public World {
             const Step step = interpreter_.step();
             if (step == Step::FAILED) {
                 sink.report(interpreter_.error());
+                if (!interpreter_.isContinuable()) {
+                    report_rest(sink, options_.max_errors - errors - 1);
+                }
                 if (++errors >= options_.max_errors || !interpreter_.isContinuable() ||
                     interpreter_.isAtFileEnd()) {
                     break;
@@ -194,6 +225,15 @@ class Preview::Impl final : public QuietMachineCanon, public World {
             }
         }
         return errors > 0 ? PreviewEnd::FAILED : PreviewEnd::DONE;
+    }
+
+    /// The way is lost: what cannot be read further down is told all the same.
+    void report_rest(diag::Sink &sink, int most) {
+        const diag::Diagnostic failed = interpreter_.error();
+        const SourcePlace &place = failed.called_from.empty() ? failed.what.place : failed.called_from.back();
+        for (diag::Diagnostic &one : interpreter_.syntax_errors(place.line, most)) {
+            sink.report(std::move(one));
+        }
     }
 
     bool report_progress() {
@@ -224,11 +264,21 @@ class Preview::Impl final : public QuietMachineCanon, public World {
         event.settings = settings;
         go_to(event, end);
     }
-    void go_to(PreviewEvent &event, const Pose &end) {
+    void go_to(PreviewEvent &event, const Pose &end, double arc_length = 0) {
+        mark_progress(event.settings, std::max(distance(position_, end), arc_length));
         event.start = convert(position_);
         event.end = convert(end);
         position_ = end;
         add(event);
+    }
+    /// How long a move takes at least, so that loops that move without end are found.
+    void mark_progress(const MoveSettings &settings, double length) {
+        constexpr double FASTEST_MM_S = 1000.0;
+        const double fastest = FASTEST_MM_S / mm_per_machine_unit();
+        const double speed = settings.feed > 0 ? std::min(settings.feed, fastest) : fastest;
+        if (length > 0) {
+            interpreter_.mark_progress(length / speed);
+        }
     }
     void add_standing(PreviewKind kind, int number, double value) {
         PreviewEvent event = place_;
@@ -236,6 +286,11 @@ class Preview::Impl final : public QuietMachineCanon, public World {
         event.number = number;
         event.value = value;
         event.start = event.end = convert(position_);
+        const bool isWaiting = kind == PreviewKind::STOP || kind == PreviewKind::TOOL_CHANGE;
+        if (const double seconds = kind == PreviewKind::DWELL ? value : (isWaiting ? 1.0 : 0.0);
+            seconds > 0) {
+            interpreter_.mark_progress(seconds);
+        }
         add(event);
     }
     void add(const PreviewEvent &event) {

@@ -70,8 +70,12 @@ struct PreviewProgress {
 struct PreviewOptions {
     PreviewCoordinates coordinates = PreviewCoordinates::MACHINE;
     std::size_t batch = 1024;  ///< most events per call of the listener
-    /// Statements after which a program counts as endless, which is an error.
-    std::uint64_t statement_budget = 200000000;
+    /// After these a loop, or a call of the main program, counts as endless, which is an error; 0: never. See
+    /// Settings. Statements; statements in a row without any motion, dwell or stop; machine time (motion at
+    /// the programmed feed, rapids at least at the machine's speed).
+    std::uint64_t statement_budget = 50000000;
+    std::uint64_t idle_budget = 20000000;
+    double time_budget_s = 100 * 3600.0;
     int max_errors = 20;                     ///< interpretation goes on behind a failed block until then
     std::uint64_t blocks_per_report = 4096;  ///< between two calls of `progress`
 };

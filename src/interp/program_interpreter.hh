@@ -56,6 +56,8 @@ class ProgramInterpreter {
     virtual void synch() = 0;
     /// Back to the top level after an abort.
     virtual void abort() = 0;
+    /// Tells the canon the offsets, speeds and switches in force, for one that has lost what was read ahead.
+    virtual void announce() {}
 
     /// The last failure: message, file:line:column, the block's text, the callers.
     virtual const diag::Diagnostic &error() const = 0;
@@ -82,7 +84,7 @@ struct PluginParts {
     ParameterSource &parameters;
 };
 
-inline constexpr int PLUGIN_VERSION = 1;
+inline constexpr int PLUGIN_VERSION = 2;
 /// Symbols that a plug-in exports, with C linkage: `int millwright_plugin_version`, which must be
 /// PLUGIN_VERSION, and makeInterp, which makes an interpreter (to be deleted by the caller).
 inline constexpr char PLUGIN_VERSION_SYMBOL[] = "millwright_plugin_version";

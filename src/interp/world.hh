@@ -27,8 +27,10 @@ struct MachineSnapshot {
     std::array<double, 8> spindle_speed{};
     std::array<int, 8> spindle_direction{};  ///< +1 cw, 0 stopped, -1 ccw
     int tool_in_spindle = 0;
-    int selected_pocket = -1;  ///< index in the tool table of the tool that T prepared; -1 none
-    int current_pocket = 0;    ///< index in the tool table of the tool in the spindle
+    bool isToolFaulted = false;  ///< the last tool change ended with a fault
+    int tool_fault_reason = 0;   ///< as the changer has told it
+    int selected_pocket = -1;    ///< index in the tool table of the tool that T prepared; -1 none
+    int current_pocket = 0;      ///< index in the tool table of the tool in the spindle
 };
 
 class World {

@@ -5,9 +5,11 @@
 #include <chrono>
 #include <cstdio>
 #include <functional>
+#include <optional>
 
 #include <fmt/format.h>
 
+#include "base/text.hh"
 #include "machine/commands.hh"
 #include "machine/ini_parameters.hh"
 #include "machine/loaded_config.hh"
@@ -62,7 +64,7 @@ class ProgressLine {
 }  // namespace
 
 int command_check(const std::vector<std::string> &words) {
-    const auto options = parse_options(words, {{}, {"--ini"}});
+    const auto options = parse_options(words, {{}, {"--ini", "--statements"}});
     if (!options.has_value()) {
         fmt::print(stderr, "millwright check: {}\n", options.error().str());
         return 2;
@@ -70,6 +72,13 @@ int command_check(const std::vector<std::string> &words) {
     if (options->rest.size() != 1 || options->value("--ini").empty()) {
         fmt::print(stderr, "millwright check: needs a program and a machine: millwright check PROGRAM.ngc "
                            "--ini MACHINE.ini\n");
+        return 2;
+    }
+    const std::string bound = options->value("--statements");
+    const auto statements = bound.empty() ? std::optional<std::int64_t>() : parse_int(bound);
+    if (!bound.empty() && (!statements || *statements < 0)) {
+        fmt::print(stderr, "millwright check: --statements needs a whole number from 0 up, not '{}'\n",
+                   bound);
         return 2;
     }
     diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", d.str()); });
@@ -86,7 +95,7 @@ int command_check(const std::vector<std::string> &words) {
     IniParameters values(loaded->ini, nullptr);
     ProgressLine progress;
     const CheckResult result =
-        check_program(loaded->machine, program, **tools, values, sink, std::ref(progress));
+        check_program(loaded->machine, program, **tools, values, sink, {std::ref(progress), statements});
     progress.clear();
     if (sink.hasErrors()) {
         fmt::print(stderr, "{}: {} error(s)\n", program, sink.count_errors());

@@ -171,8 +171,7 @@ class Checker {
 }  // namespace
 
 CheckResult check_program(const MachineConfig &machine, const std::string &program, interp::ToolSource &tools,
-                          interp::ParameterSource &parameters, diag::Sink &sink,
-                          const std::function<bool(const interp::PreviewProgress &)> &progress) {
+                          interp::ParameterSource &parameters, diag::Sink &sink, const CheckOptions &check) {
     interp::PreviewMachine stand;
     stand.interpreter = machine.task.interpreter;
     stand.units = machine.task.machine_units;
@@ -184,11 +183,16 @@ CheckResult check_program(const MachineConfig &machine, const std::string &progr
     };
     interp::PreviewOptions options;
     options.max_errors = MAX_CHECK_ERRORS;
+    if (check.statements) {
+        options.statement_budget = options.idle_budget = static_cast<std::uint64_t>(*check.statements);
+        options.time_budget_s = 0;
+    }
     Checker checker(machine, sink);
     interp::Preview *source = nullptr;
     interp::Preview preview(
         std::move(stand), tools, parameters, options,
-        {[&](std::span<const interp::PreviewEvent> events) { checker.take(events, *source); }, progress});
+        {[&](std::span<const interp::PreviewEvent> events) { checker.take(events, *source); },
+         check.progress});
     source = &preview;
     const interp::PreviewEnd end = preview.run(program, sink);
     checker.result.blocks = preview.progress().blocks;

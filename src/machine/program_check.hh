@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "diag/sink.hh"
@@ -22,12 +23,18 @@ struct CheckResult {
     TimeFigures time;  ///< of a program without errors
 };
 
+struct CheckOptions {
+    std::function<bool(const interp::PreviewProgress &)> progress;  ///< false ends the check; may be empty
+    /// How many statements a loop may take, 0 for any number; as interp::PreviewOptions has it when not set.
+    std::optional<std::int64_t> statements;
+};
+
 /// Runs the interpreter over the whole program. Errors (syntax, limits, endless loops) go to `sink` with
 /// their places; at most `MAX_CHECK_ERRORS` of them. Tool table and parameter file are read and never
-/// written. `progress` may be empty; when it answers false the check ends with what it has.
+/// written. When `progress` answers false the check ends with what it has.
 CheckResult check_program(const MachineConfig &machine, const std::string &program, interp::ToolSource &tools,
                           interp::ParameterSource &parameters, diag::Sink &sink,
-                          const std::function<bool(const interp::PreviewProgress &)> &progress = {});
+                          const CheckOptions &options = {});
 
 inline constexpr int MAX_CHECK_ERRORS = 20;
 

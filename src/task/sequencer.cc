@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "task/sequencer.hh"
 
-#include <unistd.h>
-
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <numbers>
-
-#include "base/atomic_file.hh"
 
 namespace mw::task {
 namespace {
@@ -160,6 +158,7 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
                 events_.tool_offset(offset);
                 return true;
             },
+            [&](const WaitOrientItem &orient) { return begin(orient, now_ns); },
             [&](const PlannerModeItem &mode) { return begin(mode); },
             [&](const UserCodeItem &code) { return begin(code); },
             [&](const DigitalOutputItem &output) {
@@ -201,6 +200,15 @@ bool Sequencer::begin(const WaitInputItem &input, std::int64_t now_ns) {
     deadline_ns_ = now_ns + to_ns(input.timeout_s);
     last_input_ = std::nan("");
     isInputTimedOut_ = false;
+    return true;
+}
+
+bool Sequencer::begin(const WaitOrientItem &orient, std::int64_t now_ns) {
+    wait_ = Wait::ORIENT;
+    awaited_spindle_ = orient.spindle;
+    orient_timeout_s_ = orient.timeout_s;
+    deadline_ns_ = now_ns + to_ns(orient.timeout_s);
+    isOrientTold_ = false;
     return true;
 }
 
@@ -298,11 +306,8 @@ void Sequencer::execute_output(const Item &item) {
                        motion_.send(motion::SpindleOff{off.spindle});
                    },
                    [&](const SpindleOrientItem &orient) {
-                       motion_.send(motion::SpindleOrient{orient.spindle, orient.angle_deg, orient.mode});
-                   },
-                   [&](const WaitOrientItem &orient) {
-                       wait_ = Wait::ORIENT;
-                       awaited_spindle_ = orient.spindle;
+                       orient_command_ =
+                           motion_.send(motion::SpindleOrient{orient.spindle, orient.angle_deg, orient.mode});
                    },
                    [&](const CoolantItem &coolant) {
                        coolant.isMist ? io_.set_mist(coolant.isOn) : io_.set_flood(coolant.isOn);
@@ -419,27 +424,29 @@ void Sequencer::on_tool_event(io::ToolEvent event) {
     }
 }
 
+void Sequencer::open_log(LogFile &log, const LogItem &item) {
+    log.path = item.text;
+    log.file.reset();  // the same file may be opened again
+    log.file.reset(std::fopen(item.text.c_str(), item.what == LogItem::What::APPEND ? "ae" : "we"));
+    if (log.file == nullptr) {
+        fail_item("cannot write " + item.text + ": " + std::strerror(errno));
+        return;
+    }
+    std::setvbuf(log.file.get(), nullptr, _IOLBF, BUFSIZ);
+}
+
 void Sequencer::execute_log(const LogItem &item) {
     LogFile &log = logs_[item.isProbe ? 1 : 0];
     switch (item.what) {
     case LogItem::What::OPEN:
-    case LogItem::What::APPEND: {
-        close_log(log);
-        const bool isContinued = item.what == LogItem::What::APPEND && ::access(item.text.c_str(), F_OK) == 0;
-        const auto old = isContinued ? read_file(item.text) : Result<std::string>("");
-        if (!old.has_value()) {
-            fail_item(old.error().str());
-            return;
-        }
-        log = {item.text, *old, true};
-        break;
-    }
+    case LogItem::What::APPEND: open_log(log, item); break;
     case LogItem::What::WRITE:
-        if (log.isOpen) {
-            log.text += item.text + '\n';
+        if (log.file != nullptr && std::fputs((item.text + '\n').c_str(), log.file.get()) < 0) {
+            log.file.reset();
+            fail_item("cannot write " + log.path + ": " + std::strerror(errno));
         }
         break;
-    case LogItem::What::CLOSE: close_log(log); break;
+    case LogItem::What::CLOSE: log.file.reset(); break;
     }
 }
 
@@ -447,20 +454,9 @@ void Sequencer::log_probe(const std::string &line) {
     execute_log({LogItem::What::WRITE, line, true});
 }
 
-void Sequencer::close_log(LogFile &log) {
-    if (!log.isOpen) {
-        return;
-    }
-    log.isOpen = false;
-    const auto written = write_file_atomically(log.path, log.text);
-    if (!written.has_value()) {
-        events_.message(MessageKind::OPERATOR_ERROR, written.error().str());
-    }
-}
-
 void Sequencer::close_logs() {
     for (LogFile &log : logs_) {
-        close_log(log);
+        log.file.reset();
     }
 }
 

@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cstdint>
+#include <cstdio>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -102,6 +104,8 @@ class Sequencer {
     bool execute(const Item &item, std::int64_t now_ns);
     bool begin(const DwellItem &dwell, std::int64_t now_ns);
     bool begin(const WaitInputItem &input, std::int64_t now_ns);
+    bool begin(const WaitOrientItem &orient, std::int64_t now_ns);
+    bool isOrientWaitOver(std::int64_t now_ns);
     bool begin(const PlannerModeItem &mode);
     bool begin(const UserCodeItem &code);
     bool push_move(const Item &item);
@@ -110,12 +114,15 @@ class Sequencer {
     void execute_tool(const Item &item);
     void execute_output(const Item &item);
     void execute_log(const LogItem &item);
-    /// Writes an open log: also at the end of a program and at an abort, so that no line is lost.
-    struct LogFile {
-        std::string path, text;
-        bool isOpen = false;
+    struct CloseFile {
+        void operator()(std::FILE *file) const { std::fclose(file); }
     };
-    void close_log(LogFile &log);
+    /// Each line reaches the file at once, so that none is lost and all can be watched.
+    struct LogFile {
+        std::string path;
+        std::unique_ptr<std::FILE, CloseFile> file;
+    };
+    void open_log(LogFile &log, const LogItem &item);
     void close_logs();
     motion::MoveTerms terms_of(const interp::MoveSettings &settings, motion::MotionType type,
                                const Item &item);
@@ -135,6 +142,9 @@ class Sequencer {
     double input_value_ = 0, last_input_ = 0;
     bool isInputTimedOut_ = false;
     int awaited_spindle_ = 0;
+    motion::CommandId orient_command_ = 0;  ///< the last M19
+    bool isOrientTold_ = false;             ///< status is of a time after it
+    double orient_timeout_s_ = 0;
     motion::CommandId awaited_setting_ = 0;
     int selected_index_ = -1;  ///< table entry prepared by T, -1: none
     int changing_index_ = -1;

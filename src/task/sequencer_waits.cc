@@ -2,6 +2,8 @@
 // What the sequencer waits for: dwells, inputs, handshakes.
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "task/sequencer.hh"
 
 namespace mw::task {
@@ -13,16 +15,7 @@ bool Sequencer::isWaitOver(std::int64_t now_ns) {
     case Wait::DWELL: isOver = now_ns >= deadline_ns_; break;
     case Wait::INPUT: isOver = isInputWaitOver(now_ns); break;
     case Wait::TOOL: isOver = io_.action() == io::ToolAction::IDLE; break;
-    case Wait::ORIENT: {
-        const motion::SpindleStatus &spindle =
-            motion_.status().spindle[static_cast<std::size_t>(awaited_spindle_)];
-        if (spindle.orient_fault != 0) {
-            fail_item("spindle " + std::to_string(awaited_spindle_) + " reports orient fault " +
-                      std::to_string(spindle.orient_fault));
-        }
-        isOver = spindle.orient_state != 1;
-        break;
-    }
+    case Wait::ORIENT: isOver = isOrientWaitOver(now_ns); break;
     case Wait::SETTING: isOver = motion_.isAnswered(awaited_setting_); break;
     case Wait::USER_CODE: {
         const std::optional<Result<>> result = events_.user_code_result();
@@ -37,6 +30,27 @@ bool Sequencer::isWaitOver(std::int64_t now_ns) {
         wait_ = Wait::NONE;
     }
     return isOver && !hasFailed_;
+}
+
+bool Sequencer::isOrientWaitOver(std::int64_t now_ns) {
+    constexpr int IN_PROGRESS = 1;
+    const bool isTold = isOrientTold_;
+    isOrientTold_ = orient_command_ == 0 || motion_.isAnswered(orient_command_);
+    if (!isTold) {  // what status says may still be about an earlier one
+        return false;
+    }
+    const motion::SpindleStatus &spindle =
+        motion_.status().spindle[static_cast<std::size_t>(awaited_spindle_)];
+    if (spindle.orient_fault != 0) {
+        fail_item(fmt::format("spindle {} reports orient fault {}", awaited_spindle_, spindle.orient_fault));
+        return true;
+    }
+    if (spindle.orient_state == IN_PROGRESS && now_ns >= deadline_ns_) {
+        fail_item(fmt::format("spindle {0} is not oriented within {1:g} seconds: pin spindle.{0}.is-oriented",
+                              awaited_spindle_, orient_timeout_s_));
+        return true;
+    }
+    return spindle.orient_state != IN_PROGRESS;
 }
 
 bool Sequencer::isInputWaitOver(std::int64_t now_ns) {

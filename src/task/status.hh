@@ -41,6 +41,20 @@ struct Status {
     std::uint64_t programs_ended = 0;  ///< counts M2, M30 and ends of file
 };
 
+/// Why all work was stopped: the argument of [RS274NGC]ON_ABORT_COMMAND.
+enum class AbortReason : std::uint8_t {
+    EXECUTION_ERROR = 1,  ///< a move was refused, or something that the program asked for failed
+    ESTOP_CHAIN = 2,
+    MOTION_FAULT = 3,  ///< following error, limit switch, amplifier
+    STATE_OFF = 4,
+    STATE_ESTOP_RESET = 5,
+    STATE_ESTOP = 6,
+    STATE_NOT_ON = 7,  ///< the machine went off by itself
+    ABORT = 8,         ///< the operator's
+    INTERPRETER_ERROR = 9,
+    INTERPRETER_ERROR_MDI = 10,
+};
+
 enum class MessageKind : std::uint8_t { OPERATOR_ERROR = 11, OPERATOR_TEXT = 12, OPERATOR_DISPLAY = 13 };
 
 /// A line for the operator.

@@ -156,8 +156,10 @@ void Task::step(std::int64_t now_ns) {
     carry_out_commands();
     update_pending();
     if (!pending_failure_.empty()) {
-        fail_program(std::exchange(pending_failure_, {}));
+        fail_program({diag::Severity::ERROR, {std::exchange(pending_failure_, {})}},
+                     AbortReason::EXECUTION_ERROR);
     }
+    step_clean_up();
     if (isRunning() && motion_.status().mode == motion::Mode::COORD) {
         run_interpreter();
         if (!status_.isPaused) {
@@ -175,23 +177,28 @@ void Task::step(std::int64_t now_ns) {
     update_status();
 }
 
+SourcePlace Task::place_of(const motion::SourceTag &source) const {
+    const std::string file =
+        run_ == Run::PROGRAM && source.line > 0 ? canon_.file_name(source.file_index) : "";
+    return {file, source.line, source.line > 0 ? 1 : 0};
+}
+
 void Task::take_motion_news() {
     const MotionLink::News news = motion_.update();
     for (const motion::Fault &fault : news.faults) {
         const std::string text = motion::fault_text(fault);
-        post(MessageKind::OPERATOR_ERROR, text);
         if (isRunning()) {
-            finish_run(Progress::FAILED, text);
-            abort_work();
+            fail_program({diag::Severity::ERROR, {text, place_of(fault.source), {}}, {}, {}},
+                         AbortReason::MOTION_FAULT);
+        } else {
+            post(MessageKind::OPERATOR_ERROR, text);
         }
     }
     for (const auto &[answer, source] : news.refused) {
         const std::string text = motion::reason_text(answer);
         if (answer.isPath && isRunning()) {
-            const std::string file =
-                run_ == Run::PROGRAM && source.line > 0 ? canon_.file_name(source.file_index) : "";
-            fail_program(
-                {diag::Severity::ERROR, {text, {file, source.line, source.line > 0 ? 1 : 0}, {}}, {}, {}});
+            fail_program({diag::Severity::ERROR, {text, place_of(source), {}}, {}, {}},
+                         AbortReason::EXECUTION_ERROR);
         } else {
             post(MessageKind::OPERATOR_ERROR, text);
         }
@@ -206,6 +213,12 @@ void Task::take_motion_news() {
 
 void Task::take_io() {
     const io::ToolEvent event = io_.step(parts_.io_port.read());
+    if (event != io::ToolEvent::NONE) {
+        tool_fault_.reset();
+    }
+    if (event == io::ToolEvent::FAULT) {
+        tool_fault_ = io_.fault_reason();
+    }
     sequencer_.on_tool_event(event);
 }
 
@@ -219,11 +232,12 @@ void Task::update_state() {
         if (isRunning()) {
             finish_run(Progress::FAILED, "the e-stop chain opened");
         }
-        abort_work();
         status_.state = State::ESTOP;
+        abort_work(AbortReason::ESTOP_CHAIN);
         post(MessageKind::OPERATOR_ERROR, "emergency stop: pin iocontrol.0.emc-enable-in is FALSE");
     } else if (status_.state == State::ESTOP && isClosed && !io_.isEstopRequested()) {
         status_.state = State::ESTOP_RESET;
+        begin_clean_up(AbortReason::STATE_ESTOP_RESET);
     }
     const bool isEnabled = motion_.status().isEnabled;
     if (status_.state == State::ON && !isEnabled) {
@@ -231,7 +245,7 @@ void Task::update_state() {
         if (isRunning()) {
             finish_run(Progress::FAILED, "the machine went off");
         }
-        abort_work();
+        abort_work(AbortReason::STATE_NOT_ON);
     } else if (status_.state == State::ESTOP_RESET && isEnabled && wanted_state_ == State::ON) {
         status_.state = State::ON;
     }
@@ -276,7 +290,23 @@ bool Task::isReadAheadAllowed() const {
     return !isReadingDone_ && !isHeld && queue_.size() < settings_.read_ahead_items;
 }
 
+/// What an abort has stopped may still brake: a run begins where the machine is at rest.
+bool Task::begin_run() {
+    if (!motion_.status().isInPosition) {
+        return false;
+    }
+    isStartDue_ = false;
+    synch_interpreter();
+    if (run_ == Run::MDI) {
+        on_step_result(interp_->execute(mdi_line_));
+    }
+    return true;
+}
+
 void Task::run_interpreter() {
+    if (isStartDue_ && !begin_run()) {
+        return;
+    }
     for (int i = 0; i < settings_.blocks_per_cycle && isRunning() && isReadAheadAllowed(); ++i) {
         if (isWaitingForSync_) {
             if (!sequencer_.isIdle()) {
@@ -296,7 +326,10 @@ void Task::on_step_result(interp::Step result) {
     case interp::Step::SYNC: isWaitingForSync_ = true; break;
     case interp::Step::PROGRAM_END:
     case interp::Step::FILE_END: isReadingDone_ = true; break;
-    case interp::Step::FAILED: fail_program(interp_->error()); break;
+    case interp::Step::FAILED:
+        fail_program(interp_->error(),
+                     run_ == Run::MDI ? AbortReason::INTERPRETER_ERROR_MDI : AbortReason::INTERPRETER_ERROR);
+        break;
     }
 }
 
@@ -311,31 +344,6 @@ void Task::on_stop(const StopItem &stop, int line) {
 
 void Task::on_end(const EndItem &) {
     isReadingDone_ = true;
-}
-
-void Task::fail_program(const std::string &text) {
-    fail_program(diag::Diagnostic{diag::Severity::ERROR, {text}});
-}
-
-void Task::fail_program(diag::Diagnostic what) {
-    post(MessageKind::OPERATOR_ERROR, what.str());
-    program_error_ = std::move(what);
-    hasProgramError_ = true;
-    finish_run(Progress::FAILED, program_error_.what.str());
-    abort_work();
-}
-
-void Task::abort_work() {
-    motion_.abort();
-    sequencer_.abort();
-    user_program_.stop();
-    sequencer_.stop_spindles();
-    io_.set_flood(false);
-    io_.set_mist(false);
-    interp_->abort();
-    isWaitingForSync_ = false;
-    pending_failure_.clear();
-    finish(home_request_, Progress::FAILED, "aborted");
 }
 
 void Task::finish_run(Progress progress, const std::string &reason) {
@@ -387,7 +395,8 @@ interp::MachineSnapshot Task::snapshot() const {
     const motion::Status &motion = motion_.status();
     interp::MachineSnapshot s;
     s.position = motion.carte_pos_cmd;
-    s.probed_position = motion.probed_pos;
+    // A probe that has missed counts as having come to its end.
+    s.probed_position = motion.isProbeTripped ? motion.probed_pos : motion.carte_pos_cmd;
     s.isProbeTripped = motion.isProbeTripped;
     s.input_value = sequencer_.input_value();
     s.isInputTimedOut = sequencer_.isInputTimedOut();
@@ -402,6 +411,8 @@ interp::MachineSnapshot Task::snapshot() const {
         s.spindle_direction[i] = sequencer_.spindle_direction(static_cast<int>(i));
     }
     s.tool_in_spindle = io_.outputs.tool_number;
+    s.isToolFaulted = tool_fault_.has_value();
+    s.tool_fault_reason = tool_fault_.value_or(0);
     s.selected_pocket = sequencer_.selected_index();
     return s;
 }

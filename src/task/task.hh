@@ -6,6 +6,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "interp/interpreter.hh"
@@ -115,20 +116,28 @@ class Task final : public interp::World {
     friend struct Handler;
 
     SequencerEvents make_events();
+    SourcePlace place_of(const motion::SourceTag &source) const;
     void take_motion_news();
     void take_io();
     void update_state();
     void update_pending();
     void carry_out_commands();
     void run_interpreter();
+    bool begin_run();
     void log_probe();
     bool isReadAheadAllowed() const;
     void on_step_result(interp::Step result);
     void on_stop(const StopItem &stop, int line);
     void on_end(const EndItem &end);
-    void fail_program(diag::Diagnostic what);
-    void fail_program(const std::string &text);
-    void abort_work();
+
+    // task_abort.cc
+    void fail_program(diag::Diagnostic what, AbortReason reason);
+    void abort_work(AbortReason reason);
+    void begin_clean_up(AbortReason reason);
+    void step_clean_up();
+    void end_clean_up(const std::string &trouble);
+    interp::Step read_clean_up(AbortReason reason);
+
     void finish_run(Progress progress, const std::string &reason);
     void finish(RequestId &id, Progress progress, const std::string &reason);
     void update_status();
@@ -155,9 +164,14 @@ class Task final : public interp::World {
     Run run_ = Run::IDLE;
     bool isReadingDone_ = false;  ///< the interpreter has come to the end of what runs
     bool isWaitingForSync_ = false;
+    bool isStartDue_ = false;  ///< the run begins where the machine comes to rest
+    std::string mdi_line_;     ///< of such a run
     bool isStepMode_ = false;
     bool isStoppedByProgram_ = false;
     std::string pending_failure_;
+    std::optional<int> tool_fault_;  ///< reason, when the last work of the changer ended with a fault
+    bool isCleaningUp_ = false;      ///< what the on-abort command asked for is on its way
+    bool isCleanedUp_ = false;       ///< nothing has run since the last abort
     std::deque<std::pair<RequestId, Command>> inbox_;
     std::map<RequestId, Request> requests_;
     RequestId next_request_ = 1;

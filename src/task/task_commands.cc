@@ -89,9 +89,10 @@ struct Task::Handler {
         task.isWaitingForSync_ = false;
         task.isStoppedByProgram_ = false;
         task.hasProgramError_ = false;
+        task.isCleanedUp_ = false;
         task.status_.isPaused = false;
         task.canon_.reset();
-        task.synch_interpreter();
+        task.isStartDue_ = true;
     }
 };
 
@@ -123,8 +124,8 @@ Outcome Task::Handler::operator()(const SetState &command) {
         if (task.isRunning()) {
             task.finish_run(Progress::FAILED, "emergency stop");
         }
-        task.abort_work();
         task.status_.state = State::ESTOP;
+        task.abort_work(AbortReason::STATE_ESTOP);
         return Progress::DONE;
     case State::ESTOP_RESET:
         if (task.status_.state != State::ESTOP) {
@@ -136,7 +137,7 @@ Outcome Task::Handler::operator()(const SetState &command) {
         if (task.isRunning()) {
             task.finish_run(Progress::FAILED, "the machine was switched off");
         }
-        task.abort_work();
+        task.abort_work(AbortReason::STATE_OFF);
         task.motion_.send(motion::Disable{});
         return Progress::DONE;
     case State::ON:
@@ -144,6 +145,7 @@ Outcome Task::Handler::operator()(const SetState &command) {
             return fail("cannot switch the machine on in emergency stop; reset it first");
         }
         task.enable_command_ = task.motion_.send(motion::Enable{});
+        task.isCleanedUp_ = false;
         break;
     }
     task.state_request_ = id;
@@ -259,7 +261,7 @@ Outcome Task::Handler::operator()(const AbortAll &) {
     if (task.isRunning()) {
         task.finish_run(Progress::FAILED, "aborted");
     }
-    task.abort_work();
+    task.abort_work(AbortReason::ABORT);
     return Progress::DONE;
 }
 
@@ -272,7 +274,7 @@ Outcome Task::Handler::operator()(const Mdi &command) {
         return std::unexpected(allowed.error());
     }
     start_run(Run::MDI);
-    task.on_step_result(task.interp_->execute(command.line));
+    task.mdi_line_ = command.line;
     return Progress::STARTED;
 }
 

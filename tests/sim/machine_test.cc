@@ -1,79 +1,17 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A whole machine in virtual time, from INI and HAL files: stops, pauses, inputs, errors.
-#include <unistd.h>
-
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
-#include <gtest/gtest.h>
-
-#include "machine/loaded_config.hh"
-#include "machine/machine.hh"
-#include "machine/operator.hh"
+#include "sim/virtual_machine.hh"
 
 namespace mw::machine {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr double PERIOD_S = 1e-3;
 
-class MachineTest : public testing::Test {
+class MachineTest : public VirtualMachineTest {
   protected:
-    MachineTest() {
-        folder_ = fs::temp_directory_path() / ("mw_machine_" + std::to_string(::getpid()));
-        fs::create_directory(folder_);
-        loaded_ = LoadedConfig::load(MW_SOURCE_DIR "/configs/sim/mill_mm.ini", sink_);
-        EXPECT_NE(loaded_, nullptr);
-        loaded_->machine.task.parameter_file.clear();
-        auto made =
-            make_virtual_machine({loaded_->ini, loaded_->reader, loaded_->machine, sink_}, MachineOptions{});
-        EXPECT_TRUE(made.has_value()) << made.error().str();
-        machine_ = std::move(*made);
-        Operator person(*machine_, loaded_->machine, sink_, 60.0);
-        EXPECT_TRUE(person.switch_on().has_value());
-        EXPECT_TRUE(person.home_all().has_value());
-        machine_->channels().isTracing.store(1);
-    }
-    ~MachineTest() override { fs::remove_all(folder_); }
-
-    void start(const std::string &text) {
-        std::ofstream(folder_ / "p.ngc") << text;
-        ask(task::SetMode{task::Mode::AUTO});
-        ask(task::OpenProgram{(folder_ / "p.ngc").string()});
-        run_ = machine_->task().submit(task::RunProgram{});
-    }
-    task::RequestId ask(task::Command command) {
-        const auto id = machine_->task().submit(std::move(command));
-        cycles(3);
-        return id;
-    }
-    void cycles(int n) {
-        for (int i = 0; i < n; ++i) {
-            machine_->cycle();
-            motion::TraceSample sample;
-            while (machine_->channels().trace.pop(sample)) {
-                samples_.push_back(sample);
-            }
-        }
-    }
-    task::Progress finish(int limit = 200000) {
-        for (int i = 0; i < limit && machine_->task().progress(run_) == task::Progress::STARTED; ++i) {
-            cycles(1);
-        }
-        return machine_->task().progress(run_);
-    }
-    const motion::Status &motion() const { return machine_->task().motion_status(); }
-    bool pin(const std::string &name) const { return machine_->hal().get(name)->as_bit(); }
-    std::string messages() {
-        std::string all;
-        task::Message message;
-        while (machine_->task().poll_message(message)) {
-            all += message.text + '\n';
-        }
-        return all;
-    }
+    void SetUp() override { switch_on(); }
     /// Largest acceleration of X and Y over the samples. [mm/s2]
     double peak_acceleration() const {
         double peak = 0;
@@ -86,13 +24,6 @@ class MachineTest : public testing::Test {
         }
         return peak;
     }
-
-    fs::path folder_;
-    diag::Sink sink_;
-    std::unique_ptr<LoadedConfig> loaded_;
-    std::unique_ptr<Machine> machine_;
-    std::vector<motion::TraceSample> samples_;
-    task::RequestId run_ = 0;
 };
 
 constexpr const char *LONG_MOVES = "G21 G90 G17 G61 F6000\nG1 X100\nY100\nX0\nY0\nM2\n";
@@ -174,6 +105,42 @@ TEST_F(MachineTest, AToolChangeWaitsForItsPin_E1) {
     ASSERT_TRUE(machine_->hal().set("iocontrol.0.tool-changed", "TRUE").has_value());
     EXPECT_EQ(finish(), task::Progress::DONE);
     EXPECT_EQ(machine_->task().status().tool_in_spindle, 2);
+}
+
+/// A tool arm must not come before the spindle has its angle.
+TEST_F(MachineTest, OrientingASpindleIsAwaitedUpToItsTime_E1) {
+    const std::string program = "G21 G90\nM19 R90 Q2\nG0 X5\nM19 R180 Q2\nG0 X9\nM2\n";
+    start(program);
+    for (const double angle : {90.0, 180.0}) {
+        cycles(600);
+        EXPECT_TRUE(pin("spindle.0.orient"));
+        EXPECT_EQ(machine_->hal().get("spindle.0.orient-angle")->as_float(), angle);
+        EXPECT_EQ(machine_->task().status().waiting.what, "pin spindle.0.is-oriented");
+        EXPECT_EQ(x(), angle == 90.0 ? 0.0 : 5.0) << "moved before the spindle was there";
+        set_pin("spindle.0.is-oriented", "TRUE");
+        cycles(5);
+        set_pin("spindle.0.is-oriented", "FALSE");
+    }
+    EXPECT_EQ(finish(), task::Progress::DONE) << messages();
+    EXPECT_DOUBLE_EQ(x(), 9.0);
+    start(program);
+    cycles(1900);
+    EXPECT_EQ(machine_->task().progress(run_), task::Progress::STARTED);
+    cycles(300);
+    EXPECT_EQ(machine_->task().progress(run_), task::Progress::FAILED);
+    EXPECT_NE(messages().find("spindle 0 is not oriented within 2 seconds"), std::string::npos);
+    EXPECT_DOUBLE_EQ(x(), 9.0);
+    start("G21 G90\nM19 R90\nG0 X3\nM2\n");
+    EXPECT_EQ(finish(), task::Progress::DONE) << "without Q nothing is awaited";
+}
+
+TEST_F(MachineTest, BackBoringMovesAsideOnlyWithAnOrientedSpindle_I1) {
+    start("G21 G90 G0 X0 Y0 Z5\nS1000 M3\nF3000 G87 X0 Y0 Z-3 R1 I2 J0 K-1\nG80\nM2\n");
+    cycles(5000);
+    EXPECT_EQ(machine_->task().status().waiting.what, "pin spindle.0.is-oriented");
+    EXPECT_GT(motion().carte_pos_cmd.z(), 0.5);
+    set_pin("spindle.0.is-oriented", "TRUE");
+    EXPECT_EQ(finish(), task::Progress::DONE) << messages();
 }
 
 TEST_F(MachineTest, MoveAndOutputStayInProgramOrder_D2) {

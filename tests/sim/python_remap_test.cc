@@ -1,92 +1,25 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Remaps with Python on a whole machine in virtual time: program order, waiting, abort (I1).
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
-
-#include <gtest/gtest.h>
-
-#include "machine/loaded_config.hh"
-#include "machine/machine.hh"
-#include "machine/operator.hh"
+#include "sim/virtual_machine.hh"
 
 namespace mw::machine {
 namespace {
 
-namespace fs = std::filesystem;
-
-class PythonRemapTest : public testing::Test {
+class PythonRemapTest : public VirtualMachineTest {
   protected:
     PythonRemapTest() {
-        folder_ = fs::temp_directory_path() / ("mw_pyremap_" + std::to_string(::getpid()));
-        fs::create_directory(folder_);
         write("toplevel.py", "import remap, oword\n");
         write("oword.py", "");
     }
-    ~PythonRemapTest() override {
-        machine_.reset();
-        fs::remove_all(folder_);
-    }
-
-    void write(const std::string &name, const std::string &text) const {
-        std::ofstream(folder_ / name) << text;
-    }
 
     void switch_on(const std::vector<std::string> &remaps) {
-        loaded_ = LoadedConfig::load(MW_SOURCE_DIR "/configs/sim/mill_mm.ini", sink_);
-        ASSERT_NE(loaded_, nullptr);
-        task::Settings &task = loaded_->machine.task;
-        task.parameter_file.clear();
-        task.interpreter.remaps.assign(remaps.begin(), remaps.end());
-        task.interpreter.scripts.top_level = (folder_ / "toplevel.py").string();
-        task.interpreter.scripts.path_prepend = {folder_.string()};
-        task.interpreter.subroutine_path.push_back(folder_.string());
-        auto made =
-            make_virtual_machine({loaded_->ini, loaded_->reader, loaded_->machine, sink_}, MachineOptions{});
-        ASSERT_TRUE(made.has_value()) << made.error().str();
-        machine_ = std::move(*made);
-        Operator person(*machine_, loaded_->machine, sink_, 60.0);
-        ASSERT_TRUE(person.switch_on().has_value());
-        ASSERT_TRUE(person.home_all().has_value());
+        VirtualMachineTest::switch_on([&](task::Settings &task) {
+            task.interpreter.remaps.assign(remaps.begin(), remaps.end());
+            task.interpreter.scripts.top_level = (folder_ / "toplevel.py").string();
+            task.interpreter.scripts.path_prepend = {folder_.string()};
+            task.interpreter.subroutine_path.push_back(folder_.string());
+        });
     }
-    task::RequestId ask(task::Command command) {
-        const auto id = machine_->task().submit(std::move(command));
-        cycles(3);
-        return id;
-    }
-    void cycles(int n) {
-        for (int i = 0; i < n; ++i) {
-            machine_->cycle();
-        }
-    }
-    void start(const std::string &text) {
-        write("p.ngc", text);
-        ask(task::SetMode{task::Mode::AUTO});
-        ask(task::OpenProgram{(folder_ / "p.ngc").string()});
-        run_ = machine_->task().submit(task::RunProgram{});
-    }
-    task::Progress finish(int limit = 200000) {
-        for (int i = 0; i < limit && machine_->task().progress(run_) == task::Progress::STARTED; ++i) {
-            cycles(1);
-        }
-        return machine_->task().progress(run_);
-    }
-    std::string messages() {
-        std::string all;
-        task::Message message;
-        while (machine_->task().poll_message(message)) {
-            all += message.text + '\n';
-        }
-        return all;
-    }
-    double x() const { return machine_->task().motion_status().carte_pos_cmd.x(); }
-
-    fs::path folder_;
-    diag::Sink sink_;
-    std::unique_ptr<LoadedConfig> loaded_;
-    std::unique_ptr<Machine> machine_;
-    task::RequestId run_ = 0;
 };
 
 TEST_F(PythonRemapTest, AToolChangeThroughPythonAndAProcedureKeepsProgramOrder_I1) {

@@ -11,6 +11,23 @@ TEST(Sink, ShowsPlaceTextAndCaret) {
     EXPECT_EQ(d.str(), "a.ngc:3:4: error: unknown word\n  G1 Q5\n     ^\n  called from main.ngc:7:1");
 }
 
+TEST(Sink, LongLinesAreShownAroundTheColumn) {
+    const std::string line = std::string(5000, 'a') + "Q" + std::string(5000, 'b');
+    const Diagnostic d{Severity::ERROR, {"m", {"a.ngc", 3, 5001}, ""}, {}, line};
+    const std::string text = d.context();
+    EXPECT_LT(text.size(), 500U);
+    const std::size_t end = text.find('\n');
+    ASSERT_NE(end, std::string::npos);
+    EXPECT_EQ(text.substr(end + 1).find('^'), text.find('Q'));
+}
+
+TEST(Sink, RepeatedCallersTakeOneLine) {
+    std::vector<SourcePlace> callers(400, SourcePlace{"a.ngc", 2, 0});
+    callers.push_back({"a.ngc", 9, 0});
+    const Diagnostic d{Severity::ERROR, {"deep", {"a.ngc", 2, 0}, ""}, callers, ""};
+    EXPECT_EQ(d.str(), "a.ngc:2: error: deep\n  called from a.ngc:2, 400 times\n  called from a.ngc:9");
+}
+
 TEST(Sink, CountsErrorsOnlyAndGoesOn) {
     Sink sink;
     sink.warning("w");

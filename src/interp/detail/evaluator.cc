@@ -89,8 +89,12 @@ bool Evaluator::value(const Arena &arena, NodeId id, double &out) const {
             return false;
         }
         if (!found) {
-            return fault_.set(fmt::format("Named parameter #<{}> not defined", names_.text(node.a)),
-                              node.column);
+            const std::string &name = names_.text(node.a);
+            return fault_.set(fmt::format("Named parameter #<{}> not defined", name), node.column,
+                              name.starts_with("_hal[")
+                                  ? "there is no such pin, signal or parameter; checks and "
+                                    "rs274 run without HAL, EXISTS asks for it"
+                                  : "");
         }
         out = *found;
         return true;

@@ -162,6 +162,9 @@ bool Executor::run_comments(const BlockView &view, std::string_view line_text) {
     } else if (active.keyword == "msg") {
         canon.message(active.text);
     } else if (active.keyword == "debug") {
+        if (parameters.get(P_DEBUG_SHOWN) == 0.0) {
+            return true;
+        }
         canon.message(substituted(active.text));
     } else if (active.keyword == "print") {
         canon.print(substituted(active.text));

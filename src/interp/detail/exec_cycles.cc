@@ -329,16 +329,22 @@ void Executor::run_back_bore(const CyclePlan &plan, int direction) {
                           ? state.cycle.k
                           : (axes.normal == geom::AXIS_Y ? state.cycle.j : state.cycle.i);
     const double top = up + (state.isIncremental ? plan.bottom : 0.0);
+    const auto orient = [&] {
+        constexpr double PATIENCE_S = 60.0;
+        canon.stop_spindle_turning(spindle);
+        canon.orient_spindle(spindle, 0.0, COUNTERCLOCKWISE);
+        if (settings_.isTask) {  // the field's rs274 prints no waiting
+            canon.wait_orient_complete(spindle, PATIENCE_S);
+        }
+    };
     shift(true);
-    canon.stop_spindle_turning(spindle);
-    canon.orient_spindle(spindle, 0.0, COUNTERCLOCKWISE);
+    orient();
     cycle_move(true, axes.normal, plan.bottom);
     shift(false);
     start_spindle(direction);
     cycle_move(false, axes.normal, top);
     cycle_move(false, axes.normal, plan.bottom);
-    canon.stop_spindle_turning(spindle);
-    canon.orient_spindle(spindle, 0.0, COUNTERCLOCKWISE);
+    orient();
     shift(true);
     cycle_move(true, axes.normal, plan.clear);
     shift(false);

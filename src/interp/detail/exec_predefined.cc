@@ -134,12 +134,15 @@ std::optional<double> Executor::built_in(std::string_view name) const {
     }
     if (isIniName(name)) {
         const std::size_t close = name.find(']');
-        if (close == std::string_view::npos) {
+        if (close == std::string_view::npos || !settings_.isIniReadable) {
             return std::nullopt;
         }
         return source_.ini_value(name.substr(5, close - 5), name.substr(close + 1));
     }
     if (isHalName(name)) {
+        if (!settings_.isHalReadable) {
+            return std::nullopt;
+        }
         return source_.hal_value(name.substr(5, name.find(']') - 5));
     }
     if (const int index = position_index(name); index >= 0) {

@@ -160,6 +160,9 @@ bool Executor::do_fanuc(const Code &code, const BlockValues &values) {
     if (!whole_word(values, 'p', fanuc_label) || (values.has('l') && !whole_word(values, 'l', fanuc_count))) {
         return false;
     }
+    if (fanuc_count < 0) {
+        return fault.set("The number of calls L of M98 must not be negative", values.column_of('l'));
+    }
     outcome = Outcome::CALL_FANUC;
     return true;
 }

@@ -21,6 +21,18 @@ void Executor::announce() {
     canon.set_feed_reference_xyz();
 }
 
+void Executor::announce_modes() {
+    canon.set_g92_offset(state.g92);
+    send_coordinates();
+    canon.use_tool_length_offset(state.tool_offset);
+    for (int i = 0; i < world_.count_spindles(); ++i) {
+        const SpindleState &spindle = state.spindles[static_cast<std::size_t>(i)];
+        canon.set_spindle_mode(i, spindle.isConstantSurface ? spindle.css_max_rpm : 0.0);
+        canon.set_spindle_speed(i, spindle.speed);
+        spindle.isOverridden ? canon.enable_speed_override(i) : canon.disable_speed_override(i);
+    }
+}
+
 void Executor::begin_block() {
     begin_light_block();
     keep_state();
@@ -104,6 +116,8 @@ void Executor::synch() {
         parameters.set(P_INPUT_RESULT, snapshot.isInputTimedOut ? -1.0 : snapshot.input_value);
         isWaitingInput_ = false;
     }
+    parameters.set(P_TOOL_FAULT, snapshot.isToolFaulted ? 1.0 : 0.0);
+    parameters.set(P_TOOL_FAULT_REASON, snapshot.tool_fault_reason);
     parameters.commit();
     state.isMist = snapshot.isMistOn;
     state.isFlood = snapshot.isFloodOn;

@@ -112,6 +112,9 @@ bool Executor::do_tool_offset(const Code &code, const BlockValues &values) {
         return true;
     }
     Pose offset = code.number == 430 ? Pose{} : state.tool_offset;
+    if (code.number == 432 && values.hasAxes() && values.has('h')) {
+        return fault.set("G43.2: Can not have both H and axis words", values.column_of('h'));
+    }
     if (code.number != 430 && values.hasAxes() && !values.has('h')) {
         for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
             const char name = geom::AXIS_LETTERS_LOWER[axis];
@@ -186,6 +189,11 @@ bool Executor::set_tool_data(int l, const BlockValues &values) {
     }
     if (!whole_word(values, 'p', toolno) || !find_tool(toolno, values.column_of('p'), index)) {
         return false;
+    }
+    const bool hasData =
+        values.hasAxes() || values.has('r') || values.has('i') || values.has('j') || values.has('q');
+    if (!hasData) {
+        return fault.set(fmt::format("G10 L{} needs what it is to set: axis words, R, I, J or Q", l));
     }
     const double to_machine = 1.0 / machine_to_program();
     ToolEntry entry = tool_entry(index);

@@ -136,6 +136,8 @@ class Executor : public BuiltIns {
 
     /// Announces the state to the canon, as at the start of a program.
     void announce();
+    /// Offsets, spindles' speeds and switches once more: the canon has lost some of them.
+    void announce_modes();
     /// Takes positions, tools and switches from the machine.
     void synch();
     /// Line and depth for #<_line> and #<_call_level>.
@@ -162,6 +164,7 @@ class Executor : public BuiltIns {
 
     /// Names of the parameters that the interpreter keeps, sorted.
     static std::vector<std::string> predefined_names();
+    bool hasToolChanges() const { return !tool_changes_.empty(); }
     bool isBuiltInName(std::string_view name) const override;
     std::optional<double> built_in(std::string_view name) const override;
     double built_in(int number) const override;

@@ -21,7 +21,7 @@ bool mentionsOWord(std::string_view line) {
 
 Flow::Flow(Executor &executor, Names &names, Canon &target, const Settings &settings)
     : executor_(executor), names_(names), target_(target), settings_(settings),
-      view_(std::make_unique<ScriptView>(*this)) {}
+      view_(std::make_unique<ScriptView>(*this)), budget_(settings) {}
 
 Flow::~Flow() {
     end_scripts();
@@ -56,7 +56,7 @@ void Flow::close() {
     programs_.clear();
     program_ = nullptr;
     next_ = after_line_ = 1;
-    statements_ = 0;
+    budget_.restart();
 }
 
 FilePlace Flow::place_in_file() const {
@@ -66,6 +66,26 @@ FilePlace Flow::place_in_file() const {
     }
     const ProgramText &text = main->text();
     return {text.place_of(calls_.empty() ? next_ : calls_.front().line), text.count_bytes()};
+}
+
+std::vector<diag::Diagnostic> Flow::syntax_errors(int after, int most) {
+    std::vector<diag::Diagnostic> out;
+    Program *const main = calls_.empty() ? program_ : calls_.front().program;
+    const int last = main == nullptr ? 0 : main->count_lines();
+    for (int line = after + 1; line <= last && static_cast<int>(out.size()) < most; ++line) {
+        const BlockView view = main->block(line);
+        if (view.block->error != NO_ID) {
+            const SyntaxError &error = view.arena->errors[view.block->error];
+            out.push_back({diag::Severity::ERROR,
+                           {error.message, {main->path(), line, static_cast<int>(error.column)}, {}},
+                           {},
+                           std::string(main->line_text(line))});
+        }
+        if (view.block->isPercent && line > main->first_content_line()) {
+            break;
+        }
+    }
+    return out;
 }
 
 std::string_view Flow::subroutine() const {
@@ -215,8 +235,8 @@ Step Flow::percent() {
 }
 
 Step Flow::run_line() {
-    if (settings_.statement_budget > 0 && ++statements_ > settings_.statement_budget) {
-        return fail_here("The program has run for too many statements; is there a loop without end?");
+    if (budget_.isBounded() && !budget_.take_statement(calls_.empty() ? next_ : 0)) {
+        return fail_budget();
     }
     line_read_ = next_;
     const BlockView view = program_->block(next_);

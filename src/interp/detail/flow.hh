@@ -10,6 +10,7 @@
 
 #include "diag/sink.hh"
 #include "interp/detail/executor.hh"
+#include "interp/detail/loop_budget.hh"
 #include "interp/detail/program.hh"
 #include "interp/detail/remap.hh"
 #include "interp/interpreter.hh"
@@ -38,11 +39,12 @@ class Flow : private ScriptNames {
     const std::string &file() const;
     /// The block that failed did not decide which one is next: later ones can still be looked at.
     bool isContinuable() const { return isContinuable_; }
+    /// Syntax errors of the open file behind a line, at most so many.
+    std::vector<diag::Diagnostic> syntax_errors(int after, int most);
     bool isAtFileEnd() const { return program_ == nullptr || next_ > program_->count_lines(); }
     int call_level() const { return static_cast<int>(calls_.size()) - text_levels_; }
-    bool isBudgetSpent() const {
-        return settings_.statement_budget > 0 && statements_ > settings_.statement_budget;
-    }
+    void mark_progress(double seconds) { budget_.mark_progress(seconds); }
+    bool isBudgetSpent() const { return budget_.isSpent(); }
     FilePlace place_in_file() const;
     std::string_view subroutine() const;
     std::string line_text(const std::string &file, int line) const;
@@ -110,8 +112,21 @@ class Flow : private ScriptNames {
     void unwind(std::size_t depth = 0);
     std::string call_name(const Call &call) const;
 
+    // flow_budget.cc
+    /// A loop begins again: between these lines of the present program, this one included.
+    void note_pass(int first, int last) {
+        if (budget_.isWatching()) {
+            budget_.note_pass({program_, calls_.size(), first, last});
+        }
+    }
+    /// The same for a loop that only its condition ends; false when it never will.
+    bool note_conditional_pass(int first, int last);
+    Step fail_budget();
+
     // flow_owords.cc
     bool run_oword(const BlockView &view);
+    bool run_oword_kind(const BlockView &view, const OWord &oword);
+    bool fail_bad_oword(int line);
     bool run_sub(const OWord &oword);
     bool run_call(const BlockView &view, const OWord &oword);
     bool run_return(const BlockView &view, const OWord &oword);
@@ -185,7 +200,7 @@ class Flow : private ScriptNames {
     bool isReadingName_ = false;                   ///< a named parameter's script runs: it may only look
     bool isSyncDue_ = false, isEndDue_ = false;    ///< what a script had executed came to such a point
     std::string script_error_;                     ///< as a script has set it
-    std::uint64_t statements_ = 0;
+    LoopBudget budget_;
     bool isContinuable_ = false;
     diag::Diagnostic error_;
 };

@@ -276,6 +276,7 @@ bool Flow::return_fanuc() {
     if (calls_.back().again > 0) {
         --calls_.back().again;
         next_ = calls_.back().sub_line + 1;
+        note_pass(calls_.back().sub_line, line_read_);
         return true;
     }
     return leave(0.0, false);

@@ -41,7 +41,21 @@ int Flow::find_before(int line, std::initializer_list<OKind> kinds) const {
     return 0;
 }
 
+bool Flow::fail_bad_oword(int line) {
+    const BlockView view = program_->block(line);
+    const SyntaxError &error = view.arena->errors[view.block->error];
+    error_line_ = line;
+    return executor_.fault.set(error.message, error.column);
+}
+
 bool Flow::unmatched(const OWord &oword, std::string_view missing) {
+    // One that cannot be read is the likely reason.
+    const bool isAfter = missing.starts_with("end") || oword.kind == OKind::DO;
+    const int bad = isAfter ? program_->find_bad_oword(line_read_, program_->count_lines() + 1)
+                            : program_->find_bad_oword(0, line_read_);
+    if (bad != 0) {
+        return fail_bad_oword(bad);
+    }
     return executor_.fault.set(fmt::format("o{}: there is no matching {}", label_text(oword), missing),
                                oword.column);
 }
@@ -52,6 +66,18 @@ bool Flow::run_oword(const BlockView &view) {
     if (!isStatic) {
         return executor_.fault.set("Only the label of a call can be computed", oword.column);
     }
+    const int line = line_read_;
+    if (!run_oword_kind(view, oword)) {
+        return false;
+    }
+    // A jump over an O word that cannot be read may have missed its end.
+    const bool isJump =
+        oword.kind != OKind::CALL && oword.kind != OKind::RETURN && oword.kind != OKind::ENDSUB;
+    const int bad = isJump && next_ > line ? program_->find_bad_oword(line, next_) : 0;
+    return bad == 0 || fail_bad_oword(bad);
+}
+
+bool Flow::run_oword_kind(const BlockView &view, const OWord &oword) {
     switch (oword.kind) {
     case OKind::SUB: return run_sub(oword);
     case OKind::CALL: return run_call(view, oword);
@@ -122,7 +148,7 @@ bool Flow::run_loop(const BlockView &view, const OWord &oword) {
     case OKind::ENDWHILE: {
         const int begin = find_before(line_read_, {OKind::WHILE});
         next_ = begin;
-        return begin != 0 || unmatched(oword, "while");
+        return begin == 0 ? unmatched(oword, "while") : note_conditional_pass(begin, line_read_);
     }
     case OKind::REPEAT: return run_repeat(view, oword);
     case OKind::ENDREPEAT: return run_end_repeat(oword);
@@ -139,7 +165,7 @@ bool Flow::run_while(const BlockView &view, const OWord &oword) {
     const int opener = find_before(line_read_, {OKind::DO, OKind::WHILE, OKind::ENDWHILE});
     if (opener != 0 && program_->oword_at(opener)->kind == OKind::DO) {
         next_ = isTrue ? opener + 1 : next_;
-        return true;
+        return !isTrue || note_conditional_pass(opener, line_read_);
     }
     const int end = find_after(line_read_, {OKind::ENDWHILE});
     if (end == 0) {
@@ -180,6 +206,7 @@ bool Flow::run_end_repeat(const OWord &oword) {
     }
     if (--repeats_.back().left > 0) {
         next_ = begin + 1;
+        note_pass(begin, line_read_);
     } else {
         repeats_.pop_back();
     }

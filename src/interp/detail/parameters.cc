@@ -7,6 +7,7 @@ namespace mw::interp::detail {
 
 Parameters::Parameters() : values_(PARAMETER_COUNT, 0.0), frames_(1) {
     values_[P_COORDINATE_SYSTEM] = 1;
+    values_[P_DEBUG_SHOWN] = 1;
 }
 
 void Parameters::set(int number, double value) {

@@ -38,7 +38,10 @@ enum ParameterNumber : int {
     P_POSITION = 5420,     // nine, program units
     P_BUILD_FIRST = 5400,  // from here to 5428 read only
     P_BUILD_LAST = 5428,
-    P_VAR_FIRST = 31,  // kept in the parameter file
+    P_DEBUG_SHOWN = 5599,        // 0: (debug,...) says nothing
+    P_TOOL_FAULT = 5600,         // 1 after the changer has reported a fault
+    P_TOOL_FAULT_REASON = 5601,  // its pin toolchanger-reason
+    P_VAR_FIRST = 31,            // kept in the parameter file
 };
 
 /// Numbers whose values the interpreter keeps itself.
@@ -49,8 +52,27 @@ constexpr bool isBuiltInNumber(int number) {
 }
 
 class Parameters {
+    struct Named {
+        NameId id = NO_ID;
+        double value = 0;
+
+        bool operator==(const Named &) const = default;
+    };
+
   public:
     Parameters();
+
+    /// All that the subroutine that runs can see.
+    struct Values {
+        std::vector<double> numbers;
+        std::vector<std::optional<double>> globals;
+        std::vector<Named> locals;
+    };
+    Values values() const { return {values_, globals_, frames_.back().locals}; }
+    bool hasValues(const Values &values) const {
+        return values.numbers == values_ && values.globals == globals_ &&
+               values.locals == frames_.back().locals;
+    }
 
     double get(int number) const { return values_[static_cast<std::size_t>(number)]; }
     /// Sets and remembers the old value until commit().
@@ -83,10 +105,6 @@ class Parameters {
     Result<> save(const std::string &path) const;
 
   private:
-    struct Named {
-        NameId id = NO_ID;
-        double value = 0;
-    };
     struct Frame {
         std::vector<Named> locals;
         double arguments[ARGUMENT_COUNT] = {};

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "interp/detail/parser.hh"
 
 namespace mw::interp::detail {
@@ -113,7 +115,63 @@ void Program::link_owords() {
             fanuc_.try_emplace(oword.label, oline.line);
         }
     }
+    check_labels();
+    for (const OLine &oline : olines_) {
+        if (oline.block.error != NO_ID) {
+            bad_olines_.push_back(oline.line);
+        }
+    }
     mark_kept();
+}
+
+int Program::find_bad_oword(int after, int before) const {
+    const auto found = std::ranges::upper_bound(bad_olines_, after);
+    return found != bad_olines_.end() && *found < before ? *found : 0;
+}
+
+/// A label that is used again inside of what it has begun would end the wrong part: such a line gets an
+/// error, and so does the second definition of a subroutine.
+void Program::check_labels() {
+    std::unordered_map<NameId, const OLine *> open, subs;
+    for (OLine &oline : olines_) {
+        if (oline.block.oword == NO_ID) {
+            continue;
+        }
+        const OWord &oword = arena_.owords[oline.block.oword];
+        if (oword.label == NO_ID) {
+            continue;
+        }
+        auto &found = oword.kind == OKind::SUB ? subs : open;
+        const auto earlier = found.find(oword.label);
+        const bool isOpen = earlier != found.end();
+        const bool isEndOfDo = oword.kind == OKind::WHILE && isOpen &&
+                               arena_.owords[earlier->second->block.oword].kind == OKind::DO;
+        switch (oword.kind) {
+        case OKind::IF:
+        case OKind::DO:
+        case OKind::REPEAT:
+        case OKind::SUB:
+        case OKind::WHILE:
+            if (isEndOfDo) {
+                found.erase(earlier);
+            } else if (isOpen) {
+                oline.block.error = static_cast<std::uint32_t>(arena_.errors.size());
+                const char *const what = oword.kind == OKind::SUB
+                                             ? "this subroutine is defined already"
+                                             : "this label is in use and not ended since";
+                arena_.errors.push_back(
+                    {fmt::format("o{}: {} (line {})", names_.text(oword.label), what, earlier->second->line),
+                     oword.column});
+            } else {
+                found[oword.label] = &oline;
+            }
+            break;
+        case OKind::ENDIF:
+        case OKind::ENDWHILE:
+        case OKind::ENDREPEAT: open.erase(oword.label); break;
+        default: break;
+        }
+    }
 }
 
 /// Lines that may run more than once are kept parsed: those of loops and subroutines. A Fanuc-style one ends

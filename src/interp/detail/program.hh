@@ -50,6 +50,8 @@ class Program {
     /// The line of `O<label> sub`, or of a Fanuc-style `O<label>`; 0: none here.
     int find_sub(NameId label) const;
     int find_fanuc(NameId label) const;
+    /// The first line between these two with an O word that cannot be read, 0 when there is none.
+    int find_bad_oword(int after, int before) const;
     /// The first line after `line` with an O word, 0 when there is none.
     int next_oword(int line) const;
 
@@ -64,6 +66,7 @@ class Program {
     Result<> prepare();
     bool look_at(int line, std::string_view content);
     void link_owords();
+    void check_labels();
     void mark_kept();
     const OLine *find_oline(int line) const;
     static bool beginsWithO(std::string_view line);
@@ -77,6 +80,7 @@ class Program {
     std::vector<std::uint32_t> cached_;  ///< by line: index in blocks_, NO_ID: not parsed yet, or NOT_KEPT
     std::deque<Block> blocks_;
     std::unordered_map<NameId, int> subs_, fanuc_;
+    std::vector<int> bad_olines_;  ///< in order
     bool isPercentDelimited_ = false;
     int first_content_line_ = 0, last_percent_line_ = 0;
 };

@@ -18,6 +18,8 @@ struct SpindleState {
     bool isConstantSurface = false;
     double css_max_rpm = 0;
     bool isOverridden = true;
+
+    bool operator==(const SpindleState &) const = default;
 };
 
 /// What canned cycles remember from one block to the next.
@@ -26,6 +28,8 @@ struct CycleWords {
     double initial = 0;         ///< along the tool axis, where the first cycle began
     bool isRunning = false;     ///< the block before was the same cycle
     bool hasClearance = false;  ///< P of G73 and G83: how far above the hole's bottom a peck begins
+
+    bool operator==(const CycleWords &) const = default;
 };
 
 enum class CompSide { OFF, LEFT, RIGHT };
@@ -33,6 +37,8 @@ enum class CompSide { OFF, LEFT, RIGHT };
 /// A point or a vector in the selected plane: along its first and its second axis.
 struct Point {
     double x = 0, y = 0;
+
+    bool operator==(const Point &) const = default;
 };
 
 /// The last compensated move: where the tool's centre goes [program units].
@@ -45,6 +51,8 @@ struct CompElement {
     double radius = 0;
     int rotation = 1;        ///< of an arc, as in ArcFeed
     std::size_t record = 0;  ///< its call in the queue
+
+    bool operator==(const CompElement &) const = default;
 };
 
 struct State {
@@ -88,6 +96,8 @@ struct State {
     std::size_t nurbs_count = 0;  ///< its control points so far
     Pose nurbs_end;               ///< the last of them [program units]
     Pose probed;                  ///< [program units]
+
+    bool operator==(const State &) const = default;
 };
 
 }  // namespace mw::interp::detail

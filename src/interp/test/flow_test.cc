@@ -94,6 +94,70 @@ TEST(Flow, endless_loop_ends_by_the_budget_I1) {
     EXPECT_EQ(machine.run("o1 while [1]\no1 endwhile\n"), Step::FAILED);
 }
 
+/// Where the structure of O words is broken, and not where that is noticed.
+TEST(Flow, broken_o_words_are_named_where_they_stand_I1) {
+    const struct {
+        const char *program, *error;
+        int line;
+    } cases[] = {
+        {"o1 if [1]\no1 if [1]\no1 endif\no1 endif\n",
+         "o1: this label is in use and not ended since (line 1)", 2},
+        {"o1 repeat [2]\no1 if [1]\no1 endif\no1 endrepeat\n", "in use and not ended since (line 1)", 2},
+        {"o1 do\no2 repeat [1]\no1 do\no1 while [0]\no2 endrepeat\no1 while [0]\n", "in use and not ended",
+         3},
+        {"o1 sub\no1 endsub\no1 sub\no1 endsub\n", "o1: this subroutine is defined already (line 1)", 3},
+        {"o1 sub\n#1=2\no1 endsub G0\n", "Only a comment may follow here", 3},
+        {"o1 if [0]\n#1=2\no1 elsif [1]\n#1=3\no1 endif\n", "", 3},
+        {"o1 if [1]\n#1=2\no1 else\no2 while [1\no1 endif\n", "", 4},
+        {"o1 while [0]\no1 endwihle\no1 endwhile\n", "", 2},
+        {"o1 if [1]\no2 repeat [3]\n#1=2\no1 endif\n", "o2: there is no matching endrepeat", 2},
+    };
+    for (const auto &one : cases) {
+        Machine machine;
+        EXPECT_EQ(machine.run(one.program), Step::FAILED) << one.program;
+        EXPECT_NE(machine.error().find(one.error), std::string::npos) << machine.error();
+        EXPECT_EQ(machine.interpreter->error().what.place.line, one.line) << machine.error();
+    }
+}
+
+TEST(Flow, labels_may_be_used_again_after_their_end_I1) {
+    Machine machine;
+    EXPECT_EQ(
+        machine.run("o1 if [1]\n#1=1\no1 endif\no1 repeat [2]\n#1=[#1+1]\no1 endrepeat\no1 do\n#1=[#1+1]\n"
+                    "o1 while [#1 lt 9]\no1 while [#1 lt 12]\n#1=[#1+1]\no1 endwhile\n(print,%d#1)\n"),
+        Step::PROGRAM_END)
+        << machine.error();
+    EXPECT_EQ(machine.record.calls[0], "print12");
+}
+
+TEST(Flow, debug_texts_can_be_switched_off_I1) {
+    Machine machine;
+    EXPECT_EQ(machine.run("(debug,a)\n#5599=0\n(debug,b)\n(msg,c)\n(print,d)\n#5599=1\n(debug,e)\n"),
+              Step::PROGRAM_END);
+    const std::vector<std::string> want = {"messagea", "messagec", "printd", "messagee"};
+    EXPECT_EQ(std::vector<std::string>(machine.record.calls.begin(), machine.record.calls.begin() + 4), want);
+}
+
+TEST(Flow, names_of_ini_and_hal_can_be_switched_off_I1) {
+    class Source final : public test::Mill {
+        std::optional<double> ini_value(std::string_view, std::string_view) const override { return 4; }
+        std::optional<double> hal_value(std::string_view) const override { return 5; }
+    } source;
+    for (const bool isOn : {true, false}) {
+        Settings settings;
+        settings.isIniReadable = settings.isHalReadable = isOn;
+        test::Recorder record;
+        MachineFrame frame(record, source.units);
+        Interpreter interpreter(frame, source, source, source, settings);
+        ASSERT_TRUE(interpreter.begin());
+        for (const char *line : {"G0 X#<_ini[a]b>", "G0 X#<_hal[c.d]>"}) {
+            EXPECT_EQ(interpreter.execute(line), isOn ? Step::FILE_END : Step::FAILED) << line;
+        }
+        EXPECT_EQ(interpreter.execute("#1=[exists[#<_hal[c.d]>]] G0 Y#1"), Step::FILE_END);
+        EXPECT_EQ(interpreter.parameter(1), isOn ? 1.0 : 0.0);
+    }
+}
+
 TEST(Flow, fanuc_calls_share_parameters_I1) {
     Machine machine;
     EXPECT_EQ(machine.run("#1=0\nM98 P7 L3\n(print,#1)\nM2\nO7\n#1=[#1+2]\nM99\n"), Step::PROGRAM_END)

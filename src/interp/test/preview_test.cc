@@ -125,12 +125,118 @@ TEST_F(PreviewRun, goes_on_behind_errors_and_tells_them_all_I3) {
     EXPECT_EQ(events.size(), 2U);
 }
 
+TEST_F(PreviewRun, tells_syntax_errors_behind_an_error_that_ends_it_I3) {
+    EXPECT_EQ(run("G21\nG0 X1\no1 endif\nG0 X[1\nG999\no2 while [1\nG1 X1\nG0 X\nM2\n"), PreviewEnd::FAILED);
+    std::vector<int> lines;
+    for (const diag::Diagnostic &one : sink.all()) {
+        lines.push_back(one.what.place.line);
+    }
+    EXPECT_EQ(lines, (std::vector<int>{3, 4, 6, 8}));
+}
+
 TEST_F(PreviewRun, ends_endless_loops_with_an_error_I1) {
     PreviewOptions options;
     options.statement_budget = 10000;
-    EXPECT_EQ(run("o1 while [1]\nG4 P0\no1 endwhile\nM2\n", options), PreviewEnd::FAILED);
+    EXPECT_EQ(run("o1 while [1]\n#1=[#1+1]\no1 endwhile\nM2\n", options), PreviewEnd::FAILED);
     ASSERT_EQ(sink.count_errors(), 1);
     EXPECT_NE(sink.all()[0].what.message.find("loop without end"), std::string::npos);
+}
+
+/// Such loops are found at once, however they move: nothing changes from pass to pass.
+TEST_F(PreviewRun, finds_loops_that_repeat_themselves_I1) {
+    const struct {
+        const char *program;
+        int line;
+    } cases[] = {
+        {"G21 G90 F600\no1 while [1]\nG1 X10\nX0\nM0\no1 endwhile\nM2\n", 2},
+        {"G21 G90 F600\no1 while [1]\n#1=0\no2 while [#1 lt 5]\nG1 X#1\n#1=[#1+1]\no2 endwhile\no1 "
+         "endwhile\n",
+         2},
+        {"G21\no9 sub\no1 do\nM66 P0 L0\n#<a>=#5399\no1 while [#<a> eq 0]\no9 endsub\no9 call\nM2\n", 3},
+    };
+    for (const auto &one : cases) {
+        PreviewOptions options;
+        options.statement_budget = 100000;
+        options.idle_budget = 0;
+        diag::Sink errors;
+        Preview check(PreviewMachine{}, world, world, options, {});
+        EXPECT_EQ(check.run_text("part.ngc", one.program, errors), PreviewEnd::FAILED);
+        ASSERT_EQ(errors.count_errors(), 1) << one.program;
+        EXPECT_NE(errors.all()[0].what.message.find("nothing has changed"), std::string::npos);
+        EXPECT_EQ(errors.all()[0].what.place.line, one.line);
+        EXPECT_LT(check.progress().blocks, 5000U);
+    }
+    EXPECT_EQ(run("G21 F600\no1 while [#1 lt 100000]\nG91 G1 X0\n#1=[#1+1]\no1 endwhile\n"
+                  "o2 do\nG91 G1 X1\no2 while [#5420 lt 5000]\nM2\n"),
+              PreviewEnd::DONE)
+        << sink.all().back().str();
+}
+
+/// Which loop it is: not an inner one that ends, not one before it, and in a subroutine with its callers.
+TEST_F(PreviewRun, names_the_loop_that_does_not_end_I1) {
+    const struct {
+        const char *program;
+        int line, callers;
+    } cases[] = {
+        {"#1=0\no1 while [#1 lt 900]\n#1=[#1+1]\no1 endwhile\no2 while [1]\n#2=[#2+1]\no2 endwhile\nM2\n", 5,
+         0},
+        {"\no1 do\no2 repeat [3]\n#1=[#1+1]\no2 endrepeat\n(msg,on)\n#5=[#5+1]\no1 while [1]\nM2\n", 2, 0},
+        {"o1 while [#1 lt 5]\no2 while [1]\n#3=[#3+1]\no2 endwhile\n#1=[#1+1]\no1 endwhile\nM2\n", 2, 0},
+        {"o9 sub\no3 while [1]\no8 call\n#3=[#3+1]\no3 endwhile\no9 endsub\no8 sub\no4 repeat [2]\no4 "
+         "endrepeat\n"
+         "o8 endsub\no7 repeat [2]\no9 call\no7 endrepeat\nM2\n",
+         2, 1},
+        {"M98 P5 L1000000\nM2\nO5\n#1=2\nM99\n", 3, 1},
+    };
+    for (const auto &one : cases) {
+        PreviewOptions options;
+        options.idle_budget = 5000;
+        diag::Sink errors;
+        PreviewMachine machine;
+        Preview check(machine, world, world, options, {});
+        EXPECT_EQ(check.run_text("part.ngc", one.program, errors), PreviewEnd::FAILED);
+        ASSERT_EQ(errors.count_errors(), 1) << one.program;
+        const diag::Diagnostic &error = errors.all()[0];
+        EXPECT_NE(error.what.message.find("5000 statements without making the machine do anything"),
+                  std::string::npos)
+            << error.str();
+        EXPECT_EQ(error.what.place.line, one.line) << error.str();
+        EXPECT_EQ(error.called_from.size(), static_cast<std::size_t>(one.callers)) << error.str();
+        EXPECT_NE(error.what.hint.find("--statements"), std::string::npos);
+    }
+}
+
+TEST_F(PreviewRun, long_honest_programs_are_no_endless_loops_I1) {
+    PreviewOptions options;
+    options.idle_budget = 200;
+    options.statement_budget = 2000;
+    std::string straight = "G21 F6000\n";
+    for (int i = 0; i < 5000; ++i) {
+        straight += i % 2 == 0 ? "#1=[#1+1]\n" : "o1 call\n";
+    }
+    EXPECT_EQ(run("o1 sub\n#2=1\n#3=1\no1 endsub\n" + straight + "M2\n", options), PreviewEnd::DONE)
+        << sink.all().back().str();
+    options.statement_budget = 0;
+    EXPECT_EQ(run("G21 G91 F6000\no1 repeat [5000]\no2 repeat [20]\no2 endrepeat\nG1 X1\nX-1\n"
+                  "o1 endrepeat\nM2\n",
+                  options),
+              PreviewEnd::DONE)
+        << sink.all().back().str();
+    EXPECT_FALSE(sink.hasErrors());
+}
+
+TEST_F(PreviewRun, loops_that_move_without_end_are_found_by_their_time_I1) {
+    PreviewOptions options;
+    options.time_budget_s = 3600;
+    EXPECT_EQ(
+        run("G21 G90 F60\n(a part)\no1 while [1]\n#1=[#1+1]\nG1 X10\nG0 X0\nG2 I1\nM0\no1 endwhile\nM2\n",
+            options),
+        PreviewEnd::FAILED);
+    ASSERT_EQ(sink.count_errors(), 1);
+    EXPECT_EQ(sink.all()[0].what.place.line, 3);
+    EXPECT_NE(sink.all()[0].what.message.find("1 hours of machine time"), std::string::npos);
+    EXPECT_LT(events.size(), 2000U);
+    EXPECT_GT(events.size(), 500U);
 }
 
 TEST_F(PreviewRun, can_be_cancelled_and_says_how_far_it_is_I1) {

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The end of work that cannot go on, and what [RS274NGC]ON_ABORT_COMMAND does after it.
+#include <fmt/format.h>
+
+#include "task/task.hh"
+
+namespace mw::task {
+namespace {
+
+/// Blocks that the on-abort command may have: it is read at once, so that it cannot get lost.
+constexpr int CLEAN_UP_BLOCKS = 10000;
+
+/// What must not happen after an abort: anything that moves, starts or waits for a person.
+bool isForbidden(const ItemBody &body) {
+    if (const auto *coolant = std::get_if<CoolantItem>(&body)) {
+        return coolant->isOn;
+    }
+    return std::holds_alternative<LineItem>(body) || std::holds_alternative<ArcItem>(body) ||
+           std::holds_alternative<ProbeItem>(body) || std::holds_alternative<RigidTapItem>(body) ||
+           std::holds_alternative<SpindleOnItem>(body) || std::holds_alternative<SpindleOrientItem>(body) ||
+           std::holds_alternative<SelectToolItem>(body) || std::holds_alternative<ChangeToolItem>(body) ||
+           std::holds_alternative<WaitInputItem>(body) || std::holds_alternative<StopItem>(body) ||
+           std::holds_alternative<EndItem>(body);
+}
+
+}  // namespace
+
+void Task::fail_program(diag::Diagnostic what, AbortReason reason) {
+    if (!isRunning() && isCleaningUp_) {  // no clean-up of a clean-up
+        sequencer_.abort();
+        isCleaningUp_ = false;
+        end_clean_up(what.str());
+        return;
+    }
+    post(MessageKind::OPERATOR_ERROR, what.str());
+    program_error_ = std::move(what);
+    hasProgramError_ = true;
+    finish_run(Progress::FAILED, program_error_.what.str());
+    abort_work(reason);
+}
+
+void Task::abort_work(AbortReason reason) {
+    // A machine that goes off has mostly been stopped for another reason before: that clean-up goes on.
+    const bool isFollowing = reason == AbortReason::STATE_NOT_ON && isCleanedUp_;
+    motion_.abort();
+    if (!isFollowing || !isCleaningUp_) {
+        sequencer_.abort();
+        user_program_.stop();
+        interp_->abort();
+        interp_->announce();  // displays and motion follow what was read ahead
+        isCleaningUp_ = true;
+    }
+    sequencer_.stop_spindles();
+    io_.set_flood(false);
+    io_.set_mist(false);
+    isWaitingForSync_ = false;
+    isStartDue_ = false;
+    pending_failure_.clear();
+    finish(home_request_, Progress::FAILED, "aborted");
+    if (!isFollowing) {
+        begin_clean_up(reason);
+    }
+    isCleanedUp_ = true;
+}
+
+/// Reads the on-abort command to its end. What it asks for is done when the machine stands.
+void Task::begin_clean_up(AbortReason reason) {
+    const bool isAsked =
+        !settings_.interpreter.on_abort_command.empty() && settings_.interpreter_plugin.empty();
+    if (!isAsked || isRunning()) {
+        return;
+    }
+    isCleaningUp_ = true;
+    const interp::Step step = read_clean_up(reason);
+    for (std::size_t i = 0; i < queue_.size(); ++i) {
+        if (!isForbidden(queue_[i].body)) {
+            continue;
+        }
+        const motion::SourceTag source = queue_[i].source;
+        queue_.erase(queue_.begin() + static_cast<std::ptrdiff_t>(i), queue_.end());
+        end_clean_up(SourcePlace{canon_.file_name(source.file_index), source.line, 0}.str() +
+                     ": after an abort nothing may move, start, stop the program or wait");
+        return;
+    }
+    if (step != interp::Step::FILE_END) {
+        end_clean_up(step == interp::Step::FAILED ? interp_->error().str()
+                     : step == interp::Step::SYNC ? "it must not wait"
+                                                  : "it is too long");
+    }
+}
+
+interp::Step Task::read_clean_up(AbortReason reason) {
+    canon_.reset();
+    synch_interpreter();
+    const std::string line =
+        fmt::format("{} [{}]", settings_.interpreter.on_abort_command, static_cast<int>(reason));
+    interp::Step step = interp_->execute(line);
+    for (int blocks = 1; step == interp::Step::OK && blocks < CLEAN_UP_BLOCKS; ++blocks) {
+        step = interp_->step();
+    }
+    if (step != interp::Step::FILE_END) {
+        interp_->abort();
+    }
+    return step;
+}
+
+void Task::step_clean_up() {
+    if (!isCleaningUp_ || isRunning()) {
+        isCleaningUp_ = false;  // what is left runs with the new program, before it
+        return;
+    }
+    const motion::Status &motion = motion_.status();
+    if (motion.isInPosition || !motion.isEnabled) {
+        sequencer_.step(now_ns_);
+        isCleaningUp_ = !sequencer_.isIdle();
+    }
+}
+
+/// What came before the trouble is done all the same.
+void Task::end_clean_up(const std::string &trouble) {
+    post(MessageKind::OPERATOR_ERROR,
+         fmt::format("[RS274NGC]ON_ABORT_COMMAND = {}: {}", settings_.interpreter.on_abort_command, trouble));
+}
+
+}  // namespace mw::task

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Probing on a whole machine in virtual time: results, errors, the file of (probeopen) (I1, C7).
+#include <algorithm>
+
+#include "sim/virtual_machine.hh"
+
+namespace mw::machine {
+namespace {
+
+class ProbeTest : public VirtualMachineTest {
+  protected:
+    void SetUp() override { switch_on(); }
+    /// Runs the program; the probe touches a wall at X = `wall` from below.
+    task::Progress probe(const std::string &text, double wall) {
+        start(text);
+        for (int i = 0; i < 200000; ++i) {
+            cycles(1);
+            set_pin("motion.probe-input", x() >= wall ? "TRUE" : "FALSE");
+            if (i > 3 && machine_->task().progress(run_) != task::Progress::STARTED) {
+                break;
+            }
+        }
+        return machine_->task().progress(run_);
+    }
+    long count_lines(const std::string &name) const {
+        const std::string text = read(name);
+        return std::count(text.begin(), text.end(), '\n');
+    }
+    std::string in_folder(const std::string &name) const { return (folder_ / name).string(); }
+};
+
+TEST_F(ProbeTest, EachProbeThatTripsWritesALineOfNineCoordinates_I1) {
+    const std::string file = in_folder("points.txt");
+    EXPECT_EQ(probe("G21 G90\nG10 L2 P1 X5 Y1\nG0 X0 Y2\n(PROBEOPEN " + file +
+                        ")\nG38.3 X20 F600\nG0 X0 Y3\nG38.2 X20\nG0 X0\nG38.3 X-5\n(probeclose)\n"
+                        "G38.3 X20\nG0 X0\nM2\n",
+                    12.5),
+              task::Progress::DONE)
+        << messages();
+    std::istringstream lines(read("points.txt"));
+    std::string line;
+    for (const double y : {2.0, 3.0}) {
+        ASSERT_TRUE(std::getline(lines, line));
+        std::istringstream numbers(line);
+        std::vector<double> values;
+        for (double value = 0; numbers >> value;) {
+            values.push_back(value);
+        }
+        ASSERT_EQ(values.size(), 9U) << line;
+        EXPECT_NEAR(values[0], 7.5, 0.03) << "in program coordinates, where it tripped";
+        EXPECT_DOUBLE_EQ(values[1], y);
+    }
+    EXPECT_FALSE(std::getline(lines, line))
+        << "a miss and a probe after (probeclose) write nothing: " << line;
+}
+
+TEST_F(ProbeTest, AnAbortAndTheEndOfTheProgramKeepWhatWasWritten_I1) {
+    const std::string file = in_folder("points.txt");
+    EXPECT_EQ(probe("G21 G90\n(probeopen " + file + ")\nG38.3 X20 F600\nG0 X0\nM2\n", 3),
+              task::Progress::DONE);
+    EXPECT_EQ(count_lines("points.txt"), 1);
+    EXPECT_EQ(
+        probe("G21 G90\n(probeopen " + file + ")\nG38.3 X20 F600\nG0 X0\nG38.3 X20\nG0 X0\nG1 X[1/0]\nM2\n",
+              3),
+        task::Progress::FAILED);
+    EXPECT_EQ(count_lines("points.txt"), 2);
+}
+
+TEST_F(ProbeTest, AFileThatCannotBeWrittenIsToldBeforeTheProbe_I1) {
+    EXPECT_EQ(
+        probe("G21 G90\n(probeopen " + in_folder("no/such/folder/p.txt") + ")\nG38.3 X20 F600\nG0 X0\nM2\n",
+              3),
+        task::Progress::FAILED);
+    EXPECT_NE(messages().find("no/such/folder"), std::string::npos);
+    EXPECT_LT(x(), 1.0) << "nothing was probed";
+}
+
+TEST_F(ProbeTest, AFullDiskStopsTheProgram_I1) {
+    EXPECT_EQ(probe("G21 G90\n(probeopen /dev/full)\nG38.3 X20 F600\nG0 X0\nG38.3 X20 F600\nG0 X-5\nM2\n", 3),
+              task::Progress::FAILED);
+    const std::string all = messages();
+    EXPECT_NE(all.find("cannot write /dev/full"), std::string::npos) << all;
+}
+
+TEST_F(ProbeTest, ResultsAreInProgramUnitsAndToolOffsetsCount_I1) {
+    EXPECT_EQ(
+        probe(
+            "G20 G90\nG43.1 X0.1\nG0 X0 Y1\nG38.2 X0.6 F20\n(debug,%.3f#5061 %.3f#5062 %d#5070)\nG0 X0\nM2\n",
+            7.62),
+        task::Progress::DONE)
+        << messages();
+    EXPECT_NE(messages().find("0.20"), std::string::npos);
+}
+
+TEST_F(ProbeTest, AMissEndsTheProgramOnlyWhereItMust_I1) {
+    EXPECT_EQ(probe("G21 G90\nG38.3 X2 F600\n(debug,hit %d#5070 at %.1f#5061)\nG0 X0\nM2\n", 50),
+              task::Progress::DONE);
+    std::string all = messages();
+    EXPECT_NE(all.find("hit 0 at 2.0"), std::string::npos) << all;
+    EXPECT_EQ(probe("G21 G90\nG38.2 X2 F600\nG0 X9\nM2\n", 50), task::Progress::FAILED);
+    all = messages();
+    EXPECT_NE(all.find("p.ngc:2"), std::string::npos) << all;
+    EXPECT_LT(x(), 2.1);
+}
+
+}  // namespace
+}  // namespace mw::machine

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A whole machine in virtual time, homed and switched on, for tests.
+#pragma once
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "machine/loaded_config.hh"
+#include "machine/machine.hh"
+#include "machine/operator.hh"
+
+namespace mw::machine {
+
+/// The mill configs/sim/mill_mm.ini with a folder of its own.
+class VirtualMachineTest : public testing::Test {
+  protected:
+    VirtualMachineTest() {
+        folder_ = std::filesystem::temp_directory_path() / ("mw_sim_" + std::to_string(::getpid()));
+        std::filesystem::create_directory(folder_);
+    }
+    ~VirtualMachineTest() override {
+        machine_.reset();
+        std::filesystem::remove_all(folder_);
+    }
+
+    /// Builds the machine with changed settings; parameters live in memory.
+    void switch_on(const std::function<void(task::Settings &)> &change = {}) {
+        loaded_ = LoadedConfig::load(MW_SOURCE_DIR "/configs/sim/mill_mm.ini", sink_);
+        ASSERT_NE(loaded_, nullptr);
+        loaded_->machine.task.parameter_file.clear();
+        if (change) {
+            change(loaded_->machine.task);
+        }
+        auto made =
+            make_virtual_machine({loaded_->ini, loaded_->reader, loaded_->machine, sink_}, MachineOptions{});
+        ASSERT_TRUE(made.has_value()) << made.error().str();
+        machine_ = std::move(*made);
+        Operator person(*machine_, loaded_->machine, sink_, 60.0);
+        ASSERT_TRUE(person.switch_on().has_value());
+        ASSERT_TRUE(person.home_all().has_value());
+        machine_->channels().isTracing.store(1);
+    }
+    void write(const std::string &name, const std::string &text) const {
+        std::ofstream(folder_ / name) << text;
+    }
+    std::string read(const std::string &name) const {
+        std::ostringstream text;
+        text << std::ifstream(folder_ / name).rdbuf();
+        return text.str();
+    }
+
+    task::RequestId ask(task::Command command) {
+        const auto id = machine_->task().submit(std::move(command));
+        cycles(3);
+        return id;
+    }
+    void cycles(int n) {
+        for (int i = 0; i < n; ++i) {
+            machine_->cycle();
+            motion::TraceSample sample;
+            while (machine_->channels().trace.pop(sample)) {
+                samples_.push_back(sample);
+            }
+        }
+    }
+    /// Begins a program.
+    void start(const std::string &text) {
+        write("p.ngc", text);
+        ask(task::SetMode{task::Mode::AUTO});
+        ask(task::OpenProgram{(folder_ / "p.ngc").string()});
+        run_ = machine_->task().submit(task::RunProgram{});
+    }
+    /// Waits for what start() or mdi() has begun.
+    task::Progress finish(int limit = 200000) {
+        for (int i = 0; i < limit && machine_->task().progress(run_) == task::Progress::STARTED; ++i) {
+            cycles(1);
+        }
+        return machine_->task().progress(run_);
+    }
+    task::Progress mdi(const std::string &line) {
+        ask(task::SetMode{task::Mode::MDI});
+        run_ = machine_->task().submit(task::Mdi{line});
+        cycles(1);
+        return finish();
+    }
+    const motion::Status &motion() const { return machine_->task().motion_status(); }
+    double x() const { return motion().carte_pos_cmd.x(); }
+    bool pin(const std::string &name) const { return machine_->hal().get(name)->as_bit(); }
+    void set_pin(const std::string &name, const std::string &value) {
+        ASSERT_TRUE(machine_->hal().set(name, value).has_value());
+    }
+    std::string messages() {
+        std::string all;
+        task::Message message;
+        while (machine_->task().poll_message(message)) {
+            all += message.text + '\n';
+        }
+        return all;
+    }
+
+    std::filesystem::path folder_;
+    diag::Sink sink_;
+    std::unique_ptr<LoadedConfig> loaded_;
+    std::unique_ptr<Machine> machine_;
+    std::vector<motion::TraceSample> samples_;
+    task::RequestId run_ = 0;
+};
+
+}  // namespace mw::machine
