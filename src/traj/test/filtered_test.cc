@@ -142,6 +142,17 @@ TEST(Filtered, AHoldStopsWithinTheJerkLimitAndGoesOn_C13) {
     EXPECT_EQ(rig.samples.back(), at(60));
 }
 
+/// A circle of short chords from the origin.
+void add_circle(Rig &rig, double radius, double tolerance) {
+    Pose from;
+    for (int i = 1; i <= 180; ++i) {
+        const double angle = 2 * std::numbers::pi * i / 180;
+        const Pose to = at(radius * std::sin(angle), radius * (1 - std::cos(angle)));
+        rig.planner.add(make_line(from, to), request(Join::BLEND, tolerance));
+        from = to;
+    }
+}
+
 /// How far a circle of short chords, slowed down by an override, leaves its own box.
 double circle_excursion(bool isBoxed) {
     constexpr double RADIUS = 5, P = 0.01;
@@ -154,13 +165,7 @@ double circle_excursion(bool isBoxed) {
     Scales scales;
     scales.feed = 0.1;
     rig.planner.set_scales(scales);
-    Pose from;
-    for (int i = 1; i <= 180; ++i) {
-        const double angle = 2 * std::numbers::pi * i / 180;
-        const Pose to = at(RADIUS * std::sin(angle), RADIUS * (1 - std::cos(angle)));
-        rig.planner.add(make_line(from, to), request(Join::BLEND, P));
-        from = to;
-    }
+    add_circle(rig, RADIUS, P);
     EXPECT_TRUE(rig.run(30));
     rig.expect_within();
     double worst = 0;
@@ -184,13 +189,7 @@ double circle_time(double first) {
     rig.planner.set_limits(limits);
     rig.planner.begin(Pose{}, rig.executor.snapshot(), first);
     EXPECT_EQ(rig.planner.suits(P), first == P);
-    Pose from;
-    for (int i = 1; i <= 180; ++i) {
-        const double angle = 2 * std::numbers::pi * i / 180;
-        const Pose to = at(RADIUS * std::sin(angle), RADIUS * (1 - std::cos(angle)));
-        rig.planner.add(make_line(from, to), request(Join::BLEND, P));
-        from = to;
-    }
+    add_circle(rig, RADIUS, P);
     EXPECT_TRUE(rig.run(60));
     return static_cast<double>(rig.cycle) * Rig::T;
 }
