@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Drives each kind of program with the planner in virtual time: cycle time, limits, deviation, planning rate.
-// traj_bench [--jerk] [--fast] [--bound] [--rate] [--trace FOLDER] [--only WORD]; --fast leaves the deviation
-// out;
+// traj_bench [--jerk] [--fast] [--bound] [--rate] [--trace FOLDER] [--only WORD] [--jerk-share PART]; --fast leaves the
+// deviation out; --jerk-share: that part of the jerk limits;
 // --rate measures planning alone, merging off, on 0.01 mm blocks in nine coordinates.
 #include <chrono>
 #include <cstdio>
@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 
+#include "base/text.hh"
 #include "testing/deviation.hh"
 #include "testing/limit_checker.hh"
 #include "traj/bound.hh"
@@ -29,6 +30,7 @@ struct Options {
     bool isBound = false;
     const char *trace = nullptr;
     const char *only = "";
+    double jerk_share = 1;  ///< of the jerk limits of all kinds
 };
 
 traj::Primitive primitive_of(const Pose &from, const Move &m) {
@@ -219,12 +221,16 @@ int main(int argc, char **argv) {
             options.trace = argv[++i];
         } else if (std::strcmp(argv[i], "--only") == 0 && hasValue) {
             options.only = argv[++i];
+        } else if (std::strcmp(argv[i], "--jerk-share") == 0 && hasValue) {
+            options.jerk_share = mw::parse_double(argv[++i]).value_or(0);
         } else {
-            std::fprintf(
-                stderr,
-                "usage: traj_bench [--jerk] [--fast] [--bound] [--rate] [--trace FOLDER] [--only WORD]\n");
-            return 2;
+            options.jerk_share = 0;
         }
+    }
+    if (!(options.jerk_share > 0)) {
+        std::fprintf(stderr, "usage: traj_bench [--jerk] [--fast] [--bound] [--rate] [--trace FOLDER] "
+                             "[--only WORD] [--jerk-share PART]\n");
+        return 2;
     }
     std::printf("%-18s %6s %10s  %17s  %12s  %9s\n", "kind", "blocks", "time", "worst v a j", "deviation",
                 "blocks/s");
@@ -232,7 +238,8 @@ int main(int argc, char **argv) {
     if (options.isRate) {
         return mw::bench::measure(options, mw::bench::dense_nine_axes(100000)) ? 0 : 1;
     }
-    for (const mw::bench::Program &program : mw::bench::all_kinds()) {
+    for (mw::bench::Program program : mw::bench::all_kinds()) {
+        program.max_jerk = program.max_jerk * options.jerk_share;
         if (program.name.find(options.only) != std::string::npos) {
             isOk = mw::bench::measure(options, program) && isOk;
         }
