@@ -119,6 +119,8 @@ class Planner {
     bool isStarving() const noexcept {
         return (open_move_ != 0 || raw_move_ != 0) && (isAtEndOfPath_ || last_piece_ < oldest_piece_);
     }
+    /// True once when it has stood for a second without finding a plan that passes the trial.
+    bool take_stuck() noexcept;
     std::uint32_t moves_left(const Snapshot &now) const noexcept;
 
   private:
@@ -300,6 +302,8 @@ class Planner {
     double trial_s_origin_ = 0;
     std::uint64_t tolerance_tick_ = 0;  ///< the newest sample whose tolerance differs from the one before
     std::uint64_t failed_tick_ = 0;
+    int refusals_ = 0;                 ///< replanning at rest, one after the other, for which no plan passed
+    bool isRefused_ = false;           ///< no attempt of the last replanning passed
     std::uint64_t replan_ = 0;         ///< counts replanning
     bool isAfterDriven_ = false;       ///< the failed sample depends on what has been driven already
     double eased_excess_ = UNLIMITED;  ///< of the attempt before

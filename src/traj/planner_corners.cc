@@ -155,6 +155,10 @@ Planner::Joint Planner::filtered_corner(Sequence na, Sequence nb, double toleran
         // A slight turn is spread as far as that costs next to nothing.
         d = std::max(d, std::min(half, blend_d_for_tolerance(a, b, SPREAD_SHARE * tolerance)));
     }
+    if (tolerance > 0 && (a.isArc || b.isArc)) {
+        // Standing, too, the blend is within the tolerance; between lines it is so by what it takes at speed.
+        d = std::min(d, blend_d_for_tolerance(a, b, TOLERANCE_SHARE * tolerance));
+    }
     const double spacing = 0.5 * (a.length + b.length);
     const bool isDense = v * tau > 0.7 * spacing;
     if (isDense && tolerance > 0) {

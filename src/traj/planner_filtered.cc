@@ -18,6 +18,8 @@ constexpr double STANDING = 1e-13;
 constexpr double AT_END = 2e-12;
 constexpr double STOP_FIT = 1e-7;  ///< as in the executor
 constexpr int ATTEMPTS = 24;
+/// Planner periods, a second of them.
+constexpr int MOST_REFUSALS = 200;
 constexpr Sequence PHASE_RESERVE = PHASE_CAPACITY / 2;
 /// A plan is renewed when less than this part of the horizon is left.
 constexpr double RENEWAL = 0.6;
@@ -199,6 +201,7 @@ bool Planner::replan_filtered(const Snapshot &now, State from, bool isStop) noex
     const double delay = start_delay_s_;
     ++replan_;
     isAfterDriven_ = false;
+    isRefused_ = false;
     eased_excess_ = UNLIMITED;
     for (int n = 0; n < ATTEMPTS; ++n) {
         plan_end_ = begin;
@@ -245,6 +248,7 @@ bool Planner::replan_filtered(const Snapshot &now, State from, bool isStop) noex
             isStopPlan_ = isStop;
             return true;
         }
+        isRefused_ = true;
         if (!ease(from)) {
             break;
         }
@@ -254,6 +258,12 @@ bool Planner::replan_filtered(const Snapshot &now, State from, bool isStop) noex
         take_back_easing();
     }
     return false;
+}
+
+bool Planner::take_stuck() noexcept {
+    const bool isStuck = refusals_ == MOST_REFUSALS;
+    refusals_ += isStuck ? 1 : 0;
+    return isStuck;
 }
 
 void Planner::update_filtered(const Snapshot &now) noexcept {
@@ -273,7 +283,8 @@ void Planner::update_filtered(const Snapshot &now) noexcept {
     if (now.motion == Motion::REST) {
         const bool isReady = !mustStop && !isPending && (filter_ == now.filter || now.isSettled);
         if (isReady && start_state(now, from) && !(from.x <= 0 && isBarrier(from.piece))) {
-            replan_filtered(now, from, false);
+            const bool isPlanned = replan_filtered(now, from, false);
+            refusals_ = isPlanned || !isRefused_ || !now.isSettled ? 0 : refusals_ + 1;
         }
         return;
     }

@@ -90,6 +90,7 @@ void Planner::begin(const Pose &start, const Snapshot &now, double tolerance) no
     raw_move_ = 0;
     shift_ = {};
     shift_drive_ = {};
+    refusals_ = 0;
     changed_from_ = 0;
     drops_ = now.drops;
     plan_ = std::max(plan_, now.plan);

@@ -127,6 +127,7 @@ enum class FaultKind : std::uint16_t {
     PATH_LIMIT,
     SPINDLE_FAULT,
     MISC_ERROR,
+    NO_WAY_ON,  ///< the planner stands and finds no plan
     COUNT,
 };
 struct Fault {

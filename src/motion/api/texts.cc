@@ -98,6 +98,8 @@ std::string what_failed(const Fault &fault) {
                            homing::failure_text(static_cast<homing::Failure>(fault.detail)));
     case FaultKind::PROBE_NOT_TRIPPED: return "the probing move reached its end without a trip of the probe";
     case FaultKind::PROBE_TRIPPED_IN_MOVE: return "probe tripped during a move that does not probe";
+    case FaultKind::NO_WAY_ON:
+        return "the planner finds no motion on from here that keeps all limits and the tolerance of the path";
     case FaultKind::KINEMATICS_FAILED: return "the kinematics could not reach the commanded pose";
     case FaultKind::PATH_LIMIT: return "the path left its limits";
     case FaultKind::SPINDLE_FAULT:

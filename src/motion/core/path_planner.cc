@@ -45,6 +45,12 @@ void PathPlanner::update() noexcept {
     open_gates();
     if (isPathBegun_) {
         planner_.update(view_.executor);
+        if (planner_.take_stuck()) {
+            Fault fault;
+            fault.kind = FaultKind::NO_WAY_ON;
+            fault.source = pending_count() > 0 ? pending(pending_head_).source : SourceTag{};
+            channels_.planner_faults.push(fault);
+        }
     }
     publish();
 }

@@ -18,7 +18,7 @@
 namespace mw::traj::test {
 namespace {
 
-constexpr double SECONDS = 6.5, LEAST_SECONDS = 5;
+constexpr double SECONDS = 3, LEAST_SECONDS = 5;
 constexpr std::size_t LEAST_BLOCKS = 50;
 
 struct Verdict {

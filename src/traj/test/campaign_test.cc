@@ -75,7 +75,7 @@ TEST(Campaign, SeedsThatOnceFailedKeepJerkLimits_C13) {
 }
 
 TEST(Campaign, LongProgramsThatOnceFailedKeepJerkLimits_C13) {
-    for (const unsigned seed : {2113U, 4463U, 4893U, 6338U}) {
+    for (const unsigned seed : {2113U, 4463U, 4893U, 6338U, 33987U, 34194U}) {
         check(seed, true, Kind::LONG);
     }
 }

@@ -129,5 +129,37 @@ TEST(Planner, LostPlannerMeansAStopOnThePath) {
     expect_within(rig, plain_limits());
 }
 
+/// Joints that can be nowhere but at x = 0.
+class NoMap final : public JointMap {
+  public:
+    bool joints_at(const Pose &pose, double *joints) const noexcept override {
+        joints[0] = pose[0];
+        return pose[0] == 0;
+    }
+};
+
+TEST(Planner, APlaceWithoutAWayOnIsTold_C5) {
+    Rig rig{Pose{}};
+    const NoMap map;
+    JointLimits joints;
+    joints.count = 1;
+    joints.velocity[0] = 50;
+    joints.acceleration[0] = 500;
+    rig.planner.set_limits(plain_limits());
+    rig.planner.set_joints(&map, joints);
+    rig.planner.begin(Pose{}, rig.executor.snapshot());
+    Pose end;
+    end[0] = 10;
+    rig.planner.add(make_line(Pose{}, end), {});
+    rig.planner.release_end();
+    int told = 0;
+    for (int i = 0; i < 5000; ++i) {
+        rig.step();
+        told += rig.planner.take_stuck() ? 1 : 0;
+    }
+    EXPECT_EQ(told, 1);
+    EXPECT_EQ(rig.samples.back(), Pose{});
+}
+
 }  // namespace
 }  // namespace mw::traj::test
