@@ -186,7 +186,7 @@ bool Executor::do_thread_cycle(const Code &code, const BlockValues &values) {
         return fault.set("The tapers of G76 are longer than the thread", values.column_of('e'));
     }
     state.motion = code.number;
-    state.cycle.isRunning = false;
+    state.cycle.isRunning = state.isCompExit = false;
     double depth = plan.first_cut;
     for (int pass = 1; depth < plan.full_depth; ++pass) {
         if (pass > MAX_PASSES) {

@@ -242,5 +242,16 @@ TEST(LatheCycle, random_profiles_are_never_cut_into_I1) {
     }
 }
 
+TEST(Compensation, the_move_after_it_is_straight_and_a_thread_is_one_I1) {
+    const std::string compensated = "F100 S100 M3\nG42.1 D0.2\nG1 X-1 Y-1\nG1 X-4\nG1 X-5 Y3\nG40\n";
+    const std::string arc = "G17 G91\nG2 X1 Y1 R2\n";
+    Machine machine;
+    EXPECT_EQ(machine.run(compensated + arc), Step::FAILED);
+    EXPECT_NE(machine.error().find("must be straight"), std::string::npos);
+    EXPECT_EQ(machine.run(compensated + "G18 G76 P0.15 Z-1 I-0.1 J0.01 K0.05\n" + arc + "M2\n"),
+              Step::PROGRAM_END)
+        << machine.error();
+}
+
 }  // namespace
 }  // namespace mw::interp::test
