@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Drives each kind of program with the planner in virtual time: cycle time, limits, deviation, planning rate.
-// traj_bench [--jerk] [--fast] [--bound] [--rate] [--trace FOLDER] [--only WORD] [--jerk-share PART]; --fast leaves the
-// deviation out; --jerk-share: that part of the jerk limits;
+// traj_bench [--jerk] [--fast] [--bound] [--rate] [--trace FOLDER] [--only WORD] [--jerk-share PART]; --fast
+// leaves the deviation out; --jerk-share: that part of the jerk limits;
 // --rate measures planning alone, merging off, on 0.01 mm blocks in nine coordinates.
 #include <chrono>
 #include <cstdio>

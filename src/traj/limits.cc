@@ -126,20 +126,24 @@ std::uint64_t filter_length(const Limits &limits, double period_s, double tolera
         return 1;
     }
     double longest = 0;
+    double longest_angular = 0;
+    bool isNeeded = false;
     for (std::size_t i = 0; i < limits.jerk.size(); ++i) {
-        const bool isLimited = limits.jerk[i] < 1e9 && limits.acceleration[i] < 1e9;
-        if (!isLimited || geom::isAngular(static_cast<int>(i))) {
+        if (!(limits.jerk[i] < 1e9 && limits.acceleration[i] < 1e9)) {
             continue;
         }
+        isNeeded = isNeeded || limits.acceleration[i] > limits.jerk[i] * period_s;
         double length =
             std::min(limits.acceleration[i] / limits.jerk[i], std::sqrt(limits.velocity[i] / limits.jerk[i]));
         if (tolerance > 0) {
             length = std::min(length, CURVE_SHARE * std::cbrt(24.0 * tolerance / limits.jerk[i]));
         }
-        longest = std::max(longest, length);
+        double &of = geom::isAngular(static_cast<int>(i)) ? longest_angular : longest;
+        of = std::max(of, length);
     }
-    const double samples = std::ceil(longest / period_s - 1e-9);
-    return static_cast<std::uint64_t>(std::clamp(samples, 1.0, static_cast<double>(MAX_FILTER)));
+    const double samples = std::ceil((longest > 0 ? longest : longest_angular) / period_s - 1e-9);
+    return static_cast<std::uint64_t>(
+        std::clamp(samples, isNeeded ? 2.0 : 1.0, static_cast<double>(MAX_FILTER)));
 }
 
 Limits limits_for_filter(const Limits &limits, std::uint64_t filter, double period_s) noexcept {

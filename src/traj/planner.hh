@@ -212,7 +212,11 @@ class Planner {
     bool canCoast(Sequence piece, double x, double v) noexcept;
 
     // --- planner_shape.cc: with jerk limits, the corners of dense curves
-    bool wanted_shift(Sequence nb, Sequence nc, Pose &shift, double &reach) const noexcept;
+    /// Way in the time of the mean, and how far a corner may be moved.
+    struct ShiftRoom {
+        double reach = 0, most = 0;
+    };
+    bool wanted_shift(Sequence nb, Sequence nc, Pose &shift, ShiftRoom &room) const noexcept;
     void shape_corner(Sequence nb, Sequence nc) noexcept;
     Pose within_room(const Pose &corner, const Pose &shift) const noexcept;
     void reshape(Sequence n, const Pose &in, const Pose &out) noexcept;

@@ -21,7 +21,7 @@ constexpr double FOLLOWING = 0.3;
 
 /// How far the corner between two lines is to be moved, by its curvature alone; false where there is no
 /// curve.
-bool Planner::wanted_shift(Sequence nb, Sequence nc, Pose &shift, double &reach) const noexcept {
+bool Planner::wanted_shift(Sequence nb, Sequence nc, Pose &shift, ShiftRoom &room) const noexcept {
     const Primitive &b = store_.primitive(nb);
     const Primitive &c = store_.primitive(nc);
     const MovePlan &mb = move_plan(nb);
@@ -45,14 +45,16 @@ bool Planner::wanted_shift(Sequence nb, Sequence nc, Pose &shift, double &reach)
         v2 = along > 0 ? std::min(v2, speed * speed / (along * along)) : v2;
     }
     const double tau = filter_s();
-    reach = std::sqrt(v2) * tau;
+    const double reach = std::sqrt(v2) * tau;
+    room = {reach, 0};
     if (turn > MOST_TURN || reach < 0.7 * spacing) {
         return false;
     }
     const double tolerance = std::min(tolerance_of(mb), tolerance_of(mc));
+    room.most = MOST_SHARE * tolerance;
     const double size = std::max(geom::norm_linear(step), geom::norm_abc(step));
     const double inside = size / spacing * reach * reach / 24.0;
-    const double out = std::clamp(inside - FREE_SHARE * tolerance, 0.0, MOST_SHARE * tolerance);
+    const double out = std::clamp(inside - FREE_SHARE * tolerance, 0.0, room.most);
     shift = size > 0 ? step * (-out / size) : Pose{};
     return true;
 }
@@ -93,17 +95,20 @@ void Planner::shape_corner(Sequence nb, Sequence nc) noexcept {
         return;
     }
     Pose wanted;
-    double reach = 0;
-    if (!wanted_shift(nb, nc, wanted, reach)) {
+    ShiftRoom room;
+    if (!wanted_shift(nb, nc, wanted, room)) {
         shift_ = {};
         shift_drive_ = {};
         return;
     }
     // Two lags in a row, by length: what the shift adds to the curvature stays small.
     const double way = store_.primitive(nb).length;
-    const double part = 1.0 - std::exp(-way / (FOLLOWING * reach));
+    const double part = 1.0 - std::exp(-way / (FOLLOWING * room.reach));
     shift_drive_ = shift_drive_ + (wanted - shift_drive_) * part;
     shift_ = shift_ + (shift_drive_ - shift_) * part;
+    // What corners before were moved by may be more than this one's tolerance.
+    const double size = std::max(geom::norm_linear(shift_), geom::norm_abc(shift_));
+    shift_ = size > room.most ? shift_ * (room.most / size) : shift_;
     if (geom::norm(shift_) < 1e-9) {
         return;
     }
