@@ -219,6 +219,17 @@ TEST(Filtered, AnArcWithoutAToleranceKeepsItsSize_C13) {
     EXPECT_LT(static_cast<double>(rig.cycle) * Rig::T, 6);
 }
 
+TEST(Filtered, RotaryAxesAloneHaveTheirJerkLimits_C13) {
+    Limits limits = jerk_limits();
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        limits.jerk[static_cast<std::size_t>(i)] = geom::isAngular(i) ? J : UNLIMITED;
+    }
+    EXPECT_EQ(filter_length(limits, Rig::T, 0), 20U);
+    EXPECT_GE(filter_length(limits, Rig::T, 1e-9), 2U);
+    limits.isJerkLimited = false;
+    EXPECT_EQ(filter_length(limits, Rig::T, 0), 1U);
+}
+
 TEST(Joining, NearlyStraightLinesBecomeOneWithinTheTolerance_C2) {
     Rig rig{Pose{}};
     Limits limits = jerk_limits();
