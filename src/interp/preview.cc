@@ -47,15 +47,6 @@ std::string_view section_name(std::string_view comment) {
     return trim(comment.substr(KEY.size()));
 }
 
-/// Over all axes, lengths and degrees alike. [machine units]
-double distance(const Pose &a, const Pose &b) {
-    double squares = 0;
-    for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
-        squares += (a[axis] - b[axis]) * (a[axis] - b[axis]);
-    }
-    return std::sqrt(squares);
-}
-
 /// Of an arc in XYZ or UVW that begins at `start`: what is across its normal. [machine units]
 double arc_radius(const ArcMove &arc, const Pose &start) {
     double longest = 0;
@@ -265,7 +256,7 @@ class Preview::Impl final : public QuietMachineCanon, public World {
         go_to(event, end);
     }
     void go_to(PreviewEvent &event, const Pose &end, double arc_length = 0) {
-        mark_progress(event.settings, std::max(distance(position_, end), arc_length));
+        mark_progress(event.settings, std::max(geom::norm(end - position_), arc_length));
         event.start = convert(position_);
         event.end = convert(end);
         position_ = end;

@@ -142,8 +142,9 @@ void PathMonitor::on_move(motion::CommandId id, const motion::PathBody &body) {
     if (piece.angle_rad == 0 && piece.start == piece.end) {
         return;
     }
-    (piece.isRapid ? figures_.rapid_length : figures_.cutting_length) += feed_length(piece);
-    pieces_.push_back({id, piece, feed_length(piece)});
+    const double length = feed_length(piece);
+    (piece.isRapid ? figures_.rapid_length : figures_.cutting_length) += length;
+    pieces_.push_back({id, piece, length});
 }
 
 void PathMonitor::on_sample(const motion::TraceSample &sample) {
