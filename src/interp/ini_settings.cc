@@ -110,6 +110,7 @@ Settings settings_from_ini(const config::IniFile &ini, diag::Sink &sink) {
     out.isFanucSubDisabled = flag_of(ini, "DISABLE_FANUC_STYLE_SUB", sink);
     out.isIniReadable = flag_of(ini, "INI_VARS", sink, true);
     out.isHalReadable = flag_of(ini, "HAL_PIN_VARS", sink, true);
+    out.isToolOffsetRetained = flag_of(ini, "RETAIN_G43", sink);
     out.isArgumentCountNamed = flag_of(ini, "OWORD_NARGS", sink);
     out.orient_offset_deg = number_of(ini, "ORIENT_OFFSET", 0.0, sink);
     out.center_arc_radius_tolerance_inch =

@@ -60,6 +60,7 @@ struct Settings {
     bool isTask = false;  ///< #<_task>: a machine runs the program
     /// G74 and G84 in G18 and G19 print their X Y Z in the order of the field's rs274, which is no tool path.
     bool isTapOrderOfField = false;
+    bool isToolOffsetRetained = false;  ///< [RS274NGC]RETAIN_G43: M6 and M61 apply the new tool's G43
     bool isArgumentCountNamed = false;  ///< [RS274NGC]OWORD_NARGS: #<n_args> in subroutines
     double orient_offset_deg = 0;
     double parameter_g73_peck_clearance_mm = 0.254, parameter_g83_peck_clearance_mm = 0.254;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "machine/ini_parameters.hh"
 
+#include "base/text.hh"
 #include "interp/ini_settings.hh"
 
 namespace mw::machine {
@@ -13,11 +14,17 @@ std::optional<double> IniParameters::hal_value(std::string_view name) const {
     if (hal_ == nullptr) {
         return std::nullopt;
     }
-    auto value = hal_->get(name);
-    if (!value.has_value()) {
-        value = hal_->get_signal(name);
+    // G-code knows no case: what is not there as written may be there in lower case.
+    for (const std::string &spelling : {std::string(name), to_lower(name)}) {
+        auto value = hal_->get(spelling);
+        if (!value.has_value()) {
+            value = hal_->get_signal(spelling);
+        }
+        if (value.has_value()) {
+            return value->as_number();
+        }
     }
-    return value.has_value() ? std::optional<double>(value->as_number()) : std::nullopt;
+    return std::nullopt;
 }
 
 }  // namespace mw::machine

@@ -305,7 +305,7 @@ void read_interpreter(IniReader &ini, MachineConfig &machine) {
                               "RETAIN_G43",
                               "PARAMETER_G73_PECK_CLEARANCE",
                               "PARAMETER_G83_PECK_CLEARANCE"});
-    warn_without_effect(ini, "RS274NGC", {"RETAIN_G43", "NO_DOWNCASE_OWORD", "OWORD_WARNONLY", "FEATURES"});
+    warn_without_effect(ini, "RS274NGC", {"OWORD_WARNONLY", "FEATURES"});
 }
 
 void read_io(IniReader &ini, MachineConfig &machine) {

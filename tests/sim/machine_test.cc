@@ -28,6 +28,17 @@ class MachineTest : public VirtualMachineTest {
 
 constexpr const char *LONG_MOVES = "G21 G90 G17 G61 F6000\nG1 X100\nY100\nX0\nY0\nM2\n";
 
+TEST_F(MachineTest, ProgramsReadHalItemsInTheCaseOfTheirNames_I1) {
+    hal::Hal &hal = machine_->hal();
+    ASSERT_TRUE(hal.new_signal("Depth", hal::Type::FLOAT).has_value());
+    ASSERT_TRUE(hal.set_signal("Depth", "3").has_value());
+    EXPECT_EQ(mdi("G21 G0 X#<_hal[Depth]>"), task::Progress::DONE) << messages();
+    EXPECT_DOUBLE_EQ(x(), 3);
+    EXPECT_EQ(mdi("G0 X[1 + #<_hal[MOTION.ENABLE]>]"), task::Progress::DONE) << messages();
+    EXPECT_DOUBLE_EQ(x(), 2);
+    EXPECT_EQ(mdi("G0 X#<_hal[depth]>"), task::Progress::FAILED);
+}
+
 TEST_F(MachineTest, AnOpenChainDropsTheAmplifiersInTheSameServoCycle) {
     start(LONG_MOVES);
     cycles(500);

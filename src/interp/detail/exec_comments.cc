@@ -8,6 +8,7 @@
 
 #include "base/text.hh"
 #include "interp/detail/executor.hh"
+#include "interp/detail/lexer.hh"
 
 namespace mw::interp::detail {
 namespace {
@@ -90,14 +91,8 @@ std::optional<double> Executor::comment_parameter(std::string_view text, std::si
         if (close == std::string_view::npos) {
             return std::nullopt;
         }
-        std::string name;
-        for (const char c : text.substr(1, close - 1)) {
-            if (c != ' ' && c != '\t') {
-                name += c;
-            }
-        }
         taken = close + 1;
-        return evaluator_.named(names_.intern(to_lower(name)));
+        return evaluator_.named(names_.intern(folded_name(text.substr(1, close - 1))));
     }
     std::size_t digits = 0;
     while (digits < text.size() && text[digits] >= '0' && text[digits] <= '9') {

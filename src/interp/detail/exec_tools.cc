@@ -76,8 +76,20 @@ bool Executor::do_change_tool(const Code &, const BlockValues &) {
     }
     canon.change_tool();
     load_tool(state.selected_index);
+    retain_tool_offset();
     outcome = Outcome::SYNC;
     return true;
+}
+
+/// RETAIN_G43: an offset that is in force follows the tool in the spindle and ends with the last one.
+void Executor::retain_tool_offset() {
+    constexpr int G43 = 430, G49 = 490;
+    if (!settings_.isToolOffsetRetained || state.tool_offset_code == G49) {
+        return;
+    }
+    const bool isNone = state.tool_in_spindle == 0;
+    apply_tool_offset(isNone ? Pose{} : scale_lengths(state.loaded_offset, machine_to_program()),
+                      isNone ? G49 : G43);
 }
 
 bool Executor::do_tool_number(const Code &, const BlockValues &values) {
@@ -94,6 +106,7 @@ bool Executor::do_tool_number(const Code &, const BlockValues &values) {
     }
     canon.change_tool_number(toolno);
     load_tool(index);
+    retain_tool_offset();
     return true;
 }
 

@@ -265,6 +265,7 @@ class Executor : public BuiltIns {
     bool find_tool(int toolno, std::uint32_t column, int &index);
     void load_tool(int index);
     void apply_tool_offset(const Pose &offset, int code);
+    void retain_tool_offset();
     bool reload_tools();
     bool check_pitch(int spindle, double pitch, std::uint32_t column);
     bool set_tool_data(int l, const BlockValues &values);

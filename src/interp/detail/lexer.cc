@@ -86,17 +86,27 @@ Lexer::Number Lexer::take_odd_number(double &value) {
 }
 
 std::optional<std::string> Lexer::take_name(char closer) {
-    std::string name;
+    const std::size_t pos = pos_;
     for (std::size_t i = pos_; i < line_.size(); ++i) {
         if (line_[i] == closer) {
             pos_ = i + 1;
-            return name;
-        }
-        if (!isBlank(line_[i])) {
-            name += lower(line_[i]);
+            return folded_name(line_.substr(pos, i - pos));
         }
     }
     return std::nullopt;
+}
+
+std::string folded_name(std::string_view text) {
+    constexpr std::string_view HAL_NAME = "_hal[";
+    std::string name;
+    bool isKept = false;
+    for (const char c : text) {
+        if (!Lexer::isBlank(c)) {
+            name += isKept ? c : Lexer::lower(c);
+            isKept = isKept || name == HAL_NAME;
+        }
+    }
+    return name;
 }
 
 }  // namespace mw::interp::detail

@@ -9,6 +9,9 @@
 
 namespace mw::interp::detail {
 
+/// A name without the blanks and in lower case, but for what _hal[ encloses: names of HAL keep their case.
+std::string folded_name(std::string_view text);
+
 class Lexer {
   public:
     explicit Lexer(std::string_view line) : line_(line) {}
@@ -42,8 +45,7 @@ class Lexer {
     Number take_number(double &value);
     /// What stands from `start` up to here, without the blanks.
     std::string text_from(std::size_t start) const;
-    /// Takes everything up to and including `closer`; without the blanks, in lower case. Nothing when there
-    /// is none.
+    /// Takes everything up to and including `closer`, as folded_name gives it. Nothing when there is none.
     std::optional<std::string> take_name(char closer);
 
     std::uint32_t column() const { return static_cast<std::uint32_t>(pos_) + 1; }

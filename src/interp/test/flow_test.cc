@@ -158,6 +158,52 @@ TEST(Flow, names_of_ini_and_hal_can_be_switched_off_I1) {
     }
 }
 
+TEST(Flow, a_tool_offset_that_is_retained_follows_the_tool_I1) {
+    for (const bool isRetained : {true, false}) {
+        Settings settings;
+        settings.isToolOffsetRetained = isRetained;
+        Machine machine(settings);
+        for (const double z : {10.0, 20.0}) {
+            ToolEntry tool;
+            tool.toolno = static_cast<int>(z / 10);
+            tool.offset[2] = z;
+            machine.mill.tools.push_back(tool);
+        }
+        constexpr const char *SHOW = "(print,%.0f#<_z> #<_tool_offset>)\n";
+        const std::string show = SHOW;
+        EXPECT_EQ(machine.run("T1 M6\n" + show + "G43 G0 Z5\nT2 M6\n" + show + "M61 Q1\n" + show +
+                              "G0 Z5\nT0 M6\n" + show + "T2 M6\n" + show + "G43.1 Z1\nG20 T1 M6\n" + show +
+                              "G49\n"),
+                  Step::PROGRAM_END)
+            << machine.error();
+        Calls prints;
+        for (const std::string &call : machine.record.calls) {
+            if (call.starts_with("print")) {
+                prints.push_back(call);
+            }
+        }
+        const Calls followed = {"print0 0", "print-5 1", "print5 1", "print15 0", "print15 0", "print0 1"};
+        const Calls kept = {"print0 0", "print5 1", "print5 1", "print5 1", "print5 1", "print1 1"};
+        EXPECT_EQ(prints, isRetained ? followed : kept);
+    }
+}
+
+TEST(Flow, names_of_hal_keep_their_case_I1) {
+    class Source final : public test::Mill {
+        std::optional<double> hal_value(std::string_view name) const override {
+            return name == "Panel.Speed" ? std::optional<double>(7) : std::nullopt;
+        }
+    } source;
+    test::Recorder record;
+    MachineFrame frame(record, source.units);
+    Interpreter interpreter(frame, source, source, source, Settings{});
+    ASSERT_TRUE(interpreter.begin());
+    EXPECT_EQ(interpreter.execute("#<Mine>=#< _HAL[Panel.Speed] > (print,%.0f#<MINE> #<_hal[Panel.Speed]>)"),
+              Step::FILE_END)
+        << interpreter.error().str();
+    EXPECT_EQ(record.calls.back(), "print7 7");
+}
+
 TEST(Flow, fanuc_calls_share_parameters_I1) {
     Machine machine;
     EXPECT_EQ(machine.run("#1=0\nM98 P7 L3\n(print,#1)\nM2\nO7\n#1=[#1+2]\nM99\n"), Step::PROGRAM_END)

@@ -23,6 +23,7 @@ class Recorder : public MachineCanon {
     std::vector<LineMove> lines;
     std::vector<ArcMove> arcs;
     std::vector<std::string> calls;
+    int selected_tool = 0, tool_in_spindle = 0;
 
     void begin_block(const BlockRef &) override {}
     void line(const LineMove &move) override { lines.push_back(move); }
@@ -40,9 +41,18 @@ class Recorder : public MachineCanon {
     void spindle_off(int) override { calls.emplace_back("spindle_off"); }
     void orient_spindle(int, double, int) override { calls.emplace_back("orient"); }
     void wait_orient_complete(int, double) override { calls.emplace_back("wait_orient"); }
-    void select_tool(int toolno) override { calls.push_back("select_tool " + std::to_string(toolno)); }
-    void change_tool() override { calls.emplace_back("change_tool"); }
-    void change_tool_number(int toolno) override { calls.push_back("tool_number " + std::to_string(toolno)); }
+    void select_tool(int toolno) override {
+        calls.push_back("select_tool " + std::to_string(toolno));
+        selected_tool = toolno;
+    }
+    void change_tool() override {
+        calls.emplace_back("change_tool");
+        tool_in_spindle = selected_tool;
+    }
+    void change_tool_number(int toolno) override {
+        calls.push_back("tool_number " + std::to_string(toolno));
+        tool_in_spindle = toolno;
+    }
     void set_tool_table_entry(int index, const ToolEntry &) override {
         calls.push_back("tool_entry " + std::to_string(index));
     }
@@ -142,6 +152,7 @@ class Machine {
             const Step step = interpreter->step();
             if (step == Step::SYNC) {
                 mill.state.position = frame.position();
+                mill.state.tool_in_spindle = record.tool_in_spindle;
                 interpreter->synch();
             } else if (step != Step::OK) {
                 return step;
