@@ -63,7 +63,9 @@ class MachineCanon {
     /// MoveSettings.
     virtual void planner_mode(bool isSmooth) { static_cast<void>(isSmooth); }
     virtual void set_spindle_mode(int spindle, double css_max_rpm) = 0;
-    virtual void set_spindle_speed(int spindle, double speed) = 0;
+    /// [rev/min]; with a css_max_rpm the surface speed in metres or feet a minute, each of
+    /// `surface_unit` machine units.
+    virtual void set_spindle_speed(int spindle, double speed, double surface_unit) = 0;
     virtual void spindle_on(int spindle, int direction, bool isWaiting) = 0;  ///< direction +1 cw, -1 ccw
     virtual void spindle_off(int spindle) = 0;
     virtual void orient_spindle(int spindle, double angle_deg, int mode) = 0;

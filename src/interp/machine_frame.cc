@@ -259,7 +259,9 @@ void MachineFrame::stop_speed_feed_synch() {
 }
 
 void MachineFrame::set_spindle_speed(int spindle, double speed) {
-    target_.set_spindle_speed(spindle, speed);
+    constexpr double MM_IN_METRE = 1000.0, INCHES_IN_FOOT = 12.0;
+    const double length = units_ == LengthUnits::INCH ? INCHES_IN_FOOT : MM_IN_METRE;
+    target_.set_spindle_speed(spindle, speed, length * length_factor());
 }
 
 void MachineFrame::set_tool_table_entry(int index, const ToolEntry &entry) {

@@ -2,13 +2,16 @@
 #include "interp/preview.hh"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
+#include "base/limits.hh"
 #include "base/text.hh"
 #include "interp/detail/frame.hh"
 #include "interp/machine_frame.hh"
 #include "interp/quiet_canon.hh"
+#include "interp/surface_speed.hh"
 
 namespace mw::interp {
 namespace {
@@ -132,10 +135,19 @@ class Preview::Impl final : public QuietMachineCanon, public World {
     }
     void dwell(double seconds) override { add_standing(PreviewKind::DWELL, 0, seconds); }
     void tool_offset(const Pose &offset) override { tool_offset_ = offset; }
-    void offsets(int, const Pose &, const Pose &, double rotation_deg) override {
+    void offsets(int, const Pose &g5x, const Pose &g92, double rotation_deg) override {
+        g5x_ = g5x;
+        g92_ = g92;
         rotation_deg_ = rotation_deg;
     }
-    void set_spindle_speed(int spindle, double speed) override {
+    void planner_mode(bool isSmooth) override { add_standing(PreviewKind::PLANNER, isSmooth ? 1 : 0, 0); }
+    void set_spindle_mode(int spindle, double css_max_rpm) override {
+        spindles_[static_cast<std::size_t>(spindle)].css_max_rpm = css_max_rpm;
+    }
+    void set_spindle_speed(int spindle, double speed, double surface_unit) override {
+        SpindleState &state = spindles_[static_cast<std::size_t>(spindle)];
+        state.speed = std::abs(speed);
+        state.surface_unit = surface_unit;
         add_standing(PreviewKind::SPINDLE_SPEED, spindle, speed);
     }
     void select_tool(int toolno) override { selected_ = toolno; }
@@ -259,8 +271,21 @@ class Preview::Impl final : public QuietMachineCanon, public World {
         mark_progress(event.settings, std::max(geom::norm(end - position_), arc_length));
         event.start = convert(position_);
         event.end = convert(end);
+        if (event.settings.feed_per_revolution > 0) {
+            event.spindle_rpm = spindle_rpm(event.settings.synch_spindle, 0.5 * (position_[0] + end[0]));
+        }
         position_ = end;
         add(event);
+    }
+    /// With the tool at machine X `x`.
+    double spindle_rpm(int spindle, double x) const {
+        const SpindleState &state = spindles_[static_cast<std::size_t>(spindle)];
+        if (!(state.css_max_rpm > 0)) {
+            return state.speed;
+        }
+        const double radius = std::abs(x - centre_line_x(g5x_, g92_, rotation_deg_, tool_offset_));
+        const double factor = surface_speed_factor(state.speed, state.surface_unit);
+        return factor < state.css_max_rpm * radius ? factor / radius : state.css_max_rpm;
     }
     /// How long a move takes at least, so that loops that move without end are found.
     void mark_progress(const MoveSettings &settings, double length) {
@@ -309,7 +334,11 @@ class Preview::Impl final : public QuietMachineCanon, public World {
     NameList files_, sections_;
     std::uint32_t section_ = sections_.number_of("");
     int tool_, selected_ = -1;
-    Pose position_, tool_offset_;
+    struct SpindleState {
+        double speed = 0, surface_unit = 0, css_max_rpm = 0;
+    };
+    std::array<SpindleState, MAX_SPINDLES> spindles_{};
+    Pose position_, tool_offset_, g5x_, g92_;
     double rotation_deg_ = 0;
     diag::Sink *sink_ = nullptr;
 };

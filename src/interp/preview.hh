@@ -25,6 +25,7 @@ enum class PreviewKind : std::uint8_t {
     TOOL_CHANGE,    ///< tool `number` is in the spindle from here on
     SPINDLE_SPEED,  ///< of spindle `number` [rev/min or surface speed]
     STOP,           ///< M0, M1 and M60: motion stands
+    PLANNER,        ///< G64 R: from here on planned with jerk limits when `number` is 1, without when 0
 };
 
 /// A move, or what stands between moves. Poses are in the coordinates that were asked for.
@@ -35,6 +36,8 @@ struct PreviewEvent {
     Pose centre, normal;       ///< of an arc, as in ArcMove
     double angle_rad = 0;
     MoveSettings settings;  ///< of a move [machine units]
+    /// Of the spindle that a move follows, half-way, as programmed (G96 counted). [rev/min]
+    double spindle_rpm = 0;
     double value = 0;
     int number = 0;
     int line = 0, sequence = 0, call_level = 0;  ///< as in BlockRef

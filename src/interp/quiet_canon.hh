@@ -86,7 +86,7 @@ class QuietMachineCanon : public MachineCanon {
     void tool_offset(const Pose &) override {}
     void offsets(int, const Pose &, const Pose &, double) override {}
     void set_spindle_mode(int, double) override {}
-    void set_spindle_speed(int, double) override {}
+    void set_spindle_speed(int, double, double) override {}
     void spindle_on(int, int, bool) override {}
     void spindle_off(int) override {}
     void orient_spindle(int, double, int) override {}

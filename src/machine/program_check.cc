@@ -43,20 +43,21 @@ class Checker {
         using Kind = interp::PreviewKind;
         switch (event.kind) {
         case Kind::RAPID: take_line(event.start, event.end, event.settings); break;
-        case Kind::FEED: take_line(event.start, event.end, timed(event.settings)); break;
+        case Kind::FEED: take_line(event.start, event.end, timed(event)); break;
         case Kind::ARC: take_arc(event); break;
         case Kind::PROBE:
             estimate_.stop();
-            take_line(event.start, event.end, timed(event.settings));
+            take_line(event.start, event.end, timed(event));
             estimate_.stop();
             break;
         case Kind::RIGID_TAP:
-            take_line(event.start, event.end, timed(event.settings));
-            take_line(event.end, event.start, timed(event.settings));
+            take_line(event.start, event.end, timed(event));
+            take_line(event.end, event.start, timed(event));
             break;
         case Kind::DWELL: estimate_.dwell(event.value); break;
         case Kind::TOOL_CHANGE: estimate_.set_tool(event.number); break;
-        case Kind::SPINDLE_SPEED: spindle_rpm_ = std::abs(event.value); break;
+        case Kind::SPINDLE_SPEED: break;
+        case Kind::PLANNER: estimate_.set_smooth(event.number != 0); break;
         case Kind::STOP: estimate_.stop(); break;
         }
     }
@@ -75,14 +76,14 @@ class Checker {
         piece.normal = event.normal;
         piece.angle_rad = event.angle_rad;
         check_arc(piece);
-        estimate_.arc({event.end, event.centre, event.normal, event.angle_rad, timed(event.settings)});
+        estimate_.arc({event.end, event.centre, event.normal, event.angle_rad, timed(event)});
         take_piece(piece, false);
     }
     /// Moves that follow the spindle are timed at its programmed speed.
-    interp::MoveSettings timed(const interp::MoveSettings &settings) const {
-        interp::MoveSettings out = settings;
-        if (settings.feed_per_revolution > 0 && spindle_rpm_ > 0) {
-            out.feed = settings.feed_per_revolution * spindle_rpm_ / 60.0;
+    static interp::MoveSettings timed(const interp::PreviewEvent &event) {
+        interp::MoveSettings out = event.settings;
+        if (out.feed_per_revolution > 0 && event.spindle_rpm > 0) {
+            out.feed = out.feed_per_revolution * event.spindle_rpm / 60.0;
         }
         return out;
     }
@@ -162,7 +163,6 @@ class Checker {
     const MachineConfig &machine_;
     diag::Sink &sink_;
     TimeEstimate estimate_;
-    double spindle_rpm_ = 0;
     const interp::Preview *preview_ = nullptr;
     const interp::PreviewEvent *event_ = nullptr;
     int reported_line_ = -1;

@@ -76,10 +76,18 @@ traj::Limits path_limits(const MachineConfig &machine) {
 }
 
 TimeEstimate::TimeEstimate(const MachineConfig &machine)
-    : machine_(machine), corner_scale_(setting(machine, motion::Parameter::TRAJ_CORNER_SCALE, 0)),
-      estimator_(std::make_unique<traj::Estimator>(path_limits(machine),
+    : machine_(machine), limits_(path_limits(machine)),
+      corner_scale_(setting(machine, motion::Parameter::TRAJ_CORNER_SCALE, 0)),
+      estimator_(std::make_unique<traj::Estimator>(limits_,
                                                    static_cast<double>(machine.servo_period_ns) * 1e-9,
-                                                   [this](const traj::MoveEstimate &move) { take(move); })) {}
+                                                   [this](const traj::MoveEstimate &move) { take(move); })) {
+    geom::Pose low, high;
+    for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
+        low[axis] = machine.axis_min[static_cast<std::size_t>(axis)];
+        high[axis] = machine.axis_max[static_cast<std::size_t>(axis)];
+    }
+    estimator_->set_machine(setting(machine, motion::Parameter::MAX_FEED_SCALE, 0), low, high);
+}
 
 void TimeEstimate::start(const geom::Pose &position) {
     position_ = position;
@@ -114,6 +122,10 @@ traj::MoveRequest TimeEstimate::request_of(const interp::MoveSettings &settings)
     r.tag.block = static_cast<std::uint32_t>(section_);
     r.isRapid = settings.kind == interp::FeedKind::RAPID || !(settings.feed > 0);
     r.tolerance = settings.tolerance;
+    r.isMergeAdded = setting(machine_, motion::Parameter::TRAJ_ADDED_TOLERANCES, 0) != 0;
+    const bool isOwnQ =
+        r.isMergeAdded || !(r.tolerance > 0) || settings.naivecam_tolerance < settings.tolerance;
+    r.merge_tolerance = isOwnQ ? settings.naivecam_tolerance : 0.0;
     r.corner_scale = settings.corner_scale > 0 ? settings.corner_scale : corner_scale_;
     r.join = settings.control == interp::MotionControl::EXACT_STOP   ? traj::Join::STOP
              : settings.control == interp::MotionControl::EXACT_PATH ? traj::Join::EXACT
@@ -147,6 +159,12 @@ void TimeEstimate::dwell(double seconds) {
 void TimeEstimate::stop() {
     estimator_->finish();
     estimator_->begin(position_);
+}
+
+void TimeEstimate::set_smooth(bool isSmooth) {
+    stop();
+    limits_.isJerkLimited = isSmooth && setting(machine_, motion::Parameter::TRAJ_MAX_JERK, 0) >= 1;
+    estimator_->set_limits(limits_);
 }
 
 void TimeEstimate::set_tool(int tool) {

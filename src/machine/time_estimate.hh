@@ -46,6 +46,8 @@ class TimeEstimate {
     /// Motion stands here: tool changes, stops, probes.
     void stop();
     void set_tool(int tool);
+    /// G64 R: with jerk limits from here on, or without.
+    void set_smooth(bool isSmooth);
     const TimeFigures &finish();
 
   private:
@@ -53,6 +55,7 @@ class TimeEstimate {
     traj::MoveRequest request_of(const interp::MoveSettings &settings);
 
     const MachineConfig &machine_;
+    traj::Limits limits_;
     double corner_scale_;  ///< of moves that name none
     TimeFigures figures_;
     int tool_ = 0;

@@ -36,7 +36,8 @@ struct SpindleModeItem {
 };
 struct SpindleSpeedItem {
     int spindle;
-    double speed;
+    double speed;         ///< [rev/min or surface units/min]
+    double surface_unit;  ///< [machine units]
 };
 struct SpindleOnItem {
     int spindle;

@@ -5,7 +5,6 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <numbers>
 
 namespace mw::task {
 namespace {
@@ -151,10 +150,14 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
                 return true;
             },
             [&](const OffsetsItem &offsets) {
+                offsets_ = offsets;
+                follow_offsets();
                 events_.offsets(offsets);
                 return true;
             },
             [&](const ToolOffsetItem &offset) {
+                tool_offset_ = offset;
+                follow_offsets();
                 events_.tool_offset(offset);
                 return true;
             },
@@ -289,8 +292,10 @@ void Sequencer::execute_output(const Item &item) {
                    },
                    [&](const SpindleSpeedItem &speed) {
                        SpindleState &state = spindles_[static_cast<std::size_t>(speed.spindle)];
-                       const bool isNew = state.speed != speed.speed;
+                       const bool isNew =
+                           state.speed != speed.speed || state.surface_unit != speed.surface_unit;
                        state.speed = speed.speed;
+                       state.surface_unit = speed.surface_unit;
                        if (isNew && state.direction != 0) {
                            send_spindle(speed.spindle);
                        }
@@ -328,43 +333,6 @@ void Sequencer::execute_output(const Item &item) {
                    [](const auto &) {},
                },
                item.body);
-}
-
-void Sequencer::send_spindle(int spindle) {
-    const SpindleState &state = spindles_[static_cast<std::size_t>(spindle)];
-    motion::SpindleOn on;
-    on.spindle = spindle;
-    on.css_max_rpm = state.css_max_rpm;
-    on.isWaitingForSpeed = state.isWaiting;
-    if (state.css_max_rpm > 0) {
-        // Constant surface speed: S is m/min (or ft/min); the controller divides by the radius.
-        on.css_factor = state.direction * state.speed * 1000.0 / (2.0 * std::numbers::pi);
-        on.speed_rpm = state.direction * state.css_max_rpm;
-    } else {
-        on.speed_rpm = state.direction * state.speed;
-    }
-    motion_.send(on);
-    isNextMoveWaitingForSpeed_ = state.isWaiting;
-}
-
-void Sequencer::command_spindle(int spindle, double signed_rpm, bool isWaiting) {
-    SpindleState &state = spindles_[static_cast<std::size_t>(spindle)];
-    state.css_max_rpm = 0;
-    state.direction = signed_rpm > 0 ? 1 : (signed_rpm < 0 ? -1 : 0);
-    state.isWaiting = isWaiting;
-    if (state.direction == 0) {
-        motion_.send(motion::SpindleOff{spindle});
-        return;
-    }
-    state.speed = std::fabs(signed_rpm);
-    send_spindle(spindle);
-}
-
-void Sequencer::stop_spindles() {
-    for (int i = 0; i < motion_.status().num_spindles; ++i) {
-        spindles_[static_cast<std::size_t>(i)].direction = 0;
-        motion_.send(motion::SpindleOff{i});
-    }
 }
 
 interp::ToolEntry Sequencer::tool_at(int index) const {

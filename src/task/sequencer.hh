@@ -88,6 +88,7 @@ class Sequencer {
     enum class Wait : std::uint8_t { NONE, DWELL, INPUT, TOOL, ORIENT, USER_CODE, SETTING };
     struct SpindleState {
         double speed = 0;
+        double surface_unit = 0;
         double css_max_rpm = 0;
         int direction = 0;
         bool isWaiting = false;
@@ -127,6 +128,8 @@ class Sequencer {
     motion::MoveTerms terms_of(const interp::MoveSettings &settings, motion::MotionType type,
                                const Item &item);
     void send_spindle(int spindle);
+    /// Tells spindles with constant surface speed where their centre line is now.
+    void follow_offsets();
 
     ItemQueue &queue_;
     MotionLink &motion_;
@@ -149,6 +152,9 @@ class Sequencer {
     int selected_index_ = -1;  ///< table entry prepared by T, -1: none
     int changing_index_ = -1;
     std::array<SpindleState, MAX_SPINDLES> spindles_{};
+    OffsetsItem offsets_{};
+    ToolOffsetItem tool_offset_{};
+    double centre_line_x_ = 0;  ///< machine X of the program's X0 [machine units]
     bool isNextMoveWaitingForSpeed_ = false;
     bool isStepping_ = false, isStepDone_ = false;
     bool hasFailed_ = false;  ///< nothing more is begun until abort()

@@ -46,7 +46,9 @@ class TaskCanon final : public interp::MachineCanon {
     void set_spindle_mode(int spindle, double css_max_rpm) override {
         add(SpindleModeItem{spindle, css_max_rpm});
     }
-    void set_spindle_speed(int spindle, double speed) override { add(SpindleSpeedItem{spindle, speed}); }
+    void set_spindle_speed(int spindle, double speed, double surface_unit) override {
+        add(SpindleSpeedItem{spindle, speed, surface_unit});
+    }
     void spindle_on(int spindle, int direction, bool isWaiting) override;
     void spindle_off(int spindle) override { add(SpindleOffItem{spindle}); }
     void orient_spindle(int spindle, double angle_deg, int mode) override;

@@ -28,6 +28,18 @@ Estimator::Estimator(const Limits &limits, double period_s, Listener listener)
     planner_->set_limits(limits);
 }
 
+void Estimator::set_limits(const Limits &limits) {
+    limits_ = limits;
+    planner_->set_limits(limits);
+}
+
+void Estimator::set_machine(double max_feed_scale, const Pose &low, const Pose &high) {
+    Scales scales;
+    scales.max_feed = std::max(1.0, max_feed_scale);
+    planner_->set_scales(scales);
+    planner_->set_room(low, high);
+}
+
 void Estimator::begin(const Pose &pose) {
     executor_->set_position(pose);
     executor_->step(++cycle_);

@@ -28,6 +28,10 @@ class Estimator {
     using Listener = std::function<void(const MoveEstimate &)>;
     Estimator(const Limits &limits, double period_s, Listener listener);
 
+    /// From the next begin() on.
+    void set_limits(const Limits &limits);
+    /// The highest feed override that the plan is made ready for, and the soft limits.
+    void set_machine(double max_feed_scale, const Pose &low, const Pose &high);
     /// The path begins or goes on at `pose` after whatever is not motion.
     void begin(const Pose &pose);
     const Pose &end() const { return planner_->end(); }

@@ -107,6 +107,24 @@ TEST_F(PreviewRun, adds_the_moves_of_the_machine_at_a_tool_change_I1) {
     EXPECT_DOUBLE_EQ(events[3].end.x(), 4.0);
 }
 
+TEST_F(PreviewRun, tells_how_fast_the_spindle_turns_that_a_move_follows_I1) {
+    ASSERT_EQ(
+        run("G21 G90 G10 L2 P1 X-5 G54\nG96 D1000 S31.41592653589793 M3\nG95 F0.1\nG0 X30\nG1 X10\nG1 X1\n"
+            "G97 S500\nG1 X20\nG94 G1 X30 F100\nM2\n"),
+        PreviewEnd::DONE);
+    std::vector<double> speeds;
+    for (const PreviewEvent &event : events) {
+        if (event.kind == PreviewKind::FEED) {
+            speeds.push_back(event.spindle_rpm);
+        }
+    }
+    ASSERT_EQ(speeds.size(), 4U);
+    EXPECT_NEAR(speeds[0], 5000.0 / 20.0, 1e-9);
+    EXPECT_NEAR(speeds[1], 5000.0 / 5.5, 1e-9);
+    EXPECT_EQ(speeds[2], 500);
+    EXPECT_EQ(speeds[3], 0);
+}
+
 TEST_F(PreviewRun, refuses_axes_that_the_machine_does_not_have_I3) {
     axis_mask = 7;
     EXPECT_EQ(run("G21\nG0 X1\nG0 X2 A10\nM2\n"), PreviewEnd::FAILED);

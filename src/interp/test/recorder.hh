@@ -34,7 +34,7 @@ class Recorder : public MachineCanon {
     void tool_offset(const Pose &) override { calls.emplace_back("tool_offset"); }
     void offsets(int, const Pose &, const Pose &, double) override {}
     void set_spindle_mode(int, double) override { calls.emplace_back("spindle_mode"); }
-    void set_spindle_speed(int, double) override { calls.emplace_back("spindle_speed"); }
+    void set_spindle_speed(int, double, double) override { calls.emplace_back("spindle_speed"); }
     void spindle_on(int, int direction, bool) override {
         calls.emplace_back(direction > 0 ? "spindle_cw" : "spindle_ccw");
     }

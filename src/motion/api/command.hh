@@ -111,10 +111,10 @@ struct SetTeleopVector {
 // ------------------------------------------------------------------------------
 struct SpindleOn {
     int spindle = 0;
-    double speed_rpm = 0;   ///< signed: > 0 clockwise
-    double css_factor = 0;  ///< machine units/min * 60/(2 pi); 0: constant rpm
-    double css_max_rpm = 0;
-    double css_x_offset = 0;
+    double speed_rpm = 0;     ///< signed: > 0 clockwise
+    double css_factor = 0;    ///< surface speed / (2 pi) [machine units/min]; 0: constant rpm
+    double css_max_rpm = 0;   ///< > 0 with a css_factor
+    double css_x_offset = 0;  ///< machine X of the axis of rotation [machine units]
     bool isWaitingForSpeed = true;
 };
 struct SpindleOff {
