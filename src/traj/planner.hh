@@ -139,6 +139,8 @@ class Planner {
         double dwell_s = 0;          ///< with jerk limits: how long it stands there at least
         std::uint64_t eased_in = 0;  ///< the replanning that made the piece slower by these factors
         double eased_speed = 1, eased_acceleration = 1;
+        /// What easing along the path has left of the acceleration, refused attempts counted as well.
+        double gentle = 1;
     };
     struct State {
         Sequence piece = 0;
@@ -229,12 +231,15 @@ class Planner {
     void try_sample(const Phase &phase, double t) noexcept;
     void push_sample(const LeaderSample &sample, Sequence piece) noexcept;
     bool isTrialSound() noexcept;
+    Pose along_bend(std::uint64_t tick) const noexcept;
     bool isLeaderSound() const noexcept;
     double trial_deviation(std::uint64_t tick) noexcept;
     double trial_tolerance() const noexcept;
     bool ease(const State &from) noexcept;
     void ease_piece(Sequence piece, double speed, double acceleration) noexcept;
     void take_back_easing() noexcept;
+    void take_back_gentleness() noexcept;
+    bool canBeGentler(Sequence low, Sequence high, double factor) const noexcept;
     void scale_piece(Sequence piece, double speed, double acceleration) noexcept;
     bool isCurved(Sequence piece) const noexcept;
     SpeedLimit limit_with_joints(const Piece &piece, const SpeedLimit &limit) const noexcept;
@@ -311,7 +316,14 @@ class Planner {
     std::uint64_t replan_ = 0;         ///< counts replanning
     bool isAfterDriven_ = false;       ///< the failed sample depends on what has been driven already
     double eased_excess_ = UNLIMITED;  ///< of the attempt before
-    double excess_ = 1;                ///< what the failed sample has over what is allowed
+    struct Gentleness {
+        Sequence low = 0, high = 0;  ///< pieces; 0: none
+        double factor = 1;
+    };
+    Gentleness gentle_;             ///< of the attempt before, along the path alone
+    std::uint64_t eased_tick_ = 0;  ///< where it failed
+    double along_share_ = 0;        ///< part of the failed swing that is acceleration along the path
+    double excess_ = 1;             ///< what the failed sample has over what is allowed
     /// Relative slack of what the trial compares, half of what checkers of the trajectory allow.
     static constexpr double SLACK = 1.0 + 5e-7;
     const JointMap *joint_map_ = nullptr;

@@ -19,6 +19,11 @@ constexpr double SLOWER = 0.9;
 constexpr double GENTLER = 0.8;
 /// An excess that less acceleration about a stop may cure.
 constexpr double MOST_GENTLE = 1.3;
+/// Less acceleration along the path cures an excess where that is what swings: from this part on, by how much
+/// more than that, and how much less it becomes at most in all.
+constexpr double ALONG_SHARE = 0.5, ALONG_MARGIN = 1.1, LEAST_ALONG = 0.8;
+/// What is left of an excess when easing has helped.
+constexpr double HELPED = 0.7;
 constexpr double ROUNDING = 1e-7;
 
 double ulp(double x) noexcept {
@@ -157,8 +162,17 @@ bool Planner::isLeaderSound() const noexcept {
     return true;
 }
 
+/// The acceleration along the path at a tick, as a vector.
+Pose Planner::along_bend(std::uint64_t tick) const noexcept {
+    const TrialSample &at = trial_[tick % HISTORY_CAPACITY];
+    const Pose step = at.leader.pose - trial_[(tick - 1) % HISTORY_CAPACITY].leader.pose;
+    const double length2 = geom::dot(step, step);
+    return length2 > 0 ? step * (geom::dot(at.bend, step) / length2) : Pose{};
+}
+
 bool Planner::isTrialSound() noexcept {
     const std::uint64_t n = trial_tick_;
+    along_share_ = 0;
     if (joint_map_ != nullptr && !areJointsSound()) {
         excess_ = 2;
         return false;
@@ -186,12 +200,14 @@ bool Planner::isTrialSound() noexcept {
             wanted_.jerk[static_cast<std::size_t>(i)] * span * (1.0 + ROUNDING) + 4.0 * ulp(at[i]);
         if (std::abs(swing[i]) > allowed) {
             excess_ = std::abs(swing[i]) / allowed;
+            along_share_ = (along_bend(n) - along_bend(n - filter_))[i] / swing[i];
             return false;
         }
     }
     const double xyz = wanted_.jerk[XYZ_NORM] * span * (1.0 + ROUNDING) + 8.0 * ulp(geom::norm_xyz(at));
     if (geom::norm_xyz(swing) > xyz) {
         excess_ = geom::norm_xyz(swing) / xyz;
+        along_share_ = geom::norm_xyz(along_bend(n) - along_bend(n - filter_)) / geom::norm_xyz(swing);
         return false;
     }
     const double tolerance = trial_tolerance();
@@ -287,6 +303,29 @@ void Planner::take_back_easing() noexcept {
     pass_backward(last_piece_, true);
 }
 
+/// No piece loses more than a part of its acceleration to `factor` and those before it.
+bool Planner::canBeGentler(Sequence low, Sequence high, double factor) const noexcept {
+    for (Sequence k = low; k <= high; ++k) {
+        if (!(piece_plan(k).gentle * factor >= LEAST_ALONG)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// The attempt before has made accelerations along the path less, and that was not what failed.
+void Planner::take_back_gentleness() noexcept {
+    if (gentle_.low == 0) {
+        return;
+    }
+    for (Sequence k = gentle_.low; k <= gentle_.high; ++k) {
+        ease_piece(k, 1.0, 1.0 / gentle_.factor);
+        piece_plan(k).gentle /= gentle_.factor;
+    }
+    pass_backward(std::min(gentle_.high + 1, last_piece_), true);
+    gentle_ = {};
+}
+
 /// What follows can still be kept from this state.
 bool Planner::isKept(const State &from) const noexcept {
     const Piece &p = store_.piece(from.piece);
@@ -330,9 +369,17 @@ bool Planner::ease(const State &from) noexcept {
         }
         return true;
     }
+    const bool hasHelped = failed_tick_ > eased_tick_ || excess_ - 1.0 < HELPED * (eased_excess_ - 1.0);
+    if (!hasHelped) {
+        take_back_gentleness();
+    }
+    const double along = 1.0 - ALONG_MARGIN * (excess_ - 1.0) / (along_share_ * excess_) - 1e-4;
+    const bool isAlong =
+        most_dwell <= 0 && along_share_ > ALONG_SHARE && hasHelped && canBeGentler(low, high, along);
     // Where slower curves alone make it no better, it is what leads to them.
-    const bool isEverything = !isAnyCurved || most_dwell > 0 || excess_ >= eased_excess_;
+    const bool isEverything = !isAnyCurved || most_dwell > 0 || isAlong || excess_ >= eased_excess_;
     eased_excess_ = excess_;
+    eased_tick_ = failed_tick_;
     const auto scale = [&](double speed, double acceleration) {
         for (Sequence k = low; k <= high; ++k) {
             if (isCurved(k) || isEverything) {
@@ -342,11 +389,17 @@ bool Planner::ease(const State &from) noexcept {
         }
         pass_backward(std::min(high + 1, last_piece_), true);
     };
-    const double slower = most_dwell > 0 ? 1.0 : std::clamp(0.99 / std::sqrt(excess_), SLOWER, 0.99);
-    const double gentler = std::clamp(0.98 / excess_, GENTLER, 0.98);
+    const double slower =
+        most_dwell > 0 || isAlong ? 1.0 : std::clamp(0.99 / std::sqrt(excess_), SLOWER, 0.99);
+    const double gentler = isAlong ? along : std::clamp(0.98 / excess_, GENTLER, 0.98);
     scale(slower, gentler);
+    gentle_ = isAlong ? Gentleness{low, high, gentler} : Gentleness{};
+    for (Sequence k = gentle_.low; k <= gentle_.high && k > 0; ++k) {
+        piece_plan(k).gentle *= gentler;
+    }
     if (from.v > 0 && !isKept(from)) {
         scale(1.0 / slower, 1.0 / gentler);
+        gentle_ = {};
         return false;
     }
     return true;

@@ -203,6 +203,8 @@ bool Planner::replan_filtered(const Snapshot &now, State from, bool isStop) noex
     isAfterDriven_ = false;
     isRefused_ = false;
     eased_excess_ = UNLIMITED;
+    eased_tick_ = 0;
+    gentle_ = {};
     for (int n = 0; n < ATTEMPTS; ++n) {
         plan_end_ = begin;
         planned_ = from;

@@ -347,6 +347,7 @@ void Planner::add_piece(const Piece &piece, const SpeedLimit &limit) noexcept {
     plan.v2_in = -1;
     plan.isStopBefore = isOpenStop_;
     plan.eased_in = 0;
+    plan.gentle = 1;
     plan.dwell_s = isOpenStop_ ? open_joint_.dwell_s : filter_s();
     last_piece_ = k;
     isAtEndOfPath_ = false;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // What jerk limits do to single moves, corners and arcs, and joining of lines.
+#include <algorithm>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -228,6 +229,46 @@ TEST(Filtered, RotaryAxesAloneHaveTheirJerkLimits_C13) {
     EXPECT_GE(filter_length(limits, Rig::T, 1e-9), 2U);
     limits.isJerkLimited = false;
     EXPECT_EQ(filter_length(limits, Rig::T, 0), 1U);
+}
+
+TEST(Filtered, TheFeedIsKeptWhereLinesAndArcsMeet_C13) {
+    constexpr double FEED = 17, R = 16;
+    Limits limits = jerk_limits();
+    limits.jerk.fill(10000);
+    limits.acceleration[XYZ_NORM] = A;
+    Rig rig{Pose{}};
+    rig.planner.set_limits(limits);
+    MoveRequest move = request(Join::BLEND, 0.025);
+    move.tag.requested_velocity = FEED;
+    rig.planner.begin(Pose{}, rig.executor.snapshot(), rig.planner.path_tolerance(move));
+    // Round a rectangle: along, and a quarter to the left, four times.
+    Pose from, centre = at(50, R), corner = at(50 + R, R);
+    Pose normal;
+    normal[2] = 1;
+    for (int side = 0; side < 4; ++side) {
+        Pose to = centre;
+        const int axis = side % 2;
+        to[1 - axis] = from[1 - axis];
+        rig.planner.add(make_line(from, to), move);
+        Primitive arc;
+        ASSERT_EQ(make_arc(to, corner, {centre, normal, std::numbers::pi / 2, false}, arc), ArcFault::NONE);
+        rig.planner.add(arc, move);
+        from = corner;
+        // The next side lies a quarter turn further.
+        const Pose turned_centre = at(centre[0], side == 0 ? 50 : R);
+        centre = side == 1 ? at(0, 50) : side == 2 ? at(0, R) : turned_centre;
+        corner = side == 0 ? at(50, 50 + R) : side == 1 ? at(-R, 50) : at(0, 0);
+    }
+    ASSERT_TRUE(rig.run(60));
+    std::vector<double> speeds;
+    for (std::size_t i = 1; i < rig.samples.size(); ++i) {
+        speeds.push_back(geom::norm(rig.samples[i] - rig.samples[i - 1]) / Rig::T);
+    }
+    const auto isFast = [](double v) { return v > 0.99 * FEED; };
+    const auto first = std::find_if(speeds.begin(), speeds.end(), isFast);
+    const auto last = std::find_if(speeds.rbegin(), speeds.rend(), isFast).base();
+    ASSERT_LT(first, last);
+    EXPECT_GT(*std::min_element(first, last), 0.95 * FEED);
 }
 
 TEST(Joining, NearlyStraightLinesBecomeOneWithinTheTolerance_C2) {
