@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 
+#include "base/limits.hh"
 #include "interp/detail/frame.hh"
 #include "interp/nurbs.hh"
 
@@ -106,7 +108,19 @@ void MachineFrame::set_feed_rate(double rate) {
     feed_ = rate * length_factor();
 }
 
+bool MachineFrame::hasSpindle(int spindle) {
+    if (spindle >= 0 && spindle < MAX_SPINDLES) {
+        return true;
+    }
+    target_.canon_error("There is no spindle " + std::to_string(spindle) + ": 0 to " +
+                        std::to_string(MAX_SPINDLES - 1));
+    return false;
+}
+
 void MachineFrame::set_feed_mode(int spindle, FeedMode mode) {
+    if (!hasSpindle(spindle)) {
+        return;
+    }
     feed_mode_ = mode;
     if (mode == FeedMode::UNITS_PER_REVOLUTION) {
         synch_spindle_ = spindle;
@@ -248,6 +262,9 @@ void MachineFrame::rigid_tap(double x, double y, double z, double scale) {
 }
 
 void MachineFrame::start_speed_feed_synch(int spindle, double feed_per_revolution, bool isVelocityMode) {
+    if (!hasSpindle(spindle)) {
+        return;
+    }
     synch_spindle_ = spindle;
     synch_feed_ = feed_per_revolution * length_factor();
     isVelocitySynched_ = isVelocityMode;
@@ -259,6 +276,9 @@ void MachineFrame::stop_speed_feed_synch() {
 }
 
 void MachineFrame::set_spindle_speed(int spindle, double speed) {
+    if (!hasSpindle(spindle)) {
+        return;
+    }
     constexpr double MM_IN_METRE = 1000.0, INCHES_IN_FOOT = 12.0;
     const double length = units_ == LengthUnits::INCH ? INCHES_IN_FOOT : MM_IN_METRE;
     target_.set_spindle_speed(spindle, speed, length * length_factor());

@@ -48,14 +48,20 @@ class MachineFrame final : public Canon {
     void start_speed_feed_synch(int spindle, double feed_per_revolution, bool isVelocityMode) override;
     void stop_speed_feed_synch() override;
     void set_spindle_mode(int spindle, double css_max_rpm) override {
-        target_.set_spindle_mode(spindle, css_max_rpm);
+        if (hasSpindle(spindle)) {
+            target_.set_spindle_mode(spindle, css_max_rpm);
+        }
     }
     void set_spindle_speed(int spindle, double speed) override;
     void start_spindle_clockwise(int spindle, bool isWaiting) override {
-        target_.spindle_on(spindle, 1, isWaiting);
+        if (hasSpindle(spindle)) {
+            target_.spindle_on(spindle, 1, isWaiting);
+        }
     }
     void start_spindle_counterclockwise(int spindle, bool isWaiting) override {
-        target_.spindle_on(spindle, -1, isWaiting);
+        if (hasSpindle(spindle)) {
+            target_.spindle_on(spindle, -1, isWaiting);
+        }
     }
     void stop_spindle_turning(int spindle) override { target_.spindle_off(spindle); }
     void orient_spindle(int spindle, double angle_deg, int mode) override {
@@ -106,6 +112,8 @@ class MachineFrame final : public Canon {
     void user_m_code(int code, double p, double q) override { target_.user_m_code(code, p, q); }
 
   private:
+    /// Scripts may name any: false with an error when there is none of this number.
+    bool hasSpindle(int spindle);
     double length_factor() const;  ///< program units to machine units
     Pose to_machine_units(const Pose &program) const;
     void announce_offsets();

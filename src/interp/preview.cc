@@ -148,7 +148,6 @@ class Preview::Impl final : public QuietMachineCanon, public World {
         SpindleState &state = spindles_[static_cast<std::size_t>(spindle)];
         state.speed = std::abs(speed);
         state.surface_unit = surface_unit;
-        add_standing(PreviewKind::SPINDLE_SPEED, spindle, speed);
     }
     void select_tool(int toolno) override { selected_ = toolno; }
     void change_tool() override {

@@ -20,12 +20,11 @@ enum class PreviewKind : std::uint8_t {
     FEED,
     ARC,
     PROBE,
-    RIGID_TAP,      ///< to `end` and back to `start`
-    DWELL,          ///< `value` [s]
-    TOOL_CHANGE,    ///< tool `number` is in the spindle from here on
-    SPINDLE_SPEED,  ///< of spindle `number` [rev/min or surface speed]
-    STOP,           ///< M0, M1 and M60: motion stands
-    PLANNER,        ///< G64 R: from here on planned with jerk limits when `number` is 1, without when 0
+    RIGID_TAP,    ///< to `end` and back to `start`
+    DWELL,        ///< `value` [s]
+    TOOL_CHANGE,  ///< tool `number` is in the spindle from here on
+    STOP,         ///< M0, M1 and M60: motion stands
+    PLANNER,      ///< G64 R: from here on planned with jerk limits when `number` is 1, without when 0
 };
 
 /// A move, or what stands between moves. Poses are in the coordinates that were asked for.

@@ -2,8 +2,6 @@
 // Constant surface speed (G96): the spindle turns faster the nearer the tool is to the program's X0.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "geom/pose.hh"

@@ -56,7 +56,6 @@ class Checker {
             break;
         case Kind::DWELL: estimate_.dwell(event.value); break;
         case Kind::TOOL_CHANGE: estimate_.set_tool(event.number); break;
-        case Kind::SPINDLE_SPEED: break;
         case Kind::PLANNER: estimate_.set_smooth(event.number != 0); break;
         case Kind::STOP: estimate_.stop(); break;
         }

@@ -78,6 +78,7 @@ traj::Limits path_limits(const MachineConfig &machine) {
 TimeEstimate::TimeEstimate(const MachineConfig &machine)
     : machine_(machine), limits_(path_limits(machine)),
       corner_scale_(setting(machine, motion::Parameter::TRAJ_CORNER_SCALE, 0)),
+      isMergeAdded_(setting(machine, motion::Parameter::TRAJ_ADDED_TOLERANCES, 0) != 0),
       estimator_(std::make_unique<traj::Estimator>(limits_,
                                                    static_cast<double>(machine.servo_period_ns) * 1e-9,
                                                    [this](const traj::MoveEstimate &move) { take(move); })) {
@@ -122,10 +123,8 @@ traj::MoveRequest TimeEstimate::request_of(const interp::MoveSettings &settings)
     r.tag.block = static_cast<std::uint32_t>(section_);
     r.isRapid = settings.kind == interp::FeedKind::RAPID || !(settings.feed > 0);
     r.tolerance = settings.tolerance;
-    r.isMergeAdded = setting(machine_, motion::Parameter::TRAJ_ADDED_TOLERANCES, 0) != 0;
-    const bool isOwnQ =
-        r.isMergeAdded || !(r.tolerance > 0) || settings.naivecam_tolerance < settings.tolerance;
-    r.merge_tolerance = isOwnQ ? settings.naivecam_tolerance : 0.0;
+    r.isMergeAdded = isMergeAdded_;
+    r.set_merge(settings.naivecam_tolerance);
     r.corner_scale = settings.corner_scale > 0 ? settings.corner_scale : corner_scale_;
     r.join = settings.control == interp::MotionControl::EXACT_STOP   ? traj::Join::STOP
              : settings.control == interp::MotionControl::EXACT_PATH ? traj::Join::EXACT

@@ -57,6 +57,7 @@ class TimeEstimate {
     const MachineConfig &machine_;
     traj::Limits limits_;
     double corner_scale_;  ///< of moves that name none
+    bool isMergeAdded_;
     TimeFigures figures_;
     int tool_ = 0;
     std::vector<std::string> files_;

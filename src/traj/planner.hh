@@ -27,7 +27,12 @@ struct MoveRequest {
     double corner_scale = 1;     ///< with jerk limits: part of the reachable speed in corners (G64 R)
     bool isMergeAdded = false;   ///< joining may take all of merge_tolerance, on top of `tolerance`
     double merge_tolerance = 0;  ///< lines may be joined to one that is no farther from their ends (G64 Q)
-    bool isRapid = false;        ///< as fast as the limits allow, scaled by Scales::rapid
+    /// The merge tolerance that `q` means; call with tolerance and isMergeAdded set.
+    void set_merge(double q) noexcept {
+        // A Q as large as P says no more than P does.
+        merge_tolerance = isMergeAdded || !(tolerance > 0) || q < tolerance ? q : 0.0;
+    }
+    bool isRapid = false;  ///< as fast as the limits allow, scaled by Scales::rapid
     bool isOverridable = true;
     bool isAngular = false;  ///< the feed length is over ABC: the operator's velocity ceiling does not apply
     double feed_per_revolution = 0;  ///< > 0: the speed follows a spindle

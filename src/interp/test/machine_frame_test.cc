@@ -74,5 +74,20 @@ TEST(MachineFrame, corner_too_narrow_for_the_tool_is_refused_I1) {
     EXPECT_NE(machine.error().find("gouging"), std::string::npos);
 }
 
+TEST(MachineFrameSpindles, aNumberThatNoSpindleHasIsRefusedWithAMessage_I1) {
+    test::Recorder record;
+    MachineFrame frame(record, LengthUnits::MM);
+    for (const int spindle : {-1, 8, 1000}) {
+        record.calls.clear();
+        frame.set_spindle_mode(spindle, 100);
+        frame.set_spindle_speed(spindle, 100);
+        frame.start_spindle_clockwise(spindle, true);
+        for (const std::string &call : record.calls) {
+            EXPECT_EQ(call, "error There is no spindle " + std::to_string(spindle) + ": 0 to 7");
+        }
+        EXPECT_EQ(record.calls.size(), 3U);
+    }
+}
+
 }  // namespace
 }  // namespace mw::interp

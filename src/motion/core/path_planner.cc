@@ -260,10 +260,7 @@ traj::MoveRequest PathPlanner::request_for(const PathCommand &c, const MoveTerms
     r.tolerance = terms.tolerance;
     r.corner_scale = terms.corner_scale > 0 ? terms.corner_scale : limits_.corner_scale;
     r.isMergeAdded = limits_.areTolerancesAdded;
-    // A Q as large as P says no more than P does.
-    const bool isOwnQ =
-        r.isMergeAdded || !(terms.tolerance > 0) || terms.naivecam_tolerance < terms.tolerance;
-    r.merge_tolerance = isOwnQ ? terms.naivecam_tolerance : 0.0;
+    r.set_merge(terms.naivecam_tolerance);
     const bool hasFeed = terms.feed > 0 || terms.feed_per_revolution > 0;
     r.isRapid = terms.type == MotionType::TRAVERSE || terms.type == MotionType::INDEX_ROTARY || !hasFeed;
     r.isOverridable = terms.isFeedOverridable;
