@@ -1,70 +1,98 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // millwright check: interprets a program for a machine and checks its moves, moving nothing.
-#include <unistd.h>
-
-#include <chrono>
 #include <cstdio>
-#include <functional>
 #include <optional>
 
 #include <fmt/format.h>
 
+#include "app/commands.hh"
+#include "app/options.hh"
+#include "app/plot.hh"
+#include "app/progress_line.hh"
+#include "app/time_report.hh"
+#include "base/stop_signals.hh"
 #include "base/text.hh"
-#include "machine/commands.hh"
 #include "machine/ini_parameters.hh"
 #include "machine/loaded_config.hh"
-#include "machine/options.hh"
 #include "machine/program_check.hh"
-#include "machine/time_report.hh"
 #include "machine/tool_file.hh"
 
-namespace mw::machine {
+namespace mw::app {
 namespace {
 
-void print_result(const std::string &program, const MachineConfig &machine, const CheckResult &result) {
+constexpr const char *USAGE = "usage: millwright check PROGRAM.ngc --ini MACHINE.ini [options]\n"
+                              "\n"
+                              "Interprets the program for the machine and checks its moves against the "
+                              "limits, moving nothing. Prints the\n"
+                              "extents in machine coordinates, and the time that the planner expects.\n"
+                              "\n"
+                              "  --plot FILE       draw the tool path, as .png or .svg\n"
+                              "  --statements N    a loop may take N statements, 0: any number\n"
+                              "\n"
+                              "exit status: 0 no error, 1 errors, 2 wrong usage\n";
+
+void print_result(const std::string &program, const machine::MachineConfig &machine,
+                  const machine::CheckResult &result) {
     const char *unit = machine.isMetric ? "mm" : "in";
     fmt::print("{}: {} blocks, {} moves, cutting {:.3f} {}, rapid {:.3f} {}\n", program, result.blocks,
                result.moves, result.cutting_length, unit, result.rapid_length, unit);
     for (int axis = 0; axis < MAX_AXES && result.hasMoves; ++axis) {
         const auto i = static_cast<std::size_t>(axis);
         if ((machine.axis_mask & (1U << axis)) != 0) {
-            fmt::print("  {} from {:.4f} to {:.4f} {}\n", geom::AXIS_LETTERS[axis], result.lowest[i],
-                       result.highest[i], geom::isAngular(axis) ? "deg" : unit);
+            fmt::print("  {} from {:.4f} to {:.4f} {} of the machine\n", geom::AXIS_LETTERS[axis],
+                       result.lowest[i], result.highest[i], geom::isAngular(axis) ? "deg" : unit);
         }
     }
 }
 
-/// How far a long check is, on a terminal: a line that is written over twice a second.
-class ProgressLine {
-  public:
-    bool operator()(const interp::PreviewProgress &now) {
-        constexpr std::chrono::milliseconds EVERY{500};
-        const auto time = std::chrono::steady_clock::now();
-        if (isTerminal_ && time - last_ >= EVERY && now.bytes_in_all > 0) {
-            last_ = time;
-            isShown_ = true;
-            fmt::print(stderr, "\r{:3.0f} % of the file, {} blocks ",
-                       100.0 * static_cast<double>(now.bytes) / static_cast<double>(now.bytes_in_all),
-                       now.blocks);
-        }
-        return true;
-    }
-    void clear() const {
-        if (isShown_) {
-            fmt::print(stderr, "\r{:60}\r", "");
-        }
-    }
-
-  private:
-    bool isTerminal_ = ::isatty(STDERR_FILENO) == 1;
-    bool isShown_ = false;
-    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+struct CheckWords {
+    std::string program, plot;
+    std::optional<std::int64_t> statements;
 };
+
+int check_loaded(const CheckWords &words, const machine::LoadedConfig &loaded, machine::ToolFile &tools,
+                 diag::Sink &sink) {
+    machine::IniParameters values(loaded.ini, nullptr);
+    ProgressLine progress;
+    machine::PathPoints points;
+    machine::CheckOptions check;
+    check.statements = words.statements;
+    check.points = words.plot.empty() ? nullptr : &points;
+    check.progress = [&progress](const interp::PreviewProgress &now) {
+        progress.show(now);
+        return stop_signal == 0;
+    };
+    const machine::CheckResult result =
+        machine::check_program(loaded.machine, words.program, tools, values, sink, check);
+    progress.clear();
+    if (result.isCancelled) {
+        sink.error("stopped by " + stop_signal_name());
+    }
+    if (!words.plot.empty() && result.hasMoves) {
+        const auto drawn = plot_path(points.all(), loaded.machine, words.program, words.plot);
+        if (!drawn.has_value()) {
+            sink.error(drawn.error());
+        }
+    }
+    if (sink.hasErrors()) {
+        fmt::print(stderr, "{}: {} error(s)\n", words.program, sink.count_errors());
+        return 1;
+    }
+    print_result(words.program, loaded.machine, result);
+    if (result.time.has_value()) {
+        print_times(*result.time);
+    }
+    return 0;
+}
 
 }  // namespace
 
 int command_check(const std::vector<std::string> &words) {
-    const auto options = parse_options(words, {{}, {"--ini", "--statements"}});
+    if (wantsHelp(words)) {
+        fmt::print("{}", USAGE);
+        return 0;
+    }
+    const auto options = parse_options(words, {{}, {"--ini", "--statements", "--plot"}});
     if (!options.has_value()) {
         fmt::print(stderr, "millwright check: {}\n", options.error().str());
         return 2;
@@ -81,29 +109,24 @@ int command_check(const std::vector<std::string> &words) {
                    bound);
         return 2;
     }
+    const std::string plot = options->value("--plot");
+    catch_stop_signals();
     diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", d.str()); });
-    const auto loaded = LoadedConfig::load(options->value("--ini"), sink);
+    const auto drawable = plot.empty() ? Result<>{} : check_picture(plot);
+    if (!drawable.has_value()) {
+        sink.error(drawable.error());
+        return 1;
+    }
+    const auto loaded = machine::LoadedConfig::load(options->value("--ini"), sink);
     if (loaded == nullptr) {
         return 1;
     }
-    auto tools = ToolFile::load(loaded->machine.tool_table_file);
+    auto tools = machine::ToolFile::load(loaded->machine.tool_table_file);
     if (!tools.has_value()) {
         sink.error(tools.error());
         return 1;
     }
-    const std::string &program = options->rest[0];
-    IniParameters values(loaded->ini, nullptr);
-    ProgressLine progress;
-    const CheckResult result =
-        check_program(loaded->machine, program, **tools, values, sink, {std::ref(progress), statements});
-    progress.clear();
-    if (sink.hasErrors()) {
-        fmt::print(stderr, "{}: {} error(s)\n", program, sink.count_errors());
-        return 1;
-    }
-    print_result(program, loaded->machine, result);
-    print_times(result.time);
-    return 0;
+    return check_loaded({options->rest[0], plot, statements}, *loaded, **tools, sink);
 }
 
-}  // namespace mw::machine
+}  // namespace mw::app

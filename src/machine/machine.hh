@@ -11,6 +11,7 @@
 #include "diag/sink.hh"
 #include "hal/core/host.hh"
 #include "machine/machine_config.hh"
+#include "machine/tool_changer.hh"
 #include "motion/api/channels.hh"
 #include "task/task.hh"
 
@@ -55,6 +56,8 @@ class Machine {
     virtual task::Task &task() = 0;
     virtual motion::Channels &channels() = 0;
     virtual hal::Hal &hal() = 0;
+    /// The person who changes tools by hand, where a HAL file asks for one.
+    virtual ManualToolChange &tool_change() = 0;
 };
 
 /// A failure whose message is empty has been told to the sink already.

@@ -36,6 +36,7 @@ class TaskSide final : private task::IoPort {
 
     task::Task &task() { return *task_; }
     motion::Channels &channels() { return *channels_; }
+    ManualToolChange &tool_change() { return tool_change_; }
 
   private:
     io::Inputs read() override { return io_pins_.read(); }

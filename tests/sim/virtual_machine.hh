@@ -14,9 +14,9 @@
 
 #include <gtest/gtest.h>
 
+#include "app/operator.hh"
 #include "machine/loaded_config.hh"
 #include "machine/machine.hh"
-#include "machine/operator.hh"
 
 namespace mw::machine {
 
@@ -44,7 +44,7 @@ class VirtualMachineTest : public testing::Test {
             make_virtual_machine({loaded_->ini, loaded_->reader, loaded_->machine, sink_}, MachineOptions{});
         ASSERT_TRUE(made.has_value()) << made.error().str();
         machine_ = std::move(*made);
-        Operator person(*machine_, loaded_->machine, sink_, 60.0);
+        app::Operator person(*machine_, loaded_->machine, sink_, {});
         ASSERT_TRUE(person.switch_on().has_value());
         ASSERT_TRUE(person.home_all().has_value());
         machine_->channels().isTracing.store(1);
