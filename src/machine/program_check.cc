@@ -270,6 +270,8 @@ CheckResult check_program(const MachineConfig &machine, const std::string &progr
     diag::Sink errors([&](const diag::Diagnostic &one) {
         if (check.unknown && hasScripts) {
             tell_unknown("Python");
+        } else if (source != nullptr) {
+            source->flush();  // findings come in the order of the program
         }
         sink.report(one);
     });

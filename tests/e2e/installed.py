@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """An installation in a folder of its own works from an empty environment: run in both clocks, halrun, halcompile, Python.
 
-usage: installed.py CMAKE BUILD_FOLDER
+usage: installed.py CMAKE BUILD_FOLDER SOURCE_FOLDER
 """
 import os
 import pathlib
@@ -30,7 +30,7 @@ PYTHON = 'import hal\nc = hal.component("probe")\nc.newpin("x", hal.HAL_FLOAT, h
 
 
 def main():
-    cmake, build = sys.argv[1:3]
+    cmake, build, source = sys.argv[1:4]
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
         prefix = folder / 'prefix'
@@ -62,6 +62,12 @@ def main():
         run('halcompile', ['halcompile', '--install', 'twice.comp'], '')
         run('halrun with the new component', ['halrun', 'twice.hal'], '42')
         run('Python', ['halrun', 'python.hal'], '4')
+        sourced = subprocess.run(['bash', '-c', f'. {source}/script/environment {prefix} && millwright --version && halrun -h && '
+                                  'complete -p millwright && python3 -c "import hal" && manpath 2>/dev/null'], env=env, cwd=home,
+                                 capture_output=True, text=True, check=False, timeout=60)
+        if sourced.returncode != 0 or 'complete -F' not in sourced.stdout:
+            failures.append('script/environment')
+            print(f'FAIL script/environment: status {sourced.returncode}\n{sourced.stdout}{sourced.stderr}')
         for page in ('share/man/man1/millwright.1', 'share/bash-completion/completions/millwright', 'share/doc/millwright/README.md',
                      'share/doc/millwright/gcode/motion.md'):
             if not (prefix / page).is_file():
