@@ -2,50 +2,68 @@
 // G70 (finishing), G71 and G72 (roughing along Z and along X) and their variants for pockets. The profile is
 // a subroutine of which only the moves count; it is read as a call, then cut as a whole.
 #include <cmath>
+#include <expected>
 
 #include <fmt/format.h>
 
 #include "interp/detail/executor.hh"
+#include "interp/detail/lathe_offset.hh"
 
 namespace mw::interp::detail {
 namespace {
 
 constexpr int Z = geom::AXIS_Z, X = geom::AXIS_X;
 
-/// From (Z, X) to the frame of a cut, and back.
-struct CutFrame {
-    bool isFacing = false;  ///< the cut runs along X
-    double along = 1, across = 1;
+/// How far an arc of a profile may go back before it counts as not monotonic: the arcs of rounded numbers
+/// that touch a shoulder do.
+constexpr double TOLERANCE_MM = 0.001, TOLERANCE_INCH = TOLERANCE_MM / 25.4;
 
-    Point to(Point p) const {
-        return isFacing ? Point{p.y * along, p.x * across} : Point{p.x * along, p.y * across};
-    }
-    Point from(Point p) const {
-        return isFacing ? Point{p.y * across, p.x * along} : Point{p.x * along, p.y * across};
-    }
-    int turn(int one) const { return (along * across > 0.0) != isFacing ? one : -one; }
+/// A profile in the frame of its cut.
+struct FramedProfile {
+    CutFrame frame;
+    Profile profile;
 };
 
-Profile in_frame(const Profile &profile, const CutFrame &frame) {
-    Profile out = profile;
-    for (ProfileSegment &segment : out) {
-        segment.start = frame.to(segment.start);
-        segment.end = frame.to(segment.end);
-        segment.centre = frame.to(segment.centre);
-        segment.turn = frame.turn(segment.turn);
+/// G70 follows what G71 or what G72 cuts, whichever the profile is for. The text after "The profile of Gxx "
+/// when it cannot be cut.
+std::expected<FramedProfile, std::string> framed_profile(const Profile &raw, int code, double tolerance) {
+    const bool isFinishing = code == 700;
+    FramedProfile framed;
+    framed.frame = frame_of(raw, code >= 720);
+    framed.profile = in_frame(raw, framed.frame);
+    if (isFinishing && !isMonotonic(framed.profile, tolerance)) {
+        framed.frame = frame_of(raw, true);
+        framed.profile = in_frame(raw, framed.frame);
     }
-    return out;
+    if (!isMonotonic(framed.profile, tolerance)) {
+        const char *axes = isFinishing ? "both Z and X" : (framed.frame.isFacing ? "X" : "Z");
+        return std::unexpected(fmt::format("is not monotonic: it goes back along {}", axes));
+    }
+    if (!round_corners(framed.profile) || !isMonotonic(framed.profile, tolerance)) {
+        return std::unexpected("has a corner that its fillet A or chamfer C does not fit");
+    }
+    straighten(framed.profile);
+    drop_short(framed.profile, tolerance / 10.0);
+    for (std::size_t i = 0; i < framed.profile.size(); ++i) {
+        framed.profile[i].source = static_cast<int>(i);
+    }
+    return framed;
 }
 
-/// The cut runs to where the profile ends, which is not deeper in the material than its beginning.
-CutFrame frame_of(const Profile &profile, bool isFacing) {
-    CutFrame frame{isFacing, 1, 1};
-    const Point begin = frame.to(profile.front().start), first = frame.to(profile.front().end),
-                last = frame.to(profile.back().end);
-    frame.along = last.x > first.x ? 1.0 : -1.0;
-    const bool isUp = last.y == first.y ? begin.y >= first.y : last.y > first.y;
-    frame.across = isUp ? 1.0 : -1.0;
-    return frame;
+bool isEndingAbove(const Profile &profile) {
+    return profile.back().end.y > profile.front().end.y;
+}
+
+/// From the end of what is cut across to the height of the start, at feed: the material may stand there.
+void add_way_out(Profile &cut) {
+    const Point begin = cut.front().start, end = cut.back().end;
+    if (end.y < begin.y) {
+        ProfileSegment up;
+        up.start = end;
+        up.end = {end.x, begin.y};
+        up.source = cut.back().source + 1;
+        cut.push_back(up);
+    }
 }
 
 }  // namespace
@@ -78,12 +96,15 @@ bool Executor::do_lathe_cycle(const Code &code, const BlockValues &values) {
     };
     const Check checks[] = {
         {state.plane != Plane::XZ, 'q', "needs the plane G18"},
-        {state.comp != CompSide::OFF, 'q', "cannot be used with cutter radius compensation on"},
+        {state.comp != CompSide::OFF && code.number != 700, 'q',
+         "cannot be used with cutter radius compensation on"},
         {values.isMachineCoordinates, 'q', "cannot be used with g53"},
         {values.has('@') || values.has('^'), 'q', "takes no polar words"},
         {state.feed_mode == FeedMode::INVERSE_TIME, 'q', "cannot be used with inverse time feed"},
         {state.feed == 0.0, 'q', "needs a feed: give F first"},
         {request.roughing.increment <= 0.0, 'i', "needs a cutting increment I above 0"},
+        {request.distance < 0.0, 'd', "needs a distance D of 0 or more"},
+        {request.end_distance < 0.0, 'e', "needs a last distance E of 0 or more"},
         {request.passes < 1 || request.passes > MAX_PASSES, 'p', "needs a number of passes P of 1 to 10000"},
     };
     for (const Check &check : checks) {
@@ -95,7 +116,6 @@ bool Executor::do_lathe_cycle(const Code &code, const BlockValues &values) {
         return false;
     }
     request.start = request.position = target(values);
-    request.motion = state.motion;
     lathe_ = std::move(request);
     outcome = Outcome::PROFILE;
     return true;
@@ -134,14 +154,20 @@ bool Executor::record_profile(BlockValues values) {
     }
     request.position = end;
     bool isDone = true;
+    ProfileSegment line;
+    line.start = {from[Z], from[X]};
+    line.end = {end[Z], end[X]};
+    const bool isFirst = request.profile.empty();
+    const bool isMoving = from[X] != end[X] || from[Z] != end[Z];
     if (request.motion >= 20) {
+        if (isFirst) {  // the contour begins where the cycle does
+            line.end = line.start;
+            request.profile.push_back(line);
+        }
         state.position = from;
         isDone = record_arc(values, end);
         state.position = present;
-    } else if (from[X] != end[X] || from[Z] != end[Z]) {
-        ProfileSegment line;
-        line.start = {from[Z], from[X]};
-        line.end = {end[Z], end[X]};
+    } else if (isFirst || isMoving) {  // the first move leads to the contour, however far that is
         request.profile.push_back(line);
     }
     return isDone && take_corner_word(values);
@@ -197,77 +223,82 @@ bool Executor::finish_lathe_cycle() {
     return run_lathe_cycle(request);
 }
 
+/// A move of the cycle, compensated when G41 or G42 is on.
+bool Executor::send_profile_move(const ProfileMove &move, const CutFrame &frame) {
+    Pose end = state.position;
+    const Point machine = frame.from(move.end), centre = frame.from(move.centre);
+    end[Z] = machine.x;
+    end[X] = machine.y;
+    const bool isCompensated = state.comp != CompSide::OFF;
+    if (move.isArc) {
+        const int rotation = frame.turn(move.turn);
+        if (isCompensated) {
+            return comp_arc({end, centre.x, centre.y, rotation});
+        }
+        canon.arc_feed({end[Z], end[X], centre.x, centre.y, rotation, end[geom::AXIS_Y], end});
+    } else if (isCompensated) {
+        return comp_straight(move.isRapid, end);
+    } else {
+        move.isRapid ? canon.straight_traverse(end) : canon.straight_feed(end);
+    }
+    state.position = end;
+    return true;
+}
+
 bool Executor::run_lathe_cycle(const LatheRequest &request) {
     const std::string name = code_name(*find_code('g', request.code));
     const bool isFinishing = request.code == 700;
-    state.position = request.start;
-    canon.straight_traverse(state.position);
     state.motion = 10;
     state.cycle.isRunning = state.isCompExit = false;
-    Profile raw = request.profile;
-    if (raw.size() < 2) {  // no more than the way to its beginning
+    const auto rapid = [](Point to) { return ProfileMove{true, false, to, {}, 1, -1}; };
+    if (!send_profile_move(rapid({request.start[Z], request.start[X]}), {})) {
+        return false;
+    }
+    if (request.profile.size() < 2) {  // no more than the way to its beginning
         return true;
     }
-    CutFrame frame = frame_of(raw, request.code >= 720);
-    Profile profile = in_frame(raw, frame);
-    if (isFinishing && !isMonotonic(profile)) {
-        frame = frame_of(raw, true);
-        profile = in_frame(raw, frame);
+    const double tolerance = state.units == LengthUnits::MM ? TOLERANCE_MM : TOLERANCE_INCH;
+    std::expected<FramedProfile, std::string> framed =
+        framed_profile(request.profile, request.code, tolerance);
+    if (!framed) {
+        return fault.set(fmt::format("The profile of {} {}", name, framed.error()));
     }
-    if (!isMonotonic(profile)) {
-        return fault.set(fmt::format("The profile of {} is not monotonic: it goes back along {}", name,
-                                     isFinishing ? "both Z and X" : (frame.isFacing ? "X" : "Z")));
+    const bool isSideNeeded = !isFinishing || request.distance > 0.0 || request.end_distance > 0.0;
+    if (isSideNeeded && !framed->frame.isSideClear) {
+        return fault.set(
+            fmt::format("The profile of {} goes to both sides of the cycle's start, which has its "
+                        "{}: start clear of it, on the side without material",
+                        name, framed->frame.isFacing ? "Z" : "X"));
     }
-    if (!round_corners(profile) || !isMonotonic(profile)) {
-        return fault.set(fmt::format("A fillet A or chamfer C of the profile of {} does not fit", name));
-    }
-    const auto go = [&](Point at, Pose &pose) {
-        const Point machine = frame.from(at);
-        pose[Z] = machine.x;
-        pose[X] = machine.y;
-    };
-    ProfileSegment &entry = profile.front();
+    ProfileSegment &entry = framed->profile.front();
     entry.start.x = std::fmin(entry.start.x, entry.end.x);
-    const Point begin = entry.start, first = entry.end;
-    go(begin, state.position);
-    canon.straight_traverse(state.position);
+    const ProfileMove to_begin = rapid(entry.start);
+    if (!send_profile_move(to_begin, framed->frame)) {
+        return false;
+    }
     for (int pass = request.passes - 1; pass >= 0; --pass) {
-        const double distance =
-            isFinishing
-                ? request.end_distance + (request.distance - request.end_distance) * pass / request.passes
-                : request.distance;
-        Profile cut = profile;
-        const double by = begin.y < first.y ? -distance : distance;  // towards the start
-        if (!offset_profile(cut, by)) {
-            return fault.set(
-                fmt::format("Nothing is left of the profile of {} at the distance {}", name, by));
+        const double ahead = (request.distance - request.end_distance) * pass / request.passes;
+        const bool isLeavingCut = !isFinishing || pass > 0;
+        Profile cut = framed->profile;
+        if (isLeavingCut && !isEndingAbove(cut)) {  // a profile without a shoulder ends at one
+            add_way_out(cut);
         }
-        if (!isFinishing && cut.back().end.y < begin.y) {
-            ProfileSegment up;  // what is cut lies below the level of the start
-            up.start = cut.back().end;
-            up.end = {up.start.x, begin.y};
-            cut.push_back(up);
+        cut = offset_profile(cut, isFinishing ? request.end_distance + ahead : request.distance);
+        if (isLeavingCut) {
+            add_way_out(cut);
         }
         const std::optional<std::vector<ProfileMove>> moves =
             isFinishing ? finish_moves(cut) : rough_moves(cut, request.roughing);
         if (!moves) {
             return fault.set(fmt::format("{} would make more than a million moves: is I too small?", name));
         }
-        if (pass + 1 < request.passes) {
-            go(begin, state.position);
-            canon.straight_traverse(state.position);
+        if (pass + 1 < request.passes && !send_profile_move(to_begin, framed->frame)) {
+            return false;
         }
         for (const ProfileMove &move : *moves) {
-            Pose end = state.position;
-            go(move.end, end);
-            const Point centre = frame.from(move.centre);
-            if (move.isArc) {
-                canon.arc_feed(
-                    {end[Z], end[X], centre.x, centre.y, frame.turn(move.turn), end[geom::AXIS_Y], end});
-            } else {
-                move.isRapid ? canon.straight_traverse(end) : canon.straight_feed(end);
+            if (!send_profile_move(move, framed->frame)) {
+                return false;
             }
-            state.position = end;
         }
     }
     return true;

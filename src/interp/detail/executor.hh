@@ -10,7 +10,7 @@
 #include "interp/detail/canon_queue.hh"
 #include "interp/detail/evaluator.hh"
 #include "interp/detail/frame.hh"
-#include "interp/detail/lathe_profile.hh"
+#include "interp/detail/lathe_layers.hh"
 #include "interp/detail/program.hh"
 #include "interp/detail/remap.hh"
 #include "interp/detail/state.hh"
@@ -312,6 +312,7 @@ class Executor : public BuiltIns {
     bool record_arc(const BlockValues &values, const Pose &from);
     bool take_corner_word(const BlockValues &values);
     bool run_lathe_cycle(const LatheRequest &request);
+    bool send_profile_move(const ProfileMove &move, const CutFrame &frame);
     bool check_thread_cycle(const BlockValues &values, ThreadPlan &plan);
     void thread_pass(const ThreadPlan &plan, double depth);
     Point comp_normal(Point direction) const;

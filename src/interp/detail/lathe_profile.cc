@@ -4,33 +4,10 @@
 #include <algorithm>
 #include <numbers>
 
-#include "interp/detail/plane_geometry.hh"
-
 namespace mw::interp::detail {
 namespace {
 
 constexpr double TINY = 1e-9;
-constexpr std::size_t MOST_MOVES = 1000000;  // of one cycle
-
-double radius_of(const ProfileSegment &arc) {
-    return distance(arc.centre, arc.end);
-}
-
-/// The direction of travel at `at`, which lies on the segment.
-Point direction(const ProfileSegment &segment, Point at) {
-    if (!segment.isArc) {
-        return unit(segment.start, segment.end);
-    }
-    const Point out = unit(segment.centre, at);
-    return segment.turn > 0 ? Point{-out.y, out.x} : Point{out.y, -out.x};
-}
-
-/// How far an arc turns from `from` to `to`, 0 to a full turn [rad].
-double sweep(const ProfileSegment &arc, Point from, Point to) {
-    const Point a{from.x - arc.centre.x, from.y - arc.centre.y}, b{to.x - arc.centre.x, to.y - arc.centre.y};
-    const double angle = std::atan2(cross(a, b), dot(a, b)) * arc.turn;
-    return angle < -TINY ? angle + 2.0 * std::numbers::pi : std::fmax(angle, 0.0);
-}
 
 bool isOn(const ProfileSegment &segment, Point point) {
     if (!segment.isArc) {
@@ -42,37 +19,6 @@ bool isOn(const ProfileSegment &segment, Point point) {
     }
     return distance(segment.start, point) < TINY ||
            sweep(segment, segment.start, point) < sweep(segment, segment.start, segment.end) + TINY;
-}
-
-/// Crossings of the whole lines or circles that two segments lie on.
-Crossings crossings(const ProfileSegment &a, const ProfileSegment &b) {
-    if (a.isArc && b.isArc) {
-        return cross_circles(a.centre, radius_of(a), b.centre, radius_of(b));
-    }
-    if (a.isArc || b.isArc) {
-        const ProfileSegment &arc = a.isArc ? a : b, &line = a.isArc ? b : a;
-        return cross_line_circle(line.start, unit(line.start, line.end), arc.centre, radius_of(arc));
-    }
-    const Point da = unit(a.start, a.end), db = unit(b.start, b.end);
-    const double sine = cross(da, db);
-    if (std::fabs(sine) < SAME_POINT) {
-        return {};
-    }
-    const Point gap{b.start.x - a.start.x, b.start.y - a.start.y};
-    const Point point = sum(a.start, da, cross(gap, db) / sine);
-    return {1, {point, point}};
-}
-
-/// The segment moved to its left by `by`. None when an arc vanishes.
-std::optional<ProfileSegment> moved(const ProfileSegment &segment, double by) {
-    ProfileSegment out = segment;
-    const auto aside = [by](Point point, Point along) { return sum(point, {-along.y, along.x}, by); };
-    if (segment.isArc && radius_of(segment) - by * segment.turn < TINY) {
-        return std::nullopt;
-    }
-    out.start = aside(segment.start, direction(segment, segment.start));
-    out.end = aside(segment.end, direction(segment, segment.end));
-    return out;
 }
 
 /// The crossing of both segments that lies next to `corner`.
@@ -87,48 +33,6 @@ std::optional<Point> common_point(const ProfileSegment &a, const ProfileSegment 
         }
     }
     return best;
-}
-
-/// Appends `next` where it crosses what is there; what lies behind the crossing goes.
-void append_cut(Profile &profile, ProfileSegment next, Point corner) {
-    while (!profile.empty()) {
-        ProfileSegment &last = profile.back();
-        if (distance(last.end, next.start) < TINY) {
-            break;
-        }
-        if (const std::optional<Point> cut = common_point(last, next, corner)) {
-            last.end = next.start = *cut;
-            break;
-        }
-        profile.pop_back();
-    }
-    profile.push_back(next);
-}
-
-/// What the offset path needs at the corner between two segments: an arc around it when it is convex, no more
-/// than a longer way to the common point when it is nearly straight.
-void join(Profile &out, const ProfileSegment &before, const ProfileSegment &segment, double by,
-          std::optional<ProfileSegment> &next) {
-    const Point corner = segment.start;
-    const Point from = direction(before, corner), to = direction(segment, corner);
-    constexpr double STRAIGHT = 1e-9, SHORTEST_ARC = 0.01;
-    if (cross(from, to) * by > -STRAIGHT) {
-        return;
-    }
-    const bool isNearlyStraight = std::fabs(by) * distance(from, to) < SHORTEST_ARC && dot(from, to) > 0.0;
-    if (isNearlyStraight && next && !out.empty() && !before.isArc && !segment.isArc) {
-        if (const Crossings found = crossings(out.back(), *next); found.count > 0) {
-            out.back().end = next->start = found.points[0];
-        }
-        return;
-    }
-    ProfileSegment around;
-    around.isArc = true;
-    around.centre = corner;
-    around.turn = by > 0.0 ? -1 : 1;
-    around.start = sum(corner, {-from.y, from.x}, by);
-    around.end = sum(corner, {-to.y, to.x}, by);
-    append_cut(out, around, corner);
 }
 
 /// The fillet between a segment and the next, which it shortens. False when it does not fit.
@@ -164,11 +68,106 @@ bool make_fillet(ProfileSegment &a, ProfileSegment &b, ProfileSegment &fillet) {
     return true;
 }
 
-bool isDescending(const ProfileSegment &segment) {
-    return segment.end.y < segment.start.y - TINY;
+/// How far an arc goes back along x at one of its ends: 0 for most.
+double setback(const ProfileSegment &arc, Point at) {
+    return direction(arc, at).x < 0.0 ? radius_of(arc) - std::fabs(at.x - arc.centre.x) : 0.0;
 }
 
-/// Arcs cut at their highest or lowest point: every piece only rises or only falls.
+}  // namespace
+
+Profile in_frame(const Profile &profile, const CutFrame &frame) {
+    Profile out = profile;
+    for (ProfileSegment &segment : out) {
+        segment.start = frame.to(segment.start);
+        segment.end = frame.to(segment.end);
+        segment.centre = frame.to(segment.centre);
+        segment.turn = frame.turn(segment.turn);
+    }
+    return out;
+}
+
+CutFrame frame_of(const Profile &profile, bool isFacing) {
+    CutFrame frame{.isFacing = isFacing};
+    const Point begin = frame.to(profile.front().start), first = frame.to(profile.front().end),
+                last = frame.to(profile.back().end);
+    const double way = std::fabs(last.x - first.x) > TINY ? last.x - first.x : first.x - begin.x;
+    frame.along = way > 0.0 ? 1.0 : -1.0;
+    if (std::fabs(begin.y - first.y) > TINY) {
+        frame.across = begin.y > first.y ? 1.0 : -1.0;
+        return frame;
+    }
+    CutFrame mirrored = frame;
+    mirrored.across = -1.0;
+    const auto isBelowStart = [&](const CutFrame &one) {
+        return std::ranges::all_of(in_frame({profile.begin() + 1, profile.end()}, one),
+                                   [&](const ProfileSegment &segment) {
+                                       return top_of(segment) <= one.to(profile.front().start).y + TINY;
+                                   });
+    };
+    if (isBelowStart(frame)) {
+        return frame;
+    }
+    mirrored.isSideClear = isBelowStart(mirrored);
+    return mirrored;
+}
+
+double radius_of(const ProfileSegment &arc) {
+    return distance(arc.centre, arc.start);
+}
+
+Point direction(const ProfileSegment &segment, Point at) {
+    if (!segment.isArc) {
+        return unit(segment.start, segment.end);
+    }
+    const Point out = unit(segment.centre, at);
+    return segment.turn > 0 ? Point{-out.y, out.x} : Point{out.y, -out.x};
+}
+
+double sweep(const ProfileSegment &arc, Point from, Point to) {
+    const Point a{from.x - arc.centre.x, from.y - arc.centre.y}, b{to.x - arc.centre.x, to.y - arc.centre.y};
+    const double angle = std::atan2(cross(a, b), dot(a, b)) * arc.turn;
+    return angle < -TINY ? angle + 2.0 * std::numbers::pi : std::fmax(angle, 0.0);
+}
+
+Crossings crossings(const ProfileSegment &a, const ProfileSegment &b) {
+    // The ends of programmed arcs are rounded: the wider circle reaches a neighbour that touches the arc.
+    const auto radius = [](const ProfileSegment &arc) {
+        return std::fmax(radius_of(arc), distance(arc.centre, arc.end));
+    };
+    if (a.isArc && b.isArc) {
+        return cross_circles(a.centre, radius(a), b.centre, radius(b));
+    }
+    if (a.isArc || b.isArc) {
+        const ProfileSegment &arc = a.isArc ? a : b, &line = a.isArc ? b : a;
+        return cross_line_circle(line.start, unit(line.start, line.end), arc.centre, radius(arc));
+    }
+    const Point da = unit(a.start, a.end), db = unit(b.start, b.end);
+    const double sine = cross(da, db);
+    if (std::fabs(sine) < SAME_POINT) {
+        return {};
+    }
+    const Point gap{b.start.x - a.start.x, b.start.y - a.start.y};
+    const Point point = sum(a.start, da, cross(gap, db) / sine);
+    return {1, {point, point}};
+}
+
+std::optional<ProfileSegment> moved(const ProfileSegment &segment, double by) {
+    ProfileSegment out = segment;
+    if (!segment.isArc) {
+        const Point along = unit(segment.start, segment.end), left{-along.y, along.x};
+        out.start = sum(segment.start, left, by);
+        out.end = sum(segment.end, left, by);
+        return out;
+    }
+    const double inwards = by * segment.turn;
+    if (std::fmin(radius_of(segment), distance(segment.centre, segment.end)) - inwards < TINY) {
+        return std::nullopt;
+    }
+    out.start = sum(segment.start, unit(segment.centre, segment.start), -inwards);
+    out.end = sum(segment.end, unit(segment.centre, segment.end), -inwards);
+    return out;
+}
+
 Profile split_arcs(const Profile &profile) {
     Profile out;
     for (const ProfileSegment &segment : profile) {
@@ -186,175 +185,23 @@ Profile split_arcs(const Profile &profile) {
     return out;
 }
 
-/// Where a segment without extremes is at height `y`, which lies between its ends.
-Point at_height(const ProfileSegment &segment, double y) {
-    if (std::fabs(y - segment.start.y) < TINY || std::fabs(y - segment.end.y) < TINY) {
-        return std::fabs(y - segment.start.y) < TINY ? segment.start : segment.end;
-    }
-    if (segment.isArc) {
-        const double rise = y - segment.centre.y, radius = radius_of(segment);
-        const double half = std::sqrt(std::fmax(0.0, radius * radius - rise * rise));
-        const double middle = (segment.start.x + segment.end.x) / 2.0;
-        return {segment.centre.x + (middle < segment.centre.x ? -half : half), y};
-    }
-    const double span = segment.end.y - segment.start.y;
-    const double part = std::fabs(span) < TINY ? 1.0 : (y - segment.start.y) / span;
-    return {segment.start.x + part * (segment.end.x - segment.start.x), y};
+bool isDescending(const ProfileSegment &segment) {
+    return segment.end.y < segment.start.y - TINY;
 }
 
-/// Cuts a profile layer by layer.
-class Rougher {
-  public:
-    Rougher(const Profile &profile, const RoughingPlan &plan) : profile_(profile), plan_(plan) {}
-    std::optional<std::vector<ProfileMove>> run();
-
-  private:
-    struct Crossing {
-        std::size_t index;
-        Point point;
-    };
-
-    void move_to(const ProfileSegment &segment, Point end, bool isRapid);
-    std::optional<Crossing> rise_through(std::size_t after, double level) const;
-    void cut(Point from, Point to, bool isRapid);
-    void descend(std::size_t index);
-    void rise(const ProfileSegment &segment);
-    void follow_envelope(std::size_t first);
-
-    const Profile &profile_;
-    const RoughingPlan &plan_;
-    std::vector<ProfileMove> moves_;
-    double level_ = 0, highest_ = 0;  ///< of the layers
-    double rim_ = 0;                  ///< of the pocket that it is in
-    bool isPastBeginning_ = false;    ///< the first descent is over: what goes down from here on are pockets
-    bool isInPocket_ = false, isTooLong_ = false;
-};
-
-void Rougher::move_to(const ProfileSegment &segment, Point end, bool isRapid) {
-    moves_.push_back({isRapid, segment.isArc && !isRapid, end, segment.centre, segment.turn});
+double top_of(const ProfileSegment &segment) {
+    const double ends = std::fmax(segment.start.y, segment.end.y);
+    const bool isOverCentre = segment.isArc && segment.turn < 0 && segment.start.x < segment.centre.x &&
+                              segment.end.x > segment.centre.x;
+    return isOverCentre ? std::fmax(ends, segment.centre.y + radius_of(segment)) : ends;
 }
-
-/// The next place at which the profile comes up through `level`.
-std::optional<Rougher::Crossing> Rougher::rise_through(std::size_t after, double level) const {
-    for (std::size_t i = after + 1; i < profile_.size(); ++i) {
-        const ProfileSegment &segment = profile_[i];
-        if (segment.start.y < level - TINY && segment.end.y >= level - TINY) {
-            return Crossing{i, at_height(segment, level)};
-        }
-    }
-    return std::nullopt;
-}
-
-/// Across at one level, aside and back to where it began.
-void Rougher::cut(Point from, Point to, bool isRapid) {
-    const double half = std::fabs(to.x - from.x) / 2.0;
-    const double away = plan_.retract < 0.0 || plan_.retract > half ? half : plan_.retract;
-    const double forwards = to.x < from.x ? -1.0 : 1.0;
-    moves_.push_back({false, false, to, {}, 1});
-    moves_.push_back({true, false, {to.x - away * forwards, to.y + away}, {}, 1});
-    moves_.push_back({true, false, {from.x + away * forwards, from.y + away}, {}, 1});
-    moves_.push_back({isRapid, false, from, {}, 1});
-}
-
-void Rougher::descend(std::size_t index) {
-    const ProfileSegment &segment = profile_[index];
-    const bool isEntry = index == 0;
-    bool isCut = false;
-    const bool isForPocketsOnly = plan_.pockets == RoughingPlan::Pockets::ONLY;
-    if (isForPocketsOnly && !isPastBeginning_) {  // the other cycle has cut what lies before the first pocket
-        move_to(segment, segment.end, false);
-        return;
-    }
-    if (isForPocketsOnly && !isInPocket_) {
-        level_ = highest_ = rim_ = segment.start.y;
-        isInPocket_ = true;
-    }
-    while (!isTooLong_ && level_ <= segment.start.y + TINY && level_ > segment.end.y + TINY) {
-        const std::optional<Crossing> other = rise_through(index, level_);
-        if (!other) {
-            break;
-        }
-        const Point from = at_height(segment, level_);
-        const bool isThere = !moves_.empty() && distance(moves_.back().end, from) < TINY;
-        if (!isThere || isEntry) {
-            move_to(segment, from, isEntry);
-        }
-        if (std::fabs(other->point.x - from.x) > TINY) {
-            cut(from, other->point, isEntry);
-        }
-        isTooLong_ = isTooLong_ || moves_.size() > MOST_MOVES;
-        level_ -= plan_.increment;
-        isCut = true;
-    }
-    move_to(segment, segment.end, isEntry && isCut);
-}
-
-void Rougher::rise(const ProfileSegment &segment) {
-    move_to(segment, segment.end, false);
-    isPastBeginning_ = true;
-    const double steps = std::floor((segment.end.y - level_ + TINY) / plan_.increment);
-    level_ = std::fmin(highest_, level_ + std::fmax(0.0, steps) * plan_.increment);
-    isInPocket_ = isInPocket_ && segment.end.y < rim_ - TINY;
-}
-
-/// G71.1: straight over the pockets.
-void Rougher::follow_envelope(std::size_t first) {
-    Point at = profile_[first].start;
-    bool isNew = true;
-    for (std::size_t i = first; i < profile_.size();) {
-        ProfileSegment segment = profile_[i];
-        segment.start = at;
-        const bool isVisited = plan_.isVisitingStarts || i == first || i + 1 == profile_.size() ||
-                               (moves_.size() > 0 && moves_.back().isArc);
-        if (isNew && isVisited) {
-            moves_.push_back({false, false, at, {}, 1});
-        }
-        const std::optional<Crossing> other =
-            isDescending(segment) ? rise_through(i, at.y) : std::optional<Crossing>();
-        at = other ? other->point : segment.end;
-        if (other) {
-            moves_.push_back({false, false, at, {}, 1});
-        } else {
-            move_to(segment, at, false);
-        }
-        isNew = !other || distance(at, profile_[other->index].end) < TINY;
-        i = other ? other->index + (isNew ? 1 : 0) : i + 1;
-    }
-}
-
-std::optional<std::vector<ProfileMove>> Rougher::run() {
-    using Pockets = RoughingPlan::Pockets;
-    const bool isFalling = isDescending(profile_.front());
-    std::size_t first = 0;
-    level_ = highest_ = profile_.front().start.y;
-    if (plan_.pockets == Pockets::ONLY && isFalling) {
-        move_to(profile_.front(), profile_.front().end, true);
-        first = 1;
-    } else if (plan_.pockets != Pockets::ONLY && isFalling) {
-        descend(0);
-        first = 1;
-    }
-    if (plan_.pockets == Pockets::SKIP) {
-        while (first > 0 && first < profile_.size() && isDescending(profile_[first])) {
-            descend(first);
-            ++first;
-        }
-        follow_envelope(first);
-        first = profile_.size();
-    }
-    for (std::size_t i = first; i < profile_.size(); ++i) {
-        isDescending(profile_[i]) ? descend(i) : rise(profile_[i]);
-    }
-    return isTooLong_ ? std::optional<std::vector<ProfileMove>>() : std::move(moves_);
-}
-
-}  // namespace
 
 bool round_corners(Profile &profile) {
     Profile out;
     for (std::size_t i = 0; i < profile.size(); ++i) {
         ProfileSegment segment = profile[i];
-        const bool isCorner = segment.fillet > 0.0 && i + 1 < profile.size();
+        const bool isCorner =
+            segment.fillet > 0.0 && i + 1 < profile.size() && distance(segment.start, segment.end) > TINY;
         constexpr double TANGENT = 1e-6;
         if (!isCorner || std::fabs(cross(direction(segment, segment.end),
                                          direction(profile[i + 1], profile[i + 1].start))) < TANGENT) {
@@ -372,17 +219,20 @@ bool round_corners(Profile &profile) {
     return true;
 }
 
-bool isMonotonic(const Profile &profile) {
+bool isMonotonic(const Profile &profile, double tolerance) {
     for (std::size_t i = 1; i < profile.size(); ++i) {
         const ProfileSegment &segment = profile[i];
         if (segment.end.x < segment.start.x - TINY) {
             return false;
         }
+        if (!segment.isArc) {
+            continue;
+        }
+        const double spare = std::acos(std::fmax(-1.0, 1.0 - tolerance / radius_of(segment)));
         const bool isForward =
-            !segment.isArc ||
-            (direction(segment, segment.start).x > -TINY && direction(segment, segment.end).x > -TINY &&
-             sweep(segment, segment.start, segment.end) < std::numbers::pi + TINY &&
-             distance(segment.start, segment.end) > TINY);
+            sweep(segment, segment.start, segment.end) < std::numbers::pi + 2.0 * spare + TINY &&
+            distance(segment.start, segment.end) > TINY && setback(segment, segment.start) <= tolerance &&
+            setback(segment, segment.end) <= tolerance;
         if (!isForward) {
             return false;
         }
@@ -390,41 +240,52 @@ bool isMonotonic(const Profile &profile) {
     return true;
 }
 
-bool offset_profile(Profile &profile, double by) {
-    if (by == 0.0) {
-        return true;
+void drop_short(Profile &profile, double length) {
+    for (std::size_t i = profile.size() - 1; i > 0 && profile.size() > 2; --i) {
+        const Point from = profile[i].start, to = profile[i].end;
+        if (distance(from, to) >= length) {
+            continue;
+        }
+        const bool isLast = i + 1 == profile.size();
+        const Point middle = isLast ? to : Point{(from.x + to.x) / 2.0, (from.y + to.y) / 2.0};
+        profile[i - 1].end = middle;
+        if (!isLast) {
+            profile[i + 1].start = middle;
+        }
+        profile.erase(profile.begin() + static_cast<std::ptrdiff_t>(i));
     }
-    Profile out;
+}
+
+void straighten(Profile &profile) {
+    Profile out{profile.front()};
+    const auto line = [](Point from, Point to) {
+        ProfileSegment one;
+        one.start = from;
+        one.end = to;
+        return one;
+    };
     for (std::size_t i = 1; i < profile.size(); ++i) {
-        std::optional<ProfileSegment> next = moved(profile[i], by);
-        if (i > 1) {
-            join(out, profile[i - 1], profile[i], by, next);
+        ProfileSegment segment = profile[i];
+        if (!segment.isArc) {
+            out.push_back(segment);
+            continue;
         }
-        if (next) {
-            append_cut(out, *next, profile[i].start);
+        const auto mirrored = [&](Point at) { return Point{at.x, 2.0 * segment.centre.y - at.y}; };
+        const Point begin = segment.start, end = segment.end;
+        const bool isBackAtStart = setback(segment, begin) > 0.0, isBackAtEnd = setback(segment, end) > 0.0;
+        if (isBackAtStart) {
+            segment.start = mirrored(begin);
+            out.push_back(line(begin, segment.start));
+        }
+        segment.end = isBackAtEnd ? mirrored(end) : end;
+        if (segment.end.x > segment.start.x) {
+            out.push_back(segment);
+        }
+        if (isBackAtEnd) {
+            out.push_back(line(segment.end, end));
         }
     }
-    if (out.empty()) {
-        return false;
-    }
-    profile.front().end = out.front().start;
-    profile.erase(profile.begin() + 1, profile.end());
-    profile.insert(profile.end(), out.begin(), out.end());
-    return true;
-}
-
-std::vector<ProfileMove> finish_moves(const Profile &profile) {
-    std::vector<ProfileMove> moves;
-    for (const ProfileSegment &segment : split_arcs(profile)) {
-        const bool isEntry = moves.empty();
-        moves.push_back({isEntry, segment.isArc && !isEntry, segment.end, segment.centre, segment.turn});
-    }
-    return moves;
-}
-
-std::optional<std::vector<ProfileMove>> rough_moves(const Profile &profile, const RoughingPlan &plan) {
-    const Profile pieces = split_arcs(profile);
-    return Rougher(pieces, plan).run();
+    profile = std::move(out);
 }
 
 }  // namespace mw::interp::detail

@@ -7,11 +7,11 @@
 #include <optional>
 #include <vector>
 
-#include "interp/detail/state.hh"
+#include "interp/detail/plane_geometry.hh"
 
 namespace mw::interp::detail {
 
-/// A line, or an arc of less than half a turn's change in its direction along x.
+/// A line, or an arc that does not turn back along x.
 struct ProfileSegment {
     Point start, end;
     bool isArc = false;
@@ -19,52 +19,56 @@ struct ProfileSegment {
     int turn = 1;            ///< +1 counterclockwise
     double fillet = 0;       ///< of the corner at the end: radius of the word A or C
     bool isChamfer = false;  ///< the corner is cut by a line between the fillet's ends
+    int source = 0;          ///< pieces of one arc have the same
 };
 
+/// The first segment is the way from the cycle's start to the first point of the contour.
 using Profile = std::vector<ProfileSegment>;
 
-/// A move of a cycle in the profile's frame.
-struct ProfileMove {
-    bool isRapid = false;
-    bool isArc = false;
-    Point end;
-    Point centre;
-    int turn = 1;
+/// From (Z, X) to the frame of a cut, and back.
+struct CutFrame {
+    bool isFacing = false;    ///< the cut runs along X
+    bool isSideClear = true;  ///< the start tells on which side of the profile the material is
+    double along = 1, across = 1;
+
+    Point to(Point p) const {
+        return isFacing ? Point{p.y * along, p.x * across} : Point{p.x * along, p.y * across};
+    }
+    Point from(Point p) const {
+        const double z = isFacing ? p.y * across : p.x * along, x = isFacing ? p.x * along : p.y * across;
+        return {z + 0.0, x + 0.0};  // 0, not -0
+    }
+    int turn(int one) const { return (along * across > 0.0) != isFacing ? one : -one; }
 };
 
-/// How deep G71 and G72 cut, and what of the profile.
-struct RoughingPlan {
-    enum class Pockets { ALL, SKIP, ONLY };  ///< G71, G71.1, G71.2
-    Pockets pockets = Pockets::ALL;
-    double increment = 1, retract = 0.5;
-    bool isVisitingStarts = false;  ///< G71.1: a move without length to where each segment begins, as in the
-                                    ///< field's outputs
-};
+Profile in_frame(const Profile &profile, const CutFrame &frame);
+/// The cut runs to where the profile ends. The material lies on that side of the cycle's start where the
+/// profile begins; when both are at one height, where all of the profile lies.
+CutFrame frame_of(const Profile &profile, bool isFacing);
 
-/// A cycle whose profile is being read from its subroutine.
-struct LatheRequest {
-    int code = 0;   ///< ten times the G code
-    int label = 0;  ///< Q: the subroutine
-    Pose start;     ///< where the cycle begins
-    RoughingPlan roughing;
-    double distance = 0, end_distance = 0;  ///< D, and E of G70
-    int passes = 1;                         ///< P of G70
-    int motion = 0;                         ///< the G code in force in the profile
-    Pose position;                          ///< its end so far
-    Profile profile;                        ///< x along Z, y along X
-};
+double radius_of(const ProfileSegment &arc);
+/// The direction of travel at `at`, which lies on the segment.
+Point direction(const ProfileSegment &segment, Point at);
+/// How far an arc turns from `from` to `to`, 0 to a full turn [rad].
+double sweep(const ProfileSegment &arc, Point from, Point to);
+/// Crossings of the whole lines or circles that two segments lie on.
+Crossings crossings(const ProfileSegment &a, const ProfileSegment &b);
+/// The segment moved to its left by `by`. None when an arc vanishes.
+std::optional<ProfileSegment> moved(const ProfileSegment &segment, double by);
+/// Arcs cut at their highest or lowest point: every piece only rises or only falls.
+Profile split_arcs(const Profile &profile);
+bool isDescending(const ProfileSegment &segment);
+/// The highest that a segment comes.
+double top_of(const ProfileSegment &segment);
 
 /// Puts fillets and chamfers into the corners. False where one does not fit.
 bool round_corners(Profile &profile);
-/// No segment after the first goes backwards.
-bool isMonotonic(const Profile &profile);
-/// The profile moved upwards by `distance` (downwards when negative): arcs around convex corners, cut off in
-/// concave ones. The first segment keeps its start and leads to where the moved profile begins. False when
-/// nothing is left.
-bool offset_profile(Profile &profile, double distance);
-/// The moves of one finishing pass, beginning with a rapid move to the end of the first segment.
-std::vector<ProfileMove> finish_moves(const Profile &profile);
-/// The moves of G71 and G72; none when there would be more than a million.
-std::optional<std::vector<ProfileMove>> rough_moves(const Profile &profile, const RoughingPlan &plan);
+/// No segment after the first goes back by more than `tolerance`, as arcs of rounded numbers do that touch a
+/// shoulder.
+bool isMonotonic(const Profile &profile, double tolerance);
+/// Segments below `length` go; their neighbours meet in the middle.
+void drop_short(Profile &profile, double length);
+/// Arcs that go back, by no more than isMonotonic() has allowed, begin or end with a straight line across.
+void straighten(Profile &profile);
 
 }  // namespace mw::interp::detail

@@ -98,8 +98,8 @@ TEST(LatheCycle, g72_cuts_along_x_I1) {
 TEST(LatheCycle, g70_finishes_in_passes_I1) {
     EXPECT_EQ(
         moves_of("O100 sub\nG0 X5\nG1 Z-10\nG1 X15\nO100 endsub\n", "G70 Q100 D1 E0 P2"),
-        "r20.000,2.000 r20.000,2.000 r20.000,2.000 r5.500,2.000 f5.500,-9.500 f15.000,-9.500 r20.000,2.000 "
-        "r5.000,2.000 f5.000,-10.000 f15.000,-10.000 ");
+        "r20.000,2.000 r20.000,2.000 r20.000,2.000 r5.500,2.000 f5.500,-9.500 f15.000,-9.500 f20.000,-9.500 "
+        "r20.000,2.000 r5.000,2.000 f5.000,-10.000 f15.000,-10.000 ");
 }
 
 TEST(LatheCycle, corners_take_fillets_and_chamfers_I1) {
