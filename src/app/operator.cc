@@ -83,6 +83,9 @@ Result<> Operator::wait_for(task::RequestId id, const std::string &what,
     last_error_.clear();
     while (true) {
         machine_.cycle();
+        if (auto health = machine_.health(); !health) {
+            return health;
+        }
         each_cycle();
         show_messages();
         panel_.step();
@@ -126,18 +129,22 @@ Result<> Operator::stop_on_signal() {
     const std::int64_t deadline_ns = machine_.now_ns() + STOP_TIMEOUT_NS;
     do {
         machine_.cycle();
-    } while (!machine_.task().motion_status().isInPosition && machine_.now_ns() < deadline_ns);
+    } while (!machine_.task().motion_status().isInPosition && machine_.now_ns() < deadline_ns &&
+             machine_.health());
     return fail("stopped by " + stop_signal_name());
 }
 
 void Operator::switch_off() {
+    if (!machine_.health()) {
+        return;  // There is nothing left that could be switched.
+    }
     task::Task &task = machine_.task();
     task.submit(task::AbortAll{});
     const std::int64_t deadline_ns = machine_.now_ns() + STOP_TIMEOUT_NS;
     machine_.cycle();
     machine_.cycle();
     while (!task.motion_status().isInPosition && task.motion_status().isEnabled &&
-           machine_.now_ns() < deadline_ns) {
+           machine_.now_ns() < deadline_ns && machine_.health()) {
         machine_.cycle();
     }
     task.submit(task::SetState{task::State::ESTOP});

@@ -45,7 +45,7 @@ bool Panel::confirm(const std::string &question) {
     }
     fmt::print(stderr, "{} [y/n] ", question);
     std::optional<char> key;
-    while (stop_signal == 0) {
+    while (stop_signal == 0 && machine_.health()) {
         machine_.cycle();
         key = keyboard_->read();
         if (key == 'y' || key == 'Y' || key == 'n' || key == 'N') {

@@ -52,6 +52,8 @@ class Machine {
     virtual std::int64_t now_ns() const = 0;
     virtual bool isVirtual() const = 0;
     virtual RealtimeFigures realtime_figures() const = 0;
+    /// An error once the machine cannot go on: its realtime process has ended. Ask in every cycle.
+    virtual Result<> health() const { return {}; }
 
     virtual task::Task &task() = 0;
     virtual motion::Channels &channels() = 0;

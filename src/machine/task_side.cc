@@ -112,15 +112,18 @@ Result<bool> TaskSide::isConfigured() {
     return true;
 }
 
-Result<> TaskSide::finish_start(const std::function<void()> &cycle, int most_cycles) {
+Result<> TaskSide::finish_start(Machine &machine, int most_cycles) {
     for (int i = 0; i < most_cycles; ++i) {
-        cycle();
+        machine.cycle();
+        if (auto health = machine.health(); !health) {
+            return health;
+        }
         const auto isDone = isConfigured();
         if (!isDone.has_value()) {
             return std::unexpected(isDone.error());
         }
         if (*isDone) {
-            cycle();
+            machine.cycle();
             return task_->start();
         }
     }

@@ -30,7 +30,7 @@ class TaskSide final : private task::IoPort {
     Result<> start(const MachineOptions &options);
     /// Runs cycles until motion has taken all settings, then reads the parameter file and announces the state
     /// to the interpreter. An error names the first setting that was refused.
-    Result<> finish_start(const std::function<void()> &cycle, int most_cycles);
+    Result<> finish_start(Machine &machine, int most_cycles);
     /// One task cycle.
     void step(std::int64_t now_ns);
 
