@@ -48,7 +48,7 @@ def main():
         def run(what, words, text):
             done = subprocess.run([prefix / 'bin' / words[0], *words[1:]], env=env, cwd=home, capture_output=True, text=True,
                                   stdin=subprocess.DEVNULL, check=False, timeout=120)
-            if done.returncode != 0 or text not in done.stdout:
+            if done.returncode != 0 or text not in done.stdout + done.stderr:
                 failures.append(what)
                 print(f'FAIL {what}: status {done.returncode}\n{done.stdout}{done.stderr}')
 
@@ -59,7 +59,7 @@ def main():
         run('run by the clock', ['millwright', 'run', ini, str(part), '--realtime', '--yes'], 'cycle time')
         run('check', ['millwright', 'check', str(share / 'nc_files/lathe_part.ngc'), '--ini', str(share / 'configs/sim/lathe.ini')],
             'of the machine')
-        run('halcompile', ['halcompile', '--install', 'twice.comp'], '')
+        run('halcompile', ['halcompile', '--install', 'twice.comp'], 'installed ')
         run('halrun with the new component', ['halrun', 'twice.hal'], '42')
         run('Python', ['halrun', 'python.hal'], '4')
         sourced = subprocess.run(['bash', '-c', f'. {source}/script/environment {prefix} && millwright --version && halrun -h && '

@@ -149,6 +149,14 @@ def main():
             os.kill(one.pid, number)
             expect(one.end() == 1 and f'stopped by {number.name}' in one.text, f'{number.name} stops in order', one)
 
+        # While the program is looked at before the start, which takes up to 5 s.
+        (folder / 'endless.ngc').write_text('G21 G90 F600\no1 while [1]\nG1 X10\nG1 X0\no1 endwhile\nM2\n')
+        for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGINT):
+            one = start('endless.ngc', '--yes')
+            expect(one.wait_for('reading'), 'shows how far it has read', one)
+            os.kill(one.pid, number)
+            expect(one.end() == 1 and 'before the start' in one.text, f'{number.name} stops the look ahead', one)
+
         alone = subprocess.run([millwright, 'run', ini, str(folder / 'long.ngc'), '--realtime'], env=env, text=True,
                                stdin=subprocess.DEVNULL, capture_output=True, check=False, timeout=STEPS_S)
         expect(alone.returncode == 1 and '--yes' in alone.stderr, f'refused without a terminal: {alone.stderr}')

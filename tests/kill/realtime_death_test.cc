@@ -64,6 +64,7 @@ class RealtimeDeath : public ::testing::Test {
                                               "--no-estimate"};
             if (isRealtime) {
                 words.push_back("--realtime");
+                words.push_back("--yes");
             }
             std::vector<char *> argv;
             for (std::string &word : words) {
