@@ -107,8 +107,8 @@ bool Maker::add_arc(double du, double dh) {
     }
     arc.isCounterclockwise = chance(0.5);
     const double radius = chord / 2.0 * number(1.02, 4.0);
-    const double aside = std::sqrt(radius * radius - chord * chord / 4.0) *
-                         (arc.isCounterclockwise ? 1.0 : -1.0) / chord;
+    const double aside =
+        std::sqrt(radius * radius - chord * chord / 4.0) * (arc.isCounterclockwise ? 1.0 : -1.0) / chord;
     const Place centre{(arc.from.u + arc.to.u) / 2.0 - aside * (arc.to.h - arc.from.h),
                        (arc.from.h + arc.to.h) / 2.0 + aside * (arc.to.u - arc.from.u)};
     arc.centre = rounded(centre);
@@ -208,7 +208,8 @@ void Maker::choose_cycles() {
     const double unit = job_.isInch ? MM_PER_INCH / 1e4 : 1e-3;
     const auto round = [&](double mm) { return std::round(mm / unit) * unit; };
     const double kind = number(0, 1);
-    const double allowance = round(chance(0.15) ? 0.0 : (chance(0.5) ? number(0.02, 0.5) : number(0.02, 3.0)));
+    const double allowance =
+        round(chance(0.15) ? 0.0 : (chance(0.5) ? number(0.02, 0.5) : number(0.02, 3.0)));
     double step = round(number(0.2, 4.0));
     while (number_of_layers(job_, step) > 60.0) {
         step = round(step * 2.0);

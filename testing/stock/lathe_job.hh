@@ -12,9 +12,9 @@ namespace mw::testing {
 
 /// One cycle of a job.
 struct JobCycle {
-    std::string code;       ///< "71", "71.1", ... or "70"
-    double allowance = 0;   ///< D [mm]; of G70 what is left at its end
-    double step = 0;        ///< I [mm]
+    std::string code;      ///< "71", "71.1", ... or "70"
+    double allowance = 0;  ///< D [mm]; of G70 what is left at its end
+    double step = 0;       ///< I [mm]
     bool isPocketLeft = false;
     bool isFinishing = false;
 };
@@ -24,10 +24,10 @@ struct LatheJob {
     bool isFacing = false, isInside = false, isInch = false, isDiameter = false;
     bool isMonotonic = false;  ///< the contour never falls
     bool hasArcs = false;
-    Contour contour;           ///< of the rounded numbers of the program [mm]
-    Place start;               ///< of the cycles
+    Contour contour;  ///< of the rounded numbers of the program [mm]
+    Place start;      ///< of the cycles
     std::vector<JobCycle> cycles;
-    std::string program;       ///< a G4 P0 before each cycle
+    std::string program;  ///< a G4 P0 before each cycle
 
     /// Where Z and X of the machine [mm] are along the cut.
     Place place(double z, double x) const;

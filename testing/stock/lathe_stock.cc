@@ -37,7 +37,8 @@ double LatheStock::lowest_near(double u) const {
     return lowest;
 }
 
-/// Whether all that lies up to `top` is what cycles before have left on the contour or on the face at its end.
+/// Whether all that lies up to `top` is what cycles before have left on the contour or on the face at its
+/// end.
 bool LatheStock::isSkin(Place top, const CutRules &rules) const {
     const double reach = rules.skin + rules.tolerance + NEAR;
     const bool isAtEnd = rules.skin > 0.0 && std::fabs(top.u - contour_.last().u) <= reach;
@@ -62,7 +63,9 @@ std::string LatheStock::cut_to(Place from, Place to, bool isRapid, const CutRule
         !isSkin({to.u, lowest_near(to.u)}, rules)) {
         return fmt::format("plunge {:.3f} deep {}", plunged, at_text(to));
     }
-    const auto index = [&](double u) { return static_cast<long>(std::ceil((u - first_u) / COLUMN - MIDDLE)); };
+    const auto index = [&](double u) {
+        return static_cast<long>(std::ceil((u - first_u) / COLUMN - MIDDLE));
+    };
     const long end = std::min(index(right.u), static_cast<long>(columns_.size()));
     for (long i = std::max(0L, index(left.u)); i < end; ++i) {
         const double u = first_u + (static_cast<double>(i) + MIDDLE) * COLUMN;
@@ -86,7 +89,8 @@ std::string LatheStock::cut(const StockMove &move, const CutRules &rules) {
             return fmt::format("gouge {:.4f} {}", rules.allowance - contour_.clearance(p), at_text(p));
         }
     }
-    const double turn = path.isArc ? 2.0 * std::acos(1.0 - CHORD_ERROR / std::fmax(path.radius(), 0.001)) : 1.0;
+    const double turn =
+        path.isArc ? 2.0 * std::acos(1.0 - CHORD_ERROR / std::fmax(path.radius(), 0.001)) : 1.0;
     const int chords = path.isArc ? 1 + static_cast<int>(path.turned(path.to) / turn) : 1;
     for (int i = 0; i < chords; ++i) {
         std::string fault = cut_to(path.at(static_cast<double>(i) / chords),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A turned blank as a height map, cut by a pointed tool: what rapid moves, layers and gouges do to it, and what
-// is left.
+// A turned blank as a height map, cut by a pointed tool: what rapid moves, layers and gouges do to it, and
+// what is left.
 #pragma once
 
 #include <string>
@@ -17,16 +17,16 @@ struct StockMove {
 
 /// What one cycle may do.
 struct CutRules {
-    double allowance = 0;       ///< that it has to leave on the contour [mm]
-    double step = 1;            ///< deepest layer [mm]
-    double skin = 0;            ///< what cycles before it have left on the contour: one pass may take all of it [mm]
-    double tolerance = 0.003;   ///< of the contour [mm]
+    double allowance = 0;  ///< that it has to leave on the contour [mm]
+    double step = 1;       ///< deepest layer [mm]
+    double skin = 0;  ///< what cycles before it have left on the contour: one pass may take all of it [mm]
+    double tolerance = 0.003;  ///< of the contour [mm]
 };
 
 class LatheStock {
   public:
-    static constexpr double COLUMN = 0.01;      ///< [mm]
-    static constexpr double NEAR = 0.02;        ///< walls are as steep as this is wide [mm]
+    static constexpr double COLUMN = 0.01;        ///< [mm]
+    static constexpr double NEAR = 0.02;          ///< walls are as steep as this is wide [mm]
     static constexpr double DEPTH_SPARE = 0.005;  ///< of heights [mm]
 
     /// Material from the contour's first point on to `behind` mm after its end, up to `surface`.
@@ -35,8 +35,9 @@ class LatheStock {
     /// Moves the tool and takes off what it meets. What is wrong with that, or nothing.
     std::string cut(const StockMove &move, const CutRules &rules);
     double surface_at(double u) const;
-    /// Where more than `allowance` is left on the contour; on the envelope that has no pockets instead, if asked
-    /// for. Nothing when the work is done. The last `end_allowance` mm before the contour's end do not count.
+    /// Where more than `allowance` is left on the contour; on the envelope that has no pockets instead, if
+    /// asked for. Nothing when the work is done. The last `end_allowance` mm before the contour's end do not
+    /// count.
     std::string unfinished(double allowance, bool isPocketLeft, double end_allowance) const;
 
   private:

@@ -24,9 +24,9 @@ struct FramedProfile {
     Profile profile;
 };
 
-/// Whether the profile is one for cuts along X. G70 follows what the last roughing with the same subroutine has
-/// cut; without one a profile for both is one for cuts along Z, if that puts the distance D on the same side.
-/// The text after "The profile of Gxx " when that cannot be told.
+/// Whether the profile is one for cuts along X. G70 follows what the last roughing with the same subroutine
+/// has cut; without one a profile for both is one for cuts along Z, if that puts the distance D on the same
+/// side. The text after "The profile of Gxx " when that cannot be told.
 std::expected<bool, std::string> choose_facing(const LatheRequest &request, std::optional<bool> roughed,
                                                double tolerance) {
     if (request.code != 700) {
@@ -49,9 +49,10 @@ std::expected<bool, std::string> choose_facing(const LatheRequest &request, std:
     return roughed.value_or(false);
 }
 
-/// The profile in the frame of its cut, with its corners. The text after "The profile of Gxx " when it cannot be
-/// cut.
-std::expected<FramedProfile, std::string> framed_profile(const Profile &raw, bool isFacing, double tolerance) {
+/// The profile in the frame of its cut, with its corners. The text after "The profile of Gxx " when it cannot
+/// be cut.
+std::expected<FramedProfile, std::string> framed_profile(const Profile &raw, bool isFacing,
+                                                         double tolerance) {
     FramedProfile framed;
     framed.frame = frame_of(raw, isFacing);
     framed.profile = in_frame(raw, framed.frame);
@@ -287,8 +288,8 @@ bool Executor::run_lathe_cycle(const LatheRequest &request) {
     }
     const double tolerance = state.units == LengthUnits::MM ? TOLERANCE_MM : TOLERANCE_INCH;
     const bool isRoughed = roughed_ && roughed_->label == request.label;
-    const std::expected<bool, std::string> isFacing = choose_facing(
-        request, isRoughed ? std::optional(roughed_->isFacing) : std::nullopt, tolerance);
+    const std::expected<bool, std::string> isFacing =
+        choose_facing(request, isRoughed ? std::optional(roughed_->isFacing) : std::nullopt, tolerance);
     std::expected<FramedProfile, std::string> framed =
         isFacing ? framed_profile(request.profile, *isFacing, tolerance) : std::unexpected(isFacing.error());
     if (!framed) {

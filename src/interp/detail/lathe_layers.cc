@@ -51,10 +51,10 @@ class Rougher {
     const Profile &profile_;
     const RoughingPlan &plan_;
     std::vector<ProfileMove> moves_;
-    double surface_ = 0;            ///< of the material: the height of the cycle's start
-    double top_ = 0;                ///< of the layers
-    long long layer_ = 0;           ///< the next one, from the top
-    double rim_ = 0;                ///< of the pocket that it is in
+    double surface_ = 0;   ///< of the material: the height of the cycle's start
+    double top_ = 0;       ///< of the layers
+    long long layer_ = 0;  ///< the next one, from the top
+    double rim_ = 0;       ///< of the pocket that it is in
     bool isInPocket_ = false, isTooLong_ = false;
 };
 
@@ -148,7 +148,7 @@ void Rougher::follow_envelope(std::size_t first) {
         ProfileSegment segment = profile_[i];
         segment.start = at;
         const bool isSameArc = i > first && segment.isArc && segment.source == profile_[i - 1].source &&
-                                segment.centre == profile_[i - 1].centre;
+                               segment.centre == profile_[i - 1].centre;
         const bool isVisited = plan_.isVisitingStarts || i == first || i + 1 == profile_.size() ||
                                (!moves_.empty() && moves_.back().isArc);
         if (isNew && isVisited && !isSameArc) {

@@ -66,7 +66,8 @@ std::optional<Point> meeting_point(const ProfileSegment &before, const ProfileSe
         const Point point = found.points[i];
         const bool isBetween = point.x > before.start.x + SAME_X && point.x < after.end.x - SAME_X;
         const bool isNear = distance(point, before.end) < near && distance(point, after.start) < near &&
-                            distance(point, corner) > by - SAME_HEIGHT && distance(point, corner) < by + tolerance;
+                            distance(point, corner) > by - SAME_HEIGHT &&
+                            distance(point, corner) < by + tolerance;
         if (isBetween && isNear && (!best || point.x < best->x)) {
             best = point;
         }
@@ -233,16 +234,17 @@ Profile offset_profile(const Profile &profile, double by, double tolerance) {
         return profile;
     }
     const Profile chain = chain_of(profile, by, tolerance);
-    Profile pieces;
-    std::ranges::copy_if(chain, std::back_inserter(pieces),
-                         [](const ProfileSegment &piece) { return !isUpright(piece); });
     const ProfileSegment &last = profile.back();
     const Point heading = direction(last, last.end);
     const Point end = sum(last.end, {-heading.y, heading.x}, by);
     const bool isRisingAtEnd = heading.y > SAME_HEIGHT;
+    Profile all = chain;
     if (isRisingAtEnd) {  // its own end shadows what lies behind it
-        pieces.push_back(around(last.end, heading, {1.0, 0.0}, by));
+        append_piece(all, around(last.end, heading, {1.0, 0.0}, by));
     }
+    Profile pieces;
+    std::ranges::copy_if(all, std::back_inserter(pieces),
+                         [](const ProfileSegment &piece) { return !isUpright(piece); });
     std::vector<Run> runs = highest_runs(pieces);
     if (isRisingAtEnd) {
         const auto cap = std::ranges::find_if(runs, [&](const Run &run) {

@@ -23,8 +23,8 @@ class CycleRecorder : public QuietMachineCanon {
     double z = 0, x = 0;  ///< where the tool was before the first
 
     void line(const LineMove &move) override {
-        add({move.settings.kind == FeedKind::RAPID, false, move.end[geom::AXIS_Z], move.end[geom::AXIS_X], 0, 0,
-             0});
+        add({move.settings.kind == FeedKind::RAPID, false, move.end[geom::AXIS_Z], move.end[geom::AXIS_X], 0,
+             0, 0});
     }
     void arc(const ArcMove &move) override {
         // The normal of G18 is Y: a positive angle turns from Z to X.
@@ -59,6 +59,10 @@ LatheVerdict run_lathe_job(const testing::LatheJob &job) {
     LatheVerdict verdict;
     CycleRecorder record;
     Mill mill;
+    for (int number = 1; number <= 3; ++number) {
+        mill.tools.emplace_back();
+        mill.tools.back().toolno = number;
+    }
     MachineFrame frame(record, mill.units);
     Settings settings;
     settings.statement_budget = 1000000;
@@ -79,6 +83,13 @@ LatheVerdict run_lathe_job(const testing::LatheJob &job) {
     if (step != Step::PROGRAM_END) {
         verdict.refusal = without_figures(interpreter.error().what.message);
         return verdict;
+    }
+    for (const auto &moves : record.cycles) {
+        testing::Place last;
+        for (const CycleRecorder::Move &one : moves) {
+            last = one.isRapid ? last : job.place(one.z, one.x);
+        }
+        verdict.last_places.push_back(last);
     }
     testing::LatheStock stock(job.contour, job.start.h, job.largest_allowance() + 1.0);
     testing::Place at = job.place(record.z, record.x);

@@ -12,6 +12,7 @@ struct LatheVerdict {
     std::string refusal;  ///< the interpreter's, without figures; nothing when it has run
     std::string fault;    ///< what is wrong with the moves, or with what is left
     std::size_t moves = 0;
+    std::vector<testing::Place> last_places;  ///< after each G4 P0: the last one fed to
 };
 
 LatheVerdict run_lathe_job(const testing::LatheJob &job);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A campaign of random turning jobs on simulated stock.
-// lathe_campaign --first N --count M --log FILE [--processes P] [--commit HASH]: one line per seed in the log;
-// seeds that it has are not run again. Prints what was refused, by reason, and what failed. Ends with 1 when
-// something failed. `--seed N` prints one job's program and verdict.
+// lathe_campaign --first N --count M --log FILE [--processes P] [--commit HASH]: one line per seed in the
+// log; seeds that it has are not run again. Prints what was refused, by reason, and what failed. Ends with 1
+// when something failed. `--seed N` prints one job's program and verdict.
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -109,8 +109,9 @@ bool summarise(const Task &task) {
     for (const auto &[text, count] : refusals) {
         std::printf("%6u refused: %s\n", count, text.c_str());
     }
-    std::printf("%u jobs, %u failed, %u refused (%.2f %%); monotonic with D up to 0.5: %u, %u refused\n", jobs,
-                failed, refused, jobs == 0 ? 0.0 : 100.0 * refused / jobs, monotonic, monotonic_refused);
+    std::printf("%u jobs, %u failed, %u refused (%.2f %%); monotonic with D up to 0.5: %u, %u refused\n",
+                jobs, failed, refused, jobs == 0 ? 0.0 : 100.0 * refused / jobs, monotonic,
+                monotonic_refused);
     return failed == 0 && jobs == task.count;
 }
 
@@ -126,9 +127,8 @@ int run(const Task &task) {
         return 0;
     }
     if (!task.commit.empty()) {
-        std::ofstream(task.log, std::ios::app)
-            << "# commit " << task.commit << " seeds " << task.first << " to " << task.first + task.count - 1
-            << '\n';
+        std::ofstream(task.log, std::ios::app) << "# commit " << task.commit << " seeds " << task.first
+                                               << " to " << task.first + task.count - 1 << '\n';
     }
     std::set<unsigned> done;
     for (const auto &[seed, line] : read_log(task.log)) {
@@ -176,8 +176,9 @@ int main(int argc, char **argv) {
         }
     }
     if (!isRight || (task.log.empty() && !task.single)) {
-        std::fprintf(stderr, "usage: lathe_campaign --first N --count M --log FILE [--processes P] [--commit HASH]\n"
-                             "       lathe_campaign --seed N\n");
+        std::fprintf(stderr,
+                     "usage: lathe_campaign --first N --count M --log FILE [--processes P] [--commit HASH]\n"
+                     "       lathe_campaign --seed N\n");
         return 2;
     }
     return mw::interp::test::run(task);
