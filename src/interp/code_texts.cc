@@ -23,8 +23,8 @@ constexpr std::string_view PECK_CYCLE =
     "back between pecks";
 constexpr std::string_view PROFILE =
     "q=number of the subroutine with the profile|x=position at the beginning|z=position at the "
-    "beginning|d=allowance left on the profile|e=distance before the profile where it "
-    "begins|i=depth of one cut|r=retract after a cut|p=number of passes";
+    "beginning|d=allowance left on the profile; of G70 the first distance|e=last distance of G70|"
+    "i=depth of one cut|r=retract after a cut|p=number of passes";
 constexpr std::string_view SPINDLE = "$=spindle; -1 all of them";
 constexpr std::string_view ON_OFF = "p=0 off, else on";
 
@@ -100,12 +100,12 @@ constexpr CodeText TEXTS[] = {
      "out|r=planner: 0 "
      "limited by acceleration, above 0 by jerk, with this part of the corner speed"},
     {'g', 700, "lathe finishing: run along a profile", PROFILE},
-    {'g', 710, "lathe roughing with cuts along Z, pockets left out", PROFILE},
-    {'g', 711, "lathe roughing with cuts along Z, first pocket", PROFILE},
-    {'g', 712, "lathe roughing with cuts along Z, all pockets", PROFILE},
-    {'g', 720, "lathe roughing with cuts along X, pockets left out", PROFILE},
-    {'g', 721, "lathe roughing with cuts along X, first pocket", PROFILE},
-    {'g', 722, "lathe roughing with cuts along X, all pockets", PROFILE},
+    {'g', 710, "lathe roughing with cuts along Z", PROFILE},
+    {'g', 711, "lathe roughing with cuts along Z, pockets left out", PROFILE},
+    {'g', 712, "lathe roughing with cuts along Z, only what G71.1 has left out", PROFILE},
+    {'g', 720, "lathe roughing with cuts along X", PROFILE},
+    {'g', 721, "lathe roughing with cuts along X, pockets left out", PROFILE},
+    {'g', 722, "lathe roughing with cuts along X, only what G72.1 has left out", PROFILE},
     {'g', 730, "drilling that breaks the chip", PECK_CYCLE},
     {'g', 740, "left-hand tapping with a floating chuck", SPINDLE_CYCLE},
     {'g', 760, "lathe threading in several cuts",

@@ -24,20 +24,40 @@ struct FramedProfile {
     Profile profile;
 };
 
-/// G70 follows what G71 or what G72 cuts, whichever the profile is for. The text after "The profile of Gxx "
-/// when it cannot be cut.
-std::expected<FramedProfile, std::string> framed_profile(const Profile &raw, int code, double tolerance) {
-    const bool isFinishing = code == 700;
-    FramedProfile framed;
-    framed.frame = frame_of(raw, code >= 720);
-    framed.profile = in_frame(raw, framed.frame);
-    if (isFinishing && !isMonotonic(framed.profile, tolerance)) {
-        framed.frame = frame_of(raw, true);
-        framed.profile = in_frame(raw, framed.frame);
+/// Whether the profile is one for cuts along X. G70 follows what the last roughing with the same subroutine
+/// has cut; without one a profile for both is one for cuts along Z, if that puts the distance D on the same
+/// side. The text after "The profile of Gxx " when that cannot be told.
+std::expected<bool, std::string> choose_facing(const LatheRequest &request, std::optional<bool> roughed,
+                                               double tolerance) {
+    if (request.code != 700) {
+        return request.code >= 720;
     }
+    const CutFrame turned = frame_of(request.profile, false), faced = frame_of(request.profile, true);
+    const bool isTurnable = isMonotonic(in_frame(request.profile, turned), tolerance);
+    const bool isFaceable = isMonotonic(in_frame(request.profile, faced), tolerance);
+    if (!isTurnable && !isFaceable) {
+        return std::unexpected("is not monotonic: it goes back along both Z and X");
+    }
+    if (!isTurnable || !isFaceable) {
+        return !isTurnable;
+    }
+    const bool isDistanceUsed = request.distance > 0.0 || request.end_distance > 0.0;
+    if (!roughed && isDistanceUsed && turned.turn(1) != faced.turn(1)) {
+        return std::unexpected("could be one of G71 or of G72, which puts the distance D on opposite sides: "
+                               "rough it in this program, or give no D and E");
+    }
+    return roughed.value_or(false);
+}
+
+/// The profile in the frame of its cut, with its corners. The text after "The profile of Gxx " when it cannot
+/// be cut.
+std::expected<FramedProfile, std::string> framed_profile(const Profile &raw, bool isFacing,
+                                                         double tolerance) {
+    FramedProfile framed;
+    framed.frame = frame_of(raw, isFacing);
+    framed.profile = in_frame(raw, framed.frame);
     if (!isMonotonic(framed.profile, tolerance)) {
-        const char *axes = isFinishing ? "both Z and X" : (framed.frame.isFacing ? "X" : "Z");
-        return std::unexpected(fmt::format("is not monotonic: it goes back along {}", axes));
+        return std::unexpected(fmt::format("is not monotonic: it goes back along {}", isFacing ? "X" : "Z"));
     }
     if (!round_corners(framed.profile) || !isMonotonic(framed.profile, tolerance)) {
         return std::unexpected("has a corner that its fillet A or chamfer C does not fit");
@@ -54,16 +74,25 @@ bool isEndingAbove(const Profile &profile) {
     return profile.back().end.y > profile.front().end.y;
 }
 
-/// From the end of what is cut across to the height of the start, at feed: the material may stand there.
-void add_way_out(Profile &cut) {
-    const Point begin = cut.front().start, end = cut.back().end;
-    if (end.y < begin.y) {
+/// From the end of what is cut across to `height`, at feed: the material may stand there.
+void add_way_out(Profile &cut, double height) {
+    const Point end = cut.back().end;
+    if (end.y < height) {
         ProfileSegment up;
         up.start = end;
-        up.end = {end.x, begin.y};
+        up.end = {end.x, height};
         up.source = cut.back().source + 1;
         cut.push_back(up);
     }
+}
+
+/// The start's height, or the contour's where that is higher.
+double clear_height(const Profile &cut) {
+    double height = cut.front().start.y;
+    for (const ProfileSegment &segment : cut) {
+        height = std::fmax(height, top_of(segment));
+    }
+    return height;
 }
 
 }  // namespace
@@ -258,8 +287,11 @@ bool Executor::run_lathe_cycle(const LatheRequest &request) {
         return true;
     }
     const double tolerance = state.units == LengthUnits::MM ? TOLERANCE_MM : TOLERANCE_INCH;
+    const bool isRoughed = roughed_ && roughed_->label == request.label;
+    const std::expected<bool, std::string> isFacing =
+        choose_facing(request, isRoughed ? std::optional(roughed_->isFacing) : std::nullopt, tolerance);
     std::expected<FramedProfile, std::string> framed =
-        framed_profile(request.profile, request.code, tolerance);
+        isFacing ? framed_profile(request.profile, *isFacing, tolerance) : std::unexpected(isFacing.error());
     if (!framed) {
         return fault.set(fmt::format("The profile of {} {}", name, framed.error()));
     }
@@ -276,30 +308,39 @@ bool Executor::run_lathe_cycle(const LatheRequest &request) {
     if (!send_profile_move(to_begin, framed->frame)) {
         return false;
     }
+    RoughingPlan roughing = request.roughing;
+    roughing.narrowest = 20.0 * tolerance;
     for (int pass = request.passes - 1; pass >= 0; --pass) {
         const double ahead = (request.distance - request.end_distance) * pass / request.passes;
         const bool isLeavingCut = !isFinishing || pass > 0;
         Profile cut = framed->profile;
         if (isLeavingCut && !isEndingAbove(cut)) {  // a profile without a shoulder ends at one
-            add_way_out(cut);
+            add_way_out(cut, cut.front().start.y);
         }
-        cut = offset_profile(cut, isFinishing ? request.end_distance + ahead : request.distance);
+        cut = offset_profile(cut, isFinishing ? request.end_distance + ahead : request.distance, tolerance);
+        const Point begin = entry.start, back{begin.x, isFinishing ? clear_height(cut) : begin.y};
         if (isLeavingCut) {
-            add_way_out(cut);
+            add_way_out(cut, back.y);
         }
-        const std::optional<std::vector<ProfileMove>> moves =
-            isFinishing ? finish_moves(cut) : rough_moves(cut, request.roughing);
+        std::optional<std::vector<ProfileMove>> moves =
+            isFinishing ? finish_moves(cut) : rough_moves(cut, roughing);
         if (!moves) {
             return fault.set(fmt::format("{} would make more than a million moves: is I too small?", name));
         }
-        if (pass + 1 < request.passes && !send_profile_move(to_begin, framed->frame)) {
-            return false;
+        if (isFinishing && pass > 0) {
+            if (back.y > begin.y) {  // above the contour first
+                moves->push_back(rapid(back));
+            }
+            moves->push_back(to_begin);
         }
         for (const ProfileMove &move : *moves) {
             if (!send_profile_move(move, framed->frame)) {
                 return false;
             }
         }
+    }
+    if (!isFinishing) {
+        roughed_ = {request.label, *isFacing};
     }
     return true;
 }

@@ -98,6 +98,7 @@ void Executor::abort_block() {
     queued_before_ = 0;
     patched_.clear();
     state.comp_last = {};
+    roughed_.reset();
 }
 
 void Executor::synch() {

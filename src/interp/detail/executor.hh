@@ -361,6 +361,12 @@ class Executor : public BuiltIns {
     bool isStateKept_ = false;
     std::vector<NurbsPoint> control_points_;
     std::optional<LatheRequest> lathe_;
+    /// The last roughing cycle of the program, for the G70 that follows it.
+    struct Roughed {
+        int label = 0;  ///< of the profile's subroutine
+        bool isFacing = false;
+    };
+    std::optional<Roughed> roughed_;
     std::size_t queued_before_ = 0;
     std::vector<std::pair<std::size_t, CanonQueue::Record>>
         patched_;                                      ///< calls that the block changed, as they were

@@ -51,17 +51,18 @@ class Rougher {
     const Profile &profile_;
     const RoughingPlan &plan_;
     std::vector<ProfileMove> moves_;
-    double surface_ = 0;            ///< of the material: the height of the cycle's start
-    double top_ = 0;                ///< of the layers
-    long long layer_ = 0;           ///< the next one, from the top
-    double rim_ = 0;                ///< of the pocket that it is in
-    bool isPastBeginning_ = false;  ///< the first descent is over: what goes down from here on are pockets
+    double surface_ = 0;   ///< of the material: the height of the cycle's start
+    double top_ = 0;       ///< of the layers
+    long long layer_ = 0;  ///< the next one, from the top
+    double rim_ = 0;       ///< of the pocket that it is in
     bool isInPocket_ = false, isTooLong_ = false;
 };
 
 void add_move(std::vector<ProfileMove> &moves, const ProfileSegment &segment, Point end, bool isRapid) {
     const bool isArc = segment.isArc && !isRapid;
-    if (isArc && !moves.empty() && moves.back().isArc && moves.back().source == segment.source) {
+    const bool isGoingOn = isArc && !moves.empty() && moves.back().isArc &&
+                           moves.back().source == segment.source && moves.back().centre == segment.centre;
+    if (isGoingOn) {
         moves.back().end = end;
         return;
     }
@@ -89,6 +90,11 @@ bool Rougher::isUnderTool(Point at) const {
 
 /// Across at one level, aside and back to where it began.
 void Rougher::cut(Point from, Point to, bool isRapid) {
+    if (to.x - from.x < plan_.narrowest) {
+        moves_.push_back({false, false, to, {}, 1, -1});
+        moves_.push_back({false, false, from, {}, 1, -1});
+        return;
+    }
     const double half = std::fabs(to.x - from.x) / 2.0;
     const double away = plan_.retract < 0.0 || plan_.retract > half ? half : plan_.retract;
     moves_.push_back({false, false, to, {}, 1, -1});
@@ -102,10 +108,6 @@ void Rougher::descend(std::size_t index) {
     const bool isEntry = index == 0;
     bool isCut = false;
     const bool isForPocketsOnly = plan_.pockets == RoughingPlan::Pockets::ONLY;
-    if (isForPocketsOnly && !isPastBeginning_) {  // the other cycle has cut what lies before the first pocket
-        move_to(segment, segment.end, false);
-        return;
-    }
     if (isForPocketsOnly && !isInPocket_) {
         rim_ = segment.start.y;
         top_ = std::fmin(rim_, surface_);
@@ -133,7 +135,6 @@ void Rougher::descend(std::size_t index) {
 
 void Rougher::rise(const ProfileSegment &segment) {
     move_to(segment, segment.end, false);
-    isPastBeginning_ = true;
     const double steps = std::floor((segment.end.y - level() + TINY) / plan_.increment);
     layer_ = std::max(0LL, layer_ - static_cast<long long>(std::clamp(steps, 0.0, 1e9)));
     isInPocket_ = isInPocket_ && segment.end.y < rim_ - TINY;
@@ -146,7 +147,8 @@ void Rougher::follow_envelope(std::size_t first) {
     for (std::size_t i = first; i < profile_.size();) {
         ProfileSegment segment = profile_[i];
         segment.start = at;
-        const bool isSameArc = i > first && segment.isArc && segment.source == profile_[i - 1].source;
+        const bool isSameArc = i > first && segment.isArc && segment.source == profile_[i - 1].source &&
+                               segment.centre == profile_[i - 1].centre;
         const bool isVisited = plan_.isVisitingStarts || i == first || i + 1 == profile_.size() ||
                                (!moves_.empty() && moves_.back().isArc);
         if (isNew && isVisited && !isSameArc) {

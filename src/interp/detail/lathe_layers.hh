@@ -22,6 +22,7 @@ struct RoughingPlan {
     enum class Pockets { ALL, SKIP, ONLY };  ///< G71, G71.1, G71.2
     Pockets pockets = Pockets::ALL;
     double increment = 1, retract = 0.5;
+    double narrowest = 0;           ///< a layer shorter than this is cut there and back: no place to retract
     bool isVisitingStarts = false;  ///< G71.1: a move without length to where each segment begins, as in the
                                     ///< field's outputs
 };

@@ -51,22 +51,23 @@ ProfileSegment around(Point corner, Point from, Point to, double by) {
 /// Where the moved neighbours of a nearly straight corner meet, prolonged if need be. None when that is not
 /// next to where they end.
 std::optional<Point> meeting_point(const ProfileSegment &before, const ProfileSegment &after, Point corner,
-                                   double by) {
-    constexpr double NEAR = 0.1, MISS = 0.001;
+                                   double by, double tolerance) {
+    const double near = 100.0 * tolerance;
     Crossings found = crossings(before, after);
     if (found.count == 0 && before.isArc != after.isArc) {  // they pass each other by less than rounding
         const ProfileSegment &arc = before.isArc ? before : after, &straight = before.isArc ? after : before;
         const Point along = unit(straight.start, straight.end);
         const Point to_centre{arc.centre.x - straight.start.x, arc.centre.y - straight.start.y};
         const Point foot = sum(straight.start, along, dot(to_centre, along));
-        found = {std::fabs(distance(foot, arc.centre) - radius_of(arc)) < MISS ? 1 : 0, {foot, foot}};
+        found = {std::fabs(distance(foot, arc.centre) - radius_of(arc)) < tolerance ? 1 : 0, {foot, foot}};
     }
     std::optional<Point> best;
     for (int i = 0; i < found.count; ++i) {
         const Point point = found.points[i];
         const bool isBetween = point.x > before.start.x + SAME_X && point.x < after.end.x - SAME_X;
-        const bool isNear = distance(point, before.end) < NEAR && distance(point, after.start) < NEAR &&
-                            distance(point, corner) > by - SAME_HEIGHT && distance(point, corner) < by + MISS;
+        const bool isNear = distance(point, before.end) < near && distance(point, after.start) < near &&
+                            distance(point, corner) > by - SAME_HEIGHT &&
+                            distance(point, corner) < by + tolerance;
         if (isBetween && isNear && (!best || point.x < best->x)) {
             best = point;
         }
@@ -74,45 +75,53 @@ std::optional<Point> meeting_point(const ProfileSegment &before, const ProfileSe
     return best;
 }
 
+/// Appends a piece, and a line to it over the gap that the rounded numbers of an arc leave before it.
+void append_piece(Profile &chain, const ProfileSegment &piece) {
+    if (!chain.empty() && piece.start.x > chain.back().end.x) {
+        chain.push_back(line(chain.back().end, piece.start));
+    }
+    chain.push_back(piece);
+}
+
 /// What the moved path needs at the corner before `next`: an arc when it is convex, or no more than another
 /// common point when it is nearly straight.
 void join(Profile &chain, const ProfileSegment &before, const ProfileSegment &after, double by,
-          std::optional<ProfileSegment> &next, bool isBeforeThere) {
+          double tolerance, std::optional<ProfileSegment> &next) {
     const Point corner = after.start;
     const Point from = direction(before, before.end), to = direction(after, corner);
-    constexpr double STRAIGHT = 1e-9, SHORTEST_ARC = 0.01;
+    constexpr double STRAIGHT = 1e-9;
+    const double shortest_arc = 10.0 * tolerance;
+    const bool isBeforeThere = moved(before, by).has_value();
     const double bend = cross(from, to);
-    const bool isNearlyStraight = by * distance(from, to) < SHORTEST_ARC && dot(from, to) > 0.0;
+    const bool isNearlyStraight = by * distance(from, to) < shortest_arc && dot(from, to) > 0.0;
     if (isNearlyStraight && next && isBeforeThere && !isUpright(chain.back()) && !isUpright(*next)) {
         if (distance(chain.back().end, next->start) < SAME_HEIGHT) {
             return;
         }
-        if (const std::optional<Point> meeting = meeting_point(chain.back(), *next, corner, by)) {
+        if (const std::optional<Point> meeting = meeting_point(chain.back(), *next, corner, by, tolerance)) {
             chain.back().end = next->start = *meeting;
             return;
         }
     }
     const bool isReversal = std::fabs(bend) <= STRAIGHT && dot(from, to) < 0.0;
     if (bend < -STRAIGHT || (isReversal && from.y > 0.0)) {
-        chain.push_back(around(corner, from, to, by));
+        append_piece(chain, around(corner, from, to, by));
     }
 }
 
 /// The moved segments and the arcs around convex corners, in order; they may cross each other.
-Profile chain_of(const Profile &profile, double by) {
+Profile chain_of(const Profile &profile, double by, double tolerance) {
     Profile chain;
-    bool isBeforeThere = false;
     for (std::size_t i = 1; i < profile.size(); ++i) {
         const ProfileSegment &segment = profile[i];
         std::optional<ProfileSegment> next = moved(segment, by);
         if (i > 1) {
-            join(chain, profile[i - 1], segment, by, next, isBeforeThere);
+            join(chain, profile[i - 1], segment, by, tolerance, next);
         } else if (direction(segment, segment.start).y < -SAME_HEIGHT) {
             chain.push_back(around(segment.start, {1.0, 0.0}, direction(segment, segment.start), by));
         }
-        isBeforeThere = next.has_value();
         if (next) {
-            chain.push_back(*next);
+            append_piece(chain, *next);
         }
     }
     return chain;
@@ -220,21 +229,22 @@ Profile edge_of(const Profile &pieces, const std::vector<Run> &runs) {
 
 }  // namespace
 
-Profile offset_profile(const Profile &profile, double by) {
+Profile offset_profile(const Profile &profile, double by, double tolerance) {
     if (by == 0.0 || profile.size() < 2) {
         return profile;
     }
-    const Profile chain = chain_of(profile, by);
-    Profile pieces;
-    std::ranges::copy_if(chain, std::back_inserter(pieces),
-                         [](const ProfileSegment &piece) { return !isUpright(piece); });
+    const Profile chain = chain_of(profile, by, tolerance);
     const ProfileSegment &last = profile.back();
     const Point heading = direction(last, last.end);
     const Point end = sum(last.end, {-heading.y, heading.x}, by);
     const bool isRisingAtEnd = heading.y > SAME_HEIGHT;
+    Profile all = chain;
     if (isRisingAtEnd) {  // its own end shadows what lies behind it
-        pieces.push_back(around(last.end, heading, {1.0, 0.0}, by));
+        append_piece(all, around(last.end, heading, {1.0, 0.0}, by));
     }
+    Profile pieces;
+    std::ranges::copy_if(all, std::back_inserter(pieces),
+                         [](const ProfileSegment &piece) { return !isUpright(piece); });
     std::vector<Run> runs = highest_runs(pieces);
     if (isRisingAtEnd) {
         const auto cap = std::ranges::find_if(runs, [&](const Run &run) {

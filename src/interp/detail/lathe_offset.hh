@@ -10,7 +10,8 @@ namespace mw::interp::detail {
 /// The upper edge of all circles of the radius `by`, which is not negative, around points of the profile. It
 /// begins and ends square to the profile's ends; where the profile falls from its first point, that point's
 /// circle leads to it, so that the way to the beginning does not cross the material. The first segment keeps
-/// its start and leads to the edge.
-Profile offset_profile(const Profile &profile, double by);
+/// its start and leads to the edge. Neighbours that are nearly straight meet without an arc between them
+/// where that leaves the edge by less than `tolerance`.
+Profile offset_profile(const Profile &profile, double by, double tolerance);
 
 }  // namespace mw::interp::detail

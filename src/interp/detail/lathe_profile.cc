@@ -130,16 +130,12 @@ double sweep(const ProfileSegment &arc, Point from, Point to) {
 }
 
 Crossings crossings(const ProfileSegment &a, const ProfileSegment &b) {
-    // The ends of programmed arcs are rounded: the wider circle reaches a neighbour that touches the arc.
-    const auto radius = [](const ProfileSegment &arc) {
-        return std::fmax(radius_of(arc), distance(arc.centre, arc.end));
-    };
     if (a.isArc && b.isArc) {
-        return cross_circles(a.centre, radius(a), b.centre, radius(b));
+        return cross_circles(a.centre, radius_of(a), b.centre, radius_of(b));
     }
     if (a.isArc || b.isArc) {
         const ProfileSegment &arc = a.isArc ? a : b, &line = a.isArc ? b : a;
-        return cross_line_circle(line.start, unit(line.start, line.end), arc.centre, radius(arc));
+        return cross_line_circle(line.start, unit(line.start, line.end), arc.centre, radius_of(arc));
     }
     const Point da = unit(a.start, a.end), db = unit(b.start, b.end);
     const double sine = cross(da, db);
@@ -159,12 +155,13 @@ std::optional<ProfileSegment> moved(const ProfileSegment &segment, double by) {
         out.end = sum(segment.end, left, by);
         return out;
     }
-    const double inwards = by * segment.turn;
-    if (std::fmin(radius_of(segment), distance(segment.centre, segment.end)) - inwards < TINY) {
+    const double radius = radius_of(segment) - by * segment.turn;
+    if (radius < TINY) {
         return std::nullopt;
     }
-    out.start = sum(segment.start, unit(segment.centre, segment.start), -inwards);
-    out.end = sum(segment.end, unit(segment.centre, segment.end), -inwards);
+    // One radius, though the numbers of a programmed arc may give two.
+    out.start = sum(segment.centre, unit(segment.centre, segment.start), radius);
+    out.end = sum(segment.centre, unit(segment.centre, segment.end), radius);
     return out;
 }
 

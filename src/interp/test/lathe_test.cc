@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // G70 to G72: what they cut, what they refuse, and that they always end.
 #include <cmath>
-#include <random>
 #include <string>
 
 #include <fmt/format.h>
@@ -149,6 +148,128 @@ TEST(LatheCycle, refuses_what_cannot_be_cut_I1) {
               std::string::npos);
 }
 
+/// A profile that ends lower than it begins: a groove whose far wall it leaves out.
+constexpr const char *LOW_END = "O100 sub\n"
+                                "G0 X10\n"
+                                "G1 Z-10\n"
+                                "G1 X6\n"
+                                "G1 Z-20\n"
+                                "O100 endsub\n";
+
+TEST(LatheCycle, a_profile_that_ends_lower_is_cut_in_layers_from_the_start_I1) {
+    EXPECT_EQ(moves_of(LOW_END, "G71 Q100 X18 I4 R1"),
+              "r20.000,2.000 r18.000,2.000 r18.000,2.000 r18.000,2.000 f18.000,-20.000 r19.000,-19.000 "
+              "r19.000,1.000 r18.000,2.000 r14.000,2.000 f14.000,-20.000 r15.000,-19.000 r15.000,1.000 "
+              "r14.000,2.000 r10.000,2.000 f10.000,-10.000 f10.000,-20.000 r11.000,-19.000 r11.000,-11.000 "
+              "f10.000,-10.000 f6.000,-10.000 f6.000,-20.000 f18.000,-20.000 ");
+    // Pockets left out: straight over the groove.
+    const std::string skipping = moves_of(LOW_END, "G71.1 Q100 X18 I4 R1");
+    EXPECT_EQ(skipping.find("f6.000"), std::string::npos) << skipping;
+    EXPECT_NE(skipping.find("f10.000,-20.000 f18.000,-20.000"), std::string::npos) << skipping;
+}
+
+TEST(LatheCycle, a_start_below_the_profile_bores_in_layers_I1) {
+    const std::string bore = "O100 sub\nG0 X10\nG1 Z-10\nG1 X6\nG1 Z-20\nO100 endsub\nG0 Z2\nG0 X3\n";
+    EXPECT_EQ(
+        moves_of(bore, "G71 Q100 X3 D0.5 I3 R1"),
+        "r0.000,2.000 r3.000,2.000 r20.000,2.000 r3.000,2.000 r3.000,2.000 r3.000,2.000 f3.000,-20.000 "
+        "r2.000,-19.000 r2.000,1.000 r3.000,2.000 r6.000,2.000 f6.000,-9.500 r5.000,-8.500 r5.000,1.000 "
+        "r6.000,2.000 r9.000,2.000 f9.000,-9.500 r8.000,-8.500 r8.000,1.000 r9.000,2.000 r9.500,2.000 "
+        "f9.500,-9.500 f6.000,-9.500 f5.500,-20.000 f3.000,-20.000 ");
+}
+
+TEST(LatheCycle, where_the_start_tells_no_side_it_is_refused_I1) {
+    const std::string both = "O100 sub\nG0 Z0\nG1 X12 Z-5\nG1 X8 Z-15\nO100 endsub\n";
+    EXPECT_NE(error_of(both, "G71 Q100 X10 I1").find("both sides"), std::string::npos);
+    EXPECT_NE(error_of(both, "G70 Q100 X10 D1").find("both sides"), std::string::npos);
+    EXPECT_FALSE(moves_of(both, "G70 Q100 X10").empty()) << "no distance, no side";
+}
+
+TEST(LatheCycle, a_distance_that_lifts_the_profile_above_the_start_is_kept_I1) {
+    EXPECT_EQ(moves_of("O100 sub\nG0 X9\nG1 Z-10\nG1 X10\nG1 Z-20\nO100 endsub\n", "G71 Q100 X10.5 D2 I1"),
+              "r20.000,2.000 r10.500,2.000 r10.500,2.000 f11.000,2.000 f11.000,-8.268 f12.000,-20.000 ");
+}
+
+TEST(LatheCycle, lines_of_the_profile_before_its_first_code_are_straight_I1) {
+    const std::string expected = moves_of("O100 sub\nG1 X5\nG1 Z-10\nG1 X15\nO100 endsub\n", "G70 Q100");
+    for (const char *outside : {"G80\n", "G0 X20 Z2\n", "G1 X20 Z2\n", "G2 X20 Z2 I1\n"}) {
+        Machine machine;
+        ASSERT_EQ(machine.run("G18 G21 G8 F100 G64\nO100 sub\nX5\nZ-10\nX15\nO100 endsub\nG0 X20 Z2\n" +
+                              std::string(outside) + "G70 Q100\n"),
+                  Step::PROGRAM_END)
+            << outside << machine.error();
+        ASSERT_GE(machine.record.lines.size(), 3u);
+        const LineMove &last = machine.record.lines.back();
+        EXPECT_EQ(last.end[0], 15.0) << outside;
+        EXPECT_EQ(last.end[2], -10.0) << outside;
+        EXPECT_EQ(machine.record.lines[machine.record.lines.size() - 2].end[0], 5.0) << outside;
+    }
+    EXPECT_NE(expected.find("r5.000,2.000 f5.000,-10.000 f15.000,-10.000"), std::string::npos) << expected;
+}
+
+TEST(LatheCycle, the_first_move_of_a_profile_is_the_way_to_it_however_short_I1) {
+    const std::string moves = moves_of("O100 sub\nG0 X20 Z2\nG1 Z-10\nG1 X25\nO100 endsub\n", "G70 Q100");
+    EXPECT_NE(moves.find("r20.000,2.000 f20.000,-10.000 f25.000,-10.000"), std::string::npos) << moves;
+    Machine machine;
+    ASSERT_EQ(machine.run("G18 G21 F100\nO100 sub\nG3 X20 Z-2 K-10 I0\nG1 Z-9\nO100 endsub\nG0 X16 Z2\n"
+                          "G70 Q100\n"),
+              Step::FAILED)
+        << "the arc is a cut, and does not fit";
+    ASSERT_EQ(machine.run("G18 G21 F100\nO100 sub\nG3 X20 Z-2 K-4 I0\nG1 Z-9\nO100 endsub\nG0 X16 Z2\n"
+                          "G70 Q100\n"),
+              Step::PROGRAM_END)
+        << machine.error();
+    EXPECT_EQ(machine.record.arcs.size(), 1u);
+}
+
+TEST(LatheCycle, g70_is_compensated_and_roughing_is_not_I1) {
+    const std::string profile = "O100 sub\nG0 X5\nG1 Z-10\nG1 X15\nG1 Z-20\nO100 endsub\n";
+    Machine machine;
+    ASSERT_EQ(machine.run("G18 G21 G8 F100 G64\n" + profile + "G0 X20 Z2\nG42.1 D2\nG70 Q100\nG40\nG0 X30\n"),
+              Step::PROGRAM_END)
+        << machine.error();
+    std::string moves;
+    for (const LineMove &move : machine.record.lines) {
+        moves += fmt::format("{:.3f},{:.3f} ", move.end[0], move.end[2]);
+    }
+    EXPECT_NE(moves.find("6.000,1.000 6.000,-9.000 15.000,-9.000 16.000,-20.000"), std::string::npos)
+        << moves;
+    ASSERT_EQ(machine.record.arcs.size(), 1u) << "around the convex corner";
+    for (const char *code : {"G71", "G71.1", "G71.2", "G72", "G72.1", "G72.2"}) {
+        EXPECT_NE(error_of(profile, "G42.1 D2\n" + std::string(code) + " Q100").find("compensation"),
+                  std::string::npos)
+            << code;
+    }
+}
+
+TEST(LatheCycle, g70_leaves_a_hump_above_its_start_alone_between_passes_I1) {
+    const std::string hump = "O100 sub\nG0 X10\nG1 Z-5\nG1 X16 Z-8\nG1 X10 Z-11\nG1 Z-20\nO100 endsub\n";
+    const std::string moves = moves_of(hump, "G70 Q100 X12 D1 E0 P2");
+    EXPECT_NE(moves.find("f16.500,-19.500 r16.500,2.000 r12.000,2.000"), std::string::npos) << moves;
+}
+
+TEST(LatheCycle, g70_takes_the_side_of_the_roughing_before_it_I1) {
+    // A dish: falling along X as well as along Z. Turned, D lies at its other side.
+    const std::string dish = "O100 sub\nG0 X20 Z0\nG1 X10 Z-5\nG1 X2 Z-6\nO100 endsub\n";
+    EXPECT_NE(error_of(dish, "G70 Q100 X22 Z2 D0.5").find("opposite sides"), std::string::npos);
+    EXPECT_FALSE(moves_of(dish, "G70 Q100 X22 Z2").empty());
+    const std::string faced = moves_of(dish, "G72 Q100 X22 Z2 D0.5 I2\nG70 Q100 X22 Z2 D0.5 E0.5");
+    EXPECT_NE(faced.rfind("r20.000,0.500 f9.853,-4.514 f1.938,-5.504"), std::string::npos) << faced;
+}
+
+TEST(LatheCycle, distances_below_0_are_refused_I1) {
+    EXPECT_NE(error_of(SHAFT, "G71 Q100 D-0.5").find("D of 0 or more"), std::string::npos);
+    EXPECT_NE(error_of(SHAFT, "G70 Q100 E-0.5").find("E of 0 or more"), std::string::npos);
+}
+
+TEST(LatheCycle, g71_2_cuts_what_falls_from_the_first_point_in_layers_too_I1) {
+    const std::string moves =
+        moves_of("O100 sub\nG0 X12 Z0\nG1 X6\nG1 Z-10\nG1 X14\nO100 endsub\n", "G71.2 Q100 X14 Z2 I2 R0.5");
+    for (const char *layer : {"f12.000,-10.000", "f10.000,-10.000", "f8.000,-10.000", "f6.000,-10.000"}) {
+        EXPECT_NE(moves.find(layer), std::string::npos) << layer << ": " << moves;
+    }
+}
+
 /// The controlled point of a lathe tool lies beside the centre of its nose, by the tool's orientation.
 TEST(LatheCompensation, orientation_moves_the_path_I1) {
     const double shifts[][2] = {{0, 0}, {-1, 1}, {-1, -1}, {1, -1}, {1, 1},
@@ -189,57 +310,6 @@ TEST(LatheCompensation, refuses_other_orientations_I1) {
     EXPECT_NE(error_of("", "G42.1 D1 L10").find("0 to 9"), std::string::npos);
     EXPECT_NE(error_of("", "G42.1 D1 L-1").find("0 to 9"), std::string::npos);
     EXPECT_NE(error_of("", "G17 G42.1 D1 L1").find("G18"), std::string::npos);
-}
-
-/// Whatever the profile, the cycles end, and no layer goes below it.
-TEST(LatheCycle, random_profiles_are_never_cut_into_I1) {
-    constexpr unsigned SEED = 4711;
-    std::mt19937 random(SEED);
-    const auto number = [&](double low, double high) {
-        return std::round(std::uniform_real_distribution<double>(low, high)(random) * 1e3) / 1e3;
-    };
-    for (int round = 0; round < 200; ++round) {
-        std::string profile = "O100 sub\n";
-        std::vector<std::pair<double, double>> points;  // z, x
-        double z = 0, x = number(2, 10);
-        profile += fmt::format("G0 X{:.4f} Z0\n", x);
-        points.emplace_back(z, x);
-        const int count = static_cast<int>(number(2, 9));
-        for (int i = 0; i < count; ++i) {
-            z -= number(0, 1) < 0.2 ? 0.0 : number(0.1, 5);
-            x = std::fmax(0.5, x + number(-3, 4));
-            profile += fmt::format("G1 X{:.4f} Z{:.4f}\n", x, z);
-            points.emplace_back(z, x);
-        }
-        profile += "O100 endsub\n";
-        const char *codes[] = {"G71", "G71.1", "G71.2", "G70"};
-        const std::string code = codes[round % 4];
-        Machine machine;
-        const double increment = number(0.3, 3);
-        const std::string cycle = code + " Q100" + (code == "G70" ? "" : fmt::format(" I{:.3f}", increment));
-        const Step step = machine.run("G18 G21 F100\n" + profile + "G0 X30 Z1\n" + cycle + "\n");
-        ASSERT_EQ(step, Step::PROGRAM_END)
-            << machine.error() << " seed " << SEED << " round " << round << '\n'
-            << profile << cycle;
-        for (const LineMove &move : machine.record.lines) {
-            // The lowest the profile is at this z.
-            double lowest = 1e9;
-            for (std::size_t i = 1; i < points.size(); ++i) {
-                const auto [z0, x0] = points[i - 1];
-                const auto [z1, x1] = points[i];
-                if (move.end[2] <= z0 + 1e-6 && move.end[2] >= z1 - 1e-6) {
-                    const double part = z0 - z1 < 1e-9 ? 0.0 : (z0 - move.end[2]) / (z0 - z1);
-                    lowest = std::fmin(lowest, z0 - z1 < 1e-9 ? std::fmin(x0, x1) : x0 + part * (x1 - x0));
-                }
-            }
-            const bool isBeside = lowest > 1e8;
-            EXPECT_TRUE(isBeside || points.back().second < points.front().second ||
-                        move.end[0] > lowest - 1e-3)
-                << "round " << round << " seed " << SEED << " x " << move.end[0] << " z " << move.end[2]
-                << '\n'
-                << profile << cycle;
-        }
-    }
 }
 
 TEST(Compensation, the_move_after_it_is_straight_and_a_thread_is_one_I1) {
