@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/atomic_file.hh"
+#include "base/text.hh"
 
 namespace mw::machine {
 namespace {
@@ -178,10 +179,10 @@ void Operator::show_messages() {
         switch (message.kind) {
         case task::MessageKind::OPERATOR_ERROR:
             last_error_ = message.text;
-            fmt::print(stderr, "{}\n", message.text);
+            fmt::print(stderr, "{}\n", printable(message.text));
             break;
-        case task::MessageKind::OPERATOR_DISPLAY: fmt::print("{}\n", message.text); break;
-        case task::MessageKind::OPERATOR_TEXT: fmt::print("{}\n", message.text); break;
+        case task::MessageKind::OPERATOR_DISPLAY: fmt::print("{}\n", printable(message.text)); break;
+        case task::MessageKind::OPERATOR_TEXT: fmt::print("{}\n", printable(message.text)); break;
         }
     }
 }
