@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "base/stop_signals.hh"
+#include "base/text.hh"
 
 namespace mw::app {
 namespace {
@@ -128,7 +129,7 @@ bool Panel::isWaitingForPerson() const {
 void Panel::show(const task::Message &message) {
     clear_line();
     const bool isError = message.kind == task::MessageKind::OPERATOR_ERROR;
-    fmt::print(isError ? stderr : stdout, "{}\n", message.text);
+    fmt::print(isError ? stderr : stdout, "{}\n", printable(message.text));
 }
 
 void Panel::clear_line() {

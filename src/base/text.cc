@@ -145,6 +145,21 @@ std::size_t write_fixed4(std::span<char, FIXED4_SIZE> out, double value) {
     return static_cast<std::size_t>(buffer + MOST - at);
 }
 
+std::string printable(std::string_view text) {
+    constexpr unsigned char DELETE = 0x7f, C1_LEAD = 0xc2, C1_FIRST = 0x80, C1_LAST = 0x9f;
+    std::string out(text);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const auto c = static_cast<unsigned char>(out[i]);
+        const auto next = i + 1 < out.size() ? static_cast<unsigned char>(out[i + 1]) : 0;
+        if ((c < ' ' && c != '\t' && c != '\n') || c == DELETE) {
+            out[i] = '?';
+        } else if (c == C1_LEAD && next >= C1_FIRST && next <= C1_LAST) {
+            out[i] = out[i + 1] = '?';
+        }
+    }
+    return out;
+}
+
 std::string_view trim(std::string_view text) {
     while (!text.empty() && isBlank(text.front())) {
         text.remove_prefix(1);

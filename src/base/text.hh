@@ -27,6 +27,9 @@ inline constexpr std::size_t FIXED4_SIZE = 320;
 /// Writes `value` as printf's "%.4f" does in the C locale, without an end. @return its length
 std::size_t write_fixed4(std::span<char, FIXED4_SIZE> out, double value);
 
+/// `text` for a terminal: control characters but tabs and newlines become question marks, one for each byte.
+std::string printable(std::string_view text);
+
 std::string_view trim(std::string_view text);
 std::string to_lower(std::string_view text);
 std::string to_upper(std::string_view text);

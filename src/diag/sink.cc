@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "base/text.hh"
+
 namespace mw::diag {
 namespace {
 
@@ -15,11 +17,17 @@ const char *name_of(Severity severity) {
     return "error";
 }
 
+/// A byte of UTF-8 that goes on with the character before.
+bool isContinuation(char c) {
+    return (static_cast<unsigned char>(c) & 0xc0U) == 0x80U;
+}
+
 /// Blanks under the text up to the column, tabs kept so that the caret lines up.
 std::string caret_line(const std::string &text, int column) {
     std::string out;
     for (int i = 0; i + 1 < column && i < static_cast<int>(text.size()); ++i) {
-        out += text[static_cast<std::size_t>(i)] == '\t' ? '\t' : ' ';
+        const char c = text[static_cast<std::size_t>(i)];
+        out += isContinuation(c) ? "" : (c == '\t' ? "\t" : " ");
     }
     return out + '^';
 }
@@ -32,11 +40,18 @@ std::string shortened(const std::string &line, int &column) {
         return line;
     }
     const std::size_t at = static_cast<std::size_t>(column > 0 ? column - 1 : 0);
-    const std::size_t first = at > BEFORE ? std::min(at - BEFORE, line.size()) : 0;
+    std::size_t first = at > BEFORE ? std::min(at - BEFORE, line.size()) : 0;
+    std::size_t last = std::min(first + LONGEST, line.size());
+    while (first < at && isContinuation(line[first])) {
+        ++first;
+    }
+    while (last > first && last < line.size() && isContinuation(line[last])) {
+        --last;
+    }
     const std::string before = first > 0 ? MORE : "";
-    const std::string after = line.size() - first > LONGEST ? MORE : "";
+    const std::string after = last < line.size() ? MORE : "";
     column = column > 0 ? static_cast<int>(at - first + before.size()) + 1 : 0;
-    return before + line.substr(first, LONGEST) + after;
+    return before + line.substr(first, last - first) + after;
 }
 
 /// One line for each caller, but one for a run of the same.
@@ -66,7 +81,7 @@ std::string Diagnostic::str() const {
         out += " (" + what.hint + ')';
     }
     const std::string rest = context();
-    return rest.empty() ? out : out + '\n' + rest;
+    return printable(rest.empty() ? out : out + '\n' + rest);
 }
 
 std::string Diagnostic::context() const {
@@ -80,7 +95,7 @@ std::string Diagnostic::context() const {
         }
     }
     out += callers_text(called_from);
-    return out.empty() ? out : out.substr(1);
+    return out.empty() ? out : printable(out.substr(1));
 }
 
 void Sink::report(Diagnostic diagnostic) {

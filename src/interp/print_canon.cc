@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "interp/print_canon.hh"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -25,7 +27,7 @@ constexpr std::string_view NO_NUMBER = "N.....";
 
 }  // namespace
 
-PrintCanon::PrintCanon(std::FILE *out) : out_(out) {
+PrintCanon::PrintCanon(std::FILE *out) : out_(out), isTerminal_(::isatty(::fileno(out)) == 1) {
     head_.fill(' ');
     head_[COUNTER_WIDTH - 1] = '0';
     set_prefix(NO_NUMBER);
@@ -345,16 +347,20 @@ void PrintCanon::finish() {
     put("FINISH()");
 }
 
+std::string PrintCanon::shown(std::string_view text) const {
+    return isTerminal_ ? printable(text) : std::string(text);
+}
+
 void PrintCanon::comment(std::string_view text) {
-    put(fmt::format("COMMENT(\"{}\")", text));
+    put(fmt::format("COMMENT(\"{}\")", shown(text)));
 }
 
 void PrintCanon::message(std::string_view text) {
-    put(fmt::format("MESSAGE(\"{}\")", text));
+    put(fmt::format("MESSAGE(\"{}\")", shown(text)));
 }
 
 void PrintCanon::print(std::string_view text) {
-    fmt::print(out_, "{}\n", text);
+    fmt::print(out_, "{}\n", shown(text));
 }
 
 void PrintCanon::log_open(std::string_view path, bool isAppending) {
@@ -362,7 +368,7 @@ void PrintCanon::log_open(std::string_view path, bool isAppending) {
 }
 
 void PrintCanon::log(std::string_view text) {
-    put(fmt::format("LOG(\"{}\")", text));
+    put(fmt::format("LOG(\"{}\")", shown(text)));
 }
 
 void PrintCanon::log_close() {
@@ -374,7 +380,7 @@ void PrintCanon::reload_tools() {
 }
 
 void PrintCanon::canon_error(std::string_view text) {
-    put(fmt::format("CANON_ERROR({})", text));
+    put(fmt::format("CANON_ERROR({})", shown(text)));
 }
 
 void PrintCanon::user_m_code(int code, double p, double q) {

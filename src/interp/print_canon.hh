@@ -97,10 +97,13 @@ class PrintCanon final : public Canon {
     void count_line();
     void set_prefix(std::string_view prefix);
     void put(std::string_view call);
+    /// Text of a program as it may be written: nothing that steers a terminal.
+    std::string shown(std::string_view text) const;
     template <std::size_t SIZE>
     void put_straight(const char (&name)[SIZE], const Pose &end);
 
     std::FILE *out_;
+    bool isTerminal_ = false;
     bool isPrefixNumbered_ = false;
     std::string line_;
     std::array<Coordinate, geom::AXIS_U> coordinates_;

@@ -163,7 +163,10 @@ void Run::report_failure() {
         const std::string context = error.context();
         fmt::print(stderr, "{}{}{}\n", error.what.place.str(), context.empty() ? "" : "\n", context);
     }
-    fmt::print(stderr, "{}\n{}\n", error.what.message, error.line_text);
+    // Where scripts read them these two lines are as they are.
+    const bool isTerminal = ::isatty(STDERR_FILENO) == 1;
+    fmt::print(stderr, "{}\n{}\n", isTerminal ? printable(error.what.message) : error.what.message,
+               isTerminal ? printable(error.line_text) : error.line_text);
 }
 
 /// The whole file. At its end without M2, M30 or % an error cannot be passed over.

@@ -109,6 +109,17 @@ TEST(Text, FourDecimalsOfAnyValueAreThoseOfPrintf) {
     }
 }
 
+TEST(Text, PrintableTextSteersNoTerminal) {
+    using namespace std::string_literals;
+    EXPECT_EQ(printable("a\x1b[2J\tb\n\x7f\r\0c"s), "a?[2J\tb\n???c");
+    EXPECT_EQ(printable("gr\xC3\xB6\xC3\x9F"
+                        "e \xC2\x9B"
+                        "1m"),
+              "gr\xC3\xB6\xC3\x9F"
+              "e ??1m");
+    EXPECT_EQ(printable("\xC2"), "\xC2");
+}
+
 TEST(Text, NearestNameIsOfferedOnlyWhenNear) {
     EXPECT_EQ(nearest_name("MAX_VELOCTY", {"MIN_LIMIT", "MAX_VELOCITY"}), "MAX_VELOCITY");
     EXPECT_EQ(nearest_name("ABC", {"MIN_LIMIT", "MAX_VELOCITY"}), "");

@@ -21,6 +21,21 @@ TEST(Sink, LongLinesAreShownAroundTheColumn) {
     EXPECT_EQ(text.substr(end + 1).find('^'), text.find('Q'));
 }
 
+TEST(Sink, NoCharacterIsCutInHalfAndNoControlCharacterGetsOut) {
+    std::string line;
+    for (int i = 0; i < 300; ++i) {
+        line += "\xE2\x88\x92";
+    }
+    for (int column = 290; column < 302; ++column) {
+        const std::string text =
+            Diagnostic{Severity::ERROR, {"m", {"a.ngc", 3, column}, ""}, {}, line}.context();
+        const std::string shown = text.substr(0, text.find('\n'));
+        EXPECT_EQ((shown.size() - shown.find('\xE2')) % 3, 0U) << "with three dots behind: " << column;
+    }
+    const Diagnostic d{Severity::ERROR, {"m\x1b[2J", {"a.ngc", 3, 1}, ""}, {}, "G0 (\x1b]0;x\x07)"};
+    EXPECT_EQ(d.str(), "a.ngc:3:1: error: m?[2J\n  G0 (?]0;x?)\n  ^");
+}
+
 TEST(Sink, RepeatedCallersTakeOneLine) {
     std::vector<SourcePlace> callers(400, SourcePlace{"a.ngc", 2, 0});
     callers.push_back({"a.ngc", 9, 0});

@@ -137,9 +137,8 @@ bool Evaluator::parameter(const Arena &arena, const Node &node, double &out) con
             return fault_.set(fmt::format("{} is not the number of a parameter: it must be whole", index),
                               node.column);
         }
-        return fault_.set(
-            fmt::format("Parameter number out of range: {} is not in 1..{}", index, PARAMETER_COUNT - 1),
-            node.column);
+        return fault_.set("Parameter number out of range", node.column,
+                          fmt::format("{} is not in 1..{}", index, PARAMETER_COUNT - 1));
     }
     out = numbered(number);
     return true;

@@ -2,87 +2,33 @@
 // Cutter radius compensation: the path moved by the tool's radius to its left or right in the selected plane.
 // The end of a move is not final before the next one is known: in a concave corner both offset paths are cut
 // at their intersection, around a convex one an arc is inserted.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 
+#include "interp/detail/comp_corner.hh"
 #include "interp/detail/executor.hh"
 #include "interp/detail/plane_geometry.hh"
 
 namespace mw::interp::detail {
 namespace {
 
-/// Corners turning by less than this are passed as if straight [rad].
-constexpr double STRAIGHT_ANGLE = 0.05;
 constexpr double TINY = 1e-10;
-
-Crossings cross_lines(const CompElement &a, const CompElement &b) {
-    const double sine = cross(a.start_direction, b.start_direction);
-    if (std::fabs(sine) < TINY) {
-        return {};
-    }
-    const Point gap{b.end.x - a.end.x, b.end.y - a.end.y};
-    const Point point = sum(a.end, a.start_direction, cross(gap, b.start_direction) / sine);
-    return {1, {point, point}};
-}
-
-Crossings crossings(const CompElement &a, const CompElement &b) {
-    if (a.isArc && b.isArc) {
-        return cross_circles(a.centre, a.radius, b.centre, b.radius);
-    }
-    if (a.isArc) {
-        return cross_line_circle(b.end, b.start_direction, a.centre, a.radius);
-    }
-    if (b.isArc) {
-        return cross_line_circle(a.end, a.start_direction, b.centre, b.radius);
-    }
-    return cross_lines(a, b);
-}
-
-/// How far an arc turns from `from` to `to` in its direction, 0 to a full turn [rad].
-double sweep(const CompElement &arc, Point from, Point to) {
-    const Point a{from.x - arc.centre.x, from.y - arc.centre.y}, b{to.x - arc.centre.x, to.y - arc.centre.y};
-    double angle = std::atan2(cross(a, b), dot(a, b)) * (arc.rotation > 0 ? 1.0 : -1.0);
-    return angle < -TINY ? angle + 2.0 * std::numbers::pi : angle;
-}
-
-/// Whether the element, ended or begun at `cut` instead, still runs forwards.
-bool isForward(const CompElement &element, Point start, Point end) {
-    if (!element.isArc) {
-        return dot({end.x - start.x, end.y - start.y}, element.start_direction) > -TINY;
-    }
-    return sweep(element, start, end) <= sweep(element, element.start, element.end) + 1e-6 ||
-           distance(element.start, element.end) < TINY;
-}
-
-/// The crossing nearest to the programmed corner at which both elements still run forwards; of two as near,
-/// the one that comes first.
-std::optional<Point> cut_corner(const CompElement &last, const CompElement &next, Point corner) {
-    const Crossings found = crossings(last, next);
-    std::optional<Point> best;
-    double least = 0.0;
-    for (int i = 0; i < found.count; ++i) {
-        const Point point = found.points[i];
-        const bool isBeyond =
-            !last.isArc && dot({point.x - last.end.x, point.y - last.end.y}, last.end_direction) > TINY;
-        constexpr double TIE = 1e-6;
-        const double far = distance(point, corner) + (isBeyond ? TIE : 0.0);
-        const bool isUsable = isForward(last, last.start, point) && isForward(next, point, next.end);
-        if (isUsable && (!best || far < least)) {
-            best = point;
-            least = far;
-        }
-    }
-    return best;
-}
+/// What a contour that leads back over itself at a tip may lose there.
+constexpr double TIP_TOLERANCE_MM = 0.005, MM_PER_INCH = 25.4;
+/// What coordinates with four decimals leave open.
+constexpr double ROUNDING_MM = 0.0005, ROUNDING_INCH = 0.0001;
+/// A rapid move around a corner is made of tangents to the circle about it, each turning by this at most.
+constexpr double RAPID_TURN = std::numbers::pi / 3.0;
 
 }  // namespace
 
 /// The unit vector from the path to the tool's side.
 Point Executor::comp_normal(Point direction) const {
-    return state.comp == CompSide::LEFT ? Point{-direction.y, direction.x} : Point{direction.y, -direction.x};
+    return side_normal(state.comp, direction);
 }
 
 /// From the centre of a lathe tool's nose to its controlled point, by the tool's orientation 1 to 8.
@@ -193,39 +139,55 @@ void Executor::patch_comp(Point end) {
     state.comp_last.end = end;
 }
 
-/// Joins the last element to `next`, whose programmed beginning is `corner`; sets where `next` starts.
-bool Executor::join_comp(CompElement &next, Point corner, bool isRapid) {
-    CompElement &last = state.comp_last;
-    const double angle = std::atan2(cross(last.end_direction, next.start_direction),
-                                    dot(last.end_direction, next.start_direction));
-    const bool isReversal = std::fabs(angle) > std::numbers::pi - 1e-6;
-    const double bend = (last.isArc ? std::copysign(1.0, last.rotation) : 0.0) +
-                        (next.isArc ? std::copysign(1.0, next.rotation) : 0.0);
-    // Which way a reversal turns is in the bend of its arcs; between two lines the tool goes around the end.
-    const double leftwards = isReversal ? -bend : angle;
-    const double turn = state.comp == CompSide::LEFT ? leftwards : -leftwards;  // > 0: towards the tool
-    const CompElement whole = next;
-    next.start = last.end;
-    if ((!isReversal && std::fabs(turn) <= STRAIGHT_ANGLE) || state.comp_radius < TINY) {
-        return true;
+/// The rapid way around a convex corner, which never comes nearer to it than the tool's radius.
+void Executor::send_rapid_around(Point from, Point to, Point corner) {
+    const Point a = unit(corner, from), b = unit(corner, to);
+    const double direction = state.comp == CompSide::LEFT ? -1.0 : 1.0;
+    double turn = std::atan2(cross(a, b), dot(a, b)) * direction;
+    turn = turn < -TINY ? turn + 2.0 * std::numbers::pi : turn;
+    const int pieces = std::max(1, static_cast<int>(std::ceil(turn / RAPID_TURN)));
+    const double half = direction * turn / (2.0 * pieces);
+    const double reach = state.comp_radius / std::cos(half);
+    for (int i = 0; i < pieces; ++i) {
+        const double angle = half * (2 * i + 1), c = std::cos(angle), s = std::sin(angle);
+        const Point way{a.x * c - a.y * s, a.x * s + a.y * c};
+        canon.straight_traverse(in_plane(state.position, sum(corner, way, reach)));
     }
-    if (turn <= 0.0) {
+    canon.straight_traverse(in_plane(state.position, to));
+}
+
+/// Joins the last element to `next`; sets where `next` starts. `what` names the move in errors.
+bool Executor::join_comp(CompElement &next, bool isRapid, std::string_view what) {
+    const Point corner = next.from;
+    const bool isMm = state.units == LengthUnits::MM;
+    const CornerTool tool{state.comp, state.comp_radius,
+                          isMm ? TIP_TOLERANCE_MM : TIP_TOLERANCE_MM / MM_PER_INCH,
+                          isMm ? ROUNDING_MM : ROUNDING_INCH};
+    const Corner passed = decide_corner(state.comp_last, next, corner, tool);
+    switch (passed.kind) {
+    case CornerKind::STRAIGHT:
+        next.start = state.comp_last.end;
+        if (next.isArc && distance(next.from, next.to) < TINY) {
+            next.end = next.start;  // else a whole circle that begins beside its end would be a short arc
+        }
+        return true;
+    case CornerKind::AROUND:
         next.start = sum(corner, comp_normal(next.start_direction), state.comp_radius);
         if (isRapid) {
-            canon.straight_traverse(in_plane(state.position, next.start));
+            send_rapid_around(state.comp_last.end, next.start, corner);
         } else {
             send_comp_arc(next.start, corner, state.comp == CompSide::LEFT ? -1 : 1, state.position);
         }
         return true;
+    case CornerKind::CUT:
+        patch_comp(passed.cut);
+        next.start = passed.cut;
+        return true;
+    case CornerKind::BLOCKED: break;
     }
-    const std::optional<Point> cut = cut_corner(last, whole, corner);
-    if (!cut) {
-        return fault.set("Concave corner cannot be reached by the tool without gouging", 0,
-                         "the moves at the corner are too short for this tool radius");
-    }
-    patch_comp(*cut);
-    next.start = *cut;
-    return true;
+    return fault.set(fmt::format("{} in concave corner cannot be reached by the tool without gouging", what),
+                     0,
+                     "the moves at the corner are too short or too near to each other for this tool radius");
 }
 
 bool Executor::comp_straight(bool isRapid, const Pose &end) {
@@ -234,17 +196,24 @@ bool Executor::comp_straight(bool isRapid, const Pose &end) {
     const Point to{end[axes.first], end[axes.second]};
     const double length = distance(from, to);
     CompElement next;
+    if (!isRapid) {
+        send_inverse_time(straight_length(end));
+    }
     if (length > TINY) {
+        next.from = from;
+        next.to = to;
         next.start_direction = next.end_direction = unit(from, to);
+        next.start = sum(from, comp_normal(next.start_direction), state.comp_radius);
         next.end = sum(to, comp_normal(next.start_direction), state.comp_radius);
         next.isSet = true;
         if (!state.comp_last.isSet) {
+            next.isEntry = true;
             if (length < state.comp_radius - TINY) {
                 return fault.set(
                     "Length of cutter compensation entry move is not greater than the tool radius");
             }
             next.start = sum(from, comp_shift(), -1.0);
-        } else if (!join_comp(next, from, isRapid)) {
+        } else if (!join_comp(next, isRapid, isRapid ? "Straight traverse" : "Straight feed")) {
             return false;
         }
     }
@@ -254,7 +223,6 @@ bool Executor::comp_straight(bool isRapid, const Pose &end) {
     if (isRapid) {
         canon.straight_traverse(in_plane(end, place));
     } else {
-        send_inverse_time(straight_length(end));
         canon.straight_feed(in_plane(end, place));
     }
     if (length > TINY) {
@@ -294,6 +262,8 @@ bool Executor::comp_arc(const ArcPlan &arc) {
     const double turn = arc.rotation > 0 ? 1.0 : -1.0;
     CompElement next;
     next.isArc = next.isSet = true;
+    next.from = from;
+    next.to = to;
     next.rotation = arc.rotation;
     next.centre = {arc.first_centre, arc.second_centre};
     const Point out0 = unit(next.centre, from), out1 = unit(next.centre, to);
@@ -307,16 +277,17 @@ bool Executor::comp_arc(const ArcPlan &arc) {
     next.radius = radius + (isInside ? -state.comp_radius : state.comp_radius);
     next.end = sum(next.centre, out1, next.radius);
     next.start = sum(next.centre, out0, next.radius);
-    if (!state.comp_last.isSet) {
-        if (!enter_comp_by_arc(arc, next)) {
-            return false;
-        }
-    } else if (!join_comp(next, from, false)) {
-        return false;
-    }
     if (state.feed_mode == FeedMode::INVERSE_TIME) {
         send_inverse_time(std::hypot(radius * arc_sweep(arc, from.x, from.y),
                                      arc.end[axes.normal] - state.position[axes.normal]));
+    }
+    if (!state.comp_last.isSet) {
+        next.isEntry = true;
+        if (!enter_comp_by_arc(arc, next)) {
+            return false;
+        }
+    } else if (!join_comp(next, false, "Arc move")) {
+        return false;
     }
     send_comp_arc(next.end, next.centre, arc.rotation, arc.end);
     next.record = canon.size() - 1;

@@ -172,20 +172,20 @@ bool Executor::do_control(const Code &code, const BlockValues &values) {
         return fault.set("The tolerances P and Q of G64 must not be negative",
                          values.column_of(state.tolerance < 0.0 ? 'p' : 'q'));
     }
-    canon.set_motion_control_mode(state.control, state.tolerance);
-    canon.set_naivecam_tolerance(state.naivecam);
     if (values.has('r') && values.hasGroup(Group::SPINDLE)) {
-        return fault.set("The R word could belong to G64 or to M19: put them into two lines",
+        return fault.set("R word is ambiguous on a line with both G64 and M19 - use separate lines",
                          values.column_of('r'));
     }
     const bool isMotionsWord = values.motion != nullptr && (values.motion->words & letters("r")) != 0;
     if (values.has('r') && !isMotionsWord) {
-        constexpr double LOWEST_SCALE = 0.1, HIGHEST_SCALE = 1.0;
+        constexpr double LOWEST_SCALE = 0.1, HIGHEST_SCALE = 1.0, KEPT = -1.0;
         const double r = values.at('r');
         const bool isJerkLimited = r > 0.0;
         canon.set_planner_mode(isJerkLimited ? 1 : 0,
-                               isJerkLimited ? std::fmin(std::fmax(r, LOWEST_SCALE), HIGHEST_SCALE) : 1.0);
+                               isJerkLimited ? std::fmin(std::fmax(r, LOWEST_SCALE), HIGHEST_SCALE) : KEPT);
     }
+    canon.set_motion_control_mode(state.control, state.tolerance);
+    canon.set_naivecam_tolerance(state.naivecam);
     return true;
 }
 

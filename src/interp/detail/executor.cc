@@ -298,7 +298,8 @@ bool Executor::compute_setting(const Arena &arena, const Setting &setting, MadeS
             return false;
         }
         if (!Evaluator::take_number(index, out.number)) {
-            return fault.set(fmt::format("Parameter number out of range: {}", index), setting.column);
+            return fault.set("Parameter number out of range", setting.column,
+                             fmt::format("{} is not in 1..{}", index, PARAMETER_COUNT - 1));
         }
         if (isBuiltInNumber(out.number)) {
             return fault.set(fmt::format("Parameter is readonly: #{}", out.number), setting.column);

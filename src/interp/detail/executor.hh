@@ -321,7 +321,8 @@ class Executor : public BuiltIns {
     Pose in_plane(Pose pose, Point point) const;
     void end_comp();
     void patch_comp(Point end);
-    bool join_comp(CompElement &next, Point corner, bool isRapid);
+    void send_rapid_around(Point from, Point to, Point corner);
+    bool join_comp(CompElement &next, bool isRapid, std::string_view what);
     bool enter_comp_by_arc(const ArcPlan &arc, CompElement &next);
     bool comp_arc(const ArcPlan &arc);
     bool comp_straight(bool isRapid, const Pose &end);

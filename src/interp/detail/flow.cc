@@ -256,6 +256,7 @@ Step Flow::run_block(const BlockView &view) {
     const Block &block = *view.block;
     executor_.fault.clear();
     error_line_ = 0;
+    isEndReached_ = false;
     isContinuable_ = block.oword == NO_ID;
     const int sequence = block.isNumbered ? block.sequence : line_read_;
     const bool isText = !calls_.empty() && calls_.back().kind == CallKind::TEXT;
@@ -325,6 +326,11 @@ void Flow::commit() {
 
 Step Flow::fail_block() {
     executor_.rollback();
+    if (isEndReached_) {
+        isEndReached_ = false;
+        executor_.canon.finish();
+        commit();
+    }
     const Fault &fault = executor_.fault;
     const int line = error_line_ > 0 ? error_line_ : line_read_;
     error_ = {};

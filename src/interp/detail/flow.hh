@@ -146,6 +146,8 @@ class Flow : private ScriptNames {
     bool label_of(const BlockView &view, const OWord &oword, NameId &label);
     bool find_sub(NameId label, std::uint32_t column, Sub &sub);
     bool find_fanuc(NameId label, Sub &sub);
+    std::string called_from(NameId label) const;
+    void note_search();
     Program *load_sub_file(NameId label);
     bool check_depth();
     bool enter(Call &&call, const Sub &sub);
@@ -202,6 +204,7 @@ class Flow : private ScriptNames {
     std::string script_error_;                     ///< as a script has set it
     LoopBudget budget_;
     bool isContinuable_ = false;
+    bool isEndReached_ = false;  ///< by a search for a subroutine that is not there
     diag::Diagnostic error_;
 };
 

@@ -12,12 +12,24 @@ namespace {
 
 constexpr int MAX_CALL_DEPTH = 500;
 
+// Scripts compare these texts, dots and all.
+constexpr char FANUC_TEXT[] = "Fanuc 'O....' subroutine must be called with 'M98'";
+constexpr char FANUC_END_TEXT[] = "Fanuc 'O....' subroutine definition must end with 'M99'";
+constexpr char OWORD_TEXT[] = "'O.... sub' subroutine must be called with 'O.... call'";
+constexpr char OWORD_END_TEXT[] =
+    "'O.... endsub' or 'O.... return' must follow 'O.... sub' subroutine definition";
+
 }  // namespace
 
-/// A definition met from above is passed over.
+/// A definition met from above is passed over; one inside of a subroutine that runs is none.
 bool Flow::run_sub(const OWord &oword) {
     if (!calls_.empty() && calls_.back().sub_line == line_read_ && calls_.back().label == oword.label) {
         return true;
+    }
+    const bool isInSub =
+        !calls_.empty() && calls_.back().kind != CallKind::FANUC && calls_.back().kind != CallKind::TEXT;
+    if (isInSub) {
+        return executor_.fault.set("Nested subroutine definition", oword.column);
     }
     const int end = find_after(line_read_, {OKind::ENDSUB});
     if (end == 0) {
@@ -62,14 +74,27 @@ bool Flow::find_sub(NameId label, std::uint32_t column, Sub &sub) {
         return true;
     }
     if (Sub fanuc; find_fanuc(label, fanuc)) {
-        return executor_.fault.set(
-            fmt::format("Fanuc 'O{}' subroutine must be called with 'M98'", names_.text(label)), column);
+        error_line_ = fanuc.program == program_ ? fanuc.line : 0;
+        return executor_.fault.set(FANUC_TEXT, 0, called_from(label));
     }
+    note_search();
     return executor_.fault.set(
         fmt::format(
             "There is no subroutine o<{0}>: neither in this file nor as {0}.ngc in the subroutine path",
             names_.text(label)),
         column);
+}
+
+/// Which subroutine an error is about, and where it was called.
+std::string Flow::called_from(NameId label) const {
+    const int line = calls_.empty() ? line_read_ : calls_.back().line;
+    return fmt::format("subroutine O{}, called in line {}", names_.text(label), line);
+}
+
+/// The main program has been searched to its end: when that is a closing percent sign, it ends there.
+void Flow::note_search() {
+    const Program *const main = calls_.empty() ? program_ : calls_.front().program;
+    isEndReached_ = !isMdi_ && main->isPercentDelimited() && main->hasClosingPercent();
 }
 
 bool Flow::find_fanuc(NameId label, Sub &sub) {
@@ -216,9 +241,7 @@ bool Flow::run_return(const BlockView &view, const OWord &oword) {
     }
     const Call &call = calls_.back();
     if (call.kind == CallKind::FANUC) {
-        return executor_.fault.set(
-            fmt::format("Fanuc 'O{}' subroutine definition must end with 'M99'", names_.text(call.label)),
-            oword.column);
+        return executor_.fault.set(FANUC_END_TEXT, oword.column, called_from(call.label));
     }
     if (oword.kind == OKind::ENDSUB && oword.label != call.label) {
         return executor_.fault.set(
@@ -239,11 +262,13 @@ bool Flow::call_fanuc() {
     const NameId label = names_.intern(fmt::format("{}", executor_.fanuc_label));
     Sub sub;
     if (!find_fanuc(label, sub)) {
-        const bool isOther = program_->find_sub(label) != 0;
+        if (const int other = program_->find_sub(label); other != 0) {
+            error_line_ = other;
+            return executor_.fault.set(OWORD_TEXT, 0, called_from(label));
+        }
+        note_search();
         return executor_.fault.set(
-            isOther ? fmt::format("'O{} sub' subroutine must be called with 'O{} call'", names_.text(label),
-                                  names_.text(label))
-                    : fmt::format("There is no subroutine O{} for this M98", names_.text(label)));
+            fmt::format("There is no subroutine O{} for this M98", names_.text(label)));
     }
     if (!check_depth()) {
         return false;
@@ -269,9 +294,7 @@ bool Flow::return_fanuc() {
         return executor_.fault.set("M99 must stand in a subroutine, not in a block that a script executes");
     }
     if (calls_.back().kind != CallKind::FANUC) {
-        return executor_.fault.set(
-            fmt::format("'O{0} endsub' or 'O{0} return' must follow 'O{0} sub' subroutine definition",
-                        names_.text(calls_.back().label)));
+        return executor_.fault.set(OWORD_END_TEXT, 0, called_from(calls_.back().label));
     }
     if (calls_.back().again > 0) {
         --calls_.back().again;

@@ -92,8 +92,8 @@ bool Flow::run_oword_kind(const BlockView &view, const OWord &oword) {
     default: return run_loop(view, oword);
     }
     if (!calls_.empty() && calls_.back().kind != CallKind::FANUC && oword.kind == OKind::FANUC) {
-        return executor_.fault.set(
-            fmt::format("Fanuc 'O{}' subroutine must be called with 'M98'", label_text(oword)), oword.column);
+        return executor_.fault.set("Fanuc 'O....' subroutine must be called with 'M98'", oword.column,
+                                   called_from(calls_.back().label));
     }
     return true;
 }

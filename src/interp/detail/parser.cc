@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "interp/detail/odd_characters.hh"
+
 namespace mw::interp::detail {
 namespace {
 
@@ -58,7 +60,14 @@ Block Parser::parse_line(std::string_view line, std::uint32_t line_number_) {
     if (isTooLong) {
         fail(fmt::format("The line is longer than {} characters", MAX_LINE_LENGTH), 1);
     }
-    if (isTooLong || !block(in, out)) {
+    const bool isRead = !isTooLong && block(in, out);
+    if (!isRead && !isTooLong) {
+        if (const auto odd = find_odd_character(line)) {
+            fail(fmt::format("Bad character {} used", odd->name),
+                 static_cast<std::uint32_t>(odd->position) + 1);
+        }
+    }
+    if (!isRead) {
         out.error = static_cast<std::uint32_t>(arena_.errors.size());
         arena_.errors.push_back({error_, error_column_});
     }
@@ -97,7 +106,7 @@ bool Parser::block(Lexer &in, Block &out) {
             return false;
         }
     }
-    return true;
+    return in.position() == in.line().size() || fail("Bad character used", in.column());
 }
 
 bool Parser::line_number(Lexer &in, Block &out) {

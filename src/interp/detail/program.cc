@@ -37,7 +37,7 @@ Result<> Program::prepare() {
         if (Result<> held = text_.hold(); !held) {
             return held;
         }
-        first_content_line_ = last_percent_line_ = 0;
+        first_content_line_ = closing_percent_line_ = 0;
         isPercentDelimited_ = false;
         olines_.clear();
         arena_.clear();
@@ -63,11 +63,16 @@ bool Program::look_at(int line, std::string_view content) {
         return true;
     }
     const bool isPercent = content[first] == '%';
-    if (first_content_line_ == 0) {
+    const bool isBegun = first_content_line_ != 0;
+    if (!isBegun) {
         first_content_line_ = line;
         isPercentDelimited_ = isPercent;
     }
-    last_percent_line_ = isPercent ? line : last_percent_line_;
+    const bool isAtEnd = isPercent && (isBegun || !isPercentDelimited_);
+    closing_percent_line_ = isAtEnd && closing_percent_line_ == 0 ? line : closing_percent_line_;
+    if (closing_percent_line_ != 0) {
+        return true;  // nothing behind it counts
+    }
     const char c = Lexer::lower(content[first]);
     const bool mayBeginWithO = c == 'o' || c == 'n' || c == '/';
     if (!mayBeginWithO || !beginsWithO(content)) {
@@ -81,7 +86,7 @@ bool Program::look_at(int line, std::string_view content) {
 }
 
 bool Program::hasClosingPercent() const {
-    return !isPercentDelimited_ || last_percent_line_ > first_content_line_;
+    return !isPercentDelimited_ || closing_percent_line_ != 0;
 }
 
 /// After blanks, a slash and an N word.

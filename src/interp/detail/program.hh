@@ -82,7 +82,7 @@ class Program {
     std::unordered_map<NameId, int> subs_, fanuc_;
     std::vector<int> bad_olines_;  ///< in order
     bool isPercentDelimited_ = false;
-    int first_content_line_ = 0, last_percent_line_ = 0;
+    int first_content_line_ = 0, closing_percent_line_ = 0;
 };
 
 }  // namespace mw::interp::detail

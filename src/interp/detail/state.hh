@@ -45,6 +45,8 @@ struct Point {
 struct CompElement {
     bool isSet = false;  ///< there was a move since compensation came on
     bool isArc = false;
+    bool isEntry = false;  ///< the move at whose end the tool is beside the contour for the first time
+    Point from, to;        ///< as programmed
     Point start, end;
     Point start_direction, end_direction;  ///< unit vectors
     Point centre;

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A campaign of random contours under cutter compensation, judged by the disc that the tool sweeps.
+// comp_campaign --first N --count M --log FILE [--print SEED]: one line per seed in the log; seeds that it
+// has are not run again. Ends with 1 when a contour was gouged, left standing, or refused without a reason.
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <set>
+#include <string>
+
+#include "base/text.hh"
+#include "interp/test/comp_judge.hh"
+
+namespace mw::interp::test {
+namespace {
+
+struct Totals {
+    std::size_t contours = 0, corners = 0, failed = 0, refused = 0;
+    std::map<std::string, std::size_t> reasons;
+    double wanted = 0, reached = 0;
+};
+
+void count(const CompVerdict &v, Totals &totals) {
+    ++totals.contours;
+    totals.corners += v.corners;
+    totals.failed += v.fault.empty() ? 0 : 1;
+    totals.refused += v.refused.empty() ? 0 : 1;
+    totals.wanted += v.wanted;
+    totals.reached += v.reached;
+    if (!v.refused.empty()) {
+        ++totals.reasons[v.refused];
+    }
+}
+
+std::set<std::string> seeds_in(const char *name) {
+    std::set<std::string> seeds;
+    std::ifstream file(name);
+    for (std::string line; std::getline(file, line);) {
+        seeds.insert(line.substr(0, line.find(' ')));
+    }
+    return seeds;
+}
+
+int run(unsigned first, unsigned count_of, const char *log) {
+    const std::set<std::string> done = seeds_in(log);
+    std::ofstream out(log, std::ios::app);
+    Totals totals;
+    for (unsigned seed = first; seed < first + count_of; ++seed) {
+        if (done.contains(std::to_string(seed))) {
+            continue;
+        }
+        const CompVerdict v = judge_contour(ContourMaker(seed).make());
+        count(v, totals);
+        out << seed << ' ' << v.corners << ' '
+            << (!v.fault.empty()     ? "FAILED " + v.fault
+                : !v.refused.empty() ? "refused: " + v.refused
+                                     : std::string("ok"))
+            << '\n';
+    }
+    fmt::print("{} contours, {} corners: {} failed, {} refused ({:.2f} %), {:.6f} of what is reachable cut\n",
+               totals.contours, totals.corners, totals.failed, totals.refused,
+               100.0 * static_cast<double>(totals.refused) /
+                   static_cast<double>(std::max<std::size_t>(1, totals.contours)),
+               totals.wanted > 0 ? totals.reached / totals.wanted : 1.0);
+    for (const auto &[reason, times] : totals.reasons) {
+        fmt::print("  {} {}\n", times, reason);
+    }
+    return totals.failed == 0 && out.good() ? 0 : 1;
+}
+
+}  // namespace
+
+/// The program, and at each corner its angle and the share of each side that the tool cannot reach.
+void print_contour(unsigned seed) {
+    const CompContour c = ContourMaker(seed).make();
+    fmt::print("(tool radius {:.9f}{}{})\n", c.radius, c.isCrossing ? ", leads over itself" : "",
+               c.isTight ? ", tight" : "");
+    for (std::size_t k = 0; k < c.pieces.size(); ++k) {
+        const FlatPiece &before = k == 0 ? c.entry : c.pieces[k - 1];
+        const Junction met =
+            junction(before, c.pieces[k], c.side * c.radius, tip_tolerance(c), ends_apart(c));
+        fmt::print("(line {}: {:.4f} degrees, {:.4f} and {:.4f} taken{})\n", FIRST_LINE + static_cast<int>(k),
+                   corner_angle(before, c.pieces[k]) * 180.0 / PI, met.before.share, met.behind.share,
+                   met.isCrossing ? ", crossing" : "");
+    }
+    fmt::print("{}M2\n", program_of(c));
+}
+
+}  // namespace mw::interp::test
+
+int main(int argc, char **argv) {
+    const char *log = nullptr;
+    unsigned first = 1, count = 1000;
+    bool isPrinting = false, isSound = argc % 2 == 1;
+    for (int i = 1; i + 1 < argc; i += 2) {
+        const auto number = mw::parse_uint(argv[i + 1]);
+        const unsigned value = number.has_value() ? static_cast<unsigned>(*number) : 0;
+        if (std::strcmp(argv[i], "--log") == 0) {
+            log = argv[i + 1];
+        } else if (std::strcmp(argv[i], "--first") == 0 && number) {
+            first = value;
+        } else if (std::strcmp(argv[i], "--count") == 0 && number) {
+            count = value;
+        } else if (std::strcmp(argv[i], "--print") == 0 && number) {
+            first = value;
+            isPrinting = true;
+        } else {
+            isSound = false;
+        }
+    }
+    if (isPrinting) {
+        mw::interp::test::print_contour(first);
+        return 0;
+    }
+    if (log == nullptr || !isSound) {
+        std::fprintf(stderr, "usage: comp_campaign --first N --count M --log FILE | --print SEED\n");
+        return 2;
+    }
+    return mw::interp::test::run(first, count, log);
+}
