@@ -24,7 +24,9 @@ double v_at(const Phase &p, double t) noexcept {
 
 void Executor::take_commits() noexcept {
     while (const Commit *c = store_.commits.front()) {
-        if (c->isSwitch) {
+        if (c->pass.first != 0) {
+            take_pass(*c);
+        } else if (c->isSwitch) {
             const bool isFree = c->isStop || (!state_.isHeld && !state_.isDropping);
             const bool isSameMean = c->filter == state_.filter || isAtRest();
             const bool isTimely =
@@ -46,7 +48,11 @@ const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
     take_commits();
     state_.cycle = cycle;
     ++state_.tick;
-    advance(period_);
+    if (state_.motion == Motion::LOCKED) {
+        step_locked();
+    } else {
+        advance(period_);
+    }
     const bool isDue = next_switch_.plan != 0 && next_switch_.switch_cycle <= cycle;
     if (isDue) {
         const bool isFree = next_switch_.isStop || (!state_.isHeld && !state_.isDropping);
@@ -272,6 +278,11 @@ void Executor::finish_drop() noexcept {
 void Executor::hold(bool isHeld) noexcept {
     if (isHeld && !state_.isHeld && state_.motion == Motion::FOLLOW && !isFiltered()) {
         start_brake();
+    }
+    const bool isPassWaiting =
+        state_.motion == Motion::LOCKED && state_.piece == lock_.pass.first && state_.x <= 0 && state_.v <= 0;
+    if (isHeld && isPassWaiting) {
+        come_to_rest();
     }
     if (isHeld && !state_.isHeld && state_.motion == Motion::REST) {
         ++state_.brakes;

@@ -2,8 +2,10 @@
 // The servo side of path motion: evaluates what the planner has committed, and stops on the path by itself.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
+#include "base/limits.hh"
 #include "traj/path_store.hh"
 
 namespace mw::traj {
@@ -24,12 +26,20 @@ struct ExecutorOutput {
 /// along the path. A late or lost planner therefore means a stop on the path.
 /// With jerk limits (Commit::filter above 1) a leader does this and its mean is commanded; the planner then
 /// ends every plan with a stop, and answers `hold` and `drop` with a plan.
+/// Passes that are locked to a spindle's angle (Motion::LOCKED) it drives by itself, from rest to rest;
+/// `hold` waits for their end, since a thread that was held is scrap; `drop` brakes at once.
 class Executor {
   public:
     explicit Executor(PathStore &store, double period_s) noexcept : store_(store), period_(period_s) {}
 
     /// The path begins at `pose`; only at rest and with nothing left of a path.
     void set_position(const Pose &pose) noexcept;
+
+    /// The angle [turns] and speed [turns/s] of a spindle; call before `step`.
+    void set_spindle(int spindle, double turns, double turns_per_s) noexcept {
+        turns_[static_cast<std::size_t>(spindle)] = turns;
+        turns_per_s_[static_cast<std::size_t>(spindle)] = turns_per_s;
+    }
 
     /// Advances to the end of `cycle`.
     const ExecutorOutput &step(std::uint64_t cycle) noexcept;
@@ -68,6 +78,16 @@ class Executor {
     void finish_drop() noexcept;
     bool isFiltered() const noexcept { return state_.filter > 1; }
 
+    // --- executor_locked.cc
+    bool take_pass(const Commit &commit) noexcept;
+    void step_locked() noexcept;
+    void advance_locked() noexcept;
+    double acceleration_left() const noexcept;
+    double locked_speed() noexcept;
+    bool descend(double v) noexcept;
+    double leave_piece(double x) noexcept;
+    double turned() const noexcept;
+
     PathStore &store_;
     double period_;
     Snapshot state_;
@@ -87,6 +107,20 @@ class Executor {
     std::array<double, HISTORY_CAPACITY> along_history_{};
     std::uint64_t rest_ticks_ = MAX_FILTER;  ///< since the leader stands
     std::array<Sequence, HISTORY_CAPACITY> done_history_{};
+
+    std::array<double, MAX_SPINDLES> turns_{}, turns_per_s_{};
+    /// Of a pass: the helix is x = per_turn (turned() - origin - turns of the pieces passed).
+    struct Lock {
+        Pass pass;
+        double origin = 0;        ///< turns of the spindle at which the helix passes the start
+        double passed_turns = 0;  ///< of the pieces that are complete
+        Sequence came_from = 0;   ///< piece at the start of the last cycle
+        double descent = 0;       ///< > 0: brakes with it to the end of the piece
+        bool isOn = false;        ///< the tool is on the helix
+        bool wasOn = false;       ///< it has been
+        bool wasDescending = false;
+    };
+    Lock lock_;
 };
 
 }  // namespace mw::traj

@@ -76,6 +76,10 @@ struct Piece {
     double programmed_s = 0;  ///< where it begins on the programmed path, measured in s from the path's start
     double tolerance = 0;     ///< deviation from the programmed path that is allowed; 0: any
     AccelBound acceleration;  ///< along x, such that every axis keeps its limits [1/s^2]
+    // Of a pass that is locked to a spindle's angle, filled before the executor is told of the pass.
+    double per_turn = 0;           ///< way along x in a turn of the spindle
+    double v_most = 0;             ///< highest speed
+    double v2_in = 0, v2_out = 0;  ///< squared speeds at its ends from which all that follows can be kept
 };
 
 /// x(t) = x0 + v0 t + a t^2 / 2 + j t^3 / 6, t in [0, duration], on one piece.
@@ -83,6 +87,15 @@ struct Phase {
     Sequence piece = 0;
     double duration = 0;
     double x0 = 0, v0 = 0, a = 0, j = 0;
+};
+
+/// A pass over the pieces [first, last], from rest to rest, locked to the angle of a spindle.
+struct Pass {
+    Sequence first = 0, last = 0;  ///< 0: none
+    int spindle = 0;
+    double direction = 1;  ///< -1: the spindle turns backwards
+    double share = 1;      ///< part of the pieces' accelerations for gaining speed and for braking
+    double trim = 1;       ///< and for following the spindle in between
 };
 
 /// Tells the executor which phases to follow. They never end with a stop beyond what is committed: when they
@@ -96,9 +109,10 @@ struct Commit {
     Sequence begin = 0, end = 0;  ///< not a switch: the present plan `plan` now goes on to `end`
     std::uint64_t filter = 1;     ///< samples of the mean that is commanded; changes only at rest
     bool isStop = false;          ///< made to stop, so taken while held or dropping
+    Pass pass;                    ///< instead of phases
 };
 
-enum class Motion : std::uint8_t { REST, FOLLOW, BRAKE };
+enum class Motion : std::uint8_t { REST, FOLLOW, BRAKE, LOCKED };
 
 /// Time since the path speed last rose or fell, valid for the later of the two; far past for the other.
 struct Coasting {

@@ -37,6 +37,8 @@ struct MoveRequest {
     bool isAngular = false;  ///< the feed length is over ABC: the operator's velocity ceiling does not apply
     double feed_per_revolution = 0;  ///< > 0: the speed follows a spindle
     int spindle = 0;
+    bool isSynched() const noexcept { return feed_per_revolution > 0; }
+    bool isLocked = false;  ///< keeps to the angle of the spindle: a thread
     bool isGated = false;   ///< a stop before it until the gate opens
     bool isPhased = false;  ///< the gate opens at a spindle phase
 };
@@ -104,6 +106,15 @@ class Planner {
     void open_gate(Sequence move, double delay_s) noexcept;
     bool isPhased(Sequence move) const noexcept { return move_plan(move).request.isPhased; }
     int spindle_of(Sequence move) const noexcept { return move_plan(move).request.spindle; }
+    /// The move is driven by the executor, locked to the spindle's angle, with what follows up to a stop.
+    bool isLocked(Sequence move) const noexcept {
+        return joint_map_ == nullptr && move_plan(move).request.isLocked;
+    }
+    /// All of the pass that the executor would begin with is known.
+    bool isPassKnown(const Snapshot &now) const noexcept;
+    /// Speed that the pass from this move on needs at the present speed of its spindle, over what the machine
+    /// and the operator allow.
+    double pass_load(Sequence move) const noexcept;
     /// Seconds from a snapshot to the earliest start of a plan made with it.
     double latency_s() const noexcept { return static_cast<double>(settings_.latency) * settings_.period_s; }
     /// Move whose gate the executor waits at, 0: none.
@@ -217,6 +228,20 @@ class Planner {
     void emit_coast(double cap, double out2) noexcept;
     bool emit_tail() noexcept;
     bool canCoast(Sequence piece, double x, double v) noexcept;
+
+    // --- planner_locked.cc: passes that are locked to a spindle
+    bool isLockedPiece(Sequence piece) const noexcept { return isLocked(move_of(piece)); }
+    /// Where plans end: at a barrier, or where a pass begins, which the executor drives by itself.
+    bool isPlanEnd(Sequence piece) const noexcept { return isBarrier(piece) || isLockedPiece(piece); }
+    bool isPassStart(const State &from) const noexcept { return from.x <= 0 && isLockedPiece(from.piece); }
+    bool isBeforeBarrier(const State &from) const noexcept;
+    Sequence pass_end(Sequence first) const noexcept;
+    bool start_pass(const Snapshot &now, const State &from) noexcept;
+    void fill_pass(const Pass &pass) noexcept;
+    double turn_way(Sequence piece) const noexcept;
+    Joint locked_corner(Sequence a, Sequence b) const noexcept;
+    double turning_speed(const MoveRequest &request) const noexcept;
+    void move_corner_on(Sequence a, Sequence b, const Joint &joint) noexcept;
 
     // --- planner_shape.cc: with jerk limits, the corners of dense curves
     /// Way in the time of the mean, and how far a corner may be moved.
@@ -340,6 +365,7 @@ class Planner {
     std::uint64_t along_tick_ = 0;  ///< the last on an arc that is followed exactly
 
     double start_delay_s_ = 0;  ///< of the next plan from rest
+    int steady_updates_ = 0;    ///< since spindles have changed their speeds by more than a little
     bool isStepping_ = false;
     std::uint32_t step_block_ = 0;
 };

@@ -99,7 +99,7 @@ bool Planner::emit_filtered() noexcept {
     looked_at_ = std::max(looked_at_, s.piece);
     isAtEndOfPath_ = isLast && s.x >= p.length;
     if (s.x >= p.length || (s.v <= 0 && p.length - s.x < AT_END)) {
-        if (isLast || (s.v <= 0 && isBarrier(s.piece + 1))) {
+        if (isLast || (s.v <= 0 && isPlanEnd(s.piece + 1))) {
             return false;
         }
         s = {s.piece + 1, 0, s.v, s.coasting};
@@ -270,7 +270,7 @@ bool Planner::take_stuck() noexcept {
 
 void Planner::update_filtered(const Snapshot &now) noexcept {
     const bool isGone = now.drops != drops_ || (now.isDropping && now.motion == Motion::REST);
-    if (isGone || now.motion == Motion::BRAKE) {
+    if (isGone || now.motion == Motion::BRAKE || now.motion == Motion::LOCKED) {
         return;
     }
     oldest_piece_ = std::max(first_piece_, now.piece);
@@ -284,7 +284,12 @@ void Planner::update_filtered(const Snapshot &now) noexcept {
     State from;
     if (now.motion == Motion::REST) {
         const bool isReady = !mustStop && !isPending && (filter_ == now.filter || now.isSettled);
-        if (isReady && start_state(now, from) && !(from.x <= 0 && isBarrier(from.piece))) {
+        const bool isFree = isReady && start_state(now, from);
+        if (isFree && isPassStart(from)) {
+            if (now.isSettled && !isBarrier(from.piece)) {
+                start_pass(now, from);
+            }
+        } else if (isFree && !isBeforeBarrier(from)) {
             const bool isPlanned = replan_filtered(now, from, false);
             refusals_ = isPlanned || !isRefused_ || !now.isSettled ? 0 : refusals_ + 1;
         }
@@ -296,7 +301,7 @@ void Planner::update_filtered(const Snapshot &now) noexcept {
     const bool isChanged = changed_from_ != 0 && changed_from_ <= looked_at_ + 1;
     const bool isStopMade = isStopPlan_ && (isTaken || isPending);
     const bool isDue = mustStop ? !isStopMade : isStopMade || !isTaken || isShort || isChanged;
-    if (isDue && (!isPending || mustStop) && predict(now, from)) {
+    if (isDue && (!isPending || mustStop) && predict(now, from) && !isBeforeBarrier(from)) {
         replan_filtered(now, from, mustStop);
     }
 }

@@ -170,6 +170,9 @@ void Planner::join_raw() noexcept {
     Joint joint;
     if (open_move_ != 0) {
         joint = joint_between(open_move_, n);
+        if (joint.d > 0 && isLocked(open_move_) && isLocked(n)) {
+            move_corner_on(open_move_, n, joint);
+        }
         const Primitive &before = store_.primitive(open_move_);
         close_move(before.length - joint.d, !(joint.d > 0), joint);
         if (joint.d > 0) {
@@ -360,10 +363,16 @@ Planner::Joint Planner::joint_between(Sequence na, Sequence nb) const noexcept {
     const Primitive &b = store_.primitive(nb);
     const MovePlan &ma = move_plan(na);
     const MovePlan &mb = move_plan(nb);
-    const bool isStop = ma.request.join == Join::STOP || mb.request.isGated || ma.request.tag.isProbe ||
-                        mb.request.tag.isProbe;
+    const bool isPass = isLocked(na) && isLocked(nb) && ma.request.spindle == mb.request.spindle;
+    const bool isStop =
+        (ma.request.join == Join::STOP && !isPass) || mb.request.isGated || ma.request.tag.isProbe ||
+        mb.request.tag.isProbe ||
+        (isLocked(na) || isLocked(nb) ? !isPass : ma.request.isSynched() != mb.request.isSynched());
     if (isStop) {
         return {.isStop = true, .dwell_s = filter_s()};
+    }
+    if (isPass) {
+        return locked_corner(na, nb);
     }
     const double step = geom::norm(tangent_step(a, b));
     const bool isAlong = isAlongOnly(a, ma.request) || isAlongOnly(b, mb.request);

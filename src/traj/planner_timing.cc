@@ -25,6 +25,11 @@ bool Planner::isBarrier(Sequence piece) const noexcept {
     return r.isGated || (isStepping_ && r.tag.block != step_block_);
 }
 
+/// Stands before a place that a plan must not lead beyond.
+bool Planner::isBeforeBarrier(const State &from) const noexcept {
+    return from.x <= 0 && from.v <= 0 && isPlanEnd(from.piece);
+}
+
 /// Highest speed of a move under the present scales [1/s].
 double Planner::move_cap(const MovePlan &m, double v_limit) const noexcept {
     double cap = v_limit;
@@ -32,7 +37,9 @@ double Planner::move_cap(const MovePlan &m, double v_limit) const noexcept {
         cap = v_limit * std::min(1.0, scales_.rapid);
     } else if (m.request.feed_per_revolution > 0) {
         const double rps = scales_.spindle_rps[static_cast<std::size_t>(m.request.spindle)];
-        cap = m.request.feed_per_revolution * std::abs(rps) * m.request.tag.feed_ratio;
+        const bool isOverridden = m.request.isOverridable && !m.request.isLocked;
+        cap = m.request.feed_per_revolution * std::abs(rps) * m.request.tag.feed_ratio *
+              (isOverridden ? scales_.feed : 1.0);
     } else if (m.feed > 0) {
         cap = m.feed * (m.request.isOverridable ? scales_.feed : 1.0);
     }
@@ -77,13 +84,19 @@ void Planner::pass_backward(Sequence from, bool isWhole) noexcept {
 void Planner::set_scales(const Scales &scales) noexcept {
     bool isSame = scales.feed == scales_.feed && scales.rapid == scales_.rapid &&
                   scales.max_velocity == scales_.max_velocity;
-    // Spindle speeds never stand still; they matter only where something follows them.
+    // Spindle speeds never stand still; they matter only where something follows them. What changes little is
+    // followed now and then, so that a lead does not drift.
+    constexpr double CHANGED = 1e-3, DRIFTED = 1e-7;
+    constexpr int STEADY_UPDATES = 4;
     const bool isFollowed = last_synched_ != 0 && last_piece_ >= oldest_piece_ &&
                             last_synched_ >= store_.piece(oldest_piece_).move;
+    ++steady_updates_;
+    const double slight = steady_updates_ > STEADY_UPDATES ? DRIFTED : CHANGED;
     for (std::size_t i = 0; i < scales.spindle_rps.size() && isSame && isFollowed; ++i) {
         const double rps = scales_.spindle_rps[i];
-        isSame = std::abs(scales.spindle_rps[i] - rps) <= 1e-3 * std::abs(rps);
+        isSame = std::abs(scales.spindle_rps[i] - rps) <= slight * std::abs(rps);
     }
+    steady_updates_ = isSame ? steady_updates_ : 0;
     if (isSame) {
         scales_.max_feed = scales.max_feed;
         scales_.spindle_rps = isFollowed ? scales_.spindle_rps : scales.spindle_rps;
@@ -258,7 +271,7 @@ bool Planner::emit_piece() noexcept {
     const bool isLast = s.piece == last_piece_;
     isAtEndOfPath_ = isLast && s.x >= p.length;
     if (s.x >= p.length) {
-        if (isLast || (s.v <= 0 && isBarrier(s.piece + 1))) {
+        if (isLast || (s.v <= 0 && isPlanEnd(s.piece + 1))) {
             return false;
         }
         s = {s.piece + 1, 0, s.v, s.coasting};
@@ -365,7 +378,7 @@ void Planner::update(const Snapshot &now) noexcept {
     if (last_piece_ >= oldest_piece_) {
         pass_backward(last_piece_, false);
     }
-    if (now.isHeld || now.motion == Motion::BRAKE) {
+    if (now.isHeld || now.motion == Motion::BRAKE || now.motion == Motion::LOCKED) {
         return;
     }
     const bool isTaken = now.plan == plan_;
@@ -376,11 +389,16 @@ void Planner::update(const Snapshot &now) noexcept {
             append(now);
         }
     } else if (now.motion == Motion::REST) {
-        if (start_state(now, from) && !(from.x <= 0 && isBarrier(from.piece))) {
+        const bool isFree = start_state(now, from);
+        if (isFree && isPassStart(from)) {
+            if (!isBarrier(from.piece)) {
+                start_pass(now, from);
+            }
+        } else if (isFree && !isBeforeBarrier(from)) {
             replan(now, from);
         }
     } else if (!isTaken || (changed_from_ != 0 && changed_from_ <= planned_.piece + 1)) {
-        if (predict(now, from)) {
+        if (predict(now, from) && !isBeforeBarrier(from)) {
             replan(now, from);
         }
     } else {

@@ -127,7 +127,8 @@ enum class FaultKind : std::uint16_t {
     PATH_LIMIT,
     SPINDLE_FAULT,
     MISC_ERROR,
-    NO_WAY_ON,  ///< the planner stands and finds no plan
+    NO_WAY_ON,        ///< the planner stands and finds no plan
+    THREAD_TOO_FAST,  ///< index: spindle; value: needed speed over the possible one
     COUNT,
 };
 struct Fault {

@@ -100,6 +100,11 @@ std::string what_failed(const Fault &fault) {
     case FaultKind::PROBE_TRIPPED_IN_MOVE: return "probe tripped during a move that does not probe";
     case FaultKind::NO_WAY_ON:
         return "the planner finds no motion on from here that keeps all limits and the tolerance of the path";
+    case FaultKind::THREAD_TOO_FAST:
+        return fmt::format(
+            "the thread needs {:.2f} times the speed that the machine, or its velocity override, "
+            "allows at the present speed of spindle {}: use a lower speed or a finer pitch",
+            fault.value, i);
     case FaultKind::KINEMATICS_FAILED: return "the kinematics could not reach the commanded pose";
     case FaultKind::PATH_LIMIT: return "the path left its limits";
     case FaultKind::SPINDLE_FAULT:

@@ -52,6 +52,9 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
     check_watchdog();
     check_faults(in);
     step_holds(in);
+    for (int n = 0; n < config_.num_spindles; ++n) {
+        executor_.set_spindle(n, in.spindle[at(n)].revs, in.spindle[at(n)].speed_in_rps);
+    }
     if (isEnabled_) {
         step_homing(in);
         step_wheels(in);

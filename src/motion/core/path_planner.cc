@@ -20,6 +20,11 @@ std::uint64_t latency_cycles(double period_s) noexcept {
     return std::max<std::uint64_t>(2, static_cast<std::uint64_t>(std::ceil(LATENCY_S / period_s)));
 }
 
+/// The tool keeps to the spindle's angle, not only to its speed.
+bool isThread(const MoveTerms &terms) noexcept {
+    return terms.feed_per_revolution > 0 && !terms.isVelocitySynched;
+}
+
 bool isFinite(const geom::Pose &p) noexcept {
     return std::all_of(p.c.begin(), p.c.end(), [](double x) { return std::isfinite(x); });
 }
@@ -102,7 +107,7 @@ void PathPlanner::follow_drops() noexcept {
         answer(pending(pending_head_++).id, AnswerKind::STALE, Reason::NONE);
     }
     isPathBegun_ = false;
-    wasSynched_ = false;
+    wasLocked_ = false;
 }
 
 void PathPlanner::complete_moves() noexcept {
@@ -177,6 +182,11 @@ bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
     }
     if (isPathBegun_ && !isIdle() && !planner_.suits(tolerance_of(c))) {
         planner_.release_end();
+        return true;
+    }
+    // The corners of a thread depend on the speed of its spindle.
+    const auto *line = std::get_if<Line>(&c.body);
+    if (line != nullptr && isThread(line->terms) && wasLocked_ && !areSpindlesReady()) {
         return true;
     }
     isQueueFull_ = isPathBegun_ && !planner_.hasRoom(view_.executor);
@@ -266,9 +276,10 @@ traj::MoveRequest PathPlanner::request_for(const PathCommand &c, const MoveTerms
     r.isOverridable = terms.isFeedOverridable;
     r.feed_per_revolution = terms.feed_per_revolution;
     r.spindle = terms.synch_spindle;
-    // Position-synched motion begins with the spindle at speed; feed per revolution follows whatever it does.
-    const bool isChainStart = terms.feed_per_revolution > 0 && !terms.isVelocitySynched && !wasSynched_;
-    r.isPhased = isChainStart && !terms.isVelocitySynched;
+    // A thread begins with the spindle at speed; feed per revolution follows whatever it does.
+    r.isLocked = isThread(terms);
+    const bool isChainStart = r.isLocked && !wasLocked_;
+    r.isPhased = isChainStart;
     r.isGated = terms.isWaitingForSpindleSpeed || isChainStart;
     return r;
 }
@@ -343,7 +354,7 @@ Reason PathPlanner::accept_line(const PathCommand &c, const geom::Pose &end,
     }
     if (p.length > 1e-12 * (1.0 + geom::norm(end))) {
         planner_.add(p, request_for(c, terms));
-        wasSynched_ = terms.feed_per_revolution > 0;
+        wasLocked_ = isThread(terms);
     }
     add_pending(c, terms.source);
     return Reason::NONE;
@@ -368,7 +379,7 @@ Reason PathPlanner::accept_arc(const PathCommand &c, const Arc &arc) noexcept {
         return reason;
     }
     planner_.add(p, request_for(c, arc.terms));
-    wasSynched_ = arc.terms.feed_per_revolution > 0;
+    wasLocked_ = isThread(arc.terms);
     add_pending(c, arc.terms.source);
     return Reason::NONE;
 }
@@ -429,12 +440,16 @@ Reason PathPlanner::accept_event(const PathCommand &c, const traj::PathEvent &ev
     return Reason::NONE;
 }
 
+bool PathPlanner::areSpindlesReady() const noexcept {
+    const std::uint32_t all = (1U << config_.num_spindles) - 1U;
+    return (view_.spindles_ready & all) == all;
+}
+
 /// Moves that wait for spindles go on once these are at speed; threads at a full turn of theirs, so that
 /// every pass begins at the same angle.
 void PathPlanner::open_gates() noexcept {
     const traj::Sequence gate = isPathBegun_ ? planner_.waiting_gate(view_.executor) : 0;
-    const std::uint32_t all = (1U << config_.num_spindles) - 1U;
-    if (gate == 0 || (view_.spindles_ready & all) != all) {
+    if (gate == 0 || !areSpindlesReady()) {
         return;
     }
     double delay_s = 0;
@@ -445,10 +460,34 @@ void PathPlanner::open_gates() noexcept {
         if (std::abs(rps) < SLOWEST_RPS) {
             return;
         }
+        const bool isDriven = planner_.isLocked(gate);  // then the executor finds the moment
+        if (isDriven && !(planner_.isPassKnown(view_.executor) && isThreadPossible(gate))) {
+            return;
+        }
         const double turned = (view_.spindle_revs[n] + rps * planner_.latency_s()) * (rps > 0 ? 1.0 : -1.0);
-        delay_s = (std::ceil(turned) - turned) / std::abs(rps);
+        delay_s = isDriven ? 0.0 : (std::ceil(turned) - turned) / std::abs(rps);
     }
     planner_.open_gate(gate, delay_s);
+}
+
+/// A thread that the machine cannot follow is not begun: its lead would be another.
+bool PathPlanner::isThreadPossible(traj::Sequence gate) noexcept {
+    constexpr double ROUNDING = 1e-9;
+    const double load = planner_.pass_load(gate);
+    if (load <= 1.0 + ROUNDING) {
+        return true;
+    }
+    if (refused_gate_ != gate) {
+        refused_gate_ = gate;
+        Fault fault;
+        fault.kind = FaultKind::THREAD_TOO_FAST;
+        fault.index = static_cast<std::int16_t>(planner_.spindle_of(gate));
+        fault.value = load;
+        const traj::MoveTag &tag = link_.store.move(gate);
+        fault.source = {tag.line, tag.file_index, tag.block};
+        channels_.planner_faults.push(fault);
+    }
+    return false;
 }
 
 void PathPlanner::follow_steps() noexcept {

@@ -76,6 +76,8 @@ class PathPlanner {
     traj::MoveRequest request_for(const PathCommand &c, const MoveTerms &terms) const noexcept;
     void add_pending(const PathCommand &c, const SourceTag &source) noexcept;
     void open_gates() noexcept;
+    bool areSpindlesReady() const noexcept;
+    bool isThreadPossible(traj::Sequence gate) noexcept;
     void publish() noexcept;
     void answer(CommandId id, AnswerKind kind, Reason reason) noexcept;
 
@@ -98,7 +100,8 @@ class PathPlanner {
     bool isBroken_ = false;  ///< the path has a hole: nothing more of this epoch
     bool isPathBegun_ = false;
     bool isQueueFull_ = false;
-    bool wasSynched_ = false;
+    bool wasLocked_ = false;  ///< the last move keeps to a spindle's angle
+    traj::Sequence refused_gate_ = 0;
     std::uint64_t drops_ = 0;
     std::uint32_t enables_ = 0;
     std::uint32_t probe_trips_ = 0;
