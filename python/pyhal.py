@@ -77,12 +77,12 @@ class pin:
         return self._item.write(data)
 
     def read(self, count):
-        """Port: takes count bytes, or returns False."""
-        return self._item.read(count)
+        """Port: takes count bytes; '' when there are fewer."""
+        return self._item.read(count) or ''
 
     def peek(self, count):
         """Port: as read, and leaves the bytes in the queue."""
-        return self._item.peek(count)
+        return self._item.peek(count) or ''
 
     def peekCommit(self, count):
         """Port: drops count bytes; False when there are fewer."""

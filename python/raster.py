@@ -18,16 +18,18 @@ import pyhal
 class FaultCodes(enum.IntEnum):
     """Of raster.N.fault-code."""
     NONE = 0
-    HEADER = 1
-    PIXEL = 2
-    NO_LINE = 3
-    POSITION = 4
+    InvalidOffset = 1
+    InvalidBPP = 2
+    InvalidPPU = 3
+    InvalidCount = 4
+    InvalidPixel = 5
+    InvalidPosition = 6
 
 
 class RasterProgrammer:
     """A HAL component with port and run as outputs, reset as output, fault, fault_code and state as inputs."""
 
-    BITS = (4, 8, 12, 16)
+    BITS = (4, 8, 12, 16, 20, 24, 28, 32)
     CHUNK = 64
 
     def __init__(self, name):
@@ -51,10 +53,16 @@ class RasterProgrammer:
             raise ValueError(f"the line before wants {self._missing} more pixels")
         self._digits = bpp // 4
         self._missing = count
-        self._send(f"{offset:.9g};{bpp};{ppu:.9g};{count}\n", timeout)
+        self._send(f"{offset:.9g};{bpp};{ppu:.9g};{count};", timeout)
 
     def data(self, pixels, timeout=None):
-        """Pixels of the line, 0 to 2**bpp - 1. Waits for room in the port, at most timeout seconds for each part."""
+        """Pixels of the line, 0 to 2**bpp - 1, or a text of their hexadecimal digits.
+
+        2**bpp - 2 is full power, 2**bpp - 1 none. Waits for room in the port, at most timeout seconds for each part.
+        """
+        if isinstance(pixels, str):
+            digits = self._digits or 1
+            pixels = (int(pixels[at:at + digits], 16) for at in range(0, len(pixels), digits))
         pixels = list(pixels)
         if len(pixels) > self._missing:
             raise ValueError(f"the line has {self._missing} pixels left, not {len(pixels)}")

@@ -16,7 +16,15 @@ enum RasterState : std::int32_t {
     RASTER_RUNNING,
     RASTER_FAULT
 };
-enum RasterFault : std::int32_t { FAULT_NONE, FAULT_HEADER, FAULT_PIXEL, FAULT_NO_LINE, FAULT_POSITION };
+enum RasterFault : std::int32_t {
+    FAULT_NONE,
+    FAULT_OFFSET,
+    FAULT_BITS,
+    FAULT_SCALE,
+    FAULT_COUNT,
+    FAULT_PIXEL,
+    FAULT_POSITION
+};
 
 constexpr int BYTES_PER_RUN = 256;
 
@@ -24,12 +32,14 @@ struct Raster {
     hal_port_t *program = nullptr;
     In<bool> run, reset;
     In<double> position;
-    Out<double> output, fraction, bitmap_position;
+    Out<double> output, fraction, bitmap_position, previous_pixel_value, current_pixel_value;
+    Out<double> program_offset, ppu;
     Out<bool> enabled, fault;
-    Out<std::int32_t> state, fault_code, current_pixel_index, previous_pixel_value, current_pixel_value;
+    Out<std::int32_t> state, fault_code, current_pixel_index, bpp, count;
     raster::Line line;
     double start = 0.0;
     bool last_run = false;
+    bool isAwaited = false;  ///< run is true, and the line is not complete yet
 
     void declare(Declare &d) noexcept;
     void update() noexcept;
@@ -51,7 +61,7 @@ void Raster::declare(Declare &d) noexcept {
     d.pin(run, "run");
     d.pin(reset, "reset");
     d.pin(position, "position");
-    d.pin(output, "output");
+    d.pin(output, "output", raster::NO_PIXEL);
     d.pin(enabled, "enabled");
     d.pin(state, "state");
     d.pin(fault, "fault");
@@ -61,6 +71,10 @@ void Raster::declare(Declare &d) noexcept {
     d.pin(current_pixel_index, "current-pixel-index", -1);
     d.pin(previous_pixel_value, "previous-pixel-value");
     d.pin(current_pixel_value, "current-pixel-value");
+    d.pin(program_offset, "program-offset");
+    d.pin(bpp, "bpp");
+    d.pin(ppu, "ppu");
+    d.pin(count, "count");
     d.function<&Raster::update>(this);
 }
 
@@ -77,43 +91,45 @@ void Raster::read_line() noexcept {
         case raster::Reading::HEADER: state = RASTER_HEADER; break;
         case raster::Reading::PIXELS: state = RASTER_PIXELS; break;
         case raster::Reading::COMPLETE: state = RASTER_READY; break;
-        case raster::Reading::BAD_HEADER: fail(FAULT_HEADER); break;
+        case raster::Reading::BAD_OFFSET: fail(FAULT_OFFSET); break;
+        case raster::Reading::BAD_BITS: fail(FAULT_BITS); break;
+        case raster::Reading::BAD_SCALE: fail(FAULT_SCALE); break;
+        case raster::Reading::BAD_COUNT: fail(FAULT_COUNT); break;
         case raster::Reading::BAD_PIXEL: fail(FAULT_PIXEL); break;
         }
     }
 }
 
 void Raster::begin() noexcept {
-    start = position;
+    isAwaited = false;
     current_pixel_index = -1;
-    if (state != RASTER_READY) {
-        fail(FAULT_NO_LINE);
-    } else if (!std::isfinite(start)) {
-        fail(FAULT_POSITION);
-    } else {
-        state = RASTER_RUNNING;
-    }
+    program_offset = line.offset();
+    bpp = line.bits();
+    ppu = line.pixels_per_unit();
+    count = line.count();
+    state = RASTER_RUNNING;
 }
 
-/// The pixel under the position; no power beside the line.
+/// The power at the position, between the pixels before and behind it; none beside the line.
 void Raster::show() noexcept {
     const double at = position;
-    if (!std::isfinite(at)) {
+    if (!std::isfinite(at) || !std::isfinite(start)) {
         fail(FAULT_POSITION);
         return;
     }
-    const double way = (at - start - line.offset()) * line.pixels_per_unit();
-    const bool isInside = way >= 0.0 && way < line.count();
-    const int index = isInside ? static_cast<int>(way) : -1;
-    const int value = isInside ? line.pixel(index) : 0;
+    const double way = line.way(at - start);
+    const bool isInside = way >= 0.0 && way <= line.count() - 1;
+    const int before = isInside ? static_cast<int>(way) : 0;
+    const int behind = before + 1 < line.count() ? before + 1 : before;
+    const double first = isInside ? line.percent(before) : raster::NO_PIXEL;
+    const double second = isInside ? line.percent(behind) : raster::NO_PIXEL;
     bitmap_position = way;
-    fraction = way / line.count();
-    if (index != current_pixel_index) {
-        previous_pixel_value = current_pixel_value.get();
-        current_pixel_index = index;
-        current_pixel_value = value;
-    }
-    output = static_cast<double>(value) / line.full_scale();
+    fraction = isInside ? way - before : 0.0;
+    current_pixel_index = isInside ? behind : -1;
+    previous_pixel_value = first;
+    current_pixel_value = second;
+    const bool isDark = first < 0.0 || second < 0.0;
+    output = isDark ? raster::NO_PIXEL : first + (second - first) * (way - before);
 }
 
 void Raster::update() noexcept {
@@ -121,11 +137,17 @@ void Raster::update() noexcept {
     if (reset) {
         state = RASTER_IDLE;
         fault_code = FAULT_NONE;
+        isAwaited = false;
         line.clear();
         hal_port_clear(program);
     } else {
         read_line();
-        if (isRun && !last_run && state != RASTER_FAULT) {
+        if (isRun && !last_run) {
+            start = position;
+            isAwaited = true;
+        }
+        isAwaited = isAwaited && isRun;
+        if (isAwaited && state == RASTER_READY) {
             begin();
         } else if (!isRun && state == RASTER_RUNNING) {
             state = RASTER_IDLE;
@@ -138,7 +160,7 @@ void Raster::update() noexcept {
     }
     enabled = state == RASTER_RUNNING;
     if (!enabled) {
-        output = 0.0;
+        output = raster::NO_PIXEL;
     }
     fault = state == RASTER_FAULT;
 }

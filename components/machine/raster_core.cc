@@ -54,32 +54,41 @@ bool read_number(const char *&text, char end, double &out) noexcept {
 
 }  // namespace
 
-bool Line::parse_header() noexcept {
-    header_[header_size_] = '\n';
+/// Takes the field of the header that has just ended with ';'. What is wrong with it, or HEADER or PIXELS.
+Reading Line::take_field() noexcept {
     const char *text = header_;
-    double bits = 0.0;
+    header_[header_size_ - 1] = ';';
     double number = 0.0;
-    const bool isRead = read_number(text, ';', offset_) && read_number(text, ';', bits) &&
-                        read_number(text, ';', per_unit_) && read_number(text, '\n', number);
-    const bool isPossible = isRead && (bits == 4.0 || bits == 8.0 || bits == 12.0 || bits == 16.0) &&
-                            per_unit_ != 0.0 && number >= 1.0 && number <= MAX_PIXELS &&
-                            number == std::floor(number);
-    if (isPossible) {
-        digits_ = static_cast<int>(bits) / 4;
-        count_ = static_cast<int>(number);
+    const bool isRead = read_number(text, ';', number);
+    header_size_ = 0;
+    switch (fields_++) {
+    case 0: offset_ = number; return isRead ? Reading::HEADER : Reading::BAD_OFFSET;
+    case 1: {
+        const int digits = isRead && number >= 4.0 && number <= 32.0 ? static_cast<int>(number) / 4 : 0;
+        digits_ = digits;
+        return digits > 0 && number == 4.0 * digits ? Reading::HEADER : Reading::BAD_BITS;
     }
-    return isPossible;
+    case 2: per_unit_ = number; return isRead && number > 0.0 ? Reading::HEADER : Reading::BAD_SCALE;
+    default: {
+        const bool isGood = isRead && number >= 2.0 && number <= MAX_PIXELS && number == std::floor(number);
+        count_ = isGood ? static_cast<int>(number) : 0;
+        pixels_ = 0;
+        digit_ = 0;
+        return isGood ? Reading::PIXELS : Reading::BAD_COUNT;
+    }
+    }
 }
 
 void Line::take_header(char byte) noexcept {
-    if (byte == '\n') {
-        pixels_ = 0;
-        digit_ = 0;
-        reading_ = parse_header() ? Reading::PIXELS : Reading::BAD_HEADER;
-    } else if (header_size_ >= MAX_HEADER - 1) {
-        reading_ = Reading::BAD_HEADER;
-    } else {
-        header_[header_size_++] = byte;
+    if (header_size_ >= MAX_FIELD - 1) {
+        constexpr Reading BAD[] = {Reading::BAD_OFFSET, Reading::BAD_BITS, Reading::BAD_SCALE,
+                                   Reading::BAD_COUNT};
+        reading_ = BAD[fields_];
+        return;
+    }
+    header_[header_size_++] = byte;
+    if (byte == ';') {
+        reading_ = take_field();
     }
 }
 
@@ -93,7 +102,7 @@ void Line::take_pixel(char byte) noexcept {
     }
     const unsigned nibble = static_cast<unsigned>(isDecimal ? byte - '0' : lower - 'a' + 10);
     const unsigned before = digit_ == 0 ? 0U : pixel_[pixels_];
-    pixel_[pixels_] = static_cast<std::uint16_t>(before << 4U | nibble);
+    pixel_[pixels_] = before << 4U | nibble;
     if (++digit_ == digits_) {
         digit_ = 0;
         if (++pixels_ == count_) {
@@ -105,6 +114,7 @@ void Line::take_pixel(char byte) noexcept {
 void Line::take(char byte) noexcept {
     if (reading_ == Reading::NOTHING && byte != '\n') {
         header_size_ = 0;
+        fields_ = 0;
         reading_ = Reading::HEADER;
     }
     if (reading_ == Reading::HEADER) {
@@ -112,6 +122,17 @@ void Line::take(char byte) noexcept {
     } else if (reading_ == Reading::PIXELS && byte != '\n') {
         take_pixel(byte);
     }
+}
+
+double Line::percent(int index) const noexcept {
+    const std::uint32_t highest =
+        digits_ == 8 ? 0xffffffffU : (1U << (4U * static_cast<unsigned>(digits_))) - 1U;
+    return pixel_[index] == highest ? NO_PIXEL : 100.0 * pixel_[index] / (highest - 1U);
+}
+
+double Line::way(double from_start) const noexcept {
+    const double from_first = from_start - offset_;
+    return (offset_ < 0.0 ? -from_first : from_first) * per_unit_;
 }
 
 }  // namespace mw::raster

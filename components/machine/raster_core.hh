@@ -7,11 +7,23 @@
 namespace mw::raster {
 
 constexpr int MAX_PIXELS = 32768;
-constexpr int MAX_HEADER = 96;
+constexpr int MAX_FIELD = 32;
+/// Output where there is nothing to engrave.
+constexpr double NO_PIXEL = -1.0;
 
-enum class Reading : std::uint8_t { NOTHING, HEADER, PIXELS, COMPLETE, BAD_HEADER, BAD_PIXEL };
+enum class Reading : std::uint8_t {
+    NOTHING,
+    HEADER,
+    PIXELS,
+    COMPLETE,
+    BAD_OFFSET,
+    BAD_BITS,
+    BAD_SCALE,
+    BAD_COUNT,
+    BAD_PIXEL
+};
 
-/// "OFFSET;BITS;PPU;COUNT", a newline, and COUNT pixels of BITS / 4 hexadecimal digits.
+/// "OFFSET;BITS;PPU;COUNT;" and COUNT pixels of BITS / 4 hexadecimal digits.
 class Line {
   public:
     /// Takes the next byte; at COMPLETE and mistakes it takes none until `clear`.
@@ -20,28 +32,31 @@ class Line {
     Reading reading() const noexcept { return reading_; }
 
     double offset() const noexcept { return offset_; }  ///< from the start to the first pixel [units]
-    double pixels_per_unit() const noexcept { return per_unit_; }  ///< not 0
+    double pixels_per_unit() const noexcept { return per_unit_; }  ///< above 0
+    int bits() const noexcept { return 4 * digits_; }
     int count() const noexcept { return count_; }
-    /// 0 to count - 1.
-    std::uint16_t pixel(int index) const noexcept { return pixel_[index]; }
-    /// The largest value of a pixel.
-    unsigned full_scale() const noexcept { return (1U << (4U * static_cast<unsigned>(digits_))) - 1U; }
+    /// Of pixel 0 to count - 1: 0 to 100 [%], the highest value but one being 100; NO_PIXEL for the highest.
+    double percent(int index) const noexcept;
+    /// The place in the line, in pixels from the first one, of a position `from_start`. A negative offset
+    /// runs downwards.
+    double way(double from_start) const noexcept;
 
   private:
     void take_header(char byte) noexcept;
     void take_pixel(char byte) noexcept;
-    bool parse_header() noexcept;
+    Reading take_field() noexcept;
 
     Reading reading_ = Reading::NOTHING;
-    char header_[MAX_HEADER] = {};
+    char header_[MAX_FIELD] = {};  ///< the field being read
     int header_size_ = 0;
+    int fields_ = 0;  ///< of the header that have ended
     double offset_ = 0.0;
     double per_unit_ = 1.0;
     int digits_ = 2;
     int count_ = 0;
     int pixels_ = 0;
     int digit_ = 0;
-    std::uint16_t pixel_[MAX_PIXELS] = {};
+    std::uint32_t pixel_[MAX_PIXELS] = {};
 };
 
 }  // namespace mw::raster

@@ -303,31 +303,41 @@ raster::Line line_of(const std::string &text) {
 }
 
 TEST(RasterCore, ReadsLinesAndFindsMistakes_B6) {
-    const auto line = std::make_unique<raster::Line>(line_of("\n-1.5;8;10.25;3\n00\n80ff"));
+    const auto line = std::make_unique<raster::Line>(line_of("\n-1.5;8;10.25;3;00\n7Fff"));
     EXPECT_EQ(line->reading(), raster::Reading::COMPLETE);
     EXPECT_EQ(line->offset(), -1.5);
     EXPECT_EQ(line->pixels_per_unit(), 10.25);
     EXPECT_EQ(line->count(), 3);
-    EXPECT_EQ(line->pixel(1), 0x80);
-    EXPECT_EQ(line->full_scale(), 255U);
-    EXPECT_EQ(line_of("0;16;-2;1\nABCD").pixel(0), 0xabcd);
-    EXPECT_NEAR(line_of("-2.5e-05;8;1e+3;1\n00").offset(), -2.5e-5, 1e-15);
-    EXPECT_EQ(line_of("0;8;10;2\n00").reading(), raster::Reading::PIXELS);
-    EXPECT_EQ(line_of("0;8;10;1\n0g").reading(), raster::Reading::BAD_PIXEL);
-    for (const char *header : {"", "0;8;10", "0;7;10;1", "0;8;0;1", "0;8;1;0", "0;8;1;1.5", "0;8;1;99999",
-                               "x;8;1;1", "0;8;--1;1", "1e999;8;1;1"}) {
-        EXPECT_EQ(line_of(std::string(" ") + header + "\n").reading(), raster::Reading::BAD_HEADER) << header;
+    EXPECT_EQ(line->bits(), 8);
+    EXPECT_EQ(line->percent(0), 0.0);
+    EXPECT_EQ(line->percent(1), 50.0);
+    EXPECT_EQ(line->percent(2), raster::NO_PIXEL);
+    EXPECT_EQ(line->way(-2.5), 10.25) << "downwards";
+    EXPECT_EQ(line_of("0;32;2;2;fffffffe00000000").percent(0), 100.0);
+    EXPECT_NEAR(line_of("-2.5e-05;8;1e+3;2;0000").offset(), -2.5e-5, 1e-15);
+    EXPECT_EQ(line_of("0;8;10;2;00").reading(), raster::Reading::PIXELS);
+    EXPECT_EQ(line_of("0;8;10;2;0g").reading(), raster::Reading::BAD_PIXEL);
+    const std::vector<std::pair<const char *, raster::Reading>> bad = {
+        {"x;", raster::Reading::BAD_OFFSET},         {";", raster::Reading::BAD_OFFSET},
+        {"1e999;", raster::Reading::BAD_OFFSET},     {"0;7;", raster::Reading::BAD_BITS},
+        {"0;36;", raster::Reading::BAD_BITS},        {"0;0;", raster::Reading::BAD_BITS},
+        {"0;-8;", raster::Reading::BAD_BITS},        {"0;8;0;", raster::Reading::BAD_SCALE},
+        {"0;8;-1;", raster::Reading::BAD_SCALE},     {"0;8;--1;", raster::Reading::BAD_SCALE},
+        {"0;8;1;1;", raster::Reading::BAD_COUNT},    {"0;8;1;2.5;", raster::Reading::BAD_COUNT},
+        {"0;8;1;99999;", raster::Reading::BAD_COUNT}};
+    for (const auto &[header, reading] : bad) {
+        EXPECT_EQ(line_of(header).reading(), reading) << header;
     }
-    EXPECT_EQ(line_of(std::string(200, '0')).reading(), raster::Reading::BAD_HEADER);
+    EXPECT_EQ(line_of(std::string(200, '0')).reading(), raster::Reading::BAD_OFFSET);
 }
 
 TEST(Raster, HasNoPowerWithoutALine_B6) {
     Bench bench("loadrt raster\naddf raster.0 t");
-    EXPECT_EQ(bench.after("raster.0.run", 1, "raster.0.fault"), 1.0);
-    EXPECT_EQ(bench.get("raster.0.fault-code"), 3.0);
-    EXPECT_EQ(bench.get("raster.0.output"), 0.0);
-    EXPECT_EQ(bench.after("raster.0.reset", 1, "raster.0.fault"), 0.0);
-    EXPECT_EQ(bench.get("raster.0.state"), 0.0);
+    EXPECT_EQ(bench.get("raster.0.output"), -1.0);
+    EXPECT_EQ(bench.after("raster.0.run", 1, "raster.0.enabled"), 0.0) << "it waits for a line";
+    EXPECT_EQ(bench.get("raster.0.output"), -1.0);
+    EXPECT_EQ(bench.get("raster.0.fault"), 0.0);
+    EXPECT_EQ(bench.after("raster.0.reset", 1, "raster.0.state"), 0.0);
 }
 
 TEST(Millturn, SwitchesBetweenMillAndTurn_B6) {

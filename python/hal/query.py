@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What is in HAL now, as dicts. Lists are sorted by name, except components (newest first) and threads (fastest first).
+"""What is in HAL now, as dicts by name, sorted; components newest first, threads fastest first.
 
 pins(), params(), signals(), comps(), functs(), threads() take a pattern with * ? [abc]; pin(), param(), signal(),
-funct(), thread() take a name and comp() a name or an id, and raise RuntimeError when there is none.
+funct(), thread() take a name and comp() a name or an id, and give None when there is none.
 """
 import enum
+import fnmatch
 
 from ._core import _query
 
@@ -36,90 +37,118 @@ class CompType(enum.IntEnum):
     OTHER = 2
 
 
-def _typed(row):
-    row["type"] = Type(row["type"])
-    if "dir" in row:
-        row["dir"] = Dir(row["dir"])
-    for pin in row.get("pins", ()):
-        pin["dir"] = Dir(pin["dir"])
-    return row
+def _named(kind, row, keys):
+    """The dict that the reference's programs expect, in its order: name, alias and kind first."""
+    found = {"haltype": kind, "name": row.get("original_name") or row["name"]}
+    row = dict(row, alias=row["name"] if row.get("original_name") else None)
+    found.update((key, row[key]) for key in keys)
+    if "dir" in found:
+        found["dir"] = Dir(found["dir"])
+    return found
 
 
-def _comp(row):
-    row["type"] = CompType(row["type"])
-    return row
-
-
-def _one(rows, kind, name):
-    for row in rows:
-        if name in (row["name"], row.get("original_name")):
-            return row
-    raise RuntimeError(f"there is no {kind} '{name}'")
+def _dict(rows):
+    return {row["name"]: row for row in rows}
 
 
 def pins(glob="*"):
-    """name, original_name (where there is an alias), type, dir, value, comp, comp_id, signal."""
-    return [_typed(row) for row in _query.pins(glob)]
+    """By name: haltype, name, type, dir, value, alias, signal, comp, comp_id."""
+    return _dict(_named("pin", dict(row, type=Type(row["type"])),
+                        ("type", "dir", "value", "alias", "signal", "comp", "comp_id")) for row in _query.pins(glob))
 
 
 def params(glob="*"):
-    """name, original_name, type, dir, value, comp, comp_id."""
-    return [_typed(row) for row in _query.params(glob)]
+    """By name: haltype, name, type, dir, value, alias, comp, comp_id."""
+    return _dict(_named("parameter", dict(row, type=Type(row["type"])),
+                        ("type", "dir", "value", "alias", "comp", "comp_id")) for row in _query.params(glob))
+
+
+def _driver(row):
+    for pin_row in row["pins"]:
+        if pin_row["dir"] == Dir.OUT:
+            return pin_row["name"]
+    return None
 
 
 def signals(glob="*"):
-    """name, type, value, readers, writers, bidirs, pins (name, dir)."""
-    return [_typed(row) for row in _query.signals(glob)]
+    """By name: haltype, name, type, value, writers, readers, bidirs, driver (the pin that writes)."""
+    return _dict(_named("signal", dict(row, type=Type(row["type"]), driver=_driver(row)),
+                        ("type", "value", "writers", "readers", "bidirs", "driver")) for row in _query.signals(glob))
 
 
 def comps(glob="*"):
-    """name, id, type, ready, pid, args (of loadrt)."""
-    return sorted((_comp(row) for row in _query.comps(glob)), key=lambda row: -row["id"])
+    """By name: haltype, name, type, id, pid (0 in realtime), ready, insmod (arguments of loadrt)."""
+    rows = sorted(_query.comps(glob), key=lambda row: -row["id"])
+    # The threads' own components run where the threads do.
+    kinds = [CompType.USER if row["type"] == CompType.USER else CompType.REALTIME for row in rows]
+    return _dict(_named("component", dict(row, type=kind, pid=row["pid"] if kind == CompType.USER else 0,
+                                          insmod=row["args"]), ("type", "id", "pid", "ready", "insmod"))
+                 for row, kind in zip(rows, kinds))
 
 
 def functs(glob="*"):
-    """name, comp, comp_id, users (places in threads), reentrant."""
-    return _query.functs(glob)
+    """By name: haltype, name, comp, comp_id, users (places in threads), reentrant."""
+    return _dict(_named("function", row, ("comp", "comp_id", "users", "reentrant")) for row in _query.functs(glob))
 
 
 def threads(glob="*"):
-    """name, period [ns], init_functs, functs, overruns, time [ns], tmax [ns]."""
-    return _query.threads(glob)
+    """By name: haltype, name, comp, comp_id, priority (0: the fastest), period [ns], functions (haltype, name,
+    index, is_init)."""
+    found = {}
+    for priority, row in enumerate(_query.threads()):
+        if not fnmatch.fnmatchcase(row["name"], glob):
+            continue
+        functions = [(name, True) for name in row["init_functs"]] + [(name, False) for name in row["functs"]]
+        own = comp("__" + row["name"])
+        found[row["name"]] = {
+            "haltype": "thread", "name": row["name"], "comp": own["name"], "comp_id": own["id"],
+            "priority": priority, "period": row["period"],
+            "functions": [{"haltype": "threadfunction", "name": name, "index": index, "is_init": is_init}
+                          for index, (name, is_init) in enumerate(functions)]}
+    return found
 
 
 def signalpins(name):
-    """The pins of a signal."""
-    return [pin(row["name"]) for row in signal(name)["pins"]]
+    """The pins of a signal, as pins() has them; None when there is no such signal."""
+    for row in _query.signals():
+        if row["name"] == name:
+            all_pins = pins()
+            return {entry["name"]: all_pins[entry["name"]] if entry["name"] in all_pins else pin(entry["name"])
+                    for entry in row["pins"]}
+    return None
+
+
+def _one(rows, name):
+    if name in rows:
+        return rows[name]
+    return next((row for row in rows.values() if name == row.get("alias")), None)
 
 
 def pin(name):
-    """The row of one pin."""
-    return _one(pins(), "pin", name)
+    """One pin, by its name or alias; None when there is none. So are the others."""
+    return _one(pins(), name)
 
 
 def param(name):
-    """The row of one parameter."""
-    return _one(params(), "parameter", name)
+    """One parameter."""
+    return _one(params(), name)
 
 
 def signal(name):
-    """The row of one signal."""
-    return _one(signals(), "signal", name)
+    """One signal."""
+    return _one(signals(), name)
 
 
 def comp(name_or_id):
-    """The row of one component."""
-    for row in comps():
-        if name_or_id in (row["name"], row["id"]):
-            return row
-    raise RuntimeError(f"there is no component '{name_or_id}'")
+    """One component."""
+    return next((row for row in comps().values() if name_or_id in (row["name"], row["id"])), None)
 
 
 def funct(name):
-    """The row of one function."""
-    return _one(functs(), "function", name)
+    """One function."""
+    return _one(functs(), name)
 
 
 def thread(name):
-    """The row of one thread."""
-    return _one(threads(), "thread", name)
+    """One thread."""
+    return _one(threads(), name)

@@ -121,7 +121,7 @@ int command_check(const std::vector<std::string> &words) {
     if (loaded == nullptr) {
         return 1;
     }
-    auto tools = machine::ToolFile::load(loaded->machine.tool_table_file);
+    auto tools = machine::ToolFile::load(loaded->machine.tool_table_file, &sink);
     if (!tools.has_value()) {
         sink.error(tools.error());
         return 1;

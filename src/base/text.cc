@@ -208,6 +208,17 @@ std::vector<std::string> split_words(std::string_view text) {
 std::string nearest_name(std::string_view name, const std::vector<std::string> &candidates) {
     std::size_t best = name.size() / 3 + 1;
     std::string found;
+    // A name that goes on, or was cut short, is nearer than one that differs.
+    constexpr std::size_t LEAST_PREFIX = 6;
+    for (const std::string &candidate : candidates) {
+        const std::size_t common = std::min(name.size(), candidate.size());
+        const bool isCut = common >= LEAST_PREFIX && common != std::max(name.size(), candidate.size()) &&
+                           name.substr(0, common) == candidate.substr(0, common) &&
+                           std::max(name.size(), candidate.size()) <= 2 * common;
+        if (isCut) {
+            return candidate;
+        }
+    }
     for (const std::string &candidate : candidates) {
         const std::size_t distance = edit_distance(name, candidate);
         if (distance < best) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 
 #include "base/atomic_file.hh"
 #include "base/text.hh"
@@ -20,6 +21,20 @@ std::string folder_of(const std::string &path) {
         return ".";
     }
     return slash == 0 ? "/" : path.substr(0, slash);
+}
+
+/// A pipe or a device may never end, so only files are read.
+Result<std::string> read_settings(const std::string &path) {
+    constexpr std::uintmax_t LONGEST = 64U << 20U;
+    std::error_code error;
+    const auto kind = std::filesystem::status(path, error).type();
+    if (kind != std::filesystem::file_type::not_found && kind != std::filesystem::file_type::regular) {
+        return fail("'" + path + "' is no file");
+    }
+    if (kind == std::filesystem::file_type::regular && std::filesystem::file_size(path, error) > LONGEST) {
+        return fail("'" + path + "' is too long for settings (more than 64 MB)");
+    }
+    return read_file(path);
 }
 
 std::string expand_home(std::string_view name) {
@@ -98,6 +113,13 @@ class IniParser {
     void entry(const std::string &line, std::string_view body, SourcePlace place) {
         const auto equals = body.find('=');
         const std::string_view key = equals == std::string_view::npos ? "" : trim(body.substr(0, equals));
+        const bool isOneWord = equals == std::string_view::npos && body.find_first_of(" \t") == body.npos;
+        if (isOneWord) {
+            // A setting needs a value, so nothing that could have been meant is lost with it.
+            sink_.warning("'" + std::string(body) + "' is no setting; the line has no effect", place,
+                          "expected KEY = VALUE, [SECTION], or a comment that starts with # or ;");
+            return;
+        }
         if (key.empty()) {
             sink_.error("malformed line '" + std::string(body) + "'", place,
                         "expected KEY = VALUE, [SECTION], or a comment that starts with # or ;");
@@ -117,7 +139,7 @@ class IniParser {
 
     void include(std::string_view name, const SourcePlace &place, int depth) {
         if (name.empty()) {
-            sink_.error("#INCLUDE without a file name", place);
+            sink_.warning("#INCLUDE without a file name; it has no effect", place);
             return;
         }
         if (depth >= MAX_INCLUDE_DEPTH) {
@@ -129,7 +151,7 @@ class IniParser {
             const std::string beside = folder_of(place.file) + '/' + path;
             path = ::access(beside.c_str(), R_OK) == 0 ? beside : path;
         }
-        const auto content = read_file(path);
+        const auto content = read_settings(path);
         if (!content.has_value()) {
             sink_.error("#INCLUDE: " + content.error().message, place);
             return;
@@ -144,7 +166,7 @@ class IniParser {
 };
 
 Result<IniFile> IniFile::load(const std::string &path, diag::Sink &sink) {
-    const auto content = read_file(path);
+    const auto content = read_settings(path);
     if (!content.has_value()) {
         return std::unexpected(content.error());
     }

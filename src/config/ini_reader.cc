@@ -204,8 +204,39 @@ std::vector<const IniEntry *> IniReader::list(std::string_view section, std::str
     return file_.find_all(section, key);
 }
 
+void IniReader::know_without_effect(std::string_view section, std::string_view key, std::string_view why) {
+    know(section, key);
+    without_effect_.insert_or_assign(label(section, key), std::string(why));
+}
+
+/// Sections whose name is a misspelling of one that the system reads.
+void IniReader::report_sections(diag::Severity severity) {
+    std::vector<std::string> names;
+    for (const auto &[name, keys] : known_) {
+        names.push_back(name);
+    }
+    for (const std::string &section : file_.sections()) {
+        const bool isMeant =
+            known_.count(section) > 0 || open_.count(section) > 0 || used_sections_.count(section) > 0;
+        const std::string near = isMeant ? "" : nearest_name(section, names);
+        if (!near.empty() && used_sections_.insert(section).second) {
+            sink_.report({severity,
+                          {"unknown section [" + section + "]; it has no effect",
+                           file_.place_of_section(section), "did you mean [" + near + "]?"}});
+        }
+    }
+}
+
 void IniReader::report_unknown(bool isStrict) {
+    const diag::Severity severity = isStrict ? diag::Severity::ERROR : diag::Severity::WARNING;
     for (const IniEntry &entry : file_.entries()) {
+        SourcePlace place = entry.place;
+        place.column = 1;
+        const auto why = without_effect_.find(label(entry.section, entry.key));
+        if (why != without_effect_.end()) {
+            sink_.report({severity, {why->first + " has no effect: " + why->second, place, {}}});
+            without_effect_.erase(why);  // once
+        }
         const auto section = known_.find(entry.section);
         if (section == known_.end() || open_.count(entry.section) > 0 ||
             section->second.count(entry.key) > 0) {
@@ -213,14 +244,12 @@ void IniReader::report_unknown(bool isStrict) {
         }
         const std::vector<std::string> names(section->second.begin(), section->second.end());
         const std::string near = nearest_name(entry.key, names);
-        const diag::Severity severity = isStrict ? diag::Severity::ERROR : diag::Severity::WARNING;
-        SourcePlace place = entry.place;
-        place.column = 1;
         sink_.report({severity,
                       {"unknown key " + label(entry.section, entry.key) + "; it has no effect", place,
                        near.empty() ? "" : "did you mean " + near + "?"}});
         know(entry.section, entry.key);
     }
+    report_sections(severity);
 }
 
 }  // namespace mw::config

@@ -51,6 +51,11 @@ class IniReader {
     void know_all(std::string_view section, std::initializer_list<std::string_view> keys);
     /// The same for a key that somebody has used; a section that the system does not read stays not ours.
     void know_if_ours(std::string_view section, std::string_view key);
+    /// A key that users of such controllers know and that this version does not act on, with the reason: said
+    /// by report_unknown() where it is set.
+    void know_without_effect(std::string_view section, std::string_view key, std::string_view why);
+    /// A HAL file or script has used this section, whatever it is for.
+    void use_section(std::string_view section) { used_sections_.insert(std::string(section)); }
     /// Says that other programs define keys of this section, so that none of them is unknown.
     void leave_open(std::string_view section);
 
@@ -62,6 +67,7 @@ class IniReader {
   private:
     const IniEntry *scalar(std::string_view section, std::string_view key);
     void missing(std::string_view section, std::string_view key, const std::string &expected);
+    void report_sections(diag::Severity severity);
     std::optional<double> number(const IniEntry &entry, const RealRange &range);
     std::optional<std::int64_t> whole(const IniEntry &entry, std::int64_t lowest, std::int64_t highest);
 
@@ -69,6 +75,8 @@ class IniReader {
     diag::Sink &sink_;
     std::map<std::string, std::set<std::string>, std::less<>> known_;
     std::set<std::string, std::less<>> open_;
+    std::set<std::string, std::less<>> used_sections_;
+    std::map<std::string, std::string> without_effect_;  ///< [SECTION]KEY: why
     std::set<std::string> warned_twice_;
     std::set<std::string> missing_sections_;
 };

@@ -2,6 +2,8 @@
 #include "machine/hal_setup.hh"
 
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <set>
 
 #include <fmt/format.h>
@@ -20,6 +22,7 @@ class IniValues final : public lang::IniLookup {
   public:
     explicit IniValues(config::IniReader &reader) : reader_(reader) {}
     std::optional<std::string> find(std::string_view section, std::string_view name) const override {
+        reader_.use_section(section);
         const config::IniEntry *entry = reader_.file().find(section, name);
         if (entry == nullptr) {
             return std::nullopt;
@@ -123,6 +126,25 @@ Result<> run_steps(lang::Session &session, const std::vector<HalStep> &steps) {
 
 }  // namespace
 
+namespace {
+
+/// What scripts of HAL files look for in their environment: this INI file, and the library that they source
+/// other scripts from. A library that the user named there stays.
+void offer_to_scripts(const std::string &ini, const std::vector<std::string> &library) {
+    std::error_code ignored;
+    const auto whole = std::filesystem::absolute(ini, ignored);
+    ::setenv("INI_FILE_NAME", whole.c_str(), 1);
+    for (const std::string &folder : library) {
+        if (std::filesystem::is_directory(folder, ignored)) {
+            ::setenv("HALLIB_DIR", folder.c_str(), 0);
+            ::setenv("HALLIB_PATH", (".:" + folder).c_str(), 0);
+            return;
+        }
+    }
+}
+
+}  // namespace
+
 Result<> HalSetup::run() {
     const IniValues ini(parts_.reader);
     SinkOutput output(parts_.sink);
@@ -139,6 +161,7 @@ Result<> HalSetup::run() {
     for (const std::string &folder : lang::default_library()) {
         session_options.library.push_back(folder);
     }
+    offer_to_scripts(parts_.ini.path(), session_options.library);
     lang::ProgramHost &program_host = isVirtual ? static_cast<lang::ProgramHost &>(parts) : programs;
     lang::Session session(host_, program_host, output, session_options);
     const int errors_before = parts_.sink.count_errors();

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "base/text.hh"
 #include "geom/pose.hh"
 #include "interp/ini_settings.hh"
+#include "machine/inert_keys.hh"
 #include "motion/api/parameters.hh"
 
 namespace mw::machine {
@@ -23,7 +25,7 @@ void read_names(IniReader &ini, MachineConfig &machine) {
                  {"VERSION", "DEBUG", "RCS_DEBUG", "RCS_DEBUG_DEST", "RCS_MAX_ERR", "LOG_LEVEL", "NML_FILE"});
     machine.display = ini.text("DISPLAY", "DISPLAY", "");
     ini.know("DISPLAY", "PROGRAM_PREFIX");
-    for (const char *section : {"DISPLAY", "FILTER", "APPLICATIONS", "PYTHON", "MDI_COMMAND_LIST"}) {
+    for (const char *section : {"FILTER", "PYTHON", "MDI_COMMAND_LIST"}) {
         ini.leave_open(section);
     }
 }
@@ -99,9 +101,27 @@ void read_scope(IniReader &ini, const std::string &section, motion::ParameterSco
     }
 }
 
-void need_section(IniReader &ini, const std::string &section, const std::string &why) {
+/// Files of the field leave sections out; what holds then is said.
+void miss_section(IniReader &ini, const std::string &section, const std::string &instead) {
     if (!ini.file().hasSection(section)) {
-        ini.sink().error("section [" + section + "] is missing", {ini.file().path(), 0, 0}, why);
+        ini.sink().warning("section [" + section + "] is missing: " + instead, {ini.file().path(), 0, 0});
+    }
+}
+
+/// Limits that nothing can move between, and a HOME that lies beyond them.
+void check_travel(IniReader &ini, const std::string &section, const char *what) {
+    const double low = ini.real(section, "MIN_LIMIT", -INF);
+    const double high = ini.real(section, "MAX_LIMIT", INF);
+    const double home = ini.real(section, "HOME", 0.0);
+    if (low == high) {
+        ini.sink().warning('[' + section + "]MIN_LIMIT and MAX_LIMIT are equal: the " + what + " cannot move",
+                           ini.file().find(section, "MIN_LIMIT")->place);
+    }
+    const config::IniEntry *entry = ini.file().find(section, "HOME");
+    if (entry != nullptr && low <= high && (home < low || home > high)) {
+        ini.sink().warning('[' + section + "]HOME = " + entry->value +
+                               " is outside of MIN_LIMIT and MAX_LIMIT",
+                           entry->place);
     }
 }
 
@@ -121,7 +141,8 @@ void warn_without_effect(IniReader &ini, const std::string &section,
 void read_joints(IniReader &ini, MachineConfig &machine) {
     for (int joint = 0; joint < machine.num_joints; ++joint) {
         const std::string section = "JOINT_" + std::to_string(joint);
-        need_section(ini, section, "[KINS]JOINTS = " + std::to_string(machine.num_joints) + " needs it");
+        miss_section(ini, section, "the joint is linear and has no limits, with 1 unit/s and 1 unit/s2");
+        check_travel(ini, section, "joint");
         read_scope(ini, section, motion::ParameterScope::JOINT, joint, machine);
         for (const char *key : {"MAX_VELOCITY", "MAX_ACCELERATION"}) {
             const bool isMissing = ini.file().hasSection(section) && ini.file().find(section, key) == nullptr;
@@ -173,7 +194,8 @@ void read_axes(IniReader &ini, MachineConfig &machine) {
             continue;
         }
         const std::string section = std::string("AXIS_") + geom::AXIS_LETTERS[axis];
-        need_section(ini, section, "[TRAJ]COORDINATES names the axis");
+        miss_section(ini, section, "the axis has the limits of its joint");
+        check_travel(ini, section, "axis");
         const auto i = static_cast<std::size_t>(axis);
         // Without limits of its own an axis has those of the joint that moves it.
         const std::string joint = "JOINT_" + std::to_string(std::max(machine.joint_of_axis[i], 0));
@@ -194,11 +216,27 @@ void read_axes(IniReader &ini, MachineConfig &machine) {
     }
 }
 
-void read_trajectory(IniReader &ini, MachineConfig &machine) {
+/// A number says how many units a millimetre has.
+bool read_isMetric(IniReader &ini) {
+    const config::IniEntry *entry = ini.file().find("TRAJ", "LINEAR_UNITS");
+    const auto per_mm = entry == nullptr ? std::nullopt : parse_double(entry->value);
+    constexpr double INCHES_PER_MM = 1.0 / 25.4;
+    if (per_mm.has_value() && (*per_mm == 1.0 || std::fabs(*per_mm - INCHES_PER_MM) < 1e-6)) {
+        ini.know("TRAJ", "LINEAR_UNITS");
+        ini.sink().warning("[TRAJ]LINEAR_UNITS = " + entry->value + " is taken as " +
+                               (*per_mm == 1.0 ? "mm" : "inch"),
+                           entry->place);
+        return *per_mm == 1.0;
+    }
     const std::string units =
         ini.choice("TRAJ", "LINEAR_UNITS", "mm", {"mm", "inch", "in", "imperial", "metric"});
-    machine.isMetric = units == "mm" || units == "metric";
-    ini.choice("TRAJ", "ANGULAR_UNITS", "degree", {"degree", "degrees", "deg"});
+    return units == "mm" || units == "metric";
+}
+
+void read_trajectory(IniReader &ini, MachineConfig &machine) {
+    machine.isMetric = read_isMetric(ini);
+    // 1.0: a number of degrees, as files of the field have it.
+    ini.choice("TRAJ", "ANGULAR_UNITS", "degree", {"degree", "degrees", "deg", "1.0", "1"});
     read_scope(ini, "TRAJ", motion::ParameterScope::MACHINE, 0, machine);
     const auto highest_scale = static_cast<std::uint16_t>(motion::Parameter::MAX_FEED_SCALE);
     machine.parameters.push_back(
@@ -268,6 +306,13 @@ void read_hal(IniReader &ini, MachineConfig &machine) {
 void read_interpreter(IniReader &ini, MachineConfig &machine) {
     const std::string parameters = ini.text("RS274NGC", "PARAMETER_FILE", "");
     machine.task.parameter_file = parameters.empty() ? "" : ini.file().resolve_path(parameters);
+    std::error_code error;
+    if (!parameters.empty() && std::filesystem::file_size(machine.task.parameter_file, error) == 0 &&
+        !error) {
+        ini.sink().warning("the parameter file '" + machine.task.parameter_file +
+                               "' is empty: all offsets and parameters begin at 0",
+                           ini.file().find("RS274NGC", "PARAMETER_FILE")->place);
+    }
     if (parameters.empty()) {
         ini.sink().warning(
             "[RS274NGC]PARAMETER_FILE is missing: offsets and parameters are not kept after a run",
@@ -305,7 +350,6 @@ void read_interpreter(IniReader &ini, MachineConfig &machine) {
                               "RETAIN_G43",
                               "PARAMETER_G73_PECK_CLEARANCE",
                               "PARAMETER_G83_PECK_CLEARANCE"});
-    warn_without_effect(ini, "RS274NGC", {"OWORD_WARNONLY", "FEATURES"});
 }
 
 void read_io(IniReader &ini, MachineConfig &machine) {
@@ -356,6 +400,7 @@ MachineConfig read_machine_config(config::IniReader &reader) {
     read_hal(reader, machine);
     read_interpreter(reader, machine);
     read_io(reader, machine);
+    know_inert_keys(reader);
     machine.task.machine_units = machine.isMetric ? interp::LengthUnits::MM : interp::LengthUnits::INCH;
     machine.task.axis_mask = machine.axis_mask;
     machine.task.num_joints = machine.num_joints;

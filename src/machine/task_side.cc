@@ -23,7 +23,7 @@ TaskSide::~TaskSide() {
 }
 
 Result<> TaskSide::start(const MachineOptions &options) {
-    auto tools = ToolFile::load(parts_.config.tool_table_file);
+    auto tools = ToolFile::load(parts_.config.tool_table_file, &parts_.sink);
     if (!tools.has_value()) {
         return std::unexpected(tools.error());
     }

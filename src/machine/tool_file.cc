@@ -2,14 +2,22 @@
 #include "machine/tool_file.hh"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "base/atomic_file.hh"
 
 namespace mw::machine {
 
-Result<std::unique_ptr<ToolFile>> ToolFile::load(const std::string &path) {
+Result<std::unique_ptr<ToolFile>> ToolFile::load(const std::string &path, diag::Sink *sink) {
     std::unique_ptr<ToolFile> file(new ToolFile(path));
-    const auto loaded = file->reload();
+    diag::Sink silent;
+    diag::Sink &told = sink != nullptr ? *sink : silent;
+    std::error_code error;
+    if (!path.empty() && !std::filesystem::exists(path, error)) {
+        told.warning("there is no tool table '" + path + "': it starts empty");
+        return file;
+    }
+    const auto loaded = file->reload(told);
     if (!loaded.has_value()) {
         return std::unexpected(loaded.error());
     }
@@ -17,6 +25,11 @@ Result<std::unique_ptr<ToolFile>> ToolFile::load(const std::string &path) {
 }
 
 Result<> ToolFile::reload() {
+    diag::Sink silent;
+    return reload(silent);
+}
+
+Result<> ToolFile::reload(diag::Sink &sink) {
     if (path_.empty()) {
         return {};
     }
@@ -24,12 +37,9 @@ Result<> ToolFile::reload() {
     if (!text.has_value()) {
         return std::unexpected(text.error());
     }
-    auto table = tool::Table::parse(*text, path_);
-    if (!table.has_value()) {
-        return std::unexpected(table.error());
-    }
+    tool::Table table = tool::Table::parse_leniently(*text, path_, sink);
     const int in_spindle = table_.entry(0).toolno;
-    table_ = std::move(*table);
+    table_ = std::move(table);
     table_.load_spindle(in_spindle > 0 ? std::max(0, table_.index_of_tool(in_spindle)) : 0);
     return {};
 }

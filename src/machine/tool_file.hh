@@ -13,8 +13,9 @@ namespace mw::machine {
 /// Not realtime; one thread. Each change is written to the file at once, atomically.
 class ToolFile final : public task::ToolStore {
   public:
-    /// An empty path is an empty table that lives in memory only.
-    static Result<std::unique_ptr<ToolFile>> load(const std::string &path);
+    /// An empty path is an empty table that lives in memory only; a file that is not there an empty one that
+    /// its first change makes. `sink` is warned of that and of lines that cannot be used.
+    static Result<std::unique_ptr<ToolFile>> load(const std::string &path, diag::Sink *sink = nullptr);
 
     int count() const override { return table_.count(); }
     interp::ToolEntry entry(int index) const override { return table_.entry(index); }
@@ -26,6 +27,7 @@ class ToolFile final : public task::ToolStore {
     Result<> reload() override;
 
   private:
+    Result<> reload(diag::Sink &sink);
     explicit ToolFile(std::string path) : path_(std::move(path)) {}
 
     std::string path_;

@@ -156,19 +156,38 @@ Result<Table> Table::load(const std::string &path) {
     return parse(*text, path);
 }
 
+namespace {
+
+/// The lines of a text without their ends.
+std::vector<std::string> lines_of(std::string_view text) {
+    std::vector<std::string> lines;
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        lines.emplace_back(text.substr(begin, end - begin));
+        begin = end + 1;
+        if (!lines.back().empty() && lines.back().back() == '\r') {
+            lines.back().pop_back();
+        }
+    }
+    return lines;
+}
+
+/// True when both do the same to a machine.
+bool isSameTool(const ToolEntry &a, const ToolEntry &b) {
+    return a.offset == b.offset && a.diameter == b.diameter && a.frontangle == b.frontangle &&
+           a.backangle == b.backangle && a.orientation == b.orientation;
+}
+
+}  // namespace
+
 Result<Table> Table::parse(std::string_view text, const std::string &path) {
     Table table;
     int number = 0;
-    for (std::size_t begin = 0; begin < text.size();) {
-        const std::size_t end = std::min(text.find('\n', begin), text.size());
-        Line line{std::string(text.substr(begin, end - begin)), 0, false};
-        begin = end + 1;
+    for (const std::string &content : lines_of(text)) {
         ++number;
-        if (!line.text.empty() && line.text.back() == '\r') {
-            line.text.pop_back();
-        }
-        if (hasTool(line.text)) {
-            const Result<ToolEntry> entry = LineParser(line.text, {path, number, 0}).parse();
+        Line line{content, 0, false};
+        if (hasTool(content)) {
+            const Result<ToolEntry> entry = LineParser(content, {path, number, 0}).parse();
             if (!entry) {
                 return std::unexpected(entry.error());
             }
@@ -181,6 +200,89 @@ Result<Table> Table::parse(std::string_view text, const std::string &path) {
         table.lines_.push_back(std::move(line));
     }
     return table;
+}
+
+Table Table::parse_leniently(std::string_view text, const std::string &path, diag::Sink &sink) {
+    Table table;
+    int number = 0;
+    for (const std::string &content : lines_of(text)) {
+        ++number;
+        Line line{content, 0, false};
+        if (hasTool(content)) {
+            const Result<ToolEntry> entry = LineParser(content, {path, number, 0}).parse();
+            if (entry) {
+                line.entry = table.count();
+                table.entries_.push_back(*entry);
+            } else {
+                sink.warning(entry.error().message + ": the line is skipped", entry.error().place,
+                             entry.error().hint);
+            }
+        }
+        table.lines_.push_back(std::move(line));
+    }
+    table.check(path, sink);
+    return table;
+}
+
+/// Warns of what looks wrong, and takes out what must not be used.
+void Table::check(const std::string &path, diag::Sink &sink) {
+    std::vector<int> line_of(entries_.size(), 0);
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+        line_of[static_cast<std::size_t>(lines_[i].entry)] = static_cast<int>(i) + 1;
+    }
+    for (std::size_t i = 1; i < entries_.size(); ++i) {
+        const ToolEntry &tool = entries_[i];
+        const SourcePlace place{path, line_of[i], 1};
+        if (tool.toolno == 0) {
+            sink.warning("T0 stands for an empty spindle: a program cannot load this tool", place);
+        }
+        if (tool.pocketno == 0) {
+            sink.warning(fmt::format("tool {}: P0 stands for the spindle, not for a pocket", tool.toolno),
+                         place);
+        }
+        if (tool.diameter < 0.0) {
+            sink.warning(fmt::format("tool {}: a diameter of {} is negative: compensation with it goes to "
+                                     "the other side",
+                                     tool.toolno, fixed_text(tool.diameter)),
+                         place);
+        }
+        for (std::size_t earlier = 1; earlier < i; ++earlier) {
+            if (entries_[earlier].pocketno == tool.pocketno && entries_[earlier].toolno != tool.toolno &&
+                tool.pocketno != 0) {
+                sink.warning(fmt::format("tools {} (line {}) and {} are in one pocket, P{}",
+                                         entries_[earlier].toolno, line_of[earlier], tool.toolno,
+                                         tool.pocketno),
+                             place);
+                break;
+            }
+        }
+    }
+    for (std::size_t i = entries_.size(); i-- > 1;) {
+        check_twice(i, line_of, path, sink);
+    }
+}
+
+/// Takes entry `later` out when its tool stands earlier too; both when they differ.
+void Table::check_twice(std::size_t later, const std::vector<int> &line_of, const std::string &path,
+                        diag::Sink &sink) {
+    constexpr int NOBODY = -1;
+    const auto earlier = static_cast<std::size_t>(std::max(0, index_of_tool(entries_[later].toolno)));
+    if (entries_[later].toolno == NOBODY || earlier == 0 || earlier >= later) {
+        return;
+    }
+    const bool isSame = isSameTool(entries_[earlier], entries_[later]);
+    sink.warning(fmt::format("tool {} stands in lines {} and {}{}", entries_[later].toolno, line_of[earlier],
+                             line_of[later],
+                             isSame ? ": the first one counts"
+                                    : " with different figures: it cannot be used until one of them goes"),
+                 {path, line_of[later], 1});
+    const int number = entries_[later].toolno;
+    entries_[later].toolno = NOBODY;
+    if (!isSame) {
+        for (std::size_t i = 1; i < entries_.size(); ++i) {
+            entries_[i].toolno = entries_[i].toolno == number ? NOBODY : entries_[i].toolno;
+        }
+    }
 }
 
 int Table::index_of_tool(int toolno) const {

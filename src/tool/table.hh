@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/result.hh"
+#include "diag/sink.hh"
 #include "tool/entry.hh"
 
 namespace mw::tool {
@@ -20,7 +21,12 @@ class Table {
 
     /// Errors name file, line and column; nothing is dropped silently.
     static Result<Table> load(const std::string &path);
+    /// The first bad line is the error, and so is a tool that stands twice.
     static Result<Table> parse(std::string_view text, const std::string &path);
+    /// Goes on: every bad line is skipped with a warning, which is safe, since a tool that is not there is
+    /// refused where a program asks for it. A tool that stands twice counts with its first line, or not at
+    /// all when the two have different figures. What looks wrong otherwise is warned of too.
+    static Table parse_leniently(std::string_view text, const std::string &path, diag::Sink &sink);
 
     /// Writes atomically: lines of unchanged tools and comment lines stay as they were.
     Result<> save(const std::string &path) const;
@@ -45,6 +51,9 @@ class Table {
         bool isChanged = false;
     };
     void clear_spindle();
+    void check(const std::string &path, diag::Sink &sink);
+    void check_twice(std::size_t later, const std::vector<int> &line_of, const std::string &path,
+                     diag::Sink &sink);
 
     std::vector<ToolEntry> entries_;
     std::vector<Line> lines_;

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+
 #include <gtest/gtest.h>
 
 #include "config/ini_reader.hh"
@@ -33,7 +38,8 @@ TEST(Ini, AContinuedLineIsOneValue) {
 
 TEST(Ini, EveryMalformedLineIsReported) {
     Read ini("K = 1\n[A\nstray\n[A]\n= 5\n");
-    EXPECT_EQ(ini.sink.count_errors(), 4);
+    EXPECT_EQ(ini.sink.all().size(), 4U);
+    EXPECT_EQ(ini.sink.count_errors(), 3) << "a single word is a warning";
     EXPECT_EQ(ini.sink.all()[1].what.place.line, 2);
 }
 
@@ -65,6 +71,56 @@ TEST(Ini, UnknownKeysAreWarnedOnceWithTheNearestName) {
     ASSERT_EQ(ini.sink.all().size(), 1U);
     EXPECT_EQ(ini.sink.all()[0].what.hint, "did you mean MAX_VELOCITY?");
     EXPECT_FALSE(ini.sink.hasErrors());
+}
+
+TEST(Ini, KeysWithoutEffectAreSaidWithTheReasonAndAreErrorsWhenStrict) {
+    Read ini("[J]\nTPMOD = mine\n");
+    ini.reader.know_without_effect("J", "TPMOD", "there is one planner");
+    ini.reader.know_without_effect("J", "HOMEMOD", "not set here");
+    ini.reader.report_unknown(true);
+    ASSERT_EQ(ini.sink.all().size(), 1U);
+    EXPECT_EQ(ini.first_message(), "dir/m.ini:2:1: [J]TPMOD has no effect: there is one planner");
+    EXPECT_TRUE(ini.sink.hasErrors());
+}
+
+TEST(Ini, MisspeltSectionsAreSaidAndOthersAreNot) {
+    Read ini("[JIONT_0]\nA = 1\n[MY_PLASMA]\nB = 1\n[JOINT_O]\nC = 1\n");
+    ini.reader.real("JOINT_0", "MAX_VELOCITY", 1.0);
+    ini.reader.use_section("JOINT_O");  // by a HAL file
+    ini.reader.report_unknown(false);
+    ini.reader.report_unknown(false);
+    ASSERT_EQ(ini.sink.all().size(), 1U);
+    EXPECT_EQ(ini.first_message(),
+              "dir/m.ini:1:1: unknown section [JIONT_0]; it has no effect (did you mean [JOINT_0]?)");
+}
+
+TEST(Ini, AKeyThatWasCutShortIsNearerThanAnotherOne) {
+    Read ini("[T]\nMAX_LINEAR_ACCEL = 1\n");
+    ini.reader.know_all("T", {"MAX_LINEAR_JERK", "MAX_LINEAR_ACCELERATION"});
+    ini.reader.report_unknown(false);
+    ASSERT_EQ(ini.sink.all().size(), 1U);
+    EXPECT_EQ(ini.sink.all()[0].what.hint, "did you mean MAX_LINEAR_ACCELERATION?");
+}
+
+TEST(Ini, WhatHasNoEffectInTheFieldIsAWarning) {
+    Read ini("[J]\nduh\n#INCLUDE\nV = 2\n");
+    EXPECT_FALSE(ini.sink.hasErrors());
+    EXPECT_EQ(ini.sink.all().size(), 2U);
+    EXPECT_EQ(ini.reader.real("J", "V", 0.0), 2.0);
+    Read value("[J]\nMAX_VELOCITY 5\n");
+    EXPECT_TRUE(value.sink.hasErrors()) << "a setting whose '=' is missing was meant";
+}
+
+TEST(Ini, DevicesAndPipesAreNoIniFiles) {
+    diag::Sink sink;
+    EXPECT_FALSE(IniFile::load("/dev/zero", sink));
+    const std::string pipe =
+        std::filesystem::temp_directory_path() / ("mw_ini_" + std::to_string(::getpid()));
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_FALSE(IniFile::load(pipe, sink));
+    const IniFile file = IniFile::parse("#INCLUDE /dev/zero\n", "m.ini", sink);
+    EXPECT_TRUE(sink.hasErrors());
+    ::unlink(pipe.c_str());
 }
 
 TEST(Ini, AScalarGivenTwiceNamesTheOneUsed) {

@@ -146,7 +146,7 @@ Result<std::unique_ptr<Hal>> Hal::attach(std::string_view instance) {
     auto memory = rtapi::SharedMemory::attach(segment_name(instance), LAYOUT);
     if (!memory) {
         return refuse(ENOENT, fmt::format("HAL instance '{}': {}", instance, memory.error().message),
-                      memory.error().hint.empty() ? "start it with halrun or the realtime script"
+                      memory.error().hint.empty() ? "start it with halrun or realtime start"
                                                   : memory.error().hint);
     }
     if (!rtapi::isAlive(memory->owner())) {

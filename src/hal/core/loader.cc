@@ -194,6 +194,8 @@ std::vector<std::string> Loader::default_folders() {
     const std::string here = program_folder();
     folders.push_back(here + "/../lib");
     folders.push_back(here + "/../lib/millwright/modules");
+    folders.push_back(here + "/../lib/linuxcnc/modules");
+    folders.push_back(here + "/../lib/linuxcnc");
     return folders;
 }
 

@@ -49,7 +49,8 @@ Result<ProgramRequest> parse_loadusr(const Call &call) {
         return fail("loadusr needs the name of a program", call.place);
     }
     if (!isNamed) {
-        request.component = base_name(request.argv[0]);
+        const std::string name = base_name(request.argv[0]);
+        request.component = name.ends_with(".py") ? name.substr(0, name.size() - 3) : name;
     }
     return request;
 }

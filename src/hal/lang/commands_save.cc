@@ -32,7 +32,7 @@ std::string save_comp(Hal &hal) {
             continue;
         }
         if (c.isLoadedByLoadrt) {
-            text += fmt::format("loadrt {} {}{}\n", c.name, c.insmod_args, c.insmod_args.empty() ? "" : " ");
+            text += fmt::format("loadrt {}{}{}\n", c.name, c.insmod_args.empty() ? "" : " ", c.insmod_args);
         } else {
             text += fmt::format("#loadrt {}  (not loaded by loadrt, no args saved)\n", c.name);
         }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/text.hh"
 #include "hal/tcl/interpreter.hh"
 
 namespace mw::hal::tcl {
@@ -12,7 +13,7 @@ namespace {
 
 /// Those whose names mean something else in Tcl: only with `hal` before them.
 constexpr std::array<std::string_view, 5> TAKEN = {"gets", "list", "exit", "quit", "source"};
-/// Those whose answer is printed; that of the others is the result.
+/// Those whose answer is printed; that of the others is the result, and so is that of `hal show`.
 constexpr std::array<std::string_view, 3> PRINTING = {"show", "save", "help"};
 
 template <std::size_t N>
@@ -51,7 +52,32 @@ std::string evaluated(Tcl_Interp *interpreter, const std::string &text) {
     return result;
 }
 
-int run(Tcl_Interp *interpreter, lang::Session &session, std::vector<std::string> words) {
+/// The words of an INI value, which is a list of one element for Tcl.
+std::vector<std::string> parts_of(const std::string &value) {
+    int count = 0;
+    const char **elements = nullptr;
+    if (Tcl_SplitList(nullptr, value.c_str(), &count, &elements) != TCL_OK) {
+        return split_words(value);
+    }
+    std::vector<std::string> parts;
+    for (int i = 0; i < count; ++i) {
+        const std::vector<std::string> words = split_words(elements[i]);
+        parts.insert(parts.end(), words.begin(), words.end());
+    }
+    Tcl_Free(reinterpret_cast<char *>(elements));
+    return parts;
+}
+
+/// Who asks for the answer of a command: `hal show ...` has it as its result, `show ...` prints it.
+enum class Asked { BY_NAME, THROUGH_HAL };
+
+int run(Tcl_Interp *interpreter, lang::Session &session, std::vector<std::string> words, Asked asked) {
+    if (words[0] == "loadrt" && words.size() > 1) {
+        // $::KINS(KINEMATICS) is one word for Tcl: module and parameters.
+        const std::vector<std::string> parts = parts_of(words[1]);
+        words.erase(words.begin() + 1);
+        words.insert(words.begin() + 1, parts.begin(), parts.end());
+    }
     const bool isSetting = words[0] == "setp" || words[0] == "sets";
     if (isSetting && words.size() == 3) {
         words[2] = evaluated(interpreter, words[2]);
@@ -60,11 +86,15 @@ int run(Tcl_Interp *interpreter, lang::Session &session, std::vector<std::string
     if (!answer) {
         return failed(interpreter, answer.error());
     }
-    if (isOneOf(PRINTING, words[0])) {
+    const bool isResult = asked == Asked::THROUGH_HAL && words[0] == "show";
+    if (isOneOf(PRINTING, words[0]) && !isResult) {
         session.output().data(*answer);
         answer->clear();
     }
-    while (!answer->empty() && answer->back() == '\n') {
+    if (isResult && answer->ends_with("\n\n")) {
+        answer->pop_back();
+    }
+    while (!isResult && !answer->empty() && answer->back() == '\n') {
         answer->pop_back();
     }
     set_result(interpreter, *answer);
@@ -87,7 +117,7 @@ int run_named(ClientData data, Tcl_Interp *interpreter, int count, Tcl_Obj *cons
     std::vector<std::string> words = words_of(count, objects, 0);
     // A command may be called as ::net.
     words[0] = words[0].substr(words[0].rfind(':') + 1);
-    return run(interpreter, session_of(data), std::move(words));
+    return run(interpreter, session_of(data), std::move(words), Asked::BY_NAME);
 }
 
 std::string command_list() {
@@ -118,7 +148,7 @@ int run_hal(ClientData data, Tcl_Interp *interpreter, int count, Tcl_Obj *const 
         set_result(interpreter, pass == lang::Pass::ALL ? "" : pass == lang::Pass::LOADS ? "0" : "1");
         return TCL_OK;
     }
-    return run(interpreter, session_of(data), std::move(words));
+    return run(interpreter, session_of(data), std::move(words), Asked::THROUGH_HAL);
 }
 
 /// A read of $::SECTION(ITEM): the entry counts as used.

@@ -60,6 +60,11 @@ int halcmd(const std::vector<std::string> &arguments);
 int halcmd_twopass(const std::vector<std::string> &arguments);
 /// `haltcl`: a Tcl script or session, attached as halcmd is. The exit status.
 int haltcl(const std::vector<std::string> &arguments);
+/// `realtime start|stop|restart|status`: a realtime process that stays. The exit status; of `status` 1 when
+/// none runs.
+int realtime(const std::vector<std::string> &arguments);
+/// Ends the realtime process of the instance and the programs on it, if there is one: `halrun -U`.
+int end_running(const char *program);
 /// `halrun`: with a realtime process of its own around the commands. The exit status.
 int halrun(const std::vector<std::string> &arguments);
 

@@ -45,26 +45,6 @@ void handle_signals() {
     }
 }
 
-/// halrun -U.
-int end_running() {
-    const std::string instance = default_instance();
-    if (!isHostAlive(instance)) {
-        remove_leftovers(instance);
-        return 0;
-    }
-    const auto host = HostClient::connect(instance);
-    if (!host) {
-        return fail_with(host.error());
-    }
-    lang::SystemProgramHost programs((*host)->hal());
-    const Result<> stopped = programs.stop_all();
-    const Result<> ended = (*host)->shut_down();
-    if (!ended) {
-        return fail_with(ended.error());
-    }
-    return stopped ? 0 : fail_with(stopped.error());
-}
-
 /// Files in turn; what follows a Tcl file are its arguments.
 Result<> run_files(const CommandLine &line, lang::Session &session) {
     Result<> first;
@@ -116,6 +96,29 @@ Result<> tear_down(lang::ProgramHost &programs, HostClient &host) {
 
 }  // namespace
 
+int end_running(const char *program) {
+    const auto fail_with = [program](const Error &error) {
+        std::fprintf(stderr, "%s: %s\n", program, error.str().c_str());
+        return 1;
+    };
+    const std::string instance = default_instance();
+    if (!isHostAlive(instance)) {
+        remove_leftovers(instance);
+        return 0;
+    }
+    const auto host = HostClient::connect(instance);
+    if (!host) {
+        return fail_with(host.error());
+    }
+    lang::SystemProgramHost programs((*host)->hal());
+    const Result<> stopped = programs.stop_all();
+    const Result<> ended = (*host)->shut_down();
+    if (!ended) {
+        return fail_with(ended.error());
+    }
+    return stopped ? 0 : fail_with(stopped.error());
+}
+
 int halrun(const std::vector<std::string> &arguments) {
     Result<CommandLine> line = parse_command_line(arguments);
     if (!line) {
@@ -127,7 +130,7 @@ int halrun(const std::vector<std::string> &arguments) {
         return 0;
     }
     if (line->isKilling) {
-        return end_running();
+        return end_running("halrun");
     }
     // The file itself may be an INI file: then its HAL files run, in two passes.
     const bool isTwoPass = line->words.size() == 1 && line->words[0].ends_with(".ini");

@@ -57,6 +57,44 @@ TEST(MachineConfig, AxesAndJointsAreDifferentThings_A3) {
     EXPECT_EQ(c.parameter(motion::Parameter::JOINT_MAX_ACCELERATION, 1), 10.0);
 }
 
+TEST(MachineConfig, KeysWithoutEffectAreNamedAndErrorsWhenStrict_D5) {
+    for (const char *line :
+         {"[TRAJ]\nTPMOD = mytp\n", "[EMCMOT]\nHOMEMOD = myhome\n", "[TRAJ]\nPOSITION_FILE = p.txt\n",
+          "[TRAJ]\nNO_PROBE_JOG_ERROR = 1\n", "[TRAJ]\nARC_BLEND_GAP_CYCLES = 4\n",
+          "[HAL]\nPOSTGUI_HALFILE = x.hal\n", "[HALUI]\nMDI_COMMAND = G0 X0\n", "[APPLICATIONS]\nAPP = x\n",
+          "[TASK]\nTASK = mytask\n", "[TASK]\nMDI_QUEUED_COMMANDS = 5\n", "[RS274NGC]\nLOG_FILE = x\n",
+          "[RS274NGC]\nNO_DOWNCASE_OWORD = 1\n"}) {
+        Config c(std::string(GOOD) + line);
+        EXPECT_FALSE(c.sink.hasErrors()) << line;
+        c.reader.report_unknown(true);
+        EXPECT_TRUE(c.sink.hasErrors()) << line;
+        EXPECT_TRUE(c.says("has no effect: ")) << line;
+    }
+    Config usual(std::string(GOOD) +
+                 "[TRAJ]\nTPMOD = tpmod\n[TASK]\nTASK = milltask\n[DISPLAY]\nDISPLAY = axis\n");
+    usual.reader.report_unknown(true);
+    EXPECT_FALSE(usual.sink.hasErrors());
+    Config display(std::string(GOOD) + "[DISPLAY]\nMAX_FEED_OVERIDE = 2\n");
+    display.reader.report_unknown(false);
+    EXPECT_TRUE(display.says("did you mean MAX_FEED_OVERRIDE?"));
+}
+
+TEST(MachineConfig, TravelsThatCannotWorkAreSaidWithTheirPlace) {
+    const Config outside(replaced(GOOD, "MAX_LIMIT = 2\n", "MAX_LIMIT = 2\nHOME = 3\n"));
+    EXPECT_TRUE(outside.says("m.ini:12:8: warning: [AXIS_X]HOME = 3 is outside of MIN_LIMIT and MAX_LIMIT"));
+    const Config equal(replaced(GOOD, "MAX_LIMIT = 2\n", "MAX_LIMIT = -1\n"));
+    EXPECT_TRUE(equal.says("m.ini:10:13: warning: [AXIS_X]MIN_LIMIT and MAX_LIMIT are equal"));
+}
+
+TEST(MachineConfig, UnitsMayBeANumberPerMillimetre) {
+    const Config metric(replaced(GOOD, "LINEAR_UNITS = inch", "LINEAR_UNITS = 1.0"));
+    EXPECT_FALSE(metric.sink.hasErrors());
+    EXPECT_TRUE(metric.machine.isMetric);
+    EXPECT_TRUE(metric.says("is taken as mm"));
+    const Config odd(replaced(GOOD, "LINEAR_UNITS = inch", "LINEAR_UNITS = 2"));
+    EXPECT_TRUE(odd.sink.hasErrors());
+}
+
 TEST(MachineConfig, EachMissingPartIsOneErrorWithItsPlace) {
     const Config joint(replaced(GOOD, "[JOINT_1]", "[JOINT_7]"));
     EXPECT_TRUE(joint.says("section [JOINT_1] is missing"));

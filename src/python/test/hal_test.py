@@ -171,14 +171,19 @@ class FunctionsTest(unittest.TestCase):
         self.assertEqual(repr(hal.query.Type(6)), "<Type.SINT: 6>")
         self.assertEqual(hal.query.comp("and2")["type"], hal.query.CompType.REALTIME)
         self.assertEqual(hal.query.comp(hal.query.comp("and2")["id"])["name"], "and2")
-        ids = [row["id"] for row in hal.query.comps()]
+        ids = [row["id"] for row in hal.query.comps().values()]
         self.assertEqual(ids, sorted(ids, reverse=True))
-        self.assertEqual(hal.query.thread("servo")["functs"], ["and2.0", "raster.0"])
+        self.assertEqual([row["name"] for row in hal.query.thread("servo")["functions"]], ["and2.0", "raster.0"])
+        self.assertEqual(hal.query.thread("servo")["comp"], "__servo")
         self.assertEqual(hal.query.funct("and2.0")["users"], 1)
-        self.assertEqual(hal.query.pins("and2.0.in*")[0]["name"], "and2.0.in0")
-        self.assertEqual(hal.query.signalpins("both")[0]["name"], "and2.0.out")
-        with self.assertRaises(RuntimeError):
-            hal.query.signal("nosuch")
+        self.assertEqual(list(hal.query.pins("and2.0.in*")), ["and2.0.in0", "and2.0.in1"])
+        self.assertEqual(list(hal.query.pin("and2.0.in0")),
+                         ["haltype", "name", "type", "dir", "value", "alias", "signal", "comp", "comp_id"])
+        self.assertIn("and2.0.out", hal.query.signalpins("both"))
+        self.assertEqual(hal.query.signal("both")["driver"], "and2.0.out")
+        for one in (hal.query.pin, hal.query.param, hal.query.signal, hal.query.comp, hal.query.funct,
+                    hal.query.thread, hal.query.signalpins):
+            self.assertIsNone(one("nosuch"))
 
     def test_message_level(self):
         before = hal.get_msg_level()

@@ -34,6 +34,56 @@ TEST(ToolTable, bad_lines_are_named_with_their_place_I1) {
     }
 }
 
+/// What a lenient reading warns of, one text per line.
+std::string warnings_of(const std::string &text, Table *table = nullptr) {
+    diag::Sink sink;
+    Table read = Table::parse_leniently(text, "tool.tbl", sink);
+    std::string all;
+    for (const diag::Diagnostic &d : sink.all()) {
+        EXPECT_EQ(d.severity, diag::Severity::WARNING);
+        all += d.what.place.str() + ' ' + d.what.message + '\n';
+    }
+    if (table != nullptr) {
+        *table = std::move(read);
+    }
+    return all;
+}
+
+TEST(ToolTable, every_bad_line_is_told_and_skipped_I1) {
+    Table table;
+    const std::string told =
+        warnings_of("TOOLNO POCKET LENGTH\n  1 1 +0.5 0.125 old\nT2 P2 Z2\nT3 P3 Zx\n", &table);
+    EXPECT_NE(told.find("tool.tbl:1:2"), std::string::npos) << told;
+    EXPECT_NE(told.find("tool.tbl:2:3"), std::string::npos) << told;
+    EXPECT_NE(told.find("tool.tbl:4:8"), std::string::npos) << told;
+    EXPECT_GT(table.index_of_tool(2), 0);
+    EXPECT_EQ(table.index_of_tool(1), -1) << "a program that asks for it is refused";
+    EXPECT_EQ(table.index_of_tool(3), -1);
+}
+
+TEST(ToolTable, a_tool_twice_counts_once_or_not_at_all_I1) {
+    Table table;
+    EXPECT_EQ(warnings_of("T1 P1 Z1\nT1 P2 Z1\n", &table),
+              "tool.tbl:2:1 tool 1 stands in lines 1 and 2: the first one counts\n");
+    EXPECT_EQ(table.entry(table.index_of_tool(1)).pocketno, 1);
+    EXPECT_EQ(
+        warnings_of("T2 P2\nT1 P1 D1\nT1 P3 D3\n", &table),
+        "tool.tbl:3:1 tool 1 stands in lines 2 and 3 with different figures: it cannot be used until one "
+        "of them goes\n");
+    EXPECT_EQ(table.index_of_tool(1), -1);
+    EXPECT_GT(table.index_of_tool(2), 0);
+    EXPECT_EQ(table.text(), "T2 P2\nT1 P1 D1\nT1 P3 D3\n") << "the file stays as it is";
+}
+
+TEST(ToolTable, what_looks_wrong_is_told_with_its_line_I1) {
+    EXPECT_EQ(warnings_of("T0 P4\n").substr(0, 14), "tool.tbl:1:1 T");
+    EXPECT_NE(warnings_of("T1 P0\n").find("P0 stands for the spindle"), std::string::npos);
+    EXPECT_NE(warnings_of("T1 P5\nT2 P5\n").find("tools 1 (line 1) and 2 are in one pocket, P5"),
+              std::string::npos);
+    EXPECT_NE(warnings_of("T1 P1 D-6\n").find("a diameter of -6 is negative"), std::string::npos);
+    EXPECT_EQ(warnings_of("T1 P1 D6\nT2 P2\n"), "");
+}
+
 TEST(ToolTable, writing_keeps_comments_and_unchanged_lines_I1) {
     auto table = Table::parse(";head\nT1  P1   Z1 ;one\n\nT2 P2 Z2 ;two\n", "tool.tbl");
     ASSERT_TRUE(table);

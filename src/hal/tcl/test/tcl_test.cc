@@ -87,6 +87,24 @@ TEST_F(TclTest, HalCommandsAreTclCommands_B1) {
     EXPECT_TRUE(last_result);
 }
 
+TEST_F(TclTest, HalShowIsAResultAndShowPrints_B1) {
+    EXPECT_EQ(run("net speed board.out => board.in0\nset text [hal show sig]\n"
+                  "if {![string match \"*==> board.in0*\" $text]} { error \"it is '$text'\" }\n"),
+              "");
+    EXPECT_TRUE(last_result);
+}
+
+TEST_F(TclTest, AnIniValueOfSeveralWordsIsAModuleAndItsParameters_B1) {
+    // As loadrt $::KINS(KINEMATICS) has it: a list of one element.
+    EXPECT_NE(run("loadrt [list {nosuchkins coordinates=xyz}]\n").find("'nosuchkins.so'"), std::string::npos);
+    EXPECT_FALSE(last_result);
+}
+
+TEST_F(TclTest, ReturnWithAnErrorKeepsItsText_D2) {
+    EXPECT_NE(run("proc check {} { return -code error {no thread here} }\ncheck\n").find("no thread here"),
+              std::string::npos);
+}
+
 TEST_F(TclTest, IniEntriesAreArraysOfLists_B1) {
     EXPECT_EQ(run("setp board.in0 6.0*$::JOINT_0(RADIUS)\n"
                   "setp board.in1 \"[llength $::JOINT_0(A)] + [lindex $argv 1]\"\n",

@@ -138,6 +138,21 @@ TEST_F(Death, HalrunIsToldWhenAnotherProgramEndsItsRealtimeProcess_B7) {
     EXPECT_NE(ended.err.find("asked it to end"), std::string::npos) << ended.err;
 }
 
+TEST_F(Death, RealtimeStartsStopsAndTellsWhatRuns_B9) {
+    EXPECT_EQ(run({"realtime", "status"}).status, 1);
+    EXPECT_EQ(run({"realtime", "start"}).status, 0);
+    EXPECT_EQ(run({"realtime", "start"}).status, 0) << "it runs already";
+    EXPECT_EQ(run({"realtime", "status"}).status, 0);
+    EXPECT_EQ(run({"halcmd", "loadrt", "threads"}).status, 0);
+    EXPECT_EQ(run({"realtime", "restart"}).status, 0);
+    EXPECT_EQ(run({"halcmd", "-s", "list", "thread"}).out, "\n") << "nothing is left of the one before";
+    EXPECT_EQ(run({"realtime", "stop"}).status, 0);
+    EXPECT_EQ(run({"realtime", "stop"}).status, 0);
+    EXPECT_EQ(run({"realtime", "status"}).status, 1);
+    EXPECT_EQ(run({"realtime", "begin"}).status, 2);
+    EXPECT_EQ(leftovers(), std::vector<std::string>{});
+}
+
 TEST_F(Death, NothingIsLeftOfAnOrderlyRunAndAsking_B7) {
     EXPECT_FALSE(isHostAlive(instance));
     EXPECT_EQ(leftovers(), std::vector<std::string>{}) << "asking makes no file";

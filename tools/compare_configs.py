@@ -1,0 +1,165 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Runs the simulator configurations of an installed LinuxCNC under `millwright run`, in virtual time, and counts.
+
+usage: compare_configs.py [--bin DIR] [--configs DIR] [--hallib DIR] [--only TEXT] [--timeout S] [--out FILE]
+
+Each configuration is run in a temporary copy of the whole folder, with a small program for its axes: every axis is
+moved a little within its limits. What is counted as run: the program came to its end with status 0.
+Nothing of that installation is started; its folder of HAL files is named once, in MILLWRIGHT_HALLIB.
+"""
+import argparse
+import collections
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+CONFIGS = "/usr/share/doc/linuxcnc/examples/sample-configs/sim"
+HALLIB = "/usr/share/linuxcnc/hallib"
+NO_MODULE = r"there is no module '([^']*)\.so'"
+
+# The class of a failure, by the first error that matches.
+REASONS = [
+    (NO_MODULE, "no module {}"),
+    (r"tool (\d+) is in the table twice", "tool twice"),
+    (r"not a word of a tool table", "tool table form"),
+    (r"section \[(AXIS|JOINT)_\w\] is missing", "missing section"),
+    (r"RANDOM_TOOLCHANGER", "random tool changer"),
+    (r"cannot open|cannot read", "missing file"),
+    (r"is not found", "HAL file not found"),
+    (r"no progress", "no progress"),
+    (r"pin '([^']*)' does not exist|there is no pin '([^']*)'", "no pin {}"),
+    (r"there is no", "missing thing"),
+    (r"is missing", "missing key"),
+]
+
+
+def merged(ini, depth=0):
+    """The lines of an INI file with those that it includes."""
+    lines = []
+    for line in ini.read_text(errors="replace").splitlines():
+        include = re.match(r"#INCLUDE\s+(\S+)", line)
+        if include and depth < 8 and (ini.parent / include[1]).is_file():
+            lines += merged(ini.parent / include[1], depth + 1)
+        else:
+            lines.append(line)
+    return lines
+
+
+def values_of(ini):
+    """{SECTION: {KEY: value}}, first value of each key."""
+    sections = collections.defaultdict(dict)
+    section = ""
+    for line in merged(ini):
+        line = line.strip()
+        header = re.match(r"\[(\w+)\]", line)
+        if header:
+            section = header[1]
+        elif "=" in line and not line.startswith(("#", ";")):
+            key, value = line.split("=", 1)
+            sections[section].setdefault(key.strip(), value.split("#")[0].strip())
+    return sections
+
+
+def number(text, otherwise):
+    try:
+        return float(text)
+    except (TypeError, ValueError):
+        return otherwise
+
+
+def program_for(sections):
+    """Moves of a twentieth of each axis's room, at most 2, around where it stands after homing."""
+    traj = sections["TRAJ"]
+    letters = [c for c in "XYZABCUVW" if c in re.sub(r"[\s,]", "", traj.get("COORDINATES", "XYZ").upper())]
+    inch = traj.get("LINEAR_UNITS", "mm").lower() in ("inch", "in", "imperial", "1.0")
+    lines = ["G20" if inch else "G21", "G91 G17 G40 G94", "F%g" % (10 if inch else 200)]
+    for letter in letters:
+        axis = sections["AXIS_" + letter]
+        low, high = number(axis.get("MIN_LIMIT"), -10), number(axis.get("MAX_LIMIT"), 10)
+        home = number(axis.get("HOME"), 0.0)
+        step = min(2.0, abs(high - low) / 20) * (1 if high - home >= home - low else -1)
+        lines += ["G1 %s%.4f" % (letter, step), "G1 %s%.4f" % (letter, -step)]
+    return "\n".join(lines + ["G90", "M2", ""])
+
+
+def reason_of(text, status):
+    errors = [line for line in text.splitlines() if not re.search(r"(^| )(note|warning): ", line)]
+    for pattern, name in REASONS:
+        for line in errors:
+            found = re.search(pattern, line)
+            if found:
+                groups = [group for group in found.groups() if group]
+                return name.format(groups[0] if groups else ""), line
+    if status == 124:
+        return "timeout", ""
+    first = next((line for line in errors if "error" in line), errors[0] if errors else "")
+    return "other", first
+
+
+def run(options, ini, folder, place):
+    """(class, line of the error); class "" when the program ran to its end."""
+    with tempfile.TemporaryDirectory(dir=place) as place:
+        # Links: our programs never write into a file that is there.
+        copy = pathlib.Path(place) / "sample-configs" / "sim"
+        shutil.copytree(folder, copy, symlinks=True, copy_function=os.link)
+        mine = copy / ini.relative_to(folder)
+        program = pathlib.Path(place) / "small.ngc"
+        program.write_text(program_for(values_of(mine)))
+        environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
+        environment.update(MILLWRIGHT_HALLIB=options.hallib, HOME=place)
+        try:
+            done = subprocess.run(
+                [options.bin + "/millwright", "run", str(mine), str(program), "--no-estimate"],
+                cwd=mine.parent, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT, text=True, errors="replace", timeout=options.timeout)
+            status, text = done.returncode, done.stdout
+        except subprocess.TimeoutExpired as late:
+            status, text = 124, (late.stdout or b"").decode(errors="replace")
+        if status == 0:
+            return "", ""
+        return reason_of(text, status)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--bin", default=str(ROOT / "build/release/bin"))
+    parser.add_argument("--configs", default=CONFIGS)
+    parser.add_argument("--hallib", default=HALLIB)
+    parser.add_argument("--only", default="", help="only configurations whose path contains this")
+    parser.add_argument("--timeout", type=float, default=30.0)
+    parser.add_argument("--out", default="", help="a table: configuration, class, first error")
+    parser.add_argument("--least", type=int, default=0, help="fail when fewer run")
+    options = parser.parse_args()
+    folder = pathlib.Path(options.configs)
+    inis = sorted(ini for ini in folder.rglob("*.ini") if options.only in str(ini.relative_to(folder)))
+    if not inis:
+        sys.exit("no configuration in " + options.configs)
+    out = open(options.out, "w") if options.out else None
+    classes = collections.Counter()
+    with tempfile.TemporaryDirectory(prefix="mw_configs_") as place:
+        whole = pathlib.Path(place) / "whole"
+        shutil.copytree(folder, whole, symlinks=True)
+        for ini in inis:
+            name, line = run(options, whole / ini.relative_to(folder), whole, place)
+            classes[name] += 1
+            row = "%s\t%s\t%s" % (ini.relative_to(folder), name or "run", line.replace(place, ""))
+            print(row if name else row.rstrip(), flush=True)
+            if out:
+                out.write(row + "\n")
+                out.flush()
+    print()
+    for name, count in classes.most_common():
+        if name:
+            print("%4d  %s" % (count, name))
+    print("%d of %d run" % (classes[""], len(inis)))
+    sys.exit(0 if classes[""] >= options.least else 1)
+
+
+if __name__ == "__main__":
+    main()
