@@ -6,9 +6,9 @@
 
 #include <benchmark/benchmark.h>
 
+#include "app/operator.hh"
 #include "machine/loaded_config.hh"
 #include "machine/machine.hh"
-#include "machine/operator.hh"
 
 namespace {
 
@@ -30,7 +30,7 @@ void run_program(benchmark::State &state, const char *ini, const char *program) 
             state.SkipWithError(machine.error().message.c_str());
             return;
         }
-        mw::machine::Operator person(**machine, loaded->machine, sink, 60.0);
+        mw::app::Operator person(**machine, loaded->machine, sink, {});
         auto status = person.switch_on();
         status = status.has_value() ? person.home_all() : status;
         status = status.has_value() ? person.open_program(std::string(MW_SOURCE_DIR "/") + program) : status;

@@ -60,7 +60,7 @@ def prepare(folder, options):
 def run_ours(folder):
     hal = (folder / "compare.hal").read_text()
     (folder / "compare.hal").write_text(hal + "loadusr halsampler samples.txt\n")
-    command = [compare_traj.RELEASE / "bin" / "millwright", "run", "--realtime", "compare.ini", "program.ngc"]
+    command = [compare_traj.RELEASE / "bin" / "millwright", "run", "--realtime", "--yes", "compare.ini", "program.ngc"]
     done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
     if done.returncode != 0:
         raise ValueError(done.stdout[-800:])

@@ -13,7 +13,8 @@ LAYER = {
     'motion': 4, 'pyhost': 4,
     'task': 5, 'io': 5,
     'machine': 6, 'ui': 6, 'python': 6,
-    'cli': 7,
+    'app': 7,
+    'cli': 8,
 }
 # Equal layers that may be used, user -> used.
 ALLOWED_EQUAL = {('geom', 'base'), ('diag', 'base'), ('interp', 'tool'), ('task', 'io'), ('nml', 'hal'), ('machine', 'ui')}

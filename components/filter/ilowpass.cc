@@ -2,19 +2,27 @@
 // ilowpass: a low-pass filter between integers, to smooth the counts of a hand wheel.
 //
 // `out` (s32) follows `in` (s32) times `scale` (1024 at start), going the part `gain` (0.5 at start, 0 to 1)
-// of the way in every period. Divide what follows by `scale`. Both are parameters.
+// of the way in every period. Divide what follows by `scale`. Both are parameters. What reads counts reads
+// their differences, so both sides run over the end of their 32 bits instead of stopping there.
 #include <cmath>
 
 #include "components/common/kit.hh"
-#include "components/conv/conv_core.hh"
 
 namespace mw::components {
+
+/// `value` to the nearest whole number, modulo 2^32.
+static std::int32_t wrapped(double value) noexcept {
+    const double rest = std::fmod(std::floor(value + 0.5), 4294967296.0);
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(static_cast<std::int64_t>(rest)));
+}
 
 struct Ilowpass {
     In<std::int32_t> in;
     Out<std::int32_t> out;
     ParamRw<double> scale, gain;
-    double value = 0.0;
+    std::int32_t last_in = 0;
+    std::int64_t counts = 0;  ///< `in` without the jumps at the end of its type
+    double value = 0.0;       ///< [counts * scale]
 
     void declare(Declare &d) noexcept {
         d.pin(in, "in");
@@ -25,8 +33,13 @@ struct Ilowpass {
     }
 
     void update() noexcept {
-        value += (in * scale - value) * gain;
-        out = conv::clamped<std::int32_t>(std::floor(value + 0.5)).value;
+        const std::int32_t now = in;
+        counts +=
+            static_cast<std::int32_t>(static_cast<std::uint32_t>(now) - static_cast<std::uint32_t>(last_in));
+        last_in = now;
+        const double next = value + (static_cast<double>(counts) * scale - value) * gain;
+        value = std::isfinite(next) ? next : value;
+        out = wrapped(value);
     }
 };
 

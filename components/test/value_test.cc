@@ -145,6 +145,24 @@ TEST(Ilowpass, ReachesTheScaledInput_B10) {
     EXPECT_EQ(bench.get("ilowpass.0.out"), -3072.0);
 }
 
+TEST(Ilowpass, RunsOverTheEndOf32BitsAsCountersDo_B10) {
+    Bench bench("loadrt ilowpass\naddf ilowpass.0 t\nsetp ilowpass.0.in 3000000");
+    bench.pass(200);
+    // 3,000,000 * 1024 = 3,072,000,000, which is 1,222,967,296 below 2^32.
+    EXPECT_EQ(bench.get("ilowpass.0.out"), -1222967296.0);
+    bench.set("ilowpass.0.in", 3000001);
+    bench.pass(200);
+    EXPECT_EQ(bench.get("ilowpass.0.out"), -1222967296.0 + 1024.0) << "a detent stays a detent";
+}
+
+TEST(Ilowpass, TakesAnInputThatRunsOverItsEndAsOneStep_B10) {
+    Bench bench("loadrt ilowpass\naddf ilowpass.0 t\nsetp ilowpass.0.scale 1\nsetp ilowpass.0.in 2147483647");
+    bench.pass(200);
+    EXPECT_EQ(bench.get("ilowpass.0.out"), 2147483647.0);
+    EXPECT_EQ(bench.after("ilowpass.0.in", -2147483647, "ilowpass.0.out"), -2147483648.0)
+        << "half of two counts further";
+}
+
 TEST(Limit1And2, HoldValueAndRate_B10) {
     Bench bench("loadrt limit1\nloadrt limit2\naddf limit1.0 t\naddf limit2.0 t\nsetp limit1.0.max 5\n"
                 "setp limit2.0.maxv 100\nsetp limit2.0.min -1");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include "cli/arguments.hh"
 #include "hal/tools/command_line.hh"
 
 int main(int argc, char **argv) {
-    return mw::hal::tools::halcmd_twopass({argv + 1, argv + argc});
+    return mw::hal::tools::halcmd_twopass(mw::cli::arguments(argc, argv));
 }

@@ -2,19 +2,31 @@
 // halstreamer [-c CHANNEL] [FILE]: feeds lines of values to the component streamer.
 #include <unistd.h>
 
+#include "cli/arguments.hh"
 #include "cli/stream_main.hh"
 #include "hal/stream_tools/programs.hh"
 
+namespace {
+
+constexpr const char *USAGE =
+    "usage: halstreamer [-c CHANNEL] [FILE]\n"
+    "  sends lines of values (from FILE or standard input) to the component streamer\n"
+    "  -c  queue to write (0)\n";
+
+}  // namespace
+
 int main(int argc, char **argv) {
+    const std::vector<std::string> first = mw::cli::arguments(argc, argv);
+    if (!first.empty() && first[0] == "-h") {
+        std::fputs(USAGE, stdout);
+        return 0;
+    }
     mw::hal::stream_tools::StreamerOptions options;
-    for (int option = 0; (option = getopt(argc, argv, "c:h")) != -1;) {
+    for (int option = 0; (option = getopt(argc, argv, "c:")) != -1;) {
         long value = 0;
         if (option != 'c') {
-            std::fprintf(stderr,
-                         "usage: halstreamer [-c CHANNEL] [FILE]\n"
-                         "  sends lines of values (from FILE or standard input) to the component streamer\n"
-                         "  -c  queue to write (0)\n");
-            return option == 'h' ? 0 : 1;
+            std::fputs(USAGE, stderr);
+            return 1;
         }
         if (!mw::cli::parse_count("halstreamer", optarg, value)) {
             return 1;

@@ -2,10 +2,16 @@
 // inivar: a value of an INI file, for scripts.
 #include <cstdio>
 
+#include "cli/arguments.hh"
 #include "config/ini_programs.hh"
 
 int main(int argc, char **argv) {
-    const mw::config::ProgramOutput result = mw::config::run_inivar({argv + 1, argv + argc});
+    const std::vector<std::string> words = mw::cli::arguments(argc, argv);
+    if (!words.empty() && words[0] == "-h") {
+        std::fputs(mw::config::run_inivar({}).err.c_str(), stdout);  // without words it says how it is used
+        return 0;
+    }
+    const mw::config::ProgramOutput result = mw::config::run_inivar(words);
     std::fputs(result.out.c_str(), stdout);
     std::fputs(result.err.c_str(), stderr);
     return result.status;

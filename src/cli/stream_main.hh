@@ -7,8 +7,8 @@
 #include <functional>
 #include <string>
 
+#include "base/stop_signals.hh"
 #include "base/text.hh"
-#include "cli/stop_signals.hh"
 #include "hal/core/hal.hh"
 
 namespace mw::cli {
@@ -21,7 +21,7 @@ inline int run_attached(const char *program,
     Result<> result;
     if (instance) {
         hal::set_process_instance(instance->get());
-        result = work(stop_requested);
+        result = work(stop_signal);
         hal::set_process_instance(nullptr);
     } else {
         result = std::unexpected(instance.error());

@@ -23,6 +23,10 @@ constexpr const char *EXPLAIN_USAGE =
     "  --before    lines to run first, one after the other with \\n between (default: 'F100 S1000 M3')\n";
 constexpr const char *DEFAULT_BEFORE = "F100 S1000 M3";
 
+bool wantsHelp(const std::vector<std::string> &words) {
+    return !words.empty() && (words[0] == "--help" || words[0] == "-h");
+}
+
 Result<std::string> read_program(const std::string &path) {
     if (path == "-") {
         return std::string(std::istreambuf_iterator<char>(std::cin), {});
@@ -72,6 +76,10 @@ std::string with_newlines(const std::string &text) {
 }  // namespace
 
 int command_format(const std::vector<std::string> &words) {
+    if (wantsHelp(words)) {
+        std::fputs(FORMAT_USAGE, stdout);
+        return 0;
+    }
     FormatMode mode = FormatMode::PRINT;
     std::vector<std::string> files;
     for (const std::string &word : words) {
@@ -98,6 +106,10 @@ int command_format(const std::vector<std::string> &words) {
 }
 
 int command_explain(const std::vector<std::string> &words) {
+    if (wantsHelp(words)) {
+        std::fputs(EXPLAIN_USAGE, stdout);
+        return 0;
+    }
     std::string before = DEFAULT_BEFORE, line;
     bool isWrong = words.empty(), hasLine = false;
     for (std::size_t i = 0; i < words.size(); ++i) {

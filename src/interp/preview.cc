@@ -80,6 +80,12 @@ class Preview::Impl final : public QuietMachineCanon, public World {
         frame_.set_position(position_);
     }
 
+    void send() {
+        if (!batch_.empty() && listener_.events) {
+            listener_.events(batch_);
+        }
+        batch_.clear();
+    }
     PreviewEnd run(const Result<> &opened, diag::Sink &sink) {
         if (!opened) {
             sink.error(opened.error());
@@ -100,6 +106,7 @@ class Preview::Impl final : public QuietMachineCanon, public World {
     }
     Interpreter &interpreter() { return interpreter_; }
     const PreviewProgress &progress() const { return progress_; }
+    SourcePlace place() const { return {interpreter_.file(), interpreter_.line(), 0}; }
     const NameList &files() const { return files_; }
     const NameList &sections() const { return sections_; }
 
@@ -127,7 +134,9 @@ class Preview::Impl final : public QuietMachineCanon, public World {
     }
     void probe(const LineMove &move, ProbeKind) override {
         add_move(PreviewKind::PROBE, move.end, move.settings);
+        tell_unknown("the result of a probe");
     }
+    void wait_input(int, bool, WaitKind, double) override { tell_unknown("an input (M66)"); }
     void rigid_tap(const LineMove &move, double) override {
         const Pose back = position_;
         add_move(PreviewKind::RIGID_TAP, move.end, move.settings);
@@ -315,12 +324,13 @@ class Preview::Impl final : public QuietMachineCanon, public World {
             send();
         }
     }
-    void send() {
-        if (!batch_.empty() && listener_.events) {
-            listener_.events(batch_);
+    void tell_unknown(std::string_view what) {
+        send();
+        if (listener_.unknown) {
+            listener_.unknown(place_of_block(), what);
         }
-        batch_.clear();
     }
+    SourcePlace place_of_block() const { return {files_.name(place_.file), place_.line, 0}; }
 
     PreviewMachine machine_;
     PreviewOptions options_;
@@ -372,6 +382,14 @@ const std::string &Preview::file(std::uint32_t index) const {
 
 const std::string &Preview::section(std::uint32_t index) const {
     return impl_->sections().name(index);
+}
+
+SourcePlace Preview::place() const {
+    return impl_->place();
+}
+
+void Preview::flush() {
+    impl_->send();
 }
 
 std::string Preview::line_text(std::uint32_t file, int line) const {

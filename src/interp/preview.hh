@@ -91,6 +91,9 @@ class Preview {
     struct Listener {
         std::function<void(std::span<const PreviewEvent>)> events;
         std::function<bool(const PreviewProgress &)> progress;  ///< false cancels; may be empty
+        /// From here on the program's way may depend on what only the running machine knows: the result of a
+        /// probe or of an input. Told after all events before it; may be empty.
+        std::function<void(const SourcePlace &, std::string_view what)> unknown{};
     };
 
     /// The references must outlive it.
@@ -110,6 +113,10 @@ class Preview {
     /// the beginning. Under cutter compensation the last move of a section may count for the next.
     const std::string &section(std::uint32_t index) const;
     std::string line_text(std::uint32_t file, int line) const;
+    /// Of the line that is being read.
+    SourcePlace place() const;
+    /// Hands on the events up to now.
+    void flush();
 
   private:
     class Impl;

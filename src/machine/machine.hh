@@ -11,6 +11,7 @@
 #include "diag/sink.hh"
 #include "hal/core/host.hh"
 #include "machine/machine_config.hh"
+#include "machine/tool_changer.hh"
 #include "motion/api/channels.hh"
 #include "task/task.hh"
 
@@ -51,10 +52,14 @@ class Machine {
     virtual std::int64_t now_ns() const = 0;
     virtual bool isVirtual() const = 0;
     virtual RealtimeFigures realtime_figures() const = 0;
+    /// An error once the machine cannot go on: its realtime process has ended. Ask in every cycle.
+    virtual Result<> health() const { return {}; }
 
     virtual task::Task &task() = 0;
     virtual motion::Channels &channels() = 0;
     virtual hal::Hal &hal() = 0;
+    /// The person who changes tools by hand, where a HAL file asks for one.
+    virtual ManualToolChange &tool_change() = 0;
 };
 
 /// A failure whose message is empty has been told to the sink already.

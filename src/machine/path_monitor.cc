@@ -13,7 +13,6 @@ constexpr double ROUNDING = 1e-9;
 using geom::Pose;
 
 constexpr double TURN = 2.0 * std::numbers::pi;
-constexpr std::size_t MAX_POINTS = 400000;
 
 struct Vec3 {
     double x, y, z;
@@ -161,7 +160,7 @@ void PathMonitor::on_sample(const motion::TraceSample &sample) {
     history_[0] = p;
     ++figures_.samples;
     follow(sample);
-    take_point(p);
+    points_.add(p, isInRapid_);
 }
 
 /// The present place is looked for from the last one on. As long as one near by is no farther off than any
@@ -216,24 +215,6 @@ void PathMonitor::look_at(std::size_t i, const Pose &p, Nearest &best, std::size
         best = other;
         place = i;
     }
-}
-
-void PathMonitor::take_point(const Pose &p) {
-    if (until_point_ > 0) {
-        --until_point_;
-        return;
-    }
-    until_point_ = stride_ - 1;
-    points_.push_back(
-        {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]), isInRapid_});
-    if (points_.size() < MAX_POINTS) {
-        return;
-    }
-    for (std::size_t i = 0; i < MAX_POINTS / 2; ++i) {
-        points_[i] = points_[2 * i];
-    }
-    points_.resize(MAX_POINTS / 2);
-    stride_ *= 2;
 }
 
 }  // namespace mw::machine

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geom/pose.hh"
+#include "machine/path_points.hh"
 #include "motion/api/channels.hh"
 #include "motion/api/path_command.hh"
 
@@ -42,11 +43,6 @@ struct RunFigures {
     std::uint64_t samples = 0;
 };
 
-struct PathPoint {
-    float x, y, z;
-    bool isRapid;
-};
-
 /// One thread. Moves come in the order in which they are handed to the planner, samples in the order of time.
 class PathMonitor {
   public:
@@ -57,12 +53,11 @@ class PathMonitor {
     void on_sample(const motion::TraceSample &sample);
 
     const RunFigures &figures() const { return figures_; }
-    const std::vector<PathPoint> &points() const { return points_; }
+    const std::vector<PathPoint> &points() const { return points_.all(); }
 
   private:
     void follow(const motion::TraceSample &sample);
     void look_at(std::size_t i, const geom::Pose &p, Nearest &best, std::size_t &place) const;
-    void take_point(const geom::Pose &p);
 
     double period_s_;
     RunFigures figures_;
@@ -80,8 +75,7 @@ class PathMonitor {
     bool isInRapid_ = false;
     geom::Pose last_end_{};
     std::array<geom::Pose, 2> history_{};  ///< the two samples before
-    std::vector<PathPoint> points_;
-    std::uint64_t stride_ = 1, until_point_ = 0;
+    PathPoints points_;
 };
 
 }  // namespace mw::machine

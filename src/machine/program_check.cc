@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "machine/path_monitor.hh"
+#include "machine/unscripted.hh"
 
 namespace mw::machine {
 namespace {
@@ -18,9 +21,9 @@ constexpr double LIMIT_SLACK = 1e-6;
 /// Looks at each move of a preview.
 class Checker {
   public:
-    Checker(const MachineConfig &machine, diag::Sink &sink)
-        : machine_(machine), sink_(sink), estimate_(machine) {
-        estimate_.start({});
+    Checker(const MachineConfig &machine, diag::Sink &sink, const CheckOptions &options)
+        : machine_(machine), sink_(sink), options_(options), estimate_(machine) {
+        estimate_.start(home_position(machine));
         result.lowest.fill(1e300);
         result.highest.fill(-1e300);
     }
@@ -30,29 +33,39 @@ class Checker {
     /// `preview` names the places of the events.
     void take(std::span<const interp::PreviewEvent> events, const interp::Preview &preview) {
         preview_ = &preview;
+        isTimed_ = isTimed_ && (!options_.wantsTime || options_.wantsTime());
         for (const interp::PreviewEvent &event : events) {
             event_ = &event;
-            estimate_.set_place(preview.file(event.file), event.line, preview.section(event.section));
+            if (isTimed_) {
+                estimate_.set_place(preview.file(event.file), event.line, preview.section(event.section));
+                take_time(event);
+            }
             take_event(event);
         }
     }
-    void finish_time() { result.time = estimate_.finish(); }
+    void finish_time() {
+        if (isTimed_) {
+            result.time = estimate_.finish();
+        }
+    }
 
   private:
-    void take_event(const interp::PreviewEvent &event) {
+    void take_time(const interp::PreviewEvent &event) {
         using Kind = interp::PreviewKind;
         switch (event.kind) {
-        case Kind::RAPID: take_line(event.start, event.end, event.settings); break;
-        case Kind::FEED: take_line(event.start, event.end, timed(event)); break;
-        case Kind::ARC: take_arc(event); break;
+        case Kind::RAPID: estimate_.line(event.end, event.settings); break;
+        case Kind::FEED: estimate_.line(event.end, timed(event)); break;
+        case Kind::ARC:
+            estimate_.arc({event.end, event.centre, event.normal, event.angle_rad, timed(event)});
+            break;
         case Kind::PROBE:
             estimate_.stop();
-            take_line(event.start, event.end, timed(event));
+            estimate_.line(event.end, timed(event));
             estimate_.stop();
             break;
         case Kind::RIGID_TAP:
-            take_line(event.start, event.end, timed(event));
-            take_line(event.end, event.start, timed(event));
+            estimate_.line(event.end, timed(event));
+            estimate_.line(event.start, timed(event));
             break;
         case Kind::DWELL: estimate_.dwell(event.value); break;
         case Kind::TOOL_CHANGE: estimate_.set_tool(event.number); break;
@@ -60,23 +73,35 @@ class Checker {
         case Kind::STOP: estimate_.stop(); break;
         }
     }
-    void take_line(const geom::Pose &start, const geom::Pose &end, const interp::MoveSettings &settings) {
-        ProgrammedPiece piece;
-        piece.start = start;
-        piece.end = end;
-        estimate_.line(end, settings);
-        take_piece(piece, settings.kind == interp::FeedKind::RAPID);
-    }
-    void take_arc(const interp::PreviewEvent &event) {
+    void take_event(const interp::PreviewEvent &event) {
+        using Kind = interp::PreviewKind;
         ProgrammedPiece piece;
         piece.start = event.start;
         piece.end = event.end;
-        piece.centre = event.centre;
-        piece.normal = event.normal;
-        piece.angle_rad = event.angle_rad;
-        check_arc(piece);
-        estimate_.arc({event.end, event.centre, event.normal, event.angle_rad, timed(event)});
-        take_piece(piece, false);
+        switch (event.kind) {
+        case Kind::RAPID:
+            piece.isRapid = event.settings.kind == interp::FeedKind::RAPID;
+            take_piece(piece);
+            break;
+        case Kind::FEED:
+        case Kind::PROBE: take_piece(piece); break;
+        case Kind::ARC:
+            piece.centre = event.centre;
+            piece.normal = event.normal;
+            piece.angle_rad = event.angle_rad;
+            check_arc(piece);
+            take_piece(piece);
+            break;
+        case Kind::RIGID_TAP:
+            take_piece(piece);
+            std::swap(piece.start, piece.end);
+            take_piece(piece);
+            break;
+        case Kind::DWELL:
+        case Kind::TOOL_CHANGE:
+        case Kind::PLANNER:
+        case Kind::STOP: break;
+        }
     }
     /// Moves that follow the spindle are timed at its programmed speed.
     static interp::MoveSettings timed(const interp::PreviewEvent &event) {
@@ -86,11 +111,23 @@ class Checker {
         }
         return out;
     }
-    void take_piece(const ProgrammedPiece &piece, bool isRapid) {
+    void take_piece(const ProgrammedPiece &piece) {
         ++result.moves;
         result.hasMoves = true;
-        (isRapid ? result.rapid_length : result.cutting_length) += feed_length(piece);
+        (piece.isRapid ? result.rapid_length : result.cutting_length) += feed_length(piece);
         check_point(piece.end);
+        add_points(piece);
+    }
+    void add_points(const ProgrammedPiece &piece) {
+        if (options_.points == nullptr) {
+            return;
+        }
+        constexpr int CHORDS = 48;  ///< of a full turn
+        const double turns = std::abs(piece.angle_rad) / (2 * std::numbers::pi);
+        const int chords = std::max(1, static_cast<int>(std::ceil(CHORDS * turns)));
+        for (int i = options_.points->all().empty() ? 0 : 1; i <= chords; ++i) {
+            options_.points->add(point_at(piece, static_cast<double>(i) / chords), piece.isRapid);
+        }
     }
 
     void check_point(const geom::Pose &p) {
@@ -161,40 +198,92 @@ class Checker {
 
     const MachineConfig &machine_;
     diag::Sink &sink_;
+    const CheckOptions &options_;
     TimeEstimate estimate_;
+    bool isTimed_ = true;
     const interp::Preview *preview_ = nullptr;
     const interp::PreviewEvent *event_ = nullptr;
     int reported_line_ = -1;
 };
 
-}  // namespace
-
-CheckResult check_program(const MachineConfig &machine, const std::string &program, interp::ToolSource &tools,
-                          interp::ParameterSource &parameters, diag::Sink &sink, const CheckOptions &check) {
+interp::PreviewMachine stand_of(const MachineConfig &machine) {
     interp::PreviewMachine stand;
     stand.interpreter = machine.task.interpreter;
     stand.units = machine.task.machine_units;
     stand.axis_mask = machine.axis_mask;
     stand.spindles = machine.num_spindles;
     stand.parameter_file = machine.task.parameter_file;
+    stand.position = home_position(machine);
     stand.tool_change_moves = [&machine](const geom::Pose &position) {
         return task::tool_change_moves(machine.task.tool_change_place, position);
     };
+    return stand;
+}
+
+interp::PreviewOptions preview_options(const CheckOptions &check) {
     interp::PreviewOptions options;
     options.max_errors = MAX_CHECK_ERRORS;
     if (check.statements) {
         options.statement_budget = options.idle_budget = static_cast<std::uint64_t>(*check.statements);
         options.time_budget_s = 0;
     }
-    Checker checker(machine, sink);
+    return options;
+}
+
+}  // namespace
+
+geom::Pose home_position(const MachineConfig &machine) {
+    std::array<double, MAX_JOINTS> home{};
+    for (const motion::SetParameter &parameter : machine.parameters) {
+        const bool isHome = parameter.parameter == static_cast<std::uint16_t>(motion::Parameter::JOINT_HOME);
+        if (isHome && parameter.index >= 0 && parameter.index < MAX_JOINTS) {
+            home[static_cast<std::size_t>(parameter.index)] = parameter.value;
+        }
+    }
+    geom::Pose position;
+    for (int axis = 0; axis < MAX_AXES; ++axis) {
+        const int joint = machine.joint_of_axis[static_cast<std::size_t>(axis)];
+        position[axis] = joint >= 0 ? home[static_cast<std::size_t>(joint)] : 0.0;
+    }
+    return position;
+}
+
+CheckResult check_program(const MachineConfig &machine, const std::string &program, interp::ToolSource &tools,
+                          interp::ParameterSource &parameters, diag::Sink &sink, const CheckOptions &check) {
     interp::Preview *source = nullptr;
+    interp::PreviewMachine stand = stand_of(machine);
+    stand.isBlockDeleteOn = check.isBlockDeleteOn;
+    const auto tell_unknown = [&](std::string_view what) {
+        if (source != nullptr) {
+            source->flush();  // errors before this place are none that might not be
+        }
+        check.unknown(source != nullptr ? source->place() : SourcePlace{}, what);
+    };
+    const bool hasScripts = !stand.interpreter.scripts.top_level.empty();
+    UnknownHalValues unknown_values(parameters, [&] { tell_unknown("a value of HAL"); });
+    if (check.unknown) {
+        stand.interpreter.make_script_host = [&]() -> Result<std::unique_ptr<interp::ScriptHost>> {
+            return std::make_unique<UnscriptedHost>([&] { tell_unknown("Python"); });
+        };
+    }
+    // What scripts define is not known: an error of the interpreter may be none.
+    diag::Sink errors([&](const diag::Diagnostic &one) {
+        if (check.unknown && hasScripts) {
+            tell_unknown("Python");
+        } else if (source != nullptr) {
+            source->flush();  // findings come in the order of the program
+        }
+        sink.report(one);
+    });
+    Checker checker(machine, sink, check);
     interp::Preview preview(
-        std::move(stand), tools, parameters, options,
-        {[&](std::span<const interp::PreviewEvent> events) { checker.take(events, *source); },
-         check.progress});
+        std::move(stand), tools, check.unknown ? unknown_values : parameters, preview_options(check),
+        {[&](std::span<const interp::PreviewEvent> events) { checker.take(events, *source); }, check.progress,
+         check.unknown});
     source = &preview;
-    const interp::PreviewEnd end = preview.run(program, sink);
+    const interp::PreviewEnd end = preview.run(program, errors);
     checker.result.blocks = preview.progress().blocks;
+    checker.result.isCancelled = end == interp::PreviewEnd::CANCELLED;
     if (end == interp::PreviewEnd::DONE && !sink.hasErrors()) {
         checker.finish_time();
     }

@@ -11,6 +11,7 @@
 #include "diag/sink.hh"
 #include "interp/preview.hh"
 #include "machine/machine_config.hh"
+#include "machine/path_points.hh"
 #include "machine/time_estimate.hh"
 
 namespace mw::machine {
@@ -20,13 +21,21 @@ struct CheckResult {
     double cutting_length = 0, rapid_length = 0;       ///< [machine units]
     std::array<double, MAX_AXES> lowest{}, highest{};  ///< reached, machine coordinates
     bool hasMoves = false;
-    TimeFigures time;  ///< of a program without errors
+    bool isCancelled = false;         ///< `progress` has ended it
+    std::optional<TimeFigures> time;  ///< of a whole program without errors
 };
 
 struct CheckOptions {
     std::function<bool(const interp::PreviewProgress &)> progress;  ///< false ends the check; may be empty
     /// How many statements a loop may take, 0 for any number; as interp::PreviewOptions has it when not set.
     std::optional<std::int64_t> statements;
+    /// Nothing of the shop's own is run: no Python. Told where the program's way may depend on what only the
+    /// running machine knows (scripts, HAL values, inputs, probes); errors behind may be none. Empty: scripts
+    /// run, HAL values are errors.
+    std::function<void(const SourcePlace &, std::string_view what)> unknown;
+    std::function<bool()> wantsTime;  ///< false once: the time is not reckoned on; empty: it is to the end
+    bool isBlockDeleteOn = true;
+    PathPoints *points = nullptr;  ///< gets the path of the controlled point
 };
 
 /// Runs the interpreter over the whole program. Errors (syntax, limits, endless loops) go to `sink` with
@@ -37,5 +46,8 @@ CheckResult check_program(const MachineConfig &machine, const std::string &progr
                           const CheckOptions &options = {});
 
 inline constexpr int MAX_CHECK_ERRORS = 20;
+
+/// Where the machine stands when its joints are homed, for kinematics whose joints are axes.
+geom::Pose home_position(const MachineConfig &machine);
 
 }  // namespace mw::machine

@@ -48,7 +48,7 @@ class RealtimeMachine final : public Machine {
         }
         side_ = std::make_unique<TaskSide>(parts_, *host_);
         const auto started = side_->start(options);
-        return started.has_value() ? side_->finish_start([this] { cycle(); }, CONFIGURE_CYCLES) : started;
+        return started.has_value() ? side_->finish_start(*this, CONFIGURE_CYCLES) : started;
     }
 
     void cycle() override {
@@ -64,6 +64,15 @@ class RealtimeMachine final : public Machine {
     }
     std::int64_t now_ns() const override { return monotonic_ns(); }
     bool isVirtual() const override { return false; }
+    Result<> health() const override {
+        auto death = host_->death();
+        if (!death) {
+            return {};
+        }
+        death->hint =
+            "the drives have lost their commands: the machine is off as far as its hardware makes it so";
+        return std::unexpected(*death);
+    }
     RealtimeFigures realtime_figures() const override {
         RealtimeFigures figures;
         figures.isRealtime = host_->hal().isRealtime();
@@ -77,6 +86,7 @@ class RealtimeMachine final : public Machine {
     task::Task &task() override { return side_->task(); }
     motion::Channels &channels() override { return side_->channels(); }
     hal::Hal &hal() override { return host_->hal(); }
+    ManualToolChange &tool_change() override { return side_->tool_change(); }
 
   private:
     MachineParts parts_;

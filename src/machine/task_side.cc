@@ -57,8 +57,10 @@ Result<> TaskSide::make_pins() {
 
 Result<> TaskSide::run_hal_files(const MachineOptions &options) {
     HalSetup setup(parts_, host_, options);
-    setup.on_tool_change_program = [this] {
-        return tool_change_.create(host_.hal(), [this](const std::string &text) { parts_.sink.note(text); });
+    const ToolHand hand = options.isClockVirtual ? ToolHand::SIMULATED : ToolHand::PERSON;
+    setup.on_tool_change_program = [this, hand] {
+        return tool_change_.create(host_.hal(), hand,
+                                   [this](const std::string &text) { parts_.sink.note(text); });
     };
     const auto status = setup.run();
     if (status.has_value()) {
@@ -110,15 +112,18 @@ Result<bool> TaskSide::isConfigured() {
     return true;
 }
 
-Result<> TaskSide::finish_start(const std::function<void()> &cycle, int most_cycles) {
+Result<> TaskSide::finish_start(Machine &machine, int most_cycles) {
     for (int i = 0; i < most_cycles; ++i) {
-        cycle();
+        machine.cycle();
+        if (auto health = machine.health(); !health) {
+            return health;
+        }
         const auto isDone = isConfigured();
         if (!isDone.has_value()) {
             return std::unexpected(isDone.error());
         }
         if (*isDone) {
-            cycle();
+            machine.cycle();
             return task_->start();
         }
     }

@@ -30,12 +30,13 @@ class TaskSide final : private task::IoPort {
     Result<> start(const MachineOptions &options);
     /// Runs cycles until motion has taken all settings, then reads the parameter file and announces the state
     /// to the interpreter. An error names the first setting that was refused.
-    Result<> finish_start(const std::function<void()> &cycle, int most_cycles);
+    Result<> finish_start(Machine &machine, int most_cycles);
     /// One task cycle.
     void step(std::int64_t now_ns);
 
     task::Task &task() { return *task_; }
     motion::Channels &channels() { return *channels_; }
+    ManualToolChange &tool_change() { return tool_change_; }
 
   private:
     io::Inputs read() override { return io_pins_.read(); }

@@ -6,15 +6,27 @@ namespace {
 
 constexpr std::int64_t CHANGE_TIME_NS = 100000000;
 
+std::string text_of(ToolHand hand, std::int32_t number) {
+    if (hand == ToolHand::SIMULATED) {
+        return number > 0
+                   ? "tool change: tool " + std::to_string(number) + " is put in by the simulated operator"
+                   : std::string("tool change: the tool is taken out by the simulated operator");
+    }
+    return (number > 0 ? "tool change: put tool " + std::to_string(number) + " in"
+                       : std::string("tool change: take the tool out")) +
+           "; confirm with key t or the pin hal_manualtoolchange.change_button";
+}
+
 }  // namespace
 
-Result<> ManualToolChange::create(hal::Hal &hal, Notice notice) {
+Result<> ManualToolChange::create(hal::Hal &hal, ToolHand hand, Notice notice) {
     const auto id = hal.new_component("hal_manualtoolchange");
     if (!id.has_value()) {
         return std::unexpected(id.error());
     }
     hal_ = &hal;
     comp_id_ = *id;
+    hand_ = hand;
     notice_ = std::move(notice);
     Result<> status;
     change_.make(hal, comp_id_, "hal_manualtoolchange.change", hal::Dir::IN, status);
@@ -38,15 +50,15 @@ void ManualToolChange::step(std::int64_t now_ns) {
     if (!change_) {
         changed_ = false;
         asked_ns_ = -1;
+        isConfirmed_ = false;
         return;
     }
     if (asked_ns_ < 0) {
         asked_ns_ = now_ns;
-        const std::int32_t number = number_;
-        notice_(number > 0 ? "tool change: tool " + std::to_string(number) + " is put in"
-                           : std::string("tool change: the tool is taken out"));
+        notice_(text_of(hand_, number_));
     }
-    changed_ = now_ns - asked_ns_ >= CHANGE_TIME_NS || change_button_;
+    const bool isDone = hand_ == ToolHand::SIMULATED ? now_ns - asked_ns_ >= CHANGE_TIME_NS : isConfirmed_;
+    changed_ = isDone || change_button_;
 }
 
 }  // namespace mw::machine

@@ -12,18 +12,33 @@
 
 namespace mw::machine {
 
-/// Without an operator to ask, a change is confirmed after a short while; each is told to `notice`.
+/// Who puts the tool in.
+enum class ToolHand : std::uint8_t {
+    SIMULATED,  ///< nobody: a change is confirmed after a short while
+    PERSON,     ///< confirmed by the pin change_button, or by confirm()
+};
+
+/// Each change is told to `notice`.
 class ManualToolChange {
   public:
     using Notice = std::function<void(const std::string &)>;
 
-    Result<> create(hal::Hal &hal, Notice notice);
+    Result<> create(hal::Hal &hal, ToolHand hand, Notice notice);
     void destroy();
     void step(std::int64_t now_ns);
+
+    /// A person is asked to change the tool.
+    bool isAsking() const {
+        return hal_ != nullptr && hand_ == ToolHand::PERSON && asked_ns_ >= 0 && !isConfirmed_;
+    }
+    /// The person says that it is done; without effect when nobody asks.
+    void confirm() { isConfirmed_ = isConfirmed_ || isAsking(); }
 
   private:
     hal::Hal *hal_ = nullptr;
     int comp_id_ = 0;
+    ToolHand hand_ = ToolHand::SIMULATED;
+    bool isConfirmed_ = false;
     Notice notice_;
     hal::UserPin<bool> change_, changed_, change_button_;
     hal::UserPin<std::int32_t> number_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The whole machine in one process under the virtual clock.
+#include "hal/core/crash_report.hh"
 #include "hal/core/host.hh"
 #include "machine/machine.hh"
 #include "machine/task_side.hh"
@@ -33,6 +34,8 @@ class VirtualMachine final : public Machine {
         host_ = std::move(*host);
         side_ = std::make_unique<TaskSide>(parts_, *host_);
         const hal::UseInstance use(&host_->hal());
+        // Components run in this process: their crash is its crash.
+        hal::report_crashes("millwright");
         MachineOptions mine = options;
         mine.isClockVirtual = true;
         const auto started = side_->start(mine);
@@ -46,7 +49,7 @@ class VirtualMachine final : public Machine {
             return std::unexpected(periodic.error());
         }
         periodic_ = *periodic;
-        return side_->finish_start([this] { cycle(); }, CONFIGURE_CYCLES);
+        return side_->finish_start(*this, CONFIGURE_CYCLES);
     }
 
     void cycle() override {
@@ -61,6 +64,7 @@ class VirtualMachine final : public Machine {
     task::Task &task() override { return side_->task(); }
     motion::Channels &channels() override { return side_->channels(); }
     hal::Hal &hal() override { return host_->hal(); }
+    ManualToolChange &tool_change() override { return side_->tool_change(); }
 
   private:
     void task_cycle() {

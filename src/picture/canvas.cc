@@ -1,21 +1,46 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "picture/canvas.hh"
 
+#include <unistd.h>
+
 #include <cairo-svg.h>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
 
 namespace mw::picture {
+namespace {
+
+bool isPng(const std::string &path) {
+    return path.size() > 4 && path.ends_with(".png");
+}
+
+}  // namespace
+
+Result<> Canvas::check(const std::string &path) {
+    namespace fs = std::filesystem;
+    if (!isPng(path) && !(path.size() > 4 && path.ends_with(".svg"))) {
+        return fail("a picture is a .png or .svg file, not '" + path + "'");
+    }
+    const fs::path folder = fs::path(path).parent_path();
+    const std::string place = fs::exists(path) ? path : folder.empty() ? "." : folder.string();
+    if (::access(place.c_str(), W_OK) != 0) {
+        return fail("cannot write the picture '" + path + "': " + std::strerror(errno));
+    }
+    return {};
+}
 
 Result<Canvas> Canvas::open(const std::string &path, double width, double height) {
-    const bool isPng = path.size() > 4 && path.ends_with(".png");
-    if (!isPng && !(path.size() > 4 && path.ends_with(".svg"))) {
-        return fail("a picture is a .png or .svg file, not '" + path + "'");
+    if (const auto drawable = check(path); !drawable.has_value()) {
+        return std::unexpected(drawable.error());
     }
     Canvas canvas;
     canvas.path_ = path;
-    canvas.isPng_ = isPng;
-    canvas.surface_.reset(isPng ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width),
-                                                             static_cast<int>(height))
-                                : cairo_svg_surface_create(path.c_str(), width, height));
+    canvas.isPng_ = isPng(path);
+    canvas.surface_.reset(canvas.isPng_
+                              ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width),
+                                                           static_cast<int>(height))
+                              : cairo_svg_surface_create(path.c_str(), width, height));
     canvas.context_.reset(cairo_create(canvas.surface_.get()));
     cairo_t *cr = canvas.cairo();
     cairo_set_source_rgb(cr, 1, 1, 1);

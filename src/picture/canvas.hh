@@ -16,6 +16,9 @@ class Canvas {
     /// A white picture of so many pixels that will be `path`: .png or .svg. An error for any other ending.
     static Result<Canvas> open(const std::string &path, double width, double height);
 
+    /// What open() and write() would refuse: another ending, a folder that is not there or not writable.
+    static Result<> check(const std::string &path);
+
     cairo_t *cairo() const noexcept { return context_.get(); }
     /// Writes the file; an error when it cannot be written.
     Result<> write();

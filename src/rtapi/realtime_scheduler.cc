@@ -16,6 +16,8 @@
 #include <mutex>
 #include <vector>
 
+#include "rtapi/alternate_stack.hh"
+
 namespace mw::rtapi {
 namespace {
 
@@ -105,9 +107,9 @@ int realtime_error() {
     return error;
 }
 
-/// Locks all memory; a text says why not. Locking future memory with a limit too low would make later
-/// allocations fail, so the limit is looked at first.
-std::string lock_memory() {
+/// Why memory cannot be locked; empty when it can. Locking future memory with a limit too low would make
+/// later allocations fail, so the limit is looked at first.
+std::string lock_obstacle() {
     rlimit limit{};
     ::getrlimit(RLIMIT_MEMLOCK, &limit);
     constexpr std::size_t PROBE = 4096;
@@ -122,12 +124,11 @@ std::string lock_memory() {
             ::munmap(memory, size);
         }
     }
-    if ((isEnough || isPrivileged) && ::mlockall(MCL_CURRENT | MCL_FUTURE) == 0) {
+    if (isEnough || isPrivileged) {
         return {};
     }
     return "the memlock limit is " + std::to_string(limit.rlim_cur / 1024) +
-           " kB and CAP_IPC_LOCK is missing: raise it with a line '@GROUP - memlock unlimited' in "
-           "/etc/security/limits.d, or give the program the capability with setcap";
+           " kB, 'unlimited' or CAP_IPC_LOCK is missing";
 }
 
 }  // namespace
@@ -158,6 +159,7 @@ struct RealtimeScheduler::Impl {
     };
 
     static void *main(void *task) {
+        const AlternateStack for_crashes;
         touch_stack();
         static_cast<Task *>(task)->loop();
         return nullptr;
@@ -262,19 +264,24 @@ RealtimeScheduler::RealtimeScheduler(Log &log, const RealtimeOptions &options)
         return;
     }
     const int error = realtime_error();
+    // Both at once: who mends one of them shall not meet the other at the next start.
+    const std::string obstacle = lock_obstacle();
     if (error != 0) {
-        impl_->missing = std::string("no realtime priority (") + std::strerror(error) +
-                         "): the capability CAP_SYS_NICE or a limit 'rtprio' of at least " +
-                         std::to_string(PRIORITY_FASTEST) + " in /etc/security/limits.d is missing";
+        impl_->missing = "a limit 'rtprio' of at least " + std::to_string(PRIORITY_FASTEST) +
+                         " or CAP_SYS_NICE is missing (" + std::strerror(error) + ")" +
+                         (obstacle.empty() ? "" : "; ") + obstacle;
+    } else if (obstacle.empty() && ::mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
+        impl_->missing = std::string("cannot lock memory: ") + std::strerror(errno);
     } else {
-        impl_->missing = lock_memory();
+        impl_->missing = obstacle;
     }
     if (impl_->missing.empty()) {
         impl_->cpu = choose_cpu(options.cpu);
     } else {
         const LogLevel before = log.level();
         log.set_level(std::max(before, LogLevel::WARN));
-        log.print(LogLevel::WARN, "running as simulation, not in realtime: %s", impl_->missing.c_str());
+        log.print(LogLevel::WARN, "running as simulation, not in realtime: %s (/etc/security/limits.d)",
+                  impl_->missing.c_str());
         log.set_level(before);
     }
 }

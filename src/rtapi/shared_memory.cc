@@ -117,7 +117,11 @@ Result<SharedMemory> SharedMemory::create(const std::string &name, std::size_t s
         return fail(why(name) +
                     (error == EEXIST ? "in use by a process that is alive" : std::strerror(error)));
     }
-    return initialise(fd, path, size, reserve, layout);
+    auto memory = initialise(fd, path, size, reserve, layout);
+    if (!memory) {
+        ::shm_unlink(path.c_str());
+    }
+    return memory;
 }
 
 Result<SharedMemory> SharedMemory::create_private(std::size_t size, std::size_t reserve,

@@ -64,7 +64,8 @@ Sequencer::Need Sequencer::need_of(const ItemBody &body) {
 }
 
 void Sequencer::step(std::int64_t now_ns) {
-    for (int i = 0; i < ITEMS_PER_CYCLE; ++i) {
+    isHeld_ = false;
+    for (int i = 0; i < ITEMS_PER_CYCLE && !isHeld_; ++i) {
         if (hasFailed_ || !isWaitOver(now_ns) || isStepDone_) {
             return;
         }
@@ -129,7 +130,7 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
             [&](const DwellItem &dwell) { return begin(dwell, now_ns); },
             [&](const WaitInputItem &input) { return begin(input, now_ns); },
             [&](const StopItem &stop) {
-                events_.stop(stop, item.source.line);
+                isHeld_ = events_.stop(stop, item.source.line);
                 return true;
             },
             [&](const EndItem &end) {

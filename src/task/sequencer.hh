@@ -23,9 +23,10 @@ namespace mw::task {
 struct SequencerEvents {
     std::function<void(MessageKind, const std::string &)> message;
     std::function<void(const std::string &)> print;
-    std::function<void(const StopItem &, int line)> stop;  ///< M0, M1, M60 are reached
-    std::function<void(const EndItem &)> end;              ///< the program is over
-    std::function<void(const std::string &)> fail;         ///< something cannot be done; task aborts
+    /// M0, M1, M60 are reached; true: the program is held there, nothing behind it may begin
+    std::function<bool(const StopItem &, int line)> stop;
+    std::function<void(const EndItem &)> end;       ///< the program is over
+    std::function<void(const std::string &)> fail;  ///< something cannot be done; task aborts
     std::function<void(const OffsetsItem &)> offsets;
     std::function<void(const ToolOffsetItem &)> tool_offset;
     /// Changes the planner at rest; the command whose answer is to be awaited, 0: nothing to wait for;
@@ -157,6 +158,7 @@ class Sequencer {
     double centre_line_x_ = 0;  ///< machine X of the program's X0 [machine units]
     bool isNextMoveWaitingForSpeed_ = false;
     bool isStepping_ = false, isStepDone_ = false;
+    bool isHeld_ = false;     ///< by the stop that was executed last, for the rest of the cycle
     bool hasFailed_ = false;  ///< nothing more is begun until abort()
     std::uint32_t step_block_ = 0;
     std::array<LogFile, 2> logs_;  ///< of (log,...), of probes

@@ -23,11 +23,13 @@ struct Status {
     Mode mode = Mode::MANUAL;
     InterpState interp_state = InterpState::IDLE;
     bool isPaused = false;
+    bool isStoppedByProgram = false;  ///< paused by M0, M1 or M60
     bool isOptionalStop = true;
     bool isBlockDelete = true;
     std::string program;       ///< path of the open program
     int read_line = 0;         ///< last line that the interpreter has read
     int stop_line = 0;         ///< of the last M0, M1 or M60 reached
+    std::uint64_t stops = 0;   ///< M0, M1 and M60 that have stopped a program
     int motion_line = 0;       ///< line of the move being executed
     std::uint64_t blocks = 0;  ///< executed since the program started
     int call_level = 0;

@@ -36,7 +36,7 @@ SequencerEvents Task::make_events() {
     SequencerEvents events;
     events.message = [this](MessageKind kind, const std::string &text) { post(kind, text); };
     events.print = [this](const std::string &text) { post(MessageKind::OPERATOR_TEXT, text); };
-    events.stop = [this](const StopItem &stop, int line) { on_stop(stop, line); };
+    events.stop = [this](const StopItem &stop, int line) { return on_stop(stop, line); };
     events.end = [this](const EndItem &end) { on_end(end); };
     events.fail = [this](const std::string &text) {
         pending_failure_ = pending_failure_.empty() ? text : pending_failure_;
@@ -286,7 +286,7 @@ void Task::log_probe() {
 }
 
 bool Task::isReadAheadAllowed() const {
-    const bool isHeld = status_.isPaused && isStoppedByProgram_;
+    const bool isHeld = status_.isPaused && status_.isStoppedByProgram;
     return !isReadingDone_ && !isHeld && queue_.size() < settings_.read_ahead_items;
 }
 
@@ -333,13 +333,15 @@ void Task::on_step_result(interp::Step result) {
     }
 }
 
-void Task::on_stop(const StopItem &stop, int line) {
+bool Task::on_stop(const StopItem &stop, int line) {
     if (stop.isOptional && !status_.isOptionalStop) {
-        return;
+        return false;
     }
     status_.stop_line = line;
+    ++status_.stops;
     status_.isPaused = true;
-    isStoppedByProgram_ = true;
+    status_.isStoppedByProgram = true;
+    return true;
 }
 
 void Task::on_end(const EndItem &) {
@@ -356,7 +358,7 @@ void Task::finish_run(Progress progress, const std::string &reason) {
     }
     run_ = Run::IDLE;
     isStepMode_ = false;
-    isStoppedByProgram_ = false;
+    status_.isStoppedByProgram = false;
     status_.isPaused = false;
     sequencer_.end_step();
     finish(run_request_, progress, reason);

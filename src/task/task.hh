@@ -127,7 +127,7 @@ class Task final : public interp::World {
     void log_probe();
     bool isReadAheadAllowed() const;
     void on_step_result(interp::Step result);
-    void on_stop(const StopItem &stop, int line);
+    bool on_stop(const StopItem &stop, int line);
     void on_end(const EndItem &end);
 
     // task_abort.cc
@@ -167,7 +167,6 @@ class Task final : public interp::World {
     bool isStartDue_ = false;  ///< the run begins where the machine comes to rest
     std::string mdi_line_;     ///< of such a run
     bool isStepMode_ = false;
-    bool isStoppedByProgram_ = false;
     std::string pending_failure_;
     std::optional<int> tool_fault_;  ///< reason, when the last work of the changer ended with a fault
     bool isCleaningUp_ = false;      ///< what the on-abort command asked for is on its way

@@ -87,7 +87,7 @@ struct Task::Handler {
         task.run_request_ = id;
         task.isReadingDone_ = false;
         task.isWaitingForSync_ = false;
-        task.isStoppedByProgram_ = false;
+        task.status_.isStoppedByProgram = false;
         task.hasProgramError_ = false;
         task.isCleanedUp_ = false;
         task.status_.isPaused = false;
@@ -225,7 +225,7 @@ Outcome Task::Handler::operator()(const StepProgram &) {
     }
     const bool isPlannerBusy = task.motion_.status().isPaused && task.motion_.status().queue_depth > 0;
     task.isStepMode_ = true;
-    task.isStoppedByProgram_ = false;
+    task.status_.isStoppedByProgram = false;
     if (isPlannerBusy) {
         task.motion_.send(motion::StepOnce{});
         return Progress::DONE;
@@ -251,7 +251,7 @@ Outcome Task::Handler::operator()(const ResumeProgram &) {
     }
     task.motion_.send(motion::Resume{});
     task.status_.isPaused = false;
-    task.isStoppedByProgram_ = false;
+    task.status_.isStoppedByProgram = false;
     task.isStepMode_ = false;
     task.sequencer_.end_step();
     return Progress::DONE;

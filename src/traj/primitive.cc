@@ -100,6 +100,20 @@ FeedLength feed_length(const Primitive &p) noexcept {
     return {geom::norm_abc(p.lin) * p.length, true};
 }
 
+namespace {
+
+/// How far a turning point of a coordinate may lie beyond the one of its circular part alone, where the rest
+/// of it has the slope `drift`: never more than that makes in half a turn; where it is slight, twice what it
+/// makes on a parabola of the least curvature there.
+double turning_margin(const Primitive &p, double amplitude, double drift) noexcept {
+    constexpr double SLIGHT = 0.1;
+    const double most = drift * std::min(p.length, std::numbers::pi / std::abs(p.omega));
+    const double round = amplitude * std::min(p.radius, p.radius + p.dradius * p.length) * std::abs(p.omega);
+    return drift < SLIGHT * round ? std::min(most, drift * drift / (round * std::abs(p.omega))) : most;
+}
+
+}  // namespace
+
 void extent(const Primitive &p, Pose &low, Pose &high) noexcept {
     for (int i = 0; i < AXIS_COUNT; ++i) {
         low[i] = std::min(p.start[i], p.end[i]);
@@ -114,12 +128,15 @@ void extent(const Primitive &p, Pose &low, Pose &high) noexcept {
     const double to = std::max(0.0, sweep);
     for (int i = 0; i < 3; ++i) {
         // The circular part of a coordinate is largest or smallest at phase + n half turns. Its linear part
-        // moves the true turning points a little along: `margin`, its run in half a turn, keeps the box
-        // outside.
+        // moves the true turning points a little along: `margin` keeps the box outside.
         const auto k = static_cast<std::size_t>(i);
         const int axis = p.space + i;
-        const double drift = std::abs(p.lin[axis]) + std::abs(p.dradius);
-        const double margin = drift * std::min(p.length, half_turn / std::abs(p.omega));
+        const double amplitude = std::hypot(p.u[k], p.v[k]);
+        if (amplitude == 0.0) {
+            continue;  // along the normal there is no circle: the ends are all there is
+        }
+        const double drift = std::abs(p.lin[axis]) + std::abs(p.dradius) * amplitude;
+        const double margin = turning_margin(p, amplitude, drift);
         const bool isPeriodic = drift * p.length < 1e-12 * (1.0 + p.radius);
         const int max_points = isPeriodic ? 2 : 100000;
         const double phase = std::atan2(p.v[k], p.u[k]);

@@ -63,7 +63,7 @@ def main():
             ['twice.hal:1:12', "has the name 'extra' twice", 'more.hal:1:12'], 'TWOPASS = on\n')
         run('an error in the second pass', 'HALFILE = wrong.hal\n', 1,
             ['wrong.hal:2:13', "did you mean 'more.out'?"], 'TWOPASS = on\n')
-        run('programs end with the machine', 'HALFILE = program.hal\n', 0, ['cycle time'], mode=['--realtime'])
+        run('programs end with the machine', 'HALFILE = program.hal\n', 0, ['cycle time'], mode=['--realtime', '--yes'])
         if has_tcl:
             run('Tcl', 'HALFILE = script.tcl 3\n', 0, ['script has run', 'cycle time'], 'TWOPASS = on\n')
             run('an error in Tcl', 'HALFILE = broken.tcl\n', 1, ['broken.tcl:2', "'joint.0.nosuch' does not exist"])

@@ -82,7 +82,7 @@ def main():
             change(folder)
             before = snapshot(folder)
             tag = f'wrong-{os.getpid()}-{number}'
-            for mode in ([], ['--realtime']):
+            for mode in ([], ['--realtime', '--yes']):
                 done = subprocess.run([millwright, 'run', 'configs/sim/mill_mm.ini', 'p.ngc', *mode], cwd=folder,
                                       env=dict(os.environ, MILLWRIGHT_INSTANCE=tag, LC_ALL='de_DE.UTF-8'),
                                       capture_output=True, text=True, timeout=60, check=False)

@@ -102,7 +102,11 @@ TEST_F(Halcompile, InstallsWhereItIsTold_B2) {
     ::unsetenv("RTLIB_DIR");
     ::unsetenv("EMC2_HOME");
     EXPECT_EQ(done.status, 0) << done.text;
-    EXPECT_EQ(done.text, "");
+    for (const char *file :
+         {"/rt/gain.so", "/home/bin/usrcount", "/home/man/man9/gain.9", "/home/man/man1/usrcount.1"}) {
+        EXPECT_NE(done.text.find("halcompile: installed " + to + file + "\n"), std::string::npos)
+            << done.text;
+    }
     EXPECT_EQ(::access((to + "/rt/gain.so").c_str(), R_OK), 0);
     EXPECT_EQ(fs::status(to + "/rt/gain.so").permissions() & fs::perms::owner_exec, fs::perms::none);
     EXPECT_EQ(::access((to + "/home/bin/usrcount").c_str(), X_OK), 0);

@@ -50,7 +50,7 @@ pid_t start_program(const fs::path &program, const std::string &instance, const 
         ::dup2(fd, 1);
         ::dup2(fd, 2);
         ::execl(MW_BIN_DIR "/millwright", "millwright", "run", MW_SOURCE_DIR "/configs/sim/mill_mm.ini",
-                program.c_str(), "--realtime", static_cast<char *>(nullptr));
+                program.c_str(), "--realtime", "--yes", static_cast<char *>(nullptr));
         ::_exit(127);
     }
     return pid;

@@ -89,6 +89,22 @@ TEST_F(MachineTest, PauseHoldsAndResumeGoesOnToTheExactEnd) {
     EXPECT_EQ(samples_.back().carte_pos_cmd.y(), 0.0);
 }
 
+TEST_F(MachineTest, AProgramStopHoldsWhatIsBehindIt_D3) {
+    start("G21 G90 G61 F6000\nG1 X2\nM0\nM8\nG1 X4\nM1\nG1 X6\nM60\nM2\n");
+    for (const double stands : {2.0, 4.0, 6.0}) {
+        for (int i = 0; i < 5000 && !machine_->task().status().isPaused; ++i) {
+            cycles(1);
+        }
+        ASSERT_TRUE(machine_->task().status().isStoppedByProgram);
+        cycles(2000);
+        EXPECT_DOUBLE_EQ(x(), stands);
+        EXPECT_EQ(pin("iocontrol.0.coolant-flood"), stands > 3);
+        EXPECT_EQ(machine_->task().progress(run_), task::Progress::STARTED);
+        ask(task::ResumeProgram{});
+    }
+    EXPECT_EQ(finish(), task::Progress::DONE);
+}
+
 TEST_F(MachineTest, AProgramErrorStopsTheSpindleToo) {
     start("G21 G90 S5000 M3\nG1 X50 F1000\nG1 X100 X5\nM2\n");
     EXPECT_EQ(finish(), task::Progress::FAILED);

@@ -14,9 +14,9 @@
 
 #include <gtest/gtest.h>
 
+#include "app/operator.hh"
 #include "machine/loaded_config.hh"
 #include "machine/machine.hh"
-#include "machine/operator.hh"
 
 namespace mw::machine {
 
@@ -34,8 +34,12 @@ class VirtualMachineTest : public testing::Test {
 
     /// Builds the machine with changed settings; parameters live in memory.
     void switch_on(const std::function<void(task::Settings &)> &change = {}) {
-        loaded_ = LoadedConfig::load(MW_SOURCE_DIR "/configs/sim/mill_mm.ini", sink_);
-        ASSERT_NE(loaded_, nullptr);
+        switch_on_config(MW_SOURCE_DIR "/configs/sim/mill_mm.ini", change);
+    }
+    void switch_on_config(const std::string &ini, const std::function<void(task::Settings &)> &change = {}) {
+        machine_.reset();
+        loaded_ = LoadedConfig::load(ini, sink_);
+        ASSERT_NE(loaded_, nullptr) << ini;
         loaded_->machine.task.parameter_file.clear();
         if (change) {
             change(loaded_->machine.task);
@@ -44,10 +48,30 @@ class VirtualMachineTest : public testing::Test {
             make_virtual_machine({loaded_->ini, loaded_->reader, loaded_->machine, sink_}, MachineOptions{});
         ASSERT_TRUE(made.has_value()) << made.error().str();
         machine_ = std::move(*made);
-        Operator person(*machine_, loaded_->machine, sink_, 60.0);
+        app::Operator person(*machine_, loaded_->machine, sink_, {});
         ASSERT_TRUE(person.switch_on().has_value());
         ASSERT_TRUE(person.home_all().has_value());
         machine_->channels().isTracing.store(1);
+    }
+    /// A copy of a file of configs/sim with pieces of its text replaced; the path of the copy.
+    std::string changed_config(const std::string &name,
+                               const std::vector<std::pair<std::string, std::string>> &changes) {
+        std::ostringstream text;
+        text << std::ifstream(std::string(MW_SOURCE_DIR "/configs/sim/") + name).rdbuf();
+        std::string all = text.str();
+        const auto replace_all = [&](const std::string &from, const std::string &to) {
+            std::size_t count = 0;
+            for (std::size_t at = all.find(from); at != std::string::npos; ++count) {
+                all.replace(at, from.size(), to);
+                at = all.find(from, at + to.size());
+            }
+            EXPECT_GT(count, 0U) << from << " is not in " << name;
+        };
+        for (const auto &[from, to] : changes) {
+            replace_all(from, to);
+        }
+        write(name, all);
+        return (folder_ / name).string();
     }
     void write(const std::string &name, const std::string &text) const {
         std::ofstream(folder_ / name) << text;

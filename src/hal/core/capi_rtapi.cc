@@ -34,7 +34,9 @@ void print_message(LogLevel level, bool isAlways, const char *format, std::va_li
 void run_planner(void *argument, std::int64_t period_ns) {
     const auto *planner = static_cast<const PlannerRunner *>(argument);
     const UseInstance use(planner->hal);
+    context().doing = "the planner of a module";
     planner->function(planner->argument, period_ns);
+    context().doing = nullptr;
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include <mutex>
 
 #include "hal/core/detail/capi.hh"
+#include "rtapi/alternate_stack.hh"
 #include "rtapi/scheduler.hh"
 
 using namespace mw;
@@ -27,7 +28,7 @@ constexpr int PRIORITY_HIGHEST = 80;
 constexpr int PRIORITY_LOWEST = 1;
 constexpr std::int64_t NS_PER_S = 1000000000;
 constexpr int DELETE_TIMEOUT_S = 2;
-constexpr std::size_t LEAST_STACK = 256UL * 1024;
+constexpr std::size_t LEAST_STACK = 384UL * 1024;
 
 std::int64_t monotonic_ns() noexcept {
     timespec now{};
@@ -106,6 +107,8 @@ void *run_task(void *argument) {
     auto *task = static_cast<Task *>(argument);
     own_task() = task;
     const UseInstance use(task->hal);
+    const rtapi::AlternateStack for_crashes;
+    context().doing = "a task of a module (rtapi_task_start)";
     task->code(task->argument);
     return nullptr;
 }

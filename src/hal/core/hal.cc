@@ -31,14 +31,14 @@ ThreadContext &context() noexcept {
 
 using namespace detail;
 
+std::string detail::segment_name(std::string_view instance) {
+    return fmt::format("millwright-{}-{}.hal", ::getuid(), instance);
+}
+
 namespace {
 
 // The C API has no argument for the instance, so a process needs one that is meant.
 std::atomic<Hal *> process_instance{nullptr};
-
-std::string segment_name(std::string_view instance) {
-    return fmt::format("millwright-{}-{}.hal", ::getuid(), instance);
-}
 
 /// Instance names become file names.
 Result<> check_instance(std::string_view instance) {
@@ -182,6 +182,14 @@ void Hal::set_realtime_missing(std::string_view why) {
     auto &text = impl_->segment.header().realtime_missing;
     text.fill('\0');
     std::copy_n(why.begin(), std::min(why.size(), text.size() - 1), text.begin());
+}
+std::optional<std::string> Hal::host_end() const {
+    const EndRecord &end = impl_->segment.header().end;
+    if (end.state.load(std::memory_order_acquire) == EndRecord::WHOLE) {
+        return end.text.data();
+    }
+    const bool isGone = impl_->isShared && !rtapi::isAlive(impl_->segment.memory().owner());
+    return isGone ? std::optional<std::string>("it was killed, or ended without a word") : std::nullopt;
 }
 rtapi::Log &Hal::log() noexcept {
     return *impl_->log;

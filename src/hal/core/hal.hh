@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -147,6 +148,8 @@ class Hal {
     /// time.
     std::string realtime_missing() const;
     void set_realtime_missing(std::string_view why);
+    /// How the realtime host came to its end, or crashes just now; nothing while it is well.
+    std::optional<std::string> host_end() const;
     rtapi::Log &log() noexcept;
     /// The scheduler of the host; null in an attached process.
     rtapi::Scheduler *scheduler() noexcept;

@@ -46,19 +46,22 @@ void record_time(FunctRecord &funct, std::int64_t ns) noexcept {
 
 using Function = void (*)(void *, long);
 
-void call(const ListEntry &entry, std::int64_t period_ns) noexcept {
+/// `here.calling` tells a crash report whose function it is.
+void call(ThreadContext &here, const ListEntry &entry, std::int64_t period_ns) noexcept {
+    here.calling = &entry;
     reinterpret_cast<Function>(entry.function)(reinterpret_cast<void *>(entry.argument), period_ns);
 }
 
 /// Runs the init functions that have not run yet; they come first in a list. The index of the first other
 /// one.
-std::uint32_t run_init(Segment &segment, const FunctionList &list, std::int64_t period_ns) noexcept {
+std::uint32_t run_init(ThreadContext &here, Segment &segment, const FunctionList &list,
+                       std::int64_t period_ns) noexcept {
     std::uint32_t i = 0;
     for (; i < list.count && list.entries[i].isInit; ++i) {
         auto *funct = segment.at<FunctRecord>(list.entries[i].funct);
         if (funct->init_runs.load(std::memory_order_relaxed) == 0) {
             funct->init_runs.store(1, std::memory_order_relaxed);
-            call(list.entries[i], period_ns);
+            call(here, list.entries[i], period_ns);
         }
     }
     return i;
@@ -83,9 +86,9 @@ Part part_to_time(ThreadRecord &thread, Part all) noexcept {
     return {all.begin + begin, all.begin + end};
 }
 
-void run_untimed(const FunctionList &list, Part part, std::int64_t period_ns) noexcept {
+void run_untimed(ThreadContext &here, const FunctionList &list, Part part, std::int64_t period_ns) noexcept {
     for (std::uint32_t i = part.begin; i < part.end; ++i) {
-        call(list.entries[i], period_ns);
+        call(here, list.entries[i], period_ns);
     }
 }
 
@@ -93,18 +96,19 @@ void run_untimed(const FunctionList &list, Part part, std::int64_t period_ns) no
 
 /// Runs the functions from `first` on, and keeps how long they took.
 void Hal::Impl::run_timed(ThreadRecord &thread, const FunctionList &list, std::uint32_t first) noexcept {
+    ThreadContext &here = context();
     const double ns_per_tick = counter.ns_per_tick();
     const Part timed = part_to_time(thread, {first, list.count});
     const std::int64_t start = counter.ticks();
-    run_untimed(list, {first, timed.begin}, thread.period_ns);
+    run_untimed(here, list, {first, timed.begin}, thread.period_ns);
     std::int64_t last = timed.begin > first ? counter.ticks() : start;
     for (std::uint32_t i = timed.begin; i < timed.end; ++i) {
-        call(list.entries[i], thread.period_ns);
+        call(here, list.entries[i], thread.period_ns);
         const std::int64_t now = counter.ticks();
         record_time(*segment.at<FunctRecord>(list.entries[i].funct), in_ns(now - last, ns_per_tick));
         last = now;
     }
-    run_untimed(list, {timed.end, list.count}, thread.period_ns);
+    run_untimed(here, list, {timed.end, list.count}, thread.period_ns);
     last = timed.end < list.count ? counter.ticks() : last;
     const std::int32_t time = clamp_s32(in_ns(last - start, ns_per_tick));
     put(thread.time_slot, time);
@@ -118,14 +122,15 @@ void Hal::Impl::run_thread(ThreadRecord &thread) noexcept {
     const ThreadContext before = here;
     here.instance = self;
     here.isRealtime = true;
+    here.thread = &thread;
     thread.cycle.fetch_add(1, std::memory_order_seq_cst);
     // Sequentially consistent with stop_threads: it either stops this cycle or waits for it.
     if (segment.header().isRunning.load(std::memory_order_seq_cst) != 0) {
         const std::uint32_t active = thread.active.load(std::memory_order_seq_cst);
         const auto &list = *segment.at<FunctionList>(thread.lists[active]);
-        const Part all{run_init(segment, list, thread.period_ns), list.count};
+        const Part all{run_init(here, segment, list, thread.period_ns), list.count};
         if (segment.header().isVirtual) {
-            run_untimed(list, all, thread.period_ns);
+            run_untimed(here, list, all, thread.period_ns);
         } else {
             run_timed(thread, list, all.begin);
         }
@@ -145,7 +150,11 @@ void Hal::Impl::wait_for_cycle(const ThreadRecord &thread) const noexcept {
     }
     // A thread that hangs in a function for longer is beyond help; a dead process never ends its cycle.
     constexpr int TRIES = 10000;
+    constexpr int LOOK_EVERY = 20;
     for (int i = 0; i < TRIES && thread.cycle.load(std::memory_order_seq_cst) == cycle; ++i) {
+        if (i % LOOK_EVERY == 0 && isShared && !rtapi::isAlive(segment.memory().owner())) {
+            return;
+        }
         const timespec nap{0, 100'000};
         ::nanosleep(&nap, nullptr);
     }

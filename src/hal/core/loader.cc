@@ -415,7 +415,9 @@ Result<> Loader::unload(const std::string &name) {
     {
         const UseInstance use(&hal_);
         if (auto *exit = reinterpret_cast<void (*)()>(::dlsym((*found)->handle, "rtapi_app_exit"))) {
+            context().unloading = name.c_str();
             exit();
+            context().unloading = nullptr;
         }
     }
     close(**found);

@@ -71,6 +71,15 @@ class Job {
         return done.has_value();
     }
 
+    /// Writes a product; of an installation the place is told, since the words do not name it.
+    Result<> put(const std::string &from, const std::string &to, unsigned mode) const {
+        auto done = install_file(from, to, mode);
+        if (done && (options_.mode == Mode::INSTALL || options_.mode == Mode::INSTALL_DOC)) {
+            std::fputs(fmt::format("halcompile: installed {}\n", to).c_str(), stderr);
+        }
+        return done;
+    }
+
     std::string beside(const std::string &name) const {
         return options_.output.empty() ? (path_.parent_path() / name).string() : options_.output;
     }
@@ -125,7 +134,7 @@ class Job {
         if (auto done = write_file_atomically(page, emit_man(component)); !done) {
             return done;
         }
-        return install_file(
+        return put(
             page,
             fmt::format("{}/man{}/{}", places_.man_folder, man_section(component), page_name(component)),
             MODULE_MODE);
@@ -215,7 +224,7 @@ class Job {
                                : isRealtime ? places_.module_folder + "/" + product
                                             : places_.program_folder + "/" + product;
         const bool isExecutable = !isRealtime || !isInstalled;
-        return install_file(order.output, to, isExecutable ? PROGRAM_MODE : MODULE_MODE);
+        return put(order.output, to, isExecutable ? PROGRAM_MODE : MODULE_MODE);
     }
 
     Result<> run_python() {
@@ -242,9 +251,8 @@ class Job {
                         "start it with: #!/usr/bin/env python3");
         }
         const std::string name = path_.stem();
-        return install_file(
-            file_, options_.mode == Mode::INSTALL ? places_.program_folder + "/" + name : beside(name),
-            PROGRAM_MODE);
+        return put(file_, options_.mode == Mode::INSTALL ? places_.program_folder + "/" + name : beside(name),
+                   PROGRAM_MODE);
     }
 
     const Options &options_;

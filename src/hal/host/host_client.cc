@@ -21,6 +21,7 @@ namespace mw::hal {
 namespace {
 
 constexpr int END_TIMEOUT_MS = 15000;
+constexpr int CLOSING_MS = 200;
 
 Result<int> connect_to(const std::string &instance) {
     const auto path = socket_path(instance);
@@ -99,12 +100,20 @@ struct HostClient::Impl {
     std::string instance;
     int fd = -1;
     int pid = 0;
+    int process = -1;  ///< a pidfd of it
     std::unique_ptr<Hal> hal;
 
     ~Impl() {
-        if (fd >= 0) {
-            ::close(fd);
+        for (const int one : {fd, process}) {
+            if (one >= 0) {
+                ::close(one);
+            }
         }
+    }
+    /// True when the process has ended within `timeout_ms`.
+    bool hasEnded(int timeout_ms) const {
+        pollfd end{process, POLLIN, 0};
+        return process < 0 || ::poll(&end, 1, timeout_ms) > 0;
     }
 };
 
@@ -126,6 +135,7 @@ Result<std::unique_ptr<HostClient>> HostClient::connect(const std::string &insta
         return fail("the realtime process of instance '" + instance + "' does not answer");
     }
     client->impl_->pid = std::atoi(hello->front().c_str());
+    client->impl_->process = static_cast<int>(::syscall(SYS_pidfd_open, client->impl_->pid, 0));
     auto hal = Hal::attach(instance);
     if (!hal) {
         return std::unexpected(hal.error());
@@ -198,14 +208,15 @@ int HostClient::pid() const noexcept {
 
 /// The texts after "ok"; other answers are errors.
 Result<std::vector<std::string>> HostClient::ask(const std::vector<std::string> &request) {
-    if (!isSent(impl_->fd, request)) {
-        errno = EPIPE;
-        return fail("the realtime process of instance '" + impl_->instance + "' is gone");
-    }
-    auto answer = receive(impl_->fd);
+    auto answer = isSent(impl_->fd, request) ? receive(impl_->fd)
+                                             : Result<std::vector<std::string>>(fail("it does not listen"));
     if (!answer) {
+        // Its socket closes a moment before it has ended.
+        static_cast<void>(impl_->hasEnded(CLOSING_MS));
         errno = EPIPE;
-        return std::unexpected(answer.error());
+        const auto end = impl_->hal == nullptr ? std::nullopt : death();
+        return std::unexpected(end.value_or(
+            Error{"the realtime process of instance '" + impl_->instance + "' is gone", {}, {}}));
     }
     if (answer->empty() || (*answer)[0] != "ok") {
         errno = EINVAL;
@@ -257,31 +268,31 @@ Result<> HostClient::control() {
 }
 
 Result<> HostClient::shut_down() {
-    const int process = static_cast<int>(::syscall(SYS_pidfd_open, impl_->pid, 0));
-    if (process < 0) {
-        return {};  // gone already
+    if (!impl_->hasEnded(0)) {
+        // It may end by itself meanwhile, which is as good as an answer.
+        static_cast<void>(ask({"end"}));
     }
-    const auto answer = ask({"end"});
-    pollfd end{process, POLLIN, 0};
-    const int ready = ::poll(&end, 1, END_TIMEOUT_MS);
-    ::close(process);
-    if (ready <= 0) {
+    if (!impl_->hasEnded(END_TIMEOUT_MS)) {
         return fail("the realtime process " + std::to_string(impl_->pid) + " does not end");
     }
-    return answer ? Result<>{} : std::unexpected(answer.error());
+    remove_leftovers(impl_->instance);
+    return {};
+}
+
+std::optional<Error> HostClient::death() const {
+    const bool hasEnded = impl_->hasEnded(0);
+    const auto how = impl_->hal->host_end();
+    if (!hasEnded && !how) {
+        return std::nullopt;
+    }
+    return Error{"the realtime process " + std::to_string(impl_->pid) + " of instance '" + impl_->instance +
+                     "' has ended: " + how.value_or("it was killed, or ended without a word"),
+                 {},
+                 {}};
 }
 
 bool isHostAlive(const std::string &instance) {
-    const auto fd = open_lock(instance);
-    if (!fd) {
-        return false;
-    }
-    struct flock whole{};
-    whole.l_type = F_WRLCK;
-    whole.l_whence = SEEK_SET;
-    const bool isLocked = ::fcntl(*fd, F_OFD_GETLK, &whole) == 0 && whole.l_type != F_UNLCK;
-    ::close(*fd);
-    return isLocked;
+    return isLockTaken(instance);
 }
 
 }  // namespace mw::hal

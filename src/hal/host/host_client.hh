@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,9 @@ class HostClient final : public Host {
     Result<> control();
     /// Tells the realtime process to stop all and end, and waits until it has.
     Result<> shut_down();
+    /// That the realtime process has ended, and how; nothing while it is well. The kernel's word, so it is
+    /// quick, and true at once. [any thread]
+    std::optional<Error> death() const;
     /// Process id of the realtime process.
     int pid() const noexcept;
 
@@ -54,5 +58,8 @@ class HostClient final : public Host {
 
 /// True when a realtime process of this instance is alive.
 bool isHostAlive(const std::string &instance);
+
+/// Removes what a realtime process of this instance left behind that has died; nothing while one is alive.
+void remove_leftovers(const std::string &instance);
 
 }  // namespace mw::hal

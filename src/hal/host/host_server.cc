@@ -18,6 +18,9 @@
 #include <cstring>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include "hal/core/crash_report.hh"
 #include "hal/core/detail/impl.hh"
 #include "hal/core/host.hh"
 #include "hal/host/message.hh"
@@ -78,6 +81,8 @@ struct HostServer::Impl {
     bool isServed(Client &client);
     Message answer(const Client &client, const Message &request);
     Message take_control(const Client &client);
+    static ucred peer_of(const Client &client);
+    void end_for(const std::string &reason);
     void on_controller_gone();
     bool isControllerGone();
     void look_for_programs();
@@ -91,16 +96,12 @@ struct HostServer::Impl {
 };
 
 Result<> HostServer::Impl::take_lock() {
-    const auto fd = open_lock(instance);
+    const auto fd = hal::take_lock(instance);
     if (!fd) {
         return std::unexpected(fd.error());
     }
     lock = *fd;
-    struct flock whole{};
-    whole.l_type = F_WRLCK;
-    whole.l_whence = SEEK_SET;
-    // Belongs to the open file: it goes with this process, however it ends.
-    if (::fcntl(lock, F_OFD_SETLK, &whole) != 0) {
+    if (lock < 0) {
         return fail("a realtime process of instance '" + instance + "' is alive", {},
                     "end it with 'halrun -U', or choose another name in MILLWRIGHT_INSTANCE");
     }
@@ -158,7 +159,13 @@ Result<> HostServer::Impl::open(const HostServerOptions &options) {
     host = std::move(*made);
     host->hal().set_realtime_missing(scheduler->missing());
     set_process_instance(&host->hal());
-    return listen();
+    auto listening = listen();
+    if (listening) {
+        const auto lock_file = lock_path(instance);
+        report_crashes("millwright-rt", {path, "/dev/shm/" + detail::segment_name(instance),
+                                         lock_file ? *lock_file : std::string()});
+    }
+    return listening;
 }
 
 void HostServer::Impl::accept_client() {
@@ -201,13 +208,33 @@ bool HostServer::Impl::isServed(Client &client) {
     }
 }
 
+ucred HostServer::Impl::peer_of(const Client &client) {
+    ucred peer{};
+    socklen_t size = sizeof peer;
+    ::getsockopt(client.fd, SOL_SOCKET, SO_PEERCRED, &peer, &size);
+    return peer;
+}
+
+/// Ends at once for the controlling process (no `reason`), which has stopped the machine; for others first
+/// the machine brakes.
+void HostServer::Impl::end_for(const std::string &reason) {
+    if (reason.empty()) {
+        isEnding = true;
+        return;
+    }
+    host->hal().impl().note_end(reason.c_str());
+    if (host->hal().impl().controller_watches.empty()) {
+        isEnding = true;
+    } else {
+        on_controller_gone();
+    }
+}
+
 Message HostServer::Impl::take_control(const Client &client) {
     if (controller_socket >= 0 && controller_socket != client.fd) {
         return {"error", "another process controls the instance already", ""};
     }
-    ucred peer{};
-    socklen_t size = sizeof peer;
-    ::getsockopt(client.fd, SOL_SOCKET, SO_PEERCRED, &peer, &size);
+    const ucred peer = peer_of(client);
     close_fd(controller);
     controller = static_cast<int>(::syscall(SYS_pidfd_open, peer.pid, 0));
     if (controller < 0) {
@@ -248,7 +275,8 @@ Message HostServer::Impl::answer(const Client &client, const Message &request) {
         return answer_of(host->set_log_level(std::min(level, rtapi::LogLevel::ALL)));
     }
     if (what == "end") {
-        isEnding = true;
+        const bool isByController = client.fd == controller_socket;
+        end_for(isByController ? "" : fmt::format("process {} asked it to end", peer_of(client).pid));
         return {"ok"};
     }
     return {"error", "unknown request '" + what + "'", ""};
@@ -258,7 +286,7 @@ void HostServer::Impl::on_controller_gone() {
     close_fd(controller);
     controller = -1;
     controller_socket = -1;
-    gone_ns = host->now_ns();
+    gone_ns = gone_ns == 0 ? host->now_ns() : gone_ns;
     auto &hal = host->hal();
     for (const auto &watch : hal.impl().controller_watches) {
         __atomic_store_n(watch.is_gone, 1U, __ATOMIC_RELEASE);
@@ -392,8 +420,11 @@ HostServer::~HostServer() {
     for (const Program &program : impl_->programs) {
         close_fd(program.fd);
     }
-    for (const int fd : {impl_->controller, impl_->listener, impl_->signals, impl_->lock}) {
+    for (const int fd : {impl_->controller, impl_->listener, impl_->signals}) {
         close_fd(fd);
+    }
+    if (impl_->lock >= 0) {
+        drop_lock(impl_->instance, impl_->lock);
     }
 }
 
@@ -403,7 +434,11 @@ void HostServer::Impl::serve(const std::vector<pollfd> &fds) {
     if (fds[1].revents != 0) {
         on_controller_gone();
     }
-    isEnding = isEnding || fds[0].revents != 0;
+    if (fds[0].revents != 0) {
+        signalfd_siginfo signal{};
+        (void)!::read(signals, &signal, sizeof signal);
+        end_for(fmt::format("process {} ended it by signal {}", signal.ssi_pid, signal.ssi_signo));
+    }
     if (fds[2].revents != 0) {
         accept_client();
     }

@@ -3,13 +3,16 @@
 
 #include <fcntl.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
 
+#include "hal/core/detail/impl.hh"
 #include "rtapi/process.hh"
+#include "rtapi/shared_memory.hh"
 
 namespace mw::hal {
 namespace {
@@ -119,16 +122,80 @@ Result<std::string> lock_path(const std::string &instance) {
     return *folder + '/' + instance + ".lock";
 }
 
-Result<int> open_lock(const std::string &instance) {
+namespace {
+
+struct flock whole_file() {
+    struct flock whole{};
+    whole.l_type = F_WRLCK;
+    whole.l_whence = SEEK_SET;
+    return whole;
+}
+
+/// True when `path` still names the file that `fd` has open: its last holder may have removed it since.
+bool isSameFile(int fd, const std::string &path) {
+    struct stat opened{};
+    struct stat named{};
+    return ::fstat(fd, &opened) == 0 && ::stat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
+           opened.st_dev == named.st_dev;
+}
+
+}  // namespace
+
+Result<int> take_lock(const std::string &instance) {
     const auto path = lock_path(instance);
     if (!path) {
         return std::unexpected(path.error());
     }
-    const int fd = ::open(path->c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
-    if (fd < 0) {
-        return fail("cannot open " + *path + ": " + std::strerror(errno));
+    constexpr int TRIES = 100;
+    for (int i = 0; i < TRIES; ++i) {
+        const int fd = ::open(path->c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+        if (fd < 0) {
+            return fail("cannot open " + *path + ": " + std::strerror(errno));
+        }
+        // Belongs to the open file: it goes with the process, however it ends.
+        struct flock whole = whole_file();
+        if (::fcntl(fd, F_OFD_SETLK, &whole) != 0) {
+            ::close(fd);
+            return -1;
+        }
+        if (isSameFile(fd, *path)) {
+            return fd;
+        }
+        ::close(fd);
     }
-    return fd;
+    return fail("the lock " + *path + " is removed again and again by another process");
+}
+
+void drop_lock(const std::string &instance, int fd) {
+    const auto path = lock_path(instance);
+    if (path && isSameFile(fd, *path)) {
+        ::unlink(path->c_str());
+    }
+    ::close(fd);
+}
+
+bool isLockTaken(const std::string &instance) {
+    const auto path = lock_path(instance);
+    const int fd = path ? ::open(path->c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW) : -1;
+    if (fd < 0) {
+        return false;
+    }
+    struct flock whole = whole_file();
+    const bool isLocked = ::fcntl(fd, F_OFD_GETLK, &whole) == 0 && whole.l_type != F_UNLCK;
+    ::close(fd);
+    return isLocked;
+}
+
+void remove_leftovers(const std::string &instance) {
+    const auto lock = take_lock(instance);
+    if (!lock || *lock < 0) {
+        return;
+    }
+    if (const auto socket = socket_path(instance)) {
+        ::unlink(socket->c_str());
+    }
+    rtapi::SharedMemory::remove_stale(detail::segment_name(instance));
+    drop_lock(instance, *lock);
 }
 
 }  // namespace mw::hal

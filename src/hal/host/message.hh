@@ -30,7 +30,12 @@ Result<Message> receive(int fd);
 Result<std::string> socket_path(const std::string &instance);
 Result<std::string> lock_path(const std::string &instance);
 
-/// Opens the lock file of an instance; its descriptor.
-Result<int> open_lock(const std::string &instance);
+/// Takes the lock of an instance, which goes with the descriptor that is given: nothing else may be done to
+/// the instance meanwhile. -1 when another process holds it. Remove the file (drop_lock) before the end.
+Result<int> take_lock(const std::string &instance);
+/// Removes the lock file and gives the lock back.
+void drop_lock(const std::string &instance, int fd);
+/// True while a process holds the lock; makes no file.
+bool isLockTaken(const std::string &instance);
 
 }  // namespace mw::hal

@@ -21,6 +21,8 @@ namespace mw::hal::lang {
 namespace {
 
 constexpr long POLL_NS = 2000000;
+/// How often the realtime process is looked at meanwhile.
+constexpr long LOOK_NS = 10 * POLL_NS;
 /// A program that is not ready by then is mentioned.
 constexpr long PATIENCE_NS = 2000 * POLL_NS;
 
@@ -86,6 +88,11 @@ Result<> SystemProgramHost::wait_until_ready(const ProgramRequest &request, int 
         if (isStopped()) {
             kill(pid, SIGTERM);
             return fail(fmt::format("stopped while waiting for component '{}'", request.component));
+        }
+        if (const auto end = waited_ns % LOOK_NS == 0 ? hal_.host_end() : std::nullopt) {
+            kill(pid, SIGTERM);
+            return fail(fmt::format("the realtime process has ended while component '{}' was awaited: {}",
+                                    request.component, *end));
         }
         nap();
     }

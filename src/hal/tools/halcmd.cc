@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <unistd.h>
+
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -6,6 +8,7 @@
 #include "hal/host/host_client.hh"
 #include "hal/lang/commands.hh"
 #include "hal/tools/command_line.hh"
+#include "hal/tools/host_watch.hh"
 
 namespace mw::hal::tools {
 
@@ -104,6 +107,12 @@ int halcmd(const std::vector<std::string> &arguments) {
     lang::StandardOutput output;
     lang::SystemProgramHost programs((*host)->hal());
     lang::Session session(**host, programs, output, line->session);
+    // Nothing is left to do then, whatever this command waits for.
+    const HostWatch watch(**host, [&host] {
+        (void)fail_with(*(*host)->death());
+        std::fflush(stdout);
+        ::_exit(1);
+    });
     return run(*line, session) ? 0 : 1;
 }
 

@@ -6,6 +6,7 @@
 
 #include "hal/host/host_client.hh"
 #include "hal/tools/command_line.hh"
+#include "hal/tools/host_watch.hh"
 
 namespace mw::hal::tools {
 
@@ -39,15 +40,16 @@ void handle_signals() {
     // Without SA_RESTART, so that waiting ends too.
     struct sigaction action{};
     action.sa_handler = [](int) { stop_requested = 1; };
-    sigaction(SIGINT, &action, nullptr);
-    sigaction(SIGTERM, &action, nullptr);
-    sigaction(SIGHUP, &action, nullptr);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+        sigaction(signal, &action, nullptr);
+    }
 }
 
 /// halrun -U.
 int end_running() {
     const std::string instance = default_instance();
     if (!isHostAlive(instance)) {
+        remove_leftovers(instance);
         return 0;
     }
     const auto host = HostClient::connect(instance);
@@ -160,8 +162,12 @@ int halrun(const std::vector<std::string> &arguments) {
     lang::SystemProgramHost programs((*host)->hal(), &stop_requested);
     Result<> result;
     {
+        const HostWatch watch(**host, [] { stop_requested = 1; });
         lang::Session session(**host, programs, output, line->session);
         result = run(*line, session, isTwoPass ? ini.file() : nullptr);
+    }
+    if (const auto death = (*host)->death()) {
+        result = tell(*death);
     }
     const Result<> ended = tear_down(programs, **host);
     if (!ended) {

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -347,7 +348,9 @@ Result<> live(const Words &names, volatile std::sig_atomic_t &stop) {
 int command_hal(const Words &words, volatile std::sig_atomic_t &stop) {
     const std::string command = words.empty() ? "" : words[0];
     const Words rest(words.empty() ? words.begin() : words.begin() + 1, words.end());
-    if (command == "--help" || command == "-h" || command == "help") {
+    const bool isHelp =
+        std::ranges::any_of(words, [](const std::string &word) { return word == "--help" || word == "-h"; });
+    if (isHelp || command == "help") {
         std::fputs(USAGE, stdout);
         return 0;
     }

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "testing/campaign_seeds.hh"
 #include "testing/limit_checker.hh"
 #include "testing/motion_rig.hh"
 
@@ -184,14 +185,8 @@ class Campaign {
     std::vector<testing::AxisLimit> limits_;
 };
 
-int number_from(const char *name, int preset) {
-    const char *text = std::getenv(name);
-    return text != nullptr ? std::atoi(text) : preset;
-}
-
 void run_all(bool isJerkLimited) {
-    const int first = number_from("MW_CAMPAIGN_FIRST", 1);
-    const int count = number_from("MW_CAMPAIGN_SEEDS", 40);
+    const auto [first, count] = testing::campaign_seeds(40);
     for (int i = 0; i < count && !::testing::Test::HasFailure(); ++i) {
         const auto seed = static_cast<unsigned>(first + i);
         SCOPED_TRACE("seed " + std::to_string(seed));

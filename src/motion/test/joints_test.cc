@@ -8,6 +8,7 @@
 
 #include "kins/corexy.hh"
 #include "kins/rotary_table.hh"
+#include "testing/campaign_seeds.hh"
 #include "testing/limit_checker.hh"
 #include "testing/motion_rig.hh"
 
@@ -90,14 +91,8 @@ class Drive {
     std::vector<testing::AxisLimit> limits_;
 };
 
-int number_from(const char *name, int preset) {
-    const char *text = std::getenv(name);
-    return text != nullptr ? std::atoi(text) : preset;
-}
-
 void drive_all(const Machine &machine) {
-    const int first = number_from("MW_CAMPAIGN_FIRST", 1);
-    const int count = number_from("MW_CAMPAIGN_SEEDS", 15);
+    const auto [first, count] = testing::campaign_seeds(15);
     for (int i = 0; i < count && !::testing::Test::HasFailure(); ++i) {
         const auto seed = static_cast<unsigned>(first + i);
         SCOPED_TRACE("seed " + std::to_string(seed));

@@ -66,8 +66,24 @@ TEST_F(ChartTest, BadPathsAreRefused) {
 
 TEST_F(ChartTest, HistogramsStandBelowEachOther) {
     Histogram histogram{"servo", -5, 1, "us", {0, 1, 10, 1000, 3}, 1, 2};
-    ASSERT_TRUE(draw_histograms({histogram, histogram}, folder / "h.png"));
-    EXPECT_EQ(read("h.png").substr(1, 3), "PNG");
+    // Byte 20 to 23 of a PNG: its height.
+    const auto height = [this](const std::vector<Histogram> &all) {
+        EXPECT_TRUE(draw_histograms(all, folder / "h.png"));
+        const std::string png = read("h.png");
+        EXPECT_EQ(png.substr(1, 3), "PNG");
+        int value = 0;
+        for (std::size_t i = 20; i < 24 && i < png.size(); ++i) {
+            value = value * 256 + static_cast<unsigned char>(png[i]);
+        }
+        return value;
+    };
+    const int one = height({histogram}), two = height({histogram, histogram});
+    EXPECT_GT(two, one);
+    EXPECT_EQ(height({histogram, histogram, histogram}) - two, two - one);
+    const std::string three_pictures = read("h.png");
+    histogram.counts[3] = 0;
+    ASSERT_TRUE(draw_histograms({histogram, histogram, histogram}, folder / "h.png"));
+    EXPECT_NE(read("h.png"), three_pictures) << "the counts are drawn";
 }
 
 }  // namespace

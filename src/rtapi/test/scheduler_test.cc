@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <atomic>
+#include <cstring>
 #include <string>
 #include <thread>
 #include <vector>
@@ -189,6 +194,47 @@ TEST(RealtimeScheduler, SaysOnceWhatIsMissing_A5) {
             EXPECT_TRUE(isNamed) << lines[0];
         }
     }
+}
+
+/// What a process without any privilege is told.
+std::string told_without_privilege() {
+    int pipe_ends[2];
+    if (::pipe(pipe_ends) != 0) {
+        return "no pipe";
+    }
+    const pid_t child = ::fork();
+    if (child == 0) {
+        const rlimit none{0, 0};
+        const rlimit little{65536, 65536};
+        ::setrlimit(RLIMIT_RTPRIO, &none);
+        ::setrlimit(RLIMIT_MEMLOCK, &little);
+        if (::getuid() == 0 && ::setuid(65534) != 0) {
+            ::_exit(1);
+        }
+        Log log(
+            Log::Mode::SYNCHRONOUS,
+            [](void *to, LogLevel, const char *text) {
+                (void)!::write(*static_cast<int *>(to), text, std::strlen(text));
+            },
+            &pipe_ends[1]);
+        const RealtimeScheduler clock(log);
+        ::_exit(0);
+    }
+    ::close(pipe_ends[1]);
+    std::string told;
+    char bytes[256];
+    for (ssize_t got = 0; (got = ::read(pipe_ends[0], bytes, sizeof bytes)) > 0;) {
+        told.append(bytes, static_cast<std::size_t>(got));
+    }
+    ::close(pipe_ends[0]);
+    ::waitpid(child, nullptr, 0);
+    return told;
+}
+
+TEST(RealtimeScheduler, SaysAllThatIsMissingAtOnce_A5) {
+    const std::string told = told_without_privilege();
+    EXPECT_NE(told.find("rtprio"), std::string::npos) << told;
+    EXPECT_NE(told.find("memlock limit is 64 kB"), std::string::npos) << told;
 }
 
 // ---- the log

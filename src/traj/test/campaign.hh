@@ -265,6 +265,31 @@ inline bool isInOrder(const std::vector<Pose> &samples, const Program &program, 
     return testing::isWithinInOrder(samples, path, tolerance);
 }
 
+/// The trajectory, straight between samples, against the program as it was given, in order and both ways.
+/// What is added to `allowed`: the fineness of the cutting, and how far a curve may leave the chord of a
+/// servo cycle.
+inline bool isWithinProgram(const std::vector<Pose> &samples, const Program &program, double allowed) {
+    constexpr double SHARE = 0.2, MOST_POINTS = 300000;
+    double bulge = 0, length = 0;
+    for (std::size_t i = 1; i < samples.size(); ++i) {
+        length += testing::pose_distance(samples[i], samples[i - 1]);
+        bulge = i < 2 ? 0
+                      : std::max(bulge, testing::pose_distance(samples[i] - samples[i - 1],
+                                                               samples[i - 1] - samples[i - 2]));
+    }
+    const double cut = std::max(SHARE * allowed, length / MOST_POINTS);
+    const double near = allowed + 0.5 * cut + 0.25 * bulge + 1e-9;
+    const std::vector<Pose> fine = testing::refined(samples, cut);
+    std::vector<Pose> path;
+    for (const Primitive &q : program.primitives) {
+        const int n = 2 + static_cast<int>(q.length / cut);
+        for (int i = path.empty() ? 0 : 1; i <= n; ++i) {
+            path.push_back(position_at(q, q.length * i / n));
+        }
+    }
+    return testing::isWithinInOrder(fine, path, near);
+}
+
 /// The box of the programmed path.
 inline void room_of(const Program &program, Pose &low, Pose &high) {
     for (const Primitive &q : program.primitives) {

@@ -105,12 +105,17 @@ struct Hal::Impl {
     /// The block of this key with one more user; zeroed when it had none.
     Result<detail::BlockRecord *> open_block(int key, std::size_t bytes);
     void publish_figures() const;
+    /// Notes how this host ends; the first text stays. [any thread, async-signal-safe]
+    void note_end(const char *text) noexcept;
     void run_thread(detail::ThreadRecord &thread) noexcept;
     void run_timed(detail::ThreadRecord &thread, const detail::FunctionList &list,
                    std::uint32_t first) noexcept;
 };
 
 namespace detail {
+
+/// The name of an instance's shared memory.
+std::string segment_name(std::string_view instance);
 
 /// The lock of an instance while it lives. Reading needs it too.
 class Guard {
@@ -131,6 +136,10 @@ struct ThreadContext {
     Hal *instance = nullptr;                                   ///< override of the process's
     bool isRealtime = false;                                   ///< inside a HAL thread
     const char *loading = nullptr;                             ///< name of the module being loaded
+    const char *unloading = nullptr;                           ///< name of the module being unloaded
+    const char *doing = nullptr;                               ///< what else runs here, for a crash report
+    const ThreadRecord *thread = nullptr;                      ///< the HAL thread that runs here
+    const ListEntry *calling = nullptr;                        ///< its function that runs
     std::vector<const rtapi_mp_info *> *parameters = nullptr;  ///< collects those of the module being loaded
 };
 ThreadContext &context() noexcept;

@@ -25,6 +25,7 @@ inline constexpr std::size_t FIRST_SIZE = 1U << 20U;
 inline constexpr std::size_t GROWTH = 1U << 20U;
 inline constexpr std::size_t RESERVE = 256U << 20U;
 inline constexpr std::size_t THREAD_FUNCTIONS = 1024;
+inline constexpr std::size_t END_TEXT = 512;
 inline constexpr std::uint32_t ABI_VERSION = 1;
 
 enum class Kind : std::uint8_t {
@@ -164,6 +165,16 @@ struct DeathRecord {
 
 inline constexpr std::size_t DEATHS = 16;
 
+/// How the host came to its end, as far as it could say.
+struct EndRecord {
+    static constexpr std::uint32_t NONE = 0;
+    static constexpr std::uint32_t BEING_WRITTEN = 1;
+    static constexpr std::uint32_t WHOLE = 2;
+    // Released as WHOLE after the text, acquired before it is read.
+    std::atomic<std::uint32_t> state;
+    std::array<char, END_TEXT> text;
+};
+
 struct Table {
     Offset first;
     Offset free;
@@ -177,10 +188,11 @@ struct Header {
     std::atomic<std::uint8_t> lock;
     bool isVirtual;
     bool isRealtime;                         ///< threads have realtime priority
-    std::array<char, 256> realtime_missing;  ///< why threads have none
+    std::array<char, 512> realtime_missing;  ///< why threads have none
     std::int32_t next_comp_id;
     std::uint32_t death_count;  ///< since the start; the last DEATHS of them are kept
     std::array<DeathRecord, DEATHS> deaths;
+    EndRecord end;
     Offset top;  ///< first byte never handed out
     std::array<Table, static_cast<std::size_t>(Kind::COUNT)> tables;
 };

@@ -40,6 +40,7 @@ TEST(RealtimeCode, ThreadsRunWithoutTheHeap) {
 struct Talker {
     hal_stream_t stream{};
     int runs = 0;
+    char text[32] = "";
 
     static void run(void *self, long /*period*/) {
         auto *talker = static_cast<Talker *>(self);
@@ -48,8 +49,7 @@ struct Talker {
         data[1].k = static_cast<rtapi_u64>(rtapi_get_time());
         hal_stream_write(&talker->stream, data);
         rtapi_print_msg(RTAPI_MSG_DBG, "not printed %d", 1);
-        char text[32];
-        rtapi_snprintf(text, sizeof text, "%d %g %s", 1, 2.5, "three");
+        rtapi_snprintf(talker->text, sizeof talker->text, "%d %g %s", talker->runs, 2.5, "three");
         rtapi_delay(1000);
     }
 };
@@ -70,6 +70,8 @@ TEST(RealtimeCode, StreamsTimeAndFormattingWorkWithoutTheHeap) {
         machine.clock.run_until(12'000'000);
         EXPECT_EQ(guard.calls(), 0U);
     }
+    EXPECT_EQ(talker.runs, 12);
+    EXPECT_STREQ(talker.text, "12 2.5 three");
     hal_stream_t reader{};
     const int other = *hal.new_component("reader");
     EXPECT_EQ(hal_stream_attach(&reader, other, 77, "ff"), -EINVAL);

@@ -154,7 +154,7 @@ TEST_F(HostTest, ReplacesWhatADeadRealtimeProcessLeft) {
     ::kill(client->pid(), SIGKILL);
     ASSERT_TRUE(isSoon([&] { return !isHostAlive(instance); }));
     EXPECT_FALSE(Hal::attach(instance));
-    EXPECT_NE(text_of(client->load_realtime("counter", {})).find("gone"), std::string::npos);
+    EXPECT_NE(text_of(client->load_realtime("counter", {})).find("was killed"), std::string::npos);
     auto next = start();
     ASSERT_NE(next, nullptr);
     EXPECT_TRUE(next->hal().components().empty());

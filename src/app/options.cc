@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "machine/options.hh"
+#include "app/options.hh"
+
+#include <algorithm>
 
 #include "base/text.hh"
 
-namespace mw::machine {
+namespace mw::app {
 
 Result<Options> parse_options(const std::vector<std::string> &words, const OptionNames &names) {
     Options options;
     for (std::size_t i = 0; i < words.size(); ++i) {
         const std::string &word = words[i];
-        if (word.substr(0, 2) != "--") {
+        if (word.empty() || word[0] != '-') {
             options.rest.push_back(word);
             continue;
         }
@@ -28,10 +30,22 @@ Result<Options> parse_options(const std::vector<std::string> &words, const Optio
             known.insert(known.end(), names.values.begin(), names.values.end());
             const std::string near = nearest_name(name, known);
             return fail("unknown option " + word, {},
-                        near.empty() ? "see millwright --help" : "did you mean " + near + "?");
+                        near.empty() ? "see --help" : "did you mean " + near + "?");
         }
     }
     return options;
 }
 
-}  // namespace mw::machine
+Result<bool> Options::on_or_off(const std::string &name, bool preset) const {
+    const std::string text = value(name, preset ? "on" : "off");
+    if (text != "on" && text != "off") {
+        return fail(name + " is on or off, not '" + text + "'");
+    }
+    return text == "on";
+}
+
+bool wantsHelp(const std::vector<std::string> &words) {
+    return std::ranges::any_of(words, [](const auto &word) { return word == "--help" || word == "-h"; });
+}
+
+}  // namespace mw::app

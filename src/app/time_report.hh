@@ -4,9 +4,9 @@
 
 #include "machine/time_estimate.hh"
 
-namespace mw::machine {
+namespace mw::app {
 
 /// Prints total, tools, sections and the slowest places to standard output, indented by two blanks.
-void print_times(const TimeFigures &time);
+void print_times(const machine::TimeFigures &time);
 
-}  // namespace mw::machine
+}  // namespace mw::app

@@ -1,48 +1,25 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "machine/operator.hh"
-
-#include <unistd.h>
+#include "app/operator.hh"
 
 #include <algorithm>
-#include <csignal>
-#include <cstdio>
+#include <chrono>
 
 #include <fmt/format.h>
 
 #include "base/atomic_file.hh"
+#include "base/stop_signals.hh"
 
-namespace mw::machine {
+namespace mw::app {
 namespace {
 
-constexpr auto SHOW_EVERY = std::chrono::milliseconds(100);
 constexpr std::int64_t STOP_TIMEOUT_NS = 30000000000;
-
-// Set by the signal handler; handlers have no other way to tell.
-volatile std::sig_atomic_t stop_signal = 0;
-
-void on_signal(int number) {
-    stop_signal = number;
-}
-
-void catch_signals(bool isCatching) {
-    struct sigaction action{};
-    action.sa_handler = isCatching ? on_signal : SIG_DFL;
-    sigaction(SIGINT, &action, nullptr);
-    sigaction(SIGTERM, &action, nullptr);
-}
 
 }  // namespace
 
-Operator::Operator(Machine &machine, const MachineConfig &config, diag::Sink &sink, double patience_s)
-    : machine_(machine), config_(config), sink_(sink),
-      patience_ns_(static_cast<std::int64_t>(patience_s * 1e9)) {
-    stop_signal = 0;
-    catch_signals(true);
-}
-
-Operator::~Operator() {
-    catch_signals(false);
-}
+Operator::Operator(machine::Machine &machine, const machine::MachineConfig &config, diag::Sink &sink,
+                   const OperatorOptions &options)
+    : machine_(machine), config_(config), sink_(sink), panel_(machine, config, sink, options.attendance),
+      patience_ns_(static_cast<std::int64_t>(options.patience_s * 1e9)) {}
 
 Result<> Operator::ask(task::Command command, const std::string &what) {
     return wait_for(machine_.task().submit(std::move(command)), what, [] {});
@@ -68,6 +45,12 @@ Result<> Operator::home_all() {
     return machine_.task().motion_status().isAllHomed ? Result<>{} : homed;
 }
 
+Result<> Operator::set_switches(const ProgramSwitches &switches) {
+    const auto status = ask(task::SetOptionalStop{switches.isOptionalStopOn}, "setting the optional stop");
+    return status.has_value() ? ask(task::SetBlockDelete{switches.isBlockDeleteOn}, "setting block delete")
+                              : status;
+}
+
 Result<> Operator::open_program(const std::string &path) {
     const auto text = read_file(path);
     if (!text.has_value()) {
@@ -81,13 +64,14 @@ Result<> Operator::open_program(const std::string &path) {
 Result<> Operator::run_program(const std::function<void()> &each_cycle) {
     const auto wall_start = std::chrono::steady_clock::now();
     const std::int64_t start_ns = machine_.now_ns();
-    isShowingProgress_ = ::isatty(STDERR_FILENO) != 0;
+    panel_.begin_program(program_lines_);
     const auto status = wait_for(machine_.task().submit(task::RunProgram{}), "the program", each_cycle);
     figures_.cycle_time_s = static_cast<double>(machine_.now_ns() - start_ns) * 1e-9;
     figures_.wall_time_s =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
     figures_.blocks = machine_.task().status().blocks;
-    show_progress(true);
+    figures_.stops_passed = panel_.stops_passed();
+    panel_.end_program();
     return status;
 }
 
@@ -99,9 +83,12 @@ Result<> Operator::wait_for(task::RequestId id, const std::string &what,
     last_error_.clear();
     while (true) {
         machine_.cycle();
+        if (auto health = machine_.health(); !health) {
+            return health;
+        }
         each_cycle();
         show_messages();
-        show_progress(false);
+        panel_.step();
         const task::Progress progress = task.progress(id);
         if (progress == task::Progress::DONE) {
             return {};
@@ -114,12 +101,7 @@ Result<> Operator::wait_for(task::RequestId id, const std::string &what,
         if (stop_signal != 0) {
             return stop_on_signal();
         }
-        if (task.status().isPaused) {
-            ++figures_.stops_passed;
-            sink_.note(fmt::format("program stop at line {} passed", task.status().stop_line));
-            task.submit(task::ResumeProgram{});
-        }
-        if (hasProgress()) {
+        if (hasProgress() || panel_.isWaitingForPerson()) {
             deadline_ns = machine_.now_ns() + patience_ns_;
         } else if (machine_.now_ns() > deadline_ns) {
             const std::string waiting = task.status().waiting.what;
@@ -143,23 +125,26 @@ bool Operator::hasProgress() {
 }
 
 Result<> Operator::stop_on_signal() {
-    catch_signals(false);
     machine_.task().submit(task::AbortAll{});
     const std::int64_t deadline_ns = machine_.now_ns() + STOP_TIMEOUT_NS;
     do {
         machine_.cycle();
-    } while (!machine_.task().motion_status().isInPosition && machine_.now_ns() < deadline_ns);
-    return fail("stopped by a signal");
+    } while (!machine_.task().motion_status().isInPosition && machine_.now_ns() < deadline_ns &&
+             machine_.health());
+    return fail("stopped by " + stop_signal_name());
 }
 
 void Operator::switch_off() {
+    if (!machine_.health()) {
+        return;  // There is nothing left that could be switched.
+    }
     task::Task &task = machine_.task();
     task.submit(task::AbortAll{});
     const std::int64_t deadline_ns = machine_.now_ns() + STOP_TIMEOUT_NS;
     machine_.cycle();
     machine_.cycle();
     while (!task.motion_status().isInPosition && task.motion_status().isEnabled &&
-           machine_.now_ns() < deadline_ns) {
+           machine_.now_ns() < deadline_ns && machine_.health()) {
         machine_.cycle();
     }
     task.submit(task::SetState{task::State::ESTOP});
@@ -172,36 +157,11 @@ void Operator::switch_off() {
 void Operator::show_messages() {
     task::Message message;
     while (machine_.task().poll_message(message)) {
-        if (isShowingProgress_) {
-            fmt::print(stderr, "\r\033[K");
-        }
-        switch (message.kind) {
-        case task::MessageKind::OPERATOR_ERROR:
+        panel_.show(message);
+        if (message.kind == task::MessageKind::OPERATOR_ERROR) {
             last_error_ = message.text;
-            fmt::print(stderr, "{}\n", message.text);
-            break;
-        case task::MessageKind::OPERATOR_DISPLAY: fmt::print("{}\n", message.text); break;
-        case task::MessageKind::OPERATOR_TEXT: fmt::print("{}\n", message.text); break;
         }
     }
-}
-
-void Operator::show_progress(bool isLast) {
-    const auto now = std::chrono::steady_clock::now();
-    if (!isShowingProgress_ || (!isLast && now - last_shown_ < SHOW_EVERY)) {
-        return;
-    }
-    last_shown_ = now;
-    if (isLast) {
-        fmt::print(stderr, "\r\033[K");
-        isShowingProgress_ = false;
-        return;
-    }
-    constexpr int WIDTH = 40;
-    const int line = machine_.task().status().motion_line;
-    const int filled = program_lines_ > 0 ? std::min(WIDTH, WIDTH * line / program_lines_) : 0;
-    fmt::print(stderr, "\r[{}{}] line {} of {}\033[K", std::string(static_cast<std::size_t>(filled), '#'),
-               std::string(static_cast<std::size_t>(WIDTH - filled), ' '), line, program_lines_);
 }
 
 OperatorFigures Operator::figures() const {
@@ -212,4 +172,4 @@ OperatorFigures Operator::figures() const {
     return figures;
 }
 
-}  // namespace mw::machine
+}  // namespace mw::app

@@ -10,7 +10,7 @@
 #include "base/result.hh"
 #include "motion/api/channels.hh"
 
-namespace mw::machine {
+namespace mw::app {
 
 /// Columns: time_ns (from program start), line, axis.L per configured axis (carte_pos_cmd), joint.N
 /// (pos_cmd).
@@ -34,4 +34,4 @@ class TraceWriter {
     bool isFailed_ = false;
 };
 
-}  // namespace mw::machine
+}  // namespace mw::app

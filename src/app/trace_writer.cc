@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "machine/trace_writer.hh"
+#include "app/trace_writer.hh"
 
 #include <cerrno>
 #include <charconv>
 #include <cstring>
 
-namespace mw::machine {
+namespace mw::app {
 namespace {
 
 template <class T>
@@ -70,4 +70,4 @@ Result<> TraceWriter::close() {
     return {};
 }
 
-}  // namespace mw::machine
+}  // namespace mw::app

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace mw::machine {
+namespace mw::app {
 
 int command_run(const std::vector<std::string> &words);
 int command_check(const std::vector<std::string> &words);
 
-}  // namespace mw::machine
+}  // namespace mw::app

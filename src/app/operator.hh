@@ -2,14 +2,14 @@
 // Does what a person at the machine does: switches on, homes, opens and runs a program, watches it.
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <string>
 
+#include "app/panel.hh"
 #include "diag/sink.hh"
 #include "machine/machine.hh"
 
-namespace mw::machine {
+namespace mw::app {
 
 struct OperatorFigures {
     double cycle_time_s = 0;  ///< of the program, in the machine's time
@@ -19,15 +19,29 @@ struct OperatorFigures {
     int warnings = 0;
 };
 
+struct ProgramSwitches {
+    bool isOptionalStopOn = true;  ///< M1 stops
+    bool isBlockDeleteOn = true;   ///< lines that begin with / are left out
+};
+
+struct OperatorOptions {
+    double patience_s = 60.0;  ///< machine time without progress after which waiting ends
+    Attendance attendance = Attendance::SIMULATED;
+};
+
+/// Stop signals (base/stop_signals.hh) end whatever it waits for with a controlled stop.
 class Operator {
   public:
-    /// `patience_s`: machine time without progress after which waiting ends.
-    Operator(Machine &machine, const MachineConfig &config, diag::Sink &sink, double patience_s);
-    ~Operator();
+    Operator(machine::Machine &machine, const machine::MachineConfig &config, diag::Sink &sink,
+             const OperatorOptions &options);
+
+    /// Asks the person at the terminal; false: no, or there is none.
+    bool confirm(const std::string &question) { return panel_.confirm(question); }
 
     Result<> switch_on();
     /// Home all by sequence, then whatever has none, one by one.
     Result<> home_all();
+    Result<> set_switches(const ProgramSwitches &switches);
     Result<> open_program(const std::string &path);
     /// Runs to the end. `each_cycle` is called after every task cycle.
     Result<> run_program(const std::function<void()> &each_cycle);
@@ -42,18 +56,16 @@ class Operator {
     Result<> wait_for(task::RequestId id, const std::string &what, const std::function<void()> &each_cycle);
     void show_messages();
     bool hasProgress();
-    void show_progress(bool isLast);
     Result<> stop_on_signal();
 
-    Machine &machine_;
-    const MachineConfig &config_;
+    machine::Machine &machine_;
+    const machine::MachineConfig &config_;
     diag::Sink &sink_;
+    Panel panel_;
     std::int64_t patience_ns_;
     OperatorFigures figures_;
     std::string last_error_;
-    bool isShowingProgress_ = false;
     int program_lines_ = 0;
-    std::chrono::steady_clock::time_point last_shown_{};
     struct Mark {
         std::uint64_t blocks = 0;
         geom::Pose position;
@@ -62,4 +74,4 @@ class Operator {
     } mark_;
 };
 
-}  // namespace mw::machine
+}  // namespace mw::app

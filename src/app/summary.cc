@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "machine/summary.hh"
+#include "app/summary.hh"
 
 #include <cmath>
 #include <cstdio>
 
 #include <fmt/format.h>
 
-namespace mw::machine {
+namespace mw::app {
 namespace {
 
 std::string time_text(double seconds) {
@@ -34,6 +34,8 @@ void print_axes(const char *label, const Summary &summary, const std::array<doub
 void print_summary(const Summary &summary) {
     const char *unit = summary.machine.isMetric ? "mm" : "in";
     fmt::print("program             {} on {}\n", summary.program, summary.machine.name);
+    fmt::print("read beforehand     {}{} blocks\n", summary.check.isWhole ? "all " : "the first ",
+               summary.check.blocks);
     fmt::print("cycle time          {}\n", time_text(summary.run.cycle_time_s));
     if (!summary.wasRealtime) {
         fmt::print("simulated in        {:.3f} s, {:.0f} times faster than the clock\n",
@@ -65,4 +67,4 @@ void print_summary(const Summary &summary) {
     std::fflush(stdout);
 }
 
-}  // namespace mw::machine
+}  // namespace mw::app

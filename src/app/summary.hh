@@ -4,22 +4,24 @@
 
 #include <string>
 
+#include "app/operator.hh"
+#include "app/start_check.hh"
 #include "machine/machine.hh"
-#include "machine/operator.hh"
 #include "machine/path_monitor.hh"
 
-namespace mw::machine {
+namespace mw::app {
 
 struct Summary {
     const std::string &program;
-    const MachineConfig &machine;
+    const machine::MachineConfig &machine;
     OperatorFigures run;
-    RunFigures path;
-    RealtimeFigures realtime;
+    machine::RunFigures path;
+    machine::RealtimeFigures realtime;
     bool wasRealtime;
+    const StartCheck &check;
 };
 
 /// Prints to standard output, one figure a line.
 void print_summary(const Summary &summary);
 
-}  // namespace mw::machine
+}  // namespace mw::app

@@ -9,7 +9,7 @@
 
 #include "base/result.hh"
 
-namespace mw::machine {
+namespace mw::app {
 
 struct OptionNames {
     std::set<std::string> flags;
@@ -26,9 +26,14 @@ struct Options {
         const auto found = values.find(name);
         return found == values.end() ? preset : found->second;
     }
+    /// "on" or "off"; anything else is an error that names the option.
+    Result<bool> on_or_off(const std::string &name, bool preset) const;
 };
 
-/// "--name value" and "--name=value". An unknown option is an error that names the known ones.
+/// "--name value" and "--name=value". An unknown option is an error that names the nearest one.
 Result<Options> parse_options(const std::vector<std::string> &words, const OptionNames &names);
 
-}  // namespace mw::machine
+/// One of the words asks for help.
+bool wantsHelp(const std::vector<std::string> &words);
+
+}  // namespace mw::app

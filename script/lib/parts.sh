@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+# To be sourced: parts of a long script, each with the time that it took.
+#   part NAME COMMAND...   says the name, runs the command, keeps the seconds; a failure ends the script
+#   print_parts            one line a part; also printed when a part fails
+parts_done=()
+
+part() {
+    local name=$1 start=$SECONDS status=0
+    shift
+    echo "== $name"
+    "$@" || status=$?
+    parts_done+=("$(printf '%4d min %02d s  %s' $(((SECONDS - start) / 60)) $(((SECONDS - start) % 60)) "$name")")
+    if [ "$status" -ne 0 ]; then
+        parts_done[-1]+=" (failed)"
+        print_parts
+        exit "$status"
+    fi
+}
+
+print_parts() {
+    echo "== time of each part"
+    printf '%s\n' "${parts_done[@]}"
+}

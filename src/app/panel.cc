@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "app/panel.hh"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "base/stop_signals.hh"
+
+namespace mw::app {
+namespace {
+
+constexpr auto WRITE_EVERY = std::chrono::milliseconds(100);
+constexpr auto KEYS_EVERY = std::chrono::milliseconds(10);
+
+/// Where the tool is in the program's coordinates. [machine units]
+geom::Pose program_position(const task::Status &status, const geom::Pose &machine) {
+    geom::Pose p = machine - status.tool_offset - status.g5x_offset;
+    const double angle = -status.rotation_xy_deg * std::numbers::pi / 180.0;
+    const double x = p[0] * std::cos(angle) - p[1] * std::sin(angle);
+    p[1] = p[0] * std::sin(angle) + p[1] * std::cos(angle);
+    p[0] = x;
+    return p - status.g92_offset;
+}
+
+}  // namespace
+
+Panel::Panel(machine::Machine &machine, const machine::MachineConfig &config, diag::Sink &sink,
+             Attendance attendance)
+    : machine_(machine), config_(config), sink_(sink), attendance_(attendance),
+      hasLine_(::isatty(STDERR_FILENO) != 0) {
+    if (attendance_ == Attendance::TERMINAL) {
+        keyboard_.emplace();
+    }
+}
+
+bool Panel::confirm(const std::string &question) {
+    if (!keyboard_.has_value()) {
+        return false;
+    }
+    fmt::print(stderr, "{} [y/n] ", question);
+    std::optional<char> key;
+    while (stop_signal == 0 && machine_.health()) {
+        machine_.cycle();
+        key = keyboard_->read();
+        if (key == 'y' || key == 'Y' || key == 'n' || key == 'N') {
+            break;
+        }
+    }
+    const bool isYes = key == 'y' || key == 'Y';
+    fmt::print(stderr, "{}\n", isYes ? "yes" : "no");
+    return isYes;
+}
+
+void Panel::begin_program(int lines) {
+    lines_ = lines;
+    line_ = 0;
+    isRunning_ = true;
+    stops_told_ = machine_.task().status().stops;
+    if (attendance_ == Attendance::TERMINAL) {
+        fmt::print(stderr, "keys: h or space hold, r resume, a abort, t the tool is changed\n");
+    }
+}
+
+void Panel::end_program() {
+    clear_line();
+    isRunning_ = false;
+}
+
+void Panel::step() {
+    const auto now = std::chrono::steady_clock::now();
+    if (keyboard_.has_value() && now - last_key_ >= KEYS_EVERY) {
+        last_key_ = now;
+        while (const std::optional<char> key = keyboard_->read()) {
+            take_key(*key);
+        }
+    }
+    look_at_stop();
+    if (isRunning_ && hasLine_ && now - last_written_ >= WRITE_EVERY) {
+        last_written_ = now;
+        write_line();
+    }
+}
+
+void Panel::take_key(char key) {
+    task::Task &task = machine_.task();
+    switch (key) {
+    case 'h':
+    case ' ': task.submit(task::PauseProgram{}); break;
+    case 'r': task.submit(task::ResumeProgram{}); break;
+    case 'a': task.submit(task::AbortAll{}); break;
+    case 't': machine_.tool_change().confirm(); break;
+    default: break;
+    }
+}
+
+void Panel::look_at_stop() {
+    const task::Status &status = machine_.task().status();
+    if (!status.isPaused || !status.isStoppedByProgram || status.stops == stops_told_) {
+        return;
+    }
+    stops_told_ = status.stops;
+    clear_line();
+    if (attendance_ == Attendance::SIMULATED) {
+        ++stops_passed_;
+        sink_.note(fmt::format("program stop at line {} passed by the simulated operator", status.stop_line));
+        machine_.task().submit(task::ResumeProgram{});
+    } else if (attendance_ == Attendance::TERMINAL) {
+        sink_.note(fmt::format("program stop at line {}: key r goes on", status.stop_line));
+    } else {
+        sink_.note(fmt::format("program stop at line {}: waiting for {}", status.stop_line,
+                               config_.hasHalui ? "pin halui.program.resume"
+                                                : "a signal, since there is neither a terminal nor halui"));
+    }
+}
+
+bool Panel::isWaitingForPerson() const {
+    const task::Status &status = machine_.task().status();
+    const bool isHeld = status.isPaused && attendance_ != Attendance::SIMULATED;
+    return isHeld || machine_.tool_change().isAsking();
+}
+
+void Panel::show(const task::Message &message) {
+    clear_line();
+    const bool isError = message.kind == task::MessageKind::OPERATOR_ERROR;
+    fmt::print(isError ? stderr : stdout, "{}\n", message.text);
+}
+
+void Panel::clear_line() {
+    if (isRunning_ && hasLine_) {
+        fmt::print(stderr, "\r\033[K");
+    }
+}
+
+/// Between moves motion has no line.
+int Panel::line_reached() {
+    const task::Status &status = machine_.task().status();
+    const int line = status.isStoppedByProgram ? status.stop_line : status.motion_line;
+    line_ = line > 0 ? line : line_;
+    return line_;
+}
+
+std::string Panel::progress_text() {
+    constexpr int WIDTH = 40;
+    const int line = line_reached();
+    const int filled = lines_ > 0 ? std::clamp(WIDTH * line / lines_, 0, WIDTH) : 0;
+    return fmt::format("[{}{}] line {} of {}", std::string(static_cast<std::size_t>(filled), '#'),
+                       std::string(static_cast<std::size_t>(WIDTH - filled), ' '), line, lines_);
+}
+
+std::string Panel::position_text() const {
+    const geom::Pose p =
+        program_position(machine_.task().status(), machine_.task().motion_status().carte_pos_cmd);
+    std::string text;
+    for (int axis = 0; axis < MAX_AXES; ++axis) {
+        if ((config_.axis_mask & (1U << axis)) != 0) {
+            text += fmt::format(" {}{:.{}f}", geom::AXIS_LETTERS[axis], p[axis], config_.isMetric ? 3 : 4);
+        }
+    }
+    return text;
+}
+
+void Panel::write_line() {
+    if (attendance_ == Attendance::SIMULATED) {
+        fmt::print(stderr, "\r{}\033[K", progress_text());
+        return;
+    }
+    const task::Status &status = machine_.task().status();
+    const motion::Status &motion = machine_.task().motion_status();
+    const int line = line_reached();
+    const int percent = lines_ > 0 ? std::clamp(100 * line / lines_, 0, 100) : 0;
+    const std::string state = machine_.tool_change().isAsking() ? "tool change"
+                              : status.isPaused                 ? "held"
+                              : status.waiting.what.empty()     ? "runs"
+                                                                : "waits for " + status.waiting.what;
+    fmt::print(stderr, "\rline {} of {} ({} %) {} F{:.0f} {}\033[K", line, lines_, percent, position_text(),
+               motion.current_velocity * 60.0, state);
+}
+
+}  // namespace mw::app

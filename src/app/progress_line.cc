@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "app/progress_line.hh"
+
+#include <unistd.h>
+
+#include <cstdio>
+
+#include <fmt/format.h>
+
+namespace mw::app {
+
+ProgressLine::ProgressLine() : isTerminal_(::isatty(STDERR_FILENO) == 1) {}
+
+void ProgressLine::show(const interp::PreviewProgress &now) {
+    constexpr std::chrono::milliseconds EVERY{500};
+    const auto time = std::chrono::steady_clock::now();
+    if (!isTerminal_ || time - last_ < EVERY) {
+        return;
+    }
+    last_ = time;
+    isShown_ = true;
+    const double seconds = std::chrono::duration<double>(time - begin_).count();
+    const double share = now.bytes_in_all > 0
+                             ? 100.0 * static_cast<double>(now.bytes) / static_cast<double>(now.bytes_in_all)
+                             : 0;
+    fmt::print(stderr, "\rreading: {:3.0f} % of the file, {} blocks, {:.0f} s\033[K", share, now.blocks,
+               seconds);
+}
+
+void ProgressLine::clear() {
+    if (isShown_) {
+        fmt::print(stderr, "\r\033[K");
+        isShown_ = false;
+    }
+}
+
+}  // namespace mw::app

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Everything from on_crash() down is async-signal-safe: no heap, no locks, no stdio.
+#include "hal/core/crash_report.hh"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <cstring>
+#include <string_view>
+
+#include "hal/core/detail/impl.hh"
+#include "rtapi/alternate_stack.hh"
+
+namespace mw::hal {
+
+using namespace detail;
+
+namespace {
+
+struct Fatal {
+    int number;
+    const char *name;
+    const char *meaning;
+};
+
+constexpr std::array<Fatal, 5> FATAL = {{{SIGSEGV, "SIGSEGV", "access to memory that is not there"},
+                                         {SIGBUS, "SIGBUS", "access to memory that is not there"},
+                                         {SIGFPE, "SIGFPE", "division of an integer by zero"},
+                                         {SIGILL, "SIGILL", "an instruction that does not exist"},
+                                         {SIGABRT, "SIGABRT", "abort()"}}};
+constexpr std::size_t MOST_LEFTOVERS = 4;
+
+/// What the handler needs; a signal handler has no other way to it than static memory. Set before the
+/// handlers are.
+struct Prepared {
+    std::array<char, 64> program{};
+    std::array<std::array<char, 256>, MOST_LEFTOVERS> leftovers{};
+    std::array<struct sigaction, FATAL.size()> before{};
+};
+Prepared prepared;
+std::atomic<bool> isTold{false};
+
+/// A text of bounded length.
+struct Text {
+    std::array<char, END_TEXT> bytes{};
+    std::size_t size = 0;
+
+    Text &operator<<(const char *text) noexcept {
+        while (*text != '\0' && size + 2 < bytes.size()) {
+            bytes[size++] = *text++;
+        }
+        return *this;
+    }
+};
+
+void tell_place(Text &text, const ThreadContext &here) noexcept {
+    const bool isInFunction = here.calling != nullptr && here.instance != nullptr;
+    if (isInFunction) {
+        const Segment &segment = here.instance->impl().segment;
+        const auto *funct = segment.at<FunctRecord>(here.calling->funct);
+        const auto *comp = funct == nullptr ? nullptr : segment.at<CompRecord>(funct->comp);
+        text << "function '" << (funct == nullptr ? "?" : funct->name.data()) << "' of component '"
+             << (comp == nullptr ? "?" : comp->name.data()) << "' crashed in thread '"
+             << (here.thread == nullptr ? "?" : here.thread->name.data()) << "'";
+    } else if (here.loading != nullptr) {
+        text << "module '" << here.loading << "' crashed while it was loaded";
+    } else if (here.unloading != nullptr) {
+        text << "module '" << here.unloading << "' crashed while it was unloaded";
+    } else if (here.doing != nullptr) {
+        text << here.doing << " crashed";
+    } else {
+        text << "it crashed outside of any component";
+    }
+}
+
+void on_crash(int number, siginfo_t *info, void * /*context*/) {
+    const auto fatal =
+        std::find_if(FATAL.begin(), FATAL.end(), [number](const Fatal &one) { return one.number == number; });
+    // Of several threads that crash at once the first one speaks.
+    if (fatal != FATAL.end() && !isTold.exchange(true)) {
+        const ThreadContext &here = context();
+        Text text;
+        tell_place(text, here);
+        text << ": " << fatal->meaning << " (" << fatal->name << ")";
+        Hal *hal = current();
+        if (hal != nullptr) {
+            hal->impl().note_end(text.bytes.data());
+        }
+        Text line;
+        line << prepared.program.data() << ": " << text.bytes.data() << "\n";
+        (void)!::write(STDERR_FILENO, line.bytes.data(), line.size);
+        for (const auto &path : prepared.leftovers) {
+            if (path[0] != '\0') {
+                ::unlink(path.data());
+            }
+        }
+    }
+    if (fatal != FATAL.end()) {
+        ::sigaction(number, &prepared.before[static_cast<std::size_t>(fatal - FATAL.begin())], nullptr);
+    }
+    // A fault happens again on return and takes its course; a signal that was sent must be sent again.
+    if (info->si_code <= 0) {
+        ::raise(number);
+    }
+}
+
+template <std::size_t SIZE>
+void copy(std::array<char, SIZE> &to, std::string_view from) noexcept {
+    // A path that does not fit is left out rather than cut.
+    const std::size_t length = from.size() < SIZE ? from.size() : 0;
+    std::memcpy(to.data(), from.data(), length);
+    to[length] = '\0';
+}
+
+}  // namespace
+
+void Hal::Impl::note_end(const char *text) noexcept {
+    EndRecord &end = segment.header().end;
+    std::uint32_t nobody = EndRecord::NONE;
+    if (end.state.compare_exchange_strong(nobody, EndRecord::BEING_WRITTEN)) {
+        std::strncpy(end.text.data(), text, end.text.size() - 1);
+        // Release: pairs with host_end; who sees it whole sees the text.
+        end.state.store(EndRecord::WHOLE, std::memory_order_release);
+    }
+}
+
+void report_crashes(const std::string &program, const std::vector<std::string> &leftovers) {
+    static const rtapi::AlternateStack stack_of_this_thread;
+    copy(prepared.program, program);
+    for (std::size_t i = 0; i < std::min(leftovers.size(), MOST_LEFTOVERS); ++i) {
+        copy(prepared.leftovers[i], leftovers[i]);
+    }
+    for (std::size_t i = 0; i < FATAL.size(); ++i) {
+        struct sigaction action{};
+        action.sa_sigaction = &on_crash;
+        action.sa_flags = SA_SIGINFO | SA_ONSTACK;
+        struct sigaction now{};
+        ::sigaction(FATAL[i].number, nullptr, &now);
+        const bool isOurs = (now.sa_flags & SA_SIGINFO) != 0 && now.sa_sigaction == &on_crash;
+        if (!isOurs) {
+            ::sigaction(FATAL[i].number, &action, &prepared.before[i]);
+        }
+    }
+}
+
+}  // namespace mw::hal

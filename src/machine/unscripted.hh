@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A script host that runs nothing: for looking at a program before the machine may be touched by anybody's
+// code.
+#pragma once
+
+#include <functional>
+
+#include "interp/script_host.hh"
+
+namespace mw::machine {
+
+/// Every function of a remap counts as there and does nothing; `asked` hears of each that would have run.
+class UnscriptedHost final : public interp::ScriptHost {
+  public:
+    explicit UnscriptedHost(std::function<void()> asked) : asked_(std::move(asked)) {}
+
+    Result<> load(const interp::ScriptSettings &, interp::InterpreterView &) override { return {}; }
+    Result<> begin() override { return {}; }
+    /// Whether a script or a file answers an O word is not known: a file may.
+    bool hasFunction(interp::ScriptModule module, std::string_view) const override {
+        return module == interp::ScriptModule::REMAP;
+    }
+    interp::ScriptOutcome call(interp::ScriptModule, const std::string &, const interp::ScriptArguments &,
+                               std::unique_ptr<interp::SuspendedScript> &) override {
+        asked_();
+        return {};
+    }
+    interp::ScriptOutcome run_text(std::string_view) override {
+        asked_();
+        return {};
+    }
+    std::vector<std::string> named_parameters() const override { return {}; }
+    Result<double> named_parameter(const std::string &) override { return 0.0; }
+
+  private:
+    std::function<void()> asked_;
+};
+
+/// Passes values of HAL on as 0 and tells `asked` of each: they are known only while the machine runs.
+class UnknownHalValues final : public interp::ParameterSource {
+  public:
+    UnknownHalValues(interp::ParameterSource &values, std::function<void()> asked)
+        : values_(values), asked_(std::move(asked)) {}
+
+    std::optional<double> ini_value(std::string_view section, std::string_view key) const override {
+        return values_.ini_value(section, key);
+    }
+    std::optional<double> hal_value(std::string_view) const override {
+        asked_();
+        return 0.0;
+    }
+
+  private:
+    interp::ParameterSource &values_;
+    std::function<void()> asked_;
+};
+
+}  // namespace mw::machine

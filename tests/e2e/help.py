@@ -1,0 +1,35 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Each program and each command of millwright answers --help on standard output with status 0; completion knows all options.
+
+usage: help.py BIN_FOLDER ROOT
+"""
+import pathlib
+import re
+import subprocess
+import sys
+
+COMMANDS = ('run', 'check', 'format', 'explain', 'hal', 'hal watch', 'hal capture', 'hal graph', 'hal latency')
+
+
+def main():
+    folder, root = map(pathlib.Path, sys.argv[1:3])
+    asked = [[program.name] for program in sorted(folder.iterdir()) if not program.name.endswith('_test') and program.is_file()]
+    asked += [['millwright', *command.split()] for command in COMMANDS]
+    failures = 0
+    completion = (root / 'src/cli/completion/millwright').read_text()
+    for words in asked:
+        done = subprocess.run([folder / words[0], *words[1:], '--help'], capture_output=True, text=True, check=False,
+                              stdin=subprocess.DEVNULL, timeout=20)
+        missing = []
+        if words[0] == 'millwright' and len(words) == 2:
+            missing = [option for option in re.findall(r'^ +(--[a-z-]+)', done.stdout, re.M) if option not in completion]
+        if done.returncode != 0 or words[0] not in done.stdout or done.stderr or missing:
+            failures += 1
+            print(f'FAIL {" ".join(words)} --help: status {done.returncode}; completion lacks {missing}\n{done.stdout}{done.stderr}')
+    print(f'{len(asked) - failures} passed, {failures} failed')
+    return 1 if failures else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

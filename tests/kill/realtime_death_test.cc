@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The realtime process of `millwright run` is killed, or a component crashes in it or in virtual time: told
+// at once and by name, with a status, and nothing is left behind.
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "hal/core/hal.hh"
+#include "motion/api/channels.hh"
+#include "rtapi/process.hh"
+
+namespace mw {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+std::string content(const fs::path &path) {
+    std::ifstream in(path);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A mill with the component 'crasher' in its servo thread, in a folder of its own.
+class RealtimeDeath : public ::testing::Test {
+  protected:
+    RealtimeDeath() {
+        folder = fs::temp_directory_path() / ("mw_rt_death_" + std::to_string(::getpid()));
+        fs::remove_all(folder);
+        fs::copy(MW_SOURCE_DIR "/configs/sim", folder);
+        instance = "rt-death-" + std::to_string(::getpid());
+        std::ofstream(folder / "long.ngc")
+            << "G21 G90 F600\no1 repeat [1000]\nG1 X50\nX-50\no1 endrepeat\nM2\n";
+        std::ofstream(folder / "crash.hal") << "loadrt crasher how=null\naddf crasher.update servo-thread\n";
+        const std::string ini = content(folder / "mill_mm.ini");
+        const std::string at = "HALFILE = spindle_sim.hal\n";
+        const std::size_t place = ini.find(at) + at.size();
+        std::ofstream(folder / "mill.ini") << ini.substr(0, place) << "HALFILE = crash.hal\n"
+                                           << ini.substr(place);
+    }
+    ~RealtimeDeath() override { fs::remove_all(folder); }
+
+    pid_t start(bool isRealtime) {
+        const pid_t pid = ::fork();
+        if (pid == 0) {
+            ::setenv("MILLWRIGHT_INSTANCE", instance.c_str(), 1);
+            ::setenv("MILLWRIGHT_MODULE_PATH", MW_TEST_MODULES, 1);
+            const int log = ::open((folder / "log").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+            ::dup2(::open("/dev/null", O_RDONLY), 0);
+            ::dup2(log, 1);
+            ::dup2(log, 2);
+            std::vector<std::string> words = {"millwright", "run", folder / "mill.ini", folder / "long.ngc",
+                                              "--no-estimate"};
+            if (isRealtime) {
+                words.push_back("--realtime");
+                words.push_back("--yes");
+            }
+            std::vector<char *> argv;
+            for (std::string &word : words) {
+                argv.push_back(word.data());
+            }
+            argv.push_back(nullptr);
+            ::execv(MW_BIN_DIR "/millwright", argv.data());
+            ::_exit(127);
+        }
+        return pid;
+    }
+
+    /// Joins the HAL once the program moves; null when it never does.
+    std::unique_ptr<hal::Hal> join_moving(pid_t task) const {
+        std::unique_ptr<hal::Hal> hal;
+        motion::Channels *channels = nullptr;
+        const auto deadline = Clock::now() + std::chrono::seconds(60);
+        while (Clock::now() < deadline && ::waitpid(task, nullptr, WNOHANG) == 0) {
+            if (hal == nullptr) {
+                auto attached = hal::Hal::attach(instance);
+                hal = attached ? std::move(*attached) : nullptr;
+            }
+            if (hal != nullptr && channels == nullptr) {
+                const auto block = hal->shared_block(motion::Channels::SHMEM_KEY, sizeof(motion::Channels));
+                channels = block ? static_cast<motion::Channels *>(*block) : nullptr;
+            }
+            motion::Status status;
+            if (channels != nullptr && channels->magic == motion::Channels::MAGIC &&
+                channels->status.read(status) && status.motion_type == motion::MotionType::FEED) {
+                return hal;
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+        return nullptr;
+    }
+
+    std::string log() const { return content(folder / "log"); }
+
+    /// The seconds from `since` until the log has `text`; negative when it never came.
+    double wait_for(const std::string &text, Clock::time_point since) const {
+        while (Clock::now() < since + std::chrono::seconds(20)) {
+            if (log().find(text) != std::string::npos) {
+                return std::chrono::duration<double>(Clock::now() - since).count();
+            }
+            std::this_thread::sleep_for(std::chrono::microseconds(500));
+        }
+        return -1.0;
+    }
+
+    void expect_nothing_left() const {
+        const std::string runtime = *rtapi::runtime_folder() + "/" + instance;
+        for (const std::string &path :
+             {runtime + ".lock", runtime + ".sock",
+              "/dev/shm/millwright-" + std::to_string(::getuid()) + "-" + instance + ".hal"}) {
+            EXPECT_FALSE(fs::exists(path)) << path;
+        }
+    }
+
+    fs::path folder;
+    std::string instance;
+};
+
+int wait_for_end(pid_t process) {
+    int status = 0;
+    ::waitpid(process, &status, 0);
+    return status;
+}
+
+TEST_F(RealtimeDeath, AKilledRealtimeProcessEndsTheRunWithin50ms_B7) {
+    constexpr int KILLS = 3;
+    std::vector<double> seconds;
+    for (int i = 0; i < KILLS; ++i) {
+        const pid_t task = start(true);
+        const auto hal = join_moving(task);
+        ASSERT_NE(hal, nullptr) << log();
+        const auto motmod = hal->component("motmod");
+        ASSERT_TRUE(motmod) << log();
+        const auto begin = Clock::now();
+        ::kill(motmod->pid, SIGKILL);
+        seconds.push_back(wait_for("has ended: it was killed", begin));
+        EXPECT_GE(seconds.back(), 0.0) << log();
+        const int status = wait_for_end(task);
+        EXPECT_LT(Clock::now() - begin, std::chrono::seconds(5)) << "the run hung";
+        EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1) << status << log();
+        expect_nothing_left();
+    }
+    // Single ones may be late because this machine has other work.
+    std::sort(seconds.begin(), seconds.end());
+    EXPECT_LT(seconds[KILLS / 2], 0.05);
+}
+
+TEST_F(RealtimeDeath, ACrashInRealtimeNamesTheFunctionAndItsComponent_B7) {
+    const pid_t task = start(true);
+    const auto hal = join_moving(task);
+    ASSERT_NE(hal, nullptr) << log();
+    const auto begin = Clock::now();
+    ASSERT_TRUE(hal->set("crasher.now", hal::Value::of_bit(true)));
+    EXPECT_GE(
+        wait_for("function 'crasher.update' of component 'crasher' crashed in thread 'servo-thread'", begin),
+        0.0)
+        << log();
+    const int status = wait_for_end(task);
+    // Also when its thread stands in the middle of a cycle for ever.
+    EXPECT_LT(Clock::now() - begin, std::chrono::seconds(5)) << "the run hung";
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1) << status << log();
+    expect_nothing_left();
+}
+
+TEST_F(RealtimeDeath, ACrashInVirtualTimeNamesTheFunctionAndItsComponent_B7) {
+    std::ofstream(folder / "crash.hal", std::ios::app) << "setp crasher.now 1\n";
+    const pid_t task = start(false);
+    const int status = wait_for_end(task);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGSEGV) << status;
+    EXPECT_NE(log().find("function 'crasher.update' of component 'crasher' crashed in thread 'servo-thread'"),
+              std::string::npos)
+        << log();
+}
+
+}  // namespace
+}  // namespace mw
