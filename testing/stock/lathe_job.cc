@@ -303,6 +303,10 @@ LatheJob Maker::make() {
     make_contour();
     choose_start();
     choose_cycles();
+    const bool isAbove = job_.start.u > job_.contour.first().u;
+    if (isAbove && job_.start.h < job_.contour.highest() + job_.largest_allowance() + 0.1) {
+        job_.start = rounded({job_.contour.first().u - 1.0, job_.start.h});  // it is in the allowance there
+    }
     static constexpr const char *OUTSIDE[] = {"G80\n", "G0\n", "G1\n", ""};
     std::string &out = job_.program;
     out = fmt::format("{} {} G18 G90 G94 F100\n{}O100 sub\n", job_.isInch ? "G20" : "G21",
