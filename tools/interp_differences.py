@@ -143,6 +143,18 @@ def lathe_pieces(pair):
     pair.reference, pair.ours = merged(pair.reference), merged(pair.ours)
 
 
+def way_out_of_finishing(pair):
+    """Between the passes of G70 ours leaves the profile's end across, at feed; the reference goes straight back."""
+    if not re.search(r'\bg70\s*q[^\n]*p[2-9]', pair.program, re.I):
+        return
+    for i in range(len(pair.ours) - 1):
+        isOut = i < len(pair.reference) and pair.ours[i].startswith('STRAIGHT_FEED(') and \
+            pair.ours[i + 1].startswith('STRAIGHT_TRAVERSE(') and not isSameCall(pair.ours[i], pair.reference[i]) and \
+            isSameCall(pair.ours[i + 1], pair.reference[i])
+        if isOut:
+            pair.reference.insert(i, pair.ours[i])
+
+
 def close(a, b):
     return len(a) == len(b) and all(abs(x - y) < 1.5e-4 for x, y in zip(a, b))
 
@@ -208,7 +220,7 @@ def orientation_of_back_boring(pair):
 
 
 CLASSES = (speed_override_at_end, order_under_compensation, context_announced, threading_enables_override,
-           lathe_pieces, peck_at_the_bottom, long_numbers, small_numbers, angles_of_home, orientation_of_back_boring)
+           lathe_pieces, way_out_of_finishing, peck_at_the_bottom, long_numbers, small_numbers, angles_of_home, orientation_of_back_boring)
 
 # What ours refuses and the reference does not, and what it refuses it with. What was done before must be equal.
 STRICTER = {

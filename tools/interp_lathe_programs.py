@@ -37,6 +37,8 @@ def lathe_cycle(random, label):
     points = profile_points(random)
     while len(points) < 3 or points[-1][1] <= points[0][1] + 0.1:
         points = profile_points(random)
+    if points[1][1] < points[0][1]:  # ours cuts what falls from the first point in layers there
+        code = code.removesuffix('.2')
     along, across = ('X', 'Z') if is_facing else ('Z', 'X')
     lines = [f'o{label} sub', f'G0 {across}{points[0][1]:.3f} {along}0']
     has_arcs = random.random() < 0.3
@@ -58,13 +60,15 @@ def lathe_cycle(random, label):
     start = f'{across}{highest + random.uniform(2, 6):.3f} {along}{-sign * random.uniform(0.5, 3):.3f}'
     lines.append(f'G0 {start}')
     cycle = f'{code} Q{label}'
+    # With D the reference goes by rapid into the material where the profile falls from its first point.
+    is_distance_safe = not has_arcs and points[1][1] >= points[0][1]
     if random.random() < 0.3:
         cycle += f' {start}'
     if is_final:
-        if not has_arcs and not is_facing:
+        if is_distance_safe and not is_facing:
             cycle += f' D{random.uniform(0.2, 0.4):.2f} E{random.choice((0, 0.2))} P{random.randint(1, 3)}'
     else:
-        if not has_arcs and random.random() < 0.6:
+        if is_distance_safe and random.random() < 0.6:
             cycle += f' D{random.uniform(0.1, 0.4):.2f}'
         cycle += f' I{random.uniform(0.7, 3):.2f}'
         if random.random() < 0.6:

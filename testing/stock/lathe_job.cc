@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "testing/stock/lathe_job.hh"
 
+#include <map>
+
 #include <fmt/format.h>
 
 namespace mw::testing {
@@ -31,7 +33,7 @@ class Maker {
     double to_program(double mm) const { return job_.isInch ? mm / MM_PER_INCH : mm; }
     std::string word(char letter, double program_units) const;
     std::string words_to(Place p, Place from, bool isAll) const;
-    std::string arc_words(const Stroke &arc);
+    std::string arc_words(const Stroke &arc, std::size_t number);
     void choose_start();
     void choose_cycles();
     std::string cycle_words(const JobCycle &cycle, bool hasStart);
@@ -39,6 +41,7 @@ class Maker {
     std::mt19937 random_;
     LatheJob job_;
     int digits_ = 3;
+    std::map<std::size_t, double> radii_;  ///< of arcs given by R, by the number of strokes with them
 };
 
 /// To the digits of the program.
@@ -72,6 +75,7 @@ void Maker::choose_frame() {
 
 void Maker::push(Stroke stroke) {
     job_.contour.strokes.push_back(stroke);
+    radii_.erase(job_.contour.strokes.size());
     job_.hasArcs = job_.hasArcs || stroke.isArc;
     job_.isMonotonic = job_.isMonotonic && stroke.to.h >= stroke.from.h - 1e-9 &&
                        stroke.at(0.5).h >= stroke.from.h - 1e-9 && stroke.at(0.5).h <= stroke.to.h + 1e-9;
@@ -106,16 +110,24 @@ bool Maker::add_arc(double du, double dh) {
         return false;
     }
     arc.isCounterclockwise = chance(0.5);
-    const double radius = chord / 2.0 * number(1.02, 4.0);
+    double radius = chord / 2.0 * number(1.02, 4.0);
+    const bool isByRadius = chance(0.3);
+    if (isByRadius) {
+        const double unit = std::pow(10.0, digits_) / (job_.isInch ? MM_PER_INCH : 1.0);
+        radius = std::ceil(radius * unit) / unit;
+    }
     const double aside =
         std::sqrt(radius * radius - chord * chord / 4.0) * (arc.isCounterclockwise ? 1.0 : -1.0) / chord;
     const Place centre{(arc.from.u + arc.to.u) / 2.0 - aside * (arc.to.h - arc.from.h),
                        (arc.from.h + arc.to.h) / 2.0 + aside * (arc.to.u - arc.from.u)};
-    arc.centre = rounded(centre);
+    arc.centre = isByRadius ? centre : rounded(centre);
     if (!isForward(arc) || arc.at(0.5).h < 0.6) {
         return false;
     }
     push(arc);
+    if (isByRadius) {
+        radii_[job_.contour.strokes.size()] = radius;
+    }
     return true;
 }
 
@@ -195,7 +207,10 @@ void Maker::choose_start() {
     if (chance(0.15) && top > first + 0.5) {  // some of the contour lies above the start
         h = number(first + 0.3, top);
     }
-    const double ahead = chance(0.25) ? 0.0 : number(0.0, 4.0);
+    double ahead = chance(0.25) ? 0.0 : number(0.0, 4.0);
+    if (h > top + 3.0 && chance(0.2)) {  // above the material
+        ahead = -number(0.0, job_.contour.last().u);
+    }
     job_.start = rounded({job_.contour.first().u - ahead, h});
 }
 
@@ -224,7 +239,8 @@ void Maker::choose_cycles() {
         }
     }
     if (chance(0.5) && !job_.cycles.back().isPocketLeft) {
-        job_.cycles.push_back({"70", 0.0, job_.cycles.back().allowance, false, true});
+        const double before = job_.cycles.back().allowance;
+        job_.cycles.push_back({"70", chance(0.3) ? round(number(0.0, before)) : 0.0, before, false, true});
     }
 }
 
@@ -247,22 +263,28 @@ std::string Maker::words_to(Place p, Place from, bool isAll) const {
     return out;
 }
 
-std::string Maker::arc_words(const Stroke &arc) {
+std::string Maker::arc_words(const Stroke &arc, std::size_t number) {
     double z = 0, x = 0, cz = 0, cx = 0;
     job_.machine(arc.from, z, x);
     job_.machine(arc.centre, cz, cx);
     const bool isCounterclockwise = arc.isCounterclockwise == job_.isSameTurn();
+    const char *code = isCounterclockwise ? "G3" : "G2";
+    if (const auto radius = radii_.find(number); radius != radii_.end()) {
+        return fmt::format("{}{} R{:.6f}", code, words_to(arc.to, arc.from, true),
+                           to_program(radius->second));
+    }
     // Exact in the unit of the program, whatever the mode of X.
-    return fmt::format("{}{} I{:.6f} K{:.6f}", isCounterclockwise ? "G3" : "G2",
-                       words_to(arc.to, arc.from, true), to_program(cx - x), to_program(cz - z));
+    return fmt::format("{}{} I{:.6f} K{:.6f}", code, words_to(arc.to, arc.from, true), to_program(cx - x),
+                       to_program(cz - z));
 }
 
 std::string Maker::cycle_words(const JobCycle &cycle, bool hasStart) {
     std::string out = fmt::format("G{} Q100", cycle.code);
     out += hasStart ? words_to(job_.start, job_.start, true) : "";
     if (cycle.isFinishing) {
-        if (chance(0.5) && cycle.step > 0.0) {
-            out += fmt::format(" D{:.5f} E0 P{}", to_program(cycle.step), 1 + pick(3));
+        if (cycle.allowance > 0.0 || (chance(0.5) && cycle.step > 0.0)) {
+            out += fmt::format(" D{:.5f} E{:.5f} P{}", to_program(cycle.step), to_program(cycle.allowance),
+                               1 + pick(3));
         }
         return out;
     }
@@ -281,14 +303,20 @@ LatheJob Maker::make() {
     make_contour();
     choose_start();
     choose_cycles();
+    const bool isAbove = job_.start.u > job_.contour.first().u;
+    if (isAbove && job_.start.h < job_.contour.highest() + job_.largest_allowance() + 0.1) {
+        job_.start = rounded({job_.contour.first().u - 1.0, job_.start.h});  // it is in the allowance there
+    }
     static constexpr const char *OUTSIDE[] = {"G80\n", "G0\n", "G1\n", ""};
     std::string &out = job_.program;
     out = fmt::format("{} {} G18 G90 G94 F100\n{}O100 sub\n", job_.isInch ? "G20" : "G21",
                       job_.isDiameter ? "G7" : "G8", OUTSIDE[pick(4)]);
     static constexpr const char *FIRST[] = {"G0", "G1", ""};
     out += FIRST[pick(3)] + words_to(job_.contour.first(), job_.start, chance(0.8)) + "\n";
-    for (const Stroke &stroke : job_.contour.strokes) {
-        out += stroke.isArc ? arc_words(stroke) : "G1" + words_to(stroke.to, stroke.from, false);
+    for (std::size_t i = 0; i < job_.contour.strokes.size(); ++i) {
+        const Stroke &stroke = job_.contour.strokes[i];
+        // While it was made, the contour had one stroke more.
+        out += stroke.isArc ? arc_words(stroke, i + 2) : "G1" + words_to(stroke.to, stroke.from, false);
         out += "\n";
     }
     out += "O100 endsub\nG0" + words_to(job_.start, job_.start, true) + "\n";

@@ -67,11 +67,14 @@ std::string LatheStock::cut_to(Place from, Place to, bool isRapid, const CutRule
         return static_cast<long>(std::ceil((u - first_u) / COLUMN - MIDDLE));
     };
     const long end = std::min(index(right.u), static_cast<long>(columns_.size()));
+    // On a slope the tolerance of the contour is as much more of the height.
+    const double slope = right.u > left.u ? std::fabs(right.h - left.h) / (right.u - left.u) : 0.0;
+    const double deepest = rules.step + DEPTH_SPARE + rules.tolerance * slope;
     for (long i = std::max(0L, index(left.u)); i < end; ++i) {
         const double u = first_u + (static_cast<double>(i) + MIDDLE) * COLUMN;
         const double h = left.h + (right.h - left.h) * (u - left.u) / (right.u - left.u);
         double &column = columns_[static_cast<std::size_t>(i)];
-        if (column - h > rules.step + DEPTH_SPARE && !isSkin({u, column}, rules)) {
+        if (column - h > deepest && !isSkin({u, column}, rules)) {
             return fmt::format("layer {:.3f} deep {}", column - h, at_text({u, h}));
         }
         column = std::fmin(column, h);

@@ -62,12 +62,21 @@ std::expected<FramedProfile, std::string> framed_profile(const Profile &raw, boo
     if (!round_corners(framed.profile) || !isMonotonic(framed.profile, tolerance)) {
         return std::unexpected("has a corner that its fillet A or chamfer C does not fit");
     }
-    straighten(framed.profile);
     drop_short(framed.profile, tolerance / 10.0);
-    for (std::size_t i = 0; i < framed.profile.size(); ++i) {
-        framed.profile[i].source = static_cast<int>(i);
-    }
     return framed;
+}
+
+/// The contour of one pass: without arcs that go back, where more than following it is asked for.
+Profile contour_of(const Profile &profile, bool isFollowed, double tolerance) {
+    Profile contour = profile;
+    if (!isFollowed) {
+        straighten(contour);
+        drop_short(contour, tolerance / 10.0);
+    }
+    for (std::size_t i = 0; i < contour.size(); ++i) {
+        contour[i].source = static_cast<int>(i);
+    }
+    return contour;
 }
 
 bool isEndingAbove(const Profile &profile) {
@@ -312,12 +321,13 @@ bool Executor::run_lathe_cycle(const LatheRequest &request) {
     roughing.narrowest = 20.0 * tolerance;
     for (int pass = request.passes - 1; pass >= 0; --pass) {
         const double ahead = (request.distance - request.end_distance) * pass / request.passes;
+        const double distance = isFinishing ? request.end_distance + ahead : request.distance;
         const bool isLeavingCut = !isFinishing || pass > 0;
-        Profile cut = framed->profile;
+        Profile cut = contour_of(framed->profile, isFinishing && distance == 0.0, tolerance);
         if (isLeavingCut && !isEndingAbove(cut)) {  // a profile without a shoulder ends at one
             add_way_out(cut, cut.front().start.y);
         }
-        cut = offset_profile(cut, isFinishing ? request.end_distance + ahead : request.distance, tolerance);
+        cut = offset_profile(cut, distance, tolerance);
         const Point begin = entry.start, back{begin.x, isFinishing ? clear_height(cut) : begin.y};
         if (isLeavingCut) {
             add_way_out(cut, back.y);

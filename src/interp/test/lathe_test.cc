@@ -257,6 +257,16 @@ TEST(LatheCycle, g70_takes_the_side_of_the_roughing_before_it_I1) {
     EXPECT_NE(faced.rfind("r20.000,0.500 f9.853,-4.514 f1.938,-5.504"), std::string::npos) << faced;
 }
 
+TEST(LatheCycle, an_arc_whose_rounded_numbers_go_back_is_finished_as_one_I1) {
+    Machine machine;
+    ASSERT_EQ(machine.run("G18 G21 G8 F100\nO100 sub\nG0 X5 Z0\nG1 X10\nG3 X14 Z-4.001 I-0.001 K-4\nG1 Z-9\n"
+                          "O100 endsub\nG0 X20 Z2\nG71 Q100 D0.2 I3\nG70 Q100\n"),
+              Step::PROGRAM_END)
+        << machine.error();
+    EXPECT_EQ(machine.record.arcs.back().end[2], -4.001);
+    EXPECT_EQ(machine.record.lines[machine.record.lines.size() - 2].end[0], 10.0);
+}
+
 TEST(LatheCycle, distances_below_0_are_refused_I1) {
     EXPECT_NE(error_of(SHAFT, "G71 Q100 D-0.5").find("D of 0 or more"), std::string::npos);
     EXPECT_NE(error_of(SHAFT, "G70 Q100 E-0.5").find("E of 0 or more"), std::string::npos);
