@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "diag/sink.hh"
 #include "interp/preview.hh"
@@ -21,6 +22,8 @@ struct CheckResult {
     std::array<double, MAX_AXES> lowest{}, highest{};  ///< reached, machine coordinates
     bool hasMoves = false;
     TimeFigures time;  ///< of a program without errors
+    /// What no machine of this version can do, in the order of the program; in the sink, too.
+    std::vector<Error> impossible;
 };
 
 struct CheckOptions {
