@@ -87,6 +87,8 @@ class InterpreterView {
     virtual std::vector<std::string> global_names() const = 0;
     /// Those of the global names that the interpreter or a script computes: read only.
     virtual std::vector<std::string> predefined_names() const = 0;
+    /// Those of them that a script computes.
+    virtual std::vector<std::string> script_names() const = 0;
 
     /// State by its name ("feed_rate"); nothing when there is no such name.
     virtual std::optional<ScriptValue> attribute(std::string_view name) const = 0;
@@ -159,7 +161,7 @@ std::string script_library();
 
 /// The symbol in that shared object, and the version that both sides must have.
 inline constexpr char SCRIPT_HOST_SYMBOL[] = "millwright_script_host";
-inline constexpr int SCRIPT_HOST_VERSION = 1;
+inline constexpr int SCRIPT_HOST_VERSION = 2;
 /// Writes a new host to *host; 0 when `version` is not the one that was compiled in.
 using ScriptHostFactory = int (*)(int version, ScriptHost **host);
 

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "machine/abilities.hh"
 #include "machine/path_monitor.hh"
 #include "machine/unscripted.hh"
 
@@ -75,6 +76,9 @@ class Checker {
     }
     void take_event(const interp::PreviewEvent &event) {
         using Kind = interp::PreviewKind;
+        if (const MissingAbility *missing = missing_ability(event); missing != nullptr) {
+            report_impossible(*missing);
+        }
         ProgrammedPiece piece;
         piece.start = event.start;
         piece.end = event.end;
@@ -184,16 +188,34 @@ class Checker {
         return all - along * along;
     }
 
+    /// A line of a loop is told once.
+    void report_impossible(const MissingAbility &missing) {
+        const std::string &file = preview_->file(event_->file);
+        const bool isKnown = std::ranges::any_of(result.impossible, [&](const Error &error) {
+            return error.place.line == event_->line && error.place.file == file;
+        });
+        if (isKnown || result.impossible.size() >= MAX_CHECK_ERRORS) {
+            return;
+        }
+        const int column = column_of_code(preview_->line_text(event_->file, event_->line), missing.code);
+        Error error{fmt::format("a machine of this version cannot {} ({})", missing.what, missing.code),
+                    {file, event_->line, column},
+                    std::string(missing.remedy)};
+        report(error.message, error.hint, column);
+        result.impossible.push_back(std::move(error));
+    }
+
     /// One message for each line, not for each axis.
-    void report(std::string message, std::string hint) {
+    void report(std::string message, std::string hint, int column = 1) {
         if (event_->line == reported_line_ || sink_.count_errors() >= MAX_CHECK_ERRORS) {
             return;
         }
         reported_line_ = event_->line;
-        sink_.report({diag::Severity::ERROR,
-                      {std::move(message), {preview_->file(event_->file), event_->line, 1}, std::move(hint)},
-                      {},
-                      preview_->line_text(event_->file, event_->line)});
+        sink_.report(
+            {diag::Severity::ERROR,
+             {std::move(message), {preview_->file(event_->file), event_->line, column}, std::move(hint)},
+             {},
+             preview_->line_text(event_->file, event_->line)});
     }
 
     const MachineConfig &machine_;

@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "diag/sink.hh"
 #include "interp/preview.hh"
@@ -23,6 +24,8 @@ struct CheckResult {
     bool hasMoves = false;
     bool isCancelled = false;         ///< `progress` has ended it
     std::optional<TimeFigures> time;  ///< of a whole program without errors
+    /// What no machine of this version can do, in the order of the program; in the sink, too.
+    std::vector<Error> impossible;
 };
 
 struct CheckOptions {

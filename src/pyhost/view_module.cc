@@ -171,6 +171,7 @@ void define_parameters(py::class_<ViewHandle, std::shared_ptr<ViewHandle>> &type
         .def("locals", [](const ViewHandle &self) { return self.get().local_names(); })
         .def("globals", [](const ViewHandle &self) { return self.get().global_names(); })
         .def("predefined", [](const ViewHandle &self) { return self.get().predefined_names(); })
+        .def("scripted", [](const ViewHandle &self) { return self.get().script_names(); })
         .def("no_context", [](const ViewHandle &) { return context_of({}); });
 }
 

@@ -113,9 +113,7 @@ std::vector<std::string> Executor::predefined_names() {
     }
     for (const char axis : std::string_view(geom::AXIS_LETTERS_LOWER, AXES_OF_POSE)) {
         out.push_back(std::string("_") + axis);
-        if (axis < 'u' || axis > 'w') {
-            out.push_back(std::string("_abs_") + axis);
-        }
+        out.push_back(std::string("_abs_") + axis);
     }
     std::ranges::sort(out);
     return out;
@@ -137,7 +135,11 @@ std::optional<double> Executor::built_in(std::string_view name) const {
         if (close == std::string_view::npos || !settings_.isIniReadable) {
             return std::nullopt;
         }
-        return source_.ini_value(name.substr(5, close - 5), name.substr(close + 1));
+        const auto value = source_.ini_value(name.substr(5, close - 5), name.substr(close + 1));
+        if (value && !ini_names_read_.contains(name)) {
+            ini_names_read_.emplace(name);
+        }
+        return value;
     }
     if (isHalName(name)) {
         if (!settings_.isHalReadable) {

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "interp/detail/block_values.hh"
@@ -164,6 +165,8 @@ class Executor : public BuiltIns {
 
     /// Names of the parameters that the interpreter keeps, sorted.
     static std::vector<std::string> predefined_names();
+    /// INI values that the program has asked for, as names of parameters.
+    const std::set<std::string, std::less<>> &ini_names_read() const { return ini_names_read_; }
     bool hasToolChanges() const { return !tool_changes_.empty(); }
     bool isBuiltInName(std::string_view name) const override;
     std::optional<double> built_in(std::string_view name) const override;
@@ -341,6 +344,7 @@ class Executor : public BuiltIns {
     int line_ = 0, call_level_ = 0;
     int sequence_ = 0;
     int block_number_ = -1;  ///< the N word of the block
+    mutable std::set<std::string, std::less<>> ini_names_read_;
     std::vector<Context> contexts_{1};
     std::vector<Remap> remaps_;
     struct RunningRemap {

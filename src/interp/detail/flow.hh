@@ -165,6 +165,7 @@ class Flow : private ScriptNames {
     bool call_handler(ScriptModule module, const std::string &name);
     bool take_outcome(std::size_t index, ScriptOutcome outcome);
     bool start_stage(Stage stage);
+    bool start_procedure();
     bool advance_call();
     void settle_after_script();
     void end_text();

@@ -233,12 +233,23 @@ bool Flow::start_stage(Stage stage) {
     case Stage::PROLOG: return call_handler(ScriptModule::REMAP, remap.prolog);
     case Stage::FUNCTION: return call_handler(ScriptModule::REMAP, remap.function);
     case Stage::EPILOG: return call_handler(ScriptModule::REMAP, remap.epilog);
-    case Stage::PROCEDURE:
-        program_ = call.procedure;
-        next_ = call.sub_line + 1;
-        return true;
+    case Stage::PROCEDURE: return start_procedure();
     case Stage::NONE: break;
     }
+    return true;
+}
+
+/// Looked up not before the prolog has said yes.
+bool Flow::start_procedure() {
+    Sub sub;
+    if (!find_sub(calls_.back().label, 0, sub)) {
+        return false;
+    }
+    Call &call = calls_.back();
+    call.procedure = sub.program;
+    call.sub_line = sub.line;
+    program_ = call.procedure;
+    next_ = call.sub_line + 1;
     return true;
 }
 
@@ -246,11 +257,7 @@ bool Flow::start_stage(Stage stage) {
 /// rest.
 bool Flow::call_remap() {
     const Remap &remap = *executor_.remap_reached();
-    Sub sub;
     const NameId label = names_.intern(remap.target());
-    if (!remap.ngc.empty() && !find_sub(label, 0, sub)) {
-        return false;
-    }
     std::string missing;
     if (!executor_.check_remap_words(missing)) {
         executor_.fault.set(fmt::format("user-defined {}: missing: {}", remap.name, missing));
@@ -261,9 +268,8 @@ bool Flow::call_remap() {
     call.kind = CallKind::REMAP;
     call.label = label;
     call.remap = &remap;
-    call.procedure = sub.program;
     call.pending = executor_.take_pending();
-    if (!enter(std::move(call), {nullptr, sub.line})) {
+    if (!enter(std::move(call), {})) {
         return false;
     }
     executor_.set_remap_arguments(remap, *calls_.back().pending);

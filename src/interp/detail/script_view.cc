@@ -2,6 +2,7 @@
 #include "interp/detail/script_view.hh"
 
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -111,11 +112,21 @@ std::vector<std::string> ScriptView::predefined_names() const {
     return out;
 }
 
+std::vector<std::string> ScriptView::script_names() const {
+    return flow_.script_names_;
+}
+
+/// With those of the main program and the INI values that were read.
 std::vector<std::string> ScriptView::global_names() const {
     std::vector<std::string> out = predefined_names();
     for (const auto &[id, value] : executor_.parameters.globals()) {
         out.push_back(flow_.names_.text(id));
     }
+    for (const auto &[id, value] : executor_.parameters.locals(0)) {
+        out.push_back(flow_.names_.text(id));
+    }
+    const std::set<std::string, std::less<>> &ini = executor_.ini_names_read();
+    out.insert(out.end(), ini.begin(), ini.end());
     std::ranges::sort(out);
     out.erase(std::ranges::unique(out).begin(), out.end());
     return out;
@@ -165,6 +176,31 @@ std::vector<std::string_view> ScriptView::attribute_names() const {
     std::vector<std::string_view> out = Executor::attribute_names();
     out.insert(out.end(), {CALL_LEVEL, STACK_INDEX, FILE_NAME, LINE_TEXT, PERCENT});
     return out;
+}
+
+/// The entry at 0 is the tool in the spindle, number -1 when there is none.
+ToolEntry ScriptView::tool(int index) const {
+    if (index != 0 || executor_.tools().isRandom()) {
+        return executor_.table_entry(index);
+    }
+    const State &state = executor_.state;
+    if (state.tool_in_spindle == 0) {
+        ToolEntry none;
+        none.toolno = -1;
+        return none;
+    }
+    const int place = executor_.tools().index_of_tool(state.tool_in_spindle);
+    if (place > 0) {
+        return executor_.table_entry(place);
+    }
+    ToolEntry entry;
+    entry.toolno = state.tool_in_spindle;
+    entry.offset = state.loaded_offset;
+    entry.diameter = state.tool_diameter;
+    entry.frontangle = state.tool_frontangle;
+    entry.backangle = state.tool_backangle;
+    entry.orientation = state.tool_orientation;
+    return entry;
 }
 
 double ScriptView::spindle_speed(int spindle) const {
@@ -252,6 +288,9 @@ std::vector<ScriptContext> ScriptView::contexts() const {
         context.saved = executor_.active_codes();
         if (isMain) {
             for (std::string &name : global_names()) {
+                if (!name.starts_with('_')) {
+                    continue;  // one of its own, which is there already
+                }
                 const auto value = executor_.evaluator().named(flow_.names_.intern(name));
                 context.named.emplace_back(std::move(name), value.value_or(0.0));
             }

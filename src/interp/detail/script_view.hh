@@ -28,6 +28,7 @@ class ScriptView final : public InterpreterView {
     std::vector<std::string> local_names() const override;
     std::vector<std::string> global_names() const override;
     std::vector<std::string> predefined_names() const override;
+    std::vector<std::string> script_names() const override;
 
     std::optional<ScriptValue> attribute(std::string_view name) const override;
     Result<> set_attribute(std::string_view name, const ScriptValue &value) override;
@@ -39,7 +40,7 @@ class ScriptView final : public InterpreterView {
     Pose tool_offset() const override { return executor_.state.tool_offset; }
     void set_tool_offset(const Pose &offset) override { executor_.set_tool_offset(offset); }
     int count_tools() const override { return executor_.tools().count(); }
-    ToolEntry tool(int index) const override { return executor_.table_entry(index); }
+    ToolEntry tool(int index) const override;
     int find_tool(int number) const override { return executor_.tools().index_of_tool(number); }
     void load_tool() override { executor_.load_indexed_tool(); }
     void synch() override { executor_.synch(); }

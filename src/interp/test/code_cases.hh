@@ -195,7 +195,7 @@ inline const BadCase MORE_BAD[] = {
     {"M73 M70", "same modal group"},
     {"M99 M98", "same modal group"},
     {"G64 R1 M19 R5", "Multiple r words"},
-    {"G64 M19 R5", "G64 or to M19"},
+    {"G64 M19 R5", "ambiguous"},
     {"M98 P1 L-1", "must not be negative"},
     {"G43.2 X1 H1", "both H and axis words"},
     {"G10 L1 P1", "G10 L1 needs what it is to set"},

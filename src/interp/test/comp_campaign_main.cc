@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A campaign of random contours under cutter compensation, judged by the disc that the tool sweeps.
-// comp_campaign --first N --count M --log FILE [--print SEED]: one line per seed in the log; seeds that it
-// has are not run again. Ends with 1 when a contour was gouged, left standing, or refused without a reason.
+// comp_campaign [--kind pockets] --first N --count M --log FILE [--print SEED]: one line per seed in the log;
+// seeds that it has are not run again. Ends with 1 when a contour was gouged, left standing, or refused
+// without a reason.
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -11,6 +12,7 @@
 
 #include "base/text.hh"
 #include "interp/test/comp_judge.hh"
+#include "interp/test/comp_pockets.hh"
 
 namespace mw::interp::test {
 namespace {
@@ -42,7 +44,7 @@ std::set<std::string> seeds_in(const char *name) {
     return seeds;
 }
 
-int run(unsigned first, unsigned count_of, const char *log) {
+int run(unsigned first, unsigned count_of, const char *log, bool isPockets) {
     const std::set<std::string> done = seeds_in(log);
     std::ofstream out(log, std::ios::app);
     Totals totals;
@@ -50,7 +52,8 @@ int run(unsigned first, unsigned count_of, const char *log) {
         if (done.contains(std::to_string(seed))) {
             continue;
         }
-        const CompVerdict v = judge_contour(ContourMaker(seed).make());
+        const CompVerdict v =
+            isPockets ? judge_pocket(PocketMaker(seed).make()) : judge_contour(ContourMaker(seed).make());
         count(v, totals);
         out << seed << ' ' << v.corners << ' '
             << (!v.fault.empty()     ? "FAILED " + v.fault
@@ -58,8 +61,9 @@ int run(unsigned first, unsigned count_of, const char *log) {
                                      : std::string("ok"))
             << '\n';
     }
-    fmt::print("{} contours, {} corners: {} failed, {} refused ({:.2f} %), {:.6f} of what is reachable cut\n",
-               totals.contours, totals.corners, totals.failed, totals.refused,
+    fmt::print("{} {}, {} corners: {} failed, {} refused ({:.2f} %), {:.6f} of what is reachable cut\n",
+               totals.contours, isPockets ? "pockets" : "contours", totals.corners, totals.failed,
+               totals.refused,
                100.0 * static_cast<double>(totals.refused) /
                    static_cast<double>(std::max<std::size_t>(1, totals.contours)),
                totals.wanted > 0 ? totals.reached / totals.wanted : 1.0);
@@ -87,12 +91,16 @@ void print_contour(unsigned seed) {
     fmt::print("{}M2\n", program_of(c));
 }
 
+void print_pocket(unsigned seed) {
+    fmt::print("{}M2\n", program_of(PocketMaker(seed).make()));
+}
+
 }  // namespace mw::interp::test
 
 int main(int argc, char **argv) {
     const char *log = nullptr;
     unsigned first = 1, count = 1000;
-    bool isPrinting = false, isSound = argc % 2 == 1;
+    bool isPrinting = false, isPockets = false, isSound = argc % 2 == 1;
     for (int i = 1; i + 1 < argc; i += 2) {
         const auto number = mw::parse_uint(argv[i + 1]);
         const unsigned value = number.has_value() ? static_cast<unsigned>(*number) : 0;
@@ -102,6 +110,8 @@ int main(int argc, char **argv) {
             first = value;
         } else if (std::strcmp(argv[i], "--count") == 0 && number) {
             count = value;
+        } else if (std::strcmp(argv[i], "--kind") == 0 && std::strcmp(argv[i + 1], "pockets") == 0) {
+            isPockets = true;
         } else if (std::strcmp(argv[i], "--print") == 0 && number) {
             first = value;
             isPrinting = true;
@@ -110,12 +120,13 @@ int main(int argc, char **argv) {
         }
     }
     if (isPrinting) {
-        mw::interp::test::print_contour(first);
+        isPockets ? mw::interp::test::print_pocket(first) : mw::interp::test::print_contour(first);
         return 0;
     }
     if (log == nullptr || !isSound) {
-        std::fprintf(stderr, "usage: comp_campaign --first N --count M --log FILE | --print SEED\n");
+        std::fprintf(stderr,
+                     "usage: comp_campaign [--kind pockets] --first N --count M --log FILE | --print SEED\n");
         return 2;
     }
-    return mw::interp::test::run(first, count, log);
+    return mw::interp::test::run(first, count, log, isPockets);
 }

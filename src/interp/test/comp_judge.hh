@@ -162,7 +162,7 @@ inline void explain(const CompContour &c, int line, const std::string &error, Co
     }
 }
 
-inline CompVerdict judge_contour(const CompContour &contour) {
+inline CompVerdict judge_contour(const CompContour &contour, const std::string &program) {
     PlaneRecorder recorder(contour);
     MachineFrame frame(recorder, LengthUnits::MM);
     Mill mill;
@@ -172,13 +172,17 @@ inline CompVerdict judge_contour(const CompContour &contour) {
     Interpreter interpreter(frame, mill, mill, mill, {});
     CompVerdict out;
     out.corners = contour.pieces.size();
-    if (run_text(interpreter, program_of(contour)) == Step::PROGRAM_END) {
+    if (run_text(interpreter, program) == Step::PROGRAM_END) {
         weigh(contour, recorder, out);
     } else {
         const diag::Diagnostic &error = interpreter.error();
         explain(contour, error.what.place.line, error.str(), out);
     }
     return out;
+}
+
+inline CompVerdict judge_contour(const CompContour &contour) {
+    return judge_contour(contour, program_of(contour));
 }
 
 }  // namespace mw::interp::test

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "interp/test/comp_judge.hh"
+#include "interp/test/comp_pockets.hh"
 
 namespace mw::interp::test {
 namespace {
@@ -174,6 +175,43 @@ TEST(Compensation, InsertedArcRunsAtTheFeedOfItsBlockUnderInverseTime) {
         << machine.error();
     ASSERT_EQ(machine.record.arcs.size(), 1U);
     EXPECT_NEAR(machine.record.arcs[0].settings.feed, 10.0 * 30.0 / 60.0, 1e-9);
+}
+
+TEST(Compensation, JudgesSeeWhatIsWrong) {
+    const Pocket pocket = PocketMaker(7).make();
+    Pocket other = pocket;
+    other.radius = pocket.radius * 0.9;
+    EXPECT_NE(judge_pocket(pocket, program_of(other)).fault.find("gouge"), std::string::npos);
+    other.radius = pocket.radius * 1.3;
+    EXPECT_NE(judge_pocket(pocket, program_of(other)).fault.find("left standing"), std::string::npos);
+    other = pocket;
+    other.layer = 2.0 * pocket.layer;
+    EXPECT_NE(judge_pocket(pocket, program_of(other)).fault.find("layer"), std::string::npos);
+    std::string rapid = program_of(pocket);
+    rapid.replace(rapid.find("\nG1 Z") + 1, 2, "G0");  // down to the material: still sound
+    EXPECT_EQ(judge_pocket(pocket, rapid).fault, "");
+    rapid.replace(rapid.find("G41.1") != std::string::npos ? rapid.find("\nG1 ", rapid.find("G41.1")) + 1
+                                                           : rapid.find("\nG1 ", rapid.find("G42.1")) + 1,
+                  2, "G0");  // from the helix to the wall
+    EXPECT_NE(judge_pocket(pocket, rapid).fault.find("rapid"), std::string::npos);
+
+    const CompContour contour = way_back(1, 120.0, 0, 0.5);
+    ASSERT_EQ(judge_contour(contour).fault, "");
+    CompContour wrong = contour;
+    wrong.radius = 0.4;
+    EXPECT_NE(judge_contour(contour, program_of(wrong)).fault.find("gouge"), std::string::npos);
+    wrong.radius = 0.6;
+    EXPECT_NE(judge_contour(contour, program_of(wrong)).fault.find("not cut"), std::string::npos);
+    wrong = contour;
+    wrong.side = -1;
+    EXPECT_NE(judge_contour(contour, program_of(wrong)).fault, "");
+}
+
+TEST(Compensation, RandomPocketsLeaveTheirWallsStanding) {
+    constexpr unsigned COUNT = 40, FIRST = 2000001;
+    for (unsigned seed = FIRST; seed < FIRST + COUNT; ++seed) {
+        EXPECT_EQ(judge_pocket(PocketMaker(seed).make()).fault, "") << "seed " << seed;
+    }
 }
 
 TEST(Compensation, RandomContoursAreCutWithoutGouge) {

@@ -289,10 +289,14 @@ class ParameterMap:
 
 class Context:
     """One level of call: self.sub_context[0] is the main program, [self.call_level] the innermost."""
-    _READONLY, _GLOBAL, _COMPUTED = 1, 2, 8
+    _READONLY, _GLOBAL, _COMPUTED, _INI, _SCRIPT = 1, 2, 8, 16, 32
 
-    def __init__(self, data, predefined):
+    def __init__(self, data, predefined, scripted):
         def attributes(name):
+            if name in scripted:
+                return self._GLOBAL | self._READONLY | self._SCRIPT
+            if name.startswith('_ini['):
+                return self._GLOBAL | self._READONLY | self._INI
             if name in predefined:
                 return self._GLOBAL | self._READONLY | self._COMPUTED
             return self._GLOBAL if name.startswith('_') else 0
@@ -427,10 +431,11 @@ class Interp:
     @property
     def sub_context(self):
         contexts = self._view.contexts()
-        predefined = frozenset(self._view.predefined())
+        predefined, scripted = frozenset(self._view.predefined()), frozenset(self._view.scripted())
 
         def read(level):
-            return Context(contexts[level] if level < len(contexts) else self._view.no_context(), predefined)
+            return Context(contexts[level] if level < len(contexts) else self._view.no_context(), predefined,
+                           scripted)
 
         return SubcontextArray(max(len(contexts), 10), read)
 

@@ -31,6 +31,25 @@ TEST(PythonRemap, prolog_procedure_and_epilog_share_their_local_parameters_I1) {
     EXPECT_EQ(it.error(), "user-defined M400: missing: P");
 }
 
+TEST(PythonRemap, prolog_runs_before_its_procedure_is_looked_for_I1) {
+    Scripted it;
+    it.remap("M400 modalgroup=5 prolog=fails ngc=not_there");
+    it.remap("M401 modalgroup=5 prolog=says_yes ngc=not_there");
+    it.handlers("def fails(self, **words):\n"
+                "    emccanon.MESSAGE('it ran')\n"
+                "    self.set_errormsg('the prolog said no')\n"
+                "    return INTERP_ERROR\n"
+                "def says_yes(self, **words):\n"
+                "    return INTERP_OK\n");
+    ASSERT_EQ(it.run("M400\n"), Step::FAILED);
+    EXPECT_EQ(it.error(), "the prolog said no");
+    EXPECT_EQ(it.interpreter->error().line_text, "O <not_there> call ");
+    EXPECT_EQ(it.story(), (Events{"MESSAGE(\"it ran\")"}));
+    ASSERT_EQ(it.run("M401\n"), Step::FAILED);
+    EXPECT_NE(it.error().find("There is no subroutine o<not_there>"), std::string::npos) << it.error();
+    EXPECT_EQ(it.interpreter->call_level(), 0);
+}
+
 TEST(PythonRemap, function_executes_blocks_and_subroutines_in_order_I1) {
     Scripted it;
     it.remap("G88.1 modalgroup=1 argspec=xyp py=spiral");

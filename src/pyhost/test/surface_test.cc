@@ -87,6 +87,32 @@ TEST(PythonSurface, blocks_levels_of_call_and_tools_I1) {
     EXPECT_EQ(it.run("o<outer> call\n"), Step::PROGRAM_END) << it.error();
 }
 
+TEST(PythonSurface, tool_at_index_0_is_the_one_in_the_spindle_I1) {
+    Scripted it;
+    it.owords(
+        "def look(self, number, z):\n"
+        "    t = self.tool_table[0]\n"
+        "    assert (t.toolno, abs(t.offset.z - z) < 1e-9) == (number, True), (t.toolno, t.offset.z)\n");
+    EXPECT_EQ(it.run("o<look> call [-1] [0]\nT3 M6\no<look> call [3] [1.273]\nG10 L1 P3 Z12.7\n"
+                     "o<look> call [3] [12.7]\n"),
+              Step::PROGRAM_END)
+        << it.error();
+}
+
+TEST(PythonSurface, global_names_are_those_that_scripts_expect_I1) {
+    Scripted it;
+    it.write("toplevel.py", "import remap, oword, namedparams\n");
+    it.write("namedparams.py", "def _made(self):\n    return 4\n");
+    it.owords(
+        "def look(self):\n"
+        "    names = self.params.globals()\n"
+        "    assert {'_abs_u', '_abs_v', '_abs_w', '_mine', 'foo', '_made'} <= set(names), names\n"
+        "    assert names == sorted(set(names)), names\n"
+        "    attr = {e.key(): e.data().attr for e in self.sub_context[0].named_params}\n"
+        "    assert (attr['_made'], attr['_feed'], attr['_mine'], attr['foo']) == (35, 11, 2, 0), attr\n");
+    EXPECT_EQ(it.run("#<_mine>=1\n#<foo>=2\no<look> call\n"), Step::PROGRAM_END) << it.error();
+}
+
 TEST(PythonSurface, oword_values_and_errors_I1) {
     Scripted it;
     it.owords("def none(self, *a):\n    pass\n"

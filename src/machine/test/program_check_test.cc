@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What a check finds in a program before a machine moves.
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "machine/abilities.hh"
+#include "machine/loaded_config.hh"
+#include "machine/program_check.hh"
+
+namespace mw::machine {
+namespace {
+
+class NoTools : public interp::ToolSource, public interp::ParameterSource {
+  public:
+    int count() const override { return 1; }
+    interp::ToolEntry entry(int) const override { return {}; }
+    int index_of_tool(int) const override { return -1; }
+    bool isRandom() const override { return false; }
+    std::optional<double> ini_value(std::string_view, std::string_view) const override {
+        return std::nullopt;
+    }
+    std::optional<double> hal_value(std::string_view) const override { return std::nullopt; }
+};
+
+class ProgramCheck : public testing::Test {
+  protected:
+    ProgramCheck() {
+        std::filesystem::create_directories(folder_);
+        diag::Sink loading;
+        config_ = LoadedConfig::load(MW_SOURCE_DIR "/configs/sim/mill_mm.ini", loading);
+    }
+    ~ProgramCheck() override { std::filesystem::remove_all(folder_); }
+
+    CheckResult check(const std::string &text) {
+        const std::string path = (folder_ / "program.ngc").string();
+        std::ofstream(path) << text;
+        NoTools tools;
+        return check_program(config_->machine, path, tools, tools, sink_);
+    }
+
+    std::filesystem::path folder_ =
+        std::filesystem::temp_directory_path() / ("mw_check_" + std::to_string(::getpid()));
+    std::unique_ptr<LoadedConfig> config_;
+    diag::Sink sink_;
+};
+
+TEST_F(ProgramCheck, WhatNoMachineCanDoIsNamedWithItsPlace) {
+    ASSERT_NE(config_, nullptr);
+    const CheckResult result =
+        check("G21 G90 G17\nS100 M3\nG0 X10 Y10\n(G33.1 here) g 033.1 Z-5 K1\nM5\nM2\n");
+    ASSERT_EQ(sink_.count_errors(), 1);
+    const Error &error = sink_.all()[0].what;
+    EXPECT_NE(error.message.find("G33.1"), std::string::npos) << error.message;
+    EXPECT_NE(error.message.find("cannot"), std::string::npos) << error.message;
+    EXPECT_EQ(error.place.line, 4);
+    EXPECT_EQ(error.place.column, 14);
+    EXPECT_EQ(sink_.all()[0].line_text, "(G33.1 here) g 033.1 Z-5 K1");
+    ASSERT_EQ(result.impossible.size(), 1U);
+    EXPECT_EQ(result.impossible[0].place.line, 4);
+}
+
+TEST_F(ProgramCheck, EveryPlaceIsToldAndEachOnce) {
+    ASSERT_NE(config_, nullptr);
+    const CheckResult result =
+        check("G21 G90 G17 S100 M3\nG0 X10 Y10\no1 repeat [5]\nG33.1 Z-5 K1\no1 endrepeat\n"
+              "G0 X20\nG33.1 Z-5 K1\nM2\n");
+    ASSERT_EQ(result.impossible.size(), 2U);
+    EXPECT_EQ(result.impossible[0].place.line, 4);
+    EXPECT_EQ(result.impossible[1].place.line, 7);
+}
+
+TEST_F(ProgramCheck, OtherThreadsAreTaken) {
+    ASSERT_NE(config_, nullptr);
+    EXPECT_TRUE(check("G21 G90 G17 S100 M3\nG0 X10 Y10\nG33 Z-5 K1\nG0 Z0\nM2\n").impossible.empty());
+    EXPECT_EQ(sink_.count_errors(), 0);
+}
+
+TEST(Abilities, ColumnOfACodeIsFoundAsProgramsHaveIt) {
+    EXPECT_EQ(column_of_code("N10 G33.1 Z1", "G33.1"), 5);
+    EXPECT_EQ(column_of_code("g33.1z1", "G33.1"), 1);
+    EXPECT_EQ(column_of_code("G 3 3 . 1", "G33.1"), 1);
+    EXPECT_EQ(column_of_code("G33.15 G033.1", "G33.1"), 8);
+    EXPECT_EQ(column_of_code("X1 (G33.1) ; G33.1", "G33.1"), 1);
+}
+
+}  // namespace
+}  // namespace mw::machine
