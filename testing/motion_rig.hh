@@ -3,17 +3,23 @@
 #pragma once
 
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "kins/trivial.hh"
 #include "motion/core/controller.hh"
 #include "motion/core/path_planner.hh"
+#include "testing/limit_checker.hh"
 
 namespace mw::testing {
 
-/// Drives follow the command one cycle later. Every test may look at and change all of it between steps.
+/// Drives follow the command one cycle later. Every test may look at and change all of it between steps. On
+/// machines whose joints are not axes every sample is judged by the joints' limits; who ends with a rig that
+/// has left them ends the test program.
 struct MotionRig {
     static constexpr double T = 1e-3;
     static constexpr int PLANNER_PERIOD = 5;
@@ -33,6 +39,15 @@ struct MotionRig {
     bool isPlannerAlive = true;
     std::function<void(MotionRig &)> before_step = [](MotionRig &) {};
 
+    MotionRig(const MotionRig &) = delete;
+    MotionRig &operator=(const MotionRig &) = delete;
+    ~MotionRig() {
+        if (const std::string report = joint_report(); !report.empty()) {
+            std::fprintf(stderr, "joints beyond their limits:\n%s", report.c_str());
+            std::abort();
+        }
+    }
+
     explicit MotionRig(const char *coordinates = "XYZ", double velocity = 100, double acceleration = 1000) {
         kinematics.configure(coordinates);
         start(kinematics, kinematics.identity()->num_joints, velocity, acceleration);
@@ -42,6 +57,10 @@ struct MotionRig {
         start(model, joints, velocity, acceleration);
     }
     void start(const kins::Kinematics &model, int joints, double velocity, double acceleration) {
+        isJudged_ = model.identity() == nullptr;
+        limits_.assign(static_cast<std::size_t>(joints), {});
+        low_.assign(static_cast<std::size_t>(joints), -1e300);
+        high_.assign(static_cast<std::size_t>(joints), 1e300);
         controller = std::make_unique<motion::Controller>(motion::ControllerConfig{joints, 1, 4, 4, T}, model,
                                                           *channels, *link);
         planner = std::make_unique<motion::PathPlanner>(motion::PathPlannerConfig{T, joints, 1, 4, 4}, model,
@@ -66,6 +85,7 @@ struct MotionRig {
         return next_id++;
     }
     void set(motion::Parameter p, int index, double value) {
+        note_limit(p, static_cast<std::size_t>(index), value);
         send(motion::SetParameter{static_cast<std::uint16_t>(p), static_cast<std::int16_t>(index), value});
     }
     motion::CommandId line(const geom::Pose &end, double feed = 50,
@@ -94,6 +114,7 @@ struct MotionRig {
             if (isPlannerAlive && cycle % PLANNER_PERIOD == 0) {
                 planner->update();
             }
+            judge_joints();
             motion::Answer a;
             while (channels->servo_answers.pop(a) || channels->planner_answers.pop(a)) {
                 answers.push_back(a);
@@ -142,6 +163,61 @@ struct MotionRig {
         step(PLANNER_PERIOD);
     }
     const motion::Status &status() const { return out->status; }
+
+    /// What the joints have done beyond their limits; empty: nothing.
+    std::string joint_report() const { return places_ + (checker_ ? checker_->report() : std::string()); }
+    /// After a test has said so itself.
+    void forgive_joints() {
+        places_.clear();
+        checker_.reset();
+    }
+
+  private:
+    void note_limit(motion::Parameter p, std::size_t joint, double value) {
+        using motion::Parameter;
+        switch (p) {
+        case Parameter::JOINT_MAX_VELOCITY: limits_[joint].velocity = value; break;
+        case Parameter::JOINT_MAX_ACCELERATION: limits_[joint].acceleration = value; break;
+        case Parameter::JOINT_MIN_LIMIT: low_[joint] = value; break;
+        case Parameter::JOINT_MAX_LIMIT: high_[joint] = value; break;
+        default: return;
+        }
+        keep_report();
+    }
+    /// Settings change between moves, so what was judged before is kept and the judge begins anew.
+    void keep_report() {
+        places_ = joint_report();
+        checker_.reset();
+    }
+    void judge_joints() {
+        if (!isJudged_) {
+            return;
+        }
+        if (!out->status.isEnabled || out->status.isHoming) {
+            keep_report();
+            return;
+        }
+        if (!checker_) {
+            checker_ = std::make_unique<LimitChecker>(limits_, T);
+        }
+        std::vector<double> positions;
+        for (std::size_t j = 0; j < limits_.size(); ++j) {
+            const double q = out->joint[j].motor_pos_cmd;
+            constexpr double ROUNDING = 2e-6;
+            const bool isOut = q < low_[j] - ROUNDING || q > high_[j] + ROUNDING;
+            if (out->status.isAllHomed && isOut && places_.size() < 1000) {
+                places_ += "joint " + std::to_string(j) + " at " + std::to_string(q) + "\n";
+            }
+            positions.push_back(q);
+        }
+        checker_->sample(positions.data());
+    }
+
+    bool isJudged_ = false;
+    std::vector<AxisLimit> limits_;
+    std::vector<double> low_, high_;
+    std::unique_ptr<LimitChecker> checker_;
+    std::string places_;
 };
 
 }  // namespace mw::testing

@@ -20,6 +20,11 @@ extern "C" KINEMATICS_TYPE kinematicsType(void) {
     return type;
 }
 
+/// Whatever kinstype= tells operators: each joint is an axis.
+extern "C" RTAPI_EXPORT int mw_kinematics_is_identity(void) {
+    return 1;
+}
+
 int rtapi_app_main(void) {
     const char *letters = coordinates != nullptr && coordinates[0] != '\0' ? coordinates : "XYZABCUVW";
     if (!model.configure(letters)) {

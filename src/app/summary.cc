@@ -42,8 +42,13 @@ void print_summary(const Summary &summary) {
                    summary.run.wall_time_s,
                    summary.run.cycle_time_s / std::fmax(summary.run.wall_time_s, 1e-9));
     }
-    fmt::print("cutting             {:.3f} {}\n", summary.path.cutting_length, unit);
-    fmt::print("rapid               {:.3f} {}\n", summary.path.rapid_length, unit);
+    const auto turned = [](double angle_deg) {
+        return angle_deg > 0 ? fmt::format(", {:.3f} deg", angle_deg) : std::string();
+    };
+    fmt::print("cutting             {:.3f} {}{}\n", summary.path.cutting_length, unit,
+               turned(summary.path.cutting_angle_deg));
+    fmt::print("rapid               {:.3f} {}{}\n", summary.path.rapid_length, unit,
+               turned(summary.path.rapid_angle_deg));
     fmt::print("blocks              {}\n", summary.run.blocks);
     print_axes("peak velocity", summary, summary.path.peak_velocity, "s");
     print_axes("peak acceleration", summary, summary.path.peak_acceleration, "s2");

@@ -184,6 +184,22 @@ void read_joints(IniReader &ini, MachineConfig &machine) {
     }
 }
 
+/// [TRAJ]MAX_ANGULAR_VELOCITY and MAX_ANGULAR_ACCELERATION hold for each axis of rotation.
+void limit_angular(IniReader &ini, int axis, MachineConfig &machine) {
+    const auto limit = [&](const char *key, motion::Parameter parameter, double &value) {
+        const double most = ini.real("TRAJ", key, INF, {0.0, INF});
+        if (most < value) {
+            value = most;
+            machine.parameters.push_back(
+                {static_cast<std::uint16_t>(parameter), static_cast<std::int16_t>(axis), most});
+        }
+    };
+    const auto i = static_cast<std::size_t>(axis);
+    limit("MAX_ANGULAR_VELOCITY", motion::Parameter::AXIS_MAX_VELOCITY, machine.axis_max_velocity[i]);
+    limit("MAX_ANGULAR_ACCELERATION", motion::Parameter::AXIS_MAX_ACCELERATION,
+          machine.axis_max_acceleration[i]);
+}
+
 void read_axes(IniReader &ini, MachineConfig &machine) {
     machine.axis_min.fill(-INF);
     machine.axis_max.fill(INF);
@@ -210,6 +226,9 @@ void read_axes(IniReader &ini, MachineConfig &machine) {
                              ini.file().find(section, "MIN_LIMIT")->place);
         }
         read_scope(ini, section, motion::ParameterScope::AXIS, axis, machine);
+        if (geom::isAngular(axis)) {
+            limit_angular(ini, axis, machine);
+        }
         ini.know_all(section,
                      {"HOME", "WRAPPED_ROTARY", "LOCKING_INDEXER_JOINT", "OFFSET_AV_RATIO", "GEOMETRY"});
         warn_without_effect(ini, section, {"WRAPPED_ROTARY", "LOCKING_INDEXER_JOINT", "OFFSET_AV_RATIO"});

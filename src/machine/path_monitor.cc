@@ -142,7 +142,11 @@ void PathMonitor::on_move(motion::CommandId id, const motion::PathBody &body) {
         return;
     }
     const double length = feed_length(piece);
-    (piece.isRapid ? figures_.rapid_length : figures_.cutting_length) += length;
+    if (piece.angle_rad == 0 && geom::norm_linear(piece.end - piece.start) == 0.0) {
+        (piece.isRapid ? figures_.rapid_angle_deg : figures_.cutting_angle_deg) += length;
+    } else {
+        (piece.isRapid ? figures_.rapid_length : figures_.cutting_length) += length;
+    }
     pieces_.push_back({id, piece, length});
 }
 

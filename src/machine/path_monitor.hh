@@ -38,6 +38,7 @@ double feed_length(const ProgrammedPiece &piece);
 
 struct RunFigures {
     double cutting_length = 0, rapid_length = 0;                        ///< [machine units]
+    double cutting_angle_deg = 0, rapid_angle_deg = 0;                  ///< of moves of A, B and C alone
     std::array<double, MAX_AXES> peak_velocity{}, peak_acceleration{};  ///< [units/s], [units/s2]
     double deviation_linear = 0, deviation_angular = 0;  ///< largest [machine units], [degrees]
     std::uint64_t samples = 0;

@@ -139,7 +139,7 @@ void TimeEstimate::line(const geom::Pose &end, const interp::MoveSettings &setti
 
 void TimeEstimate::arc(const interp::ArcMove &move) {
     traj::Primitive p;
-    const traj::ArcShape shape{move.centre, move.normal, move.angle_rad, false};
+    const traj::ArcShape shape{move.centre, move.normal, move.angle_rad, geom::norm_uvw(move.normal) > 0};
     if (traj::make_arc(position_, move.end, shape, p) == traj::ArcFault::NONE) {
         estimator_->add(p, request_of(move.settings));
     }

@@ -159,7 +159,9 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
             [&](const ToolOffsetItem &offset) {
                 tool_offset_ = offset;
                 follow_offsets();
-                events_.tool_offset(offset);
+                // Done once motion has it, so that pins show it when G43 is over.
+                awaited_setting_ = events_.tool_offset(offset);
+                wait_ = Wait::SETTING;
                 return true;
             },
             [&](const WaitOrientItem &orient) { return begin(orient, now_ns); },
@@ -262,7 +264,7 @@ bool Sequencer::push_move(const Item &item) {
                            arc->move.centre,
                            arc->move.normal,
                            arc->move.angle_rad,
-                           false,
+                           geom::norm_uvw(arc->move.normal) > 0,
                            terms_of(arc->move.settings, motion::MotionType::ARC, item)};
     } else if (const auto *probe = std::get_if<ProbeItem>(&item.body)) {
         using interp::ProbeKind;

@@ -28,7 +28,7 @@ struct SequencerEvents {
     std::function<void(const EndItem &)> end;       ///< the program is over
     std::function<void(const std::string &)> fail;  ///< something cannot be done; task aborts
     std::function<void(const OffsetsItem &)> offsets;
-    std::function<void(const ToolOffsetItem &)> tool_offset;
+    std::function<motion::CommandId(const ToolOffsetItem &)> tool_offset;
     /// Changes the planner at rest; the command whose answer is to be awaited, 0: nothing to wait for;
     /// nothing when it cannot be, and task aborts.
     std::function<std::optional<motion::CommandId>(const PlannerModeItem &)> planner_mode;

@@ -49,7 +49,7 @@ SequencerEvents Task::make_events() {
     };
     events.tool_offset = [this](const ToolOffsetItem &item) {
         status_.tool_offset = item.offset;
-        motion_.send(motion::SetToolOffset{item.offset});
+        return motion_.send(motion::SetToolOffset{item.offset});
     };
     events.planner_mode = [this](const PlannerModeItem &item) -> std::optional<motion::CommandId> {
         const int smooth = settings_.sequencer.smooth_planner;
@@ -123,8 +123,9 @@ RequestId Task::submit(Command command) {
     const RequestId id = next_request_++;
     inbox_.emplace_back(id, std::move(command));
     requests_[id] = {};
-    while (requests_.size() > REMEMBERED_REQUESTS) {
-        requests_.erase(requests_.begin());
+    // What still goes on is kept however many came after it.
+    for (auto old = requests_.begin(); requests_.size() > REMEMBERED_REQUESTS && old->first != id;) {
+        old = old->second.progress == Progress::STARTED ? std::next(old) : requests_.erase(old);
     }
     return id;
 }
@@ -159,6 +160,7 @@ void Task::step(std::int64_t now_ns) {
         fail_program({diag::Severity::ERROR, {std::exchange(pending_failure_, {})}},
                      AbortReason::EXECUTION_ERROR);
     }
+    check_run_mode();
     step_clean_up();
     if (isRunning() && motion_.status().mode == motion::Mode::COORD) {
         run_interpreter();
@@ -175,6 +177,17 @@ void Task::step(std::int64_t now_ns) {
     planner_mode_.step(!isRunning() && sequencer_.isIdle());
     parts_.io_port.write(io_.outputs);
     update_status();
+}
+
+/// A run goes on in coordinated mode only; one that motion does not let in ends.
+void Task::check_run_mode() {
+    constexpr std::int64_t LONGEST_NS = 1000000000;
+    const bool isOut = isRunning() && motion_.status().mode != motion::Mode::COORD;
+    out_of_mode_since_ns_ = !isOut ? -1 : out_of_mode_since_ns_ < 0 ? now_ns_ : out_of_mode_since_ns_;
+    if (isOut && now_ns_ - out_of_mode_since_ns_ > LONGEST_NS) {
+        fail_program({diag::Severity::ERROR, {"motion is not in coordinated mode: set the mode again"}},
+                     AbortReason::EXECUTION_ERROR);
+    }
 }
 
 SourcePlace Task::place_of(const motion::SourceTag &source) const {
@@ -204,6 +217,9 @@ void Task::take_motion_news() {
         }
         if (answer.id == enable_command_) {
             finish(state_request_, Progress::REFUSED, text);
+        }
+        if (answer.id == mode_command_) {
+            finish(mode_request_, Progress::REFUSED, text);
         }
         if (answer.id == home_command_) {
             finish(home_request_, Progress::REFUSED, text);
@@ -263,6 +279,12 @@ void Task::update_pending() {
         }
     }
     const motion::Status &motion = motion_.status();
+    if (mode_request_ != 0 && motion_.isAnswered(mode_command_) && motion.mode == wanted_motion_mode_) {
+        status_.mode = wanted_mode_;
+        finish(mode_request_, Progress::DONE, {});
+    } else if (mode_request_ != 0 && now_ns_ > mode_deadline_ns_) {
+        finish(mode_request_, Progress::FAILED, "the motion controller has not changed its mode");
+    }
     if (home_request_ != 0 && motion_.isAnswered(home_command_) && !motion.isHoming) {
         const bool isHomed = homing_joint_ < 0
                                  ? motion.isAllHomed

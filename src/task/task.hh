@@ -121,6 +121,7 @@ class Task final : public interp::World {
     void take_io();
     void update_state();
     void update_pending();
+    void check_run_mode();
     void carry_out_commands();
     void run_interpreter();
     bool begin_run();
@@ -174,7 +175,12 @@ class Task final : public interp::World {
     std::deque<std::pair<RequestId, Command>> inbox_;
     std::map<RequestId, Request> requests_;
     RequestId next_request_ = 1;
-    RequestId run_request_ = 0, state_request_ = 0, home_request_ = 0;
+    RequestId run_request_ = 0, state_request_ = 0, home_request_ = 0, mode_request_ = 0;
+    Mode wanted_mode_ = Mode::MANUAL;
+    motion::Mode wanted_motion_mode_ = motion::Mode::FREE;
+    motion::CommandId mode_command_ = 0;
+    std::int64_t mode_deadline_ns_ = 0;
+    std::int64_t out_of_mode_since_ns_ = -1;  ///< -1: not
     State wanted_state_ = State::ESTOP;
     int homing_joint_ = -1;
     motion::CommandId home_command_ = 0, enable_command_ = 0, last_setting_ = 0;

@@ -57,6 +57,7 @@ void Task::abort_work(AbortReason reason) {
     isStartDue_ = false;
     pending_failure_.clear();
     finish(home_request_, Progress::FAILED, "aborted");
+    finish(mode_request_, Progress::FAILED, "aborted");
     if (!isFollowing) {
         begin_clean_up(reason);
     }

@@ -82,6 +82,14 @@ struct Task::Handler {
         }
         return need_on();
     }
+    /// Done when motion has agreed.
+    void change_mode(Mode mode, motion::Mode motion_mode) {
+        task.wanted_mode_ = mode;
+        task.wanted_motion_mode_ = motion_mode;
+        task.mode_command_ = task.motion_.send(motion::SetMode{motion_mode});
+        task.mode_request_ = id;
+        task.mode_deadline_ns_ = task.now_ns_ + STATE_TIMEOUT_NS;
+    }
     void start_run(Run run) {
         task.run_ = run;
         task.run_request_ = id;
@@ -98,10 +106,18 @@ struct Task::Handler {
 
 using Outcome = Result<Progress>;
 
+/// In their order; while the mode changes only what stops goes first.
 void Task::carry_out_commands() {
-    while (!inbox_.empty()) {
-        const auto [id, command] = std::move(inbox_.front());
-        inbox_.pop_front();
+    const auto isUrgent = [](const Command &command) {
+        return std::holds_alternative<AbortAll>(command) || std::holds_alternative<SetState>(command);
+    };
+    for (auto next = inbox_.begin(); next != inbox_.end();) {
+        if (mode_request_ != 0 && !isUrgent(next->second)) {
+            ++next;
+            continue;
+        }
+        const auto [id, command] = std::move(*next);
+        inbox_.erase(next);
         const auto outcome = std::visit(Handler{*this, id}, command);
         Request &request = requests_[id];
         if (!outcome.has_value()) {
@@ -110,6 +126,7 @@ void Task::carry_out_commands() {
         } else if (request.progress == Progress::STARTED) {
             request.progress = *outcome;
         }
+        next = inbox_.begin();
     }
 }
 
@@ -159,10 +176,8 @@ Outcome Task::Handler::operator()(const SetMode &command) {
     if (task.isRunning()) {
         return fail("cannot change the mode while a program or MDI line runs");
     }
-    task.status_.mode = command.mode;
-    task.motion_.send(
-        motion::SetMode{command.mode == Mode::MANUAL ? motion::Mode::FREE : motion::Mode::COORD});
-    return Progress::DONE;
+    change_mode(command.mode, command.mode == Mode::MANUAL ? motion::Mode::FREE : motion::Mode::COORD);
+    return Progress::STARTED;
 }
 
 Outcome Task::Handler::operator()(const OpenProgram &command) {
@@ -283,8 +298,8 @@ Outcome Task::Handler::operator()(const SetTeleop &command) {
     if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
     }
-    task.motion_.send(motion::SetMode{command.isTeleop ? motion::Mode::TELEOP : motion::Mode::FREE});
-    return Progress::DONE;
+    change_mode(task.status_.mode, command.isTeleop ? motion::Mode::TELEOP : motion::Mode::FREE);
+    return Progress::STARTED;
 }
 
 Outcome Task::Handler::operator()(const HomeJoint &command) {

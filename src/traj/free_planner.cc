@@ -72,6 +72,17 @@ void JogPlanner::stop() noexcept {
     target = leader_.target;
 }
 
+double JogPlanner::rest_after(double dt) const noexcept {
+    const FreePlanner &p = length_ > 1 ? static_cast<const FreePlanner &>(leader_) : *this;
+    const double a = p.max_acceleration > 0 ? p.max_acceleration : max_acceleration;
+    const double sign = target >= p.position ? 1.0 : -1.0;
+    const double v = p.velocity + sign * a * dt;
+    const double rest = stop_position(p.position + v * dt, v, a);
+    // No farther than where it is going anyway.
+    const double now = stop_position(p.position, p.velocity, a);
+    return sign > 0 ? std::min(rest, std::max(target, now)) : std::max(rest, std::min(target, now));
+}
+
 /// From rest: the mean is as long as the acceleration needs to turn about.
 void JogPlanner::begin(double dt) noexcept {
     const double samples = std::ceil(2.0 * max_acceleration / (max_jerk * dt) - 1e-9);

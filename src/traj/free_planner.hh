@@ -45,6 +45,8 @@ class JogPlanner : public FreePlanner {
     void stop() noexcept;
     /// Advances by `dt` [s]. [servo]
     void step(double dt) noexcept;
+    /// Farthest place where it may come to rest when it brakes after one more step.
+    double rest_after(double dt) const noexcept;
 
   private:
     static constexpr std::uint32_t MOST_SAMPLES = 400;

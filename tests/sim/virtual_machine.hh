@@ -17,17 +17,19 @@
 #include "app/operator.hh"
 #include "machine/loaded_config.hh"
 #include "machine/machine.hh"
+#include "sim/joint_judge.hh"
 
 namespace mw::machine {
 
 /// The mill configs/sim/mill_mm.ini with a folder of its own.
-class VirtualMachineTest : public testing::Test {
+class VirtualMachineTest : public ::testing::Test {
   protected:
     VirtualMachineTest() {
         folder_ = std::filesystem::temp_directory_path() / ("mw_sim_" + std::to_string(::getpid()));
         std::filesystem::create_directory(folder_);
     }
     ~VirtualMachineTest() override {
+        EXPECT_EQ(judge_.report(), "") << "joints beyond their limits";
         machine_.reset();
         std::filesystem::remove_all(folder_);
     }
@@ -40,6 +42,7 @@ class VirtualMachineTest : public testing::Test {
         machine_.reset();
         loaded_ = LoadedConfig::load(ini, sink_);
         ASSERT_NE(loaded_, nullptr) << ini;
+        judge_ = JointJudge(loaded_->machine);
         loaded_->machine.task.parameter_file.clear();
         if (change) {
             change(loaded_->machine.task);
@@ -93,6 +96,7 @@ class VirtualMachineTest : public testing::Test {
             motion::TraceSample sample;
             while (machine_->channels().trace.pop(sample)) {
                 samples_.push_back(sample);
+                judge_.sample(sample, motion());
             }
         }
     }
@@ -136,6 +140,7 @@ class VirtualMachineTest : public testing::Test {
     std::unique_ptr<LoadedConfig> loaded_;
     std::unique_ptr<Machine> machine_;
     std::vector<motion::TraceSample> samples_;
+    JointJudge judge_;
     task::RequestId run_ = 0;
 };
 

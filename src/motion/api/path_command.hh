@@ -41,6 +41,8 @@ struct MoveTerms {
     double corner_scale = 0;        ///< G64 R: part of the reachable corner speed; 0: TRAJ_CORNER_SCALE
     bool isFeedOverridable = true;
     double feed_per_revolution = 0;  ///< > 0: synched to the spindle
+    /// The tool keeps to the spindle's angle, not only to its speed.
+    bool isThread() const noexcept { return feed_per_revolution > 0 && !isVelocitySynched; }
     std::int8_t synch_spindle = 0;
     bool isVelocitySynched = false;
     bool isWaitingForSpindleSpeed = false;  ///< hold before this move until spindle.N.at-speed

@@ -97,6 +97,7 @@ enum class Reason : std::uint16_t {
     NOT_A_NUMBER,
     NOT_SUPPORTED,
     BAD_ARC,
+    RIGID_TAPPING,
     JOG_INHIBITED,
     HOMING_INHIBITED,
     SYNCHRONISED_JOINT,  ///< a joint of a negative HOME_SEQUENCE is not jogged alone
@@ -128,6 +129,10 @@ enum class FaultKind : std::uint16_t {
     SPINDLE_FAULT,
     MISC_ERROR,
     NO_WAY_ON,        ///< the planner stands and finds no plan
+    JOG_JOINT_LIMIT,  ///< an axis jog was stopped before a joint's soft limit
+    JOG_UNREACHABLE,  ///< an axis jog was stopped before a pose that the kinematics do not reach
+    JOINT_TOO_FAST,   ///< value: over what is allowed; kinematics that cannot be planned with
+    JOINT_LEFT_RANGE,
     THREAD_TOO_FAST,  ///< index: spindle; value: needed speed over the possible one
     COUNT,
 };

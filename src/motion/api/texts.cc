@@ -68,6 +68,8 @@ std::string reason_text(const Answer &answer) {
     case Reason::PROBE_ALREADY_TRIPPED: return "the probe is already tripped before the probing move";
     case Reason::NOT_A_NUMBER: return "a value is not a finite number";
     case Reason::NOT_SUPPORTED: return "not supported yet by this motion controller";
+    case Reason::RIGID_TAPPING:
+        return "G33.1: rigid tapping is not supported by this version; tap with a floating holder (G84, G74)";
     case Reason::BAD_ARC: return "the arc's centre, normal and end do not make a helix";
     case Reason::JOG_INHIBITED:
         return "jogging is inhibited: pin motion.jog-inhibit, motion.jog-stop or motion.jog-stop-immediate "
@@ -100,6 +102,18 @@ std::string what_failed(const Fault &fault) {
     case FaultKind::PROBE_TRIPPED_IN_MOVE: return "probe tripped during a move that does not probe";
     case FaultKind::NO_WAY_ON:
         return "the planner finds no motion on from here that keeps all limits and the tolerance of the path";
+    case FaultKind::JOG_JOINT_LIMIT:
+        return fmt::format("the jog was stopped: joint {} would leave its soft limits", i);
+    case FaultKind::JOG_UNREACHABLE: return "the jog was stopped: the kinematics do not reach where it leads";
+    case FaultKind::JOINT_TOO_FAST:
+        return fmt::format("joint {} had to move at {:.2f} times its limit of speed or acceleration: these "
+                           "kinematics cannot be planned with, so lower the feed or the limits of the axes",
+                           i, fault.value);
+    case FaultKind::JOINT_LEFT_RANGE:
+        return fmt::format(
+            "the path leads joint {} beyond its soft limit: these kinematics cannot be planned "
+            "with",
+            i);
     case FaultKind::THREAD_TOO_FAST:
         return fmt::format(
             "the thread needs {:.2f} times the speed that the machine, or its velocity override, "

@@ -109,12 +109,14 @@ void Controller::stop_category_1(FaultKind kind, int index, double value) noexce
     raise(kind, index, value);
     stop_ = Stop::CATEGORY_1;
     homing_.abort(homing::Failure::ABORTED);
+    isHomeDue_ = false;
     executor_.drop();
     stop_jogs(false);
 }
 
 void Controller::disable() noexcept {
     homing_.abort(homing::Failure::ABORTED);
+    isHomeDue_ = false;
     executor_.stop_now();
     isEnabled_ = false;
     stop_ = Stop::NONE;
@@ -140,6 +142,7 @@ void Controller::disable() noexcept {
 
 void Controller::abort_all() noexcept {
     homing_.abort(homing::Failure::ABORTED);
+    isHomeDue_ = false;
     executor_.drop();
     stop_jogs(false);
     isPaused_ = false;

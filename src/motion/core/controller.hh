@@ -57,11 +57,13 @@ class Controller {
         int backlash_side = 0;       ///< +1 or -1 once the joint has moved
         traj::FreePlanner backlash;  ///< filtered backlash compensation
         traj::JogPlanner free;
+        double wanted_velocity = 0;  ///< of the jog or homing move, before the override
         JogSource jog = JogSource::NONE;
         std::int32_t wheel_counts = 0;
     };
     struct AxisState {
         traj::JogPlanner teleop;
+        double wanted_velocity = 0, wanted_acceleration = 0;  ///< of the jog, before joints limit it
         JogSource jog = JogSource::NONE;
         std::int32_t wheel_counts = 0;
     };
@@ -103,6 +105,10 @@ class Controller {
     Reason jog_to(const JogTarget &target, double position, double velocity, JogSource source) noexcept;
     void jog_range(const JogTarget &target, double &low, double &high) const noexcept;
     Reason home(const Inputs &in, int joint) noexcept;
+    /// Or about to begin, once the jogs that it has stopped are at rest.
+    bool isHomingUnderWay() const noexcept { return homing_.isActive() || isHomeDue_; }
+    /// The feed override acts on jogs and homing as well.
+    double jog_scale() const noexcept { return isFeedOverrideEnabled_ ? feed_scale_ : 1.0; }
     Reason unhome(int joint) noexcept;
     void step_wheel(const Inputs &in, const JogTarget &target, const WheelInput &wheel,
                     std::int32_t &counts) noexcept;
@@ -119,6 +125,14 @@ class Controller {
     traj::Retrace::Use use_of(const geom::Pose &pose) noexcept;
     double max_jerk_of(const JogTarget &target) const noexcept;
     bool isJerkLimited() const noexcept;
+
+    // --- controller_teleop.cc: jogs of axes where joints are not axes
+    struct TeleopLoad;
+    void limit_teleop() noexcept;
+    bool add_load(const geom::Pose &pose, TeleopLoad &load) const noexcept;
+    void apply_load(const TeleopLoad &load) noexcept;
+    int joint_left_by(const geom::Pose &pose) const noexcept;
+    void check_joint_steps() noexcept;
 
     // --- controller_joints.cc
     void read_feedback(const Inputs &in) noexcept;
@@ -192,6 +206,9 @@ class Controller {
     bool isPathLeft_ = false;        ///< the path was dropped while going back
     double reverse_rate_ = 0;        ///< of the commanded speed, without its sign
     std::uint64_t drops_seen_ = 0;
+    bool isHomeDue_ = false;
+    int home_due_ = -1;                 ///< the joint, -1: all
+    bool isTeleopStopped_ = false;      ///< by a joint's limit, and said
     geom::Pose last_pose_, last_step_;  ///< of coordinated motion
     PathLimits path_limits_;
     std::uint32_t steps_ = 0;

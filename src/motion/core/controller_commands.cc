@@ -93,8 +93,7 @@ Reason Controller::handle_state(const Inputs &in, const CommandBody &body, std::
         if (isAnythingMoving()) {
             return Reason::MOVING;
         }
-        joint(c->joint).isActive = c->isActive;
-        joint(c->joint).isAmpWanted = isEnabled_ && c->isActive;
+        joint(c->joint).isActive = c->isActive;  // its amplifier stays as it is
         return Reason::NONE;
     }
     if (const auto *c = std::get_if<OverrideLimits>(&body)) {
@@ -168,7 +167,7 @@ Reason Controller::set_mode(Mode mode) noexcept {
     if (mode == mode_) {
         return Reason::NONE;
     }
-    if (homing_.isActive()) {
+    if (isHomingUnderWay()) {
         return Reason::HOMING;
     }
     if (isAnythingMoving()) {

@@ -13,8 +13,13 @@ void Controller::step_coord(const Inputs &in) noexcept {
     if (mode_ == Mode::TELEOP) {
         executor_.step(cycle_);
         executor_.set_position(carte_pos_cmd_);
+        limit_teleop();
         for (int i = 0; i < MAX_AXES; ++i) {
             traj::JogPlanner &p = axes_[at(i)].teleop;
+            if (isIdentity() && !p.isAtRest()) {
+                p.max_velocity =
+                    std::min(axes_[at(i)].wanted_velocity * jog_scale(), max_velocity_of({false, i}));
+            }
             p.step(config_.period_s);
             pose[i] = p.position;
         }
@@ -23,6 +28,7 @@ void Controller::step_coord(const Inputs &in) noexcept {
     }
     check_probe(in);
     move_by_pose(pose);
+    check_joint_steps();
     if (mode_ == Mode::COORD && !link_.retrace.isAway()) {
         isAdaptiveFeedEnabled_ ? link_.retrace.record(pose, use_of(pose)) : link_.retrace.clear();
     }

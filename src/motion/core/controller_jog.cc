@@ -103,7 +103,7 @@ Reason Controller::check_jog(const Inputs &in, const JogTarget &target, double d
     if (mode_ != (target.isJoint ? Mode::FREE : Mode::TELEOP)) {
         return Reason::WRONG_MODE;
     }
-    if (homing_.isActive()) {
+    if (isHomingUnderWay()) {
         return Reason::HOMING;
     }
     if (in.isJogInhibited || in.isJogStopped || in.isJogStoppedNow) {
@@ -145,6 +145,13 @@ Reason Controller::jog_to(const JogTarget &target, double position, double veloc
     p.max_velocity = std::min(std::abs(velocity), max_velocity_of(target));
     p.max_acceleration = max_acceleration_of(target);
     p.max_jerk = max_jerk_of(target);
+    if (target.isJoint) {
+        joint(target.index).wanted_velocity = p.max_velocity;
+    } else {
+        axes_[at(target.index)].wanted_velocity = p.max_velocity;
+        axes_[at(target.index)].wanted_acceleration = p.max_acceleration;
+        isTeleopStopped_ = false;
+    }
     source_of(target) = source;
     isOverrideInJog_ = isOverrideInJog_ || isOverridingLimits_;
     return Reason::NONE;
@@ -257,16 +264,16 @@ Reason Controller::home(const Inputs &in, int j) noexcept {
     if (mode_ != Mode::FREE) {
         return Reason::WRONG_MODE;
     }
-    if (homing_.isActive()) {
+    if (isHomingUnderWay()) {
         return Reason::HOMING;
     }
     if (in.isHomingInhibited) {
         return Reason::HOMING_INHIBITED;
     }
-    if (isAnythingMoving()) {
-        return Reason::MOVING;
-    }
-    homing_.start(j);
+    // Whatever is jogged comes to rest first.
+    stop_jogs(false);
+    isHomeDue_ = true;
+    home_due_ = j;
     return Reason::NONE;
 }
 
@@ -274,7 +281,7 @@ Reason Controller::unhome(int j) noexcept {
     if (j < -2 || j >= config_.num_joints) {
         return Reason::NO_SUCH_JOINT;
     }
-    if (homing_.isActive()) {
+    if (isHomingUnderWay()) {
         return Reason::HOMING;
     }
     if (isAnythingMoving()) {
@@ -338,6 +345,9 @@ void Controller::step_wheel(const Inputs &in, const JogTarget &target, const Whe
     if (jog_to(target, wanted, max_velocity_of(target), JogSource::WHEEL) == Reason::NONE) {
         const bool isFraction = wheel.accel_fraction > 0 && wheel.accel_fraction <= 1;
         p.max_acceleration *= isFraction ? wheel.accel_fraction : 1.0;
+        if (!target.isJoint) {
+            axes_[at(target.index)].wanted_acceleration = p.max_acceleration;
+        }
     }
 }
 

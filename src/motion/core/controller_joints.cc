@@ -111,6 +111,10 @@ std::uint32_t Controller::homed_mask() const noexcept {
 
 void Controller::step_homing(const Inputs &in) noexcept {
     const std::uint32_t homed_before = homed_mask();
+    if (isHomeDue_ && !isAnythingMoving()) {
+        isHomeDue_ = false;
+        homing_.start(home_due_);
+    }
     if (homing_.hasWork()) {
         drive_homing(in);
     }
@@ -156,7 +160,7 @@ void Controller::drive_homing(const Inputs &in) noexcept {
             s.free.stop();
         } else if (c.move != homing::Move::NONE) {
             const double vmax = get(Parameter::JOINT_MAX_VELOCITY, j);
-            s.free.max_velocity = c.velocity > 0 ? std::min(c.velocity, vmax) : vmax;
+            s.wanted_velocity = c.velocity > 0 ? std::min(c.velocity, vmax) : vmax;
             s.free.target = c.move == homing::Move::TO ? c.value : s.free.position + c.value;
         }
     }
@@ -168,6 +172,8 @@ void Controller::move_joints() noexcept {
     std::array<double, MAX_JOINTS> positions{};
     for (int j = 0; j < config_.num_joints; ++j) {
         JointState &s = joint(j);
+        s.free.max_velocity =
+            std::min(s.wanted_velocity * jog_scale(), get(Parameter::JOINT_MAX_VELOCITY, j));
         s.free.step(config_.period_s);
         const double v = (s.free.position - s.pos_cmd) / config_.period_s;
         s.acc_cmd = (v - s.vel_cmd) / config_.period_s;

@@ -17,7 +17,7 @@ void Controller::fill(const Inputs &in, Outputs &out) noexcept {
     s.isEnabled = isEnabled_;
     s.isTaskLost = isTaskLost_;
     s.isAllHomed = homing_.isAllHomed();
-    s.isHoming = homing_.isActive();
+    s.isHoming = isHomingUnderWay();
     s.isCartePosValid = isCartePosValid_;
     s.carte_pos_cmd = carte_pos_cmd_;
     s.carte_pos_fb = carte_pos_fb_;

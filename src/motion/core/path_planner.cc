@@ -10,7 +10,6 @@ namespace {
 
 /// Updates without a new command after which the open end of the last move is planned to its very end.
 constexpr int STARVING_UPDATES = 3;
-constexpr double SOFT_LIMIT_ROUNDING = 1e-6;
 
 constexpr double HORIZON_S = 0.1;
 /// From a plan's making to its start; a planner that takes longer is late, and the plan is made again.
@@ -18,15 +17,6 @@ constexpr double LATENCY_S = 3e-3;
 
 std::uint64_t latency_cycles(double period_s) noexcept {
     return std::max<std::uint64_t>(2, static_cast<std::uint64_t>(std::ceil(LATENCY_S / period_s)));
-}
-
-/// The tool keeps to the spindle's angle, not only to its speed.
-bool isThread(const MoveTerms &terms) noexcept {
-    return terms.feed_per_revolution > 0 && !terms.isVelocitySynched;
-}
-
-bool isFinite(const geom::Pose &p) noexcept {
-    return std::all_of(p.c.begin(), p.c.end(), [](double x) { return std::isfinite(x); });
 }
 
 }  // namespace
@@ -186,7 +176,7 @@ bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
     }
     // The corners of a thread depend on the speed of its spindle.
     const auto *line = std::get_if<Line>(&c.body);
-    if (line != nullptr && isThread(line->terms) && wasLocked_ && !areSpindlesReady()) {
+    if (line != nullptr && line->terms.isThread() && wasLocked_ && !areSpindlesReady()) {
         return true;
     }
     isQueueFull_ = isPathBegun_ && !planner_.hasRoom(view_.executor);
@@ -237,6 +227,9 @@ Reason PathPlanner::accept(const PathCommand &c) noexcept {
     if (view_.mode != Mode::COORD) {
         return Reason::WRONG_MODE;
     }
+    if (std::holds_alternative<RigidTap>(c.body)) {
+        return Reason::RIGID_TAPPING;
+    }
     begin_path(c);
     if (const auto *line = std::get_if<Line>(&c.body)) {
         return accept_line(c, line->end, line->terms);
@@ -254,190 +247,6 @@ Reason PathPlanner::accept(const PathCommand &c) noexcept {
         return accept_analog(c, *output);
     }
     return Reason::NOT_SUPPORTED;
-}
-
-traj::MoveRequest PathPlanner::request_for(const PathCommand &c, const MoveTerms &terms) const noexcept {
-    traj::MoveRequest r;
-    r.tag.id = c.id;
-    r.tag.line = terms.source.line;
-    r.tag.file_index = terms.source.file_index;
-    r.tag.block = terms.source.block;
-    r.tag.type = static_cast<std::uint8_t>(terms.type);
-    r.tag.requested_velocity = terms.feed;
-    r.join = terms.mode == PathMode::EXACT_STOP   ? traj::Join::STOP
-             : terms.mode == PathMode::EXACT_PATH ? traj::Join::EXACT
-                                                  : traj::Join::BLEND;
-    r.tolerance = terms.tolerance;
-    r.corner_scale = terms.corner_scale > 0 ? terms.corner_scale : limits_.corner_scale;
-    r.isMergeAdded = limits_.areTolerancesAdded;
-    r.set_merge(terms.naivecam_tolerance);
-    const bool hasFeed = terms.feed > 0 || terms.feed_per_revolution > 0;
-    r.isRapid = terms.type == MotionType::TRAVERSE || terms.type == MotionType::INDEX_ROTARY || !hasFeed;
-    r.isOverridable = terms.isFeedOverridable;
-    r.feed_per_revolution = terms.feed_per_revolution;
-    r.spindle = terms.synch_spindle;
-    // A thread begins with the spindle at speed; feed per revolution follows whatever it does.
-    r.isLocked = isThread(terms);
-    const bool isChainStart = r.isLocked && !wasLocked_;
-    r.isPhased = isChainStart;
-    r.isGated = terms.isWaitingForSpindleSpeed || isChainStart;
-    return r;
-}
-
-void PathPlanner::add_pending(const PathCommand &c, const SourceTag &source) noexcept {
-    Pending p;
-    p.id = c.id;
-    p.after_move = planner_.last_move();
-    p.source = source;
-    p.epoch = c.epoch;
-    pending(pending_tail_++) = p;
-}
-
-/// Soft limits over the whole extent, joints where they are not axes.
-Reason PathPlanner::check_reach(const traj::Primitive &p) noexcept {
-    geom::Pose low;
-    geom::Pose high;
-    traj::extent(p, low, high);
-    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
-        refused_index_ = static_cast<std::int16_t>(i);
-        const bool isMoving = high[i] - low[i] > 1e-9;
-        if (isMoving && (limits_.axes & (1U << i)) == 0) {
-            return Reason::NO_SUCH_AXIS;
-        }
-        // A move that leads back in from outside is welcome as far as its end is inside.
-        const double from = p.start[i];
-        const bool isLow = low[i] < std::min(limits_.low[i], from) - SOFT_LIMIT_ROUNDING ||
-                           p.end[i] < limits_.low[i] - SOFT_LIMIT_ROUNDING;
-        const bool isHigh = high[i] > std::max(limits_.high[i], from) + SOFT_LIMIT_ROUNDING ||
-                            p.end[i] > limits_.high[i] + SOFT_LIMIT_ROUNDING;
-        if (isMoving && (isLow || isHigh)) {
-            return Reason::BEYOND_SOFT_LIMIT;
-        }
-    }
-    refused_index_ = -1;
-    const bool isChecked = kinematics_.identity() == nullptr && kinematics_.isShareable();
-    return isChecked ? check_joints(p) : Reason::NONE;
-}
-
-Reason PathPlanner::check_joints(const traj::Primitive &p) noexcept {
-    constexpr int SAMPLES = 64;
-    double joints[MAX_JOINTS] = {};
-    for (int n = 0; n <= SAMPLES; ++n) {
-        if (kinematics_.inverse(traj::position_at(p, p.length * n / SAMPLES), joints) != kins::Status::OK) {
-            return Reason::UNREACHABLE;
-        }
-        for (int j = 0; j < config_.num_joints; ++j) {
-            const auto i = static_cast<std::size_t>(j);
-            if (joints[j] < limits_.joints.low[i] - SOFT_LIMIT_ROUNDING ||
-                joints[j] > limits_.joints.high[i] + SOFT_LIMIT_ROUNDING) {
-                refused_index_ = static_cast<std::int16_t>(j);
-                return Reason::JOINT_BEYOND_LIMIT;
-            }
-        }
-    }
-    return Reason::NONE;
-}
-
-Reason PathPlanner::accept_line(const PathCommand &c, const geom::Pose &end,
-                                const MoveTerms &terms) noexcept {
-    if (!isFinite(end) || !std::isfinite(terms.feed) || !std::isfinite(terms.tolerance) ||
-        !std::isfinite(terms.corner_scale)) {
-        return Reason::NOT_A_NUMBER;
-    }
-    if (terms.feed < 0 || terms.tolerance < 0 || terms.synch_spindle >= config_.num_spindles) {
-        return Reason::OUT_OF_RANGE;
-    }
-    const traj::Primitive p = traj::make_line(planner_.end(), end);
-    const Reason reason = check_reach(p);
-    if (reason != Reason::NONE) {
-        return reason;
-    }
-    if (p.length > 1e-12 * (1.0 + geom::norm(end))) {
-        planner_.add(p, request_for(c, terms));
-        wasLocked_ = isThread(terms);
-    }
-    add_pending(c, terms.source);
-    return Reason::NONE;
-}
-
-Reason PathPlanner::accept_arc(const PathCommand &c, const Arc &arc) noexcept {
-    const bool isSound = isFinite(arc.end) && isFinite(arc.centre) && isFinite(arc.normal) &&
-                         std::isfinite(arc.terms.feed) && std::isfinite(arc.terms.tolerance);
-    if (!isSound) {
-        return Reason::NOT_A_NUMBER;
-    }
-    if (arc.terms.feed < 0 || arc.terms.tolerance < 0 || arc.terms.synch_spindle >= config_.num_spindles) {
-        return Reason::OUT_OF_RANGE;
-    }
-    traj::Primitive p;
-    const traj::ArcShape shape{arc.centre, arc.normal, arc.angle_rad, arc.isInUvw};
-    if (traj::make_arc(planner_.end(), arc.end, shape, p) != traj::ArcFault::NONE) {
-        return Reason::BAD_ARC;
-    }
-    const Reason reason = check_reach(p);
-    if (reason != Reason::NONE) {
-        return reason;
-    }
-    planner_.add(p, request_for(c, arc.terms));
-    wasLocked_ = isThread(arc.terms);
-    add_pending(c, arc.terms.source);
-    return Reason::NONE;
-}
-
-/// A probe comes alone: what was before it is complete, and nothing is taken until it is.
-Reason PathPlanner::accept_probe(const PathCommand &c, const Probe &probe) noexcept {
-    if (view_.isProbeClosed != probe.isAway) {
-        return Reason::PROBE_ALREADY_TRIPPED;
-    }
-    const traj::Sequence before = planner_.last_move();
-    MoveTerms terms = probe.terms;
-    terms.type = MotionType::PROBING;
-    terms.mode = PathMode::EXACT_STOP;
-    const Reason reason = accept_line(c, probe.end, terms);
-    if (reason != Reason::NONE) {
-        return reason;
-    }
-    if (planner_.last_move() != before) {
-        traj::MoveTag &tag = link_.store.move(planner_.last_move());
-        tag.isProbe = true;
-        tag.isProbeAway = probe.isAway;
-    }
-    planner_.release_end();
-    pending(pending_tail_ - 1).isProbe = true;
-    pending(pending_tail_ - 1).isTripRequired = probe.mustTrip;
-    return Reason::NONE;
-}
-
-Reason PathPlanner::accept_digital(const PathCommand &c, const SynchedDigitalOutput &output) noexcept {
-    if (output.index < 0 || output.index >= config_.num_dio) {
-        return Reason::NO_SUCH_OUTPUT;
-    }
-    traj::PathEvent event;
-    event.index = static_cast<std::int16_t>(output.index);
-    event.value = output.isOn ? 1 : 0;
-    return accept_event(c, event);
-}
-
-Reason PathPlanner::accept_analog(const PathCommand &c, const SynchedAnalogOutput &output) noexcept {
-    if (output.index < 0 || output.index >= config_.num_aio) {
-        return Reason::NO_SUCH_OUTPUT;
-    }
-    if (!std::isfinite(output.value)) {
-        return Reason::NOT_A_NUMBER;
-    }
-    traj::PathEvent event;
-    event.isAnalog = true;
-    event.index = static_cast<std::int16_t>(output.index);
-    event.value = output.value;
-    return accept_event(c, event);
-}
-
-Reason PathPlanner::accept_event(const PathCommand &c, const traj::PathEvent &event) noexcept {
-    if (!planner_.add_event(event)) {
-        return Reason::QUEUE_FULL;
-    }
-    add_pending(c, {});
-    return Reason::NONE;
 }
 
 bool PathPlanner::areSpindlesReady() const noexcept {

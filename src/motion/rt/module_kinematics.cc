@@ -45,7 +45,12 @@ const char *ModuleKinematics::find(int num_joints) noexcept {
     }
     const auto is_pure = find_function<int (*)()>("mw_kinematics_is_pure");
     isPure_ = is_pure != nullptr && is_pure() != 0;
-    probe_identity(num_joints);
+    // Only who says so has joints that are axes: a table whose axes cross looks so at every single one.
+    const auto is_identity = find_function<int (*)()>("mw_kinematics_is_identity");
+    const bool isSaid = kind_ == kins::Kind::IDENTITY || (is_identity != nullptr && is_identity() != 0);
+    if (isSaid) {
+        find_axes(num_joints);
+    }
     return nullptr;
 }
 
@@ -53,9 +58,9 @@ int ModuleKinematics::hold(int comp_id) const noexcept {
     return mw_ext_use_module("kinematicsInverse", comp_id);
 }
 
-/// Finds which axis each joint follows, whatever the type says: a gantry that calls itself "both" is one as
-/// well. Inverse of unit poses gives it away; anything else than 0 and 1 is no identity.
-void ModuleKinematics::probe_identity(int num_joints) noexcept {
+/// Finds which axis each joint follows: the inverse of unit poses gives it away; anything else than 0 and 1
+/// is no identity, whatever the module says.
+void ModuleKinematics::find_axes(int num_joints) noexcept {
     double zero[MAX_JOINTS];
     for (double &x : zero) {
         x = NAN;  // joints that the module does not set stay so

@@ -22,7 +22,7 @@ class ModuleKinematics final : public kins::Kinematics {
     bool isShareable() const noexcept override { return isIdentity_ || isPure_; }
 
   private:
-    void probe_identity(int num_joints) noexcept;
+    void find_axes(int num_joints) noexcept;
 
     decltype(&kinematicsForward) forward_ = nullptr;
     decltype(&kinematicsInverse) inverse_ = nullptr;

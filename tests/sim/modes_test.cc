@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A whole machine in virtual time: modes of task and motion agree, requests end, jogs and homing follow the
+// override, and what a program asks for is done when it is said to be.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "sim/machine_file.hh"
+#include "sim/virtual_machine.hh"
+
+namespace mw::machine {
+namespace {
+
+class ModesTest : public VirtualMachineTest {
+  protected:
+    void SetUp() override { switch_on(); }
+    task::Progress progress(task::RequestId id) const { return machine_->task().progress(id); }
+    void jog_x(double velocity) {
+        ask(task::Jog{task::JogKind::CONTINUOUS, true, 0, velocity, 0});
+        cycles(300);
+    }
+    double joint_speed(int joint) const {
+        return std::abs(motion().joint[static_cast<std::size_t>(joint)].vel_cmd);
+    }
+};
+
+TEST_F(ModesTest, AModeThatMotionRefusesIsRefused_D3) {
+    ask(task::SetMode{task::Mode::MANUAL});
+    cycles(5);
+    jog_x(20);
+    ASSERT_GT(joint_speed(0), 10);
+    const auto id = ask(task::SetMode{task::Mode::AUTO});
+    cycles(10);
+    EXPECT_EQ(progress(id), task::Progress::REFUSED);
+    EXPECT_NE(machine_->task().reason(id), "");
+    EXPECT_EQ(machine_->task().status().mode, task::Mode::MANUAL);
+    write("p.ngc", "G21 G0 X1\nM2\n");
+    ask(task::OpenProgram{(folder_ / "p.ngc").string()});
+    const auto run = ask(task::RunProgram{});
+    cycles(20);
+    EXPECT_EQ(progress(run), task::Progress::REFUSED);
+    ask(task::AbortAll{});
+    cycles(500);
+    const auto again = ask(task::SetMode{task::Mode::AUTO});
+    cycles(10);
+    EXPECT_EQ(progress(again), task::Progress::DONE) << machine_->task().reason(again);
+    run_ = ask(task::RunProgram{});
+    EXPECT_EQ(finish(), task::Progress::DONE) << messages();
+}
+
+TEST_F(ModesTest, CommandsBehindAModeChangeWaitForIt_D3) {
+    task::Task &task = machine_->task();
+    const auto mode = task.submit(task::SetMode{task::Mode::MDI});
+    run_ = task.submit(task::Mdi{"G21 G0 X3"});
+    EXPECT_EQ(finish(), task::Progress::DONE) << messages();
+    EXPECT_EQ(progress(mode), task::Progress::DONE);
+    EXPECT_DOUBLE_EQ(x(), 3);
+}
+
+TEST_F(ModesTest, AnAbortEndsARunAtAnyTime_D3) {
+    for (int wait = 0; wait < 60; wait += 3) {
+        ask(task::SetMode{task::Mode::AUTO});
+        start("G21 G90 G1 X20 F6000\nX0\nM2\n");
+        cycles(wait);
+        machine_->task().submit(task::AbortAll{});
+        cycles(400);
+        EXPECT_NE(progress(run_), task::Progress::STARTED) << wait;
+    }
+}
+
+TEST_F(ModesTest, ARunIsNotForgottenHoweverManyRequestsFollow_D8) {
+    start("G21 G90 G1 X100 F600\nM2\n");
+    cycles(20);
+    for (int i = 0; i < 1000; ++i) {
+        machine_->task().submit(task::SetOverride{task::Override::FEED, 1.0, 0});
+        if (i % 50 == 0) {
+            cycles(1);
+        }
+    }
+    EXPECT_EQ(progress(run_), task::Progress::STARTED);
+    EXPECT_EQ(finish(), task::Progress::DONE) << messages();
+    EXPECT_NEAR(x(), 100, 1e-9);
+}
+
+TEST_F(ModesTest, TheFeedOverrideActsOnJogs_D9) {
+    ask(task::SetMode{task::Mode::MANUAL});
+    ask(task::SetOverride{task::Override::FEED, 0.5, 0});
+    jog_x(20);
+    EXPECT_NEAR(joint_speed(0), 10, 1e-6);
+    ask(task::SetOverride{task::Override::FEED, 0, 0});
+    cycles(300);
+    EXPECT_NEAR(joint_speed(0), 0, 1e-9);
+    ask(task::SetOverride{task::Override::FEED, 1, 0});
+    cycles(300);
+    EXPECT_NEAR(joint_speed(0), 20, 1e-6);
+    ask(task::AbortAll{});
+    cycles(300);
+    ask(task::SetTeleop{true});
+    cycles(10);
+    ask(task::SetOverride{task::Override::FEED, 0.25, 0});
+    ask(task::Jog{task::JogKind::CONTINUOUS, false, 0, -20, 0});
+    cycles(300);
+    EXPECT_NEAR(joint_speed(0), 5, 1e-6);
+}
+
+TEST_F(ModesTest, HomingDuringAJogStopsTheJogAndHomes_D9) {
+    switch_on_config(SimMachine{}.write(folder_));  // joints that home where they stand
+    ask(task::SetMode{task::Mode::MANUAL});
+    jog_x(50);
+    ASSERT_GT(joint_speed(0), 20);
+    const auto id = ask(task::HomeJoint{0});
+    EXPECT_TRUE(motion().isHoming);
+    EXPECT_EQ(progress(id), task::Progress::STARTED);
+    const auto jog = ask(task::Jog{task::JogKind::CONTINUOUS, true, 0, 50, 0});
+    cycles(500);
+    EXPECT_EQ(progress(id), task::Progress::DONE) << messages();
+    EXPECT_NE(progress(jog), task::Progress::STARTED);
+    EXPECT_TRUE(motion().joint[0].isHomed);
+    EXPECT_NEAR(motion().joint[0].pos_cmd, 0, 1e-9) << "stood when it homed";
+    EXPECT_EQ(joint_speed(0), 0);
+}
+
+TEST_F(ModesTest, ToolOffsetsAreOnThePinsWhenG43IsDone_D14) {
+    for (const double z : {12.5, -3.25, 40.0}) {
+        ASSERT_EQ(mdi(fmt::format("G21 G43.1 Z{}", z)), task::Progress::DONE) << messages();
+        EXPECT_DOUBLE_EQ(machine_->hal().get("motion.tooloffset.z")->as_number(), z);
+    }
+}
+
+TEST_F(ModesTest, TheSimulatedSpindleOrients_D13) {
+    ASSERT_EQ(mdi("S500 M3"), task::Progress::DONE);
+    cycles(500);
+    for (const double angle : {90.0, 10.0, 270.0}) {
+        ASSERT_EQ(mdi(fmt::format("S500 M19 R{} Q2", angle)), task::Progress::DONE) << messages();
+        cycles(100);
+        const double turns = machine_->hal().get("spindle.0.revs")->as_number();
+        EXPECT_NEAR(std::remainder(turns * 360 - angle, 360.0), 0, 1.0);
+    }
+}
+
+TEST_F(ModesTest, RigidTappingIsRefusedByItsName) {
+    start("G21 G90 M3 S500\nG0 Z5\nG33.1 Z-5 K1\nM2\n");
+    EXPECT_EQ(finish(), task::Progress::FAILED);
+    const std::string all = messages();
+    EXPECT_NE(all.find("p.ngc:3"), std::string::npos) << all;
+    EXPECT_NE(all.find("G33.1"), std::string::npos) << all;
+}
+
+class AxesTest : public VirtualMachineTest {};
+
+TEST_F(AxesTest, ArcsOfUVWRun_D7) {
+    SimMachine foam;
+    foam.coordinates = "XYZUVW";
+    foam.kinematics = "trivkins coordinates=XYZUVW";
+    foam.joints.resize(6);
+    switch_on_config(foam.write(folder_));
+    struct Case {
+        const char *code;
+        int first, second;
+        const char *words;
+    };
+    for (const Case &c : {Case{"G17.1", geom::AXIS_U, geom::AXIS_V, "U10 V0 I5 J0"},
+                          Case{"G18.1", geom::AXIS_W, geom::AXIS_U, "W10 U0 K5 I0"},
+                          Case{"G19.1", geom::AXIS_V, geom::AXIS_W, "V10 W0 J5 K0"}}) {
+        SCOPED_TRACE(c.code);
+        ASSERT_EQ(mdi("G21 G90 G61 G0 U0 V0 W0"), task::Progress::DONE) << messages();
+        samples_.clear();
+        ASSERT_EQ(mdi(fmt::format("{} G2 {} F600", c.code, c.words)), task::Progress::DONE) << messages();
+        double highest = 0;
+        for (const motion::TraceSample &s : samples_) {
+            if (s.isInMotion == 0) {
+                continue;
+            }
+            EXPECT_NEAR(std::hypot(s.carte_pos_cmd[c.first] - 5, s.carte_pos_cmd[c.second]), 5, 1e-5);
+            highest = std::max(highest, s.carte_pos_cmd[c.second]);
+        }
+        EXPECT_NEAR(highest, 5, 0.01) << "clockwise, by the side of the second axis";
+        EXPECT_NEAR(motion().carte_pos_cmd[c.first], 10, 1e-9);
+    }
+}
+
+TEST_F(AxesTest, AngularLimitsOfTrajHold_D5) {
+    SimMachine mill;
+    mill.coordinates = "XYZA";
+    mill.kinematics = "trivkins coordinates=XYZA";
+    mill.joints.resize(4);
+    mill.joints[3] = {true, 180, 720, -3600, 3600, 0};
+    mill.traj = "MAX_ANGULAR_VELOCITY = 5\nMAX_ANGULAR_ACCELERATION = 20\n";
+    switch_on_config(mill.write(folder_));
+    samples_.clear();
+    ASSERT_EQ(mdi("G21 G90 G0 A20"), task::Progress::DONE) << messages();
+    double v = 0;
+    double a = 0;
+    for (std::size_t i = 2; i < samples_.size(); ++i) {
+        const auto at = [&](std::size_t k) { return samples_[k].carte_pos_cmd[geom::AXIS_A]; };
+        v = std::max(v, std::abs(at(i) - at(i - 1)) * 1e3);
+        a = std::max(a, std::abs(at(i) - 2 * at(i - 1) + at(i - 2)) * 1e6);
+    }
+    EXPECT_NEAR(v, 5, 1e-3);
+    EXPECT_NEAR(a, 20, 1e-2);
+}
+
+}  // namespace
+}  // namespace mw::machine
