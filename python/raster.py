@@ -11,7 +11,9 @@ Link PROGRAMMER.program to raster.N.program (and set the size of the port's sign
 back.
 """
 import enum
+import time
 
+import hal
 import pyhal
 
 
@@ -62,7 +64,7 @@ class RasterProgrammer:
         """
         if isinstance(pixels, str):
             digits = self._digits or 1
-            pixels = (int(pixels[at:at + digits], 16) for at in range(0, len(pixels), digits))
+            pixels = [int(pixels[at:at + digits], 16) for at in range(0, len(pixels), digits)]
         pixels = list(pixels)
         if len(pixels) > self._missing:
             raise ValueError(f"the line has {self._missing} pixels left, not {len(pixels)}")
@@ -74,17 +76,35 @@ class RasterProgrammer:
         for at in range(0, len(text), self.CHUNK):
             self._send(text[at:at + self.CHUNK], timeout)
 
-    def start(self):
-        """The run begins at the position of this moment."""
-        self.run.value = True
+    def start(self, timeout=1.0):
+        """The run begins at the position of this moment.
 
-    def stop(self):
-        """The run ends; the next line is read."""
+        Where the pin `enabled` is linked, waits until raster says that it follows the line; RuntimeError at a fault,
+        TimeoutError after timeout seconds.
+        """
+        self.run.value = True
+        self._wait_until(True, timeout)
+
+    def stop(self, timeout=1.0):
+        """The run ends; the next line is read. Waits as start() does."""
         self.run.value = False
+        self._wait_until(False, timeout)
 
     def exit(self):
         """Ends the component."""
         self.component.exit()
+
+    def _wait_until(self, enabled, timeout):
+        if not hal.pin_has_writer(self.enabled.name):
+            return
+        end = time.monotonic() + timeout
+        while bool(self.enabled.value) != enabled:
+            code = self.fault_code.value
+            if code and enabled:
+                raise RuntimeError(f"raster has fault {code}")
+            if time.monotonic() >= end:
+                raise TimeoutError("raster does not follow: is it in a running thread, with a whole line?")
+            time.sleep(self.enabled.POLL_S)
 
     def _send(self, text, timeout):
         data = text.encode()

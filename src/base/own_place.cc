@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <new>
 #include <string_view>
 
 namespace mw {
@@ -30,7 +31,16 @@ std::string program_folder() {
     return slash == std::string_view::npos ? "." : std::string(program.substr(0, slash));
 }
 
+void tell_when_memory_ends() noexcept {
+    std::set_new_handler([] {
+        constexpr char TEXT[] = "no memory left: more is needed than the system (or 'ulimit -v') gives\n";
+        (void)!::write(STDERR_FILENO, TEXT, sizeof TEXT - 1);
+        ::_exit(1);
+    });
+}
+
 void offer_own_programs() {
+    tell_when_memory_ends();
     const std::string here = program_folder();
     prepend("PATH", here, "/usr/local/bin:/usr/bin:/bin");
     // In the build folder, and installed.

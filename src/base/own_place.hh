@@ -9,8 +9,13 @@ namespace mw {
 /// The folder of the running program's file; "." when the system does not say.
 std::string program_folder();
 
-/// Puts our programs first in PATH and our Python modules first in PYTHONPATH, so that programs started from
-/// here (loadusr, displays) find those of this version. Call it once at the start, while there is one thread.
+/// From now on a program that gets no memory says so and ends with status 1, instead of std::terminate. For
+/// the whole process, once, from main().
+void tell_when_memory_ends() noexcept;
+
+/// Calls tell_when_memory_ends(), and puts our programs first in PATH and our Python modules first in
+/// PYTHONPATH, so that programs started from here (loadusr, displays) find those of this version. Call it
+/// once at the start, while there is one thread.
 void offer_own_programs();
 
 }  // namespace mw

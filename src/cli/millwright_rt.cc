@@ -7,6 +7,7 @@
 #include <cstring>
 #include <string>
 
+#include "base/own_place.hh"
 #include "base/text.hh"
 #include "hal/core/hal.hh"
 #include "hal/host/host_server.hh"
@@ -63,6 +64,7 @@ Arguments read_arguments(int argc, char **argv) {
 }  // namespace
 
 int main(int argc, char **argv) {
+    mw::tell_when_memory_ends();
     if (argc == 2 && (std::strcmp(argv[1], "--help") == 0 || std::strcmp(argv[1], "-h") == 0)) {
         std::fputs(USAGE, stdout);
         return 0;

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "base/own_place.hh"
 #include "interp/standalone_run.hh"
 
 namespace {
@@ -31,6 +32,7 @@ int usage(const char *message, int status) {
 }  // namespace
 
 int main(int argc, char **argv) {
+    mw::tell_when_memory_ends();
     using Options = mw::interp::StandaloneOptions;
     Options options;
     if (argc > 1 && std::strcmp(argv[1], "--help") == 0) {

@@ -126,6 +126,9 @@ class IniParser {
             return;
         }
         if (section_.empty()) {
+            if (!isInBadSection_ && !file_.early_key_) {
+                file_.early_key_ = IniEntry{"", std::string(key), "", place};
+            }
             if (!isInBadSection_) {
                 sink_.error("'" + std::string(key) + "' stands before the first [SECTION]", place);
             }

@@ -3,6 +3,7 @@
 // facts).
 #pragma once
 
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -36,6 +37,8 @@ class IniFile {
     /// `name` relative to the folder of the INI file; absolute names and '~' stay what they are.
     std::string resolve_path(std::string_view name) const;
 
+    /// The first setting that stands before any section, and so belongs to none.
+    const std::optional<IniEntry> &early_key() const { return early_key_; }
     bool hasSection(std::string_view section) const;
     /// The `number`-th entry (from 1) of that key, or nullptr.
     const IniEntry *find(std::string_view section, std::string_view key, int number = 1) const;
@@ -55,6 +58,7 @@ class IniFile {
 
     std::string path_;
     std::vector<SectionHead> heads_;
+    std::optional<IniEntry> early_key_;
     std::vector<IniEntry> entries_;
 };
 

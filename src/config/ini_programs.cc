@@ -197,6 +197,12 @@ ProgramOutput run_inivar(const std::vector<std::string> &words) {
         return {255, "", "inivar: can't open " + query.file + "\n"};
     }
     const IniEntry *entry = look_up(*file, query, false);
+    if (entry == nullptr && file->early_key().has_value()) {
+        const IniEntry &early = *file->early_key();
+        return {1, "",
+                early.place.file + ':' + std::to_string(early.place.line) + ": error: Tag '" + early.key +
+                    "' found without prior section definition\n"};
+    }
     if (entry == nullptr) {
         return {1, "",
                 "Can not find -sec " + (query.hasSection ? query.section : "(null)") + " -var " +

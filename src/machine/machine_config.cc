@@ -138,10 +138,30 @@ void warn_without_effect(IniReader &ini, const std::string &section,
     }
 }
 
+/// A joint section beyond the last joint is one with a wrong number, so one that is missing is no choice.
+bool hasJointBeyond(const IniReader &ini, int num_joints) {
+    for (const std::string &section : ini.file().sections()) {
+        const auto number = section.starts_with("JOINT_") ? parse_int(section.substr(6)) : std::nullopt;
+        if (number.has_value() && *number >= num_joints) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void miss_joint(IniReader &ini, const std::string &section, int num_joints) {
+    if (!ini.file().hasSection(section) && hasJointBeyond(ini, num_joints)) {
+        ini.sink().error("section [" + section + "] is missing, and one stands beyond [KINS]JOINTS",
+                         {ini.file().path(), 0, 0}, "joints are numbered from 0");
+    } else {
+        miss_section(ini, section, "the joint is linear and has no limits, with 1 unit/s and 1 unit/s2");
+    }
+}
+
 void read_joints(IniReader &ini, MachineConfig &machine) {
     for (int joint = 0; joint < machine.num_joints; ++joint) {
         const std::string section = "JOINT_" + std::to_string(joint);
-        miss_section(ini, section, "the joint is linear and has no limits, with 1 unit/s and 1 unit/s2");
+        miss_joint(ini, section, machine.num_joints);
         check_travel(ini, section, "joint");
         read_scope(ini, section, motion::ParameterScope::JOINT, joint, machine);
         for (const char *key : {"MAX_VELOCITY", "MAX_ACCELERATION"}) {

@@ -18,6 +18,18 @@ TEST_F(Corpus, OneFunctionWithoutTheWord_B2) {
     EXPECT_EQ(number("gain.0.tmax"), 0);
 }
 
+TEST_F(Corpus, SettersNewerTypesAndAPersonalityByOption_B2) {
+    ASSERT_EQ(load("setters.comp", {"personality=7"}), "ok");
+    EXPECT_EQ(hal().pin("setters.0.a")->type, Type::S32);
+    EXPECT_EQ(hal().pin("setters.0.b")->type, Type::U32);
+    cycle({"setters.0"});
+    EXPECT_EQ(number("setters.0.b"), 10);
+    EXPECT_EQ(number("setters.0.many-1"), 1);
+    EXPECT_EQ(number("setters.0.many-0"), 0);
+    EXPECT_EQ(number("setters.0.level"), 1.5);
+    EXPECT_EQ(number("setters.0.kept-set"), 1) << "a pin of that name stays a pin";
+}
+
 TEST_F(Corpus, StartValuesNamesAndBits_B2) {
     ASSERT_EQ(load("onoff.comp", {"names=bed,nozzle"}), "ok");
     EXPECT_EQ(number("bed.setpoint"), 20);

@@ -77,6 +77,18 @@ TEST_F(Halcompile, Programs_B2) {
     EXPECT_EQ(hal().component("usrcount")->type, CompType::USER);
 }
 
+TEST_F(Halcompile, AProgramTakesCountOrNamesButNotBoth_B2) {
+    compile("usrcount.comp");
+    ::setenv("MILLWRIGHT_INSTANCE", hal().name().c_str(), 1);
+    Program refused({folder.path / "usrcount", "count=2", "names=a,b"});
+    ::unsetenv("MILLWRIGHT_INSTANCE");
+    int status = 0;
+    ASSERT_EQ(::waitpid(refused.pid, &status, 0), refused.pid);
+    refused.pid = 0;
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1);
+    EXPECT_FALSE(hal().component("usrcount"));
+}
+
 TEST_F(Halcompile, PythonPrograms_B2) {
     compile("pyusr.py", "--userspace");
     const fs::path program = folder.path / "pyusr";

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/own_place.hh"
 #include "base/text.hh"
 
 namespace mw {
@@ -123,6 +124,17 @@ TEST(Text, PrintableTextSteersNoTerminal) {
 TEST(Text, NearestNameIsOfferedOnlyWhenNear) {
     EXPECT_EQ(nearest_name("MAX_VELOCTY", {"MIN_LIMIT", "MAX_VELOCITY"}), "MAX_VELOCITY");
     EXPECT_EQ(nearest_name("ABC", {"MIN_LIMIT", "MAX_VELOCITY"}), "");
+}
+
+TEST(Memory, ItsEndIsToldAndNoCrash) {
+    EXPECT_EXIT(
+        {
+            tell_when_memory_ends();
+            // More than any address space has.
+            volatile std::size_t size = static_cast<std::size_t>(-1) / 4;
+            ::operator delete(::operator new(size));
+        },
+        testing::ExitedWithCode(1), "no memory left");
 }
 
 }  // namespace

@@ -65,6 +65,13 @@ TEST_F(IniPrograms, inivar_fails_with_the_words_that_scripts_know_A2) {
               "file>} [-num <nth item>]\n");
 }
 
+TEST_F(IniPrograms, inivar_names_a_key_that_stands_before_any_section_A2) {
+    std::ofstream(path) << "KEY = 1\n[A]\nX = 2\n";
+    EXPECT_EQ(inivar("-var KEY").err, path + ":1: error: Tag 'KEY' found without prior section definition\n");
+    EXPECT_EQ(inivar("-var KEY").status, 1);
+    EXPECT_EQ(inivar("-var X").out, "2\n");
+}
+
 TEST_F(IniPrograms, inivalue_checks_types_and_has_defaults_A2) {
     EXPECT_EQ(inivalue("--var=X --sec=B --type=sint").out, "31\n");
     EXPECT_EQ(inivalue("--var=ON --type=bool").out, "TRUE\n");

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* What a homing module exports: [EMCMOT]HOMEMOD names one. All functions are called in the servo thread but
- * homing_init and homeMotFunctions, which are called once at loading. Positions are in joint units, speeds in
- * joint units per second. */
+/* What a homing module of the field exports, so that such modules compile. The motion controller of this
+ * version homes by itself and calls none of them. Positions are in joint units, speeds in joint units per
+ * second. */
 #ifndef HOMING_H
 #define HOMING_H
 

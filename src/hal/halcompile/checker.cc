@@ -19,7 +19,7 @@ struct KnownOption {
     std::string_view name;
     OptionKind kind;
 };
-constexpr std::array<KnownOption, 17> OPTIONS{{{"singleton", OptionKind::SWITCH},
+constexpr std::array<KnownOption, 18> OPTIONS{{{"singleton", OptionKind::SWITCH},
                                                {"default_count", OptionKind::NUMBER},
                                                {"count_function", OptionKind::SWITCH},
                                                {"rtapi_app", OptionKind::SWITCH},
@@ -35,7 +35,8 @@ constexpr std::array<KnownOption, 17> OPTIONS{{{"singleton", OptionKind::SWITCH}
                                                {"tpmod", OptionKind::SWITCH},
                                                {"constructable", OptionKind::SWITCH},
                                                {"period", OptionKind::SWITCH},
-                                               {"period_used", OptionKind::SWITCH}}};
+                                               {"period_used", OptionKind::SWITCH},
+                                               {"personality", OptionKind::SWITCH}}};
 
 constexpr std::array<std::string_view, 37> C_WORDS{
     "auto",     "break",  "case",   "char",     "const",     "continue", "default",  "do",

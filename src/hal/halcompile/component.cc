@@ -19,9 +19,9 @@ bool Component::isOn(std::string_view wanted, bool otherwise) const {
 }
 
 bool Component::hasPersonality() const {
-    return std::any_of(items.begin(), items.end(), [](const Item &item) {
-        return !item.condition.empty() || (item.array && !item.array->count.empty());
-    });
+    return isOn("personality") || std::any_of(items.begin(), items.end(), [](const Item &item) {
+               return !item.condition.empty() || (item.array && !item.array->count.empty());
+           });
 }
 
 std::optional<bool> parse_switch(std::string_view text) {

@@ -353,7 +353,25 @@ class Emitter {
             line("#define {}{} (*(const hal_{}_t *)({}))", name, index, type_word(item.type), place);
         } else {
             line("#define {}{} (*({}))", name, index, place);
+            item_setter(name, item.array.has_value());
         }
+    }
+
+    /// NAME_set(value) or NAME_set(index, value), unless something of the component has that name.
+    void item_setter(const std::string &name, bool isArray) {
+        const std::string setter = name + "_set";
+        for (const Item &other : component_.items) {
+            if (c_name(other.name) == setter) {
+                return;
+            }
+        }
+        for (const Variable &variable : component_.variables) {
+            if (variable.name == setter) {
+                return;
+            }
+        }
+        line("#undef {0}\n#define {0}({1}value) ((void)({2}{3} = (value)))", setter, isArray ? "index, " : "",
+             name, isArray ? "(index)" : "");
     }
 
     void code() {

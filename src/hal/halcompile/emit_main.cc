@@ -271,6 +271,14 @@ std::string emit_main(const Component &component) {
                   "    for (i = 1; i < kept; i++) fprintf(stderr, \"{}: '%s' means nothing here\\n\", "
                   "argv[i]);\n",
                   component.name);
+    // Before anything of the program runs.
+    const std::string refusal =
+        isCounted(component)
+            ? fmt::format(
+                  "    if (count != 0 && names[0] != 0) {{\n        fprintf(stderr, \"{}: give count= or "
+                  "names=, not both\\n\");\n        return 1;\n    }}\n",
+                  component.name)
+            : "";
     out += fmt::format(R"(
 int main(int argc, char **argv) {{
     int i, kept = 1;
@@ -280,13 +288,13 @@ int main(int argc, char **argv) {{
         if (taken == 0) argv[kept++] = argv[i];
     }}
     if (argc > 0) argv[kept] = 0;
-{}    if (rtapi_app_main() < 0) return 1;
+{}{}    if (rtapi_app_main() < 0) return 1;
     user_mainloop();
     rtapi_app_exit();
     return 0;
 }}
 )",
-                       leftover);
+                       refusal, leftover);
     return out;
 }
 

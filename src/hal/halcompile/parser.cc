@@ -17,7 +17,7 @@ struct TypeName {
     std::string_view word;
     ValueType type;
 };
-constexpr std::array<TypeName, 14> TYPES{{{"bit", ValueType::BIT},
+constexpr std::array<TypeName, 16> TYPES{{{"bit", ValueType::BIT},
                                           {"float", ValueType::FLOAT},
                                           {"s32", ValueType::S32},
                                           {"u32", ValueType::U32},
@@ -30,7 +30,9 @@ constexpr std::array<TypeName, 14> TYPES{{{"bit", ValueType::BIT},
                                           {"real", ValueType::FLOAT},
                                           {"sint", ValueType::S64},
                                           {"uint", ValueType::U64},
-                                          {"double", ValueType::FLOAT}}};
+                                          {"double", ValueType::FLOAT},
+                                          {"si32", ValueType::S32},
+                                          {"ui32", ValueType::U32}}};
 
 class Parser {
   public:

@@ -14,6 +14,8 @@
 
 #include <fmt/format.h>
 
+#include "hal/core/later.hh"
+
 extern char **environ;
 
 namespace mw::hal::lang {
@@ -55,7 +57,8 @@ Result<ProgramStart> SystemProgramHost::start(const ProgramRequest &request) {
     pid_t pid = 0;
     const int error = posix_spawnp(&pid, argv[0], nullptr, nullptr, argv.data(), environ);
     if (error != 0) {
-        return fail(fmt::format("cannot start '{}': {}", request.argv[0], std::strerror(error)));
+        return fail(fmt::format("cannot start '{}': {}", request.argv[0], std::strerror(error)), {},
+                    driver_hint(base_name(request.argv[0])));
     }
     children_.push_back(pid);
     Result<> waited;

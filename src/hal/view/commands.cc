@@ -99,6 +99,15 @@ Option period_option(const std::string &name, std::int64_t &into) {
 
 Result<> watch_lines(Hal &hal, const Words &names, double every_s, long count,
                      volatile std::sig_atomic_t &stop) {
+    // Values stand below their names.
+    const auto add_column = [](std::string &line, const std::string &text, const std::string &name) {
+        constexpr std::size_t LEAST = 12;
+        line += (line.empty() ? "" : " ") + fmt::format("{:>{}}", text, std::max(LEAST, name.size()));
+    };
+    std::string head;
+    for (const std::string &name : names) {
+        add_column(head, name, name);
+    }
     for (long done = 0; (count <= 0 || done < count) && stop == 0; ++done) {
         if (done > 0) {
             nap(every_s);
@@ -112,7 +121,10 @@ Result<> watch_lines(Hal &hal, const Words &names, double every_s, long count,
             if (!value) {
                 return fail(fmt::format("there is no pin, parameter or signal '{}'", name));
             }
-            line += (line.empty() ? "" : " ") + value->str();
+            add_column(line, value->str(), name);
+        }
+        if (done == 0) {
+            std::puts(head.c_str());
         }
         std::puts(line.c_str());
         std::fflush(stdout);

@@ -266,7 +266,8 @@ class RasterTest(unittest.TestCase):
         programmer.begin(0, 8, 10, 3, timeout=5)
         with self.assertRaises(ValueError):
             programmer.data([256])
-        programmer.data([0, 128, 255], timeout=5)
+        programmer.data("0080", timeout=5)
+        programmer.data([255], timeout=5)
         end = time.monotonic() + 10
         while hal.get_value("raster.0.state") != 3 and time.monotonic() < end:
             time.sleep(0.002)
