@@ -46,6 +46,7 @@ void Estimator::begin(const Pose &pose) {
     planner_->begin(pose, executor_->snapshot());
     isFresh_ = true;
     last_.fill(pose);
+    kept_ = last_.size();
 }
 
 void Estimator::add(const Primitive &primitive, const MoveRequest &request) {
@@ -109,18 +110,32 @@ double Estimator::ratio(int i, int order) const {
     return value / (period_power_[static_cast<std::size_t>(order)] * limit);
 }
 
+/// Looks at each cycle of a short move and at some of a long one.
 void Estimator::count(const ExecutorOutput &out) {
-    last_ = {out.position, last_[0], last_[1], last_[2]};
     if (out.move != 0 && out.move != move_) {
         close_move();
         move_ = out.move;
     }
     ++move_cycles_;
+    constexpr std::uint64_t EACH = 64, EVERY = 8;
+    const bool isShort = move_cycles_ <= EACH;
+    const std::uint64_t phase = move_cycles_ % EVERY;
+    const bool isDue = isShort || phase == 0;
+    if (!isDue && phase <= EVERY - last_.size()) {
+        kept_ = 0;
+        return;
+    }
+    last_ = {out.position, last_[0], last_[1], last_[2]};
+    kept_ = std::min(kept_ + 1, last_.size());
+    if (!isDue || kept_ < last_.size()) {
+        return;
+    }
+    const std::uint64_t weight = isShort ? 1 : EVERY;
     const int orders = limits_.isJerkLimited ? 3 : 2;
     for (int order = 0; order < orders; ++order) {
         for (int i = 0; i < LIMITED_COUNT; ++i) {
             bound_[static_cast<std::size_t>(order)][static_cast<std::size_t>(i)] +=
-                ratio(i, order) > NEAR ? 1 : 0;
+                ratio(i, order) > NEAR ? weight : 0;
         }
     }
 }

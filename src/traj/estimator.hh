@@ -65,6 +65,7 @@ class Estimator {
     bool isComplete_ = true;
     bool isFresh_ = true;  ///< nothing has been added to the path
     std::array<Pose, 4> last_{};
+    std::size_t kept_ = 0;  ///< of them, positions of consecutive cycles
     std::array<std::array<std::uint64_t, LIMITED_COUNT>, 3>
         bound_{};  ///< cycles near a limit, by order and axis
 };
