@@ -136,6 +136,7 @@ TEST_F(MachineTest, AToolChangeWaitsForItsPin_E1) {
 
 /// A tool arm must not come before the spindle has its angle.
 TEST_F(MachineTest, OrientingASpindleIsAwaitedUpToItsTime_E1) {
+    ASSERT_TRUE(machine_->hal().unlink("spindle.0.is-oriented").has_value());  // a person answers
     const std::string program = "G21 G90\nM19 R90 Q2\nG0 X5\nM19 R180 Q2\nG0 X9\nM2\n";
     start(program);
     for (const double angle : {90.0, 180.0}) {
@@ -162,6 +163,7 @@ TEST_F(MachineTest, OrientingASpindleIsAwaitedUpToItsTime_E1) {
 }
 
 TEST_F(MachineTest, BackBoringMovesAsideOnlyWithAnOrientedSpindle_I1) {
+    ASSERT_TRUE(machine_->hal().unlink("spindle.0.is-oriented").has_value());  // a person answers
     start("G21 G90 G0 X0 Y0 Z5\nS1000 M3\nF3000 G87 X0 Y0 Z-3 R1 I2 J0 K-1\nG80\nM2\n");
     cycles(5000);
     EXPECT_EQ(machine_->task().status().waiting.what, "pin spindle.0.is-oriented");

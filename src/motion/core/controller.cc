@@ -9,6 +9,8 @@ namespace {
 
 /// A jerk from here on means none; a linear jerk below the least turns the jerk-limited planner off.
 constexpr double LEAST_JERK = 1;
+/// Part of the joints' limits that axes get where the kinematics cannot be asked.
+constexpr double UNKNOWN_SHARE = 0.4;
 
 }  // namespace
 
@@ -188,6 +190,14 @@ void Controller::publish_limits() noexcept {
             if (homing_.isHomed(j)) {
                 out.low[i] = std::max(out.low[i], get(Parameter::JOINT_MIN_LIMIT, j));
                 out.high[i] = std::min(out.high[i], get(Parameter::JOINT_MAX_LIMIT, j));
+            }
+        }
+        for (int j = 0; map == nullptr && !kinematics_.isShareable() && j < config_.num_joints; ++j) {
+            // Nothing is known of how joints follow axes: kept well below what those of the same kind can do.
+            if (settings_.isSet(Parameter::JOINT_IS_ANGULAR, j) == geom::isAngular(i)) {
+                v = std::min(v, UNKNOWN_SHARE * get(Parameter::JOINT_MAX_VELOCITY, j));
+                a = std::min(a, UNKNOWN_SHARE * get(Parameter::JOINT_MAX_ACCELERATION, j));
+                jerk = std::min(jerk, UNKNOWN_SHARE * get(Parameter::JOINT_MAX_JERK, j));
             }
         }
         out.axes |= isDriven ? 1U << i : 0U;

@@ -110,6 +110,18 @@ void Controller::apply_load(const TeleopLoad &load) noexcept {
             }
         }
     }
+    // While one is still faster than its share the others do not take theirs, and it turns with its speed.
+    constexpr double ROUNDING = 1e-9;
+    std::array<double, MAX_AXES> speed{};
+    bool isOver = false;
+    for (int i = 0; i < load.count; ++i) {
+        speed[at(i)] = std::abs(axes_[at(load.axes[at(i)])].teleop.velocity);
+        isOver = isOver || speed[at(i)] > v[at(i)] * (1.0 + ROUNDING);
+    }
+    for (int i = 0; i < load.count; ++i) {
+        v[at(i)] = isOver ? std::min(v[at(i)], speed[at(i)]) : v[at(i)];
+        speed[at(i)] = std::max(v[at(i)], speed[at(i)]);
+    }
     for (int i = 0; i < load.count; ++i) {
         AxisState &axis = axes_[at(load.axes[at(i)])];
         double a = axis.wanted_acceleration;
@@ -117,10 +129,9 @@ void Controller::apply_load(const TeleopLoad &load) noexcept {
             double curve = 0;
             for (int k = 0; k < load.count; ++k) {
                 for (int m = 0; m < load.count; ++m) {
-                    curve += load.q2[at(k)][at(m)][at(j)] * v[at(k)] * v[at(m)];
+                    curve += load.q2[at(k)][at(m)][at(j)] * speed[at(k)] * speed[at(m)];
                 }
             }
-            // Who goes faster than is now allowed still turns with that speed.
             const double most = get(Parameter::JOINT_MAX_ACCELERATION, j);
             const double left = std::max(most - curve, (1.0 - CURVE_SHARE) * most);
             const double q1 = load.q1[at(i)][at(j)];

@@ -2,6 +2,7 @@
 // What runs in the servo thread, and the planner below it, never touches the heap.
 #include <gtest/gtest.h>
 
+#include "kins/rotary_table.hh"
 #include "testing/allocation_guard.hh"
 #include "testing/motion_rig.hh"
 
@@ -45,6 +46,60 @@ TEST(Allocation, ServoCyclesAndPlanningDoNotTouchTheHeap) {
     }
     EXPECT_EQ(calls, 0U);
     EXPECT_GT(rig.out->joint[0].motor_pos_cmd, 20);
+}
+
+TEST(Allocation, ThreadsDoNotTouchTheHeap) {
+    testing::MotionRig rig("XZ");
+    rig.ready();
+    rig.send(SpindleOn{0, 600});
+    rig.step(5);
+    std::uint64_t calls = 1;
+    {
+        const testing::AllocationGuard guard;
+        Line cut;
+        cut.end[2] = -20;
+        cut.terms.feed_per_revolution = 1.5;
+        rig.channels->path.push({rig.next_id++, rig.epoch, cut});
+        rig.channels->path.push({rig.next_id++, rig.epoch, Flush{}});
+        for (int n = 1; n <= 3000; ++n) {
+            rig.in.spindle[0].speed_in_rps = 10;
+            rig.in.spindle[0].revs = 0.01 * n;
+            rig.controller->handle_commands(rig.in);
+            rig.controller->step(rig.in, *rig.out);
+            for (std::size_t j = 0; j < 2; ++j) {
+                rig.in.joint[j].motor_pos_fb = rig.out->joint[j].motor_pos_cmd;
+            }
+            if (n % 5 == 0) {
+                rig.planner->update();
+            }
+        }
+        calls = guard.calls();
+    }
+    EXPECT_EQ(calls, 0U);
+    EXPECT_EQ(rig.out->joint[1].motor_pos_cmd, -20);
+}
+
+TEST(Allocation, AxisJogsOfATableDoNotTouchTheHeap) {
+    kins::RotaryTable table;
+    testing::MotionRig rig(table, 5, 100, 1000);
+    rig.ready(Mode::TELEOP);
+    std::uint64_t calls = 1;
+    {
+        const testing::AllocationGuard guard;
+        for (const int axis : {0, 1, 5}) {
+            rig.channels->immediate.push({rig.next_id++, rig.epoch, JogContinuous{{false, axis}, 50}});
+        }
+        for (int n = 1; n <= 1000; ++n) {
+            rig.controller->handle_commands(rig.in);
+            rig.controller->step(rig.in, *rig.out);
+            for (std::size_t j = 0; j < 5; ++j) {
+                rig.in.joint[j].motor_pos_fb = rig.out->joint[j].motor_pos_cmd;
+            }
+        }
+        calls = guard.calls();
+    }
+    EXPECT_EQ(calls, 0U);
+    EXPECT_GT(rig.out->joint[4].motor_pos_cmd, 1);
 }
 
 }  // namespace

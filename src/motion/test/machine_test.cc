@@ -157,6 +157,24 @@ TEST(Machine, FeedMovesWaitForTheSpindleAndFollowIt_C15) {
     ASSERT_TRUE(rig.run_until([&] { return rig.isDone(id); }, 20));
 }
 
+TEST(Machine, DeactivatingAJointLeavesItsAmplifierAlone_D9) {
+    MotionRig rig;
+    rig.ready(Mode::FREE);
+    ASSERT_TRUE(rig.out->joint[1].isAmpEnabled);
+    const CommandId off = rig.send(SetJointActive{1, false});
+    rig.step(3);
+    EXPECT_TRUE(rig.isDone(off));
+    EXPECT_FALSE(rig.status().joint[1].isActive);
+    EXPECT_TRUE(rig.out->joint[1].isAmpEnabled);
+    rig.send(SetAmplifier{1, false});
+    rig.step(3);
+    EXPECT_FALSE(rig.out->joint[1].isAmpEnabled);
+    rig.send(SetJointActive{1, true});
+    rig.step(3);
+    EXPECT_TRUE(rig.status().joint[1].isActive);
+    EXPECT_FALSE(rig.out->joint[1].isAmpEnabled) << "and activating it does not raise it";
+}
+
 TEST(Machine, EveryPassOfAThreadBeginsAtTheSameSpindleAngle_C15) {
     MotionRig rig;
     rig.before_step = [](MotionRig &r) {
