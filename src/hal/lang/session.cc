@@ -323,7 +323,7 @@ Result<> Session::run_call(const Call &call) {
             options_.loads->starting(call);
         }
         const bool isRun = isLoad || spec.run == lang::run_source || spec.run == lang::run_list ||
-                           spec.run == lang::run_exit;
+                           spec.run == lang::run_save || spec.run == lang::run_exit;
         if (!isRun) {
             return {};
         }

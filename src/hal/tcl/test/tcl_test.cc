@@ -154,5 +154,17 @@ TEST_F(TclTest, ScriptsTakePartInTwoPasses_B1) {
     EXPECT_EQ(output.answers, "\n1 2 signal \n");
 }
 
+TEST_F(TclTest, WhatAScriptSavesIsThereInBothPasses_B1) {
+    TextOutput output;
+    options.folders = {folder};
+    Session session(*host, programs, output, options);
+    write("one.tcl", "set name \"" + (folder / "saved").string() +
+                         ".[hal --pass]\"\nhal save comp $name\nclose [open $name]\n");
+    const Result<> result = run_two_pass(session, {{"one.tcl", {}}}, "on", TwoPassReport::NOTHING);
+    EXPECT_TRUE(result) << output.errors;
+    EXPECT_TRUE(fs::exists(folder / "saved.0"));
+    EXPECT_TRUE(fs::exists(folder / "saved.1"));
+}
+
 }  // namespace
 }  // namespace mw::hal::lang
