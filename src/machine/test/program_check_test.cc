@@ -83,11 +83,12 @@ TEST_F(ProgramCheck, WhatBoundsALongMoveIsWhatBoundsMostOfIt) {
     ASSERT_NE(config_, nullptr);
     const CheckResult result = check("G21 G90 G17 G61\nG1 X-200 F60000\nX200\nX199.9\nM2\n");
     ASSERT_EQ(sink_.count_errors(), 0);
-    ASSERT_FALSE(result.time.slowest.empty());
-    const SlowPlace &worst = result.time.slowest.front();
+    ASSERT_TRUE(result.time.has_value());
+    ASSERT_FALSE(result.time->slowest.empty());
+    const SlowPlace &worst = result.time->slowest.front();
     EXPECT_EQ(worst.line, 3);
     EXPECT_NE(worst.limit.find("velocity"), std::string::npos) << worst.limit;
-    const SlowPlace &last = result.time.slowest.back();
+    const SlowPlace &last = result.time->slowest.back();
     EXPECT_EQ(last.line, 4);
     EXPECT_NE(last.limit.find("acceleration"), std::string::npos) << last.limit;
 }
