@@ -205,7 +205,7 @@ class Run {
     }
 
     bool check() {
-        auto tools = machine::ToolFile::load(loaded_.machine.tool_table_file);
+        auto tools = machine::ToolFile::load(loaded_.machine.tool_table_file, &sink_);
         if (!tools.has_value()) {
             report(tools.error());
             return false;
@@ -240,6 +240,7 @@ class Run {
         const machine::MachineParts parts{loaded_.ini, loaded_.reader, loaded_.machine, sink_};
         machine::MachineOptions options;
         options.isStrict = words_.isStrict;
+        options.isToolTableTold = true;
         return words_.isRealtime ? machine::make_realtime_machine(parts, options)
                                  : machine::make_virtual_machine(parts, options);
     }

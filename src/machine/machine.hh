@@ -26,9 +26,10 @@ struct MachineParts {
 };
 
 struct MachineOptions {
-    bool isClockVirtual = false;  ///< set by make_virtual_machine()
-    bool isStrict = false;        ///< unknown INI keys are errors
-    std::string instance;         ///< HAL instance of a realtime machine; empty: the user's default
+    bool isClockVirtual = false;   ///< set by make_virtual_machine()
+    bool isStrict = false;         ///< unknown INI keys are errors
+    bool isToolTableTold = false;  ///< whoever makes the machine has said what is wrong with the tool table
+    std::string instance;          ///< HAL instance of a realtime machine; empty: the user's default
     /// Extra folders for HAL library files, before our own.
     std::vector<std::string> hal_library;
 };

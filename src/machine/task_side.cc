@@ -23,7 +23,8 @@ TaskSide::~TaskSide() {
 }
 
 Result<> TaskSide::start(const MachineOptions &options) {
-    auto tools = ToolFile::load(parts_.config.tool_table_file, &parts_.sink);
+    auto tools =
+        ToolFile::load(parts_.config.tool_table_file, options.isToolTableTold ? nullptr : &parts_.sink);
     if (!tools.has_value()) {
         return std::unexpected(tools.error());
     }
