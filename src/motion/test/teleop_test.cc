@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Jogs of axes on machines whose joints are not axes: joints within their limits of speed, acceleration and
 // place at every sample. MW_CAMPAIGN_SEEDS and MW_CAMPAIGN_FIRST choose the seeds.
-#include <cstdlib>
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include "kins/corexy.hh"
 #include "kins/rotary_table.hh"
+#include "testing/campaign_seeds.hh"
 #include "testing/motion_rig.hh"
 
 namespace mw::motion {
@@ -69,12 +69,9 @@ class TeleopCampaign {
 };
 
 void jog_all(const kins::Kinematics &model, int joints, const char *axes) {
-    const char *first = std::getenv("MW_CAMPAIGN_FIRST");
-    const char *count = std::getenv("MW_CAMPAIGN_SEEDS");
-    const int seeds = count != nullptr ? std::atoi(count) : 20;
-    ASSERT_GT(seeds, 0);
-    for (int i = 0; i < seeds && !::testing::Test::HasFailure(); ++i) {
-        const int seed = i + (first != nullptr ? std::atoi(first) : 1);
+    const auto [first, count] = testing::campaign_seeds(20);
+    for (int i = 0; i < count && !::testing::Test::HasFailure(); ++i) {
+        const int seed = first + i;
         SCOPED_TRACE("seed " + std::to_string(seed));
         TeleopCampaign(model, joints, axes, static_cast<unsigned>(seed)).run();
     }
