@@ -6,7 +6,7 @@
 
 int main(int argc, char **argv) {
     const mw::config::ProgramOutput result = mw::config::run_inivalue({argv + 1, argv + argc});
+    std::fputs(result.err.c_str(), stderr);  // warnings first: they say how to take the value
     std::fputs(result.out.c_str(), stdout);
-    std::fputs(result.err.c_str(), stderr);
     return result.status;
 }

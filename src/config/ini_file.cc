@@ -4,11 +4,17 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
+#include <system_error>
+
+#include <fmt/format.h>
 
 #include "base/atomic_file.hh"
 #include "base/text.hh"
+#include "config/ini_escape.hh"
+#include "config/ini_strict.hh"
 
 namespace mw::config {
 namespace {
@@ -37,6 +43,15 @@ Result<std::string> read_settings(const std::string &path) {
     return read_file(path);
 }
 
+/// Why a file cannot be read, as scripts know it from inivalue.
+std::string unreadable(const std::string &path, const Error &error) {
+    if (::access(path.c_str(), R_OK) == 0) {
+        return error.message;  // it is there, but no file of settings
+    }
+    const int cause = errno;
+    return fmt::format("Cannot open ini-file (errno={} ({}))", cause, std::generic_category().message(cause));
+}
+
 std::string expand_home(std::string_view name) {
     const char *home = std::getenv("HOME");
     if (home != nullptr && (name == "~" || name.substr(0, 2) == "~/")) {
@@ -50,11 +65,13 @@ std::string expand_home(std::string_view name) {
 /// Reads lines into an IniFile; one instance for a file and all that it includes.
 class IniParser {
   public:
-    IniParser(IniFile &file, diag::Sink &sink) : file_(file), sink_(sink) {}
+    IniParser(IniFile &file, diag::Sink &sink, IniSyntax syntax)
+        : file_(file), sink_(sink), isStrict_(syntax == IniSyntax::STRICT) {}
 
     void text(std::string_view text, const std::string &path, int depth) {
         int line = 0;
-        while (!text.empty()) {
+        open_.push_back(path);
+        while (!text.empty() && !isStopped_) {
             ++line;
             const int first_line = line;
             std::string joined = take_line(text);
@@ -65,6 +82,7 @@ class IniParser {
             }
             one_line(joined, {path, first_line, 1}, depth);
         }
+        open_.pop_back();
     }
 
   private:
@@ -76,6 +94,12 @@ class IniParser {
             line.pop_back();
         }
         return line;
+    }
+
+    /// The first fault of a strict reading is its last.
+    void stop(std::string message, const SourcePlace &place) {
+        sink_.error(std::move(message), place);
+        isStopped_ = true;
     }
 
     void one_line(const std::string &line, SourcePlace place, int depth) {
@@ -93,10 +117,18 @@ class IniParser {
     }
 
     void section(std::string_view body, const SourcePlace &place) {
+        if (const auto fault = isStrict_ ? fault_of_header(body) : std::nullopt) {
+            stop(*fault, place);
+            return;
+        }
         const auto end = body.find(']');
         const std::string_view name = end == std::string_view::npos ? "" : trim(body.substr(1, end - 1));
         const std::string_view rest = end == std::string_view::npos ? "" : trim(body.substr(end + 1));
         const bool isCommentAfter = rest.empty() || rest[0] == '#' || rest[0] == ';';
+        if (isStrict_) {
+            strict_section(std::string(name), !isCommentAfter, place);
+            return;
+        }
         if (name.empty() || !isCommentAfter) {
             sink_.error("malformed section header '" + std::string(body) + "'", place, "expected [SECTION]");
             section_.clear();
@@ -110,7 +142,46 @@ class IniParser {
         }
     }
 
+    void strict_section(const std::string &name, bool hasMore, const SourcePlace &place) {
+        if (hasMore) {
+            sink_.warning("Section header has trailing content, ignored", place);
+        }
+        section_ = name;
+        if (file_.hasSection(name)) {
+            sink_.warning("Section '" + name + "' already exists. Merging...", place);
+        } else {
+            file_.heads_.push_back({name, place});
+        }
+    }
+
+    void strict_entry(std::string_view body, const SourcePlace &place) {
+        if (const auto fault = fault_of_setting(body)) {
+            stop(*fault, place);
+            return;
+        }
+        const auto equals = body.find('=');
+        const std::string key(trim(body.substr(0, equals)));
+        if (section_.empty()) {
+            stop("Tag '" + key + "' found without prior section definition", place);
+            return;
+        }
+        const auto value = decode_ini_value(trim(body.substr(equals + 1)));
+        if (!value) {
+            stop(value.error().message, place);
+            return;
+        }
+        file_.entries_.push_back({section_, key, *value, place});
+    }
+
     void entry(const std::string &line, std::string_view body, SourcePlace place) {
+        if (isStrict_ && line.back() == '\\') {
+            stop("Last line has a continuation", place);
+            return;
+        }
+        if (isStrict_) {
+            strict_entry(body, place);
+            return;
+        }
         const auto equals = body.find('=');
         const std::string_view key = equals == std::string_view::npos ? "" : trim(body.substr(0, equals));
         const bool isOneWord = equals == std::string_view::npos && body.find_first_of(" \t") == body.npos;
@@ -141,6 +212,10 @@ class IniParser {
     }
 
     void include(std::string_view name, const SourcePlace &place, int depth) {
+        if (name.empty() && isStrict_) {
+            stop("Missing filename after #INCLUDE", place);
+            return;
+        }
         if (name.empty()) {
             sink_.warning("#INCLUDE without a file name; it has no effect", place);
             return;
@@ -151,10 +226,19 @@ class IniParser {
         }
         std::string path = expand_home(name);
         if (path.front() != '/') {
-            const std::string beside = folder_of(place.file) + '/' + path;
+            const bool isHere = place.file.find('/') == std::string::npos;
+            const std::string beside = isHere ? path : folder_of(place.file) + '/' + path;
             path = ::access(beside.c_str(), R_OK) == 0 ? beside : path;
         }
+        if (isStrict_ && isOpen(path)) {
+            stop("Include file recursion on loading '" + path + "'", place);
+            return;
+        }
         const auto content = read_settings(path);
+        if (!content.has_value() && isStrict_) {
+            stop(unreadable(path, content.error()), {path, 0, 0});
+            return;
+        }
         if (!content.has_value()) {
             sink_.error("#INCLUDE: " + content.error().message, place);
             return;
@@ -162,24 +246,37 @@ class IniParser {
         text(*content, path, depth + 1);
     }
 
+    bool isOpen(const std::string &path) const {
+        std::error_code error;
+        return std::any_of(open_.begin(), open_.end(), [&](const std::string &one) {
+            return one == path || std::filesystem::equivalent(one, path, error);
+        });
+    }
+
     IniFile &file_;
     diag::Sink &sink_;
+    bool isStrict_;
+    bool isStopped_ = false;
+    std::vector<std::string> open_{};  ///< the file being read, after those that include it
     std::string section_;
     bool isInBadSection_ = false;
 };
 
-Result<IniFile> IniFile::load(const std::string &path, diag::Sink &sink) {
+Result<IniFile> IniFile::load(const std::string &path, diag::Sink &sink, IniSyntax syntax) {
     const auto content = read_settings(path);
+    if (!content.has_value() && syntax == IniSyntax::STRICT) {
+        return fail(unreadable(path, content.error()));
+    }
     if (!content.has_value()) {
         return std::unexpected(content.error());
     }
-    return parse(*content, path, sink);
+    return parse(*content, path, sink, syntax);
 }
 
-IniFile IniFile::parse(std::string_view text, const std::string &path, diag::Sink &sink) {
+IniFile IniFile::parse(std::string_view text, const std::string &path, diag::Sink &sink, IniSyntax syntax) {
     IniFile file;
     file.path_ = path;
-    IniParser(file, sink).text(text, path, 0);
+    IniParser(file, sink, syntax).text(text, path, 0);
     return file;
 }
 

@@ -21,15 +21,22 @@ struct IniEntry {
     SourcePlace place;  ///< of the value's first character
 };
 
+/// TOLERANT is what a machine's file is read with: all problems are reported, values stay as they are
+/// written. STRICT stops at the first fault, which also a key's name, an escape or a missing include can be,
+/// replaces escapes, and has the messages that scripts know of inivalue.
+enum class IniSyntax { TOLERANT, STRICT };
+
 /// Sections and keys keep their order and their case; a key may occur several times (then it is a list).
 /// `#INCLUDE file` inserts another file, found beside the including one, in the working folder, or by '~'.
 class IniFile {
   public:
     /// Reads `path`. Every malformed line is reported to `sink`; the result is empty-handed only when the
     /// file itself cannot be read.
-    static Result<IniFile> load(const std::string &path, diag::Sink &sink);
+    static Result<IniFile> load(const std::string &path, diag::Sink &sink,
+                                IniSyntax syntax = IniSyntax::TOLERANT);
     /// The same for text in memory; `path` names it in messages and is the base of includes.
-    static IniFile parse(std::string_view text, const std::string &path, diag::Sink &sink);
+    static IniFile parse(std::string_view text, const std::string &path, diag::Sink &sink,
+                         IniSyntax syntax = IniSyntax::TOLERANT);
 
     const std::string &path() const { return path_; }
     /// The folder of the path as given (symbolic links are not resolved), "." when it has none.

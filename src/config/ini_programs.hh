@@ -13,11 +13,11 @@ struct ProgramOutput {
 };
 
 /// inivar -var NAME [-sec SECTION] [-num N] [-ini FILE] [-tildeexpand]: the words after the program's name.
-/// Status 0 found, 1 not found or wrong usage, 255 no such file; messages are those that scripts know. An
-/// empty value counts as none.
+/// Status 0 found, 1 not found or wrong usage, 255 no such file; messages are those that scripts know.
 ProgramOutput run_inivar(const std::vector<std::string> &words);
 
-/// inivalue [OPTIONS] FILE: see USAGE in the source. Values can be checked for a type and have a default.
+/// inivalue [OPTIONS] FILE: see USAGE in the source. Values can be checked for a type and a range and have a
+/// default.
 ProgramOutput run_inivalue(const std::vector<std::string> &words);
 
 }  // namespace mw::config

@@ -242,12 +242,14 @@ void IniReader::report_unknown(bool isStrict) {
             section->second.count(entry.key) > 0) {
             continue;
         }
+        if (!reported_.insert(label(entry.section, entry.key)).second) {
+            continue;
+        }
         const std::vector<std::string> names(section->second.begin(), section->second.end());
         const std::string near = nearest_name(entry.key, names);
         sink_.report({severity,
                       {"unknown key " + label(entry.section, entry.key) + "; it has no effect", place,
                        near.empty() ? "" : "did you mean " + near + "?"}});
-        know(entry.section, entry.key);
     }
     report_sections(severity);
 }

@@ -78,6 +78,7 @@ class IniReader {
     std::set<std::string, std::less<>> used_sections_;
     std::map<std::string, std::string> without_effect_;  ///< [SECTION]KEY: why
     std::set<std::string> warned_twice_;
+    std::set<std::string> reported_;  ///< [SECTION]KEY that is unknown; never suggested for another one
     std::set<std::string> missing_sections_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -52,7 +53,8 @@ TEST_F(IniPrograms, inivar_fails_with_the_words_that_scripts_know_A2) {
     EXPECT_EQ(failed.err, "Can not find -sec (null) -var NOPE -num 1 \n");
     EXPECT_EQ(inivar("-var X -sec A -num 3").err, "Can not find -sec A -var X -num 3 \n");
     EXPECT_EQ(inivar("-var X -sec a").err, "Can not find -sec a -var X -num 1 \n");
-    EXPECT_EQ(inivar("-var EMPTY").status, 1);
+    EXPECT_EQ(inivar("-var EMPTY").status, 0) << "a variable without a value is there";
+    EXPECT_EQ(inivar("-var EMPTY").out, "\n");
     EXPECT_EQ(inivar("-sec A").err, "inivar: no variable supplied\n");
     EXPECT_EQ(inivar("-var X -num a").err, "inivar: invalid number after -num\n");
     EXPECT_EQ(run_inivar({"-var"}).err, "inivar: variable name not specified after -var\n");
@@ -73,16 +75,91 @@ TEST_F(IniPrograms, inivar_names_a_key_that_stands_before_any_section_A2) {
 }
 
 TEST_F(IniPrograms, inivalue_checks_types_and_has_defaults_A2) {
-    EXPECT_EQ(inivalue("--var=X --sec=B --type=sint").out, "31\n");
-    EXPECT_EQ(inivalue("--var=ON --type=bool").out, "TRUE\n");
+    EXPECT_EQ(inivalue("--var=X --sec=B --type=i").out, "31\n");
+    EXPECT_EQ(inivalue("--var X --sec B --type sint").out, "31\n");
+    EXPECT_EQ(inivalue("--var=ON --type=bool").out, "true\n");
+    EXPECT_EQ(inivalue("--var=ON --type=b -b").out, "1\n");
+    EXPECT_EQ(inivalue("--var=ON --type=b -B").out, "True\n");
     EXPECT_EQ(inivalue("--var=EMPTY").out, "\n");
-    EXPECT_EQ(inivalue("--var=NOPE --default=7 --type=real").out, "7\n");
-    EXPECT_EQ(inivalue("--var=Y --type=real").err,
-              "inivalue: " + path + ":3:5: 'hello world  ; c' is no real\n");
-    EXPECT_EQ(inivalue("--var=NOPE --sec=A").err, "inivalue: " + path + ": there is no [A]NOPE\n");
+    EXPECT_EQ(inivalue("--var=NOPE --default=7 --type=r").out, "7.000000000000000e+00\n");
+    EXPECT_EQ(inivalue("--var=NOPE --default=x --type=r").status, 1);
+    EXPECT_EQ(inivalue("--var=Y --type=r").err,
+              path + ":3: error: Invalid floating point [A]Y='hello world  ; c'\n"
+                     "error: Invalid real []Y='hello world  ; c' or out of range "
+                     "[-1.79769e+308,1.79769e+308]\n");
+    EXPECT_EQ(inivalue("--var=NOPE --sec=A").err, "error: Cannot find instance 1 of '[A]NOPE'\n");
     EXPECT_EQ(inivalue("--var=X --num=0").status, 2);
+    EXPECT_EQ(inivalue("--var=X --type=q").status, 2);
     EXPECT_EQ(inivalue("--foo").status, 2);
+    EXPECT_EQ(run_inivalue({"--var"}).status, 2);
     EXPECT_EQ(run_inivalue({"--help"}).status, 0);
+}
+
+TEST_F(IniPrograms, inivalue_keeps_numbers_in_their_range_A2) {
+    EXPECT_EQ(inivalue("--var=X --type=i -m 1 -M 1").out, "1\n");
+    EXPECT_EQ(inivalue("--var=X --type=i -m 2").status, 1);
+    EXPECT_EQ(inivalue("--var=X --type=u -M 0").status, 1);
+    EXPECT_EQ(inivalue("--var=X --type=r -m 0.5 -M 1.5").out, "1.000000000000000e+00\n");
+    EXPECT_EQ(inivalue("--var=X --type=r -m 1.5").status, 1);
+    EXPECT_EQ(inivalue("--var=X --type=i -m 2 -M 1").err, "error: Invalid integer range min '2' > max '1'\n");
+    EXPECT_EQ(inivalue("--var=X --type=i -m low").err, "error: 'low' after -m is no integer\n");
+    std::ofstream(path) << "[A]\nB = 0b11\nO = -0o17\nT = 3 mm\nM = -1\nL = 9223372036854775808\n"
+                           "S = -9223372036854775808\n";
+    EXPECT_EQ(inivalue("--var=B --type=u").out, "3\n");
+    EXPECT_EQ(inivalue("--var=O --type=i").out, "-15\n");
+    EXPECT_EQ(inivalue("--var=T --type=i").out, "3\n");
+    EXPECT_NE(inivalue("--var=T --type=i").err.find(path + ":4: warning: "), std::string::npos);
+    EXPECT_EQ(inivalue("--var=M --type=u").out, "18446744073709551615\n");
+    EXPECT_NE(inivalue("--var=M --type=u").err.find(path + ":5: warning: "), std::string::npos);
+    EXPECT_EQ(inivalue("--var=L --type=i").status, 1);
+    EXPECT_EQ(inivalue("--var=L --type=u").out, "9223372036854775808\n");
+    EXPECT_EQ(inivalue("--var=S --type=i").out, "-9223372036854775808\n");
+}
+
+TEST_F(IniPrograms, inivalue_lists_what_is_there_A2) {
+    EXPECT_EQ(inivalue("--sections").out, "A\nB\n");
+    EXPECT_EQ(inivalue("--var=X --all").out, "1\n2\n0x1f\n");
+    EXPECT_EQ(inivalue("--var=X --all --num=3").out, "0x1f\n");
+    EXPECT_EQ(inivalue("--var=X --all --num=4").err, "error: No instance 4 or more of '[]X'\n");
+    EXPECT_EQ(inivalue("--variables --sec B").out, "X\nx\n");
+    EXPECT_EQ(inivalue("--variables --content --sec=B").out, "X=0x1f\nx=lower\n");
+    EXPECT_EQ(inivalue("--variables --sec=C").status, 1);
+}
+
+TEST_F(IniPrograms, inivalue_stops_at_the_first_fault_with_its_line_A2) {
+    const auto fault = [&](const std::string &text) {
+        std::ofstream(path) << text;
+        const ProgramOutput result = inivalue("--var=X");
+        EXPECT_EQ(result.status, 1) << text;
+        EXPECT_EQ(result.out, "") << text;
+        EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << text;
+        return result.err.substr(0, result.err.find("error: "));
+    };
+    for (const char *text : {"X = 1\n", "#INCLUDE\n", "[A\n", "[ ]\n", "[1A]\n", "[A B]\n"}) {
+        EXPECT_EQ(fault(std::string(text) + "[B]\nX = 1\nalso wrong\n"), path + ":1: ");
+    }
+    for (const char *text : {"X\n", "= 1\n", "1X = 1\n", "X Y = 1\n", "X = \\x0g\n"}) {
+        EXPECT_EQ(fault("[A]\n" + std::string(text) + "also wrong\n"), path + ":2: ");
+    }
+    EXPECT_EQ(fault("[A]\nX = 1 \\\n"), path + ":2: ");
+    EXPECT_EQ(fault("[A]\nX = 1\n#INCLUDE " + path + "\n"), path + ":3: ");
+    EXPECT_EQ(fault("#INCLUDE " + path + ".none\n"), path + ".none: ");
+    EXPECT_EQ(run_inivalue({"--var=X", "/nowhere/a.ini"}).err,
+              "/nowhere/a.ini: error: Cannot open ini-file (errno=2 (No such file or directory))\n");
+    EXPECT_EQ(run_inivalue({"--var=X", "/dev/null"}).status, 1);
+
+    std::ofstream(path) << "[A] more\n[A] ; comment\nX = 1 # kept\n";
+    const ProgramOutput warned = inivalue("--var=X");
+    EXPECT_EQ(warned.out, "1 # kept\n");
+    EXPECT_NE(warned.err.find(path + ":1: warning: "), std::string::npos);
+    EXPECT_NE(warned.err.find(path + ":2: warning: "), std::string::npos);
+}
+
+TEST_F(IniPrograms, inivalue_needs_a_home_to_expand_A2) {
+    EXPECT_EQ(inivalue("--var=T --tildeexpand").out, "/home/somebody/foo\n");
+    ::unsetenv("HOME");
+    EXPECT_EQ(inivalue("--var=T --tildeexpand").status, 1);
+    EXPECT_EQ(inivalue("--var=T").out, "~/foo\n");
 }
 
 }  // namespace

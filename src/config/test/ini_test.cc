@@ -73,6 +73,16 @@ TEST(Ini, UnknownKeysAreWarnedOnceWithTheNearestName) {
     EXPECT_FALSE(ini.sink.hasErrors());
 }
 
+TEST(Ini, AnUnknownKeyIsNeverSuggestedForAnother) {
+    Read ini("[E]\nM60_COMMAND = 1\nM61_COMMAND = 1\nM61_COMMAND = 2\n");
+    ini.reader.know("E", "TOOL_TABLE");
+    ini.reader.report_unknown(false);
+    ini.reader.report_unknown(false);
+    ASSERT_EQ(ini.sink.all().size(), 2U) << "once for each key";
+    EXPECT_EQ(ini.sink.all()[0].what.hint, "");
+    EXPECT_EQ(ini.sink.all()[1].what.hint, "");
+}
+
 TEST(Ini, KeysWithoutEffectAreSaidWithTheReasonAndAreErrorsWhenStrict) {
     Read ini("[J]\nTPMOD = mine\n");
     ini.reader.know_without_effect("J", "TPMOD", "there is one planner");

@@ -12,9 +12,20 @@
 
 namespace {
 
-/// The value of the key in the whole file, wherever the stream stands; null when there is none.
-const std::string *find(FILE *stream, const char *tag, const char *section) {
+/// The value of the key; null when there is none.
+const std::string *find(const mw::config::IniFile &file, const char *tag, const char *section) {
     thread_local std::string value;
+    for (const mw::config::IniEntry &entry : file.entries()) {
+        if (entry.key == tag && (section == nullptr || entry.section == section)) {
+            value = entry.value;
+            return &value;
+        }
+    }
+    return nullptr;
+}
+
+/// In the whole file, wherever the stream stands.
+const std::string *find(FILE *stream, const char *tag, const char *section) {
     if (stream == nullptr || tag == nullptr || std::fseek(stream, 0, SEEK_SET) != 0) {
         return nullptr;
     }
@@ -24,14 +35,16 @@ const std::string *find(FILE *stream, const char *tag, const char *section) {
         text.append(block, got);
     }
     mw::diag::Sink ignored;  // malformed lines are those of the one who loads the configuration
-    const auto file = mw::config::IniFile::parse(text, "", ignored);
-    for (const mw::config::IniEntry &entry : file.entries()) {
-        if (entry.key == tag && (section == nullptr || entry.section == section)) {
-            value = entry.value;
-            return &value;
-        }
+    return find(mw::config::IniFile::parse(text, "", ignored), tag, section);
+}
+
+const std::string *find(const char *name, const char *tag, const char *section) {
+    if (name == nullptr || tag == nullptr) {
+        return nullptr;
     }
-    return nullptr;
+    mw::diag::Sink ignored;
+    const auto file = mw::config::IniFile::load(name, ignored);
+    return file ? find(*file, tag, section) : nullptr;
 }
 
 /// Hands the number over if it is one.
@@ -44,53 +57,17 @@ int hand_over(const Number &number, T *result) {
     return 0;
 }
 
-}  // namespace
-
-extern "C" {
-
-const char *iniFind(FILE *fp, const char *tag, const char *section) {
-    const std::string *value = find(fp, tag, section);
-    return value == nullptr ? nullptr : value->c_str();
-}
-
-int iniFindInt(FILE *fp, const char *tag, const char *section, int *result) {
-    rtapi_sint wide = 0;
-    const int status = iniFindSInt(fp, tag, section, &wide);
-    if (status != 0) {
-        return status;
-    }
-    if (wide < std::numeric_limits<int>::min() || wide > std::numeric_limits<int>::max()) {
-        return -EINVAL;
-    }
-    *result = static_cast<int>(wide);
-    return 0;
-}
-
-int iniFindSInt(FILE *fp, const char *tag, const char *section, rtapi_sint *result) {
-    const std::string *value = find(fp, tag, section);
-    return value == nullptr ? -ENOENT : hand_over(mw::parse_int(*value), result);
-}
-
-int iniFindUInt(FILE *fp, const char *tag, const char *section, rtapi_uint *result) {
-    const std::string *value = find(fp, tag, section);
-    return value == nullptr ? -ENOENT : hand_over(mw::parse_uint(*value), result);
-}
-
-int iniFindDouble(FILE *fp, const char *tag, const char *section, double *result) {
-    const std::string *value = find(fp, tag, section);
-    return value == nullptr ? -ENOENT : hand_over(mw::parse_double(*value), result);
-}
-
-int iniFindBool(FILE *fp, const char *tag, const char *section, bool *result) {
-    const std::string *value = find(fp, tag, section);
+int to_int(const std::string *value, int *result) {
     if (value == nullptr) {
         return -ENOENT;
     }
-    return hand_over(mw::config::ini_bool(*value), result);
+    const auto wide = mw::parse_int(*value);
+    const bool isInt =
+        wide && *wide >= std::numeric_limits<int>::min() && *wide <= std::numeric_limits<int>::max();
+    return isInt ? hand_over(wide, result) : -EINVAL;
 }
 
-int iniFindString(FILE *fp, const char *tag, const char *section, char *dest, size_t n) {
-    const std::string *value = find(fp, tag, section);
+int to_text(const std::string *value, char *dest, std::size_t n) {
     if (value == nullptr) {
         return -ENOENT;
     }
@@ -99,6 +76,78 @@ int iniFindString(FILE *fp, const char *tag, const char *section, char *dest, si
     }
     std::memcpy(dest, value->c_str(), value->size() + 1);
     return 0;
+}
+
+const char *c_text(const std::string *value) {
+    return value == nullptr ? nullptr : value->c_str();
+}
+
+}  // namespace
+
+extern "C" {
+
+const char *iniFind(FILE *file, const char *tag, const char *section) {
+    return c_text(find(file, tag, section));
+}
+
+int iniFindInt(FILE *file, const char *tag, const char *section, int *result) {
+    return to_int(find(file, tag, section), result);
+}
+
+int iniFindSInt(FILE *file, const char *tag, const char *section, rtapi_sint *result) {
+    const std::string *value = find(file, tag, section);
+    return value == nullptr ? -ENOENT : hand_over(mw::parse_int(*value), result);
+}
+
+int iniFindUInt(FILE *file, const char *tag, const char *section, rtapi_uint *result) {
+    const std::string *value = find(file, tag, section);
+    return value == nullptr ? -ENOENT : hand_over(mw::parse_uint(*value), result);
+}
+
+int iniFindDouble(FILE *file, const char *tag, const char *section, double *result) {
+    const std::string *value = find(file, tag, section);
+    return value == nullptr ? -ENOENT : hand_over(mw::parse_double(*value), result);
+}
+
+int iniFindBool(FILE *file, const char *tag, const char *section, bool *result) {
+    const std::string *value = find(file, tag, section);
+    return value == nullptr ? -ENOENT : hand_over(mw::config::ini_bool(*value), result);
+}
+
+int iniFindString(FILE *file, const char *tag, const char *section, char *dest, size_t n) {
+    return to_text(find(file, tag, section), dest, n);
+}
+
+const char *iniFindIn(const char *file, const char *tag, const char *section) {
+    return c_text(find(file, tag, section));
+}
+
+int iniFindIntIn(const char *file, const char *tag, const char *section, int *result) {
+    return to_int(find(file, tag, section), result);
+}
+
+int iniFindSIntIn(const char *file, const char *tag, const char *section, rtapi_sint *result) {
+    const std::string *value = find(file, tag, section);
+    return value == nullptr ? -ENOENT : hand_over(mw::parse_int(*value), result);
+}
+
+int iniFindUIntIn(const char *file, const char *tag, const char *section, rtapi_uint *result) {
+    const std::string *value = find(file, tag, section);
+    return value == nullptr ? -ENOENT : hand_over(mw::parse_uint(*value), result);
+}
+
+int iniFindDoubleIn(const char *file, const char *tag, const char *section, double *result) {
+    const std::string *value = find(file, tag, section);
+    return value == nullptr ? -ENOENT : hand_over(mw::parse_double(*value), result);
+}
+
+int iniFindBoolIn(const char *file, const char *tag, const char *section, bool *result) {
+    const std::string *value = find(file, tag, section);
+    return value == nullptr ? -ENOENT : hand_over(mw::config::ini_bool(*value), result);
+}
+
+int iniFindStringIn(const char *file, const char *tag, const char *section, char *dest, size_t n) {
+    return to_text(find(file, tag, section), dest, n);
 }
 
 }  // extern "C"

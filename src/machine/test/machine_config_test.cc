@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <unistd.h>
+
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 
 #include <gtest/gtest.h>
 
@@ -55,6 +60,17 @@ TEST(MachineConfig, AxesAndJointsAreDifferentThings_A3) {
     EXPECT_FALSE(c.machine.isMetric);
     EXPECT_EQ(c.parameter(motion::Parameter::AXIS_MAX_LIMIT, 0), 2.0);
     EXPECT_EQ(c.parameter(motion::Parameter::JOINT_MAX_ACCELERATION, 1), 10.0);
+}
+
+TEST(MachineConfig, AnEmptyParameterFileIsTold_A3) {
+    std::string name = (std::filesystem::temp_directory_path() / "parameters-XXXXXX").string();
+    ::close(::mkstemp(name.data()));
+    const std::string text = std::string(GOOD) + "[RS274NGC]\nPARAMETER_FILE = " + name + "\n";
+    EXPECT_TRUE(Config(text).says("is empty: all offsets and parameters begin at 0"));
+    std::ofstream(name) << "5220\t1.0\n";
+    EXPECT_FALSE(Config(text).says("is empty"));
+    std::filesystem::remove(name);
+    EXPECT_FALSE(Config(text).says("is empty")) << "a new machine has none yet";
 }
 
 TEST(MachineConfig, KeysWithoutEffectAreNamedAndErrorsWhenStrict_D5) {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The extension behind `import linuxcnc` (python/linuxcnc/__init__.py): INI files.
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
 #include <fmt/format.h>
 
-#include "base/text.hh"
+#include "config/ini_escape.hh"
 #include "config/ini_file.hh"
-#include "config/ini_value.hh"
+#include "config/ini_script.hh"
 
 namespace py = pybind11;
 
@@ -27,13 +28,15 @@ class Ini {
     /// The value, or None when there is none or it is empty.
     py::object find(const std::string &section, const std::string &key, int number) const {
         const config::IniEntry *entry = file_.find(section, key, number < 1 ? 1 : number);
-        return entry == nullptr || entry->value.empty() ? py::object(py::none()) : py::str(entry->value);
+        return entry == nullptr || entry->value.empty() ? py::object(py::none()) : py::str(text_of(*entry));
     }
+    /// All values of a key, or of the whole section when the key is empty.
     py::list find_all(const std::string &section, const std::string &key) const {
         py::list out;
-        for (const config::IniEntry *entry : file_.find_all(section, key)) {
-            if (!entry->value.empty()) {
-                out.append(py::str(entry->value));
+        for (const config::IniEntry &entry : file_.entries()) {
+            const bool isWanted = entry.section == section && (key.empty() || entry.key == key);
+            if (isWanted && !entry.value.empty()) {
+                out.append(py::str(text_of(entry)));
             }
         }
         return out;
@@ -44,42 +47,38 @@ class Ini {
     }
     py::list sections() const { return list_of(file_.sections()); }
     py::list variables(const py::object &section) const {
-        if (!section.is_none()) {
-            return list_of(file_.keys(section.cast<std::string>()));
-        }
+        const bool isOfAll = section.is_none();
+        const std::string name = isOfAll ? std::string() : section.cast<std::string>();
         py::list out;
-        for (const std::string &name : file_.sections()) {
-            for (const std::string &key : file_.keys(name)) {
-                out.append(py::make_tuple(name, key));
+        for (const config::IniEntry &entry : file_.entries()) {
+            if (isOfAll || entry.section == name) {
+                out.append(py::make_tuple(entry.key, text_of(entry)));
             }
         }
         return out;
     }
     py::tuple line_of(const std::string &section, const std::string &key, int number) const {
         const config::IniEntry *entry = file_.find(section, key, number);
-        if (entry == nullptr) {
-            missing(section, key, number);
-        }
-        return py::make_tuple(entry->place.file, entry->place.line);
+        return entry == nullptr ? py::make_tuple(py::none(), py::none())
+                                : py::make_tuple(entry->place.file, entry->place.line);
     }
 
-    /// A value of one type; `read` says what its text means, nothing when it is another type's.
+    /// A value of one type; `read` says what it means and tells what is wrong with it.
     template <class Reader>
     py::object value(const std::string &section, const std::string &key, int number,
-                     const py::object &fallback, const char *type, Reader read) const {
+                     const py::object &fallback, Reader read) const {
         const config::IniEntry *entry = file_.find(section, key, number);
         if (entry == nullptr) {
-            if (fallback.is_none()) {
-                missing(section, key, number);
-            }
             return fallback;
         }
-        const auto result = read(entry->value);
-        if (!result) {
-            throw_error(fmt::format("{}: [{}]{} = '{}' is no {}", entry->place.str(), section, key,
-                                    entry->value, type));
+        std::string messages;
+        config::IniEntry decoded = *entry;
+        decoded.value = text_of(*entry);
+        const auto result = read(decoded, messages);
+        if (!messages.empty()) {
+            py::module_::import("sys").attr("stderr").attr("write")(messages);
         }
-        return py::cast(*result);
+        return py::cast(result);  // None when it is of another type, never the fallback
     }
 
   private:
@@ -98,32 +97,34 @@ class Ini {
         }
         return out;
     }
-    [[noreturn]] void missing(const std::string &section, const std::string &key, int number) const {
-        throw_error(fmt::format("{}: there is no [{}]{}{}", file_.path(), section, key,
-                                number > 1 ? fmt::format(" with number {}", number) : std::string()));
+    /// With its escapes replaced.
+    static std::string text_of(const config::IniEntry &entry) {
+        auto text = config::decode_ini_value(entry.value);
+        if (!text) {
+            throw_error(config::script_place(entry.place) + "error: " + text.error().message);
+        }
+        return *std::move(text);
     }
 
     config::IniFile file_;
 };
 
-std::optional<std::string> same_text(const std::string &text) {
-    return text;
+std::optional<std::string> script_text(const config::IniEntry &entry, std::string &) {
+    return entry.value;
 }
 
 /// One method that reads a typed value, under each of its names.
 template <class Reader>
-void define_getter(py::class_<Ini> &ini, std::initializer_list<const char *> names, const char *type,
-                   Reader read) {
+void define_getter(py::class_<Ini> &ini, std::initializer_list<const char *> names, Reader read) {
     for (const char *name : names) {
         ini.def(
             name,
-            [type, read](const Ini &self, const std::string &section, const std::string &variable, int num,
-                         const py::object &fallback) {
-                return self.value(section, variable, num, fallback, type, read);
-            },
+            [read](const Ini &self, const std::string &section, const std::string &variable, int num,
+                   const py::object &fallback) { return self.value(section, variable, num, fallback, read); },
             py::arg("section"), py::arg("variable"), py::arg("num") = 1, py::kw_only(),
             py::arg("fallback") = py::none(),
-            "The num-th value; fallback when there is none, linuxcnc.error without one or when it is another "
+            "The num-th value; fallback when there is none, None (with a message on stderr) when it is "
+            "another "
             "type's.");
     }
 }
@@ -138,21 +139,18 @@ PYBIND11_MODULE(_core, module) {
     ini.def(py::init<const std::string &>(), py::arg("path"))
         .def("find", &Ini::find, py::arg("section"), py::arg("variable"), py::arg("num") = 1,
              "The num-th value as text, None when there is none or it is empty.")
-        .def("findall", &Ini::find_all, py::arg("section"), py::arg("variable"), "All values, as a list.")
+        .def("findall", &Ini::find_all, py::arg("section"), py::arg("variable"),
+             "All values, as a list; with an empty variable, those of the whole section.")
         .def("hassection", &Ini::hasSection, py::arg("section"))
         .def("hasvariable", &Ini::hasVariable, py::arg("section"), py::arg("variable"), py::arg("num") = 1)
         .def("getsections", &Ini::sections, "The names of all sections, in their order.")
         .def("getvariables", &Ini::variables, py::arg("section") = py::none(),
-             "The names in a section; without one, tuples (section, name).")
+             "Tuples (name, value) of a section; without one, of all sections.")
         .def("lineof", &Ini::line_of, py::arg("section"), py::arg("variable"), py::arg("num") = 1,
-             "(file, line) of a value, which may be in an included file.");
-    mw::python::define_getter(ini, {"getbool"}, "bool",
-                              [](const std::string &t) { return mw::config::ini_bool(t); });
-    mw::python::define_getter(ini, {"getsint", "getint"}, "integer",
-                              [](const std::string &t) { return mw::parse_int(t); });
-    mw::python::define_getter(ini, {"getuint"}, "integer from 0",
-                              [](const std::string &t) { return mw::parse_uint(t); });
-    mw::python::define_getter(ini, {"getreal", "getfloat"}, "number",
-                              [](const std::string &t) { return mw::parse_double(t); });
-    mw::python::define_getter(ini, {"getstring"}, "text", &mw::python::same_text);
+             "(file, line) of a value, which may be in an included file; (None, None) when there is none.");
+    mw::python::define_getter(ini, {"getbool"}, &mw::config::script_bool);
+    mw::python::define_getter(ini, {"getsint", "getint"}, &mw::config::script_signed);
+    mw::python::define_getter(ini, {"getuint"}, &mw::config::script_unsigned);
+    mw::python::define_getter(ini, {"getreal", "getfloat"}, &mw::config::script_real);
+    mw::python::define_getter(ini, {"getstring"}, &mw::python::script_text);
 }

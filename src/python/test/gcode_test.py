@@ -269,15 +269,35 @@ class IniTest(unittest.TestCase):
         self.assertIs(self.ini.getbool("A", "T"), True)
         self.assertEqual(self.ini.getstring("A", "EMPTY"), "")
         self.assertEqual(self.ini.getfloat("A", "NO", fallback=2.5), 2.5)
-        for call in (lambda: self.ini.getuint("A", "X", 2), lambda: self.ini.getreal("A", "F"),
-                     lambda: self.ini.getreal("A", "NO")):
-            with self.assertRaises(linuxcnc.error):
-                call()
+        self.assertIsNone(self.ini.getreal("A", "NO"))
+        messages = io.StringIO()
+        with contextlib.redirect_stderr(messages):
+            # A value that is none is never taken for the fallback.
+            self.assertIsNone(self.ini.getbool("A", "Y", fallback=True))
+            self.assertIsNone(self.ini.getint("A", "Y", fallback=3))
+            self.assertEqual(self.ini.getuint("A", "X", 2), 2**64 - 2)
+            self.assertEqual(self.ini.getreal("A", "F"), 1.0)
+        told = messages.getvalue().splitlines()
+        self.assertEqual(len(told), 4)
+        for line, (number, kind) in zip(told, ((3, "error"), (3, "error"), (4, "warning"), (7, "warning"))):
+            self.assertTrue(line.startswith(f"{self.path}:{number}: {kind}: "), line)
+
+    def test_escapes(self):
+        with open(self.path, "w") as out:
+            out.write("[A]\nX = a\\tb \\u00e9\nBAD = \\xg0\n")
+        ini = linuxcnc.ini(self.path)
+        self.assertEqual(ini.getstring("A", "X"), "a\tb é")
+        self.assertEqual(ini.find("A", "X"), "a\tb é")
+        with self.assertRaisesRegex(linuxcnc.error, "m.ini:3: error: "):
+            ini.find("A", "BAD")
 
     def test_lists_and_places(self):
         self.assertEqual(self.ini.getsections(), ["A", "B"])
-        self.assertEqual(self.ini.getvariables("B"), ["X"])
-        self.assertIn(("A", "Y"), self.ini.getvariables())
+        self.assertEqual(self.ini.getvariables("B"), [("X", "0x10")])
+        self.assertIn(("Y", "hello ; c"), self.ini.getvariables())
+        self.assertEqual(self.ini.getvariables("NO"), [])
+        self.assertEqual(self.ini.findall("A", ""), ["1", "hello ; c", "-2", "yes", "1,5"])
+        self.assertEqual(self.ini.lineof("A", "NO"), (None, None))
         self.assertTrue(self.ini.hassection("B"))
         self.assertFalse(self.ini.hasvariable("B", "Y"))
         self.assertEqual(self.ini.lineof("A", "X", 2), (self.path, 4))

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: GPL-2.0-or-later */
+/* The calls as a component in C writes them. */
+#include "hal/api/inifile.h"
+
+int level_of_name(const char *name, int *level) {
+    return iniFindInt(name, "LEVEL", "A", level);
+}
+
+int level_of_stream(FILE *stream, int *level) {
+    return iniFindInt(stream, "LEVEL", "A", level);
+}
+
+int text_of_name(char *name, char *text, size_t n) {
+    return iniFindString(name, "TEXT", NULL, text, n);
+}
+
+const char *find_in_name(const char *name) {
+    return iniFind(name, "TEXT", "A");
+}
