@@ -77,7 +77,7 @@ def order_under_compensation(pair):
 
 def context_announced(pair):
     """M72 and the end of M73 announce feed, speeds and path mode, as the conformance cases have it; the reference restores
-    the feed with one decimal."""
+    the feed with one decimal and the speeds without any."""
     if not pair.has(r'm7[23]'):
         return
     kinds = re.compile(r'(SET_FEED_RATE|SET_SPINDLE_SPEED\(\d+|SET_MOTION_CONTROL_MODE|SET_NAIVECAM_TOLERANCE)')
@@ -102,6 +102,10 @@ def context_announced(pair):
     for i, (a, b) in enumerate(zip(pair.reference, pair.ours)):
         if a.startswith('SET_FEED_RATE(') and b.startswith('SET_FEED_RATE(') and \
                 abs(numbers(a)[0] - numbers(b)[0]) < 0.0501 and abs(numbers(a)[0] * 10 - round(numbers(a)[0] * 10)) < 1e-6:
+            pair.reference[i] = b
+        speed = 'SET_SPINDLE_SPEED('
+        if a.startswith(speed) and b.startswith(speed) and a.split(',')[0] == b.split(',')[0] and \
+                numbers(a)[0] == round(numbers(b)[0]):
             pair.reference[i] = b
 
 

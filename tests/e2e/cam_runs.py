@@ -2,12 +2,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Programs as CAM systems post them run to their end in virtual time on machines that have no more axes than they need.
 
-usage: cam_runs.py MILLWRIGHT SOURCE_FOLDER [--first SEED] [--count N]
+usage: cam_runs.py MILLWRIGHT SOURCE_FOLDER [--first SEED] [--count N] [--log FILE]
 Each program of tools/cam_programs.py runs on a machine of its own axes (X Z, X Y, X Y Z, X Y Z A, X Y Z A C; inch or mm) and
 must end where its last words say, with the tool offset that is in force, and with no warning.
+A log holds one line per program, its number and verdict; a run with the same log goes on where that one was stopped.
 """
 import argparse
+import contextlib
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -74,23 +77,43 @@ def run(millwright, program, is_inch, folder):
     return ''
 
 
+def verdicts_of(log):
+    """Seed -> what went wrong (nothing when it passed), of the programs a log holds."""
+    if log is None or not log.exists():
+        return {}
+    lines = [line.split('\t') for line in log.read_text().splitlines() if not line.startswith('#')]
+    return {int(seed): fault for seed, verdict, _, fault in lines if verdict in ('passed', 'FAILED')}
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument('millwright', type=pathlib.Path)
     parser.add_argument('source', type=pathlib.Path)
     parser.add_argument('--first', type=int, default=0)
     parser.add_argument('--count', type=int, default=20)
+    parser.add_argument('--log', type=pathlib.Path)
     arguments = parser.parse_args()
     sys.path.insert(0, str(arguments.source / 'tools'))
     import cam_programs  # pylint: disable=import-outside-toplevel
-    failures = {}
-    with tempfile.TemporaryDirectory() as scratch:
-        for seed in range(arguments.first, arguments.first + arguments.count):
+    seeds = range(arguments.first, arguments.first + arguments.count)
+    known = {seed: fault for seed, fault in verdicts_of(arguments.log).items() if seed in seeds}
+    failures = {seed: fault for seed, fault in known.items() if fault}
+    with contextlib.ExitStack() as open_now:
+        scratch = open_now.enter_context(tempfile.TemporaryDirectory())
+        log = open_now.enter_context(arguments.log.open('a', encoding='utf-8', buffering=1)) if arguments.log else None
+        for seed in seeds:
+            if seed in known:
+                continue
             program = cam_programs.make(seed)
-            fault = run(arguments.millwright.resolve(), program, seed % 3 == 2, pathlib.Path(scratch, str(seed)))
+            folder = pathlib.Path(scratch, str(seed))
+            fault = run(arguments.millwright.resolve(), program, seed % 3 == 2, folder)
+            shutil.rmtree(folder)
+            name = f'{program.kind} {program.axes}'
+            if log:
+                log.write(f'{seed}\t{"FAILED" if fault else "passed"}\t{name}\t{" ".join(fault.split())}\n')
             if fault:
                 failures[seed] = fault
-                print(f'FAILED: program {seed} ({program.kind} {program.axes}): {fault}')
+                print(f'FAILED: program {seed} ({name}): {fault}', flush=True)
     print(f'{arguments.count - len(failures)} passed, {len(failures)} failed')
     return 1 if failures else 0
 

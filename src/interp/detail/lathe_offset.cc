@@ -37,6 +37,19 @@ ProfileSegment line(Point from, Point to) {
     return one;
 }
 
+/// The arc through its own ends: the rounded numbers of a programmed arc may give two radii, and one of them
+/// alone would miss an end by their difference.
+ProfileSegment with_one_radius(const ProfileSegment &segment) {
+    ProfileSegment out = segment;
+    if (segment.isArc && distance(segment.start, segment.end) > SAME_X) {
+        const Point along = unit(segment.start, segment.end);
+        const Point middle{(segment.start.x + segment.end.x) / 2.0, (segment.start.y + segment.end.y) / 2.0};
+        const Point aside{segment.centre.x - middle.x, segment.centre.y - middle.y};
+        out.centre = sum(segment.centre, along, -dot(aside, along));
+    }
+    return out;
+}
+
 /// The arc around a corner, between two directions of travel.
 ProfileSegment around(Point corner, Point from, Point to, double by) {
     ProfileSegment arc;
@@ -229,10 +242,12 @@ Profile edge_of(const Profile &pieces, const std::vector<Run> &runs) {
 
 }  // namespace
 
-Profile offset_profile(const Profile &profile, double by, double tolerance) {
-    if (by == 0.0 || profile.size() < 2) {
-        return profile;
+Profile offset_profile(const Profile &programmed, double by, double tolerance) {
+    if (by == 0.0 || programmed.size() < 2) {
+        return programmed;
     }
+    Profile profile = programmed;
+    std::ranges::transform(profile, profile.begin(), with_one_radius);
     const Profile chain = chain_of(profile, by, tolerance);
     const ProfileSegment &last = profile.back();
     const Point heading = direction(last, last.end);
