@@ -285,7 +285,12 @@ void Task::update_pending() {
     } else if (mode_request_ != 0 && now_ns_ > mode_deadline_ns_) {
         finish(mode_request_, Progress::FAILED, "the motion controller has not changed its mode");
     }
-    if (home_request_ != 0 && motion_.isAnswered(home_command_) && !motion.isHoming) {
+    // In another process the answer comes before the snapshot of its cycle: only a later one tells of homing.
+    if (home_request_ != 0 && motion_.isAnswered(home_command_) && home_answered_cycle_ == 0) {
+        home_answered_cycle_ = motion.cycle + 1;
+    }
+    const bool isHomeSeen = home_answered_cycle_ != 0 && motion.cycle > home_answered_cycle_;
+    if (home_request_ != 0 && isHomeSeen && !motion.isHoming) {
         const bool isHomed = homing_joint_ < 0
                                  ? motion.isAllHomed
                                  : motion.joint[static_cast<std::size_t>(homing_joint_)].isHomed;

@@ -183,6 +183,8 @@ class Task final : public interp::World {
     std::int64_t out_of_mode_since_ns_ = -1;  ///< -1: not
     State wanted_state_ = State::ESTOP;
     int homing_joint_ = -1;
+    std::uint64_t home_answered_cycle_ =
+        0;  ///< the last servo cycle that may not know of it; 0: no answer yet
     motion::CommandId home_command_ = 0, enable_command_ = 0, last_setting_ = 0;
     std::int64_t state_deadline_ns_ = 0;
     std::deque<Message> messages_;

@@ -309,6 +309,7 @@ Outcome Task::Handler::operator()(const HomeJoint &command) {
     }
     task.motion_.send(motion::SetMode{motion::Mode::FREE});
     task.home_command_ = task.motion_.send(motion::Home{command.joint});
+    task.home_answered_cycle_ = 0;
     task.homing_joint_ = command.joint;
     task.home_request_ = id;
     return Progress::STARTED;
