@@ -4,9 +4,10 @@
 // Built once for each type (ABS_TYPE, ABS_MODULE).
 #include <limits>
 
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Abs {
     In<ABS_TYPE> in;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // blend: `out` goes from `in2` to `in1` while `select` goes from 0 to 1. Outside of that it stays at the
 // nearer input, or goes on along the line when the parameter `open` (bit) is true. Pins float.
-#include "components/common/kit.hh"
 #include "components/limit/limit_core.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Blend {
     In<double> in1, in2, select;
@@ -29,4 +30,4 @@ struct Blend {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Blend, "blend");
+MW_COMPONENT(mw::components::Blend, "blend", mw::sdk::MANY);

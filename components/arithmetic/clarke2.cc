@@ -3,9 +3,10 @@
 // Pins float. Clarke transform, amplitude-invariant: x = a, y = (a + 2 b) / sqrt 3.
 #include <numbers>
 
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Clarke2 {
     In<double> a, b;
@@ -28,4 +29,4 @@ struct Clarke2 {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Clarke2, "clarke2");
+MW_COMPONENT(mw::components::Clarke2, "clarke2", mw::sdk::MANY);

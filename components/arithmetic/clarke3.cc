@@ -4,9 +4,10 @@
 // sqrt 2 (a + b + c) / 3.
 #include <numbers>
 
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Clarke3 {
     In<double> a, b, c;
@@ -34,4 +35,4 @@ struct Clarke3 {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Clarke3, "clarke3");
+MW_COMPONENT(mw::components::Clarke3, "clarke3", mw::sdk::MANY);

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Clarkeinv {
     In<double> x, y, h, theta;
@@ -39,4 +40,4 @@ struct Clarkeinv {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Clarkeinv, "clarkeinv");
+MW_COMPONENT(mw::components::Clarkeinv, "clarkeinv", mw::sdk::MANY);

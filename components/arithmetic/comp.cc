@@ -6,9 +6,10 @@
 // [units of in].
 #include <cmath>
 
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Comp {
     In<double> in0, in1;
@@ -38,4 +39,4 @@ struct Comp {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Comp, "comp");
+MW_COMPONENT(mw::components::Comp, "comp", mw::sdk::MANY);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // constant: `out` (float) is the parameter `value`.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Constant {
     Out<double> out;
@@ -18,4 +19,4 @@ struct Constant {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Constant, "constant");
+MW_COMPONENT(mw::components::Constant, "constant", mw::sdk::MANY);

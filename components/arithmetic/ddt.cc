@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // ddt: `out` is the change of `in` (float) since the call before, per second.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Ddt {
     In<double> in;
@@ -24,4 +25,4 @@ struct Ddt {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Ddt, "ddt");
+MW_COMPONENT(mw::components::Ddt, "ddt", mw::sdk::MANY);

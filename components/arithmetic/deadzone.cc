@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // deadzone: `out` is `center` while `in` is within half of `threshold` of it; beyond, it is in less that
 // half, so that it has no jump. Pins and parameters (center 0, threshold 1 at start) are float.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Deadzone {
     In<double> in;
@@ -29,4 +30,4 @@ struct Deadzone {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Deadzone, "deadzone");
+MW_COMPONENT(mw::components::Deadzone, "deadzone", mw::sdk::MANY);

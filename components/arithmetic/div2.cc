@@ -4,9 +4,10 @@
 #include <cmath>
 
 #include "components/arithmetic/divisor.hh"
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Div2 {
     In<double> in0, in1;
@@ -25,4 +26,4 @@ struct Div2 {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Div2, "div2");
+MW_COMPONENT(mw::components::Div2, "div2", mw::sdk::MANY);

@@ -2,9 +2,10 @@
 // hypot: out = sqrt(in0^2 + in1^2 + in2^2). All pins float.
 #include <cmath>
 
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Hypot {
     In<double> in0, in1, in2;
@@ -28,4 +29,4 @@ struct Hypot {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Hypot, "hypot");
+MW_COMPONENT(mw::components::Hypot, "hypot", mw::sdk::MANY);

@@ -3,10 +3,11 @@
 // pins float; gain is 1 and the limits -1e20 and 1e20 at start. An input that is not a number adds nothing.
 #include <cmath>
 
-#include "components/common/kit.hh"
 #include "components/limit/limit_core.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Integ {
     In<double> in, gain;
@@ -33,4 +34,4 @@ struct Integ {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Integ, "integ");
+MW_COMPONENT(mw::components::Integ, "integ", mw::sdk::MANY);

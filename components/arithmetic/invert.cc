@@ -2,9 +2,10 @@
 // invert: out = 1 / in. An input nearer to zero than the parameter `deadband` counts as the deadband with its
 // sign (positive for 0), so that `out` stays finite. A deadband below 1e-12 counts as that.
 #include "components/arithmetic/divisor.hh"
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Invert {
     In<double> in;
@@ -22,4 +23,4 @@ struct Invert {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Invert, "invert");
+MW_COMPONENT(mw::components::Invert, "invert", mw::sdk::MANY);

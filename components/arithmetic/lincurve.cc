@@ -4,11 +4,12 @@
 //
 // The points are parameters x-val-NN and y-val-NN, x increasing. Left of the first and right of the last
 // point out stays at theirs. `out-io` is the same value as an I/O pin. All float.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 MW_PERSONALITY("points of each instance");
 
 namespace mw::components {
+using namespace sdk;
 
 struct Lincurve {
     static constexpr int MAX_POINTS = 16;
@@ -19,13 +20,13 @@ struct Lincurve {
     ParamRw<double> x[MAX_POINTS], y[MAX_POINTS];
 
     void declare(Declare &d) noexcept {
-        points = personality_number(d, personality[d.index()], 2, MAX_POINTS, "points");
+        points = d.personality_number(personality[d.index()], 2, MAX_POINTS, "points");
         d.pin(in, "in");
         d.pin(out, "out");
         d.pin(out_io, "out-io");
         for (int i = 0; i < points; ++i) {
-            param_at(d, x[i], "x-val-%02d", i);
-            param_at(d, y[i], "y-val-%02d", i);
+            d.param_at(x[i], "x-val-%02d", i);
+            d.param_at(y[i], "y-val-%02d", i);
         }
         d.function<&Lincurve::update>(this);
     }
@@ -53,4 +54,4 @@ struct Lincurve {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Lincurve, "lincurve");
+MW_COMPONENT(mw::components::Lincurve, "lincurve", mw::sdk::MANY);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // minmax: `min` and `max` are the least and the largest value of `in` since `reset` (bit) was true; while it
 // is true both follow in. Other pins float; both are 0 at start.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Minmax {
     In<double> in;
@@ -32,4 +33,4 @@ struct Minmax {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Minmax, "minmax");
+MW_COMPONENT(mw::components::Minmax, "minmax", mw::sdk::MANY);

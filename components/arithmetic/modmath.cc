@@ -5,9 +5,10 @@
 // `desired` (s32), one of `up` and `down` (bit) is true: the direction with fewer steps, up when both are
 // equal. Without `wrap` (bit parameter, true) it is the direction of the difference. Equal: `on-target`
 // (bit). A number that is not on the circle, or an empty circle, makes no direction and not on-target.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Modmath {
     In<std::int32_t> actual, desired;
@@ -48,4 +49,4 @@ struct Modmath {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Modmath, "modmath");
+MW_COMPONENT(mw::components::Modmath, "modmath", mw::sdk::MANY);

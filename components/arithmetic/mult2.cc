@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // mult2: out = in0 * in1. All pins float.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Mult2 {
     In<double> in0, in1;
@@ -19,4 +20,4 @@ struct Mult2 {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Mult2, "mult2");
+MW_COMPONENT(mw::components::Mult2, "mult2", mw::sdk::MANY);

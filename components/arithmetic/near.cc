@@ -3,9 +3,10 @@
 // factor `scale` in either direction. Both are parameters (0 and 1 at start).
 #include <cmath>
 
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Near {
     In<double> in1, in2;
@@ -34,4 +35,4 @@ struct Near {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Near, "near");
+MW_COMPONENT(mw::components::Near, "near", mw::sdk::MANY);

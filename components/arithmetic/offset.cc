@@ -2,9 +2,10 @@
 // offset: shifts a command and takes the shift out of the feedback. Pins float.
 //
 // Function update-output: out = in + offset. Function update-feedback: fb-out = fb-in - offset.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Offset {
     In<double> offset, in, fb_in;
@@ -25,4 +26,4 @@ struct Offset {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Offset, "offset");
+MW_COMPONENT(mw::components::Offset, "offset", mw::sdk::MANY);

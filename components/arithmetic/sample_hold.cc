@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // sample_hold: `out` follows `in` (s32) while `hold` (bit) is false.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct SampleHold {
     In<std::int32_t> in;
@@ -25,4 +26,4 @@ struct SampleHold {
 
 }  // namespace mw::components
 
-MW_INSTANCES(SampleHold, "sample_hold");
+MW_COMPONENT(mw::components::SampleHold, "sample_hold", mw::sdk::MANY);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // scale: out = in * gain + offset. All pins float.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Scale {
     In<double> in, gain, offset;
@@ -20,4 +21,4 @@ struct Scale {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Scale, "scale");
+MW_COMPONENT(mw::components::Scale, "scale", mw::sdk::MANY);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // scaled_s32_sums: `out-f` is the sum of `in0` to `in3` (s32), each times its `scale0` to `scale3` (float, 1
 // at start); `out-s` (s32) is its whole part, the nearest possible when it does not fit.
-#include "components/common/kit.hh"
 #include "components/conv/conv_core.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct ScaledS32Sums {
     static constexpr int INPUTS = 4;
@@ -15,8 +16,8 @@ struct ScaledS32Sums {
 
     void declare(Declare &d) noexcept {
         for (int i = 0; i < INPUTS; ++i) {
-            pin_at(d, in[i], "in%d", i);
-            pin_at(d, scale[i], "scale%d", i, 1.0);
+            d.pin_at(in[i], "in%d", i);
+            d.pin_at(scale[i], "scale%d", i, 1.0);
         }
         d.pin(out_s, "out-s");
         d.pin(out_f, "out-f");
@@ -35,4 +36,4 @@ struct ScaledS32Sums {
 
 }  // namespace mw::components
 
-MW_INSTANCES(ScaledS32Sums, "scaled_s32_sums");
+MW_COMPONENT(mw::components::ScaledS32Sums, "scaled_s32_sums", mw::sdk::MANY);

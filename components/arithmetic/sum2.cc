@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // sum2: out = in0 * gain0 + in1 * gain1 + offset. Pins float; gain0, gain1 (1 at start) and offset are
 // parameters.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Sum2 {
     In<double> in0, in1;
@@ -24,4 +25,4 @@ struct Sum2 {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Sum2, "sum2");
+MW_COMPONENT(mw::components::Sum2, "sum2", mw::sdk::MANY);

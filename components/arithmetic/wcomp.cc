@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // wcomp: `out` (bit) is true while `in` is between `min` and `max`, `under` while it is at most min, `over`
 // while it is at least max. Other pins float. With max below min in may be under and over at once.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Wcomp {
     In<double> in, min, max;
@@ -31,4 +32,4 @@ struct Wcomp {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Wcomp, "wcomp");
+MW_COMPONENT(mw::components::Wcomp, "wcomp", mw::sdk::MANY);

@@ -4,13 +4,14 @@
 // `wsum.N.sum` (s32) is `wsum.N.offset` plus the `wsum.N.bit.M.weight` (s32, 2^M at start) of each
 // `wsum.N.bit.M.in` (bit) that is true; it stands still while `wsum.N.hold` (bit) is true. One function
 // `process_wsums` for all.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 constexpr int MAX_SUMS = 8;
 static int wsum_sizes[MAX_SUMS];
 RTAPI_MP_ARRAY_INT(wsum_sizes, MAX_SUMS, "bits of each sum");
 
 namespace mw::components {
+using namespace sdk;
 
 constexpr int MAX_BITS = 16;
 
@@ -24,8 +25,8 @@ struct WeightedSum {
 
     void declare(Declare &d) noexcept {
         for (int i = 0; i < size; ++i) {
-            pin_at(d, in[i], "bit.%d.in", i);
-            pin_at(d, weight[i], "bit.%d.weight", i, 1 << i);
+            d.pin_at(in[i], "bit.%d.in", i);
+            d.pin_at(weight[i], "bit.%d.weight", i, 1 << i);
         }
         d.pin(hold, "hold");
         d.pin(offset, "offset");
@@ -87,4 +88,4 @@ struct WeightedSums {
 
 }  // namespace mw::components
 
-MW_SINGLE(WeightedSums, "weighted_sum");
+MW_COMPONENT_SINGLE(mw::components::WeightedSums, "weighted_sum");

@@ -5,10 +5,11 @@
 // Where TO cannot hold all of FROM there is an output `out-of-range` (bit) and a parameter `clamp` (bit):
 // true makes the nearest value of such a one, false lets it wrap around. A bit is true for any integer but 0
 // and any float but those next to 0.
-#include "components/common/kit.hh"
 #include "components/conv/conv_core.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Conv {
     In<CONV_FROM> in;

@@ -5,10 +5,11 @@
 // Functions: update-counters (as often as possible) and capture-position. Pins of counter.N: phase-A,
 // phase-Z, reset (bit), index-enable (I/O), position-scale [counts/unit] (I/O), counts, rawcounts (s32),
 // position, velocity [units/s].
-#include "components/common/kit.hh"
 #include "components/encoder/encoder_core.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct CounterChannel {
     In<bool> phase_a, phase_z, reset;
@@ -21,8 +22,8 @@ struct CounterChannel {
     encoder::SlowPart slow;
 
     void declare(Declare &d) noexcept {
-        legacy_pin(d, phase_a, "phase-a", "phase-A");
-        legacy_pin(d, phase_z, "phase-z", "phase-Z");
+        d.legacy_pin(phase_a, "phase-a", "phase-A");
+        d.legacy_pin(phase_z, "phase-z", "phase-Z");
         d.pin(reset, "reset");
         d.pin(index_enable, "index-enable");
         d.pin(position_scale, "position-scale", 1.0);
@@ -76,4 +77,4 @@ struct Counter : Channels<CounterChannel, encoder::MAX_CHANNELS> {
 
 }  // namespace mw::components
 
-MW_MODULE("counter", num_chan, 1, mw::encoder::MAX_CHANNELS, load_channels<mw::components::Counter>);
+MW_MODULE("counter", num_chan, 1, mw::encoder::MAX_CHANNELS, mw::sdk::load_channels<mw::components::Counter>);

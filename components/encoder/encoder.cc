@@ -9,10 +9,11 @@
 // index-enable (I/O: the next index sets the position to 0 and this to false); reset; missing-teeth (in
 // counter mode: a gap of so many teeth is the index); latch-input, latch-rising, latch-falling,
 // counts-latched, position-latched; rawcounts.
-#include "components/common/kit.hh"
 #include "components/encoder/encoder_core.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct EncoderChannel {
     In<bool> phase_a, phase_b, phase_z, reset, latch_input, latch_rising, latch_falling;
@@ -27,9 +28,9 @@ struct EncoderChannel {
     encoder::SlowPart slow;
 
     void declare(Declare &d) noexcept {
-        legacy_pin(d, phase_a, "phase-a", "phase-A");
-        legacy_pin(d, phase_b, "phase-b", "phase-B");
-        legacy_pin(d, phase_z, "phase-z", "phase-Z");
+        d.legacy_pin(phase_a, "phase-a", "phase-A");
+        d.legacy_pin(phase_b, "phase-b", "phase-B");
+        d.legacy_pin(phase_z, "phase-z", "phase-Z");
         d.pin(reset, "reset");
         d.pin(latch_input, "latch-input");
         d.pin(latch_rising, "latch-rising", true);
@@ -94,4 +95,4 @@ struct Encoder : Channels<EncoderChannel, encoder::MAX_CHANNELS> {
 
 }  // namespace mw::components
 
-MW_MODULE("encoder", num_chan, 3, mw::encoder::MAX_CHANNELS, load_channels<mw::components::Encoder>);
+MW_MODULE("encoder", num_chan, 3, mw::encoder::MAX_CHANNELS, mw::sdk::load_channels<mw::components::Encoder>);

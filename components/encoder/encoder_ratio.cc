@@ -6,10 +6,11 @@
 // master-B, slave-A, slave-B, enable (bit); error (float, turns of the slave): the slave's position, and
 // while enabled minus the master's since then times master-teeth / slave-teeth; master-ppr, slave-ppr (pulses
 // a turn, four counts each), master-teeth, slave-teeth (u32, I/O).
-#include "components/common/kit.hh"
 #include "components/encoder/encoder_core.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct RatioChannel {
     In<bool> master_a, master_b, slave_a, slave_b, enable;
@@ -24,10 +25,10 @@ struct RatioChannel {
     std::int32_t master_start = 0;  ///< where the master stood when the gear was engaged
 
     void declare(Declare &d) noexcept {
-        legacy_pin(d, master_a, "master-a", "master-A");
-        legacy_pin(d, master_b, "master-b", "master-B");
-        legacy_pin(d, slave_a, "slave-a", "slave-A");
-        legacy_pin(d, slave_b, "slave-b", "slave-B");
+        d.legacy_pin(master_a, "master-a", "master-A");
+        d.legacy_pin(master_b, "master-b", "master-B");
+        d.legacy_pin(slave_a, "slave-a", "slave-A");
+        d.legacy_pin(slave_b, "slave-b", "slave-B");
         d.pin(enable, "enable");
         d.pin(error, "error");
         d.pin(master_ppr, "master-ppr");
@@ -92,4 +93,4 @@ struct EncoderRatio : Channels<RatioChannel, encoder::MAX_CHANNELS> {
 }  // namespace mw::components
 
 MW_MODULE("encoder_ratio", num_chan, 1, mw::encoder::MAX_CHANNELS,
-          load_channels<mw::components::EncoderRatio>);
+          mw::sdk::load_channels<mw::components::EncoderRatio>);

@@ -10,9 +10,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Biquad {
     In<double> in, f0, q;
@@ -37,7 +38,7 @@ void Biquad::declare(Declare &d) noexcept {
     d.pin(valid, "valid");
     d.pin(type, "type");
     d.pin(f0, "f0", 250.0);
-    legacy_pin(d, q, "q", "Q", 0.7071);
+    d.legacy_pin(q, "q", "Q", 0.7071);
     d.pin(s1, "s1");
     d.pin(s2, "s2");
     d.param(d1, "d1");
@@ -93,4 +94,4 @@ void Biquad::update(long period_ns) noexcept {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Biquad, "biquad");
+MW_COMPONENT(mw::components::Biquad, "biquad", mw::sdk::MANY);

@@ -8,9 +8,10 @@
 // variance 1. `debug` (bit) logs zk and xk-out.
 #include <cmath>
 
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct FilterKalman {
     In<bool> debug, passthrough, reset;
@@ -27,8 +28,8 @@ struct FilterKalman {
         d.pin(reset, "reset");
         d.pin(zk, "zk");
         d.pin(xk_out, "xk-out");
-        legacy_param(d, rk, "rk", "Rk", SMALLEST);
-        legacy_param(d, qk, "qk", "Qk", SMALLEST);
+        d.legacy_param(rk, "rk", "Rk", SMALLEST);
+        d.legacy_param(qk, "qk", "Qk", SMALLEST);
         d.function<&FilterKalman::update>(this);
     }
 
@@ -61,4 +62,4 @@ struct FilterKalman {
 
 }  // namespace mw::components
 
-MW_INSTANCES(FilterKalman, "filter_kalman");
+MW_COMPONENT(mw::components::FilterKalman, "filter_kalman", mw::sdk::MANY);

@@ -6,9 +6,10 @@
 // their differences, so both sides run over the end of their 32 bits instead of stopping there.
 #include <cmath>
 
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 /// `value` to the nearest whole number, modulo 2^32.
 static std::int32_t wrapped(double value) noexcept {
@@ -45,4 +46,4 @@ struct Ilowpass {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Ilowpass, "ilowpass");
+MW_COMPONENT(mw::components::Ilowpass, "ilowpass", mw::sdk::MANY);

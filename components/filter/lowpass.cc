@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // lowpass: out += (in - out) * gain in every period; `load` (bit) copies in to out instead. Pins float,
 // `gain` is a parameter: 1 - exp(-2 pi f T) for a corner frequency f [Hz] and a period T [s].
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Lowpass {
     In<double> in;
@@ -28,4 +29,4 @@ struct Lowpass {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Lowpass, "lowpass");
+MW_COMPONENT(mw::components::Lowpass, "lowpass", mw::sdk::MANY);

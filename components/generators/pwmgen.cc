@@ -11,8 +11,8 @@
 // min-dc, max-dc, pwm-freq and dither-pwm are I/O pins.
 #include <cmath>
 
-#include "components/common/kit.hh"
 #include "components/generators/pwm_core.hh"
+#include "hal/sdk/component.hh"
 
 constexpr int MAX_PWM = 8;
 constexpr int NO_TYPE = -1;
@@ -20,6 +20,7 @@ static int output_type[MAX_PWM] = {NO_TYPE, NO_TYPE, NO_TYPE, NO_TYPE, NO_TYPE, 
 RTAPI_MP_ARRAY_INT(output_type, MAX_PWM, "0 pwm, 1 pwm and dir, 2 up and down");
 
 namespace mw::components {
+using namespace sdk;
 
 struct PwmChannel {
     int type = 0;
@@ -184,4 +185,4 @@ struct Pwmgen {
 
 }  // namespace mw::components
 
-MW_SINGLE(Pwmgen, "pwmgen");
+MW_COMPONENT_SINGLE(mw::components::Pwmgen, "pwmgen");

@@ -9,10 +9,11 @@
 // said.
 #include <cmath>
 
-#include "components/common/kit.hh"
 #include "components/machine/follower.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Steptest {
     In<bool> jog_minus, jog_plus, run;
@@ -119,4 +120,4 @@ void Steptest::update(long period_ns) noexcept {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Steptest, "steptest");
+MW_COMPONENT(mw::components::Steptest, "steptest", mw::sdk::MANY);

@@ -7,10 +7,11 @@
 // at start) counts as 1 when less.
 #include <cmath>
 
-#include "components/common/kit.hh"
 #include "components/limit/limit_core.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Joyhandle {
     In<double> in;
@@ -56,4 +57,4 @@ struct Joyhandle {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Joyhandle, "joyhandle");
+MW_COMPONENT(mw::components::Joyhandle, "joyhandle", mw::sdk::MANY);

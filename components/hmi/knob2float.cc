@@ -2,10 +2,11 @@
 // knob2float: a knob without ends sets a value. While `enable` (bit) is true `out` changes by `scale` (float)
 // for each count of `counts` (s32), held between the parameters `min-out` (0) and `max-out` (1). Counts made
 // while enable is false, and those before the first run, are not looked at.
-#include "components/common/kit.hh"
 #include "components/limit/limit_core.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Knob2float {
     In<std::int32_t> counts;
@@ -43,4 +44,4 @@ struct Knob2float {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Knob2float, "knob2float");
+MW_COMPONENT(mw::components::Knob2float, "knob2float", mw::sdk::MANY);

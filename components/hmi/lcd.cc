@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // lcd: streams values to a character display, one character a period. The manual page tells all.
-#include "components/common/kit.hh"
 #include "components/hmi/lcd_core.hh"
+#include "hal/sdk/component.hh"
 
 constexpr int MAX_DISPLAYS = 8;
 static char *fmt_strings[MAX_DISPLAYS];
 RTAPI_MP_ARRAY_STRING(fmt_strings, MAX_DISPLAYS, "pages of each display");
 
 namespace mw::components {
+using namespace sdk;
 
 constexpr int MAX_PAGES = 32;
 constexpr int MAX_ITEMS = 1024;
@@ -109,7 +110,7 @@ void Lcd::declare(Declare &d) noexcept {
         return;
     }
     d.pin(out, "out");
-    legacy_pin(d, page_num, "page-num", "page_num");
+    d.legacy_pin(page_num, "page-num", "page_num");
     d.pin(contrast, "contrast");
     d.param(separator, "decimal-separator", static_cast<std::uint32_t>('.'));
 }
@@ -218,4 +219,4 @@ struct Lcds {
 
 }  // namespace mw::components
 
-MW_SINGLE(Lcds, "lcd");
+MW_COMPONENT_SINGLE(mw::components::Lcds, "lcd");

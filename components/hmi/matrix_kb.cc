@@ -10,7 +10,7 @@
 // before are read; a key counts when it is the same in two scans. Parameters: `key-rollover` (u32, 2; old
 // name key_rollover), how many keys may be held at once; with s `negative-logic` (bit, true): active is
 // false.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 constexpr int MAX_KEYBOARDS = 16;
 static char *config[MAX_KEYBOARDS];
@@ -19,6 +19,7 @@ static char *names[MAX_KEYBOARDS];
 RTAPI_MP_ARRAY_STRING(names, MAX_KEYBOARDS, "names of the keyboards");
 
 namespace mw::components {
+using namespace sdk;
 
 constexpr int MAX_LINES = 32;
 constexpr std::uint32_t KEY_DOWN = 0xc0;
@@ -90,13 +91,13 @@ void MatrixKb::declare(Declare &d) noexcept {
         lastScan[i] = false;
         d.pin(key[i], name);
     }
-    legacy_param(d, rollover, "key-rollover", "key_rollover", 2U);
+    d.legacy_param(rollover, "key-rollover", "key_rollover", 2U);
     if (isScanned) {
         for (int i = 0; i < rows; ++i) {
-            pin_at(d, row_out[i], "row-%02d-out", i);
+            d.pin_at(row_out[i], "row-%02d-out", i);
         }
         for (int i = 0; i < columns; ++i) {
-            pin_at(d, column_in[i], "col-%02d-in", i);
+            d.pin_at(column_in[i], "col-%02d-in", i);
         }
         d.pin(code_out, "keycode");
         d.param(negative_logic, "negative-logic", true);
@@ -194,4 +195,4 @@ struct MatrixKbs {
 
 }  // namespace mw::components
 
-MW_SINGLE(MatrixKbs, "matrix_kb");
+MW_COMPONENT_SINGLE(mw::components::MatrixKbs, "matrix_kb");

@@ -5,12 +5,13 @@
 // `trigger` (bit): its rising edge, or falling edge while the parameter `edge` (bit, true at start) is false,
 // shows the text; a rising edge of `force` (bit) shows it again while trigger is in that state. Texts go out
 // as errors of the realtime log, which user interfaces show.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
-static char *messages[mw::components::MANY];
-RTAPI_MP_ARRAY_STRING(messages, mw::components::MANY, "text of each instance");
+static char *messages[mw::sdk::MANY];
+RTAPI_MP_ARRAY_STRING(messages, mw::sdk::MANY, "text of each instance");
 
 namespace mw::components {
+using namespace sdk;
 
 struct Message {
     In<bool> trigger, force;
@@ -49,4 +50,4 @@ struct Message {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Message, "message");
+MW_COMPONENT(mw::components::Message, "message", mw::sdk::MANY);

@@ -5,7 +5,7 @@
 // Each press of `up` or `down` (bit) moves to the next or previous of `bit-00`, `bit-01`, ..., from the last
 // to the first and back. Parameters: `position` (s32) is the number of the output that is true and may be
 // set; `top-position` (u32) is the number of the last one used.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 constexpr int MAX_SWITCHES = 32;
 static int cfg[MAX_SWITCHES] = {4};
@@ -14,6 +14,7 @@ static int personality = 0;
 RTAPI_MP_INT(personality, "not used; see cfg");
 
 namespace mw::components {
+using namespace sdk;
 
 constexpr int MAX_OUTPUTS = 32;
 
@@ -30,7 +31,7 @@ struct Multiswitch {
         d.pin(up, "up");
         d.pin(down, "down");
         for (int i = 0; i < size; ++i) {
-            pin_at(d, bit[i], "bit-%02d", i);
+            d.pin_at(bit[i], "bit-%02d", i);
         }
         d.param(top_position, "top-position", static_cast<std::uint32_t>(size - 1));
         d.param(position, "position");
@@ -85,4 +86,4 @@ struct Multiswitches {
 
 }  // namespace mw::components
 
-MW_SINGLE(Multiswitches, "multiswitch");
+MW_COMPONENT_SINGLE(mw::components::Multiswitches, "multiswitch");

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // limit1: `out` is `in` held between `min` and `max`. All pins float; the limits start at -1e20 and 1e20.
 // An input that is not a number keeps the output where it is.
-#include "components/common/kit.hh"
 #include "components/limit/limit_core.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Limit1 {
     In<double> in;
@@ -27,4 +28,4 @@ struct Limit1 {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Limit1, "limit1");
+MW_COMPONENT(mw::components::Limit1, "limit1", mw::sdk::MANY);

@@ -2,10 +2,11 @@
 // limit2: `out` follows `in`, held between `min` and `max`, and changes by at most `maxv` per second. `load`
 // (bit) sets out to in at once (within min and max). Other pins float; the limits start at -1e20 and 1e20.
 // An input that is not a number keeps the output where it is.
-#include "components/common/kit.hh"
 #include "components/limit/limit_core.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Limit2 {
     In<double> in;
@@ -35,4 +36,4 @@ struct Limit2 {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Limit2, "limit2");
+MW_COMPONENT(mw::components::Limit2, "limit2", mw::sdk::MANY);

@@ -4,10 +4,11 @@
 // `load` (bit) sets out to in at once. `smooth-steps` (u32, 2 at start): how many periods the end of a move
 // is spread over. Other pins float, the limits start at -1e20 and 1e20.
 // An input that is not a number keeps the output where it is.
-#include "components/common/kit.hh"
 #include "components/limit/limit_core.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Limit3 {
     In<double> in;
@@ -46,4 +47,4 @@ struct Limit3 {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Limit3, "limit3");
+MW_COMPONENT(mw::components::Limit3, "limit3", mw::sdk::MANY);

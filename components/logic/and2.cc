@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // and2: `out` is true while `in0` and `in1` are. All pins bit.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct And2 {
     In<bool> in0, in1;
@@ -19,4 +20,4 @@ struct And2 {
 
 }  // namespace mw::components
 
-MW_INSTANCES(And2, "and2");
+MW_COMPONENT(mw::components::And2, "and2", mw::sdk::MANY);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // bin2gray: `out` is `in` in Gray code. Both u32.
-#include "components/common/kit.hh"
 #include "components/logic/gray.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Bin2gray {
     In<std::uint32_t> in;
@@ -19,4 +20,4 @@ struct Bin2gray {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Bin2gray, "bin2gray");
+MW_COMPONENT(mw::components::Bin2gray, "bin2gray", mw::sdk::MANY);

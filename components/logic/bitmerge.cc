@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // bitmerge: `out` (u32) is the number with the bits `in-NN` (bit), in-00 the lowest; `personality=` gives the
 // number of inputs of each instance, up to 32 (the default).
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 MW_PERSONALITY("bits of each instance");
 
 namespace mw::components {
+using namespace sdk;
 
 struct Bitmerge {
     static constexpr int MAX_BITS = 32;
@@ -14,9 +15,9 @@ struct Bitmerge {
     Out<std::uint32_t> out;
 
     void declare(Declare &d) noexcept {
-        bits = personality_number(d, personality[d.index()], MAX_BITS, MAX_BITS, "bits");
+        bits = d.personality_number(personality[d.index()], MAX_BITS, MAX_BITS, "bits");
         for (int i = 0; i < bits; ++i) {
-            pin_at(d, in[i], "in-%02d", i);
+            d.pin_at(in[i], "in-%02d", i);
         }
         d.pin(out, "out");
         d.function<&Bitmerge::update>(this);
@@ -33,4 +34,4 @@ struct Bitmerge {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Bitmerge, "bitmerge");
+MW_COMPONENT(mw::components::Bitmerge, "bitmerge", mw::sdk::MANY);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // bitslice: the bits of `in` (u32) as outputs `out-NN` (bit), out-00 the lowest; `personality=` gives the
 // number of outputs of each instance, up to 32.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 MW_PERSONALITY("bits of each instance");
 
 namespace mw::components {
+using namespace sdk;
 
 struct Bitslice {
     static constexpr int MAX_BITS = 32;
@@ -14,10 +15,10 @@ struct Bitslice {
     Out<bool> out[MAX_BITS];
 
     void declare(Declare &d) noexcept {
-        bits = personality_number(d, personality[d.index()], 0, MAX_BITS, "bits");
+        bits = d.personality_number(personality[d.index()], 0, MAX_BITS, "bits");
         d.pin(in, "in");
         for (int i = 0; i < bits; ++i) {
-            pin_at(d, out[i], "out-%02d", i);
+            d.pin_at(out[i], "out-%02d", i);
         }
         d.function<&Bitslice::update>(this);
     }
@@ -32,4 +33,4 @@ struct Bitslice {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Bitslice, "bitslice");
+MW_COMPONENT(mw::components::Bitslice, "bitslice", mw::sdk::MANY);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // bitwise: bit by bit logic of `in0` and `in1` (u32): out-and, out-or, out-xor, out-nand, out-nor, out-xnor.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Bitwise {
     In<std::uint32_t> in0, in1;
@@ -34,4 +35,4 @@ struct Bitwise {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Bitwise, "bitwise");
+MW_COMPONENT(mw::components::Bitwise, "bitwise", mw::sdk::MANY);

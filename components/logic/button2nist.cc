@@ -2,9 +2,10 @@
 // toggle2nist, momentary2nist: one button for something with inputs to switch on and off. A press of `in`
 // (bit) makes `on` true until `is-on` tells that it is on; a press while is-on is true makes `off` true until
 // is-on is false. All pins bit. Presses in between are ignored. Built twice (BUTTON_MODULE).
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Button2nist {
     In<bool> in, is_on;

@@ -3,9 +3,10 @@
 //
 // While `enable` (bit, true at start) is true, `out` toggles with every call, `out-2` with every second,
 // `out-4` with every fourth; all are false otherwise. One instance, without number.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct ChargePump {
     In<bool> enable;
@@ -37,7 +38,7 @@ int rtapi_app_main(void) {
     static char name[] = "charge-pump";
     static char *const names[] = {name, nullptr};
     mw_comp_id =
-        mw::components::load_instances<mw::components::ChargePump>({"charge_pump", "count", 0, names, 1, 1});
+        mw::sdk::load_instances<mw::components::ChargePump>({"charge_pump", "count", 0, names, 1, 1});
     return mw_comp_id < 0 ? mw_comp_id : 0;
 }
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // dbounce: `out` follows `in` (bit) when that has held still: a counter goes up while in is true and down
 // while it is false; at `delay` (u32, 5 at start) [periods] out becomes true, at 0 false.
-#include "components/common/kit.hh"
 #include "components/logic/debouncer.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Dbounce {
     In<bool> in;
@@ -23,4 +24,4 @@ struct Dbounce {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Dbounce, "dbounce");
+MW_COMPONENT(mw::components::Dbounce, "dbounce", mw::sdk::MANY);

@@ -4,14 +4,15 @@
 //
 // Function debounce.G. Pins debounce.G.F.in and debounce.G.F.out (bit); parameter debounce.G.delay (s32, 5 at
 // start) [periods]: see dbounce.
-#include "components/common/kit.hh"
 #include "components/logic/debouncer.hh"
+#include "hal/sdk/component.hh"
 
 constexpr int MAX_GROUPS = 8;
 static int cfg[MAX_GROUPS] = {1};
 RTAPI_MP_ARRAY_INT(cfg, MAX_GROUPS, "inputs of each group");
 
 namespace mw::components {
+using namespace sdk;
 
 constexpr int MAX_INPUTS = 50;
 
@@ -24,8 +25,8 @@ struct DebounceGroup {
 
     void declare(Declare &d) noexcept {
         for (int i = 0; i < size; ++i) {
-            pin_at(d, in[i], "%d.in", i);
-            pin_at(d, out[i], "%d.out", i);
+            d.pin_at(in[i], "%d.in", i);
+            d.pin_at(out[i], "%d.out", i);
         }
         d.param(delay, "delay", 5);
         d.function<&DebounceGroup::update>(this);
@@ -69,4 +70,4 @@ struct Debounce {
 
 }  // namespace mw::components
 
-MW_SINGLE(Debounce, "debounce");
+MW_COMPONENT_SINGLE(mw::components::Debounce, "debounce");

@@ -4,11 +4,12 @@
 //
 // The number is `sel-u32` (u32) plus the binary number of sel-bit-00 to sel-bit-04 (bit); one that is too
 // large selects the last output. With the parameter `bargraph` (bit) as many outputs as the number are true.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 MW_PERSONALITY("outputs of each instance");
 
 namespace mw::components {
+using namespace sdk;
 
 struct Demux {
     static constexpr int MAX_OUTPUTS = 32;
@@ -20,13 +21,13 @@ struct Demux {
     ParamRw<bool> bargraph;
 
     void declare(Declare &d) noexcept {
-        outputs = personality_number(d, personality[d.index()], MAX_OUTPUTS, MAX_OUTPUTS, "outputs");
+        outputs = d.personality_number(personality[d.index()], MAX_OUTPUTS, MAX_OUTPUTS, "outputs");
         for (int i = 0; i < SELECT_BITS; ++i) {
-            pin_at(d, sel_bit[i], "sel-bit-%02d", i);
+            d.pin_at(sel_bit[i], "sel-bit-%02d", i);
         }
         d.pin(sel_u32, "sel-u32");
         for (int i = 0; i < outputs; ++i) {
-            pin_at(d, out[i], "out-%02d", i);
+            d.pin_at(out[i], "out-%02d", i);
         }
         d.param(bargraph, "bargraph");
         d.function<&Demux::update>(this);
@@ -49,4 +50,4 @@ struct Demux {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Demux, "demux");
+MW_COMPONENT(mw::components::Demux, "demux", mw::sdk::MANY);

@@ -5,14 +5,15 @@
 // The items after E or D get the numbers 0, 1, 2, ...; an empty one is left out. Encoder: `output` (u32) is
 // the number of the first NAME-in (bit) that is true, 0 when none is. Decoder: each NAME-out (bit) is true
 // while `input` (u32) is its number. The parameter NAME-val (u32) is the number of an item and may be set.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
-static char *enums[mw::components::MANY];
-RTAPI_MP_ARRAY_STRING(enums, mw::components::MANY, "E or D and the names of each instance");
-static char *names[mw::components::MANY];
-RTAPI_MP_ARRAY_STRING(names, mw::components::MANY, "names of the instances");
+static char *enums[mw::sdk::MANY];
+RTAPI_MP_ARRAY_STRING(enums, mw::sdk::MANY, "E or D and the names of each instance");
+static char *names[mw::sdk::MANY];
+RTAPI_MP_ARRAY_STRING(names, mw::sdk::MANY, "names of the instances");
 
 namespace mw::components {
+using namespace sdk;
 
 constexpr int MAX_ITEMS = 32;
 constexpr int MAX_LABEL = 40;
@@ -126,4 +127,4 @@ struct Enums {
 
 }  // namespace mw::components
 
-MW_SINGLE(Enums, "enum");
+MW_COMPONENT_SINGLE(mw::components::Enums, "enum");

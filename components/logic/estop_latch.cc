@@ -4,9 +4,10 @@
 // Pins (bit): `ok-in` (true at start) and `fault-in` tell the state of the chain; a rising edge of `reset`
 // leaves the faulted state when ok-in is true and fault-in false. `ok-out` and `fault-out` are the state;
 // `watchdog` toggles with every call while ok. Software can only help an emergency stop chain; it is not one.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct EstopLatch {
     In<bool> ok_in, fault_in, reset;
@@ -39,4 +40,4 @@ struct EstopLatch {
 
 }  // namespace mw::components
 
-MW_INSTANCES(EstopLatch, "estop_latch");
+MW_COMPONENT(mw::components::EstopLatch, "estop_latch", mw::sdk::MANY);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // flipflop: a rising edge of `clk` copies `data` to `out`; `set` makes it true, `reset` false (and wins).
 // `out-not` is the opposite of `out`. All pins bit; the outputs are I/O so that others may preset them.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Flipflop {
     In<bool> data, clk, set, reset;
@@ -38,4 +39,4 @@ struct Flipflop {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Flipflop, "flipflop");
+MW_COMPONENT(mw::components::Flipflop, "flipflop", mw::sdk::MANY);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // gray2bin: `out` is the number that `in` is in Gray code. Both u32.
-#include "components/common/kit.hh"
 #include "components/logic/gray.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Gray2bin {
     In<std::uint32_t> in;
@@ -19,4 +20,4 @@ struct Gray2bin {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Gray2bin, "gray2bin");
+MW_COMPONENT(mw::components::Gray2bin, "gray2bin", mw::sdk::MANY);

@@ -4,12 +4,13 @@
 // `personality=` gives one number an instance: the number of inputs (low byte) plus 0x100 for output `and`,
 // 0x200 `or`, 0x400 `xor` (an odd number of inputs is true), 0x800 `nand`, 0x1000 `nor`. Pins: in-00, in-01,
 // ... and those outputs.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
-static int personality[mw::components::MANY];
-RTAPI_MP_ARRAY_INT(personality, mw::components::MANY, "inputs and outputs of each instance");
+static int personality[mw::sdk::MANY];
+RTAPI_MP_ARRAY_INT(personality, mw::sdk::MANY, "inputs and outputs of each instance");
 
 namespace mw::components {
+using namespace sdk;
 
 constexpr int MAX_INPUTS = 16;
 constexpr int OUTPUTS = 5;
@@ -64,4 +65,4 @@ struct Logic {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Logic, "logic");
+MW_COMPONENT(mw::components::Logic, "logic", mw::sdk::MANY);

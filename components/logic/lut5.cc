@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // lut5: any function of five bits. The inputs `in-0` (lowest) to `in-4` make a number from 0 to 31; `out` is
 // the bit of that number in the parameter `function` (u32).
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Lut5 {
     static constexpr int INPUTS = 5;
@@ -13,7 +14,7 @@ struct Lut5 {
 
     void declare(Declare &d) noexcept {
         for (int i = 0; i < INPUTS; ++i) {
-            pin_at(d, in[i], "in-%d", i);
+            d.pin_at(in[i], "in-%d", i);
         }
         d.pin(out, "out");
         d.param(table, "function");
@@ -31,4 +32,4 @@ struct Lut5 {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Lut5, "lut5");
+MW_COMPONENT(mw::components::Lut5, "lut5", mw::sdk::MANY);

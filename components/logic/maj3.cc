@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // maj3: `out` is what at least two of `in1`, `in2`, `in3` are, inverted while the parameter `invert` is true.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Maj3 {
     In<bool> in1, in2, in3;
@@ -26,4 +27,4 @@ struct Maj3 {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Maj3, "maj3");
+MW_COMPONENT(mw::components::Maj3, "maj3", mw::sdk::MANY);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // match8: `out` is true while each of `a0` to `a7` equals its `b0` to `b7` and `in` (true at start; the out
 // of another instance, to compare more bits) is true.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Match8 {
     static constexpr int BITS = 8;
@@ -14,8 +15,8 @@ struct Match8 {
     void declare(Declare &d) noexcept {
         d.pin(in, "in", true);
         for (int i = 0; i < BITS; ++i) {
-            pin_at(d, a[i], "a%d", i);
-            pin_at(d, b[i], "b%d", i);
+            d.pin_at(a[i], "a%d", i);
+            d.pin_at(b[i], "b%d", i);
         }
         d.pin(out, "out");
         d.function<&Match8::update>(this);
@@ -32,4 +33,4 @@ struct Match8 {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Match8, "match8");
+MW_COMPONENT(mw::components::Match8, "match8", mw::sdk::MANY);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // not: `out` is true while `in` is not. All pins bit.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Not {
     In<bool> in;
@@ -18,4 +19,4 @@ struct Not {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Not, "not");
+MW_COMPONENT(mw::components::Not, "not", mw::sdk::MANY);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // or2: `out` is true while `in0` or `in1` is. All pins bit.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Or2 {
     In<bool> in0, in1;
@@ -19,4 +20,4 @@ struct Or2 {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Or2, "or2");
+MW_COMPONENT(mw::components::Or2, "or2", mw::sdk::MANY);

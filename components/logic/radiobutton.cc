@@ -5,11 +5,12 @@
 // `personality=` gives the number of buttons, 2 to 32 (default 8). `selected` (u32, I/O) is the number of the
 // one that is true; it may be set from outside, and starts at 0. When several become true in one period the
 // lowest counts. `enable` (bit, true at start): while false the inputs are not looked at.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 MW_PERSONALITY("buttons of each instance");
 
 namespace mw::components {
+using namespace sdk;
 
 struct Radiobutton {
     static constexpr int MAX_BUTTONS = 32;
@@ -22,11 +23,11 @@ struct Radiobutton {
     std::uint32_t last_inputs = 0;
 
     void declare(Declare &d) noexcept {
-        buttons = personality_number(d, personality[d.index()], DEFAULT_BUTTONS, MAX_BUTTONS, "buttons");
+        buttons = d.personality_number(personality[d.index()], DEFAULT_BUTTONS, MAX_BUTTONS, "buttons");
         d.pin(enable, "enable", true);
         for (int i = 0; i < buttons; ++i) {
-            pin_at(d, in[i], "in-%02d", i);
-            pin_at(d, out[i], "out-%02d", i);
+            d.pin_at(in[i], "in-%02d", i);
+            d.pin_at(out[i], "out-%02d", i);
         }
         d.pin(selected, "selected");
         d.function<&Radiobutton::update>(this);
@@ -54,4 +55,4 @@ struct Radiobutton {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Radiobutton, "radiobutton");
+MW_COMPONENT(mw::components::Radiobutton, "radiobutton", mw::sdk::MANY);

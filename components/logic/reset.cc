@@ -4,9 +4,10 @@
 // `out-bit`, `out-float`, `out-s32`, `out-u32` (I/O pins of those types) get the values of the inputs
 // `reset-bit`, `reset-float`, `reset-s32`, `reset-u32`; only the linked ones matter. While `retriggerable`
 // (bit) is true they are set in every period that trigger is true, not only in the first.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Reset {
     In<bool> trigger, retriggerable;
@@ -48,4 +49,4 @@ struct Reset {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Reset, "reset");
+MW_COMPONENT(mw::components::Reset, "reset", mw::sdk::MANY);

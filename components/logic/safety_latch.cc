@@ -8,9 +8,10 @@
 // counter. While `enable` (bit, true at start) is false, the state is faulted: ok-out is false. It starts
 // faulted with latching: reset it once. harm, heal (1), threshold (1) and max (100) are u32 inputs. Software
 // can only help an emergency stop chain; it is not one.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct SafetyLatch {
     In<bool> enable, error_in, reset, latching;
@@ -69,4 +70,4 @@ struct SafetyLatch {
 
 }  // namespace mw::components
 
-MW_INSTANCES(SafetyLatch, "safety_latch");
+MW_COMPONENT(mw::components::SafetyLatch, "safety_latch", mw::sdk::MANY);

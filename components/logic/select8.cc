@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // select8: makes true the one of `out0` to `out7` (bit) whose number is in `sel` (s32), while `enable` (bit,
 // true at start) is true; all others are false.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Select8 {
     static constexpr int OUTPUTS = 8;
@@ -15,7 +16,7 @@ struct Select8 {
         d.pin(enable, "enable", true);
         d.pin(sel, "sel");
         for (int i = 0; i < OUTPUTS; ++i) {
-            d.pin_numbered(out[i], "out", i);
+            d.pin_at(out[i], "out%d", i);
         }
         d.function<&Select8::update>(this);
     }
@@ -31,4 +32,4 @@ struct Select8 {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Select8, "select8");
+MW_COMPONENT(mw::components::Select8, "select8", mw::sdk::MANY);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // toggle: each press of the button `in` (bit) changes `out` (bit, I/O), which others may set too. The
 // parameter `debounce` (u32, 2 at start) is how long the button must be held or released [periods].
-#include "components/common/kit.hh"
 #include "components/logic/debouncer.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Toggle {
     In<bool> in;
@@ -31,4 +32,4 @@ struct Toggle {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Toggle, "toggle");
+MW_COMPONENT(mw::components::Toggle, "toggle", mw::sdk::MANY);

@@ -2,9 +2,10 @@
 // tristate_bit, tristate_float: copies `in` to the I/O pin `out` while `enable` (bit) is true and leaves it
 // alone otherwise, so that several can drive one signal. Built once for each type (TRISTATE_TYPE and
 // TRISTATE_MODULE).
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Tristate {
     In<TRISTATE_TYPE> in;

@@ -4,9 +4,10 @@
 //
 // Parameters: `clamp` (bit) holds count between `min` (s32, 0) and `max` (s32, 2147483647); `wrap` (bit,
 // stronger than clamp) goes on at the other end instead. Without both it runs over the ends of its type.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Updown {
     In<bool> countup, countdown, reset;
@@ -53,4 +54,4 @@ struct Updown {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Updown, "updown");
+MW_COMPONENT(mw::components::Updown, "updown", mw::sdk::MANY);

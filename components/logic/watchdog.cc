@@ -7,12 +7,13 @@
 // watches (fast thread); watchdog.set-timeouts takes over timeouts and restarts (servo thread).
 #include <cmath>
 
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 static int num_inputs = 0;
 RTAPI_MP_INT(num_inputs, "number of inputs");
 
 namespace mw::components {
+using namespace sdk;
 
 constexpr int MAX_INPUTS = 32;
 
@@ -39,8 +40,8 @@ struct Watchdog {
         }
         Declare d(comp_id, "watchdog", 0);
         for (int i = 0; i < num_inputs; ++i) {
-            pin_at(d, input[i].in, "input-%d", i);
-            param_at(d, input[i].timeout, "timeout-%d", i);
+            d.pin_at(input[i].in, "input-%d", i);
+            d.param_at(input[i].timeout, "timeout-%d", i);
         }
         d.pin(ok, "ok-out");
         d.pin(enable, "enable-in");
@@ -82,4 +83,4 @@ struct Watchdog {
 
 }  // namespace mw::components
 
-MW_SINGLE(Watchdog, "watchdog");
+MW_COMPONENT_SINGLE(mw::components::Watchdog, "watchdog");

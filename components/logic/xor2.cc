@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // xor2: `out` is true while exactly one of `in0` and `in1` is. All pins bit.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Xor2 {
     In<bool> in0, in1;
@@ -19,4 +20,4 @@ struct Xor2 {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Xor2, "xor2");
+MW_COMPONENT(mw::components::Xor2, "xor2", mw::sdk::MANY);

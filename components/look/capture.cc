@@ -4,13 +4,16 @@
 // `depth=` words of memory (default 1048576): a sample of N channels takes N + 1. Function capture.sample;
 // parameters none. Pins: state (u32, out: 0 idle, 1 filling, 2 waiting for the trigger, 3 triggered, 4 done,
 // 5 refused) and recorded (u32, out: samples so far).
-#include "components/common/kit.hh"
 #include "components/look/capture_core.hh"
+#include <cstring>
+
+#include "hal/sdk/component.hh"
 
 static int depth = 1 << 20;
 RTAPI_MP_INT(depth, "memory for a record [words of 8 bytes]");
 
 namespace mw::components {
+using namespace sdk;
 
 namespace {
 
@@ -86,14 +89,14 @@ static int load_capture(int comp_id) {
     if (mw_shmem_id < 0 || rtapi_shmem_getptr(mw_shmem_id, &memory) < 0) {
         return -ENOMEM;
     }
-    auto *capture = mw::components::make<mw::components::Capture>();
+    auto *capture = mw::sdk::make<mw::components::Capture>();
     if (capture == nullptr) {
         return -ENOMEM;
     }
     capture->block = static_cast<CaptureBlock *>(memory);
     capture->block->magic = mw::hal::view::CAPTURE_MAGIC;
     capture->block->capacity = static_cast<std::uint32_t>(depth);
-    mw::components::Declare declare(comp_id, "capture", 0);
+    mw::sdk::Declare declare(comp_id, "capture", 0);
     capture->declare(declare);
     return declare.status();
 }
@@ -103,7 +106,7 @@ int rtapi_app_main(void) {
     if (mw_comp_id < 0) {
         return mw_comp_id;
     }
-    mw_comp_id = mw::components::finish(mw_comp_id, load_capture(mw_comp_id));
+    mw_comp_id = mw::sdk::finish(mw_comp_id, load_capture(mw_comp_id));
     return mw_comp_id < 0 ? mw_comp_id : 0;
 }
 

@@ -4,7 +4,7 @@
 // `count=` instances (1 to 4, default 2), one for each thread; `bin=` width of a bin of each [ns]. Function
 // latency.N. Pins: last, min, max (s32, out: intervals between two calls [ns]), jitter (s32, out: largest
 // deviation from the period [ns]), reset (bit, in: begin anew while true).
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 #include "hal/view/latency_block.hh"
 
 static int count = 2;
@@ -13,6 +13,7 @@ static int bin[mw::hal::view::LATENCY_THREADS];
 RTAPI_MP_ARRAY_INT(bin, mw::hal::view::LATENCY_THREADS, "width of a bin of each [ns]");
 
 namespace mw::components {
+using namespace sdk;
 
 namespace {
 constexpr int DEFAULT_BIN_NS = 1000;
@@ -124,7 +125,7 @@ int rtapi_app_main(void) {
     if (mw_comp_id < 0) {
         return mw_comp_id;
     }
-    mw_comp_id = mw::components::finish(mw_comp_id, load_latency(mw_comp_id));
+    mw_comp_id = mw::sdk::finish(mw_comp_id, load_latency(mw_comp_id));
     return mw_comp_id < 0 ? mw_comp_id : 0;
 }
 

@@ -11,11 +11,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "components/common/kit.hh"
 #include "components/conv/conv_core.hh"
 #include "components/machine/follower.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Anglejog {
     In<bool> enable_in;
@@ -113,4 +114,4 @@ void Anglejog::update(long period_ns) noexcept {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Anglejog, "anglejog");
+MW_COMPONENT(mw::components::Anglejog, "anglejog", mw::sdk::MANY);

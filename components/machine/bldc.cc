@@ -3,15 +3,16 @@
 // instances, each made of letters. The manual page tells all.
 #include <cmath>
 
-#include "components/common/kit.hh"
 #include "components/logic/gray.hh"
 #include "components/machine/bldc_core.hh"
+#include "hal/sdk/component.hh"
 
 constexpr int MAX_MOTORS = 8;
 static char *cfg[MAX_MOTORS];
 RTAPI_MP_ARRAY_STRING(cfg, MAX_MOTORS, "feedback and outputs of each motor, such as qi6");
 
 namespace mw::components {
+using namespace sdk;
 
 enum BldcTag : unsigned {
     HALL = 0x01,
@@ -74,7 +75,7 @@ struct Bldc {
 void Bldc::declare_inputs(Declare &d) noexcept {
     if (has(HALL)) {
         for (int i = 0; i < 3; ++i) {
-            pin_at(d, hall[i], "hall%d", i + 1);
+            d.pin_at(hall[i], "hall%d", i + 1);
         }
         d.pin(hall_error, "hall-error");
     }
@@ -84,7 +85,7 @@ void Bldc::declare_inputs(Declare &d) noexcept {
             char legacy[8];
             rtapi_snprintf(name, sizeof name, "c%d", 1 << i);
             rtapi_snprintf(legacy, sizeof legacy, "C%d", 1 << i);
-            legacy_pin(d, fanuc[i], name, legacy);
+            d.legacy_pin(fanuc[i], name, legacy);
         }
     }
     d.pin(value, "value");
@@ -121,20 +122,20 @@ void Bldc::declare_outputs(Declare &d) noexcept {
         rtapi_snprintf(legacy, sizeof legacy, "%c%s%s", LETTER[i % 3], half, tail);
         rtapi_snprintf(name, sizeof name, "%c%s%s", LETTER[i % 3] | 0x20, half, tail);
         if (has(BITS_OUT)) {
-            legacy_pin(d, on[i], name, legacy);
+            d.legacy_pin(on[i], name, legacy);
         } else {
-            legacy_pin(d, phase_out[i], name, legacy);
+            d.legacy_pin(phase_out[i], name, legacy);
         }
     }
     for (int i = 0; i < 3 && has(HALL_OUT); ++i) {
-        pin_at(d, hall_out[i], "hall%d-out", i + 1);
+        d.pin_at(hall_out[i], "hall%d-out", i + 1);
     }
     for (int i = 0; i < 4 && has(FANUC_OUT); ++i) {
         char name[16];
         char legacy[16];
         rtapi_snprintf(name, sizeof name, "c%d-out", 1 << i);
         rtapi_snprintf(legacy, sizeof legacy, "C%d-out", 1 << i);
-        legacy_pin(d, fanuc_out[i], name, legacy);
+        d.legacy_pin(fanuc_out[i], name, legacy);
     }
     d.pin(phase_angle, "phase-angle");
     d.pin(rotor_angle, "rotor-angle");
@@ -396,4 +397,4 @@ struct Bldcs {
 
 }  // namespace mw::components
 
-MW_SINGLE(Bldcs, "bldc");
+MW_COMPONENT_SINGLE(mw::components::Bldcs, "bldc");

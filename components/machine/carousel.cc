@@ -2,8 +2,8 @@
 // carousel: turns a tool carousel to a pocket, with sensors of many kinds. The manual page tells all.
 #include <cmath>
 
-#include "components/common/kit.hh"
 #include "components/machine/carousel_core.hh"
+#include "hal/sdk/component.hh"
 
 constexpr int MAX_CAROUSELS = 8;
 constexpr int NOT_GIVEN = -1;
@@ -20,6 +20,7 @@ static int parity[MAX_CAROUSELS] = MW_EIGHT(NOT_GIVEN);
 RTAPI_MP_ARRAY_INT(parity, MAX_CAROUSELS, "1 odd, 0 even parity");
 
 namespace mw::components {
+using namespace sdk;
 
 constexpr int MAX_SENSE = 32;
 constexpr int MAX_POCKETS = 1000;
@@ -80,7 +81,7 @@ void Carousel::declare(Declare &d) noexcept {
     d.pin(strobe, "strobe", true);
     d.pin(parity_in, "parity");
     for (int i = 0; i < position.sense_pins; ++i) {
-        pin_at(d, sense[i], "sense-%d", i);
+        d.pin_at(sense[i], "sense-%d", i);
     }
     d.pin(rev_pulse, "rev-pulse");
     d.pin(fwd_dc, "fwd-dc");
@@ -340,4 +341,4 @@ struct Carousels {
 
 }  // namespace mw::components
 
-MW_SINGLE(Carousels, "carousel");
+MW_COMPONENT_SINGLE(mw::components::Carousels, "carousel");

@@ -2,9 +2,10 @@
 // corexy_by_hal: CoreXY kinematics between two joints and two motors: alpha = (j0 + j1) / 2, beta = (j0 - j1)
 // / 2, and back for the feedback. Pins (float) [machine units]: j0-motor-pos-cmd, j1-motor-pos-cmd, alpha-fb,
 // beta-fb; outputs alpha-cmd, beta-cmd, j0-motor-pos-fb, j1-motor-pos-fb.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct CorexyByHal {
     In<double> alpha_fb, beta_fb, j0_cmd, j1_cmd;
@@ -36,4 +37,4 @@ struct CorexyByHal {
 
 }  // namespace mw::components
 
-MW_INSTANCES(CorexyByHal, "corexy_by_hal");
+MW_COMPONENT(mw::components::CorexyByHal, "corexy_by_hal", mw::sdk::MANY);

@@ -3,9 +3,10 @@
 // against each other for pitch: motor0 = roll + pitch, motor1 = roll - pitch, and back for the feedback. Pins
 // (float) [degrees]: roll-cmd, pitch-cmd, motor0-fb, motor1-fb; outputs motor0-cmd, motor1-cmd, roll-fb,
 // pitch-fb.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Differential {
     In<double> roll_cmd, pitch_cmd, motor0_fb, motor1_fb;
@@ -37,4 +38,4 @@ struct Differential {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Differential, "differential");
+MW_COMPONENT(mw::components::Differential, "differential", mw::sdk::MANY);

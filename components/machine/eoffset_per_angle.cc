@@ -11,10 +11,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "components/common/kit.hh"
 #include "components/conv/conv_core.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 enum EoffsetState : std::uint32_t { EOFFSET_OFF, EOFFSET_READY, EOFFSET_ON, EOFFSET_RETURNING, EOFFSET_DONE };
 
@@ -119,4 +120,4 @@ void EoffsetPerAngle::update() noexcept {
 
 }  // namespace mw::components
 
-MW_INSTANCES(EoffsetPerAngle, "eoffset_per_angle");
+MW_COMPONENT(mw::components::EoffsetPerAngle, "eoffset_per_angle", mw::sdk::MANY);

@@ -3,9 +3,10 @@
 // Pins float; feed is a parameter. A feed of 0 gives 0.
 #include <cmath>
 
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Feedcomp {
     Out<double> out;
@@ -32,4 +33,4 @@ struct Feedcomp {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Feedcomp, "feedcomp");
+MW_COMPONENT(mw::components::Feedcomp, "feedcomp", mw::sdk::MANY);

@@ -10,11 +10,12 @@
 // is not passed on.
 #include <cmath>
 
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 MW_PERSONALITY("joints of each instance");
 
 namespace mw::components {
+using namespace sdk;
 
 struct GantryJoint {
     Out<double> pos_cmd;
@@ -34,12 +35,12 @@ struct Gantry {
     int fb_joint = 0;
 
     void declare(Declare &d) noexcept {
-        joints = personality_number(d, personality[d.index()], 0, MAX_JOINTS, "joints");
+        joints = d.personality_number(personality[d.index()], 0, MAX_JOINTS, "joints");
         for (int i = 0; i < joints; ++i) {
-            pin_at(d, joint[i].pos_cmd, "joint.%02d.pos-cmd", i);
-            pin_at(d, joint[i].pos_fb, "joint.%02d.pos-fb", i);
-            pin_at(d, joint[i].home, "joint.%02d.home", i);
-            pin_at(d, joint[i].offset, "joint.%02d.offset", i);
+            d.pin_at(joint[i].pos_cmd, "joint.%02d.pos-cmd", i);
+            d.pin_at(joint[i].pos_fb, "joint.%02d.pos-fb", i);
+            d.pin_at(joint[i].home, "joint.%02d.home", i);
+            d.pin_at(joint[i].offset, "joint.%02d.offset", i);
         }
         d.pin(position_cmd, "position-cmd");
         d.pin(position_fb, "position-fb");
@@ -98,4 +99,4 @@ struct Gantry {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Gantry, "gantry");
+MW_COMPONENT(mw::components::Gantry, "gantry", mw::sdk::MANY);

@@ -7,10 +7,11 @@
 // `dir-in`, inverted in second gear while the parameter `reverse` (bit) is true. Other pins float.
 #include <cmath>
 
-#include "components/common/kit.hh"
 #include "components/limit/limit_core.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Gearchange {
     In<bool> sel;
@@ -52,4 +53,4 @@ struct Gearchange {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Gearchange, "gearchange");
+MW_COMPONENT(mw::components::Gearchange, "gearchange", mw::sdk::MANY);

@@ -7,10 +7,11 @@
 // down to min-fraction too. While enable is false, or an input is not a number, out is 0. All others float.
 #include <cmath>
 
-#include "components/common/kit.hh"
 #include "components/limit/limit_core.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Laserpower {
     In<bool> enable;
@@ -48,4 +49,4 @@ struct Laserpower {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Laserpower, "laserpower");
+MW_COMPONENT(mw::components::Laserpower, "laserpower", mw::sdk::MANY);

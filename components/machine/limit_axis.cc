@@ -8,11 +8,12 @@
 // in force is kept while fb is in it, though an earlier one matches too. When no range matches, or fb is not
 // a number, `error-no-range` (bit) is true and the limits stay, as they do when the chosen ones are not
 // usable (max below min). Float where not said.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 MW_PERSONALITY("ranges of each instance");
 
 namespace mw::components {
+using namespace sdk;
 
 struct AxisRange {
     In<double> min_limit, max_limit, min_range, max_range;
@@ -30,19 +31,19 @@ struct LimitAxis {
     int chosen = -1;
 
     void declare(Declare &d) noexcept {
-        ranges = personality_number(d, personality[d.index()], 2, MAX_RANGES, "ranges");
+        ranges = d.personality_number(personality[d.index()], 2, MAX_RANGES, "ranges");
         d.pin(error_no_range, "error-no-range");
         d.pin(min_output, "min-output");
         d.pin(max_output, "max-output");
         d.pin(fb, "fb");
         d.pin(current_range, "current-range");
         for (int i = 0; i < ranges; ++i) {
-            pin_at(d, range[i].min_limit, "min-limit-%02d", i);
-            pin_at(d, range[i].max_limit, "max-limit-%02d", i);
-            pin_at(d, range[i].min_range, "min-range-%02d", i);
-            pin_at(d, range[i].max_range, "max-range-%02d", i);
-            pin_at(d, range[i].enable, "enable-%02d", i, true);
-            pin_at(d, range[i].sticky, "sticky-%02d", i);
+            d.pin_at(range[i].min_limit, "min-limit-%02d", i);
+            d.pin_at(range[i].max_limit, "max-limit-%02d", i);
+            d.pin_at(range[i].min_range, "min-range-%02d", i);
+            d.pin_at(range[i].max_range, "max-range-%02d", i);
+            d.pin_at(range[i].enable, "enable-%02d", i, true);
+            d.pin_at(range[i].sticky, "sticky-%02d", i);
         }
         d.function<&LimitAxis::update>(this);
     }
@@ -74,4 +75,4 @@ struct LimitAxis {
 
 }  // namespace mw::components
 
-MW_INSTANCES(LimitAxis, "limit_axis");
+MW_COMPONENT(mw::components::LimitAxis, "limit_axis", mw::sdk::MANY);

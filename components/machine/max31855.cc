@@ -7,12 +7,13 @@
 // `fault.M` (bit) and `fault-flags.M` (u32): 1 open, 2 short to ground, 4 short to supply. Frame and slope:
 // data sheet 19-5793 of Maxim Integrated. From -200 to 1350 degrees C the thermocouple's curve is put right;
 // beyond, the reading is as it comes.
-#include "components/common/kit.hh"
 #include "components/machine/thermocouple.hh"
+#include "hal/sdk/component.hh"
 
 MW_PERSONALITY("converters of each instance");
 
 namespace mw::components {
+using namespace sdk;
 
 constexpr int MAX_SENSORS = 15;
 constexpr int FRAME_BITS = 32;
@@ -54,16 +55,16 @@ struct Max31855 {
     int step = 0;
 
     void declare(Declare &d) noexcept {
-        sensors = personality_number(d, personality[d.index()], 0, MAX_SENSORS, "converters");
+        sensors = d.personality_number(personality[d.index()], 0, MAX_SENSORS, "converters");
         d.pin(cs, "cs.out");
         d.pin(clk, "clk.out");
         for (int i = 0; i < sensors; ++i) {
-            pin_at(d, sensor[i].data, "data.%d.in", i);
-            pin_at(d, sensor[i].celsius, "temp-celsius.%d", i);
-            pin_at(d, sensor[i].fahrenheit, "temp-fahrenheit.%d", i);
-            pin_at(d, sensor[i].kelvin, "temp-kelvin.%d", i);
-            pin_at(d, sensor[i].fault, "fault.%d", i);
-            pin_at(d, sensor[i].flags, "fault-flags.%d", i);
+            d.pin_at(sensor[i].data, "data.%d.in", i);
+            d.pin_at(sensor[i].celsius, "temp-celsius.%d", i);
+            d.pin_at(sensor[i].fahrenheit, "temp-fahrenheit.%d", i);
+            d.pin_at(sensor[i].kelvin, "temp-kelvin.%d", i);
+            d.pin_at(sensor[i].fault, "fault.%d", i);
+            d.pin_at(sensor[i].flags, "fault-flags.%d", i);
         }
         d.function<&Max31855::update>(this, "bitbang-spi");
     }
@@ -105,4 +106,4 @@ struct Max31855 {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Max31855, "max31855");
+MW_COMPONENT(mw::components::Max31855, "max31855", mw::sdk::MANY);

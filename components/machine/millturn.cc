@@ -3,10 +3,11 @@
 // Type 0 (mill): joints are the axes X Y Z A. Type 1 (turn): joint 0 is Z, joint 1 is -Y, joint 2 is X, and A
 // is a spindle. Switched through motion.switchkins-type. `millturn.0.fpin` (s32) counts runs of the function
 // millturn.0.fdemo.
-#include "components/common/kit.hh"
 #include "hal/api/kinematics.h"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Millturn {
     Out<std::int32_t> fpin;
@@ -79,4 +80,4 @@ EXPORT_SYMBOL(kinematicsInverse);
 EXPORT_SYMBOL(kinematicsType);
 }
 
-MW_INSTANCES(Millturn, "millturn");
+MW_COMPONENT(mw::components::Millturn, "millturn", mw::sdk::MANY);

@@ -3,13 +3,14 @@
 // 9 joints (`personality=`, 3 by default). The manual page tells all.
 #include <cmath>
 
-#include "components/common/kit.hh"
 #include "components/limit/limit_core.hh"
 #include "components/machine/follower.hh"
+#include "hal/sdk/component.hh"
 
 MW_PERSONALITY("joints of each instance");
 
 namespace mw::components {
+using namespace sdk;
 
 enum MoveoffState : std::int32_t {
     MOVEOFF_IDLE,
@@ -72,7 +73,7 @@ struct Moveoff {
 };
 
 void Moveoff::declare(Declare &d) noexcept {
-    joints = personality_number(d, personality[d.index()], 3, MAX_JOINTS, "joints");
+    joints = d.personality_number(personality[d.index()], 3, MAX_JOINTS, "joints");
     d.pin(power_on, "power-on");
     d.pin(move_enable, "move-enable");
     d.pin(apply_offsets, "apply-offsets");
@@ -96,16 +97,16 @@ void Moveoff::declare(Declare &d) noexcept {
 
 void Moveoff::declare_joint(Declare &d, int number) noexcept {
     MoveoffJoint &made = joint[number];
-    pin_at(d, made.offset_in, "offset-in-%d", number);
-    pin_at(d, made.pos, "pos-%d", number);
-    pin_at(d, made.fb, "fb-%d", number);
-    pin_at(d, made.offset_current, "offset-current-%d", number);
-    pin_at(d, made.pos_plusoffset, "pos-plusoffset-%d", number);
-    pin_at(d, made.fb_minusoffset, "fb-minusoffset-%d", number);
-    pin_at(d, made.vel, "offset-vel-%d", number, 10.0);
-    pin_at(d, made.accel, "offset-accel-%d", number, 100.0);
-    pin_at(d, made.min, "offset-min-%d", number, -1e20);
-    pin_at(d, made.max, "offset-max-%d", number, 1e20);
+    d.pin_at(made.offset_in, "offset-in-%d", number);
+    d.pin_at(made.pos, "pos-%d", number);
+    d.pin_at(made.fb, "fb-%d", number);
+    d.pin_at(made.offset_current, "offset-current-%d", number);
+    d.pin_at(made.pos_plusoffset, "pos-plusoffset-%d", number);
+    d.pin_at(made.fb_minusoffset, "fb-minusoffset-%d", number);
+    d.pin_at(made.vel, "offset-vel-%d", number, 10.0);
+    d.pin_at(made.accel, "offset-accel-%d", number, 100.0);
+    d.pin_at(made.min, "offset-min-%d", number, -1e20);
+    d.pin_at(made.max, "offset-max-%d", number, 1e20);
 }
 
 bool Moveoff::isAway() const noexcept {
@@ -294,4 +295,4 @@ void Moveoff::write_outputs() noexcept {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Moveoff, "moveoff");
+MW_COMPONENT(mw::components::Moveoff, "moveoff", mw::sdk::MANY);

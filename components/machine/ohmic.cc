@@ -9,9 +9,10 @@
 // Others float.
 #include <cmath>
 
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Ohmic {
     In<double> zero_freq, max_freq, divide, fullscale, velocity_in, volt_divider, threshold, low;
@@ -54,4 +55,4 @@ struct Ohmic {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Ohmic, "ohmic");
+MW_COMPONENT(mw::components::Ohmic, "ohmic", mw::sdk::MANY);

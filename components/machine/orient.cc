@@ -7,9 +7,10 @@
 // `tolerance` [degrees] (0.5 at start). Others float.
 #include <cmath>
 
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Orient {
     In<bool> enable;
@@ -60,4 +61,4 @@ struct Orient {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Orient, "orient");
+MW_COMPONENT(mw::components::Orient, "orient", mw::sdk::MANY);

@@ -3,10 +3,11 @@
 // the format of the lines.
 #include <cmath>
 
-#include "components/common/kit.hh"
 #include "components/machine/raster_core.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 enum RasterState : std::int32_t {
     RASTER_IDLE,
@@ -167,4 +168,4 @@ void Raster::update() noexcept {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Raster, "raster");
+MW_COMPONENT(mw::components::Raster, "raster", mw::sdk::MANY);

@@ -5,10 +5,11 @@
 // `maxaccel` [per s^2] while `enable` (bit) is true, and stops with maxaccel when it is false. `current-vel`
 // is its speed, `active` (bit) is true while it moves. Others float. A target that is not a number, or a
 // maxvel of 0 or less, stops it.
-#include "components/common/kit.hh"
 #include "components/machine/follower.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct SimpleTp {
     In<double> target_pos, maxvel, maxaccel;
@@ -43,4 +44,4 @@ struct SimpleTp {
 
 }  // namespace mw::components
 
-MW_INSTANCES(SimpleTp, "simple_tp");
+MW_COMPONENT(mw::components::SimpleTp, "simple_tp", mw::sdk::MANY);

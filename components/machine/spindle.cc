@@ -8,14 +8,15 @@
 // page tells all pins. A command that is not a number counts as 0.
 #include <cmath>
 
-#include "components/common/kit.hh"
 #include "components/limit/limit_core.hh"
+#include "hal/sdk/component.hh"
 
 constexpr int MAX_GEARS = 16;
-static int numgears[mw::components::MANY];
-RTAPI_MP_ARRAY_INT(numgears, mw::components::MANY, "gears of each instance");
+static int numgears[mw::sdk::MANY];
+RTAPI_MP_ARRAY_INT(numgears, mw::sdk::MANY, "gears of each instance");
 
 namespace mw::components {
+using namespace sdk;
 
 struct Gear {
     In<double> scale, min, max, accel, decel, speed_tolerance, zero_tolerance, offset;
@@ -75,15 +76,15 @@ void Spindle::declare(Declare &d) noexcept {
 
 void Spindle::declare_gear(Declare &d, int number) noexcept {
     Gear &made = gear[number];
-    pin_at(d, made.scale, "scale.%d", number, 1.0);
-    pin_at(d, made.min, "min.%d", number);
-    pin_at(d, made.max, "max.%d", number);
-    pin_at(d, made.accel, "accel.%d", number);
-    pin_at(d, made.decel, "decel.%d", number);
-    pin_at(d, made.speed_tolerance, "speed-tolerance.%d", number, 20.0);
-    pin_at(d, made.zero_tolerance, "zero-tolerance.%d", number, 20.0);
-    pin_at(d, made.offset, "offset.%d", number);
-    pin_at(d, made.select, "select.%d", number, gears == 1);
+    d.pin_at(made.scale, "scale.%d", number, 1.0);
+    d.pin_at(made.min, "min.%d", number);
+    d.pin_at(made.max, "max.%d", number);
+    d.pin_at(made.accel, "accel.%d", number);
+    d.pin_at(made.decel, "decel.%d", number);
+    d.pin_at(made.speed_tolerance, "speed-tolerance.%d", number, 20.0);
+    d.pin_at(made.zero_tolerance, "zero-tolerance.%d", number, 20.0);
+    d.pin_at(made.offset, "offset.%d", number);
+    d.pin_at(made.select, "select.%d", number, gears == 1);
 }
 
 /// The highest one selected by a bit, else the number of select-gear.
@@ -151,4 +152,4 @@ void Spindle::update(long period_ns) noexcept {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Spindle, "spindle");
+MW_COMPONENT(mw::components::Spindle, "spindle", mw::sdk::MANY);

@@ -8,9 +8,10 @@
 // underspeed.
 #include <cmath>
 
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct SpindleMonitor {
     In<bool> is_on;
@@ -57,4 +58,4 @@ struct SpindleMonitor {
 
 }  // namespace mw::components
 
-MW_INSTANCES(SpindleMonitor, "spindle_monitor");
+MW_COMPONENT(mw::components::SpindleMonitor, "spindle_monitor", mw::sdk::MANY);

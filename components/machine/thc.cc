@@ -8,10 +8,11 @@
 // enable is false, by correction-vel a period. `z-pos-out` = `z-pos-in` + `offset-value`; `z-fb-out` =
 // z-pos-in. Pins `vel-tol` (not used) and others float; vel-scale, scale-offset, velocity-tol, voltage-tol,
 // correction-vel are parameters.
-#include "components/common/kit.hh"
 #include "components/machine/torch.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Thc {
     In<double> encoder_vel, current_vel, requested_vel, volts_requested, vel_tol;
@@ -68,4 +69,4 @@ struct Thc {
 
 }  // namespace mw::components
 
-MW_SINGLE(Thc, "thc");
+MW_COMPONENT_SINGLE(mw::components::Thc, "thc");

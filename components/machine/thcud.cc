@@ -8,10 +8,11 @@
 // correction is taken back as far as Z rises (`removing-offset`, bit); while enable is false, by
 // correction-vel a period. `z-pos-out` = `z-pos-in` + `cur-offset`; `z-fb-out` = z-pos-in. Others float;
 // velocity-tol and correction-vel are parameters.
-#include "components/common/kit.hh"
 #include "components/machine/torch.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Thcud {
     In<bool> torch_up, torch_down;
@@ -58,4 +59,4 @@ struct Thcud {
 
 }  // namespace mw::components
 
-MW_SINGLE(Thcud, "thcud");
+MW_COMPONENT_SINGLE(mw::components::Thcud, "thcud");

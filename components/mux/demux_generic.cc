@@ -7,15 +7,16 @@
 // large; the others keep their value, or are 0 while the parameter zero-others (bit) is true.
 // suppress-no-input selects nothing while that number is 0; debounce-us (u32) is how long a selection must be
 // stable [us]. Parameters elapsed [us] and selected (u32) show the debouncing.
-#include "components/common/kit.hh"
 #include "components/mux/generic.hh"
 #include "components/mux/selector.hh"
+#include "hal/sdk/component.hh"
 
 constexpr int MAX_MUXES = 64;
 static char *config[MAX_MUXES];
 RTAPI_MP_ARRAY_STRING(config, MAX_MUXES, "from, to and size of each demultiplexer, such as ff8,b2f");
 
 namespace mw::components {
+using namespace sdk;
 
 struct DemuxGeneric {
     Config shape;

@@ -2,10 +2,11 @@
 // What multiplexers and demultiplexers of any type and size share: their config= and copying between types.
 #pragma once
 
-#include "components/common/kit.hh"
 #include "components/conv/conv_core.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 constexpr int MAX_SIZE = 1024;
 constexpr int MAX_SELECT_BITS = 10;

@@ -5,12 +5,13 @@
 // `use-graycode` (bit): the number is in Gray code. `suppress-no-input` (bit): no selection at all changes
 // nothing. A selection counts when it has held still for `debounce-time` [s]. Parameters `elapsed` [s] and
 // `selected` (s32) show the debouncing.
-#include "components/common/kit.hh"
 #include "components/conv/conv_core.hh"
 #include "components/logic/gray.hh"
 #include "components/mux/selector.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Mux16 {
     static constexpr int INPUTS = 16;
@@ -30,12 +31,12 @@ struct Mux16 {
         d.pin(suppress, "suppress-no-input");
         d.pin(debounce_time, "debounce-time");
         for (int i = 0; i < SELECT_BITS; ++i) {
-            pin_at(d, sel[i], "sel%d", i);
+            d.pin_at(sel[i], "sel%d", i);
         }
         d.pin(out_f, "out-f");
         d.pin(out_s, "out-s");
         for (int i = 0; i < INPUTS; ++i) {
-            pin_at(d, in[i], "in%02d", i);
+            d.pin_at(in[i], "in%02d", i);
         }
         d.param(elapsed, "elapsed");
         d.param(selected, "selected");
@@ -59,4 +60,4 @@ struct Mux16 {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Mux16, "mux16");
+MW_COMPONENT(mw::components::Mux16, "mux16", mw::sdk::MANY);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // mux2: `out` (float) follows `in0` while `sel` (bit) is false, else `in1`.
-#include "components/common/kit.hh"
 #include "components/mux/selector.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Mux2 {
     In<bool> sel;
@@ -22,4 +23,4 @@ struct Mux2 {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Mux2, "mux2");
+MW_COMPONENT(mw::components::Mux2, "mux2", mw::sdk::MANY);

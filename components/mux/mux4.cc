@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // mux4: `out` (float) follows the one of `in0` to `in3` whose number is `sel0` + 2 `sel1` (bits).
-#include "components/common/kit.hh"
 #include "components/mux/selector.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Mux4 {
     In<bool> sel0, sel1;
@@ -15,7 +16,7 @@ struct Mux4 {
         d.pin(sel1, "sel1");
         d.pin(out, "out");
         for (int i = 0; i < 4; ++i) {
-            d.pin_numbered(in[i], "in", i);
+            d.pin_at(in[i], "in%d", i);
         }
         d.function<&Mux4::update>(this);
     }
@@ -24,4 +25,4 @@ struct Mux4 {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Mux4, "mux4");
+MW_COMPONENT(mw::components::Mux4, "mux4", mw::sdk::MANY);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // mux8: `out` (float) follows the one of `in0` to `in7` whose number `sel2` `sel1` `sel0` (bit) make.
-#include "components/common/kit.hh"
 #include "components/mux/selector.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Mux8 {
     static constexpr int INPUTS = 8;
@@ -17,7 +18,7 @@ struct Mux8 {
         d.pin(sel2, "sel2");
         d.pin(out, "out");
         for (int i = 0; i < INPUTS; ++i) {
-            d.pin_numbered(in[i], "in", i);
+            d.pin_at(in[i], "in%d", i);
         }
         d.function<&Mux8::update>(this);
     }
@@ -26,4 +27,4 @@ struct Mux8 {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Mux8, "mux8");
+MW_COMPONENT(mw::components::Mux8, "mux8", mw::sdk::MANY);

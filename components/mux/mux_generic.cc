@@ -7,15 +7,16 @@
 // input, the last one when it is too large; suppress-no-input keeps the output while that number is 0;
 // debounce-us (u32) is how long a selection must be stable [us]. Parameters elapsed [us] and selected (u32)
 // show the debouncing. Values out of the range of the output become its nearest value.
-#include "components/common/kit.hh"
 #include "components/mux/generic.hh"
 #include "components/mux/selector.hh"
+#include "hal/sdk/component.hh"
 
 constexpr int MAX_MUXES = 64;
 static char *config[MAX_MUXES];
 RTAPI_MP_ARRAY_STRING(config, MAX_MUXES, "from, to and size of each multiplexer, such as ff8,b2f");
 
 namespace mw::components {
+using namespace sdk;
 
 struct MuxGeneric {
     Config shape;

@@ -12,13 +12,14 @@
 // While command or feedback is not a number the controller counts as disabled.
 #include <cmath>
 
-#include "components/common/kit.hh"
 #include "components/pid/pid_core.hh"
+#include "hal/sdk/component.hh"
 
 static int debug = 0;
 RTAPI_MP_INT(debug, "1: export inner values as parameters");
 
 namespace mw::components {
+using namespace sdk;
 
 /// A float input that knows whether it is linked: while it is not, its slot points at its own value.
 struct LinkableInput {
@@ -79,11 +80,11 @@ void Pid::declare(Declare &declare) noexcept {
     declare.pin(saturated_count, "saturated-count");
     declare_tuning(declare);
     if (debug != 0) {
-        legacy_param(declare, error_i, "error-i", "errorI");
-        legacy_param(declare, error_d, "error-d", "errorD");
-        legacy_param(declare, command_d, "command-d", "commandD");
-        legacy_param(declare, command_dd, "command-dd", "commandDD");
-        legacy_param(declare, command_ddd, "command-ddd", "commandDDD");
+        declare.legacy_param(error_i, "error-i", "errorI");
+        declare.legacy_param(error_d, "error-d", "errorD");
+        declare.legacy_param(command_d, "command-d", "commandD");
+        declare.legacy_param(command_dd, "command-dd", "commandDD");
+        declare.legacy_param(command_ddd, "command-ddd", "commandDDD");
         declare.pin(ultimate_gain, "ultimate-gain");
         declare.pin(ultimate_period, "ultimate-period");
     }
@@ -91,22 +92,22 @@ void Pid::declare(Declare &declare) noexcept {
 }
 
 void Pid::declare_tuning(Declare &declare) noexcept {
-    legacy_pin(declare, p, "p-gain", "Pgain", 1.0);
-    legacy_pin(declare, i, "i-gain", "Igain");
-    legacy_pin(declare, d, "d-gain", "Dgain");
-    legacy_pin(declare, ff0, "ff0", "FF0");
-    legacy_pin(declare, ff1, "ff1", "FF1");
-    legacy_pin(declare, ff2, "ff2", "FF2");
-    legacy_pin(declare, ff3, "ff3", "FF3");
+    declare.legacy_pin(p, "p-gain", "Pgain", 1.0);
+    declare.legacy_pin(i, "i-gain", "Igain");
+    declare.legacy_pin(d, "d-gain", "Dgain");
+    declare.legacy_pin(ff0, "ff0", "FF0");
+    declare.legacy_pin(ff1, "ff1", "FF1");
+    declare.legacy_pin(ff2, "ff2", "FF2");
+    declare.legacy_pin(ff3, "ff3", "FF3");
     declare.pin(bias, "bias");
     declare.pin(deadband, "deadband");
     declare.pin(max_output, "maxoutput");
     declare.pin(max_error, "maxerror");
-    legacy_pin(declare, max_error_i, "maxerror-i", "maxerrorI");
-    legacy_pin(declare, max_error_d, "maxerror-d", "maxerrorD");
-    legacy_pin(declare, max_cmd_d, "maxcmd-d", "maxcmdD");
-    legacy_pin(declare, max_cmd_dd, "maxcmd-dd", "maxcmdDD");
-    legacy_pin(declare, max_cmd_ddd, "maxcmd-ddd", "maxcmdDDD");
+    declare.legacy_pin(max_error_i, "maxerror-i", "maxerrorI");
+    declare.legacy_pin(max_error_d, "maxerror-d", "maxerrorD");
+    declare.legacy_pin(max_cmd_d, "maxcmd-d", "maxcmdD");
+    declare.legacy_pin(max_cmd_dd, "maxcmd-dd", "maxcmdDD");
+    declare.legacy_pin(max_cmd_ddd, "maxcmd-ddd", "maxcmdDDD");
     declare.pin(tune_mode, "tune-mode");
     declare.pin(tune_start, "tune-start");
     declare.pin(tune_type, "tune-type");

@@ -5,10 +5,11 @@
 // Function siggen.N.update. Pins (float): frequency [Hz] and amplitude (1 at start), offset; outputs square,
 // sine, cosine, triangle, sawtooth; clock (bit) is true in the rising half of triangle; reset (bit) holds the
 // middle of the period.
-#include "components/common/kit.hh"
 #include "components/siggen/siggen_core.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Siggen {
     In<double> frequency, amplitude, offset;
@@ -45,4 +46,4 @@ struct Siggen {
 
 }  // namespace mw::components
 
-MW_MODULE("siggen", num_chan, 1, mw::siggen::MAX_CHANNELS, load_instances<mw::components::Siggen>);
+MW_MODULE("siggen", num_chan, 1, mw::siggen::MAX_CHANNELS, mw::sdk::load_instances<mw::components::Siggen>);

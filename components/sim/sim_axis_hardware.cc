@@ -12,9 +12,10 @@
 // switch while an axis homes), limitsw-homesw-all.
 #include <cmath>
 
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 constexpr const char *AXES[] = {"X", "X2", "Y", "Y2", "Z", "A", "U", "V"};
 constexpr int AXIS_COUNT = sizeof AXES / sizeof AXES[0];
@@ -66,7 +67,7 @@ struct SimAxis {
         char legacy[32];
         rtapi_snprintf(legacy, sizeof legacy, "%s%s", axis, what);
         rtapi_snprintf(name, sizeof name, "%c%s-%s", axis[0] | 0x20, axis + 1, what);
-        legacy_pin(d, made, name, legacy, start);
+        d.legacy_pin(made, name, legacy, start);
     }
 };
 
@@ -107,4 +108,4 @@ struct SimAxisHardware {
 
 }  // namespace mw::components
 
-MW_INSTANCES(SimAxisHardware, "sim_axis_hardware");
+MW_COMPONENT(mw::components::SimAxisHardware, "sim_axis_hardware", mw::sdk::MANY);

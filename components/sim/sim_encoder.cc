@@ -7,10 +7,11 @@
 // phase-A, phase-B, phase-Z (bit); rawcounts (s32).
 #include <atomic>
 
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 #include "sim/quadrature_source.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 constexpr int MAX_ENCODERS = 8;
 
@@ -26,9 +27,9 @@ struct SimEncoderChannel {
         d.pin(speed, "speed");
         d.pin(scale, "scale", 1.0);
         d.pin(ppr, "ppr", 100U);
-        legacy_pin(d, phase_a, "phase-a", "phase-A");
-        legacy_pin(d, phase_b, "phase-b", "phase-B");
-        legacy_pin(d, phase_z, "phase-z", "phase-Z");
+        d.legacy_pin(phase_a, "phase-a", "phase-A");
+        d.legacy_pin(phase_b, "phase-b", "phase-B");
+        d.legacy_pin(phase_z, "phase-z", "phase-Z");
         d.pin(rawcounts, "rawcounts");
     }
 
@@ -70,4 +71,4 @@ struct SimEncoder : Channels<SimEncoderChannel, MAX_ENCODERS> {
 }  // namespace mw::components
 
 MW_MODULE("sim_encoder", num_chan, 1, mw::components::MAX_ENCODERS,
-          load_channels<mw::components::SimEncoder>);
+          mw::sdk::load_channels<mw::components::SimEncoder>);

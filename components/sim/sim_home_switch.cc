@@ -4,10 +4,11 @@
 // `home-sw` (bit) is true once `cur-pos` has reached `home-pos` (1 at start; below it for a negative one) and
 // false when it is back by `hysteresis` (0.1 at start), all in machine units. `index-enable` (bit, I/O) is
 // set back `index-delay-ms` (10 at start) milliseconds after it was set.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 #include "sim/home_switch.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct SimHomeSwitch {
     In<double> cur_pos, home_pos, hysteresis;
@@ -37,4 +38,4 @@ struct SimHomeSwitch {
 
 }  // namespace mw::components
 
-MW_INSTANCES(SimHomeSwitch, "sim_home_switch");
+MW_COMPONENT(mw::components::SimHomeSwitch, "sim_home_switch", mw::sdk::MANY);

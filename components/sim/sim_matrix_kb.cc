@@ -3,9 +3,10 @@
 // `button.cCC.rRR` (bit) changes, `out` (u32) is for a period its number, 8 * row + column, plus 0xC0 when
 // pressed and 0x80 when released; one change a period, lower columns first. Otherwise it is 0x40 while a
 // button is held, else 0.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct SimMatrixKb {
     static constexpr int SIZE = 8;
@@ -41,4 +42,4 @@ struct SimMatrixKb {
 
 }  // namespace mw::components
 
-MW_INSTANCES(SimMatrixKb, "sim_matrix_kb");
+MW_COMPONENT(mw::components::SimMatrixKb, "sim_matrix_kb", mw::sdk::MANY);

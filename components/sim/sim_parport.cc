@@ -5,9 +5,10 @@
 // `pin-NN-out-fake` is `pin-NN-out`, inverted while the parameter `pin-NN-out-invert` is true. N.reset,
 // `reset-time` and `pin-NN-out-reset` have no effect. All pins of inputs and outputs are there, whatever the
 // direction of the port. All bit but reset-time.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 constexpr int OUTPUT_NUMBERS[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 14, 16, 17};
 constexpr int INPUT_NUMBERS[] = {2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 15};
@@ -24,15 +25,15 @@ struct SimParport {
 
     void declare(Declare &d) noexcept {
         for (int i = 0; i < OUTPUTS; ++i) {
-            pin_at(d, out[i], "pin-%02d-out", OUTPUT_NUMBERS[i]);
-            pin_at(d, out_fake[i], "pin-%02d-out-fake", OUTPUT_NUMBERS[i]);
-            param_at(d, out_invert[i], "pin-%02d-out-invert", OUTPUT_NUMBERS[i]);
-            param_at(d, out_reset[i], "pin-%02d-out-reset", OUTPUT_NUMBERS[i]);
+            d.pin_at(out[i], "pin-%02d-out", OUTPUT_NUMBERS[i]);
+            d.pin_at(out_fake[i], "pin-%02d-out-fake", OUTPUT_NUMBERS[i]);
+            d.param_at(out_invert[i], "pin-%02d-out-invert", OUTPUT_NUMBERS[i]);
+            d.param_at(out_reset[i], "pin-%02d-out-reset", OUTPUT_NUMBERS[i]);
         }
         for (int i = 0; i < INPUTS; ++i) {
-            pin_at(d, in[i], "pin-%02d-in", INPUT_NUMBERS[i]);
-            pin_at(d, in_fake[i], "pin-%02d-in-fake", INPUT_NUMBERS[i]);
-            pin_at(d, in_not[i], "pin-%02d-in-not", INPUT_NUMBERS[i]);
+            d.pin_at(in[i], "pin-%02d-in", INPUT_NUMBERS[i]);
+            d.pin_at(in_fake[i], "pin-%02d-in-fake", INPUT_NUMBERS[i]);
+            d.pin_at(in_not[i], "pin-%02d-in-not", INPUT_NUMBERS[i]);
         }
         d.pin(reset_time, "reset-time");
         d.function<&SimParport::read>(this, "read");
@@ -57,4 +58,4 @@ struct SimParport {
 
 }  // namespace mw::components
 
-MW_INSTANCES(SimParport, "sim_parport");
+MW_COMPONENT(mw::components::SimParport, "sim_parport", mw::sdk::MANY);

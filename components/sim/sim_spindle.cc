@@ -4,10 +4,11 @@
 // `velocity-cmd` times the parameter `scale` (1 at start) is the speed in turns per second; `position-fb` the
 // position [turns]. With `index-enable` (bit, I/O) set, the position starts anew at the next whole turn and
 // the pin is set back.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 #include "sim/spindle.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct SimSpindle {
     In<double> velocity_cmd;
@@ -34,4 +35,4 @@ struct SimSpindle {
 
 }  // namespace mw::components
 
-MW_INSTANCES(SimSpindle, "sim_spindle");
+MW_COMPONENT(mw::components::SimSpindle, "sim_spindle", mw::sdk::MANY);

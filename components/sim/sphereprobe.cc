@@ -2,9 +2,10 @@
 // sphereprobe: a probe over half a ball that exists only in numbers. `probe-out` (bit) is true while the tip
 // at px, py, pz is inside the ball of radius `r` around cx, cy, cz, or below its middle plane. Inputs s32
 // [counts].
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Sphereprobe {
     In<std::int32_t> px, py, pz, cx, cy, cz, r;
@@ -33,4 +34,4 @@ struct Sphereprobe {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Sphereprobe, "sphereprobe");
+MW_COMPONENT(mw::components::Sphereprobe, "sphereprobe", mw::sdk::MANY);

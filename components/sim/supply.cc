@@ -2,9 +2,10 @@
 // supply: values for tests, up to 8 channels (`num_chan=`, 1 by default). Function supply.N.update: `q` (bit)
 // is `d`, `q-not` (old name _q) its inverse; `variable` (float) is `value`, `variable-not` (_variable) its
 // negative. d and value are I/O pins.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Supply {
     Out<bool> q, q_not;
@@ -14,9 +15,9 @@ struct Supply {
 
     void declare(Declare &d) noexcept {
         d.pin(q, "q");
-        legacy_pin(d, q_not, "q-not", "_q", true);
+        d.legacy_pin(q_not, "q-not", "_q", true);
         d.pin(variable, "variable");
-        legacy_pin(d, variable_not, "variable-not", "_variable");
+        d.legacy_pin(variable_not, "variable-not", "_variable");
         d.pin(d_in, "d");
         d.pin(value, "value");
         d.function<&Supply::update>(this, "update");
@@ -34,4 +35,4 @@ struct Supply {
 
 }  // namespace mw::components
 
-MW_MODULE("supply", num_chan, 1, 8, load_instances<mw::components::Supply>);
+MW_MODULE("supply", num_chan, 1, 8, mw::sdk::load_instances<mw::components::Supply>);

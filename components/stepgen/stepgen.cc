@@ -10,8 +10,8 @@
 // [units/s], and step, dir / up, down / phase-A to phase-E (bit). Parameters: position-scale [steps/unit],
 // maxvel [units/s], maxaccel [units/s^2] (0: no limit), frequency [steps/s], rawcounts, and the minimum times
 // steplen, stepspace, dirsetup, dirhold, dirdelay [ns], rounded up to periods.
-#include "components/common/kit.hh"
 #include "components/stepgen/stepgen_core.hh"
+#include "hal/sdk/component.hh"
 
 static int step_type[mw::stepgen::MAX_CHANNELS] = {-1, -1, -1, -1, -1, -1, -1, -1,
                                                    -1, -1, -1, -1, -1, -1, -1, -1};
@@ -23,6 +23,7 @@ static int user_step_type[mw::stepgen::MAX_STATES] = {-1, -1, -1, -1, -1, -1, -1
 RTAPI_MP_ARRAY_INT(user_step_type, mw::stepgen::MAX_STATES, "states of type 15, bit 0 is phase A");
 
 namespace mw::components {
+using namespace sdk;
 
 using namespace mw::stepgen;
 
@@ -71,7 +72,7 @@ void StepChannel::declare_outputs(Declare &d) noexcept {
     for (int i = 0; i < pulses.pattern.phases; ++i) {
         const char name[] = {'p', 'h', 'a', 's', 'e', '-', static_cast<char>('a' + i), '\0'};
         const char legacy[] = {'p', 'h', 'a', 's', 'e', '-', static_cast<char>('A' + i), '\0'};
-        legacy_pin(d, phase[i], name, legacy);
+        d.legacy_pin(phase[i], name, legacy);
     }
 }
 

@@ -2,9 +2,10 @@
 // The pins of one stream: one for each letter of its configuration. Common to sampler and streamer.
 #pragma once
 
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct StreamPins {
     hal_stream_t stream{};

@@ -3,7 +3,7 @@
 //
 // `name1=`, `period1=` [ns] to `name3=`, `period3=`, fastest first; without a name one thread "thread1" of 1
 // ms. `fp1=` to `fp3=` are accepted: every thread may use floating point.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 static char *name1 = nullptr;
 RTAPI_MP_STRING(name1, "name of the first thread");
@@ -25,6 +25,7 @@ static int fp3 = 1;
 RTAPI_MP_INT(fp3, "ignored: threads always support floating point");
 
 namespace mw::components {
+using namespace sdk;
 
 constexpr long DEFAULT_PERIOD_NS = 1000000;
 

@@ -4,9 +4,10 @@
 // ton: `q` (bit) becomes true when `in` has been true for pt, and false with it. tof: q becomes true with in,
 // and false when in has been false for pt. `et` (float) [s] is the time waited, until pt is reached. Built
 // twice (TIMER_MODULE, TIMER_WAITS_FOR: the state of in that is waited for).
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct DelayTimer {
     In<bool> in;

@@ -4,9 +4,10 @@
 // Parameters: `both` looks for both edges; else `in-edge` chooses, true (at start) the falling one, false the
 // rising. `out-width-ns` is the length of the pulse [ns], rounded up to periods; 0 gives one period.
 // `time-left-ns` and `last-in` show the state. The level of `in` at the first call is no edge.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Edge {
     In<bool> in;
@@ -48,4 +49,4 @@ struct Edge {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Edge, "edge");
+MW_COMPONENT(mw::components::Edge, "edge", mw::sdk::MANY);

@@ -10,9 +10,10 @@
 // above 0, or no such pintype; nothing is counted then. A change of nbins, binsize or minvalue clears too.
 #include <cmath>
 
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 constexpr std::int32_t MAX_BINS = 200;
 
@@ -144,4 +145,4 @@ void Histobins::update() noexcept {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Histobins, "histobins");
+MW_COMPONENT(mw::components::Histobins, "histobins", mw::sdk::MANY);

@@ -8,10 +8,11 @@
 // `availablebins` (1000). `reset` (bit) clears. With nsbinsize below 1 nothing is counted in bins.
 #include <cmath>
 
-#include "components/common/kit.hh"
 #include "components/conv/conv_core.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 constexpr std::int32_t MAX_BIN = 1000;
 
@@ -118,4 +119,4 @@ void Latencybins::update(long period_ns) noexcept {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Latencybins, "latencybins");
+MW_COMPONENT(mw::components::Latencybins, "latencybins", mw::sdk::MANY);

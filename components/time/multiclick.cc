@@ -7,9 +7,10 @@
 // max-hold-ns and max-space-ns (250000000 at start), output-hold-ns (100000000); `invert-input` (bit): the
 // button is false when pressed. `state` (s32): 0 idle, 2N-1 in press N, 2N behind it, 9 waiting for a
 // release.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 constexpr int CLICKS = 4;
 constexpr std::int32_t WAITING = 9;
@@ -97,4 +98,4 @@ void Multiclick::update(long period_ns) noexcept {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Multiclick, "multiclick");
+MW_COMPONENT(mw::components::Multiclick, "multiclick", mw::sdk::MANY);

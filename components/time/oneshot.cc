@@ -4,9 +4,10 @@
 //
 // Parameters `rising` (true at start) and `falling` choose the edges; `retriggerable` (true at start) lets an
 // edge during the pulse start it anew. `reset` (bit) ends it. `time-left` is what remains [s].
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Oneshot {
     In<bool> in, reset;
@@ -53,4 +54,4 @@ struct Oneshot {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Oneshot, "oneshot");
+MW_COMPONENT(mw::components::Oneshot, "oneshot", mw::sdk::MANY);

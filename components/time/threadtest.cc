@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // threadtest: counts runs. Function threadtest.N.increment adds one to `count` (u32), threadtest.N.reset sets
 // it to 0.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Threadtest {
     Out<std::uint32_t> count;
@@ -19,4 +20,4 @@ struct Threadtest {
 
 }  // namespace mw::components
 
-MW_MODULE("threadtest", count, 1, mw::components::MANY, load_instances<mw::components::Threadtest>);
+MW_MODULE("threadtest", count, 1, mw::sdk::MANY, mw::sdk::load_instances<mw::components::Threadtest>);

@@ -3,9 +3,10 @@
 //
 // It begins again at zero when start becomes true, and stands still while `pause` (bit) is true. When start
 // becomes false during a pause, as a program's "is running" does, the time goes on after the pause.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Time {
     In<bool> start, pause;
@@ -42,4 +43,4 @@ struct Time {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Time, "time");
+MW_COMPONENT(mw::components::Time, "time", mw::sdk::MANY);

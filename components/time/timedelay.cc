@@ -2,9 +2,10 @@
 // timedelay: `out` (bit) becomes true when `in` has been true for `on-delay` seconds, and false when it has
 // been false for `off-delay` seconds (floats, 0.5 at start). `elapsed` is the time waited
 // so far, or at last [s].
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Timedelay {
     In<bool> in;
@@ -40,4 +41,4 @@ struct Timedelay {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Timedelay, "timedelay");
+MW_COMPONENT(mw::components::Timedelay, "timedelay", mw::sdk::MANY);

@@ -4,9 +4,10 @@
 // `out` time since the run before; `min`, `max` of it; `current-error` out less the period, `current-jitter`
 // its absolute value, `jitter` the largest of those; `err` the sum of the errors, `avg-err` (float) their
 // mean.
-#include "components/common/kit.hh"
+#include "hal/sdk/component.hh"
 
 namespace mw::components {
+using namespace sdk;
 
 struct Timedelta {
     Out<std::int32_t> jitter, current_jitter, current_error, min, max, out, err;
@@ -68,4 +69,4 @@ struct Timedelta {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Timedelta, "timedelta");
+MW_COMPONENT(mw::components::Timedelta, "timedelta", mw::sdk::MANY);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "config/ini_reader.hh"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/text.hh"
@@ -13,21 +14,25 @@ std::string label(std::string_view section, std::string_view key) {
     return '[' + std::string(section) + ']' + std::string(key);
 }
 
-std::string describe(const RealRange &range) {
-    const bool hasLowest = range.lowest != -std::numeric_limits<double>::infinity();
-    const bool hasHighest = range.highest != std::numeric_limits<double>::infinity();
+std::string describe_number(const IniKey &key) {
+    const bool hasLowest = key.lowest != -INI_UNBOUNDED;
+    const bool hasHighest = key.highest != INI_UNBOUNDED;
     std::string text = "a number";
     if (hasLowest) {
-        text += (range.isLowestExcluded ? " above " : " of at least ") + to_text(range.lowest);
+        text += " of at least " + to_text(key.lowest);
     }
     if (hasHighest) {
-        text += (hasLowest ? " and at most " : " of at most ") + to_text(range.highest);
+        text += (hasLowest ? " and at most " : " of at most ") + to_text(key.highest);
     }
     return text;
 }
 
-std::string describe(std::int64_t lowest, std::int64_t highest) {
-    return "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest);
+std::string describe_whole(const IniKey &key) {
+    return "a whole number from " + to_text(key.lowest) + " to " + to_text(key.highest);
+}
+
+std::string_view name_of(const IniKey &key, std::string_view section) {
+    return section.empty() ? key.section : section;
 }
 
 }  // namespace
@@ -36,9 +41,31 @@ void IniReader::know(std::string_view section, std::string_view key) {
     known_[std::string(section)].insert(std::string(key));
 }
 
-void IniReader::know_all(std::string_view section, std::initializer_list<std::string_view> keys) {
-    for (const std::string_view key : keys) {
-        know(section, key);
+void IniReader::declare_row(std::string_view section, const IniKey &key) {
+    know(section, key.name);
+    if (key.effect != IniEffect::NONE) {
+        return;
+    }
+    const IniEntry *entry = file_.find(section, key.name);
+    const std::vector<std::string> harmless = split_words(key.words);
+    if (entry != nullptr && std::ranges::find(harmless, entry->value) == harmless.end()) {
+        without_effect_.insert_or_assign(label(section, key.name), std::string(key.doc));
+    }
+}
+
+void IniReader::declare(std::span<const IniKey> keys) {
+    for (const IniKey &key : keys) {
+        if (!key.section.ends_with('*')) {
+            declare_row(key.section, key);
+        }
+    }
+}
+
+void IniReader::declare_in(std::string_view section, std::string_view pattern, std::span<const IniKey> keys) {
+    for (const IniKey &key : keys) {
+        if (key.section == pattern) {
+            declare_row(section, key);
+        }
     }
 }
 
@@ -53,51 +80,53 @@ void IniReader::leave_open(std::string_view section) {
     open_.insert(std::string(section));
 }
 
-const IniEntry *IniReader::scalar(std::string_view section, std::string_view key) {
-    know(section, key);
-    const IniEntry *first = file_.find(section, key);
-    const IniEntry *second = file_.find(section, key, 2);
-    if (second != nullptr && warned_twice_.insert(label(section, key)).second) {
-        sink_.warning(label(section, key) + " is given twice; the first one, '" + first->value + "' in " +
-                          first->place.str() + ", is used",
+const IniEntry *IniReader::find(const IniKey &key, std::string_view section) const {
+    return file_.find(name_of(key, section), key.name);
+}
+
+const IniEntry *IniReader::scalar(const IniKey &key, std::string_view section) {
+    know(section, key.name);
+    const IniEntry *first = file_.find(section, key.name);
+    const IniEntry *second = file_.find(section, key.name, 2);
+    if (second != nullptr && warned_twice_.insert(label(section, key.name)).second) {
+        sink_.warning(label(section, key.name) + " is given twice; the first one, '" + first->value +
+                          "' in " + first->place.str() + ", is used",
                       second->place);
     }
     return first;
 }
 
-void IniReader::missing(std::string_view section, std::string_view key, const std::string &expected) {
+void IniReader::missing(std::string_view section, const IniKey &key, const std::string &expected) {
     const bool hasSection = file_.hasSection(section);
-    if (!hasSection && !missing_sections_.insert(std::string(section)).second) {
+    if (!key.isRequired || (!hasSection && !missing_sections_.insert(std::string(section)).second)) {
         return;  // one message for the whole section
     }
-    const std::string near = nearest_name(key, file_.keys(section));
-    sink_.error(hasSection ? label(section, key) + " is missing"
+    const std::string near = nearest_name(key.name, file_.keys(section));
+    sink_.error(hasSection ? label(section, key.name) + " is missing"
                            : "section [" + std::string(section) + "] is missing",
                 file_.place_of_section(section),
-                "expected " + label(section, key) + " = " + expected +
+                "expected " + label(section, key.name) + " = " + expected +
                     (near.empty() ? "" : "; is '" + near + "' a misspelling?"));
 }
 
-std::optional<double> IniReader::number(const IniEntry &entry, const RealRange &range) {
+std::optional<double> IniReader::number(const IniEntry &entry, const IniKey &key) {
     const std::vector<std::string> words = split_words(entry.value);
     const auto value = words.empty() ? std::nullopt : parse_double(words[0]);
     const bool isCommentAfter = words.size() > 1 && (words[1][0] == '#' || words[1][0] == ';');
     if (!value.has_value() || (words.size() > 1 && !isCommentAfter)) {
         sink_.error(label(entry.section, entry.key) + " = '" + entry.value + "' is not a number", entry.place,
-                    "expected " + describe(range) + ", with a decimal point");
+                    "expected " + describe_number(key) + ", with a decimal point");
         return std::nullopt;
     }
-    const bool isTooLow = *value < range.lowest || (range.isLowestExcluded && *value == range.lowest);
-    if (isTooLow || *value > range.highest) {
+    if (*value < key.lowest || *value > key.highest) {
         sink_.error(label(entry.section, entry.key) + " = " + entry.value + " is out of range", entry.place,
-                    "expected " + describe(range));
+                    "expected " + describe_number(key));
         return std::nullopt;
     }
     return value;
 }
 
-std::optional<std::int64_t> IniReader::whole(const IniEntry &entry, std::int64_t lowest,
-                                             std::int64_t highest) {
+std::optional<std::int64_t> IniReader::whole(const IniEntry &entry, const IniKey &key) {
     const std::vector<std::string> words = split_words(entry.value);
     auto value = words.empty() ? std::nullopt : parse_int(words[0]);
     if (!value.has_value() && !words.empty()) {
@@ -112,101 +141,89 @@ std::optional<std::int64_t> IniReader::whole(const IniEntry &entry, std::int64_t
     const bool isCommentAfter = words.size() > 1 && (words[1][0] == '#' || words[1][0] == ';');
     if (!value.has_value() || (words.size() > 1 && !isCommentAfter)) {
         sink_.error(label(entry.section, entry.key) + " = '" + entry.value + "' is not a whole number",
-                    entry.place, "expected " + describe(lowest, highest));
+                    entry.place, "expected " + describe_whole(key));
         return std::nullopt;
     }
-    if (*value < lowest || *value > highest) {
+    const auto size = static_cast<double>(*value);
+    if (size < key.lowest || size > key.highest) {
         sink_.error(label(entry.section, entry.key) + " = " + entry.value + " is out of range", entry.place,
-                    "expected " + describe(lowest, highest));
+                    "expected " + describe_whole(key));
         return std::nullopt;
     }
     return value;
 }
 
-double IniReader::real(std::string_view section, std::string_view key, double preset, RealRange range) {
-    const IniEntry *entry = scalar(section, key);
-    return entry == nullptr ? preset : number(*entry, range).value_or(preset);
-}
-
-double IniReader::required_real(std::string_view section, std::string_view key, RealRange range) {
-    const IniEntry *entry = scalar(section, key);
+double IniReader::real(const IniKey &key, std::string_view section, std::optional<double> preset) {
+    const IniEntry *entry = scalar(key, name_of(key, section));
     if (entry == nullptr) {
-        missing(section, key, describe(range));
-        return 0.0;
+        missing(name_of(key, section), key, describe_number(key));
+        return preset.value_or(key.preset);
     }
-    return number(*entry, range).value_or(0.0);
+    return number(*entry, key).value_or(preset.value_or(key.preset));
 }
 
-std::int64_t IniReader::integer(std::string_view section, std::string_view key, std::int64_t preset,
-                                std::int64_t lowest, std::int64_t highest) {
-    const IniEntry *entry = scalar(section, key);
-    return entry == nullptr ? preset : whole(*entry, lowest, highest).value_or(preset);
-}
-
-std::int64_t IniReader::required_integer(std::string_view section, std::string_view key, std::int64_t lowest,
-                                         std::int64_t highest) {
-    const IniEntry *entry = scalar(section, key);
+std::int64_t IniReader::integer(const IniKey &key, std::string_view section,
+                                std::optional<std::int64_t> preset) {
+    const std::int64_t instead = preset.value_or(static_cast<std::int64_t>(key.preset));
+    const IniEntry *entry = scalar(key, name_of(key, section));
     if (entry == nullptr) {
-        missing(section, key, describe(lowest, highest));
-        return lowest;
+        missing(name_of(key, section), key, describe_whole(key));
+        return instead;
     }
-    return whole(*entry, lowest, highest).value_or(lowest);
+    return whole(*entry, key).value_or(instead);
 }
 
-bool IniReader::boolean(std::string_view section, std::string_view key, bool preset) {
-    const IniEntry *entry = scalar(section, key);
+bool IniReader::boolean(const IniKey &key, std::string_view section) {
+    const bool preset = key.preset != 0;
+    const IniEntry *entry = scalar(key, name_of(key, section));
     if (entry == nullptr) {
+        missing(name_of(key, section), key, "yes or no");
         return preset;
     }
     const std::vector<std::string> words = split_words(entry->value);
     if (const auto truth = ini_bool(words.empty() ? "" : words[0])) {
         return *truth;
     }
-    sink_.error(label(section, key) + " = '" + entry->value + "' is neither true nor false", entry->place,
-                "expected YES, TRUE or 1, or NO, FALSE or 0");
+    sink_.error(label(entry->section, entry->key) + " = '" + entry->value + "' is neither true nor false",
+                entry->place, "expected YES, TRUE or 1, or NO, FALSE or 0");
     return preset;
 }
 
-std::string IniReader::text(std::string_view section, std::string_view key, std::string_view preset) {
-    const IniEntry *entry = scalar(section, key);
-    return entry == nullptr ? std::string(preset) : entry->value;
-}
-
-std::string IniReader::required_text(std::string_view section, std::string_view key) {
-    const IniEntry *entry = scalar(section, key);
-    if (entry == nullptr || entry->value.empty()) {
-        missing(section, key, "a text");
-        return {};
+std::string IniReader::text(const IniKey &key, std::string_view section) {
+    const IniEntry *entry = scalar(key, name_of(key, section));
+    if (entry == nullptr || (entry->value.empty() && key.isRequired)) {
+        missing(name_of(key, section), key, "a text");
+        return std::string(key.text);
     }
     return entry->value;
 }
 
-std::string IniReader::choice(std::string_view section, std::string_view key, std::string_view preset,
-                              const std::vector<std::string> &choices) {
-    const IniEntry *entry = scalar(section, key);
+std::string IniReader::choice(const IniKey &key, std::string_view section) {
+    const IniEntry *entry = scalar(key, name_of(key, section));
     if (entry == nullptr) {
-        return std::string(preset);
+        missing(name_of(key, section), key, "one of " + std::string(key.words));
+        return std::string(key.text);
     }
     std::string all;
-    for (const std::string &one : choices) {
+    for (const std::string &one : split_words(key.words)) {
         if (equals_ignoring_case(one, entry->value)) {
             return one;
         }
         all += (all.empty() ? "" : ", ") + one;
     }
-    sink_.error(label(section, key) + " = '" + entry->value + "' is not known", entry->place,
+    sink_.error(label(entry->section, entry->key) + " = '" + entry->value + "' is not known", entry->place,
                 "expected one of " + all);
-    return std::string(preset);
+    return std::string(key.text);
 }
 
-std::vector<const IniEntry *> IniReader::list(std::string_view section, std::string_view key) {
-    know(section, key);
-    return file_.find_all(section, key);
-}
-
-void IniReader::know_without_effect(std::string_view section, std::string_view key, std::string_view why) {
-    know(section, key);
-    without_effect_.insert_or_assign(label(section, key), std::string(why));
+std::vector<const IniEntry *> IniReader::list(const IniKey &key, std::string_view section) {
+    const std::string_view name = name_of(key, section);
+    know(name, key.name);
+    std::vector<const IniEntry *> entries = file_.find_all(name, key.name);
+    if (entries.empty()) {
+        missing(name, key, "a text");
+    }
+    return entries;
 }
 
 /// Sections whose name is a misspelling of one that the system reads.

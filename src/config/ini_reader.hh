@@ -1,25 +1,20 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Typed reads of an INI file: type, unit, range and default in one call; unknown keys are found at the end.
+// Typed reads of an INI file after the declarations of its keys; unknown keys are found at the end.
 #pragma once
 
-#include <limits>
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "config/ini_file.hh"
+#include "config/ini_key.hh"
 #include "diag/sink.hh"
 
 namespace mw::config {
-
-struct RealRange {
-    double lowest = -std::numeric_limits<double>::infinity();
-    double highest = std::numeric_limits<double>::infinity();
-    bool isLowestExcluded = false;
-};
 
 /// Reads keys and remembers which ones the system knows. Every problem is one message to the sink, with file,
 /// line and column; the value returned then is the default, so that reading goes on and reports them all.
@@ -30,46 +25,45 @@ class IniReader {
     const IniFile &file() const { return file_; }
     diag::Sink &sink() { return sink_; }
 
-    double real(std::string_view section, std::string_view key, double preset, RealRange range = {});
-    double required_real(std::string_view section, std::string_view key, RealRange range = {});
-    std::int64_t integer(std::string_view section, std::string_view key, std::int64_t preset,
-                         std::int64_t lowest, std::int64_t highest);
-    std::int64_t required_integer(std::string_view section, std::string_view key, std::int64_t lowest,
-                                  std::int64_t highest);
-    /// TRUE YES 1 ON / FALSE NO 0 OFF in any case.
-    bool boolean(std::string_view section, std::string_view key, bool preset);
-    std::string text(std::string_view section, std::string_view key, std::string_view preset);
-    std::string required_text(std::string_view section, std::string_view key);
-    /// One of `choices` (any case); the spelling of the choice is returned.
-    std::string choice(std::string_view section, std::string_view key, std::string_view preset,
-                       const std::vector<std::string> &choices);
-    /// A key that may be given several times.
-    std::vector<const IniEntry *> list(std::string_view section, std::string_view key);
+    /// Makes the keys of a table known. Rows of "JOINT_*" and the like count with declare_in().
+    void declare(std::span<const IniKey> keys);
+    /// The rows whose section is `pattern`, for one section of its kind: "JOINT_*" for JOINT_0.
+    void declare_in(std::string_view section, std::string_view pattern, std::span<const IniKey> keys);
 
-    /// Says that the key is known to the system though nobody reads it here (displays, later parts).
-    void know(std::string_view section, std::string_view key);
-    void know_all(std::string_view section, std::initializer_list<std::string_view> keys);
-    /// The same for a key that somebody has used; a section that the system does not read stays not ours.
+    // `section`: which one of "JOINT_*"; empty: the section of the row. Without the key the row's preset is
+    // returned, or `preset` where that depends on the machine; a required key that is missing is an error.
+    double real(const IniKey &key, std::string_view section = {}, std::optional<double> preset = {});
+    std::int64_t integer(const IniKey &key, std::string_view section = {},
+                         std::optional<std::int64_t> preset = {});
+    bool boolean(const IniKey &key, std::string_view section = {});
+    std::string text(const IniKey &key, std::string_view section = {});
+    /// The spelling of the declaration is returned.
+    std::string choice(const IniKey &key, std::string_view section = {});
+    /// All entries of a key that may be given several times.
+    std::vector<const IniEntry *> list(const IniKey &key, std::string_view section = {});
+    /// Where it is set; null where it is not.
+    const IniEntry *find(const IniKey &key, std::string_view section = {}) const;
+
+    /// Somebody has used the key; a section that the system does not read stays not ours.
     void know_if_ours(std::string_view section, std::string_view key);
-    /// A key that users of such controllers know and that this version does not act on, with the reason: said
-    /// by report_unknown() where it is set.
-    void know_without_effect(std::string_view section, std::string_view key, std::string_view why);
     /// A HAL file or script has used this section, whatever it is for.
     void use_section(std::string_view section) { used_sections_.insert(std::string(section)); }
     /// Says that other programs define keys of this section, so that none of them is unknown.
     void leave_open(std::string_view section);
 
     /// Warns once for each key in a known section that nobody declared, with the nearest known name; an error
-    /// when strict. `isReferred` keys (HAL files, #<_ini[]>) are known by being used: pass them through
-    /// know() first.
+    /// when strict. Keys that HAL files and programs use are known by that: pass them through know_if_ours()
+    /// first. A declared key without effect is said with the reason.
     void report_unknown(bool isStrict);
 
   private:
-    const IniEntry *scalar(std::string_view section, std::string_view key);
-    void missing(std::string_view section, std::string_view key, const std::string &expected);
+    void know(std::string_view section, std::string_view key);
+    void declare_row(std::string_view section, const IniKey &key);
+    const IniEntry *scalar(const IniKey &key, std::string_view section);
+    void missing(std::string_view section, const IniKey &key, const std::string &expected);
     void report_sections(diag::Severity severity);
-    std::optional<double> number(const IniEntry &entry, const RealRange &range);
-    std::optional<std::int64_t> whole(const IniEntry &entry, std::int64_t lowest, std::int64_t highest);
+    std::optional<double> number(const IniEntry &entry, const IniKey &key);
+    std::optional<std::int64_t> whole(const IniEntry &entry, const IniKey &key);
 
     const IniFile &file_;
     diag::Sink &sink_;

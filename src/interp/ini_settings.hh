@@ -5,14 +5,14 @@
 #include <optional>
 #include <string_view>
 
-#include "config/ini_file.hh"
+#include "config/ini_reader.hh"
 #include "interp/interpreter.hh"
 
 namespace mw::interp {
 
-/// Reads [RS274NGC] and [DISPLAY]PROGRAM_PREFIX. Values of a wrong form are reported to `sink` with their
+/// Reads the keys of interp/ini_keys.hh. Values of a wrong form are reported to the reader's sink with their
 /// place.
-Settings settings_from_ini(const config::IniFile &ini, diag::Sink &sink);
+Settings settings_from_ini(config::IniReader &ini);
 
 /// The value of #<_ini[section]key>: programs have no case, so upper case is looked for; nothing when there
 /// is no such key or its value is not a number.

@@ -12,6 +12,7 @@
 
 #include "base/limits.hh"
 #include "base/text.hh"
+#include "interp/ini_keys.hh"
 #include "interp/ini_settings.hh"
 #include "interp/interpreter.hh"
 #include "interp/plugin.hh"
@@ -64,7 +65,8 @@ Result<> Run::read_ini() {
         return std::unexpected(ini.error());
     }
     ini_ = std::move(*ini);
-    settings_ = settings_from_ini(*ini_, sink);
+    config::IniReader reader(*ini_, sink);
+    settings_ = settings_from_ini(reader);
     if (const config::IniEntry *entry = ini_->find("TRAJ", "SPINDLES"); entry != nullptr) {
         const auto count = parse_int(entry->value);
         if (!count || *count < 1 || *count > MAX_SPINDLES) {
@@ -73,7 +75,8 @@ Result<> Run::read_ini() {
         }
         world_.spindles = static_cast<int>(*count);
     }
-    if (const config::IniEntry *entry = ini_->find("RS274NGC", "PARAMETER_FILE"); entry != nullptr) {
+    if (const config::IniEntry *entry = reader.find(ini_key("RS274NGC", "PARAMETER_FILE"));
+        entry != nullptr) {
         var_file_ = ini_->resolve_path(entry->value);
     }
     world_.ini = [this](std::string_view section, std::string_view key) {

@@ -11,6 +11,12 @@
 namespace mw::config {
 namespace {
 
+constexpr IniKey NUMBER = ini_number("J", "V", "", 7.0, {-INI_UNBOUNDED, INI_UNBOUNDED}, "");
+
+constexpr IniKey named(std::string_view section, std::string_view name) {
+    return ini_text(section, name, "");
+}
+
 struct Read {
     explicit Read(std::string_view text)
         : file(IniFile::parse(text, "dir/m.ini", sink)), reader(file, sink) {}
@@ -45,9 +51,9 @@ TEST(Ini, EveryMalformedLineIsReported) {
 
 TEST(Ini, NumbersAreTypedAndRanged) {
     Read ini("[J]\nV = 1,5\nA = -3\nF = 2.5 # fast\n");
-    EXPECT_EQ(ini.reader.real("J", "V", 7.0), 7.0);
-    EXPECT_EQ(ini.reader.real("J", "A", 7.0, {0.0}), 7.0);
-    EXPECT_EQ(ini.reader.real("J", "F", 7.0), 2.5);
+    EXPECT_EQ(ini.reader.real(NUMBER), 7.0);
+    EXPECT_EQ(ini.reader.real(ini_number("J", "A", "", 7.0, {0.0, INI_UNBOUNDED}, "")), 7.0);
+    EXPECT_EQ(ini.reader.real(ini_number("J", "F", "", 7.0, {0.0, 9.0}, "")), 2.5);
     ASSERT_EQ(ini.sink.count_errors(), 2);
     EXPECT_EQ(ini.first_message(),
               "dir/m.ini:2:5: [J]V = '1,5' is not a number (expected a number, with a decimal point)");
@@ -55,17 +61,17 @@ TEST(Ini, NumbersAreTypedAndRanged) {
 
 TEST(Ini, AMissingKeySaysWhatWasExpected) {
     Read ini("[KINS]\nJOINT = 3\n");
-    ini.reader.required_integer("KINS", "JOINTS", 1, 16);
+    ini.reader.integer(ini_required(ini_whole("KINS", "JOINTS", "", 1, {1, 16}, "")));
     EXPECT_EQ(ini.first_message(),
               "dir/m.ini:1:1: [KINS]JOINTS is missing (expected [KINS]JOINTS = a whole number "
               "from 1 to 16; is 'JOINT' a misspelling?)");
-    ini.reader.required_text("HAL", "HALFILE");
+    ini.reader.list(ini_required(ini_list("HAL", "HALFILE", "")));
     EXPECT_EQ(ini.sink.all().back().what.message, "section [HAL] is missing");
 }
 
 TEST(Ini, UnknownKeysAreWarnedOnceWithTheNearestName) {
     Read ini("[J]\nMAX_VELOCTY = 1\n[OTHER]\nX = 1\n");
-    ini.reader.real("J", "MAX_VELOCITY", 1.0);
+    ini.reader.text(named("J", "MAX_VELOCITY"));
     ini.reader.report_unknown(false);
     ini.reader.report_unknown(false);
     ASSERT_EQ(ini.sink.all().size(), 1U);
@@ -75,7 +81,7 @@ TEST(Ini, UnknownKeysAreWarnedOnceWithTheNearestName) {
 
 TEST(Ini, AnUnknownKeyIsNeverSuggestedForAnother) {
     Read ini("[E]\nM60_COMMAND = 1\nM61_COMMAND = 1\nM61_COMMAND = 2\n");
-    ini.reader.know("E", "TOOL_TABLE");
+    ini.reader.declare({{named("E", "TOOL_TABLE")}});
     ini.reader.report_unknown(false);
     ini.reader.report_unknown(false);
     ASSERT_EQ(ini.sink.all().size(), 2U) << "once for each key";
@@ -85,17 +91,24 @@ TEST(Ini, AnUnknownKeyIsNeverSuggestedForAnother) {
 
 TEST(Ini, KeysWithoutEffectAreSaidWithTheReasonAndAreErrorsWhenStrict) {
     Read ini("[J]\nTPMOD = mine\n");
-    ini.reader.know_without_effect("J", "TPMOD", "there is one planner");
-    ini.reader.know_without_effect("J", "HOMEMOD", "not set here");
+    ini.reader.declare({{ini_without_effect("J", "TPMOD", "there is one planner", "tpmod"),
+                         ini_without_effect("J", "HOMEMOD", "not set here")}});
     ini.reader.report_unknown(true);
     ASSERT_EQ(ini.sink.all().size(), 1U);
     EXPECT_EQ(ini.first_message(), "dir/m.ini:2:1: [J]TPMOD has no effect: there is one planner");
     EXPECT_TRUE(ini.sink.hasErrors());
 }
 
+TEST(Ini, WordsWithWhichNothingIsLostAreTakenInSilence) {
+    Read ini("[J]\nTPMOD = tpmod\n");
+    ini.reader.declare({{ini_without_effect("J", "TPMOD", "there is one planner", "tpmod usual")}});
+    ini.reader.report_unknown(true);
+    EXPECT_TRUE(ini.sink.all().empty());
+}
+
 TEST(Ini, MisspeltSectionsAreSaidAndOthersAreNot) {
     Read ini("[JIONT_0]\nA = 1\n[MY_PLASMA]\nB = 1\n[JOINT_O]\nC = 1\n");
-    ini.reader.real("JOINT_0", "MAX_VELOCITY", 1.0);
+    ini.reader.declare_in("JOINT_0", "JOINT_*", {{named("JOINT_*", "MAX_VELOCITY")}});
     ini.reader.use_section("JOINT_O");  // by a HAL file
     ini.reader.report_unknown(false);
     ini.reader.report_unknown(false);
@@ -106,7 +119,7 @@ TEST(Ini, MisspeltSectionsAreSaidAndOthersAreNot) {
 
 TEST(Ini, AKeyThatWasCutShortIsNearerThanAnotherOne) {
     Read ini("[T]\nMAX_LINEAR_ACCEL = 1\n");
-    ini.reader.know_all("T", {"MAX_LINEAR_JERK", "MAX_LINEAR_ACCELERATION"});
+    ini.reader.declare({{named("T", "MAX_LINEAR_JERK"), named("T", "MAX_LINEAR_ACCELERATION")}});
     ini.reader.report_unknown(false);
     ASSERT_EQ(ini.sink.all().size(), 1U);
     EXPECT_EQ(ini.sink.all()[0].what.hint, "did you mean MAX_LINEAR_ACCELERATION?");
@@ -116,7 +129,7 @@ TEST(Ini, WhatHasNoEffectInTheFieldIsAWarning) {
     Read ini("[J]\nduh\n#INCLUDE\nV = 2\n");
     EXPECT_FALSE(ini.sink.hasErrors());
     EXPECT_EQ(ini.sink.all().size(), 2U);
-    EXPECT_EQ(ini.reader.real("J", "V", 0.0), 2.0);
+    EXPECT_EQ(ini.reader.real(NUMBER), 2.0);
     Read value("[J]\nMAX_VELOCITY 5\n");
     EXPECT_TRUE(value.sink.hasErrors()) << "a setting whose '=' is missing was meant";
 }
@@ -135,25 +148,25 @@ TEST(Ini, DevicesAndPipesAreNoIniFiles) {
 
 TEST(Ini, AScalarGivenTwiceNamesTheOneUsed) {
     Read ini("[J]\nV = 1\nV = 2\n");
-    EXPECT_EQ(ini.reader.real("J", "V", 0.0), 1.0);
-    EXPECT_EQ(ini.reader.real("J", "V", 0.0), 1.0);
+    EXPECT_EQ(ini.reader.real(NUMBER), 1.0);
+    EXPECT_EQ(ini.reader.real(NUMBER), 1.0);
     ASSERT_EQ(ini.sink.all().size(), 1U);
     EXPECT_NE(ini.first_message().find("dir/m.ini:2:5"), std::string::npos);
 }
 
 TEST(Ini, WholeNumbersMayBeWrittenAsRealsWithinReason) {
     Read ini("[J]\nA = 3.0\nB = 1e300\nC = 2.5\n");
-    EXPECT_EQ(ini.reader.integer("J", "A", 0, 0, 9), 3);
-    EXPECT_EQ(ini.reader.integer("J", "B", 7, 0, 9), 7);
-    EXPECT_EQ(ini.reader.integer("J", "C", 7, 0, 9), 7);
+    EXPECT_EQ(ini.reader.integer(ini_whole("J", "A", "", 0, {0, 9}, "")), 3);
+    EXPECT_EQ(ini.reader.integer(ini_whole("J", "B", "", 7, {0, 9}, "")), 7);
+    EXPECT_EQ(ini.reader.integer(ini_whole("J", "C", "", 7, {0, 9}, "")), 7);
     EXPECT_EQ(ini.sink.count_errors(), 2);
 }
 
 TEST(Ini, BooleansInAllSpellings) {
     Read ini("[J]\nA = yes\nB = False\nC = maybe\n");
-    EXPECT_TRUE(ini.reader.boolean("J", "A", false));
-    EXPECT_FALSE(ini.reader.boolean("J", "B", true));
-    EXPECT_TRUE(ini.reader.boolean("J", "C", true));
+    EXPECT_TRUE(ini.reader.boolean(ini_flag("J", "A", false, "")));
+    EXPECT_FALSE(ini.reader.boolean(ini_flag("J", "B", true, "")));
+    EXPECT_TRUE(ini.reader.boolean(ini_flag("J", "C", true, "")));
     EXPECT_EQ(ini.sink.count_errors(), 1);
 }
 

@@ -5,9 +5,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include <gtest/gtest.h>
 
+#include "base/atomic_file.hh"
+#include "base/text.hh"
+#include "machine/ini_keys.hh"
 #include "machine/loaded_config.hh"
 #include "machine/machine_config.hh"
 #include "motion/api/parameters.hh"
@@ -93,6 +97,53 @@ TEST(MachineConfig, KeysWithoutEffectAreNamedAndErrorsWhenStrict_D5) {
     Config display(std::string(GOOD) + "[DISPLAY]\nMAX_FEED_OVERIDE = 2\n");
     display.reader.report_unknown(false);
     EXPECT_TRUE(display.says("did you mean MAX_FEED_OVERRIDE?"));
+}
+
+/// What a new key takes: one row in a table (docs/extending/ini_key.md).
+TEST(IniKeys, EachIsDeclaredOnceWithItsMeaning_A3) {
+    std::set<std::pair<std::string_view, std::string_view>> seen;
+    for (const config::IniKey &key : all_ini_keys()) {
+        EXPECT_TRUE(seen.emplace(key.section, key.name).second) << key.section << ' ' << key.name << " twice";
+        EXPECT_FALSE(key.doc.empty()) << key.name;
+        EXPECT_LE(key.lowest, key.highest) << key.name;
+        if (key.kind == config::IniKind::CHOICE) {
+            const std::vector<std::string> words = split_words(key.words);
+            EXPECT_NE(std::ranges::find(words, key.text), words.end()) << key.name << ": its default";
+        }
+        if (!key.isRequired && key.kind == config::IniKind::WHOLE) {
+            EXPECT_GE(key.preset, key.lowest) << key.name;
+            EXPECT_LE(key.preset, key.highest) << key.name;
+        }
+    }
+    EXPECT_GT(seen.size(), 150U);
+}
+
+TEST(IniKeys, EveryKeyWithoutEffectIsToldWhereItIsSet_D5) {
+    int told = 0;
+    for (const config::IniKey &key : all_ini_keys()) {
+        if (key.effect != config::IniEffect::NONE) {
+            continue;
+        }
+        std::string section(key.section);
+        section = section == "JOINT_*" ? "JOINT_0" : section == "AXIS_*" ? "AXIS_X" : section;
+        Config c(std::string(GOOD) + '[' + section + "]\n" + std::string(key.name) + " = odd\n");
+        c.reader.report_unknown(false);
+        EXPECT_TRUE(
+            c.says('[' + section + ']' + std::string(key.name) + " has no effect: " + std::string(key.doc)))
+            << key.name;
+        ++told;
+    }
+    EXPECT_GT(told, 20);
+}
+
+TEST(IniKeys, TheReferencePageIsThatOfTheDeclarations) {
+    const Result<std::string> page = read_file(MW_SOURCE_DIR "/docs/ini.md");
+    const std::string made = ini_reference();
+    if (!page.has_value() || *page != made) {
+        const std::string place = (std::filesystem::temp_directory_path() / "ini.md").string();
+        EXPECT_TRUE(write_file_atomically(place, made).has_value());
+        FAIL() << "docs/ini.md is not what the declarations say; take " << place << " as the new one";
+    }
 }
 
 TEST(MachineConfig, TravelsThatCannotWorkAreSaidWithTheirPlace) {

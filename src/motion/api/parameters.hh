@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Every setting of the motion controller, declared once (requirement C7): number, name, INI key, unit, range.
-// Adding one is one line here; SetParameter, the INI reading and the reference page follow from it.
+// Adding one is one row here; SetParameter, the INI reading and the page docs/ini.md follow from it.
 #pragma once
 
 #include <array>
@@ -25,50 +25,85 @@ enum class ParameterUnit : std::uint8_t {
 
 inline constexpr double UNBOUNDED = std::numeric_limits<double>::infinity();
 
-// X(name, scope, INI key, unit, lowest, highest, default)
+// X(name, scope, INI section, INI key, unit, lowest, highest, default, what it is)
 // LENGTH, SPEED... are in the joint's or axis's own unit (machine units or degrees).
 #define MW_MOTION_PARAMETERS(X)                                                                              \
-    X(TRAJ_MAX_VELOCITY, MACHINE, "MAX_LINEAR_VELOCITY", SPEED, 0, UNBOUNDED, UNBOUNDED)                     \
-    X(TRAJ_MAX_ACCELERATION, MACHINE, "MAX_LINEAR_ACCELERATION", ACCELERATION, 0, UNBOUNDED, UNBOUNDED)      \
-    X(TRAJ_MAX_JERK, MACHINE, "MAX_LINEAR_JERK", JERK, 0, UNBOUNDED, 1e9)                                    \
-    X(TRAJ_PLANNER_TYPE, MACHINE, "PLANNER_TYPE", COUNT, 0, 1, 0)                                            \
-    X(TRAJ_CORNER_SCALE, MACHINE, "SCURVE_PEAK_SCALE", NONE, 0.1, 1, 1)                                      \
-    X(TRAJ_ADDED_TOLERANCES, MACHINE, "ADDED_TOLERANCES", FLAG, 0, 1, 0)                                     \
-    X(TRAJ_NO_FORCE_HOMING, MACHINE, "NO_FORCE_HOMING", FLAG, 0, 1, 0)                                       \
-    X(MAX_FEED_SCALE, MACHINE, "MAX_FEED_OVERRIDE", NONE, 0, 1000, 1)                                        \
-    X(JOINT_MIN_LIMIT, JOINT, "MIN_LIMIT", LENGTH, -UNBOUNDED, UNBOUNDED, -1e99)                             \
-    X(JOINT_MAX_LIMIT, JOINT, "MAX_LIMIT", LENGTH, -UNBOUNDED, UNBOUNDED, 1e99)                              \
-    X(JOINT_MAX_VELOCITY, JOINT, "MAX_VELOCITY", SPEED, 0, UNBOUNDED, 1)                                     \
-    X(JOINT_MAX_ACCELERATION, JOINT, "MAX_ACCELERATION", ACCELERATION, 0, UNBOUNDED, 1)                      \
-    X(JOINT_MAX_JERK, JOINT, "MAX_JERK", JERK, 0, UNBOUNDED, 1e9)                                            \
-    X(JOINT_FERROR, JOINT, "FERROR", LENGTH, 0, UNBOUNDED, 1)                                                \
-    X(JOINT_MIN_FERROR, JOINT, "MIN_FERROR", LENGTH, 0, UNBOUNDED, 1)                                        \
-    X(JOINT_BACKLASH, JOINT, "BACKLASH", LENGTH, 0, UNBOUNDED, 0)                                            \
-    X(JOINT_IS_ANGULAR, JOINT, "TYPE", FLAG, 0, 1, 0)                                                        \
-    X(JOINT_HOME, JOINT, "HOME", LENGTH, -UNBOUNDED, UNBOUNDED, 0)                                           \
-    X(JOINT_HOME_OFFSET, JOINT, "HOME_OFFSET", LENGTH, -UNBOUNDED, UNBOUNDED, 0)                             \
-    X(JOINT_HOME_SEARCH_VEL, JOINT, "HOME_SEARCH_VEL", SPEED, -UNBOUNDED, UNBOUNDED, 0)                      \
-    X(JOINT_HOME_LATCH_VEL, JOINT, "HOME_LATCH_VEL", SPEED, -UNBOUNDED, UNBOUNDED, 0)                        \
-    X(JOINT_HOME_FINAL_VEL, JOINT, "HOME_FINAL_VEL", SPEED, -1, UNBOUNDED, -1)                               \
-    X(JOINT_HOME_IGNORE_LIMITS, JOINT, "HOME_IGNORE_LIMITS", FLAG, 0, 1, 0)                                  \
-    X(JOINT_HOME_USE_INDEX, JOINT, "HOME_USE_INDEX", FLAG, 0, 1, 0)                                          \
-    X(JOINT_HOME_INDEX_NO_ENCODER_RESET, JOINT, "HOME_INDEX_NO_ENCODER_RESET", FLAG, 0, 1, 0)                \
-    X(JOINT_HOME_IS_SHARED, JOINT, "HOME_IS_SHARED", FLAG, 0, 1, 0)                                          \
-    X(JOINT_HOME_ABSOLUTE_ENCODER, JOINT, "HOME_ABSOLUTE_ENCODER", COUNT, 0, 2, 0)                           \
-    X(JOINT_HOME_SEQUENCE, JOINT, "HOME_SEQUENCE", COUNT, -100, 1000, 1000)                                  \
-    X(JOINT_VOLATILE_HOME, JOINT, "VOLATILE_HOME", FLAG, 0, 1, 0)                                            \
-    X(AXIS_MIN_LIMIT, AXIS, "MIN_LIMIT", LENGTH, -UNBOUNDED, UNBOUNDED, -1e99)                               \
-    X(AXIS_MAX_LIMIT, AXIS, "MAX_LIMIT", LENGTH, -UNBOUNDED, UNBOUNDED, 1e99)                                \
-    X(AXIS_MAX_VELOCITY, AXIS, "MAX_VELOCITY", SPEED, 0, UNBOUNDED, UNBOUNDED)                               \
-    X(AXIS_MAX_ACCELERATION, AXIS, "MAX_ACCELERATION", ACCELERATION, 0, UNBOUNDED, UNBOUNDED)                \
-    X(AXIS_MAX_JERK, AXIS, "MAX_JERK", JERK, 0, UNBOUNDED, 1e9)                                              \
-    X(SPINDLE_MAX_FORWARD, SPINDLE, "MAX_FORWARD_VELOCITY", RPM, 0, UNBOUNDED, UNBOUNDED)                    \
-    X(SPINDLE_MIN_FORWARD, SPINDLE, "MIN_FORWARD_VELOCITY", RPM, 0, UNBOUNDED, 0)                            \
-    X(SPINDLE_MAX_REVERSE, SPINDLE, "MAX_REVERSE_VELOCITY", RPM, 0, UNBOUNDED, UNBOUNDED)                    \
-    X(SPINDLE_MIN_REVERSE, SPINDLE, "MIN_REVERSE_VELOCITY", RPM, 0, UNBOUNDED, 0)
+    X(TRAJ_MAX_VELOCITY, MACHINE, "TRAJ", "MAX_LINEAR_VELOCITY", SPEED, 0, UNBOUNDED, UNBOUNDED,             \
+      "along the path")                                                                                      \
+    X(TRAJ_MAX_ACCELERATION, MACHINE, "TRAJ", "MAX_LINEAR_ACCELERATION", ACCELERATION, 0, UNBOUNDED,         \
+      UNBOUNDED, "along the path")                                                                           \
+    X(TRAJ_MAX_JERK, MACHINE, "TRAJ", "MAX_LINEAR_JERK", JERK, 0, UNBOUNDED, 1e9,                            \
+      "along the path; counts with PLANNER_TYPE = 1")                                                        \
+    X(TRAJ_PLANNER_TYPE, MACHINE, "TRAJ", "PLANNER_TYPE", COUNT, 0, 1, 0, "1: motion keeps to jerk limits")  \
+    X(TRAJ_CORNER_SCALE, MACHINE, "TRAJ", "SCURVE_PEAK_SCALE", NONE, 0.1, 1, 1,                              \
+      "with jerk limits: part of the reachable speed in corners")                                            \
+    X(TRAJ_ADDED_TOLERANCES, MACHINE, "TRAJ", "ADDED_TOLERANCES", FLAG, 0, 1, 0,                             \
+      "lines may be joined within G64 Q on top of P")                                                        \
+    X(TRAJ_NO_FORCE_HOMING, MACHINE, "TRAJ", "NO_FORCE_HOMING", FLAG, 0, 1, 0,                               \
+      "programs and MDI are taken before the joints are homed")                                              \
+    X(MAX_FEED_SCALE, MACHINE, "DISPLAY", "MAX_FEED_OVERRIDE", NONE, 0, 1000, 1,                             \
+      "highest feed override; 1 is 100 %")                                                                   \
+    X(JOINT_MIN_LIMIT, JOINT, "JOINT_*", "MIN_LIMIT", LENGTH, -UNBOUNDED, UNBOUNDED, -1e99,                  \
+      "lower soft limit")                                                                                    \
+    X(JOINT_MAX_LIMIT, JOINT, "JOINT_*", "MAX_LIMIT", LENGTH, -UNBOUNDED, UNBOUNDED, 1e99,                   \
+      "upper soft limit")                                                                                    \
+    X(JOINT_MAX_VELOCITY, JOINT, "JOINT_*", "MAX_VELOCITY", SPEED, 0, UNBOUNDED, 1, "of the joint")          \
+    X(JOINT_MAX_ACCELERATION, JOINT, "JOINT_*", "MAX_ACCELERATION", ACCELERATION, 0, UNBOUNDED, 1,           \
+      "of the joint")                                                                                        \
+    X(JOINT_MAX_JERK, JOINT, "JOINT_*", "MAX_JERK", JERK, 0, UNBOUNDED, 1e9,                                 \
+      "of the joint; counts with PLANNER_TYPE = 1")                                                          \
+    X(JOINT_FERROR, JOINT, "JOINT_*", "FERROR", LENGTH, 0, UNBOUNDED, 1,                                     \
+      "following error allowed at MAX_VELOCITY")                                                             \
+    X(JOINT_MIN_FERROR, JOINT, "JOINT_*", "MIN_FERROR", LENGTH, 0, UNBOUNDED, 1,                             \
+      "following error allowed at rest")                                                                     \
+    X(JOINT_BACKLASH, JOINT, "JOINT_*", "BACKLASH", LENGTH, 0, UNBOUNDED, 0,                                 \
+      "play that is made up at each reversal")                                                               \
+    X(JOINT_IS_ANGULAR, JOINT, "JOINT_*", "TYPE", FLAG, 0, 1, 0, "LINEAR or ANGULAR")                        \
+    X(JOINT_HOME, JOINT, "JOINT_*", "HOME", LENGTH, -UNBOUNDED, UNBOUNDED, 0,                                \
+      "where homing leaves the joint")                                                                       \
+    X(JOINT_HOME_OFFSET, JOINT, "JOINT_*", "HOME_OFFSET", LENGTH, -UNBOUNDED, UNBOUNDED, 0,                  \
+      "position of the home switch or index")                                                                \
+    X(JOINT_HOME_SEARCH_VEL, JOINT, "JOINT_*", "HOME_SEARCH_VEL", SPEED, -UNBOUNDED, UNBOUNDED, 0,           \
+      "towards the switch, with its sign; 0: no switch")                                                     \
+    X(JOINT_HOME_LATCH_VEL, JOINT, "JOINT_*", "HOME_LATCH_VEL", SPEED, -UNBOUNDED, UNBOUNDED, 0,             \
+      "at the edge that counts, with its sign")                                                              \
+    X(JOINT_HOME_FINAL_VEL, JOINT, "JOINT_*", "HOME_FINAL_VEL", SPEED, -1, UNBOUNDED, -1,                    \
+      "of the move to HOME; -1: MAX_VELOCITY")                                                               \
+    X(JOINT_HOME_IGNORE_LIMITS, JOINT, "JOINT_*", "HOME_IGNORE_LIMITS", FLAG, 0, 1, 0,                       \
+      "limit switches do not stop homing: one is the home switch")                                           \
+    X(JOINT_HOME_USE_INDEX, JOINT, "JOINT_*", "HOME_USE_INDEX", FLAG, 0, 1, 0,                               \
+      "the index pulse of the encoder counts")                                                               \
+    X(JOINT_HOME_INDEX_NO_ENCODER_RESET, JOINT, "JOINT_*", "HOME_INDEX_NO_ENCODER_RESET", FLAG, 0, 1, 0,     \
+      "the encoder goes on counting at the index")                                                           \
+    X(JOINT_HOME_IS_SHARED, JOINT, "JOINT_*", "HOME_IS_SHARED", FLAG, 0, 1, 0,                               \
+      "joints share the home switch")                                                                        \
+    X(JOINT_HOME_ABSOLUTE_ENCODER, JOINT, "JOINT_*", "HOME_ABSOLUTE_ENCODER", COUNT, 0, 2, 0,                \
+      "1: no homing move, 2: nor the final one")                                                             \
+    X(JOINT_HOME_SEQUENCE, JOINT, "JOINT_*", "HOME_SEQUENCE", COUNT, -100, 1000, 1000,                       \
+      "order of homing; equal ones together, negative ones end together")                                    \
+    X(JOINT_VOLATILE_HOME, JOINT, "JOINT_*", "VOLATILE_HOME", FLAG, 0, 1, 0,                                 \
+      "switching off unhomes the joint")                                                                     \
+    X(AXIS_MIN_LIMIT, AXIS, "AXIS_*", "MIN_LIMIT", LENGTH, -UNBOUNDED, UNBOUNDED, -1e99,                     \
+      "lower soft limit; that of the joint where there is none")                                             \
+    X(AXIS_MAX_LIMIT, AXIS, "AXIS_*", "MAX_LIMIT", LENGTH, -UNBOUNDED, UNBOUNDED, 1e99,                      \
+      "upper soft limit; that of the joint where there is none")                                             \
+    X(AXIS_MAX_VELOCITY, AXIS, "AXIS_*", "MAX_VELOCITY", SPEED, 0, UNBOUNDED, UNBOUNDED,                     \
+      "of the axis; that of the joint where there is none")                                                  \
+    X(AXIS_MAX_ACCELERATION, AXIS, "AXIS_*", "MAX_ACCELERATION", ACCELERATION, 0, UNBOUNDED, UNBOUNDED,      \
+      "of the axis; that of the joint where there is none")                                                  \
+    X(AXIS_MAX_JERK, AXIS, "AXIS_*", "MAX_JERK", JERK, 0, UNBOUNDED, 1e9,                                    \
+      "of the axis; counts with PLANNER_TYPE = 1")                                                           \
+    X(SPINDLE_MAX_FORWARD, SPINDLE, "SPINDLE_*", "MAX_FORWARD_VELOCITY", RPM, 0, UNBOUNDED, UNBOUNDED,       \
+      "highest speed of M3")                                                                                 \
+    X(SPINDLE_MIN_FORWARD, SPINDLE, "SPINDLE_*", "MIN_FORWARD_VELOCITY", RPM, 0, UNBOUNDED, 0,               \
+      "lowest speed of M3")                                                                                  \
+    X(SPINDLE_MAX_REVERSE, SPINDLE, "SPINDLE_*", "MAX_REVERSE_VELOCITY", RPM, 0, UNBOUNDED, UNBOUNDED,       \
+      "highest speed of M4")                                                                                 \
+    X(SPINDLE_MIN_REVERSE, SPINDLE, "SPINDLE_*", "MIN_REVERSE_VELOCITY", RPM, 0, UNBOUNDED, 0,               \
+      "lowest speed of M4")
 
 enum class Parameter : std::uint16_t {
-#define MW_X(name, scope, key, unit, low, high, preset) name,
+#define MW_X(name, scope, section, key, unit, low, high, preset, doc) name,
     MW_MOTION_PARAMETERS(MW_X)
 #undef MW_X
         COUNT
@@ -78,14 +113,18 @@ struct ParameterInfo {
     Parameter parameter;
     std::string_view name;
     ParameterScope scope;
+    std::string_view ini_section;  ///< "JOINT_*" for JOINT_0 and so on
     std::string_view ini_key;
     ParameterUnit unit;
     double lowest, highest, preset;
+    std::string_view doc;
 };
 
 inline constexpr std::array PARAMETERS = {
-#define MW_X(name, scope, key, unit, low, high, preset)                                                      \
-    ParameterInfo{Parameter::name, #name, ParameterScope::scope, key, ParameterUnit::unit, low, high, preset},
+#define MW_X(name, scope, section, key, unit, low, high, preset, doc)                                        \
+    ParameterInfo{                                                                                           \
+        Parameter::name, #name, ParameterScope::scope, section, key, ParameterUnit::unit, low, high,         \
+        preset,          doc},
     MW_MOTION_PARAMETERS(MW_X)
 #undef MW_X
 };

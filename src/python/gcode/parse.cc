@@ -83,7 +83,8 @@ class Parse {
                 throw_runtime(loaded.error().str());
             }
             ini_ = std::move(*loaded);
-            settings = interp::settings_from_ini(*ini_, problems);
+            config::IniReader reader(*ini_, problems);
+            settings = interp::settings_from_ini(reader);
             world_.ini = [this](std::string_view section, std::string_view key) {
                 return interp::ini_number(*ini_, section, key);
             };

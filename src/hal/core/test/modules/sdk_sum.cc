@@ -13,7 +13,7 @@ struct Sum {
 
     void declare(mw::sdk::Declare &d) {
         for (int i = 0; i < 2; ++i) {
-            d.pin_numbered(in[i], "in", i);
+            d.pin_at(in[i], "in%d", i);
         }
         d.pin(out, "out");
         d.pin(clear, "clear", true);

@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What our components share beyond the SDK: modules whose name has '_' where pins have '-', channels counted
-// by num_chan=, and module-wide functions over all channels.
+// Loading of modules: instances counted or named by module parameters, functions over all channels, and the
+// main and exit functions.
 #pragma once
 
 #include <cerrno>
-#include <cstring>
 #include <new>
+#include <type_traits>
 
-#include "hal/sdk/component.hh"
+#include "declare.hh"
 
-namespace mw::components {
-
-using sdk::Declare;
-using sdk::In;
-using sdk::InOut;
-using sdk::Out;
-using sdk::ParamRo;
-using sdk::ParamRw;
+namespace mw::sdk {
 
 /// Most instances of a component that sets no lower limit.
 constexpr int MANY = 1024;
@@ -90,79 +83,6 @@ T *make() noexcept {
     static_assert(std::is_trivially_destructible_v<T>, "instances are never destroyed");
     void *memory = hal_malloc(static_cast<long>(sizeof(T)));
     return memory == nullptr ? nullptr : new (memory) T();
-}
-
-/// The pin PREFIX.NAME by the naming rules, which files written before find under `legacy` too.
-template <class T, hal_pin_dir_t DIR>
-void legacy_pin(Declare &d, sdk::Pin<T, DIR> &pin, const char *name, const char *legacy,
-                std::type_identity_t<T> start = T{}) noexcept {
-    d.pin(pin, legacy, start);
-    if (d.status() == 0) {
-        Name old_name, rule_name;
-        rtapi_snprintf(old_name.text, sizeof old_name.text, "%s.%s", d.prefix(), legacy);
-        rtapi_snprintf(rule_name.text, sizeof rule_name.text, "%s.%s", d.prefix(), name);
-        d.keep(hal_pin_alias(old_name.text, rule_name.text));
-    }
-}
-
-/// The parameter PREFIX.NAME by the naming rules, with its `legacy` name.
-template <class T, hal_param_dir_t DIR>
-void legacy_param(Declare &d, sdk::Param<T, DIR> &param, const char *name, const char *legacy,
-                  std::type_identity_t<T> start = T{}) noexcept {
-    d.param(param, legacy, start);
-    if (d.status() == 0) {
-        Name old_name, rule_name;
-        rtapi_snprintf(old_name.text, sizeof old_name.text, "%s.%s", d.prefix(), legacy);
-        rtapi_snprintf(rule_name.text, sizeof rule_name.text, "%s.%s", d.prefix(), name);
-        d.keep(hal_param_alias(old_name.text, rule_name.text));
-    }
-}
-
-/// A pin whose name has its number in `format`, as in "in-%02d".
-template <class T, hal_pin_dir_t DIR>
-void pin_at(Declare &d, sdk::Pin<T, DIR> &pin, const char *format, int number,
-            std::type_identity_t<T> start = T{}) noexcept {
-    char name[HAL_NAME_LEN + 1];
-    rtapi_snprintf(name, sizeof name, format, number);
-    d.pin(pin, name, start);
-}
-
-/// A parameter whose name has its number in `format`.
-template <class T, hal_param_dir_t DIR>
-void param_at(Declare &d, sdk::Param<T, DIR> &param, const char *format, int number,
-              std::type_identity_t<T> start = T{}) noexcept {
-    char name[HAL_NAME_LEN + 1];
-    rtapi_snprintf(name, sizeof name, format, number);
-    d.param(param, name, start);
-}
-
-/// The `wanted` number from personality= (0: `fallback`), from 0 to `max`; else an error naming `what`.
-inline int personality_number(Declare &d, int wanted, int fallback, int max, const char *what) noexcept {
-    const int number = wanted == 0 ? fallback : wanted;
-    if (number < 0 || number > max) {
-        rtapi_print_msg(RTAPI_MSG_ERR, "%s: personality=%d, but the number of %s is 0 to %d", d.prefix(),
-                        number, what, max);
-        d.keep(-EINVAL);
-        return 0;
-    }
-    return number;
-}
-
-/// Sets an output that moves something; a value that is not a number, or infinite, leaves it as it was.
-inline void set_finite(Out<double> &out, double value) noexcept {
-    if (value - value == 0.0) {
-        out = value;
-    }
-}
-
-/// The next number of a counter that runs over the end of its type.
-constexpr std::int32_t next_count(std::int32_t count) noexcept {
-    return static_cast<std::int32_t>(static_cast<std::uint32_t>(count) + 1U);
-}
-
-/// [s]
-constexpr double seconds(long period_ns) noexcept {
-    return static_cast<double>(period_ns) * 1e-9;
 }
 
 /// Ends a load: ready, or everything undone. The component id, or a negated errno.
@@ -264,10 +184,10 @@ int load_channels(const Request &request) noexcept {
     return finish(comp_id, status);
 }
 
-}  // namespace mw::components
+}  // namespace mw::sdk
 
-/// The module parameters COUNT= and names=, main and exit functions; LOAD is load_instances<T> or
-/// load_channels<T>.
+/// The module parameters COUNT= and names=, main and exit functions; LOAD is mw::sdk::load_instances<T> or
+/// mw::sdk::load_channels<T>.
 #define MW_MODULE(module, COUNT, fallback, max, LOAD)                                                        \
     static int COUNT = 0;                                                                                    \
     RTAPI_MP_INT(COUNT, "number of instances");                                                              \
@@ -275,7 +195,22 @@ int load_channels(const Request &request) noexcept {
     RTAPI_MP_ARRAY_STRING(names, max, "names of instances");                                                 \
     static int mw_comp_id = -1;                                                                              \
     int rtapi_app_main(void) {                                                                               \
-        mw_comp_id = mw::components::LOAD({module, #COUNT, COUNT, names, fallback, max});                    \
+        mw_comp_id = LOAD({module, #COUNT, COUNT, names, fallback, max});                                    \
+        return mw_comp_id < 0 ? mw_comp_id : 0;                                                              \
+    }                                                                                                        \
+    void rtapi_app_exit(void) {                                                                              \
+        hal_exit(mw_comp_id);                                                                                \
+    }                                                                                                        \
+    static_assert(true)
+
+/// A component with count= (at most `max`) and names=, one instance by default.
+#define MW_COMPONENT(Type, module, max) MW_MODULE(module, count, 1, max, mw::sdk::load_instances<Type>)
+
+/// A module with parameters of its own instead of count= and names=; see load_single.
+#define MW_COMPONENT_SINGLE(Type, module)                                                                    \
+    static int mw_comp_id = -1;                                                                              \
+    int rtapi_app_main(void) {                                                                               \
+        mw_comp_id = mw::sdk::load_single<Type>(module);                                                     \
         return mw_comp_id < 0 ? mw_comp_id : 0;                                                              \
     }                                                                                                        \
     void rtapi_app_exit(void) {                                                                              \
@@ -285,21 +220,5 @@ int load_channels(const Request &request) noexcept {
 
 /// personality= with one number for each instance.
 #define MW_PERSONALITY(what)                                                                                 \
-    static int personality[mw::components::MANY];                                                            \
-    RTAPI_MP_ARRAY_INT(personality, mw::components::MANY, what)
-
-/// count= and names=, one instance by default.
-#define MW_INSTANCES(Type, module)                                                                           \
-    MW_MODULE(module, count, 1, mw::components::MANY, load_instances<mw::components::Type>)
-
-/// A module with parameters of its own instead of count= and names=; see load_single.
-#define MW_SINGLE(Type, module)                                                                              \
-    static int mw_comp_id = -1;                                                                              \
-    int rtapi_app_main(void) {                                                                               \
-        mw_comp_id = mw::components::load_single<mw::components::Type>(module);                              \
-        return mw_comp_id < 0 ? mw_comp_id : 0;                                                              \
-    }                                                                                                        \
-    void rtapi_app_exit(void) {                                                                              \
-        hal_exit(mw_comp_id);                                                                                \
-    }                                                                                                        \
-    static_assert(true)
+    static int personality[mw::sdk::MANY];                                                                   \
+    RTAPI_MP_ARRAY_INT(personality, mw::sdk::MANY, what)

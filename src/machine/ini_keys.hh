@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The keys of an INI file that belong to a machine as a whole; the interpreter's are in interp/ini_keys.hh,
+// the motion controller's settings in motion/api/parameters.hh.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "config/ini_key.hh"
+#include "motion/api/parameters.hh"
+
+namespace mw::machine {
+
+namespace why {
+inline constexpr const char *ARCS = "corners are blended by one planner, whose tolerance G64 P gives";
+inline constexpr const char *DISPLAYS = "displays run it, and millwright run starts none";
+inline constexpr const char *CLIENTS = "no client is started by this version";
+inline constexpr const char *DEFAULTS = "displays, as the speed that they begin with";
+}  // namespace why
+
+inline constexpr auto INI_KEYS = std::to_array<config::IniKey>({
+    config::ini_text("EMC", "MACHINE", "name of the machine", "machine"),
+    config::ini_elsewhere("EMC", "VERSION", "update_ini, which reads the form of the file"),
+    config::ini_elsewhere("EMC", "NML_FILE", "message channels of LinuxCNC"),
+    config::ini_elsewhere("EMC", "RCS_DEBUG", "message channels of LinuxCNC"),
+    config::ini_elsewhere("EMC", "RCS_DEBUG_DEST", "message channels of LinuxCNC"),
+    config::ini_elsewhere("EMC", "RCS_MAX_ERR", "message channels of LinuxCNC"),
+    config::ini_elsewhere("EMC", "LOG_LEVEL", "displays and scripts"),
+
+    config::ini_text("DISPLAY", "DISPLAY", "the screen program"),
+
+    config::ini_required(config::ini_text("TRAJ", "COORDINATES", "letters of the axes, as in X Y Z A")),
+    config::ini_choice("TRAJ", "LINEAR_UNITS", "mm", "mm inch in imperial metric",
+                       "machine unit of lengths; also as units per millimetre"),
+    config::ini_choice("TRAJ", "ANGULAR_UNITS", "degree", "degree degrees deg 1.0 1", "unit of angles"),
+    config::ini_number("TRAJ", "MAX_ANGULAR_VELOCITY", "degrees/s", config::INI_UNBOUNDED,
+                       {0.0, config::INI_UNBOUNDED}, "for each axis of rotation"),
+    config::ini_number("TRAJ", "MAX_ANGULAR_ACCELERATION", "degrees/s2", config::INI_UNBOUNDED,
+                       {0.0, config::INI_UNBOUNDED}, "for each axis of rotation"),
+    config::ini_whole("TRAJ", "SPINDLES", "", 1, {1, 8}, "number of spindles"),
+    config::ini_whole("TRAJ", "SMOOTH_PLANNER", "", 1, {0, 1}, "1: G64 R may ask for jerk limits"),
+    config::ini_elsewhere("TRAJ", "AXES", "old files; COORDINATES tells it"),
+    config::ini_elsewhere("TRAJ", "CYCLE_TIME", "planners with a cycle of their own"),
+    config::ini_elsewhere("TRAJ", "HOME", "displays; joints are homed by their own keys"),
+    config::ini_elsewhere("TRAJ", "DEFAULT_LINEAR_VELOCITY", why::DEFAULTS),
+    config::ini_elsewhere("TRAJ", "DEFAULT_LINEAR_ACCELERATION", why::DEFAULTS),
+    config::ini_elsewhere("TRAJ", "DEFAULT_ANGULAR_VELOCITY", why::DEFAULTS),
+    config::ini_elsewhere("TRAJ", "DEFAULT_ANGULAR_ACCELERATION", why::DEFAULTS),
+    config::ini_elsewhere("TRAJ", "DEFAULT_VELOCITY", why::DEFAULTS),
+    config::ini_elsewhere("TRAJ", "DEFAULT_ACCELERATION", why::DEFAULTS),
+    config::ini_elsewhere("TRAJ", "MAX_VELOCITY", "old files; today MAX_LINEAR_VELOCITY"),
+    config::ini_elsewhere("TRAJ", "MAX_ACCELERATION", "old files; today MAX_LINEAR_ACCELERATION"),
+    config::ini_without_effect("TRAJ", "TPMOD", "the planner is part of motmod and cannot be exchanged",
+                               "tpmod"),
+    config::ini_without_effect("TRAJ", "POSITION_FILE",
+                               "joint positions are not kept over a restart: home the machine"),
+    config::ini_without_effect("TRAJ", "NO_PROBE_JOG_ERROR",
+                               "a probe that trips in a jog stops nothing in this version"),
+    config::ini_without_effect("TRAJ", "NO_PROBE_HOME_ERROR",
+                               "a probe that trips while homing stops nothing in this version"),
+    config::ini_without_effect("TRAJ", "ARC_BLEND_ENABLE", why::ARCS, "1"),
+    config::ini_without_effect("TRAJ", "ARC_BLEND_FALLBACK_ENABLE", why::ARCS, "0"),
+    config::ini_without_effect("TRAJ", "ARC_BLEND_OPTIMIZATION_DEPTH", why::ARCS),
+    config::ini_without_effect("TRAJ", "ARC_BLEND_GAP_CYCLES", why::ARCS),
+    config::ini_without_effect("TRAJ", "ARC_BLEND_RAMP_FREQ", why::ARCS),
+    config::ini_without_effect("TRAJ", "ARC_BLEND_KINK_RATIO", why::ARCS),
+
+    config::ini_required(config::ini_text("KINS", "KINEMATICS", "kinematics module and its arguments")),
+    config::ini_required(config::ini_whole("KINS", "JOINTS", "", 1, {1, 16}, "number of joints")),
+
+    config::ini_without_effect("JOINT_*", "COMP_FILE", "tables of screw errors are not read by this version"),
+    config::ini_elsewhere("JOINT_*", "COMP_FILE_TYPE", "readers of COMP_FILE"),
+    config::ini_without_effect("JOINT_*", "LOCKING_INDEXER", "indexers are not locked by this version"),
+    config::ini_without_effect("AXIS_*", "WRAPPED_ROTARY", "the axis turns as far as the program says"),
+    config::ini_without_effect("AXIS_*", "LOCKING_INDEXER_JOINT", "indexers are not locked by this version"),
+    config::ini_without_effect("AXIS_*", "OFFSET_AV_RATIO", "there are no external offsets in this version"),
+    config::ini_number("AXIS_*", "HOME", "machine units", 0.0,
+                       {-config::INI_UNBOUNDED, config::INI_UNBOUNDED}, "of the joint that moves the axis"),
+    config::ini_elsewhere("AXIS_*", "GEOMETRY", "displays"),
+    config::ini_elsewhere("SPINDLE_*", "HOME_SEARCH_VELOCITY", "HAL files"),
+    config::ini_elsewhere("SPINDLE_*", "HOME_SEQUENCE", "HAL files"),
+    config::ini_elsewhere("SPINDLE_*", "INCREMENT", "displays"),
+
+    config::ini_whole("EMCMOT", "SERVO_PERIOD", "ns", 1000000, {10000, 100000000}, "of the servo thread"),
+    config::ini_elsewhere("EMCMOT", "EMCMOT", "HAL files, as the motion module"),
+    config::ini_elsewhere("EMCMOT", "BASE_PERIOD", "HAL files, as the period of the base thread"),
+    config::ini_elsewhere("EMCMOT", "TRAJ_PERIOD", "planners in a thread of their own"),
+    config::ini_elsewhere("EMCMOT", "COMM_TIMEOUT", "message channels of LinuxCNC"),
+    config::ini_elsewhere("EMCMOT", "COMM_WAIT", "message channels of LinuxCNC"),
+    config::ini_elsewhere("EMCMOT", "SHMEM_KEY", "message channels of LinuxCNC"),
+    config::ini_without_effect("EMCMOT", "HOMEMOD", "homing is part of motmod and cannot be exchanged",
+                               "homemod"),
+
+    config::ini_number("TASK", "CYCLE_TIME", "s", 0.001, {0.0001, 1.0}, "of the task loop"),
+    config::ini_text("TASK", "INTERPRETER", "a shared object that takes the place of RS-274/NGC"),
+    config::ini_without_effect(
+        "TASK", "TASK", "task is part of millwright run; no other program takes its place", "milltask"),
+    config::ini_without_effect("TASK", "MDI_QUEUED_COMMANDS",
+                               "commands of a person are taken one after the other"),
+
+    config::ini_required(
+        config::ini_list("HAL", "HALFILE", "HAL files in their order; .tcl files by haltcl")),
+    config::ini_list("HAL", "HALCMD", "a HAL command, after the files"),
+    config::ini_text("HAL", "TWOPASS", "not empty: the files are gone through twice"),
+    config::ini_text("HAL", "HALUI", "not empty: halui takes part"),
+    config::ini_without_effect("HAL", "SHUTDOWN", "no HAL file is run at the end by this version"),
+    config::ini_without_effect("HAL", "POSTGUI_HALFILE", why::DISPLAYS),
+    config::ini_without_effect("HAL", "POSTGUI_HALCMD", why::DISPLAYS),
+    config::ini_without_effect("HALUI", "MDI_COMMAND",
+                               "the pins halui.mdi-command-NN are not there in this version"),
+    config::ini_without_effect("APPLICATIONS", "APP", why::CLIENTS),
+    config::ini_without_effect("APPLICATIONS", "DELAY", why::CLIENTS),
+
+    config::ini_text("EMCIO", "TOOL_TABLE", "file of the tool table"),
+    config::ini_flag("EMCIO", "RANDOM_TOOLCHANGER", false, "1 is refused by this version"),
+    config::ini_flag("EMCIO", "TOOL_CHANGE_WITH_SPINDLE_ON", false, "M6 leaves the spindle on"),
+    config::ini_flag("EMCIO", "TOOL_CHANGE_QUILL_UP", false, "M6 first raises Z"),
+    config::ini_text("EMCIO", "TOOL_CHANGE_POSITION", "machine coordinates of M6: 3, 6 or 9 numbers"),
+    config::ini_elsewhere("EMCIO", "CYCLE_TIME", "I/O controllers that are processes of their own"),
+    config::ini_without_effect("EMCIO", "EMCIO", "the I/O controller is part of millwright run", "io iov2"),
+    config::ini_without_effect("EMCIO", "TOOL_CHANGE_AT_G30", "M6 does not move to G30 in this version", "0"),
+    config::ini_without_effect("EMCIO", "DB_PROGRAM", "tool databases are not asked by this version"),
+});
+
+/// Does not compile for a key that is not declared above.
+consteval const config::IniKey &ini_key(std::string_view section, std::string_view name) {
+    return config::row_of(INI_KEYS, section, name);
+}
+
+/// Keys of joints that only HAL files read, and of [DISPLAY] that screens read: one that is not among them is
+/// a typing error.
+std::vector<config::IniKey> ini_keys_of_others();
+/// A setting of the motion controller as a key.
+config::IniKey ini_key(motion::Parameter parameter);
+/// All that any part of the system declares.
+std::vector<config::IniKey> all_ini_keys();
+
+/// The reference page docs/ini.md.
+std::string ini_reference();
+
+}  // namespace mw::machine
