@@ -24,13 +24,15 @@ enum class ParameterUnit : std::uint8_t {
 };
 
 inline constexpr double UNBOUNDED = std::numeric_limits<double>::infinity();
+/// A jerk limit of this much and more is none [unit/s^3].
+inline constexpr double NO_JERK_LIMIT = 1e9;
 
 // X(name, scope, INI key, unit, lowest, highest, default)
 // LENGTH, SPEED... are in the joint's or axis's own unit (machine units or degrees).
 #define MW_MOTION_PARAMETERS(X)                                                                              \
     X(TRAJ_MAX_VELOCITY, MACHINE, "MAX_LINEAR_VELOCITY", SPEED, 0, UNBOUNDED, UNBOUNDED)                     \
     X(TRAJ_MAX_ACCELERATION, MACHINE, "MAX_LINEAR_ACCELERATION", ACCELERATION, 0, UNBOUNDED, UNBOUNDED)      \
-    X(TRAJ_MAX_JERK, MACHINE, "MAX_LINEAR_JERK", JERK, 0, UNBOUNDED, 1e9)                                    \
+    X(TRAJ_MAX_JERK, MACHINE, "MAX_LINEAR_JERK", JERK, 0, UNBOUNDED, NO_JERK_LIMIT)                          \
     X(TRAJ_PLANNER_TYPE, MACHINE, "PLANNER_TYPE", COUNT, 0, 1, 0)                                            \
     X(TRAJ_CORNER_SCALE, MACHINE, "SCURVE_PEAK_SCALE", NONE, 0.1, 1, 1)                                      \
     X(TRAJ_ADDED_TOLERANCES, MACHINE, "ADDED_TOLERANCES", FLAG, 0, 1, 0)                                     \
@@ -40,7 +42,7 @@ inline constexpr double UNBOUNDED = std::numeric_limits<double>::infinity();
     X(JOINT_MAX_LIMIT, JOINT, "MAX_LIMIT", LENGTH, -UNBOUNDED, UNBOUNDED, 1e99)                              \
     X(JOINT_MAX_VELOCITY, JOINT, "MAX_VELOCITY", SPEED, 0, UNBOUNDED, 1)                                     \
     X(JOINT_MAX_ACCELERATION, JOINT, "MAX_ACCELERATION", ACCELERATION, 0, UNBOUNDED, 1)                      \
-    X(JOINT_MAX_JERK, JOINT, "MAX_JERK", JERK, 0, UNBOUNDED, 1e9)                                            \
+    X(JOINT_MAX_JERK, JOINT, "MAX_JERK", JERK, 0, UNBOUNDED, NO_JERK_LIMIT)                                  \
     X(JOINT_FERROR, JOINT, "FERROR", LENGTH, 0, UNBOUNDED, 1)                                                \
     X(JOINT_MIN_FERROR, JOINT, "MIN_FERROR", LENGTH, 0, UNBOUNDED, 1)                                        \
     X(JOINT_BACKLASH, JOINT, "BACKLASH", LENGTH, 0, UNBOUNDED, 0)                                            \
@@ -61,7 +63,7 @@ inline constexpr double UNBOUNDED = std::numeric_limits<double>::infinity();
     X(AXIS_MAX_LIMIT, AXIS, "MAX_LIMIT", LENGTH, -UNBOUNDED, UNBOUNDED, 1e99)                                \
     X(AXIS_MAX_VELOCITY, AXIS, "MAX_VELOCITY", SPEED, 0, UNBOUNDED, UNBOUNDED)                               \
     X(AXIS_MAX_ACCELERATION, AXIS, "MAX_ACCELERATION", ACCELERATION, 0, UNBOUNDED, UNBOUNDED)                \
-    X(AXIS_MAX_JERK, AXIS, "MAX_JERK", JERK, 0, UNBOUNDED, 1e9)                                              \
+    X(AXIS_MAX_JERK, AXIS, "MAX_JERK", JERK, 0, UNBOUNDED, NO_JERK_LIMIT)                                    \
     X(SPINDLE_MAX_FORWARD, SPINDLE, "MAX_FORWARD_VELOCITY", RPM, 0, UNBOUNDED, UNBOUNDED)                    \
     X(SPINDLE_MIN_FORWARD, SPINDLE, "MIN_FORWARD_VELOCITY", RPM, 0, UNBOUNDED, 0)                            \
     X(SPINDLE_MAX_REVERSE, SPINDLE, "MAX_REVERSE_VELOCITY", RPM, 0, UNBOUNDED, UNBOUNDED)                    \
