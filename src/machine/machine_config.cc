@@ -56,6 +56,8 @@ void read_kinematics(IniReader &ini, MachineConfig &machine) {
             letters = to_upper(word.substr(12));
         }
     }
+    machine.axis_map = motion::axis_map(letters, machine.num_joints);
+    machine.isTrivial = !machine.kinematics.empty() && machine.kinematics.front() == "trivkins";
     machine.joint_of_axis.fill(-1);
     for (int joint = static_cast<int>(std::min<std::size_t>(letters.size(), MAX_JOINTS)) - 1; joint >= 0;
          --joint) {
@@ -174,32 +176,22 @@ void read_joints(IniReader &ini, MachineConfig &machine) {
 
 /// [TRAJ]MAX_ANGULAR_VELOCITY and MAX_ANGULAR_ACCELERATION hold for each axis of rotation.
 void limit_angular(IniReader &ini, int axis, MachineConfig &machine) {
-    const auto limit = [&](const IniKey &key, Parameter parameter, double &value) {
+    const motion::FoldedLimits limits = machine.limits();
+    const auto limit = [&](const IniKey &key, Parameter parameter, const traj::PerLimited &present) {
         const double most = ini.real(key);
-        if (most < value) {
-            value = most;
+        if (most < present[static_cast<std::size_t>(axis)]) {
             machine.parameters.push_back(
                 {static_cast<std::uint16_t>(parameter), static_cast<std::int16_t>(axis), most});
         }
     };
-    const auto i = static_cast<std::size_t>(axis);
-    limit(ini_key("TRAJ", "MAX_ANGULAR_VELOCITY"), Parameter::AXIS_MAX_VELOCITY,
-          machine.axis_max_velocity[i]);
+    limit(ini_key("TRAJ", "MAX_ANGULAR_VELOCITY"), Parameter::AXIS_MAX_VELOCITY, limits.path.velocity);
     limit(ini_key("TRAJ", "MAX_ANGULAR_ACCELERATION"), Parameter::AXIS_MAX_ACCELERATION,
-          machine.axis_max_acceleration[i]);
+          limits.path.acceleration);
 }
 
 void read_axes(IniReader &ini, MachineConfig &machine) {
-    machine.axis_min.fill(-INF);
-    machine.axis_max.fill(INF);
-    machine.axis_max_velocity.fill(INF);
-    machine.axis_max_acceleration.fill(INF);
     const TravelKeys travel = {ini_key(Parameter::AXIS_MIN_LIMIT), ini_key(Parameter::AXIS_MAX_LIMIT),
                                ini_key("AXIS_*", "HOME")};
-    const auto rate = [&ini](Parameter of_axis, const std::string &axis, Parameter of_joint,
-                             const std::string &joint) {
-        return ini.real(ini_key(of_axis), axis, ini.real(ini_key(of_joint), joint));
-    };
     for (int axis = 0; axis < MAX_AXES; ++axis) {
         if ((machine.axis_mask & (1U << axis)) == 0) {
             continue;
@@ -207,16 +199,7 @@ void read_axes(IniReader &ini, MachineConfig &machine) {
         const std::string section = std::string("AXIS_") + geom::AXIS_LETTERS[axis];
         miss_section(ini, section, "the axis has the limits of its joint");
         check_travel(ini, section, travel, "axis");
-        const auto i = static_cast<std::size_t>(axis);
-        // Without limits of its own an axis has those of the joint that moves it.
-        const std::string joint = "JOINT_" + std::to_string(std::max(machine.joint_of_axis[i], 0));
-        machine.axis_min[i] = ini.real(travel.low, section, -INF);
-        machine.axis_max[i] = ini.real(travel.high, section, INF);
-        machine.axis_max_velocity[i] =
-            rate(Parameter::AXIS_MAX_VELOCITY, section, Parameter::JOINT_MAX_VELOCITY, joint);
-        machine.axis_max_acceleration[i] =
-            rate(Parameter::AXIS_MAX_ACCELERATION, section, Parameter::JOINT_MAX_ACCELERATION, joint);
-        if (machine.axis_min[i] > machine.axis_max[i]) {
+        if (ini.real(travel.low, section, -INF) > ini.real(travel.high, section, INF)) {
             ini.sink().error('[' + section + "]MIN_LIMIT is above MAX_LIMIT",
                              ini.find(travel.low, section)->place);
         }
@@ -337,6 +320,12 @@ void read_io(IniReader &ini, MachineConfig &machine) {
 }
 
 }  // namespace
+
+motion::FoldedLimits MachineConfig::limits() const {
+    motion::AxisMap map = axis_map;
+    map.kind = isTrivial ? motion::AxisMap::Kind::JOINTS_ARE_AXES : motion::AxisMap::Kind::PLANNED;
+    return motion::fold_limits(motion::settings_of(parameters), map, motion::ALL_HOMED);
+}
 
 MachineConfig read_machine_config(config::IniReader &reader) {
     MachineConfig machine;

@@ -10,6 +10,7 @@
 #include "config/ini_reader.hh"
 #include "interp/interpreter.hh"
 #include "motion/api/command.hh"
+#include "motion/api/limits.hh"
 #include "task/task.hh"
 
 namespace mw::machine {
@@ -40,11 +41,14 @@ struct MachineConfig {
     task::Settings task;
     /// Every setting of the motion controller that the INI gives or that has a documented default.
     std::vector<motion::SetParameter> parameters;
-    /// Soft limits per axis for checks without moving [machine units]; infinite where none is given.
-    std::array<double, MAX_AXES> axis_min{}, axis_max{};
-    std::array<double, MAX_AXES> axis_max_velocity{}, axis_max_acceleration{};
+    /// The axis of each joint by the letters of the file: what limits a joint limits it where `isTrivial`.
+    motion::AxisMap axis_map;
+    bool isTrivial = false;  ///< joints are axes
     /// The joint that moves each axis first (trivial kinematics), -1 for none.
     std::array<int, MAX_AXES> joint_of_axis{};
+
+    /// Once homed, for checks without moving.
+    motion::FoldedLimits limits() const;
 };
 
 /// Reads all sections that the system knows. Problems go to the reader's sink; the result is usable only when

@@ -24,7 +24,7 @@ constexpr double LIMIT_SLACK = 1e-6;
 class Checker {
   public:
     Checker(const MachineConfig &machine, diag::Sink &sink, const CheckOptions &options)
-        : machine_(machine), sink_(sink), options_(options), estimate_(machine) {
+        : machine_(machine), sink_(sink), options_(options), limits_(machine.limits()), estimate_(machine) {
         estimate_.start(home_position(machine));
         result.lowest.fill(1e300);
         result.highest.fill(-1e300);
@@ -147,15 +147,33 @@ class Checker {
         const auto i = static_cast<std::size_t>(axis);
         result.lowest[i] = std::min(result.lowest[i], value);
         result.highest[i] = std::max(result.highest[i], value);
-        const bool isLow = value < machine_.axis_min[i] - LIMIT_SLACK;
-        if (!isLow && value <= machine_.axis_max[i] + LIMIT_SLACK) {
+        const bool isLow = value < limits_.low[axis] - LIMIT_SLACK;
+        if (!isLow && value <= limits_.high[axis] + LIMIT_SLACK) {
             return;
         }
-        const double limit = isLow ? machine_.axis_min[i] : machine_.axis_max[i];
+        const double limit = isLow ? limits_.low[axis] : limits_.high[axis];
         report(fmt::format("the move goes to {} = {:.4f}, beyond the {} limit {:g} of axis {}",
                            geom::AXIS_LETTERS[i], value, isLow ? "lower" : "upper", limit,
                            geom::AXIS_LETTERS[i]),
-               fmt::format("[AXIS_{}]{}_LIMIT", geom::AXIS_LETTERS[i], isLow ? "MIN" : "MAX"));
+               key_of_limit(axis, isLow));
+    }
+
+    /// Of an axis and the joints that move it, the one with the tightest limit.
+    std::string key_of_limit(int axis, bool isLow) const {
+        const double limit = isLow ? limits_.low[axis] : limits_.high[axis];
+        std::string section = std::string("AXIS_") + geom::AXIS_LETTERS[axis];
+        for (int joint = 0; joint < machine_.num_joints; ++joint) {
+            const auto j = static_cast<std::size_t>(joint);
+            const double own = isLow ? limits_.joints.low[j] : limits_.joints.high[j];
+            const bool isJoint = machine_.axis_map.moves(joint, axis) && own == limit;
+            section =
+                isJoint && limit != axis_limit(axis, isLow) ? "JOINT_" + std::to_string(joint) : section;
+        }
+        return fmt::format("[{}]{}_LIMIT", section, isLow ? "MIN" : "MAX");
+    }
+    double axis_limit(int axis, bool isLow) const {
+        return motion::settings_of(machine_.parameters)
+            .get(isLow ? motion::Parameter::AXIS_MIN_LIMIT : motion::Parameter::AXIS_MAX_LIMIT, axis);
     }
 
     /// The quarter points of the circle about each principal axis reach furthest; sixty-four chords bound
@@ -164,11 +182,10 @@ class Checker {
         constexpr int STEPS = 64;
         const double radius = std::sqrt(std::max(0.0, radius_squared(piece)));
         for (int axis = 0; axis < 3; ++axis) {
-            const auto i = static_cast<std::size_t>(axis);
             const double reach =
                 radius * std::sqrt(std::max(0.0, 1.0 - piece.normal[axis] * piece.normal[axis]));
-            const bool mayReach = piece.centre[axis] - reach < machine_.axis_min[i] ||
-                                  piece.centre[axis] + reach > machine_.axis_max[i];
+            const bool mayReach = piece.centre[axis] - reach < limits_.low[axis] ||
+                                  piece.centre[axis] + reach > limits_.high[axis];
             if (!mayReach) {
                 continue;
             }
@@ -215,6 +232,7 @@ class Checker {
     const MachineConfig &machine_;
     diag::Sink &sink_;
     const CheckOptions &options_;
+    motion::FoldedLimits limits_;
     TimeEstimate estimate_;
     bool isTimed_ = true;
     const interp::Preview *preview_ = nullptr;

@@ -11,19 +11,8 @@ namespace mw::machine {
 
 namespace {
 
-constexpr double JERK_OFF = 1e9;
 /// Time lost in places that are kept until the worst are known; beyond that many the least are let go.
 constexpr std::size_t MOST_PLACES = 100000;
-
-double setting(const MachineConfig &machine, motion::Parameter parameter, int index) {
-    double value = motion::PARAMETERS[static_cast<std::size_t>(parameter)].preset;
-    for (const motion::SetParameter &p : machine.parameters) {
-        if (p.parameter == static_cast<std::uint16_t>(parameter) && p.index == index) {
-            value = p.value;
-        }
-    }
-    return value;
-}
 
 std::string name_of(const traj::MoveEstimate &move) {
     const std::string axis = move.axis == traj::XYZ_NORM ? "[TRAJ] (X Y Z)"
@@ -42,52 +31,17 @@ std::string name_of(const traj::MoveEstimate &move) {
 
 }  // namespace
 
-traj::Limits path_limits(const MachineConfig &machine) {
-    using motion::Parameter;
-    traj::Limits out;
-    const auto merge = [&](int axis, double v, double a, double jerk) {
-        const auto i = static_cast<std::size_t>(axis);
-        out.velocity[i] = std::min(out.velocity[i], v);
-        out.acceleration[i] = std::min(out.acceleration[i], a);
-        out.jerk[i] = std::min(out.jerk[i], jerk < JERK_OFF ? jerk : traj::UNLIMITED);
-    };
-    out.velocity.fill(traj::UNLIMITED);
-    out.acceleration.fill(traj::UNLIMITED);
-    out.jerk.fill(traj::UNLIMITED);
-    for (int axis = 0; axis < MAX_AXES; ++axis) {
-        merge(axis, setting(machine, Parameter::AXIS_MAX_VELOCITY, axis),
-              setting(machine, Parameter::AXIS_MAX_ACCELERATION, axis),
-              setting(machine, Parameter::AXIS_MAX_JERK, axis));
-    }
-    for (int joint = 0; joint < machine.num_joints && joint < static_cast<int>(machine.coordinates.size());
-         ++joint) {
-        const int axis = geom::axis_of_letter(machine.coordinates[static_cast<std::size_t>(joint)]);
-        if (axis >= 0) {
-            merge(axis, setting(machine, Parameter::JOINT_MAX_VELOCITY, joint),
-                  setting(machine, Parameter::JOINT_MAX_ACCELERATION, joint),
-                  setting(machine, Parameter::JOINT_MAX_JERK, joint));
-        }
-    }
-    const double jerk = setting(machine, Parameter::TRAJ_MAX_JERK, 0);
-    merge(traj::XYZ_NORM, setting(machine, Parameter::TRAJ_MAX_VELOCITY, 0),
-          setting(machine, Parameter::TRAJ_MAX_ACCELERATION, 0), jerk);
-    out.isJerkLimited = setting(machine, Parameter::TRAJ_PLANNER_TYPE, 0) != 0 && jerk >= 1;
-    return out;
-}
-
 TimeEstimate::TimeEstimate(const MachineConfig &machine)
-    : machine_(machine), limits_(path_limits(machine)),
-      corner_scale_(setting(machine, motion::Parameter::TRAJ_CORNER_SCALE, 0)),
-      isMergeAdded_(setting(machine, motion::Parameter::TRAJ_ADDED_TOLERANCES, 0) != 0),
+    : settings_(motion::settings_of(machine.parameters)),
+      // An estimate knows no kinematics: each joint is taken for the axis of its letter.
+      limits_(motion::fold_limits(settings_, machine.axis_map, motion::ALL_HOMED).path),
+      corner_scale_(settings_.get(motion::Parameter::TRAJ_CORNER_SCALE)),
+      isMergeAdded_(settings_.isSet(motion::Parameter::TRAJ_ADDED_TOLERANCES)),
       estimator_(std::make_unique<traj::Estimator>(limits_,
                                                    static_cast<double>(machine.servo_period_ns) * 1e-9,
                                                    [this](const traj::MoveEstimate &move) { take(move); })) {
-    geom::Pose low, high;
-    for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
-        low[axis] = machine.axis_min[static_cast<std::size_t>(axis)];
-        high[axis] = machine.axis_max[static_cast<std::size_t>(axis)];
-    }
-    estimator_->set_machine(setting(machine, motion::Parameter::MAX_FEED_SCALE, 0), low, high);
+    const motion::FoldedLimits room = machine.limits();
+    estimator_->set_machine(settings_.get(motion::Parameter::MAX_FEED_SCALE), room.low, room.high);
 }
 
 void TimeEstimate::start(const geom::Pose &position) {
@@ -162,7 +116,7 @@ void TimeEstimate::stop() {
 
 void TimeEstimate::set_smooth(bool isSmooth) {
     stop();
-    limits_.isJerkLimited = isSmooth && setting(machine_, motion::Parameter::TRAJ_MAX_JERK, 0) >= 1;
+    limits_.isJerkLimited = isSmooth && settings_.get(motion::Parameter::TRAJ_MAX_JERK) >= motion::LEAST_JERK;
     estimator_->set_limits(limits_);
 }
 

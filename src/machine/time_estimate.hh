@@ -29,9 +29,6 @@ struct TimeFigures {
 };
 inline constexpr std::size_t SLOW_PLACES = 5;
 
-/// The limits of the axes as the motion controller folds them, for machines whose joints are axes.
-traj::Limits path_limits(const MachineConfig &machine);
-
 /// Fed with the moves in order; one thread.
 class TimeEstimate {
   public:
@@ -54,7 +51,7 @@ class TimeEstimate {
     void take(const traj::MoveEstimate &move);
     traj::MoveRequest request_of(const interp::MoveSettings &settings);
 
-    const MachineConfig &machine_;
+    motion::Settings settings_;
     traj::Limits limits_;
     double corner_scale_;  ///< of moves that name none
     bool isMergeAdded_;

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motion/api/limits.hh"
+
 namespace mw::task {
 namespace {
 
 using motion::Parameter;
 
-/// Jerk limits of this much and more, and below this much, mean none.
-constexpr double JERK_OFF = 1e9, LEAST_JERK = 1.0;
 constexpr double LOWEST_SCALE = 0.1, HIGHEST_SCALE = 1.0;
 
 }  // namespace
@@ -29,7 +29,7 @@ void PlannerMode::configure(const std::vector<motion::SetParameter> &parameters)
 }
 
 bool PlannerMode::isJerkOff() const {
-    return linear_jerk_ < LEAST_JERK || std::min(linear_jerk_, least_jerk_) >= JERK_OFF;
+    return linear_jerk_ < motion::LEAST_JERK || std::min(linear_jerk_, least_jerk_) >= motion::NO_JERK_LIMIT;
 }
 
 void PlannerMode::announce() {

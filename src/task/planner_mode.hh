@@ -42,7 +42,7 @@ class PlannerMode {
     Hooks hooks_;
     int type_ = 0, wish_ = 0;
     bool isWaitAnnounced_ = false;
-    double linear_jerk_ = 1e9, least_jerk_ = 1e9, corner_scale_ = 1;
+    double linear_jerk_ = motion::NO_JERK_LIMIT, least_jerk_ = motion::NO_JERK_LIMIT, corner_scale_ = 1;
 };
 
 }  // namespace mw::task

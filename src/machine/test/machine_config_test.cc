@@ -66,6 +66,15 @@ TEST(MachineConfig, AxesAndJointsAreDifferentThings_A3) {
     EXPECT_EQ(c.parameter(motion::Parameter::JOINT_MAX_ACCELERATION, 1), 10.0);
 }
 
+TEST(MachineConfig, SpeedOfRotaryAxesIsLimitedWhateverTheSpeedOfTheFirstJoint) {
+    // Where kinematics are between, no joint is the axis: slow joints are no reason to forget the limit.
+    const Config c("[TRAJ]\nCOORDINATES = X Y Z A C\nMAX_ANGULAR_VELOCITY = 5\n[KINS]\n"
+                   "KINEMATICS = tablekins\nJOINTS = 5\n[HAL]\nHALFILE = LIB:core_sim.hal\n"
+                   "[JOINT_0]\nMAX_VELOCITY = 1\n[JOINT_3]\nMAX_VELOCITY = 4\n[JOINT_4]\nMAX_VELOCITY = 4\n");
+    EXPECT_EQ(c.parameter(motion::Parameter::AXIS_MAX_VELOCITY, geom::AXIS_C), 5.0);
+    EXPECT_EQ(c.machine.limits().path.velocity[geom::AXIS_C], 5.0);
+}
+
 TEST(MachineConfig, AnEmptyParameterFileIsTold_A3) {
     std::string name = (std::filesystem::temp_directory_path() / "parameters-XXXXXX").string();
     ::close(::mkstemp(name.data()));

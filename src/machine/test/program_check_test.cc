@@ -69,6 +69,26 @@ TEST_F(ProgramCheck, EveryPlaceIsToldAndEachOnce) {
     EXPECT_EQ(sink_.all()[1].what.place.line, 7);
 }
 
+TEST_F(ProgramCheck, LimitsOfAJointThatMovesAnAxisHoldForTheAxis) {
+    ASSERT_NE(config_, nullptr);
+    const auto number = static_cast<std::uint16_t>(motion::Parameter::JOINT_MAX_LIMIT);
+    config_->machine.parameters.push_back({number, 0, 30});
+    check("G21 G90 G17\nG0 X29\nG0 X31\nM2\n");
+    ASSERT_EQ(sink_.count_errors(), 1);
+    const Error &error = sink_.all()[0].what;
+    EXPECT_EQ(error.place.line, 3);
+    EXPECT_NE(error.hint.find("[JOINT_0]MAX_LIMIT"), std::string::npos) << error.hint;
+}
+
+TEST_F(ProgramCheck, LimitsOfJointsAreNoneOfAxesWhereKinematicsAreBetween) {
+    ASSERT_NE(config_, nullptr);
+    const auto number = static_cast<std::uint16_t>(motion::Parameter::JOINT_MAX_LIMIT);
+    config_->machine.parameters.push_back({number, 0, 30});
+    config_->machine.isTrivial = false;
+    check("G21 G90 G17\nG0 X31\nM2\n");
+    EXPECT_EQ(sink_.count_errors(), 0);
+}
+
 TEST_F(ProgramCheck, OtherThreadsAreTaken) {
     ASSERT_NE(config_, nullptr);
     check("G21 G90 G17 S100 M3\nG0 X10 Y10\nG33 Z-5 K1\nG0 Z0\nM2\n");

@@ -24,6 +24,8 @@ enum class ParameterUnit : std::uint8_t {
 };
 
 inline constexpr double UNBOUNDED = std::numeric_limits<double>::infinity();
+/// A jerk limit of this much and more is none [unit/s^3].
+inline constexpr double NO_JERK_LIMIT = 1e9;
 
 // X(name, scope, INI section, INI key, unit, lowest, highest, default, what it is)
 // LENGTH, SPEED... are in the joint's or axis's own unit (machine units or degrees).
@@ -32,7 +34,7 @@ inline constexpr double UNBOUNDED = std::numeric_limits<double>::infinity();
       "along the path")                                                                                      \
     X(TRAJ_MAX_ACCELERATION, MACHINE, "TRAJ", "MAX_LINEAR_ACCELERATION", ACCELERATION, 0, UNBOUNDED,         \
       UNBOUNDED, "along the path")                                                                           \
-    X(TRAJ_MAX_JERK, MACHINE, "TRAJ", "MAX_LINEAR_JERK", JERK, 0, UNBOUNDED, 1e9,                            \
+    X(TRAJ_MAX_JERK, MACHINE, "TRAJ", "MAX_LINEAR_JERK", JERK, 0, UNBOUNDED, NO_JERK_LIMIT,                  \
       "along the path; counts with PLANNER_TYPE = 1")                                                        \
     X(TRAJ_PLANNER_TYPE, MACHINE, "TRAJ", "PLANNER_TYPE", COUNT, 0, 1, 0, "1: motion keeps to jerk limits")  \
     X(TRAJ_CORNER_SCALE, MACHINE, "TRAJ", "SCURVE_PEAK_SCALE", NONE, 0.1, 1, 1,                              \
@@ -50,7 +52,7 @@ inline constexpr double UNBOUNDED = std::numeric_limits<double>::infinity();
     X(JOINT_MAX_VELOCITY, JOINT, "JOINT_*", "MAX_VELOCITY", SPEED, 0, UNBOUNDED, 1, "of the joint")          \
     X(JOINT_MAX_ACCELERATION, JOINT, "JOINT_*", "MAX_ACCELERATION", ACCELERATION, 0, UNBOUNDED, 1,           \
       "of the joint")                                                                                        \
-    X(JOINT_MAX_JERK, JOINT, "JOINT_*", "MAX_JERK", JERK, 0, UNBOUNDED, 1e9,                                 \
+    X(JOINT_MAX_JERK, JOINT, "JOINT_*", "MAX_JERK", JERK, 0, UNBOUNDED, NO_JERK_LIMIT,                       \
       "of the joint; counts with PLANNER_TYPE = 1")                                                          \
     X(JOINT_FERROR, JOINT, "JOINT_*", "FERROR", LENGTH, 0, UNBOUNDED, 1,                                     \
       "following error allowed at MAX_VELOCITY")                                                             \
@@ -91,7 +93,7 @@ inline constexpr double UNBOUNDED = std::numeric_limits<double>::infinity();
       "of the axis; that of the joint where there is none")                                                  \
     X(AXIS_MAX_ACCELERATION, AXIS, "AXIS_*", "MAX_ACCELERATION", ACCELERATION, 0, UNBOUNDED, UNBOUNDED,      \
       "of the axis; that of the joint where there is none")                                                  \
-    X(AXIS_MAX_JERK, AXIS, "AXIS_*", "MAX_JERK", JERK, 0, UNBOUNDED, 1e9,                                    \
+    X(AXIS_MAX_JERK, AXIS, "AXIS_*", "MAX_JERK", JERK, 0, UNBOUNDED, NO_JERK_LIMIT,                          \
       "of the axis; counts with PLANNER_TYPE = 1")                                                           \
     X(SPINDLE_MAX_FORWARD, SPINDLE, "SPINDLE_*", "MAX_FORWARD_VELOCITY", RPM, 0, UNBOUNDED, UNBOUNDED,       \
       "highest speed of M3")                                                                                 \

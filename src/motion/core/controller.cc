@@ -5,19 +5,10 @@
 
 namespace mw::motion {
 
-namespace {
-
-/// A jerk from here on means none; a linear jerk below the least turns the jerk-limited planner off.
-constexpr double LEAST_JERK = 1;
-/// Part of the joints' limits that axes get where the kinematics cannot be asked.
-constexpr double UNKNOWN_SHARE = 0.4;
-
-}  // namespace
-
 Controller::Controller(const ControllerConfig &config, const kins::Kinematics &kinematics, Channels &channels,
                        PathLink &link) noexcept
     : config_(config), kinematics_(kinematics), channels_(channels), link_(link),
-      executor_(link.store, config.period_s) {
+      executor_(link.store, config.period_s), map_(axis_map(kinematics, config.num_joints)) {
     const kins::IdentityMap *map = kinematics.identity();
     const int used = map != nullptr ? std::min(map->num_joints, config.num_joints) : config.num_joints;
     homing_.set_num_joints(used);
@@ -163,66 +154,17 @@ void Controller::answer(CommandId id, AnswerKind kind, Reason reason, std::int16
     last_id_ = id;
 }
 
-bool Controller::isJerkLimited() const noexcept {
-    return settings_.isSet(Parameter::TRAJ_PLANNER_TYPE) && get(Parameter::TRAJ_MAX_JERK) >= LEAST_JERK;
-}
-
-/// Limits of axes and joints folded together, for the path planner.
+/// Limits of axes and joints folded together, for jogs and the path planner.
 void Controller::publish_limits() noexcept {
+    limits_ = fold_limits(settings_, map_, {homed_mask(), homing_.isAllHomed()});
     PathLimits out;
-    const kins::IdentityMap *map = kinematics_.identity();
-    const bool isAllHomed = homing_.isAllHomed();
-    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
-        double v = std::min(get(Parameter::AXIS_MAX_VELOCITY, i), traj::UNLIMITED);
-        double a = std::min(get(Parameter::AXIS_MAX_ACCELERATION, i), traj::UNLIMITED);
-        double jerk = get(Parameter::AXIS_MAX_JERK, i);
-        out.low[i] = isAllHomed ? get(Parameter::AXIS_MIN_LIMIT, i) : -UNBOUNDED;
-        out.high[i] = isAllHomed ? get(Parameter::AXIS_MAX_LIMIT, i) : UNBOUNDED;
-        bool isDriven = map == nullptr;
-        for (int j = 0; map != nullptr && j < map->num_joints && j < config_.num_joints; ++j) {
-            if (map->axis_of_joint[at(j)] != i) {
-                continue;
-            }
-            isDriven = true;
-            v = std::min(v, get(Parameter::JOINT_MAX_VELOCITY, j));
-            a = std::min(a, get(Parameter::JOINT_MAX_ACCELERATION, j));
-            jerk = std::min(jerk, get(Parameter::JOINT_MAX_JERK, j));
-            if (homing_.isHomed(j)) {
-                out.low[i] = std::max(out.low[i], get(Parameter::JOINT_MIN_LIMIT, j));
-                out.high[i] = std::min(out.high[i], get(Parameter::JOINT_MAX_LIMIT, j));
-            }
-        }
-        for (int j = 0; map == nullptr && !kinematics_.isShareable() && j < config_.num_joints; ++j) {
-            // Nothing is known of how joints follow axes: kept well below what those of the same kind can do.
-            if (settings_.isSet(Parameter::JOINT_IS_ANGULAR, j) == geom::isAngular(i)) {
-                v = std::min(v, UNKNOWN_SHARE * get(Parameter::JOINT_MAX_VELOCITY, j));
-                a = std::min(a, UNKNOWN_SHARE * get(Parameter::JOINT_MAX_ACCELERATION, j));
-                jerk = std::min(jerk, UNKNOWN_SHARE * get(Parameter::JOINT_MAX_JERK, j));
-            }
-        }
-        out.axes |= isDriven ? 1U << i : 0U;
-        out.limits.velocity[at(i)] = v;
-        out.limits.acceleration[at(i)] = a;
-        out.limits.jerk[at(i)] = jerk < JERK_OFF ? jerk : traj::UNLIMITED;
-    }
-    const double jerk = get(Parameter::TRAJ_MAX_JERK);
-    out.limits.jerk[traj::XYZ_NORM] = jerk < JERK_OFF ? jerk : traj::UNLIMITED;
-    out.limits.isJerkLimited = isJerkLimited();
+    out.limits = limits_.path;
+    out.low = limits_.low;
+    out.high = limits_.high;
+    out.axes = limits_.axes;
+    out.joints = limits_.joints;
     out.corner_scale = get(Parameter::TRAJ_CORNER_SCALE);
     out.areTolerancesAdded = settings_.isSet(Parameter::TRAJ_ADDED_TOLERANCES);
-    out.limits.velocity[traj::XYZ_NORM] = std::min(get(Parameter::TRAJ_MAX_VELOCITY), traj::UNLIMITED);
-    out.limits.acceleration[traj::XYZ_NORM] =
-        std::min(get(Parameter::TRAJ_MAX_ACCELERATION), traj::UNLIMITED);
-    for (int j = 0; j < config_.num_joints; ++j) {
-        const double own = get(Parameter::JOINT_MAX_JERK, j);
-        out.joints.velocity[at(j)] = get(Parameter::JOINT_MAX_VELOCITY, j);
-        out.joints.acceleration[at(j)] = get(Parameter::JOINT_MAX_ACCELERATION, j);
-        out.joints.jerk[at(j)] = own < JERK_OFF ? own : traj::UNLIMITED;
-        out.joints.low[at(j)] = homing_.isHomed(j) ? get(Parameter::JOINT_MIN_LIMIT, j) : -UNBOUNDED;
-        out.joints.high[at(j)] = homing_.isHomed(j) ? get(Parameter::JOINT_MAX_LIMIT, j) : UNBOUNDED;
-    }
-    out.joints.count = config_.num_joints;
-    path_limits_ = out;
     link_.limits.write(out);
     ++limits_version_;
 }

@@ -9,9 +9,10 @@
 #include "homing/homing.hh"
 #include "kins/kinematics.hh"
 #include "motion/api/channels.hh"
+#include "motion/api/limits.hh"
+#include "motion/api/settings.hh"
 #include "motion/core/io.hh"
 #include "motion/core/path_link.hh"
-#include "motion/core/settings.hh"
 #include "traj/executor.hh"
 #include "traj/free_planner.hh"
 
@@ -40,7 +41,6 @@ class Controller {
 
   private:
     using MoveTag = traj::MoveTag;
-    static constexpr double JERK_OFF = 1e9;  ///< jerk limits of this much and more are none
     /// What a joint or axis jog is driven by.
     enum class JogSource : std::uint8_t { NONE, KEYBOARD, WHEEL };
 
@@ -103,7 +103,7 @@ class Controller {
     Reason jog_vector(const Inputs &in, const geom::Pose &velocity, std::int16_t &index) noexcept;
     Reason check_jog(const Inputs &in, const JogTarget &target, double direction) const noexcept;
     Reason jog_to(const JogTarget &target, double position, double velocity, JogSource source) noexcept;
-    void jog_range(const JogTarget &target, double &low, double &high) const noexcept;
+    JogRange range_of(const JogTarget &target) const noexcept;
     Reason home(const Inputs &in, int joint) noexcept;
     /// Or about to begin, once the jogs that it has stopped are at rest.
     bool isHomingUnderWay() const noexcept { return homing_.isActive() || isHomeDue_; }
@@ -116,15 +116,11 @@ class Controller {
     void stop_jogs(bool isAtOnce) noexcept;
     traj::JogPlanner &planner_of(const JogTarget &target) noexcept;
     JogSource &source_of(const JogTarget &target) noexcept;
-    double max_velocity_of(const JogTarget &target) const noexcept;
-    double max_acceleration_of(const JogTarget &target) const noexcept;
     /// Negative adaptive feed or reverse run is asked for, or the path is not yet back where it was left.
     bool isReversing() const noexcept { return isReverseWanted_ || link_.retrace.isAway(); }
     geom::Pose step_retrace(const geom::Pose &pose) noexcept;
     void follow_dropped_path() noexcept;
     traj::Retrace::Use use_of(const geom::Pose &pose) noexcept;
-    double max_jerk_of(const JogTarget &target) const noexcept;
-    bool isJerkLimited() const noexcept;
 
     // --- controller_teleop.cc: jogs of axes where joints are not axes
     struct TeleopLoad;
@@ -210,7 +206,8 @@ class Controller {
     int home_due_ = -1;                 ///< the joint, -1: all
     bool isTeleopStopped_ = false;      ///< by a joint's limit, and said
     geom::Pose last_pose_, last_step_;  ///< of coordinated motion
-    PathLimits path_limits_;
+    AxisMap map_;
+    FoldedLimits limits_;
     std::uint32_t steps_ = 0;
     double feed_scale_ = 1, rapid_scale_ = 1, net_feed_scale_ = 1, max_velocity_ = 1e300;
     bool isFeedOverrideEnabled_ = true, isAdaptiveFeedEnabled_ = false, isFeedHoldEnabled_ = true;

@@ -18,7 +18,7 @@ void Controller::step_coord(const Inputs &in) noexcept {
             traj::JogPlanner &p = axes_[at(i)].teleop;
             if (isIdentity() && !p.isAtRest()) {
                 p.max_velocity =
-                    std::min(axes_[at(i)].wanted_velocity * jog_scale(), max_velocity_of({false, i}));
+                    std::min(axes_[at(i)].wanted_velocity * jog_scale(), limits_.axis_jog[at(i)].velocity);
             }
             p.step(config_.period_s);
             pose[i] = p.position;
@@ -86,12 +86,12 @@ traj::Retrace::Use Controller::use_of(const geom::Pose &pose) noexcept {
     last_step_ = step;
     const auto add = [&](double v, double a, double most_a, double most_j) {
         use.v_over_a = std::max(use.v_over_a, std::abs(v) * per_s / most_a);
-        if (isJerkLimited()) {
+        if (limits_.path.isJerkLimited) {
             use.v_over_j = std::max(use.v_over_j, std::abs(v) * per_s / most_j);
             use.a_over_j = std::max(use.a_over_j, std::abs(a) * per_s * per_s / most_j);
         }
     };
-    const traj::Limits &limits = path_limits_.limits;
+    const traj::Limits &limits = limits_.path;
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
         add(step[i], bend[i], limits.acceleration[at(i)], limits.jerk[at(i)]);
     }
@@ -100,7 +100,7 @@ traj::Retrace::Use Controller::use_of(const geom::Pose &pose) noexcept {
     for (int j = 0; j < config_.num_joints && !isIdentity(); ++j) {
         const JointState &s = joint(j);
         add(s.vel_cmd * config_.period_s, s.acc_cmd * config_.period_s * config_.period_s,
-            path_limits_.joints.acceleration[at(j)], path_limits_.joints.jerk[at(j)]);
+            limits_.joints.acceleration[at(j)], limits_.joints.jerk[at(j)]);
     }
     return use;
 }

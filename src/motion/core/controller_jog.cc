@@ -15,80 +15,12 @@ Controller::JogSource &Controller::source_of(const JogTarget &target) noexcept {
     return target.isJoint ? joint(target.index).jog : axes_[at(target.index)].jog;
 }
 
-double Controller::max_velocity_of(const JogTarget &target) const noexcept {
-    if (target.isJoint) {
-        return get(Parameter::JOINT_MAX_VELOCITY, target.index);
+JogRange Controller::range_of(const JogTarget &target) const noexcept {
+    std::array<double, MAX_JOINTS> positions{};
+    for (int j = 0; j < config_.num_joints; ++j) {
+        positions[at(j)] = joint(j).pos_cmd;
     }
-    double v = get(Parameter::AXIS_MAX_VELOCITY, target.index);
-    const kins::IdentityMap *map = kinematics_.identity();
-    for (int j = 0; map != nullptr && j < map->num_joints; ++j) {
-        if (map->axis_of_joint[at(j)] == target.index) {
-            v = std::min(v, get(Parameter::JOINT_MAX_VELOCITY, j));
-        }
-    }
-    return v;
-}
-
-double Controller::max_acceleration_of(const JogTarget &target) const noexcept {
-    if (target.isJoint) {
-        return get(Parameter::JOINT_MAX_ACCELERATION, target.index);
-    }
-    double a = get(Parameter::AXIS_MAX_ACCELERATION, target.index);
-    const kins::IdentityMap *map = kinematics_.identity();
-    for (int j = 0; map != nullptr && j < map->num_joints; ++j) {
-        if (map->axis_of_joint[at(j)] == target.index) {
-            a = std::min(a, get(Parameter::JOINT_MAX_ACCELERATION, j));
-        }
-    }
-    return a;
-}
-
-/// 0 where none holds.
-double Controller::max_jerk_of(const JogTarget &target) const noexcept {
-    if (!isJerkLimited()) {
-        return 0;
-    }
-    const bool isAngular = target.isJoint ? settings_.isSet(Parameter::JOINT_IS_ANGULAR, target.index)
-                                          : geom::isAngular(target.index);
-    double jerk = isAngular ? JERK_OFF : get(Parameter::TRAJ_MAX_JERK);
-    jerk = std::min(jerk, target.isJoint ? get(Parameter::JOINT_MAX_JERK, target.index)
-                                         : get(Parameter::AXIS_MAX_JERK, target.index));
-    const kins::IdentityMap *map = kinematics_.identity();
-    for (int j = 0; !target.isJoint && map != nullptr && j < map->num_joints; ++j) {
-        if (map->axis_of_joint[at(j)] == target.index) {
-            jerk = std::min(jerk, get(Parameter::JOINT_MAX_JERK, j));
-        }
-    }
-    return jerk < JERK_OFF ? jerk : 0.0;
-}
-
-/// Where a jog may go: soft limits once homed, before that twice the travel around the present place.
-void Controller::jog_range(const JogTarget &target, double &low, double &high) const noexcept {
-    constexpr double FAR = 1e9;
-    low = -FAR;
-    high = FAR;
-    const auto narrow_to_joint = [&](int j) {
-        const double from = get(Parameter::JOINT_MIN_LIMIT, j);
-        const double to = get(Parameter::JOINT_MAX_LIMIT, j);
-        const double here = joint(j).pos_cmd;
-        const double range = 2.0 * std::max(0.0, to - from);
-        low = std::max(low, homing_.isHomed(j) ? from : here - range);
-        high = std::min(high, homing_.isHomed(j) ? to : here + range);
-    };
-    if (target.isJoint) {
-        narrow_to_joint(target.index);
-        return;
-    }
-    if (homing_.isAllHomed()) {
-        low = std::max(low, get(Parameter::AXIS_MIN_LIMIT, target.index));
-        high = std::min(high, get(Parameter::AXIS_MAX_LIMIT, target.index));
-    }
-    const kins::IdentityMap *map = kinematics_.identity();
-    for (int j = 0; map != nullptr && j < map->num_joints; ++j) {
-        if (map->axis_of_joint[at(j)] == target.index) {
-            narrow_to_joint(j);
-        }
-    }
+    return jog_range(limits_, map_, target, positions.data());
 }
 
 /// Whether a jog may start at all; `direction` > 0, < 0, or 0 when not yet known.
@@ -110,8 +42,7 @@ Reason Controller::check_jog(const Inputs &in, const JogTarget &target, double d
         return Reason::JOG_INHIBITED;
     }
     if (!target.isJoint) {
-        const kins::IdentityMap *map = kinematics_.identity();
-        return map != nullptr && !map->has(target.index) ? Reason::NO_SUCH_AXIS : Reason::NONE;
+        return map_.hasAxis(target.index) ? Reason::NONE : Reason::NO_SUCH_AXIS;
     }
     const JointState &s = joint(target.index);
     if (!s.isActive) {
@@ -131,20 +62,19 @@ Reason Controller::jog_to(const JogTarget &target, double position, double veloc
     if (!std::isfinite(position) || !std::isfinite(velocity)) {
         return Reason::NOT_A_NUMBER;
     }
-    double low = 0;
-    double high = 0;
-    jog_range(target, low, high);
+    const JogRange range = range_of(target);
+    const JogLimits &most = limits_.jog(target);
     traj::JogPlanner &p = planner_of(target);
     // From outside the limits every move back in is welcome, none further out.
-    low = std::min(low, p.position);
-    high = std::max(high, p.position);
+    const double low = std::min(range.low, p.position);
+    const double high = std::max(range.high, p.position);
     if (position < low - 1e-9 || position > high + 1e-9) {
         return Reason::BEYOND_SOFT_LIMIT;
     }
     p.target = std::clamp(position, low, high);
-    p.max_velocity = std::min(std::abs(velocity), max_velocity_of(target));
-    p.max_acceleration = max_acceleration_of(target);
-    p.max_jerk = max_jerk_of(target);
+    p.max_velocity = std::min(std::abs(velocity), most.velocity);
+    p.max_acceleration = most.acceleration;
+    p.max_jerk = most.jerk;
     if (target.isJoint) {
         joint(target.index).wanted_velocity = p.max_velocity;
     } else {
@@ -168,10 +98,8 @@ Reason Controller::handle_jog(const Inputs &in, const CommandBody &body, std::in
         if (!std::isfinite(c->velocity)) {
             return Reason::NOT_A_NUMBER;
         }
-        double low = 0;
-        double high = 0;
-        jog_range(c->target, low, high);
-        const double end = c->velocity > 0 ? high : low;
+        const JogRange range = range_of(c->target);
+        const double end = c->velocity > 0 ? range.high : range.low;
         const double here = planner_of(c->target).position;
         const bool isAtEnd = c->velocity > 0 ? here >= end : here <= end;
         return isAtEnd ? Reason::BEYOND_SOFT_LIMIT : jog_to(c->target, end, c->velocity, JogSource::KEYBOARD);
@@ -237,11 +165,9 @@ Reason Controller::jog_vector(const Inputs &in, const geom::Pose &velocity, std:
         const double v = velocity[i];
         const bool isUsed = v != 0.0;
         const Reason reason = isUsed ? check_jog(in, target, v) : Reason::NONE;
-        double low = 0;
-        double high = 0;
-        jog_range(target, low, high);
+        const JogRange range = range_of(target);
         const Reason moved = isUsed && reason == Reason::NONE
-                                 ? jog_to(target, v > 0 ? high : low, v, JogSource::KEYBOARD)
+                                 ? jog_to(target, v > 0 ? range.high : range.low, v, JogSource::KEYBOARD)
                                  : reason;
         if (moved != Reason::NONE) {
             index = static_cast<std::int16_t>(i);
@@ -336,13 +262,10 @@ void Controller::step_wheel(const Inputs &in, const JogTarget &target, const Whe
     if (isOther || check_jog(in, target, distance) != Reason::NONE) {
         return;  // a wheel asks for nothing: there is no command to refuse
     }
-    double low = 0;
-    double high = 0;
-    jog_range(target, low, high);
-    low = std::min(low, p.position);
-    high = std::max(high, p.position);
-    const double wanted = std::clamp(p.target + distance, low, high);
-    if (jog_to(target, wanted, max_velocity_of(target), JogSource::WHEEL) == Reason::NONE) {
+    const JogRange range = range_of(target);
+    const double wanted =
+        std::clamp(p.target + distance, std::min(range.low, p.position), std::max(range.high, p.position));
+    if (jog_to(target, wanted, limits_.jog(target).velocity, JogSource::WHEEL) == Reason::NONE) {
         const bool isFraction = wheel.accel_fraction > 0 && wheel.accel_fraction <= 1;
         p.max_acceleration *= isFraction ? wheel.accel_fraction : 1.0;
         if (!target.isJoint) {

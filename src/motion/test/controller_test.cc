@@ -44,6 +44,19 @@ TEST(Controller, EnableTakesTheCommandFromFeedback_C4) {
     EXPECT_EQ(rig.out->joint[0].motor_pos_cmd, 12.5);
 }
 
+TEST(Controller, AnAxisWhoseJointTheMachineDoesNotHaveIsNotJogged) {
+    kins::Trivial kinematics;
+    ASSERT_TRUE(kinematics.configure("XYZABCUVW"));
+    MotionRig rig(kinematics, 3, 100, 1000);
+    rig.ready(Mode::TELEOP);
+    const CommandId known = rig.send(JogIncremental{{false, geom::AXIS_Z}, 10, 1});
+    const CommandId none = rig.send(JogIncremental{{false, geom::AXIS_A}, 10, 1});
+    rig.step(500);
+    EXPECT_TRUE(rig.isDone(known));
+    EXPECT_EQ(rig.refusal(none), Reason::NO_SUCH_AXIS);
+    EXPECT_EQ(rig.status().carte_pos_cmd[geom::AXIS_A], 0);
+}
+
 TEST(Controller, EnableInputFalseDropsTheAmplifiersInThatCycle) {
     MotionRig rig;
     rig.ready();

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "base/limits.hh"
 #include "motion/api/parameters.hh"
@@ -59,5 +60,14 @@ class Settings {
   private:
     std::array<std::array<double, MAX_INDEX>, static_cast<std::size_t>(Parameter::COUNT)> values_{};
 };
+
+/// The presets, and over them what `parameters` say; those out of range are left out.
+inline Settings settings_of(std::span<const SetParameter> parameters) noexcept {
+    Settings settings;
+    for (const SetParameter &p : parameters) {
+        settings.set(p, MAX_JOINTS, MAX_SPINDLES);
+    }
+    return settings;
+}
 
 }  // namespace mw::motion

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "motion/api/limits.hh"
+
+#include <algorithm>
+
+namespace mw::motion {
+
+namespace {
+
+/// Part of the joints' limits that axes get where the kinematics cannot be asked.
+constexpr double UNKNOWN_SHARE = 0.4;
+
+std::size_t at(int i) noexcept {
+    return static_cast<std::size_t>(i);
+}
+
+bool isHomed(const HomedJoints &homed, int joint) noexcept {
+    return (homed.joints >> joint & 1U) != 0;
+}
+
+double path_jerk(double jerk) noexcept {
+    return jerk < NO_JERK_LIMIT ? jerk : traj::UNLIMITED;
+}
+
+double jog_jerk(double jerk) noexcept {
+    return jerk < NO_JERK_LIMIT ? jerk : 0.0;
+}
+
+/// The tightest of what has been taken in.
+struct Tightest {
+    double velocity, acceleration, jerk;
+
+    void take(double v, double a, double j) noexcept {
+        velocity = std::min(velocity, v);
+        acceleration = std::min(acceleration, a);
+        jerk = std::min(jerk, j);
+    }
+    void take_joint(const Settings &s, int joint, double share) noexcept {
+        const double own_jerk = s.get(Parameter::JOINT_MAX_JERK, joint);
+        take(share * s.get(Parameter::JOINT_MAX_VELOCITY, joint),
+             share * s.get(Parameter::JOINT_MAX_ACCELERATION, joint),
+             own_jerk < NO_JERK_LIMIT ? share * own_jerk : own_jerk);
+    }
+};
+
+void fold_axis(const Settings &s, const AxisMap &map, int axis, FoldedLimits &out) noexcept {
+    Tightest all{s.get(Parameter::AXIS_MAX_VELOCITY, axis), s.get(Parameter::AXIS_MAX_ACCELERATION, axis),
+                 s.get(Parameter::AXIS_MAX_JERK, axis)};
+    out.low[axis] = out.homed.areAll ? s.get(Parameter::AXIS_MIN_LIMIT, axis) : -UNBOUNDED;
+    out.high[axis] = out.homed.areAll ? s.get(Parameter::AXIS_MAX_LIMIT, axis) : UNBOUNDED;
+    for (int j = 0; j < map.num_joints; ++j) {
+        if (!map.moves(j, axis)) {
+            continue;
+        }
+        all.take_joint(s, j, 1);
+        if (isHomed(out.homed, j)) {
+            out.low[axis] = std::max(out.low[axis], s.get(Parameter::JOINT_MIN_LIMIT, j));
+            out.high[axis] = std::min(out.high[axis], s.get(Parameter::JOINT_MAX_LIMIT, j));
+        }
+    }
+    const double most_jog_jerk =
+        geom::isAngular(axis) ? all.jerk : std::min(all.jerk, s.get(Parameter::TRAJ_MAX_JERK));
+    out.axis_jog[at(axis)] = {all.velocity, all.acceleration,
+                              isJerkLimited(s) ? jog_jerk(most_jog_jerk) : 0.0};
+    for (int j = 0; j < map.num_joints && map.kind == AxisMap::Kind::UNKNOWN; ++j) {
+        // Nothing is known of how joints follow axes: kept well below what those of the same kind can do.
+        // Jogs are kept within the joints' limits in the servo thread.
+        if (s.isSet(Parameter::JOINT_IS_ANGULAR, j) == geom::isAngular(axis)) {
+            all.take_joint(s, j, UNKNOWN_SHARE);
+        }
+    }
+    out.axes |= map.hasAxis(axis) ? 1U << axis : 0U;
+    out.path.velocity[at(axis)] = std::min(all.velocity, traj::UNLIMITED);
+    out.path.acceleration[at(axis)] = std::min(all.acceleration, traj::UNLIMITED);
+    out.path.jerk[at(axis)] = path_jerk(all.jerk);
+}
+
+void fold_joint(const Settings &s, int j, FoldedLimits &out) noexcept {
+    const double jerk = s.get(Parameter::JOINT_MAX_JERK, j);
+    const double low = s.get(Parameter::JOINT_MIN_LIMIT, j);
+    const double high = s.get(Parameter::JOINT_MAX_LIMIT, j);
+    out.joints.velocity[at(j)] = s.get(Parameter::JOINT_MAX_VELOCITY, j);
+    out.joints.acceleration[at(j)] = s.get(Parameter::JOINT_MAX_ACCELERATION, j);
+    out.joints.jerk[at(j)] = path_jerk(jerk);
+    out.joints.low[at(j)] = isHomed(out.homed, j) ? low : -UNBOUNDED;
+    out.joints.high[at(j)] = isHomed(out.homed, j) ? high : UNBOUNDED;
+    out.travel[at(j)] = std::max(0.0, high - low);
+    const double most_jog_jerk =
+        s.isSet(Parameter::JOINT_IS_ANGULAR, j) ? jerk : std::min(jerk, s.get(Parameter::TRAJ_MAX_JERK));
+    out.joint_jog[at(j)] = {out.joints.velocity[at(j)], out.joints.acceleration[at(j)],
+                            isJerkLimited(s) ? jog_jerk(most_jog_jerk) : 0.0};
+}
+
+}  // namespace
+
+bool AxisMap::hasAxis(int axis) const noexcept {
+    bool isFound = kind != Kind::JOINTS_ARE_AXES;
+    for (int j = 0; j < num_joints; ++j) {
+        isFound = isFound || axis_of_joint[at(j)] == axis;
+    }
+    return isFound;
+}
+
+AxisMap axis_map(const kins::Kinematics &kinematics, int num_joints) noexcept {
+    AxisMap out;
+    out.num_joints = num_joints;
+    out.axis_of_joint.fill(-1);
+    if (const kins::IdentityMap *identity = kinematics.identity()) {
+        std::copy_n(identity->axis_of_joint.begin(), std::min(num_joints, identity->num_joints),
+                    out.axis_of_joint.begin());
+        return out;
+    }
+    out.kind = kinematics.isShareable() ? AxisMap::Kind::PLANNED : AxisMap::Kind::UNKNOWN;
+    return out;
+}
+
+AxisMap axis_map(std::string_view letters, int num_joints) noexcept {
+    AxisMap out;
+    out.num_joints = num_joints;
+    out.axis_of_joint.fill(-1);
+    const int count = std::min(num_joints, static_cast<int>(letters.size()));
+    for (int j = 0; j < count; ++j) {
+        out.axis_of_joint[at(j)] = static_cast<std::int8_t>(geom::axis_of_letter(letters[at(j)]));
+    }
+    return out;
+}
+
+bool isJerkLimited(const Settings &settings) noexcept {
+    return settings.isSet(Parameter::TRAJ_PLANNER_TYPE) &&
+           settings.get(Parameter::TRAJ_MAX_JERK) >= LEAST_JERK;
+}
+
+FoldedLimits fold_limits(const Settings &settings, const AxisMap &map, const HomedJoints &homed) noexcept {
+    FoldedLimits out;
+    out.homed = homed;
+    for (int axis = 0; axis < MAX_AXES; ++axis) {
+        fold_axis(settings, map, axis, out);
+    }
+    out.path.velocity[traj::XYZ_NORM] = std::min(settings.get(Parameter::TRAJ_MAX_VELOCITY), traj::UNLIMITED);
+    out.path.acceleration[traj::XYZ_NORM] =
+        std::min(settings.get(Parameter::TRAJ_MAX_ACCELERATION), traj::UNLIMITED);
+    out.path.jerk[traj::XYZ_NORM] = path_jerk(settings.get(Parameter::TRAJ_MAX_JERK));
+    out.path.isJerkLimited = isJerkLimited(settings);
+    for (int joint = 0; joint < map.num_joints; ++joint) {
+        fold_joint(settings, joint, out);
+    }
+    out.joints.count = map.num_joints;
+    return out;
+}
+
+JogRange jog_range(const FoldedLimits &limits, const AxisMap &map, const JogTarget &target,
+                   const double *joint_positions) noexcept {
+    constexpr double FAR = 1e9;
+    JogRange out{-FAR, FAR};
+    const auto narrow = [&out](double low, double high) {
+        out.low = std::max(out.low, low);
+        out.high = std::min(out.high, high);
+    };
+    if (!target.isJoint) {
+        narrow(limits.low[target.index], limits.high[target.index]);
+    }
+    for (int j = 0; j < map.num_joints; ++j) {
+        const bool isMeant = target.isJoint ? j == target.index : map.moves(j, target.index);
+        if (!isMeant) {
+            continue;
+        }
+        const double around = 2.0 * limits.travel[at(j)];
+        const bool isKnown = isHomed(limits.homed, j);
+        narrow(isKnown ? limits.joints.low[at(j)] : joint_positions[j] - around,
+               isKnown ? limits.joints.high[at(j)] : joint_positions[j] + around);
+    }
+    return out;
+}
+
+}  // namespace mw::motion

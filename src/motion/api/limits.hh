@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Limits of joints, axes and machine folded together, in one place for paths, jogs, checks and estimates.
+// Pure.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "base/limits.hh"
+#include "geom/pose.hh"
+#include "kins/kinematics.hh"
+#include "motion/api/command.hh"
+#include "motion/api/settings.hh"
+#include "traj/joint_map.hh"
+#include "traj/limits.hh"
+
+namespace mw::motion {
+
+/// A limit of the path's jerk below this turns jerk-limited planning off [machine units/s^3].
+inline constexpr double LEAST_JERK = 1;
+
+/// Which axis each joint moves, and who knows what joints do where there is more to it.
+struct AxisMap {
+    enum class Kind : std::uint8_t {
+        JOINTS_ARE_AXES,  ///< what limits a joint limits its axis
+        PLANNED,          ///< the planner asks the kinematics and keeps the limits of the joints by itself
+        UNKNOWN,          ///< only the servo thread may ask the kinematics
+    };
+    Kind kind = Kind::JOINTS_ARE_AXES;
+    int num_joints = 0;                                   ///< of the machine; there are no others
+    std::array<std::int8_t, MAX_JOINTS> axis_of_joint{};  ///< -1: none; used where joints are axes
+
+    /// A joint of the machine moves this axis; kinematics may move any.
+    bool hasAxis(int axis) const noexcept;
+    bool moves(int joint, int axis) const noexcept {
+        return kind == Kind::JOINTS_ARE_AXES && axis_of_joint[static_cast<std::size_t>(joint)] == axis;
+    }
+};
+
+AxisMap axis_map(const kins::Kinematics &kinematics, int num_joints) noexcept;
+/// Joint n moves the axis of the n-th letter.
+AxisMap axis_map(std::string_view letters, int num_joints) noexcept;
+
+/// Soft limits hold for joints that are homed, those of axes when all are.
+struct HomedJoints {
+    std::uint32_t joints = 0;  ///< bit per joint
+    bool areAll = false;
+};
+inline constexpr HomedJoints ALL_HOMED{~0U, true};
+
+struct JogLimits {
+    double velocity = 0, acceleration = 0;
+    double jerk = 0;  ///< 0: none
+};
+
+struct FoldedLimits {
+    traj::Limits path;       ///< of moves of axes: their own and those of the joints that move them
+    geom::Pose low, high;    ///< soft limits of axes, with those of joints; +-infinity where none holds
+    std::uint32_t axes = 0;  ///< bit per axis that a joint or the kinematics move
+    traj::JointLimits joints;
+    HomedJoints homed;
+    std::array<double, MAX_JOINTS> travel{};  ///< between the soft limits of a joint, homed or not
+    std::array<JogLimits, MAX_JOINTS> joint_jog{};
+    std::array<JogLimits, MAX_AXES> axis_jog{};
+
+    const JogLimits &jog(const JogTarget &target) const noexcept {
+        const auto i = static_cast<std::size_t>(target.index);
+        return target.isJoint ? joint_jog[i] : axis_jog[i];
+    }
+};
+
+/// Jerk-limited planning is asked for and has a limit to keep.
+bool isJerkLimited(const Settings &settings) noexcept;
+
+/// [any thread]
+FoldedLimits fold_limits(const Settings &settings, const AxisMap &map, const HomedJoints &homed) noexcept;
+
+struct JogRange {
+    double low = 0, high = 0;
+};
+/// Where a jog may go: soft limits of what is homed, before that twice the travel around the present place.
+/// `joint_positions` has MAX_JOINTS elements.
+JogRange jog_range(const FoldedLimits &limits, const AxisMap &map, const JogTarget &target,
+                   const double *joint_positions) noexcept;
+
+}  // namespace mw::motion

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The one place where limits of joints, axes and the machine become the limits of paths and jogs.
+#include <gtest/gtest.h>
+
+#include "kins/rotary_table.hh"
+#include "kins/trivial.hh"
+#include "motion/api/limits.hh"
+
+namespace mw::motion {
+namespace {
+
+constexpr int X = geom::AXIS_X, Y = geom::AXIS_Y, Z = geom::AXIS_Z, A = geom::AXIS_A;
+
+Settings with(std::initializer_list<std::tuple<Parameter, int, double>> values) {
+    Settings settings;
+    for (const auto &[parameter, index, value] : values) {
+        const SetParameter c{static_cast<std::uint16_t>(parameter), static_cast<std::int16_t>(index), value};
+        EXPECT_EQ(settings.set(c, MAX_JOINTS, MAX_SPINDLES), Reason::NONE);
+    }
+    return settings;
+}
+
+TEST(Limits, AnAxisHasTheTightestOfItsOwnAndOfEveryJointThatMovesIt_C7) {
+    const Settings s = with({{Parameter::AXIS_MAX_VELOCITY, Y, 80},
+                             {Parameter::JOINT_MAX_VELOCITY, 1, 90},
+                             {Parameter::JOINT_MAX_VELOCITY, 2, 70},
+                             {Parameter::JOINT_MAX_ACCELERATION, 1, 500},
+                             {Parameter::JOINT_MAX_ACCELERATION, 2, 600}});
+    const FoldedLimits limits = fold_limits(s, axis_map("XYYZ", 4), ALL_HOMED);
+    EXPECT_EQ(limits.path.velocity[Y], 70);
+    EXPECT_EQ(limits.path.acceleration[Y], 500);
+    EXPECT_EQ(limits.axis_jog[Y].velocity, 70);
+    EXPECT_EQ(limits.joint_jog[1].velocity, 90);
+}
+
+TEST(Limits, JointsThatTheMachineDoesNotHaveMoveNoAxis) {
+    kins::Trivial kinematics;
+    ASSERT_TRUE(kinematics.configure("XYZABCUVW"));
+    const AxisMap map = axis_map(kinematics, 3);
+    EXPECT_TRUE(map.hasAxis(Z));
+    EXPECT_FALSE(map.hasAxis(A));
+    EXPECT_EQ(fold_limits(Settings(), map, ALL_HOMED).axes, 7U);
+}
+
+TEST(Limits, LettersAndKinematicsGiveTheSameMap) {
+    kins::Trivial kinematics;
+    ASSERT_TRUE(kinematics.configure("xyyz"));
+    const AxisMap of_letters = axis_map("XYYZ", 4), of_model = axis_map(kinematics, 4);
+    EXPECT_EQ(of_letters.axis_of_joint, of_model.axis_of_joint);
+    EXPECT_EQ(of_letters.kind, of_model.kind);
+    EXPECT_EQ(axis_map("XQZ", 3).axis_of_joint[1], -1) << "a letter that is no axis";
+}
+
+TEST(Limits, SoftLimitsHoldForWhatIsHomed_C9) {
+    const Settings s = with({{Parameter::AXIS_MIN_LIMIT, Y, -10},
+                             {Parameter::AXIS_MAX_LIMIT, Y, 10},
+                             {Parameter::JOINT_MIN_LIMIT, 1, -8},
+                             {Parameter::JOINT_MAX_LIMIT, 1, 12},
+                             {Parameter::JOINT_MIN_LIMIT, 2, -20},
+                             {Parameter::JOINT_MAX_LIMIT, 2, 9}});
+    const AxisMap map = axis_map("XYY", 3);
+    const FoldedLimits all = fold_limits(s, map, ALL_HOMED);
+    EXPECT_EQ(all.low[Y], -8);
+    EXPECT_EQ(all.high[Y], 9);
+    const FoldedLimits one = fold_limits(s, map, {1U << 2, false});
+    EXPECT_EQ(one.low[Y], -20);
+    EXPECT_EQ(one.high[Y], 9);
+    EXPECT_EQ(one.joints.low[1], -UNBOUNDED);
+    const FoldedLimits none = fold_limits(s, map, {});
+    EXPECT_EQ(none.low[Y], -UNBOUNDED);
+    EXPECT_EQ(none.high[Y], UNBOUNDED);
+}
+
+TEST(Limits, AJogOfWhatIsNotHomedReachesTwiceTheTravelFromWhereItStands) {
+    const Settings s = with({{Parameter::JOINT_MIN_LIMIT, 0, -10}, {Parameter::JOINT_MAX_LIMIT, 0, 40}});
+    const AxisMap map = axis_map("X", 1);
+    std::array<double, MAX_JOINTS> at{};
+    at[0] = 5;
+    const JogTarget joint{true, 0}, axis{false, X};
+    const FoldedLimits lost = fold_limits(s, map, {});
+    EXPECT_EQ(jog_range(lost, map, joint, at.data()).low, -95);
+    EXPECT_EQ(jog_range(lost, map, axis, at.data()).high, 105);
+    const FoldedLimits homed = fold_limits(s, map, ALL_HOMED);
+    EXPECT_EQ(jog_range(homed, map, joint, at.data()).low, -10);
+    EXPECT_EQ(jog_range(homed, map, axis, at.data()).high, 40);
+}
+
+TEST(Limits, NoJerkLimitIsNoneEverywhere) {
+    const Settings none = with({{Parameter::TRAJ_PLANNER_TYPE, 0, 1}});
+    for (const AxisMap::Kind kind :
+         {AxisMap::Kind::JOINTS_ARE_AXES, AxisMap::Kind::PLANNED, AxisMap::Kind::UNKNOWN}) {
+        AxisMap map = axis_map("XYZ", 3);
+        map.kind = kind;
+        const FoldedLimits limits = fold_limits(none, map, ALL_HOMED);
+        EXPECT_EQ(limits.path.jerk[X], traj::UNLIMITED);
+        EXPECT_EQ(limits.path.jerk[traj::XYZ_NORM], traj::UNLIMITED);
+        EXPECT_EQ(limits.joints.jerk[0], traj::UNLIMITED);
+        EXPECT_EQ(limits.joint_jog[0].jerk, 0);
+        EXPECT_EQ(limits.axis_jog[X].jerk, 0);
+    }
+}
+
+TEST(Limits, JerkOfTheMachineLimitsStraightJogsAndNoTurningOnes) {
+    const Settings s = with({{Parameter::TRAJ_PLANNER_TYPE, 0, 1},
+                             {Parameter::TRAJ_MAX_JERK, 0, 2000},
+                             {Parameter::JOINT_MAX_JERK, 0, 5000},
+                             {Parameter::JOINT_MAX_JERK, 1, 3000},
+                             {Parameter::JOINT_IS_ANGULAR, 1, 1}});
+    const FoldedLimits limits = fold_limits(s, axis_map("XA", 2), ALL_HOMED);
+    EXPECT_EQ(limits.path.jerk[X], 5000) << "the norm of X Y Z has a limit of its own";
+    EXPECT_EQ(limits.axis_jog[X].jerk, 2000);
+    EXPECT_EQ(limits.joint_jog[0].jerk, 2000);
+    EXPECT_EQ(limits.axis_jog[A].jerk, 3000);
+    EXPECT_EQ(limits.joint_jog[1].jerk, 3000);
+    const Settings off = with({{Parameter::TRAJ_MAX_JERK, 0, 2000}});
+    EXPECT_EQ(fold_limits(off, axis_map("X", 1), ALL_HOMED).axis_jog[X].jerk, 0);
+}
+
+TEST(Limits, KinematicsThatNobodyMayAskLeaveAMarginForJoints) {
+    const Settings s = with({{Parameter::JOINT_MAX_VELOCITY, 0, 100},
+                             {Parameter::JOINT_MAX_VELOCITY, 1, 50},
+                             {Parameter::JOINT_IS_ANGULAR, 1, 1},
+                             {Parameter::AXIS_MAX_VELOCITY, X, 300}});
+    AxisMap map;
+    map.num_joints = 2;
+    map.kind = AxisMap::Kind::UNKNOWN;
+    const FoldedLimits limits = fold_limits(s, map, ALL_HOMED);
+    EXPECT_EQ(limits.path.velocity[X], 40);
+    EXPECT_EQ(limits.path.velocity[A], 20);
+    EXPECT_EQ(limits.axis_jog[X].velocity, 300) << "jogs ask the kinematics every cycle";
+    map.kind = AxisMap::Kind::PLANNED;
+    EXPECT_EQ(fold_limits(s, map, ALL_HOMED).path.velocity[X], 300) << "the planner keeps the joints' limits";
+    EXPECT_EQ(fold_limits(s, map, ALL_HOMED).axes, 0x1ffU);
+}
+
+TEST(Limits, WhereJointsAreNoAxesTheirSoftLimitsAreNoneOfAxes) {
+    const kins::RotaryTable table;
+    const Settings s = with({{Parameter::JOINT_MIN_LIMIT, 0, -1}, {Parameter::JOINT_MAX_LIMIT, 0, 1}});
+    const AxisMap map = axis_map(table, 5);
+    EXPECT_EQ(map.kind, AxisMap::Kind::PLANNED);
+    const FoldedLimits limits = fold_limits(s, map, ALL_HOMED);
+    EXPECT_LT(limits.low[X], -1e9);
+    EXPECT_EQ(limits.joints.low[0], -1);
+}
+
+}  // namespace
+}  // namespace mw::motion
