@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Every command: what an operator, a screen or another program asks of the machine. Each ends as done,
+// refused or failed with a reason.
+#pragma once
+
+#include <variant>
+
+#include "msgs/device_commands.hh"
+#include "msgs/joint_commands.hh"
+#include "msgs/motion_commands.hh"
+#include "msgs/program_commands.hh"
+
+namespace mw::msgs {
+
+using Command = std::variant<
+    SetState, SetMode, OpenProgram, RunProgram, ReadProgram, Mdi, PauseProgram, StepProgram, ResumeProgram,
+    EndProgram, CloseProgram, ResetInterpreter, SynchInterpreter, SetOptionalStop, SetBlockDelete,
+    StopOptionally, ReverseProgram, ForwardProgram, InitTask, HaltTask, AbortAll, InitMachine, HaltMachine,
+    AbortMachine, Null, SetDebug, SystemCommand, CallTaskPlugin, OperatorError, OperatorText, OperatorDisplay,
+    ClaimOperation, HandOverOperation, ReleaseOperation, HomeJoint, UnhomeJoint, JogContinuous, JogIncrement,
+    JogAbsolute, JogStop, OverrideLimits, SetJointKind, SetJointUnits, SetJointMinLimit, SetJointMaxLimit,
+    SetJointFerror, SetJointMinFerror, SetJointMaxVelocity, SetJointBacklash, SetJointHoming, InitJoint,
+    HaltJoint, AbortJoint, EnableJoint, DisableJoint, ActivateJoint, DeactivateJoint, LoadCompensation,
+    SetFeedOverride, SetRapidOverride, SetSpindleOverride, EnableFeedOverride, EnableSpindleOverride,
+    EnableFeedHold, EnableAdaptiveFeed, SetMaxVelocity, SetTeleop, SetMotionMode, SetTeleopVector,
+    SetTrajAxes, SetTrajUnits, SetTrajCycleTime, SetTrajVelocity, SetTrajAcceleration, SetMaxAcceleration,
+    SetMotionId, InitTraj, HaltTraj, EnableTraj, DisableTraj, AbortTraj, PauseTraj, StepTraj, ResumeTraj,
+    Delay, LinearMove, CircularMove, SetTermination, SetToolOffset, SetG5x, SetTrajHome, SetRotation, SetG92,
+    ClearProbe, ProbeMove, SetSpindleSync, RigidTapMove, InitMotion, HaltMotion, AbortMotion, SetAnalogOutput,
+    SetDigitalOutput, SpindleOn, SpindleOff, SpindleIncrease, SpindleDecrease, SpindleConstant, ReleaseBrake,
+    EngageBrake, SetSpindleSpeed, OrientSpindle, WaitOriented, MistOn, MistOff, FloodOn, FloodOff, LubeOn,
+    LubeOff, EstopOn, EstopOff, EstopReset, WaitInput, InitTool, HaltTool, AbortTool, PrepareTool, LoadTool,
+    UnloadTool, LoadToolTable, SetToolEntry, SetToolNumber, StartToolChange, InitIo, HaltIo, AbortIo,
+    SetIoCycleTime, CallIoPlugin>;
+
+}  // namespace mw::msgs
