@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A campaign of random programs of at least 50 blocks and 5 s of motion each, in virtual time.
 // traj_campaign --first N --count M --log FILE [--processes P]: one line per seed in the log; seeds that it
-// has are not driven again. Ends with 1 when a program has left its limits, its tolerance or its order.
+// has are not driven again; the number before the verdict stands for every bit of what was commanded. Ends
+// with 1 when a program has left its limits, its tolerance or its order.
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,6 +15,7 @@
 
 #include "base/text.hh"
 #include "traj/test/campaign.hh"
+#include "traj/test/sample_hash.hh"
 
 namespace mw::traj::test {
 namespace {
@@ -24,6 +26,7 @@ constexpr std::size_t LEAST_BLOCKS = 50;
 struct Verdict {
     std::size_t blocks = 0;
     double seconds = 0;
+    unsigned long long samples = 0;  ///< SampleHash of all that was commanded
     std::string fault;
 };
 
@@ -80,6 +83,11 @@ Verdict judge(const Program &program, const Outcome &out, bool isDropped) {
     Verdict v;
     v.blocks = program.primitives.size();
     v.seconds = static_cast<double>(out.rig.samples.size()) * Rig::T;
+    SampleHash hash;
+    for (const Pose &p : out.rig.samples) {
+        hash.add(p);
+    }
+    v.samples = hash.value();
     if (!out.isFinished) {
         v.fault = "not finished";
         return v;
@@ -172,12 +180,12 @@ int work(const Task &task, unsigned part, const std::set<unsigned> &done) {
         const Verdict v = drive_seed(seed);
         const bool isCounted = v.blocks >= LEAST_BLOCKS && v.seconds >= LEAST_SECONDS;
         char line[400];
-        const int size =
-            std::snprintf(line, sizeof line, "%u %zu blocks %.2f s %s%s\n", seed, v.blocks, v.seconds,
-                          !v.fault.empty() ? "FAILED "
-                          : isCounted      ? "ok"
-                                           : "short",
-                          v.fault.c_str());
+        const int size = std::snprintf(line, sizeof line, "%u %zu blocks %.2f s %016llx %s%s\n", seed,
+                                       v.blocks, v.seconds, v.samples,
+                                       !v.fault.empty() ? "FAILED "
+                                       : isCounted      ? "ok"
+                                                        : "short",
+                                       v.fault.c_str());
         failed += v.fault.empty() ? 0 : 1;
         if (::write(file, line, static_cast<std::size_t>(size)) != size) {
             std::perror(task.log);
