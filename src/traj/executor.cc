@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "traj/tuning.hh"
+
 namespace mw::traj {
 
 namespace {
-
-/// Braking that misses a stop at a piece's end by rounding alone is fitted to it; piece accelerations keep
-/// this margin.
-constexpr double STOP_FIT = 1e-7;
 
 double x_at(const Phase &p, double t) noexcept {
     return p.x0 + t * (p.v0 + t * (0.5 * p.a + t * p.j * (1.0 / 6.0)));
@@ -187,11 +185,13 @@ double Executor::follow(double dt) noexcept {
     state_.x = x_at(p, p.duration);
     state_.v = v_at(p, p.duration);
     const double length = store_.piece(p.piece).length;
-    if (std::abs(state_.x - length) <= 4e-12 * (1.0 + length)) {
+    if (std::abs(state_.x - length) <= ExecutorTuning::ARRIVED * (1.0 + length)) {
         state_.x = length;
     }
     // A plan that ends in a stop ends with a speed that is 0 but for rounding.
-    const bool isStop = std::abs(state_.v) <= 1e-9 * std::abs(p.a) * (p.duration + period_) || state_.v <= 0;
+    const bool isStop =
+        std::abs(state_.v) <= ExecutorTuning::STOPPED * std::abs(p.a) * (p.duration + period_) ||
+        state_.v <= 0;
     if (isStop) {
         come_to_rest();
     } else {
@@ -215,7 +215,7 @@ void Executor::brake_on_piece() noexcept {
     double a = piece.acceleration.at(v2);
     const double out2 = v2 - 2.0 * a * left;
     brake_time_ = 0;
-    isBrakeFinal_ = out2 <= STOP_FIT * v2;
+    isBrakeFinal_ = out2 <= TimingTuning::STOP_FIT * v2;
     if (!isBrakeFinal_) {
         const double out = std::sqrt(out2);
         const double duration = 2.0 * left / (state_.v + out);
@@ -239,7 +239,7 @@ double Executor::brake_along(double dt) noexcept {
     const Piece &piece = store_.piece(state_.piece);
     if (isBrakeFinal_) {
         const double stop = x_at(brake_, brake_.duration);
-        state_.x = std::abs(stop - piece.length) <= 4e-12 * (1.0 + piece.length)
+        state_.x = std::abs(stop - piece.length) <= ExecutorTuning::ARRIVED * (1.0 + piece.length)
                        ? piece.length
                        : std::min(stop, piece.length);
         come_to_rest();

@@ -5,19 +5,11 @@
 #include <cmath>
 
 #include "traj/executor.hh"
+#include "traj/tuning.hh"
 
 namespace mw::traj {
 
 namespace {
-
-/// The helix counts as met within this part of a turn, and as lost beyond the second.
-constexpr double MET = 2e-5, LOST = 2e-3;
-/// Once it is met: share of a deviation that is made good in a second [1/s]. A rough encoder must not shake
-/// the machine.
-constexpr double GAIN = 60;
-/// Part of the acceleration with which the helix is met: the spindle may still gain speed itself.
-constexpr double MEETING_SHARE = 0.97;
-constexpr int MOST_PIECES_PER_CYCLE = 64;
 
 AccelBound part_of(const AccelBound &bound, double share) noexcept {
     AccelBound out = bound;
@@ -66,7 +58,7 @@ bool Executor::take_pass(const Commit &commit) noexcept {
     const Piece &piece = store_.piece(state_.piece);
     const auto n = static_cast<std::size_t>(commit.pass.spindle);
     const double v = piece.per_turn * std::max(0.0, commit.pass.direction * turns_per_s_[n]);
-    const double a = MEETING_SHARE * commit.pass.share * piece.acceleration.at(0);
+    const double a = ExecutorTuning::MEETING_SHARE * commit.pass.share * piece.acceleration.at(0);
     const double run_in = a > 0 && piece.per_turn > 0 ? 0.5 * v * v / (a * piece.per_turn) : 0.0;
     lock_.origin = std::ceil(turned() + run_in);
     return true;
@@ -99,10 +91,12 @@ double Executor::locked_speed() noexcept {
     // How far the tool would be ahead of the helix if it went at the helix's speed.
     const double gap = state_.x + helix_v * period_ - helix_x;
     const double part = std::abs(gap) / piece.per_turn;
-    lock_.isOn = lock_.isOn ? part < LOST : part < MET && std::abs(state_.v - helix_v) < a * period_;
+    lock_.isOn = lock_.isOn ? part < ExecutorTuning::LOST
+                            : part < ExecutorTuning::MET && std::abs(state_.v - helix_v) < a * period_;
     lock_.wasOn = lock_.wasOn || lock_.isOn;
     const double wanted =
-        helix_v - (lock_.isOn ? GAIN * gap : closing_speed(gap, MEETING_SHARE * a, period_));
+        helix_v - (lock_.isOn ? ExecutorTuning::GAIN * gap
+                              : closing_speed(gap, ExecutorTuning::MEETING_SHARE * a, period_));
     const double slower = lock_.wasDescending ? 0.5 : 1.0;
     const double low = std::max(0.0, state_.v - slower * trim * period_);
     return std::clamp(std::min(wanted, piece.v_most), low, state_.v + a * period_);
@@ -152,7 +146,9 @@ void Executor::advance_locked() noexcept {
         state_.v = wanted;
         state_.x += wanted * period_;
         lock_.wasDescending = false;
-        for (int n = 0; n < MOST_PIECES_PER_CYCLE && state_.x >= store_.piece(state_.piece).length; ++n) {
+        for (int n = 0;
+             n < ExecutorTuning::MOST_PIECES_PER_CYCLE && state_.x >= store_.piece(state_.piece).length;
+             ++n) {
             if (state_.motion != Motion::LOCKED) {
                 break;
             }
@@ -161,7 +157,8 @@ void Executor::advance_locked() noexcept {
         return;
     }
     double dt = period_;
-    for (int n = 0; n < MOST_PIECES_PER_CYCLE && dt > 0 && state_.motion == Motion::LOCKED; ++n) {
+    for (int n = 0; n < ExecutorTuning::MOST_PIECES_PER_CYCLE && dt > 0 && state_.motion == Motion::LOCKED;
+         ++n) {
         const Piece &piece = store_.piece(state_.piece);
         const double left = piece.length - state_.x;
         const double most = lock_.pass.share * piece.acceleration.at(state_.v * state_.v);

@@ -5,18 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "traj/tuning.hh"
+
 namespace mw::traj {
 
 using geom::AXIS_COUNT;
 
 namespace {
-
-/// Share of an axis's acceleration that turning takes on a blend that is made for a given speed.
-constexpr double BLEND_SHARE = 0.7;
-/// The mean is at most this part longer than what is best on curves: see docs/motion/planner.md.
-constexpr double CURVE_SHARE = 1.2;
-/// Room that keeps fitted stops (Executor) and rounding inside the limits.
-constexpr double ACCELERATION_MARGIN = 1e-6;
 
 double norm_xyz(const PerLimited &p) noexcept {
     return std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
@@ -65,7 +60,7 @@ void derivative_bounds(const Primitive &p, double from, double to, PerLimited &q
 
 /// Acceleration that row `r` leaves along the path at the squared speed b.
 double acceleration_left(const LimitRow &r, double b) noexcept {
-    const double limit = r.acceleration * (1.0 - ACCELERATION_MARGIN);
+    const double limit = r.acceleration * (1.0 - LimitTuning::ACCELERATION_MARGIN);
     const double turning = r.q2 * b;
     if (!(r.q1 > 0)) {
         return UNLIMITED;
@@ -94,16 +89,14 @@ int rows_of(const PerLimited &q1, const PerLimited &q2, const Limits &limits, Li
     return count;
 }
 
-/// Parts of the highest squared speed between which the acceleration that is left is a chord.
-constexpr double CHORDS[AccelBound::LINES + 1] = {0, 0.5, 0.85, 1};
-
 AccelBound through_chords(const double *left, double v) noexcept {
     AccelBound out;
     const double b = v * v;
     for (int k = 0; k < AccelBound::LINES; ++k) {
-        const double beta = std::max(0.0, (left[k] - left[k + 1]) / ((CHORDS[k + 1] - CHORDS[k]) * b));
+        const double beta = std::max(0.0, (left[k] - left[k + 1]) /
+                                              ((LimitTuning::CHORDS[k + 1] - LimitTuning::CHORDS[k]) * b));
         out.beta[static_cast<std::size_t>(k)] = beta;
-        out.alpha[static_cast<std::size_t>(k)] = left[k + 1] + beta * CHORDS[k + 1] * b;
+        out.alpha[static_cast<std::size_t>(k)] = left[k + 1] + beta * LimitTuning::CHORDS[k + 1] * b;
     }
     return out;
 }
@@ -114,9 +107,10 @@ AccelBound AccelBound::least(const AccelBound &x, const AccelBound &y, double v)
     if (!(v < 1e100) || !(v > 0)) {
         return constant(std::min(x.at(0), y.at(0)));
     }
+    static_assert(std::size(LimitTuning::CHORDS) == LINES + 1);
     double left[LINES + 1];
     for (int k = 0; k <= LINES; ++k) {
-        left[k] = std::min(x.at(CHORDS[k] * v * v), y.at(CHORDS[k] * v * v));
+        left[k] = std::min(x.at(LimitTuning::CHORDS[k] * v * v), y.at(LimitTuning::CHORDS[k] * v * v));
     }
     return through_chords(left, v);
 }
@@ -136,7 +130,8 @@ std::uint64_t filter_length(const Limits &limits, double period_s, double tolera
         double length =
             std::min(limits.acceleration[i] / limits.jerk[i], std::sqrt(limits.velocity[i] / limits.jerk[i]));
         if (tolerance > 0) {
-            length = std::min(length, CURVE_SHARE * std::cbrt(24.0 * tolerance / limits.jerk[i]));
+            length =
+                std::min(length, LimitTuning::CURVE_SHARE * std::cbrt(24.0 * tolerance / limits.jerk[i]));
         }
         double &of = geom::isAngular(static_cast<int>(i)) ? longest_angular : longest;
         of = std::max(of, length);
@@ -164,7 +159,8 @@ SpeedLimit limit_of_rows(const LimitRow *rows, int count, double wish) noexcept 
             out.v = std::min(out.v, r.velocity / r.q1);
         }
         if (r.q2 > 0) {
-            out.v = std::min(out.v, std::sqrt(r.acceleration * (1.0 - ACCELERATION_MARGIN) / r.q2));
+            out.v =
+                std::min(out.v, std::sqrt(r.acceleration * (1.0 - LimitTuning::ACCELERATION_MARGIN) / r.q2));
         }
     }
     // What is left for the path falls with b = v^2, and ever faster, so chords between points of it are on
@@ -180,7 +176,7 @@ SpeedLimit limit_of_rows(const LimitRow *rows, int count, double wish) noexcept 
     }
     double left[AccelBound::LINES + 1];
     for (int k = 0; k <= AccelBound::LINES; ++k) {
-        left[k] = acceleration_left(rows, count, CHORDS[k] * out.v * out.v);
+        left[k] = acceleration_left(rows, count, LimitTuning::CHORDS[k] * out.v * out.v);
     }
     out.a = through_chords(left, out.v);
     return out;
@@ -265,7 +261,7 @@ double blend_d_for_speed(const Primitive &a, const Primitive &b, const Limits &l
     turn[XYZ_NORM] = norm_xyz(turn);
     double d = 0;
     for (std::size_t i = 0; i < turn.size(); ++i) {
-        d = std::max(d, v * v * turn[i] / (2.0 * BLEND_SHARE * limits.acceleration[i]));
+        d = std::max(d, v * v * turn[i] / (2.0 * LimitTuning::BLEND_SHARE * limits.acceleration[i]));
     }
     return d;
 }

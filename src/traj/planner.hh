@@ -9,6 +9,7 @@
 #include "traj/joint_map.hh"
 #include "traj/limits.hh"
 #include "traj/path_store.hh"
+#include "traj/tuning.hh"
 
 namespace mw::traj {
 
@@ -299,12 +300,8 @@ class Planner {
     double open_offset_ = 0;     ///< where its own part begins
     bool isOpenStop_ = false;    ///< stop before its part
     Joint open_joint_;           ///< before it
-    /// With jerk limits, part of the acceleration that is for turning where curves follow each other closely.
-    static constexpr double TURNING_SHARE = 0.97;
-    /// And what the turning of neighbours may be more than a place's own, and how much is left for that.
-    static constexpr double SHARED_TURNS = 1.1, SHARED_REST = 0.985;
-    static constexpr std::size_t MOST_JOINED = 64;
-    std::array<Pose, MOST_JOINED> joined_{};  ///< ends within the open move of the lines that it stands for
+    std::array<Pose, PathTuning::MOST_JOINED>
+        joined_{};  ///< ends within the open move of the lines that it stands for
     std::size_t joined_count_ = 0;
     Pose shift_, shift_drive_;  ///< of the last corner, and what it follows
     bool isJoinable_ = false;   ///< nothing else hangs on the end of the open move
@@ -354,8 +351,6 @@ class Planner {
     std::uint64_t eased_tick_ = 0;  ///< where it failed
     double along_share_ = 0;        ///< part of the failed swing that is acceleration along the path
     double excess_ = 1;             ///< what the failed sample has over what is allowed
-    /// Relative slack of what the trial compares, half of what checkers of the trajectory allow.
-    static constexpr double SLACK = 1.0 + 5e-7;
     const JointMap *joint_map_ = nullptr;
     JointLimits joint_limits_;
     Pose room_low_, room_high_;

@@ -6,25 +6,11 @@
 #include <cmath>
 
 #include "traj/planner.hh"
+#include "traj/tuning.hh"
 
 namespace mw::traj {
 
 namespace {
-
-/// Samples that are tried; the rest of a longer stop is braking alone.
-constexpr std::uint64_t MOST_SAMPLES = 4000;
-/// Phases in one sample; the executor passes twice as many at most.
-constexpr Sequence MOST_PHASES = 2000;
-constexpr double SLOWER = 0.9;
-constexpr double GENTLER = 0.8;
-/// An excess that less acceleration about a stop may cure.
-constexpr double MOST_GENTLE = 1.3;
-/// Less acceleration along the path cures an excess where that is what swings: from this part on, by how much
-/// more than that, and how much less it becomes at most in all.
-constexpr double ALONG_SHARE = 0.5, ALONG_MARGIN = 1.1, LEAST_ALONG = 0.8;
-/// What is left of an excess when easing has helped.
-constexpr double HELPED = 0.7;
-constexpr double ROUNDING = 1e-7;
 
 double ulp(double x) noexcept {
     return std::abs(x) * 0x1p-52;
@@ -153,8 +139,8 @@ bool Planner::isLeaderSound() const noexcept {
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
         const auto k = static_cast<std::size_t>(i);
         const double rounding = 4.0 * ulp(at[i]);
-        const double v = highest_.velocity[k] * period * SLACK + rounding;
-        const double a = highest_.acceleration[k] * period * period * SLACK + rounding;
+        const double v = highest_.velocity[k] * period * TrialTuning::SLACK + rounding;
+        const double a = highest_.acceleration[k] * period * period * TrialTuning::SLACK + rounding;
         if (std::abs(step[i]) > v || (isAccelerationTried && std::abs(bend[i]) > a)) {
             return false;
         }
@@ -174,7 +160,7 @@ bool Planner::isTrialSound() noexcept {
     const std::uint64_t n = trial_tick_;
     along_share_ = 0;
     if (joint_map_ != nullptr && !areJointsSound()) {
-        excess_ = 2;
+        excess_ = TrialTuning::UNMEASURED;
         return false;
     }
     if (!isFiltered()) {
@@ -186,7 +172,7 @@ bool Planner::isTrialSound() noexcept {
     const bool isAlong = piece != 0 && on.isAlong && x > 2.0 * on_along(on.length) && x < on.length;
     along_tick_ = isAlong ? n : along_tick_;
     if (!isLeaderSound()) {
-        excess_ = 2;
+        excess_ = TrialTuning::UNMEASURED;
         return false;
     }
     if (n < along_tick_ + filter_ + 3) {
@@ -197,14 +183,16 @@ bool Planner::isTrialSound() noexcept {
     const Pose &at = trial_[n % HISTORY_CAPACITY].leader.pose;
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
         const double allowed =
-            wanted_.jerk[static_cast<std::size_t>(i)] * span * (1.0 + ROUNDING) + 4.0 * ulp(at[i]);
+            wanted_.jerk[static_cast<std::size_t>(i)] * span * (1.0 + TrialTuning::ROUNDING) +
+            4.0 * ulp(at[i]);
         if (std::abs(swing[i]) > allowed) {
             excess_ = std::abs(swing[i]) / allowed;
             along_share_ = (along_bend(n) - along_bend(n - filter_))[i] / swing[i];
             return false;
         }
     }
-    const double xyz = wanted_.jerk[XYZ_NORM] * span * (1.0 + ROUNDING) + 8.0 * ulp(geom::norm_xyz(at));
+    const double xyz =
+        wanted_.jerk[XYZ_NORM] * span * (1.0 + TrialTuning::ROUNDING) + 8.0 * ulp(geom::norm_xyz(at));
     if (geom::norm_xyz(swing) > xyz) {
         excess_ = geom::norm_xyz(swing) / xyz;
         along_share_ = geom::norm_xyz(along_bend(n) - along_bend(n - filter_)) / geom::norm_xyz(swing);
@@ -237,7 +225,7 @@ bool Planner::isPlanSound(const Snapshot &now, const State &from, Sequence begin
     const std::uint64_t start = trial_tick_;
     double t = 0;
     Sequence n = begin;
-    while (n < plan_end_ && trial_tick_ - start < MOST_SAMPLES) {
+    while (n < plan_end_ && trial_tick_ - start < TrialTuning::MOST_SAMPLES) {
         try_sample(store_.phase(n), t);
         if (!isTrialSound()) {
             failed_tick_ = trial_tick_;
@@ -250,7 +238,7 @@ bool Planner::isPlanSound(const Snapshot &now, const State &from, Sequence begin
             ++n;
         }
         // More than the executor would pass in one cycle.
-        if (n - before > MOST_PHASES) {
+        if (n - before > TrialTuning::MOST_PHASES) {
             failed_tick_ = trial_tick_;
             return false;
         }
@@ -306,7 +294,7 @@ void Planner::take_back_easing() noexcept {
 /// No piece loses more than a part of its acceleration to `factor` and those before it.
 bool Planner::canBeGentler(Sequence low, Sequence high, double factor) const noexcept {
     for (Sequence k = low; k <= high; ++k) {
-        if (!(piece_plan(k).gentle * factor >= LEAST_ALONG)) {
+        if (!(piece_plan(k).gentle * factor >= EasingTuning::LEAST_ALONG)) {
             return false;
         }
     }
@@ -330,7 +318,8 @@ void Planner::take_back_gentleness() noexcept {
 bool Planner::isKept(const State &from) const noexcept {
     const Piece &p = store_.piece(from.piece);
     const double out2 = from.piece == last_piece_ ? 0.0 : piece_plan(from.piece + 1).v2_in;
-    return from.v * from.v <= p.acceleration.highest_before(out2, p.length - from.x) * (1.0 + ROUNDING);
+    return from.v * from.v <=
+           p.acceleration.highest_before(out2, p.length - from.x) * (1.0 + TrialTuning::ROUNDING);
 }
 
 /// Makes what the failed sample depends on slower, as far as it is not driven yet: longer stands at stops,
@@ -361,21 +350,25 @@ bool Planner::ease(const State &from) noexcept {
         const double a = store_.piece(k).acceleration.at(0);
         rising_s += std::min(cap_of(k) / a, std::sqrt(2.0 * store_.piece(k).length / a));
     }
-    const bool isGentle = (excess_ - 1.0) * rising_s < 0.5 * most_dwell && excess_ < MOST_GENTLE;
+    const bool isGentle = (excess_ - 1.0) * rising_s < EasingTuning::STAND_WORTH * most_dwell &&
+                          excess_ < EasingTuning::MOST_GENTLE;
     if (most_dwell > 0 && !isGentle) {
         for (Sequence k = low; k <= high; ++k) {
             PiecePlan &plan = piece_plan(k);
-            plan.dwell_s = plan.isStopBefore ? std::min(tau, plan.dwell_s + 0.2 * tau) : plan.dwell_s;
+            plan.dwell_s = plan.isStopBefore ? std::min(tau, plan.dwell_s + EasingTuning::STAND_STEP * tau)
+                                             : plan.dwell_s;
         }
         return true;
     }
-    const bool hasHelped = failed_tick_ > eased_tick_ || excess_ - 1.0 < HELPED * (eased_excess_ - 1.0);
+    const bool hasHelped =
+        failed_tick_ > eased_tick_ || excess_ - 1.0 < EasingTuning::HELPED * (eased_excess_ - 1.0);
     if (!hasHelped) {
         take_back_gentleness();
     }
-    const double along = 1.0 - ALONG_MARGIN * (excess_ - 1.0) / (along_share_ * excess_) - 1e-4;
-    const bool isAlong =
-        most_dwell <= 0 && along_share_ > ALONG_SHARE && hasHelped && canBeGentler(low, high, along);
+    const double along = 1.0 - EasingTuning::ALONG_MARGIN * (excess_ - 1.0) / (along_share_ * excess_) -
+                         EasingTuning::ALONG_ROOM;
+    const bool isAlong = most_dwell <= 0 && along_share_ > EasingTuning::ALONG_SHARE && hasHelped &&
+                         canBeGentler(low, high, along);
     // Where slower curves alone make it no better, it is what leads to them.
     const bool isEverything = !isAnyCurved || most_dwell > 0 || isAlong || excess_ >= eased_excess_;
     eased_excess_ = excess_;
@@ -389,9 +382,13 @@ bool Planner::ease(const State &from) noexcept {
         }
         pass_backward(std::min(high + 1, last_piece_), true);
     };
-    const double slower =
-        most_dwell > 0 || isAlong ? 1.0 : std::clamp(0.99 / std::sqrt(excess_), SLOWER, 0.99);
-    const double gentler = isAlong ? along : std::clamp(0.98 / excess_, GENTLER, 0.98);
+    const double slower = most_dwell > 0 || isAlong
+                              ? 1.0
+                              : std::clamp(EasingTuning::LEAST_SLOWER / std::sqrt(excess_),
+                                           EasingTuning::SLOWEST, EasingTuning::LEAST_SLOWER);
+    const double gentler = isAlong ? along
+                                   : std::clamp(EasingTuning::LEAST_GENTLER / excess_, EasingTuning::GENTLEST,
+                                                EasingTuning::LEAST_GENTLER);
     scale(slower, gentler);
     gentle_ = isAlong ? Gentleness{low, high, gentler} : Gentleness{};
     for (Sequence k = gentle_.low; k <= gentle_.high && k > 0; ++k) {

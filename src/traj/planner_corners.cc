@@ -5,30 +5,13 @@
 #include <cmath>
 
 #include "traj/planner.hh"
+#include "traj/tuning.hh"
 
 namespace mw::traj {
 
-namespace {
-
-constexpr double SMALLEST_BLEND = 1e-7;
-constexpr double EXACT_DEVIATION = 1e-6;
-/// Part of the tolerance that blends may take where corners follow each other closely.
-constexpr double GEOMETRY_SHARE = 0.35;
-constexpr double SPREAD_SHARE = 0.05;
-/// Part that the mean may take on an arc.
-constexpr double ARC_SHARE = 0.92;
-/// Part of the tolerance that is planned with; the rest is for what the formulas leave out.
-constexpr double TOLERANCE_SHARE = 0.95;
-/// Up to this swing over what the mean can spread, less acceleration costs less time than standing does.
-constexpr double MOST_SWING = 1.7, GENTLE_ROOM = 0.999;
-/// From the width of a blend that takes 0.7 of the acceleration to one that takes 0.95.
-constexpr double TURNING_FIT = 0.7 / 0.95;
-
-}  // namespace
-
 double Planner::tolerance_of(const MovePlan &m) const noexcept {
     if (m.request.join != Join::BLEND) {
-        return EXACT_DEVIATION;
+        return PathTuning::EXACT_DEVIATION;
     }
     if (m.request.tolerance > 0) {
         return m.request.tolerance - m.deviation;
@@ -54,11 +37,12 @@ SpeedLimit Planner::along_limit(const Primitive &p, double wish) const noexcept 
         const double q2 = round * (radius * w * w + 2.0 * std::abs(p.dradius) * w);
         if (q1 > 0) {
             v = std::min(v, wanted_.velocity[i] / q1);
-            a = std::min(a, 0.6 * std::min(wanted_.acceleration[i], wanted_.jerk[i] * tau) / q1);
+            a = std::min(a, CornerTuning::ALONG_ACCELERATION *
+                                std::min(wanted_.acceleration[i], wanted_.jerk[i] * tau) / q1);
         }
         if (q2 > 0) {
-            v = std::min({v, std::sqrt(0.75 * wanted_.acceleration[i] / q2),
-                          std::cbrt(0.2 * wanted_.jerk[i] / (q2 * w))});
+            v = std::min({v, std::sqrt(CornerTuning::ALONG_TURNING * wanted_.acceleration[i] / q2),
+                          std::cbrt(CornerTuning::ALONG_JERK * wanted_.jerk[i] / (q2 * w))});
         }
     };
     for (std::size_t i = 0; i < geom::AXIS_COUNT; ++i) {
@@ -73,7 +57,7 @@ SpeedLimit Planner::along_limit(const Primitive &p, double wish) const noexcept 
     }
     const double curvature = radius * w * w;
     for (std::size_t i = 0; i < wanted_.jerk.size() && curvature > 0; ++i) {
-        a = std::min(a, 0.5 * wanted_.jerk[i] / (3.0 * curvature * v));
+        a = std::min(a, CornerTuning::ALONG_CROSS_JERK * wanted_.jerk[i] / (3.0 * curvature * v));
     }
     SpeedLimit out;
     out.v = v;
@@ -92,8 +76,8 @@ SpeedLimit Planner::shared_limit(const Primitive &a, const Primitive &b, const J
     const double v = limit_of_blend(a, b, part, turning, wish).v;
     SpeedLimit out = limit_of_blend(a, b, part, limits_, v);
     for (std::size_t i = 0; i < AccelBound::LINES; ++i) {
-        out.a.beta[i] *= SHARED_TURNS;
-        out.a.alpha[i] *= SHARED_REST;
+        out.a.beta[i] *= CornerTuning::SHARED_TURNS;
+        out.a.alpha[i] *= CornerTuning::SHARED_REST;
     }
     return out;
 }
@@ -105,7 +89,7 @@ double Planner::filtered_arc_speed(const Primitive &p, const MovePlan &m) const 
         return UNLIMITED;
     }
     const double curvature = p.radius * p.omega * p.omega;
-    return std::sqrt(24.0 * ARC_SHARE * tolerance / curvature) / filter_s();
+    return std::sqrt(24.0 * CornerTuning::ARC_SHARE * tolerance / curvature) / filter_s();
 }
 
 /// A stop on the corner as long as needed: braking and starting overlap in the mean, which takes it off the
@@ -123,12 +107,12 @@ Planner::Joint Planner::filtered_stop(const Primitive &a, const Primitive &b, do
     }
     swing = std::max(swing, geom::norm_xyz(ta * out + tb * in) / (wanted_.jerk[XYZ_NORM] * tau));
     Joint stop{.isStop = true, .dwell_s = tau};
-    if (swing > MOST_SWING) {
+    if (swing > CornerTuning::MOST_SWING) {
         return stop;
     }
-    stop.gentle = swing > 1.0 ? GENTLE_ROOM / swing : 1.0;
+    stop.gentle = swing > 1.0 ? CornerTuning::GENTLE_ROOM / swing : 1.0;
     const double most = stop.gentle * std::max(out, in);
-    stop.dwell_s = tau - std::min(tau, std::cbrt(48.0 * tau * TOLERANCE_SHARE * share / most));
+    stop.dwell_s = tau - std::min(tau, std::cbrt(48.0 * tau * CornerTuning::TOLERANCE_SHARE * share / most));
     return stop;
 }
 
@@ -148,33 +132,35 @@ Planner::Joint Planner::filtered_corner(Sequence na, Sequence nb, double toleran
     const double wish = std::min(wish_of(move_plan(na)), wish_of(move_plan(nb)));
     const double half = 0.5 * std::min(a.length, b.length);
     double v = std::min(limit_of(a, 0, a.length, limits_, wish).v, limit_of(b, 0, b.length, limits_, wish).v);
-    const double need = blend_d_for_speed(a, b, limits_, 1.0) * TURNING_FIT;  // d = need v^2
-    v = tolerance > 0 ? std::min(v, speed_through(TOLERANCE_SHARE * share, need, half, tau)) : v;
+    const double need = blend_d_for_speed(a, b, limits_, 1.0) * CornerTuning::TURNING_FIT;  // d = need v^2
+    v = tolerance > 0 ? std::min(v, speed_through(CornerTuning::TOLERANCE_SHARE * share, need, half, tau))
+                      : v;
     double d = std::min(half, need * v * v);
     if (tolerance > 0) {
         // A slight turn is spread as far as that costs next to nothing.
-        d = std::max(d, std::min(half, blend_d_for_tolerance(a, b, SPREAD_SHARE * tolerance)));
+        d = std::max(d, std::min(half, blend_d_for_tolerance(a, b, CornerTuning::SPREAD_SHARE * tolerance)));
     }
     if (tolerance > 0 && (a.isArc || b.isArc)) {
         // Standing, too, the blend is within the tolerance; between lines it is so by what it takes at speed.
-        d = std::min(d, blend_d_for_tolerance(a, b, TOLERANCE_SHARE * tolerance));
+        d = std::min(d, blend_d_for_tolerance(a, b, CornerTuning::TOLERANCE_SHARE * tolerance));
     }
     const double spacing = 0.5 * (a.length + b.length);
-    const bool isDense = v * tau > 0.7 * spacing;
+    const bool isDense = v * tau > CornerTuning::DENSE * spacing;
     if (isDense && tolerance > 0) {
         // Several corners within the mean: they act like a curve, which wide blends make smooth.
-        d = std::max(d, std::min(half, blend_d_for_tolerance(a, b, GEOMETRY_SHARE * tolerance)));
+        d = std::max(d,
+                     std::min(half, blend_d_for_tolerance(a, b, CornerTuning::GEOMETRY_SHARE * tolerance)));
         const double outside = std::max(0.0, -geom::dot(move_plan(nb).shift_in, step) / (turn * turn));
-        const double room = 24.0 * (TOLERANCE_SHARE * share + outside) * spacing - 4.0 * d * d;
+        const double room = 24.0 * (CornerTuning::TOLERANCE_SHARE * share + outside) * spacing - 4.0 * d * d;
         v = std::min(v, std::sqrt(std::max(0.0, room)) / tau);
     }
     v *= std::min(move_plan(na).request.corner_scale, move_plan(nb).request.corner_scale);
-    if (!(d > SMALLEST_BLEND) || !(v > 0)) {
+    if (!(d > PathTuning::SMALLEST_BLEND) || !(v > 0)) {
         return stop;
     }
     Limits turning = limits_;
     for (double &x : turning.acceleration) {
-        x *= isDense ? TURNING_SHARE : 1.0;
+        x *= isDense ? CornerTuning::TURNING_SHARE : 1.0;
     }
     v = std::min(v, limit_of_blend(a, b, {d, 0, 2.0 * d}, turning, wish).v);
     double used = 0;
@@ -182,10 +168,12 @@ Planner::Joint Planner::filtered_corner(Sequence na, Sequence nb, double toleran
         const double bend = std::abs(step[i]) * v * v / (2.0 * d);
         used = std::max(used, bend / limits_.acceleration[static_cast<std::size_t>(i)]);
     }
-    const Joint pass{.d = d, .v = v, .turning = std::clamp(used, 0.02, TURNING_SHARE)};
+    const Joint pass{.d = d,
+                     .v = v,
+                     .turning = std::clamp(used, CornerTuning::LEAST_TURNING, CornerTuning::TURNING_SHARE)};
     const double most = std::max(limit_of(a, 0, a.length, limits_, wish).a.at(0),
                                  limit_of(b, 0, b.length, limits_, wish).a.at(0));
-    return v / most + stop.dwell_s > 0.8 * tau ? pass : stop;
+    return v / most + stop.dwell_s > CornerTuning::PASS_WORTH * tau ? pass : stop;
 }
 
 /// Highest speed through a corner whose deviation per turn of the tangent may be `share`: the mean over v tau
@@ -193,7 +181,7 @@ Planner::Joint Planner::filtered_corner(Sequence na, Sequence nb, double toleran
 double Planner::speed_through(double share, double need, double most_d, double tau) noexcept {
     double low = 0;
     double high = 8.0 * share / tau;
-    for (int i = 0; i < 50; ++i) {
+    for (int i = 0; i < CornerTuning::SPEED_STEPS; ++i) {
         const double v = 0.5 * (low + high);
         const double d = std::min(most_d, need * v * v);
         const double h = v * tau;

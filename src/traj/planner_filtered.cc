@@ -6,31 +6,15 @@
 #include <cmath>
 
 #include "traj/planner.hh"
+#include "traj/tuning.hh"
 
 namespace mw::traj {
-
-namespace {
-
-constexpr double SAME_SPEED = 1e-9;
-/// A speed below this part of what one sample's acceleration gives is rounding.
-constexpr double STANDING = 1e-13;
-/// Who stands no farther from the end of a piece is there [machine units].
-constexpr double AT_END = 2e-12;
-constexpr double STOP_FIT = 1e-7;  ///< as in the executor
-constexpr int ATTEMPTS = 24;
-/// Planner periods, a second of them.
-constexpr int MOST_REFUSALS = 200;
-constexpr Sequence PHASE_RESERVE = PHASE_CAPACITY / 2;
-/// A plan is renewed when less than this part of the horizon is left.
-constexpr double RENEWAL = 0.6;
-
-}  // namespace
 
 /// True when the speed can be kept for the time of the mean from here and everything after that is still
 /// kept.
 bool Planner::canCoast(Sequence piece, double x, double v) noexcept {
     double way = v * filter_s();
-    const double v2 = v * v * (1.0 - SAME_SPEED);
+    const double v2 = v * v * (1.0 - TimingTuning::SAME_SPEED);
     for (Sequence k = piece; k <= last_piece_; ++k, x = 0) {
         looked_at_ = std::max(looked_at_, k);
         const Piece &p = store_.piece(k);
@@ -62,13 +46,14 @@ bool Planner::emit_rise(double cap) noexcept {
     if (!canCoast(s.piece, s.x + way_to(v), v)) {
         double low = s.v;
         double high = top;
-        for (int i = 0; i < 40; ++i) {
+        for (int i = 0; i < TimingTuning::RISE_STEPS; ++i) {
             const double middle = 0.5 * (low + high);
             (canCoast(s.piece, s.x + way_to(middle), middle) ? low : high) = middle;
         }
         v = low;
     }
-    const bool isWorthIt = v > s.v * (1.0 + 1e-6) && (v == top || v - s.v > 1e-3 * v);
+    const bool isWorthIt = v > s.v * (1.0 + TimingTuning::RISE_WORTH) &&
+                           (v == top || v - s.v > TimingTuning::PART_RISE_WORTH * v);
     if (isWorthIt) {
         emit_phase(way_to(v), v);
     }
@@ -85,7 +70,7 @@ void Planner::emit_coast(double cap, double out2) noexcept {
     double way = std::max(0.0, left - brake);
     const double since_s = s.v < cap ? s.coasting.since_fall_s : s.coasting.since_rise_s;
     const double wait = filter_s() - since_s;
-    if (wait > 1e-9 && s.v != cap) {
+    if (wait > TimingTuning::SOON && s.v != cap) {
         way = std::min(way, s.v * wait);
     }
     emit_phase(std::max(way, 1e-9 * left), s.v);
@@ -98,7 +83,7 @@ bool Planner::emit_filtered() noexcept {
     const bool isLast = s.piece == last_piece_;
     looked_at_ = std::max(looked_at_, s.piece);
     isAtEndOfPath_ = isLast && s.x >= p.length;
-    if (s.x >= p.length || (s.v <= 0 && p.length - s.x < AT_END)) {
+    if (s.x >= p.length || (s.v <= 0 && p.length - s.x < TimingTuning::AT_END)) {
         if (isLast || (s.v <= 0 && isPlanEnd(s.piece + 1))) {
             return false;
         }
@@ -106,7 +91,7 @@ bool Planner::emit_filtered() noexcept {
         return true;
     }
     const double cap = cap_of(s.piece);
-    const bool isRoom = plan_end_ + PHASE_RESERVE - oldest_phase_ < PHASE_CAPACITY;
+    const bool isRoom = plan_end_ + PHASE_CAPACITY / 2 - oldest_phase_ < PHASE_CAPACITY;
     if (!isRoom || (s.v <= 0 && cap <= 0)) {
         return false;
     }
@@ -114,7 +99,7 @@ bool Planner::emit_filtered() noexcept {
     if (s.v <= 0) {
         const PiecePlan &plan = piece_plan(s.piece);
         const double wait = (s.x <= 0 && plan.isStopBefore ? plan.dwell_s : tau) - s.coasting.since_fall_s;
-        if (wait > 1e-9) {
+        if (wait > TimingTuning::SOON) {
             emit_wait(wait);
         }
         s.coasting = {};
@@ -123,25 +108,26 @@ bool Planner::emit_filtered() noexcept {
     const double v2 = s.v * s.v;
     const double left = p.length - s.x;
     const double out2 = isLast ? 0.0 : piece_plan(s.piece + 1).v2_in;
-    const bool mustFall = v2 >= p.acceleration.highest_before(out2, left) * (1.0 - SAME_SPEED);
+    const bool mustFall = v2 >= p.acceleration.highest_before(out2, left) * (1.0 - TimingTuning::SAME_SPEED);
     const double a = p.acceleration.at(v2);
-    if (s.v > cap * (1.0 + SAME_SPEED) && s.coasting.since_rise_s >= tau - 1e-9) {
+    if (s.v > cap * (1.0 + TimingTuning::SAME_SPEED) && s.coasting.since_rise_s >= tau - TimingTuning::SOON) {
         const double excess = v2 - cap * cap;
         const bool isShort = excess < 2.0 * a * left;
         emit_phase(isShort ? excess / (2.0 * a) : left, isShort ? cap : std::sqrt(v2 - 2.0 * a * left));
     } else if (mustFall) {
         const double slowest2 = v2 - 2.0 * a * left;
-        const bool isFit = slowest2 <= out2 + STOP_FIT * v2;
+        const bool isFit = slowest2 <= out2 + TimingTuning::STOP_FIT * v2;
         const double end = std::sqrt(isFit ? std::min(out2, v2) : slowest2);
-        emit_phase(left, end > s.v * (1.0 - SAME_SPEED) ? s.v : end);
+        emit_phase(left, end > s.v * (1.0 - TimingTuning::SAME_SPEED) ? s.v : end);
         s.x = p.length;
     } else {
-        const bool mayRise = s.coasting.since_fall_s >= tau - 1e-9 && s.v < cap * (1.0 - SAME_SPEED);
+        const bool mayRise = s.coasting.since_fall_s >= tau - TimingTuning::SOON &&
+                             s.v < cap * (1.0 - TimingTuning::SAME_SPEED);
         if (!mayRise || !emit_rise(cap)) {
             emit_coast(cap, out2);
         }
     }
-    const double rounding = 1e-12 * p.length;
+    const double rounding = TimingTuning::ROUND_END * p.length;
     const bool isAtEnd = p.length - s.x <= rounding;
     s.x = isAtEnd ? p.length : s.x;
     if (isAtEnd && s.v > 0 && out2 <= 0 && s.v * s.v <= 4.0 * p.acceleration.at(0) * rounding) {
@@ -156,7 +142,7 @@ bool Planner::emit_filtered() noexcept {
 bool Planner::emit_tail() noexcept {
     State &s = planned_;
     while (s.v > 0) {
-        if (plan_end_ + 8 - oldest_phase_ >= PHASE_CAPACITY) {
+        if (plan_end_ + TimingTuning::PHASES_PER_STOP - oldest_phase_ >= PHASE_CAPACITY) {
             return false;
         }
         const Piece &p = store_.piece(s.piece);
@@ -172,10 +158,11 @@ bool Planner::emit_tail() noexcept {
         const double v2 = s.v * s.v;
         const double out2 = s.piece == last_piece_ ? 0.0 : piece_plan(s.piece + 1).v2_in;
         const double wait = filter_s() - s.coasting.since_rise_s;
-        const bool mayCoast = v2 < p.acceleration.highest_before(out2, left) * (1.0 - SAME_SPEED);
-        if (wait > 1e-9 && mayCoast) {
+        const bool mayCoast =
+            v2 < p.acceleration.highest_before(out2, left) * (1.0 - TimingTuning::SAME_SPEED);
+        if (wait > TimingTuning::SOON && mayCoast) {
             emit_coast(0, out2);
-            if (s.x > p.length * (1.0 - 1e-12)) {
+            if (s.x > p.length * (1.0 - TimingTuning::ROUND_END)) {
                 s.x = p.length;
             }
             continue;
@@ -183,9 +170,9 @@ bool Planner::emit_tail() noexcept {
         const double a = p.acceleration.at(v2);
         const double slowest2 = v2 - 2.0 * a * left;
         const bool isStop = s.piece == last_piece_ || piece_plan(s.piece + 1).isStopBefore;
-        if (isStop || slowest2 <= STOP_FIT * v2) {
+        if (isStop || slowest2 <= TimingTuning::STOP_FIT * v2) {
             // A stop that misses the end by rounding is fitted to it.
-            emit_phase(slowest2 < -STOP_FIT * v2 ? v2 / (2.0 * a) : left, 0);
+            emit_phase(slowest2 < -TimingTuning::STOP_FIT * v2 ? v2 / (2.0 * a) : left, 0);
             return true;
         }
         emit_phase(left, std::sqrt(slowest2));
@@ -196,7 +183,8 @@ bool Planner::emit_tail() noexcept {
 
 bool Planner::replan_filtered(const Snapshot &now, State from, bool isStop) noexcept {
     const Sequence begin = plan_end_;
-    const double standing = STANDING * store_.piece(from.piece).acceleration.at(0) * settings_.period_s;
+    const double standing =
+        TimingTuning::STANDING * store_.piece(from.piece).acceleration.at(0) * settings_.period_s;
     from.v = from.v < standing ? 0.0 : from.v;
     const double delay = start_delay_s_;
     ++replan_;
@@ -205,7 +193,7 @@ bool Planner::replan_filtered(const Snapshot &now, State from, bool isStop) noex
     eased_excess_ = UNLIMITED;
     eased_tick_ = 0;
     gentle_ = {};
-    for (int n = 0; n < ATTEMPTS; ++n) {
+    for (int n = 0; n < TimingTuning::ATTEMPTS; ++n) {
         plan_end_ = begin;
         planned_ = from;
         planned_s_ = 0;
@@ -263,7 +251,7 @@ bool Planner::replan_filtered(const Snapshot &now, State from, bool isStop) noex
 }
 
 bool Planner::take_stuck() noexcept {
-    const bool isStuck = refusals_ == MOST_REFUSALS;
+    const bool isStuck = refusals_ == TimingTuning::MOST_REFUSALS;
     refusals_ += isStuck ? 1 : 0;
     return isStuck;
 }
@@ -297,7 +285,7 @@ void Planner::update_filtered(const Snapshot &now) noexcept {
     }
     const double now_s =
         (static_cast<double>(now.cycle) - static_cast<double>(switch_cycle_)) * settings_.period_s;
-    const bool isShort = !isAtEndOfPath_ && planned_s_ - now_s < RENEWAL * settings_.horizon_s;
+    const bool isShort = !isAtEndOfPath_ && planned_s_ - now_s < TimingTuning::RENEWAL * settings_.horizon_s;
     const bool isChanged = changed_from_ != 0 && changed_from_ <= looked_at_ + 1;
     const bool isStopMade = isStopPlan_ && (isTaken || isPending);
     const bool isDue = mustStop ? !isStopMade : isStopMade || !isTaken || isShort || isChanged;

@@ -4,42 +4,9 @@
 #include <cmath>
 
 #include "traj/planner.hh"
+#include "traj/tuning.hh"
 
 namespace mw::traj {
-
-namespace {
-
-/// Tangents that differ by less are the same but for rounding: the step of speed is below any limit.
-constexpr double SAME_DIRECTION = 1e-11;
-/// Exact path: joints that differ by rounding of a program's figures are passed, within a deviation that no
-/// machine shows.
-constexpr double EXACT_PATH_STEP = 0.02;
-constexpr double EXACT_PATH_DEVIATION = 1e-6;
-/// A path that turns back by more than this (cosine) is a reversal: the end of the move is what matters.
-constexpr double REVERSAL_COSINE = -0.9;
-/// Below this a blend is a stop.
-constexpr double SMALLEST_BLEND = 1e-7;
-/// Moves passed in one servo cycle at most; with all their pieces and up to four phases a piece this stays
-/// below Executor::MAX_STEPS_PER_CYCLE.
-constexpr double MOVES_PER_CYCLE = 12;
-/// Arcs and blends are cut so that the direction of the path changes little on each piece [rad].
-constexpr double ARC_CUT = 0.13;
-constexpr double ARC_CUT_WHEN_SLOW = 0.5;
-constexpr int MOST_ARC_CUTS = 64;
-constexpr double JOINT_CUT_DEG = 1.0;
-/// A line has a part of its own next to a blend if that is no longer than this part of it.
-constexpr double ZONE_SHARE = 0.45;
-/// Part of the tolerance that joining lines may take when no other tolerance is given for it.
-constexpr double JOIN_SHARE = 0.1;
-/// What the mean may take where the program gives no tolerance: of a line's length, of an arc's radius, and
-/// at least the way in this time at the highest speed.
-constexpr double FREE_OF_LENGTH = 0.1, FREE_OF_RADIUS = 1e-3, NOMINAL_S = 1e-4;
-/// How much longer than what suits a move the mean may be.
-constexpr double MOST_UNSUITED = 1.25;
-constexpr double BLEND_CUT = 0.3;
-constexpr int MOST_BLEND_CUTS = 4;
-
-}  // namespace
 
 Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept
     : store_(store), settings_(settings) {
@@ -63,7 +30,8 @@ void Planner::set_limits(const Limits &limits) noexcept {
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
         const double v = limits.velocity[static_cast<std::size_t>(i)];
         const bool isCounted = !geom::isAngular(i) && v < UNLIMITED;
-        nominal_tolerance_ = isCounted ? std::max(nominal_tolerance_, v * NOMINAL_S) : nominal_tolerance_;
+        nominal_tolerance_ =
+            isCounted ? std::max(nominal_tolerance_, v * PathTuning::NOMINAL_S) : nominal_tolerance_;
     }
 }
 
@@ -73,7 +41,7 @@ double Planner::path_tolerance(const MoveRequest &request) const noexcept {
 
 bool Planner::suits(double tolerance) const noexcept {
     const auto wanted = static_cast<double>(filter_length(wanted_, settings_.period_s, tolerance));
-    return tolerance <= 0 || static_cast<double>(filter_) <= wanted * MOST_UNSUITED;
+    return tolerance <= 0 || static_cast<double>(filter_) <= wanted * PathTuning::MOST_UNSUITED;
 }
 
 void Planner::begin(const Pose &start, const Snapshot &now, double tolerance) noexcept {
@@ -103,7 +71,7 @@ void Planner::begin(const Pose &start, const Snapshot &now, double tolerance) no
 }
 
 bool Planner::hasRoom(const Snapshot &now) const noexcept {
-    constexpr Sequence PIECES_PER_MOVE = MOST_ARC_CUTS + MOST_BLEND_CUTS + 2;
+    constexpr Sequence PIECES_PER_MOVE = PathTuning::MOST_ARC_CUTS + PathTuning::MOST_BLEND_CUTS + 2;
     const Sequence oldest_piece = std::max(first_piece_, now.piece);
     if (last_piece_ + PIECES_PER_MOVE - oldest_piece >= PIECE_CAPACITY) {
         return false;
@@ -129,8 +97,9 @@ void Planner::fill_move(Sequence n, const Primitive &primitive, const MoveReques
     m.request.isAngular = feed.isAngular;
     m.request.tag.feed_ratio = primitive.length / feed.length;
     m.request.tag.end = primitive.end;
-    m.free_tolerance = std::max(nominal_tolerance_, primitive.isArc ? FREE_OF_RADIUS * primitive.radius
-                                                                    : FREE_OF_LENGTH * primitive.length);
+    m.free_tolerance =
+        std::max(nominal_tolerance_, primitive.isArc ? PathTuning::FREE_OF_RADIUS * primitive.radius
+                                                     : PathTuning::FREE_OF_LENGTH * primitive.length);
     m.feed = request.tag.requested_velocity * m.request.tag.feed_ratio;
     store_.move(n) = m.request.tag;
     programmed_s_ = m.start_s + primitive.length;
@@ -183,7 +152,7 @@ void Planner::join_raw() noexcept {
         }
     } else if (n > first_move_) {
         const Pose step = tangent_step(store_.primitive(n - 1), primitive);
-        joint.isStop = geom::norm(step) > SAME_DIRECTION || m.request.isGated ||
+        joint.isStop = geom::norm(step) > PathTuning::SAME_DIRECTION || m.request.isGated ||
                        move_plan(n - 1).request.join == Join::STOP || isAlongOnly(primitive, m.request) ||
                        isAlongOnly(store_.primitive(n - 1), move_plan(n - 1).request);
         joint.dwell_s = filter_s();
@@ -208,11 +177,13 @@ void Planner::add_blend(const Primitive &a, const Primitive &b, const Joint &joi
     // A curve among others leaves room for what the mean brings together; one that stands alone is passed
     // at one speed.
     const double reach = isFiltered() ? joint.v * filter_s() : 0.0;
-    const bool isShared = isFiltered() && std::min(a.length, b.length) < 3.0 * reach + 2.0 * d;
+    const bool isShared =
+        isFiltered() && std::min(a.length, b.length) < PathTuning::SHARED_REACH * reach + 2.0 * d;
     const SpeedLimit whole =
         isShared ? shared_limit(a, b, joint, wish) : limit_of_blend(a, b, {d, 0, 2.0 * d}, limits_, wish);
-    const int cuts =
-        whole.v < wish ? std::clamp(static_cast<int>(turn / BLEND_CUT) + 1, 1, MOST_BLEND_CUTS) : 1;
+    const int cuts = whole.v < wish ? std::clamp(static_cast<int>(turn / PathTuning::BLEND_CUT) + 1, 1,
+                                                 PathTuning::MOST_BLEND_CUTS)
+                                    : 1;
     Piece piece;
     piece.primitive = open_move_;
     piece.move = open_move_;
@@ -253,8 +224,8 @@ void Planner::close_move(double to, bool isToEnd, const Joint &next) noexcept {
     const double length = to - from;
     const auto zone = [&](const Joint &joint) {
         const double way = zone_length(p, joint, wish);
-        const bool isFit = way < ZONE_SHARE * length;
-        return joint.isStop ? std::min(way, ZONE_SHARE * length) : isFit ? way : 0.0;
+        const bool isFit = way < PathTuning::ZONE_SHARE * length;
+        return joint.isStop ? std::min(way, PathTuning::ZONE_SHARE * length) : isFit ? way : 0.0;
     };
     const double before = zone(open_joint_);
     const double after = zone(next);
@@ -272,8 +243,8 @@ void Planner::close_move(double to, bool isToEnd, const Joint &next) noexcept {
     for (Sequence k = first; k <= last_piece_ && taken > 0 && !p.isArc; ++k) {
         AccelBound &bound = store_.piece(k).acceleration;
         for (std::size_t i = 0; i < AccelBound::LINES; ++i) {
-            bound.beta[i] += SHARED_TURNS * bound.alpha[i] * taken;
-            bound.alpha[i] *= SHARED_REST;
+            bound.beta[i] += CornerTuning::SHARED_TURNS * bound.alpha[i] * taken;
+            bound.alpha[i] *= CornerTuning::SHARED_REST;
         }
     }
     if (after > 0) {
@@ -317,14 +288,15 @@ void Planner::add_part(Piece piece, double to, bool isToEnd, double v) noexcept 
     if (piece.isAlong) {
         whole = along_limit(p, wish);
     } else if (p.isArc) {
-        const double cut = whole.v < wish ? ARC_CUT : ARC_CUT_WHEN_SLOW;
+        const double cut = whole.v < wish ? PathTuning::ARC_CUT : PathTuning::ARC_CUT_WHEN_SLOW;
         const double pieces = std::ceil(std::abs(p.omega) * (to - from) / cut);
-        cuts = static_cast<int>(std::clamp(pieces, 1.0, static_cast<double>(MOST_ARC_CUTS)));
+        cuts = static_cast<int>(std::clamp(pieces, 1.0, static_cast<double>(PathTuning::MOST_ARC_CUTS)));
     }
     if (joint_map_ != nullptr && !piece.isAlong) {
         // Joints may run on curves where the path is straight.
-        const double pieces = std::ceil(geom::norm_abc(p.lin) * (to - from) / JOINT_CUT_DEG);
-        cuts = std::max(cuts, static_cast<int>(std::clamp(pieces, 4.0, static_cast<double>(MOST_ARC_CUTS))));
+        const double pieces = std::ceil(geom::norm_abc(p.lin) * (to - from) / PathTuning::JOINT_CUT_DEG);
+        cuts = std::max(cuts, static_cast<int>(std::clamp(pieces, PathTuning::LEAST_JOINT_CUTS,
+                                                          static_cast<double>(PathTuning::MOST_ARC_CUTS))));
     }
     for (int i = 0; i < cuts; ++i) {
         const double begin = from + (to - from) * i / cuts;
@@ -345,8 +317,8 @@ void Planner::add_piece(const Piece &piece, const SpeedLimit &limit) noexcept {
     const SpeedLimit lowest = joint_map_ == nullptr ? limit : limit_with_joints(piece, limit);
     slot.acceleration = lowest.a;
     PiecePlan &plan = piece_plan(k);
-    plan.v_limit =
-        std::min(lowest.v, MOVES_PER_CYCLE * store_.primitive(piece.primitive).length / settings_.period_s);
+    plan.v_limit = std::min(lowest.v, PathTuning::MOVES_PER_CYCLE * store_.primitive(piece.primitive).length /
+                                          settings_.period_s);
     plan.v2_in = -1;
     plan.isStopBefore = isOpenStop_;
     plan.eased_in = 0;
@@ -379,15 +351,15 @@ Planner::Joint Planner::joint_between(Sequence na, Sequence nb) const noexcept {
     if (isAlong) {
         return {.isStop = true, .dwell_s = filter_s()};
     }
-    if (step <= SAME_DIRECTION) {
+    if (step <= PathTuning::SAME_DIRECTION) {
         return {};
     }
     const bool isExact = ma.request.join != Join::BLEND || mb.request.join != Join::BLEND;
     const Pose ta = derivative_at(a, a.length);
     const Pose tb = derivative_at(b, 0);
-    const bool isCorner = isExact && step > EXACT_PATH_STEP;
-    const bool isReversal = geom::dot(ta, tb) < REVERSAL_COSINE * geom::norm(ta) * geom::norm(tb);
-    double tolerance = isExact ? EXACT_PATH_DEVIATION : tolerance_of(ma);
+    const bool isCorner = isExact && step > PathTuning::EXACT_STEP;
+    const bool isReversal = geom::dot(ta, tb) < PathTuning::REVERSAL_COSINE * geom::norm(ta) * geom::norm(tb);
+    double tolerance = isExact ? PathTuning::EXACT_DEVIATION : tolerance_of(ma);
     const double other = tolerance_of(mb);
     if (!isExact && other > 0) {
         tolerance = tolerance > 0 ? std::min(tolerance, other) : other;
@@ -412,7 +384,7 @@ Planner::Joint Planner::corner(Sequence na, Sequence nb, double tolerance, bool 
     const double va = limit_of(a, 0, a.length, limits_, wish_of(move_plan(na))).v;
     const double vb = limit_of(b, 0, b.length, limits_, wish_of(move_plan(nb))).v;
     d = std::min(d, blend_d_for_speed(a, b, limits_, std::min(va, vb)));
-    return d > SMALLEST_BLEND ? Joint{.d = d} : Joint{.isStop = true};
+    return d > PathTuning::SMALLEST_BLEND ? Joint{.d = d} : Joint{.isStop = true};
 }
 
 /// The line may become a part of the open one: same demands, and nothing happens in between.
@@ -429,14 +401,15 @@ bool Planner::canJoin(const Primitive &line, const MoveRequest &request) const n
     const bool isPlain = open.join == Join::BLEND && request.join == Join::BLEND && !request.isGated &&
                          !(request.feed_per_revolution > 0) && !(open.feed_per_revolution > 0);
     return isSame && isPlain && !line.isArc && !store_.primitive(raw_move_).isArc &&
-           joined_count_ < MOST_JOINED;
+           joined_count_ < PathTuning::MOST_JOINED;
 }
 
 /// Makes the open line go to the end of `line` if all ends in between stay near it, in order.
 bool Planner::join_line(const Primitive &line, const MoveRequest &request) noexcept {
     double allowed = request.merge_tolerance;
     if (request.tolerance > 0 && !request.isMergeAdded) {
-        allowed = std::min(std::max(allowed, JOIN_SHARE * request.tolerance), 0.5 * request.tolerance);
+        allowed = std::min(std::max(allowed, PathTuning::JOIN_SHARE * request.tolerance),
+                           PathTuning::MOST_JOIN_SHARE * request.tolerance);
     }
     const Primitive &open = store_.primitive(raw_move_);
     const Pose shift = move_plan(raw_move_).shift_in;

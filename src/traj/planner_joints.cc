@@ -5,19 +5,9 @@
 #include <cmath>
 
 #include "traj/planner.hh"
+#include "traj/tuning.hh"
 
 namespace mw::traj {
-
-namespace {
-
-/// The derivatives are sampled; between the samples they may be larger by this much.
-constexpr double SAMPLING_MARGIN = 1.02;
-constexpr int SAMPLES = 3;
-/// Path over which derivatives are taken: small against curves of machines, large against rounding.
-constexpr double STEP = 1e-3;
-constexpr double JITTER = 1e-6;  ///< of a second difference by rounding, relative to the step's own size
-
-}  // namespace
 
 void Planner::set_joints(const JointMap *map, const JointLimits &limits) noexcept {
     joint_map_ = map;
@@ -28,9 +18,9 @@ void Planner::set_joints(const JointMap *map, const JointLimits &limits) noexcep
 SpeedLimit Planner::limit_with_joints(const Piece &piece, const SpeedLimit &limit) const noexcept {
     const int count = joint_limits_.count;
     LimitRow rows[MAX_JOINTS];
-    const double h = std::min(STEP, 0.25 * piece.length);
-    for (int n = 0; n < SAMPLES; ++n) {
-        const double x = std::clamp(piece.length * n / (SAMPLES - 1), h, piece.length - h);
+    const double h = std::min(JointTuning::STEP, 0.25 * piece.length);
+    for (int n = 0; n < JointTuning::SAMPLES; ++n) {
+        const double x = std::clamp(piece.length * n / (JointTuning::SAMPLES - 1), h, piece.length - h);
         double before[MAX_JOINTS] = {};
         double at[MAX_JOINTS] = {};
         double after[MAX_JOINTS] = {};
@@ -43,7 +33,7 @@ SpeedLimit Planner::limit_with_joints(const Piece &piece, const SpeedLimit &limi
             const double q2 = std::abs(after[j] - 2.0 * at[j] + before[j]) / (h * h);
             const double noise = 4.0 * 0x1p-52 * std::abs(at[j]) / (h * h);
             row.q1 = std::max(row.q1, q1);
-            row.q2 = std::max(row.q2, q2 > JITTER + 4.0 * noise ? q2 : 0.0);
+            row.q2 = std::max(row.q2, q2 > JointTuning::JITTER + 4.0 * noise ? q2 : 0.0);
         }
     }
     int used = 0;
@@ -54,8 +44,9 @@ SpeedLimit Planner::limit_with_joints(const Piece &piece, const SpeedLimit &limi
         }
         const auto n = static_cast<std::size_t>(j);
         // The first derivative grows by the second from one sample to the next.
-        row.q1 = row.q1 * SAMPLING_MARGIN + row.q2 * piece.length / (2.0 * (SAMPLES - 1));
-        row.q2 *= SAMPLING_MARGIN * SAMPLING_MARGIN;
+        row.q1 = row.q1 * JointTuning::SAMPLING_MARGIN +
+                 row.q2 * piece.length / (2.0 * (JointTuning::SAMPLES - 1));
+        row.q2 *= JointTuning::SAMPLING_MARGIN * JointTuning::SAMPLING_MARGIN;
         row.velocity = joint_limits_.velocity[n];
         row.acceleration = joint_limits_.acceleration[n];
         if (isFiltered()) {
@@ -89,10 +80,12 @@ bool Planner::areJointsSound() noexcept {
         const double a = std::abs(now[j] - 2.0 * one + two);
         const double jerk = std::abs(now[j] - 3.0 * (one - two) - three);
         const bool isOver =
-            (joint_samples_ >= 1 && v > joint_limits_.velocity[j] * t * SLACK + 2.0 * rounding) ||
-            (joint_samples_ >= 2 && a > joint_limits_.acceleration[j] * t * t * SLACK + 4.0 * rounding) ||
+            (joint_samples_ >= 1 &&
+             v > joint_limits_.velocity[j] * t * TrialTuning::SLACK + 2.0 * rounding) ||
+            (joint_samples_ >= 2 &&
+             a > joint_limits_.acceleration[j] * t * t * TrialTuning::SLACK + 4.0 * rounding) ||
             (joint_samples_ >= 3 && isFiltered() &&
-             jerk > joint_limits_.jerk[j] * t * t * t * SLACK + 8.0 * rounding);
+             jerk > joint_limits_.jerk[j] * t * t * t * TrialTuning::SLACK + 8.0 * rounding);
         if (isOver) {
             return false;
         }

@@ -5,29 +5,9 @@
 #include <cmath>
 
 #include "traj/planner.hh"
+#include "traj/tuning.hh"
 
 namespace mw::traj {
-
-namespace {
-
-/// As for other moves.
-constexpr double SAME_DIRECTION = 1e-11;
-constexpr double REVERSAL_COSINE = -0.9;
-constexpr double SMALLEST_BLEND = 1e-7;
-/// The spindle may turn this much faster than now without a corner being too tight for its speed.
-constexpr double SPEED_RESERVE = 1.1;
-/// And so much more, with a mean, between the planning of a corner and its passing.
-constexpr double LAG_RESERVE = 1.03, ROOM_SHARE = 0.95;
-/// Kept off the limits by what sums of rounding make.
-constexpr double FULL = 0.9999;
-/// With jerk limits the acceleration may swing by what the mean can bring together: gaining speed takes one
-/// part, following the spindle the rest, and braking begins a mean later. A short pass shares evenly. With
-/// corners turning takes TURNING, and gaining speed at the same time CORNER_SHARE of what that leaves:
-/// 0.3 + 0.7 * 0.4 + 0.4 < 1.
-constexpr double LONG_SHARE = 0.88, LONG_TRIM = 0.11, SHORT_SHARE = 0.49, CORNER_SHARE = 0.4, TURNING = 0.3;
-constexpr double BLEND_SHARE = 0.7;  ///< as in blend_d_for_speed
-
-}  // namespace
 
 /// Last piece of the pass that begins with `first`, as far as it is known.
 Sequence Planner::pass_end(Sequence first) const noexcept {
@@ -74,16 +54,17 @@ Planner::Joint Planner::locked_corner(Sequence na, Sequence nb) const noexcept {
     const Primitive &b = store_.primitive(nb);
     const Pose ta = derivative_at(a, a.length);
     const Pose tb = derivative_at(b, 0);
-    if (geom::norm(tb - ta) <= SAME_DIRECTION) {
+    if (geom::norm(tb - ta) <= PathTuning::SAME_DIRECTION) {
         return {};
     }
-    const double v =
-        SPEED_RESERVE * std::max(turning_speed(move_plan(na).request), turning_speed(move_plan(nb).request));
-    const double wide = blend_d_for_speed(a, b, limits_, v) * (isFiltered() ? BLEND_SHARE / TURNING : 1.0);
+    const double v = PassTuning::SPEED_RESERVE *
+                     std::max(turning_speed(move_plan(na).request), turning_speed(move_plan(nb).request));
+    const double wide = blend_d_for_speed(a, b, limits_, v) *
+                        (isFiltered() ? LimitTuning::BLEND_SHARE / PassTuning::TURNING : 1.0);
     const double d = std::min(0.5 * std::min(a.length, b.length), wide);
-    const bool isReversal = geom::dot(ta, tb) < REVERSAL_COSINE * geom::norm(ta) * geom::norm(tb);
-    return isReversal || !(d > SMALLEST_BLEND) ? Joint{.isStop = true, .dwell_s = filter_s()}
-                                               : Joint{.d = d, .v = UNLIMITED};
+    const bool isReversal = geom::dot(ta, tb) < PathTuning::REVERSAL_COSINE * geom::norm(ta) * geom::norm(tb);
+    return isReversal || !(d > PathTuning::SMALLEST_BLEND) ? Joint{.isStop = true, .dwell_s = filter_s()}
+                                                           : Joint{.d = d, .v = UNLIMITED};
 }
 
 /// The corner moves on, so that the first line is followed to its programmed end: what it cuts is to have its
@@ -94,8 +75,8 @@ void Planner::move_corner_on(Sequence na, Sequence nb, const Joint &joint) noexc
     const double behind = isFiltered() ? 0.5 * filter_s() * turning_speed(move_plan(na).request) : 0.0;
     const Pose along = derivative_at(a, a.length);
     // Never beyond where the second line ends: a shoulder may be there.
-    const double most = ROOM_SHARE * geom::dot(b.end - b.start, along);
-    const double way = std::clamp(joint.d + LAG_RESERVE * behind, 0.0, std::max(0.0, most));
+    const double most = PassTuning::ROOM_SHARE * geom::dot(b.end - b.start, along);
+    const double way = std::clamp(joint.d + PassTuning::LAG_RESERVE * behind, 0.0, std::max(0.0, most));
     const Pose corner = a.end + along * way;
     bool isRoom = !a.isArc && !b.isArc;
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
@@ -134,7 +115,7 @@ void Planner::fill_pass(const Pass &pass) noexcept {
         p.per_turn = turn_way(k);
         // A corner that had to be tighter is passed more slowly.
         const bool isTurning = isFiltered() && p.blend_d > 0;
-        p.v_most = piece_plan(k).v_limit * (isTurning ? std::sqrt(TURNING) : 1.0);
+        p.v_most = piece_plan(k).v_limit * (isTurning ? std::sqrt(PassTuning::TURNING) : 1.0);
         p.v2_out = out2;
         AccelBound bound = p.acceleration;
         for (std::size_t i = 0; i < AccelBound::LINES; ++i) {
@@ -159,20 +140,20 @@ bool Planner::start_pass(const Snapshot &now, const State &from) noexcept {
     commit.pass.last = pass_end(from.piece);
     commit.pass.spindle = r.spindle;
     commit.pass.direction = rps < 0 ? -1.0 : 1.0;
-    commit.pass.share = FULL;
-    commit.pass.trim = FULL;
+    commit.pass.share = PassTuning::FULL;
+    commit.pass.trim = PassTuning::FULL;
     if (isFiltered()) {
         double length = 0;
         for (Sequence k = commit.pass.first; k <= commit.pass.last; ++k) {
             length += store_.piece(k).length;
         }
-        const double v = turning_speed(r) * SPEED_RESERVE;
-        const double a = LONG_SHARE * store_.piece(from.piece).acceleration.at(0);
+        const double v = turning_speed(r) * PassTuning::SPEED_RESERVE;
+        const double a = PassTuning::LONG_SHARE * store_.piece(from.piece).acceleration.at(0);
         const bool isOneMove = move_of(commit.pass.first) == move_of(commit.pass.last);
-        const bool isLong = isOneMove && length > v * v / a + 3.0 * v * filter_s();
-        const double even = isOneMove ? SHORT_SHARE : CORNER_SHARE;
-        commit.pass.share = isLong ? LONG_SHARE : even;
-        commit.pass.trim = isLong ? LONG_TRIM : even;
+        const bool isLong = isOneMove && length > v * v / a + PassTuning::LONG_MEANS * v * filter_s();
+        const double even = isOneMove ? PassTuning::SHORT_SHARE : PassTuning::CORNER_SHARE;
+        commit.pass.share = isLong ? PassTuning::LONG_SHARE : even;
+        commit.pass.trim = isLong ? PassTuning::LONG_TRIM : even;
     }
     commit.plan = plan_ + 1;
     commit.isSwitch = true;

@@ -5,19 +5,9 @@
 #include <cmath>
 
 #include "traj/planner.hh"
+#include "traj/tuning.hh"
 
 namespace mw::traj {
-
-namespace {
-
-/// A corner of a curve turns by less [rad].
-constexpr double MOST_TURN = 0.4;
-/// Part of the tolerance that the mean may take without help, and the most that corners are moved by.
-constexpr double FREE_SHARE = 0.95, MOST_SHARE = 0.75;
-/// Shifts follow the curvature over this part of the way in the time of the mean.
-constexpr double FOLLOWING = 0.3;
-
-}  // namespace
 
 /// How far the corner between two lines is to be moved, by its curvature alone; false where there is no
 /// curve.
@@ -47,14 +37,14 @@ bool Planner::wanted_shift(Sequence nb, Sequence nc, Pose &shift, ShiftRoom &roo
     const double tau = filter_s();
     const double reach = std::sqrt(v2) * tau;
     room = {reach, 0};
-    if (turn > MOST_TURN || reach < 0.7 * spacing) {
+    if (turn > ShapeTuning::MOST_TURN || reach < CornerTuning::DENSE * spacing) {
         return false;
     }
     const double tolerance = std::min(tolerance_of(mb), tolerance_of(mc));
-    room.most = MOST_SHARE * tolerance;
+    room.most = ShapeTuning::MOST_SHARE * tolerance;
     const double size = std::max(geom::norm_linear(step), geom::norm_abc(step));
     const double inside = size / spacing * reach * reach / 24.0;
-    const double out = std::clamp(inside - FREE_SHARE * tolerance, 0.0, room.most);
+    const double out = std::clamp(inside - ShapeTuning::FREE_SHARE * tolerance, 0.0, room.most);
     shift = size > 0 ? step * (-out / size) : Pose{};
     return true;
 }
@@ -103,13 +93,13 @@ void Planner::shape_corner(Sequence nb, Sequence nc) noexcept {
     }
     // Two lags in a row, by length: what the shift adds to the curvature stays small.
     const double way = store_.primitive(nb).length;
-    const double part = 1.0 - std::exp(-way / (FOLLOWING * room.reach));
+    const double part = 1.0 - std::exp(-way / (ShapeTuning::FOLLOWING * room.reach));
     shift_drive_ = shift_drive_ + (wanted - shift_drive_) * part;
     shift_ = shift_ + (shift_drive_ - shift_) * part;
     // What corners before were moved by may be more than this one's tolerance.
     const double size = std::max(geom::norm_linear(shift_), geom::norm_abc(shift_));
     shift_ = size > room.most ? shift_ * (room.most / size) : shift_;
-    if (geom::norm(shift_) < 1e-9) {
+    if (geom::norm(shift_) < ShapeTuning::SMALLEST_SHIFT) {
         return;
     }
     MovePlan &mb = move_plan(nb);

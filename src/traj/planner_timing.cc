@@ -4,15 +4,9 @@
 #include <cmath>
 
 #include "traj/planner.hh"
+#include "traj/tuning.hh"
 
 namespace mw::traj {
-
-namespace {
-
-constexpr double STOP_FIT = 1e-7;  ///< as in the executor
-constexpr Sequence PHASES_PER_PIECE = 4;
-
-}  // namespace
 
 Sequence Planner::move_of(Sequence piece) const noexcept {
     const Piece &p = store_.piece(piece);
@@ -86,12 +80,11 @@ void Planner::set_scales(const Scales &scales) noexcept {
                   scales.max_velocity == scales_.max_velocity;
     // Spindle speeds never stand still; they matter only where something follows them. What changes little is
     // followed now and then, so that a lead does not drift.
-    constexpr double CHANGED = 1e-3, DRIFTED = 1e-7;
-    constexpr int STEADY_UPDATES = 4;
     const bool isFollowed = last_synched_ != 0 && last_piece_ >= oldest_piece_ &&
                             last_synched_ >= store_.piece(oldest_piece_).move;
     ++steady_updates_;
-    const double slight = steady_updates_ > STEADY_UPDATES ? DRIFTED : CHANGED;
+    const double slight =
+        steady_updates_ > TimingTuning::STEADY_UPDATES ? TimingTuning::DRIFTED : TimingTuning::CHANGED;
     for (std::size_t i = 0; i < scales.spindle_rps.size() && isSame && isFollowed; ++i) {
         const double rps = scales_.spindle_rps[i];
         isSame = std::abs(scales.spindle_rps[i] - rps) <= slight * std::abs(rps);
@@ -208,10 +201,11 @@ bool Planner::predict(const Snapshot &now, State &state) const noexcept {
     state.x = p.x0 + t * (p.v0 + t * (0.5 * p.a + t * p.j * (1.0 / 6.0)));
     state.v = std::max(0.0, p.v0 + t * (p.a + 0.5 * t * p.j));
     if (isOver) {
-        const bool isStop = state.v <= 1e-9 * std::abs(p.a) * (p.duration + settings_.period_s);
+        const bool isStop =
+            state.v <= ExecutorTuning::STOPPED * std::abs(p.a) * (p.duration + settings_.period_s);
         state.v = 0;
         const double length = store_.piece(p.piece).length;
-        const bool isAtEnd = std::abs(state.x - length) <= 4e-12 * (1.0 + length);
+        const bool isAtEnd = std::abs(state.x - length) <= ExecutorTuning::ARRIVED * (1.0 + length);
         if (isAtEnd && p.piece < last_piece_) {
             state = {p.piece + 1, 0, 0, state.coasting};
         }
@@ -221,7 +215,7 @@ bool Planner::predict(const Snapshot &now, State &state) const noexcept {
 }
 
 bool Planner::hasPhaseRoom() const noexcept {
-    return plan_end_ + PHASES_PER_PIECE - oldest_phase_ < PHASE_CAPACITY;
+    return plan_end_ + TimingTuning::PHASES_PER_PIECE - oldest_phase_ < PHASE_CAPACITY;
 }
 
 /// Appends a phase over `length` that ends at the speed `v1`.
@@ -299,7 +293,7 @@ bool Planner::emit_piece() noexcept {
     const double v2 = s.v * s.v;
     const double slowest2 = v2 - 2.0 * a * left;
     if (slowest2 >= out2 || s.v > cap) {
-        const bool isFit = slowest2 <= out2 + STOP_FIT * v2;
+        const bool isFit = slowest2 <= out2 + TimingTuning::STOP_FIT * v2;
         emit_phase(left, std::sqrt(isFit ? std::min(out2, v2) : slowest2));
     } else {
         emit_hill(left, cap, out2);

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A campaign of random programs of at least 50 blocks and 5 s of motion each, in virtual time.
 // traj_campaign --first N --count M --log FILE [--processes P]: one line per seed in the log; seeds that it
-// has are not driven again. Ends with 1 when a program has left its limits, its tolerance or its order.
+// has are not driven again; the number before the verdict stands for every bit of what was commanded. Ends
+// with 1 when a program has left its limits, its tolerance or its order.
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <bit>
-#include <cinttypes>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -16,6 +15,7 @@
 
 #include "base/text.hh"
 #include "traj/test/campaign.hh"
+#include "traj/test/sample_hash.hh"
 
 namespace mw::traj::test {
 namespace {
@@ -26,20 +26,9 @@ constexpr std::size_t LEAST_BLOCKS = 50;
 struct Verdict {
     std::size_t blocks = 0;
     double seconds = 0;
-    std::uint64_t bits = 0;  ///< digest of all samples: equal for builds that command the same
+    unsigned long long samples = 0;  ///< SampleHash of all that was commanded
     std::string fault;
 };
-
-/// FNV-1a over the bits of all coordinates.
-std::uint64_t digest_of(const std::vector<Pose> &samples) {
-    std::uint64_t digest = 0xcbf29ce484222325U;
-    for (const Pose &p : samples) {
-        for (const double coordinate : p.c) {
-            digest = (digest ^ std::bit_cast<std::uint64_t>(coordinate)) * 0x100000001b3U;
-        }
-    }
-    return digest;
-}
 
 /// Nearest places, each no earlier than the one before: enough to say yes. A no is asked again of isInOrder.
 class Follower {
@@ -94,7 +83,11 @@ Verdict judge(const Program &program, const Outcome &out, bool isDropped) {
     Verdict v;
     v.blocks = program.primitives.size();
     v.seconds = static_cast<double>(out.rig.samples.size()) * Rig::T;
-    v.bits = digest_of(out.rig.samples);
+    SampleHash hash;
+    for (const Pose &p : out.rig.samples) {
+        hash.add(p);
+    }
+    v.samples = hash.value();
     if (!out.isFinished) {
         v.fault = "not finished";
         return v;
@@ -187,8 +180,8 @@ int work(const Task &task, unsigned part, const std::set<unsigned> &done) {
         const Verdict v = drive_seed(seed);
         const bool isCounted = v.blocks >= LEAST_BLOCKS && v.seconds >= LEAST_SECONDS;
         char line[400];
-        const int size = std::snprintf(line, sizeof line, "%u %zu blocks %.2f s %016" PRIx64 " %s%s\n", seed,
-                                       v.blocks, v.seconds, v.bits,
+        const int size = std::snprintf(line, sizeof line, "%u %zu blocks %.2f s %016llx %s%s\n", seed,
+                                       v.blocks, v.seconds, v.samples,
                                        !v.fault.empty() ? "FAILED "
                                        : isCounted      ? "ok"
                                                         : "short",

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Every figure of the planner and executor that was chosen, by the part that uses it, with its reason.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace mw::traj {
+
+/// What lines join, where a path stops, how it is cut into pieces.
+struct PathTuning {
+    /// Tangents that differ by less are the same but for rounding: the step of speed is below any limit.
+    static constexpr double SAME_DIRECTION = 1e-11;
+    /// Exact path: joints that differ by rounding of a program's figures are passed,
+    static constexpr double EXACT_STEP = 0.02;
+    /// within a deviation that no machine shows [machine units].
+    static constexpr double EXACT_DEVIATION = 1e-6;
+    /// A path that turns back by more than this (cosine) is a reversal: the end of the move is what matters.
+    static constexpr double REVERSAL_COSINE = -0.9;
+    /// Below this a blend is a stop.
+    static constexpr double SMALLEST_BLEND = 1e-7;
+    /// Moves passed in one servo cycle at most; with all their pieces and up to four phases a piece this
+    /// stays below Executor::MAX_STEPS_PER_CYCLE.
+    static constexpr double MOVES_PER_CYCLE = 12;
+    /// Arcs are cut so that the direction of the path changes little on each piece [rad].
+    static constexpr double ARC_CUT = 0.13;
+    static constexpr double ARC_CUT_WHEN_SLOW = 0.5;
+    static constexpr int MOST_ARC_CUTS = 64;
+    /// Blends as well [rad].
+    static constexpr double BLEND_CUT = 0.3;
+    static constexpr int MOST_BLEND_CUTS = 4;
+    /// Lines are cut so that joints that are not axes change their slope little [deg].
+    static constexpr double JOINT_CUT_DEG = 1.0;
+    static constexpr double LEAST_JOINT_CUTS = 4;
+    /// A line has a part of its own next to a blend if that is no longer than this part of it.
+    static constexpr double ZONE_SHARE = 0.45;
+    /// Part of the tolerance that joining lines may take when no other tolerance is given for it, and at
+    /// most.
+    static constexpr double JOIN_SHARE = 0.1, MOST_JOIN_SHARE = 0.5;
+    static constexpr std::size_t MOST_JOINED = 64;
+    /// What the mean may take where the program gives no tolerance: of a line's length, of an arc's radius,
+    /// and at least the way in this time at the highest speed.
+    static constexpr double FREE_OF_LENGTH = 0.1, FREE_OF_RADIUS = 1e-3, NOMINAL_S = 1e-4;
+    /// How much longer than what suits a move the mean may be.
+    static constexpr double MOST_UNSUITED = 1.25;
+    /// A blend is among others where a line beside it is shorter than this many times the way in the time of
+    /// the mean.
+    static constexpr double SHARED_REACH = 3.0;
+};
+
+/// Speeds and accelerations of a stretch (limits.cc).
+struct LimitTuning {
+    /// Share of an axis's acceleration that turning takes on a blend that is made for a given speed.
+    static constexpr double BLEND_SHARE = 0.7;
+    /// The mean is at most this part longer than what is best on curves: see docs/motion/planner.md.
+    static constexpr double CURVE_SHARE = 1.2;
+    /// Room that keeps fitted stops (Executor) and rounding inside the limits.
+    static constexpr double ACCELERATION_MARGIN = 1e-6;
+    /// Parts of the highest squared speed between which the acceleration that is left is a chord.
+    static constexpr double CHORDS[] = {0, 0.5, 0.85, 1};
+};
+
+/// Limits of joints that are not axes (joint_rows).
+struct JointTuning {
+    /// The derivatives are sampled; between the samples they may be larger by this much.
+    static constexpr double SAMPLING_MARGIN = 1.02;
+    static constexpr int SAMPLES = 3;
+    /// Path over which derivatives are taken: small against curves of machines, large against rounding.
+    static constexpr double STEP = 1e-3;
+    /// Of a second difference by rounding, relative to the step's own size.
+    static constexpr double JITTER = 1e-6;
+};
+
+/// Corners and arcs with jerk limits.
+struct CornerTuning {
+    /// Part of the tolerance that blends may take where corners follow each other closely, and what a slight
+    /// turn is spread by.
+    static constexpr double GEOMETRY_SHARE = 0.35, SPREAD_SHARE = 0.05;
+    /// Part that the mean may take on an arc.
+    static constexpr double ARC_SHARE = 0.92;
+    /// Part of the tolerance that is planned with; the rest is for what the formulas leave out.
+    static constexpr double TOLERANCE_SHARE = 0.95;
+    /// Up to this swing over what the mean can spread, less acceleration costs less time than standing does.
+    static constexpr double MOST_SWING = 1.7, GENTLE_ROOM = 0.999;
+    /// From the width of a blend that takes BLEND_SHARE of the acceleration to one that takes 0.95.
+    static constexpr double TURNING_FIT = LimitTuning::BLEND_SHARE / 0.95;
+    /// Corners are dense where they are nearer than this part of the way in the time of the mean.
+    static constexpr double DENSE = 0.7;
+    /// Part of the acceleration that is for turning where curves follow each other closely, and the least.
+    static constexpr double TURNING_SHARE = 0.97, LEAST_TURNING = 0.02;
+    /// What the turning of neighbours may be more than a place's own, and how much is left for that.
+    static constexpr double SHARED_TURNS = 1.1, SHARED_REST = 0.985;
+    /// A corner is passed where building up its speed and the stand saved take more than this part of tau.
+    static constexpr double PASS_WORTH = 0.8;
+    /// Of a whole arc that is followed exactly. Turning is across the path, the rest along it:
+    /// 0.6^2 + 0.75^2 < 1 of the acceleration; of the jerk (0.6 + 0.2)^2 + 0.5^2 < 1, 0.6 from the
+    /// acceleration built up in tau.
+    static constexpr double ALONG_ACCELERATION = 0.6, ALONG_TURNING = 0.75;
+    static constexpr double ALONG_JERK = 0.2, ALONG_CROSS_JERK = 0.5;
+    static constexpr int SPEED_STEPS = 50;  ///< of bisection: more than a double has bits
+};
+
+/// Corners of dense lines that are moved outwards.
+struct ShapeTuning {
+    /// A corner of a curve turns by less [rad].
+    static constexpr double MOST_TURN = 0.4;
+    /// Part of the tolerance that the mean may take without help, and the most that corners are moved by.
+    static constexpr double FREE_SHARE = 0.95, MOST_SHARE = 0.75;
+    /// Shifts follow the curvature over this part of the way in the time of the mean.
+    static constexpr double FOLLOWING = 0.3;
+    /// Shifts below this are none [machine units].
+    static constexpr double SMALLEST_SHIFT = 1e-9;
+};
+
+/// Profiles, and when a plan is made.
+struct TimingTuning {
+    /// Braking that misses a stop at a piece's end by rounding alone is fitted to it; piece accelerations
+    /// keep LimitTuning::ACCELERATION_MARGIN, ten times this.
+    static constexpr double STOP_FIT = 1e-7;
+    /// Speeds that differ by this part are the same.
+    static constexpr double SAME_SPEED = 1e-9;
+    /// A speed below this part of what one sample's acceleration gives is rounding.
+    static constexpr double STANDING = 1e-13;
+    /// Who stands no farther from the end of a piece is there [machine units].
+    static constexpr double AT_END = 2e-12;
+    /// A rise is made when it gains this part of the speed, or this part where it does not reach the cap.
+    static constexpr double RISE_WORTH = 1e-6, PART_RISE_WORTH = 1e-3;
+    static constexpr int RISE_STEPS = 40;       ///< of bisection
+    static constexpr double SOON = 1e-9;        ///< shorter waits are none [s]
+    static constexpr double ROUND_END = 1e-12;  ///< part of a piece within which its end is reached
+    /// Phases of a piece with acceleration limits: one that comes down to an override, up, level, down.
+    static constexpr std::uint64_t PHASES_PER_PIECE = 4;
+    static constexpr std::uint64_t PHASES_PER_STOP = 8;
+    /// A plan is renewed when less than this part of the horizon is left.
+    static constexpr double RENEWAL = 0.6;
+    /// Attempts at a plan before the one before it stays in force.
+    static constexpr int ATTEMPTS = 24;
+    /// Planner periods at rest without a plan, a second of them, before it is told.
+    static constexpr int MOST_REFUSALS = 200;
+    /// Spindles never keep their speed: what changes by more than the first part is followed at once, by more
+    /// than the second once in so many updates, so that a lead does not drift.
+    static constexpr double CHANGED = 1e-3, DRIFTED = 1e-7;
+    static constexpr int STEADY_UPDATES = 4;
+};
+
+/// The trial of a plan.
+struct TrialTuning {
+    /// Samples that are tried; the rest of a longer stop is braking alone.
+    static constexpr std::uint64_t MOST_SAMPLES = 4000;
+    /// Phases in one sample; the executor passes twice as many at most.
+    static constexpr std::uint64_t MOST_PHASES = 2000;
+    /// Relative room of a swing, for sums of rounding over the mean.
+    static constexpr double ROUNDING = 1e-7;
+    /// Relative slack of what the trial compares, half of what checkers of the trajectory allow.
+    static constexpr double SLACK = 1.0 + 5e-7;
+    /// Excess that stands for a limit that has no measure: the leader's own, or a joint's.
+    static constexpr double UNMEASURED = 2;
+};
+
+/// Making slower what a trial has refused.
+struct EasingTuning {
+    /// Least and most part of speed and of acceleration that one attempt leaves.
+    static constexpr double SLOWEST = 0.9, GENTLEST = 0.8, LEAST_SLOWER = 0.99, LEAST_GENTLER = 0.98;
+    /// An excess that less acceleration about a stop may cure.
+    static constexpr double MOST_GENTLE = 1.3;
+    /// Part of the mean's time by which a stand becomes longer in one attempt, and how much of a stand the
+    /// time that gentler pieces cost may be.
+    static constexpr double STAND_STEP = 0.2, STAND_WORTH = 0.5;
+    /// Less acceleration along the path cures an excess where that is what swings: from this part on, by how
+    /// much more than that, and how much less it becomes at most in all.
+    static constexpr double ALONG_SHARE = 0.5, ALONG_MARGIN = 1.1, ALONG_ROOM = 1e-4, LEAST_ALONG = 0.8;
+    /// What is left of an excess when easing has helped.
+    static constexpr double HELPED = 0.7;
+    /// As TrialTuning::ROUNDING.
+    static constexpr double ROUNDING = 1e-7;
+};
+
+/// Passes that are locked to a spindle, as they are planned.
+struct PassTuning {
+    /// The spindle may turn this much faster than now without a corner being too tight for its speed.
+    static constexpr double SPEED_RESERVE = 1.1;
+    /// And so much more, with a mean, between the planning of a corner and its passing; part of the second
+    /// line that the corner may move into.
+    static constexpr double LAG_RESERVE = 1.03, ROOM_SHARE = 0.95;
+    /// Kept off the limits by what sums of rounding make.
+    static constexpr double FULL = 0.9999;
+    /// With jerk limits the acceleration may swing by what the mean can bring together: gaining speed takes
+    /// one part, following the spindle the rest (0.88 + 0.11 < 1), and braking begins a mean later. A short
+    /// pass shares evenly (2 * 0.49 < 1).
+    static constexpr double LONG_SHARE = 0.88, LONG_TRIM = 0.11, SHORT_SHARE = 0.49;
+    /// With corners turning takes TURNING, and gaining speed at the same time CORNER_SHARE of what that
+    /// leaves: 0.3 + 0.7 * 0.4 + 0.4 < 1.
+    static constexpr double CORNER_SHARE = 0.4, TURNING = 0.3;
+    /// A pass is long from so many means at the spindle's speed on.
+    static constexpr double LONG_MEANS = 3.0;
+};
+
+/// The servo side.
+struct ExecutorTuning {
+    /// Distance from the end of a piece that is rounding, at a length of 1.
+    static constexpr double ARRIVED = 4e-12;
+    /// A speed below this part of what the phase's acceleration makes in its time is a stop.
+    static constexpr double STOPPED = 1e-9;
+    /// The helix counts as met within this part of a turn, and as lost beyond the second.
+    static constexpr double MET = 2e-5, LOST = 2e-3;
+    /// Once it is met: share of a deviation that is made good in a second [1/s]. A rough encoder must not
+    /// shake the machine.
+    static constexpr double GAIN = 60;
+    /// Part of the acceleration with which the helix is met: the spindle may still gain speed itself.
+    static constexpr double MEETING_SHARE = 0.97;
+    static constexpr int MOST_PIECES_PER_CYCLE = 64;
+};
+
+}  // namespace mw::traj
