@@ -28,7 +28,7 @@ class KinematicsTest : public VirtualMachineTest {
     }
 };
 
-TEST_F(KinematicsTest, ATableTurnsASlowlyAsItsJointsAsk_D1) {
+TEST_F(KinematicsTest, ATableTurnsASlowlyAsItsJointsAsk_C13) {
     make_table();
     ASSERT_EQ(mdi("G21 G90 G0 X100"), task::Progress::DONE) << messages();
     ASSERT_EQ(mdi("G0 C180"), task::Progress::DONE) << messages();
@@ -37,7 +37,7 @@ TEST_F(KinematicsTest, ATableTurnsASlowlyAsItsJointsAsk_D1) {
     EXPECT_GT(judge_.count(), 1000U);
 }
 
-TEST_F(KinematicsTest, TeleopKeepsJointLimits_D2) {
+TEST_F(KinematicsTest, TeleopKeepsJointLimits_C9) {
     make_table();
     ASSERT_EQ(mdi("G21 G90 G0 X200"), task::Progress::DONE) << messages();
     ask(task::SetMode{task::Mode::MANUAL});
@@ -49,7 +49,7 @@ TEST_F(KinematicsTest, TeleopKeepsJointLimits_D2) {
     EXPECT_NEAR(motion().joint[0].pos_cmd, -200, 1e-6);
 }
 
-TEST_F(KinematicsTest, ATeleopJogStopsBeforeAJointsSoftLimit_D2) {
+TEST_F(KinematicsTest, ATeleopJogStopsBeforeAJointsSoftLimit_C13) {
     make_table(150);
     ASSERT_EQ(mdi("G21 G90 G0 X140 Y140"), task::Progress::DONE) << messages();
     ask(task::SetMode{task::Mode::MANUAL});
@@ -62,7 +62,7 @@ TEST_F(KinematicsTest, ATeleopJogStopsBeforeAJointsSoftLimit_D2) {
     EXPECT_NEAR(motion().carte_pos_cmd[geom::AXIS_C], 0, 1e-6) << "and can be jogged back";
 }
 
-TEST_F(KinematicsTest, AGantryIsStillOfAxesWhateverItsKinstype_D1) {
+TEST_F(KinematicsTest, AGantryIsStillOfAxesWhateverItsKinstype_C14) {
     SimMachine gantry;
     gantry.coordinates = "XYYZ";
     gantry.kinematics = "trivkins coordinates=XYYZ kinstype=BOTH";

@@ -24,7 +24,7 @@ class ModesTest : public VirtualMachineTest {
     }
 };
 
-TEST_F(ModesTest, AModeThatMotionRefusesIsRefused_D3) {
+TEST_F(ModesTest, AModeThatMotionRefusesIsRefused_D1) {
     ask(task::SetMode{task::Mode::MANUAL});
     cycles(5);
     jog_x(20);
@@ -68,7 +68,7 @@ TEST_F(ModesTest, AnAbortEndsARunAtAnyTime_D3) {
     }
 }
 
-TEST_F(ModesTest, ARunIsNotForgottenHoweverManyRequestsFollow_D8) {
+TEST_F(ModesTest, ARunIsNotForgottenHoweverManyRequestsFollow_D1) {
     start("G21 G90 G1 X100 F600\nM2\n");
     cycles(20);
     for (int i = 0; i < 1000; ++i) {
@@ -82,7 +82,7 @@ TEST_F(ModesTest, ARunIsNotForgottenHoweverManyRequestsFollow_D8) {
     EXPECT_NEAR(x(), 100, 1e-9);
 }
 
-TEST_F(ModesTest, TheFeedOverrideActsOnJogs_D9) {
+TEST_F(ModesTest, TheFeedOverrideActsOnJogs_C4) {
     ask(task::SetMode{task::Mode::MANUAL});
     ask(task::SetOverride{task::Override::FEED, 0.5, 0});
     jog_x(20);
@@ -103,7 +103,7 @@ TEST_F(ModesTest, TheFeedOverrideActsOnJogs_D9) {
     EXPECT_NEAR(joint_speed(0), 5, 1e-6);
 }
 
-TEST_F(ModesTest, HomingDuringAJogStopsTheJogAndHomes_D9) {
+TEST_F(ModesTest, HomingDuringAJogStopsTheJogAndHomes_C4) {
     switch_on_config(SimMachine{}.write(folder_));  // joints that home where they stand
     ask(task::SetMode{task::Mode::MANUAL});
     jog_x(50);
@@ -120,14 +120,14 @@ TEST_F(ModesTest, HomingDuringAJogStopsTheJogAndHomes_D9) {
     EXPECT_EQ(joint_speed(0), 0);
 }
 
-TEST_F(ModesTest, ToolOffsetsAreOnThePinsWhenG43IsDone_D14) {
+TEST_F(ModesTest, ToolOffsetsAreOnThePinsWhenG43IsDone_G6) {
     for (const double z : {12.5, -3.25, 40.0}) {
         ASSERT_EQ(mdi(fmt::format("G21 G43.1 Z{}", z)), task::Progress::DONE) << messages();
         EXPECT_DOUBLE_EQ(machine_->hal().get("motion.tooloffset.z")->as_number(), z);
     }
 }
 
-TEST_F(ModesTest, TheSimulatedSpindleOrients_D13) {
+TEST_F(ModesTest, TheSimulatedSpindleOrients_C15) {
     ASSERT_EQ(mdi("S500 M3"), task::Progress::DONE);
     cycles(500);
     for (const double angle : {90.0, 10.0, 270.0}) {
@@ -148,7 +148,7 @@ TEST_F(ModesTest, RigidTappingIsRefusedByItsName) {
 
 class AxesTest : public VirtualMachineTest {};
 
-TEST_F(AxesTest, ArcsOfUVWRun_D7) {
+TEST_F(AxesTest, ArcsOfUVWRun_C9) {
     SimMachine foam;
     foam.coordinates = "XYZUVW";
     foam.kinematics = "trivkins coordinates=XYZUVW";
@@ -179,7 +179,7 @@ TEST_F(AxesTest, ArcsOfUVWRun_D7) {
     }
 }
 
-TEST_F(AxesTest, AngularLimitsOfTrajHold_D5) {
+TEST_F(AxesTest, AngularLimitsOfTrajHold_C13) {
     SimMachine mill;
     mill.coordinates = "XYZA";
     mill.kinematics = "trivkins coordinates=XYZA";

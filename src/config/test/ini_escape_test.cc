@@ -8,14 +8,14 @@
 namespace mw::config {
 namespace {
 
-TEST(IniEscape, each_escape_is_its_character_A2) {
+TEST(IniEscape, EachEscapeIsItsCharacter_A2) {
     EXPECT_EQ(decode_ini_value(R"(a\tb\\c\101\x42\u00e9\U0001F600)").value(), "a\tb\\cAB\u00e9\U0001F600");
     EXPECT_EQ(decode_ini_value(R"(\ud83d\ude00)").value(), "\U0001F600");
     EXPECT_EQ(decode_ini_value(R"(\xf0\x9f\x98\x80)").value(), "\U0001F600");
     EXPECT_EQ(decode_ini_value(R"(C:\d\)").value(), R"(C:\d\)") << "no escape: as it stands";
 }
 
-TEST(IniEscape, what_is_no_character_is_an_error_A2) {
+TEST(IniEscape, WhatIsNoCharacterIsAnError_A2) {
     for (const char *text : {R"(\0)",
                              R"(\000)",
                              R"(\x00)",
@@ -46,7 +46,7 @@ TEST(IniEscape, what_is_no_character_is_an_error_A2) {
     EXPECT_FALSE(decode_ini_value(std::string_view("a\0b", 3)));
 }
 
-TEST(IniEscape, encoded_text_is_read_as_it_was_A2) {
+TEST(IniEscape, EncodedTextIsReadAsItWas_A2) {
     std::mt19937 random(1);
     for (int round = 0; round < 2000; ++round) {
         std::string text;

@@ -34,7 +34,7 @@ class IniPrograms : public testing::Test {
     std::string path;
 };
 
-TEST_F(IniPrograms, inivar_prints_the_value_as_it_stands_A2) {
+TEST_F(IniPrograms, InivarPrintsTheValueAsItStands_A2) {
     EXPECT_EQ(inivar("-var X").out, "1\n");
     EXPECT_EQ(inivar("-var X -sec A -num 2").out, "2\n");
     EXPECT_EQ(inivar("-var X -num 3").out, "0x1f\n");
@@ -47,7 +47,7 @@ TEST_F(IniPrograms, inivar_prints_the_value_as_it_stands_A2) {
     EXPECT_EQ(inivar("-var T -tildeexpand").out, "/home/somebody/foo\n");
 }
 
-TEST_F(IniPrograms, inivar_fails_with_the_words_that_scripts_know_A2) {
+TEST_F(IniPrograms, InivarFailsWithTheWordsThatScriptsKnow_A2) {
     ProgramOutput failed = inivar("-var NOPE");
     EXPECT_EQ(failed.status, 1);
     EXPECT_EQ(failed.err, "Can not find -sec (null) -var NOPE -num 1 \n");
@@ -67,14 +67,14 @@ TEST_F(IniPrograms, inivar_fails_with_the_words_that_scripts_know_A2) {
               "file>} [-num <nth item>]\n");
 }
 
-TEST_F(IniPrograms, inivar_names_a_key_that_stands_before_any_section_A2) {
+TEST_F(IniPrograms, InivarNamesAKeyThatStandsBeforeAnySection_A2) {
     std::ofstream(path) << "KEY = 1\n[A]\nX = 2\n";
     EXPECT_EQ(inivar("-var KEY").err, path + ":1: error: Tag 'KEY' found without prior section definition\n");
     EXPECT_EQ(inivar("-var KEY").status, 1);
     EXPECT_EQ(inivar("-var X").out, "2\n");
 }
 
-TEST_F(IniPrograms, inivalue_checks_types_and_has_defaults_A2) {
+TEST_F(IniPrograms, InivalueChecksTypesAndHasDefaults_A2) {
     EXPECT_EQ(inivalue("--var=X --sec=B --type=i").out, "31\n");
     EXPECT_EQ(inivalue("--var X --sec B --type sint").out, "31\n");
     EXPECT_EQ(inivalue("--var=ON --type=bool").out, "true\n");
@@ -95,7 +95,7 @@ TEST_F(IniPrograms, inivalue_checks_types_and_has_defaults_A2) {
     EXPECT_EQ(run_inivalue({"--help"}).status, 0);
 }
 
-TEST_F(IniPrograms, inivalue_keeps_numbers_in_their_range_A2) {
+TEST_F(IniPrograms, InivalueKeepsNumbersInTheirRange_A2) {
     EXPECT_EQ(inivalue("--var=X --type=i -m 1 -M 1").out, "1\n");
     EXPECT_EQ(inivalue("--var=X --type=i -m 2").status, 1);
     EXPECT_EQ(inivalue("--var=X --type=u -M 0").status, 1);
@@ -116,7 +116,7 @@ TEST_F(IniPrograms, inivalue_keeps_numbers_in_their_range_A2) {
     EXPECT_EQ(inivalue("--var=S --type=i").out, "-9223372036854775808\n");
 }
 
-TEST_F(IniPrograms, inivalue_lists_what_is_there_A2) {
+TEST_F(IniPrograms, InivalueListsWhatIsThere_A2) {
     EXPECT_EQ(inivalue("--sections").out, "A\nB\n");
     EXPECT_EQ(inivalue("--var=X --all").out, "1\n2\n0x1f\n");
     EXPECT_EQ(inivalue("--var=X --all --num=3").out, "0x1f\n");
@@ -126,7 +126,7 @@ TEST_F(IniPrograms, inivalue_lists_what_is_there_A2) {
     EXPECT_EQ(inivalue("--variables --sec=C").status, 1);
 }
 
-TEST_F(IniPrograms, inivalue_stops_at_the_first_fault_with_its_line_A2) {
+TEST_F(IniPrograms, InivalueStopsAtTheFirstFaultWithItsLine_A2) {
     const auto fault = [&](const std::string &text) {
         std::ofstream(path) << text;
         const ProgramOutput result = inivalue("--var=X");
@@ -155,7 +155,7 @@ TEST_F(IniPrograms, inivalue_stops_at_the_first_fault_with_its_line_A2) {
     EXPECT_NE(warned.err.find(path + ":2: warning: "), std::string::npos);
 }
 
-TEST_F(IniPrograms, inivalue_needs_a_home_to_expand_A2) {
+TEST_F(IniPrograms, InivalueNeedsAHomeToExpand_A2) {
     EXPECT_EQ(inivalue("--var=T --tildeexpand").out, "/home/somebody/foo\n");
     ::unsetenv("HOME");
     EXPECT_EQ(inivalue("--var=T --tildeexpand").status, 1);

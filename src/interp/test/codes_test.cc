@@ -72,7 +72,7 @@ std::string joined(const std::vector<std::string> &calls) {
 
 class GoodCode : public testing::TestWithParam<GoodCase> {};
 
-TEST_P(GoodCode, calls_the_canon_I1) {
+TEST_P(GoodCode, CallsTheCanon_I1) {
     const Outcome out = run(std::string(GetParam().program) + "\n%\n");
     std::vector<std::string> want = GetParam().calls;
     const bool isEnded = std::ranges::count(want, "PROGRAM_END()") > 0;
@@ -184,7 +184,7 @@ INSTANTIATE_TEST_SUITE_P(MoreCodes, GoodCode, testing::ValuesIn(MORE_GOOD));
 
 class BadCode : public testing::TestWithParam<BadCase> {};
 
-TEST_P(BadCode, names_the_fault_and_its_place_I1) {
+TEST_P(BadCode, NamesTheFaultAndItsPlace_I1) {
     const Outcome out = run(std::string("(first line)\n") + GetParam().program + "\n%\n");
     EXPECT_EQ(out.step, Step::FAILED);
     EXPECT_NE(out.error.find(GetParam().error), std::string::npos) << out.error;
@@ -294,7 +294,7 @@ std::set<std::string> codes_in(const std::string &program) {
 }
 
 /// Each code of the table stands in a program above that works, and in one that is refused.
-TEST(CodesTable, every_code_has_a_good_and_a_bad_case_I1) {
+TEST(CodesTable, EveryCodeHasAGoodAndABadCase_I1) {
     std::set<std::string> good, bad;
     for (const std::span<const GoodCase> cases :
          {std::span<const GoodCase>(GOOD), std::span<const GoodCase>(MORE_GOOD)}) {

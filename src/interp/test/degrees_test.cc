@@ -13,7 +13,7 @@ namespace {
 
 constexpr long double DEGREE = std::numbers::pi_v<long double> / 180.0L;
 
-TEST(Degrees, exact_values_are_exact_I1) {
+TEST(Degrees, ExactValuesAreExact_I1) {
     EXPECT_EQ(sine_of_degrees(30), 0.5);
     EXPECT_EQ(sine_of_degrees(-150), -0.5);
     EXPECT_EQ(cosine_of_degrees(60), 0.5);
@@ -24,7 +24,7 @@ TEST(Degrees, exact_values_are_exact_I1) {
     EXPECT_EQ(cosine_of_degrees(720), 1.0);
 }
 
-TEST(Degrees, follow_the_library_in_long_double_I1) {
+TEST(Degrees, FollowTheLibraryInLongDouble_I1) {
     std::mt19937 random(7);
     // A unit in the last place, and the rounding of the angle in the library's own way.
     const auto isNear = [](double found, long double wanted, long double angle) {

@@ -13,7 +13,7 @@ void expect_said(const std::string &line, const std::string &said, const std::st
     EXPECT_NE(explanation.text.find(said), std::string::npos) << explanation.text;
 }
 
-TEST(Explain, says_what_each_word_means_with_its_unit_I1) {
+TEST(Explain, SaysWhatEachWordMeansWithItsUnit_I1) {
     expect_said("g1 x10 y[2*3] f200", "X10              X = 10 mm\n");
     expect_said("g1 x10 y[2*3] f200", "Y[2 * 3]         Y = 6 mm\n");
     expect_said("g1 x10 f200", "G1               straight move at the feed rate\n");
@@ -28,7 +28,7 @@ TEST(Explain, says_what_each_word_means_with_its_unit_I1) {
     expect_said("g1 x10", "in force: G1 G17 G40 G21 G90 G94 G54 G49 G99 G64 G97 G91.1 G8");
 }
 
-TEST(Explain, gives_the_errors_of_the_interpreter_I3) {
+TEST(Explain, GivesTheErrorsOfTheInterpreter_I3) {
     const Explanation no_feed = explain_line("G1 X1", "");
     EXPECT_TRUE(no_feed.isRefused);
     EXPECT_NE(no_feed.text.find("zero feed rate"), std::string::npos) << no_feed.text;
@@ -39,7 +39,7 @@ TEST(Explain, gives_the_errors_of_the_interpreter_I3) {
     EXPECT_FALSE(explain_line("", "").isRefused);
 }
 
-TEST(Explain, has_words_for_each_code_and_its_words_I1) {
+TEST(Explain, HasWordsForEachCodeAndItsWords_I1) {
     constexpr int MAX_G = 1000, FIRST_USER_CODE = 100;
     for (const char letter : {'g', 'm'}) {
         for (int number = 0; number < (letter == 'g' ? MAX_G : FIRST_USER_CODE); ++number) {

@@ -10,7 +10,7 @@ namespace {
 using test::Machine;
 using Calls = std::vector<std::string>;
 
-TEST(Flow, subroutine_gets_arguments_and_returns_a_value_I1) {
+TEST(Flow, SubroutineGetsArgumentsAndReturnsAValue_I1) {
     Machine machine;
     EXPECT_EQ(machine.run("O1 sub\n#5=9\nO1 return [#1*10+#2]\nO1 endsub\n#1=7 #5=1\nO1 call [3] [4]\n"
                           "(print,#<_value> #1 #5 #<_value_returned>)\n"),
@@ -19,7 +19,7 @@ TEST(Flow, subroutine_gets_arguments_and_returns_a_value_I1) {
     EXPECT_EQ(machine.record.calls[0], "print34.000000 7.000000 1.000000 1.000000");
 }
 
-TEST(Flow, a_nurbs_without_its_end_is_told_and_leaves_nothing_behind_I1) {
+TEST(Flow, ANurbsWithoutItsEndIsToldAndLeavesNothingBehind_I1) {
     Machine machine;
     EXPECT_EQ(machine.run("F10\nG5.2 P1 L2\nX1 Y1\n%\n"), Step::FAILED);
     EXPECT_NE(machine.error().find("G5.3"), std::string::npos) << machine.error();
@@ -27,7 +27,7 @@ TEST(Flow, a_nurbs_without_its_end_is_told_and_leaves_nothing_behind_I1) {
     EXPECT_EQ(machine.run("G0 X1\n"), Step::PROGRAM_END) << machine.error();
 }
 
-TEST(Flow, subroutine_in_a_file_of_its_own_I1) {
+TEST(Flow, SubroutineInAFileOfItsOwn_I1) {
     Machine machine;
     machine.write("drill.ngc", "o<drill> sub\nG0 X#1\no<other> call\no<drill> endsub\nM2\n");
     machine.write("other.ngc", "o<other> sub\nG0 Y5\no<other> endsub\n");
@@ -37,7 +37,7 @@ TEST(Flow, subroutine_in_a_file_of_its_own_I1) {
     EXPECT_EQ(machine.record.lines[1].end[1], 5);
 }
 
-TEST(Flow, error_in_a_subroutine_names_place_and_callers_I1) {
+TEST(Flow, ErrorInASubroutineNamesPlaceAndCallers_I1) {
     Machine machine;
     machine.write("inner.ngc", "o<inner> sub\nG0 X1\nG1 X[2/0] F1\no<inner> endsub\n");
     EXPECT_EQ(machine.run("o1 sub\no<inner> call\no1 endsub\no1 call\n"), Step::FAILED);
@@ -52,7 +52,7 @@ TEST(Flow, error_in_a_subroutine_names_place_and_callers_I1) {
     EXPECT_EQ(machine.interpreter->call_level(), 0);
 }
 
-TEST(Flow, loops_and_conditions_I1) {
+TEST(Flow, LoopsAndConditions_I1) {
     Machine machine;
     EXPECT_EQ(
         machine.run(
@@ -70,7 +70,7 @@ TEST(Flow, loops_and_conditions_I1) {
     EXPECT_EQ(Calls(machine.record.calls.begin(), machine.record.calls.begin() + 6), want);
 }
 
-TEST(Flow, failed_jump_goes_on_with_the_next_line_I1) {
+TEST(Flow, FailedJumpGoesOnWithTheNextLine_I1) {
     for (const char *line :
          {"o1 endwhile", "o1 else", "o1 endif", "o1 while [1]", "o1 break", "o1 endrepeat"}) {
         Machine machine;
@@ -81,13 +81,13 @@ TEST(Flow, failed_jump_goes_on_with_the_next_line_I1) {
     }
 }
 
-TEST(Flow, recursion_is_bounded_I1) {
+TEST(Flow, RecursionIsBounded_I1) {
     Machine machine;
     EXPECT_EQ(machine.run("o1 sub\no1 call\no1 endsub\no1 call\n"), Step::FAILED);
     EXPECT_NE(machine.error().find("nested"), std::string::npos);
 }
 
-TEST(Flow, endless_loop_ends_by_the_budget_I1) {
+TEST(Flow, EndlessLoopEndsByTheBudget_I1) {
     Settings settings;
     settings.statement_budget = 1000;
     Machine machine(settings);
@@ -95,7 +95,7 @@ TEST(Flow, endless_loop_ends_by_the_budget_I1) {
 }
 
 /// Where the structure of O words is broken, and not where that is noticed.
-TEST(Flow, broken_o_words_are_named_where_they_stand_I1) {
+TEST(Flow, BrokenOWordsAreNamedWhereTheyStand_I1) {
     const struct {
         const char *program, *error;
         int line;
@@ -120,7 +120,7 @@ TEST(Flow, broken_o_words_are_named_where_they_stand_I1) {
     }
 }
 
-TEST(Flow, labels_may_be_used_again_after_their_end_I1) {
+TEST(Flow, LabelsMayBeUsedAgainAfterTheirEnd_I1) {
     Machine machine;
     EXPECT_EQ(
         machine.run("o1 if [1]\n#1=1\no1 endif\no1 repeat [2]\n#1=[#1+1]\no1 endrepeat\no1 do\n#1=[#1+1]\n"
@@ -130,7 +130,7 @@ TEST(Flow, labels_may_be_used_again_after_their_end_I1) {
     EXPECT_EQ(machine.record.calls[0], "print12");
 }
 
-TEST(Flow, debug_texts_can_be_switched_off_I1) {
+TEST(Flow, DebugTextsCanBeSwitchedOff_I1) {
     Machine machine;
     EXPECT_EQ(machine.run("(debug,a)\n#5599=0\n(debug,b)\n(msg,c)\n(print,d)\n#5599=1\n(debug,e)\n"),
               Step::PROGRAM_END);
@@ -138,7 +138,7 @@ TEST(Flow, debug_texts_can_be_switched_off_I1) {
     EXPECT_EQ(std::vector<std::string>(machine.record.calls.begin(), machine.record.calls.begin() + 4), want);
 }
 
-TEST(Flow, names_of_ini_and_hal_can_be_switched_off_I1) {
+TEST(Flow, NamesOfIniAndHalCanBeSwitchedOff_I1) {
     class Source final : public test::Mill {
         std::optional<double> ini_value(std::string_view, std::string_view) const override { return 4; }
         std::optional<double> hal_value(std::string_view) const override { return 5; }
@@ -158,7 +158,7 @@ TEST(Flow, names_of_ini_and_hal_can_be_switched_off_I1) {
     }
 }
 
-TEST(Flow, a_tool_offset_that_is_retained_follows_the_tool_I1) {
+TEST(Flow, AToolOffsetThatIsRetainedFollowsTheTool_I1) {
     for (const bool isRetained : {true, false}) {
         Settings settings;
         settings.isToolOffsetRetained = isRetained;
@@ -188,7 +188,7 @@ TEST(Flow, a_tool_offset_that_is_retained_follows_the_tool_I1) {
     }
 }
 
-TEST(Flow, names_of_hal_keep_their_case_I1) {
+TEST(Flow, NamesOfHalKeepTheirCase_I1) {
     class Source final : public test::Mill {
         std::optional<double> hal_value(std::string_view name) const override {
             return name == "Panel.Speed" ? std::optional<double>(7) : std::nullopt;
@@ -204,21 +204,21 @@ TEST(Flow, names_of_hal_keep_their_case_I1) {
     EXPECT_EQ(record.calls.back(), "print7 7");
 }
 
-TEST(Flow, fanuc_calls_share_parameters_I1) {
+TEST(Flow, FanucCallsShareParameters_I1) {
     Machine machine;
     EXPECT_EQ(machine.run("#1=0\nM98 P7 L3\n(print,#1)\nM2\nO7\n#1=[#1+2]\nM99\n"), Step::PROGRAM_END)
         << machine.error();
     EXPECT_EQ(machine.record.calls[0], "print6.000000");
 }
 
-TEST(Flow, modes_saved_by_m73_come_back_after_the_call_I1) {
+TEST(Flow, ModesSavedByM73ComeBackAfterTheCall_I1) {
     Machine machine;
     EXPECT_EQ(machine.run("G91\no1 sub\nM73\nG90 G20\no1 endsub\no1 call\nG0 X1\nX1\n"), Step::PROGRAM_END)
         << machine.error();
     EXPECT_DOUBLE_EQ(machine.record.lines.back().end[0], 2.0);
 }
 
-TEST(Flow, remapped_code_runs_its_subroutine_with_words_I1) {
+TEST(Flow, RemappedCodeRunsItsSubroutineWithWords_I1) {
     Settings settings;
     settings.remaps = {"M400 modalgroup=5 argspec=Pq ngc=rm400"};
     Machine machine(settings);
@@ -230,7 +230,7 @@ TEST(Flow, remapped_code_runs_its_subroutine_with_words_I1) {
     EXPECT_EQ(machine.interpreter->error().what.message, "user-defined M400: missing: P");
 }
 
-TEST(Flow, mdi_goes_on_after_a_failed_line_I1) {
+TEST(Flow, MdiGoesOnAfterAFailedLine_I1) {
     Machine machine;
     ASSERT_TRUE(machine.interpreter->begin());
     EXPECT_EQ(machine.interpreter->execute("G0 X1"), Step::FILE_END);
@@ -239,7 +239,7 @@ TEST(Flow, mdi_goes_on_after_a_failed_line_I1) {
     EXPECT_EQ(machine.record.lines.size(), 2u);
 }
 
-TEST(ParameterFile, comes_back_as_written_I1) {
+TEST(ParameterFile, ComesBackAsWritten_I1) {
     Machine machine;
     machine.write("a.var", "5221\t12.5\n31 7\n");
     const std::string path = (machine.folder / "a.var").string();
@@ -252,7 +252,7 @@ TEST(ParameterFile, comes_back_as_written_I1) {
     EXPECT_EQ(other.interpreter->parameter(31), 7);
 }
 
-TEST(ParameterFile, bad_lines_are_named_I1) {
+TEST(ParameterFile, BadLinesAreNamed_I1) {
     for (const char *text : {"5221 1\nx 2\n", "5221 1\n5222\n", "5221 1\n5222 1,5\n", "5221 1\n99999 1\n"}) {
         Machine machine;
         machine.write("a.var", text);

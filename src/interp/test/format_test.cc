@@ -11,7 +11,7 @@ void expect_format(const std::string &from, const std::string &to) {
     EXPECT_EQ(format_program(to), to) << "formatting twice";
 }
 
-TEST(Format, writes_words_in_one_form_I1) {
+TEST(Format, WritesWordsInOneForm_I1) {
     expect_format("g01x 1.50y-.5  z0f1 00", "G1 X1.5 Y-0.5 Z0 F100");
     expect_format("n0010 G 38.20 Z-5 (probe)M3", "N10 G38.2 Z-5 M3 (probe)");
     expect_format("/ g0 x+3 @5 ^30 s200$1", "/G0 X3 @5 ^30 S200 $1");
@@ -22,7 +22,7 @@ TEST(Format, writes_words_in_one_form_I1) {
     expect_format("G0 X[[1", "G0 X[[1");
 }
 
-TEST(Format, keeps_the_value_of_expressions_I1) {
+TEST(Format, KeepsTheValueOfExpressions_I1) {
     expect_format("#1=[1+[2*3]]", "#1 = [1 + 2 * 3]");
     expect_format("#1=[[1+2]*3] #<A b>=#1", "#1 = [[1 + 2] * 3] #<A b> = #1");
     expect_format("#[1+1]=-sin[30]", "#[1 + 1] = -[SIN[30]]");
@@ -33,7 +33,7 @@ TEST(Format, keeps_the_value_of_expressions_I1) {
                   "X[1 LT 2 AND 3 GT 4] A[EXISTS[#<a>]] B[EXISTS[#5]]");
 }
 
-TEST(Format, indents_what_o_words_enclose_I1) {
+TEST(Format, IndentsWhatOWordsEnclose_I1) {
     expect_format(
         "O<Drill> SUB (hole)\nG0Z#1\no100if[#1gt0]\no101repeat[3]\nG1X1\no101endrepeat\no100elseif[1]\n"
         "G4P1\no100 else\nG4P2\nO100endif\no<Drill> endsub[2]\no<Drill>call[5](five)[6]\nM2\n",

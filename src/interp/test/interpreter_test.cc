@@ -10,7 +10,7 @@
 namespace mw::interp {
 namespace {
 
-TEST(Interpreter, line_reaches_the_machine_in_machine_units_I1) {
+TEST(Interpreter, LineReachesTheMachineInMachineUnits_I1) {
     test::Machine machine;
     EXPECT_EQ(machine.run("G20\nG1 X1 Y2 F60\nG21 G0 Z25.4\n"), Step::PROGRAM_END) << machine.error();
     ASSERT_EQ(machine.record.lines.size(), 2u);
@@ -24,7 +24,7 @@ TEST(Interpreter, line_reaches_the_machine_in_machine_units_I1) {
     EXPECT_NEAR(rapid.end[2], 25.4, 1e-12);
 }
 
-TEST(Interpreter, failed_block_names_place_and_changes_nothing_I1) {
+TEST(Interpreter, FailedBlockNamesPlaceAndChangesNothing_I1) {
     test::Machine machine;
     EXPECT_EQ(machine.run("G0 X1\nF10 G1 X2 Y[1/0]\n"), Step::FAILED);
     EXPECT_EQ(machine.record.lines.size(), 1u);
@@ -35,7 +35,7 @@ TEST(Interpreter, failed_block_names_place_and_changes_nothing_I1) {
     EXPECT_EQ(error.line_text, "F10 G1 X2 Y[1/0]");
 }
 
-TEST(Interpreter, numbered_parameters_take_effect_after_their_line_I1) {
+TEST(Interpreter, NumberedParametersTakeEffectAfterTheirLine_I1) {
     test::Machine machine;
     EXPECT_EQ(machine.run("#1=3\n#1=6 G0 X#1\nG0 X#1\n"), Step::PROGRAM_END) << machine.error();
     EXPECT_DOUBLE_EQ(machine.record.lines[0].end[0], 3);

@@ -42,7 +42,7 @@ class LargeFile : public testing::Test {
     Names names_;
 };
 
-TEST_F(LargeFile, stays_on_the_disk_and_gives_lines_in_any_order_I1) {
+TEST_F(LargeFile, StaysOnTheDiskAndGivesLinesInAnyOrder_I1) {
     const int moves = write("%\nG21\n", "M2\n%");
     const auto program = Program::load(path_, names_);
     ASSERT_TRUE(program.has_value()) << program.error().str();
@@ -58,7 +58,7 @@ TEST_F(LargeFile, stays_on_the_disk_and_gives_lines_in_any_order_I1) {
     EXPECT_EQ((*program)->line_text(moves + 4), "%");
 }
 
-TEST_F(LargeFile, is_held_when_it_has_o_words_I1) {
+TEST_F(LargeFile, IsHeldWhenItHasOWords_I1) {
     const int moves = write("G21\n", "o1 repeat [2]\nG0 X1\no1 endrepeat\nM2\n");
     const auto program = Program::load(path_, names_);
     ASSERT_TRUE(program.has_value()) << program.error().str();
@@ -67,7 +67,7 @@ TEST_F(LargeFile, is_held_when_it_has_o_words_I1) {
     EXPECT_EQ((*program)->line_text(moves + 3), "G0 X1");
 }
 
-TEST_F(LargeFile, that_changes_while_it_runs_is_an_error_and_no_other_program_I3) {
+TEST_F(LargeFile, ThatChangesWhileItRunsIsAnErrorAndNoOtherProgram_I3) {
     const int moves = write("G21\n", "M2\n");
     const auto program = Program::load(path_, names_);
     ASSERT_TRUE(program.has_value()) << program.error().str();

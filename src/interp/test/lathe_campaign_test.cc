@@ -10,7 +10,7 @@
 namespace mw::interp::test {
 namespace {
 
-TEST(LatheCampaign, cuts_nothing_but_the_stock_above_the_allowance_and_all_of_that_I1) {
+TEST(LatheCampaign, CutsNothingButTheStockAboveTheAllowanceAndAllOfThat_I1) {
     constexpr unsigned FIRST = 1, COUNT = 400;
     unsigned refused = 0;
     for (unsigned seed = FIRST; seed < FIRST + COUNT; ++seed) {
@@ -26,7 +26,7 @@ TEST(LatheCampaign, cuts_nothing_but_the_stock_above_the_allowance_and_all_of_th
 }
 
 /// The program that comes with the lathe of configs/sim makes the part that its comments promise.
-TEST(LatheProgram, lathe_part_is_roughed_in_layers_finished_and_parted_I1) {
+TEST(LatheProgram, LathePartIsRoughedInLayersFinishedAndParted_I1) {
     std::ifstream file(MW_SOURCE_DIR "/nc_files/lathe_part.ngc");
     std::ostringstream text;
     text << file.rdbuf();

@@ -37,12 +37,12 @@ void expect_points(const Profile &profile, const std::vector<Point> &points) {
     }
 }
 
-TEST(LatheOffset, goes_around_convex_corners_and_cuts_off_concave_ones_I1) {
+TEST(LatheOffset, GoesAroundConvexCornersAndCutsOffConcaveOnes_I1) {
     const Profile step = through({{0, 5}, {10, 5}, {10, 9}, {20, 9}});
     expect_points(offset_profile(step, 1.0, TOLERANCE), {{0, 6}, {9, 6}, {9, 9}, {10, 10}, {20, 10}});
 }
 
-TEST(LatheOffset, skips_a_groove_narrower_than_the_circles_I1) {
+TEST(LatheOffset, SkipsAGrooveNarrowerThanTheCircles_I1) {
     const Profile groove = through({{0, 9}, {10, 9}, {10, 4}, {11, 4}, {11, 9}, {20, 9}});
     const Profile edge = offset_profile(groove, 2.0, TOLERANCE);
     for (const ProfileSegment &piece : edge) {
@@ -51,24 +51,24 @@ TEST(LatheOffset, skips_a_groove_narrower_than_the_circles_I1) {
     EXPECT_NEAR(edge.back().end.x, 20.0, 1e-9);
 }
 
-TEST(LatheOffset, a_low_step_at_the_end_shadows_what_lies_before_it_I1) {
+TEST(LatheOffset, ALowStepAtTheEndShadowsWhatLiesBeforeIt_I1) {
     const Profile edge = offset_profile(through({{0, 5}, {10, 5}, {10, 5.5}}), 2.0, TOLERANCE);
     EXPECT_NEAR(edge.back().end.x, 10.0, 1e-9);
     EXPECT_NEAR(edge.back().end.y, 7.5, 1e-9);
 }
 
-TEST(LatheOffset, a_falling_beginning_is_reached_in_front_of_the_material_I1) {
+TEST(LatheOffset, AFallingBeginningIsReachedInFrontOfTheMaterial_I1) {
     const Profile edge = offset_profile(through({{0, 9}, {4, 5}, {10, 5}, {10, 9}}), 1.0, TOLERANCE);
     EXPECT_NEAR(edge.front().end.x, 0.0, 1e-9);
     EXPECT_NEAR(edge.front().end.y, 10.0, 1e-9);
 }
 
-TEST(LatheOffset, of_nothing_is_the_profile_I1) {
+TEST(LatheOffset, OfNothingIsTheProfile_I1) {
     const Profile step = through({{0, 5}, {10, 5}, {10, 9}});
     expect_points(offset_profile(step, 0.0, TOLERANCE), {{0, 5}, {10, 5}, {10, 9}});
 }
 
-TEST(LatheOffset, is_as_far_from_any_profile_as_it_has_to_be_and_no_further_I1) {
+TEST(LatheOffset, IsAsFarFromAnyProfileAsItHasToBeAndNoFurther_I1) {
     constexpr unsigned SEED = 77;
     std::mt19937 random(SEED);
     const auto number = [&](double low, double high) {
@@ -100,7 +100,7 @@ TEST(LatheOffset, is_as_far_from_any_profile_as_it_has_to_be_and_no_further_I1) 
     }
 }
 
-TEST(LatheFrame, material_is_on_the_side_where_the_start_is_not_I1) {
+TEST(LatheFrame, MaterialIsOnTheSideWhereTheStartIsNot_I1) {
     // (Z, X): a step down to the chuck, from outside and from inside.
     const auto across = [](Point start, std::vector<Point> points) {
         Profile profile = through(points);
@@ -115,7 +115,7 @@ TEST(LatheFrame, material_is_on_the_side_where_the_start_is_not_I1) {
     EXPECT_EQ(across({2, 10}, {{0, 10}, {-10, 12}, {-12, 5}}), 0.0);
 }
 
-TEST(LatheProfile, arcs_of_rounded_numbers_may_touch_a_shoulder_I1) {
+TEST(LatheProfile, ArcsOfRoundedNumbersMayTouchAShoulder_I1) {
     ProfileSegment arc;
     arc.isArc = true;
     arc.start = {0, 5};
@@ -133,7 +133,7 @@ TEST(LatheProfile, arcs_of_rounded_numbers_may_touch_a_shoulder_I1) {
     EXPECT_FALSE(isMonotonic({line({-1, 30}, {0, 5}), arc}, TOLERANCE));
 }
 
-TEST(LatheLayers, none_is_deeper_than_the_increment_from_the_start_down_I1) {
+TEST(LatheLayers, NoneIsDeeperThanTheIncrementFromTheStartDown_I1) {
     RoughingPlan plan;
     plan.increment = 4.0;
     plan.retract = 1.0;

@@ -35,14 +35,14 @@ class LatheStockTest : public ::testing::Test {
     CutRules rules{.allowance = 0.5, .step = 2.0, .skin = 0.0};
 };
 
-TEST_F(LatheStockTest, rapid_moves_in_material_are_found_I1) {
+TEST_F(LatheStockTest, RapidMovesInMaterialAreFound_I1) {
     EXPECT_EQ(stock.cut(line(true, {-2, 14}, {-1, 8}), rules), "");
     EXPECT_NE(stock.cut(line(true, {-1, 8}, {3, 11}), rules).find("rapid in stock"), std::string::npos);
     EXPECT_NE(stock.cut(line(true, {5, 13}, {5, 11}), rules).find("rapid in stock"), std::string::npos);
     EXPECT_EQ(stock.cut(line(true, {5, 13}, {9, 12}), rules), "");
 }
 
-TEST_F(LatheStockTest, layers_deeper_than_asked_are_found_I1) {
+TEST_F(LatheStockTest, LayersDeeperThanAskedAreFound_I1) {
     EXPECT_EQ(stock.cut(line(false, {-1, 10}, {20, 10}), rules), "");
     EXPECT_EQ(stock.surface_at(15), 10.0);
     EXPECT_EQ(stock.cut(line(false, {-1, 8}, {9.4, 8}), rules), "");
@@ -50,7 +50,7 @@ TEST_F(LatheStockTest, layers_deeper_than_asked_are_found_I1) {
     EXPECT_NE(stock.cut(line(false, {5, 13}, {5, 5.7}), rules).find("plunge"), std::string::npos);
 }
 
-TEST_F(LatheStockTest, gouges_and_spoiled_allowances_are_found_I1) {
+TEST_F(LatheStockTest, GougesAndSpoiledAllowancesAreFound_I1) {
     EXPECT_EQ(stock.cut(line(false, {-1, 10}, {21, 10}), rules), "");
     EXPECT_NE(stock.cut(line(false, {-1, 10}, {8, 5.4}), rules).find("gouge"), std::string::npos);
     EXPECT_NE(stock.cut(line(false, {-1, 8}, {9.6, 8}), rules).find("gouge"), std::string::npos);
@@ -58,7 +58,7 @@ TEST_F(LatheStockTest, gouges_and_spoiled_allowances_are_found_I1) {
     EXPECT_NE(stock.cut(line(true, {5, 13}, {5, 4}), rules).find("gouge"), std::string::npos);
 }
 
-TEST_F(LatheStockTest, work_not_done_is_found_I1) {
+TEST_F(LatheStockTest, WorkNotDoneIsFound_I1) {
     EXPECT_NE(stock.unfinished(0.5, false, 0.5), "");
     turn_step();
     EXPECT_NE(stock.unfinished(0.5, false, 0.5), "") << "the flat behind the step is 1 high";
@@ -67,7 +67,7 @@ TEST_F(LatheStockTest, work_not_done_is_found_I1) {
     EXPECT_NE(stock.unfinished(0.0, false, 0.0), "");
 }
 
-TEST_F(LatheStockTest, the_skin_of_the_cycle_before_may_go_in_one_pass_I1) {
+TEST_F(LatheStockTest, TheSkinOfTheCycleBeforeMayGoInOnePass_I1) {
     turn_step();
     CutRules finish{.allowance = 0.0, .step = 0.0, .skin = 0.5};
     EXPECT_EQ(stock.cut(line(false, {-1, 5}, {10, 5}), finish), "");
@@ -75,7 +75,7 @@ TEST_F(LatheStockTest, the_skin_of_the_cycle_before_may_go_in_one_pass_I1) {
         << "1 mm is left there";
 }
 
-TEST_F(LatheStockTest, arcs_are_cut_where_they_are_I1) {
+TEST_F(LatheStockTest, ArcsAreCutWhereTheyAre_I1) {
     const StockMove arc{false, {{-1, 11}, {3, 11}, true, {1, 11}, true}};
     rules.step = 3.5;
     EXPECT_EQ(stock.cut(arc, rules), "");
@@ -83,7 +83,7 @@ TEST_F(LatheStockTest, arcs_are_cut_where_they_are_I1) {
     EXPECT_NEAR(stock.surface_at(2.0), 11.0 - std::sqrt(3.0), 0.02);  // a column is as wide
 }
 
-TEST(Contour, distances_and_heights_are_those_of_lines_and_arcs_I1) {
+TEST(Contour, DistancesAndHeightsAreThoseOfLinesAndArcs_I1) {
     Contour contour;
     contour.strokes = {{{0, 5}, {2, 3}, true, {2, 5}, true}, {{2, 3}, {6, 3}, false, {}, false}};
     EXPECT_NEAR(contour.height(1.0), 5.0 - std::sqrt(3.0), 1e-12);

@@ -46,7 +46,7 @@ std::string error_of(const std::string &profile, const std::string &cycle) {
     return machine.error();
 }
 
-TEST(LatheCycle, g71_cuts_in_layers_and_follows_the_profile_I1) {
+TEST(LatheCycle, G71CutsInLayersAndFollowsTheProfile_I1) {
     EXPECT_EQ(moves_of(SHAFT, "G71 Q100 I6 R1"),
               "r20.000,2.000 r20.000,2.000 r20.000,2.000 r20.000,2.000 f20.000,-20.000 r21.000,-19.000 "
               "r21.000,1.000 r20.000,2.000 r14.000,2.000 f14.000,-20.000 r15.000,-19.000 r15.000,1.000 "
@@ -54,13 +54,13 @@ TEST(LatheCycle, g71_cuts_in_layers_and_follows_the_profile_I1) {
               "r5.000,2.000 f5.000,-10.000 f10.000,-12.000 f10.000,-20.000 f15.000,-20.000 f20.000,-20.000 ");
 }
 
-TEST(LatheCycle, d_leaves_a_distance_to_the_profile_I1) {
+TEST(LatheCycle, DLeavesADistanceToTheProfile_I1) {
     EXPECT_EQ(moves_of("O100 sub\nG0 X5\nG1 Z-10\nG1 X20\nO100 endsub\n", "G71 Q100 I15 D0.5"),
               "r20.000,2.000 r20.000,2.000 r20.000,2.000 r20.000,2.000 f20.000,-9.500 r20.500,-9.000 "
               "r20.500,1.500 r20.000,2.000 r5.500,2.000 f5.500,-9.500 f20.000,-9.500 ");
 }
 
-TEST(LatheCycle, g71_cuts_pockets_too_I1) {
+TEST(LatheCycle, G71CutsPocketsToo_I1) {
     const std::string moves = moves_of(GROOVE, "G71 Q100 I8 R1");
     // Levels 20 and 12 on the way down, 4 is below the groove: it is followed at once.
     EXPECT_NE(moves.find("f10.000,-10.000 f6.000,-12.000 f6.000,-20.000 f10.000,-22.000"), std::string::npos)
@@ -73,7 +73,7 @@ TEST(LatheCycle, g71_cuts_pockets_too_I1) {
         << deep;
 }
 
-TEST(LatheCycle, point_1_skips_pockets_and_point_2_cuts_only_them_I1) {
+TEST(LatheCycle, Point1SkipsPocketsAndPoint2CutsOnlyThem_I1) {
     const std::string skipping = moves_of(GROOVE, "G71.1 Q100 I20");
     EXPECT_EQ(skipping.find(",-12.000"), std::string::npos) << skipping;
     EXPECT_NE(skipping.find("f10.000,-22.000"), std::string::npos) << skipping;
@@ -84,7 +84,7 @@ TEST(LatheCycle, point_1_skips_pockets_and_point_2_cuts_only_them_I1) {
               "f20.000,-30.000 ");
 }
 
-TEST(LatheCycle, g72_cuts_along_x_I1) {
+TEST(LatheCycle, G72CutsAlongX_I1) {
     EXPECT_EQ(
         moves_of("O100 sub\nG0 Z-12\nG1 X10 Z-10\nG1 X5\nG1 Z2\nO100 endsub\n", "G72 Q100 I8 R1"),
         "r20.000,2.000 r20.000,2.000 r20.000,2.000 r20.000,2.000 f5.000,2.000 r6.000,3.000 r19.000,3.000 "
@@ -94,14 +94,14 @@ TEST(LatheCycle, g72_cuts_along_x_I1) {
     EXPECT_FALSE(moves_of("O100 sub\nG0 Z-12\nG1 X5\nO100 endsub\n", "G72.2 Q100 I8").empty());
 }
 
-TEST(LatheCycle, g70_finishes_in_passes_I1) {
+TEST(LatheCycle, G70FinishesInPasses_I1) {
     EXPECT_EQ(
         moves_of("O100 sub\nG0 X5\nG1 Z-10\nG1 X15\nO100 endsub\n", "G70 Q100 D1 E0 P2"),
         "r20.000,2.000 r20.000,2.000 r20.000,2.000 r5.500,2.000 f5.500,-9.500 f15.000,-9.500 f20.000,-9.500 "
         "r20.000,2.000 r5.000,2.000 f5.000,-10.000 f15.000,-10.000 ");
 }
 
-TEST(LatheCycle, corners_take_fillets_and_chamfers_I1) {
+TEST(LatheCycle, CornersTakeFilletsAndChamfers_I1) {
     Machine machine;
     ASSERT_EQ(machine.run("G18 G21 F100\nO100 sub\nG0 X10\nG1 Z-10 A1\nG1 X15 C1\nG1 Z-15\nO100 endsub\n"
                           "G0 X20 Z2\nG70 Q100\n"),
@@ -115,7 +115,7 @@ TEST(LatheCycle, corners_take_fillets_and_chamfers_I1) {
     EXPECT_NE(moves.find("f14.000,-10.000 f15.000,-11.000"), std::string::npos) << moves;
 }
 
-TEST(LatheCycle, profile_counts_moves_only_I1) {
+TEST(LatheCycle, ProfileCountsMovesOnly_I1) {
     const std::string profile = "O100 sub\n#1=5 (MSG, not shown)\nM3 S100\nG0 X#1\nG1 W-12 F1\n"
                                 "O101 if [1]\nX10 Z-12\nO101 endif\nO100 endsub\n";
     Machine machine;
@@ -129,7 +129,7 @@ TEST(LatheCycle, profile_counts_moves_only_I1) {
               "r20.000,2.000 r20.000,2.000 r20.000,2.000 r5.000,2.000 f5.000,-10.000 f10.000,-12.000 ");
 }
 
-TEST(LatheCycle, refuses_what_cannot_be_cut_I1) {
+TEST(LatheCycle, RefusesWhatCannotBeCut_I1) {
     EXPECT_NE(error_of(SHAFT, "G71 X10").find("needs the word Q"), std::string::npos);
     EXPECT_NE(error_of(SHAFT, "G71 Q77").find("no subroutine o<77>"), std::string::npos);
     EXPECT_NE(error_of(SHAFT, "G71 Q100 I0").find("above 0"), std::string::npos);
@@ -156,7 +156,7 @@ constexpr const char *LOW_END = "O100 sub\n"
                                 "G1 Z-20\n"
                                 "O100 endsub\n";
 
-TEST(LatheCycle, a_profile_that_ends_lower_is_cut_in_layers_from_the_start_I1) {
+TEST(LatheCycle, AProfileThatEndsLowerIsCutInLayersFromTheStart_I1) {
     EXPECT_EQ(moves_of(LOW_END, "G71 Q100 X18 I4 R1"),
               "r20.000,2.000 r18.000,2.000 r18.000,2.000 r18.000,2.000 f18.000,-20.000 r19.000,-19.000 "
               "r19.000,1.000 r18.000,2.000 r14.000,2.000 f14.000,-20.000 r15.000,-19.000 r15.000,1.000 "
@@ -168,7 +168,7 @@ TEST(LatheCycle, a_profile_that_ends_lower_is_cut_in_layers_from_the_start_I1) {
     EXPECT_NE(skipping.find("f10.000,-20.000 f18.000,-20.000"), std::string::npos) << skipping;
 }
 
-TEST(LatheCycle, a_start_below_the_profile_bores_in_layers_I1) {
+TEST(LatheCycle, AStartBelowTheProfileBoresInLayers_I1) {
     const std::string bore = "O100 sub\nG0 X10\nG1 Z-10\nG1 X6\nG1 Z-20\nO100 endsub\nG0 Z2\nG0 X3\n";
     EXPECT_EQ(
         moves_of(bore, "G71 Q100 X3 D0.5 I3 R1"),
@@ -178,19 +178,19 @@ TEST(LatheCycle, a_start_below_the_profile_bores_in_layers_I1) {
         "f9.500,-9.500 f6.000,-9.500 f5.500,-20.000 f3.000,-20.000 ");
 }
 
-TEST(LatheCycle, where_the_start_tells_no_side_it_is_refused_I1) {
+TEST(LatheCycle, WhereTheStartTellsNoSideItIsRefused_I1) {
     const std::string both = "O100 sub\nG0 Z0\nG1 X12 Z-5\nG1 X8 Z-15\nO100 endsub\n";
     EXPECT_NE(error_of(both, "G71 Q100 X10 I1").find("both sides"), std::string::npos);
     EXPECT_NE(error_of(both, "G70 Q100 X10 D1").find("both sides"), std::string::npos);
     EXPECT_FALSE(moves_of(both, "G70 Q100 X10").empty()) << "no distance, no side";
 }
 
-TEST(LatheCycle, a_distance_that_lifts_the_profile_above_the_start_is_kept_I1) {
+TEST(LatheCycle, ADistanceThatLiftsTheProfileAboveTheStartIsKept_I1) {
     EXPECT_EQ(moves_of("O100 sub\nG0 X9\nG1 Z-10\nG1 X10\nG1 Z-20\nO100 endsub\n", "G71 Q100 X10.5 D2 I1"),
               "r20.000,2.000 r10.500,2.000 r10.500,2.000 f11.000,2.000 f11.000,-8.268 f12.000,-20.000 ");
 }
 
-TEST(LatheCycle, lines_of_the_profile_before_its_first_code_are_straight_I1) {
+TEST(LatheCycle, LinesOfTheProfileBeforeItsFirstCodeAreStraight_I1) {
     const std::string expected = moves_of("O100 sub\nG1 X5\nG1 Z-10\nG1 X15\nO100 endsub\n", "G70 Q100");
     for (const char *outside : {"G80\n", "G0 X20 Z2\n", "G1 X20 Z2\n", "G2 X20 Z2 I1\n"}) {
         Machine machine;
@@ -207,7 +207,7 @@ TEST(LatheCycle, lines_of_the_profile_before_its_first_code_are_straight_I1) {
     EXPECT_NE(expected.find("r5.000,2.000 f5.000,-10.000 f15.000,-10.000"), std::string::npos) << expected;
 }
 
-TEST(LatheCycle, the_first_move_of_a_profile_is_the_way_to_it_however_short_I1) {
+TEST(LatheCycle, TheFirstMoveOfAProfileIsTheWayToItHoweverShort_I1) {
     const std::string moves = moves_of("O100 sub\nG0 X20 Z2\nG1 Z-10\nG1 X25\nO100 endsub\n", "G70 Q100");
     EXPECT_NE(moves.find("r20.000,2.000 f20.000,-10.000 f25.000,-10.000"), std::string::npos) << moves;
     Machine machine;
@@ -222,7 +222,7 @@ TEST(LatheCycle, the_first_move_of_a_profile_is_the_way_to_it_however_short_I1) 
     EXPECT_EQ(machine.record.arcs.size(), 1u);
 }
 
-TEST(LatheCycle, g70_is_compensated_and_roughing_is_not_I1) {
+TEST(LatheCycle, G70IsCompensatedAndRoughingIsNot_I1) {
     const std::string profile = "O100 sub\nG0 X5\nG1 Z-10\nG1 X15\nG1 Z-20\nO100 endsub\n";
     Machine machine;
     ASSERT_EQ(machine.run("G18 G21 G8 F100 G64\n" + profile + "G0 X20 Z2\nG42.1 D2\nG70 Q100\nG40\nG0 X30\n"),
@@ -242,13 +242,13 @@ TEST(LatheCycle, g70_is_compensated_and_roughing_is_not_I1) {
     }
 }
 
-TEST(LatheCycle, g70_leaves_a_hump_above_its_start_alone_between_passes_I1) {
+TEST(LatheCycle, G70LeavesAHumpAboveItsStartAloneBetweenPasses_I1) {
     const std::string hump = "O100 sub\nG0 X10\nG1 Z-5\nG1 X16 Z-8\nG1 X10 Z-11\nG1 Z-20\nO100 endsub\n";
     const std::string moves = moves_of(hump, "G70 Q100 X12 D1 E0 P2");
     EXPECT_NE(moves.find("f16.500,-19.500 r16.500,2.000 r12.000,2.000"), std::string::npos) << moves;
 }
 
-TEST(LatheCycle, g70_takes_the_side_of_the_roughing_before_it_I1) {
+TEST(LatheCycle, G70TakesTheSideOfTheRoughingBeforeIt_I1) {
     // A dish: falling along X as well as along Z. Turned, D lies at its other side.
     const std::string dish = "O100 sub\nG0 X20 Z0\nG1 X10 Z-5\nG1 X2 Z-6\nO100 endsub\n";
     EXPECT_NE(error_of(dish, "G70 Q100 X22 Z2 D0.5").find("opposite sides"), std::string::npos);
@@ -257,7 +257,7 @@ TEST(LatheCycle, g70_takes_the_side_of_the_roughing_before_it_I1) {
     EXPECT_NE(faced.rfind("r20.000,0.500 f9.853,-4.514 f1.938,-5.504"), std::string::npos) << faced;
 }
 
-TEST(LatheCycle, an_arc_whose_rounded_numbers_go_back_is_finished_as_one_I1) {
+TEST(LatheCycle, AnArcWhoseRoundedNumbersGoBackIsFinishedAsOne_I1) {
     Machine machine;
     ASSERT_EQ(machine.run("G18 G21 G8 F100\nO100 sub\nG0 X5 Z0\nG1 X10\nG3 X14 Z-4.001 I-0.001 K-4\nG1 Z-9\n"
                           "O100 endsub\nG0 X20 Z2\nG71 Q100 D0.2 I3\nG70 Q100\n"),
@@ -267,12 +267,12 @@ TEST(LatheCycle, an_arc_whose_rounded_numbers_go_back_is_finished_as_one_I1) {
     EXPECT_EQ(machine.record.lines[machine.record.lines.size() - 2].end[0], 10.0);
 }
 
-TEST(LatheCycle, distances_below_0_are_refused_I1) {
+TEST(LatheCycle, DistancesBelow0AreRefused_I1) {
     EXPECT_NE(error_of(SHAFT, "G71 Q100 D-0.5").find("D of 0 or more"), std::string::npos);
     EXPECT_NE(error_of(SHAFT, "G70 Q100 E-0.5").find("E of 0 or more"), std::string::npos);
 }
 
-TEST(LatheCycle, g71_2_cuts_what_falls_from_the_first_point_in_layers_too_I1) {
+TEST(LatheCycle, G712CutsWhatFallsFromTheFirstPointInLayersToo_I1) {
     const std::string moves =
         moves_of("O100 sub\nG0 X12 Z0\nG1 X6\nG1 Z-10\nG1 X14\nO100 endsub\n", "G71.2 Q100 X14 Z2 I2 R0.5");
     for (const char *layer : {"f12.000,-10.000", "f10.000,-10.000", "f8.000,-10.000", "f6.000,-10.000"}) {
@@ -281,7 +281,7 @@ TEST(LatheCycle, g71_2_cuts_what_falls_from_the_first_point_in_layers_too_I1) {
 }
 
 /// The controlled point of a lathe tool lies beside the centre of its nose, by the tool's orientation.
-TEST(LatheCompensation, orientation_moves_the_path_I1) {
+TEST(LatheCompensation, OrientationMovesThePath_I1) {
     const double shifts[][2] = {{0, 0}, {-1, 1}, {-1, -1}, {1, -1}, {1, 1},
                                 {0, 1}, {-1, 0}, {0, -1},  {1, 0},  {0, 0}};
     for (int orientation = 0; orientation <= 9; ++orientation) {
@@ -302,7 +302,7 @@ TEST(LatheCompensation, orientation_moves_the_path_I1) {
     }
 }
 
-TEST(LatheCompensation, orientation_comes_from_the_tool_table_I1) {
+TEST(LatheCompensation, OrientationComesFromTheToolTable_I1) {
     Machine machine;
     ToolEntry tool;
     tool.toolno = 1;
@@ -316,13 +316,13 @@ TEST(LatheCompensation, orientation_comes_from_the_tool_table_I1) {
     EXPECT_NEAR(machine.record.lines[2].end[2], -10.0, 1e-9);
 }
 
-TEST(LatheCompensation, refuses_other_orientations_I1) {
+TEST(LatheCompensation, RefusesOtherOrientations_I1) {
     EXPECT_NE(error_of("", "G42.1 D1 L10").find("0 to 9"), std::string::npos);
     EXPECT_NE(error_of("", "G42.1 D1 L-1").find("0 to 9"), std::string::npos);
     EXPECT_NE(error_of("", "G17 G42.1 D1 L1").find("G18"), std::string::npos);
 }
 
-TEST(Compensation, the_move_after_it_is_straight_and_a_thread_is_one_I1) {
+TEST(Compensation, TheMoveAfterItIsStraightAndAThreadIsOne_I1) {
     const std::string compensated = "F100 S100 M3\nG42.1 D0.2\nG1 X-1 Y-1\nG1 X-4\nG1 X-5 Y3\nG40\n";
     const std::string arc = "G17 G91\nG2 X1 Y1 R2\n";
     Machine machine;

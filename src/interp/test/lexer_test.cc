@@ -19,7 +19,7 @@ double nearest(const std::string &text) {
     return value;
 }
 
-TEST(Lexer, numbers_are_the_nearest_doubles_I1) {
+TEST(Lexer, NumbersAreTheNearestDoubles_I1) {
     constexpr unsigned SEED = 5;
     constexpr int COUNT = 1000000;
     std::mt19937_64 random(SEED);
@@ -51,7 +51,7 @@ TEST(Lexer, numbers_are_the_nearest_doubles_I1) {
     }
 }
 
-TEST(Lexer, numbers_end_where_they_cannot_go_on_I1) {
+TEST(Lexer, NumbersEndWhereTheyCannotGoOn_I1) {
     Lexer in("1 2. 5.75x");
     double value = 0;
     EXPECT_EQ(in.take_number(value), Lexer::Number::OK);

@@ -13,7 +13,7 @@
 namespace mw::interp::test {
 namespace {
 
-TEST(Limits, long_lines_are_read_up_to_a_million_characters_I2) {
+TEST(Limits, LongLinesAreReadUpToAMillionCharacters_I2) {
     Machine machine;
     EXPECT_EQ(machine.run("G0 X1 (" + std::string(900000, 'c') + ")\n"), Step::PROGRAM_END)
         << machine.error();
@@ -31,7 +31,7 @@ std::string nested_calls(int depth) {
     return text + "o1 call\n";
 }
 
-TEST(Limits, calls_are_nested_up_to_500_deep_I2) {
+TEST(Limits, CallsAreNestedUpTo500Deep_I2) {
     Machine machine;
     EXPECT_EQ(machine.run(nested_calls(400)), Step::PROGRAM_END) << machine.error();
     EXPECT_EQ(machine.record.lines.back().end[0], 7.0);
@@ -39,7 +39,7 @@ TEST(Limits, calls_are_nested_up_to_500_deep_I2) {
     EXPECT_NE(machine.error().find("nested more than 500 deep"), std::string::npos);
 }
 
-TEST(Limits, calls_take_up_to_1000_arguments_I2) {
+TEST(Limits, CallsTakeUpTo1000Arguments_I2) {
     std::string arguments;
     for (int i = 1; i <= 1000; ++i) {
         arguments += fmt::format(" [{}]", i);
@@ -57,7 +57,7 @@ TEST(Limits, calls_take_up_to_1000_arguments_I2) {
     EXPECT_NE(machine.error().find("at most 1000"), std::string::npos);
 }
 
-TEST(Limits, brackets_are_nested_up_to_128_deep_I2) {
+TEST(Limits, BracketsAreNestedUpTo128Deep_I2) {
     Machine machine;
     EXPECT_EQ(machine.run("#1=" + std::string(100, '[') + "1" + std::string(100, ']') + "\n"),
               Step::PROGRAM_END);
@@ -86,7 +86,7 @@ std::string state_of(const Machine &machine) {
                              machine.record.arcs.size(), machine.record.calls.size());
 }
 
-TEST(FailedBlock, changes_nothing_I2) {
+TEST(FailedBlock, ChangesNothing_I2) {
     constexpr unsigned SEED = 20260;
     std::mt19937 random(SEED);
     const std::array<const char *, 34> good = {

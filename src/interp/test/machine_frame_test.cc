@@ -11,7 +11,7 @@ namespace {
 
 constexpr double EXACT = 1e-9;  // rounding of a few products of coordinates
 
-TEST(MachineFrame, offsets_rotation_and_tool_add_up_I2) {
+TEST(MachineFrame, OffsetsRotationAndToolAddUp_I2) {
     test::Machine machine;
     EXPECT_EQ(machine.run("G10 L2 P1 X10 Y20 R90\nG92.1\nG52 X1\nG43.1 Z5\nG0 X2 Y3 Z4\n"), Step::PROGRAM_END)
         << machine.error();
@@ -21,7 +21,7 @@ TEST(MachineFrame, offsets_rotation_and_tool_add_up_I2) {
     EXPECT_NEAR(end[2], 9, EXACT);
 }
 
-TEST(MachineFrame, arc_has_centre_normal_and_sweep_I2) {
+TEST(MachineFrame, ArcHasCentreNormalAndSweep_I2) {
     test::Machine machine;
     EXPECT_EQ(machine.run("G10 L2 P1 R90\nG0 X0 Y0\nF60 G3 X2 I1 Z3 P2\n"), Step::PROGRAM_END)
         << machine.error();
@@ -36,7 +36,7 @@ TEST(MachineFrame, arc_has_centre_normal_and_sweep_I2) {
     EXPECT_NEAR(arc.settings.feed, 1, EXACT);
 }
 
-TEST(MachineFrame, full_circle_in_xz_turns_about_y_I2) {
+TEST(MachineFrame, FullCircleInXzTurnsAboutY_I2) {
     test::Machine machine;
     EXPECT_EQ(machine.run("F60\nG18 G2 K5\n"), Step::PROGRAM_END) << machine.error();
     const ArcMove &arc = machine.record.arcs[0];
@@ -45,20 +45,20 @@ TEST(MachineFrame, full_circle_in_xz_turns_about_y_I2) {
     EXPECT_NEAR(arc.angle_rad, -2 * std::numbers::pi, EXACT);
 }
 
-TEST(MachineFrame, angles_alone_are_fed_in_degrees_I2) {
+TEST(MachineFrame, AnglesAloneAreFedInDegrees_I2) {
     test::Machine machine;
     EXPECT_EQ(machine.run("G20\nF60 G1 A30\nG1 X1 A60\n"), Step::PROGRAM_END) << machine.error();
     EXPECT_NEAR(machine.record.lines[0].settings.feed, 1.0, EXACT);   // degrees per second
     EXPECT_NEAR(machine.record.lines[1].settings.feed, 25.4, EXACT);  // mm per second
 }
 
-TEST(MachineFrame, inverse_time_becomes_the_speed_of_the_move_I2) {
+TEST(MachineFrame, InverseTimeBecomesTheSpeedOfTheMove_I2) {
     test::Machine machine;
     EXPECT_EQ(machine.run("G93\nG1 X30 F2\n"), Step::PROGRAM_END) << machine.error();
     EXPECT_NEAR(machine.record.lines[0].settings.feed, 1.0, EXACT);  // 30 mm in half a minute
 }
 
-TEST(MachineFrame, compensated_corner_is_cut_at_the_intersection_I1) {
+TEST(MachineFrame, CompensatedCornerIsCutAtTheIntersection_I1) {
     test::Machine machine;
     EXPECT_EQ(machine.run("F10\nG41.1 D2\nG1 X10\nG1 X20\nG1 Y10\nG40\n"), Step::PROGRAM_END)
         << machine.error();
@@ -68,13 +68,13 @@ TEST(MachineFrame, compensated_corner_is_cut_at_the_intersection_I1) {
     EXPECT_NEAR(machine.record.lines[2].end[0], 19, EXACT);
 }
 
-TEST(MachineFrame, corner_too_narrow_for_the_tool_is_refused_I1) {
+TEST(MachineFrame, CornerTooNarrowForTheToolIsRefused_I1) {
     test::Machine machine;
     EXPECT_EQ(machine.run("F10\nG41.1 D2\nG1 X10\nG1 X20\nG1 Y0.5\nG1 X10\n"), Step::FAILED);
     EXPECT_NE(machine.error().find("gouging"), std::string::npos);
 }
 
-TEST(MachineFrameSpindles, aNumberThatNoSpindleHasIsRefusedWithAMessage_I1) {
+TEST(MachineFrameSpindles, ANumberThatNoSpindleHasIsRefusedWithAMessage_I1) {
     test::Recorder record;
     MachineFrame frame(record, LengthUnits::MM);
     for (const int spindle : {-1, 8, 1000}) {

@@ -40,7 +40,7 @@ class PluginTest : public testing::Test {
     std::unique_ptr<ProgramInterpreter> plugin_;
 };
 
-TEST_F(PluginTest, canterp_makes_the_calls_that_it_reads_I1) {
+TEST_F(PluginTest, CanterpMakesTheCallsThatItReads_I1) {
     EXPECT_EQ(run("    1 N..... USE_LENGTH_UNITS(CANON_UNITS_MM)\n"
                   "    2 N..... SET_FEED_RATE(600.0000)\n\n"
                   "   xx xxxxx STRAIGHT_TRAVERSE( 1 2 3   0 0 0  0 0 0)\n"
@@ -61,7 +61,7 @@ TEST_F(PluginTest, canterp_makes_the_calls_that_it_reads_I1) {
     EXPECT_EQ(record_.calls.back(), "mist_on");
 }
 
-TEST_F(PluginTest, canterp_names_the_place_of_what_is_wrong_and_makes_no_half_call_I1) {
+TEST_F(PluginTest, CanterpNamesThePlaceOfWhatIsWrongAndMakesNoHalfCall_I1) {
     for (const auto &[text, place, why] : std::initializer_list<std::array<const char *, 3>>{
              {"\n1 N1 BOGUS(1)\n", ":2:6:", "there is no canon call BOGUS"},
              {"1 N1 STRAIGHT_FEED(1, 2)\n", ":1:24:", "an argument is missing"},
@@ -78,7 +78,7 @@ TEST_F(PluginTest, canterp_names_the_place_of_what_is_wrong_and_makes_no_half_ca
     EXPECT_TRUE(record_.calls.empty());
 }
 
-TEST_F(PluginTest, what_is_no_plugin_is_refused_I1) {
+TEST_F(PluginTest, WhatIsNoPluginIsRefused_I1) {
     const auto missing = open_plugin("no_such_interpreter.so", parts_);
     ASSERT_FALSE(missing);
     EXPECT_NE(missing.error().message.find("no_such_interpreter.so was not found"), std::string::npos);

@@ -41,7 +41,7 @@ class PreviewRun : public testing::Test {
     unsigned axis_mask = 0x1ff;
 };
 
-TEST_F(PreviewRun, yields_moves_with_their_places_I1) {
+TEST_F(PreviewRun, YieldsMovesWithTheirPlaces_I1) {
     ASSERT_EQ(run("G21 G90 F60\nN7 G0 X1\nG1 Y2\n(section, pocket)\nG2 X3 I1\nG4 P0.5\nM2\n"),
               PreviewEnd::DONE)
         << sink.all().front().str();
@@ -63,7 +63,7 @@ TEST_F(PreviewRun, yields_moves_with_their_places_I1) {
     EXPECT_DOUBLE_EQ(events[3].value, 0.5);
 }
 
-TEST_F(PreviewRun, gives_machine_tip_or_program_coordinates_I1) {
+TEST_F(PreviewRun, GivesMachineTipOrProgramCoordinates_I1) {
     const std::string program = "G21 G90\nG10 L2 P1 X10 Y0 R90\nG54\nG43.1 Z5\nG0 X1 Y2 Z3\nM2\n";
     ASSERT_EQ(run(program), PreviewEnd::DONE);
     const Pose machine = events.back().end;
@@ -81,7 +81,7 @@ TEST_F(PreviewRun, gives_machine_tip_or_program_coordinates_I1) {
     EXPECT_NEAR(events.back().end.z(), 3.0, 1e-12);
 }
 
-TEST_F(PreviewRun, names_subroutines_as_sections_I1) {
+TEST_F(PreviewRun, NamesSubroutinesAsSections_I1) {
     ASSERT_EQ(run("G21\no<hole> sub\nG0 Z#1\no<hole> endsub\nG0 X1\no<hole> call [5]\nM2\n"),
               PreviewEnd::DONE);
     ASSERT_EQ(events.size(), 2U);
@@ -91,7 +91,7 @@ TEST_F(PreviewRun, names_subroutines_as_sections_I1) {
     EXPECT_EQ(events[1].call_level, 1);
 }
 
-TEST_F(PreviewRun, adds_the_moves_of_the_machine_at_a_tool_change_I1) {
+TEST_F(PreviewRun, AddsTheMovesOfTheMachineAtAToolChange_I1) {
     world.table = built_in_tools();
     tool_change_moves = [](const Pose &from) {
         Pose up = from;
@@ -107,7 +107,7 @@ TEST_F(PreviewRun, adds_the_moves_of_the_machine_at_a_tool_change_I1) {
     EXPECT_DOUBLE_EQ(events[3].end.x(), 4.0);
 }
 
-TEST_F(PreviewRun, tells_how_fast_the_spindle_turns_that_a_move_follows_I1) {
+TEST_F(PreviewRun, TellsHowFastTheSpindleTurnsThatAMoveFollows_I1) {
     ASSERT_EQ(
         run("G21 G90 G10 L2 P1 X-5 G54\nG96 D1000 S31.41592653589793 M3\nG95 F0.1\nG0 X30\nG1 X10\nG1 X1\n"
             "G97 S500\nG1 X20\nG94 G1 X30 F100\nM2\n"),
@@ -125,7 +125,7 @@ TEST_F(PreviewRun, tells_how_fast_the_spindle_turns_that_a_move_follows_I1) {
     EXPECT_EQ(speeds[3], 0);
 }
 
-TEST_F(PreviewRun, refuses_axes_that_the_machine_does_not_have_I3) {
+TEST_F(PreviewRun, RefusesAxesThatTheMachineDoesNotHave_I3) {
     axis_mask = 7;
     EXPECT_EQ(run("G21\nG0 X1\nG0 X2 A10\nM2\n"), PreviewEnd::FAILED);
     ASSERT_EQ(sink.count_errors(), 1);
@@ -135,7 +135,7 @@ TEST_F(PreviewRun, refuses_axes_that_the_machine_does_not_have_I3) {
     EXPECT_EQ(events.size(), 1U);
 }
 
-TEST_F(PreviewRun, goes_on_behind_errors_and_tells_them_all_I3) {
+TEST_F(PreviewRun, GoesOnBehindErrorsAndTellsThemAll_I3) {
     EXPECT_EQ(run("G21\nG1 X1\nG0 X2\nG99 Q\nG0 X3\nM2\n"), PreviewEnd::FAILED);
     ASSERT_EQ(sink.count_errors(), 2);
     EXPECT_EQ(sink.all()[0].what.place.line, 2);
@@ -143,7 +143,7 @@ TEST_F(PreviewRun, goes_on_behind_errors_and_tells_them_all_I3) {
     EXPECT_EQ(events.size(), 2U);
 }
 
-TEST_F(PreviewRun, tells_syntax_errors_behind_an_error_that_ends_it_I3) {
+TEST_F(PreviewRun, TellsSyntaxErrorsBehindAnErrorThatEndsIt_I3) {
     EXPECT_EQ(run("G21\nG0 X1\no1 endif\nG0 X[1\nG999\no2 while [1\nG1 X1\nG0 X\nM2\n"), PreviewEnd::FAILED);
     std::vector<int> lines;
     for (const diag::Diagnostic &one : sink.all()) {
@@ -152,7 +152,7 @@ TEST_F(PreviewRun, tells_syntax_errors_behind_an_error_that_ends_it_I3) {
     EXPECT_EQ(lines, (std::vector<int>{3, 4, 6, 8}));
 }
 
-TEST_F(PreviewRun, ends_endless_loops_with_an_error_I1) {
+TEST_F(PreviewRun, EndsEndlessLoopsWithAnError_I1) {
     PreviewOptions options;
     options.statement_budget = 10000;
     EXPECT_EQ(run("o1 while [1]\n#1=[#1+1]\no1 endwhile\nM2\n", options), PreviewEnd::FAILED);
@@ -161,7 +161,7 @@ TEST_F(PreviewRun, ends_endless_loops_with_an_error_I1) {
 }
 
 /// Such loops are found at once, however they move: nothing changes from pass to pass.
-TEST_F(PreviewRun, finds_loops_that_repeat_themselves_I1) {
+TEST_F(PreviewRun, FindsLoopsThatRepeatThemselves_I1) {
     const struct {
         const char *program;
         int line;
@@ -191,7 +191,7 @@ TEST_F(PreviewRun, finds_loops_that_repeat_themselves_I1) {
 }
 
 /// Which loop it is: not an inner one that ends, not one before it, and in a subroutine with its callers.
-TEST_F(PreviewRun, names_the_loop_that_does_not_end_I1) {
+TEST_F(PreviewRun, NamesTheLoopThatDoesNotEnd_I1) {
     const struct {
         const char *program;
         int line, callers;
@@ -224,7 +224,7 @@ TEST_F(PreviewRun, names_the_loop_that_does_not_end_I1) {
     }
 }
 
-TEST_F(PreviewRun, long_honest_programs_are_no_endless_loops_I1) {
+TEST_F(PreviewRun, LongHonestProgramsAreNoEndlessLoops_I1) {
     PreviewOptions options;
     options.idle_budget = 200;
     options.statement_budget = 2000;
@@ -243,7 +243,7 @@ TEST_F(PreviewRun, long_honest_programs_are_no_endless_loops_I1) {
     EXPECT_FALSE(sink.hasErrors());
 }
 
-TEST_F(PreviewRun, loops_that_move_without_end_are_found_by_their_time_I1) {
+TEST_F(PreviewRun, LoopsThatMoveWithoutEndAreFoundByTheirTime_I1) {
     PreviewOptions options;
     options.time_budget_s = 3600;
     EXPECT_EQ(
@@ -257,7 +257,7 @@ TEST_F(PreviewRun, loops_that_move_without_end_are_found_by_their_time_I1) {
     EXPECT_GT(events.size(), 500U);
 }
 
-TEST_F(PreviewRun, can_be_cancelled_and_says_how_far_it_is_I1) {
+TEST_F(PreviewRun, CanBeCancelledAndSaysHowFarItIs_I1) {
     std::string program = "G21\n";
     for (int i = 0; i < 1000; ++i) {
         program += "G0 X" + std::to_string(i) + "\n";
@@ -288,7 +288,7 @@ std::size_t resident_bytes() {
     return resident * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
-TEST(PreviewMemory, does_not_grow_with_the_program_I1) {
+TEST(PreviewMemory, DoesNotGrowWithTheProgram_I1) {
     constexpr int LINES = 1000000;
     constexpr std::size_t BOUND = 8U << 20U;
     std::string path = (std::filesystem::temp_directory_path() / "preview-XXXXXX").string();

@@ -32,7 +32,7 @@ std::string begin_error(const std::string &remap) {
     return begun ? "" : begun.error().str();
 }
 
-TEST(Remap, argspec_gives_words_by_name_and_checks_what_is_required_I1) {
+TEST(Remap, ArgspecGivesWordsByNameAndChecksWhatIsRequired_I1) {
     Machine machine(with_remaps({"M400 argspec=PQrn ngc=rm400"}));
     machine.write("rm400.ngc", "o<rm400> sub\n(print,p=#<p> q=#<q> r=#<r> n=%d#<n>)\no<rm400> endsub\n");
     EXPECT_EQ(calls_of(machine, "G21\nM400 P1 Q2\n")[0], "printp=1.000000 q=2.000000 r=###### n=2");
@@ -42,7 +42,7 @@ TEST(Remap, argspec_gives_words_by_name_and_checks_what_is_required_I1) {
     EXPECT_EQ(machine.interpreter->error().line_text, "O <rm400> call ");
 }
 
-TEST(Remap, positional_words_stand_in_the_order_of_the_argspec_I1) {
+TEST(Remap, PositionalWordsStandInTheOrderOfTheArgspec_I1) {
     Settings settings = with_remaps({"G88.1 modalgroup=1 argspec=@xYpQ ngc=cycle"});
     settings.isArgumentCountNamed = true;
     Machine machine(settings);
@@ -51,7 +51,7 @@ TEST(Remap, positional_words_stand_in_the_order_of_the_argspec_I1) {
     EXPECT_EQ(calls_of(machine, "G88.1 Y2 Q4\n")[0], "print2 4 0 0 n 2");
 }
 
-TEST(Remap, feed_and_speed_may_be_demanded_I1) {
+TEST(Remap, FeedAndSpeedMayBeDemanded_I1) {
     Machine machine(with_remaps({"M400 argspec=^> ngc=rm400"}));
     machine.write("rm400.ngc", "o<rm400> sub\n(print,ran)\no<rm400> endsub\n");
     EXPECT_EQ(machine.run("M400\n"), Step::FAILED);
@@ -59,7 +59,7 @@ TEST(Remap, feed_and_speed_may_be_demanded_I1) {
     EXPECT_EQ(calls_of(machine, "F100 S1000\nM400\n").at(1), "printran");
 }
 
-TEST(Remap, modal_group_says_when_the_code_runs_I1) {
+TEST(Remap, ModalGroupSaysWhenTheCodeRuns_I1) {
     Machine machine(with_remaps({"M410 modalgroup=5 ngc=say", "M411 modalgroup=8 ngc=say", "M412 ngc=say"}));
     machine.write("say.ngc", "o<say> sub\n(print,remap)\no<say> endsub\n");
     EXPECT_EQ(calls_of(machine, "M410 M3 S10\n"),
@@ -71,7 +71,7 @@ TEST(Remap, modal_group_says_when_the_code_runs_I1) {
     EXPECT_EQ(machine.interpreter->error().what.message, "Two m codes used from same modal group");
 }
 
-TEST(Remap, code_inside_its_own_procedure_has_its_own_meaning_I1) {
+TEST(Remap, CodeInsideItsOwnProcedureHasItsOwnMeaning_I1) {
     Machine machine(with_remaps({"M6 modalgroup=6 ngc=change", "T ngc=prepare", "S ngc=speed", "F ngc=feed",
                                  "M1 ngc=pause", "M8 ngc=coolant"}));
     for (const auto &[name, code] :
@@ -95,7 +95,7 @@ TEST(Remap, code_inside_its_own_procedure_has_its_own_meaning_I1) {
     EXPECT_DOUBLE_EQ(machine.interpreter->active_codes().settings[2], 50.0);
 }
 
-TEST(Remap, new_code_cannot_stand_in_its_own_procedure_I1) {
+TEST(Remap, NewCodeCannotStandInItsOwnProcedure_I1) {
     Machine machine(with_remaps({"M400 ngc=rm400", "M401 ngc=rm401"}));
     machine.write("rm400.ngc", "o<rm400> sub\nM401\no<rm400> endsub\n");
     machine.write("rm401.ngc", "o<rm401> sub\nM400\no<rm401> endsub\n");
@@ -105,7 +105,7 @@ TEST(Remap, new_code_cannot_stand_in_its_own_procedure_I1) {
     EXPECT_EQ(machine.run("G0 X1\n"), Step::PROGRAM_END);
 }
 
-TEST(Remap, remapped_motion_is_not_modal_by_itself_I1) {
+TEST(Remap, RemappedMotionIsNotModalByItself_I1) {
     Machine machine(with_remaps({"G88.3 argspec=x ngc=g883"}));
     machine.write("g883.ngc", "o<g883> sub\n(print,x#<x>)\no<g883> endsub\n");
     EXPECT_EQ(machine.run("G0 X1\nG88.3 X2\nX4\n"), Step::PROGRAM_END);
@@ -113,7 +113,7 @@ TEST(Remap, remapped_motion_is_not_modal_by_itself_I1) {
     EXPECT_EQ(machine.record.calls[0], "printx2.000000");
 }
 
-TEST(Remap, bad_lines_name_their_place_I1) {
+TEST(Remap, BadLinesNameTheirPlace_I1) {
     EXPECT_NE(begin_error("M400 argspec=P? ngc=x").find("test.ini:10:21:"), std::string::npos)
         << begin_error("M400 argspec=P? ngc=x");
     EXPECT_NE(begin_error("M400 argspec=Pp ngc=x").find("twice"), std::string::npos);
@@ -127,7 +127,7 @@ TEST(Remap, bad_lines_name_their_place_I1) {
     EXPECT_NE(begin_error("").find("must come first"), std::string::npos);
 }
 
-TEST(Remap, code_whose_meaning_cannot_change_is_warned_about_I1) {
+TEST(Remap, CodeWhoseMeaningCannotChangeIsWarnedAbout_I1) {
     Machine machine(with_remaps({"G1 ngc=x", "M400 ngc=rm400"}));
     machine.write("rm400.ngc", "o<rm400> sub\n(print,ran)\no<rm400> endsub\n");
     EXPECT_EQ(calls_of(machine, "F100 G1 X1\nM400\n").front(), "printran");
@@ -136,7 +136,7 @@ TEST(Remap, code_whose_meaning_cannot_change_is_warned_about_I1) {
               std::string::npos);
 }
 
-TEST(Remap, two_lines_for_one_code_are_refused_I1) {
+TEST(Remap, TwoLinesForOneCodeAreRefused_I1) {
     Machine machine(with_remaps({"M400 ngc=a", "m400 ngc=b"}));
     const Result<> begun = machine.interpreter->begin();
     ASSERT_FALSE(begun);
@@ -144,11 +144,11 @@ TEST(Remap, two_lines_for_one_code_are_refused_I1) {
     EXPECT_NE(begun.error().message.find("remapped twice"), std::string::npos);
 }
 
-TEST(Remap, python_function_needs_a_toplevel_I1) {
+TEST(Remap, PythonFunctionNeedsAToplevel_I1) {
     EXPECT_NE(begin_error("M400 py=handler").find("[PYTHON]TOPLEVEL is missing"), std::string::npos);
 }
 
-TEST(Remap, missing_python_is_one_clear_error_and_only_where_it_is_needed_I1) {
+TEST(Remap, MissingPythonIsOneClearErrorAndOnlyWhereItIsNeeded_I1) {
     Settings settings = with_remaps({"M400 py=handler"});
     settings.scripts.top_level = "toplevel.py";
     settings.scripts.place = {"test.ini", 20, 3};

@@ -86,7 +86,7 @@ TEST(MachineConfig, AnEmptyParameterFileIsTold_A3) {
     EXPECT_FALSE(Config(text).says("is empty")) << "a new machine has none yet";
 }
 
-TEST(MachineConfig, KeysWithoutEffectAreNamedAndErrorsWhenStrict_D5) {
+TEST(MachineConfig, KeysWithoutEffectAreNamedAndErrorsWhenStrict_A3) {
     for (const char *line :
          {"[TRAJ]\nTPMOD = mytp\n", "[EMCMOT]\nHOMEMOD = myhome\n", "[TRAJ]\nPOSITION_FILE = p.txt\n",
           "[TRAJ]\nNO_PROBE_JOG_ERROR = 1\n", "[TRAJ]\nARC_BLEND_GAP_CYCLES = 4\n",
@@ -127,7 +127,7 @@ TEST(IniKeys, EachIsDeclaredOnceWithItsMeaning_A3) {
     EXPECT_GT(seen.size(), 150U);
 }
 
-TEST(IniKeys, EveryKeyWithoutEffectIsToldWhereItIsSet_D5) {
+TEST(IniKeys, EveryKeyWithoutEffectIsToldWhereItIsSet_A3) {
     int told = 0;
     for (const config::IniKey &key : all_ini_keys()) {
         if (key.effect != config::IniEffect::NONE) {

@@ -59,7 +59,7 @@ TEST(PathMonitor, DeviationIsMeasuredInOrder) {
     EXPECT_NEAR(monitor.figures().cutting_length, 20.0, 1e-12);
 }
 
-TEST(PathMonitor, MovesOfRotaryAxesAloneAreDegreesAndNoLength_D12) {
+TEST(PathMonitor, MovesOfRotaryAxesAloneAreDegreesAndNoLength) {
     PathMonitor monitor(1000000);
     monitor.start(at(0, 0));
     motion::Line line;

@@ -157,7 +157,7 @@ TEST(Machine, FeedMovesWaitForTheSpindleAndFollowIt_C15) {
     ASSERT_TRUE(rig.run_until([&] { return rig.isDone(id); }, 20));
 }
 
-TEST(Machine, DeactivatingAJointLeavesItsAmplifierAlone_D9) {
+TEST(Machine, DeactivatingAJointLeavesItsAmplifierAlone_C6) {
     MotionRig rig;
     rig.ready(Mode::FREE);
     ASSERT_TRUE(rig.out->joint[1].isAmpEnabled);

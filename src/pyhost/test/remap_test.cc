@@ -9,7 +9,7 @@ namespace {
 
 using Events = std::vector<std::string>;
 
-TEST(PythonRemap, prolog_procedure_and_epilog_share_their_local_parameters_I1) {
+TEST(PythonRemap, PrologProcedureAndEpilogShareTheirLocalParameters_I1) {
     Scripted it;
     it.remap("M400 argspec=Pq prolog=before ngc=rm400 epilog=after");
     it.handlers("def before(self, **words):\n"
@@ -31,7 +31,7 @@ TEST(PythonRemap, prolog_procedure_and_epilog_share_their_local_parameters_I1) {
     EXPECT_EQ(it.error(), "user-defined M400: missing: P");
 }
 
-TEST(PythonRemap, prolog_runs_before_its_procedure_is_looked_for_I1) {
+TEST(PythonRemap, PrologRunsBeforeItsProcedureIsLookedFor_I1) {
     Scripted it;
     it.remap("M400 modalgroup=5 prolog=fails ngc=not_there");
     it.remap("M401 modalgroup=5 prolog=says_yes ngc=not_there");
@@ -50,7 +50,7 @@ TEST(PythonRemap, prolog_runs_before_its_procedure_is_looked_for_I1) {
     EXPECT_EQ(it.interpreter->call_level(), 0);
 }
 
-TEST(PythonRemap, function_executes_blocks_and_subroutines_in_order_I1) {
+TEST(PythonRemap, FunctionExecutesBlocksAndSubroutinesInOrder_I1) {
     Scripted it;
     it.remap("G88.1 modalgroup=1 argspec=xyp py=spiral");
     it.handlers(
@@ -70,7 +70,7 @@ TEST(PythonRemap, function_executes_blocks_and_subroutines_in_order_I1) {
                                   "STRAIGHT_TRAVERSE(0.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)"}));
 }
 
-TEST(PythonRemap, yield_waits_in_program_order_I1) {
+TEST(PythonRemap, YieldWaitsInProgramOrder_I1) {
     Scripted it;
     it.remap("M400 modalgroup=5 py=wait");
     it.handlers("def wait(self, **words):\n"
@@ -92,7 +92,7 @@ TEST(PythonRemap, yield_waits_in_program_order_I1) {
                       "STRAIGHT_TRAVERSE(9.0000", "STRAIGHT_TRAVERSE(10.0000"}));
 }
 
-TEST(PythonRemap, yields_in_prolog_epilog_nested_remaps_and_owords_keep_their_order_I1) {
+TEST(PythonRemap, YieldsInPrologEpilogNestedRemapsAndOwordsKeepTheirOrder_I1) {
     Scripted it;
     it.remap("M400 prolog=step ngc=rm400 epilog=step");
     it.remap("M401 py=inner");
@@ -111,7 +111,7 @@ TEST(PythonRemap, yields_in_prolog_epilog_nested_remaps_and_owords_keep_their_or
                       "MESSAGE(\"s1\")", "SYNC", "MESSAGE(\"s2\")", "MESSAGE(\"end\")"}));
 }
 
-TEST(PythonRemap, queue_buster_in_execute_suspends_the_rest_until_the_yield_I1) {
+TEST(PythonRemap, QueueBusterInExecuteSuspendsTheRestUntilTheYield_I1) {
     Scripted it;
     it.remap("M400 py=probe");
     it.handlers("def probe(self, **words):\n"
@@ -138,7 +138,7 @@ TEST(PythonRemap, queue_buster_in_execute_suspends_the_rest_until_the_yield_I1) 
                       "MESSAGE(\"tripped 1\")", "STRAIGHT_TRAVERSE(3.0000", "STRAIGHT_TRAVERSE(4.0000"}));
 }
 
-TEST(PythonRemap, abort_during_a_yield_closes_the_script_and_leaves_the_interpreter_sound_I1) {
+TEST(PythonRemap, AbortDuringAYieldClosesTheScriptAndLeavesTheInterpreterSound_I1) {
     Scripted it;
     it.remap("M400 argspec=p prolog=wait ngc=rm400");
     it.handlers("log = []\n"
@@ -170,7 +170,7 @@ TEST(PythonRemap, abort_during_a_yield_closes_the_script_and_leaves_the_interpre
     EXPECT_EQ(it.story().size(), 2u);
 }
 
-TEST(PythonRemap, errors_carry_the_place_in_the_script_I1) {
+TEST(PythonRemap, ErrorsCarryThePlaceInTheScript_I1) {
     Scripted it;
     it.remap("M400 py=raises");
     it.remap("M401 py=text");
@@ -206,7 +206,7 @@ TEST(PythonRemap, errors_carry_the_place_in_the_script_I1) {
     EXPECT_EQ(it.run("G0 X2\n"), Step::PROGRAM_END);
 }
 
-TEST(PythonRemap, failed_execute_can_be_handled_I1) {
+TEST(PythonRemap, FailedExecuteCanBeHandled_I1) {
     Scripted it;
     it.remap("M400 py=tries");
     it.handlers(
@@ -226,7 +226,7 @@ TEST(PythonRemap, failed_execute_can_be_handled_I1) {
     EXPECT_EQ(it.story()[1].substr(0, 22), "MESSAGE(\"33|G1 X2 F0|C");
 }
 
-TEST(PythonRemap, function_that_is_missing_is_named_at_the_start_I1) {
+TEST(PythonRemap, FunctionThatIsMissingIsNamedAtTheStart_I1) {
     Scripted it;
     it.remap("M400 py=nowhere");
     const Result<> begun = it.begin();
@@ -236,7 +236,7 @@ TEST(PythonRemap, function_that_is_missing_is_named_at_the_start_I1) {
               std::string::npos);
 }
 
-TEST(PythonRemap, toplevel_that_fails_names_its_place_I1) {
+TEST(PythonRemap, ToplevelThatFailsNamesItsPlace_I1) {
     Scripted it;
     it.write("toplevel.py", "import remap\nimport not_there_at_all\n");
     const Result<> begun = it.begin();
@@ -250,7 +250,7 @@ TEST(PythonRemap, toplevel_that_fails_names_its_place_I1) {
     EXPECT_NE(syntax.error().message.find("toplevel.py:2"), std::string::npos) << syntax.error().message;
 }
 
-TEST(PythonRemap, program_end_inside_a_script_ends_the_program_I1) {
+TEST(PythonRemap, ProgramEndInsideAScriptEndsTheProgram_I1) {
     Scripted it;
     it.remap("M400 py=ends");
     it.handlers("def ends(self, **words):\n    self.execute('M2')\n");

@@ -19,7 +19,7 @@ void add_changer(Scripted &it, const std::string &change_body, const std::string
                  change_body);
 }
 
-TEST(Stdglue, tool_change_in_program_order_I1) {
+TEST(Stdglue, ToolChangeInProgramOrder_I1) {
     Scripted it;
     add_changer(it, "G0 X5\no<change> endsub [1]\n");
     ASSERT_EQ(it.run("T2 M6\n(debug,tool %d#5400 z %.1f#5403)\nG0 X6\n"), Step::PROGRAM_END) << it.error();
@@ -31,7 +31,7 @@ TEST(Stdglue, tool_change_in_program_order_I1) {
     EXPECT_EQ(it.error(), "M6: no tool prepared");
 }
 
-TEST(Stdglue, own_meaning_inside_the_procedure_is_enough_I1) {
+TEST(Stdglue, OwnMeaningInsideTheProcedureIsEnough_I1) {
     Scripted it;
     add_changer(it, "M6\no<change> endsub [1]\n", "T#<tool>\n");
     ASSERT_EQ(it.run("T3 M6\n"), Step::PROGRAM_END) << it.error();
@@ -39,7 +39,7 @@ TEST(Stdglue, own_meaning_inside_the_procedure_is_enough_I1) {
                                   "STOP_SPINDLE_TURNING(0)", "CHANGE_TOOL()", "SYNC", "SYNC"}));
 }
 
-TEST(Stdglue, procedures_that_do_not_agree_abort_I1) {
+TEST(Stdglue, ProceduresThatDoNotAgreeAbort_I1) {
     Scripted it;
     add_changer(it, "o<change> endsub [-2]\n");
     ASSERT_EQ(it.run("T1 M6\n"), Step::FAILED);
@@ -50,7 +50,7 @@ TEST(Stdglue, procedures_that_do_not_agree_abort_I1) {
     EXPECT_EQ(it.error(), "M6: the tool changer reports fault -3");
 }
 
-TEST(Stdglue, speed_feed_and_tool_number_I1) {
+TEST(Stdglue, SpeedFeedAndToolNumber_I1) {
     Scripted it;
     it.remap("S prolog=setspeed_prolog ngc=speed epilog=setspeed_epilog");
     it.remap("F prolog=setfeed_prolog ngc=feed epilog=setfeed_epilog");
@@ -65,7 +65,7 @@ TEST(Stdglue, speed_feed_and_tool_number_I1) {
                       "SYNC", "STRAIGHT_FEED(1.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)"}));
 }
 
-TEST(Stdglue, cycle_keeps_depth_and_r_until_g80_I1) {
+TEST(Stdglue, CycleKeepsDepthAndRUntilG80_I1) {
     Scripted it;
     it.remap("G84.3 modalgroup=1 argspec=xyzabcuvwqplr prolog=cycle_prolog ngc=g843 epilog=cycle_epilog");
     it.handlers("");
@@ -95,7 +95,7 @@ TEST(Stdglue, cycle_keeps_depth_and_r_until_g80_I1) {
     }
 }
 
-TEST(Stdglue, lathe_tool_with_wear_offset_I1) {
+TEST(Stdglue, LatheToolWithWearOffset_I1) {
     Scripted it;
     it.remap("T python=index_lathe_tool_with_wear");
     it.remap("M6 python=ignore_m6");

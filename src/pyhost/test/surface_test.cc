@@ -17,7 +17,7 @@ void check(Scripted &it, const std::string &program, const std::string &body) {
     EXPECT_EQ(it.run(program), Step::PROGRAM_END) << it.error();
 }
 
-TEST(PythonSurface, parameters_by_number_and_name_I1) {
+TEST(PythonSurface, ParametersByNumberAndName_I1) {
     Scripted it;
     it.world.ini = [](std::string_view section, std::string_view key) -> std::optional<double> {
         return section == "FOO" && key == "BAR" ? std::optional(3.5) : std::nullopt;
@@ -37,7 +37,7 @@ TEST(PythonSurface, parameters_by_number_and_name_I1) {
     EXPECT_EQ(it.story().back(), "MESSAGE(\"8 9 10\")");
 }
 
-TEST(PythonSurface, attributes_of_state_and_own_ones_I1) {
+TEST(PythonSurface, AttributesOfStateAndOwnOnes_I1) {
     Scripted it;
     it.write("toplevel.py", "import remap, oword\ndef __init__(self):\n    self.mine = 41\n");
     check(it, "G20 G91 G0 X1 F50 S60\nG17\no<check> call\nX1\n",
@@ -64,7 +64,7 @@ TEST(PythonSurface, attributes_of_state_and_own_ones_I1) {
     EXPECT_EQ(it.story().back(), "STRAIGHT_TRAVERSE(1.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)");
 }
 
-TEST(PythonSurface, blocks_levels_of_call_and_tools_I1) {
+TEST(PythonSurface, BlocksLevelsOfCallAndTools_I1) {
     Scripted it;
     it.remap("M400 modalgroup=10 argspec=Pq py=look");
     it.handlers(
@@ -87,7 +87,7 @@ TEST(PythonSurface, blocks_levels_of_call_and_tools_I1) {
     EXPECT_EQ(it.run("o<outer> call\n"), Step::PROGRAM_END) << it.error();
 }
 
-TEST(PythonSurface, tool_at_index_0_is_the_one_in_the_spindle_I1) {
+TEST(PythonSurface, ToolAtIndex0IsTheOneInTheSpindle_I1) {
     Scripted it;
     it.owords(
         "def look(self, number, z):\n"
@@ -99,7 +99,7 @@ TEST(PythonSurface, tool_at_index_0_is_the_one_in_the_spindle_I1) {
         << it.error();
 }
 
-TEST(PythonSurface, global_names_are_those_that_scripts_expect_I1) {
+TEST(PythonSurface, GlobalNamesAreThoseThatScriptsExpect_I1) {
     Scripted it;
     it.write("toplevel.py", "import remap, oword, namedparams\n");
     it.write("namedparams.py", "def _made(self):\n    return 4\n");
@@ -113,7 +113,7 @@ TEST(PythonSurface, global_names_are_those_that_scripts_expect_I1) {
     EXPECT_EQ(it.run("#<_mine>=1\n#<foo>=2\no<look> call\n"), Step::PROGRAM_END) << it.error();
 }
 
-TEST(PythonSurface, oword_values_and_errors_I1) {
+TEST(PythonSurface, OwordValuesAndErrors_I1) {
     Scripted it;
     it.owords("def none(self, *a):\n    pass\n"
               "def number(self, a, b):\n    return a * b\n"
@@ -134,7 +134,7 @@ TEST(PythonSurface, oword_values_and_errors_I1) {
     EXPECT_NE(it.error().find("There is no subroutine o<value>"), std::string::npos);
 }
 
-TEST(PythonSurface, named_parameters_come_from_functions_I1) {
+TEST(PythonSurface, NamedParametersComeFromFunctions_I1) {
     Scripted it;
     it.write("toplevel.py", "import remap, oword, namedparams\n");
     it.write("namedparams.py", "def _twice_x(self):\n    return 2 * self.current_x\n"
@@ -158,7 +158,7 @@ TEST(PythonSurface, named_parameters_come_from_functions_I1) {
     EXPECT_EQ(it.error(), "Cannot assign to read-only parameter #<_twice_x>");
 }
 
-TEST(PythonSurface, lines_that_begin_with_py_run_and_others_are_comments_I1) {
+TEST(PythonSurface, LinesThatBeginWithPyRunAndOthersAreComments_I1) {
     Scripted it;
     ASSERT_EQ(
         it.run(";py,import emccanon; x = 5\n;py,emccanon.MESSAGE('x is %d' % x)\n ;py,boom\nG0 X1 ;py,boom\n"
@@ -174,7 +174,7 @@ TEST(PythonSurface, lines_that_begin_with_py_run_and_others_are_comments_I1) {
     EXPECT_EQ(it.error(), "ZeroDivisionError: division by zero (;py,:1)");
 }
 
-TEST(PythonSurface, canon_calls_stand_in_program_order_I1) {
+TEST(PythonSurface, CanonCallsStandInProgramOrder_I1) {
     Scripted it;
     check(it, "G0 X1\no<check> call\nG0 X2\n",
           "    emccanon.STRAIGHT_FEED(5, 1, 2, 3, 4, 5, 6, 7, 8, 9)\n"
@@ -193,7 +193,7 @@ TEST(PythonSurface, canon_calls_stand_in_program_order_I1) {
                       "STRAIGHT_TRAVERSE(2.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)"}));
 }
 
-TEST(PythonSurface, two_interpreters_have_modules_of_their_own_I1) {
+TEST(PythonSurface, TwoInterpretersHaveModulesOfTheirOwn_I1) {
     Scripted first("a"), second("b");
     for (Scripted *it : {&first, &second}) {
         it->owords(std::string("count = 0\ndef next(self):\n    global count\n    count += 1\n") +
@@ -209,7 +209,7 @@ TEST(PythonSurface, two_interpreters_have_modules_of_their_own_I1) {
     }
 }
 
-TEST(PythonSurface, hooks_run_at_the_start_and_at_the_end_I1) {
+TEST(PythonSurface, HooksRunAtTheStartAndAtTheEnd_I1) {
     std::string note;
     {
         Scripted it;
@@ -229,7 +229,7 @@ TEST(PythonSurface, hooks_run_at_the_start_and_at_the_end_I1) {
     std::filesystem::remove(note);
 }
 
-TEST(PythonSurface, changed_scripts_are_loaded_again_when_asked_I1) {
+TEST(PythonSurface, ChangedScriptsAreLoadedAgainWhenAsked_I1) {
     Scripted it;
     it.settings.scripts.isReloading = true;
     it.owords("def value(self):\n    return 1\n");
@@ -242,7 +242,7 @@ TEST(PythonSurface, changed_scripts_are_loaded_again_when_asked_I1) {
     EXPECT_EQ(it.story()[0], "MESSAGE(\"22222\")");
 }
 
-TEST(PythonSurface, interpreter_is_refused_outside_of_handlers_I1) {
+TEST(PythonSurface, InterpreterIsRefusedOutsideOfHandlers_I1) {
     Scripted it;
     it.owords("import threading\nseen = []\n"
               "def thread(self):\n"

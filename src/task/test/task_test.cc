@@ -247,7 +247,7 @@ TEST_F(TaskTest, AUserCodeNeedsAnExecutableFile_I1) {
     EXPECT_NE(messages().find("Unknown m code used: M103"), std::string::npos);
 }
 
-TEST(UserProgram, is_ended_with_all_that_it_started_I1) {
+TEST(UserProgram, IsEndedWithAllThatItStarted_I1) {
     const fs::path path = fs::temp_directory_path() / ("mw_user_" + std::to_string(::getpid()));
     std::ofstream(path) << "#!/bin/sh\nsleep 1000 & sleep 1000\n";
     fs::permissions(path, fs::perms::owner_all);

@@ -6,7 +6,7 @@
 namespace mw::tool {
 namespace {
 
-TEST(ToolTable, reads_all_words_of_a_line_I1) {
+TEST(ToolTable, ReadsAllWordsOfALine_I1) {
     const auto table = Table::parse(
         "; my tools\nT1 P2 X1 Y-2 Z+0.511 A4 B5 C6 U7 V8 W9 D0.125 I10 J20 Q3 ; end mill\n", "tool.tbl");
     ASSERT_TRUE(table) << table.error().str();
@@ -22,7 +22,7 @@ TEST(ToolTable, reads_all_words_of_a_line_I1) {
     EXPECT_EQ(entry.comment, "end mill");
 }
 
-TEST(ToolTable, bad_lines_are_named_with_their_place_I1) {
+TEST(ToolTable, BadLinesAreNamedWithTheirPlace_I1) {
     const char *bad[] = {"T1 P1\nT2 P2 Zx\n",    "T1 P1\nZ1 P2\n",  "T1 P1\nT2 Z1\n",
                          "T1 P1\nT2 P2 K1\n",    "T1 P1\nT1 P3\n",  "T1 P1\nT2 P2 Q12\n",
                          "T1 P1\nT2 P2 Z1 Z2\n", "T1 P1\nT1.5 P2\n"};
@@ -49,7 +49,7 @@ std::string warnings_of(const std::string &text, Table *table = nullptr) {
     return all;
 }
 
-TEST(ToolTable, every_bad_line_is_told_and_skipped_I1) {
+TEST(ToolTable, EveryBadLineIsToldAndSkipped_I1) {
     Table table;
     const std::string told =
         warnings_of("TOOLNO POCKET LENGTH\n  1 1 +0.5 0.125 old\nT2 P2 Z2\nT3 P3 Zx\n", &table);
@@ -61,7 +61,7 @@ TEST(ToolTable, every_bad_line_is_told_and_skipped_I1) {
     EXPECT_EQ(table.index_of_tool(3), -1);
 }
 
-TEST(ToolTable, a_tool_twice_counts_once_or_not_at_all_I1) {
+TEST(ToolTable, AToolTwiceCountsOnceOrNotAtAll_I1) {
     Table table;
     EXPECT_EQ(warnings_of("T1 P1 Z1\nT1 P2 Z1\n", &table),
               "tool.tbl:2:1 tool 1 stands in lines 1 and 2: the first one counts\n");
@@ -75,7 +75,7 @@ TEST(ToolTable, a_tool_twice_counts_once_or_not_at_all_I1) {
     EXPECT_EQ(table.text(), "T2 P2\nT1 P1 D1\nT1 P3 D3\n") << "the file stays as it is";
 }
 
-TEST(ToolTable, what_looks_wrong_is_told_with_its_line_I1) {
+TEST(ToolTable, WhatLooksWrongIsToldWithItsLine_I1) {
     EXPECT_EQ(warnings_of("T0 P4\n").substr(0, 14), "tool.tbl:1:1 T");
     EXPECT_NE(warnings_of("T1 P0\n").find("P0 stands for the spindle"), std::string::npos);
     EXPECT_NE(warnings_of("T1 P5\nT2 P5\n").find("tools 1 (line 1) and 2 are in one pocket, P5"),
@@ -84,7 +84,7 @@ TEST(ToolTable, what_looks_wrong_is_told_with_its_line_I1) {
     EXPECT_EQ(warnings_of("T1 P1 D6\nT2 P2\n"), "");
 }
 
-TEST(ToolTable, writing_keeps_comments_and_unchanged_lines_I1) {
+TEST(ToolTable, WritingKeepsCommentsAndUnchangedLines_I1) {
     auto table = Table::parse(";head\nT1  P1   Z1 ;one\n\nT2 P2 Z2 ;two\n", "tool.tbl");
     ASSERT_TRUE(table);
     ToolEntry entry = table->entry(2);
@@ -93,7 +93,7 @@ TEST(ToolTable, writing_keeps_comments_and_unchanged_lines_I1) {
     EXPECT_EQ(table->text(), ";head\nT1  P1   Z1 ;one\n\nT2 P2 Z2.5 ;two\n");
 }
 
-TEST(ToolTable, small_numbers_are_written_without_exponent_I1) {
+TEST(ToolTable, SmallNumbersAreWrittenWithoutExponent_I1) {
     auto table = Table::parse("T1 P1 Z0.0000125\n", "tool.tbl");
     ASSERT_TRUE(table);
     table->set_entry(1, table->entry(1));
@@ -101,7 +101,7 @@ TEST(ToolTable, small_numbers_are_written_without_exponent_I1) {
     EXPECT_FALSE(Table::parse("T1 P1 Z99999999999999\n", "tool.tbl"));
 }
 
-TEST(ToolTable, spindle_is_entry_zero_D3) {
+TEST(ToolTable, TheSpindleIsEntryZero_G2) {
     auto table = Table::parse("T5 P1 Z1\n", "tool.tbl");
     ASSERT_TRUE(table);
     EXPECT_EQ(table->entry(0).toolno, 0);

@@ -41,7 +41,7 @@ std::vector<std::string> errors_of(const std::string &text) {
 using Texts = std::vector<std::string>;
 const std::string TAIL = "\nfunction _; license \"GPL\";\n;;\n";
 
-TEST(HalcompileNames, followTheRules_B2) {
+TEST(HalcompileNames, FollowTheRules_B2) {
     EXPECT_EQ(c_name("x-y.z"), "x_y_z");
     EXPECT_EQ(c_name("x.##.y"), "x_y");
     EXPECT_EQ(c_name("x.##"), "x");
@@ -56,7 +56,7 @@ TEST(HalcompileNames, followTheRules_B2) {
     EXPECT_EQ(hal_prefix(component), "loop");
 }
 
-TEST(HalcompileParser, readsEveryKindOfItem_B2) {
+TEST(HalcompileParser, ReadsEveryKindOfItem_B2) {
     const Component c = parse_good(R"(component x "doc";
 /* pins */ pin in bit a; // first
 pin out float out-## [16 : personality & 0xff] if personality >= 2 = 1.5 "text";
@@ -85,7 +85,7 @@ code)");
     EXPECT_EQ(c.code_line, 10);
 }
 
-TEST(HalcompileParser, readsCDeclarations_B2) {
+TEST(HalcompileParser, ReadsCDeclarations_B2) {
     const Component c = parse_good(R"(component x;
 include "my.h"; include <sys/io.h>;
 struct pair { int a; struct { double b; } in; };
@@ -120,14 +120,14 @@ license "GPL";
     EXPECT_EQ(c.option("extra_link_args")->value, "-lfoo -L.");
 }
 
-TEST(HalcompileParser, resolvesStrings_B2) {
+TEST(HalcompileParser, ResolvesStrings_B2) {
     const Component c = parse_good("component x \"a\\tb\\\\fI\\(bu\\x41\\101\";\n"
                                    "description \"\"\"two\nlines \"quoted\".\"\"\";\nlicense \"G\";\n;;");
     EXPECT_EQ(c.doc, "a\tb\\fI\\(buAA");
     EXPECT_EQ(c.description->text, "two\nlines \"quoted\".");
 }
 
-TEST(HalcompileParser, goesOnAfterErrors_B2) {
+TEST(HalcompileParser, GoesOnAfterErrors_B2) {
     EXPECT_EQ(
         errors_of("component x \"a;\npin in flot a;\npn in bit b;\npin sideways bit c;\nfunction _\nlicense "
                   "\"GPL\";\n;;\n"),
@@ -138,7 +138,7 @@ TEST(HalcompileParser, goesOnAfterErrors_B2) {
     EXPECT_EQ(errors_of("component x;\npin in bit a if (personality & 1;" + TAIL).size(), 1U);
 }
 
-TEST(HalcompileChecker, findsWhatCannotWork_B2) {
+TEST(HalcompileChecker, FindsWhatCannotWork_B2) {
     EXPECT_EQ(errors_of("component y;" + TAIL), (Texts{"1:1 component 'y' stands in a file named x"}));
     EXPECT_EQ(errors_of("component x;\npin in bit a;\npin out bit a;" + TAIL),
               (Texts{"3:1 the name 'a' is taken already"}));
@@ -160,7 +160,7 @@ TEST(HalcompileChecker, findsWhatCannotWork_B2) {
     EXPECT_EQ(errors_of("component x; license \"G\";"), (Texts{"0:0 there is no ;;"}));
 }
 
-TEST(HalcompileChecker, wantsTheCodeThatOptionsCall_B2) {
+TEST(HalcompileChecker, WantsTheCodeThatOptionsCall_B2) {
     EXPECT_EQ(errors_of("component x;\noption userspace;\nlicense \"G\";\n;;\nint user_main;"),
               (Texts{"2:1 option userspace is on, but there is no user_mainloop"}));
     EXPECT_EQ(errors_of("component x;\noption extra_setup;" + TAIL + "// EXTRA_SETUP"),
@@ -172,7 +172,7 @@ TEST(HalcompileChecker, wantsTheCodeThatOptionsCall_B2) {
               (Texts{"3:1 ';' is expected here"}));
 }
 
-TEST(HalcompileChecker, reservesNamesOnlyWhereTheyAreSeen_B2) {
+TEST(HalcompileChecker, ReservesNamesOnlyWhereTheyAreSeen_B2) {
     EXPECT_EQ(errors_of("\xef\xbb\xbf"
                         "component x;\r\npin in bit prefix;\r\npin in bit export;" +
                         TAIL),
@@ -181,7 +181,7 @@ TEST(HalcompileChecker, reservesNamesOnlyWhereTheyAreSeen_B2) {
               (Texts{"3:1 the name 'prefix' is reserved"}));
 }
 
-TEST(HalcompileCode, seesFunctionsOnlyInCode) {
+TEST(HalcompileCode, SeesFunctionsOnlyInCode) {
     const CodeFacts facts =
         look_at_code("// FUNCTION(a)\n\"FUNCTION(b)\" FUNCTION (c) { '\"' }\n#include \"f.h\"\n");
     ASSERT_EQ(facts.functions.size(), 1U);
@@ -191,14 +191,14 @@ TEST(HalcompileCode, seesFunctionsOnlyInCode) {
     EXPECT_FALSE(look_at_code("/* FUNCTION(_) */").hasFunctionWord);
 }
 
-TEST(HalcompileEmit, wrapsABodyAndKeepsItsLines_B2) {
+TEST(HalcompileEmit, WrapsABodyAndKeepsItsLines_B2) {
     const std::string c =
         emit_c(parse_good("component x;\npin in float in;\nfunction _;\nlicense \"GPL\";\n;;\nbody;\n"));
     EXPECT_NE(c.find("FUNCTION(_) {\n#line 5 \"x.comp\"\n\nbody;\n"), std::string::npos) << c;
     EXPECT_NE(c.find("MODULE_LICENSE(\"GPL\");"), std::string::npos);
 }
 
-TEST(HalcompileEmit, writesThePageInTroff_B2) {
+TEST(HalcompileEmit, WritesThePageInTroff_B2) {
     const std::string page = emit_man(parse_good(R"C(component x "one thing";
 pin in bit in-##[16 : personality] "inputs"; param rw float gain = 1.5;
 function do_it "acts"; license "GPL"; author "Me"; see_also "\\fIother\\fR(9)";
@@ -212,7 +212,7 @@ function do_it "acts"; license "GPL"; author "Me"; see_also "\\fIother\\fR(9)";
     EXPECT_NE(page.find(".SH SEE ALSO\n\\fIother\\fR(9)"), std::string::npos) << page;
 }
 
-TEST(HalcompileOptions, takeTheManualsForms_B2) {
+TEST(HalcompileOptions, TakeTheManualsForms_B2) {
     const auto options =
         parse_options({"--personality=128", "--install", "--extra-link-args=-L'a b' -lc", "x.comp"});
     ASSERT_TRUE(options) << options.error().str();
@@ -224,7 +224,7 @@ TEST(HalcompileOptions, takeTheManualsForms_B2) {
     EXPECT_EQ(parse_options({"-cu", "a.c"})->isUserspace, true);
 }
 
-TEST(HalcompileObject, refusesOtherFiles) {
+TEST(HalcompileObject, RefusesOtherFiles) {
     EXPECT_FALSE(look_at_object("no elf", "x"));
     EXPECT_FALSE(look_at_object(std::string("\177ELF\2\1\1") + std::string(80, '\377'), "x"));
 }

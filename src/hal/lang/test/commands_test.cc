@@ -202,7 +202,7 @@ TEST(HalCommands, GoodCallsAnswer_B1) {
     }
 }
 
-TEST(HalCommands, BadCallsSayWhatIsWrongAndWhere_D2) {
+TEST(HalCommands, BadCallsSayWhatIsWrongAndWhere_B4) {
     for (const Case &one : BAD) {
         Sandbox sandbox;
         const std::string lines = one.lines;

@@ -32,7 +32,7 @@ TEST_F(SessionTest, FirstFailureEndsAFileUnlessItKeepsGoing_B9) {
     EXPECT_TRUE(host->hal().signal("b").has_value());
 }
 
-TEST_F(SessionTest, ErrorsNamePlaceExpectationAndNearestName_D2) {
+TEST_F(SessionTest, ErrorsNamePlaceExpectationAndNearestName_B4) {
     EXPECT_EQ(run("\n  net x board.outt"),
               "test.hal:2:9: pin 'board.outt' does not exist (did you mean 'board.out'?)\n");
     EXPECT_EQ(run("setp board.gian 1"),

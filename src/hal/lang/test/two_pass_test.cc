@@ -101,7 +101,7 @@ TEST_F(TwoPassTest, PersonalitiesStayWithTheirInstances_B1) {
                                                      "sum count=3 personality=1,2,0"}));
 }
 
-TEST_F(TwoPassTest, WhatCannotBeMergedIsAnErrorWithBothPlaces_D2) {
+TEST_F(TwoPassTest, WhatCannotBeMergedIsAnErrorWithBothPlaces_B4) {
     EXPECT_EQ(run({"loadrt and2 names=a\n", "loadrt and2 count=2\n"}),
               "module 'and2' is loaded with names= elsewhere: it cannot have count= too\n");
     EXPECT_NE(run({"loadrt and2 names=a,b\n", "\nloadrt and2 names=c,b\n"})

@@ -100,7 +100,7 @@ TEST_F(TclTest, AnIniValueOfSeveralWordsIsAModuleAndItsParameters_B1) {
     EXPECT_FALSE(last_result);
 }
 
-TEST_F(TclTest, ReturnWithAnErrorKeepsItsText_D2) {
+TEST_F(TclTest, ReturnWithAnErrorKeepsItsText_B4) {
     EXPECT_NE(run("proc check {} { return -code error {no thread here} }\ncheck\n").find("no thread here"),
               std::string::npos);
 }
@@ -114,7 +114,7 @@ TEST_F(TclTest, IniEntriesAreArraysOfLists_B1) {
     EXPECT_EQ(host->hal().get("board.in1")->as_float(), 42);
 }
 
-TEST_F(TclTest, ErrorsNameTheLineAndCanBeCaught_D2) {
+TEST_F(TclTest, ErrorsNameTheLineAndCanBeCaught_B4) {
     EXPECT_EQ(run("if {![catch {setp nosuch 1} text]} { error \"not refused\" }\n\n"
                   "setp bord.in0 1\n"
                   "setp board.in1 7\n"),
