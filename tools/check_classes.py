@@ -13,8 +13,37 @@ import sys
 
 FUNCTION_LIMIT = 40
 DATA_LIMIT = 30
-# Class: why it is larger. A class that is no longer too large must not stand here.
-EXCEPTIONS = {}
+# Classes over the limits: the functions and data members that each may have, and why. One that has become small enough
+# must not stand here.
+INTERFACE = 'one function for each call of the canon'
+PINS = 'the pins of a module, one member each'
+SETTINGS = 'plain values without behaviour, one for each key or field'
+EXCEPTIONS = {
+    'Bldc': (12, 41, PINS),
+    'Carousel': (13, 41, PINS),
+    'Pid': (5, 44, PINS),
+    'JointPins': (0, 42, PINS),
+    'MotionPins': (9, 42, PINS),
+    'Settings': (0, 31, SETTINGS),
+    'Status': (0, 45, SETTINGS),
+    'Hal': (74, 1, 'the operations on one HAL segment, most of them one call of the core'),
+    'Canon': (64, 0, INTERFACE),
+    'CanonQueue': (80, 19, INTERFACE),
+    'MachineCanon': (42, 0, INTERFACE),
+    'MachineFrame': (75, 19, INTERFACE),
+    'PrintCanon': (69, 11, INTERFACE),
+    'QuietCanon': (62, 0, INTERFACE),
+    'TaskCanon': (50, 5, INTERFACE),
+    'Preview::Impl': (49, 23, INTERFACE),
+    'State': (0, 47, 'the modal state of a program'),
+    'Controller': (78, 107, 'to be taken apart: docs/architecture.md'),
+    'PathPlanner': (29, 34, 'to be taken apart: docs/architecture.md'),
+    'Executor': (198, 57, 'to be taken apart: docs/architecture.md'),
+    'Flow': (87, 55, 'to be taken apart: docs/architecture.md'),
+    'Sequencer': (43, 39, 'to be taken apart: docs/architecture.md'),
+    'Task': (51, 47, 'to be taken apart: docs/architecture.md'),
+    'Planner': (117, 104, 'to be taken apart: docs/architecture.md'),
+}
 
 HEAD = re.compile(r'^(?:template\s*<.*>\s*)?(?:class|struct|union)\s+(?:alignas\s*\([^)]*\)\s*)?(?:\[\[\w+\]\]\s*)?'
                   r'(?P<name>[\w:]+)(?:\s+final)?\s*(?::[^:].*)?$', re.DOTALL)
@@ -146,10 +175,11 @@ def main():
             if counts.functions <= FUNCTION_LIMIT and counts.data <= DATA_LIMIT:
                 continue
             unused.discard(label)
-            if label not in EXCEPTIONS:
+            functions, data, _ = EXCEPTIONS.get(label, (FUNCTION_LIMIT, DATA_LIMIT, ''))
+            if counts.functions > functions or counts.data > data:
                 failures += 1
-                print(f'{name}:{line}: {label} has {counts.functions} functions (at most {FUNCTION_LIMIT}) and '
-                      f'{counts.data} data members (at most {DATA_LIMIT})')
+                print(f'{name}:{line}: {label} has {counts.functions} functions (at most {functions}) and '
+                      f'{counts.data} data members (at most {data})')
     for label in sorted(unused):
         failures += 1
         print(f'tools/check_classes.py: {label} is small enough now: it needs no exception')

@@ -28,7 +28,7 @@ TEST(Explain, SaysWhatEachWordMeansWithItsUnit_I1) {
     expect_said("g1 x10", "in force: G1 G17 G40 G21 G90 G94 G54 G49 G99 G64 G97 G91.1 G8");
 }
 
-TEST(Explain, GivesTheErrorsOfTheInterpreter_I3) {
+TEST(Explain, GivesTheErrorsOfTheInterpreter_I1) {
     const Explanation no_feed = explain_line("G1 X1", "");
     EXPECT_TRUE(no_feed.isRefused);
     EXPECT_NE(no_feed.text.find("zero feed rate"), std::string::npos) << no_feed.text;

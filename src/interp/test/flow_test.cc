@@ -158,7 +158,7 @@ TEST(Flow, NamesOfIniAndHalCanBeSwitchedOff_I1) {
     }
 }
 
-TEST(Flow, AToolOffsetThatIsRetainedFollowsTheTool_I1) {
+TEST(Flow, AToolOffsetThatIsRetainedFollowsTheTool_I1_G3) {
     for (const bool isRetained : {true, false}) {
         Settings settings;
         settings.isToolOffsetRetained = isRetained;

@@ -67,7 +67,7 @@ TEST_F(LargeFile, IsHeldWhenItHasOWords_I1) {
     EXPECT_EQ((*program)->line_text(moves + 3), "G0 X1");
 }
 
-TEST_F(LargeFile, ThatChangesWhileItRunsIsAnErrorAndNoOtherProgram_I3) {
+TEST_F(LargeFile, ThatChangesWhileItRunsIsAnErrorAndNoOtherProgram_I1) {
     const int moves = write("G21\n", "M2\n");
     const auto program = Program::load(path_, names_);
     ASSERT_TRUE(program.has_value()) << program.error().str();

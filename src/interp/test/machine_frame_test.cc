@@ -11,7 +11,7 @@ namespace {
 
 constexpr double EXACT = 1e-9;  // rounding of a few products of coordinates
 
-TEST(MachineFrame, OffsetsRotationAndToolAddUp_I2) {
+TEST(MachineFrame, OffsetsRotationAndToolAddUp_I2_G3) {
     test::Machine machine;
     EXPECT_EQ(machine.run("G10 L2 P1 X10 Y20 R90\nG92.1\nG52 X1\nG43.1 Z5\nG0 X2 Y3 Z4\n"), Step::PROGRAM_END)
         << machine.error();

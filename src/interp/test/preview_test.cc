@@ -125,7 +125,7 @@ TEST_F(PreviewRun, TellsHowFastTheSpindleTurnsThatAMoveFollows_I1) {
     EXPECT_EQ(speeds[3], 0);
 }
 
-TEST_F(PreviewRun, RefusesAxesThatTheMachineDoesNotHave_I3) {
+TEST_F(PreviewRun, RefusesAxesThatTheMachineDoesNotHave_I1) {
     axis_mask = 7;
     EXPECT_EQ(run("G21\nG0 X1\nG0 X2 A10\nM2\n"), PreviewEnd::FAILED);
     ASSERT_EQ(sink.count_errors(), 1);
@@ -135,7 +135,7 @@ TEST_F(PreviewRun, RefusesAxesThatTheMachineDoesNotHave_I3) {
     EXPECT_EQ(events.size(), 1U);
 }
 
-TEST_F(PreviewRun, GoesOnBehindErrorsAndTellsThemAll_I3) {
+TEST_F(PreviewRun, GoesOnBehindErrorsAndTellsThemAll_I1) {
     EXPECT_EQ(run("G21\nG1 X1\nG0 X2\nG99 Q\nG0 X3\nM2\n"), PreviewEnd::FAILED);
     ASSERT_EQ(sink.count_errors(), 2);
     EXPECT_EQ(sink.all()[0].what.place.line, 2);
@@ -143,7 +143,7 @@ TEST_F(PreviewRun, GoesOnBehindErrorsAndTellsThemAll_I3) {
     EXPECT_EQ(events.size(), 2U);
 }
 
-TEST_F(PreviewRun, TellsSyntaxErrorsBehindAnErrorThatEndsIt_I3) {
+TEST_F(PreviewRun, TellsSyntaxErrorsBehindAnErrorThatEndsIt_I1) {
     EXPECT_EQ(run("G21\nG0 X1\no1 endif\nG0 X[1\nG999\no2 while [1\nG1 X1\nG0 X\nM2\n"), PreviewEnd::FAILED);
     std::vector<int> lines;
     for (const diag::Diagnostic &one : sink.all()) {

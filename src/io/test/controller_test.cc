@@ -6,7 +6,7 @@
 namespace mw::io {
 namespace {
 
-TEST(IoController, ChangesAToolByHandshake_E1) {
+TEST(IoController, ChangesAToolByHandshake_E1_E2) {
     Controller io;
     Inputs in;
     io.start_prepare(3, 5, 2);

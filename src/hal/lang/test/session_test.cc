@@ -14,7 +14,7 @@
 namespace mw::hal::lang {
 namespace {
 
-TEST_F(SessionTest, SetsAndReadsValues_B9) {
+TEST_F(SessionTest, SetsAndReadsValues_B4) {
     EXPECT_EQ(
         run("setp board.in0 TRUE\ngetp board.in0\nboard.value = 4.2e1\ngetp board.value\nptype board.value\n"
             "setp board.gain -.5\ngetp board.gain\nsetp board.word 0xff\ngetp board.word"),
@@ -22,7 +22,7 @@ TEST_F(SessionTest, SetsAndReadsValues_B9) {
     EXPECT_EQ(run("newsig s s32\nsets s -3\ngets s\nstype s"), "-3\ns32\n");
 }
 
-TEST_F(SessionTest, FirstFailureEndsAFileUnlessItKeepsGoing_B9) {
+TEST_F(SessionTest, FirstFailureEndsAFileUnlessItKeepsGoing_B4) {
     EXPECT_EQ(run("newsig a bit\nbogus\nnewsig b bit").find("test.hal:2:1: unknown command 'bogus'"), 0U);
     EXPECT_FALSE(last_result.has_value());
     EXPECT_FALSE(host->hal().signal("b").has_value());
@@ -50,7 +50,7 @@ TEST_F(SessionTest, ErrorsNamePlaceExpectationAndNearestName_B4) {
     EXPECT_EQ(run("setp board.in0 2").find("test.hal:1:16: "), 0U);
 }
 
-TEST_F(SessionTest, NetTakesArrowsAndPinsKeepTheirValueWhenUnlinked_B9) {
+TEST_F(SessionTest, NetTakesArrowsAndPinsKeepTheirValueWhenUnlinked_B4) {
     EXPECT_EQ(run("setp board.in0 1\nnet a <= board.out => board.in0\nunlinkp board.in0\ngetp board.in0\n"
                   "unlinkp board.out\nsetp board.in1 1\nnet b board.in1\ngets b"),
               "FALSE\nTRUE\n");
@@ -64,7 +64,7 @@ TEST_F(SessionTest, NetTakesArrowsAndPinsKeepTheirValueWhenUnlinked_B9) {
     EXPECT_NE(output.warnings.find("linkpp command is deprecated"), std::string::npos);
 }
 
-TEST_F(SessionTest, ShowHasTheColumnsThatScriptsCut_B9) {
+TEST_F(SessionTest, ShowHasTheColumnsThatScriptsCut_B4) {
     run("setp board.value 2.5\nsetp board.word 10");
     EXPECT_EQ(run("show pin board.v* board.w*").substr(0, 62),
               "Component Pins:\nOwner   Type  Dir                 Value  Name\n");
@@ -76,7 +76,7 @@ TEST_F(SessionTest, ShowHasTheColumnsThatScriptsCut_B9) {
     EXPECT_EQ(run("show param"), "board float RW 0 board.gain\n\n");
 }
 
-TEST_F(SessionTest, ListSortsAndShowsAliases_B9) {
+TEST_F(SessionTest, ListSortsAndShowsAliases_B4) {
     EXPECT_EQ(run("alias pin board.in0 zebra\nlist pin board.* zebra"),
               "board.in1 board.io board.out board.value board.word zebra \n");
     EXPECT_EQ(run("list pin -tfloat"), "board.value \n");
@@ -85,7 +85,7 @@ TEST_F(SessionTest, ListSortsAndShowsAliases_B9) {
     EXPECT_EQ(run("unalias pin zebra\nlist pin *in0"), "board.in0 \n");
 }
 
-TEST_F(SessionTest, LocksForbidAndStatusTells_B9) {
+TEST_F(SessionTest, LocksForbidAndStatusTells_B4) {
     EXPECT_EQ(run("lock tune\nstatus lock"), "HAL locking status:\n  current lock value 3 (03)\n"
                                              "  HAL_LOCK_LOAD    - loading of new components is locked\n"
                                              "  HAL_LOCK_CONFIG  - link and addf is locked\n");
@@ -95,7 +95,7 @@ TEST_F(SessionTest, LocksForbidAndStatusTells_B9) {
               "HAL locking status:\n  current lock value 0 (00)\n  HAL_LOCK_NONE - nothing is locked\n");
 }
 
-TEST_F(SessionTest, SavedStateRestoresTheSame_B9) {
+TEST_F(SessionTest, SavedStateRestoresTheSame_B4) {
     run("net a board.out => board.in0\nnewsig lone u32\nsetp board.gain 1.25\nalias pin board.in1 second");
     const std::string saved = run("save");
     EXPECT_NE(saved.find("alias pin board.in1 second\n"), std::string::npos) << saved;
@@ -108,7 +108,7 @@ TEST_F(SessionTest, SavedStateRestoresTheSame_B9) {
     EXPECT_EQ(run("save linka"), "# links\nlinkps board.in0 <== a\nlinkps board.out ==> a\n");
 }
 
-TEST_F(SessionTest, SourceFindsFilesBesideTheCallerAndInTheLibrary_B9) {
+TEST_F(SessionTest, SourceFindsFilesBesideTheCallerAndInTheLibrary_B4) {
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / ("mw-session-" + std::to_string(getpid()));
     std::filesystem::create_directories(folder / "lib");

@@ -8,7 +8,7 @@ namespace {
 
 const std::vector<hal_type_t> TYPES{HAL_FLOAT, HAL_BIT, HAL_S32, HAL_U32};
 
-TEST(RecordText, WritesSixDecimalsAndABlankBehindEachField_B9) {
+TEST(RecordText, WritesSixDecimalsAndABlankBehindEachField_B7) {
     hal_stream_data_u record[4]{};
     record[0].f = -0.25;
     record[1].b = true;
@@ -17,7 +17,7 @@ TEST(RecordText, WritesSixDecimalsAndABlankBehindEachField_B9) {
     EXPECT_EQ(format_record(TYPES, record), "-0.250000 1 -7 4294967295 ");
 }
 
-TEST(RecordText, ReadsWhatItWritesAndIgnoresTheRest_B9) {
+TEST(RecordText, ReadsWhatItWritesAndIgnoresTheRest_B7) {
     const auto record = parse_record(TYPES, "  4.2e1\t0 0x10 7   # a comment");
     ASSERT_TRUE(record.has_value());
     EXPECT_EQ((*record)[0].f, 42.0);

@@ -138,7 +138,7 @@ TEST_F(Death, HalrunIsToldWhenAnotherProgramEndsItsRealtimeProcess_B7) {
     EXPECT_NE(ended.err.find("asked it to end"), std::string::npos) << ended.err;
 }
 
-TEST_F(Death, RealtimeStartsStopsAndTellsWhatRuns_B9) {
+TEST_F(Death, RealtimeStartsStopsAndTellsWhatRuns_B4) {
     EXPECT_EQ(run({"realtime", "status"}).status, 1);
     EXPECT_EQ(run({"realtime", "start"}).status, 0);
     EXPECT_EQ(run({"realtime", "start"}).status, 0) << "it runs already";

@@ -5,7 +5,7 @@
 namespace mw::hal::tools {
 namespace {
 
-TEST_F(Programs, HalrunStreamsThroughComponentsInRealtime_B9) {
+TEST_F(Programs, HalrunStreamsThroughComponentsInRealtime_B4) {
     file("in.dat", "# x\n1 0\n-2 1\n-3.5 1\n");
     const std::string hal =
         file("a.hal", "loadrt threads name1=t period1=1000000\nloadrt abs\nloadrt not\n"
@@ -32,7 +32,7 @@ TEST_F(Programs, EveryFunctionOfALongThreadIsTimedInTurn_B4) {
     EXPECT_EQ(ended.status, 0) << ended.err << "a function was never timed";
 }
 
-TEST_F(Programs, HalrunFailsAtTheFirstErrorAndNamesIt_B9) {
+TEST_F(Programs, HalrunFailsAtTheFirstErrorAndNamesIt_B4) {
     const Ended ended = run({"halrun", file("a.hal", "loadrt threads\nloadrt nosuch\nshow pin\n")});
     EXPECT_EQ(ended.status, 1);
     EXPECT_EQ(ended.out, "");
@@ -46,7 +46,7 @@ TEST_F(Programs, HalrunFailsAtTheFirstErrorAndNamesIt_B9) {
     EXPECT_EQ(run({"halrun", "-x"}).status, 1);
 }
 
-TEST_F(Programs, HalrunTakesIniValuesAndTheEnvironment_B9) {
+TEST_F(Programs, HalrunTakesIniValuesAndTheEnvironment_B4) {
     file("m.ini", "[A]\nPERIOD = 500000\nNAMES = one,two\n");
     setenv("MW_TEST_WORD", "three", 1);
     const Ended ended =
@@ -57,7 +57,7 @@ TEST_F(Programs, HalrunTakesIniValuesAndTheEnvironment_B9) {
     EXPECT_EQ(ended.out, "one three two \nfast \n");
 }
 
-TEST_F(Programs, HalcmdAttachesAndHalrunRefusesASecondOne_B9) {
+TEST_F(Programs, HalcmdAttachesAndHalrunRefusesASecondOne_B4) {
     const std::string hal =
         file("a.hal", "loadrt or2\nloadusr -w halcmd setp or2.0.in0 1\nloadusr -w halcmd getp or2.0.in0\n"
                       "loadusr -w halcmd -s show pin or2.0.in0\nloadusr -w -i halcmd net x or2.0.nosuch\n"
@@ -103,7 +103,7 @@ TEST_F(Programs, NothingSurvivesAKilledHalrun_B7) {
     EXPECT_NE(state.find(") Z "), std::string::npos) << "the program was asked to end";
 }
 
-TEST_F(Programs, SignalsEndHalrunInOrder_B9) {
+TEST_F(Programs, SignalsEndHalrunInOrder_B4) {
     for (const int signal : {SIGTERM, SIGINT, SIGKILL}) {
         std::ofstream(folder / "b.hal") << "loadrt threads\nstart\nloadusr -w sleep 30\n";
         const pid_t pid = start({"halrun", "b.hal"});
