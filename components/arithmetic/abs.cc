@@ -36,4 +36,4 @@ struct Abs {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Abs, ABS_MODULE);
+MW_COMPONENT(mw::components::Abs, ABS_MODULE, mw::sdk::MANY);

@@ -38,4 +38,4 @@ struct Conv {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Conv, CONV_MODULE);
+MW_COMPONENT(mw::components::Conv, CONV_MODULE, mw::sdk::MANY);

@@ -33,4 +33,4 @@ struct Button2nist {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Button2nist, BUTTON_MODULE);
+MW_COMPONENT(mw::components::Button2nist, BUTTON_MODULE, mw::sdk::MANY);

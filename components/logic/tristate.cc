@@ -28,4 +28,4 @@ struct Tristate {
 
 }  // namespace mw::components
 
-MW_INSTANCES(Tristate, TRISTATE_MODULE);
+MW_COMPONENT(mw::components::Tristate, TRISTATE_MODULE, mw::sdk::MANY);

@@ -210,4 +210,4 @@ static int load_pids(Request request) noexcept {
 
 }  // namespace mw::components
 
-MW_MODULE(PID_MODULE, num_chan, 3, mw::pid::MAX_CHANNELS, load_pids);
+MW_MODULE(PID_MODULE, num_chan, 3, mw::pid::MAX_CHANNELS, mw::components::load_pids);

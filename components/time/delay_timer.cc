@@ -39,4 +39,4 @@ struct DelayTimer {
 
 }  // namespace mw::components
 
-MW_INSTANCES(DelayTimer, TIMER_MODULE);
+MW_COMPONENT(mw::components::DelayTimer, TIMER_MODULE, mw::sdk::MANY);
