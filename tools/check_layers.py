@@ -8,8 +8,8 @@ import sys
 LAYER = {
     'base': 0, 'geom': 0, 'diag': 0,
     'rtapi': 1, 'config': 1, 'msgs': 1, 'picture': 1,
-    'hal': 2, 'nml': 2,
-    'kins': 3, 'traj': 3, 'homing': 3, 'interp': 3, 'tool': 3,
+    'hal': 2, 'nml': 2, 'mailbox': 2,
+    'kins': 3, 'traj': 3, 'homing': 3, 'interp': 3, 'tool': 3, 'client': 3,
     'motion': 4, 'pyhost': 4,
     'task': 5, 'io': 5,
     'machine': 6, 'ui': 6, 'python': 6,

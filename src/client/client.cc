@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "client/client.hh"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "msgs/binary.hh"
+#include "msgs/catalogue.hh"
+
+namespace mw::client {
+namespace {
+
+constexpr std::int64_t NS_PER_S = 1000000000;
+/// A sleeper looks after so long whether the machine still lives.
+constexpr std::int64_t LONGEST_SLEEP_NS = 100000000;
+/// A seqlock that stays odd for so many looks belongs to a dead writer.
+constexpr int READ_TRIES = 100000;
+
+std::int64_t monotonic_ns() {
+    timespec now{};
+    ::clock_gettime(CLOCK_MONOTONIC, &now);
+    return now.tv_sec * NS_PER_S + now.tv_nsec;
+}
+
+}  // namespace
+
+Client::Client(mailbox::Segment &segment, int slot, mailbox::ClientId id)
+    : segment_(&segment), slot_(slot), id_(id) {
+    const std::uint64_t newest = segment.newest_message.load(std::memory_order_acquire);
+    const std::uint64_t oldest = newest > mailbox::MAX_MESSAGES ? newest - mailbox::MAX_MESSAGES + 1 : 1;
+    next_message_ = std::max(oldest, segment.read_message.load(std::memory_order_relaxed) + 1);
+    heard_ = segment.bell.load(std::memory_order_acquire);
+}
+
+Client::Client(Client &&other) noexcept
+    : memory_(std::move(other.memory_)), segment_(std::exchange(other.segment_, nullptr)), slot_(other.slot_),
+      id_(other.id_), next_message_(other.next_message_), tools_version_(other.tools_version_),
+      heard_(other.heard_) {}
+
+Client &Client::operator=(Client &&other) noexcept {
+    if (this != &other) {
+        leave();
+        memory_ = std::move(other.memory_);
+        segment_ = std::exchange(other.segment_, nullptr);
+        slot_ = other.slot_;
+        id_ = other.id_;
+        next_message_ = other.next_message_;
+        tools_version_ = other.tools_version_;
+        heard_ = other.heard_;
+    }
+    return *this;
+}
+
+Client::~Client() {
+    leave();
+}
+
+void Client::leave() noexcept {
+    if (segment_ != nullptr) {
+        // Release: task sees everything that was posted before.
+        slot().isLeaving.store(1, std::memory_order_release);
+        segment_ = nullptr;
+    }
+}
+
+Result<Client> Client::join(mailbox::Segment &segment, Role role) {
+    const std::uint64_t me = mailbox::owner_word();
+    for (int i = 0; i < mailbox::MAX_CLIENTS; ++i) {
+        mailbox::Slot &slot = segment.slots[static_cast<std::size_t>(i)];
+        std::uint64_t expected = 0;
+        // Acquire: pairs with task's release when it freed the place.
+        if (!slot.owner.compare_exchange_strong(expected, me, std::memory_order_acq_rel)) {
+            continue;
+        }
+        const mailbox::ClientId id = segment.client_ids.fetch_add(1, std::memory_order_relaxed) + 1;
+        slot.role.store(static_cast<std::uint8_t>(role), std::memory_order_relaxed);
+        slot.client.store(id, std::memory_order_release);
+        return Client(segment, i, id);
+    }
+    return fail(
+        fmt::format("the machine has {} clients, which is as many as it can have", mailbox::MAX_CLIENTS));
+}
+
+Result<Client> Client::connect(const std::string &instance, Role role) {
+    auto memory = mailbox::Memory::attach(instance);
+    if (!memory.has_value()) {
+        return std::unexpected(memory.error());
+    }
+    auto client = join(memory->segment(), role);
+    if (client.has_value()) {
+        client->memory_ = std::move(*memory);
+    }
+    return client;
+}
+
+Result<Serial> Client::post(const msgs::Command &command) {
+    const auto allowed = msgs::check(command);
+    if (!allowed.has_value()) {
+        return std::unexpected(allowed.error());
+    }
+    const std::string bytes = msgs::encode(command);
+    auto posted = std::make_unique<mailbox::Posted>();
+    if (bytes.size() > posted->bytes.size()) {
+        return fail(fmt::format("a command of {} bytes is too large", bytes.size()));
+    }
+    if (slot().posted.size() >= mailbox::MAX_POSTED) {
+        return fail(
+            fmt::format("task has not taken the last {} commands of this client", mailbox::MAX_POSTED));
+    }
+    posted->serial = segment_->serials.fetch_add(1, std::memory_order_relaxed) + 1;
+    posted->size = static_cast<std::uint32_t>(bytes.size());
+    std::memcpy(posted->bytes.data(), bytes.data(), bytes.size());
+    slot().posted.push(*posted);
+    return posted->serial;
+}
+
+Outcome Client::outcome(Serial serial) const {
+    // Acquire: pairs with task's release after it wrote the outcome.
+    if (slot().taken.load(std::memory_order_acquire) < serial) {
+        return {};
+    }
+    for (const auto &written : slot().outcomes) {
+        mailbox::Outcome outcome;
+        if (written.read(outcome, READ_TRIES) && outcome.serial == serial) {
+            return {outcome.progress, outcome.reason.str()};
+        }
+    }
+    return {msgs::Progress::REFUSED,
+            fmt::format(
+                "command {} is no longer remembered: this client has given {} later ones, or task has died",
+                serial, mailbox::MAX_OUTCOMES)};
+}
+
+Result<> Client::sleep(std::uint32_t heard, std::int64_t end_ns) {
+    const std::int64_t left_ns = end_ns - monotonic_ns();
+    if (left_ns <= 0) {
+        return fail("the time to wait is over");
+    }
+    const bool isRung = mailbox::Memory::wait(*segment_, heard, std::min(left_ns, LONGEST_SLEEP_NS));
+    if (!isRung && memory_.has_value() && !memory_->isOwnerAlive()) {
+        return fail("the machine is no longer running");
+    }
+    return {};
+}
+
+Result<Outcome> Client::wait(Serial serial, double timeout_s) {
+    const std::int64_t end_ns = monotonic_ns() + static_cast<std::int64_t>(timeout_s * 1e9);
+    while (true) {
+        const std::uint32_t heard = segment_->bell.load(std::memory_order_acquire);
+        Outcome now = outcome(serial);
+        if (now.progress != msgs::Progress::STARTED) {
+            return now;
+        }
+        const auto status = sleep(heard, end_ns);
+        if (!status.has_value()) {
+            return std::unexpected(status.error());
+        }
+    }
+}
+
+Result<> Client::wait_status(double timeout_s) {
+    const std::int64_t end_ns = monotonic_ns() + static_cast<std::int64_t>(timeout_s * 1e9);
+    while (true) {
+        const std::uint32_t now = segment_->bell.load(std::memory_order_acquire);
+        if (now != heard_) {
+            heard_ = now;
+            return {};
+        }
+        const auto status = sleep(now, end_ns);
+        if (!status.has_value()) {
+            return status;
+        }
+    }
+}
+
+Result<> Client::read_status(msgs::MachineStatus &status) const {
+    if (segment_->cycles.load(std::memory_order_acquire) == 0) {
+        return fail("the machine has not begun yet");
+    }
+    return segment_->status.read(status, READ_TRIES) ? Result<>{}
+                                                     : fail("task died while it wrote its status");
+}
+
+Result<std::optional<msgs::ToolTable>> Client::read_tools() {
+    const std::uint64_t version = segment_->tools_version.load(std::memory_order_acquire);
+    if (version == tools_version_) {
+        return std::nullopt;
+    }
+    auto bytes = std::make_unique<mailbox::Bytes>();
+    constexpr int TRIES = 100;  // each copies much
+    if (!segment_->tools.read(*bytes, TRIES)) {
+        return fail("task died while it wrote the tool table");
+    }
+    msgs::ToolTable table;
+    const std::size_t size = std::min<std::size_t>(bytes->size, bytes->bytes.size());
+    const auto status = msgs::decode({bytes->bytes.data(), size}, msgs::object(table));
+    if (!status.has_value()) {
+        return std::unexpected(status.error());
+    }
+    tools_version_ = bytes->version;
+    return table;
+}
+
+std::optional<Client::Message> Client::next_message() {
+    const std::uint64_t newest = segment_->newest_message.load(std::memory_order_acquire);
+    if (next_message_ > newest) {
+        return std::nullopt;
+    }
+    auto read = std::make_unique<mailbox::NumberedMessage>();
+    const bool isWhole = segment_->messages[next_message_ % mailbox::MAX_MESSAGES].read(*read, READ_TRIES);
+    if (!isWhole || read->number != next_message_) {  // overwritten meanwhile, or task died within it
+        const std::uint64_t now = segment_->newest_message.load(std::memory_order_acquire);
+        const std::uint64_t oldest =
+            now > mailbox::MAX_MESSAGES ? now - mailbox::MAX_MESSAGES + 2 : next_message_ + 1;
+        const std::uint64_t first = std::max(oldest, next_message_ + 1);
+        const std::uint64_t lost = first - next_message_;
+        next_message_ = first;
+        return Message{first - 1, msgs::MessageKind::OPERATOR_TEXT,
+                       fmt::format("{} messages were lost: they came faster than this client read", lost)};
+    }
+    std::uint64_t told = segment_->read_message.load(std::memory_order_relaxed);
+    while (told < next_message_ &&
+           !segment_->read_message.compare_exchange_weak(told, next_message_, std::memory_order_relaxed)) {
+    }
+    ++next_message_;
+    return Message{read->number, read->kind, read->text.str()};
+}
+
+}  // namespace mw::client

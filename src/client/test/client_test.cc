@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Clients and task's desk on one segment, in one process.
+#include <gtest/gtest.h>
+
+#include "client/client.hh"
+#include "mailbox/desk.hh"
+
+namespace mw::client {
+namespace {
+
+using mailbox::Desk;
+using msgs::Progress;
+
+constexpr std::int64_t S = 1000000000;
+
+/// A task that answers as it is told to.
+class ClientTest : public testing::Test {
+  protected:
+    Client made(Role role = Role::OPERATOR) {
+        auto client = Client::join(memory.segment(), role);
+        EXPECT_TRUE(client.has_value());
+        return std::move(*client);
+    }
+    /// One cycle; each delivery is DONE unless it is kept.
+    std::vector<Desk::Delivery> cycle() {
+        now_ns += S / 1000;
+        auto taken = desk.take(now_ns);
+        for (const auto &delivery : taken) {
+            if (!isKeeping) {
+                desk.tell(delivery.serial, Progress::DONE, "");
+            }
+        }
+        desk.publish(*status);
+        return taken;
+    }
+
+    mailbox::Memory memory = mailbox::Memory::in_process();
+    Desk desk{memory.segment()};
+    std::unique_ptr<msgs::MachineStatus> status = std::make_unique<msgs::MachineStatus>();
+    std::int64_t now_ns = 0;
+    bool isKeeping = false;
+};
+
+TEST_F(ClientTest, CommandsOfAllClientsComeInTheOrderOfOneCount_D3) {
+    Client a = made(), b = made();
+    EXPECT_NE(a.id(), b.id());
+    EXPECT_EQ(*a.post(msgs::Mdi{"a1"}), 1U);
+    EXPECT_EQ(*b.post(msgs::Mdi{"b1"}), 2U);
+    EXPECT_EQ(*a.post(msgs::Mdi{"a2"}), 3U);
+    const auto taken = cycle();
+    ASSERT_EQ(taken.size(), 3U);
+    EXPECT_EQ(std::get<msgs::Mdi>(taken[1].command).line, "b1");
+    EXPECT_EQ(taken[1].client, b.id());
+    EXPECT_EQ(taken[2].serial, 3U);
+    EXPECT_TRUE(cycle().empty());
+}
+
+TEST_F(ClientTest, EachCommandEndsWithItsOutcomeAndReason_C5) {
+    Client a = made();
+    isKeeping = true;
+    const auto first = *a.post(msgs::RunProgram{}), second = *a.post(msgs::PauseProgram{});
+    EXPECT_EQ(a.outcome(first).progress, Progress::STARTED) << "not taken yet";
+    cycle();
+    EXPECT_EQ(a.outcome(first).progress, Progress::STARTED);
+    desk.tell(second, Progress::REFUSED, "nothing runs");
+    EXPECT_EQ(a.outcome(first).progress, Progress::STARTED);
+    EXPECT_EQ(a.outcome(second).progress, Progress::REFUSED);
+    EXPECT_EQ(a.outcome(second).reason, "nothing runs");
+    desk.tell(first, Progress::FAILED, "emergency stop");
+    desk.tell(first, Progress::DONE, "");
+    EXPECT_EQ(a.outcome(first).progress, Progress::FAILED) << "an end is final";
+}
+
+TEST_F(ClientTest, ACommandUnderWayIsRememberedHoweverManyComeAfterIt_D8) {
+    Client a = made(), b = made();
+    isKeeping = true;
+    const auto run = *a.post(msgs::RunProgram{});
+    const auto early = *a.post(msgs::Null{});
+    cycle();
+    desk.tell(early, Progress::DONE, "");
+    isKeeping = false;
+    for (int i = 0; i < 300; ++i) {
+        ASSERT_TRUE(a.post(msgs::Null{}).has_value());
+        ASSERT_TRUE(b.post(msgs::Null{}).has_value());
+        cycle();
+    }
+    EXPECT_EQ(a.outcome(run).progress, Progress::STARTED);
+    desk.tell(run, Progress::DONE, "");
+    EXPECT_EQ(a.outcome(run).progress, Progress::DONE);
+    EXPECT_EQ(a.outcome(early).progress, Progress::REFUSED);
+    EXPECT_NE(a.outcome(early).reason.find("no longer remembered"), std::string::npos);
+}
+
+TEST_F(ClientTest, WhatIsOutOfRangeOrTooMuchIsRefusedWhereItIsPosted) {
+    Client a = made();
+    EXPECT_EQ(a.post(msgs::JogStop{true, 99}).error().message, "JogStop: index is 99, allowed is 0 to 15");
+    for (std::uint32_t i = 0; i < mailbox::MAX_POSTED; ++i) {
+        ASSERT_TRUE(a.post(msgs::Null{}).has_value());
+    }
+    EXPECT_FALSE(a.post(msgs::Null{}).has_value());
+    EXPECT_EQ(cycle().size(), mailbox::MAX_POSTED);
+    EXPECT_TRUE(a.post(msgs::Mdi{std::string(msgs::MAX_TEXT, 'x')}).has_value());
+}
+
+TEST_F(ClientTest, BytesThatAreNoCommandAreRefusedAndHurtNobody) {
+    Client a = made(), b = made();
+    mailbox::Slot &slot = memory.segment().slots[0];
+    mailbox::Posted bad;
+    bad.serial = memory.segment().serials.fetch_add(1) + 1;
+    bad.size = 0xffffffff;
+    bad.bytes.fill('x');
+    slot.posted.push(bad);
+    bad.serial = 1000000;
+    slot.posted.push(bad);
+    const auto good = *b.post(msgs::Null{});
+    EXPECT_EQ(cycle().size(), 1U);
+    EXPECT_EQ(b.outcome(good).progress, Progress::DONE);
+    EXPECT_EQ(a.outcome(1).progress, Progress::REFUSED);
+    EXPECT_NE(a.outcome(1).reason.find("no message of Millwright"), std::string::npos);
+}
+
+TEST_F(ClientTest, OneClientOperatesAloneAndAPanelStillWorks) {
+    Client a = made(), b = made(), halui = made(Role::PANEL);
+    const auto claim = *a.post(msgs::ClaimOperation{1});
+    EXPECT_TRUE(cycle().empty());
+    EXPECT_EQ(a.outcome(claim).progress, Progress::DONE);
+    msgs::MachineStatus seen;
+    ASSERT_TRUE(b.read_status(seen).has_value());
+    EXPECT_EQ(seen.operation.holder, a.id());
+    const auto refused = *b.post(msgs::RunProgram{});
+    ASSERT_TRUE(b.post(msgs::AbortAll{}).has_value());
+    ASSERT_TRUE(halui.post(msgs::ResumeProgram{}).has_value());
+    EXPECT_EQ(cycle().size(), 2U);
+    EXPECT_EQ(b.outcome(refused).progress, Progress::REFUSED);
+    EXPECT_NE(b.outcome(refused).reason.find("operates the machine alone"), std::string::npos);
+    const auto given = *a.post(msgs::HandOverOperation{b.id()});
+    cycle();
+    EXPECT_EQ(a.outcome(given).progress, Progress::DONE);
+    ASSERT_TRUE(b.post(msgs::RunProgram{}).has_value());
+    EXPECT_EQ(cycle().size(), 1U);
+    const auto nobody = *b.post(msgs::HandOverOperation{4711});
+    cycle();
+    EXPECT_EQ(b.outcome(nobody).progress, Progress::REFUSED);
+    now_ns += 2 * S;
+    ASSERT_TRUE(a.post(msgs::RunProgram{}).has_value());
+    EXPECT_EQ(cycle().size(), 1U) << "not renewed: open to all again";
+}
+
+TEST_F(ClientTest, AClientThatLeavesGivesItsPlaceAndRightBack) {
+    Client b = made();
+    for (int i = 0; i < 3 * mailbox::MAX_CLIENTS; ++i) {
+        Client a = made();
+        ASSERT_TRUE(a.post(msgs::ClaimOperation{60}).has_value());
+        ASSERT_TRUE(a.post(msgs::Null{}).has_value());
+        const auto other = std::move(a);
+        EXPECT_EQ(cycle().size(), 1U);
+    }
+    cycle();
+    ASSERT_TRUE(b.post(msgs::RunProgram{}).has_value());
+    EXPECT_EQ(cycle().size(), 1U);
+    std::vector<Client> many;
+    for (int i = 1; i < mailbox::MAX_CLIENTS; ++i) {
+        many.push_back(made());
+    }
+    EXPECT_FALSE(Client::join(memory.segment()).has_value());
+}
+
+TEST_F(ClientTest, ANewReaderGetsWhatNobodyHasReadAndThenAll) {
+    desk.post(msgs::MessageKind::OPERATOR_TEXT, "before anybody");
+    Client a = made(), b = made();
+    ASSERT_EQ(a.next_message()->text, "before anybody");
+    ASSERT_EQ(b.next_message()->text, "before anybody") << "b was there before a read it";
+    Client c = made();
+    EXPECT_FALSE(c.next_message().has_value()) << "it had been read when c came";
+    desk.post(msgs::MessageKind::OPERATOR_ERROR, "an error");
+    for (Client *client : {&a, &b, &c}) {
+        const auto message = client->next_message();
+        ASSERT_TRUE(message.has_value());
+        EXPECT_EQ(message->number, 2U);
+        EXPECT_EQ(message->kind, msgs::MessageKind::OPERATOR_ERROR);
+        EXPECT_FALSE(client->next_message().has_value());
+    }
+}
+
+TEST_F(ClientTest, LostMessagesAreCounted) {
+    Client a = made();
+    const int many = 3 * mailbox::MAX_MESSAGES;
+    for (int i = 1; i <= many; ++i) {
+        desk.post(msgs::MessageKind::OPERATOR_TEXT, "m" + std::to_string(i));
+    }
+    const auto told = a.next_message();
+    ASSERT_TRUE(told.has_value());
+    int read = 0;
+    std::string last;
+    while (const auto message = a.next_message()) {
+        ++read;
+        last = message->text;
+    }
+    EXPECT_EQ(told->text,
+              std::to_string(many - read) + " messages were lost: they came faster than this client read");
+    EXPECT_EQ(last, "m" + std::to_string(many));
+    EXPECT_GE(read, mailbox::MAX_MESSAGES - 1);
+}
+
+TEST_F(ClientTest, ALongTextSaysThatItGoesOn) {
+    Client a = made();
+    desk.post(msgs::MessageKind::OPERATOR_ERROR, std::string(5000, 'x'));
+    const std::string text = a.next_message()->text;
+    EXPECT_EQ(text.size(), 1023U);
+    EXPECT_EQ(text.substr(1020), "...");
+}
+
+TEST_F(ClientTest, TheStatusIsThatOfTheLastCycleAndTheToolTableComesWhenItChanges) {
+    Client a = made();
+    msgs::MachineStatus seen;
+    EXPECT_FALSE(a.read_status(seen).has_value()) << "before the first cycle";
+    status->task.read_line = 7;
+    status->joints[2].isPresent = true;
+    cycle();
+    ASSERT_TRUE(a.read_status(seen).has_value());
+    EXPECT_EQ(seen.task.read_line, 7);
+    EXPECT_TRUE(seen.joints[2].isPresent);
+    EXPECT_FALSE(a.read_tools()->has_value());
+    ASSERT_TRUE(desk.publish_tools({4, {{1, 2, {}, 3, 0, 0, 0, "drill"}}}));
+    const auto tools = a.read_tools();
+    ASSERT_TRUE(tools.has_value() && tools->has_value());
+    EXPECT_EQ((*tools)->tools[0].comment, "drill");
+    EXPECT_FALSE(a.read_tools()->has_value());
+    msgs::ToolTable huge{5, {}};
+    huge.tools.resize(2000);
+    huge.tools[0].comment.assign(600000, 'x');
+    EXPECT_FALSE(desk.publish_tools(huge));
+}
+
+}  // namespace
+}  // namespace mw::client

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Task and clients in processes of their own, which are killed at any instant.
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <random>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "client/client.hh"
+#include "mailbox/desk.hh"
+
+namespace mw::client {
+namespace {
+
+using msgs::Progress;
+
+/// Unique to this test process.
+std::string instance(const char *what) {
+    return std::string("test-") + what + '-' + std::to_string(::getpid());
+}
+
+/// Takes commands and publishes until it is told to stop.
+void serve(mailbox::Memory &memory, const std::atomic<bool> &isOver) {
+    mailbox::Desk desk(memory.segment());
+    auto status = std::make_unique<msgs::MachineStatus>();
+    std::int64_t now_ns = 0;
+    while (!isOver) {
+        for (const auto &delivery : desk.take(now_ns += 1000000)) {
+            desk.tell(delivery.serial, Progress::DONE, "");
+        }
+        ++status->cycle;
+        status->task.read_line = static_cast<int>(status->cycle);
+        status->task.motion_line = static_cast<int>(status->cycle);
+        desk.publish(*status);
+        ::usleep(200);
+    }
+}
+
+TEST(MailboxProcess, AClientInAnotherProcessCommandsAndWaitsWithoutPolling) {
+    const std::string name = instance("wait");
+    EXPECT_FALSE(Client::connect(name).has_value()) << "nothing runs yet";
+    auto memory = mailbox::Memory::create(name);
+    ASSERT_TRUE(memory.has_value()) << memory.error().str();
+    const pid_t child = ::fork();
+    if (child == 0) {
+        auto client = Client::connect(name);
+        bool isGood = client.has_value();
+        for (int i = 0; isGood && i < 20; ++i) {
+            const auto serial = client->post(msgs::Mdi{"G0 X" + std::to_string(i)});
+            const auto outcome = client->wait(*serial, 20);
+            isGood = outcome.has_value() && outcome->progress == Progress::DONE &&
+                     client->wait_status(20).has_value();
+        }
+        ::_exit(isGood ? 0 : 1);
+    }
+    std::atomic<bool> isOver{false};
+    std::thread task([&] { serve(*memory, isOver); });
+    int status = -1;
+    EXPECT_EQ(::waitpid(child, &status, 0), child);
+    isOver = true;
+    task.join();
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+}
+
+TEST(MailboxProcess, TwoMachinesRunSideBySideAndOneNameOnlyOnce) {
+    auto a = mailbox::Memory::create(instance("a")), b = mailbox::Memory::create(instance("b"));
+    ASSERT_TRUE(a.has_value() && b.has_value());
+    EXPECT_FALSE(mailbox::Memory::create(instance("a")).has_value());
+    auto to_a = Client::connect(instance("a")), to_b = Client::connect(instance("b"));
+    ASSERT_TRUE(to_a.has_value() && to_b.has_value());
+    ASSERT_TRUE(to_a->post(msgs::Null{}).has_value());
+    mailbox::Desk desk_a(a->segment()), desk_b(b->segment());
+    EXPECT_EQ(desk_b.take(1).size(), 0U);
+    EXPECT_EQ(desk_a.take(1).size(), 1U);
+}
+
+/// Both halves: nobody else is hurt, and the work goes on: places and the right to operate come back.
+TEST(MailboxProcess, ClientsKilledAtAnyInstantHurtNobody) {
+    const std::string name = instance("kill");
+    auto memory = mailbox::Memory::create(name);
+    ASSERT_TRUE(memory.has_value());
+    std::atomic<bool> isOver{false};
+    std::thread task([&] { serve(*memory, isOver); });
+    std::mt19937 random(1);
+    for (int round = 0; round < 60; ++round) {
+        const pid_t child = ::fork();
+        if (child == 0) {
+            auto client = Client::connect(name);
+            for (int i = 0; client.has_value(); ++i) {
+                static_cast<void>(client->post(msgs::ClaimOperation{3600}));
+                static_cast<void>(client->post(msgs::Mdi{std::string(1000, 'x')}));
+                static_cast<void>(client->next_message());
+                if (i % 3 == 0) {
+                    static_cast<void>(client->wait_status(0.01));
+                }
+            }
+            ::_exit(1);
+        }
+        ASSERT_GT(child, 0);
+        ::usleep(static_cast<useconds_t>(random() % 6000));
+        ::kill(child, SIGKILL);
+        ::waitpid(child, nullptr, 0);
+    }
+    auto survivor = Client::connect(name);
+    ASSERT_TRUE(survivor.has_value()) << survivor.error().str();
+    EXPECT_GT(survivor->id(), 20U) << "most of those that were killed had a place";
+    Outcome outcome{Progress::REFUSED, ""};
+    for (int i = 0; i < 200 && outcome.progress != Progress::DONE; ++i) {  // until the last dead one is seen
+        const auto serial = survivor->post(msgs::RunProgram{});
+        ASSERT_TRUE(serial.has_value());
+        const auto ended = survivor->wait(*serial, 20);
+        ASSERT_TRUE(ended.has_value()) << ended.error().str();
+        outcome = *ended;
+    }
+    EXPECT_EQ(outcome.progress, Progress::DONE) << outcome.reason;
+    msgs::MachineStatus status;
+    ASSERT_TRUE(survivor->read_status(status).has_value());
+    EXPECT_EQ(status.task.read_line, status.task.motion_line) << "one cycle's";
+    isOver = true;
+    task.join();
+}
+
+TEST(MailboxProcess, TaskKilledAtAnyInstantIsNoticedAndItsNameIsFree) {
+    const std::string name = instance("task");
+    std::mt19937 random(2);
+    for (int round = 0; round < 15; ++round) {
+        const pid_t child = ::fork();
+        if (child == 0) {
+            auto memory = mailbox::Memory::create(name);
+            const std::atomic<bool> isOver{false};
+            if (memory.has_value()) {
+                serve(*memory, isOver);
+            }
+            ::_exit(1);
+        }
+        auto client = Client::connect(name);
+        for (int i = 0; i < 20000 && !client.has_value(); ++i) {
+            ::usleep(500);
+            client = Client::connect(name);
+        }
+        ASSERT_TRUE(client.has_value()) << client.error().str();
+        ::usleep(static_cast<useconds_t>(random() % 4000));
+        ::kill(child, SIGKILL);
+        ::waitpid(child, nullptr, 0);
+        msgs::MachineStatus status;
+        static_cast<void>(client->read_status(status));  // ends, whatever task was at
+        static_cast<void>(client->next_message());
+        const auto serial = client->post(msgs::Null{});
+        ASSERT_TRUE(serial.has_value());
+        const auto outcome = client->wait(*serial, 20);
+        ASSERT_FALSE(outcome.has_value());
+        EXPECT_EQ(outcome.error().message, "the machine is no longer running");
+    }
+}
+
+}  // namespace
+}  // namespace mw::client

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "mailbox/desk.hh"
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
+#include "mailbox/memory.hh"
+#include "msgs/binary.hh"
+#include "msgs/catalogue.hh"
+
+namespace mw::mailbox {
+namespace {
+
+using msgs::Progress;
+
+/// In one of so many cycles one place is looked at for a dead owner: each in its turn.
+constexpr std::uint64_t OWNER_CHECK_CYCLES = 4;
+
+template <class Text>
+void assign(Text &text, std::string_view from) {
+    if (!text.assign(from)) {
+        constexpr std::string_view MORE = "...";
+        const std::string_view kept = text.view().substr(0, Text::CAPACITY - MORE.size());
+        Text whole;
+        whole.assign(kept);
+        text.assign(whole.str() + std::string(MORE));
+    }
+}
+
+}  // namespace
+
+std::vector<Desk::Delivery> Desk::take(std::int64_t now_ns) {
+    now_ns_ = now_ns;
+    ++cycles_;
+    if (right_.step(now_ns)) {
+        post(msgs::MessageKind::OPERATOR_TEXT,
+             "the right to operate alone has run out: all clients operate again");
+    }
+    std::vector<Delivery> taken;
+    for (int i = 0; i < MAX_CLIENTS; ++i) {
+        take_slot(i, taken);
+    }
+    std::sort(taken.begin(), taken.end(),
+              [](const Delivery &a, const Delivery &b) { return a.serial < b.serial; });
+    std::vector<Delivery> allowed;
+    for (Delivery &delivery : taken) {
+        // A panel is wired to the machine: it is never subject to another's right.
+        const auto right = delivery.isPanel ? Result<>{} : right_.check(delivery.client, delivery.command);
+        if (!right.has_value()) {
+            tell(delivery.serial, Progress::REFUSED, right.error().str());
+        } else if (!operate(delivery)) {
+            allowed.push_back(std::move(delivery));
+        }
+    }
+    return allowed;
+}
+
+void Desk::take_slot(int index, std::vector<Delivery> &out) {
+    Slot &slot = segment_.slots[static_cast<std::size_t>(index)];
+    // Acquire: pairs with the client's taking of the slot.
+    if (slot.owner.load(std::memory_order_acquire) == 0) {
+        return;
+    }
+    // Before the commands: one that leaves has posted all that it wanted to.
+    const bool isLeaving = slot.isLeaving.load(std::memory_order_acquire) != 0;
+    for (std::uint32_t n = 0; n < MAX_POSTED && slot.posted.pop(posted_); ++n) {
+        accept(index, posted_, out);
+    }
+    const bool isTurn = (cycles_ / OWNER_CHECK_CYCLES) % MAX_CLIENTS == static_cast<std::uint64_t>(index) &&
+                        cycles_ % OWNER_CHECK_CYCLES == 0;
+    if (isLeaving || isTurn) {
+        check_owner(index);
+    }
+}
+
+void Desk::check_owner(int index) {
+    Slot &slot = segment_.slots[static_cast<std::size_t>(index)];
+    const bool isLeaving = slot.isLeaving.load(std::memory_order_acquire) != 0;
+    if (!isLeaving && isAlive(slot.owner.load(std::memory_order_relaxed))) {
+        return;
+    }
+    const ClientId client = slot.client.load(std::memory_order_relaxed);
+    const bool hadRight = client != 0 && right_.status(now_ns_).holder == client;
+    right_.forget(client);
+    if (hadRight) {
+        post(msgs::MessageKind::OPERATOR_TEXT,
+             "client " + std::to_string(client) +
+                 ", which operated alone, is gone: all clients operate again");
+    }
+    // Its commands go on: who started a program need not stay. Nobody asks for their outcomes any more.
+    std::erase_if(going_, [index](const auto &going) { return going.second.slot == index; });
+    serials_[static_cast<std::size_t>(index)].fill(0);
+    for (auto &outcome : slot.outcomes) {
+        outcome.write({});
+    }
+    for (std::uint32_t n = 0; n < MAX_POSTED && slot.posted.pop(posted_); ++n) {
+        // Posted between our taking and its death: as if it had come too late.
+    }
+    slot.client.store(0, std::memory_order_relaxed);
+    slot.taken.store(0, std::memory_order_relaxed);
+    slot.isLeaving.store(0, std::memory_order_relaxed);
+    // Release: the next owner finds the place clean.
+    slot.owner.store(0, std::memory_order_release);
+}
+
+int Desk::free_outcome(int slot) const {
+    const auto &serials = serials_[static_cast<std::size_t>(slot)];
+    int oldest = -1;
+    for (int i = 0; i < MAX_OUTCOMES; ++i) {
+        const Serial serial = serials[static_cast<std::size_t>(i)];
+        const bool isUnderWay = serial != 0 && going_.contains(serial);
+        if (!isUnderWay && (oldest < 0 || serial < serials[static_cast<std::size_t>(oldest)])) {
+            oldest = i;
+        }
+    }
+    return oldest;
+}
+
+void Desk::accept(int index, const Posted &posted, std::vector<Delivery> &out) {
+    Slot &slot = segment_.slots[static_cast<std::size_t>(index)];
+    const bool isNew = posted.serial != 0 &&
+                       posted.serial <= segment_.serials.load(std::memory_order_relaxed) &&
+                       !going_.contains(posted.serial);
+    const int place = free_outcome(index);
+    if (!isNew || place < 0) {
+        // A number that the mailbox has not given out, or MAX_OUTCOMES commands under way: nothing can be
+        // answered.
+        post(msgs::MessageKind::OPERATOR_ERROR,
+             "client " + std::to_string(slot.client.load()) +
+                 (isNew ? " has too many commands under way: one was dropped"
+                        : " sent a command with a wrong number"));
+        slot.taken.store(std::max(posted.serial, slot.taken.load()), std::memory_order_release);
+        return;
+    }
+    going_[posted.serial] = {index, place, {posted.serial, Progress::STARTED, {}}};
+    serials_[static_cast<std::size_t>(index)][static_cast<std::size_t>(place)] = posted.serial;
+    write(going_[posted.serial]);
+    // Release: who sees it as taken finds its outcome.
+    slot.taken.store(posted.serial, std::memory_order_release);
+    const std::size_t size = std::min<std::size_t>(posted.size, posted.bytes.size());
+    auto command = msgs::decode_command({posted.bytes.data(), size});
+    if (!command.has_value()) {
+        tell(posted.serial, Progress::REFUSED, command.error().str());
+        return;
+    }
+    const bool isPanel = slot.role.load(std::memory_order_relaxed) == static_cast<std::uint8_t>(Role::PANEL);
+    out.push_back({posted.serial, slot.client.load(std::memory_order_relaxed), std::move(*command), isPanel});
+}
+
+bool Desk::isConnected(ClientId client) const {
+    return client != 0 &&
+           std::any_of(segment_.slots.begin(), segment_.slots.end(), [client](const Slot &slot) {
+               return slot.owner.load(std::memory_order_acquire) != 0 && slot.client.load() == client;
+           });
+}
+
+bool Desk::operate(const Delivery &delivery) {
+    Result<> status;
+    if (const auto *claim = std::get_if<msgs::ClaimOperation>(&delivery.command)) {
+        status = right_.claim(delivery.client, claim->lease_s, now_ns_);
+    } else if (const auto *hand_over = std::get_if<msgs::HandOverOperation>(&delivery.command)) {
+        status = isConnected(hand_over->client)
+                     ? right_.hand_over(delivery.client, hand_over->client, now_ns_)
+                     : fail("there is no client " + std::to_string(hand_over->client));
+    } else if (std::holds_alternative<msgs::ReleaseOperation>(delivery.command)) {
+        status = right_.release(delivery.client);
+    } else {
+        return false;
+    }
+    tell(delivery.serial, status.has_value() ? Progress::DONE : Progress::REFUSED,
+         status.has_value() ? std::string() : status.error().str());
+    return true;
+}
+
+void Desk::write(const Place &place) {
+    segment_.slots[static_cast<std::size_t>(place.slot)]
+        .outcomes[static_cast<std::size_t>(place.outcome)]
+        .write(place.written);
+}
+
+void Desk::tell(Serial serial, Progress progress, const std::string &reason) {
+    const auto found = going_.find(serial);
+    if (found == going_.end()) {
+        return;  // its client is gone
+    }
+    found->second.written.progress = progress;
+    assign(found->second.written.reason, reason);
+    write(found->second);
+    if (progress != Progress::STARTED) {
+        going_.erase(found);
+    }
+}
+
+void Desk::post(msgs::MessageKind kind, std::string_view text) {
+    auto message = std::make_unique<NumberedMessage>();
+    message->number = newest_message() + 1;
+    message->kind = kind;
+    assign(message->text, text);
+    segment_.messages[message->number % MAX_MESSAGES].write(*message);
+    // Release: who sees the number finds the message.
+    segment_.newest_message.store(message->number, std::memory_order_release);
+}
+
+void Desk::publish(msgs::MachineStatus &status) {
+    status.operation = right_.status(now_ns_);
+    status.last_message = newest_message();
+    segment_.status.write(status);
+    segment_.cycles.store(cycles_, std::memory_order_release);
+    Memory::ring(segment_);
+}
+
+bool Desk::publish_tools(const msgs::ToolTable &table) {
+    std::string encoded;
+    msgs::encode(msgs::object(table), encoded);
+    if (encoded.size() > MAX_TOOL_BYTES) {
+        return false;
+    }
+    auto bytes = std::make_unique<Bytes>();
+    bytes->version = table.version;
+    bytes->size = encoded.size();
+    std::memcpy(bytes->bytes.data(), encoded.data(), encoded.size());
+    segment_.tools.write(*bytes);
+    segment_.tools_version.store(table.version, std::memory_order_release);
+    return true;
+}
+
+}  // namespace mw::mailbox

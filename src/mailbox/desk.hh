@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Task's side of the mailbox: takes commands, tells outcomes, messages and status.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "mailbox/right_to_operate.hh"
+#include "mailbox/segment.hh"
+#include "msgs/command.hh"
+
+namespace mw::mailbox {
+
+/// One thread. Never waits for a client. Everything that clients have written is checked before it is used.
+class Desk {
+  public:
+    struct Delivery {
+        Serial serial = 0;
+        ClientId client = 0;
+        msgs::Command command;
+        bool isPanel = false;
+    };
+
+    explicit Desk(Segment &segment) : segment_(segment) {}
+
+    /// Once a cycle. The new commands of all clients in the order of their numbers. What may not be carried
+    /// out (bytes that are no command, values out of range, another's right to operate) is refused here;
+    /// commands about the right to operate end here. Places of dead clients become free.
+    std::vector<Delivery> take(std::int64_t now_ns);
+    /// How far a command has come. An end is final.
+    void tell(Serial serial, msgs::Progress progress, const std::string &reason);
+
+    /// A line for the operator; a longer one ends with "...".
+    void post(msgs::MessageKind kind, std::string_view text);
+    std::uint64_t newest_message() const { return segment_.newest_message.load(std::memory_order_relaxed); }
+    /// The status of this cycle; the right to operate is filled in. Wakes clients.
+    void publish(msgs::MachineStatus &status);
+    /// False when the table is larger than MAX_TOOL_BYTES; clients keep the one before.
+    bool publish_tools(const msgs::ToolTable &table);
+
+  private:
+    struct Place {
+        int slot = 0, outcome = 0;
+        Outcome written;
+    };
+
+    void take_slot(int index, std::vector<Delivery> &out);
+    void accept(int index, const Posted &posted, std::vector<Delivery> &out);
+    /// The command ends here when it is about the right to operate.
+    bool operate(const Delivery &delivery);
+    int free_outcome(int slot) const;
+    void write(const Place &place);
+    void check_owner(int index);
+    bool isConnected(ClientId client) const;
+
+    Segment &segment_;
+    RightToOperate right_;
+    std::map<Serial, Place> going_;  ///< commands under way
+    /// Which command each outcome belongs to, and whether it is under way.
+    std::array<std::array<Serial, MAX_OUTCOMES>, MAX_CLIENTS> serials_{};
+    Posted posted_;  ///< the one being taken
+    std::uint64_t cycles_ = 0;
+    std::int64_t now_ns_ = 0;
+};
+
+}  // namespace mw::mailbox

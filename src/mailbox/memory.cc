@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "mailbox/memory.hh"
+
+#include <linux/futex.h>
+#include <sys/syscall.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <new>
+
+#include "msgs/catalogue.hh"
+#include "rtapi/process.hh"
+
+namespace mw::mailbox {
+namespace {
+
+constexpr std::uint32_t ABI_VERSION = 1;
+constexpr std::int64_t NS_PER_S = 1000000000;
+constexpr int START_BITS = 42;  // a process number has at most 22
+constexpr std::uint64_t START_MASK = (std::uint64_t{1} << START_BITS) - 1;
+
+rtapi::SharedLayout layout() {
+    return {ABI_VERSION, msgs::layout_hash() ^ (sizeof(Segment) * 0x9e3779b97f4a7c15ULL)};
+}
+
+std::string name_of(const std::string &instance) {
+    return "millwright-mailbox-" + instance;
+}
+
+}  // namespace
+
+Memory Memory::in_process() {
+    Memory memory;
+    memory.own_ = std::make_unique<Segment>();
+    memory.segment_ = memory.own_.get();
+    return memory;
+}
+
+Result<Memory> Memory::create(const std::string &instance) {
+    auto shared = rtapi::SharedMemory::create(name_of(instance), sizeof(Segment), sizeof(Segment), layout());
+    if (!shared.has_value()) {
+        return std::unexpected(shared.error());
+    }
+    Memory memory;
+    memory.shared_ = std::move(*shared);
+    // Zeroed pages are an empty segment: a client may attach at once.
+    memory.segment_ = std::launder(static_cast<Segment *>(memory.shared_.data()));
+    return memory;
+}
+
+Result<Memory> Memory::attach(const std::string &instance) {
+    auto shared = rtapi::SharedMemory::attach(name_of(instance), layout());
+    if (!shared.has_value()) {
+        Error error = shared.error();
+        error.hint = error.hint.empty() ? "is the machine '" + instance + "' running?" : error.hint;
+        return std::unexpected(error);
+    }
+    Memory memory;
+    memory.shared_ = std::move(*shared);
+    memory.segment_ = std::launder(static_cast<Segment *>(memory.shared_.data()));
+    if (!memory.isOwnerAlive()) {
+        return fail("the machine '" + instance + "' is no longer running");
+    }
+    return memory;
+}
+
+bool Memory::isOwnerAlive() const {
+    return own_ != nullptr || rtapi::isAlive(shared_.owner());
+}
+
+void Memory::ring(Segment &segment) {
+    // Release: whoever sees the new value sees what was written before it.
+    segment.bell.fetch_add(1, std::memory_order_release);
+    if (segment.waiting.load(std::memory_order_seq_cst) > 0) {
+        ::syscall(SYS_futex, &segment.bell, FUTEX_WAKE, INT32_MAX, nullptr, nullptr, 0);
+    }
+}
+
+bool Memory::wait(Segment &segment, std::uint32_t heard, std::int64_t timeout_ns) {
+    segment.waiting.fetch_add(1, std::memory_order_seq_cst);
+    const timespec time{timeout_ns / NS_PER_S, timeout_ns % NS_PER_S};
+    // The kernel compares again: a ring between our look and our sleep is not missed.
+    if (segment.bell.load(std::memory_order_acquire) == heard) {
+        ::syscall(SYS_futex, &segment.bell, FUTEX_WAIT, heard, &time, nullptr, 0);
+    }
+    segment.waiting.fetch_sub(1, std::memory_order_seq_cst);
+    return segment.bell.load(std::memory_order_acquire) != heard;
+}
+
+std::uint64_t owner_word() {
+    const rtapi::ProcessId me = rtapi::this_process();
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(me.pid)) << START_BITS |
+           (me.start_time & START_MASK);
+}
+
+bool isAlive(std::uint64_t owner) {
+    rtapi::ProcessId process{static_cast<std::int32_t>(owner >> START_BITS), owner & START_MASK};
+    return rtapi::isAlive(process);
+}
+
+}  // namespace mw::mailbox
