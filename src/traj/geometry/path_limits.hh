@@ -2,8 +2,8 @@
 // The limits of the axes that a path is made for, and the mean that makes its jerk limited.
 #pragma once
 
-#include "traj/limits.hh"
-#include "traj/move_request.hh"
+#include "traj/geometry/limits.hh"
+#include "traj/geometry/move_request.hh"
 
 namespace mw::traj {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "traj/move_request.hh"
+#include "traj/geometry/move_request.hh"
 
 namespace mw::traj {
 

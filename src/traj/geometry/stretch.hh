@@ -2,7 +2,7 @@
 // What a move asks for, and what a stretch of it allows: speed, acceleration and tolerance. Pure.
 #pragma once
 
-#include "traj/conditions.hh"
+#include "traj/geometry/conditions.hh"
 #include "traj/geometry/planned_path.hh"
 
 namespace mw::traj {

@@ -2,8 +2,8 @@
 // Where the machine may go: soft limits of the axes, and joints that are not axes.
 #pragma once
 
-#include "traj/joint_map.hh"
-#include "traj/limits.hh"
+#include "traj/geometry/joint_map.hh"
+#include "traj/geometry/limits.hh"
 
 namespace mw::traj {
 

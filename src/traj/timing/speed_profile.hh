@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "traj/conditions.hh"
+#include "traj/geometry/conditions.hh"
 #include "traj/timing/leader_state.hh"
 
 namespace mw::traj {

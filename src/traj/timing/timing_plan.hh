@@ -7,6 +7,13 @@
 
 namespace mw::traj {
 
+struct PlannerSettings {
+    double period_s = 1e-3;     ///< of the servo
+    std::uint64_t latency = 3;  ///< cycles from a plan's making to its start
+    double horizon_s = 0.1;     ///< how far ahead phases are committed
+    bool isMerging = true;      ///< nearly straight lines become one
+};
+
 /// What an update has to do.
 struct Demand {
     enum class Kind : std::uint8_t {

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "traj/conditions.hh"
+#include "traj/geometry/conditions.hh"
 
 namespace mw::traj {
 

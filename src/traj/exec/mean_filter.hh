@@ -3,24 +3,11 @@
 // and its jerk is (a(t) - a(t - n T)) / (n T): see docs/motion/planner.md. Realtime-safe.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
-#include "traj/primitive.hh"
+#include "traj/path_store.hh"
 
 namespace mw::traj {
-
-/// Poses and places of the leader, by tick; written by the executor, read by the planner.
-struct LeaderSample {
-    Pose pose;
-    double s = 0;            ///< on the programmed path
-    double tolerance = 0;    ///< allowed deviation there; 0: any
-    std::uint64_t move = 0;  ///< under way
-};
-inline constexpr std::uint64_t HISTORY_CAPACITY = 1024;
-/// Longest mean [samples]; with it all that planner and executor look at together fits the history.
-inline constexpr std::uint64_t MAX_FILTER = 400;
-using LeaderHistory = std::array<LeaderSample, HISTORY_CAPACITY>;
 
 class MeanFilter {
   public:

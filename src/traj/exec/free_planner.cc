@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "traj/free_planner.hh"
+#include "traj/exec/free_planner.hh"
 
 #include <algorithm>
 #include <cmath>

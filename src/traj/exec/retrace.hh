@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "geom/pose.hh"
-#include "traj/free_planner.hh"
+#include "traj/exec/free_planner.hh"
 
 namespace mw::traj {
 

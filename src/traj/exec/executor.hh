@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "base/limits.hh"
-#include "traj/path_store.hh"
+#include "traj/exec/mean_filter.hh"
 
 namespace mw::traj {
 

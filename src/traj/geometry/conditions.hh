@@ -19,13 +19,6 @@ struct Scales {
     std::array<double, MAX_SPINDLES> spindle_rps{};
 };
 
-struct PlannerSettings {
-    double period_s = 1e-3;     ///< of the servo
-    std::uint64_t latency = 3;  ///< cycles from a plan's making to its start
-    double horizon_s = 0.1;     ///< how far ahead phases are committed
-    bool isMerging = true;      ///< nearly straight lines become one
-};
-
 /// Single blocks: stops where the source block is another than `block`.
 struct SingleBlocks {
     bool isOn = false;

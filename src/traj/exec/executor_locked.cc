@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "traj/executor.hh"
+#include "traj/exec/executor.hh"
 #include "traj/tuning.hh"
 
 namespace mw::traj {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "traj/executor.hh"
+#include "traj/exec/executor.hh"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "traj/primitive.hh"
+#include "traj/geometry/primitive.hh"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "traj/retrace.hh"
+#include "traj/exec/retrace.hh"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "traj/limits.hh"
+#include "traj/geometry/limits.hh"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 // pure. Formulas: docs/motion/planner.md.
 #pragma once
 
+#include "traj/geometry/primitive.hh"
 #include "traj/path_store.hh"
-#include "traj/primitive.hh"
 
 namespace mw::traj {
 
