@@ -22,6 +22,7 @@ ALLOWED_EQUAL = {('geom', 'base'), ('diag', 'base'), ('interp', 'tool'), ('task'
 FORBIDDEN = {(user, used) for user in ('kins', 'traj', 'homing', 'interp', 'tool') for used in ('hal', 'nml')}
 # Inside a folder: sub-folders in the order in which they may use each other.
 INNER = {'motion': ['api', 'core', 'rt'],
+         'traj': ['geometry', 'exec', 'timing', 'trial'],
          'hal': ['api', 'sdk', 'halcompile', 'core', 'host', 'lang', 'tcl', 'stream_tools', 'view']}
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 

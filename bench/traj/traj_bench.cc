@@ -13,7 +13,7 @@
 #include "testing/deviation.hh"
 #include "testing/limit_checker.hh"
 #include "traj/bound.hh"
-#include "traj/executor.hh"
+#include "traj/exec/executor.hh"
 #include "traj/jerk_bound.hh"
 #include "traj/kinds.hh"
 #include "traj/planner.hh"

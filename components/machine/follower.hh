@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "traj/free_planner.hh"
+#include "traj/exec/free_planner.hh"
 
 namespace mw::components {
 

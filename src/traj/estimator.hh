@@ -7,7 +7,7 @@
 #include <functional>
 #include <memory>
 
-#include "traj/executor.hh"
+#include "traj/exec/executor.hh"
 #include "traj/planner.hh"
 
 namespace mw::traj {

@@ -8,8 +8,7 @@
 #include <cstdint>
 
 #include "base/spsc_ring.hh"
-#include "traj/mean_filter.hh"
-#include "traj/primitive.hh"
+#include "traj/geometry/primitive.hh"
 
 namespace mw::traj {
 
@@ -111,6 +110,18 @@ struct Commit {
     bool isStop = false;          ///< made to stop, so taken while held or dropping
     Pass pass;                    ///< instead of phases
 };
+
+/// Poses and places of the leader, by tick; written by the executor, read by the planner.
+struct LeaderSample {
+    Pose pose;
+    double s = 0;            ///< on the programmed path
+    double tolerance = 0;    ///< allowed deviation there; 0: any
+    std::uint64_t move = 0;  ///< under way
+};
+inline constexpr std::uint64_t HISTORY_CAPACITY = 1024;
+/// Longest mean [samples]; with it all that planner and executor look at together fits the history.
+inline constexpr std::uint64_t MAX_FILTER = 400;
+using LeaderHistory = std::array<LeaderSample, HISTORY_CAPACITY>;
 
 enum class Motion : std::uint8_t { REST, FOLLOW, BRAKE, LOCKED };
 

@@ -19,6 +19,8 @@ struct PathTuning {
     static constexpr double REVERSAL_COSINE = -0.9;
     /// Below this a blend is a stop.
     static constexpr double SMALLEST_BLEND = 1e-7;
+    /// A part of a move shorter than this of it is none: rounding.
+    static constexpr double SMALLEST_PART = 1e-12;
     /// Moves passed in one servo cycle at most; with all their pieces and up to four phases a piece this
     /// stays below Executor::MAX_STEPS_PER_CYCLE.
     static constexpr double MOVES_PER_CYCLE = 12;
@@ -128,6 +130,8 @@ struct TimingTuning {
     static constexpr int RISE_STEPS = 40;       ///< of bisection
     static constexpr double SOON = 1e-9;        ///< shorter waits are none [s]
     static constexpr double ROUND_END = 1e-12;  ///< part of a piece within which its end is reached
+    /// A coast takes at least this part of what is left of a piece: no phase without a way.
+    static constexpr double LEAST_COAST = 1e-9;
     /// Phases of a piece with acceleration limits: one that comes down to an override, up, level, down.
     static constexpr std::uint64_t PHASES_PER_PIECE = 4;
     static constexpr std::uint64_t PHASES_PER_STOP = 8;

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "homing/homing.hh"
-#include "traj/free_planner.hh"
+#include "traj/exec/free_planner.hh"
 
 namespace mw::homing {
 namespace {

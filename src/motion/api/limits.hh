@@ -12,8 +12,8 @@
 #include "kins/kinematics.hh"
 #include "motion/api/command.hh"
 #include "motion/api/settings.hh"
-#include "traj/joint_map.hh"
-#include "traj/limits.hh"
+#include "traj/geometry/joint_map.hh"
+#include "traj/geometry/limits.hh"
 
 namespace mw::motion {
 

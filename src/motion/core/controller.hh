@@ -13,8 +13,8 @@
 #include "motion/api/settings.hh"
 #include "motion/core/io.hh"
 #include "motion/core/path_link.hh"
-#include "traj/executor.hh"
-#include "traj/free_planner.hh"
+#include "traj/exec/executor.hh"
+#include "traj/exec/free_planner.hh"
 
 namespace mw::motion {
 

@@ -9,10 +9,10 @@
 #include "base/limits.hh"
 #include "base/seqlock.hh"
 #include "motion/api/status.hh"
-#include "traj/joint_map.hh"
-#include "traj/limits.hh"
+#include "traj/geometry/joint_map.hh"
+#include "traj/geometry/limits.hh"
 #include "traj/path_store.hh"
-#include "traj/retrace.hh"
+#include "traj/exec/retrace.hh"
 
 namespace mw::motion {
 

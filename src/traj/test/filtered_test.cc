@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "testing/allocation_guard.hh"
 #include "traj/test/path_rig.hh"
 
 namespace mw::traj::test {
@@ -269,6 +270,17 @@ TEST(Filtered, TheFeedIsKeptWhereLinesAndArcsMeet_C13) {
     const auto last = std::find_if(speeds.rbegin(), speeds.rend(), isFast).base();
     ASSERT_LT(first, last);
     EXPECT_GT(*std::min_element(first, last), 0.95 * FEED);
+}
+
+TEST(Filtered, PlanningTouchesNoHeap_C13) {
+    JerkRig rig;
+    rig.samples.reserve(20000);
+    const testing::AllocationGuard guard;
+    add_circle(rig, 5, 0.01);
+    rig.planner.add(make_line(Pose{}, at(20, 5)), request(Join::BLEND, 0.01));
+    rig.planner.add(make_line(at(20, 5), at(0, 5)), request(Join::STOP));
+    ASSERT_TRUE(rig.run(15));
+    EXPECT_EQ(guard.calls(), 0U);
 }
 
 TEST(Joining, NearlyStraightLinesBecomeOneWithinTheTolerance_C2) {

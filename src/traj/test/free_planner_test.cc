@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "testing/limit_checker.hh"
-#include "traj/free_planner.hh"
+#include "traj/exec/free_planner.hh"
 
 namespace mw::traj {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "traj/mean_filter.hh"
+#include "traj/exec/mean_filter.hh"
 
 namespace mw::traj {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "testing/limit_checker.hh"
-#include "traj/executor.hh"
+#include "traj/exec/executor.hh"
 #include "traj/planner.hh"
 
 namespace mw::traj::test {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Lines and helices alone: the box around them, judged by points on them.
+// Lines and helices alone, judged by points on them.
 #include <cmath>
 #include <numbers>
 #include <random>
 
 #include <gtest/gtest.h>
 
-#include "traj/primitive.hh"
+#include "traj/geometry/primitive.hh"
 
 namespace mw::traj::test {
 namespace {
@@ -49,6 +49,105 @@ class Arcs {
     double real(double low, double high) { return std::uniform_real_distribution(low, high)(random_); }
     std::mt19937 random_;
 };
+
+Pose flat(double x, double y) {
+    Pose p;
+    p[0] = x;
+    p[1] = y;
+    return p;
+}
+
+TEST(Primitive, EndsWhereItWasToldToTheBit_C1) {
+    Arcs arcs(3);
+    for (int n = 0; n < 1000; ++n) {
+        Primitive p;
+        if (!arcs.next(n % 3, 3, n % 4, p)) {
+            continue;
+        }
+        EXPECT_EQ(position_at(p, 0), p.start);
+        EXPECT_EQ(position_at(p, -1), p.start);
+        EXPECT_EQ(position_at(p, p.length), p.end);
+        EXPECT_EQ(position_at(p, p.length + 1), p.end);
+        // And next to its ends it is near them: nothing jumps.
+        const double h = 1e-6 * p.length;
+        EXPECT_LT(geom::norm(position_at(p, h) - p.start), 2 * h + 1e-9);
+        EXPECT_LT(geom::norm(position_at(p, p.length - h) - p.end), 2 * h + 1e-9);
+    }
+}
+
+TEST(Primitive, DerivativesAreThoseOfItsPositions_C1) {
+    Arcs arcs(4);
+    int count = 0;
+    for (int n = 0; n < 500; ++n) {
+        Primitive p;
+        if (!arcs.next(n % 3, 6, n % 4, p)) {
+            continue;
+        }
+        ++count;
+        const PerLimited bound = second_derivative_bound(p);
+        const double h = 1e-4 * p.length;
+        double most = 0;
+        for (int k = 1; k < 50; ++k) {
+            const double s = p.length * k / 50;
+            const Pose before = position_at(p, s - h);
+            const Pose here = position_at(p, s);
+            const Pose after = position_at(p, s + h);
+            const Pose slope = (after - before) * (0.5 / h);
+            EXPECT_LT(geom::norm(slope - derivative_at(p, s)), 1e-4);
+            EXPECT_NEAR(geom::norm(slope), 1, 0.1);
+            const Pose bend = ((after - here) - (here - before)) * (1.0 / (h * h));
+            const double rounding = 1e-13 * (1 + geom::norm(here)) / (h * h);
+            for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+                EXPECT_LE(std::abs(bend[i]), bound[static_cast<std::size_t>(i)] * (1 + 1e-3) + rounding);
+            }
+            EXPECT_LE(geom::norm_xyz(bend), bound[XYZ_NORM] * (1 + 1e-3) + rounding);
+            most = std::max(most, geom::norm_xyz(bend) + rounding);
+        }
+        EXPECT_GT(most, 0.9 * bound[XYZ_NORM]);
+    }
+    EXPECT_GT(count, 400);
+}
+
+TEST(FeedLength, CountsXyzFirstThenUvwThenTheAngles_C1) {
+    Pose to = flat(3, 4);
+    to[geom::AXIS_U] = 12;
+    to[geom::AXIS_C] = 90;
+    EXPECT_DOUBLE_EQ(feed_length(make_line(Pose{}, to)).length, 5);
+    to[0] = to[1] = 0;
+    EXPECT_DOUBLE_EQ(feed_length(make_line(Pose{}, to)).length, 12);
+    EXPECT_FALSE(feed_length(make_line(Pose{}, to)).isAngular);
+    to[geom::AXIS_U] = 0;
+    EXPECT_DOUBLE_EQ(feed_length(make_line(Pose{}, to)).length, 90);
+    EXPECT_TRUE(feed_length(make_line(Pose{}, to)).isAngular);
+}
+
+TEST(FeedLength, OfAHelixIsTheLengthOfItsCurve_C1) {
+    Pose to = flat(0, 10);
+    to[2] = 3;
+    Pose normal;
+    normal[2] = 1;
+    Primitive p;
+    ASSERT_EQ(make_arc(Pose{}, to, {flat(0, 5), normal, 3 * std::numbers::pi, false}, p), ArcFault::NONE);
+    double length = 0;
+    for (int k = 0; k < 20000; ++k) {
+        length +=
+            geom::norm_xyz(position_at(p, p.length * (k + 1) / 20000) - position_at(p, p.length * k / 20000));
+    }
+    EXPECT_NEAR(feed_length(p).length, length, 1e-4);
+}
+
+TEST(MakeArc, RefusesWhatIsNoArc_C1) {
+    Pose normal;
+    normal[2] = 1;
+    Primitive p;
+    const Pose to = flat(0, 10);
+    EXPECT_EQ(make_arc(Pose{}, to, {flat(0, 5), Pose{}, 1, false}, p), ArcFault::BAD_NORMAL);
+    EXPECT_EQ(make_arc(Pose{}, to, {flat(0, 5), normal, 0, false}, p), ArcFault::BAD_NORMAL);
+    EXPECT_EQ(make_arc(Pose{}, to, {Pose{}, normal, 1, false}, p), ArcFault::NO_RADIUS);
+    EXPECT_EQ(make_arc(Pose{}, to, {flat(0, 3), normal, 1, false}, p), ArcFault::RADII_DIFFER);
+    EXPECT_EQ(make_arc(Pose{}, to, {flat(0, 5), normal, 1, false}, p), ArcFault::END_OFF_CIRCLE);
+    EXPECT_EQ(make_arc(Pose{}, to, {flat(0, 5), normal, std::numbers::pi, false}, p), ArcFault::NONE);
+}
 
 TEST(Extent, OfAFlatArcWithRoundedEndsHasNoThickness) {
     Arcs arcs(1);

@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "traj/exec/executor.hh"
+
+#include <algorithm>
+#include <cmath>
+
+#include "traj/tuning.hh"
+
+namespace mw::traj {
+
+namespace {
+
+double x_at(const Phase &p, double t) noexcept {
+    return p.x0 + t * (p.v0 + t * (0.5 * p.a + t * p.j * (1.0 / 6.0)));
+}
+
+double v_at(const Phase &p, double t) noexcept {
+    return p.v0 + t * (p.a + 0.5 * t * p.j);
+}
+
+}  // namespace
+
+void Executor::take_commits() noexcept {
+    while (const Commit *c = store_.commits.front()) {
+        if (c->pass.first != 0) {
+            take_pass(*c);
+        } else if (c->isSwitch) {
+            const bool isFree = c->isStop || (!state_.isHeld && !state_.isDropping);
+            const bool isSameMean = c->filter == state_.filter || isAtRest();
+            const bool isTimely =
+                c->switch_cycle > state_.cycle && c->brakes == state_.brakes && isFree && isSameMean;
+            if (isTimely) {
+                next_switch_ = *c;
+                next_end_ = c->end;
+            }
+        } else if (next_switch_.plan != 0 && c->plan == next_switch_.plan) {
+            next_end_ = c->end;
+        } else if (next_switch_.plan == 0 && c->plan == state_.plan && state_.motion == Motion::FOLLOW) {
+            phase_end_ = c->end;
+        }
+        store_.commits.drop();
+    }
+}
+
+const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
+    take_commits();
+    state_.cycle = cycle;
+    ++state_.tick;
+    if (state_.motion == Motion::LOCKED) {
+        step_locked();
+    } else {
+        advance(period_);
+    }
+    const bool isDue = next_switch_.plan != 0 && next_switch_.switch_cycle <= cycle;
+    if (isDue) {
+        const bool isFree = next_switch_.isStop || (!state_.isHeld && !state_.isDropping);
+        const bool isValid =
+            next_switch_.brakes == state_.brakes && next_switch_.switch_cycle == cycle && isFree;
+        if (isValid) {
+            if (next_switch_.filter != state_.filter) {
+                state_.filter = next_switch_.filter;
+                mean_.reset(leader_, state_.filter, state_.tick);
+            }
+            state_.motion = Motion::FOLLOW;
+            state_.plan = next_switch_.plan;
+            state_.phase = next_switch_.begin;
+            state_.time_in_phase = 0;
+            phase_end_ = next_end_;
+            state_.piece = store_.phase(state_.phase).piece;
+            state_.x = store_.phase(state_.phase).x0;
+            state_.v = store_.phase(state_.phase).v0;
+        }
+        next_switch_.plan = 0;
+    }
+    locate();
+    filter();
+    const bool isDropOver = state_.isDropping && isAtRest();
+    if (isDropOver) {
+        finish_drop();
+    }
+    return out_;
+}
+
+void Executor::set_position(const Pose &pose) noexcept {
+    leader_ = pose;
+    out_.position = pose;
+    mean_.reset(pose, state_.filter, state_.tick);
+    state_.first_tick = state_.tick;
+    state_.origin = pose;
+    rest_ticks_ = MAX_FILTER;
+    along_ = 0;
+    state_.isSettled = true;
+}
+
+/// Arcs that must be followed exactly: commands the mean place on the arc. The leader stands before and after
+/// for the time of the mean. True while it is under way.
+bool Executor::follow_along() noexcept {
+    const bool isOn = state_.piece != 0 && store_.piece(state_.piece).isAlong && isFiltered();
+    const Sequence primitive = isOn ? store_.piece(state_.piece).primitive : 0;
+    const double length = isOn ? store_.piece(state_.piece).length : 0.0;
+    const bool isWithin = isOn && state_.x > on_along(length) && state_.x < length;
+    const bool isNew = isWithin && along_ != primitive;
+    if (isNew) {
+        along_ = primitive;
+        along_first_ = state_.tick;
+        along_last_ = state_.tick;
+    }
+    if (along_ == 0) {
+        return false;
+    }
+    const Primitive &p = store_.primitive(along_);
+    const bool isOnThis = isOn && primitive == along_;
+    const double at = isOnThis ? store_.piece(state_.piece).offset + state_.x : p.length;
+    along_history_[state_.tick % HISTORY_CAPACITY] = at;
+    double sum = 0;
+    for (std::uint64_t i = 0; i < state_.filter; ++i) {
+        const std::uint64_t tick = state_.tick - i;
+        sum += tick >= along_first_ ? along_history_[tick % HISTORY_CAPACITY] : 0.0;
+    }
+    const double along = sum / static_cast<double>(state_.filter);
+    out_.position = position_at(p, along);
+    along_last_ = isOnThis && isWithin ? state_.tick : along_last_;
+    const bool isOver = state_.tick >= along_last_ + state_.filter;
+    along_ = isOver ? 0 : along_;
+    return along_ != 0;
+}
+
+/// What is commanded: the leader itself, or the mean of its last samples.
+void Executor::filter() noexcept {
+    const bool isResting = state_.motion == Motion::REST;
+    LeaderSample &sample = store_.history[state_.tick % HISTORY_CAPACITY];
+    sample = {leader_, leader_s_, leader_tolerance_, out_.move};
+    done_history_[state_.tick % HISTORY_CAPACITY] = leader_done_;
+    rest_ticks_ = isResting ? rest_ticks_ + 1 : 0;
+    if (isResting) {
+        state_.coasting.pass(0, period_);
+    }
+    state_.isSettled = isResting && rest_ticks_ >= state_.filter;
+    const bool isPlain = !isFiltered() || state_.isSettled;
+    const bool isAlong = follow_along();
+    if (isPlain || isAlong) {
+        // Also keeps rounding from gathering in the mean.
+        out_.position = isAlong && !isPlain ? out_.position : leader_;
+        mean_.reset(leader_, state_.filter, state_.tick);
+        const std::uint64_t back = isPlain ? 0 : state_.filter / 2;
+        state_.done_move = std::max(state_.done_move, done_history_[(state_.tick - back) % HISTORY_CAPACITY]);
+    } else {
+        out_.position = mean_.push(store_.history, state_.tick);
+        const std::uint64_t middle = std::max(mean_.first(), state_.tick - state_.filter / 2);
+        state_.done_move = std::max(state_.done_move, done_history_[middle % HISTORY_CAPACITY]);
+    }
+    state_.first_tick = mean_.first();
+    state_.origin = mean_.origin();
+    out_.isMoving = !isAtRest();
+}
+
+void Executor::advance(double dt) noexcept {
+    for (int n = 0; n < MAX_STEPS_PER_CYCLE && dt > 0 && state_.motion != Motion::REST; ++n) {
+        dt = state_.motion == Motion::FOLLOW ? follow(dt) : brake_along(dt);
+    }
+}
+
+/// Goes on within the present phase; returns the time that is left after its end.
+double Executor::follow(double dt) noexcept {
+    const Phase &p = store_.phase(state_.phase);
+    const double left = p.duration - state_.time_in_phase;
+    state_.coasting.pass(p.a, std::min(dt, left));
+    if (dt < left) {
+        state_.time_in_phase += dt;
+        state_.x = x_at(p, state_.time_in_phase);
+        state_.v = v_at(p, state_.time_in_phase);
+        state_.piece = p.piece;
+        return 0;
+    }
+    if (state_.phase + 1 < phase_end_) {
+        ++state_.phase;
+        const Phase &next = store_.phase(state_.phase);
+        state_.time_in_phase = 0;
+        state_.piece = next.piece;
+        state_.x = next.x0;
+        state_.v = next.v0;
+        return dt - left;
+    }
+    state_.piece = p.piece;
+    state_.x = x_at(p, p.duration);
+    state_.v = v_at(p, p.duration);
+    const double length = store_.piece(p.piece).length;
+    if (std::abs(state_.x - length) <= ExecutorTuning::ARRIVED * (1.0 + length)) {
+        state_.x = length;
+    }
+    // A plan that ends in a stop ends with a speed that is 0 but for rounding.
+    const bool isStop =
+        std::abs(state_.v) <= ExecutorTuning::STOPPED * std::abs(p.a) * (p.duration + period_) ||
+        state_.v <= 0;
+    if (isStop) {
+        come_to_rest();
+    } else {
+        start_brake();
+    }
+    return dt - left;
+}
+
+void Executor::start_brake() noexcept {
+    state_.motion = Motion::BRAKE;
+    ++state_.brakes;
+    next_switch_.plan = 0;
+    brake_on_piece();
+}
+
+/// Sets up braking from the present state to a stop or to the end of the piece.
+void Executor::brake_on_piece() noexcept {
+    const Piece &piece = store_.piece(state_.piece);
+    const double left = std::max(0.0, piece.length - state_.x);
+    const double v2 = state_.v * state_.v;
+    double a = piece.acceleration.at(v2);
+    const double out2 = v2 - 2.0 * a * left;
+    brake_time_ = 0;
+    isBrakeFinal_ = out2 <= TimingTuning::STOP_FIT * v2;
+    if (!isBrakeFinal_) {
+        const double out = std::sqrt(out2);
+        const double duration = 2.0 * left / (state_.v + out);
+        brake_ = {state_.piece, duration, state_.x, state_.v, -a, 0};
+        return;
+    }
+    if (out2 > 0 && left > 0) {
+        a = v2 / (2.0 * left);
+    }
+    brake_ = {state_.piece, state_.v / a, state_.x, state_.v, -a, 0};
+}
+
+double Executor::brake_along(double dt) noexcept {
+    const double left = brake_.duration - brake_time_;
+    if (dt < left) {
+        brake_time_ += dt;
+        state_.x = x_at(brake_, brake_time_);
+        state_.v = v_at(brake_, brake_time_);
+        return 0;
+    }
+    const Piece &piece = store_.piece(state_.piece);
+    if (isBrakeFinal_) {
+        const double stop = x_at(brake_, brake_.duration);
+        state_.x = std::abs(stop - piece.length) <= ExecutorTuning::ARRIVED * (1.0 + piece.length)
+                       ? piece.length
+                       : std::min(stop, piece.length);
+        come_to_rest();
+        return 0;
+    }
+    state_.v = v_at(brake_, brake_.duration);
+    if (state_.piece == store_.last_piece.load(std::memory_order_acquire)) {
+        // The planner promises that this does not happen; were it wrong, the end of the path is where we
+        // stop.
+        state_.x = piece.length;
+        come_to_rest();
+        return 0;
+    }
+    ++state_.piece;
+    state_.x = 0;
+    brake_on_piece();
+    return dt - left;
+}
+
+void Executor::come_to_rest() noexcept {
+    state_.motion = Motion::REST;
+    state_.v = 0;
+}
+
+/// Whatever is left of the path is gone; the planner learns it from `drops`.
+void Executor::finish_drop() noexcept {
+    along_ = 0;
+    state_.isDropping = false;
+    ++state_.drops;
+    ++state_.brakes;
+    state_.piece = 0;
+    state_.x = 0;
+    next_switch_.plan = 0;
+}
+
+void Executor::hold(bool isHeld) noexcept {
+    if (isHeld && !state_.isHeld && state_.motion == Motion::FOLLOW && !isFiltered()) {
+        start_brake();
+    }
+    const bool isPassWaiting =
+        state_.motion == Motion::LOCKED && state_.piece == lock_.pass.first && state_.x <= 0 && state_.v <= 0;
+    if (isHeld && isPassWaiting) {
+        come_to_rest();
+    }
+    if (isHeld && !state_.isHeld && state_.motion == Motion::REST) {
+        ++state_.brakes;
+        next_switch_.plan = 0;
+    }
+    state_.isHeld = isHeld;
+}
+
+void Executor::drop() noexcept {
+    if (state_.isDropping) {
+        return;
+    }
+    state_.isDropping = true;
+    if (state_.motion == Motion::FOLLOW && !isFiltered()) {
+        start_brake();
+    } else if (isAtRest()) {
+        finish_drop();
+    }
+}
+
+void Executor::stop_now() noexcept {
+    state_.motion = Motion::REST;
+    state_.v = 0;
+    set_position(out_.position);
+    finish_drop();
+}
+
+/// Position, the move that it belongs to, and how many moves are complete.
+void Executor::locate() noexcept {
+    out_.velocity = state_.v;
+    const bool isMoving = state_.motion != Motion::REST;
+    out_.isOnProbe = false;
+    if (state_.piece == 0) {
+        out_.move = 0;
+        out_.distance_to_go = 0;
+        return;
+    }
+    const Piece &piece = store_.piece(state_.piece);
+    leader_ = position_at(store_, piece, state_.x);
+    leader_s_ = piece.programmed_s + state_.x;
+    leader_tolerance_ = tolerance_at(piece, state_.x);
+    const bool isBlend = piece.blend_d > 0;
+    const double along_piece = piece.offset + state_.x;
+    const bool isSecond = isBlend && along_piece >= piece.blend_d;
+    const Sequence move = piece.move + (isSecond ? 1 : 0);
+    const Primitive &line = store_.primitive(piece.primitive + (isSecond ? 1 : 0));
+    const double y = isBlend ? along_piece * along_piece / (4.0 * piece.blend_d) : 0;
+    const double start = isBlend ? line.length - piece.blend_d : 0;
+    const double along = isSecond ? y : start + along_piece - y;
+    const bool isComplete = piece.isToEnd && state_.x >= piece.length;
+    leader_done_ = std::max(leader_done_, isComplete ? move : move - 1);
+    out_.move = isComplete && !isMoving ? 0 : move;
+    out_.distance_to_go = isComplete ? 0 : line.length - along;
+    out_.isOnProbe = store_.move(move).isProbe && !isComplete;
+}
+
+const PathEvent *Executor::due_event() noexcept {
+    const PathEvent *event = store_.events.front();
+    while (event != nullptr && event->drops != state_.drops) {
+        store_.events.drop();
+        event = store_.events.front();
+    }
+    return event != nullptr && event->after_move <= state_.done_move ? event : nullptr;
+}
+
+bool Executor::isEmpty() const noexcept {
+    if (state_.piece == 0) {
+        return true;
+    }
+    const bool isAtEnd = state_.piece == store_.last_piece.load(std::memory_order_acquire) &&
+                         state_.x >= store_.piece(state_.piece).length;
+    return isAtRest() && isAtEnd;
+}
+
+}  // namespace mw::traj

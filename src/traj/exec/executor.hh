@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The servo side of path motion: evaluates what the planner has committed, and stops on the path by itself.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "base/limits.hh"
+#include "traj/exec/mean_filter.hh"
+
+namespace mw::traj {
+
+/// What the executor commands for the end of a cycle.
+struct ExecutorOutput {
+    Pose position;
+    double velocity = 0;  ///< along the parameter of the path [1/s]
+    Sequence move = 0;    ///< the move under way, 0: none
+    bool isMoving = false;
+    double distance_to_go = 0;  ///< to the end of the move under way
+    bool isOnProbe = false;
+};
+
+/// All methods: servo thread only; bounded, no allocation.
+///
+/// Follows phases; when they run out, or on `hold` and `drop`, it brakes with each piece's own acceleration
+/// along the path. A late or lost planner therefore means a stop on the path.
+/// With jerk limits (Commit::filter above 1) a leader does this and its mean is commanded; the planner then
+/// ends every plan with a stop, and answers `hold` and `drop` with a plan.
+/// Passes that are locked to a spindle's angle (Motion::LOCKED) it drives by itself, from rest to rest;
+/// `hold` waits for their end, since a thread that was held is scrap; `drop` brakes at once.
+class Executor {
+  public:
+    explicit Executor(PathStore &store, double period_s) noexcept : store_(store), period_(period_s) {}
+
+    /// The path begins at `pose`; only at rest and with nothing left of a path.
+    void set_position(const Pose &pose) noexcept;
+
+    /// The angle [turns] and speed [turns/s] of a spindle; call before `step`.
+    void set_spindle(int spindle, double turns, double turns_per_s) noexcept {
+        turns_[static_cast<std::size_t>(spindle)] = turns;
+        turns_per_s_[static_cast<std::size_t>(spindle)] = turns_per_s;
+    }
+
+    /// Advances to the end of `cycle`.
+    const ExecutorOutput &step(std::uint64_t cycle) noexcept;
+
+    /// Held: brakes and takes no plans until released.
+    void hold(bool isHeld) noexcept;
+    /// Brakes; when at rest everything that is left of the path is dropped.
+    void drop() noexcept;
+    /// Stops dead where it is and drops the path (amplifiers are off, nothing can follow a profile).
+    void stop_now() noexcept;
+
+    /// The next event whose place has been passed, or nullptr; pop with `drop_event`.
+    const PathEvent *due_event() noexcept;
+    void drop_event() noexcept { store_.events.drop(); }
+
+    bool isAtRest() const noexcept { return state_.motion == Motion::REST && state_.isSettled; }
+    /// Nothing is left of the path.
+    bool isEmpty() const noexcept;
+    const Snapshot &snapshot() const noexcept { return state_; }
+    const ExecutorOutput &output() const noexcept { return out_; }
+
+    /// Upper bound of phases and pieces passed in one cycle; the planner keeps below it.
+    static constexpr int MAX_STEPS_PER_CYCLE = 4096;
+
+  private:
+    void take_commits() noexcept;
+    void advance(double dt) noexcept;
+    double follow(double dt) noexcept;
+    double brake_along(double dt) noexcept;
+    void start_brake() noexcept;
+    void brake_on_piece() noexcept;
+    void come_to_rest() noexcept;
+    void locate() noexcept;
+    void filter() noexcept;
+    bool follow_along() noexcept;
+    void finish_drop() noexcept;
+    bool isFiltered() const noexcept { return state_.filter > 1; }
+
+    // --- executor_locked.cc
+    bool take_pass(const Commit &commit) noexcept;
+    void step_locked() noexcept;
+    void advance_locked() noexcept;
+    double acceleration_left() const noexcept;
+    double locked_speed() noexcept;
+    bool descend(double v) noexcept;
+    double leave_piece(double x) noexcept;
+    double turned() const noexcept;
+
+    PathStore &store_;
+    double period_;
+    Snapshot state_;
+    ExecutorOutput out_;
+    Commit next_switch_;      ///< plan != 0: waits for its cycle
+    Sequence phase_end_ = 0;  ///< phases of the plan taken end here
+    Sequence next_end_ = 0;   ///< the same of the waiting switch
+    Phase brake_;             ///< the braking profile on the present piece
+    double brake_time_ = 0;
+    bool isBrakeFinal_ = false;  ///< it ends in a stop
+    Pose leader_;
+    double leader_s_ = 0, leader_tolerance_ = 0;
+    Sequence leader_done_ = 0;
+    MeanFilter mean_;
+    Sequence along_ = 0;  ///< the primitive of which the mean place is commanded, 0: none
+    std::uint64_t along_first_ = 0, along_last_ = 0;  ///< ticks on it
+    std::array<double, HISTORY_CAPACITY> along_history_{};
+    std::uint64_t rest_ticks_ = MAX_FILTER;  ///< since the leader stands
+    std::array<Sequence, HISTORY_CAPACITY> done_history_{};
+
+    std::array<double, MAX_SPINDLES> turns_{}, turns_per_s_{};
+    /// Of a pass: the helix is x = per_turn (turned() - origin - turns of the pieces passed).
+    struct Lock {
+        Pass pass;
+        double origin = 0;        ///< turns of the spindle at which the helix passes the start
+        double passed_turns = 0;  ///< of the pieces that are complete
+        Sequence came_from = 0;   ///< piece at the start of the last cycle
+        double descent = 0;       ///< > 0: brakes with it to the end of the piece
+        bool isOn = false;        ///< the tool is on the helix
+        bool wasOn = false;       ///< it has been
+        bool wasDescending = false;
+    };
+    Lock lock_;
+};
+
+}  // namespace mw::traj

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Passes that are locked to the angle of a spindle: threads. The speed of the coming cycle is the greatest
+// that meets the helix without passing it, within what the path allows. Formulas: docs/motion/planner.md.
+#include <algorithm>
+#include <cmath>
+
+#include "traj/exec/executor.hh"
+#include "traj/tuning.hh"
+
+namespace mw::traj {
+
+namespace {
+
+AccelBound part_of(const AccelBound &bound, double share) noexcept {
+    AccelBound out = bound;
+    for (std::size_t i = 0; i < AccelBound::LINES; ++i) {
+        out.alpha[i] *= share;
+        out.beta[i] *= share;
+    }
+    return out;
+}
+
+/// Difference of speed that can be taken back over the way `gap`, in whole cycles, with the acceleration a.
+double closing_speed(double gap, double a, double dt) noexcept {
+    const double size = std::abs(gap);
+    const double speed =
+        size <= a * dt * dt ? size / dt : a * (std::sqrt(0.25 * dt * dt + 2.0 * size / a) - 0.5 * dt);
+    return gap > 0 ? speed : -speed;
+}
+
+}  // namespace
+
+/// Where the spindle will be at the end of this cycle, or as much later as the mean is behind. [turns]
+double Executor::turned() const noexcept {
+    const auto n = static_cast<std::size_t>(lock_.pass.spindle);
+    const double ahead = 0.5 * static_cast<double>(state_.filter + 1) * period_;
+    return lock_.pass.direction * (turns_[n] + turns_per_s_[n] * ahead);
+}
+
+/// The pass begins so that its helix goes through the start at a whole turn, whatever the speed.
+bool Executor::take_pass(const Commit &commit) noexcept {
+    const bool isFree = !state_.isHeld && !state_.isDropping && commit.brakes == state_.brakes;
+    if (!isFree || !isAtRest()) {
+        return false;
+    }
+    lock_ = {};
+    lock_.pass = commit.pass;
+    lock_.came_from = commit.pass.first;
+    state_.plan = commit.plan;
+    if (commit.filter != state_.filter) {
+        state_.filter = commit.filter;
+        mean_.reset(leader_, state_.filter, state_.tick);
+    }
+    state_.motion = Motion::LOCKED;
+    state_.piece = commit.pass.first;
+    state_.x = 0;
+    state_.v = 0;
+    const Piece &piece = store_.piece(state_.piece);
+    const auto n = static_cast<std::size_t>(commit.pass.spindle);
+    const double v = piece.per_turn * std::max(0.0, commit.pass.direction * turns_per_s_[n]);
+    const double a = ExecutorTuning::MEETING_SHARE * commit.pass.share * piece.acceleration.at(0);
+    const double run_in = a > 0 && piece.per_turn > 0 ? 0.5 * v * v / (a * piece.per_turn) : 0.0;
+    lock_.origin = std::ceil(turned() + run_in);
+    return true;
+}
+
+/// What the pieces that the last and the coming cycle touch leave for the path, at the speed that it may lead
+/// to: differences of the samples span both.
+double Executor::acceleration_left() const noexcept {
+    const Piece &piece = store_.piece(state_.piece);
+    const double here = piece.acceleration.at(state_.v * state_.v);
+    const double v = state_.v + here * period_;
+    double left =
+        std::min(piece.acceleration.at(v * v), store_.piece(lock_.came_from).acceleration.at(v * v));
+    const bool isNear = state_.x + v * period_ >= piece.length && state_.piece < lock_.pass.last;
+    if (isNear) {
+        left = std::min(left, store_.piece(state_.piece + 1).acceleration.at(v * v));
+    }
+    return left;
+}
+
+/// The speed for the coming cycle.
+double Executor::locked_speed() noexcept {
+    const Piece &piece = store_.piece(state_.piece);
+    const auto n = static_cast<std::size_t>(lock_.pass.spindle);
+    const double left = acceleration_left();
+    const double trim = lock_.pass.trim * left;
+    const double a = lock_.wasOn ? trim : lock_.pass.share * left;
+    const double helix_v = piece.per_turn * lock_.pass.direction * turns_per_s_[n];
+    const double helix_x = piece.per_turn * (turned() - lock_.origin - lock_.passed_turns);
+    // How far the tool would be ahead of the helix if it went at the helix's speed.
+    const double gap = state_.x + helix_v * period_ - helix_x;
+    const double part = std::abs(gap) / piece.per_turn;
+    lock_.isOn = lock_.isOn ? part < ExecutorTuning::LOST
+                            : part < ExecutorTuning::MET && std::abs(state_.v - helix_v) < a * period_;
+    lock_.wasOn = lock_.wasOn || lock_.isOn;
+    const double wanted =
+        helix_v - (lock_.isOn ? ExecutorTuning::GAIN * gap
+                              : closing_speed(gap, ExecutorTuning::MEETING_SHARE * a, period_));
+    const double slower = lock_.wasDescending ? 0.5 : 1.0;
+    const double low = std::max(0.0, state_.v - slower * trim * period_);
+    return std::clamp(std::min(wanted, piece.v_most), low, state_.v + a * period_);
+}
+
+/// Brakes to the end of the piece when the next cycle at this speed would come too near to it. True while it
+/// does, or when an abort asks for it.
+bool Executor::descend(double v) noexcept {
+    const Piece &piece = store_.piece(state_.piece);
+    const AccelBound bound = part_of(piece.acceleration, lock_.pass.share);
+    const double left = piece.length - state_.x;
+    if (lock_.descent > 0 || state_.isDropping) {
+        return true;
+    }
+    const double after = std::max(0.0, left - std::max(v, state_.v) * period_);
+    const double highest2 = after > 0 ? bound.highest_before(piece.v2_out, after) : piece.v2_out;
+    if (std::max(v, state_.v) * std::max(v, state_.v) <= highest2) {
+        return false;
+    }
+    lock_.descent = std::max(0.0, 0.5 * (state_.v * state_.v - piece.v2_out) / std::max(left, 1e-300));
+    return lock_.descent > 0;
+}
+
+/// On to the next piece with what is left of the way; come to rest behind the last one.
+double Executor::leave_piece(double x) noexcept {
+    const Piece &piece = store_.piece(state_.piece);
+    lock_.descent = 0;
+    if (state_.piece == lock_.pass.last) {
+        come_to_rest();
+        return piece.length;
+    }
+    lock_.passed_turns += piece.length / piece.per_turn;
+    ++state_.piece;
+    return x - piece.length;
+}
+
+/// One cycle of a pass.
+void Executor::step_locked() noexcept {
+    advance_locked();
+    state_.coasting.pass(-1, period_);  // for the plan that follows: the speed may just have fallen
+}
+
+void Executor::advance_locked() noexcept {
+    const double wanted = locked_speed();
+    lock_.came_from = state_.piece;
+    if (!descend(wanted)) {
+        state_.v = wanted;
+        state_.x += wanted * period_;
+        lock_.wasDescending = false;
+        for (int n = 0;
+             n < ExecutorTuning::MOST_PIECES_PER_CYCLE && state_.x >= store_.piece(state_.piece).length;
+             ++n) {
+            if (state_.motion != Motion::LOCKED) {
+                break;
+            }
+            state_.x = leave_piece(state_.x);
+        }
+        return;
+    }
+    double dt = period_;
+    for (int n = 0; n < ExecutorTuning::MOST_PIECES_PER_CYCLE && dt > 0 && state_.motion == Motion::LOCKED;
+         ++n) {
+        const Piece &piece = store_.piece(state_.piece);
+        const double left = piece.length - state_.x;
+        const double most = lock_.pass.share * piece.acceleration.at(state_.v * state_.v);
+        const double a = state_.isDropping ? most : lock_.descent;
+        const double stop_s = a > 0 ? state_.v / a : 0.0;
+        const double end_v2 = std::max(0.0, state_.v * state_.v - 2.0 * a * left);
+        const bool isAtEnd = end_v2 > 0 || (!state_.isDropping && piece.v2_out > 0);
+        const double end_s = 2.0 * left / std::max(state_.v + std::sqrt(end_v2), 1e-300);
+        lock_.wasDescending = true;
+        if (isAtEnd && end_s <= dt) {
+            dt -= end_s;
+            state_.v = std::sqrt(end_v2);
+            state_.x = leave_piece(piece.length);
+            if (!state_.isDropping && state_.motion == Motion::LOCKED) {
+                state_.x += state_.v * dt;
+                dt = 0;
+            }
+            continue;
+        }
+        if (stop_s <= dt) {
+            state_.x =
+                state_.isDropping ? std::min(piece.length, state_.x + 0.5 * state_.v * stop_s) : piece.length;
+            lock_.descent = 0;
+            come_to_rest();
+            return;
+        }
+        state_.x = std::min(piece.length, state_.x + dt * (state_.v - 0.5 * a * dt));
+        state_.v = std::max(0.0, state_.v - a * dt);
+        dt = 0;
+    }
+}
+
+}  // namespace mw::traj

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "traj/exec/free_planner.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mw::traj {
+
+double stop_position(double position, double velocity, double acceleration) noexcept {
+    return acceleration > 0 ? position + velocity * std::abs(velocity) / (2.0 * acceleration) : position;
+}
+
+void FreePlanner::stop() noexcept {
+    target = stop_position(position, velocity, max_acceleration);
+}
+
+namespace {
+
+/// Moves on with constant acceleration for at most `span`; returns the time left of dt.
+double go(double &p, double &v, double a, double span, double dt) noexcept {
+    const double t = std::clamp(span, 0.0, dt);
+    p += t * (v + 0.5 * a * t);
+    v += a * t;
+    return dt - t;
+}
+
+}  // namespace
+
+void FreePlanner::step(double dt) noexcept {
+    const double a = max_acceleration;
+    if (!(a > 0) || isAtRest()) {
+        velocity = a > 0 ? velocity : 0.0;
+        return;
+    }
+    // Turned so that the target lies beyond the place where braking now would lead.
+    const double sign = target >= stop_position(position, velocity, a) ? 1.0 : -1.0;
+    const double d = (target - position) * sign;
+    double p = 0;
+    double v = velocity * sign;
+    double left = dt;
+    const double rise2 = a * d + 0.5 * v * v;
+    const double peak = std::min(std::max(0.0, max_velocity), std::sqrt(std::max(0.0, rise2)));
+    if (v > peak) {
+        left = go(p, v, -a, (v - peak) / a, left);
+    } else {
+        left = go(p, v, a, (peak - v) / a, left);
+    }
+    if (left > 0) {
+        v = peak;
+        const double brake = peak * peak / (2.0 * a);
+        const double cruise = peak > 0 ? std::max(0.0, (d - p - brake) / peak) : left;
+        left = go(p, v, 0, cruise, left);
+        if (left > 0) {
+            left = go(p, v, -a, peak / a, left);
+            if (left > 0) {
+                position = target;
+                velocity = 0;
+                return;
+            }
+        }
+    }
+    position += p * sign;
+    velocity = v * sign;
+}
+
+void JogPlanner::stop() noexcept {
+    if (length_ <= 1) {
+        FreePlanner::stop();
+        return;
+    }
+    leader_.stop();
+    target = leader_.target;
+}
+
+double JogPlanner::rest_after(double dt) const noexcept {
+    const FreePlanner &p = length_ > 1 ? static_cast<const FreePlanner &>(leader_) : *this;
+    const double a = p.max_acceleration > 0 ? p.max_acceleration : max_acceleration;
+    const double sign = target >= p.position ? 1.0 : -1.0;
+    const double v = p.velocity + sign * a * dt;
+    const double rest = stop_position(p.position + v * dt, v, a);
+    // No farther than where it is going anyway.
+    const double now = stop_position(p.position, p.velocity, a);
+    return sign > 0 ? std::min(rest, std::max(target, now)) : std::max(rest, std::min(target, now));
+}
+
+/// From rest: the mean is as long as the acceleration needs to turn about.
+void JogPlanner::begin(double dt) noexcept {
+    const double samples = std::ceil(2.0 * max_acceleration / (max_jerk * dt) - 1e-9);
+    length_ = static_cast<std::uint32_t>(std::clamp(samples, 2.0, static_cast<double>(MOST_SAMPLES)));
+    jerk_ = max_jerk;
+    leader_.reset(position);
+    origin_ = position;
+    way_.fill(0.0);
+    sum_ = 0;
+    rest_ = 0;
+    next_ = 0;
+    standing_ = 0;
+}
+
+/// Adds without losing what a double cannot hold (two-sum).
+void JogPlanner::add(double x) noexcept {
+    const double s = sum_ + x;
+    const double back = s - sum_;
+    rest_ += (sum_ - (s - back)) + (x - back);
+    sum_ = s;
+}
+
+void JogPlanner::step(double dt) noexcept {
+    const bool isBeginning = length_ <= 1 && max_jerk > 0 && max_acceleration > 0 && velocity == 0.0;
+    if (isBeginning && position != target) {
+        begin(dt);
+    }
+    if (length_ <= 1) {
+        FreePlanner::step(dt);
+        return;
+    }
+    leader_.target = target;
+    leader_.max_velocity = max_velocity;
+    leader_.max_acceleration = std::min(max_acceleration, 0.5 * jerk_ * length_ * dt);
+    leader_.step(dt);
+    const double way = leader_.position - origin_;
+    add(way);
+    add(-way_[next_]);
+    way_[next_] = way;
+    next_ = next_ + 1 == length_ ? 0 : next_ + 1;
+    standing_ = leader_.isAtRest() ? standing_ + 1 : 0;
+    const double before = position;
+    const bool isOver = standing_ >= length_;
+    position = isOver ? target : origin_ + (sum_ + rest_) / length_;
+    velocity = isOver ? 0.0 : (position - before) / dt;
+    length_ = isOver ? 1 : length_;
+}
+
+}  // namespace mw::traj

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What holds for a path besides its moves: limits, where the machine may go, overrides, single blocks.
+// Values; every step of the planner's parts is handed them.
+#pragma once
+
+#include <array>
+
+#include "traj/geometry/path_limits.hh"
+#include "traj/geometry/workspace.hh"
+
+namespace mw::traj {
+
+/// What may change while the path is under way.
+struct Scales {
+    double feed = 1.0;
+    double rapid = 1.0;
+    double max_feed = 1.0;            ///< highest `feed` that will come; limits are made for it
+    double max_velocity = UNLIMITED;  ///< operator's ceiling along the feed length
+    std::array<double, MAX_SPINDLES> spindle_rps{};
+};
+
+/// Single blocks: stops where the source block is another than `block`.
+struct SingleBlocks {
+    bool isOn = false;
+    std::uint32_t block = 0;
+    bool isStopBefore(const MoveTag &tag) const noexcept { return isOn && tag.block != block; }
+};
+
+struct Conditions {
+    explicit Conditions(double period_s) noexcept : limits(period_s) {}
+
+    PathLimits limits;
+    Workspace workspace;
+    Scales scales;
+    SingleBlocks blocks;
+
+    /// Driven by the executor, locked to the angle of a spindle. Machines whose joints are not axes drive
+    /// threads by time.
+    bool isLocked(const MoveRequest &request) const noexcept {
+        return !workspace.isMapped() && request.isLocked;
+    }
+    /// Plans are tried out before they are committed.
+    bool isTried() const noexcept { return limits.isFiltered() || workspace.isMapped(); }
+};
+
+}  // namespace mw::traj

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "traj/geometry/limits.hh"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "traj/tuning.hh"
+
+namespace mw::traj {
+
+using geom::AXIS_COUNT;
+
+namespace {
+
+double norm_xyz(const PerLimited &p) noexcept {
+    return std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+}
+
+double end_radius(const Primitive &p) noexcept {
+    return p.radius + std::max(0.0, p.dradius * p.length);
+}
+
+/// Largest |cos| between two angles.
+double largest_cosine(double from, double to) noexcept {
+    const double low = std::min(from, to) / std::numbers::pi;
+    const double high = std::max(from, to) / std::numbers::pi;
+    const bool isTurningPoint = std::floor(high) >= std::ceil(low);
+    return isTurningPoint ? 1.0 : std::max(std::abs(std::cos(from)), std::abs(std::cos(to)));
+}
+
+/// Largest |dq/ds| and |d2q/ds2| per coordinate on [from, to]; the last of each are those of the XYZ norm.
+void derivative_bounds(const Primitive &p, double from, double to, PerLimited &q1, PerLimited &q2) noexcept {
+    for (int i = 0; i < AXIS_COUNT; ++i) {
+        q1[static_cast<std::size_t>(i)] = std::abs(p.lin[i]);
+    }
+    q1[XYZ_NORM] = geom::norm_xyz(p.lin);
+    q2.fill(0.0);
+    if (!p.isArc) {
+        return;
+    }
+    const double w = std::abs(p.omega);
+    const double radius = end_radius(p);
+    const double drift = std::abs(p.dradius);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto n = static_cast<std::size_t>(p.space) + i;
+        const double amplitude = std::hypot(p.u[i], p.v[i]);
+        const double phase = std::atan2(p.v[i], p.u[i]);
+        const double a = p.omega * from - phase;
+        const double b = p.omega * to - phase;
+        const double quarter = 0.5 * std::numbers::pi;
+        q1[n] += amplitude * (radius * w * largest_cosine(a + quarter, b + quarter) + drift);
+        q2[n] = amplitude * (radius * w * w * largest_cosine(a, b) + 2.0 * drift * w);
+    }
+    if (p.space == geom::AXIS_X) {
+        q1[XYZ_NORM] = std::hypot(q1[XYZ_NORM] + drift, radius * w);
+        q2[XYZ_NORM] = radius * w * w + 2.0 * drift * w;
+    }
+}
+
+/// Acceleration that row `r` leaves along the path at the squared speed b.
+double acceleration_left(const LimitRow &r, double b) noexcept {
+    const double limit = r.acceleration * (1.0 - LimitTuning::ACCELERATION_MARGIN);
+    const double turning = r.q2 * b;
+    if (!(r.q1 > 0)) {
+        return UNLIMITED;
+    }
+    if (r.isRightAngled) {
+        return std::sqrt(std::max(0.0, limit * limit - turning * turning)) / r.q1;
+    }
+    return std::max(0.0, limit - turning) / r.q1;
+}
+
+double acceleration_left(const LimitRow *rows, int count, double b) noexcept {
+    double a = UNLIMITED;
+    for (int i = 0; i < count; ++i) {
+        a = std::min(a, acceleration_left(rows[i], b));
+    }
+    return a;
+}
+
+int rows_of(const PerLimited &q1, const PerLimited &q2, const Limits &limits, LimitRow *rows) noexcept {
+    int count = 0;
+    for (std::size_t i = 0; i < q1.size(); ++i) {
+        if (q1[i] > 0 || q2[i] > 0) {
+            rows[count++] = {q1[i], q2[i], limits.velocity[i], limits.acceleration[i]};
+        }
+    }
+    return count;
+}
+
+AccelBound through_chords(const double *left, double v) noexcept {
+    AccelBound out;
+    const double b = v * v;
+    for (int k = 0; k < AccelBound::LINES; ++k) {
+        const double beta = std::max(0.0, (left[k] - left[k + 1]) /
+                                              ((LimitTuning::CHORDS[k + 1] - LimitTuning::CHORDS[k]) * b));
+        out.beta[static_cast<std::size_t>(k)] = beta;
+        out.alpha[static_cast<std::size_t>(k)] = left[k + 1] + beta * LimitTuning::CHORDS[k + 1] * b;
+    }
+    return out;
+}
+
+}  // namespace
+
+AccelBound AccelBound::least(const AccelBound &x, const AccelBound &y, double v) noexcept {
+    if (!(v < 1e100) || !(v > 0)) {
+        return constant(std::min(x.at(0), y.at(0)));
+    }
+    static_assert(std::size(LimitTuning::CHORDS) == LINES + 1);
+    double left[LINES + 1];
+    for (int k = 0; k <= LINES; ++k) {
+        left[k] = std::min(x.at(LimitTuning::CHORDS[k] * v * v), y.at(LimitTuning::CHORDS[k] * v * v));
+    }
+    return through_chords(left, v);
+}
+
+std::uint64_t filter_length(const Limits &limits, double period_s, double tolerance) noexcept {
+    if (!limits.isJerkLimited) {
+        return 1;
+    }
+    double longest = 0;
+    double longest_angular = 0;
+    bool isNeeded = false;
+    for (std::size_t i = 0; i < limits.jerk.size(); ++i) {
+        if (!(limits.jerk[i] < 1e9 && limits.acceleration[i] < 1e9)) {
+            continue;
+        }
+        isNeeded = isNeeded || limits.acceleration[i] > limits.jerk[i] * period_s;
+        double length =
+            std::min(limits.acceleration[i] / limits.jerk[i], std::sqrt(limits.velocity[i] / limits.jerk[i]));
+        if (tolerance > 0) {
+            length =
+                std::min(length, LimitTuning::CURVE_SHARE * std::cbrt(24.0 * tolerance / limits.jerk[i]));
+        }
+        double &of = geom::isAngular(static_cast<int>(i)) ? longest_angular : longest;
+        of = std::max(of, length);
+    }
+    const double samples = std::ceil((longest > 0 ? longest : longest_angular) / period_s - 1e-9);
+    return static_cast<std::uint64_t>(
+        std::clamp(samples, isNeeded ? 2.0 : 1.0, static_cast<double>(MAX_FILTER)));
+}
+
+Limits limits_for_filter(const Limits &limits, std::uint64_t filter, double period_s) noexcept {
+    Limits out = limits;
+    for (std::size_t i = 0; i < out.jerk.size() && filter > 1; ++i) {
+        const double built_up = out.jerk[i] * static_cast<double>(filter) * period_s;
+        out.acceleration[i] = std::min(out.acceleration[i], built_up);
+    }
+    return out;
+}
+
+SpeedLimit limit_of_rows(const LimitRow *rows, int count, double wish) noexcept {
+    SpeedLimit out;
+    out.v = wish;
+    for (int i = 0; i < count; ++i) {
+        const LimitRow &r = rows[i];
+        if (r.q1 > 0) {
+            out.v = std::min(out.v, r.velocity / r.q1);
+        }
+        if (r.q2 > 0) {
+            out.v =
+                std::min(out.v, std::sqrt(r.acceleration * (1.0 - LimitTuning::ACCELERATION_MARGIN) / r.q2));
+        }
+    }
+    // What is left for the path falls with b = v^2, and ever faster, so chords between points of it are on
+    // the safe side.
+    bool isTurning = false;
+    for (int i = 0; i < count; ++i) {
+        isTurning = isTurning || rows[i].q2 > 0;
+    }
+    const double still = acceleration_left(rows, count, 0);
+    if (!isTurning || !(out.v < 1e100)) {
+        out.a = AccelBound::constant(still);
+        return out;
+    }
+    double left[AccelBound::LINES + 1];
+    for (int k = 0; k <= AccelBound::LINES; ++k) {
+        left[k] = acceleration_left(rows, count, LimitTuning::CHORDS[k] * out.v * out.v);
+    }
+    out.a = through_chords(left, out.v);
+    return out;
+}
+
+SpeedLimit limit_of(const Primitive &p, double from, double to, const Limits &limits, double wish) noexcept {
+    PerLimited q1;
+    PerLimited q2;
+    derivative_bounds(p, from, to, q1, q2);
+    LimitRow rows[LIMITED_COUNT];
+    const int count = rows_of(q1, q2, limits, rows);
+    // The normal and the tangent of an arc are at right angles.
+    if (p.isArc && p.dradius == 0.0 && rows[count - 1].q2 == q2[XYZ_NORM] && q2[XYZ_NORM] > 0) {
+        rows[count - 1].isRightAngled = true;
+    }
+    return limit_of_rows(rows, count, wish);
+}
+
+SpeedLimit limit_of_blend(const Primitive &a, const Primitive &b, const BlendPart &part, const Limits &limits,
+                          double wish) noexcept {
+    const double d = part.d;
+    const double from = 0.5 * part.from / d;
+    const double to = 0.5 * part.to / d;
+    PerLimited q1{};
+    PerLimited q2{};
+    const Pose step = tangent_step(a, b);
+    if (a.isArc || b.isArc) {
+        PerLimited a1;
+        PerLimited a2;
+        PerLimited b1;
+        PerLimited b2;
+        derivative_bounds(a, a.length - d, a.length, a1, a2);
+        derivative_bounds(b, 0, d, b1, b2);
+        for (std::size_t i = 0; i < q1.size(); ++i) {
+            const double turn = i == XYZ_NORM ? geom::norm_xyz(step) : std::abs(step[static_cast<int>(i)]);
+            q1[i] = std::max(a1[i], b1[i]);
+            // q'' = A''(1-x)^2 + B'' x^2 + (B' - A')/2d, and B' - A' grows by the curvatures away from the
+            // joint.
+            q2[i] = turn / (2.0 * d) + 1.5 * std::max(a2[i], b2[i]);
+        }
+    } else {
+        const Pose first = a.lin * (1.0 - from) + b.lin * from;
+        const Pose last = a.lin * (1.0 - to) + b.lin * to;
+        for (int i = 0; i < AXIS_COUNT; ++i) {
+            const auto n = static_cast<std::size_t>(i);
+            q1[n] = std::max(std::abs(first[i]), std::abs(last[i]));
+            q2[n] = std::abs(step[i]) / (2.0 * d);
+        }
+        q1[XYZ_NORM] = std::max(geom::norm_xyz(first), geom::norm_xyz(last));
+        q2[XYZ_NORM] = geom::norm_xyz(step) / (2.0 * d);
+    }
+    LimitRow rows[LIMITED_COUNT];
+    return limit_of_rows(rows, rows_of(q1, q2, limits, rows), wish);
+}
+
+Pose tangent_step(const Primitive &a, const Primitive &b) noexcept {
+    return derivative_at(b, 0) - derivative_at(a, a.length);
+}
+
+double blend_d_for_tolerance(const Primitive &a, const Primitive &b, double tolerance) noexcept {
+    const Pose step = tangent_step(a, b);
+    const auto curvature = [](const Primitive &p) {
+        return p.isArc ? end_radius(p) * p.omega * p.omega + 2.0 * std::abs(p.dradius * p.omega) : 0.0;
+    };
+    // Deviation <= d/4 (g + K d/4), with g the step of the tangent and K the sum of the curvatures: solved
+    // for d.
+    const auto solve = [tolerance](double g, double k) {
+        const double half = 0.25 * g;
+        const double below = half + std::sqrt(half * half + 0.25 * k * tolerance);
+        return below > 0 ? 2.0 * tolerance / below : UNLIMITED;
+    };
+    const double linear = solve(geom::norm_linear(step), curvature(a) + curvature(b));
+    return std::min(linear, solve(geom::norm_abc(step), 0));
+}
+
+double blend_d_for_speed(const Primitive &a, const Primitive &b, const Limits &limits, double v) noexcept {
+    const Pose step = tangent_step(a, b);
+    PerLimited turn{};
+    for (int i = 0; i < AXIS_COUNT; ++i) {
+        turn[static_cast<std::size_t>(i)] = std::abs(step[i]);
+    }
+    turn[XYZ_NORM] = norm_xyz(turn);
+    double d = 0;
+    for (std::size_t i = 0; i < turn.size(); ++i) {
+        d = std::max(d, v * v * turn[i] / (2.0 * LimitTuning::BLEND_SHARE * limits.acceleration[i]));
+    }
+    return d;
+}
+
+}  // namespace mw::traj

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// One move of a path besides its geometry.
+#pragma once
+
+#include "traj/path_store.hh"
+
+namespace mw::traj {
+
+enum class Join : std::uint8_t {
+    STOP,   ///< comes to a stop at the end of the move
+    EXACT,  ///< passes the end without a stop only where the path goes on in the same direction
+    BLEND,  ///< rounds the corner within the tolerance
+};
+
+struct MoveRequest {
+    MoveTag tag;
+    Join join = Join::BLEND;
+    /// Of a blend [machine units; degrees over ABC]; 0: as the speed needs, in proportion to the move.
+    double tolerance = 0;
+    double corner_scale = 1;     ///< with jerk limits: part of the reachable speed in corners (G64 R)
+    bool isMergeAdded = false;   ///< joining may take all of merge_tolerance, on top of `tolerance`
+    double merge_tolerance = 0;  ///< lines may be joined to one that is no farther from their ends (G64 Q)
+    /// The merge tolerance that `q` means; call with tolerance and isMergeAdded set.
+    void set_merge(double q) noexcept {
+        // A Q as large as P says no more than P does.
+        merge_tolerance = isMergeAdded || !(tolerance > 0) || q < tolerance ? q : 0.0;
+    }
+    bool isRapid = false;  ///< as fast as the limits allow, scaled by Scales::rapid
+    bool isOverridable = true;
+    bool isAngular = false;  ///< the feed length is over ABC: the operator's velocity ceiling does not apply
+    double feed_per_revolution = 0;  ///< > 0: the speed follows a spindle
+    int spindle = 0;
+    bool isSynched() const noexcept { return feed_per_revolution > 0; }
+    bool isLocked = false;  ///< keeps to the angle of the spindle: a thread
+    bool isGated = false;   ///< a stop before it until the gate opens
+    bool isPhased = false;  ///< the gate opens at a spindle phase
+};
+
+}  // namespace mw::traj

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "traj/geometry/path_limits.hh"
+
+#include <algorithm>
+
+#include "traj/tuning.hh"
+
+namespace mw::traj {
+
+PathLimits::PathLimits(double period_s) noexcept : period_s_(period_s) {
+    Limits none;
+    none.velocity.fill(UNLIMITED);
+    none.acceleration.fill(UNLIMITED);
+    none.jerk.fill(UNLIMITED);
+    set(none);
+}
+
+void PathLimits::set(const Limits &limits) noexcept {
+    wanted_ = limits;
+    for (std::size_t i = 0; i < limits.velocity.size(); ++i) {
+        highest_.velocity[i] = std::max(highest_.velocity[i], limits.velocity[i]);
+        highest_.acceleration[i] = std::max(highest_.acceleration[i], limits.acceleration[i]);
+    }
+    fitted_ = limits_for_filter(limits, filter_, period_s_);
+    nominal_tolerance_ = 0;
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        const double v = limits.velocity[static_cast<std::size_t>(i)];
+        const bool isCounted = !geom::isAngular(i) && v < UNLIMITED;
+        nominal_tolerance_ =
+            isCounted ? std::max(nominal_tolerance_, v * PathTuning::NOMINAL_S) : nominal_tolerance_;
+    }
+}
+
+void PathLimits::begin(double tolerance) noexcept {
+    filter_ = filter_length(wanted_, period_s_, tolerance);
+    filter_s_ = isFiltered() ? static_cast<double>(filter_) * period_s_ : 0.0;
+    highest_ = wanted_;
+    set(Limits{wanted_});
+}
+
+bool PathLimits::suits(double tolerance) const noexcept {
+    const auto wanted = static_cast<double>(filter_length(wanted_, period_s_, tolerance));
+    return tolerance <= 0 || static_cast<double>(filter_) <= wanted * PathTuning::MOST_UNSUITED;
+}
+
+double PathLimits::path_tolerance(const MoveRequest &request) const noexcept {
+    return request.join != Join::BLEND ? 0.0 : request.tolerance > 0 ? request.tolerance : nominal_tolerance_;
+}
+
+double PathLimits::free_tolerance(const Primitive &primitive) const noexcept {
+    return std::max(nominal_tolerance_, primitive.isArc ? PathTuning::FREE_OF_RADIUS * primitive.radius
+                                                        : PathTuning::FREE_OF_LENGTH * primitive.length);
+}
+
+}  // namespace mw::traj

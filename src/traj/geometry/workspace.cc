@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "traj/geometry/workspace.hh"
+
+#include <algorithm>
+#include <cmath>
+
+#include "traj/tuning.hh"
+
+namespace mw::traj {
+
+bool Workspace::holds(const Pose &pose) const noexcept {
+    bool isInside = true;
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        isInside = isInside && pose[i] >= low[i] && pose[i] <= high[i];
+    }
+    return isInside;
+}
+
+Pose Workspace::shift_within(const Pose &corner, const Pose &shift) const noexcept {
+    Pose kept;
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        const double least = std::min(low[i] - corner[i], 0.0);
+        const double most = std::max(high[i] - corner[i], 0.0);
+        kept[i] = std::clamp(shift[i], least, most);
+    }
+    double as_programmed[MAX_JOINTS] = {};
+    double moved[MAX_JOINTS] = {};
+    if (!isMapped() || !map->joints_at(corner, as_programmed)) {
+        return kept;
+    }
+    bool isInside = map->joints_at(corner + kept, moved);
+    for (int j = 0; j < joints.count && isInside; ++j) {
+        const auto n = static_cast<std::size_t>(j);
+        isInside = moved[j] >= std::min(joints.low[n], as_programmed[j]) &&
+                   moved[j] <= std::max(joints.high[n], as_programmed[j]);
+    }
+    return isInside ? kept : Pose{};
+}
+
+SpeedLimit limit_with_joints(const PathStore &store, const Piece &piece, const Workspace &workspace,
+                             double filter_s, const SpeedLimit &limit) noexcept {
+    const JointLimits &joints = workspace.joints;
+    const int count = joints.count;
+    LimitRow rows[MAX_JOINTS];
+    const double h = std::min(JointTuning::STEP, 0.25 * piece.length);
+    for (int n = 0; n < JointTuning::SAMPLES; ++n) {
+        const double x = std::clamp(piece.length * n / (JointTuning::SAMPLES - 1), h, piece.length - h);
+        double before[MAX_JOINTS] = {};
+        double at[MAX_JOINTS] = {};
+        double after[MAX_JOINTS] = {};
+        const bool isFound = workspace.map->joints_at(position_at(store, piece, x - h), before) &&
+                             workspace.map->joints_at(position_at(store, piece, x), at) &&
+                             workspace.map->joints_at(position_at(store, piece, x + h), after);
+        for (int j = 0; j < count && isFound; ++j) {
+            LimitRow &row = rows[j];
+            const double q1 = std::abs(after[j] - before[j]) / (2.0 * h);
+            const double q2 = std::abs(after[j] - 2.0 * at[j] + before[j]) / (h * h);
+            const double noise = 4.0 * 0x1p-52 * std::abs(at[j]) / (h * h);
+            row.q1 = std::max(row.q1, q1);
+            row.q2 = std::max(row.q2, q2 > JointTuning::JITTER + 4.0 * noise ? q2 : 0.0);
+        }
+    }
+    int used = 0;
+    for (int j = 0; j < count; ++j) {
+        LimitRow row = rows[j];
+        if (row.q1 <= 0 && row.q2 <= 0) {
+            continue;
+        }
+        const auto n = static_cast<std::size_t>(j);
+        // The first derivative grows by the second from one sample to the next.
+        row.q1 = row.q1 * JointTuning::SAMPLING_MARGIN +
+                 row.q2 * piece.length / (2.0 * (JointTuning::SAMPLES - 1));
+        row.q2 *= JointTuning::SAMPLING_MARGIN * JointTuning::SAMPLING_MARGIN;
+        row.velocity = joints.velocity[n];
+        row.acceleration = joints.acceleration[n];
+        if (filter_s > 0) {
+            row.acceleration = std::min(row.acceleration, joints.jerk[n] * filter_s);
+        }
+        rows[used++] = row;
+    }
+    const SpeedLimit lowered = limit_of_rows(rows, used, limit.v);
+    return {lowered.v, AccelBound::least(limit.a, lowered.a, lowered.v)};
+}
+
+}  // namespace mw::traj

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Where the machine may go: soft limits of the axes, and joints that are not axes.
+#pragma once
+
+#include "traj/geometry/joint_map.hh"
+#include "traj/geometry/limits.hh"
+
+namespace mw::traj {
+
+struct Workspace {
+    Pose low, high;                 ///< soft limits of the axes; the path is not moved beyond them
+    const JointMap *map = nullptr;  ///< null: the axes' limits are all there are
+    JointLimits joints;             ///< with a map
+
+    Workspace() noexcept {
+        low.c.fill(-UNLIMITED);
+        high.c.fill(UNLIMITED);
+    }
+    bool isMapped() const noexcept { return map != nullptr; }
+    /// Within the soft limits of the axes.
+    bool holds(const Pose &pose) const noexcept;
+    /// What of `shift` leaves the moved corner within the soft limits. The commanded path runs inside of the
+    /// corners, so it keeps them as well.
+    Pose shift_within(const Pose &corner, const Pose &shift) const noexcept;
+};
+
+/// The limit of a piece, lowered to what its joints can do: their derivatives along it by differences of the
+/// inverse kinematics. `filter_s`: the time of the mean, 0 without jerk limits.
+SpeedLimit limit_with_joints(const PathStore &store, const Piece &piece, const Workspace &workspace,
+                             double filter_s, const SpeedLimit &limit) noexcept;
+
+}  // namespace mw::traj

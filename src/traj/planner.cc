@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "traj/planner.hh"
+
+#include <algorithm>
+
+#include "traj/tuning.hh"
+
+namespace mw::traj {
+
+Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept
+    : settings_(settings), conditions_(settings.period_s), path_(store), timing_(settings) {}
+
+void Planner::set_joints(const JointMap *map, const JointLimits &limits) noexcept {
+    conditions_.workspace.map = map;
+    conditions_.workspace.joints = limits;
+}
+
+void Planner::set_room(const Pose &low, const Pose &high) noexcept {
+    conditions_.workspace.low = low;
+    conditions_.workspace.high = high;
+}
+
+void Planner::begin(const Pose &start, const Snapshot &now, double tolerance) noexcept {
+    conditions_.limits.begin(tolerance);
+    path_.begin();
+    builder_.begin(start);
+    timing_.begin(now);
+    drops_ = now.drops;
+    refusals_ = 0;
+}
+
+Sequence Planner::add(const Primitive &primitive, const MoveRequest &request) noexcept {
+    return builder_.add(path_, conditions_, primitive, request, settings_.isMerging);
+}
+
+bool Planner::add_event(PathEvent event) noexcept {
+    builder_.keep_end();
+    event.after_move = path_.last_move();
+    event.drops = drops_;
+    return path_.store().events.push(event);
+}
+
+void Planner::set_scales(const Scales &scales) noexcept {
+    // Spindle speeds never stand still; they matter only where something follows them.
+    const Sequence synched = builder_.last_synched();
+    const bool isFollowed =
+        synched != 0 && !path_.isAllDriven() && synched >= path_.piece(path_.oldest_piece()).move;
+    Scales &present = conditions_.scales;
+    if (timing_.isSteady(present, scales, isFollowed)) {
+        present.max_feed = scales.max_feed;
+        present.spindle_rps = isFollowed ? present.spindle_rps : scales.spindle_rps;
+        return;
+    }
+    present = scales;
+    timing_.rescale(view());
+}
+
+void Planner::open_gate(Sequence move, double delay_s) noexcept {
+    timing_.delay_start(delay_s);
+    path_.move(move).request.isGated = false;
+    timing_.renew_all(view());
+}
+
+void Planner::set_step(bool isStepping, std::uint32_t block) noexcept {
+    SingleBlocks &blocks = conditions_.blocks;
+    if (isStepping != blocks.isOn || block != blocks.block) {
+        blocks = {isStepping, block};
+        timing_.renew_all(view());
+    }
+}
+
+Sequence Planner::standing_before(const Snapshot &now) const noexcept {
+    if (now.motion != Motion::REST) {
+        return 0;
+    }
+    const std::optional<LeaderState> state = start_state(path_, now);
+    return state && state->x <= 0 ? path_.move_of(state->piece) : 0;
+}
+
+Sequence Planner::waiting_gate(const Snapshot &now) const noexcept {
+    const Sequence move = standing_before(now);
+    return move != 0 && path_.move(move).request.isGated ? move : 0;
+}
+
+bool Planner::isAtStepStop(const Snapshot &now) const noexcept {
+    const Sequence move = conditions_.blocks.isOn ? standing_before(now) : 0;
+    return move != 0 && conditions_.blocks.isStopBefore(path_.move(move).request.tag);
+}
+
+bool Planner::hasNext(const Snapshot &now) const noexcept {
+    return now.motion != Motion::REST || builder_.hasOpenEnd() || start_state(path_, now).has_value();
+}
+
+std::uint32_t Planner::next_block(const Snapshot &now) const noexcept {
+    const PathStore &store = path_.store();
+    if (now.motion != Motion::REST && now.piece >= path_.first_piece()) {
+        const Piece &p = path_.piece(now.piece);
+        const bool isSecond = p.blend_d > 0 && p.offset + now.x >= p.blend_d;
+        return store.move(p.move + (isSecond ? 1 : 0)).block;
+    }
+    const std::optional<LeaderState> state = start_state(path_, now);
+    if (!state) {
+        return store.move(builder_.hasOpenEnd() ? builder_.first_open() : path_.last_move()).block;
+    }
+    return store.move(state->x > 0 ? path_.piece(state->piece).move : path_.move_of(state->piece)).block;
+}
+
+std::uint32_t Planner::moves_left(const Snapshot &now) const noexcept {
+    const Sequence done = std::max(now.done_move, path_.first_move() - 1);
+    return path_.last_move() > done ? static_cast<std::uint32_t>(path_.last_move() - done) : 0;
+}
+
+bool Planner::isPassKnown(const Snapshot &now) const noexcept {
+    const std::optional<LeaderState> from = start_state(path_, now);
+    if (!from) {
+        return false;
+    }
+    const Sequence open = builder_.continuing_move();
+    const bool isGrowing = open != 0 && isLocked(open) && pass_end(view(), from->piece) == path_.last_piece();
+    return !isGrowing || !hasRoom(now);
+}
+
+void Planner::start_pass(const Snapshot &now, const LeaderState &from) noexcept {
+    if (isPassKnown(now)) {
+        timing_.start_pass(path_, conditions_, now, from.piece);
+    }
+}
+
+void Planner::update(const Snapshot &now) noexcept {
+    if (conditions_.isTried()) {
+        plan_tried(now);
+        return;
+    }
+    if (now.drops != drops_ || now.isDropping) {
+        return;
+    }
+    path_.drive_to(now.piece);
+    timing_.look(view(), now);
+    const Demand demand = timing_.demand(view(), now);
+    switch (demand.kind) {
+    case Demand::Kind::EXTEND: timing_.extend(view(), path_.store(), now); break;
+    case Demand::Kind::PLAN: timing_.plan(view(), path_.store(), now, demand.from); break;
+    case Demand::Kind::PASS: start_pass(now, demand.from); break;
+    case Demand::Kind::STOP:  // the executor stops by itself
+    case Demand::Kind::NOTHING: break;
+    }
+}
+
+void Planner::plan_tried(const Snapshot &now) noexcept {
+    const bool isGone = now.drops != drops_ || (now.isDropping && now.motion == Motion::REST);
+    if (isGone || now.motion == Motion::BRAKE || now.motion == Motion::LOCKED) {
+        return;
+    }
+    path_.drive_to(now.piece);
+    timing_.look(view(), now);
+    const Demand demand = timing_.tried_demand(view(), now);
+    switch (demand.kind) {
+    case Demand::Kind::PLAN: {
+        const bool isRefused = !find_plan(now, demand.from, false);
+        if (now.motion == Motion::REST) {
+            refusals_ = isRefused && now.isSettled ? refusals_ + 1 : 0;
+        }
+        break;
+    }
+    case Demand::Kind::STOP: find_plan(now, demand.from, true); break;
+    case Demand::Kind::PASS: start_pass(now, demand.from); break;
+    case Demand::Kind::EXTEND:  // every plan goes as far as it will
+    case Demand::Kind::NOTHING: break;
+    }
+}
+
+/// Makes plans until one passes the trial. False when the trial has refused them all; the plan before then
+/// stays in force, with its stop.
+bool Planner::find_plan(const Snapshot &now, LeaderState from, bool isStop) noexcept {
+    const Sequence begin = timing_.phases_end();
+    const double standing =
+        TimingTuning::STANDING * path_.piece(from.piece).acceleration.at(0) * settings_.period_s;
+    from.v = from.v < standing ? 0.0 : from.v;
+    easing_.begin();
+    bool isRefused = false;
+    Cause cause;
+    for (int n = 0; n < TimingTuning::ATTEMPTS; ++n) {
+        if (!timing_.draft(view(), path_.store(), begin, from, isStop)) {
+            break;
+        }
+        const Verdict verdict =
+            trial_.check(view(), now, {from, begin, timing_.phases_end(), timing_.outlook(now)});
+        if (verdict.isSound) {
+            if (!timing_.commit(view(), path_.store(), now, begin, isStop)) {
+                break;
+            }
+            return true;
+        }
+        isRefused = true;
+        cause = trial_.cause_of(verdict, conditions_.limits, from.v > 0 ? from.piece + 1 : from.piece);
+        if (!ease(from, verdict, cause)) {
+            break;
+        }
+    }
+    timing_.discard(begin);
+    if (cause.isAfterDriven) {
+        // It failed for what was driven before: being slower did not help.
+        const Cause eased = easing_.take_back(path_);
+        if (eased.low != 0) {
+            timing_.renew_span(view(), eased.low, eased.high);
+        }
+        timing_.renew_all(view());
+    }
+    return !isRefused;
+}
+
+/// Makes what the failed sample depends on slower, as far as it is not driven yet. False when nothing can be
+/// done from here.
+bool Planner::ease(const LeaderState &from, const Verdict &verdict, const Cause &cause) noexcept {
+    if (cause.low == 0) {
+        return false;
+    }
+    const Means means = easing_.means_against(view(), cause);
+    if (easing_.lengthen_stands(path_, conditions_.limits, cause, means, verdict.excess)) {
+        return true;
+    }
+    const Sequence taken_back = easing_.take_back_gentleness(path_, verdict);
+    if (taken_back != 0) {
+        timing_.renew_up_to(view(), taken_back);
+    }
+    easing_.slow_down(path_, conditions_.workspace, cause, means, verdict);
+    timing_.renew_span(view(), cause.low, cause.high);
+    if (from.v > 0 && !timing_.isKept(view(), from)) {
+        easing_.undo(path_, conditions_.workspace);
+        timing_.renew_span(view(), cause.low, cause.high);
+        return false;
+    }
+    return true;
+}
+
+bool Planner::take_stuck() noexcept {
+    const bool isStuck = refusals_ == TimingTuning::MOST_REFUSALS;
+    refusals_ += isStuck ? 1 : 0;
+    return isStuck;
+}
+
+}  // namespace mw::traj

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The servo side alone: commits made by hand, without a planner.
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "testing/allocation_guard.hh"
+#include "traj/exec/executor.hh"
+#include "traj/test/part_rig.hh"
+
+namespace mw::traj::test {
+namespace {
+
+constexpr double V = 50, A = 1000;
+
+/// One straight piece along X, and phases up to a speed that they keep.
+struct ServoRig : Parts {
+    Executor executor{*store, PERIOD};
+    std::uint64_t cycle = 0;
+
+    ServoRig() : Parts(even_limits(V, A)) {
+        path->begin();
+        add_straight(100, V, A);
+        executor.set_position(Pose{});
+        step(1);
+    }
+    void step(int count) {
+        const testing::AllocationGuard guard;
+        for (int n = 0; n < count; ++n) {
+            executor.step(++cycle);
+        }
+        EXPECT_EQ(guard.calls(), 0U);
+    }
+    double x() const { return executor.output().position[0]; }
+    double v() const { return executor.snapshot().v; }
+    Commit plan(std::uint64_t number, Sequence begin, Sequence end) const {
+        Commit c;
+        c.plan = number;
+        c.isSwitch = true;
+        c.switch_cycle = cycle + 1;
+        c.brakes = executor.snapshot().brakes;
+        c.begin = begin;
+        c.end = end;
+        return c;
+    }
+    /// Up to V in 0.05 s, then level for `level_s`; it does not end in a stop.
+    void start(double level_s, std::uint64_t filter = 1) {
+        store->phase(1) = {1, V / A, 0, 0, A, 0};
+        store->phase(2) = {1, level_s, 0.5 * V * V / A, V, 0, 0};
+        Commit c = plan(1, 1, 3);
+        c.filter = filter;
+        ASSERT_TRUE(store->commits.push(c));
+        step(1);
+    }
+    /// Steps until it stands; the greatest change of speed in a cycle on the way.
+    double stop() {
+        double most = 0;
+        double before = v();
+        for (int n = 0; n < 1000 && !executor.isAtRest(); ++n) {
+            step(1);
+            most = std::max(most, std::abs(v() - before));
+            before = v();
+        }
+        EXPECT_TRUE(executor.isAtRest());
+        return most;
+    }
+};
+
+TEST(Executor, FollowsPhasesToTheCycle_C1) {
+    ServoRig rig;
+    rig.start(0.5);
+    for (int n = 1; n <= 300; ++n) {
+        rig.step(1);
+        const double t = n * PERIOD;
+        const double up = std::min(t, V / A);
+        EXPECT_NEAR(rig.x(), 0.5 * A * up * up + V * (t - up), 1e-9);
+    }
+}
+
+TEST(Executor, BrakesAlongThePathWhenPhasesRunOut_C1) {
+    ServoRig rig;
+    rig.start(0.1);
+    rig.step(149);
+    const std::uint64_t brakes = rig.executor.snapshot().brakes;
+    EXPECT_LE(rig.stop(), A * PERIOD * (1 + 1e-9));
+    EXPECT_EQ(rig.executor.snapshot().brakes, brakes + 1);
+    EXPECT_NEAR(rig.x(), V * V / A + V * 0.1, 1e-9);
+    EXPECT_FALSE(rig.executor.isEmpty());
+}
+
+TEST(Executor, AHoldBrakesInTheSameCycleAndVoidsWhatWasPlanned_C6) {
+    ServoRig rig;
+    rig.start(0.5);
+    rig.step(100);
+    const Commit stale = rig.plan(2, 1, 3);
+    rig.executor.hold(true);
+    rig.step(1);
+    EXPECT_LT(rig.v(), V);
+    EXPECT_LE(rig.stop(), A * PERIOD * (1 + 1e-9));
+    rig.executor.hold(false);
+    Commit late = stale;
+    late.switch_cycle = rig.cycle + 1;
+    ASSERT_TRUE(rig.store->commits.push(late));
+    rig.step(3);
+    EXPECT_TRUE(rig.executor.isAtRest());
+}
+
+TEST(Executor, WhileHeldOnlyAPlanThatStopsIsTaken_C6) {
+    for (const bool isStop : {false, true}) {
+        ServoRig rig;
+        rig.executor.hold(true);
+        rig.step(1);
+        rig.store->phase(1) = {1, 0.02, 0, 0, A, 0};
+        rig.store->phase(2) = {1, 0.02, 0.2, 20, -A, 0};
+        Commit c = rig.plan(1, 1, 3);
+        c.isStop = isStop;
+        ASSERT_TRUE(rig.store->commits.push(c));
+        rig.step(2);
+        EXPECT_EQ(rig.executor.snapshot().motion == Motion::FOLLOW, isStop);
+    }
+}
+
+TEST(Executor, APlanThatComesTooLateIsNotTaken_C1) {
+    ServoRig rig;
+    rig.store->phase(1) = {1, 1, 0, 0, 10, 0};
+    Commit c = rig.plan(1, 1, 2);
+    rig.step(5);
+    ASSERT_TRUE(rig.store->commits.push(c));
+    rig.step(5);
+    EXPECT_TRUE(rig.executor.isAtRest());
+    EXPECT_EQ(rig.executor.snapshot().plan, 0U);
+}
+
+TEST(Executor, ADropStopsAndLeavesNothing_C6) {
+    ServoRig rig;
+    rig.start(0.5);
+    rig.step(100);
+    rig.executor.drop();
+    EXPECT_LE(rig.stop(), A * PERIOD * (1 + 1e-9));
+    EXPECT_TRUE(rig.executor.isEmpty());
+    EXPECT_EQ(rig.executor.snapshot().drops, 1U);
+}
+
+TEST(Executor, CommandsTheMeanOfTheLeader_C13) {
+    constexpr std::uint64_t FILTER = 20;
+    ServoRig plain;
+    ServoRig smooth;
+    plain.start(0.5);
+    smooth.start(0.5, FILTER);
+    std::vector<double> leader(FILTER, 0.0);
+    for (int n = 0; n < 300; ++n) {
+        plain.step(1);
+        smooth.step(1);
+        leader.push_back(plain.x());
+        double sum = 0;
+        for (std::size_t i = 0; i < FILTER; ++i) {
+            sum += leader[leader.size() - 1 - i];
+        }
+        EXPECT_NEAR(smooth.x(), sum / FILTER, 1e-12);
+    }
+}
+
+TEST(Executor, AnEventIsDueWhenItsMoveIsCompleteAndNeverOnAnotherPath_C7) {
+    ServoRig rig;
+    PathEvent here;
+    here.after_move = 1;
+    PathEvent other = here;
+    other.drops = 7;
+    ASSERT_TRUE(rig.store->events.push(other));
+    ASSERT_TRUE(rig.store->events.push(here));
+    rig.start(0.1);
+    rig.store->piece(1).length = V * V / A + V * 0.1;
+    rig.step(190);
+    EXPECT_EQ(rig.executor.due_event(), nullptr);
+    rig.stop();
+    ASSERT_NE(rig.executor.due_event(), nullptr);
+    EXPECT_EQ(rig.executor.due_event()->drops, 0U);
+    rig.executor.drop_event();
+    EXPECT_EQ(rig.executor.due_event(), nullptr);
+}
+
+TEST(Executor, APassMeetsItsHelixAtAWholeTurnAndStaysOnIt_C9) {
+    constexpr double PER_TURN = 1.5, RPS = 10;
+    ServoRig rig;
+    Piece &piece = rig.store->piece(1);
+    piece.length = 30;
+    piece.isToEnd = false;
+    piece.per_turn = PER_TURN;
+    piece.v_most = V;
+    piece.v2_in = V * V;
+    Commit c = rig.plan(1, 0, 0);
+    c.pass.first = 1;
+    c.pass.last = 1;
+    c.pass.share = 0.9;
+    c.pass.trim = 0.9;
+    ASSERT_TRUE(rig.store->commits.push(c));
+    double turns = 0.37;
+    int met = 0;
+    double origin = 0;
+    for (int n = 0; n < 3000 && (n < 2 || !rig.executor.isAtRest()); ++n) {
+        rig.executor.set_spindle(0, turns, RPS);
+        rig.step(1);
+        turns += RPS * PERIOD;
+        const bool isInMiddle = rig.x() > 5 && rig.x() < 25;
+        if (isInMiddle) {
+            const double start = turns - rig.x() / PER_TURN;
+            origin = met == 0 ? start : origin;
+            EXPECT_NEAR(start, origin, 1e-4);
+            ++met;
+        }
+    }
+    EXPECT_GT(met, 1000);
+    EXPECT_NEAR(origin, std::round(origin), 1e-3);
+    EXPECT_EQ(rig.x(), 30);
+}
+
+}  // namespace
+}  // namespace mw::traj::test

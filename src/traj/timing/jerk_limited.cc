@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "traj/timing/jerk_limited.hh"
+
+#include <algorithm>
+#include <cmath>
+
+#include "traj/tuning.hh"
+
+namespace mw::traj {
+
+namespace {
+
+/// One appending of phases: lives for a step.
+class Smooth {
+  public:
+    Smooth(PlanDraft &draft, PathStore &store, const TimingView &view) noexcept
+        : draft_(draft), store_(store), view_(view), path_(view.path()), limits_(view.on.conditions.limits) {}
+
+    bool advance() noexcept;
+    bool stop() noexcept;
+
+  private:
+    bool canCoast(Sequence piece, double x, double v) noexcept;
+    bool rise(double cap) noexcept;
+    void coast(double cap, double out2) noexcept;
+    bool start(double cap) noexcept;
+    void move(const Piece &p, double cap) noexcept;
+    double out2(Sequence piece) const noexcept { return view_.profile.out2(path_, piece); }
+    void look_at(Sequence piece) noexcept { draft_.looked_at = std::max(draft_.looked_at, piece); }
+
+    PlanDraft &draft_;
+    PathStore &store_;
+    const TimingView &view_;
+    const PlannedPath &path_;
+    const PathLimits &limits_;
+};
+
+/// True when the speed can be kept for the time of the mean from here and everything after that is still
+/// kept.
+bool Smooth::canCoast(Sequence piece, double x, double v) noexcept {
+    double way = v * limits_.filter_s();
+    const double v2 = v * v * (1.0 - TimingTuning::SAME_SPEED);
+    for (Sequence k = piece; k <= path_.last_piece(); ++k, x = 0) {
+        look_at(k);
+        const Piece &p = path_.piece(k);
+        const double left = p.length - x;
+        const double out = out2(k);
+        if (way < left) {
+            return v2 <= p.acceleration.highest_before(out, left - way);
+        }
+        if (v2 > out) {
+            return false;
+        }
+        way -= left;
+    }
+    return false;
+}
+
+/// Rises as far as the piece, the cap and what follows allow; false when that is next to nothing.
+bool Smooth::rise(double cap) noexcept {
+    const LeaderState &s = draft_.at;
+    const Piece &p = path_.piece(s.piece);
+    const double v2 = s.v * s.v;
+    const double left = p.length - s.x;
+    const double top = std::min(cap, std::sqrt(p.acceleration.highest_before(v2, left)));
+    const auto way_to = [&](double v) {
+        const double a = p.acceleration.at(v * v);
+        return a > 0 ? std::min(left, (v * v - v2) / (2.0 * a)) : left;
+    };
+    double v = top;
+    if (!canCoast(s.piece, s.x + way_to(v), v)) {
+        double low = s.v;
+        double high = top;
+        for (int i = 0; i < TimingTuning::RISE_STEPS; ++i) {
+            const double middle = 0.5 * (low + high);
+            (canCoast(s.piece, s.x + way_to(middle), middle) ? low : high) = middle;
+        }
+        v = low;
+    }
+    const bool isWorthIt = v > s.v * (1.0 + TimingTuning::RISE_WORTH) &&
+                           (v == top || v - s.v > TimingTuning::PART_RISE_WORTH * v);
+    if (isWorthIt) {
+        draft_.append(store_, way_to(v), v);
+    }
+    return isWorthIt;
+}
+
+/// Keeps the speed until it may rise or must fall.
+void Smooth::coast(double cap, double out2) noexcept {
+    const LeaderState &s = draft_.at;
+    const Piece &p = path_.piece(s.piece);
+    const double left = p.length - s.x;
+    const double v2 = s.v * s.v;
+    const double brake = v2 > out2 ? (v2 - out2) / (2.0 * p.acceleration.at(v2)) : 0.0;
+    double way = std::max(0.0, left - brake);
+    const double since_s = s.v < cap ? s.coasting.since_fall_s : s.coasting.since_rise_s;
+    const double wait = limits_.filter_s() - since_s;
+    if (wait > TimingTuning::SOON && s.v != cap) {
+        way = std::min(way, s.v * wait);
+    }
+    draft_.append(store_, std::max(way, TimingTuning::LEAST_COAST * left), s.v);
+}
+
+/// From a stand; false when the plan ends with it.
+bool Smooth::start(double cap) noexcept {
+    LeaderState &s = draft_.at;
+    const PlannedPiece &plan = path_.plan(s.piece);
+    const double stand = s.x <= 0 && plan.isStopBefore ? plan.dwell_s : limits_.filter_s();
+    const double wait = stand - s.coasting.since_fall_s;
+    if (wait > TimingTuning::SOON) {
+        draft_.wait(store_, wait);
+    }
+    s.coasting = {};
+    return rise(cap);
+}
+
+/// Falls, rises or keeps the speed on the piece.
+void Smooth::move(const Piece &p, double cap) noexcept {
+    LeaderState &s = draft_.at;
+    const double tau = limits_.filter_s();
+    const double v2 = s.v * s.v;
+    const double left = p.length - s.x;
+    const double out = out2(s.piece);
+    const bool mustFall = v2 >= p.acceleration.highest_before(out, left) * (1.0 - TimingTuning::SAME_SPEED);
+    const double a = p.acceleration.at(v2);
+    const bool isOverCap = s.v > cap * (1.0 + TimingTuning::SAME_SPEED);
+    if (isOverCap && s.coasting.since_rise_s >= tau - TimingTuning::SOON) {
+        const double excess = v2 - cap * cap;
+        const bool isShort = excess < 2.0 * a * left;
+        draft_.append(store_, isShort ? excess / (2.0 * a) : left,
+                      isShort ? cap : std::sqrt(v2 - 2.0 * a * left));
+    } else if (mustFall) {
+        const double slowest2 = v2 - 2.0 * a * left;
+        const bool isFit = slowest2 <= out + TimingTuning::STOP_FIT * v2;
+        const double end = std::sqrt(isFit ? std::min(out, v2) : slowest2);
+        draft_.append(store_, left, end > s.v * (1.0 - TimingTuning::SAME_SPEED) ? s.v : end);
+        s.x = p.length;
+    } else {
+        const bool mayRise = s.coasting.since_fall_s >= tau - TimingTuning::SOON &&
+                             s.v < cap * (1.0 - TimingTuning::SAME_SPEED);
+        if (!mayRise || !rise(cap)) {
+            coast(cap, out);
+        }
+    }
+    const double rounding = TimingTuning::ROUND_END * p.length;
+    const bool isAtEnd = p.length - s.x <= rounding;
+    s.x = isAtEnd ? p.length : s.x;
+    if (isAtEnd && s.v > 0 && out <= 0 && s.v * s.v <= 4.0 * p.acceleration.at(0) * rounding) {
+        // Braking from here takes less way than rounding.
+        s.v = 0;
+        draft_.wait(store_, limits_.period_s());
+    }
+}
+
+/// Appends the next phase or two; false when the plan ends here for now.
+bool Smooth::advance() noexcept {
+    LeaderState &s = draft_.at;
+    const Piece &p = path_.piece(s.piece);
+    const bool isLast = s.piece == path_.last_piece();
+    look_at(s.piece);
+    draft_.reached = isLast && s.x >= p.length ? s.piece : 0;
+    if (s.x >= p.length || (s.v <= 0 && p.length - s.x < TimingTuning::AT_END)) {
+        if (isLast || (s.v <= 0 && isPlanEnd(view_.on, s.piece + 1))) {
+            return false;
+        }
+        draft_.enter_next_piece();
+        return true;
+    }
+    const double cap = speed_cap(view_.on, s.piece);
+    // The other half of the ring is for the stop.
+    const bool isRoom = draft_.hasRoom(view_.oldest_phase, PHASE_CAPACITY / 2);
+    if (!isRoom || (s.v <= 0 && cap <= 0)) {
+        return false;
+    }
+    if (s.v <= 0) {
+        return start(cap);
+    }
+    move(p, cap);
+    return true;
+}
+
+bool Smooth::stop() noexcept {
+    LeaderState &s = draft_.at;
+    while (s.v > 0) {
+        if (!draft_.hasRoom(view_.oldest_phase, TimingTuning::PHASES_PER_STOP)) {
+            return false;
+        }
+        const Piece &p = path_.piece(s.piece);
+        const bool isLast = s.piece == path_.last_piece();
+        look_at(s.piece);
+        const double left = p.length - s.x;
+        if (!(left > 0)) {
+            if (isLast) {
+                return s.v <= 0;
+            }
+            draft_.enter_next_piece();
+            continue;
+        }
+        const double v2 = s.v * s.v;
+        const double out = out2(s.piece);
+        const double wait = limits_.filter_s() - s.coasting.since_rise_s;
+        const bool mayCoast =
+            v2 < p.acceleration.highest_before(out, left) * (1.0 - TimingTuning::SAME_SPEED);
+        if (wait > TimingTuning::SOON && mayCoast) {
+            coast(0, out);
+            if (s.x > p.length * (1.0 - TimingTuning::ROUND_END)) {
+                s.x = p.length;
+            }
+            continue;
+        }
+        const double a = p.acceleration.at(v2);
+        const double slowest2 = v2 - 2.0 * a * left;
+        const bool isStop = isLast || path_.plan(s.piece + 1).isStopBefore;
+        if (isStop || slowest2 <= TimingTuning::STOP_FIT * v2) {
+            // A stop that misses the end by rounding is fitted to it.
+            draft_.append(store_, slowest2 < -TimingTuning::STOP_FIT * v2 ? v2 / (2.0 * a) : left, 0);
+            return true;
+        }
+        draft_.append(store_, left, std::sqrt(slowest2));
+        s.x = p.length;
+    }
+    return true;
+}
+
+}  // namespace
+
+void append_smooth(PlanDraft &draft, PathStore &store, const TimingView &view, double until_s) noexcept {
+    Smooth smooth(draft, store, view);
+    while (draft.seconds < until_s && smooth.advance()) {
+    }
+}
+
+bool append_stop(PlanDraft &draft, PathStore &store, const TimingView &view) noexcept {
+    return Smooth(draft, store, view).stop();
+}
+
+}  // namespace mw::traj

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "traj/timing/locked_pass.hh"
+
+#include <algorithm>
+#include <cmath>
+
+#include "traj/geometry/stretch.hh"
+#include "traj/tuning.hh"
+
+namespace mw::traj {
+
+namespace {
+
+/// Way along a piece in a turn of the spindle; on a blend between those of its lines, so that the lead along
+/// the thread stays.
+double turn_way(const PlannedPath &path, Sequence piece) noexcept {
+    const Piece &p = path.piece(piece);
+    const auto way = [&path](Sequence n) {
+        const MoveRequest &r = path.move(n).request;
+        return r.feed_per_revolution * r.tag.feed_ratio;
+    };
+    if (!(p.blend_d > 0)) {
+        return way(p.move);
+    }
+    const double part = (p.offset + 0.5 * p.length) / (2.0 * p.blend_d);
+    return 1.0 / ((1.0 - part) / way(p.move) + part / way(p.move + 1));
+}
+
+}  // namespace
+
+Sequence pass_end(const PathView &view, Sequence first) noexcept {
+    Sequence last = first;
+    while (last < view.path.last_piece() && isLockedPiece(view, last + 1) &&
+           !view.path.plan(last + 1).isStopBefore && !isBarrier(view, last + 1)) {
+        ++last;
+    }
+    return last;
+}
+
+Pass make_pass(const PathView &view, Sequence first) noexcept {
+    const PlannedPath &path = view.path;
+    const PathLimits &limits = view.conditions.limits;
+    const MoveRequest &r = path.move(path.move_of(first)).request;
+    const double rps = view.conditions.scales.spindle_rps[static_cast<std::size_t>(r.spindle)];
+    Pass pass;
+    pass.first = first;
+    pass.last = pass_end(view, first);
+    pass.spindle = r.spindle;
+    pass.direction = rps < 0 ? -1.0 : 1.0;
+    pass.share = PassTuning::FULL;
+    pass.trim = PassTuning::FULL;
+    if (!limits.isFiltered()) {
+        return pass;
+    }
+    double length = 0;
+    for (Sequence k = pass.first; k <= pass.last; ++k) {
+        length += path.piece(k).length;
+    }
+    const double v = turning_speed(r, view.conditions.scales) * PassTuning::SPEED_RESERVE;
+    const double a = PassTuning::LONG_SHARE * path.piece(first).acceleration.at(0);
+    const bool isOneMove = path.move_of(pass.first) == path.move_of(pass.last);
+    const bool isLong = isOneMove && length > v * v / a + PassTuning::LONG_MEANS * v * limits.filter_s();
+    const double even = isOneMove ? PassTuning::SHORT_SHARE : PassTuning::CORNER_SHARE;
+    pass.share = isLong ? PassTuning::LONG_SHARE : even;
+    pass.trim = isLong ? PassTuning::LONG_TRIM : even;
+    return pass;
+}
+
+void fill_pass(PlannedPath &path, const PathLimits &limits, const Pass &pass) noexcept {
+    double out2 = 0;
+    for (Sequence k = pass.last; k >= pass.first; --k) {
+        Piece &p = path.store().piece(k);
+        p.per_turn = turn_way(path, k);
+        // A corner that had to be tighter is passed more slowly.
+        const bool isTurning = limits.isFiltered() && p.blend_d > 0;
+        p.v_most = path.plan(k).v_limit * (isTurning ? std::sqrt(PassTuning::TURNING) : 1.0);
+        p.v2_out = out2;
+        AccelBound bound = p.acceleration;
+        for (std::size_t i = 0; i < AccelBound::LINES; ++i) {
+            bound.alpha[i] *= pass.share;
+            bound.beta[i] *= pass.share;
+        }
+        p.v2_in = std::min(p.v_most * p.v_most, bound.highest_before(out2, p.length));
+        const double v_before = k > pass.first ? path.plan(k - 1).v_limit : 0.0;
+        out2 = std::min(p.v2_in, v_before * v_before);
+    }
+}
+
+double pass_load(const PathView &view, Sequence move) noexcept {
+    const PlannedPath &path = view.path;
+    const Conditions &c = view.conditions;
+    double load = 0;
+    for (Sequence n = move; n <= path.last_move(); ++n) {
+        const MoveRequest &r = path.move(n).request;
+        if (!c.isLocked(r) || (n > move && r.isGated)) {
+            break;
+        }
+        const Primitive &p = path.primitive(n);
+        const double most = std::min(limit_of(p, 0, p.length, c.limits.fitted(), UNLIMITED).v,
+                                     c.scales.max_velocity * r.tag.feed_ratio);
+        load = std::max(load, turning_speed(r, c.scales) / most);
+    }
+    return load;
+}
+
+}  // namespace mw::traj

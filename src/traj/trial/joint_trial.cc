@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "traj/trial/joint_trial.hh"
+
+#include <cmath>
+
+#include "traj/tuning.hh"
+
+namespace mw::traj {
+
+bool JointTrial::isSound(const Conditions &conditions, const Pose &pose, std::uint64_t tick) noexcept {
+    const JointLimits &limits = conditions.workspace.joints;
+    std::array<double, MAX_JOINTS> &now = joints_[tick % 4];
+    now = {};
+    if (!conditions.workspace.map->joints_at(pose, now.data())) {
+        return false;
+    }
+    samples_ = tick == tick_ + 1 ? samples_ + 1 : 0;
+    tick_ = tick;
+    const double t = conditions.limits.period_s();
+    constexpr double SLACK = TrialTuning::SLACK;
+    for (std::size_t j = 0; j < static_cast<std::size_t>(limits.count); ++j) {
+        const double one = joints_[(tick - 1) % 4][j];
+        const double two = joints_[(tick - 2) % 4][j];
+        const double three = joints_[(tick - 3) % 4][j];
+        const double rounding = 0x1p-52 * std::abs(now[j]);
+        const double v = std::abs(now[j] - one);
+        const double a = std::abs(now[j] - 2.0 * one + two);
+        const double jerk = std::abs(now[j] - 3.0 * (one - two) - three);
+        const bool isOver = (samples_ >= 1 && v > limits.velocity[j] * t * SLACK + 2.0 * rounding) ||
+                            (samples_ >= 2 && a > limits.acceleration[j] * t * t * SLACK + 4.0 * rounding) ||
+                            (samples_ >= 3 && conditions.limits.isFiltered() &&
+                             jerk > limits.jerk[j] * t * t * t * SLACK + 8.0 * rounding);
+        if (isOver) {
+            return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace mw::traj
