@@ -6,12 +6,12 @@
 #include <string_view>
 
 #include "diag/sink.hh"
-#include "hal/halcompile/checker.hh"
-#include "hal/halcompile/emit_c.hh"
-#include "hal/halcompile/emit_man.hh"
-#include "hal/halcompile/object_file.hh"
-#include "hal/halcompile/parser.hh"
-#include "hal/halcompile/toolchain.hh"
+#include "comp/checker.hh"
+#include "comp/emit_c.hh"
+#include "comp/emit_man.hh"
+#include "comp/object_file.hh"
+#include "comp/parser.hh"
+#include "comp/toolchain.hh"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
     const std::string_view text(reinterpret_cast<const char *>(data), size);

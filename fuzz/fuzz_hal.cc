@@ -8,10 +8,10 @@
 #include <string_view>
 
 #include "hal/core/host.hh"
-#include "hal/lang/commands.hh"
-#include "hal/lang/completion.hh"
-#include "hal/lang/session.hh"
-#include "hal/lang/two_pass.hh"
+#include "hal_lang/lang/commands.hh"
+#include "hal_lang/lang/completion.hh"
+#include "hal_lang/lang/session.hh"
+#include "hal_lang/lang/two_pass.hh"
 #include "rtapi/virtual_scheduler.hh"
 
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "hal/host/message.hh"
-#include "hal/stream_tools/record_text.hh"
-#include "hal/view/latency.hh"
+#include "hal_tools/stream/record_text.hh"
+#include "hal_tools/view/latency.hh"
 
 namespace {
 

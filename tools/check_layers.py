@@ -7,10 +7,10 @@ import sys
 
 LAYER = {
     'base': 0, 'geom': 0, 'diag': 0,
-    'rtapi': 1, 'config': 1, 'msgs': 1, 'picture': 1,
+    'rtapi': 1, 'config': 1, 'msgs': 1, 'picture': 1, 'comp': 1,
     'hal': 2, 'nml': 2, 'mailbox': 2,
-    'kins': 3, 'traj': 3, 'homing': 3, 'interp': 3, 'tool': 3, 'client': 3,
-    'motion': 4, 'pyhost': 4,
+    'kins': 3, 'traj': 3, 'homing': 3, 'interp': 3, 'tool': 3, 'client': 3, 'hal_lang': 3,
+    'motion': 4, 'pyhost': 4, 'hal_tools': 4,
     'task': 5, 'io': 5,
     'machine': 6, 'ui': 6, 'python': 6,
     'app': 7,
@@ -19,11 +19,17 @@ LAYER = {
 # Equal layers that may be used, user -> used.
 ALLOWED_EQUAL = {('geom', 'base'), ('diag', 'base'), ('interp', 'tool'), ('task', 'io'), ('nml', 'hal'), ('machine', 'ui')}
 # Domain libraries know neither HAL nor NML.
-FORBIDDEN = {(user, used) for user in ('kins', 'traj', 'homing', 'interp', 'tool') for used in ('hal', 'nml')}
+FORBIDDEN = {(user, used) for user in ('kins', 'traj', 'homing', 'interp', 'tool') for used in ('hal', 'hal_lang', 'nml')}
 # Inside a folder: sub-folders in the order in which they may use each other.
 INNER = {'motion': ['api', 'core', 'rt'],
          'traj': ['geometry', 'exec', 'timing', 'trial'],
-         'hal': ['api', 'sdk', 'halcompile', 'core', 'host', 'lang', 'tcl', 'stream_tools', 'view']}
+         'hal': ['api', 'sdk', 'core', 'host'],
+         'hal_lang': ['lang', 'tcl'],
+         'hal_tools': ['stream', 'view', 'programs']}
+# Folders beside src: what of src, and of each other, they may include. What is not here is left alone.
+BESIDE = {'components': {'hal', 'hal_tools', 'kins', 'traj', 'motion', 'rtapi', 'base', 'geom', 'components', 'sim'},
+          'sim': {'hal', 'base', 'geom', 'sim'},
+          'testing': {'base', 'geom', 'kins', 'traj', 'motion', 'testing'}}
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 
 
@@ -47,13 +53,38 @@ def problem(path, source, target):
     return None
 
 
+def problem_beside(folder, target):
+    if len(target) > 1 and target[0] not in BESIDE[folder] and (target[0] in LAYER or target[0] in BESIDE):
+        return f'{folder} may not use {target[0]}'
+    return None
+
+
+def sources(root, folder):
+    """Sources and headers of a folder, without those of tests."""
+    for path in sorted((root / folder).rglob('*')):
+        if path.suffix in ('.cc', '.hh', '.h', '.c') and 'test' not in path.relative_to(root).parts[:-1]:
+            yield path
+
+
 def main():
-    root = pathlib.Path(sys.argv[1]) / 'src'
+    top = pathlib.Path(sys.argv[1])
+    root = top / 'src'
     failures = 0
     checked = 0
-    for path in sorted(root.rglob('*')):
-        if path.suffix not in ('.cc', '.hh', '.h', '.c') or 'test' in path.relative_to(root).parts[:-1]:
-            continue
+    for folder in sorted(path.name for path in root.iterdir() if path.is_dir()):
+        if folder not in LAYER:
+            print(f'src/{folder} has no layer')
+            failures += 1
+    for folder in BESIDE:
+        for path in sources(top, folder):
+            checked += 1
+            for number, line in enumerate(path.read_text().splitlines(), 1):
+                match = INCLUDE.match(line)
+                why = match and problem_beside(folder, tuple(match.group(1).split('/')))
+                if why:
+                    print(f'{path}:{number}: {match.group(1)}: {why}')
+                    failures += 1
+    for path in sources(root, '.'):
         checked += 1
         source = path.relative_to(root).parts
         for number, line in enumerate(path.read_text().splitlines(), 1):

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "hal/core/host.hh"
-#include "hal/lang/session.hh"
+#include "hal_lang/lang/session.hh"
 #include "rtapi/virtual_scheduler.hh"
 
 namespace mw::components::test {

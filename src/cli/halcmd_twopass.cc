@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "cli/arguments.hh"
-#include "hal/tools/command_line.hh"
+#include "hal_tools/programs/command_line.hh"
 
 int main(int argc, char **argv) {
     return mw::hal::tools::halcmd_twopass(mw::cli::arguments(argc, argv));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <unistd.h>
 
-#include "hal/halcompile/program.hh"
+#include "comp/program.hh"
 
 int main(int argc, char **argv) {
     char path[4096];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "base/own_place.hh"
 #include "cli/arguments.hh"
-#include "hal/tools/command_line.hh"
+#include "hal_tools/programs/command_line.hh"
 
 int main(int argc, char **argv) {
     mw::offer_own_programs();

@@ -4,7 +4,7 @@
 
 #include "cli/arguments.hh"
 #include "cli/stream_main.hh"
-#include "hal/stream_tools/programs.hh"
+#include "hal_tools/stream/programs.hh"
 
 namespace {
 

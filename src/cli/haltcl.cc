@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "hal/tools/command_line.hh"
+#include "hal_tools/programs/command_line.hh"
 
 int main(int argc, char **argv) {
     return mw::hal::tools::haltcl({argv + 1, argv + argc});

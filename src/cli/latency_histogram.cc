@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
-#include "hal/view/commands.hh"
+#include "hal_tools/view/commands.hh"
 
 int main(int argc, char **argv) {
     mw::offer_own_programs();

@@ -8,7 +8,7 @@
 #include "app/commands.hh"
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
-#include "hal/view/commands.hh"
+#include "hal_tools/view/commands.hh"
 #include "interp/commands.hh"
 
 namespace {

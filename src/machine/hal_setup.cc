@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "base/text.hh"
-#include "hal/lang/session.hh"
-#include "hal/lang/two_pass.hh"
+#include "hal_lang/lang/session.hh"
+#include "hal_lang/lang/two_pass.hh"
 
 namespace mw::machine {
 namespace {

@@ -6,7 +6,7 @@
 #include <cerrno>
 
 #include "hal/host/host_client.hh"
-#include "hal/lang/programs.hh"
+#include "hal_lang/lang/programs.hh"
 #include "machine/machine.hh"
 #include "machine/task_side.hh"
 

@@ -6,7 +6,7 @@
 
 #include "base/text.hh"
 #include "hal/api/hal.h"
-#include "hal/stream_tools/keys.hh"
+#include "hal_tools/stream/keys.hh"
 #include "python/hal/convert.hh"
 #include "python/hal/instance.hh"
 

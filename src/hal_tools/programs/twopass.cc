@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "hal_lang/lang/two_pass.hh"
+#include "hal_tools/programs/command_line.hh"
+
+namespace mw::hal::tools {
+
+namespace {
+
+constexpr const char *USAGE = R"(usage: halcmd_twopass [OPTIONS] INI
+
+Runs the files of [HAL]HALFILE in two passes: loadrt lines for one module are merged. INI needs [HAL]TWOPASS.
+
+  -k  keep going after failed commands    -q -Q -v -V  say less or more (see halcmd -h)
+)";
+
+int fail_with(const Error &error) {
+    std::fprintf(stderr, "halcmd_twopass: %s\n", error.str().c_str());
+    return 1;
+}
+
+}  // namespace
+
+Result<> run_two_pass_ini(lang::Session &session, const config::IniFile &ini) {
+    const config::IniEntry *keywords = ini.find("HAL", "TWOPASS");
+    if (keywords == nullptr || keywords->value.empty()) {
+        return fail("an INI file can only be used here when it has [HAL]TWOPASS",
+                    ini.place_of_section("HAL"));
+    }
+    std::vector<lang::HalFileEntry> files;
+    for (const config::IniEntry *entry : ini.find_all("HAL", "HALFILE")) {
+        files.push_back({entry->value, entry->place});
+    }
+    session.options().folders.insert(session.options().folders.begin(), ini.folder());
+    Result<> result = lang::run_two_pass(session, files, keywords->value, lang::TwoPassReport::FILES);
+    for (const config::IniEntry *entry : ini.find_all("HAL", "HALCMD")) {
+        result = result ? session.run_text(entry->value, entry->place.str()) : result;
+    }
+    return result;
+}
+
+int halcmd_twopass(const std::vector<std::string> &arguments) {
+    Result<CommandLine> line = parse_command_line(arguments);
+    if (line && line->wantsHelp) {
+        std::fputs(USAGE, stdout);
+        return 0;
+    }
+    if (!line || line->words.size() != 1) {
+        std::fputs(USAGE, stderr);
+        return line ? 1 : fail_with(line.error());
+    }
+    IniOption ini;
+    if (const Result<> loaded = ini.load(line->words[0]); !loaded) {
+        return fail_with(loaded.error());
+    }
+    line->session.ini = ini.lookup();
+    const auto host = join_or_start();
+    if (!host) {
+        return fail_with(host.error());
+    }
+    lang::StandardOutput output;
+    lang::SystemProgramHost programs((*host)->hal());
+    lang::Session session(**host, programs, output, line->session);
+    const Result<> result = run_two_pass_ini(session, *ini.file());
+    return result ? 0 : 1;
+}
+
+}  // namespace mw::hal::tools
