@@ -33,6 +33,12 @@ BESIDE = {'components': {'hal', 'hal_tools', 'kins', 'traj', 'motion', 'rtapi', 
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 
 
+def are_parts_mixed(source, target):
+    """Parts of the motion controller are folders of their own and know no other."""
+    are_parts = len(source) > 3 and len(target) > 3 and source[:2] == target[:2] == ('motion', 'core')
+    return are_parts and source[2] != target[2]
+
+
 def problem(path, source, target):
     user, used = source[0], target[0]
     if used not in LAYER or user not in LAYER:
@@ -43,6 +49,8 @@ def problem(path, source, target):
         inner_used = target[1] if len(target) > 2 else None
         if inner_user in order and inner_used in order and order.index(inner_used) > order.index(inner_user):
             return f'{user}/{inner_user} may not use {used}/{inner_used}'
+        if are_parts_mixed(source, target):
+            return f'the part {source[2]} may not know the part {target[2]}'
         return None
     if (user, used) in FORBIDDEN:
         return f'{user} may not know {used}'

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <type_traits>
 
+#include "base/copyable_atomic.hh"
+
 namespace mw {
 
 /// The payload is stored as relaxed atomic words, so that a torn read is a retry and never undefined
@@ -76,8 +78,8 @@ class Seqlock {
   private:
     static constexpr std::size_t WHOLE_WORDS = sizeof(T) / 8, REST = sizeof(T) % 8;
     static constexpr std::size_t WORDS = (sizeof(T) + 7) / 8;
-    std::atomic<std::uint32_t> sequence_{0};
-    std::array<std::atomic<std::uint64_t>, WORDS> words_{};
+    CopyableAtomic<std::uint32_t> sequence_{0};
+    std::array<CopyableAtomic<std::uint64_t>, WORDS> words_{};
 };
 
 }  // namespace mw

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "base/copyable_atomic.hh"
+
 namespace mw {
 
 /// Wait-free ring of N (a power of two) trivially copyable elements. Holds no pointers, so it may live in
@@ -62,8 +64,8 @@ class SpscRing {
     static constexpr std::uint32_t capacity() noexcept { return N; }
 
   private:
-    alignas(64) std::atomic<std::uint32_t> head_{0};
-    alignas(64) std::atomic<std::uint32_t> tail_{0};
+    alignas(64) CopyableAtomic<std::uint32_t> head_{0};
+    alignas(64) CopyableAtomic<std::uint32_t> tail_{0};
     alignas(64) std::array<T, N> slots_{};
 };
 

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "base/copyable_atomic.hh"
 #include "base/spsc_ring.hh"
 #include "traj/geometry/primitive.hh"
 
@@ -191,7 +192,7 @@ struct PathStore {
     SpscRing<Commit, 64> commits;      ///< planner -> executor
     /// Pieces up to here may be read by the executor. Release by the planner after filling, acquire by the
     /// executor.
-    std::atomic<Sequence> last_piece{0};
+    CopyableAtomic<Sequence> last_piece{0};
 
     Primitive &primitive(Sequence n) noexcept { return primitives[n % PRIMITIVE_CAPACITY]; }
     const Primitive &primitive(Sequence n) const noexcept { return primitives[n % PRIMITIVE_CAPACITY]; }

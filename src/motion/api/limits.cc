@@ -94,7 +94,7 @@ void fold_joint(const Settings &s, int j, FoldedLimits &out) noexcept {
 }  // namespace
 
 bool AxisMap::hasAxis(int axis) const noexcept {
-    bool isFound = kind != Kind::JOINTS_ARE_AXES;
+    bool isFound = !areJointsAxes();
     for (int j = 0; j < num_joints; ++j) {
         isFound = isFound || axis_of_joint[at(j)] == axis;
     }

@@ -33,8 +33,9 @@ struct AxisMap {
 
     /// A joint of the machine moves this axis; kinematics may move any.
     bool hasAxis(int axis) const noexcept;
+    bool areJointsAxes() const noexcept { return kind == Kind::JOINTS_ARE_AXES; }
     bool moves(int joint, int axis) const noexcept {
-        return kind == Kind::JOINTS_ARE_AXES && axis_of_joint[static_cast<std::size_t>(joint)] == axis;
+        return areJointsAxes() && axis_of_joint[static_cast<std::size_t>(joint)] == axis;
     }
 };
 

@@ -1,77 +1,83 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+// A servo cycle from feedback to motor commands; faults and stops.
 #include "motion/core/controller.hh"
 
 #include <algorithm>
+#include <bit>
+#include <memory>
 
 namespace mw::motion {
 
 Controller::Controller(const ControllerConfig &config, const kins::Kinematics &kinematics, Channels &channels,
                        PathLink &link) noexcept
-    : config_(config), kinematics_(kinematics), channels_(channels), link_(link),
-      executor_(link.store, config.period_s), map_(axis_map(kinematics, config.num_joints)) {
-    const kins::IdentityMap *map = kinematics.identity();
-    const int used = map != nullptr ? std::min(map->num_joints, config.num_joints) : config.num_joints;
-    homing_.set_num_joints(used);
+    : config_(config), kinematics_(kinematics), channels_(&channels), link_(&link),
+      map_(axis_map(kinematics, config.num_joints)), executor_(link.store, config.period_s) {
+    const kins::IdentityMap *identity = kinematics.identity();
+    const int used =
+        identity != nullptr ? std::min(identity->num_joints, config.num_joints) : config.num_joints;
+    joints_.count = config.num_joints;
+    jogs_.num_joints = config.num_joints;
+    spindles_.count = config.num_spindles;
+    outputs_.num_digital = config.num_dio;
+    outputs_.num_analog = config.num_aio;
+    homing_.num_joints = config.num_joints;
+    homing_.homing.set_num_joints(used);
     for (int j = used; j < config.num_joints; ++j) {
-        joint(j).isActive = false;  // drives nothing until somebody activates it
+        joints_[j].isActive = false;  // drives nothing until somebody activates it
     }
     publish_limits();
 }
 
+Controller::Controller(const Controller &other, Channels &channels, PathLink &link) noexcept
+    : Controller(other) {
+    channels_ = &channels;
+    link_ = &link;
+    std::construct_at(&executor_, other.executor_, link.store);
+}
+
 bool Controller::isAnythingMoving() const noexcept {
-    if (!executor_.isAtRest() || link_.retrace.isMoving()) {
-        return true;
+    const bool isOnPath = !executor_.isAtRest() || retracing_.retrace.isMoving();
+    switch (power_.mode) {
+    case Mode::FREE: return isOnPath || !areJointsAtRest(jogs_);
+    case Mode::TELEOP: return isOnPath || !areAxesAtRest(jogs_);
+    case Mode::COORD: break;
     }
-    for (int j = 0; j < config_.num_joints; ++j) {
-        if (mode_ == Mode::FREE && !joint(j).free.isAtRest()) {
-            return true;
-        }
-    }
-    for (const AxisState &axis : axes_) {
-        if (mode_ == Mode::TELEOP && !axis.teleop.isAtRest()) {
-            return true;
-        }
-    }
-    return false;
+    return isOnPath;
 }
 
 void Controller::step(const Inputs &in, Outputs &out) noexcept {
     ++cycle_;
-    const bool isStopOver = stop_ == Stop::CATEGORY_1 && !isAnythingMoving();
-    if (isStopOver) {
+    if (power_.isStopping && !isAnythingMoving()) {
         disable();
     }
-    read_feedback(in);
-    check_watchdog();
+    const PerJoint measured = read_feedback(joints_, in);
+    read_feedback(place_, kinematics_, measured.data(), limits_.homed.areAll);
+    const bool isDead = channels_->isTaskDead.load(std::memory_order_acquire) != 0;
+    const std::uint64_t loops = channels_->task_loops.load(std::memory_order_relaxed);
+    if (motion::step(watchdog_, loops, isDead, config_.period_s)) {
+        stop_category_1(FaultKind::TASK_LOST, -1, watchdog_.standing_s);
+    }
     check_faults(in);
     step_holds(in);
     for (int n = 0; n < config_.num_spindles; ++n) {
-        executor_.set_spindle(n, in.spindle[at(n)].revs, in.spindle[at(n)].speed_in_rps);
+        const SpindleInputs &spindle = in.spindle[static_cast<std::size_t>(n)];
+        executor_.set_spindle(n, spindle.revs, spindle.speed_in_rps);
     }
-    if (isEnabled_) {
+    if (!power_.isEnabled) {
+        executor_.step(cycle_);
+    } else {
         step_homing(in);
         step_wheels(in);
-        if (mode_ == Mode::FREE) {
-            check_probe(in);
-            move_joints();
-        } else {
-            step_coord(in);
-        }
-    } else {
-        executor_.step(cycle_);
+        power_.mode == Mode::FREE ? move_joints(in) : move_axes(in);
     }
     output_joints();
-    step_spindles(in);
-    fill(in, out);
-    publish_view(in);
-    channels_.status.write(out.status);
-    trace(in, out.status);
-    wasProbeClosed_ = in.isProbeClosed;
-}
-
-const traj::MoveTag *Controller::active_tag() const noexcept {
-    const traj::Sequence move = executor_.output().move;
-    return mode_ == Mode::COORD && move != 0 ? &link_.store.move(move) : nullptr;
+    for (std::uint32_t failed = motion::step(spindles_, in, settings_, place_.cmd[geom::AXIS_X]); failed != 0;
+         failed &= failed - 1) {
+        const int n = std::countr_zero(failed);
+        raise(FaultKind::SPINDLE_FAULT, n, spindles_[n].orient_fault);
+    }
+    publish(in, out);
+    probe_.wasClosed = in.isProbeClosed;
 }
 
 void Controller::raise(FaultKind kind, int index, double value, std::uint16_t detail) noexcept {
@@ -80,15 +86,15 @@ void Controller::raise(FaultKind kind, int index, double value, std::uint16_t de
     fault.index = static_cast<std::int16_t>(index);
     fault.value = value;
     fault.detail = detail;
-    if (const MoveTag *tag = active_tag()) {
+    if (const traj::MoveTag *tag = active_move(executor_, link_->store, power_.mode)) {
         fault.source = {tag->line, tag->file_index, tag->block};
     }
-    channels_.servo_faults.push(fault);  // a full ring: the first faults are the ones that matter
+    channels_->servo_faults.push(fault);  // a full ring: the first faults are the ones that matter
 }
 
 /// Amplifiers off in this cycle.
 void Controller::stop_category_0(FaultKind kind, int index, double value) noexcept {
-    if (isEnabled_) {
+    if (power_.isEnabled) {
         raise(kind, index, value);
     }
     disable();
@@ -96,77 +102,140 @@ void Controller::stop_category_0(FaultKind kind, int index, double value) noexce
 
 /// Everything brakes within its limits; amplifiers off in the cycle after it stands.
 void Controller::stop_category_1(FaultKind kind, int index, double value) noexcept {
-    if (!isEnabled_ || stop_ == Stop::CATEGORY_1) {
+    if (!begin_stop(power_)) {
         return;
     }
     raise(kind, index, value);
-    stop_ = Stop::CATEGORY_1;
-    homing_.abort(homing::Failure::ABORTED);
-    isHomeDue_ = false;
+    abort(homing_, homing::Failure::ABORTED);
     executor_.drop();
-    stop_jogs(false);
+    stop(jogs_);
 }
 
-void Controller::disable() noexcept {
-    homing_.abort(homing::Failure::ABORTED);
-    isHomeDue_ = false;
-    executor_.stop_now();
-    isEnabled_ = false;
-    stop_ = Stop::NONE;
-    isPaused_ = false;
-    isStepping_ = false;
-    for (int j = 0; j < config_.num_joints; ++j) {
-        joint(j).isAmpWanted = false;
-        joint(j).jog = JogSource::NONE;
-        if (settings_.isSet(Parameter::JOINT_VOLATILE_HOME, j)) {
-            homing_.unhome(j);
+void Controller::check_faults(const Inputs &in) noexcept {
+    if (!power_.isEnabled) {
+        return;
+    }
+    if (!in.isEnableOn) {
+        stop_category_0(FaultKind::ENABLE_LOST, -1, 0);
+        return;
+    }
+    check_joints(in);
+    for (int n = 0; n < config_.num_spindles; ++n) {
+        if (in.spindle[static_cast<std::size_t>(n)].isAmpFaulted) {
+            stop_category_1(FaultKind::SPINDLE_FAULT, n, 0);
         }
     }
-    for (AxisState &axis : axes_) {
-        axis.jog = JogSource::NONE;
+    if (in.misc_errors != 0) {
+        stop_category_1(FaultKind::MISC_ERROR, -1, static_cast<double>(in.misc_errors));
     }
-    for (SpindleState &spindle : spindles_) {
-        spindle.isOn = false;
-        spindle.speed_rpm = 0;
-        spindle.isOrienting = false;
+}
+
+void Controller::check_joints(const Inputs &in) noexcept {
+    homing::Homing &homing = homing_.homing;
+    JointCheck how;
+    how.limits_ignored = jogs_.areLimitsOverridden ? ~0U : 0U;
+    for (int j = 0; j < config_.num_joints && homing.isActive(); ++j) {
+        const bool isIndexFound = !in.joint[static_cast<std::size_t>(j)].isIndexEnabled;
+        how.at_index |= homing.state(j) == homing::State::INDEX && isIndexFound ? 1U << j : 0U;
+        how.limits_ignored |= homing.isIgnoringLimits(j) ? 1U << j : 0U;
     }
-    publish_limits();
+    for (int j = 0; power_.isEnabled; ++j) {
+        switch (find_fault(joints_, j, settings_, how)) {
+        case JointFault::NONE: return;
+        case JointFault::AMP_FAULT: stop_category_0(FaultKind::AMP_FAULT, j, 0); break;
+        case JointFault::FOLLOWING_ERROR:
+            stop_category_0(FaultKind::FOLLOWING_ERROR, j, joints_[j].ferror);
+            break;
+        case JointFault::HARD_LIMIT:
+            if (homing.isHoming(j)) {
+                homing.abort(homing::Failure::LIMIT_HIT);
+            }
+            stop_category_1(FaultKind::HARD_LIMIT, j, joints_[j].isOnPosHardLimit ? 1.0 : -1.0);
+            break;
+        }
+    }
 }
 
-void Controller::abort_all() noexcept {
-    homing_.abort(homing::Failure::ABORTED);
-    isHomeDue_ = false;
-    executor_.drop();
-    stop_jogs(false);
-    isPaused_ = false;
-    isStepping_ = false;
-    isCoordError_ = false;
+/// What keeps the path from moving on for now.
+void Controller::step_holds(const Inputs &in) noexcept {
+    motion::step(holds_, {in.adaptive_feed, in.isFeedHeld, in.isFeedInhibited,
+                          link_->steps_done.load(std::memory_order_acquire)});
+    const bool isReversing = holds_.isReverseWanted || retracing_.retrace.isAway();
+    executor_.hold(holds_.isStandingWanted || (power_.mode == Mode::COORD && isReversing));
 }
 
-void Controller::answer(CommandId id, AnswerKind kind, Reason reason, std::int16_t index) noexcept {
-    Answer a;
-    a.id = id;
-    a.kind = kind;
-    a.reason = reason;
-    a.index = index;
-    channels_.servo_answers.push(
-        a);  // handle_commands takes a command only when there is room for its answer
-    last_id_ = id;
+void Controller::step_homing(const Inputs &in) noexcept {
+    if (homing_.isDue) {
+        begin_due(homing_, isAnythingMoving());
+    }
+    if (homing_.homing.hasWork()) {
+        drive_homing(in);
+    }
+    const HomingFailure failure = take_failure(homing_);
+    if (failure.joint >= 0) {
+        raise(FaultKind::HOMING_FAILED, failure.joint, 0, static_cast<std::uint16_t>(failure.why));
+    }
+    if (limits_.homed.joints != homed_mask(homing_)) {
+        publish_limits();
+    }
 }
 
-/// Limits of axes and joints folded together, for jogs and the path planner.
-void Controller::publish_limits() noexcept {
-    limits_ = fold_limits(settings_, map_, {homed_mask(), homing_.isAllHomed()});
-    PathLimits out;
-    out.limits = limits_.path;
-    out.low = limits_.low;
-    out.high = limits_.high;
-    out.axes = limits_.axes;
-    out.joints = limits_.joints;
-    out.corner_scale = get(Parameter::TRAJ_CORNER_SCALE);
-    out.areTolerancesAdded = settings_.isSet(Parameter::TRAJ_ADDED_TOLERANCES);
-    link_.limits.write(out);
-    ++limits_version_;
+/// One cycle of the joints that home.
+void Controller::drive_homing(const Inputs &in) noexcept {
+    homing::JointInput inputs[MAX_JOINTS];
+    homing::JointCommand commands[MAX_JOINTS];
+    for (int j = 0; j < config_.num_joints; ++j) {
+        const JointInputs &pins = in.joint[static_cast<std::size_t>(j)];
+        inputs[j] = {pins.isHomeSwitchClosed, pins.isIndexEnabled, jogs_.at({true, j}).planner.isAtRest(),
+                     false, joints_[j].pos_fb};
+    }
+    homing_.homing.step(inputs, commands);
+    for (int j = 0; j < config_.num_joints; ++j) {
+        const homing::JointCommand &c = commands[j];
+        Jog &jog = jogs_.at({true, j});
+        if (c.isShifting) {
+            shift(joints_[j], c.shift);
+            renumber(jog, joints_[j].pos_cmd, c.shift);
+        } else if (c.isSettingZero) {
+            set_zero(joints_[j], c.zero);
+            renumber(jog, joints_[j].pos_cmd, joints_[j].pos_cmd - jog.planner.position);
+        }
+        home_joint(jog, c, limits_.joint_jog[static_cast<std::size_t>(j)]);
+    }
+}
+
+void Controller::step_wheels(const Inputs &in) noexcept {
+    if (in.isJogStoppedNow) {
+        stop_at_once(jogs_);
+    } else if (in.isJogStopped && !homing_.homing.isActive()) {
+        stop(jogs_);
+    }
+    const bool areJoints = power_.mode == Mode::FREE;
+    const int count = areJoints ? config_.num_joints : power_.mode == Mode::TELEOP ? MAX_AXES : 0;
+    for (int i = 0; i < count; ++i) {
+        const JogTarget target{areJoints, i};
+        const auto n = static_cast<std::size_t>(i);
+        const WheelInput &wheel = areJoints ? in.joint[n].wheel : in.axis_wheel[n];
+        const double distance = turned(jogs_.at(target), wheel);
+        if (distance != 0.0) {
+            jog_by_wheel(jogs_, target, distance, wheel, situation_of(in, target));
+        }
+    }
+    settle(jogs_, in);
+}
+
+void Controller::output_joints() noexcept {
+    for (std::uint32_t off = output(joints_, settings_, power_.isEnabled, config_.period_s); off != 0;
+         off &= off - 1) {
+        const int j = std::countr_zero(off);
+        jogs_.at({true, j}).planner.reset(joints_[j].pos_fb);
+    }
+    if (power_.isEnabled) {
+        return;
+    }
+    follow_joints(place_, kinematics_, commanded(joints_).data(), place_.isFbValid);
+    executor_.set_position(place_.cmd);
+    reset_axes(jogs_, place_.cmd);
 }
 
 }  // namespace mw::motion

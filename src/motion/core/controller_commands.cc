@@ -1,321 +1,223 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Immediate commands: each is answered, done or refused with a reason.
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
 
+#include "base/overloaded.hh"
 #include "motion/core/controller.hh"
 
 namespace mw::motion {
 
 void Controller::handle_commands(const Inputs &in) noexcept {
+    auto &answers = channels_->servo_answers;
     for (int n = 0; n < MAX_COMMANDS_PER_CYCLE; ++n) {
-        const bool isRoom = channels_.servo_answers.size() < channels_.servo_answers.capacity();
-        const Command *c = isRoom ? channels_.immediate.front() : nullptr;
+        // A command is taken only when there is room for its answer.
+        const bool isRoom = answers.size() < answers.capacity();
+        const Command *c = isRoom ? channels_->immediate.front() : nullptr;
         if (c == nullptr) {
             return;
         }
-        std::int16_t index = -1;
+        Answer answer;
+        answer.id = c->id;
         // Epochs are compared across their wrap.
         const bool isStale = static_cast<std::int32_t>(c->epoch - epoch_) < 0;
-        const bool isAbort = std::holds_alternative<Abort>(c->body);
-        if (isStale && !isAbort) {
-            answer(c->id, AnswerKind::STALE, Reason::NONE, -1);
+        if (isStale && !std::holds_alternative<Abort>(c->body)) {
+            answer.kind = AnswerKind::STALE;
         } else {
-            const Reason reason = handle(in, *c, index);
-            answer(c->id, reason == Reason::NONE ? AnswerKind::DONE : AnswerKind::REFUSED, reason, index);
+            const Verdict verdict = take(in, c->body);
+            answer.kind = verdict.reason == Reason::NONE ? AnswerKind::DONE : AnswerKind::REFUSED;
+            answer.reason = verdict.reason;
+            answer.index = verdict.index;
         }
-        channels_.immediate.drop();
+        answers.push(answer);
+        last_id_ = answer.id;
+        channels_->immediate.drop();
     }
 }
 
-Reason Controller::handle(const Inputs &in, const Command &c, std::int16_t &index) noexcept {
-    bool isTaken = true;
-    Reason reason = handle_state(in, c.body, index, isTaken);
-    if (!isTaken) {
-        isTaken = true;
-        reason = handle_flow(c.body, isTaken);
-    }
-    if (!isTaken) {
-        isTaken = true;
-        reason = handle_jog(in, c.body, index, isTaken);
-    }
-    if (!isTaken) {
-        isTaken = true;
-        reason = handle_homing(in, c.body, index, isTaken);
-    }
-    if (!isTaken) {
-        isTaken = true;
-        reason = handle_spindle(c.body, isTaken);
-    }
-    if (!isTaken) {
-        isTaken = true;
-        reason = handle_outputs(c.body, isTaken);
-    }
-    return isTaken ? reason : Reason::NOT_SUPPORTED;
+/// Every command has its handler here; one that is forgotten does not compile.
+Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
+    const Overloaded handlers{
+        [&](const Abort &c) { return abort_all(c); },
+        [&](const Enable &) { return enable(in); },
+        [&](const Disable &) {
+            disable();
+            return Verdict{};
+        },
+        [&](const SetMode &c) { return set_mode(c.mode); },
+        [&](const SetParameter &c) { return set_parameter(c); },
+        [&](const SetAmplifier &c) { return motion::take(joints_, c, power_.isEnabled); },
+        [&](const SetJointActive &c) { return motion::take(joints_, c, isAnythingMoving()); },
+        [&](const OneOf<SetWatchdog, Heartbeat> auto &c) { return motion::take(watchdog_, c); },
+        [&](const OneOf<Pause, Resume, StepOnce, SetReverse, SetMaxVelocity> auto &c) {
+            return motion::take(holds_, c);
+        },
+        [&](const SetScale &c) {
+            return c.what == Scale::SPINDLE
+                       ? motion::take(spindles_, c)
+                       : motion::take(holds_, c, settings_.get(Parameter::MAX_FEED_SCALE));
+        },
+        [&](const SetSwitch &c) {
+            return c.what == Switch::SPINDLE_OVERRIDE ? motion::take(spindles_, c) : motion::take(holds_, c);
+        },
+        [&](const OneOf<JogContinuous, JogIncremental, JogAbsolute> auto &c) {
+            return motion::take(jogs_, c, situation_of(in, c.target));
+        },
+        [&](const OneOf<JogStop, OverrideLimits> auto &c) { return motion::take(jogs_, c); },
+        [&](const SetTeleopVector &c) { return jog_vector(in, c.velocity); },
+        [&](const Home &c) {
+            const HomeConditions conditions{power_.isReady(), power_.mode, in.isHomingInhibited, false};
+            const Verdict verdict = motion::take(homing_, c, conditions);
+            if (verdict.reason == Reason::NONE) {
+                stop(jogs_);
+            }
+            return verdict;
+        },
+        [&](const Unhome &c) {
+            const HomeConditions conditions{power_.isReady(), power_.mode, false, isAnythingMoving()};
+            const Verdict verdict = motion::take(homing_, c, conditions, settings_);
+            if (verdict.reason == Reason::NONE) {
+                publish_limits();
+            }
+            return verdict;
+        },
+        [&](const OneOf<SpindleOn, SpindleOrient> auto &c) {
+            return motion::take(spindles_, c, power_.isEnabled);
+        },
+        [&](const OneOf<SpindleOff, SpindleBrake> auto &c) { return motion::take(spindles_, c); },
+        [&](const OneOf<SetDigitalOutput, SetAnalogOutput> auto &c) { return motion::take(outputs_, c); },
+        [&](const ClearProbeFlag &c) { return motion::take(probe_, c); },
+        [&](const SetToolOffset &c) {
+            tool_offset_ = c.offset;
+            return Verdict{};
+        },
+    };
+    return std::visit(handlers, body);
 }
 
-Reason Controller::handle_state(const Inputs &in, const CommandBody &body, std::int16_t &index,
-                                bool &isTaken) noexcept {
-    if (const auto *c = std::get_if<Abort>(&body)) {
-        if (static_cast<std::int32_t>(c->new_epoch - epoch_) > 0) {
-            epoch_ = c->new_epoch;
-        }
-        abort_all();
-        return Reason::NONE;
+Verdict Controller::abort_all(const Abort &command) noexcept {
+    if (static_cast<std::int32_t>(command.new_epoch - epoch_) > 0) {
+        epoch_ = command.new_epoch;
     }
-    if (std::holds_alternative<Enable>(body)) {
-        return enable(in, index);
-    }
-    if (std::holds_alternative<Disable>(body)) {
-        disable();
-        return Reason::NONE;
-    }
-    if (const auto *c = std::get_if<SetMode>(&body)) {
-        return set_mode(c->mode);
-    }
-    if (const auto *c = std::get_if<SetAmplifier>(&body)) {
-        index = static_cast<std::int16_t>(c->joint);
-        if (c->joint < 0 || c->joint >= config_.num_joints) {
-            return Reason::NO_SUCH_JOINT;
-        }
-        if (c->isOn && !isEnabled_) {
-            return Reason::NOT_ENABLED;
-        }
-        joint(c->joint).isAmpWanted = c->isOn;
-        return Reason::NONE;
-    }
-    if (const auto *c = std::get_if<SetJointActive>(&body)) {
-        index = static_cast<std::int16_t>(c->joint);
-        if (c->joint < 0 || c->joint >= config_.num_joints) {
-            return Reason::NO_SUCH_JOINT;
-        }
-        if (isAnythingMoving()) {
-            return Reason::MOVING;
-        }
-        joint(c->joint).isActive = c->isActive;  // its amplifier stays as it is
-        return Reason::NONE;
-    }
-    if (const auto *c = std::get_if<OverrideLimits>(&body)) {
-        isOverridingLimits_ = c->isOn;
-        isOverrideInJog_ = false;
-        return Reason::NONE;
-    }
-    if (const auto *c = std::get_if<SetWatchdog>(&body)) {
-        if (!(c->timeout_s > 0)) {
-            return Reason::OUT_OF_RANGE;
-        }
-        isWatchdogOn_ = c->isOn;
-        watchdog_timeout_s_ = c->timeout_s;
-        watchdog_s_ = 0;
-        return Reason::NONE;
-    }
-    if (std::holds_alternative<Heartbeat>(body)) {
-        watchdog_s_ = 0;
-        return Reason::NONE;
-    }
-    if (const auto *c = std::get_if<SetParameter>(&body)) {
-        return set_parameter(*c, index);
-    }
-    isTaken = false;
-    return Reason::NONE;
-}
-
-Reason Controller::enable(const Inputs &in, std::int16_t &index) noexcept {
-    if (!in.isEnableOn) {
-        return Reason::EXTERNAL_ENABLE_OFF;
-    }
-    if (isEnabled_) {
-        return stop_ == Stop::NONE ? Reason::NONE : Reason::MOVING;
-    }
-    for (int j = 0; j < config_.num_joints; ++j) {
-        const JointInputs &pins = in.joint[at(j)];
-        index = static_cast<std::int16_t>(j);
-        if (joint(j).isActive && pins.isAmpFaulted) {
-            return Reason::AMP_FAULT;
-        }
-        const bool isOnLimit = (pins.isPosLimitClosed || pins.isNegLimitClosed) && !isOverridingLimits_;
-        if (joint(j).isActive && isOnLimit) {
-            return Reason::ON_HARD_LIMIT;
-        }
-    }
-    index = -1;
-    isEnabled_ = true;
-    isCoordError_ = false;
-    ++enables_;
-    for (int j = 0; j < config_.num_joints; ++j) {
-        JointState &s = joint(j);
-        s.isAmpWanted = s.isActive;
-        s.isFaulted = false;
-        s.isFerrorTripped = false;
-        s.pos_cmd = s.pos_fb;
-        s.free.reset(s.pos_fb);
-        s.wheel_counts = in.joint[at(j)].wheel.counts;
-    }
-    for (int i = 0; i < MAX_AXES; ++i) {
-        axes_[at(i)].wheel_counts = in.axis_wheel[at(i)].counts;
-        axes_[at(i)].teleop.reset(carte_pos_cmd_[i]);
-    }
+    abort(homing_, homing::Failure::ABORTED);
     executor_.drop();
-    executor_.set_position(carte_pos_cmd_);
-    link_.retrace.clear();
-    return Reason::NONE;
+    stop(jogs_);
+    release(holds_);
+    isCoordError_ = false;
+    return {};
 }
 
-/// Modes change only at rest; Cartesian ones need a known pose.
-Reason Controller::set_mode(Mode mode) noexcept {
-    if (mode == mode_) {
-        return Reason::NONE;
+Verdict Controller::enable(const Inputs &in) noexcept {
+    if (!in.isEnableOn) {
+        return {Reason::EXTERNAL_ENABLE_OFF};
     }
-    if (isHomingUnderWay()) {
-        return Reason::HOMING;
+    if (power_.isEnabled) {
+        return {power_.isStopping ? Reason::MOVING : Reason::NONE};
     }
-    if (isAnythingMoving()) {
-        return Reason::MOVING;
+    const Verdict verdict = check_start(joints_, in, jogs_.areLimitsOverridden);
+    if (verdict.reason != Reason::NONE) {
+        return verdict;
     }
-    const bool needsHome = mode != Mode::FREE && kinematics_.kind() != kins::Kind::IDENTITY;
-    if (needsHome && !homing_.isAllHomed()) {
-        return Reason::NOT_HOMED;
+    switch_on(power_);
+    switch_on(joints_);
+    start_at(jogs_, commanded(joints_).data(), place_.cmd, in);
+    isCoordError_ = false;
+    executor_.drop();
+    executor_.set_position(place_.cmd);
+    retracing_.retrace.clear();
+    return {};
+}
+
+void Controller::disable() noexcept {
+    executor_.stop_now();
+    switch_off(power_);
+    release(holds_);
+    switch_off(joints_);
+    forget_sources(jogs_);
+    switch_off(homing_, settings_);
+    switch_off(spindles_);
+    publish_limits();
+}
+
+Verdict Controller::set_mode(Mode mode) noexcept {
+    const ModeConditions conditions{homing_.isUnderWay(), isAnythingMoving(),
+                                    kinematics_.kind() != kins::Kind::IDENTITY, homing_.homing.isAllHomed()};
+    const Reason reason = check_mode(power_, mode, conditions);
+    if (reason != Reason::NONE || mode == power_.mode) {
+        return {reason};
     }
     executor_.drop();
     executor_.hold(false);
-    executor_.set_position(carte_pos_cmd_);
-    link_.retrace.clear();
-    for (int j = 0; j < config_.num_joints; ++j) {
-        joint(j).free.reset(joint(j).pos_cmd);
-        joint(j).jog = JogSource::NONE;
-    }
-    for (int i = 0; i < MAX_AXES; ++i) {
-        axes_[at(i)].teleop.reset(carte_pos_cmd_[i]);
-        axes_[at(i)].jog = JogSource::NONE;
-    }
-    isPaused_ = false;
-    isStepping_ = false;
-    isReverse_ = false;
-    mode_ = mode;
-    return Reason::NONE;
+    executor_.set_position(place_.cmd);
+    retracing_.retrace.clear();
+    rest_at(jogs_, commanded(joints_).data(), place_.cmd);
+    release(holds_);
+    holds_.isReverse = false;
+    power_.mode = mode;
+    return {};
 }
 
-Reason Controller::set_parameter(const SetParameter &c, std::int16_t &index) noexcept {
-    index = c.index;
-    if (homing_.isActive()) {
-        return Reason::HOMING;
+Verdict Controller::set_parameter(const SetParameter &command) noexcept {
+    if (homing_.homing.isActive()) {
+        return verdict_of(command.index, Reason::HOMING);
     }
-    const Reason reason = settings_.set(c, config_.num_joints, config_.num_spindles);
+    const Reason reason = settings_.set(command, config_.num_joints, config_.num_spindles);
     if (reason != Reason::NONE) {
-        return reason;
+        return verdict_of(command.index, reason);
     }
-    const ParameterScope scope = PARAMETERS[c.parameter].scope;
-    if (scope == ParameterScope::JOINT) {
-        const int j = c.index;
-        homing::Parameters &p = homing_.parameters(j);
-        p.search_vel = get(Parameter::JOINT_HOME_SEARCH_VEL, j);
-        p.latch_vel = get(Parameter::JOINT_HOME_LATCH_VEL, j);
-        p.final_vel = get(Parameter::JOINT_HOME_FINAL_VEL, j);
-        p.home = get(Parameter::JOINT_HOME, j);
-        p.offset = get(Parameter::JOINT_HOME_OFFSET, j);
-        p.isUsingIndex = settings_.isSet(Parameter::JOINT_HOME_USE_INDEX, j);
-        p.isIndexWithoutReset = settings_.isSet(Parameter::JOINT_HOME_INDEX_NO_ENCODER_RESET, j);
-        p.isSharedSwitch = settings_.isSet(Parameter::JOINT_HOME_IS_SHARED, j);
-        p.isIgnoringLimits = settings_.isSet(Parameter::JOINT_HOME_IGNORE_LIMITS, j);
-        p.absolute_encoder = static_cast<int>(get(Parameter::JOINT_HOME_ABSOLUTE_ENCODER, j));
-        p.sequence = static_cast<int>(get(Parameter::JOINT_HOME_SEQUENCE, j));
-        const double range = get(Parameter::JOINT_MAX_LIMIT, j) - get(Parameter::JOINT_MIN_LIMIT, j);
-        constexpr double LONGEST_SEARCH = 1e9;
-        p.travel =
-            std::isfinite(range) && range < LONGEST_SEARCH ? 2.0 * std::max(range, 0.0) : LONGEST_SEARCH;
+    if (PARAMETERS[command.parameter].scope == ParameterScope::JOINT) {
+        configure(homing_, command.index, settings_);
     }
     publish_limits();
-    index = -1;
-    return Reason::NONE;
+    return {};
 }
 
-Reason Controller::handle_flow(const CommandBody &body, bool &isTaken) noexcept {
-    if (std::holds_alternative<Pause>(body)) {
-        isPaused_ = true;
-        isStepping_ = false;
-        return Reason::NONE;
-    }
-    if (std::holds_alternative<Resume>(body)) {
-        isPaused_ = false;
-        isStepping_ = false;
-        return Reason::NONE;
-    }
-    if (std::holds_alternative<StepOnce>(body)) {
-        isPaused_ = false;
-        isStepping_ = true;
-        ++steps_;
-        return Reason::NONE;
-    }
-    if (const auto *c = std::get_if<SetReverse>(&body)) {
-        // Nothing is recorded to go back along without adaptive feed.
-        const bool isRefused = c->isReverse && !isAdaptiveFeedEnabled_;
-        isReverse_ = c->isReverse && !isRefused;
-        return isRefused ? Reason::NOT_SUPPORTED : Reason::NONE;
-    }
-    if (const auto *c = std::get_if<SetScale>(&body)) {
-        return set_scale(*c);
-    }
-    if (const auto *c = std::get_if<SetSwitch>(&body)) {
-        return set_switch(*c);
-    }
-    if (const auto *c = std::get_if<SetMaxVelocity>(&body)) {
-        if (!(c->velocity >= 0)) {
-            return Reason::OUT_OF_RANGE;
+/// Every axis at its own speed, those at 0 stop.
+Verdict Controller::jog_vector(const Inputs &in, const geom::Pose &velocity) noexcept {
+    for (int i = 0; i < MAX_AXES; ++i) {
+        const Verdict verdict = jog_axis(jogs_, i, velocity[i], situation_of(in, {false, i}));
+        if (verdict.reason != Reason::NONE) {
+            return verdict;
         }
-        max_velocity_ = c->velocity;
-        return Reason::NONE;
     }
-    isTaken = false;
-    return Reason::NONE;
+    return {};
 }
 
-Reason Controller::set_scale(const SetScale &c) noexcept {
-    if (!(c.factor >= 0) || !std::isfinite(c.factor)) {
-        return Reason::OUT_OF_RANGE;
+/// What holds for a jog of `target`; the rest is of no interest where there is no such target.
+JogSituation Controller::situation_of(const Inputs &in, const JogTarget &target) const noexcept {
+    JogSituation s;
+    if (!hasTarget(jogs_, target)) {
+        return s;
     }
-    switch (c.what) {
-    case Scale::FEED:
-        if (c.factor > get(Parameter::MAX_FEED_SCALE) * (1 + 1e-9)) {
-            return Reason::OUT_OF_RANGE;
-        }
-        feed_scale_ = c.factor;
-        return Reason::NONE;
-    case Scale::RAPID:
-        if (c.factor > 1.0 + 1e-9) {
-            return Reason::OUT_OF_RANGE;
-        }
-        rapid_scale_ = c.factor;
-        return Reason::NONE;
-    case Scale::SPINDLE: break;
+    s.isReady = power_.isReady();
+    s.mode = power_.mode;
+    s.isHoming = homing_.isUnderWay();
+    s.isInhibited = in.isJogInhibited || in.isJogStopped || in.isJogStoppedNow;
+    s.isMovable = target.isJoint ? joints_[target.index].isActive : map_.hasAxis(target.index);
+    if (target.isJoint) {
+        const Joint &joint = joints_[target.index];
+        const double sequence = settings_.get(Parameter::JOINT_HOME_SEQUENCE, target.index);
+        s.isSynchronised = sequence < 0 && sequence > -100;
+        s.isOnPosLimit = joint.isOnPosHardLimit;
+        s.isOnNegLimit = joint.isOnNegHardLimit;
     }
-    if (c.spindle < -1 || c.spindle >= config_.num_spindles) {
-        return Reason::NO_SUCH_SPINDLE;
-    }
-    for (int i = 0; i < config_.num_spindles; ++i) {
-        if (c.spindle < 0 || c.spindle == i) {
-            spindles_[at(i)].scale = c.factor;
-        }
-    }
-    return Reason::NONE;
+    s.most = limits_.jog(target);
+    s.range = jog_range(limits_, map_, target, commanded(joints_).data());
+    return s;
 }
 
-Reason Controller::set_switch(const SetSwitch &c) noexcept {
-    switch (c.what) {
-    case Switch::FEED_OVERRIDE: isFeedOverrideEnabled_ = c.isEnabled; return Reason::NONE;
-    case Switch::ADAPTIVE_FEED: isAdaptiveFeedEnabled_ = c.isEnabled; return Reason::NONE;
-    case Switch::FEED_HOLD: isFeedHoldEnabled_ = c.isEnabled; return Reason::NONE;
-    case Switch::SPINDLE_OVERRIDE: break;
-    }
-    if (c.spindle < -1 || c.spindle >= config_.num_spindles) {
-        return Reason::NO_SUCH_SPINDLE;
-    }
-    for (int i = 0; i < config_.num_spindles; ++i) {
-        if (c.spindle < 0 || c.spindle == i) {
-            spindles_[at(i)].isOverrideEnabled = c.isEnabled;
-        }
-    }
-    return Reason::NONE;
+/// Limits of axes and joints folded together, for jogs and the path planner.
+void Controller::publish_limits() noexcept {
+    limits_ = fold_limits(settings_, map_, {homed_mask(homing_), homing_.homing.isAllHomed()});
+    PathLimits out;
+    out.limits = limits_.path;
+    out.low = limits_.low;
+    out.high = limits_.high;
+    out.axes = limits_.axes;
+    out.joints = limits_.joints;
+    out.corner_scale = settings_.get(Parameter::TRAJ_CORNER_SCALE);
+    out.areTolerancesAdded = settings_.isSet(Parameter::TRAJ_ADDED_TOLERANCES);
+    link_->limits.write(out);
+    ++limits_version_;
 }
 
 }  // namespace mw::motion

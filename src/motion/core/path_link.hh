@@ -3,16 +3,15 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 
+#include "base/copyable_atomic.hh"
 #include "base/limits.hh"
 #include "base/seqlock.hh"
 #include "motion/api/status.hh"
 #include "traj/geometry/joint_map.hh"
 #include "traj/geometry/limits.hh"
 #include "traj/path_store.hh"
-#include "traj/exec/retrace.hh"
 
 namespace mw::motion {
 
@@ -45,16 +44,16 @@ struct PathView {
     bool isStepping = false;
 };
 
+/// Copied only while neither side runs, for a controller that is saved or cloned.
 struct PathLink {
     traj::PathStore store;
-    traj::Retrace retrace;       ///< the controller's own; here for its size
     Seqlock<PathView> view;      ///< controller -> planner
     Seqlock<PathLimits> limits;  ///< controller -> planner
-    std::atomic<std::uint32_t> steps_done{
-        0};  ///< planner -> controller: StepOnce count whose stop has been reached
-    std::atomic<std::uint32_t> queue_depth{0};   ///< planner -> controller
-    std::atomic<std::uint32_t> isQueueFull{0};   ///< planner -> controller
-    std::atomic<std::uint64_t> last_done_id{0};  ///< planner -> controller: last path command completed
+    /// planner -> controller: StepOnce count whose stop has been reached
+    CopyableAtomic<std::uint32_t> steps_done{0};
+    CopyableAtomic<std::uint32_t> queue_depth{0};   ///< planner -> controller
+    CopyableAtomic<std::uint32_t> isQueueFull{0};   ///< planner -> controller
+    CopyableAtomic<std::uint64_t> last_done_id{0};  ///< planner -> controller: last path command completed
 };
 
 }  // namespace mw::motion

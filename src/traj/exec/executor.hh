@@ -20,6 +20,45 @@ struct ExecutorOutput {
     bool isOnProbe = false;
 };
 
+/// What an executor remembers. A copy of it goes on in another executor whose store holds the same path.
+class ExecutorState {
+  protected:
+    explicit ExecutorState(double period_s) noexcept : period_(period_s) {}
+
+    double period_;
+    Snapshot state_;
+    ExecutorOutput out_;
+    Commit next_switch_;      ///< plan != 0: waits for its cycle
+    Sequence phase_end_ = 0;  ///< phases of the plan taken end here
+    Sequence next_end_ = 0;   ///< the same of the waiting switch
+    Phase brake_;             ///< the braking profile on the present piece
+    double brake_time_ = 0;
+    bool isBrakeFinal_ = false;  ///< it ends in a stop
+    Pose leader_;
+    double leader_s_ = 0, leader_tolerance_ = 0;
+    Sequence leader_done_ = 0;
+    MeanFilter mean_;
+    Sequence along_ = 0;  ///< the primitive of which the mean place is commanded, 0: none
+    std::uint64_t along_first_ = 0, along_last_ = 0;  ///< ticks on it
+    std::array<double, HISTORY_CAPACITY> along_history_{};
+    std::uint64_t rest_ticks_ = MAX_FILTER;  ///< since the leader stands
+    std::array<Sequence, HISTORY_CAPACITY> done_history_{};
+
+    std::array<double, MAX_SPINDLES> turns_{}, turns_per_s_{};
+    /// Of a pass: the helix is x = per_turn (turned() - origin - turns of the pieces passed).
+    struct Lock {
+        Pass pass;
+        double origin = 0;        ///< turns of the spindle at which the helix passes the start
+        double passed_turns = 0;  ///< of the pieces that are complete
+        Sequence came_from = 0;   ///< piece at the start of the last cycle
+        double descent = 0;       ///< > 0: brakes with it to the end of the piece
+        bool isOn = false;        ///< the tool is on the helix
+        bool wasOn = false;       ///< it has been
+        bool wasDescending = false;
+    };
+    Lock lock_;
+};
+
 /// All methods: servo thread only; bounded, no allocation.
 ///
 /// Follows phases; when they run out, or on `hold` and `drop`, it brakes with each piece's own acceleration
@@ -28,9 +67,11 @@ struct ExecutorOutput {
 /// ends every plan with a stop, and answers `hold` and `drop` with a plan.
 /// Passes that are locked to a spindle's angle (Motion::LOCKED) it drives by itself, from rest to rest;
 /// `hold` waits for their end, since a thread that was held is scrap; `drop` brakes at once.
-class Executor {
+class Executor : private ExecutorState {
   public:
-    explicit Executor(PathStore &store, double period_s) noexcept : store_(store), period_(period_s) {}
+    explicit Executor(PathStore &store, double period_s) noexcept : ExecutorState(period_s), store_(store) {}
+    /// Goes on where `other` is; `store` holds the same path.
+    Executor(const Executor &other, PathStore &store) noexcept : ExecutorState(other), store_(store) {}
 
     /// The path begins at `pose`; only at rest and with nothing left of a path.
     void set_position(const Pose &pose) noexcept;
@@ -89,38 +130,6 @@ class Executor {
     double turned() const noexcept;
 
     PathStore &store_;
-    double period_;
-    Snapshot state_;
-    ExecutorOutput out_;
-    Commit next_switch_;      ///< plan != 0: waits for its cycle
-    Sequence phase_end_ = 0;  ///< phases of the plan taken end here
-    Sequence next_end_ = 0;   ///< the same of the waiting switch
-    Phase brake_;             ///< the braking profile on the present piece
-    double brake_time_ = 0;
-    bool isBrakeFinal_ = false;  ///< it ends in a stop
-    Pose leader_;
-    double leader_s_ = 0, leader_tolerance_ = 0;
-    Sequence leader_done_ = 0;
-    MeanFilter mean_;
-    Sequence along_ = 0;  ///< the primitive of which the mean place is commanded, 0: none
-    std::uint64_t along_first_ = 0, along_last_ = 0;  ///< ticks on it
-    std::array<double, HISTORY_CAPACITY> along_history_{};
-    std::uint64_t rest_ticks_ = MAX_FILTER;  ///< since the leader stands
-    std::array<Sequence, HISTORY_CAPACITY> done_history_{};
-
-    std::array<double, MAX_SPINDLES> turns_{}, turns_per_s_{};
-    /// Of a pass: the helix is x = per_turn (turned() - origin - turns of the pieces passed).
-    struct Lock {
-        Pass pass;
-        double origin = 0;        ///< turns of the spindle at which the helix passes the start
-        double passed_turns = 0;  ///< of the pieces that are complete
-        Sequence came_from = 0;   ///< piece at the start of the last cycle
-        double descent = 0;       ///< > 0: brakes with it to the end of the piece
-        bool isOn = false;        ///< the tool is on the helix
-        bool wasOn = false;       ///< it has been
-        bool wasDescending = false;
-    };
-    Lock lock_;
 };
 
 }  // namespace mw::traj

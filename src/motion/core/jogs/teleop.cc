@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Jogs of axes on machines whose joints are not axes: every cycle the speeds and accelerations of the axes
-// are made what the joints can do on the way to where the jogs would come to rest, and jogs stop before a
-// joint leaves its soft limits. And what is left of limits where the planner must not call the kinematics.
-#include <algorithm>
-#include <array>
-#include <cmath>
+#include "motion/core/jogs/teleop.hh"
 
-#include "motion/core/controller.hh"
+#include <algorithm>
+#include <cmath>
 
 namespace mw::motion {
 
@@ -20,18 +16,20 @@ constexpr double MARGIN = 1.05;
 constexpr double CURVE_SHARE = 0.5;
 /// Farther ahead than the jogs would come to rest, at least this [machine units, degrees].
 constexpr double LEAST_WINDOW = 0.5;
-/// What rounding of positions may make of a joint's soft limit, and of differences of samples.
-constexpr double POSITION_ROUNDING = 1e-9, STEP_ROUNDING = 1e-6;
+/// What rounding of positions may make of a joint's soft limit.
+constexpr double POSITION_ROUNDING = 1e-9;
 /// The acceleration may have to become less while it brakes.
 constexpr double BRAKE_MARGIN = 1.2;
 constexpr int MOST_CORNER_AXES = 5;
 /// A second difference below this is rounding.
 constexpr double LEAST_CURVE = 1e-6;
 
-}  // namespace
+std::size_t at(int i) noexcept {
+    return static_cast<std::size_t>(i);
+}
 
 /// Largest derivatives of the joints by the axes that move.
-struct Controller::TeleopLoad {
+struct TeleopLoad {
     std::array<int, MAX_AXES> axes{};
     int count = 0;
     std::array<std::array<double, MAX_JOINTS>, MAX_AXES> q1{};
@@ -39,13 +37,11 @@ struct Controller::TeleopLoad {
 };
 
 /// Takes the derivatives at one place into account; false when the kinematics has no answer there.
-bool Controller::add_load(const geom::Pose &pose, TeleopLoad &load) const noexcept {
+bool add_load(const TeleopMachine &m, const geom::Pose &pose, TeleopLoad &load) noexcept {
     using Joints = std::array<double, MAX_JOINTS>;
     const auto joints_at = [&](const geom::Pose &p, Joints &q) {
-        for (int j = 0; j < config_.num_joints; ++j) {
-            q[at(j)] = joint(j).pos_cmd;
-        }
-        return kinematics_.inverse(p, q.data()) == kins::Status::OK;
+        std::copy_n(m.joint_positions.begin(), m.num_joints, q.begin());
+        return m.kinematics.inverse(p, q.data()) == kins::Status::OK;
     };
     Joints here{};
     std::array<Joints, MAX_AXES> after{};
@@ -58,7 +54,7 @@ bool Controller::add_load(const geom::Pose &pose, TeleopLoad &load) const noexce
         isFound = joints_at(p, after[at(i)]);
         p[axis] -= 2.0 * STEP;
         isFound = isFound && joints_at(p, other);
-        for (std::size_t j = 0; j < at(config_.num_joints) && isFound; ++j) {
+        for (std::size_t j = 0; j < at(m.num_joints) && isFound; ++j) {
             const double q1 = std::abs(after[at(i)][j] - other[j]) / (2.0 * STEP);
             const double q2 = std::abs(after[at(i)][j] - 2.0 * here[j] + other[j]) / (STEP * STEP);
             load.q1[at(i)][j] = std::max(load.q1[at(i)][j], MARGIN * q1);
@@ -69,7 +65,7 @@ bool Controller::add_load(const geom::Pose &pose, TeleopLoad &load) const noexce
             p[axis] += STEP;
             p[load.axes[at(k)]] += STEP;
             isFound = joints_at(p, other);
-            for (std::size_t j = 0; j < at(config_.num_joints) && isFound; ++j) {
+            for (std::size_t j = 0; j < at(m.num_joints) && isFound; ++j) {
                 const double both = other[j] - after[at(i)][j] - after[at(k)][j] + here[j];
                 double &q2 = load.q2[at(i)][at(k)][j];
                 q2 = std::max(q2, MARGIN * std::abs(both) / (STEP * STEP));
@@ -81,18 +77,18 @@ bool Controller::add_load(const geom::Pose &pose, TeleopLoad &load) const noexce
 }
 
 /// Shares what each joint can do evenly among the axes that move it.
-void Controller::apply_load(const TeleopLoad &load) noexcept {
+void apply_load(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs) noexcept {
     const double n = load.count;
     std::array<double, MAX_AXES> v{};
     for (int i = 0; i < load.count; ++i) {
-        const AxisState &axis = axes_[at(load.axes[at(i)])];
-        v[at(i)] = axis.wanted_velocity * jog_scale();
-        for (int j = 0; j < config_.num_joints; ++j) {
+        const Jog &axis = jogs.axis[at(load.axes[at(i)])];
+        v[at(i)] = axis.wanted_velocity * m.scale;
+        for (int j = 0; j < m.num_joints; ++j) {
             const double q1 = load.q1[at(i)][at(j)];
             const double q2 = load.q2[at(i)][at(i)][at(j)];
-            const double curve = CURVE_SHARE * get(Parameter::JOINT_MAX_ACCELERATION, j) / (n * n);
+            const double curve = CURVE_SHARE * m.limits.joints.acceleration[at(j)] / (n * n);
             if (q1 > 0) {
-                v[at(i)] = std::min(v[at(i)], get(Parameter::JOINT_MAX_VELOCITY, j) / (n * q1));
+                v[at(i)] = std::min(v[at(i)], m.limits.joints.velocity[at(j)] / (n * q1));
             }
             if (q2 > LEAST_CURVE) {
                 v[at(i)] = std::min(v[at(i)], std::sqrt(curve / q2));
@@ -101,8 +97,8 @@ void Controller::apply_load(const TeleopLoad &load) noexcept {
     }
     for (int i = 0; i < load.count; ++i) {
         for (int k = 0; k < i; ++k) {
-            for (int j = 0; j < config_.num_joints; ++j) {
-                const double curve = CURVE_SHARE * get(Parameter::JOINT_MAX_ACCELERATION, j) / (n * n);
+            for (int j = 0; j < m.num_joints; ++j) {
+                const double curve = CURVE_SHARE * m.limits.joints.acceleration[at(j)] / (n * n);
                 const double used = load.q2[at(i)][at(k)][at(j)] * v[at(i)] * v[at(k)];
                 const double factor = used > curve ? std::sqrt(curve / used) : 1.0;
                 v[at(i)] *= factor;
@@ -115,7 +111,7 @@ void Controller::apply_load(const TeleopLoad &load) noexcept {
     std::array<double, MAX_AXES> speed{};
     bool isOver = false;
     for (int i = 0; i < load.count; ++i) {
-        speed[at(i)] = std::abs(axes_[at(load.axes[at(i)])].teleop.velocity);
+        speed[at(i)] = std::abs(jogs.axis[at(load.axes[at(i)])].planner.velocity);
         isOver = isOver || speed[at(i)] > v[at(i)] * (1.0 + ROUNDING);
     }
     for (int i = 0; i < load.count; ++i) {
@@ -123,85 +119,82 @@ void Controller::apply_load(const TeleopLoad &load) noexcept {
         speed[at(i)] = std::max(v[at(i)], speed[at(i)]);
     }
     for (int i = 0; i < load.count; ++i) {
-        AxisState &axis = axes_[at(load.axes[at(i)])];
+        Jog &axis = jogs.axis[at(load.axes[at(i)])];
         double a = axis.wanted_acceleration;
-        for (int j = 0; j < config_.num_joints; ++j) {
+        for (int j = 0; j < m.num_joints; ++j) {
             double curve = 0;
             for (int k = 0; k < load.count; ++k) {
-                for (int m = 0; m < load.count; ++m) {
-                    curve += load.q2[at(k)][at(m)][at(j)] * speed[at(k)] * speed[at(m)];
+                for (int l = 0; l < load.count; ++l) {
+                    curve += load.q2[at(k)][at(l)][at(j)] * speed[at(k)] * speed[at(l)];
                 }
             }
-            const double most = get(Parameter::JOINT_MAX_ACCELERATION, j);
+            const double most = m.limits.joints.acceleration[at(j)];
             const double left = std::max(most - curve, (1.0 - CURVE_SHARE) * most);
             const double q1 = load.q1[at(i)][at(j)];
             a = q1 > 0 ? std::min(a, left / (n * q1)) : a;
         }
-        axis.teleop.max_velocity = v[at(i)];
-        axis.teleop.max_acceleration = a;
+        axis.planner.max_velocity = v[at(i)];
+        axis.planner.max_acceleration = a;
     }
 }
 
 /// The homed joint that this pose takes beyond its soft limits, farther than it is; -1 for none.
-int Controller::joint_left_by(const geom::Pose &pose) const noexcept {
+int joint_left_by(const TeleopMachine &m, const geom::Pose &pose) noexcept {
     std::array<double, MAX_JOINTS> q{};
-    for (int j = 0; j < config_.num_joints; ++j) {
-        q[at(j)] = joint(j).pos_cmd;
+    std::copy_n(m.joint_positions.begin(), m.num_joints, q.begin());
+    if (m.kinematics.inverse(pose, q.data()) != kins::Status::OK) {
+        return m.num_joints;
     }
-    if (kinematics_.inverse(pose, q.data()) != kins::Status::OK) {
-        return config_.num_joints;
-    }
-    for (int j = 0; j < config_.num_joints; ++j) {
-        const double low = std::min(get(Parameter::JOINT_MIN_LIMIT, j), joint(j).pos_cmd);
-        const double high = std::max(get(Parameter::JOINT_MAX_LIMIT, j), joint(j).pos_cmd);
+    for (int j = 0; j < m.num_joints; ++j) {
+        const double low = std::min(m.limits.joints.low[at(j)], m.joint_positions[at(j)]);
+        const double high = std::max(m.limits.joints.high[at(j)], m.joint_positions[at(j)]);
         const bool isLeft = q[at(j)] < low - POSITION_ROUNDING || q[at(j)] > high + POSITION_ROUNDING;
-        if (homing_.isHomed(j) && isLeft) {
+        if (isLeft) {
             return j;
         }
     }
     return -1;
 }
 
-void Controller::limit_teleop() noexcept {
-    if (isIdentity()) {
-        return;
-    }
+}  // namespace
+
+TeleopStop limit_teleop(Jogs &jogs, const TeleopMachine &m) noexcept {
     TeleopLoad load;
     geom::Pose here;
     for (int i = 0; i < MAX_AXES; ++i) {
-        here[i] = axes_[at(i)].teleop.position;
-        if (!axes_[at(i)].teleop.isAtRest()) {
+        here[i] = jogs.axis[at(i)].planner.position;
+        if (!jogs.axis[at(i)].planner.isAtRest()) {
             load.axes[at(load.count++)] = i;
         }
     }
     if (load.count == 0) {
-        return;
+        return {};
     }
     // Where it stands first: a jog that begins has no acceleration yet that the joints could bear.
-    bool isFound = add_load(here, load);
-    apply_load(load);
+    bool isFound = add_load(m, here, load);
+    apply_load(m, load, jogs);
     geom::Pose stop = here;  // where the axes come to rest when they brake a cycle from now
     geom::Pose far = here;
     for (int i = 0; i < load.count; ++i) {
         const int axis = load.axes[at(i)];
-        const traj::JogPlanner &p = axes_[at(axis)].teleop;
-        const double way = p.rest_after(config_.period_s) - here[axis];
+        const traj::JogPlanner &p = jogs.axis[at(axis)].planner;
+        const double way = p.rest_after(m.period_s) - here[axis];
         stop[axis] += BRAKE_MARGIN * way;
         const double sign = p.target >= here[axis] ? 1.0 : -1.0;
         far[axis] += 2.0 * way + LEAST_WINDOW * sign;
     }
     constexpr int PLACES = 2;
     for (int n = 1; n <= PLACES && isFound; ++n) {
-        isFound = add_load(here + (far - here) * (static_cast<double>(n) / PLACES), load);
+        isFound = add_load(m, here + (far - here) * (static_cast<double>(n) / PLACES), load);
     }
     for (int i = 0; i < load.count && load.count > 1 && isFound; ++i) {
         geom::Pose p = here;
         p[load.axes[at(i)]] = far[load.axes[at(i)]];
-        isFound = add_load(p, load);
+        isFound = add_load(m, p, load);
     }
-    apply_load(load);
+    apply_load(m, load, jogs);
     // The axes stop one after the other: every corner of the box that they stop in counts.
-    int left = isFound ? -1 : config_.num_joints;
+    int left = isFound ? -1 : m.num_joints;
     const int corners = 1 << std::min(load.count, MOST_CORNER_AXES);
     for (int n = 1; n < corners && left < 0; ++n) {
         geom::Pose corner = stop;
@@ -209,39 +202,17 @@ void Controller::limit_teleop() noexcept {
             const int axis = load.axes[at(i)];
             corner[axis] = (n & (1 << i)) != 0 ? stop[axis] : here[axis];
         }
-        left = joint_left_by(corner);
+        left = joint_left_by(m, corner);
     }
     if (left < 0) {
-        return;
+        return {};
     }
     for (int i = 0; i < load.count; ++i) {
-        axes_[at(load.axes[at(i)])].teleop.stop();
+        jogs.axis[at(load.axes[at(i)])].planner.stop();
     }
-    if (!isTeleopStopped_) {
-        isTeleopStopped_ = true;
-        raise(left < config_.num_joints ? FaultKind::JOG_JOINT_LIMIT : FaultKind::JOG_UNREACHABLE, left, 0);
-    }
-}
-
-/// Kinematics that only this thread may call cannot be planned with: the machine stops where a joint has to
-/// do more than it can.
-void Controller::check_joint_steps() noexcept {
-    if (isIdentity() || kinematics_.isShareable() || mode_ != Mode::COORD || !isEnabled_) {
-        return;
-    }
-    for (int j = 0; j < config_.num_joints && stop_ == Stop::NONE; ++j) {
-        const JointState &s = joint(j);
-        const double v = std::abs(s.vel_cmd) / get(Parameter::JOINT_MAX_VELOCITY, j);
-        const double a = std::abs(s.acc_cmd) / get(Parameter::JOINT_MAX_ACCELERATION, j);
-        const double low = get(Parameter::JOINT_MIN_LIMIT, j);
-        const double high = get(Parameter::JOINT_MAX_LIMIT, j);
-        const bool isOut = homing_.isHomed(j) && ((s.pos_cmd < low - STEP_ROUNDING && s.vel_cmd < 0) ||
-                                                  (s.pos_cmd > high + STEP_ROUNDING && s.vel_cmd > 0));
-        if (isOut || std::max(v, a) > 1.0 + STEP_ROUNDING) {
-            stop_category_1(isOut ? FaultKind::JOINT_LEFT_RANGE : FaultKind::JOINT_TOO_FAST, j,
-                            std::max(v, a));
-        }
-    }
+    const bool isNew = !jogs.isTeleopStopped;
+    jogs.isTeleopStopped = true;
+    return {isNew, left < m.num_joints ? left : -1};
 }
 
 }  // namespace mw::motion

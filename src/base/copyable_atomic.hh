@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// An atomic inside of a structure that is copied as a whole while nobody writes to it.
+#pragma once
+
+#include <atomic>
+
+namespace mw {
+
+/// As std::atomic; a copy takes the value alone and promises nothing about what else was written before it.
+template <class T>
+class CopyableAtomic : public std::atomic<T> {
+  public:
+    constexpr CopyableAtomic(T value = T{}) noexcept : std::atomic<T>(value) {}
+    CopyableAtomic(const CopyableAtomic &other) noexcept
+        : std::atomic<T>(other.load(std::memory_order_relaxed)) {}
+    CopyableAtomic &operator=(const CopyableAtomic &other) noexcept {
+        this->store(other.load(std::memory_order_relaxed), std::memory_order_relaxed);
+        return *this;
+    }
+    using std::atomic<T>::operator=;
+};
+
+}  // namespace mw

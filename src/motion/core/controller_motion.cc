@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The motion of a cycle: joints by themselves (free), axes (teleop) or the path (coord) through the
+// kinematics.
+#include "motion/core/controller.hh"
+#include "motion/core/jogs/teleop.hh"
+
+namespace mw::motion {
+
+/// Free mode: every joint follows its own planner.
+void Controller::move_joints(const Inputs &in) noexcept {
+    check_probe(in);
+    executor_.step(cycle_);
+    for (int j = 0; j < config_.num_joints; ++j) {
+        Jog &jog = jogs_.at({true, j});
+        step_joint(jog, limits_.joints.velocity[static_cast<std::size_t>(j)], holds_.jog_scale(),
+                   config_.period_s);
+        follow(joints_[j], jog.planner.position, config_.period_s);
+    }
+    const bool isKnown = kinematics_.kind() == kins::Kind::BOTH && homing_.homing.isAllHomed();
+    follow_joints(place_, kinematics_, commanded(joints_).data(), isKnown);
+}
+
+/// Teleop and coord: every joint follows the pose.
+void Controller::move_axes(const Inputs &in) noexcept {
+    const geom::Pose pose = power_.mode == Mode::TELEOP ? teleop_pose() : path_pose();
+    check_probe(in);
+    move_to(pose);
+    if (power_.mode == Mode::COORD) {
+        check_joint_steps();
+        if (!retracing_.retrace.isAway()) {
+            holds_.isAdaptiveFeedEnabled ? remember(pose) : retracing_.retrace.clear();
+        }
+    }
+    constexpr int MAX_EVENTS_PER_CYCLE = 64;
+    for (int n = 0; n < MAX_EVENTS_PER_CYCLE; ++n) {
+        const traj::PathEvent *event = executor_.due_event();
+        if (event == nullptr) {
+            return;
+        }
+        fire(outputs_, *event);
+        executor_.drop_event();
+    }
+}
+
+geom::Pose Controller::teleop_pose() noexcept {
+    executor_.step(cycle_);
+    executor_.set_position(place_.cmd);
+    if (!map_.areJointsAxes()) {
+        const TeleopMachine machine{kinematics_,        limits_,
+                                    commanded(joints_), config_.num_joints,
+                                    holds_.jog_scale(), config_.period_s};
+        const TeleopStop stopped = limit_teleop(jogs_, machine);
+        if (stopped.isNew && stopped.joint >= 0) {
+            raise(FaultKind::JOG_JOINT_LIMIT, stopped.joint, 0);
+        } else if (stopped.isNew) {
+            raise(FaultKind::JOG_UNREACHABLE, config_.num_joints, 0);
+        }
+    }
+    geom::Pose pose;
+    for (int i = 0; i < MAX_AXES; ++i) {
+        Jog &jog = jogs_.at({false, i});
+        if (map_.areJointsAxes()) {
+            limit_axis(jog, limits_.jog({false, i}).velocity, holds_.jog_scale());
+        }
+        jog.planner.step(config_.period_s);
+        pose[i] = jog.planner.position;
+    }
+    return pose;
+}
+
+/// Of the path, or behind it while it is gone back.
+geom::Pose Controller::path_pose() noexcept {
+    geom::Pose pose = executor_.step(cycle_).position;
+    const RetraceInputs in{
+        executor_.snapshot().drops, holds_.isReverseWanted, holds_.isStandingWanted, power_.isStopping,
+        executor_.isAtRest(),       holds_.reverse_rate,    config_.period_s};
+    if (motion::step(retracing_, pose, in)) {
+        executor_.set_position(pose);
+    }
+    return pose;
+}
+
+void Controller::move_to(const geom::Pose &pose) noexcept {
+    PerJoint positions = commanded(joints_);
+    if (kinematics_.inverse(pose, positions.data()) != kins::Status::OK) {
+        // The planner keeps off such poses; were one to come, nothing sensible can be commanded any more.
+        stop_category_0(FaultKind::KINEMATICS_FAILED, -1, 0);
+        return;
+    }
+    follow_pose(place_, pose, config_.period_s);
+    for (int j = 0; j < config_.num_joints; ++j) {
+        const auto n = static_cast<std::size_t>(j);
+        follow(joints_[j], positions[n], config_.period_s);
+        jogs_.joint[n].planner.reset(positions[n]);
+    }
+}
+
+/// Kinematics that only this thread may call cannot be planned with: the machine stops where a joint has to
+/// do more than it can.
+void Controller::check_joint_steps() noexcept {
+    if (map_.kind != AxisMap::Kind::UNKNOWN || !power_.isReady()) {
+        return;
+    }
+    const Overrun overrun = find_overrun(joints_, limits_);
+    if (overrun.joint >= 0) {
+        stop_category_1(overrun.isOutside ? FaultKind::JOINT_LEFT_RANGE : FaultKind::JOINT_TOO_FAST,
+                        overrun.joint, overrun.use);
+    }
+}
+
+/// To come back to when the path is gone back.
+void Controller::remember(const geom::Pose &pose) noexcept {
+    JointUse use;
+    use.count = map_.areJointsAxes() ? 0 : config_.num_joints;
+    for (int j = 0; j < use.count; ++j) {
+        const auto n = static_cast<std::size_t>(j);
+        use.step[n] = joints_[j].vel_cmd * config_.period_s;
+        use.bend[n] = joints_[j].acc_cmd * config_.period_s * config_.period_s;
+    }
+    record(retracing_, pose, use, limits_, config_.period_s);
+}
+
+/// A probing move ends where the probe trips; in any other move a trip is a fault.
+void Controller::check_probe(const Inputs &in) noexcept {
+    const traj::ExecutorOutput &path = executor_.output();
+    const bool isProbing = power_.mode == Mode::COORD && path.isOnProbe && path.isMoving;
+    ProbeInputs probe;
+    probe.isClosed = in.isProbeClosed;
+    if (isProbing) {
+        probe.probing_move = path.move;
+        probe.isAway = link_->store.move(path.move).isProbeAway;
+    } else if (in.isProbeClosed && !probe_.wasClosed) {
+        probe.isMoving = !power_.isStopping && isAnythingMoving();
+        probe.isDropping = executor_.snapshot().isDropping;
+    }
+    switch (motion::step(probe_, probe, place_.fb)) {
+    case ProbeEvent::NONE: break;
+    case ProbeEvent::FOUND: executor_.drop(); break;
+    case ProbeEvent::TOUCHED:
+        raise(FaultKind::PROBE_TRIPPED_IN_MOVE, -1, 0);
+        homing_.homing.abort(homing::Failure::ABORTED);
+        executor_.drop();
+        stop(jogs_);
+        isCoordError_ = true;
+        break;
+    }
+}
+
+}  // namespace mw::motion

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Where the machine is as a pose: commanded and measured.
+#pragma once
+
+#include "geom/pose.hh"
+#include "kins/kinematics.hh"
+#include "motion/api/status.hh"
+
+namespace mw::motion {
+
+struct Place {
+    geom::Pose cmd, fb;
+    double velocity = 0;  ///< of X Y Z [machine units/s]
+    bool isFbValid = false;
+};
+
+/// The measured pose. Forward kinematics of an iterating model wants a homed machine; where a model has none
+/// the command stands in.
+void read_feedback(Place &place, const kins::Kinematics &kinematics, const double *joints,
+                   bool areAllHomed) noexcept;
+/// Joints lead; the commanded pose follows them where it is known.
+void follow_joints(Place &place, const kins::Kinematics &kinematics, const double *joints,
+                   bool isKnown) noexcept;
+/// The pose leads.
+void follow_pose(Place &place, const geom::Pose &pose, double period_s) noexcept;
+void fill(const Place &place, Status &status) noexcept;
+
+}  // namespace mw::motion

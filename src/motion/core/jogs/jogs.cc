@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "motion/core/jogs/jogs.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mw::motion {
+
+namespace {
+
+/// What rounding may make of a place that is just within the range.
+constexpr double RANGE_ROUNDING = 1e-9;
+
+std::size_t at(int i) noexcept {
+    return static_cast<std::size_t>(i);
+}
+
+Verdict verdict_of(const JogTarget &target, Reason reason) noexcept {
+    return mw::motion::verdict_of(target.index, reason);
+}
+
+struct JogMove {
+    double position = 0, velocity = 0;
+    JogSource source = JogSource::NONE;
+};
+
+/// Sets the planner of a jog that has been checked.
+Reason start(Jogs &jogs, const JogTarget &target, const JogMove &move, const JogSituation &s) noexcept {
+    if (!std::isfinite(move.position) || !std::isfinite(move.velocity)) {
+        return Reason::NOT_A_NUMBER;
+    }
+    Jog &jog = jogs.at(target);
+    traj::JogPlanner &p = jog.planner;
+    // From outside the limits every move back in is welcome, none further out.
+    const double low = std::min(s.range.low, p.position);
+    const double high = std::max(s.range.high, p.position);
+    if (move.position < low - RANGE_ROUNDING || move.position > high + RANGE_ROUNDING) {
+        return Reason::BEYOND_SOFT_LIMIT;
+    }
+    p.target = std::clamp(move.position, low, high);
+    p.max_velocity = std::min(std::abs(move.velocity), s.most.velocity);
+    p.max_acceleration = s.most.acceleration;
+    p.max_jerk = s.most.jerk;
+    jog.wanted_velocity = p.max_velocity;
+    jog.wanted_acceleration = p.max_acceleration;
+    jog.source = move.source;
+    jogs.isTeleopStopped = jogs.isTeleopStopped && target.isJoint;
+    jogs.isOverrideInJog = jogs.isOverrideInJog || jogs.areLimitsOverridden;
+    return Reason::NONE;
+}
+
+/// To the end of the range.
+Reason start_continuous(Jogs &jogs, const JogTarget &target, double velocity,
+                        const JogSituation &s) noexcept {
+    const double end = velocity > 0 ? s.range.high : s.range.low;
+    return start(jogs, target, {end, velocity, JogSource::KEYBOARD}, s);
+}
+
+Verdict start_to(Jogs &jogs, const JogTarget &target, double position, double velocity,
+                 const JogSituation &s) noexcept {
+    return verdict_of(target, velocity > 0 ? start(jogs, target, {position, velocity, JogSource::KEYBOARD}, s)
+                                           : Reason::OUT_OF_RANGE);
+}
+
+}  // namespace
+
+bool hasTarget(const Jogs &jogs, const JogTarget &target) noexcept {
+    return target.index >= 0 && target.index < (target.isJoint ? jogs.num_joints : MAX_AXES);
+}
+
+Reason check(const Jogs &jogs, const JogTarget &target, double direction, const JogSituation &s) noexcept {
+    if (!hasTarget(jogs, target)) {
+        return target.isJoint ? Reason::NO_SUCH_JOINT : Reason::NO_SUCH_AXIS;
+    }
+    if (!s.isReady) {
+        return Reason::NOT_ENABLED;
+    }
+    if (s.mode != (target.isJoint ? Mode::FREE : Mode::TELEOP)) {
+        return Reason::WRONG_MODE;
+    }
+    if (s.isHoming) {
+        return Reason::HOMING;
+    }
+    if (s.isInhibited) {
+        return Reason::JOG_INHIBITED;
+    }
+    if (!s.isMovable) {
+        return target.isJoint ? Reason::JOINT_INACTIVE : Reason::NO_SUCH_AXIS;
+    }
+    if (s.isSynchronised) {
+        return Reason::SYNCHRONISED_JOINT;
+    }
+    const bool isIntoLimit = (direction > 0 && s.isOnPosLimit) || (direction < 0 && s.isOnNegLimit);
+    return isIntoLimit ? Reason::ON_HARD_LIMIT : Reason::NONE;
+}
+
+Verdict take(Jogs &jogs, const JogContinuous &command, const JogSituation &situation) noexcept {
+    const Reason reason = check(jogs, command.target, command.velocity, situation);
+    if (reason != Reason::NONE) {
+        return verdict_of(command.target, reason);
+    }
+    if (!std::isfinite(command.velocity)) {
+        return verdict_of(command.target, Reason::NOT_A_NUMBER);
+    }
+    const double here = jogs.at(command.target).planner.position;
+    const bool isAtEnd = command.velocity > 0 ? here >= situation.range.high : here <= situation.range.low;
+    return verdict_of(command.target,
+                      isAtEnd ? Reason::BEYOND_SOFT_LIMIT
+                              : start_continuous(jogs, command.target, command.velocity, situation));
+}
+
+Verdict take(Jogs &jogs, const JogIncremental &command, const JogSituation &situation) noexcept {
+    const Reason reason = check(jogs, command.target, command.distance, situation);
+    if (reason != Reason::NONE) {
+        return verdict_of(command.target, reason);
+    }
+    const double position = jogs.at(command.target).planner.target + command.distance;
+    return start_to(jogs, command.target, position, command.velocity, situation);
+}
+
+Verdict take(Jogs &jogs, const JogAbsolute &command, const JogSituation &situation) noexcept {
+    const bool isKnown = hasTarget(jogs, command.target);
+    const double way = isKnown ? command.position - jogs.at(command.target).planner.position : 0.0;
+    const Reason reason = check(jogs, command.target, way, situation);
+    return reason != Reason::NONE
+               ? verdict_of(command.target, reason)
+               : start_to(jogs, command.target, command.position, command.velocity, situation);
+}
+
+Verdict take(Jogs &jogs, const JogStop &command) noexcept {
+    if (!hasTarget(jogs, command.target)) {
+        return verdict_of(command.target,
+                          command.target.isJoint ? Reason::NO_SUCH_JOINT : Reason::NO_SUCH_AXIS);
+    }
+    Jog &jog = jogs.at(command.target);
+    if (jog.source != JogSource::NONE) {
+        jog.planner.stop();
+    }
+    return verdict_of(command.target, Reason::NONE);
+}
+
+Verdict take(Jogs &jogs, const OverrideLimits &command) noexcept {
+    jogs.areLimitsOverridden = command.isOn;
+    jogs.isOverrideInJog = false;
+    return {};
+}
+
+Verdict jog_axis(Jogs &jogs, int axis, double velocity, const JogSituation &situation) noexcept {
+    const JogTarget target{false, axis};
+    if (velocity == 0.0) {
+        return take(jogs, JogStop{target});
+    }
+    const Reason reason = check(jogs, target, velocity, situation);
+    return verdict_of(axis,
+                      reason != Reason::NONE ? reason : start_continuous(jogs, target, velocity, situation));
+}
+
+void stop(Jogs &jogs) noexcept {
+    for (int j = 0; j < jogs.num_joints; ++j) {
+        jogs.joint[at(j)].planner.stop();
+    }
+    for (Jog &jog : jogs.axis) {
+        jog.planner.stop();
+    }
+}
+
+void stop_at_once(Jogs &jogs) noexcept {
+    for (int j = 0; j < jogs.num_joints; ++j) {
+        traj::JogPlanner &p = jogs.joint[at(j)].planner;
+        p.reset(p.position);
+    }
+    for (Jog &jog : jogs.axis) {
+        jog.planner.reset(jog.planner.position);
+    }
+}
+
+void forget_sources(Jogs &jogs) noexcept {
+    for (int j = 0; j < jogs.num_joints; ++j) {
+        jogs.joint[at(j)].source = JogSource::NONE;
+    }
+    for (Jog &jog : jogs.axis) {
+        jog.source = JogSource::NONE;
+    }
+}
+
+void reset_axes(Jogs &jogs, const geom::Pose &pose) noexcept {
+    for (int i = 0; i < MAX_AXES; ++i) {
+        jogs.axis[at(i)].planner.reset(pose[i]);
+    }
+}
+
+void rest_at(Jogs &jogs, const double *joint_positions, const geom::Pose &pose) noexcept {
+    for (int j = 0; j < jogs.num_joints; ++j) {
+        jogs.joint[at(j)].planner.reset(joint_positions[j]);
+    }
+    reset_axes(jogs, pose);
+    forget_sources(jogs);
+}
+
+void start_at(Jogs &jogs, const double *joint_positions, const geom::Pose &pose, const Inputs &in) noexcept {
+    rest_at(jogs, joint_positions, pose);
+    for (int j = 0; j < jogs.num_joints; ++j) {
+        jogs.joint[at(j)].wheel_counts = in.joint[at(j)].wheel.counts;
+    }
+    for (int i = 0; i < MAX_AXES; ++i) {
+        jogs.axis[at(i)].wheel_counts = in.axis_wheel[at(i)].counts;
+    }
+}
+
+bool areJointsAtRest(const Jogs &jogs) noexcept {
+    for (int j = 0; j < jogs.num_joints; ++j) {
+        if (!jogs.joint[at(j)].planner.isAtRest()) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool areAxesAtRest(const Jogs &jogs) noexcept {
+    for (const Jog &jog : jogs.axis) {
+        if (!jog.planner.isAtRest()) {
+            return false;
+        }
+    }
+    return true;
+}
+
+double turned(Jog &jog, const WheelInput &wheel) noexcept {
+    // Unsigned difference: counters wrap.
+    const auto delta = static_cast<std::int32_t>(static_cast<std::uint32_t>(wheel.counts) -
+                                                 static_cast<std::uint32_t>(jog.wheel_counts));
+    const double distance = delta * wheel.scale;
+    const bool isStill = !wheel.isEnabled || distance == 0.0;
+    if (isStill) {
+        const bool isVelocityWheel = jog.source == JogSource::WHEEL && wheel.isVelocityMode;
+        if (isVelocityWheel) {
+            jog.planner.stop();
+        }
+        return 0;
+    }
+    const bool isOther = jog.source == JogSource::KEYBOARD && !jog.planner.isAtRest();
+    return isOther ? 0.0 : distance;
+}
+
+void jog_by_wheel(Jogs &jogs, const JogTarget &target, double distance, const WheelInput &wheel,
+                  const JogSituation &situation) noexcept {
+    if (check(jogs, target, distance, situation) != Reason::NONE) {
+        return;
+    }
+    Jog &jog = jogs.at(target);
+    traj::JogPlanner &p = jog.planner;
+    const double position = std::clamp(p.target + distance, std::min(situation.range.low, p.position),
+                                       std::max(situation.range.high, p.position));
+    const JogMove move{position, situation.most.velocity, JogSource::WHEEL};
+    if (start(jogs, target, move, situation) == Reason::NONE) {
+        const bool isFraction = wheel.accel_fraction > 0 && wheel.accel_fraction <= 1;
+        p.max_acceleration *= isFraction ? wheel.accel_fraction : 1.0;
+        jog.wanted_acceleration = p.max_acceleration;
+    }
+}
+
+void settle(Jogs &jogs, const Inputs &in) noexcept {
+    bool isAnyJog = false;
+    for (int j = 0; j < jogs.num_joints; ++j) {
+        Jog &jog = jogs.joint[at(j)];
+        jog.wheel_counts = in.joint[at(j)].wheel.counts;
+        jog.source = jog.planner.isAtRest() ? JogSource::NONE : jog.source;
+        isAnyJog = isAnyJog || jog.source != JogSource::NONE;
+    }
+    for (int i = 0; i < MAX_AXES; ++i) {
+        Jog &jog = jogs.axis[at(i)];
+        jog.wheel_counts = in.axis_wheel[at(i)].counts;
+        jog.source = jog.planner.isAtRest() ? JogSource::NONE : jog.source;
+        isAnyJog = isAnyJog || jog.source != JogSource::NONE;
+    }
+    if (jogs.isOverrideInJog && !isAnyJog) {
+        jogs.isOverrideInJog = false;
+        jogs.areLimitsOverridden = false;
+    }
+}
+
+void renumber(Jog &jog, double position, double shift) noexcept {
+    jog.planner.target += shift;
+    jog.planner.position = position;
+}
+
+void home_joint(Jog &jog, const homing::JointCommand &command, const JogLimits &most) noexcept {
+    if (command.move == homing::Move::NONE) {
+        return;
+    }
+    traj::JogPlanner &p = jog.planner;
+    p.max_acceleration = most.acceleration;
+    p.max_jerk = 0;  // homing stops where a switch says
+    if (command.move == homing::Move::STOP) {
+        p.stop();
+        return;
+    }
+    jog.wanted_velocity = command.velocity > 0 ? std::min(command.velocity, most.velocity) : most.velocity;
+    p.target = command.move == homing::Move::TO ? command.value : p.position + command.value;
+}
+
+void limit_axis(Jog &jog, double max_velocity, double scale) noexcept {
+    if (!jog.planner.isAtRest()) {
+        jog.planner.max_velocity = std::min(jog.wanted_velocity * scale, max_velocity);
+    }
+}
+
+void step_joint(Jog &jog, double max_velocity, double scale, double period_s) noexcept {
+    jog.planner.max_velocity = std::min(jog.wanted_velocity * scale, max_velocity);
+    jog.planner.step(period_s);
+}
+
+void fill(const Jogs &jogs, Mode mode, const geom::Pose &pose, Outputs &out) noexcept {
+    bool isJogging = false;
+    for (int j = 0; j < jogs.num_joints; ++j) {
+        const Jog &from = jogs.joint[at(j)];
+        JointOutputs &o = out.joint[at(j)];
+        const bool isAtRest = from.planner.isAtRest();
+        out.status.joint[at(j)].isInPosition = isAtRest;
+        o.free_pos_cmd = from.planner.target;
+        o.free_velocity_limit = from.planner.max_velocity;
+        o.isFreePlanning = mode == Mode::FREE && !isAtRest;
+        o.isKeyboardJogging = from.source == JogSource::KEYBOARD;
+        o.isWheelJogging = from.source == JogSource::WHEEL;
+        isJogging = isJogging || from.source != JogSource::NONE;
+    }
+    const bool isTeleop = mode == Mode::TELEOP;
+    for (int i = 0; i < MAX_AXES; ++i) {
+        const Jog &from = jogs.axis[at(i)];
+        AxisOutputs &o = out.axis[at(i)];
+        o.position = pose[i];
+        o.teleop_position = isTeleop ? from.planner.position : pose[i];
+        o.teleop_velocity = isTeleop ? from.planner.velocity : 0.0;
+        o.teleop_velocity_limit = from.planner.max_velocity;
+        o.isTeleopPlanning = isTeleop && !from.planner.isAtRest();
+        o.isKeyboardJogging = from.source == JogSource::KEYBOARD;
+        o.isWheelJogging = from.source == JogSource::WHEEL;
+        isJogging = isJogging || from.source != JogSource::NONE;
+        out.status.axis[at(i)].velocity = o.teleop_velocity;
+    }
+    out.isJogging = isJogging;
+}
+
+}  // namespace mw::motion

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Jogs of joints (free mode) and axes (teleop mode), by command and by hand wheel. Homing moves joints with
+// the same planners.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "base/limits.hh"
+#include "homing/homing.hh"
+#include "motion/api/command.hh"
+#include "motion/api/limits.hh"
+#include "motion/core/io.hh"
+#include "motion/core/verdict.hh"
+#include "traj/exec/free_planner.hh"
+
+namespace mw::motion {
+
+/// What a jog is driven by.
+enum class JogSource : std::uint8_t { NONE, KEYBOARD, WHEEL };
+
+struct Jog {
+    traj::JogPlanner planner;
+    double wanted_velocity = 0, wanted_acceleration = 0;  ///< before the override and joints limit them
+    JogSource source = JogSource::NONE;
+    std::int32_t wheel_counts = 0;
+};
+
+struct Jogs {
+    int num_joints = 0;
+    bool areLimitsOverridden = false;  ///< limit switches are, until the next jog has ended
+    bool isOverrideInJog = false;      ///< that jog has begun
+    bool isTeleopStopped = false;      ///< by a joint's limit, and said
+    std::array<Jog, MAX_JOINTS> joint{};
+    std::array<Jog, MAX_AXES> axis{};
+
+    Jog &at(const JogTarget &target) noexcept {
+        const auto i = static_cast<std::size_t>(target.index);
+        return target.isJoint ? joint[i] : axis[i];
+    }
+    const Jog &at(const JogTarget &target) const noexcept {
+        const auto i = static_cast<std::size_t>(target.index);
+        return target.isJoint ? joint[i] : axis[i];
+    }
+};
+
+/// There is such a joint or axis to jog.
+bool hasTarget(const Jogs &jogs, const JogTarget &target) noexcept;
+
+/// What allows and bounds a jog of one joint or axis.
+struct JogSituation {
+    bool isReady = false;  ///< machine on, no stop under way
+    Mode mode = Mode::FREE;
+    bool isHoming = false, isInhibited = false;
+    bool isMovable = false;       ///< the joint is active; a joint moves the axis
+    bool isSynchronised = false;  ///< a joint that homes with others is not jogged alone
+    bool isOnPosLimit = false, isOnNegLimit = false;
+    JogLimits most;
+    JogRange range;
+};
+
+/// Whether a jog may start at all; `direction` > 0, < 0, or 0 when not yet known.
+Reason check(const Jogs &jogs, const JogTarget &target, double direction,
+             const JogSituation &situation) noexcept;
+
+Verdict take(Jogs &jogs, const JogContinuous &command, const JogSituation &situation) noexcept;
+Verdict take(Jogs &jogs, const JogIncremental &command, const JogSituation &situation) noexcept;
+Verdict take(Jogs &jogs, const JogAbsolute &command, const JogSituation &situation) noexcept;
+Verdict take(Jogs &jogs, const JogStop &command) noexcept;
+Verdict take(Jogs &jogs, const OverrideLimits &command) noexcept;
+/// One axis of SetTeleopVector: at 0 it stops.
+Verdict jog_axis(Jogs &jogs, int axis, double velocity, const JogSituation &situation) noexcept;
+
+/// Every jog brakes.
+void stop(Jogs &jogs) noexcept;
+/// Every jog stands in this cycle, whatever that asks of the drives.
+void stop_at_once(Jogs &jogs) noexcept;
+/// Nothing drives any jog any more.
+void forget_sources(Jogs &jogs) noexcept;
+/// Axes stand where the machine is.
+void reset_axes(Jogs &jogs, const geom::Pose &pose) noexcept;
+/// All of them do, and nothing drives them. `joint_positions` has MAX_JOINTS elements.
+void rest_at(Jogs &jogs, const double *joint_positions, const geom::Pose &pose) noexcept;
+/// The same when the machine is switched on: turns of wheels count from here.
+void start_at(Jogs &jogs, const double *joint_positions, const geom::Pose &pose, const Inputs &in) noexcept;
+bool areJointsAtRest(const Jogs &jogs) noexcept;
+bool areAxesAtRest(const Jogs &jogs) noexcept;
+
+/// How far the wheel has been turned since the last cycle, as far as that is to move something; 0: not at
+/// all.
+double turned(Jog &jog, const WheelInput &wheel) noexcept;
+/// A wheel that asks for what is not possible is ignored: it is no command.
+void jog_by_wheel(Jogs &jogs, const JogTarget &target, double distance, const WheelInput &wheel,
+                  const JogSituation &situation) noexcept;
+/// After wheels and commands of a cycle: counts are kept, jogs at rest have ended.
+void settle(Jogs &jogs, const Inputs &in) noexcept;
+
+/// The positions of a joint get other numbers; what is left of its move gets `shift` longer.
+void renumber(Jog &jog, double position, double shift) noexcept;
+/// What homing wants of a joint in this cycle.
+void home_joint(Jog &jog, const homing::JointCommand &command, const JogLimits &most) noexcept;
+/// The override acts on an axis that moves; on machines whose joints are axes.
+void limit_axis(Jog &jog, double max_velocity, double scale) noexcept;
+/// Goes on with the move of a joint for one period.
+void step_joint(Jog &jog, double max_velocity, double scale, double period_s) noexcept;
+
+void fill(const Jogs &jogs, Mode mode, const geom::Pose &pose, Outputs &out) noexcept;
+
+}  // namespace mw::motion

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Jogs of axes on machines whose joints are not axes: every cycle the speeds and accelerations of the axes
+// are made what the joints can do on the way to where the jogs would come to rest, and jogs stop before a
+// joint leaves its soft limits.
+#pragma once
+
+#include "kins/kinematics.hh"
+#include "motion/api/limits.hh"
+#include "motion/core/jogs/jogs.hh"
+
+namespace mw::motion {
+
+/// What the axes move.
+struct TeleopMachine {
+    const kins::Kinematics &kinematics;
+    const FoldedLimits &limits;
+    std::array<double, MAX_JOINTS> joint_positions{};
+    int num_joints = 0;
+    double scale = 1;  ///< override
+    double period_s = 1e-3;
+};
+
+struct TeleopStop {
+    bool isNew = false;  ///< jogs were stopped in this cycle, and were not before
+    int joint = -1;      ///< that would leave its soft limits; -1: the kinematics has no answer
+};
+/// One cycle, before the planners of the axes go on.
+TeleopStop limit_teleop(Jogs &jogs, const TeleopMachine &machine) noexcept;
+
+}  // namespace mw::motion

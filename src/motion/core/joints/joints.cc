@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "motion/core/joints/joints.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mw::motion {
+
+namespace {
+
+/// Part of the joint's own speed and acceleration with which backlash is taken up on top of its motion.
+constexpr double BACKLASH_SHARE = 0.5;
+/// The side changes where the joint really turns back, not by the rounding of a stop.
+constexpr double TURN_ROUNDING = 1e-9;
+/// What rounding of positions may make of differences of samples.
+constexpr double STEP_ROUNDING = 1e-6;
+
+std::size_t at(int i) noexcept {
+    return static_cast<std::size_t>(i);
+}
+
+bool hasJoint(const Joints &joints, int j) noexcept {
+    return j >= 0 && j < joints.count;
+}
+
+void take_up(Joint &s, const Settings &settings, int j, double period_s) noexcept {
+    Backlash &b = s.backlash;
+    const double moved = s.pos_cmd - b.extreme;
+    const bool isMove = std::abs(moved) > TURN_ROUNDING * (1.0 + std::abs(s.pos_cmd));
+    const bool isOnward = b.side != 0 && moved * b.side > 0;
+    if (isMove) {
+        b.side = moved > 0 ? 1 : -1;
+    }
+    b.extreme = isMove || isOnward ? s.pos_cmd : b.extreme;
+    b.raw = 0.5 * settings.get(Parameter::JOINT_BACKLASH, j) * b.side;
+    b.filter.target = b.raw;
+    b.filter.max_velocity = BACKLASH_SHARE * settings.get(Parameter::JOINT_MAX_VELOCITY, j);
+    b.filter.max_acceleration = BACKLASH_SHARE * settings.get(Parameter::JOINT_MAX_ACCELERATION, j);
+    b.filter.step(period_s);
+}
+
+/// Off: the command follows the feedback, so that switching on does not move anything.
+void follow_feedback(Joint &s) noexcept {
+    s.pos_cmd = s.pos_fb;
+    s.coarse_pos = s.pos_fb;
+    s.vel_cmd = 0;
+    s.acc_cmd = 0;
+    s.ferror = 0;
+    s.backlash.extreme = s.pos_fb;
+    s.motor_pos_cmd = s.motor_pos_fb;
+}
+
+JointFault check(Joint &s, const Settings &settings, int j, bool isAtIndex, bool isLimitIgnored) noexcept {
+    s.ferror = s.pos_cmd - s.pos_fb;
+    const double vmax = settings.get(Parameter::JOINT_MAX_VELOCITY, j);
+    const double scaled =
+        vmax > 0 ? settings.get(Parameter::JOINT_FERROR, j) * std::abs(s.vel_cmd) / vmax : 0.0;
+    s.ferror_limit = std::max(scaled, settings.get(Parameter::JOINT_MIN_FERROR, j));
+    if (isAtIndex) {
+        return JointFault::NONE;
+    }
+    s.ferror_highmark = std::max(s.ferror_highmark, std::abs(s.ferror));
+    if (s.isFaulted) {
+        return JointFault::AMP_FAULT;
+    }
+    if (std::abs(s.ferror) > s.ferror_limit) {
+        s.isFerrorTripped = true;
+        return JointFault::FOLLOWING_ERROR;
+    }
+    const bool isOnLimit = s.isOnPosHardLimit || s.isOnNegHardLimit;
+    return isOnLimit && !isLimitIgnored ? JointFault::HARD_LIMIT : JointFault::NONE;
+}
+
+}  // namespace
+
+Verdict take(Joints &joints, const SetAmplifier &command, bool isEnabled) noexcept {
+    if (!hasJoint(joints, command.joint)) {
+        return verdict_of(command.joint, Reason::NO_SUCH_JOINT);
+    }
+    if (command.isOn && !isEnabled) {
+        return verdict_of(command.joint, Reason::NOT_ENABLED);
+    }
+    joints[command.joint].isAmpWanted = command.isOn;
+    return verdict_of(command.joint, Reason::NONE);
+}
+
+Verdict take(Joints &joints, const SetJointActive &command, bool isMoving) noexcept {
+    if (!hasJoint(joints, command.joint)) {
+        return verdict_of(command.joint, Reason::NO_SUCH_JOINT);
+    }
+    if (isMoving) {
+        return verdict_of(command.joint, Reason::MOVING);
+    }
+    joints[command.joint].isActive = command.isActive;  // its amplifier stays as it is
+    return verdict_of(command.joint, Reason::NONE);
+}
+
+Verdict check_start(const Joints &joints, const Inputs &in, bool areLimitsOverridden) noexcept {
+    for (int j = 0; j < joints.count; ++j) {
+        const JointInputs &pins = in.joint[at(j)];
+        if (joints[j].isActive && pins.isAmpFaulted) {
+            return verdict_of(j, Reason::AMP_FAULT);
+        }
+        const bool isOnLimit = (pins.isPosLimitClosed || pins.isNegLimitClosed) && !areLimitsOverridden;
+        if (joints[j].isActive && isOnLimit) {
+            return verdict_of(j, Reason::ON_HARD_LIMIT);
+        }
+    }
+    return {};
+}
+
+void switch_on(Joints &joints) noexcept {
+    for (int j = 0; j < joints.count; ++j) {
+        Joint &s = joints[j];
+        s.isAmpWanted = s.isActive;
+        s.isFaulted = false;
+        s.isFerrorTripped = false;
+        s.pos_cmd = s.pos_fb;
+    }
+}
+
+void switch_off(Joints &joints) noexcept {
+    for (int j = 0; j < joints.count; ++j) {
+        joints[j].isAmpWanted = false;
+    }
+}
+
+PerJoint read_feedback(Joints &joints, const Inputs &in) noexcept {
+    PerJoint measured{};
+    for (int j = 0; j < joints.count; ++j) {
+        Joint &s = joints[j];
+        const JointInputs &pins = in.joint[at(j)];
+        s.motor_pos_fb = pins.motor_pos_fb;
+        s.pos_fb = s.motor_pos_fb - s.backlash.filter.position - s.motor_offset;
+        s.isOnPosHardLimit = pins.isPosLimitClosed;
+        s.isOnNegHardLimit = pins.isNegLimitClosed;
+        s.isFaulted = pins.isAmpFaulted;
+        measured[at(j)] = s.pos_fb;
+    }
+    return measured;
+}
+
+PerJoint commanded(const Joints &joints) noexcept {
+    PerJoint out{};
+    for (int j = 0; j < joints.count; ++j) {
+        out[at(j)] = joints[j].pos_cmd;
+    }
+    return out;
+}
+
+JointFault find_fault(Joints &joints, int &joint, const Settings &settings, const JointCheck &how) noexcept {
+    for (; joint < joints.count; ++joint) {
+        const bool isAtIndex = (how.at_index >> joint & 1U) != 0;
+        const bool isIgnored = (how.limits_ignored >> joint & 1U) != 0;
+        const JointFault fault = joints[joint].isActive
+                                     ? check(joints[joint], settings, joint, isAtIndex, isIgnored)
+                                     : JointFault::NONE;
+        if (fault != JointFault::NONE) {
+            return fault;
+        }
+    }
+    return JointFault::NONE;
+}
+
+void shift(Joint &joint, double shift) noexcept {
+    joint.motor_offset -= shift;
+    joint.pos_fb = joint.motor_pos_fb - joint.backlash.filter.position - joint.motor_offset;
+    joint.pos_cmd += shift;
+    joint.backlash.extreme = joint.pos_cmd;
+}
+
+void set_zero(Joint &joint, double zero) noexcept {
+    joint.motor_offset = -zero;
+    joint.pos_fb = joint.motor_pos_fb - joint.backlash.filter.position - joint.motor_offset;
+    // The lag behind the command is kept, so that the motor sees no step.
+    joint.pos_cmd = joint.pos_fb + joint.ferror;
+    joint.backlash.extreme = joint.pos_cmd;
+}
+
+std::uint32_t output(Joints &joints, const Settings &settings, bool isEnabled, double period_s) noexcept {
+    std::uint32_t off = 0;
+    for (int j = 0; j < joints.count; ++j) {
+        Joint &s = joints[j];
+        if (!isEnabled || !s.isActive) {
+            follow_feedback(s);
+            off |= 1U << j;
+            continue;
+        }
+        take_up(s, settings, j, period_s);
+        s.motor_pos_cmd = s.pos_cmd + s.backlash.filter.position + s.motor_offset;
+    }
+    return off;
+}
+
+Overrun find_overrun(const Joints &joints, const FoldedLimits &limits) noexcept {
+    for (int j = 0; j < joints.count; ++j) {
+        const Joint &s = joints[j];
+        const double v = std::abs(s.vel_cmd) / limits.joints.velocity[at(j)];
+        const double a = std::abs(s.acc_cmd) / limits.joints.acceleration[at(j)];
+        const bool isOut = (s.pos_cmd < limits.joints.low[at(j)] - STEP_ROUNDING && s.vel_cmd < 0) ||
+                           (s.pos_cmd > limits.joints.high[at(j)] + STEP_ROUNDING && s.vel_cmd > 0);
+        if (isOut || std::max(v, a) > 1.0 + STEP_ROUNDING) {
+            return {j, isOut, std::max(v, a)};
+        }
+    }
+    return {};
+}
+
+void fill(const Joints &joints, const Settings &settings, const JointSituation &situation,
+          Outputs &out) noexcept {
+    bool isOnSoftLimit = false;
+    for (int j = 0; j < joints.count; ++j) {
+        const Joint &from = joints[j];
+        JointStatus &to = out.status.joint[at(j)];
+        const bool isHomed = (situation.homed >> j & 1U) != 0;
+        to.pos_cmd = from.pos_cmd;
+        to.pos_fb = from.pos_fb;
+        to.vel_cmd = from.vel_cmd;
+        to.motor_pos_cmd = from.motor_pos_cmd;
+        to.motor_pos_fb = from.motor_pos_fb;
+        to.ferror = from.ferror;
+        to.ferror_highmark = from.ferror_highmark;
+        to.min_limit = settings.get(Parameter::JOINT_MIN_LIMIT, j);
+        to.max_limit = settings.get(Parameter::JOINT_MAX_LIMIT, j);
+        to.max_velocity = settings.get(Parameter::JOINT_MAX_VELOCITY, j);
+        to.max_acceleration = settings.get(Parameter::JOINT_MAX_ACCELERATION, j);
+        to.isActive = from.isActive;
+        to.isEnabled = situation.isEnabled && from.isAmpWanted;
+        to.isHomed = isHomed;
+        to.isFaulted = from.isFaulted;
+        to.isOnPosSoftLimit = isHomed && from.pos_cmd >= to.max_limit;
+        to.isOnNegSoftLimit = isHomed && from.pos_cmd <= to.min_limit;
+        to.isOnPosHardLimit = from.isOnPosHardLimit;
+        to.isOnNegHardLimit = from.isOnNegHardLimit;
+        to.isFerrorTripped = from.isFerrorTripped;
+        to.isOverridingLimits = situation.areLimitsOverridden;
+        JointOutputs &o = out.joint[at(j)];
+        o.motor_pos_cmd = from.motor_pos_cmd;
+        o.coarse_pos = from.coarse_pos;
+        o.acc_cmd = from.acc_cmd;
+        o.backlash_raw = from.backlash.raw;
+        o.backlash_filtered = from.backlash.filter.position;
+        o.backlash_velocity = from.backlash.filter.velocity;
+        o.motor_offset = from.motor_offset;
+        o.ferror_limit = from.ferror_limit;
+        o.isAmpEnabled = to.isEnabled;
+        isOnSoftLimit = isOnSoftLimit || to.isOnPosSoftLimit || to.isOnNegSoftLimit;
+    }
+    out.isOnSoftLimit = isOnSoftLimit;
+}
+
+}  // namespace mw::motion

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "motion/core/outputs/machine_outputs.hh"
+
+#include <cmath>
+
+namespace mw::motion {
+
+namespace {
+
+void set_digital(MachineOutputs &outputs, int index, bool isOn) noexcept {
+    const std::uint64_t bit = std::uint64_t{1} << index;
+    outputs.digital = isOn ? outputs.digital | bit : outputs.digital & ~bit;
+}
+
+}  // namespace
+
+Verdict take(MachineOutputs &outputs, const SetDigitalOutput &command) noexcept {
+    if (command.index < 0 || command.index >= outputs.num_digital) {
+        return {Reason::NO_SUCH_OUTPUT};
+    }
+    set_digital(outputs, command.index, command.isOn);
+    return {};
+}
+
+Verdict take(MachineOutputs &outputs, const SetAnalogOutput &command) noexcept {
+    if (command.index < 0 || command.index >= outputs.num_analog) {
+        return {Reason::NO_SUCH_OUTPUT};
+    }
+    if (!std::isfinite(command.value)) {
+        return {Reason::NOT_A_NUMBER};
+    }
+    outputs.analog[static_cast<std::size_t>(command.index)] = command.value;
+    return {};
+}
+
+void fire(MachineOutputs &outputs, const traj::PathEvent &event) noexcept {
+    if (event.isAnalog) {
+        outputs.analog[static_cast<std::size_t>(event.index)] = event.value;
+    } else {
+        set_digital(outputs, event.index, event.value != 0);
+    }
+}
+
+void fill(const MachineOutputs &outputs, Status &status) noexcept {
+    status.digital_out = outputs.digital;
+    status.analog_out = outputs.analog;
+}
+
+}  // namespace mw::motion

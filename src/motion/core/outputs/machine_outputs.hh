@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Digital and analog outputs, set at once by command or in step with the path.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "base/limits.hh"
+#include "motion/api/command.hh"
+#include "motion/api/status.hh"
+#include "motion/core/verdict.hh"
+#include "traj/path_store.hh"
+
+namespace mw::motion {
+
+struct MachineOutputs {
+    int num_digital = 0, num_analog = 0;
+    std::uint64_t digital = 0;  ///< bit per output
+    std::array<double, MAX_ANALOG_IO> analog{};
+};
+
+Verdict take(MachineOutputs &outputs, const SetDigitalOutput &command) noexcept;
+Verdict take(MachineOutputs &outputs, const SetAnalogOutput &command) noexcept;
+/// A change whose place on the path has been passed; the path planner has checked its index.
+void fire(MachineOutputs &outputs, const traj::PathEvent &event) noexcept;
+void fill(const MachineOutputs &outputs, Status &status) noexcept;
+
+}  // namespace mw::motion

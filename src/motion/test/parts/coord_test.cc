@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "kins/trivial.hh"
+#include "motion/core/coord/place.hh"
+#include "motion/core/coord/retracing.hh"
+
+namespace mw::motion {
+namespace {
+
+constexpr double T = 1e-3;
+
+geom::Pose at(double x) {
+    geom::Pose p;
+    p[0] = x;
+    return p;
+}
+
+TEST(PlacePart, JointsLeadOrThePoseDoes_C3) {
+    kins::Trivial kinematics;
+    ASSERT_TRUE(kinematics.configure("XY"));
+    Place place;
+    const double joints[MAX_JOINTS] = {3, 4};
+    follow_joints(place, kinematics, joints, false);
+    EXPECT_EQ(place.cmd[0], 3);
+    EXPECT_EQ(place.velocity, 0);
+    follow_pose(place, at(3.1), T);
+    EXPECT_NEAR(place.velocity, std::hypot(0.1, 4) / T, 1e-6);
+    const double feedback[MAX_JOINTS] = {2.9, 4};
+    read_feedback(place, kinematics, feedback, false);
+    EXPECT_TRUE(place.isFbValid) << "joints that are axes need no homing";
+    EXPECT_EQ(place.fb[0], 2.9);
+}
+
+/// A straight path at 20 unit/s that has just come to a stand.
+struct RetracingPart : testing::Test {
+    std::unique_ptr<Retracing> retracing = std::make_unique<Retracing>();
+    FoldedLimits limits;
+    double x = 0;
+
+    RetracingPart() {
+        limits.path.acceleration.fill(1000);
+        for (int n = 0; n < 600; ++n) {
+            x += n < 500 ? 0.02 * std::min(1.0, std::min(n / 100.0, (500 - n) / 100.0)) : 0.0;
+            record(*retracing, at(x), {}, limits, T);
+        }
+    }
+    struct Way {
+        geom::Pose pose;
+        bool isNewStart = false;
+    };
+    Way go(bool isReverse, std::uint64_t drops = 0) { return go(*retracing, isReverse, drops); }
+    Way go(Retracing &on, bool isReverse, std::uint64_t drops = 0) const {
+        RetraceInputs in;
+        in.isReverseWanted = isReverse;
+        in.isPathAtRest = true;
+        in.rate = 0.5;
+        in.drops = drops;
+        Way way{at(x)};
+        way.isNewStart = step(on, way.pose, in);
+        return way;
+    }
+};
+
+TEST_F(RetracingPart, GoesBackAndForthOnThePathThatWasDriven_C4) {
+    double least = x;
+    for (int n = 0; n < 300; ++n) {
+        least = std::min(least, go(true).pose[0]);
+    }
+    EXPECT_LT(least, x - 0.5);
+    EXPECT_GT(least, 0);
+    double last = least;
+    for (int n = 0; n < 3000; ++n) {
+        const double now = go(false).pose[0];
+        ASSERT_LT(std::abs(now - last) / T, 20) << "no faster than it was driven";
+        last = now;
+    }
+    EXPECT_EQ(last, x);
+    EXPECT_FALSE(retracing->retrace.isAway());
+}
+
+TEST_F(RetracingPart, APathThatIsDroppedOnTheWayBackEndsWhereItComesToAStand) {
+    for (int n = 0; n < 300; ++n) {
+        go(true);
+    }
+    Way out;
+    for (int n = 0; n < 2000 && !out.isNewStart; ++n) {
+        out = go(true, 1);
+    }
+    EXPECT_TRUE(out.isNewStart);
+    EXPECT_LT(out.pose[0], x);
+    EXPECT_FALSE(retracing->isPathLeft);
+    EXPECT_TRUE(retracing->retrace.isEmpty());
+}
+
+TEST_F(RetracingPart, ACopyGoesTheSameWay) {
+    for (int n = 0; n < 100; ++n) {
+        go(true);
+    }
+    const auto clone = std::make_unique<Retracing>(*retracing);
+    for (int n = 0; n < 500; ++n) {
+        ASSERT_EQ(go(n < 200).pose, go(*clone, n < 200).pose);
+    }
+}
+
+}  // namespace
+}  // namespace mw::motion

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "motion/core/holds/holds.hh"
+
+namespace mw::motion {
+namespace {
+
+TEST(HoldsPart, PauseAndFeedHoldKeepThePathStanding) {
+    Holds holds;
+    step(holds, {});
+    EXPECT_FALSE(holds.isStandingWanted);
+    take(holds, Pause{});
+    step(holds, {});
+    EXPECT_TRUE(holds.isStandingWanted);
+    take(holds, Resume{});
+    step(holds, {1, true, false, 0});
+    EXPECT_TRUE(holds.isStandingWanted);
+    take(holds, SetSwitch{Switch::FEED_HOLD, 0, false});
+    step(holds, {1, true, false, 0});
+    EXPECT_FALSE(holds.isStandingWanted);
+    step(holds, {1, true, true, 0});
+    EXPECT_TRUE(holds.isStandingWanted) << "feed inhibit cannot be switched off";
+}
+
+TEST(HoldsPart, AStepPausesWhereItEnds) {
+    Holds holds;
+    take(holds, Pause{});
+    take(holds, StepOnce{});
+    step(holds, {});
+    EXPECT_TRUE(holds.isStepping);
+    EXPECT_FALSE(holds.isPaused);
+    step(holds, {1, false, false, 1});
+    EXPECT_FALSE(holds.isStepping);
+    EXPECT_TRUE(holds.isPaused);
+}
+
+TEST(HoldsPart, AdaptiveFeedCountsOnlyWhereItIsOnAndNeverWhenItIsNoNumber) {
+    Holds holds;
+    take(holds, SetScale{Scale::FEED, 0, 0.5}, 1.2);
+    step(holds, {0.25, false, false, 0});
+    EXPECT_EQ(holds.net_feed_scale, 0.5);
+    take(holds, SetSwitch{Switch::ADAPTIVE_FEED, 0, true});
+    step(holds, {0.25, false, false, 0});
+    EXPECT_EQ(holds.net_feed_scale, 0.125);
+    step(holds, {NAN, false, false, 0});
+    EXPECT_EQ(holds.net_feed_scale, 0);
+    EXPECT_FALSE(holds.isReverseWanted);
+    step(holds, {-0.5, false, false, 0});
+    EXPECT_TRUE(holds.isReverseWanted);
+    EXPECT_GT(holds.reverse_rate, 0);
+}
+
+TEST(HoldsPart, ReverseRunNeedsWhatIsRecordedWithAdaptiveFeed) {
+    Holds holds;
+    EXPECT_EQ(take(holds, SetReverse{true}).reason, Reason::NOT_SUPPORTED);
+    take(holds, SetSwitch{Switch::ADAPTIVE_FEED, 0, true});
+    EXPECT_EQ(take(holds, SetReverse{true}).reason, Reason::NONE);
+    step(holds, {});
+    EXPECT_TRUE(holds.isReverseWanted);
+    step(holds, {-1, false, false, 0});
+    EXPECT_FALSE(holds.isReverseWanted) << "backwards of backwards";
+}
+
+TEST(HoldsPart, ScalesBeyondTheirRangeAreRefused) {
+    Holds holds;
+    EXPECT_EQ(take(holds, SetScale{Scale::FEED, 0, 1.3}, 1.2).reason, Reason::OUT_OF_RANGE);
+    EXPECT_EQ(take(holds, SetScale{Scale::RAPID, 0, 1.1}, 1.2).reason, Reason::OUT_OF_RANGE);
+    EXPECT_EQ(take(holds, SetScale{Scale::FEED, 0, NAN}, 1.2).reason, Reason::OUT_OF_RANGE);
+    EXPECT_EQ(take(holds, SetMaxVelocity{-1}).reason, Reason::OUT_OF_RANGE);
+    EXPECT_EQ(take(holds, SetScale{Scale::FEED, 0, 1.2}, 1.2).reason, Reason::NONE);
+    EXPECT_EQ(holds.jog_scale(), 1.2);
+    take(holds, SetSwitch{Switch::FEED_OVERRIDE, 0, false});
+    EXPECT_EQ(holds.jog_scale(), 1.0);
+}
+
+}  // namespace
+}  // namespace mw::motion

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <gtest/gtest.h>
+
+#include "motion/core/homing/homing_drive.hh"
+
+namespace mw::motion {
+namespace {
+
+struct HomingDrivePart : testing::Test {
+    HomingDrive drive;
+    Settings settings;
+    HomeConditions conditions;
+
+    HomingDrivePart() {
+        drive.num_joints = 2;
+        drive.homing.set_num_joints(2);
+        conditions.isReady = true;
+        for (std::int16_t j = 0; j < 2; ++j) {
+            settings.set({static_cast<std::uint16_t>(Parameter::JOINT_HOME_SEQUENCE), j, 0}, 2, 1);
+            configure(drive, j, settings);
+        }
+    }
+    void run() {
+        for (int n = 0; n < 20; ++n) {
+            homing::JointInput inputs[MAX_JOINTS];
+            homing::JointCommand commands[MAX_JOINTS];
+            drive.homing.step(inputs, commands);
+        }
+    }
+};
+
+TEST_F(HomingDrivePart, BeginsWhenNothingMovesAnyMore_C10) {
+    ASSERT_EQ(take(drive, Home{-1}, conditions).reason, Reason::NONE);
+    EXPECT_TRUE(drive.isUnderWay());
+    begin_due(drive, true);
+    EXPECT_FALSE(drive.homing.isActive());
+    EXPECT_EQ(take(drive, Home{0}, conditions).reason, Reason::HOMING);
+    begin_due(drive, false);
+    EXPECT_TRUE(drive.homing.isActive());
+    run();
+    EXPECT_EQ(homed_mask(drive), 3U);
+    EXPECT_FALSE(drive.isUnderWay());
+}
+
+TEST_F(HomingDrivePart, EachReasonAgainstHomingIsTold) {
+    EXPECT_EQ(take(drive, Home{2}, conditions).reason, Reason::NO_SUCH_JOINT);
+    conditions.isInhibited = true;
+    EXPECT_EQ(take(drive, Home{0}, conditions).reason, Reason::HOMING_INHIBITED);
+    conditions.mode = Mode::TELEOP;
+    EXPECT_EQ(take(drive, Home{0}, conditions).reason, Reason::WRONG_MODE);
+    conditions.isReady = false;
+    EXPECT_EQ(take(drive, Home{0}, conditions).reason, Reason::NOT_ENABLED);
+}
+
+TEST_F(HomingDrivePart, VolatileHomesAreLostWithPower) {
+    settings.set({static_cast<std::uint16_t>(Parameter::JOINT_VOLATILE_HOME), 1, 1}, 2, 1);
+    take(drive, Home{-1}, conditions);
+    begin_due(drive, false);
+    run();
+    ASSERT_EQ(homed_mask(drive), 3U);
+    switch_off(drive, settings);
+    EXPECT_EQ(homed_mask(drive), 1U);
+    conditions.isMoving = true;
+    EXPECT_EQ(take(drive, Unhome{0}, conditions, settings).reason, Reason::MOVING);
+    conditions.isMoving = false;
+    EXPECT_EQ(take(drive, Unhome{-2}, conditions, settings).reason, Reason::NONE);
+    EXPECT_EQ(homed_mask(drive), 1U) << "only volatile ones";
+    take(drive, Unhome{-1}, conditions, settings);
+    EXPECT_EQ(homed_mask(drive), 0U);
+}
+
+TEST_F(HomingDrivePart, WhatFailsIsToldOnceAndWhatIsAbortedIsNot) {
+    settings.set({static_cast<std::uint16_t>(Parameter::JOINT_HOME_SEARCH_VEL), 0, 5}, 2, 1);
+    configure(drive, 0, settings);  // searches, and has no speed to latch with
+    take(drive, Home{0}, conditions);
+    begin_due(drive, false);
+    run();
+    EXPECT_EQ(take_failure(drive).joint, 0);
+    EXPECT_EQ(take_failure(drive).joint, -1);
+    take(drive, Home{1}, conditions);
+    begin_due(drive, false);
+    abort(drive, homing::Failure::ABORTED);
+    EXPECT_EQ(take_failure(drive).joint, -1);
+    EXPECT_FALSE(drive.isUnderWay());
+}
+
+}  // namespace
+}  // namespace mw::motion

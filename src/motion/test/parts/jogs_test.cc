@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <gtest/gtest.h>
+
+#include "kins/rotary_table.hh"
+#include "motion/core/jogs/jogs.hh"
+#include "motion/core/jogs/teleop.hh"
+
+namespace mw::motion {
+namespace {
+
+constexpr double T = 1e-3;
+constexpr JogTarget JOINT{true, 0};
+constexpr JogTarget AXIS{false, geom::AXIS_X};
+
+Jogs make() {
+    Jogs jogs;
+    jogs.num_joints = 2;
+    return jogs;
+}
+
+JogSituation free_mode() {
+    JogSituation s;
+    s.isReady = s.isMovable = true;
+    s.most = {50, 500, 0};
+    s.range = {-10, 10};
+    return s;
+}
+
+void run(Jogs &jogs, const JogTarget &target, int cycles) {
+    for (int n = 0; n < cycles; ++n) {
+        jogs.at(target).planner.step(T);
+    }
+}
+
+TEST(JogsPart, EachReasonAgainstAJogIsTold) {
+    Jogs jogs = make();
+    const auto reason = [&](auto change, JogTarget target = JOINT) {
+        JogSituation s = free_mode();
+        change(s);
+        return take(jogs, JogContinuous{target, 5}, s).reason;
+    };
+    EXPECT_EQ(reason([](JogSituation &) {}, {true, 2}), Reason::NO_SUCH_JOINT);
+    EXPECT_EQ(reason([](JogSituation &) {}, {false, 9}), Reason::NO_SUCH_AXIS);
+    EXPECT_EQ(reason([](JogSituation &s) { s.isReady = false; }), Reason::NOT_ENABLED);
+    EXPECT_EQ(reason([](JogSituation &s) { s.mode = Mode::COORD; }), Reason::WRONG_MODE);
+    EXPECT_EQ(reason([](JogSituation &s) { s.isHoming = true; }), Reason::HOMING);
+    EXPECT_EQ(reason([](JogSituation &s) { s.isInhibited = true; }), Reason::JOG_INHIBITED);
+    EXPECT_EQ(reason([](JogSituation &s) { s.isMovable = false; }), Reason::JOINT_INACTIVE);
+    EXPECT_EQ(reason([](JogSituation &s) { s.isSynchronised = true; }), Reason::SYNCHRONISED_JOINT);
+    EXPECT_EQ(reason([](JogSituation &s) { s.isOnPosLimit = true; }), Reason::ON_HARD_LIMIT);
+    EXPECT_EQ(reason([](JogSituation &s) { s.isOnNegLimit = true; }), Reason::NONE) << "off the limit";
+}
+
+TEST(JogsPart, AContinuousJogEndsAtTheSoftLimit) {
+    Jogs jogs = make();
+    ASSERT_EQ(take(jogs, JogContinuous{JOINT, 80}, free_mode()).reason, Reason::NONE);
+    EXPECT_EQ(jogs.at(JOINT).planner.max_velocity, 50) << "no faster than the joint";
+    run(jogs, JOINT, 1000);
+    EXPECT_EQ(jogs.at(JOINT).planner.position, 10);
+    EXPECT_EQ(take(jogs, JogContinuous{JOINT, 80}, free_mode()).reason, Reason::BEYOND_SOFT_LIMIT);
+    EXPECT_EQ(take(jogs, JogContinuous{JOINT, -80}, free_mode()).reason, Reason::NONE);
+}
+
+TEST(JogsPart, IncrementsAddUpAndStayWithinTheRange) {
+    Jogs jogs = make();
+    EXPECT_EQ(take(jogs, JogIncremental{JOINT, 20, 4}, free_mode()).reason, Reason::NONE);
+    EXPECT_EQ(take(jogs, JogIncremental{JOINT, 20, 4}, free_mode()).reason, Reason::NONE);
+    EXPECT_EQ(take(jogs, JogIncremental{JOINT, 20, 4}, free_mode()).reason, Reason::BEYOND_SOFT_LIMIT);
+    EXPECT_EQ(take(jogs, JogIncremental{JOINT, -1, 1}, free_mode()).reason, Reason::OUT_OF_RANGE);
+    EXPECT_EQ(take(jogs, JogAbsolute{JOINT, 20, NAN}, free_mode()).reason, Reason::NOT_A_NUMBER);
+    run(jogs, JOINT, 2000);
+    EXPECT_EQ(jogs.at(JOINT).planner.position, 8);
+}
+
+TEST(JogsPart, FromOutsideTheLimitsOneMovesBackIn) {
+    Jogs jogs = make();
+    jogs.at(JOINT).planner.reset(12);
+    EXPECT_EQ(take(jogs, JogIncremental{JOINT, 20, 1}, free_mode()).reason, Reason::BEYOND_SOFT_LIMIT);
+    EXPECT_EQ(take(jogs, JogIncremental{JOINT, 20, -1}, free_mode()).reason, Reason::NONE);
+}
+
+TEST(JogsPart, AWheelCountsTurnsAcrossTheWrapAndGivesWayToKeys) {
+    Jogs jogs = make();
+    WheelInput wheel;
+    wheel.isEnabled = true;
+    wheel.scale = 0.5;
+    wheel.counts = -2147483647;
+    jogs.at(JOINT).wheel_counts = 2147483647;
+    EXPECT_EQ(turned(jogs.at(JOINT), wheel), 1.0) << "two counts over the wrap";
+    jog_by_wheel(jogs, JOINT, 30, wheel, free_mode());
+    EXPECT_EQ(jogs.at(JOINT).planner.target, 10) << "clamped: a wheel is no command that could be refused";
+    EXPECT_EQ(jogs.at(JOINT).source, JogSource::WHEEL);
+    stop_at_once(jogs);
+    take(jogs, JogContinuous{JOINT, -5}, free_mode());
+    run(jogs, JOINT, 10);
+    EXPECT_EQ(turned(jogs.at(JOINT), wheel), 0.0) << "a key is held";
+}
+
+TEST(JogsPart, OverriddenLimitsEndWithTheJog) {
+    Jogs jogs = make();
+    Inputs in;
+    take(jogs, OverrideLimits{true});
+    settle(jogs, in);
+    EXPECT_TRUE(jogs.areLimitsOverridden);
+    take(jogs, JogIncremental{JOINT, 20, 0.1}, free_mode());
+    settle(jogs, in);
+    EXPECT_TRUE(jogs.areLimitsOverridden);
+    run(jogs, JOINT, 500);
+    settle(jogs, in);
+    EXPECT_FALSE(jogs.areLimitsOverridden);
+    EXPECT_EQ(jogs.at(JOINT).source, JogSource::NONE);
+}
+
+TEST(JogsPart, JogsStopWithinTheirLimitsOrAtOnce) {
+    Jogs jogs = make();
+    take(jogs, JogContinuous{JOINT, 50}, free_mode());
+    run(jogs, JOINT, 50);
+    Jogs clone = jogs;
+    stop(jogs);
+    run(jogs, JOINT, 1);
+    EXPECT_GT(jogs.at(JOINT).planner.velocity, 20);
+    stop_at_once(clone);
+    EXPECT_EQ(clone.at(JOINT).planner.velocity, 0);
+    EXPECT_TRUE(areJointsAtRest(clone));
+    EXPECT_FALSE(areJointsAtRest(jogs));
+}
+
+TEST(JogsPart, AxesAreJoggedInTeleopModeOnly) {
+    Jogs jogs = make();
+    JogSituation s = free_mode();
+    EXPECT_EQ(jog_axis(jogs, 0, 5, s).reason, Reason::WRONG_MODE);
+    s.mode = Mode::TELEOP;
+    EXPECT_EQ(jog_axis(jogs, 0, 5, s).reason, Reason::NONE);
+    limit_axis(jogs.at(AXIS), 100, 0.5);
+    EXPECT_EQ(jogs.at(AXIS).planner.max_velocity, 2.5);
+    run(jogs, AXIS, 100);
+    EXPECT_EQ(jog_axis(jogs, 0, 0, s).reason, Reason::NONE);
+    run(jogs, AXIS, 100);
+    EXPECT_TRUE(areAxesAtRest(jogs));
+}
+
+TEST(JogsPart, HomingMovesAJointNoFasterThanItCan) {
+    Jogs jogs = make();
+    homing::JointCommand command;
+    command.move = homing::Move::BY;
+    command.value = -4;
+    command.velocity = 1000;
+    home_joint(jogs.at(JOINT), command, {50, 500, 900});
+    EXPECT_EQ(jogs.at(JOINT).wanted_velocity, 50);
+    EXPECT_EQ(jogs.at(JOINT).planner.target, -4);
+    EXPECT_EQ(jogs.at(JOINT).planner.max_jerk, 0);
+    renumber(jogs.at(JOINT), 6, 6);
+    EXPECT_EQ(jogs.at(JOINT).planner.target, 2);
+}
+
+TEST(TeleopPart, AJogOfATableStopsBeforeAJointLeavesItsRange) {
+    const kins::RotaryTable table;
+    Settings settings;
+    const auto set = [&](Parameter p, int j, double v) {
+        settings.set({static_cast<std::uint16_t>(p), static_cast<std::int16_t>(j), v}, 5, 1);
+    };
+    for (int j = 0; j < 5; ++j) {
+        set(Parameter::JOINT_MAX_VELOCITY, j, 100);
+        set(Parameter::JOINT_MAX_ACCELERATION, j, 1000);
+        set(Parameter::JOINT_MIN_LIMIT, j, j < 3 ? -40 : -360);
+        set(Parameter::JOINT_MAX_LIMIT, j, j < 3 ? 40 : 360);
+    }
+    const FoldedLimits limits = fold_limits(settings, axis_map(table, 5), ALL_HOMED);
+    TeleopMachine machine{table, limits};
+    machine.num_joints = 5;
+    Jogs jogs = make();
+    geom::Pose pose;
+    pose[0] = 39;  // C swings this towards Y and on to -39
+    pose[1] = 15;
+    reset_axes(jogs, pose);
+    JogSituation s = free_mode();
+    s.mode = Mode::TELEOP;
+    s.most = {1000, 10000, 0};
+    s.range = {-1e9, 1e9};
+    const JogTarget c{false, geom::AXIS_C};
+    ASSERT_EQ(table.inverse(pose, machine.joint_positions.data()), kins::Status::OK);
+    ASSERT_EQ(take(jogs, JogContinuous{c, 90}, s).reason, Reason::NONE);
+    int told = 0;
+    for (int n = 0; n < 5000; ++n) {
+        const TeleopStop stopped = limit_teleop(jogs, machine);
+        told += stopped.isNew ? 1 : 0;
+        jogs.at(c).planner.step(T);
+        pose[geom::AXIS_C] = jogs.at(c).planner.position;
+        const auto last = machine.joint_positions;
+        ASSERT_EQ(table.inverse(pose, machine.joint_positions.data()), kins::Status::OK);
+        for (std::size_t j = 0; j < 3; ++j) {
+            ASSERT_LE(std::abs(machine.joint_positions[j]), 40 + 1e-6) << "joint " << j;
+            ASSERT_LE(std::abs(machine.joint_positions[j] - last[j]) / T, 100 * (1 + 1e-6)) << "joint " << j;
+        }
+    }
+    EXPECT_EQ(told, 1);
+    EXPECT_TRUE(jogs.at(c).planner.isAtRest());
+    EXPECT_GT(std::abs(pose[geom::AXIS_C]), 0.01) << "it did move";
+}
+
+}  // namespace
+}  // namespace mw::motion

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <gtest/gtest.h>
+
+#include "motion/core/joints/joints.hh"
+
+namespace mw::motion {
+namespace {
+
+constexpr double T = 1e-3;
+
+struct JointsPart : testing::Test {
+    Joints joints;
+    Inputs in;
+    Settings settings;
+
+    JointsPart() {
+        joints.count = 2;
+        for (int j = 0; j < 2; ++j) {
+            set(Parameter::JOINT_MAX_VELOCITY, j, 100);
+            set(Parameter::JOINT_MAX_ACCELERATION, j, 1000);
+            set(Parameter::JOINT_FERROR, j, 1);
+            set(Parameter::JOINT_MIN_FERROR, j, 0.1);
+        }
+    }
+    /// The first fault, which is that of joint j.
+    JointFault fault_of(int j, const JointCheck &how = {}) {
+        int joint = 0;
+        const JointFault fault = find_fault(joints, joint, settings, how);
+        EXPECT_EQ(joint, fault == JointFault::NONE ? joints.count : j);
+        return fault;
+    }
+    void set(Parameter p, int j, double value) {
+        settings.set({static_cast<std::uint16_t>(p), static_cast<std::int16_t>(j), value}, 2, 1);
+    }
+};
+
+TEST_F(JointsPart, SwitchedOnTheCommandIsTheFeedback_C4) {
+    in.joint[0].motor_pos_fb = 12.5;
+    read_feedback(joints, in);
+    switch_on(joints);
+    output(joints, settings, true, T);
+    EXPECT_EQ(joints[0].motor_pos_cmd, 12.5);
+    EXPECT_TRUE(joints[0].isAmpWanted);
+}
+
+TEST_F(JointsPart, FollowingErrorMayGrowWithSpeed) {
+    switch_on(joints);
+    follow(joints[0], 0.05, T);  // 50 unit/s
+    EXPECT_EQ(fault_of(0), JointFault::NONE);
+    EXPECT_DOUBLE_EQ(joints[0].ferror_limit, 0.5);
+    in.joint[0].motor_pos_fb = -0.5;
+    read_feedback(joints, in);
+    EXPECT_EQ(fault_of(0), JointFault::FOLLOWING_ERROR);
+    EXPECT_TRUE(joints[0].isFerrorTripped);
+    EXPECT_DOUBLE_EQ(joints[0].ferror_highmark, 0.55);
+    EXPECT_EQ(fault_of(0, {1U << 0, 0}), JointFault::NONE) << "the encoder is reset now";
+}
+
+TEST_F(JointsPart, LimitSwitchesAndAmplifiersAreFaults) {
+    switch_on(joints);
+    in.joint[1].isNegLimitClosed = true;
+    read_feedback(joints, in);
+    EXPECT_EQ(fault_of(1), JointFault::HARD_LIMIT);
+    EXPECT_EQ(fault_of(1, {0, 1U << 1}), JointFault::NONE);
+    EXPECT_EQ(check_start(joints, in, false).reason, Reason::ON_HARD_LIMIT);
+    EXPECT_EQ(check_start(joints, in, false).index, 1);
+    EXPECT_EQ(check_start(joints, in, true).reason, Reason::NONE);
+    in.joint[1].isAmpFaulted = true;
+    read_feedback(joints, in);
+    EXPECT_EQ(fault_of(1, {0, 1U << 1}), JointFault::AMP_FAULT);
+    EXPECT_EQ(check_start(joints, in, true).reason, Reason::AMP_FAULT);
+}
+
+TEST_F(JointsPart, BacklashIsTakenUpWithinTheJointsOwnLimits) {
+    set(Parameter::JOINT_BACKLASH, 0, 0.2);
+    switch_on(joints);
+    double last = 0, fastest = 0;
+    for (int n = 1; n <= 200; ++n) {
+        follow(joints[0], 0.001 * n, T);
+        output(joints, settings, true, T);
+        const double extra = joints[0].motor_pos_cmd - joints[0].pos_cmd;
+        fastest = std::max(fastest, (extra - last) / T);
+        last = extra;
+    }
+    EXPECT_DOUBLE_EQ(last, 0.1);
+    EXPECT_GT(fastest, 1);
+    EXPECT_LE(fastest, 50);
+    for (int n = 200; n >= 0; --n) {
+        follow(joints[0], 0.001 * n, T);
+        output(joints, settings, true, T);
+    }
+    EXPECT_DOUBLE_EQ(joints[0].motor_pos_cmd - joints[0].pos_cmd, -0.1);
+}
+
+TEST_F(JointsPart, AZeroThatIsFoundMovesNumbersAndNoMotor) {
+    switch_on(joints);
+    follow(joints[0], 3, T);
+    output(joints, settings, true, T);
+    const double motor = joints[0].motor_pos_cmd;
+    shift(joints[0], -3);
+    output(joints, settings, true, T);
+    EXPECT_EQ(joints[0].pos_cmd, 0);
+    EXPECT_EQ(joints[0].motor_pos_cmd, motor);
+    set_zero(joints[1], 7);
+    EXPECT_EQ(joints[1].pos_fb, 7) << "motor position 0";
+}
+
+TEST_F(JointsPart, SwitchedOffTheCommandFollowsTheMotor) {
+    switch_on(joints);
+    in.joint[0].motor_pos_fb = 4;
+    read_feedback(joints, in);
+    output(joints, settings, false, T);
+    EXPECT_EQ(joints[0].pos_cmd, 4);
+    EXPECT_EQ(joints[0].motor_pos_cmd, 4);
+    EXPECT_EQ(take(joints, SetAmplifier{0, true}, false).reason, Reason::NOT_ENABLED);
+    EXPECT_EQ(take(joints, SetAmplifier{2, true}, true).reason, Reason::NO_SUCH_JOINT);
+    EXPECT_EQ(take(joints, SetJointActive{0, false}, true).reason, Reason::MOVING);
+}
+
+TEST_F(JointsPart, AJointThatDoesMoreThanItCanIsFound) {
+    AxisMap map;
+    map.kind = AxisMap::Kind::UNKNOWN;
+    map.num_joints = 2;
+    set(Parameter::JOINT_MIN_LIMIT, 1, -1);
+    set(Parameter::JOINT_MAX_LIMIT, 1, 1);
+    const FoldedLimits limits = fold_limits(settings, map, ALL_HOMED);
+    EXPECT_EQ(find_overrun(joints, limits).joint, -1);
+    joints[1].vel_cmd = 150;
+    EXPECT_EQ(find_overrun(joints, limits).joint, 1);
+    EXPECT_DOUBLE_EQ(find_overrun(joints, limits).use, 1.5);
+    joints[1].vel_cmd = 10;
+    joints[1].pos_cmd = 1.01;
+    EXPECT_TRUE(find_overrun(joints, limits).isOutside);
+    joints[1].vel_cmd = -10;
+    EXPECT_EQ(find_overrun(joints, limits).joint, -1) << "on the way back in";
+}
+
+}  // namespace
+}  // namespace mw::motion

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The small parts: power and mode, watchdog, outputs.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "motion/core/outputs/machine_outputs.hh"
+#include "motion/core/power/power.hh"
+#include "motion/core/watchdog/watchdog.hh"
+
+namespace mw::motion {
+namespace {
+
+TEST(PowerPart, AStopBeginsOnceAndEndsWithPower) {
+    Power power;
+    EXPECT_FALSE(begin_stop(power)) << "off already";
+    switch_on(power);
+    EXPECT_TRUE(power.isReady());
+    EXPECT_TRUE(begin_stop(power));
+    EXPECT_FALSE(begin_stop(power));
+    EXPECT_FALSE(power.isReady());
+    EXPECT_TRUE(power.isEnabled) << "it brakes";
+    switch_off(power);
+    EXPECT_FALSE(power.isEnabled || power.isStopping);
+}
+
+TEST(PowerPart, ModesChangeAtRestAndCartesianOnesWhereThePoseIsKnown) {
+    const Power power;
+    EXPECT_EQ(check_mode(power, Mode::FREE, {true, true, true, false}), Reason::NONE) << "nothing changes";
+    EXPECT_EQ(check_mode(power, Mode::COORD, {true, false, false, false}), Reason::HOMING);
+    EXPECT_EQ(check_mode(power, Mode::COORD, {false, true, false, false}), Reason::MOVING);
+    EXPECT_EQ(check_mode(power, Mode::TELEOP, {false, false, true, false}), Reason::NOT_HOMED);
+    EXPECT_EQ(check_mode(power, Mode::TELEOP, {false, false, true, true}), Reason::NONE);
+    EXPECT_EQ(check_mode(power, Mode::COORD, {false, false, false, false}), Reason::NONE);
+}
+
+TEST(WatchdogPart, ATaskThatStandsStillIsFoundOnceItsTimeIsOver) {
+    Watchdog watchdog;
+    EXPECT_EQ(take(watchdog, SetWatchdog{true, 0}).reason, Reason::OUT_OF_RANGE);
+    ASSERT_EQ(take(watchdog, SetWatchdog{true, 0.01}).reason, Reason::NONE);
+    for (std::uint64_t n = 1; n <= 100; ++n) {
+        ASSERT_FALSE(step(watchdog, n, false, 1e-3)) << "it counts";
+    }
+    int found = 0;
+    for (int n = 0; n < 100; ++n) {
+        found += step(watchdog, 100, false, 1e-3) ? 1 : 0;
+    }
+    EXPECT_EQ(found, 1);
+    EXPECT_TRUE(watchdog.isLost);
+    EXPECT_FALSE(step(watchdog, 101, false, 1e-3));
+    EXPECT_FALSE(watchdog.isLost);
+}
+
+TEST(WatchdogPart, TheKernelsWordCountsWithoutAnyTime) {
+    Watchdog watchdog;
+    EXPECT_TRUE(step(watchdog, 1, true, 1e-3));
+    EXPECT_TRUE(watchdog.isLost);
+}
+
+TEST(OutputsPart, OutputsAreSetAtOnceAndByThePath) {
+    MachineOutputs outputs;
+    outputs.num_digital = outputs.num_analog = 4;
+    EXPECT_EQ(take(outputs, SetDigitalOutput{4, true}).reason, Reason::NO_SUCH_OUTPUT);
+    EXPECT_EQ(take(outputs, SetAnalogOutput{-1, 1}).reason, Reason::NO_SUCH_OUTPUT);
+    EXPECT_EQ(take(outputs, SetAnalogOutput{0, NAN}).reason, Reason::NOT_A_NUMBER);
+    take(outputs, SetDigitalOutput{2, true});
+    traj::PathEvent event;
+    event.index = 3;
+    event.value = 1;
+    fire(outputs, event);
+    EXPECT_EQ(outputs.digital, 12U);
+    event.isAnalog = true;
+    event.value = 2.5;
+    fire(outputs, event);
+    Status status;
+    fill(outputs, status);
+    EXPECT_EQ(status.analog_out[3], 2.5);
+    EXPECT_EQ(status.digital_out, 12U);
+}
+
+}  // namespace
+}  // namespace mw::motion
