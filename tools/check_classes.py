@@ -36,13 +36,11 @@ EXCEPTIONS = {
     'TaskCanon': (50, 5, INTERFACE),
     'Preview::Impl': (49, 23, INTERFACE),
     'State': (0, 47, 'the modal state of a program'),
-    'Controller': (78, 108, 'to be taken apart: docs/architecture.md'),
     'PathPlanner': (29, 34, 'to be taken apart: docs/architecture.md'),
     'Executor': (198, 57, 'to be taken apart: docs/architecture.md'),
     'Flow': (87, 55, 'to be taken apart: docs/architecture.md'),
     'Sequencer': (43, 39, 'to be taken apart: docs/architecture.md'),
     'Task': (51, 47, 'to be taken apart: docs/architecture.md'),
-    'Planner': (117, 104, 'to be taken apart: docs/architecture.md'),
 }
 
 HEAD = re.compile(r'^(?:template\s*<.*>\s*)?(?:class|struct|union)\s+(?:alignas\s*\([^)]*\)\s*)?(?:\[\[\w+\]\]\s*)?'

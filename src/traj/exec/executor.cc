@@ -88,41 +88,8 @@ void Executor::set_position(const Pose &pose) noexcept {
     state_.first_tick = state_.tick;
     state_.origin = pose;
     rest_ticks_ = MAX_FILTER;
-    along_ = 0;
+    arc_.leave();
     state_.isSettled = true;
-}
-
-/// Arcs that must be followed exactly: commands the mean place on the arc. The leader stands before and after
-/// for the time of the mean. True while it is under way.
-bool Executor::follow_along() noexcept {
-    const bool isOn = state_.piece != 0 && store_.piece(state_.piece).isAlong && isFiltered();
-    const Sequence primitive = isOn ? store_.piece(state_.piece).primitive : 0;
-    const double length = isOn ? store_.piece(state_.piece).length : 0.0;
-    const bool isWithin = isOn && state_.x > on_along(length) && state_.x < length;
-    const bool isNew = isWithin && along_ != primitive;
-    if (isNew) {
-        along_ = primitive;
-        along_first_ = state_.tick;
-        along_last_ = state_.tick;
-    }
-    if (along_ == 0) {
-        return false;
-    }
-    const Primitive &p = store_.primitive(along_);
-    const bool isOnThis = isOn && primitive == along_;
-    const double at = isOnThis ? store_.piece(state_.piece).offset + state_.x : p.length;
-    along_history_[state_.tick % HISTORY_CAPACITY] = at;
-    double sum = 0;
-    for (std::uint64_t i = 0; i < state_.filter; ++i) {
-        const std::uint64_t tick = state_.tick - i;
-        sum += tick >= along_first_ ? along_history_[tick % HISTORY_CAPACITY] : 0.0;
-    }
-    const double along = sum / static_cast<double>(state_.filter);
-    out_.position = position_at(p, along);
-    along_last_ = isOnThis && isWithin ? state_.tick : along_last_;
-    const bool isOver = state_.tick >= along_last_ + state_.filter;
-    along_ = isOver ? 0 : along_;
-    return along_ != 0;
 }
 
 /// What is commanded: the leader itself, or the mean of its last samples.
@@ -137,10 +104,11 @@ void Executor::filter() noexcept {
     }
     state_.isSettled = isResting && rest_ticks_ >= state_.filter;
     const bool isPlain = !isFiltered() || state_.isSettled;
-    const bool isAlong = follow_along();
-    if (isPlain || isAlong) {
+    const Piece *piece = state_.piece != 0 ? &store_.piece(state_.piece) : nullptr;
+    const std::optional<Pose> on_arc = arc_.follow(store_, piece, state_.x, state_.tick, state_.filter);
+    if (isPlain || on_arc) {
         // Also keeps rounding from gathering in the mean.
-        out_.position = isAlong && !isPlain ? out_.position : leader_;
+        out_.position = on_arc && !isPlain ? *on_arc : leader_;
         mean_.reset(leader_, state_.filter, state_.tick);
         const std::uint64_t back = isPlain ? 0 : state_.filter / 2;
         state_.done_move = std::max(state_.done_move, done_history_[(state_.tick - back) % HISTORY_CAPACITY]);
@@ -266,7 +234,7 @@ void Executor::come_to_rest() noexcept {
 
 /// Whatever is left of the path is gone; the planner learns it from `drops`.
 void Executor::finish_drop() noexcept {
-    along_ = 0;
+    arc_.leave();
     state_.isDropping = false;
     ++state_.drops;
     ++state_.brakes;

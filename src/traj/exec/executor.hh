@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "base/limits.hh"
+#include "traj/exec/arc_mean.hh"
 #include "traj/exec/mean_filter.hh"
 
 namespace mw::traj {
@@ -38,9 +39,7 @@ class ExecutorState {
     double leader_s_ = 0, leader_tolerance_ = 0;
     Sequence leader_done_ = 0;
     MeanFilter mean_;
-    Sequence along_ = 0;  ///< the primitive of which the mean place is commanded, 0: none
-    std::uint64_t along_first_ = 0, along_last_ = 0;  ///< ticks on it
-    std::array<double, HISTORY_CAPACITY> along_history_{};
+    ArcMean arc_;
     std::uint64_t rest_ticks_ = MAX_FILTER;  ///< since the leader stands
     std::array<Sequence, HISTORY_CAPACITY> done_history_{};
 
@@ -115,7 +114,6 @@ class Executor : private ExecutorState {
     void come_to_rest() noexcept;
     void locate() noexcept;
     void filter() noexcept;
-    bool follow_along() noexcept;
     void finish_drop() noexcept;
     bool isFiltered() const noexcept { return state_.filter > 1; }
 

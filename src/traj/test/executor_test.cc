@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The servo side alone: commits made by hand, without a planner.
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -159,6 +160,43 @@ TEST(Executor, CommandsTheMeanOfTheLeader_C13) {
         }
         EXPECT_NEAR(smooth.x(), sum / FILTER, 1e-12);
     }
+}
+
+TEST(ArcMean, CommandsTheMeanPlaceOnTheArcUntilTheMeanHasLeftIt_C13) {
+    constexpr std::uint64_t FILTER = 10;
+    constexpr double RADIUS = 5;
+    auto store = std::make_unique<PathStore>();
+    Pose normal;
+    normal[2] = 1;
+    ASSERT_EQ(make_arc(Pose{}, at(0, 2 * RADIUS), {at(0, RADIUS), normal, std::numbers::pi, false},
+                       store->primitive(1)),
+              ArcFault::NONE);
+    Piece piece;
+    piece.primitive = 1;
+    piece.length = store->primitive(1).length;
+    piece.isAlong = true;
+    ArcMean mean;
+    EXPECT_FALSE(mean.follow(*store, &piece, 0, 1, FILTER).has_value());
+    EXPECT_FALSE(mean.follow(*store, nullptr, 0, 2, FILTER).has_value());
+    std::vector<double> places(FILTER, 0.0);
+    int commanded = 0;
+    for (std::uint64_t tick = 3; tick < 300; ++tick) {
+        const double x = std::min(0.1 * static_cast<double>(tick - 2), piece.length);
+        const std::optional<Pose> p = mean.follow(*store, &piece, x, tick, FILTER);
+        places.push_back(x);
+        if (!p) {
+            EXPECT_EQ(x, piece.length);
+            continue;
+        }
+        double sum = 0;
+        for (std::size_t i = 0; i < FILTER; ++i) {
+            sum += places[places.size() - 1 - i];
+        }
+        EXPECT_LT(geom::norm(*p - position_at(store->primitive(1), sum / FILTER)), 1e-9);
+        EXPECT_NEAR(geom::norm(*p - at(0, RADIUS)), RADIUS, 1e-12);
+        ++commanded;
+    }
+    EXPECT_NEAR(commanded, piece.length / 0.1 + FILTER, 2);
 }
 
 TEST(Executor, AnEventIsDueWhenItsMoveIsCompleteAndNeverOnAnotherPath_C7) {

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "traj/exec/arc_mean.hh"
+
+namespace mw::traj {
+
+std::optional<Pose> ArcMean::follow(const PathStore &store, const Piece *piece, double x, std::uint64_t tick,
+                                    std::uint64_t filter) noexcept {
+    const bool isOn = piece != nullptr && piece->isAlong && filter > 1;
+    const bool isWithin = isOn && x > on_along(piece->length) && x < piece->length;
+    const bool isNew = isWithin && primitive_ != piece->primitive;
+    if (isNew) {
+        primitive_ = piece->primitive;
+        first_ = tick;
+        last_ = tick;
+    }
+    if (primitive_ == 0) {
+        return std::nullopt;
+    }
+    const Primitive &arc = store.primitive(primitive_);
+    const bool isOnThis = isOn && piece->primitive == primitive_;
+    places_[tick % HISTORY_CAPACITY] = isOnThis ? piece->offset + x : arc.length;
+    last_ = isOnThis && isWithin ? tick : last_;
+    if (tick >= last_ + filter) {
+        primitive_ = 0;
+        return std::nullopt;
+    }
+    double sum = 0;
+    for (std::uint64_t i = 0; i < filter; ++i) {
+        sum += tick - i >= first_ ? places_[(tick - i) % HISTORY_CAPACITY] : 0.0;
+    }
+    return position_at(arc, sum / static_cast<double>(filter));
+}
+
+}  // namespace mw::traj

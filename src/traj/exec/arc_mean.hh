@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Arcs that must be followed exactly: the mean is taken of the leader's place on the arc, not of its pose.
+// The leader stands before and after for the time of the mean. Realtime-safe.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "traj/path_store.hh"
+
+namespace mw::traj {
+
+class ArcMean {
+  public:
+    /// The mean leaves the arc where it is.
+    void leave() noexcept { primitive_ = 0; }
+    /// With the leader at `x` of `piece` (null: on none) at this tick: what is commanded, the mean over
+    /// `filter` samples of its places; nothing where no arc is under way.
+    std::optional<Pose> follow(const PathStore &store, const Piece *piece, double x, std::uint64_t tick,
+                               std::uint64_t filter) noexcept;
+
+  private:
+    Sequence primitive_ = 0;              ///< of which the mean place is commanded, 0: none
+    std::uint64_t first_ = 0, last_ = 0;  ///< ticks on it
+    std::array<double, HISTORY_CAPACITY> places_{};
+};
+
+}  // namespace mw::traj
