@@ -116,8 +116,9 @@ void join(Profile &chain, const ProfileSegment &before, const ProfileSegment &af
             return;
         }
     }
-    const bool isReversal = std::fabs(bend) <= STRAIGHT && dot(from, to) < 0.0;
-    if (bend < -STRAIGHT || (isReversal && from.y > 0.0)) {
+    // Up and down again is a peak, down and up a slit, whichever way rounded numbers turn the two directions.
+    const bool isFolded = dot(from, to) < 0.0 && from.y * to.y < 0.0;
+    if (isFolded ? from.y > 0.0 : bend < -STRAIGHT) {
         append_piece(chain, around(corner, from, to, by));
     }
 }

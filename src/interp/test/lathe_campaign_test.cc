@@ -25,6 +25,15 @@ TEST(LatheCampaign, CutsNothingButTheStockAboveTheAllowanceAndAllOfThat_I1) {
     EXPECT_LE(refused * 50, COUNT) << "more than 2 percent refused";
 }
 
+/// An arc that ends upright and a wall down from there: rounded numbers turn the fold a little to the wrong
+/// side.
+TEST(LatheCampaign, APeakOfAnArcAndAWallKeepsItsAllowanceAllAround_I1) {
+    const testing::LatheJob job = testing::make_lathe_job(19588);
+    const LatheVerdict verdict = run_lathe_job(job);
+    EXPECT_EQ(verdict.refusal, "") << job.program;
+    EXPECT_EQ(verdict.fault, "") << job.program;
+}
+
 /// The program that comes with the lathe of configs/sim makes the part that its comments promise.
 TEST(LatheProgram, LathePartIsRoughedInLayersFinishedAndParted_I1) {
     std::ifstream file(MW_SOURCE_DIR "/nc_files/lathe_part.ngc");
