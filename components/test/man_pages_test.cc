@@ -59,7 +59,7 @@ std::set<std::string> bold_words(const std::string &page) {
 }
 
 /// True when `name` is `pattern` with numbers in the place of its index letters (N, M, MM, FROM-TO and so
-/// on).
+/// on), or the letter of an axis in the place of L.
 bool isNamed(const std::string &pattern, const std::string &name) {
     std::size_t p = 0;
     std::size_t n = 0;
@@ -70,7 +70,12 @@ bool isNamed(const std::string &pattern, const std::string &name) {
         return at < name.size() && std::isdigit(static_cast<unsigned char>(name[at])) != 0;
     };
     while (p < pattern.size() && n < name.size()) {
-        if (is_upper(p) && is_digit(n)) {
+        const bool isAxis = p < pattern.size() && pattern[p] == 'L' && n < name.size() &&
+                            std::string_view("xyzabcuvw").find(name[n]) != std::string_view::npos;
+        if (isAxis) {
+            ++p;
+            ++n;
+        } else if (is_upper(p) && is_digit(n)) {
             while (is_upper(p)) {
                 ++p;
             }
