@@ -22,8 +22,6 @@ EXCEPTIONS = {
     'Bldc': (12, 41, PINS),
     'Carousel': (13, 41, PINS),
     'Pid': (5, 44, PINS),
-    'JointPins': (0, 42, PINS),
-    'MotionPins': (9, 42, PINS),
     'Settings': (0, 31, SETTINGS),
     'Status': (0, 45, SETTINGS),
     'Hal': (74, 1, 'the operations on one HAL segment, most of them one call of the core'),
