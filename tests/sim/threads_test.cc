@@ -182,7 +182,7 @@ TEST_P(ThreadModes, G76KeepsDepthAndLeadToItsEnd_C15) {
                                 unit.code, mode, rpm, 12 * u, 5 * u, 1.5 * u, -20 * u, -1 * u, 0.35 * u,
                                 0.9 * u));
                 const double v = 1.5 * rpm / 60;
-                double phase = NAN;
+                double phase = NAN, run_in = 0, stop = 0;
                 int count = 0;
                 for (const double depth : {0.35, 0.7, 0.9}) {
                     for (const Pass &pass : passes_at(11 - depth, 5)) {
@@ -190,6 +190,8 @@ TEST_P(ThreadModes, G76KeepsDepthAndLeadToItsEnd_C15) {
                         const Judged j = judge(pass, 1.5);
                         EXPECT_LE(j.run_in, allowed(GetParam(), shortest_way(v)));
                         EXPECT_LE(j.stop, allowed(GetParam(), shortest_way(v)));
+                        run_in = std::max(run_in, j.run_in);
+                        stop = std::max(stop, j.stop);
                         EXPECT_NEAR(j.length, 25, 1e-9) << "depth is held to the programmed end";
                         const double here = j.phase - std::floor(j.phase);
                         phase = std::isnan(phase) ? here : phase;
@@ -197,6 +199,8 @@ TEST_P(ThreadModes, G76KeepsDepthAndLeadToItsEnd_C15) {
                     }
                 }
                 EXPECT_EQ(count, 4) << "three depths and a spring pass";
+                std::printf("G76 %s %s S%g%s: run-in %.4f, stop %.4f of %.4f\n", unit.code, mode, rpm,
+                            GetParam() ? " jerk" : "", run_in, stop, shortest_way(v));
             }
         }
     }
