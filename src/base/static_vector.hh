@@ -22,7 +22,6 @@ class StaticVector {
     constexpr void clear() noexcept { size_ = 0; }
     constexpr std::size_t size() const noexcept { return size_; }
     constexpr bool empty() const noexcept { return size_ == 0; }
-    constexpr bool isFull() const noexcept { return size_ == N; }
     static constexpr std::size_t capacity() noexcept { return N; }
     constexpr T &operator[](std::size_t i) noexcept { return items_[i]; }
     constexpr const T &operator[](std::size_t i) const noexcept { return items_[i]; }

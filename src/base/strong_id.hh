@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Index types that cannot be mixed up: a joint number is not an axis letter.
+// Index types that cannot be mixed up.
 #pragma once
 
 #include <compare>
@@ -15,8 +15,5 @@ struct StrongId {
     constexpr explicit StrongId(Rep v) noexcept : value(v) {}
     constexpr auto operator<=>(const StrongId &) const noexcept = default;
 };
-
-using JointId = StrongId<struct JointTag>;      ///< a motor, 0..MAX_JOINTS-1
-using SpindleId = StrongId<struct SpindleTag>;  ///< a spindle, 0..MAX_SPINDLES-1
 
 }  // namespace mw

@@ -69,22 +69,6 @@ extern int identityKinematicsInverse(const struct EmcPose *world, double *joint,
                                      const KINEMATICS_INVERSE_FLAGS *iflags,
                                      KINEMATICS_FORWARD_FLAGS *fflags);
 
-/* What a module of several types defines itself. */
-extern int userkKinematicsSetup(const int comp_id, const char *coordinates, kparms *ksetup_parms);
-extern int userkKinematicsForward(const double *joint, struct EmcPose *world,
-                                  const KINEMATICS_FORWARD_FLAGS *fflags, KINEMATICS_INVERSE_FLAGS *iflags);
-extern int userkKinematicsInverse(const struct EmcPose *world, double *joint,
-                                  const KINEMATICS_INVERSE_FLAGS *iflags, KINEMATICS_FORWARD_FLAGS *fflags);
-extern int trtKinematicsSetup(const int comp_id, const char *coordinates, kparms *ksetup_parms);
-extern int xyzacKinematicsForward(const double *joints, EmcPose *pos, const KINEMATICS_FORWARD_FLAGS *fflags,
-                                  KINEMATICS_INVERSE_FLAGS *iflags);
-extern int xyzacKinematicsInverse(const EmcPose *pos, double *joints, const KINEMATICS_INVERSE_FLAGS *iflags,
-                                  KINEMATICS_FORWARD_FLAGS *fflags);
-extern int xyzbcKinematicsForward(const double *joints, EmcPose *pos, const KINEMATICS_FORWARD_FLAGS *fflags,
-                                  KINEMATICS_INVERSE_FLAGS *iflags);
-extern int xyzbcKinematicsInverse(const EmcPose *pos, double *joints, const KINEMATICS_INVERSE_FLAGS *iflags,
-                                  KINEMATICS_FORWARD_FLAGS *fflags);
-
 RTAPI_END_DECLS
 
 /* For modules with one type only. */

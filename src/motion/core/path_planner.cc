@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/overloaded.hh"
+
 namespace mw::motion {
 
 namespace {
@@ -43,7 +45,7 @@ void PathPlanner::update() noexcept {
         if (planner_.take_stuck()) {
             Fault fault;
             fault.kind = FaultKind::NO_WAY_ON;
-            fault.source = pending_count() > 0 ? pending(pending_head_).source : SourceTag{};
+            fault.source = !pending_.isEmpty() ? pending_.oldest().source : SourceTag{};
             channels_.planner_faults.push(fault);
         }
     }
@@ -82,19 +84,20 @@ void PathPlanner::follow_drops() noexcept {
     if (view_.executor.drops == drops_) {
         return;
     }
-    const bool isTrip = view_.probe_trips != probe_trips_ && pending_count() > 0 && view_.epoch == epoch_;
+    const bool isTrip = view_.probe_trips != probe_trips_ && !pending_.isEmpty() && view_.epoch == epoch_;
     complete_moves();
     drops_ = view_.executor.drops;
     probe_trips_ = view_.probe_trips;
-    if (isTrip && pending_count() > 0 && pending(pending_head_).isProbe) {
-        last_done_ = pending(pending_head_).id;
+    if (isTrip && !pending_.isEmpty() && pending_.oldest().isProbe) {
+        last_done_ = pending_.oldest().id;
         answer(last_done_, AnswerKind::DONE, Reason::NONE);
-        ++pending_head_;
+        pending_.drop();
     }
     // An abort has begun a new epoch already; any other stop breaks the path of the present one.
-    isBroken_ = isBroken_ || (pending_count() > 0 && pending(pending_tail_ - 1).epoch == view_.epoch);
-    while (pending_count() > 0) {
-        answer(pending(pending_head_++).id, AnswerKind::STALE, Reason::NONE);
+    isBroken_ = isBroken_ || (!pending_.isEmpty() && pending_.newest().epoch == view_.epoch);
+    while (!pending_.isEmpty()) {
+        answer(pending_.oldest().id, AnswerKind::STALE, Reason::NONE);
+        pending_.drop();
     }
     isPathBegun_ = false;
     wasLocked_ = false;
@@ -105,8 +108,8 @@ void PathPlanner::complete_moves() noexcept {
     if (!isPathBegun_) {
         return;
     }
-    while (pending_count() > 0) {
-        const Pending &p = pending(pending_head_);
+    while (!pending_.isEmpty()) {
+        const PendingCommand &p = pending_.oldest();
         const bool isReached = e.done_move >= p.after_move;
         const bool isStanding =
             e.motion == traj::Motion::REST && e.isSettled && e.done_move >= planner_.last_move();
@@ -121,7 +124,7 @@ void PathPlanner::complete_moves() noexcept {
         }
         last_done_ = p.id;
         answer(p.id, AnswerKind::DONE, Reason::NONE);
-        ++pending_head_;
+        pending_.drop();
     }
 }
 
@@ -132,7 +135,7 @@ bool PathPlanner::take_commands() noexcept {
     for (int n = 0; n < MAX_COMMANDS_PER_UPDATE; ++n) {
         const PathCommand *c = channels_.path.front();
         const bool isRoom =
-            channels_.planner_answers.size() + pending_count() + 2 < channels_.planner_answers.capacity();
+            channels_.planner_answers.size() + pending_.size() + 2 < channels_.planner_answers.capacity();
         if (c == nullptr || !isRoom) {
             break;
         }
@@ -164,9 +167,9 @@ bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
     if (view_.executor.isDropping) {
         return true;
     }
-    const bool isAfterProbe = pending_count() > 0 && pending(pending_tail_ - 1).isProbe;
+    const bool isAfterProbe = !pending_.isEmpty() && pending_.newest().isProbe;
     const bool isProbe = std::holds_alternative<Probe>(c.body);
-    if (isAfterProbe || (isProbe && pending_count() > 0)) {
+    if (isAfterProbe || (isProbe && !pending_.isEmpty())) {
         planner_.release_end();
         return true;
     }
@@ -180,7 +183,7 @@ bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
         return true;
     }
     isQueueFull_ = isPathBegun_ && !planner_.hasRoom(view_.executor);
-    return isQueueFull_ || pending_count() + 2 >= PENDING_CAPACITY;
+    return isQueueFull_ || pending_.size() + 2 >= PendingCommands::CAPACITY;
 }
 
 /// The tolerance that a path of such moves is made for; 0: any suits.
@@ -194,7 +197,7 @@ double PathPlanner::tolerance_of(const PathCommand &c) const noexcept {
 /// Everything that was accepted is driven.
 bool PathPlanner::isIdle() const noexcept {
     const traj::Snapshot &e = view_.executor;
-    return pending_count() == 0 && e.isSettled && e.done_move >= planner_.last_move();
+    return pending_.isEmpty() && e.isSettled && e.done_move >= planner_.last_move();
 }
 
 /// Begins a path if there is none. Jerk limits, and what is made for a tolerance, change only while
@@ -209,44 +212,45 @@ void PathPlanner::begin_path(const PathCommand &c) noexcept {
     }
 }
 
-Reason PathPlanner::accept(const PathCommand &c) noexcept {
-    if (std::holds_alternative<Flush>(c.body)) {
-        if (!isPathBegun_) {
-            last_done_ = c.id;
-            answer(c.id, AnswerKind::DONE, Reason::NONE);
-            return Reason::NONE;
-        }
-        planner_.release_end();
-        add_pending(c, {});
-        pending(pending_tail_ - 1).isFlush = true;
+Reason PathPlanner::accept_flush(const PathCommand &c) noexcept {
+    if (!isPathBegun_) {
+        last_done_ = c.id;
+        answer(c.id, AnswerKind::DONE, Reason::NONE);
         return Reason::NONE;
     }
-    if (!view_.isEnabled || view_.isStopping) {
-        return Reason::NOT_ENABLED;
-    }
-    if (view_.mode != Mode::COORD) {
-        return Reason::WRONG_MODE;
-    }
-    if (std::holds_alternative<RigidTap>(c.body)) {
-        return Reason::RIGID_TAPPING;
-    }
-    begin_path(c);
-    if (const auto *line = std::get_if<Line>(&c.body)) {
-        return accept_line(c, line->end, line->terms);
-    }
-    if (const auto *arc = std::get_if<Arc>(&c.body)) {
-        return accept_arc(c, *arc);
-    }
-    if (const auto *probe = std::get_if<Probe>(&c.body)) {
-        return accept_probe(c, *probe);
-    }
-    if (const auto *output = std::get_if<SynchedDigitalOutput>(&c.body)) {
-        return accept_digital(c, *output);
-    }
-    if (const auto *output = std::get_if<SynchedAnalogOutput>(&c.body)) {
-        return accept_analog(c, *output);
-    }
-    return Reason::NOT_SUPPORTED;
+    planner_.release_end();
+    add_pending(c, {});
+    pending_.newest().isFlush = true;
+    return Reason::NONE;
+}
+
+/// Every path command has its handler here; one that is forgotten does not compile.
+Reason PathPlanner::accept(const PathCommand &c) noexcept {
+    const auto on_path = [&](auto accept_it) {
+        if (!view_.isEnabled || view_.isStopping) {
+            return Reason::NOT_ENABLED;
+        }
+        if (view_.mode != Mode::COORD) {
+            return Reason::WRONG_MODE;
+        }
+        return accept_it();
+    };
+    const auto begun = [&](auto accept_it) {
+        return on_path([&] {
+            begin_path(c);
+            return accept_it();
+        });
+    };
+    const Overloaded handlers{
+        [&](const Flush &) { return accept_flush(c); },
+        [&](const RigidTap &) { return on_path([] { return Reason::RIGID_TAPPING; }); },
+        [&](const Line &line) { return begun([&] { return accept_line(c, line.end, line.terms); }); },
+        [&](const Arc &arc) { return begun([&] { return accept_arc(c, arc); }); },
+        [&](const Probe &probe) { return begun([&] { return accept_probe(c, probe); }); },
+        [&](const SynchedDigitalOutput &output) { return begun([&] { return accept_digital(c, output); }); },
+        [&](const SynchedAnalogOutput &output) { return begun([&] { return accept_analog(c, output); }); },
+    };
+    return std::visit(handlers, c.body);
 }
 
 bool PathPlanner::areSpindlesReady() const noexcept {
@@ -326,7 +330,7 @@ void PathPlanner::follow_steps() noexcept {
 }
 
 void PathPlanner::publish() noexcept {
-    link_.queue_depth.store(pending_count(), std::memory_order_relaxed);
+    link_.queue_depth.store(pending_.size(), std::memory_order_relaxed);
     link_.isQueueFull.store(isQueueFull_ ? 1 : 0, std::memory_order_relaxed);
     link_.last_done_id.store(last_done_, std::memory_order_release);
 }

@@ -3,12 +3,12 @@
 // period; allocates at construction only.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "kins/kinematics.hh"
 #include "motion/api/channels.hh"
 #include "motion/core/path_link.hh"
+#include "motion/core/pending_commands.hh"
 #include "traj/planner.hh"
 
 namespace mw::motion {
@@ -45,16 +45,6 @@ class PathPlanner {
     static constexpr int MAX_COMMANDS_PER_UPDATE = 1024;
 
   private:
-    /// A command that has been accepted and not yet answered.
-    struct Pending {
-        CommandId id = 0;
-        traj::Sequence after_move = 0;  ///< complete when this move is
-        SourceTag source;
-        Epoch epoch = 0;
-        bool isFlush = false, isProbe = false, isTripRequired = false;
-    };
-    static constexpr std::uint32_t PENDING_CAPACITY = 8192;
-
     void follow_controller() noexcept;
     void follow_drops() noexcept;
     void follow_steps() noexcept;
@@ -65,6 +55,7 @@ class PathPlanner {
     double tolerance_of(const PathCommand &c) const noexcept;
     void begin_path(const PathCommand &c) noexcept;
     Reason accept(const PathCommand &c) noexcept;
+    Reason accept_flush(const PathCommand &c) noexcept;
     Reason accept_line(const PathCommand &c, const geom::Pose &end, const MoveTerms &terms) noexcept;
     Reason accept_arc(const PathCommand &c, const Arc &arc) noexcept;
     Reason accept_probe(const PathCommand &c, const Probe &probe) noexcept;
@@ -81,17 +72,13 @@ class PathPlanner {
     void publish() noexcept;
     void answer(CommandId id, AnswerKind kind, Reason reason) noexcept;
 
-    std::uint32_t pending_count() const noexcept { return pending_tail_ - pending_head_; }
-    Pending &pending(std::uint32_t n) noexcept { return pending_[n % PENDING_CAPACITY]; }
-
     PathPlannerConfig config_;
     const kins::Kinematics &kinematics_;
     KinematicsMap map_;
     Channels &channels_;
     PathLink &link_;
     traj::Planner planner_;
-    std::array<Pending, PENDING_CAPACITY> pending_{};
-    std::uint32_t pending_head_ = 0, pending_tail_ = 0;
+    PendingCommands pending_;
 
     PathView view_;
     PathLimits limits_;

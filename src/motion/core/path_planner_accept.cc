@@ -46,12 +46,12 @@ traj::MoveRequest PathPlanner::request_for(const PathCommand &c, const MoveTerms
 }
 
 void PathPlanner::add_pending(const PathCommand &c, const SourceTag &source) noexcept {
-    Pending p;
+    PendingCommand p;
     p.id = c.id;
     p.after_move = planner_.last_move();
     p.source = source;
     p.epoch = c.epoch;
-    pending(pending_tail_++) = p;
+    pending_.add(p);
 }
 
 /// Soft limits over the whole extent, joints where they are not axes.
@@ -164,8 +164,8 @@ Reason PathPlanner::accept_probe(const PathCommand &c, const Probe &probe) noexc
         tag.isProbeAway = probe.isAway;
     }
     planner_.release_end();
-    pending(pending_tail_ - 1).isProbe = true;
-    pending(pending_tail_ - 1).isTripRequired = probe.mustTrip;
+    pending_.newest().isProbe = true;
+    pending_.newest().isTripRequired = probe.mustTrip;
     return Reason::NONE;
 }
 
