@@ -21,7 +21,7 @@ ToolEntry Executor::tool_entry(int index) const {
 
 void Executor::put_tool_entry(int index, const ToolEntry &entry) {
     tool_pending_[index] = entry;
-    canon.set_tool_table_entry(index, entry);
+    canon.take(SetToolTableEntry{index, entry});
 }
 
 bool Executor::find_tool(int toolno, std::uint32_t column, int &index) {
@@ -58,7 +58,7 @@ bool Executor::do_tool_word(const Code &, const BlockValues &values) {
     }
     state.selected_tool = toolno;
     state.selected_index = index;
-    canon.select_tool(toolno);
+    canon.take(SelectTool{toolno});
     return true;
 }
 
@@ -72,9 +72,9 @@ bool Executor::do_change_tool(const Code &, const BlockValues &) {
     for (int i = 0; i < world_.count_spindles(); ++i) {
         SpindleState &spindle = state.spindles[static_cast<std::size_t>(i)];
         spindle.direction = 0;
-        canon.stop_spindle_turning(i);
+        canon.take(StopSpindle{i});
     }
-    canon.change_tool();
+    canon.take(ChangeTool{});
     load_tool(state.selected_index);
     retain_tool_offset();
     outcome = Outcome::SYNC;
@@ -104,7 +104,7 @@ bool Executor::do_tool_number(const Code &, const BlockValues &values) {
     if (!isNone && !find_tool(toolno, values.column_of('q'), index)) {
         return false;
     }
-    canon.change_tool_number(toolno);
+    canon.take(ChangeToolNumber{toolno});
     load_tool(index);
     retain_tool_offset();
     return true;
@@ -115,7 +115,7 @@ void Executor::apply_tool_offset(const Pose &offset, int code) {
     made.tool = offset;
     change_frame(made);
     state.tool_offset_code = code;
-    canon.use_tool_length_offset(offset);
+    canon.take(UseToolLengthOffset{offset});
 }
 
 /// G43 (from the table), G43.1 (from the words), G43.2 (on top of what is there), G49 (none).
@@ -248,7 +248,7 @@ bool Executor::reload_tools() {
     if (state.tool_in_spindle > 0) {
         return fault.set(fmt::format("G10 L0 not allowed with loaded tool <{}>", state.tool_in_spindle));
     }
-    canon.reload_tools();
+    canon.take(ReloadTools{});
     outcome = Outcome::SYNC;
     return true;
 }

@@ -373,9 +373,8 @@ class Executor : public BuiltIns {
     };
     std::optional<Roughed> roughed_;
     std::size_t queued_before_ = 0;
-    std::vector<std::pair<std::size_t, CanonQueue::Record>>
-        patched_;                                      ///< calls that the block changed, as they were
-    bool isProbing_ = false, isWaitingInput_ = false;  ///< results are due at the next synch()
+    std::vector<std::pair<std::size_t, CanonCall>> patched_;  ///< calls that the block changed, as they were
+    bool isProbing_ = false, isWaitingInput_ = false;         ///< results are due at the next synch()
     double returned_ = 0;
     bool isReturned_ = false;
 };
