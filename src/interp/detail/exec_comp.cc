@@ -96,7 +96,7 @@ bool Executor::do_comp(const Code &code, const BlockValues &values) {
         } else if (!find_tool(toolno, values.column_of('d'), index)) {
             return false;
         } else {
-            const ToolEntry entry = tool_entry(index);
+            const ToolEntry entry = tool_table_.entry(index);
             diameter = entry.diameter * machine_to_program();
             state.comp_orientation = entry.orientation;
         }

@@ -54,12 +54,7 @@ void Executor::keep_state() {
 
 void Executor::commit() {
     parameters.commit();
-    if (!tool_pending_.empty()) {
-        for (auto &[index, entry] : tool_pending_) {
-            tool_changes_[index] = entry;
-        }
-        tool_pending_.clear();
-    }
+    tool_table_.commit();
     patched_.clear();
 }
 
@@ -68,7 +63,7 @@ void Executor::rollback() {
         state = before_;
     }
     parameters.rollback();
-    tool_pending_.clear();
+    tool_table_.rollback();
     pending_.reset();
     canon.truncate(queued_before_);
     for (auto entry = patched_.rbegin(); entry != patched_.rend(); ++entry) {
@@ -103,7 +98,7 @@ void Executor::abort_block() {
 
 void Executor::synch() {
     const MachineSnapshot snapshot = world_.snapshot();
-    tool_changes_.clear();
+    tool_table_.forget();
     state.position = frame().to_program(scale_lengths(snapshot.position, machine_to_program()));
     state.probed = frame().to_program(scale_lengths(snapshot.probed_position, machine_to_program()));
     if (isProbing_) {

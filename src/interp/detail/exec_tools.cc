@@ -8,19 +8,8 @@
 
 namespace mw::interp::detail {
 
-/// The table as this program has changed it.
-ToolEntry Executor::tool_entry(int index) const {
-    if (const auto found = tool_pending_.find(index); found != tool_pending_.end()) {
-        return found->second;
-    }
-    if (const auto found = tool_changes_.find(index); found != tool_changes_.end()) {
-        return found->second;
-    }
-    return tools_.entry(index);
-}
-
 void Executor::put_tool_entry(int index, const ToolEntry &entry) {
-    tool_pending_[index] = entry;
+    tool_table_.set(index, entry);
     canon.take(SetToolTableEntry{index, entry});
 }
 
@@ -34,7 +23,7 @@ bool Executor::find_tool(int toolno, std::uint32_t column, int &index) {
 
 /// The tool at `index` is in the spindle; index 0 of a table without random places means none.
 void Executor::load_tool(int index) {
-    const ToolEntry entry = index == 0 && !tools_.isRandom() ? ToolEntry{} : tool_entry(index);
+    const ToolEntry entry = index == 0 && !tools_.isRandom() ? ToolEntry{} : tool_table_.entry(index);
     state.tool_index = index;
     state.tool_in_spindle = entry.toolno > 0 ? entry.toolno : 0;
     state.loaded_offset = entry.offset;
@@ -161,7 +150,7 @@ bool Executor::do_tool_offset(const Code &code, const BlockValues &values) {
         } else if (!find_tool(toolno, values.column_of('h'), index)) {
             return false;
         } else {
-            table = tool_entry(index).offset;
+            table = tool_table_.entry(index).offset;
         }
     }
     apply_tool_offset(offset + scale_lengths(table, machine_to_program()), code.number);
@@ -209,7 +198,7 @@ bool Executor::set_tool_data(int l, const BlockValues &values) {
         return fault.set(fmt::format("G10 L{} needs what it is to set: axis words, R, I, J or Q", l));
     }
     const double to_machine = 1.0 / machine_to_program();
-    ToolEntry entry = tool_entry(index);
+    ToolEntry entry = tool_table_.entry(index);
     if (l == 1) {
         for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
             const char name = geom::AXIS_LETTERS_LOWER[axis];
