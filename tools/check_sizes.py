@@ -1,6 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Checks SPDX lines, file sizes and function sizes. usage: check_sizes.py ROOT; exit status 1 lists what is too long."""
+"""Checks SPDX lines, file sizes, function sizes and names of Python files.
+
+usage: check_sizes.py ROOT; exit status 1 lists the findings. A Python file with the name of a standard module takes that
+module's place for every program in its folder.
+"""
 import pathlib
 import re
 import subprocess
@@ -51,6 +55,9 @@ def main():
         checked += 1
         if 'SPDX-License-Identifier: GPL-2.0-or-later' not in '\n'.join(text.splitlines()[:5]):
             print(f'{name}:1: no SPDX line')
+            failures += 1
+        if path.suffix == '.py' and path.stem in sys.stdlib_module_names:
+            print(f'{name}:1: a standard module of Python has this name')
             failures += 1
         if path.suffix not in SOURCES:
             continue

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -190,19 +191,12 @@ class Checker {
 
     /// A line of a loop is told once.
     void report_impossible(const MissingAbility &missing) {
-        const std::string &file = preview_->file(event_->file);
-        const bool isKnown = std::ranges::any_of(result.impossible, [&](const Error &error) {
-            return error.place.line == event_->line && error.place.file == file;
-        });
-        if (isKnown || result.impossible.size() >= MAX_CHECK_ERRORS) {
+        if (!impossible_.emplace(event_->file, event_->line).second) {
             return;
         }
         const int column = column_of_code(preview_->line_text(event_->file, event_->line), missing.code);
-        Error error{fmt::format("a machine of this version cannot {} ({})", missing.what, missing.code),
-                    {file, event_->line, column},
-                    std::string(missing.remedy)};
-        report(error.message, error.hint, column);
-        result.impossible.push_back(std::move(error));
+        report(fmt::format("a machine of this version cannot {} ({})", missing.what, missing.code),
+               std::string(missing.remedy), column);
     }
 
     /// One message for each line, not for each axis.
@@ -226,6 +220,7 @@ class Checker {
     const interp::Preview *preview_ = nullptr;
     const interp::PreviewEvent *event_ = nullptr;
     int reported_line_ = -1;
+    std::set<std::pair<std::uint32_t, int>> impossible_;  ///< file and line of what was told
 };
 
 interp::PreviewMachine stand_of(const MachineConfig &machine) {

@@ -24,8 +24,6 @@ struct CheckResult {
     bool hasMoves = false;
     bool isCancelled = false;         ///< `progress` has ended it
     std::optional<TimeFigures> time;  ///< of a whole program without errors
-    /// What no machine of this version can do, in the order of the program; in the sink, too.
-    std::vector<Error> impossible;
 };
 
 struct CheckOptions {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "tool/table.hh"
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -180,30 +181,8 @@ bool isSameTool(const ToolEntry &a, const ToolEntry &b) {
 
 }  // namespace
 
-Result<Table> Table::parse(std::string_view text, const std::string &path) {
-    Table table;
-    int number = 0;
-    for (const std::string &content : lines_of(text)) {
-        ++number;
-        Line line{content, 0, false};
-        if (hasTool(content)) {
-            const Result<ToolEntry> entry = LineParser(content, {path, number, 0}).parse();
-            if (!entry) {
-                return std::unexpected(entry.error());
-            }
-            if (table.index_of_tool(entry->toolno) > 0) {
-                return fail(fmt::format("tool {} is in the table twice", entry->toolno), {path, number, 1});
-            }
-            line.entry = table.count();
-            table.entries_.push_back(*entry);
-        }
-        table.lines_.push_back(std::move(line));
-    }
-    return table;
-}
-
-Table Table::parse_leniently(std::string_view text, const std::string &path, diag::Sink &sink) {
-    Table table;
+std::vector<Error> Table::take_lines(std::string_view text, const std::string &path) {
+    std::vector<Error> bad;
     int number = 0;
     for (const std::string &content : lines_of(text)) {
         ++number;
@@ -211,14 +190,39 @@ Table Table::parse_leniently(std::string_view text, const std::string &path, dia
         if (hasTool(content)) {
             const Result<ToolEntry> entry = LineParser(content, {path, number, 0}).parse();
             if (entry) {
-                line.entry = table.count();
-                table.entries_.push_back(*entry);
+                line.entry = count();
+                entries_.push_back(*entry);
             } else {
-                sink.warning(entry.error().message + ": the line is skipped", entry.error().place,
-                             entry.error().hint);
+                bad.push_back(entry.error());
             }
         }
-        table.lines_.push_back(std::move(line));
+        lines_.push_back(std::move(line));
+    }
+    return bad;
+}
+
+Result<Table> Table::parse(std::string_view text, const std::string &path) {
+    Table table;
+    std::vector<Error> bad = table.take_lines(text, path);
+    for (std::size_t i = 0; i < table.lines_.size(); ++i) {
+        const int index = table.lines_[i].entry;
+        if (index > 0 && table.index_of_tool(table.entry(index).toolno) < index) {
+            bad.push_back({fmt::format("tool {} is in the table twice", table.entry(index).toolno),
+                           {path, static_cast<int>(i) + 1, 1},
+                           {}});
+        }
+    }
+    if (!bad.empty()) {
+        return std::unexpected(
+            *std::ranges::min_element(bad, {}, [](const Error &e) { return e.place.line; }));
+    }
+    return table;
+}
+
+Table Table::parse_leniently(std::string_view text, const std::string &path, diag::Sink &sink) {
+    Table table;
+    for (const Error &error : table.take_lines(text, path)) {
+        sink.warning(error.message + ": the line is skipped", error.place, error.hint);
     }
     table.check(path, sink);
     return table;

@@ -51,6 +51,8 @@ class Table {
         bool isChanged = false;
     };
     void clear_spindle();
+    /// Takes the good lines, and all as text; what is wrong with the others.
+    std::vector<Error> take_lines(std::string_view text, const std::string &path);
     void check(const std::string &path, diag::Sink &sink);
     void check_twice(std::size_t later, const std::vector<int> &line_of, const std::string &path,
                      diag::Sink &sink);

@@ -59,6 +59,24 @@ TEST(PathMonitor, DeviationIsMeasuredInOrder) {
     EXPECT_NEAR(monitor.figures().cutting_length, 20.0, 1e-12);
 }
 
+TEST(PathMonitor, MovesOfRotaryAxesAloneAreDegreesAndNoLength_D12) {
+    PathMonitor monitor(1000000);
+    monitor.start(at(0, 0));
+    motion::Line line;
+    line.terms.type = motion::MotionType::TRAVERSE;
+    line.end = at(0, 0, 0, 90);
+    monitor.on_move(1, line);
+    line.end = at(10, 0, 0, 45);  // along with X the length is that of X
+    monitor.on_move(2, line);
+    line.terms.type = motion::MotionType::FEED;
+    line.end = at(10, 0, 0, 15);
+    monitor.on_move(3, line);
+    EXPECT_NEAR(monitor.figures().rapid_length, 10.0, 1e-12);
+    EXPECT_NEAR(monitor.figures().rapid_angle_deg, 90.0, 1e-12);
+    EXPECT_NEAR(monitor.figures().cutting_length, 0.0, 1e-12);
+    EXPECT_NEAR(monitor.figures().cutting_angle_deg, 30.0, 1e-12);
+}
+
 TEST(PathMonitor, LinesThatThePlannerHasJoinedAreAllLookedAt_C2) {
     PathMonitor monitor(1000000);
     monitor.start(at(0, 0));

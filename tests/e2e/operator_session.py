@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A person at the terminal of `millwright run --realtime`, as a pseudo terminal: asks first, keys answer, stops hold (D3).
 
-usage: operator.py MILLWRIGHT HALCMD ROOT
+usage: operator_session.py MILLWRIGHT HALCMD ROOT
 """
 import os
 import pathlib
