@@ -7,11 +7,10 @@
 
 #include "interp/interpreter.hh"
 #include "interp/machine_frame.hh"
-#include "interp/quiet_canon.hh"
 
 namespace mw::fuzz {
 
-class NullMachine : public interp::QuietMachineCanon,
+class NullMachine : public interp::MachineCanon,
                     public interp::World,
                     public interp::ToolSource,
                     public interp::ParameterSource {
@@ -26,9 +25,17 @@ class NullMachine : public interp::QuietMachineCanon,
         }
     }
 
-    void line(const interp::LineMove &move) override { state_.position = move.end; }
-    void arc(const interp::ArcMove &move) override { state_.position = move.end; }
-    void probe(const interp::LineMove &move, interp::ProbeKind) override { state_.position = move.end; }
+    void begin_block(const interp::BlockRef &) override {}
+    /// Stands at the end of each move; all else is done as soon as it is asked for.
+    void take(const interp::MachineCall &call) override {
+        if (const auto *line = std::get_if<interp::LineMove>(&call)) {
+            state_.position = line->end;
+        } else if (const auto *arc = std::get_if<interp::ArcMove>(&call)) {
+            state_.position = arc->end;
+        } else if (const auto *probe = std::get_if<interp::ProbeMove>(&call)) {
+            state_.position = probe->end;
+        }
+    }
 
     interp::MachineSnapshot snapshot() const override { return state_; }
     interp::LengthUnits machine_units() const override { return interp::LengthUnits::MM; }

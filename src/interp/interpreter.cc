@@ -54,7 +54,7 @@ Result<> Interpreter::begin() {
     if (Result<> begun = impl_->flow.begin_scripts(); !begun) {
         return begun;
     }
-    executor.canon.on_reset();
+    executor.canon.take(OnReset{});
     executor.canon.flush(impl_->target);
     if (!impl_->settings.startup_code.empty() && execute(impl_->settings.startup_code) == Step::FAILED) {
         Error error = impl_->flow.error().what;

@@ -2,9 +2,7 @@
 // The canon in machine coordinates: what a program does to the machine, with all frames and units resolved.
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <string_view>
+#include <variant>
 
 #include "geom/pose.hh"
 #include "interp/canon.hh"
@@ -43,60 +41,60 @@ struct ArcMove {
     MoveSettings settings;
 };
 
-/// One program in machine coordinates. Everything that is not a move keeps its order between moves.
-/// Default bodies forward nothing: an implementation overrides what it needs; `other` sees each remaining
-/// call.
+/// Straight, until the probe trips.
+struct ProbeMove {
+    Pose end;  ///< machine coordinates
+    MoveSettings settings;
+    ProbeKind kind = ProbeKind::TOWARD_ERROR;
+};
+
+/// To `end` in step with the spindle, and back to where it began.
+struct TapMove {
+    Pose end;  ///< machine coordinates
+    MoveSettings settings;
+    double scale = 1;  ///< speed of the way back as a multiple of that of the way in
+};
+
+/// The tool offset in force from here on.
+struct UseToolOffset {
+    Pose offset;  ///< [machine units, degrees]
+};
+
+/// Coordinate systems in force from here on, for status displays.
+struct UseOffsets {
+    int g5x_index = 1;
+    Pose g5x, g92;  ///< [machine units, degrees]
+    double rotation_xy_deg = 0;
+};
+
+/// G64 R: from here on motion is planned with jerk limits, or without. The corner speed is in MoveSettings.
+struct UsePlanner {
+    bool isSmooth = false;
+};
+
+struct UseSpindleSpeed {
+    int spindle = 0;
+    double speed = 0;         ///< [rev/min; under constant surface speed surface units/min]
+    double surface_unit = 0;  ///< the metre or foot of a surface speed [machine units]
+};
+
+/// One call in machine coordinates. What is not a move keeps its order between moves. Alternatives of
+/// CanonCall that stand here as well have nothing in them that a frame changes.
+using MachineCall =
+    std::variant<LineMove, ArcMove, ProbeMove, TapMove, Dwell, UseToolOffset, UseOffsets, UsePlanner,
+                 SetSpindleMode, UseSpindleSpeed, StartSpindle, StopSpindle, OrientSpindle,
+                 WaitOrientComplete, SelectTool, ChangeTool, ChangeToolNumber, SetToolTableEntry, ReloadTools,
+                 SwitchMist, SwitchFlood, SwitchFeedOverride, SwitchSpeedOverride, SwitchFeedHold,
+                 SwitchAdaptiveFeed, SetDigitalOutput, SetAnalogOutput, WaitInput, ProgramStop, ProgramEnd,
+                 PalletShuttle, Finish, UserCode, ProgramComment, OperatorMessage, PrintLine, OpenLog,
+                 LogLine, CloseLog, LogProbes, CanonError>;
+
+/// Takes one program in machine coordinates.
 class MachineCanon {
   public:
     virtual ~MachineCanon() = default;
     virtual void begin_block(const BlockRef &block) = 0;
-    virtual void line(const LineMove &move) = 0;
-    virtual void arc(const ArcMove &move) = 0;
-    virtual void probe(const LineMove &move, ProbeKind kind) = 0;
-    virtual void rigid_tap(const LineMove &move, double scale) = 0;
-    virtual void dwell(double seconds) = 0;
-    /// The tool offset in force from here on [machine units].
-    virtual void tool_offset(const Pose &offset) = 0;
-    /// Coordinate systems in force from here on [machine units], for status displays.
-    virtual void offsets(int g5x_index, const Pose &g5x, const Pose &g92, double rotation_xy_deg) = 0;
-    /// G64 R: from here on motion is planned with jerk limits, or without. The corner speed is in
-    /// MoveSettings.
-    virtual void planner_mode(bool isSmooth) { static_cast<void>(isSmooth); }
-    virtual void set_spindle_mode(int spindle, double css_max_rpm) = 0;
-    /// [rev/min]; with a css_max_rpm the surface speed in metres or feet a minute, each of
-    /// `surface_unit` machine units.
-    virtual void set_spindle_speed(int spindle, double speed, double surface_unit) = 0;
-    virtual void spindle_on(int spindle, int direction, bool isWaiting) = 0;  ///< direction +1 cw, -1 ccw
-    virtual void spindle_off(int spindle) = 0;
-    virtual void orient_spindle(int spindle, double angle_deg, int mode) = 0;
-    virtual void wait_orient_complete(int spindle, double timeout_s) = 0;
-    virtual void select_tool(int toolno) = 0;
-    virtual void change_tool() = 0;
-    virtual void change_tool_number(int toolno) = 0;
-    virtual void set_tool_table_entry(int index, const ToolEntry &entry) = 0;  ///< lengths in machine units
-    virtual void coolant(bool isMist, bool isOn) = 0;
-    virtual void feed_override(bool isEnabled) = 0;
-    virtual void speed_override(int spindle, bool isEnabled) = 0;
-    virtual void feed_hold(bool isEnabled) = 0;
-    virtual void adaptive_feed(bool isEnabled) = 0;
-    virtual void set_digital_output(int index, bool isOn, bool isSynched) = 0;
-    virtual void set_analog_output(int index, double value, bool isSynched) = 0;
-    virtual void wait_input(int index, bool isAnalog, WaitKind kind, double timeout_s) = 0;
-    virtual void program_stop() = 0;
-    virtual void optional_program_stop() = 0;
-    virtual void program_end() = 0;
-    virtual void pallet_shuttle() = 0;
-    virtual void finish() = 0;
-    virtual void comment(std::string_view text) = 0;
-    virtual void message(std::string_view text) = 0;
-    virtual void print(std::string_view text) = 0;
-    virtual void log_open(std::string_view path, bool isAppending) = 0;
-    virtual void log(std::string_view text) = 0;
-    virtual void log_close() = 0;
-    virtual void probe_log(std::string_view) {}
-    virtual void reload_tools() {}
-    virtual void canon_error(std::string_view text) = 0;
-    virtual void user_m_code(int code, double p, double q) = 0;
+    virtual void take(const MachineCall &call) = 0;
 };
 
 }  // namespace mw::interp

@@ -75,70 +75,86 @@ Pose MachineFrame::to_program(const Pose &machine) const {
                                  1.0 / length_factor());
 }
 
-void MachineFrame::use_length_units(LengthUnits units) {
-    units_ = units;
+void MachineFrame::take(const CanonCall &call) {
+    std::visit(
+        Overloaded{
+            [this](const OneOf<UseLengthUnits, SelectPlane, SetFeedRate, SetFeedMode, SetMotionControlMode,
+                               SetNaivecamTolerance, StartSpeedFeedSynch, StopSpeedFeedSynch> auto &one) {
+                follow(one);
+            },
+            [this](const OneOf<SetG5xOffset, SetG92Offset, SetXyRotation, UseToolLengthOffset, SetPlannerMode,
+                               StraightTraverse, StraightFeed, ArcFeed, NurbsFeed, StraightProbe, RigidTap,
+                               SetSpindleSpeed> auto &one) { convert(one); },
+            [this](const OneOf<SetSpindleMode, StartSpindle> auto &one) {
+                if (hasSpindle(one.spindle)) {
+                    target_.take(one);
+                }
+            },
+            [this](const OneOf<Dwell, StopSpindle, OrientSpindle, WaitOrientComplete, SelectTool, ChangeTool,
+                               ChangeToolNumber, SetToolTableEntry, ReloadTools, SwitchMist, SwitchFlood,
+                               SwitchFeedOverride, SwitchSpeedOverride, SwitchFeedHold, SwitchAdaptiveFeed,
+                               SetDigitalOutput, SetAnalogOutput, WaitInput, ProgramStop, ProgramEnd,
+                               PalletShuttle, Finish, UserCode, ProgramComment, OperatorMessage, PrintLine,
+                               OpenLog, LogLine, CloseLog, LogProbes, CanonError> auto &one) {
+                target_.take(one);
+            },
+            [](const OneOf<OnReset, SetFeedReference> auto &) {},
+        },
+        call);
 }
 
 void MachineFrame::announce_offsets() {
-    target_.offsets(g5x_index_, g5x_, g92_, rotation_deg_);
+    target_.take(UseOffsets{g5x_index_, g5x_, g92_, rotation_deg_});
 }
 
-void MachineFrame::set_g5x_offset(int index, const Pose &offset) {
-    g5x_index_ = index;
-    g5x_ = to_machine_units(offset);
+void MachineFrame::convert(const SetG5xOffset &call) {
+    g5x_index_ = call.index;
+    g5x_ = to_machine_units(call.offset);
     announce_offsets();
 }
 
-void MachineFrame::set_g92_offset(const Pose &offset) {
-    g92_ = to_machine_units(offset);
+void MachineFrame::convert(const SetG92Offset &call) {
+    g92_ = to_machine_units(call.offset);
     announce_offsets();
 }
 
-void MachineFrame::set_xy_rotation(double angle_deg) {
-    rotation_deg_ = angle_deg;
+void MachineFrame::convert(const SetXyRotation &call) {
+    rotation_deg_ = call.angle_deg;
     announce_offsets();
 }
 
-void MachineFrame::use_tool_length_offset(const Pose &offset) {
-    tool_ = to_machine_units(offset);
-    target_.tool_offset(tool_);
-}
-
-void MachineFrame::set_feed_rate(double rate) {
-    feed_ = rate * length_factor();
+void MachineFrame::convert(const UseToolLengthOffset &call) {
+    tool_ = to_machine_units(call.offset);
+    target_.take(UseToolOffset{tool_});
 }
 
 bool MachineFrame::hasSpindle(int spindle) {
     if (spindle >= 0 && spindle < MAX_SPINDLES) {
         return true;
     }
-    target_.canon_error("There is no spindle " + std::to_string(spindle) + ": 0 to " +
-                        std::to_string(MAX_SPINDLES - 1));
+    target_.take(CanonError{"There is no spindle " + std::to_string(spindle) + ": 0 to " +
+                            std::to_string(MAX_SPINDLES - 1)});
     return false;
 }
 
-void MachineFrame::set_feed_mode(int spindle, FeedMode mode) {
-    if (!hasSpindle(spindle)) {
+void MachineFrame::follow(const SetFeedMode &call) {
+    if (!hasSpindle(call.spindle)) {
         return;
     }
-    feed_mode_ = mode;
-    if (mode == FeedMode::UNITS_PER_REVOLUTION) {
-        synch_spindle_ = spindle;
+    feed_mode_ = call.mode;
+    if (call.mode == FeedMode::UNITS_PER_REVOLUTION) {
+        synch_spindle_ = call.spindle;
     }
 }
 
-void MachineFrame::set_motion_control_mode(MotionControl mode, double tolerance) {
-    control_ = mode;
-    tolerance_ = tolerance * length_factor();
+void MachineFrame::follow(const SetMotionControlMode &call) {
+    control_ = call.mode;
+    tolerance_ = call.tolerance * length_factor();
 }
 
-void MachineFrame::set_naivecam_tolerance(double tolerance) {
-    naivecam_ = tolerance * length_factor();
-}
-
-void MachineFrame::set_planner_mode(int type, double peak_scale) {
-    corner_scale_ = type != 0 ? peak_scale : 0.0;
-    target_.planner_mode(type != 0);
+void MachineFrame::convert(const SetPlannerMode &call) {
+    corner_scale_ = call.type != 0 ? call.peak_scale : 0.0;
+    target_.take(UsePlanner{call.type != 0});
 }
 
 /// `isLinear` is false for moves of A, B and C alone, whose feed is in degrees.
@@ -168,16 +184,16 @@ MoveSettings MachineFrame::settings(FeedKind kind, bool isLinear) const {
     return out;
 }
 
-void MachineFrame::straight_traverse(const Pose &end) {
-    const Pose to = to_machine(end);
-    target_.line({to, settings(FeedKind::RAPID, true)});
+void MachineFrame::convert(const StraightTraverse &call) {
+    const Pose to = to_machine(call.end);
+    target_.take(LineMove{to, settings(FeedKind::RAPID, true)});
     position_ = to;
 }
 
-void MachineFrame::straight_feed(const Pose &end) {
+void MachineFrame::feed_to(const Pose &end) {
     const Pose to = to_machine(end);
     const FeedLength way = feed_length(position_, to);
-    target_.line({to, settings(FeedKind::FEED, way.isLinear)});
+    target_.take(LineMove{to, settings(FeedKind::FEED, way.isLinear)});
     position_ = to;
 }
 
@@ -207,20 +223,20 @@ void MachineFrame::turn(ArcMove &move, const ArcFeed &arc) const {
     move.angle_rad = angle;
 }
 
-void MachineFrame::arc_feed(const ArcFeed &arc) {
+void MachineFrame::convert(const ArcFeed &arc) {
     if (arc.rotation == 0) {
-        straight_feed(arc.end);
+        feed_to(arc.end);
         return;
     }
     ArcMove move;
     move.end = to_machine(arc.end);
     turn(move, arc);
     move.settings = settings(FeedKind::FEED, true);
-    target_.arc(move);
+    target_.take(move);
     position_ = move.end;
 }
 
-void MachineFrame::nurbs_feed(const NurbsFeed &nurbs) {
+void MachineFrame::convert(const NurbsFeed &nurbs) {
     // Far below what a machine can resolve.
     constexpr double TOLERANCE_MM = 0.0002;
     const PlaneAxes axes = axes_of(plane_);
@@ -234,58 +250,50 @@ void MachineFrame::nurbs_feed(const NurbsFeed &nurbs) {
             end[axes.first] = piece.first_end;
             end[axes.second] = piece.second_end;
         }
-        if (piece.rotation == 0) {
-            straight_feed(end);
-        } else {
-            arc_feed({end[axes.first], end[axes.second], piece.first_centre, piece.second_centre,
-                      piece.rotation, end[axes.normal], end});
-        }
+        convert(ArcFeed{end[axes.first], end[axes.second], piece.first_centre, piece.second_centre,
+                        piece.rotation, end[axes.normal], end});
     }
 }
 
-void MachineFrame::straight_probe(const Pose &end, ProbeKind kind) {
-    const Pose to = to_machine(end);
+void MachineFrame::convert(const StraightProbe &call) {
+    const Pose to = to_machine(call.end);
     const FeedLength way = feed_length(position_, to);
-    target_.probe({to, settings(FeedKind::FEED, way.isLinear)}, kind);
+    target_.take(ProbeMove{to, settings(FeedKind::FEED, way.isLinear), call.kind});
     position_ = to;
 }
 
-void MachineFrame::rigid_tap(double x, double y, double z, double scale) {
+void MachineFrame::convert(const RigidTap &call) {
     Pose end = to_program(position_);
-    end[geom::AXIS_X] = x;
-    end[geom::AXIS_Y] = y;
-    end[geom::AXIS_Z] = z;
+    end[geom::AXIS_X] = call.x;
+    end[geom::AXIS_Y] = call.y;
+    end[geom::AXIS_Z] = call.z;
     const Pose to = to_machine(end);
     const FeedLength way = feed_length(position_, to);
-    target_.rigid_tap({to, settings(FeedKind::RIGID_TAP, way.isLinear)}, scale);
+    target_.take(TapMove{to, settings(FeedKind::RIGID_TAP, way.isLinear), call.scale});
     // The tool comes back to where it began: the position stays.
 }
 
-void MachineFrame::start_speed_feed_synch(int spindle, double feed_per_revolution, bool isVelocityMode) {
-    if (!hasSpindle(spindle)) {
+void MachineFrame::follow(const StartSpeedFeedSynch &call) {
+    if (!hasSpindle(call.spindle)) {
         return;
     }
-    synch_spindle_ = spindle;
-    synch_feed_ = feed_per_revolution * length_factor();
-    isVelocitySynched_ = isVelocityMode;
+    synch_spindle_ = call.spindle;
+    synch_feed_ = call.feed_per_revolution * length_factor();
+    isVelocitySynched_ = call.isVelocityMode;
 }
 
-void MachineFrame::stop_speed_feed_synch() {
+void MachineFrame::follow(const StopSpeedFeedSynch &) {
     synch_feed_ = 0.0;
     isVelocitySynched_ = false;
 }
 
-void MachineFrame::set_spindle_speed(int spindle, double speed) {
-    if (!hasSpindle(spindle)) {
+void MachineFrame::convert(const SetSpindleSpeed &call) {
+    if (!hasSpindle(call.spindle)) {
         return;
     }
     constexpr double MM_IN_METRE = 1000.0, INCHES_IN_FOOT = 12.0;
     const double length = units_ == LengthUnits::INCH ? INCHES_IN_FOOT : MM_IN_METRE;
-    target_.set_spindle_speed(spindle, speed, length * length_factor());
-}
-
-void MachineFrame::set_tool_table_entry(int index, const ToolEntry &entry) {
-    target_.set_tool_table_entry(index, entry);
+    target_.take(UseSpindleSpeed{call.spindle, call.speed, length * length_factor()});
 }
 
 }  // namespace mw::interp

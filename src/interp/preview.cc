@@ -10,7 +10,6 @@
 #include "base/text.hh"
 #include "interp/detail/frame.hh"
 #include "interp/machine_frame.hh"
-#include "interp/quiet_canon.hh"
 #include "interp/surface_speed.hh"
 
 namespace mw::interp {
@@ -68,7 +67,7 @@ double arc_radius(const ArcMove &arc, const Pose &start) {
 
 }  // namespace
 
-class Preview::Impl final : public QuietMachineCanon, public World {
+class Preview::Impl final : public MachineCanon, public World {
   public:
     Impl(PreviewMachine machine, ToolSource &tools, ParameterSource &parameters, PreviewOptions options,
          Listener listener)
@@ -119,75 +118,42 @@ class Preview::Impl final : public QuietMachineCanon, public World {
         place_.call_level = block.call_level;
         place_.section = block.call_level > 0 ? sections_.number_of(interpreter_.subroutine()) : section_;
     }
-    void line(const LineMove &move) override {
-        add_move(move.settings.kind == FeedKind::RAPID ? PreviewKind::RAPID : PreviewKind::FEED, move.end,
-                 move.settings);
-    }
-    void arc(const ArcMove &move) override {
-        PreviewEvent event = place_;
-        event.kind = PreviewKind::ARC;
-        event.centre = convert(move.centre);
-        event.normal = convert_direction(move.normal);
-        event.angle_rad = move.angle_rad;
-        event.settings = move.settings;
-        go_to(event, move.end, std::abs(move.angle_rad) * arc_radius(move, position_));
-    }
-    void probe(const LineMove &move, ProbeKind) override {
-        add_move(PreviewKind::PROBE, move.end, move.settings);
-        tell_unknown("the result of a probe");
-    }
-    void wait_input(int, bool, WaitKind, double) override { tell_unknown("an input (M66)"); }
-    void rigid_tap(const LineMove &move, double) override {
-        const Pose back = position_;
-        add_move(PreviewKind::RIGID_TAP, move.end, move.settings);
-        position_ = back;
-    }
-    void dwell(double seconds) override { add_standing(PreviewKind::DWELL, 0, seconds); }
-    void tool_offset(const Pose &offset) override { tool_offset_ = offset; }
-    void offsets(int, const Pose &g5x, const Pose &g92, double rotation_deg) override {
-        g5x_ = g5x;
-        g92_ = g92;
-        rotation_deg_ = rotation_deg;
-    }
-    void planner_mode(bool isSmooth) override { add_standing(PreviewKind::PLANNER, isSmooth ? 1 : 0, 0); }
-    void set_spindle_mode(int spindle, double css_max_rpm) override {
-        spindles_[static_cast<std::size_t>(spindle)].css_max_rpm = css_max_rpm;
-    }
-    void set_spindle_speed(int spindle, double speed, double surface_unit) override {
-        SpindleState &state = spindles_[static_cast<std::size_t>(spindle)];
-        state.speed = std::abs(speed);
-        state.surface_unit = surface_unit;
-    }
-    void select_tool(int toolno) override { selected_ = toolno; }
-    void change_tool() override {
-        change_tool_number(selected_ >= 0 ? std::exchange(selected_, -1) : tool_);
-        if (machine_.tool_change_moves) {
-            MoveSettings rapid;
-            rapid.kind = FeedKind::RAPID;
-            for (const Pose &end : machine_.tool_change_moves(position_)) {
-                place_.isByMachine = true;
-                add_move(PreviewKind::RAPID, end, rapid);
-                place_.isByMachine = false;
-            }
-            frame_.set_position(position_);
-        }
-    }
-    void change_tool_number(int toolno) override {
-        tool_ = toolno;
-        add_standing(PreviewKind::TOOL_CHANGE, toolno, 0);
-    }
-    void program_stop() override { add_standing(PreviewKind::STOP, 0, 0); }
-    void optional_program_stop() override { program_stop(); }
-    void pallet_shuttle() override { program_stop(); }
-    void comment(std::string_view text) override {
-        if (const std::string_view name = section_name(text); !name.empty()) {
-            section_ = sections_.number_of(name);
-        }
-    }
-    void canon_error(std::string_view text) override {
-        if (sink_ != nullptr) {
-            sink_->error(std::string(text), {files_.name(place_.file), place_.line, 0});
-        }
+    void take(const MachineCall &call) override {
+        std::visit(
+            Overloaded{
+                [this](const OneOf<ArcMove, TapMove, ChangeTool, ChangeToolNumber, ProgramComment,
+                                   CanonError> auto &one) { show(one); },
+                [this](const LineMove &move) {
+                    add_move(move.settings.kind == FeedKind::RAPID ? PreviewKind::RAPID : PreviewKind::FEED,
+                             move.end, move.settings);
+                },
+                [this](const ProbeMove &move) {
+                    add_move(PreviewKind::PROBE, move.end, move.settings);
+                    tell_unknown("the result of a probe");
+                },
+                [this](const WaitInput &) { tell_unknown("an input (M66)"); },
+                [this](const Dwell &dwell) { add_standing(PreviewKind::DWELL, 0, dwell.seconds); },
+                [this](const UsePlanner &one) {
+                    add_standing(PreviewKind::PLANNER, one.isSmooth ? 1 : 0, 0);
+                },
+                [this](const UseToolOffset &one) { tool_offset_ = one.offset; },
+                [this](const UseOffsets &one) { offsets_ = one; },
+                [this](const SetSpindleMode &one) { spindle(one.spindle).css_max_rpm = one.css_max_rpm; },
+                [this](const UseSpindleSpeed &one) {
+                    spindle(one.spindle).speed = std::abs(one.speed);
+                    spindle(one.spindle).surface_unit = one.surface_unit;
+                },
+                [this](const SelectTool &one) { selected_ = one.toolno; },
+                [this](const OneOf<ProgramStop, PalletShuttle> auto &) {
+                    add_standing(PreviewKind::STOP, 0, 0);
+                },
+                [](const OneOf<StartSpindle, StopSpindle, OrientSpindle, WaitOrientComplete,
+                               SetToolTableEntry, ReloadTools, SwitchMist, SwitchFlood, SwitchFeedOverride,
+                               SwitchSpeedOverride, SwitchFeedHold, SwitchAdaptiveFeed, SetDigitalOutput,
+                               SetAnalogOutput, ProgramEnd, Finish, UserCode, OperatorMessage, PrintLine,
+                               OpenLog, LogLine, CloseLog, LogProbes> auto &) {},
+            },
+            call);
     }
 
     // World: everything is where the program put it, probes trip at their end.
@@ -205,6 +171,51 @@ class Preview::Impl final : public QuietMachineCanon, public World {
     bool isOptionalStopOn() const override { return true; }
 
   private:
+    struct SpindleState {
+        double speed = 0, surface_unit = 0, css_max_rpm = 0;
+    };
+    void show(const ArcMove &move) {
+        PreviewEvent event = place_;
+        event.kind = PreviewKind::ARC;
+        event.centre = convert(move.centre);
+        event.normal = convert_direction(move.normal);
+        event.angle_rad = move.angle_rad;
+        event.settings = move.settings;
+        go_to(event, move.end, std::abs(move.angle_rad) * arc_radius(move, position_));
+    }
+    void show(const TapMove &move) {
+        const Pose back = position_;
+        add_move(PreviewKind::RIGID_TAP, move.end, move.settings);
+        position_ = back;
+    }
+    void show(const ChangeTool &) {
+        show(ChangeToolNumber{selected_ >= 0 ? std::exchange(selected_, -1) : tool_});
+        if (machine_.tool_change_moves) {
+            MoveSettings rapid;
+            rapid.kind = FeedKind::RAPID;
+            for (const Pose &end : machine_.tool_change_moves(position_)) {
+                place_.isByMachine = true;
+                add_move(PreviewKind::RAPID, end, rapid);
+                place_.isByMachine = false;
+            }
+            frame_.set_position(position_);
+        }
+    }
+    void show(const ChangeToolNumber &call) {
+        tool_ = call.toolno;
+        add_standing(PreviewKind::TOOL_CHANGE, call.toolno, 0);
+    }
+    void show(const ProgramComment &comment) {
+        if (const std::string_view name = section_name(comment.text); !name.empty()) {
+            section_ = sections_.number_of(name);
+        }
+    }
+    void show(const CanonError &error) {
+        if (sink_ != nullptr) {
+            sink_->error(error.text, {files_.name(place_.file), place_.line, 0});
+        }
+    }
+
     static Settings with_budget(Settings settings, const PreviewOptions &options) {
         settings.statement_budget = options.statement_budget;
         settings.idle_budget = options.idle_budget;
@@ -264,7 +275,7 @@ class Preview::Impl final : public QuietMachineCanon, public World {
     }
     Pose convert_direction(Pose direction) const {
         if (options_.coordinates == PreviewCoordinates::PROGRAM) {
-            detail::rotate_xy(direction, -rotation_deg_);
+            detail::rotate_xy(direction, -offsets_.rotation_xy_deg);
         }
         return direction;
     }
@@ -291,7 +302,8 @@ class Preview::Impl final : public QuietMachineCanon, public World {
         if (!(state.css_max_rpm > 0)) {
             return state.speed;
         }
-        const double radius = std::abs(x - centre_line_x(g5x_, g92_, rotation_deg_, tool_offset_));
+        const double radius =
+            std::abs(x - centre_line_x(offsets_.g5x, offsets_.g92, offsets_.rotation_xy_deg, tool_offset_));
         const double factor = surface_speed_factor(state.speed, state.surface_unit);
         return factor < state.css_max_rpm * radius ? factor / radius : state.css_max_rpm;
     }
@@ -343,12 +355,10 @@ class Preview::Impl final : public QuietMachineCanon, public World {
     NameList files_, sections_;
     std::uint32_t section_ = sections_.number_of("");
     int tool_, selected_ = -1;
-    struct SpindleState {
-        double speed = 0, surface_unit = 0, css_max_rpm = 0;
-    };
     std::array<SpindleState, MAX_SPINDLES> spindles_{};
-    Pose position_, tool_offset_, g5x_, g92_;
-    double rotation_deg_ = 0;
+    SpindleState &spindle(int number) { return spindles_[static_cast<std::size_t>(number)]; }
+    Pose position_, tool_offset_;
+    UseOffsets offsets_;
     diag::Sink *sink_ = nullptr;
 };
 

@@ -38,7 +38,7 @@ class Run {
     /// Plug-ins say all that is to be said themselves.
     void reset_canon() {
         if (options_.plugin.empty()) {
-            canon_->on_reset();
+            canon_->take(OnReset{});
         }
     }
     int run_file();

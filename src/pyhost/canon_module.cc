@@ -47,25 +47,42 @@ void with_canon(What what) {
     view.deliver();
 }
 
-template <class... Arguments>
-void def(py::module_ &m, const char *name, void (Canon::*function)(Arguments...)) {
-    m.def(name, [function](std::decay_t<Arguments>... arguments) {
-        with_canon([&](Canon &canon) { (canon.*function)(arguments...); });
+template <class Call, class... Fields>
+void def_fields(py::module_ &m, const char *name, Call preset, std::tuple<Fields Call::*...> fields) {
+    m.def(name, [preset, fields](Fields... values) {
+        Call call = preset;
+        std::apply([&](auto... field) { ((call.*field = std::move(values)), ...); }, fields);
+        with_canon([&](Canon &canon) { canon.take(call); });
     });
+}
+
+/// A call under its name, with its fields as arguments; what is not among them is as in `preset`.
+template <interp::RegularCall Call>
+void def(py::module_ &m, const Call &preset = {}) {
+    def_fields(m, name_of(preset).data(), preset, Call::FIELDS);
+}
+
+/// The same under a second name.
+template <interp::RegularCall Call>
+void def_with_twin(py::module_ &m, const Call &preset = {}) {
+    def(m, preset);
+    def_fields(m, ("enqueue_" + std::string(name_of(preset))).c_str(), preset, Call::FIELDS);
 }
 
 void define_moves(py::module_ &m) {
     using D = double;
     m.def("STRAIGHT_TRAVERSE", [](int, D x, D y, D z, D a, D b, D c, D u, D v, D w) {
-        with_canon([&](Canon &canon) { canon.straight_traverse(pose_of(x, y, z, a, b, c, u, v, w)); });
+        with_canon(
+            [&](Canon &canon) { canon.take(interp::StraightTraverse{pose_of(x, y, z, a, b, c, u, v, w)}); });
     });
     m.def("STRAIGHT_FEED", [](int, D x, D y, D z, D a, D b, D c, D u, D v, D w) {
-        with_canon([&](Canon &canon) { canon.straight_feed(pose_of(x, y, z, a, b, c, u, v, w)); });
+        with_canon(
+            [&](Canon &canon) { canon.take(interp::StraightFeed{pose_of(x, y, z, a, b, c, u, v, w)}); });
     });
     m.def("STRAIGHT_PROBE", [](int, D x, D y, D z, D a, D b, D c, D u, D v, D w, int kind) {
         with_canon([&](Canon &canon) {
-            canon.straight_probe(pose_of(x, y, z, a, b, c, u, v, w),
-                                 static_cast<interp::ProbeKind>(kind & 3));
+            canon.take(interp::StraightProbe{pose_of(x, y, z, a, b, c, u, v, w),
+                                             static_cast<interp::ProbeKind>(kind & 3)});
         });
         current_view().expect_probe();
     });
@@ -77,29 +94,32 @@ void define_moves(py::module_ &m) {
             const geom::Pose pose = number == 2   ? pose_of(end, first, second, a, b, c, u, v, w)
                                     : number == 3 ? pose_of(second, end, first, a, b, c, u, v, w)
                                                   : pose_of(first, second, end, a, b, c, u, v, w);
-            canon.arc_feed({first, second, first_axis, second_axis, rotation, end, pose});
+            canon.take(interp::ArcFeed{first, second, first_axis, second_axis, rotation, end, pose});
         });
     });
     m.def("RIGID_TAP", [](int, D x, D y, D z, D scale) {
-        with_canon([&](Canon &canon) { canon.rigid_tap(x, y, z, scale); });
+        with_canon([&](Canon &canon) { canon.take(interp::RigidTap{x, y, z, scale}); });
     });
-    for (const char *name : {"DWELL", "enqueue_DWELL"}) {
-        def(m, name, &Canon::dwell);
-    }
-    def(m, "START_SPEED_FEED_SYNCH", &Canon::start_speed_feed_synch);
-    def(m, "STOP_SPEED_FEED_SYNCH", &Canon::stop_speed_feed_synch);
-    def(m, "FINISH", &Canon::finish);
+    def_with_twin<interp::Dwell>(m);
+    m.def("START_SPEED_FEED_SYNCH", [](int spindle, D feed_per_revolution, bool isVelocityMode) {
+        with_canon([&](Canon &canon) {
+            canon.take(interp::StartSpeedFeedSynch{spindle, feed_per_revolution, isVelocityMode});
+        });
+    });
+    def<interp::StopSpeedFeedSynch>(m);
+    def<interp::Finish>(m);
 }
 
 void define_modes(py::module_ &m) {
     using D = double;
-    def(m, "ON_RESET", &Canon::on_reset);
+    def<interp::OnReset>(m);
     m.def("USE_LENGTH_UNITS", [](int units) {
         if (units != 1 && units != 2) {
             throw py::value_error("units must be CANON_UNITS_INCHES or CANON_UNITS_MM");
         }
         with_canon([&](Canon &canon) {
-            canon.use_length_units(units == 1 ? interp::LengthUnits::INCH : interp::LengthUnits::MM);
+            canon.take(
+                interp::UseLengthUnits{units == 1 ? interp::LengthUnits::INCH : interp::LengthUnits::MM});
         });
     });
     m.def("SELECT_PLANE", [](int plane) {
@@ -108,69 +128,66 @@ void define_modes(py::module_ &m) {
         if (plane < 1 || plane > 6) {
             throw py::value_error("a plane is CANON_PLANE_XY to CANON_PLANE_UW");
         }
-        with_canon([&](Canon &canon) { canon.select_plane(PLANES[plane - 1]); });
+        with_canon([&](Canon &canon) { canon.take(interp::SelectPlane{PLANES[plane - 1]}); });
     });
     m.def("SET_G5X_OFFSET", [](int index, D x, D y, D z, D a, D b, D c, D u, D v, D w) {
-        with_canon([&](Canon &canon) { canon.set_g5x_offset(index, pose_of(x, y, z, a, b, c, u, v, w)); });
+        with_canon([&](Canon &canon) {
+            canon.take(interp::SetG5xOffset{index, pose_of(x, y, z, a, b, c, u, v, w)});
+        });
     });
     m.def("SET_G92_OFFSET", [](D x, D y, D z, D a, D b, D c, D u, D v, D w) {
-        with_canon([&](Canon &canon) { canon.set_g92_offset(pose_of(x, y, z, a, b, c, u, v, w)); });
+        with_canon(
+            [&](Canon &canon) { canon.take(interp::SetG92Offset{pose_of(x, y, z, a, b, c, u, v, w)}); });
     });
-    def(m, "SET_XY_ROTATION", &Canon::set_xy_rotation);
+    def<interp::SetXyRotation>(m);
     m.def("USE_TOOL_LENGTH_OFFSET", [](const py::iterable &pose) {
-        with_canon([&](Canon &canon) { canon.use_tool_length_offset(pose_from(pose)); });
+        with_canon([&](Canon &canon) { canon.take(interp::UseToolLengthOffset{pose_from(pose)}); });
     });
-    def(m, "SET_NAIVECAM_TOLERANCE", &Canon::set_naivecam_tolerance);
-    for (const char *name : {"SET_FEED_RATE", "enqueue_SET_FEED_RATE"}) {
-        def(m, name, &Canon::set_feed_rate);
-    }
+    def<interp::SetNaivecamTolerance>(m);
+    def_with_twin<interp::SetFeedRate>(m);
     for (const char *name : {"SET_FEED_MODE", "enqueue_SET_FEED_MODE"}) {
         m.def(name, [](int spindle, int mode) {
             with_canon([&](Canon &canon) {
-                canon.set_feed_mode(spindle, static_cast<interp::FeedMode>(std::clamp(mode, 0, 2)));
+                canon.take(
+                    interp::SetFeedMode{spindle, static_cast<interp::FeedMode>(std::clamp(mode, 0, 2))});
             });
         });
     }
 }
 
 void define_spindles(py::module_ &m) {
-    for (const char *name : {"SET_SPINDLE_MODE", "enqueue_SET_SPINDLE_MODE"}) {
-        def(m, name, &Canon::set_spindle_mode);
-    }
-    for (const char *name : {"SET_SPINDLE_SPEED", "enqueue_SET_SPINDLE_SPEED"}) {
-        def(m, name, &Canon::set_spindle_speed);
-    }
+    def_with_twin<interp::SetSpindleMode>(m);
+    def_with_twin<interp::SetSpindleSpeed>(m);
     for (const char *prefix : {"", "enqueue_"}) {
-        const std::string before = prefix;
-        m.def((before + "START_SPINDLE_CLOCKWISE").c_str(),
-              [](int spindle, int wait) {
-                  with_canon([&](Canon &canon) { canon.start_spindle_clockwise(spindle, wait != 0); });
-              },
-              py::arg("spindle"), py::arg("wait_for_atspeed") = 1);
-        m.def((before + "START_SPINDLE_COUNTERCLOCKWISE").c_str(),
-              [](int spindle, int wait) {
-                  with_canon([&](Canon &canon) { canon.start_spindle_counterclockwise(spindle, wait != 0); });
-              },
-              py::arg("spindle"), py::arg("wait_for_atspeed") = 1);
-        def(m, (before + "STOP_SPINDLE_TURNING").c_str(), &Canon::stop_spindle_turning);
-        def(m, (before + "MIST_ON").c_str(), &Canon::mist_on);
-        def(m, (before + "MIST_OFF").c_str(), &Canon::mist_off);
-        def(m, (before + "FLOOD_ON").c_str(), &Canon::flood_on);
-        def(m, (before + "FLOOD_OFF").c_str(), &Canon::flood_off);
+        for (const bool isClockwise : {true, false}) {
+            const std::string name =
+                std::string(prefix).append(name_of(interp::StartSpindle{0, isClockwise}));
+            m.def(
+                name.c_str(),
+                [isClockwise](int spindle, int wait) {
+                    with_canon([&](Canon &canon) {
+                        canon.take(interp::StartSpindle{spindle, isClockwise, wait != 0});
+                    });
+                },
+                py::arg("spindle"), py::arg("wait_for_atspeed") = 1);
+        }
     }
-    m.def("ORIENT_SPINDLE", [](int spindle, double angle, int mode) {
-        with_canon([&](Canon &canon) { canon.orient_spindle(spindle, angle, mode); });
-    });
+    def_with_twin<interp::StopSpindle>(m);
+    for (const bool isOn : {true, false}) {
+        def_with_twin(m, interp::SwitchMist{isOn});
+        def_with_twin(m, interp::SwitchFlood{isOn});
+    }
+    def<interp::OrientSpindle>(m);
 }
 
 void define_tools(py::module_ &m) {
-    def(m, "SELECT_TOOL", &Canon::select_tool);
+    def<interp::SelectTool>(m);
     // The tool that changes is the one selected; the argument, its place in the table, is taken for
     // compatibility.
     m.def(
-        "CHANGE_TOOL", [](int) { with_canon([](Canon &canon) { canon.change_tool(); }); },
+        "CHANGE_TOOL", [](int) { with_canon([](Canon &canon) { canon.take(interp::ChangeTool{}); }); },
         py::arg("slot") = 0);
-    def(m, "CHANGE_TOOL_NUMBER", &Canon::change_tool_number);
+    def<interp::ChangeToolNumber>(m);
     m.def("SET_TOOL_TABLE_ENTRY", [](int index, int toolno, const py::iterable &offset, double diameter,
                                      double frontangle, double backangle, int orientation) {
         interp::ToolEntry entry = current_view().tool(index);
@@ -180,7 +197,7 @@ void define_tools(py::module_ &m) {
         entry.frontangle = frontangle;
         entry.backangle = backangle;
         entry.orientation = orientation;
-        with_canon([&](Canon &canon) { canon.set_tool_table_entry(index, entry); });
+        with_canon([&](Canon &canon) { canon.take(interp::SetToolTableEntry{index, entry}); });
     });
     for (const char *name : {"START_CHANGE", "TURN_PROBE_ON", "TURN_PROBE_OFF"}) {
         m.def(name, [] {});  // CHANGE_TOOL and STRAIGHT_PROBE say all there is
@@ -188,33 +205,24 @@ void define_tools(py::module_ &m) {
 }
 
 void define_switches(py::module_ &m) {
-    def(m, "ENABLE_FEED_OVERRIDE", &Canon::enable_feed_override);
-    def(m, "DISABLE_FEED_OVERRIDE", &Canon::disable_feed_override);
-    def(m, "ENABLE_SPEED_OVERRIDE", &Canon::enable_speed_override);
-    def(m, "DISABLE_SPEED_OVERRIDE", &Canon::disable_speed_override);
-    def(m, "ENABLE_FEED_HOLD", &Canon::enable_feed_hold);
-    def(m, "DISABLE_FEED_HOLD", &Canon::disable_feed_hold);
-    def(m, "ENABLE_ADAPTIVE_FEED", &Canon::enable_adaptive_feed);
-    def(m, "DISABLE_ADAPTIVE_FEED", &Canon::disable_adaptive_feed);
-    const auto digital = [&m](const char *name, bool isOn, bool isSynched) {
-        m.def(name, [isOn, isSynched](int index) {
-            with_canon([&](Canon &canon) { canon.set_digital_output(index, isOn, isSynched); });
+    for (const bool isOn : {true, false}) {
+        def(m, interp::SwitchFeedOverride{isOn});
+        def(m, interp::SwitchSpeedOverride{0, isOn});
+        def(m, interp::SwitchFeedHold{isOn});
+        def(m, interp::SwitchAdaptiveFeed{isOn});
+        for (const bool isSynched : {true, false}) {
+            def(m, interp::SetDigitalOutput{0, isOn, isSynched});
+        }
+    }
+    for (const bool isSynched : {true, false}) {
+        m.def(name_of(interp::SetAnalogOutput{0, 0, isSynched}).data(), [isSynched](int index, double value) {
+            with_canon([&](Canon &canon) { canon.take(interp::SetAnalogOutput{index, value, isSynched}); });
         });
-    };
-    digital("SET_MOTION_OUTPUT_BIT", true, true);
-    digital("CLEAR_MOTION_OUTPUT_BIT", false, true);
-    digital("SET_AUX_OUTPUT_BIT", true, false);
-    digital("CLEAR_AUX_OUTPUT_BIT", false, false);
-    m.def("SET_MOTION_OUTPUT_VALUE", [](int index, double value) {
-        with_canon([&](Canon &canon) { canon.set_analog_output(index, value, true); });
-    });
-    m.def("SET_AUX_OUTPUT_VALUE", [](int index, double value) {
-        with_canon([&](Canon &canon) { canon.set_analog_output(index, value, false); });
-    });
+    }
     m.def("WAIT", [](int index, int type, int kind, double timeout) {
         with_canon([&](Canon &canon) {
-            canon.wait_input(index, type == 0, static_cast<interp::WaitKind>(std::clamp(kind, 0, 4)),
-                             timeout);
+            canon.take(interp::WaitInput{index, type == 0,
+                                         static_cast<interp::WaitKind>(std::clamp(kind, 0, 4)), timeout});
         });
         current_view().expect_input();
         return 0;
@@ -222,25 +230,19 @@ void define_switches(py::module_ &m) {
 }
 
 void define_rest(py::module_ &m) {
-    def(m, "PROGRAM_STOP", &Canon::program_stop);
-    def(m, "OPTIONAL_PROGRAM_STOP", &Canon::optional_program_stop);
-    def(m, "PROGRAM_END", &Canon::program_end);
-    def(m, "PALLET_SHUTTLE", &Canon::pallet_shuttle);
-    const auto text = [&m](const char *name, void (Canon::*function)(std::string_view)) {
-        m.def(name, [function](const std::string &what) {
-            with_canon([&](Canon &canon) { (canon.*function)(what); });
-        });
-    };
-    text("COMMENT", &Canon::comment);
-    text("enqueue_COMMENT", &Canon::comment);
-    text("MESSAGE", &Canon::message);
-    text("LOG", &Canon::log);
-    text("CANON_ERROR", &Canon::canon_error);
-    m.def("LOGOPEN",
-          [](const std::string &path) { with_canon([&](Canon &canon) { canon.log_open(path, false); }); });
-    m.def("LOGAPPEND",
-          [](const std::string &path) { with_canon([&](Canon &canon) { canon.log_open(path, true); }); });
-    def(m, "LOGCLOSE", &Canon::log_close);
+    def(m, interp::ProgramStop{false});
+    def(m, interp::ProgramStop{true});
+    def<interp::ProgramEnd>(m);
+    def<interp::PalletShuttle>(m);
+    def_with_twin<interp::ProgramComment>(m);
+    def<interp::OperatorMessage>(m);
+    def<interp::LogLine>(m);
+    m.def(interp::CanonError::NAME.data(), [](const std::string &what) {
+        with_canon([&](Canon &canon) { canon.take(interp::CanonError{what}); });
+    });
+    def(m, interp::OpenLog{{}, false});
+    def(m, interp::OpenLog{{}, true});
+    def<interp::CloseLog>(m);
     for (const char *name : {"CLAMP_AXIS",
                              "GET_EXTERNAL_MOTION_CONTROL_MODE",
                              "GET_EXTERNAL_MOTION_CONTROL_NAIVECAM_TOLERANCE",

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "task/sequencer.hh"
 
-#include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
+#include <type_traits>
 
 namespace mw::task {
 namespace {
@@ -12,13 +10,6 @@ namespace {
 constexpr std::int64_t NS_PER_S = 1000000000;
 /// Items issued in one task cycle at most, so that the cycle stays short.
 constexpr int ITEMS_PER_CYCLE = 500;
-
-template <class... Handlers>
-struct Overloaded : Handlers... {
-    using Handlers::operator()...;
-};
-template <class... Handlers>
-Overloaded(Handlers...) -> Overloaded<Handlers...>;
 
 std::int64_t to_ns(double seconds) {
     return static_cast<std::int64_t>(std::llround(seconds * static_cast<double>(NS_PER_S)));
@@ -33,6 +24,53 @@ motion::PathMode path_mode(interp::MotionControl control) {
     return motion::PathMode::BLEND;
 }
 
+struct MoveSource {
+    const motion::SourceTag &tag;
+    bool isHolding;  ///< a cut waits until the spindle has its speed
+};
+
+motion::MoveTerms terms_of(const interp::MoveSettings &settings, motion::MotionType type,
+                           const MoveSource &source) {
+    motion::MoveTerms terms;
+    terms.type = settings.kind == interp::FeedKind::RAPID ? motion::MotionType::TRAVERSE : type;
+    terms.mode = path_mode(settings.control);
+    terms.feed = settings.feed;
+    terms.tolerance = settings.tolerance;
+    terms.naivecam_tolerance = settings.naivecam_tolerance;
+    terms.corner_scale = settings.corner_scale;
+    terms.feed_per_revolution = settings.feed_per_revolution;
+    terms.synch_spindle = static_cast<std::int8_t>(settings.synch_spindle);
+    terms.isVelocitySynched = settings.isVelocitySynched;
+    terms.isWaitingForSpindleSpeed = source.isHolding && settings.kind != interp::FeedKind::RAPID;
+    terms.source = source.tag;
+    return terms;
+}
+
+motion::PathBody path_body(const interp::LineMove &line, const MoveSource &source) {
+    return motion::Line{line.end, terms_of(line.settings, motion::MotionType::FEED, source)};
+}
+
+motion::PathBody path_body(const interp::ArcMove &arc, const MoveSource &source) {
+    return motion::Arc{arc.end,
+                       arc.centre,
+                       arc.normal,
+                       arc.angle_rad,
+                       geom::norm_uvw(arc.normal) > 0,
+                       terms_of(arc.settings, motion::MotionType::ARC, source)};
+}
+
+motion::PathBody path_body(const interp::ProbeMove &probe, const MoveSource &source) {
+    using interp::ProbeKind;
+    const bool isAway = probe.kind == ProbeKind::AWAY || probe.kind == ProbeKind::AWAY_ERROR;
+    const bool mustTrip = probe.kind == ProbeKind::TOWARD_ERROR || probe.kind == ProbeKind::AWAY_ERROR;
+    return motion::Probe{probe.end, isAway, mustTrip,
+                         terms_of(probe.settings, motion::MotionType::PROBING, source)};
+}
+
+motion::PathBody path_body(const interp::TapMove &tap, const MoveSource &source) {
+    return motion::RigidTap{tap.end, tap.scale, terms_of(tap.settings, motion::MotionType::FEED, source)};
+}
+
 }  // namespace
 
 Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, ToolStore &tools,
@@ -40,27 +78,28 @@ Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, T
     : queue_(queue), motion_(motion), io_(io), tools_(tools), events_(std::move(events)),
       settings_(settings) {}
 
-Sequencer::Need Sequencer::need_of(const ItemBody &body) {
+Sequencer::Need Sequencer::need_of(const interp::MachineCall &call) {
+    using namespace interp;
     return std::visit(
         Overloaded{
-            [](const LineItem &) { return Need::NOTHING; },
-            [](const ArcItem &) { return Need::NOTHING; },
-            [](const ProbeItem &) { return Need::MOTION; },
-            [](const RigidTapItem &) { return Need::MOTION; },
-            [](const SpindleModeItem &) { return Need::NOTHING; },
-            [](const SelectToolItem &) { return Need::NOTHING; },
-            [](const ChangeToolItem &) { return Need::MOTION_AND_IO; },
-            [](const ChangeToolNumberItem &) { return Need::MOTION_AND_IO; },
-            [](const DigitalOutputItem &item) { return item.isSynched ? Need::NOTHING : Need::MOTION; },
-            [](const AnalogOutputItem &item) { return item.isSynched ? Need::NOTHING : Need::MOTION; },
-            [](const StopItem &) { return Need::MOTION_AND_IO; },
-            [](const EndItem &) { return Need::MOTION_AND_IO; },
-            [](const MessageItem &) { return Need::NOTHING; },
-            [](const PrintItem &) { return Need::NOTHING; },
-            [](const LogItem &) { return Need::NOTHING; },
-            [](const auto &) { return Need::MOTION; },
+            [](const OneOf<LineMove, ArcMove, SetSpindleMode, SelectTool, OperatorMessage, PrintLine, OpenLog,
+                           LogLine, CloseLog, LogProbes, CanonError, ProgramComment, PalletShuttle> auto &) {
+                return Need::NOTHING;
+            },
+            [](const OneOf<SetDigitalOutput, SetAnalogOutput> auto &output) {
+                return output.isSynched ? Need::NOTHING : Need::MOTION;
+            },
+            [](const OneOf<ProbeMove, TapMove, Dwell, UseToolOffset, UseOffsets, UsePlanner, UseSpindleSpeed,
+                           StartSpindle, StopSpindle, OrientSpindle, WaitOrientComplete, SetToolTableEntry,
+                           ReloadTools, SwitchMist, SwitchFlood, SwitchFeedOverride, SwitchSpeedOverride,
+                           SwitchFeedHold, SwitchAdaptiveFeed, WaitInput, UserCode> auto &) {
+                return Need::MOTION;
+            },
+            [](const OneOf<ChangeTool, ChangeToolNumber, ProgramStop, ProgramEnd, Finish> auto &) {
+                return Need::MOTION_AND_IO;
+            },
         },
-        body);
+        call);
 }
 
 void Sequencer::step(std::int64_t now_ns) {
@@ -89,6 +128,12 @@ void Sequencer::fail_item(const std::string &text) {
     events_.fail(text);
 }
 
+void Sequencer::check(const Result<> &result) {
+    if (!result.has_value()) {
+        fail_item(result.error().str());
+    }
+}
+
 bool Sequencer::isStepBoundary(const Item &item) {
     if (!isStepping_) {
         return false;
@@ -111,7 +156,7 @@ void Sequencer::start_step() {
 }
 
 bool Sequencer::isReady(const Item &item) {
-    const Need need = need_of(item.body);
+    const Need need = need_of(item.call);
     if (need == Need::NOTHING) {
         return true;
     }
@@ -121,323 +166,165 @@ bool Sequencer::isReady(const Item &item) {
 }
 
 bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
-    return std::visit(
-        Overloaded{
-            [&](const LineItem &) { return push_move(item); },
-            [&](const ArcItem &) { return push_move(item); },
-            [&](const ProbeItem &) { return isProbeMade_ = push_move(item), isProbeMade_; },
-            [&](const RigidTapItem &) { return push_move(item); },
-            [&](const DwellItem &dwell) { return begin(dwell, now_ns); },
-            [&](const WaitInputItem &input) { return begin(input, now_ns); },
-            [&](const StopItem &stop) {
-                isHeld_ = events_.stop(stop, item.source.line);
-                return true;
-            },
-            [&](const EndItem &end) {
-                close_logs();
-                events_.end(end);
-                return true;
-            },
-            [&](const MessageItem &message) {
-                events_.message(message.kind, message.text);
-                return true;
-            },
-            [&](const PrintItem &print) {
-                events_.print(print.text);
-                return true;
-            },
-            [&](const LogItem &log) {
-                execute_log(log);
-                return true;
-            },
-            [&](const OffsetsItem &offsets) {
-                offsets_ = offsets;
-                follow_offsets();
-                events_.offsets(offsets);
-                return true;
-            },
-            [&](const ToolOffsetItem &offset) {
-                tool_offset_ = offset;
-                follow_offsets();
-                // Done once motion has it, so that pins show it when G43 is over.
-                awaited_setting_ = events_.tool_offset(offset);
-                wait_ = Wait::SETTING;
-                return true;
-            },
-            [&](const WaitOrientItem &orient) { return begin(orient, now_ns); },
-            [&](const PlannerModeItem &mode) { return begin(mode); },
-            [&](const UserCodeItem &code) { return begin(code); },
-            [&](const DigitalOutputItem &output) {
-                return !output.isSynched ||
-                               motion_.push_path(motion::SynchedDigitalOutput{output.index, output.isOn})
-                           ? (execute_output(item), true)
-                           : false;
-            },
-            [&](const AnalogOutputItem &output) {
-                return !output.isSynched ||
-                               motion_.push_path(motion::SynchedAnalogOutput{output.index, output.value})
-                           ? (execute_output(item), true)
-                           : false;
-            },
-            [&](const ReloadToolsItem &) {
-                if (const auto reloaded = tools_.reload(); !reloaded.has_value()) {
-                    fail_item(reloaded.error().str());
-                }
-                return true;
-            },
-            [&](const SelectToolItem &) { return execute_tool(item), true; },
-            [&](const ChangeToolItem &) { return execute_tool(item), true; },
-            [&](const ChangeToolNumberItem &) { return execute_tool(item), true; },
-            [&](const ToolEntryItem &) { return execute_tool(item), true; },
-            [&](const auto &) { return execute_output(item), true; },
+    using namespace interp;
+    const auto set_switch = [this](motion::Switch what, int spindle, bool isOn) {
+        motion_.send(motion::SetSwitch{what, spindle, isOn});
+    };
+    const MoveSource source{item.source, spindles_.isNextCutWaiting()};
+    // A handler that answers false is asked again next cycle.
+    const auto visitor = Overloaded{
+        [&](const OneOf<LineMove, ArcMove, TapMove> auto &move) {
+            return push_move(path_body(move, source), move.settings, item);
         },
-        item.body);
+        [&](const ProbeMove &move) {
+            isProbeMade_ = push_move(path_body(move, source), move.settings, item);
+            return isProbeMade_;
+        },
+        [&](const OneOf<SetDigitalOutput, SetAnalogOutput> auto &output) { return push_output(output); },
+        [&](const UsePlanner &planner) { return begin(planner); },
+        [&](const OneOf<Dwell, WaitInput, WaitOrientComplete> auto &wait) { perform(wait, now_ns); },
+        [&](const OneOf<UserCode, UseToolOffset, ChangeTool> auto &call) { perform(call); },
+        [&](const ProgramStop &stop) { isHeld_ = events_.stop(stop, item.source.line); },
+        [&](const OneOf<ProgramEnd, Finish> auto &) {
+            log_.close();
+            probe_log_.close();
+            events_.end();
+        },
+        [&](const OperatorMessage &call) { events_.message(MessageKind::OPERATOR_DISPLAY, call.text); },
+        [&](const CanonError &call) { events_.message(MessageKind::OPERATOR_ERROR, call.text); },
+        [&](const PrintLine &call) { events_.print(call.text); },
+        [&](const OpenLog &call) { check(log_.open(call.path, call.isAppending)); },
+        [&](const LogLine &call) { check(log_.write(call.text)); },
+        [&](const CloseLog &) { log_.close(); },
+        [&](const LogProbes &call) {
+            call.path.empty() ? probe_log_.close() : check(probe_log_.open(call.path, false));
+        },
+        [&](const UseOffsets &offsets) {
+            spindles_.use(offsets, motion_);
+            events_.offsets(offsets);
+        },
+        [&](const ReloadTools &) { check(tools_.reload()); },
+        [&](const SelectTool &call) { check(tool_change_.select(call, tools_, io_)); },
+        [&](const ChangeToolNumber &call) { check(tool_change_.set_number(call, tools_, io_)); },
+        [&](const SetToolTableEntry &call) { check(tools_.set_entry(call.index, call.entry)); },
+        [&](const SetSpindleMode &call) { spindles_.set_mode(call); },
+        [&](const UseSpindleSpeed &call) { spindles_.set_speed(call, motion_); },
+        [&](const StartSpindle &call) { spindles_.start(call, motion_); },
+        [&](const StopSpindle &call) { spindles_.stop(call, motion_); },
+        [&](const OrientSpindle &call) {
+            orient_command_ = motion_.send(motion::SpindleOrient{call.spindle, call.angle_deg, call.mode});
+        },
+        [&](const SwitchMist &call) { io_.set_mist(call.isOn); },
+        [&](const SwitchFlood &call) { io_.set_flood(call.isOn); },
+        [&](const SwitchFeedOverride &call) { set_switch(motion::Switch::FEED_OVERRIDE, 0, call.isOn); },
+        [&](const SwitchSpeedOverride &call) {
+            set_switch(motion::Switch::SPINDLE_OVERRIDE, call.spindle, call.isOn);
+        },
+        [&](const SwitchFeedHold &call) { set_switch(motion::Switch::FEED_HOLD, 0, call.isOn); },
+        [&](const SwitchAdaptiveFeed &call) { set_switch(motion::Switch::ADAPTIVE_FEED, 0, call.isOn); },
+        [](const OneOf<ProgramComment, PalletShuttle> auto &) {},
+    };
+    return std::visit(
+        [&](const AlternativeOf<MachineCall> auto &call) {
+            if constexpr (std::is_same_v<decltype(visitor(call)), bool>) {
+                return visitor(call);
+            } else {
+                visitor(call);
+                return true;
+            }
+        },
+        item.call);
 }
 
-bool Sequencer::begin(const DwellItem &dwell, std::int64_t now_ns) {
-    wait_ = Wait::DWELL;
-    deadline_ns_ = now_ns + to_ns(dwell.seconds);
+bool Sequencer::push_move(const motion::PathBody &move, const interp::MoveSettings &settings,
+                          const Item &item) {
+    if (!motion_.hasPathRoom() || !motion_.push_path(move, item.source)) {
+        return false;
+    }
+    if (move_listener_) {
+        move_listener_(motion_.last_path_id(), move);
+    }
+    if (settings.kind != interp::FeedKind::RAPID) {
+        spindles_.end_wait();
+    }
     return true;
 }
 
-bool Sequencer::begin(const WaitInputItem &input, std::int64_t now_ns) {
+bool Sequencer::push_output(const interp::SetDigitalOutput &output) {
+    if (output.isSynched) {
+        return motion_.push_path(motion::SynchedDigitalOutput{output.index, output.isOn});
+    }
+    motion_.send(motion::SetDigitalOutput{output.index, output.isOn});
+    return true;
+}
+
+bool Sequencer::push_output(const interp::SetAnalogOutput &output) {
+    if (output.isSynched) {
+        return motion_.push_path(motion::SynchedAnalogOutput{output.index, output.value});
+    }
+    motion_.send(motion::SetAnalogOutput{output.index, output.value});
+    return true;
+}
+
+void Sequencer::perform(const interp::Dwell &dwell, std::int64_t now_ns) {
+    wait_ = Wait::DWELL;
+    deadline_ns_ = now_ns + to_ns(dwell.seconds);
+}
+
+void Sequencer::perform(const interp::WaitInput &input, std::int64_t now_ns) {
     awaited_input_ = input;
     wait_ = Wait::INPUT;
     deadline_ns_ = now_ns + to_ns(input.timeout_s);
     last_input_ = std::nan("");
     isInputTimedOut_ = false;
-    return true;
 }
 
-bool Sequencer::begin(const WaitOrientItem &orient, std::int64_t now_ns) {
+void Sequencer::perform(const interp::WaitOrientComplete &orient, std::int64_t now_ns) {
     wait_ = Wait::ORIENT;
     awaited_spindle_ = orient.spindle;
     orient_timeout_s_ = orient.timeout_s;
     deadline_ns_ = now_ns + to_ns(orient.timeout_s);
     isOrientTold_ = false;
-    return true;
 }
 
-bool Sequencer::begin(const PlannerModeItem &mode) {
-    const auto setting = events_.planner_mode(mode);
+bool Sequencer::begin(const interp::UsePlanner &planner) {
+    const auto setting = events_.planner_mode(planner);
     awaited_setting_ = setting.value_or(0);
     wait_ = awaited_setting_ != 0 ? Wait::SETTING : Wait::NONE;
     return setting.has_value();
 }
 
-bool Sequencer::begin(const UserCodeItem &code) {
+void Sequencer::perform(const interp::UserCode &code) {
     const auto started = events_.start_user_code(code);
-    if (!started.has_value()) {
-        fail_item(started.error().str());
-        return true;
-    }
-    wait_ = Wait::USER_CODE;
-    return true;
+    check(started);
+    wait_ = started.has_value() ? Wait::USER_CODE : wait_;
 }
 
-motion::MoveTerms Sequencer::terms_of(const interp::MoveSettings &settings, motion::MotionType type,
-                                      const Item &item) {
-    motion::MoveTerms terms;
-    terms.type = settings.kind == interp::FeedKind::RAPID ? motion::MotionType::TRAVERSE : type;
-    terms.mode = path_mode(settings.control);
-    terms.feed = settings.feed;
-    terms.tolerance = settings.tolerance;
-    terms.naivecam_tolerance = settings.naivecam_tolerance;
-    terms.corner_scale = settings.corner_scale;
-    terms.feed_per_revolution = settings.feed_per_revolution;
-    terms.synch_spindle = static_cast<std::int8_t>(settings.synch_spindle);
-    terms.isVelocitySynched = settings.isVelocitySynched;
-    terms.isWaitingForSpindleSpeed = isNextMoveWaitingForSpeed_ && settings.kind != interp::FeedKind::RAPID;
-    terms.source = item.source;
-    return terms;
+void Sequencer::perform(const interp::UseToolOffset &offset) {
+    spindles_.use(offset, motion_);
+    // Done once motion has it, so that pins show it when G43 is over.
+    awaited_setting_ = events_.tool_offset(offset);
+    wait_ = Wait::SETTING;
 }
 
-bool Sequencer::push_move(const Item &item) {
-    if (!motion_.hasPathRoom()) {
-        return false;
+void Sequencer::perform(const interp::ChangeTool &) {
+    if (!tool_change_.isSelected()) {
+        return;  // M6 without T since the last change: the tool in the spindle stays
     }
-    motion::PathBody body;
-    if (const auto *line = std::get_if<LineItem>(&item.body)) {
-        body = motion::Line{line->move.end, terms_of(line->move.settings, motion::MotionType::FEED, item)};
-    } else if (const auto *arc = std::get_if<ArcItem>(&item.body)) {
-        body = motion::Arc{arc->move.end,
-                           arc->move.centre,
-                           arc->move.normal,
-                           arc->move.angle_rad,
-                           geom::norm_uvw(arc->move.normal) > 0,
-                           terms_of(arc->move.settings, motion::MotionType::ARC, item)};
-    } else if (const auto *probe = std::get_if<ProbeItem>(&item.body)) {
-        using interp::ProbeKind;
-        const bool isAway = probe->kind == ProbeKind::AWAY || probe->kind == ProbeKind::AWAY_ERROR;
-        const bool mustTrip = probe->kind == ProbeKind::TOWARD_ERROR || probe->kind == ProbeKind::AWAY_ERROR;
-        body = motion::Probe{probe->move.end, isAway, mustTrip,
-                             terms_of(probe->move.settings, motion::MotionType::PROBING, item)};
-    } else if (const auto *tap = std::get_if<RigidTapItem>(&item.body)) {
-        body = motion::RigidTap{tap->move.end, tap->scale,
-                                terms_of(tap->move.settings, motion::MotionType::FEED, item)};
+    if (!settings_.isToolChangeWithSpindleOn) {
+        stop_spindles();
     }
-    const bool isFeed = !std::holds_alternative<LineItem>(item.body) ||
-                        std::get<LineItem>(item.body).move.settings.kind != interp::FeedKind::RAPID;
-    if (!motion_.push_path(body, item.source)) {
-        return false;
-    }
-    if (move_listener_) {
-        move_listener_(motion_.last_path_id(), body);
-    }
-    isNextMoveWaitingForSpeed_ = isNextMoveWaitingForSpeed_ && !isFeed;
-    return true;
-}
-
-void Sequencer::execute_output(const Item &item) {
-    std::visit(Overloaded{
-                   [&](const SpindleModeItem &mode) {
-                       spindles_[static_cast<std::size_t>(mode.spindle)].css_max_rpm = mode.css_max_rpm;
-                   },
-                   [&](const SpindleSpeedItem &speed) {
-                       SpindleState &state = spindles_[static_cast<std::size_t>(speed.spindle)];
-                       const bool isNew =
-                           state.speed != speed.speed || state.surface_unit != speed.surface_unit;
-                       state.speed = speed.speed;
-                       state.surface_unit = speed.surface_unit;
-                       if (isNew && state.direction != 0) {
-                           send_spindle(speed.spindle);
-                       }
-                   },
-                   [&](const SpindleOnItem &on) {
-                       SpindleState &state = spindles_[static_cast<std::size_t>(on.spindle)];
-                       state.direction = on.direction;
-                       state.isWaiting = on.isWaiting;
-                       send_spindle(on.spindle);
-                   },
-                   [&](const SpindleOffItem &off) {
-                       spindles_[static_cast<std::size_t>(off.spindle)].direction = 0;
-                       motion_.send(motion::SpindleOff{off.spindle});
-                   },
-                   [&](const SpindleOrientItem &orient) {
-                       orient_command_ =
-                           motion_.send(motion::SpindleOrient{orient.spindle, orient.angle_deg, orient.mode});
-                   },
-                   [&](const CoolantItem &coolant) {
-                       coolant.isMist ? io_.set_mist(coolant.isOn) : io_.set_flood(coolant.isOn);
-                   },
-                   [&](const OverrideSwitchItem &s) {
-                       motion_.send(motion::SetSwitch{s.what, s.spindle, s.isEnabled});
-                   },
-                   [&](const DigitalOutputItem &output) {
-                       if (!output.isSynched) {
-                           motion_.send(motion::SetDigitalOutput{output.index, output.isOn});
-                       }
-                   },
-                   [&](const AnalogOutputItem &output) {
-                       if (!output.isSynched) {
-                           motion_.send(motion::SetAnalogOutput{output.index, output.value});
-                       }
-                   },
-                   [](const auto &) {},
-               },
-               item.body);
-}
-
-interp::ToolEntry Sequencer::tool_at(int index) const {
-    interp::ToolEntry none;
-    none.toolno = 0;
-    return index > 0 ? tools_.entry(index) : none;
-}
-
-void Sequencer::execute_tool(const Item &item) {
-    if (const auto *select = std::get_if<SelectToolItem>(&item.body)) {
-        const int index = select->toolno == 0 ? 0 : tools_.index_of_tool(select->toolno);
-        if (index < 0) {
-            fail_item("tool " + std::to_string(select->toolno) + " is not in the tool table");
-            return;
-        }
-        const interp::ToolEntry entry = tool_at(index);
-        selected_index_ = index;
-        io_.start_prepare(select->toolno, entry.pocketno, index);
-    } else if (std::holds_alternative<ChangeToolItem>(item.body)) {
-        if (selected_index_ < 0) {
-            return;  // M6 without T since the last change: the tool in the spindle stays
-        }
-        if (!settings_.isToolChangeWithSpindleOn) {
-            stop_spindles();
-        }
-        changing_index_ = selected_index_;
-        io_.start_change();
-        wait_ = Wait::TOOL;
-    } else if (const auto *number = std::get_if<ChangeToolNumberItem>(&item.body)) {
-        const int index = number->toolno == 0 ? 0 : tools_.index_of_tool(number->toolno);
-        const auto loaded = tools_.load_spindle(index);
-        if (!loaded.has_value()) {
-            fail_item(loaded.error().str());
-        }
-        io_.set_tool_in_spindle(number->toolno, tool_at(index).pocketno);
-    } else if (const auto *entry = std::get_if<ToolEntryItem>(&item.body)) {
-        const auto saved = tools_.set_entry(entry->index, entry->entry);
-        if (!saved.has_value()) {
-            fail_item(saved.error().str());
-        }
-    }
-}
-
-void Sequencer::on_tool_event(io::ToolEvent event) {
-    if (event == io::ToolEvent::FAULT) {
-        fail_item("the tool changer reports a fault (iocontrol.0.toolchanger-reason " +
-                  std::to_string(io_.fault_reason()) + ")");
-    } else if (event == io::ToolEvent::CHANGED && changing_index_ >= 0) {
-        const interp::ToolEntry entry = tool_at(changing_index_);
-        const auto loaded = tools_.load_spindle(changing_index_);
-        if (!loaded.has_value()) {
-            fail_item(loaded.error().str());
-        }
-        io_.set_tool_in_spindle(entry.toolno, entry.pocketno);
-        changing_index_ = -1;
-        selected_index_ = -1;
-    }
-}
-
-void Sequencer::open_log(LogFile &log, const LogItem &item) {
-    log.path = item.text;
-    log.file.reset();  // the same file may be opened again
-    log.file.reset(std::fopen(item.text.c_str(), item.what == LogItem::What::APPEND ? "ae" : "we"));
-    if (log.file == nullptr) {
-        fail_item("cannot write " + item.text + ": " + std::strerror(errno));
-        return;
-    }
-    std::setvbuf(log.file.get(), nullptr, _IOLBF, BUFSIZ);
-}
-
-void Sequencer::execute_log(const LogItem &item) {
-    LogFile &log = logs_[item.isProbe ? 1 : 0];
-    switch (item.what) {
-    case LogItem::What::OPEN:
-    case LogItem::What::APPEND: open_log(log, item); break;
-    case LogItem::What::WRITE:
-        if (log.file != nullptr && std::fputs((item.text + '\n').c_str(), log.file.get()) < 0) {
-            log.file.reset();
-            fail_item("cannot write " + log.path + ": " + std::strerror(errno));
-        }
-        break;
-    case LogItem::What::CLOSE: log.file.reset(); break;
-    }
-}
-
-void Sequencer::log_probe(const std::string &line) {
-    execute_log({LogItem::What::WRITE, line, true});
-}
-
-void Sequencer::close_logs() {
-    for (LogFile &log : logs_) {
-        log.file.reset();
-    }
+    tool_change_.start(io_);
+    wait_ = Wait::TOOL;
 }
 
 void Sequencer::abort() {
-    close_logs();
+    log_.close();
+    probe_log_.close();
     queue_.clear();
     wait_ = Wait::NONE;
-    changing_index_ = -1;
-    selected_index_ = -1;
-    isNextMoveWaitingForSpeed_ = false;
+    tool_change_.abort();
+    spindles_.end_wait();
     isStepping_ = false;
     isStepDone_ = false;
     hasFailed_ = false;

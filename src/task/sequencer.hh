@@ -2,11 +2,8 @@
 // Takes the ordered queue to the machine: motion and I/O each at the right time (requirement D2).
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <cstdio>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,6 +12,10 @@
 #include "io/controller.hh"
 #include "task/items.hh"
 #include "task/motion_link.hh"
+#include "task/program_log.hh"
+#include "task/program_spindles.hh"
+#include "task/status.hh"
+#include "task/tool_change.hh"
 #include "task/tool_store.hh"
 
 namespace mw::task {
@@ -24,16 +25,16 @@ struct SequencerEvents {
     std::function<void(MessageKind, const std::string &)> message;
     std::function<void(const std::string &)> print;
     /// M0, M1, M60 are reached; true: the program is held there, nothing behind it may begin
-    std::function<bool(const StopItem &, int line)> stop;
-    std::function<void(const EndItem &)> end;       ///< the program is over
+    std::function<bool(const interp::ProgramStop &, int line)> stop;
+    std::function<void()> end;                      ///< the program is over
     std::function<void(const std::string &)> fail;  ///< something cannot be done; task aborts
-    std::function<void(const OffsetsItem &)> offsets;
-    std::function<motion::CommandId(const ToolOffsetItem &)> tool_offset;
+    std::function<void(const interp::UseOffsets &)> offsets;
+    std::function<motion::CommandId(const interp::UseToolOffset &)> tool_offset;
     /// Changes the planner at rest; the command whose answer is to be awaited, 0: nothing to wait for;
     /// nothing when it cannot be, and task aborts.
-    std::function<std::optional<motion::CommandId>(const PlannerModeItem &)> planner_mode;
+    std::function<std::optional<motion::CommandId>(const interp::UsePlanner &)> planner_mode;
     /// Starts a user M code; false when it cannot be started.
-    std::function<Result<>(const UserCodeItem &)> start_user_code;
+    std::function<Result<>(const interp::UserCode &)> start_user_code;
     /// Nothing while the program of a user M code runs, then how it ended.
     std::function<std::optional<Result<>>()> user_code_result;
 };
@@ -63,74 +64,52 @@ class Sequencer {
     void end_step() { isStepping_ = false; }
     bool isStepDone() const { return isStepDone_; }
 
-    void on_tool_event(io::ToolEvent event);
+    void on_tool_event(io::ToolEvent event) { check(tool_change_.on_event(event, tools_, io_)); }
     /// What is being waited for: a pin or a state; empty for nothing.
     std::string waiting_for() const;
 
     double input_value() const { return input_value_; }
     bool isInputTimedOut() const { return isInputTimedOut_; }
     /// Commanded spindle state, as programmed (unscaled).
-    double spindle_speed(int spindle) const { return spindles_[static_cast<std::size_t>(spindle)].speed; }
-    int spindle_direction(int spindle) const {
-        return spindles_[static_cast<std::size_t>(spindle)].direction;
-    }
+    double spindle_speed(int spindle) const { return spindles_.speed(spindle); }
+    int spindle_direction(int spindle) const { return spindles_.direction(spindle); }
     /// Starts or stops a spindle at once (operator's command).
-    void command_spindle(int spindle, double signed_rpm, bool isWaiting);
-    void stop_spindles();
+    void command_spindle(int spindle, double signed_rpm, bool isWaiting) {
+        spindles_.command(spindle, signed_rpm, isWaiting, motion_);
+    }
+    void stop_spindles() { spindles_.stop_all(motion_); }
     /// Whether a probe was made since the last call.
     bool take_probe() { return std::exchange(isProbeMade_, false); }
     /// A line for the file of (probeopen); without one nothing happens.
-    void log_probe(const std::string &line);
-    int selected_index() const { return selected_index_; }
+    void log_probe(const std::string &line) { check(probe_log_.write(line)); }
+    int selected_index() const { return tool_change_.selected_index(); }
     void set_move_listener(MoveListener listener) { move_listener_ = std::move(listener); }
 
   private:
     enum class Need : std::uint8_t { NOTHING, MOTION, MOTION_AND_IO };
     enum class Wait : std::uint8_t { NONE, DWELL, INPUT, TOOL, ORIENT, USER_CODE, SETTING };
-    struct SpindleState {
-        double speed = 0;
-        double surface_unit = 0;
-        double css_max_rpm = 0;
-        int direction = 0;
-        bool isWaiting = false;
-    };
-
-    static Need need_of(const ItemBody &body);
+    static Need need_of(const interp::MachineCall &call);
     bool isWaitOver(std::int64_t now_ns);
     bool isInputWaitOver(std::int64_t now_ns);
+    bool isOrientWaitOver(std::int64_t now_ns);
     bool isReady(const Item &item);
     bool isStepBoundary(const Item &item);
-    /// False when the item must be tried again next cycle.
     /// Tells the failure and begins nothing after it.
     void fail_item(const std::string &text);
+    void check(const Result<> &result);
+    /// False when the item must be tried again next cycle.
     bool execute(const Item &item, std::int64_t now_ns);
-    bool begin(const DwellItem &dwell, std::int64_t now_ns);
-    bool begin(const WaitInputItem &input, std::int64_t now_ns);
-    bool begin(const WaitOrientItem &orient, std::int64_t now_ns);
-    bool isOrientWaitOver(std::int64_t now_ns);
-    bool begin(const PlannerModeItem &mode);
-    bool begin(const UserCodeItem &code);
-    bool push_move(const Item &item);
-    /// Entry of the table, or "no tool" for index 0.
-    interp::ToolEntry tool_at(int index) const;
-    void execute_tool(const Item &item);
-    void execute_output(const Item &item);
-    void execute_log(const LogItem &item);
-    struct CloseFile {
-        void operator()(std::FILE *file) const { std::fclose(file); }
-    };
-    /// Each line reaches the file at once, so that none is lost and all can be watched.
-    struct LogFile {
-        std::string path;
-        std::unique_ptr<std::FILE, CloseFile> file;
-    };
-    void open_log(LogFile &log, const LogItem &item);
-    void close_logs();
-    motion::MoveTerms terms_of(const interp::MoveSettings &settings, motion::MotionType type,
-                               const Item &item);
-    void send_spindle(int spindle);
-    /// Tells spindles with constant surface speed where their centre line is now.
-    void follow_offsets();
+    bool push_move(const motion::PathBody &move, const interp::MoveSettings &settings, const Item &item);
+    bool push_output(const interp::SetDigitalOutput &output);
+    bool push_output(const interp::SetAnalogOutput &output);
+    bool begin(const interp::UsePlanner &planner);
+    // What is done in no time; some of it is waited for afterwards.
+    void perform(const interp::Dwell &dwell, std::int64_t now_ns);
+    void perform(const interp::WaitInput &input, std::int64_t now_ns);
+    void perform(const interp::WaitOrientComplete &orient, std::int64_t now_ns);
+    void perform(const interp::UserCode &code);
+    void perform(const interp::UseToolOffset &offset);
+    void perform(const interp::ChangeTool &change);
 
     ItemQueue &queue_;
     MotionLink &motion_;
@@ -142,7 +121,7 @@ class Sequencer {
 
     Wait wait_ = Wait::NONE;
     std::int64_t deadline_ns_ = 0;  ///< of a dwell or a time limit; 0: none
-    WaitInputItem awaited_input_{};
+    interp::WaitInput awaited_input_{};
     double input_value_ = 0, last_input_ = 0;
     bool isInputTimedOut_ = false;
     int awaited_spindle_ = 0;
@@ -150,18 +129,13 @@ class Sequencer {
     bool isOrientTold_ = false;             ///< status is of a time after it
     double orient_timeout_s_ = 0;
     motion::CommandId awaited_setting_ = 0;
-    int selected_index_ = -1;  ///< table entry prepared by T, -1: none
-    int changing_index_ = -1;
-    std::array<SpindleState, MAX_SPINDLES> spindles_{};
-    OffsetsItem offsets_{};
-    ToolOffsetItem tool_offset_{};
-    double centre_line_x_ = 0;  ///< machine X of the program's X0 [machine units]
-    bool isNextMoveWaitingForSpeed_ = false;
+    ToolChange tool_change_;
+    ProgramSpindles spindles_;
     bool isStepping_ = false, isStepDone_ = false;
     bool isHeld_ = false;     ///< by the stop that was executed last, for the rest of the cycle
     bool hasFailed_ = false;  ///< nothing more is begun until abort()
     std::uint32_t step_block_ = 0;
-    std::array<LogFile, 2> logs_;  ///< of (log,...), of probes
+    ProgramLog log_, probe_log_;  ///< of (log,...), of (probeopen ...)
     bool isProbeMade_ = false;
 };
 

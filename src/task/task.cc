@@ -36,22 +36,22 @@ SequencerEvents Task::make_events() {
     SequencerEvents events;
     events.message = [this](MessageKind kind, const std::string &text) { post(kind, text); };
     events.print = [this](const std::string &text) { post(MessageKind::OPERATOR_TEXT, text); };
-    events.stop = [this](const StopItem &stop, int line) { return on_stop(stop, line); };
-    events.end = [this](const EndItem &end) { on_end(end); };
+    events.stop = [this](const interp::ProgramStop &stop, int line) { return on_stop(stop, line); };
+    events.end = [this] { isReadingDone_ = true; };
     events.fail = [this](const std::string &text) {
         pending_failure_ = pending_failure_.empty() ? text : pending_failure_;
     };
-    events.offsets = [this](const OffsetsItem &item) {
+    events.offsets = [this](const interp::UseOffsets &item) {
         status_.g5x_index = item.g5x_index;
         status_.g5x_offset = item.g5x;
         status_.g92_offset = item.g92;
         status_.rotation_xy_deg = item.rotation_xy_deg;
     };
-    events.tool_offset = [this](const ToolOffsetItem &item) {
+    events.tool_offset = [this](const interp::UseToolOffset &item) {
         status_.tool_offset = item.offset;
         return motion_.send(motion::SetToolOffset{item.offset});
     };
-    events.planner_mode = [this](const PlannerModeItem &item) -> std::optional<motion::CommandId> {
+    events.planner_mode = [this](const interp::UsePlanner &item) -> std::optional<motion::CommandId> {
         const int smooth = settings_.sequencer.smooth_planner;
         if (item.isSmooth && smooth == 0) {
             pending_failure_ =
@@ -61,7 +61,7 @@ SequencerEvents Task::make_events() {
         }
         return planner_mode_.set(item.isSmooth ? smooth : 0);
     };
-    events.start_user_code = [this](const UserCodeItem &item) -> Result<> {
+    events.start_user_code = [this](const interp::UserCode &item) -> Result<> {
         const std::string path = interp::find_user_program(settings_.interpreter, item.code);
         return path.empty() ? fail("M" + std::to_string(item.code) + ": its program is gone")
                             : user_program_.start(path, item.p, item.q);
@@ -360,7 +360,7 @@ void Task::on_step_result(interp::Step result) {
     }
 }
 
-bool Task::on_stop(const StopItem &stop, int line) {
+bool Task::on_stop(const interp::ProgramStop &stop, int line) {
     if (stop.isOptional && !status_.isOptionalStop) {
         return false;
     }
@@ -369,10 +369,6 @@ bool Task::on_stop(const StopItem &stop, int line) {
     status_.isPaused = true;
     status_.isStoppedByProgram = true;
     return true;
-}
-
-void Task::on_end(const EndItem &) {
-    isReadingDone_ = true;
 }
 
 void Task::finish_run(Progress progress, const std::string &reason) {

@@ -128,8 +128,7 @@ class Task final : public interp::World {
     void log_probe();
     bool isReadAheadAllowed() const;
     void on_step_result(interp::Step result);
-    bool on_stop(const StopItem &stop, int line);
-    void on_end(const EndItem &end);
+    bool on_stop(const interp::ProgramStop &stop, int line);
 
     // task_abort.cc
     void fail_program(diag::Diagnostic what, AbortReason reason);

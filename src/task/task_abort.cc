@@ -11,16 +11,21 @@ namespace {
 constexpr int CLEAN_UP_BLOCKS = 10000;
 
 /// What must not happen after an abort: anything that moves, starts or waits for a person.
-bool isForbidden(const ItemBody &body) {
-    if (const auto *coolant = std::get_if<CoolantItem>(&body)) {
-        return coolant->isOn;
-    }
-    return std::holds_alternative<LineItem>(body) || std::holds_alternative<ArcItem>(body) ||
-           std::holds_alternative<ProbeItem>(body) || std::holds_alternative<RigidTapItem>(body) ||
-           std::holds_alternative<SpindleOnItem>(body) || std::holds_alternative<SpindleOrientItem>(body) ||
-           std::holds_alternative<SelectToolItem>(body) || std::holds_alternative<ChangeToolItem>(body) ||
-           std::holds_alternative<WaitInputItem>(body) || std::holds_alternative<StopItem>(body) ||
-           std::holds_alternative<EndItem>(body);
+bool isForbidden(const interp::MachineCall &call) {
+    using namespace interp;
+    return std::visit(
+        Overloaded{
+            [](const OneOf<LineMove, ArcMove, ProbeMove, TapMove, StartSpindle, OrientSpindle, SelectTool,
+                           ChangeTool, WaitInput, ProgramStop, ProgramEnd, Finish> auto &) { return true; },
+            [](const OneOf<SwitchMist, SwitchFlood> auto &coolant) { return coolant.isOn; },
+            [](const OneOf<Dwell, UseToolOffset, UseOffsets, UsePlanner, SetSpindleMode, UseSpindleSpeed,
+                           StopSpindle, WaitOrientComplete, ChangeToolNumber, SetToolTableEntry, ReloadTools,
+                           SwitchFeedOverride, SwitchSpeedOverride, SwitchFeedHold, SwitchAdaptiveFeed,
+                           SetDigitalOutput, SetAnalogOutput, PalletShuttle, UserCode, ProgramComment,
+                           OperatorMessage, PrintLine, OpenLog, LogLine, CloseLog, LogProbes, CanonError> auto
+                   &) { return false; },
+        },
+        call);
 }
 
 }  // namespace
@@ -74,7 +79,7 @@ void Task::begin_clean_up(AbortReason reason) {
     isCleaningUp_ = true;
     const interp::Step step = read_clean_up(reason);
     for (std::size_t i = 0; i < queue_.size(); ++i) {
-        if (!isForbidden(queue_[i].body)) {
+        if (!isForbidden(queue_[i].call)) {
             continue;
         }
         const motion::SourceTag source = queue_[i].source;

@@ -24,27 +24,26 @@ void TaskCanon::begin_block(const interp::BlockRef &block) {
     ++tag_.block;
 }
 
-void TaskCanon::line(const interp::LineMove &move) {
-    last_end_ = move.end;
-    add(LineItem{move});
-}
-
-void TaskCanon::arc(const interp::ArcMove &move) {
-    last_end_ = move.end;
-    add(ArcItem{move});
-}
-
-void TaskCanon::probe(const interp::LineMove &move, interp::ProbeKind kind) {
-    last_end_ = move.end;
-    add(ProbeItem{move, kind});
-}
-
-void TaskCanon::rapid_to(const geom::Pose &end) {
-    interp::LineMove move;
-    move.end = end;
-    move.settings.kind = interp::FeedKind::RAPID;
-    move.settings.control = interp::MotionControl::EXACT_PATH;
-    line(move);
+void TaskCanon::take(const interp::MachineCall &call) {
+    using namespace interp;
+    std::visit(
+        Overloaded{
+            [this](const OneOf<LineMove, ArcMove, ProbeMove> auto &move) {
+                last_end_ = move.end;
+                add(move);
+            },
+            [this](const ChangeTool &) { change_tool(); },
+            // Comments are for canons that print; this machine has no shuttle to move.
+            [](const OneOf<ProgramComment, PalletShuttle> auto &) {},
+            [this](const OneOf<TapMove, Dwell, UseToolOffset, UseOffsets, UsePlanner, SetSpindleMode,
+                               UseSpindleSpeed, StartSpindle, StopSpindle, OrientSpindle, WaitOrientComplete,
+                               SelectTool, ChangeToolNumber, SetToolTableEntry, ReloadTools, SwitchMist,
+                               SwitchFlood, SwitchFeedOverride, SwitchSpeedOverride, SwitchFeedHold,
+                               SwitchAdaptiveFeed, SetDigitalOutput, SetAnalogOutput, WaitInput, ProgramStop,
+                               ProgramEnd, Finish, UserCode, OperatorMessage, PrintLine, OpenLog, LogLine,
+                               CloseLog, LogProbes, CanonError> auto &one) { add(one); },
+        },
+        call);
 }
 
 std::vector<geom::Pose> tool_change_moves(const ToolChangePlace &place, const geom::Pose &position) {
@@ -65,53 +64,14 @@ std::vector<geom::Pose> tool_change_moves(const ToolChangePlace &place, const ge
 
 void TaskCanon::change_tool() {
     for (const geom::Pose &end : tool_change_moves(place_, last_end_)) {
-        rapid_to(end);
+        interp::LineMove move;
+        move.end = end;
+        move.settings.kind = interp::FeedKind::RAPID;
+        move.settings.control = interp::MotionControl::EXACT_PATH;
+        last_end_ = end;
+        add(move);
     }
-    add(ChangeToolItem{});
-}
-
-void TaskCanon::offsets(int g5x_index, const geom::Pose &g5x, const geom::Pose &g92, double rotation_xy_deg) {
-    add(OffsetsItem{g5x_index, g5x, g92, rotation_xy_deg});
-}
-
-void TaskCanon::spindle_on(int spindle, int direction, bool isWaiting) {
-    add(SpindleOnItem{spindle, direction, isWaiting});
-}
-
-void TaskCanon::orient_spindle(int spindle, double angle_deg, int mode) {
-    add(SpindleOrientItem{spindle, angle_deg, mode});
-}
-
-void TaskCanon::speed_override(int spindle, bool isEnabled) {
-    add_switch(motion::Switch::SPINDLE_OVERRIDE, spindle, isEnabled);
-}
-
-void TaskCanon::set_digital_output(int index, bool isOn, bool isSynched) {
-    add(DigitalOutputItem{index, isOn, isSynched});
-}
-
-void TaskCanon::set_analog_output(int index, double value, bool isSynched) {
-    add(AnalogOutputItem{index, value, isSynched});
-}
-
-void TaskCanon::wait_input(int index, bool isAnalog, interp::WaitKind kind, double timeout_s) {
-    add(WaitInputItem{index, isAnalog, kind, timeout_s});
-}
-
-void TaskCanon::comment(std::string_view) {
-    // Comments are for printing canons; a running machine has nothing to do with them.
-}
-
-void TaskCanon::message(std::string_view text) {
-    add(MessageItem{MessageKind::OPERATOR_DISPLAY, std::string(text)});
-}
-
-void TaskCanon::log_open(std::string_view path, bool isAppending) {
-    add(LogItem{isAppending ? LogItem::What::APPEND : LogItem::What::OPEN, std::string(path)});
-}
-
-void TaskCanon::canon_error(std::string_view text) {
-    add(MessageItem{MessageKind::OPERATOR_ERROR, std::string(text)});
+    add(interp::ChangeTool{});
 }
 
 }  // namespace mw::task

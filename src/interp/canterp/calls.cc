@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "interp/canterp/calls.hh"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -15,9 +18,9 @@ constexpr std::string_view BLANKS = " \t\r";
 /// Reads arguments one after the other; blanks and commas separate them.
 class Arguments {
   public:
-    Arguments(const Call &call, Plane &in_plane) : plane(in_plane), call_(call), rest_(call.arguments) {}
+    Arguments(const Call &call, Plane in_plane) : plane(in_plane), call_(call), rest_(call.arguments) {}
 
-    Plane &plane;  ///< selected by the calls before
+    const Plane plane;  ///< selected by the calls before
 
     std::string_view next_word() {
         const std::size_t begin = rest_.find_first_not_of(" \t,");
@@ -55,21 +58,19 @@ class Arguments {
         }
         return out;
     }
-    /// One of the names; its place among them.
-    int choice(std::initializer_list<std::string_view> names) {
+    /// One of the words; its place among them.
+    template <class Enum>
+    Enum choice(std::span<const std::string_view> words) {
         const std::string_view word = next_word();
-        int index = 0;
-        for (const std::string_view name : names) {
-            if (word == name) {
-                return index;
-            }
-            ++index;
+        const auto found = std::find(words.begin(), words.end(), word);
+        if (found != words.end()) {
+            return static_cast<Enum>(found - words.begin());
         }
         if (error_.empty()) {
             error_ = fmt::format("'{}' is not known here", word);
             offset_ = word.empty() ? call_.arguments_offset : offset_of(word);
         }
-        return 0;
+        return {};
     }
     /// All of the arguments as text, without quotes around it.
     std::string_view text() {
@@ -79,6 +80,15 @@ class Arguments {
         }
         rest_ = {};
         return out;
+    }
+    void read(int &field) { field = whole(); }
+    void read(double &field) { field = number(); }
+    void read(Pose &field) { field = pose(); }
+    void read(std::string &field) { field = text(); }
+    template <class Enum>
+        requires std::is_enum_v<Enum>
+    void read(Enum &field) {
+        field = choice<Enum>(CALL_WORDS<Enum>);
     }
     Result<> finish() const {
         if (!error_.empty()) {
@@ -101,53 +111,20 @@ class Arguments {
     std::size_t offset_ = 0;
 };
 
-using Handler = void (*)(Arguments &in, Canon &canon, bool isMade);
+using Reader = CanonCall (*)(Arguments &in);
 
-/// Reads the arguments first; the call is made only when all of them are right.
-template <auto Member>
-void plain(Arguments &, Canon &canon, bool isMade) {
-    if (isMade) {
-        (canon.*Member)();
+/// A call by its FIELDS; `choices` are what its name says.
+template <RegularCall Made, bool... choices>
+CanonCall regular(Arguments &in) {
+    Made call;
+    if constexpr (sizeof...(choices) > 0) {
+        std::apply([&](auto... field) { ((call.*field = choices), ...); }, Made::CHOICES);
     }
-}
-template <auto Member>
-void with_int(Arguments &in, Canon &canon, bool isMade) {
-    const int value = in.whole();
-    if (isMade) {
-        (canon.*Member)(value);
-    }
-}
-template <auto Member>
-void with_number(Arguments &in, Canon &canon, bool isMade) {
-    const double value = in.number();
-    if (isMade) {
-        (canon.*Member)(value);
-    }
-}
-template <auto Member>
-void with_pose(Arguments &in, Canon &canon, bool isMade) {
-    const Pose value = in.pose();
-    if (isMade) {
-        (canon.*Member)(value);
-    }
-}
-template <auto Member>
-void with_text(Arguments &in, Canon &canon, bool isMade) {
-    const std::string_view value = in.text();
-    if (isMade) {
-        (canon.*Member)(value);
-    }
-}
-template <auto Member>
-void with_int_and_number(Arguments &in, Canon &canon, bool isMade) {
-    const int index = in.whole();
-    const double value = in.number();
-    if (isMade) {
-        (canon.*Member)(index, value);
-    }
+    std::apply([&](auto... field) { (in.read(call.*field), ...); }, Made::FIELDS);
+    return call;
 }
 
-void arc_feed(Arguments &in, Canon &canon, bool isMade) {
+CanonCall arc_feed(Arguments &in) {
     ArcFeed arc;
     arc.first_end = in.number();
     arc.second_end = in.number();
@@ -164,112 +141,92 @@ void arc_feed(Arguments &in, Canon &canon, bool isMade) {
     for (int axis = 3; axis < geom::AXIS_COUNT && (axis < 6 || in.hasMore()); ++axis) {
         arc.end[axis] = in.number();
     }
-    if (isMade) {
-        canon.arc_feed(arc);
-    }
+    return arc;
 }
 
-void length_units(Arguments &in, Canon &canon, bool isMade) {
-    const int index = in.choice({"CANON_UNITS_INCHES", "CANON_UNITS_MM"});
-    if (isMade) {
-        canon.use_length_units(index == 0 ? LengthUnits::INCH : LengthUnits::MM);
-    }
+CanonCall select_plane(Arguments &in) {
+    constexpr std::size_t NAMED_PLANES = 3;
+    return SelectPlane{in.choice<Plane>(std::span(CALL_WORDS<Plane>).first<NAMED_PLANES>())};
 }
 
-void select_plane(Arguments &in, Canon &canon, bool isMade) {
-    const int index = in.choice({"CANON_PLANE_XY", "CANON_PLANE_YZ", "CANON_PLANE_XZ"});
-    if (isMade) {
-        in.plane = static_cast<Plane>(index);
-        canon.select_plane(in.plane);
-    }
+CanonCall motion_control(Arguments &in) {
+    SetMotionControlMode call;
+    in.read(call.mode);
+    call.tolerance = in.hasMore() ? in.number() : 0.0;
+    return call;
 }
 
-void feed_reference(Arguments &in, Canon &canon, bool isMade) {
-    in.choice({"CANON_XYZ"});
-    if (isMade) {
-        canon.set_feed_reference_xyz();
-    }
-}
-
-void motion_control(Arguments &in, Canon &canon, bool isMade) {
-    const int index = in.choice({"CANON_EXACT_STOP", "CANON_EXACT_PATH", "CANON_CONTINUOUS"});
-    const double tolerance = in.hasMore() ? in.number() : 0.0;
-    if (isMade) {
-        canon.set_motion_control_mode(static_cast<MotionControl>(index), tolerance);
-    }
-}
-
-void g5x_offset(Arguments &in, Canon &canon, bool isMade) {
-    const int index = in.whole();
-    const Pose offset = in.pose();
-    if (isMade) {
-        canon.set_g5x_offset(index, offset);
-    }
-}
-
-void feed_mode(Arguments &in, Canon &canon, bool isMade) {
-    const int spindle = in.whole();
+CanonCall feed_mode(Arguments &in) {
+    SetFeedMode call;
+    in.read(call.spindle);
     const int mode = in.whole();
-    if (isMade) {
-        canon.set_feed_mode(spindle, static_cast<FeedMode>(mode >= 0 && mode <= 2 ? mode : 0));
-    }
+    call.mode = static_cast<FeedMode>(mode >= 0 && mode <= 2 ? mode : 0);
+    return call;
 }
 
-template <bool isClockwise>
-void start_spindle(Arguments &in, Canon &canon, bool isMade) {
-    const int spindle = in.whole();
-    if (isMade) {
-        isClockwise ? canon.start_spindle_clockwise(spindle, true)
-                    : canon.start_spindle_counterclockwise(spindle, true);
-    }
+CanonCall tool_length_offset(Arguments &in) {
+    return UseToolLengthOffset{in.pose()};
+}
+
+CanonCall canon_error(Arguments &in) {
+    return CanonError{std::string(in.text())};
 }
 
 struct Row {
     std::string_view name;
-    Handler handler;
+    Reader read;
 };
 
+template <RegularCall Made>
+constexpr Row row() {
+    return {Made::NAME, &regular<Made>};
+}
+template <RegularCall Made, bool choice>
+constexpr Row row() {
+    return {Made::NAMES[choice ? 1 : 0], &regular<Made, choice>};
+}
+
 constexpr Row ROWS[] = {
-    {"ARC_FEED", &arc_feed},
-    {"CANON_ERROR", &with_text<&Canon::canon_error>},
-    {"CHANGE_TOOL", &plain<&Canon::change_tool>},
-    {"CHANGE_TOOL_NUMBER", &with_int<&Canon::change_tool_number>},
-    {"COMMENT", &with_text<&Canon::comment>},
-    {"DISABLE_FEED_OVERRIDE", &plain<&Canon::disable_feed_override>},
-    {"DISABLE_SPEED_OVERRIDE", &with_int<&Canon::disable_speed_override>},
-    {"DWELL", &with_number<&Canon::dwell>},
-    {"ENABLE_FEED_OVERRIDE", &plain<&Canon::enable_feed_override>},
-    {"ENABLE_SPEED_OVERRIDE", &with_int<&Canon::enable_speed_override>},
-    {"FINISH", &plain<&Canon::finish>},
-    {"FLOOD_OFF", &plain<&Canon::flood_off>},
-    {"FLOOD_ON", &plain<&Canon::flood_on>},
-    {"MESSAGE", &with_text<&Canon::message>},
-    {"MIST_OFF", &plain<&Canon::mist_off>},
-    {"MIST_ON", &plain<&Canon::mist_on>},
-    {"ON_RESET", &plain<&Canon::on_reset>},
-    {"OPTIONAL_PROGRAM_STOP", &plain<&Canon::optional_program_stop>},
-    {"PALLET_SHUTTLE", &plain<&Canon::pallet_shuttle>},
-    {"PROGRAM_END", &plain<&Canon::program_end>},
-    {"PROGRAM_STOP", &plain<&Canon::program_stop>},
-    {"SELECT_PLANE", &select_plane},
-    {"SELECT_TOOL", &with_int<&Canon::select_tool>},
-    {"SET_FEED_MODE", &feed_mode},
-    {"SET_FEED_RATE", &with_number<&Canon::set_feed_rate>},
-    {"SET_FEED_REFERENCE", &feed_reference},
-    {"SET_G5X_OFFSET", &g5x_offset},
-    {"SET_G92_OFFSET", &with_pose<&Canon::set_g92_offset>},
-    {"SET_MOTION_CONTROL_MODE", &motion_control},
-    {"SET_NAIVECAM_TOLERANCE", &with_number<&Canon::set_naivecam_tolerance>},
-    {"SET_SPINDLE_MODE", &with_int_and_number<&Canon::set_spindle_mode>},
-    {"SET_SPINDLE_SPEED", &with_int_and_number<&Canon::set_spindle_speed>},
-    {"SET_XY_ROTATION", &with_number<&Canon::set_xy_rotation>},
-    {"START_SPINDLE_CLOCKWISE", &start_spindle<true>},
-    {"START_SPINDLE_COUNTERCLOCKWISE", &start_spindle<false>},
-    {"STOP_SPINDLE_TURNING", &with_int<&Canon::stop_spindle_turning>},
-    {"STRAIGHT_FEED", &with_pose<&Canon::straight_feed>},
-    {"STRAIGHT_TRAVERSE", &with_pose<&Canon::straight_traverse>},
-    {"USE_LENGTH_UNITS", &length_units},
-    {"USE_TOOL_LENGTH_OFFSET", &with_pose<&Canon::use_tool_length_offset>},
+    {ArcFeed::NAME, &arc_feed},
+    {CanonError::NAME, &canon_error},
+    row<ChangeTool>(),
+    row<ChangeToolNumber>(),
+    row<ProgramComment>(),
+    row<SwitchFeedOverride, false>(),
+    row<SwitchSpeedOverride, false>(),
+    row<Dwell>(),
+    row<SwitchFeedOverride, true>(),
+    row<SwitchSpeedOverride, true>(),
+    row<Finish>(),
+    row<SwitchFlood, false>(),
+    row<SwitchFlood, true>(),
+    row<OperatorMessage>(),
+    row<SwitchMist, false>(),
+    row<SwitchMist, true>(),
+    row<OnReset>(),
+    row<ProgramStop, true>(),
+    row<PalletShuttle>(),
+    row<ProgramEnd>(),
+    row<ProgramStop, false>(),
+    {SelectPlane::NAME, &select_plane},
+    row<SelectTool>(),
+    {SetFeedMode::NAME, &feed_mode},
+    row<SetFeedRate>(),
+    row<SetFeedReference>(),
+    row<SetG5xOffset>(),
+    row<SetG92Offset>(),
+    {SetMotionControlMode::NAME, &motion_control},
+    row<SetNaivecamTolerance>(),
+    row<SetSpindleMode>(),
+    row<SetSpindleSpeed>(),
+    row<SetXyRotation>(),
+    row<StartSpindle, true>(),
+    row<StartSpindle, false>(),
+    row<StopSpindle>(),
+    row<StraightFeed>(),
+    row<StraightTraverse>(),
+    row<UseLengthUnits>(),
+    {UseToolLengthOffset::NAME, &tool_length_offset},
 };
 
 /// The next word of `line` from `at` on, which moves behind it.
@@ -308,13 +265,15 @@ Kind take_apart(std::string_view line, Call &call) {
 Result<> make_call(const Call &call, Canon &canon, Plane &plane) {
     for (const Row &row : ROWS) {
         if (row.name == call.name) {
-            Arguments checked(call, plane);
-            row.handler(checked, canon, false);
-            if (Result<> done = checked.finish(); !done) {
+            Arguments in(call, plane);
+            const CanonCall made = row.read(in);
+            if (Result<> done = in.finish(); !done) {
                 return done;
             }
-            Arguments used(call, plane);
-            row.handler(used, canon, true);
+            if (const auto *selected = std::get_if<SelectPlane>(&made)) {
+                plane = selected->plane;
+            }
+            canon.take(made);
             return {};
         }
     }

@@ -182,8 +182,8 @@ void Executor::send_arc(const ArcPlan &arc) {
         send_inverse_time(
             std::hypot(radius * arc_sweep(arc, x0, y0), arc.end[axes.normal] - state.position[axes.normal]));
     }
-    canon.arc_feed({arc.end[axes.first], arc.end[axes.second], arc.first_centre, arc.second_centre,
-                    arc.rotation, arc.end[axes.normal], arc.end});
+    canon.take(ArcFeed{arc.end[axes.first], arc.end[axes.second], arc.first_centre, arc.second_centre,
+                       arc.rotation, arc.end[axes.normal], arc.end});
     state.position = arc.end;
 }
 

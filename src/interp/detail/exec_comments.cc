@@ -152,27 +152,27 @@ bool Executor::run_comments(const BlockView &view, std::string_view line_text) {
     if (active.keyword.empty()) {
         const std::size_t begin = comment.find_first_not_of(" \t");
         if (begin != std::string_view::npos) {
-            canon.comment(comment.substr(begin));
+            canon.take(ProgramComment{std::string(comment.substr(begin))});
         }
     } else if (active.keyword == "msg") {
-        canon.message(active.text);
+        canon.take(OperatorMessage{std::string(active.text)});
     } else if (active.keyword == "debug") {
         if (parameters.get(P_DEBUG_SHOWN) == 0.0) {
             return true;
         }
-        canon.message(substituted(active.text));
+        canon.take(OperatorMessage{substituted(active.text)});
     } else if (active.keyword == "print") {
-        canon.print(substituted(active.text));
+        canon.take(PrintLine{substituted(active.text)});
     } else if (active.keyword == "log") {
-        canon.log(substituted(active.text));
+        canon.take(LogLine{substituted(active.text)});
     } else if (active.keyword == "logopen" || active.keyword == "logappend") {
         const std::string_view path = trim(active.text);
         if (path.empty()) {
             return fault.set("(logopen,...) and (logappend,...) need the name of a file", last.begin + 1);
         }
-        canon.log_open(path, active.keyword == "logappend");
+        canon.take(OpenLog{std::string(path), active.keyword == "logappend"});
     } else if (active.keyword == "logclose") {
-        canon.log_close();
+        canon.take(CloseLog{});
     } else if (active.keyword == "abort") {
         return fault.set(substituted(active.text), last.begin + 1);
     } else {
@@ -180,8 +180,8 @@ bool Executor::run_comments(const BlockView &view, std::string_view line_text) {
         if (active.keyword == "probeopen" && path.empty()) {
             return fault.set("(probeopen FILE) needs the name of a file", last.begin + 1);
         }
-        canon.comment(trim(comment));
-        canon.probe_log(active.keyword == "probeopen" ? path : std::string_view());
+        canon.take(ProgramComment{std::string(trim(comment))});
+        canon.take(LogProbes{std::string(active.keyword == "probeopen" ? path : std::string_view())});
     }
     return true;
 }

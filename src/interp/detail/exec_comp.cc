@@ -54,8 +54,8 @@ void Executor::send_comp_arc(Point to, Point centre, int rotation, const Pose &e
     const PlaneAxes axes = plane_axes();
     const Point shift = comp_shift();
     const Pose place = in_plane(end, to);
-    canon.arc_feed({place[axes.first], place[axes.second], centre.x + shift.x, centre.y + shift.y, rotation,
-                    place[axes.normal], place});
+    canon.take(ArcFeed{place[axes.first], place[axes.second], centre.x + shift.x, centre.y + shift.y,
+                       rotation, place[axes.normal], place});
 }
 
 /// G41 and G42 (tool number D), G41.1 and G42.1 (diameter D), G40.
@@ -96,7 +96,7 @@ bool Executor::do_comp(const Code &code, const BlockValues &values) {
         } else if (!find_tool(toolno, values.column_of('d'), index)) {
             return false;
         } else {
-            const ToolEntry entry = tool_entry(index);
+            const ToolEntry entry = tool_table_.entry(index);
             diameter = entry.diameter * machine_to_program();
             state.comp_orientation = entry.orientation;
         }
@@ -110,13 +110,13 @@ bool Executor::do_comp(const Code &code, const BlockValues &values) {
     state.comp_code = code.number;
     state.comp_radius = std::fabs(diameter) / 2.0;
     state.comp_last = {};
-    canon.comment(isLeft ? "interpreter: cutter radius compensation on left"
-                         : "interpreter: cutter radius compensation on right");
+    canon.take(ProgramComment{isLeft ? "interpreter: cutter radius compensation on left"
+                                     : "interpreter: cutter radius compensation on right"});
     return true;
 }
 
 void Executor::end_comp() {
-    canon.comment("interpreter: cutter radius compensation off");
+    canon.take(ProgramComment{"interpreter: cutter radius compensation off"});
     state.isCompExit = state.comp != CompSide::OFF && state.comp_last.isSet;
     state.comp = CompSide::OFF;
     state.comp_code = 400;
@@ -126,15 +126,20 @@ void Executor::end_comp() {
 /// The last move ends at `end` instead, and so do moves after it that left the plane alone.
 void Executor::patch_comp(Point end) {
     for (std::size_t i = state.comp_last.record; i < canon.size(); ++i) {
-        CanonQueue::Record &record = canon.record(i);
-        if (!CanonQueue::isMove(record)) {
+        CanonCall &call = canon.call(i);
+        auto *const feed = std::get_if<StraightFeed>(&call);
+        auto *const traverse = std::get_if<StraightTraverse>(&call);
+        auto *const arc = std::get_if<ArcFeed>(&call);
+        if (feed == nullptr && traverse == nullptr && arc == nullptr) {
             continue;
         }
-        patched_.emplace_back(i, record);
-        record.pose = in_plane(record.pose, end);
-        const bool isArc = record.op == CanonQueue::Op::ARC;
-        record.u = isArc ? record.pose[plane_axes().first] : record.u;
-        record.v = isArc ? record.pose[plane_axes().second] : record.v;
+        patched_.emplace_back(i, call);
+        Pose &place = feed != nullptr ? feed->end : traverse != nullptr ? traverse->end : arc->end;
+        place = in_plane(place, end);
+        if (arc != nullptr) {
+            arc->first_end = place[plane_axes().first];
+            arc->second_end = place[plane_axes().second];
+        }
     }
     state.comp_last.end = end;
 }
@@ -151,9 +156,9 @@ void Executor::send_rapid_around(Point from, Point to, Point corner) {
     for (int i = 0; i < pieces; ++i) {
         const double angle = half * (2 * i + 1), c = std::cos(angle), s = std::sin(angle);
         const Point way{a.x * c - a.y * s, a.x * s + a.y * c};
-        canon.straight_traverse(in_plane(state.position, sum(corner, way, reach)));
+        canon.take(StraightTraverse{in_plane(state.position, sum(corner, way, reach))});
     }
-    canon.straight_traverse(in_plane(state.position, to));
+    canon.take(StraightTraverse{in_plane(state.position, to)});
 }
 
 /// Joins the last element to `next`; sets where `next` starts. `what` names the move in errors.
@@ -221,9 +226,9 @@ bool Executor::comp_straight(bool isRapid, const Pose &end) {
                             ? next.end
                             : (state.comp_last.isSet ? state.comp_last.end : sum(to, comp_shift(), -1.0));
     if (isRapid) {
-        canon.straight_traverse(in_plane(end, place));
+        canon.take(StraightTraverse{in_plane(end, place)});
     } else {
-        canon.straight_feed(in_plane(end, place));
+        canon.take(StraightFeed{in_plane(end, place)});
     }
     if (length > TINY) {
         next.record = canon.size() - 1;

@@ -86,7 +86,7 @@ bool Executor::restore_geometry(const State &saved) {
     const BlockValues none;
     if (saved.plane != state.plane) {
         state.plane = saved.plane;
-        canon.select_plane(state.plane);
+        canon.take(SelectPlane{state.plane});
     }
     if (saved.isDiameter != state.isDiameter) {
         isDone = run_code('g', saved.isDiameter ? 70 : 80, none);
@@ -129,7 +129,7 @@ bool Executor::restore_spindles(const State &saved) {
         if (want.isConstantSurface != have.isConstantSurface || want.css_max_rpm != have.css_max_rpm) {
             have.isConstantSurface = want.isConstantSurface;
             have.css_max_rpm = want.css_max_rpm;
-            canon.set_spindle_mode(i, want.css_max_rpm);
+            canon.take(SetSpindleMode{i, want.css_max_rpm});
         }
     }
     if (saved.feed_mode != state.feed_mode) {
@@ -146,18 +146,20 @@ bool Executor::restore_spindles(const State &saved) {
     state.active_spindle = saved.active_spindle;
     state.feed = saved.feed;
     if (state.feed_mode != FeedMode::INVERSE_TIME) {  // there each move has a rate of its own
-        canon.set_feed_rate(state.feed);
+        canon.take(SetFeedRate{state.feed});
     }
     for (int i = 0; i < world_.count_spindles(); ++i) {
         const SpindleState &want = saved.spindles[static_cast<std::size_t>(i)];
         SpindleState &have = state.spindles[static_cast<std::size_t>(i)];
         have.speed = want.speed;
-        canon.set_spindle_speed(i, want.speed);
+        canon.take(SetSpindleSpeed{i, want.speed});
         if (want.direction != have.direction) {
             have.direction = want.direction;
-            want.direction > 0   ? canon.start_spindle_clockwise(i, true)
-            : want.direction < 0 ? canon.start_spindle_counterclockwise(i, true)
-                                 : canon.stop_spindle_turning(i);
+            if (want.direction != 0) {
+                canon.take(StartSpindle{i, want.direction > 0, true});
+            } else {
+                canon.take(StopSpindle{i});
+            }
         }
     }
     return true;
@@ -165,21 +167,21 @@ bool Executor::restore_spindles(const State &saved) {
 
 void Executor::restore_overrides(const State &saved) {
     if (saved.isFeedOverride != state.isFeedOverride) {
-        saved.isFeedOverride ? canon.enable_feed_override() : canon.disable_feed_override();
+        canon.take(SwitchFeedOverride{saved.isFeedOverride});
     }
     for (int i = 0; i < world_.count_spindles(); ++i) {
         const SpindleState &want = saved.spindles[static_cast<std::size_t>(i)];
         SpindleState &have = state.spindles[static_cast<std::size_t>(i)];
         if (want.isOverridden != have.isOverridden) {
             have.isOverridden = want.isOverridden;
-            want.isOverridden ? canon.enable_speed_override(i) : canon.disable_speed_override(i);
+            canon.take(SwitchSpeedOverride{i, want.isOverridden});
         }
     }
     if (saved.isAdaptive != state.isAdaptive) {
-        saved.isAdaptive ? canon.enable_adaptive_feed() : canon.disable_adaptive_feed();
+        canon.take(SwitchAdaptiveFeed{saved.isAdaptive});
     }
     if (saved.isFeedHold != state.isFeedHold) {
-        saved.isFeedHold ? canon.enable_feed_hold() : canon.disable_feed_hold();
+        canon.take(SwitchFeedHold{saved.isFeedHold});
     }
     state.isFeedOverride = saved.isFeedOverride;
     state.isAdaptive = saved.isAdaptive;
@@ -206,11 +208,11 @@ bool Executor::restore_context(const State &saved_modes) {
     }
     if (state.isMist && !saved.isMist) {
         state.isMist = false;
-        canon.mist_off();
+        canon.take(SwitchMist{false});
     }
     if (state.isFlood && !saved.isFlood) {
         state.isFlood = false;
-        canon.flood_off();
+        canon.take(SwitchFlood{false});
     }
     if (saved.isFlood && !state.isFlood) {
         run_code('m', 8, {});

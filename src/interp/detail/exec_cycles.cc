@@ -172,7 +172,7 @@ bool Executor::do_cycle(const Code &code, const BlockValues &values) {
         cycle_move(true, axes.normal, plan.r);
     }
     if (control != MotionControl::EXACT_PATH) {
-        canon.set_motion_control_mode(MotionControl::EXACT_PATH, 0.0);
+        canon.take(SetMotionControlMode{MotionControl::EXACT_PATH, 0.0});
     }
     for (int i = 0; i < repeats; ++i) {
         plan.clear = state.isRetractToR ? plan.r : std::fmax(state.cycle.initial, plan.r);
@@ -186,7 +186,7 @@ bool Executor::do_cycle(const Code &code, const BlockValues &values) {
         over[axes.first] = goal[axes.first];
         over[axes.second] = goal[axes.second];
         over[axes.normal] = std::fmax(state.position[axes.normal], plan.clear);
-        canon.straight_traverse(over);
+        canon.take(StraightTraverse{over});
         state.position = over;
         if (over[axes.normal] != plan.r) {
             cycle_move(true, axes.normal, plan.r);
@@ -194,8 +194,9 @@ bool Executor::do_cycle(const Code &code, const BlockValues &values) {
         run_cycle(plan);
     }
     if (control != MotionControl::EXACT_PATH) {
-        canon.set_motion_control_mode(control, control == MotionControl::CONTINUOUS ? state.tolerance : 0.0);
-        canon.set_naivecam_tolerance(state.naivecam);
+        canon.take(
+            SetMotionControlMode{control, control == MotionControl::CONTINUOUS ? state.tolerance : 0.0});
+        canon.take(SetNaivecamTolerance{state.naivecam});
     }
     return true;
 }
@@ -204,16 +205,15 @@ bool Executor::do_cycle(const Code &code, const BlockValues &values) {
 void Executor::cycle_move(bool isRapid, int axis, double value) {
     state.position[axis] = value;
     if (isRapid) {
-        canon.straight_traverse(state.position);
+        canon.take(StraightTraverse{state.position});
     } else {
-        canon.straight_feed(state.position);
+        canon.take(StraightFeed{state.position});
     }
 }
 
 void Executor::start_spindle(int direction) {
     const int spindle = state.active_spindle;
-    direction > 0 ? canon.start_spindle_clockwise(spindle, true)
-                  : canon.start_spindle_counterclockwise(spindle, true);
+    canon.take(StartSpindle{spindle, direction > 0, true});
 }
 
 /// From the clearance plane down and back to plan.clear.
@@ -230,7 +230,7 @@ void Executor::run_cycle(const CyclePlan &plan) {
     }
     cycle_move(false, normal, plan.bottom);
     if (needsDwell(plan.code)) {
-        canon.dwell(state.cycle.p);
+        canon.take(Dwell{state.cycle.p});
     }
     switch (plan.code) {
     case 850:
@@ -238,13 +238,13 @@ void Executor::run_cycle(const CyclePlan &plan) {
         cycle_move(true, normal, plan.clear);
         break;
     case 860:
-        canon.stop_spindle_turning(state.active_spindle);
+        canon.take(StopSpindle{state.active_spindle});
         cycle_move(true, normal, plan.clear);
         start_spindle(direction);
         break;
     case 880:  // the operator retracts by hand, to the clear height
-        canon.stop_spindle_turning(state.active_spindle);
-        canon.program_stop();
+        canon.take(StopSpindle{state.active_spindle});
+        canon.take(ProgramStop{});
         start_spindle(direction);
         state.position[normal] = plan.clear;
         break;
@@ -286,27 +286,27 @@ void Executor::tap_move(double height) {
         constexpr int LENGTHS = 3;
         sent[axis] = place[(axis + (normal == geom::AXIS_Y ? 1 : 2)) % LENGTHS];
     }
-    canon.straight_feed(sent);
+    canon.take(StraightFeed{sent});
 }
 
 /// Tapping with a floating chuck: the spindle turns back at the bottom.
 void Executor::run_tap(const CyclePlan &plan, int direction) {
     const int spindle = state.active_spindle;
     const bool isSpeedOverride = state.spindles[static_cast<std::size_t>(spindle)].isOverridden;
-    canon.disable_feed_override();
-    canon.disable_speed_override(spindle);
+    canon.take(SwitchFeedOverride{false});
+    canon.take(SwitchSpeedOverride{spindle, false});
     tap_move(plan.bottom);
-    canon.stop_spindle_turning(spindle);
+    canon.take(StopSpindle{spindle});
     start_spindle(-direction);
-    canon.dwell(state.cycle.p);
+    canon.take(Dwell{state.cycle.p});
     tap_move(plan.clear);
-    canon.stop_spindle_turning(spindle);
+    canon.take(StopSpindle{spindle});
     start_spindle(direction);
     if (state.isFeedOverride) {
-        canon.enable_feed_override();
+        canon.take(SwitchFeedOverride{true});
     }
     if (isSpeedOverride) {
-        canon.enable_speed_override(spindle);
+        canon.take(SwitchSpeedOverride{spindle, true});
     }
 }
 
@@ -323,7 +323,7 @@ void Executor::run_back_bore(const CyclePlan &plan, int direction) {
         const int b = axes.normal == geom::AXIS_Y ? geom::AXIS_Z : axes.second;
         state.position[a] = on_axis[a] + (isBeside ? along_first : 0.0);
         state.position[b] = on_axis[b] + (isBeside ? along_second : 0.0);
-        canon.straight_traverse(state.position);
+        canon.take(StraightTraverse{state.position});
     };
     const double up = axes.normal == geom::AXIS_Z
                           ? state.cycle.k
@@ -331,10 +331,10 @@ void Executor::run_back_bore(const CyclePlan &plan, int direction) {
     const double top = up + (state.isIncremental ? plan.bottom : 0.0);
     const auto orient = [&] {
         constexpr double PATIENCE_S = 60.0;
-        canon.stop_spindle_turning(spindle);
-        canon.orient_spindle(spindle, 0.0, COUNTERCLOCKWISE);
+        canon.take(StopSpindle{spindle});
+        canon.take(OrientSpindle{spindle, 0.0, COUNTERCLOCKWISE});
         if (settings_.isTask) {  // the field's rs274 prints no waiting
-            canon.wait_orient_complete(spindle, PATIENCE_S);
+            canon.take(WaitOrientComplete{spindle, PATIENCE_S});
         }
     };
     shift(true);

@@ -11,16 +11,16 @@ bool Executor::do_coolant(const Code &code, const BlockValues &) {
     switch (code.number) {
     case 7:
         state.isMist = true;
-        canon.mist_on();
+        canon.take(SwitchMist{true});
         break;
     case 8:
         state.isFlood = true;
-        canon.flood_on();
+        canon.take(SwitchFlood{true});
         break;
     default:
         state.isMist = state.isFlood = false;
-        canon.mist_off();
-        canon.flood_off();
+        canon.take(SwitchMist{false});
+        canon.take(SwitchFlood{false});
         break;
     }
     return true;
@@ -38,22 +38,22 @@ bool Executor::do_override(const Code &code, const BlockValues &values) {
     const bool isSpeed = code.number == 48 || code.number == 49 || code.number == 51;
     if (isFeed) {
         state.isFeedOverride = isOn;
-        isOn ? canon.enable_feed_override() : canon.disable_feed_override();
+        canon.take(SwitchFeedOverride{isOn});
     }
     if (isSpeed) {
         const bool isAll = !values.has('$') || values.at('$') < 0.0;
         for (int i = isAll ? 0 : spindle; i < (isAll ? world_.count_spindles() : spindle + 1); ++i) {
             state.spindles[static_cast<std::size_t>(i)].isOverridden = isOn;
-            isOn ? canon.enable_speed_override(i) : canon.disable_speed_override(i);
+            canon.take(SwitchSpeedOverride{i, isOn});
         }
     }
     if (code.number == 52) {
         state.isAdaptive = isOn;
-        isOn ? canon.enable_adaptive_feed() : canon.disable_adaptive_feed();
+        canon.take(SwitchAdaptiveFeed{isOn});
     }
     if (code.number == 53) {
         state.isFeedHold = isOn;
-        isOn ? canon.enable_feed_hold() : canon.disable_feed_hold();
+        canon.take(SwitchFeedHold{isOn});
     }
     return true;
 }
@@ -72,9 +72,9 @@ bool Executor::do_output(const Code &code, const BlockValues &values) {
                          values.column_of(name));
     }
     if (isAnalog) {
-        canon.set_analog_output(index, values.at('q'), code.number == 67);
+        canon.take(SetAnalogOutput{index, values.at('q'), code.number == 67});
     } else {
-        canon.set_digital_output(index, code.number == 62 || code.number == 64, code.number <= 63);
+        canon.take(SetDigitalOutput{index, code.number == 62 || code.number == 64, code.number <= 63});
     }
     return true;
 }
@@ -110,7 +110,7 @@ bool Executor::do_wait_input(const Code &, const BlockValues &values) {
     if (state.comp != CompSide::OFF) {
         return fault.set("Cannot wait for an input with cutter radius compensation on");
     }
-    canon.wait_input(index, isAnalog, static_cast<WaitKind>(kind), values.at('q', 0.0));
+    canon.take(WaitInput{index, isAnalog, static_cast<WaitKind>(kind), values.at('q', 0.0)});
     isWaitingInput_ = true;
     outcome = Outcome::SYNC;
     return true;
@@ -120,7 +120,7 @@ bool Executor::do_wait_input(const Code &, const BlockValues &values) {
 bool Executor::do_user(const Code &code, const BlockValues &values) {
     if (settings_.isUserCodeAssumed || !find_user_program(settings_, code.number).empty()) {
         constexpr double NOT_GIVEN = -1.0;
-        canon.user_m_code(code.number, values.at('p', NOT_GIVEN), values.at('q', NOT_GIVEN));
+        canon.take(UserCode{code.number, values.at('p', NOT_GIVEN), values.at('q', NOT_GIVEN)});
         return true;
     }
     return fault.set(fmt::format("Unknown m code used: M{}", code.number), 0,
@@ -134,18 +134,18 @@ bool Executor::do_dwell(const Code &, const BlockValues &values) {
     if (values.at('p') < 0.0) {
         return fault.set("The dwell time P of G4 must not be negative", values.column_of('p'));
     }
-    canon.dwell(values.at('p'));
+    canon.take(Dwell{values.at('p')});
     return true;
 }
 
 bool Executor::do_stop(const Code &code, const BlockValues &) {
     if (code.number == 60) {
-        canon.pallet_shuttle();
+        canon.take(PalletShuttle{});
     }
     if (code.number == 1) {
-        canon.optional_program_stop();
+        canon.take(ProgramStop{true});
     } else {
-        canon.program_stop();
+        canon.take(ProgramStop{});
     }
     return true;
 }
@@ -167,27 +167,27 @@ void Executor::restore_modes_at_end() {
     send_coordinates();
     if (state.plane != Plane::XY) {
         state.plane = Plane::XY;
-        canon.select_plane(state.plane);
+        canon.take(SelectPlane{state.plane});
     }
     state.isIncremental = false;
     state.feed_mode = FeedMode::UNITS_PER_MINUTE;
-    canon.set_feed_mode(0, state.feed_mode);
+    canon.take(SetFeedMode{0, state.feed_mode});
     state.feed = 0.0;
-    canon.set_feed_rate(0.0);
+    canon.take(SetFeedRate{0.0});
     if (!state.isFeedOverride) {
         state.isFeedOverride = true;
-        canon.enable_feed_override();
+        canon.take(SwitchFeedOverride{true});
     }
     for (int i = 0; i < world_.count_spindles(); ++i) {
         SpindleState &spindle = state.spindles[static_cast<std::size_t>(i)];
         if (!spindle.isOverridden) {
-            canon.enable_speed_override(i);
+            canon.take(SwitchSpeedOverride{i, true});
         }
         const double speed = spindle.speed;
         spindle = {};
         spindle.speed = speed;
-        canon.stop_spindle_turning(i);
-        canon.set_spindle_mode(i, 0.0);
+        canon.take(StopSpindle{i});
+        canon.take(SetSpindleMode{i, 0.0});
     }
     state.motion = 10;
     if (settings_.isG92PersistenceDisabled) {
@@ -196,24 +196,24 @@ void Executor::restore_modes_at_end() {
         change_frame(made);
         set_parameter_pose(P_G92, {});
         parameters.set(P_G92_APPLIED, 0.0);
-        canon.set_g92_offset({});
+        canon.take(SetG92Offset{});
     }
     if (state.isMist) {
         state.isMist = false;
-        canon.mist_off();
+        canon.take(SwitchMist{false});
     }
     if (state.isFlood) {
         state.isFlood = false;
-        canon.flood_off();
+        canon.take(SwitchFlood{false});
     }
 }
 
 bool Executor::do_end(const Code &code, const BlockValues &) {
     restore_modes_at_end();
     if (code.number == 30) {
-        canon.pallet_shuttle();
+        canon.take(PalletShuttle{});
     }
-    canon.program_end();
+    canon.take(ProgramEnd{});
     outcome = Outcome::PROGRAM_END;
     return true;
 }

@@ -273,11 +273,11 @@ bool Executor::send_profile_move(const ProfileMove &move, const CutFrame &frame)
         if (isCompensated) {
             return comp_arc({end, centre.x, centre.y, rotation});
         }
-        canon.arc_feed({end[Z], end[X], centre.x, centre.y, rotation, end[geom::AXIS_Y], end});
+        canon.take(ArcFeed{end[Z], end[X], centre.x, centre.y, rotation, end[geom::AXIS_Y], end});
     } else if (isCompensated) {
         return comp_straight(move.isRapid, end);
     } else {
-        move.isRapid ? canon.straight_traverse(end) : canon.straight_feed(end);
+        move.isRapid ? canon.take(StraightTraverse{end}) : canon.take(StraightFeed{end});
     }
     state.position = end;
     return true;

@@ -43,7 +43,7 @@ bool Executor::do_feed_word(const Code &, const BlockValues &values) {
     }
     state.feed = feed;
     if (state.feed_mode != FeedMode::INVERSE_TIME) {  // there each move has a rate of its own
-        canon.set_feed_rate(feed);
+        canon.take(SetFeedRate{feed});
     }
     return true;
 }
@@ -65,7 +65,7 @@ bool Executor::do_units(const Code &code, const BlockValues &) {
         state.cycle.r *= factor;
         state.cycle.q *= factor;
     }
-    canon.use_length_units(units);
+    canon.take(UseLengthUnits{units});
     return true;
 }
 
@@ -87,15 +87,15 @@ bool Executor::do_plane(const Code &code, const BlockValues &) {
             state.plane = row.plane;
         }
     }
-    canon.select_plane(state.plane);
+    canon.take(SelectPlane{state.plane});
     return true;
 }
 
 bool Executor::do_distance(const Code &code, const BlockValues &) {
     const bool isIncremental = code.number == 910;
     if (isIncremental != state.isIncremental) {
-        canon.comment(isIncremental ? "interpreter: distance mode changed to incremental"
-                                    : "interpreter: distance mode changed to absolute");
+        canon.take(ProgramComment{isIncremental ? "interpreter: distance mode changed to incremental"
+                                                : "interpreter: distance mode changed to absolute"});
         state.isIncremental = isIncremental;
     }
     return true;
@@ -104,8 +104,8 @@ bool Executor::do_distance(const Code &code, const BlockValues &) {
 bool Executor::do_centre_distance(const Code &code, const BlockValues &) {
     const bool isAbsolute = code.number == 901;
     if (isAbsolute != state.isCentreAbsolute) {
-        canon.comment(isAbsolute ? "interpreter: IJK distance mode changed to absolute"
-                                 : "interpreter: IJK distance mode changed to incremental");
+        canon.take(ProgramComment{isAbsolute ? "interpreter: IJK distance mode changed to absolute"
+                                             : "interpreter: IJK distance mode changed to incremental"});
         state.isCentreAbsolute = isAbsolute;
     }
     return true;
@@ -114,8 +114,8 @@ bool Executor::do_centre_distance(const Code &code, const BlockValues &) {
 bool Executor::do_diameter(const Code &code, const BlockValues &) {
     const bool isDiameter = code.number == 70;
     if (isDiameter != state.isDiameter) {
-        canon.comment(isDiameter ? "interpreter: Lathe diameter mode changed to diameter"
-                                 : "interpreter: Lathe diameter mode changed to radius");
+        canon.take(ProgramComment{isDiameter ? "interpreter: Lathe diameter mode changed to diameter"
+                                             : "interpreter: Lathe diameter mode changed to radius"});
         state.isDiameter = isDiameter;
     }
     return true;
@@ -131,27 +131,27 @@ bool Executor::do_feed_mode(const Code &code, const BlockValues &values) {
     }
     state.active_spindle = spindle;
     if (code.number == 930) {
-        canon.comment("interpreter: feed mode set to inverse time");
+        canon.take(ProgramComment{"interpreter: feed mode set to inverse time"});
         state.feed_mode = FeedMode::INVERSE_TIME;
     } else if (code.number == 940) {
-        canon.comment("interpreter: feed mode set to units per minute");
+        canon.take(ProgramComment{"interpreter: feed mode set to units per minute"});
         state.feed_mode = FeedMode::UNITS_PER_MINUTE;
     } else {
-        canon.comment("interpreter: feed mode set to units per revolution");
+        canon.take(ProgramComment{"interpreter: feed mode set to units per revolution"});
         state.feed_mode = FeedMode::UNITS_PER_REVOLUTION;
     }
-    canon.set_feed_mode(state.active_spindle, state.feed_mode);
+    canon.take(SetFeedMode{state.active_spindle, state.feed_mode});
     state.feed = 0.0;
     if (state.feed_mode != FeedMode::INVERSE_TIME) {
-        canon.set_feed_rate(0.0);
+        canon.take(SetFeedRate{0.0});
     }
     return true;
 }
 
 bool Executor::do_retract(const Code &code, const BlockValues &) {
     state.isRetractToR = code.number == 990;
-    canon.comment(state.isRetractToR ? "interpreter: retract mode set to r_plane"
-                                     : "interpreter: retract mode set to old_z");
+    canon.take(ProgramComment{state.isRetractToR ? "interpreter: retract mode set to r_plane"
+                                                 : "interpreter: retract mode set to old_z"});
     return true;
 }
 
@@ -162,7 +162,7 @@ bool Executor::do_control(const Code &code, const BlockValues &values) {
     if (code.number != 640) {
         state.control = code.number == 610 ? MotionControl::EXACT_PATH : MotionControl::EXACT_STOP;
         state.tolerance = 0.0;
-        canon.set_motion_control_mode(state.control, 0.0);
+        canon.take(SetMotionControlMode{state.control, 0.0});
         return true;
     }
     state.control = MotionControl::CONTINUOUS;
@@ -181,11 +181,12 @@ bool Executor::do_control(const Code &code, const BlockValues &values) {
         constexpr double LOWEST_SCALE = 0.1, HIGHEST_SCALE = 1.0, KEPT = -1.0;
         const double r = values.at('r');
         const bool isJerkLimited = r > 0.0;
-        canon.set_planner_mode(isJerkLimited ? 1 : 0,
-                               isJerkLimited ? std::fmin(std::fmax(r, LOWEST_SCALE), HIGHEST_SCALE) : KEPT);
+        canon.take(
+            SetPlannerMode{isJerkLimited ? 1 : 0,
+                           isJerkLimited ? std::fmin(std::fmax(r, LOWEST_SCALE), HIGHEST_SCALE) : KEPT});
     }
-    canon.set_motion_control_mode(state.control, state.tolerance);
-    canon.set_naivecam_tolerance(state.naivecam);
+    canon.take(SetMotionControlMode{state.control, state.tolerance});
+    canon.take(SetNaivecamTolerance{state.naivecam});
     return true;
 }
 

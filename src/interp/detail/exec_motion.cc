@@ -124,7 +124,7 @@ bool Executor::check_feed_per_revolution() {
 void Executor::send_inverse_time(double length) {
     if (state.feed_mode == FeedMode::INVERSE_TIME) {
         constexpr double LEAST_RATE = 0.1;
-        canon.set_feed_rate(std::fmax(LEAST_RATE, length * state.feed));
+        canon.take(SetFeedRate{std::fmax(LEAST_RATE, length * state.feed)});
     }
 }
 
@@ -158,19 +158,19 @@ bool Executor::do_straight(const Code &code, const BlockValues &values) {
         return comp_straight(code.number == 0, end);
     }
     if (code.number == 0) {
-        canon.straight_traverse(end);
+        canon.take(StraightTraverse{end});
     } else {
         if (state.feed_mode == FeedMode::INVERSE_TIME) {
             send_inverse_time(straight_length(end));
         }
-        canon.straight_feed(end);
+        canon.take(StraightFeed{end});
     }
     state.position = end;
     return true;
 }
 
 bool Executor::do_cancel_motion(const Code &, const BlockValues &) {
-    canon.comment("interpreter: motion mode set to none");
+    canon.take(ProgramComment{"interpreter: motion mode set to none"});
     state.motion = MOTION_NONE;
     state.cycle.isRunning = false;
     return true;

@@ -36,8 +36,8 @@ void Executor::change_frame(const Frame &made) {
 }
 
 void Executor::send_coordinates() {
-    canon.set_g5x_offset(state.g5x_index, state.g5x);
-    canon.set_xy_rotation(state.rotation_deg);
+    canon.take(SetG5xOffset{state.g5x_index, state.g5x});
+    canon.take(SetXyRotation{state.rotation_deg});
 }
 
 /// G54 to G59.3.
@@ -48,7 +48,7 @@ bool Executor::do_coordinates(const Code &code, const BlockValues &) {
     constexpr int G54 = 540, G59 = 590;
     const int index = code.number < G59 ? (code.number - G54) / 10 + 1 : 6 + code.number - G59;
     if (index == state.g5x_index) {
-        canon.comment("interpreter: continuing to use same coordinate system");
+        canon.take(ProgramComment{"interpreter: continuing to use same coordinate system"});
         return true;
     }
     Frame made = frame();
@@ -58,9 +58,9 @@ bool Executor::do_coordinates(const Code &code, const BlockValues &) {
     change_frame(made);
     state.g5x_index = index;
     parameters.set(P_COORDINATE_SYSTEM, index);
-    canon.set_g5x_offset(state.g5x_index, state.g5x);
-    canon.set_g92_offset(state.g92);
-    canon.set_xy_rotation(state.rotation_deg);
+    canon.take(SetG5xOffset{state.g5x_index, state.g5x});
+    canon.take(SetG92Offset{state.g92});
+    canon.take(SetXyRotation{state.rotation_deg});
     return true;
 }
 
@@ -110,7 +110,7 @@ bool Executor::set_coordinate_system(int l, const BlockValues &values) {
     set_parameter_pose(first, made.g5x);
     parameters.set(first + 9, made.rotation_deg);
     if (!isActive) {
-        canon.comment("interpreter: setting coordinate system origin");
+        canon.take(ProgramComment{"interpreter: setting coordinate system origin"});
         return true;
     }
     change_frame(made);
@@ -168,7 +168,7 @@ bool Executor::do_g92(const Code &code, const BlockValues &values) {
         set_parameter_pose(P_G92, {});
     }
     parameters.set(P_G92_APPLIED, isSetting || code.number == 923 ? 1.0 : 0.0);
-    canon.set_g92_offset(state.g92);
+    canon.take(SetG92Offset{state.g92});
     return true;
 }
 
@@ -193,8 +193,8 @@ bool Executor::do_reference(const Code &code, const BlockValues &values) {
             end[axis] = stored[axis];
         }
     }
-    canon.straight_traverse(by_way);
-    canon.straight_traverse(end);
+    canon.take(StraightTraverse{by_way});
+    canon.take(StraightTraverse{end});
     state.position = end;
     return true;
 }

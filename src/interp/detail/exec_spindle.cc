@@ -44,7 +44,7 @@ bool Executor::do_speed_word(const Code &, const BlockValues &values) {
     for (int i = 0; i < world_.count_spindles(); ++i) {
         if (spindle == i || spindle == ALL_SPINDLES) {
             state.spindles[static_cast<std::size_t>(i)].speed = speed;
-            canon.set_spindle_speed(i, speed);
+            canon.take(SetSpindleSpeed{i, speed});
         }
     }
     return true;
@@ -65,7 +65,7 @@ bool Executor::do_spindle_mode(const Code &code, const BlockValues &values) {
     SpindleState &one = state.spindles[static_cast<std::size_t>(spindle)];
     one.isConstantSurface = isConstantSurface;
     one.css_max_rpm = isConstantSurface ? limit : 0.0;
-    canon.set_spindle_mode(spindle, one.css_max_rpm);
+    canon.take(SetSpindleMode{spindle, one.css_max_rpm});
     return true;
 }
 
@@ -82,9 +82,9 @@ bool Executor::do_spindle(const Code &code, const BlockValues &values) {
         state.spindles[static_cast<std::size_t>(i)].direction =
             code.number == 3 ? 1 : (code.number == 4 ? -1 : 0);
         switch (code.number) {
-        case 3: canon.start_spindle_clockwise(i, true); break;
-        case 4: canon.start_spindle_counterclockwise(i, true); break;
-        default: canon.stop_spindle_turning(i); break;
+        case 3: canon.take(StartSpindle{i, true, true}); break;
+        case 4: canon.take(StartSpindle{i, false, true}); break;
+        default: canon.take(StopSpindle{i}); break;
         }
     }
     return true;
@@ -115,10 +115,10 @@ bool Executor::do_orient(const Code &, const BlockValues &values) {
         angle = std::fmod(angle, FULL_CIRCLE);
         angle = angle < 0.0 ? angle + FULL_CIRCLE : angle;
         state.spindles[static_cast<std::size_t>(spindle)].direction = 0;
-        canon.orient_spindle(spindle, angle, mode);
+        canon.take(OrientSpindle{spindle, angle, mode});
     }
     if (values.has('q')) {
-        canon.wait_orient_complete(spindle, values.at('q'));
+        canon.take(WaitOrientComplete{spindle, values.at('q')});
     }
     return true;
 }

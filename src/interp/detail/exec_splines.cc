@@ -50,7 +50,7 @@ bool Executor::send_nurbs(NurbsFeed nurbs) {
     }
     state.position = nurbs.end;
     state.isCompExit = false;
-    canon.nurbs_feed(nurbs);
+    canon.take(std::move(nurbs));
     return true;
 }
 

@@ -14,22 +14,22 @@ void Executor::announce() {
         set_parameter_pose(P_G92, {});
     }
     state.g92 = parameters.get(P_G92_APPLIED) != 0.0 ? parameter_pose(P_G92) : Pose{};
-    canon.use_length_units(state.units);
-    canon.set_g5x_offset(state.g5x_index, state.g5x);
-    canon.set_g92_offset(state.g92);
-    canon.set_xy_rotation(state.rotation_deg);
-    canon.set_feed_reference_xyz();
+    canon.take(UseLengthUnits{state.units});
+    canon.take(SetG5xOffset{state.g5x_index, state.g5x});
+    canon.take(SetG92Offset{state.g92});
+    canon.take(SetXyRotation{state.rotation_deg});
+    canon.take(SetFeedReference{});
 }
 
 void Executor::announce_modes() {
-    canon.set_g92_offset(state.g92);
+    canon.take(SetG92Offset{state.g92});
     send_coordinates();
-    canon.use_tool_length_offset(state.tool_offset);
+    canon.take(UseToolLengthOffset{state.tool_offset});
     for (int i = 0; i < world_.count_spindles(); ++i) {
         const SpindleState &spindle = state.spindles[static_cast<std::size_t>(i)];
-        canon.set_spindle_mode(i, spindle.isConstantSurface ? spindle.css_max_rpm : 0.0);
-        canon.set_spindle_speed(i, spindle.speed);
-        spindle.isOverridden ? canon.enable_speed_override(i) : canon.disable_speed_override(i);
+        canon.take(SetSpindleMode{i, spindle.isConstantSurface ? spindle.css_max_rpm : 0.0});
+        canon.take(SetSpindleSpeed{i, spindle.speed});
+        canon.take(SwitchSpeedOverride{i, spindle.isOverridden});
     }
 }
 
@@ -54,12 +54,7 @@ void Executor::keep_state() {
 
 void Executor::commit() {
     parameters.commit();
-    if (!tool_pending_.empty()) {
-        for (auto &[index, entry] : tool_pending_) {
-            tool_changes_[index] = entry;
-        }
-        tool_pending_.clear();
-    }
+    tool_table_.commit();
     patched_.clear();
 }
 
@@ -68,11 +63,11 @@ void Executor::rollback() {
         state = before_;
     }
     parameters.rollback();
-    tool_pending_.clear();
+    tool_table_.rollback();
     pending_.reset();
     canon.truncate(queued_before_);
     for (auto entry = patched_.rbegin(); entry != patched_.rend(); ++entry) {
-        canon.record(entry->first) = entry->second;
+        canon.call(entry->first) = entry->second;
     }
     patched_.clear();
     outcome = Outcome::OK;
@@ -103,7 +98,7 @@ void Executor::abort_block() {
 
 void Executor::synch() {
     const MachineSnapshot snapshot = world_.snapshot();
-    tool_changes_.clear();
+    tool_table_.forget();
     state.position = frame().to_program(scale_lengths(snapshot.position, machine_to_program()));
     state.probed = frame().to_program(scale_lengths(snapshot.probed_position, machine_to_program()));
     if (isProbing_) {

@@ -64,15 +64,16 @@ bool Executor::do_thread(const Code &code, const BlockValues &values) {
     }
     state.motion = code.number;
     state.cycle.isRunning = state.isCompExit = false;
-    canon.start_speed_feed_synch(spindle, values.at('k'), false);
+    canon.take(StartSpeedFeedSynch{spindle, values.at('k'), false});
     if (code.number == 330) {
-        canon.straight_feed(end);
+        canon.take(StraightFeed{end});
         state.position = end;
     } else {
         constexpr double SAME_SPEED = 1.0;
-        canon.rigid_tap(end[geom::AXIS_X], end[geom::AXIS_Y], end[geom::AXIS_Z], values.at('i', SAME_SPEED));
+        canon.take(
+            RigidTap{end[geom::AXIS_X], end[geom::AXIS_Y], end[geom::AXIS_Z], values.at('i', SAME_SPEED)});
     }
-    canon.stop_speed_feed_synch();
+    canon.take(StopSpeedFeedSynch{});
     return true;
 }
 
@@ -98,7 +99,7 @@ bool Executor::do_probe(const Code &code, const BlockValues &values) {
     }
     state.motion = code.number;
     state.cycle.isRunning = state.isCompExit = false;
-    canon.straight_probe(end, static_cast<ProbeKind>(code.number - 382));
+    canon.take(StraightProbe{end, static_cast<ProbeKind>(code.number - 382)});
     state.position = end;
     // Until the machine tells, as if it had got there without contact.
     for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
@@ -201,7 +202,7 @@ bool Executor::do_thread_cycle(const Code &code, const BlockValues &values) {
     }
     state.position = start;
     state.position[geom::AXIS_Z] = plan.end_z;
-    canon.straight_traverse(state.position);
+    canon.take(StraightTraverse{state.position});
     return true;
 }
 
@@ -220,31 +221,31 @@ void Executor::thread_pass(const ThreadPlan &plan, double depth) {
     const auto go = [&](bool isRapid, double x, double z) {
         state.position[geom::AXIS_X] = x;
         state.position[geom::AXIS_Z] = z;
-        isRapid ? canon.straight_traverse(state.position) : canon.straight_feed(state.position);
+        isRapid ? canon.take(StraightTraverse{state.position}) : canon.take(StraightFeed{state.position});
     };
     go(true, safe_x, from_z);
     if (plan.hasEntryTaper) {
-        canon.disable_feed_override();
-        canon.start_speed_feed_synch(plan.spindle, taper_pitch, false);
+        canon.take(SwitchFeedOverride{false});
+        canon.take(StartSpeedFeedSynch{plan.spindle, taper_pitch, false});
         go(false, taper_x, from_z);
         go(false, cut_x, from_z + plan.along * plan.taper_length);
-        canon.start_speed_feed_synch(plan.spindle, plan.pitch, false);
+        canon.take(StartSpeedFeedSynch{plan.spindle, plan.pitch, false});
     } else {
         go(true, cut_x, from_z);
-        canon.disable_feed_override();
-        canon.start_speed_feed_synch(plan.spindle, plan.pitch, false);
+        canon.take(SwitchFeedOverride{false});
+        canon.take(StartSpeedFeedSynch{plan.spindle, plan.pitch, false});
     }
     if (plan.hasExitTaper) {
         go(false, cut_x, to_z - plan.along * plan.taper_length);
-        canon.start_speed_feed_synch(plan.spindle, taper_pitch, false);
+        canon.take(StartSpeedFeedSynch{plan.spindle, taper_pitch, false});
         go(false, taper_x, to_z);
     } else {
         go(false, cut_x, to_z);
     }
-    canon.stop_speed_feed_synch();
+    canon.take(StopSpeedFeedSynch{});
     go(true, safe_x, to_z);
     if (state.isFeedOverride) {
-        canon.enable_feed_override();
+        canon.take(SwitchFeedOverride{true});
     }
 }
 

@@ -8,20 +8,9 @@
 
 namespace mw::interp::detail {
 
-/// The table as this program has changed it.
-ToolEntry Executor::tool_entry(int index) const {
-    if (const auto found = tool_pending_.find(index); found != tool_pending_.end()) {
-        return found->second;
-    }
-    if (const auto found = tool_changes_.find(index); found != tool_changes_.end()) {
-        return found->second;
-    }
-    return tools_.entry(index);
-}
-
 void Executor::put_tool_entry(int index, const ToolEntry &entry) {
-    tool_pending_[index] = entry;
-    canon.set_tool_table_entry(index, entry);
+    tool_table_.set(index, entry);
+    canon.take(SetToolTableEntry{index, entry});
 }
 
 bool Executor::find_tool(int toolno, std::uint32_t column, int &index) {
@@ -34,7 +23,7 @@ bool Executor::find_tool(int toolno, std::uint32_t column, int &index) {
 
 /// The tool at `index` is in the spindle; index 0 of a table without random places means none.
 void Executor::load_tool(int index) {
-    const ToolEntry entry = index == 0 && !tools_.isRandom() ? ToolEntry{} : tool_entry(index);
+    const ToolEntry entry = index == 0 && !tools_.isRandom() ? ToolEntry{} : tool_table_.entry(index);
     state.tool_index = index;
     state.tool_in_spindle = entry.toolno > 0 ? entry.toolno : 0;
     state.loaded_offset = entry.offset;
@@ -58,7 +47,7 @@ bool Executor::do_tool_word(const Code &, const BlockValues &values) {
     }
     state.selected_tool = toolno;
     state.selected_index = index;
-    canon.select_tool(toolno);
+    canon.take(SelectTool{toolno});
     return true;
 }
 
@@ -72,9 +61,9 @@ bool Executor::do_change_tool(const Code &, const BlockValues &) {
     for (int i = 0; i < world_.count_spindles(); ++i) {
         SpindleState &spindle = state.spindles[static_cast<std::size_t>(i)];
         spindle.direction = 0;
-        canon.stop_spindle_turning(i);
+        canon.take(StopSpindle{i});
     }
-    canon.change_tool();
+    canon.take(ChangeTool{});
     load_tool(state.selected_index);
     retain_tool_offset();
     outcome = Outcome::SYNC;
@@ -104,7 +93,7 @@ bool Executor::do_tool_number(const Code &, const BlockValues &values) {
     if (!isNone && !find_tool(toolno, values.column_of('q'), index)) {
         return false;
     }
-    canon.change_tool_number(toolno);
+    canon.take(ChangeToolNumber{toolno});
     load_tool(index);
     retain_tool_offset();
     return true;
@@ -115,7 +104,7 @@ void Executor::apply_tool_offset(const Pose &offset, int code) {
     made.tool = offset;
     change_frame(made);
     state.tool_offset_code = code;
-    canon.use_tool_length_offset(offset);
+    canon.take(UseToolLengthOffset{offset});
 }
 
 /// G43 (from the table), G43.1 (from the words), G43.2 (on top of what is there), G49 (none).
@@ -161,7 +150,7 @@ bool Executor::do_tool_offset(const Code &code, const BlockValues &values) {
         } else if (!find_tool(toolno, values.column_of('h'), index)) {
             return false;
         } else {
-            table = tool_entry(index).offset;
+            table = tool_table_.entry(index).offset;
         }
     }
     apply_tool_offset(offset + scale_lengths(table, machine_to_program()), code.number);
@@ -209,7 +198,7 @@ bool Executor::set_tool_data(int l, const BlockValues &values) {
         return fault.set(fmt::format("G10 L{} needs what it is to set: axis words, R, I, J or Q", l));
     }
     const double to_machine = 1.0 / machine_to_program();
-    ToolEntry entry = tool_entry(index);
+    ToolEntry entry = tool_table_.entry(index);
     if (l == 1) {
         for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
             const char name = geom::AXIS_LETTERS_LOWER[axis];
@@ -248,7 +237,7 @@ bool Executor::reload_tools() {
     if (state.tool_in_spindle > 0) {
         return fault.set(fmt::format("G10 L0 not allowed with loaded tool <{}>", state.tool_in_spindle));
     }
-    canon.reload_tools();
+    canon.take(ReloadTools{});
     outcome = Outcome::SYNC;
     return true;
 }

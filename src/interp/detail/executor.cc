@@ -18,7 +18,8 @@ constexpr double MM_PER_INCH = 25.4;
 Executor::Executor(World &world, ToolSource &tools, ParameterSource &source, const Settings &settings,
                    Names &names)
     : debug_mask(settings.debug_mask), logging_level(settings.logging_level), world_(world), tools_(tools),
-      source_(source), settings_(settings), names_(names), evaluator_(parameters, names, *this, fault) {}
+      source_(source), settings_(settings), names_(names), evaluator_(parameters, names, *this, fault),
+      tool_table_(tools) {}
 
 std::string Executor::code_name(const Code &code) const {
     if (code.letter == 'g') {

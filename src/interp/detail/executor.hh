@@ -2,7 +2,6 @@
 // Executes parsed blocks: modes, order of execution, and what each code does to state and canon.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -15,6 +14,7 @@
 #include "interp/detail/program.hh"
 #include "interp/detail/remap.hh"
 #include "interp/detail/state.hh"
+#include "interp/detail/tool_table.hh"
 #include "interp/interpreter.hh"
 
 namespace mw::interp::detail {
@@ -114,7 +114,7 @@ class Executor : public BuiltIns {
     Result<> set_attribute(std::string_view name, const ScriptValue &value);
     static std::vector<std::string_view> attribute_names();
     /// The entry of a table as this program has changed it; number of its entries; the place of a tool or -1.
-    ToolEntry table_entry(int index) const { return tool_entry(index); }
+    ToolEntry table_entry(int index) const { return tool_table_.entry(index); }
     ToolSource &tools() const { return tools_; }
     /// The tool at state.tool_index is in the spindle.
     void load_indexed_tool();
@@ -167,7 +167,7 @@ class Executor : public BuiltIns {
     static std::vector<std::string> predefined_names();
     /// INI values that the program has asked for, as names of parameters.
     const std::set<std::string, std::less<>> &ini_names_read() const { return ini_names_read_; }
-    bool hasToolChanges() const { return !tool_changes_.empty(); }
+    bool hasToolChanges() const { return tool_table_.hasChanges(); }
     bool isBuiltInName(std::string_view name) const override;
     std::optional<double> built_in(std::string_view name) const override;
     double built_in(int number) const override;
@@ -263,7 +263,6 @@ class Executor : public BuiltIns {
     bool spindle_of(const BlockValues &values, int &spindle);
     bool whole_word(const BlockValues &values, char name, int &out);
 
-    ToolEntry tool_entry(int index) const;
     void put_tool_entry(int index, const ToolEntry &entry);
     bool find_tool(int toolno, std::uint32_t column, int &index);
     void load_tool(int index);
@@ -339,8 +338,7 @@ class Executor : public BuiltIns {
     const Settings &settings_;
     Names &names_;
     Evaluator evaluator_;
-    std::map<int, ToolEntry> tool_changes_;  ///< of G10, until the owner of the table has them
-    std::map<int, ToolEntry> tool_pending_;  ///< of the block that runs
+    ToolTable tool_table_;
     int line_ = 0, call_level_ = 0;
     int sequence_ = 0;
     int block_number_ = -1;  ///< the N word of the block
@@ -373,9 +371,8 @@ class Executor : public BuiltIns {
     };
     std::optional<Roughed> roughed_;
     std::size_t queued_before_ = 0;
-    std::vector<std::pair<std::size_t, CanonQueue::Record>>
-        patched_;                                      ///< calls that the block changed, as they were
-    bool isProbing_ = false, isWaitingInput_ = false;  ///< results are due at the next synch()
+    std::vector<std::pair<std::size_t, CanonCall>> patched_;  ///< calls that the block changed, as they were
+    bool isProbing_ = false, isWaitingInput_ = false;         ///< results are due at the next synch()
     double returned_ = 0;
     bool isReturned_ = false;
 };

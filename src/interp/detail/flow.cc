@@ -229,7 +229,7 @@ Step Flow::percent() {
     if (executor_.state.nurbs_order != 0) {
         return fail_here("The file ends inside of a NURBS: G5.3 ends it");
     }
-    executor_.canon.finish();
+    executor_.canon.take(Finish{});
     commit();
     return Step::FILE_END;
 }
@@ -312,9 +312,9 @@ Step Flow::after_block() {
 void Flow::end_program() {
     const Program *main = calls_.empty() ? program_ : calls_.front().program;
     if (main != nullptr && !isMdi_ && !main->hasClosingPercent()) {
-        executor_.canon.comment("interpreter: percent sign missing from end of file");
+        executor_.canon.take(ProgramComment{"interpreter: percent sign missing from end of file"});
     }
-    executor_.canon.on_reset();
+    executor_.canon.take(OnReset{});
     commit();
     unwind(nested_base_);
 }
@@ -328,7 +328,7 @@ Step Flow::fail_block() {
     executor_.rollback();
     if (isEndReached_) {
         isEndReached_ = false;
-        executor_.canon.finish();
+        executor_.canon.take(Finish{});
         commit();
     }
     const Fault &fault = executor_.fault;

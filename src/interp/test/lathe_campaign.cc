@@ -5,7 +5,6 @@
 
 #include "interp/interpreter.hh"
 #include "interp/machine_frame.hh"
-#include "interp/quiet_canon.hh"
 #include "mill.hh"
 #include "testing/stock/lathe_stock.hh"
 
@@ -13,7 +12,7 @@ namespace mw::interp::test {
 namespace {
 
 /// The moves of the cycles in machine coordinates, in order; a dwell begins each.
-class CycleRecorder : public QuietMachineCanon {
+class CycleRecorder : public MachineCanon {
   public:
     struct Move {
         bool isRapid = false, isArc = false;
@@ -22,18 +21,27 @@ class CycleRecorder : public QuietMachineCanon {
     std::vector<std::vector<Move>> cycles;
     double z = 0, x = 0;  ///< where the tool was before the first
 
-    void line(const LineMove &move) override {
+    void begin_block(const BlockRef &) override {}
+    void take(const MachineCall &call) override {
+        if (const auto *move = std::get_if<LineMove>(&call)) {
+            line(*move);
+        } else if (const auto *turn = std::get_if<ArcMove>(&call)) {
+            arc(*turn);
+        } else if (std::holds_alternative<Dwell>(call)) {
+            cycles.emplace_back();
+        }
+    }
+
+  private:
+    void line(const LineMove &move) {
         add({move.settings.kind == FeedKind::RAPID, false, move.end[geom::AXIS_Z], move.end[geom::AXIS_X], 0,
              0, 0});
     }
-    void arc(const ArcMove &move) override {
+    void arc(const ArcMove &move) {
         // The normal of G18 is Y: a positive angle turns from Z to X.
         add({false, true, move.end[geom::AXIS_Z], move.end[geom::AXIS_X], move.centre[geom::AXIS_Z],
              move.centre[geom::AXIS_X], move.angle_rad * (move.normal[geom::AXIS_Y] < 0.0 ? -1.0 : 1.0)});
     }
-    void dwell(double) override { cycles.emplace_back(); }
-
-  private:
     void add(const Move &move) {
         if (cycles.empty()) {
             z = move.z;

@@ -79,9 +79,9 @@ TEST(MachineFrameSpindles, ANumberThatNoSpindleHasIsRefusedWithAMessage_I1) {
     MachineFrame frame(record, LengthUnits::MM);
     for (const int spindle : {-1, 8, 1000}) {
         record.calls.clear();
-        frame.set_spindle_mode(spindle, 100);
-        frame.set_spindle_speed(spindle, 100);
-        frame.start_spindle_clockwise(spindle, true);
+        frame.take(SetSpindleMode{spindle, 100});
+        frame.take(SetSpindleSpeed{spindle, 100});
+        frame.take(StartSpindle{spindle});
         for (const std::string &call : record.calls) {
             EXPECT_EQ(call, "error There is no spindle " + std::to_string(spindle) + ": 0 to 7");
         }

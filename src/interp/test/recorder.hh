@@ -27,68 +27,66 @@ class Recorder : public MachineCanon {
     int selected_tool = 0, tool_in_spindle = 0;
 
     void begin_block(const BlockRef &) override {}
-    void line(const LineMove &move) override { lines.push_back(move); }
-    void arc(const ArcMove &move) override { arcs.push_back(move); }
-    void probe(const LineMove &move, ProbeKind) override { lines.push_back(move); }
-    void rigid_tap(const LineMove &move, double) override { lines.push_back(move); }
-    void dwell(double) override { calls.emplace_back("dwell"); }
-    void tool_offset(const Pose &) override { calls.emplace_back("tool_offset"); }
-    void offsets(int, const Pose &, const Pose &, double) override {}
-    void set_spindle_mode(int, double) override { calls.emplace_back("spindle_mode"); }
-    void set_spindle_speed(int, double, double) override { calls.emplace_back("spindle_speed"); }
-    void spindle_on(int, int direction, bool) override {
-        calls.emplace_back(direction > 0 ? "spindle_cw" : "spindle_ccw");
+    void take(const MachineCall &call) override {
+        std::visit([this](const AlternativeOf<MachineCall> auto &one) { note(one); }, call);
     }
-    void spindle_off(int) override { calls.emplace_back("spindle_off"); }
-    void orient_spindle(int, double, int) override { calls.emplace_back("orient"); }
-    void wait_orient_complete(int, double) override { calls.emplace_back("wait_orient"); }
-    void select_tool(int toolno) override {
-        calls.push_back("select_tool " + std::to_string(toolno));
-        selected_tool = toolno;
+
+    virtual void line(const LineMove &move) { lines.push_back(move); }
+    virtual void arc(const ArcMove &move) { arcs.push_back(move); }
+
+  private:
+    void say(const std::string &call) { calls.push_back(call); }
+    void note(const LineMove &move) { line(move); }
+    void note(const ArcMove &move) { arc(move); }
+    void note(const ProbeMove &move) { lines.push_back({move.end, move.settings}); }
+    void note(const TapMove &move) { lines.push_back({move.end, move.settings}); }
+    void note(const Dwell &) { say("dwell"); }
+    void note(const UseToolOffset &) { say("tool_offset"); }
+    void note(const OneOf<UseOffsets, UsePlanner, LogProbes, ReloadTools, ProgramComment> auto &) {}
+    void note(const SetSpindleMode &) { say("spindle_mode"); }
+    void note(const UseSpindleSpeed &) { say("spindle_speed"); }
+    void note(const StartSpindle &call) { say(call.isClockwise ? "spindle_cw" : "spindle_ccw"); }
+    void note(const StopSpindle &) { say("spindle_off"); }
+    void note(const OrientSpindle &) { say("orient"); }
+    void note(const WaitOrientComplete &) { say("wait_orient"); }
+    void note(const SelectTool &call) {
+        say("select_tool " + std::to_string(call.toolno));
+        selected_tool = call.toolno;
     }
-    void change_tool() override {
-        calls.emplace_back("change_tool");
+    void note(const ChangeTool &) {
+        say("change_tool");
         tool_in_spindle = selected_tool;
     }
-    void change_tool_number(int toolno) override {
-        calls.push_back("tool_number " + std::to_string(toolno));
-        tool_in_spindle = toolno;
+    void note(const ChangeToolNumber &call) {
+        say("tool_number " + std::to_string(call.toolno));
+        tool_in_spindle = call.toolno;
     }
-    void set_tool_table_entry(int index, const ToolEntry &) override {
-        calls.push_back("tool_entry " + std::to_string(index));
+    void note(const SetToolTableEntry &call) { say("tool_entry " + std::to_string(call.index)); }
+    void note(const SwitchMist &call) { say(call.isOn ? "mist_on" : "mist_off"); }
+    void note(const SwitchFlood &call) { say(call.isOn ? "flood_on" : "flood_off"); }
+    void note(const SwitchFeedOverride &call) { say(call.isOn ? "fo_on" : "fo_off"); }
+    void note(const SwitchSpeedOverride &call) { say(call.isOn ? "so_on" : "so_off"); }
+    void note(const SwitchFeedHold &call) { say(call.isOn ? "hold_on" : "hold_off"); }
+    void note(const SwitchAdaptiveFeed &call) { say(call.isOn ? "adaptive_on" : "adaptive_off"); }
+    void note(const SetDigitalOutput &call) {
+        say("dout " + std::to_string(call.index) + (call.isOn ? " on" : " off") +
+            (call.isSynched ? " synched" : ""));
     }
-    void coolant(bool isMist, bool isOn) override {
-        calls.push_back(std::string(isMist ? "mist" : "flood") + (isOn ? "_on" : "_off"));
+    void note(const SetAnalogOutput &call) {
+        say("aout " + std::to_string(call.index) + (call.isSynched ? " synched" : ""));
     }
-    void feed_override(bool isEnabled) override { calls.emplace_back(isEnabled ? "fo_on" : "fo_off"); }
-    void speed_override(int, bool isEnabled) override { calls.emplace_back(isEnabled ? "so_on" : "so_off"); }
-    void feed_hold(bool isEnabled) override { calls.emplace_back(isEnabled ? "hold_on" : "hold_off"); }
-    void adaptive_feed(bool isEnabled) override {
-        calls.emplace_back(isEnabled ? "adaptive_on" : "adaptive_off");
-    }
-    void set_digital_output(int index, bool isOn, bool isSynched) override {
-        calls.push_back("dout " + std::to_string(index) + (isOn ? " on" : " off") +
-                        (isSynched ? " synched" : ""));
-    }
-    void set_analog_output(int index, double, bool isSynched) override {
-        calls.push_back("aout " + std::to_string(index) + (isSynched ? " synched" : ""));
-    }
-    void wait_input(int index, bool, WaitKind, double) override {
-        calls.push_back("wait " + std::to_string(index));
-    }
-    void program_stop() override { calls.emplace_back("stop"); }
-    void optional_program_stop() override { calls.emplace_back("optional_stop"); }
-    void program_end() override { calls.emplace_back("end"); }
-    void pallet_shuttle() override { calls.emplace_back("pallet"); }
-    void finish() override { calls.emplace_back("finish"); }
-    void comment(std::string_view) override {}
-    void message(std::string_view text) override { calls.push_back("message" + std::string(text)); }
-    void print(std::string_view text) override { calls.push_back("print" + std::string(text)); }
-    void log_open(std::string_view path, bool) override { calls.push_back("log_open " + std::string(path)); }
-    void log(std::string_view text) override { calls.push_back("log" + std::string(text)); }
-    void log_close() override { calls.emplace_back("log_close"); }
-    void canon_error(std::string_view text) override { calls.push_back("error " + std::string(text)); }
-    void user_m_code(int code, double, double) override { calls.push_back("m" + std::to_string(code)); }
+    void note(const WaitInput &call) { say("wait " + std::to_string(call.index)); }
+    void note(const ProgramStop &call) { say(call.isOptional ? "optional_stop" : "stop"); }
+    void note(const ProgramEnd &) { say("end"); }
+    void note(const PalletShuttle &) { say("pallet"); }
+    void note(const Finish &) { say("finish"); }
+    void note(const OperatorMessage &call) { say("message" + call.text); }
+    void note(const PrintLine &call) { say("print" + call.text); }
+    void note(const OpenLog &call) { say("log_open " + call.path); }
+    void note(const LogLine &call) { say("log" + call.text); }
+    void note(const CloseLog &) { say("log_close"); }
+    void note(const CanonError &call) { say("error " + call.text); }
+    void note(const UserCode &call) { say("m" + std::to_string(call.code)); }
 };
 
 /// Runs program text; an M2 is added at its end.

@@ -139,13 +139,32 @@ void PythonCanon::finish_batch() {
     }
 }
 
-void PythonCanon::use_length_units(interp::LengthUnits units) {
-    units_ = units;
+void PythonCanon::take(const interp::CanonCall &call) {
+    using namespace interp;
+    std::visit(
+        Overloaded{
+            [this](const UseLengthUnits &one) { units_ = one.units; },
+            [this](const SelectTool &one) { selected_ = one.toolno; },
+            [this](const SetToolTableEntry &one) { tools_.set_entry(one.index, one.entry); },
+            [this](const OneOf<SelectPlane, SetG5xOffset, SetG92Offset, SetXyRotation, UseToolLengthOffset,
+                               SetFeedRate, StraightTraverse, StraightFeed, ArcFeed, NurbsFeed, StraightProbe,
+                               RigidTap, Dwell, ChangeTool, ChangeToolNumber, ProgramComment, OperatorMessage,
+                               PrintLine, UserCode> auto &one) { hand_on(one); },
+            // The object has no methods for these.
+            [](const OneOf<OnReset, SetFeedReference, SetFeedMode, SetMotionControlMode, SetNaivecamTolerance,
+                           SetPlannerMode, StartSpeedFeedSynch, StopSpeedFeedSynch, SetSpindleMode,
+                           SetSpindleSpeed, StartSpindle, StopSpindle, OrientSpindle, WaitOrientComplete,
+                           ReloadTools, SwitchMist, SwitchFlood, SwitchFeedOverride, SwitchSpeedOverride,
+                           SwitchFeedHold, SwitchAdaptiveFeed, SetDigitalOutput, SetAnalogOutput, WaitInput,
+                           ProgramStop, ProgramEnd, PalletShuttle, Finish, OpenLog, LogLine, CloseLog,
+                           LogProbes, CanonError> auto &) {},
+        },
+        call);
 }
 
-void PythonCanon::select_plane(interp::Plane plane) {
-    plane_ = plane;
-    switch (plane) {
+void PythonCanon::hand_on(const interp::SelectPlane &selected) {
+    plane_ = selected.plane;
+    switch (selected.plane) {
     case interp::Plane::XY: call("set_plane", 1); break;
     case interp::Plane::YZ: call("set_plane", 2); break;
     case interp::Plane::XZ: call("set_plane", 3); break;
@@ -155,38 +174,22 @@ void PythonCanon::select_plane(interp::Plane plane) {
     }
 }
 
-void PythonCanon::set_g5x_offset(int index, const interp::Pose &offset) {
-    const interp::Pose p = inches(offset);
-    call("set_g5x_offset", index, p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8]);
+void PythonCanon::hand_on(const interp::SetG5xOffset &set) {
+    const interp::Pose p = inches(set.offset);
+    call("set_g5x_offset", set.index, p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8]);
 }
 
-void PythonCanon::set_g92_offset(const interp::Pose &offset) {
-    call_pose("set_g92_offset", offset);
+void PythonCanon::hand_on(const interp::SetXyRotation &set) {
+    call("set_xy_rotation", set.angle_deg);
 }
 
-void PythonCanon::set_xy_rotation(double angle_deg) {
-    call("set_xy_rotation", angle_deg);
+void PythonCanon::hand_on(const interp::SetFeedRate &set) {
+    call("set_feed_rate", inches(set.rate));
 }
 
-void PythonCanon::use_tool_length_offset(const interp::Pose &offset) {
-    call_pose("tool_offset", offset);
-}
-
-void PythonCanon::set_feed_rate(double rate) {
-    call("set_feed_rate", inches(rate));
-}
-
-void PythonCanon::straight_traverse(const interp::Pose &end) {
-    move(false, end);
-}
-
-void PythonCanon::straight_feed(const interp::Pose &end) {
-    move(true, end);
-}
-
-void PythonCanon::arc_feed(const interp::ArcFeed &arc) {
+void PythonCanon::hand_on(const interp::ArcFeed &arc) {
     if (arc.rotation == 0) {
-        straight_feed(arc.end);
+        move(true, arc.end);
         return;
     }
     const interp::Pose end = inches(arc.end);
@@ -200,7 +203,7 @@ void PythonCanon::arc_feed(const interp::ArcFeed &arc) {
 }
 
 /// As straight moves and arcs that keep close to the curve.
-void PythonCanon::nurbs_feed(const interp::NurbsFeed &nurbs) {
+void PythonCanon::hand_on(const interp::NurbsFeed &nurbs) {
     constexpr double TOLERANCE_INCH = 0.0002;
     const bool isMm = units_ == interp::LengthUnits::MM;
     const auto pieces = approximate(nurbs, isMm ? TOLERANCE_INCH * MM_PER_INCH : TOLERANCE_INCH);
@@ -213,32 +216,28 @@ void PythonCanon::nurbs_feed(const interp::NurbsFeed &nurbs) {
             end[first] = pieces[i].first_end;
             end[second] = pieces[i].second_end;
         }
-        arc_feed({end[first], end[second], pieces[i].first_centre, pieces[i].second_centre,
-                  pieces[i].rotation, end[normal], end});
+        hand_on(interp::ArcFeed{end[first], end[second], pieces[i].first_centre, pieces[i].second_centre,
+                                pieces[i].rotation, end[normal], end});
     }
 }
 
-void PythonCanon::straight_probe(const interp::Pose &end, interp::ProbeKind) {
-    call_pose("straight_probe", end);
+void PythonCanon::hand_on(const interp::RigidTap &tap) {
+    call("rigid_tap", inches(tap.x), inches(tap.y), inches(tap.z));
 }
 
-void PythonCanon::rigid_tap(double x, double y, double z, double) {
-    call("rigid_tap", inches(x), inches(y), inches(z));
+void PythonCanon::hand_on(const interp::Dwell &dwell) {
+    call("dwell", dwell.seconds);
 }
 
-void PythonCanon::dwell(double seconds) {
-    call("dwell", seconds);
-}
-
-void PythonCanon::change_tool() {
+void PythonCanon::hand_on(const interp::ChangeTool &) {
     if (selected_ >= 0) {
-        change_tool_number(selected_);
+        hand_on(interp::ChangeToolNumber{selected_});
         selected_ = -1;
     }
 }
 
-void PythonCanon::change_tool_number(int toolno) {
-    const int index = toolno == 0 ? 0 : tools_.index_of_tool(toolno);
+void PythonCanon::hand_on(const interp::ChangeToolNumber &change) {
+    const int index = change.toolno == 0 ? 0 : tools_.index_of_tool(change.toolno);
     if (index < 0) {
         return;
     }
@@ -252,25 +251,21 @@ void PythonCanon::change_tool_number(int toolno) {
     call("change_tool", index);
 }
 
-void PythonCanon::set_tool_table_entry(int index, const interp::ToolEntry &entry) {
-    tools_.set_entry(index, entry);
+void PythonCanon::hand_on(const interp::ProgramComment &comment) {
+    call("comment", py::str(comment.text));
 }
 
-void PythonCanon::comment(std::string_view text) {
-    call("comment", py::str(text.data(), text.size()));
+void PythonCanon::hand_on(const interp::OperatorMessage &message) {
+    call("message", py::str(message.text));
 }
 
-void PythonCanon::message(std::string_view text) {
-    call("message", py::str(text.data(), text.size()));
+void PythonCanon::hand_on(const interp::PrintLine &line) {
+    py::print(py::str(line.text));
 }
 
-void PythonCanon::print(std::string_view text) {
-    py::print(py::str(text.data(), text.size()));
-}
-
-void PythonCanon::user_m_code(int code, double p, double q) {
+void PythonCanon::hand_on(const interp::UserCode &user) {
     constexpr int FIRST_USER_CODE = 100;
-    call("user_defined_function", code - FIRST_USER_CODE, p, q);
+    call("user_defined_function", user.code - FIRST_USER_CODE, user.p, user.q);
 }
 
 }  // namespace mw::python

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "interp/interpreter.hh"
-#include "interp/quiet_canon.hh"
 #include "interp/standalone.hh"
 #include "python/gcode/linecode.hh"
 
@@ -37,7 +36,7 @@ class PythonTools final : public interp::ToolSource {
 
 /// Calls the object's methods, with next_line before the first call of each line. An exception in a method
 /// keeps everything that follows from being called; take_exception() hands it over. All under the GIL.
-class PythonCanon final : public interp::QuietCanon {
+class PythonCanon final : public interp::Canon {
   public:
     PythonCanon(pybind11::object canon, PythonTools &tools);
 
@@ -49,33 +48,31 @@ class PythonCanon final : public interp::QuietCanon {
     void finish_batch();
 
     void begin_block(const interp::BlockRef &block) override { line_ = block.line; }
-    void use_length_units(interp::LengthUnits units) override;
-    void select_plane(interp::Plane plane) override;
-    void set_g5x_offset(int index, const interp::Pose &offset) override;
-    void set_g92_offset(const interp::Pose &offset) override;
-    void set_xy_rotation(double angle_deg) override;
-    void use_tool_length_offset(const interp::Pose &offset) override;
-    void set_feed_rate(double rate) override;
-    void straight_traverse(const interp::Pose &end) override;
-    void straight_feed(const interp::Pose &end) override;
-    void arc_feed(const interp::ArcFeed &arc) override;
-    void nurbs_feed(const interp::NurbsFeed &nurbs) override;
-    void straight_probe(const interp::Pose &end, interp::ProbeKind kind) override;
-    void rigid_tap(double x, double y, double z, double scale) override;
-    void dwell(double seconds) override;
-    void select_tool(int toolno) override { selected_ = toolno; }
-    void change_tool() override;
-    void change_tool_number(int toolno) override;
-    void set_tool_table_entry(int index, const interp::ToolEntry &entry) override;
-    void comment(std::string_view text) override;
-    void message(std::string_view text) override;
-    void print(std::string_view text) override;
-    void user_m_code(int code, double p, double q) override;
+    void take(const interp::CanonCall &call) override;
 
   private:
     template <class... Args>
     void call(const char *name, Args &&...args);
     void call_pose(const char *name, const interp::Pose &pose);
+    void hand_on(const interp::SelectPlane &call);
+    void hand_on(const interp::SetG5xOffset &call);
+    void hand_on(const interp::SetG92Offset &call) { call_pose("set_g92_offset", call.offset); }
+    void hand_on(const interp::SetXyRotation &call);
+    void hand_on(const interp::UseToolLengthOffset &call) { call_pose("tool_offset", call.offset); }
+    void hand_on(const interp::SetFeedRate &call);
+    void hand_on(const interp::StraightTraverse &call) { move(false, call.end); }
+    void hand_on(const interp::StraightFeed &call) { move(true, call.end); }
+    void hand_on(const interp::ArcFeed &arc);
+    void hand_on(const interp::NurbsFeed &nurbs);
+    void hand_on(const interp::StraightProbe &call) { call_pose("straight_probe", call.end); }
+    void hand_on(const interp::RigidTap &call);
+    void hand_on(const interp::Dwell &call);
+    void hand_on(const interp::ChangeTool &call);
+    void hand_on(const interp::ChangeToolNumber &call);
+    void hand_on(const interp::ProgramComment &call);
+    void hand_on(const interp::OperatorMessage &call);
+    void hand_on(const interp::PrintLine &call);
+    void hand_on(const interp::UserCode &call);
     void move(bool isFeed, const interp::Pose &end);
     void announce_line();
     double inches(double length) const;
