@@ -64,8 +64,8 @@ class Sequencer {
     bool isStepDone() const { return isStepDone_; }
 
     void on_tool_event(io::ToolEvent event);
-    /// What is being waited for: a pin or a state; empty for nothing.
-    std::string waiting_for() const;
+    /// What is being waited for: a pin or a state.
+    Waiting waiting_for() const;
 
     double input_value() const { return input_value_; }
     bool isInputTimedOut() const { return isInputTimedOut_; }
