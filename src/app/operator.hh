@@ -51,9 +51,12 @@ class Operator {
     OperatorFigures figures() const;
 
   private:
-    Result<> ask(task::Command command, const std::string &what);
+    Result<> ask(const msgs::Command &command, const std::string &what);
     /// Goes on until the request ends. The error says what is waited for.
-    Result<> wait_for(task::RequestId id, const std::string &what, const std::function<void()> &each_cycle);
+    Result<> wait_for(const Result<client::Serial> &posted, const std::string &what,
+                      const std::function<void()> &each_cycle);
+    /// One task cycle, and the status after it.
+    void cycle();
     void show_messages();
     bool hasProgress();
     Result<> stop_on_signal();
@@ -61,6 +64,7 @@ class Operator {
     machine::Machine &machine_;
     const machine::MachineConfig &config_;
     diag::Sink &sink_;
+    msgs::MachineStatus status_;  ///< of the last cycle
     Panel panel_;
     std::int64_t patience_ns_;
     OperatorFigures figures_;

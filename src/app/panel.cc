@@ -20,20 +20,20 @@ constexpr auto WRITE_EVERY = std::chrono::milliseconds(100);
 constexpr auto KEYS_EVERY = std::chrono::milliseconds(10);
 
 /// Where the tool is in the program's coordinates. [machine units]
-geom::Pose program_position(const task::Status &status, const geom::Pose &machine) {
-    geom::Pose p = machine - status.tool_offset - status.g5x_offset;
-    const double angle = -status.rotation_xy_deg * std::numbers::pi / 180.0;
+geom::Pose program_position(const msgs::MachineStatus &status) {
+    geom::Pose p = status.trajectory.position_cmd - status.offsets.tool - status.offsets.g5x;
+    const double angle = -status.offsets.rotation_xy_deg * std::numbers::pi / 180.0;
     const double x = p[0] * std::cos(angle) - p[1] * std::sin(angle);
     p[1] = p[0] * std::sin(angle) + p[1] * std::cos(angle);
     p[0] = x;
-    return p - status.g92_offset;
+    return p - status.offsets.g92;
 }
 
 }  // namespace
 
 Panel::Panel(machine::Machine &machine, const machine::MachineConfig &config, diag::Sink &sink,
-             Attendance attendance)
-    : machine_(machine), config_(config), sink_(sink), attendance_(attendance),
+             Attendance attendance, const msgs::MachineStatus &status)
+    : machine_(machine), config_(config), sink_(sink), attendance_(attendance), status_(status),
       hasLine_(::isatty(STDERR_FILENO) != 0) {
     if (attendance_ == Attendance::TERMINAL) {
         keyboard_.emplace();
@@ -62,7 +62,7 @@ void Panel::begin_program(int lines) {
     lines_ = lines;
     line_ = 0;
     isRunning_ = true;
-    stops_told_ = machine_.task().status().stops;
+    stops_told_ = status_.task.stops;
     if (attendance_ == Attendance::TERMINAL) {
         fmt::print(stderr, "keys: h or space hold, r resume, a abort, t the tool is changed\n");
     }
@@ -88,47 +88,54 @@ void Panel::step() {
     }
 }
 
+void Panel::post(const msgs::Command &command) {
+    const auto posted = machine_.client().post(command);
+    if (!posted.has_value()) {
+        sink_.warning(posted.error().str());
+    }
+}
+
 void Panel::take_key(char key) {
-    task::Task &task = machine_.task();
     switch (key) {
     case 'h':
-    case ' ': task.submit(task::PauseProgram{}); break;
-    case 'r': task.submit(task::ResumeProgram{}); break;
-    case 'a': task.submit(task::AbortAll{}); break;
+    case ' ': post(msgs::PauseProgram{}); break;
+    case 'r': post(msgs::ResumeProgram{}); break;
+    case 'a': post(msgs::AbortAll{}); break;
     case 't': machine_.tool_change().confirm(); break;
     default: break;
     }
 }
 
 void Panel::look_at_stop() {
-    const task::Status &status = machine_.task().status();
-    if (!status.isPaused || !status.isStoppedByProgram || status.stops == stops_told_) {
+    const msgs::MachineStatus &status = status_;
+    if (!status.task.isPaused || !status.task.isStoppedByProgram || status.task.stops == stops_told_) {
         return;
     }
-    stops_told_ = status.stops;
+    stops_told_ = status.task.stops;
     clear_line();
     if (attendance_ == Attendance::SIMULATED) {
         ++stops_passed_;
-        sink_.note(fmt::format("program stop at line {} passed by the simulated operator", status.stop_line));
-        machine_.task().submit(task::ResumeProgram{});
+        sink_.note(
+            fmt::format("program stop at line {} passed by the simulated operator", status.task.stop_line));
+        post(msgs::ResumeProgram{});
     } else if (attendance_ == Attendance::TERMINAL) {
-        sink_.note(fmt::format("program stop at line {}: key r goes on", status.stop_line));
+        sink_.note(fmt::format("program stop at line {}: key r goes on", status.task.stop_line));
     } else {
-        sink_.note(fmt::format("program stop at line {}: waiting for {}", status.stop_line,
+        sink_.note(fmt::format("program stop at line {}: waiting for {}", status.task.stop_line,
                                config_.hasHalui ? "pin halui.program.resume"
                                                 : "a signal, since there is neither a terminal nor halui"));
     }
 }
 
 bool Panel::isWaitingForPerson() const {
-    const task::Status &status = machine_.task().status();
-    const bool isHeld = status.isPaused && attendance_ != Attendance::SIMULATED;
+    const msgs::MachineStatus &status = status_;
+    const bool isHeld = status.task.isPaused && attendance_ != Attendance::SIMULATED;
     return isHeld || machine_.tool_change().isAsking();
 }
 
-void Panel::show(const task::Message &message) {
+void Panel::show(const client::Client::Message &message) {
     clear_line();
-    const bool isError = message.kind == task::MessageKind::OPERATOR_ERROR;
+    const bool isError = message.kind == msgs::MessageKind::OPERATOR_ERROR;
     fmt::print(isError ? stderr : stdout, "{}\n", printable(message.text));
 }
 
@@ -140,8 +147,8 @@ void Panel::clear_line() {
 
 /// Between moves motion has no line.
 int Panel::line_reached() {
-    const task::Status &status = machine_.task().status();
-    const int line = status.isStoppedByProgram ? status.stop_line : status.motion_line;
+    const msgs::MachineStatus &status = status_;
+    const int line = status.task.isStoppedByProgram ? status.task.stop_line : status.task.motion_line;
     line_ = line > 0 ? line : line_;
     return line_;
 }
@@ -155,8 +162,7 @@ std::string Panel::progress_text() {
 }
 
 std::string Panel::position_text() const {
-    const geom::Pose p =
-        program_position(machine_.task().status(), machine_.task().motion_status().carte_pos_cmd);
+    const geom::Pose p = program_position(status_);
     std::string text;
     for (int axis = 0; axis < MAX_AXES; ++axis) {
         if ((config_.axis_mask & (1U << axis)) != 0) {
@@ -171,16 +177,16 @@ void Panel::write_line() {
         fmt::print(stderr, "\r{}\033[K", progress_text());
         return;
     }
-    const task::Status &status = machine_.task().status();
-    const motion::Status &motion = machine_.task().motion_status();
+    const msgs::MachineStatus &status = status_;
     const int line = line_reached();
     const int percent = lines_ > 0 ? std::clamp(100 * line / lines_, 0, 100) : 0;
+    const std::string waiting = msgs::waiting_text(status.task.waiting);
     const std::string state = machine_.tool_change().isAsking() ? "tool change"
-                              : status.isPaused                 ? "held"
-                              : status.waiting.what.empty()     ? "runs"
-                                                                : "waits for " + status.waiting.what;
+                              : status.task.isPaused            ? "held"
+                              : waiting.empty()                 ? "runs"
+                                                                : "waits for " + waiting;
     fmt::print(stderr, "\rline {} of {} ({} %) {} F{:.0f} {}\033[K", line, lines_, percent, position_text(),
-               motion.current_velocity * 60.0, state);
+               status.trajectory.current_velocity * 60.0, state);
 }
 
 }  // namespace mw::app

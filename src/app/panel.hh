@@ -22,7 +22,7 @@ enum class Attendance : std::uint8_t {
 class Panel {
   public:
     Panel(machine::Machine &machine, const machine::MachineConfig &config, diag::Sink &sink,
-          Attendance attendance);
+          Attendance attendance, const msgs::MachineStatus &status);
 
     /// Asks for yes or no at the terminal while the machine goes on; false also when a signal comes.
     bool confirm(const std::string &question);
@@ -34,7 +34,7 @@ class Panel {
     /// Once a task cycle: keys, program stops, the line.
     void step();
     /// A message for the operator, above the line.
-    void show(const task::Message &message);
+    void show(const client::Client::Message &message);
 
     /// Nothing goes on before a person has answered: neither does the time in which progress is expected.
     bool isWaitingForPerson() const;
@@ -42,6 +42,7 @@ class Panel {
 
   private:
     void take_key(char key);
+    void post(const msgs::Command &command);
     void look_at_stop();
     void write_line();
     void clear_line();
@@ -53,6 +54,7 @@ class Panel {
     const machine::MachineConfig &config_;
     diag::Sink &sink_;
     Attendance attendance_;
+    const msgs::MachineStatus &status_;  ///< of the last cycle, as whoever runs the machine has read it
     std::optional<Keyboard> keyboard_;
     bool hasLine_;  ///< standard error is a terminal
     bool isRunning_ = false;

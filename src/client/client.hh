@@ -72,6 +72,7 @@ class Client {
     std::uint64_t next_message_ = 1;
     std::uint64_t tools_version_ = 0;
     std::uint32_t heard_ = 0;
+    mutable std::size_t last_place_ = 0;  ///< of the outcome that was asked for last
 };
 
 }  // namespace mw::client

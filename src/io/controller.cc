@@ -68,17 +68,15 @@ void Controller::abort() {
     action_ = ToolAction::IDLE;
 }
 
-std::string Controller::waiting_for() const {
+msgs::WaitFor Controller::waiting_for() const {
     switch (action_) {
     case ToolAction::IDLE: break;
     case ToolAction::PREPARING:
-        return outputs.tool_prepare ? "pin iocontrol.0.tool-prepared to become TRUE"
-                                    : "pin iocontrol.0.tool-prepared to become FALSE";
+        return outputs.tool_prepare ? msgs::WaitFor::TOOL_PREPARED : msgs::WaitFor::TOOL_PREPARED_OFF;
     case ToolAction::CHANGING:
-        return outputs.tool_change ? "pin iocontrol.0.tool-changed to become TRUE"
-                                   : "pin iocontrol.0.tool-changed to become FALSE";
+        return outputs.tool_change ? msgs::WaitFor::TOOL_CHANGED : msgs::WaitFor::TOOL_CHANGED_OFF;
     }
-    return {};
+    return msgs::WaitFor::NOTHING;
 }
 
 void Controller::set_tool_in_spindle(int number, int from_pocket) {

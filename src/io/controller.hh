@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/result.hh"
+#include "msgs/names.hh"
 
 namespace mw::io {
 
@@ -56,8 +57,8 @@ class Controller {
     /// Ends any handshake at once: requests drop, emc-abort pulses for one loop.
     void abort();
     ToolAction action() const { return action_; }
-    /// The pin that a handshake waits for, as a text, or empty.
-    std::string waiting_for() const;
+    /// The pin that a handshake waits for.
+    msgs::WaitFor waiting_for() const;
     int fault_reason() const { return fault_reason_; }
 
     void set_mist(bool isOn) { outputs.coolant_mist = isOn; }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/result.hh"
+#include "client/client.hh"
 #include "config/ini_file.hh"
 #include "diag/sink.hh"
 #include "hal/core/host.hh"
@@ -56,6 +57,10 @@ class Machine {
     /// An error once the machine cannot go on: its realtime process has ended. Ask in every cycle.
     virtual Result<> health() const { return {}; }
 
+    /// The way into task for whoever runs the machine in this process.
+    virtual client::Client &client() = 0;
+    /// For further clients in this process.
+    virtual mailbox::Segment &mailbox() = 0;
     virtual task::Task &task() = 0;
     virtual motion::Channels &channels() = 0;
     virtual hal::Hal &hal() = 0;

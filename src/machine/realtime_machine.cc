@@ -35,9 +35,8 @@ class RealtimeMachine final : public Machine {
     }
 
     Result<> start(const MachineOptions &options) {
-        auto host =
-            hal::HostClient::start(options.instance.empty() ? hal::default_instance() : options.instance,
-                                   hal::MessagesTo::STDERR, hal::Lifetime::STARTER);
+        const std::string instance = options.instance.empty() ? hal::default_instance() : options.instance;
+        auto host = hal::HostClient::start(instance, hal::MessagesTo::STDERR, hal::Lifetime::STARTER);
         if (!host.has_value()) {
             return std::unexpected(host.error());
         }
@@ -46,7 +45,11 @@ class RealtimeMachine final : public Machine {
         if (!controlled.has_value()) {
             return controlled;
         }
-        side_ = std::make_unique<TaskSide>(parts_, *host_);
+        auto mailbox = mailbox::Memory::create(instance);
+        if (!mailbox.has_value()) {
+            return std::unexpected(mailbox.error());
+        }
+        side_ = std::make_unique<TaskSide>(parts_, *host_, std::move(*mailbox));
         const auto started = side_->start(options);
         return started.has_value() ? side_->finish_start(*this, CONFIGURE_CYCLES) : started;
     }
@@ -83,6 +86,8 @@ class RealtimeMachine final : public Machine {
         }
         return figures;
     }
+    client::Client &client() override { return side_->client(); }
+    mailbox::Segment &mailbox() override { return side_->mailbox(); }
     task::Task &task() override { return side_->task(); }
     motion::Channels &channels() override { return side_->channels(); }
     hal::Hal &hal() override { return host_->hal(); }

@@ -11,8 +11,8 @@ constexpr const char *MOTION_ESTOP_PIN = "motion.emc-enable-in";
 
 }  // namespace
 
-TaskSide::TaskSide(const MachineParts &parts, hal::Host &host)
-    : parts_(parts), host_(host), parameters_(parts.ini, &host.hal()) {}
+TaskSide::TaskSide(const MachineParts &parts, hal::Host &host, mailbox::Memory mailbox)
+    : parts_(parts), host_(host), mailbox_(std::move(mailbox)), parameters_(parts.ini, &host.hal()) {}
 
 TaskSide::~TaskSide() {
     task_.reset();
@@ -39,10 +39,15 @@ Result<> TaskSide::start(const MachineOptions &options) {
     }
     task::Settings settings = parts_.config.task;
     settings.isClockHeldByUserPrograms = options.isClockVirtual;
-    task_ = std::make_unique<task::Task>(task::Parts{*channels_, *this, *tools_, parameters_},
-                                         std::move(settings));
+    task_ = std::make_unique<task::Task>(
+        task::Parts{*channels_, *this, *tools_, parameters_, mailbox_.segment()}, std::move(settings));
     task_->configure(parts_.config.parameters);
-    return {};
+    auto client = client::Client::join(mailbox_.segment());
+    if (!client.has_value()) {
+        return std::unexpected(client.error());
+    }
+    client_.emplace(std::move(*client));
+    return parts_.config.hasHalui ? halui_.join(mailbox_.segment()) : Result<>{};
 }
 
 Result<> TaskSide::make_pins() {
@@ -104,10 +109,9 @@ Result<bool> TaskSide::isConfigured() {
     if (!task_->isConfigured()) {
         return false;
     }
-    task::Message message;
-    while (task_->poll_message(message)) {
-        if (message.kind == task::MessageKind::OPERATOR_ERROR) {
-            return fail("a setting was refused: " + message.text, {parts_.ini.path(), 0, 0});
+    while (const auto message = client_->next_message()) {
+        if (message->kind == msgs::MessageKind::OPERATOR_ERROR) {
+            return fail("a setting was refused: " + message->text, {parts_.ini.path(), 0, 0});
         }
     }
     return true;
@@ -137,7 +141,7 @@ void TaskSide::step(std::int64_t now_ns) {
     task_->step(now_ns);
     tool_change_.step(now_ns);
     if (parts_.config.hasHalui) {
-        halui_.step(*task_);
+        halui_.step();
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,7 @@ namespace mw::machine {
 /// done.
 class TaskSide final : private task::IoPort {
   public:
-    TaskSide(const MachineParts &parts, hal::Host &host);
+    TaskSide(const MachineParts &parts, hal::Host &host, mailbox::Memory mailbox);
     ~TaskSide() override;
 
     /// Makes pins, runs the HAL files, starts the threads, makes task and hands it the motion settings.
@@ -34,6 +35,8 @@ class TaskSide final : private task::IoPort {
     /// One task cycle.
     void step(std::int64_t now_ns);
 
+    client::Client &client() { return *client_; }
+    mailbox::Segment &mailbox() { return mailbox_.segment(); }
     task::Task &task() { return *task_; }
     motion::Channels &channels() { return *channels_; }
     ManualToolChange &tool_change() { return tool_change_; }
@@ -51,6 +54,8 @@ class TaskSide final : private task::IoPort {
 
     MachineParts parts_;
     hal::Host &host_;
+    mailbox::Memory mailbox_;  ///< outlives its clients
+    std::optional<client::Client> client_;
     io::Pins io_pins_;
     IniPins ini_pins_;
     ui::Halui halui_;

@@ -40,6 +40,7 @@ Result<> ToolFile::reload(diag::Sink &sink) {
     tool::Table table = tool::Table::parse_leniently(*text, path_, sink);
     const int in_spindle = table_.entry(0).toolno;
     table_ = std::move(table);
+    ++version_;
     table_.load_spindle(in_spindle > 0 ? std::max(0, table_.index_of_tool(in_spindle)) : 0);
     return {};
 }
@@ -49,6 +50,7 @@ Result<> ToolFile::load_spindle(int index) {
         return fail("the tool table has no entry " + std::to_string(index));
     }
     table_.load_spindle(index);
+    ++version_;
     return {};
 }
 
@@ -57,6 +59,7 @@ Result<> ToolFile::set_entry(int index, const interp::ToolEntry &entry) {
         return fail("the tool table has no entry " + std::to_string(index));
     }
     table_.set_entry(index, entry);
+    ++version_;
     return index == 0 || path_.empty() ? Result<>{} : table_.save(path_);
 }
 

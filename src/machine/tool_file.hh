@@ -25,6 +25,7 @@ class ToolFile final : public task::ToolStore {
     Result<> load_spindle(int index) override;
     Result<> set_entry(int index, const interp::ToolEntry &entry) override;
     Result<> reload() override;
+    std::uint64_t version() const override { return version_; }
 
   private:
     Result<> reload(diag::Sink &sink);
@@ -32,6 +33,7 @@ class ToolFile final : public task::ToolStore {
 
     std::string path_;
     tool::Table table_;
+    std::uint64_t version_ = 1;
 };
 
 }  // namespace mw::machine

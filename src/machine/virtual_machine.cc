@@ -32,7 +32,7 @@ class VirtualMachine final : public Machine {
             return std::unexpected(host.error());
         }
         host_ = std::move(*host);
-        side_ = std::make_unique<TaskSide>(parts_, *host_);
+        side_ = std::make_unique<TaskSide>(parts_, *host_, mailbox::Memory::in_process());
         const hal::UseInstance use(&host_->hal());
         // Components run in this process: their crash is its crash.
         hal::report_crashes("millwright");
@@ -61,6 +61,8 @@ class VirtualMachine final : public Machine {
     std::int64_t now_ns() const override { return scheduler_.now_ns(); }
     bool isVirtual() const override { return true; }
     RealtimeFigures realtime_figures() const override { return {}; }
+    client::Client &client() override { return side_->client(); }
+    mailbox::Segment &mailbox() override { return side_->mailbox(); }
     task::Task &task() override { return side_->task(); }
     motion::Channels &channels() override { return side_->channels(); }
     hal::Hal &hal() override { return host_->hal(); }

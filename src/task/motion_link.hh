@@ -47,8 +47,11 @@ class MotionLink {
     void abort();
     motion::Epoch epoch() const { return epoch_; }
 
-    /// An immediate command has been answered (done or refused).
-    bool isAnswered(motion::CommandId id) const { return pending_.empty() || id < pending_.front(); }
+    /// An immediate command has been answered (done or refused), and status() is of a time after it. In
+    /// another process the answer comes before the snapshot of its cycle.
+    bool isAnswered(motion::CommandId id) const {
+        return (pending_.empty() || id < pending_.front()) && id <= status_.last_immediate_id;
+    }
 
   private:
     void hand_over();

@@ -65,8 +65,8 @@ class Sequencer {
     bool isStepDone() const { return isStepDone_; }
 
     void on_tool_event(io::ToolEvent event) { check(tool_change_.on_event(event, tools_, io_)); }
-    /// What is being waited for: a pin or a state; empty for nothing.
-    std::string waiting_for() const;
+    /// What is being waited for: a pin or a state.
+    Waiting waiting_for() const;
 
     double input_value() const { return input_value_; }
     bool isInputTimedOut() const { return isInputTimedOut_; }

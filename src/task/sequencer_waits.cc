@@ -75,19 +75,19 @@ bool Sequencer::isInputWaitOver(std::int64_t now_ns) {
     return isMet || isInputTimedOut_;
 }
 
-std::string Sequencer::waiting_for() const {
+Waiting Sequencer::waiting_for() const {
     switch (wait_) {
-    case Wait::DWELL: return "the end of a dwell";
+    case Wait::DWELL: return {WaitFor::DWELL, -1};
     case Wait::INPUT:
-        return std::string("pin motion.") + (awaited_input_.isAnalog ? "analog-in-" : "digital-in-") +
-               (awaited_input_.index < 10 ? "0" : "") + std::to_string(awaited_input_.index);
-    case Wait::ORIENT: return "pin spindle." + std::to_string(awaited_spindle_) + ".is-oriented";
-    case Wait::SETTING: return "the motion controller to take a setting";
-    case Wait::USER_CODE: return "a user M code to end";
+        return {awaited_input_.isAnalog ? WaitFor::ANALOG_INPUT : WaitFor::DIGITAL_INPUT,
+                awaited_input_.index};
+    case Wait::ORIENT: return {WaitFor::SPINDLE_ORIENTED, awaited_spindle_};
+    case Wait::SETTING: return {WaitFor::SETTING, -1};
+    case Wait::USER_CODE: return {WaitFor::USER_CODE, -1};
     case Wait::NONE:
     case Wait::TOOL: break;
     }
-    return io_.waiting_for();
+    return {io_.waiting_for(), -1};
 }
 
 }  // namespace mw::task

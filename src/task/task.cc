@@ -6,6 +6,7 @@
 #include "interp/plugin.hh"
 #include "interp/user_codes.hh"
 #include "motion/api/texts.hh"
+#include "task/motion_status.hh"
 
 namespace mw::task {
 namespace {
@@ -16,13 +17,12 @@ Settings for_machine(Settings settings) {
     return settings;
 }
 
-constexpr std::size_t REMEMBERED_REQUESTS = 256;
-
 }  // namespace
 
 Task::Task(const Parts &parts, Settings settings)
-    : settings_(for_machine(std::move(settings))), parts_(parts), motion_(parts.channels),
-      canon_(queue_, settings_.tool_change_place), frame_(canon_, settings_.machine_units),
+    : settings_(for_machine(std::move(settings))), parts_(parts), desk_(parts.mailbox),
+      motion_(parts.channels), canon_(queue_, settings_.tool_change_place),
+      frame_(canon_, settings_.machine_units),
       interp_(std::make_unique<interp::Interpreter>(frame_, *this, parts.tools, parts.parameters,
                                                     settings_.interpreter)),
       user_program_(settings_.isClockHeldByUserPrograms),
@@ -37,18 +37,18 @@ SequencerEvents Task::make_events() {
     events.message = [this](MessageKind kind, const std::string &text) { post(kind, text); };
     events.print = [this](const std::string &text) { post(MessageKind::OPERATOR_TEXT, text); };
     events.stop = [this](const interp::ProgramStop &stop, int line) { return on_stop(stop, line); };
-    events.end = [this] { isReadingDone_ = true; };
+    events.end = [this] { change_run(RunEvent::READ); };
     events.fail = [this](const std::string &text) {
         pending_failure_ = pending_failure_.empty() ? text : pending_failure_;
     };
     events.offsets = [this](const interp::UseOffsets &item) {
-        status_.g5x_index = item.g5x_index;
-        status_.g5x_offset = item.g5x;
-        status_.g92_offset = item.g92;
-        status_.rotation_xy_deg = item.rotation_xy_deg;
+        status_.offsets.g5x_index = item.g5x_index;
+        status_.offsets.g5x = item.g5x;
+        status_.offsets.g92 = item.g92;
+        status_.offsets.rotation_xy_deg = item.rotation_xy_deg;
     };
     events.tool_offset = [this](const interp::UseToolOffset &item) {
-        status_.tool_offset = item.offset;
+        status_.offsets.tool = item.offset;
         return motion_.send(motion::SetToolOffset{item.offset});
     };
     events.planner_mode = [this](const interp::UsePlanner &item) -> std::optional<motion::CommandId> {
@@ -119,36 +119,6 @@ Result<> Task::save_parameters() const {
     return settings_.parameter_file.empty() ? Result<>{} : interp_->save_parameters(settings_.parameter_file);
 }
 
-RequestId Task::submit(Command command) {
-    const RequestId id = next_request_++;
-    inbox_.emplace_back(id, std::move(command));
-    requests_[id] = {};
-    // What still goes on is kept however many came after it.
-    for (auto old = requests_.begin(); requests_.size() > REMEMBERED_REQUESTS && old->first != id;) {
-        old = old->second.progress == Progress::STARTED ? std::next(old) : requests_.erase(old);
-    }
-    return id;
-}
-
-Progress Task::progress(RequestId id) const {
-    const auto found = requests_.find(id);
-    return found == requests_.end() ? Progress::REFUSED : found->second.progress;
-}
-
-std::string Task::reason(RequestId id) const {
-    const auto found = requests_.find(id);
-    return found == requests_.end() ? "no such request" : found->second.reason;
-}
-
-bool Task::poll_message(Message &message) {
-    if (messages_.empty()) {
-        return false;
-    }
-    message = std::move(messages_.front());
-    messages_.pop_front();
-    return true;
-}
-
 void Task::step(std::int64_t now_ns) {
     now_ns_ = now_ns;
     take_motion_news();
@@ -164,13 +134,13 @@ void Task::step(std::int64_t now_ns) {
     step_clean_up();
     if (isRunning() && motion_.status().mode == motion::Mode::COORD) {
         run_interpreter();
-        if (!status_.isPaused) {
+        if (!run_.isHeld()) {
             sequencer_.step(now_ns_);
         }
-        if (isStepMode_ && sequencer_.isStepDone()) {
-            status_.isPaused = true;
+        if (run_.hold() == Hold::STEPPING && sequencer_.isStepDone()) {
+            change_run(RunEvent::STEP_DONE);
         }
-        if (isRunning() && isReadingDone_ && sequencer_.isIdle() && !status_.isPaused) {
+        if (run_.phase() == RunPhase::FINISHING && sequencer_.isIdle() && !run_.isHeld()) {
             finish_run(Progress::DONE, {});
         }
     }
@@ -191,8 +161,9 @@ void Task::check_run_mode() {
 }
 
 SourcePlace Task::place_of(const motion::SourceTag &source) const {
-    const std::string file =
-        run_ == Run::PROGRAM && source.line > 0 ? canon_.file_name(source.file_index) : "";
+    const std::string file = isRunning() && run_kind_ == RunKind::PROGRAM && source.line > 0
+                                 ? canon_.file_name(source.file_index)
+                                 : "";
     return {file, source.line, source.line > 0 ? 1 : 0};
 }
 
@@ -241,35 +212,35 @@ void Task::take_io() {
 void Task::update_state() {
     const bool isClosed = io_.isChainClosed();
     const bool isLeavingEstop = state_request_ != 0 && wanted_state_ == State::ESTOP_RESET;
-    if (!isClosed && status_.state != State::ESTOP && !isLeavingEstop) {
+    if (!isClosed && status_.task.state != State::ESTOP && !isLeavingEstop) {
         io_.enter_estop();
         motion_.send(motion::Disable{});
         finish(state_request_, Progress::FAILED, "the e-stop chain opened");
         if (isRunning()) {
             finish_run(Progress::FAILED, "the e-stop chain opened");
         }
-        status_.state = State::ESTOP;
+        status_.task.state = State::ESTOP;
         abort_work(AbortReason::ESTOP_CHAIN);
         post(MessageKind::OPERATOR_ERROR, "emergency stop: pin iocontrol.0.emc-enable-in is FALSE");
-    } else if (status_.state == State::ESTOP && isClosed && !io_.isEstopRequested()) {
-        status_.state = State::ESTOP_RESET;
+    } else if (status_.task.state == State::ESTOP && isClosed && !io_.isEstopRequested()) {
+        status_.task.state = State::ESTOP_RESET;
         begin_clean_up(AbortReason::STATE_ESTOP_RESET);
     }
     const bool isEnabled = motion_.status().isEnabled;
-    if (status_.state == State::ON && !isEnabled) {
-        status_.state = State::ESTOP_RESET;
+    if (status_.task.state == State::ON && !isEnabled) {
+        status_.task.state = State::ESTOP_RESET;
         if (isRunning()) {
             finish_run(Progress::FAILED, "the machine went off");
         }
         abort_work(AbortReason::STATE_NOT_ON);
-    } else if (status_.state == State::ESTOP_RESET && isEnabled && wanted_state_ == State::ON) {
-        status_.state = State::ON;
+    } else if (status_.task.state == State::ESTOP_RESET && isEnabled && wanted_state_ == State::ON) {
+        status_.task.state = State::ON;
     }
 }
 
 void Task::update_pending() {
     if (state_request_ != 0) {
-        if (status_.state == wanted_state_) {
+        if (status_.task.state == wanted_state_) {
             finish(state_request_, Progress::DONE, {});
         } else if (now_ns_ > state_deadline_ns_) {
             const bool isChain = wanted_state_ == State::ESTOP_RESET;
@@ -280,17 +251,12 @@ void Task::update_pending() {
     }
     const motion::Status &motion = motion_.status();
     if (mode_request_ != 0 && motion_.isAnswered(mode_command_) && motion.mode == wanted_motion_mode_) {
-        status_.mode = wanted_mode_;
+        status_.task.mode = wanted_mode_;
         finish(mode_request_, Progress::DONE, {});
     } else if (mode_request_ != 0 && now_ns_ > mode_deadline_ns_) {
         finish(mode_request_, Progress::FAILED, "the motion controller has not changed its mode");
     }
-    // In another process the answer comes before the snapshot of its cycle: only a later one tells of homing.
-    if (home_request_ != 0 && motion_.isAnswered(home_command_) && home_answered_cycle_ == 0) {
-        home_answered_cycle_ = motion.cycle + 1;
-    }
-    const bool isHomeSeen = home_answered_cycle_ != 0 && motion.cycle > home_answered_cycle_;
-    if (home_request_ != 0 && isHomeSeen && !motion.isHoming) {
+    if (home_request_ != 0 && motion_.isAnswered(home_command_) && !motion.isHoming) {
         const bool isHomed = homing_joint_ < 0
                                  ? motion.isAllHomed
                                  : motion.joint[static_cast<std::size_t>(homing_joint_)].isHomed;
@@ -313,8 +279,8 @@ void Task::log_probe() {
 }
 
 bool Task::isReadAheadAllowed() const {
-    const bool isHeld = status_.isPaused && status_.isStoppedByProgram;
-    return !isReadingDone_ && !isHeld && queue_.size() < settings_.read_ahead_items;
+    return run_.phase() != RunPhase::FINISHING && run_.hold() != Hold::STOPPED &&
+           queue_.size() < settings_.read_ahead_items;
 }
 
 /// What an abort has stopped may still brake: a run begins where the machine is at rest.
@@ -322,24 +288,24 @@ bool Task::begin_run() {
     if (!motion_.status().isInPosition) {
         return false;
     }
-    isStartDue_ = false;
+    change_run(RunEvent::BEGUN);
     synch_interpreter();
-    if (run_ == Run::MDI) {
+    if (run_kind_ == RunKind::MDI) {
         on_step_result(interp_->execute(mdi_line_));
     }
     return true;
 }
 
 void Task::run_interpreter() {
-    if (isStartDue_ && !begin_run()) {
+    if (run_.phase() == RunPhase::STARTING && !begin_run()) {
         return;
     }
     for (int i = 0; i < settings_.blocks_per_cycle && isRunning() && isReadAheadAllowed(); ++i) {
-        if (isWaitingForSync_) {
+        if (run_.phase() == RunPhase::SYNCHING) {
             if (!sequencer_.isIdle()) {
                 return;
             }
-            isWaitingForSync_ = false;
+            change_run(RunEvent::SYNCED);
             synch_interpreter();
             log_probe();
         }
@@ -350,70 +316,108 @@ void Task::run_interpreter() {
 void Task::on_step_result(interp::Step result) {
     switch (result) {
     case interp::Step::OK: break;
-    case interp::Step::SYNC: isWaitingForSync_ = true; break;
+    case interp::Step::SYNC: change_run(RunEvent::SYNC); break;
     case interp::Step::PROGRAM_END:
-    case interp::Step::FILE_END: isReadingDone_ = true; break;
+    case interp::Step::FILE_END: change_run(RunEvent::READ); break;
     case interp::Step::FAILED:
-        fail_program(interp_->error(),
-                     run_ == Run::MDI ? AbortReason::INTERPRETER_ERROR_MDI : AbortReason::INTERPRETER_ERROR);
+        fail_program(interp_->error(), run_kind_ == RunKind::MDI ? AbortReason::INTERPRETER_ERROR_MDI
+                                                                 : AbortReason::INTERPRETER_ERROR);
         break;
     }
 }
 
 bool Task::on_stop(const interp::ProgramStop &stop, int line) {
-    if (stop.isOptional && !status_.isOptionalStop) {
+    if (stop.isOptional && !status_.task.isOptionalStop) {
         return false;
     }
-    status_.stop_line = line;
-    ++status_.stops;
-    status_.isPaused = true;
-    status_.isStoppedByProgram = true;
+    status_.task.stop_line = line;
+    ++status_.task.stops;
+    change_run(RunEvent::PROGRAM_STOP);
     return true;
 }
 
+/// Of events that the run's own parts tell: one that comes too late changes nothing.
+void Task::change_run(RunEvent event) {
+    static_cast<void>(run_.take(event));
+}
+
 void Task::finish_run(Progress progress, const std::string &reason) {
-    if (run_ == Run::PROGRAM) {
+    if (isRunning() && run_kind_ == RunKind::PROGRAM) {
         interp_->close();
-        ++status_.programs_ended;
-    } else if (run_ == Run::MDI && progress == Progress::DONE && interp_->isMoveHeld()) {
+        ++status_.task.programs_ended;
+    } else if (isRunning() && progress == Progress::DONE && interp_->isMoveHeld()) {
         post(MessageKind::OPERATOR_TEXT,
              "cutter compensation holds this move back until the next one or G40 says where it ends");
     }
-    run_ = Run::IDLE;
-    isStepMode_ = false;
-    status_.isStoppedByProgram = false;
-    status_.isPaused = false;
+    change_run(RunEvent::END);
     sequencer_.end_step();
     finish(run_request_, progress, reason);
 }
 
-void Task::finish(RequestId &id, Progress progress, const std::string &reason) {
-    const auto found = requests_.find(id);
-    if (found != requests_.end()) {
-        found->second = {progress, reason};
+void Task::finish(mailbox::Serial &id, Progress progress, const std::string &reason) {
+    if (id != 0) {
+        tell(id, progress, reason);
     }
     id = 0;
 }
 
+void Task::tell(mailbox::Serial id, Progress progress, const std::string &reason) {
+    desk_.tell(id, progress, reason);
+    if (id == status_.last_command) {
+        status_.last_progress = progress;
+    }
+}
+
+void Task::publish_tools() {
+    const std::uint64_t version = parts_.tools.version();
+    if (version == tools_version_) {
+        return;
+    }
+    tools_version_ = version;
+    status_.tool.table_version = version;
+    msgs::ToolTable table{version, {}};
+    for (int i = 0; i < parts_.tools.count(); ++i) {
+        const interp::ToolEntry entry = parts_.tools.entry(i);
+        table.tools.push_back({entry.toolno, entry.pocketno, entry.offset, entry.diameter, entry.frontangle,
+                               entry.backangle, entry.orientation, entry.comment});
+    }
+    if (!desk_.publish_tools(table)) {
+        post(MessageKind::OPERATOR_ERROR, "the tool table is too large to be shown to clients");
+    }
+}
+
 void Task::update_status() {
     const motion::Status &motion = motion_.status();
-    status_.motion_line = motion.source.line;
-    status_.blocks = canon_.blocks();
-    status_.isMistOn = io_.outputs.coolant_mist;
-    status_.isFloodOn = io_.outputs.coolant_flood;
-    status_.tool_in_spindle = io_.outputs.tool_number;
-    status_.interp_state = InterpState::IDLE;
+    status_.task.motion_line = motion.source.line;
+    status_.task.blocks = canon_.blocks();
+    status_.io.coolant.isMistOn = io_.outputs.coolant_mist;
+    status_.io.coolant.isFloodOn = io_.outputs.coolant_flood;
+    status_.tool.in_spindle = io_.outputs.tool_number;
+    status_.task.isPaused = run_.isHeld();
+    status_.task.isStoppedByProgram = run_.hold() == Hold::STOPPED;
+    status_.task.interp_state = InterpState::IDLE;
     if (isRunning()) {
-        status_.interp_state = status_.isPaused ? InterpState::PAUSED
-                               : isReadingDone_ ? InterpState::WAITING
-                                                : InterpState::READING;
-        status_.read_line = interp_->line();
-        status_.call_level = interp_->call_level();
+        status_.task.interp_state = run_.isHeld()                         ? InterpState::PAUSED
+                                    : run_.phase() == RunPhase::FINISHING ? InterpState::WAITING
+                                                                          : InterpState::READING;
+        status_.task.read_line = interp_->line();
+        status_.task.call_level = interp_->call_level();
     }
-    status_.waiting.what = isRunning() ? sequencer_.waiting_for() : std::string();
+    status_.task.waiting = isRunning() ? sequencer_.waiting_for() : Waiting{};
     if (home_request_ != 0) {
-        status_.waiting.what = "homing";
+        status_.task.waiting = {WaitFor::HOMING, homing_joint_};
     }
+    ++status_.cycle;
+    status_.time_ns = now_ns_;
+    const interp::ActiveCodes codes = interp_->active_codes();
+    status_.codes = {codes.g, codes.m, codes.settings};
+    status_.tool.from_pocket = io_.outputs.tool_from_pocket;
+    status_.tool.prepared_index = sequencer_.selected_index();
+    status_.io.aux = {io_.isEstopRequested(), io_.isChainClosed()};
+    status_.io.lube.isOn = io_.outputs.lube;
+    tell_motion(motion, settings_.axis_mask, status_);
+    publish_tools();
+    desk_.publish(status_);
 }
 
 interp::MachineSnapshot Task::snapshot() const {

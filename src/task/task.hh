@@ -4,7 +4,6 @@
 #pragma once
 
 #include <deque>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,9 +11,11 @@
 #include "interp/interpreter.hh"
 #include "interp/machine_frame.hh"
 #include "io/controller.hh"
+#include "mailbox/desk.hh"
 #include "task/command.hh"
 #include "task/motion_link.hh"
 #include "task/planner_mode.hh"
+#include "task/run_state.hh"
 #include "task/sequencer.hh"
 #include "task/status.hh"
 #include "task/task_canon.hh"
@@ -57,9 +58,8 @@ struct Parts {
     IoPort &io_port;
     ToolStore &tools;
     interp::ParameterSource &parameters;
+    mailbox::Segment &mailbox;  ///< the only way in for commands, out for outcomes, messages and status
 };
-
-using RequestId = std::uint64_t;
 
 /// One thread; step() never blocks.
 class Task final : public interp::World {
@@ -77,12 +77,6 @@ class Task final : public interp::World {
     /// Writes the parameter file. Call once at a clean end.
     Result<> save_parameters() const;
 
-    /// Takes a command; it is carried out in the next cycle.
-    RequestId submit(Command command);
-    Progress progress(RequestId id) const;
-    /// Why a request was refused or failed.
-    std::string reason(RequestId id) const;
-
     /// One task cycle at clock time `now_ns`.
     void step(std::int64_t now_ns);
 
@@ -90,10 +84,10 @@ class Task final : public interp::World {
     /// The planner in force, and wishes of the operator about it.
     PlannerMode &planner_mode() { return planner_mode_; }
     const motion::Status &motion_status() const { return motion_.status(); }
-    /// Takes the oldest message for the operator; false when there is none.
-    bool poll_message(Message &message);
     /// The last program error with its place, callers and text; nullptr when the last program ended well.
-    const diag::Diagnostic *program_error() const { return hasProgramError_ ? &program_error_ : nullptr; }
+    const diag::Diagnostic *program_error() const {
+        return program_error_.has_value() ? &*program_error_ : nullptr;
+    }
     const std::string &file_name(std::uint32_t index) const { return canon_.file_name(index); }
     /// Is told of each move when it is handed to the planner (for figures and pictures).
     void set_move_listener(MoveListener listener) { sequencer_.set_move_listener(std::move(listener)); }
@@ -103,15 +97,11 @@ class Task final : public interp::World {
     interp::LengthUnits machine_units() const override { return settings_.machine_units; }
     unsigned axis_mask() const override { return settings_.axis_mask; }
     int count_spindles() const override { return settings_.num_spindles; }
-    bool isBlockDeleteOn() const override { return status_.isBlockDelete; }
-    bool isOptionalStopOn() const override { return status_.isOptionalStop; }
+    bool isBlockDeleteOn() const override { return status_.task.isBlockDelete; }
+    bool isOptionalStopOn() const override { return status_.task.isOptionalStop; }
 
   private:
-    enum class Run : std::uint8_t { IDLE, PROGRAM, MDI };
-    struct Request {
-        Progress progress = Progress::STARTED;
-        std::string reason;
-    };
+    enum class RunKind : std::uint8_t { PROGRAM, MDI };
     struct Handler;
     friend struct Handler;
 
@@ -138,17 +128,21 @@ class Task final : public interp::World {
     void end_clean_up(const std::string &trouble);
     interp::Step read_clean_up(AbortReason reason);
 
+    void change_run(RunEvent event);
     void finish_run(Progress progress, const std::string &reason);
-    void finish(RequestId &id, Progress progress, const std::string &reason);
+    void finish(mailbox::Serial &id, Progress progress, const std::string &reason);
+    void tell(mailbox::Serial id, Progress progress, const std::string &reason);
+    void publish_tools();
     void update_status();
-    void post(MessageKind kind, std::string text) { messages_.push_back({kind, std::move(text)}); }
-    bool isRunning() const { return run_ != Run::IDLE; }
+    void post(MessageKind kind, const std::string &text) { desk_.post(kind, text); }
+    bool isRunning() const { return run_.isRunning(); }
     /// Takes the machine's position and state as the program's.
     void synch_interpreter();
     Result<> check_can_run() const;
 
     Settings settings_;
     Parts parts_;
+    mailbox::Desk desk_;
     MotionLink motion_;
     io::Controller io_;
     ItemQueue queue_;
@@ -161,20 +155,14 @@ class Task final : public interp::World {
 
     Status status_;
     std::int64_t now_ns_ = 0;
-    Run run_ = Run::IDLE;
-    bool isReadingDone_ = false;  ///< the interpreter has come to the end of what runs
-    bool isWaitingForSync_ = false;
-    bool isStartDue_ = false;  ///< the run begins where the machine comes to rest
-    std::string mdi_line_;     ///< of such a run
-    bool isStepMode_ = false;
+    RunState run_;
+    RunKind run_kind_ = RunKind::PROGRAM;  ///< of the last run
+    std::string mdi_line_;
     std::string pending_failure_;
     std::optional<int> tool_fault_;  ///< reason, when the last work of the changer ended with a fault
-    bool isCleaningUp_ = false;      ///< what the on-abort command asked for is on its way
     bool isCleanedUp_ = false;       ///< nothing has run since the last abort
-    std::deque<std::pair<RequestId, Command>> inbox_;
-    std::map<RequestId, Request> requests_;
-    RequestId next_request_ = 1;
-    RequestId run_request_ = 0, state_request_ = 0, home_request_ = 0, mode_request_ = 0;
+    std::deque<mailbox::Desk::Delivery> inbox_;
+    mailbox::Serial run_request_ = 0, state_request_ = 0, home_request_ = 0, mode_request_ = 0;
     Mode wanted_mode_ = Mode::MANUAL;
     motion::Mode wanted_motion_mode_ = motion::Mode::FREE;
     motion::CommandId mode_command_ = 0;
@@ -182,13 +170,10 @@ class Task final : public interp::World {
     std::int64_t out_of_mode_since_ns_ = -1;  ///< -1: not
     State wanted_state_ = State::ESTOP;
     int homing_joint_ = -1;
-    std::uint64_t home_answered_cycle_ =
-        0;  ///< the last servo cycle that may not know of it; 0: no answer yet
     motion::CommandId home_command_ = 0, enable_command_ = 0, last_setting_ = 0;
     std::int64_t state_deadline_ns_ = 0;
-    std::deque<Message> messages_;
-    diag::Diagnostic program_error_;
-    bool hasProgramError_ = false;
+    std::optional<diag::Diagnostic> program_error_;
+    std::uint64_t tools_version_ = 0;  ///< of the table that was published
 };
 
 }  // namespace mw::task

@@ -31,16 +31,15 @@ bool isForbidden(const interp::MachineCall &call) {
 }  // namespace
 
 void Task::fail_program(diag::Diagnostic what, AbortReason reason) {
-    if (!isRunning() && isCleaningUp_) {  // no clean-up of a clean-up
+    if (run_.phase() == RunPhase::CLEANING) {  // no clean-up of a clean-up
         sequencer_.abort();
-        isCleaningUp_ = false;
+        change_run(RunEvent::CLEANED);
         end_clean_up(what.str());
         return;
     }
     post(MessageKind::OPERATOR_ERROR, what.str());
     program_error_ = std::move(what);
-    hasProgramError_ = true;
-    finish_run(Progress::FAILED, program_error_.what.str());
+    finish_run(Progress::FAILED, program_error_->what.str());
     abort_work(reason);
 }
 
@@ -48,18 +47,16 @@ void Task::abort_work(AbortReason reason) {
     // A machine that goes off has mostly been stopped for another reason before: that clean-up goes on.
     const bool isFollowing = reason == AbortReason::STATE_NOT_ON && isCleanedUp_;
     motion_.abort();
-    if (!isFollowing || !isCleaningUp_) {
+    if (!isFollowing || run_.phase() != RunPhase::CLEANING) {
         sequencer_.abort();
         user_program_.stop();
         interp_->abort();
         interp_->announce();  // displays and motion follow what was read ahead
-        isCleaningUp_ = true;
+        change_run(RunEvent::CLEAN);
     }
     sequencer_.stop_spindles();
     io_.set_flood(false);
     io_.set_mist(false);
-    isWaitingForSync_ = false;
-    isStartDue_ = false;
     pending_failure_.clear();
     finish(home_request_, Progress::FAILED, "aborted");
     finish(mode_request_, Progress::FAILED, "aborted");
@@ -76,7 +73,7 @@ void Task::begin_clean_up(AbortReason reason) {
     if (!isAsked || isRunning()) {
         return;
     }
-    isCleaningUp_ = true;
+    change_run(RunEvent::CLEAN);
     const interp::Step step = read_clean_up(reason);
     for (std::size_t i = 0; i < queue_.size(); ++i) {
         if (!isForbidden(queue_[i].call)) {
@@ -111,14 +108,15 @@ interp::Step Task::read_clean_up(AbortReason reason) {
 }
 
 void Task::step_clean_up() {
-    if (!isCleaningUp_ || isRunning()) {
-        isCleaningUp_ = false;  // what is left runs with the new program, before it
-        return;
+    if (run_.phase() != RunPhase::CLEANING) {
+        return;  // what a new program found of it is carried out before it
     }
     const motion::Status &motion = motion_.status();
     if (motion.isInPosition || !motion.isEnabled) {
         sequencer_.step(now_ns_);
-        isCleaningUp_ = !sequencer_.isIdle();
+        if (sequencer_.isIdle()) {
+            change_run(RunEvent::CLEANED);
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // One handler for each of the operator's commands: done, started, or refused with the reason (C5).
 #include <cmath>
+#include <concepts>
 
 #include "task/task.hh"
 
@@ -9,12 +10,43 @@ namespace {
 
 constexpr std::int64_t STATE_TIMEOUT_NS = 2000000000;
 
+template <class T, class... Listed>
+concept OneOf = (std::same_as<T, Listed> || ...);
+
+/// What an operator asks in G-code.
+template <class T>
+concept PartOfPrograms =
+    OneOf<T, LinearMove, CircularMove, ProbeMove, RigidTapMove, Delay, SetTermination, SetSpindleSync, SetG5x,
+          SetG92, SetRotation, SetToolOffset, SetTrajVelocity, SetTrajAcceleration, SetMotionId,
+          OrientSpindle, WaitOriented, WaitInput, PrepareTool, LoadTool, UnloadTool, SetToolNumber,
+          StartToolChange, ReadProgram, EndProgram>;
+/// What the INI file says.
+template <class T>
+concept PartOfConfiguration =
+    OneOf<T, SetJointKind, SetJointUnits, SetJointMinLimit, SetJointMaxLimit, SetJointFerror,
+          SetJointMinFerror, SetJointMaxVelocity, SetJointBacklash, SetJointHoming, LoadCompensation,
+          SetTrajAxes, SetTrajUnits, SetTrajCycleTime, SetMaxAcceleration, SetTrajHome, SetIoCycleTime>;
+/// What starts and ends with the machine.
+template <class T>
+concept PartOfStart = OneOf<T, InitTask, HaltTask, InitMachine, HaltMachine, InitMotion, HaltMotion, InitTraj,
+                            HaltTraj, InitJoint, HaltJoint, InitTool, HaltTool, InitIo, HaltIo>;
+template <class T>
+concept NotYet =
+    OneOf<T, CloseProgram, ResetInterpreter, SynchInterpreter, StopOptionally, ReverseProgram, ForwardProgram,
+          SetDebug, SystemCommand, CallTaskPlugin, CallIoPlugin, SetMotionMode, SetTeleopVector, ClearProbe,
+          EnableFeedOverride, EnableSpindleOverride, EnableFeedHold, EnableAdaptiveFeed, EnableTraj,
+          DisableTraj, EnableJoint, DisableJoint, ActivateJoint, DeactivateJoint, SpindleIncrease,
+          SpindleDecrease, SpindleConstant, SetSpindleSpeed, LubeOn, LubeOff, SetToolEntry>;
+/// Other names of the operator's abort.
+template <class T>
+concept AnyAbort = OneOf<T, AbortAll, AbortMachine, AbortTraj, AbortMotion, AbortTool, AbortIo>;
+
 }  // namespace
 
 /// What a handler says: started and going on, done, or a refusal.
 struct Task::Handler {
     Task &task;
-    RequestId id;
+    mailbox::Serial id;
 
     using Outcome = Result<Progress>;
 
@@ -25,59 +57,127 @@ struct Task::Handler {
     Outcome operator()(const StepProgram &command);
     Outcome operator()(const PauseProgram &command);
     Outcome operator()(const ResumeProgram &command);
-    Outcome operator()(const AbortAll &command);
     Outcome operator()(const Mdi &command);
     Outcome operator()(const SetTeleop &command);
     Outcome operator()(const HomeJoint &command);
     Outcome operator()(const UnhomeJoint &command);
-    Outcome operator()(const Jog &command);
-    Outcome operator()(const Spindle &command);
+    Outcome operator()(const JogContinuous &command);
+    Outcome operator()(const JogIncrement &command);
+    Outcome operator()(const JogAbsolute &command);
+    Outcome operator()(const JogStop &command);
+    Outcome operator()(const SpindleOn &command);
+    Outcome operator()(const SpindleOff &command);
     Outcome operator()(const LoadToolTable &command);
 
     Outcome operator()(const SetOptionalStop &command) {
-        task.status_.isOptionalStop = command.isOn;
+        task.status_.task.isOptionalStop = command.isOn;
         return Progress::DONE;
     }
     Outcome operator()(const SetBlockDelete &command) {
-        task.status_.isBlockDelete = command.isOn;
+        task.status_.task.isBlockDelete = command.isOn;
         return Progress::DONE;
     }
-    Outcome operator()(const SetOverride &command) {
-        if (!std::isfinite(command.factor) || command.factor < 0) {
-            return fail("an override must be a number of at least 0");
-        }
-        const motion::Scale what = command.what == Override::FEED    ? motion::Scale::FEED
-                                   : command.what == Override::RAPID ? motion::Scale::RAPID
-                                                                     : motion::Scale::SPINDLE;
-        task.motion_.send(motion::SetScale{what, command.spindle, command.factor});
-        return Progress::DONE;
+    Outcome operator()(const SetFeedOverride &command) {
+        return send(motion::SetScale{motion::Scale::FEED, 0, command.factor});
+    }
+    Outcome operator()(const SetRapidOverride &command) {
+        return send(motion::SetScale{motion::Scale::RAPID, 0, command.factor});
+    }
+    Outcome operator()(const SetSpindleOverride &command) {
+        return send(motion::SetScale{motion::Scale::SPINDLE, command.spindle, command.factor});
     }
     Outcome operator()(const SetMaxVelocity &command) {
-        if (!std::isfinite(command.velocity) || command.velocity < 0) {
-            return fail("the maximum velocity must be a number of at least 0");
-        }
-        task.motion_.send(motion::SetMaxVelocity{command.velocity});
-        return Progress::DONE;
+        return send(motion::SetMaxVelocity{command.velocity});
     }
-    Outcome operator()(const OverrideLimits &) {
-        task.motion_.send(motion::OverrideLimits{true});
-        return Progress::DONE;
+    Outcome operator()(const OverrideLimits &) { return send(motion::OverrideLimits{true}); }
+    Outcome operator()(const SetDigitalOutput &command) {
+        return send(motion::SetDigitalOutput{command.index, command.isOn});
     }
-    Outcome operator()(const SpindleBrake &command) {
-        task.motion_.send(motion::SpindleBrake{command.spindle, command.isOn});
-        return Progress::DONE;
+    Outcome operator()(const SetAnalogOutput &command) {
+        return send(motion::SetAnalogOutput{command.index, command.value});
     }
-    Outcome operator()(const Coolant &command) {
-        command.isMist ? task.io_.set_mist(command.isOn) : task.io_.set_flood(command.isOn);
-        return Progress::DONE;
+    Outcome operator()(const EngageBrake &command) {
+        return send(motion::SpindleBrake{command.spindle, true});
+    }
+    Outcome operator()(const ReleaseBrake &command) {
+        return send(motion::SpindleBrake{command.spindle, false});
+    }
+    Outcome operator()(const MistOn &) { return set_coolant(&io::Controller::set_mist, true); }
+    Outcome operator()(const MistOff &) { return set_coolant(&io::Controller::set_mist, false); }
+    Outcome operator()(const FloodOn &) { return set_coolant(&io::Controller::set_flood, true); }
+    Outcome operator()(const FloodOff &) { return set_coolant(&io::Controller::set_flood, false); }
+
+    Outcome operator()(const Null &) { return Progress::DONE; }
+    Outcome operator()(const OperatorError &command) {
+        return tell(MessageKind::OPERATOR_ERROR, command.text);
+    }
+    Outcome operator()(const OperatorText &command) { return tell(MessageKind::OPERATOR_TEXT, command.text); }
+    Outcome operator()(const OperatorDisplay &command) {
+        return tell(MessageKind::OPERATOR_DISPLAY, command.text);
+    }
+
+    // Other names of the same.
+    Outcome operator()(const EstopOn &) { return (*this)(SetState{State::ESTOP}); }
+    Outcome operator()(const EstopOff &) { return (*this)(SetState{State::ESTOP_RESET}); }
+    Outcome operator()(const EstopReset &) { return (*this)(SetState{State::ESTOP_RESET}); }
+    Outcome operator()(const PauseTraj &) { return (*this)(PauseProgram{}); }
+    Outcome operator()(const StepTraj &) { return (*this)(StepProgram{}); }
+    Outcome operator()(const ResumeTraj &) { return (*this)(ResumeProgram{}); }
+    Outcome operator()(const AbortJoint &command) { return (*this)(JogStop{true, command.joint}); }
+    template <AnyAbort C>
+    Outcome operator()(const C &) {
+        return abort_all();
+    }
+
+    template <PartOfPrograms C>
+    Outcome operator()(const C &) {
+        return fail("this is a part of programs", {}, "give it as G-code, by Mdi");
+    }
+    template <PartOfConfiguration C>
+    Outcome operator()(const C &) {
+        return fail("this is set by the INI file and does not change while the machine runs");
+    }
+    template <PartOfStart C>
+    Outcome operator()(const C &) {
+        return fail("this begins and ends with the machine");
+    }
+    template <NotYet C>
+    Outcome operator()(const C &) {
+        return fail("this version does not carry it out yet");
+    }
+    template <OneOf<ClaimOperation, HandOverOperation, ReleaseOperation> C>
+    Outcome operator()(const C &) {
+        return fail("the right to operate belongs to clients that are connected");
     }
 
   private:
+    Outcome abort_all();
+    Outcome send(const motion::CommandBody &body) {
+        task.motion_.send(body);
+        return Progress::DONE;
+    }
+    Outcome set_coolant(void (io::Controller::*set)(bool), bool isOn) {
+        (task.io_.*set)(isOn);
+        return Progress::DONE;
+    }
+    Outcome tell(MessageKind kind, const std::string &text) {
+        task.post(kind, text);
+        return Progress::DONE;
+    }
+    template <class Motion>
+    Outcome jog(const Motion &motion) {
+        const auto allowed = need_manual();
+        return allowed.has_value() ? send(motion) : std::unexpected(allowed.error());
+    }
+    Result<> need_spindle(int spindle) const {
+        return spindle < task.settings_.num_spindles ? Result<>{}
+                                                     : fail("there is no spindle " + std::to_string(spindle));
+    }
     Result<> need_on() const {
-        return task.status_.state == State::ON ? Result<>{} : fail("the machine is not on");
+        return task.status_.task.state == State::ON ? Result<>{} : fail("the machine is not on");
     }
     Result<> need_manual() const {
-        if (task.status_.mode != Mode::MANUAL) {
+        if (task.status_.task.mode != Mode::MANUAL) {
             return fail("this needs manual mode");
         }
         return need_on();
@@ -90,17 +190,17 @@ struct Task::Handler {
         task.mode_request_ = id;
         task.mode_deadline_ns_ = task.now_ns_ + STATE_TIMEOUT_NS;
     }
-    void start_run(Run run) {
-        task.run_ = run;
+    Outcome start_run(RunKind kind) {
+        const auto taken = task.run_.take(RunEvent::START);
+        if (!taken.has_value()) {
+            return std::unexpected(taken.error());
+        }
+        task.run_kind_ = kind;
         task.run_request_ = id;
-        task.isReadingDone_ = false;
-        task.isWaitingForSync_ = false;
-        task.status_.isStoppedByProgram = false;
-        task.hasProgramError_ = false;
+        task.program_error_.reset();
         task.isCleanedUp_ = false;
-        task.status_.isPaused = false;
         task.canon_.reset();
-        task.isStartDue_ = true;
+        return Progress::STARTED;
     }
 };
 
@@ -109,22 +209,31 @@ using Outcome = Result<Progress>;
 /// In their order; while the mode changes only what stops goes first.
 void Task::carry_out_commands() {
     const auto isUrgent = [](const Command &command) {
-        return std::holds_alternative<AbortAll>(command) || std::holds_alternative<SetState>(command);
+        return std::visit(
+            []<class C>(const C &) {
+                return AnyAbort<C> || OneOf<C, SetState, EstopOn, EstopOff, EstopReset>;
+            },
+            command);
     };
+    for (auto &delivery : desk_.take(now_ns_)) {
+        inbox_.push_back(std::move(delivery));
+    }
     for (auto next = inbox_.begin(); next != inbox_.end();) {
-        if (mode_request_ != 0 && !isUrgent(next->second)) {
+        if (mode_request_ != 0 && !isUrgent(next->command)) {
             ++next;
             continue;
         }
-        const auto [id, command] = std::move(*next);
+        const mailbox::Desk::Delivery delivery = std::move(*next);
         inbox_.erase(next);
-        const auto outcome = std::visit(Handler{*this, id}, command);
-        Request &request = requests_[id];
+        status_.last_command = delivery.serial;
+        status_.last_progress = Progress::STARTED;
+        const auto outcome = std::visit(Handler{*this, delivery.serial}, delivery.command);
         if (!outcome.has_value()) {
-            request = {Progress::REFUSED, outcome.error().str()};
-            post(MessageKind::OPERATOR_ERROR, request.reason);
-        } else if (request.progress == Progress::STARTED) {
-            request.progress = *outcome;
+            const std::string reason = outcome.error().str();
+            tell(delivery.serial, Progress::REFUSED, reason);
+            post(MessageKind::OPERATOR_ERROR, reason);
+        } else if (*outcome != Progress::STARTED) {
+            tell(delivery.serial, *outcome, {});
         }
         next = inbox_.begin();
     }
@@ -141,11 +250,11 @@ Outcome Task::Handler::operator()(const SetState &command) {
         if (task.isRunning()) {
             task.finish_run(Progress::FAILED, "emergency stop");
         }
-        task.status_.state = State::ESTOP;
+        task.status_.task.state = State::ESTOP;
         task.abort_work(AbortReason::STATE_ESTOP);
         return Progress::DONE;
     case State::ESTOP_RESET:
-        if (task.status_.state != State::ESTOP) {
+        if (task.status_.task.state != State::ESTOP) {
             return Progress::DONE;
         }
         task.io_.leave_estop();
@@ -158,7 +267,7 @@ Outcome Task::Handler::operator()(const SetState &command) {
         task.motion_.send(motion::Disable{});
         return Progress::DONE;
     case State::ON:
-        if (task.status_.state == State::ESTOP) {
+        if (task.status_.task.state == State::ESTOP) {
             return fail("cannot switch the machine on in emergency stop; reset it first");
         }
         task.enable_command_ = task.motion_.send(motion::Enable{});
@@ -170,7 +279,7 @@ Outcome Task::Handler::operator()(const SetState &command) {
 }
 
 Outcome Task::Handler::operator()(const SetMode &command) {
-    if (command.mode == task.status_.mode) {
+    if (command.mode == task.status_.task.mode) {
         return Progress::DONE;
     }
     if (task.isRunning()) {
@@ -189,12 +298,12 @@ Outcome Task::Handler::operator()(const OpenProgram &command) {
         return std::unexpected(opened.error());
     }
     task.interp_->close();
-    task.status_.program = command.path;
+    task.status_.task.program.assign(command.path);
     return Progress::DONE;
 }
 
 Result<> Task::check_can_run() const {
-    if (status_.state != State::ON) {
+    if (status_.task.state != State::ON) {
         return fail("the machine is not on");
     }
     if (isRunning()) {
@@ -207,72 +316,68 @@ Result<> Task::check_can_run() const {
 }
 
 Outcome Task::Handler::operator()(const RunProgram &command) {
-    if (task.status_.mode != Mode::AUTO) {
+    if (task.status_.task.mode != Mode::AUTO) {
         return fail("running a program needs auto mode");
     }
     if (command.from_line > 1) {
         return fail("running from line " + std::to_string(command.from_line) +
                     " is not supported by this version");
     }
-    if (task.status_.program.empty()) {
+    if (task.status_.task.program.empty()) {
         return fail("no program is open");
     }
     const auto allowed = task.check_can_run();
     if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
     }
-    const auto opened = task.interp_->open(task.status_.program);
+    const auto opened = task.interp_->open(task.status_.task.program.str());
     if (!opened.has_value()) {
         return std::unexpected(opened.error());
     }
-    start_run(Run::PROGRAM);
-    return Progress::STARTED;
+    return start_run(RunKind::PROGRAM);
 }
 
 Outcome Task::Handler::operator()(const StepProgram &) {
-    if (!task.isRunning()) {
+    const bool isFirst = !task.isRunning();
+    if (isFirst) {
         const auto started = (*this)(RunProgram{});
         if (!started.has_value()) {
             return started;
         }
-    } else if (!task.status_.isPaused) {
-        return fail("single step needs a paused program");
+        static_cast<void>(task.run_.take(RunEvent::PAUSE));  // it begins held, and steps from there
     }
     const bool isPlannerBusy = task.motion_.status().isPaused && task.motion_.status().queue_depth > 0;
-    task.isStepMode_ = true;
-    task.status_.isStoppedByProgram = false;
-    if (isPlannerBusy) {
+    const auto taken = task.run_.take(isPlannerBusy && !isFirst ? RunEvent::STEP_MOVE : RunEvent::STEP);
+    if (!taken.has_value()) {
+        return std::unexpected(taken.error());
+    }
+    if (task.run_.isHeld()) {
         task.motion_.send(motion::StepOnce{});
         return Progress::DONE;
     }
     task.motion_.send(motion::Resume{});
-    task.status_.isPaused = false;
     task.sequencer_.start_step();
-    return task.run_request_ == id ? Progress::STARTED : Progress::DONE;
+    return isFirst ? Progress::STARTED : Progress::DONE;
 }
 
 Outcome Task::Handler::operator()(const PauseProgram &) {
-    if (!task.isRunning()) {
-        return fail("nothing runs that could be paused");
+    const auto taken = task.run_.take(RunEvent::PAUSE);
+    if (!taken.has_value()) {
+        return std::unexpected(taken.error());
     }
-    task.motion_.send(motion::Pause{});
-    task.status_.isPaused = true;
-    return Progress::DONE;
+    return send(motion::Pause{});
 }
 
 Outcome Task::Handler::operator()(const ResumeProgram &) {
-    if (!task.isRunning() || !task.status_.isPaused) {
-        return fail("nothing is paused");
+    const auto taken = task.run_.take(RunEvent::RESUME);
+    if (!taken.has_value()) {
+        return std::unexpected(taken.error());
     }
-    task.motion_.send(motion::Resume{});
-    task.status_.isPaused = false;
-    task.status_.isStoppedByProgram = false;
-    task.isStepMode_ = false;
     task.sequencer_.end_step();
-    return Progress::DONE;
+    return send(motion::Resume{});
 }
 
-Outcome Task::Handler::operator()(const AbortAll &) {
+Outcome Task::Handler::abort_all() {
     if (task.isRunning()) {
         task.finish_run(Progress::FAILED, "aborted");
     }
@@ -281,16 +386,15 @@ Outcome Task::Handler::operator()(const AbortAll &) {
 }
 
 Outcome Task::Handler::operator()(const Mdi &command) {
-    if (task.status_.mode != Mode::MDI) {
+    if (task.status_.task.mode != Mode::MDI) {
         return fail("MDI needs MDI mode");
     }
     const auto allowed = task.check_can_run();
     if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
     }
-    start_run(Run::MDI);
     task.mdi_line_ = command.line;
-    return Progress::STARTED;
+    return start_run(RunKind::MDI);
 }
 
 Outcome Task::Handler::operator()(const SetTeleop &command) {
@@ -298,7 +402,7 @@ Outcome Task::Handler::operator()(const SetTeleop &command) {
     if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
     }
-    change_mode(task.status_.mode, command.isTeleop ? motion::Mode::TELEOP : motion::Mode::FREE);
+    change_mode(task.status_.task.mode, command.isTeleop ? motion::Mode::TELEOP : motion::Mode::FREE);
     return Progress::STARTED;
 }
 
@@ -309,7 +413,6 @@ Outcome Task::Handler::operator()(const HomeJoint &command) {
     }
     task.motion_.send(motion::SetMode{motion::Mode::FREE});
     task.home_command_ = task.motion_.send(motion::Home{command.joint});
-    task.home_answered_cycle_ = 0;
     task.homing_joint_ = command.joint;
     task.home_request_ = id;
     return Progress::STARTED;
@@ -324,35 +427,38 @@ Outcome Task::Handler::operator()(const UnhomeJoint &command) {
     return Progress::DONE;
 }
 
-Outcome Task::Handler::operator()(const Jog &command) {
-    const auto allowed = need_manual();
-    if (!allowed.has_value() && command.kind != JogKind::STOP) {
-        return std::unexpected(allowed.error());
-    }
-    const motion::JogTarget target{command.isJoint, command.index};
-    switch (command.kind) {
-    case JogKind::STOP: task.motion_.send(motion::JogStop{target}); break;
-    case JogKind::CONTINUOUS: task.motion_.send(motion::JogContinuous{target, command.velocity}); break;
-    case JogKind::INCREMENTAL:
-        task.motion_.send(motion::JogIncremental{target, std::fabs(command.velocity), command.distance});
-        break;
-    case JogKind::ABSOLUTE:
-        task.motion_.send(motion::JogAbsolute{target, std::fabs(command.velocity), command.distance});
-        break;
-    }
-    return Progress::DONE;
+Outcome Task::Handler::operator()(const JogContinuous &command) {
+    return jog(motion::JogContinuous{{command.isJoint, command.index}, command.velocity});
 }
 
-Outcome Task::Handler::operator()(const Spindle &command) {
-    const auto allowed = need_on();
-    if (!allowed.has_value() && command.speed_rpm != 0) {
-        return std::unexpected(allowed.error());
+Outcome Task::Handler::operator()(const JogIncrement &command) {
+    return jog(motion::JogIncremental{
+        {command.isJoint, command.index}, std::fabs(command.velocity), command.distance});
+}
+
+Outcome Task::Handler::operator()(const JogAbsolute &command) {
+    return jog(
+        motion::JogAbsolute{{command.isJoint, command.index}, std::fabs(command.velocity), command.position});
+}
+
+Outcome Task::Handler::operator()(const JogStop &command) {
+    return send(motion::JogStop{{command.isJoint, command.index}});
+}
+
+Outcome Task::Handler::operator()(const SpindleOn &command) {
+    auto allowed = need_spindle(command.spindle);
+    if (allowed.has_value() && command.speed_rpm != 0) {
+        allowed = need_on();
     }
-    if (command.spindle < 0 || command.spindle >= task.settings_.num_spindles) {
-        return fail("there is no spindle " + std::to_string(command.spindle));
+    if (!allowed.has_value()) {
+        return std::unexpected(allowed.error());
     }
     task.sequencer_.command_spindle(command.spindle, command.speed_rpm, false);
     return Progress::DONE;
+}
+
+Outcome Task::Handler::operator()(const SpindleOff &command) {
+    return (*this)(SpindleOn{command.spindle, 0});
 }
 
 Outcome Task::Handler::operator()(const LoadToolTable &) {

@@ -2,6 +2,8 @@
 // The one owner of the tool data (requirement G4), as task uses it.
 #pragma once
 
+#include <cstdint>
+
 #include "base/result.hh"
 #include "interp/world.hh"
 
@@ -14,6 +16,8 @@ class ToolStore : public interp::ToolSource {
     /// Changes an entry and saves the table.
     virtual Result<> set_entry(int index, const interp::ToolEntry &entry) = 0;
     virtual Result<> reload() = 0;
+    /// Another number after each change; never 0.
+    virtual std::uint64_t version() const = 0;
 };
 
 }  // namespace mw::task

@@ -31,14 +31,14 @@ TEST_F(AbortTest, TheOnAbortCommandRunsWhenTheMachineStands_I1) {
     cycles(1000);
     ASSERT_TRUE(pin("motion.digital-out-00"));
     ASSERT_GT(motion().current_velocity, 5);
-    machine_->task().submit(task::AbortAll{});
+    post(task::AbortAll{});
     for (int i = 0; i < 1000 && pin("motion.digital-out-00"); ++i) {
         cycles(1);
         ASSERT_TRUE(pin("motion.digital-out-00") || motion().isInPosition) << "cleaned up while moving";
     }
     EXPECT_FALSE(pin("motion.digital-out-00"));
     EXPECT_EQ(messages(), "because 8\n");
-    EXPECT_EQ(machine_->task().status().interp_state, task::InterpState::IDLE);
+    EXPECT_EQ(machine_->task().status().task.interp_state, task::InterpState::IDLE);
     const double rest = x();
     EXPECT_EQ(mdi("X5 G0"), task::Progress::DONE) << messages();
     EXPECT_DOUBLE_EQ(x(), 5.0) << "G90 of the procedure is in force";
@@ -86,7 +86,7 @@ TEST_F(AbortTest, TheOnAbortCommandCannotMoveOrStartAnything_I1) {
         start("G21 G91 F600\nM64 P0\nM64 P1\nG1 X100\nM2\n");
         cycles(1000);
         ASSERT_TRUE(pin("motion.digital-out-01"));
-        machine_->task().submit(task::AbortAll{});
+        post(task::AbortAll{});
         cycles(500);
         const double rest = x();
         EXPECT_FALSE(pin("motion.digital-out-00")) << "what comes before is done";
@@ -106,7 +106,7 @@ TEST_F(AbortTest, AnOnAbortCommandThatFailsIsToldOnce_I1) {
     switch_on_with("M65 P0\nG1 X[1/0]\n");
     start(LONG);
     cycles(1000);
-    machine_->task().submit(task::AbortAll{});
+    post(task::AbortAll{});
     cycles(500);
     EXPECT_FALSE(pin("motion.digital-out-00"));
     const std::string all = messages();
@@ -147,10 +147,10 @@ TEST_F(AbortTest, WorkRightAfterAnAbortBeginsWhereTheMachineComesToRest_D1) {
     start("G21 G90 F6000\nG1 X100\nM2\n");
     cycles(500);
     ASSERT_GT(motion().current_velocity, 50);
-    machine_->task().submit(task::AbortAll{});
+    post(task::AbortAll{});
     cycles(1);
-    machine_->task().submit(task::SetMode{task::Mode::MDI});
-    run_ = machine_->task().submit(task::Mdi{"G90 G1 F600 Y3"});
+    post(task::SetMode{task::Mode::MDI});
+    run_ = post(task::Mdi{"G90 G1 F600 Y3"});
     samples_.clear();
     cycles(2);
     EXPECT_EQ(finish(), task::Progress::DONE) << messages();
@@ -178,11 +178,11 @@ TEST_F(AbortTest, AnAbortInAnyCycleLeavesAMachineThatGoesOn_D1) {
               "G43 H2 G1 X16\nM66 P0 L3 Q0.2\nG38.3 X18 F2000\nM63 P1\nG0 X25 Y9\nM65 P0\nG55 G1 X30 "
               "F3000\nM2\n");
         cycles(when);
-        const bool isRunning = machine_->task().progress(run_) == task::Progress::STARTED;
+        const bool isRunning = progress(run_) == task::Progress::STARTED;
         samples_.clear();
-        machine_->task().submit(task::AbortAll{});
-        machine_->task().submit(task::SetMode{task::Mode::MDI});
-        run_ = machine_->task().submit(task::Mdi{"G53 G0 Z1"});
+        post(task::AbortAll{});
+        post(task::SetMode{task::Mode::MDI});
+        run_ = post(task::Mdi{"G53 G0 Z1"});
         cycles(2);
         ASSERT_EQ(finish(), task::Progress::DONE) << messages();
         cycles(400);
@@ -212,12 +212,12 @@ TEST_F(AbortTest, AfterAnAbortTheCodesInForceAreTheMachinesOwn_D1) {
     EXPECT_EQ(mdi("T1 M6"), task::Progress::DONE);
     start("G21 G90 F600 S700\nG54 G1 X100\nG55 G43.1 Z7 S1900\nG92 Y5\nM66 P0 L3 Q100\nM2\n");
     cycles(500);
-    EXPECT_EQ(machine_->task().status().g5x_index, 1);
+    EXPECT_EQ(machine_->task().status().offsets.g5x_index, 1);
     ask(task::AbortAll{});
     cycles(500);
     const task::Status &status = machine_->task().status();
-    const int index = status.g5x_index;
-    const double tool = status.tool_offset.z(), shift = status.g92_offset.y();
+    const int index = status.offsets.g5x_index;
+    const double tool = status.offsets.tool.z(), shift = status.offsets.g92.y();
     EXPECT_EQ(machine_->hal().get("motion.tooloffset.z")->as_float(), tool);
     EXPECT_EQ(mdi("(debug,%d#5220 %d#5212 %d#<_rpm>)"), task::Progress::DONE);
     EXPECT_EQ(messages(), fmt::format("{} {} 1900\n", index, shift));

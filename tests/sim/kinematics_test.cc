@@ -21,7 +21,7 @@ class KinematicsTest : public VirtualMachineTest {
         switch_on_config(table.write(folder_));
     }
     void jog(int axis, double velocity, double distance) {
-        machine_->task().submit(task::Jog{task::JogKind::INCREMENTAL, false, axis, velocity, distance});
+        post(task::JogIncrement{false, axis, velocity, distance});
         for (int i = 0; i < 60000 && (i < 20 || !motion().isInPosition); ++i) {
             cycles(1);
         }

@@ -55,8 +55,8 @@ TEST_F(MachineTest, AnOpenChainDropsTheAmplifiersInTheSameServoCycle) {
         EXPECT_FALSE(pin("joint." + std::to_string(joint) + ".amp-enable-out"));
     }
     cycles(3);
-    EXPECT_EQ(machine_->task().status().state, task::State::ESTOP);
-    EXPECT_EQ(machine_->task().progress(run_), task::Progress::FAILED);
+    EXPECT_EQ(machine_->task().status().task.state, task::State::ESTOP);
+    EXPECT_EQ(progress(run_), task::Progress::FAILED);
 }
 
 TEST_F(MachineTest, AnAbortBrakesAlongThePathWithinTheLimits) {
@@ -92,14 +92,14 @@ TEST_F(MachineTest, PauseHoldsAndResumeGoesOnToTheExactEnd) {
 TEST_F(MachineTest, AProgramStopHoldsWhatIsBehindIt_D3) {
     start("G21 G90 G61 F6000\nG1 X2\nM0\nM8\nG1 X4\nM1\nG1 X6\nM60\nM2\n");
     for (const double stands : {2.0, 4.0, 6.0}) {
-        for (int i = 0; i < 5000 && !machine_->task().status().isPaused; ++i) {
+        for (int i = 0; i < 5000 && !machine_->task().status().task.isPaused; ++i) {
             cycles(1);
         }
-        ASSERT_TRUE(machine_->task().status().isStoppedByProgram);
+        ASSERT_TRUE(machine_->task().status().task.isStoppedByProgram);
         cycles(2000);
         EXPECT_DOUBLE_EQ(x(), stands);
         EXPECT_EQ(pin("iocontrol.0.coolant-flood"), stands > 3);
-        EXPECT_EQ(machine_->task().progress(run_), task::Progress::STARTED);
+        EXPECT_EQ(progress(run_), task::Progress::STARTED);
         ask(task::ResumeProgram{});
     }
     EXPECT_EQ(finish(), task::Progress::DONE);
@@ -127,11 +127,11 @@ TEST_F(MachineTest, AToolChangeWaitsForItsPin_E1) {
     ASSERT_TRUE(machine_->hal().unlink("iocontrol.0.tool-changed").has_value());
     start("G21 G90\nT2 M6\nG0 X5\nM2\n");
     cycles(4000);
-    EXPECT_EQ(machine_->task().progress(run_), task::Progress::STARTED);
-    EXPECT_EQ(machine_->task().status().waiting.what, "pin iocontrol.0.tool-changed to become TRUE");
+    EXPECT_EQ(progress(run_), task::Progress::STARTED);
+    EXPECT_EQ(machine_->task().status().task.waiting.what, task::WaitFor::TOOL_CHANGED);
     ASSERT_TRUE(machine_->hal().set("iocontrol.0.tool-changed", "TRUE").has_value());
     EXPECT_EQ(finish(), task::Progress::DONE);
-    EXPECT_EQ(machine_->task().status().tool_in_spindle, 2);
+    EXPECT_EQ(machine_->task().status().tool.in_spindle, 2);
 }
 
 /// A tool arm must not come before the spindle has its angle.
@@ -143,7 +143,7 @@ TEST_F(MachineTest, OrientingASpindleIsAwaitedUpToItsTime_E1) {
         cycles(600);
         EXPECT_TRUE(pin("spindle.0.orient"));
         EXPECT_EQ(machine_->hal().get("spindle.0.orient-angle")->as_float(), angle);
-        EXPECT_EQ(machine_->task().status().waiting.what, "pin spindle.0.is-oriented");
+        EXPECT_EQ(machine_->task().status().task.waiting.what, task::WaitFor::SPINDLE_ORIENTED);
         EXPECT_EQ(x(), angle == 90.0 ? 0.0 : 5.0) << "moved before the spindle was there";
         set_pin("spindle.0.is-oriented", "TRUE");
         cycles(5);
@@ -153,9 +153,9 @@ TEST_F(MachineTest, OrientingASpindleIsAwaitedUpToItsTime_E1) {
     EXPECT_DOUBLE_EQ(x(), 9.0);
     start(program);
     cycles(1900);
-    EXPECT_EQ(machine_->task().progress(run_), task::Progress::STARTED);
+    EXPECT_EQ(progress(run_), task::Progress::STARTED);
     cycles(300);
-    EXPECT_EQ(machine_->task().progress(run_), task::Progress::FAILED);
+    EXPECT_EQ(progress(run_), task::Progress::FAILED);
     EXPECT_NE(messages().find("spindle 0 is not oriented within 2 seconds"), std::string::npos);
     EXPECT_DOUBLE_EQ(x(), 9.0);
     start("G21 G90\nM19 R90\nG0 X3\nM2\n");
@@ -166,7 +166,7 @@ TEST_F(MachineTest, BackBoringMovesAsideOnlyWithAnOrientedSpindle_I1) {
     ASSERT_TRUE(machine_->hal().unlink("spindle.0.is-oriented").has_value());  // a person answers
     start("G21 G90 G0 X0 Y0 Z5\nS1000 M3\nF3000 G87 X0 Y0 Z-3 R1 I2 J0 K-1\nG80\nM2\n");
     cycles(5000);
-    EXPECT_EQ(machine_->task().status().waiting.what, "pin spindle.0.is-oriented");
+    EXPECT_EQ(machine_->task().status().task.waiting.what, task::WaitFor::SPINDLE_ORIENTED);
     EXPECT_GT(motion().carte_pos_cmd.z(), 0.5);
     set_pin("spindle.0.is-oriented", "TRUE");
     EXPECT_EQ(finish(), task::Progress::DONE) << messages();

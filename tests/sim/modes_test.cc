@@ -14,9 +14,8 @@ namespace {
 class ModesTest : public VirtualMachineTest {
   protected:
     void SetUp() override { switch_on(); }
-    task::Progress progress(task::RequestId id) const { return machine_->task().progress(id); }
     void jog_x(double velocity) {
-        ask(task::Jog{task::JogKind::CONTINUOUS, true, 0, velocity, 0});
+        ask(task::JogContinuous{true, 0, velocity});
         cycles(300);
     }
     double joint_speed(int joint) const {
@@ -32,8 +31,8 @@ TEST_F(ModesTest, AModeThatMotionRefusesIsRefused_D1) {
     const auto id = ask(task::SetMode{task::Mode::AUTO});
     cycles(10);
     EXPECT_EQ(progress(id), task::Progress::REFUSED);
-    EXPECT_NE(machine_->task().reason(id), "");
-    EXPECT_EQ(machine_->task().status().mode, task::Mode::MANUAL);
+    EXPECT_NE(reason(id), "");
+    EXPECT_EQ(machine_->task().status().task.mode, task::Mode::MANUAL);
     write("p.ngc", "G21 G0 X1\nM2\n");
     ask(task::OpenProgram{(folder_ / "p.ngc").string()});
     const auto run = ask(task::RunProgram{});
@@ -43,15 +42,14 @@ TEST_F(ModesTest, AModeThatMotionRefusesIsRefused_D1) {
     cycles(500);
     const auto again = ask(task::SetMode{task::Mode::AUTO});
     cycles(10);
-    EXPECT_EQ(progress(again), task::Progress::DONE) << machine_->task().reason(again);
+    EXPECT_EQ(progress(again), task::Progress::DONE) << reason(again);
     run_ = ask(task::RunProgram{});
     EXPECT_EQ(finish(), task::Progress::DONE) << messages();
 }
 
 TEST_F(ModesTest, CommandsBehindAModeChangeWaitForIt_D3) {
-    task::Task &task = machine_->task();
-    const auto mode = task.submit(task::SetMode{task::Mode::MDI});
-    run_ = task.submit(task::Mdi{"G21 G0 X3"});
+    const auto mode = post(task::SetMode{task::Mode::MDI});
+    run_ = post(task::Mdi{"G21 G0 X3"});
     EXPECT_EQ(finish(), task::Progress::DONE) << messages();
     EXPECT_EQ(progress(mode), task::Progress::DONE);
     EXPECT_DOUBLE_EQ(x(), 3);
@@ -62,7 +60,7 @@ TEST_F(ModesTest, AnAbortEndsARunAtAnyTime_D3) {
         ask(task::SetMode{task::Mode::AUTO});
         start("G21 G90 G1 X20 F6000\nX0\nM2\n");
         cycles(wait);
-        machine_->task().submit(task::AbortAll{});
+        post(task::AbortAll{});
         cycles(400);
         EXPECT_NE(progress(run_), task::Progress::STARTED) << wait;
     }
@@ -72,8 +70,8 @@ TEST_F(ModesTest, ARunIsNotForgottenHoweverManyRequestsFollow_D1) {
     start("G21 G90 G1 X100 F600\nM2\n");
     cycles(20);
     for (int i = 0; i < 1000; ++i) {
-        machine_->task().submit(task::SetOverride{task::Override::FEED, 1.0, 0});
-        if (i % 50 == 0) {
+        post(task::SetFeedOverride{1.0});
+        if (i % 10 == 0) {
             cycles(1);
         }
     }
@@ -84,21 +82,21 @@ TEST_F(ModesTest, ARunIsNotForgottenHoweverManyRequestsFollow_D1) {
 
 TEST_F(ModesTest, TheFeedOverrideActsOnJogs_C4) {
     ask(task::SetMode{task::Mode::MANUAL});
-    ask(task::SetOverride{task::Override::FEED, 0.5, 0});
+    ask(task::SetFeedOverride{0.5});
     jog_x(20);
     EXPECT_NEAR(joint_speed(0), 10, 1e-6);
-    ask(task::SetOverride{task::Override::FEED, 0, 0});
+    ask(task::SetFeedOverride{0});
     cycles(300);
     EXPECT_NEAR(joint_speed(0), 0, 1e-9);
-    ask(task::SetOverride{task::Override::FEED, 1, 0});
+    ask(task::SetFeedOverride{1});
     cycles(300);
     EXPECT_NEAR(joint_speed(0), 20, 1e-6);
     ask(task::AbortAll{});
     cycles(300);
     ask(task::SetTeleop{true});
     cycles(10);
-    ask(task::SetOverride{task::Override::FEED, 0.25, 0});
-    ask(task::Jog{task::JogKind::CONTINUOUS, false, 0, -20, 0});
+    ask(task::SetFeedOverride{0.25});
+    ask(task::JogContinuous{false, 0, -20});
     cycles(300);
     EXPECT_NEAR(joint_speed(0), 5, 1e-6);
 }
@@ -111,7 +109,7 @@ TEST_F(ModesTest, HomingDuringAJogStopsTheJogAndHomes_C4) {
     const auto id = ask(task::HomeJoint{0});
     EXPECT_TRUE(motion().isHoming);
     EXPECT_EQ(progress(id), task::Progress::STARTED);
-    const auto jog = ask(task::Jog{task::JogKind::CONTINUOUS, true, 0, 50, 0});
+    const auto jog = ask(task::JogContinuous{true, 0, 50});
     cycles(500);
     EXPECT_EQ(progress(id), task::Progress::DONE) << messages();
     EXPECT_NE(progress(jog), task::Progress::STARTED);

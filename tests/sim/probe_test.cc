@@ -16,11 +16,11 @@ class ProbeTest : public VirtualMachineTest {
         for (int i = 0; i < 200000; ++i) {
             cycles(1);
             set_pin("motion.probe-input", x() >= wall ? "TRUE" : "FALSE");
-            if (i > 3 && machine_->task().progress(run_) != task::Progress::STARTED) {
+            if (i > 3 && progress(run_) != task::Progress::STARTED) {
                 break;
             }
         }
-        return machine_->task().progress(run_);
+        return progress(run_);
     }
     long count_lines(const std::string &name) const {
         const std::string text = read(name);

@@ -35,14 +35,14 @@ TEST_F(PythonRemapTest, AToolChangeThroughPythonAndAProcedureKeepsProgramOrder_I
     EXPECT_TRUE(machine_->task().motion_status().isInPosition);
     EXPECT_TRUE(machine_->hal().get("motion.digital-out-01")->as_bit())
         << "the procedure ran before the change";
-    EXPECT_EQ(machine_->task().progress(run_), task::Progress::STARTED);
+    EXPECT_EQ(progress(run_), task::Progress::STARTED);
     EXPECT_EQ(messages().find("tool 2"), std::string::npos) << "nothing after the change is read before it";
     const double waiting_at = x();
     cycles(2000);
     EXPECT_EQ(x(), waiting_at);
     ASSERT_TRUE(machine_->hal().set("iocontrol.0.tool-changed", "TRUE").has_value());
     EXPECT_EQ(finish(), task::Progress::DONE);
-    EXPECT_EQ(machine_->task().status().tool_in_spindle, 2);
+    EXPECT_EQ(machine_->task().status().tool.in_spindle, 2);
     EXPECT_DOUBLE_EQ(x(), 30.0);
     EXPECT_NE(messages().find("tool 2"), std::string::npos);
 }
@@ -75,9 +75,9 @@ TEST_F(PythonRemapTest, AbortDuringAYieldEndsTheScriptAndTheNextProgramRuns_I1) 
     switch_on({"M400 py=wait"});
     start("G21 G90\nG1 F60 X100\nM400\nG0 X0\nM2\n");
     cycles(1500);
-    EXPECT_EQ(machine_->task().status().call_level, 1);
+    EXPECT_EQ(machine_->task().status().task.call_level, 1);
     ask(task::AbortAll{});
-    EXPECT_EQ(machine_->task().progress(run_), task::Progress::FAILED);
+    EXPECT_EQ(progress(run_), task::Progress::FAILED);
     cycles(500);
     messages();
     start("G21 G90\no<tell> call\nG0 X3\nM2\n");
@@ -102,7 +102,7 @@ TEST_F(PythonRemapTest, MdiRunsRemapsAndWaits_I1) {
                       "    self.execute('G0 X9')\n");
     switch_on({"M400 py=move"});
     ask(task::SetMode{task::Mode::MDI});
-    run_ = machine_->task().submit(task::Mdi{"M400"});
+    run_ = post(task::Mdi{"M400"});
     cycles(3);
     EXPECT_EQ(finish(), task::Progress::DONE);
     EXPECT_DOUBLE_EQ(x(), 9.0);

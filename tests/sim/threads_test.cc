@@ -51,10 +51,10 @@ class ThreadsTest : public VirtualMachineTest {
     void run(const std::string &text) {
         trace_.clear();
         start(text);
-        for (int i = 0; i < 400000 && machine_->task().progress(run_) == task::Progress::STARTED; ++i) {
+        for (int i = 0; i < 400000 && progress(run_) == task::Progress::STARTED; ++i) {
             cycle();
         }
-        ASSERT_EQ(machine_->task().progress(run_), task::Progress::DONE) << messages();
+        ASSERT_EQ(progress(run_), task::Progress::DONE) << messages();
         check_limits();
     }
     void check_limits() const {
@@ -288,7 +288,7 @@ TEST_P(ThreadModes, AnAbortBrakesInTheThreadWithinTheLimits_C15) {
         cycle();
     }
     const double z = trace_.back().z;
-    machine_->task().submit(task::AbortAll{});
+    post(task::AbortAll{});
     for (int i = 0; i < 1000; ++i) {
         cycle();
     }
@@ -309,10 +309,10 @@ TEST_P(ThreadModes, TheToolFollowsASpindleThatIsSlowedByTheCut_C15) {
     // Down to two thirds within about a tenth of a second.
     ASSERT_TRUE(hal.set("spindle-rps.gain", std::to_string(2.0 / 180)).has_value());
     ASSERT_TRUE(hal.set("sim-spindle.scale", std::to_string(2.0 / 180)).has_value());
-    for (int i = 0; i < 200000 && machine_->task().progress(run_) == task::Progress::STARTED; ++i) {
+    for (int i = 0; i < 200000 && progress(run_) == task::Progress::STARTED; ++i) {
         cycle();
     }
-    EXPECT_EQ(machine_->task().progress(run_), task::Progress::DONE) << messages();
+    EXPECT_EQ(progress(run_), task::Progress::DONE) << messages();
     check_limits();
     const auto passes = passes_at(10, 5);
     ASSERT_EQ(passes.size(), 1U);
@@ -326,7 +326,7 @@ TEST_P(ThreadModes, TheToolFollowsASpindleThatIsSlowedByTheCut_C15) {
 TEST_P(ThreadModes, AThreadThatIsTooFastIsRefusedBeforeItBegins_C15) {
     make(GetParam());
     // As programmed it would do; the operator has raised the spindle's speed.
-    ask(task::SetOverride{task::Override::SPINDLE, 1.2, 0});
+    ask(task::SetSpindleOverride{1.2, 0});
     start("G21 G90 G18 G94 G64\nM3 S1500\nG0 X14 Z5\nG0 X10\nG33 Z-20 K6\nG0 X14\nM2\n");
     EXPECT_EQ(finish(), task::Progress::FAILED);
     const std::string all = messages();

@@ -85,8 +85,17 @@ class VirtualMachineTest : public ::testing::Test {
         return text.str();
     }
 
-    task::RequestId ask(task::Command command) {
-        const auto id = machine_->task().submit(std::move(command));
+    client::Serial post(const msgs::Command &command) {
+        const auto posted = machine_->client().post(command);
+        EXPECT_TRUE(posted.has_value()) << posted.error().str();
+        return posted.value_or(0);
+    }
+    task::Progress progress(client::Serial command) const {
+        return machine_->client().outcome(command).progress;
+    }
+    std::string reason(client::Serial command) const { return machine_->client().outcome(command).reason; }
+    client::Serial ask(const msgs::Command &command) {
+        const auto id = post(command);
         cycles(3);
         return id;
     }
@@ -105,18 +114,18 @@ class VirtualMachineTest : public ::testing::Test {
         write("p.ngc", text);
         ask(task::SetMode{task::Mode::AUTO});
         ask(task::OpenProgram{(folder_ / "p.ngc").string()});
-        run_ = machine_->task().submit(task::RunProgram{});
+        run_ = post(task::RunProgram{});
     }
     /// Waits for what start() or mdi() has begun.
     task::Progress finish(int limit = 200000) {
-        for (int i = 0; i < limit && machine_->task().progress(run_) == task::Progress::STARTED; ++i) {
+        for (int i = 0; i < limit && progress(run_) == task::Progress::STARTED; ++i) {
             cycles(1);
         }
-        return machine_->task().progress(run_);
+        return progress(run_);
     }
     task::Progress mdi(const std::string &line) {
         ask(task::SetMode{task::Mode::MDI});
-        run_ = machine_->task().submit(task::Mdi{line});
+        run_ = post(task::Mdi{line});
         cycles(1);
         return finish();
     }
@@ -128,9 +137,8 @@ class VirtualMachineTest : public ::testing::Test {
     }
     std::string messages() {
         std::string all;
-        task::Message message;
-        while (machine_->task().poll_message(message)) {
-            all += message.text + '\n';
+        while (const auto message = machine_->client().next_message()) {
+            all += message->text + '\n';
         }
         return all;
     }
@@ -141,7 +149,7 @@ class VirtualMachineTest : public ::testing::Test {
     std::unique_ptr<Machine> machine_;
     std::vector<motion::TraceSample> samples_;
     JointJudge judge_;
-    task::RequestId run_ = 0;
+    client::Serial run_ = 0;
 };
 
 }  // namespace mw::machine

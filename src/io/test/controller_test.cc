@@ -22,11 +22,11 @@ TEST(IoController, ChangesAToolByHandshake_E1_E2) {
     io.start_change();
     EXPECT_EQ(io.step(in), ToolEvent::NONE);
     EXPECT_TRUE(io.outputs.tool_change);
-    EXPECT_EQ(io.waiting_for(), "pin iocontrol.0.tool-changed to become TRUE");
+    EXPECT_EQ(io.waiting_for(), msgs::WaitFor::TOOL_CHANGED);
     in.tool_changed = true;
     EXPECT_EQ(io.step(in), ToolEvent::CHANGED);
     EXPECT_FALSE(io.outputs.tool_change);
-    EXPECT_EQ(io.waiting_for(), "");
+    EXPECT_EQ(io.waiting_for(), msgs::WaitFor::NOTHING);
 }
 
 TEST(IoController, AnAnswerLeftFromTheLastChangeDoesNotCount) {

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "client/client.hh"
+#include "msgs/catalogue.hh"
 #include "task/task.hh"
 
 namespace mw::task {
@@ -61,6 +63,7 @@ class FakeMotion {
             const bool isType = p->parameter == static_cast<int>(motion::Parameter::TRAJ_PLANNER_TYPE);
             log.push_back((isType ? "planner " : "setting ") + std::to_string(static_cast<int>(p->value)));
         }
+        status.last_immediate_id = command.id;
         channels_.servo_answers.push({command.id});
     }
 
@@ -106,6 +109,7 @@ class NoTools final : public ToolStore {
     }
     Result<> set_entry(int, const interp::ToolEntry &) override { return {}; }
     Result<> reload() override { return {}; }
+    std::uint64_t version() const override { return 1; }
     int in_spindle = 0;
 };
 
@@ -133,7 +137,7 @@ class TaskTest : public testing::Test {
   protected:
     explicit TaskTest(const Settings &settings = {})
         : channels(std::make_unique<motion::Channels>()), motion(*channels), folder(made_folder()),
-          task({*channels, io, tools, parameters}, settings_for(folder, settings)) {
+          task({*channels, io, tools, parameters, mailbox.segment()}, settings_for(folder, settings)) {
         EXPECT_TRUE(task.start().has_value());
         EXPECT_EQ(ask(SetState{State::ESTOP_RESET}), Progress::DONE);
         EXPECT_EQ(ask(SetState{State::ON}), Progress::DONE);
@@ -165,20 +169,27 @@ class TaskTest : public testing::Test {
             cycle();
         }
     }
-    Progress ask(Command command, int limit = 2500) {
-        request = task.submit(std::move(command));
+    client::Serial post(const Command &command) {
+        const auto posted = client.post(command);
+        EXPECT_TRUE(posted.has_value()) << posted.error().str();
+        return posted.value_or(0);
+    }
+    Progress progress(client::Serial command) const { return client.outcome(command).progress; }
+    std::string reason(client::Serial command) const { return client.outcome(command).reason; }
+    Progress ask(const Command &command, int limit = 2500) {
+        request = post(command);
         for (int i = 0; i < limit; ++i) {
             cycle();
-            if (task.progress(request) != Progress::STARTED) {
+            if (progress(request) != Progress::STARTED) {
                 break;
             }
         }
-        return task.progress(request);
+        return progress(request);
     }
     void open(const std::string &text) {
         std::ofstream(folder / "p.ngc") << text;
         ASSERT_EQ(ask(SetMode{Mode::AUTO}), Progress::DONE);
-        ASSERT_EQ(ask(OpenProgram{(folder / "p.ngc").string()}), Progress::DONE) << task.reason(request);
+        ASSERT_EQ(ask(OpenProgram{(folder / "p.ngc").string()}), Progress::DONE) << reason(request);
     }
     std::string joined() const {
         std::string all;
@@ -189,9 +200,8 @@ class TaskTest : public testing::Test {
     }
     std::string messages() {
         std::string all;
-        Message message;
-        while (task.poll_message(message)) {
-            all += message.text + '\n';
+        while (const auto message = client.next_message()) {
+            all += message->text + '\n';
         }
         return all;
     }
@@ -202,16 +212,18 @@ class TaskTest : public testing::Test {
     LoopedIo io;
     NoTools tools;
     NoParameters parameters;
+    mailbox::Memory mailbox = mailbox::Memory::in_process();
     Task task;
+    client::Client client = *client::Client::join(mailbox.segment());
     std::int64_t now_ns = 0;
-    RequestId request = 0;
+    client::Serial request = 0;
 };
 
 TEST_F(TaskTest, AUserCodeRunsWithItsWordsAndIsAwaited_I1) {
     make_program("M101", "echo \"$1 $2\" >> " + (folder / "said").string() + "\n");
     open("G21 F600\nG1 X1\nM101 P2.5\nM101 P1 Q2\nG1 X2\nM2\n");
     motion.log.clear();
-    EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << task.reason(request);
+    EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << reason(request);
     std::ifstream said(folder / "said");
     std::string first, second;
     std::getline(said, first);
@@ -233,11 +245,11 @@ TEST_F(TaskTest, AUserCodeThatFailsStopsTheProgram_I1) {
 /// Reading ahead is bounded in each cycle, so that task hears the operator.
 TEST_F(TaskTest, AnEndlessLoopEndsWithAnAbort_I1) {
     open("o1 while [1]\n#1=[#1+1]\no1 endwhile\nM2\n");
-    const RequestId run = task.submit(RunProgram{});
+    const client::Serial run = post(RunProgram{});
     cycles(100);
-    EXPECT_EQ(task.progress(run), Progress::STARTED);
+    EXPECT_EQ(progress(run), Progress::STARTED);
     EXPECT_EQ(ask(AbortAll{}), Progress::DONE);
-    EXPECT_NE(task.progress(run), Progress::STARTED);
+    EXPECT_NE(progress(run), Progress::STARTED);
 }
 
 TEST_F(TaskTest, AUserCodeNeedsAnExecutableFile_I1) {
@@ -262,10 +274,10 @@ TEST(UserProgram, IsEndedWithAllThatItStarted_I1) {
 
 TEST_F(TaskTest, AMoveThatCompensationHoldsBackIsTold_I1) {
     ASSERT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);
-    EXPECT_EQ(ask(Mdi{"G21 F600 G41.1 D1"}), Progress::DONE) << task.reason(request);
+    EXPECT_EQ(ask(Mdi{"G21 F600 G41.1 D1"}), Progress::DONE) << reason(request);
     EXPECT_EQ(messages().find("holds this move back"), std::string::npos);
     motion.log.clear();
-    EXPECT_EQ(ask(Mdi{"G1 X10 Y10"}), Progress::DONE) << task.reason(request);
+    EXPECT_EQ(ask(Mdi{"G1 X10 Y10"}), Progress::DONE) << reason(request);
     EXPECT_NE(messages().find("holds this move back"), std::string::npos);
     EXPECT_EQ(joined().find("line"), std::string::npos);
     EXPECT_EQ(ask(Mdi{"G40"}), Progress::DONE);
@@ -275,23 +287,23 @@ TEST_F(TaskTest, AMoveThatCompensationHoldsBackIsTold_I1) {
 TEST_F(TaskTest, M99InTheMainProgramBeginsItAgain_I1) {
     open("G21 F600\n#1=[#1+1]\nO1 if [#1 ge 3]\nM2\nO1 endif\nG1 X#1\nM99\n");
     motion.log.clear();
-    EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << task.reason(request);
+    EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << reason(request);
     EXPECT_EQ(joined().substr(0, 14), "line 1, line 2");
 }
 
 TEST_F(TaskTest, AProgramRunsToItsEnd_D1) {
     open("G21 F600\nG1 X1\nG1 X2\nM2\n");
     motion.log.clear();
-    EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << task.reason(request);
+    EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << reason(request);
     EXPECT_EQ(joined().substr(0, 14), "line 1, line 2");
-    EXPECT_EQ(task.status().interp_state, InterpState::IDLE);
-    EXPECT_EQ(task.status().programs_ended, 1U);
+    EXPECT_EQ(task.status().task.interp_state, InterpState::IDLE);
+    EXPECT_EQ(task.status().task.programs_ended, 1U);
 }
 
 TEST_F(TaskTest, AProgramChoosesThePlannerInItsPlace_C2) {
     open("G21 F600\nG1 X1\nG64 P0.1 R0.5\nG1 X2\nG64 P0.1\nG1 X3\nG64 R0\nG1 X4\nG64 R0\nG1 X5\nM2\n");
     motion.log.clear();
-    EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << task.reason(request);
+    EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << reason(request);
     EXPECT_EQ(joined().substr(0, 59), "line 1, planner 1, line 2, line 3, planner 0, line 4, line ");
     EXPECT_EQ(motion.corner_scale, 0.0);
     EXPECT_NE(messages().find("MAX_LINEAR_JERK"), std::string::npos);
@@ -299,14 +311,14 @@ TEST_F(TaskTest, AProgramChoosesThePlannerInItsPlace_C2) {
 
 TEST_F(TaskTest, CornerSpeedOfG64RTravelsWithTheMoves_C2) {
     open("G21 F600\nG64 P0.1 R0.5\nG1 X2\nM2\n");
-    EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << task.reason(request);
+    EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << reason(request);
     EXPECT_EQ(motion.corner_scale, 0.5);
 }
 
 TEST_F(TaskTest, TheOperatorsPlannerComesWhenAllIsIdle_C2) {
     motion.isHolding = true;
     open("G21 F600\nG1 X1\nM2\n");
-    request = task.submit(RunProgram{});
+    request = post(RunProgram{});
     cycles(20);
     motion.log.clear();
     task.planner_mode().wish(1);
@@ -342,15 +354,75 @@ TEST_F(NoSmoothPlanner, G64RIsRefused_C2) {
 
 TEST_F(TaskTest, CommandsThatCannotBeDoneAreRefusedWithAReason_C5) {
     EXPECT_EQ(ask(Mdi{"G0 X1"}), Progress::REFUSED);
-    EXPECT_EQ(task.reason(request), "MDI needs MDI mode");
+    EXPECT_EQ(reason(request), "MDI needs MDI mode");
     EXPECT_EQ(ask(RunProgram{}), Progress::REFUSED);
     EXPECT_EQ(ask(PauseProgram{}), Progress::REFUSED);
     EXPECT_EQ(ask(OpenProgram{"/nowhere.ngc"}), Progress::REFUSED);
-    EXPECT_NE(task.reason(request).find("/nowhere.ngc"), std::string::npos);
+    EXPECT_NE(reason(request).find("/nowhere.ngc"), std::string::npos);
     motion.status.isAllHomed = false;
     open("M2\n");
     EXPECT_EQ(ask(RunProgram{}), Progress::REFUSED);
-    EXPECT_NE(task.reason(request).find("not all joints are homed"), std::string::npos);
+    EXPECT_NE(reason(request).find("not all joints are homed"), std::string::npos);
+}
+
+TEST_F(TaskTest, EveryCommandOfTheVocabularyIsAnsweredAndARefusalSaysWhy_C5) {
+    for (const msgs::Declaration *declaration : msgs::command_declarations()) {
+        Command command = *msgs::make_command(declaration->number);
+        if (!msgs::check(command).has_value()) {  // those with a text that must not be empty
+            for (const msgs::Field &field : declaration->fields) {
+                if (field.type.kind == msgs::Kind::TEXT) {
+                    *static_cast<std::string *>(field.at(msgs::object(command).data)) = "text";
+                }
+            }
+        }
+        const Progress end = ask(command, 3000);
+        EXPECT_NE(end, Progress::STARTED) << declaration->name;
+        EXPECT_EQ(end == Progress::REFUSED || end == Progress::FAILED, !reason(request).empty())
+            << declaration->name << ": " << reason(request);
+    }
+    EXPECT_EQ(ask(LinearMove{}), Progress::REFUSED);
+    EXPECT_EQ(reason(request), "this is a part of programs (give it as G-code, by Mdi)");
+    EXPECT_EQ(ask(SetJointMaxVelocity{0, 100}), Progress::REFUSED);
+    EXPECT_EQ(ask(EstopOn{}), Progress::DONE);
+    EXPECT_EQ(task.status().task.state, State::ESTOP);
+    EXPECT_EQ(ask(EstopReset{}), Progress::DONE);
+}
+
+TEST_F(TaskTest, TheStatusMarksWhatTheMachineDoesNotHave_H1) {
+    cycles(2);
+    msgs::MachineStatus seen;
+    ASSERT_TRUE(client.read_status(seen).has_value());
+    EXPECT_EQ(seen.trajectory.axis_mask, 7U);
+    EXPECT_EQ(seen.trajectory.num_joints, 3);
+    for (std::size_t i = 0; i < seen.joints.size(); ++i) {
+        EXPECT_EQ(seen.joints[i].isPresent, i < 3) << i;
+    }
+    for (std::size_t i = 0; i < seen.axes.size(); ++i) {
+        EXPECT_EQ(seen.axes[i].isPresent, i < 3) << i;
+    }
+    for (std::size_t i = 0; i < seen.spindles.size(); ++i) {
+        EXPECT_EQ(seen.spindles[i].isPresent, i < 1) << i;
+    }
+    EXPECT_EQ(seen.task.state, State::ON);
+    EXPECT_EQ(seen.codes.g[5], 210) << "G21";
+    const auto table = client.read_tools();
+    ASSERT_TRUE(table.has_value() && table->has_value());
+    EXPECT_EQ((*table)->tools[1].toolno, 5);
+    EXPECT_EQ((*table)->version, seen.tool.table_version);
+}
+
+TEST_F(TaskTest, TheLastCommandAndHowItStandsAreInTheStatus_D3) {
+    motion.isHolding = true;
+    open("G21 F600\nG1 X1\nM2\n");
+    const auto run = post(RunProgram{});
+    cycles(5);
+    EXPECT_EQ(task.status().last_command, run);
+    EXPECT_EQ(task.status().last_progress, Progress::STARTED);
+    motion.isHolding = false;
+    cycles(20);
+    EXPECT_EQ(task.status().last_progress, Progress::DONE);
+    ask(SpindleOff{7});
+    EXPECT_EQ(task.status().last_progress, Progress::REFUSED);
 }
 
 TEST_F(TaskTest, AnErrorInTheProgramStopsItWithItsPlace_D3) {
@@ -365,9 +437,9 @@ TEST_F(TaskTest, AnErrorInTheProgramStopsItWithItsPlace_D3) {
 TEST_F(TaskTest, NothingQueuedBeforeAnAbortMovesAfterwards) {
     open("G21 F600\nG1 X1\nG1 X2\nG1 X3\nM2\n");
     motion.isHolding = true;
-    task.submit(RunProgram{});
+    post(RunProgram{});
     cycles(5);
-    task.submit(AbortAll{});
+    post(AbortAll{});
     cycles(2);
     motion.isHolding = false;
     motion.log.clear();
@@ -386,14 +458,14 @@ TEST_F(TaskTest, ARefusedMoveEndsTheProgram) {
 }
 
 TEST_F(TaskTest, AnOpenEstopChainStopsEverything_E1) {
-    EXPECT_EQ(task.status().state, State::ON);
+    EXPECT_EQ(task.status().task.state, State::ON);
     io.isChainClosed = false;
     cycles(2);
-    EXPECT_EQ(task.status().state, State::ESTOP);
+    EXPECT_EQ(task.status().task.state, State::ESTOP);
     EXPECT_FALSE(motion.status.isEnabled);
     EXPECT_EQ(ask(SetState{State::ON}), Progress::REFUSED);
     EXPECT_EQ(ask(SetState{State::ESTOP_RESET}), Progress::FAILED);
-    EXPECT_NE(task.reason(request).find("iocontrol.0.emc-enable-in"), std::string::npos);
+    EXPECT_NE(reason(request).find("iocontrol.0.emc-enable-in"), std::string::npos);
     io.isChainClosed = true;
     EXPECT_EQ(ask(SetState{State::ESTOP_RESET}), Progress::DONE);
     EXPECT_FALSE(motion.status.isEnabled) << "reset never restarts anything";

@@ -24,7 +24,7 @@ Result<> Halui::create(hal::Hal &hal, int num_joints) {
     return status;
 }
 
-void Halui::add_button(const std::string &name, task::Command command, Result<> &status) {
+void Halui::add_button(const std::string &name, msgs::Command command, Result<> &status) {
     Button button{{}, std::move(command)};
     button.pin.make(*hal_, comp_id_, "halui." + name, hal::Dir::IN, status);
     buttons_.push_back(std::move(button));
@@ -32,34 +32,34 @@ void Halui::add_button(const std::string &name, task::Command command, Result<> 
 
 Result<> Halui::make_buttons() {
     Result<> status;
-    add_button("machine.on", task::SetState{task::State::ON}, status);
-    add_button("machine.off", task::SetState{task::State::OFF}, status);
-    add_button("estop.activate", task::SetState{task::State::ESTOP}, status);
-    add_button("estop.reset", task::SetState{task::State::ESTOP_RESET}, status);
-    add_button("mode.auto", task::SetMode{task::Mode::AUTO}, status);
-    add_button("mode.manual", task::SetMode{task::Mode::MANUAL}, status);
-    add_button("mode.mdi", task::SetMode{task::Mode::MDI}, status);
-    add_button("mode.joint", task::SetTeleop{false}, status);
-    add_button("mode.teleop", task::SetTeleop{true}, status);
-    add_button("home-all", task::HomeJoint{-1}, status);
-    add_button("abort", task::AbortAll{}, status);
-    add_button("program.run", task::RunProgram{}, status);
-    add_button("program.step", task::StepProgram{}, status);
-    add_button("program.pause", task::PauseProgram{}, status);
-    add_button("program.resume", task::ResumeProgram{}, status);
-    add_button("program.stop", task::AbortAll{}, status);
-    add_button("program.optional-stop.on", task::SetOptionalStop{true}, status);
-    add_button("program.optional-stop.off", task::SetOptionalStop{false}, status);
-    add_button("program.block-delete.on", task::SetBlockDelete{true}, status);
-    add_button("program.block-delete.off", task::SetBlockDelete{false}, status);
-    add_button("flood.on", task::Coolant{false, true}, status);
-    add_button("flood.off", task::Coolant{false, false}, status);
-    add_button("mist.on", task::Coolant{true, true}, status);
-    add_button("mist.off", task::Coolant{true, false}, status);
+    add_button("machine.on", msgs::SetState{msgs::State::ON}, status);
+    add_button("machine.off", msgs::SetState{msgs::State::OFF}, status);
+    add_button("estop.activate", msgs::SetState{msgs::State::ESTOP}, status);
+    add_button("estop.reset", msgs::SetState{msgs::State::ESTOP_RESET}, status);
+    add_button("mode.auto", msgs::SetMode{msgs::Mode::AUTO}, status);
+    add_button("mode.manual", msgs::SetMode{msgs::Mode::MANUAL}, status);
+    add_button("mode.mdi", msgs::SetMode{msgs::Mode::MDI}, status);
+    add_button("mode.joint", msgs::SetTeleop{false}, status);
+    add_button("mode.teleop", msgs::SetTeleop{true}, status);
+    add_button("home-all", msgs::HomeJoint{-1}, status);
+    add_button("abort", msgs::AbortAll{}, status);
+    add_button("program.run", msgs::RunProgram{}, status);
+    add_button("program.step", msgs::StepProgram{}, status);
+    add_button("program.pause", msgs::PauseProgram{}, status);
+    add_button("program.resume", msgs::ResumeProgram{}, status);
+    add_button("program.stop", msgs::AbortAll{}, status);
+    add_button("program.optional-stop.on", msgs::SetOptionalStop{true}, status);
+    add_button("program.optional-stop.off", msgs::SetOptionalStop{false}, status);
+    add_button("program.block-delete.on", msgs::SetBlockDelete{true}, status);
+    add_button("program.block-delete.off", msgs::SetBlockDelete{false}, status);
+    add_button("flood.on", msgs::FloodOn{}, status);
+    add_button("flood.off", msgs::FloodOff{}, status);
+    add_button("mist.on", msgs::MistOn{}, status);
+    add_button("mist.off", msgs::MistOff{}, status);
     for (int joint = 0; joint < num_joints_; ++joint) {
         const std::string prefix = "joint." + std::to_string(joint);
-        add_button(prefix + ".home", task::HomeJoint{joint}, status);
-        add_button(prefix + ".unhome", task::UnhomeJoint{joint}, status);
+        add_button(prefix + ".home", msgs::HomeJoint{joint}, status);
+        add_button(prefix + ".unhome", msgs::UnhomeJoint{joint}, status);
     }
     return status;
 }
@@ -90,32 +90,43 @@ void Halui::destroy() {
         static_cast<void>(hal_->delete_component(comp_id_));
         hal_ = nullptr;
         buttons_.clear();
+        client_.reset();
     }
 }
 
-void Halui::step(task::Task &task) {
+Result<> Halui::join(mailbox::Segment &mailbox) {
+    auto client = client::Client::join(mailbox, client::Role::PANEL);
+    if (!client.has_value()) {
+        return std::unexpected(client.error());
+    }
+    client_.emplace(std::move(*client));
+    return {};
+}
+
+void Halui::step() {
     for (Button &button : buttons_) {
         const bool isOn = button.pin;
-        if (isOn && !button.wasOn) {
-            task.submit(button.command);
-        }
-        button.wasOn = isOn;
+        const bool isPressed = isOn && !button.wasOn;
+        // One that task has no room for is tried again in the next cycle.
+        button.wasOn = isPressed ? client_->post(button.command).has_value() : isOn;
     }
-    const task::Status &status = task.status();
-    const motion::Status &motion = task.motion_status();
-    machine_is_on_ = status.state == task::State::ON;
-    estop_is_activated_ = status.state == task::State::ESTOP;
-    is_auto_ = status.mode == task::Mode::AUTO;
-    is_manual_ = status.mode == task::Mode::MANUAL;
-    is_mdi_ = status.mode == task::Mode::MDI;
-    is_joint_ = motion.mode == motion::Mode::FREE;
-    is_teleop_ = motion.mode == motion::Mode::TELEOP;
-    program_is_idle_ = status.interp_state == task::InterpState::IDLE;
-    program_is_paused_ = status.interp_state == task::InterpState::PAUSED;
-    program_is_running_ = status.interp_state != task::InterpState::IDLE && !program_is_paused_;
+    if (!client_->read_status(status_).has_value()) {
+        return;
+    }
+    const msgs::MachineStatus &status = status_;
+    machine_is_on_ = status.task.state == msgs::State::ON;
+    estop_is_activated_ = status.task.state == msgs::State::ESTOP;
+    is_auto_ = status.task.mode == msgs::Mode::AUTO;
+    is_manual_ = status.task.mode == msgs::Mode::MANUAL;
+    is_mdi_ = status.task.mode == msgs::Mode::MDI;
+    is_joint_ = status.trajectory.mode == msgs::MotionMode::FREE;
+    is_teleop_ = status.trajectory.mode == msgs::MotionMode::TELEOP;
+    program_is_idle_ = status.task.interp_state == msgs::InterpState::IDLE;
+    program_is_paused_ = status.task.interp_state == msgs::InterpState::PAUSED;
+    program_is_running_ = status.task.interp_state != msgs::InterpState::IDLE && !program_is_paused_;
     for (int joint = 0; joint < num_joints_; ++joint) {
         const auto i = static_cast<std::size_t>(joint);
-        joint_is_homed_[i] = motion.joint[i].isHomed;
+        joint_is_homed_[i] = status.joints[i].isHomed;
     }
 }
 

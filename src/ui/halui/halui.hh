@@ -3,38 +3,44 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "base/limits.hh"
 #include "base/result.hh"
+#include "client/client.hh"
 #include "hal/core/user_pin.hh"
-#include "task/task.hh"
+#include "msgs/command.hh"
 
 namespace mw::ui {
 
-/// A client of task. Input pins act on their rising edge. Not realtime; one thread.
+/// A client of the machine. Input pins act on their rising edge. Not realtime; one thread.
 class Halui {
   public:
     /// Makes the component "halui" with pins for `num_joints` joints.
     Result<> create(hal::Hal &hal, int num_joints);
     void destroy();
 
+    /// Becomes a client of the machine: a panel, which another's right to operate does not lock out.
+    Result<> join(mailbox::Segment &mailbox);
     /// Turns edges into commands, and states into pins. Once a task cycle, after task's own step.
-    void step(task::Task &task);
+    void step();
 
   private:
     /// An input pin that means one command.
     struct Button {
         hal::UserPin<bool> pin;
-        task::Command command;
+        msgs::Command command;
         bool wasOn = false;
     };
 
-    void add_button(const std::string &name, task::Command command, Result<> &status);
+    void add_button(const std::string &name, msgs::Command command, Result<> &status);
     Result<> make_buttons();
     Result<> make_states();
 
     hal::Hal *hal_ = nullptr;
+    std::optional<client::Client> client_;
+    msgs::MachineStatus status_;  ///< of the last cycle
     int comp_id_ = 0;
     int num_joints_ = 0;
     std::vector<Button> buttons_;

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Every event in every state. The expectations are rules about a run, not the table again.
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "task/run_state.hh"
+
+namespace mw::task {
+namespace {
+
+using enum RunEvent;
+
+template <class E>
+std::vector<E> all() {
+    std::vector<E> values;
+    for (int i = 0; i < static_cast<int>(E::COUNT); ++i) {
+        values.push_back(static_cast<E>(i));
+    }
+    return values;
+}
+
+/// Events on the way to each phase and hold.
+RunState in(RunPhase phase, Hold hold) {
+    RunState run;
+    std::vector<RunEvent> way;
+    switch (phase) {
+    case RunPhase::COUNT:
+    case RunPhase::IDLE: break;
+    case RunPhase::CLEANING: way = {CLEAN}; break;
+    case RunPhase::STARTING: way = {START}; break;
+    case RunPhase::READING: way = {START, BEGUN}; break;
+    case RunPhase::SYNCHING: way = {START, BEGUN, SYNC}; break;
+    case RunPhase::FINISHING: way = {START, BEGUN, READ}; break;
+    }
+    const std::vector<RunEvent> held = hold == Hold::HELD       ? std::vector{PAUSE}
+                                       : hold == Hold::STOPPED  ? std::vector{PROGRAM_STOP}
+                                       : hold == Hold::STEPPING ? std::vector{PAUSE, STEP}
+                                                                : std::vector<RunEvent>{};
+    way.insert(way.end(), held.begin(), held.end());
+    for (const RunEvent event : way) {
+        EXPECT_TRUE(run.take(event).has_value());
+    }
+    EXPECT_EQ(run.phase(), phase);
+    EXPECT_EQ(run.hold(), hold);
+    return run;
+}
+
+std::vector<RunState> all_states() {
+    std::vector<RunState> states{in(RunPhase::IDLE, Hold::GOING), in(RunPhase::CLEANING, Hold::GOING)};
+    for (const RunPhase phase :
+         {RunPhase::STARTING, RunPhase::READING, RunPhase::SYNCHING, RunPhase::FINISHING}) {
+        for (const Hold hold : all<Hold>()) {
+            states.push_back(in(phase, hold));
+        }
+    }
+    return states;
+}
+
+std::string what(const RunState &run, RunEvent event) {
+    return "phase " + std::to_string(static_cast<int>(run.phase())) + " hold " +
+           std::to_string(static_cast<int>(run.hold())) + " event " + std::to_string(static_cast<int>(event));
+}
+
+TEST(RunState, ARefusedEventChangesNothingAndSaysWhy_C5) {
+    int refused = 0, taken = 0;
+    for (const RunState &state : all_states()) {
+        for (const RunEvent event : all<RunEvent>()) {
+            RunState run = state;
+            const auto outcome = run.take(event);
+            ++(outcome.has_value() ? taken : refused);
+            if (!outcome.has_value()) {
+                EXPECT_EQ(run.phase(), state.phase()) << what(state, event);
+                EXPECT_EQ(run.hold(), state.hold()) << what(state, event);
+                EXPECT_NE(outcome.error().message, "") << what(state, event);
+            }
+        }
+    }
+    EXPECT_EQ(refused + taken, 18 * 14);
+    EXPECT_GT(refused, 50);
+    EXPECT_GT(taken, 50);
+}
+
+TEST(RunState, WhatEachEventDoesInEveryState_D3) {
+    for (const RunState &before : all_states()) {
+        for (const RunEvent event : all<RunEvent>()) {
+            RunState run = before;
+            const bool isTaken = run.take(event).has_value();
+            const bool isRunning = before.isRunning();
+            const std::string where = what(before, event);
+            switch (event) {
+            case START:
+                EXPECT_EQ(isTaken, !isRunning) << where;
+                EXPECT_EQ(run.isHeld(), before.isHeld()) << where;
+                break;
+            case BEGUN: EXPECT_EQ(isTaken, before.phase() == RunPhase::STARTING) << where; break;
+            case SYNC: EXPECT_EQ(isTaken, before.phase() == RunPhase::READING) << where; break;
+            case SYNCED: EXPECT_EQ(isTaken, before.phase() == RunPhase::SYNCHING) << where; break;
+            case READ: EXPECT_EQ(isTaken, before.phase() >= RunPhase::READING) << where; break;
+            case END:
+                EXPECT_TRUE(isTaken && !run.isRunning() && run.hold() == Hold::GOING) << where;
+                EXPECT_EQ(run.phase() == RunPhase::CLEANING, before.phase() == RunPhase::CLEANING) << where;
+                break;
+            case CLEAN: EXPECT_EQ(isTaken, !isRunning) << where; break;
+            case CLEANED:
+                EXPECT_TRUE(isTaken && run.phase() != RunPhase::CLEANING) << where;
+                EXPECT_EQ(run.isRunning(), isRunning) << where;
+                break;
+            case PAUSE:
+                EXPECT_EQ(isTaken, isRunning) << where;
+                EXPECT_EQ(run.isHeld(), isRunning) << where;
+                EXPECT_EQ(run.hold() == Hold::STOPPED, before.hold() == Hold::STOPPED) << where;
+                break;
+            case RESUME:
+                EXPECT_EQ(isTaken, before.isHeld()) << where;
+                EXPECT_FALSE(run.isHeld()) << where;
+                break;
+            case STEP:
+                EXPECT_EQ(isTaken, before.isHeld()) << where;
+                EXPECT_EQ(run.hold() == Hold::STEPPING, isTaken || before.hold() == Hold::STEPPING) << where;
+                break;
+            case STEP_MOVE:
+                EXPECT_EQ(isTaken, before.isHeld()) << where;
+                EXPECT_EQ(run.isHeld(), before.isHeld()) << where;
+                break;
+            case STEP_DONE:
+                EXPECT_EQ(isTaken, before.hold() == Hold::STEPPING) << where;
+                EXPECT_TRUE(!isTaken || run.hold() == Hold::HELD) << where;
+                break;
+            case PROGRAM_STOP:
+                EXPECT_EQ(isTaken, isRunning) << where;
+                EXPECT_TRUE(!isTaken || run.hold() == Hold::STOPPED) << where;
+                break;
+            case COUNT: break;
+            }
+            const bool isAboutHold = event >= PAUSE;
+            EXPECT_TRUE(!isAboutHold || run.phase() == before.phase()) << where;
+        }
+    }
+}
+
+TEST(RunState, RefusalsSayWhatIsMissing_C5) {
+    RunState idle;
+    EXPECT_EQ(idle.take(PAUSE).error().message, "nothing runs that could be paused");
+    EXPECT_EQ(idle.take(RESUME).error().message, "nothing is paused");
+    RunState going = in(RunPhase::READING, Hold::GOING);
+    EXPECT_EQ(going.take(START).error().message, "a program or MDI line runs already");
+    EXPECT_EQ(going.take(STEP).error().message, "single step needs a paused program");
+    EXPECT_EQ(going.take(RESUME).error().message, "nothing is paused");
+}
+
+}  // namespace
+}  // namespace mw::task
