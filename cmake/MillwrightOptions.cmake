@@ -27,8 +27,6 @@ set(CMAKE_INSTALL_RPATH "$ORIGIN/../lib")
 
 add_compile_options(-Wall -Wextra -Wshadow -Werror -ffp-contract=off -fvisibility=hidden)
 add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor>)
-# Values that a conversion may change; signs alone are left to reviews.
-add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-Wconversion> $<$<COMPILE_LANGUAGE:CXX>:-Wno-sign-conversion>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # g++ 12 reports these on inlined library code where nothing is wrong.
   add_compile_options(-Wno-maybe-uninitialized -Wno-restrict -Wno-stringop-overflow -Wno-array-bounds -Wno-dangling-pointer)
