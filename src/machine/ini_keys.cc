@@ -134,9 +134,7 @@ void add_row(std::string &page, const IniKey &key) {
     case IniEffect::EFFECTIVE:
         page += fmt::format("| {} | {} | {} | {} |\n", key.name, kind_text(key), preset_text(key), key.doc);
         break;
-    case IniEffect::ELSEWHERE:
-        page += fmt::format("| {} | | | for others: {} |\n", key.name, key.doc);
-        break;
+    case IniEffect::ELSEWHERE: page += fmt::format("| {} | | | for others: {} |\n", key.name, key.doc); break;
     case IniEffect::NONE:
         page += fmt::format("| {} | | | **no effect**, and said so{}: {} |\n", key.name,
                             key.words.empty()

@@ -71,7 +71,7 @@ TEST_F(ClientTest, EachCommandEndsWithItsOutcomeAndReason_C5) {
     EXPECT_EQ(a.outcome(first).progress, Progress::FAILED) << "an end is final";
 }
 
-TEST_F(ClientTest, ACommandUnderWayIsRememberedHoweverManyComeAfterIt_D8) {
+TEST_F(ClientTest, ACommandUnderWayIsRememberedHoweverManyComeAfterIt_D1) {
     Client a = made(), b = made();
     isKeeping = true;
     const auto run = *a.post(msgs::RunProgram{});

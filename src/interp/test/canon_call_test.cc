@@ -284,7 +284,7 @@ TEST(CanonQueue, DropsTheCallsOfABlockThatFailedAndAnnouncesTheBlockAnew_I1) {
     EXPECT_EQ(out.notes, (std::vector<std::string>{"line 1: M7", "MIST_ON", "line 2: M8", "FLOOD_OFF"}));
 }
 
-TEST(CanonQueue, HoldsCallsBackBehindAPartialFlushAndLetsThemChange_I5) {
+TEST(CanonQueue, HoldsCallsBackBehindAPartialFlushAndLetsThemChange_I1) {
     detail::Names names;
     const detail::Program program("a.ngc", "G1 X1\nG1 X2\nM7\n", names);
     detail::CanonQueue queue;
