@@ -5,13 +5,13 @@
 #include <string>
 #include <string_view>
 
-#include "diag/sink.hh"
 #include "comp/checker.hh"
 #include "comp/emit_c.hh"
 #include "comp/emit_man.hh"
 #include "comp/object_file.hh"
 #include "comp/parser.hh"
 #include "comp/toolchain.hh"
+#include "diag/sink.hh"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
     const std::string_view text(reinterpret_cast<const char *>(data), size);

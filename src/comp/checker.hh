@@ -2,8 +2,8 @@
 // What the grammar lets through but cannot work.
 #pragma once
 
-#include "diag/sink.hh"
 #include "comp/component.hh"
+#include "diag/sink.hh"
 
 namespace mw::halcompile {
 

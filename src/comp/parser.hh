@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "diag/sink.hh"
 #include "comp/component.hh"
+#include "diag/sink.hh"
 
 namespace mw::halcompile {
 

@@ -9,12 +9,12 @@
 #include <fmt/core.h>
 
 #include "base/atomic_file.hh"
-#include "diag/sink.hh"
 #include "comp/checker.hh"
 #include "comp/emit_man.hh"
 #include "comp/parser.hh"
 #include "comp/temporary_folder.hh"
 #include "comp/toolchain.hh"
+#include "diag/sink.hh"
 
 namespace mw::halcompile {
 namespace {

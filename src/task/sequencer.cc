@@ -79,25 +79,24 @@ Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, T
       settings_(settings) {}
 
 Sequencer::Need Sequencer::need_of(const interp::MachineCall &call) {
-    using namespace interp;
     return std::visit(
         Overloaded{
-            [](const OneOf<LineMove, ArcMove, SetSpindleMode, SelectTool, OperatorMessage, PrintLine, OpenLog,
-                           LogLine, CloseLog, LogProbes, CanonError, ProgramComment, PalletShuttle> auto &) {
-                return Need::NOTHING;
-            },
-            [](const OneOf<SetDigitalOutput, SetAnalogOutput> auto &output) {
+            [](const OneOf<interp::LineMove, interp::ArcMove, interp::SetSpindleMode, interp::SelectTool,
+                           interp::OperatorMessage, interp::PrintLine, interp::OpenLog, interp::LogLine,
+                           interp::CloseLog, interp::LogProbes, interp::CanonError, interp::ProgramComment,
+                           interp::PalletShuttle> auto &) { return Need::NOTHING; },
+            [](const OneOf<interp::SetDigitalOutput, interp::SetAnalogOutput> auto &output) {
                 return output.isSynched ? Need::NOTHING : Need::MOTION;
             },
-            [](const OneOf<ProbeMove, TapMove, Dwell, UseToolOffset, UseOffsets, UsePlanner, UseSpindleSpeed,
-                           StartSpindle, StopSpindle, OrientSpindle, WaitOrientComplete, SetToolTableEntry,
-                           ReloadTools, SwitchMist, SwitchFlood, SwitchFeedOverride, SwitchSpeedOverride,
-                           SwitchFeedHold, SwitchAdaptiveFeed, WaitInput, UserCode> auto &) {
-                return Need::MOTION;
-            },
-            [](const OneOf<ChangeTool, ChangeToolNumber, ProgramStop, ProgramEnd, Finish> auto &) {
-                return Need::MOTION_AND_IO;
-            },
+            [](const OneOf<interp::ProbeMove, interp::TapMove, interp::Dwell, interp::UseToolOffset,
+                           interp::UseOffsets, interp::UsePlanner, interp::UseSpindleSpeed,
+                           interp::StartSpindle, interp::StopSpindle, interp::OrientSpindle,
+                           interp::WaitOrientComplete, interp::SetToolTableEntry, interp::ReloadTools,
+                           interp::SwitchMist, interp::SwitchFlood, interp::SwitchFeedOverride,
+                           interp::SwitchSpeedOverride, interp::SwitchFeedHold, interp::SwitchAdaptiveFeed,
+                           interp::WaitInput, interp::UserCode> auto &) { return Need::MOTION; },
+            [](const OneOf<interp::ChangeTool, interp::ChangeToolNumber, interp::ProgramStop,
+                           interp::ProgramEnd, interp::Finish> auto &) { return Need::MOTION_AND_IO; },
         },
         call);
 }
@@ -166,63 +165,74 @@ bool Sequencer::isReady(const Item &item) {
 }
 
 bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
-    using namespace interp;
     const auto set_switch = [this](motion::Switch what, int spindle, bool isOn) {
         motion_.send(motion::SetSwitch{what, spindle, isOn});
     };
     const MoveSource source{item.source, spindles_.isNextCutWaiting()};
     // A handler that answers false is asked again next cycle.
     const auto visitor = Overloaded{
-        [&](const OneOf<LineMove, ArcMove, TapMove> auto &move) {
+        [&](const OneOf<interp::LineMove, interp::ArcMove, interp::TapMove> auto &move) {
             return push_move(path_body(move, source), move.settings, item);
         },
-        [&](const ProbeMove &move) {
+        [&](const interp::ProbeMove &move) {
             isProbeMade_ = push_move(path_body(move, source), move.settings, item);
             return isProbeMade_;
         },
-        [&](const OneOf<SetDigitalOutput, SetAnalogOutput> auto &output) { return push_output(output); },
-        [&](const UsePlanner &planner) { return begin(planner); },
-        [&](const OneOf<Dwell, WaitInput, WaitOrientComplete> auto &wait) { perform(wait, now_ns); },
-        [&](const OneOf<UserCode, UseToolOffset, ChangeTool> auto &call) { perform(call); },
-        [&](const ProgramStop &stop) { isHeld_ = events_.stop(stop, item.source.line); },
-        [&](const OneOf<ProgramEnd, Finish> auto &) {
+        [&](const OneOf<interp::SetDigitalOutput, interp::SetAnalogOutput> auto &output) {
+            return push_output(output);
+        },
+        [&](const interp::UsePlanner &planner) { return begin(planner); },
+        [&](const OneOf<interp::Dwell, interp::WaitInput, interp::WaitOrientComplete> auto &wait) {
+            perform(wait, now_ns);
+        },
+        [&](const OneOf<interp::UserCode, interp::UseToolOffset, interp::ChangeTool> auto &call) {
+            perform(call);
+        },
+        [&](const interp::ProgramStop &stop) { isHeld_ = events_.stop(stop, item.source.line); },
+        [&](const OneOf<interp::ProgramEnd, interp::Finish> auto &) {
             log_.close();
             probe_log_.close();
             events_.end();
         },
-        [&](const OperatorMessage &call) { events_.message(MessageKind::OPERATOR_DISPLAY, call.text); },
-        [&](const CanonError &call) { events_.message(MessageKind::OPERATOR_ERROR, call.text); },
-        [&](const PrintLine &call) { events_.print(call.text); },
-        [&](const OpenLog &call) { check(log_.open(call.path, call.isAppending)); },
-        [&](const LogLine &call) { check(log_.write(call.text)); },
-        [&](const CloseLog &) { log_.close(); },
-        [&](const LogProbes &call) {
+        [&](const interp::OperatorMessage &call) {
+            events_.message(MessageKind::OPERATOR_DISPLAY, call.text);
+        },
+        [&](const interp::CanonError &call) { events_.message(MessageKind::OPERATOR_ERROR, call.text); },
+        [&](const interp::PrintLine &call) { events_.print(call.text); },
+        [&](const interp::OpenLog &call) { check(log_.open(call.path, call.isAppending)); },
+        [&](const interp::LogLine &call) { check(log_.write(call.text)); },
+        [&](const interp::CloseLog &) { log_.close(); },
+        [&](const interp::LogProbes &call) {
             call.path.empty() ? probe_log_.close() : check(probe_log_.open(call.path, false));
         },
-        [&](const UseOffsets &offsets) {
+        [&](const interp::UseOffsets &offsets) {
             spindles_.use(offsets, motion_);
             events_.offsets(offsets);
         },
-        [&](const ReloadTools &) { check(tools_.reload()); },
-        [&](const SelectTool &call) { check(tool_change_.select(call, tools_, io_)); },
-        [&](const ChangeToolNumber &call) { check(tool_change_.set_number(call, tools_, io_)); },
-        [&](const SetToolTableEntry &call) { check(tools_.set_entry(call.index, call.entry)); },
-        [&](const SetSpindleMode &call) { spindles_.set_mode(call); },
-        [&](const UseSpindleSpeed &call) { spindles_.set_speed(call, motion_); },
-        [&](const StartSpindle &call) { spindles_.start(call, motion_); },
-        [&](const StopSpindle &call) { spindles_.stop(call, motion_); },
-        [&](const OrientSpindle &call) {
+        [&](const interp::ReloadTools &) { check(tools_.reload()); },
+        [&](const interp::SelectTool &call) { check(tool_change_.select(call, tools_, io_)); },
+        [&](const interp::ChangeToolNumber &call) { check(tool_change_.set_number(call, tools_, io_)); },
+        [&](const interp::SetToolTableEntry &call) { check(tools_.set_entry(call.index, call.entry)); },
+        [&](const interp::SetSpindleMode &call) { spindles_.set_mode(call); },
+        [&](const interp::UseSpindleSpeed &call) { spindles_.set_speed(call, motion_); },
+        [&](const interp::StartSpindle &call) { spindles_.start(call, motion_); },
+        [&](const interp::StopSpindle &call) { spindles_.stop(call, motion_); },
+        [&](const interp::OrientSpindle &call) {
             orient_command_ = motion_.send(motion::SpindleOrient{call.spindle, call.angle_deg, call.mode});
         },
-        [&](const SwitchMist &call) { io_.set_mist(call.isOn); },
-        [&](const SwitchFlood &call) { io_.set_flood(call.isOn); },
-        [&](const SwitchFeedOverride &call) { set_switch(motion::Switch::FEED_OVERRIDE, 0, call.isOn); },
-        [&](const SwitchSpeedOverride &call) {
+        [&](const interp::SwitchMist &call) { io_.set_mist(call.isOn); },
+        [&](const interp::SwitchFlood &call) { io_.set_flood(call.isOn); },
+        [&](const interp::SwitchFeedOverride &call) {
+            set_switch(motion::Switch::FEED_OVERRIDE, 0, call.isOn);
+        },
+        [&](const interp::SwitchSpeedOverride &call) {
             set_switch(motion::Switch::SPINDLE_OVERRIDE, call.spindle, call.isOn);
         },
-        [&](const SwitchFeedHold &call) { set_switch(motion::Switch::FEED_HOLD, 0, call.isOn); },
-        [&](const SwitchAdaptiveFeed &call) { set_switch(motion::Switch::ADAPTIVE_FEED, 0, call.isOn); },
-        [](const OneOf<ProgramComment, PalletShuttle> auto &) {},
+        [&](const interp::SwitchFeedHold &call) { set_switch(motion::Switch::FEED_HOLD, 0, call.isOn); },
+        [&](const interp::SwitchAdaptiveFeed &call) {
+            set_switch(motion::Switch::ADAPTIVE_FEED, 0, call.isOn);
+        },
+        [](const OneOf<interp::ProgramComment, interp::PalletShuttle> auto &) {},
     };
     return std::visit(
         [&](const AlternativeOf<MachineCall> auto &call) {

@@ -12,18 +12,22 @@ constexpr int CLEAN_UP_BLOCKS = 10000;
 
 /// What must not happen after an abort: anything that moves, starts or waits for a person.
 bool isForbidden(const interp::MachineCall &call) {
-    using namespace interp;
     return std::visit(
         Overloaded{
-            [](const OneOf<LineMove, ArcMove, ProbeMove, TapMove, StartSpindle, OrientSpindle, SelectTool,
-                           ChangeTool, WaitInput, ProgramStop, ProgramEnd, Finish> auto &) { return true; },
-            [](const OneOf<SwitchMist, SwitchFlood> auto &coolant) { return coolant.isOn; },
-            [](const OneOf<Dwell, UseToolOffset, UseOffsets, UsePlanner, SetSpindleMode, UseSpindleSpeed,
-                           StopSpindle, WaitOrientComplete, ChangeToolNumber, SetToolTableEntry, ReloadTools,
-                           SwitchFeedOverride, SwitchSpeedOverride, SwitchFeedHold, SwitchAdaptiveFeed,
-                           SetDigitalOutput, SetAnalogOutput, PalletShuttle, UserCode, ProgramComment,
-                           OperatorMessage, PrintLine, OpenLog, LogLine, CloseLog, LogProbes, CanonError> auto
-                   &) { return false; },
+            [](const OneOf<interp::LineMove, interp::ArcMove, interp::ProbeMove, interp::TapMove,
+                           interp::StartSpindle, interp::OrientSpindle, interp::SelectTool,
+                           interp::ChangeTool, interp::WaitInput, interp::ProgramStop, interp::ProgramEnd,
+                           interp::Finish> auto &) { return true; },
+            [](const OneOf<interp::SwitchMist, interp::SwitchFlood> auto &coolant) { return coolant.isOn; },
+            [](const OneOf<interp::Dwell, interp::UseToolOffset, interp::UseOffsets, interp::UsePlanner,
+                           interp::SetSpindleMode, interp::UseSpindleSpeed, interp::StopSpindle,
+                           interp::WaitOrientComplete, interp::ChangeToolNumber, interp::SetToolTableEntry,
+                           interp::ReloadTools, interp::SwitchFeedOverride, interp::SwitchSpeedOverride,
+                           interp::SwitchFeedHold, interp::SwitchAdaptiveFeed, interp::SetDigitalOutput,
+                           interp::SetAnalogOutput, interp::PalletShuttle, interp::UserCode,
+                           interp::ProgramComment, interp::OperatorMessage, interp::PrintLine,
+                           interp::OpenLog, interp::LogLine, interp::CloseLog, interp::LogProbes,
+                           interp::CanonError> auto &) { return false; },
         },
         call);
 }

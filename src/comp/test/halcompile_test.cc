@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <gtest/gtest.h>
 
-#include "diag/sink.hh"
 #include "comp/checker.hh"
 #include "comp/code.hh"
 #include "comp/emit_c.hh"
@@ -10,6 +9,7 @@
 #include "comp/parser.hh"
 #include "comp/program.hh"
 #include "comp/toolchain.hh"
+#include "diag/sink.hh"
 
 namespace mw::halcompile {
 namespace {
