@@ -235,7 +235,7 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
         [](const OneOf<interp::ProgramComment, interp::PalletShuttle> auto &) {},
     };
     return std::visit(
-        [&](const AlternativeOf<MachineCall> auto &call) {
+        [&](const AlternativeOf<interp::MachineCall> auto &call) {
             if constexpr (std::is_same_v<decltype(visitor(call)), bool>) {
                 return visitor(call);
             } else {

@@ -25,23 +25,26 @@ void TaskCanon::begin_block(const interp::BlockRef &block) {
 }
 
 void TaskCanon::take(const interp::MachineCall &call) {
-    using namespace interp;
     std::visit(
         Overloaded{
-            [this](const OneOf<LineMove, ArcMove, ProbeMove> auto &move) {
+            [this](const OneOf<interp::LineMove, interp::ArcMove, interp::ProbeMove> auto &move) {
                 last_end_ = move.end;
                 add(move);
             },
-            [this](const ChangeTool &) { change_tool(); },
+            [this](const interp::ChangeTool &) { change_tool(); },
             // Comments are for canons that print; this machine has no shuttle to move.
-            [](const OneOf<ProgramComment, PalletShuttle> auto &) {},
-            [this](const OneOf<TapMove, Dwell, UseToolOffset, UseOffsets, UsePlanner, SetSpindleMode,
-                               UseSpindleSpeed, StartSpindle, StopSpindle, OrientSpindle, WaitOrientComplete,
-                               SelectTool, ChangeToolNumber, SetToolTableEntry, ReloadTools, SwitchMist,
-                               SwitchFlood, SwitchFeedOverride, SwitchSpeedOverride, SwitchFeedHold,
-                               SwitchAdaptiveFeed, SetDigitalOutput, SetAnalogOutput, WaitInput, ProgramStop,
-                               ProgramEnd, Finish, UserCode, OperatorMessage, PrintLine, OpenLog, LogLine,
-                               CloseLog, LogProbes, CanonError> auto &one) { add(one); },
+            [](const OneOf<interp::ProgramComment, interp::PalletShuttle> auto &) {},
+            [this](const OneOf<interp::TapMove, interp::Dwell, interp::UseToolOffset, interp::UseOffsets,
+                               interp::UsePlanner, interp::SetSpindleMode, interp::UseSpindleSpeed,
+                               interp::StartSpindle, interp::StopSpindle, interp::OrientSpindle,
+                               interp::WaitOrientComplete, interp::SelectTool, interp::ChangeToolNumber,
+                               interp::SetToolTableEntry, interp::ReloadTools, interp::SwitchMist,
+                               interp::SwitchFlood, interp::SwitchFeedOverride, interp::SwitchSpeedOverride,
+                               interp::SwitchFeedHold, interp::SwitchAdaptiveFeed, interp::SetDigitalOutput,
+                               interp::SetAnalogOutput, interp::WaitInput, interp::ProgramStop,
+                               interp::ProgramEnd, interp::Finish, interp::UserCode, interp::OperatorMessage,
+                               interp::PrintLine, interp::OpenLog, interp::LogLine, interp::CloseLog,
+                               interp::LogProbes, interp::CanonError> auto &one) { add(one); },
         },
         call);
 }
