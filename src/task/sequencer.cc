@@ -71,6 +71,21 @@ motion::PathBody path_body(const interp::TapMove &tap, const MoveSource &source)
     return motion::RigidTap{tap.end, tap.scale, terms_of(tap.settings, motion::MotionType::FEED, source)};
 }
 
+/// Whether the visitor is done with the call; one that answers nothing always is.
+template <class Visitor>
+bool carry_out(const Visitor &visitor, const interp::MachineCall &item) {
+    return std::visit(
+        [&](const AlternativeOf<interp::MachineCall> auto &call) {
+            if constexpr (std::is_same_v<decltype(visitor(call)), bool>) {
+                return visitor(call);
+            } else {
+                visitor(call);
+                return true;
+            }
+        },
+        item);
+}
+
 }  // namespace
 
 Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, ToolStore &tools,
@@ -234,16 +249,7 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
         },
         [](const OneOf<interp::ProgramComment, interp::PalletShuttle> auto &) {},
     };
-    return std::visit(
-        [&](const AlternativeOf<interp::MachineCall> auto &call) {
-            if constexpr (std::is_same_v<decltype(visitor(call)), bool>) {
-                return visitor(call);
-            } else {
-                visitor(call);
-                return true;
-            }
-        },
-        item.call);
+    return carry_out(visitor, item.call);
 }
 
 bool Sequencer::push_move(const motion::PathBody &move, const interp::MoveSettings &settings,
