@@ -106,19 +106,19 @@ TEST(Loader, TwoInstancesInOneProcessShareNoStatics) {
 TEST(Loader, SdkComponentHasItsPinsParametersAndFunctions) {
     TestMachine machine;
     ASSERT_EQ(machine.load("threads2"), "ok");
-    EXPECT_NE(machine.load("sdk_sum", {"count=5"}).find("1 to 4 instances"), std::string::npos);
+    EXPECT_NE(machine.load("sdk_sum", {"count=5"}).find("1 to 4 are possible"), std::string::npos);
     EXPECT_NE(machine.load("sdk_sum", {"count=1", "names=a"}).find("not both"), std::string::npos);
     ASSERT_EQ(machine.load("sdk_sum", {"count=2"}), "ok");
-    ASSERT_TRUE(machine.hal().add_function("sdk_sum.1", "fast"));
-    ASSERT_TRUE(machine.hal().set("sdk_sum.1.in0", "1.5"));
-    ASSERT_TRUE(machine.hal().set("sdk_sum.1.in1", "2"));
-    ASSERT_TRUE(machine.hal().set("sdk_sum.1.gain", "2"));
-    EXPECT_EQ(machine.value("sdk_sum.1.clear"), Value::of_bit(true));
-    ASSERT_TRUE(machine.hal().net("total", {"sdk_sum.1.out", "sdk_sum.0.in0"}));
+    ASSERT_TRUE(machine.hal().add_function("sdk-sum.1", "fast"));
+    ASSERT_TRUE(machine.hal().set("sdk-sum.1.in0", "1.5"));
+    ASSERT_TRUE(machine.hal().set("sdk-sum.1.in1", "2"));
+    ASSERT_TRUE(machine.hal().set("sdk-sum.1.gain", "2"));
+    EXPECT_EQ(machine.value("sdk-sum.1.clear"), Value::of_bit(true));
+    ASSERT_TRUE(machine.hal().net("total", {"sdk-sum.1.out", "sdk-sum.0.in0"}));
     ASSERT_TRUE(machine.hal().start_threads());
     machine.clock.step();
-    EXPECT_EQ(machine.value("sdk_sum.0.in0"), Value::of_float(7));
-    EXPECT_EQ(machine.value("sdk_sum.1.runs"), Value::of_s32(1));
+    EXPECT_EQ(machine.value("sdk-sum.0.in0"), Value::of_float(7));
+    EXPECT_EQ(machine.value("sdk-sum.1.runs"), Value::of_s32(1));
 }
 
 TEST(Loader, OverlongNamesAreErrorsNeverCut_B1) {

@@ -27,13 +27,13 @@ TEST(RealtimeCode, ThreadsRunWithoutTheHeap) {
     ASSERT_TRUE(hal.add_init_function("counter.0.update", "fast"));
     ASSERT_TRUE(hal.add_function("counter.1.update", "slow"));
     for (int i = 0; i < 4; ++i) {
-        ASSERT_TRUE(hal.add_function("sdk_sum." + std::to_string(i), "fast"));
+        ASSERT_TRUE(hal.add_function("sdk-sum." + std::to_string(i), "fast"));
     }
     ASSERT_TRUE(hal.start_threads());
     mw::testing::AllocationGuard guard;
     machine.clock.run_until(1'000'000'000);
     EXPECT_EQ(guard.calls(), 0U);
-    EXPECT_EQ(machine.value("sdk_sum.3.runs"), Value::of_s32(1000));
+    EXPECT_EQ(machine.value("sdk-sum.3.runs"), Value::of_s32(1000));
 }
 
 /// Calls what a realtime function may call.
