@@ -123,11 +123,21 @@ void Desk::accept(int index, const Posted &posted, std::vector<Delivery> &out) {
                        posted.serial <= segment_.serials.load(std::memory_order_relaxed) &&
                        !going_.contains(posted.serial);
     const int place = free_outcome(index);
+    const std::size_t size = std::min<std::size_t>(posted.size, posted.bytes.size());
+    auto command = msgs::decode_command({posted.bytes.data(), size});
+    const bool isPanel = slot.role.load(std::memory_order_relaxed) == static_cast<std::uint8_t>(Role::PANEL);
+    const ClientId client = slot.client.load(std::memory_order_relaxed);
+    if (isNew && place < 0 && command.has_value() && isStop(*command)) {
+        // A stop is never dropped: it is carried out though nothing tells its outcome.
+        slot.taken.store(posted.serial, std::memory_order_release);
+        out.push_back({posted.serial, client, std::move(*command), isPanel});
+        return;
+    }
     if (!isNew || place < 0) {
         // A number that the mailbox has not given out, or MAX_OUTCOMES commands under way: nothing can be
         // answered.
         post(msgs::MessageKind::OPERATOR_ERROR,
-             "client " + std::to_string(slot.client.load()) +
+             "client " + std::to_string(client) +
                  (isNew ? " has too many commands under way: one was dropped"
                         : " sent a command with a wrong number"));
         slot.taken.store(std::max(posted.serial, slot.taken.load()), std::memory_order_release);
@@ -138,14 +148,11 @@ void Desk::accept(int index, const Posted &posted, std::vector<Delivery> &out) {
     write(going_[posted.serial]);
     // Release: who sees it as taken finds its outcome.
     slot.taken.store(posted.serial, std::memory_order_release);
-    const std::size_t size = std::min<std::size_t>(posted.size, posted.bytes.size());
-    auto command = msgs::decode_command({posted.bytes.data(), size});
     if (!command.has_value()) {
         tell(posted.serial, Progress::REFUSED, command.error().str());
         return;
     }
-    const bool isPanel = slot.role.load(std::memory_order_relaxed) == static_cast<std::uint8_t>(Role::PANEL);
-    out.push_back({posted.serial, slot.client.load(std::memory_order_relaxed), std::move(*command), isPanel});
+    out.push_back({posted.serial, client, std::move(*command), isPanel});
 }
 
 bool Desk::isConnected(ClientId client) const {

@@ -2,9 +2,10 @@
 #include "mailbox/right_to_operate.hh"
 
 #include <algorithm>
-#include <concepts>
 
 #include <fmt/format.h>
+
+#include "base/overloaded.hh"
 
 namespace mw::mailbox {
 namespace {
@@ -12,9 +13,6 @@ namespace {
 using namespace msgs;
 
 constexpr double NS_PER_S = 1e9;
-
-template <class T, class... Listed>
-concept OneOf = (std::same_as<T, Listed> || ...);
 
 }  // namespace
 

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // One handler for each of the operator's commands: done, started, or refused with the reason (C5).
 #include <cmath>
-#include <concepts>
 
+#include "base/overloaded.hh"
 #include "task/task.hh"
 
 namespace mw::task {
 namespace {
 
 constexpr std::int64_t STATE_TIMEOUT_NS = 2000000000;
-
-template <class T, class... Listed>
-concept OneOf = (std::same_as<T, Listed> || ...);
 
 /// What an operator asks in G-code.
 template <class T>

@@ -91,6 +91,21 @@ TEST_F(ClientTest, ACommandUnderWayIsRememberedHoweverManyComeAfterIt_D1) {
     EXPECT_NE(a.outcome(early).reason.find("no longer remembered"), std::string::npos);
 }
 
+TEST_F(ClientTest, AStopIsTakenHoweverManyCommandsAreUnderWay_D1) {
+    Client a = made();
+    isKeeping = true;
+    for (int i = 0; i < mailbox::MAX_OUTCOMES; ++i) {
+        ASSERT_TRUE(a.post(msgs::Null{}).has_value());
+        ASSERT_EQ(cycle().size(), 1U);
+    }
+    ASSERT_TRUE(a.post(msgs::Null{}).has_value());
+    EXPECT_TRUE(cycle().empty()) << "nothing could tell its outcome";
+    ASSERT_TRUE(a.post(msgs::AbortAll{}).has_value());
+    const auto taken = cycle();
+    ASSERT_EQ(taken.size(), 1U);
+    EXPECT_TRUE(std::holds_alternative<msgs::AbortAll>(taken[0].command));
+}
+
 TEST_F(ClientTest, WhatIsOutOfRangeOrTooMuchIsRefusedWhereItIsPosted) {
     Client a = made();
     EXPECT_EQ(a.post(msgs::JogStop{true, 99}).error().message, "JogStop: index is 99, allowed is 0 to 15");
