@@ -13,7 +13,7 @@
 
 #include "base/result.hh"
 #include "diag/sink.hh"
-#include "interp/canon.hh"
+#include "interp/canon/canon.hh"
 #include "interp/program_interpreter.hh"
 #include "interp/world.hh"
 

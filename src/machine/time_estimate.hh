@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "interp/machine_canon.hh"
+#include "interp/canon/machine_canon.hh"
 #include "machine/machine_config.hh"
 #include "traj/estimator.hh"
 

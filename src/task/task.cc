@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "interp/plugin.hh"
-#include "interp/user_codes.hh"
+#include "interp/scripts/user_codes.hh"
 #include "motion/api/texts.hh"
 #include "task/motion_status.hh"
 

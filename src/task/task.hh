@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
+#include "interp/canon/machine_frame.hh"
 #include "interp/interpreter.hh"
-#include "interp/machine_frame.hh"
 #include "io/controller.hh"
 #include "mailbox/desk.hh"
 #include "task/command.hh"

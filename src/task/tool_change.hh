@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/result.hh"
-#include "interp/machine_canon.hh"
+#include "interp/canon/machine_canon.hh"
 #include "io/controller.hh"
 #include "task/tool_store.hh"
 

@@ -10,12 +10,12 @@
 
 #include <gtest/gtest.h>
 
-#include "interp/call_text.hh"
-#include "interp/detail/canon_queue.hh"
-#include "interp/detail/names.hh"
-#include "interp/detail/program.hh"
-#include "interp/machine_frame.hh"
-#include "interp/print_canon.hh"
+#include "interp/ast/names.hh"
+#include "interp/ast/program.hh"
+#include "interp/canon/call_text.hh"
+#include "interp/canon/canon_queue.hh"
+#include "interp/canon/machine_frame.hh"
+#include "interp/canon/print_canon.hh"
 
 namespace mw::interp {
 namespace {

@@ -11,9 +11,9 @@
 #include <gtest/gtest.h>
 
 #include "code_cases.hh"
-#include "interp/detail/codes.hh"
+#include "interp/canon/print_canon.hh"
+#include "interp/codes/codes.hh"
 #include "interp/interpreter.hh"
-#include "interp/print_canon.hh"
 #include "interp/standalone.hh"
 
 namespace mw::interp {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "interp/canon/machine_frame.hh"
 #include "interp/interpreter.hh"
-#include "interp/machine_frame.hh"
 #include "interp/test/recorder.hh"
 
 namespace mw::interp {

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "interp/canon/machine_frame.hh"
 #include "interp/interpreter.hh"
-#include "interp/machine_frame.hh"
 #include "mill.hh"
 #include "testing/stock/lathe_stock.hh"
 
