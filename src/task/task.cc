@@ -25,7 +25,7 @@ Task::Task(const Parts &parts, Settings settings)
       frame_(canon_, settings_.machine_units),
       interp_(std::make_unique<interp::Interpreter>(frame_, *this, parts.tools, parts.parameters,
                                                     settings_.interpreter)),
-      user_program_(settings_.isClockHeldByUserPrograms),
+      user_program_(settings_.isUserProgramWaitedFor),
       sequencer_(queue_, motion_, io_, parts.tools, make_events(), settings_.sequencer),
       planner_mode_({[this](const motion::SetParameter &p) { return motion_.send(p); },
                      [this](MessageKind kind, const std::string &text) { post(kind, text); }}) {}
