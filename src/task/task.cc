@@ -144,7 +144,8 @@ void Task::step(std::int64_t now_ns) {
             finish_run(Progress::DONE, {});
         }
     }
-    planner_mode_.step(!isRunning() && sequencer_.isIdle());
+    // What waits in the queue without a run are settings for displays; they do not move anything.
+    planner_mode_.step(!isRunning() && motion_.isPathComplete());
     parts_.io_port.write(io_.outputs);
     update_status();
 }
