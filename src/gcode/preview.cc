@@ -126,8 +126,8 @@ class Preview::Impl final : public MachineCanon, public World {
                 [this](const OneOf<ArcMove, TapMove, ChangeTool, ChangeToolNumber, ProgramComment,
                                    CanonError> auto &one) { show(one); },
                 [this](const LineMove &move) {
-                    add_move(move.settings.kind == FeedKind::RAPID ? PreviewKind::RAPID : PreviewKind::FEED,
-                             move.end, move.settings);
+                    add_move(move.settings.isRapid ? PreviewKind::RAPID : PreviewKind::FEED, move.end,
+                             move.settings);
                 },
                 [this](const ProbeMove &move) {
                     add_move(PreviewKind::PROBE, move.end, move.settings);
@@ -194,7 +194,7 @@ class Preview::Impl final : public MachineCanon, public World {
         show(ChangeToolNumber{selected_ >= 0 ? std::exchange(selected_, -1) : tool_});
         if (machine_.tool_change_moves) {
             MoveSettings rapid;
-            rapid.kind = FeedKind::RAPID;
+            rapid.isRapid = true;
             for (const Pose &end : machine_.tool_change_moves(position_)) {
                 place_.isByMachine = true;
                 add_move(PreviewKind::RAPID, end, rapid);

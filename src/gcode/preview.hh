@@ -34,7 +34,7 @@ struct PreviewEvent {
     geom::Pose start, end;      ///< the same for what is no move
     geom::Pose centre, normal;  ///< of an arc, as in ArcMove
     double angle_rad = 0;
-    interp::MoveSettings settings;  ///< of a move [machine units]
+    geom::MoveSettings settings;  ///< of a move [machine units]
     /// Of the spindle that a move follows, half-way, as programmed (G96 counted). [rev/min]
     double spindle_rpm = 0;
     double value = 0;
@@ -96,7 +96,7 @@ class Preview {
         std::function<void(const SourcePlace &, std::string_view what)> unknown{};
     };
 
-    /// The references must outlive it.
+    /// LinuxCNCs must outlive it.
     Preview(PreviewMachine machine, interp::ToolSource &tools, interp::ParameterSource &parameters,
             PreviewOptions options, Listener listener);
     ~Preview();

@@ -124,7 +124,7 @@ Result<> Run::prepare() {
     // The standalone program has always taken the entry of index 1 for the tool that may be in the spindle.
     world_.state.current_pocket = 1;
     settings_.initial_units = LengthUnits::MM;
-    settings_.isTapOrderOfField = true;
+    settings_.isTapOrderOfRs274 = true;
     settings_.startup_code.clear();
     settings_.subroutine_path.emplace_back(".");
     if (!options_.output.empty()) {

@@ -85,7 +85,7 @@ class Checker {
         piece.end = event.end;
         switch (event.kind) {
         case Kind::RAPID:
-            piece.isRapid = event.settings.kind == interp::FeedKind::RAPID;
+            piece.isRapid = event.settings.isRapid;
             take_piece(piece);
             break;
         case Kind::FEED:
@@ -109,8 +109,8 @@ class Checker {
         }
     }
     /// Moves that follow the spindle are timed at its programmed speed.
-    static interp::MoveSettings timed(const gcode::PreviewEvent &event) {
-        interp::MoveSettings out = event.settings;
+    static geom::MoveSettings timed(const gcode::PreviewEvent &event) {
+        geom::MoveSettings out = event.settings;
         if (out.feed_per_revolution > 0 && event.spindle_rpm > 0) {
             out.feed = out.feed_per_revolution * event.spindle_rpm / 60.0;
         }

@@ -25,7 +25,7 @@ Task::Task(const Parts &parts, Settings settings)
       frame_(canon_, settings_.machine_units),
       interp_(std::make_unique<interp::Interpreter>(frame_, *this, parts.tools, parts.parameters,
                                                     settings_.interpreter)),
-      user_program_(settings_.isClockHeldByUserPrograms),
+      user_program_(settings_.isUserProgramWaitedFor),
       sequencer_(queue_, motion_, io_, parts.tools, make_events(), settings_.sequencer),
       planner_mode_({[this](const motion::SetParameter &p) { return motion_.send(p); },
                      [this](MessageKind kind, const std::string &text) { post(kind, text); }}) {}
@@ -144,7 +144,8 @@ void Task::step(std::int64_t now_ns) {
             finish_run(Progress::DONE, {});
         }
     }
-    planner_mode_.step(!isRunning() && sequencer_.isIdle());
+    // What waits in the queue without a run are settings for displays; they do not move anything.
+    planner_mode_.step(!isRunning() && motion_.isPathComplete());
     parts_.io_port.write(io_.outputs);
     update_status();
 }

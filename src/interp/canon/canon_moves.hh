@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "geom/move_settings.hh"
 #include "geom/pose.hh"
 
 namespace mw::interp {
@@ -15,7 +16,6 @@ using geom::Pose;
 
 enum class LengthUnits { INCH, MM };
 enum class Plane { XY, YZ, XZ, UV, VW, UW };
-enum class MotionControl { EXACT_STOP, EXACT_PATH, CONTINUOUS };
 enum class FeedMode { UNITS_PER_MINUTE = 0, INVERSE_TIME = 1, UNITS_PER_REVOLUTION = 2 };
 enum class FeedReference { XYZ };
 enum class ProbeKind { TOWARD_ERROR, TOWARD, AWAY_ERROR, AWAY };               // G38.2 G38.3 G38.4 G38.5
@@ -33,7 +33,7 @@ inline constexpr std::array<std::string_view, 6> CALL_WORDS<Plane>{
     "CANON_PLANE_XY",      "CANON_PLANE_YZ",      "CANON_PLANE_XZ",
     "CANON_PLANE_UNKNOWN", "CANON_PLANE_UNKNOWN", "CANON_PLANE_UNKNOWN"};
 template <>
-inline constexpr std::array<std::string_view, 3> CALL_WORDS<MotionControl>{
+inline constexpr std::array<std::string_view, 3> CALL_WORDS<geom::PathMode>{
     "CANON_EXACT_STOP", "CANON_EXACT_PATH", "CANON_CONTINUOUS"};
 template <>
 inline constexpr std::array<std::string_view, 1> CALL_WORDS<FeedReference>{"CANON_XYZ"};
@@ -120,7 +120,7 @@ struct SetFeedMode {
 
 /// G61, G61.1, G64 P: how moves join from here on.
 struct SetMotionControlMode {
-    MotionControl mode = MotionControl::CONTINUOUS;
+    geom::PathMode mode = geom::PathMode::BLEND;
     double tolerance = 0;  ///< G64 P [program units]; 0 when not given
 
     static constexpr std::string_view NAME = "SET_MOTION_CONTROL_MODE";

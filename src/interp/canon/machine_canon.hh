@@ -4,28 +4,13 @@
 
 #include <variant>
 
+#include "geom/move_settings.hh"
 #include "geom/pose.hh"
 #include "interp/canon/canon.hh"
 
 namespace mw::interp {
 
-enum class FeedKind { RAPID, FEED, RIGID_TAP };
-
-/// Settings in force for a move. Speeds are along the programmed feed length (XYZ if it moves, else UVW, else
-/// ABC).
-struct MoveSettings {
-    FeedKind kind = FeedKind::FEED;
-    /// [machine units/s, or degrees/s for moves of ABC alone]; 0 for rapids (as fast as the limits allow).
-    /// Inverse time (G93) is already turned into the speed of this move.
-    double feed = 0;
-    MotionControl control = MotionControl::CONTINUOUS;
-    double tolerance = 0;  ///< G64 P [machine units; the same figure in degrees for ABC]; 0: no bound
-    double naivecam_tolerance = 0;   ///< [machine units]
-    double corner_scale = 0;         ///< G64 R: part of the reachable corner speed; 0: as the machine is set
-    double feed_per_revolution = 0;  ///< > 0: position- or velocity-synched to `synch_spindle`
-    int synch_spindle = 0;
-    bool isVelocitySynched = false;
-};
+using geom::MoveSettings;
 
 struct LineMove {
     Pose end;  ///< machine coordinates

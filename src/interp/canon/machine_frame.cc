@@ -157,19 +157,21 @@ void MachineFrame::convert(const SetPlannerMode &call) {
     target_.take(UsePlanner{call.type != 0});
 }
 
-/// `isLinear` is false for moves of A, B and C alone, whose feed is in degrees.
-MoveSettings MachineFrame::settings(FeedKind kind, bool isLinear) const {
+MoveSettings MachineFrame::rapid_settings() const {
     MoveSettings out;
-    out.kind = kind;
-    out.control = control_;
+    out.isRapid = true;
+    out.mode = control_;
     out.tolerance = tolerance_;
     out.naivecam_tolerance = naivecam_;
     out.corner_scale = corner_scale_;
-    if (kind == FeedKind::RAPID) {
-        return out;
-    }
+    return out;
+}
+
+MoveSettings MachineFrame::feed_settings(bool isLinear) const {
+    MoveSettings out = rapid_settings();
+    out.isRapid = false;
     out.feed_per_revolution = synch_feed_;
-    out.synch_spindle = synch_spindle_;
+    out.synch_spindle = static_cast<std::int8_t>(synch_spindle_);
     out.isVelocitySynched = isVelocitySynched_;
     constexpr double SECONDS_PER_MINUTE = 60.0;
     if (feed_mode_ == FeedMode::UNITS_PER_REVOLUTION && synch_feed_ == 0.0) {
@@ -186,14 +188,14 @@ MoveSettings MachineFrame::settings(FeedKind kind, bool isLinear) const {
 
 void MachineFrame::convert(const StraightTraverse &call) {
     const Pose to = to_machine(call.end);
-    target_.take(LineMove{to, settings(FeedKind::RAPID, true)});
+    target_.take(LineMove{to, rapid_settings()});
     position_ = to;
 }
 
 void MachineFrame::feed_to(const Pose &end) {
     const Pose to = to_machine(end);
     const FeedLength way = feed_length(position_, to);
-    target_.take(LineMove{to, settings(FeedKind::FEED, way.isLinear)});
+    target_.take(LineMove{to, feed_settings(way.isLinear)});
     position_ = to;
 }
 
@@ -231,7 +233,7 @@ void MachineFrame::convert(const ArcFeed &arc) {
     ArcMove move;
     move.end = to_machine(arc.end);
     turn(move, arc);
-    move.settings = settings(FeedKind::FEED, true);
+    move.settings = feed_settings(true);
     target_.take(move);
     position_ = move.end;
 }
@@ -258,7 +260,7 @@ void MachineFrame::convert(const NurbsFeed &nurbs) {
 void MachineFrame::convert(const StraightProbe &call) {
     const Pose to = to_machine(call.end);
     const FeedLength way = feed_length(position_, to);
-    target_.take(ProbeMove{to, settings(FeedKind::FEED, way.isLinear), call.kind});
+    target_.take(ProbeMove{to, feed_settings(way.isLinear), call.kind});
     position_ = to;
 }
 
@@ -269,7 +271,7 @@ void MachineFrame::convert(const RigidTap &call) {
     end[geom::AXIS_Z] = call.z;
     const Pose to = to_machine(end);
     const FeedLength way = feed_length(position_, to);
-    target_.take(TapMove{to, settings(FeedKind::RIGID_TAP, way.isLinear), call.scale});
+    target_.take(TapMove{to, feed_settings(way.isLinear), call.scale});
     // The tool comes back to where it began: the position stays.
 }
 

@@ -53,7 +53,9 @@ class MachineFrame final : public Canon {
     double length_factor() const;  ///< program units to machine units
     Pose to_machine_units(const Pose &program) const;
     void announce_offsets();
-    MoveSettings settings(FeedKind kind, bool isLinear) const;
+    /// Of a feed move; `isLinear` is false for moves of A, B and C alone, whose feed is in degrees.
+    MoveSettings feed_settings(bool isLinear) const;
+    MoveSettings rapid_settings() const;
     void turn(ArcMove &move, const ArcFeed &arc) const;
 
     MachineCanon &target_;
@@ -66,7 +68,7 @@ class MachineFrame final : public Canon {
     double rotation_deg_ = 0;
     double feed_ = 0;  ///< as programmed
     FeedMode feed_mode_ = FeedMode::UNITS_PER_MINUTE;
-    MotionControl control_ = MotionControl::CONTINUOUS;
+    geom::PathMode control_ = geom::PathMode::BLEND;
     double tolerance_ = 0, naivecam_ = 0;  ///< machine units
     double corner_scale_ = 0;
     double synch_feed_ = 0;  ///< machine units per revolution; 0 off

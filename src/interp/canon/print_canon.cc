@@ -104,10 +104,9 @@ void PrintCanon::write(const SetFeedMode &call) {
 }
 
 void PrintCanon::write(const SetMotionControlMode &call) {
-    const std::string_view mode = CALL_WORDS<MotionControl>[static_cast<std::size_t>(call.mode)];
-    put(call.mode == MotionControl::CONTINUOUS
-            ? fmt::format("{}({}, {:.6f})", call.NAME, mode, call.tolerance)
-            : fmt::format("{}({})", call.NAME, mode));
+    const std::string_view mode = CALL_WORDS<geom::PathMode>[static_cast<std::size_t>(call.mode)];
+    put(call.mode == geom::PathMode::BLEND ? fmt::format("{}({}, {:.6f})", call.NAME, mode, call.tolerance)
+                                           : fmt::format("{}({})", call.NAME, mode));
 }
 
 void PrintCanon::write(const SetPlannerMode &call) {

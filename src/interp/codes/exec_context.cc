@@ -91,14 +91,14 @@ bool Executor::restore_geometry(const State &saved) {
         isDone = isDone && run_code('g', coordinate_code(saved.g5x_index), none);
     }
     BlockValues control;
-    if (saved.control == MotionControl::CONTINUOUS) {
+    if (saved.control == geom::PathMode::BLEND) {
         control.present = letters("pq");
         control.value[letter('p')] = saved.tolerance;
         control.value[letter('q')] = saved.naivecam;
     }
-    const int control_code = saved.control == MotionControl::CONTINUOUS   ? 640
-                             : saved.control == MotionControl::EXACT_PATH ? 610
-                                                                          : 611;
+    const int control_code = saved.control == geom::PathMode::BLEND        ? 640
+                             : saved.control == geom::PathMode::EXACT_PATH ? 610
+                                                                           : 611;
     isDone = isDone && run_code('g', control_code, control);
     isDone = isDone && run_code('g', saved.isIncremental ? 910 : 900, none);
     isDone = isDone && run_code('g', saved.isCentreAbsolute ? 901 : 911, none);

@@ -149,9 +149,9 @@ ActiveCodes Executor::active_codes() const {
     const int feed_code = state.feed_mode == FeedMode::INVERSE_TIME       ? 930
                           : state.feed_mode == FeedMode::UNITS_PER_MINUTE ? 940
                                                                           : 950;
-    const int control_code = state.control == MotionControl::EXACT_PATH   ? 610
-                             : state.control == MotionControl::EXACT_STOP ? 611
-                                                                          : 640;
+    const int control_code = state.control == geom::PathMode::EXACT_PATH   ? 610
+                             : state.control == geom::PathMode::EXACT_STOP ? 611
+                                                                           : 640;
     const SpindleState &spindle = state.spindles[static_cast<std::size_t>(state.active_spindle)];
     out.g = {block_place.sequence,
              state.motion,

@@ -71,7 +71,7 @@ struct State {
     bool isRetractToR = true;       ///< G99
     FeedMode feed_mode = FeedMode::UNITS_PER_MINUTE;
     double feed = 0;  ///< [program units/min, 1/min, program units/rev]
-    MotionControl control = MotionControl::CONTINUOUS;
+    geom::PathMode control = geom::PathMode::BLEND;
     double tolerance = 0, naivecam = 0;  ///< G64 P and Q [program units]
     int active_spindle = 0;
     std::array<SpindleState, MAX_SPINDLES> spindles{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Sine, cosine and tangent of angles in degrees, rounded from extended precision: sin[30] is 0.5 and a
-// program that compares or rounds it finds what it finds in the field. Several times faster than the
+// program that compares or rounds it finds what it finds in LinuxCNC. Several times faster than the
 // library's in long double.
 #pragma once
 

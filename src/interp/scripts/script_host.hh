@@ -78,7 +78,7 @@ class InterpreterView {
     virtual void expect_input() = 0;
     virtual void expect_probe() = 0;
 
-    /// #number; 0 for numbers out of range, as in the field's glue code.
+    /// #number; 0 for numbers out of range, as in LinuxCNC's glue code.
     virtual double parameter(int number) const = 0;
     virtual Result<> set_parameter(int number, double value) = 0;
     virtual std::optional<double> named(std::string_view name) = 0;

@@ -165,14 +165,14 @@ bool Executor::do_cycle(const Code &code, const BlockValues &values) {
     if (!polar_target(values, goal)) {
         return false;
     }
-    const MotionControl control = state.control;
+    const geom::PathMode control = state.control;
     // In a sequence that began below R every cycle makes this move, though without length but for the first.
     const double height = state.position[axes.normal];
     if (height < plan.r || (height == plan.r && state.cycle.initial < plan.r)) {
         cycle_move(true, axes.normal, plan.r);
     }
-    if (control != MotionControl::EXACT_PATH) {
-        canon.take(SetMotionControlMode{MotionControl::EXACT_PATH, 0.0});
+    if (control != geom::PathMode::EXACT_PATH) {
+        canon.take(SetMotionControlMode{geom::PathMode::EXACT_PATH, 0.0});
     }
     for (int i = 0; i < repeats; ++i) {
         plan.clear = state.isRetractToR ? plan.r : std::fmax(state.cycle.initial, plan.r);
@@ -193,9 +193,8 @@ bool Executor::do_cycle(const Code &code, const BlockValues &values) {
         }
         run_cycle(plan);
     }
-    if (control != MotionControl::EXACT_PATH) {
-        canon.take(
-            SetMotionControlMode{control, control == MotionControl::CONTINUOUS ? state.tolerance : 0.0});
+    if (control != geom::PathMode::EXACT_PATH) {
+        canon.take(SetMotionControlMode{control, control == geom::PathMode::BLEND ? state.tolerance : 0.0});
         canon.take(SetNaivecamTolerance{state.naivecam});
     }
     return true;
@@ -273,7 +272,7 @@ void Executor::run_peck(const CyclePlan &plan) {
     cycle_move(true, normal, plan.clear);
 }
 
-/// The two feeds of a tap, along the plane's normal. The field's rs274 turns plane coordinates into machine
+/// The two feeds of a tap, along the plane's normal. LinuxCNC's rs274 turns plane coordinates into machine
 /// ones twice in G18 and G19: moved like that the tap would be dragged through the part, so only what is
 /// printed and never moved follows it.
 void Executor::tap_move(double height) {
@@ -281,7 +280,7 @@ void Executor::tap_move(double height) {
     state.position[normal] = height;
     const Pose &place = state.position;
     Pose sent = place;
-    const bool isTurnedTwice = settings_.isTapOrderOfField && normal != geom::AXIS_Z;
+    const bool isTurnedTwice = settings_.isTapOrderOfRs274 && normal != geom::AXIS_Z;
     for (int axis = geom::AXIS_X; axis <= geom::AXIS_Z && isTurnedTwice; ++axis) {
         constexpr int LENGTHS = 3;
         sent[axis] = place[(axis + (normal == geom::AXIS_Y ? 1 : 2)) % LENGTHS];
@@ -333,7 +332,7 @@ void Executor::run_back_bore(const CyclePlan &plan, int direction) {
         constexpr double PATIENCE_S = 60.0;
         canon.take(StopSpindle{spindle});
         canon.take(OrientSpindle{spindle, 0.0, COUNTERCLOCKWISE});
-        if (settings_.isTask) {  // the field's rs274 prints no waiting
+        if (settings_.isTask) {  // LinuxCNC's rs274 prints no waiting
             canon.take(WaitOrientComplete{spindle, PATIENCE_S});
         }
     };

@@ -23,8 +23,8 @@ struct RoughingPlan {
     Pockets pockets = Pockets::ALL;
     double increment = 1, retract = 0.5;
     double narrowest = 0;           ///< a layer shorter than this is cut there and back: no place to retract
-    bool isVisitingStarts = false;  ///< G71.1: a move without length to where each segment begins, as in the
-                                    ///< field's outputs
+    bool isVisitingStarts = false;  ///< G71.1: a move without length to where each segment begins, as
+                                    ///< LinuxCNC prints it
 };
 
 /// A cycle whose profile is being read from its subroutine.

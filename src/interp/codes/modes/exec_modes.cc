@@ -160,12 +160,12 @@ bool Executor::do_control(const Code &code, const BlockValues &values) {
         return fault.set("Cannot change the path mode while cutter radius compensation is on");
     }
     if (code.number != 640) {
-        state.control = code.number == 610 ? MotionControl::EXACT_PATH : MotionControl::EXACT_STOP;
+        state.control = code.number == 610 ? geom::PathMode::EXACT_PATH : geom::PathMode::EXACT_STOP;
         state.tolerance = 0.0;
         canon.take(SetMotionControlMode{state.control, 0.0});
         return true;
     }
-    state.control = MotionControl::CONTINUOUS;
+    state.control = geom::PathMode::BLEND;
     state.tolerance = values.at('p', 0.0);
     state.naivecam = values.at('q', state.tolerance);
     if (state.tolerance < 0.0 || state.naivecam < 0.0) {
