@@ -118,7 +118,7 @@ void Flow::unwind(std::size_t depth) {
             std::ranges::count(calls_, CallKind::TEXT, [](const Call &call) { return call.kind; }));
         executor_.drop_calls(static_cast<std::size_t>(call_level()));
         if (std::ranges::none_of(calls_, [](const Call &call) { return call.kind == CallKind::PROFILE; })) {
-            executor_.drop_lathe_cycle();
+            executor_.lathe.drop();
         }
         while (!dropped.empty()) {
             dropped.pop_back();  // the innermost script ends first
@@ -141,7 +141,6 @@ std::string Flow::call_name(const Call &call) const {
 
 void Flow::abort() {
     unwind();
-    executor_.canon.truncate(0);
     executor_.abort_block();
     isSyncDue_ = isEndDue_ = false;
 }
@@ -226,7 +225,7 @@ Step Flow::percent() {
         return fail_here(
             fmt::format("The file ends in subroutine o<{}> without its end", call_name(calls_.back())));
     }
-    if (executor_.state.nurbs_order != 0) {
+    if (executor_.state.spline.order != 0) {
         return fail_here("The file ends inside of a NURBS: G5.3 ends it");
     }
     executor_.canon.take(Finish{});

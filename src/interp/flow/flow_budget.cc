@@ -9,7 +9,7 @@ namespace mw::interp::detail {
 bool Flow::note_conditional_pass(int first, int last) {
     note_pass(first, last);
     // Scripts and changed tool tables have states that are not seen here.
-    const bool isAllSeen = budget_.isBounded() && scripts_ == nullptr && !executor_.hasToolChanges();
+    const bool isAllSeen = budget_.isBounded() && scripts_ == nullptr && !executor_.tools.hasChanges();
     const LoopPass pass{program_, calls_.size(), first, last};
     if (!isAllSeen || !budget_.isRepeating(pass, executor_.state, executor_.parameters)) {
         return true;

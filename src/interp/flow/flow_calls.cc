@@ -228,7 +228,7 @@ bool Flow::pop_call(double value, bool hasValue) {
     if (call.kind == CallKind::PROFILE) {
         executor_.canon.enter_block(program_, call.line, call.line, false, call_level());
         executor_.keep_state();
-        return executor_.finish_lathe_cycle();
+        return executor_.lathe.finish(executor_.state, executor_.canon, executor_.fault);
     }
     return true;
 }
@@ -259,7 +259,7 @@ bool Flow::run_return(const BlockView &view, const OWord &oword) {
 // ------------------------------------------------------------------------------------- M98, M99, remaps
 
 bool Flow::call_fanuc() {
-    const NameId label = names_.intern(fmt::format("{}", executor_.fanuc_label));
+    const NameId label = names_.intern(fmt::format("{}", executor_.fanuc_call.label));
     Sub sub;
     if (!find_fanuc(label, sub)) {
         if (const int other = program_->find_sub(label); other != 0) {
@@ -274,13 +274,13 @@ bool Flow::call_fanuc() {
         return false;
     }
     commit();
-    if (executor_.fanuc_count <= 0) {
+    if (executor_.fanuc_call.count <= 0) {
         return true;
     }
     Call call;
     call.kind = CallKind::FANUC;
     call.label = label;
-    call.again = executor_.fanuc_count - 1;
+    call.again = executor_.fanuc_call.count - 1;
     if (!enter(std::move(call), sub)) {
         return false;
     }
@@ -310,7 +310,7 @@ bool Flow::call_profile() {
     Call call;
     Sub sub;
     call.kind = CallKind::PROFILE;
-    call.label = names_.intern(fmt::format("{}", executor_.lathe_request()->label));
+    call.label = names_.intern(fmt::format("{}", executor_.lathe.request()->label));
     if (!find_sub(call.label, 0, sub) || !check_depth()) {
         return false;
     }
