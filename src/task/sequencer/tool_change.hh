@@ -5,7 +5,7 @@
 #include "base/result.hh"
 #include "interp/machine_canon.hh"
 #include "io/controller.hh"
-#include "task/tool_store.hh"
+#include "task/sequencer/tool_store.hh"
 
 namespace mw::task {
 
