@@ -6,7 +6,7 @@
 #include "interp/plugin.hh"
 #include "interp/scripts/user_codes.hh"
 #include "motion/api/texts.hh"
-#include "task/motion_status.hh"
+#include "task/link/motion_status.hh"
 
 namespace mw::task {
 namespace {

@@ -13,14 +13,14 @@
 #include "io/controller.hh"
 #include "mailbox/desk.hh"
 #include "task/command.hh"
-#include "task/motion_link.hh"
-#include "task/planner_mode.hh"
-#include "task/run_state.hh"
-#include "task/sequencer.hh"
+#include "task/link/motion_link.hh"
+#include "task/link/tool_store.hh"
+#include "task/run/run_state.hh"
+#include "task/run/task_canon.hh"
+#include "task/sequencer/planner_mode.hh"
+#include "task/sequencer/sequencer.hh"
+#include "task/sequencer/user_program.hh"
 #include "task/status.hh"
-#include "task/task_canon.hh"
-#include "task/tool_store.hh"
-#include "task/user_program.hh"
 
 namespace mw::task {
 

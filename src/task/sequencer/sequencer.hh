@@ -10,13 +10,13 @@
 
 #include "base/result.hh"
 #include "io/controller.hh"
-#include "task/items.hh"
-#include "task/motion_link.hh"
-#include "task/program_log.hh"
-#include "task/program_spindles.hh"
+#include "task/link/motion_link.hh"
+#include "task/link/tool_store.hh"
+#include "task/sequencer/items.hh"
+#include "task/sequencer/program_log.hh"
+#include "task/sequencer/program_spindles.hh"
+#include "task/sequencer/tool_change.hh"
 #include "task/status.hh"
-#include "task/tool_change.hh"
-#include "task/tool_store.hh"
 
 namespace mw::task {
 

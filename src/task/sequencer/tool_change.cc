@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "task/tool_change.hh"
+#include "task/sequencer/tool_change.hh"
 
 #include <string>
 

@@ -5,7 +5,7 @@
 #include "base/result.hh"
 #include "interp/canon/machine_canon.hh"
 #include "io/controller.hh"
-#include "task/tool_store.hh"
+#include "task/link/tool_store.hh"
 
 namespace mw::task {
 
