@@ -30,7 +30,6 @@ EXCEPTIONS = {
     'State': (0, 47, 'the modal state of a program'),
     'Executor': (198, 57, 'to be taken apart: docs/architecture.md'),
     'Flow': (87, 55, 'to be taken apart: docs/architecture.md'),
-    'Task': (51, 47, 'to be taken apart: docs/architecture.md'),
 }
 
 HEAD = re.compile(r'^(?:template\s*<.*>\s*)?(?:class|struct|union)\s+(?:alignas\s*\([^)]*\)\s*)?(?:\[\[\w+\]\]\s*)?'

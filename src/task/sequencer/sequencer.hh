@@ -82,7 +82,7 @@ class Sequencer {
     bool take_probe() { return std::exchange(isProbeMade_, false); }
     /// A line for the file of (probeopen); without one nothing happens.
     void log_probe(const std::string &line) { check(probe_log_.write(line)); }
-    int selected_index() const { return tool_change_.selected_index(); }
+    const ToolChange &tool_change() const { return tool_change_; }
     void set_move_listener(MoveListener listener) { move_listener_ = std::move(listener); }
 
   private:
