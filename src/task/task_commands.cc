@@ -149,6 +149,7 @@ struct Task::Handler {
 
   private:
     Outcome abort_all();
+    void refuse_waiting();
     Outcome send(const motion::CommandBody &body) {
         task.motion_.send(body);
         return Progress::DONE;
@@ -236,7 +237,25 @@ void Task::carry_out_commands() {
     }
 }
 
+/// What was asked for before a stop and still waits for the mode would begin after it. Messages are told all
+/// the same.
+void Task::Handler::refuse_waiting() {
+    std::erase_if(task.inbox_, [this](const mailbox::Desk::Delivery &waiting) {
+        const bool isMessage = std::visit(
+            []<class C>(const C &) { return OneOf<C, OperatorError, OperatorText, OperatorDisplay>; },
+            waiting.command);
+        const bool isRefused = waiting.serial < id && !isMessage;
+        if (isRefused) {
+            task.tell(waiting.serial, Progress::REFUSED, "it came before a stop");
+        }
+        return isRefused;
+    });
+}
+
 Outcome Task::Handler::operator()(const SetState &command) {
+    if (command.state == State::ESTOP || command.state == State::OFF) {
+        refuse_waiting();
+    }
     task.finish(task.state_request_, Progress::FAILED, "another state was asked for");
     task.wanted_state_ = command.state;
     task.state_deadline_ns_ = task.now_ns_ + STATE_TIMEOUT_NS;
@@ -375,6 +394,7 @@ Outcome Task::Handler::operator()(const ResumeProgram &) {
 }
 
 Outcome Task::Handler::abort_all() {
+    refuse_waiting();
     if (task.isRunning()) {
         task.finish_run(Progress::FAILED, "aborted");
     }
