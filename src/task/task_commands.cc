@@ -147,6 +147,7 @@ struct Task::Handler {
 
   private:
     Outcome abort_all();
+    void refuse_waiting();
     Outcome send(const motion::CommandBody &body) {
         task.motion_.send(body);
         return Progress::DONE;
@@ -208,7 +209,16 @@ void Task::carry_out_commands() {
     }
 }
 
+void Task::Handler::refuse_waiting() {
+    for (const mailbox::Serial waiting : task.inbox_.drop_before(id)) {
+        task.desk_.tell(waiting, Progress::REFUSED, "it came before a stop");
+    }
+}
+
 Outcome Task::Handler::operator()(const SetState &command) {
+    if (command.state == State::ESTOP || command.state == State::OFF) {
+        refuse_waiting();
+    }
     const MachineState::Asked asked = task.state_.ask(command.state, id, task.now_ns_);
     task.tell(asked.replaced);
     if (!asked.outcome.has_value()) {
@@ -339,6 +349,7 @@ Outcome Task::Handler::operator()(const ResumeProgram &) {
 }
 
 Outcome Task::Handler::abort_all() {
+    refuse_waiting();
     task.stop_run("aborted");
     task.abort_work(AbortReason::ABORT);
     return Progress::DONE;

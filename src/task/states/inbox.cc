@@ -36,4 +36,21 @@ std::optional<mailbox::Desk::Delivery> Inbox::next(bool isModeChanging) {
     return taken;
 }
 
+std::vector<mailbox::Serial> Inbox::drop_before(mailbox::Serial stop) {
+    std::vector<mailbox::Serial> dropped;
+    std::erase_if(waiting_, [&](const mailbox::Desk::Delivery &delivery) {
+        const bool isLine = std::visit(
+            []<class C>(const C &) {
+                return OneOf<C, msgs::OperatorError, msgs::OperatorText, msgs::OperatorDisplay>;
+            },
+            delivery.command);
+        const bool isDropped = delivery.serial < stop && !isLine;
+        if (isDropped) {
+            dropped.push_back(delivery.serial);
+        }
+        return isDropped;
+    });
+    return dropped;
+}
+
 }  // namespace mw::task

@@ -199,6 +199,21 @@ class TaskTest : public testing::Test {
     client::Serial request = 0;
 };
 
+TEST_F(TaskTest, AStopAlsoEndsOlderCommandsThatStillWaitForTheMode_D1) {
+    for (const Command &stop : {Command{AbortAll{}}, Command{SetState{State::OFF}}, Command{EstopOn{}}}) {
+        ASSERT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);
+        post(SetMode{Mode::AUTO});
+        const auto waiting = post(Mdi{"G21 G1 X7 F600"}), text = post(OperatorText{"told all the same"});
+        ASSERT_EQ(ask(stop), Progress::DONE);
+        EXPECT_EQ(reason(waiting), "it came before a stop");
+        EXPECT_EQ(progress(text), Progress::DONE);
+        ask(SetState{State::ESTOP_RESET});
+        ask(SetState{State::ON});
+        EXPECT_EQ(ask(Mdi{"G21 G1 X8 F600"}), Progress::DONE) << reason(request);
+    }
+    EXPECT_TRUE(joined().contains("line 8") && !joined().contains("line 7")) << joined();
+}
+
 TEST_F(TaskTest, AUserCodeRunsWithItsWordsAndIsAwaited_I1) {
     make_program("M101", "echo \"$1 $2\" >> " + (folder / "said").string() + "\n");
     open("G21 F600\nG1 X1\nM101 P2.5\nM101 P1 Q2\nG1 X2\nM2\n");
