@@ -24,6 +24,7 @@ FORBIDDEN = {(user, used) for user in ('kins', 'traj', 'homing', 'interp', 'tool
 INNER = {'motion': ['api', 'core', 'rt'],
          'traj': ['geometry', 'exec', 'timing', 'trial'],
          'interp': ['text', 'ast', 'canon', 'eval', 'scripts', 'codes', 'flow'],
+         'task': ['link', 'sequencer', 'states', 'run'],
          'hal': ['api', 'sdk', 'core', 'host'],
          'hal_lang': ['lang', 'tcl'],
          'hal_tools': ['stream', 'view', 'programs']}

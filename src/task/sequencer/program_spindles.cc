@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "task/program_spindles.hh"
+#include "task/sequencer/program_spindles.hh"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "task/user_program.hh"
+#include "task/sequencer/user_program.hh"
 
 #include <fcntl.h>
 #include <spawn.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "task/motion_status.hh"
+#include "task/link/motion_status.hh"
 
 namespace mw::task {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "task/task_canon.hh"
+#include "task/run/task_canon.hh"
 
 namespace mw::task {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "task/tool_change.hh"
+#include "task/sequencer/tool_change.hh"
 
 #include <string>
 
@@ -38,7 +38,12 @@ Result<> ToolChange::set_number(const interp::ChangeToolNumber &call, ToolStore 
 }
 
 Result<> ToolChange::on_event(io::ToolEvent event, ToolStore &tools, io::Controller &io) {
+    if (event == io::ToolEvent::NONE) {
+        return {};
+    }
+    fault_reason_.reset();
     if (event == io::ToolEvent::FAULT) {
+        fault_reason_ = io.fault_reason();
         return fail("the tool changer reports a fault (iocontrol.0.toolchanger-reason " +
                     std::to_string(io.fault_reason()) + ")");
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "task/sequencer.hh"
+#include "task/sequencer/sequencer.hh"
 
 #include <cmath>
 #include <type_traits>

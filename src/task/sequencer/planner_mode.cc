@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "task/planner_mode.hh"
+#include "task/sequencer/planner_mode.hh"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "task/program_log.hh"
+#include "task/sequencer/program_log.hh"
 
 #include <cerrno>
 #include <cstring>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "task/run_state.hh"
+#include "task/run/run_state.hh"
 
 #include <array>
 

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "task/sequencer.hh"
+#include "task/sequencer/sequencer.hh"
 
 namespace mw::task {
 

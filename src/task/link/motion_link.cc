@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "task/motion_link.hh"
+#include "task/link/motion_link.hh"
 
 #include <algorithm>
 

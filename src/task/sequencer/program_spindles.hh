@@ -6,7 +6,7 @@
 
 #include "base/limits.hh"
 #include "interp/canon/machine_canon.hh"
-#include "task/motion_link.hh"
+#include "task/link/motion_link.hh"
 
 namespace mw::task {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "interp/canon/machine_canon.hh"
-#include "task/items.hh"
+#include "task/sequencer/items.hh"
 
 namespace mw::task {
 

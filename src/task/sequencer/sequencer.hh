@@ -10,13 +10,13 @@
 
 #include "base/result.hh"
 #include "io/controller.hh"
-#include "task/items.hh"
-#include "task/motion_link.hh"
-#include "task/program_log.hh"
-#include "task/program_spindles.hh"
+#include "task/link/motion_link.hh"
+#include "task/link/tool_store.hh"
+#include "task/sequencer/items.hh"
+#include "task/sequencer/program_log.hh"
+#include "task/sequencer/program_spindles.hh"
+#include "task/sequencer/tool_change.hh"
 #include "task/status.hh"
-#include "task/tool_change.hh"
-#include "task/tool_store.hh"
 
 namespace mw::task {
 
@@ -82,7 +82,7 @@ class Sequencer {
     bool take_probe() { return std::exchange(isProbeMade_, false); }
     /// A line for the file of (probeopen); without one nothing happens.
     void log_probe(const std::string &line) { check(probe_log_.write(line)); }
-    int selected_index() const { return tool_change_.selected_index(); }
+    const ToolChange &tool_change() const { return tool_change_; }
     void set_move_listener(MoveListener listener) { move_listener_ = std::move(listener); }
 
   private:

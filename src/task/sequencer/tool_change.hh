@@ -2,10 +2,12 @@
 // T, M6 and M61: from a tool's number to its place in the table, to the changer, and into the table again.
 #pragma once
 
+#include <optional>
+
 #include "base/result.hh"
 #include "interp/canon/machine_canon.hh"
 #include "io/controller.hh"
-#include "task/tool_store.hh"
+#include "task/link/tool_store.hh"
 
 namespace mw::task {
 
@@ -25,9 +27,12 @@ class ToolChange {
     void abort() { changing_index_ = selected_index_ = -1; }
     /// In the tool table; -1: none.
     int selected_index() const { return selected_index_; }
+    /// As the changer has told it, when its last work ended with a fault.
+    std::optional<int> fault_reason() const { return fault_reason_; }
 
   private:
     int selected_index_ = -1, changing_index_ = -1;
+    std::optional<int> fault_reason_;
 };
 
 }  // namespace mw::task
