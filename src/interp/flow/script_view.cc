@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "interp/scripts/script_view.hh"
+#include "interp/flow/script_view.hh"
 
 #include <algorithm>
 #include <set>
@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/text.hh"
+#include "interp/flow/script_calls.hh"
 
 namespace mw::interp::detail {
 namespace {
@@ -54,7 +55,7 @@ constexpr std::string_view CALL_LEVEL = "call_level", STACK_INDEX = "stack_index
 }  // namespace
 
 std::expected<bool, ScriptFault> ScriptView::execute(std::string_view text, int line) {
-    return flow_.execute_for_script(text, line);
+    return execute_(text, line);
 }
 
 Canon &ScriptView::canon() {
@@ -62,7 +63,7 @@ Canon &ScriptView::canon() {
 }
 
 void ScriptView::deliver() {
-    flow_.settle_after_script();
+    settle_script(parts_);
 }
 
 // ------------------------------------------------------------------------------------------ parameters
@@ -82,11 +83,11 @@ Result<> ScriptView::set_parameter(int number, double value) {
 }
 
 std::optional<double> ScriptView::named(std::string_view name) {
-    return executor_.evaluator().named(flow_.names_.intern(folded(name)));
+    return executor_.evaluator().named(parts_.names.intern(folded(name)));
 }
 
 Result<> ScriptView::set_named(std::string_view name, double value) {
-    const NameId id = flow_.names_.intern(folded(name));
+    const NameId id = parts_.names.intern(folded(name));
     if (name.empty() || executor_.evaluator().isReadOnly(id)) {
         return fail(fmt::format("can't assign value to parameter: {}", name));
     }
@@ -98,7 +99,7 @@ Result<> ScriptView::set_named(std::string_view name, double value) {
 std::vector<std::string> ScriptView::local_names() const {
     std::vector<std::string> out;
     for (const auto &[id, value] : executor_.parameters.locals(executor_.parameters.depth() - 1)) {
-        out.push_back(flow_.names_.text(id));
+        out.push_back(parts_.names.text(id));
     }
     std::ranges::sort(out);
     return out;
@@ -106,24 +107,24 @@ std::vector<std::string> ScriptView::local_names() const {
 
 std::vector<std::string> ScriptView::predefined_names() const {
     std::vector<std::string> out = kept_names();
-    out.insert(out.end(), flow_.script_names_.begin(), flow_.script_names_.end());
+    out.insert(out.end(), parts_.scripts.names().begin(), parts_.scripts.names().end());
     std::ranges::sort(out);
     out.erase(std::ranges::unique(out).begin(), out.end());
     return out;
 }
 
 std::vector<std::string> ScriptView::script_names() const {
-    return flow_.script_names_;
+    return parts_.scripts.names();
 }
 
 /// With those of the main program and the INI values that were read.
 std::vector<std::string> ScriptView::global_names() const {
     std::vector<std::string> out = predefined_names();
     for (const auto &[id, value] : executor_.parameters.globals()) {
-        out.push_back(flow_.names_.text(id));
+        out.push_back(parts_.names.text(id));
     }
     for (const auto &[id, value] : executor_.parameters.locals(0)) {
-        out.push_back(flow_.names_.text(id));
+        out.push_back(parts_.names.text(id));
     }
     const std::set<std::string, std::less<>> &ini = executor_.ini_names_read();
     out.insert(out.end(), ini.begin(), ini.end());
@@ -134,39 +135,32 @@ std::vector<std::string> ScriptView::global_names() const {
 
 // --------------------------------------------------------------------------------------------- state
 
-std::string ScriptView::line_text() const {
-    const Program *program = flow_.program_;
-    const int line = flow_.line_read_;
-    return program != nullptr && line >= 1 && line <= program->count_lines()
-               ? std::string(program->line_text(line))
-               : std::string();
-}
-
 std::optional<ScriptValue> ScriptView::attribute(std::string_view name) const {
     if (name == CALL_LEVEL) {
-        return static_cast<std::int64_t>(flow_.call_level());
+        return static_cast<std::int64_t>(parts_.levels.call_level());
     }
     if (name == STACK_INDEX) {
-        return static_cast<std::int64_t>(flow_.calls_.size());
+        return static_cast<std::int64_t>(parts_.levels.size());
     }
     if (name == FILE_NAME) {
-        return flow_.file();
+        return parts_.levels.file();
     }
     if (name == LINE_TEXT) {
-        return line_text();
+        return parts_.levels.line_text();
     }
     if (name == PERCENT) {
-        return flow_.program_ != nullptr && flow_.program_->isPercentDelimited();
+        const Program *const program = parts_.levels.here().program;
+        return program != nullptr && program->isPercentDelimited();
     }
     if (name == ERROR_TEXT) {
-        return flow_.script_error_;
+        return parts_.scripts.error_text;
     }
     return detail::attribute(name, executor_.attribute_sources());
 }
 
 Result<> ScriptView::set_attribute(std::string_view name, const ScriptValue &value) {
     if (name == ERROR_TEXT && std::holds_alternative<std::string>(value)) {
-        flow_.script_error_ = std::get<std::string>(value);
+        parts_.scripts.error_text = std::get<std::string>(value);
         return {};
     }
     return detail::set_attribute(name, value, executor_.attribute_sources());
@@ -213,7 +207,7 @@ void ScriptView::set_spindle_speed(int spindle, double speed) {
 
 // ------------------------------------------------------------------------------- blocks and levels of call
 
-ScriptBlock ScriptView::remap_block(const Flow::Call &call, int level) const {
+ScriptBlock ScriptView::remap_block(const ScriptCall &call, int level) const {
     ScriptBlock out;
     const PendingBlock &pending = *call.pending;
     out.g_modes.fill(-1);
@@ -247,30 +241,30 @@ ScriptBlock ScriptView::remap_block(const Flow::Call &call, int level) const {
     out.number = pending.sequence;
     out.comment = pending.comment;
     out.builtins = executor_.remaps.builtin_uses(level);
-    out.remap = call.remap->described();
+    out.remap = pending.remap->described();
     return out;
 }
 
 ScriptBlock ScriptView::block(int level) const {
     int remaps = 0;
-    for (const Flow::Call &call : flow_.calls_) {
-        if (call.kind == Flow::CallKind::REMAP && ++remaps == level) {
-            return remap_block(call, level);
+    for (const Call &call : parts_.levels.calls()) {
+        if (call.kind == CallKind::REMAP && ++remaps == level) {
+            return remap_block(*call.script, level);
         }
     }
     ScriptBlock out;
     out.g_modes.fill(-1);
     out.m_modes.fill(-1);
-    out.line = flow_.line_read_;
+    out.line = parts_.levels.here().line;
     if (level != 0) {
         return out;
     }
     out.params.assign(ARGUMENT_COUNT, 0.0);
-    for (const Flow::Call &call : flow_.calls_) {
-        if (call.isInScript() || call.stage == Flow::Stage::PROCEDURE) {
-            out.o_name = flow_.call_name(call);
+    for (const Call &call : parts_.levels.calls()) {
+        if (call.script != nullptr) {
+            out.o_name = call_name(call, parts_.names);
             std::ranges::fill(out.params, 0.0);
-            std::ranges::copy(call.arguments, out.params.begin());
+            std::ranges::copy(call.script->arguments, out.params.begin());
         }
     }
     return out;
@@ -281,7 +275,7 @@ std::vector<ScriptContext> ScriptView::contexts() const {
     const auto fill = [this](ScriptContext &context, std::size_t level) {
         const bool isMain = level == 0;
         for (const auto &[id, value] : executor_.parameters.locals(static_cast<int>(level))) {
-            context.named.emplace_back(flow_.names_.text(id), value);
+            context.named.emplace_back(parts_.names.text(id), value);
         }
         context.status = executor_.saved_modes.status(level);
         context.arguments = executor_.parameters.saved_arguments(static_cast<int>(level));
@@ -291,26 +285,26 @@ std::vector<ScriptContext> ScriptView::contexts() const {
                 if (!name.starts_with('_')) {
                     continue;  // one of its own, which is there already
                 }
-                const auto value = executor_.evaluator().named(flow_.names_.intern(name));
+                const auto value = executor_.evaluator().named(parts_.names.intern(name));
                 context.named.emplace_back(std::move(name), value.value_or(0.0));
             }
         }
         std::ranges::sort(context.named);
     };
     fill(out.front(), 0);
-    out.front().file = flow_.file();
-    for (const Flow::Call &call : flow_.calls_) {
-        if (call.kind == Flow::CallKind::TEXT) {
+    out.front().file = parts_.levels.file();
+    for (const Call &call : parts_.levels.calls()) {
+        if (call.kind == CallKind::TEXT) {
             continue;
         }
         ScriptContext &context = out.emplace_back();
         constexpr int PROCEDURE = 1, FANUC = 2, SCRIPT = 3, REMAP = 4, REMAP_STATUS = 4;
-        const bool isRemap = call.kind == Flow::CallKind::REMAP;
-        context.kind = isRemap                               ? REMAP
-                       : call.kind == Flow::CallKind::SCRIPT ? SCRIPT
-                       : call.kind == Flow::CallKind::FANUC  ? FANUC
-                                                             : PROCEDURE;
-        context.name = flow_.call_name(call);
+        const bool isRemap = call.kind == CallKind::REMAP;
+        context.kind = isRemap                         ? REMAP
+                       : call.kind == CallKind::SCRIPT ? SCRIPT
+                       : call.kind == CallKind::FANUC  ? FANUC
+                                                       : PROCEDURE;
+        context.name = call_name(call, parts_.names);
         context.file = call.program != nullptr ? call.program->path() : std::string();
         context.line = call.line;
         fill(context, out.size() - 1);

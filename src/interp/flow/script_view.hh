@@ -2,18 +2,24 @@
 // What scripts see of the interpreter: its state, parameters, blocks and levels of call.
 #pragma once
 
+#include <expected>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "interp/flow/flow.hh"
+#include "interp/flow/flow_parts.hh"
 #include "interp/scripts/script_host.hh"
 
 namespace mw::interp::detail {
 
 class ScriptView final : public InterpreterView {
   public:
-    explicit ScriptView(Flow &flow) : flow_(flow), executor_(flow.executor_) {}
+    /// Runs a block and what it calls, as InterpreterView::execute().
+    using Execute = std::function<std::expected<bool, ScriptFault>(std::string_view text, int line)>;
+    /// `parts` must outlive the view.
+    ScriptView(const FlowParts &parts, Execute execute)
+        : parts_(parts), executor_(parts.executor), execute_(std::move(execute)) {}
 
     std::expected<bool, ScriptFault> execute(std::string_view text, int line) override;
     Canon &canon() override;
@@ -50,11 +56,11 @@ class ScriptView final : public InterpreterView {
     const World &world() const override { return executor_.world(); }
 
   private:
-    ScriptBlock remap_block(const Flow::Call &call, int level) const;
-    std::string line_text() const;
+    ScriptBlock remap_block(const ScriptCall &call, int level) const;
 
-    Flow &flow_;
+    const FlowParts &parts_;
     Executor &executor_;
+    Execute execute_;
 };
 
 }  // namespace mw::interp::detail
