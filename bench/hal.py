@@ -3,7 +3,7 @@
 """HAL against an installed LinuxCNC: the same work through both sets of programs, interleaved, as an ordinary user.
 
   dispatch   run time of a thread of 300 and2 per function, as the thread's own pin .time has it (median of 800 reads):
-             calls and their timing. The reference counts ticks of the processor's time stamp counter, ours nanoseconds;
+             calls and their timing. LinuxCNC counts ticks of the processor's time stamp counter, ours nanoseconds;
              ticks are converted by the rate in /proc/cpuinfo
   nets       `halcmd -f` of 3,000 net lines, elapsed
   read       `halcmd getp`, elapsed per call, one process each
@@ -103,7 +103,7 @@ def measure(path, user, counts_ticks):
         command += ['--ticks'] if counts_ticks else []
         shutil.copy(__file__, os.path.join(folder, 'hal.py'))
         if user:
-            # A name space of its own: the reference has one realtime process and one shared memory per machine.
+            # A name space of its own: LinuxCNC has one realtime process and one shared memory per machine.
             command = ['unshare', '--ipc', '--pid', '--fork', '--mount-proc', '--kill-child', 'runuser', '-u', user,
                        '--', *command]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120)
@@ -115,7 +115,7 @@ def measure(path, user, counts_ticks):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--bin', default=str(ROOT / 'build/release/bin'), help='folder of our programs')
-    parser.add_argument('--reference', default='/usr/bin', help='folder of the reference\'s programs')
+    parser.add_argument('--reference', default='/usr/bin', help='folder of LinuxCNC\'s programs')
     parser.add_argument('--user', default='nobody', help='ordinary user when run by root')
     parser.add_argument('--runs', type=int, default=5)
     parser.add_argument('--one-run', action='store_true', help=argparse.SUPPRESS)

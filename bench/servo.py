@@ -4,7 +4,7 @@
 
 Three joints run the same program of arcs and short lines by the clock; in every servo cycle the component sampler takes
 motion-controller.time and motion-command-handler.time. Runs are interleaved; the first second of each is left out.
-Prints median, 99th percentile and worst case of their sum [ns]; the reference counts ticks of the time stamp counter,
+Prints median, 99th percentile and worst case of their sum [ns]; LinuxCNC counts ticks of the time stamp counter,
 which are converted by /proc/cpuinfo. usage: script/bench servo, or after it bench/servo.py [--runs 5] [--cycles 200000] [--period 200000]
 """
 import argparse

@@ -6,18 +6,18 @@
 #include <cstdlib>
 #include <string>
 
-#include "interp/explain.hh"
-#include "interp/format.hh"
+#include "gcode/explain.hh"
+#include "gcode/format.hh"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
     const std::string text(reinterpret_cast<const char *>(data), size);
-    const std::string once = mw::interp::format_program(text);
-    const bool isSettled = mw::interp::format_program(once) == once;
+    const std::string once = mw::gcode::format_program(text);
+    const bool isSettled = mw::gcode::format_program(once) == once;
     const bool hasAllLines =
         std::count(once.begin(), once.end(), '\n') == std::count(text.begin(), text.end(), '\n');
     if (!isSettled || !hasAllLines) {
         std::abort();
     }
-    (void)mw::interp::explain_line(text.substr(0, text.find('\n')), "F100");
+    (void)mw::gcode::explain_line(text.substr(0, text.find('\n')), "F100");
     return 0;
 }

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "interp/detail/parameters.hh"
+#include "interp/eval/parameters.hh"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
     mw::interp::detail::Parameters parameters;

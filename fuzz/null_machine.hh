@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "interp/canon/machine_frame.hh"
 #include "interp/interpreter.hh"
-#include "interp/machine_frame.hh"
 
 namespace mw::fuzz {
 

@@ -95,7 +95,7 @@ struct MotionRig {
         move.terms.feed = feed;
         move.terms.mode = mode;
         move.terms.tolerance = tolerance;
-        move.terms.type = feed == 0 ? motion::MotionType::TRAVERSE : motion::MotionType::FEED;
+        move.terms.isRapid = feed == 0;
         move.terms.source.line = static_cast<std::int32_t>(next_id);
         move.terms.source.block = static_cast<std::uint32_t>(next_id);
         return send_path(move);

@@ -10,7 +10,7 @@ LAYER = {
     'rtapi': 1, 'config': 1, 'msgs': 1, 'picture': 1, 'comp': 1,
     'hal': 2, 'nml': 2, 'mailbox': 2,
     'kins': 3, 'traj': 3, 'homing': 3, 'interp': 3, 'tool': 3, 'client': 3, 'hal_lang': 3,
-    'motion': 4, 'pyhost': 4, 'hal_tools': 4,
+    'motion': 4, 'pyhost': 4, 'hal_tools': 4, 'gcode': 4,
     'task': 5, 'io': 5,
     'machine': 6, 'ui': 6, 'python': 6,
     'app': 7,
@@ -23,6 +23,7 @@ FORBIDDEN = {(user, used) for user in ('kins', 'traj', 'homing', 'interp', 'tool
 # Inside a folder: sub-folders in the order in which they may use each other.
 INNER = {'motion': ['api', 'core', 'rt'],
          'traj': ['geometry', 'exec', 'timing', 'trial'],
+         'interp': ['text', 'ast', 'canon', 'eval', 'codes', 'flow'],
          'task': ['link', 'sequencer', 'states', 'run'],
          'hal': ['api', 'sdk', 'core', 'host'],
          'hal_lang': ['lang', 'tcl'],

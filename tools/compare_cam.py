@@ -44,7 +44,7 @@ def main():
     parser.add_argument('--programs', type=int, default=2000)
     parser.add_argument('--first', type=int, default=0, help='first seed')
     parser.add_argument('--ours', default=str(ROOT / 'build/release/bin/rs274'))
-    parser.add_argument('--user', default='op', help='who runs the reference when this is root')
+    parser.add_argument('--user', default='op', help='who runs LinuxCNC when this is root')
     parser.add_argument('--run', type=int, default=0, help='how many also run in virtual time')
     parser.add_argument('--jobs', type=int, default=2)
     arguments = parser.parse_args()

@@ -477,14 +477,14 @@ def random_line(rng):
     ])
 
 
-# What differs on purpose: (what a line of the reference or ours matches). Reasons in docs/compatibility.md.
+# What differs on purpose: (what a line of LinuxCNC or ours matches). Reasons in docs/compatibility.md.
 DIFFERENCES = [
     r'used/total shared memory:',
     r'active/recycled ',
 ]
 
 
-# Commands that the reference accepts without a word, and ours refuses.
+# Commands that LinuxCNC accepts without a word, and ours refuses.
 REFUSED_BY_US = [
     r'^delsig ', r'^(un)?lock (bogus|none|x)', r'^unalias (bogus|x)', r'^list \w+ -tbogus', r'^loadusr nosuchprogram', r'^loadusr$', r'^unloadusr nosuch', r'^debug x', r'^help nosuch',
     r'^setp \S+ (nan|inf|1e400|99999999999|4294967296|2147483648|4000000000|-\d+)$',
@@ -543,7 +543,7 @@ class Side:
                        'MY_PIN': 'and2.0.in0', 'MY_NUMBER': '0', 'MILLWRIGHT_INSTANCE': 'compare'}
         command = [f'{self.path}/halrun', *options]
         if self.user:
-            # A name space of its own: the reference has one shared memory for the machine.
+            # A name space of its own: LinuxCNC has one shared memory for the machine.
             command = ['unshare', '--ipc', '--pid', '--fork', '--mount-proc', '--kill-child', 'runuser', '-u', self.user, '--', 'env', f'HOME={folder}', *command]
         done = subprocess.run(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True,
                               text=True, errors='replace', timeout=timeout)
@@ -553,7 +553,7 @@ class Side:
 def compare(name, text, sides, options, verbose, arguments=('-i', 'case.ini', '-f', 'case.hal')):
     results = []
     for side in sides:
-        # Not among the sequences: loadusr of a program that does not exist (the reference's child runs the file on).
+        # Not among the sequences: loadusr of a program that does not exist (LinuxCNC's child runs the file on).
         with tempfile.TemporaryDirectory(prefix='compare-') as work:
             folder = pathlib.Path(work)
             os.chmod(folder, 0o777)
@@ -576,7 +576,7 @@ def compare(name, text, sides, options, verbose, arguments=('-i', 'case.ini', '-
         problems.append(f'status {status}, ours {our_status}')
     theirs, ours = failures(err), failures(our_err)
     for number in sorted(theirs.keys() ^ ours.keys()):
-        who = 'only the reference' if number in theirs else 'only ours'
+        who = 'only LinuxCNC' if number in theirs else 'only ours'
         line = text.splitlines()[number - 1]
         if not any(re.search(d, line) for d in REFUSED_BY_US if number in ours):
             problems.append(f'{who} refuses: {line}\n    ' + '\n    '.join(theirs.get(number, []) + ours.get(number, [])))
@@ -592,9 +592,9 @@ def compare(name, text, sides, options, verbose, arguments=('-i', 'case.ini', '-
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('--reference', default='/usr/bin', help='folder of the reference\'s programs')
+    parser.add_argument('--reference', default='/usr/bin', help='folder of LinuxCNC\'s programs')
     parser.add_argument('--bin', default=str(ROOT / 'build/dev/bin'), help='folder of our programs')
-    parser.add_argument('--user', default='nobody', help='user for the reference when run by root')
+    parser.add_argument('--user', default='nobody', help='user for LinuxCNC when run by root')
     parser.add_argument('--seeds', type=int, default=20, help='how many random sequences')
     parser.add_argument('--first-seed', type=int, default=1)
     parser.add_argument('--lines', type=int, default=60, help='commands in a random sequence')

@@ -77,7 +77,7 @@ def compare(folder, number, program):
     our_calls, our_err, our_status = read(folder, number, 'our')
     names = []
     if ref_status >= 124:
-        return ['the reference crashes or does not end'], ''
+        return ['LinuxCNC crashes or does not end'], ''
     if our_status and not ref_status or ref_err[-1:] != our_err[-1:]:
         for text, name in interp_differences.STRICTER.items():
             if our_status and text in '\n'.join(our_err):
@@ -87,7 +87,7 @@ def compare(folder, number, program):
         names.append('a lathe cycle that is refused has made no move')
         ref_calls = ref_calls[:len(our_calls)]
     elif 'G7X error' in error_of(ref_err) and len(our_calls) > len(ref_calls):
-        names.append('a lathe profile that only the reference refuses')
+        names.append('a lathe profile that only LinuxCNC refuses')
         our_calls, our_status, our_err = our_calls[:len(ref_calls)], ref_status, ref_err
     if ref_status and interp_differences.isOtherSpindle(program, error_of(ref_err)) and len(ref_calls) < len(our_calls):
         names.append('G33 and G76 without $ after G96 or G97 $n')
@@ -126,7 +126,7 @@ def report(folder, seeds):
         print(f'{count:6d}  explained: {name}')
     for shown in unexplained:
         print(f'unexplained: {shown}')
-    print(f'{len(seeds)} programs, seeds {seeds.start} to {seeds.stop - 1} ({failed} refused by the reference): '
+    print(f'{len(seeds)} programs, seeds {seeds.start} to {seeds.stop - 1} ({failed} refused by LinuxCNC): '
           f'{different} differ, {len(unexplained)} unexplained')
     return 1 if unexplained else 0
 

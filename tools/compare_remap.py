@@ -4,7 +4,7 @@
 and whether they fail.
 
 Texts of errors are not compared. Differences that are meant are in MEANT below and in docs/compatibility.md; any other makes
-the exit status 1. The reference refuses root: it runs as the user nobody.
+the exit status 1. LinuxCNC refuses root: it runs as the user nobody.
 """
 import argparse
 import os
@@ -284,7 +284,7 @@ M400 P1 M3 S10 G0 X1 (order)
 
 # Programs at which the two differ, and why.
 MEANT = {
-    'M410|G0 X7': 'a remapped F inside execute() breaks the stack of calls of the reference',
+    'M410|G0 X7': 'a remapped F inside execute() breaks the stack of calls of LinuxCNC',
 }
 
 

@@ -3,7 +3,7 @@
 """Compares our trajectories with those of an installed LinuxCNC on the same G-code, limits and P.
 
 The twelve kinds of programs of bench/traj run through both whole systems: ours by `millwright run --trace` in virtual
-time, the reference without a screen, by its clock, its joint positions taken in every servo cycle by its own `sampler`
+time, LinuxCNC without a screen, by its clock, its joint positions taken in every servo cycle by its own `sampler`
 (it runs as an ordinary user in namespaces of its own). tools/trajcheck.py judges both. Run it on a quiet machine: the
 reference's task feeds its planner by the clock. usage: script/compare traj [--only WORD] [--repeat N] [--keep FOLDER]
 """
@@ -45,7 +45,7 @@ net tool-change-loop iocontrol.0.tool-change => iocontrol.0.tool-changed
 
 HAL = hal_text("f" * len(LETTERS), LETTERS, "".join(f"net joint-{i} sampler.0.pin.{i}\n" for i in range(len(LETTERS))))
 
-# The reference's screen: homes, runs the program, samples beside it.
+# LinuxCNC's screen: homes, runs the program, samples beside it.
 DRIVER = """#!/usr/bin/python3
 import subprocess, sys, time
 import linuxcnc
@@ -243,7 +243,7 @@ def row_text(result):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="kinds whose name has this word")
-    parser.add_argument("--repeat", type=int, default=1, help="runs of the reference; the fastest counts")
+    parser.add_argument("--repeat", type=int, default=1, help="runs of LinuxCNC; the fastest counts")
     parser.add_argument("--keep", help="folder for everything that was made")
     options = parser.parse_args()
     if shutil.which("linuxcnc") is None:
@@ -270,7 +270,7 @@ def main():
     (work / "results.json").write_text(json.dumps(results, indent=1))
     bad = [r["kind"] for r in results if not r["ours"]["ok"] or not r["jerk"]["ok"]]
     slower = [r["kind"] for r in results if r["ours"]["time_s"] > r["reference"]["time_s"] + 0.0015]
-    print(f"\nours beyond a limit: {', '.join(bad) or 'none'}; longer than the reference: {', '.join(slower) or 'none'}")
+    print(f"\nours beyond a limit: {', '.join(bad) or 'none'}; longer than LinuxCNC: {', '.join(slower) or 'none'}")
     return 1 if failed or bad or slower else 0
 
 

@@ -56,7 +56,7 @@ def speed_override_at_end(pair):
 
 
 def order_under_compensation(pair):
-    """Under compensation the reference gives messages and switches before the moves that it holds back."""
+    """Under compensation LinuxCNC gives messages and switches before the moves that it holds back."""
     def sorted_blocks(calls):
         out, moves, others, isOn = [], [], [], False
         for call in calls:
@@ -76,7 +76,7 @@ def order_under_compensation(pair):
 
 
 def context_announced(pair):
-    """M72 and the end of M73 announce feed, speeds and path mode, as the conformance cases have it; the reference restores
+    """M72 and the end of M73 announce feed, speeds and path mode, as the conformance cases have it; LinuxCNC restores
     the feed with one decimal and the speeds without any."""
     if not pair.has(r'm7[23]'):
         return
@@ -110,7 +110,7 @@ def context_announced(pair):
 
 
 def threading_enables_override(pair):
-    """After M49 or M50 P0 each pass of G76 switches the feed override on in the reference; here it stays off."""
+    """After M49 or M50 P0 each pass of G76 switches the feed override on in LinuxCNC; here it stays off."""
     out = []
     for i, call in enumerate(pair.reference):
         isPass = call == 'ENABLE_FEED_OVERRIDE()' and i > 1 and pair.reference[i - 2] == 'STOP_SPEED_FEED_SYNCH()' and \
@@ -148,7 +148,7 @@ def lathe_pieces(pair):
 
 
 def way_out_of_finishing(pair):
-    """Between the passes of G70 ours leaves the profile's end across, at feed; the reference goes straight back."""
+    """Between the passes of G70 ours leaves the profile's end across, at feed; LinuxCNC goes straight back."""
     if not re.search(r'\bg70\s*q[^\n]*p[2-9]', pair.program, re.I):
         return
     for i in range(len(pair.ours) - 1):
@@ -175,7 +175,7 @@ def name_of(one):
 
 
 def peck_at_the_bottom(pair):
-    """G73 and G83 whose last peck ends at the bottom: rounding makes the reference come back to it once more."""
+    """G73 and G83 whose last peck ends at the bottom: rounding makes LinuxCNC come back to it once more."""
     if not pair.has(r'g[78]3'):
         return
     out = []
@@ -189,19 +189,19 @@ def peck_at_the_bottom(pair):
 
 
 def long_numbers(pair):
-    """In comments the reference writes ###### for numbers of 30 characters and more."""
+    """In comments LinuxCNC writes ###### for numbers of 30 characters and more."""
     pair.ours = [re.sub(r'-?[\d.]{30,}', '######', call) if call.startswith('MESSAGE(') or '(' not in call else call
                  for call in pair.ours]
 
 
 def small_numbers(pair):
-    """In comments the reference writes numbers below 0.0001 as 0."""
+    """In comments LinuxCNC writes numbers below 0.0001 as 0."""
     pair.ours = [re.sub(r'(?<![\d.])-?0\.0000\d+', lambda m: '0.' + '0' * (len(m[0].split('.')[1])), call)
                  if call.startswith('MESSAGE(') or '(' not in call else call for call in pair.ours]
 
 
 def angles_of_home(pair):
-    """G28 and G30 do not take the angles of the tool offset off the stored place in the reference, though its lengths."""
+    """G28 and G30 do not take the angles of the tool offset off the stored place in LinuxCNC, though its lengths."""
     if not pair.has(r'g(28|30)\b'):
         return
     offset = [0.0, 0.0, 0.0]
@@ -217,7 +217,7 @@ def angles_of_home(pair):
 
 
 def orientation_of_back_boring(pair):
-    """G87 with a spindle that turns counterclockwise: the reference orients with a mode that M19 does not have."""
+    """G87 with a spindle that turns counterclockwise: LinuxCNC orients with a mode that M19 does not have."""
     if pair.has('g87'):
         pair.reference = [re.sub(r'^ORIENT_SPINDLE\((\d), 0\.0000, 3\)$', r'ORIENT_SPINDLE(\1, 0.0000, 2)', call)
                           for call in pair.reference]
@@ -226,7 +226,7 @@ def orientation_of_back_boring(pair):
 CLASSES = (speed_override_at_end, order_under_compensation, context_announced, threading_enables_override,
            lathe_pieces, way_out_of_finishing, peck_at_the_bottom, long_numbers, small_numbers, angles_of_home, orientation_of_back_boring)
 
-# What ours refuses and the reference does not, and what it refuses it with. What was done before must be equal.
+# What ours refuses and LinuxCNC does not, and what it refuses it with. What was done before must be equal.
 STRICTER = {
     'Concave corner cannot be reached': 'a corner of nearly 180 degrees towards the tool',
     'M6 needs a tool': 'M6 with no T word before',
@@ -262,5 +262,5 @@ CHOSEN_SPINDLE = re.compile(r'(Chosen spindle \(\d\)|Spindle) not turning in G(3
 
 
 def isOtherSpindle(program, refusal):
-    """After G96 or G97 $n the reference's G33 and G76 without $ go by spindle n; here by spindle 0, as the manual says."""
+    """After G96 or G97 $n LinuxCNC's G33 and G76 without $ go by spindle n; here by spindle 0, as the manual says."""
     return CHOSEN_SPINDLE.match(refusal) is not None and re.search(r'g9[67][^\n]*\$[1-9]', program, re.I) is not None

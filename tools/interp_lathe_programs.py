@@ -48,7 +48,7 @@ def lathe_cycle(random, label):
         if has_arcs and u > u0 and abs(h - h0) > 0.5:
             radius = chord * random.uniform(1.2, 4)
             code_and_radius = f'{random.choice(("G2", "G3"))} {where} R{radius:.3f}'
-            # The reference does not see a lowest point inside an arc.
+            # LinuxCNC does not see a lowest point inside an arc.
             if abs(math.atan2(h - h0, u - u0)) < math.asin(chord / (2 * radius)) + 0.01:
                 code_and_radius = ''
         if code_and_radius:
@@ -60,7 +60,7 @@ def lathe_cycle(random, label):
     start = f'{across}{highest + random.uniform(2, 6):.3f} {along}{-sign * random.uniform(0.5, 3):.3f}'
     lines.append(f'G0 {start}')
     cycle = f'{code} Q{label}'
-    # With D the reference goes by rapid into the material where the profile falls from its first point.
+    # With D LinuxCNC goes by rapid into the material where the profile falls from its first point.
     is_distance_safe = not has_arcs and points[1][1] >= points[0][1]
     if random.random() < 0.3:
         cycle += f' {start}'

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Seeded generator of G-code programs over all codes and modal combinations of the dialect.
 
-What the reference's standalone program gets wrong on its own is left out: it takes its position from its canon at a tool
+What LinuxCNC's standalone program gets wrong on its own is left out: it takes its position from its canon at a tool
 change (so a move of all axes follows), forgets the tool offset then and does not convert it with the units (so G49 stands before those), and lets a probe stop short of its end (so a
 move of all axes follows); it refuses L in G74 and axis words in G43.2; after a break a do loop runs
 once; M61 leaves the data of the tool; G10 L2 R does not know G92; it loses its way in lathe profiles of one segment,

@@ -337,7 +337,7 @@ Trajectory time_optimal(const std::vector<Stretch> &stretches, const Program &pr
 
 Trajectory best_known_trajectory(const Program &program) {
     const Path path = cut_path(program);
-    const bool isBlend = program.moves[0].control == PathControl::BLEND;
+    const bool isBlend = program.moves[0].control == geom::PathMode::BLEND;
     Trajectory best;
     for (const double width : {15.0, 60.0, 200.0}) {
         const Trajectory t = time_optimal(smooth_stretches(path, program.tolerance, width), program, isBlend);

@@ -68,7 +68,7 @@ class Writer {
         push(m);
     }
     double feed = FEED;
-    PathControl control = PathControl::BLEND;
+    geom::PathMode control = geom::PathMode::BLEND;
     const Pose &at() const { return at_; }
     Program done() { return std::move(program_); }
 
@@ -272,7 +272,7 @@ Program rapids() {
     return w.done();
 }
 
-Program exact(const char *name, PathControl control) {
+Program exact(const char *name, geom::PathMode control) {
     Writer w(name, 0.02);
     w.control = control;
     for (int i = 0; i < 8; ++i) {
@@ -303,8 +303,8 @@ std::vector<Program> all_kinds() {
     all.push_back(five_axes());
     all.push_back(lathe_profile());
     all.push_back(rapids());
-    all.push_back(exact("G61", PathControl::EXACT_PATH));
-    all.push_back(exact("G61.1", PathControl::EXACT_STOP));
+    all.push_back(exact("G61", geom::PathMode::EXACT_PATH));
+    all.push_back(exact("G61.1", geom::PathMode::EXACT_STOP));
     return all;
 }
 

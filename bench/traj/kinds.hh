@@ -6,13 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "geom/move_settings.hh"
 #include "geom/pose.hh"
 
 namespace mw::bench {
 
 using geom::Pose;
-
-enum class PathControl { BLEND, EXACT_PATH, EXACT_STOP };
 
 /// One programmed move: a line, or an arc about `centre` in the plane of `normal` (helical by what remains).
 struct Move {
@@ -21,7 +20,7 @@ struct Move {
     Pose centre, normal;
     double angle_rad = 0;  ///< signed about `normal`
     double feed = 0;       ///< along X Y Z, or A B C when these alone move [mm/s, deg/s]; 0: rapid
-    PathControl control = PathControl::BLEND;
+    geom::PathMode control = geom::PathMode::BLEND;
 };
 
 struct Program {

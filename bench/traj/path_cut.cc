@@ -36,8 +36,8 @@ Path cut_path(const Program &program) {
         const Pose out = position_on(from, m, 1e-6) - from;
         const Pose tangent = out * (1.0 / geom::norm(out));
         const double turn = geom::dot(tangent, last_tangent);
-        const bool isExactCorner = m.control == PathControl::EXACT_PATH && turn < 0.9998;
-        if (isExactCorner || m.control == PathControl::EXACT_STOP || turn < REVERSAL) {
+        const bool isExactCorner = m.control == geom::PathMode::EXACT_PATH && turn < 0.9998;
+        if (isExactCorner || m.control == geom::PathMode::EXACT_STOP || turn < REVERSAL) {
             path.isStop.back() = true;
         }
         const double moved = geom::norm(m.end - from);
@@ -47,7 +47,7 @@ Path cut_path(const Program &program) {
             path.points.push_back(position_on(from, m, static_cast<double>(i) / n));
             path.feed.push_back(m.feed * ratio);
             path.isStop.push_back(false);
-            path.isFixed.push_back(m.control != PathControl::BLEND);
+            path.isFixed.push_back(m.control != geom::PathMode::BLEND);
         }
         const Pose in = m.end - position_on(from, m, 1.0 - 1e-6);
         last_tangent = in * (1.0 / geom::norm(in));

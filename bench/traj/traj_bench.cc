@@ -47,9 +47,7 @@ traj::MoveRequest request_of(const Program &program, const Move &m) {
     r.tag.requested_velocity = m.feed;
     r.isRapid = m.feed == 0;
     r.tolerance = program.tolerance;
-    r.join = m.control == PathControl::EXACT_STOP   ? traj::Join::STOP
-             : m.control == PathControl::EXACT_PATH ? traj::Join::EXACT
-                                                    : traj::Join::BLEND;
+    r.join = m.control;
     return r;
 }
 
@@ -177,7 +175,7 @@ bool measure(const Options &options, const Program &program) {
         checker.sample(p.c.data());
     }
     const bool isAtEnd = run.samples.back() == program.moves.back().end;
-    const bool isBlend = program.moves[0].control == PathControl::BLEND;
+    const bool isBlend = program.moves[0].control == geom::PathMode::BLEND;
     const double step = isBlend ? program.tolerance / 16 : 1e-3;
     const double deviation = options.isFast
                                  ? 0.0

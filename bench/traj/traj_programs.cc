@@ -61,11 +61,11 @@ bool write_gcode(const Program &program, const std::string &path) {
     }
     write_words(file, elsewhere, program.start);
     std::fputs("\nG4 P0.5\n", file);
-    const PathControl control = program.moves[0].control;
-    if (control == PathControl::BLEND) {
+    const geom::PathMode control = program.moves[0].control;
+    if (control == geom::PathMode::BLEND) {
         std::fprintf(file, "G64 P%.7f\n", program.tolerance);
     } else {
-        std::fputs(control == PathControl::EXACT_PATH ? "G61\n" : "G61.1\n", file);
+        std::fputs(control == geom::PathMode::EXACT_PATH ? "G61\n" : "G61.1\n", file);
     }
     Pose from = program.start;
     double feed = 0;
@@ -95,7 +95,7 @@ bool write_geometry(const Program &program, const std::string &path) {
         std::perror(path.c_str());
         return false;
     }
-    const bool isExact = program.moves[0].control != PathControl::BLEND;
+    const bool isExact = program.moves[0].control != geom::PathMode::BLEND;
     std::fprintf(file, "{\"name\": \"%s\", \"tolerance\": %.17g,\n ", program.name.c_str(),
                  isExact ? 0.0 : program.tolerance);
     write_pose(file, "max_velocity", program.max_velocity);

@@ -50,7 +50,7 @@ bool judge(const Program &program, const Trace &trace, bool isJerkLimited) {
     for (const Pose &p : trace.rows) {
         checker.sample(p.c.data());
     }
-    const bool isBlend = program.moves[0].control == PathControl::BLEND;
+    const bool isBlend = program.moves[0].control == geom::PathMode::BLEND;
     const double tolerance = isBlend ? program.tolerance : 1e-6;
     const double step = isBlend ? program.tolerance / 8 : 2e-3;
     const double deviation =

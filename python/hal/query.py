@@ -38,7 +38,7 @@ class CompType(enum.IntEnum):
 
 
 def _named(kind, row, keys):
-    """The dict that the reference's programs expect, in its order: name, alias and kind first."""
+    """The dict that LinuxCNC's programs expect, in its order: name, alias and kind first."""
     found = {"haltype": kind, "name": row.get("original_name") or row["name"]}
     row = dict(row, alias=row["name"] if row.get("original_name") else None)
     found.update((key, row[key]) for key in keys)

@@ -58,7 +58,7 @@ int check_loaded(const CheckWords &words, const machine::LoadedConfig &loaded, m
     machine::CheckOptions check;
     check.statements = words.statements;
     check.points = words.plot.empty() ? nullptr : &points;
-    check.progress = [&progress](const interp::PreviewProgress &now) {
+    check.progress = [&progress](const gcode::PreviewProgress &now) {
         progress.show(now);
         return stop_signal == 0;
     };

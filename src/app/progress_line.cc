@@ -11,7 +11,7 @@ namespace mw::app {
 
 ProgressLine::ProgressLine() : isTerminal_(::isatty(STDERR_FILENO) == 1) {}
 
-void ProgressLine::show(const interp::PreviewProgress &now) {
+void ProgressLine::show(const gcode::PreviewProgress &now) {
     constexpr std::chrono::milliseconds EVERY{500};
     const auto time = std::chrono::steady_clock::now();
     if (!isTerminal_ || time - last_ < EVERY) {

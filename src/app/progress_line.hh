@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "interp/preview.hh"
+#include "gcode/preview.hh"
 
 namespace mw::app {
 
@@ -12,7 +12,7 @@ namespace mw::app {
 class ProgressLine {
   public:
     ProgressLine();
-    void show(const interp::PreviewProgress &now);
+    void show(const gcode::PreviewProgress &now);
     void clear();
 
   private:

@@ -56,7 +56,7 @@ StartCheck check_before_start(const machine::MachineConfig &machine, const std::
     machine::CheckOptions check;
     check.statements = 0;  // a program may run for ever: the limits end the look ahead
     check.isBlockDeleteOn = options.isBlockDeleteOn;
-    check.progress = [&](const interp::PreviewProgress &now) {
+    check.progress = [&](const gcode::PreviewProgress &now) {
         progress.show(now);
         return stop_signal == 0 && now.blocks < options.most_blocks && seconds() < options.most_seconds;
     };

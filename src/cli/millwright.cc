@@ -8,8 +8,8 @@
 #include "app/commands.hh"
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
+#include "gcode/commands.hh"
 #include "hal_tools/view/commands.hh"
-#include "interp/commands.hh"
 
 namespace {
 
@@ -53,10 +53,10 @@ int main(int argc, char **argv) {
         return mw::app::command_check(rest);
     }
     if (words[0] == "format") {
-        return mw::interp::command_format(rest);
+        return mw::gcode::command_format(rest);
     }
     if (words[0] == "explain") {
-        return mw::interp::command_explain(rest);
+        return mw::gcode::command_explain(rest);
     }
     if (words[0] == "hal") {
         mw::catch_stop_signals();

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // rs274: interprets a program without a machine and prints its canon calls.
+#include "gcode/rs274.hh"
+
 #include <unistd.h>
 
 #include <clocale>
@@ -7,7 +9,6 @@
 #include <cstring>
 
 #include "base/own_place.hh"
-#include "interp/standalone_run.hh"
 
 namespace {
 
@@ -33,7 +34,7 @@ int usage(const char *message, int status) {
 
 int main(int argc, char **argv) {
     mw::tell_when_memory_ends();
-    using Options = mw::interp::StandaloneOptions;
+    using Options = mw::gcode::StandaloneOptions;
     Options options;
     if (argc > 1 && std::strcmp(argv[1], "--help") == 0) {
         return usage("", 0);
@@ -69,5 +70,5 @@ int main(int argc, char **argv) {
     if (optind < argc) {
         return usage("rs274: too many files", 2);
     }
-    return mw::interp::run_standalone(options);
+    return mw::gcode::run_standalone(options);
 }

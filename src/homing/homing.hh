@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Finding the machine's zero: one state machine per joint, in sequences and synchronised groups. Pure,
-// realtime-safe. Source of the behaviour: the integrator's manual of the field, "Homing Configuration".
+// realtime-safe. Source of the behaviour: LinuxCNC's integrator manual, "Homing Configuration".
 #pragma once
 
 #include <array>

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "interp/detail/executor.hh"
-#include "interp/detail/flow.hh"
+#include "interp/codes/executor.hh"
+#include "interp/flow/flow.hh"
 
 namespace mw::interp {
 

@@ -13,7 +13,7 @@
 
 #include "base/result.hh"
 #include "diag/sink.hh"
-#include "interp/canon.hh"
+#include "interp/canon/canon.hh"
 #include "interp/program_interpreter.hh"
 #include "interp/world.hh"
 
@@ -58,8 +58,8 @@ struct Settings {
     double center_arc_radius_tolerance_inch = 0.00005;
     bool isLathe = false;
     bool isTask = false;  ///< #<_task>: a machine runs the program
-    /// G74 and G84 in G18 and G19 print their X Y Z in the order of the field's rs274, which is no tool path.
-    bool isTapOrderOfField = false;
+    /// G74 and G84 in G18 and G19 print their X Y Z in the order of LinuxCNC's rs274, which is no tool path.
+    bool isTapOrderOfRs274 = false;
     bool isToolOffsetRetained = false;  ///< [RS274NGC]RETAIN_G43: M6 and M61 apply the new tool's G43
     bool isArgumentCountNamed = false;  ///< [RS274NGC]OWORD_NARGS: #<n_args> in subroutines
     double orient_offset_deg = 0;

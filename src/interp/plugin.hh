@@ -10,7 +10,7 @@
 namespace mw::interp {
 
 /// `name` as it stands when absolute; otherwise in $EMC2_HOME/lib/linuxcnc, then beside our own modules. A
-/// file that is no plug-in of this version is refused (the field's own plug-ins have another interface).
+/// file that is no plug-in of this version is refused (LinuxCNC's own plug-ins have another interface).
 Result<std::unique_ptr<ProgramInterpreter>> open_plugin(const std::string &name, const PluginParts &parts);
 
 }  // namespace mw::interp

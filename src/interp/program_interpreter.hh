@@ -11,7 +11,7 @@
 
 #include "base/result.hh"
 #include "diag/sink.hh"
-#include "interp/canon.hh"
+#include "interp/canon/canon.hh"
 #include "interp/world.hh"
 
 namespace mw::interp {

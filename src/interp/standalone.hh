@@ -24,7 +24,7 @@ class Standalone : public World, public ToolSource, public ParameterSource {
 
     MachineSnapshot snapshot() const override { return state; }
     LengthUnits machine_units() const override { return units; }
-    /// The field's standalone machine counts 0.03937007874016 inch to the millimetre; in places where a
+    /// LinuxCNC's standalone machine counts 0.03937007874016 inch to the millimetre; in places where a
     /// coordinate lies halfway between two printed digits, programs' outputs depend on it.
     double mm_per_machine_unit() const override {
         constexpr double INCH_PER_MM = 0.03937007874016;

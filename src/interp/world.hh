@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "geom/pose.hh"
-#include "interp/canon.hh"
+#include "interp/canon/canon.hh"
 
 namespace mw::interp {
 

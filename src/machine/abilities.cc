@@ -10,7 +10,7 @@ namespace mw::machine {
 namespace {
 
 constexpr std::array MISSING{
-    MissingAbility{interp::PreviewKind::RIGID_TAP, "G33.1", "tap rigidly",
+    MissingAbility{gcode::PreviewKind::RIGID_TAP, "G33.1", "tap rigidly",
                    "tap with G84 and a floating holder, or cut the thread with G33 or G76"},
 };
 
@@ -36,7 +36,7 @@ bool beginsWith(std::string_view text, std::string_view code) {
 
 }  // namespace
 
-const MissingAbility *missing_ability(const interp::PreviewEvent &event) {
+const MissingAbility *missing_ability(const gcode::PreviewEvent &event) {
     const auto found = std::ranges::find(MISSING, event.kind, &MissingAbility::kind);
     return found == MISSING.end() ? nullptr : &*found;
 }

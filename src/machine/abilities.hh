@@ -4,20 +4,20 @@
 
 #include <string_view>
 
-#include "interp/preview.hh"
+#include "gcode/preview.hh"
 
 namespace mw::machine {
 
 /// One thing that a machine cannot do.
 struct MissingAbility {
-    interp::PreviewKind kind;
+    gcode::PreviewKind kind;
     std::string_view code;    ///< as programs have it, in upper case
     std::string_view what;    ///< "tap rigidly"
     std::string_view remedy;  ///< what the program can do instead
 };
 
 /// Null when a machine can do what the event asks for.
-const MissingAbility *missing_ability(const interp::PreviewEvent &event);
+const MissingAbility *missing_ability(const gcode::PreviewEvent &event);
 
 /// The column of a G or M code in a line of a program, from 1; 1 when the line has none (the code is modal).
 int column_of_code(std::string_view line, std::string_view code);

@@ -126,7 +126,7 @@ void PathMonitor::on_move(motion::CommandId id, const motion::PathBody &body) {
     piece.start = last_end_;
     if (const auto *line = std::get_if<motion::Line>(&body)) {
         piece.end = line->end;
-        piece.isRapid = line->terms.type == motion::MotionType::TRAVERSE;
+        piece.isRapid = line->terms.isRapid;
     } else if (const auto *arc = std::get_if<motion::Arc>(&body)) {
         piece.end = arc->end;
         piece.centre = arc->centre;

@@ -33,10 +33,10 @@ class Checker {
     CheckResult result;
 
     /// `preview` names the places of the events.
-    void take(std::span<const interp::PreviewEvent> events, const interp::Preview &preview) {
+    void take(std::span<const gcode::PreviewEvent> events, const gcode::Preview &preview) {
         preview_ = &preview;
         isTimed_ = isTimed_ && (!options_.wantsTime || options_.wantsTime());
-        for (const interp::PreviewEvent &event : events) {
+        for (const gcode::PreviewEvent &event : events) {
             event_ = &event;
             if (isTimed_) {
                 estimate_.set_place(preview.file(event.file), event.line, preview.section(event.section));
@@ -52,8 +52,8 @@ class Checker {
     }
 
   private:
-    void take_time(const interp::PreviewEvent &event) {
-        using Kind = interp::PreviewKind;
+    void take_time(const gcode::PreviewEvent &event) {
+        using Kind = gcode::PreviewKind;
         switch (event.kind) {
         case Kind::RAPID: estimate_.line(event.end, event.settings); break;
         case Kind::FEED: estimate_.line(event.end, timed(event)); break;
@@ -75,8 +75,8 @@ class Checker {
         case Kind::STOP: estimate_.stop(); break;
         }
     }
-    void take_event(const interp::PreviewEvent &event) {
-        using Kind = interp::PreviewKind;
+    void take_event(const gcode::PreviewEvent &event) {
+        using Kind = gcode::PreviewKind;
         if (const MissingAbility *missing = missing_ability(event); missing != nullptr) {
             report_impossible(*missing);
         }
@@ -85,7 +85,7 @@ class Checker {
         piece.end = event.end;
         switch (event.kind) {
         case Kind::RAPID:
-            piece.isRapid = event.settings.kind == interp::FeedKind::RAPID;
+            piece.isRapid = event.settings.isRapid;
             take_piece(piece);
             break;
         case Kind::FEED:
@@ -109,8 +109,8 @@ class Checker {
         }
     }
     /// Moves that follow the spindle are timed at its programmed speed.
-    static interp::MoveSettings timed(const interp::PreviewEvent &event) {
-        interp::MoveSettings out = event.settings;
+    static geom::MoveSettings timed(const gcode::PreviewEvent &event) {
+        geom::MoveSettings out = event.settings;
         if (out.feed_per_revolution > 0 && event.spindle_rpm > 0) {
             out.feed = out.feed_per_revolution * event.spindle_rpm / 60.0;
         }
@@ -235,14 +235,14 @@ class Checker {
     motion::FoldedLimits limits_;
     TimeEstimate estimate_;
     bool isTimed_ = true;
-    const interp::Preview *preview_ = nullptr;
-    const interp::PreviewEvent *event_ = nullptr;
+    const gcode::Preview *preview_ = nullptr;
+    const gcode::PreviewEvent *event_ = nullptr;
     int reported_line_ = -1;
     std::set<std::pair<std::uint32_t, int>> impossible_;  ///< file and line of what was told
 };
 
-interp::PreviewMachine stand_of(const MachineConfig &machine) {
-    interp::PreviewMachine stand;
+gcode::PreviewMachine stand_of(const MachineConfig &machine) {
+    gcode::PreviewMachine stand;
     stand.interpreter = machine.task.interpreter;
     stand.units = machine.task.machine_units;
     stand.axis_mask = machine.axis_mask;
@@ -255,8 +255,8 @@ interp::PreviewMachine stand_of(const MachineConfig &machine) {
     return stand;
 }
 
-interp::PreviewOptions preview_options(const CheckOptions &check) {
-    interp::PreviewOptions options;
+gcode::PreviewOptions preview_options(const CheckOptions &check) {
+    gcode::PreviewOptions options;
     options.max_errors = MAX_CHECK_ERRORS;
     if (check.statements) {
         options.statement_budget = options.idle_budget = static_cast<std::uint64_t>(*check.statements);
@@ -285,8 +285,8 @@ geom::Pose home_position(const MachineConfig &machine) {
 
 CheckResult check_program(const MachineConfig &machine, const std::string &program, interp::ToolSource &tools,
                           interp::ParameterSource &parameters, diag::Sink &sink, const CheckOptions &check) {
-    interp::Preview *source = nullptr;
-    interp::PreviewMachine stand = stand_of(machine);
+    gcode::Preview *source = nullptr;
+    gcode::PreviewMachine stand = stand_of(machine);
     stand.isBlockDeleteOn = check.isBlockDeleteOn;
     const auto tell_unknown = [&](std::string_view what) {
         if (source != nullptr) {
@@ -311,15 +311,15 @@ CheckResult check_program(const MachineConfig &machine, const std::string &progr
         sink.report(one);
     });
     Checker checker(machine, sink, check);
-    interp::Preview preview(
+    gcode::Preview preview(
         std::move(stand), tools, check.unknown ? unknown_values : parameters, preview_options(check),
-        {[&](std::span<const interp::PreviewEvent> events) { checker.take(events, *source); }, check.progress,
+        {[&](std::span<const gcode::PreviewEvent> events) { checker.take(events, *source); }, check.progress,
          check.unknown});
     source = &preview;
-    const interp::PreviewEnd end = preview.run(program, errors);
+    const gcode::PreviewEnd end = preview.run(program, errors);
     checker.result.blocks = preview.progress().blocks;
-    checker.result.isCancelled = end == interp::PreviewEnd::CANCELLED;
-    if (end == interp::PreviewEnd::DONE && !sink.hasErrors()) {
+    checker.result.isCancelled = end == gcode::PreviewEnd::CANCELLED;
+    if (end == gcode::PreviewEnd::DONE && !sink.hasErrors()) {
         checker.finish_time();
     }
     return checker.result;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "diag/sink.hh"
-#include "interp/preview.hh"
+#include "gcode/preview.hh"
 #include "machine/machine_config.hh"
 #include "machine/path_points.hh"
 #include "machine/time_estimate.hh"
@@ -27,8 +27,8 @@ struct CheckResult {
 };
 
 struct CheckOptions {
-    std::function<bool(const interp::PreviewProgress &)> progress;  ///< false ends the check; may be empty
-    /// How many statements a loop may take, 0 for any number; as interp::PreviewOptions has it when not set.
+    std::function<bool(const gcode::PreviewProgress &)> progress;  ///< false ends the check; may be empty
+    /// How many statements a loop may take, 0 for any number; as gcode::PreviewOptions has it when not set.
     std::optional<std::int64_t> statements;
     /// Nothing of the shop's own is run: no Python. Told where the program's way may depend on what only the
     /// running machine knows (scripts, HAL values, inputs, probes); errors behind may be none. Empty: scripts

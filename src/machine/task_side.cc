@@ -38,7 +38,7 @@ Result<> TaskSide::start(const MachineOptions &options) {
         return status;
     }
     task::Settings settings = parts_.config.task;
-    settings.isClockHeldByUserPrograms = options.isClockVirtual;
+    settings.isUserProgramWaitedFor = options.isClockVirtual;
     task_ = std::make_unique<task::Task>(
         task::Parts{*channels_, *this, *tools_, parameters_, mailbox_.segment()}, std::move(settings));
     task_->configure(parts_.config.parameters);

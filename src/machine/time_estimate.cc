@@ -69,24 +69,22 @@ void TimeEstimate::set_place(const std::string &file, int line, const std::strin
     }
 }
 
-traj::MoveRequest TimeEstimate::request_of(const interp::MoveSettings &settings) {
+traj::MoveRequest TimeEstimate::request_of(const geom::MoveSettings &settings) {
     traj::MoveRequest r;
     r.tag.requested_velocity = settings.feed;
     r.tag.line = line_;
     r.tag.file_index = file_;
     r.tag.block = static_cast<std::uint32_t>(section_);
-    r.isRapid = settings.kind == interp::FeedKind::RAPID || !(settings.feed > 0);
+    r.isRapid = settings.isRapid || !(settings.feed > 0);
     r.tolerance = settings.tolerance;
     r.isMergeAdded = isMergeAdded_;
     r.set_merge(settings.naivecam_tolerance);
     r.corner_scale = settings.corner_scale > 0 ? settings.corner_scale : corner_scale_;
-    r.join = settings.control == interp::MotionControl::EXACT_STOP   ? traj::Join::STOP
-             : settings.control == interp::MotionControl::EXACT_PATH ? traj::Join::EXACT
-                                                                     : traj::Join::BLEND;
+    r.join = settings.mode;
     return r;
 }
 
-void TimeEstimate::line(const geom::Pose &end, const interp::MoveSettings &settings) {
+void TimeEstimate::line(const geom::Pose &end, const geom::MoveSettings &settings) {
     estimator_->add(traj::make_line(position_, end), request_of(settings));
     position_ = end;
 }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "interp/machine_canon.hh"
+#include "interp/canon/machine_canon.hh"
 #include "machine/machine_config.hh"
 #include "traj/estimator.hh"
 
@@ -37,7 +37,7 @@ class TimeEstimate {
     void start(const geom::Pose &position);
     /// `section` as Preview::section names it.
     void set_place(const std::string &file, int line, const std::string &section);
-    void line(const geom::Pose &end, const interp::MoveSettings &settings);
+    void line(const geom::Pose &end, const geom::MoveSettings &settings);
     void arc(const interp::ArcMove &move);
     void dwell(double seconds);
     /// Motion stands here: tool changes, stops, probes.
@@ -49,7 +49,7 @@ class TimeEstimate {
 
   private:
     void take(const traj::MoveEstimate &move);
-    traj::MoveRequest request_of(const interp::MoveSettings &settings);
+    traj::MoveRequest request_of(const geom::MoveSettings &settings);
 
     motion::Settings settings_;
     traj::Limits limits_;

@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "interp/script_host.hh"
+#include "interp/scripts/script_host.hh"
 
 namespace mw::machine {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The enumerations of the vocabulary. Numbers that clients of the reference compare are the same.
+// The enumerations of the vocabulary. Numbers that clients written for LinuxCNC compare are the same.
 #pragma once
 
 #include "msgs/describe.hh"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// _millwright_canon: canon calls for scripts. Names and arguments are those of the field's scripts; `line` as
+// _millwright_canon: canon calls for scripts. Names and arguments are those of LinuxCNC's scripts; `line` as
 // the first argument of moves is accepted and not used, as calls belong to the block that called the script.
 #include <pybind11/stl.h>
 

@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "interp/script_host.hh"
+#include "interp/scripts/script_host.hh"
 #include "pyhost/modules.hh"
 
 namespace mw::pyhost {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "task/task.hh"
 
-#include "interp/user_codes.hh"
+#include "interp/scripts/user_codes.hh"
 #include "motion/api/texts.hh"
 #include "task/link/motion_status.hh"
 
@@ -15,7 +15,7 @@ Task::Task(const Parts &parts, Settings settings)
                settings_.interpreter_plugin, settings_.interpreter}),
       on_abort_(settings_.interpreter_plugin.empty() ? settings_.interpreter.on_abort_command
                                                      : std::string()),
-      user_program_(settings_.isClockHeldByUserPrograms),
+      user_program_(settings_.isUserProgramWaitedFor),
       sequencer_(reader_.queue(), motion_, io_, parts.tools, make_events(), settings_.sequencer),
       planner_mode_({[this](const motion::SetParameter &p) { return motion_.send(p); },
                      [this](MessageKind kind, const std::string &text) { post(kind, text); }}) {}
@@ -105,7 +105,8 @@ void Task::step(std::int64_t now_ns) {
     check_run_mode();
     step_clean_up();
     step_run();
-    planner_mode_.step(!run_.isRunning() && sequencer_.isIdle());
+    // What waits in the queue without a run are settings for displays; they do not move anything.
+    planner_mode_.step(!run_.isRunning() && motion_.isPathComplete());
     parts_.io_port.write(io_.outputs);
     update_status();
 }

@@ -45,7 +45,7 @@ struct Settings {
     SequencerSettings sequencer;
     ToolChangePlace tool_change_place;
     /// A program of a user M code is waited for within a cycle: for virtual clocks.
-    bool isClockHeldByUserPrograms = false;
+    bool isUserProgramWaitedFor = false;
     /// Task's loop standing still for so long stops the machine.
     double watchdog_s = 0.5;
     /// Blocks that the interpreter may read in one cycle, and queued items above which it waits.

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* What a homing module of the field exports, so that such modules compile. The motion controller of this
+/* What a homing module for LinuxCNC exports, so that such modules compile. The motion controller of this
  * version homes by itself and calls none of them. Positions are in joint units, speeds in joint units per
  * second. */
 #ifndef HOMING_H

@@ -49,7 +49,7 @@ int set_param(const char *name, const Value &value) {
     });
 }
 
-/// For the references of the newer interface: a pin's slot, or a parameter with memory of its own.
+/// For LinuxCNCs of the newer interface: a pin's slot, or a parameter with memory of its own.
 int new_reference(int comp_id, hal_pdir_t dir, void **ref, const Value &start, const char *name) {
     return with_hal([&](Hal &hal) {
         if (hal_pdir_is_pin(dir) == 0) {

@@ -18,7 +18,7 @@ enum class Dir : std::uint8_t { IN = 16, OUT = 32, IO = 48, RO = 64, RW = 192 };
 
 /// "bit", "float", "s32", "u32", "port", "s64", "u64".
 const char *type_name(Type type) noexcept;
-/// The type of that name; also the reference's newer words bool, real, sint, uint.
+/// The type of that name; also LinuxCNC's newer words bool, real, sint, uint.
 Result<Type> parse_type(std::string_view name);
 /// "IN", "OUT", "I/O", "RO", "RW".
 const char *dir_name(Dir dir) noexcept;

@@ -10,12 +10,12 @@
 
 #include <gtest/gtest.h>
 
-#include "interp/call_text.hh"
-#include "interp/detail/canon_queue.hh"
-#include "interp/detail/names.hh"
-#include "interp/detail/program.hh"
-#include "interp/machine_frame.hh"
-#include "interp/print_canon.hh"
+#include "interp/ast/names.hh"
+#include "interp/ast/program.hh"
+#include "interp/canon/call_text.hh"
+#include "interp/canon/canon_queue.hh"
+#include "interp/canon/machine_frame.hh"
+#include "interp/canon/print_canon.hh"
 
 namespace mw::interp {
 namespace {
@@ -62,9 +62,9 @@ std::vector<Printed> move_calls() {
         {SetFeedRate{120.5}, "SET_FEED_RATE(120.5000)"},
         {SetFeedMode{1, FeedMode::UNITS_PER_REVOLUTION}, "SET_FEED_MODE(1, 1)"},
         {SetFeedMode{0, FeedMode::INVERSE_TIME}, "SET_FEED_MODE(0, 0)"},
-        {SetMotionControlMode{MotionControl::EXACT_STOP, 0}, "SET_MOTION_CONTROL_MODE(CANON_EXACT_STOP)"},
-        {SetMotionControlMode{MotionControl::EXACT_PATH, 0}, "SET_MOTION_CONTROL_MODE(CANON_EXACT_PATH)"},
-        {SetMotionControlMode{MotionControl::CONTINUOUS, 0.05},
+        {SetMotionControlMode{geom::PathMode::EXACT_STOP, 0}, "SET_MOTION_CONTROL_MODE(CANON_EXACT_STOP)"},
+        {SetMotionControlMode{geom::PathMode::EXACT_PATH, 0}, "SET_MOTION_CONTROL_MODE(CANON_EXACT_PATH)"},
+        {SetMotionControlMode{geom::PathMode::BLEND, 0.05},
          "SET_MOTION_CONTROL_MODE(CANON_CONTINUOUS, 0.050000)"},
         {SetNaivecamTolerance{0.02}, "SET_NAIVECAM_TOLERANCE(0.0200)"},
         {SetPlannerMode{1, 0.5}, "SET_PLANNER_MODE(type=1, peak_scale=0.500000)"},
@@ -363,7 +363,7 @@ TEST(MachineFrame, TurnsInchesOfAProgramIntoMillimetresOfTheMachine_I2) {
     frame.take(SetG5xOffset{1, pose(1, 0, 0)});
     frame.take(UseToolLengthOffset{pose(0, 0, 2)});
     frame.take(SetFeedRate{60});
-    frame.take(SetMotionControlMode{MotionControl::CONTINUOUS, 0.01});
+    frame.take(SetMotionControlMode{geom::PathMode::BLEND, 0.01});
     machine.calls.clear();
     frame.take(StraightFeed{pose(1, 0, 0)});
     frame.take(SetSpindleSpeed{0, 300});

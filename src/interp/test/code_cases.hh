@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Programs for codes_test.cc: what they call, or what they are refused with. The calls of the good ones agree
-// with the field's standalone interpreter.
+// with LinuxCNC's standalone interpreter.
 #pragma once
 
 #include <string>

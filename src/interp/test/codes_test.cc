@@ -11,9 +11,9 @@
 #include <gtest/gtest.h>
 
 #include "code_cases.hh"
-#include "interp/detail/codes.hh"
+#include "interp/canon/print_canon.hh"
+#include "interp/codes/codes.hh"
 #include "interp/interpreter.hh"
-#include "interp/print_canon.hh"
 #include "interp/standalone.hh"
 
 namespace mw::interp {
@@ -330,7 +330,7 @@ TEST(Codes, TapsAlongTheNormalOfThePlane_I1) {
                                          "STRAIGHT_FEED(1.0000, 4.0000, 2.0000, 0.0000, 0.0000, 0.0000)"};
     EXPECT_EQ(feeds(run(program)), along);
     Settings printed;
-    printed.isTapOrderOfField = true;
+    printed.isTapOrderOfRs274 = true;
     EXPECT_EQ(feeds(run(program, printed)).front(),
               "STRAIGHT_FEED(-3.0000, 2.0000, 1.0000, 0.0000, 0.0000, 0.0000)");
 }

@@ -158,7 +158,7 @@ class StockRecorder : public Recorder {
 
     void begin_block(const BlockRef &block) override { line_ = block.line; }
     void line(const LineMove &move) override {
-        go({move.end[0], move.end[1], move.end[2]}, move.settings.kind == FeedKind::RAPID);
+        go({move.end[0], move.end[1], move.end[2]}, move.settings.isRapid);
     }
     void arc(const ArcMove &move) override {
         const double radius = std::hypot(at_.x - move.centre[0], at_.y - move.centre[1]);

@@ -153,7 +153,7 @@ TEST(Compensation, RapidMoveAroundACornerKeepsOffIt) {
     FlatPoint at;
     for (const LineMove &move : machine.record.lines) {
         const FlatPoint to{move.end[geom::AXIS_X], move.end[geom::AXIS_Y]};
-        if (move.settings.kind == FeedKind::RAPID && !way.empty()) {
+        if (move.settings.isRapid && !way.empty()) {
             way.push_back({at, to, false, {}, 0});
         } else {
             way = {{to, to, false, {}, 0}};

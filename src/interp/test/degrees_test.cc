@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "interp/detail/degrees.hh"
+#include "interp/eval/degrees.hh"
 
 namespace mw::interp::detail {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "interp/canon/machine_frame.hh"
 #include "interp/interpreter.hh"
-#include "interp/machine_frame.hh"
 #include "interp/test/recorder.hh"
 
 namespace mw::interp {
@@ -19,7 +19,7 @@ TEST(Interpreter, LineReachesTheMachineInMachineUnits_I1) {
     EXPECT_NEAR(feed.end[1], 50.8, 1e-12);
     EXPECT_NEAR(feed.settings.feed, 25.4, 1e-12);
     const LineMove &rapid = machine.record.lines[1];
-    EXPECT_EQ(rapid.settings.kind, FeedKind::RAPID);
+    EXPECT_TRUE(rapid.settings.isRapid);
     EXPECT_NEAR(rapid.end[0], 25.4, 1e-12);
     EXPECT_NEAR(rapid.end[2], 25.4, 1e-12);
 }

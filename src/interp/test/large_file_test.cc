@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "interp/detail/program.hh"
+#include "interp/ast/program.hh"
 
 namespace mw::interp::detail {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "interp/canon/machine_frame.hh"
 #include "interp/interpreter.hh"
-#include "interp/machine_frame.hh"
 #include "mill.hh"
 #include "testing/stock/lathe_stock.hh"
 
@@ -34,8 +34,7 @@ class CycleRecorder : public MachineCanon {
 
   private:
     void line(const LineMove &move) {
-        add({move.settings.kind == FeedKind::RAPID, false, move.end[geom::AXIS_Z], move.end[geom::AXIS_X], 0,
-             0, 0});
+        add({move.settings.isRapid, false, move.end[geom::AXIS_Z], move.end[geom::AXIS_X], 0, 0, 0});
     }
     void arc(const ArcMove &move) {
         // The normal of G18 is Y: a positive angle turns from Z to X.

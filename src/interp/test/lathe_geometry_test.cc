@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "interp/detail/lathe_layers.hh"
-#include "interp/detail/lathe_offset.hh"
+#include "interp/codes/lathe/lathe_layers.hh"
+#include "interp/codes/lathe/lathe_offset.hh"
 #include "testing/stock/contour.hh"
 
 namespace mw::interp::detail {

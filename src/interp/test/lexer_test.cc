@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "base/text.hh"
-#include "interp/detail/lexer.hh"
+#include "interp/text/lexer.hh"
 
 namespace mw::interp::detail {
 namespace {

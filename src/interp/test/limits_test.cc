@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Limits: far above the field's, and a clear error beyond them. A block that fails changes nothing.
+// Limits: far above LinuxCNC's, and a clear error beyond them. A block that fails changes nothing.
 #include <array>
 #include <random>
 #include <string>

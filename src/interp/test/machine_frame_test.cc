@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "interp/machine_frame.hh"
+#include "interp/canon/machine_frame.hh"
 #include "interp/test/recorder.hh"
 
 namespace mw::interp {

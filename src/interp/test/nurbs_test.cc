@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "interp/nurbs.hh"
+#include "interp/canon/nurbs.hh"
 
 namespace mw::interp {
 namespace {

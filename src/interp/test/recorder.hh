@@ -12,8 +12,8 @@
 
 #include <gtest/gtest.h>
 
+#include "interp/canon/machine_frame.hh"
 #include "interp/interpreter.hh"
-#include "interp/machine_frame.hh"
 #include "mill.hh"
 
 namespace mw::interp::test {

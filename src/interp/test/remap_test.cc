@@ -3,7 +3,7 @@
 // language is missing.
 #include <gtest/gtest.h>
 
-#include "interp/script_host.hh"
+#include "interp/scripts/script_host.hh"
 #include "recorder.hh"
 
 namespace mw::interp::test {

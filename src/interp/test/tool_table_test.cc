@@ -2,7 +2,7 @@
 // The tool table as a program changes it, block by block.
 #include <gtest/gtest.h>
 
-#include "interp/detail/tool_table.hh"
+#include "interp/codes/tools/tool_table.hh"
 #include "interp/test/mill.hh"
 
 namespace mw::interp::detail {

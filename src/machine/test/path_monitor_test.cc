@@ -63,12 +63,12 @@ TEST(PathMonitor, MovesOfRotaryAxesAloneAreDegreesAndNoLength) {
     PathMonitor monitor(1000000);
     monitor.start(at(0, 0));
     motion::Line line;
-    line.terms.type = motion::MotionType::TRAVERSE;
+    line.terms.isRapid = true;
     line.end = at(0, 0, 0, 90);
     monitor.on_move(1, line);
     line.end = at(10, 0, 0, 45);  // along with X the length is that of X
     monitor.on_move(2, line);
-    line.terms.type = motion::MotionType::FEED;
+    line.terms.isRapid = false;
     line.end = at(10, 0, 0, 15);
     monitor.on_move(3, line);
     EXPECT_NEAR(monitor.figures().rapid_length, 10.0, 1e-12);

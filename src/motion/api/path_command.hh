@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <variant>
 
+#include "geom/move_settings.hh"
 #include "geom/pose.hh"
 #include "motion/api/command.hh"
 
@@ -20,7 +21,7 @@ enum class MotionType : std::uint8_t {
     PROBING = 5,
     INDEX_ROTARY = 6
 };
-enum class PathMode : std::uint8_t { EXACT_STOP, EXACT_PATH, BLEND };
+using geom::PathMode;
 
 /// Where a move comes from; shown to the operator, written to the trace.
 struct SourceTag {
@@ -29,22 +30,9 @@ struct SourceTag {
     std::uint32_t block = 0;       ///< counts executed blocks; single-block stops are at its changes
 };
 
-/// What holds for one move.
-struct MoveTerms {
-    MotionType type = MotionType::FEED;
-    PathMode mode = PathMode::BLEND;
-    /// Requested speed along the feed length (XYZ if it moves, else UVW, else ABC); 0: as fast as the limits
-    /// allow.
-    double feed = 0;
-    double tolerance = 0;           ///< G64 P; 0 under BLEND: no bound
-    double naivecam_tolerance = 0;  ///< G64 Q
-    double corner_scale = 0;        ///< G64 R: part of the reachable corner speed; 0: TRAJ_CORNER_SCALE
+/// What holds for one move: what the program settles, and what task adds.
+struct MoveTerms : geom::MoveSettings {
     bool isFeedOverridable = true;
-    double feed_per_revolution = 0;  ///< > 0: synched to the spindle
-    /// The tool keeps to the spindle's angle, not only to its speed.
-    bool isThread() const noexcept { return feed_per_revolution > 0 && !isVelocitySynched; }
-    std::int8_t synch_spindle = 0;
-    bool isVelocitySynched = false;
     bool isWaitingForSpindleSpeed = false;  ///< hold before this move until spindle.N.at-speed
     SourceTag source;
 };

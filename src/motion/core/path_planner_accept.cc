@@ -15,6 +15,16 @@ bool isFinite(const geom::Pose &p) noexcept {
     return std::all_of(p.c.begin(), p.c.end(), [](double x) { return std::isfinite(x); });
 }
 
+/// As the status and the trace name a move.
+MotionType type_of(const PathBody &body, const MoveTerms &terms) noexcept {
+    if (std::holds_alternative<Probe>(body)) {
+        return MotionType::PROBING;
+    }
+    if (terms.isRapid) {
+        return MotionType::TRAVERSE;
+    }
+    return std::holds_alternative<Arc>(body) ? MotionType::ARC : MotionType::FEED;
+}
 }  // namespace
 
 traj::MoveRequest PathPlanner::request_for(const PathCommand &c, const MoveTerms &terms) const noexcept {
@@ -23,17 +33,15 @@ traj::MoveRequest PathPlanner::request_for(const PathCommand &c, const MoveTerms
     r.tag.line = terms.source.line;
     r.tag.file_index = terms.source.file_index;
     r.tag.block = terms.source.block;
-    r.tag.type = static_cast<std::uint8_t>(terms.type);
+    r.tag.type = static_cast<std::uint8_t>(type_of(c.body, terms));
     r.tag.requested_velocity = terms.feed;
-    r.join = terms.mode == PathMode::EXACT_STOP   ? traj::Join::STOP
-             : terms.mode == PathMode::EXACT_PATH ? traj::Join::EXACT
-                                                  : traj::Join::BLEND;
+    r.join = terms.mode;
     r.tolerance = terms.tolerance;
     r.corner_scale = terms.corner_scale > 0 ? terms.corner_scale : limits_.corner_scale;
     r.isMergeAdded = limits_.areTolerancesAdded;
     r.set_merge(terms.naivecam_tolerance);
     const bool hasFeed = terms.feed > 0 || terms.feed_per_revolution > 0;
-    r.isRapid = terms.type == MotionType::TRAVERSE || terms.type == MotionType::INDEX_ROTARY || !hasFeed;
+    r.isRapid = terms.isRapid || !hasFeed;
     r.isOverridable = terms.isFeedOverridable;
     r.feed_per_revolution = terms.feed_per_revolution;
     r.spindle = terms.synch_spindle;
@@ -152,7 +160,6 @@ Reason PathPlanner::accept_probe(const PathCommand &c, const Probe &probe) noexc
     }
     const traj::Sequence before = planner_.last_move();
     MoveTerms terms = probe.terms;
-    terms.type = MotionType::PROBING;
     terms.mode = PathMode::EXACT_STOP;
     const Reason reason = accept_line(c, probe.end, terms);
     if (reason != Reason::NONE) {

@@ -121,7 +121,7 @@ class Campaign {
                     terms.tolerance = chance(0.2) ? 0 : std::pow(10.0, real(-3, 0));
                 }
                 terms.feed = chance(0.2) ? 0 : std::pow(10.0, real(0.3, 2.2));
-                terms.type = terms.feed == 0 ? MotionType::TRAVERSE : MotionType::FEED;
+                terms.isRapid = terms.feed == 0;
                 terms.source.block = static_cast<std::uint32_t>(sent);
                 rig_.send_path(next_move(at, size, axes, terms));
                 ++sent;

@@ -17,9 +17,9 @@
 #include <gtest/gtest.h>
 
 #include "base/text.hh"
+#include "interp/canon/print_canon.hh"
 #include "interp/interpreter.hh"
-#include "interp/print_canon.hh"
-#include "interp/script_host.hh"
+#include "interp/scripts/script_host.hh"
 #include "interp/standalone.hh"
 
 namespace mw::pyhost::test {

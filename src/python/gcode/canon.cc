@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "interp/nurbs.hh"
+#include "interp/canon/nurbs.hh"
 
 namespace py = pybind11;
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
+#include "interp/canon/machine_frame.hh"
 #include "interp/interpreter.hh"
-#include "interp/machine_frame.hh"
 #include "task/run/task_canon.hh"
 
 namespace mw::task {

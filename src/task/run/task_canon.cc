@@ -69,8 +69,8 @@ void TaskCanon::change_tool() {
     for (const geom::Pose &end : tool_change_moves(place_, last_end_)) {
         interp::LineMove move;
         move.end = end;
-        move.settings.kind = interp::FeedKind::RAPID;
-        move.settings.control = interp::MotionControl::EXACT_PATH;
+        move.settings.isRapid = true;
+        move.settings.mode = geom::PathMode::EXACT_PATH;
         last_end_ = end;
         add(move);
     }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "interp/machine_canon.hh"
+#include "interp/canon/machine_canon.hh"
 #include "task/sequencer/items.hh"
 
 namespace mw::task {

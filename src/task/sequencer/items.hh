@@ -4,7 +4,7 @@
 
 #include <deque>
 
-#include "interp/machine_canon.hh"
+#include "interp/canon/machine_canon.hh"
 #include "motion/api/path_command.hh"
 
 namespace mw::task {

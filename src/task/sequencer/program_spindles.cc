@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "interp/surface_speed.hh"
+#include "interp/canon/surface_speed.hh"
 
 namespace mw::task {
 

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "base/limits.hh"
-#include "interp/machine_canon.hh"
+#include "interp/canon/machine_canon.hh"
 #include "task/link/motion_link.hh"
 
 namespace mw::task {

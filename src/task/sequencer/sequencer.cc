@@ -15,39 +15,18 @@ std::int64_t to_ns(double seconds) {
     return static_cast<std::int64_t>(std::llround(seconds * static_cast<double>(NS_PER_S)));
 }
 
-motion::PathMode path_mode(interp::MotionControl control) {
-    switch (control) {
-    case interp::MotionControl::EXACT_STOP: return motion::PathMode::EXACT_STOP;
-    case interp::MotionControl::EXACT_PATH: return motion::PathMode::EXACT_PATH;
-    case interp::MotionControl::CONTINUOUS: break;
-    }
-    return motion::PathMode::BLEND;
-}
-
 struct MoveSource {
     const motion::SourceTag &tag;
     bool isHolding;  ///< a cut waits until the spindle has its speed
 };
 
-motion::MoveTerms terms_of(const interp::MoveSettings &settings, motion::MotionType type,
-                           const MoveSource &source) {
-    motion::MoveTerms terms;
-    terms.type = settings.kind == interp::FeedKind::RAPID ? motion::MotionType::TRAVERSE : type;
-    terms.mode = path_mode(settings.control);
-    terms.feed = settings.feed;
-    terms.tolerance = settings.tolerance;
-    terms.naivecam_tolerance = settings.naivecam_tolerance;
-    terms.corner_scale = settings.corner_scale;
-    terms.feed_per_revolution = settings.feed_per_revolution;
-    terms.synch_spindle = static_cast<std::int8_t>(settings.synch_spindle);
-    terms.isVelocitySynched = settings.isVelocitySynched;
-    terms.isWaitingForSpindleSpeed = source.isHolding && settings.kind != interp::FeedKind::RAPID;
-    terms.source = source.tag;
-    return terms;
+motion::MoveTerms terms_of(const geom::MoveSettings &settings, const MoveSource &source) {
+    const bool isWaiting = source.isHolding && !settings.isRapid;
+    return {settings, true, isWaiting, source.tag};
 }
 
 motion::PathBody path_body(const interp::LineMove &line, const MoveSource &source) {
-    return motion::Line{line.end, terms_of(line.settings, motion::MotionType::FEED, source)};
+    return motion::Line{line.end, terms_of(line.settings, source)};
 }
 
 motion::PathBody path_body(const interp::ArcMove &arc, const MoveSource &source) {
@@ -56,19 +35,18 @@ motion::PathBody path_body(const interp::ArcMove &arc, const MoveSource &source)
                        arc.normal,
                        arc.angle_rad,
                        geom::norm_uvw(arc.normal) > 0,
-                       terms_of(arc.settings, motion::MotionType::ARC, source)};
+                       terms_of(arc.settings, source)};
 }
 
 motion::PathBody path_body(const interp::ProbeMove &probe, const MoveSource &source) {
     using interp::ProbeKind;
     const bool isAway = probe.kind == ProbeKind::AWAY || probe.kind == ProbeKind::AWAY_ERROR;
     const bool mustTrip = probe.kind == ProbeKind::TOWARD_ERROR || probe.kind == ProbeKind::AWAY_ERROR;
-    return motion::Probe{probe.end, isAway, mustTrip,
-                         terms_of(probe.settings, motion::MotionType::PROBING, source)};
+    return motion::Probe{probe.end, isAway, mustTrip, terms_of(probe.settings, source)};
 }
 
 motion::PathBody path_body(const interp::TapMove &tap, const MoveSource &source) {
-    return motion::RigidTap{tap.end, tap.scale, terms_of(tap.settings, motion::MotionType::FEED, source)};
+    return motion::RigidTap{tap.end, tap.scale, terms_of(tap.settings, source)};
 }
 
 /// Whether the visitor is done with the call; one that answers nothing always is.
@@ -252,7 +230,7 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
     return carry_out(visitor, item.call);
 }
 
-bool Sequencer::push_move(const motion::PathBody &move, const interp::MoveSettings &settings,
+bool Sequencer::push_move(const motion::PathBody &move, const geom::MoveSettings &settings,
                           const Item &item) {
     if (!motion_.hasPathRoom() || !motion_.push_path(move, item.source)) {
         return false;
@@ -260,7 +238,7 @@ bool Sequencer::push_move(const motion::PathBody &move, const interp::MoveSettin
     if (move_listener_) {
         move_listener_(motion_.last_path_id(), move);
     }
-    if (settings.kind != interp::FeedKind::RAPID) {
+    if (!settings.isRapid) {
         spindles_.end_wait();
     }
     return true;

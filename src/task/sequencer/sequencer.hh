@@ -99,7 +99,7 @@ class Sequencer {
     void check(const Result<> &result);
     /// False when the item must be tried again next cycle.
     bool execute(const Item &item, std::int64_t now_ns);
-    bool push_move(const motion::PathBody &move, const interp::MoveSettings &settings, const Item &item);
+    bool push_move(const motion::PathBody &move, const geom::MoveSettings &settings, const Item &item);
     bool push_output(const interp::SetDigitalOutput &output);
     bool push_output(const interp::SetAnalogOutput &output);
     bool begin(const interp::UsePlanner &planner);

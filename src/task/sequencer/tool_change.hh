@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "base/result.hh"
-#include "interp/machine_canon.hh"
+#include "interp/canon/machine_canon.hh"
 #include "io/controller.hh"
 #include "task/link/tool_store.hh"
 

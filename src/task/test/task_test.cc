@@ -131,7 +131,7 @@ class TaskTest : public testing::Test {
     }
     static Settings settings_for(const fs::path &folder, Settings settings) {
         settings.interpreter.user_m_path = {folder.string()};
-        settings.isClockHeldByUserPrograms = true;
+        settings.isUserProgramWaitedFor = true;
         return settings;
     }
     void make_program(const std::string &name, const std::string &script) const {

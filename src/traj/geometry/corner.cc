@@ -177,7 +177,7 @@ Corner corner_between(const Leg &a, const Leg &b, const Conditions &c) noexcept 
     const MoveRequest &rb = b.move.request;
     const bool isAnyLocked = c.isLocked(ra) || c.isLocked(rb);
     const bool isPass = c.isLocked(ra) && c.isLocked(rb) && ra.spindle == rb.spindle;
-    const bool isStop = (ra.join == Join::STOP && !isPass) || rb.isGated || ra.tag.isProbe ||
+    const bool isStop = (ra.join == geom::PathMode::EXACT_STOP && !isPass) || rb.isGated || ra.tag.isProbe ||
                         rb.tag.isProbe || (isAnyLocked ? !isPass : ra.isSynched() != rb.isSynched());
     if (isStop) {
         return {.isStop = true, .dwell_s = c.limits.filter_s()};
@@ -192,7 +192,7 @@ Corner corner_between(const Leg &a, const Leg &b, const Conditions &c) noexcept 
     if (step <= PathTuning::SAME_DIRECTION) {
         return {};
     }
-    const bool isExact = ra.join != Join::BLEND || rb.join != Join::BLEND;
+    const bool isExact = ra.join != geom::PathMode::BLEND || rb.join != geom::PathMode::BLEND;
     const Pose ta = derivative_at(a.line, a.line.length);
     const Pose tb = derivative_at(b.line, 0);
     const bool isCorner = isExact && step > PathTuning::EXACT_STEP;

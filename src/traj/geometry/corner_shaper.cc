@@ -19,7 +19,8 @@ struct Demand {
 
 bool isPlain(const Leg &leg) noexcept {
     const MoveRequest &r = leg.move.request;
-    return !leg.line.isArc && r.join == Join::BLEND && !r.isGated && !r.tag.isProbe && r.tolerance > 0;
+    return !leg.line.isArc && r.join == geom::PathMode::BLEND && !r.isGated && !r.tag.isProbe &&
+           r.tolerance > 0;
 }
 
 /// Nothing where there is no curve.

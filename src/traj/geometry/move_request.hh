@@ -2,19 +2,14 @@
 // One move of a path besides its geometry.
 #pragma once
 
+#include "geom/move_settings.hh"
 #include "traj/path_store.hh"
 
 namespace mw::traj {
 
-enum class Join : std::uint8_t {
-    STOP,   ///< comes to a stop at the end of the move
-    EXACT,  ///< passes the end without a stop only where the path goes on in the same direction
-    BLEND,  ///< rounds the corner within the tolerance
-};
-
 struct MoveRequest {
     MoveTag tag;
-    Join join = Join::BLEND;
+    geom::PathMode join = geom::PathMode::BLEND;
     /// Of a blend [machine units; degrees over ABC]; 0: as the speed needs, in proportion to the move.
     double tolerance = 0;
     double corner_scale = 1;     ///< with jerk limits: part of the reachable speed in corners (G64 R)

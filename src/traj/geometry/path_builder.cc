@@ -121,8 +121,9 @@ bool PathBuilder::canGrow(const PlannedPath &path, const Primitive &line,
                         before.merge_tolerance == request.merge_tolerance &&
                         before.corner_scale == request.corner_scale && before.isRapid == request.isRapid &&
                         before.isOverridable == request.isOverridable && before.tag.type == request.tag.type;
-    const bool isPlain = before.join == Join::BLEND && request.join == Join::BLEND && !request.isGated &&
-                         !(request.feed_per_revolution > 0) && !(before.feed_per_revolution > 0);
+    const bool isPlain = before.join == geom::PathMode::BLEND && request.join == geom::PathMode::BLEND &&
+                         !request.isGated && !(request.feed_per_revolution > 0) &&
+                         !(before.feed_per_revolution > 0);
     return isSame && isPlain && !line.isArc && !path.primitive(newest_).isArc &&
            joined_count_ < PathTuning::MOST_JOINED;
 }
@@ -186,7 +187,7 @@ Corner PathBuilder::fresh_corner(const PlannedPath &path, const Conditions &c, S
     const MoveRequest &request = path.move(n).request;
     const Pose step = tangent_step(path.primitive(n - 1), path.primitive(n));
     corner.isStop = geom::norm(step) > PathTuning::SAME_DIRECTION || request.isGated ||
-                    path.move(n - 1).request.join == Join::STOP ||
+                    path.move(n - 1).request.join == geom::PathMode::EXACT_STOP ||
                     isExactArc(path.primitive(n), request, c.limits) ||
                     isExactArc(path.primitive(n - 1), path.move(n - 1).request, c.limits);
     corner.dwell_s = c.limits.filter_s();

@@ -44,7 +44,9 @@ bool PathLimits::suits(double tolerance) const noexcept {
 }
 
 double PathLimits::path_tolerance(const MoveRequest &request) const noexcept {
-    return request.join != Join::BLEND ? 0.0 : request.tolerance > 0 ? request.tolerance : nominal_tolerance_;
+    return request.join != geom::PathMode::BLEND ? 0.0
+           : request.tolerance > 0               ? request.tolerance
+                                                 : nominal_tolerance_;
 }
 
 double PathLimits::free_tolerance(const Primitive &primitive) const noexcept {

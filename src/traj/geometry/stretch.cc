@@ -21,7 +21,7 @@ double turning_speed(const MoveRequest &r, const Scales &scales) noexcept {
 }
 
 double tolerance_of(const PlannedMove &m, const PathLimits &limits) noexcept {
-    if (m.request.join != Join::BLEND) {
+    if (m.request.join != geom::PathMode::BLEND) {
         return PathTuning::EXACT_DEVIATION;
     }
     if (m.request.tolerance > 0) {
@@ -31,7 +31,7 @@ double tolerance_of(const PlannedMove &m, const PathLimits &limits) noexcept {
 }
 
 bool isExactArc(const Primitive &p, const MoveRequest &request, const PathLimits &limits) noexcept {
-    return limits.isFiltered() && p.isArc && request.join != Join::BLEND;
+    return limits.isFiltered() && p.isArc && request.join != geom::PathMode::BLEND;
 }
 
 // With k the curvature, the acceleration is (a, k v^2), the jerk (j - k^2 v^3, 3 k v a), along and across.

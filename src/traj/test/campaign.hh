@@ -19,7 +19,7 @@ struct Program {
     std::vector<MoveRequest> requests;
     Limits limits;
     double tolerance = 0;
-    Join join = Join::BLEND;
+    geom::PathMode join = geom::PathMode::BLEND;
     bool isBoxed = false;  ///< the soft limits are those of the path
 };
 
@@ -54,7 +54,7 @@ class Maker {
             gentlest = std::min(gentlest, p.limits.acceleration[i]);
         }
         if (isCurve) {
-            p.join = Join::BLEND;
+            p.join = geom::PathMode::BLEND;
             p.tolerance = std::pow(10.0, real(-2.5, -1));
             curve(p, whole(100, 600));
         } else {
@@ -86,7 +86,7 @@ class Maker {
     Program make_curve() {
         Program p = frame();
         p.tolerance = std::pow(10.0, real(-2.5, -1));
-        p.join = Join::BLEND;
+        p.join = geom::PathMode::BLEND;
         for (double &a : p.limits.acceleration) {
             a = std::max(a, 200.0);
         }
@@ -97,13 +97,15 @@ class Maker {
   private:
     /// Path mode and tolerance change on the way; none is wider than that of the program.
     void mix(Program &p) {
-        p.join = Join::BLEND;
+        p.join = geom::PathMode::BLEND;
         p.tolerance = std::pow(10.0, real(-2.5, 0));
-        Join join = p.join;
+        geom::PathMode join = p.join;
         double tolerance = p.tolerance;
         for (MoveRequest &r : p.requests) {
             if (chance(0.1)) {
-                join = chance(0.6) ? Join::BLEND : chance(0.5) ? Join::EXACT : Join::STOP;
+                join = chance(0.6)   ? geom::PathMode::BLEND
+                       : chance(0.5) ? geom::PathMode::EXACT_PATH
+                                     : geom::PathMode::EXACT_STOP;
                 tolerance = p.tolerance * std::pow(10.0, real(-1, 0));
             }
             r.join = join;
@@ -171,7 +173,9 @@ class Maker {
         }
         p.limits.jerk[XYZ_NORM] = isJerkLimited_ && chance(0.5) ? std::pow(10.0, real(3, 6)) : UNLIMITED;
         p.tolerance = chance(0.2) ? 0.0 : std::pow(10.0, real(-3, 0));
-        p.join = chance(0.15) ? Join::STOP : chance(0.15) ? Join::EXACT : Join::BLEND;
+        p.join = chance(0.15)   ? geom::PathMode::EXACT_STOP
+                 : chance(0.15) ? geom::PathMode::EXACT_PATH
+                                : geom::PathMode::BLEND;
         return p;
     }
     static void push(Program &p, const Primitive &q, double feed, int n) {
@@ -324,7 +328,7 @@ inline double worst_excursion(const std::vector<Pose> &samples, const Program &p
 
 /// How far the path may be from the programmed one; 0: any.
 inline double allowed_deviation(const Program &program) {
-    if (program.join != Join::BLEND) {
+    if (program.join != geom::PathMode::BLEND) {
         return 1e-6;
     }
     if (program.tolerance > 0 || !program.limits.isJerkLimited) {

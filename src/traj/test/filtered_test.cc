@@ -32,7 +32,7 @@ Pose at(double x, double y = 0) {
     return p;
 }
 
-MoveRequest request(Join join, double tolerance = 0) {
+MoveRequest request(geom::PathMode join, double tolerance = 0) {
     MoveRequest r;
     r.tag.requested_velocity = 80;
     r.join = join;
@@ -56,7 +56,7 @@ struct JerkRig : Rig {
 
 TEST(Filtered, AMoveFromStopToStopTakesTheTimeOfAnSCurve_C13) {
     JerkRig rig;
-    rig.planner.add(make_line(Pose{}, at(20)), request(Join::STOP));
+    rig.planner.add(make_line(Pose{}, at(20)), request(geom::PathMode::EXACT_STOP));
     ASSERT_TRUE(rig.run(10));
     rig.expect_within();
     EXPECT_EQ(rig.samples.back(), at(20));
@@ -66,7 +66,7 @@ TEST(Filtered, AMoveFromStopToStopTakesTheTimeOfAnSCurve_C13) {
 
 TEST(Filtered, AShortMoveIsAnSCurveWithoutAPlateau_C13) {
     JerkRig rig;
-    rig.planner.add(make_line(Pose{}, at(1)), request(Join::STOP));
+    rig.planner.add(make_line(Pose{}, at(1)), request(geom::PathMode::EXACT_STOP));
     ASSERT_TRUE(rig.run(10));
     rig.expect_within();
     // Up and down with a coast of A/J between: L = a t^2 + a t A/J.
@@ -77,8 +77,8 @@ TEST(Filtered, AShortMoveIsAnSCurveWithoutAPlateau_C13) {
 
 TEST(Filtered, ACornerUsesTheToleranceAndNoMore_C13) {
     JerkRig rig;
-    rig.planner.add(make_line(Pose{}, at(10)), request(Join::BLEND, 0.005));
-    rig.planner.add(make_line(at(10), at(10, 10)), request(Join::BLEND, 0.005));
+    rig.planner.add(make_line(Pose{}, at(10)), request(geom::PathMode::BLEND, 0.005));
+    rig.planner.add(make_line(at(10), at(10, 10)), request(geom::PathMode::BLEND, 0.005));
     ASSERT_TRUE(rig.run(10));
     rig.expect_within();
     double nearest = 100;
@@ -91,7 +91,7 @@ TEST(Filtered, ACornerUsesTheToleranceAndNoMore_C13) {
 
 double corner_time(double corner_scale) {
     JerkRig rig;
-    MoveRequest r = request(Join::BLEND, 0.5);
+    MoveRequest r = request(geom::PathMode::BLEND, 0.5);
     r.corner_scale = corner_scale;
     rig.planner.add(make_line(Pose{}, at(20)), r);
     rig.planner.add(make_line(at(20), at(35, 15)), r);
@@ -112,8 +112,8 @@ TEST(Filtered, AnExactArcIsFollowedExactly_C13) {
     shape.angle_rad = std::numbers::pi;
     Primitive arc;
     ASSERT_EQ(make_arc(Pose{}, at(0, 10), shape, arc), ArcFault::NONE);
-    rig.planner.add(arc, request(Join::EXACT));
-    rig.planner.add(make_line(at(0, 10), at(-20, 10)), request(Join::EXACT));
+    rig.planner.add(arc, request(geom::PathMode::EXACT_PATH));
+    rig.planner.add(make_line(at(0, 10), at(-20, 10)), request(geom::PathMode::EXACT_PATH));
     ASSERT_TRUE(rig.run(10));
     rig.expect_within();
     EXPECT_EQ(rig.samples.back(), at(-20, 10));
@@ -126,7 +126,7 @@ TEST(Filtered, AnExactArcIsFollowedExactly_C13) {
 
 TEST(Filtered, AHoldStopsWithinTheJerkLimitAndGoesOn_C13) {
     JerkRig rig;
-    rig.planner.add(make_line(Pose{}, at(60)), request(Join::STOP));
+    rig.planner.add(make_line(Pose{}, at(60)), request(geom::PathMode::EXACT_STOP));
     rig.planner.release_end();
     for (int i = 0; i < 300; ++i) {
         rig.step();
@@ -150,7 +150,7 @@ void add_circle(Rig &rig, double radius, double tolerance) {
     for (int i = 1; i <= 180; ++i) {
         const double angle = 2 * std::numbers::pi * i / 180;
         const Pose to = at(radius * std::sin(angle), radius * (1 - std::cos(angle)));
-        rig.planner.add(make_line(from, to), request(Join::BLEND, tolerance));
+        rig.planner.add(make_line(from, to), request(geom::PathMode::BLEND, tolerance));
         from = to;
     }
 }
@@ -212,8 +212,9 @@ TEST(Filtered, AnArcWithoutAToleranceKeepsItsSize_C13) {
     shape.angle_rad = 2 * std::numbers::pi;
     Primitive arc;
     ASSERT_EQ(make_arc(Pose{}, Pose{}, shape, arc), ArcFault::NONE);
-    rig.planner.begin(Pose{}, rig.executor.snapshot(), rig.planner.path_tolerance(request(Join::BLEND)));
-    rig.planner.add(arc, request(Join::BLEND));
+    rig.planner.begin(Pose{}, rig.executor.snapshot(),
+                      rig.planner.path_tolerance(request(geom::PathMode::BLEND)));
+    rig.planner.add(arc, request(geom::PathMode::BLEND));
     ASSERT_TRUE(rig.run(30));
     for (const Pose &p : rig.samples) {
         EXPECT_NEAR(geom::norm(p - at(0, RADIUS)), RADIUS, 1e-3 * RADIUS);
@@ -239,7 +240,7 @@ TEST(Filtered, TheFeedIsKeptWhereLinesAndArcsMeet_C13) {
     limits.acceleration[XYZ_NORM] = A;
     Rig rig{Pose{}};
     rig.planner.set_limits(limits);
-    MoveRequest move = request(Join::BLEND, 0.025);
+    MoveRequest move = request(geom::PathMode::BLEND, 0.025);
     move.tag.requested_velocity = FEED;
     rig.planner.begin(Pose{}, rig.executor.snapshot(), rig.planner.path_tolerance(move));
     // Round a rectangle: along, and a quarter to the left, four times.
@@ -277,8 +278,8 @@ TEST(Filtered, PlanningTouchesNoHeap_C13) {
     rig.samples.reserve(20000);
     const testing::AllocationGuard guard;
     add_circle(rig, 5, 0.01);
-    rig.planner.add(make_line(Pose{}, at(20, 5)), request(Join::BLEND, 0.01));
-    rig.planner.add(make_line(at(20, 5), at(0, 5)), request(Join::STOP));
+    rig.planner.add(make_line(Pose{}, at(20, 5)), request(geom::PathMode::BLEND, 0.01));
+    rig.planner.add(make_line(at(20, 5), at(0, 5)), request(geom::PathMode::EXACT_STOP));
     ASSERT_TRUE(rig.run(15));
     EXPECT_EQ(guard.calls(), 0U);
 }
@@ -291,7 +292,7 @@ TEST(Joining, NearlyStraightLinesBecomeOneWithinTheTolerance_C2) {
     Pose from;
     for (int i = 1; i <= 50; ++i) {
         const Pose to = at(0.05 * i, i % 2 == 0 ? 0.0 : 0.0004);
-        rig.planner.add(make_line(from, to), request(Join::BLEND, 0.01));
+        rig.planner.add(make_line(from, to), request(geom::PathMode::BLEND, 0.01));
         from = to;
     }
     EXPECT_LE(rig.planner.last_move(), 2U);
@@ -302,9 +303,9 @@ TEST(Joining, NearlyStraightLinesBecomeOneWithinTheTolerance_C2) {
 TEST(Joining, AnEventKeepsItsPlace_C2) {
     Rig rig{Pose{}};
     rig.planner.set_limits(jerk_limits());
-    rig.planner.add(make_line(Pose{}, at(5)), request(Join::BLEND, 0.01));
+    rig.planner.add(make_line(Pose{}, at(5)), request(geom::PathMode::BLEND, 0.01));
     ASSERT_TRUE(rig.planner.add_event({}));
-    rig.planner.add(make_line(at(5), at(10)), request(Join::BLEND, 0.01));
+    rig.planner.add(make_line(at(5), at(10)), request(geom::PathMode::BLEND, 0.01));
     EXPECT_EQ(rig.planner.last_move(), 2U);
 }
 

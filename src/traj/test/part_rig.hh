@@ -38,7 +38,7 @@ inline Limits even_limits(double v, double a, double j) {
     return l;
 }
 
-inline MoveRequest asking(double feed, Join join = Join::BLEND, double tolerance = 0) {
+inline MoveRequest asking(double feed, geom::PathMode join = geom::PathMode::BLEND, double tolerance = 0) {
     MoveRequest r;
     r.tag.requested_velocity = feed;
     r.join = join;

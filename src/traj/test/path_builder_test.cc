@@ -48,12 +48,12 @@ struct BuilderRig : Parts {
 
 TEST(PathBuilder, AMoveLiesInThePathWhenItsEndIsKnown_C2) {
     BuilderRig rig(even_limits(100, 1000));
-    rig.line_to(at(10), asking(50, Join::STOP));
+    rig.line_to(at(10), asking(50, geom::PathMode::EXACT_STOP));
     EXPECT_EQ(rig.path->last_piece(), 0U);
     EXPECT_TRUE(rig.builder.hasOpenEnd());
-    rig.line_to(at(10, 10), asking(50, Join::STOP));
+    rig.line_to(at(10, 10), asking(50, geom::PathMode::EXACT_STOP));
     EXPECT_EQ(rig.path->last_piece(), 0U);
-    rig.line_to(at(0, 10), asking(50, Join::STOP));
+    rig.line_to(at(0, 10), asking(50, geom::PathMode::EXACT_STOP));
     EXPECT_EQ(rig.path->last_piece(), 1U);
     rig.release();
     EXPECT_EQ(rig.path->last_piece(), 3U);
@@ -65,8 +65,8 @@ TEST(PathBuilder, AMoveLiesInThePathWhenItsEndIsKnown_C2) {
 
 TEST(PathBuilder, ABlendRoundsTheCornerWithinTheTolerance_C2) {
     BuilderRig rig(even_limits(100, 1000));
-    rig.line_to(at(10), asking(50, Join::BLEND, 0.1));
-    rig.line_to(at(10, 10), asking(50, Join::BLEND, 0.1));
+    rig.line_to(at(10), asking(50, geom::PathMode::BLEND, 0.1));
+    rig.line_to(at(10, 10), asking(50, geom::PathMode::BLEND, 0.1));
     rig.release();
     EXPECT_EQ(rig.stops(), 0);
     rig.expect_continuous();
@@ -97,7 +97,9 @@ TEST(PathBuilder, RandomMovesGiveAPathWithoutGapsAndKinks_C2) {
             for (int i = 0; i < 5; ++i) {
                 to[i] += real(-3, 3);
             }
-            const Join join = n % 7 == 6 ? Join::STOP : n % 11 == 10 ? Join::EXACT : Join::BLEND;
+            const geom::PathMode join = n % 7 == 6     ? geom::PathMode::EXACT_STOP
+                                        : n % 11 == 10 ? geom::PathMode::EXACT_PATH
+                                                       : geom::PathMode::BLEND;
             rig.line_to(to, asking(real(5, 90), join, real(0.01, 0.2)));
             end = to;
         }
@@ -120,11 +122,11 @@ TEST(PathBuilder, RandomMovesGiveAPathWithoutGapsAndKinks_C2) {
 TEST(PathBuilder, NearlyStraightLinesBecomeOneUpToSomethingThatHangsOnTheirEnd_C2) {
     BuilderRig rig(even_limits(100, 1000));
     for (int i = 1; i <= 10; ++i) {
-        rig.line_to(at(i, i % 2 == 0 ? 0 : 1e-4), asking(50, Join::BLEND, 0.01));
+        rig.line_to(at(i, i % 2 == 0 ? 0 : 1e-4), asking(50, geom::PathMode::BLEND, 0.01));
     }
     EXPECT_EQ(rig.path->last_move(), 1U);
     rig.builder.keep_end();
-    rig.line_to(at(11), asking(50, Join::BLEND, 0.01));
+    rig.line_to(at(11), asking(50, geom::PathMode::BLEND, 0.01));
     EXPECT_EQ(rig.path->last_move(), 2U);
     rig.release();
     rig.expect_continuous();
@@ -132,12 +134,12 @@ TEST(PathBuilder, NearlyStraightLinesBecomeOneUpToSomethingThatHangsOnTheirEnd_C
 
 TEST(PathBuilder, LinesThatLeaveTheToleranceOrDifferInTheirDemandsStayMoves_C2) {
     BuilderRig rig(even_limits(100, 1000));
-    rig.line_to(at(1), asking(50, Join::BLEND, 0.01));
-    rig.line_to(at(2, 0.1), asking(50, Join::BLEND, 0.01));
+    rig.line_to(at(1), asking(50, geom::PathMode::BLEND, 0.01));
+    rig.line_to(at(2, 0.1), asking(50, geom::PathMode::BLEND, 0.01));
     EXPECT_EQ(rig.path->last_move(), 2U);
-    rig.line_to(at(3, 0.2), asking(40, Join::BLEND, 0.01));
+    rig.line_to(at(3, 0.2), asking(40, geom::PathMode::BLEND, 0.01));
     EXPECT_EQ(rig.path->last_move(), 3U);
-    MoveRequest gated = asking(40, Join::BLEND, 0.01);
+    MoveRequest gated = asking(40, geom::PathMode::BLEND, 0.01);
     gated.isGated = true;
     rig.line_to(at(4, 0.3), gated);
     EXPECT_EQ(rig.path->last_move(), 4U);
@@ -146,11 +148,11 @@ TEST(PathBuilder, LinesThatLeaveTheToleranceOrDifferInTheirDemandsStayMoves_C2) 
 TEST(PathBuilder, AGateAProbeAndAChangeToASpindleAreStops_C2) {
     for (int kind = 0; kind < 3; ++kind) {
         BuilderRig rig(even_limits(100, 1000));
-        MoveRequest second = asking(50, Join::BLEND, 0.1);
+        MoveRequest second = asking(50, geom::PathMode::BLEND, 0.1);
         second.isGated = kind == 0;
         second.tag.isProbe = kind == 1;
         second.feed_per_revolution = kind == 2 ? 0.5 : 0.0;
-        rig.line_to(at(10), asking(50, Join::BLEND, 0.1));
+        rig.line_to(at(10), asking(50, geom::PathMode::BLEND, 0.1));
         rig.line_to(at(10, 10), second);
         rig.release();
         EXPECT_EQ(rig.stops(), 1) << kind;
@@ -164,7 +166,7 @@ TEST(PathBuilder, SaysWhenTheRingsAreFullAndNeverOverrunsThem_C2) {
     double y = 0;
     while (PathBuilder::hasRoom(*rig.path, rig.conditions.limits, now) && added < 100000) {
         y = y > 0 ? 0.0 : 1.0;
-        rig.line_to(at(++added, y), asking(50, Join::BLEND, 0.1));
+        rig.line_to(at(++added, y), asking(50, geom::PathMode::BLEND, 0.1));
     }
     EXPECT_LT(added, 100000);
     EXPECT_GT(added, 2000);
@@ -190,7 +192,7 @@ TEST(PathBuilder, AnArcIsCutSoThatItsDirectionChangesLittleOnEachPiece_C2) {
 TEST(PathBuilder, AThreadsCornerMovesOnSoThatTheFirstLineKeepsItsLength_C9) {
     BuilderRig rig(even_limits(100, 1000));
     rig.conditions.scales.spindle_rps[0] = 10;
-    MoveRequest thread = asking(0, Join::EXACT);
+    MoveRequest thread = asking(0, geom::PathMode::EXACT_PATH);
     thread.feed_per_revolution = 1.5;
     thread.isLocked = true;
     rig.line_to(at(10), thread);
@@ -232,7 +234,7 @@ TEST(CornerShaper, MovesTheCornersOfADenseCurveOutwardsWithinTheTolerance_C13) {
         return make_line(on(i), on(i + 1));
     };
     PlannedMove move;
-    move.request = asking(80, Join::BLEND, P);
+    move.request = asking(80, geom::PathMode::BLEND, P);
     move.feed = 80;
     double farthest = 0;
     for (int i = 0; i < 180; ++i) {

@@ -15,7 +15,7 @@ Limits plain_limits() {
     return l;
 }
 
-MoveRequest feed(double f, Join join = Join::BLEND, double p = 0) {
+MoveRequest feed(double f, geom::PathMode join = geom::PathMode::BLEND, double p = 0) {
     MoveRequest r;
     r.tag.requested_velocity = f;
     r.join = join;
@@ -55,8 +55,8 @@ TEST(Planner, DrivesOneLineToItsExactEndInTheTimeOfATrapezoid) {
 TEST(Planner, ExactStopComesToRestOnTheCorner) {
     Rig rig{Pose{}};
     rig.planner.set_limits(plain_limits());
-    rig.planner.add(make_line(Pose{}, at(5)), feed(50, Join::STOP));
-    rig.planner.add(make_line(at(5), at(5, 5)), feed(50, Join::STOP));
+    rig.planner.add(make_line(Pose{}, at(5)), feed(50, geom::PathMode::EXACT_STOP));
+    rig.planner.add(make_line(at(5), at(5, 5)), feed(50, geom::PathMode::EXACT_STOP));
     ASSERT_TRUE(rig.run(10));
     expect_within(rig, plain_limits());
     double nearest = 1;
@@ -69,8 +69,8 @@ TEST(Planner, ExactStopComesToRestOnTheCorner) {
 TEST(Planner, BlendKeepsToleranceAndSpeed) {
     Rig rig{Pose{}};
     rig.planner.set_limits(plain_limits());
-    rig.planner.add(make_line(Pose{}, at(20)), feed(50, Join::BLEND, 0.1));
-    rig.planner.add(make_line(at(20), at(20, 20)), feed(50, Join::BLEND, 0.1));
+    rig.planner.add(make_line(Pose{}, at(20)), feed(50, geom::PathMode::BLEND, 0.1));
+    rig.planner.add(make_line(at(20), at(20, 20)), feed(50, geom::PathMode::BLEND, 0.1));
     ASSERT_TRUE(rig.run(10));
     expect_within(rig, plain_limits());
     double nearest = 100;
@@ -85,7 +85,7 @@ TEST(Planner, BlendKeepsToleranceAndSpeed) {
 double joined_deviation(bool isAdded) {
     Rig rig{Pose{}};
     rig.planner.set_limits(plain_limits());
-    MoveRequest r = feed(50, Join::BLEND, 0.01);
+    MoveRequest r = feed(50, geom::PathMode::BLEND, 0.01);
     r.merge_tolerance = 0.05;
     r.isMergeAdded = isAdded;
     rig.planner.add(make_line(Pose{}, at(5, 0.04)), r);
@@ -110,7 +110,7 @@ TEST(Planner, LostPlannerMeansAStopOnThePath) {
     Pose at_now;
     for (int i = 0; i < 300; ++i) {
         const Pose next = at(0.2 * (i + 1), i % 2 == 0 ? 0.1 : 0.0);
-        rig.planner.add(make_line(at_now, next), feed(80, Join::BLEND, 0.05));
+        rig.planner.add(make_line(at_now, next), feed(80, geom::PathMode::BLEND, 0.05));
         at_now = next;
     }
     for (int i = 0; i < 200; ++i) {

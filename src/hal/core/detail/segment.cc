@@ -30,7 +30,7 @@ void Segment::initialise(bool isVirtual) noexcept {
     ::pthread_mutex_init(&fresh->mutex, &attributes);
     ::pthread_mutexattr_destroy(&attributes);
     fresh->isVirtual = isVirtual;
-    // Three apart, as numbers of the reference's owners are.
+    // Three apart, as numbers of LinuxCNC's owners are.
     fresh->next_comp_id = 4;
     fresh->top = static_cast<Offset>((sizeof(Header) + 63) / 64 * 64);
 }

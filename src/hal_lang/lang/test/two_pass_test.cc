@@ -118,7 +118,7 @@ TEST_F(TwoPassTest, WhatCannotBeMergedIsAnErrorWithBothPlaces_B4) {
 TEST_F(TwoPassTest, EverythingElseRunsInTheSecondPassOnce) {
     EXPECT_EQ(run({"newsig one bit\nlist sig\nstype one\n", "sets one 1\ngets one\nlist sig\n"}),
               "\n\none \nbit\nTRUE\none \n")
-        << "the answers of list are printed in the first pass too, as the field's files expect";
+        << "the answers of list are printed in the first pass too, as files written for LinuxCNC expect";
     EXPECT_TRUE(last_result);
     EXPECT_NE(run({"newsig one bit\nbogus\n"}).find("unknown command 'bogus'"), std::string::npos);
     EXPECT_FALSE(host->hal().hasSignal("one")) << "found before anything was done";

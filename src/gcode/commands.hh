@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The commands of `millwright` that need no machine, each from its words to the exit status: 0 done, 1
+// refused or failed, 2 wrong usage.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace mw::gcode {
+
+int command_format(const std::vector<std::string> &words);
+int command_explain(const std::vector<std::string> &words);
+
+}  // namespace mw::gcode

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The one table of codes: modal group, words, place in the order of execution, handler.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "interp/ast/ast.hh"
+
+namespace mw::interp::detail {
+
+class Executor;
+struct BlockValues;
+struct Code;
+
+/// In the order in which the parts of one block take place.
+enum class Phase : std::uint8_t {
+    COMMENT,
+    SPINDLE_MODE,
+    FEED_MODE,
+    FEED,
+    SPEED,
+    TOOL,
+    EARLY_REMAP,
+    IO,
+    CHANGE_TOOL,
+    SPINDLE,
+    CONTEXT,
+    COOLANT,
+    OVERRIDE,
+    USER,
+    DWELL,
+    PLANE,
+    UNITS,
+    DIAMETER,
+    COMP,
+    TOOL_OFFSET,
+    COORDINATES,
+    CONTROL,
+    DISTANCE,
+    CENTRE_DISTANCE,
+    RETRACT,
+    OFFSETS,
+    MOTION,
+    STOP,
+};
+
+/// At most one code of each group may stand in a block.
+enum class Group : std::uint8_t {
+    NON_MODAL,
+    MOTION,
+    PLANE,
+    DISTANCE,
+    CENTRE_DISTANCE,
+    FEED_MODE,
+    UNITS,
+    COMP,
+    TOOL_OFFSET,
+    RETRACT,
+    COORDINATES,
+    CONTROL,
+    SPINDLE_MODE,
+    DIAMETER,
+    STOP,
+    IO,
+    TOOL_CHANGE,
+    SPINDLE,
+    COOLANT,
+    OVERRIDE,
+    USER,
+    CONTEXT,
+    WORD_F,
+    WORD_S,
+    WORD_T,
+};
+
+using Handler = bool (Executor::*)(const Code &code, const BlockValues &values);
+
+struct Code {
+    char letter = 'g';
+    int number = 0;  ///< ten times the number for G, the number for M
+    Group group{};
+    Phase phase{};
+    bool usesAxes = false;       ///< axis words in the block are this code's
+    std::uint32_t words = 0;     ///< letters that it may have, beside axes
+    std::uint32_t required = 0;  ///< letters that it must have
+    Handler handler = nullptr;
+    const void *remap = nullptr;  ///< for remapped codes: their Remap
+};
+
+/// The row of a code, or null. `number` as in Code.
+/// All rows of the table, user codes left out.
+std::span<const Code> all_codes();
+const Code *find_code(char letter, int number);
+/// F, S or T.
+const Code *find_word_code(char letter);
+
+constexpr std::uint32_t bit_of(int letter_index) {
+    return 1u << letter_index;
+}
+
+/// Letters as a set: "xyz@" and so on.
+constexpr std::uint32_t letters(std::string_view text) {
+    std::uint32_t set = 0;
+    for (const char c : text) {
+        set |= bit_of(c == '@' ? LETTER_AT : c == '^' ? LETTER_CARET : c == '$' ? LETTER_DOLLAR : letter(c));
+    }
+    return set;
+}
+
+inline constexpr std::uint32_t AXES = letters("xyzabcuvw@^");
+
+}  // namespace mw::interp::detail
