@@ -380,6 +380,9 @@ Outcome Task::Handler::operator()(const HomeJoint &command) {
     if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
     }
+    if (task.homing_.isUnderWay()) {
+        return fail("homing is under way already");
+    }
     task.motion_.send(motion::SetMode{motion::Mode::FREE});
     task.homing_.begin(command.joint, id, task.motion_.send(motion::Home{command.joint}));
     return Progress::STARTED;

@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "interp/interpreter.hh"
 #include "interp/canon/machine_frame.hh"
+#include "interp/interpreter.hh"
 #include "task/run/task_canon.hh"
 
 namespace mw::task {

@@ -3,19 +3,15 @@
 
 #include <algorithm>
 
-#include "base/overloaded.hh"
+#include "mailbox/stops.hh"
 
 namespace mw::task {
 namespace {
 
 bool isUrgent(const msgs::Command &command) {
-    return std::visit(
-        []<class C>(const C &) {
-            return OneOf<C, msgs::AbortAll, msgs::AbortMachine, msgs::AbortTraj, msgs::AbortMotion,
-                         msgs::AbortTool, msgs::AbortIo, msgs::SetState, msgs::EstopOn, msgs::EstopOff,
-                         msgs::EstopReset>;
-        },
-        command);
+    return mailbox::isStop(command) || std::holds_alternative<msgs::SetState>(command) ||
+           std::holds_alternative<msgs::EstopOff>(command) ||
+           std::holds_alternative<msgs::EstopReset>(command);
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ class Inbox {
   public:
     void add(std::vector<mailbox::Desk::Delivery> deliveries);
     std::optional<mailbox::Desk::Delivery> next(bool isModeChanging);
-    /// Takes out what was asked for before the stop `stop` and still waits: it would begin after it. Lines for
-    /// the operator stay. The numbers of what was taken out.
+    /// Takes out what was asked for before the stop `stop` and still waits: it would begin after it. Lines
+    /// for the operator stay. The numbers of what was taken out.
     std::vector<mailbox::Serial> drop_before(mailbox::Serial stop);
 
   private:

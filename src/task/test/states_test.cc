@@ -173,14 +173,25 @@ TEST(HomingRequest, EndsWhenItIsRefusedOrAborted_D1) {
 
 TEST(Inbox, KeepsTheOrderAndLetsStopsPassWhileTheModeChanges_D1) {
     Inbox inbox;
-    inbox.add({{1, 1, Mdi{"G0"}}, {2, 1, AbortAll{}}});
+    inbox.add({{1, 1, Mdi{"G0"}}, {2, 1, AbortAll{}}, {5, 1, JogStop{}}});
     inbox.add({{3, 1, Null{}}, {4, 1, SetState{State::OFF}}});
     EXPECT_EQ(inbox.next(true)->serial, 2U);
+    EXPECT_EQ(inbox.next(true)->serial, 5U);
     EXPECT_EQ(inbox.next(true)->serial, 4U);
     EXPECT_FALSE(inbox.next(true).has_value());
     EXPECT_EQ(inbox.next(false)->serial, 1U);
     EXPECT_EQ(inbox.next(false)->serial, 3U);
     EXPECT_FALSE(inbox.next(false).has_value());
+}
+
+TEST(Inbox, DropsWhatWasAskedForBeforeAStopButNoLineForTheOperator_D1) {
+    Inbox inbox;
+    inbox.add(
+        {{1, 1, Mdi{"G0 X1"}}, {2, 1, OperatorText{"ready"}}, {3, 1, AbortAll{}}, {4, 1, Mdi{"G0 X2"}}});
+    EXPECT_EQ(inbox.next(true)->serial, 3U);
+    EXPECT_EQ(inbox.drop_before(3), std::vector<mailbox::Serial>{1U});
+    EXPECT_EQ(inbox.next(false)->serial, 2U);
+    EXPECT_EQ(inbox.next(false)->serial, 4U) << "what was asked for after it is carried out";
 }
 
 }  // namespace

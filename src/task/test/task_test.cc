@@ -43,6 +43,7 @@ class FakeMotion {
     std::vector<std::string> log;
     bool isHolding = false;
     bool isRefusingMoves = false;
+    bool isModeStuck = false;
     double corner_scale = -1;  ///< of the last move
 
   private:
@@ -55,7 +56,9 @@ class FakeMotion {
         } else if (std::holds_alternative<motion::Disable>(command.body)) {
             status.isEnabled = false;
         } else if (const auto *mode = std::get_if<motion::SetMode>(&command.body)) {
-            status.mode = mode->mode;
+            status.mode = isModeStuck ? status.mode : mode->mode;
+        } else if (std::holds_alternative<motion::JogStop>(command.body)) {
+            log.emplace_back("jog stop");
         } else if (const auto *on = std::get_if<motion::SpindleOn>(&command.body)) {
             log.push_back("spindle " + std::to_string(static_cast<int>(on->speed_rpm)));
         } else if (std::holds_alternative<motion::SpindleOff>(command.body)) {
@@ -271,6 +274,32 @@ TEST_F(TaskTest, M99InTheMainProgramBeginsItAgain_I1) {
     motion.log.clear();
     EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << reason(request);
     EXPECT_EQ(joined().substr(0, 14), "line 1, line 2");
+}
+
+TEST_F(TaskTest, AStopDoesNotWaitForTheModeToChange_D1) {
+    motion.isModeStuck = true;
+    const auto mode = post(SetMode{Mode::AUTO});
+    cycles(3);
+    const auto jog = post(JogContinuous{true, 0, 5}), stop = post(JogStop{true, 0});
+    cycles(3);
+    EXPECT_EQ(progress(stop), Progress::DONE);
+    EXPECT_NE(joined().find("jog stop"), std::string::npos);
+    EXPECT_EQ(progress(mode), Progress::STARTED);
+    EXPECT_EQ(progress(jog), Progress::STARTED) << "everything else waits";
+}
+
+TEST_F(TaskTest, HomingOfAnotherJointDoesNotLoseTheFirst_D1) {
+    motion.status.isHoming = true;
+    const auto first = post(HomeJoint{0});
+    cycles(3);
+    EXPECT_EQ(ask(HomeJoint{1}, 3), Progress::REFUSED);
+    EXPECT_NE(reason(request).find("homing"), std::string::npos);
+    EXPECT_EQ(progress(first), Progress::STARTED);
+    EXPECT_EQ(task.status().task.waiting.index, 0);
+    motion.status.isHoming = false;
+    motion.status.joint[0].isHomed = true;
+    cycles(3);
+    EXPECT_EQ(progress(first), Progress::DONE) << reason(first);
 }
 
 TEST_F(TaskTest, AProgramRunsToItsEnd_D1) {
