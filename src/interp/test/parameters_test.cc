@@ -49,7 +49,7 @@ TEST_F(ParametersTest, RollbackLeavesWhatWasCommitted_I1) {
 TEST_F(ParametersTest, RollbackIsExact_I1) {
     constexpr unsigned SEED = 3;
     std::mt19937 random(SEED);
-    const auto below = [&random](unsigned limit) { return random() % limit; };
+    const auto below = [&random](unsigned limit) { return static_cast<unsigned>(random() % limit); };
     std::vector<NameId> ids;
     for (int i = 0; i < 6; ++i) {
         ids.push_back(names.intern(std::string(1, static_cast<char>('p' + i))));
