@@ -14,8 +14,13 @@ namespace {
 
 using msgs::Progress;
 
-/// In one of so many cycles one place is looked at for a dead owner: each in its turn.
+/// In one of so many cycles one place is looked at for a dead owner, each in its turn; and those of attended
+/// clients.
 constexpr std::uint64_t OWNER_CHECK_CYCLES = 4;
+
+bool isOf(const Slot &slot, Role role) {
+    return slot.role.load(std::memory_order_relaxed) == static_cast<std::uint8_t>(role);
+}
 
 template <class Text>
 void assign(Text &text, std::string_view from) {
@@ -67,14 +72,29 @@ void Desk::take_slot(int index, std::vector<Delivery> &out) {
     for (std::uint32_t n = 0; n < MAX_POSTED && slot.posted.pop(posted_); ++n) {
         accept(index, posted_, out);
     }
-    const bool isTurn = (cycles_ / OWNER_CHECK_CYCLES) % MAX_CLIENTS == static_cast<std::uint64_t>(index) &&
-                        cycles_ % OWNER_CHECK_CYCLES == 0;
+    const bool isAttended = isOf(slot, Role::ATTENDED);
+    const bool isTurn =
+        cycles_ % OWNER_CHECK_CYCLES == 0 &&
+        (isAttended || (cycles_ / OWNER_CHECK_CYCLES) % MAX_CLIENTS == static_cast<std::uint64_t>(index));
     if (isLeaving || isTurn) {
-        check_owner(index);
+        check_owner(index, out);
     }
 }
 
-void Desk::check_owner(int index) {
+void Desk::stop_unattended(int index, std::vector<Delivery> &out) {
+    const bool isUnderWay = std::any_of(going_.begin(), going_.end(),
+                                        [index](const auto &going) { return going.second.slot == index; });
+    if (!isUnderWay) {
+        return;
+    }
+    const ClientId client = segment_.slots[static_cast<std::size_t>(index)].client.load();
+    post(msgs::MessageKind::OPERATOR_ERROR,
+         "client " + std::to_string(client) + ", which watched over what it had begun, is gone: aborted");
+    const Serial serial = segment_.serials.fetch_add(1, std::memory_order_relaxed) + 1;
+    out.push_back({serial, client, msgs::AbortAll{}, true});
+}
+
+void Desk::check_owner(int index, std::vector<Delivery> &out) {
     Slot &slot = segment_.slots[static_cast<std::size_t>(index)];
     const bool isLeaving = slot.isLeaving.load(std::memory_order_acquire) != 0;
     if (!isLeaving && isAlive(slot.owner.load(std::memory_order_relaxed))) {
@@ -88,7 +108,10 @@ void Desk::check_owner(int index) {
              "client " + std::to_string(client) +
                  ", which operated alone, is gone: all clients operate again");
     }
-    // Its commands go on: who started a program need not stay. Nobody asks for their outcomes any more.
+    if (isOf(slot, Role::ATTENDED)) {
+        stop_unattended(index, out);
+    }
+    // Commands of others go on: who started a program need not stay. Nobody asks for their outcomes any more.
     std::erase_if(going_, [index](const auto &going) { return going.second.slot == index; });
     serials_[static_cast<std::size_t>(index)].fill(0);
     for (auto &outcome : slot.outcomes) {
@@ -125,7 +148,7 @@ void Desk::accept(int index, const Posted &posted, std::vector<Delivery> &out) {
     const int place = free_outcome(index);
     const std::size_t size = std::min<std::size_t>(posted.size, posted.bytes.size());
     auto command = msgs::decode_command({posted.bytes.data(), size});
-    const bool isPanel = slot.role.load(std::memory_order_relaxed) == static_cast<std::uint8_t>(Role::PANEL);
+    const bool isPanel = isOf(slot, Role::PANEL);
     const ClientId client = slot.client.load(std::memory_order_relaxed);
     if (isNew && place < 0 && command.has_value() && isStop(*command)) {
         // A stop is never dropped: it is carried out though nothing tells its outcome.

@@ -413,6 +413,7 @@ void Task::update_status() {
     status_.codes = {codes.g, codes.m, codes.settings};
     status_.tool.from_pocket = io_.outputs.tool_from_pocket;
     status_.tool.prepared_index = sequencer_.selected_index();
+    status_.tool.isPersonAsked = parts_.io_port.isPersonAsked();
     status_.io.aux = {io_.isEstopRequested(), io_.isChainClosed()};
     status_.io.lube.isOn = io_.outputs.lube;
     tell_motion(motion, settings_.axis_mask, status_);

@@ -24,12 +24,16 @@
 
 namespace mw::task {
 
-/// The pins of the I/O controller, as task reads and writes them once a cycle.
+/// The pins of the I/O controller, as task reads and writes them once a cycle, and the person who changes
+/// tools by hand.
 class IoPort {
   public:
     virtual ~IoPort() = default;
     virtual io::Inputs read() = 0;
     virtual void write(const io::Outputs &outputs) = 0;
+    /// A person is asked to change the tool.
+    virtual bool isPersonAsked() const = 0;
+    virtual void confirm_tool_change() = 0;
 };
 
 struct Settings {
@@ -79,6 +83,9 @@ class Task final : public interp::World {
 
     /// One task cycle at clock time `now_ns`.
     void step(std::int64_t now_ns);
+
+    /// A line for the operator, whoever has the right to operate.
+    void post(MessageKind kind, const std::string &text) { desk_.post(kind, text); }
 
     const Status &status() const { return status_; }
     /// The planner in force, and wishes of the operator about it.
@@ -134,7 +141,6 @@ class Task final : public interp::World {
     void tell(mailbox::Serial id, Progress progress, const std::string &reason);
     void publish_tools();
     void update_status();
-    void post(MessageKind kind, const std::string &text) { desk_.post(kind, text); }
     bool isRunning() const { return run_.isRunning(); }
     /// Takes the machine's position and state as the program's.
     void synch_interpreter();
