@@ -8,7 +8,6 @@
 #include "app/commands.hh"
 #include "app/machine_access.hh"
 #include "app/operator.hh"
-#include "app/options.hh"
 #include "app/plot.hh"
 #include "app/recorder.hh"
 #include "app/run_words.hh"
@@ -21,6 +20,7 @@
 #include "machine/loaded_config.hh"
 #include "machine/machine.hh"
 #include "machine/tool_file.hh"
+#include "options/command_line.hh"
 
 namespace mw::app {
 namespace {
@@ -255,8 +255,8 @@ class Run {
 }  // namespace
 
 int command_run(const std::vector<std::string> &arguments) {
-    if (wantsHelp(arguments)) {
-        fmt::print("{}", RUN_USAGE);
+    if (options::wantsHelp(arguments)) {
+        fmt::print("{}", run_help());
         return 0;
     }
     const auto words = parse_run(arguments);

@@ -9,8 +9,6 @@
 
 namespace mw::app {
 
-extern const char *const RUN_USAGE;
-
 struct RunWords {
     std::string ini, program, trace, plot;
     bool isRealtime = false, isStrict = false, isEstimated = true, isChecked = true, isConfirmed = false;
@@ -18,6 +16,8 @@ struct RunWords {
     double patience_s = 60.0;
 };
 
+/// What --help says.
+std::string run_help();
 Result<RunWords> parse_run(const std::vector<std::string> &words);
 
 }  // namespace mw::app

@@ -9,48 +9,48 @@
 #include "app/commands.hh"
 #include "app/display_program.hh"
 #include "app/machine_access.hh"
-#include "app/options.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
 #include "hal/core/hal.hh"
 #include "machine/loaded_config.hh"
+#include "options/command_line.hh"
 
 namespace mw::app {
 namespace {
 
 constexpr std::int64_t DISPLAY_END_NS = 5000000000;
 
-constexpr const char *USAGE =
-    "usage: millwright start MACHINE.ini [options]\n"
-    "\n"
-    "Brings the machine up by the clock, in emergency stop, and keeps it up for its clients: 'millwright "
-    "run\n"
-    "MACHINE.ini PROGRAM.ngc --realtime' then runs programs on it, one after the other. It ends when the\n"
-    "display does that [DISPLAY]DISPLAY names, or at SIGINT, SIGTERM, SIGHUP or SIGQUIT: everything stops\n"
-    "along its path, spindles, coolant and the machine go off, parameters are saved. A second SIGINT ends "
-    "it\n"
-    "at once.\n"
-    "\n"
-    "  --no-display  start no display: up until a signal comes\n"
-    "  --strict      unknown INI keys are errors\n"
-    "\n"
-    "exit status: 0 ended in order, 1 refused or failed, 2 wrong usage\n";
-
 struct StartWords {
     std::string ini;
     bool isDisplayed = true, isStrict = false;
-};
+    options::Words rest;
 
-Result<StartWords> parse_start(const std::vector<std::string> &words) {
-    const auto options = parse_options(words, {{"--no-display", "--strict"}, {}});
-    if (!options.has_value()) {
-        return std::unexpected(options.error());
+    options::CommandLine line() {
+        options::CommandLine line("millwright start MACHINE.ini [options]",
+                                  "Brings the machine up by the clock, in emergency stop, and keeps it up "
+                                  "for its clients: 'millwright run\n"
+                                  "MACHINE.ini PROGRAM.ngc --realtime' then runs programs on it, one after "
+                                  "the other. It ends when the\n"
+                                  "display does that [DISPLAY]DISPLAY names, or at SIGINT, SIGTERM, SIGHUP "
+                                  "or SIGQUIT: everything stops\n"
+                                  "along its path, spindles, coolant and the machine go off, parameters are "
+                                  "saved. A second SIGINT ends it\n"
+                                  "at once.\n");
+        line.flag("--no-display", "start no display: up until a signal comes", isDisplayed, false);
+        line.flag("--strict", "unknown INI keys are errors", isStrict);
+        line.rest(rest);
+        line.footer("exit status: 0 ended in order, 1 refused or failed, 2 wrong usage\n");
+        return line;
     }
-    if (options->rest.size() != 1) {
-        return fail("start needs a machine's INI file", {}, "millwright start MACHINE.ini");
+    Result<> parse(const std::vector<std::string> &words) {
+        const auto parsed = line().parse(words);
+        if (parsed.has_value() && rest.size() != 1) {
+            return fail("start needs a machine's INI file", {}, "millwright start MACHINE.ini");
+        }
+        ini = parsed.has_value() ? rest[0] : "";
+        return parsed;
     }
-    return StartWords{options->rest[0], !options->has("--no-display"), options->has("--strict")};
-}
+};
 
 /// One `millwright start`, from a configuration that is loaded.
 class Start {
@@ -197,19 +197,19 @@ class Start {
 }  // namespace
 
 int command_start(const std::vector<std::string> &arguments) {
-    if (wantsHelp(arguments)) {
-        fmt::print("{}", USAGE);
+    StartWords words;
+    if (options::wantsHelp(arguments)) {
+        fmt::print("{}", words.line().help());
         return 0;
     }
-    const auto words = parse_start(arguments);
-    if (!words.has_value()) {
-        fmt::print(stderr, "millwright start: {}\n", words.error().str());
+    if (const auto parsed = words.parse(arguments); !parsed.has_value()) {
+        fmt::print(stderr, "millwright start: {}\n", parsed.error().str());
         return 2;
     }
     catch_stop_signals();
     diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", d.str()); });
-    auto loaded = machine::LoadedConfig::load(words->ini, sink);
-    return loaded == nullptr ? 1 : Start(*words, *loaded, sink).run();
+    auto loaded = machine::LoadedConfig::load(words.ini, sink);
+    return loaded == nullptr ? 1 : Start(words, *loaded, sink).run();
 }
 
 }  // namespace mw::app
