@@ -63,6 +63,7 @@ struct Task::Handler {
     Outcome operator()(const SpindleOn &command);
     Outcome operator()(const SpindleOff &command);
     Outcome operator()(const LoadToolTable &command);
+    Outcome operator()(const ConfirmToolChange &command);
 
     Outcome operator()(const SetOptionalStop &command) {
         task.world_.set_optional_stop(command.isOn);
@@ -437,6 +438,14 @@ Outcome Task::Handler::operator()(const LoadToolTable &) {
     }
     const auto loaded = task.parts_.tools.reload();
     return loaded.has_value() ? Outcome(Progress::DONE) : std::unexpected(loaded.error());
+}
+
+Outcome Task::Handler::operator()(const ConfirmToolChange &) {
+    if (!task.parts_.io_port.isPersonAsked()) {
+        return fail("nobody is asked to change a tool");
+    }
+    task.parts_.io_port.confirm_tool_change();
+    return Progress::DONE;
 }
 
 }  // namespace mw::task

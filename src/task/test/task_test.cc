@@ -111,7 +111,10 @@ class LoopedIo final : public IoPort {
         return in;
     }
     void write(const io::Outputs &o) override { outputs = o; }
+    bool isPersonAsked() const override { return isAsking; }
+    void confirm_tool_change() override { isAsking = false; }
     io::Outputs outputs;
+    bool isAsking = false;
     bool isChainClosed = true;
     bool isChangerWorking = true;
 };
@@ -215,6 +218,13 @@ TEST_F(TaskTest, AStopAlsoEndsOlderCommandsThatStillWaitForTheMode_D1) {
         EXPECT_EQ(ask(Mdi{"G21 G1 X8 F600"}), Progress::DONE) << reason(request);
     }
     EXPECT_TRUE(joined().contains("line 8") && !joined().contains("line 7")) << joined();
+}
+
+TEST_F(TaskTest, AToolChangeIsConfirmedOnlyWhileAPersonIsAsked_D3) {
+    EXPECT_EQ(ask(ConfirmToolChange{}), Progress::REFUSED);
+    io.isAsking = true;
+    EXPECT_EQ(ask(ConfirmToolChange{}), Progress::DONE);
+    EXPECT_FALSE(io.isAsking || task.status().tool.isPersonAsked);
 }
 
 TEST_F(TaskTest, AUserCodeRunsWithItsWordsAndIsAwaited_I1) {
