@@ -57,7 +57,7 @@ void Flow::unwind(std::size_t depth) {
         std::vector<Call> dropped = levels_.unwind(depth);
         executor_.drop_calls(static_cast<std::size_t>(levels_.call_level()));
         if (std::ranges::find(levels_.calls(), CallKind::PROFILE, &Call::kind) == levels_.calls().end()) {
-            executor_.drop_lathe_cycle();
+            executor_.lathe.drop();
         }
         while (!dropped.empty()) {
             dropped.pop_back();  // the innermost script ends first
@@ -70,7 +70,6 @@ void Flow::unwind(std::size_t depth) {
 
 void Flow::abort() {
     unwind();
-    executor_.canon.truncate(0);
     executor_.abort_block();
     script_calls_.expect_sync(false);
     script_calls_.expect_end(false);
@@ -139,7 +138,7 @@ Step Flow::percent() {
         return fail_here(fmt::format("The file ends in subroutine o<{}> without its end",
                                      call_name(levels_.top(), names_)));
     }
-    if (executor_.state.nurbs_order != 0) {
+    if (executor_.state.spline.order != 0) {
         return fail_here("The file ends inside of a NURBS: G5.3 ends it");
     }
     executor_.canon.take(Finish{});
@@ -287,7 +286,7 @@ bool Flow::note_turn(const LoopTurn &turn) {
         budget_.note_pass(pass);
     }
     // Scripts and changed tool tables have states that are not seen here.
-    const bool isAllSeen = turn.isConditional && !scripts_.isOpen() && !executor_.hasToolChanges();
+    const bool isAllSeen = turn.isConditional && !scripts_.isOpen() && !executor_.tools.hasChanges();
     if (!isAllSeen || !budget_.isRepeating(pass, executor_.state, executor_.parameters)) {
         return true;
     }

@@ -174,26 +174,26 @@ std::vector<std::string_view> ScriptView::attribute_names() const {
 
 /// The entry at 0 is the tool in the spindle, number -1 when there is none.
 ToolEntry ScriptView::tool(int index) const {
-    if (index != 0 || executor_.tools().isRandom()) {
-        return executor_.table_entry(index);
+    if (index != 0 || executor_.tools.isRandom()) {
+        return executor_.tools.entry(index);
     }
     const State &state = executor_.state;
-    if (state.tool_in_spindle == 0) {
+    if (state.tool.in_spindle == 0) {
         ToolEntry none;
         none.toolno = -1;
         return none;
     }
-    const int place = executor_.tools().index_of_tool(state.tool_in_spindle);
+    const int place = executor_.tools.index_of_tool(state.tool.in_spindle);
     if (place > 0) {
-        return executor_.table_entry(place);
+        return executor_.tools.entry(place);
     }
     ToolEntry entry;
-    entry.toolno = state.tool_in_spindle;
-    entry.offset = state.loaded_offset;
-    entry.diameter = state.tool_diameter;
-    entry.frontangle = state.tool_frontangle;
-    entry.backangle = state.tool_backangle;
-    entry.orientation = state.tool_orientation;
+    entry.toolno = state.tool.in_spindle;
+    entry.offset = state.tool.offset;
+    entry.diameter = state.tool.diameter;
+    entry.frontangle = state.tool.frontangle;
+    entry.backangle = state.tool.backangle;
+    entry.orientation = state.tool.orientation;
     return entry;
 }
 

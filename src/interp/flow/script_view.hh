@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "interp/codes/tools/tools.hh"
 #include "interp/flow/flow_parts.hh"
 #include "interp/scripts/script_host.hh"
 
@@ -43,12 +44,12 @@ class ScriptView final : public InterpreterView {
     ActiveCodes active_codes() const override { return executor_.active_codes(); }
     double spindle_speed(int spindle) const override;
     void set_spindle_speed(int spindle, double speed) override;
-    Pose tool_offset() const override { return executor_.state.tool_offset; }
-    void set_tool_offset(const Pose &offset) override { executor_.set_tool_offset(offset); }
-    int count_tools() const override { return executor_.tools().count(); }
+    Pose tool_offset() const override { return executor_.state.frame.tool; }
+    void set_tool_offset(const Pose &offset) override { move_by_tool_offset(executor_.state, offset); }
+    int count_tools() const override { return executor_.tools.count(); }
     ToolEntry tool(int index) const override;
-    int find_tool(int number) const override { return executor_.tools().index_of_tool(number); }
-    void load_tool() override { executor_.load_indexed_tool(); }
+    int find_tool(int number) const override { return executor_.tools.index_of_tool(number); }
+    void load_tool() override { load_tool_at_index(executor_.tools, executor_.state.tool); }
     void synch() override { executor_.synch(); }
 
     ScriptBlock block(int level) const override;

@@ -18,7 +18,7 @@ namespace mw::interp::detail {
 namespace {
 
 struct Attributes {
-    AttributeSources sources() { return {state, returned, awaited, levels, place, mill, mill, 2, true}; }
+    AttributeSources sources() { return {state, returned, awaited, levels, place, mill, tools, 2, true}; }
     std::optional<ScriptValue> get(std::string_view name) { return attribute(name, sources()); }
     bool set(std::string_view name, const ScriptValue &value) {
         return set_attribute(name, value, sources()).has_value();
@@ -30,6 +30,7 @@ struct Attributes {
     ScriptLevels levels;
     BlockPlace place{12, 34, 1};
     test::Mill mill;
+    ToolTable tools{mill};
 };
 
 double number(const std::optional<ScriptValue> &value) {
@@ -84,7 +85,7 @@ TEST(Attributes, NumbersAreThoseThatScriptsExpect_I1) {
     Attributes values;
     values.state.units = LengthUnits::INCH;
     values.state.plane = Plane::XZ;
-    values.state.comp = CompSide::LEFT;
+    values.state.comp.turn_on(CompSide::LEFT, 410, 1.0, 0);
     values.state.spindles[0].direction = -1;
     EXPECT_EQ(number(values.get("length_units")), 1);
     EXPECT_EQ(number(values.get("plane")), 3);
@@ -167,15 +168,15 @@ TEST(KeptParameters, PositionsAreOfTheProgramAndOfTheMachine_I1) {
     Kept kept;
     kept.position[geom::AXIS_X] = 1;
     kept.position[geom::AXIS_Y] = 2;
-    kept.state.g5x[geom::AXIS_X] = 10;
-    kept.state.g92[geom::AXIS_Y] = 20;
-    kept.state.rotation_deg = 90;
+    kept.state.frame.g5x[geom::AXIS_X] = 10;
+    kept.state.frame.g92[geom::AXIS_Y] = 20;
+    kept.state.frame.rotation_deg = 90;
     EXPECT_EQ(kept_value("_x", kept.sources()), 1);
     EXPECT_EQ(kept_value(P_POSITION + 1, kept.sources()), 2);
     EXPECT_NEAR(*kept_value("_abs_x", kept.sources()), 10 - 22, 1e-12);
     EXPECT_NEAR(*kept_value("_abs_y", kept.sources()), 1, 1e-12);
     EXPECT_NEAR(kept_value(P_MACHINE_POSITION, kept.sources()), 10 - 22, 1e-12);
-    kept.state.tool_diameter = 6;
+    kept.state.tool.diameter = 6;
     EXPECT_EQ(kept_value(P_TOOL_DIAMETER, kept.sources()), 6);
     EXPECT_EQ(kept_value(P_TOOL_NUMBER, kept.sources()), 0);
 }

@@ -35,11 +35,9 @@ std::optional<mailbox::Desk::Delivery> Inbox::next(bool isModeChanging) {
 std::vector<mailbox::Serial> Inbox::drop_before(mailbox::Serial stop) {
     std::vector<mailbox::Serial> dropped;
     std::erase_if(waiting_, [&](const mailbox::Desk::Delivery &delivery) {
-        const bool isLine = std::visit(
-            []<class C>(const C &) {
-                return OneOf<C, msgs::OperatorError, msgs::OperatorText, msgs::OperatorDisplay>;
-            },
-            delivery.command);
+        const bool isLine = std::holds_alternative<msgs::OperatorError>(delivery.command) ||
+                            std::holds_alternative<msgs::OperatorText>(delivery.command) ||
+                            std::holds_alternative<msgs::OperatorDisplay>(delivery.command);
         const bool isDropped = delivery.serial < stop && !isLine;
         if (isDropped) {
             dropped.push_back(delivery.serial);

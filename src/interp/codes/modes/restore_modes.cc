@@ -1,73 +1,41 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// M70 to M73: modes saved and restored, per level of call.
-#include <fmt/format.h>
+#include "interp/codes/modes/restore_modes.hh"
 
-#include "interp/codes/executor.hh"
+#include "interp/codes/comp/comp_codes.hh"
+#include "interp/codes/kept_parameters.hh"
+#include "interp/codes/modes/modes.hh"
+#include "interp/codes/switches/switches.hh"
+#include "interp/codes/tools/offsets.hh"
+#include "interp/codes/tools/tools.hh"
 
 namespace mw::interp::detail {
 namespace {
 
-bool isSamePose(const Pose &a, const Pose &b) {
-    return a == b;
-}
+/// Codes that lead from the modes in force to others.
+struct Restoring {
+    const Machine &machine;
+    Parameters &parameters;
+    State &state;
+    CanonQueue &canon;
+    Fault &fault;
 
-int coordinate_code(int index) {
-    return index <= 6 ? 530 + 10 * index : 584 + index;
-}
-
-}  // namespace
-
-void Executor::push_call() {
-    parameters.push_call();
-    saved_modes.push_call();
-}
-
-/// Fanuc-style calls have no arguments: #1 to #30 are the caller's own.
-bool Executor::pop_call(bool isFanuc) {
-    const std::optional<State> modes = saved_modes.pop_call();
-    parameters.pop_call(isFanuc);
-    remaps.end_above(saved_modes.depth());
-    if (!modes) {
-        return true;
+    bool run(ModeHandler act, char letter_char, int number, const BlockValues &values) {
+        return act(*find_code(letter_char, number), values, state, canon, fault);
     }
-    keep_state();
-    return restore_context(*modes);
-}
-
-void Executor::drop_calls(std::size_t depth) {
-    for (std::size_t calls = saved_modes.depth(); calls > depth; --calls) {
-        parameters.pop_call(false);
+    bool run(MachineHandler act, char letter_char, int number, const BlockValues &values) {
+        return act(*find_code(letter_char, number), values, machine, state, canon, fault);
     }
-    saved_modes.drop_calls(depth);
-    remaps.end_above(depth);
-    if (depth == 0) {
-        lathe_.reset();
+    bool run(OffsetHandler act, char letter_char, int number, const BlockValues &values) {
+        return act(*find_code(letter_char, number), values, machine, parameters, state, canon, fault);
     }
-}
-
-bool Executor::do_context(const Code &code, const BlockValues &) {
-    switch (code.number) {
-    case 70: saved_modes.save(state); return true;
-    case 73: saved_modes.save_until_return(state); return true;
-    case 71: saved_modes.forget(); return true;
-    default: break;
-    }
-    const State *const saved = saved_modes.saved();
-    if (saved == nullptr) {
-        return fault.set(
-            "M72 has nothing to restore: there is no M70 or M73 at this level, or M71 dropped it");
-    }
-    return restore_context(*saved);
-}
-
-/// Runs one code as if it stood alone.
-bool Executor::run_code(char letter_char, int number, BlockValues values) {
-    const Code &code = *find_code(letter_char, number);
-    return (this->*code.handler)(code, values);
-}
+    bool restore_geometry(const State &saved);
+    bool restore_spindles(const State &saved);
+    void restore_overrides(const State &saved);
+    bool restore(const State &saved);
+};
 
 /// Those of motion and geometry, in the order of execution.
-bool Executor::restore_geometry(const State &saved) {
+bool Restoring::restore_geometry(const State &saved) {
     bool isDone = true;
     const BlockValues none;
     if (saved.plane != state.plane) {
@@ -75,20 +43,20 @@ bool Executor::restore_geometry(const State &saved) {
         canon.take(SelectPlane{state.plane});
     }
     if (saved.isDiameter != state.isDiameter) {
-        isDone = run_code('g', saved.isDiameter ? 70 : 80, none);
+        isDone = run(set_diameter_mode, 'g', saved.isDiameter ? 70 : 80, none);
     }
-    if (saved.comp == CompSide::OFF && state.comp != CompSide::OFF) {
-        isDone = isDone && run_code('g', 400, none);
+    if (!saved.comp.isOn() && state.comp.isOn()) {
+        end_compensation(state, canon);
     }
     const double length_factor =
         saved.units == state.units ? 1.0 : (state.units == LengthUnits::MM ? 25.4 : 1 / 25.4);
-    const Pose offset = scale_lengths(saved.tool_offset, length_factor);
-    if (!isSamePose(offset, state.tool_offset)) {
-        apply_tool_offset(offset, saved.tool_offset_code);
+    const Pose offset = scale_lengths(saved.frame.tool, length_factor);
+    if (offset != state.frame.tool) {
+        apply_tool_offset(state, canon, offset, saved.tool.offset_code);
     }
-    state.tool_offset_code = saved.tool_offset_code;
+    state.tool.offset_code = saved.tool.offset_code;
     if (saved.g5x_index != state.g5x_index) {
-        isDone = isDone && run_code('g', coordinate_code(saved.g5x_index), none);
+        isDone = isDone && run(use_coordinates, 'g', coordinate_system_code(saved.g5x_index), none);
     }
     BlockValues control;
     if (saved.control == geom::PathMode::BLEND) {
@@ -99,17 +67,17 @@ bool Executor::restore_geometry(const State &saved) {
     const int control_code = saved.control == geom::PathMode::BLEND        ? 640
                              : saved.control == geom::PathMode::EXACT_PATH ? 610
                                                                            : 611;
-    isDone = isDone && run_code('g', control_code, control);
-    isDone = isDone && run_code('g', saved.isIncremental ? 910 : 900, none);
-    isDone = isDone && run_code('g', saved.isCentreAbsolute ? 901 : 911, none);
+    isDone = isDone && run(set_path_control, 'g', control_code, control);
+    isDone = isDone && run(set_distance_mode, 'g', saved.isIncremental ? 910 : 900, none);
+    isDone = isDone && run(set_centre_distance_mode, 'g', saved.isCentreAbsolute ? 901 : 911, none);
     if (saved.isRetractToR != state.isRetractToR) {
-        isDone = isDone && run_code('g', saved.isRetractToR ? 990 : 980, none);
+        isDone = isDone && run(set_retract_mode, 'g', saved.isRetractToR ? 990 : 980, none);
     }
     return isDone;
 }
 
-bool Executor::restore_spindles(const State &saved) {
-    for (int i = 0; i < world_.count_spindles(); ++i) {
+bool Restoring::restore_spindles(const State &saved) {
+    for (int i = 0; i < machine.count_spindles(); ++i) {
         const SpindleState &want = saved.spindles[static_cast<std::size_t>(i)];
         SpindleState &have = state.spindles[static_cast<std::size_t>(i)];
         if (want.isConstantSurface != have.isConstantSurface || want.css_max_rpm != have.css_max_rpm) {
@@ -125,7 +93,7 @@ bool Executor::restore_spindles(const State &saved) {
         BlockValues chosen;
         chosen.present = letters("$");
         chosen.value[LETTER_DOLLAR] = saved.active_spindle;
-        if (!run_code('g', code, chosen)) {
+        if (!run(set_feed_mode, 'g', code, chosen)) {
             return false;
         }
     }
@@ -134,7 +102,7 @@ bool Executor::restore_spindles(const State &saved) {
     if (state.feed_mode != FeedMode::INVERSE_TIME) {  // there each move has a rate of its own
         canon.take(SetFeedRate{state.feed});
     }
-    for (int i = 0; i < world_.count_spindles(); ++i) {
+    for (int i = 0; i < machine.count_spindles(); ++i) {
         const SpindleState &want = saved.spindles[static_cast<std::size_t>(i)];
         SpindleState &have = state.spindles[static_cast<std::size_t>(i)];
         have.speed = want.speed;
@@ -151,11 +119,11 @@ bool Executor::restore_spindles(const State &saved) {
     return true;
 }
 
-void Executor::restore_overrides(const State &saved) {
+void Restoring::restore_overrides(const State &saved) {
     if (saved.isFeedOverride != state.isFeedOverride) {
         canon.take(SwitchFeedOverride{saved.isFeedOverride});
     }
-    for (int i = 0; i < world_.count_spindles(); ++i) {
+    for (int i = 0; i < machine.count_spindles(); ++i) {
         const SpindleState &want = saved.spindles[static_cast<std::size_t>(i)];
         SpindleState &have = state.spindles[static_cast<std::size_t>(i)];
         if (want.isOverridden != have.isOverridden) {
@@ -175,22 +143,22 @@ void Executor::restore_overrides(const State &saved) {
 }
 
 /// Positions, motion mode, tool and offsets of coordinate systems stay what they are.
-bool Executor::restore_context(const State &wanted) {
-    const State saved = wanted;
-    if (saved.units != state.units && !run_code('g', saved.units == LengthUnits::INCH ? 200 : 210, {})) {
+bool Restoring::restore(const State &saved) {
+    if (saved.units != state.units &&
+        !run(set_units, 'g', saved.units == LengthUnits::INCH ? 200 : 210, {})) {
         return false;
     }
     if (!restore_spindles(saved)) {
         return false;
     }
-    if (saved.isMist && !state.isMist && !run_code('m', 7, {})) {
+    if (saved.isMist && !state.isMist && !run(switch_coolant, 'm', 7, {})) {
         return false;
     }
     if (!restore_geometry(saved)) {
         return false;
     }
     if (!saved.isMist && !saved.isFlood && (state.isMist || state.isFlood)) {
-        run_code('m', 9, {});
+        run(switch_coolant, 'm', 9, {});
     }
     if (state.isMist && !saved.isMist) {
         state.isMist = false;
@@ -201,10 +169,33 @@ bool Executor::restore_context(const State &wanted) {
         canon.take(SwitchFlood{false});
     }
     if (saved.isFlood && !state.isFlood) {
-        run_code('m', 8, {});
+        run(switch_coolant, 'm', 8, {});
     }
     restore_overrides(saved);
     return true;
+}
+
+}  // namespace
+
+bool restore_modes(const State &wanted, const Machine &machine, Parameters &parameters, State &state,
+                   CanonQueue &canon, Fault &fault) {
+    return Restoring{machine, parameters, state, canon, fault}.restore(wanted);
+}
+
+bool keep_modes(const Code &code, const BlockValues &, const Machine &machine, SavedModes &saved_modes,
+                Parameters &parameters, State &state, CanonQueue &canon, Fault &fault) {
+    switch (code.number) {
+    case 70: saved_modes.save(state); return true;
+    case 73: saved_modes.save_until_return(state); return true;
+    case 71: saved_modes.forget(); return true;
+    default: break;
+    }
+    const State *const saved = saved_modes.saved();
+    if (saved == nullptr) {
+        return fault.set(
+            "M72 has nothing to restore: there is no M70 or M73 at this level, or M71 dropped it");
+    }
+    return restore_modes(*saved, machine, parameters, state, canon, fault);
 }
 
 }  // namespace mw::interp::detail

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// G70 (finishing), G71 and G72 (roughing along Z and along X) and their variants for pockets. The profile is
-// a subroutine of which only the moves count; it is read as a call, then cut as a whole.
+#include "interp/codes/lathe/lathe_cycles.hh"
+
 #include <cmath>
 #include <expected>
 
 #include <fmt/format.h>
 
-#include "interp/codes/executor.hh"
+#include "interp/codes/block_words.hh"
 #include "interp/codes/lathe/lathe_offset.hh"
+#include "interp/codes/moves/arcs.hh"
+#include "interp/codes/moves/targets.hh"
 
 namespace mw::interp::detail {
 namespace {
@@ -104,9 +106,39 @@ double clear_height(const Profile &cut) {
     return height;
 }
 
+/// A move of the cycle, compensated when G41 or G42 is on.
+bool send_profile_move(const ProfileMove &move, const CutFrame &frame, State &state, CanonQueue &canon,
+                       Fault &fault) {
+    Pose end = state.position;
+    const Point machine = frame.from(move.end), centre = frame.from(move.centre);
+    end[Z] = machine.x;
+    end[X] = machine.y;
+    const bool isCompensated = state.comp.isOn();
+    const CompPlace place{state.position, state.plane, state.units};
+    if (move.isArc) {
+        const int rotation = frame.turn(move.turn);
+        if (isCompensated) {
+            if (!state.comp.move_along_arc(place, {end, centre.x, centre.y, rotation}, canon, fault)) {
+                return false;
+            }
+        } else {
+            canon.take(ArcFeed{end[Z], end[X], centre.x, centre.y, rotation, end[geom::AXIS_Y], end});
+        }
+    } else if (isCompensated) {
+        if (!state.comp.move_straight(place, move.isRapid, end, canon, fault)) {
+            return false;
+        }
+    } else {
+        move.isRapid ? canon.take(StraightTraverse{end}) : canon.take(StraightFeed{end});
+    }
+    state.position = end;
+    return true;
+}
+
 }  // namespace
 
-bool Executor::do_lathe_cycle(const Code &code, const BlockValues &values) {
+bool begin_lathe_cycle(const Code &code, const BlockValues &values, const Machine &, LatheCycles &lathe,
+                       State &state, CanonQueue &, Fault &fault, Outcome &outcome) {
     const std::string name = code_name(code);
     static constexpr std::string_view OTHER_AXES = "yabcuvw";
     for (const char c : OTHER_AXES) {
@@ -116,8 +148,8 @@ bool Executor::do_lathe_cycle(const Code &code, const BlockValues &values) {
     }
     LatheRequest request;
     request.code = code.number;
-    if (!whole_word(values, 'q', request.label) ||
-        (values.has('p') && !whole_word(values, 'p', request.passes))) {
+    if (!whole_word(values, 'q', request.label, fault) ||
+        (values.has('p') && !whole_word(values, 'p', request.passes, fault))) {
         return false;
     }
     request.distance = values.at('d', 0.0);
@@ -134,8 +166,7 @@ bool Executor::do_lathe_cycle(const Code &code, const BlockValues &values) {
     };
     const Check checks[] = {
         {state.plane != Plane::XZ, 'q', "needs the plane G18"},
-        {state.comp != CompSide::OFF && code.number != 700, 'q',
-         "cannot be used with cutter radius compensation on"},
+        {state.comp.isOn() && code.number != 700, 'q', "cannot be used with cutter radius compensation on"},
         {values.isMachineCoordinates, 'q', "cannot be used with g53"},
         {values.has('@') || values.has('^'), 'q', "takes no polar words"},
         {state.feed_mode == FeedMode::INVERSE_TIME, 'q', "cannot be used with inverse time feed"},
@@ -150,18 +181,19 @@ bool Executor::do_lathe_cycle(const Code &code, const BlockValues &values) {
             return fault.set(fmt::format("{} {}", name, check.text), values.column_of(check.word));
         }
     }
-    if (!check_feed_per_revolution()) {
+    if (!check_feed_per_revolution(state, fault)) {
         return false;
     }
-    request.start = request.position = target(values);
-    lathe_ = std::move(request);
+    request.start = request.position = target(values, state);
+    lathe.open(std::move(request));
     outcome = Outcome::PROFILE;
     return true;
 }
 
 /// A block of the profile's subroutine: its move, if it has one.
-bool Executor::record_profile(BlockValues values) {
-    LatheRequest &request = *lathe_;
+bool LatheCycles::record(const BlockValues &values, const Settings &settings, const State &state,
+                         Fault &fault) {
+    LatheRequest &request = *request_;
     const auto isMove = [](int motion) {
         return motion == 0 || motion == 10 || motion == 20 || motion == 30;
     };
@@ -178,7 +210,6 @@ bool Executor::record_profile(BlockValues values) {
         return true;
     }
     const Pose from = request.position;
-    const Pose present = state.position;
     // The words U and W are steps along X and Z, whatever the distance mode.
     Pose end = from;
     for (const auto &[name, step, axis] : {std::tuple{'x', 'u', X}, std::tuple{'z', 'w', Z}}) {
@@ -202,40 +233,41 @@ bool Executor::record_profile(BlockValues values) {
             line.end = line.start;
             request.profile.push_back(line);
         }
-        state.position = from;
-        isDone = record_arc(values, end);
-        state.position = present;
+        isDone = record_arc(values, settings, state, from, end, fault);
     } else if (isFirst || isMoving) {  // the first move leads to the contour, however far that is
         request.profile.push_back(line);
     }
-    return isDone && take_corner_word(values);
+    return isDone && take_corner_word(values, fault);
 }
 
-bool Executor::record_arc(const BlockValues &values, const Pose &end) {
+bool LatheCycles::record_arc(const BlockValues &values, const Settings &settings, const State &state,
+                             const Pose &from, const Pose &end, Fault &fault) {
+    State begin = state;
+    begin.position = from;
     BlockValues words = values;
     words.present &= ~(letters("xzacuvwpby"));
     for (const auto &[name, axis] : {std::pair{'x', X}, std::pair{'z', Z}}) {
-        const double relative = state.isIncremental ? end[axis] - state.position[axis] : end[axis];
+        const double relative = state.isIncremental ? end[axis] - begin.position[axis] : end[axis];
         words.present |= bit_of(BlockValues::index(name));
         words.value[static_cast<std::size_t>(BlockValues::index(name))] =
             axis == X && state.isDiameter ? 2.0 * relative : relative;
     }
     ArcPlan arc;
-    if (!plan_arc(lathe_->motion == 30, words, arc)) {
+    if (!plan_arc(request_->motion == 30, words, settings, begin, arc, fault)) {
         return false;
     }
     ProfileSegment segment;
     segment.isArc = true;
-    segment.start = {state.position[Z], state.position[X]};
+    segment.start = {begin.position[Z], begin.position[X]};
     segment.end = {end[Z], end[X]};
     segment.centre = {arc.first_centre, arc.second_centre};
     segment.turn = arc.rotation;
-    lathe_->profile.push_back(segment);
+    request_->profile.push_back(segment);
     return true;
 }
 
 /// A: a fillet at the end of this move, C: a chamfer.
-bool Executor::take_corner_word(const BlockValues &values) {
+bool LatheCycles::take_corner_word(const BlockValues &values, Fault &fault) {
     if (!values.has('a') && !values.has('c')) {
         return true;
     }
@@ -248,48 +280,27 @@ bool Executor::take_corner_word(const BlockValues &values) {
         return fault.set("The fillet A or chamfer C of a profile must not be negative",
                          values.column_of(name));
     }
-    if (!lathe_->profile.empty()) {
-        lathe_->profile.back().fillet = values.at(name);
-        lathe_->profile.back().isChamfer = name == 'c';
+    if (!request_->profile.empty()) {
+        request_->profile.back().fillet = values.at(name);
+        request_->profile.back().isChamfer = name == 'c';
     }
     return true;
 }
 
-bool Executor::finish_lathe_cycle() {
-    const LatheRequest request = std::move(*lathe_);
-    lathe_.reset();
-    return run_lathe_cycle(request);
+bool LatheCycles::finish(State &state, CanonQueue &canon, Fault &fault) {
+    const LatheRequest request = std::move(*request_);
+    request_.reset();
+    return cut(request, state, canon, fault);
 }
 
-/// A move of the cycle, compensated when G41 or G42 is on.
-bool Executor::send_profile_move(const ProfileMove &move, const CutFrame &frame) {
-    Pose end = state.position;
-    const Point machine = frame.from(move.end), centre = frame.from(move.centre);
-    end[Z] = machine.x;
-    end[X] = machine.y;
-    const bool isCompensated = state.comp != CompSide::OFF;
-    if (move.isArc) {
-        const int rotation = frame.turn(move.turn);
-        if (isCompensated) {
-            return comp_arc({end, centre.x, centre.y, rotation});
-        }
-        canon.take(ArcFeed{end[Z], end[X], centre.x, centre.y, rotation, end[geom::AXIS_Y], end});
-    } else if (isCompensated) {
-        return comp_straight(move.isRapid, end);
-    } else {
-        move.isRapid ? canon.take(StraightTraverse{end}) : canon.take(StraightFeed{end});
-    }
-    state.position = end;
-    return true;
-}
-
-bool Executor::run_lathe_cycle(const LatheRequest &request) {
+bool LatheCycles::cut(const LatheRequest &request, State &state, CanonQueue &canon, Fault &fault) {
     const std::string name = code_name(*find_code('g', request.code));
     const bool isFinishing = request.code == 700;
     state.motion = 10;
-    state.cycle.isRunning = state.isCompExit = false;
+    state.cycle.isRunning = false;
+    state.comp.set_exit(false);
     const auto rapid = [](Point to) { return ProfileMove{true, false, to, {}, 1, -1}; };
-    if (!send_profile_move(rapid({request.start[Z], request.start[X]}), {})) {
+    if (!send_profile_move(rapid({request.start[Z], request.start[X]}), {}, state, canon, fault)) {
         return false;
     }
     if (request.profile.size() < 2) {  // no more than the way to its beginning
@@ -314,7 +325,7 @@ bool Executor::run_lathe_cycle(const LatheRequest &request) {
     ProfileSegment &entry = framed->profile.front();
     entry.start.x = std::fmin(entry.start.x, entry.end.x);
     const ProfileMove to_begin = rapid(entry.start);
-    if (!send_profile_move(to_begin, framed->frame)) {
+    if (!send_profile_move(to_begin, framed->frame, state, canon, fault)) {
         return false;
     }
     RoughingPlan roughing = request.roughing;
@@ -344,7 +355,7 @@ bool Executor::run_lathe_cycle(const LatheRequest &request) {
             moves->push_back(to_begin);
         }
         for (const ProfileMove &move : *moves) {
-            if (!send_profile_move(move, framed->frame)) {
+            if (!send_profile_move(move, framed->frame, state, canon, fault)) {
                 return false;
             }
         }

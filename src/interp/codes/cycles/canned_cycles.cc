@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Canned cycles G73, G74, G81 to G89, in any of the planes XY, YZ, XZ.
+#include "interp/codes/cycles/canned_cycles.hh"
+
+#include <cctype>
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "interp/codes/executor.hh"
+#include "interp/codes/block_words.hh"
+#include "interp/codes/moves/targets.hh"
+#include "interp/codes/plane_axes.hh"
 
 namespace mw::interp::detail {
 namespace {
@@ -27,12 +31,10 @@ bool needsSpindle(int code) {
     return code == 740 || code == 840 || code == 860 || code == 870 || code == 880;
 }
 
-}  // namespace
-
 /// Words not given keep the values of the cycle before; the first of its kind must have them.
-bool Executor::take_cycle_words(const Code &code, const BlockValues &values) {
+bool take_cycle_words(const Code &code, const BlockValues &values, State &state, Fault &fault) {
     const bool isFirst = state.motion != code.number;
-    const char depth = geom::AXIS_LETTERS_LOWER[plane_axes().normal];
+    const char depth = geom::AXIS_LETTERS_LOWER[plane_axes(state.plane).normal];
     const std::string name = code_name(code);
     CycleWords &cycle = state.cycle;
     struct Need {
@@ -73,14 +75,15 @@ bool Executor::take_cycle_words(const Code &code, const BlockValues &values) {
     return true;
 }
 
-bool Executor::check_cycle(const Code &code, const BlockValues &values, int &repeats) {
+bool check_cycle(const Code &code, const BlockValues &values, const Machine &machine, State &state,
+                 int &repeats, Fault &fault) {
     static constexpr char OTHER_AXES[] = "abcuvw";
     for (const char c : std::string_view(OTHER_AXES)) {
         if (values.has(c)) {
             return fault.set(fmt::format("Cannot put an {} in canned cycle", c), values.column_of(c));
         }
     }
-    if (plane_axes().normal > geom::AXIS_Z) {
+    if (plane_axes(state.plane).normal > geom::AXIS_Z) {
         return fault.set("Canned cycles need one of the planes G17, G18 or G19");
     }
     if (values.isMachineCoordinates) {
@@ -89,18 +92,18 @@ bool Executor::check_cycle(const Code &code, const BlockValues &values, int &rep
     if (state.feed_mode == FeedMode::INVERSE_TIME) {
         return fault.set("Cannot use inverse time feed with canned cycles");
     }
-    if (state.comp != CompSide::OFF) {
+    if (state.comp.isOn()) {
         return fault.set("Cannot use canned cycles with cutter radius compensation on");
     }
     if (state.feed == 0.0) {
         return fault.set(fmt::format("Cannot do {} with zero feed rate", code_name(code)));
     }
-    if (!check_feed_per_revolution()) {
+    if (!check_feed_per_revolution(state, fault)) {
         return false;
     }
     repeats = 1;
     if (values.has('l')) {
-        if (!whole_word(values, 'l', repeats)) {
+        if (!whole_word(values, 'l', repeats, fault)) {
             return false;
         }
         if (repeats < 1) {
@@ -110,7 +113,7 @@ bool Executor::check_cycle(const Code &code, const BlockValues &values, int &rep
     }
     if (values.has('$')) {
         int chosen = 0;
-        if (!spindle_of(values, chosen)) {
+        if (!spindle_of(values, machine.count_spindles(), chosen, fault)) {
             return false;
         }
         if (chosen < 0) {
@@ -130,78 +133,29 @@ bool Executor::check_cycle(const Code &code, const BlockValues &values, int &rep
     return true;
 }
 
-bool Executor::do_cycle(const Code &code, const BlockValues &values) {
-    int repeats = 1;
-    if (!values.hasAxes() && values.isMotionImplied) {
-        return true;
-    }
-    if (!check_cycle(code, values, repeats) || !take_cycle_words(code, values)) {
-        return false;
-    }
-    const PlaneAxes axes = plane_axes();
-    const char normal_name = geom::AXIS_LETTERS_LOWER[axes.normal];
-    if (!isCycle(state.motion) || !state.cycle.isRunning) {
-        state.cycle.initial = state.position[axes.normal];
-    }
-    CyclePlan plan;
-    plan.code = code.number;
-    // Incremental R counts from where the sequence of cycles began, so that all holes are alike.
-    plan.r = state.cycle.r + (state.isIncremental ? state.cycle.initial : 0.0);
-    plan.bottom = state.cycle.bottom + (state.isIncremental ? plan.r : 0.0);
-    if (plan.r < plan.bottom) {
-        return fault.set(fmt::format("R value less than {} value in cycle", normal_name),
-                         values.column_of('r'));
-    }
-    constexpr double MOST_MOVES = 1e6;  // a slip of the keyboard, not a program
-    const double pecks = needsPeck(code.number) ? (plan.r - plan.bottom) / state.cycle.q + 1.0 : 1.0;
-    if (pecks * repeats > MOST_MOVES) {
-        return fault.set(
-            "This canned cycle would make more than a million moves: is L too large or Q too small?",
-            values.column_of(pecks > repeats ? 'q' : 'l'));
-    }
-    state.motion = code.number;
-    state.cycle.isRunning = true;
-    Pose goal = target(values);
-    if (!polar_target(values, goal)) {
-        return false;
-    }
-    const geom::PathMode control = state.control;
-    // In a sequence that began below R every cycle makes this move, though without length but for the first.
-    const double height = state.position[axes.normal];
-    if (height < plan.r || (height == plan.r && state.cycle.initial < plan.r)) {
-        cycle_move(true, axes.normal, plan.r);
-    }
-    if (control != geom::PathMode::EXACT_PATH) {
-        canon.take(SetMotionControlMode{geom::PathMode::EXACT_PATH, 0.0});
-    }
-    for (int i = 0; i < repeats; ++i) {
-        plan.clear = state.isRetractToR ? plan.r : std::fmax(state.cycle.initial, plan.r);
-        if (state.isIncremental && i > 0) {  // each repeat goes on from the last hole, polar words too
-            goal = target(values);
-            if (!polar_target(values, goal)) {
-                return false;
-            }
-        }
-        Pose over = state.position;
-        over[axes.first] = goal[axes.first];
-        over[axes.second] = goal[axes.second];
-        over[axes.normal] = std::fmax(state.position[axes.normal], plan.clear);
-        canon.take(StraightTraverse{over});
-        state.position = over;
-        if (over[axes.normal] != plan.r) {
-            cycle_move(true, axes.normal, plan.r);
-        }
-        run_cycle(plan);
-    }
-    if (control != geom::PathMode::EXACT_PATH) {
-        canon.take(SetMotionControlMode{control, control == geom::PathMode::BLEND ? state.tolerance : 0.0});
-        canon.take(SetNaivecamTolerance{state.naivecam});
-    }
-    return true;
-}
+/// One cycle with its heights resolved, program coordinates along the plane's normal.
+struct CyclePlan {
+    int code = 0;
+    double r = 0, bottom = 0, clear = 0;
+};
+
+/// What the cycles do at one hole.
+struct CycleMoves {
+    const Settings &settings;
+    State &state;
+    CanonQueue &canon;
+
+    void cycle_move(bool isRapid, int axis, double value);
+    void start_spindle(int direction);
+    void tap_move(double height);
+    void run_cycle(const CyclePlan &plan);
+    void run_peck(const CyclePlan &plan);
+    void run_tap(const CyclePlan &plan, int direction);
+    void run_back_bore(const CyclePlan &plan, int direction);
+};
 
 /// Moves one axis to `value`.
-void Executor::cycle_move(bool isRapid, int axis, double value) {
+void CycleMoves::cycle_move(bool isRapid, int axis, double value) {
     state.position[axis] = value;
     if (isRapid) {
         canon.take(StraightTraverse{state.position});
@@ -210,14 +164,14 @@ void Executor::cycle_move(bool isRapid, int axis, double value) {
     }
 }
 
-void Executor::start_spindle(int direction) {
+void CycleMoves::start_spindle(int direction) {
     const int spindle = state.active_spindle;
     canon.take(StartSpindle{spindle, direction > 0, true});
 }
 
 /// From the clearance plane down and back to plan.clear.
-void Executor::run_cycle(const CyclePlan &plan) {
-    const int normal = plane_axes().normal;
+void CycleMoves::run_cycle(const CyclePlan &plan) {
+    const int normal = plane_axes(state.plane).normal;
     const int direction = state.spindles[static_cast<std::size_t>(state.active_spindle)].direction;
     switch (plan.code) {
     case 730:
@@ -253,11 +207,11 @@ void Executor::run_cycle(const CyclePlan &plan) {
 }
 
 /// G73 breaks chips, G83 goes back to R each time.
-void Executor::run_peck(const CyclePlan &plan) {
-    const int normal = plane_axes().normal;
+void CycleMoves::run_peck(const CyclePlan &plan) {
+    const int normal = plane_axes(state.plane).normal;
     const bool isDeep = plan.code == 830;
     const double clearance_mm =
-        isDeep ? settings_.parameter_g83_peck_clearance_mm : settings_.parameter_g73_peck_clearance_mm;
+        isDeep ? settings.parameter_g83_peck_clearance_mm : settings.parameter_g73_peck_clearance_mm;
     const double configured = clearance_mm / (state.units == LengthUnits::MM ? 1.0 : MM_PER_INCH);
     const double clearance = state.cycle.hasClearance ? state.cycle.p : configured;
     constexpr double SAME = 1e-9;
@@ -275,12 +229,12 @@ void Executor::run_peck(const CyclePlan &plan) {
 /// The two feeds of a tap, along the plane's normal. LinuxCNC's rs274 turns plane coordinates into machine
 /// ones twice in G18 and G19: moved like that the tap would be dragged through the part, so only what is
 /// printed and never moved follows it.
-void Executor::tap_move(double height) {
-    const int normal = plane_axes().normal;
+void CycleMoves::tap_move(double height) {
+    const int normal = plane_axes(state.plane).normal;
     state.position[normal] = height;
     const Pose &place = state.position;
     Pose sent = place;
-    const bool isTurnedTwice = settings_.isTapOrderOfRs274 && normal != geom::AXIS_Z;
+    const bool isTurnedTwice = settings.isTapOrderOfRs274 && normal != geom::AXIS_Z;
     for (int axis = geom::AXIS_X; axis <= geom::AXIS_Z && isTurnedTwice; ++axis) {
         constexpr int LENGTHS = 3;
         sent[axis] = place[(axis + (normal == geom::AXIS_Y ? 1 : 2)) % LENGTHS];
@@ -289,7 +243,7 @@ void Executor::tap_move(double height) {
 }
 
 /// Tapping with a floating chuck: the spindle turns back at the bottom.
-void Executor::run_tap(const CyclePlan &plan, int direction) {
+void CycleMoves::run_tap(const CyclePlan &plan, int direction) {
     const int spindle = state.active_spindle;
     const bool isSpeedOverride = state.spindles[static_cast<std::size_t>(spindle)].isOverridden;
     canon.take(SwitchFeedOverride{false});
@@ -310,8 +264,8 @@ void Executor::run_tap(const CyclePlan &plan, int direction) {
 }
 
 /// G87: through the hole beside its axis with the tool turned aside, then cutting from below up to K.
-void Executor::run_back_bore(const CyclePlan &plan, int direction) {
-    const PlaneAxes axes = plane_axes();
+void CycleMoves::run_back_bore(const CyclePlan &plan, int direction) {
+    const PlaneAxes axes = plane_axes(state.plane);
     const int spindle = state.active_spindle;
     constexpr int COUNTERCLOCKWISE = 2;
     const Pose on_axis = state.position;
@@ -332,7 +286,7 @@ void Executor::run_back_bore(const CyclePlan &plan, int direction) {
         constexpr double PATIENCE_S = 60.0;
         canon.take(StopSpindle{spindle});
         canon.take(OrientSpindle{spindle, 0.0, COUNTERCLOCKWISE});
-        if (settings_.isTask) {  // LinuxCNC's rs274 prints no waiting
+        if (settings.isTask) {  // LinuxCNC's rs274 prints no waiting
             canon.take(WaitOrientComplete{spindle, PATIENCE_S});
         }
     };
@@ -348,6 +302,81 @@ void Executor::run_back_bore(const CyclePlan &plan, int direction) {
     cycle_move(true, axes.normal, plan.clear);
     shift(false);
     start_spindle(direction);
+}
+
+}  // namespace
+
+bool run_canned_cycle(const Code &code, const BlockValues &values, const Machine &machine, State &state,
+                      CanonQueue &canon, Fault &fault) {
+    int repeats = 1;
+    if (!values.hasAxes() && values.isMotionImplied) {
+        return true;
+    }
+    if (!check_cycle(code, values, machine, state, repeats, fault) ||
+        !take_cycle_words(code, values, state, fault)) {
+        return false;
+    }
+    const PlaneAxes axes = plane_axes(state.plane);
+    const char normal_name = geom::AXIS_LETTERS_LOWER[axes.normal];
+    if (!isCycle(state.motion) || !state.cycle.isRunning) {
+        state.cycle.initial = state.position[axes.normal];
+    }
+    CycleMoves moves{machine.settings, state, canon};
+    CyclePlan plan;
+    plan.code = code.number;
+    // Incremental R counts from where the sequence of cycles began, so that all holes are alike.
+    plan.r = state.cycle.r + (state.isIncremental ? state.cycle.initial : 0.0);
+    plan.bottom = state.cycle.bottom + (state.isIncremental ? plan.r : 0.0);
+    if (plan.r < plan.bottom) {
+        return fault.set(fmt::format("R value less than {} value in cycle", normal_name),
+                         values.column_of('r'));
+    }
+    constexpr double MOST_MOVES = 1e6;  // a slip of the keyboard, not a program
+    const double pecks = needsPeck(code.number) ? (plan.r - plan.bottom) / state.cycle.q + 1.0 : 1.0;
+    if (pecks * repeats > MOST_MOVES) {
+        return fault.set(
+            "This canned cycle would make more than a million moves: is L too large or Q too small?",
+            values.column_of(pecks > repeats ? 'q' : 'l'));
+    }
+    state.motion = code.number;
+    state.cycle.isRunning = true;
+    Pose goal = target(values, state);
+    if (!polar_target(values, state, goal, fault)) {
+        return false;
+    }
+    const geom::PathMode control = state.control;
+    // In a sequence that began below R every cycle makes this move, though without length but for the first.
+    const double height = state.position[axes.normal];
+    if (height < plan.r || (height == plan.r && state.cycle.initial < plan.r)) {
+        moves.cycle_move(true, axes.normal, plan.r);
+    }
+    if (control != geom::PathMode::EXACT_PATH) {
+        canon.take(SetMotionControlMode{geom::PathMode::EXACT_PATH, 0.0});
+    }
+    for (int i = 0; i < repeats; ++i) {
+        plan.clear = state.isRetractToR ? plan.r : std::fmax(state.cycle.initial, plan.r);
+        if (state.isIncremental && i > 0) {  // each repeat goes on from the last hole, polar words too
+            goal = target(values, state);
+            if (!polar_target(values, state, goal, fault)) {
+                return false;
+            }
+        }
+        Pose over = state.position;
+        over[axes.first] = goal[axes.first];
+        over[axes.second] = goal[axes.second];
+        over[axes.normal] = std::fmax(state.position[axes.normal], plan.clear);
+        canon.take(StraightTraverse{over});
+        state.position = over;
+        if (over[axes.normal] != plan.r) {
+            moves.cycle_move(true, axes.normal, plan.r);
+        }
+        moves.run_cycle(plan);
+    }
+    if (control != geom::PathMode::EXACT_PATH) {
+        canon.take(SetMotionControlMode{control, control == geom::PathMode::BLEND ? state.tolerance : 0.0});
+        canon.take(SetNaivecamTolerance{state.naivecam});
+    }
+    return true;
 }
 
 }  // namespace mw::interp::detail

@@ -1,42 +1,21 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Codes that set modes of geometry and feed, and the word F.
+#include "interp/codes/modes/modes.hh"
+
 #include <cmath>
 
-#include <fmt/format.h>
-
-#include "interp/codes/executor.hh"
+#include "interp/codes/block_words.hh"
+#include "interp/codes/plane_axes.hh"
 
 namespace mw::interp::detail {
 namespace {
 
 constexpr double MM_PER_INCH = 25.4;
 
-struct PlaneCode {
-    int number;
-    Plane plane;
-};
-
-constexpr PlaneCode PLANES[] = {
-    {170, Plane::XY}, {180, Plane::XZ}, {190, Plane::YZ},
-    {171, Plane::UV}, {181, Plane::UW}, {191, Plane::VW},
-};
+constexpr Plane PLANES[] = {Plane::XY, Plane::XZ, Plane::YZ, Plane::UV, Plane::UW, Plane::VW};
 
 }  // namespace
 
-bool Executor::whole_word(const BlockValues &values, char name, int &out) {
-    const double value = values.at(name);
-    const double rounded = std::round(value);
-    constexpr double TOLERANCE = 1e-4;
-    if (std::fabs(value - rounded) > TOLERANCE || std::fabs(value) > 1e9) {
-        return fault.set(fmt::format("{} must be a whole number here, not {}",
-                                     static_cast<char>(std::toupper(name)), value),
-                         values.column_of(name));
-    }
-    out = static_cast<int>(rounded);
-    return true;
-}
-
-bool Executor::do_feed_word(const Code &, const BlockValues &values) {
+bool set_feed(const Code &, const BlockValues &values, State &state, CanonQueue &canon, Fault &fault) {
     const double feed = values.at('f');
     if (feed < 0.0) {
         return fault.set("Negative f word used", values.column_of('f'));
@@ -48,18 +27,18 @@ bool Executor::do_feed_word(const Code &, const BlockValues &values) {
     return true;
 }
 
-bool Executor::do_units(const Code &code, const BlockValues &) {
+bool set_units(const Code &code, const BlockValues &, State &state, CanonQueue &canon, Fault &fault) {
     const LengthUnits units = code.number == 200 ? LengthUnits::INCH : LengthUnits::MM;
     if (units != state.units) {
-        if (state.comp != CompSide::OFF) {
+        if (state.comp.isOn()) {
             return fault.set("Cannot change units while cutter radius compensation is on");
         }
         const double factor = units == LengthUnits::MM ? MM_PER_INCH : 1.0 / MM_PER_INCH;
         state.units = units;
         state.position = scale_lengths(state.position, factor);
-        state.g5x = scale_lengths(state.g5x, factor);
-        state.g92 = scale_lengths(state.g92, factor);
-        state.tool_offset = scale_lengths(state.tool_offset, factor);
+        state.frame.g5x = scale_lengths(state.frame.g5x, factor);
+        state.frame.g92 = scale_lengths(state.frame.g92, factor);
+        state.frame.tool = scale_lengths(state.frame.tool, factor);
         state.probed = scale_lengths(state.probed, factor);
         state.cycle.bottom *= factor;
         state.cycle.r *= factor;
@@ -69,29 +48,20 @@ bool Executor::do_units(const Code &code, const BlockValues &) {
     return true;
 }
 
-int Executor::plane_code() const {
-    for (const PlaneCode &row : PLANES) {
-        if (row.plane == state.plane) {
-            return row.number;
-        }
-    }
-    return 170;
-}
-
-bool Executor::do_plane(const Code &code, const BlockValues &) {
-    if (state.comp != CompSide::OFF && code.number != plane_code()) {
+bool select_plane(const Code &code, const BlockValues &, State &state, CanonQueue &canon, Fault &fault) {
+    if (state.comp.isOn() && code.number != plane_code(state.plane)) {
         return fault.set("Cannot change the plane while cutter radius compensation is on");
     }
-    for (const PlaneCode &row : PLANES) {
-        if (row.number == code.number) {
-            state.plane = row.plane;
+    for (const Plane plane : PLANES) {
+        if (plane_code(plane) == code.number) {
+            state.plane = plane;
         }
     }
     canon.take(SelectPlane{state.plane});
     return true;
 }
 
-bool Executor::do_distance(const Code &code, const BlockValues &) {
+bool set_distance_mode(const Code &code, const BlockValues &, State &state, CanonQueue &canon, Fault &) {
     const bool isIncremental = code.number == 910;
     if (isIncremental != state.isIncremental) {
         canon.take(ProgramComment{isIncremental ? "interpreter: distance mode changed to incremental"
@@ -101,7 +71,8 @@ bool Executor::do_distance(const Code &code, const BlockValues &) {
     return true;
 }
 
-bool Executor::do_centre_distance(const Code &code, const BlockValues &) {
+bool set_centre_distance_mode(const Code &code, const BlockValues &, State &state, CanonQueue &canon,
+                              Fault &) {
     const bool isAbsolute = code.number == 901;
     if (isAbsolute != state.isCentreAbsolute) {
         canon.take(ProgramComment{isAbsolute ? "interpreter: IJK distance mode changed to absolute"
@@ -111,7 +82,7 @@ bool Executor::do_centre_distance(const Code &code, const BlockValues &) {
     return true;
 }
 
-bool Executor::do_diameter(const Code &code, const BlockValues &) {
+bool set_diameter_mode(const Code &code, const BlockValues &, State &state, CanonQueue &canon, Fault &) {
     const bool isDiameter = code.number == 70;
     if (isDiameter != state.isDiameter) {
         canon.take(ProgramComment{isDiameter ? "interpreter: Lathe diameter mode changed to diameter"
@@ -121,9 +92,10 @@ bool Executor::do_diameter(const Code &code, const BlockValues &) {
     return true;
 }
 
-bool Executor::do_feed_mode(const Code &code, const BlockValues &values) {
+bool set_feed_mode(const Code &code, const BlockValues &values, const Machine &machine, State &state,
+                   CanonQueue &canon, Fault &fault) {
     int spindle = 0;
-    if (!spindle_of(values, spindle)) {
+    if (!spindle_of(values, machine.count_spindles(), spindle, fault)) {
         return false;
     }
     if (spindle < 0) {
@@ -148,15 +120,16 @@ bool Executor::do_feed_mode(const Code &code, const BlockValues &values) {
     return true;
 }
 
-bool Executor::do_retract(const Code &code, const BlockValues &) {
+bool set_retract_mode(const Code &code, const BlockValues &, State &state, CanonQueue &canon, Fault &) {
     state.isRetractToR = code.number == 990;
     canon.take(ProgramComment{state.isRetractToR ? "interpreter: retract mode set to r_plane"
                                                  : "interpreter: retract mode set to old_z"});
     return true;
 }
 
-bool Executor::do_control(const Code &code, const BlockValues &values) {
-    if (state.comp != CompSide::OFF) {
+bool set_path_control(const Code &code, const BlockValues &values, State &state, CanonQueue &canon,
+                      Fault &fault) {
+    if (state.comp.isOn()) {
         return fault.set("Cannot change the path mode while cutter radius compensation is on");
     }
     if (code.number != 640) {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// G2 and G3 in the selected plane, by centre (I, J, K) or by radius (R).
+#include "interp/codes/moves/arcs.hh"
+
 #include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
 
-#include "interp/codes/executor.hh"
+#include "interp/codes/block_words.hh"
+#include "interp/codes/moves/targets.hh"
 
 namespace mw::interp::detail {
 namespace {
@@ -32,75 +34,8 @@ std::string plane_name(const PlaneAxes &axes) {
     return name == "zx" ? "xz" : name;
 }
 
-}  // namespace
-
-bool Executor::do_arc(const Code &code, const BlockValues &values) {
-    if (state.feed == 0.0 || (state.feed_mode == FeedMode::INVERSE_TIME && !values.has('f'))) {
-        return state.feed == 0.0 ? fault.set("Cannot make arc with zero feed rate")
-                                 : fault.set("F word missing with inverse time arc move");
-    }
-    if (!check_feed_per_revolution()) {
-        return false;
-    }
-    if (values.isMachineCoordinates) {
-        return fault.set("Cannot use g53 with an arc");
-    }
-    if (state.isCompExit) {
-        return fault.set("The move just after exiting cutter compensation mode must be straight, not an arc");
-    }
-    ArcPlan arc;
-    if (!plan_arc(code.number == 30, values, arc)) {
-        return false;
-    }
-    state.motion = code.number;
-    state.cycle.isRunning = false;
-    if (state.comp != CompSide::OFF) {
-        return comp_arc(arc);
-    }
-    send_arc(arc);
-    return true;
-}
-
-/// The arc that the words describe from where the machine stands.
-bool Executor::plan_arc(bool isCounterclockwise, const BlockValues &values, ArcPlan &arc) {
-    const PlaneAxes axes = plane_axes();
-    const char first = centre_letter(axes.first), second = centre_letter(axes.second);
-    const bool hasCentre = values.has(first) || values.has(second);
-    arc.end = target(values);
-    if (!polar_target(values, arc.end)) {
-        return false;
-    }
-    int turns = 1;
-    if (values.has('p')) {
-        if (!whole_word(values, 'p', turns)) {
-            return false;
-        }
-        if (turns < 1 || turns > 1000000) {
-            return fault.set("P value should be 1 or greater with G2 or G3", values.column_of('p'));
-        }
-    }
-    arc.rotation = isCounterclockwise ? turns : -turns;
-    for (const char c : {'i', 'j', 'k'}) {
-        if (values.has(c) && c != first && c != second) {
-            return fault.set(fmt::format("{} word given for arc in {} plane",
-                                         static_cast<char>(c - 'a' + 'A'), plane_name(axes)),
-                             values.column_of(c));
-        }
-    }
-    if (values.has('r')) {
-        if (hasCentre) {
-            return fault.set("Mixed radius ijk format for arc", values.column_of('r'));
-        }
-        return plan_radius_arc(values.at('r'), arc);
-    }
-    if (!hasCentre) {
-        return fault.set("R i j k words all missing for arc");
-    }
-    return plan_centre_arc(values, arc);
-}
-
-bool Executor::plan_centre_arc(const BlockValues &values, ArcPlan &arc) {
-    const PlaneAxes axes = plane_axes();
+bool plan_centre_arc(const BlockValues &values, const State &state, ArcPlan &arc, Fault &fault) {
+    const PlaneAxes axes = plane_axes(state.plane);
     const char first = centre_letter(axes.first), second = centre_letter(axes.second);
     const double x0 = state.position[axes.first], y0 = state.position[axes.second];
     if (state.isCentreAbsolute) {
@@ -138,16 +73,17 @@ bool Executor::plan_centre_arc(const BlockValues &values, ArcPlan &arc) {
 }
 
 /// R > 0: the arc of at most half a turn; R < 0: the other one.
-bool Executor::plan_radius_arc(double radius, ArcPlan &arc) {
-    const PlaneAxes axes = plane_axes();
+bool plan_radius_arc(double radius, const Settings &settings, const State &state, ArcPlan &arc,
+                     Fault &fault) {
+    const PlaneAxes axes = plane_axes(state.plane);
     const double x0 = state.position[axes.first], y0 = state.position[axes.second];
     const double dx = arc.end[axes.first] - x0, dy = arc.end[axes.second] - y0;
     const double half = std::hypot(dx, dy) / 2.0;
     if (half == 0.0) {
         return fault.set("Current point same as end point of arc");
     }
-    const double tolerance = state.units == LengthUnits::MM ? settings_.center_arc_radius_tolerance_mm
-                                                            : settings_.center_arc_radius_tolerance_inch;
+    const double tolerance = state.units == LengthUnits::MM ? settings.center_arc_radius_tolerance_mm
+                                                            : settings.center_arc_radius_tolerance_inch;
     const double size = std::fabs(radius);
     if (half - size > tolerance) {
         return fault.set("Arc radius too small to reach end point");
@@ -160,8 +96,7 @@ bool Executor::plan_radius_arc(double radius, ArcPlan &arc) {
     return true;
 }
 
-double Executor::arc_sweep(const ArcPlan &arc, double x0, double y0) const {
-    const PlaneAxes axes = plane_axes();
+double arc_sweep(const ArcPlan &arc, const PlaneAxes &axes, double x0, double y0) {
     const double ax = x0 - arc.first_centre, ay = y0 - arc.second_centre;
     const double bx = arc.end[axes.first] - arc.first_centre, by = arc.end[axes.second] - arc.second_centre;
     constexpr double FULL_TURN = 2.0 * std::numbers::pi, SAME_ANGLE = 1e-10;
@@ -174,17 +109,101 @@ double Executor::arc_sweep(const ArcPlan &arc, double x0, double y0) const {
     return angle;
 }
 
-void Executor::send_arc(const ArcPlan &arc) {
-    const PlaneAxes axes = plane_axes();
+void send_arc(const ArcPlan &arc, State &state, CanonQueue &canon) {
+    const PlaneAxes axes = plane_axes(state.plane);
     if (state.feed_mode == FeedMode::INVERSE_TIME) {
         const double x0 = state.position[axes.first], y0 = state.position[axes.second];
         const double radius = std::hypot(x0 - arc.first_centre, y0 - arc.second_centre);
-        send_inverse_time(
-            std::hypot(radius * arc_sweep(arc, x0, y0), arc.end[axes.normal] - state.position[axes.normal]));
+        send_inverse_time(state, canon,
+                          std::hypot(radius * arc_sweep(arc, plane_axes(state.plane), x0, y0),
+                                     arc.end[axes.normal] - state.position[axes.normal]));
     }
     canon.take(ArcFeed{arc.end[axes.first], arc.end[axes.second], arc.first_centre, arc.second_centre,
                        arc.rotation, arc.end[axes.normal], arc.end});
     state.position = arc.end;
+}
+
+}  // namespace
+
+bool move_along_arc(const Code &code, const BlockValues &values, const Machine &machine, State &state,
+                    CanonQueue &canon, Fault &fault) {
+    if (state.feed == 0.0 || (state.feed_mode == FeedMode::INVERSE_TIME && !values.has('f'))) {
+        return state.feed == 0.0 ? fault.set("Cannot make arc with zero feed rate")
+                                 : fault.set("F word missing with inverse time arc move");
+    }
+    if (!check_feed_per_revolution(state, fault)) {
+        return false;
+    }
+    if (values.isMachineCoordinates) {
+        return fault.set("Cannot use g53 with an arc");
+    }
+    if (state.comp.isExit()) {
+        return fault.set("The move just after exiting cutter compensation mode must be straight, not an arc");
+    }
+    ArcPlan arc;
+    if (!plan_arc(code.number == 30, values, machine.settings, state, arc, fault)) {
+        return false;
+    }
+    state.motion = code.number;
+    state.cycle.isRunning = false;
+    if (state.comp.isOn()) {
+        const PlaneAxes axes = plane_axes(state.plane);
+        if (state.feed_mode == FeedMode::INVERSE_TIME) {
+            const Point from{state.position[axes.first], state.position[axes.second]};
+            const Point to{arc.end[axes.first], arc.end[axes.second]};
+            const double radius = distance({arc.first_centre, arc.second_centre}, to);
+            send_inverse_time(state, canon,
+                              std::hypot(radius * arc_sweep(arc, axes, from.x, from.y),
+                                         arc.end[axes.normal] - state.position[axes.normal]));
+        }
+        const CompPlace place{state.position, state.plane, state.units};
+        if (!state.comp.move_along_arc(place, arc, canon, fault)) {
+            return false;
+        }
+        state.position = arc.end;
+        return true;
+    }
+    send_arc(arc, state, canon);
+    return true;
+}
+
+/// The arc that the words describe from where the machine stands.
+bool plan_arc(bool isCounterclockwise, const BlockValues &values, const Settings &settings,
+              const State &state, ArcPlan &arc, Fault &fault) {
+    const PlaneAxes axes = plane_axes(state.plane);
+    const char first = centre_letter(axes.first), second = centre_letter(axes.second);
+    const bool hasCentre = values.has(first) || values.has(second);
+    arc.end = target(values, state);
+    if (!polar_target(values, state, arc.end, fault)) {
+        return false;
+    }
+    int turns = 1;
+    if (values.has('p')) {
+        if (!whole_word(values, 'p', turns, fault)) {
+            return false;
+        }
+        if (turns < 1 || turns > 1000000) {
+            return fault.set("P value should be 1 or greater with G2 or G3", values.column_of('p'));
+        }
+    }
+    arc.rotation = isCounterclockwise ? turns : -turns;
+    for (const char c : {'i', 'j', 'k'}) {
+        if (values.has(c) && c != first && c != second) {
+            return fault.set(fmt::format("{} word given for arc in {} plane",
+                                         static_cast<char>(c - 'a' + 'A'), plane_name(axes)),
+                             values.column_of(c));
+        }
+    }
+    if (values.has('r')) {
+        if (hasCentre) {
+            return fault.set("Mixed radius ijk format for arc", values.column_of('r'));
+        }
+        return plan_radius_arc(values.at('r'), settings, state, arc, fault);
+    }
+    if (!hasCentre) {
+        return fault.set("R i j k words all missing for arc");
+    }
+    return plan_centre_arc(values, state, arc, fault);
 }
 
 }  // namespace mw::interp::detail

@@ -1,47 +1,31 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Spindles: S, M3 to M5, M19, G96 and G97.
+#include "interp/codes/switches/spindles.hh"
+
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "interp/codes/executor.hh"
+#include "interp/codes/block_words.hh"
 
 namespace mw::interp::detail {
 namespace {
 
 /// G96 without D: no limit worth the name [rev/min].
 constexpr double UNLIMITED_RPM = 1e30;
-constexpr int ALL_SPINDLES = -1;
 
 }  // namespace
 
-/// The word $; spindle 0 without it.
-bool Executor::spindle_of(const BlockValues &values, int &spindle) {
-    spindle = 0;
-    if (!values.has('$')) {
-        return true;
-    }
-    if (!whole_word(values, '$', spindle)) {
-        return false;
-    }
-    if (spindle < ALL_SPINDLES || spindle >= world_.count_spindles()) {
-        return fault.set(
-            fmt::format("There is no spindle {}: $ may be 0 to {}", spindle, world_.count_spindles() - 1),
-            values.column_of('$'));
-    }
-    return true;
-}
-
-bool Executor::do_speed_word(const Code &, const BlockValues &values) {
+bool set_speed(const Code &, const BlockValues &values, const Machine &machine, State &state,
+               CanonQueue &canon, Fault &fault) {
     const double speed = values.at('s');
     int spindle = 0;
-    if (!spindle_of(values, spindle)) {
+    if (!spindle_of(values, machine.count_spindles(), spindle, fault)) {
         return false;
     }
     if (speed < 0.0) {
         return fault.set("Negative spindle speed used", values.column_of('s'));
     }
-    for (int i = 0; i < world_.count_spindles(); ++i) {
+    for (int i = 0; i < machine.count_spindles(); ++i) {
         if (spindle == i || spindle == ALL_SPINDLES) {
             state.spindles[static_cast<std::size_t>(i)].speed = speed;
             canon.take(SetSpindleSpeed{i, speed});
@@ -50,9 +34,10 @@ bool Executor::do_speed_word(const Code &, const BlockValues &values) {
     return true;
 }
 
-bool Executor::do_spindle_mode(const Code &code, const BlockValues &values) {
+bool set_spindle_mode(const Code &code, const BlockValues &values, const Machine &machine, State &state,
+                      CanonQueue &canon, Fault &fault) {
     int spindle = 0;
-    if (!spindle_of(values, spindle)) {
+    if (!spindle_of(values, machine.count_spindles(), spindle, fault)) {
         return false;
     }
     if (spindle == ALL_SPINDLES) {
@@ -69,13 +54,14 @@ bool Executor::do_spindle_mode(const Code &code, const BlockValues &values) {
     return true;
 }
 
-bool Executor::do_spindle(const Code &code, const BlockValues &values) {
+bool turn_spindle(const Code &code, const BlockValues &values, const Machine &machine, State &state,
+                  CanonQueue &canon, Fault &fault) {
     int spindle = 0;
-    if (!spindle_of(values, spindle)) {
+    if (!spindle_of(values, machine.count_spindles(), spindle, fault)) {
         return false;
     }
     const bool isAll = spindle == ALL_SPINDLES;
-    for (int i = 0; i < world_.count_spindles(); ++i) {
+    for (int i = 0; i < machine.count_spindles(); ++i) {
         if (spindle != i && !isAll) {
             continue;
         }
@@ -90,9 +76,11 @@ bool Executor::do_spindle(const Code &code, const BlockValues &values) {
     return true;
 }
 
-bool Executor::do_orient(const Code &, const BlockValues &values) {
+bool orient_spindle(const Code &, const BlockValues &values, const Machine &machine, State &state,
+                    CanonQueue &canon, Fault &fault) {
     int spindle = 0, mode = 0;
-    if (!spindle_of(values, spindle) || (values.has('p') && !whole_word(values, 'p', mode))) {
+    if (!spindle_of(values, machine.count_spindles(), spindle, fault) ||
+        (values.has('p') && !whole_word(values, 'p', mode, fault))) {
         return false;
     }
     if (spindle == ALL_SPINDLES) {
@@ -110,7 +98,7 @@ bool Executor::do_orient(const Code &, const BlockValues &values) {
     if (values.has('q') && values.at('q') <= 0.0) {
         return fault.set("The timeout Q of M19 must be above 0 seconds", values.column_of('q'));
     }
-    double angle = programmed + settings_.orient_offset_deg;
+    double angle = programmed + machine.settings.orient_offset_deg;
     if (values.has('r') || values.has('p')) {
         angle = std::fmod(angle, FULL_CIRCLE);
         angle = angle < 0.0 ? angle + FULL_CIRCLE : angle;
