@@ -160,7 +160,7 @@ bool leave_call(const ReturnValue &value, const FlowParts &parts) {
     if (call.kind == CallKind::PROFILE) {
         executor.canon.enter_block(here.program, call.line, call.line, false, levels.call_level());
         executor.keep_state();
-        return executor.finish_lathe_cycle();
+        return executor.lathe.finish(executor.state, executor.canon, executor.fault);
     }
     return true;
 }
@@ -169,19 +169,19 @@ bool leave_call(const ReturnValue &value, const FlowParts &parts) {
 
 bool call_fanuc(const FlowParts &parts) {
     Executor &executor = parts.executor;
-    const NameId label = parts.names.intern(fmt::format("{}", executor.fanuc_label));
+    const NameId label = parts.names.intern(fmt::format("{}", executor.fanuc_call.label));
     Sub sub;
     if (!find_fanuc_sub(label, parts.search(), sub) || !check_depth(parts)) {
         return false;
     }
     parts.commit();
-    if (executor.fanuc_count <= 0) {
+    if (executor.fanuc_call.count <= 0) {
         return true;
     }
     Call call;
     call.kind = CallKind::FANUC;
     call.label = label;
-    call.again = executor.fanuc_count - 1;
+    call.again = executor.fanuc_call.count - 1;
     return enter_call(std::move(call), sub, parts);
 }
 
@@ -208,7 +208,7 @@ bool call_profile(const FlowParts &parts) {
     Call call;
     Sub sub;
     call.kind = CallKind::PROFILE;
-    call.label = parts.names.intern(fmt::format("{}", parts.executor.lathe_request()->label));
+    call.label = parts.names.intern(fmt::format("{}", parts.executor.lathe.request()->label));
     if (!find_sub(call.label, 0, parts.search(), sub) || !check_depth(parts)) {
         return false;
     }
