@@ -41,7 +41,7 @@ Result<> Interpreter::save_parameters(const std::string &path) const {
 Result<> Interpreter::begin() {
     detail::Executor &executor = impl_->executor;
     executor.state.units = impl_->settings.initial_units.value_or(executor.world().machine_units());
-    if (Result<> loaded = executor.load_remaps(); !loaded) {
+    if (Result<> loaded = executor.remaps.load(impl_->settings.remaps); !loaded) {
         return loaded;
     }
     if (Result<> loaded = impl_->flow.load_scripts(); !loaded) {

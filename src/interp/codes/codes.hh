@@ -14,6 +14,7 @@ namespace mw::interp::detail {
 class Executor;
 struct BlockValues;
 struct Code;
+struct Remap;
 
 /// In the order in which the parts of one block take place.
 enum class Phase : std::uint8_t {
@@ -87,7 +88,7 @@ struct Code {
     std::uint32_t words = 0;     ///< letters that it may have, beside axes
     std::uint32_t required = 0;  ///< letters that it must have
     Handler handler = nullptr;
-    const void *remap = nullptr;  ///< for remapped codes: their Remap
+    const Remap *remap = nullptr;  ///< for remapped codes
 };
 
 /// The row of a code, or null. `number` as in Code.

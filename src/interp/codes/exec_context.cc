@@ -17,61 +17,47 @@ int coordinate_code(int index) {
 
 }  // namespace
 
-void Executor::push_call(bool isRemap) {
+void Executor::push_call() {
     parameters.push_call();
-    contexts_.emplace_back();
-    contexts_.back().isRemap = isRemap;
+    saved_modes.push_call();
 }
 
 /// Fanuc-style calls have no arguments: #1 to #30 are the caller's own.
 bool Executor::pop_call(bool isFanuc) {
-    const Context context = std::move(contexts_.back());
-    contexts_.pop_back();
+    const std::optional<State> modes = saved_modes.pop_call();
     parameters.pop_call(isFanuc);
-    if (context.isRemap && !running_remaps_.empty()) {
-        running_remaps_.pop_back();
-    }
-    if (!context.saved || !context.isAutomatic) {
+    remaps.end_above(saved_modes.depth());
+    if (!modes) {
         return true;
     }
     keep_state();
-    return restore_context(*context.saved);
+    return restore_context(*modes);
 }
 
 void Executor::drop_calls(std::size_t depth) {
-    while (contexts_.size() > depth + 1) {
-        if (contexts_.back().isRemap && !running_remaps_.empty()) {
-            running_remaps_.pop_back();
-        }
-        contexts_.pop_back();
+    for (std::size_t calls = saved_modes.depth(); calls > depth; --calls) {
         parameters.pop_call(false);
     }
+    saved_modes.drop_calls(depth);
+    remaps.end_above(depth);
     if (depth == 0) {
         lathe_.reset();
     }
 }
 
-int Executor::context_status(std::size_t level) const {
-    const Context &context = contexts_[level];
-    return (context.saved ? 1 : 0) | (context.isAutomatic ? 2 : 0);
-}
-
 bool Executor::do_context(const Code &code, const BlockValues &) {
-    Context &context = contexts_.back();
     switch (code.number) {
-    case 70:
-    case 73:
-        context.saved = state;
-        context.isAutomatic = code.number == 73;
-        return true;
-    case 71: context.saved.reset(); return true;
+    case 70: saved_modes.save(state); return true;
+    case 73: saved_modes.save_until_return(state); return true;
+    case 71: saved_modes.forget(); return true;
     default: break;
     }
-    if (!context.saved) {
+    const State *const saved = saved_modes.saved();
+    if (saved == nullptr) {
         return fault.set(
             "M72 has nothing to restore: there is no M70 or M73 at this level, or M71 dropped it");
     }
-    return restore_context(*context.saved);
+    return restore_context(*saved);
 }
 
 /// Runs one code as if it stood alone.
@@ -189,8 +175,8 @@ void Executor::restore_overrides(const State &saved) {
 }
 
 /// Positions, motion mode, tool and offsets of coordinate systems stay what they are.
-bool Executor::restore_context(const State &saved_modes) {
-    const State saved = saved_modes;
+bool Executor::restore_context(const State &wanted) {
+    const State saved = wanted;
     if (saved.units != state.units && !run_code('g', saved.units == LengthUnits::INCH ? 200 : 210, {})) {
         return false;
     }

@@ -64,7 +64,7 @@ void Executor::rollback() {
     }
     parameters.rollback();
     tool_table_.rollback();
-    pending_.reset();
+    remaps.drop_interrupted();
     canon.truncate(queued_before_);
     for (auto entry = patched_.rbegin(); entry != patched_.rend(); ++entry) {
         canon.call(entry->first) = entry->second;
@@ -85,9 +85,9 @@ void Executor::flush(Canon &target) {
 }
 
 void Executor::abort_block() {
-    pending_.reset();
+    remaps.drop_interrupted();
     outcome = Outcome::OK;
-    isProbing_ = isWaitingInput_ = false;
+    awaited.isProbe = awaited.isInput = false;
     state.nurbs_order = 0;
     isStateKept_ = false;
     queued_before_ = 0;
@@ -101,16 +101,16 @@ void Executor::synch() {
     tool_table_.forget();
     state.position = frame().to_program(scale_lengths(snapshot.position, machine_to_program()));
     state.probed = frame().to_program(scale_lengths(snapshot.probed_position, machine_to_program()));
-    if (isProbing_) {
+    if (awaited.isProbe) {
         for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
             parameters.set(P_PROBE_RESULT + axis, state.probed[axis]);
         }
         parameters.set(P_PROBE_SUCCESS, snapshot.isProbeTripped ? 1.0 : 0.0);
-        isProbing_ = false;
+        awaited.isProbe = false;
     }
-    if (isWaitingInput_) {
+    if (awaited.isInput) {
         parameters.set(P_INPUT_RESULT, snapshot.isInputTimedOut ? -1.0 : snapshot.input_value);
-        isWaitingInput_ = false;
+        awaited.isInput = false;
     }
     parameters.set(P_TOOL_FAULT, snapshot.isToolFaulted ? 1.0 : 0.0);
     parameters.set(P_TOOL_FAULT_REASON, snapshot.tool_fault_reason);
@@ -153,7 +153,7 @@ ActiveCodes Executor::active_codes() const {
                              : state.control == geom::PathMode::EXACT_STOP ? 611
                                                                            : 640;
     const SpindleState &spindle = state.spindles[static_cast<std::size_t>(state.active_spindle)];
-    out.g = {sequence_,
+    out.g = {block_place.sequence,
              state.motion,
              -1,
              plane_code(),
@@ -161,7 +161,7 @@ ActiveCodes Executor::active_codes() const {
              state.units == LengthUnits::INCH ? 200 : 210,
              state.isIncremental ? 910 : 900,
              feed_code,
-             coordinate_system_code(),
+             coordinate_system_code(state.g5x_index),
              state.tool_offset_code,
              state.isRetractToR ? 990 : 980,
              control_code,
@@ -171,7 +171,7 @@ ActiveCodes Executor::active_codes() const {
              state.isDiameter ? 70 : 80,
              parameters.get(P_G92_APPLIED) != 0.0 ? 923 : -1};
     const bool isSpeedOverride = spindle.isOverridden;
-    out.m = {sequence_,
+    out.m = {block_place.sequence,
              -1,
              spindle.direction > 0 ? 3 : (spindle.direction < 0 ? 4 : 5),
              -1,
@@ -181,7 +181,7 @@ ActiveCodes Executor::active_codes() const {
              state.isAdaptive ? 52 : -1,
              state.isFeedHold ? 53 : -1,
              -1};
-    out.settings = {static_cast<double>(sequence_), state.feed, spindle.speed, state.tolerance,
+    out.settings = {static_cast<double>(block_place.sequence), state.feed, spindle.speed, state.tolerance,
                     state.naivecam};
     return out;
 }

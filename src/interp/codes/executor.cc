@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "interp/codes/comments.hh"
+
 namespace mw::interp::detail {
 namespace {
 
@@ -17,7 +19,7 @@ constexpr double MM_PER_INCH = 25.4;
 
 Executor::Executor(World &world, ToolSource &tools, ParameterSource &source, const Settings &settings,
                    Names &names)
-    : debug_mask(settings.debug_mask), logging_level(settings.logging_level), world_(world), tools_(tools),
+    : script_levels{settings.debug_mask, settings.logging_level}, world_(world), tools_(tools),
       source_(source), settings_(settings), names_(names), evaluator_(parameters, names, *this, fault),
       tool_table_(tools) {}
 
@@ -49,13 +51,28 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
         keep_state();
         return record_profile(values);
     }
-    if (view.block->comment_count > 0 && !run_comments(view, line_text)) {
+    if (view.block->comment_count > 0 && !run_last_comment(view, line_text)) {
         return false;
     }
     if (!choose_motion(values) || !check_words(values)) {
         return false;
     }
     return run_codes(values, 0);
+}
+
+/// Only the last comment of a block counts.
+bool Executor::run_last_comment(const BlockView &view, std::string_view line_text) {
+    const Comment &last = view.arena->comments[view.block->first_comment + view.block->comment_count - 1u];
+    const std::string_view comment = line_text.substr(last.begin, last.end - last.begin);
+    if (last.isScript) {
+        script_text_ = comment;
+        outcome = Outcome::SCRIPT;
+        return true;
+    }
+    if (!remaps.all().empty()) {
+        comment_ = comment;
+    }
+    return run_comment(comment, last.begin + 1, {evaluator_, names_}, canon, fault);
 }
 
 /// Nothing, or a straight move alone, which fails before it changes anything.
@@ -82,8 +99,8 @@ bool Executor::run_codes(const BlockValues &values, std::size_t first) {
             }
             return false;
         }
-        if (!running_remaps_.empty()) {
-            count_builtin(*active.code);
+        if (remaps.isAnyRunning()) {
+            remaps.count_builtin(*active.code);
         }
     }
     return true;
@@ -133,8 +150,8 @@ bool Executor::add_code(char letter_char, double number, std::uint32_t column, B
         whole = static_cast<int>(rounded);
     }
     const Code *code = lookup(letter_char, whole);
-    if (code == nullptr && !running_remaps_.empty()) {
-        if (std::string recursion = recursion_text(letter_char, whole); !recursion.empty()) {
+    if (code == nullptr && remaps.isAnyRunning()) {
+        if (std::string recursion = remaps.recursion_text(letter_char, whole); !recursion.empty()) {
             return fault.set(std::move(recursion), column);
         }
     }
@@ -307,17 +324,6 @@ bool Executor::compute_setting(const Arena &arena, const Setting &setting, MadeS
         }
     }
     return evaluator_.value(arena, setting.value, out.value);
-}
-
-void Executor::set_place(int line, int sequence, int call_level) {
-    line_ = line;
-    sequence_ = sequence;
-    call_level_ = call_level;
-}
-
-void Executor::set_returned(double value, bool isReturned) {
-    returned_ = value;
-    isReturned_ = isReturned;
 }
 
 }  // namespace mw::interp::detail

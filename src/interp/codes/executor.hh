@@ -9,9 +9,13 @@
 #include "interp/ast/program.hh"
 #include "interp/canon/canon_queue.hh"
 #include "interp/canon/frame.hh"
+#include "interp/codes/around_block.hh"
+#include "interp/codes/attributes.hh"
 #include "interp/codes/block_values.hh"
+#include "interp/codes/kept_parameters.hh"
 #include "interp/codes/lathe/lathe_layers.hh"
-#include "interp/codes/remap.hh"
+#include "interp/codes/remaps.hh"
+#include "interp/codes/saved_modes.hh"
 #include "interp/codes/state.hh"
 #include "interp/codes/tools/tool_table.hh"
 #include "interp/eval/evaluator.hh"
@@ -74,6 +78,12 @@ class Executor : public BuiltIns {
     CanonQueue canon;
     Fault fault;
     Outcome outcome = Outcome::OK;
+    SavedModes saved_modes;
+    Remaps remaps;
+    BlockPlace block_place;
+    ReturnValue returned;
+    Awaited awaited;
+    ScriptLevels script_levels;
 
     Evaluator &evaluator() { return evaluator_; }
     World &world() const { return world_; }
@@ -90,43 +100,19 @@ class Executor : public BuiltIns {
     void rollback();
     /// After an abort: nothing waits any more.
     void abort_block();
-    bool run_comments(const BlockView &view, std::string_view line_text);
-
     // exec_remap.cc
-    Result<> load_remaps();
-    const std::vector<Remap> &remaps() const { return remaps_; }
-    /// Why REMAP lines have no effect.
-    const std::vector<std::string> &refused_remaps() const { return refused_remaps_; }
-    const Remap *remap_reached() const { return remap_; }
-    bool check_remap_words(std::string &missing) const;
-    PendingBlock take_pending();
-    void set_remap_arguments(const Remap &remap, const PendingBlock &pending);
     bool resume(const PendingBlock &pending);
-    /// How often the procedure of the `level`-th running remap (from 1) has used its code's own meaning.
-    int builtin_uses(int level) const {
-        return running_remaps_[static_cast<std::size_t>(level) - 1].builtins;
-    }
     void set_script_names(ScriptNames *names) { script_names_ = names; }
     /// The statements of the ;py, line that the outcome is about.
     const std::string &script_text() const { return script_text_; }
-    // exec_attributes.cc: the state by the names that scripts use.
-    std::optional<ScriptValue> attribute(std::string_view name) const;
-    Result<> set_attribute(std::string_view name, const ScriptValue &value);
-    static std::vector<std::string_view> attribute_names();
+    // For scripts and kept parameters.
+    AttributeSources attribute_sources();
     /// The entry of a table as this program has changed it; number of its entries; the place of a tool or -1.
     ToolEntry table_entry(int index) const { return tool_table_.entry(index); }
     ToolSource &tools() const { return tools_; }
     /// The tool at state.tool_index is in the spindle.
     void load_indexed_tool();
     void set_tool_offset(const Pose &offset);
-    /// The next synch() takes the results of an input or a probe.
-    void expect_input(bool isExpected) { isWaitingInput_ = isExpected; }
-    void expect_probe(bool isExpected) { isProbing_ = isExpected; }
-    bool isInputExpected() const { return isWaitingInput_; }
-    bool isProbeExpected() const { return isProbing_; }
-    int plane_number() const;
-    int debug_mask = 0, logging_level = 0;  ///< for scripts
-    bool isToolChanged = false;             ///< a script has changed the tool: a waiting point is due
     // exec_lathe.cc
     /// The cycle whose profile the blocks to come give; null outside of one.
     const LatheRequest *lathe_request() const { return lathe_ ? &*lathe_ : nullptr; }
@@ -141,30 +127,14 @@ class Executor : public BuiltIns {
     void announce_modes();
     /// Takes positions, tools and switches from the machine.
     void synch();
-    /// Line and depth for #<_line> and #<_call_level>.
-    void set_place(int line, int sequence, int call_level);
-    void set_returned(double value, bool isReturned);
     ActiveCodes active_codes() const;
     /// New local names and a context of its own for a subroutine; back to the caller's. pop_call() restores
     /// the modes that M73 saved.
-    void push_call(bool isRemap);
+    void push_call();
     bool pop_call(bool isFanuc);
     /// Back to `depth` calls, without restoring what M73 saved.
     void drop_calls(std::size_t depth = 0);
-    /// Modes saved at a level of call: bit 0 of the status: saved; bit 1: restored at the return.
-    int context_status(std::size_t level) const;
-
-    int line() const { return line_; }
-    int call_level() const { return call_level_; }
-    int remap_level() const { return static_cast<int>(running_remaps_.size()); }
-    int sequence() const { return sequence_; }
-    double returned_value() const { return returned_; }
-    bool isValueReturned() const { return isReturned_; }
     int plane_code() const;
-    int coordinate_system_code() const;
-
-    /// Names of the parameters that the interpreter keeps, sorted.
-    static std::vector<std::string> predefined_names();
     /// INI values that the program has asked for, as names of parameters.
     const std::set<std::string, std::less<>> &ini_names_read() const { return ini_names_read_; }
     bool hasToolChanges() const { return tool_table_.hasChanges(); }
@@ -226,6 +196,7 @@ class Executor : public BuiltIns {
     bool do_nothing(const Code &code, const BlockValues &values);
 
   private:
+    bool run_last_comment(const BlockView &view, std::string_view line_text);
     bool evaluate(const BlockView &view, BlockValues &values);
     bool add_code(char letter, double number, std::uint32_t column, BlockValues &values);
     bool insert_code(const Code &code, std::uint32_t column, BlockValues &values);
@@ -244,17 +215,8 @@ class Executor : public BuiltIns {
     bool run_codes(const BlockValues &values, std::size_t first);
     const Code *lookup(char letter_char, int number) const;
     bool stop_at_remap(const BlockValues &values, std::size_t index);
-    std::string substituted(std::string_view text) const;
-    std::optional<double> comment_parameter(std::string_view text, std::size_t &taken) const;
-
-    /// What M70 and M73 keep at one level of call.
-    struct Context {
-        std::optional<State> saved;
-        bool isAutomatic = false;
-        bool isRemap = false;
-    };
     bool run_code(char letter_char, int number, BlockValues values);
-    bool restore_context(const State &saved_modes);
+    bool restore_context(const State &wanted);
     bool restore_geometry(const State &saved);
     bool restore_spindles(const State &saved);
     void restore_overrides(const State &saved);
@@ -284,6 +246,7 @@ class Executor : public BuiltIns {
     /// Factor for lengths of the parameter file and the tool table [machine units] to program units and back.
     double machine_to_program() const;
     Pose reported_position() const;
+    KeptSources kept_sources() const;
     Pose target(const BlockValues &values) const;
     bool polar_target(const BlockValues &values, Pose &end);
     bool straight_target(const BlockValues &values, Pose &end);
@@ -339,28 +302,13 @@ class Executor : public BuiltIns {
     Names &names_;
     Evaluator evaluator_;
     ToolTable tool_table_;
-    int line_ = 0, call_level_ = 0;
-    int sequence_ = 0;
     int block_number_ = -1;  ///< the N word of the block
     mutable std::set<std::string, std::less<>> ini_names_read_;
-    std::vector<Context> contexts_{1};
-    std::vector<Remap> remaps_;
-    struct RunningRemap {
-        const Remap *remap = nullptr;
-        int builtins = 0;
-    };
-    bool isRunning(const Remap &remap) const;
-    std::string recursion_text(char letter_char, int number) const;
-    void count_builtin(const Code &code);
-    std::vector<RunningRemap> running_remaps_;
-    std::vector<std::string> refused_remaps_;
     ScriptNames *script_names_ = nullptr;
     std::string script_text_, comment_;  ///< of the block
-    const Remap *remap_ = nullptr;       ///< the one that the block has come to
-    std::optional<PendingBlock> pending_;
-    BlockValues values_;             ///< of the block that runs
-    std::vector<MadeSetting> made_;  ///< of the block that runs
-    State before_;                   ///< as the block found it, once keep_state() was called for it
+    BlockValues values_;                 ///< of the block that runs
+    std::vector<MadeSetting> made_;      ///< of the block that runs
+    State before_;                       ///< as the block found it, once keep_state() was called for it
     bool isStateKept_ = false;
     std::vector<NurbsPoint> control_points_;
     std::optional<LatheRequest> lathe_;
@@ -372,9 +320,6 @@ class Executor : public BuiltIns {
     std::optional<Roughed> roughed_;
     std::size_t queued_before_ = 0;
     std::vector<std::pair<std::size_t, CanonCall>> patched_;  ///< calls that the block changed, as they were
-    bool isProbing_ = false, isWaitingInput_ = false;         ///< results are due at the next synch()
-    double returned_ = 0;
-    bool isReturned_ = false;
 };
 
 }  // namespace mw::interp::detail

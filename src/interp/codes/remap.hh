@@ -45,6 +45,7 @@ struct Remap {
 
 /// A block that waits for the subroutine of one of its codes.
 struct PendingBlock {
+    const Remap *remap = nullptr;  ///< of that code
     BlockValues values;
     std::size_t next = 0;  ///< the code to go on with
     std::string comment;

@@ -255,12 +255,10 @@ Step Flow::run_line() {
 Step Flow::run_block(const BlockView &view) {
     const Block &block = *view.block;
     executor_.fault.clear();
-    error_line_ = 0;
-    isEndReached_ = false;
     isContinuable_ = block.oword == NO_ID;
     const int sequence = block.isNumbered ? block.sequence : line_read_;
     const bool isText = !calls_.empty() && calls_.back().kind == CallKind::TEXT;
-    executor_.set_place(isText ? calls_.back().reported_line : line_read_, sequence, call_level());
+    executor_.block_place = {isText ? calls_.back().reported_line : line_read_, sequence, call_level()};
     executor_.begin_light_block();
     if (scripts_ != nullptr) {
         executor_.keep_state();  // scripts change what they like
@@ -326,13 +324,12 @@ void Flow::commit() {
 
 Step Flow::fail_block() {
     executor_.rollback();
-    if (isEndReached_) {
-        isEndReached_ = false;
+    if (executor_.fault.isProgramOver) {
         executor_.canon.take(Finish{});
         commit();
     }
     const Fault &fault = executor_.fault;
-    const int line = error_line_ > 0 ? error_line_ : line_read_;
+    const int line = executor_.fault.line > 0 ? executor_.fault.line : line_read_;
     error_ = {};
     error_.what.message = fault.message;
     error_.what.hint = fault.hint;

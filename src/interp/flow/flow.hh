@@ -186,7 +186,6 @@ class Flow : private ScriptNames {
     int next_ = 1;        ///< the line to run next
     int after_line_ = 1;  ///< follows the line that was read
     int line_read_ = 0;
-    int error_line_ = 0;  ///< when the error is not in the line that was read
     std::vector<Repeat> repeats_;
     bool isMdi_ = false;
     Program *outer_program_ = nullptr;  ///< the open file while MDI runs
@@ -205,7 +204,6 @@ class Flow : private ScriptNames {
     std::string script_error_;                     ///< as a script has set it
     LoopBudget budget_;
     bool isContinuable_ = false;
-    bool isEndReached_ = false;  ///< by a search for a subroutine that is not there
     diag::Diagnostic error_;
 };
 

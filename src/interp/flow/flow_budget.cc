@@ -14,7 +14,7 @@ bool Flow::note_conditional_pass(int first, int last) {
     if (!isAllSeen || !budget_.isRepeating(pass, executor_.state, executor_.parameters)) {
         return true;
     }
-    error_line_ = first;
+    executor_.fault.line = first;
     return executor_.fault.set("This is a loop without end: nothing has changed from one pass to the next", 0,
                                "in a check, inputs, HAL pins and probes stay as they are: a loop that waits "
                                "for one of them must end "
@@ -46,7 +46,7 @@ Step Flow::fail_budget() {
         "correct the condition that ends it; if it is right, allow more statements (millwright check "
         "--statements N, 0 for any number)";
     isContinuable_ = false;
-    error_line_ = loop ? loop->first : 0;
+    executor_.fault.line = loop ? loop->first : 0;
     return fail_block();
 }
 

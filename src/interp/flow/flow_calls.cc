@@ -38,7 +38,7 @@ bool Flow::run_sub(const OWord &oword) {
     for (int at = program_->next_oword(line_read_); at != 0 && at < end; at = program_->next_oword(at)) {
         const OWord *inner = program_->oword_at(at);
         if (inner != nullptr && inner->kind == OKind::SUB) {
-            error_line_ = at;
+            executor_.fault.line = at;
             return executor_.fault.set("Nested subroutine definition", inner->column);
         }
     }
@@ -74,7 +74,7 @@ bool Flow::find_sub(NameId label, std::uint32_t column, Sub &sub) {
         return true;
     }
     if (Sub fanuc; find_fanuc(label, fanuc)) {
-        error_line_ = fanuc.program == program_ ? fanuc.line : 0;
+        executor_.fault.line = fanuc.program == program_ ? fanuc.line : 0;
         return executor_.fault.set(FANUC_TEXT, 0, called_from(label));
     }
     note_search();
@@ -94,7 +94,7 @@ std::string Flow::called_from(NameId label) const {
 /// The main program has been searched to its end: when that is a closing percent sign, it ends there.
 void Flow::note_search() {
     const Program *const main = calls_.empty() ? program_ : calls_.front().program;
-    isEndReached_ = !isMdi_ && main->isPercentDelimited() && main->hasClosingPercent();
+    executor_.fault.isProgramOver = !isMdi_ && main->isPercentDelimited() && main->hasClosingPercent();
 }
 
 bool Flow::find_fanuc(NameId label, Sub &sub) {
@@ -151,7 +151,7 @@ bool Flow::enter(Call &&call, const Sub &sub) {
     call.repeats = std::move(repeats_);
     repeats_.clear();
     calls_.push_back(std::move(call));
-    executor_.push_call(calls_.back().kind == CallKind::REMAP);
+    executor_.push_call();
     if (sub.program != nullptr) {
         program_ = sub.program;
         next_ = sub.line;
@@ -181,7 +181,7 @@ bool Flow::run_call(const BlockView &view, const OWord &oword) {
     if (!find_sub(label, oword.column, sub)) {
         return false;
     }
-    executor_.set_returned(0.0, false);
+    executor_.returned = {};
     executor_.commit();
     Call call;
     call.label = label;
@@ -203,7 +203,7 @@ bool Flow::run_call(const BlockView &view, const OWord &oword) {
 /// Back to the caller: the line after the call, or the rest of the block with the remapped code.
 bool Flow::leave(double value, bool hasValue) {
     if (calls_.back().stage == Stage::PROCEDURE && !calls_.back().remap->epilog.empty()) {
-        executor_.set_returned(hasValue ? value : 0.0, hasValue);
+        executor_.returned = {hasValue ? value : 0.0, hasValue};
         return start_stage(Stage::EPILOG);
     }
     return pop_call(value, hasValue);
@@ -215,12 +215,12 @@ bool Flow::pop_call(double value, bool hasValue) {
     program_ = call.program;
     next_ = call.line + 1;
     repeats_ = std::move(call.repeats);
-    executor_.set_returned(hasValue ? value : 0.0, hasValue);
+    executor_.returned = {hasValue ? value : 0.0, hasValue};
     if (!executor_.pop_call(call.kind == CallKind::FANUC)) {
         return false;
     }
     line_read_ = call.line;
-    executor_.set_place(call.line, call.line, call_level());
+    executor_.block_place = {call.line, call.line, call_level()};
     if (call.pending) {
         executor_.canon.enter_block(program_, call.line, call.line, false, call_level());
         return executor_.resume(*call.pending);
@@ -263,7 +263,7 @@ bool Flow::call_fanuc() {
     Sub sub;
     if (!find_fanuc(label, sub)) {
         if (const int other = program_->find_sub(label); other != 0) {
-            error_line_ = other;
+            executor_.fault.line = other;
             return executor_.fault.set(OWORD_TEXT, 0, called_from(label));
         }
         note_search();

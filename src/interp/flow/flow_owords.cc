@@ -44,7 +44,7 @@ int Flow::find_before(int line, std::initializer_list<OKind> kinds) const {
 bool Flow::fail_bad_oword(int line) {
     const BlockView view = program_->block(line);
     const SyntaxError &error = view.arena->errors[view.block->error];
-    error_line_ = line;
+    executor_.fault.line = line;
     return executor_.fault.set(error.message, error.column);
 }
 

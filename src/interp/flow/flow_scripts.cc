@@ -79,13 +79,13 @@ Result<> Flow::check_remap(const Remap &remap) {
 
 Result<> Flow::load_scripts() {
     const ScriptSettings &wanted = settings_.scripts;
-    warnings_ = executor_.refused_remaps();
+    warnings_ = executor_.remaps.refused();
     if (!wanted.top_level.empty()) {
         if (Result<> made = need_scripts("[PYTHON]TOPLEVEL", wanted.place); !made) {
             return made;
         }
     }
-    for (const Remap &remap : executor_.remaps()) {
+    for (const Remap &remap : executor_.remaps.all()) {
         if (remap.needsScripts() && wanted.top_level.empty()) {
             return fail(fmt::format("REMAP of {} names a Python function, but [PYTHON]TOPLEVEL is missing",
                                     remap.name),
@@ -198,8 +198,8 @@ bool Flow::take_outcome(std::size_t index, ScriptOutcome outcome) {
         return true;
     }
     const bool isNested = calls_.size() - 1 > index;
-    if (isWaiting || isSyncDue_ || executor_.isToolChanged) {
-        executor_.isToolChanged = false;
+    if (isWaiting || isSyncDue_ || executor_.awaited.isToolChange) {
+        executor_.awaited.isToolChange = false;
         executor_.outcome = Outcome::SYNC;
         return true;
     }
@@ -222,7 +222,7 @@ bool Flow::advance_call() {
     if (call.stage == Stage::PROLOG) {
         return start_stage(Stage::PROCEDURE);
     }
-    return pop_call(executor_.returned_value(), executor_.isValueReturned());
+    return pop_call(executor_.returned.value, executor_.returned.isSet);
 }
 
 bool Flow::start_stage(Stage stage) {
@@ -256,10 +256,10 @@ bool Flow::start_procedure() {
 /// The block has come to a remapped code: its prolog, subroutine and epilog, or its function, run before the
 /// rest.
 bool Flow::call_remap() {
-    const Remap &remap = *executor_.remap_reached();
+    PendingBlock pending = executor_.remaps.take_interrupted();
+    const Remap &remap = *pending.remap;
     const NameId label = names_.intern(remap.target());
-    std::string missing;
-    if (!executor_.check_remap_words(missing)) {
+    if (const std::string missing = missing_words(pending, executor_.state); !missing.empty()) {
         executor_.fault.set(fmt::format("user-defined {}: missing: {}", remap.name, missing));
         executor_.fault.block_text = fmt::format("O <{}> call ", remap.target());
         return false;
@@ -268,11 +268,12 @@ bool Flow::call_remap() {
     call.kind = CallKind::REMAP;
     call.label = label;
     call.remap = &remap;
-    call.pending = executor_.take_pending();
+    call.pending = std::move(pending);
     if (!enter(std::move(call), {})) {
         return false;
     }
-    executor_.set_remap_arguments(remap, *calls_.back().pending);
+    executor_.remaps.begin(remap, executor_.saved_modes.depth());
+    pass_words(*calls_.back().pending, settings_.isArgumentCountNamed, executor_.parameters, names_);
     const Stage first = !remap.prolog.empty() && !remap.ngc.empty() ? Stage::PROLOG
                         : remap.ngc.empty()                         ? Stage::FUNCTION
                                                                     : Stage::PROCEDURE;
@@ -286,7 +287,7 @@ bool Flow::call_remap() {
 }
 
 bool Flow::run_script_oword(NameId label, const double *arguments, std::uint32_t count) {
-    executor_.set_returned(0.0, false);
+    executor_.returned = {};
     executor_.commit();
     Call call;
     call.kind = CallKind::SCRIPT;
@@ -318,8 +319,8 @@ bool Flow::run_script_text() {
     if (outcome.kind == ScriptOutcome::Kind::FAILED) {
         return executor_.fault.set(outcome.message, 1);
     }
-    if (isSyncDue_ || executor_.isToolChanged) {
-        executor_.isToolChanged = false;
+    if (isSyncDue_ || executor_.awaited.isToolChange) {
+        executor_.awaited.isToolChange = false;
         executor_.outcome = Outcome::SYNC;
     }
     return true;
@@ -329,10 +330,9 @@ bool Flow::run_script_text() {
 Step Flow::go_on_with_script() {
     const std::size_t index = calls_.size() - 1;
     executor_.fault = {};
-    error_line_ = 0;
     executor_.begin_block();
     line_read_ = calls_[index].script_line;
-    executor_.set_place(line_read_, line_read_, call_level());
+    executor_.block_place = {line_read_, line_read_, call_level()};
     bool isDone = true;
     if (calls_[index].isScriptDone) {
         isDone = advance_call();

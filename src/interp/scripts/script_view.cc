@@ -105,7 +105,7 @@ std::vector<std::string> ScriptView::local_names() const {
 }
 
 std::vector<std::string> ScriptView::predefined_names() const {
-    std::vector<std::string> out = Executor::predefined_names();
+    std::vector<std::string> out = kept_names();
     out.insert(out.end(), flow_.script_names_.begin(), flow_.script_names_.end());
     std::ranges::sort(out);
     out.erase(std::ranges::unique(out).begin(), out.end());
@@ -161,7 +161,7 @@ std::optional<ScriptValue> ScriptView::attribute(std::string_view name) const {
     if (name == ERROR_TEXT) {
         return flow_.script_error_;
     }
-    return executor_.attribute(name);
+    return detail::attribute(name, executor_.attribute_sources());
 }
 
 Result<> ScriptView::set_attribute(std::string_view name, const ScriptValue &value) {
@@ -169,11 +169,11 @@ Result<> ScriptView::set_attribute(std::string_view name, const ScriptValue &val
         flow_.script_error_ = std::get<std::string>(value);
         return {};
     }
-    return executor_.set_attribute(name, value);
+    return detail::set_attribute(name, value, executor_.attribute_sources());
 }
 
 std::vector<std::string_view> ScriptView::attribute_names() const {
-    std::vector<std::string_view> out = Executor::attribute_names();
+    std::vector<std::string_view> out = detail::attribute_names();
     out.insert(out.end(), {CALL_LEVEL, STACK_INDEX, FILE_NAME, LINE_TEXT, PERCENT});
     return out;
 }
@@ -246,7 +246,7 @@ ScriptBlock ScriptView::remap_block(const Flow::Call &call, int level) const {
     out.line = pending.line;
     out.number = pending.sequence;
     out.comment = pending.comment;
-    out.builtins = executor_.builtin_uses(level);
+    out.builtins = executor_.remaps.builtin_uses(level);
     out.remap = call.remap->described();
     return out;
 }
@@ -283,7 +283,7 @@ std::vector<ScriptContext> ScriptView::contexts() const {
         for (const auto &[id, value] : executor_.parameters.locals(static_cast<int>(level))) {
             context.named.emplace_back(flow_.names_.text(id), value);
         }
-        context.status = executor_.context_status(level);
+        context.status = executor_.saved_modes.status(level);
         context.arguments = executor_.parameters.saved_arguments(static_cast<int>(level));
         context.saved = executor_.active_codes();
         if (isMain) {

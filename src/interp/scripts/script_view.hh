@@ -18,8 +18,8 @@ class ScriptView final : public InterpreterView {
     std::expected<bool, ScriptFault> execute(std::string_view text, int line) override;
     Canon &canon() override;
     void deliver() override;
-    void expect_input() override { executor_.expect_input(true); }
-    void expect_probe() override { executor_.expect_probe(true); }
+    void expect_input() override { executor_.awaited.isInput = true; }
+    void expect_probe() override { executor_.awaited.isProbe = true; }
 
     double parameter(int number) const override;
     Result<> set_parameter(int number, double value) override;

@@ -106,7 +106,7 @@ bool Executor::do_probe(const Code &code, const BlockValues &values) {
         parameters.set(P_PROBE_RESULT + axis, end[axis]);
     }
     parameters.set(P_PROBE_SUCCESS, 0.0);
-    isProbing_ = true;
+    awaited.isProbe = true;
     outcome = Outcome::SYNC;
     return true;
 }

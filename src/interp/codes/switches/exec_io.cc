@@ -111,7 +111,7 @@ bool Executor::do_wait_input(const Code &, const BlockValues &values) {
         return fault.set("Cannot wait for an input with cutter radius compensation on");
     }
     canon.take(WaitInput{index, isAnalog, static_cast<WaitKind>(kind), values.at('q', 0.0)});
-    isWaitingInput_ = true;
+    awaited.isInput = true;
     outcome = Outcome::SYNC;
     return true;
 }

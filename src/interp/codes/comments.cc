@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Comments that do something: (msg,...), (debug,...), (print,...), (log...), (abort,...).
+#include "interp/codes/comments.hh"
+
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -7,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "base/text.hh"
-#include "interp/codes/executor.hh"
 #include "interp/text/lexer.hh"
 
 namespace mw::interp::detail {
@@ -82,17 +82,15 @@ std::size_t take_format(std::string_view text, NumberFormat &format) {
     return 0;
 }
 
-}  // namespace
-
 /// The value of the parameter named at the beginning of `text` (after #), and how long its name is.
-std::optional<double> Executor::comment_parameter(std::string_view text, std::size_t &taken) const {
+std::optional<double> comment_parameter(std::string_view text, const ShownValues &shown, std::size_t &taken) {
     if (!text.empty() && text[0] == '<') {
         const std::size_t close = text.find('>');
         if (close == std::string_view::npos) {
             return std::nullopt;
         }
         taken = close + 1;
-        return evaluator_.named(names_.intern(folded_name(text.substr(1, close - 1))));
+        return shown.evaluator.named(shown.names.intern(folded_name(text.substr(1, close - 1))));
     }
     std::size_t digits = 0;
     while (digits < text.size() && text[digits] >= '0' && text[digits] <= '9') {
@@ -101,11 +99,12 @@ std::optional<double> Executor::comment_parameter(std::string_view text, std::si
     taken = digits;
     int number = 0;
     std::from_chars(text.data(), text.data() + digits, number);
-    return Evaluator::isNumber(number) ? std::optional<double>(evaluator_.numbered(number)) : std::nullopt;
+    return Evaluator::isNumber(number) ? std::optional<double>(shown.evaluator.numbered(number))
+                                       : std::nullopt;
 }
 
 /// The text with #1 and #<name> replaced by their values.
-std::string Executor::substituted(std::string_view text) const {
+std::string substituted(std::string_view text, const ShownValues &shown) {
     std::string out;
     NumberFormat format;
     std::size_t i = 0;
@@ -125,7 +124,7 @@ std::string Executor::substituted(std::string_view text) const {
             continue;
         }
         std::size_t taken = 0;
-        const std::optional<double> value = comment_parameter(text.substr(i + 1), taken);
+        const std::optional<double> value = comment_parameter(text.substr(i + 1), shown, taken);
         if (taken == 0) {
             out += text.substr(i);
             break;
@@ -136,52 +135,48 @@ std::string Executor::substituted(std::string_view text) const {
     return out;
 }
 
-/// Only the last comment of a block counts.
-bool Executor::run_comments(const BlockView &view, std::string_view line_text) {
-    const Comment &last = view.arena->comments[view.block->first_comment + view.block->comment_count - 1u];
-    const std::string_view comment = line_text.substr(last.begin, last.end - last.begin);
-    if (last.isScript) {
-        script_text_ = comment;
-        outcome = Outcome::SCRIPT;
-        return true;
-    }
-    if (!remaps_.empty()) {
-        comment_ = comment;
-    }
+std::string_view after_blanks(std::string_view text) {
+    const std::size_t begin = text.find_first_not_of(" \t");
+    return begin == std::string_view::npos ? std::string_view() : text.substr(begin);
+}
+
+}  // namespace
+
+bool run_comment(std::string_view comment, std::uint32_t column, const ShownValues &shown, CanonQueue &canon,
+                 Fault &fault) {
     const Active active = split_comment(comment);
-    if (active.keyword.empty()) {
-        const std::size_t begin = comment.find_first_not_of(" \t");
-        if (begin != std::string_view::npos) {
-            canon.take(ProgramComment{std::string(comment.substr(begin))});
+    const std::string_view keyword = active.keyword;
+    if (keyword.empty()) {
+        if (const std::string_view text = after_blanks(comment); !text.empty()) {
+            canon.take(ProgramComment{std::string(text)});
         }
-    } else if (active.keyword == "msg") {
+    } else if (keyword == "msg") {
         canon.take(OperatorMessage{std::string(active.text)});
-    } else if (active.keyword == "debug") {
-        if (parameters.get(P_DEBUG_SHOWN) == 0.0) {
-            return true;
+    } else if (keyword == "debug") {
+        if (shown.evaluator.numbered(P_DEBUG_SHOWN) != 0.0) {
+            canon.take(OperatorMessage{substituted(active.text, shown)});
         }
-        canon.take(OperatorMessage{substituted(active.text)});
-    } else if (active.keyword == "print") {
-        canon.take(PrintLine{substituted(active.text)});
-    } else if (active.keyword == "log") {
-        canon.take(LogLine{substituted(active.text)});
-    } else if (active.keyword == "logopen" || active.keyword == "logappend") {
+    } else if (keyword == "print") {
+        canon.take(PrintLine{substituted(active.text, shown)});
+    } else if (keyword == "log") {
+        canon.take(LogLine{substituted(active.text, shown)});
+    } else if (keyword == "logopen" || keyword == "logappend") {
         const std::string_view path = trim(active.text);
         if (path.empty()) {
-            return fault.set("(logopen,...) and (logappend,...) need the name of a file", last.begin + 1);
+            return fault.set("(logopen,...) and (logappend,...) need the name of a file", column);
         }
-        canon.take(OpenLog{std::string(path), active.keyword == "logappend"});
-    } else if (active.keyword == "logclose") {
+        canon.take(OpenLog{std::string(path), keyword == "logappend"});
+    } else if (keyword == "logclose") {
         canon.take(CloseLog{});
-    } else if (active.keyword == "abort") {
-        return fault.set(substituted(active.text), last.begin + 1);
+    } else if (keyword == "abort") {
+        return fault.set(substituted(active.text, shown), column);
     } else {
         const std::string_view path = trim(active.text);
-        if (active.keyword == "probeopen" && path.empty()) {
-            return fault.set("(probeopen FILE) needs the name of a file", last.begin + 1);
+        if (keyword == "probeopen" && path.empty()) {
+            return fault.set("(probeopen FILE) needs the name of a file", column);
         }
         canon.take(ProgramComment{std::string(trim(comment))});
-        canon.take(LogProbes{std::string(active.keyword == "probeopen" ? path : std::string_view())});
+        canon.take(LogProbes{std::string(keyword == "probeopen" ? path : std::string_view())});
     }
     return true;
 }

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What programs and scripts can read beside modes and parameters.
+#pragma once
+
+namespace mw::interp::detail {
+
+/// Where the block stands.
+struct BlockPlace {
+    int line = 0;      ///< in its file
+    int sequence = 0;  ///< its N word, or the line
+    int call_level = 0;
+};
+
+/// What the last call returned: #<_value> and #<_value_returned>.
+struct ReturnValue {
+    double value = 0;
+    bool isSet = false;
+};
+
+/// What the next waiting point is for.
+struct Awaited {
+    bool isProbe = false, isInput = false;  ///< results that the next synch() takes
+    bool isToolChange = false;              ///< a script has changed the tool: a waiting point is due
+};
+
+/// Numbers that scripts set for one another.
+struct ScriptLevels {
+    int debug_mask = 0, logging_level = 0;
+};
+
+}  // namespace mw::interp::detail
