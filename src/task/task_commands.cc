@@ -148,7 +148,7 @@ struct Task::Handler {
 
   private:
     Outcome abort_all();
-    void refuse_waiting();
+    void refuse(const std::vector<mailbox::Serial> &dropped);
     Outcome send(const motion::CommandBody &body) {
         task.motion_.send(body);
         return Progress::DONE;
@@ -210,15 +210,15 @@ void Task::carry_out_commands() {
     }
 }
 
-void Task::Handler::refuse_waiting() {
-    for (const mailbox::Serial waiting : task.inbox_.drop_before(id)) {
+void Task::Handler::refuse(const std::vector<mailbox::Serial> &dropped) {
+    for (const mailbox::Serial waiting : dropped) {
         task.desk_.tell(waiting, Progress::REFUSED, "it came before a stop");
     }
 }
 
 Outcome Task::Handler::operator()(const SetState &command) {
     if (command.state == State::ESTOP || command.state == State::OFF) {
-        refuse_waiting();
+        refuse(task.inbox_.drop_before(id));
     }
     const MachineState::Asked asked = task.state_.ask(command.state, id, task.now_ns_);
     task.tell(asked.replaced);
@@ -350,7 +350,7 @@ Outcome Task::Handler::operator()(const ResumeProgram &) {
 }
 
 Outcome Task::Handler::abort_all() {
-    refuse_waiting();
+    refuse(task.inbox_.drop_before(id));
     task.stop_run("aborted");
     task.abort_work(AbortReason::ABORT);
     return Progress::DONE;
@@ -413,6 +413,7 @@ Outcome Task::Handler::operator()(const JogAbsolute &command) {
 }
 
 Outcome Task::Handler::operator()(const JogStop &command) {
+    refuse(task.inbox_.drop_jogs_before(id, command));
     return send(motion::JogStop{{command.isJoint, command.index}});
 }
 
