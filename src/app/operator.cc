@@ -120,7 +120,8 @@ Result<> Operator::wait_for(const Result<client::Serial> &posted, const std::str
             // As a message to the operator; of a machine that others use as well it may be about their work.
             const bool isTold = !last_error_.empty() && !machine_.isShared();
             const std::string &reason = outcome.reason;
-            return fail(isTold ? "" : what + " failed" + (reason.empty() ? "" : ": " + reason));
+            return std::unexpected(
+                Error{what + " failed" + (reason.empty() ? "" : ": " + reason), {}, {}, isTold});
         }
         if (stop_signal != 0) {
             return stop_on_signal();

@@ -40,7 +40,7 @@ class Run {
             running = RunningMachine::find(hal::default_instance(), words_.ini);
         }
         if (!running.has_value()) {
-            report(running.error());
+            sink_.failure(running.error());
             return 1;
         }
         return *running != nullptr ? run_there(**running) : run_here();
@@ -54,7 +54,7 @@ class Run {
         }
         auto machine = make();
         if (!machine.has_value()) {
-            report(machine.error());
+            sink_.failure(machine.error());
             return 1;
         }
         OwnMachine own(**machine);
@@ -67,7 +67,7 @@ class Run {
             status = (*machine)->task().save_parameters();
         }
         if (!status.has_value()) {
-            report(status.error());
+            sink_.failure(status.error());
             return 1;
         }
         tell_end({words_.program, loaded_.machine, person.figures(), recorder.monitor().figures(),
@@ -92,7 +92,7 @@ class Run {
             machine.give_back();
         }
         if (!status.has_value()) {
-            report(status.error());
+            sink_.failure(status.error());
             return 1;
         }
         tell_end({words_.program, loaded_.machine, person.figures(), {}, {}, words_.isRealtime, check_});
@@ -119,7 +119,7 @@ class Run {
     /// What can be refused before anything is made.
     bool isAllowed() {
         if (words_.isRealtime && !words_.isConfirmed && !Keyboard::isThere()) {
-            report(
+            sink_.failure(
                 {"--realtime asks a person at the terminal before it switches the machine on, and there is "
                  "none",
                  {},
@@ -129,7 +129,7 @@ class Run {
         }
         const auto drawable = words_.plot.empty() ? Result<>{} : check_picture(words_.plot);
         if (!drawable.has_value()) {
-            report(drawable.error());
+            sink_.failure(drawable.error());
         }
         return drawable.has_value();
     }
@@ -154,7 +154,7 @@ class Run {
     bool check(int tool) {
         auto tools = machine::ToolFile::load(loaded_.machine.tool_table_file, &sink_);
         if (!tools.has_value()) {
-            report(tools.error());
+            sink_.failure(tools.error());
             return false;
         }
         if (tool > 0) {
@@ -170,7 +170,7 @@ class Run {
         check_ = check_before_start(loaded_.machine, words_.program, **tools, values,
                                     words_.isChecked ? sink_ : unheard, options);
         if (stop_signal != 0) {
-            report({"stopped by " + stop_signal_name() + " before the start"});
+            sink_.failure({"stopped by " + stop_signal_name() + " before the start"});
             return false;
         }
         if (!check_.isRefused) {
@@ -232,18 +232,11 @@ class Run {
         }
         const auto drawn = plot_path(points, loaded_.machine, words_.program, words_.plot);
         if (!drawn.has_value()) {
-            report(drawn.error());
+            sink_.failure(drawn.error());
             return false;
         }
         fmt::print("picture             {}\n", words_.plot);
         return true;
-    }
-
-    /// A failure with no message has been told already, where it happened.
-    void report(const Error &error) {
-        if (!error.message.empty()) {
-            sink_.error(error);
-        }
     }
 
     RunWords words_;

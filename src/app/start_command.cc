@@ -68,8 +68,8 @@ class Start {
             const auto ended = take_down();
             status = status.has_value() ? ended : status;
         }
-        if (!status.has_value() && !status.error().message.empty()) {  // else it has been told already
-            sink_.error(status.error());
+        if (!status.has_value()) {
+            sink_.failure(status.error());
         }
         return status.has_value() ? 0 : 1;
     }

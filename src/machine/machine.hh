@@ -66,7 +66,7 @@ class Machine {
     virtual hal::Hal &hal() = 0;
 };
 
-/// A failure whose message is empty has been told to the sink already.
+/// Failures that concern lines of a file have been told to the sink, and say so (Error::isTold).
 /// The machine in this process, under the virtual clock: deterministic, as fast as the processor allows.
 Result<std::unique_ptr<Machine>> make_virtual_machine(const MachineParts &parts,
                                                       const MachineOptions &options);

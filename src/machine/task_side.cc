@@ -88,7 +88,9 @@ Result<> TaskSide::run_hal_files(const MachineOptions &options) {
     if (status.has_value()) {
         parts_.reader.report_unknown(options.isStrict);
     }
-    return status.has_value() && parts_.sink.hasErrors() ? fail("") : status;
+    return status.has_value() && parts_.sink.hasErrors()
+               ? fail_told("the INI file has errors", {parts_.ini.path(), 0, 0})
+               : status;
 }
 
 /// A person may sit at any client.
