@@ -27,9 +27,6 @@ EXCEPTIONS = {
     'Hal': (74, 1, 'the operations on one HAL segment, most of them one call of the core'),
     'Recorder': (42, 5, OVERLOADS),
     'Task::Handler': (61, 2, OVERLOADS),
-    'State': (0, 47, 'the modal state of a program'),
-    'Executor': (198, 57, 'to be taken apart: docs/architecture.md'),
-    'Flow': (87, 55, 'to be taken apart: docs/architecture.md'),
 }
 
 HEAD = re.compile(r'^(?:template\s*<.*>\s*)?(?:class|struct|union)\s+(?:alignas\s*\([^)]*\)\s*)?(?:\[\[\w+\]\]\s*)?'

@@ -33,6 +33,46 @@ void CanonQueue::truncate(std::size_t count) {
     isBlockMarked_ = false;
 }
 
+void CanonQueue::begin_undo() {
+    kept_ = calls_.size();
+    changed_.clear();
+}
+
+void CanonQueue::rollback() {
+    truncate(kept_);
+    for (auto entry = changed_.rbegin(); entry != changed_.rend(); ++entry) {
+        calls_[entry->first] = std::move(entry->second);
+    }
+    changed_.clear();
+}
+
+void CanonQueue::clear() {
+    truncate(0);
+    kept_ = 0;
+    changed_.clear();
+}
+
+void CanonQueue::move_ends(std::size_t from, AxisEnd first, AxisEnd second) {
+    for (std::size_t i = from; i < calls_.size(); ++i) {
+        auto *const feed = std::get_if<StraightFeed>(&calls_[i]);
+        auto *const traverse = std::get_if<StraightTraverse>(&calls_[i]);
+        auto *const arc = std::get_if<ArcFeed>(&calls_[i]);
+        if (feed == nullptr && traverse == nullptr && arc == nullptr) {
+            continue;
+        }
+        if (i < kept_) {
+            changed_.emplace_back(i, calls_[i]);
+        }
+        Pose &end = feed != nullptr ? feed->end : traverse != nullptr ? traverse->end : arc->end;
+        end[first.axis] = first.value;
+        end[second.axis] = second.value;
+        if (arc != nullptr) {
+            arc->first_end = first.value;
+            arc->second_end = second.value;
+        }
+    }
+}
+
 void CanonQueue::flush(Canon &target, std::size_t count) {
     auto mark = marks_.begin();
     const auto announce = [&](std::size_t call) {
@@ -49,6 +89,7 @@ void CanonQueue::flush(Canon &target, std::size_t count) {
     if (count == calls_.size()) {
         calls_.clear();
         marks_.clear();
+        kept_ = 0;
         return;
     }
     announce(count);  // the block of the first call that stays
@@ -57,6 +98,7 @@ void CanonQueue::flush(Canon &target, std::size_t count) {
     for (Mark &later : marks_) {
         later.call -= count;
     }
+    kept_ = calls_.size();
 }
 
 }  // namespace mw::interp::detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A canon that keeps calls until their block has succeeded (and, under cutter compensation, until the move
-// they follow has its final end), then hands them on in order.
+// they follow has its final end), then hands them on in order. Takes back what a block that fails has done.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,13 @@ class CanonQueue final : public Canon {
 
     std::size_t size() const { return calls_.size(); }
     bool empty() const { return calls_.empty(); }
-    /// Drops all calls after the first `count`.
-    void truncate(std::size_t count);
+    /// From here on, until commit(), all that happens can be taken back.
+    void begin_undo();
+    void commit() { changed_.clear(); }
+    /// Drops the calls since begin_undo(), and what was changed in those before.
+    void rollback();
+    /// Drops all calls.
+    void clear();
     /// Hands on the first `count` calls.
     void flush(Canon &target, std::size_t count);
     void flush(Canon &target) { flush(target, calls_.size()); }
@@ -36,8 +41,13 @@ class CanonQueue final : public Canon {
         calls_.emplace_back(std::forward<Call>(call));
     }
 
-    /// For cutter compensation, which changes the ends of moves that wait.
-    CanonCall &call(std::size_t index) { return calls_[index]; }
+    /// An axis and where a move ends along it.
+    struct AxisEnd {
+        int axis = 0;
+        double value = 0;
+    };
+    /// The moves from call `from` on end there instead; the two axes are those of the selected plane.
+    void move_ends(std::size_t from, AxisEnd first, AxisEnd second);
 
   private:
     struct Block {
@@ -51,9 +61,12 @@ class CanonQueue final : public Canon {
         Block block;
     };
     void mark_block();
+    void truncate(std::size_t count);
 
     std::vector<CanonCall> calls_;
-    std::vector<Mark> marks_;  ///< in the order of the calls
+    std::size_t kept_ = 0;                                    ///< those that rollback() leaves
+    std::vector<std::pair<std::size_t, CanonCall>> changed_;  ///< among them, as they were
+    std::vector<Mark> marks_;                                 ///< in the order of the calls
     Block block_;
     bool isBlockMarked_ = false;
 };

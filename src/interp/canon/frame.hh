@@ -27,6 +27,7 @@ struct Frame {
     Pose g5x, g92, tool;
     double rotation_deg = 0;
 
+    bool operator==(const Frame &) const = default;
     Pose to_machine(Pose p) const {
         p = p + g92;
         rotate_xy(p, rotation_deg);

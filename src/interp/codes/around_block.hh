@@ -23,6 +23,12 @@ struct Awaited {
     bool isToolChange = false;              ///< a script has changed the tool: a waiting point is due
 };
 
+/// The M98 that the program has come to.
+struct FanucCall {
+    int label = 0;  ///< of the subroutine
+    int count = 1;  ///< of calls
+};
+
 /// Numbers that scripts set for one another.
 struct ScriptLevels {
     int debug_mask = 0, logging_level = 0;

@@ -63,13 +63,14 @@ constexpr Row MODES[] = {
      [](const Sources &e, double v) {
          e.state.active_spindle = std::clamp(to_whole(v), 0, e.world.count_spindles() - 1);
      }},
-    {"arc_not_allowed", [](const Sources &e) -> ScriptValue { return e.state.isCompExit; },
-     [](const Sources &e, double v) { e.state.isCompExit = v != 0; }},
-    {"cutter_comp_firstmove", [](const Sources &e) -> ScriptValue { return !e.state.comp_last.isSet; }},
+    {"arc_not_allowed", [](const Sources &e) -> ScriptValue { return e.state.comp.isExit(); },
+     [](const Sources &e, double v) { e.state.comp.set_exit(v != 0); }},
+    {"cutter_comp_firstmove", [](const Sources &e) -> ScriptValue { return !e.state.comp.hasMoved(); }},
     {"cutter_comp_orientation",
-     [](const Sources &e) -> ScriptValue { return whole(e.state.comp_orientation); }},
-    {"cutter_comp_radius", [](const Sources &e) -> ScriptValue { return e.state.comp_radius; }},
-    {"cutter_comp_side", [](const Sources &e) -> ScriptValue { return whole(side_number(e.state.comp)); }},
+     [](const Sources &e) -> ScriptValue { return whole(e.state.comp.orientation()); }},
+    {"cutter_comp_radius", [](const Sources &e) -> ScriptValue { return e.state.comp.radius(); }},
+    {"cutter_comp_side",
+     [](const Sources &e) -> ScriptValue { return whole(side_number(e.state.comp.side())); }},
     {"distance_mode", [](const Sources &e) -> ScriptValue { return whole(e.state.isIncremental ? 1 : 0); },
      [](const Sources &e, double v) { e.state.isIncremental = v != 0; }},
     {"feed_mode", [](const Sources &e) -> ScriptValue { return whole(static_cast<int>(e.state.feed_mode)); },
@@ -94,7 +95,7 @@ constexpr Row MODES[] = {
     {"plane", [](const Sources &e) -> ScriptValue { return whole(plane_number(e.state.plane)); }},
     {"retract_mode", [](const Sources &e) -> ScriptValue { return whole(e.state.isRetractToR ? 0 : 1); },
      [](const Sources &e, double v) { e.state.isRetractToR = v == 0; }},
-    {"rotation_xy", [](const Sources &e) -> ScriptValue { return e.state.rotation_deg; }},
+    {"rotation_xy", [](const Sources &e) -> ScriptValue { return e.state.frame.rotation_deg; }},
     {"speed_feed_mode", [](const Sources &) -> ScriptValue { return whole(2); }},
     {"speed_override", [](const Sources &e) -> ScriptValue { return spindle(e).isOverridden; },
      [](const Sources &e, double v) { spindle(e).isOverridden = v != 0; }},
@@ -131,15 +132,15 @@ constexpr Row CYCLES[] = {
 };
 
 constexpr Row TOOLS[] = {
-    {"current_pocket", [](const Sources &e) -> ScriptValue { return whole(e.state.tool_index); },
-     [](const Sources &e, double v) { e.state.tool_index = to_whole(v); }},
-    {"current_tool", [](const Sources &e) -> ScriptValue { return whole(e.state.tool_in_spindle); },
-     [](const Sources &e, double v) { e.state.tool_in_spindle = to_whole(v); }},
+    {"current_pocket", [](const Sources &e) -> ScriptValue { return whole(e.state.tool.index); },
+     [](const Sources &e, double v) { e.state.tool.index = to_whole(v); }},
+    {"current_tool", [](const Sources &e) -> ScriptValue { return whole(e.state.tool.in_spindle); },
+     [](const Sources &e, double v) { e.state.tool.in_spindle = to_whole(v); }},
     {"random_toolchanger", [](const Sources &e) -> ScriptValue { return whole(e.tools.isRandom() ? 1 : 0); }},
-    {"selected_pocket", [](const Sources &e) -> ScriptValue { return whole(e.state.selected_index); },
-     [](const Sources &e, double v) { e.state.selected_index = to_whole(v); }},
-    {"selected_tool", [](const Sources &e) -> ScriptValue { return whole(e.state.selected_tool); },
-     [](const Sources &e, double v) { e.state.selected_tool = to_whole(v); }},
+    {"selected_pocket", [](const Sources &e) -> ScriptValue { return whole(e.state.tool.selected_index); },
+     [](const Sources &e, double v) { e.state.tool.selected_index = to_whole(v); }},
+    {"selected_tool", [](const Sources &e) -> ScriptValue { return whole(e.state.tool.selected); },
+     [](const Sources &e, double v) { e.state.tool.selected = to_whole(v); }},
     {"tool_change_at_g30", [](const Sources &) -> ScriptValue { return whole(0); }},
     {"tool_change_quill_up", [](const Sources &) -> ScriptValue { return whole(0); }},
     {"tool_change_with_spindle_on", [](const Sources &) -> ScriptValue { return whole(0); }},
@@ -178,23 +179,22 @@ constexpr Row REST[] = {
 /// Nine axes each: the tool's position, and the offsets of the coordinate system and of G92.
 struct AxisNames {
     std::array<std::string_view, geom::AXIS_COUNT> names;
-    Pose State::*pose;
-    bool isWritable;
+    const Pose &(*read)(const State &state);
+    void (*write)(State &state, int axis, double value) = nullptr;
 };
 constexpr AxisNames AXIS_ROWS[] = {
     {{"current_x", "current_y", "current_z", "AA_current", "BB_current", "CC_current", "u_current",
       "v_current", "w_current"},
-     &State::position,
-     true},
+     [](const State &state) -> const Pose & { return state.position; },
+     [](State &state, int axis, double value) { state.position[axis] = value; }},
     {{"origin_offset_x", "origin_offset_y", "origin_offset_z", "AA_origin_offset", "BB_origin_offset",
       "CC_origin_offset", "u_origin_offset", "v_origin_offset", "w_origin_offset"},
-     &State::g5x,
-     false},
+     [](const State &state) -> const Pose & { return state.frame.g5x; }},
     {{"axis_offset_x", "axis_offset_y", "axis_offset_z", "AA_axis_offset", "BB_axis_offset", "CC_axis_offset",
       "u_axis_offset", "v_axis_offset", "w_axis_offset"},
-     &State::g92,
-     false},
-    {{"program_x", "program_y", "program_z", "", "", "", "", "", ""}, &State::position, false},
+     [](const State &state) -> const Pose & { return state.frame.g92; }},
+    {{"program_x", "program_y", "program_z", "", "", "", "", "", ""},
+     [](const State &state) -> const Pose & { return state.position; }},
 };
 
 const Row *find_row(std::string_view name) {
@@ -242,14 +242,14 @@ std::optional<ScriptValue> attribute(std::string_view name, const AttributeSourc
     }
     const AxisPlace place = find_axis(name);
     return place.row == nullptr ? std::nullopt
-                                : std::optional<ScriptValue>((sources.state.*place.row->pose)[place.axis]);
+                                : std::optional<ScriptValue>(place.row->read(sources.state)[place.axis]);
 }
 
 Result<> set_attribute(std::string_view name, const ScriptValue &value, const AttributeSources &sources) {
     const Row *row = find_row(name);
     const AxisPlace place = find_axis(name);
     const bool isWritable =
-        row != nullptr ? row->write != nullptr : place.row != nullptr && place.row->isWritable;
+        row != nullptr ? row->write != nullptr : place.row != nullptr && place.row->write != nullptr;
     if (!isWritable) {
         return fail(fmt::format("{} cannot be set", name));
     }
@@ -260,7 +260,7 @@ Result<> set_attribute(std::string_view name, const ScriptValue &value, const At
     if (row != nullptr) {
         row->write(sources, *number);
     } else {
-        (sources.state.*place.row->pose)[place.axis] = *number;
+        place.row->write(sources.state, place.axis, *number);
     }
     return {};
 }

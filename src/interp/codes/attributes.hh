@@ -9,6 +9,7 @@
 #include "base/result.hh"
 #include "interp/codes/around_block.hh"
 #include "interp/codes/state.hh"
+#include "interp/codes/tools/tool_table.hh"
 #include "interp/scripts/script_host.hh"
 #include "interp/world.hh"
 
@@ -22,7 +23,7 @@ struct AttributeSources {
     ScriptLevels &script_levels;
     const BlockPlace &place;
     const World &world;
-    const ToolSource &tools;
+    const ToolTable &tools;
     int running_remaps = 0;
     bool isTask = false;
 };

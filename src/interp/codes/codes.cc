@@ -3,148 +3,159 @@
 
 #include <array>
 
-#include "interp/codes/executor.hh"
+#include "interp/codes/comp/comp_codes.hh"
+#include "interp/codes/cycles/canned_cycles.hh"
+#include "interp/codes/lathe/lathe_cycles.hh"
+#include "interp/codes/lathe/thread_cycle.hh"
+#include "interp/codes/modes/modes.hh"
+#include "interp/codes/modes/restore_modes.hh"
+#include "interp/codes/moves/arcs.hh"
+#include "interp/codes/moves/moves.hh"
+#include "interp/codes/moves/probes.hh"
+#include "interp/codes/moves/spindle_moves.hh"
+#include "interp/codes/moves/splines.hh"
+#include "interp/codes/switches/program_calls.hh"
+#include "interp/codes/switches/program_end.hh"
+#include "interp/codes/switches/spindles.hh"
+#include "interp/codes/switches/switches.hh"
+#include "interp/codes/tools/offsets.hh"
+#include "interp/codes/tools/stored_data.hh"
+#include "interp/codes/tools/tools.hh"
 
 namespace mw::interp::detail {
 namespace {
 
 constexpr int MAX_G = 1000, MAX_M = 200;
 
-#define ROW(LETTER, NUMBER, GROUP, PHASE, AXES_USED, WORDS, REQUIRED, HANDLER)                               \
-    Code {                                                                                                   \
-        LETTER, NUMBER, Group::GROUP, Phase::PHASE, AXES_USED, letters(WORDS), letters(REQUIRED),            \
-            &Executor::HANDLER, nullptr                                                                      \
-    }
-
 // letter, number, group, phase, uses axis words, words, required words, handler
 const Code TABLE[] = {
-    ROW('g', 0, MOTION, MOTION, true, "", "", do_straight),
-    ROW('g', 10, MOTION, MOTION, true, "", "", do_straight),
-    ROW('g', 20, MOTION, MOTION, true, "ijkrp", "", do_arc),
-    ROW('g', 30, MOTION, MOTION, true, "ijkrp", "", do_arc),
-    ROW('g', 40, NON_MODAL, DWELL, false, "p", "", do_dwell),
-    ROW('g', 50, MOTION, MOTION, true, "ijpq", "pq", do_cubic_spline),
-    ROW('g', 51, MOTION, MOTION, true, "ij", "", do_quadratic_spline),
-    ROW('g', 52, MOTION, MOTION, true, "pl", "", do_nurbs_point),
-    ROW('g', 53, MOTION, MOTION, false, "", "", do_nurbs_end),
-    ROW('g', 70, DIAMETER, DIAMETER, false, "", "", do_diameter),
-    ROW('g', 80, DIAMETER, DIAMETER, false, "", "", do_diameter),
-    ROW('g', 100, NON_MODAL, OFFSETS, true, "lprijq", "l", do_g10),
-    ROW('g', 170, PLANE, PLANE, false, "", "", do_plane),
-    ROW('g', 171, PLANE, PLANE, false, "", "", do_plane),
-    ROW('g', 180, PLANE, PLANE, false, "", "", do_plane),
-    ROW('g', 181, PLANE, PLANE, false, "", "", do_plane),
-    ROW('g', 190, PLANE, PLANE, false, "", "", do_plane),
-    ROW('g', 191, PLANE, PLANE, false, "", "", do_plane),
-    ROW('g', 200, UNITS, UNITS, false, "", "", do_units),
-    ROW('g', 210, UNITS, UNITS, false, "", "", do_units),
-    ROW('g', 280, NON_MODAL, OFFSETS, true, "", "", do_reference),
-    ROW('g', 281, NON_MODAL, OFFSETS, true, "", "", do_reference),
-    ROW('g', 300, NON_MODAL, OFFSETS, true, "", "", do_reference),
-    ROW('g', 301, NON_MODAL, OFFSETS, true, "", "", do_reference),
-    ROW('g', 330, MOTION, MOTION, true, "k$", "k", do_thread),
-    ROW('g', 331, MOTION, MOTION, true, "ki$", "k", do_thread),
-    ROW('g', 382, MOTION, MOTION, true, "", "", do_probe),
-    ROW('g', 383, MOTION, MOTION, true, "", "", do_probe),
-    ROW('g', 384, MOTION, MOTION, true, "", "", do_probe),
-    ROW('g', 385, MOTION, MOTION, true, "", "", do_probe),
-    ROW('g', 400, COMP, COMP, false, "", "", do_comp),
-    ROW('g', 410, COMP, COMP, false, "d", "", do_comp),
-    ROW('g', 411, COMP, COMP, false, "dl", "d", do_comp),
-    ROW('g', 420, COMP, COMP, false, "d", "", do_comp),
-    ROW('g', 421, COMP, COMP, false, "dl", "d", do_comp),
-    ROW('g', 430, TOOL_OFFSET, TOOL_OFFSET, false, "h", "", do_tool_offset),
-    ROW('g', 431, TOOL_OFFSET, TOOL_OFFSET, true, "", "", do_tool_offset),
-    ROW('g', 432, TOOL_OFFSET, TOOL_OFFSET, true, "h", "", do_tool_offset),
-    ROW('g', 490, TOOL_OFFSET, TOOL_OFFSET, false, "", "", do_tool_offset),
-    ROW('g', 520, NON_MODAL, OFFSETS, true, "", "", do_g92),
-    ROW('g', 530, NON_MODAL, DWELL, false, "", "", do_nothing),
-    ROW('g', 540, COORDINATES, COORDINATES, false, "", "", do_coordinates),
-    ROW('g', 550, COORDINATES, COORDINATES, false, "", "", do_coordinates),
-    ROW('g', 560, COORDINATES, COORDINATES, false, "", "", do_coordinates),
-    ROW('g', 570, COORDINATES, COORDINATES, false, "", "", do_coordinates),
-    ROW('g', 580, COORDINATES, COORDINATES, false, "", "", do_coordinates),
-    ROW('g', 590, COORDINATES, COORDINATES, false, "", "", do_coordinates),
-    ROW('g', 591, COORDINATES, COORDINATES, false, "", "", do_coordinates),
-    ROW('g', 592, COORDINATES, COORDINATES, false, "", "", do_coordinates),
-    ROW('g', 593, COORDINATES, COORDINATES, false, "", "", do_coordinates),
-    ROW('g', 610, CONTROL, CONTROL, false, "", "", do_control),
-    ROW('g', 611, CONTROL, CONTROL, false, "", "", do_control),
-    ROW('g', 640, CONTROL, CONTROL, false, "pqr", "", do_control),
-    ROW('g', 760, MOTION, MOTION, true, "pijkrqhel$", "pijk", do_thread_cycle),
-    ROW('g', 800, MOTION, MOTION, false, "", "", do_cancel_motion),
-    ROW('g', 700, MOTION, MOTION, true, "qdep", "q", do_lathe_cycle),
-    ROW('g', 710, MOTION, MOTION, true, "qdir", "q", do_lathe_cycle),
-    ROW('g', 711, MOTION, MOTION, true, "qdir", "q", do_lathe_cycle),
-    ROW('g', 712, MOTION, MOTION, true, "qdir", "q", do_lathe_cycle),
-    ROW('g', 720, MOTION, MOTION, true, "qdir", "q", do_lathe_cycle),
-    ROW('g', 721, MOTION, MOTION, true, "qdir", "q", do_lathe_cycle),
-    ROW('g', 722, MOTION, MOTION, true, "qdir", "q", do_lathe_cycle),
-    ROW('g', 730, MOTION, MOTION, true, "rlqp", "", do_cycle),
-    ROW('g', 740, MOTION, MOTION, true, "rlp$", "", do_cycle),
-    ROW('g', 810, MOTION, MOTION, true, "rl", "", do_cycle),
-    ROW('g', 820, MOTION, MOTION, true, "rlp", "", do_cycle),
-    ROW('g', 830, MOTION, MOTION, true, "rlqp", "", do_cycle),
-    ROW('g', 840, MOTION, MOTION, true, "rlp$", "", do_cycle),
-    ROW('g', 850, MOTION, MOTION, true, "rl", "", do_cycle),
-    ROW('g', 860, MOTION, MOTION, true, "rlp$", "", do_cycle),
-    ROW('g', 870, MOTION, MOTION, true, "rlijkp", "", do_cycle),
-    ROW('g', 880, MOTION, MOTION, true, "rlp", "", do_cycle),
-    ROW('g', 890, MOTION, MOTION, true, "rlp", "", do_cycle),
-    ROW('g', 900, DISTANCE, DISTANCE, false, "", "", do_distance),
-    ROW('g', 901, CENTRE_DISTANCE, CENTRE_DISTANCE, false, "", "", do_centre_distance),
-    ROW('g', 910, DISTANCE, DISTANCE, false, "", "", do_distance),
-    ROW('g', 911, CENTRE_DISTANCE, CENTRE_DISTANCE, false, "", "", do_centre_distance),
-    ROW('g', 920, NON_MODAL, OFFSETS, true, "", "", do_g92),
-    ROW('g', 921, NON_MODAL, OFFSETS, false, "", "", do_g92),
-    ROW('g', 922, NON_MODAL, OFFSETS, false, "", "", do_g92),
-    ROW('g', 923, NON_MODAL, OFFSETS, false, "", "", do_g92),
-    ROW('g', 930, FEED_MODE, FEED_MODE, false, "", "", do_feed_mode),
-    ROW('g', 940, FEED_MODE, FEED_MODE, false, "", "", do_feed_mode),
-    ROW('g', 950, FEED_MODE, FEED_MODE, false, "$", "", do_feed_mode),
-    ROW('g', 960, SPINDLE_MODE, SPINDLE_MODE, false, "d$", "s", do_spindle_mode),
-    ROW('g', 970, SPINDLE_MODE, SPINDLE_MODE, false, "$", "", do_spindle_mode),
-    ROW('g', 980, RETRACT, RETRACT, false, "", "", do_retract),
-    ROW('g', 990, RETRACT, RETRACT, false, "", "", do_retract),
+    row('g', 0, Group::MOTION, Phase::MOTION, true, "", "", move_straight),
+    row('g', 10, Group::MOTION, Phase::MOTION, true, "", "", move_straight),
+    row('g', 20, Group::MOTION, Phase::MOTION, true, "ijkrp", "", move_along_arc),
+    row('g', 30, Group::MOTION, Phase::MOTION, true, "ijkrp", "", move_along_arc),
+    row('g', 40, Group::NON_MODAL, Phase::DWELL, false, "p", "", dwell),
+    row('g', 50, Group::MOTION, Phase::MOTION, true, "ijpq", "pq", move_along_cubic),
+    row('g', 51, Group::MOTION, Phase::MOTION, true, "ij", "", move_along_quadratic),
+    row('g', 52, Group::MOTION, Phase::MOTION, true, "pl", "", add_nurbs_point),
+    row('g', 53, Group::MOTION, Phase::MOTION, false, "", "", end_nurbs),
+    row('g', 70, Group::DIAMETER, Phase::DIAMETER, false, "", "", set_diameter_mode),
+    row('g', 80, Group::DIAMETER, Phase::DIAMETER, false, "", "", set_diameter_mode),
+    row('g', 100, Group::NON_MODAL, Phase::OFFSETS, true, "lprijq", "l", set_stored_data),
+    row('g', 170, Group::PLANE, Phase::PLANE, false, "", "", select_plane),
+    row('g', 171, Group::PLANE, Phase::PLANE, false, "", "", select_plane),
+    row('g', 180, Group::PLANE, Phase::PLANE, false, "", "", select_plane),
+    row('g', 181, Group::PLANE, Phase::PLANE, false, "", "", select_plane),
+    row('g', 190, Group::PLANE, Phase::PLANE, false, "", "", select_plane),
+    row('g', 191, Group::PLANE, Phase::PLANE, false, "", "", select_plane),
+    row('g', 200, Group::UNITS, Phase::UNITS, false, "", "", set_units),
+    row('g', 210, Group::UNITS, Phase::UNITS, false, "", "", set_units),
+    row('g', 280, Group::NON_MODAL, Phase::OFFSETS, true, "", "", go_to_reference),
+    row('g', 281, Group::NON_MODAL, Phase::OFFSETS, true, "", "", go_to_reference),
+    row('g', 300, Group::NON_MODAL, Phase::OFFSETS, true, "", "", go_to_reference),
+    row('g', 301, Group::NON_MODAL, Phase::OFFSETS, true, "", "", go_to_reference),
+    row('g', 330, Group::MOTION, Phase::MOTION, true, "k$", "k", move_with_spindle),
+    row('g', 331, Group::MOTION, Phase::MOTION, true, "ki$", "k", move_with_spindle),
+    row('g', 382, Group::MOTION, Phase::MOTION, true, "", "", move_probe),
+    row('g', 383, Group::MOTION, Phase::MOTION, true, "", "", move_probe),
+    row('g', 384, Group::MOTION, Phase::MOTION, true, "", "", move_probe),
+    row('g', 385, Group::MOTION, Phase::MOTION, true, "", "", move_probe),
+    row('g', 400, Group::COMP, Phase::COMP, false, "", "", set_compensation),
+    row('g', 410, Group::COMP, Phase::COMP, false, "d", "", set_compensation),
+    row('g', 411, Group::COMP, Phase::COMP, false, "dl", "d", set_compensation),
+    row('g', 420, Group::COMP, Phase::COMP, false, "d", "", set_compensation),
+    row('g', 421, Group::COMP, Phase::COMP, false, "dl", "d", set_compensation),
+    row('g', 430, Group::TOOL_OFFSET, Phase::TOOL_OFFSET, false, "h", "", set_tool_offset),
+    row('g', 431, Group::TOOL_OFFSET, Phase::TOOL_OFFSET, true, "", "", set_tool_offset),
+    row('g', 432, Group::TOOL_OFFSET, Phase::TOOL_OFFSET, true, "h", "", set_tool_offset),
+    row('g', 490, Group::TOOL_OFFSET, Phase::TOOL_OFFSET, false, "", "", set_tool_offset),
+    row('g', 520, Group::NON_MODAL, Phase::OFFSETS, true, "", "", shift_axes),
+    row('g', 530, Group::NON_MODAL, Phase::DWELL, false, "", "", note_machine_coordinates),
+    row('g', 540, Group::COORDINATES, Phase::COORDINATES, false, "", "", use_coordinates),
+    row('g', 550, Group::COORDINATES, Phase::COORDINATES, false, "", "", use_coordinates),
+    row('g', 560, Group::COORDINATES, Phase::COORDINATES, false, "", "", use_coordinates),
+    row('g', 570, Group::COORDINATES, Phase::COORDINATES, false, "", "", use_coordinates),
+    row('g', 580, Group::COORDINATES, Phase::COORDINATES, false, "", "", use_coordinates),
+    row('g', 590, Group::COORDINATES, Phase::COORDINATES, false, "", "", use_coordinates),
+    row('g', 591, Group::COORDINATES, Phase::COORDINATES, false, "", "", use_coordinates),
+    row('g', 592, Group::COORDINATES, Phase::COORDINATES, false, "", "", use_coordinates),
+    row('g', 593, Group::COORDINATES, Phase::COORDINATES, false, "", "", use_coordinates),
+    row('g', 610, Group::CONTROL, Phase::CONTROL, false, "", "", set_path_control),
+    row('g', 611, Group::CONTROL, Phase::CONTROL, false, "", "", set_path_control),
+    row('g', 640, Group::CONTROL, Phase::CONTROL, false, "pqr", "", set_path_control),
+    row('g', 760, Group::MOTION, Phase::MOTION, true, "pijkrqhel$", "pijk", cut_thread),
+    row('g', 800, Group::MOTION, Phase::MOTION, false, "", "", cancel_motion),
+    row('g', 700, Group::MOTION, Phase::MOTION, true, "qdep", "q", begin_lathe_cycle),
+    row('g', 710, Group::MOTION, Phase::MOTION, true, "qdir", "q", begin_lathe_cycle),
+    row('g', 711, Group::MOTION, Phase::MOTION, true, "qdir", "q", begin_lathe_cycle),
+    row('g', 712, Group::MOTION, Phase::MOTION, true, "qdir", "q", begin_lathe_cycle),
+    row('g', 720, Group::MOTION, Phase::MOTION, true, "qdir", "q", begin_lathe_cycle),
+    row('g', 721, Group::MOTION, Phase::MOTION, true, "qdir", "q", begin_lathe_cycle),
+    row('g', 722, Group::MOTION, Phase::MOTION, true, "qdir", "q", begin_lathe_cycle),
+    row('g', 730, Group::MOTION, Phase::MOTION, true, "rlqp", "", run_canned_cycle),
+    row('g', 740, Group::MOTION, Phase::MOTION, true, "rlp$", "", run_canned_cycle),
+    row('g', 810, Group::MOTION, Phase::MOTION, true, "rl", "", run_canned_cycle),
+    row('g', 820, Group::MOTION, Phase::MOTION, true, "rlp", "", run_canned_cycle),
+    row('g', 830, Group::MOTION, Phase::MOTION, true, "rlqp", "", run_canned_cycle),
+    row('g', 840, Group::MOTION, Phase::MOTION, true, "rlp$", "", run_canned_cycle),
+    row('g', 850, Group::MOTION, Phase::MOTION, true, "rl", "", run_canned_cycle),
+    row('g', 860, Group::MOTION, Phase::MOTION, true, "rlp$", "", run_canned_cycle),
+    row('g', 870, Group::MOTION, Phase::MOTION, true, "rlijkp", "", run_canned_cycle),
+    row('g', 880, Group::MOTION, Phase::MOTION, true, "rlp", "", run_canned_cycle),
+    row('g', 890, Group::MOTION, Phase::MOTION, true, "rlp", "", run_canned_cycle),
+    row('g', 900, Group::DISTANCE, Phase::DISTANCE, false, "", "", set_distance_mode),
+    row('g', 901, Group::CENTRE_DISTANCE, Phase::CENTRE_DISTANCE, false, "", "", set_centre_distance_mode),
+    row('g', 910, Group::DISTANCE, Phase::DISTANCE, false, "", "", set_distance_mode),
+    row('g', 911, Group::CENTRE_DISTANCE, Phase::CENTRE_DISTANCE, false, "", "", set_centre_distance_mode),
+    row('g', 920, Group::NON_MODAL, Phase::OFFSETS, true, "", "", shift_axes),
+    row('g', 921, Group::NON_MODAL, Phase::OFFSETS, false, "", "", shift_axes),
+    row('g', 922, Group::NON_MODAL, Phase::OFFSETS, false, "", "", shift_axes),
+    row('g', 923, Group::NON_MODAL, Phase::OFFSETS, false, "", "", shift_axes),
+    row('g', 930, Group::FEED_MODE, Phase::FEED_MODE, false, "", "", set_feed_mode),
+    row('g', 940, Group::FEED_MODE, Phase::FEED_MODE, false, "", "", set_feed_mode),
+    row('g', 950, Group::FEED_MODE, Phase::FEED_MODE, false, "$", "", set_feed_mode),
+    row('g', 960, Group::SPINDLE_MODE, Phase::SPINDLE_MODE, false, "d$", "s", set_spindle_mode),
+    row('g', 970, Group::SPINDLE_MODE, Phase::SPINDLE_MODE, false, "$", "", set_spindle_mode),
+    row('g', 980, Group::RETRACT, Phase::RETRACT, false, "", "", set_retract_mode),
+    row('g', 990, Group::RETRACT, Phase::RETRACT, false, "", "", set_retract_mode),
 
-    ROW('m', 0, STOP, STOP, false, "", "", do_stop),
-    ROW('m', 1, STOP, STOP, false, "", "", do_stop),
-    ROW('m', 2, STOP, STOP, false, "", "", do_end),
-    ROW('m', 3, SPINDLE, SPINDLE, false, "$", "", do_spindle),
-    ROW('m', 4, SPINDLE, SPINDLE, false, "$", "", do_spindle),
-    ROW('m', 5, SPINDLE, SPINDLE, false, "$", "", do_spindle),
-    ROW('m', 6, TOOL_CHANGE, CHANGE_TOOL, false, "", "", do_change_tool),
-    ROW('m', 7, COOLANT, COOLANT, false, "", "", do_coolant),
-    ROW('m', 8, COOLANT, COOLANT, false, "", "", do_coolant),
-    ROW('m', 9, COOLANT, COOLANT, false, "", "", do_coolant),
-    ROW('m', 19, SPINDLE, SPINDLE, false, "rqp$", "", do_orient),
-    ROW('m', 30, STOP, STOP, false, "", "", do_end),
-    ROW('m', 48, OVERRIDE, OVERRIDE, false, "", "", do_override),
-    ROW('m', 49, OVERRIDE, OVERRIDE, false, "", "", do_override),
-    ROW('m', 50, OVERRIDE, OVERRIDE, false, "p", "", do_override),
-    ROW('m', 51, OVERRIDE, OVERRIDE, false, "p$", "", do_override),
-    ROW('m', 52, OVERRIDE, OVERRIDE, false, "p", "", do_override),
-    ROW('m', 53, OVERRIDE, OVERRIDE, false, "p", "", do_override),
-    ROW('m', 60, STOP, STOP, false, "", "", do_stop),
-    ROW('m', 61, TOOL_CHANGE, CHANGE_TOOL, false, "q", "q", do_tool_number),
-    ROW('m', 62, IO, IO, false, "p", "p", do_output),
-    ROW('m', 63, IO, IO, false, "p", "p", do_output),
-    ROW('m', 64, IO, IO, false, "p", "p", do_output),
-    ROW('m', 65, IO, IO, false, "p", "p", do_output),
-    ROW('m', 66, IO, IO, false, "pelq", "", do_wait_input),
-    ROW('m', 67, IO, IO, false, "eq", "eq", do_output),
-    ROW('m', 68, IO, IO, false, "eq", "eq", do_output),
-    ROW('m', 70, CONTEXT, CONTEXT, false, "", "", do_context),
-    ROW('m', 71, CONTEXT, CONTEXT, false, "", "", do_context),
-    ROW('m', 72, CONTEXT, CONTEXT, false, "", "", do_context),
-    ROW('m', 98, STOP, STOP, false, "pl", "", do_fanuc),
-    ROW('m', 99, STOP, STOP, false, "", "", do_fanuc),
-    ROW('m', 73, CONTEXT, CONTEXT, false, "", "", do_context),
+    row('m', 0, Group::STOP, Phase::STOP, false, "", "", stop_program),
+    row('m', 1, Group::STOP, Phase::STOP, false, "", "", stop_program),
+    row('m', 2, Group::STOP, Phase::STOP, false, "", "", end_program),
+    row('m', 3, Group::SPINDLE, Phase::SPINDLE, false, "$", "", turn_spindle),
+    row('m', 4, Group::SPINDLE, Phase::SPINDLE, false, "$", "", turn_spindle),
+    row('m', 5, Group::SPINDLE, Phase::SPINDLE, false, "$", "", turn_spindle),
+    row('m', 6, Group::TOOL_CHANGE, Phase::CHANGE_TOOL, false, "", "", change_tool),
+    row('m', 7, Group::COOLANT, Phase::COOLANT, false, "", "", switch_coolant),
+    row('m', 8, Group::COOLANT, Phase::COOLANT, false, "", "", switch_coolant),
+    row('m', 9, Group::COOLANT, Phase::COOLANT, false, "", "", switch_coolant),
+    row('m', 19, Group::SPINDLE, Phase::SPINDLE, false, "rqp$", "", orient_spindle),
+    row('m', 30, Group::STOP, Phase::STOP, false, "", "", end_program),
+    row('m', 48, Group::OVERRIDE, Phase::OVERRIDE, false, "", "", switch_overrides),
+    row('m', 49, Group::OVERRIDE, Phase::OVERRIDE, false, "", "", switch_overrides),
+    row('m', 50, Group::OVERRIDE, Phase::OVERRIDE, false, "p", "", switch_overrides),
+    row('m', 51, Group::OVERRIDE, Phase::OVERRIDE, false, "p$", "", switch_overrides),
+    row('m', 52, Group::OVERRIDE, Phase::OVERRIDE, false, "p", "", switch_overrides),
+    row('m', 53, Group::OVERRIDE, Phase::OVERRIDE, false, "p", "", switch_overrides),
+    row('m', 60, Group::STOP, Phase::STOP, false, "", "", stop_program),
+    row('m', 61, Group::TOOL_CHANGE, Phase::CHANGE_TOOL, false, "q", "q", set_tool_number),
+    row('m', 62, Group::IO, Phase::IO, false, "p", "p", set_output),
+    row('m', 63, Group::IO, Phase::IO, false, "p", "p", set_output),
+    row('m', 64, Group::IO, Phase::IO, false, "p", "p", set_output),
+    row('m', 65, Group::IO, Phase::IO, false, "p", "p", set_output),
+    row('m', 66, Group::IO, Phase::IO, false, "pelq", "", wait_for_input),
+    row('m', 67, Group::IO, Phase::IO, false, "eq", "eq", set_output),
+    row('m', 68, Group::IO, Phase::IO, false, "eq", "eq", set_output),
+    row('m', 70, Group::CONTEXT, Phase::CONTEXT, false, "", "", keep_modes),
+    row('m', 71, Group::CONTEXT, Phase::CONTEXT, false, "", "", keep_modes),
+    row('m', 72, Group::CONTEXT, Phase::CONTEXT, false, "", "", keep_modes),
+    row('m', 98, Group::STOP, Phase::STOP, false, "pl", "", call_or_return),
+    row('m', 99, Group::STOP, Phase::STOP, false, "", "", call_or_return),
+    row('m', 73, Group::CONTEXT, Phase::CONTEXT, false, "", "", keep_modes),
 };
 
-const Code F_CODE = ROW('f', 0, WORD_F, FEED, false, "", "", do_feed_word);
-const Code S_CODE = ROW('s', 0, WORD_S, SPEED, false, "$", "", do_speed_word);
-const Code T_CODE = ROW('t', 0, WORD_T, TOOL, false, "", "", do_tool_word);
+const Code F_CODE = row('f', 0, Group::WORD_F, Phase::FEED, false, "", "", set_feed);
+const Code S_CODE = row('s', 0, Group::WORD_S, Phase::SPEED, false, "$", "", set_speed);
+const Code T_CODE = row('t', 0, Group::WORD_T, Phase::TOOL, false, "", "", select_tool);
 
 constexpr int FIRST_USER_CODE = 100;
 
@@ -159,12 +170,11 @@ struct Index {
                                 : m[static_cast<std::size_t>(code.number)]) = &code;
         }
         for (std::size_t i = 0; i < users.size(); ++i) {
-            users[i] = ROW('m', FIRST_USER_CODE + static_cast<int>(i), USER, USER, false, "pq", "", do_user);
+            users[i] = row('m', FIRST_USER_CODE + static_cast<int>(i), Group::USER, Phase::USER, false, "pq",
+                           "", run_user_code);
         }
     }
 };
-
-#undef ROW
 
 }  // namespace
 

@@ -16,9 +16,15 @@ bool isHalName(std::string_view name) {
 }  // namespace
 
 AttributeSources Executor::attribute_sources() {
-    return {state,           returned, awaited, script_levels,
-            block_place,     world_,   tools_,  remaps.count_running(),
-            settings_.isTask};
+    return {state,
+            returned,
+            awaited,
+            script_levels,
+            block_place,
+            machine_.world,
+            tools,
+            remaps.count_running(),
+            machine_.settings.isTask};
 }
 
 KeptSources Executor::kept_sources() const {
@@ -26,10 +32,10 @@ KeptSources Executor::kept_sources() const {
             returned,
             block_place,
             parameters,
-            world_,
-            reported_position(),
+            machine_.world,
+            state.comp.compensated(state.position, state.plane),
             remaps.count_running(),
-            settings_.isTask};
+            machine_.settings.isTask};
 }
 
 bool Executor::isBuiltInName(std::string_view name) const {
@@ -45,7 +51,7 @@ std::optional<double> Executor::built_in(std::string_view name) const {
     }
     if (isIniName(name)) {
         const std::size_t close = name.find(']');
-        if (close == std::string_view::npos || !settings_.isIniReadable) {
+        if (close == std::string_view::npos || !machine_.settings.isIniReadable) {
             return std::nullopt;
         }
         const auto value = source_.ini_value(name.substr(5, close - 5), name.substr(close + 1));
@@ -55,7 +61,7 @@ std::optional<double> Executor::built_in(std::string_view name) const {
         return value;
     }
     if (isHalName(name)) {
-        if (!settings_.isHalReadable) {
+        if (!machine_.settings.isHalReadable) {
             return std::nullopt;
         }
         return source_.hal_value(name.substr(5, name.find(']') - 5));
@@ -65,23 +71,6 @@ std::optional<double> Executor::built_in(std::string_view name) const {
 
 double Executor::built_in(int number) const {
     return kept_value(number, kept_sources());
-}
-
-/// Where the tool is, compensation included.
-Pose Executor::reported_position() const {
-    const bool isShifted = state.comp != CompSide::OFF && state.comp_last.isSet;
-    return isShifted ? in_plane(state.position, state.comp_last.end) : state.position;
-}
-
-void Executor::load_indexed_tool() {
-    const bool isInTable = state.tool_index >= 0 && state.tool_index < tools_.count();
-    load_tool(isInTable ? state.tool_index : 0);
-}
-
-void Executor::set_tool_offset(const Pose &offset) {
-    Frame made = frame();
-    made.tool = offset;
-    change_frame(made);
 }
 
 }  // namespace mw::interp::detail

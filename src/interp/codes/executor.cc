@@ -1,60 +1,52 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "interp/codes/executor.hh"
 
-#include <bit>
-#include <cmath>
-
-#include <fmt/format.h>
-
+#include "base/overloaded.hh"
 #include "interp/codes/comments.hh"
+#include "interp/codes/modes/restore_modes.hh"
+#include "interp/codes/moves/splines.hh"
+#include "interp/codes/synchronisation.hh"
 
 namespace mw::interp::detail {
 namespace {
 
-constexpr char LETTERS[] = "abcdefghijklmnopqrstuvwxyz@^$";
-constexpr double CODE_TOLERANCE = 1e-4;
-constexpr double MM_PER_INCH = 25.4;
+/// Nothing, or a straight move alone, which fails before it changes anything.
+bool isStateSafe(const BlockValues &values, const State &state) {
+    constexpr int G1 = 10;
+    const bool isStraight = values.codes.size() == 1 && values.motion != nullptr &&
+                            values.motion->number <= G1 && !state.comp.isOn();
+    return values.codes.empty() || isStraight;
+}
 
 }  // namespace
 
-Executor::Executor(World &world, ToolSource &tools, ParameterSource &source, const Settings &settings,
+Executor::Executor(World &world, ToolSource &tool_source, ParameterSource &source, const Settings &settings,
                    Names &names)
-    : script_levels{settings.debug_mask, settings.logging_level}, world_(world), tools_(tools),
-      source_(source), settings_(settings), names_(names), evaluator_(parameters, names, *this, fault),
-      tool_table_(tools) {}
-
-std::string Executor::code_name(const Code &code) const {
-    if (code.letter == 'g') {
-        return code.number % 10 == 0 ? fmt::format("g{}", code.number / 10)
-                                     : fmt::format("g{}.{}", code.number / 10, code.number % 10);
-    }
-    return fmt::format("{}{}", code.letter, code.number);
-}
-
-double Executor::machine_to_program() const {
-    const double mm = world_.mm_per_machine_unit();
-    return state.units == LengthUnits::MM ? mm : mm / MM_PER_INCH;
+    : tools(tool_source), script_levels{settings.debug_mask, settings.logging_level},
+      machine_{world, settings}, source_(source), names_(names), evaluator_(parameters, names, *this, fault) {
 }
 
 // ------------------------------------------------------------------------------------------- one block
 
 bool Executor::run(const BlockView &view, std::string_view line_text) {
-    BlockValues &values = values_;
+    BlockValues &values = block_.values;
     values.clear();
     outcome = Outcome::OK;
-    if (!evaluate(view, values) || !apply_settings(view)) {
+    if (!read_words(view, {evaluator_, remaps}, values, fault) ||
+        (view.block->setting_count > 0 && !settings_.apply(view, evaluator_, names_, parameters, fault))) {
         return false;
     }
-    comment_.clear();
-    block_number_ = view.block->isNumbered ? view.block->sequence : -1;
-    if (lathe_) {
+    block_.comment.clear();
+    block_.number = view.block->isNumbered ? view.block->sequence : -1;
+    if (lathe.request() != nullptr) {
         keep_state();
-        return record_profile(values);
+        return lathe.record(values, machine_.settings, state, fault);
     }
     if (view.block->comment_count > 0 && !run_last_comment(view, line_text)) {
         return false;
     }
-    if (!choose_motion(values) || !check_words(values)) {
+    if (!choose_motion(values, state.motion, remaps, fault) || !check_open_nurbs(values, state, fault) ||
+        !axis_check_.check(values, machine_.world.axis_mask(), fault) || !check_words(values, fault)) {
         return false;
     }
     return run_codes(values, 0);
@@ -65,35 +57,31 @@ bool Executor::run_last_comment(const BlockView &view, std::string_view line_tex
     const Comment &last = view.arena->comments[view.block->first_comment + view.block->comment_count - 1u];
     const std::string_view comment = line_text.substr(last.begin, last.end - last.begin);
     if (last.isScript) {
-        script_text_ = comment;
+        block_.script_text = comment;
         outcome = Outcome::SCRIPT;
         return true;
     }
     if (!remaps.all().empty()) {
-        comment_ = comment;
+        block_.comment = comment;
     }
     return run_comment(comment, last.begin + 1, {evaluator_, names_}, canon, fault);
 }
 
-/// Nothing, or a straight move alone, which fails before it changes anything.
-bool Executor::isStateSafe(const BlockValues &values) const {
-    constexpr int G1 = 10;
-    const bool isStraight = values.codes.size() == 1 && values.motion != nullptr &&
-                            values.motion->number <= G1 && state.comp == CompSide::OFF;
-    return values.codes.empty() || isStraight;
-}
-
-/// The codes from `first` on; stops at a remapped one.
+/// The codes from `first` on; a remapped one interrupts the block, and keeps the rest for after the
+/// procedure.
 bool Executor::run_codes(const BlockValues &values, std::size_t first) {
-    if (!isStateSafe(values)) {
+    if (!isStateSafe(values, state)) {
         keep_state();
     }
     for (std::size_t i = first; i < values.codes.size(); ++i) {
         const ActiveCode &active = values.codes[i];
         if (active.code->remap != nullptr) {
-            return stop_at_remap(values, i);
+            remaps.interrupt(
+                {active.code->remap, values, i + 1, block_.comment, block_place.line, block_.number});
+            outcome = Outcome::REMAP;
+            return true;
         }
-        if (!(this->*active.code->handler)(*active.code, values)) {
+        if (!run_code(*active.code, values)) {
             if (fault.column == 0) {
                 fault.column = active.column;
             }
@@ -106,224 +94,143 @@ bool Executor::run_codes(const BlockValues &values, std::size_t first) {
     return true;
 }
 
-bool Executor::evaluate(const BlockView &view, BlockValues &values) {
-    const Arena &arena = *view.arena;
-    const Block &block = *view.block;
-    for (std::uint32_t i = 0; i < block.word_count; ++i) {
-        const Word &word = arena.words[block.first_word + i];
-        double value = word.value;
-        if (word.expression != NO_ID && !evaluator_.value(arena, word.expression, value)) {
-            return false;
-        }
-        const char letter_char = LETTERS[word.letter];
-        if (letter_char == 'g' || letter_char == 'm') {
-            if (!add_code(letter_char, value, word.column, values)) {
-                return false;
-            }
-            continue;
-        }
-        values.present |= bit_of(word.letter);
-        values.value[word.letter] = value;
-        values.column[word.letter] = word.column;
-        if (letter_char == 'f' || letter_char == 's' || letter_char == 't') {
-            if (!insert_code(*lookup(letter_char, 0), word.column, values)) {
-                return false;
-            }
-        }
-    }
-    return true;
+/// Hands a code the parts that its kind asks for.
+bool Executor::run_code(const Code &code, const BlockValues &values) {
+    return std::visit(
+        Overloaded{
+            [&](ModeHandler act) { return act(code, values, state, canon, fault); },
+            [&](MachineHandler act) { return act(code, values, machine_, state, canon, fault); },
+            [&](OffsetHandler act) { return act(code, values, machine_, parameters, state, canon, fault); },
+            [&](SplineHandler act) { return act(code, values, control_points_, state, canon, fault); },
+            [&](ToolHandler act) { return act(code, values, machine_, tools, state, canon, fault, outcome); },
+            [&](StoreHandler act) {
+                return act(code, values, machine_, tools, parameters, state, canon, fault, outcome);
+            },
+            [&](WaitHandler act) {
+                return act(code, values, parameters, awaited, state, canon, fault, outcome);
+            },
+            [&](LatheHandler act) {
+                return act(code, values, machine_, lathe, state, canon, fault, outcome);
+            },
+            [&](EndHandler act) {
+                return act(code, values, machine_, parameters, state, canon, fault, outcome);
+            },
+            [&](CallHandler act) {
+                return act(code, values, machine_, block_place, fanuc_call, parameters, state, canon, fault,
+                           outcome);
+            },
+            [&](ContextHandler act) {
+                return act(code, values, machine_, saved_modes, parameters, state, canon, fault);
+            },
+        },
+        code.handler);
 }
 
-bool Executor::add_code(char letter_char, double number, std::uint32_t column, BlockValues &values) {
-    constexpr double MOST = 9999;
-    const double scaled = letter_char == 'g' ? number * 10.0 : number;
-    if (number < 0.0) {
-        return fault.set(fmt::format("Negative {} code used", letter_char), column);
-    }
-    int whole = scaled <= MOST ? static_cast<int>(scaled) : -1;
-    if (whole != scaled) {
-        const double rounded = std::round(scaled);
-        if (std::fabs(scaled - rounded) > CODE_TOLERANCE * 10 || rounded > MOST) {
-            return fault.set(fmt::format("Unknown {} code used: {}{}", letter_char, letter_char, number),
-                             column);
-        }
-        whole = static_cast<int>(rounded);
-    }
-    const Code *code = lookup(letter_char, whole);
-    if (code == nullptr && remaps.isAnyRunning()) {
-        if (std::string recursion = remaps.recursion_text(letter_char, whole); !recursion.empty()) {
-            return fault.set(std::move(recursion), column);
-        }
-    }
-    if (code == nullptr && letter_char == 'm' && whole > 199) {
-        return fault.set(fmt::format("M-code greater than 199: M{}", whole), column);
-    }
-    if (code == nullptr) {
-        return fault.set(
-            fmt::format("Unknown {} code used: {}", letter_char, fmt::format("{}{}", letter_char, number)),
-            column);
-    }
-    if (letter_char == 'g' && whole == 530) {
-        values.isMachineCoordinates = true;
-    }
-    return insert_code(*code, column, values);
+bool Executor::resume(const PendingBlock &pending) {
+    begin_block();
+    block_.comment = pending.comment;
+    return run_codes(pending.values, pending.next);
 }
 
-/// Keeps the codes in their order of execution; refuses two of one group.
-bool Executor::insert_code(const Code &code, std::uint32_t column, BlockValues &values) {
-    const std::uint32_t bit = 1u << static_cast<unsigned>(code.group);
-    if (code.group == Group::MOTION && values.motion != nullptr) {
-        // G80 beside another motion code says nothing that this one does not say.
-        if (code.number == MOTION_NONE) {
-            return true;
-        }
-        if (values.motion->number == MOTION_NONE && values.motion->phase == code.phase) {
-            for (ActiveCode &active : values.codes) {
-                active = active.code == values.motion ? ActiveCode{&code, column} : active;
-            }
-            values.motion = &code;
-            return true;
-        }
-    }
-    if ((values.groups & bit) != 0) {
-        return fault.set(fmt::format("Two {} codes used from same modal group", code.letter), column);
-    }
-    values.groups |= bit;
-    if (code.group == Group::MOTION) {
-        values.motion = &code;
-    }
-    if (!values.codes.push_back({&code, column})) {
-        return fault.set("Too many codes in one block", column);
-    }
-    for (std::size_t i = values.codes.size() - 1;
-         i > 0 && values.codes[i].code->phase < values.codes[i - 1].code->phase; --i) {
-        std::swap(values.codes[i], values.codes[i - 1]);
-    }
-    return true;
+// ------------------------------------------------------------------------------------------------ undo
+
+void Executor::begin_block() {
+    begin_light_block();
+    keep_state();
 }
 
-/// Axis words belong to a code of the block that uses them, else to the motion in force.
-bool Executor::choose_motion(BlockValues &values) {
-    const bool isCancelling = values.motion != nullptr && values.motion->number == MOTION_NONE;
-    if ((values.motion != nullptr && !isCancelling) || !values.hasAxes()) {
+void Executor::begin_light_block() {
+    isStateKept_ = false;
+    canon.begin_undo();
+    outcome = Outcome::OK;
+}
+
+/// The state is large: blocks that leave it alone are spared the copy.
+void Executor::keep_state() {
+    if (!isStateKept_) {
+        before_ = state;
+        isStateKept_ = true;
+    }
+}
+
+void Executor::commit() {
+    parameters.commit();
+    tools.commit();
+    canon.commit();
+}
+
+void Executor::rollback() {
+    if (isStateKept_) {
+        state = before_;
+    }
+    parameters.rollback();
+    tools.rollback();
+    remaps.drop_interrupted();
+    canon.rollback();
+    outcome = Outcome::OK;
+}
+
+void Executor::flush(Canon &target) {
+    if (!state.comp.isHolding()) {
+        canon.flush(target);
+        return;
+    }
+    canon.flush(target, state.comp.held_call());
+    state.comp.set_held_call(0);
+    before_.comp.set_held_call(0);
+}
+
+void Executor::abort_block() {
+    remaps.drop_interrupted();
+    outcome = Outcome::OK;
+    awaited.isProbe = awaited.isInput = false;
+    state.spline.order = 0;
+    isStateKept_ = false;
+    canon.clear();
+    state.comp.forget_move();
+    lathe.forget_roughing();
+}
+
+// ------------------------------------------------------------------------------------- calls, the machine
+
+void Executor::push_call() {
+    parameters.push_call();
+    saved_modes.push_call();
+}
+
+/// Fanuc-style calls have no arguments: #1 to #30 are the caller's own.
+bool Executor::pop_call(bool isFanuc) {
+    const std::optional<State> modes = saved_modes.pop_call();
+    parameters.pop_call(isFanuc);
+    remaps.end_above(saved_modes.depth());
+    if (!modes) {
         return true;
     }
-    for (const ActiveCode &active : values.codes) {
-        if (active.code->usesAxes) {
-            return true;
-        }
-    }
-    if (isCancelling) {
-        return fault.set("Cannot use axis values with g80");
-    }
-    if (state.motion == MOTION_NONE) {
-        return fault.set("Cannot use axis values without a g code that uses them");
-    }
-    values.isMotionImplied = true;
-    return insert_code(*lookup('g', state.motion), 0, values);
+    keep_state();
+    return restore_modes(*modes, machine_, parameters, state, canon, fault);
 }
 
-/// The machine must have the axes that the block names.
-bool Executor::check_axes(const BlockValues &values) {
-    const unsigned mask = world_.axis_mask();
-    if (mask != axis_mask_) {
-        axis_mask_ = mask;
-        absent_axes_ = 0;
-        for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
-            const bool isThere = (mask & (1U << static_cast<unsigned>(axis))) != 0;
-            absent_axes_ |= isThere ? 0U : bit_of(letter(geom::AXIS_LETTERS_LOWER[axis]));
-        }
+void Executor::drop_calls(std::size_t depth) {
+    for (std::size_t calls = saved_modes.depth(); calls > depth; --calls) {
+        parameters.pop_call(false);
     }
-    const std::uint32_t absent = values.present & absent_axes_;
-    if (absent == 0) {
-        return true;
+    saved_modes.drop_calls(depth);
+    remaps.end_above(depth);
+    if (depth == 0) {
+        lathe.drop();
     }
-    const int index = std::countr_zero(absent);
-    const char axis = LETTERS[index];
-    return fault.set(fmt::format("Bad character '{}' used", axis),
-                     values.column[static_cast<std::size_t>(index)],
-                     fmt::format("this machine has no axis {}: see [TRAJ]COORDINATES",
-                                 static_cast<char>(std::toupper(axis))));
 }
 
-bool Executor::check_words(const BlockValues &values) {
-    if (!check_open_nurbs(values) || !check_axes(values)) {
-        return false;
-    }
-    constexpr std::uint32_t ALWAYS = letters("fstn");
-    std::uint32_t allowed = ALWAYS;
-    bool isAxisUser = false;
-    for (const ActiveCode &active : values.codes) {
-        const Code &code = *active.code;
-        allowed |= code.words | (code.usesAxes ? AXES : 0);
-        const std::uint32_t missing = code.required & ~values.present;
-        if (missing != 0) {
-            return fault.set(fmt::format("{} needs the word {}", code_name(code),
-                                         static_cast<char>(std::toupper(LETTERS[std::countr_zero(missing)]))),
-                             active.column);
-        }
-        if (code.usesAxes && values.hasAxes()) {
-            if (isAxisUser) {
-                return fault.set("Cannot use two g codes that both use axis values", active.column);
-            }
-            isAxisUser = true;
-        }
-    }
-    const std::uint32_t unused = values.present & ~allowed;
-    if (unused != 0) {
-        const int index = std::countr_zero(unused);
-        return fault.set(fmt::format("{} word with no g code that uses it",
-                                     static_cast<char>(std::toupper(LETTERS[index]))),
-                         values.column[static_cast<std::size_t>(index)]);
-    }
-    return true;
+void Executor::announce() {
+    detail::announce(machine_, parameters, state, canon);
 }
 
-/// All values are computed before any is set.
-bool Executor::apply_settings(const BlockView &view) {
-    const Arena &arena = *view.arena;
-    const Block &block = *view.block;
-    if (block.setting_count == 0) {
-        return true;
-    }
-    made_.clear();
-    for (std::uint32_t i = 0; i < block.setting_count; ++i) {
-        MadeSetting entry;
-        if (!compute_setting(arena, arena.settings[block.first_setting + i], entry)) {
-            return false;
-        }
-        made_.push_back(entry);
-    }
-    for (const MadeSetting &entry : made_) {
-        if (entry.name != NO_ID) {
-            parameters.set_named(entry.name, evaluator_.isGlobal(entry.name), entry.value);
-        } else {
-            parameters.set(entry.number, entry.value);
-        }
-    }
-    return true;
+void Executor::announce_modes() {
+    detail::announce_modes(machine_, state, canon);
 }
 
-bool Executor::compute_setting(const Arena &arena, const Setting &setting, MadeSetting &out) {
-    out.name = setting.name;
-    if (setting.name != NO_ID && evaluator_.isReadOnly(setting.name)) {
-        return fault.set(fmt::format("Cannot assign to read-only parameter #<{}>", names_.text(setting.name)),
-                         setting.column);
-    }
-    if (setting.name == NO_ID) {
-        double index = 0;
-        if (!evaluator_.value(arena, setting.index, index)) {
-            return false;
-        }
-        if (!Evaluator::take_number(index, out.number)) {
-            return fault.set("Parameter number out of range", setting.column,
-                             fmt::format("{} is not in 1..{}", index, PARAMETER_COUNT - 1));
-        }
-        if (isBuiltInNumber(out.number)) {
-            return fault.set(fmt::format("Parameter is readonly: #{}", out.number), setting.column);
-        }
-    }
-    return evaluator_.value(arena, setting.value, out.value);
+void Executor::synch() {
+    synchronise(machine_, tools, parameters, awaited, state);
 }
 
 }  // namespace mw::interp::detail

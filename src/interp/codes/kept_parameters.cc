@@ -51,7 +51,7 @@ constexpr Row ROWS[] = {
     {"_line", [](const Sources &e) { return static_cast<double>(e.place.line); }},
     {"_motion_mode", [](const Sources &e) { return static_cast<double>(e.state.motion); }},
     {"_plane", [](const Sources &e) { return static_cast<double>(plane_number(e.state.plane)); }},
-    {"_ccomp", [](const Sources &e) { return static_cast<double>(e.state.comp_code); }},
+    {"_ccomp", [](const Sources &e) { return static_cast<double>(e.state.comp.code()); }},
     {"_metric", [](const Sources &e) { return flag(e.state.units == LengthUnits::MM); }},
     {"_metric_machine", [](const Sources &e) { return flag(e.world.machine_units() == LengthUnits::MM); }},
     {"_imperial", [](const Sources &e) { return flag(e.state.units == LengthUnits::INCH); }},
@@ -64,7 +64,7 @@ constexpr Row ROWS[] = {
      [](const Sources &e) { return flag(e.state.feed_mode == FeedMode::UNITS_PER_REVOLUTION); }},
     {"_coord_system",
      [](const Sources &e) { return static_cast<double>(coordinate_system_code(e.state.g5x_index)); }},
-    {"_tool_offset", [](const Sources &e) { return flag(e.state.tool_offset_code != 490); }},
+    {"_tool_offset", [](const Sources &e) { return flag(e.state.tool.offset_code != 490); }},
     {"_retract_r_plane", [](const Sources &e) { return flag(e.state.isRetractToR); }},
     {"_retract_old_z", [](const Sources &e) { return flag(!e.state.isRetractToR); }},
     {"_spindle_rpm_mode", [](const Sources &e) { return flag(!spindle(e).isConstantSurface); }},
@@ -82,10 +82,10 @@ constexpr Row ROWS[] = {
     {"_feed_hold", [](const Sources &e) { return flag(e.state.isFeedHold); }},
     {"_feed", [](const Sources &e) { return e.state.feed; }},
     {"_rpm", [](const Sources &e) { return spindle(e).speed; }},
-    {"_current_tool", [](const Sources &e) { return static_cast<double>(e.state.tool_in_spindle); }},
-    {"_current_pocket", [](const Sources &e) { return static_cast<double>(e.state.tool_index); }},
-    {"_selected_tool", [](const Sources &e) { return static_cast<double>(e.state.selected_tool); }},
-    {"_selected_pocket", [](const Sources &e) { return static_cast<double>(e.state.selected_index); }},
+    {"_current_tool", [](const Sources &e) { return static_cast<double>(e.state.tool.in_spindle); }},
+    {"_current_pocket", [](const Sources &e) { return static_cast<double>(e.state.tool.index); }},
+    {"_selected_tool", [](const Sources &e) { return static_cast<double>(e.state.tool.selected); }},
+    {"_selected_pocket", [](const Sources &e) { return static_cast<double>(e.state.tool.selected_index); }},
     {"_value", [](const Sources &e) { return e.returned.value; }},
     {"_value_returned", [](const Sources &e) { return flag(e.returned.isSet); }},
     {"_task", [](const Sources &e) { return flag(e.isTask); }},
@@ -115,7 +115,7 @@ int position_index(std::string_view name) {
 
 Pose on_machine(const Sources &sources) {
     const State &state = sources.state;
-    return Frame{state.g5x, state.g92, state.tool_offset, state.rotation_deg}.to_machine(sources.position);
+    return state.frame.to_machine(sources.position);
 }
 
 }  // namespace
@@ -151,17 +151,17 @@ double kept_value(int number, const KeptSources &sources) {
         return sources.position[number - P_POSITION];
     }
     if (number >= P_TOOL_OFFSET && number < P_TOOL_OFFSET + AXES_OF_POSE) {
-        return state.loaded_offset[number - P_TOOL_OFFSET];
+        return state.tool.offset[number - P_TOOL_OFFSET];
     }
     if (number >= P_MACHINE_POSITION && number < P_MACHINE_POSITION + AXES_OF_POSE) {
         return on_machine(sources)[number - P_MACHINE_POSITION];
     }
     switch (number) {
-    case P_TOOL_NUMBER: return state.tool_in_spindle;
-    case P_TOOL_DIAMETER: return state.tool_diameter;
-    case P_TOOL_FRONTANGLE: return state.tool_frontangle;
-    case P_TOOL_BACKANGLE: return state.tool_backangle;
-    case P_TOOL_ORIENTATION: return state.tool_orientation;
+    case P_TOOL_NUMBER: return state.tool.in_spindle;
+    case P_TOOL_DIAMETER: return state.tool.diameter;
+    case P_TOOL_FRONTANGLE: return state.tool.frontangle;
+    case P_TOOL_BACKANGLE: return state.tool.backangle;
+    case P_TOOL_ORIENTATION: return state.tool.orientation;
     default: return sources.parameters.get(number);
     }
 }

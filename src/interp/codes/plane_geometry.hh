@@ -4,9 +4,14 @@
 
 #include <cmath>
 
-#include "interp/codes/state.hh"
-
 namespace mw::interp::detail {
+
+/// A point or a vector in a plane: along its first and its second axis.
+struct Point {
+    double x = 0, y = 0;
+
+    bool operator==(const Point &) const = default;
+};
 
 constexpr double SAME_POINT = 1e-10;
 

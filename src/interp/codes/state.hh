@@ -7,6 +7,9 @@
 
 #include "base/limits.hh"
 #include "interp/canon/canon.hh"
+#include "interp/canon/frame.hh"
+#include "interp/codes/comp/compensation.hh"
+#include "interp/codes/plane_geometry.hh"
 
 namespace mw::interp::detail {
 
@@ -32,35 +35,34 @@ struct CycleWords {
     bool operator==(const CycleWords &) const = default;
 };
 
-enum class CompSide { OFF, LEFT, RIGHT };
+/// The tools that the program has chosen and loaded.
+struct ToolModes {
+    int selected = 0;         ///< the last T
+    int selected_index = -1;  ///< its place in the tool table; -1 none selected
+    int in_spindle = 0;
+    int index = 0;        ///< its place in the tool table
+    Pose offset;          ///< of the tool in the spindle [machine units]
+    double diameter = 0;  ///< [machine units]
+    double frontangle = 0, backangle = 0;
+    int orientation = 0;
+    int offset_code = 490;  ///< ten times the G code that set the offset in force
 
-/// A point or a vector in the selected plane: along its first and its second axis.
-struct Point {
-    double x = 0, y = 0;
-
-    bool operator==(const Point &) const = default;
+    bool operator==(const ToolModes &) const = default;
 };
 
-/// The last compensated move: where the tool's centre goes [program units].
-struct CompElement {
-    bool isSet = false;  ///< there was a move since compensation came on
-    bool isArc = false;
-    bool isEntry = false;  ///< the move at whose end the tool is beside the contour for the first time
-    Point from, to;        ///< as programmed
-    Point start, end;
-    Point start_direction, end_direction;  ///< unit vectors
-    Point centre;
-    double radius = 0;
-    int rotation = 1;        ///< of an arc, as in ArcFeed
-    std::size_t record = 0;  ///< its call in the queue
+/// What splines remember from one block to the next.
+struct SplineModes {
+    Point out;              ///< where a G5 without I and J leaves its start to [program units]
+    int order = 0;          ///< of the NURBS between G5.2 and G5.3; 0: none is open
+    std::size_t count = 0;  ///< its control points so far
+    Pose end;               ///< the last of them [program units]
 
-    bool operator==(const CompElement &) const = default;
+    bool operator==(const SplineModes &) const = default;
 };
 
 struct State {
-    Pose position;               ///< program coordinates [program units, degrees]
-    Pose g5x, g92, tool_offset;  ///< [program units, degrees]
-    double rotation_deg = 0;
+    Pose position;  ///< program coordinates [program units, degrees]
+    Frame frame;    ///< [program units, degrees]
     int g5x_index = 1;
     int motion = MOTION_NONE;  ///< ten times the G code
     Plane plane = Plane::XY;
@@ -77,27 +79,11 @@ struct State {
     std::array<SpindleState, MAX_SPINDLES> spindles{};
     bool isMist = false, isFlood = false;
     bool isFeedOverride = true, isFeedHold = false, isAdaptive = false;
-    int tool_offset_code = 490;
-    int selected_tool = 0;    ///< the last T
-    int selected_index = -1;  ///< its place in the tool table; -1 none selected
-    int tool_in_spindle = 0;
-    int tool_index = 0;        ///< its place in the tool table
-    Pose loaded_offset;        ///< of the tool in the spindle [machine units]
-    double tool_diameter = 0;  ///< [machine units]
-    double tool_frontangle = 0, tool_backangle = 0;
-    int tool_orientation = 0;
-    CompSide comp = CompSide::OFF;
-    int comp_code = 400;
-    double comp_radius = 0;  ///< [program units]
-    int comp_orientation = 0;
-    CompElement comp_last;
-    bool isCompExit = false;  ///< compensation was on: the next move must be straight
+    ToolModes tool;
+    Compensation comp;
     CycleWords cycle;
-    Point spline_out;             ///< where a G5 without I and J leaves its start to [program units]
-    int nurbs_order = 0;          ///< of the NURBS between G5.2 and G5.3; 0: none is open
-    std::size_t nurbs_count = 0;  ///< its control points so far
-    Pose nurbs_end;               ///< the last of them [program units]
-    Pose probed;                  ///< [program units]
+    SplineModes spline;
+    Pose probed;  ///< [program units]
 
     bool operator==(const State &) const = default;
 };

@@ -274,10 +274,10 @@ TEST(CanonQueue, DropsTheCallsOfABlockThatFailedAndAnnouncesTheBlockAnew_I1) {
     detail::CanonQueue queue;
     queue.enter_block(&program, 1, 1, false, 0);
     queue.take(SwitchMist{true});
-    const std::size_t before = queue.size();
+    queue.begin_undo();
     queue.enter_block(&program, 2, 2, false, 0);
     queue.take(SwitchFlood{true});
-    queue.truncate(before);
+    queue.rollback();
     queue.take(SwitchFlood{false});
     Notes out;
     queue.flush(out);
@@ -298,9 +298,34 @@ TEST(CanonQueue, HoldsCallsBackBehindAPartialFlushAndLetsThemChange_I1) {
     queue.flush(out, 1);
     EXPECT_EQ(out.notes, (std::vector<std::string>{"line 1: G1 X1", "STRAIGHT_FEED", "line 2: G1 X2"}));
     ASSERT_EQ(queue.size(), 2u);
-    std::get<StraightFeed>(queue.call(0)).end = pose(5, 6, 7);
+    queue.move_ends(0, {geom::AXIS_X, 5}, {geom::AXIS_Y, 6});
     const std::string rest = printed([&](Canon &canon) { queue.flush(canon); });
-    EXPECT_EQ(calls_only(rest), "STRAIGHT_FEED(5.0000, 6.0000, 7.0000, 0.0000, 0.0000, 0.0000)\nMIST_ON()");
+    EXPECT_EQ(calls_only(rest), "STRAIGHT_FEED(5.0000, 6.0000, 0.0000, 0.0000, 0.0000, 0.0000)\nMIST_ON()");
+}
+
+TEST(CanonQueue, TakesBackTheEndsThatAFailedBlockHasMovedAndWhatItMovedOfItsOwn_I1) {
+    detail::CanonQueue queue;
+    queue.take(StraightFeed{pose(1, 0, 0)});
+    queue.begin_undo();
+    queue.take(ArcFeed{2, 0, 0, 0, 1, 0, pose(2, 0, 0)});
+    queue.move_ends(0, {geom::AXIS_X, 5}, {geom::AXIS_Y, 6});
+    queue.move_ends(1, {geom::AXIS_X, 7}, {geom::AXIS_Y, 8});
+    queue.rollback();
+    EXPECT_EQ(calls_only(printed([&](Canon &canon) { queue.flush(canon); })),
+              "STRAIGHT_FEED(1.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)");
+}
+
+TEST(CanonQueue, KeepsMovedEndsOnceTheBlockHasSucceeded_I1) {
+    detail::CanonQueue queue;
+    queue.take(StraightFeed{pose(1, 0, 0)});
+    queue.begin_undo();
+    queue.move_ends(0, {geom::AXIS_X, 5}, {geom::AXIS_Y, 6});
+    queue.commit();
+    queue.begin_undo();
+    queue.take(StraightFeed{pose(9, 9, 9)});
+    queue.rollback();
+    EXPECT_EQ(calls_only(printed([&](Canon &canon) { queue.flush(canon); })),
+              "STRAIGHT_FEED(5.0000, 6.0000, 0.0000, 0.0000, 0.0000, 0.0000)");
 }
 
 /// Keeps all of it.

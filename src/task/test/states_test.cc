@@ -184,5 +184,15 @@ TEST(Inbox, KeepsTheOrderAndLetsStopsPassWhileTheModeChanges_D1) {
     EXPECT_FALSE(inbox.next(false).has_value());
 }
 
+TEST(Inbox, DropsWhatWasAskedForBeforeAStopButNoLineForTheOperator_D1) {
+    Inbox inbox;
+    inbox.add(
+        {{1, 1, Mdi{"G0 X1"}}, {2, 1, OperatorText{"ready"}}, {3, 1, AbortAll{}}, {4, 1, Mdi{"G0 X2"}}});
+    EXPECT_EQ(inbox.next(true)->serial, 3U);
+    EXPECT_EQ(inbox.drop_before(3), std::vector<mailbox::Serial>{1U});
+    EXPECT_EQ(inbox.next(false)->serial, 2U);
+    EXPECT_EQ(inbox.next(false)->serial, 4U) << "what was asked for after it is carried out";
+}
+
 }  // namespace
 }  // namespace mw::task

@@ -1,12 +1,31 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // How a tool of a given radius passes the corner between two compensated moves. Pure geometry of the selected
-// plane; exec_comp.cc makes the moves of it.
+// plane; compensation.cc makes the moves of it.
 #pragma once
 
+#include <cstddef>
+
 #include "interp/codes/plane_geometry.hh"
-#include "interp/codes/state.hh"
 
 namespace mw::interp::detail {
+
+enum class CompSide { OFF, LEFT, RIGHT };
+
+/// A compensated move: where the tool's centre goes [program units].
+struct CompElement {
+    bool isSet = false;  ///< there was a move since compensation came on
+    bool isArc = false;
+    bool isEntry = false;  ///< the move at whose end the tool is beside the contour for the first time
+    Point from, to;        ///< as programmed
+    Point start, end;
+    Point start_direction, end_direction;  ///< unit vectors
+    Point centre;
+    double radius = 0;
+    int rotation = 1;        ///< of an arc, as in ArcFeed
+    std::size_t record = 0;  ///< its call in the queue
+
+    bool operator==(const CompElement &) const = default;
+};
 
 enum class CornerKind {
     STRAIGHT,  ///< the next move begins where the last one ends

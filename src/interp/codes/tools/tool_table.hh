@@ -14,6 +14,9 @@ class ToolTable {
   public:
     explicit ToolTable(const ToolSource &source) : source_(source) {}
 
+    int count() const { return source_.count(); }
+    bool isRandom() const { return source_.isRandom(); }
+    int index_of_tool(int toolno) const { return source_.index_of_tool(toolno); }
     ToolEntry entry(int index) const;
     void set(int index, const ToolEntry &entry) { of_block_[index] = entry; }
     void commit();

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The codes in force.
+#pragma once
+
+#include "interp/codes/state.hh"
+#include "interp/eval/parameters.hh"
+#include "interp/interpreter.hh"
+
+namespace mw::interp::detail {
+
+/// `sequence`: of the block that ran last.
+ActiveCodes active_codes(const State &state, const Parameters &parameters, int sequence);
+
+}  // namespace mw::interp::detail
