@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The realtime side as task sees it, without planner and joints.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "motion/api/channels.hh"
+#include "motion/api/parameters.hh"
+
+namespace mw::task::test {
+
+/// A motion controller that takes each move in one cycle and writes down what it was asked.
+class FakeMotion {
+  public:
+    explicit FakeMotion(motion::Channels &channels) : channels_(channels) {
+        status.isAllHomed = true;
+        status.num_spindles = 1;
+        status.num_joints = 3;
+        status.isInPosition = true;
+        publish();
+    }
+
+    void step() {
+        motion::Command command;
+        while (channels_.immediate.pop(command)) {
+            take(command);
+        }
+        if (!isHolding) {
+            take_path();
+        }
+        ++status.cycle;
+        publish();
+    }
+
+    motion::Status status;
+    std::vector<std::string> log;
+    bool isHolding = false;
+    bool isRefusingMoves = false;
+    bool isModeStuck = false;
+    double corner_scale = -1;  ///< of the last move
+
+  private:
+    void take(const motion::Command &command) {
+        if (const auto *abort = std::get_if<motion::Abort>(&command.body)) {
+            status.epoch = abort->new_epoch;
+            log.emplace_back("abort");
+        } else if (std::holds_alternative<motion::Enable>(command.body)) {
+            status.isEnabled = true;
+        } else if (std::holds_alternative<motion::Disable>(command.body)) {
+            status.isEnabled = false;
+        } else if (const auto *mode = std::get_if<motion::SetMode>(&command.body)) {
+            status.mode = isModeStuck ? status.mode : mode->mode;
+        } else if (std::holds_alternative<motion::JogStop>(command.body)) {
+            log.emplace_back("jog stop");
+        } else if (const auto *jog = std::get_if<motion::JogContinuous>(&command.body)) {
+            log.push_back("jog " + std::to_string(jog->target.index));
+        } else if (const auto *on = std::get_if<motion::SpindleOn>(&command.body)) {
+            log.push_back("spindle " + std::to_string(static_cast<int>(on->speed_rpm)));
+        } else if (std::holds_alternative<motion::SpindleOff>(command.body)) {
+            log.emplace_back("spindle off");
+        } else if (const auto *p = std::get_if<motion::SetParameter>(&command.body)) {
+            const bool isType = p->parameter == static_cast<int>(motion::Parameter::TRAJ_PLANNER_TYPE);
+            log.push_back((isType ? "planner " : "setting ") + std::to_string(static_cast<int>(p->value)));
+        }
+        status.last_immediate_id = command.id;
+        channels_.servo_answers.push({command.id});
+    }
+
+    void take_path() {
+        motion::PathCommand command;
+        while (channels_.path.pop(command)) {
+            const bool isStale = command.epoch != status.epoch;
+            motion::Answer answer{command.id, isStale ? motion::AnswerKind::STALE : motion::AnswerKind::DONE};
+            answer.isPath = true;
+            const auto *line = std::get_if<motion::Line>(&command.body);
+            if (!isStale && line != nullptr && isRefusingMoves) {
+                answer.kind = motion::AnswerKind::REFUSED;
+                answer.reason = motion::Reason::BEYOND_SOFT_LIMIT;
+                answer.index = 0;
+            } else if (!isStale && line != nullptr) {
+                corner_scale = line->terms.corner_scale;
+                status.carte_pos_cmd = line->end;
+                log.push_back("line " + std::to_string(static_cast<int>(line->end.x())));
+            }
+            channels_.planner_answers.push(answer);
+        }
+    }
+
+    void publish() { channels_.status.write(status); }
+
+    motion::Channels &channels_;
+};
+
+}  // namespace mw::task::test
