@@ -23,7 +23,8 @@ FORBIDDEN = {(user, used) for user in ('kins', 'traj', 'homing', 'interp', 'tool
 # Inside a folder: sub-folders in the order in which they may use each other.
 INNER = {'motion': ['api', 'core', 'rt'],
          'traj': ['geometry', 'exec', 'timing', 'trial'],
-         'interp': ['text', 'ast', 'canon', 'eval', 'codes', 'flow'],
+         'interp': ['text', 'ast', 'canon', 'eval', 'scripts', 'codes', 'flow'],
+         'task': ['link', 'sequencer', 'states', 'run'],
          'hal': ['api', 'sdk', 'core', 'host'],
          'hal_lang': ['lang', 'tcl'],
          'hal_tools': ['stream', 'view', 'programs']}

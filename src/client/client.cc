@@ -40,7 +40,7 @@ Client::Client(mailbox::Segment &segment, int slot, mailbox::ClientId id)
 Client::Client(Client &&other) noexcept
     : memory_(std::move(other.memory_)), segment_(std::exchange(other.segment_, nullptr)), slot_(other.slot_),
       id_(other.id_), next_message_(other.next_message_), tools_version_(other.tools_version_),
-      heard_(other.heard_) {}
+      heard_(other.heard_), replaced_stops_(std::move(other.replaced_stops_)) {}
 
 Client &Client::operator=(Client &&other) noexcept {
     if (this != &other) {
@@ -52,6 +52,7 @@ Client &Client::operator=(Client &&other) noexcept {
         next_message_ = other.next_message_;
         tools_version_ = other.tools_version_;
         heard_ = other.heard_;
+        replaced_stops_ = std::move(other.replaced_stops_);
     }
     return *this;
 }
@@ -109,6 +110,10 @@ Result<Serial> Client::post(const msgs::Command &command) {
         return fail(fmt::format("a command of {} bytes is too large", bytes.size()));
     }
     if (slot().posted.size() >= mailbox::MAX_POSTED) {
+        const std::optional<int> place = mailbox::stop_place(command);
+        if (place.has_value()) {
+            return post_stop(*place);
+        }
         return fail(
             fmt::format("task has not taken the last {} commands of this client", mailbox::MAX_POSTED));
     }
@@ -119,7 +124,34 @@ Result<Serial> Client::post(const msgs::Command &command) {
     return posted->serial;
 }
 
+Serial Client::post_stop(int place) {
+    const Serial serial = segment_->serials.fetch_add(1, std::memory_order_relaxed) + 1;
+    // Release: task, which sees the stop, sees all that was posted before it.
+    const Serial before =
+        slot().stops[static_cast<std::size_t>(place)].exchange(serial, std::memory_order_acq_rel);
+    if (before != 0) {
+        replaced_stops_.emplace_back(before, serial);
+    }
+    if (replaced_stops_.size() > mailbox::MAX_OUTCOMES) {
+        replaced_stops_.pop_front();
+    }
+    return serial;
+}
+
+bool Client::isStopWaiting(Serial serial) const {
+    return std::any_of(slot().stops.begin(), slot().stops.end(), [serial](const auto &stop) {
+        // Acquire: pairs with task's clearing of it after it wrote the outcome.
+        return stop.load(std::memory_order_acquire) == serial;
+    });
+}
+
 Outcome Client::outcome(Serial serial) const {
+    for (const auto &[before, later] : replaced_stops_) {  // in their order: a later one may be replaced too
+        serial = before == serial ? later : serial;
+    }
+    if (isStopWaiting(serial)) {
+        return {};
+    }
     // Acquire: pairs with task's release after it wrote the outcome.
     if (slot().taken.load(std::memory_order_acquire) < serial) {
         return {};

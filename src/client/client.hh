@@ -3,8 +3,10 @@
 // another.
 #pragma once
 
+#include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "mailbox/memory.hh"
 #include "mailbox/segment.hh"
@@ -35,7 +37,7 @@ class Client {
     mailbox::ClientId id() const { return id_; }
 
     /// Hands a command over; its number among those of all clients. An error when a value is out of range or
-    /// MAX_POSTED commands wait.
+    /// MAX_POSTED commands wait. A stop is taken however many wait.
     Result<Serial> post(const msgs::Command &command);
     /// STARTED also while it waits to be taken. One that task no longer remembers is REFUSED, and its reason
     /// says so.
@@ -63,6 +65,8 @@ class Client {
     Client(mailbox::Segment &segment, int slot, mailbox::ClientId id);
     mailbox::Slot &slot() const { return segment_->slots[static_cast<std::size_t>(slot_)]; }
     void leave() noexcept;
+    Serial post_stop(int place);
+    bool isStopWaiting(Serial serial) const;
     Result<> sleep(std::uint32_t heard, std::int64_t end_ns);
 
     std::optional<mailbox::Memory> memory_;  ///< of another process
@@ -73,6 +77,8 @@ class Client {
     std::uint64_t tools_version_ = 0;
     std::uint32_t heard_ = 0;
     mutable std::size_t last_place_ = 0;  ///< of the outcome that was asked for last
+    /// Stops that a later one of the same kind has taken the place of: number, and that of the later one.
+    std::deque<std::pair<Serial, Serial>> replaced_stops_;
 };
 
 }  // namespace mw::client

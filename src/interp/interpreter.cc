@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "interp/ast/syntax_errors.hh"
 #include "interp/codes/executor.hh"
 #include "interp/flow/flow.hh"
 
@@ -100,7 +101,7 @@ void Interpreter::announce() {
 }
 
 const std::vector<std::string> &Interpreter::warnings() const {
-    return impl_->flow.warnings();
+    return impl_->flow.scripts().warnings();
 }
 
 const diag::Diagnostic &Interpreter::error() const {
@@ -112,15 +113,15 @@ ActiveCodes Interpreter::active_codes() const {
 }
 
 int Interpreter::line() const {
-    return impl_->flow.line();
+    return impl_->flow.levels().here().line;
 }
 
 const std::string &Interpreter::file() const {
-    return impl_->flow.file();
+    return impl_->flow.levels().file();
 }
 
 int Interpreter::call_level() const {
-    return impl_->flow.call_level();
+    return impl_->flow.levels().call_level();
 }
 
 bool Interpreter::isMoveHeld() const {
@@ -132,31 +133,36 @@ bool Interpreter::isContinuable() const {
 }
 
 bool Interpreter::isAtFileEnd() const {
-    return impl_->flow.isAtFileEnd();
+    return impl_->flow.levels().here().isAtEnd();
 }
 
 std::vector<diag::Diagnostic> Interpreter::syntax_errors(int after, int most) {
-    return impl_->flow.syntax_errors(after, most);
+    detail::Program *const main = impl_->flow.levels().main();
+    return main == nullptr ? std::vector<diag::Diagnostic>() : detail::syntax_errors(*main, after, most);
 }
 
 void Interpreter::mark_progress(double seconds) {
-    impl_->flow.mark_progress(seconds);
+    impl_->flow.budget().mark_progress(seconds);
 }
 
 bool Interpreter::isBudgetSpent() const {
-    return impl_->flow.isBudgetSpent();
+    return impl_->flow.budget().isSpent();
 }
 
 FilePlace Interpreter::place_in_file() const {
-    return impl_->flow.place_in_file();
+    const detail::Levels &levels = impl_->flow.levels();
+    const detail::Program *const main = levels.main();
+    return main == nullptr ? FilePlace()
+                           : FilePlace{main->text().place_of(levels.main_line()), main->text().count_bytes()};
 }
 
 std::string_view Interpreter::subroutine() const {
-    return impl_->flow.subroutine();
+    const detail::NameId label = impl_->flow.levels().subroutine();
+    return label == detail::NO_ID ? std::string_view() : impl_->names.text(label);
 }
 
 std::string Interpreter::line_text(const std::string &file, int line) const {
-    return impl_->flow.line_text(file, line);
+    return impl_->flow.files().line_text(file, line);
 }
 
 double Interpreter::parameter(int number) const {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "task/tool_store.hh"
+#include "task/link/tool_store.hh"
 #include "tool/table.hh"
 
 namespace mw::machine {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <memory>
 
 #include "mailbox/memory.hh"
@@ -64,14 +65,43 @@ void Desk::take_slot(int index, std::vector<Delivery> &out) {
     }
     // Before the commands: one that leaves has posted all that it wanted to.
     const bool isLeaving = slot.isLeaving.load(std::memory_order_acquire) != 0;
+    // Stops before the queue: what was posted before one of them is then seen in the queue, and goes first.
+    const std::vector<WaitingStop> stops = waiting_stops(slot);
+    auto stop = stops.begin();
+    const auto accept_stops_before = [&](Serial serial) {
+        for (; stop != stops.end() && stop->serial < serial; ++stop) {
+            accept(index, stop->serial, stop_at(stop->place), out);
+            Serial accepted = stop->serial;
+            // Release: who no longer sees it waiting finds its outcome. A newer one of its kind stays.
+            slot.stops[static_cast<std::size_t>(stop->place)].compare_exchange_strong(
+                accepted, 0, std::memory_order_acq_rel);
+        }
+    };
     for (std::uint32_t n = 0; n < MAX_POSTED && slot.posted.pop(posted_); ++n) {
-        accept(index, posted_, out);
+        accept_stops_before(posted_.serial);
+        const std::size_t size = std::min<std::size_t>(posted_.size, posted_.bytes.size());
+        accept(index, posted_.serial, msgs::decode_command({posted_.bytes.data(), size}), out);
     }
+    accept_stops_before(std::numeric_limits<Serial>::max());
     const bool isTurn = (cycles_ / OWNER_CHECK_CYCLES) % MAX_CLIENTS == static_cast<std::uint64_t>(index) &&
                         cycles_ % OWNER_CHECK_CYCLES == 0;
     if (isLeaving || isTurn) {
         check_owner(index);
     }
+}
+
+std::vector<Desk::WaitingStop> Desk::waiting_stops(const Slot &slot) {
+    std::vector<WaitingStop> waiting;
+    for (int place = 0; place < STOP_PLACES; ++place) {
+        // Acquire: pairs with the client's writing of it.
+        const Serial serial = slot.stops[static_cast<std::size_t>(place)].load(std::memory_order_acquire);
+        if (serial != 0) {
+            waiting.push_back({serial, place});
+        }
+    }
+    std::sort(waiting.begin(), waiting.end(),
+              [](const WaitingStop &a, const WaitingStop &b) { return a.serial < b.serial; });
+    return waiting;
 }
 
 void Desk::check_owner(int index) {
@@ -97,6 +127,9 @@ void Desk::check_owner(int index) {
     for (std::uint32_t n = 0; n < MAX_POSTED && slot.posted.pop(posted_); ++n) {
         // Posted between our taking and its death: as if it had come too late.
     }
+    for (auto &stop : slot.stops) {
+        stop.store(0, std::memory_order_relaxed);
+    }
     slot.client.store(0, std::memory_order_relaxed);
     slot.taken.store(0, std::memory_order_relaxed);
     slot.isLeaving.store(0, std::memory_order_relaxed);
@@ -117,20 +150,19 @@ int Desk::free_outcome(int slot) const {
     return oldest;
 }
 
-void Desk::accept(int index, const Posted &posted, std::vector<Delivery> &out) {
+void Desk::accept(int index, Serial serial, Result<msgs::Command> command, std::vector<Delivery> &out) {
     Slot &slot = segment_.slots[static_cast<std::size_t>(index)];
-    const bool isNew = posted.serial != 0 &&
-                       posted.serial <= segment_.serials.load(std::memory_order_relaxed) &&
-                       !going_.contains(posted.serial);
+    const bool isNew =
+        serial != 0 && serial <= segment_.serials.load(std::memory_order_relaxed) && !going_.contains(serial);
     const int place = free_outcome(index);
-    const std::size_t size = std::min<std::size_t>(posted.size, posted.bytes.size());
-    auto command = msgs::decode_command({posted.bytes.data(), size});
+    const Serial taken = std::max(serial, slot.taken.load(std::memory_order_relaxed));
     const bool isPanel = slot.role.load(std::memory_order_relaxed) == static_cast<std::uint8_t>(Role::PANEL);
     const ClientId client = slot.client.load(std::memory_order_relaxed);
     if (isNew && place < 0 && command.has_value() && isStop(*command)) {
         // A stop is never dropped: it is carried out though nothing tells its outcome.
-        slot.taken.store(posted.serial, std::memory_order_release);
-        out.push_back({posted.serial, client, std::move(*command), isPanel});
+        note(serial, Progress::STARTED);
+        slot.taken.store(taken, std::memory_order_release);
+        out.push_back({serial, client, std::move(*command), isPanel});
         return;
     }
     if (!isNew || place < 0) {
@@ -140,19 +172,23 @@ void Desk::accept(int index, const Posted &posted, std::vector<Delivery> &out) {
              "client " + std::to_string(client) +
                  (isNew ? " has too many commands under way: one was dropped"
                         : " sent a command with a wrong number"));
-        slot.taken.store(std::max(posted.serial, slot.taken.load()), std::memory_order_release);
+        if (isNew) {
+            note(serial, Progress::REFUSED);
+        }
+        slot.taken.store(taken, std::memory_order_release);
         return;
     }
-    going_[posted.serial] = {index, place, {posted.serial, Progress::STARTED, {}}};
-    serials_[static_cast<std::size_t>(index)][static_cast<std::size_t>(place)] = posted.serial;
-    write(going_[posted.serial]);
+    going_[serial] = {index, place, {serial, Progress::STARTED, {}}};
+    serials_[static_cast<std::size_t>(index)][static_cast<std::size_t>(place)] = serial;
+    write(going_[serial]);
+    note(serial, Progress::STARTED);
     // Release: who sees it as taken finds its outcome.
-    slot.taken.store(posted.serial, std::memory_order_release);
+    slot.taken.store(taken, std::memory_order_release);
     if (!command.has_value()) {
-        tell(posted.serial, Progress::REFUSED, command.error().str());
+        tell(serial, Progress::REFUSED, command.error().str());
         return;
     }
-    out.push_back({posted.serial, client, std::move(*command), isPanel});
+    out.push_back({serial, client, std::move(*command), isPanel});
 }
 
 bool Desk::isConnected(ClientId client) const {
@@ -186,7 +222,17 @@ void Desk::write(const Place &place) {
         .write(place.written);
 }
 
+void Desk::note(Serial serial, Progress progress) {
+    const bool isNewer = serial > last_command_;
+    const bool isGoing = serial == last_command_ && last_progress_ == Progress::STARTED;
+    if (isNewer || isGoing) {
+        last_command_ = serial;
+        last_progress_ = progress;
+    }
+}
+
 void Desk::tell(Serial serial, Progress progress, const std::string &reason) {
+    note(serial, progress);
     const auto found = going_.find(serial);
     if (found == going_.end()) {
         return;  // its client is gone
@@ -212,6 +258,8 @@ void Desk::post(msgs::MessageKind kind, std::string_view text) {
 void Desk::publish(msgs::MachineStatus &status) {
     status.operation = right_.status(now_ns_);
     status.last_message = newest_message();
+    status.last_command = last_command_;
+    status.last_progress = last_progress_;
     segment_.status.write(status);
     segment_.cycles.store(cycles_, std::memory_order_release);
     Memory::ring(segment_);

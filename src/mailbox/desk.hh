@@ -28,13 +28,13 @@ class Desk {
     /// out (bytes that are no command, values out of range, another's right to operate) is refused here;
     /// commands about the right to operate end here. Places of dead clients become free.
     std::vector<Delivery> take(std::int64_t now_ns);
-    /// How far a command has come. An end is final.
+    /// How far a command has come. An end is final. That of the newest command is also in the status.
     void tell(Serial serial, msgs::Progress progress, const std::string &reason);
 
     /// A line for the operator; a longer one ends with "...".
     void post(msgs::MessageKind kind, std::string_view text);
     std::uint64_t newest_message() const { return segment_.newest_message.load(std::memory_order_relaxed); }
-    /// The status of this cycle; the right to operate is filled in. Wakes clients.
+    /// The status of this cycle; the right to operate and the last command are filled in. Wakes clients.
     void publish(msgs::MachineStatus &status);
     /// False when the table is larger than MAX_TOOL_BYTES; clients keep the one before.
     bool publish_tools(const msgs::ToolTable &table);
@@ -46,7 +46,15 @@ class Desk {
     };
 
     void take_slot(int index, std::vector<Delivery> &out);
-    void accept(int index, const Posted &posted, std::vector<Delivery> &out);
+    struct WaitingStop {
+        Serial serial = 0;
+        int place = 0;
+    };
+    /// Stops that wait beside the queue of a client, in the order of their numbers.
+    static std::vector<WaitingStop> waiting_stops(const Slot &slot);
+    void accept(int index, Serial serial, Result<msgs::Command> command, std::vector<Delivery> &out);
+    /// The end of what task never gets is that of the last command all the same.
+    void note(Serial serial, msgs::Progress progress);
     /// The command ends here when it is about the right to operate.
     bool operate(const Delivery &delivery);
     int free_outcome(int slot) const;
@@ -60,6 +68,8 @@ class Desk {
     /// Which command each outcome belongs to, and whether it is under way.
     std::array<std::array<Serial, MAX_OUTCOMES>, MAX_CLIENTS> serials_{};
     Posted posted_;  ///< the one being taken
+    Serial last_command_ = 0;
+    msgs::Progress last_progress_ = msgs::Progress::DONE;
     std::uint64_t cycles_ = 0;
     std::int64_t now_ns_ = 0;
 };

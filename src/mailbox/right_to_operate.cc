@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "base/overloaded.hh"
+#include "mailbox/stops.hh"
 
 namespace mw::mailbox {
 namespace {
@@ -15,18 +15,6 @@ using namespace msgs;
 constexpr double NS_PER_S = 1e9;
 
 }  // namespace
-
-bool isStop(const Command &command) {
-    if (const auto *state = std::get_if<SetState>(&command)) {
-        return state->state == State::ESTOP || state->state == State::OFF;
-    }
-    return std::visit(
-        []<class C>(const C &) {
-            return OneOf<C, EstopOn, AbortAll, AbortMachine, AbortTraj, AbortMotion, AbortJoint, AbortTool,
-                         AbortIo, JogStop, PauseProgram, PauseTraj>;
-        },
-        command);
-}
 
 void RightToOperate::give(ClientId client, std::int64_t now_ns) {
     handovers_ += client != holder_ ? 1 : 0;

@@ -13,9 +13,6 @@ namespace mw::mailbox {
 /// Unique while a mailbox lives, never 0.
 using ClientId = std::uint32_t;
 
-/// What stops or holds: anybody may do it at any time.
-bool isStop(const msgs::Command &command);
-
 /// A lease with an end. Time is passed in. One thread.
 class RightToOperate {
   public:

@@ -10,6 +10,7 @@
 #include "base/seqlock.hh"
 #include "base/spsc_ring.hh"
 #include "mailbox/right_to_operate.hh"
+#include "mailbox/stops.hh"
 #include "msgs/status.hh"
 
 namespace mw::mailbox {
@@ -67,6 +68,9 @@ struct Slot {
     std::atomic<std::uint8_t> isLeaving{0};  ///< the client is done; task frees the slot
     std::atomic<Serial> taken{0};            ///< [task] the last command taken from it
     SpscRing<Posted, MAX_POSTED> posted;     ///< client -> task
+    /// Stops for which `posted` has no room: the number of the newest one of each kind, 0: none. The client
+    /// writes it, task clears it once the stop's outcome is written.
+    std::array<std::atomic<Serial>, STOP_PLACES> stops{};
     std::array<Seqlock<Outcome>, MAX_OUTCOMES> outcomes;  ///< task -> client
 };
 

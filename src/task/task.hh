@@ -3,24 +3,25 @@
 // (D1-D3).
 #pragma once
 
-#include <deque>
-#include <memory>
 #include <optional>
 #include <string>
 
-#include "interp/canon/machine_frame.hh"
-#include "interp/interpreter.hh"
 #include "io/controller.hh"
 #include "mailbox/desk.hh"
-#include "task/command.hh"
-#include "task/motion_link.hh"
-#include "task/planner_mode.hh"
-#include "task/run_state.hh"
-#include "task/sequencer.hh"
+#include "task/link/motion_link.hh"
+#include "task/link/shown_tools.hh"
+#include "task/run/machine_world.hh"
+#include "task/run/on_abort.hh"
+#include "task/run/program_reader.hh"
+#include "task/run/program_run.hh"
+#include "task/sequencer/planner_mode.hh"
+#include "task/sequencer/sequencer.hh"
+#include "task/sequencer/user_program.hh"
+#include "task/states/homing_request.hh"
+#include "task/states/inbox.hh"
+#include "task/states/machine_state.hh"
+#include "task/states/operating_mode.hh"
 #include "task/status.hh"
-#include "task/task_canon.hh"
-#include "task/tool_store.hh"
-#include "task/user_program.hh"
 
 namespace mw::task {
 
@@ -61,11 +62,13 @@ struct Parts {
     mailbox::Segment &mailbox;  ///< the only way in for commands, out for outcomes, messages and status
 };
 
-/// One thread; step() never blocks.
-class Task final : public interp::World {
+/// Owns the parts of task, hands each what it needs in its step and passes on what it tells. One thread;
+/// step() never blocks.
+class Task {
   public:
     Task(const Parts &parts, Settings settings);
-    ~Task() override;
+    Task(const Task &) = delete;
+    Task &operator=(const Task &) = delete;
 
     /// Hands settings to the motion controller; a refused one comes as a message.
     void configure(const std::vector<motion::SetParameter> &parameters);
@@ -85,59 +88,44 @@ class Task final : public interp::World {
     PlannerMode &planner_mode() { return planner_mode_; }
     const motion::Status &motion_status() const { return motion_.status(); }
     /// The last program error with its place, callers and text; nullptr when the last program ended well.
-    const diag::Diagnostic *program_error() const {
-        return program_error_.has_value() ? &*program_error_ : nullptr;
-    }
-    const std::string &file_name(std::uint32_t index) const { return canon_.file_name(index); }
+    const diag::Diagnostic *program_error() const { return run_.error(); }
+    const std::string &file_name(std::uint32_t index) const { return reader_.canon().file_name(index); }
     /// Is told of each move when it is handed to the planner (for figures and pictures).
     void set_move_listener(MoveListener listener) { sequencer_.set_move_listener(std::move(listener)); }
 
-    // interp::World
-    interp::MachineSnapshot snapshot() const override;
-    interp::LengthUnits machine_units() const override { return settings_.machine_units; }
-    unsigned axis_mask() const override { return settings_.axis_mask; }
-    int count_spindles() const override { return settings_.num_spindles; }
-    bool isBlockDeleteOn() const override { return status_.task.isBlockDelete; }
-    bool isOptionalStopOn() const override { return status_.task.isOptionalStop; }
-
   private:
-    enum class RunKind : std::uint8_t { PROGRAM, MDI };
     struct Handler;
     friend struct Handler;
 
     SequencerEvents make_events();
     SourcePlace place_of(const motion::SourceTag &source) const;
     void take_motion_news();
-    void take_io();
     void update_state();
-    void update_pending();
+    void end_requests();
     void check_run_mode();
     void carry_out_commands();
+    void step_run();
     void run_interpreter();
     bool begin_run();
-    void log_probe();
-    bool isReadAheadAllowed() const;
+    bool isReadAheadAllowed();
     void on_step_result(interp::Step result);
     bool on_stop(const interp::ProgramStop &stop, int line);
 
     // task_abort.cc
     void fail_program(diag::Diagnostic what, AbortReason reason);
+    void stop_run(const std::string &reason);
     void abort_work(AbortReason reason);
     void begin_clean_up(AbortReason reason);
     void step_clean_up();
-    void end_clean_up(const std::string &trouble);
-    interp::Step read_clean_up(AbortReason reason);
 
-    void change_run(RunEvent event);
     void finish_run(Progress progress, const std::string &reason);
-    void finish(mailbox::Serial &id, Progress progress, const std::string &reason);
-    void tell(mailbox::Serial id, Progress progress, const std::string &reason);
+    void tell(const std::optional<Ending> &ending);
     void publish_tools();
     void update_status();
     void post(MessageKind kind, const std::string &text) { desk_.post(kind, text); }
-    bool isRunning() const { return run_.isRunning(); }
     /// Takes the machine's position and state as the program's.
     void synch_interpreter();
+    void show_world() { world_.show(snapshot_of(motion_.status(), io_.outputs, sequencer_)); }
     Result<> check_can_run() const;
 
     Settings settings_;
@@ -145,35 +133,25 @@ class Task final : public interp::World {
     mailbox::Desk desk_;
     MotionLink motion_;
     io::Controller io_;
-    ItemQueue queue_;
-    TaskCanon canon_;
-    interp::MachineFrame frame_;
-    std::unique_ptr<interp::ProgramInterpreter> interp_;
+
+    Inbox inbox_;
+    MachineState state_;
+    OperatingMode mode_;
+    OutOfModeWatch out_of_mode_;
+    HomingRequest homing_;
+
+    MachineWorld world_;
+    ProgramReader reader_;
+    ProgramRun run_;
+    OnAbort on_abort_;
     UserProgram user_program_;
     Sequencer sequencer_;
     PlannerMode planner_mode_;
 
+    ShownTools tools_;
     Status status_;
     std::int64_t now_ns_ = 0;
-    RunState run_;
-    RunKind run_kind_ = RunKind::PROGRAM;  ///< of the last run
-    std::string mdi_line_;
-    std::string pending_failure_;
-    std::optional<int> tool_fault_;  ///< reason, when the last work of the changer ended with a fault
-    bool isCleanedUp_ = false;       ///< nothing has run since the last abort
-    std::deque<mailbox::Desk::Delivery> inbox_;
-    mailbox::Serial run_request_ = 0, state_request_ = 0, home_request_ = 0, mode_request_ = 0;
-    Mode wanted_mode_ = Mode::MANUAL;
-    motion::Mode wanted_motion_mode_ = motion::Mode::FREE;
-    motion::CommandId mode_command_ = 0;
-    std::int64_t mode_deadline_ns_ = 0;
-    std::int64_t out_of_mode_since_ns_ = -1;  ///< -1: not
-    State wanted_state_ = State::ESTOP;
-    int homing_joint_ = -1;
-    motion::CommandId home_command_ = 0, enable_command_ = 0, last_setting_ = 0;
-    std::int64_t state_deadline_ns_ = 0;
-    std::optional<diag::Diagnostic> program_error_;
-    std::uint64_t tools_version_ = 0;  ///< of the table that was published
+    motion::CommandId last_setting_ = 0;
 };
 
 }  // namespace mw::task

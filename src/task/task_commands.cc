@@ -8,8 +8,6 @@
 namespace mw::task {
 namespace {
 
-constexpr std::int64_t STATE_TIMEOUT_NS = 2000000000;
-
 /// What an operator asks in G-code.
 template <class T>
 concept PartOfPrograms =
@@ -67,11 +65,11 @@ struct Task::Handler {
     Outcome operator()(const LoadToolTable &command);
 
     Outcome operator()(const SetOptionalStop &command) {
-        task.status_.task.isOptionalStop = command.isOn;
+        task.world_.set_optional_stop(command.isOn);
         return Progress::DONE;
     }
     Outcome operator()(const SetBlockDelete &command) {
-        task.status_.task.isBlockDelete = command.isOn;
+        task.world_.set_block_delete(command.isOn);
         return Progress::DONE;
     }
     Outcome operator()(const SetFeedOverride &command) {
@@ -149,6 +147,7 @@ struct Task::Handler {
 
   private:
     Outcome abort_all();
+    void refuse_waiting();
     Outcome send(const motion::CommandBody &body) {
         task.motion_.send(body);
         return Progress::DONE;
@@ -171,115 +170,90 @@ struct Task::Handler {
                                                      : fail("there is no spindle " + std::to_string(spindle));
     }
     Result<> need_on() const {
-        return task.status_.task.state == State::ON ? Result<>{} : fail("the machine is not on");
+        return task.state_.state() == State::ON ? Result<>{} : fail("the machine is not on");
     }
     Result<> need_manual() const {
-        if (task.status_.task.mode != Mode::MANUAL) {
+        if (task.mode_.mode() != Mode::MANUAL) {
             return fail("this needs manual mode");
         }
         return need_on();
     }
     /// Done when motion has agreed.
     void change_mode(Mode mode, motion::Mode motion_mode) {
-        task.wanted_mode_ = mode;
-        task.wanted_motion_mode_ = motion_mode;
-        task.mode_command_ = task.motion_.send(motion::SetMode{motion_mode});
-        task.mode_request_ = id;
-        task.mode_deadline_ns_ = task.now_ns_ + STATE_TIMEOUT_NS;
+        const motion::CommandId order = task.motion_.send(motion::SetMode{motion_mode});
+        task.mode_.begin(mode, motion_mode, id, order, task.now_ns_);
     }
-    Outcome start_run(RunKind kind) {
-        const auto taken = task.run_.take(RunEvent::START);
-        if (!taken.has_value()) {
-            return std::unexpected(taken.error());
+    Outcome start_run(RunKind kind, const std::string &line = {}) {
+        Outcome started = task.run_.start(kind, id, line);
+        if (started.has_value()) {
+            task.on_abort_.note_work();
+            task.reader_.canon().reset();
         }
-        task.run_kind_ = kind;
-        task.run_request_ = id;
-        task.program_error_.reset();
-        task.isCleanedUp_ = false;
-        task.canon_.reset();
-        return Progress::STARTED;
+        return started;
     }
 };
 
 using Outcome = Result<Progress>;
 
-/// In their order; while the mode changes only what stops goes first.
 void Task::carry_out_commands() {
-    const auto isUrgent = [](const Command &command) {
-        return std::visit(
-            []<class C>(const C &) {
-                return AnyAbort<C> || OneOf<C, SetState, EstopOn, EstopOff, EstopReset>;
-            },
-            command);
-    };
-    for (auto &delivery : desk_.take(now_ns_)) {
-        inbox_.push_back(std::move(delivery));
-    }
-    for (auto next = inbox_.begin(); next != inbox_.end();) {
-        if (mode_request_ != 0 && !isUrgent(next->command)) {
-            ++next;
-            continue;
-        }
-        const mailbox::Desk::Delivery delivery = std::move(*next);
-        inbox_.erase(next);
-        status_.last_command = delivery.serial;
-        status_.last_progress = Progress::STARTED;
-        const auto outcome = std::visit(Handler{*this, delivery.serial}, delivery.command);
+    inbox_.add(desk_.take(now_ns_));
+    while (const auto delivery = inbox_.next(mode_.isChanging())) {
+        const auto outcome = std::visit(Handler{*this, delivery->serial}, delivery->command);
         if (!outcome.has_value()) {
             const std::string reason = outcome.error().str();
-            tell(delivery.serial, Progress::REFUSED, reason);
+            desk_.tell(delivery->serial, Progress::REFUSED, reason);
             post(MessageKind::OPERATOR_ERROR, reason);
         } else if (*outcome != Progress::STARTED) {
-            tell(delivery.serial, *outcome, {});
+            desk_.tell(delivery->serial, *outcome, {});
         }
-        next = inbox_.begin();
+    }
+}
+
+void Task::Handler::refuse_waiting() {
+    for (const mailbox::Serial waiting : task.inbox_.drop_before(id)) {
+        task.desk_.tell(waiting, Progress::REFUSED, "it came before a stop");
     }
 }
 
 Outcome Task::Handler::operator()(const SetState &command) {
-    task.finish(task.state_request_, Progress::FAILED, "another state was asked for");
-    task.wanted_state_ = command.state;
-    task.state_deadline_ns_ = task.now_ns_ + STATE_TIMEOUT_NS;
+    if (command.state == State::ESTOP || command.state == State::OFF) {
+        refuse_waiting();
+    }
+    const MachineState::Asked asked = task.state_.ask(command.state, id, task.now_ns_);
+    task.tell(asked.replaced);
+    if (!asked.outcome.has_value()) {
+        return asked.outcome;
+    }
     switch (command.state) {
     case State::ESTOP:
         task.io_.enter_estop();
         task.motion_.send(motion::Disable{});
-        if (task.isRunning()) {
-            task.finish_run(Progress::FAILED, "emergency stop");
-        }
-        task.status_.task.state = State::ESTOP;
+        task.stop_run("emergency stop");
         task.abort_work(AbortReason::STATE_ESTOP);
-        return Progress::DONE;
+        break;
     case State::ESTOP_RESET:
-        if (task.status_.task.state != State::ESTOP) {
-            return Progress::DONE;
+        if (*asked.outcome == Progress::STARTED) {
+            task.io_.leave_estop();
         }
-        task.io_.leave_estop();
         break;
     case State::OFF:
-        if (task.isRunning()) {
-            task.finish_run(Progress::FAILED, "the machine was switched off");
-        }
+        task.stop_run("the machine was switched off");
         task.abort_work(AbortReason::STATE_OFF);
         task.motion_.send(motion::Disable{});
-        return Progress::DONE;
+        break;
     case State::ON:
-        if (task.status_.task.state == State::ESTOP) {
-            return fail("cannot switch the machine on in emergency stop; reset it first");
-        }
-        task.enable_command_ = task.motion_.send(motion::Enable{});
-        task.isCleanedUp_ = false;
+        task.state_.set_order(task.motion_.send(motion::Enable{}));
+        task.on_abort_.note_work();
         break;
     }
-    task.state_request_ = id;
-    return Progress::STARTED;
+    return asked.outcome;
 }
 
 Outcome Task::Handler::operator()(const SetMode &command) {
-    if (command.mode == task.status_.task.mode) {
+    if (command.mode == task.mode_.mode()) {
         return Progress::DONE;
     }
-    if (task.isRunning()) {
+    if (task.run_.isRunning()) {
         return fail("cannot change the mode while a program or MDI line runs");
     }
     change_mode(command.mode, command.mode == Mode::MANUAL ? motion::Mode::FREE : motion::Mode::COORD);
@@ -287,23 +261,23 @@ Outcome Task::Handler::operator()(const SetMode &command) {
 }
 
 Outcome Task::Handler::operator()(const OpenProgram &command) {
-    if (task.isRunning()) {
+    if (task.run_.isRunning()) {
         return fail("cannot open a program while one runs");
     }
-    const auto opened = task.interp_->open(command.path);
+    const auto opened = task.reader_.interpreter().open(command.path);
     if (!opened.has_value()) {
         return std::unexpected(opened.error());
     }
-    task.interp_->close();
+    task.reader_.interpreter().close();
     task.status_.task.program.assign(command.path);
     return Progress::DONE;
 }
 
 Result<> Task::check_can_run() const {
-    if (status_.task.state != State::ON) {
+    if (state_.state() != State::ON) {
         return fail("the machine is not on");
     }
-    if (isRunning()) {
+    if (run_.isRunning()) {
         return fail("a program or MDI line runs already");
     }
     if (settings_.isHomingForced && !motion_.status().isAllHomed) {
@@ -313,7 +287,7 @@ Result<> Task::check_can_run() const {
 }
 
 Outcome Task::Handler::operator()(const RunProgram &command) {
-    if (task.status_.task.mode != Mode::AUTO) {
+    if (task.mode_.mode() != Mode::AUTO) {
         return fail("running a program needs auto mode");
     }
     if (command.from_line > 1) {
@@ -327,7 +301,7 @@ Outcome Task::Handler::operator()(const RunProgram &command) {
     if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
     }
-    const auto opened = task.interp_->open(task.status_.task.program.str());
+    const auto opened = task.reader_.interpreter().open(task.status_.task.program.str());
     if (!opened.has_value()) {
         return std::unexpected(opened.error());
     }
@@ -335,7 +309,7 @@ Outcome Task::Handler::operator()(const RunProgram &command) {
 }
 
 Outcome Task::Handler::operator()(const StepProgram &) {
-    const bool isFirst = !task.isRunning();
+    const bool isFirst = !task.run_.isRunning();
     if (isFirst) {
         const auto started = (*this)(RunProgram{});
         if (!started.has_value()) {
@@ -375,23 +349,21 @@ Outcome Task::Handler::operator()(const ResumeProgram &) {
 }
 
 Outcome Task::Handler::abort_all() {
-    if (task.isRunning()) {
-        task.finish_run(Progress::FAILED, "aborted");
-    }
+    refuse_waiting();
+    task.stop_run("aborted");
     task.abort_work(AbortReason::ABORT);
     return Progress::DONE;
 }
 
 Outcome Task::Handler::operator()(const Mdi &command) {
-    if (task.status_.task.mode != Mode::MDI) {
+    if (task.mode_.mode() != Mode::MDI) {
         return fail("MDI needs MDI mode");
     }
     const auto allowed = task.check_can_run();
     if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
     }
-    task.mdi_line_ = command.line;
-    return start_run(RunKind::MDI);
+    return start_run(RunKind::MDI, command.line);
 }
 
 Outcome Task::Handler::operator()(const SetTeleop &command) {
@@ -399,7 +371,7 @@ Outcome Task::Handler::operator()(const SetTeleop &command) {
     if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
     }
-    change_mode(task.status_.task.mode, command.isTeleop ? motion::Mode::TELEOP : motion::Mode::FREE);
+    change_mode(task.mode_.mode(), command.isTeleop ? motion::Mode::TELEOP : motion::Mode::FREE);
     return Progress::STARTED;
 }
 
@@ -408,10 +380,11 @@ Outcome Task::Handler::operator()(const HomeJoint &command) {
     if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
     }
+    if (task.homing_.isUnderWay()) {
+        return fail("homing is under way already");
+    }
     task.motion_.send(motion::SetMode{motion::Mode::FREE});
-    task.home_command_ = task.motion_.send(motion::Home{command.joint});
-    task.homing_joint_ = command.joint;
-    task.home_request_ = id;
+    task.homing_.begin(command.joint, id, task.motion_.send(motion::Home{command.joint}));
     return Progress::STARTED;
 }
 
@@ -459,7 +432,7 @@ Outcome Task::Handler::operator()(const SpindleOff &command) {
 }
 
 Outcome Task::Handler::operator()(const LoadToolTable &) {
-    if (task.isRunning()) {
+    if (task.run_.isRunning()) {
         return fail("cannot load the tool table while a program runs");
     }
     const auto loaded = task.parts_.tools.reload();

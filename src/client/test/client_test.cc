@@ -106,6 +106,89 @@ TEST_F(ClientTest, AStopIsTakenHoweverManyCommandsAreUnderWay_D1) {
     EXPECT_TRUE(std::holds_alternative<msgs::AbortAll>(taken[0].command));
 }
 
+TEST_F(ClientTest, AStopCanBePostedThoughTheQueueOfItsClientIsFull_D1) {
+    Client a = made(), b = made();
+    for (std::uint32_t i = 0; i < mailbox::MAX_POSTED; ++i) {
+        ASSERT_TRUE(a.post(msgs::JogContinuous{true, 1, 5}).has_value());
+    }
+    ASSERT_FALSE(a.post(msgs::JogContinuous{true, 1, 5}).has_value()) << "the queue is full";
+    const std::vector<msgs::Command> stops = {msgs::JogStop{true, 1}, msgs::PauseProgram{}, msgs::AbortAll{},
+                                              msgs::SetState{msgs::State::OFF},
+                                              msgs::SetState{msgs::State::ESTOP}};
+    std::vector<Serial> serials;
+    for (const msgs::Command &stop : stops) {
+        const auto posted = a.post(stop);
+        ASSERT_TRUE(posted.has_value()) << posted.error().str();
+        EXPECT_EQ(a.outcome(*posted).progress, Progress::STARTED);
+        serials.push_back(*posted);
+    }
+    const auto after = b.post(msgs::Null{});
+    const auto taken = cycle();
+    ASSERT_EQ(taken.size(), mailbox::MAX_POSTED + stops.size() + 1);
+    for (std::size_t i = 0; i < stops.size(); ++i) {
+        EXPECT_EQ(taken[mailbox::MAX_POSTED + i].serial, serials[i]) << "after what was posted before it";
+        EXPECT_EQ(taken[mailbox::MAX_POSTED + i].command.index(), stops[i].index());
+        EXPECT_EQ(a.outcome(serials[i]).progress, Progress::DONE);
+    }
+    EXPECT_EQ(taken.back().serial, *after);
+    EXPECT_TRUE(cycle().empty()) << "each once";
+}
+
+TEST_F(ClientTest, AFloodOfStopsIsTakenAndEachHasItsOutcome_D1) {
+    Client a = made();
+    std::vector<Serial> aborts;
+    for (int i = 0; i < 60; ++i) {
+        const auto abort = a.post(msgs::AbortAll{}), stop = a.post(msgs::JogStop{false, i % 9});
+        ASSERT_TRUE(abort.has_value() && stop.has_value());
+        aborts.push_back(*abort);
+    }
+    EXPECT_EQ(a.outcome(aborts[30]).progress, Progress::STARTED);
+    const auto taken = cycle();
+    EXPECT_GE(std::count_if(taken.begin(), taken.end(),
+                            [](const auto &d) { return std::holds_alternative<msgs::AbortAll>(d.command); }),
+              1);
+    EXPECT_GE(taken.back().serial, aborts.back()) << "the last stop counts";
+    // As of all commands, the last MAX_OUTCOMES are remembered: half of them were aborts.
+    for (std::size_t i = aborts.size() - mailbox::MAX_OUTCOMES / 2; i < aborts.size(); ++i) {
+        EXPECT_EQ(a.outcome(aborts[i]).progress, Progress::DONE) << i;
+    }
+}
+
+TEST_F(ClientTest, AStopOfAClientThatLeavesIsTakenAndItsPlaceIsClean_D1) {
+    {
+        Client a = made();
+        for (std::uint32_t i = 0; i < mailbox::MAX_POSTED; ++i) {
+            ASSERT_TRUE(a.post(msgs::Null{}).has_value());
+        }
+        ASSERT_TRUE(a.post(msgs::EstopOn{}).has_value());
+    }
+    const auto taken = cycle();
+    ASSERT_EQ(taken.size(), mailbox::MAX_POSTED + 1);
+    EXPECT_TRUE(std::holds_alternative<msgs::EstopOn>(taken.back().command));
+    Client next = made();
+    EXPECT_TRUE(cycle().empty());
+}
+
+TEST_F(ClientTest, WhatTheDeskRefusesIsTheLastCommandOfTheStatusToo_C5) {
+    Client a = made(), b = made();
+    ASSERT_TRUE(a.post(msgs::ClaimOperation{1}).has_value());
+    cycle();
+    const auto refused = *b.post(msgs::RunProgram{});
+    cycle();
+    EXPECT_EQ(status->last_command, refused);
+    EXPECT_EQ(status->last_progress, Progress::REFUSED);
+    isKeeping = true;
+    const auto kept = *a.post(msgs::RunProgram{}), last = *a.post(msgs::Null{});
+    cycle();
+    EXPECT_EQ(status->last_command, last);
+    EXPECT_EQ(status->last_progress, Progress::STARTED);
+    desk.tell(kept, Progress::FAILED, "");
+    desk.tell(last, Progress::DONE, "");
+    cycle();
+    EXPECT_EQ(status->last_command, last);
+    EXPECT_EQ(status->last_progress, Progress::DONE);
+}
+
 TEST_F(ClientTest, WhatIsOutOfRangeOrTooMuchIsRefusedWhereItIsPosted) {
     Client a = made();
     EXPECT_EQ(a.post(msgs::JogStop{true, 99}).error().message, "JogStop: index is 99, allowed is 0 to 15");

@@ -155,6 +155,9 @@ TEST(MailboxProcess, TaskKilledAtAnyInstantIsNoticedAndItsNameIsFree) {
         ASSERT_FALSE(outcome.has_value());
         EXPECT_EQ(outcome.error().message, "the machine is no longer running");
     }
+    // Who takes the name over also takes away what the last one that was killed has left behind.
+    EXPECT_TRUE(mailbox::Memory::create(name).has_value());
+    EXPECT_FALSE(Client::connect(name).has_value());
 }
 
 }  // namespace

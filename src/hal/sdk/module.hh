@@ -95,6 +95,22 @@ inline int finish(int comp_id, int status) noexcept {
     return comp_id;
 }
 
+/// Makes instance `i` and what it declares: 0, or a negated errno.
+template <class T>
+int make_instance(int comp_id, const Request &request, int i, T *&out) noexcept {
+    out = make<T>();
+    if (out == nullptr) {
+        return -ENOMEM;
+    }
+    Name prefix;
+    if (!make_prefix(prefix, request, i)) {
+        return -EINVAL;
+    }
+    Declare declare(comp_id, prefix.text, i);
+    out->declare(declare);
+    return declare.status();
+}
+
 /// Loads separate instances of T, each with functions of its own.
 template <class T>
 int load_instances(const Request &request) noexcept {
@@ -108,17 +124,8 @@ int load_instances(const Request &request) noexcept {
     }
     int status = 0;
     for (int i = 0; i < count && status == 0; ++i) {
-        Name prefix;
-        T *instance = make<T>();
-        if (instance == nullptr) {
-            status = -ENOMEM;
-        } else if (!make_prefix(prefix, request, i)) {
-            status = -EINVAL;
-        } else {
-            Declare declare(comp_id, prefix.text, i);
-            instance->declare(declare);
-            status = declare.status();
-        }
+        T *instance = nullptr;
+        status = make_instance(comp_id, request, i, instance);
     }
     return finish(comp_id, status);
 }
@@ -143,18 +150,8 @@ struct Channels {
     /// Makes the channels' pins: 0, or a negated errno.
     int make_channels(int comp_id, const Request &request, int wanted) noexcept {
         for (int i = 0; i < wanted; ++i) {
-            Name prefix;
-            channel[i] = make<Channel>();
-            if (channel[i] == nullptr) {
-                return -ENOMEM;
-            }
-            if (!make_prefix(prefix, request, i)) {
-                return -EINVAL;
-            }
-            Declare declare(comp_id, prefix.text, i);
-            channel[i]->declare(declare);
-            if (declare.status() < 0) {
-                return declare.status();
+            if (const int status = make_instance(comp_id, request, i, channel[i]); status < 0) {
+                return status;
             }
             ++count;
         }

@@ -2,11 +2,10 @@
 #include "interp/flow/flow.hh"
 
 #include <algorithm>
-#include <iterator>
 
 #include <fmt/format.h>
 
-#include "interp/scripts/script_view.hh"
+#include "interp/flow/script_view.hh"
 
 namespace mw::interp::detail {
 namespace {
@@ -20,16 +19,15 @@ bool mentionsOWord(std::string_view line) {
 }  // namespace
 
 Flow::Flow(Executor &executor, Names &names, Canon &target, const Settings &settings)
-    : executor_(executor), names_(names), target_(target), settings_(settings),
-      view_(std::make_unique<ScriptView>(*this)), budget_(settings) {}
+    : executor_(executor), names_(names), scripts_(executor.fault), budget_(settings),
+      parts_{levels_, files_, scripts_, executor, names, target, settings},
+      view_(std::make_unique<ScriptView>(
+          parts_, [this](std::string_view text, int line) { return execute_for_script(text, line); })) {}
 
 Flow::~Flow() {
-    end_scripts();
-}
-
-const std::string &Flow::file() const {
-    static const std::string NO_FILE;
-    return program_ == nullptr ? NO_FILE : program_->path();
+    unwind();
+    executor_.set_script_names(nullptr);
+    scripts_.close();
 }
 
 Result<> Flow::open(const std::string &path) {
@@ -38,209 +36,125 @@ Result<> Flow::open(const std::string &path) {
         return std::unexpected(loaded.error());
     }
     close();
-    std::unique_ptr<Program> &program = programs_[path];
-    program = std::move(*loaded);
-    program_ = program.get();
+    levels_.open(files_.keep(std::move(*loaded)));
     return {};
 }
 
 void Flow::open_text(const std::string &name, std::string text) {
     close();
-    std::unique_ptr<Program> &program = programs_[name];
-    program = std::make_unique<Program>(name, std::move(text), names_);
-    program_ = program.get();
+    levels_.open(files_.keep(std::make_unique<Program>(name, std::move(text), names_)));
 }
 
 void Flow::close() {
     abort();
-    programs_.clear();
-    program_ = nullptr;
-    next_ = after_line_ = 1;
+    files_.close_files();
+    levels_.open(nullptr);
     budget_.restart();
 }
 
-FilePlace Flow::place_in_file() const {
-    const Program *const main = calls_.empty() ? program_ : calls_.front().program;
-    if (main == nullptr) {
-        return {};
-    }
-    const ProgramText &text = main->text();
-    return {text.place_of(calls_.empty() ? next_ : calls_.front().line), text.count_bytes()};
-}
-
-std::vector<diag::Diagnostic> Flow::syntax_errors(int after, int most) {
-    std::vector<diag::Diagnostic> out;
-    Program *const main = calls_.empty() ? program_ : calls_.front().program;
-    const int last = main == nullptr ? 0 : main->count_lines();
-    for (int line = after + 1; line <= last && static_cast<int>(out.size()) < most; ++line) {
-        const BlockView view = main->block(line);
-        if (view.block->error != NO_ID) {
-            const SyntaxError &error = view.arena->errors[view.block->error];
-            out.push_back({diag::Severity::ERROR,
-                           {error.message, {main->path(), line, static_cast<int>(error.column)}, {}},
-                           {},
-                           std::string(main->line_text(line))});
-        }
-        if (view.block->isPercent && line > main->first_content_line()) {
-            break;
-        }
-    }
-    return out;
-}
-
-std::string_view Flow::subroutine() const {
-    for (auto call = calls_.rbegin(); call != calls_.rend(); ++call) {
-        if (call->label != NO_ID) {
-            return names_.text(call->label);
-        }
-    }
-    return {};
-}
-
-std::string Flow::line_text(const std::string &file, int line) const {
-    const auto found = programs_.find(file);
-    const bool isThere = found != programs_.end() && line >= 1 && line <= found->second->count_lines();
-    return isThere ? std::string(found->second->line_text(line)) : std::string();
-}
-
-/// Drops calls without running what they would restore.
 void Flow::unwind(std::size_t depth) {
-    if (calls_.size() > depth) {
-        Call &outermost = calls_[depth];
-        program_ = outermost.program;
-        next_ = outermost.kind == CallKind::TEXT ? outermost.next : outermost.line + 1;
-        repeats_ = std::move(outermost.repeats);
-        std::vector<Call> dropped(
-            std::make_move_iterator(calls_.begin() + static_cast<std::ptrdiff_t>(depth)),
-            std::make_move_iterator(calls_.end()));
-        calls_.erase(calls_.begin() + static_cast<std::ptrdiff_t>(depth), calls_.end());
-        text_levels_ = static_cast<int>(
-            std::ranges::count(calls_, CallKind::TEXT, [](const Call &call) { return call.kind; }));
-        executor_.drop_calls(static_cast<std::size_t>(call_level()));
-        if (std::ranges::none_of(calls_, [](const Call &call) { return call.kind == CallKind::PROFILE; })) {
+    if (levels_.size() > depth) {
+        std::vector<Call> dropped = levels_.unwind(depth);
+        executor_.drop_calls(static_cast<std::size_t>(levels_.call_level()));
+        if (std::ranges::find(levels_.calls(), CallKind::PROFILE, &Call::kind) == levels_.calls().end()) {
             executor_.lathe.drop();
         }
         while (!dropped.empty()) {
             dropped.pop_back();  // the innermost script ends first
         }
     }
-    if (depth > 0) {
-        return;
+    if (depth == 0) {
+        levels_.end_top();
     }
-    repeats_.clear();
-    if (isMdi_) {
-        isMdi_ = false;
-        program_ = outer_program_;
-        next_ = outer_next_;
-    }
-}
-
-std::string Flow::call_name(const Call &call) const {
-    return call.label == NO_ID ? std::string("the block of a script") : names_.text(call.label);
 }
 
 void Flow::abort() {
     unwind();
     executor_.abort_block();
-    isSyncDue_ = isEndDue_ = false;
+    script_calls_.expect_sync(false);
+    script_calls_.expect_end(false);
 }
 
+// ---------------------------------------------------------------------------------------------- one step
+
 Step Flow::step() {
-    if (script_depth_ == 0) {
-        isSyncDue_ = false;
+    if (scripts_.depth() == 0) {
+        script_calls_.expect_sync(false);
     }
-    if (!calls_.empty() && calls_.back().isInScript()) {
-        return go_on_with_script();
+    if (levels_.isInCall() && levels_.top().isInScript()) {
+        return script_calls_.go_on(parts_) ? after_block() : fail_block();
     }
-    if (program_ == nullptr) {
+    const Place &here = levels_.here();
+    if (here.program == nullptr) {
         return Step::FILE_END;
     }
-    if (next_ > program_->count_lines()) {
-        return end_of_lines();
-    }
-    return run_line();
+    return here.isAtEnd() ? end_of_lines() : run_line();
 }
 
 Step Flow::execute(std::string_view text) {
-    if (isMdi_) {
+    if (levels_.isMdi()) {
         unwind();
     }
     if (executor_.canon.empty()) {
-        mdi_.clear();
+        files_.drop_mdi();
     }
-    mdi_.push_back(std::make_unique<Program>("MDI", std::string(text), names_));
-    isMdi_ = true;
-    outer_program_ = program_;
-    outer_next_ = next_;
-    program_ = mdi_.back().get();
-    next_ = 1;
-    if (program_->count_lines() == 0) {
+    levels_.begin_mdi(files_.keep_mdi(text, names_));
+    if (levels_.here().isAtEnd()) {
         return finish_mdi();
     }
     const Step step = run_line();
-    if (step == Step::OK && calls_.empty() && next_ > program_->count_lines()) {
+    if (step == Step::OK && !levels_.isInCall() && levels_.here().isAtEnd()) {
         return finish_mdi();
     }
     return step;
 }
 
 Step Flow::finish_mdi() {
-    isMdi_ = false;
-    program_ = outer_program_;
-    next_ = outer_next_;
+    levels_.end_mdi();
     return Step::FILE_END;
 }
 
-Step Flow::fail_here(std::string message) {
-    executor_.begin_block();
-    executor_.fault = {};
-    executor_.fault.set(std::move(message));
-    isContinuable_ = false;
-    return fail_block();
-}
-
 Step Flow::end_of_lines() {
-    if (!calls_.empty() && calls_.back().kind == CallKind::TEXT) {
-        end_text();
+    if (levels_.isIn(CallKind::TEXT)) {
+        levels_.leave();  // back to where the script was called
         return Step::OK;
     }
-    if (!calls_.empty()) {
-        line_read_ = program_->count_lines();
-        return fail_here(
-            fmt::format("The file ends in subroutine o<{}> without its end", call_name(calls_.back())));
-    }
-    if (isMdi_) {
+    if (levels_.isMdi() && !levels_.isInCall()) {
         return finish_mdi();
     }
-    line_read_ = program_->count_lines();
-    return fail_here("File ended with no percent sign or program end");
+    levels_.here().line = levels_.here().program->count_lines();
+    return fail_here(levels_.isInCall() ? fmt::format("The file ends in subroutine o<{}> without its end",
+                                                      call_name(levels_.top(), names_))
+                                        : "File ended with no percent sign or program end");
 }
 
 /// The first % opens a program that begins with it; any other ends it.
 Step Flow::percent() {
-    if (program_->isPercentDelimited() && line_read_ == program_->first_content_line()) {
+    const Place &here = levels_.here();
+    if (here.program->isPercentDelimited() && here.line == here.program->first_content_line()) {
         return Step::OK;
     }
-    if (!calls_.empty()) {
-        return fail_here(
-            fmt::format("The file ends in subroutine o<{}> without its end", call_name(calls_.back())));
+    if (levels_.isInCall()) {
+        return fail_here(fmt::format("The file ends in subroutine o<{}> without its end",
+                                     call_name(levels_.top(), names_)));
     }
     if (executor_.state.spline.order != 0) {
         return fail_here("The file ends inside of a NURBS: G5.3 ends it");
     }
     executor_.canon.take(Finish{});
-    commit();
+    parts_.commit();
     return Step::FILE_END;
 }
 
 Step Flow::run_line() {
-    if (budget_.isBounded() && !budget_.take_statement(calls_.empty() ? next_ : 0)) {
+    Place &here = levels_.here();
+    if (budget_.isBounded() && !budget_.take_statement(levels_.isInCall() ? 0 : here.next)) {
         return fail_budget();
     }
-    line_read_ = next_;
-    const BlockView view = program_->block(next_);
-    ++next_;
-    after_line_ = next_;
+    here.line = here.next;
+    const BlockView view = here.program->block(here.next);
+    ++here.next;
+    here.after = here.next;
     const Block &block = *view.block;
     if (block.isPercent) {
         return percent();
@@ -253,23 +167,25 @@ Step Flow::run_line() {
 
 Step Flow::run_block(const BlockView &view) {
     const Block &block = *view.block;
+    const Place &here = levels_.here();
     executor_.fault.clear();
     isContinuable_ = block.oword == NO_ID;
-    const int sequence = block.isNumbered ? block.sequence : line_read_;
-    const bool isText = !calls_.empty() && calls_.back().kind == CallKind::TEXT;
-    executor_.block_place = {isText ? calls_.back().reported_line : line_read_, sequence, call_level()};
+    const int sequence = block.isNumbered ? block.sequence : here.line;
+    const int call_level = levels_.call_level();
+    executor_.block_place = {levels_.isIn(CallKind::TEXT) ? levels_.top().reported_line : here.line, sequence,
+                             call_level};
     executor_.begin_light_block();
-    if (scripts_ != nullptr) {
+    if (scripts_.isOpen()) {
         executor_.keep_state();  // scripts change what they like
     }
     if (block.error != NO_ID) {
-        const SyntaxError &error = view.arena->errors[block.error];
-        isContinuable_ = isContinuable_ && !mentionsOWord(program_->line_text(line_read_));
+        const SyntaxError &error = view.arena->errors[view.block->error];
+        isContinuable_ = isContinuable_ && !mentionsOWord(here.program->line_text(here.line));
         executor_.fault.set(error.message, error.column);
         return fail_block();
     }
-    executor_.canon.enter_block(program_, line_read_, sequence, block.isNumbered, call_level());
-    const std::string_view text = block.comment_count > 0 ? program_->line_text(line_read_) : "";
+    executor_.canon.enter_block(here.program, here.line, sequence, block.isNumbered, call_level);
+    const std::string_view text = block.comment_count > 0 ? here.program->line_text(here.line) : "";
     const bool isDone = block.oword != NO_ID ? run_oword(view) : executor_.run(view, text);
     return isDone ? after_block() : fail_block();
 }
@@ -281,10 +197,10 @@ Step Flow::after_block() {
         const Outcome outcome = executor_.outcome;
         executor_.outcome = Outcome::OK;
         if (outcome != Outcome::CALL_FANUC && outcome != Outcome::PROFILE) {
-            commit();  // those two may still fail
+            parts_.commit();  // those two may still fail
         }
-        if (isEndDue_ && script_depth_ == 0) {  // a script has ended the program
-            isEndDue_ = false;
+        if (script_calls_.isEndDue() && scripts_.depth() == 0) {  // a script has ended the program
+            script_calls_.expect_end(false);
             unwind();
             return Step::PROGRAM_END;
         }
@@ -293,57 +209,211 @@ Step Flow::after_block() {
         case Outcome::SYNC: return Step::SYNC;
         case Outcome::PROGRAM_END:
             end_program();
-            isEndDue_ = script_depth_ > 0;
+            script_calls_.expect_end(scripts_.depth() > 0);
             return Step::PROGRAM_END;
-        case Outcome::SCRIPT: isDone = run_script_text(); break;
-        case Outcome::CALL_FANUC: isDone = call_fanuc(); break;
+        case Outcome::SCRIPT: isDone = script_calls_.run_text_line(parts_, *view_); break;
+        case Outcome::CALL_FANUC: isDone = call_fanuc(parts_); break;
         case Outcome::RETURN_FANUC: isDone = return_fanuc(); break;
-        case Outcome::REMAP: isDone = call_remap(); break;
-        case Outcome::PROFILE: isDone = call_profile(); break;
-        case Outcome::RESTART: next_ = 1; break;
+        case Outcome::REMAP: isDone = script_calls_.call_remap(parts_); break;
+        case Outcome::PROFILE: isDone = call_profile(parts_); break;
+        case Outcome::RESTART: levels_.here().next = 1; break;
         }
     }
     return fail_block();
 }
 
 void Flow::end_program() {
-    const Program *main = calls_.empty() ? program_ : calls_.front().program;
-    if (main != nullptr && !isMdi_ && !main->hasClosingPercent()) {
+    const Program *const main = levels_.main();
+    if (main != nullptr && !levels_.isMdi() && !main->hasClosingPercent()) {
         executor_.canon.take(ProgramComment{"interpreter: percent sign missing from end of file"});
     }
     executor_.canon.take(OnReset{});
-    commit();
-    unwind(nested_base_);
+    parts_.commit();
+    unwind(script_calls_.nested_base());
 }
 
-void Flow::commit() {
-    executor_.commit();
-    executor_.flush(target_);
+// ----------------------------------------------------------------------------------------------- O words
+
+bool Flow::run_oword(const BlockView &view) {
+    const OWord &oword = view.arena->owords[view.block->oword];
+    const bool isStatic = oword.kind == OKind::CALL || oword.kind == OKind::RETURN || oword.label != NO_ID;
+    if (!isStatic) {
+        return executor_.fault.set("Only the label of a call can be computed", oword.column);
+    }
+    Place &here = levels_.here();
+    const int line = here.line;
+    switch (oword.kind) {
+    case OKind::CALL: return run_call(view, oword);
+    case OKind::ENDSUB:
+    case OKind::RETURN: return run_return(view, oword);
+    case OKind::SUB: return pass_definition(oword, parts_) && check_jumped_over(line, here, executor_.fault);
+    case OKind::FANUC:
+    case OKind::NONE: return pass_fanuc_label(oword, parts_);
+    default: break;
+    }
+    LoopTurn turn;
+    return run_jump(view, oword, here, parts_.jump_values(), turn) && note_turn(turn) &&
+           check_jumped_over(line, here, executor_.fault);
+}
+
+bool Flow::run_call(const BlockView &view, const OWord &oword) {
+    CallRequest request;
+    if (!compute_call(view, oword, parts_, request)) {
+        return false;
+    }
+    if (scripts_.hasFunction(ScriptModule::OWORD, names_.text(request.label))) {
+        return script_calls_.call_oword(request, parts_);
+    }
+    return call_sub(request, parts_);
+}
+
+bool Flow::run_return(const BlockView &view, const OWord &oword) {
+    ReturnValue value;
+    return compute_return(view, oword, parts_, value) && script_calls_.leave(value, parts_);
+}
+
+bool Flow::return_fanuc() {
+    LoopTurn turn;
+    return detail::return_fanuc(parts_, turn) && note_turn(turn);
+}
+
+bool Flow::note_turn(const LoopTurn &turn) {
+    if (turn.first == 0 || !budget_.isBounded()) {
+        return true;
+    }
+    const LoopPass pass{levels_.here().program, levels_.size(), turn.first, turn.last};
+    if (budget_.isWatching()) {
+        budget_.note_pass(pass);
+    }
+    // Scripts and changed tool tables have states that are not seen here.
+    const bool isAllSeen = turn.isConditional && !scripts_.isOpen() && !executor_.tools.hasChanges();
+    if (!isAllSeen || !budget_.isRepeating(pass, executor_.state, executor_.parameters)) {
+        return true;
+    }
+    executor_.fault.line = turn.first;
+    return executor_.fault.set("This is a loop without end: nothing has changed from one pass to the next", 0,
+                               "in a check, inputs, HAL pins and probes stay as they are: a loop that waits "
+                               "for one of them must end "
+                               "when #<_task> is 0");
+}
+
+// ---------------------------------------------------------------------------------------------- failures
+
+Step Flow::fail_here(std::string message) {
+    executor_.begin_block();
+    executor_.fault = {};
+    executor_.fault.set(std::move(message));
+    isContinuable_ = false;
+    return fail_block();
+}
+
+/// The outermost loop that has lately begun again is the one that does not end.
+Step Flow::fail_budget() {
+    Place &here = levels_.here();
+    here.line = here.next;
+    const std::string where = fmt::format("{}:{}", levels_.file(), here.next);
+    const std::span<const Call> calls = levels_.calls();
+    std::optional<LoopPass> loop;
+    for (std::size_t depth = 0; depth <= calls.size() && !loop; ++depth) {
+        const bool isInnermost = depth == calls.size();
+        loop = budget_.loop_around(isInnermost ? here.program : calls[depth].program, depth,
+                                   isInnermost ? here.next : calls[depth].line);
+    }
+    const std::string taken = budget_.spend();
+    if (loop && loop->depth < levels_.size()) {
+        unwind(std::max(loop->depth, script_calls_.nested_base()));
+    }
+    executor_.begin_block();
+    executor_.fault = {};
+    executor_.fault.set(
+        loop
+            ? fmt::format("This loop has run for {} (now at {}); is it a loop without end?", taken, where)
+            : fmt::format("The program has run for {} since it came to line {}; is there a loop without end?",
+                          taken, budget_.furthest_line()));
+    executor_.fault.hint =
+        "correct the condition that ends it; if it is right, allow more statements (millwright check "
+        "--statements N, 0 for any number)";
+    isContinuable_ = false;
+    executor_.fault.line = loop ? loop->first : 0;
+    return fail_block();
 }
 
 Step Flow::fail_block() {
     executor_.rollback();
-    if (executor_.fault.isProgramOver) {
-        executor_.canon.take(Finish{});
-        commit();
-    }
     const Fault &fault = executor_.fault;
-    const int line = executor_.fault.line > 0 ? executor_.fault.line : line_read_;
+    if (fault.isProgramOver) {
+        executor_.canon.take(Finish{});
+        parts_.commit();
+    }
+    Place &here = levels_.here();
+    const int line = fault.line > 0 ? fault.line : here.line;
     error_ = {};
     error_.what.message = fault.message;
     error_.what.hint = fault.hint;
-    error_.what.place = {file(), line, static_cast<int>(fault.column)};
+    error_.what.place = {levels_.file(), line, static_cast<int>(fault.column)};
     if (!fault.block_text.empty()) {
         error_.line_text = fault.block_text;
-    } else if (program_ != nullptr && line >= 1 && line <= program_->count_lines()) {
-        error_.line_text = std::string(program_->line_text(line));
+    } else if (here.program != nullptr && line >= 1 && line <= here.program->count_lines()) {
+        error_.line_text = std::string(here.program->line_text(line));
     }
-    for (auto call = calls_.rbegin(); call != calls_.rend(); ++call) {
-        error_.called_from.push_back({call->program->path(), call->line, 0});
-    }
-    next_ = calls_.empty() ? after_line_ : next_;  // a jump that failed half way is none
-    unwind(nested_base_);
+    error_.called_from = levels_.callers();
+    here.next = levels_.isInCall() ? here.next : here.after;  // a jump that failed half way is none
+    unwind(script_calls_.nested_base());
     return Step::FAILED;
+}
+
+// ----------------------------------------------------------------------------------------------- scripts
+
+Result<> Flow::load_scripts() {
+    Result<> loaded = scripts_.load(parts_.settings, executor_.remaps, executor_, *view_);
+    if (loaded && scripts_.isOpen()) {
+        executor_.set_script_names(&scripts_);
+    }
+    return loaded;
+}
+
+Result<> Flow::begin_scripts() {
+    if (!scripts_.isOpen()) {
+        return {};
+    }
+    Result<> begun = scripts_.begin();
+    settle_script(parts_);
+    return begun;
+}
+
+std::expected<bool, ScriptFault> Flow::execute_for_script(std::string_view text, int line) {
+    if (std::optional<std::string> why = script_calls_.refusal(scripts_); why) {
+        return std::unexpected(ScriptFault{std::move(*why), line, std::string(text)});
+    }
+    const std::size_t outer_base = script_calls_.begin_text(text, line, parts_);
+    const auto result = run_nested(script_calls_.nested_base());
+    script_calls_.end_text(outer_base);
+    return result;
+}
+
+std::expected<bool, ScriptFault> Flow::run_nested(std::size_t base) {
+    while (levels_.size() > base) {
+        const int line = levels_.call(base).reported_line;
+        switch (step()) {
+        case Step::OK: break;
+        case Step::SYNC:
+            if (executor_.world().isSynchedAtOnce()) {
+                break;
+            }
+            script_calls_.expect_sync(true);
+            if (levels_.size() == base + 1 && levels_.here().isAtEnd() && levels_.isIn(CallKind::TEXT)) {
+                levels_.leave();
+            }
+            return false;
+        case Step::PROGRAM_END:
+        case Step::FILE_END: return false;
+        case Step::FAILED: return std::unexpected(ScriptFault{error_.what.message, line, error_.line_text});
+        }
+        if (script_calls_.isEndDue()) {
+            return false;
+        }
+    }
+    return true;
 }
 
 }  // namespace mw::interp::detail

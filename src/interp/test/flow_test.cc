@@ -81,6 +81,19 @@ TEST(Flow, FailedJumpGoesOnWithTheNextLine_I1) {
     }
 }
 
+TEST(Flow, AnErrorAtTheEndOfAFileStandsInItsLastLine_I1) {
+    Machine machine;
+    ASSERT_TRUE(machine.interpreter->begin());
+    machine.interpreter->open_text("text", "G0 X1\no1 nonsense\no1 endif\n");
+    EXPECT_EQ(machine.interpreter->step(), Step::OK);
+    EXPECT_EQ(machine.interpreter->step(), Step::FAILED);
+    EXPECT_EQ(machine.interpreter->step(), Step::FAILED);
+    EXPECT_EQ(machine.interpreter->error().what.place.line, 2) << "the likely reason of the endif without if";
+    EXPECT_EQ(machine.interpreter->step(), Step::FAILED);
+    EXPECT_NE(machine.error().find("File ended"), std::string::npos) << machine.error();
+    EXPECT_EQ(machine.interpreter->error().what.place.line, 3);
+}
+
 TEST(Flow, RecursionIsBounded_I1) {
     Machine machine;
     EXPECT_EQ(machine.run("o1 sub\no1 call\no1 endsub\no1 call\n"), Step::FAILED);

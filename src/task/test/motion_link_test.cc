@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "task/motion_link.hh"
+#include "task/link/motion_link.hh"
 
 namespace mw::task {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "task/run_state.hh"
+#include "task/run/run_state.hh"
 
 namespace mw::task {
 namespace {

@@ -9,6 +9,7 @@
 #include "client/client.hh"
 #include "msgs/catalogue.hh"
 #include "task/task.hh"
+#include "task/test/tools.hh"
 
 namespace mw::task {
 namespace {
@@ -42,6 +43,7 @@ class FakeMotion {
     std::vector<std::string> log;
     bool isHolding = false;
     bool isRefusingMoves = false;
+    bool isModeStuck = false;
     double corner_scale = -1;  ///< of the last move
 
   private:
@@ -54,7 +56,9 @@ class FakeMotion {
         } else if (std::holds_alternative<motion::Disable>(command.body)) {
             status.isEnabled = false;
         } else if (const auto *mode = std::get_if<motion::SetMode>(&command.body)) {
-            status.mode = mode->mode;
+            status.mode = isModeStuck ? status.mode : mode->mode;
+        } else if (std::holds_alternative<motion::JogStop>(command.body)) {
+            log.emplace_back("jog stop");
         } else if (const auto *on = std::get_if<motion::SpindleOn>(&command.body)) {
             log.push_back("spindle " + std::to_string(static_cast<int>(on->speed_rpm)));
         } else if (std::holds_alternative<motion::SpindleOff>(command.body)) {
@@ -90,27 +94,6 @@ class FakeMotion {
     void publish() { channels_.status.write(status); }
 
     motion::Channels &channels_;
-};
-
-class NoTools final : public ToolStore {
-  public:
-    int count() const override { return 2; }
-    interp::ToolEntry entry(int index) const override {
-        interp::ToolEntry entry;
-        entry.toolno = index == 0 ? in_spindle : 5;
-        entry.pocketno = index == 0 ? 0 : 3;
-        return entry;
-    }
-    int index_of_tool(int toolno) const override { return toolno == 5 ? 1 : -1; }
-    bool isRandom() const override { return false; }
-    Result<> load_spindle(int index) override {
-        in_spindle = index == 1 ? 5 : 0;
-        return {};
-    }
-    Result<> set_entry(int, const interp::ToolEntry &) override { return {}; }
-    Result<> reload() override { return {}; }
-    std::uint64_t version() const override { return 1; }
-    int in_spindle = 0;
 };
 
 class NoParameters final : public interp::ParameterSource {
@@ -210,7 +193,7 @@ class TaskTest : public testing::Test {
     FakeMotion motion;
     fs::path folder;
     LoopedIo io;
-    NoTools tools;
+    test::OneTool tools;
     NoParameters parameters;
     mailbox::Memory mailbox = mailbox::Memory::in_process();
     Task task;
@@ -218,6 +201,21 @@ class TaskTest : public testing::Test {
     std::int64_t now_ns = 0;
     client::Serial request = 0;
 };
+
+TEST_F(TaskTest, AStopAlsoEndsOlderCommandsThatStillWaitForTheMode_D1) {
+    for (const Command &stop : {Command{AbortAll{}}, Command{SetState{State::OFF}}, Command{EstopOn{}}}) {
+        ASSERT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);
+        post(SetMode{Mode::AUTO});
+        const auto waiting = post(Mdi{"G21 G1 X7 F600"}), text = post(OperatorText{"told all the same"});
+        ASSERT_EQ(ask(stop), Progress::DONE);
+        EXPECT_EQ(reason(waiting), "it came before a stop");
+        EXPECT_EQ(progress(text), Progress::DONE);
+        ask(SetState{State::ESTOP_RESET});
+        ask(SetState{State::ON});
+        EXPECT_EQ(ask(Mdi{"G21 G1 X8 F600"}), Progress::DONE) << reason(request);
+    }
+    EXPECT_TRUE(joined().contains("line 8") && !joined().contains("line 7")) << joined();
+}
 
 TEST_F(TaskTest, AUserCodeRunsWithItsWordsAndIsAwaited_I1) {
     make_program("M101", "echo \"$1 $2\" >> " + (folder / "said").string() + "\n");
@@ -259,19 +257,6 @@ TEST_F(TaskTest, AUserCodeNeedsAnExecutableFile_I1) {
     EXPECT_NE(messages().find("Unknown m code used: M103"), std::string::npos);
 }
 
-TEST(UserProgram, IsEndedWithAllThatItStarted_I1) {
-    const fs::path path = fs::temp_directory_path() / ("mw_user_" + std::to_string(::getpid()));
-    std::ofstream(path) << "#!/bin/sh\nsleep 1000 & sleep 1000\n";
-    fs::permissions(path, fs::perms::owner_all);
-    UserProgram program(false);
-    ASSERT_TRUE(program.start(path.string(), 1, 2).has_value());
-    EXPECT_TRUE(program.isRunning());
-    program.stop();
-    EXPECT_FALSE(program.isRunning());
-    fs::remove(path);
-    EXPECT_FALSE(program.start(path.string(), 1, 2).has_value());
-}
-
 TEST_F(TaskTest, AMoveThatCompensationHoldsBackIsTold_I1) {
     ASSERT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);
     EXPECT_EQ(ask(Mdi{"G21 F600 G41.1 D1"}), Progress::DONE) << reason(request);
@@ -289,6 +274,32 @@ TEST_F(TaskTest, M99InTheMainProgramBeginsItAgain_I1) {
     motion.log.clear();
     EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << reason(request);
     EXPECT_EQ(joined().substr(0, 14), "line 1, line 2");
+}
+
+TEST_F(TaskTest, AStopDoesNotWaitForTheModeToChange_D1) {
+    motion.isModeStuck = true;
+    const auto mode = post(SetMode{Mode::AUTO});
+    cycles(3);
+    const auto jog = post(JogContinuous{true, 0, 5}), stop = post(JogStop{true, 0});
+    cycles(3);
+    EXPECT_EQ(progress(stop), Progress::DONE);
+    EXPECT_NE(joined().find("jog stop"), std::string::npos);
+    EXPECT_EQ(progress(mode), Progress::STARTED);
+    EXPECT_EQ(progress(jog), Progress::STARTED) << "everything else waits";
+}
+
+TEST_F(TaskTest, HomingOfAnotherJointDoesNotLoseTheFirst_D1) {
+    motion.status.isHoming = true;
+    const auto first = post(HomeJoint{0});
+    cycles(3);
+    EXPECT_EQ(ask(HomeJoint{1}, 3), Progress::REFUSED);
+    EXPECT_NE(reason(request).find("homing"), std::string::npos);
+    EXPECT_EQ(progress(first), Progress::STARTED);
+    EXPECT_EQ(task.status().task.waiting.index, 0);
+    motion.status.isHoming = false;
+    motion.status.joint[0].isHomed = true;
+    cycles(3);
+    EXPECT_EQ(progress(first), Progress::DONE) << reason(first);
 }
 
 TEST_F(TaskTest, AProgramRunsToItsEnd_D1) {

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The script language while programs run: its host, the names that scripts define, and the scripts that run.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "interp/codes/executor.hh"
+#include "interp/codes/remaps.hh"
+#include "interp/scripts/script_host.hh"
+
+namespace mw::interp::detail {
+
+class Scripts final : public ScriptNames {
+  public:
+    /// `fault` takes what goes wrong with a named parameter.
+    explicit Scripts(Fault &fault) : fault_(fault) {}
+
+    /// Opens the host when the settings or a remap need one, runs the top-level script, and checks that all
+    /// that the remaps name exists. Errors name the place in the INI file. `view` must outlive the host.
+    Result<> load(const Settings &settings, const Remaps &remaps, const BuiltIns &built_ins,
+                  InterpreterView &view);
+    /// Opens the host if it is not open: `what`, at `place`, needs it.
+    Result<> need(const std::string &what, const SourcePlace &place, const Settings &settings,
+                  InterpreterView &view);
+    Result<> begin();
+    void close() { host_.reset(); }
+
+    bool isOpen() const { return host_ != nullptr; }
+    bool hasFunction(ScriptModule module, std::string_view name) const {
+        return host_ != nullptr && host_->hasFunction(module, name);
+    }
+    /// `rest` is set when the outcome is WAITING.
+    ScriptOutcome call(ScriptModule module, const std::string &name, const ScriptArguments &arguments,
+                       std::unique_ptr<SuspendedScript> &rest);
+    ScriptOutcome resume(SuspendedScript &script);
+    ScriptOutcome run_text(std::string_view text);
+    /// Scripts run now, one inside of the other: that many.
+    int depth() const { return depth_; }
+    /// A named parameter's script runs: it may only look.
+    bool isReadingName() const { return isReadingName_; }
+
+    bool hasName(std::string_view name) const override;
+    std::optional<double> value_of(std::string_view name) override;
+    /// Of named parameters that scripts compute.
+    const std::vector<std::string> &names() const { return names_; }
+    const std::vector<std::string> &warnings() const { return warnings_; }
+
+    std::string error_text;  ///< as a script has set it
+
+  private:
+    Result<> check(const Remap &remap) const;
+
+    Fault &fault_;
+    std::unique_ptr<ScriptHost> host_;
+    std::vector<std::string> names_, warnings_;
+    int depth_ = 0;
+    bool isReadingName_ = false;
+};
+
+}  // namespace mw::interp::detail

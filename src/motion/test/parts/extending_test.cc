@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The example of docs/extending/motion_command.md.
+#include <fstream>
+#include <sstream>
+#include <variant>
+
+#include <gtest/gtest.h>
+
+#include "base/overloaded.hh"
+#include "motion/core/outputs/machine_outputs.hh"
+
+namespace mw::motion {
+
+// begin of the declaration
+/// A digital output goes to its other state.
+struct FlipDigitalOutput {
+    int index = 0;
+};
+// end of the declaration
+
+// begin of the behaviour
+Verdict take(MachineOutputs &outputs, const FlipDigitalOutput &command) noexcept {
+    if (command.index < 0 || command.index >= outputs.num_digital) {
+        return {Reason::NO_SUCH_OUTPUT};
+    }
+    outputs.digital ^= std::uint64_t{1} << command.index;
+    return {};
+}
+// end of the behaviour
+
+namespace {
+
+/// The body of a command with one alternative more.
+template <class Variant, class More>
+struct Extended;
+template <class... Bodies, class More>
+struct Extended<std::variant<Bodies...>, More> {
+    using Body = std::variant<Bodies..., More>;
+};
+using Body = Extended<CommandBody, FlipDigitalOutput>::Body;
+
+template <class Command>
+concept TakenByOutputs = requires(MachineOutputs &outputs, const Command &command) {
+    { take(outputs, command) } -> std::same_as<Verdict>;
+};
+
+TEST(ExtendingMotion, TheNewCommandDoesWhatItSaysAndRefusesWhatIsNotThere_A1) {
+    MachineOutputs outputs;
+    outputs.num_digital = 4;
+    outputs.digital = 0b0101;
+    EXPECT_EQ(take(outputs, FlipDigitalOutput{3}).reason, Reason::NONE);
+    EXPECT_EQ(outputs.digital, 0b1101U);
+    EXPECT_EQ(take(outputs, FlipDigitalOutput{0}).reason, Reason::NONE);
+    EXPECT_EQ(outputs.digital, 0b1100U);
+    EXPECT_EQ(take(outputs, FlipDigitalOutput{4}).reason, Reason::NO_SUCH_OUTPUT);
+    EXPECT_EQ(take(outputs, FlipDigitalOutput{-1}).reason, Reason::NO_SUCH_OUTPUT);
+    EXPECT_EQ(outputs.digital, 0b1100U) << "a refusal changes nothing";
+}
+
+/// What step 3 of the page says: handlers for the old commands alone are no visitor of the new variant, with
+/// the new one in the line of the outputs they are.
+TEST(ExtendingMotion, AVisitorThatForgetsTheNewCommandDoesNotCompile_A1) {
+    const auto others = []<class C>(const C &)
+        requires(IS_ALTERNATIVE<C, CommandBody> && !TakenByOutputs<C>)
+    { return Verdict{}; };
+    MachineOutputs outputs;
+    outputs.num_digital = 1;
+    const Overloaded old{
+        others, [&](const OneOf<SetDigitalOutput, SetAnalogOutput> auto &c) { return take(outputs, c); }};
+    const Overloaded extended{others,
+                              [&](const OneOf<SetDigitalOutput, SetAnalogOutput, FlipDigitalOutput> auto &c) {
+                                  return take(outputs, c);
+                              }};
+    static_assert(std::is_invocable_v<decltype(old), const SetDigitalOutput &>);
+    static_assert(!std::is_invocable_v<decltype(old), const FlipDigitalOutput &>);
+    EXPECT_EQ(std::visit(extended, Body{FlipDigitalOutput{0}}).reason, Reason::NONE);
+    EXPECT_EQ(std::visit(extended, Body{Heartbeat{}}).reason, Reason::NONE);
+    EXPECT_EQ(outputs.digital, 1U);
+    static_assert(std::is_trivially_copyable_v<Body>);
+}
+
+std::string file_text(const std::string &path) {
+    std::ostringstream text;
+    text << std::ifstream(MW_SOURCE_DIR + path).rdbuf();
+    return text.str();
+}
+
+TEST(ExtendingMotion, ThePageShowsWhatIsCompiledHereAndLinesThatStand_A1) {
+    const std::string source = file_text("/src/motion/test/parts/extending_test.cc");
+    const std::string page = file_text("/docs/extending/motion_command.md");
+    for (const std::string what : {"declaration", "behaviour"}) {
+        const std::string begin = "\n// begin of the " + what + "\n";
+        const std::size_t from = source.find(begin) + begin.size();
+        const std::string example = source.substr(from, source.find("// end of the " + what + "\n") - from);
+        ASSERT_GT(example.size(), 80U);
+        EXPECT_NE(page.find("```cpp\n" + example + "```\n"), std::string::npos) << example;
+    }
+    // The line that the new name joins stands in the controller as the page shows it, less that name.
+    const std::string joined = ", FlipDigitalOutput> auto &c) { return motion::take(outputs_, c); },";
+    const std::size_t place = page.find(joined);
+    ASSERT_NE(place, std::string::npos);
+    const std::size_t line = page.rfind('\n', place) + 1 + std::string("    ").size();
+    const std::string standing =
+        page.substr(line, place - line) + joined.substr(std::string(", FlipDigitalOutput").size());
+    EXPECT_NE(file_text("/src/motion/core/controller_commands.cc").find(standing), std::string::npos)
+        << standing;
+}
+
+}  // namespace
+}  // namespace mw::motion

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "task/link/motion_link.hh"
+
+#include <algorithm>
+
+namespace mw::task {
+namespace {
+
+/// Moves handed over and not complete; the planner looks ahead over at most this many.
+constexpr std::uint32_t PATH_WINDOW = 3000;
+
+}  // namespace
+
+MotionLink::MotionLink(motion::Channels &channels) : channels_(channels) {
+    if (channels_.status.read(status_)) {
+        epoch_ = status_.epoch;
+    }
+}
+
+MotionLink::News MotionLink::update() {
+    News news;
+    news.isStatusFresh = channels_.status.read(status_);
+    channels_.task_loops.fetch_add(1, std::memory_order_relaxed);
+    take_answers(news);
+    motion::Fault fault;
+    while (channels_.servo_faults.pop(fault)) {
+        news.faults.push_back(fault);
+    }
+    while (channels_.planner_faults.pop(fault)) {
+        news.faults.push_back(fault);
+    }
+    hand_over();
+    return news;
+}
+
+void MotionLink::take_answers(News &news) {
+    motion::Answer answer;
+    while (channels_.servo_answers.pop(answer)) {
+        pending_.erase(std::remove(pending_.begin(), pending_.end(), answer.id), pending_.end());
+        if (answer.kind == motion::AnswerKind::REFUSED) {
+            news.refused.push_back({answer, {}});
+        }
+    }
+    while (channels_.planner_answers.pop(answer)) {
+        if (answer.id <= aborted_id_) {
+            continue;
+        }
+        completed_id_ = std::max(completed_id_, answer.id);
+        --path_outstanding_;
+        const motion::SourceTag source = take_source(answer.id);
+        if (answer.kind == motion::AnswerKind::REFUSED) {
+            news.refused.push_back({answer, source});
+        }
+    }
+}
+
+motion::SourceTag MotionLink::take_source(motion::CommandId id) {
+    motion::SourceTag source;
+    while (!sources_.empty() && sources_.front().first <= id) {
+        source = sources_.front().first == id ? sources_.front().second : motion::SourceTag{};
+        sources_.pop_front();
+    }
+    return source;
+}
+
+motion::CommandId MotionLink::send(motion::CommandBody body) {
+    backlog_.push_back({next_id_++, epoch_, body});
+    pending_.push_back(backlog_.back().id);
+    const motion::CommandId id = backlog_.back().id;
+    hand_over();
+    return id;
+}
+
+void MotionLink::hand_over() {
+    std::size_t sent = 0;
+    while (sent < backlog_.size() && channels_.immediate.push(backlog_[sent])) {
+        ++sent;
+    }
+    backlog_.erase(backlog_.begin(), backlog_.begin() + static_cast<std::ptrdiff_t>(sent));
+}
+
+bool MotionLink::push_path(const motion::PathBody &body, const motion::SourceTag &source) {
+    if (!channels_.path.push({next_id_, epoch_, body})) {
+        return false;
+    }
+    last_path_id_ = next_id_++;
+    sources_.emplace_back(last_path_id_, source);
+    ++path_outstanding_;
+    return true;
+}
+
+bool MotionLink::hasPathRoom() const {
+    return path_outstanding_ < PATH_WINDOW && channels_.path.size() + 2 < channels_.path.capacity();
+}
+
+void MotionLink::flush() {
+    if (hasUnflushedPath() && push_path(motion::Flush{})) {
+        flushed_id_ = last_path_id_;
+    }
+}
+
+bool MotionLink::isPathComplete() const {
+    return completed_id_ >= last_path_id_ && !hasUnflushedPath();
+}
+
+void MotionLink::abort() {
+    ++epoch_;
+    send(motion::Abort{epoch_});
+    // Whatever was handed over is stale now: its answers are not waited for.
+    aborted_id_ = last_path_id_;
+    sources_.clear();
+    completed_id_ = std::max(completed_id_, last_path_id_);
+    flushed_id_ = std::max(flushed_id_, last_path_id_);
+    path_outstanding_ = 0;
+}
+
+}  // namespace mw::task

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The interpreter of a machine with its parameters, and the queue that it writes.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "interp/canon/machine_frame.hh"
+#include "interp/interpreter.hh"
+#include "task/run/task_canon.hh"
+
+namespace mw::task {
+
+/// One thread; never blocks.
+class ProgramReader {
+  public:
+    struct Setup {
+        interp::LengthUnits units = interp::LengthUnits::MM;
+        ToolChangePlace tool_change_place;
+        std::string parameter_file;  ///< empty: parameters live in memory only
+        std::string plugin;          ///< [TASK]INTERPRETER: a shared object; empty: RS-274/NGC
+        interp::Settings interpreter;
+    };
+    /// What a program may ask; all must outlive the reader.
+    struct Sources {
+        interp::World &world;
+        interp::ToolSource &tools;
+        interp::ParameterSource &parameters;
+    };
+    ProgramReader(const Sources &sources, Setup setup);
+
+    /// Opens the plug-in and reads the parameter file. Errors name file, line and column.
+    Result<> load();
+    Result<> save_parameters() const;
+    /// The world shows the machine as it is now; the position is the program's from here.
+    void synch(const geom::Pose &position);
+    /// Forgets what was read ahead, and tells again what is in force: displays and motion follow it.
+    void drop();
+    /// The result of a probe, as a line of the file of (probeopen); empty when it has not tripped.
+    std::string probe_line() const;
+
+    interp::ProgramInterpreter &interpreter() { return *interp_; }
+    const interp::ProgramInterpreter &interpreter() const { return *interp_; }
+    TaskCanon &canon() { return canon_; }
+    const TaskCanon &canon() const { return canon_; }
+    ItemQueue &queue() { return queue_; }
+
+  private:
+    Sources sources_;
+    Setup setup_;
+    ItemQueue queue_;
+    TaskCanon canon_;
+    interp::MachineFrame frame_;
+    std::unique_ptr<interp::ProgramInterpreter> interp_;
+};
+
+}  // namespace mw::task

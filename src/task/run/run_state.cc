@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "task/run/run_state.hh"
+
+#include <array>
+
+namespace mw::task {
+namespace {
+
+template <class State>
+using Row = std::array<Transition<State>, static_cast<std::size_t>(State::COUNT)>;
+template <class State>
+using Table = std::array<Row<State>, static_cast<std::size_t>(RunEvent::COUNT)>;
+
+constexpr Transition<RunPhase> phase(RunPhase to) {
+    return {to, nullptr};
+}
+constexpr Transition<RunPhase> no_phase(const char *why) {
+    return {RunPhase::IDLE, why};
+}
+constexpr Transition<Hold> hold(Hold to) {
+    return {to, nullptr};
+}
+constexpr Transition<Hold> no_hold(const char *why) {
+    return {Hold::GOING, why};
+}
+
+constexpr auto IDLE = phase(RunPhase::IDLE), CLEANING = phase(RunPhase::CLEANING),
+               STARTING = phase(RunPhase::STARTING), READING = phase(RunPhase::READING),
+               SYNCHING = phase(RunPhase::SYNCHING), FINISHING = phase(RunPhase::FINISHING);
+constexpr auto BUSY = no_phase("a program or MDI line runs already");
+constexpr auto NOT_DUE = no_phase("no start is due");
+constexpr auto NOT_READING = no_phase("the interpreter does not read");
+constexpr auto NO_SYNC = no_phase("the interpreter does not wait");
+constexpr auto NO_PAUSE = no_phase("nothing runs that could be paused");
+constexpr auto NO_RESUME = no_phase("nothing is paused");
+constexpr auto NO_STEP = no_phase("nothing runs that could be stepped");
+constexpr auto NO_STOP = no_phase("nothing runs that could be stopped");
+
+/// Columns: IDLE, CLEANING, STARTING, READING, SYNCHING, FINISHING.
+constexpr Table<RunPhase> PHASES{{
+    /* START */ {STARTING, STARTING, BUSY, BUSY, BUSY, BUSY},
+    /* BEGUN */ {NOT_DUE, NOT_DUE, READING, NOT_DUE, NOT_DUE, NOT_DUE},
+    /* SYNC */ {NOT_READING, NOT_READING, NOT_READING, SYNCHING, NOT_READING, NOT_READING},
+    /* SYNCED */ {NO_SYNC, NO_SYNC, NO_SYNC, NO_SYNC, READING, NO_SYNC},
+    /* READ */ {NOT_READING, NOT_READING, NOT_READING, FINISHING, FINISHING, FINISHING},
+    /* END */ {IDLE, CLEANING, IDLE, IDLE, IDLE, IDLE},
+    /* CLEAN */ {CLEANING, CLEANING, BUSY, BUSY, BUSY, BUSY},
+    /* CLEANED */ {IDLE, IDLE, STARTING, READING, SYNCHING, FINISHING},
+    /* PAUSE */ {NO_PAUSE, NO_PAUSE, STARTING, READING, SYNCHING, FINISHING},
+    /* RESUME */ {NO_RESUME, NO_RESUME, STARTING, READING, SYNCHING, FINISHING},
+    /* STEP */ {NO_STEP, NO_STEP, STARTING, READING, SYNCHING, FINISHING},
+    /* STEP_MOVE */ {NO_STEP, NO_STEP, STARTING, READING, SYNCHING, FINISHING},
+    /* STEP_DONE */ {NO_STEP, NO_STEP, STARTING, READING, SYNCHING, FINISHING},
+    /* PROGRAM_STOP */ {NO_STOP, NO_STOP, STARTING, READING, SYNCHING, FINISHING},
+}};
+
+constexpr auto GOING = hold(Hold::GOING), STEPPING = hold(Hold::STEPPING), HELD = hold(Hold::HELD),
+               STOPPED = hold(Hold::STOPPED);
+constexpr auto NOT_HELD = no_hold("nothing is paused");
+constexpr auto NOT_PAUSED = no_hold("single step needs a paused program");
+constexpr auto NOT_STEPPING = no_hold("no step is under way");
+
+/// Columns: GOING, STEPPING, HELD, STOPPED.
+constexpr Table<Hold> HOLDS{{
+    /* START */ {GOING, GOING, GOING, GOING},
+    /* BEGUN */ {GOING, STEPPING, HELD, STOPPED},
+    /* SYNC */ {GOING, STEPPING, HELD, STOPPED},
+    /* SYNCED */ {GOING, STEPPING, HELD, STOPPED},
+    /* READ */ {GOING, STEPPING, HELD, STOPPED},
+    /* END */ {GOING, GOING, GOING, GOING},
+    /* CLEAN */ {GOING, GOING, GOING, GOING},
+    /* CLEANED */ {GOING, STEPPING, HELD, STOPPED},
+    /* PAUSE */ {HELD, HELD, HELD, STOPPED},
+    /* RESUME */ {NOT_HELD, NOT_HELD, GOING, GOING},
+    /* STEP */ {NOT_PAUSED, NOT_PAUSED, STEPPING, STEPPING},
+    /* STEP_MOVE */ {NOT_PAUSED, NOT_PAUSED, HELD, HELD},
+    /* STEP_DONE */ {NOT_STEPPING, HELD, NOT_STEPPING, NOT_STEPPING},
+    /* PROGRAM_STOP */ {STOPPED, STOPPED, STOPPED, STOPPED},
+}};
+
+template <class State>
+const Transition<State> &entry(const Table<State> &table, RunEvent event, State from) {
+    return table[static_cast<std::size_t>(event)][static_cast<std::size_t>(from)];
+}
+
+}  // namespace
+
+Transition<RunPhase> transition(RunEvent event, RunPhase from) {
+    return entry(PHASES, event, from);
+}
+
+Transition<Hold> transition(RunEvent event, Hold from) {
+    return entry(HOLDS, event, from);
+}
+
+Result<> RunState::take(RunEvent event) {
+    const auto phase = transition(event, phase_);
+    const auto hold = transition(event, hold_);
+    if (phase.refusal != nullptr || hold.refusal != nullptr) {
+        return fail(phase.refusal != nullptr ? phase.refusal : hold.refusal);
+    }
+    phase_ = phase.to;
+    hold_ = hold.to;
+    return {};
+}
+
+}  // namespace mw::task

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "task/run/task_canon.hh"
+
+namespace mw::task {
+
+void TaskCanon::reset() {
+    tag_ = {};
+    files_.clear();
+}
+
+void TaskCanon::begin_block(const interp::BlockRef &block) {
+    const bool isSameFile = tag_.file_index < files_.size() && files_[tag_.file_index] == block.file;
+    if (!isSameFile) {
+        std::uint32_t index = 0;
+        while (index < files_.size() && files_[index] != block.file) {
+            ++index;
+        }
+        if (index == files_.size()) {
+            files_.emplace_back(block.file);
+        }
+        tag_.file_index = index;
+    }
+    tag_.line = block.line;
+    ++tag_.block;
+}
+
+void TaskCanon::take(const interp::MachineCall &call) {
+    std::visit(
+        Overloaded{
+            [this](const OneOf<interp::LineMove, interp::ArcMove, interp::ProbeMove> auto &move) {
+                last_end_ = move.end;
+                add(move);
+            },
+            [this](const interp::ChangeTool &) { change_tool(); },
+            // Comments are for canons that print; this machine has no shuttle to move.
+            [](const OneOf<interp::ProgramComment, interp::PalletShuttle> auto &) {},
+            [this](const OneOf<interp::TapMove, interp::Dwell, interp::UseToolOffset, interp::UseOffsets,
+                               interp::UsePlanner, interp::SetSpindleMode, interp::UseSpindleSpeed,
+                               interp::StartSpindle, interp::StopSpindle, interp::OrientSpindle,
+                               interp::WaitOrientComplete, interp::SelectTool, interp::ChangeToolNumber,
+                               interp::SetToolTableEntry, interp::ReloadTools, interp::SwitchMist,
+                               interp::SwitchFlood, interp::SwitchFeedOverride, interp::SwitchSpeedOverride,
+                               interp::SwitchFeedHold, interp::SwitchAdaptiveFeed, interp::SetDigitalOutput,
+                               interp::SetAnalogOutput, interp::WaitInput, interp::ProgramStop,
+                               interp::ProgramEnd, interp::Finish, interp::UserCode, interp::OperatorMessage,
+                               interp::PrintLine, interp::OpenLog, interp::LogLine, interp::CloseLog,
+                               interp::LogProbes, interp::CanonError> auto &one) { add(one); },
+        },
+        call);
+}
+
+std::vector<geom::Pose> tool_change_moves(const ToolChangePlace &place, const geom::Pose &position) {
+    std::vector<geom::Pose> moves;
+    geom::Pose end = position;
+    if (place.isQuillRaised) {
+        end[geom::AXIS_Z] = 0;
+        moves.push_back(end);
+    }
+    if (place.coordinates > 0) {
+        for (int axis = 0; axis < place.coordinates; ++axis) {
+            end[axis] = place.position[axis];
+        }
+        moves.push_back(end);
+    }
+    return moves;
+}
+
+void TaskCanon::change_tool() {
+    for (const geom::Pose &end : tool_change_moves(place_, last_end_)) {
+        interp::LineMove move;
+        move.end = end;
+        move.settings.isRapid = true;
+        move.settings.mode = geom::PathMode::EXACT_PATH;
+        last_end_ = end;
+        add(move);
+    }
+    add(interp::ChangeTool{});
+}
+
+}  // namespace mw::task

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The canon that runs a program: appends to the ordered queue, never blocks.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "interp/canon/machine_canon.hh"
+#include "task/sequencer/items.hh"
+
+namespace mw::task {
+
+/// Where the machine goes for a tool change ([EMCIO]TOOL_CHANGE_POSITION, TOOL_CHANGE_QUILL_UP; requirement
+/// G5).
+struct ToolChangePlace {
+    bool isQuillRaised = false;  ///< Z to machine zero first
+    int coordinates = 0;         ///< how many of `position` are given: 0, 3, 6 or 9
+    geom::Pose position;         ///< [machine units], machine coordinates
+};
+
+/// Where a tool change goes from `position`, in order; empty when it stays.
+std::vector<geom::Pose> tool_change_moves(const ToolChangePlace &place, const geom::Pose &position);
+
+class TaskCanon final : public interp::MachineCanon {
+  public:
+    explicit TaskCanon(ItemQueue &queue, const ToolChangePlace &place = {}) : queue_(queue), place_(place) {}
+
+    /// Blocks seen since reset(); the number of the current one.
+    std::uint32_t blocks() const { return tag_.block; }
+    /// The name of a file by the index in SourceTag.
+    const std::string &file_name(std::uint32_t index) const { return files_[index]; }
+    void reset();
+    /// Where the machine is when nothing is queued.
+    void set_position(const geom::Pose &position) { last_end_ = position; }
+
+    void begin_block(const interp::BlockRef &block) override;
+    void take(const interp::MachineCall &call) override;
+
+  private:
+    void add(const interp::MachineCall &call) { queue_.push_back({tag_, call}); }
+    void change_tool();
+
+    ItemQueue &queue_;
+    ToolChangePlace place_;
+    geom::Pose last_end_{};
+    motion::SourceTag tag_{};
+    std::vector<std::string> files_;
+};
+
+}  // namespace mw::task

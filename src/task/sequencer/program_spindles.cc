@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "task/sequencer/program_spindles.hh"
+
+#include <cmath>
+
+#include "interp/canon/surface_speed.hh"
+
+namespace mw::task {
+
+void ProgramSpindles::send(int spindle, MotionLink &motion) {
+    const Spindle &state = at(spindle);
+    motion::SpindleOn on;
+    on.spindle = spindle;
+    on.css_max_rpm = state.css_max_rpm;
+    on.isWaitingForSpeed = state.isWaiting;
+    if (state.css_max_rpm > 0) {
+        // Constant surface speed: the controller divides by the radius.
+        on.css_factor = state.direction * interp::surface_speed_factor(state.speed, state.surface_unit);
+        on.css_x_offset = centre_line_x_;
+        on.speed_rpm = state.direction * state.css_max_rpm;
+    } else {
+        on.speed_rpm = state.direction * state.speed;
+    }
+    motion.send(on);
+    isNextCutWaiting_ = state.isWaiting;
+}
+
+void ProgramSpindles::set_mode(const interp::SetSpindleMode &mode) {
+    at(mode.spindle).css_max_rpm = mode.css_max_rpm;
+}
+
+void ProgramSpindles::set_speed(const interp::UseSpindleSpeed &speed, MotionLink &motion) {
+    Spindle &state = at(speed.spindle);
+    const bool isNew = state.speed != speed.speed || state.surface_unit != speed.surface_unit;
+    state.speed = speed.speed;
+    state.surface_unit = speed.surface_unit;
+    if (isNew && state.direction != 0) {
+        send(speed.spindle, motion);
+    }
+}
+
+void ProgramSpindles::start(const interp::StartSpindle &start, MotionLink &motion) {
+    Spindle &state = at(start.spindle);
+    state.direction = start.direction();
+    state.isWaiting = start.isWaiting;
+    send(start.spindle, motion);
+}
+
+void ProgramSpindles::stop(const interp::StopSpindle &stop, MotionLink &motion) {
+    at(stop.spindle).direction = 0;
+    motion.send(motion::SpindleOff{stop.spindle});
+}
+
+void ProgramSpindles::command(int spindle, double signed_rpm, bool isWaiting, MotionLink &motion) {
+    Spindle &state = at(spindle);
+    state.css_max_rpm = 0;
+    state.direction = signed_rpm > 0 ? 1 : (signed_rpm < 0 ? -1 : 0);
+    state.isWaiting = isWaiting;
+    if (state.direction == 0) {
+        motion.send(motion::SpindleOff{spindle});
+        return;
+    }
+    state.speed = std::fabs(signed_rpm);
+    send(spindle, motion);
+}
+
+void ProgramSpindles::stop_all(MotionLink &motion) {
+    for (int i = 0; i < motion.status().num_spindles; ++i) {
+        stop({i}, motion);
+    }
+}
+
+void ProgramSpindles::use(const interp::UseOffsets &offsets, MotionLink &motion) {
+    offsets_ = offsets;
+    follow_offsets(motion);
+}
+
+void ProgramSpindles::use(const interp::UseToolOffset &offset, MotionLink &motion) {
+    tool_offset_ = offset;
+    follow_offsets(motion);
+}
+
+void ProgramSpindles::follow_offsets(MotionLink &motion) {
+    const double x =
+        interp::centre_line_x(offsets_.g5x, offsets_.g92, offsets_.rotation_xy_deg, tool_offset_.offset);
+    if (x == centre_line_x_) {
+        return;
+    }
+    centre_line_x_ = x;
+    for (int n = 0; n < MAX_SPINDLES; ++n) {
+        if (at(n).css_max_rpm > 0 && at(n).direction != 0) {
+            send(n, motion);
+        }
+    }
+}
+
+}  // namespace mw::task

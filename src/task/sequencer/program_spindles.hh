@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The spindles as programmed, and as the operator commands them.
+#pragma once
+
+#include <array>
+
+#include "base/limits.hh"
+#include "interp/canon/machine_canon.hh"
+#include "task/link/motion_link.hh"
+
+namespace mw::task {
+
+/// Remembers what motion was told, for calls that change a part of it. One thread.
+class ProgramSpindles {
+  public:
+    void set_mode(const interp::SetSpindleMode &mode);
+    void set_speed(const interp::UseSpindleSpeed &speed, MotionLink &motion);
+    void start(const interp::StartSpindle &start, MotionLink &motion);
+    void stop(const interp::StopSpindle &stop, MotionLink &motion);
+    /// The operator's command, at once; 0 stops.
+    void command(int spindle, double signed_rpm, bool isWaiting, MotionLink &motion);
+    void stop_all(MotionLink &motion);
+    // Spindles with constant surface speed are told where their centre line is now.
+    void use(const interp::UseOffsets &offsets, MotionLink &motion);
+    void use(const interp::UseToolOffset &offset, MotionLink &motion);
+
+    /// As programmed, unscaled. [rev/min or surface units/min]
+    double speed(int spindle) const { return spindles_[static_cast<std::size_t>(spindle)].speed; }
+    int direction(int spindle) const { return spindles_[static_cast<std::size_t>(spindle)].direction; }
+    /// The next cut waits until the spindle has its speed.
+    bool isNextCutWaiting() const { return isNextCutWaiting_; }
+    void end_wait() { isNextCutWaiting_ = false; }
+
+  private:
+    struct Spindle {
+        double speed = 0;
+        double surface_unit = 0;
+        double css_max_rpm = 0;
+        int direction = 0;
+        bool isWaiting = false;
+    };
+    Spindle &at(int spindle) { return spindles_[static_cast<std::size_t>(spindle)]; }
+    void send(int spindle, MotionLink &motion);
+    void follow_offsets(MotionLink &motion);
+
+    std::array<Spindle, MAX_SPINDLES> spindles_{};
+    interp::UseOffsets offsets_;
+    interp::UseToolOffset tool_offset_;
+    double centre_line_x_ = 0;  ///< machine X of the program's X0 [machine units]
+    bool isNextCutWaiting_ = false;
+};
+
+}  // namespace mw::task

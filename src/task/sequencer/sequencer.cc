@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "task/sequencer/sequencer.hh"
+
+#include <cmath>
+#include <type_traits>
+
+namespace mw::task {
+namespace {
+
+constexpr std::int64_t NS_PER_S = 1000000000;
+/// Items issued in one task cycle at most, so that the cycle stays short.
+constexpr int ITEMS_PER_CYCLE = 500;
+
+std::int64_t to_ns(double seconds) {
+    return static_cast<std::int64_t>(std::llround(seconds * static_cast<double>(NS_PER_S)));
+}
+
+struct MoveSource {
+    const motion::SourceTag &tag;
+    bool isHolding;  ///< a cut waits until the spindle has its speed
+};
+
+motion::MoveTerms terms_of(const geom::MoveSettings &settings, const MoveSource &source) {
+    const bool isWaiting = source.isHolding && !settings.isRapid;
+    return {settings, true, isWaiting, source.tag};
+}
+
+motion::PathBody path_body(const interp::LineMove &line, const MoveSource &source) {
+    return motion::Line{line.end, terms_of(line.settings, source)};
+}
+
+motion::PathBody path_body(const interp::ArcMove &arc, const MoveSource &source) {
+    return motion::Arc{arc.end,
+                       arc.centre,
+                       arc.normal,
+                       arc.angle_rad,
+                       geom::norm_uvw(arc.normal) > 0,
+                       terms_of(arc.settings, source)};
+}
+
+motion::PathBody path_body(const interp::ProbeMove &probe, const MoveSource &source) {
+    using interp::ProbeKind;
+    const bool isAway = probe.kind == ProbeKind::AWAY || probe.kind == ProbeKind::AWAY_ERROR;
+    const bool mustTrip = probe.kind == ProbeKind::TOWARD_ERROR || probe.kind == ProbeKind::AWAY_ERROR;
+    return motion::Probe{probe.end, isAway, mustTrip, terms_of(probe.settings, source)};
+}
+
+motion::PathBody path_body(const interp::TapMove &tap, const MoveSource &source) {
+    return motion::RigidTap{tap.end, tap.scale, terms_of(tap.settings, source)};
+}
+
+/// Whether the visitor is done with the call; one that answers nothing always is.
+template <class Visitor>
+bool carry_out(const Visitor &visitor, const interp::MachineCall &item) {
+    return std::visit(
+        [&](const AlternativeOf<interp::MachineCall> auto &call) {
+            if constexpr (std::is_same_v<decltype(visitor(call)), bool>) {
+                return visitor(call);
+            } else {
+                visitor(call);
+                return true;
+            }
+        },
+        item);
+}
+
+}  // namespace
+
+Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, ToolStore &tools,
+                     SequencerEvents events, SequencerSettings settings)
+    : queue_(queue), motion_(motion), io_(io), tools_(tools), events_(std::move(events)),
+      settings_(settings) {}
+
+Sequencer::Need Sequencer::need_of(const interp::MachineCall &call) {
+    return std::visit(
+        Overloaded{
+            [](const OneOf<interp::LineMove, interp::ArcMove, interp::SetSpindleMode, interp::SelectTool,
+                           interp::OperatorMessage, interp::PrintLine, interp::OpenLog, interp::LogLine,
+                           interp::CloseLog, interp::LogProbes, interp::CanonError, interp::ProgramComment,
+                           interp::PalletShuttle> auto &) { return Need::NOTHING; },
+            [](const OneOf<interp::SetDigitalOutput, interp::SetAnalogOutput> auto &output) {
+                return output.isSynched ? Need::NOTHING : Need::MOTION;
+            },
+            [](const OneOf<interp::ProbeMove, interp::TapMove, interp::Dwell, interp::UseToolOffset,
+                           interp::UseOffsets, interp::UsePlanner, interp::UseSpindleSpeed,
+                           interp::StartSpindle, interp::StopSpindle, interp::OrientSpindle,
+                           interp::WaitOrientComplete, interp::SetToolTableEntry, interp::ReloadTools,
+                           interp::SwitchMist, interp::SwitchFlood, interp::SwitchFeedOverride,
+                           interp::SwitchSpeedOverride, interp::SwitchFeedHold, interp::SwitchAdaptiveFeed,
+                           interp::WaitInput, interp::UserCode> auto &) { return Need::MOTION; },
+            [](const OneOf<interp::ChangeTool, interp::ChangeToolNumber, interp::ProgramStop,
+                           interp::ProgramEnd, interp::Finish> auto &) { return Need::MOTION_AND_IO; },
+        },
+        call);
+}
+
+void Sequencer::step(std::int64_t now_ns) {
+    isHeld_ = false;
+    for (int i = 0; i < ITEMS_PER_CYCLE && !isHeld_; ++i) {
+        if (hasFailed_ || !isWaitOver(now_ns) || isStepDone_) {
+            return;
+        }
+        if (queue_.empty()) {
+            motion_.flush();
+            isStepDone_ = isStepping_ && isIdle();
+            return;
+        }
+        const Item &item = queue_.front();
+        if (isStepBoundary(item) || !isReady(item) || !execute(item, now_ns)) {
+            return;
+        }
+        if (!queue_.empty()) {
+            queue_.pop_front();
+        }
+    }
+}
+
+void Sequencer::fail_item(const std::string &text) {
+    hasFailed_ = true;
+    events_.fail(text);
+}
+
+void Sequencer::check(const Result<> &result) {
+    if (!result.has_value()) {
+        fail_item(result.error().str());
+    }
+}
+
+bool Sequencer::isStepBoundary(const Item &item) {
+    if (!isStepping_) {
+        return false;
+    }
+    if (step_block_ == 0) {
+        step_block_ = item.source.block;
+    }
+    if (item.source.block == step_block_) {
+        return false;
+    }
+    motion_.flush();
+    isStepDone_ = motion_.isPathComplete() && io_.action() == io::ToolAction::IDLE;
+    return true;
+}
+
+void Sequencer::start_step() {
+    isStepping_ = true;
+    isStepDone_ = false;
+    step_block_ = 0;
+}
+
+bool Sequencer::isReady(const Item &item) {
+    const Need need = need_of(item.call);
+    if (need == Need::NOTHING) {
+        return true;
+    }
+    motion_.flush();
+    const bool isIoIdle = io_.action() == io::ToolAction::IDLE;
+    return motion_.isPathComplete() && (need == Need::MOTION || isIoIdle);
+}
+
+bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
+    const auto set_switch = [this](motion::Switch what, int spindle, bool isOn) {
+        motion_.send(motion::SetSwitch{what, spindle, isOn});
+    };
+    const MoveSource source{item.source, spindles_.isNextCutWaiting()};
+    // A handler that answers false is asked again next cycle.
+    const auto visitor = Overloaded{
+        [&](const OneOf<interp::LineMove, interp::ArcMove, interp::TapMove> auto &move) {
+            return push_move(path_body(move, source), move.settings, item);
+        },
+        [&](const interp::ProbeMove &move) {
+            isProbeMade_ = push_move(path_body(move, source), move.settings, item);
+            return isProbeMade_;
+        },
+        [&](const OneOf<interp::SetDigitalOutput, interp::SetAnalogOutput> auto &output) {
+            return push_output(output);
+        },
+        [&](const interp::UsePlanner &planner) { return begin(planner); },
+        [&](const OneOf<interp::Dwell, interp::WaitInput, interp::WaitOrientComplete> auto &wait) {
+            perform(wait, now_ns);
+        },
+        [&](const OneOf<interp::UserCode, interp::UseToolOffset, interp::ChangeTool> auto &call) {
+            perform(call);
+        },
+        [&](const interp::ProgramStop &stop) { isHeld_ = events_.stop(stop, item.source.line); },
+        [&](const OneOf<interp::ProgramEnd, interp::Finish> auto &) {
+            log_.close();
+            probe_log_.close();
+            events_.end();
+        },
+        [&](const interp::OperatorMessage &call) {
+            events_.message(MessageKind::OPERATOR_DISPLAY, call.text);
+        },
+        [&](const interp::CanonError &call) { events_.message(MessageKind::OPERATOR_ERROR, call.text); },
+        [&](const interp::PrintLine &call) { events_.print(call.text); },
+        [&](const interp::OpenLog &call) { check(log_.open(call.path, call.isAppending)); },
+        [&](const interp::LogLine &call) { check(log_.write(call.text)); },
+        [&](const interp::CloseLog &) { log_.close(); },
+        [&](const interp::LogProbes &call) {
+            call.path.empty() ? probe_log_.close() : check(probe_log_.open(call.path, false));
+        },
+        [&](const interp::UseOffsets &offsets) {
+            spindles_.use(offsets, motion_);
+            events_.offsets(offsets);
+        },
+        [&](const interp::ReloadTools &) { check(tools_.reload()); },
+        [&](const interp::SelectTool &call) { check(tool_change_.select(call, tools_, io_)); },
+        [&](const interp::ChangeToolNumber &call) { check(tool_change_.set_number(call, tools_, io_)); },
+        [&](const interp::SetToolTableEntry &call) { check(tools_.set_entry(call.index, call.entry)); },
+        [&](const interp::SetSpindleMode &call) { spindles_.set_mode(call); },
+        [&](const interp::UseSpindleSpeed &call) { spindles_.set_speed(call, motion_); },
+        [&](const interp::StartSpindle &call) { spindles_.start(call, motion_); },
+        [&](const interp::StopSpindle &call) { spindles_.stop(call, motion_); },
+        [&](const interp::OrientSpindle &call) {
+            orient_command_ = motion_.send(motion::SpindleOrient{call.spindle, call.angle_deg, call.mode});
+        },
+        [&](const interp::SwitchMist &call) { io_.set_mist(call.isOn); },
+        [&](const interp::SwitchFlood &call) { io_.set_flood(call.isOn); },
+        [&](const interp::SwitchFeedOverride &call) {
+            set_switch(motion::Switch::FEED_OVERRIDE, 0, call.isOn);
+        },
+        [&](const interp::SwitchSpeedOverride &call) {
+            set_switch(motion::Switch::SPINDLE_OVERRIDE, call.spindle, call.isOn);
+        },
+        [&](const interp::SwitchFeedHold &call) { set_switch(motion::Switch::FEED_HOLD, 0, call.isOn); },
+        [&](const interp::SwitchAdaptiveFeed &call) {
+            set_switch(motion::Switch::ADAPTIVE_FEED, 0, call.isOn);
+        },
+        [](const OneOf<interp::ProgramComment, interp::PalletShuttle> auto &) {},
+    };
+    return carry_out(visitor, item.call);
+}
+
+bool Sequencer::push_move(const motion::PathBody &move, const geom::MoveSettings &settings,
+                          const Item &item) {
+    if (!motion_.hasPathRoom() || !motion_.push_path(move, item.source)) {
+        return false;
+    }
+    if (move_listener_) {
+        move_listener_(motion_.last_path_id(), move);
+    }
+    if (!settings.isRapid) {
+        spindles_.end_wait();
+    }
+    return true;
+}
+
+bool Sequencer::push_output(const interp::SetDigitalOutput &output) {
+    if (output.isSynched) {
+        return motion_.push_path(motion::SynchedDigitalOutput{output.index, output.isOn});
+    }
+    motion_.send(motion::SetDigitalOutput{output.index, output.isOn});
+    return true;
+}
+
+bool Sequencer::push_output(const interp::SetAnalogOutput &output) {
+    if (output.isSynched) {
+        return motion_.push_path(motion::SynchedAnalogOutput{output.index, output.value});
+    }
+    motion_.send(motion::SetAnalogOutput{output.index, output.value});
+    return true;
+}
+
+void Sequencer::perform(const interp::Dwell &dwell, std::int64_t now_ns) {
+    wait_ = Wait::DWELL;
+    deadline_ns_ = now_ns + to_ns(dwell.seconds);
+}
+
+void Sequencer::perform(const interp::WaitInput &input, std::int64_t now_ns) {
+    awaited_input_ = input;
+    wait_ = Wait::INPUT;
+    deadline_ns_ = now_ns + to_ns(input.timeout_s);
+    last_input_ = std::nan("");
+    isInputTimedOut_ = false;
+}
+
+void Sequencer::perform(const interp::WaitOrientComplete &orient, std::int64_t now_ns) {
+    wait_ = Wait::ORIENT;
+    awaited_spindle_ = orient.spindle;
+    orient_timeout_s_ = orient.timeout_s;
+    deadline_ns_ = now_ns + to_ns(orient.timeout_s);
+    isOrientTold_ = false;
+}
+
+bool Sequencer::begin(const interp::UsePlanner &planner) {
+    const auto setting = events_.planner_mode(planner);
+    awaited_setting_ = setting.value_or(0);
+    wait_ = awaited_setting_ != 0 ? Wait::SETTING : Wait::NONE;
+    return setting.has_value();
+}
+
+void Sequencer::perform(const interp::UserCode &code) {
+    const auto started = events_.start_user_code(code);
+    check(started);
+    wait_ = started.has_value() ? Wait::USER_CODE : wait_;
+}
+
+void Sequencer::perform(const interp::UseToolOffset &offset) {
+    spindles_.use(offset, motion_);
+    // Done once motion has it, so that pins show it when G43 is over.
+    awaited_setting_ = events_.tool_offset(offset);
+    wait_ = Wait::SETTING;
+}
+
+void Sequencer::perform(const interp::ChangeTool &) {
+    if (!tool_change_.isSelected()) {
+        return;  // M6 without T since the last change: the tool in the spindle stays
+    }
+    if (!settings_.isToolChangeWithSpindleOn) {
+        stop_spindles();
+    }
+    tool_change_.start(io_);
+    wait_ = Wait::TOOL;
+}
+
+void Sequencer::abort() {
+    log_.close();
+    probe_log_.close();
+    queue_.clear();
+    wait_ = Wait::NONE;
+    tool_change_.abort();
+    spindles_.end_wait();
+    isStepping_ = false;
+    isStepDone_ = false;
+    hasFailed_ = false;
+    io_.abort();
+}
+
+bool Sequencer::isIdle() const {
+    return queue_.empty() && wait_ == Wait::NONE && motion_.isPathComplete() &&
+           io_.action() == io::ToolAction::IDLE;
+}
+
+}  // namespace mw::task

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Takes the ordered queue to the machine: motion and I/O each at the right time (requirement D2).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "base/result.hh"
+#include "io/controller.hh"
+#include "task/link/motion_link.hh"
+#include "task/link/tool_store.hh"
+#include "task/sequencer/items.hh"
+#include "task/sequencer/program_log.hh"
+#include "task/sequencer/program_spindles.hh"
+#include "task/sequencer/tool_change.hh"
+#include "task/status.hh"
+
+namespace mw::task {
+
+/// What the sequencer tells task that happened, in program order.
+struct SequencerEvents {
+    std::function<void(MessageKind, const std::string &)> message;
+    std::function<void(const std::string &)> print;
+    /// M0, M1, M60 are reached; true: the program is held there, nothing behind it may begin
+    std::function<bool(const interp::ProgramStop &, int line)> stop;
+    std::function<void()> end;                      ///< the program is over
+    std::function<void(const std::string &)> fail;  ///< something cannot be done; task aborts
+    std::function<void(const interp::UseOffsets &)> offsets;
+    std::function<motion::CommandId(const interp::UseToolOffset &)> tool_offset;
+    /// Changes the planner at rest; the command whose answer is to be awaited, 0: nothing to wait for;
+    /// nothing when it cannot be, and task aborts.
+    std::function<std::optional<motion::CommandId>(const interp::UsePlanner &)> planner_mode;
+    /// Starts a user M code; false when it cannot be started.
+    std::function<Result<>(const interp::UserCode &)> start_user_code;
+    /// Nothing while the program of a user M code runs, then how it ended.
+    std::function<std::optional<Result<>>()> user_code_result;
+};
+
+/// Is told of each move when it is handed to the planner.
+using MoveListener = std::function<void(motion::CommandId id, const motion::PathBody &move)>;
+
+struct SequencerSettings {
+    bool isToolChangeWithSpindleOn = false;  ///< [EMCIO]TOOL_CHANGE_WITH_SPINDLE_ON
+    int smooth_planner = 1;  ///< [TRAJ]SMOOTH_PLANNER: what G64 R above 0 means; 0: it is refused
+};
+
+/// One thread; step() once a task cycle, never blocks.
+class Sequencer {
+  public:
+    Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, ToolStore &tools,
+              SequencerEvents events, SequencerSettings settings);
+
+    /// Issues what may be issued now. `now_ns` is the clock of the scheduler.
+    void step(std::int64_t now_ns);
+    /// Drops everything that waits, also handshakes.
+    void abort();
+    /// Nothing queued, nothing waited for, motion complete, no handshake.
+    bool isIdle() const;
+    /// After the current block's items motion comes to rest and isStepDone() is true.
+    void start_step();
+    void end_step() { isStepping_ = false; }
+    bool isStepDone() const { return isStepDone_; }
+
+    void on_tool_event(io::ToolEvent event) { check(tool_change_.on_event(event, tools_, io_)); }
+    /// What is being waited for: a pin or a state.
+    Waiting waiting_for() const;
+
+    double input_value() const { return input_value_; }
+    bool isInputTimedOut() const { return isInputTimedOut_; }
+    /// Commanded spindle state, as programmed (unscaled).
+    double spindle_speed(int spindle) const { return spindles_.speed(spindle); }
+    int spindle_direction(int spindle) const { return spindles_.direction(spindle); }
+    /// Starts or stops a spindle at once (operator's command).
+    void command_spindle(int spindle, double signed_rpm, bool isWaiting) {
+        spindles_.command(spindle, signed_rpm, isWaiting, motion_);
+    }
+    void stop_spindles() { spindles_.stop_all(motion_); }
+    /// Whether a probe was made since the last call.
+    bool take_probe() { return std::exchange(isProbeMade_, false); }
+    /// A line for the file of (probeopen); without one nothing happens.
+    void log_probe(const std::string &line) { check(probe_log_.write(line)); }
+    const ToolChange &tool_change() const { return tool_change_; }
+    void set_move_listener(MoveListener listener) { move_listener_ = std::move(listener); }
+
+  private:
+    enum class Need : std::uint8_t { NOTHING, MOTION, MOTION_AND_IO };
+    enum class Wait : std::uint8_t { NONE, DWELL, INPUT, TOOL, ORIENT, USER_CODE, SETTING };
+    static Need need_of(const interp::MachineCall &call);
+    bool isWaitOver(std::int64_t now_ns);
+    bool isInputWaitOver(std::int64_t now_ns);
+    bool isOrientWaitOver(std::int64_t now_ns);
+    bool isReady(const Item &item);
+    bool isStepBoundary(const Item &item);
+    /// Tells the failure and begins nothing after it.
+    void fail_item(const std::string &text);
+    void check(const Result<> &result);
+    /// False when the item must be tried again next cycle.
+    bool execute(const Item &item, std::int64_t now_ns);
+    bool push_move(const motion::PathBody &move, const geom::MoveSettings &settings, const Item &item);
+    bool push_output(const interp::SetDigitalOutput &output);
+    bool push_output(const interp::SetAnalogOutput &output);
+    bool begin(const interp::UsePlanner &planner);
+    // What is done in no time; some of it is waited for afterwards.
+    void perform(const interp::Dwell &dwell, std::int64_t now_ns);
+    void perform(const interp::WaitInput &input, std::int64_t now_ns);
+    void perform(const interp::WaitOrientComplete &orient, std::int64_t now_ns);
+    void perform(const interp::UserCode &code);
+    void perform(const interp::UseToolOffset &offset);
+    void perform(const interp::ChangeTool &change);
+
+    ItemQueue &queue_;
+    MotionLink &motion_;
+    io::Controller &io_;
+    ToolStore &tools_;
+    SequencerEvents events_;
+    SequencerSettings settings_;
+    MoveListener move_listener_;
+
+    Wait wait_ = Wait::NONE;
+    std::int64_t deadline_ns_ = 0;  ///< of a dwell or a time limit; 0: none
+    interp::WaitInput awaited_input_{};
+    double input_value_ = 0, last_input_ = 0;
+    bool isInputTimedOut_ = false;
+    int awaited_spindle_ = 0;
+    motion::CommandId orient_command_ = 0;  ///< the last M19
+    bool isOrientTold_ = false;             ///< status is of a time after it
+    double orient_timeout_s_ = 0;
+    motion::CommandId awaited_setting_ = 0;
+    ToolChange tool_change_;
+    ProgramSpindles spindles_;
+    bool isStepping_ = false, isStepDone_ = false;
+    bool isHeld_ = false;     ///< by the stop that was executed last, for the rest of the cycle
+    bool hasFailed_ = false;  ///< nothing more is begun until abort()
+    std::uint32_t step_block_ = 0;
+    ProgramLog log_, probe_log_;  ///< of (log,...), of (probeopen ...)
+    bool isProbeMade_ = false;
+};
+
+}  // namespace mw::task

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Commands that were delivered and are not carried out yet.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "mailbox/desk.hh"
+
+namespace mw::task {
+
+/// In their order; while the mode changes only what stops, and what changes the machine's state, goes first.
+/// One thread.
+class Inbox {
+  public:
+    void add(std::vector<mailbox::Desk::Delivery> deliveries);
+    std::optional<mailbox::Desk::Delivery> next(bool isModeChanging);
+    /// Takes out what was asked for before the stop `stop` and still waits: it would begin after it. Lines
+    /// for the operator stay. The numbers of what was taken out.
+    std::vector<mailbox::Serial> drop_before(mailbox::Serial stop);
+
+  private:
+    std::deque<mailbox::Desk::Delivery> waiting_;
+};
+
+}  // namespace mw::task

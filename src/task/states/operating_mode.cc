@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "task/states/operating_mode.hh"
+
+namespace mw::task {
+
+void OperatingMode::begin(Mode mode, motion::Mode motion_mode, mailbox::Serial command,
+                          motion::CommandId order, std::int64_t now_ns) {
+    wanted_ = mode;
+    wanted_motion_mode_ = motion_mode;
+    request_.begin(command, now_ns + CHANGE_TIMEOUT_NS);
+    request_.set_order(order);
+}
+
+std::optional<Ending> OperatingMode::step(bool isAnswered, motion::Mode motion_mode, std::int64_t now_ns) {
+    if (isChanging() && isAnswered && motion_mode == wanted_motion_mode_) {
+        mode_ = wanted_;
+        return request_.end(Progress::DONE);
+    }
+    if (request_.isLate(now_ns)) {
+        return request_.end(Progress::FAILED, "the motion controller has not changed its mode");
+    }
+    return std::nullopt;
+}
+
+bool OutOfModeWatch::step(bool isOut, std::int64_t now_ns) {
+    constexpr std::int64_t LONGEST_NS = 1000000000;
+    since_ns_ = isOut ? std::optional(since_ns_.value_or(now_ns)) : std::nullopt;
+    return isOut && now_ns - *since_ns_ > LONGEST_NS;
+}
+
+}  // namespace mw::task

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Manual, auto or MDI: changed together with motion's mode.
+#pragma once
+
+#include "motion/api/status.hh"
+#include "task/states/request.hh"
+
+namespace mw::task {
+
+/// A change is done when motion has made it. One thread.
+class OperatingMode {
+  public:
+    /// `motion_mode` was ordered by `order`; an earlier change must have ended.
+    void begin(Mode mode, motion::Mode motion_mode, mailbox::Serial command, motion::CommandId order,
+               std::int64_t now_ns);
+    bool isChanging() const { return request_.isUnderWay(); }
+    motion::CommandId order() const { return request_.order(); }
+    /// Once a cycle. `isAnswered`: motion has answered the order.
+    std::optional<Ending> step(bool isAnswered, motion::Mode motion_mode, std::int64_t now_ns);
+    std::optional<Ending> refuse(motion::CommandId order, const std::string &reason) {
+        return request_.refuse(order, reason);
+    }
+    std::optional<Ending> give_up(const std::string &reason) {
+        return request_.end(Progress::FAILED, reason);
+    }
+    Mode mode() const { return mode_; }
+
+  private:
+    Mode mode_ = Mode::MANUAL, wanted_ = Mode::MANUAL;
+    motion::Mode wanted_motion_mode_ = motion::Mode::FREE;
+    Request request_;
+};
+
+/// A run goes on in coordinated mode only. One thread.
+class OutOfModeWatch {
+  public:
+    /// Once a cycle; true: motion has been out of that mode for too long.
+    bool step(bool isOut, std::int64_t now_ns);
+
+  private:
+    std::optional<std::int64_t> since_ns_;
+};
+
+}  // namespace mw::task

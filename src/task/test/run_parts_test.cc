@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The parts of a run, each alone: the run, the reader, what is done after an abort, what programs see.
+#include <gtest/gtest.h>
+
+#include "interp/test/mill.hh"
+#include "task/run/machine_world.hh"
+#include "task/run/on_abort.hh"
+#include "task/run/program_run.hh"
+#include "task/test/tools.hh"
+
+namespace mw::task {
+namespace {
+
+TEST(ProgramRun, EndsItsCommandAndKeepsTheErrorUntilTheNextStart_D1) {
+    ProgramRun run;
+    ASSERT_EQ(run.start(RunKind::MDI, 3, "G0 X1"), Progress::STARTED);
+    EXPECT_EQ(run.line(), "G0 X1");
+    EXPECT_FALSE(run.isProgram());
+    EXPECT_EQ(run.start(RunKind::PROGRAM, 4).error().message, "a program or MDI line runs already");
+    EXPECT_EQ(run.kind(), RunKind::MDI) << "the refused one changes nothing";
+    run.set_error({diag::Severity::ERROR, {"beyond a limit"}});
+    const auto ended = run.end(Progress::FAILED, "beyond a limit");
+    ASSERT_TRUE(ended.has_value());
+    EXPECT_EQ(ended->command, 3U);
+    EXPECT_FALSE(run.isRunning());
+    EXPECT_FALSE(run.end(Progress::DONE, "").has_value());
+    ASSERT_NE(run.error(), nullptr);
+    ASSERT_EQ(run.start(RunKind::PROGRAM, 5), Progress::STARTED);
+    EXPECT_EQ(run.error(), nullptr);
+    EXPECT_TRUE(run.isProgram());
+}
+
+TEST(ProgramRun, TheFirstFailureCounts_D1) {
+    ProgramRun run;
+    EXPECT_FALSE(run.take_failure().has_value());
+    run.note_failure("the first");
+    run.note_failure("what follows from it");
+    EXPECT_EQ(run.take_failure(), "the first");
+    EXPECT_FALSE(run.take_failure().has_value());
+    run.note_failure("of work that was aborted");
+    run.forget_failure();
+    EXPECT_FALSE(run.take_failure().has_value());
+}
+
+TEST(ProgramRun, IsShownAsIdleReadingWaitingOrPaused_D1) {
+    ProgramRun run;
+    EXPECT_EQ(run.shown(), InterpState::IDLE);
+    ASSERT_TRUE(run.start(RunKind::PROGRAM, 1).has_value());
+    run.change(RunEvent::BEGUN);
+    EXPECT_EQ(run.shown(), InterpState::READING);
+    ASSERT_TRUE(run.take(RunEvent::PAUSE).has_value());
+    EXPECT_EQ(run.shown(), InterpState::PAUSED);
+    ASSERT_TRUE(run.take(RunEvent::RESUME).has_value());
+    run.change(RunEvent::READ);
+    EXPECT_EQ(run.shown(), InterpState::WAITING);
+}
+
+/// A reader on a mill in memory.
+class ReaderTest : public testing::Test {
+  protected:
+    ReaderTest() {
+        EXPECT_TRUE(reader.load().has_value());
+        reader.synch({});
+        EXPECT_TRUE(reader.interpreter().begin().has_value());
+        reader.queue().clear();
+    }
+    template <class Call>
+    int count() {
+        return static_cast<int>(
+            std::count_if(reader.queue().begin(), reader.queue().end(),
+                          [](const Item &item) { return std::holds_alternative<Call>(item.call); }));
+    }
+    interp::test::Mill mill;
+    ProgramReader reader{{mill, mill, mill}, {}};
+};
+
+TEST_F(ReaderTest, WritesWhatALineAsksForIntoItsQueueInOrder_D2) {
+    EXPECT_EQ(reader.interpreter().execute("G21 F600 G1 X3 M3 S100"), interp::Step::FILE_END);
+    EXPECT_EQ(count<interp::LineMove>(), 1);
+    EXPECT_EQ(count<interp::StartSpindle>(), 1);
+    const auto &items = reader.queue();
+    EXPECT_TRUE(std::holds_alternative<interp::LineMove>(items.back().call)) << "M3 before the move";
+    EXPECT_EQ(std::get<interp::LineMove>(items.back().call).end.x(), 3);
+    EXPECT_EQ(items.back().source.block, reader.canon().blocks());
+}
+
+TEST_F(ReaderTest, BeginsWhereTheMachineStands_D2) {
+    mill.state.position = geom::Pose{};
+    mill.state.position[geom::AXIS_Y] = 7;
+    reader.synch(mill.state.position);
+    EXPECT_EQ(reader.interpreter().execute("G21 G0 X1"), interp::Step::FILE_END);
+    ASSERT_EQ(count<interp::LineMove>(), 1);
+    EXPECT_EQ(std::get<interp::LineMove>(reader.queue().back().call).end.y(), 7);
+}
+
+TEST_F(ReaderTest, WhatWasDroppedIsAnnouncedAgain_D2) {
+    EXPECT_EQ(reader.interpreter().execute("G10 L2 P1 X5"), interp::Step::FILE_END);
+    reader.queue().clear();
+    reader.drop();
+    ASSERT_GE(count<interp::UseOffsets>(), 1);
+    EXPECT_EQ(count<interp::LineMove>(), 0);
+    for (const Item &item : reader.queue()) {
+        if (const auto *offsets = std::get_if<interp::UseOffsets>(&item.call)) {
+            EXPECT_EQ(offsets->g5x.x(), 5);
+        }
+    }
+}
+
+TEST_F(ReaderTest, AProbeThatHasNotTrippedHasNoLine_I1) {
+    EXPECT_EQ(reader.probe_line(), "");
+}
+
+TEST_F(ReaderTest, TheOnAbortCommandIsReadAtOnceWithTheReasonAsItsArgument_D1) {
+    const OnAbort none(""), digital("M65 P0");
+    EXPECT_FALSE(none.isAsked());
+    EXPECT_TRUE(digital.isAsked());
+    // Without a program of its own the reason stands where no word may be: it is told, nothing is queued.
+    const auto read = digital.read(reader, AbortReason::ABORT);
+    ASSERT_FALSE(read.has_value());
+    EXPECT_EQ(count<interp::LineMove>(), 0);
+    EXPECT_EQ(digital.told("why").substr(0, 44), "[RS274NGC]ON_ABORT_COMMAND = M65 P0: why");
+}
+
+TEST(OnAbort, RemembersWhetherAnythingHasRunSince_D1) {
+    OnAbort on_abort("O<tidy> call");
+    EXPECT_FALSE(on_abort.isCleanedUp());
+    on_abort.note_abort();
+    EXPECT_TRUE(on_abort.isCleanedUp());
+    on_abort.note_work();
+    EXPECT_FALSE(on_abort.isCleanedUp());
+}
+
+TEST(OnAbort, NothingThatMovesStartsOrWaitsIsAllowed_D1) {
+    EXPECT_TRUE(isForbiddenAfterAbort(interp::LineMove{}));
+    EXPECT_TRUE(isForbiddenAfterAbort(interp::StartSpindle{}));
+    EXPECT_TRUE(isForbiddenAfterAbort(interp::SwitchMist{true}));
+    EXPECT_TRUE(isForbiddenAfterAbort(interp::WaitInput{}));
+    EXPECT_FALSE(isForbiddenAfterAbort(interp::SwitchMist{false}));
+    EXPECT_FALSE(isForbiddenAfterAbort(interp::StopSpindle{}));
+    EXPECT_FALSE(isForbiddenAfterAbort(interp::SetDigitalOutput{}));
+}
+
+TEST(MachineWorld, ShowsWhatItWasShown_D2) {
+    MachineWorld world({interp::LengthUnits::INCH, 5, 2});
+    EXPECT_EQ(world.machine_units(), interp::LengthUnits::INCH);
+    EXPECT_EQ(world.axis_mask(), 5U);
+    EXPECT_EQ(world.count_spindles(), 2);
+    EXPECT_TRUE(world.isOptionalStopOn());
+    world.set_optional_stop(false);
+    world.set_block_delete(false);
+    EXPECT_FALSE(world.isOptionalStopOn());
+    EXPECT_FALSE(world.isBlockDeleteOn());
+    interp::MachineSnapshot seen;
+    seen.tool_in_spindle = 9;
+    world.show(seen);
+    EXPECT_EQ(world.snapshot().tool_in_spindle, 9);
+}
+
+}  // namespace
+}  // namespace mw::task

@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The parts of the sequencer, each alone.
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <numbers>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "task/link/shown_tools.hh"
+#include "task/sequencer/planner_mode.hh"
+#include "task/sequencer/program_log.hh"
+#include "task/sequencer/program_spindles.hh"
+#include "task/sequencer/tool_change.hh"
+#include "task/sequencer/user_program.hh"
+#include "task/test/tools.hh"
+
+namespace mw::task {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of this test, gone with it.
+class Folder {
+  public:
+    Folder() : path_(fs::temp_directory_path() / ("mw_parts_" + std::to_string(::getpid()))) {
+        fs::create_directory(path_);
+    }
+    ~Folder() { fs::remove_all(path_); }
+    Folder(const Folder &) = delete;
+    Folder &operator=(const Folder &) = delete;
+    std::string operator/(const std::string &name) const { return (path_ / name).string(); }
+    std::string program(const std::string &name, const std::string &script) const {
+        const fs::path path = path_ / name;
+        std::ofstream(path) << "#!/bin/sh\n" << script;
+        fs::permissions(path, fs::perms::owner_all);
+        return path.string();
+    }
+
+  private:
+    fs::path path_;
+};
+
+std::string text_of(const std::string &path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+}
+
+class ProgramSpindlesTest : public testing::Test {
+  protected:
+    /// The commands that motion has got since the last call.
+    std::vector<motion::CommandBody> sent() {
+        std::vector<motion::CommandBody> all;
+        motion::Command command;
+        while (channels->immediate.pop(command)) {
+            all.push_back(command.body);
+        }
+        return all;
+    }
+    motion::SpindleOn one_on() {
+        const auto all = sent();
+        EXPECT_EQ(all.size(), 1U);
+        const auto *on = all.size() == 1 ? std::get_if<motion::SpindleOn>(&all[0]) : nullptr;
+        EXPECT_NE(on, nullptr);
+        return on != nullptr ? *on : motion::SpindleOn{};
+    }
+
+    std::unique_ptr<motion::Channels> channels = std::make_unique<motion::Channels>();
+    MotionLink link{*channels};
+    ProgramSpindles spindles;
+};
+
+TEST_F(ProgramSpindlesTest, StartWithTheSpeedThatWasSetAndFollowANewOne_D2) {
+    spindles.set_speed({0, 1000, 0}, link);
+    EXPECT_TRUE(sent().empty()) << "S alone turns nothing";
+    spindles.start({0, false, true}, link);
+    const motion::SpindleOn on = one_on();
+    EXPECT_EQ(on.speed_rpm, -1000);
+    EXPECT_TRUE(on.isWaitingForSpeed);
+    EXPECT_TRUE(spindles.isNextCutWaiting());
+    EXPECT_EQ(spindles.direction(0), -1);
+    spindles.set_speed({0, 1000, 0}, link);
+    EXPECT_TRUE(sent().empty()) << "the same speed again";
+    spindles.set_speed({0, 1500, 0}, link);
+    EXPECT_EQ(one_on().speed_rpm, -1500);
+    spindles.end_wait();
+    EXPECT_FALSE(spindles.isNextCutWaiting());
+    spindles.stop({0}, link);
+    ASSERT_EQ(sent().size(), 1U);
+    spindles.set_speed({0, 700, 0}, link);
+    EXPECT_TRUE(sent().empty()) << "it stands";
+    EXPECT_EQ(spindles.speed(0), 700);
+}
+
+TEST_F(ProgramSpindlesTest, WithConstantSurfaceSpeedFollowTheirCentreLine_D2) {
+    constexpr double EXACT = 1e-9;
+    spindles.set_mode({0, 3000});
+    spindles.set_speed({0, 200, 1000}, link);
+    spindles.start({0, true, true}, link);
+    const motion::SpindleOn on = one_on();
+    EXPECT_EQ(on.css_max_rpm, 3000);
+    EXPECT_EQ(on.speed_rpm, 3000) << "at the centre line";
+    EXPECT_NEAR(on.css_factor, 200 * 1000 / (2 * std::numbers::pi), EXACT);
+    EXPECT_EQ(on.css_x_offset, 0);
+    interp::UseOffsets offsets;
+    offsets.g5x[geom::AXIS_X] = 40;
+    spindles.use(offsets, link);
+    EXPECT_NEAR(one_on().css_x_offset, 40, EXACT);
+    interp::UseToolOffset tool;
+    tool.offset[geom::AXIS_X] = 2.5;
+    spindles.use(tool, link);
+    EXPECT_NEAR(one_on().css_x_offset, 42.5, EXACT);
+    spindles.use(tool, link);
+    EXPECT_TRUE(sent().empty()) << "nothing has moved";
+}
+
+TEST_F(ProgramSpindlesTest, TheOperatorsSpeedIsAtOnceAndZeroStops_D2) {
+    spindles.command(1, -800, false, link);
+    const motion::SpindleOn on = one_on();
+    EXPECT_EQ(on.spindle, 1);
+    EXPECT_EQ(on.speed_rpm, -800);
+    EXPECT_FALSE(spindles.isNextCutWaiting());
+    spindles.command(1, 0, false, link);
+    const auto off = sent();
+    ASSERT_EQ(off.size(), 1U);
+    EXPECT_TRUE(std::holds_alternative<motion::SpindleOff>(off[0]));
+    EXPECT_EQ(spindles.speed(1), 800) << "M3 without S takes it up again";
+}
+
+class ToolChangeTest : public testing::Test {
+  protected:
+    /// The changer answers what it is asked until it is idle; what it has told on the way.
+    Result<> work() {
+        Result<> result;
+        for (int i = 0; i < 10 && result.has_value() && io.action() != io::ToolAction::IDLE; ++i) {
+            io::Inputs in;
+            in.tool_prepared = io.outputs.tool_prepare;
+            in.tool_changed = io.outputs.tool_change;
+            in.toolchanger_fault = isFaulted;
+            in.toolchanger_reason = 17;
+            result = change.on_event(io.step(in), tools, io);
+        }
+        return result;
+    }
+    test::OneTool tools;
+    io::Controller io;
+    ToolChange change;
+    bool isFaulted = false;
+};
+
+TEST_F(ToolChangeTest, PreparesThenBringsTheToolIntoTheSpindle_G4) {
+    ASSERT_TRUE(change.select({5}, tools, io).has_value());
+    EXPECT_EQ(io.outputs.tool_prep_pocket, 3);
+    EXPECT_EQ(change.selected_index(), 1);
+    ASSERT_TRUE(work().has_value());
+    EXPECT_EQ(tools.in_spindle, 0) << "only made ready";
+    change.start(io);
+    ASSERT_TRUE(work().has_value());
+    EXPECT_EQ(tools.in_spindle, 5);
+    EXPECT_EQ(io.outputs.tool_number, 5);
+    EXPECT_EQ(io.outputs.tool_from_pocket, 3);
+    EXPECT_FALSE(change.isSelected());
+}
+
+TEST_F(ToolChangeTest, AToolThatIsNotInTheTableIsRefused_G4) {
+    const auto selected = change.select({9}, tools, io);
+    ASSERT_FALSE(selected.has_value());
+    EXPECT_EQ(selected.error().message, "tool 9 is not in the tool table");
+    EXPECT_EQ(io.action(), io::ToolAction::IDLE);
+    EXPECT_FALSE(change.isSelected());
+}
+
+TEST_F(ToolChangeTest, AFaultOfTheChangerIsToldWithItsReasonUntilItWorksAgain_G4) {
+    ASSERT_TRUE(change.select({5}, tools, io).has_value());
+    ASSERT_TRUE(work().has_value());
+    isFaulted = true;
+    change.start(io);
+    const auto failed = work();
+    ASSERT_FALSE(failed.has_value());
+    EXPECT_NE(failed.error().message.find("toolchanger-reason 17"), std::string::npos);
+    EXPECT_EQ(change.fault_reason(), 17);
+    EXPECT_EQ(tools.in_spindle, 0);
+    change.abort();
+    io.abort();
+    isFaulted = false;
+    EXPECT_EQ(change.fault_reason(), 17) << "an abort does not mend the changer";
+    ASSERT_TRUE(change.select({5}, tools, io).has_value());
+    ASSERT_TRUE(work().has_value());
+    EXPECT_FALSE(change.fault_reason().has_value());
+}
+
+TEST_F(ToolChangeTest, M61NamesTheToolWithoutAChange_G4) {
+    ASSERT_TRUE(change.set_number({5}, tools, io).has_value());
+    EXPECT_EQ(tools.in_spindle, 5);
+    EXPECT_EQ(io.outputs.tool_number, 5);
+    EXPECT_EQ(io.action(), io::ToolAction::IDLE);
+    ASSERT_TRUE(change.set_number({0}, tools, io).has_value());
+    EXPECT_EQ(tools.in_spindle, 0);
+}
+
+TEST(ProgramLog, EachLineIsInTheFileAtOnceAndAppendingKeepsWhatIsThere_I1) {
+    const Folder folder;
+    ProgramLog log;
+    EXPECT_TRUE(log.write("nowhere").has_value()) << "none is open";
+    ASSERT_TRUE(log.open(folder / "log", false).has_value());
+    ASSERT_TRUE(log.write("one").has_value());
+    EXPECT_EQ(text_of(folder / "log"), "one\n");
+    log.close();
+    ASSERT_TRUE(log.write("lost").has_value());
+    ASSERT_TRUE(log.open(folder / "log", true).has_value());
+    ASSERT_TRUE(log.write("two").has_value());
+    EXPECT_EQ(text_of(folder / "log"), "one\ntwo\n");
+    ASSERT_TRUE(log.open(folder / "log", false).has_value());
+    EXPECT_EQ(text_of(folder / "log"), "");
+    const auto bad = log.open(folder / "no/such/folder", false);
+    ASSERT_FALSE(bad.has_value());
+    EXPECT_NE(bad.error().message.find("cannot write"), std::string::npos);
+}
+
+TEST(ProgramLog, AFullDiskIsToldOnce_I1) {
+    ProgramLog log;
+    ASSERT_TRUE(log.open("/dev/full", false).has_value());
+    EXPECT_FALSE(log.write("x").has_value());
+    EXPECT_TRUE(log.write("y").has_value());
+}
+
+TEST(UserProgram, TellsHowItEnded_I1) {
+    const Folder folder;
+    UserProgram program(true);
+    ASSERT_TRUE(program.start(folder.program("good", "echo \"$1 $2\" > \"${0%/*}/said\"\n"), 2.5, -1));
+    EXPECT_FALSE(program.isRunning());
+    EXPECT_TRUE(program.take_result().has_value());
+    EXPECT_EQ(text_of(folder / "said"), "2.500000 -1.000000\n");
+    ASSERT_TRUE(program.start(folder.program("bad", "exit 3\n"), -1, -1));
+    EXPECT_FALSE(program.isRunning());
+    EXPECT_NE(program.take_result().error().message.find("ended with status 3"), std::string::npos);
+    EXPECT_TRUE(program.take_result().has_value()) << "once";
+    ASSERT_TRUE(program.start(folder.program("shot", "kill -9 $$\n"), -1, -1));
+    EXPECT_FALSE(program.isRunning());
+    EXPECT_NE(program.take_result().error().message.find("ended by signal 9"), std::string::npos);
+}
+
+TEST(UserProgram, IsEndedWithAllThatItStarted_I1) {
+    const Folder folder;
+    const std::string path = folder.program("long", "sleep 1000 & sleep 1000\n");
+    UserProgram program(false);
+    ASSERT_TRUE(program.start(path, 1, 2).has_value());
+    EXPECT_TRUE(program.isRunning());
+    program.stop();
+    EXPECT_FALSE(program.isRunning());
+    EXPECT_FALSE(program.start(folder / "none", 1, 2).has_value());
+}
+
+class PlannerModeTest : public testing::Test {
+  protected:
+    static motion::SetParameter parameter(motion::Parameter which, double value) {
+        return {static_cast<std::uint16_t>(which), 0, value};
+    }
+    std::vector<double> sent;
+    std::vector<std::string> posted;
+    PlannerMode mode{{[this](const motion::SetParameter &p) {
+                          sent.push_back(p.value);
+                          return motion::CommandId{40 + sent.size()};
+                      },
+                      [this](MessageKind, const std::string &text) { posted.push_back(text); }}};
+};
+
+TEST_F(PlannerModeTest, AProgramChangesItAtRestAndTheSameTypeChangesNothing) {
+    mode.configure({parameter(motion::Parameter::TRAJ_MAX_JERK, 1e5)});
+    EXPECT_EQ(mode.set(0), 0U);
+    EXPECT_EQ(mode.set(1), 41U);
+    EXPECT_EQ(mode.type(), 1);
+    EXPECT_EQ(mode.set(1), 0U);
+    EXPECT_EQ(sent, std::vector<double>{1});
+    EXPECT_TRUE(posted.empty());
+}
+
+TEST_F(PlannerModeTest, AWishWaitsUntilAllIsIdleAndIsToldOnce) {
+    mode.configure({parameter(motion::Parameter::TRAJ_MAX_JERK, 1e5)});
+    mode.wish(1);
+    mode.step(false);
+    mode.step(false);
+    EXPECT_TRUE(sent.empty());
+    EXPECT_EQ(posted.size(), 1U);
+    mode.step(true);
+    EXPECT_EQ(sent, std::vector<double>{1});
+    mode.wish(7);
+    mode.step(true);
+    EXPECT_EQ(mode.type(), 1);
+    EXPECT_NE(posted.back().find("0 (trapezoidal) or 1 (jerk-limited) expected"), std::string::npos);
+}
+
+TEST_F(PlannerModeTest, SaysThatTheJerkLimitedPlannerNeedsLimits) {
+    mode.configure({parameter(motion::Parameter::TRAJ_PLANNER_TYPE, 1)});
+    mode.announce();
+    ASSERT_EQ(posted.size(), 1U);
+    EXPECT_NE(posted[0].find("MAX_LINEAR_JERK"), std::string::npos);
+}
+
+TEST_F(PlannerModeTest, TheCornerScaleStaysWithinItsRange) {
+    mode.set_corner_scale(0.01);
+    mode.set_corner_scale(7);
+    mode.set_corner_scale(std::nan(""));
+    EXPECT_EQ(sent, (std::vector<double>{0.1, 1}));
+    EXPECT_EQ(mode.corner_scale(), 1);
+}
+
+TEST(ShownTools, GiveTheTableAgainAfterEachChange_G4) {
+    test::OneTool tools;
+    ShownTools shown;
+    const auto table = shown.step(tools);
+    ASSERT_TRUE(table.has_value());
+    EXPECT_EQ(table->version, 1U);
+    ASSERT_EQ(table->tools.size(), 2U);
+    EXPECT_EQ(table->tools[1].toolno, 5);
+    EXPECT_EQ(table->tools[1].pocketno, 3);
+    EXPECT_FALSE(shown.step(tools).has_value());
+    tools.version_now = 2;
+    EXPECT_TRUE(shown.step(tools).has_value());
+    EXPECT_EQ(shown.version(), 2U);
+}
+
+}  // namespace
+}  // namespace mw::task

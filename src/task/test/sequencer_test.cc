@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The sequencer alone: a queue before it, motion's channels and the I/O controller behind it.
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "task/sequencer/sequencer.hh"
+#include "task/test/tools.hh"
+
+namespace mw::task {
+namespace {
+
+constexpr std::int64_t MS = 1000000, S = 1000 * MS;
+
+class SequencerTest : public testing::Test {
+  protected:
+    void add(const interp::MachineCall &call, std::uint32_t block = 1) {
+        motion::SourceTag tag{};
+        tag.line = static_cast<int>(block);
+        tag.block = block;
+        queue.push_back({tag, call});
+    }
+    void add_line(double x, std::uint32_t block = 1) {
+        interp::LineMove line;
+        line.end[geom::AXIS_X] = x;
+        add(line, block);
+    }
+    /// A task cycle. Motion answers what it was handed, moves only when it may.
+    void cycle(bool isMoving = true) {
+        now_ns += MS;
+        motion::Command command;
+        while (channels->immediate.pop(command)) {
+            told.emplace_back(command.body);
+            status.last_immediate_id = command.id;
+            channels->servo_answers.push({command.id});
+        }
+        motion::PathCommand move;
+        while (isMoving && channels->path.pop(move)) {
+            moves += std::holds_alternative<motion::Line>(move.body) ? 1 : 0;
+            motion::Answer answer{move.id, motion::AnswerKind::DONE};
+            answer.isPath = true;
+            channels->planner_answers.push(answer);
+        }
+        ++status.cycle;
+        channels->status.write(status);
+        link.update();
+        sequencer.step(now_ns);
+    }
+    void cycles(int n) {
+        for (int i = 0; i < n; ++i) {
+            cycle();
+        }
+    }
+    template <class Body>
+    int count() const {
+        return static_cast<int>(std::count_if(
+            told.begin(), told.end(), [](const auto &body) { return std::holds_alternative<Body>(body); }));
+    }
+    SequencerEvents events() {
+        SequencerEvents e;
+        e.message = [this](MessageKind, const std::string &text) { texts.push_back(text); };
+        e.print = [this](const std::string &text) { texts.push_back(text); };
+        e.stop = [this](const interp::ProgramStop &, int line) {
+            stop_line = line;
+            return isStopping;
+        };
+        e.end = [this] { ++ends; };
+        e.fail = [this](const std::string &text) { failures.push_back(text); };
+        e.offsets = [](const interp::UseOffsets &) {};
+        e.tool_offset = [this](const interp::UseToolOffset &item) {
+            return link.send(motion::SetToolOffset{item.offset});
+        };
+        e.planner_mode = [](const interp::UsePlanner &) -> std::optional<motion::CommandId> { return 0; };
+        e.start_user_code = [this](const interp::UserCode &) -> Result<> {
+            user_code = std::nullopt;
+            return {};
+        };
+        e.user_code_result = [this] { return user_code; };
+        return e;
+    }
+
+    std::unique_ptr<motion::Channels> channels = std::make_unique<motion::Channels>();
+    motion::Status status{};
+    MotionLink link{*channels};
+    ItemQueue queue;
+    io::Controller io;
+    test::OneTool tools;
+    Sequencer sequencer{queue, link, io, tools, events(), {}};
+    std::vector<motion::CommandBody> told;
+    std::vector<std::string> texts, failures;
+    std::optional<Result<>> user_code;
+    int moves = 0, ends = 0, stop_line = 0;
+    bool isStopping = true;
+    std::int64_t now_ns = 0;
+};
+
+TEST_F(SequencerTest, MovesGoOnAtOnceAndASpindleWaitsUntilTheyAreDone_D2) {
+    add_line(1);
+    add_line(2);
+    add(interp::StartSpindle{});
+    add_line(3);
+    cycle();
+    EXPECT_EQ(queue.size(), 2U) << "the spindle stands at the front";
+    cycle(false);
+    cycle(false);
+    EXPECT_EQ(count<motion::SpindleOn>(), 0);
+    cycles(4);
+    EXPECT_EQ(moves, 3);
+    EXPECT_EQ(count<motion::SpindleOn>(), 1);
+    cycle();
+    EXPECT_TRUE(sequencer.isIdle());
+    EXPECT_TRUE(failures.empty());
+}
+
+TEST_F(SequencerTest, ADwellLastsItsTimeAndIsToldAsWhatIsWaitedFor_D2) {
+    add(interp::Dwell{0.25});
+    add_line(1);
+    cycle();
+    const std::int64_t begin_ns = now_ns;
+    EXPECT_EQ(sequencer.waiting_for().what, WaitFor::DWELL);
+    while (!queue.empty() && now_ns < 2 * S) {
+        cycle();
+    }
+    EXPECT_EQ(now_ns - begin_ns, 250 * MS);
+}
+
+TEST_F(SequencerTest, AnInputIsWaitedForUntilItRisesOrItsTimeIsOver_D2) {
+    interp::WaitInput rise;
+    rise.index = 3;
+    rise.kind = interp::WaitKind::RISE;
+    rise.timeout_s = 1;
+    add(rise);
+    cycles(5);
+    EXPECT_EQ(sequencer.waiting_for().what, WaitFor::DIGITAL_INPUT);
+    EXPECT_EQ(sequencer.waiting_for().index, 3);
+    status.digital_in = 1U << 3;
+    cycles(2);
+    EXPECT_EQ(sequencer.input_value(), 1);
+    EXPECT_FALSE(sequencer.isInputTimedOut());
+    add(rise);
+    cycles(1005);
+    EXPECT_TRUE(sequencer.isInputTimedOut()) << "it was high all the time";
+    EXPECT_EQ(sequencer.input_value(), -1);
+}
+
+TEST_F(SequencerTest, NothingBehindAStopBeginsInItsCycle_D1) {
+    add(interp::ProgramStop{}, 4);
+    add(interp::PrintLine{"behind"}, 5);
+    cycle();
+    EXPECT_EQ(stop_line, 4);
+    EXPECT_TRUE(texts.empty());
+    cycle();
+    EXPECT_EQ(texts, std::vector<std::string>{"behind"}) << "whether it goes on is its owner's matter";
+}
+
+TEST_F(SequencerTest, AStepEndsAtTheNextBlockWithMotionAtRest_D1) {
+    add_line(1, 7);
+    add_line(2, 8);
+    sequencer.start_step();
+    cycle(false);
+    EXPECT_FALSE(sequencer.isStepDone());
+    cycles(3);
+    EXPECT_TRUE(sequencer.isStepDone());
+    EXPECT_EQ(moves, 1);
+    EXPECT_EQ(queue.size(), 1U);
+    sequencer.start_step();
+    cycles(4);
+    EXPECT_EQ(moves, 2);
+}
+
+TEST_F(SequencerTest, AToolChangeStopsTheSpindleAndIsWaitedFor_G4) {
+    status.num_spindles = 1;
+    add(interp::SelectTool{5});
+    add(interp::ChangeTool{});
+    add_line(1);
+    for (int i = 0; i < 20; ++i) {
+        cycle();
+        io::Inputs in;
+        in.tool_prepared = io.outputs.tool_prepare;
+        in.tool_changed = io.outputs.tool_change && i > 10;
+        sequencer.on_tool_event(io.step(in));
+        if (i == 9) {
+            EXPECT_EQ(count<motion::SpindleOff>(), 1);
+            EXPECT_EQ(moves, 0);
+            EXPECT_EQ(sequencer.waiting_for().what, WaitFor::TOOL_CHANGED);
+        }
+    }
+    EXPECT_EQ(tools.in_spindle, 5);
+    EXPECT_EQ(moves, 1);
+}
+
+TEST_F(SequencerTest, AfterAFailureNothingBeginsUntilTheAbort_D2) {
+    add(interp::SelectTool{9});
+    add(interp::PrintLine{"behind"});
+    cycles(5);
+    EXPECT_EQ(failures.size(), 1U);
+    EXPECT_TRUE(texts.empty());
+    sequencer.abort();
+    EXPECT_TRUE(queue.empty());
+    add(interp::PrintLine{"after"});
+    cycle();
+    EXPECT_EQ(texts, std::vector<std::string>{"after"});
+}
+
+TEST_F(SequencerTest, AUserCodeIsWaitedForAndItsFailureTold_I1) {
+    add(interp::UserCode{101, 1, 2});
+    add_line(1);
+    cycles(10);
+    EXPECT_EQ(sequencer.waiting_for().what, WaitFor::USER_CODE);
+    EXPECT_EQ(moves, 0);
+    user_code = fail("ended with status 3");
+    cycles(3);
+    ASSERT_EQ(failures.size(), 1U);
+    EXPECT_EQ(failures[0], "ended with status 3");
+    EXPECT_EQ(moves, 0);
+}
+
+TEST_F(SequencerTest, TheEndOfAProgramIsToldWhenAllBeforeItIsDone_D2) {
+    add_line(1);
+    add(interp::ProgramEnd{});
+    cycle(false);
+    cycle(false);
+    EXPECT_EQ(ends, 0);
+    cycles(4);
+    EXPECT_EQ(ends, 1);
+    EXPECT_TRUE(sequencer.isIdle());
+}
+
+}  // namespace
+}  // namespace mw::task
