@@ -30,7 +30,8 @@ void run_program(benchmark::State &state, const char *ini, const char *program) 
             state.SkipWithError(machine.error().message.c_str());
             return;
         }
-        mw::app::Operator person(**machine, loaded->machine, sink, {});
+        mw::app::OwnMachine own(**machine);
+        mw::app::Operator person(own, loaded->machine, sink, {});
         auto status = person.switch_on();
         status = status.has_value() ? person.home_all() : status;
         status = status.has_value() ? person.open_program(std::string(MW_SOURCE_DIR "/") + program) : status;

@@ -6,7 +6,7 @@ import re
 import sys
 
 LAYER = {
-    'base': 0, 'geom': 0, 'diag': 0,
+    'base': 0, 'geom': 0, 'diag': 0, 'options': 0,
     'rtapi': 1, 'config': 1, 'msgs': 1, 'picture': 1, 'comp': 1,
     'hal': 2, 'nml': 2, 'mailbox': 2,
     'kins': 3, 'traj': 3, 'homing': 3, 'interp': 3, 'tool': 3, 'client': 3, 'hal_lang': 3,
@@ -17,7 +17,7 @@ LAYER = {
     'cli': 8,
 }
 # Equal layers that may be used, user -> used.
-ALLOWED_EQUAL = {('geom', 'base'), ('diag', 'base'), ('interp', 'tool'), ('task', 'io'), ('nml', 'hal'), ('machine', 'ui')}
+ALLOWED_EQUAL = {('geom', 'base'), ('diag', 'base'), ('options', 'base'), ('interp', 'tool'), ('task', 'io'), ('nml', 'hal'), ('machine', 'ui')}
 # Domain libraries know neither HAL nor NML.
 FORBIDDEN = {(user, used) for user in ('kins', 'traj', 'homing', 'interp', 'tool') for used in ('hal', 'hal_lang', 'nml')}
 # Inside a folder: sub-folders in the order in which they may use each other.
@@ -31,7 +31,7 @@ INNER = {'motion': ['api', 'core', 'rt'],
 # Folders beside src: what of src, and of each other, they may include. What is not here is left alone.
 BESIDE = {'components': {'hal', 'hal_tools', 'kins', 'traj', 'motion', 'rtapi', 'base', 'geom', 'components', 'sim'},
           'sim': {'hal', 'base', 'geom', 'sim'},
-          'testing': {'base', 'geom', 'kins', 'traj', 'motion', 'testing'}}
+          'testing': {'base', 'geom', 'hal', 'kins', 'traj', 'motion', 'testing'}}
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 
 

@@ -6,30 +6,18 @@
 #include <fmt/format.h>
 
 #include "app/commands.hh"
-#include "app/options.hh"
 #include "app/plot.hh"
 #include "app/progress_line.hh"
 #include "app/time_report.hh"
 #include "base/stop_signals.hh"
-#include "base/text.hh"
 #include "machine/ini_parameters.hh"
 #include "machine/loaded_config.hh"
 #include "machine/program_check.hh"
 #include "machine/tool_file.hh"
+#include "options/command_line.hh"
 
 namespace mw::app {
 namespace {
-
-constexpr const char *USAGE = "usage: millwright check PROGRAM.ngc --ini MACHINE.ini [options]\n"
-                              "\n"
-                              "Interprets the program for the machine and checks its moves against the "
-                              "limits, moving nothing. Prints the\n"
-                              "extents in machine coordinates, and the time that the planner expects.\n"
-                              "\n"
-                              "  --plot FILE       draw the tool path, as .png or .svg\n"
-                              "  --statements N    a loop may take N statements, 0: any number\n"
-                              "\n"
-                              "exit status: 0 no error, 1 errors, 2 wrong usage\n";
 
 void print_result(const std::string &program, const machine::MachineConfig &machine,
                   const machine::CheckResult &result) {
@@ -46,8 +34,24 @@ void print_result(const std::string &program, const machine::MachineConfig &mach
 }
 
 struct CheckWords {
-    std::string program, plot;
-    std::optional<std::int64_t> statements;
+    std::string program, ini, plot;
+    std::int64_t bound = -1;
+    options::Words rest;
+
+    options::CommandLine line() {
+        options::CommandLine line(
+            "millwright check PROGRAM.ngc --ini MACHINE.ini [options]",
+            "Interprets the program for the machine and checks its moves against the limits, "
+            "moving nothing. Prints the\n"
+            "extents in machine coordinates, and the time that the planner expects.\n");
+        line.text("--ini", "MACHINE.ini", "the machine", ini);
+        line.text("--plot", "FILE", "draw the tool path, as .png or .svg", plot);
+        line.number("--statements", "N", "a loop may take N statements, 0: any number", bound, 0, INT64_MAX);
+        line.rest(rest);
+        line.footer("exit status: 0 no error, 1 errors, 2 wrong usage\n");
+        return line;
+    }
+    std::optional<std::int64_t> statements() const { return bound < 0 ? std::nullopt : std::optional(bound); }
 };
 
 int check_loaded(const CheckWords &words, const machine::LoadedConfig &loaded, machine::ToolFile &tools,
@@ -56,7 +60,7 @@ int check_loaded(const CheckWords &words, const machine::LoadedConfig &loaded, m
     ProgressLine progress;
     machine::PathPoints points;
     machine::CheckOptions check;
-    check.statements = words.statements;
+    check.statements = words.statements();
     check.points = words.plot.empty() ? nullptr : &points;
     check.progress = [&progress](const gcode::PreviewProgress &now) {
         progress.show(now);
@@ -87,37 +91,31 @@ int check_loaded(const CheckWords &words, const machine::LoadedConfig &loaded, m
 
 }  // namespace
 
-int command_check(const std::vector<std::string> &words) {
-    if (wantsHelp(words)) {
-        fmt::print("{}", USAGE);
+int command_check(const std::vector<std::string> &arguments) {
+    CheckWords words;
+    if (options::wantsHelp(arguments)) {
+        fmt::print("{}", words.line().help());
         return 0;
     }
-    const auto options = parse_options(words, {{}, {"--ini", "--statements", "--plot"}});
-    if (!options.has_value()) {
-        fmt::print(stderr, "millwright check: {}\n", options.error().str());
+    const auto parsed = words.line().parse(arguments);
+    if (!parsed.has_value()) {
+        fmt::print(stderr, "millwright check: {}\n", parsed.error().str());
         return 2;
     }
-    if (options->rest.size() != 1 || options->value("--ini").empty()) {
+    if (words.rest.size() != 1 || words.ini.empty()) {
         fmt::print(stderr, "millwright check: needs a program and a machine: millwright check PROGRAM.ngc "
                            "--ini MACHINE.ini\n");
         return 2;
     }
-    const std::string bound = options->value("--statements");
-    const auto statements = bound.empty() ? std::optional<std::int64_t>() : parse_int(bound);
-    if (!bound.empty() && (!statements || *statements < 0)) {
-        fmt::print(stderr, "millwright check: --statements needs a whole number from 0 up, not '{}'\n",
-                   bound);
-        return 2;
-    }
-    const std::string plot = options->value("--plot");
+    words.program = words.rest[0];
     catch_stop_signals();
     diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", d.str()); });
-    const auto drawable = plot.empty() ? Result<>{} : check_picture(plot);
+    const auto drawable = words.plot.empty() ? Result<>{} : check_picture(words.plot);
     if (!drawable.has_value()) {
         sink.error(drawable.error());
         return 1;
     }
-    const auto loaded = machine::LoadedConfig::load(options->value("--ini"), sink);
+    const auto loaded = machine::LoadedConfig::load(words.ini, sink);
     if (loaded == nullptr) {
         return 1;
     }
@@ -126,7 +124,7 @@ int command_check(const std::vector<std::string> &words) {
         sink.error(tools.error());
         return 1;
     }
-    return check_loaded({options->rest[0], plot, statements}, *loaded, **tools, sink);
+    return check_loaded(words, *loaded, **tools, sink);
 }
 
 }  // namespace mw::app

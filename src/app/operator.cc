@@ -16,15 +16,18 @@ constexpr std::int64_t STOP_TIMEOUT_NS = 30000000000;
 
 }  // namespace
 
-Operator::Operator(machine::Machine &machine, const machine::MachineConfig &config, diag::Sink &sink,
+Operator::Operator(MachineAccess &machine, const machine::MachineConfig &config, diag::Sink &sink,
                    const OperatorOptions &options)
     : machine_(machine), config_(config), sink_(sink),
       panel_(machine, config, sink, options.attendance, status_),
-      patience_ns_(static_cast<std::int64_t>(options.patience_s * 1e9)) {}
+      patience_ns_(static_cast<std::int64_t>(options.patience_s * 1e9)) {
+    static_cast<void>(machine_.client().read_status(status_));
+}
 
 void Operator::cycle() {
     machine_.cycle();
-    static_cast<void>(machine_.client().read_status(status_));  // in this process task cannot die within it
+    // Where task has died within it, health() says so.
+    static_cast<void>(machine_.client().read_status(status_));
 }
 
 Result<> Operator::ask(const msgs::Command &command, const std::string &what) {
@@ -32,11 +35,23 @@ Result<> Operator::ask(const msgs::Command &command, const std::string &what) {
 }
 
 Result<> Operator::switch_on() {
+    if (status_.task.state == msgs::State::ON) {
+        return {};
+    }
     auto status = ask(msgs::SetState{msgs::State::ESTOP_RESET}, "reset of the emergency stop");
     return status.has_value() ? ask(msgs::SetState{msgs::State::ON}, "switching the machine on") : status;
 }
 
 Result<> Operator::home_all() {
+    if (status_.trajectory.isAllHomed) {
+        return {};
+    }
+    const auto manual = status_.task.mode == msgs::Mode::MANUAL
+                            ? Result<>{}
+                            : ask(msgs::SetMode{msgs::Mode::MANUAL}, "manual mode");
+    if (!manual.has_value()) {
+        return manual;
+    }
     const auto homed = ask(msgs::HomeJoint{-1}, "homing");
     for (int joint = 0; joint < config_.num_joints; ++joint) {
         const auto i = static_cast<std::size_t>(joint);
@@ -102,9 +117,11 @@ Result<> Operator::wait_for(const Result<client::Serial> &posted, const std::str
             return {};
         }
         if (outcome.progress != msgs::Progress::STARTED) {
-            const bool isTold = !last_error_.empty();
+            // As a message to the operator; of a machine that others use as well it may be about their work.
+            const bool isTold = !last_error_.empty() && !machine_.isShared();
             const std::string &reason = outcome.reason;
-            return fail(isTold ? "" : what + " failed" + (reason.empty() ? "" : ": " + reason));
+            return std::unexpected(
+                Error{what + " failed" + (reason.empty() ? "" : ": " + reason), {}, {}, isTold});
         }
         if (stop_signal != 0) {
             return stop_on_signal();
@@ -140,23 +157,18 @@ Result<> Operator::stop_on_signal() {
     return fail("stopped by " + stop_signal_name());
 }
 
+void Operator::stop() {
+    if (machine_.health()) {
+        stop_motion(machine_);
+        show_messages();
+    }
+}
+
 void Operator::switch_off() {
-    if (!machine_.health()) {
-        return;  // There is nothing left that could be switched.
+    if (machine_.health()) {  // else there is nothing left that could be switched
+        app::switch_off(machine_);
+        show_messages();
     }
-    static_cast<void>(machine_.client().post(msgs::AbortAll{}));
-    const std::int64_t deadline_ns = machine_.now_ns() + STOP_TIMEOUT_NS;
-    cycle();
-    cycle();
-    while (!status_.trajectory.isInPosition && status_.trajectory.isEnabled &&
-           machine_.now_ns() < deadline_ns && machine_.health()) {
-        cycle();
-    }
-    static_cast<void>(machine_.client().post(msgs::SetState{msgs::State::ESTOP}));
-    for (int i = 0; i < 3; ++i) {
-        cycle();
-    }
-    show_messages();
 }
 
 void Operator::show_messages() {

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Does what a person at the machine does: switches on, homes, opens and runs a program, watches it.
+// Does what a person at the machine does: switches on, homes, opens and runs a program, watches it. What is
+// on or homed already stays so.
 #pragma once
 
 #include <functional>
 #include <string>
 
+#include "app/machine_access.hh"
 #include "app/panel.hh"
 #include "diag/sink.hh"
-#include "machine/machine.hh"
 
 namespace mw::app {
 
@@ -32,7 +33,7 @@ struct OperatorOptions {
 /// Stop signals (base/stop_signals.hh) end whatever it waits for with a controlled stop.
 class Operator {
   public:
-    Operator(machine::Machine &machine, const machine::MachineConfig &config, diag::Sink &sink,
+    Operator(MachineAccess &machine, const machine::MachineConfig &config, diag::Sink &sink,
              const OperatorOptions &options);
 
     /// Asks the person at the terminal; false: no, or there is none.
@@ -45,8 +46,13 @@ class Operator {
     Result<> open_program(const std::string &path);
     /// Runs to the end. `each_cycle` is called after every task cycle.
     Result<> run_program(const std::function<void()> &each_cycle);
+    /// Stops whatever moves; the machine stays on.
+    void stop();
     /// Stops whatever moves and switches the machine off.
     void switch_off();
+
+    /// As of the last cycle.
+    const msgs::MachineStatus &status() const { return status_; }
 
     OperatorFigures figures() const;
 
@@ -61,7 +67,7 @@ class Operator {
     bool hasProgress();
     Result<> stop_on_signal();
 
-    machine::Machine &machine_;
+    MachineAccess &machine_;
     const machine::MachineConfig &config_;
     diag::Sink &sink_;
     msgs::MachineStatus status_;  ///< of the last cycle

@@ -31,7 +31,7 @@ geom::Pose program_position(const msgs::MachineStatus &status) {
 
 }  // namespace
 
-Panel::Panel(machine::Machine &machine, const machine::MachineConfig &config, diag::Sink &sink,
+Panel::Panel(MachineAccess &machine, const machine::MachineConfig &config, diag::Sink &sink,
              Attendance attendance, const msgs::MachineStatus &status)
     : machine_(machine), config_(config), sink_(sink), attendance_(attendance), status_(status),
       hasLine_(::isatty(STDERR_FILENO) != 0) {
@@ -101,7 +101,11 @@ void Panel::take_key(char key) {
     case ' ': post(msgs::PauseProgram{}); break;
     case 'r': post(msgs::ResumeProgram{}); break;
     case 'a': post(msgs::AbortAll{}); break;
-    case 't': machine_.tool_change().confirm(); break;
+    case 't':
+        if (status_.tool.isPersonAsked) {
+            post(msgs::ConfirmToolChange{});
+        }
+        break;
     default: break;
     }
 }
@@ -130,13 +134,16 @@ void Panel::look_at_stop() {
 bool Panel::isWaitingForPerson() const {
     const msgs::MachineStatus &status = status_;
     const bool isHeld = status.task.isPaused && attendance_ != Attendance::SIMULATED;
-    return isHeld || machine_.tool_change().isAsking();
+    return isHeld || status.tool.isPersonAsked;
 }
 
 void Panel::show(const client::Client::Message &message) {
     clear_line();
     const bool isError = message.kind == msgs::MessageKind::OPERATOR_ERROR;
     fmt::print(isError ? stderr : stdout, "{}\n", printable(message.text));
+    if (attendance_ != Attendance::SIMULATED) {
+        std::fflush(stdout);  // someone may be asked for something
+    }
 }
 
 void Panel::clear_line() {
@@ -181,10 +188,10 @@ void Panel::write_line() {
     const int line = line_reached();
     const int percent = lines_ > 0 ? std::clamp(100 * line / lines_, 0, 100) : 0;
     const std::string waiting = msgs::waiting_text(status.task.waiting);
-    const std::string state = machine_.tool_change().isAsking() ? "tool change"
-                              : status.task.isPaused            ? "held"
-                              : waiting.empty()                 ? "runs"
-                                                                : "waits for " + waiting;
+    const std::string state = status.tool.isPersonAsked ? "tool change"
+                              : status.task.isPaused    ? "held"
+                              : waiting.empty()         ? "runs"
+                                                        : "waits for " + waiting;
     fmt::print(stderr, "\rline {} of {} ({} %) {} F{:.0f} {}\033[K", line, lines_, percent, position_text(),
                status.trajectory.current_velocity * 60.0, state);
 }

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "app/keyboard.hh"
-#include "machine/machine.hh"
+#include "app/machine_access.hh"
 
 namespace mw::app {
 
@@ -21,7 +21,7 @@ enum class Attendance : std::uint8_t {
 /// One thread; step() never blocks.
 class Panel {
   public:
-    Panel(machine::Machine &machine, const machine::MachineConfig &config, diag::Sink &sink,
+    Panel(MachineAccess &machine, const machine::MachineConfig &config, diag::Sink &sink,
           Attendance attendance, const msgs::MachineStatus &status);
 
     /// Asks for yes or no at the terminal while the machine goes on; false also when a signal comes.
@@ -50,7 +50,7 @@ class Panel {
     std::string progress_text();
     std::string position_text() const;
 
-    machine::Machine &machine_;
+    MachineAccess &machine_;
     const machine::MachineConfig &config_;
     diag::Sink &sink_;
     Attendance attendance_;

@@ -29,6 +29,26 @@ void print_axes(const char *label, const Summary &summary, const std::array<doub
     fmt::print("{:<18}{}\n", label, text);
 }
 
+void print_lengths(const machine::RunFigures &path, const char *unit) {
+    const auto turned = [](double angle_deg) {
+        return angle_deg > 0 ? fmt::format(", {:.3f} deg", angle_deg) : std::string();
+    };
+    fmt::print("cutting             {:.3f} {}{}\n", path.cutting_length, unit,
+               turned(path.cutting_angle_deg));
+    fmt::print("rapid               {:.3f} {}{}\n", path.rapid_length, unit, turned(path.rapid_angle_deg));
+}
+
+void print_peaks(const Summary &summary, const machine::RunFigures &path, const char *unit) {
+    print_axes("peak velocity", summary, path.peak_velocity, "s");
+    print_axes("peak acceleration", summary, path.peak_acceleration, "s2");
+    fmt::print("path deviation      {:.5f} {}", path.deviation_linear, unit);
+    constexpr unsigned ANGULAR_MASK = 0x38;
+    if ((summary.machine.axis_mask & ANGULAR_MASK) != 0) {
+        fmt::print(", {:.5f} deg", path.deviation_angular);
+    }
+    fmt::print("\n");
+}
+
 }  // namespace
 
 void print_summary(const Summary &summary) {
@@ -42,31 +62,22 @@ void print_summary(const Summary &summary) {
                    summary.run.wall_time_s,
                    summary.run.cycle_time_s / std::fmax(summary.run.wall_time_s, 1e-9));
     }
-    const auto turned = [](double angle_deg) {
-        return angle_deg > 0 ? fmt::format(", {:.3f} deg", angle_deg) : std::string();
-    };
-    fmt::print("cutting             {:.3f} {}{}\n", summary.path.cutting_length, unit,
-               turned(summary.path.cutting_angle_deg));
-    fmt::print("rapid               {:.3f} {}{}\n", summary.path.rapid_length, unit,
-               turned(summary.path.rapid_angle_deg));
-    fmt::print("blocks              {}\n", summary.run.blocks);
-    print_axes("peak velocity", summary, summary.path.peak_velocity, "s");
-    print_axes("peak acceleration", summary, summary.path.peak_acceleration, "s2");
-    fmt::print("path deviation      {:.5f} {}", summary.path.deviation_linear, unit);
-    constexpr unsigned ANGULAR_MASK = 0x38;
-    if ((summary.machine.axis_mask & ANGULAR_MASK) != 0) {
-        fmt::print(", {:.5f} deg", summary.path.deviation_angular);
+    if (summary.path.has_value()) {
+        print_lengths(*summary.path, unit);
     }
-    fmt::print("\n");
+    fmt::print("blocks              {}\n", summary.run.blocks);
+    if (summary.path.has_value()) {
+        print_peaks(summary, *summary.path, unit);
+    }
     if (summary.run.stops_passed > 0) {
         fmt::print("program stops       {} passed\n", summary.run.stops_passed);
     }
-    if (summary.wasRealtime) {
+    if (summary.wasRealtime && summary.realtime.has_value()) {
         fmt::print("realtime            {}\n",
-                   summary.realtime.isRealtime ? "yes" : "no: " + summary.realtime.missing);
-        fmt::print("overruns            {}\n", summary.realtime.overruns);
+                   summary.realtime->isRealtime ? "yes" : "no: " + summary.realtime->missing);
+        fmt::print("overruns            {}\n", summary.realtime->overruns);
         fmt::print("largest latency     {:.1f} us\n",
-                   static_cast<double>(summary.realtime.max_latency_ns) * 1e-3);
+                   static_cast<double>(summary.realtime->max_latency_ns) * 1e-3);
     }
     fmt::print("warnings            {}\n", summary.run.warnings);
     std::fflush(stdout);

@@ -2,6 +2,7 @@
 // What a run says at its end.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "app/operator.hh"
@@ -15,8 +16,9 @@ struct Summary {
     const std::string &program;
     const machine::MachineConfig &machine;
     OperatorFigures run;
-    machine::RunFigures path;
-    machine::RealtimeFigures realtime;
+    /// None of a machine in another process.
+    std::optional<machine::RunFigures> path{};
+    std::optional<machine::RealtimeFigures> realtime{};
     bool wasRealtime;
     const StartCheck &check;
 };

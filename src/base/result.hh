@@ -23,6 +23,8 @@ struct Error {
     std::string message;
     SourcePlace place{};
     std::string hint{};
+    /// Whoever found it has told it to a person already, with all that belongs to it: it is not told again.
+    bool isTold = false;
 
     /// "file:line:column: message (hint)".
     std::string str() const;
@@ -34,6 +36,11 @@ using Result = std::expected<T, Error>;
 /// Makes the failure value of a Result.
 inline std::unexpected<Error> fail(std::string message, SourcePlace place = {}, std::string hint = {}) {
     return std::unexpected(Error{std::move(message), std::move(place), std::move(hint)});
+}
+
+/// As fail(), for what a person has been told already: `message` sums it up for whoever asks.
+inline std::unexpected<Error> fail_told(std::string message, SourcePlace place = {}) {
+    return std::unexpected(Error{std::move(message), std::move(place), {}, true});
 }
 
 }  // namespace mw

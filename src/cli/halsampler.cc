@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // halsampler [-c CHANNEL] [-n COUNT] [-t] [FILE]: prints what the component sampler has collected.
-#include <unistd.h>
-
-#include "cli/arguments.hh"
 #include "cli/stream_main.hh"
 #include "hal_tools/stream/programs.hh"
 
@@ -16,33 +13,22 @@ constexpr const char *USAGE =
 }  // namespace
 
 int main(int argc, char **argv) {
-    const std::vector<std::string> first = mw::cli::arguments(argc, argv);
-    if (!first.empty() && first[0] == "-h") {
-        std::fputs(USAGE, stdout);
-        return 0;
-    }
+    constexpr mw::options::KnownLetter KNOWN[] = {{'c', "a queue"}, {'n', "a number"}, {'t'}, {'h'}};
     mw::hal::stream_tools::SamplerOptions options;
-    for (int option = 0; (option = getopt(argc, argv, "c:n:t")) != -1;) {
-        long value = 0;
-        switch (option) {
-        case 'c':
-        case 'n':
-            if (!mw::cli::parse_count("halsampler", optarg, value)) {
-                return 1;
-            }
-            if (option == 'n') {
-                options.count = value;
-            } else {
-                options.channel = static_cast<int>(value);
-            }
-            break;
-        case 't': options.isTagged = true; break;
-        default: std::fputs(USAGE, stderr); return 1;
-        }
+    const auto read = mw::cli::read_stream_words("halsampler", {argv + 1, argv + argc}, KNOWN, USAGE,
+                                                 [&options](char letter, long number) {
+                                                     switch (letter) {
+                                                     case 'c':
+                                                         options.channel = static_cast<int>(number);
+                                                         break;
+                                                     case 'n': options.count = number; break;
+                                                     default: options.isTagged = true; break;
+                                                     }
+                                                 });
+    if (!read.words.has_value()) {
+        return read.status;
     }
-    if (optind < argc) {
-        options.file = argv[optind];
-    }
+    options.file = read.words->empty() ? "" : read.words->front();
     return mw::cli::run_attached(
         "halsampler", [&](auto &stop) { return mw::hal::stream_tools::run_sampler(options, stop); });
 }

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // halstreamer [-c CHANNEL] [FILE]: feeds lines of values to the component streamer.
-#include <unistd.h>
-
-#include "cli/arguments.hh"
 #include "cli/stream_main.hh"
 #include "hal_tools/stream/programs.hh"
 
@@ -16,26 +13,15 @@ constexpr const char *USAGE =
 }  // namespace
 
 int main(int argc, char **argv) {
-    const std::vector<std::string> first = mw::cli::arguments(argc, argv);
-    if (!first.empty() && first[0] == "-h") {
-        std::fputs(USAGE, stdout);
-        return 0;
-    }
+    constexpr mw::options::KnownLetter KNOWN[] = {{'c', "a queue"}, {'h'}};
     mw::hal::stream_tools::StreamerOptions options;
-    for (int option = 0; (option = getopt(argc, argv, "c:")) != -1;) {
-        long value = 0;
-        if (option != 'c') {
-            std::fputs(USAGE, stderr);
-            return 1;
-        }
-        if (!mw::cli::parse_count("halstreamer", optarg, value)) {
-            return 1;
-        }
-        options.channel = static_cast<int>(value);
+    const auto read = mw::cli::read_stream_words(
+        "halstreamer", {argv + 1, argv + argc}, KNOWN, USAGE,
+        [&options](char, long number) { options.channel = static_cast<int>(number); });
+    if (!read.words.has_value()) {
+        return read.status;
     }
-    if (optind < argc) {
-        options.file = argv[optind];
-    }
+    options.file = read.words->empty() ? "" : read.words->front();
     return mw::cli::run_attached(
         "halstreamer", [&](auto &stop) { return mw::hal::stream_tools::run_streamer(options, stop); });
 }

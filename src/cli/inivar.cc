@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // inivar: a value of an INI file, for scripts.
 #include <cstdio>
+#include <string>
+#include <vector>
 
-#include "cli/arguments.hh"
 #include "config/ini_programs.hh"
 
 int main(int argc, char **argv) {
-    const std::vector<std::string> words = mw::cli::arguments(argc, argv);
-    if (!words.empty() && words[0] == "-h") {
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    if (!words.empty() && (words[0] == "-h" || words[0] == "--help")) {
         std::fputs(mw::config::run_inivar({}).err.c_str(), stdout);  // without words it says how it is used
         return 0;
     }

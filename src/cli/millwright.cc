@@ -19,6 +19,8 @@ constexpr const char *USAGE =
     "  run MACHINE.ini PROGRAM.ngc          start the machine that the INI file describes, home it, run the "
     "program;\n"
     "                                       in virtual time, or with --realtime by the clock\n"
+    "  start MACHINE.ini                    keep the machine up for clients, until a signal or its display "
+    "ends it\n"
     "  check PROGRAM.ngc --ini MACHINE.ini  a program against a machine's limits, and the time it takes\n"
     "  format PROGRAM.ngc ...               write programs in one form, without a change of meaning\n"
     "  explain LINE                         say in words what a line of G-code does\n"
@@ -46,6 +48,9 @@ int main(int argc, char **argv) {
         return 0;
     }
     const std::vector<std::string> rest(words.begin() + 1, words.end());
+    if (words[0] == "start") {
+        return mw::app::command_start(rest);
+    }
     if (words[0] == "run") {
         return mw::app::command_run(rest);
     }

@@ -4,22 +4,17 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <cstring>
 #include <string>
+#include <vector>
 
 #include "base/own_place.hh"
-#include "base/text.hh"
 #include "hal/core/hal.hh"
 #include "hal/host/host_server.hh"
+#include "options/command_line.hh"
 
 namespace {
 
-constexpr const char *USAGE =
-    "usage: millwright-rt [--instance NAME] [--cpu N | --simulation]\n"
-    "Owns the HAL of an instance and runs its realtime threads until it is told to end.\n"
-    "  --instance NAME  default: $MILLWRIGHT_INSTANCE, else 'default'\n"
-    "  --cpu N          processor of the threads (default: the last isolated one, else the last)\n"
-    "  --simulation     ask for no realtime priority\n";
+constexpr int MAX_CPU = 4095, MAX_FD = 1 << 20;
 
 /// Tells whoever started us: "ready" or what is wrong.
 void tell(int fd, const std::string &text) {
@@ -31,48 +26,41 @@ void tell(int fd, const std::string &text) {
 
 struct Arguments {
     mw::hal::HostServerOptions options;
-    int ready_fd = -1;
-    bool isGood = true;
-};
+    int ready_fd = -1, cpu = -1;
 
-Arguments read_arguments(int argc, char **argv) {
-    Arguments arguments;
-    arguments.options.instance = mw::hal::default_instance();
-    for (int i = 1; i < argc; ++i) {
-        const std::string option = argv[i];
-        if (option == "--simulation") {
-            arguments.options.realtime.isSimulation = true;
-            continue;
-        }
-        const std::string value = i + 1 < argc ? argv[++i] : "";
-        const auto number = mw::parse_int(value);
-        if (option == "--instance" && !value.empty()) {
-            arguments.options.instance = value;
-        } else if (option == "--cpu" && number && *number >= 0 && *number < 4096) {
-            arguments.options.realtime.cpu = static_cast<int>(*number);
-        } else if (option == "--ready-fd" && number && *number >= 0) {
-            arguments.ready_fd = static_cast<int>(*number);
-        } else if (option == "--starter-fd" && number && *number >= 0) {
-            arguments.options.controller_fd = static_cast<int>(*number);
-        } else {
-            arguments.isGood = false;
-        }
+    mw::options::CommandLine line() {
+        mw::options::CommandLine line("millwright-rt [options]",
+                                      "Owns the HAL of an instance and runs its realtime threads until it is "
+                                      "told to end.\n");
+        options.instance = mw::hal::default_instance();
+        line.text("--instance", "NAME", "default: $MILLWRIGHT_INSTANCE, else 'default'", options.instance);
+        line.number("--cpu", "N", "processor of the threads (default: the last isolated one, else the last)",
+                    cpu, 0, MAX_CPU);
+        line.flag("--simulation", "ask for no realtime priority", options.realtime.isSimulation);
+        line.number("--ready-fd", "N", "", ready_fd, 0, MAX_FD);
+        line.number("--starter-fd", "N", "", options.controller_fd, 0, MAX_FD);
+        return line;
     }
-    return arguments;
-}
+};
 
 }  // namespace
 
 int main(int argc, char **argv) {
     mw::tell_when_memory_ends();
-    if (argc == 2 && (std::strcmp(argv[1], "--help") == 0 || std::strcmp(argv[1], "-h") == 0)) {
-        std::fputs(USAGE, stdout);
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    Arguments arguments;
+    const mw::options::CommandLine line = arguments.line();
+    if (mw::options::wantsHelp(words)) {
+        std::fputs(line.help().c_str(), stdout);
         return 0;
     }
-    const Arguments arguments = read_arguments(argc, argv);
-    if (!arguments.isGood) {
-        std::fputs(USAGE, stderr);
+    const auto parsed = line.parse(words);
+    if (!parsed) {
+        std::fprintf(stderr, "millwright-rt: %s\n", parsed.error().str().c_str());
         return 2;
+    }
+    if (arguments.cpu >= 0) {
+        arguments.options.realtime.cpu = arguments.cpu;
     }
     auto server = mw::hal::HostServer::create(arguments.options);
     if (!server) {

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the two stream programs do alike: join the instance, end on signals, report.
+// What the two stream programs do alike: read their words, join the instance, end on signals, report.
 #pragma once
 
 #include <csignal>
 #include <cstdio>
 #include <functional>
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "base/stop_signals.hh"
 #include "base/text.hh"
 #include "hal/core/hal.hh"
+#include "options/letters.hh"
 
 namespace mw::cli {
 
@@ -32,15 +36,33 @@ inline int run_attached(const char *program,
     return result ? 0 : 1;
 }
 
-/// The number behind an option; false (with a message) when it is none of at least 0.
-inline bool parse_count(const char *program, const char *text, long &value) {
-    const std::optional<std::int64_t> number = parse_int(text);
-    if (!number || *number < 0) {
-        std::fprintf(stderr, "%s: '%s' is not a number of at least 0\n", program, text);
-        return false;
+struct StreamWords {
+    std::optional<std::vector<std::string>> words;  ///< nothing: the program ends with `status`
+    int status = 1;
+};
+
+/// Hands each option to `take` with its number, 0 where it has none. Wrong usage is said, and is status 1.
+inline StreamWords read_stream_words(const char *program, const std::vector<std::string> &words,
+                                     std::span<const options::KnownLetter> known, const char *usage,
+                                     const std::function<void(char letter, long number)> &take) {
+    auto read = options::read_letters(words, known, options::EndOfLetters::ALL_WORDS);
+    if (!read) {
+        std::fprintf(stderr, "%s: %s\n%s", program, read.error().str().c_str(), usage);
+        return {};
     }
-    value = static_cast<long>(*number);
-    return true;
+    for (const options::Letter &option : read->options) {
+        if (option.letter == 'h') {
+            std::fputs(usage, stdout);
+            return {std::nullopt, 0};
+        }
+        const auto number = option.value.empty() ? std::int64_t{0} : parse_int(option.value).value_or(-1);
+        if (number < 0) {
+            std::fprintf(stderr, "%s: '%s' is not a number of at least 0\n", program, option.value.c_str());
+            return {};
+        }
+        take(option.letter, static_cast<long>(number));
+    }
+    return {std::move(read->words), 0};
 }
 
 }  // namespace mw::cli

@@ -177,7 +177,7 @@ Result<> Client::sleep(std::uint32_t heard, std::int64_t end_ns) {
         return fail("the time to wait is over");
     }
     const bool isRung = mailbox::Memory::wait(*segment_, heard, std::min(left_ns, LONGEST_SLEEP_NS));
-    if (!isRung && memory_.has_value() && !memory_->isOwnerAlive()) {
+    if (!isRung && !isMachineAlive()) {
         return fail("the machine is no longer running");
     }
     return {};
@@ -211,6 +211,11 @@ Result<> Client::wait_status(double timeout_s) {
             return status;
         }
     }
+}
+
+mailbox::Identity Client::identity() const {
+    mailbox::Identity identity;
+    return segment_->identity.read(identity, READ_TRIES) ? identity : mailbox::Identity{};
 }
 
 Result<> Client::read_status(msgs::MachineStatus &status) const {

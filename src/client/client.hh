@@ -45,6 +45,11 @@ class Client {
     /// Sleeps until the command ends; an error when the time is over or the machine is gone.
     Result<Outcome> wait(Serial serial, double timeout_s);
 
+    /// What the machine is; empty until it is ready for clients.
+    mailbox::Identity identity() const;
+    /// Its task's process lives. Always true in that process.
+    bool isMachineAlive() const { return !memory_.has_value() || memory_->isOwnerAlive(); }
+
     /// Copies the newest status; an error before the first cycle and when task died within writing it.
     Result<> read_status(msgs::MachineStatus &status) const;
     /// Sleeps until there is a newer status than the last one that was waited for.

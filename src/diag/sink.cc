@@ -112,6 +112,12 @@ void Sink::error(std::string message, SourcePlace place, std::string hint) {
     report({Severity::ERROR, {std::move(message), std::move(place), std::move(hint)}});
 }
 
+void Sink::failure(const Error &what) {
+    if (!what.isTold) {
+        error(what);
+    }
+}
+
 void Sink::warning(std::string message, SourcePlace place, std::string hint) {
     report({Severity::WARNING, {std::move(message), std::move(place), std::move(hint)}});
 }

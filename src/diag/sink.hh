@@ -37,6 +37,8 @@ class Sink {
     void report(Diagnostic diagnostic);
     void error(std::string message, SourcePlace place = {}, std::string hint = {});
     void error(Error what) { report({Severity::ERROR, std::move(what)}); }
+    /// The failure of a Result: nothing when it has been told already.
+    void failure(const Error &what);
     void warning(std::string message, SourcePlace place = {}, std::string hint = {});
     void note(std::string message, SourcePlace place = {});
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -42,20 +43,18 @@ Result<std::unique_ptr<ProgramInterpreter>> open_plugin(const std::string &name,
             candidates.push_back(program_folder() + folder + name);
         }
     }
-    Result<PluginFactory> found = fail("");
+    std::optional<Error> trouble;
     for (const std::string &path : candidates) {
         if (::access(path.c_str(), R_OK) == 0) {
-            found = factory_in(path);
+            const Result<PluginFactory> found = factory_in(path);
             if (found) {
                 return std::unique_ptr<ProgramInterpreter>((*found)(parts));
             }
+            trouble = found.error();
         }
     }
-    if (found.error().message.empty()) {
-        return fail(
-            fmt::format("the interpreter {} was not found: there is no {}", name, candidates.front()));
-    }
-    return std::unexpected(found.error());
+    return std::unexpected(trouble.value_or(
+        Error{fmt::format("the interpreter {} was not found: there is no {}", name, candidates.front())}));
 }
 
 }  // namespace mw::interp

@@ -169,9 +169,10 @@ Result<> HalSetup::run() {
                           ? run_steps(session, parts_.config.hal_steps)
                           : run_two_pass_steps(session, parts_.config.hal_steps, parts_.config.two_pass);
     if (!done) {
-        // The session has told its own failures already.
-        const bool isTold = parts_.sink.count_errors() > errors_before;
-        return isTold ? fail("") : done;
+        // The session tells its own failures, with the line of the HAL file.
+        Error error = done.error();
+        error.isTold = parts_.sink.count_errors() > errors_before;
+        return std::unexpected(std::move(error));
     }
     for (const std::string &text : session.left_out()) {
         parts_.sink.warning(text);

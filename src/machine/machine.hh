@@ -12,7 +12,6 @@
 #include "diag/sink.hh"
 #include "hal/core/host.hh"
 #include "machine/machine_config.hh"
-#include "machine/tool_changer.hh"
 #include "motion/api/channels.hh"
 #include "task/task.hh"
 
@@ -29,6 +28,7 @@ struct MachineParts {
 struct MachineOptions {
     bool isClockVirtual = false;   ///< set by make_virtual_machine()
     bool isStrict = false;         ///< unknown INI keys are errors
+    bool isLasting = false;        ///< it stays up for clients when a program has ended
     bool isToolTableTold = false;  ///< whoever makes the machine has said what is wrong with the tool table
     std::string instance;          ///< HAL instance of a realtime machine; empty: the user's default
     /// Extra folders for HAL library files, before our own.
@@ -64,11 +64,9 @@ class Machine {
     virtual task::Task &task() = 0;
     virtual motion::Channels &channels() = 0;
     virtual hal::Hal &hal() = 0;
-    /// The person who changes tools by hand, where a HAL file asks for one.
-    virtual ManualToolChange &tool_change() = 0;
 };
 
-/// A failure whose message is empty has been told to the sink already.
+/// Failures that concern lines of a file have been told to the sink, and say so (Error::isTold).
 /// The machine in this process, under the virtual clock: deterministic, as fast as the processor allows.
 Result<std::unique_ptr<Machine>> make_virtual_machine(const MachineParts &parts,
                                                       const MachineOptions &options);

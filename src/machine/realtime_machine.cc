@@ -91,7 +91,6 @@ class RealtimeMachine final : public Machine {
     task::Task &task() override { return side_->task(); }
     motion::Channels &channels() override { return side_->channels(); }
     hal::Hal &hal() override { return host_->hal(); }
-    ManualToolChange &tool_change() override { return side_->tool_change(); }
 
   private:
     MachineParts parts_;

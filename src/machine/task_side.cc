@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "machine/task_side.hh"
 
+#include <filesystem>
+
 #include "machine/hal_setup.hh"
 
 namespace mw::machine {
@@ -29,6 +31,7 @@ Result<> TaskSide::start(const MachineOptions &options) {
         return std::unexpected(tools.error());
     }
     tools_ = std::move(*tools);
+    isLasting_ = options.isLasting;
     auto status = make_pins();
     status = status.has_value() ? run_hal_files(options) : status;
     status = status.has_value() ? link_estop_chain() : status;
@@ -50,6 +53,19 @@ Result<> TaskSide::start(const MachineOptions &options) {
     return parts_.config.hasHalui ? halui_.join(mailbox_.segment()) : Result<>{};
 }
 
+/// From here on clients find a machine that is ready for them.
+Result<> TaskSide::identify() {
+    mailbox::Identity identity;
+    std::error_code error;
+    const auto path = std::filesystem::canonical(parts_.ini.path(), error);
+    if (!identity.ini.assign(error ? parts_.ini.path() : path.string())) {
+        return fail("the path of the INI file is too long", {parts_.ini.path(), 0, 0});
+    }
+    identity.isLasting = isLasting_;
+    mailbox_.segment().identity.write(identity);
+    return {};
+}
+
 Result<> TaskSide::make_pins() {
     auto status = io_pins_.create(host_.hal());
     if (status.has_value()) {
@@ -66,13 +82,24 @@ Result<> TaskSide::run_hal_files(const MachineOptions &options) {
     const ToolHand hand = options.isClockVirtual ? ToolHand::SIMULATED : ToolHand::PERSON;
     setup.on_tool_change_program = [this, hand] {
         return tool_change_.create(host_.hal(), hand,
-                                   [this](const std::string &text) { parts_.sink.note(text); });
+                                   [this, hand](const std::string &text) { tell_tool_change(hand, text); });
     };
     const auto status = setup.run();
     if (status.has_value()) {
         parts_.reader.report_unknown(options.isStrict);
     }
-    return status.has_value() && parts_.sink.hasErrors() ? fail("") : status;
+    return status.has_value() && parts_.sink.hasErrors()
+               ? fail_told("the INI file has errors", {parts_.ini.path(), 0, 0})
+               : status;
+}
+
+/// A person may sit at any client.
+void TaskSide::tell_tool_change(ToolHand hand, const std::string &text) {
+    if (hand == ToolHand::PERSON) {
+        task_->post(msgs::MessageKind::OPERATOR_TEXT, text);
+    } else {
+        parts_.sink.note(text);
+    }
 }
 
 Result<> TaskSide::join_motion() {
@@ -129,7 +156,8 @@ Result<> TaskSide::finish_start(Machine &machine, int most_cycles) {
         }
         if (*isDone) {
             machine.cycle();
-            return task_->start();
+            const auto started = task_->start();
+            return started.has_value() ? identify() : started;
         }
     }
     return fail("the motion controller does not run", {parts_.ini.path(), 0, 0},

@@ -39,15 +39,18 @@ class TaskSide final : private task::IoPort {
     mailbox::Segment &mailbox() { return mailbox_.segment(); }
     task::Task &task() { return *task_; }
     motion::Channels &channels() { return *channels_; }
-    ManualToolChange &tool_change() { return tool_change_; }
 
   private:
     io::Inputs read() override { return io_pins_.read(); }
     void write(const io::Outputs &outputs) override { io_pins_.write(outputs); }
+    bool isPersonAsked() const override { return tool_change_.isAsking(); }
+    void confirm_tool_change() override { tool_change_.confirm(); }
 
+    Result<> identify();
     Result<bool> isConfigured();
     Result<> make_pins();
     Result<> run_hal_files(const MachineOptions &options);
+    void tell_tool_change(ToolHand hand, const std::string &text);
     Result<> join_motion();
     /// Lets the servo thread itself see the e-stop chain that iocontrol.0.emc-enable-in sees.
     Result<> link_estop_chain();
@@ -62,6 +65,7 @@ class TaskSide final : private task::IoPort {
     ManualToolChange tool_change_;
     IniParameters parameters_;
     std::unique_ptr<ToolFile> tools_;
+    bool isLasting_ = false;
     motion::Channels *channels_ = nullptr;
     std::unique_ptr<task::Task> task_;
 };

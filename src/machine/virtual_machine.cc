@@ -66,7 +66,6 @@ class VirtualMachine final : public Machine {
     task::Task &task() override { return side_->task(); }
     motion::Channels &channels() override { return side_->channels(); }
     hal::Hal &hal() override { return host_->hal(); }
-    ManualToolChange &tool_change() override { return side_->tool_change(); }
 
   private:
     void task_cycle() {

@@ -15,8 +15,13 @@ namespace {
 
 using msgs::Progress;
 
-/// In one of so many cycles one place is looked at for a dead owner: each in its turn.
+/// In one of so many cycles one place is looked at for a dead owner, each in its turn; and those of attended
+/// clients.
 constexpr std::uint64_t OWNER_CHECK_CYCLES = 4;
+
+bool isOf(const Slot &slot, Role role) {
+    return slot.role.load(std::memory_order_relaxed) == static_cast<std::uint8_t>(role);
+}
 
 template <class Text>
 void assign(Text &text, std::string_view from) {
@@ -83,10 +88,12 @@ void Desk::take_slot(int index, std::vector<Delivery> &out) {
         accept(index, posted_.serial, msgs::decode_command({posted_.bytes.data(), size}), out);
     }
     accept_stops_before(std::numeric_limits<Serial>::max());
-    const bool isTurn = (cycles_ / OWNER_CHECK_CYCLES) % MAX_CLIENTS == static_cast<std::uint64_t>(index) &&
-                        cycles_ % OWNER_CHECK_CYCLES == 0;
+    const bool isAttended = isOf(slot, Role::ATTENDED);
+    const bool isTurn =
+        cycles_ % OWNER_CHECK_CYCLES == 0 &&
+        (isAttended || (cycles_ / OWNER_CHECK_CYCLES) % MAX_CLIENTS == static_cast<std::uint64_t>(index));
     if (isLeaving || isTurn) {
-        check_owner(index);
+        check_owner(index, out);
     }
 }
 
@@ -104,7 +111,20 @@ std::vector<Desk::WaitingStop> Desk::waiting_stops(const Slot &slot) {
     return waiting;
 }
 
-void Desk::check_owner(int index) {
+void Desk::stop_unattended(int index, std::vector<Delivery> &out) {
+    const bool isUnderWay = std::any_of(going_.begin(), going_.end(),
+                                        [index](const auto &going) { return going.second.slot == index; });
+    if (!isUnderWay) {
+        return;
+    }
+    const ClientId client = segment_.slots[static_cast<std::size_t>(index)].client.load();
+    post(msgs::MessageKind::OPERATOR_ERROR,
+         "client " + std::to_string(client) + ", which watched over what it had begun, is gone: aborted");
+    const Serial serial = segment_.serials.fetch_add(1, std::memory_order_relaxed) + 1;
+    out.push_back({serial, client, msgs::AbortAll{}, true});
+}
+
+void Desk::check_owner(int index, std::vector<Delivery> &out) {
     Slot &slot = segment_.slots[static_cast<std::size_t>(index)];
     const bool isLeaving = slot.isLeaving.load(std::memory_order_acquire) != 0;
     if (!isLeaving && isAlive(slot.owner.load(std::memory_order_relaxed))) {
@@ -118,7 +138,10 @@ void Desk::check_owner(int index) {
              "client " + std::to_string(client) +
                  ", which operated alone, is gone: all clients operate again");
     }
-    // Its commands go on: who started a program need not stay. Nobody asks for their outcomes any more.
+    if (isOf(slot, Role::ATTENDED)) {
+        stop_unattended(index, out);
+    }
+    // Commands of others go on: who started a program need not stay. Nobody asks for their outcomes any more.
     std::erase_if(going_, [index](const auto &going) { return going.second.slot == index; });
     serials_[static_cast<std::size_t>(index)].fill(0);
     for (auto &outcome : slot.outcomes) {
@@ -156,7 +179,7 @@ void Desk::accept(int index, Serial serial, Result<msgs::Command> command, std::
         serial != 0 && serial <= segment_.serials.load(std::memory_order_relaxed) && !going_.contains(serial);
     const int place = free_outcome(index);
     const Serial taken = std::max(serial, slot.taken.load(std::memory_order_relaxed));
-    const bool isPanel = slot.role.load(std::memory_order_relaxed) == static_cast<std::uint8_t>(Role::PANEL);
+    const bool isPanel = isOf(slot, Role::PANEL);
     const ClientId client = slot.client.load(std::memory_order_relaxed);
     if (isNew && place < 0 && command.has_value() && isStop(*command)) {
         // A stop is never dropped: it is carried out though nothing tells its outcome.

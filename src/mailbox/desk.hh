@@ -59,7 +59,9 @@ class Desk {
     bool operate(const Delivery &delivery);
     int free_outcome(int slot) const;
     void write(const Place &place);
-    void check_owner(int index);
+    void check_owner(int index, std::vector<Delivery> &out);
+    /// The stop that ends what an attended client has left under way.
+    void stop_unattended(int index, std::vector<Delivery> &out);
     bool isConnected(ClientId client) const;
 
     Segment &segment_;

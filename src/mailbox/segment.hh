@@ -57,6 +57,13 @@ struct Bytes {
 enum class Role : std::uint8_t {
     OPERATOR,  ///< subject to another's right to operate
     PANEL,     ///< wired to the machine (halui): never
+    ATTENDED,  ///< as OPERATOR; what it has begun is aborted when it leaves or dies: it watches over its work
+};
+
+/// What the machine is, said when it is ready for clients.
+struct Identity {
+    msgs::FixedText<1023> ini;  ///< path of the INI file
+    bool isLasting = false;     ///< stays up when a program has ended, for any client
 };
 
 /// A client's place. A free one has no owner; the owner's word is set in one step, so that task can always
@@ -79,6 +86,7 @@ struct Segment {
     std::atomic<Serial> serials{0};       ///< given out
     std::atomic<ClientId> client_ids{0};  ///< given out
     std::array<Slot, MAX_CLIENTS> slots;
+    Seqlock<Identity> identity;  ///< [whoever makes the machine] once
 
     Seqlock<msgs::MachineStatus> status;  ///< [task] once a cycle
     std::atomic<std::uint64_t> cycles{0};

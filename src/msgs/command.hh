@@ -30,7 +30,7 @@ using Command = std::variant<
     SetDigitalOutput, SpindleOn, SpindleOff, SpindleIncrease, SpindleDecrease, SpindleConstant, ReleaseBrake,
     EngageBrake, SetSpindleSpeed, OrientSpindle, WaitOriented, MistOn, MistOff, FloodOn, FloodOff, LubeOn,
     LubeOff, EstopOn, EstopOff, EstopReset, WaitInput, InitTool, HaltTool, AbortTool, PrepareTool, LoadTool,
-    UnloadTool, LoadToolTable, SetToolEntry, SetToolNumber, StartToolChange, InitIo, HaltIo, AbortIo,
-    SetIoCycleTime, CallIoPlugin>;
+    UnloadTool, LoadToolTable, SetToolEntry, SetToolNumber, StartToolChange, ConfirmToolChange, InitIo,
+    HaltIo, AbortIo, SetIoCycleTime, CallIoPlugin>;
 
 }  // namespace mw::msgs

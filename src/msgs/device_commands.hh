@@ -229,6 +229,11 @@ template <>
 inline constexpr auto DECLARED<StartToolChange> =
     declare("StartToolChange", 1110, "EMC_TOOL_START_CHANGE_TYPE", "tells the changer that a change begins");
 
+struct ConfirmToolChange {};
+template <>
+inline constexpr auto DECLARED<ConfirmToolChange> =
+    declare("ConfirmToolChange", 3004, "", "a person says that the tool that was asked for is in");
+
 struct InitIo {};
 template <>
 inline constexpr auto DECLARED<InitIo> = declare("InitIo", 1601, "EMC_IO_INIT_TYPE", "sets I/O up");

@@ -96,6 +96,7 @@ struct ToolStatus {
     int from_pocket = 0;
     int prepared_index = -1;
     std::uint64_t table_version = 0;
+    bool isPersonAsked = false;
 };
 template <>
 inline constexpr auto DECLARED<ToolStatus> = declare(
@@ -103,7 +104,8 @@ inline constexpr auto DECLARED<ToolStatus> = declare(
     field<&ToolStatus::in_spindle>("in_spindle", "number of the tool, 0 none"),
     field<&ToolStatus::from_pocket>("from_pocket", "where it was taken from"),
     field<&ToolStatus::prepared_index>("prepared_index", "entry of the tool table prepared by T, -1 none"),
-    field<&ToolStatus::table_version>("table_version", "counts changes of the tool table"));
+    field<&ToolStatus::table_version>("table_version", "counts changes of the tool table"),
+    field<&ToolStatus::isPersonAsked>("person_asked", "ConfirmToolChange is waited for"));
 
 struct AuxStatus {
     bool isEstopRequested = true;

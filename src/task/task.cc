@@ -304,6 +304,7 @@ void Task::update_status() {
                     sequencer_.tool_change().selected_index(), tools_.version()};
     status_.io.coolant.isMistOn = io_.outputs.coolant_mist;
     status_.io.coolant.isFloodOn = io_.outputs.coolant_flood;
+    status_.tool.isPersonAsked = parts_.io_port.isPersonAsked();
     status_.io.aux = {io_.isEstopRequested(), io_.isChainClosed()};
     status_.io.lube.isOn = io_.outputs.lube;
     ++status_.cycle;

@@ -25,12 +25,16 @@
 
 namespace mw::task {
 
-/// The pins of the I/O controller, as task reads and writes them once a cycle.
+/// The pins of the I/O controller, as task reads and writes them once a cycle, and the person who changes
+/// tools by hand.
 class IoPort {
   public:
     virtual ~IoPort() = default;
     virtual io::Inputs read() = 0;
     virtual void write(const io::Outputs &outputs) = 0;
+    /// A person is asked to change the tool.
+    virtual bool isPersonAsked() const = 0;
+    virtual void confirm_tool_change() = 0;
 };
 
 struct Settings {
@@ -83,6 +87,9 @@ class Task {
     /// One task cycle at clock time `now_ns`.
     void step(std::int64_t now_ns);
 
+    /// A line for the operator, whoever has the right to operate.
+    void post(MessageKind kind, const std::string &text) { desk_.post(kind, text); }
+
     const Status &status() const { return status_; }
     /// The planner in force, and wishes of the operator about it.
     PlannerMode &planner_mode() { return planner_mode_; }
@@ -122,7 +129,6 @@ class Task {
     void tell(const std::optional<Ending> &ending);
     void publish_tools();
     void update_status();
-    void post(MessageKind kind, const std::string &text) { desk_.post(kind, text); }
     /// Takes the machine's position and state as the program's.
     void synch_interpreter();
     void show_world() { world_.show(snapshot_of(motion_.status(), io_.outputs, sequencer_)); }

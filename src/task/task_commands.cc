@@ -63,6 +63,7 @@ struct Task::Handler {
     Outcome operator()(const SpindleOn &command);
     Outcome operator()(const SpindleOff &command);
     Outcome operator()(const LoadToolTable &command);
+    Outcome operator()(const ConfirmToolChange &command);
 
     Outcome operator()(const SetOptionalStop &command) {
         task.world_.set_optional_stop(command.isOn);
@@ -147,7 +148,7 @@ struct Task::Handler {
 
   private:
     Outcome abort_all();
-    void refuse_waiting();
+    void refuse(const std::vector<mailbox::Serial> &dropped);
     Outcome send(const motion::CommandBody &body) {
         task.motion_.send(body);
         return Progress::DONE;
@@ -209,15 +210,15 @@ void Task::carry_out_commands() {
     }
 }
 
-void Task::Handler::refuse_waiting() {
-    for (const mailbox::Serial waiting : task.inbox_.drop_before(id)) {
+void Task::Handler::refuse(const std::vector<mailbox::Serial> &dropped) {
+    for (const mailbox::Serial waiting : dropped) {
         task.desk_.tell(waiting, Progress::REFUSED, "it came before a stop");
     }
 }
 
 Outcome Task::Handler::operator()(const SetState &command) {
     if (command.state == State::ESTOP || command.state == State::OFF) {
-        refuse_waiting();
+        refuse(task.inbox_.drop_before(id));
     }
     const MachineState::Asked asked = task.state_.ask(command.state, id, task.now_ns_);
     task.tell(asked.replaced);
@@ -349,7 +350,7 @@ Outcome Task::Handler::operator()(const ResumeProgram &) {
 }
 
 Outcome Task::Handler::abort_all() {
-    refuse_waiting();
+    refuse(task.inbox_.drop_before(id));
     task.stop_run("aborted");
     task.abort_work(AbortReason::ABORT);
     return Progress::DONE;
@@ -412,6 +413,7 @@ Outcome Task::Handler::operator()(const JogAbsolute &command) {
 }
 
 Outcome Task::Handler::operator()(const JogStop &command) {
+    refuse(task.inbox_.drop_jogs_before(id, command));
     return send(motion::JogStop{{command.isJoint, command.index}});
 }
 
@@ -437,6 +439,14 @@ Outcome Task::Handler::operator()(const LoadToolTable &) {
     }
     const auto loaded = task.parts_.tools.reload();
     return loaded.has_value() ? Outcome(Progress::DONE) : std::unexpected(loaded.error());
+}
+
+Outcome Task::Handler::operator()(const ConfirmToolChange &) {
+    if (!task.parts_.io_port.isPersonAsked()) {
+        return fail("nobody is asked to change a tool");
+    }
+    task.parts_.io_port.confirm_tool_change();
+    return Progress::DONE;
 }
 
 }  // namespace mw::task

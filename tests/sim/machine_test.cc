@@ -39,6 +39,24 @@ TEST_F(MachineTest, ProgramsReadHalItemsInTheCaseOfTheirNames_I1) {
     EXPECT_EQ(mdi("G0 X#<_hal[depth]>"), task::Progress::FAILED);
 }
 
+TEST_F(MachineTest, AFailureOfAHalFileIsToldOnceWithItsLineAndStillSaysWhatItIs) {
+    machine_.reset();
+    write("bad.hal", "net a no.such-pin\n");
+    sink_.clear();
+    loaded_ = LoadedConfig::load(changed_config("mill_mm.ini", {{"LIB:core_sim.hal", "bad.hal"}}), sink_);
+    ASSERT_NE(loaded_, nullptr);
+    const auto made =
+        make_virtual_machine({loaded_->ini, loaded_->reader, loaded_->machine, sink_}, MachineOptions{});
+    ASSERT_FALSE(made.has_value());
+    EXPECT_TRUE(made.error().isTold);
+    EXPECT_NE(made.error().message, "");
+    const int told = sink_.count_errors();
+    EXPECT_EQ(told, 1);
+    EXPECT_NE(sink_.all().back().str().find("bad.hal:1"), std::string::npos) << sink_.all().back().str();
+    sink_.failure(made.error());
+    EXPECT_EQ(sink_.count_errors(), told);
+}
+
 TEST_F(MachineTest, AnOpenChainDropsTheAmplifiersInTheSameServoCycle) {
     start(LONG_MOVES);
     cycles(500);

@@ -51,7 +51,8 @@ class VirtualMachineTest : public ::testing::Test {
             make_virtual_machine({loaded_->ini, loaded_->reader, loaded_->machine, sink_}, MachineOptions{});
         ASSERT_TRUE(made.has_value()) << made.error().str();
         machine_ = std::move(*made);
-        app::Operator person(*machine_, loaded_->machine, sink_, {});
+        app::OwnMachine own(*machine_);
+        app::Operator person(own, loaded_->machine, sink_, {});
         ASSERT_TRUE(person.switch_on().has_value());
         ASSERT_TRUE(person.home_all().has_value());
         machine_->channels().isTracing.store(1);

@@ -71,6 +71,50 @@ TEST_F(ClientTest, EachCommandEndsWithItsOutcomeAndReason_C5) {
     EXPECT_EQ(a.outcome(first).progress, Progress::FAILED) << "an end is final";
 }
 
+TEST_F(ClientTest, WhatAnAttendedClientHasBegunIsAbortedWhenItLeavesAndNothingElse_D3) {
+    const auto aborts = [this] {
+        const auto taken = cycle();
+        return std::count_if(taken.begin(), taken.end(), [](const Desk::Delivery &d) {
+            return std::holds_alternative<msgs::AbortAll>(d.command) && d.serial > 0;
+        });
+    };
+    isKeeping = true;
+    for (const Role role : {Role::ATTENDED, Role::OPERATOR, Role::PANEL}) {
+        std::optional<Client> client = made(role);
+        ASSERT_TRUE(client->post(msgs::RunProgram{}).has_value());
+        EXPECT_EQ(aborts(), 0);
+        client.reset();
+        EXPECT_EQ(aborts(), role == Role::ATTENDED ? 1 : 0);
+        EXPECT_EQ(aborts(), 0) << "once";
+    }
+    std::optional<Client> watcher = made(Role::ATTENDED);
+    const auto run = *watcher->post(msgs::RunProgram{});
+    cycle();
+    desk.tell(run, Progress::DONE, "");
+    watcher.reset();
+    EXPECT_EQ(aborts(), 0) << "its program has ended; another's may run";
+}
+
+TEST_F(ClientTest, TheStopForAnAttendedClientComesAfterWhatItPostedLast_D3) {
+    std::optional<Client> client = made(Role::ATTENDED);
+    isKeeping = true;
+    ASSERT_TRUE(client->post(msgs::RunProgram{}).has_value());
+    client.reset();
+    const auto taken = cycle();
+    ASSERT_EQ(taken.size(), 2U);
+    EXPECT_TRUE(std::holds_alternative<msgs::RunProgram>(taken[0].command));
+    EXPECT_TRUE(std::holds_alternative<msgs::AbortAll>(taken[1].command));
+}
+
+TEST_F(ClientTest, AMachineSaysWhatItIs) {
+    Client client = made();
+    EXPECT_TRUE(client.identity().ini.empty()) << "not ready yet";
+    memory.segment().identity.write({msgs::FixedText<1023>("/m/mill.ini"), true});
+    EXPECT_EQ(client.identity().ini, "/m/mill.ini");
+    EXPECT_TRUE(client.identity().isLasting);
+    EXPECT_TRUE(client.isMachineAlive());
+}
+
 TEST_F(ClientTest, ACommandUnderWayIsRememberedHoweverManyComeAfterIt_D1) {
     Client a = made(), b = made();
     isKeeping = true;

@@ -124,6 +124,45 @@ TEST(MailboxProcess, ClientsKilledAtAnyInstantHurtNobody) {
     task.join();
 }
 
+/// Both halves: a killed one's program is stopped within some cycles, a living one's never.
+TEST(MailboxProcess, TheProgramOfAnAttendedClientThatIsKilledIsAborted_D3) {
+    const std::string name = instance("attended");
+    auto memory = mailbox::Memory::create(name);
+    ASSERT_TRUE(memory.has_value());
+    int ready[2];
+    ASSERT_EQ(::pipe(ready), 0);
+    const pid_t child = ::fork();
+    if (child == 0) {
+        auto client = Client::connect(name, Role::ATTENDED);
+        const bool isPosted = client.has_value() && client->post(msgs::RunProgram{}).has_value();
+        (void)!::write(ready[1], isPosted ? "y" : "n", 1);
+        ::pause();
+        ::_exit(1);
+    }
+    char posted = 'n';
+    ASSERT_EQ(::read(ready[0], &posted, 1), 1);
+    ASSERT_EQ(posted, 'y');
+    mailbox::Desk desk(memory->segment());
+    std::int64_t now_ns = 0;
+    const auto aborts_in = [&](int cycles) {
+        int aborts = 0;
+        for (int i = 0; i < cycles; ++i) {
+            for (const auto &delivery : desk.take(now_ns += 1000000)) {
+                aborts += std::holds_alternative<msgs::AbortAll>(delivery.command) ? 1 : 0;
+            }
+        }
+        return aborts;
+    };
+    EXPECT_EQ(aborts_in(1000), 0) << "it lives";
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    EXPECT_EQ(aborts_in(8), 1);
+    EXPECT_EQ(aborts_in(1000), 0);
+    for (const int fd : ready) {
+        ::close(fd);
+    }
+}
+
 TEST(MailboxProcess, TaskKilledAtAnyInstantIsNoticedAndItsNameIsFree) {
     const std::string name = instance("task");
     std::mt19937 random(2);

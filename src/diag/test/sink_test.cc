@@ -52,5 +52,19 @@ TEST(Sink, CountsErrorsOnlyAndGoesOn) {
     EXPECT_EQ(sink.all().size(), 3U);
 }
 
+TEST(Sink, TellsAFailureOnceOnlyWhoeverFoundIt) {
+    Sink sink;
+    const auto find = [&sink]() -> Result<> {
+        sink.error("bad line", {"a.hal", 3, 0});
+        return fail_told("a.hal has errors");
+    };
+    sink.failure(find().error());
+    EXPECT_EQ(sink.count_errors(), 1);
+    EXPECT_EQ(find().error().str(), "a.hal has errors") << "it says what it is about all the same";
+    sink.failure(Error{"not told"});
+    EXPECT_EQ(sink.all().back().what.str(), "not told");
+    EXPECT_EQ(sink.count_errors(), 3);
+}
+
 }  // namespace
 }  // namespace mw::diag

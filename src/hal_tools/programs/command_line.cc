@@ -10,64 +10,47 @@
 
 #include "hal_lang/lang/completion.hh"
 #include "hal_tools/programs/line_editor.hh"
+#include "options/letters.hh"
 
 namespace mw::hal::tools {
 
 namespace {
 
-/// Applies one option letter; false when there is none like it.
-bool apply(CommandLine &line, char option) {
+void apply(CommandLine &line, const options::Letter &option) {
     lang::SessionOptions &session = line.session;
-    switch (option) {
-    case 'f': line.readsInput = true; return true;
-    case 'k': session.keepsGoing = true; return true;
-    case 'q': session.verbosity = lang::Verbosity::ERRORS; return true;
-    case 'Q': session.verbosity = lang::Verbosity::SILENT; return true;
-    case 's': session.isScript = true; return true;
-    case 'v': session.verbosity = lang::Verbosity::RESULTS; return true;
-    case 'V': session.verbosity = lang::Verbosity::EVERYTHING; return true;
-    case 'e': session.isEchoing = true; return true;
-    case 'h': line.wantsHelp = true; return true;
-    case 'I': line.isInteractive = true; return true;
-    case 'U': line.isKilling = true; return true;
-    case 'T': line.wantsTcl = true; return true;
-    case 'R':
-        // The lock of the HAL segment is robust: it frees itself when its holder dies.
-        return true;
-    default: return false;
+    switch (option.letter) {
+    case 'f': line.readsInput = true; break;
+    case 'k': session.keepsGoing = true; break;
+    case 'q': session.verbosity = lang::Verbosity::ERRORS; break;
+    case 'Q': session.verbosity = lang::Verbosity::SILENT; break;
+    case 's': session.isScript = true; break;
+    case 'v': session.verbosity = lang::Verbosity::RESULTS; break;
+    case 'V': session.verbosity = lang::Verbosity::EVERYTHING; break;
+    case 'e': session.isEchoing = true; break;
+    case 'h': line.wantsHelp = true; break;
+    case 'I': line.isInteractive = true; break;
+    case 'U': line.isKilling = true; break;
+    case 'T': line.wantsTcl = true; break;
+    case 'i': line.ini_path = option.value; break;
+    default: break;  // R: the lock of the HAL segment is robust, it frees itself when its holder dies
     }
 }
 
 }  // namespace
 
 Result<CommandLine> parse_command_line(const std::vector<std::string> &arguments) {
-    CommandLine line;
-    std::size_t i = 0;
-    for (; i < arguments.size(); ++i) {
-        const std::string &word = arguments[i];
-        if (word == "--") {
-            ++i;
-            break;
-        }
-        if (word.size() < 2 || word[0] != '-') {
-            break;
-        }
-        for (std::size_t k = 1; k < word.size(); ++k) {
-            if (word[k] == 'i') {
-                // The file follows at once or as the next word.
-                const bool isAttached = k + 1 < word.size();
-                if (!isAttached && i + 1 >= arguments.size()) {
-                    return fail("option -i needs the name of an INI file");
-                }
-                line.ini_path = isAttached ? word.substr(k + 1) : arguments[++i];
-                break;
-            }
-            if (!apply(line, word[k])) {
-                return fail(fmt::format("unknown option -{}", word[k]));
-            }
-        }
+    static constexpr options::KnownLetter KNOWN[] = {
+        {'f'}, {'k'}, {'q'}, {'Q'}, {'s'}, {'v'}, {'V'},
+        {'e'}, {'h'}, {'I'}, {'U'}, {'T'}, {'R'}, {'i', "the name of an INI file"}};
+    auto read = options::read_letters(arguments, KNOWN, options::EndOfLetters::FIRST_WORD);
+    if (!read) {
+        return std::unexpected(read.error());
     }
-    line.words.assign(arguments.begin() + static_cast<std::ptrdiff_t>(i), arguments.end());
+    CommandLine line;
+    for (const options::Letter &option : read->options) {
+        apply(line, option);
+    }
+    line.words = std::move(read->words);
     line.session.library = lang::default_library();
     return line;
 }

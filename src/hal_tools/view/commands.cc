@@ -15,8 +15,8 @@
 #include "hal_tools/view/capture.hh"
 #include "hal_tools/view/latency.hh"
 #include "hal_tools/view/netlist.hh"
-#include "hal_tools/view/options.hh"
 #include "hal_tools/view/terminal.hh"
+#include "options/command_line.hh"
 
 namespace mw::hal::view {
 
@@ -25,24 +25,15 @@ namespace {
 constexpr const char *USAGE =
     "usage: millwright hal [COMMAND ...]      looks at the running HAL\n"
     "\n"
-    "  (no command) [NAME...]          pins, signals and threads live on the terminal; NAMEs are watched\n"
-    "  watch NAME... [--every S] [--count N]\n"
-    "                                  a line of values every S seconds (default 0.5)\n"
-    "  capture NAME... [-o FILE.csv|.png|.svg]...\n"
-    "                                  records up to 16 pins, signals or parameters in realtime; CSV to "
-    "standard\n"
-    "                                  output without -o\n"
-    "      --samples N (1000)  --every N (1: each period)  --thread NAME\n"
-    "      --trigger NAME rising|falling|either|above|below LEVEL\n"
-    "      --pre PERCENT (10)          part of the record before the trigger\n"
-    "      --timeout S (10)            give up, or with --force record what is there\n"
-    "  graph [-o FILE.svg|.png|.pdf|.dot] [--only GLOB] [--values] [--unlinked]\n"
-    "                                  draws components and signals (default: dot text to standard output)\n"
-    "  latency [--base PERIOD] [--servo PERIOD] [--seconds S] [-o FILE.png|.svg|.csv]\n"
-    "                                  latency of threads in a realtime process of its own (PERIOD: 25us, "
-    "1ms)\n";
+    "  (no command) [NAME...]  pins, signals and threads live on the terminal; NAMEs are watched\n"
+    "  watch NAME...           a line of values again and again\n"
+    "  capture NAME...         records up to 16 pins, signals or parameters in realtime\n"
+    "  graph                   draws components and signals\n"
+    "  latency                 latency of threads in a realtime process of its own\n"
+    "\n"
+    "Each command has a --help of its own.\n";
 
-using Words = std::vector<std::string>;
+using options::CommandLine, options::Words;
 
 int report(const Result<> &result, const char *program = "millwright hal") {
     if (!result) {
@@ -57,42 +48,16 @@ void nap(double seconds) {
     nanosleep(&pause, nullptr);
 }
 
-/// Sets `into` to the option's number.
-template <class T>
-Option number_option(const std::string &name, T &into, double low, double high) {
-    return {name, 1, [&into, low, high](const Words &words) -> Result<> {
-                const auto number = number_in(words[0], low, high);
-                if (!number) {
-                    return std::unexpected(number.error());
-                }
-                into = static_cast<T>(*number);
-                return {};
-            }};
-}
-
-Option text_option(const std::string &name, std::string &into) {
-    return {name, 1, [&into](const Words &words) -> Result<> {
-                into = words[0];
-                return {};
-            }};
-}
-
-Option flag(const std::string &name, bool &into) {
-    return {name, 0, [&into](const Words &) -> Result<> {
-                into = true;
-                return {};
-            }};
-}
-
-Option period_option(const std::string &name, std::int64_t &into) {
-    return {name, 1, [&into](const Words &words) -> Result<> {
-                const auto period = parse_period(words[0]);
-                if (!period) {
-                    return std::unexpected(period.error());
-                }
-                into = *period;
-                return {};
-            }};
+/// A period: 25us, 1ms, or nanoseconds.
+void take_period(CommandLine &line, const std::string &names, const std::string &doc, std::int64_t &into) {
+    line.take(names, 1, "PERIOD", doc, [&into](const Words &words) -> Result<> {
+        const auto period = parse_period(words[0]);
+        if (!period) {
+            return std::unexpected(period.error());
+        }
+        into = *period;
+        return {};
+    });
 }
 
 // ---- watch
@@ -132,31 +97,31 @@ Result<> watch_lines(Hal &hal, const Words &names, double every_s, long count,
     return {};
 }
 
-Result<> watch(const Words &words, volatile std::sig_atomic_t &stop) {
+struct WatchCommand {
+    Words names;
     double every_s = 0.5;
     long count = 0;
-    const auto names = parse_options(
-        words, {number_option("--every", every_s, 0.001, 3600), number_option("--count", count, 1, 1e9)});
-    if (!names) {
-        return std::unexpected(names.error());
+
+    CommandLine line() {
+        CommandLine line("millwright hal watch NAME... [options]",
+                         "Prints a line of values of pins, parameters or signals again and again.\n");
+        line.number("--every", "S", "seconds between two lines (default 0.5)", every_s, 0.001, 3600);
+        line.number("--count", "N", "so many lines (default: until stopped)", count, 1, 1000000000);
+        line.rest(names);
+        return line;
     }
-    if (names->empty()) {
+};
+
+Result<> watch(const WatchCommand &command, volatile std::sig_atomic_t &stop) {
+    if (command.names.empty()) {
         return fail("watch needs the name of a pin, parameter or signal");
     }
     const auto host = HostClient::connect(default_instance());
-    return host ? watch_lines((*host)->hal(), *names, every_s, count, stop) : std::unexpected(host.error());
+    return host ? watch_lines((*host)->hal(), command.names, command.every_s, command.count, stop)
+                : std::unexpected(host.error());
 }
 
 // ---- capture
-
-struct CaptureCommand {
-    CaptureRequest request;
-    Words outputs;
-    std::string thread;
-    double timeout_s = 10.0;
-    double pre_percent = -1.0;
-    bool isForced = false;
-};
 
 Result<TriggerKind> trigger_kind(const std::string &word) {
     static constexpr std::pair<const char *, TriggerKind> KINDS[] = {{"rising", TriggerKind::RISING},
@@ -175,12 +140,12 @@ Result<TriggerKind> trigger_kind(const std::string &word) {
 
 Result<> take_trigger(CaptureRequest &request, const Words &words) {
     const auto kind = trigger_kind(words[1]);
-    const auto level = number_in(words[2], -1e300, 1e300);
+    const auto level = parse_double(words[2]);
     if (!kind) {
         return std::unexpected(kind.error());
     }
-    if (!level) {
-        return std::unexpected(level.error());
+    if (!level || !std::isfinite(*level)) {
+        return fail(fmt::format("'{}' is no level", words[2]));
     }
     request.trigger_name = words[0];
     request.trigger = *kind;
@@ -188,29 +153,37 @@ Result<> take_trigger(CaptureRequest &request, const Words &words) {
     return {};
 }
 
-Result<CaptureCommand> parse_capture(const Words &words) {
-    CaptureCommand command;
-    CaptureRequest &request = command.request;
-    auto names = parse_options(
-        words, {number_option("--samples", request.samples, 1, 1 << 24),
-                number_option("--every", request.every, 1, 1e6),
-                number_option("--pre", command.pre_percent, 0, 99.9),
-                number_option("--timeout", command.timeout_s, 0, 1e6),
-                text_option("--thread", command.thread),
-                flag("--force", command.isForced),
-                {"--trigger", 3, [&](const Words &taken) { return take_trigger(request, taken); }},
-                {"-o", 1, [&](const Words &taken) -> Result<> {
-                     command.outputs.push_back(taken[0]);
-                     return {};
-                 }}});
-    if (!names) {
-        return std::unexpected(names.error());
+struct CaptureCommand {
+    CaptureRequest request;
+    Words outputs;
+    std::string thread;
+    double timeout_s = 10.0;
+    double pre_percent = -1.0;
+    bool isForced = false;
+
+    CommandLine line() {
+        CommandLine line(
+            "millwright hal capture NAME... [options]",
+            "Records up to 16 pins, signals or parameters in realtime. CSV to standard output without -o.\n");
+        line.texts("-o", "FILE", "write .csv, .png or .svg; may come several times", outputs);
+        line.number("--samples", "N", "so many (default 1000)", request.samples, 1, 1 << 24);
+        line.number("--every", "N", "one in N periods (default 1)", request.every, 1, 1000000);
+        line.text("--thread", "NAME", "in this thread", thread);
+        line.take("--trigger", 3, "NAME KIND LEVEL",
+                  "begin when NAME does so; KIND: rising, falling, either, above or below",
+                  [this](const Words &words) { return take_trigger(request, words); });
+        line.number("--pre", "PERCENT", "part of the record before the trigger (default 10)", pre_percent, 0,
+                    99.9);
+        line.number("--timeout", "S", "give up after so long (default 10)", timeout_s, 0, 1e6);
+        line.flag("--force", "record what is there instead of giving up", isForced);
+        line.rest(request.names);
+        return line;
     }
-    request.names = std::move(*names);
-    const bool hasTrigger = request.trigger != TriggerKind::NONE;
-    request.pretrigger = (command.pre_percent >= 0 ? command.pre_percent : hasTrigger ? 10.0 : 0.0) / 100.0;
-    return command;
-}
+    void finish() {
+        const bool hasTrigger = request.trigger != TriggerKind::NONE;
+        request.pretrigger = (pre_percent >= 0 ? pre_percent : hasTrigger ? 10.0 : 0.0) / 100.0;
+    }
+};
 
 /// Waits for the end of the record; after the timeout it is forced, or given up.
 Result<> wait_for_record(const Hal &hal, Capture &capture, const CaptureCommand &command,
@@ -243,22 +216,18 @@ Result<> wait_for_record(const Hal &hal, Capture &capture, const CaptureCommand 
     return {};
 }
 
-Result<> capture(const Words &words, volatile std::sig_atomic_t &stop) {
-    const auto command = parse_capture(words);
-    if (!command) {
-        return std::unexpected(command.error());
-    }
+Result<> capture(const CaptureCommand &command, volatile std::sig_atomic_t &stop) {
     const auto host = HostClient::connect(default_instance());
     if (!host) {
         return std::unexpected(host.error());
     }
-    auto capture = Capture::open(**host, command->thread);
+    auto capture = Capture::open(**host, command.thread);
     if (!capture) {
         return std::unexpected(capture.error());
     }
-    Result<> done = capture->begin(command->request);
+    Result<> done = capture->begin(command.request);
     if (done) {
-        done = wait_for_record((*host)->hal(), *capture, *command, stop);
+        done = wait_for_record((*host)->hal(), *capture, command, stop);
     }
     if (!done) {
         return done;
@@ -271,10 +240,10 @@ Result<> capture(const Words &words, volatile std::sig_atomic_t &stop) {
         std::fprintf(stderr, "warning: '%s' was linked or unlinked meanwhile; its values may be old\n",
                      name.c_str());
     }
-    if (command->outputs.empty()) {
+    if (command.outputs.empty()) {
         std::fputs(to_csv(*record).c_str(), stdout);
     }
-    for (const std::string &path : command->outputs) {
+    for (const std::string &path : command.outputs) {
         const Result<> written =
             write_record(*record, fmt::format("HAL capture, {} samples", record->times_s.size()), path);
         if (!written) {
@@ -286,27 +255,31 @@ Result<> capture(const Words &words, volatile std::sig_atomic_t &stop) {
 
 // ---- graph, latency
 
-Result<> graph(const Words &words) {
+struct GraphCommand {
     NetlistOptions options;
     std::string path;
-    const auto rest = parse_options(words, {text_option("-o", path), text_option("--only", options.glob),
-                                            flag("--values", options.showsValues),
-                                            flag("--unlinked", options.showsUnlinked)});
-    if (!rest) {
-        return std::unexpected(rest.error());
+
+    CommandLine line() {
+        CommandLine line("millwright hal graph [options]",
+                         "Draws components and signals. Dot text to standard output without -o.\n");
+        line.text("-o", "FILE", "write .svg, .png, .pdf or .dot", path);
+        line.text("--only", "GLOB", "components and signals of such names", options.glob);
+        line.flag("--values", "with values", options.showsValues);
+        line.flag("--unlinked", "with pins that are not linked", options.showsUnlinked);
+        return line;
     }
-    if (!rest->empty()) {
-        return fail(fmt::format("graph takes no word '{}'", rest->front()));
-    }
+};
+
+Result<> graph(const GraphCommand &command) {
     const auto host = HostClient::connect(default_instance());
     if (!host) {
         return std::unexpected(host.error());
     }
-    if (path.empty()) {
-        std::fputs(netlist_dot((*host)->hal(), options).c_str(), stdout);
+    if (command.path.empty()) {
+        std::fputs(netlist_dot((*host)->hal(), command.options).c_str(), stdout);
         return {};
     }
-    return write_netlist((*host)->hal(), options, path);
+    return write_netlist((*host)->hal(), command.options, command.path);
 }
 
 /// Threads of the two periods; a base period of 0 leaves that thread out.
@@ -319,24 +292,29 @@ std::vector<LatencyThread> threads_of(std::int64_t base_ns, std::int64_t servo_n
     return threads;
 }
 
-Result<> latency(const Words &words, volatile std::sig_atomic_t &stop) {
+struct LatencyCommand {
     LatencyOptions options;
     std::int64_t base_ns = 0, servo_ns = 1'000'000;
     std::string path;
-    const auto rest =
-        parse_options(words, {period_option("--base", base_ns), period_option("--servo", servo_ns),
-                              number_option("--seconds", options.seconds, 0.01, 1e7), text_option("-o", path),
-                              text_option("--text", options.note)});
-    if (!rest) {
-        return std::unexpected(rest.error());
+
+    CommandLine line() {
+        CommandLine line("millwright hal latency [options]",
+                         "Measures the latency of threads in a realtime process of its own.\n");
+        take_period(line, "--base", "of a base thread: 25us, 1ms or nanoseconds (default: none)", base_ns);
+        take_period(line, "--servo", "of the servo thread (default 1ms)", servo_ns);
+        line.number("--seconds", "S", "so long (default: until stopped)", options.seconds, 0.01, 1e7);
+        line.text("-o", "FILE", "write .png, .svg or .csv", path);
+        line.text("--text", "NOTE", "stands in the picture", options.note);
+        return line;
     }
-    if (!rest->empty()) {
-        return fail(fmt::format("latency takes no word '{}'", rest->front()));
-    }
-    options.threads = threads_of(base_ns, servo_ns);
+};
+
+Result<> latency(LatencyCommand command, volatile std::sig_atomic_t &stop) {
+    LatencyOptions &options = command.options;
+    options.threads = threads_of(command.base_ns, command.servo_ns);
     options.showsBars = true;
     options.isLive = ::isatty(STDOUT_FILENO) != 0;
-    (path.ends_with(".csv") ? options.csv_path : options.picture_path) = path;
+    (command.path.ends_with(".csv") ? options.csv_path : options.picture_path) = command.path;
     return run_latency(options, stop);
 }
 
@@ -355,28 +333,42 @@ Result<> live(const Words &names, volatile std::sig_atomic_t &stop) {
     return run_terminal(model, stop);
 }
 
+/// A command from its words to the exit status.
+template <class Command, class Run>
+int carry_out(const Words &words, const Run &run) {
+    Command command;
+    const CommandLine line = command.line();
+    if (options::wantsHelp(words)) {
+        std::fputs(line.help().c_str(), stdout);
+        return 0;
+    }
+    const auto parsed = line.parse(words);
+    return report(parsed ? run(command) : parsed);
+}
+
 }  // namespace
 
 int command_hal(const Words &words, volatile std::sig_atomic_t &stop) {
     const std::string command = words.empty() ? "" : words[0];
     const Words rest(words.empty() ? words.begin() : words.begin() + 1, words.end());
-    const bool isHelp =
-        std::ranges::any_of(words, [](const std::string &word) { return word == "--help" || word == "-h"; });
-    if (isHelp || command == "help") {
-        std::fputs(USAGE, stdout);
-        return 0;
-    }
     if (command == "watch") {
-        return report(watch(rest, stop));
+        return carry_out<WatchCommand>(rest, [&](WatchCommand &one) { return watch(one, stop); });
     }
     if (command == "capture") {
-        return report(capture(rest, stop));
+        return carry_out<CaptureCommand>(rest, [&](CaptureCommand &one) {
+            one.finish();
+            return capture(one, stop);
+        });
     }
     if (command == "graph") {
-        return report(graph(rest));
+        return carry_out<GraphCommand>(rest, [](GraphCommand &one) { return graph(one); });
     }
     if (command == "latency") {
-        return report(latency(rest, stop));
+        return carry_out<LatencyCommand>(rest, [&](LatencyCommand &one) { return latency(one, stop); });
+    }
+    if (options::wantsHelp(words) || command == "help") {
+        std::fputs(USAGE, stdout);
+        return 0;
     }
     if (!command.empty() && (command[0] == '-' || command.find('.') == std::string::npos)) {
         std::fprintf(stderr, "millwright hal: unknown command '%s'; see millwright hal --help\n",
@@ -388,24 +380,25 @@ int command_hal(const Words &words, volatile std::sig_atomic_t &stop) {
 
 int latency_test(const Words &words, volatile std::sig_atomic_t &stop) {
     LatencyOptions options;
-    bool wantsHelp = false;
-    const auto rest = parse_options(words, {number_option("--seconds", options.seconds, 0.01, 1e7),
-                                            text_option("-o", options.picture_path),
-                                            flag("--help", wantsHelp), flag("-h", wantsHelp)});
-    if (wantsHelp) {
-        std::puts(
-            "usage: latency-test [base-period [servo-period]] [--seconds S] [-o FILE.png|.svg]\n"
-            "  periods as 25us, 1ms or nanoseconds; base-period 0: servo thread only. Default: 25us 1ms");
+    Words rest;
+    CommandLine line(
+        "latency-test [base-period [servo-period]] [options]",
+        "Periods as 25us, 1ms or nanoseconds; base-period 0: servo thread only. Default: 25us 1ms\n");
+    line.number("--seconds", "S", "so long (default: until stopped)", options.seconds, 0.01, 1e7);
+    line.text("-o", "FILE", "write .png or .svg", options.picture_path);
+    line.rest(rest);
+    if (options::wantsHelp(words)) {
+        std::fputs(line.help().c_str(), stdout);
         return 0;
     }
     std::int64_t periods[2] = {25'000, 1'000'000};
-    Result<> done = rest ? Result<>{} : std::unexpected(rest.error());
-    for (std::size_t i = 0; done && i < rest->size(); ++i) {
-        if (i == 0 && (*rest)[0] == "0") {
+    Result<> done = line.parse(words);
+    for (std::size_t i = 0; done && i < rest.size(); ++i) {
+        if (i == 0 && rest[0] == "0") {
             periods[0] = 0;
             continue;
         }
-        const auto period = i < 2 ? parse_period((*rest)[i]) : fail("latency-test takes two periods");
+        const auto period = i < 2 ? parse_period(rest[i]) : fail("latency-test takes two periods");
         done = period ? Result<>{} : std::unexpected(period.error());
         periods[i < 2 ? i : 0] = period.value_or(0);
     }
@@ -417,43 +410,63 @@ int latency_test(const Words &words, volatile std::sig_atomic_t &stop) {
     return report(done, "latency-test");
 }
 
-int latency_histogram(const Words &words, volatile std::sig_atomic_t &stop) {
+namespace {
+
+struct HistogramCommand {
     LatencyOptions options;
     std::int64_t base_ns = 25'000, servo_ns = 1'000'000;
     int base_bin_ns = 100, servo_bin_ns = 100;
     double without_effect = 0;
-    bool hasNoBase = false, wantsHelp = false, isIgnored = false;
-    const auto rest = parse_options(
-        words,
-        {period_option("--base", base_ns), period_option("--servo", servo_ns),
-         number_option("--bbinsize", base_bin_ns, 1, 1e6), number_option("--sbinsize", servo_bin_ns, 1, 1e6),
-         number_option("--bbins", without_effect, 1, 1e6), number_option("--sbins", without_effect, 1, 1e6),
-         number_option("--logscale", without_effect, 0, 1), text_option("--text", options.note),
-         number_option("--seconds", options.seconds, 0.01, 1e7), text_option("-o", options.picture_path),
-         text_option("--csv", options.csv_path), flag("--nobase", hasNoBase), flag("--show", isIgnored),
-         flag("--verbose", isIgnored), flag("--nox", isIgnored), flag("--help", wantsHelp),
-         flag("-?", wantsHelp)});
-    if (wantsHelp) {
-        std::puts(
-            "usage: latency-histogram [--base ns] [--servo ns] [--nobase] [--bbinsize ns] [--sbinsize ns]\n"
-            "                         [--text note] [--seconds S] [-o FILE.png|.svg] [--csv FILE]\n"
-            "  prints histograms at the end (Ctrl-C, or after S seconds). --bbins, --sbins, --logscale, "
-            "--show,\n"
-            "  --verbose and --nox are taken and have no effect: all bins are counted and shown.");
+    bool hasNoBase = false, isIgnored = false, wantsHelp = false;
+
+    CommandLine line() {
+        CommandLine line("latency-histogram [options]",
+                         "Prints histograms at the end (Ctrl-C, or after S seconds).\n");
+        take_period(line, "--base", "of the base thread [ns] (default 25000)", base_ns);
+        take_period(line, "--servo", "of the servo thread [ns] (default 1000000)", servo_ns);
+        line.flag("--nobase", "servo thread only", hasNoBase);
+        line.number("--bbinsize", "NS", "bins of the base thread (default 100)", base_bin_ns, 1, 1000000);
+        line.number("--sbinsize", "NS", "bins of the servo thread (default 100)", servo_bin_ns, 1, 1000000);
+        line.text("--text", "NOTE", "stands in the picture", options.note);
+        line.number("--seconds", "S", "so long (default: until stopped)", options.seconds, 0.01, 1e7);
+        line.text("-o", "FILE", "write .png or .svg", options.picture_path);
+        line.text("--csv", "FILE", "write the counts", options.csv_path);
+        line.number("--bbins", "N", "", without_effect, 1, 1e6);
+        line.number("--sbins", "N", "", without_effect, 1, 1e6);
+        line.number("--logscale", "N", "", without_effect, 0, 1);
+        line.flag("--show", "", isIgnored);
+        line.flag("--verbose", "", isIgnored);
+        line.flag("--nox", "", isIgnored);
+        line.flag("-?", "", wantsHelp);
+        line.footer("--bbins, --sbins, --logscale, --show, --verbose and --nox are taken and have no effect: "
+                    "all bins "
+                    "are\ncounted and shown.\n");
+        return line;
+    }
+};
+
+}  // namespace
+
+int latency_histogram(const Words &words, volatile std::sig_atomic_t &stop) {
+    HistogramCommand command;
+    const CommandLine line = command.line();
+    Result<> done = line.parse(words);
+    if (options::wantsHelp(words) || (done && command.wantsHelp)) {
+        std::fputs(line.help().c_str(), stdout);
         return 0;
     }
-    Result<> done = rest ? Result<>{} : std::unexpected(rest.error());
+    LatencyOptions &options = command.options;
     if (done) {
-        if (isIgnored || without_effect > 0) {
+        if (command.isIgnored || command.without_effect > 0) {
             std::fputs("latency-histogram: --bbins, --sbins, --logscale, --show, --verbose and --nox have no "
                        "effect: "
                        "all bins are counted and shown\n",
                        stderr);
         }
-        options.threads = threads_of(hasNoBase ? 0 : base_ns, servo_ns);
-        options.threads.back().bin_ns = servo_bin_ns;
-        if (!hasNoBase) {
-            options.threads.front().bin_ns = base_bin_ns;
+        options.threads = threads_of(command.hasNoBase ? 0 : command.base_ns, command.servo_ns);
+        options.threads.back().bin_ns = command.servo_bin_ns;
+        if (!command.hasNoBase) {
+            options.threads.front().bin_ns = command.base_bin_ns;
         }
         options.showsBars = true;
         options.isLive = ::isatty(STDOUT_FILENO) != 0;

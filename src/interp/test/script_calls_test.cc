@@ -208,6 +208,19 @@ TEST(ScriptCalls, AWaitingScriptEndsTheStepAndGoesOnWithTheNext_I1) {
     EXPECT_EQ(scripted.ended_waiting, 0);
 }
 
+TEST(ScriptCalls, WhatAScriptLeavesUnderWayIsRunBeforeItsCallEnds_I1) {
+    Scripted scripted;
+    scripted.functions["hasty"] = [&](const ScriptArguments &) {
+        EXPECT_EQ(scripted.execute("o<inner> call"), "waiting");
+        return ScriptOutcome{ScriptOutcome::Kind::VALUE, 6, {}};  // and does not wait
+    };
+    Machine machine(with_scripts(scripted));
+    machine.write("inner.ngc", "o<inner> sub\nM66 P0 L0\n(print,rest)\no<inner> endsub\n");
+    EXPECT_EQ(machine.run("o<hasty> call\n(print,then #<_value>)\n"), Step::PROGRAM_END) << machine.error();
+    EXPECT_EQ(machine.record.calls.at(1), "printrest");
+    EXPECT_EQ(machine.record.calls.at(2), "printthen 6.000000");
+}
+
 TEST(ScriptCalls, AnAbortEndsAWaitingScript_I1) {
     Scripted scripted;
     scripted.functions["waits"] = [&](const ScriptArguments &) {

@@ -3,15 +3,33 @@
 
 #include <algorithm>
 
-#include "mailbox/stops.hh"
+#include "base/overloaded.hh"
 
 namespace mw::task {
 namespace {
 
+/// Holds are not: while the mode changes nothing runs, and what waits to run comes before its hold.
 bool isUrgent(const msgs::Command &command) {
-    return mailbox::isStop(command) || std::holds_alternative<msgs::SetState>(command) ||
-           std::holds_alternative<msgs::EstopOff>(command) ||
-           std::holds_alternative<msgs::EstopReset>(command);
+    return std::visit(
+        []<class C>(const C &) {
+            return OneOf<C, msgs::AbortAll, msgs::AbortMachine, msgs::AbortTraj, msgs::AbortMotion,
+                         msgs::AbortTool, msgs::AbortIo, msgs::SetState, msgs::EstopOn, msgs::EstopOff,
+                         msgs::EstopReset, msgs::JogStop, msgs::AbortJoint>;
+        },
+        command);
+}
+
+/// A jog of the joint or axis that `stop` stops.
+bool isJogOf(const msgs::JogStop &stop, const msgs::Command &command) {
+    return std::visit(
+        [&]<class C>(const C &jog) {
+            if constexpr (OneOf<C, msgs::JogContinuous, msgs::JogIncrement, msgs::JogAbsolute>) {
+                return jog.isJoint == stop.isJoint && jog.index == stop.index;
+            } else {
+                return false;
+            }
+        },
+        command);
 }
 
 }  // namespace
@@ -32,19 +50,34 @@ std::optional<mailbox::Desk::Delivery> Inbox::next(bool isModeChanging) {
     return taken;
 }
 
-std::vector<mailbox::Serial> Inbox::drop_before(mailbox::Serial stop) {
+template <class Predicate>
+std::vector<mailbox::Serial> Inbox::drop(const Predicate &isOver) {
     std::vector<mailbox::Serial> dropped;
     std::erase_if(waiting_, [&](const mailbox::Desk::Delivery &delivery) {
-        const bool isLine = std::holds_alternative<msgs::OperatorError>(delivery.command) ||
-                            std::holds_alternative<msgs::OperatorText>(delivery.command) ||
-                            std::holds_alternative<msgs::OperatorDisplay>(delivery.command);
-        const bool isDropped = delivery.serial < stop && !isLine;
+        const bool isDropped = isOver(delivery);
         if (isDropped) {
             dropped.push_back(delivery.serial);
         }
         return isDropped;
     });
     return dropped;
+}
+
+std::vector<mailbox::Serial> Inbox::drop_before(mailbox::Serial stop) {
+    return drop([&](const mailbox::Desk::Delivery &delivery) {
+        const bool isLine = std::visit(
+            []<class C>(const C &) {
+                return OneOf<C, msgs::OperatorError, msgs::OperatorText, msgs::OperatorDisplay>;
+            },
+            delivery.command);
+        return delivery.serial < stop && !isLine;
+    });
+}
+
+std::vector<mailbox::Serial> Inbox::drop_jogs_before(mailbox::Serial stop, const msgs::JogStop &command) {
+    return drop([&](const mailbox::Desk::Delivery &delivery) {
+        return delivery.serial < stop && isJogOf(command, delivery.command);
+    });
 }
 
 }  // namespace mw::task

@@ -19,8 +19,13 @@ class Inbox {
     /// Takes out what was asked for before the stop `stop` and still waits: it would begin after it. Lines
     /// for the operator stay. The numbers of what was taken out.
     std::vector<mailbox::Serial> drop_before(mailbox::Serial stop);
+    /// The same of jogs of the joint or axis that the command `stop` stops.
+    std::vector<mailbox::Serial> drop_jogs_before(mailbox::Serial stop, const msgs::JogStop &command);
 
   private:
+    template <class Predicate>
+    std::vector<mailbox::Serial> drop(const Predicate &isOver);
+
     std::deque<mailbox::Desk::Delivery> waiting_;
 };
 

@@ -59,6 +59,8 @@ class FakeMotion {
             status.mode = isModeStuck ? status.mode : mode->mode;
         } else if (std::holds_alternative<motion::JogStop>(command.body)) {
             log.emplace_back("jog stop");
+        } else if (const auto *jog = std::get_if<motion::JogContinuous>(&command.body)) {
+            log.push_back("jog " + std::to_string(jog->target.index));
         } else if (const auto *on = std::get_if<motion::SpindleOn>(&command.body)) {
             log.push_back("spindle " + std::to_string(static_cast<int>(on->speed_rpm)));
         } else if (std::holds_alternative<motion::SpindleOff>(command.body)) {
@@ -111,7 +113,10 @@ class LoopedIo final : public IoPort {
         return in;
     }
     void write(const io::Outputs &o) override { outputs = o; }
+    bool isPersonAsked() const override { return isAsking; }
+    void confirm_tool_change() override { isAsking = false; }
     io::Outputs outputs;
+    bool isAsking = false;
     bool isChainClosed = true;
     bool isChangerWorking = true;
 };
@@ -217,6 +222,13 @@ TEST_F(TaskTest, AStopAlsoEndsOlderCommandsThatStillWaitForTheMode_D1) {
     EXPECT_TRUE(joined().contains("line 8") && !joined().contains("line 7")) << joined();
 }
 
+TEST_F(TaskTest, AToolChangeIsConfirmedOnlyWhileAPersonIsAsked_D3) {
+    EXPECT_EQ(ask(ConfirmToolChange{}), Progress::REFUSED);
+    io.isAsking = true;
+    EXPECT_EQ(ask(ConfirmToolChange{}), Progress::DONE);
+    EXPECT_FALSE(io.isAsking || task.status().tool.isPersonAsked);
+}
+
 TEST_F(TaskTest, AUserCodeRunsWithItsWordsAndIsAwaited_I1) {
     make_program("M101", "echo \"$1 $2\" >> " + (folder / "said").string() + "\n");
     open("G21 F600\nG1 X1\nM101 P2.5\nM101 P1 Q2\nG1 X2\nM2\n");
@@ -280,12 +292,38 @@ TEST_F(TaskTest, AStopDoesNotWaitForTheModeToChange_D1) {
     motion.isModeStuck = true;
     const auto mode = post(SetMode{Mode::AUTO});
     cycles(3);
-    const auto jog = post(JogContinuous{true, 0, 5}), stop = post(JogStop{true, 0});
+    const auto jog = post(JogContinuous{true, 0, 5}), other = post(JogContinuous{true, 1, 5});
+    const auto stop = post(JogStop{true, 0});
     cycles(3);
     EXPECT_EQ(progress(stop), Progress::DONE);
     EXPECT_NE(joined().find("jog stop"), std::string::npos);
+    EXPECT_EQ(progress(jog), Progress::REFUSED) << "it would begin after its stop";
+    EXPECT_EQ(reason(jog), "it came before a stop");
     EXPECT_EQ(progress(mode), Progress::STARTED);
-    EXPECT_EQ(progress(jog), Progress::STARTED) << "everything else waits";
+    EXPECT_EQ(progress(other), Progress::STARTED) << "everything else waits";
+    cycles(2100);
+    EXPECT_EQ(progress(mode), Progress::FAILED);
+    EXPECT_EQ(joined().find("jog 0"), std::string::npos);
+    EXPECT_NE(joined().find("jog 1"), std::string::npos);
+}
+
+TEST_F(TaskTest, AHoldOfARunThatWaitsForTheModeHoldsIt_D1) {
+    open("G21 F600\nG1 X7\nM2\n");
+    ASSERT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE);
+    motion.isModeStuck = true;
+    post(SetMode{Mode::AUTO});
+    const auto run = post(RunProgram{}), hold = post(PauseProgram{});
+    cycles(3);
+    EXPECT_EQ(progress(run), Progress::STARTED);
+    EXPECT_EQ(progress(hold), Progress::STARTED);
+    motion.status.mode = motion::Mode::COORD;
+    cycles(5);
+    EXPECT_EQ(progress(hold), Progress::DONE) << reason(hold);
+    EXPECT_TRUE(task.status().task.isPaused);
+    EXPECT_EQ(joined().find("line 7"), std::string::npos);
+    EXPECT_EQ(ask(ResumeProgram{}), Progress::DONE);
+    cycles(20);
+    EXPECT_EQ(progress(run), Progress::DONE);
 }
 
 TEST_F(TaskTest, HomingOfAnotherJointDoesNotLoseTheFirst_D1) {

@@ -8,12 +8,12 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <cstring>
 #include <fstream>
 #include <optional>
 #include <set>
 
 #include "base/text.hh"
+#include "options/command_line.hh"
 #include "traj/test/campaign.hh"
 #include "traj/test/sample_hash.hh"
 
@@ -162,14 +162,14 @@ std::set<unsigned> seeds_in(const char *name) {
 
 struct Task {
     unsigned first = 1, count = 100, processes = 2;
-    const char *log = nullptr;
+    std::string log;
 };
 
 /// Every `processes`-th seed; how many failed.
 int work(const Task &task, unsigned part, const std::set<unsigned> &done) {
-    const int file = ::open(task.log, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+    const int file = ::open(task.log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
     if (file < 0) {
-        std::perror(task.log);
+        std::perror(task.log.c_str());
         return 1;
     }
     int failed = 0;
@@ -188,7 +188,7 @@ int work(const Task &task, unsigned part, const std::set<unsigned> &done) {
                                        v.fault.c_str());
         failed += v.fault.empty() ? 0 : 1;
         if (::write(file, line, static_cast<std::size_t>(size)) != size) {
-            std::perror(task.log);
+            std::perror(task.log.c_str());
             return 1;
         }
     }
@@ -197,7 +197,7 @@ int work(const Task &task, unsigned part, const std::set<unsigned> &done) {
 }
 
 int run(const Task &task) {
-    const std::set<unsigned> done = seeds_in(task.log);
+    const std::set<unsigned> done = seeds_in(task.log.c_str());
     std::vector<pid_t> children;
     for (unsigned part = 0; part < task.processes; ++part) {
         const pid_t child = ::fork();
@@ -220,23 +220,17 @@ int run(const Task &task) {
 
 int main(int argc, char **argv) {
     mw::traj::test::Task task;
-    for (int i = 1; i + 1 < argc; i += 2) {
-        const auto number = mw::traj::test::number_in(argv[i + 1]);
-        if (std::strcmp(argv[i], "--log") == 0) {
-            task.log = argv[i + 1];
-        } else if (std::strcmp(argv[i], "--first") == 0 && number) {
-            task.first = *number;
-        } else if (std::strcmp(argv[i], "--count") == 0 && number) {
-            task.count = *number;
-        } else if (std::strcmp(argv[i], "--processes") == 0 && number && *number > 0) {
-            task.processes = *number;
-        } else {
-            task.log = nullptr;
-            break;
-        }
-    }
-    if (task.log == nullptr) {
-        std::fprintf(stderr, "usage: traj_campaign --first N --count M --log FILE [--processes P]\n");
+    mw::options::CommandLine line(
+        "traj_campaign --first N --count M --log FILE [--processes P]",
+        "One line for each seed in the log; seeds that it has are not driven again.\n");
+    line.number("--first", "N", "seed to begin with (default 1)", task.first, 0, UINT32_MAX - 1);
+    line.number("--count", "M", "so many seeds (default 100)", task.count, 0, UINT32_MAX - 1);
+    line.text("--log", "FILE", "where the verdicts go", task.log);
+    line.number("--processes", "P", "at a time (default 2)", task.processes, 1, 1024);
+    const auto parsed = line.parse({argv + 1, argv + argc});
+    if (!parsed || task.log.empty()) {
+        std::fprintf(stderr, "%s\n%s", parsed ? "--log is missing" : parsed.error().str().c_str(),
+                     line.help().c_str());
         return 2;
     }
     return mw::traj::test::run(task);

@@ -5,11 +5,10 @@
 // traj_fingerprint --first N --count M: one line per seed; compare the output of two builds.
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <numbers>
 #include <optional>
 
-#include "base/text.hh"
+#include "options/command_line.hh"
 #include "traj/test/campaign.hh"
 #include "traj/test/sample_hash.hh"
 
@@ -218,18 +217,14 @@ void fingerprint(unsigned seed) {
 }  // namespace mw::traj::test
 
 int main(int argc, char **argv) {
-    unsigned first = 1;
-    unsigned count = 0;
-    for (int i = 1; i + 1 < argc; i += 2) {
-        const auto number = mw::parse_uint(argv[i + 1]);
-        if (std::strcmp(argv[i], "--first") == 0 && number) {
-            first = static_cast<unsigned>(*number);
-        } else if (std::strcmp(argv[i], "--count") == 0 && number) {
-            count = static_cast<unsigned>(*number);
-        }
-    }
-    if (count == 0) {
-        std::fprintf(stderr, "usage: traj_fingerprint --first N --count M\n");
+    unsigned first = 1, count = 0;
+    mw::options::CommandLine line("traj_fingerprint --first N --count M", "One line for each seed.\n");
+    line.number("--first", "N", "seed to begin with (default 1)", first, 0, UINT32_MAX);
+    line.number("--count", "M", "so many seeds", count, 1, UINT32_MAX);
+    const auto parsed = line.parse({argv + 1, argv + argc});
+    if (!parsed || count == 0) {
+        std::fprintf(stderr, "%s\n%s", parsed ? "--count is missing" : parsed.error().str().c_str(),
+                     line.help().c_str());
         return 2;
     }
     for (unsigned seed = first; seed < first + count; ++seed) {

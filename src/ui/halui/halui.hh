@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Operator's commands as HAL pins: machine, e-stop, mode, home and program pins of `halui` (man page halui).
+// Operator's commands as HAL pins: machine, e-stop, mode, home and program pins of `halui` (man page halui),
+// as ui/halui/pin_tables.hh has them.
 #pragma once
 
 #include <array>
@@ -9,8 +10,8 @@
 #include "base/limits.hh"
 #include "base/result.hh"
 #include "client/client.hh"
-#include "hal/core/user_pin.hh"
-#include "msgs/command.hh"
+#include "hal/core/user_pin_set.hh"
+#include "ui/halui/pin_tables.hh"
 
 namespace mw::ui {
 
@@ -34,9 +35,9 @@ class Halui {
         bool wasOn = false;
     };
 
-    void add_button(const std::string &name, msgs::Command command, Result<> &status);
-    Result<> make_buttons();
-    Result<> make_states();
+    /// Those of a table for an instance.
+    template <class Table>
+    void make_buttons(const Table &table, int number, Result<> &status);
 
     hal::Hal *hal_ = nullptr;
     std::optional<client::Client> client_;
@@ -44,10 +45,8 @@ class Halui {
     int comp_id_ = 0;
     int num_joints_ = 0;
     std::vector<Button> buttons_;
-    hal::UserPin<bool> machine_is_on_, estop_is_activated_;
-    hal::UserPin<bool> is_auto_, is_manual_, is_mdi_, is_joint_, is_teleop_;
-    hal::UserPin<bool> program_is_idle_, program_is_running_, program_is_paused_;
-    std::array<hal::UserPin<bool>, MAX_JOINTS> joint_is_homed_;
+    hal::UserPinSet<pins::LAMPS> lamps_;
+    std::array<hal::UserPinSet<pins::JOINT_LAMPS>, MAX_JOINTS> joint_lamps_;
 };
 
 }  // namespace mw::ui

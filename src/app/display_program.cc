@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "app/display_program.hh"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <sstream>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/text.hh"
+
+namespace mw::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool isProgram(const fs::path &path) {
+    std::error_code error;
+    return fs::is_regular_file(path, error) && ::access(path.c_str(), X_OK) == 0;
+}
+
+/// Absolute; empty when there is none.
+std::string find_program(const std::string &name, const fs::path &folder) {
+    if (name.find('/') != std::string::npos) {
+        const fs::path path = folder / name;  // an absolute name stays as it is
+        return isProgram(path) ? path.string() : std::string();
+    }
+    const char *const path = std::getenv("PATH");
+    std::istringstream folders(folder.string() + ':' + (path != nullptr ? path : "/usr/bin:/bin"));
+    std::string one;
+    while (std::getline(folders, one, ':')) {
+        const fs::path candidate = fs::path(one.empty() ? "." : one) / name;
+        if (isProgram(candidate)) {
+            return fs::absolute(candidate).string();
+        }
+    }
+    return {};
+}
+
+/// In the forked child. Only async-signal-safe calls.
+[[noreturn]] void become_display(char *const argv[], const char *folder, pid_t parent, int failed) {
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+        ::signal(number, SIG_DFL);
+    }
+    if (::getppid() == parent && ::chdir(folder) == 0) {
+        ::execv(argv[0], argv);
+    }
+    const int error = errno;
+    (void)!::write(failed, &error, sizeof error);
+    ::_exit(127);
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> DisplayProgram::words(const std::string &display, const std::string &ini) {
+    std::vector<std::string> words = split_words(display);
+    if (words.empty()) {
+        return fail("[DISPLAY]DISPLAY names no program", {ini, 0, 0});
+    }
+    const std::string program = find_program(words[0], fs::path(ini).parent_path());
+    if (program.empty()) {
+        return fail("[DISPLAY]DISPLAY names '" + words[0] + "', which is no program that can be found",
+                    {ini, 0, 0}, "--no-display keeps the machine up without one");
+    }
+    words[0] = program;
+    words.insert(words.begin() + 1, {"-ini", ini});
+    return words;
+}
+
+Result<DisplayProgram> DisplayProgram::start(const std::vector<std::string> &words, const std::string &ini) {
+    const std::string folder = fs::path(ini).parent_path().string();
+    // Everything is made ready before the fork: the child of a process with threads may not allocate.
+    ::setenv("INI_FILE_NAME", ini.c_str(), 1);
+    ::setenv("CONFIG_DIR", folder.c_str(), 1);
+    std::vector<std::string> owned = words;
+    std::vector<char *> argv;
+    for (std::string &word : owned) {
+        argv.push_back(word.data());
+    }
+    argv.push_back(nullptr);
+    int failed[2];
+    if (::pipe2(failed, O_CLOEXEC) != 0) {
+        return fail(std::string("cannot make a pipe: ") + std::strerror(errno));
+    }
+    const pid_t parent = ::getpid();
+    const pid_t child = ::fork();
+    if (child == 0) {
+        become_display(argv.data(), folder.c_str(), parent, failed[1]);
+    }
+    int error = child < 0 ? errno : 0;
+    ::close(failed[1]);
+    while (child > 0 && ::read(failed[0], &error, sizeof error) < 0 && errno == EINTR) {
+    }
+    ::close(failed[0]);
+    if (error != 0) {
+        if (child > 0) {
+            ::waitpid(child, nullptr, 0);
+        }
+        return fail(fmt::format("cannot start {}: {}", words[0], std::strerror(error)));
+    }
+    return DisplayProgram(child);
+}
+
+DisplayProgram::DisplayProgram(DisplayProgram &&other) noexcept
+    : pid_(std::exchange(other.pid_, -1)), end_(other.end_) {}
+
+DisplayProgram::~DisplayProgram() {
+    kill();
+}
+
+std::optional<int> DisplayProgram::end() {
+    int status = 0;
+    if (!end_.has_value() && pid_ > 0 && ::waitpid(pid_, &status, WNOHANG) == pid_) {
+        constexpr int BY_SIGNAL = 128;
+        end_ = WIFEXITED(status) ? WEXITSTATUS(status) : BY_SIGNAL + WTERMSIG(status);
+    }
+    return end_;
+}
+
+void DisplayProgram::ask_to_end() {
+    if (pid_ > 0 && !end().has_value()) {
+        ::kill(pid_, SIGTERM);
+    }
+}
+
+void DisplayProgram::kill() {
+    if (pid_ > 0 && !end().has_value()) {
+        ::kill(pid_, SIGKILL);
+        ::waitpid(pid_, nullptr, 0);
+        end_ = 128 + SIGKILL;
+    }
+}
+
+}  // namespace mw::app

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The words of `millwright run`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/operator.hh"
+
+namespace mw::app {
+
+struct RunWords {
+    std::string ini, program, trace, plot;
+    bool isRealtime = false, isStrict = false, isEstimated = true, isChecked = true, isConfirmed = false;
+    ProgramSwitches switches;
+    double patience_s = 60.0;
+};
+
+/// What --help says.
+std::string run_help();
+Result<RunWords> parse_run(const std::vector<std::string> &words);
+
+}  // namespace mw::app
