@@ -33,11 +33,6 @@ void CanonQueue::truncate(std::size_t count) {
     isBlockMarked_ = false;
 }
 
-void CanonQueue::begin_undo() {
-    kept_ = calls_.size();
-    changed_.clear();
-}
-
 void CanonQueue::rollback() {
     truncate(kept_);
     for (auto entry = changed_.rbegin(); entry != changed_.rend(); ++entry) {

@@ -21,15 +21,26 @@ class CanonQueue final : public Canon {
     std::size_t size() const { return calls_.size(); }
     bool empty() const { return calls_.empty(); }
     /// From here on, until commit(), all that happens can be taken back.
-    void begin_undo();
-    void commit() { changed_.clear(); }
+    void begin_undo() {
+        kept_ = calls_.size();
+        commit();
+    }
+    void commit() {
+        if (!changed_.empty()) {
+            changed_.clear();
+        }
+    }
     /// Drops the calls since begin_undo(), and what was changed in those before.
     void rollback();
     /// Drops all calls.
     void clear();
     /// Hands on the first `count` calls.
     void flush(Canon &target, std::size_t count);
-    void flush(Canon &target) { flush(target, calls_.size()); }
+    void flush(Canon &target) {
+        if (!calls_.empty()) {
+            flush(target, calls_.size());
+        }
+    }
 
     /// Blocks are named by enter_block().
     void begin_block(const BlockRef &) override {}

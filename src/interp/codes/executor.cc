@@ -45,6 +45,9 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
     if (view.block->comment_count > 0 && !run_last_comment(view, line_text)) {
         return false;
     }
+    if (view.block->word_count == 0) {
+        return true;  // settings and comments alone: lines of loops are mostly that
+    }
     if (!choose_motion(values, state.motion, remaps, fault) || !check_open_nurbs(values, state, fault) ||
         !axis_check_.check(values, machine_.world.axis_mask(), fault) || !check_words(values, fault)) {
         return false;
