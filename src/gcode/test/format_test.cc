@@ -6,7 +6,6 @@
 namespace mw::gcode {
 namespace {
 
-
 void expect_format(const std::string &from, const std::string &to) {
     EXPECT_EQ(format_program(from), to);
     EXPECT_EQ(format_program(to), to) << "formatting twice";
