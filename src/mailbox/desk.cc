@@ -45,7 +45,10 @@ std::vector<Desk::Delivery> Desk::take(std::int64_t now_ns) {
     }
     std::vector<Delivery> taken;
     for (int i = 0; i < MAX_CLIENTS; ++i) {
-        take_slot(i, taken);
+        // Acquire: pairs with the client's taking of the slot.
+        if (segment_.slots[static_cast<std::size_t>(i)].owner.load(std::memory_order_acquire) != 0) {
+            take_slot(i, taken);
+        }
     }
     std::sort(taken.begin(), taken.end(),
               [](const Delivery &a, const Delivery &b) { return a.serial < b.serial; });
@@ -64,10 +67,6 @@ std::vector<Desk::Delivery> Desk::take(std::int64_t now_ns) {
 
 void Desk::take_slot(int index, std::vector<Delivery> &out) {
     Slot &slot = segment_.slots[static_cast<std::size_t>(index)];
-    // Acquire: pairs with the client's taking of the slot.
-    if (slot.owner.load(std::memory_order_acquire) == 0) {
-        return;
-    }
     // Before the commands: one that leaves has posted all that it wanted to.
     const bool isLeaving = slot.isLeaving.load(std::memory_order_acquire) != 0;
     // Stops before the queue: what was posted before one of them is then seen in the queue, and goes first.

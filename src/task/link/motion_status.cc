@@ -86,6 +86,19 @@ msgs::SpindleStatus spindle_of(const motion::SpindleStatus &spindle) {
     return s;
 }
 
+/// Fills the rows that the machine has; the others are emptied when they cease to be there, as most machines
+/// have few of them.
+template <class Rows, class IsPresent, class Row>
+void tell_rows(Rows &rows, const IsPresent &isPresent, const Row &row) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (isPresent(i)) {
+            rows[i] = row(i);
+        } else if (rows[i].isPresent) {
+            rows[i] = {};
+        }
+    }
+}
+
 }  // namespace
 
 void tell_motion(const motion::Status &motion, unsigned axis_mask, msgs::MachineStatus &status) {
@@ -101,20 +114,18 @@ void tell_motion(const motion::Status &motion, unsigned axis_mask, msgs::Machine
                         motion.isFeedHoldEnabled};
     status.motion = {motion.cycle,       motion.isTaskLost, motion.digital_in,
                      motion.digital_out, motion.analog_in,  motion.analog_out};
-    for (std::size_t i = 0; i < status.joints.size(); ++i) {
-        const bool isPresent = static_cast<int>(i) < motion.num_joints;
-        status.joints[i] = isPresent ? joint_of(motion.joint[i]) : msgs::JointStatus{};
-    }
-    for (std::size_t i = 0; i < status.axes.size(); ++i) {
-        const motion::AxisStatus &axis = motion.axis[i];
-        const bool isPresent = (axis_mask >> i & 1U) != 0;
-        status.axes[i] = isPresent ? msgs::AxisStatus{true, axis.velocity, axis.min_limit, axis.max_limit}
-                                   : msgs::AxisStatus{};
-    }
-    for (std::size_t i = 0; i < status.spindles.size(); ++i) {
-        const bool isPresent = static_cast<int>(i) < motion.num_spindles;
-        status.spindles[i] = isPresent ? spindle_of(motion.spindle[i]) : msgs::SpindleStatus{};
-    }
+    tell_rows(
+        status.joints, [&](std::size_t i) { return static_cast<int>(i) < motion.num_joints; },
+        [&](std::size_t i) { return joint_of(motion.joint[i]); });
+    tell_rows(
+        status.axes, [&](std::size_t i) { return (axis_mask >> i & 1U) != 0; },
+        [&](std::size_t i) {
+            const motion::AxisStatus &axis = motion.axis[i];
+            return msgs::AxisStatus{true, axis.velocity, axis.min_limit, axis.max_limit};
+        });
+    tell_rows(
+        status.spindles, [&](std::size_t i) { return static_cast<int>(i) < motion.num_spindles; },
+        [&](std::size_t i) { return spindle_of(motion.spindle[i]); });
 }
 
 }  // namespace mw::task
