@@ -15,7 +15,7 @@ using test::Machine;
 using Calls = std::vector<std::string>;
 using Function = std::function<ScriptOutcome(const ScriptArguments &)>;
 
-constexpr ScriptOutcome DONE{};
+const ScriptOutcome DONE{};
 
 ScriptOutcome failed(std::string message) {
     return {ScriptOutcome::Kind::FAILED, 0, std::move(message)};
