@@ -8,6 +8,7 @@
 #include "base/limits.hh"
 #include "interp/canon/frame.hh"
 #include "interp/canon/nurbs.hh"
+#include "interp/canon/plane_axes.hh"
 
 namespace mw::interp {
 namespace {
@@ -16,23 +17,6 @@ constexpr double MM_PER_INCH = 25.4;
 constexpr double FULL_TURN = 2.0 * std::numbers::pi;
 /// Less than this between start and end of an arc is a full turn [rad].
 constexpr double SAME_ANGLE = 1e-10;
-
-struct PlaneAxes {
-    int first, second, normal;
-};
-
-constexpr PlaneAxes axes_of(Plane plane) {
-    using namespace geom;
-    switch (plane) {
-    case Plane::XY: return {AXIS_X, AXIS_Y, AXIS_Z};
-    case Plane::YZ: return {AXIS_Y, AXIS_Z, AXIS_X};
-    case Plane::XZ: return {AXIS_Z, AXIS_X, AXIS_Y};
-    case Plane::UV: return {AXIS_U, AXIS_V, AXIS_W};
-    case Plane::VW: return {AXIS_V, AXIS_W, AXIS_U};
-    case Plane::UW: return {AXIS_W, AXIS_U, AXIS_V};
-    }
-    return {AXIS_X, AXIS_Y, AXIS_Z};
-}
 
 struct FeedLength {
     double length = 0;
@@ -201,7 +185,7 @@ void MachineFrame::feed_to(const Pose &end) {
 
 /// Fills centre, normal and the angle.
 void MachineFrame::turn(ArcMove &move, const ArcFeed &arc) const {
-    const PlaneAxes axes = axes_of(plane_);
+    const detail::PlaneAxes axes = detail::plane_axes(plane_);
     const Pose start = to_program(position_);
     Pose centre = start;
     centre[axes.first] = arc.first_centre;
@@ -241,7 +225,7 @@ void MachineFrame::convert(const ArcFeed &arc) {
 void MachineFrame::convert(const NurbsFeed &nurbs) {
     // Far below what a machine can resolve.
     constexpr double TOLERANCE_MM = 0.0002;
-    const PlaneAxes axes = axes_of(plane_);
+    const detail::PlaneAxes axes = detail::plane_axes(plane_);
     const double inches = TOLERANCE_MM / 25.4;
     const std::vector<PlanePiece> pieces =
         approximate(nurbs, units_ == LengthUnits::MM ? TOLERANCE_MM : inches);

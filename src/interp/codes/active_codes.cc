@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "interp/codes/active_codes.hh"
 
+#include "interp/canon/plane_axes.hh"
 #include "interp/codes/kept_parameters.hh"
-#include "interp/codes/plane_axes.hh"
 
 namespace mw::interp::detail {
 

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "interp/canon/frame.hh"
+#include "interp/canon/plane_axes.hh"
 #include "interp/eval/parameters.hh"
 
 namespace mw::interp::detail {
@@ -25,19 +26,6 @@ struct Row {
     Reader read;
 };
 
-/// Ten times the G code that selects a plane.
-int plane_number(Plane plane) {
-    switch (plane) {
-    case Plane::XY: return 170;
-    case Plane::YZ: return 190;
-    case Plane::XZ: return 180;
-    case Plane::UV: return 171;
-    case Plane::VW: return 191;
-    case Plane::UW: return 181;
-    }
-    return 170;
-}
-
 const SpindleState &spindle(const Sources &e) {
     return e.state.spindles[static_cast<std::size_t>(e.state.active_spindle)];
 }
@@ -50,7 +38,7 @@ constexpr Row ROWS[] = {
     {"_vminor", [](const Sources &) { return VERSION_MINOR; }},
     {"_line", [](const Sources &e) { return static_cast<double>(e.place.line); }},
     {"_motion_mode", [](const Sources &e) { return static_cast<double>(e.state.motion); }},
-    {"_plane", [](const Sources &e) { return static_cast<double>(plane_number(e.state.plane)); }},
+    {"_plane", [](const Sources &e) { return static_cast<double>(plane_code(e.state.plane)); }},
     {"_ccomp", [](const Sources &e) { return static_cast<double>(e.state.comp.code()); }},
     {"_metric", [](const Sources &e) { return flag(e.state.units == LengthUnits::MM); }},
     {"_metric_machine", [](const Sources &e) { return flag(e.world.machine_units() == LengthUnits::MM); }},

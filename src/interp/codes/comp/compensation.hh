@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "interp/canon/canon_queue.hh"
+#include "interp/canon/plane_axes.hh"
 #include "interp/codes/comp/comp_corner.hh"
-#include "interp/codes/plane_axes.hh"
 #include "interp/text/fault.hh"
 
 namespace mw::interp::detail {

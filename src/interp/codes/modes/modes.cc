@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "interp/canon/plane_axes.hh"
 #include "interp/codes/block_words.hh"
-#include "interp/codes/plane_axes.hh"
 
 namespace mw::interp::detail {
 namespace {

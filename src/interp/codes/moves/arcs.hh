@@ -2,9 +2,9 @@
 // G2 and G3 in the selected plane, by centre (I, J, K) or by radius (R).
 #pragma once
 
+#include "interp/canon/plane_axes.hh"
 #include "interp/codes/block_values.hh"
 #include "interp/codes/machine.hh"
-#include "interp/codes/plane_axes.hh"
 #include "interp/codes/state.hh"
 #include "interp/text/fault.hh"
 

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include "interp/canon/nurbs.hh"
+#include "interp/canon/plane_axes.hh"
 #include "interp/codes/block_words.hh"
 #include "interp/codes/moves/targets.hh"
-#include "interp/codes/plane_axes.hh"
 
 namespace mw::interp::detail {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "interp/codes/plane_axes.hh"
+#include "interp/canon/plane_axes.hh"
 
 namespace mw::interp::detail {
 namespace {

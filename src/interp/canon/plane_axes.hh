@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The selected plane: which axes it has, and arcs in it.
+// The selected plane: which axes it has, the code that selects it, and arcs in it.
 #pragma once
 
 #include "interp/canon/canon.hh"
