@@ -21,9 +21,10 @@ constexpr double CYCLE_S = 0.1;
 /// HAL files and their programs may take long.
 constexpr auto START_TIME = std::chrono::seconds(30);
 
-/// Copies the status; false when there is none.
-bool isRead(MachineAccess &machine, msgs::MachineStatus &status) {
-    return machine.client().read_status(status).has_value();
+/// As its status says now; false when there is none.
+bool isMoving(client::Client &client) {
+    return client.read_status().has_value() && client.status().trajectory.isEnabled &&
+           !client.status().trajectory.isInPosition;
 }
 
 }  // namespace
@@ -67,16 +68,16 @@ RunningMachine::~RunningMachine() {
 }
 
 Result<> RunningMachine::check_idle() {
-    const auto status = std::make_unique<msgs::MachineStatus>();
-    const auto read = client_.read_status(*status);
+    const auto read = client_.read_status();
     if (!read.has_value()) {
         return read;
     }
-    if (status->task.interp_state != msgs::InterpState::IDLE) {
+    const msgs::MachineStatus &status = client_.status();
+    if (status.task.interp_state != msgs::InterpState::IDLE) {
         return fail("the machine runs a program or an MDI line already", {},
-                    status->task.program.empty() ? "" : "open is " + status->task.program.str());
+                    status.task.program.empty() ? "" : "open is " + status.task.program.str());
     }
-    if (status->trajectory.isEnabled && (status->trajectory.isHoming || !status->trajectory.isInPosition)) {
+    if (status.trajectory.isEnabled && (status.trajectory.isHoming || !status.trajectory.isInPosition)) {
         return fail("the machine moves: someone jogs or homes it");
     }
     return {};
@@ -138,12 +139,10 @@ Result<> RunningMachine::health() const {
 
 void stop_motion(MachineAccess &machine) {
     static_cast<void>(machine.client().post(msgs::AbortAll{}));
-    const auto status = std::make_unique<msgs::MachineStatus>();
     const std::int64_t deadline_ns = machine.now_ns() + STOP_TIMEOUT_NS;
     machine.cycle();
     machine.cycle();
-    while (isRead(machine, *status) && !status->trajectory.isInPosition && status->trajectory.isEnabled &&
-           machine.now_ns() < deadline_ns && machine.health()) {
+    while (isMoving(machine.client()) && machine.now_ns() < deadline_ns && machine.health()) {
         machine.cycle();
     }
 }

@@ -18,16 +18,15 @@ constexpr std::int64_t STOP_TIMEOUT_NS = 30000000000;
 
 Operator::Operator(MachineAccess &machine, const machine::MachineConfig &config, diag::Sink &sink,
                    const OperatorOptions &options)
-    : machine_(machine), config_(config), sink_(sink),
-      panel_(machine, config, sink, options.attendance, status_),
+    : machine_(machine), config_(config), sink_(sink), panel_(machine, config, sink, options.attendance),
       patience_ns_(static_cast<std::int64_t>(options.patience_s * 1e9)) {
-    static_cast<void>(machine_.client().read_status(status_));
+    static_cast<void>(machine_.client().read_status());
 }
 
 void Operator::cycle() {
     machine_.cycle();
     // Where task has died within it, health() says so.
-    static_cast<void>(machine_.client().read_status(status_));
+    static_cast<void>(machine_.client().read_status());
 }
 
 Result<> Operator::ask(const msgs::Command &command, const std::string &what) {
@@ -35,7 +34,7 @@ Result<> Operator::ask(const msgs::Command &command, const std::string &what) {
 }
 
 Result<> Operator::switch_on() {
-    if (status_.task.state == msgs::State::ON) {
+    if (status().task.state == msgs::State::ON) {
         return {};
     }
     auto status = ask(msgs::SetState{msgs::State::ESTOP_RESET}, "reset of the emergency stop");
@@ -43,10 +42,10 @@ Result<> Operator::switch_on() {
 }
 
 Result<> Operator::home_all() {
-    if (status_.trajectory.isAllHomed) {
+    if (status().trajectory.isAllHomed) {
         return {};
     }
-    const auto manual = status_.task.mode == msgs::Mode::MANUAL
+    const auto manual = status().task.mode == msgs::Mode::MANUAL
                             ? Result<>{}
                             : ask(msgs::SetMode{msgs::Mode::MANUAL}, "manual mode");
     if (!manual.has_value()) {
@@ -55,7 +54,7 @@ Result<> Operator::home_all() {
     const auto homed = ask(msgs::HomeJoint{-1}, "homing");
     for (int joint = 0; joint < config_.num_joints; ++joint) {
         const auto i = static_cast<std::size_t>(joint);
-        if (!homed.has_value() && status_.trajectory.isEnabled && !status_.joints[i].isHomed &&
+        if (!homed.has_value() && status().trajectory.isEnabled && !status().joints[i].isHomed &&
             stop_signal == 0) {
             const auto one = ask(msgs::HomeJoint{joint}, "homing joint " + std::to_string(joint));
             if (!one.has_value()) {
@@ -63,7 +62,7 @@ Result<> Operator::home_all() {
             }
         }
     }
-    return status_.trajectory.isAllHomed ? Result<>{} : homed;
+    return status().trajectory.isAllHomed ? Result<>{} : homed;
 }
 
 Result<> Operator::set_switches(const ProgramSwitches &switches) {
@@ -90,7 +89,7 @@ Result<> Operator::run_program(const std::function<void()> &each_cycle) {
     figures_.cycle_time_s = static_cast<double>(machine_.now_ns() - start_ns) * 1e-9;
     figures_.wall_time_s =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
-    figures_.blocks = status_.task.blocks;
+    figures_.blocks = this->status().task.blocks;
     figures_.stops_passed = panel_.stops_passed();
     panel_.end_program();
     return status;
@@ -129,7 +128,7 @@ Result<> Operator::wait_for(const Result<client::Serial> &posted, const std::str
         if (hasProgress() || panel_.isWaitingForPerson()) {
             deadline_ns = machine_.now_ns() + patience_ns_;
         } else if (machine_.now_ns() > deadline_ns) {
-            const std::string waiting = msgs::waiting_text(status_.task.waiting);
+            const std::string waiting = msgs::waiting_text(status().task.waiting);
             return fail(
                 fmt::format("{}: no progress for {:g} s", what, static_cast<double>(patience_ns_) * 1e-9), {},
                 waiting.empty() ? "motion is waiting" : "waiting for " + waiting);
@@ -138,11 +137,12 @@ Result<> Operator::wait_for(const Result<client::Serial> &posted, const std::str
 }
 
 bool Operator::hasProgress() {
-    Mark now{status_.task.blocks, status_.trajectory.position_cmd, {}};
+    const msgs::MachineStatus &shown = status();
+    Mark now{shown.task.blocks, shown.trajectory.position_cmd, {}};
     for (std::size_t i = 0; i < now.joints.size(); ++i) {
-        now.joints[i] = status_.joints[i].pos_cmd;
+        now.joints[i] = shown.joints[i].pos_cmd;
     }
-    const bool isDwelling = status_.task.waiting.what == msgs::WaitFor::DWELL;
+    const bool isDwelling = shown.task.waiting.what == msgs::WaitFor::DWELL;
     const bool isChanged = !(now == mark_) || isDwelling;
     mark_ = now;
     return isChanged;
@@ -153,7 +153,7 @@ Result<> Operator::stop_on_signal() {
     const std::int64_t deadline_ns = machine_.now_ns() + STOP_TIMEOUT_NS;
     do {
         cycle();
-    } while (!status_.trajectory.isInPosition && machine_.now_ns() < deadline_ns && machine_.health());
+    } while (!status().trajectory.isInPosition && machine_.now_ns() < deadline_ns && machine_.health());
     return fail("stopped by " + stop_signal_name());
 }
 

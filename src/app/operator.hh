@@ -52,7 +52,7 @@ class Operator {
     void switch_off();
 
     /// As of the last cycle.
-    const msgs::MachineStatus &status() const { return status_; }
+    const msgs::MachineStatus &status() const { return machine_.client().status(); }
 
     OperatorFigures figures() const;
 
@@ -70,7 +70,6 @@ class Operator {
     MachineAccess &machine_;
     const machine::MachineConfig &config_;
     diag::Sink &sink_;
-    msgs::MachineStatus status_;  ///< of the last cycle
     Panel panel_;
     std::int64_t patience_ns_;
     OperatorFigures figures_;

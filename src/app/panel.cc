@@ -32,8 +32,8 @@ geom::Pose program_position(const msgs::MachineStatus &status) {
 }  // namespace
 
 Panel::Panel(MachineAccess &machine, const machine::MachineConfig &config, diag::Sink &sink,
-             Attendance attendance, const msgs::MachineStatus &status)
-    : machine_(machine), config_(config), sink_(sink), attendance_(attendance), status_(status),
+             Attendance attendance)
+    : machine_(machine), config_(config), sink_(sink), attendance_(attendance),
       hasLine_(::isatty(STDERR_FILENO) != 0) {
     if (attendance_ == Attendance::TERMINAL) {
         keyboard_.emplace();
@@ -62,7 +62,7 @@ void Panel::begin_program(int lines) {
     lines_ = lines;
     line_ = 0;
     isRunning_ = true;
-    stops_told_ = status_.task.stops;
+    stops_told_ = status().task.stops;
     if (attendance_ == Attendance::TERMINAL) {
         fmt::print(stderr, "keys: h or space hold, r resume, a abort, t the tool is changed\n");
     }
@@ -102,7 +102,7 @@ void Panel::take_key(char key) {
     case 'r': post(msgs::ResumeProgram{}); break;
     case 'a': post(msgs::AbortAll{}); break;
     case 't':
-        if (status_.tool.isPersonAsked) {
+        if (status().tool.isPersonAsked) {
             post(msgs::ConfirmToolChange{});
         }
         break;
@@ -111,7 +111,7 @@ void Panel::take_key(char key) {
 }
 
 void Panel::look_at_stop() {
-    const msgs::MachineStatus &status = status_;
+    const msgs::MachineStatus &status = this->status();
     if (!status.task.isPaused || !status.task.isStoppedByProgram || status.task.stops == stops_told_) {
         return;
     }
@@ -132,7 +132,7 @@ void Panel::look_at_stop() {
 }
 
 bool Panel::isWaitingForPerson() const {
-    const msgs::MachineStatus &status = status_;
+    const msgs::MachineStatus &status = this->status();
     const bool isHeld = status.task.isPaused && attendance_ != Attendance::SIMULATED;
     return isHeld || status.tool.isPersonAsked;
 }
@@ -154,7 +154,7 @@ void Panel::clear_line() {
 
 /// Between moves motion has no line.
 int Panel::line_reached() {
-    const msgs::MachineStatus &status = status_;
+    const msgs::MachineStatus &status = this->status();
     const int line = status.task.isStoppedByProgram ? status.task.stop_line : status.task.motion_line;
     line_ = line > 0 ? line : line_;
     return line_;
@@ -169,7 +169,7 @@ std::string Panel::progress_text() {
 }
 
 std::string Panel::position_text() const {
-    const geom::Pose p = program_position(status_);
+    const geom::Pose p = program_position(status());
     std::string text;
     for (int axis = 0; axis < MAX_AXES; ++axis) {
         if ((config_.axis_mask & (1U << axis)) != 0) {
@@ -184,7 +184,7 @@ void Panel::write_line() {
         fmt::print(stderr, "\r{}\033[K", progress_text());
         return;
     }
-    const msgs::MachineStatus &status = status_;
+    const msgs::MachineStatus &status = this->status();
     const int line = line_reached();
     const int percent = lines_ > 0 ? std::clamp(100 * line / lines_, 0, 100) : 0;
     const std::string waiting = msgs::waiting_text(status.task.waiting);

@@ -22,7 +22,7 @@ enum class Attendance : std::uint8_t {
 class Panel {
   public:
     Panel(MachineAccess &machine, const machine::MachineConfig &config, diag::Sink &sink,
-          Attendance attendance, const msgs::MachineStatus &status);
+          Attendance attendance);
 
     /// Asks for yes or no at the terminal while the machine goes on; false also when a signal comes.
     bool confirm(const std::string &question);
@@ -41,6 +41,8 @@ class Panel {
     int stops_passed() const { return stops_passed_; }
 
   private:
+    /// Of the last cycle, as whoever runs the machine has read it.
+    const msgs::MachineStatus &status() const { return machine_.client().status(); }
     void take_key(char key);
     void post(const msgs::Command &command);
     void look_at_stop();
@@ -54,7 +56,6 @@ class Panel {
     const machine::MachineConfig &config_;
     diag::Sink &sink_;
     Attendance attendance_;
-    const msgs::MachineStatus &status_;  ///< of the last cycle, as whoever runs the machine has read it
     std::optional<Keyboard> keyboard_;
     bool hasLine_;  ///< standard error is a terminal
     bool isRunning_ = false;

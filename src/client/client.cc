@@ -30,7 +30,7 @@ std::int64_t monotonic_ns() {
 }  // namespace
 
 Client::Client(mailbox::Segment &segment, int slot, mailbox::ClientId id)
-    : segment_(&segment), slot_(slot), id_(id) {
+    : segment_(&segment), slot_(slot), id_(id), status_(std::make_unique<msgs::PublishedStatus::Copy>()) {
     const std::uint64_t newest = segment.newest_message.load(std::memory_order_acquire);
     const std::uint64_t oldest = newest > mailbox::MAX_MESSAGES ? newest - mailbox::MAX_MESSAGES + 1 : 1;
     next_message_ = std::max(oldest, segment.read_message.load(std::memory_order_relaxed) + 1);
@@ -40,7 +40,8 @@ Client::Client(mailbox::Segment &segment, int slot, mailbox::ClientId id)
 Client::Client(Client &&other) noexcept
     : memory_(std::move(other.memory_)), segment_(std::exchange(other.segment_, nullptr)), slot_(other.slot_),
       id_(other.id_), next_message_(other.next_message_), tools_version_(other.tools_version_),
-      heard_(other.heard_), replaced_stops_(std::move(other.replaced_stops_)) {}
+      heard_(other.heard_), status_(std::move(other.status_)), found_(std::move(other.found_)),
+      posted_stops_(std::move(other.posted_stops_)), replaced_stops_(std::move(other.replaced_stops_)) {}
 
 Client &Client::operator=(Client &&other) noexcept {
     if (this != &other) {
@@ -52,6 +53,9 @@ Client &Client::operator=(Client &&other) noexcept {
         next_message_ = other.next_message_;
         tools_version_ = other.tools_version_;
         heard_ = other.heard_;
+        status_ = std::move(other.status_);
+        found_ = std::move(other.found_);
+        posted_stops_ = std::move(other.posted_stops_);
         replaced_stops_ = std::move(other.replaced_stops_);
     }
     return *this;
@@ -71,6 +75,8 @@ void Client::leave() noexcept {
 
 Result<Client> Client::join(mailbox::Segment &segment, Role role) {
     const std::uint64_t me = mailbox::owner_word();
+    // Before the place: task looks at no more places than numbers were given out.
+    const mailbox::ClientId id = segment.client_ids.fetch_add(1, std::memory_order_acq_rel) + 1;
     for (int i = 0; i < mailbox::MAX_CLIENTS; ++i) {
         mailbox::Slot &slot = segment.slots[static_cast<std::size_t>(i)];
         std::uint64_t expected = 0;
@@ -78,7 +84,6 @@ Result<Client> Client::join(mailbox::Segment &segment, Role role) {
         if (!slot.owner.compare_exchange_strong(expected, me, std::memory_order_acq_rel)) {
             continue;
         }
-        const mailbox::ClientId id = segment.client_ids.fetch_add(1, std::memory_order_relaxed) + 1;
         slot.role.store(static_cast<std::uint8_t>(role), std::memory_order_relaxed);
         slot.client.store(id, std::memory_order_release);
         return Client(segment, i, id);
@@ -129,6 +134,9 @@ Serial Client::post_stop(int place) {
     // Release: task, which sees the stop, sees all that was posted before it.
     const Serial before =
         slot().stops[static_cast<std::size_t>(place)].exchange(serial, std::memory_order_acq_rel);
+    // Release: task, which sees the number, sees the stop in its place.
+    slot().newest_stop.store(serial, std::memory_order_release);
+    posted_stops_.push_back({serial, place});
     if (before != 0) {
         replaced_stops_.emplace_back(before, serial);
     }
@@ -138,14 +146,17 @@ Serial Client::post_stop(int place) {
     return serial;
 }
 
-bool Client::isStopWaiting(Serial serial) const {
-    return std::any_of(slot().stops.begin(), slot().stops.end(), [serial](const auto &stop) {
+bool Client::isStopWaiting(Serial serial) {
+    std::erase_if(posted_stops_, [this](const PostedStop &stop) {
         // Acquire: pairs with task's clearing of it after it wrote the outcome.
-        return stop.load(std::memory_order_acquire) == serial;
+        return slot().stops[static_cast<std::size_t>(stop.place)].load(std::memory_order_acquire) !=
+               stop.serial;
     });
+    return std::any_of(posted_stops_.begin(), posted_stops_.end(),
+                       [serial](const PostedStop &stop) { return stop.serial == serial; });
 }
 
-Outcome Client::outcome(Serial serial) const {
+Outcome Client::outcome(Serial serial) {
     for (const auto &[before, later] : replaced_stops_) {  // in their order: a later one may be replaced too
         serial = before == serial ? later : serial;
     }
@@ -156,13 +167,18 @@ Outcome Client::outcome(Serial serial) const {
     if (slot().taken.load(std::memory_order_acquire) < serial) {
         return {};
     }
+    // Before the outcomes: what is told later is looked at by the next call.
+    const std::uint64_t told = slot().told.load(std::memory_order_acquire);
+    if (found_.serial == serial && found_.told == told) {
+        return found_.outcome;
+    }
     const auto &outcomes = slot().outcomes;
     for (std::size_t i = 0; i < outcomes.size(); ++i) {
-        const std::size_t place = (last_place_ + i) % outcomes.size();  // mostly asked again
+        const std::size_t place = (found_.place + i) % outcomes.size();  // mostly asked again
         mailbox::Outcome outcome;
         if (outcomes[place].read(outcome, READ_TRIES) && outcome.serial == serial) {
-            last_place_ = place;
-            return {outcome.progress, outcome.reason.str()};
+            found_ = {serial, told, place, {outcome.progress, outcome.reason.str()}};
+            return found_.outcome;
         }
     }
     return {msgs::Progress::REFUSED,
@@ -218,12 +234,12 @@ mailbox::Identity Client::identity() const {
     return segment_->identity.read(identity, READ_TRIES) ? identity : mailbox::Identity{};
 }
 
-Result<> Client::read_status(msgs::MachineStatus &status) const {
+Result<> Client::read_status() {
     if (segment_->cycles.load(std::memory_order_acquire) == 0) {
         return fail("the machine has not begun yet");
     }
-    return segment_->status.read(status, READ_TRIES) ? Result<>{}
-                                                     : fail("task died while it wrote its status");
+    return segment_->status.read(*status_, READ_TRIES) ? Result<>{}
+                                                       : fail("task died while it wrote its status");
 }
 
 Result<std::optional<msgs::ToolTable>> Client::read_tools() {

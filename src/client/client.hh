@@ -4,9 +4,11 @@
 #pragma once
 
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "mailbox/memory.hh"
 #include "mailbox/segment.hh"
@@ -41,7 +43,7 @@ class Client {
     Result<Serial> post(const msgs::Command &command);
     /// STARTED also while it waits to be taken. One that task no longer remembers is REFUSED, and its reason
     /// says so.
-    Outcome outcome(Serial serial) const;
+    Outcome outcome(Serial serial);
     /// Sleeps until the command ends; an error when the time is over or the machine is gone.
     Result<Outcome> wait(Serial serial, double timeout_s);
 
@@ -50,8 +52,10 @@ class Client {
     /// Its task's process lives. Always true in that process.
     bool isMachineAlive() const { return !memory_.has_value() || memory_->isOwnerAlive(); }
 
-    /// Copies the newest status; an error before the first cycle and when task died within writing it.
-    Result<> read_status(msgs::MachineStatus &status) const;
+    /// Brings status() up to date; an error before the first cycle and when task died within writing it.
+    Result<> read_status();
+    /// As it was read last.
+    const msgs::MachineStatus &status() const { return status_->value; }
     /// Sleeps until there is a newer status than the last one that was waited for.
     Result<> wait_status(double timeout_s);
     /// The tool table when it has changed since the last call; nothing otherwise.
@@ -71,7 +75,7 @@ class Client {
     mailbox::Slot &slot() const { return segment_->slots[static_cast<std::size_t>(slot_)]; }
     void leave() noexcept;
     Serial post_stop(int place);
-    bool isStopWaiting(Serial serial) const;
+    bool isStopWaiting(Serial serial);
     Result<> sleep(std::uint32_t heard, std::int64_t end_ns);
 
     std::optional<mailbox::Memory> memory_;  ///< of another process
@@ -81,7 +85,19 @@ class Client {
     std::uint64_t next_message_ = 1;
     std::uint64_t tools_version_ = 0;
     std::uint32_t heard_ = 0;
-    mutable std::size_t last_place_ = 0;  ///< of the outcome that was asked for last
+    std::unique_ptr<msgs::PublishedStatus::Copy> status_;
+    /// The outcome that was asked for last, where it was found, and how many had been told by then.
+    struct Found {
+        Serial serial = 0;
+        std::uint64_t told = 0;
+        std::size_t place = 0;
+        Outcome outcome;
+    } found_;
+    struct PostedStop {
+        Serial serial = 0;
+        int place = 0;
+    };
+    std::vector<PostedStop> posted_stops_;  ///< beside the queue, not seen as taken yet
     /// Stops that a later one of the same kind has taken the place of: number, and that of the later one.
     std::deque<std::pair<Serial, Serial>> replaced_stops_;
 };

@@ -10,31 +10,11 @@
 
 #include "geom/pose.hh"
 #include "machine/path_points.hh"
+#include "machine/programmed_piece.hh"
 #include "motion/api/channels.hh"
 #include "motion/api/path_command.hh"
 
 namespace mw::machine {
-
-/// A programmed move with its start.
-struct ProgrammedPiece {
-    geom::Pose start, end;
-    geom::Pose centre, normal;  ///< arcs only
-    double angle_rad = 0;       ///< 0: a line
-    bool isRapid = false;
-};
-
-/// The nearest point of a piece: the position along it and the distances of the two groups of coordinates.
-struct Nearest {
-    double fraction = 0;  ///< 0 start, 1 end
-    double linear = 0;    ///< over XYZUVW [machine units]
-    double angular = 0;   ///< over ABC [degrees]
-    double combined() const { return std::hypot(linear, angular); }
-};
-/// The pose at a fraction of a piece.
-geom::Pose point_at(const ProgrammedPiece &piece, double fraction);
-Nearest nearest_point(const ProgrammedPiece &piece, const geom::Pose &p);
-/// Length over XYZ, else UVW, else ABC: the feed length.
-double feed_length(const ProgrammedPiece &piece);
 
 struct RunFigures {
     double cutting_length = 0, rapid_length = 0;                        ///< [machine units]
@@ -64,7 +44,7 @@ class PathMonitor {
     RunFigures figures_;
     struct NumberedPiece {
         motion::CommandId id;
-        ProgrammedPiece piece;
+        PieceShape shape;
         double length;
     };
     static constexpr std::size_t MOST_BEHIND = 4096;

@@ -130,8 +130,9 @@ class Checker {
         constexpr int CHORDS = 48;  ///< of a full turn
         const double turns = std::abs(piece.angle_rad) / (2 * std::numbers::pi);
         const int chords = std::max(1, static_cast<int>(std::ceil(CHORDS * turns)));
+        const PieceShape shape(piece);
         for (int i = options_.points->all().empty() ? 0 : 1; i <= chords; ++i) {
-            options_.points->add(point_at(piece, static_cast<double>(i) / chords), piece.isRapid);
+            options_.points->add(shape.point_at(static_cast<double>(i) / chords), piece.isRapid);
         }
     }
 
@@ -189,8 +190,9 @@ class Checker {
             if (!mayReach) {
                 continue;
             }
+            const PieceShape shape(piece);
             for (int step = 1; step < STEPS; ++step) {
-                check_point(point_at(piece, static_cast<double>(step) / STEPS));
+                check_point(shape.point_at(static_cast<double>(step) / STEPS));
             }
             return;
         }

@@ -44,7 +44,9 @@ std::vector<Desk::Delivery> Desk::take(std::int64_t now_ns) {
              "the right to operate alone has run out: all clients operate again");
     }
     std::vector<Delivery> taken;
-    for (int i = 0; i < MAX_CLIENTS; ++i) {
+    // A client gets its number, then the first free place: no more places are in use than numbers given out.
+    const auto used = std::min<ClientId>(MAX_CLIENTS, segment_.client_ids.load(std::memory_order_acquire));
+    for (int i = 0; i < static_cast<int>(used); ++i) {
         // Acquire: pairs with the client's taking of the slot.
         if (segment_.slots[static_cast<std::size_t>(i)].owner.load(std::memory_order_acquire) != 0) {
             take_slot(i, taken);
@@ -70,7 +72,7 @@ void Desk::take_slot(int index, std::vector<Delivery> &out) {
     // Before the commands: one that leaves has posted all that it wanted to.
     const bool isLeaving = slot.isLeaving.load(std::memory_order_acquire) != 0;
     // Stops before the queue: what was posted before one of them is then seen in the queue, and goes first.
-    const std::vector<WaitingStop> stops = waiting_stops(slot);
+    const std::vector<WaitingStop> stops = waiting_stops(index);
     auto stop = stops.begin();
     const auto accept_stops_before = [&](Serial serial) {
         for (; stop != stops.end() && stop->serial < serial; ++stop) {
@@ -96,8 +98,15 @@ void Desk::take_slot(int index, std::vector<Delivery> &out) {
     }
 }
 
-std::vector<Desk::WaitingStop> Desk::waiting_stops(const Slot &slot) {
+std::vector<Desk::WaitingStop> Desk::waiting_stops(int index) {
+    const Slot &slot = segment_.slots[static_cast<std::size_t>(index)];
     std::vector<WaitingStop> waiting;
+    // Acquire: who sees the number finds the stop in its place.
+    const Serial newest = slot.newest_stop.load(std::memory_order_acquire);
+    if (newest == newest_stops_[static_cast<std::size_t>(index)]) {
+        return waiting;
+    }
+    newest_stops_[static_cast<std::size_t>(index)] = newest;
     for (int place = 0; place < STOP_PLACES; ++place) {
         // Acquire: pairs with the client's writing of it.
         const Serial serial = slot.stops[static_cast<std::size_t>(place)].load(std::memory_order_acquire);
@@ -152,6 +161,8 @@ void Desk::check_owner(int index, std::vector<Delivery> &out) {
     for (auto &stop : slot.stops) {
         stop.store(0, std::memory_order_relaxed);
     }
+    slot.newest_stop.store(0, std::memory_order_relaxed);
+    newest_stops_[static_cast<std::size_t>(index)] = 0;
     slot.client.store(0, std::memory_order_relaxed);
     slot.taken.store(0, std::memory_order_relaxed);
     slot.isLeaving.store(0, std::memory_order_relaxed);
@@ -239,9 +250,10 @@ bool Desk::operate(const Delivery &delivery) {
 }
 
 void Desk::write(const Place &place) {
-    segment_.slots[static_cast<std::size_t>(place.slot)]
-        .outcomes[static_cast<std::size_t>(place.outcome)]
-        .write(place.written);
+    Slot &slot = segment_.slots[static_cast<std::size_t>(place.slot)];
+    slot.outcomes[static_cast<std::size_t>(place.outcome)].write(place.written);
+    // Release: who sees the count finds the outcome.
+    slot.told.fetch_add(1, std::memory_order_release);
 }
 
 void Desk::note(Serial serial, Progress progress) {
@@ -277,12 +289,17 @@ void Desk::post(msgs::MessageKind kind, std::string_view text) {
     segment_.newest_message.store(message->number, std::memory_order_release);
 }
 
-void Desk::publish(msgs::MachineStatus &status) {
+void Desk::publish(msgs::MachineStatus &status, PartMask motion_parts) {
+    namespace part = msgs::status_part;
+    constexpr PartMask ALWAYS = part_range(part::TASK, 1);
+    constexpr PartMask SELDOM = part_range(part::PROGRAM, 1) | part_range(part::CODES, 1) |
+                                part_range(part::OFFSETS, 1) | part_range(part::DEVICES, 1);
     status.operation = right_.status(now_ns_);
     status.last_message = newest_message();
     status.last_command = last_command_;
     status.last_progress = last_progress_;
-    segment_.status.write(status);
+    const PartMask others = ALWAYS | segment_.status.changed(status, SELDOM);
+    segment_.status.write(status, (motion_parts & ~SELDOM) | others);
     segment_.cycles.store(cycles_, std::memory_order_release);
     Memory::ring(segment_);
 }

@@ -34,8 +34,9 @@ class Desk {
     /// A line for the operator; a longer one ends with "...".
     void post(msgs::MessageKind kind, std::string_view text);
     std::uint64_t newest_message() const { return segment_.newest_message.load(std::memory_order_relaxed); }
-    /// The status of this cycle; the right to operate and the last command are filled in. Wakes clients.
-    void publish(msgs::MachineStatus &status);
+    /// The status of this cycle; the right to operate and the last command are filled in. Wakes clients. Of
+    /// what motion tells only `motion_parts` (msgs::status_part) may be other than in the last cycle.
+    void publish(msgs::MachineStatus &status, PartMask motion_parts = msgs::PublishedStatus::ALL);
     /// False when the table is larger than MAX_TOOL_BYTES; clients keep the one before.
     bool publish_tools(const msgs::ToolTable &table);
 
@@ -51,7 +52,7 @@ class Desk {
         int place = 0;
     };
     /// Stops that wait beside the queue of a client, in the order of their numbers.
-    static std::vector<WaitingStop> waiting_stops(const Slot &slot);
+    std::vector<WaitingStop> waiting_stops(int index);
     void accept(int index, Serial serial, Result<msgs::Command> command, std::vector<Delivery> &out);
     /// The end of what task never gets is that of the last command all the same.
     void note(Serial serial, msgs::Progress progress);
@@ -69,7 +70,8 @@ class Desk {
     std::map<Serial, Place> going_;  ///< commands under way
     /// Which command each outcome belongs to, and whether it is under way.
     std::array<std::array<Serial, MAX_OUTCOMES>, MAX_CLIENTS> serials_{};
-    Posted posted_;  ///< the one being taken
+    std::array<Serial, MAX_CLIENTS> newest_stops_{};  ///< as each client told, all looked at
+    Posted posted_;                                   ///< the one being taken
     Serial last_command_ = 0;
     msgs::Progress last_progress_ = msgs::Progress::DONE;
     std::uint64_t cycles_ = 0;

@@ -11,7 +11,7 @@
 #include "base/spsc_ring.hh"
 #include "mailbox/right_to_operate.hh"
 #include "mailbox/stops.hh"
-#include "msgs/status.hh"
+#include "msgs/status_parts.hh"
 
 namespace mw::mailbox {
 
@@ -78,7 +78,9 @@ struct Slot {
     /// Stops for which `posted` has no room: the number of the newest one of each kind, 0: none. The client
     /// writes it, task clears it once the stop's outcome is written.
     std::array<std::atomic<Serial>, STOP_PLACES> stops{};
+    std::atomic<Serial> newest_stop{0};                   ///< [client] written after its place in `stops`
     std::array<Seqlock<Outcome>, MAX_OUTCOMES> outcomes;  ///< task -> client
+    std::atomic<std::uint64_t> told{0};                   ///< [task] counts what it has written there
 };
 
 /// All zero is an empty one.
@@ -88,7 +90,7 @@ struct Segment {
     std::array<Slot, MAX_CLIENTS> slots;
     Seqlock<Identity> identity;  ///< [whoever makes the machine] once
 
-    Seqlock<msgs::MachineStatus> status;  ///< [task] once a cycle
+    msgs::PublishedStatus status;  ///< [task] once a cycle
     std::atomic<std::uint64_t> cycles{0};
     Seqlock<Bytes> tools;  ///< [task] when the table changes
     std::atomic<std::uint64_t> tools_version{0};

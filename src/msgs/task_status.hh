@@ -32,7 +32,6 @@ struct TaskStatus {
     bool isStoppedByProgram = false;
     bool isOptionalStop = true;
     bool isBlockDelete = true;
-    FixedText<MAX_STATUS_TEXT> program;
     int read_line = 0;
     int motion_line = 0;
     int stop_line = 0;
@@ -41,6 +40,7 @@ struct TaskStatus {
     int call_level = 0;
     std::uint64_t programs_ended = 0;
     Waiting waiting;
+    alignas(8) FixedText<MAX_STATUS_TEXT> program;
 };
 template <>
 inline constexpr auto DECLARED<TaskStatus> =

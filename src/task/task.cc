@@ -309,8 +309,8 @@ void Task::update_status() {
     status_.io.lube.isOn = io_.outputs.lube;
     ++status_.cycle;
     status_.time_ns = now_ns_;
-    tell_motion(motion_.status(), settings_.axis_mask, status_);
-    desk_.publish(status_);
+    const PartMask told = tell_motion(motion_.status(), motion_.fresh_parts(), settings_.axis_mask, status_);
+    desk_.publish(status_, told);
 }
 
 }  // namespace mw::task

@@ -266,9 +266,8 @@ TEST_F(ClientTest, OneClientOperatesAloneAndAPanelStillWorks) {
     const auto claim = *a.post(msgs::ClaimOperation{1});
     EXPECT_TRUE(cycle().empty());
     EXPECT_EQ(a.outcome(claim).progress, Progress::DONE);
-    msgs::MachineStatus seen;
-    ASSERT_TRUE(b.read_status(seen).has_value());
-    EXPECT_EQ(seen.operation.holder, a.id());
+    ASSERT_TRUE(b.read_status().has_value());
+    EXPECT_EQ(b.status().operation.holder, a.id());
     const auto refused = *b.post(msgs::RunProgram{});
     ASSERT_TRUE(b.post(msgs::AbortAll{}).has_value());
     ASSERT_TRUE(halui.post(msgs::ResumeProgram{}).has_value());
@@ -354,12 +353,12 @@ TEST_F(ClientTest, ALongTextSaysThatItGoesOn) {
 
 TEST_F(ClientTest, TheStatusIsThatOfTheLastCycleAndTheToolTableComesWhenItChanges) {
     Client a = made();
-    msgs::MachineStatus seen;
-    EXPECT_FALSE(a.read_status(seen).has_value()) << "before the first cycle";
+    const msgs::MachineStatus &seen = a.status();
+    EXPECT_FALSE(a.read_status().has_value()) << "before the first cycle";
     status->task.read_line = 7;
     status->joints[2].isPresent = true;
     cycle();
-    ASSERT_TRUE(a.read_status(seen).has_value());
+    ASSERT_TRUE(a.read_status().has_value());
     EXPECT_EQ(seen.task.read_line, 7);
     EXPECT_TRUE(seen.joints[2].isPresent);
     EXPECT_FALSE(a.read_tools()->has_value());

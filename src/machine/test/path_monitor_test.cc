@@ -32,7 +32,7 @@ TEST(PathMonitor, ANearestPointOnAHelixIsFoundInTheRightTurn) {
     helix.centre = at(0, 0);
     helix.normal = at(0, 0, 1);
     helix.angle_rad = 4 * std::numbers::pi;
-    const Nearest found = nearest_point(helix, at(0, 10.5, 2.5));
+    const Nearest found = PieceShape(helix).nearest(at(0, 10.5, 2.5));
     EXPECT_NEAR(found.fraction, 0.625, 1e-9);
     EXPECT_NEAR(found.linear, 0.5, 1e-9);
     EXPECT_NEAR(feed_length(helix), std::hypot(40 * std::numbers::pi, 4), 1e-9);

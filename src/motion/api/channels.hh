@@ -7,7 +7,6 @@
 #include <atomic>
 #include <cstdint>
 
-#include "base/seqlock.hh"
 #include "base/spsc_ring.hh"
 #include "motion/api/command.hh"
 #include "motion/api/path_command.hh"
@@ -41,7 +40,7 @@ struct Channels {
     SpscRing<Answer, 8192> planner_answers;  ///< planner -> task
     SpscRing<Fault, 256> servo_faults;       ///< servo -> task
     SpscRing<Fault, 256> planner_faults;     ///< planner -> task
-    Seqlock<Status> status;                  ///< servo -> any
+    PublishedStatus status;                  ///< servo -> any
 
     /// Counts the loops of the task process; standing still for the watchdog's time means that it hangs.
     std::atomic<std::uint64_t> task_loops{0};

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "base/limits.hh"
+#include "base/parted_seqlock.hh"
 #include "geom/pose.hh"
 #include "motion/api/command.hh"
 #include "motion/api/path_command.hh"
@@ -61,13 +63,34 @@ struct Status {
     bool isProbing = false, isProbeTripped = false, probe_value = false;
     double feed_scale = 1.0, rapid_scale = 1.0, net_feed_scale = 1.0;
     bool isFeedOverrideEnabled = true, isAdaptiveFeedEnabled = false, isFeedHoldEnabled = true;
+    int num_joints = 0, num_spindles = 0;
+    std::uint64_t digital_in = 0, digital_out = 0;  ///< bit per pin
     std::array<JointStatus, MAX_JOINTS> joint{};
     std::array<AxisStatus, MAX_AXES> axis{};
     std::array<SpindleStatus, MAX_SPINDLES> spindle{};
-    std::uint64_t digital_in = 0, digital_out = 0;  ///< bit per pin
     std::array<double, MAX_ANALOG_IO> analog_in{}, analog_out{};
-    int num_joints = 0, num_spindles = 0;
 };
+
+/// The parts of `Status` in which it is published: who reads it often copies only what has changed.
+namespace status_part {
+inline constexpr int WHOLE_MACHINE = 0, JOINTS = 1, AXES = JOINTS + MAX_JOINTS, SPINDLES = AXES + 1,
+                     ANALOG_IN = SPINDLES + MAX_SPINDLES, ANALOG_OUT = ANALOG_IN + 1, COUNT = ANALOG_OUT + 1;
+inline constexpr PartStarts<COUNT> STARTS = [] {
+    PartStarts<COUNT> starts{};
+    for (std::size_t i = 0; i < MAX_JOINTS; ++i) {
+        starts[JOINTS + i] = offsetof(Status, joint) + i * sizeof(JointStatus);
+    }
+    for (std::size_t i = 0; i < MAX_SPINDLES; ++i) {
+        starts[SPINDLES + i] = offsetof(Status, spindle) + i * sizeof(SpindleStatus);
+    }
+    starts[AXES] = offsetof(Status, axis);
+    starts[ANALOG_IN] = offsetof(Status, analog_in);
+    starts[ANALOG_OUT] = offsetof(Status, analog_out);
+    return starts;
+}();
+}  // namespace status_part
+
+using PublishedStatus = PartedSeqlock<Status, status_part::STARTS>;
 
 enum class AnswerKind : std::uint8_t { DONE, REFUSED, STALE };
 

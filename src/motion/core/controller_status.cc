@@ -5,6 +5,17 @@
 #include "motion/core/controller.hh"
 
 namespace mw::motion {
+namespace {
+
+/// Parts that may be other than in the last cycle; what seldom changes is compared.
+PartMask new_parts(const PublishedStatus &published, const Status &s) noexcept {
+    constexpr PartMask SELDOM = part_range(status_part::AXES, 1) | part_range(status_part::ANALOG_IN, 1) |
+                                part_range(status_part::ANALOG_OUT, 1);
+    return part_range(status_part::WHOLE_MACHINE, 1) | part_range(status_part::JOINTS, s.num_joints) |
+           part_range(status_part::SPINDLES, s.num_spindles) | published.changed(s, SELDOM);
+}
+
+}  // namespace
 
 void Controller::publish(const Inputs &in, Outputs &out) noexcept {
     Status &s = out.status;
@@ -16,14 +27,12 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
     s.isEnabled = power_.isEnabled;
     s.isAllHomed = limits_.homed.areAll;
     s.isTaskLost = watchdog_.isLost;
-    s.digital_in = in.digital_in;
-    s.analog_in = in.analog_in;
     s.num_joints = config_.num_joints;
     s.num_spindles = config_.num_spindles;
     fill(place_, s);
     fill(probe_, in.isProbeClosed, s);
     fill(holds_, s);
-    fill(outputs_, s);
+    fill(outputs_, in, s);
     fill_path(s);
     fill(joints_, settings_, {power_.isEnabled, jogs_.areLimitsOverridden, limits_.homed.joints}, out);
     fill(jogs_, power_.mode, place_.cmd, out);
@@ -37,7 +46,7 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
     out.isCoordError = isCoordError_;
     out.tool_offset = tool_offset_;
     publish_view(in);
-    channels_->status.write(s);
+    channels_->status.write(s, new_parts(channels_->status, s));
     trace(in, s);
 }
 

@@ -12,14 +12,16 @@ constexpr std::uint32_t PATH_WINDOW = 3000;
 }  // namespace
 
 MotionLink::MotionLink(motion::Channels &channels) : channels_(channels) {
-    if (channels_.status.read(status_)) {
-        epoch_ = status_.epoch;
+    copy_.value.isInPosition = false;  // before motion has said so
+    if (channels_.status.read(copy_)) {
+        epoch_ = copy_.value.epoch;
     }
 }
 
 MotionLink::News MotionLink::update() {
     News news;
-    news.isStatusFresh = channels_.status.read(status_);
+    // Of a realtime side that has died while writing nothing more is told.
+    fresh_ = channels_.status.read(copy_) ? copy_.fresh : 0;
     channels_.task_loops.fetch_add(1, std::memory_order_relaxed);
     take_answers(news);
     motion::Fault fault;

@@ -22,12 +22,13 @@ class MotionLink {
     struct News {
         std::vector<Refusal> refused;  ///< REFUSED only; STALE ones belong to work that was aborted
         std::vector<motion::Fault> faults;
-        bool isStatusFresh = false;  ///< false: the realtime side died while writing
     };
     /// Takes status, answers and faults, and tells the realtime side that task is alive. Once a task cycle.
     News update();
 
-    const motion::Status &status() const { return status_; }
+    const motion::Status &status() const { return copy_.value; }
+    /// Parts of the status (motion::status_part) that came with the last update.
+    PartMask fresh_parts() const { return fresh_; }
 
     /// Queues an immediate command; they are handed over in order as the channel has room.
     motion::CommandId send(motion::CommandBody body);
@@ -50,7 +51,7 @@ class MotionLink {
     /// An immediate command has been answered (done or refused), and status() is of a time after it. In
     /// another process the answer comes before the snapshot of its cycle.
     bool isAnswered(motion::CommandId id) const {
-        return (pending_.empty() || id < pending_.front()) && id <= status_.last_immediate_id;
+        return (pending_.empty() || id < pending_.front()) && id <= copy_.value.last_immediate_id;
     }
 
   private:
@@ -59,7 +60,8 @@ class MotionLink {
     motion::SourceTag take_source(motion::CommandId id);
 
     motion::Channels &channels_;
-    motion::Status status_{};
+    motion::PublishedStatus::Copy copy_;
+    PartMask fresh_ = 0;
     std::vector<motion::Command> backlog_;
     /// Where the moves handed over and not answered come from, oldest first.
     std::deque<std::pair<motion::CommandId, motion::SourceTag>> sources_;

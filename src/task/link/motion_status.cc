@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "task/link/motion_status.hh"
 
+#include <bit>
+
 namespace mw::task {
 namespace {
 
@@ -13,8 +15,7 @@ msgs::MotionMode mode_of(motion::Mode mode) {
     return msgs::MotionMode::FREE;
 }
 
-msgs::TrajectoryStatus trajectory_of(const motion::Status &motion, unsigned axis_mask) {
-    msgs::TrajectoryStatus t;
+void tell_trajectory(const motion::Status &motion, unsigned axis_mask, msgs::TrajectoryStatus &t) {
     t.axis_mask = axis_mask;
     t.num_joints = motion.num_joints;
     t.num_spindles = motion.num_spindles;
@@ -37,11 +38,9 @@ msgs::TrajectoryStatus trajectory_of(const motion::Status &motion, unsigned axis
     t.position_fb = motion.carte_pos_fb;
     t.isPositionValid = motion.isCartePosValid;
     t.dtg = motion.dtg;
-    return t;
 }
 
-msgs::JointStatus joint_of(const motion::JointStatus &joint) {
-    msgs::JointStatus j;
+void tell(const motion::JointStatus &joint, msgs::JointStatus &j) {
     j.isPresent = true;
     j.pos_cmd = joint.pos_cmd;
     j.pos_fb = joint.pos_fb;
@@ -66,11 +65,9 @@ msgs::JointStatus joint_of(const motion::JointStatus &joint) {
     j.isOnPosHardLimit = joint.isOnPosHardLimit;
     j.isFerrorTripped = joint.isFerrorTripped;
     j.isOverridingLimits = joint.isOverridingLimits;
-    return j;
 }
 
-msgs::SpindleStatus spindle_of(const motion::SpindleStatus &spindle) {
-    msgs::SpindleStatus s;
+void tell(const motion::SpindleStatus &spindle, msgs::SpindleStatus &s) {
     s.isPresent = true;
     s.speed_cmd_rpm = spindle.speed_cmd_rpm;
     s.override_factor = spindle.scale;
@@ -83,28 +80,40 @@ msgs::SpindleStatus spindle_of(const motion::SpindleStatus &spindle) {
     s.isOverrideEnabled = spindle.isOverrideEnabled;
     s.orient_state = spindle.orient_state;
     s.orient_fault = spindle.orient_fault;
-    return s;
 }
 
-/// Fills the rows that the machine has; the others are emptied when they cease to be there, as most machines
-/// have few of them.
-template <class Rows, class IsPresent, class Row>
-void tell_rows(Rows &rows, const IsPresent &isPresent, const Row &row) {
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (isPresent(i)) {
-            rows[i] = row(i);
-        } else if (rows[i].isPresent) {
-            rows[i] = {};
-        }
+void tell(const motion::AxisStatus &axis, msgs::AxisStatus &a) {
+    a.isPresent = true;
+    a.velocity = axis.velocity;
+    a.min_limit = axis.min_limit;
+    a.max_limit = axis.max_limit;
+}
+
+/// A row that the machine has not is emptied when it ceases to be there. True: it is other than before.
+template <class From, class To>
+bool tell_row(const From &from, bool isPresent, To &to) {
+    const bool wasPresent = to.isPresent;
+    if (isPresent) {
+        tell(from, to);
+    } else if (wasPresent) {
+        to = {};
     }
+    return isPresent || wasPresent;
 }
 
-}  // namespace
+/// The rows that are other than before; `fresh` has a bit per row.
+template <class From, class To>
+PartMask tell_rows(const From &from, PartMask fresh, int count, To &to) {
+    PartMask told = 0;
+    for (; fresh != 0; fresh &= fresh - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(fresh));
+        told |= tell_row(from[i], static_cast<int>(i) < count, to[i]) ? PartMask{1} << i : 0;
+    }
+    return told;
+}
 
-void tell_motion(const motion::Status &motion, unsigned axis_mask, msgs::MachineStatus &status) {
-    static_assert(static_cast<int>(motion::MotionType::PROBING) == static_cast<int>(msgs::MoveKind::PROBE));
-    static_assert(static_cast<int>(motion::MotionType::ARC) == static_cast<int>(msgs::MoveKind::ARC));
-    status.trajectory = trajectory_of(motion, axis_mask);
+void tell_machine(const motion::Status &motion, unsigned axis_mask, msgs::MachineStatus &status) {
+    tell_trajectory(motion, axis_mask, status.trajectory);
     status.probe = {motion.probed_pos, motion.isProbing, motion.isProbeTripped, motion.probe_value};
     status.overrides = {motion.feed_scale,
                         motion.rapid_scale,
@@ -112,20 +121,51 @@ void tell_motion(const motion::Status &motion, unsigned axis_mask, msgs::Machine
                         motion.isFeedOverrideEnabled,
                         motion.isAdaptiveFeedEnabled,
                         motion.isFeedHoldEnabled};
-    status.motion = {motion.cycle,       motion.isTaskLost, motion.digital_in,
-                     motion.digital_out, motion.analog_in,  motion.analog_out};
-    tell_rows(
-        status.joints, [&](std::size_t i) { return static_cast<int>(i) < motion.num_joints; },
-        [&](std::size_t i) { return joint_of(motion.joint[i]); });
-    tell_rows(
-        status.axes, [&](std::size_t i) { return (axis_mask >> i & 1U) != 0; },
-        [&](std::size_t i) {
-            const motion::AxisStatus &axis = motion.axis[i];
-            return msgs::AxisStatus{true, axis.velocity, axis.min_limit, axis.max_limit};
-        });
-    tell_rows(
-        status.spindles, [&](std::size_t i) { return static_cast<int>(i) < motion.num_spindles; },
-        [&](std::size_t i) { return spindle_of(motion.spindle[i]); });
+    status.motion.cycle = motion.cycle;
+    status.motion.isTaskLost = motion.isTaskLost;
+    status.motion.digital_in = motion.digital_in;
+    status.motion.digital_out = motion.digital_out;
+}
+
+}  // namespace
+
+PartMask tell_motion(const motion::Status &motion, PartMask fresh, unsigned axis_mask,
+                     msgs::MachineStatus &status) {
+    static_assert(static_cast<int>(motion::MotionType::PROBING) == static_cast<int>(msgs::MoveKind::PROBE));
+    static_assert(static_cast<int>(motion::MotionType::ARC) == static_cast<int>(msgs::MoveKind::ARC));
+    namespace from = motion::status_part;
+    namespace to = msgs::status_part;
+    const msgs::TrajectoryStatus &before = status.trajectory;
+    const bool isSameMachine = before.num_joints == motion.num_joints && before.axis_mask == axis_mask &&
+                               before.num_spindles == motion.num_spindles;
+    fresh = isSameMachine ? fresh : motion::PublishedStatus::ALL;
+    const auto isFresh = [fresh](int part) { return (fresh & part_range(part, 1)) != 0; };
+    const auto rows = [fresh](int first, int count) { return fresh >> first & part_range(0, count); };
+    PartMask told = 0;
+    if (isFresh(from::WHOLE_MACHINE)) {
+        tell_machine(motion, axis_mask, status);
+        told |= part_range(to::PATH, 1);
+    }
+    told |= tell_rows(motion.joint, rows(from::JOINTS, MAX_JOINTS), motion.num_joints, status.joints)
+            << to::JOINTS;
+    told |=
+        tell_rows(motion.spindle, rows(from::SPINDLES, MAX_SPINDLES), motion.num_spindles, status.spindles)
+        << to::SPINDLES;
+    if (isFresh(from::AXES)) {
+        for (std::size_t i = 0; i < status.axes.size(); ++i) {
+            tell_row(motion.axis[i], (axis_mask >> i & 1U) != 0, status.axes[i]);
+        }
+        told |= part_range(to::AXES, 1);
+    }
+    if (isFresh(from::ANALOG_IN)) {
+        status.motion.analog_in = motion.analog_in;
+        told |= part_range(to::ANALOG_IN, 1);
+    }
+    if (isFresh(from::ANALOG_OUT)) {
+        status.motion.analog_out = motion.analog_out;
+        told |= part_range(to::ANALOG_OUT, 1);
+    }
+    return told;
 }
 
 }  // namespace mw::task

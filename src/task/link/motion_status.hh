@@ -3,12 +3,15 @@
 #pragma once
 
 #include "motion/api/status.hh"
-#include "msgs/status.hh"
+#include "msgs/status_parts.hh"
 
 namespace mw::task {
 
-/// Writes trajectory, motion, joints, axes and spindles of `status`. Joints, axes and spindles that the
-/// machine does not have are marked so and carry no values (H1).
-void tell_motion(const motion::Status &motion, unsigned axis_mask, msgs::MachineStatus &status);
+/// Writes trajectory, motion, joints, axes and spindles of `status` as far as they belong to the `fresh`
+/// parts (motion::status_part) of what motion tells. Joints, axes and spindles that the machine does not have
+/// are marked so and carry no values (H1). Gives the parts of `status` (msgs::status_part) that it has
+/// written.
+PartMask tell_motion(const motion::Status &motion, PartMask fresh, unsigned axis_mask,
+                     msgs::MachineStatus &status);
 
 }  // namespace mw::task

@@ -81,8 +81,8 @@ class TaskTest : public testing::Test {
         EXPECT_TRUE(posted.has_value()) << posted.error().str();
         return posted.value_or(0);
     }
-    Progress progress(client::Serial command) const { return client.outcome(command).progress; }
-    std::string reason(client::Serial command) const { return client.outcome(command).reason; }
+    Progress progress(client::Serial command) { return client.outcome(command).progress; }
+    std::string reason(client::Serial command) { return client.outcome(command).reason; }
     Progress ask(const Command &command, int limit = 2500) {
         request = post(command);
         for (int i = 0; i < limit; ++i) {
@@ -358,8 +358,8 @@ TEST_F(TaskTest, EveryCommandOfTheVocabularyIsAnsweredAndARefusalSaysWhy_C5) {
 
 TEST_F(TaskTest, TheStatusMarksWhatTheMachineDoesNotHave_H1) {
     cycles(2);
-    msgs::MachineStatus seen;
-    ASSERT_TRUE(client.read_status(seen).has_value());
+    ASSERT_TRUE(client.read_status().has_value());
+    const msgs::MachineStatus &seen = client.status();
     EXPECT_EQ(seen.trajectory.axis_mask, 7U);
     EXPECT_EQ(seen.trajectory.num_joints, 3);
     for (std::size_t i = 0; i < seen.joints.size(); ++i) {

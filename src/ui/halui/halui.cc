@@ -63,13 +63,14 @@ void Halui::step() {
         // One that task has no room for is tried again in the next cycle.
         button.wasOn = isPressed ? client_->post(button.command).has_value() : isOn;
     }
-    if (!client_->read_status(status_).has_value()) {
+    if (!client_->read_status().has_value()) {
         return;
     }
-    lamps_.write(status_);
+    const msgs::MachineStatus &status = client_->status();
+    lamps_.write(status);
     for (int joint = 0; joint < num_joints_; ++joint) {
         const auto i = static_cast<std::size_t>(joint);
-        joint_lamps_[i].write(status_.joints[i]);
+        joint_lamps_[i].write(status.joints[i]);
     }
 }
 

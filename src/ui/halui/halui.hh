@@ -41,7 +41,6 @@ class Halui {
 
     hal::Hal *hal_ = nullptr;
     std::optional<client::Client> client_;
-    msgs::MachineStatus status_;  ///< of the last cycle
     int comp_id_ = 0;
     int num_joints_ = 0;
     std::vector<Button> buttons_;

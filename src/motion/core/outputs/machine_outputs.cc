@@ -41,9 +41,13 @@ void fire(MachineOutputs &outputs, const traj::PathEvent &event) noexcept {
     }
 }
 
-void fill(const MachineOutputs &outputs, Status &status) noexcept {
+void fill(const MachineOutputs &outputs, const Inputs &in, Status &status) noexcept {
+    status.digital_in = in.digital_in;
     status.digital_out = outputs.digital;
-    status.analog_out = outputs.analog;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(outputs.num_analog); ++i) {
+        status.analog_in[i] = in.analog_in[i];
+        status.analog_out[i] = outputs.analog[i];
+    }
 }
 
 }  // namespace mw::motion

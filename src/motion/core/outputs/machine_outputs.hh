@@ -8,6 +8,7 @@
 #include "base/limits.hh"
 #include "motion/api/command.hh"
 #include "motion/api/status.hh"
+#include "motion/core/io.hh"
 #include "motion/core/verdict.hh"
 #include "traj/path_store.hh"
 
@@ -23,6 +24,7 @@ Verdict take(MachineOutputs &outputs, const SetDigitalOutput &command) noexcept;
 Verdict take(MachineOutputs &outputs, const SetAnalogOutput &command) noexcept;
 /// A change whose place on the path has been passed; the path planner has checked its index.
 void fire(MachineOutputs &outputs, const traj::PathEvent &event) noexcept;
-void fill(const MachineOutputs &outputs, Status &status) noexcept;
+/// What is set, and what the inputs say beside it.
+void fill(const MachineOutputs &outputs, const Inputs &in, Status &status) noexcept;
 
 }  // namespace mw::motion

@@ -73,7 +73,7 @@ TEST(OutputsPart, OutputsAreSetAtOnceAndByThePath) {
     event.value = 2.5;
     fire(outputs, event);
     Status status;
-    fill(outputs, status);
+    fill(outputs, Inputs{}, status);
     EXPECT_EQ(status.analog_out[3], 2.5);
     EXPECT_EQ(status.digital_out, 12U);
 }

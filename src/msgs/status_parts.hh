@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The parts of the machine's status in which it is published: who reads it often copies only what has
+// changed.
+#pragma once
+
+#include <cstddef>
+
+#include "base/parted_seqlock.hh"
+#include "msgs/status.hh"
+
+namespace mw::msgs::status_part {
+
+/// TASK: cycle, commands, messages, states and place in the program; PATH: trajectory, probe, overrides,
+/// motion with digital inputs and outputs; DEVICES: tool, I/O, the right to operate.
+inline constexpr int TASK = 0, PROGRAM = 1, CODES = 2, OFFSETS = 3, PATH = 4, ANALOG_IN = 5, ANALOG_OUT = 6,
+                     JOINTS = 7, AXES = JOINTS + MAX_JOINTS, SPINDLES = AXES + 1,
+                     DEVICES = SPINDLES + MAX_SPINDLES, COUNT = DEVICES + 1;
+
+inline constexpr PartStarts<COUNT> STARTS = [] {
+    PartStarts<COUNT> starts{};
+    starts[PROGRAM] = offsetof(MachineStatus, task) + offsetof(TaskStatus, program);
+    starts[CODES] = offsetof(MachineStatus, codes);
+    starts[OFFSETS] = offsetof(MachineStatus, offsets);
+    starts[PATH] = offsetof(MachineStatus, trajectory);
+    starts[ANALOG_IN] = offsetof(MachineStatus, motion) + offsetof(MotionStatus, analog_in);
+    starts[ANALOG_OUT] = offsetof(MachineStatus, motion) + offsetof(MotionStatus, analog_out);
+    for (std::size_t i = 0; i < MAX_JOINTS; ++i) {
+        starts[JOINTS + i] = offsetof(MachineStatus, joints) + i * sizeof(JointStatus);
+    }
+    starts[AXES] = offsetof(MachineStatus, axes);
+    for (std::size_t i = 0; i < MAX_SPINDLES; ++i) {
+        starts[SPINDLES + i] = offsetof(MachineStatus, spindles) + i * sizeof(SpindleStatus);
+    }
+    starts[DEVICES] = offsetof(MachineStatus, tool);
+    return starts;
+}();
+
+}  // namespace mw::msgs::status_part
+
+namespace mw::msgs {
+
+using PublishedStatus = PartedSeqlock<MachineStatus, status_part::STARTS>;
+
+}  // namespace mw::msgs
