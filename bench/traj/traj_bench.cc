@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Drives each kind of program with the planner in virtual time: cycle time, limits, deviation, planning rate.
-// traj_bench [--jerk] [--fast] [--bound] [--rate] [--trace FOLDER] [--only WORD] [--jerk-share PART]; --fast
-// leaves the deviation out; --jerk-share: that part of the jerk limits;
-// --rate measures planning alone, merging off, on 0.01 mm blocks in nine coordinates.
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <memory>
 #include <string>
 
-#include "base/text.hh"
+#include "options/command_line.hh"
 #include "testing/deviation.hh"
 #include "testing/limit_checker.hh"
 #include "traj/bound.hh"
@@ -28,9 +24,22 @@ struct Options {
     bool isFast = false;
     bool isRate = false;
     bool isBound = false;
-    const char *trace = nullptr;
-    const char *only = "";
+    std::string trace, only;
     double jerk_share = 1;  ///< of the jerk limits of all kinds
+
+    options::CommandLine line() {
+        options::CommandLine line("traj_bench [options]",
+                                  "Drives each kind of program with the planner in virtual time.\n");
+        line.flag("--jerk", "with jerk limits", isJerkLimited);
+        line.flag("--fast", "leave the deviation out", isFast);
+        line.flag("--bound", "the bound beside each", isBound);
+        line.flag("--rate", "planning alone, merging off, on 0.01 mm blocks in nine coordinates", isRate);
+        line.text("--trace", "FOLDER", "write the samples of each kind there", trace);
+        line.text("--only", "WORD", "the kinds with this in their name", only);
+        line.number("--jerk-share", "PART", "this part of the jerk limits (default 1)", jerk_share, 1e-6,
+                    1e6);
+        return line;
+    }
 };
 
 traj::Primitive primitive_of(const Pose &from, const Move &m) {
@@ -119,7 +128,7 @@ double cycle_time(const std::vector<Pose> &samples) {
 }
 
 void write_trace(const Options &options, const Program &program, const Run &run) {
-    std::string name = std::string(options.trace) + "/" + program.name + ".csv";
+    std::string name = options.trace + "/" + program.name + ".csv";
     std::replace(name.begin(), name.end(), ' ', '_');
     std::FILE *file = std::fopen(name.c_str(), "w");
     if (file == nullptr) {
@@ -193,7 +202,7 @@ bool measure(const Options &options, const Program &program) {
     if (!isOk) {
         std::printf("%.400s", checker.report().c_str());
     }
-    if (options.trace != nullptr) {
+    if (!options.trace.empty()) {
         write_trace(options, program, run);
     }
     return isOk;
@@ -204,32 +213,11 @@ bool measure(const Options &options, const Program &program) {
 
 int main(int argc, char **argv) {
     mw::bench::Options options;
-    for (int i = 1; i < argc; ++i) {
-        const bool hasValue = i + 1 < argc;
-        if (std::strcmp(argv[i], "--jerk") == 0) {
-            options.isJerkLimited = true;
-        } else if (std::strcmp(argv[i], "--fast") == 0) {
-            options.isFast = true;
-        } else if (std::strcmp(argv[i], "--bound") == 0) {
-            options.isBound = true;
-        } else if (std::strcmp(argv[i], "--rate") == 0) {
-            options.isRate = true;
-            options.isFast = true;
-        } else if (std::strcmp(argv[i], "--trace") == 0 && hasValue) {
-            options.trace = argv[++i];
-        } else if (std::strcmp(argv[i], "--only") == 0 && hasValue) {
-            options.only = argv[++i];
-        } else if (std::strcmp(argv[i], "--jerk-share") == 0 && hasValue) {
-            options.jerk_share = mw::parse_double(argv[++i]).value_or(0);
-        } else {
-            options.jerk_share = 0;
-        }
-    }
-    if (!(options.jerk_share > 0)) {
-        std::fprintf(stderr, "usage: traj_bench [--jerk] [--fast] [--bound] [--rate] [--trace FOLDER] "
-                             "[--only WORD] [--jerk-share PART]\n");
+    if (const auto parsed = options.line().parse({argv + 1, argv + argc}); !parsed) {
+        std::fprintf(stderr, "%s\n%s", parsed.error().str().c_str(), options.line().help().c_str());
         return 2;
     }
+    options.isFast = options.isFast || options.isRate;
     std::printf("%-18s %6s %10s  %17s  %12s  %9s\n", "kind", "blocks", "time", "worst v a j", "deviation",
                 "blocks/s");
     bool isOk = true;

@@ -3,9 +3,9 @@
 // of tools/trajcheck.py: traj_verdict KIND TRACE.csv [--jerk]. Prints the worst velocity, acceleration and
 // jerk over their limits, the deviation and ok or beyond.
 #include <cstdio>
-#include <cstring>
 #include <vector>
 
+#include "options/command_line.hh"
 #include "testing/deviation.hh"
 #include "testing/limit_checker.hh"
 #include "traj/kinds.hh"
@@ -66,20 +66,28 @@ bool judge(const Program &program, const Trace &trace, bool isJerkLimited) {
 }  // namespace mw::bench
 
 int main(int argc, char **argv) {
-    const bool isJerkLimited = argc == 4 && std::strcmp(argv[3], "--jerk") == 0;
-    if (argc != 3 && !isJerkLimited) {
-        std::fputs("usage: traj_verdict KIND TRACE.csv [--jerk]\n", stderr);
+    bool isJerkLimited = false;
+    mw::options::Words words;
+    mw::options::CommandLine line("traj_verdict KIND TRACE.csv [--jerk]",
+                                  "The tests' own judgement of a trace.\n");
+    line.flag("--jerk", "with jerk limits", isJerkLimited);
+    line.rest(words);
+    const auto parsed = line.parse({argv + 1, argv + argc});
+    if (!parsed || words.size() != 2) {
+        std::fprintf(stderr, "%s\n%s",
+                     parsed ? "a kind and a trace are needed" : parsed.error().str().c_str(),
+                     line.help().c_str());
         return 2;
     }
     mw::bench::Trace trace;
-    if (!mw::bench::read_trace(argv[2], trace)) {
+    if (!mw::bench::read_trace(words[1].c_str(), trace)) {
         return 2;
     }
     for (const mw::bench::Program &program : mw::bench::all_kinds()) {
-        if (program.name == argv[1]) {
+        if (program.name == words[0]) {
             return mw::bench::judge(program, trace, isJerkLimited) ? 0 : 1;
         }
     }
-    std::fprintf(stderr, "traj_verdict: there is no kind '%s'\n", argv[1]);
+    std::fprintf(stderr, "traj_verdict: there is no kind '%s'\n", words[0].c_str());
     return 2;
 }

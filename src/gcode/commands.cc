@@ -8,23 +8,51 @@
 #include "base/atomic_file.hh"
 #include "gcode/explain.hh"
 #include "gcode/format.hh"
+#include "options/command_line.hh"
 
 namespace mw::gcode {
 namespace {
 
-constexpr const char *FORMAT_USAGE =
-    "usage: millwright format [--check | --in-place] PROGRAM.ngc|- ...\n"
-    "  writes programs in one form, without a change of meaning\n"
-    "  --check     only say which ones would change; status 1 when any would\n"
-    "  --in-place  write them back\n";
-constexpr const char *EXPLAIN_USAGE =
-    "usage: millwright explain [--before LINES] LINE\n"
-    "  says in words what a line of G-code does\n"
-    "  --before    lines to run first, one after the other with \\n between (default: 'F100 S1000 M3')\n";
-constexpr const char *DEFAULT_BEFORE = "F100 S1000 M3";
+enum class FormatMode { PRINT, CHECK, IN_PLACE };
 
-bool wantsHelp(const std::vector<std::string> &words) {
-    return !words.empty() && (words[0] == "--help" || words[0] == "-h");
+struct FormatWords {
+    bool isCheck = false, isInPlace = false;
+    options::Words programs;
+
+    options::CommandLine line() {
+        options::CommandLine line("millwright format [--check | --in-place] PROGRAM.ngc|- ...",
+                                  "Writes programs in one form, without a change of meaning; - is standard "
+                                  "input.\n");
+        line.flag("--check", "only say which ones would change; status 1 when any would", isCheck);
+        line.flag("--in-place", "write them back", isInPlace);
+        line.rest(programs);
+        line.footer("exit status: 0 done, 1 failed, 2 wrong usage\n");
+        return line;
+    }
+    FormatMode mode() const {
+        return isCheck ? FormatMode::CHECK : isInPlace ? FormatMode::IN_PLACE : FormatMode::PRINT;
+    }
+};
+
+struct ExplainWords {
+    std::string before = "F100 S1000 M3";
+    options::Words line_words;
+
+    options::CommandLine line() {
+        options::CommandLine line("millwright explain [--before LINES] LINE",
+                                  "Says in words what a line of G-code does.\n");
+        line.text("--before", "LINES",
+                  "lines to run first, one after the other with \\n between (default: 'F100 S1000 M3')",
+                  before);
+        line.rest_of_text(line_words);
+        line.footer("exit status: 0 done, 1 refused, 2 wrong usage\n");
+        return line;
+    }
+};
+
+int wrong_usage(const char *command, const std::string &what) {
+    std::fprintf(stderr, "millwright %s: %s\n", command, what.c_str());
+    return 2;
 }
 
 Result<std::string> read_program(const std::string &path) {
@@ -33,8 +61,6 @@ Result<std::string> read_program(const std::string &path) {
     }
     return read_file(path);
 }
-
-enum class FormatMode { PRINT, CHECK, IN_PLACE };
 
 /// One program; false when it cannot be read or written, or would change under CHECK.
 bool format_one(const std::string &path, FormatMode mode) {
@@ -75,58 +101,46 @@ std::string with_newlines(const std::string &text) {
 
 }  // namespace
 
-int command_format(const std::vector<std::string> &words) {
-    if (wantsHelp(words)) {
-        std::fputs(FORMAT_USAGE, stdout);
+int command_format(const std::vector<std::string> &arguments) {
+    FormatWords words;
+    if (options::wantsHelp(arguments)) {
+        std::fputs(words.line().help().c_str(), stdout);
         return 0;
     }
-    FormatMode mode = FormatMode::PRINT;
-    std::vector<std::string> files;
-    for (const std::string &word : words) {
-        if (word == "--check") {
-            mode = FormatMode::CHECK;
-        } else if (word == "--in-place") {
-            mode = FormatMode::IN_PLACE;
-        } else if (word.size() > 1 && word[0] == '-') {
-            std::fprintf(stderr, "millwright format: unknown option '%s'\n%s", word.c_str(), FORMAT_USAGE);
-            return 2;
-        } else {
-            files.push_back(word);
-        }
+    if (const auto parsed = words.line().parse(arguments); !parsed) {
+        return wrong_usage("format", parsed.error().str());
     }
-    if (files.empty()) {
-        std::fputs(FORMAT_USAGE, stderr);
-        return 2;
+    if (words.isCheck && words.isInPlace) {
+        return wrong_usage("format", "either --check or --in-place");
+    }
+    if (words.programs.empty()) {
+        return wrong_usage("format",
+                           "needs a program: millwright format [--check | --in-place] PROGRAM.ngc|- ...");
     }
     bool isGood = true;
-    for (const std::string &file : files) {
-        isGood = format_one(file, mode) && isGood;
+    for (const std::string &program : words.programs) {
+        isGood = format_one(program, words.mode()) && isGood;
     }
     return isGood ? 0 : 1;
 }
 
-int command_explain(const std::vector<std::string> &words) {
-    if (wantsHelp(words)) {
-        std::fputs(EXPLAIN_USAGE, stdout);
+int command_explain(const std::vector<std::string> &arguments) {
+    ExplainWords words;
+    if (options::wantsHelp(arguments)) {
+        std::fputs(words.line().help().c_str(), stdout);
         return 0;
     }
-    std::string before = DEFAULT_BEFORE, line;
-    bool isWrong = words.empty(), hasLine = false;
-    for (std::size_t i = 0; i < words.size(); ++i) {
-        if (words[i] == "--before" && i + 1 < words.size()) {
-            before = with_newlines(words[++i]);
-        } else if (words[i].substr(0, 2) == "--") {
-            isWrong = true;
-        } else {
-            line += (hasLine ? " " : "") + words[i];
-            hasLine = true;
-        }
+    if (const auto parsed = words.line().parse(arguments); !parsed) {
+        return wrong_usage("explain", parsed.error().str());
     }
-    if (isWrong || !hasLine) {
-        std::fputs(EXPLAIN_USAGE, stderr);
-        return 2;
+    if (words.line_words.empty()) {
+        return wrong_usage("explain", "needs a line of G-code: millwright explain [--before LINES] LINE");
     }
-    const Explanation said = explain_line(line, before);
+    std::string line = words.line_words[0];
+    for (std::size_t i = 1; i < words.line_words.size(); ++i) {
+        line += ' ' + words.line_words[i];
+    }
+    const Explanation said = explain_line(line, with_newlines(words.before));
     std::fputs(said.text.c_str(), stdout);
     return said.isRefused ? 1 : 0;
 }

@@ -8,7 +8,7 @@
 
 namespace mw::gcode {
 
-int command_format(const std::vector<std::string> &words);
-int command_explain(const std::vector<std::string> &words);
+int command_format(const std::vector<std::string> &arguments);
+int command_explain(const std::vector<std::string> &arguments);
 
 }  // namespace mw::gcode

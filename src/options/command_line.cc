@@ -3,6 +3,7 @@
 #include "options/command_line.hh"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "base/text.hh"
 
@@ -29,6 +30,14 @@ std::string wrapped(const std::string &text) {
         used += word.size() + (used > COLUMN ? 1 : 0);
     }
     return out;
+}
+
+/// Stands before each word that CLI11 must not read anything into: it takes brackets off words, and -.5 for
+/// an option.
+constexpr char PLAIN = '\1';
+
+std::string without_mark(const std::string &word) {
+    return word.starts_with(PLAIN) ? word.substr(1) : word;
 }
 
 /// Carries an error through CLI11.
@@ -115,8 +124,11 @@ void CommandLine::hand_over(const Option &option, const Words &values) {
         throw Refused{number_of_words(option.names, option.words)};
     }
     for (std::size_t i = 0; i < values.size(); i += step) {
-        const auto first = values.begin() + static_cast<std::ptrdiff_t>(i);
-        auto done = option.take({first, first + option.words});
+        Words taken;
+        for (std::size_t k = i; k < i + static_cast<std::size_t>(option.words); ++k) {
+            taken.push_back(without_mark(values[k]));
+        }
+        auto done = option.take(taken);
         if (!done.has_value()) {
             done.error().message = "option " + spoken(option.names) + ": " + done.error().message;
             throw Refused{done.error()};
@@ -124,8 +136,7 @@ void CommandLine::hand_over(const Option &option, const Words &values) {
     }
 }
 
-Error CommandLine::unknown(const std::string &word) const {
-    const std::string name = word.substr(0, word.find('='));
+Words CommandLine::names() const {
     Words known;
     for (const Option &option : options_) {
         for (std::size_t at = 0; at != std::string::npos;) {
@@ -134,7 +145,19 @@ Error CommandLine::unknown(const std::string &word) const {
             at = end == std::string::npos ? end : end + 1;
         }
     }
-    const std::string near = nearest_name(name, known);
+    return known;
+}
+
+/// Whether CLI11 is to look for an option in it.
+bool CommandLine::isForOptions(const std::string &word, const Words &known) const {
+    const bool isOneDash = word.size() > 1 && word[0] == '-' && word[1] != '-';
+    return word.starts_with('-') &&
+           (!isOneDash || !isRestText_ || std::ranges::find(known, word.substr(0, 2)) != known.end());
+}
+
+Error CommandLine::unknown(const std::string &word) const {
+    const std::string name = word.substr(0, word.find('='));
+    const std::string near = nearest_name(name, names());
     return {"unknown option " + name, {}, near.empty() ? "see --help" : "did you mean " + near + "?"};
 }
 
@@ -157,8 +180,13 @@ Result<> CommandLine::parse(const Words &words) const {
         }
     }
     app.add_option("words", rest);
+    const Words known = names();
+    Words backwards(words.rbegin(), words.rend());
+    for (std::string &word : backwards) {
+        word.insert(0, isForOptions(word, known) ? 0 : 1, PLAIN);
+    }
     try {
-        app.parse(Words(words.rbegin(), words.rend()));
+        app.parse(backwards);
     } catch (const Refused &refused) {
         return std::unexpected(refused.error);
     } catch (const CLI::ParseError &error) {
@@ -176,6 +204,7 @@ Result<> CommandLine::parse(const Words &words) const {
             return std::unexpected(unknown(word));
         }
     }
+    std::ranges::transform(rest, rest.begin(), without_mark);
     if (rest_ == nullptr && !rest.empty()) {
         return fail("the word '" + rest[0] + "' is one too many");
     }

@@ -51,6 +51,12 @@ class CommandLine {
               Taker taker);
     /// The words that belong to no option.
     void rest(Words &into) { rest_ = &into; }
+    /// The same where they are a text with numbers: words of one dash (-5, -.5) belong to it, too, unless the
+    /// program has an option of that letter.
+    void rest_of_text(Words &into) {
+        rest_ = &into;
+        isRestText_ = true;
+    }
     /// What --help says behind the options.
     void footer(std::string text) { footer_ = std::move(text); }
 
@@ -67,11 +73,14 @@ class CommandLine {
     };
     static Result<std::int64_t> whole_number(const std::string &text, std::int64_t low, std::int64_t high);
     static void hand_over(const Option &option, const Words &values);
+    Words names() const;
+    bool isForOptions(const std::string &word, const Words &known) const;
     Error unknown(const std::string &word) const;
 
     std::string usage_, about_, footer_;
     std::vector<Option> options_;
     Words *rest_ = nullptr;
+    bool isRestText_ = false;
 };
 
 /// One of the words asks for help.

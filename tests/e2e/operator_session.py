@@ -9,24 +9,17 @@ import pathlib
 import pty
 import re
 import select
-import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 import time
 
-STEPS_S = 40
+from mill_by_hand import STEP_S, Findings, Mill
+
 TOOLS = 'G21 G90 G61 F1200\nT1 M6\nG1 X2\nM0\nG1 X4\nM2\n'
 LONG = 'G21 G90 G61 F600\nG1 X100\nG1 X0\nM2\n'
-BY_HAND = '''unlinkp iocontrol.0.tool-change
-unlinkp iocontrol.0.tool-changed
-loadusr -W hal_manualtoolchange
-net by-hand iocontrol.0.tool-change => hal_manualtoolchange.change
-net by-hand-done hal_manualtoolchange.changed => iocontrol.0.tool-changed
-net by-hand-number iocontrol.0.tool-prep-number => hal_manualtoolchange.number
-'''
-FAILURES = []
+FOUND = Findings()
 
 
 class Terminal:
@@ -48,7 +41,7 @@ class Terminal:
         return True
 
     def wait_for(self, pattern, start=0):
-        deadline = time.monotonic() + STEPS_S
+        deadline = time.monotonic() + STEP_S
         while time.monotonic() < deadline:
             if re.search(pattern, self.text[start:]):
                 return True
@@ -68,7 +61,7 @@ class Terminal:
 
     def end(self):
         """The exit status; the signal as a negative number."""
-        deadline = time.monotonic() + STEPS_S
+        deadline = time.monotonic() + STEP_S
         while time.monotonic() < deadline:
             self.read(0.02)
             pid, status = os.waitpid(self.pid, os.WNOHANG)
@@ -84,31 +77,19 @@ class Terminal:
 
 
 def expect(condition, what, terminal=None):
-    if not condition:
-        FAILURES.append(what)
-        print(f'FAIL {what}' + (f'\n{terminal.text}' if terminal else ''))
+    FOUND.expect(condition, what, *([terminal.text] if terminal else []))
 
 
 def main():
     millwright, halcmd, root = sys.argv[1:4]
     with tempfile.TemporaryDirectory() as temporary:
-        folder = pathlib.Path(temporary)
-        shutil.copytree(pathlib.Path(root) / 'configs', folder / 'configs', ignore=shutil.ignore_patterns('*.var'))
-        plain = folder / 'configs/sim/mill_mm.ini'
-        ini = str(plain)
-        plain.write_text(plain.read_text().replace('HALFILE = spindle_sim.hal\n',
-                                                   'HALFILE = spindle_sim.hal\nHALFILE = by_hand.hal\nHALUI = halui\n'))
-        (plain.parent / 'by_hand.hal').write_text(BY_HAND)
-        (folder / 'tools.ngc').write_text(TOOLS)
-        (folder / 'long.ngc').write_text(LONG)
-        env = dict(os.environ, MILLWRIGHT_INSTANCE=f'operator-{os.getpid()}', TERM='xterm')
+        mill = Mill(millwright, halcmd, root, pathlib.Path(temporary), 'operator')
+        folder, env, ini, position = mill.folder, mill.env, str(mill.ini), mill.position
+        mill.write('tools.ngc', TOOLS)
+        mill.write('long.ngc', LONG)
 
         def start(program, *more):
             return Terminal([millwright, 'run', ini, str(folder / program), '--realtime', *more], env)
-
-        def position():
-            done = subprocess.run([halcmd, 'getp', 'joint.0.pos-cmd'], env=env, capture_output=True, text=True, check=False)
-            return float(done.stdout)
 
         one = start('tools.ngc')
         expect(one.wait_for(r'\[y/n\]'), 'asks before it starts', one)
@@ -150,7 +131,7 @@ def main():
             expect(one.end() == 1 and f'stopped by {number.name}' in one.text, f'{number.name} stops in order', one)
 
         # While the program is looked at before the start, which takes up to 5 s.
-        (folder / 'endless.ngc').write_text('G21 G90 F600\no1 while [1]\nG1 X10\nG1 X0\no1 endwhile\nM2\n')
+        mill.write('endless.ngc', 'G21 G90 F600\no1 while [1]\nG1 X10\nG1 X0\no1 endwhile\nM2\n')
         for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGINT):
             one = start('endless.ngc', '--yes')
             expect(one.wait_for('reading'), 'shows how far it has read', one)
@@ -158,22 +139,20 @@ def main():
             expect(one.end() == 1 and 'before the start' in one.text, f'{number.name} stops the look ahead', one)
 
         alone = subprocess.run([millwright, 'run', ini, str(folder / 'long.ngc'), '--realtime'], env=env, text=True,
-                               stdin=subprocess.DEVNULL, capture_output=True, check=False, timeout=STEPS_S)
+                               stdin=subprocess.DEVNULL, capture_output=True, check=False, timeout=STEP_S)
         expect(alone.returncode == 1 and '--yes' in alone.stderr, f'refused without a terminal: {alone.stderr}')
 
         held = subprocess.Popen([millwright, 'run', ini, str(folder / 'tools.ngc'), '--realtime', '--yes', '--patience', '1'],
                                 env=env, text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         time.sleep(3.0)
         expect(held.poll() is None, 'without a terminal a tool change waits for its pin, whatever the patience')
-        halcmd_do = lambda *words: subprocess.run([halcmd, *words], env=env, capture_output=True, check=False)
-        halcmd_do('setp', 'hal_manualtoolchange.change_button', '1')
+        expect(mill.set_pin('hal_manualtoolchange.change_button', '1'), 'the button is there')
         time.sleep(2.0)
         expect(held.poll() is None and abs(position() - 2.0) < 1e-6, 'and M0 for halui.program.resume')
-        halcmd_do('setp', 'halui.program.resume', '1')
-        said, _ = held.communicate(timeout=STEPS_S)
+        expect(mill.set_pin('halui.program.resume', '1'), 'the pin of halui is there')
+        said, _ = held.communicate(timeout=STEP_S)
         expect(held.returncode == 0 and 'halui.program.resume' in said, f'the pin goes on: {said}')
-    print(f'{len(FAILURES)} failed')
-    return 1 if FAILURES else 0
+    return FOUND.status()
 
 
 if __name__ == '__main__':

@@ -8,30 +8,18 @@ usage: running_machine.py MILLWRIGHT HALCMD ROOT
 """
 import os
 import pathlib
-import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 import time
 
-STEP_S = 40
+from mill_by_hand import STEP_S, Findings, Mill
+
 SHORT = 'G21 G90 G61 F3000\nG1 X{0}\nG10 L2 P1 Y{0}\nG10 L2 P1 Y0\n#5161 = {0}\nM2\n'
 LONG = 'G21 G90 G61 F300\nM3 S500\nM8\nG1 X100\nG1 X0\nM2\n'
-BY_HAND = """unlinkp iocontrol.0.tool-change
-unlinkp iocontrol.0.tool-changed
-loadusr -W hal_manualtoolchange
-net by-hand iocontrol.0.tool-change => hal_manualtoolchange.change
-net by-hand-done hal_manualtoolchange.changed => iocontrol.0.tool-changed
-net by-hand-number iocontrol.0.tool-prep-number => hal_manualtoolchange.number
-"""
-FAILURES = []
-
-
-def expect(condition, what, *more):
-    if not condition:
-        FAILURES.append(what)
-        print(f'FAIL {what}', *more, sep='\n')
+FOUND = Findings()
+expect = FOUND.expect
 
 
 class Program:
@@ -67,21 +55,15 @@ def wait_until(condition):
     return False
 
 
-class Bench:
-    """A copy of the configurations, an instance of its own, and the programs."""
+class Bench(Mill):
+    """The mill with programs, and `millwright` as whatever is asked of it."""
 
     def __init__(self, millwright, halcmd, root, folder):
-        self.millwright, self.halcmd, self.folder = millwright, halcmd, folder
-        shutil.copytree(pathlib.Path(root) / 'configs', folder / 'configs', ignore=shutil.ignore_patterns('*.var'))
-        self.ini = folder / 'configs/sim/mill_mm.ini'
-        self.ini.write_text(self.ini.read_text().replace(
-            'HALFILE = spindle_sim.hal\n', 'HALFILE = spindle_sim.hal\nHALFILE = by_hand.hal\nHALUI = halui\n'))
-        (self.ini.parent / 'by_hand.hal').write_text(BY_HAND)
-        (folder / 'long.ngc').write_text(LONG)
-        (folder / 'tools.ngc').write_text('G21 G90 G61 F1200\nT1 M6\nG1 X2\nM2\n')
+        super().__init__(millwright, halcmd, root, folder, 'running')
+        self.write('long.ngc', LONG)
+        self.write('tools.ngc', 'G21 G90 G61 F1200\nT1 M6\nG1 X2\nM2\n')
         for x in (3, 5):
-            (folder / f'short{x}.ngc').write_text(SHORT.format(x))
-        self.env = dict(os.environ, MILLWRIGHT_INSTANCE=f'running-{os.getpid()}')
+            self.write(f'short{x}.ngc', SHORT.format(x))
 
     def start(self, *more):
         return Program(self.folder, self.env, self.millwright, 'start', str(self.ini), *more)
@@ -94,16 +76,6 @@ class Bench:
     def run(self, program, *more, ini=None):
         return Program(self.folder, self.env, self.millwright, 'run', str(ini or self.ini), str(self.folder / program),
                        '--realtime', '--yes', *more)
-
-    def pin(self, name):
-        done = subprocess.run([self.halcmd, 'getp', name], env=self.env, capture_output=True, text=True, check=False)
-        return done.stdout.strip()
-
-    def set_pin(self, name, value):
-        return subprocess.run([self.halcmd, 'setp', name, value], env=self.env, check=False).returncode == 0
-
-    def position(self):
-        return float(self.pin('joint.0.pos-cmd') or 'nan')
 
     def stands(self):
         """It comes to rest, spindle and coolant off."""
@@ -258,8 +230,7 @@ def main():
             if machine is not None and machine.process.poll() is None:
                 machine.process.terminate()
                 machine.end()
-    print(f'{len(FAILURES)} failed')
-    return 1 if FAILURES else 0
+    return FOUND.status()
 
 
 if __name__ == '__main__':

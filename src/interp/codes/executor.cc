@@ -159,6 +159,7 @@ void Executor::keep_state() {
 void Executor::commit() {
     parameters.commit();
     tools.commit();
+    saved_modes.commit();
     canon.commit();
 }
 
@@ -168,6 +169,7 @@ void Executor::rollback() {
     }
     parameters.rollback();
     tools.rollback();
+    saved_modes.rollback();
     remaps.drop_interrupted();
     canon.rollback();
     outcome = Outcome::OK;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "interp/codes/saved_modes.hh"
 
+#include <utility>
+
 namespace mw::interp::detail {
 
 std::optional<State> SavedModes::pop_call() {
@@ -10,12 +12,29 @@ std::optional<State> SavedModes::pop_call() {
         out = level.modes;
     }
     levels_.pop_back();
+    forget_undo();
     return out;
 }
 
 void SavedModes::drop_calls(std::size_t depth) {
     while (levels_.size() > depth + 1) {
         levels_.pop_back();
+    }
+    forget_undo();
+}
+
+void SavedModes::change(Level &&level) {
+    log_.push_back({levels_.size() - 1, std::move(levels_.back())});
+    levels_.back() = std::move(level);
+}
+
+void SavedModes::forget_undo() {
+    std::erase_if(log_, [this](const Undo &undo) { return undo.level >= levels_.size(); });
+}
+
+void SavedModes::rollback() {
+    for (; !log_.empty(); log_.pop_back()) {
+        levels_[log_.back().level] = std::move(log_.back().before);
     }
 }
 

@@ -10,6 +10,8 @@
 
 namespace mw::interp::detail {
 
+/// What a block saves or forgets counts at once, and is taken back when the block fails. Calls are not: a
+/// block that enters or ends one keeps what it did before.
 class SavedModes {
   public:
     /// Calls that run, one inside the other; 0 in the main program.
@@ -20,20 +22,33 @@ class SavedModes {
     /// Ends calls down to `depth` of them.
     void drop_calls(std::size_t depth);
 
-    void save(const State &modes) { levels_.back() = {modes, false}; }              ///< M70
-    void save_until_return(const State &modes) { levels_.back() = {modes, true}; }  ///< M73
-    void forget() { levels_.back().modes.reset(); }                                 ///< M71
+    void save(const State &modes) { change({modes, false}); }              ///< M70
+    void save_until_return(const State &modes) { change({modes, true}); }  ///< M73
+    void forget() { change({std::nullopt, levels_.back().isForReturn}); }  ///< M71
     /// What M72 restores; null when nothing is saved at this level.
     const State *saved() const { return levels_.back().modes ? &*levels_.back().modes : nullptr; }
     /// Of a level (0: the main program). Bit 0: modes are saved; bit 1: the last to save was M73.
     int status(std::size_t level) const;
+
+    void commit() { log_.clear(); }
+    void rollback();
 
   private:
     struct Level {
         std::optional<State> modes;
         bool isForReturn = false;
     };
+    /// What a level held before the block changed it.
+    struct Undo {
+        std::size_t level = 0;
+        Level before;
+    };
+    void change(Level &&level);
+    /// Levels that are gone have nothing to take back.
+    void forget_undo();
+
     std::vector<Level> levels_{1};
+    std::vector<Undo> log_;  ///< of the block that runs; its levels are there
 };
 
 }  // namespace mw::interp::detail

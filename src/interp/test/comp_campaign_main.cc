@@ -3,16 +3,17 @@
 // comp_campaign [--kind pockets] --first N --count M --log FILE [--print SEED]: one line per seed in the log;
 // seeds that it has are not run again. Ends with 1 when a contour was gouged, left standing, or refused
 // without a reason.
+#include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <fstream>
 #include <map>
 #include <set>
 #include <string>
 
-#include "base/text.hh"
+#include "base/result.hh"
 #include "interp/test/comp_judge.hh"
 #include "interp/test/comp_pockets.hh"
+#include "options/command_line.hh"
 
 namespace mw::interp::test {
 namespace {
@@ -35,7 +36,7 @@ void count(const CompVerdict &v, Totals &totals) {
     }
 }
 
-std::set<std::string> seeds_in(const char *name) {
+std::set<std::string> seeds_in(const std::string &name) {
     std::set<std::string> seeds;
     std::ifstream file(name);
     for (std::string line; std::getline(file, line);) {
@@ -44,7 +45,7 @@ std::set<std::string> seeds_in(const char *name) {
     return seeds;
 }
 
-int run(unsigned first, unsigned count_of, const char *log, bool isPockets) {
+int run(unsigned first, unsigned count_of, const std::string &log, bool isPockets) {
     const std::set<std::string> done = seeds_in(log);
     std::ofstream out(log, std::ios::app);
     Totals totals;
@@ -98,35 +99,33 @@ void print_pocket(unsigned seed) {
 }  // namespace mw::interp::test
 
 int main(int argc, char **argv) {
-    const char *log = nullptr;
+    std::string log;
     unsigned first = 1, count = 1000;
-    bool isPrinting = false, isPockets = false, isSound = argc % 2 == 1;
-    for (int i = 1; i + 1 < argc; i += 2) {
-        const auto number = mw::parse_uint(argv[i + 1]);
-        const unsigned value = number.has_value() ? static_cast<unsigned>(*number) : 0;
-        if (std::strcmp(argv[i], "--log") == 0) {
-            log = argv[i + 1];
-        } else if (std::strcmp(argv[i], "--first") == 0 && number) {
-            first = value;
-        } else if (std::strcmp(argv[i], "--count") == 0 && number) {
-            count = value;
-        } else if (std::strcmp(argv[i], "--kind") == 0 && std::strcmp(argv[i + 1], "pockets") == 0) {
-            isPockets = true;
-        } else if (std::strcmp(argv[i], "--print") == 0 && number) {
-            first = value;
-            isPrinting = true;
-        } else {
-            isSound = false;
-        }
-    }
-    if (isPrinting) {
-        isPockets ? mw::interp::test::print_pocket(first) : mw::interp::test::print_contour(first);
-        return 0;
-    }
-    if (log == nullptr || !isSound) {
-        std::fprintf(stderr,
-                     "usage: comp_campaign [--kind pockets] --first N --count M --log FILE | --print SEED\n");
+    std::int64_t printed = -1;
+    bool isPockets = false;
+    mw::options::CommandLine line(
+        "comp_campaign [--kind pockets] --first N --count M --log FILE\n"
+        "       comp_campaign [--kind pockets] --print SEED",
+        "One line for each seed in the log; seeds that it has are not run again.\n");
+    line.take("--kind", 1, "pockets", "random pockets; without it random contours",
+              [&isPockets](const mw::options::Words &words) -> mw::Result<> {
+                  isPockets = words[0] == "pockets";
+                  return isPockets ? mw::Result<>{} : mw::fail("'" + words[0] + "' is no kind");
+              });
+    line.number("--first", "N", "seed to begin with (default 1)", first, 0, UINT32_MAX - 1);
+    line.number("--count", "M", "so many seeds (default 1000)", count, 0, UINT32_MAX - 1);
+    line.text("--log", "FILE", "where the verdicts go", log);
+    line.number("--print", "SEED", "print one program", printed, 0, UINT32_MAX - 1);
+    const auto parsed = line.parse({argv + 1, argv + argc});
+    if (!parsed || (log.empty() && printed < 0)) {
+        std::fprintf(stderr, "%s\n%s", parsed ? "--log is missing" : parsed.error().str().c_str(),
+                     line.help().c_str());
         return 2;
+    }
+    if (printed >= 0) {
+        const auto seed = static_cast<unsigned>(printed);
+        isPockets ? mw::interp::test::print_pocket(seed) : mw::interp::test::print_contour(seed);
+        return 0;
     }
     return mw::interp::test::run(first, count, log, isPockets);
 }

@@ -42,5 +42,38 @@ TEST(Interpreter, NumberedParametersTakeEffectAfterTheirLine_I1) {
     EXPECT_DOUBLE_EQ(machine.record.lines[1].end[0], 6);
 }
 
+/// A block that saves or forgets modes, and then fails at its move.
+Step fail_with(test::Machine &machine, const std::string &saving) {
+    return machine.interpreter->execute(saving + " G2 X1 Y1 R0.01");
+}
+
+TEST(Interpreter, ModesSavedByABlockThatFailsAreNotKept_I1) {
+    for (const char *code : {"M70", "M73"}) {
+        test::Machine machine;
+        ASSERT_TRUE(machine.interpreter->begin());
+        ASSERT_EQ(machine.interpreter->execute("F100 G91"), Step::FILE_END) << machine.error();
+        ASSERT_EQ(fail_with(machine, code), Step::FAILED);
+        EXPECT_EQ(machine.interpreter->execute("M72"), Step::FAILED) << code;
+        EXPECT_EQ(machine.interpreter->error().what.message,
+                  "M72 has nothing to restore: there is no M70 or M73 at this level, or M71 dropped it");
+    }
+}
+
+TEST(Interpreter, ABlockThatFailsLeavesModesSavedBefore_I1) {
+    for (const char *code : {"M70", "M71", "M73"}) {
+        test::Machine machine;
+        ASSERT_TRUE(machine.interpreter->begin());
+        ASSERT_EQ(machine.interpreter->execute("F100 G91"), Step::FILE_END) << machine.error();
+        ASSERT_EQ(machine.interpreter->execute("M70"), Step::FILE_END) << machine.error();
+        ASSERT_EQ(machine.interpreter->execute("F200 G90"), Step::FILE_END) << machine.error();
+        ASSERT_EQ(fail_with(machine, code), Step::FAILED);
+        ASSERT_EQ(machine.interpreter->execute("M72"), Step::FILE_END) << code << machine.error();
+        EXPECT_EQ(machine.interpreter->active_codes().settings[1], 100.0) << code;
+        ASSERT_EQ(machine.interpreter->execute("G0 X2"), Step::FILE_END) << machine.error();
+        ASSERT_EQ(machine.interpreter->execute("G0 X2"), Step::FILE_END) << machine.error();
+        EXPECT_DOUBLE_EQ(machine.record.lines.back().end[0], 4.0) << code << ": G91 is back";
+    }
+}
+
 }  // namespace
 }  // namespace mw::interp

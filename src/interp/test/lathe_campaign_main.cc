@@ -7,8 +7,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <fstream>
 #include <map>
 #include <optional>
@@ -18,6 +18,7 @@
 
 #include "base/text.hh"
 #include "lathe_campaign.hh"
+#include "options/command_line.hh"
 
 namespace mw::interp::test {
 namespace {
@@ -156,30 +157,25 @@ int run(const Task &task) {
 
 int main(int argc, char **argv) {
     mw::interp::test::Task task;
-    bool isRight = argc % 2 == 1;
-    for (int i = 1; i + 1 < argc; i += 2) {
-        const auto number = mw::interp::test::number_in(argv[i + 1]);
-        if (std::strcmp(argv[i], "--log") == 0) {
-            task.log = argv[i + 1];
-        } else if (std::strcmp(argv[i], "--commit") == 0) {
-            task.commit = argv[i + 1];
-        } else if (std::strcmp(argv[i], "--seed") == 0 && number) {
-            task.single = number;
-        } else if (std::strcmp(argv[i], "--first") == 0 && number) {
-            task.first = *number;
-        } else if (std::strcmp(argv[i], "--count") == 0 && number) {
-            task.count = *number;
-        } else if (std::strcmp(argv[i], "--processes") == 0 && number && *number > 0) {
-            task.processes = *number;
-        } else {
-            isRight = false;
-        }
-    }
-    if (!isRight || (task.log.empty() && !task.single)) {
-        std::fprintf(stderr,
-                     "usage: lathe_campaign --first N --count M --log FILE [--processes P] [--commit HASH]\n"
-                     "       lathe_campaign --seed N\n");
+    std::int64_t single = -1;
+    mw::options::CommandLine line(
+        "lathe_campaign --first N --count M --log FILE [--processes P] [--commit HASH]\n"
+        "       lathe_campaign --seed N",
+        "One line for each seed in the log; seeds that it has are not run again.\n");
+    line.number("--first", "N", "seed to begin with (default 1)", task.first, 0, UINT32_MAX - 1);
+    line.number("--count", "M", "so many seeds (default 1000)", task.count, 0, UINT32_MAX - 1);
+    line.text("--log", "FILE", "where the verdicts go", task.log);
+    line.number("--processes", "P", "at a time (default 2)", task.processes, 1, 1024);
+    line.text("--commit", "HASH", "what is run, for the log", task.commit);
+    line.number("--seed", "N", "print one job's program and its verdict", single, 0, UINT32_MAX - 1);
+    const auto parsed = line.parse({argv + 1, argv + argc});
+    if (!parsed || (task.log.empty() && single < 0)) {
+        std::fprintf(stderr, "%s\n%s", parsed ? "--log is missing" : parsed.error().str().c_str(),
+                     line.help().c_str());
         return 2;
+    }
+    if (single >= 0) {
+        task.single = static_cast<unsigned>(single);
     }
     return mw::interp::test::run(task);
 }

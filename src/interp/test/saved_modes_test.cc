@@ -78,5 +78,50 @@ TEST(SavedModes, TellsScriptsTheStatusOfALevel_I1) {
     EXPECT_EQ(modes.status(0), 1);
 }
 
+TEST(SavedModes, TakesBackWhatABlockThatFailsHasSavedOrForgotten_I1) {
+    SavedModes modes;
+    modes.save(with_feed(1));
+    modes.rollback();
+    EXPECT_EQ(modes.saved(), nullptr) << "nothing was saved before";
+
+    modes.save(with_feed(2));
+    modes.commit();
+    modes.save_until_return(with_feed(3));
+    modes.rollback();
+    ASSERT_NE(modes.saved(), nullptr);
+    EXPECT_EQ(modes.saved()->feed, 2);
+    EXPECT_EQ(modes.status(0), 1) << "nor is it restored at the return";
+
+    modes.forget();
+    modes.rollback();
+    ASSERT_NE(modes.saved(), nullptr);
+    EXPECT_EQ(modes.saved()->feed, 2);
+
+    modes.forget();
+    modes.save(with_feed(4));
+    modes.save(with_feed(5));
+    modes.rollback();
+    ASSERT_NE(modes.saved(), nullptr);
+    EXPECT_EQ(modes.saved()->feed, 2) << "back to where the block found it";
+
+    modes.save(with_feed(6));
+    modes.commit();
+    modes.rollback();
+    EXPECT_EQ(modes.saved()->feed, 6) << "a block that is done is done";
+}
+
+TEST(SavedModes, TakesNothingBackOfALevelThatIsGone_I1) {
+    SavedModes modes;
+    modes.save(with_feed(1));
+    modes.push_call();
+    modes.save(with_feed(2));
+    modes.pop_call();
+    modes.push_call();
+    modes.rollback();
+    EXPECT_EQ(modes.saved(), nullptr) << "the new level is another";
+    modes.drop_calls(0);
+    EXPECT_EQ(modes.saved(), nullptr) << "the main program's save was of the block that failed";
+}
+
 }  // namespace
 }  // namespace mw::interp::detail

@@ -80,6 +80,24 @@ TEST_F(CommandLineTest, WordsBehindTwoDashesAndASingleDashAreNoOptions) {
     EXPECT_FALSE(read.isStrict);
 }
 
+TEST_F(CommandLineTest, WordsAreHandedOverAsTheyAre) {
+    EXPECT_EQ(error({"[a,b]", "{}", "", "%%", "\1", "--plot", "[p]", "--output", "", "--trigger", "{}",
+                     "above", "[1]"}),
+              "");
+    EXPECT_EQ(read.rest, Words({"[a,b]", "{}", "", "%%", "\1"}));
+    EXPECT_EQ(read.plot, "[p]");
+    EXPECT_EQ(read.outputs, Words({""}));
+    EXPECT_EQ(read.trigger, Words({"{}", "above", "[1]"}));
+}
+
+TEST_F(CommandLineTest, OfATextWordsOfOneDashBelongToIt) {
+    line.rest_of_text(read.rest);
+    EXPECT_EQ(error({"G0", "X", "-.5", "-5", "-[2]", "-#1", "-o", "x.csv", "Y1"}), "");
+    EXPECT_EQ(read.rest, Words({"G0", "X", "-.5", "-5", "-[2]", "-#1", "Y1"}));
+    EXPECT_EQ(read.outputs, Words({"x.csv"}));
+    EXPECT_EQ(error({"--stict"}), "unknown option --stict (did you mean --strict?)");
+}
+
 TEST_F(CommandLineTest, ErrorsNameTheOptionAndTheNearestOne) {
     EXPECT_EQ(error({"--stict"}), "unknown option --stict (did you mean --strict?)");
     EXPECT_EQ(error({"a", "--polt=x.png", "b"}), "unknown option --polt (did you mean --plot?)");

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "motion/api/limits.hh"
 
 namespace mw::task {
@@ -62,11 +64,24 @@ void PlannerMode::wish(int type) {
 }
 
 void PlannerMode::set_corner_scale(double scale) {
+    ScaleFault fault = ScaleFault::NONE;
     if (!std::isfinite(scale)) {
-        return;
+        fault = ScaleFault::NO_NUMBER;
+    } else {
+        fault = scale < LOWEST_SCALE    ? ScaleFault::TOO_LOW
+                : scale > HIGHEST_SCALE ? ScaleFault::TOO_HIGH
+                                        : ScaleFault::NONE;
+        corner_scale_ = std::clamp(scale, LOWEST_SCALE, HIGHEST_SCALE);
+        hooks_.send({static_cast<std::uint16_t>(Parameter::TRAJ_CORNER_SCALE), 0, corner_scale_});
     }
-    corner_scale_ = std::clamp(scale, LOWEST_SCALE, HIGHEST_SCALE);
-    hooks_.send({static_cast<std::uint16_t>(Parameter::TRAJ_CORNER_SCALE), 0, corner_scale_});
+    const bool isNew = fault != told_fault_;
+    told_fault_ = fault;
+    if (isNew && fault != ScaleFault::NONE) {
+        hooks_.post(MessageKind::OPERATOR_ERROR,
+                    fmt::format("ini.traj-scurve-peak-scale is {}: a number from {} to {} expected; {} is in "
+                                "force",
+                                scale, LOWEST_SCALE, HIGHEST_SCALE, corner_scale_));
+    }
 }
 
 void PlannerMode::step(bool isIdle) {

@@ -3,6 +3,7 @@
 // asks.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -30,18 +31,23 @@ class PlannerMode {
     motion::CommandId set(int type);
     /// An operator's wish (a pin), granted as soon as `step` is told that all is idle.
     void wish(int type);
-    /// Part of the reachable speed in corners of moves that name none, 0.1 to 1; at once.
+    /// Part of the reachable speed in corners of moves that name none, 0.1 to 1; at once. A number outside
+    /// gives the nearest that may be, what is no number changes nothing; both are told, and again only after
+    /// another fault or a good value.
     void set_corner_scale(double scale);
     void step(bool isIdle);
     int type() const { return type_; }
     double corner_scale() const { return corner_scale_; }
 
   private:
+    /// What was wrong with the wish for corners.
+    enum class ScaleFault : std::uint8_t { NONE, NO_NUMBER, TOO_LOW, TOO_HIGH };
     bool isJerkOff() const;
 
     Hooks hooks_;
     int type_ = 0, wish_ = 0;
     bool isWaitAnnounced_ = false;
+    ScaleFault told_fault_ = ScaleFault::NONE;
     double linear_jerk_ = motion::NO_JERK_LIMIT, least_jerk_ = motion::NO_JERK_LIMIT, corner_scale_ = 1;
 };
 

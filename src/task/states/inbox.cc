@@ -4,19 +4,30 @@
 #include <algorithm>
 
 #include "base/overloaded.hh"
+#include "mailbox/stops.hh"
 
 namespace mw::task {
 namespace {
 
-/// Holds are not: while the mode changes nothing runs, and what waits to run comes before its hold.
-bool isUrgent(const msgs::Command &command) {
+/// Held, the program waits either way: while the mode changes nothing runs, and what waits to run comes
+/// before its hold.
+bool isHold(const msgs::Command &command) {
+    return std::visit([]<class C>(const C &) { return OneOf<C, msgs::PauseProgram, msgs::PauseTraj>; },
+                      command);
+}
+
+/// On, off and emergency stop: the change of mode must not keep anybody from them, in either direction.
+bool isOfMachineState(const msgs::Command &command) {
     return std::visit(
         []<class C>(const C &) {
-            return OneOf<C, msgs::AbortAll, msgs::AbortMachine, msgs::AbortTraj, msgs::AbortMotion,
-                         msgs::AbortTool, msgs::AbortIo, msgs::SetState, msgs::EstopOn, msgs::EstopOff,
-                         msgs::EstopReset, msgs::JogStop, msgs::AbortJoint>;
+            return OneOf<C, msgs::SetState, msgs::EstopOn, msgs::EstopOff, msgs::EstopReset>;
         },
         command);
+}
+
+/// What does not wait for the change of mode.
+bool isUrgent(const msgs::Command &command) {
+    return (mailbox::isStop(command) && !isHold(command)) || isOfMachineState(command);
 }
 
 /// A jog of the joint or axis that `stop` stops.

@@ -309,6 +309,31 @@ TEST_F(PlannerModeTest, TheCornerScaleStaysWithinItsRange) {
     EXPECT_EQ(mode.corner_scale(), 1);
 }
 
+TEST_F(PlannerModeTest, SaysOnceWhatIsWrongWithTheCornerScaleAndWhatIsInForce_D2) {
+    mode.set_corner_scale(0.5);
+    EXPECT_TRUE(posted.empty()) << "a good value is no message";
+    for (int cycle = 0; cycle < 100; ++cycle) {
+        mode.set_corner_scale(std::nan(""));
+    }
+    ASSERT_EQ(posted.size(), 1U);
+    EXPECT_EQ(posted[0],
+              "ini.traj-scurve-peak-scale is nan: a number from 0.1 to 1 expected; 0.5 is in force");
+    for (int cycle = 0; cycle < 100; ++cycle) {
+        mode.set_corner_scale(7 + cycle);  // a signal that moves
+    }
+    ASSERT_EQ(posted.size(), 2U);
+    EXPECT_EQ(posted[1], "ini.traj-scurve-peak-scale is 7: a number from 0.1 to 1 expected; 1 is in force");
+    mode.set_corner_scale(-2);
+    ASSERT_EQ(posted.size(), 3U) << "another value is in force now";
+    EXPECT_EQ(posted[2],
+              "ini.traj-scurve-peak-scale is -2: a number from 0.1 to 1 expected; 0.1 is in force");
+    mode.set_corner_scale(0.1);
+    mode.set_corner_scale(1);
+    EXPECT_EQ(posted.size(), 3U) << "the ends of the range belong to it";
+    mode.set_corner_scale(7);
+    EXPECT_EQ(posted.size(), 4U) << "wrong once more, said once more";
+}
+
 TEST(ShownTools, GiveTheTableAgainAfterEachChange_G4) {
     test::OneTool tools;
     ShownTools shown;

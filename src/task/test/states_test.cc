@@ -2,6 +2,8 @@
 // States, modes, homing and waiting commands, each part alone.
 #include <gtest/gtest.h>
 
+#include "mailbox/stops.hh"
+#include "msgs/catalogue.hh"
 #include "task/states/homing_request.hh"
 #include "task/states/inbox.hh"
 #include "task/states/machine_state.hh"
@@ -182,6 +184,38 @@ TEST(Inbox, KeepsTheOrderAndLetsStopsPassWhileTheModeChanges_D1) {
     EXPECT_EQ(inbox.next(false)->serial, 1U);
     EXPECT_EQ(inbox.next(false)->serial, 3U);
     EXPECT_FALSE(inbox.next(false).has_value());
+}
+
+/// Whether it is handed out while the mode changes.
+bool isTakenWhileTheModeChanges(const Command &command) {
+    Inbox inbox;
+    inbox.add({{1, 1, command}});
+    return inbox.next(true).has_value();
+}
+
+TEST(Inbox, EveryStopButAHoldPassesWhileTheModeChanges_D1) {
+    int held = 0;
+    for (int place = 0; place < mailbox::STOP_PLACES; ++place) {
+        const Command stop = mailbox::stop_at(place);
+        const bool isHold =
+            std::holds_alternative<PauseProgram>(stop) || std::holds_alternative<PauseTraj>(stop);
+        held += isHold ? 1 : 0;
+        EXPECT_EQ(isTakenWhileTheModeChanges(stop), !isHold) << msgs::to_text(stop);
+    }
+    EXPECT_EQ(held, 2);
+}
+
+TEST(Inbox, EveryChangeOfTheMachinesStatePassesWhileTheModeChangesAndNothingElse_D1) {
+    for (const State state : {State::ESTOP, State::ESTOP_RESET, State::OFF, State::ON}) {
+        EXPECT_TRUE(isTakenWhileTheModeChanges(SetState{state})) << static_cast<int>(state);
+    }
+    EXPECT_TRUE(isTakenWhileTheModeChanges(EstopOff{}));
+    EXPECT_TRUE(isTakenWhileTheModeChanges(EstopReset{}));
+    for (const Command &command :
+         {Command{Mdi{"G0"}}, Command{Null{}}, Command{PauseProgram{}}, Command{ResumeProgram{}},
+          Command{JogContinuous{}}, Command{OperatorText{"ready"}}}) {
+        EXPECT_FALSE(isTakenWhileTheModeChanges(command)) << msgs::to_text(command);
+    }
 }
 
 TEST(Inbox, DropsWhatWasAskedForBeforeAStopButNoLineForTheOperator_D1) {
