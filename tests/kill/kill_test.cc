@@ -89,9 +89,9 @@ struct Observer {
     bool wait_for_motion() {
         const auto deadline = Clock::now() + std::chrono::seconds(60);
         while (Clock::now() < deadline) {
-            motion::Status status;
-            if (channels->status.read(status) && status.motion_type == motion::MotionType::FEED &&
-                status.current_velocity > 59.0) {
+            motion::PublishedStatus::Copy status;
+            if (channels->status.read(status) && status.value.motion_type == motion::MotionType::FEED &&
+                status.value.current_velocity > 59.0) {
                 return true;
             }
             std::this_thread::sleep_for(std::chrono::milliseconds(2));

@@ -91,9 +91,9 @@ class RealtimeDeath : public ::testing::Test {
                 const auto block = hal->shared_block(motion::Channels::SHMEM_KEY, sizeof(motion::Channels));
                 channels = block ? static_cast<motion::Channels *>(*block) : nullptr;
             }
-            motion::Status status;
+            motion::PublishedStatus::Copy status;
             if (channels != nullptr && channels->magic == motion::Channels::MAGIC &&
-                channels->status.read(status) && status.motion_type == motion::MotionType::FEED) {
+                channels->status.read(status) && status.value.motion_type == motion::MotionType::FEED) {
                 return hal;
             }
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
