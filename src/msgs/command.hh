@@ -3,8 +3,11 @@
 // refused or failed with a reason.
 #pragma once
 
+#include <type_traits>
+#include <utility>
 #include <variant>
 
+#include "base/overloaded.hh"
 #include "msgs/device_commands.hh"
 #include "msgs/joint_commands.hh"
 #include "msgs/motion_commands.hh"
@@ -12,7 +15,7 @@
 
 namespace mw::msgs {
 
-using Command = std::variant<
+using CommandVariant = std::variant<
     SetState, SetMode, OpenProgram, RunProgram, ReadProgram, Mdi, PauseProgram, StepProgram, ResumeProgram,
     EndProgram, CloseProgram, ResetInterpreter, SynchInterpreter, SetOptionalStop, SetBlockDelete,
     StopOptionally, ReverseProgram, ForwardProgram, InitTask, HaltTask, AbortAll, InitMachine, HaltMachine,
@@ -32,5 +35,20 @@ using Command = std::variant<
     LubeOff, EstopOn, EstopOff, EstopReset, WaitInput, InitTool, HaltTool, AbortTool, PrepareTool, LoadTool,
     UnloadTool, LoadToolTable, SetToolEntry, SetToolNumber, StartToolChange, ConfirmToolChange, InitIo,
     HaltIo, AbortIo, SetIoCycleTime, CallIoPlugin>;
+
+/// One of them. What a variant of so many does to its members is compiled once, in command.cc.
+class Command : public CommandVariant {
+  public:
+    using Variant = CommandVariant;
+    Command();
+    template <AlternativeOf<CommandVariant> Message>
+    Command(Message &&message)
+        : CommandVariant(std::in_place_type<std::remove_cvref_t<Message>>, std::forward<Message>(message)) {}
+    Command(const Command &other);
+    Command(Command &&other) noexcept;
+    Command &operator=(const Command &other);
+    Command &operator=(Command &&other) noexcept;
+    ~Command();
+};
 
 }  // namespace mw::msgs
