@@ -3,8 +3,9 @@
 // refused or failed with a reason.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <type_traits>
-#include <utility>
 #include <variant>
 
 #include "base/overloaded.hh"
@@ -36,19 +37,31 @@ using CommandVariant = std::variant<
     UnloadTool, LoadToolTable, SetToolEntry, SetToolNumber, StartToolChange, ConfirmToolChange, InitIo,
     HaltIo, AbortIo, SetIoCycleTime, CallIoPlugin>;
 
+/// Where a message stands in the variant.
+template <class Message, class Variant>
+inline constexpr std::size_t INDEX_IN = 0;
+template <class Message, class... All>
+inline constexpr std::size_t INDEX_IN<Message, std::variant<All...>> = [] {
+    constexpr std::array IS_IT{std::is_same_v<Message, All>...};
+    return static_cast<std::size_t>(std::find(IS_IT.begin(), IS_IT.end(), true) - IS_IT.begin());
+}();
+
 /// One of them. What a variant of so many does to its members is compiled once, in command.cc.
 class Command : public CommandVariant {
   public:
     using Variant = CommandVariant;
     Command();
     template <AlternativeOf<CommandVariant> Message>
-    Command(Message &&message)
-        : CommandVariant(std::in_place_type<std::remove_cvref_t<Message>>, std::forward<Message>(message)) {}
+    Command(Message message) : Command(INDEX_IN<Message, CommandVariant>, &message) {}
     Command(const Command &other);
     Command(Command &&other) noexcept;
     Command &operator=(const Command &other);
     Command &operator=(Command &&other) noexcept;
     ~Command();
+
+  private:
+    /// `message` is the alternative of that index; it is moved from.
+    Command(std::size_t index, void *message);
 };
 
 }  // namespace mw::msgs
