@@ -20,10 +20,10 @@ function(mw_precompiled_headers kind header)
   endif()
   target_compile_options(mw_pch_${kind} PRIVATE -fpch-preprocess)
   target_precompile_headers(mw_pch_${kind} PRIVATE ${MW_PRECOMPILED_FOLDER}/${header})
-  # By this ccache knows the header: another tree's is as good.
+  # By this ccache knows the header: another tree's is as good, as long as the libraries are of one version.
   file(READ ${MW_PRECOMPILED_FOLDER}/${header} text)
   file(READ ${MW_PRECOMPILED_FOLDER}/standard.hh standard)
-  string(SHA256 sum "${CMAKE_CXX_COMPILER_VERSION} ${kind} ${CMAKE_BUILD_TYPE} ${text} ${standard}")
+  string(SHA256 sum "${CMAKE_CXX_COMPILER_VERSION} ${GTest_VERSION} ${pybind11_VERSION} ${kind} ${CMAKE_BUILD_TYPE} ${text} ${standard}")
   file(WRITE ${CMAKE_BINARY_DIR}/CMakeFiles/mw_pch_${kind}.dir/cmake_pch.hxx.gch.sum "${sum}\n")
 endfunction()
 
