@@ -23,10 +23,10 @@ struct Large {
     std::int64_t words[1000] = {};
 };
 constexpr std::chrono::milliseconds PATIENCE{500};
-constexpr PartStarts<2> STARTS{0, 4000};
+constexpr PartStarts<2> HALVES{0, 4000};
 struct Shared {
     Seqlock<Large> whole;
-    PartedSeqlock<Large, STARTS> parts;
+    PartedSeqlock<Large, HALVES> parts;
     std::atomic<bool> isBegun{false};
 };
 
@@ -79,7 +79,7 @@ TEST_F(InterruptedWriter, IsWaitedForAndNeverReadInHalf) {
     });
     const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(600);
     int waits = 0;
-    PartedSeqlock<Large, STARTS>::Copy copy;
+    PartedSeqlock<Large, HALVES>::Copy copy;
     Large value;
     while (std::chrono::steady_clock::now() < end) {
         waits += shared->whole.read(value, 1000) ? 0 : 1;
