@@ -6,10 +6,10 @@
 
 namespace mw::motion {
 
-bool leadsTo(const kins::Kinematics &kinematics, const geom::Pose &pose, const PerJointValue &here,
+bool leadsTo(const kins::Kinematics &kinematics, const geom::Pose &pose, const JointValues &here,
              const Stride &stride) noexcept {
     constexpr double ROUNDING = 1e-4;  // of models that iterate [machine units, degrees]
-    PerJointValue led = here;
+    JointValues led = here;
     bool isKnown = isAnswered(kinematics.inverse(pose, led.data()));
     for (int j = 0; j < stride.num_joints && isKnown; ++j) {
         const auto n = static_cast<std::size_t>(j);
@@ -19,8 +19,7 @@ bool leadsTo(const kins::Kinematics &kinematics, const geom::Pose &pose, const P
     return isKnown;
 }
 
-int joint_that_jumps(const PerJointValue &positions, const PerJointValue &here,
-                     const Stride &stride) noexcept {
+int joint_that_jumps(const JointValues &positions, const JointValues &here, const Stride &stride) noexcept {
     constexpr double MARGIN = 2;
     constexpr double ROUNDING = 1e-3;  // of models that iterate [machine units, degrees]
     for (int j = 0; j < stride.num_joints; ++j) {

@@ -10,7 +10,8 @@
 
 namespace mw::motion {
 
-using PerJointValue = std::array<double, MAX_JOINTS>;
+/// Of each joint.
+using JointValues = std::array<double, MAX_JOINTS>;
 
 /// What joints can do in a servo cycle.
 struct Stride {
@@ -21,16 +22,15 @@ struct Stride {
 
 /// In Cartesian modes the pose commands the joints: true when it leads to where they stand, with no step that
 /// they cannot take in a cycle.
-bool leadsTo(const kins::Kinematics &kinematics, const geom::Pose &pose, const PerJointValue &here,
+bool leadsTo(const kins::Kinematics &kinematics, const geom::Pose &pose, const JointValues &here,
              const Stride &stride) noexcept;
 /// What the planner has seen keeps the limits of the joints; a step beyond them comes from a pin of the
 /// kinematics that was changed. The joint that would make one, -1 for none.
-int joint_that_jumps(const PerJointValue &positions, const PerJointValue &here,
-                     const Stride &stride) noexcept;
+int joint_that_jumps(const JointValues &positions, const JointValues &here, const Stride &stride) noexcept;
 
 /// Where the joints stood when a path was begun.
 struct Standing {
-    PerJointValue joints{};
+    JointValues joints{};
     std::uint32_t count = 0;  ///< of the times that they were told
     std::uint64_t drops = 0;  ///< of paths, as seen
 };
