@@ -48,7 +48,7 @@ CheckResult check_program(const MachineConfig &machine, const std::string &progr
 
 inline constexpr int MAX_CHECK_ERRORS = 20;
 
-/// Where the machine stands when its joints are homed, for kinematics whose joints are axes.
+/// Where the machine stands when its joints are homed; where joints are not axes, a place within the limits.
 geom::Pose home_position(const MachineConfig &machine);
 
 }  // namespace mw::machine

@@ -25,7 +25,7 @@ void fill_unused(const JointInputs &in, int j, Outputs &out) noexcept {
 }
 
 void trace(Channels &channels, const Inputs &in, const Status &s, const Joints &joints,
-           bool isMoving) noexcept {
+           std::uint8_t pose_kind, bool isMoving) noexcept {
     if (channels.isTracing.load(std::memory_order_relaxed) == 0) {
         return;
     }
@@ -35,6 +35,7 @@ void trace(Channels &channels, const Inputs &in, const Status &s, const Joints &
     sample.path_id = s.active_path_id;
     sample.line = s.source.line;
     sample.isInMotion = isMoving ? 1 : 0;
+    sample.pose_kind = pose_kind;
     sample.epoch = s.epoch;
     sample.carte_pos_cmd = s.carte_pos_cmd;
     sample.joint_pos_cmd = commanded(joints);
@@ -83,7 +84,7 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
     out.tool_offset = tool_offset_;
     publish_view(in);
     channels_->status.write(s, new_parts(channels_->status, s));
-    trace(*channels_, in, s, joints_, isAnythingMoving());
+    trace(*channels_, in, s, joints_, types_.switches, isAnythingMoving());
 }
 
 /// What is being executed, and what is left of the path.

@@ -39,6 +39,9 @@ TypeStep step(KinematicsTypes &types, const TypeInputs &in) noexcept {
 
 void settle(KinematicsTypes &types, bool isSwitched) noexcept {
     types.type = isSwitched ? types.wanted : types.type;
+    if (isSwitched) {
+        ++types.switches;
+    }
     types.isPending = false;
 }
 

@@ -8,11 +8,12 @@
 namespace mw::motion {
 
 struct KinematicsTypes {
-    int type = 0;            ///< in force
-    int wanted = 0;          ///< of the pin
-    std::uint32_t asks = 0;  ///< counts changes of the pin
-    bool isPending = false;  ///< the type wanted is not in force yet
-    bool isTold = false;     ///< that it cannot be
+    int type = 0;               ///< in force
+    int wanted = 0;             ///< of the pin
+    std::uint32_t asks = 0;     ///< counts changes of the pin
+    std::uint8_t switches = 0;  ///< counts them, round and round
+    bool isPending = false;     ///< the type wanted is not in force yet
+    bool isTold = false;        ///< that it cannot be
 };
 
 struct TypeInputs {
