@@ -30,6 +30,11 @@ kins::Status model_inverse(const Model &model, const EmcPose *world, double *joi
     return model.inverse(pose_of(*world), joint);
 }
 
+/// Of a module without pins.
+inline int no_pins(int) noexcept {
+    return 0;
+}
+
 /// 0 of what has no sides.
 template <class Model>
 int model_side(const Model &model, const geom::Pose &pose) noexcept {
@@ -71,6 +76,23 @@ int model_side(const Model &model, const geom::Pose &pose) noexcept {
     MW_KINEMATICS_FUNCTIONS(model);                                                                          \
     extern "C" {                                                                                             \
     KINS_NOT_SWITCHABLE                                                                                      \
+    }                                                                                                        \
+    static_assert(true)
+
+/// The loading and unloading of module `name`; `declare(comp_id)` makes its pins, 0 or a negated errno.
+#define MW_KINEMATICS_MAIN(name, declare)                                                                    \
+    static int component = -1;                                                                               \
+    int rtapi_app_main(void) {                                                                               \
+        component = hal_init(name);                                                                          \
+        const int status = component < 0 ? component : declare(component);                                   \
+        if (status < 0) {                                                                                    \
+            hal_exit(component);                                                                             \
+            return status;                                                                                   \
+        }                                                                                                    \
+        return hal_ready(component);                                                                         \
+    }                                                                                                        \
+    void rtapi_app_exit(void) {                                                                              \
+        hal_exit(component);                                                                                 \
     }                                                                                                        \
     static_assert(true)
 

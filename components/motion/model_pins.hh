@@ -114,19 +114,9 @@ class PinnedModel {
 /// A module of one type: the model with its pins, NAME.PARAMETER.
 #define MW_MODEL_MODULE(Model, name)                                                                         \
     static mw::components::PinnedModel<Model> pinned;                                                        \
-    static int component = -1;                                                                               \
     MW_KINEMATICS(pinned);                                                                                   \
     MW_KINEMATICS_PURE;                                                                                      \
-    int rtapi_app_main(void) {                                                                               \
-        component = hal_init(name);                                                                          \
-        const int status = component < 0 ? component : pinned.declare(component, name);                      \
-        if (status < 0) {                                                                                    \
-            hal_exit(component);                                                                             \
-            return status;                                                                                   \
-        }                                                                                                    \
-        return hal_ready(component);                                                                         \
+    static int declare_pins(int comp_id) {                                                                   \
+        return pinned.declare(comp_id, name);                                                                \
     }                                                                                                        \
-    void rtapi_app_exit(void) {                                                                              \
-        hal_exit(component);                                                                                 \
-    }                                                                                                        \
-    static_assert(true)
+    MW_KINEMATICS_MAIN(name, declare_pins)

@@ -7,23 +7,13 @@
 namespace {
 
 mw::components::IteratingModel<mw::kins::Pentapod> live;
-int component = -1;
+
+int declare_pins(int comp_id) {
+    return live.declare(comp_id, "pentakins");
+}
 
 }  // namespace
 
 MW_KINEMATICS(live);
 MW_KINEMATICS_PURE;
-
-int rtapi_app_main(void) {
-    component = hal_init("pentakins");
-    const int status = component < 0 ? component : live.declare(component, "pentakins");
-    if (status < 0) {
-        hal_exit(component);
-        return status;
-    }
-    return hal_ready(component);
-}
-
-void rtapi_app_exit(void) {
-    hal_exit(component);
-}
+MW_KINEMATICS_MAIN("pentakins", declare_pins);

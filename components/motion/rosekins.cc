@@ -35,36 +35,22 @@ struct LiveRose {
 };
 
 LiveRose live;
-int component = -1;
 
-int declare() {
+int declare_pins(int comp_id) {
     live.pins = static_cast<RosePins *>(hal_malloc(static_cast<long>(sizeof(RosePins))));
     if (live.pins == nullptr) {
         return -ENOMEM;
     }
-    int status = hal_pin_float_new("rosekins.revolutions", HAL_OUT, &live.pins->revolutions, component);
+    int status = hal_pin_float_new("rosekins.revolutions", HAL_OUT, &live.pins->revolutions, comp_id);
     status = status < 0 ? status
-                        : hal_pin_float_new("rosekins.theta_degrees", HAL_OUT, &live.pins->theta, component);
+                        : hal_pin_float_new("rosekins.theta_degrees", HAL_OUT, &live.pins->theta, comp_id);
     return status < 0
                ? status
-               : hal_pin_float_new("rosekins.bigtheta_degrees", HAL_OUT, &live.pins->big_theta, component);
+               : hal_pin_float_new("rosekins.bigtheta_degrees", HAL_OUT, &live.pins->big_theta, comp_id);
 }
 
 }  // namespace
 
 MW_KINEMATICS(live);
 MW_KINEMATICS_PURE;
-
-int rtapi_app_main(void) {
-    component = hal_init("rosekins");
-    const int status = component < 0 ? component : declare();
-    if (status < 0) {
-        hal_exit(component);
-        return status;
-    }
-    return hal_ready(component);
-}
-
-void rtapi_app_exit(void) {
-    hal_exit(component);
-}
+MW_KINEMATICS_MAIN("rosekins", declare_pins);

@@ -4,16 +4,7 @@
 #include "kins/scorbot.hh"
 
 static const mw::kins::Scorbot model;
-static int component = -1;
 
 MW_KINEMATICS(model);
 MW_KINEMATICS_PURE;
-
-int rtapi_app_main(void) {
-    component = hal_init("scorbot-kins");
-    return component < 0 ? component : hal_ready(component);
-}
-
-void rtapi_app_exit(void) {
-    hal_exit(component);
-}
+MW_KINEMATICS_MAIN("scorbot-kins", mw::components::no_pins);

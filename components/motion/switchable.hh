@@ -99,7 +99,6 @@ class Switchable {
     static char *sparm;                                                                                      \
     RTAPI_MP_STRING(sparm, "identityfirst: type 0 is identity");                                             \
     static mw::components::Switchable switchable(live, identity_type);                                       \
-    static int component = -1;                                                                               \
     MW_KINEMATICS_FUNCTIONS(switchable);                                                                     \
     MW_KINEMATICS_PURE;                                                                                      \
     extern "C" int kinematicsSwitchable(void) {                                                              \
@@ -110,19 +109,10 @@ class Switchable {
     }                                                                                                        \
     EXPORT_SYMBOL(kinematicsSwitchable);                                                                     \
     EXPORT_SYMBOL(kinematicsSwitch);                                                                         \
-    int rtapi_app_main(void) {                                                                               \
+    static int declare_switchable(int comp_id) {                                                             \
         const char *letters =                                                                                \
             coordinates != nullptr && coordinates[0] != '\0' ? coordinates : default_letters;                \
-        component = hal_init(name);                                                                          \
-        int status = component < 0 ? component : switchable.declare(component, name, letters, sparm);        \
-        status = status < 0 ? status : declare_model(component, letters);                                    \
-        if (status < 0) {                                                                                    \
-            hal_exit(component);                                                                             \
-            return status;                                                                                   \
-        }                                                                                                    \
-        return hal_ready(component);                                                                         \
+        const int status = switchable.declare(comp_id, name, letters, sparm);                                \
+        return status < 0 ? status : declare_model(comp_id, letters);                                        \
     }                                                                                                        \
-    void rtapi_app_exit(void) {                                                                              \
-        hal_exit(component);                                                                                 \
-    }                                                                                                        \
-    static_assert(true)
+    MW_KINEMATICS_MAIN(name, declare_switchable)

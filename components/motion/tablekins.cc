@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Kinematics of five-axis machines with a tilting rotary table (kins/rotary_table.hh): joints 0 to 4 = X Y Z
 // A C. tilt_y=, tilt_z=: where the axis A passes the axis C, from the origin [machine units].
+#include <errno.h>
 #include <stdlib.h>
 
 #include "components/motion/kinematics_module.hh"
@@ -12,18 +13,10 @@ static char *tilt_z;
 RTAPI_MP_STRING(tilt_z, "Z of the tilting axis [machine units]");
 
 static mw::kins::RotaryTable model;
-static int component = -1;
 
 MW_KINEMATICS(model);
 
-extern "C" KINEMATICS_TYPE kinematicsType(void) {
-    return KINEMATICS_BOTH;
-}
-
-/// No hidden state: the planner may call these functions while the servo thread does.
-extern "C" RTAPI_EXPORT int mw_kinematics_is_pure(void) {
-    return 1;
-}
+MW_KINEMATICS_PURE;
 
 /// False when the text is no number. The realtime process keeps the locale C.
 static bool read_number(const char *name, const char *text, double &value) {
@@ -38,17 +31,14 @@ static bool read_number(const char *name, const char *text, double &value) {
     return *end == '\0';
 }
 
-int rtapi_app_main(void) {
+static int read_arguments(int) {
     double y = 0;
     double z = 0;
     if (!read_number("tilt_y", tilt_y, y) || !read_number("tilt_z", tilt_z, z)) {
-        return -22;  // EINVAL
+        return -EINVAL;
     }
     model.set_tilt_axis(y, z);
-    component = hal_init("tablekins");
-    return component < 0 ? component : hal_ready(component);
+    return 0;
 }
 
-void rtapi_app_exit(void) {
-    hal_exit(component);
-}
+MW_KINEMATICS_MAIN("tablekins", read_arguments);

@@ -84,59 +84,45 @@ Status Hexapod::forward(const double *joints, Pose &pose) const noexcept {
 }
 
 Status Hexapod::forward(const double *joints, Pose &pose, int &iterations) const noexcept {
-    constexpr double MOST_ITERATIONS = 1000;
-    constexpr double STRIDE =
-        0.05;  // of the rim; a longer one may lead to another way to put the struts together
+    struct Search {
+        const Hexapod &hexapod;
+        double rim;
+        Vector place;
+        Rotation turn;
+        Vector move, spin;  ///< of the way; [rad] about an axis
+
+        Vector place_ahead(double share) const noexcept { return place + move * share; }
+        Rotation turn_ahead(double share) const noexcept { return rotation_about(spin * share) * turn; }
+        StrutLengths<STRUTS> lengths_at(double share) const noexcept {
+            const Struts struts = hexapod.struts_of(place_ahead(share), turn_ahead(share));
+            StrutLengths<STRUTS> out;
+            std::transform(struts.begin(), struts.end(), out.of.begin(),
+                           [](const Strut &strut) { return length(strut.along) + strut.correction; });
+            out.by = derivatives_of(struts, rim);
+            return out;
+        }
+        double go(double share, const Row<STRUTS> &step) noexcept {
+            place = place_ahead(share);
+            turn = turn_ahead(share);
+            move = {step[0], step[1], step[2]};
+            spin = Vector{step[3], step[4], step[5]} * (1.0 / rim);
+            return std::max(length(move), length(spin) * rim);
+        }
+    };
     iterations = 0;
     if (!areFinite(joints, STRUTS) || !isFinite(pose)) {
         return Status::UNREACHABLE;
     }
     const double rim = size();
-    const int limit = static_cast<int>(std::min(get(LIMIT_ITERATIONS), MOST_ITERATIONS));
-    Vector place = place_of(pose);
-    Rotation turn = rotation_of(pose);
-    Vector move, spin;  // from there to where the solution is looked for next
-    double share = 1;   // of them
-    double before = 1e300;
-    int side_at_start = 0;
-    for (; iterations < limit; ++iterations) {
-        const Vector place_here = place + move * share;
-        const Rotation turn_here = rotation_about(spin * share) * turn;
-        const Struts struts = struts_of(place_here, turn_here);
-        Row<STRUTS> step{};
-        double miss = 0;
-        for (std::size_t i = 0; i < STRUTS; ++i) {
-            step[i] = joints[i] - length(struts[i].along) - struts[i].correction;
-            miss = std::max(miss, std::abs(step[i]));
-        }
-        int side_here = 0;
-        const double pivot = solve(derivatives_of(struts, rim), step, side_here);
-        side_at_start = iterations == 0 ? side_here : side_at_start;
-        const bool isSameSide = side_here == side_at_start || pivot <= SINGULAR_PIVOT;
-        // One step beyond what is asked for takes the rest of the error, where rounding leaves anything to
-        // take.
-        const bool isSettled =
-            miss < get(CRITERION) && (miss < 1e-6 * get(CRITERION) || miss >= 0.5 * before);
-        if (isSettled && isSameSide) {
-            set_place(pose, place_here);
-            set_rotation(pose, turn_here);
-            return pivot > SINGULAR_PIVOT ? Status::OK : Status::SINGULAR;
-        }
-        if (!(miss <= get(MAX_ERROR)) || !(pivot > 0)) {
-            return Status::UNREACHABLE;
-        }
-        if (!isSameSide || miss > before) {
-            share *= 0.5;  // too far
-            continue;
-        }
-        place = place_here;
-        turn = turn_here;
-        move = {step[0], step[1], step[2]};
-        spin = Vector{step[3], step[4], step[5]} * (1.0 / rim);
-        share = std::min(1.0, STRIDE * rim / std::max({length(move), length(spin) * rim, 1e-300}));
-        before = miss;
+    Search search{*this, rim, place_of(pose), rotation_of(pose), {}, {}};
+    const NewtonTerms terms{get(CRITERION), get(MAX_ERROR), get(LIMIT_ITERATIONS), rim};
+    double share = 1;
+    const Status status = find_platform<STRUTS>(joints, terms, search, share, iterations);
+    if (isAnswered(status)) {
+        set_place(pose, search.place_ahead(share));
+        set_rotation(pose, search.turn_ahead(share));
     }
-    return Status::UNREACHABLE;
+    return status;
 }
 
 Row<Hexapod::STRUTS> Hexapod::corrections_at(const Pose &pose) const noexcept {

@@ -7,7 +7,7 @@
 #pragma once
 
 #include "kins/frame.hh"
-#include "kins/linear_solve.hh"
+#include "kins/newton.hh"
 #include "kins/parameters.hh"
 
 namespace mw::kins {

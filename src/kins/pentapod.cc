@@ -70,55 +70,32 @@ Status Pentapod::forward(const double *joints, Pose &pose) const noexcept {
 }
 
 Status Pentapod::forward(const double *joints, Pose &pose, int &iterations) const noexcept {
-    constexpr double MOST_ITERATIONS = 1000;
-    constexpr double STRIDE =
-        0.05;  // of the rim; a longer one may lead to another way to put the struts together
+    struct Search {
+        const Pentapod &pentapod;
+        double rim;
+        Pose at, way;
+
+        Pose ahead(double share) const noexcept { return at + way * share; }
+        Lengths lengths_at(double share) const noexcept { return pentapod.lengths_at(ahead(share)); }
+        double go(double share, const Row<STRUTS> &step) noexcept {
+            at = ahead(share);
+            way = {{step[0], step[1], step[2], step[3] / rim * DEGREES, step[4] / rim * DEGREES}};
+            return std::max({length(place_of(way)), std::abs(step[3]), std::abs(step[4])});
+        }
+    };
     iterations = 0;
     if (!areFinite(joints, STRUTS) || !isFinite(pose)) {
         return Status::UNREACHABLE;
     }
     const double rim = size();
-    const int limit = static_cast<int>(std::min(get(LIMIT_ITERATIONS), MOST_ITERATIONS));
-    Pose at = pose;
-    Pose way;          // from there to where the solution is looked for next
-    double share = 1;  // of it
-    double before = 1e300;
-    int side_at_start = 0;
-    for (; iterations < limit; ++iterations) {
-        const Pose here = at + way * share;
-        const Lengths lengths = lengths_at(here);
-        Row<STRUTS> step{};
-        double miss = 0;
-        for (std::size_t i = 0; i < STRUTS; ++i) {
-            step[i] = joints[i] - lengths.of[i];
-            miss = std::max(miss, std::abs(step[i]));
-        }
-        int side_here = 0;
-        const double pivot = solve(lengths.by, step, side_here);
-        side_at_start = iterations == 0 ? side_here : side_at_start;
-        const bool isSameSide = side_here == side_at_start || pivot <= SINGULAR_PIVOT;
-        // One step beyond what is asked for takes the rest of the error, where rounding leaves anything to
-        // take.
-        const bool isSettled =
-            miss < get(CRITERION) && (miss < 1e-6 * get(CRITERION) || miss >= 0.5 * before);
-        if (isSettled && isSameSide) {
-            pose = here;
-            return pivot > SINGULAR_PIVOT ? Status::OK : Status::SINGULAR;
-        }
-        if (!(miss <= get(MAX_ERROR)) || !(pivot > 0)) {
-            return Status::UNREACHABLE;
-        }
-        if (!isSameSide || miss > before) {
-            share *= 0.5;  // too far
-            continue;
-        }
-        at = here;
-        way = {{step[0], step[1], step[2], step[3] / rim * DEGREES, step[4] / rim * DEGREES}};
-        const double most = std::max({length(place_of(way)), std::abs(step[3]), std::abs(step[4]), 1e-300});
-        share = std::min(1.0, STRIDE * rim / most);
-        before = miss;
+    Search search{*this, rim, pose, {}};
+    const NewtonTerms terms{get(CRITERION), get(MAX_ERROR), get(LIMIT_ITERATIONS), rim};
+    double share = 1;
+    const Status status = find_platform<STRUTS>(joints, terms, search, share, iterations);
+    if (isAnswered(status)) {
+        pose = search.ahead(share);
     }
-    return Status::UNREACHABLE;
+    return status;
 }
 
 }  // namespace mw::kins

@@ -7,7 +7,7 @@
 #pragma once
 
 #include "kins/frame.hh"
-#include "kins/linear_solve.hh"
+#include "kins/newton.hh"
 #include "kins/parameters.hh"
 
 namespace mw::kins {
@@ -59,10 +59,7 @@ class Pentapod final : public Parametric<PENTAPOD_PARAMETERS> {
     int side(const Pose &pose) const noexcept override;
 
   private:
-    struct Lengths {
-        Row<STRUTS> of{};
-        Square<STRUTS> by{};  ///< [strut][X Y Z A B], a turn as the way of the effector's rim
-    };
+    using Lengths = StrutLengths<STRUTS>;
     Lengths lengths_at(const Pose &pose) const noexcept;
     double size() const noexcept;
 };
