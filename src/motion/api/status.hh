@@ -164,12 +164,13 @@ enum class FaultKind : std::uint16_t {
     THREAD_TOO_FAST,  ///< index: spindle; value: needed speed over the possible one
     JOG_LEASE_ENDED,  ///< a jog was not renewed in time; detail: 1 a joint, 0 an axis; value: the lease [s]
     KINEMATICS_JUMP,  ///< index: the joint that would have stepped; value: by how much
+    HOMING_CLAMPED,   ///< a homing module has asked joint `index` for more than its limits allow
     COUNT,
 };
-/// Of a jog: no path has failed.
-constexpr bool isOfJog(FaultKind kind) noexcept {
-    return kind == FaultKind::JOG_JOINT_LIMIT || kind == FaultKind::JOG_UNREACHABLE ||
-           kind == FaultKind::JOG_LEASE_ENDED;
+/// Only told: no path has failed.
+constexpr bool isOnlyTold(FaultKind kind) noexcept {
+    return kind == FaultKind::HOMING_CLAMPED || kind == FaultKind::JOG_JOINT_LIMIT ||
+           kind == FaultKind::JOG_UNREACHABLE || kind == FaultKind::JOG_LEASE_ENDED;
 }
 struct Fault {
     FaultKind kind = FaultKind::FOLLOWING_ERROR;

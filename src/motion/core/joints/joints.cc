@@ -162,6 +162,14 @@ PerJoint commanded(const Joints &joints) noexcept {
     return out;
 }
 
+std::uint32_t inactive_joints(const Joints &joints) noexcept {
+    std::uint32_t mask = 0;
+    for (int j = 0; j < joints.count; ++j) {
+        mask |= joints[j].isActive ? 0U : 1U << j;
+    }
+    return mask;
+}
+
 JointFault find_fault(Joints &joints, int &joint, const Settings &settings, const JointCheck &how) noexcept {
     for (; joint < joints.count; ++joint) {
         const bool isAtIndex = (how.at_index >> joint & 1U) != 0;
