@@ -42,6 +42,28 @@ TEST(HomingCases, AnIndexCountsWithASwitchOrWithoutAndWhetherItResetsTheEncoderO
     }
 }
 
+TEST(HomingCases, TheMotorDoesNotStepWhereTheIndexResetsItsEncoder_C10) {
+    for (const double lag_s : {0.0, 0.01}) {
+        for (const double phase : {1.25, -17.3, 3.0004}) {
+            HomingRig m;
+            m.set_up(
+                {{.start = 3, .switch_at = -20, .lag_s = lag_s, .index_pitch = 5, .index_phase = phase}});
+            m.set(Parameter::JOINT_HOME_USE_INDEX, 1);
+            m.set_switch(0, 0, 2);
+            m.home(0);
+            double longest = 0;
+            ASSERT_TRUE(m.rig.run_until([&] {
+                const double before = m.axes[0].motor();
+                m.rig.step();
+                const bool isFinal = m.rig.out->joint[0].home_state == static_cast<int>(homing::State::FINAL);
+                longest = isFinal ? longest : std::max(longest, std::abs(m.axes[0].motor() - before));
+                return m.isHomed(0);
+            }));
+            EXPECT_LE(longest, 2.0 * MotionRig::T * 1.001) << lag_s << ' ' << phase;
+        }
+    }
+}
+
 TEST(HomingCases, AbsoluteEncodersAndImmediateTakeThePlaceWhereTheyStand_C10) {
     for (const int mode : {0, 1, 2}) {
         HomingRig m;

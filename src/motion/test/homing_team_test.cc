@@ -63,7 +63,7 @@ struct Gantry {
 TEST(HomingTeam, BothSidesOfAGantryLeaveAndStopTogetherOnEveryLeg_C10) {
     for (const double latch : {2.0, -2.0}) {
         for (const double start : {0.0, -21.0, -30.0}) {  // off the switches, on one of them, on both
-            for (const bool isIndex : {false}) {
+            for (const bool isIndex : {false, true}) {
                 Gantry g({.start = start, .switch_at = -20, .index_pitch = 5, .index_phase = 1},
                          {.start = start, .switch_at = -22, .index_pitch = 5, .index_phase = 4});
                 for (const int j : {1, 2}) {
