@@ -30,7 +30,8 @@ const char *failure_text(Failure failure) noexcept {
     case Failure::ABORTED: return "aborted";
     case Failure::TEAM_DIFFERS:
         return "it drives one axis with joints that are homed in another way; give them the same signs of "
-               "HOME_SEARCH_VEL and HOME_LATCH_VEL, HOME_USE_INDEX and HOME_ABSOLUTE_ENCODER, as the axis "
+               "HOME_SEARCH_VEL and HOME_LATCH_VEL, HOME_USE_INDEX, HOME_ABSOLUTE_ENCODER and "
+               "LOCKING_INDEXER, as the axis "
                "would be pushed askew";
     case Failure::TEAM_SKEWED:
         return "the axis would have been pushed askew: it and another joint of the axis get farther apart "

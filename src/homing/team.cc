@@ -57,8 +57,8 @@ std::uint32_t Homing::team_events(int joint, const JointInput *inputs) const noe
     bool areHere = true;
     bool isOther = false;
     bool isFarApart = false;
-    constexpr std::uint32_t MANNER =
-        setting::SEARCHING | setting::LATCHING | setting::INDEX | setting::ABSOLUTE | setting::STAYING;
+    constexpr std::uint32_t MANNER = setting::SEARCHING | setting::LATCHING | setting::INDEX |
+                                     setting::ABSOLUTE | setting::STAYING | setting::LOCKING;
     for (int k = 0; k < num_joints_; ++k) {
         if (k == joint || !areTeam(joint, k)) {
             continue;
