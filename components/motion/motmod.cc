@@ -104,11 +104,6 @@ bool isConfigured() {
                         num_extrajoints);
         return false;
     }
-    if (unlock_joints_mask != 0) {
-        rtapi_print_msg(
-            RTAPI_MSG_WARN,
-            "motmod: unlock_joints_mask: the pins exist, locking indexers are not supported yet\n");
-    }
     return true;
 }
 

@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+// Sequences and single cycles; what joints do together is in team.cc.
 #include "homing/homing.hh"
 
 #include <cmath>
 #include <cstdlib>
 
 namespace mw::homing {
-
-namespace {
-
-/// A signed move at a signed speed, as far as the travel goes.
-void go(JointCommand &out, double velocity, double travel) noexcept {
-    out.move = Move::BY;
-    out.value = std::copysign(travel, velocity);
-    out.velocity = std::abs(velocity);
-}
-
-}  // namespace
 
 bool Homing::isActive() const noexcept {
     for (int j = 0; j < num_joints_; ++j) {
@@ -27,41 +17,36 @@ bool Homing::isActive() const noexcept {
 }
 
 bool Homing::hasWork() const noexcept {
-    bool isStopping = false;
+    bool isOver = true;
     for (int j = 0; j < num_joints_; ++j) {
-        isStopping = isStopping || isStopping_[j];
+        isOver = isOver && !at(j).isStopping && !at(j).isUnlockWanted;
     }
-    return isStopping || isActive();
-}
-
-bool Homing::isAllHomed() const noexcept {
-    for (int j = 0; j < num_joints_; ++j) {
-        if (!isHomed(j)) {
-            return false;
-        }
-    }
-    return num_joints_ > 0;
+    return !isOver || isActive();
 }
 
 void Homing::begin(int joint) noexcept {
-    Joint &j = joints_[index(joint)];
+    Joint &j = at(joint);
     const bool isAbsoluteAgain = j.parameters.absolute_encoder != 0 && j.isHomed;
-    if (isAbsoluteAgain || j.state != State::IDLE) {
+    const Transition *row = j.state == State::IDLE ? transition(joint, event::BEGIN) : nullptr;
+    if (isAbsoluteAgain || row == nullptr || !j.parameters.isActive) {
         return;
     }
-    j.state = State::START;
+    j.state = row->next;
+    j.isUnlockWanted = row->action == Action::UNLOCK;
     j.isHomed = false;
-    j.isMoving = false;
     j.isIndexWanted = false;
+    j.wait = 0;
+    j.way = 0;
+    j.team_acceleration = 0;
 }
 
 void Homing::start(int joint) noexcept {
     if (joint >= 0) {
-        const Parameters &p = joints_[index(joint)].parameters;
+        const Parameters &p = at(joint).parameters;
         const bool isGroup = p.sequence < 0 && p.isInSequence();
         begin(joint);
         for (int k = 0; k < num_joints_ && isGroup; ++k) {
-            if (std::abs(joints_[index(k)].parameters.sequence) == -p.sequence) {
+            if (std::abs(at(k).parameters.sequence) == -p.sequence) {
                 begin(k);
             }
         }
@@ -74,7 +59,7 @@ void Homing::start(int joint) noexcept {
 bool Homing::start_sequence(int number) noexcept {
     bool isAny = false;
     for (int k = 0; k < num_joints_; ++k) {
-        const Parameters &p = joints_[index(k)].parameters;
+        const Parameters &p = at(k).parameters;
         if (p.isInSequence() && std::abs(p.sequence) == number) {
             begin(k);
             isAny = true;
@@ -98,14 +83,20 @@ void Homing::advance_sequence() noexcept {
     }
 }
 
-void Homing::abort(Failure why) noexcept {
+void Homing::abort(event::Event why, int joint) noexcept {
     for (int k = 0; k < num_joints_; ++k) {
-        if (isHoming(k)) {
-            fail(k, why);
+        if (isHoming(k) && (joint < 0 || k == joint)) {
+            fail(k, transition(k, why)->failure);
             return;
         }
     }
     sequence_ = -1;
+}
+
+void Homing::lock() noexcept {
+    for (Joint &j : joints_) {
+        j.isUnlockWanted = false;
+    }
 }
 
 /// One joint fails: everything that is being homed stops.
@@ -114,11 +105,12 @@ void Homing::fail(int joint, Failure why) noexcept {
     failure_ = why;
     sequence_ = -1;
     for (int k = 0; k < num_joints_; ++k) {
-        Joint &j = joints_[index(k)];
-        if (j.state != State::IDLE) {
-            j.state = State::IDLE;
+        Joint &j = at(k);
+        const Transition *row = isHoming(k) ? transition(k, event::MEMBER_FAILED) : nullptr;
+        if (row != nullptr) {
+            j.state = row->next;
             j.isIndexWanted = false;
-            isStopping_[k] = true;
+            j.isStopping = true;
         }
     }
 }
@@ -131,225 +123,123 @@ int Homing::take_failure(Failure &why) noexcept {
     return joint;
 }
 
-/// All joints of a synchronised group have found their zero.
-bool Homing::isGroupReady(int joint) const noexcept {
-    const int number = std::abs(joints_[index(joint)].parameters.sequence);
-    bool isSynchronised = false;
-    bool isReady = true;
-    for (int k = 0; k < num_joints_; ++k) {
-        const Joint &j = joints_[index(k)];
-        if (!j.parameters.isInSequence() || std::abs(j.parameters.sequence) != number ||
-            j.state == State::IDLE) {
-            continue;
+/// The row of the table that holds now, nullptr where nothing changes.
+const Transition *Homing::transition(int joint, std::uint32_t events) const noexcept {
+    const State state = at(joint).state;
+    const std::uint32_t settings = settings_of(joint);
+    for (const Transition &row : TRANSITIONS) {
+        const bool isHere = row.state == UNDER_WAY ? state != State::IDLE : row.state == state;
+        const bool areEvents = (row.events & events) == row.events;
+        if (isHere && areEvents && (row.when & settings) == row.when && (row.unless & settings) == 0) {
+            return &row;
         }
-        isSynchronised = isSynchronised || j.parameters.sequence < 0;
-        isReady = isReady && (j.state == State::WAIT_FOR_GROUP || j.state == State::FINAL);
     }
-    return !isSynchronised || isReady;
+    return nullptr;
 }
 
 void Homing::step(const JointInput *inputs, JointCommand *commands) noexcept {
-    std::array<bool, MAX_JOINTS> isReady{};
+    std::array<std::uint32_t, MAX_JOINTS> events{};
     for (int k = 0; k < num_joints_; ++k) {
         commands[k] = {};
-        isReady[index(k)] = joints_[index(k)].state == State::WAIT_FOR_GROUP && isGroupReady(k);
+        at(k).way += inputs[k].vel_cmd * period_s_;
+        ++at(k).wait;
     }
     for (int k = 0; k < num_joints_; ++k) {
-        Joint &j = joints_[index(k)];
-        if (j.state == State::IDLE) {
-            continue;
-        }
-        Failure why = Failure::NONE;
-        if (inputs[k].isOnLimit) {
-            why = Failure::LIMIT_HIT;
-        } else if (isReady[index(k)]) {
-            j.state = State::FINAL;
-            j.isMoving = false;
-        }
-        if (why == Failure::NONE) {
-            why = step_joint(j, inputs[k], commands[k]);
-        }
-        if (why != Failure::NONE) {
-            fail(k, why);
+        events[static_cast<std::size_t>(k)] = isHoming(k) ? events_of(k, inputs) : 0;
+    }
+    for (int k = 0; k < num_joints_; ++k) {
+        const Transition *row = isHoming(k) ? transition(k, events[static_cast<std::size_t>(k)]) : nullptr;
+        if (row != nullptr && row->failure != Failure::NONE) {
+            fail(k, row->failure);
+        } else if (row != nullptr) {
+            apply(k, *row, inputs, commands[k]);
         }
     }
     for (int k = 0; k < num_joints_; ++k) {
-        if (isStopping_[k]) {
+        Joint &j = at(k);
+        if (j.isStopping) {
             commands[k] = {};
             commands[k].move = Move::STOP;
-            isStopping_[k] = false;
+            commands[k].acceleration = j.team_acceleration;
+            j.isStopping = false;
+        } else if (j.state == State::LOCK || (j.state == State::IDLE && inputs[k].isAtRest)) {
+            j.isUnlockWanted = false;
         }
     }
     advance_sequence();
 }
 
-Failure Homing::step_start(Joint &j, const JointInput &in, JointCommand &out) noexcept {
-    const Parameters &p = j.parameters;
-    if (p.absolute_encoder != 0 || (p.search_vel == 0 && p.latch_vel == 0 && !p.isUsingIndex)) {
-        out.isShifting = true;
-        out.shift = p.offset - in.pos_fb;
-        if (p.absolute_encoder == 2) {
-            j.state = State::IDLE;
-            j.isHomed = true;
-        } else {
-            j.state = State::WAIT_FOR_GROUP;
-        }
-        return Failure::NONE;
-    }
-    if (p.latch_vel == 0) {
-        return p.search_vel != 0 ? Failure::SEARCH_WITHOUT_LATCH : Failure::INDEX_WITHOUT_LATCH;
-    }
-    if (p.search_vel == 0) {
-        if (!p.isUsingIndex) {
-            return Failure::LATCH_WITHOUT_INDEX;
-        }
-        j.state = State::INDEX;
-        j.isIndexWanted = true;
-        go(out, p.latch_vel, p.travel);
-        return Failure::NONE;
-    }
-    if (in.isSwitchClosed && p.isSharedSwitch) {
-        return Failure::SHARED_SWITCH_CLOSED;
-    }
-    j.state = in.isSwitchClosed ? State::INITIAL_BACKOFF : State::SEARCH;
-    go(out, in.isSwitchClosed ? -p.search_vel : p.search_vel, p.travel);
-    return Failure::NONE;
+std::uint32_t Homing::settings_of(int joint) const noexcept {
+    const Parameters &p = at(joint).parameters;
+    std::uint32_t out = 0;
+    out |= p.search_vel != 0 ? setting::SEARCHING : 0U;
+    out |= p.latch_vel != 0 ? setting::LATCHING : 0U;
+    out |= p.isUsingIndex ? setting::INDEX : 0U;
+    out |= (p.search_vel > 0) == (p.latch_vel > 0) ? setting::SAME_WAY : 0U;
+    out |= p.isSharedSwitch ? setting::SHARED : 0U;
+    out |= p.absolute_encoder != 0 ? setting::ABSOLUTE : 0U;
+    out |= p.absolute_encoder == 2 ? setting::STAYING : 0U;
+    out |= p.isLockingIndexer ? setting::LOCKING : 0U;
+    out |= hasTeam(joint) ? setting::TEAM : 0U;
+    return out;
 }
 
-/// On the slow way to the switch's edge.
-Failure Homing::step_latch(Joint &j, const JointInput &in, JointCommand &out) noexcept {
-    const Parameters &p = j.parameters;
-    const bool isToClosed = (p.search_vel > 0) == (p.latch_vel > 0);
-    if (in.isSwitchClosed != isToClosed) {
-        return in.isAtRest ? (isToClosed ? Failure::SWITCH_NOT_FOUND : Failure::SWITCH_STUCK) : Failure::NONE;
-    }
-    if (p.isUsingIndex) {
-        j.state = State::INDEX;
-        j.isIndexWanted = true;
-        j.wait = 0;
-        return Failure::NONE;
-    }
+std::uint32_t Homing::events_of(int joint, const JointInput *inputs) const noexcept {
+    const Joint &j = at(joint);
+    const JointInput &in = inputs[joint];
+    std::uint32_t out = in.isSwitchClosed ? event::SWITCH_CLOSED : event::SWITCH_OPEN;
+    out |= in.isAtRest ? event::AT_REST : 0U;
+    // What was set TRUE in the last cycle is low now: the encoder has cleared it, and may have reset itself.
+    out |= j.isIndexWanted && !in.isIndexEnabled ? event::INDEX : 0U;
+    out |= in.isUnlocked ? 0U : event::LOCKED;
+    out |= j.wait * period_s_ > LONGEST_LOCKING_S ? event::OVERDUE : 0U;
+    out |= isGroupReady(joint) ? event::GROUP_READY : 0U;
+    return out | team_events(joint, inputs);
+}
+
+void Homing::set_place(int joint, const JointInput &in, JointCommand &out) noexcept {
     out.isShifting = true;
-    out.shift = p.offset - in.pos_fb;
-    finish_latch(j, out);
-    return Failure::NONE;
+    out.shift = at(joint).parameters.offset - in.pos_fb;
 }
 
-Failure Homing::step_index(Joint &j, const JointInput &in, JointCommand &out) noexcept {
-    const Parameters &p = j.parameters;
-    // The pin shows what we set one cycle later; before that a low pin says nothing.
-    constexpr int SETTLE_CYCLES = 2;
-    const bool isSettled = ++j.wait > SETTLE_CYCLES;
-    if (!isSettled || in.isIndexEnabled) {
-        return isSettled && in.isAtRest ? Failure::INDEX_NOT_FOUND : Failure::NONE;
+void Homing::apply(int joint, const Transition &row, const JointInput *inputs, JointCommand &out) noexcept {
+    Joint &j = at(joint);
+    const JointInput &in = inputs[joint];
+    switch (row.action) {
+    case Action::NOTHING:
+    case Action::UNLOCK: break;
+    case Action::SET_PLACE:
+    case Action::SET_PLACE_STOP: set_place(joint, in, out); break;
+    case Action::TAKE_INDEX:
+    case Action::TAKE_INDEX_STOP:
+        j.isIndexWanted = false;
+        if (j.parameters.isIndexWithoutReset) {
+            set_place(joint, in, out);
+        } else {
+            out.isSettingZero = true;
+            out.zero = j.parameters.offset;
+        }
+        break;
+    case Action::SEARCH: go(joint, &Parameters::search_vel, 1, inputs, out); break;
+    case Action::BACK_OFF: go(joint, &Parameters::search_vel, -1, inputs, out); break;
+    case Action::LATCH: go(joint, &Parameters::latch_vel, 1, inputs, out); break;
+    case Action::LATCH_ASK_INDEX:
+        go(joint, &Parameters::latch_vel, 1, inputs, out);
+        j.isIndexWanted = true;
+        break;
+    case Action::ASK_INDEX: j.isIndexWanted = true; break;
+    case Action::GO_HOME: go_home(joint, inputs, out); break;
+    case Action::STOP: break;
     }
-    j.isIndexWanted = false;
-    if (p.isIndexWithoutReset) {
-        out.isShifting = true;
-        out.shift = p.offset - in.pos_fb;
-    } else {
-        out.isSettingZero = true;
-        out.zero = p.offset;
+    const bool isStopping = row.action == Action::STOP || row.action == Action::SET_PLACE_STOP ||
+                            row.action == Action::TAKE_INDEX_STOP;
+    if (isStopping) {
+        out.move = Move::STOP;
+        out.acceleration = j.team_acceleration;
     }
-    finish_latch(j, out);
-    return Failure::NONE;
-}
-
-void Homing::finish_latch(Joint &j, JointCommand &out) noexcept {
-    out.move = Move::STOP;
-    j.state = State::LATCHED_STOP;
-}
-
-Failure Homing::step_joint(Joint &j, const JointInput &in, JointCommand &out) noexcept {
-    const Parameters &p = j.parameters;
-    switch (j.state) {
-    case State::IDLE: break;
-    case State::START: j.wait = 0; return step_start(j, in, out);
-    case State::INITIAL_BACKOFF:
-    case State::LATCH_BACKOFF:
-        if (!in.isSwitchClosed) {
-            out.move = Move::STOP;
-            j.state =
-                j.state == State::LATCH_BACKOFF ? State::LATCH_BACKOFF_STOP : State::INITIAL_BACKOFF_STOP;
-        } else if (in.isAtRest) {
-            return Failure::SWITCH_STUCK;
-        }
-        break;
-    case State::INITIAL_BACKOFF_STOP:
-        if (in.isAtRest) {
-            j.state = State::SEARCH;
-            go(out, p.search_vel, p.travel);
-        }
-        break;
-    case State::SEARCH:
-        if (in.isSwitchClosed) {
-            out.move = Move::STOP;
-            j.state = State::SEARCH_STOP;
-        } else if (in.isAtRest) {
-            return Failure::SWITCH_NOT_FOUND;
-        }
-        break;
-    case State::SEARCH_STOP:
-        if (in.isAtRest) {
-            const bool isSameWay = (p.search_vel > 0) == (p.latch_vel > 0);
-            if (!in.isSwitchClosed) {
-                return Failure::SWITCH_LOST;
-            }
-            j.state = isSameWay ? State::LATCH_BACKOFF : State::LATCH;
-            go(out, isSameWay ? -p.search_vel : p.latch_vel, p.travel);
-        }
-        break;
-    case State::LATCH_BACKOFF_STOP:
-        if (in.isAtRest) {
-            j.state = State::LATCH;
-            go(out, p.latch_vel, p.travel);
-        }
-        break;
-    case State::LATCH: return step_latch(j, in, out);
-    case State::INDEX: return step_index(j, in, out);
-    case State::LATCHED_STOP: j.state = in.isAtRest ? State::WAIT_FOR_GROUP : State::LATCHED_STOP; break;
-    case State::WAIT_FOR_GROUP: break;
-    case State::FINAL:
-        if (!j.isMoving) {
-            out.move = Move::TO;
-            out.value = p.home;
-            out.velocity = p.final_vel > 0 ? p.final_vel : 0;
-            j.isMoving = true;
-        } else if (in.isAtRest) {
-            j.state = State::IDLE;
-            j.isHomed = true;
-        }
-        break;
-    }
-    return Failure::NONE;
-}
-
-const char *failure_text(Failure failure) noexcept {
-    switch (failure) {
-    case Failure::NONE: return "no failure";
-    case Failure::SEARCH_WITHOUT_LATCH:
-        return "HOME_SEARCH_VEL is set but HOME_LATCH_VEL is 0; set both, or neither for immediate homing";
-    case Failure::LATCH_WITHOUT_INDEX:
-        return "HOME_LATCH_VEL is set without HOME_SEARCH_VEL, and HOME_USE_INDEX is NO; there is nothing to "
-               "latch on";
-    case Failure::INDEX_WITHOUT_LATCH:
-        return "HOME_USE_INDEX is set but HOME_LATCH_VEL is 0; set the speed to look for the index with";
-    case Failure::SHARED_SWITCH_CLOSED:
-        return "the shared home switch is already closed; jog the joint that closes it off the switch";
-    case Failure::SWITCH_NOT_FOUND:
-        return "the home switch did not close within the joint's travel; check the switch and "
-               "HOME_SEARCH_VEL's sign";
-    case Failure::SWITCH_STUCK: return "the home switch did not open when backing off; check the switch";
-    case Failure::SWITCH_LOST:
-        return "the home switch opened again while stopping; search slower or lengthen the switch's cam";
-    case Failure::INDEX_NOT_FOUND:
-        return "no index pulse within the joint's travel; check the connection of index-enable";
-    case Failure::LIMIT_HIT:
-        return "a limit switch closed; if it is also the home switch, set HOME_IGNORE_LIMITS";
-    case Failure::ABORTED: return "aborted";
-    case Failure::GROUP_FAILED: return "another joint of its group failed";
-    }
-    return "unknown failure";
+    j.state = row.next;
+    j.wait = 0;
+    j.isHomed = j.isHomed || row.isHomed;
 }
 
 }  // namespace mw::homing

@@ -153,7 +153,7 @@ void Task::take_motion_news() {
         }
     };
     for (const motion::Fault &fault : news.faults) {
-        fail_or_post(!motion::isOfJog(fault.kind), motion::fault_text(fault), fault.source,
+        fail_or_post(!motion::isOnlyTold(fault.kind), motion::fault_text(fault), fault.source,
                      AbortReason::MOTION_FAULT);
     }
     for (const auto &[answer, source] : news.refused) {

@@ -85,6 +85,10 @@ inline constexpr double NO_JERK_LIMIT = 1e9;
       "order of homing; equal ones together, negative ones end together")                                    \
     X(JOINT_VOLATILE_HOME, JOINT, "JOINT_*", "VOLATILE_HOME", FLAG, 0, 1, 0,                                 \
       "switching off unhomes the joint")                                                                     \
+    X(JOINT_HOME_MAX_SKEW, JOINT, "JOINT_*", "HOME_MAX_SKEW", LENGTH, 0, UNBOUNDED, 0,                       \
+      "how far apart joints of one axis may get while they home; 0: a hundredth of their range")             \
+    X(JOINT_LOCKING_INDEXER, JOINT, "JOINT_*", "LOCKING_INDEXER", FLAG, 0, 1, 0,                             \
+      "homing unlocks the joint, and locks it afterwards; jogs and programs do not yet")                     \
     X(AXIS_MIN_LIMIT, AXIS, "AXIS_*", "MIN_LIMIT", LENGTH, -UNBOUNDED, UNBOUNDED, -1e99,                     \
       "lower soft limit; that of the joint where there is none")                                             \
     X(AXIS_MAX_LIMIT, AXIS, "AXIS_*", "MAX_LIMIT", LENGTH, -UNBOUNDED, UNBOUNDED, 1e99,                      \

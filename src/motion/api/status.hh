@@ -167,12 +167,13 @@ enum class FaultKind : std::uint16_t {
     NO_KINEMATICS_TYPE,            ///< value: the type asked for
     KINEMATICS_SWITCHED_ON_PATH,   ///< the same; the path was stopped
     KINEMATICS_TYPE_WITHOUT_POSE,  ///< the same; it has no pose for where the joints stand
+    HOMING_CLAMPED,                ///< a homing module has asked joint `index` for more than its limits allow
     COUNT,
 };
-/// Of a jog: no path has failed.
-constexpr bool isOfJog(FaultKind kind) noexcept {
-    return kind == FaultKind::JOG_JOINT_LIMIT || kind == FaultKind::JOG_UNREACHABLE ||
-           kind == FaultKind::JOG_LEASE_ENDED;
+/// Only told: no path has failed.
+constexpr bool isOnlyTold(FaultKind kind) noexcept {
+    return kind == FaultKind::HOMING_CLAMPED || kind == FaultKind::JOG_JOINT_LIMIT ||
+           kind == FaultKind::JOG_UNREACHABLE || kind == FaultKind::JOG_LEASE_ENDED;
 }
 struct Fault {
     FaultKind kind = FaultKind::FOLLOWING_ERROR;

@@ -3,7 +3,7 @@
 
 #include <fmt/core.h>
 
-#include "homing/homing.hh"
+#include "homing/table.hh"
 
 namespace mw::motion {
 
@@ -111,8 +111,11 @@ std::string what_failed(const Fault &fault) {
     case FaultKind::ENABLE_LOST: return "motion stopped by enable input";
     case FaultKind::TASK_LOST: return "the task process is gone or hangs: the machine was stopped";
     case FaultKind::HOMING_FAILED:
-        return fmt::format("homing of joint {} failed: {}", i,
+        return fmt::format("homing{} failed: {}", i >= 0 ? fmt::format(" of joint {}", i) : "",
                            homing::failure_text(static_cast<homing::Failure>(fault.detail)));
+    case FaultKind::HOMING_CLAMPED:
+        return fmt::format(
+            "the homing module asked for more than joint {} can do: it moves within its limits", i);
     case FaultKind::PROBE_NOT_TRIPPED: return "the probing move reached its end without a trip of the probe";
     case FaultKind::PROBE_TRIPPED_IN_MOVE: return "probe tripped during a move that does not probe";
     case FaultKind::NO_WAY_ON:

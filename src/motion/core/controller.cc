@@ -8,6 +8,30 @@
 
 namespace mw::motion {
 
+namespace {
+
+homing::JointInput homing_input(const JointInputs &pins, const Joint &joint, const Jog &jog,
+                                const JogLimits &most) noexcept {
+    homing::JointInput out;
+    out.isSwitchClosed = pins.isHomeSwitchClosed;
+    out.isIndexEnabled = pins.isIndexEnabled;
+    out.isUnlocked = pins.isUnlocked;
+    out.isAtRest = jog.planner.isAtRest();
+    out.pos_cmd = joint.pos_cmd;
+    out.pos_fb = joint.pos_fb;
+    out.vel_cmd = joint.vel_cmd;
+    out.motor_pos_fb = joint.motor_pos_fb;
+    out.motor_offset = joint.motor_offset;
+    out.max_velocity = most.velocity;
+    out.max_acceleration = most.acceleration;
+    out.max_jerk = most.jerk;
+    out.isOnPosLimit = joint.isOnPosHardLimit;
+    out.isOnNegLimit = joint.isOnNegHardLimit;
+    return out;
+}
+
+}  // namespace
+
 Controller::Controller(const ControllerConfig &config, const kins::Kinematics &kinematics, Channels &channels,
                        PathLink &link) noexcept
     : config_(config), loaded_joints_(config.num_joints), kinematics_(kinematics), channels_(&channels),
@@ -15,6 +39,8 @@ Controller::Controller(const ControllerConfig &config, const kins::Kinematics &k
     spindles_.count = config.num_spindles;
     outputs_.num_digital = config.num_dio;
     outputs_.num_analog = config.num_aio;
+    homing_.own.set_period(config.period_s);
+    homing_.foreign = config.homing;
     use_joints(config.num_joints);
     const kins::IdentityMap *identity = kinematics.identity();
     for (int j = identity != nullptr ? identity->num_joints : config.num_joints; j < config.num_joints; ++j) {
@@ -29,8 +55,12 @@ void Controller::use_joints(int count) noexcept {
     joints_.count = count;
     jogs_.num_joints = count;
     homing_.num_joints = count;
-    homing_.homing.set_num_joints(identity != nullptr ? std::min(identity->num_joints, count) : count);
+    homing_.num_to_home = identity != nullptr ? std::min(identity->num_joints, count) : count;
+    homing_.module().set_num_joints(homing_.num_to_home);
     map_ = axis_map(kinematics_, count);
+    for (int j = 0; j < count; ++j) {
+        set_axis(homing_, j, map_.areJointsAxes() ? map_.axis_of_joint[static_cast<std::size_t>(j)] : -1);
+    }
     publish_limits();
 }
 
@@ -113,7 +143,7 @@ void Controller::stop_category_1(FaultKind kind, int index, double value) noexce
         return;
     }
     raise(kind, index, value);
-    abort(homing_, homing::Failure::ABORTED);
+    abort(homing_, homing::event::ABORT);
     executor_.drop();
     stop(jogs_);
 }
@@ -138,13 +168,13 @@ void Controller::check_faults(const Inputs &in) noexcept {
 }
 
 void Controller::check_joints(const Inputs &in) noexcept {
-    homing::Homing &homing = homing_.homing;
+    const homing::Module &homing = homing_.module();
     JointCheck how;
     how.limits_ignored = jogs_.areLimitsOverridden ? ~0U : 0U;
     for (int j = 0; j < config_.num_joints && homing.isActive(); ++j) {
         const bool isIndexFound = !in.joint[static_cast<std::size_t>(j)].isIndexEnabled;
-        how.at_index |= homing.state(j) == homing::State::INDEX && isIndexFound ? 1U << j : 0U;
-        how.limits_ignored |= homing.isIgnoringLimits(j) ? 1U << j : 0U;
+        how.at_index |= homing.isAtIndex(j) && isIndexFound ? 1U << j : 0U;
+        how.limits_ignored |= homing_.isIgnoringLimits(j) ? 1U << j : 0U;
     }
     for (int j = 0; power_.isEnabled; ++j) {
         switch (find_fault(joints_, j, settings_, how)) {
@@ -155,7 +185,7 @@ void Controller::check_joints(const Inputs &in) noexcept {
             break;
         case JointFault::HARD_LIMIT:
             if (homing.isHoming(j)) {
-                homing.abort(homing::Failure::LIMIT_HIT);
+                abort(homing_, homing::event::LIMIT, j);
             }
             stop_category_1(FaultKind::HARD_LIMIT, j, joints_[j].isOnPosHardLimit ? 1.0 : -1.0);
             break;
@@ -173,14 +203,22 @@ void Controller::step_holds(const Inputs &in) noexcept {
 
 void Controller::step_homing(const Inputs &in) noexcept {
     if (homing_.isDue) {
-        begin_due(homing_, isAnythingMoving());
+        const HomeConditions conditions{true, power_.mode, in.isHomingInhibited, isAnythingMoving(),
+                                        inactive_joints(joints_)};
+        const homing::Failure why = begin_due(homing_, conditions);
+        if (why != homing::Failure::NONE) {
+            raise(FaultKind::HOMING_FAILED, homing_.due, 0, static_cast<std::uint16_t>(why));
+        }
     }
-    if (homing_.homing.hasWork()) {
+    if (homing_.module().hasWork()) {
         drive_homing(in);
     }
     const HomingFailure failure = take_failure(homing_);
-    if (failure.joint >= 0) {
+    if (failure.why != homing::Failure::NONE) {
         raise(FaultKind::HOMING_FAILED, failure.joint, 0, static_cast<std::uint16_t>(failure.why));
+    }
+    for (std::uint32_t clamped = homing_.module().take_clamped(); clamped != 0; clamped &= clamped - 1) {
+        raise(FaultKind::HOMING_CLAMPED, std::countr_zero(clamped), 0);
     }
     if (limits_.homed.joints != homed_mask(homing_)) {
         publish_limits();
@@ -192,11 +230,16 @@ void Controller::drive_homing(const Inputs &in) noexcept {
     homing::JointInput inputs[MAX_JOINTS];
     homing::JointCommand commands[MAX_JOINTS];
     for (int j = 0; j < config_.num_joints; ++j) {
-        const JointInputs &pins = in.joint[static_cast<std::size_t>(j)];
-        inputs[j] = {pins.isHomeSwitchClosed, pins.isIndexEnabled, jogs_.at({true, j}).planner.isAtRest(),
-                     false, joints_[j].pos_fb};
+        const auto n = static_cast<std::size_t>(j);
+        inputs[j] = homing_input(in.joint[n], joints_[j], jogs_.at({true, j}), limits_.joint_jog[n]);
     }
-    homing_.homing.step(inputs, commands);
+    homing_.module().step(inputs, commands);
+    if (homing_.foreign != nullptr && !areFinite(homing_, commands)) {
+        abort(homing_, homing::event::ABORT);
+        stop(jogs_);
+        raise(FaultKind::HOMING_FAILED, -1, 0, static_cast<std::uint16_t>(homing::Failure::MODULE_NONSENSE));
+        return;
+    }
     for (int j = 0; j < config_.num_joints; ++j) {
         const homing::JointCommand &c = commands[j];
         Jog &jog = jogs_.at({true, j});
@@ -220,7 +263,7 @@ void Controller::step_jogs(const Inputs &in) noexcept {
     }
     if (in.isJogStoppedNow) {
         stop_at_once(jogs_);
-    } else if (in.isJogStopped && !homing_.homing.isActive()) {
+    } else if (in.isJogStopped && !homing_.module().isActive()) {
         stop(jogs_);
     }
     const bool areJoints = power_.mode == Mode::FREE;

@@ -35,6 +35,7 @@ struct ControllerConfig {
     int num_dio = 4;
     int num_aio = 4;
     double period_s = 1e-3;
+    homing::Module *homing = nullptr;  ///< takes the place of ours; outlives the controller
 };
 
 /// Owns the parts of the machine and hands each, every cycle, what it needs of the others. Some megabytes, so

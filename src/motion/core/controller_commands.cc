@@ -61,7 +61,7 @@ Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
             const Verdict verdict =
                 motion::take(joints_, c, {isAnythingMoving(), homing_.isUnderWay(), areAlone});
             if (areAlone) {  // the pose is that of all joints from here, also for the command that follows
-                const bool isKnown = kinematics_.kind() == kins::Kind::BOTH && homing_.homing.isAllHomed();
+                const bool isKnown = kinematics_.kind() == kins::Kind::BOTH && isAllHomed(homing_);
                 follow_joints(place_, kinematics_, commanded(joints_).data(), isKnown);
             }
             return verdict;
@@ -90,7 +90,8 @@ Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
             return motion::take(jogs_, c, situations.data());
         },
         [&](const Home &c) {
-            const HomeConditions conditions{power_.isReady(), power_.mode, in.isHomingInhibited, false};
+            const HomeConditions conditions{power_.isReady(), power_.mode, in.isHomingInhibited, false,
+                                            inactive_joints(joints_)};
             const Verdict verdict = motion::take(homing_, c, conditions);
             if (verdict.reason == Reason::NONE) {
                 stop(jogs_);
@@ -98,7 +99,7 @@ Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
             return verdict;
         },
         [&](const Unhome &c) {
-            const HomeConditions conditions{power_.isReady(), power_.mode, false, isAnythingMoving()};
+            const HomeConditions conditions{power_.isReady(), power_.mode, false, isAnythingMoving(), 0};
             const Verdict verdict = motion::take(homing_, c, conditions, settings_);
             if (verdict.reason == Reason::NONE) {
                 publish_limits();
@@ -126,7 +127,7 @@ Verdict Controller::abort_all(const Abort &command) noexcept {
     if (static_cast<std::int32_t>(command.new_epoch - epoch_) > 0) {
         epoch_ = command.new_epoch;
     }
-    abort(homing_, homing::Failure::ABORTED);
+    abort(homing_, homing::event::ABORT);
     executor_.drop();
     stop(jogs_);
     release(holds_);
@@ -174,7 +175,7 @@ void Controller::disable() noexcept {
 
 /// Off, joints have lost their homes that the kinematics needs: nobody knows where a pose would take them.
 void Controller::leave_lost_mode() noexcept {
-    const bool isKnown = kinematics_.kind() == kins::Kind::IDENTITY || homing_.homing.isAllHomed();
+    const bool isKnown = kinematics_.kind() == kins::Kind::IDENTITY || isAllHomed(homing_);
     if (!power_.isEnabled && !isKnown) {
         power_.mode = Mode::FREE;
     }
@@ -182,7 +183,7 @@ void Controller::leave_lost_mode() noexcept {
 
 Verdict Controller::set_mode(Mode mode) noexcept {
     const ModeConditions conditions{homing_.isUnderWay(), isAnythingMoving(),
-                                    kinematics_.kind() != kins::Kind::IDENTITY, homing_.homing.isAllHomed()};
+                                    kinematics_.kind() != kins::Kind::IDENTITY, isAllHomed(homing_)};
     const Reason reason = check_mode(power_, mode, conditions);
     if (reason != Reason::NONE || mode == power_.mode) {
         return {reason};
@@ -216,7 +217,7 @@ Verdict Controller::set_num_joints(const Inputs &in, int count) noexcept {
         return verdict_of(needed, Reason::TOO_FEW_JOINTS);
     }
     for (int j = count; j < config_.num_joints; ++j) {
-        homing_.homing.unhome(j);
+        homing_.module().unhome(j);
     }
     use_joints(count);
     read_feedback(joints_, in);
@@ -225,7 +226,7 @@ Verdict Controller::set_num_joints(const Inputs &in, int count) noexcept {
 }
 
 Verdict Controller::set_parameter(const SetParameter &command) noexcept {
-    if (homing_.homing.isActive()) {
+    if (homing_.module().isActive()) {
         return verdict_of(command.index, Reason::HOMING);
     }
     const Reason reason = settings_.set(command, config_.num_joints, config_.num_spindles);
@@ -275,7 +276,7 @@ void Controller::tell_standing() noexcept {
 
 /// Limits of axes and joints folded together, for jogs and the path planner.
 void Controller::publish_limits() noexcept {
-    limits_ = fold_limits(settings_, map_, {homed_mask(homing_), homing_.homing.isAllHomed()});
+    limits_ = fold_limits(settings_, map_, {homed_mask(homing_), isAllHomed(homing_)});
     PathLimits out;
     out.limits = limits_.path;
     out.low = limits_.low;

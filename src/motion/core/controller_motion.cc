@@ -16,7 +16,7 @@ void Controller::move_joints(const Inputs &in) noexcept {
                    config_.period_s);
         follow(joints_[j], jog.planner.position, config_.period_s);
     }
-    const bool isKnown = kinematics_.kind() == kins::Kind::BOTH && homing_.homing.isAllHomed();
+    const bool isKnown = kinematics_.kind() == kins::Kind::BOTH && isAllHomed(homing_);
     follow_joints(place_, kinematics_, commanded(joints_).data(), isKnown);
 }
 
@@ -202,7 +202,7 @@ void Controller::check_probe(const Inputs &in) noexcept {
     case ProbeEvent::FOUND: executor_.drop(); break;
     case ProbeEvent::TOUCHED:
         raise(FaultKind::PROBE_TRIPPED_IN_MOVE, -1, 0);
-        homing_.homing.abort(homing::Failure::ABORTED);
+        abort(homing_, homing::event::ABORT);
         executor_.drop();
         stop(jogs_);
         isCoordError_ = true;

@@ -24,6 +24,7 @@ struct JointInputs {
     bool isHomeSwitchClosed = false, isPosLimitClosed = false, isNegLimitClosed = false;
     bool isAmpFaulted = false;
     bool isIndexEnabled = false;
+    bool isUnlocked = false;  ///< of a locking indexer
     WheelInput wheel;
 };
 
@@ -59,7 +60,7 @@ struct JointOutputs {
     double motor_offset = 0;
     double free_pos_cmd = 0, free_velocity_limit = 0, ferror_limit = 0;
     bool isAmpEnabled = false;
-    bool isIndexEnabled = false;
+    bool isIndexEnabled = false, isUnlockWanted = false;
     bool isFreePlanning = false, isKeyboardJogging = false, isWheelJogging = false;
     int home_state = 0;
 };

@@ -140,8 +140,8 @@ inline constexpr auto SWITCHABLE = pin_table("motion",
     in<double>("switchkins-type", "", "type of switchable kinematics; changed at rest only", [](Inputs &i, double v) { i.kinematics_type = v; }));
 
 inline constexpr auto UNLOCK = pin_table("joint.#",
-    out<bool>("unlock", "", "of joints in unlock_joints_mask; locking indexers are not supported yet", Unused{}),
-    in<bool>("is-unlocked", "", "the same", Unused{}));
+    out<bool>("unlock", "", "homing moves the joint: the indexer is to unlock; of joints in unlock_joints_mask", [](const JointView &v) { return v.o.isUnlockWanted; }),
+    in<bool>("is-unlocked", "", "it has", [](JointInputs &i, bool v) { i.isUnlocked = v; }));
 
 inline constexpr auto AXIS = pin_table("axis.@",
     in<Count>("jog-counts", "", "of the wheel", [](WheelInput &w, Count v) { w.counts = v; }),

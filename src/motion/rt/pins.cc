@@ -59,6 +59,9 @@ void MotionPins::read(Inputs &in) noexcept {
     }
     for (int j = 0; j < counts_.joints; ++j) {
         joint_[j].read(in.joint[at(j)]);
+        if (isUnlockable(j)) {
+            unlock_[j].read(in.joint[at(j)]);
+        }
     }
     for (int i = 0; i < MAX_AXES; ++i) {
         axis_[i].read(in.axis_wheel[at(i)]);
@@ -80,6 +83,9 @@ void MotionPins::write(const Outputs &out) noexcept {
     }
     for (int j = 0; j < counts_.joints; ++j) {
         joint_[j].write(JointView{s.joint[at(j)], out.joint[at(j)]});
+        if (isUnlockable(j)) {
+            unlock_[j].write(JointView{s.joint[at(j)], out.joint[at(j)]});
+        }
     }
     for (int i = 0; i < MAX_AXES; ++i) {
         axis_[i].write(out.axis[at(i)]);

@@ -29,6 +29,10 @@ class MotionPins {
     void write(const Outputs &out) noexcept;
 
   private:
+    bool isUnlockable(int joint) const noexcept {
+        return (static_cast<unsigned>(counts_.unlock_mask) >> joint & 1U) != 0;
+    }
+
     PinCounts counts_;
     sdk::PinSet<pins::MOTION> motion_;
     sdk::PinSet<pins::SWITCHABLE> switchable_;

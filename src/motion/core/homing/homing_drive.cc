@@ -2,6 +2,7 @@
 #include "motion/core/homing/homing_drive.hh"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace mw::motion {
@@ -15,9 +16,14 @@ constexpr int ALL = -1, VOLATILE_ONES = -2;
 std::uint32_t homed_mask(const HomingDrive &drive) noexcept {
     std::uint32_t mask = 0;
     for (int j = 0; j < drive.num_joints; ++j) {
-        mask |= drive.homing.isHomed(j) ? 1U << j : 0U;
+        mask |= drive.module().isHomed(j) ? 1U << j : 0U;
     }
     return mask;
+}
+
+bool isAllHomed(const HomingDrive &drive) noexcept {
+    const std::uint32_t all = (1U << drive.num_to_home) - 1U;
+    return drive.num_to_home > 0 && (homed_mask(drive) & all) == all;
 }
 
 Verdict take(HomingDrive &drive, const Home &command, const HomeConditions &conditions) noexcept {
@@ -36,6 +42,9 @@ Verdict take(HomingDrive &drive, const Home &command, const HomeConditions &cond
     }
     if (conditions.isInhibited) {
         return verdict_of(j, Reason::HOMING_INHIBITED);
+    }
+    if (j >= 0 && (conditions.inactive >> j & 1U) != 0) {
+        return verdict_of(j, Reason::JOINT_INACTIVE);
     }
     drive.isDue = true;
     drive.due = j;
@@ -60,7 +69,7 @@ Verdict take(HomingDrive &drive, const Unhome &command, const HomeConditions &co
     for (int k = 0; k < drive.num_joints; ++k) {
         const bool isVolatile = j == VOLATILE_ONES && settings.isSet(Parameter::JOINT_VOLATILE_HOME, k);
         if (j == ALL || j == k || isVolatile) {
-            drive.homing.unhome(k);
+            drive.module().unhome(k);
         }
     }
     return verdict_of(j, Reason::NONE);
@@ -68,7 +77,7 @@ Verdict take(HomingDrive &drive, const Unhome &command, const HomeConditions &co
 
 void configure(HomingDrive &drive, int j, const Settings &settings) noexcept {
     const auto get = [&](Parameter p) { return settings.get(p, j); };
-    homing::Parameters &p = drive.homing.parameters(j);
+    homing::Parameters &p = drive.own.parameters(j);
     p.search_vel = get(Parameter::JOINT_HOME_SEARCH_VEL);
     p.latch_vel = get(Parameter::JOINT_HOME_LATCH_VEL);
     p.final_vel = get(Parameter::JOINT_HOME_FINAL_VEL);
@@ -83,42 +92,95 @@ void configure(HomingDrive &drive, int j, const Settings &settings) noexcept {
     const double range = get(Parameter::JOINT_MAX_LIMIT) - get(Parameter::JOINT_MIN_LIMIT);
     constexpr double LONGEST_SEARCH = 1e9;
     p.travel = std::isfinite(range) && range < LONGEST_SEARCH ? 2.0 * std::max(range, 0.0) : LONGEST_SEARCH;
+    p.max_skew = get(Parameter::JOINT_HOME_MAX_SKEW);
+    p.isLockingIndexer = settings.isSet(Parameter::JOINT_LOCKING_INDEXER, j);
+    p.isVolatile = settings.isSet(Parameter::JOINT_VOLATILE_HOME, j);
+    drive.module().configure(j, p);
 }
 
-void abort(HomingDrive &drive, homing::Failure why) noexcept {
-    drive.homing.abort(why);
+void set_axis(HomingDrive &drive, int j, int axis) noexcept {
+    drive.own.parameters(j).axis = axis;
+}
+
+void abort(HomingDrive &drive, homing::event::Event why, int joint) noexcept {
+    drive.module().abort(why, joint);
+    drive.isEndAsked = true;
     drive.isDue = false;
 }
 
 void switch_off(HomingDrive &drive, const Settings &settings) noexcept {
-    abort(drive, homing::Failure::ABORTED);
+    abort(drive, homing::event::OFF);
+    drive.module().lock();
     for (int j = 0; j < drive.num_joints; ++j) {
         if (settings.isSet(Parameter::JOINT_VOLATILE_HOME, j)) {
-            drive.homing.unhome(j);
+            drive.module().unhome(j);
         }
     }
 }
 
-void begin_due(HomingDrive &drive, bool isMoving) noexcept {
-    if (drive.isDue && !isMoving) {
-        drive.isDue = false;
-        drive.homing.start(drive.due);
+homing::Failure begin_due(HomingDrive &drive, const HomeConditions &conditions) noexcept {
+    if (!drive.isDue || conditions.isMoving) {
+        return homing::Failure::NONE;
     }
+    drive.isDue = false;
+    if (conditions.isInhibited) {
+        return homing::Failure::INHIBITED;
+    }
+    for (int j = 0; j < drive.num_joints; ++j) {
+        drive.own.parameters(j).isActive = (conditions.inactive >> j & 1U) == 0;
+    }
+    drive.isEndAsked = false;
+    drive.module().start(drive.due);
+    return homing::Failure::NONE;
 }
+
+namespace {
+
+/// A foreign module does not say why it ends: a joint that homed and is not homed now has failed.
+int joint_given_up(HomingDrive &drive) noexcept {
+    std::uint32_t homing = 0;
+    for (int j = 0; j < drive.num_joints; ++j) {
+        homing |= drive.module().isHoming(j) ? 1U << j : 0U;
+    }
+    const std::uint32_t over = drive.known & ~homing & ~homed_mask(drive);
+    drive.known = homing;
+    return over != 0 && !drive.isEndAsked ? std::countr_zero(over) : -1;
+}
+
+}  // namespace
 
 HomingFailure take_failure(HomingDrive &drive) noexcept {
     HomingFailure out;
-    out.joint = drive.homing.take_failure(out.why);
+    if (drive.foreign != nullptr) {
+        out.joint = joint_given_up(drive);
+        out.why = out.joint >= 0 ? homing::Failure::MODULE_FAILED : homing::Failure::NONE;
+        return out;
+    }
+    out.joint = drive.own.take_failure(out.why);
     return out.why == homing::Failure::ABORTED ? HomingFailure() : out;
+}
+
+bool areFinite(const HomingDrive &drive, const homing::JointCommand *commands) noexcept {
+    for (int j = 0; j < drive.num_joints; ++j) {
+        const homing::JointCommand &c = commands[j];
+        for (const double x :
+             {c.value, c.velocity, c.most_velocity, c.acceleration, c.jerk, c.shift, c.zero}) {
+            if (!std::isfinite(x)) {
+                return false;
+            }
+        }
+    }
+    return true;
 }
 
 void fill(const HomingDrive &drive, Outputs &out) noexcept {
     out.status.isHoming = drive.isUnderWay();
     for (int j = 0; j < drive.num_joints; ++j) {
         const auto n = static_cast<std::size_t>(j);
-        out.status.joint[n].isHoming = drive.homing.isHoming(j);
-        out.joint[n].isIndexEnabled = drive.homing.isIndexWanted(j);
-        out.joint[n].home_state = static_cast<int>(drive.homing.state(j));
+        out.status.joint[n].isHoming = drive.module().isHoming(j);
+        out.joint[n].isIndexEnabled = drive.module().isIndexWanted(j);
+        out.joint[n].isUnlockWanted = drive.module().isUnlockWanted(j);
+        out.joint[n].home_state = drive.module().step_number(j);
     }
 }
 

@@ -53,6 +53,7 @@ Reason start(Jogs &jogs, const JogTarget &target, const JogMove &move, const Jog
     p.max_jerk = s.most.jerk;
     jog.wanted_velocity = p.max_velocity;
     jog.wanted_acceleration = p.max_acceleration;
+    jog.most_velocity = UNBOUNDED;
     jog.source = move.source;
     jogs.leased &= ~bit_of(target);
     jogs.isTeleopStopped = jogs.isTeleopStopped && target.isJoint;
@@ -382,13 +383,18 @@ void home_joint(Jog &jog, const homing::JointCommand &command, const JogLimits &
         return;
     }
     traj::JogPlanner &p = jog.planner;
-    p.max_acceleration = most.acceleration;
-    p.max_jerk = 0;  // homing stops where a switch says
+    const auto of = [](double wanted, double highest) {
+        return wanted > 0 ? std::min(wanted, highest) : highest;
+    };
+    p.max_acceleration = of(command.acceleration, most.acceleration);
+    // What stops where a switch says brakes as hard as the joint can.
+    p.max_jerk = command.isSmooth && most.jerk > 0 ? of(command.jerk, most.jerk) : 0.0;
     if (command.move == homing::Move::STOP) {
         p.stop();
         return;
     }
-    jog.wanted_velocity = command.velocity > 0 ? std::min(command.velocity, most.velocity) : most.velocity;
+    jog.wanted_velocity = of(command.velocity, most.velocity);
+    jog.most_velocity = of(command.most_velocity, most.velocity);
     p.target = command.move == homing::Move::TO ? command.value : p.position + command.value;
 }
 
@@ -399,7 +405,7 @@ void limit_axis(Jog &jog, double max_velocity, double scale) noexcept {
 }
 
 void step_joint(Jog &jog, double max_velocity, double scale, double period_s) noexcept {
-    jog.planner.max_velocity = std::min(jog.wanted_velocity * scale, max_velocity);
+    jog.planner.max_velocity = std::min({jog.wanted_velocity * scale, max_velocity, jog.most_velocity});
     jog.planner.step(period_s);
 }
 

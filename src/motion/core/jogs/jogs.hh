@@ -28,6 +28,7 @@ struct JogLease {
 struct Jog {
     traj::JogPlanner planner;
     double wanted_velocity = 0, wanted_acceleration = 0;  ///< before the override and joints limit them
+    double most_velocity = UNBOUNDED;                     ///< that the override may make of it
     JogSource source = JogSource::NONE;
     std::int32_t wheel_counts = 0;
     JogLease lease;

@@ -57,7 +57,8 @@ void hold(Joint &s) noexcept {
 }
 
 JointFault check(Joint &s, const Settings &settings, int j, bool isAtIndex, bool isLimitIgnored) noexcept {
-    s.ferror = s.pos_cmd - s.pos_fb;
+    // At the index the two are of different zeros: the lag of the cycle before holds on.
+    s.ferror = isAtIndex ? s.ferror : s.pos_cmd - s.pos_fb;
     const double vmax = settings.get(Parameter::JOINT_MAX_VELOCITY, j);
     const double scaled =
         vmax > 0 ? settings.get(Parameter::JOINT_FERROR, j) * std::abs(s.vel_cmd) / vmax : 0.0;
@@ -160,6 +161,14 @@ PerJoint commanded(const Joints &joints) noexcept {
         out[at(j)] = joints[j].pos_cmd;
     }
     return out;
+}
+
+std::uint32_t inactive_joints(const Joints &joints) noexcept {
+    std::uint32_t mask = 0;
+    for (int j = 0; j < joints.count; ++j) {
+        mask |= joints[j].isActive ? 0U : 1U << j;
+    }
+    return mask;
 }
 
 JointFault find_fault(Joints &joints, int &joint, const Settings &settings, const JointCheck &how) noexcept {

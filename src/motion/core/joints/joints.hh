@@ -61,6 +61,8 @@ void switch_off(Joints &joints) noexcept;
 /// Gives the measured positions.
 PerJoint read_feedback(Joints &joints, const Inputs &in) noexcept;
 PerJoint commanded(const Joints &joints) noexcept;
+/// Bit per joint that is left out.
+std::uint32_t inactive_joints(const Joints &joints) noexcept;
 
 enum class JointFault : std::uint8_t { NONE, AMP_FAULT, FOLLOWING_ERROR, HARD_LIMIT };
 struct JointCheck {

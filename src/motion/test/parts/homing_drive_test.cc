@@ -13,7 +13,8 @@ struct HomingDrivePart : testing::Test {
 
     HomingDrivePart() {
         drive.num_joints = 2;
-        drive.homing.set_num_joints(2);
+        drive.num_to_home = 2;
+        drive.own.set_num_joints(2);
         conditions.isReady = true;
         for (std::int16_t j = 0; j < 2; ++j) {
             settings.set({static_cast<std::uint16_t>(Parameter::JOINT_HOME_SEQUENCE), j, 0}, 2, 1);
@@ -24,7 +25,7 @@ struct HomingDrivePart : testing::Test {
         for (int n = 0; n < 20; ++n) {
             homing::JointInput inputs[MAX_JOINTS];
             homing::JointCommand commands[MAX_JOINTS];
-            drive.homing.step(inputs, commands);
+            drive.own.step(inputs, commands);
         }
     }
 };
@@ -32,11 +33,13 @@ struct HomingDrivePart : testing::Test {
 TEST_F(HomingDrivePart, BeginsWhenNothingMovesAnyMore_C10) {
     ASSERT_EQ(take(drive, Home{-1}, conditions).reason, Reason::NONE);
     EXPECT_TRUE(drive.isUnderWay());
-    begin_due(drive, true);
-    EXPECT_FALSE(drive.homing.isActive());
+    conditions.isMoving = true;
+    begin_due(drive, conditions);
+    EXPECT_FALSE(drive.own.isActive());
+    conditions.isMoving = false;
     EXPECT_EQ(take(drive, Home{0}, conditions).reason, Reason::HOMING);
-    begin_due(drive, false);
-    EXPECT_TRUE(drive.homing.isActive());
+    begin_due(drive, conditions);
+    EXPECT_TRUE(drive.own.isActive());
     run();
     EXPECT_EQ(homed_mask(drive), 3U);
     EXPECT_FALSE(drive.isUnderWay());
@@ -55,7 +58,7 @@ TEST_F(HomingDrivePart, EachReasonAgainstHomingIsTold) {
 TEST_F(HomingDrivePart, VolatileHomesAreLostWithPower) {
     settings.set({static_cast<std::uint16_t>(Parameter::JOINT_VOLATILE_HOME), 1, 1}, 2, 1);
     take(drive, Home{-1}, conditions);
-    begin_due(drive, false);
+    begin_due(drive, conditions);
     run();
     ASSERT_EQ(homed_mask(drive), 3U);
     switch_off(drive, settings);
@@ -77,13 +80,13 @@ TEST_F(HomingDrivePart, WhatFailsIsToldOnceAndWhatIsAbortedIsNot) {
     settings.set({static_cast<std::uint16_t>(Parameter::JOINT_HOME_SEARCH_VEL), 0, 5}, 2, 1);
     configure(drive, 0, settings);  // searches, and has no speed to latch with
     take(drive, Home{0}, conditions);
-    begin_due(drive, false);
+    begin_due(drive, conditions);
     run();
     EXPECT_EQ(take_failure(drive).joint, 0);
     EXPECT_EQ(take_failure(drive).joint, -1);
     take(drive, Home{1}, conditions);
-    begin_due(drive, false);
-    abort(drive, homing::Failure::ABORTED);
+    begin_due(drive, conditions);
+    abort(drive, homing::event::ABORT);
     EXPECT_EQ(take_failure(drive).joint, -1);
     EXPECT_FALSE(drive.isUnderWay());
 }

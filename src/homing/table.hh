@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Homing of a joint as one table: what each event leads to in each state. docs/motion/homing.md shows it.
+#pragma once
+
+#include <cstdint>
+
+namespace mw::homing {
+
+enum class State : std::uint8_t {
+    IDLE,
+    UNLOCK,  ///< a locking indexer is asked to unlock
+    START,
+    INITIAL_BACKOFF,  ///< off a switch that was closed at the start
+    INITIAL_BACKOFF_STOP,
+    SEARCH,  ///< towards the switch
+    SEARCH_STOP,
+    LATCH_BACKOFF,  ///< off the switch, to come again slowly
+    LATCH_BACKOFF_STOP,
+    LATCH,    ///< slowly to the edge of the switch
+    INDEX,    ///< slowly to the index pulse
+    LATCHED,  ///< has its zero and moves on with its team until all of it have
+    LATCHED_STOP,
+    WAIT_FOR_GROUP,  ///< synchronised joints wait for one another before the final move
+    FINAL,
+    LOCK,  ///< a locking indexer is asked to lock
+    COUNT,
+};
+/// In the table: every state but IDLE.
+inline constexpr State UNDER_WAY = State::COUNT;
+
+enum class Failure : std::uint8_t {
+    NONE,
+    SEARCH_WITHOUT_LATCH,  ///< HOME_SEARCH_VEL is set, HOME_LATCH_VEL is 0
+    LATCH_WITHOUT_INDEX,   ///< HOME_LATCH_VEL is set without a search velocity and without index
+    INDEX_WITHOUT_LATCH,   ///< HOME_USE_INDEX is set, HOME_LATCH_VEL is 0
+    SHARED_SWITCH_CLOSED,
+    SWITCH_NOT_FOUND,
+    SWITCH_STUCK,         ///< backing off did not open it
+    SWITCH_LOST,          ///< found, but open again after stopping
+    SWITCH_CLOSED_AGAIN,  ///< left, but closed again after stopping
+    INDEX_NOT_FOUND,
+    LIMIT_HIT,
+    ABORTED,
+    TEAM_DIFFERS,  ///< joints that move one thing home in different ways
+    TEAM_SKEWED,   ///< they would get farther apart than they may
+    NOT_UNLOCKED,
+    NOT_LOCKED,
+    INHIBITED,        ///< between the command and its begin
+    MODULE_FAILED,    ///< a module of a user has given up
+    MODULE_NONSENSE,  ///< it has asked for something that is no finite number
+};
+
+/// What is so in a cycle, as bits. A joint without a team is a team of its own.
+namespace event {
+enum Event : std::uint32_t {
+    BEGIN = 1U << 0,
+    SWITCH_CLOSED = 1U << 1,
+    SWITCH_OPEN = 1U << 2,
+    TEAM_CLOSED = 1U << 3,  ///< a switch of the team is closed
+    TEAM_OPEN = 1U << 4,    ///< all of its switches are open
+    INDEX = 1U << 5,
+    AT_REST = 1U << 6,
+    TEAM_AT_REST = 1U << 7,  ///< all of it stand, in one state
+    TEAM_LATCHED = 1U << 8,
+    GROUP_READY = 1U << 9,     ///< all that end together have their zero
+    TEAM_UNLOCKED = 1U << 10,  ///< all of its indexers are
+    LOCKED = 1U << 11,
+    OVERDUE = 1U << 12,  ///< waited for too long
+    TEAM_DIFFERS = 1U << 13,
+    TEAM_SKEWED = 1U << 14,
+    LIMIT = 1U << 15,  ///< a limit switch that counts has closed
+    ABORT = 1U << 16,
+    OFF = 1U << 17,
+    MEMBER_FAILED = 1U << 18,  ///< another joint that is being homed has failed
+};
+}
+
+/// What the settings of a joint say, as bits.
+namespace setting {
+enum Setting : std::uint32_t {
+    SEARCHING = 1U << 0,  ///< HOME_SEARCH_VEL is not 0
+    LATCHING = 1U << 1,   ///< HOME_LATCH_VEL is not 0
+    INDEX = 1U << 2,
+    SAME_WAY = 1U << 3,  ///< both velocities have one sign: the closing edge counts, else the opening one
+    SHARED = 1U << 4,
+    ABSOLUTE = 1U << 5,
+    STAYING = 1U << 6,  ///< HOME_ABSOLUTE_ENCODER = 2
+    LOCKING = 1U << 7,
+    TEAM = 1U << 8,  ///< moves one thing with other joints
+};
+}
+
+enum class Action : std::uint8_t {
+    NOTHING,
+    STOP,
+    UNLOCK,
+    SET_PLACE,       ///< where it stands is HOME_OFFSET
+    SET_PLACE_STOP,  ///< and it stops
+    SEARCH,
+    BACK_OFF,
+    LATCH,
+    ASK_INDEX,
+    LATCH_ASK_INDEX,
+    TAKE_INDEX,  ///< the place of the pulse is HOME_OFFSET
+    TAKE_INDEX_STOP,
+    GO_HOME,
+};
+
+struct Transition {
+    State state;
+    std::uint32_t events;        ///< all of them are so; 0: at once
+    std::uint32_t when, unless;  ///< all of these settings, none of those
+    Action action = Action::NOTHING;
+    State next = State::IDLE;
+    Failure failure = Failure::NONE;  ///< next is IDLE, and every joint that is being homed stops
+    bool isHomed = false;             ///< the joint is, from here
+};
+
+/// The first row that fits is taken, one a cycle; where none fits nothing changes.
+inline constexpr Transition TRANSITIONS[] = {
+    {UNDER_WAY, event::LIMIT, 0, 0, Action::STOP, State::IDLE, Failure::LIMIT_HIT},
+    {UNDER_WAY, event::ABORT, 0, 0, Action::STOP, State::IDLE, Failure::ABORTED},
+    {UNDER_WAY, event::OFF, 0, 0, Action::STOP, State::IDLE, Failure::ABORTED},
+    {UNDER_WAY, event::MEMBER_FAILED, 0, 0, Action::STOP, State::IDLE},
+    {UNDER_WAY, event::TEAM_SKEWED, 0, 0, Action::STOP, State::IDLE, Failure::TEAM_SKEWED},
+
+    {State::IDLE, event::BEGIN, setting::LOCKING, 0, Action::UNLOCK, State::UNLOCK},
+    {State::IDLE, event::BEGIN, 0, 0, Action::NOTHING, State::START},
+
+    {State::UNLOCK, event::TEAM_UNLOCKED, 0, 0, Action::NOTHING, State::START},
+    {State::UNLOCK, event::OVERDUE, 0, 0, Action::STOP, State::IDLE, Failure::NOT_UNLOCKED},
+
+    {State::START, event::TEAM_DIFFERS, 0, 0, Action::STOP, State::IDLE, Failure::TEAM_DIFFERS},
+    {State::START, 0, setting::STAYING | setting::LOCKING, 0, Action::SET_PLACE, State::LOCK},
+    {State::START, 0, setting::STAYING, 0, Action::SET_PLACE, State::IDLE, Failure::NONE, true},
+    {State::START, 0, setting::ABSOLUTE, 0, Action::SET_PLACE, State::WAIT_FOR_GROUP},
+    {State::START, 0, 0, setting::SEARCHING | setting::LATCHING | setting::INDEX, Action::SET_PLACE,
+     State::WAIT_FOR_GROUP},
+    {State::START, 0, setting::SEARCHING, setting::LATCHING, Action::STOP, State::IDLE,
+     Failure::SEARCH_WITHOUT_LATCH},
+    {State::START, 0, 0, setting::LATCHING, Action::STOP, State::IDLE, Failure::INDEX_WITHOUT_LATCH},
+    {State::START, 0, 0, setting::SEARCHING | setting::INDEX, Action::STOP, State::IDLE,
+     Failure::LATCH_WITHOUT_INDEX},
+    {State::START, 0, 0, setting::SEARCHING, Action::LATCH_ASK_INDEX, State::INDEX},
+    {State::START, event::SWITCH_CLOSED, setting::SHARED, 0, Action::STOP, State::IDLE,
+     Failure::SHARED_SWITCH_CLOSED},
+    {State::START, event::TEAM_CLOSED, 0, 0, Action::BACK_OFF, State::INITIAL_BACKOFF},
+    {State::START, 0, 0, 0, Action::SEARCH, State::SEARCH},
+
+    {State::INITIAL_BACKOFF, event::TEAM_OPEN, 0, 0, Action::STOP, State::INITIAL_BACKOFF_STOP},
+    {State::INITIAL_BACKOFF, event::AT_REST | event::SWITCH_CLOSED, 0, 0, Action::STOP, State::IDLE,
+     Failure::SWITCH_STUCK},
+    {State::INITIAL_BACKOFF_STOP, event::TEAM_AT_REST, 0, 0, Action::SEARCH, State::SEARCH},
+
+    {State::SEARCH, event::SWITCH_CLOSED, 0, 0, Action::STOP, State::SEARCH_STOP},
+    {State::SEARCH, event::AT_REST, 0, 0, Action::STOP, State::IDLE, Failure::SWITCH_NOT_FOUND},
+    {State::SEARCH_STOP, event::TEAM_AT_REST | event::SWITCH_OPEN, 0, 0, Action::STOP, State::IDLE,
+     Failure::SWITCH_LOST},
+    {State::SEARCH_STOP, event::TEAM_AT_REST, setting::SAME_WAY, 0, Action::BACK_OFF, State::LATCH_BACKOFF},
+    {State::SEARCH_STOP, event::TEAM_AT_REST, 0, 0, Action::LATCH, State::LATCH},
+
+    {State::LATCH_BACKOFF, event::TEAM_OPEN, 0, 0, Action::STOP, State::LATCH_BACKOFF_STOP},
+    {State::LATCH_BACKOFF, event::AT_REST | event::SWITCH_CLOSED, 0, 0, Action::STOP, State::IDLE,
+     Failure::SWITCH_STUCK},
+    {State::LATCH_BACKOFF_STOP, event::TEAM_AT_REST | event::SWITCH_CLOSED, 0, 0, Action::STOP, State::IDLE,
+     Failure::SWITCH_CLOSED_AGAIN},
+    {State::LATCH_BACKOFF_STOP, event::TEAM_AT_REST, 0, 0, Action::LATCH, State::LATCH},
+
+    {State::LATCH, event::SWITCH_CLOSED, setting::SAME_WAY | setting::INDEX, 0, Action::ASK_INDEX,
+     State::INDEX},
+    {State::LATCH, event::SWITCH_CLOSED, setting::SAME_WAY | setting::TEAM, 0, Action::SET_PLACE,
+     State::LATCHED},
+    {State::LATCH, event::SWITCH_CLOSED, setting::SAME_WAY, 0, Action::SET_PLACE_STOP, State::LATCHED_STOP},
+    {State::LATCH, event::SWITCH_OPEN, setting::INDEX, setting::SAME_WAY, Action::ASK_INDEX, State::INDEX},
+    {State::LATCH, event::SWITCH_OPEN, setting::TEAM, setting::SAME_WAY, Action::SET_PLACE, State::LATCHED},
+    {State::LATCH, event::SWITCH_OPEN, 0, setting::SAME_WAY, Action::SET_PLACE_STOP, State::LATCHED_STOP},
+    {State::LATCH, event::AT_REST, setting::SAME_WAY, 0, Action::STOP, State::IDLE,
+     Failure::SWITCH_NOT_FOUND},
+    {State::LATCH, event::AT_REST, 0, 0, Action::STOP, State::IDLE, Failure::SWITCH_STUCK},
+
+    {State::INDEX, event::INDEX, setting::TEAM, 0, Action::TAKE_INDEX, State::LATCHED},
+    {State::INDEX, event::INDEX, 0, 0, Action::TAKE_INDEX_STOP, State::LATCHED_STOP},
+    {State::INDEX, event::AT_REST, 0, 0, Action::STOP, State::IDLE, Failure::INDEX_NOT_FOUND},
+    {State::LATCHED, event::TEAM_LATCHED, 0, 0, Action::STOP, State::LATCHED_STOP},
+    {State::LATCHED_STOP, event::AT_REST, 0, 0, Action::NOTHING, State::WAIT_FOR_GROUP},
+
+    {State::WAIT_FOR_GROUP, event::GROUP_READY, 0, 0, Action::GO_HOME, State::FINAL},
+    {State::FINAL, event::TEAM_AT_REST, setting::LOCKING, 0, Action::NOTHING, State::LOCK},
+    {State::FINAL, event::TEAM_AT_REST, 0, 0, Action::NOTHING, State::IDLE, Failure::NONE, true},
+    {State::LOCK, event::LOCKED, 0, 0, Action::NOTHING, State::IDLE, Failure::NONE, true},
+    {State::LOCK, event::OVERDUE, 0, 0, Action::STOP, State::IDLE, Failure::NOT_LOCKED},
+};
+
+/// What to tell the operator about a failure; the text names no joint. [not realtime]
+const char *failure_text(Failure failure) noexcept;
+
+}  // namespace mw::homing
