@@ -57,14 +57,15 @@ void hold(Joint &s) noexcept {
 }
 
 JointFault check(Joint &s, const Settings &settings, int j, bool isAtIndex, bool isLimitIgnored) noexcept {
-    s.ferror = s.pos_cmd - s.pos_fb;
     const double vmax = settings.get(Parameter::JOINT_MAX_VELOCITY, j);
     const double scaled =
         vmax > 0 ? settings.get(Parameter::JOINT_FERROR, j) * std::abs(s.vel_cmd) / vmax : 0.0;
     s.ferror_limit = std::max(scaled, settings.get(Parameter::JOINT_MIN_FERROR, j));
     if (isAtIndex) {
-        return JointFault::NONE;
+        // Its encoder counts from another zero already: the lag is that of the cycle before.
+        return s.isFaulted ? JointFault::AMP_FAULT : JointFault::NONE;
     }
+    s.ferror = s.pos_cmd - s.pos_fb;
     s.ferror_highmark = std::max(s.ferror_highmark, std::abs(s.ferror));
     if (s.isFaulted) {
         return JointFault::AMP_FAULT;
