@@ -129,6 +129,7 @@ enum class Reason : std::uint16_t {
     TOO_FEW_JOINTS,  ///< index: those that the kinematics moves
     SINGULAR,        ///< through a pose of which the kinematics has many answers
     POSE_UNKNOWN,    ///< the kinematics has no pose that leads to where the joints stand
+    NO_FEEDBACK,     ///< a joint's feedback is not a number
     COUNT,
 };
 
@@ -164,6 +165,7 @@ enum class FaultKind : std::uint16_t {
     THREAD_TOO_FAST,  ///< index: spindle; value: needed speed over the possible one
     JOG_LEASE_ENDED,  ///< a jog was not renewed in time; detail: 1 a joint, 0 an axis; value: the lease [s]
     KINEMATICS_JUMP,  ///< index: the joint that would have stepped; value: by how much
+    FEEDBACK_LOST,    ///< index: the joint whose feedback is not a number
     COUNT,
 };
 /// Of a jog: no path has failed.
