@@ -129,6 +129,7 @@ enum class Reason : std::uint16_t {
     TOO_FEW_JOINTS,  ///< index: those that the kinematics moves
     SINGULAR,        ///< through a pose of which the kinematics has many answers
     POSE_UNKNOWN,    ///< the kinematics has no pose that leads to where the joints stand
+    NO_FEEDBACK,     ///< a joint's feedback is not a number
     COUNT,
 };
 
@@ -168,6 +169,7 @@ enum class FaultKind : std::uint16_t {
     KINEMATICS_SWITCHED_ON_PATH,   ///< the same; the path was stopped
     KINEMATICS_TYPE_WITHOUT_POSE,  ///< the same; it has no pose for where the joints stand
     HOMING_CLAMPED,                ///< a homing module has asked joint `index` for more than its limits allow
+    FEEDBACK_LOST,                 ///< index: the joint whose feedback is not a number
     COUNT,
 };
 /// Only told: no path has failed.

@@ -67,6 +67,9 @@ std::string reason_text(const Answer &answer) {
     case Reason::POSE_UNKNOWN:
         return "the kinematics has no pose for where the joints stand: jog the joints, or see what its "
                "module starts looking from";
+    case Reason::NO_FEEDBACK:
+        return fmt::format("the feedback of {} is not a number: see what its pin motor-pos-fb is linked to",
+                           joint_name(i));
     case Reason::AMP_FAULT: return fmt::format("the amplifier of {} reports a fault", joint_name(i));
     case Reason::EXTERNAL_ENABLE_OFF:
         return "the external enable is off: pin motion.enable or the e-stop chain is FALSE";
@@ -105,6 +108,7 @@ std::string what_failed(const Fault &fault) {
     const int i = fault.index;
     switch (fault.kind) {
     case FaultKind::FOLLOWING_ERROR: return fmt::format("joint {} following error", i);
+    case FaultKind::FEEDBACK_LOST: return fmt::format("joint {} feedback is not a number", i);
     case FaultKind::AMP_FAULT: return fmt::format("joint {} amplifier fault", i);
     case FaultKind::HARD_LIMIT: return fmt::format("joint {} on limit switch error", i);
     case FaultKind::SOFT_LIMIT: return fmt::format("{} exceeded its soft limit", axis_name(i));

@@ -179,6 +179,7 @@ void Controller::check_joints(const Inputs &in) noexcept {
     for (int j = 0; power_.isEnabled; ++j) {
         switch (find_fault(joints_, j, settings_, how)) {
         case JointFault::NONE: return;
+        case JointFault::FEEDBACK_LOST: stop_category_0(FaultKind::FEEDBACK_LOST, j, 0); break;
         case JointFault::AMP_FAULT: stop_category_0(FaultKind::AMP_FAULT, j, 0); break;
         case JointFault::FOLLOWING_ERROR:
             stop_category_0(FaultKind::FOLLOWING_ERROR, j, joints_[j].ferror);

@@ -40,7 +40,7 @@ void Controller::move_axes(const Inputs &in) noexcept {
         if (event == nullptr) {
             return;
         }
-        fire(outputs_, *event);
+        fire(outputs_, *event, executor_.snapshot().isDropping);
         executor_.drop_event();
     }
 }

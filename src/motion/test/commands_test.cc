@@ -38,6 +38,7 @@ const char *word_for(Reason reason) {
     case Reason::JOINT_BEYOND_LIMIT: return "joint limit";
     case Reason::AMP_FAULT: return "amplifier fault";
     case Reason::EXTERNAL_ENABLE_OFF: return "enable input off";
+    case Reason::NO_FEEDBACK: return "a feedback that is no number";
     case Reason::JOINT_INACTIVE: return "inactive";
     case Reason::QUEUE_FULL: return "queue full";
     case Reason::PROBE_ALREADY_TRIPPED: return "probe tripped";

@@ -75,6 +75,37 @@ TEST(Controller, EnableInputFalseDropsTheAmplifiersInThatCycle) {
     EXPECT_EQ(rig.refusal(enable), Reason::EXTERNAL_ENABLE_OFF);
 }
 
+TEST(Controller, AFeedbackThatIsNoNumberDropsTheAmplifiersInThatCycle_C13) {
+    for (const double feedback : {std::nan(""), HUGE_VAL}) {
+        MotionRig rig;
+        rig.ready();
+        rig.line(at(100));
+        rig.send_path(Flush{});
+        rig.step(300);
+        ASSERT_FALSE(rig.status().isInPosition);
+        rig.before_step = [&](MotionRig &r) { r.in.joint[1].motor_pos_fb = feedback; };
+        rig.step();
+        EXPECT_FALSE(rig.out->joint[0].isAmpEnabled);
+        EXPECT_FALSE(rig.out->joint[1].isAmpEnabled);
+        ASSERT_FALSE(rig.faults.empty());
+        EXPECT_EQ(rig.faults.back().kind, FaultKind::FEEDBACK_LOST);
+        EXPECT_EQ(rig.faults.back().index, 1);
+        const CommandId enable = rig.send(Enable{});
+        rig.step(100);
+        EXPECT_EQ(rig.refusal(enable), Reason::NO_FEEDBACK);
+        EXPECT_FALSE(rig.status().isEnabled);
+        EXPECT_TRUE(std::isfinite(rig.out->joint[1].motor_pos_cmd)) << "the last that was a number";
+        rig.before_step = [](MotionRig &) {};
+        rig.step(2);
+        rig.send(Enable{});
+        const CommandId line = rig.line(at(10));
+        const CommandId flush = rig.send_path(Flush{});
+        EXPECT_TRUE(rig.run_until([&] { return rig.isDone(flush); })) << "and nothing of it stays";
+        EXPECT_TRUE(rig.isDone(line));
+        EXPECT_NEAR(rig.status().joint[0].pos_fb, 10, 1e-9);
+    }
+}
+
 TEST(Controller, AbortStopsOnThePathWithinLimitsAndMakesOldCommandsStale_C5) {
     MotionRig rig;
     rig.ready();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "motion/api/texts.hh"
+#include "sim/encoder.hh"
 #include "testing/limit_checker.hh"
 #include "testing/motion_rig.hh"
 
@@ -40,6 +41,49 @@ TEST(Machine, HomesByASwitchAndKeepsTheLimits_C10) {
     EXPECT_EQ(rig.status().joint[0].pos_cmd, 1.0);
     // The opening edge at motor -12 is joint position HOME_OFFSET.
     EXPECT_NEAR(rig.out->joint[0].motor_offset, -12.0 - -5.0, 5e-3);
+    EXPECT_TRUE(rig.faults.empty());
+}
+
+/// The drive of joint 0 brings its shaft to where it is told by the next cycle; its encoder is set to zero at
+/// marks every 5 units while motion asks for that.
+struct IndexedDrive {
+    sim::Encoder encoder{{.counts_per_unit = 1e6, .index_spacing = 5, .index_at = 1}, 2};
+    double shaft = 2;
+    int resets = 0;
+
+    void run(MotionRig &r) {
+        shaft = encoder.zero() + r.out->joint[0].motor_pos_cmd;
+        const bool hasIndex = encoder.run(shaft, r.out->joint[0].isIndexEnabled);
+        resets += hasIndex ? 1 : 0;
+        r.in.joint[0].isIndexEnabled = r.out->joint[0].isIndexEnabled && !hasIndex;
+        r.in.joint[0].motor_pos_fb = encoder.reading();
+    }
+};
+
+TEST(Machine, AnIndexThatSetsTheEncoderToZeroMovesNoMotor_C10) {
+    MotionRig rig;
+    rig.set(Parameter::JOINT_HOME_LATCH_VEL, 0, 2);
+    rig.set(Parameter::JOINT_HOME_USE_INDEX, 0, 1);
+    rig.set(Parameter::JOINT_HOME_OFFSET, 0, 30);
+    rig.set(Parameter::JOINT_HOME, 0, 31);
+    IndexedDrive drive;
+    rig.before_step = [&](MotionRig &r) { drive.run(r); };
+    rig.step(10);
+    rig.send(Enable{});
+    rig.send(Home{0});
+    rig.step(2);
+    testing::LimitChecker checker(std::vector<testing::AxisLimit>(1, {100, 1000}), MotionRig::T);
+    ASSERT_TRUE(rig.run_until(
+        [&] {
+            const double told = drive.encoder.zero() + rig.out->joint[0].motor_pos_cmd;
+            checker.sample(&told);
+            return rig.status().joint[0].isHomed;
+        },
+        30));
+    EXPECT_EQ(drive.resets, 1);
+    EXPECT_TRUE(checker.isWithin()) << checker.report();
+    EXPECT_EQ(drive.encoder.zero(), 6) << "the first mark on the way";
+    EXPECT_NEAR(drive.shaft, 6 + 1, 1e-3) << "at HOME, as far beyond the mark as it is beyond HOME_OFFSET";
     EXPECT_TRUE(rig.faults.empty());
 }
 

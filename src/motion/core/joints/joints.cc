@@ -57,15 +57,18 @@ void hold(Joint &s) noexcept {
 }
 
 JointFault check(Joint &s, const Settings &settings, int j, bool isAtIndex, bool isLimitIgnored) noexcept {
-    // At the index the two are of different zeros: the lag of the cycle before holds on.
-    s.ferror = isAtIndex ? s.ferror : s.pos_cmd - s.pos_fb;
+    if (s.isFeedbackLost) {
+        return JointFault::FEEDBACK_LOST;
+    }
     const double vmax = settings.get(Parameter::JOINT_MAX_VELOCITY, j);
     const double scaled =
         vmax > 0 ? settings.get(Parameter::JOINT_FERROR, j) * std::abs(s.vel_cmd) / vmax : 0.0;
     s.ferror_limit = std::max(scaled, settings.get(Parameter::JOINT_MIN_FERROR, j));
     if (isAtIndex) {
-        return JointFault::NONE;
+        // Its encoder counts from another zero already: the lag is that of the cycle before.
+        return s.isFaulted ? JointFault::AMP_FAULT : JointFault::NONE;
     }
+    s.ferror = s.pos_cmd - s.pos_fb;
     s.ferror_highmark = std::max(s.ferror_highmark, std::abs(s.ferror));
     if (s.isFaulted) {
         return JointFault::AMP_FAULT;
@@ -116,6 +119,9 @@ Verdict check_start(const Joints &joints, const Inputs &in, bool areLimitsOverri
         if (joints[j].isActive && pins.isAmpFaulted) {
             return verdict_of(j, Reason::AMP_FAULT);
         }
+        if (joints[j].isActive && !std::isfinite(pins.motor_pos_fb)) {
+            return verdict_of(j, Reason::NO_FEEDBACK);
+        }
         const bool isOnLimit = (pins.isPosLimitClosed || pins.isNegLimitClosed) && !areLimitsOverridden;
         if (joints[j].isActive && isOnLimit) {
             return verdict_of(j, Reason::ON_HARD_LIMIT);
@@ -145,7 +151,8 @@ PerJoint read_feedback(Joints &joints, const Inputs &in) noexcept {
     for (int j = 0; j < joints.count; ++j) {
         Joint &s = joints[j];
         const JointInputs &pins = in.joint[at(j)];
-        s.motor_pos_fb = pins.motor_pos_fb;
+        s.isFeedbackLost = !std::isfinite(pins.motor_pos_fb);
+        s.motor_pos_fb = s.isFeedbackLost ? s.motor_pos_fb : pins.motor_pos_fb;
         s.pos_fb = s.motor_pos_fb - s.backlash.filter.position - s.motor_offset;
         s.isOnPosHardLimit = pins.isPosLimitClosed;
         s.isOnNegHardLimit = pins.isNegLimitClosed;

@@ -26,6 +26,7 @@ struct Joint {
     bool isActive = true;
     bool isAmpWanted = false;  ///< amplifier enable while the machine is on
     bool isFaulted = false, isFerrorTripped = false;
+    bool isFeedbackLost = false;  ///< the pin shows no number; the feedback is the last that was one
     bool isOnPosHardLimit = false, isOnNegHardLimit = false;
     double pos_cmd = 0, pos_fb = 0, vel_cmd = 0, acc_cmd = 0;
     double coarse_pos = 0;
@@ -64,7 +65,7 @@ PerJoint commanded(const Joints &joints) noexcept;
 /// Bit per joint that is left out.
 std::uint32_t inactive_joints(const Joints &joints) noexcept;
 
-enum class JointFault : std::uint8_t { NONE, AMP_FAULT, FOLLOWING_ERROR, HARD_LIMIT };
+enum class JointFault : std::uint8_t { NONE, FEEDBACK_LOST, AMP_FAULT, FOLLOWING_ERROR, HARD_LIMIT };
 struct JointCheck {
     /// Bit per joint whose encoder is reset now: command and feedback are of two different zeros.
     std::uint32_t at_index = 0;

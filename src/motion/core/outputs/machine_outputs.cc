@@ -33,10 +33,12 @@ Verdict take(MachineOutputs &outputs, const SetAnalogOutput &command) noexcept {
     return {};
 }
 
-void fire(MachineOutputs &outputs, const traj::PathEvent &event) noexcept {
+void fire(MachineOutputs &outputs, const traj::PathEvent &event, bool isStopping) noexcept {
     if (event.isAnalog) {
-        outputs.analog[static_cast<std::size_t>(event.index)] = event.value;
-    } else {
+        double &output = outputs.analog[static_cast<std::size_t>(event.index)];
+        const bool isLess = std::abs(event.value) <= std::abs(output) && event.value * output >= 0;
+        output = isLess || !isStopping ? event.value : output;
+    } else if (event.value == 0 || !isStopping) {
         set_digital(outputs, event.index, event.value != 0);
     }
 }

@@ -22,8 +22,9 @@ struct MachineOutputs {
 
 Verdict take(MachineOutputs &outputs, const SetDigitalOutput &command) noexcept;
 Verdict take(MachineOutputs &outputs, const SetAnalogOutput &command) noexcept;
-/// A change whose place on the path has been passed; the path planner has checked its index.
-void fire(MachineOutputs &outputs, const traj::PathEvent &event) noexcept;
+/// A change whose place on the path has been passed; the path planner has checked its index. While a stop
+/// brakes along the path nothing is switched on and no value grows: only what ends something is done.
+void fire(MachineOutputs &outputs, const traj::PathEvent &event, bool isStopping) noexcept;
 /// What is set, and what the inputs say beside it.
 void fill(const MachineOutputs &outputs, const Inputs &in, Status &status) noexcept;
 

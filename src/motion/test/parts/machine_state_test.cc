@@ -67,15 +67,43 @@ TEST(OutputsPart, OutputsAreSetAtOnceAndByThePath) {
     traj::PathEvent event;
     event.index = 3;
     event.value = 1;
-    fire(outputs, event);
+    fire(outputs, event, false);
     EXPECT_EQ(outputs.digital, 12U);
     event.isAnalog = true;
     event.value = 2.5;
-    fire(outputs, event);
+    fire(outputs, event, false);
     Status status;
     fill(outputs, Inputs{}, status);
     EXPECT_EQ(status.analog_out[3], 2.5);
     EXPECT_EQ(status.digital_out, 12U);
+}
+
+TEST(OutputsPart, AStopThatPassesAPlaceOfThePathSwitchesNothingOn_C6) {
+    MachineOutputs outputs;
+    outputs.num_digital = outputs.num_analog = 4;
+    traj::PathEvent event;
+    event.index = 2;
+    event.value = 1;
+    fire(outputs, event, true);
+    EXPECT_EQ(outputs.digital, 0U);
+    fire(outputs, event, false);
+    ASSERT_EQ(outputs.digital, 4U);
+    event.value = 0;
+    fire(outputs, event, true);
+    EXPECT_EQ(outputs.digital, 0U) << "what ends something is done";
+    event.isAnalog = true;
+    for (const double value : {3.0, -3.0}) {
+        event.value = value;
+        fire(outputs, event, false);
+        for (const double more : {1.5 * value, -0.5 * value}) {
+            event.value = more;
+            fire(outputs, event, true);
+            EXPECT_EQ(outputs.analog[2], value);
+        }
+        event.value = 0.5 * value;
+        fire(outputs, event, true);
+        EXPECT_EQ(outputs.analog[2], 0.5 * value);
+    }
 }
 
 }  // namespace

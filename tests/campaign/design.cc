@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "campaign/design.hh"
+
+#include <cmath>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "geom/pose.hh"
+
+namespace mw::campaign {
+namespace {
+
+/// Switches of the ends of travel are so far beyond the soft limits, home switches a part of it.
+constexpr double TO_HOME_SWITCH = 1;
+
+double rounded(double x, double step) {
+    return std::round(x / step) * step;
+}
+
+double power(sim::Random &random, double low, double high) {
+    return rounded(std::pow(10.0, random.real(low, high)), 0.01);
+}
+
+JointDesign make_joint(sim::Random &random, bool isAngular, bool isJerkLimited) {
+    JointDesign j;
+    j.isAngular = isAngular;
+    j.velocity = power(random, 1.3, 2.5);
+    j.acceleration = power(random, 2.3, 3.7);
+    const bool hasJerk = isJerkLimited && random.chance(0.85);
+    j.jerk = hasJerk ? rounded(j.acceleration * std::pow(10.0, random.real(1, 2.2)), 1) : 0;
+    j.low = rounded(-random.real(60, 250), 0.1);
+    j.high = rounded(random.real(60, 250), 0.1);
+    j.ferror = rounded(random.real(1.5, 5), 0.1);
+    j.min_ferror = rounded(random.real(0.6, 1.5), 0.1);
+    j.shaft_offset = rounded(random.real(-30, 30), 0.001);
+    j.start = random.real(0.7 * j.low, 0.7 * j.high);
+    j.counts_per_unit = random.chance(0.5) ? 1e4 : 1000;
+    j.drive.coulomb_friction = random.real(0, 300);
+    j.drive.viscous_friction = random.real(0, 5);
+    j.drive.peak_acceleration = 20 * j.acceleration + 2000;
+    return j;
+}
+
+void make_homing(sim::Random &random, JointDesign &j) {
+    j.home = rounded(random.real(0.5 * j.low, 0.5 * j.high), 0.1);
+    j.home_kind = random.chance(0.4)   ? HomeKind::IMMEDIATE
+                  : random.chance(0.5) ? HomeKind::SWITCH
+                                       : HomeKind::SWITCH_AND_INDEX;
+    if (j.home_kind == HomeKind::IMMEDIATE) {
+        j.home_offset = j.home;
+        return;
+    }
+    // Fast enough to find it soon, slow enough to stop within what is there beyond the switch.
+    constexpr double ROOM = 2.5;
+    const double stoppable = 0.7 * std::sqrt(2 * ROOM * j.acceleration);
+    j.search = -rounded(std::min({0.9 * j.velocity, stoppable, j.jerk > 0 ? 15.0 : 1e9}), 0.1);
+    j.latch = rounded(random.real(0.8, 2), 0.1) * (random.chance(0.5) ? -1 : 1);
+    j.bounce_s = random.chance(0.5) ? 0 : random.real(0.001, 0.004);
+    j.home_switch_at = j.low - TO_HOME_SWITCH;
+    j.home_offset = j.home_switch_at;
+    if (j.home_kind == HomeKind::SWITCH_AND_INDEX) {
+        // Far enough from the switch's edge that it is always the same mark, on the way of the slow move.
+        j.index_spacing = 5;
+        j.index_at = rounded(j.home_switch_at + std::copysign(random.real(0.5, 1.5), j.latch), 0.01);
+        j.home_offset = j.index_at;
+    }
+}
+
+AxisDesign axis_of(int axis, const JointDesign &j) {
+    return {axis, j.velocity, j.acceleration, j.jerk, j.low, j.high};
+}
+
+/// The joints move the axes of the letters.
+void make_trivial(sim::Random &random, Design &d, const std::string &letters) {
+    d.coordinates = letters;
+    d.kinematics = "trivkins coordinates=" + letters;
+    const bool isSequenced = random.chance(0.5);
+    for (std::size_t i = 0; i < letters.size(); ++i) {
+        const int axis = geom::axis_of_letter(letters[i]);
+        const std::size_t first = letters.find(letters[i]);
+        if (first != i) {
+            // The other leg of a gantry.
+            JointDesign twin = d.joints[first];
+            twin.shaft_offset = rounded(random.real(-30, 30), 0.001);
+            d.joints.push_back(twin);
+            continue;
+        }
+        JointDesign j = make_joint(random, geom::isAngular(axis), d.isJerkLimited);
+        make_homing(random, j);
+        const bool isGantry = letters.find(letters[i], i + 1) != std::string::npos;
+        j.sequence = isSequenced || isGantry ? static_cast<int>(i) : 0;
+        j.sequence = isGantry ? -std::max(1, j.sequence) : j.sequence;
+        d.joints.push_back(j);
+        d.axes.push_back(axis_of(axis, j));
+    }
+    // Sequences begin at 0 or 1 and have no holes.
+    bool hasFirst = false;
+    for (JointDesign &j : d.joints) {
+        j.sequence = !isSequenced && j.sequence > 0 ? 1 : j.sequence;
+        hasFirst = hasFirst || j.sequence == 0;
+    }
+    if (letters == "XYYZ") {
+        d.joints[0].sequence = 0;
+        d.joints[1].sequence = d.joints[2].sequence = -1;
+        d.joints[3].sequence = isSequenced ? 2 : 0;
+    }
+    for (AxisDesign &a : d.axes) {
+        if (random.chance(0.3)) {
+            a.velocity = rounded(a.velocity * random.real(0.3, 1), 0.01);
+            a.acceleration = rounded(a.acceleration * random.real(0.3, 1), 0.01);
+        }
+    }
+}
+
+JointDesign make_plain(sim::Random &random, bool isAngular, double reach, bool isJerkLimited) {
+    JointDesign j = make_joint(random, isAngular, isJerkLimited);
+    j.velocity = std::max(j.velocity, 60.0);
+    j.low = -reach;
+    j.high = reach;
+    j.start = 0;
+    return j;
+}
+
+/// X and Y by two belts.
+void make_corexy(sim::Random &random, Design &d) {
+    d.coordinates = "XYZ";
+    d.kinematics = "corexykins";
+    d.isTrivial = false;
+    for (int axis = 0; axis < 3; ++axis) {
+        d.joints.push_back(make_plain(random, false, 400, d.isJerkLimited));
+        AxisDesign a = axis_of(axis, make_joint(random, false, d.isJerkLimited));
+        a.low = -120;
+        a.high = 120;
+        d.axes.push_back(a);
+    }
+}
+
+/// A trunnion under the tool.
+void make_trunnion(sim::Random &random, Design &d) {
+    d.coordinates = "XYZAC";
+    d.kinematics = "xyzac-trt-kins";
+    d.isTrivial = false;
+    for (const int axis : {geom::AXIS_X, geom::AXIS_Y, geom::AXIS_Z, geom::AXIS_A, geom::AXIS_C}) {
+        const bool isAngular = geom::isAngular(axis);
+        d.joints.push_back(make_plain(random, isAngular, isAngular ? 720 : 600, d.isJerkLimited));
+        AxisDesign a = axis_of(axis, make_joint(random, isAngular, d.isJerkLimited));
+        a.low = isAngular ? -40 : -100;
+        a.high = isAngular ? 40 : 100;
+        d.axes.push_back(a);
+    }
+    d.hal_lines = fmt::format("setp xyzac-trt-kins.tool-offset {}\nsetp xyzac-trt-kins.z-offset {}\n",
+                              random.whole(0, 60), random.whole(0, 20));
+}
+
+}  // namespace
+
+Design make_design(sim::Random &random) {
+    Design d;
+    d.isJerkLimited = random.chance(0.4);
+    d.velocity = power(random, 1.6, 2.6);
+    d.acceleration = power(random, 2.5, 3.8);
+    d.jerk = d.isJerkLimited && random.chance(0.3) ? rounded(d.acceleration * random.real(10, 60), 1) : 0;
+    const int kind = random.whole(0, 9);
+    d.name = kind < 4   ? "XYZ"
+             : kind < 5 ? "XZ"
+             : kind < 6 ? "XYZA"
+             : kind < 8 ? "XYYZ"
+             : kind < 9 ? "corexy"
+                        : "trunnion";
+    if (kind < 8) {
+        make_trivial(random, d, d.name);
+    } else if (kind < 9) {
+        make_corexy(random, d);
+    } else {
+        make_trunnion(random, d);
+    }
+    return d;
+}
+
+namespace {
+
+template <class Limits>
+std::string limits_of(const Limits &s) {
+    return fmt::format("MAX_VELOCITY = {}\nMAX_ACCELERATION = {}\nMIN_LIMIT = {}\nMAX_LIMIT = {}\n{}",
+                       s.velocity, s.acceleration, s.low, s.high,
+                       s.jerk > 0 ? fmt::format("MAX_JERK = {}\n", s.jerk) : std::string());
+}
+
+std::string section_of(std::size_t n, const JointDesign &j) {
+    std::string out = fmt::format("[JOINT_{}]\nTYPE = {}\nFERROR = {}\nMIN_FERROR = {}\nHOME = {}\n"
+                                  "HOME_OFFSET = {}\nHOME_SEQUENCE = {}\n{}",
+                                  n, j.isAngular ? "ANGULAR" : "LINEAR", j.ferror, j.min_ferror, j.home,
+                                  j.home_offset, j.sequence, limits_of(j));
+    if (j.home_kind != HomeKind::IMMEDIATE) {
+        out += fmt::format("HOME_SEARCH_VEL = {}\nHOME_LATCH_VEL = {}\n", j.search, j.latch);
+    }
+    if (j.home_kind == HomeKind::SWITCH_AND_INDEX) {
+        out += "HOME_USE_INDEX = YES\n";
+    }
+    return out + (j.backlash > 0 ? fmt::format("BACKLASH = {}\n", j.backlash) : std::string());
+}
+
+constexpr const char *HAL =
+    "loadrt [KINS]KINEMATICS\n"
+    "loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD num_joints=[KINS]JOINTS\n"
+    "addf motion-command-handler servo-thread\naddf motion-controller servo-thread\n"
+    "net chain iocontrol.0.emc-enable-in\n"
+    "net prepared iocontrol.0.tool-prepare => iocontrol.0.tool-prepared\n"
+    "net changed iocontrol.0.tool-change => iocontrol.0.tool-changed\n";
+
+}  // namespace
+
+std::string Design::write(const std::filesystem::path &folder) const {
+    std::ofstream(folder / "campaign.hal") << HAL << hal_lines;
+    std::ofstream(folder / "campaign.tbl") << "T1 P1 D1 Z0\n";
+    std::string letters;
+    for (const char c : coordinates) {
+        letters += std::string(1, c) + ' ';
+    }
+    std::string out = fmt::format(
+        "[EMC]\nVERSION = 1.1\n[DISPLAY]\nMAX_FEED_OVERRIDE = 1.5\n[TASK]\nCYCLE_TIME = 0.001\n[RS274NGC]\n"
+        "[EMCMOT]\nEMCMOT = motmod\nSERVO_PERIOD = 1000000\n[EMCIO]\nTOOL_TABLE = campaign.tbl\n"
+        "[HAL]\nHALFILE = campaign.hal\n"
+        "[TRAJ]\nCOORDINATES = {}\nLINEAR_UNITS = mm\nANGULAR_UNITS = degree\nPLANNER_TYPE = {}\n"
+        "MAX_LINEAR_VELOCITY = {}\nMAX_LINEAR_ACCELERATION = {}\n{}[KINS]\nKINEMATICS = {}\nJOINTS = {}\n",
+        letters, isJerkLimited ? 1 : 0, velocity, acceleration,
+        jerk > 0 ? fmt::format("MAX_LINEAR_JERK = {}\n", jerk) : std::string(), kinematics, joints.size());
+    for (std::size_t n = 0; n < joints.size(); ++n) {
+        out += section_of(n, joints[n]);
+    }
+    for (const AxisDesign &a : axes) {
+        out += fmt::format("[AXIS_{}]\n{}", geom::AXIS_LETTERS[a.axis], limits_of(a));
+    }
+    std::ofstream(folder / "campaign.ini") << out;
+    return (folder / "campaign.ini").string();
+}
+
+}  // namespace mw::campaign

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A random machine: what its INI and HAL files say, and what its plants are like. The judge reads limits from
+// here, as they are written into the files, and never from what the product makes of them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sim/axis.hh"
+#include "sim/random.hh"
+
+namespace mw::campaign {
+
+enum class HomeKind { IMMEDIATE, SWITCH, SWITCH_AND_INDEX };
+
+struct JointDesign {
+    bool isAngular = false;
+    double velocity = 100, acceleration = 1000;
+    double jerk = 0;  ///< 0: none
+    double low = -100, high = 100;
+    double ferror = 2, min_ferror = 1;
+    double backlash = 0;
+    HomeKind home_kind = HomeKind::IMMEDIATE;
+    double home = 0, home_offset = 0, search = 0, latch = 0;
+    int sequence = 0;
+    // --- the plant
+    double shaft_offset = 0;  ///< of the motor's shaft where the joint is at 0
+    double start = 0;         ///< where the joint stands when the machine is made
+    double counts_per_unit = 1e4;
+    double index_spacing = 0;
+    double index_at = 0;                     ///< position of the joint at one of the marks
+    double bounce_s = 0, hysteresis = 0.02;  ///< of the home switch
+    double home_switch_at = 0;               ///< closed at and below this position
+    sim::AxisSettings drive;
+};
+
+struct AxisDesign {
+    int axis = 0;  ///< geom::Axis
+    double velocity = 100, acceleration = 1000, jerk = 0;
+    double low = -100, high = 100;
+};
+
+struct Design {
+    std::string name;  ///< of the kind, for the log
+    std::string coordinates, kinematics;
+    bool isTrivial = true;                       ///< joints are axes
+    bool isJerkLimited = false;                  ///< PLANNER_TYPE = 1
+    double velocity = 100, acceleration = 1000;  ///< along the path
+    double jerk = 0;
+    std::vector<JointDesign> joints;
+    std::vector<AxisDesign> axes;
+    std::string hal_lines;
+
+    /// Writes campaign.ini and campaign.hal; the path of the INI file.
+    std::string write(const std::filesystem::path &folder) const;
+};
+
+Design make_design(sim::Random &random);
+
+}  // namespace mw::campaign

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What must hold at every servo sample of a machine, whatever happens. Fed with what can be measured at its
+// pins and plants and with what its operator does; knows the limits from the machine's files only.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "campaign/design.hh"
+#include "geom/pose.hh"
+#include "testing/limit_checker.hh"
+
+namespace mw::campaign {
+
+struct JointSample {
+    double pos_cmd = 0, pos_fb = 0, motor_cmd = 0;
+    double motor_fb = 0;       ///< as the servo cycle has read it
+    double turned = 0;         ///< by how much index marks have moved the encoder's zero so far
+    int resets = 0;            ///< how often they have set it
+    double position = 0;       ///< of the joint in truth, by the plant
+    bool isTruthKnown = true;  ///< false once the encoder has lied
+    bool isAmpOn = false, isHomed = false, isHoming = false;
+    bool isAmpFaulted = false;
+};
+
+struct Sample {
+    std::uint64_t cycle = 0;
+    bool isChainClosed = true, isEnableOn = true;  ///< as the servo cycle has read them
+    bool isSpindleOn = false;
+    double spindle_rpm = 0;
+    std::uint32_t outputs = 0;  ///< bit per output that can do work: digital outputs, flood, mist
+    bool areAxesKnown = false;  ///< all homed, teleop or coord
+    geom::Pose axes;            ///< commanded
+    std::vector<JointSample> joints;
+};
+
+/// How a machine is stopped.
+enum class Stop {
+    ALONG_THE_PATH,  ///< within the limits; it stays on
+    ALONG_THEN_OFF,  ///< within the limits, then the amplifiers go off
+    AT_ONCE,         ///< the amplifiers go off in the next sample
+};
+
+/// What an operator's fresh command allows until the next stop.
+enum class Leave { SWITCH_ON, MOVE, WORK };
+
+class Judge {
+  public:
+    Judge(const Design &design, double period_s);
+
+    void allow(Leave leave);
+    /// A stop has been asked for, or something that must stop the machine has happened, after the last
+    /// sample; it may take `delay` cycles until motion hears of it.
+    void stop(Stop how, int delay);
+    void sample(const Sample &s);
+
+    bool isSound() const { return report_.empty(); }
+    /// What was broken first: rule, cycle, figures.
+    const std::string &report() const { return report_; }
+    /// Rules that are known to be broken: they are counted, and end nothing.
+    std::set<std::string> known;
+    const std::map<std::string, int> &broken_known() const { return broken_known_; }
+    /// Nothing moves and no stop is awaited.
+    bool isAtRest() const { return standing_ >= 3 && !isStopAwaited_; }
+    /// The time that stops took over what the limits need, the largest.
+    double slowest_stop() const { return slowest_stop_; }
+    std::uint64_t samples() const { return count_; }
+
+  private:
+    struct JointJudge {
+        testing::LimitChecker speed, jerk;
+        double reference = 0;  ///< of homing without a switch
+        bool wasHomed = false;
+    };
+    void check_numbers(const Sample &s);
+    void check_amplifiers(const Sample &s);
+    void check_limits(const Sample &s);
+    void check_room(const Sample &s);
+    void check_homes(const Sample &s);
+    void check_outputs(const Sample &s);
+    void check_rest(const Sample &s);
+    void begin_stop();
+    double time_to_stop() const;
+    void fail(const std::string &rule, const std::string &text);
+
+    const Design &design_;
+    double period_;
+    std::vector<JointJudge> joints_;
+    Sample last_;
+    std::vector<double> velocity_, before_;
+    std::uint64_t count_ = 0;
+    bool maySwitchOn_ = false, mayMove_ = false, mayWork_ = false;
+    bool isStopAwaited_ = false;
+    Stop how_ = Stop::ALONG_THE_PATH;
+    int delay_ = 0, since_stop_ = 0;
+    double stop_due_s_ = 0, stop_least_s_ = 0;
+    int off_wait_ = 0;
+    int standing_ = 0;
+    int restless_ = 0;  ///< cycles left in which commands of before a stop may still arrive
+    double slowest_stop_ = 0;
+    std::string report_;
+    std::map<std::string, int> broken_known_;
+};
+
+}  // namespace mw::campaign

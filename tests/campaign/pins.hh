@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The HAL pins between a machine and its plants.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hal/core/hal.hh"
+
+namespace mw::campaign {
+
+struct JointPins {
+    volatile double *pos_cmd, *pos_fb, *motor_cmd, *motor_fb;
+    volatile bool *is_amp_on, *is_homed, *is_homing, *index_enable, *home_switch, *pos_limit, *neg_limit,
+        *amp_fault;
+};
+
+struct SpindlePins {
+    volatile bool *is_on, *amp_fault, *at_speed;
+    volatile double *speed_out, *revs, *speed_in;
+};
+
+struct MachinePins {
+    volatile bool *in_position, *is_coord, *is_teleop, *are_all_homed;  ///< of motion
+    volatile bool *enable, *probe, *inhibit;                            ///< to motion
+    volatile bool *chain, *user_enable;
+    volatile double *adaptive_feed;
+    SpindlePins spindle;
+    std::vector<JointPins> joints;
+    std::vector<volatile double *> axes;   ///< commanded
+    std::vector<volatile bool *> outputs;  ///< that can do work
+
+    /// The name of a pin that is missing; empty when all are there. HAL files have been run: links move pins.
+    std::string bind(hal::Hal &hal, std::size_t num_joints);
+};
+
+}  // namespace mw::campaign

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What a seed stands for: a machine, what its operator does with it, and what goes wrong meanwhile.
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "campaign/design.hh"
+#include "geom/move_settings.hh"
+#include "geom/pose.hh"
+
+namespace mw::campaign {
+
+/// A line of a program with the path that it asks for, in machine coordinates.
+struct Block {
+    std::string text;
+    bool isMove = false, isArc = false;
+    bool isTimed = true;  ///< the time that it takes can be estimated
+    geom::Pose end, centre;
+    double angle_rad = 0;  ///< about +Z
+    double dwell_s = 0;
+    geom::MoveSettings settings;
+};
+
+enum class Work { PROGRAM, JOG_JOINT, JOG_AXIS, HOME };
+
+enum class Upset {
+    ABORT,          ///< an operator's stop
+    OFF,            ///< machine off by command, as at an exit
+    ESTOP_COMMAND,  ///< e-stop by command
+    ESTOP,          ///< the chain opens
+    ENABLE,         ///< pin motion.enable
+    AMP_FAULT,
+    LIMIT_SWITCH,
+    ENCODER_LOST,
+    ENCODER_JUMP,
+    ENCODER_NAN,
+    SPINDLE_FAULT,
+    PROBE_STUCK,  ///< the contact closes in a move that does not probe
+    TASK_HUNG,    ///< longer than the watchdog's time
+    TASK_DEAD,    ///< by the kernel's word, for good
+    // --- after these the work goes on
+    PAUSE,
+    SPINDLE_NAN,  ///< measured speed and turns, of a spindle that nothing is in step with
+    FEED_OVERRIDE,
+    RAPID_OVERRIDE,
+    FEED_INHIBIT,
+    ADAPTIVE_NAN,    ///< pin motion.adaptive-feed; M52 is off
+    PLANNER_LATE,    ///< a few periods
+    PLANNER_LOST,    ///< a second
+    WRONG_COMMANDS,  ///< modes, jogs and runs that do not fit what is under way
+};
+inline constexpr int UPSET_COUNT = static_cast<int>(Upset::WRONG_COMMANDS) + 1;
+const char *name_of(Upset upset);
+/// The work goes on after it.
+constexpr bool isPassing(Upset upset) {
+    return upset >= Upset::PAUSE;
+}
+
+struct Trouble {
+    Upset what = Upset::ABORT;
+    int at_ms = 0;  ///< after the work has begun
+    int length_ms = 100;
+    int joint = 0;
+    double value = 0;
+};
+
+struct Act {
+    Work work = Work::PROGRAM;
+    std::vector<Block> blocks;
+    int target = 0;       ///< joint or axis
+    double distance = 0;  ///< 0: continuous
+    double velocity = 0;
+    int length_ms = 500;  ///< of a continuous jog
+    std::vector<Trouble> troubles;
+};
+
+struct Plan {
+    std::uint64_t seed = 0;
+    Design design;
+    std::vector<Act> acts;
+};
+
+Plan make_plan(std::uint64_t seed);
+
+/// What is kept of a plan, to find a short one that fails too: "0,2:0-5,3x,4.1" are act 0, act 2 with those
+/// of its moves that are among its blocks 0 to 5, act 3 without troubles, act 4 with its trouble 1. Empty:
+/// all.
+Plan reduced(const Plan &plan, const std::string &kept);
+
+}  // namespace mw::campaign

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "campaign/rig.hh"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace mw::campaign {
+namespace {
+
+constexpr std::int64_t PERIOD_NS = 1000000;
+constexpr double PERIOD_S = 1e-3;
+constexpr double NAN_VALUE = std::numeric_limits<double>::quiet_NaN();
+constexpr int CONFIGURE_CYCLES = 2000;
+/// Of the spindle [rpm/s], and how near its speed has to be.
+constexpr double SPINDLE_RAMP = 8000, AT_SPEED_RPM = 5;
+constexpr double AMPLIFIER_RISE_S = 0;
+
+}  // namespace
+
+Result<rtapi::PeriodicId> LateScheduler::add(const rtapi::PeriodicSpec &spec) {
+    if (spec.order != rtapi::Order::PLANNER) {
+        return clock_.add(spec);
+    }
+    planner_ = spec;
+    rtapi::PeriodicSpec mine = spec;
+    mine.function = plan;
+    mine.argument = this;
+    return clock_.add(mine);
+}
+
+void LateScheduler::plan(void *self, std::int64_t period_ns) {
+    const auto &scheduler = *static_cast<LateScheduler *>(self);
+    if (!scheduler.isPlannerHeld) {
+        scheduler.planner_.function(scheduler.planner_.argument, period_ns);
+    }
+}
+
+Rig::Rig(const Design &design, std::uint64_t seed, std::string ini) : design_(design), ini_(std::move(ini)) {
+    for (const JointDesign &j : design.joints) {
+        const double shaft = j.start + j.shaft_offset;
+        sim::AxisSettings drive = j.drive;
+        drive.backlash = j.backlash;
+        const sim::EncoderSettings encoder{j.counts_per_unit, j.index_spacing, j.index_at + j.shaft_offset};
+        const sim::SwitchSettings home{j.home_switch_at, false, 0, j.hysteresis, j.bounce_s};
+        plants_.push_back({sim::Axis(drive, shaft), sim::Encoder(encoder, shaft),
+                           sim::BouncingSwitch(home, seed + plants_.size()),
+                           sim::Amplifier(AMPLIFIER_RISE_S)});
+    }
+    joint_faults.resize(plants_.size());
+    sample_.joints.resize(plants_.size());
+}
+
+Rig::~Rig() {
+    // The task side ends first: its pins live in the host's instance, and its periodic runs it.
+    if (periodic_.value != 0) {
+        scheduler_.remove(periodic_);
+    }
+    side_.reset();
+    host_.reset();
+}
+
+std::string Rig::start() {
+    const auto told = [this](const std::string &what) {
+        std::string text = what;
+        for (const auto &d : sink_.all()) {
+            text += "; " + d.str();
+        }
+        return text;
+    };
+    loaded_ = machine::LoadedConfig::load(ini_, sink_);
+    if (!loaded_) {
+        return told("the INI file has errors");
+    }
+    loaded_->machine.task.parameter_file.clear();
+    hal::HalOptions options;
+    options.scheduler = &scheduler_;
+    auto host = hal::LocalHost::create(options);
+    if (!host) {
+        return told(host.error().str());
+    }
+    host_ = std::move(*host);
+    const machine::MachineParts parts{loaded_->ini, loaded_->reader, loaded_->machine, sink_};
+    side_ = std::make_unique<machine::TaskSide>(parts, *host_, mailbox::Memory::in_process());
+    const hal::UseInstance use(&host_->hal());
+    machine::MachineOptions machine_options;
+    machine_options.isClockVirtual = true;
+    if (const auto started = side_->start(machine_options); !started) {
+        return told(started.error().str());
+    }
+    if (const std::string missing = pins_.bind(host_->hal(), plants_.size()); !missing.empty()) {
+        return "no pin " + missing;
+    }
+    const auto periodic =
+        scheduler_.add({"task", PERIOD_NS, rtapi::Order::TASK,
+                        [](void *self, std::int64_t) { static_cast<Rig *>(self)->step_task(); }, this});
+    if (!periodic) {
+        return periodic.error().str();
+    }
+    periodic_ = *periodic;
+    const auto ready = side_->finish_start(*this, CONFIGURE_CYCLES);
+    return ready ? std::string() : told(ready.error().str());
+}
+
+void Rig::step_task() {
+    if (!faults.isTaskHeld && !faults.isTaskDead) {
+        side_->step(scheduler_.now_ns());
+    }
+}
+
+void Rig::cycle() {
+    *pins_.chain = *pins_.user_enable && !faults.isChainOpen;
+    *pins_.enable = !faults.isDisabled;
+    *pins_.probe = faults.isProbeClosed;
+    *pins_.inhibit = faults.isFeedInhibited;
+    *pins_.adaptive_feed = faults.isAdaptiveNan ? NAN_VALUE : 1.0;
+    *pins_.spindle.amp_fault = faults.isSpindleFaulted;
+    if (faults.isTaskDead) {
+        side_->channels().isTaskDead.store(1);
+    }
+    run_plants();
+    ++cycles_;
+    const bool isChainClosed = *pins_.chain;
+    scheduler_.run_until(static_cast<std::int64_t>(cycles_) * PERIOD_NS);
+    sample_.isChainClosed = isChainClosed;
+    sample_.isEnableOn = !faults.isDisabled;
+    take_sample();
+}
+
+/// A period of physics between two servo cycles: from the motors' commands to what is measured.
+void Rig::run_plants() {
+    for (std::size_t j = 0; j < plants_.size(); ++j) {
+        Plant &p = plants_[j];
+        const JointPins &pins = pins_.joints[j];
+        const bool isPowered = p.amplifier.run(*pins.is_amp_on, PERIOD_S);
+        if (isPowered && !p.wasPowered) {
+            p.axis.hold_here();
+        }
+        p.wasPowered = isPowered;
+        p.axis.run(*pins.motor_cmd + p.encoder.zero(), isPowered, PERIOD_S);
+        const double before = p.encoder.zero();
+        if (p.encoder.run(p.axis.motor(), *pins.index_enable)) {
+            *pins.index_enable = false;
+            p.turned += p.encoder.zero() - before;
+            ++p.resets;
+            p.isTruthKnown = true;
+        }
+        *pins.motor_fb = joint_faults[j].isEncoderNan ? NAN_VALUE : p.encoder.reading();
+        *pins.home_switch = p.home_switch.run(p.axis.load() - design_.joints[j].shaft_offset, PERIOD_S);
+        *pins.pos_limit = joint_faults[j].isOnLimit;
+        *pins.amp_fault = p.amplifier.isFaulted();
+    }
+    const double wanted = *pins_.spindle.speed_out;
+    const double change =
+        std::clamp(wanted - spindle_rpm_, -SPINDLE_RAMP * PERIOD_S, SPINDLE_RAMP * PERIOD_S);
+    spindle_rpm_ += std::isfinite(change) ? change : 0;
+    spindle_turns_ += spindle_rpm_ / 60 * PERIOD_S;
+    *pins_.spindle.at_speed = std::abs(wanted - spindle_rpm_) < AT_SPEED_RPM;
+    *pins_.spindle.revs = faults.isSpindleNan ? NAN_VALUE : spindle_turns_;
+    *pins_.spindle.speed_in = faults.isSpindleNan ? NAN_VALUE : spindle_rpm_ / 60;
+}
+
+void Rig::take_sample() {
+    sample_.cycle = cycles_;
+    for (std::size_t j = 0; j < plants_.size(); ++j) {
+        const Plant &p = plants_[j];
+        const JointPins &pins = pins_.joints[j];
+        JointSample &out = sample_.joints[j];
+        out.pos_cmd = *pins.pos_cmd;
+        out.pos_fb = *pins.pos_fb;
+        out.motor_cmd = *pins.motor_cmd;
+        out.motor_fb = *pins.motor_fb;
+        out.turned = p.turned;
+        out.resets = p.resets;
+        out.position = p.axis.load() - design_.joints[j].shaft_offset;
+        out.isTruthKnown = p.isTruthKnown;
+        out.isAmpOn = *pins.is_amp_on;
+        out.isHomed = *pins.is_homed;
+        out.isHoming = *pins.is_homing;
+        out.isAmpFaulted = *pins.amp_fault;
+    }
+    for (std::size_t i = 0; i < pins_.axes.size(); ++i) {
+        sample_.axes.c[i] = *pins_.axes[i];
+    }
+    sample_.areAxesKnown = *pins_.are_all_homed && (*pins_.is_coord || *pins_.is_teleop);
+    sample_.isSpindleOn = *pins_.spindle.is_on;
+    sample_.spindle_rpm = *pins_.spindle.speed_out;
+    sample_.outputs = 0;
+    for (std::size_t i = 0; i < pins_.outputs.size(); ++i) {
+        sample_.outputs |= *pins_.outputs[i] ? 1U << i : 0U;
+    }
+}
+
+bool Rig::isSwitchedOn() const {
+    return std::ranges::any_of(sample_.joints, [](const JointSample &j) { return j.isAmpOn; });
+}
+
+void Rig::lose_encoder(int joint, bool isLost) {
+    Plant &p = plants_[static_cast<std::size_t>(joint)];
+    p.encoder.lose(isLost);
+    p.isTruthKnown = false;
+}
+
+void Rig::jump_encoder(int joint, double by) {
+    Plant &p = plants_[static_cast<std::size_t>(joint)];
+    p.encoder.jump(by);
+    p.isTruthKnown = false;
+}
+
+void Rig::repair() {
+    for (std::size_t j = 0; j < plants_.size(); ++j) {
+        plants_[j].encoder.lose(false);
+        plants_[j].amplifier.reset();
+        joint_faults[j] = {};
+    }
+    faults = {};
+    scheduler_.isPlannerHeld = false;
+}
+
+void Rig::trust_encoders() {
+    for (Plant &p : plants_) {
+        p.isTruthKnown = true;
+    }
+}
+
+}  // namespace mw::campaign

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A whole machine in virtual time, task and motion as they are, with plants at the pins of its HAL in place
+// of motors, encoders and switches. Its task may be held or dead, its planner late.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "campaign/design.hh"
+#include "campaign/judge.hh"
+#include "campaign/pins.hh"
+#include "diag/sink.hh"
+#include "machine/loaded_config.hh"
+#include "machine/machine.hh"
+#include "machine/task_side.hh"
+#include "rtapi/virtual_scheduler.hh"
+#include "sim/amplifier.hh"
+#include "sim/axis.hh"
+#include "sim/bouncing_switch.hh"
+#include "sim/encoder.hh"
+
+namespace mw::campaign {
+
+/// The virtual clock, under which the planner may miss periods.
+class LateScheduler final : public rtapi::Scheduler {
+  public:
+    std::int64_t now_ns() const noexcept override { return clock_.now_ns(); }
+    bool isVirtual() const noexcept override { return true; }
+    Result<rtapi::PeriodicId> add(const rtapi::PeriodicSpec &spec) override;
+    void remove(rtapi::PeriodicId id) override { clock_.remove(id); }
+    rtapi::PeriodicStats stats(rtapi::PeriodicId id) const override { return clock_.stats(id); }
+    void run_until(std::int64_t time_ns) { clock_.run_until(time_ns); }
+
+    bool isPlannerHeld = false;
+
+  private:
+    static void plan(void *self, std::int64_t period_ns);
+    rtapi::VirtualScheduler clock_;
+    rtapi::PeriodicSpec planner_;
+};
+
+/// Faults of the pins and plants of one joint.
+struct JointFaults {
+    bool isOnLimit = false, isEncoderNan = false;
+};
+
+/// What is wrong with the rest of the machine.
+struct MachineFaults {
+    bool isChainOpen = false, isDisabled = false, isProbeClosed = false, isFeedInhibited = false;
+    bool isSpindleFaulted = false, isSpindleNan = false, isAdaptiveNan = false;
+    bool isTaskHeld = false, isTaskDead = false;
+};
+
+/// A joint's motor with what is around it.
+struct Plant {
+    sim::Axis axis;
+    sim::Encoder encoder;
+    sim::BouncingSwitch home_switch;
+    sim::Amplifier amplifier;
+    double turned = 0;  ///< by how much index marks have moved the encoder's zero
+    int resets = 0;
+    bool isTruthKnown = true, wasPowered = false;
+};
+
+class Rig final : public machine::Machine {
+  public:
+    Rig(const Design &design, std::uint64_t seed, std::string ini);
+    ~Rig() override;
+    /// An error in words; empty when the machine runs.
+    std::string start();
+
+    /// One servo cycle, with task's where it is due.
+    void cycle() override;
+    std::int64_t now_ns() const override { return scheduler_.now_ns(); }
+    bool isVirtual() const override { return true; }
+    machine::RealtimeFigures realtime_figures() const override { return {}; }
+    client::Client &client() override { return side_->client(); }
+    mailbox::Segment &mailbox() override { return side_->mailbox(); }
+    task::Task &task() override { return side_->task(); }
+    motion::Channels &channels() override { return side_->channels(); }
+    hal::Hal &hal() override { return host_->hal(); }
+
+    const Sample &sample() const { return sample_; }
+    const machine::MachineConfig &config() const { return loaded_->machine; }
+    bool isInPosition() const { return *pins_.in_position; }
+    bool isSwitchedOn() const;
+
+    void lose_encoder(int joint, bool isLost);
+    void jump_encoder(int joint, double by);
+    void trip_amplifier(int joint) { plants_[static_cast<std::size_t>(joint)].amplifier.trip(); }
+    /// The machine as an operator finds it who has looked for what was wrong.
+    void repair();
+    /// After homing: what encoders say is true again.
+    void trust_encoders();
+
+    MachineFaults faults;
+    std::vector<JointFaults> joint_faults;
+    bool isPlannerHeld() const { return scheduler_.isPlannerHeld; }
+    void hold_planner(bool isHeld) { scheduler_.isPlannerHeld = isHeld; }
+
+  private:
+    void step_task();
+    void run_plants();
+    void take_sample();
+
+    const Design &design_;
+    std::string ini_;
+    diag::Sink sink_;
+    LateScheduler scheduler_;
+    std::unique_ptr<machine::LoadedConfig> loaded_;
+    std::unique_ptr<hal::LocalHost> host_;
+    std::unique_ptr<machine::TaskSide> side_;
+    rtapi::PeriodicId periodic_{};
+    std::vector<Plant> plants_;
+    MachinePins pins_{};
+    double spindle_rpm_ = 0, spindle_turns_ = 0;
+    std::uint64_t cycles_ = 0;
+    Sample sample_;
+};
+
+}  // namespace mw::campaign

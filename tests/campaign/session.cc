@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "campaign/session.hh"
+
+#include <bit>
+#include <cctype>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace mw::campaign {
+namespace {
+
+constexpr double PERIOD_S = 1e-3;
+
+/// A reason without its figures, so that like ones are counted together.
+std::string kind_of(const std::string &reason) {
+    std::string out;
+    const std::size_t place = reason.find(".ngc:");
+    const std::size_t text = place == std::string::npos ? 0 : reason.find(": ", place);
+    for (const char c : reason.substr(text == 0 ? 0 : text + 2)) {
+        const bool isFigure = std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '-';
+        if (!isFigure) {
+            out += c == '\n' || c == '|' ? ' ' : c;
+        } else if (out.empty() || out.back() != '#') {
+            out += '#';
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
+Session::Session(const Plan &plan, std::filesystem::path folder, const Telling &telling)
+    : plan_(plan), folder_(std::move(folder)), tell_(telling.stream), judge_(plan.design, PERIOD_S) {
+    judge_.known = telling.known;
+    if (!telling.trace.empty()) {
+        trace_.open(telling.trace);
+    }
+}
+
+void Session::fail(const std::string &rule, const std::string &text) {
+    if (judge_.known.contains(rule)) {
+        ++verdict_.known[rule];
+    } else if (verdict_.fault.empty()) {
+        verdict_.fault = rule + ": " + text;
+    }
+}
+
+void Session::cycle() {
+    rig_->cycle();
+    static_cast<void>(rig_->client().read_status());
+    const Sample &s = rig_->sample();
+    judge_.sample(s);
+    if (trace_.is_open()) {
+        trace_ << s.cycle;
+        for (const JointSample &j : s.joints) {
+            trace_ << fmt::format(" {:.9g}", j.motor_cmd);
+        }
+        for (const AxisDesign &a : plan_.design.axes) {
+            trace_ << fmt::format(" {:.9g}", s.axes[a.axis]);
+        }
+        trace_ << '\n';
+    }
+    if (isRecording_) {
+        path_.push_back(s.axes);
+    }
+    for (const JointSample &j : s.joints) {
+        verdict_.hash = (verdict_.hash ^ std::bit_cast<std::uint64_t>(j.motor_cmd)) * 0x100000001b3U;
+    }
+    while (const auto message = rig_->client().next_message()) {
+        if (tell_ != nullptr) {
+            std::fprintf(tell_, "  [%.3f] %s\n", static_cast<double>(s.cycle) * PERIOD_S,
+                         message->text.c_str());
+        }
+    }
+    if (!judge_.isSound()) {
+        fail(judge_.report().substr(0, judge_.report().find(':')),
+             judge_.report().substr(judge_.report().find(':') + 2));
+    }
+}
+
+client::Serial Session::post(const msgs::Command &command) {
+    ++verdict_.commands;
+    const auto posted = rig_->client().post(command);
+    if (!posted) {
+        fail("command", posted.error().str());
+        return 0;
+    }
+    return *posted;
+}
+
+Session::End Session::wait(client::Serial command, double most_s) {
+    for (double t = 0; t < most_s && !isOver(); t += PERIOD_S) {
+        const client::Outcome outcome = rig_->client().outcome(command);
+        switch (outcome.progress) {
+        case msgs::Progress::DONE: return End::DONE;
+        case msgs::Progress::REFUSED:
+        case msgs::Progress::FAILED:
+            ++verdict_.refused;
+            ++verdict_.refusals[kind_of(outcome.reason)];
+            if (tell_ != nullptr) {
+                std::fprintf(tell_, "  refused: %s\n", outcome.reason.c_str());
+            }
+            return outcome.progress == msgs::Progress::REFUSED ? End::REFUSED : End::FAILED;
+        case msgs::Progress::STARTED: break;
+        }
+        step_troubles();
+        cycle();
+    }
+    return End::LATE;
+}
+
+Session::End Session::ask(const msgs::Command &command, double most_s) {
+    return wait(post(command), most_s);
+}
+
+/// Until nothing moves any more, and a little longer.
+void Session::settle(double most_s) {
+    double t = 0;
+    for (int calm = 0; calm < 20 && t < most_s && !isOver(); t += PERIOD_S) {
+        cycle();
+        calm = judge_.isAtRest() ? calm + 1 : 0;
+    }
+    if (t >= most_s) {
+        fail("work", "it does not come to rest");
+    }
+}
+
+msgs::State Session::state() {
+    return rig_->client().status().task.state;
+}
+
+bool Session::set_mode(msgs::Mode mode) {
+    const End end = ask(msgs::SetMode{mode});
+    if (end != End::DONE && !isStopped_) {
+        fail("work", "the mode is not set with the machine at rest");
+    }
+    return end == End::DONE;
+}
+
+bool Session::switch_on() {
+    constexpr int TRIES = 3;
+    for (int i = 0; i < TRIES && !isOver() && state() != msgs::State::ON; ++i) {
+        ask(msgs::SetState{msgs::State::ESTOP_RESET});
+        judge_.allow(Leave::SWITCH_ON);
+        ask(msgs::SetState{msgs::State::ON});
+        settle(2);
+    }
+    if (!isOver() && state() != msgs::State::ON) {
+        fail("work", "the machine cannot be switched on with nothing wrong");
+    }
+    return !isOver();
+}
+
+bool Session::home() {
+    if (!set_mode(msgs::Mode::MANUAL)) {
+        return false;
+    }
+    ask(msgs::SetTeleop{false});
+    settle(2);
+    judge_.allow(Leave::MOVE);
+    ask(msgs::UnhomeJoint{-1});
+    const End end = ask(msgs::HomeJoint{-1}, 120);
+    settle(5);
+    if (!isOver() && !isStopped_ && end != End::DONE) {
+        fail("work", "homing does not end well with nothing wrong");
+    }
+    return !isOver() && end == End::DONE;
+}
+
+/// Everything repaired, on and homed: what stops the next act is its own trouble.
+bool Session::prepare() {
+    act_ = nullptr;
+    going_.clear();
+    isStopped_ = isDisturbed_ = false;
+    rig_->repair();
+    for (int i = 0; i < 5 && !isOver(); ++i) {
+        cycle();
+    }
+    settle(10);
+    if (isOver() || !switch_on()) {
+        return false;
+    }
+    ask(msgs::SetFeedOverride{1});
+    ask(msgs::SetRapidOverride{1});
+    if (!areEncodersTrue_ || !rig_->client().status().trajectory.isAllHomed) {
+        if (!home()) {
+            return false;
+        }
+        rig_->trust_encoders();
+        areEncodersTrue_ = true;
+    }
+    return !isOver();
+}
+
+Verdict Session::run() {
+    rig_ = std::make_unique<Rig>(plan_.design, plan_.seed, plan_.design.write(folder_));
+    if (const std::string error = rig_->start(); !error.empty()) {
+        fail("start", error);
+        return verdict_;
+    }
+    for (std::size_t n = 0; n < plan_.acts.size() && !isOver(); ++n) {
+        if (tell_ != nullptr) {
+            std::fprintf(tell_, "act %zu\n", n);
+        }
+        if (prepare()) {
+            perform(plan_.acts[n]);
+        }
+    }
+    verdict_.seconds = static_cast<double>(rig_->sample().cycle) * PERIOD_S;
+    for (const auto &[rule, count] : judge_.broken_known()) {
+        verdict_.known[rule] += count;
+    }
+    verdict_.slowest_stop = judge_.slowest_stop();
+    return verdict_;
+}
+
+void Session::perform(const Act &act) {
+    isStopped_ = isDisturbed_ = false;
+    switch (act.work) {
+    case Work::PROGRAM: run_program(act); break;
+    case Work::JOG_JOINT:
+    case Work::JOG_AXIS: jog(act); break;
+    case Work::HOME:
+        begin_troubles(act);
+        home();
+        break;
+    }
+    // What goes wrong when the work is over goes wrong as well.
+    for (int i = 0; i < 100 && !isOver(); ++i) {
+        step_troubles();
+        cycle();
+    }
+    settle(30);
+}
+
+void Session::jog(const Act &act) {
+    const bool isJoint = act.work == Work::JOG_JOINT;
+    if (!set_mode(msgs::Mode::MANUAL) || ask(msgs::SetTeleop{!isJoint}) != End::DONE) {
+        fail("work", "the jogs' mode is not set with the machine at rest");
+        return;
+    }
+    settle(2);
+    const auto place = [&] {
+        return isJoint ? rig_->sample().joints[static_cast<std::size_t>(act.target)].pos_cmd
+                       : rig_->sample().axes[act.target];
+    };
+    const double from = place();
+    begin_troubles(act);
+    judge_.allow(Leave::MOVE);
+    const bool isIncrement = act.distance != 0;
+    const client::Serial posted =
+        isIncrement ? post(msgs::JogIncrement{isJoint, act.target, std::abs(act.velocity), act.distance})
+                    : post(msgs::JogContinuous{isJoint, act.target, act.velocity, 0, false});
+    const End end = wait(posted, 5);
+    for (int i = 0; i < act.length_ms && !isOver(); ++i) {
+        step_troubles();
+        cycle();
+    }
+    if (!isIncrement) {
+        ask(msgs::JogStop{isJoint, act.target});
+    }
+    for (int i = 0; i < 120000 && !isOver() && !(judge_.isAtRest() && rig_->isInPosition()); ++i) {
+        step_troubles();
+        cycle();
+    }
+    const bool isCalm = !isStopped_ && !isDisturbed_ && !isOver();
+    const auto at = static_cast<std::size_t>(act.target);
+    if (isCalm && isIncrement && end == End::DONE && plan_.design.isTrivial) {
+        double low = -1e300;
+        double high = 1e300;
+        if (isJoint) {
+            low = plan_.design.joints[at].low;
+            high = plan_.design.joints[at].high;
+        }
+        for (const AxisDesign &a : plan_.design.axes) {
+            low = !isJoint && a.axis == act.target ? a.low : low;
+            high = !isJoint && a.axis == act.target ? a.high : high;
+        }
+        const double wanted = std::clamp(from + act.distance, low, high);
+        if (std::abs(place() - wanted) > 1e-6) {
+            fail("work",
+                 fmt::format("a jog from {:.6g} by {:.6g} ends at {:.6g}", from, act.distance, place()));
+        }
+    }
+}
+
+}  // namespace mw::campaign

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Runs a plan: an operator who does the acts, the troubles at their instants, and the judge at every sample.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "campaign/judge.hh"
+#include "campaign/plan.hh"
+#include "campaign/rig.hh"
+
+namespace mw::campaign {
+
+struct Verdict {
+    std::string fault;  ///< "rule: what"; empty: all held
+    double seconds = 0;
+    int stops = 0;  ///< aborts, exits and faults
+    int programs = 0, ended = 0, timed = 0;
+    int commands = 0, refused = 0;
+    std::map<std::string, int> known;     ///< how often rules were broken that are known to be
+    std::map<std::string, int> refusals;  ///< by reason, figures replaced
+    double slowest_stop = 0, worst_time = 0;
+    std::uint64_t hash = 0;  ///< of all that was commanded
+};
+
+struct Telling {
+    std::FILE *stream = nullptr;  ///< what happens
+    std::string trace;            ///< file of what is commanded; empty: none
+    std::set<std::string> known;  ///< rules that are known to be broken
+};
+
+/// In a folder of its own, for the files of the machine.
+class Session {
+  public:
+    Session(const Plan &plan, std::filesystem::path folder, const Telling &telling);
+    Verdict run();
+
+  private:
+    enum class End { DONE, REFUSED, FAILED, LATE };
+
+    void cycle();
+    void fail(const std::string &rule, const std::string &text);
+    bool isOver() const { return !verdict_.fault.empty() || isTaskGone_; }
+    client::Serial post(const msgs::Command &command);
+    End wait(client::Serial command, double most_s);
+    End ask(const msgs::Command &command, double most_s = 5);
+    void settle(double most_s);
+    msgs::State state();
+
+    bool prepare();
+    bool switch_on();
+    bool home();
+    bool set_mode(msgs::Mode mode);
+
+    void perform(const Act &act);
+    void run_program(const Act &act);
+    void jog(const Act &act);
+    void begin_troubles(const Act &act);
+    void step_troubles();
+    void begin(const Trouble &t);
+    void begin_stop(const Trouble &t);
+    void end(const Trouble &t);
+    void check_program(const Act &act, const geom::Pose &from, double took_s);
+    double estimate(const Act &act, const geom::Pose &from) const;
+
+    const Plan &plan_;
+    std::filesystem::path folder_;
+    std::FILE *tell_;
+    std::ofstream trace_;
+    std::unique_ptr<Rig> rig_;
+    Judge judge_;
+    Verdict verdict_;
+    bool isTaskGone_ = false;
+    bool areEncodersTrue_ = true;
+    // --- of the act under way
+    const Act *act_ = nullptr;
+    std::uint64_t began_ = 0;
+    std::size_t next_trouble_ = 0;
+    struct Going {
+        Trouble trouble;
+        std::uint64_t until = 0;
+    };
+    std::vector<Going> going_;
+    bool isStopped_ = false, isDisturbed_ = false;
+    bool isRecording_ = false;
+    std::vector<geom::Pose> path_;
+};
+
+}  // namespace mw::campaign

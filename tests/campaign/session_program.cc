@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Programs of a session, and what goes wrong meanwhile.
+#include <cmath>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "campaign/session.hh"
+#include "machine/time_estimate.hh"
+#include "testing/deviation.hh"
+
+namespace mw::campaign {
+namespace {
+
+constexpr double PERIOD_S = 1e-3;
+constexpr int WATCHDOG_MS = 500;
+
+geom::Pose on_arc(const geom::Pose &from, const Block &b, double share) {
+    const double x = from[0] - b.centre[0];
+    const double y = from[1] - b.centre[1];
+    const double last = std::hypot(b.end[0] - b.centre[0], b.end[1] - b.centre[1]);
+    const double r = std::hypot(x, y) + share * (last - std::hypot(x, y));
+    const double angle = std::atan2(y, x) + share * b.angle_rad;
+    geom::Pose p = from + (b.end - from) * share;
+    p[0] = b.centre[0] + r * std::cos(angle);
+    p[1] = b.centre[1] + r * std::sin(angle);
+    return p;
+}
+
+/// The programmed path, cut into steps of at most `step`.
+std::vector<geom::Pose> programmed_path(const Act &act, const geom::Pose &from, double step) {
+    std::vector<geom::Pose> path{from};
+    for (const Block &b : act.blocks) {
+        if (!b.isMove) {
+            continue;
+        }
+        const geom::Pose start = path.back();
+        double length = testing::pose_distance(b.end, start);
+        if (b.isArc) {
+            length += std::abs(b.angle_rad) * std::hypot(start[0] - b.centre[0], start[1] - b.centre[1]);
+        }
+        const int n = 1 + static_cast<int>(length / step);
+        for (int i = 1; i < n; ++i) {
+            const double share = static_cast<double>(i) / n;
+            path.push_back(b.isArc ? on_arc(start, b, share) : start + (b.end - start) * share);
+        }
+        path.push_back(b.end);
+    }
+    return path;
+}
+
+}  // namespace
+
+void Session::run_program(const Act &act) {
+    const std::string file = (folder_ / fmt::format("p{}.ngc", verdict_.programs)).string();
+    std::ofstream out(file);
+    for (const Block &b : act.blocks) {
+        out << b.text << '\n';
+    }
+    out.close();
+    if (!set_mode(msgs::Mode::AUTO) || ask(msgs::OpenProgram{file}) != End::DONE) {
+        fail("work", "the program is not opened with the machine at rest");
+        return;
+    }
+    settle(2);
+    const geom::Pose from = rig_->sample().axes;
+    path_.clear();
+    path_.push_back(from);
+    isRecording_ = true;
+    begin_troubles(act);
+    judge_.allow(Leave::WORK);
+    ++verdict_.programs;
+    const std::uint64_t begin = rig_->sample().cycle;
+    const End end = wait(post(msgs::RunProgram{}), 300);
+    const double took_s = static_cast<double>(rig_->sample().cycle - begin) * PERIOD_S;
+    isRecording_ = false;
+    if (isOver()) {
+        return;
+    }
+    if (end == End::LATE) {
+        fail("work", "the program does not end");
+    } else if (end != End::DONE && !isStopped_) {
+        fail("work", "the program ends badly with nothing wrong");
+    } else if (end == End::DONE) {
+        ++verdict_.ended;
+        check_program(act, from, took_s);
+    }
+}
+
+/// It is at its end, has been everywhere in order within the tolerance, and was not slow.
+void Session::check_program(const Act &act, const geom::Pose &from, double took_s) {
+    double tolerance = 1e-3;
+    geom::Pose last = from;
+    for (const Block &b : act.blocks) {
+        tolerance = std::max(tolerance, b.isMove ? b.settings.tolerance : 0.0);
+        last = b.isMove ? b.end : last;
+    }
+    const geom::Pose &at = rig_->sample().axes;
+    if (testing::pose_distance(at, last) > (plan_.design.isTrivial ? 1e-9 : 1e-6)) {
+        fail("work", fmt::format("the program ends {:.3g} from its end", testing::pose_distance(at, last)));
+        return;
+    }
+    double longest = 0;
+    double length = 0;
+    for (std::size_t i = 1; i < path_.size(); ++i) {
+        const double step = testing::pose_distance(path_[i], path_[i - 1]);
+        longest = std::max(longest, step);
+        length += step;
+    }
+    constexpr double SHARE = 0.2, MOST_POINTS = 100000;
+    const double cut = std::max(SHARE * tolerance, length / MOST_POINTS);
+    // Between two samples a curve leaves their chord by less than a quarter of it.
+    const double allowed = tolerance + 0.5 * cut + 0.02 * longest + 1e-4;
+    if (!testing::isWithinInOrder(testing::refined(path_, cut), programmed_path(act, from, cut), allowed)) {
+        fail("path", fmt::format("more than {:.4g} beside the program, or out of order", allowed));
+        return;
+    }
+    const bool isTimed = !isDisturbed_ && !isStopped_ && plan_.design.isTrivial;
+    if (isTimed) {
+        ++verdict_.timed;
+        const double expected = estimate(act, from);
+        const double off = took_s / expected - 1;
+        // Commands, ends of outputs and a start of the planner cost cycles that no estimate knows.
+        constexpr double PART = 0.01, SLACK_S = 0.1;
+        verdict_.worst_time = std::max(verdict_.worst_time, std::abs(took_s - expected) - PART * expected);
+        if (std::abs(took_s - expected) > PART * expected + SLACK_S) {
+            fail("time", fmt::format("{:.3f} s where {:.3f} s are estimated, {:+.1f} %", took_s, expected,
+                                     100 * off));
+        }
+    }
+}
+
+double Session::estimate(const Act &act, const geom::Pose &from) const {
+    machine::TimeEstimate time(rig_->config());
+    time.start(from);
+    for (const Block &b : act.blocks) {
+        if (b.isArc) {
+            interp::ArcMove arc;
+            arc.end = b.end;
+            arc.centre = b.centre;
+            arc.normal[geom::AXIS_Z] = 1;
+            arc.angle_rad = b.angle_rad;
+            arc.settings = b.settings;
+            time.arc(arc);
+        } else if (b.isMove) {
+            time.line(b.end, b.settings);
+        } else if (b.dwell_s > 0) {
+            time.dwell(b.dwell_s);
+        } else if (!b.isTimed || b.text.starts_with("M3")) {
+            time.stop();
+        }
+    }
+    return time.finish().total_s;
+}
+
+void Session::begin_troubles(const Act &act) {
+    act_ = &act;
+    began_ = rig_->sample().cycle;
+    next_trouble_ = 0;
+}
+
+void Session::step_troubles() {
+    if (act_ == nullptr || isOver()) {
+        return;
+    }
+    const std::uint64_t now = rig_->sample().cycle;
+    while (next_trouble_ < act_->troubles.size() &&
+           now >= began_ + static_cast<std::uint64_t>(act_->troubles[next_trouble_].at_ms)) {
+        const Trouble &t = act_->troubles[next_trouble_++];
+        if (tell_ != nullptr) {
+            std::fprintf(tell_, "  [%.3f] %s, joint %d, %.3g, %d ms\n", static_cast<double>(now) * PERIOD_S,
+                         name_of(t.what), t.joint, t.value, t.length_ms);
+        }
+        isDisturbed_ = true;
+        going_.push_back({t, now + static_cast<std::uint64_t>(t.length_ms)});
+        isPassing(t.what) ? begin(t) : begin_stop(t);
+    }
+    for (std::size_t i = 0; i < going_.size();) {
+        if (now >= going_[i].until) {
+            end(going_[i].trouble);
+            going_.erase(going_.begin() + static_cast<std::ptrdiff_t>(i));
+        } else {
+            ++i;
+        }
+    }
+}
+
+void Session::begin_stop(const Trouble &t) {
+    constexpr int TO_TASK = 4;  // and from there to motion [cycles]
+    const JointDesign &joint = plan_.design.joints[static_cast<std::size_t>(t.joint)];
+    JointFaults &pins = rig_->joint_faults[static_cast<std::size_t>(t.joint)];
+    const bool isIdle = judge_.isAtRest();
+    switch (t.what) {
+    case Upset::ABORT:
+        post(msgs::AbortAll{});
+        judge_.stop(Stop::ALONG_THE_PATH, TO_TASK);
+        break;
+    case Upset::OFF:
+        post(msgs::SetState{msgs::State::OFF});
+        judge_.stop(Stop::AT_ONCE, TO_TASK);
+        break;
+    case Upset::ESTOP_COMMAND:
+        post(msgs::SetState{msgs::State::ESTOP});
+        judge_.stop(Stop::AT_ONCE, TO_TASK);
+        break;
+    case Upset::ESTOP:
+        rig_->faults.isChainOpen = true;
+        judge_.stop(Stop::AT_ONCE, 0);
+        break;
+    case Upset::ENABLE:
+        rig_->faults.isDisabled = true;
+        judge_.stop(Stop::AT_ONCE, 0);
+        break;
+    case Upset::AMP_FAULT:
+        rig_->trip_amplifier(t.joint);
+        judge_.stop(Stop::AT_ONCE, 0);
+        break;
+    case Upset::LIMIT_SWITCH:
+        pins.isOnLimit = true;
+        judge_.stop(Stop::ALONG_THEN_OFF, 0);
+        break;
+    case Upset::ENCODER_LOST:
+        rig_->lose_encoder(t.joint, true);
+        areEncodersTrue_ = false;
+        break;
+    case Upset::ENCODER_JUMP:
+        rig_->jump_encoder(t.joint, (2 * t.value - 1) * 3 * joint.ferror);
+        areEncodersTrue_ = false;
+        break;
+    case Upset::ENCODER_NAN:
+        pins.isEncoderNan = true;
+        judge_.stop(Stop::AT_ONCE, 0);
+        break;
+    case Upset::SPINDLE_FAULT:
+        rig_->faults.isSpindleFaulted = true;
+        judge_.stop(Stop::ALONG_THEN_OFF, 0);
+        break;
+    case Upset::PROBE_STUCK:
+        if (!isIdle && act_->work == Work::PROGRAM) {
+            rig_->faults.isProbeClosed = true;
+            judge_.stop(Stop::ALONG_THE_PATH, 0);
+        }
+        break;
+    case Upset::TASK_HUNG:
+        rig_->faults.isTaskHeld = true;
+        judge_.stop(Stop::ALONG_THEN_OFF, WATCHDOG_MS + 2);
+        break;
+    default:
+        rig_->faults.isTaskDead = true;
+        judge_.stop(Stop::ALONG_THEN_OFF, 0);
+        break;
+    }
+    isStopped_ = true;
+    ++verdict_.stops;
+    if (rig_->faults.isTaskDead) {
+        settle(20);
+        isTaskGone_ = true;
+    }
+}
+
+void Session::begin(const Trouble &t) {
+    switch (t.what) {
+    case Upset::PAUSE: post(msgs::PauseProgram{}); break;
+    case Upset::SPINDLE_NAN: rig_->faults.isSpindleNan = true; break;
+    case Upset::FEED_OVERRIDE: post(msgs::SetFeedOverride{t.value < 0.1 ? 0 : 1.5 * t.value}); break;
+    case Upset::RAPID_OVERRIDE: post(msgs::SetRapidOverride{t.value}); break;
+    case Upset::FEED_INHIBIT: rig_->faults.isFeedInhibited = true; break;
+    case Upset::ADAPTIVE_NAN: rig_->faults.isAdaptiveNan = true; break;
+    case Upset::PLANNER_LATE:
+    case Upset::PLANNER_LOST: rig_->hold_planner(true); break;
+    default:
+        if (act_->work == Work::PROGRAM && !isStopped_) {
+            // Those that come when the program has just ended are commands as any others.
+            judge_.allow(Leave::WORK);
+            post(msgs::SetMode{msgs::Mode::MANUAL});
+            post(msgs::JogIncrement{false, 0, 5, 5});
+            post(msgs::JogContinuous{true, t.joint, 5, 0, false});
+            post(msgs::HomeJoint{-1});
+            post(msgs::RunProgram{});
+            post(msgs::Mdi{"G0 X1"});
+        }
+        break;
+    }
+}
+
+void Session::end(const Trouble &t) {
+    JointFaults &pins = rig_->joint_faults[static_cast<std::size_t>(t.joint)];
+    switch (t.what) {
+    case Upset::PAUSE: post(msgs::ResumeProgram{}); break;
+    case Upset::SPINDLE_NAN: rig_->faults.isSpindleNan = false; break;
+    case Upset::FEED_OVERRIDE: post(msgs::SetFeedOverride{1}); break;
+    case Upset::RAPID_OVERRIDE: post(msgs::SetRapidOverride{1}); break;
+    case Upset::FEED_INHIBIT: rig_->faults.isFeedInhibited = false; break;
+    case Upset::ADAPTIVE_NAN: rig_->faults.isAdaptiveNan = false; break;
+    case Upset::PLANNER_LATE:
+    case Upset::PLANNER_LOST: rig_->hold_planner(false); break;
+    case Upset::ESTOP: rig_->faults.isChainOpen = false; break;
+    case Upset::ENABLE: rig_->faults.isDisabled = false; break;
+    case Upset::LIMIT_SWITCH: pins.isOnLimit = false; break;
+    case Upset::ENCODER_LOST: rig_->lose_encoder(t.joint, false); break;
+    case Upset::ENCODER_NAN: pins.isEncoderNan = false; break;
+    case Upset::SPINDLE_FAULT: rig_->faults.isSpindleFaulted = false; break;
+    case Upset::PROBE_STUCK: rig_->faults.isProbeClosed = false; break;
+    case Upset::TASK_HUNG: rig_->faults.isTaskHeld = false; break;
+    default: break;
+    }
+}
+
+}  // namespace mw::campaign
