@@ -69,8 +69,12 @@ inline constexpr auto INI_KEYS = std::to_array<config::IniKey>({
     config::ini_required(config::ini_text("KINS", "KINEMATICS", "kinematics module and its arguments")),
     config::ini_required(config::ini_whole("KINS", "JOINTS", "", 1, {1, 16}, "number of joints")),
 
-    config::ini_without_effect("JOINT_*", "COMP_FILE", "tables of screw errors are not read by this version"),
-    config::ini_elsewhere("JOINT_*", "COMP_FILE_TYPE", "readers of COMP_FILE"),
+    config::ini_text(
+        "JOINT_*", "COMP_FILE",
+        "table of the errors of the joint's screw, up to 10000 points; BACKLASH is not used then"),
+    config::ini_whole("JOINT_*", "COMP_FILE_TYPE", "", 0, {0, 1},
+                      "0: position, where it is on the way up, on the way down; 1: position, what is to be "
+                      "added on the way up, on the way down"),
     config::ini_without_effect("JOINT_*", "LOCKING_INDEXER", "indexers are not locked by this version"),
     config::ini_without_effect("AXIS_*", "WRAPPED_ROTARY", "the axis turns as far as the program says"),
     config::ini_without_effect("AXIS_*", "LOCKING_INDEXER_JOINT", "indexers are not locked by this version"),

@@ -55,7 +55,9 @@ Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
         [&](const SetMode &c) { return set_mode(c.mode); },
         [&](const SetParameter &c) { return set_parameter(c); },
         [&](const SetNumJoints &c) { return set_num_joints(in, c.count); },
-        [&](const SetAmplifier &c) { return motion::take(joints_, c, power_.isEnabled); },
+        [&](const OneOf<SetAmplifier, LoadCompensation> auto &c) {
+            return motion::take(joints_, c, power_.isEnabled);
+        },
         [&](const SetJointActive &c) {
             const bool areAlone = !power_.isEnabled || power_.mode == Mode::FREE;
             const Verdict verdict =
