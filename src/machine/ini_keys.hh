@@ -78,7 +78,6 @@ inline constexpr auto INI_KEYS = std::to_array<config::IniKey>({
     config::ini_without_effect("JOINT_*", "LOCKING_INDEXER", "indexers are not locked by this version"),
     config::ini_without_effect("AXIS_*", "WRAPPED_ROTARY", "the axis turns as far as the program says"),
     config::ini_without_effect("AXIS_*", "LOCKING_INDEXER_JOINT", "indexers are not locked by this version"),
-    config::ini_without_effect("AXIS_*", "OFFSET_AV_RATIO", "there are no external offsets in this version"),
     config::ini_number("AXIS_*", "HOME", "machine units", 0.0,
                        {-config::INI_UNBOUNDED, config::INI_UNBOUNDED}, "of the joint that moves the axis"),
     config::ini_elsewhere("AXIS_*", "GEOMETRY", "displays"),

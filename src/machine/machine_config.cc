@@ -229,6 +229,13 @@ void read_axes(IniReader &ini, MachineConfig &machine) {
                              ini.find(travel.low, section)->place);
         }
         read_parameters(ini, section, "AXIS_*", axis, machine);
+        const IniKey ratio = ini_key(Parameter::AXIS_OFFSET_RATIO);
+        if (!machine.isTrivial && ini.real(ratio, section) > 0) {
+            ini.sink().warning('[' + section +
+                                   "]OFFSET_AV_RATIO has no effect: external offsets are for "
+                                   "machines whose joints are axes (trivkins)",
+                               ini.find(ratio, section)->place);
+        }
         if (geom::isAngular(axis)) {
             limit_angular(ini, axis, machine);
         }

@@ -60,6 +60,7 @@ struct Status {
     double current_velocity = 0;  ///< along the path [machine units/s]
     double requested_velocity = 0, distance_to_go = 0;
     geom::Pose carte_pos_cmd, carte_pos_fb, probed_pos, dtg;
+    geom::Pose external_offset;  ///< in carte_pos_cmd and carte_pos_fb, in none of the others
     bool isProbing = false, isProbeTripped = false, probe_value = false;
     double feed_scale = 1.0, rapid_scale = 1.0, net_feed_scale = 1.0;
     bool isFeedOverrideEnabled = true, isAdaptiveFeedEnabled = false, isFeedHoldEnabled = true;

@@ -17,6 +17,7 @@
 #include "motion/core/io.hh"
 #include "motion/core/jogs/jogs.hh"
 #include "motion/core/joints/joints.hh"
+#include "motion/core/offsets/external_offsets.hh"
 #include "motion/core/outputs/machine_outputs.hh"
 #include "motion/core/path_link.hh"
 #include "motion/core/power/power.hh"
@@ -127,6 +128,7 @@ class Controller {
     Holds holds_;
     TouchProbe probe_;
     Place place_;
+    ExternalOffsets offsets_;
     traj::Executor executor_;
     Retracing retracing_;
 
@@ -137,6 +139,10 @@ class Controller {
 inline Stride stride_of(const FoldedLimits &limits, const ControllerConfig &config) noexcept {
     return {limits.joints.velocity.data(), config.period_s, config.num_joints};
 }
+
+/// Where jogs or the path may lead to without external offsets.
+PoseRange programmed_range(const Jogs &jogs, const PathLink &link, Mode mode,
+                           const geom::Pose &pose) noexcept;
 
 /// The move that the path is executing; nullptr for none.
 inline const traj::MoveTag *active_move(const traj::Executor &executor, const traj::PathStore &store,

@@ -147,6 +147,7 @@ Verdict Controller::enable(const Inputs &in) noexcept {
     }
     switch_on(power_);
     switch_on(joints_);
+    start_at_zero(offsets_, in);
     start_at(jogs_, commanded(joints_).data(), place_.cmd, in);
     isCoordError_ = false;
     executor_.drop();
@@ -158,6 +159,7 @@ Verdict Controller::enable(const Inputs &in) noexcept {
 
 void Controller::disable() noexcept {
     executor_.stop_now();
+    stop_at_once(offsets_);
     switch_off(power_);
     release(holds_);
     switch_off(joints_);
@@ -177,7 +179,8 @@ void Controller::leave_lost_mode() noexcept {
 }
 
 Verdict Controller::set_mode(Mode mode) noexcept {
-    const ModeConditions conditions{homing_.isUnderWay(), isAnythingMoving(),
+    const bool isOffsetMoving = mode == Mode::FREE && !areAtRest(offsets_);
+    const ModeConditions conditions{homing_.isUnderWay(), isAnythingMoving() || isOffsetMoving,
                                     kinematics_.kind() != kins::Kind::IDENTITY, homing_.homing.isAllHomed()};
     const Reason reason = check_mode(power_, mode, conditions);
     if (reason != Reason::NONE || mode == power_.mode) {
@@ -189,9 +192,10 @@ Verdict Controller::set_mode(Mode mode) noexcept {
     }
     executor_.drop();
     executor_.hold(false);
-    executor_.set_position(place_.cmd);
+    const geom::Pose pose = without(offsets_, place_.cmd);
+    executor_.set_position(pose);
     retracing_.retrace.clear();
-    rest_at(jogs_, commanded(joints_).data(), place_.cmd);
+    rest_at(jogs_, commanded(joints_).data(), pose);
     release(holds_);
     power_.mode = mode;
     tell_standing();
@@ -270,6 +274,9 @@ JogSituation Controller::situation_of(const Inputs &in, const JogTarget &target)
     }
     s.most = limits_.jog(target);
     s.range = jog_range(limits_, map_, target, commanded(joints_).data());
+    if (!target.isJoint) {
+        narrow(s.range, offsets_, target.index);
+    }
     return s;
 }
 
@@ -286,7 +293,9 @@ void Controller::tell_standing() noexcept {
 /// Limits of axes and joints folded together, for jogs and the path planner.
 void Controller::publish_limits() noexcept {
     limits_ = fold_limits(settings_, map_, {homed_mask(homing_), homing_.homing.isAllHomed()});
+    configure(offsets_, limits_);
     PathLimits out;
+    out.offset_axes = offsets_.axes;
     out.limits = limits_.path;
     out.low = limits_.low;
     out.high = limits_.high;
