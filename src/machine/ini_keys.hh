@@ -69,12 +69,15 @@ inline constexpr auto INI_KEYS = std::to_array<config::IniKey>({
     config::ini_required(config::ini_text("KINS", "KINEMATICS", "kinematics module and its arguments")),
     config::ini_required(config::ini_whole("KINS", "JOINTS", "", 1, {1, 16}, "number of joints")),
 
-    config::ini_without_effect("JOINT_*", "COMP_FILE", "tables of screw errors are not read by this version"),
-    config::ini_elsewhere("JOINT_*", "COMP_FILE_TYPE", "readers of COMP_FILE"),
+    config::ini_text(
+        "JOINT_*", "COMP_FILE",
+        "table of the errors of the joint's screw, up to 10000 points; BACKLASH is not used then"),
+    config::ini_whole("JOINT_*", "COMP_FILE_TYPE", "", 0, {0, 1},
+                      "0: position, where it is on the way up, on the way down; 1: position, what is to be "
+                      "added on the way up, on the way down"),
     config::ini_without_effect("AXIS_*", "WRAPPED_ROTARY", "the axis turns as far as the program says"),
     config::ini_without_effect("AXIS_*", "LOCKING_INDEXER_JOINT",
                                "only homing unlocks and locks indexers in this version"),
-    config::ini_without_effect("AXIS_*", "OFFSET_AV_RATIO", "there are no external offsets in this version"),
     config::ini_number("AXIS_*", "HOME", "machine units", 0.0,
                        {-config::INI_UNBOUNDED, config::INI_UNBOUNDED}, "of the joint that moves the axis"),
     config::ini_elsewhere("AXIS_*", "GEOMETRY", "displays"),

@@ -12,6 +12,7 @@
 #include "interp/ini_settings.hh"
 #include "machine/ini_keys.hh"
 #include "motion/api/parameters.hh"
+#include "motion/api/screw_file.hh"
 
 namespace mw::machine {
 namespace {
@@ -160,6 +161,29 @@ void check_rate(IniReader &ini, const std::string &section, const IniKey &key) {
     }
 }
 
+/// The table of a joint's screw errors, where the file names one.
+void read_compensation(IniReader &ini, const std::string &section, int joint, MachineConfig &machine) {
+    const std::string name = ini.text(ini_key("JOINT_*", "COMP_FILE"), section);
+    const std::int64_t type = ini.integer(ini_key("JOINT_*", "COMP_FILE_TYPE"), section);
+    if (name.empty()) {
+        return;
+    }
+    const config::IniEntry *entry = ini.find(ini_key("JOINT_*", "COMP_FILE"), section);
+    if (ini.find(ini_key("JOINT_*", "COMP_FILE_TYPE"), section) == nullptr) {
+        ini.sink().warning('[' + section +
+                               "]COMP_FILE_TYPE is missing: 0 is used, positions and where the "
+                               "joint really is",
+                           entry->place);
+    }
+    auto points = motion::read_screw_file(ini.file().resolve_path(name), joint,
+                                          static_cast<motion::ScrewFileType>(type));
+    if (!points.has_value()) {
+        ini.sink().error(points.error());
+        return;
+    }
+    machine.screw_tables.push_back(std::move(*points));
+}
+
 void read_joints(IniReader &ini, MachineConfig &machine) {
     const TravelKeys travel = {ini_key(Parameter::JOINT_MIN_LIMIT), ini_key(Parameter::JOINT_MAX_LIMIT),
                                ini_key(Parameter::JOINT_HOME)};
@@ -170,6 +194,7 @@ void read_joints(IniReader &ini, MachineConfig &machine) {
         read_parameters(ini, section, "JOINT_*", joint, machine);
         check_rate(ini, section, ini_key(Parameter::JOINT_MAX_VELOCITY));
         check_rate(ini, section, ini_key(Parameter::JOINT_MAX_ACCELERATION));
+        read_compensation(ini, section, joint, machine);
         ini.declare_in(section, "JOINT_*", all_ini_keys());
     }
 }
@@ -204,6 +229,13 @@ void read_axes(IniReader &ini, MachineConfig &machine) {
                              ini.find(travel.low, section)->place);
         }
         read_parameters(ini, section, "AXIS_*", axis, machine);
+        const IniKey ratio = ini_key(Parameter::AXIS_OFFSET_RATIO);
+        if (!machine.isTrivial && ini.real(ratio, section) > 0) {
+            ini.sink().warning('[' + section +
+                                   "]OFFSET_AV_RATIO has no effect: external offsets are for "
+                                   "machines whose joints are axes (trivkins)",
+                               ini.find(ratio, section)->place);
+        }
         if (geom::isAngular(axis)) {
             limit_angular(ini, axis, machine);
         }

@@ -41,6 +41,8 @@ struct MachineConfig {
     task::Settings task;
     /// Every setting of the motion controller that the INI gives or that has a documented default.
     std::vector<motion::SetParameter> parameters;
+    /// Of each joint that has one ([JOINT_n]COMP_FILE).
+    std::vector<std::vector<motion::LoadCompensation>> screw_tables;
     /// The axis of each joint by the letters of the file: what limits a joint limits it where `isTrivial`.
     motion::AxisMap axis_map;
     bool isTrivial = false;  ///< joints are axes

@@ -44,6 +44,9 @@ Result<> TaskSide::start(const MachineOptions &options) {
     settings.isUserProgramWaitedFor = options.isClockVirtual;
     task_ = std::make_unique<task::Task>(
         task::Parts{*channels_, *this, *tools_, parameters_, mailbox_.segment()}, std::move(settings));
+    for (const auto &table : parts_.config.screw_tables) {
+        task_->load_compensation(table);
+    }
     task_->configure(parts_.config.parameters);
     auto client = client::Client::join(mailbox_.segment());
     if (!client.has_value()) {
@@ -145,6 +148,10 @@ Result<bool> TaskSide::isConfigured() {
 }
 
 Result<> TaskSide::finish_start(Machine &machine, int most_cycles) {
+    constexpr int POINTS_PER_CYCLE = 32;  // at least
+    for (const auto &table : parts_.config.screw_tables) {
+        most_cycles += static_cast<int>(table.size()) / POINTS_PER_CYCLE;
+    }
     for (int i = 0; i < most_cycles; ++i) {
         machine.cycle();
         if (auto health = machine.health(); !health) {

@@ -77,8 +77,12 @@ class Task {
 
     /// Hands settings to the motion controller; a refused one comes as a message.
     void configure(const std::vector<motion::SetParameter> &parameters);
+    /// And a table of the errors of a joint's screw.
+    void load_compensation(const std::vector<motion::LoadCompensation> &points) {
+        motion_.send_table(points);
+    }
     /// All settings handed over are answered.
-    bool isConfigured() const { return motion_.isAnswered(last_setting_); }
+    bool isConfigured() const { return motion_.isAnswered(last_setting_) && motion_.areTablesAnswered(); }
 
     /// Loads parameters and announces the start state to the interpreter. Errors name file, line and column.
     Result<> start();

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/overloaded.hh"
+#include "motion/api/screw_file.hh"
 #include "task/link/motion_words.hh"
 #include "task/task.hh"
 
@@ -22,8 +23,8 @@ concept PartOfPrograms =
 template <class T>
 concept PartOfConfiguration =
     OneOf<T, SetJointKind, SetJointUnits, SetJointMinLimit, SetJointMaxLimit, SetJointFerror,
-          SetJointMinFerror, SetJointMaxVelocity, SetJointBacklash, SetJointHoming, LoadCompensation,
-          SetTrajAxes, SetTrajUnits, SetTrajCycleTime, SetMaxAcceleration, SetTrajHome, SetIoCycleTime>;
+          SetJointMinFerror, SetJointMaxVelocity, SetJointBacklash, SetJointHoming, SetTrajAxes, SetTrajUnits,
+          SetTrajCycleTime, SetMaxAcceleration, SetTrajHome, SetIoCycleTime>;
 /// What starts and ends with the machine.
 template <class T>
 concept PartOfStart = OneOf<T, InitTask, HaltTask, InitMachine, HaltMachine, InitMotion, HaltMotion, InitTraj,
@@ -31,8 +32,8 @@ concept PartOfStart = OneOf<T, InitTask, HaltTask, InitMachine, HaltMachine, Ini
 template <class T>
 concept NotYet =
     OneOf<T, CloseProgram, ResetInterpreter, SynchInterpreter, StopOptionally, SetDebug, SystemCommand,
-          CallTaskPlugin, CallIoPlugin, SetMotionMode, SetTeleopVector, EnableTraj, DisableTraj,
-          SpindleIncrease, SpindleDecrease, SpindleConstant, SetSpindleSpeed, LubeOn, LubeOff, SetToolEntry>;
+          CallTaskPlugin, CallIoPlugin, SetMotionMode, EnableTraj, DisableTraj, SpindleIncrease,
+          SpindleDecrease, SpindleConstant, SetSpindleSpeed, LubeOn, LubeOff, SetToolEntry>;
 /// What motion does by itself (task/link/motion_words.hh).
 template <class T>
 concept CarriedOutByMotion =
@@ -77,6 +78,10 @@ struct Task::Handler {
     Outcome operator()(const JogIncrement &command);
     Outcome operator()(const JogAbsolute &command);
     Outcome operator()(const JogStop &command);
+    Outcome operator()(const SetTeleopVector &command) {
+        return jog(motion::SetTeleopVector{command.velocity});
+    }
+    Outcome operator()(const LoadCompensation &command);
     Outcome operator()(const SpindleOn &command);
     Outcome operator()(const SpindleOff &command);
     Outcome operator()(const LoadToolTable &command);
@@ -428,6 +433,23 @@ Outcome Task::Handler::operator()(const JogAbsolute &command) {
 Outcome Task::Handler::operator()(const JogStop &command) {
     refuse(task.inbox_.drop_jogs_before(id, command));
     return send(motion::JogStop{{command.isJoint, command.index}});
+}
+
+/// Done when the file is read and on its way to motion.
+Outcome Task::Handler::operator()(const LoadCompensation &command) {
+    if (task.state_.state() == State::ON) {
+        return fail("a table of screw errors is loaded while the machine is off");
+    }
+    if (command.joint >= task.settings_.num_joints) {
+        return fail(fmt::format("there is no joint {}", command.joint));
+    }
+    const auto type = static_cast<motion::ScrewFileType>(command.kind);
+    const auto points = motion::read_screw_file(command.path, command.joint, type);
+    if (!points.has_value()) {
+        return std::unexpected(points.error());
+    }
+    task.load_compensation(*points);
+    return Progress::DONE;
 }
 
 Outcome Task::Handler::operator()(const SpindleOn &command) {

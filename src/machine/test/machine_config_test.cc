@@ -66,6 +66,31 @@ TEST(MachineConfig, AxesAndJointsAreDifferentThings_A3) {
     EXPECT_EQ(c.parameter(motion::Parameter::JOINT_MAX_ACCELERATION, 1), 10.0);
 }
 
+TEST(MachineConfig, ATableOfScrewErrorsIsReadAndChecked_C11) {
+    std::string name = (std::filesystem::temp_directory_path() / "screw-XXXXXX").string();
+    ::close(::mkstemp(name.data()));
+    const auto with = [&](const std::string &lines, const std::string &table) {
+        EXPECT_TRUE(write_file_atomically(name, table).has_value());
+        return replaced(GOOD, "[JOINT_1]\n", "[JOINT_1]\nCOMP_FILE = " + name + "\n" + lines);
+    };
+    const Config good(with("COMP_FILE_TYPE = 0\n", "0 0.01 -0.01\n10 10.02 9.98\n"));
+    ASSERT_FALSE(good.sink.hasErrors());
+    ASSERT_EQ(good.machine.screw_tables.size(), 1U);
+    ASSERT_EQ(good.machine.screw_tables[0].size(), 2U);
+    EXPECT_EQ(good.machine.screw_tables[0][1].joint, 1);
+    EXPECT_NEAR(good.machine.screw_tables[0][1].forward, -0.02, 1e-12);
+    EXPECT_FALSE(good.says("COMP_FILE"));
+    EXPECT_TRUE(Config(with("", "0 0 0\n")).says("[JOINT_1]COMP_FILE_TYPE is missing"));
+    const Config bad(with("COMP_FILE_TYPE = 1\n", "0 0 0\n-1 0 0\n"));
+    EXPECT_TRUE(bad.sink.hasErrors());
+    EXPECT_TRUE(bad.says(name + ":2:1: "));
+    EXPECT_TRUE(bad.says("the position -1 is not above 0"));
+    EXPECT_TRUE(Config(with("COMP_FILE_TYPE = 2\n", "0 0 0\n")).sink.hasErrors());
+    std::filesystem::remove(name);
+    EXPECT_TRUE(
+        Config(replaced(GOOD, "[JOINT_1]\n", "[JOINT_1]\nCOMP_FILE = " + name + "\n")).sink.hasErrors());
+}
+
 TEST(MachineConfig, SpeedOfRotaryAxesIsLimitedWhateverTheSpeedOfTheFirstJoint) {
     // Where kinematics are between, no joint is the axis: slow joints are no reason to forget the limit.
     const Config c("[TRAJ]\nCOORDINATES = X Y Z A C\nMAX_ANGULAR_VELOCITY = 5\n[KINS]\n"

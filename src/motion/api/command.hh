@@ -161,12 +161,24 @@ struct SetParameter {
     double value = 0;
 };
 
+inline constexpr int MAX_SCREW_POINTS = 10000;
+/// Steepest table of screw errors [units per unit]; what is left of the joint's limits changes sides with.
+inline constexpr double STEEPEST_SCREW = 0.25;
+/// One point of a table of screw errors (LOAD_COMP), in their order; the table holds once it is whole, and
+/// takes the place of backlash.
+struct LoadCompensation {
+    int joint = 0;
+    int index = 0, count = 0;         ///< of `count` points; count 0: no table any more
+    double nominal = 0;               ///< position of the joint, larger than that of the point before
+    double forward = 0, reverse = 0;  ///< to be added to the motor's on the way up and down
+};
+
 using CommandBody =
     std::variant<Abort, Enable, Disable, SetMode, SetAmplifier, SetJointActive, SetNumJoints, OverrideLimits,
                  SetWatchdog, Heartbeat, Pause, Resume, StepOnce, SetReverse, SetScale, SetSwitch,
                  SetMaxVelocity, JogContinuous, JogIncremental, JogAbsolute, JogStop, Home, Unhome,
                  SetTeleopVector, SpindleOn, SpindleOff, SpindleOrient, SpindleBrake, SetDigitalOutput,
-                 SetAnalogOutput, ClearProbeFlag, SetParameter, SetToolOffset>;
+                 SetAnalogOutput, ClearProbeFlag, SetParameter, SetToolOffset, LoadCompensation>;
 
 struct Command {
     CommandId id = 0;

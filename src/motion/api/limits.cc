@@ -43,6 +43,16 @@ struct Tightest {
     }
 };
 
+/// External offsets get `ratio` of what the axis has, paths and jogs the rest.
+void share_with_offset(double ratio, Tightest &all, JogLimits &jog, JogLimits &offset) noexcept {
+    offset = {ratio * jog.velocity, ratio * jog.acceleration, ratio * jog.jerk};
+    const double rest = 1 - ratio;
+    jog = {rest * jog.velocity, rest * jog.acceleration, rest * jog.jerk};
+    all.velocity *= rest;
+    all.acceleration *= rest;
+    all.jerk = all.jerk < NO_JERK_LIMIT ? rest * all.jerk : all.jerk;
+}
+
 void fold_axis(const Settings &s, const AxisMap &map, int axis, FoldedLimits &out) noexcept {
     Tightest all{s.get(Parameter::AXIS_MAX_VELOCITY, axis), s.get(Parameter::AXIS_MAX_ACCELERATION, axis),
                  s.get(Parameter::AXIS_MAX_JERK, axis)};
@@ -62,6 +72,10 @@ void fold_axis(const Settings &s, const AxisMap &map, int axis, FoldedLimits &ou
         geom::isAngular(axis) ? all.jerk : std::min(all.jerk, s.get(Parameter::TRAJ_MAX_JERK));
     out.axis_jog[at(axis)] = {all.velocity, all.acceleration,
                               isJerkLimited(s) ? jog_jerk(most_jog_jerk) : 0.0};
+    const double ratio = s.get(Parameter::AXIS_OFFSET_RATIO, axis);
+    if (ratio > 0 && map.areJointsAxes() && map.hasAxis(axis)) {
+        share_with_offset(ratio, all, out.axis_jog[at(axis)], out.offset[at(axis)]);
+    }
     for (int j = 0; j < map.num_joints && map.kind == AxisMap::Kind::UNKNOWN; ++j) {
         // Nothing is known of how joints follow axes: kept well below what those of the same kind can do.
         // Jogs are kept within the joints' limits in the servo thread.

@@ -3,6 +3,7 @@
 // Pure.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string_view>
@@ -50,6 +51,22 @@ struct HomedJoints {
 };
 inline constexpr HomedJoints ALL_HOMED{~0U, true};
 
+/// Where something is or may come to, of each axis.
+struct PoseRange {
+    geom::Pose low, high;
+
+    void include(const geom::Pose &pose) noexcept {
+        for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+            low[i] = std::min(low[i], pose[i]);
+            high[i] = std::max(high[i], pose[i]);
+        }
+    }
+    void include(const PoseRange &other) noexcept {
+        include(other.low);
+        include(other.high);
+    }
+};
+
 struct JogLimits {
     double velocity = 0, acceleration = 0;
     double jerk = 0;  ///< 0: none
@@ -64,6 +81,7 @@ struct FoldedLimits {
     std::array<double, MAX_JOINTS> travel{};  ///< between the soft limits of a joint, homed or not
     std::array<JogLimits, MAX_JOINTS> joint_jog{};
     std::array<JogLimits, MAX_AXES> axis_jog{};
+    std::array<JogLimits, MAX_AXES> offset{};  ///< external ones; velocity 0: the axis has none
 
     const JogLimits &jog(const JogTarget &target) const noexcept {
         const auto i = static_cast<std::size_t>(target.index);

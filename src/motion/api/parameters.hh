@@ -99,6 +99,8 @@ inline constexpr double NO_JERK_LIMIT = 1e9;
       "of the axis; that of the joint where there is none")                                                  \
     X(AXIS_MAX_JERK, AXIS, "AXIS_*", "MAX_JERK", JERK, 0, UNBOUNDED, NO_JERK_LIMIT,                          \
       "of the axis; counts with PLANNER_TYPE = 1")                                                           \
+    X(AXIS_OFFSET_RATIO, AXIS, "AXIS_*", "OFFSET_AV_RATIO", NONE, 0, 0.9, 0,                                 \
+      "part of velocity and acceleration that external offsets have; 0: there are none")                     \
     X(SPINDLE_MAX_FORWARD, SPINDLE, "SPINDLE_*", "MAX_FORWARD_VELOCITY", RPM, 0, UNBOUNDED, UNBOUNDED,       \
       "highest speed of M3")                                                                                 \
     X(SPINDLE_MIN_FORWARD, SPINDLE, "SPINDLE_*", "MIN_FORWARD_VELOCITY", RPM, 0, UNBOUNDED, 0,               \

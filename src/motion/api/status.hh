@@ -27,6 +27,7 @@ struct JointStatus {
 
 struct AxisStatus {
     double velocity = 0, min_limit = 0, max_limit = 0;
+    double offset = 0;  ///< external, in carte_pos_cmd and carte_pos_fb and in none of the other poses
 };
 
 struct SpindleStatus {
@@ -70,6 +71,15 @@ struct Status {
     std::array<SpindleStatus, MAX_SPINDLES> spindle{};
     std::array<double, MAX_ANALOG_IO> analog_in{}, analog_out{};
 };
+
+/// External offsets of all axes.
+inline geom::Pose external_offset(const Status &status) noexcept {
+    geom::Pose offset;
+    for (int i = 0; i < MAX_AXES; ++i) {
+        offset[i] = status.axis[static_cast<std::size_t>(i)].offset;
+    }
+    return offset;
+}
 
 /// The parts of `Status` in which it is published: who reads it often copies only what has changed.
 namespace status_part {

@@ -83,7 +83,7 @@ bool Controller::isAnythingMoving() const noexcept {
 
 void Controller::step(const Inputs &in, Outputs &out) noexcept {
     ++cycle_;
-    if (power_.isStopping && !isAnythingMoving()) {
+    if (power_.isStopping && !isAnythingMoving() && areAtRest(offsets_)) {
         disable();
     }
     const PerJoint measured = read_feedback(joints_, in);
@@ -146,6 +146,7 @@ void Controller::stop_category_1(FaultKind kind, int index, double value) noexce
     abort(homing_, homing::event::ABORT);
     executor_.drop();
     stop(jogs_);
+    stop(offsets_);
 }
 
 void Controller::check_faults(const Inputs &in) noexcept {
@@ -291,8 +292,9 @@ void Controller::output_joints() noexcept {
         return;
     }
     follow_joints(place_, kinematics_, commanded(joints_).data(), place_.isFbValid);
-    executor_.set_position(place_.cmd);
-    reset_axes(jogs_, place_.cmd);
+    const geom::Pose pose = without(offsets_, place_.cmd);
+    executor_.set_position(pose);
+    reset_axes(jogs_, pose);
 }
 
 }  // namespace mw::motion

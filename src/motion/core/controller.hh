@@ -18,6 +18,7 @@
 #include "motion/core/io.hh"
 #include "motion/core/jogs/jogs.hh"
 #include "motion/core/joints/joints.hh"
+#include "motion/core/offsets/external_offsets.hh"
 #include "motion/core/outputs/machine_outputs.hh"
 #include "motion/core/path_link.hh"
 #include "motion/core/power/power.hh"
@@ -130,6 +131,7 @@ class Controller {
     TouchProbe probe_;
     Place place_;
     KinematicsTypes types_;
+    ExternalOffsets offsets_;
     traj::Executor executor_;
     Retracing retracing_;
 
@@ -140,6 +142,10 @@ class Controller {
 inline Stride stride_of(const FoldedLimits &limits, const ControllerConfig &config) noexcept {
     return {limits.joints.velocity.data(), config.period_s, config.num_joints};
 }
+
+/// Where jogs or the path may lead to without external offsets.
+PoseRange programmed_range(const Jogs &jogs, const PathLink &link, Mode mode,
+                           const geom::Pose &pose) noexcept;
 
 /// The move that the path is executing; nullptr for none.
 inline const traj::MoveTag *active_move(const traj::Executor &executor, const traj::PathStore &store,

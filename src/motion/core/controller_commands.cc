@@ -55,7 +55,9 @@ Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
         [&](const SetMode &c) { return set_mode(c.mode); },
         [&](const SetParameter &c) { return set_parameter(c); },
         [&](const SetNumJoints &c) { return set_num_joints(in, c.count); },
-        [&](const SetAmplifier &c) { return motion::take(joints_, c, power_.isEnabled); },
+        [&](const OneOf<SetAmplifier, LoadCompensation> auto &c) {
+            return motion::take(joints_, c, power_.isEnabled);
+        },
         [&](const SetJointActive &c) {
             const bool areAlone = !power_.isEnabled || power_.mode == Mode::FREE;
             const Verdict verdict =
@@ -152,6 +154,7 @@ Verdict Controller::enable(const Inputs &in) noexcept {
     }
     switch_on(power_);
     switch_on(joints_);
+    start_at_zero(offsets_, in);
     start_at(jogs_, commanded(joints_).data(), place_.cmd, in);
     isCoordError_ = false;
     executor_.drop();
@@ -163,6 +166,7 @@ Verdict Controller::enable(const Inputs &in) noexcept {
 
 void Controller::disable() noexcept {
     executor_.stop_now();
+    stop_at_once(offsets_);
     switch_off(power_);
     release(holds_);
     switch_off(joints_);
@@ -182,7 +186,8 @@ void Controller::leave_lost_mode() noexcept {
 }
 
 Verdict Controller::set_mode(Mode mode) noexcept {
-    const ModeConditions conditions{homing_.isUnderWay(), isAnythingMoving(),
+    const bool isOffsetMoving = mode == Mode::FREE && !areAtRest(offsets_);
+    const ModeConditions conditions{homing_.isUnderWay(), isAnythingMoving() || isOffsetMoving,
                                     kinematics_.kind() != kins::Kind::IDENTITY, isAllHomed(homing_)};
     const Reason reason = check_mode(power_, mode, conditions);
     if (reason != Reason::NONE || mode == power_.mode) {
@@ -194,9 +199,10 @@ Verdict Controller::set_mode(Mode mode) noexcept {
     }
     executor_.drop();
     executor_.hold(false);
-    executor_.set_position(place_.cmd);
+    const geom::Pose pose = without(offsets_, place_.cmd);
+    executor_.set_position(pose);
     retracing_.retrace.clear();
-    rest_at(jogs_, commanded(joints_).data(), place_.cmd);
+    rest_at(jogs_, commanded(joints_).data(), pose);
     release(holds_);
     power_.mode = mode;
     tell_standing();
@@ -261,6 +267,9 @@ JogSituation Controller::situation_of(const Inputs &in, const JogTarget &target)
     }
     s.most = limits_.jog(target);
     s.range = jog_range(limits_, map_, target, commanded(joints_).data());
+    if (!target.isJoint) {
+        narrow(s.range, offsets_, target.index);
+    }
     return s;
 }
 
@@ -277,7 +286,9 @@ void Controller::tell_standing() noexcept {
 /// Limits of axes and joints folded together, for jogs and the path planner.
 void Controller::publish_limits() noexcept {
     limits_ = fold_limits(settings_, map_, {homed_mask(homing_), isAllHomed(homing_)});
+    configure(offsets_, limits_);
     PathLimits out;
+    out.offset_axes = offsets_.axes;
     out.limits = limits_.path;
     out.low = limits_.low;
     out.high = limits_.high;

@@ -6,6 +6,20 @@
 
 namespace mw::motion {
 
+PoseRange programmed_range(const Jogs &jogs, const PathLink &link, Mode mode,
+                           const geom::Pose &pose) noexcept {
+    constexpr int TRIES = 1000;
+    PoseRange out{pose, pose};
+    PathExtent path;
+    if (mode == Mode::COORD && link.extent.read(path, TRIES) && !path.isEmpty) {
+        out.include(path.range);
+    }
+    for (int i = 0; i < MAX_AXES && mode == Mode::TELEOP; ++i) {
+        jogs.at({false, i}).planner.add_reach(out.low[i], out.high[i]);
+    }
+    return out;
+}
+
 /// Free mode: every joint follows its own planner.
 void Controller::move_joints(const Inputs &in) noexcept {
     check_probe(in);
@@ -16,6 +30,9 @@ void Controller::move_joints(const Inputs &in) noexcept {
                    config_.period_s);
         follow(joints_[j], jog.planner.position, config_.period_s);
     }
+    if (offsets_.axes != 0) {
+        motion::step(offsets_, {in.axis_offset, limits_, {}, false, config_.period_s});
+    }
     const bool isKnown = kinematics_.kind() == kins::Kind::BOTH && isAllHomed(homing_);
     follow_joints(place_, kinematics_, commanded(joints_).data(), isKnown);
 }
@@ -23,8 +40,19 @@ void Controller::move_joints(const Inputs &in) noexcept {
 /// Teleop and coord: every joint follows the pose.
 void Controller::move_axes(const Inputs &in) noexcept {
     const geom::Pose pose = power_.mode == Mode::TELEOP ? teleop_pose() : path_pose();
+    if (offsets_.axes != 0) {
+        if (retracing_.retrace.isEmpty()) {
+            offsets_.travelled = {pose, pose};
+        }
+        offsets_.travelled.include(pose);
+        OffsetInputs offsets{in.axis_offset, limits_, programmed_range(jogs_, *link_, power_.mode, pose)};
+        offsets.programmed.include(offsets_.travelled);
+        offsets.isHonoured = power_.isReady() && limits_.homed.areAll;
+        offsets.period_s = config_.period_s;
+        motion::step(offsets_, offsets);
+    }
     check_probe(in);
-    move_to(pose);
+    move_to(offsets_.axes != 0 ? pose + offsets_.pose : pose);
     if (power_.mode == Mode::COORD) {
         if (!map_.areJointsAxes() && hasDropped(standing_, executor_.snapshot())) {
             tell_standing();
@@ -47,7 +75,7 @@ void Controller::move_axes(const Inputs &in) noexcept {
 
 geom::Pose Controller::teleop_pose() noexcept {
     executor_.step(cycle_);
-    executor_.set_position(place_.cmd);
+    executor_.set_position(without(offsets_, place_.cmd));
     if (!map_.areJointsAxes()) {
         const TeleopMachine machine{
             kinematics_,        limits_,          commanded(joints_),          config_.num_joints,
@@ -137,7 +165,7 @@ void Controller::switch_kinematics(kins::TypeSwitch &types) noexcept {
     bool isSwitched = types.switch_to(types_.wanted);
     if (!isSwitched) {
         raise(FaultKind::NO_KINEMATICS_TYPE, -1, types_.wanted);
-    } else if (homing_.homing.isAllHomed()) {
+    } else if (isAllHomed(homing_)) {
         const PerJoint joints = commanded(joints_);
         const bool isKnown = isAnswered(kinematics_.forward(joints.data(), pose)) &&
                              leadsTo(kinematics_, pose, joints, stride_of(limits_, config_));
@@ -197,7 +225,7 @@ void Controller::check_probe(const Inputs &in) noexcept {
         probe.isMoving = !power_.isStopping && isAnythingMoving();
         probe.isDropping = executor_.snapshot().isDropping;
     }
-    switch (motion::step(probe_, probe, place_.fb)) {
+    switch (motion::step(probe_, probe, without(offsets_, place_.fb))) {
     case ProbeEvent::NONE: break;
     case ProbeEvent::FOUND: executor_.drop(); break;
     case ProbeEvent::TOUCHED:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The snapshot that everybody else sees: each part fills in what it owns.
 #include <algorithm>
+#include <atomic>
 
 #include "motion/core/controller.hh"
 
@@ -69,7 +70,8 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
     fill(outputs_, in, s);
     fill_path(s);
     fill(joints_, settings_, {power_.isEnabled, jogs_.areLimitsOverridden, limits_.homed.joints}, out);
-    fill(jogs_, power_.mode, place_.cmd, out);
+    fill(jogs_, power_.mode, without(offsets_, place_.cmd), out);
+    fill(offsets_, out);
     fill(homing_, out);
     fill(spindles_, in, power_.isEnabled, out);
     for (int j = config_.num_joints; j < loaded_joints_; ++j) {
@@ -113,7 +115,7 @@ void Controller::fill_path(Status &s) const noexcept {
     s.current_velocity = e.velocity / tag->feed_ratio;
     s.requested_velocity = tag->requested_velocity;
     s.distance_to_go = e.distance_to_go / tag->feed_ratio;
-    s.dtg = tag->end - place_.cmd;
+    s.dtg = tag->end - without(offsets_, place_.cmd);
     s.isProbing = e.isOnProbe;
 }
 
@@ -127,7 +129,7 @@ void Controller::publish_view(const Inputs &in) noexcept {
     v.isStopping = power_.isStopping || retracing_.isPathLeft;
     v.enables = power_.enables;
     v.limits_version = limits_version_;
-    v.position = place_.cmd;
+    v.position = without(offsets_, place_.cmd);
     v.feed_scale = holds_.net_feed_scale;
     v.rapid_scale = holds_.rapid_scale;
     v.max_feed_scale = std::max(1.0, settings_.get(Parameter::MAX_FEED_SCALE));
@@ -145,6 +147,10 @@ void Controller::publish_view(const Inputs &in) noexcept {
     v.type_asks = types_.asks;
     v.isTypePending = types_.isPending;
     link_->view.write(v);
+    if (offsets_.axes != 0) {
+        link_->offsets.write(range(offsets_));
+        std::atomic_thread_fence(std::memory_order_seq_cst);  // before the extent of the path is read again
+    }
 }
 
 }  // namespace mw::motion

@@ -19,6 +19,13 @@ struct WheelInput {
     bool isVelocityMode = false;
 };
 
+/// Counts that become an offset of an axis.
+struct OffsetInput {
+    std::int32_t counts = 0;
+    double scale = 0;  ///< [unit per count]
+    bool isEnabled = false, isClearing = false;
+};
+
 struct JointInputs {
     double motor_pos_fb = 0;
     bool isHomeSwitchClosed = false, isPosLimitClosed = false, isNegLimitClosed = false;
@@ -49,6 +56,7 @@ struct Inputs {
     std::array<double, MAX_ANALOG_IO> analog_in{};
     std::array<JointInputs, MAX_JOINTS> joint{};
     std::array<WheelInput, MAX_AXES> axis_wheel{};
+    std::array<OffsetInput, MAX_AXES> axis_offset{};
     std::array<SpindleInputs, MAX_SPINDLES> spindle{};
 };
 
@@ -67,6 +75,7 @@ struct JointOutputs {
 
 struct AxisOutputs {
     double position = 0, teleop_position = 0, teleop_velocity = 0, teleop_velocity_limit = 0;
+    double offset = 0, offset_request = 0;
     bool isTeleopPlanning = false, isKeyboardJogging = false, isWheelJogging = false;
 };
 
@@ -87,6 +96,7 @@ struct Outputs {
     geom::Pose tool_offset;
     bool isJogging = false;
     bool isCoordError = false, isOnSoftLimit = false;
+    bool isOffsetActive = false, isOffsetLimited = false;
 };
 
 }  // namespace mw::motion

@@ -8,6 +8,7 @@
 #include "base/copyable_atomic.hh"
 #include "base/limits.hh"
 #include "base/seqlock.hh"
+#include "motion/api/limits.hh"
 #include "motion/api/status.hh"
 #include "traj/geometry/joint_map.hh"
 #include "traj/geometry/limits.hh"
@@ -22,11 +23,18 @@ struct PathLimits {
     bool areTolerancesAdded = false;  ///< what joining takes is on top of P
     geom::Pose low, high;             ///< soft limits per axis; +-infinity where none holds
     std::uint32_t axes = 0;           ///< bit per axis that the kinematics drive
+    std::uint32_t offset_axes = 0;    ///< bit per axis that may have an external offset
     traj::JointLimits joints;         ///< where joints are not axes
     /// Where the joints stood before the path: elbows and wrists are on the side of theirs
     std::array<double, MAX_JOINTS> standing{};
     int side = 0;              ///< of that place (kins::Kinematics)
     std::uint32_t stands = 0;  ///< counts how often the joints stood anew
+};
+
+/// Where the path may lead, as far as it is planned and not driven.
+struct PathExtent {
+    PoseRange range;
+    bool isEmpty = true;
 };
 
 /// Written by the controller every servo cycle, one consistent picture.
@@ -55,6 +63,10 @@ struct PathLink {
     traj::PathStore store;
     Seqlock<PathView> view;      ///< controller -> planner
     Seqlock<PathLimits> limits;  ///< controller -> planner
+    /// Where external offsets may be, and where the path may: each side writes its own before it reads the
+    /// other's, so that both never take the same room. Only while there are such offsets.
+    Seqlock<PoseRange> offsets;  ///< controller -> planner
+    Seqlock<PathExtent> extent;  ///< planner -> controller
     /// planner -> controller: StepOnce count whose stop has been reached
     CopyableAtomic<std::uint32_t> steps_done{0};
     /// planner -> controller: type_asks at which nothing was accepted that is not driven

@@ -13,6 +13,8 @@ namespace {
 /// Updates without a new command after which the open end of the last move is planned to its very end.
 constexpr int STARVING_UPDATES = 3;
 
+/// What rounding may make of a corner within the extent of its moves [machine units, degrees].
+constexpr double CORNER_ROUNDING = 1e-6;
 constexpr double HORIZON_S = 0.1;
 /// From a plan's making to its start; a planner that takes longer is late, and the plan is made again.
 constexpr double LATENCY_S = 3e-3;
@@ -33,6 +35,10 @@ void PathPlanner::update() noexcept {
         return;  // the servo thread is in the middle of it; next time
     }
     follow_controller();
+    if (limits_.offset_axes != 0) {
+        isPathBegun_ && !isIdle() ? window_.follow(view_.executor.done_move) : window_.clear();
+        publish_extent();
+    }
     const bool isInput = take_commands();
     idle_updates_ = isInput ? 0 : std::min(idle_updates_ + 1, STARVING_UPDATES);
     if (idle_updates_ >= STARVING_UPDATES && planner_.isStarving()) {
@@ -332,6 +338,19 @@ void PathPlanner::follow_steps() noexcept {
     if (!isStepPending_ && (isOver || planner_.isAtStepStop(view_.executor))) {
         link_.steps_done.store(steps_, std::memory_order_release);
     }
+}
+
+/// Corners stay within it too, on axes with external offsets.
+void PathPlanner::publish_extent() noexcept {
+    const PathExtent extent = window_.extent();
+    link_.extent.write(extent);
+    PoseRange room{limits_.low, limits_.high};
+    for (int i = 0; i < geom::AXIS_COUNT && !extent.isEmpty; ++i) {
+        const bool isShared = (limits_.offset_axes >> i & 1U) != 0;
+        room.low[i] = isShared ? extent.range.low[i] - CORNER_ROUNDING : room.low[i];
+        room.high[i] = isShared ? extent.range.high[i] + CORNER_ROUNDING : room.high[i];
+    }
+    planner_.set_room(room.low, room.high);
 }
 
 void PathPlanner::publish() noexcept {

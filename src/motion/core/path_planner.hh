@@ -10,6 +10,7 @@
 #include "kins/kinematics.hh"
 #include "motion/api/channels.hh"
 #include "motion/core/path_link.hh"
+#include "motion/core/path_window.hh"
 #include "motion/core/pending_commands.hh"
 #include "traj/planner.hh"
 
@@ -86,6 +87,8 @@ class PathPlanner {
     Reason accept_analog(const PathCommand &c, const SynchedAnalogOutput &output) noexcept;
     Reason accept_event(const PathCommand &c, const traj::PathEvent &event) noexcept;
     Reason check_reach(const traj::Primitive &p) noexcept;
+    PoseRange room_for(const PoseRange &move) noexcept;
+    void publish_extent() noexcept;
     /// Where the joints are at a place of a path.
     struct PathSample {
         double at = 0;
@@ -111,6 +114,7 @@ class PathPlanner {
 
     PathView view_;
     PathLimits limits_;
+    PathWindow window_;                            ///< kept while there are external offsets
     std::array<double, MAX_JOINTS> end_joints_{};  ///< at the end of what was accepted last
     std::uint32_t stands_ = 0;                     ///< of the limits
     std::uint32_t limits_version_ = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Checks of path commands, and what the planner is told of those that are taken.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "motion/core/path_planner.hh"
@@ -74,11 +75,35 @@ void PathPlanner::add_pending(const PathCommand &c, const SourceTag &source) noe
     pending_.add(p);
 }
 
+/// Soft limits, less where external offsets are or may come to. The move is told first: offsets grow no
+/// farther than it lets them from here on.
+PoseRange PathPlanner::room_for(const PoseRange &move) noexcept {
+    PoseRange room{limits_.low, limits_.high};
+    if (limits_.offset_axes == 0) {
+        return room;
+    }
+    constexpr int TRIES = 1000;
+    window_.add(move, planner_.last_move());
+    publish_extent();
+    std::atomic_thread_fence(std::memory_order_seq_cst);
+    PoseRange offsets;
+    if (!link_.offsets.read(offsets, TRIES)) {
+        return {room.high, room.low};  // nothing fits: no servo cycle takes so long
+    }
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        const bool isShared = (limits_.offset_axes >> i & 1U) != 0;
+        room.low[i] -= isShared ? offsets.low[i] : 0.0;
+        room.high[i] -= isShared ? offsets.high[i] : 0.0;
+    }
+    return room;
+}
+
 /// Soft limits over the whole extent, joints where they are not axes.
 Reason PathPlanner::check_reach(const traj::Primitive &p) noexcept {
     geom::Pose low;
     geom::Pose high;
     traj::extent(p, low, high);
+    const PoseRange room = room_for({low, high});
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
         refused_index_ = static_cast<std::int16_t>(i);
         const bool isMoving = high[i] - low[i] > 1e-9;
@@ -87,10 +112,10 @@ Reason PathPlanner::check_reach(const traj::Primitive &p) noexcept {
         }
         // A move that leads back in from outside is welcome as far as its end is inside.
         const double from = p.start[i];
-        const bool isLow = low[i] < std::min(limits_.low[i], from) - SOFT_LIMIT_ROUNDING ||
-                           p.end[i] < limits_.low[i] - SOFT_LIMIT_ROUNDING;
-        const bool isHigh = high[i] > std::max(limits_.high[i], from) + SOFT_LIMIT_ROUNDING ||
-                            p.end[i] > limits_.high[i] + SOFT_LIMIT_ROUNDING;
+        const bool isLow = low[i] < std::min(room.low[i], from) - SOFT_LIMIT_ROUNDING ||
+                           p.end[i] < room.low[i] - SOFT_LIMIT_ROUNDING;
+        const bool isHigh = high[i] > std::max(room.high[i], from) + SOFT_LIMIT_ROUNDING ||
+                            p.end[i] > room.high[i] + SOFT_LIMIT_ROUNDING;
         if (isMoving && (isLow || isHigh)) {
             return Reason::BEYOND_SOFT_LIMIT;
         }

@@ -23,6 +23,10 @@ struct SpindleView {
     const SpindleStatus &s;
     const SpindleOutputs &o;
 };
+struct AxisInputs {
+    WheelInput &wheel;
+    OffsetInput &offset;
+};
 /// One input or output of many.
 struct ChannelIn {
     Inputs &in;
@@ -67,8 +71,8 @@ inline constexpr auto MOTION = pin_table("motion",
     out<bool>("motion-enabled", "", "machine on", [](const MotionView &v) { return v.out.status.isEnabled; }),
     out<bool>("on-soft-limit", "", "a joint stands at a soft limit", [](const MotionView &v) { return v.out.isOnSoftLimit; }),
     out<bool>("tp-reverse", "", "the path is gone back", [](const MotionView &v) { return v.out.status.isReverse; }),
-    out<bool>("eoffset-active", "", "no external offsets yet", Unused{}),
-    out<bool>("eoffset-limited", "", "no external offsets yet", Unused{}),
+    out<bool>("eoffset-active", "", "an external offset is not zero", [](const MotionView &v) { return v.out.isOffsetActive; }),
+    out<bool>("eoffset-limited", "", "a soft limit keeps an external offset from what is asked for", [](const MotionView &v) { return v.out.isOffsetLimited; }),
     out<double>("current-vel", "unit/s", "speed along the path", [](const MotionView &v) { return v.out.status.current_velocity; }),
     out<double>("distance-to-go", "unit", "to the end of the move", [](const MotionView &v) { return v.out.status.distance_to_go; }),
     out<double>("requested-vel", "unit/s", "programmed speed of the move", [](const MotionView &v) { return v.out.status.requested_velocity; }),
@@ -144,17 +148,17 @@ inline constexpr auto UNLOCK = pin_table("joint.#",
     in<bool>("is-unlocked", "", "it has", [](JointInputs &i, bool v) { i.isUnlocked = v; }));
 
 inline constexpr auto AXIS = pin_table("axis.@",
-    in<Count>("jog-counts", "", "of the wheel", [](WheelInput &w, Count v) { w.counts = v; }),
-    in<bool>("jog-enable", "", "the wheel moves the axis", [](WheelInput &w, bool v) { w.isEnabled = v; }),
-    in<bool>("jog-vel-mode", "", "the axis stops when the wheel does", [](WheelInput &w, bool v) { w.isVelocityMode = v; }),
-    in<double>("jog-scale", "unit", "for each count", [](WheelInput &w, double v) { w.scale = v; }),
-    in<double>("jog-accel-fraction", "", "part of the acceleration for the wheel", [](WheelInput &w, double v) { w.accel_fraction = v; }, 1.0),
-    in<Count>("eoffset-counts", "", "no external offsets yet", Unused{}),
-    in<bool>("eoffset-enable", "", "no external offsets yet", Unused{}),
-    in<bool>("eoffset-clear", "", "no external offsets yet", Unused{}),
-    in<double>("eoffset-scale", "", "no external offsets yet", Unused{}),
-    out<double>("eoffset", "", "no external offsets yet", Unused{}),
-    out<double>("eoffset-request", "", "no external offsets yet", Unused{}),
+    in<Count>("jog-counts", "", "of the wheel", [](AxisInputs &a, Count v) { a.wheel.counts = v; }),
+    in<bool>("jog-enable", "", "the wheel moves the axis", [](AxisInputs &a, bool v) { a.wheel.isEnabled = v; }),
+    in<bool>("jog-vel-mode", "", "the axis stops when the wheel does", [](AxisInputs &a, bool v) { a.wheel.isVelocityMode = v; }),
+    in<double>("jog-scale", "unit", "for each count", [](AxisInputs &a, double v) { a.wheel.scale = v; }),
+    in<double>("jog-accel-fraction", "", "part of the acceleration for the wheel", [](AxisInputs &a, double v) { a.wheel.accel_fraction = v; }, 1.0),
+    in<Count>("eoffset-counts", "", "change the external offset", [](AxisInputs &a, Count v) { a.offset.counts = v; }),
+    in<bool>("eoffset-enable", "", "they do", [](AxisInputs &a, bool v) { a.offset.isEnabled = v; }),
+    in<bool>("eoffset-clear", "", "the external offset goes to zero", [](AxisInputs &a, bool v) { a.offset.isClearing = v; }),
+    in<double>("eoffset-scale", "unit", "for each count", [](AxisInputs &a, double v) { a.offset.scale = v; }),
+    out<double>("eoffset", "unit", "external offset", [](const AxisOutputs &o) { return o.offset; }),
+    out<double>("eoffset-request", "unit", "where it goes to", [](const AxisOutputs &o) { return o.offset_request; }),
     out<double>("pos-cmd", "unit", "commanded position", [](const AxisOutputs &o) { return o.position; }),
     out<double>("teleop-pos-cmd", "unit", "the same, of the jog", [](const AxisOutputs &o) { return o.teleop_position; }),
     out<double>("teleop-vel-cmd", "unit/s", "speed of the jog", [](const AxisOutputs &o) { return o.teleop_velocity; }),

@@ -64,7 +64,8 @@ void MotionPins::read(Inputs &in) noexcept {
         }
     }
     for (int i = 0; i < MAX_AXES; ++i) {
-        axis_[i].read(in.axis_wheel[at(i)]);
+        AxisInputs axis{in.axis_wheel[at(i)], in.axis_offset[at(i)]};
+        axis_[i].read(axis);
     }
     for (int n = 0; n < counts_.spindles; ++n) {
         spindle_[n].read(in.spindle[at(n)]);

@@ -9,6 +9,30 @@
 namespace mw::motion {
 namespace {
 
+TEST(Allocation, TablesOfScrewErrorsAreLoadedAndFollowedWithoutTheHeap_C11) {
+    testing::MotionRig rig;
+    std::uint64_t calls = 1;
+    constexpr int COUNT = 600;
+    for (int n = 0; n < COUNT; ++n) {
+        rig.send(LoadCompensation{0, n, COUNT, -30 + 0.1 * n, 0.01 + 1e-4 * (n % 2), -0.01});
+    }
+    rig.send(Enable{});
+    for (int n = 0; n < 10; ++n) {
+        rig.send(JogAbsolute{{true, 0}, 80, n % 2 == 0 ? 20.0 : -20.0});
+    }
+    {
+        const testing::AllocationGuard guard;
+        for (int n = 0; n < 1000; ++n) {
+            rig.controller->handle_commands(rig.in);
+            rig.controller->step(rig.in, *rig.out);
+            rig.in.joint[0].motor_pos_fb = rig.out->joint[0].motor_pos_cmd;
+        }
+        calls = guard.calls();
+    }
+    EXPECT_EQ(calls, 0U);
+    EXPECT_NEAR(rig.out->joint[0].motor_pos_cmd - rig.status().joint[0].pos_cmd, -0.01, 1e-9);
+}
+
 TEST(Allocation, ServoCyclesAndPlanningDoNotTouchTheHeap) {
     testing::MotionRig rig;
     rig.ready();

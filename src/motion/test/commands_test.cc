@@ -200,6 +200,7 @@ std::vector<Case> cases() {
         {"SET_AOUT (in step)", "SynchedAnalogOutput", path(SynchedAnalogOutput{0, 1.5})},
         {"", "Flush", path(Flush{})},
         {"SET_OFFSET", "SetToolOffset", now(SetToolOffset{at(0, 0, 10)})},
+        {"LOAD_COMP", "LoadCompensation", now(LoadCompensation{0, 0, 2, 1, 0.01, -0.01})},
         {"SET_xxx", "SetParameter", now(SetParameter{number(Parameter::JOINT_MAX_VELOCITY), 0, 80})},
     };
 }

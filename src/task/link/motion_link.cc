@@ -15,6 +15,8 @@ constexpr std::uint32_t PATH_WINDOW = 3000;
 constexpr std::chrono::milliseconds PATIENCE{20};
 /// Servo cycles from an output to an input that is linked to it, through a component or two in between.
 constexpr std::uint64_t ROUND_TRIP_CYCLES = 4;
+/// Points of tables on their way; the channel keeps room for everything else.
+constexpr std::size_t TABLE_WINDOW = 256;
 
 }  // namespace
 
@@ -40,6 +42,7 @@ MotionLink::News MotionLink::update() {
         news.faults.push_back(fault);
     }
     hand_over();
+    hand_over_table();
     return news;
 }
 
@@ -47,7 +50,7 @@ void MotionLink::take_answers(News &news) {
     motion::Answer answer;
     while (channels_.servo_answers.pop(answer)) {
         pending_.erase(std::remove(pending_.begin(), pending_.end(), answer.id), pending_.end());
-        if (answer.kind == motion::AnswerKind::REFUSED) {
+        if (isToldRefusal(answer)) {
             news.refused.push_back({answer, {}});
         }
     }
@@ -73,6 +76,22 @@ void MotionLink::follow_outputs() {
     if (now.cycle >= output_cycle_ + ROUND_TRIP_CYCLES && now.isInPosition) {
         last_output_id_ = 0;
     }
+}
+
+/// A refusal, and of a table the first.
+bool MotionLink::isToldRefusal(const motion::Answer &answer) {
+    const bool isRefused = answer.kind == motion::AnswerKind::REFUSED;
+    const auto point = std::find(table_pending_.begin(), table_pending_.end(), answer.id);
+    if (point == table_pending_.end()) {
+        return isRefused;
+    }
+    table_pending_.erase(point);
+    if (!isRefused || refused_table_ == answer.index) {
+        return false;
+    }
+    refused_table_ = answer.index;
+    std::erase_if(table_, [&](const auto &p) { return p.joint == answer.index; });
+    return true;
 }
 
 motion::SourceTag MotionLink::take_source(motion::CommandId id) {
@@ -103,6 +122,20 @@ void MotionLink::hand_over() {
         ++sent;
     }
     backlog_.erase(backlog_.begin(), backlog_.begin() + static_cast<std::ptrdiff_t>(sent));
+}
+
+void MotionLink::send_table(const std::vector<motion::LoadCompensation> &points) {
+    table_.insert(table_.end(), points.begin(), points.end());
+    refused_table_ = -1;
+}
+
+void MotionLink::hand_over_table() {
+    while (!table_.empty() && backlog_.empty() && table_pending_.size() < TABLE_WINDOW &&
+           channels_.immediate.push({next_id_, epoch_, table_.front()})) {
+        pending_.push_back(next_id_);
+        table_pending_.push_back(next_id_++);
+        table_.pop_front();
+    }
 }
 
 bool MotionLink::push_path(const motion::PathBody &body, const motion::SourceTag &source) {

@@ -32,6 +32,10 @@ class MotionLink {
 
     /// Queues an immediate command; they are handed over in order as the channel has room.
     motion::CommandId send(motion::CommandBody body);
+    /// Queues points of tables, which many are: everything else goes first, and a refusal of one ends its
+    /// table and is told once.
+    void send_table(const std::vector<motion::LoadCompensation> &points);
+    bool areTablesAnswered() const { return table_.empty() && table_pending_.empty(); }
     /// Hands a path command over; false when the channel is full (nothing happens then).
     bool push_path(const motion::PathBody &body, const motion::SourceTag &source = {});
     /// True while another move may be handed over without filling the planner's queue.
@@ -60,6 +64,8 @@ class MotionLink {
   private:
     void hand_over();
     void follow_outputs();
+    void hand_over_table();
+    bool isToldRefusal(const motion::Answer &answer);
     void take_answers(News &news);
     motion::SourceTag take_source(motion::CommandId id);
 
@@ -69,7 +75,10 @@ class MotionLink {
     std::vector<motion::Command> backlog_;
     /// Where the moves handed over and not answered come from, oldest first.
     std::deque<std::pair<motion::CommandId, motion::SourceTag>> sources_;
-    std::vector<motion::CommandId> pending_;  ///< immediate commands not yet answered, in order
+    std::vector<motion::CommandId> pending_;        ///< immediate commands not yet answered, in order
+    std::deque<motion::LoadCompensation> table_;    ///< points that are not handed over yet
+    std::vector<motion::CommandId> table_pending_;  ///< that are, and are not answered
+    int refused_table_ = -1;                        ///< its joint
     motion::CommandId next_id_ = 1;
     motion::CommandId last_path_id_ = 0;    ///< handed over
     motion::CommandId flushed_id_ = 0;      ///< the last Flush

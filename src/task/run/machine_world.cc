@@ -6,9 +6,9 @@ namespace mw::task {
 interp::MachineSnapshot snapshot_of(const motion::Status &motion, const io::Outputs &io,
                                     const Sequencer &sequencer) {
     interp::MachineSnapshot s;
-    s.position = motion.carte_pos_cmd;
+    s.position = motion.carte_pos_cmd - motion::external_offset(motion);  // programs know nothing of it
     // A probe that has missed counts as having come to its end.
-    s.probed_position = motion.isProbeTripped ? motion.probed_pos : motion.carte_pos_cmd;
+    s.probed_position = motion.isProbeTripped ? motion.probed_pos : s.position;
     s.isProbeTripped = motion.isProbeTripped;
     s.input_value = sequencer.input_value();
     s.isInputTimedOut = sequencer.isInputTimedOut();

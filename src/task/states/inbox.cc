@@ -36,6 +36,8 @@ bool isJogOf(const msgs::JogStop &stop, const msgs::Command &command) {
         [&]<class C>(const C &jog) {
             if constexpr (OneOf<C, msgs::JogContinuous, msgs::JogIncrement, msgs::JogAbsolute>) {
                 return jog.isJoint == stop.isJoint && jog.index == stop.index;
+            } else if constexpr (OneOf<C, msgs::SetTeleopVector>) {
+                return !stop.isJoint && jog.velocity[stop.index] != 0.0;
             } else {
                 return false;
             }

@@ -212,6 +212,39 @@ TEST_F(TaskTest, CommandsThatCannotBeDoneAreRefusedWithAReason_C5) {
     EXPECT_NE(reason(request).find("not all joints are homed"), std::string::npos);
 }
 
+TEST_F(TaskTest, AVectorOfTeleopSpeedsGoesToMotionInManualMode_C4) {
+    SetTeleopVector vector;
+    vector.velocity[0] = 3;
+    vector.velocity[2] = -4;
+    ASSERT_EQ(ask(SetMode{Mode::AUTO}), Progress::DONE);
+    EXPECT_EQ(ask(vector), Progress::REFUSED);
+    ASSERT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE);
+    EXPECT_EQ(ask(vector), Progress::DONE);
+    const auto *taken = std::get_if<motion::SetTeleopVector>(&motion.last);
+    ASSERT_NE(taken, nullptr);
+    EXPECT_EQ(taken->velocity, vector.velocity);
+}
+
+TEST_F(TaskTest, ATableOfScrewErrorsIsReadWhileTheMachineIsOff_C4_C11) {
+    const std::string path = (folder / "x.comp").string();
+    std::ofstream(path) << "0 0.01 -0.01\n10 0.02 -0.02\n";
+    EXPECT_EQ(ask(LoadCompensation{1, path, 1}), Progress::REFUSED) << "it is on";
+    ASSERT_EQ(ask(SetState{State::OFF}), Progress::DONE);
+    const auto nothing = post(LoadCompensation{1, (folder / "y.comp").string(), 1});
+    cycles(2);
+    EXPECT_EQ(progress(nothing), Progress::REFUSED);
+    EXPECT_NE(reason(nothing).find("y.comp"), std::string::npos);
+    EXPECT_EQ(ask(LoadCompensation{1, path, 1}), Progress::DONE);
+    cycles(3);
+    const auto *last = std::get_if<motion::LoadCompensation>(&motion.last);
+    ASSERT_NE(last, nullptr);
+    EXPECT_EQ(last->joint, 1);
+    EXPECT_EQ(last->index, 1);
+    EXPECT_EQ(last->count, 2);
+    EXPECT_EQ(last->reverse, -0.02);
+    EXPECT_TRUE(task.isConfigured());
+}
+
 TEST_F(TaskTest, EveryCommandOfTheVocabularyIsAnsweredAndARefusalSaysWhy_C5) {
     for (const msgs::Declaration *declaration : msgs::command_declarations()) {
         Command command = *msgs::make_command(declaration->number);

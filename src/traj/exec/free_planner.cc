@@ -83,6 +83,23 @@ double JogPlanner::rest_after(double dt) const noexcept {
     return sign > 0 ? std::min(rest, std::max(target, now)) : std::max(rest, std::min(target, now));
 }
 
+void JogPlanner::add_reach(double &low, double &high) const noexcept {
+    const auto add = [&](double place) {
+        low = std::min(low, place);
+        high = std::max(high, place);
+    };
+    add(position);
+    add(target);
+    if (length_ <= 1) {
+        add(stop_position(position, velocity, max_acceleration));
+        return;
+    }
+    add(stop_position(leader_.position, leader_.velocity, leader_.max_acceleration));
+    for (std::uint32_t n = 0; n < length_; ++n) {
+        add(origin_ + way_[n]);
+    }
+}
+
 /// From rest: the mean is as long as the acceleration needs to turn about.
 void JogPlanner::begin(double dt) noexcept {
     const double samples = std::ceil(2.0 * max_acceleration / (max_jerk * dt) - 1e-9);

@@ -47,6 +47,8 @@ class JogPlanner : public FreePlanner {
     void step(double dt) noexcept;
     /// Farthest place where it may come to rest when it brakes after one more step.
     double rest_after(double dt) const noexcept;
+    /// Widens `low` to `high` by where it may come to on its way to the target.
+    void add_reach(double &low, double &high) const noexcept;
 
   private:
     static constexpr std::uint32_t MOST_SAMPLES = 400;

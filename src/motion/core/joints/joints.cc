@@ -8,10 +8,6 @@ namespace mw::motion {
 
 namespace {
 
-/// Part of the joint's own speed and acceleration with which backlash is taken up on top of its motion.
-constexpr double BACKLASH_SHARE = 0.5;
-/// The side changes where the joint really turns back, not by the rounding of a stop.
-constexpr double TURN_ROUNDING = 1e-9;
 /// What rounding of positions may make of differences of samples.
 constexpr double STEP_ROUNDING = 1e-6;
 
@@ -23,22 +19,6 @@ bool hasJoint(const Joints &joints, int j) noexcept {
     return j >= 0 && j < joints.count;
 }
 
-void take_up(Joint &s, const Settings &settings, int j, double period_s) noexcept {
-    Backlash &b = s.backlash;
-    const double moved = s.pos_cmd - b.extreme;
-    const bool isMove = std::abs(moved) > TURN_ROUNDING * (1.0 + std::abs(s.pos_cmd));
-    const bool isOnward = b.side != 0 && moved * b.side > 0;
-    if (isMove) {
-        b.side = moved > 0 ? 1 : -1;
-    }
-    b.extreme = isMove || isOnward ? s.pos_cmd : b.extreme;
-    b.raw = 0.5 * settings.get(Parameter::JOINT_BACKLASH, j) * b.side;
-    b.filter.target = b.raw;
-    b.filter.max_velocity = BACKLASH_SHARE * settings.get(Parameter::JOINT_MAX_VELOCITY, j);
-    b.filter.max_acceleration = BACKLASH_SHARE * settings.get(Parameter::JOINT_MAX_ACCELERATION, j);
-    b.filter.step(period_s);
-}
-
 /// Off: the command follows the feedback, so that switching on does not move anything.
 void follow_feedback(Joint &s) noexcept {
     s.pos_cmd = s.pos_fb;
@@ -46,7 +26,7 @@ void follow_feedback(Joint &s) noexcept {
     s.vel_cmd = 0;
     s.acc_cmd = 0;
     s.ferror = 0;
-    s.backlash.extreme = s.pos_fb;
+    follow(s.correction, s.pos_fb);
     s.motor_pos_cmd = s.motor_pos_fb;
 }
 
@@ -94,6 +74,22 @@ Verdict take(Joints &joints, const SetAmplifier &command, bool isEnabled) noexce
     return verdict_of(command.joint, Reason::NONE);
 }
 
+/// While the machine is off: nothing moves by what is loaded.
+Verdict take(Joints &joints, const LoadCompensation &command, bool isEnabled) noexcept {
+    if (!hasJoint(joints, command.joint)) {
+        return verdict_of(command.joint, Reason::NO_SUCH_JOINT);
+    }
+    Joint &joint = joints[command.joint];
+    if (isEnabled) {
+        joint.correction.table.filled = 0;
+        return verdict_of(command.joint, Reason::SWITCHED_ON);
+    }
+    if (command.index == 0) {
+        joint.motor_offset += clear(joint.correction);
+    }
+    return verdict_of(command.joint, take(joint.correction.table, command));
+}
+
 Verdict take(Joints &joints, const SetJointActive &command, const ActivationConditions &conditions) noexcept {
     if (!hasJoint(joints, command.joint)) {
         return verdict_of(command.joint, Reason::NO_SUCH_JOINT);
@@ -102,7 +98,7 @@ Verdict take(Joints &joints, const SetJointActive &command, const ActivationCond
     if (conditions.isHoming) {
         return verdict_of(command.joint, Reason::HOMING);
     }
-    if (conditions.isMoving || !joint.backlash.filter.isAtRest()) {
+    if (conditions.isMoving || !joint.correction.isAtRest()) {
         return verdict_of(command.joint, Reason::MOVING);
     }
     const bool isJoining = command.isActive && !joint.isActive;
@@ -153,7 +149,7 @@ PerJoint read_feedback(Joints &joints, const Inputs &in) noexcept {
         const JointInputs &pins = in.joint[at(j)];
         s.isFeedbackLost = !std::isfinite(pins.motor_pos_fb);
         s.motor_pos_fb = s.isFeedbackLost ? s.motor_pos_fb : pins.motor_pos_fb;
-        s.pos_fb = s.motor_pos_fb - s.backlash.filter.position - s.motor_offset;
+        s.pos_fb = s.motor_pos_fb - s.correction.position - s.motor_offset;
         s.isOnPosHardLimit = pins.isPosLimitClosed;
         s.isOnNegHardLimit = pins.isNegLimitClosed;
         s.isFaulted = pins.isAmpFaulted;
@@ -193,18 +189,20 @@ JointFault find_fault(Joints &joints, int &joint, const Settings &settings, cons
 }
 
 void shift(Joint &joint, double shift) noexcept {
-    joint.motor_offset -= shift;
-    joint.pos_fb = joint.motor_pos_fb - joint.backlash.filter.position - joint.motor_offset;
     joint.pos_cmd += shift;
-    joint.backlash.extreme = joint.pos_cmd;
+    joint.motor_offset -= shift;
+    joint.motor_offset -= renumber(joint.correction, joint.pos_cmd);
+    joint.pos_fb = joint.motor_pos_fb - joint.correction.position - joint.motor_offset;
 }
 
 void set_zero(Joint &joint, double zero) noexcept {
-    joint.motor_offset = -zero;
-    joint.pos_fb = joint.motor_pos_fb - joint.backlash.filter.position - joint.motor_offset;
+    Correction &correction = joint.correction;
+    renumber(correction, zero);
+    joint.motor_offset = -zero - (correction.table.count > 0 ? correction.position : 0.0);
+    joint.pos_fb = joint.motor_pos_fb - correction.position - joint.motor_offset;
     // The lag behind the command is kept, so that the motor sees no step.
     joint.pos_cmd = joint.pos_fb + joint.ferror;
-    joint.backlash.extreme = joint.pos_cmd;
+    correction.extreme = joint.pos_cmd;
 }
 
 std::uint32_t output(Joints &joints, const Settings &settings, bool isEnabled, double period_s) noexcept {
@@ -220,8 +218,8 @@ std::uint32_t output(Joints &joints, const Settings &settings, bool isEnabled, d
             hold(s);
             continue;
         }
-        take_up(s, settings, j, period_s);
-        s.motor_pos_cmd = s.pos_cmd + s.backlash.filter.position + s.motor_offset;
+        step(s.correction, settings, j, s.pos_cmd, period_s);
+        s.motor_pos_cmd = s.pos_cmd + s.correction.position + s.motor_offset;
     }
     return off;
 }
@@ -272,9 +270,9 @@ void fill(const Joints &joints, const Settings &settings, const JointSituation &
         o.motor_pos_cmd = from.motor_pos_cmd;
         o.coarse_pos = from.coarse_pos;
         o.acc_cmd = from.acc_cmd;
-        o.backlash_raw = from.backlash.raw;
-        o.backlash_filtered = from.backlash.filter.position;
-        o.backlash_velocity = from.backlash.filter.velocity;
+        o.backlash_raw = from.correction.raw;
+        o.backlash_filtered = from.correction.position;
+        o.backlash_velocity = from.correction.velocity;
         o.motor_offset = from.motor_offset;
         o.ferror_limit = from.ferror_limit;
         o.isAmpEnabled = to.isEnabled;

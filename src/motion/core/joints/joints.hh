@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Joints: feedback, faults, following error, backlash and offsets, and the way to motor positions (C3).
+// Joints: feedback, faults, following error, corrections and offsets, and the way to motor positions (C3).
 #pragma once
 
 #include <array>
@@ -10,17 +10,10 @@
 #include "motion/api/limits.hh"
 #include "motion/api/settings.hh"
 #include "motion/core/io.hh"
+#include "motion/core/joints/correction.hh"
 #include "motion/core/verdict.hh"
-#include "traj/exec/free_planner.hh"
 
 namespace mw::motion {
-
-/// Play of a drive, taken up on top of the motion when the joint turns back.
-struct Backlash {
-    double raw = 0, extreme = 0;
-    int side = 0;  ///< +1 or -1 once the joint has moved
-    traj::FreePlanner filter;
-};
 
 struct Joint {
     bool isActive = true;
@@ -32,7 +25,7 @@ struct Joint {
     double coarse_pos = 0;
     double motor_pos_cmd = 0, motor_pos_fb = 0, motor_offset = 0;
     double ferror = 0, ferror_limit = 0, ferror_highmark = 0;
-    Backlash backlash;
+    Correction correction;
 };
 
 /// A value of each joint; 0 for joints that the machine does not have.
@@ -47,6 +40,7 @@ struct Joints {
 };
 
 Verdict take(Joints &joints, const SetAmplifier &command, bool isEnabled) noexcept;
+Verdict take(Joints &joints, const LoadCompensation &command, bool isEnabled) noexcept;
 struct ActivationConditions {
     bool isMoving = false, isHoming = false;
     bool areJointsAlone = true;  ///< off, or in free mode: no pose says where joints are to be
@@ -92,8 +86,8 @@ void shift(Joint &joint, double shift) noexcept;
 /// The encoder has just been reset: motor position 0 is joint position `zero`.
 void set_zero(Joint &joint, double zero) noexcept;
 
-/// Motor positions: with backlash and offset while on, what the motors say while off. Bit per joint that is
-/// off.
+/// Motor positions: with corrections and offset while on, what the motors say while off. Bit per joint that
+/// is off.
 std::uint32_t output(Joints &joints, const Settings &settings, bool isEnabled, double period_s) noexcept;
 
 /// The joint that does more than it can or leaves its soft limits, -1: none.

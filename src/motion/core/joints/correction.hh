@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What is added to a joint's position on the way to its motor: play of the drive (backlash) or a table of the
+// errors of its screw, taken up within the limits of the joint (C11).
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "motion/api/command.hh"
+#include "motion/api/settings.hh"
+#include "traj/exec/free_planner.hh"
+
+namespace mw::motion {
+
+/// What the motor is moved by at each position, on the way up and on the way down. Linear between points,
+/// beyond the ends as at the ends. 240 kB.
+struct ScrewTable {
+    int count = 0;   ///< of points in force, 0: no table
+    int filled = 0;  ///< of points of a table that is not whole yet
+    double steepest = 0;
+    std::array<double, MAX_SCREW_POINTS> nominal{}, forward{}, reverse{};
+};
+
+/// One point more, or the end of the table. A table that is not whole counts for nothing.
+Reason take(ScrewTable &table, const LoadCompensation &point) noexcept;
+
+/// At `position` on the way up (`side` > 0) or down (< 0); 0 as long as there is no way (0).
+double look_up(const ScrewTable &table, int side, double position) noexcept;
+
+/// Mean of the last samples: what changes its acceleration by at most 2 A has a jerk of at most 2 A over the
+/// length of the mean.
+class MovingMean {
+  public:
+    static constexpr std::uint32_t MOST_SAMPLES = 400;
+
+    /// The mean after `x`. Another length is taken when all samples are equal.
+    double step(double x, std::uint32_t length) noexcept;
+    /// All samples are `x`.
+    void reset(double x) noexcept;
+    /// All samples become larger.
+    void shift(double by) noexcept { origin_ += by; }
+    bool isAtRest() const noexcept { return length_ <= 1 || standing_ >= length_; }
+
+  private:
+    void add(double x) noexcept;
+
+    std::array<double, MOST_SAMPLES> way_{};  ///< from origin_
+    std::uint32_t length_ = 1, next_ = 0;
+    std::uint32_t standing_ = MOST_SAMPLES;  ///< samples that were equal, up to here
+    double origin_ = 0, sum_ = 0, rest_ = 0, last_ = 0;
+};
+
+struct Correction {
+    double raw = 0;      ///< what is to be added
+    double extreme = 0;  ///< the farthest place since the joint has turned back last
+    int side = 0;        ///< +1 or -1 once the joint has moved
+    /// Backlash: what is added. Table: what is still missing, beside what the table says.
+    traj::FreePlanner follower;
+    double followed = 0, followed_velocity = 0;  ///< before the jerk is limited
+    double last_position = 0;                    ///< of the joint
+    double position = 0, velocity = 0;           ///< what is added
+    MovingMean mean;
+    ScrewTable table;
+
+    bool isAtRest() const noexcept { return follower.isAtRest() && velocity == 0.0 && mean.isAtRest(); }
+};
+
+/// One cycle of a joint that is to be at `position`.
+void step(Correction &correction, const Settings &settings, int joint, double position,
+          double period_s) noexcept;
+/// While the machine is off: what the table says where the motor is moved to by others.
+void follow(Correction &correction, double position) noexcept;
+/// The joint's position is `position` from here, and the motor stays. What is added grows by what is
+/// returned.
+double renumber(Correction &correction, double position) noexcept;
+/// Nothing is added; what was is returned.
+double clear(Correction &correction) noexcept;
+
+}  // namespace mw::motion

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "motion/core/offsets/external_offsets.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mw::motion {
+
+namespace {
+
+std::size_t at(int i) noexcept {
+    return static_cast<std::size_t>(i);
+}
+
+bool hasOffset(const ExternalOffsets &offsets, int axis) noexcept {
+    return (offsets.axes >> axis & 1U) != 0;
+}
+
+/// Where it may be until it has come to rest.
+JogRange reach_of(const ExternalOffset &offset) noexcept {
+    JogRange out{offset.next, offset.next};
+    offset.planner.add_reach(out.low, out.high);
+    return out;
+}
+
+/// Counts since the last cycle become distance; what is no number counts for nothing.
+void take_counts(ExternalOffset &offset, const OffsetInput &pins, bool isHonoured) noexcept {
+    // Unsigned difference: counters wrap.
+    const auto turned = static_cast<std::int32_t>(static_cast<std::uint32_t>(pins.counts) -
+                                                  static_cast<std::uint32_t>(offset.counts));
+    offset.counts = pins.counts;
+    const double request = offset.request + turned * pins.scale;
+    if (isHonoured && pins.isEnabled && std::isfinite(request)) {
+        offset.request = request;
+    }
+    if (isHonoured && pins.isClearing) {
+        offset.request = 0;
+    }
+}
+
+/// `to`, or as far as soft limits let it; what is beyond them already does not go farther.
+double allowed(const ExternalOffset &offset, double to, const JogRange &room) noexcept {
+    const double rest = offset.planner.rest_after(0);
+    return std::clamp(to, std::min(room.low, rest), std::max(room.high, rest));
+}
+
+}  // namespace
+
+void step(ExternalOffsets &offsets, const OffsetInputs &in) noexcept {
+    offsets.isLimited = false;
+    for (int i = 0; i < MAX_AXES; ++i) {
+        if (!hasOffset(offsets, i)) {
+            continue;
+        }
+        ExternalOffset &offset = offsets.axis[at(i)];
+        take_counts(offset, in.pins[at(i)], in.isHonoured);
+        const JogRange room{in.limits.low[i] - in.programmed.low[i],
+                            in.limits.high[i] - in.programmed.high[i]};
+        traj::JogPlanner &p = offset.planner;
+        if (in.isHonoured) {
+            const JogLimits &most = in.limits.offset[at(i)];
+            p.max_velocity = most.velocity;
+            p.max_acceleration = most.acceleration;
+            p.max_jerk = most.jerk;
+            p.target = allowed(offset, offset.next, room);
+            offset.next = allowed(offset, offset.request, room);
+            offset.isLimited = offset.next != offset.request;
+        }
+        p.step(in.period_s);
+        offsets.pose[i] = p.position;
+        offsets.isLimited = offsets.isLimited || offset.isLimited;
+    }
+}
+
+void configure(ExternalOffsets &offsets, const FoldedLimits &limits) noexcept {
+    offsets.axes = 0;
+    for (int i = 0; i < MAX_AXES; ++i) {
+        offsets.axes |= limits.offset[at(i)].velocity > 0 ? 1U << i : 0U;
+    }
+    if (!limits.homed.areAll) {
+        for (ExternalOffset &offset : offsets.axis) {
+            const std::int32_t counts = offset.counts;
+            offset = {};
+            offset.counts = counts;
+        }
+        offsets.pose = {};
+        offsets.isLimited = false;
+    }
+}
+
+void start_at_zero(ExternalOffsets &offsets, const Inputs &in) noexcept {
+    for (int i = 0; i < MAX_AXES; ++i) {
+        offsets.axis[at(i)] = {};
+        offsets.axis[at(i)].counts = in.axis_offset[at(i)].counts;
+    }
+    offsets.pose = {};
+    offsets.isLimited = false;
+}
+
+void stop(ExternalOffsets &offsets) noexcept {
+    for (ExternalOffset &offset : offsets.axis) {
+        offset.planner.stop();
+        offset.next = offset.planner.target;
+    }
+}
+
+void stop_at_once(ExternalOffsets &offsets) noexcept {
+    for (ExternalOffset &offset : offsets.axis) {
+        offset.planner.reset(offset.planner.position);
+        offset.next = offset.planner.position;
+    }
+}
+
+bool areAtRest(const ExternalOffsets &offsets) noexcept {
+    return std::all_of(offsets.axis.begin(), offsets.axis.end(),
+                       [](const ExternalOffset &offset) { return offset.planner.isAtRest(); });
+}
+
+PoseRange range(const ExternalOffsets &offsets) noexcept {
+    PoseRange out;
+    for (int i = 0; i < MAX_AXES; ++i) {
+        const JogRange reach = reach_of(offsets.axis[at(i)]);
+        out.low[i] = reach.low;
+        out.high[i] = reach.high;
+    }
+    return out;
+}
+
+geom::Pose without(const ExternalOffsets &offsets, const geom::Pose &pose) noexcept {
+    return offsets.axes != 0 ? pose - offsets.pose : pose;
+}
+
+void narrow(JogRange &jog, const ExternalOffsets &offsets, int axis) noexcept {
+    if (hasOffset(offsets, axis)) {
+        const JogRange reach = reach_of(offsets.axis[at(axis)]);
+        jog.low -= reach.low;
+        jog.high -= reach.high;
+    }
+}
+
+void fill(const ExternalOffsets &offsets, Outputs &out) noexcept {
+    out.isOffsetActive = false;
+    out.isOffsetLimited = offsets.isLimited;
+    for (int i = 0; i < MAX_AXES; ++i) {
+        out.status.axis[static_cast<std::size_t>(i)].offset = offsets.pose[i];
+    }
+    for (int i = 0; i < MAX_AXES; ++i) {
+        out.axis[at(i)].offset = offsets.pose[i];
+        out.axis[at(i)].offset_request = offsets.axis[at(i)].request;
+        out.isOffsetActive = out.isOffsetActive || offsets.pose[i] != 0.0;
+    }
+}
+
+}  // namespace mw::motion

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Offsets of axes that HAL pins ask for (axis.L.eoffset-*), on top of jogs and paths (C15). Each has its own
+// share of the axis's velocity, acceleration and jerk, so that the sum keeps the limits; it only grows as far
+// as what is jogged or programmed stays within the soft limits with it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "geom/pose.hh"
+#include "motion/api/limits.hh"
+#include "motion/core/io.hh"
+#include "traj/exec/free_planner.hh"
+
+namespace mw::motion {
+
+struct ExternalOffset {
+    traj::JogPlanner planner;
+    double request = 0;
+    /// Where it goes to from the next cycle on: who plans paths is told before.
+    double next = 0;
+    std::int32_t counts = 0;
+    bool isLimited = false;  ///< by a soft limit
+};
+
+struct ExternalOffsets {
+    std::uint32_t axes = 0;  ///< bit per axis that may have one
+    std::array<ExternalOffset, MAX_AXES> axis{};
+    geom::Pose pose;      ///< in force
+    PoseRange travelled;  ///< what the path can be gone back along
+    bool isLimited = false;
+};
+
+struct OffsetInputs {
+    const std::array<OffsetInput, MAX_AXES> &pins;
+    const FoldedLimits &limits;
+    PoseRange programmed;     ///< where jogs and paths may go without offsets
+    bool isHonoured = false;  ///< on, all joints homed, in a mode of axes, and no stop under way
+    double period_s = 1e-3;
+};
+/// One cycle.
+void step(ExternalOffsets &offsets, const OffsetInputs &in) noexcept;
+
+/// The limits have changed; all offsets end where a joint is not homed any more.
+void configure(ExternalOffsets &offsets, const FoldedLimits &limits) noexcept;
+/// They are zero from here, and the pins count from here; nothing moves.
+void start_at_zero(ExternalOffsets &offsets, const Inputs &in) noexcept;
+/// All of them brake; they stand in this cycle.
+void stop(ExternalOffsets &offsets) noexcept;
+void stop_at_once(ExternalOffsets &offsets) noexcept;
+bool areAtRest(const ExternalOffsets &offsets) noexcept;
+
+/// Where they may be from here on.
+PoseRange range(const ExternalOffsets &offsets) noexcept;
+/// What is programmed or jogged at a commanded or measured pose.
+geom::Pose without(const ExternalOffsets &offsets, const geom::Pose &pose) noexcept;
+/// The range of a jog is what the offset leaves of it.
+void narrow(JogRange &jog, const ExternalOffsets &offsets, int axis) noexcept;
+
+void fill(const ExternalOffsets &offsets, Outputs &out) noexcept;
+
+}  // namespace mw::motion

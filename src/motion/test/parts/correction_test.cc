@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "motion/core/joints/joints.hh"
+#include "testing/limit_checker.hh"
+
+namespace mw::motion {
+namespace {
+
+constexpr double CYCLE_S = 1e-3, V = 100, A = 1000, J = 20000;
+
+struct CorrectionPart : ::testing::Test {
+    Correction correction;
+    Settings settings;
+
+    CorrectionPart() {
+        set(Parameter::JOINT_MAX_VELOCITY, V);
+        set(Parameter::JOINT_MAX_ACCELERATION, A);
+    }
+    void set(Parameter p, double value) { settings.set({static_cast<std::uint16_t>(p), 0, value}, 1, 1); }
+    void limit_jerk() {
+        set(Parameter::JOINT_MAX_JERK, J);
+        set(Parameter::TRAJ_MAX_JERK, 10 * J);
+        set(Parameter::TRAJ_PLANNER_TYPE, 1);
+    }
+    Reason load(int index, int count, double nominal, double forward, double reverse) {
+        return take(correction.table, LoadCompensation{0, index, count, nominal, forward, reverse});
+    }
+    void load_three() {
+        ASSERT_EQ(load(0, 3, -10, 0.1, 0.2), Reason::NONE);
+        ASSERT_EQ(load(1, 3, 0, 0.3, 0.05), Reason::NONE);
+        ASSERT_EQ(load(2, 3, 10, 0.5, 0.6), Reason::NONE);
+    }
+    /// Moves there at a low speed and waits.
+    double go(double to) {
+        while (at != to) {
+            at += std::clamp(to - at, -0.02, 0.02);
+            step(correction, settings, 0, at, CYCLE_S);
+        }
+        for (int n = 0; n < 500; ++n) {
+            step(correction, settings, 0, at, CYCLE_S);
+        }
+        return correction.position;
+    }
+    double at = 0;
+};
+
+TEST_F(CorrectionPart, ATableIsFollowedUpAndDownAndHeldBeyondItsEnds_C11) {
+    load_three();
+    EXPECT_EQ(correction.position, 0) << "nobody has moved yet";
+    EXPECT_NEAR(go(1), 0.32, 1e-12);
+    EXPECT_NEAR(go(5), 0.4, 1e-12);
+    EXPECT_NEAR(go(12), 0.5, 1e-12);
+    EXPECT_NEAR(go(11), 0.6, 1e-12);
+    EXPECT_NEAR(go(5), 0.325, 1e-12);
+    EXPECT_NEAR(go(-5), 0.125, 1e-12);
+    EXPECT_NEAR(go(-15), 0.2, 1e-12);
+    EXPECT_NEAR(go(-12), 0.1, 1e-12);
+    EXPECT_NEAR(go(0), 0.3, 1e-12);
+}
+
+TEST_F(CorrectionPart, ATableTakesThePlaceOfBacklash_C11) {
+    set(Parameter::JOINT_BACKLASH, 5);
+    load_three();
+    EXPECT_NEAR(go(5), 0.4, 1e-12);
+}
+
+TEST_F(CorrectionPart, WhatIsNoTableIsRefused_C11) {
+    EXPECT_EQ(load(1, 3, 0, 0, 0), Reason::OUT_OF_RANGE) << "not the first one";
+    EXPECT_EQ(load(0, MAX_SCREW_POINTS + 1, 0, 0, 0), Reason::OUT_OF_RANGE);
+    EXPECT_EQ(load(0, 3, std::numeric_limits<double>::quiet_NaN(), 0, 0), Reason::NOT_A_NUMBER);
+    EXPECT_EQ(load(0, 3, 0, 0, 0), Reason::NONE);
+    EXPECT_EQ(load(1, 3, 0, 0, 0), Reason::OUT_OF_RANGE) << "not above the one before";
+    EXPECT_EQ(load(1, 3, 1, 0, 0), Reason::OUT_OF_RANGE) << "a table with a fault is begun anew";
+    EXPECT_EQ(load(0, 2, 0, 0, 0), Reason::NONE);
+    EXPECT_EQ(load(1, 2, 1, 0.3, 0), Reason::OUT_OF_RANGE) << "too steep";
+    EXPECT_EQ(correction.table.count, 0);
+    EXPECT_EQ(load(0, 2, 0, 0, 0), Reason::NONE);
+    EXPECT_EQ(correction.table.count, 0) << "not whole";
+    EXPECT_EQ(go(3), 0);
+    EXPECT_EQ(load(1, 2, 1, 0.2, 0), Reason::NONE);
+    EXPECT_EQ(correction.table.count, 2);
+    EXPECT_EQ(load(0, 0, 0, 0, 0), Reason::NONE);
+    EXPECT_EQ(correction.table.count, 0) << "taken away";
+}
+
+/// Swings of all lengths with what a joint can do.
+void swing(CorrectionPart &part, testing::LimitChecker &checker) {
+    traj::JogPlanner jog;
+    jog.max_velocity = V;
+    jog.max_acceleration = A;
+    jog.max_jerk = isJerkLimited(part.settings) ? J : 0;
+    int reversals = 0;
+    for (int n = 0; n < 60; ++n) {
+        jog.target = 14.0 * std::sin(1.7 * n) + (n % 7 == 0 ? 0.001 : 0.0);
+        for (int i = 0; i < 40 + 37 * (n % 11); ++i) {
+            jog.step(CYCLE_S);
+            const int side = part.correction.side;
+            step(part.correction, part.settings, 0, jog.position, CYCLE_S);
+            reversals += side * part.correction.side < 0 ? 1 : 0;
+            checker.sample(&part.correction.position);
+        }
+    }
+    EXPECT_GT(reversals, 20);
+    EXPECT_TRUE(checker.isWithin()) << checker.report();
+    EXPECT_GT(checker.worst_acceleration(), 0.2) << "it is taken up with what the joint has";
+}
+
+TEST_F(CorrectionPart, ATableIsFollowedWithinHalfTheLimitsOfTheJoint_C11) {
+    load_three();
+    testing::LimitChecker checker({{V / 2, A / 2}}, CYCLE_S);
+    swing(*this, checker);
+}
+
+TEST_F(CorrectionPart, ATableIsFollowedWithinHalfTheJerkOfTheJoint_C11) {
+    load_three();
+    limit_jerk();
+    testing::LimitChecker checker({{V / 2, A / 2, J / 2}}, CYCLE_S);
+    swing(*this, checker);
+    EXPECT_GT(checker.worst_jerk(), 0.4);
+}
+
+TEST_F(CorrectionPart, BacklashIsTakenUpWithinHalfTheJerkOfTheJoint_C11) {
+    set(Parameter::JOINT_BACKLASH, 0.4);
+    limit_jerk();
+    testing::LimitChecker checker({{V / 2, A / 2, J / 2}}, CYCLE_S);
+    swing(*this, checker);
+    EXPECT_GT(checker.worst_jerk(), 0.4);
+    EXPECT_EQ(go(-20), -0.2);
+    EXPECT_EQ(go(20), 0.2);
+}
+
+TEST_F(CorrectionPart, SwitchedOffInTheMiddleItStandsAndGoesOnFromRest_C6) {
+    set(Parameter::JOINT_BACKLASH, 0.4);
+    for (int n = 1; n <= 10; ++n) {
+        step(correction, settings, 0, 0.01 * n, CYCLE_S);
+    }
+    const double stood = correction.position;
+    EXPECT_GT(correction.velocity, 0);
+    for (int n = 0; n < 5; ++n) {
+        follow(correction, 0.1);
+        EXPECT_EQ(correction.position, stood);
+        EXPECT_EQ(correction.velocity, 0);
+    }
+    double last = stood;
+    step(correction, settings, 0, 0.1, CYCLE_S);
+    EXPECT_LE((correction.position - last) / CYCLE_S, 0.5 * A * CYCLE_S);
+    EXPECT_NEAR(go(1), 0.2, 1e-12);
+}
+
+TEST_F(CorrectionPart, MovedByHandWhileOffTheTableGoesAlong_C11) {
+    load_three();
+    go(5);
+    follow(correction, 10);
+    EXPECT_NEAR(correction.position, 0.5, 1e-12);
+    at = 10;
+    EXPECT_NEAR(go(10), 0.5, 1e-12);
+}
+
+TEST_F(CorrectionPart, AZeroThatIsFoundTellsHowMuchMoreIsAdded_C11) {
+    load_three();
+    go(5);
+    EXPECT_NEAR(renumber(correction, 10), 0.1, 1e-12);
+    EXPECT_NEAR(correction.position, 0.5, 1e-12);
+    at = 10;
+    EXPECT_NEAR(go(10), 0.5, 1e-12) << "and nothing moves for it";
+}
+
+}  // namespace
+}  // namespace mw::motion
