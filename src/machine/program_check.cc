@@ -243,7 +243,19 @@ class Checker {
     std::set<std::pair<std::uint32_t, int>> impossible_;  ///< file and line of what was told
 };
 
-gcode::PreviewMachine stand_of(const MachineConfig &machine) {
+gcode::PreviewOptions preview_options(const CheckOptions &check) {
+    gcode::PreviewOptions options;
+    options.max_errors = MAX_CHECK_ERRORS;
+    if (check.statements) {
+        options.statement_budget = options.idle_budget = static_cast<std::uint64_t>(*check.statements);
+        options.time_budget_s = 0;
+    }
+    return options;
+}
+
+}  // namespace
+
+gcode::PreviewMachine preview_stand(const MachineConfig &machine) {
     gcode::PreviewMachine stand;
     stand.interpreter = machine.task.interpreter;
     stand.units = machine.task.machine_units;
@@ -256,18 +268,6 @@ gcode::PreviewMachine stand_of(const MachineConfig &machine) {
     };
     return stand;
 }
-
-gcode::PreviewOptions preview_options(const CheckOptions &check) {
-    gcode::PreviewOptions options;
-    options.max_errors = MAX_CHECK_ERRORS;
-    if (check.statements) {
-        options.statement_budget = options.idle_budget = static_cast<std::uint64_t>(*check.statements);
-        options.time_budget_s = 0;
-    }
-    return options;
-}
-
-}  // namespace
 
 geom::Pose home_position(const MachineConfig &machine) {
     std::array<double, MAX_JOINTS> home{};
@@ -288,7 +288,7 @@ geom::Pose home_position(const MachineConfig &machine) {
 CheckResult check_program(const MachineConfig &machine, const std::string &program, interp::ToolSource &tools,
                           interp::ParameterSource &parameters, diag::Sink &sink, const CheckOptions &check) {
     gcode::Preview *source = nullptr;
-    gcode::PreviewMachine stand = stand_of(machine);
+    gcode::PreviewMachine stand = preview_stand(machine);
     stand.isBlockDeleteOn = check.isBlockDeleteOn;
     const auto tell_unknown = [&](std::string_view what) {
         if (source != nullptr) {
