@@ -9,11 +9,14 @@ set_property(GLOBAL PROPERTY MW_REALTIME_TARGETS "")
 # mw_library(NAME SOURCES a.cc ... [DEPENDS mw_base ...] [PRIVATE_DEPENDS ...])
 # A static library mw_NAME; includes are rooted at src/. Without SOURCES it is header-only.
 function(mw_library name)
-  cmake_parse_arguments(A "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  cmake_parse_arguments(A "REALTIME" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
   if(A_SOURCES)
     add_library(mw_${name} STATIC ${A_SOURCES})
     target_include_directories(mw_${name} PUBLIC ${CMAKE_SOURCE_DIR}/src)
     target_link_libraries(mw_${name} PUBLIC ${A_DEPENDS} PRIVATE ${A_PRIVATE_DEPENDS})
+    if(NOT A_REALTIME)
+      mw_use_precompiled(mw_${name} library)
+    endif()
   else()
     add_library(mw_${name} INTERFACE)
     target_include_directories(mw_${name} INTERFACE ${CMAKE_SOURCE_DIR}/src)
@@ -24,8 +27,9 @@ endfunction()
 # mw_realtime_library(NAME ...): as mw_library, for code that the servo thread runs: no exceptions, no RTTI,
 # and its undefined symbols are checked against tools/realtime_symbols.txt by the test lint.symbols.
 function(mw_realtime_library name)
-  mw_library(${name} ${ARGN})
+  mw_library(${name} REALTIME ${ARGN})
   target_compile_options(mw_${name} PRIVATE ${MW_REALTIME_FLAGS})
+  mw_use_precompiled(mw_${name} realtime)
   set_property(GLOBAL APPEND PROPERTY MW_REALTIME_TARGETS mw_${name})
 endfunction()
 
@@ -54,15 +58,33 @@ function(mw_program name)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
-# mw_test(NAME SOURCES ... DEPENDS ... [LABELS ...] [TIMEOUT s] [COMPONENTS and2 ...]): a GoogleTest program, one CTest
-# test per case. COMPONENTS are built first.
+# Tests are compiled without optimisation, which would take half of their time; what they test is compiled with it.
+set(MW_TEST_FLAGS $<$<CONFIG:Release>:-O0>)
+
+# mw_unite(TARGET): several of its sources are compiled as one, which parses their common headers once.
+function(mw_unite target)
+  if(MW_UNITY)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+  endif()
+endfunction()
+
+# mw_test(NAME SOURCES ... DEPENDS ... [LABELS ...] [TIMEOUT s] [COMPONENTS and2 ...] [APART]
+# [OPTIMISED]): a GoogleTest program, one CTest test per case. COMPONENTS are built first. The sources of one that is
+# APART give different things one name; one that is OPTIMISED computes much itself.
 function(mw_test name)
   if(NOT MW_TESTS)
     return()
   endif()
-  cmake_parse_arguments(A "" "TIMEOUT" "SOURCES;DEPENDS;LABELS;COMPONENTS" ${ARGN})
+  cmake_parse_arguments(A "APART;OPTIMISED" "TIMEOUT" "SOURCES;DEPENDS;LABELS;COMPONENTS" ${ARGN})
   add_executable(${name} ${A_SOURCES})
   target_link_libraries(${name} PRIVATE ${A_DEPENDS} GTest::gtest GTest::gtest_main)
+  if(NOT A_OPTIMISED)
+    target_compile_options(${name} PRIVATE ${MW_TEST_FLAGS})
+    mw_use_precompiled(${name} test)
+  endif()
+  if(NOT A_APART)
+    mw_unite(${name})
+  endif()
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
   foreach(component ${A_COMPONENTS})
     add_dependencies(${name} comp_${component})

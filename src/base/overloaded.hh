@@ -25,6 +25,10 @@ template <class Type, class Variant>
 inline constexpr bool IS_ALTERNATIVE = false;
 template <class Type, class... Types>
 inline constexpr bool IS_ALTERNATIVE<Type, std::variant<Types...>> = OneOf<Type, Types...>;
+/// A class of its own that is a variant, whose base is named Variant.
+template <class Type, class Class>
+    requires requires { typename Class::Variant; }
+inline constexpr bool IS_ALTERNATIVE<Type, Class> = IS_ALTERNATIVE<Type, typename Class::Variant>;
 
 template <class Type, class Variant>
 concept AlternativeOf = IS_ALTERNATIVE<std::remove_cvref_t<Type>, Variant>;

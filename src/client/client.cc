@@ -4,11 +4,13 @@
 #include <time.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <memory>
 
 #include <fmt/format.h>
 
+#include "base/patient_read.hh"
 #include "msgs/binary.hh"
 #include "msgs/catalogue.hh"
 
@@ -18,8 +20,9 @@ namespace {
 constexpr std::int64_t NS_PER_S = 1000000000;
 /// A sleeper looks after so long whether the machine still lives.
 constexpr std::int64_t LONGEST_SLEEP_NS = 100000000;
-/// A seqlock that stays odd for so many looks belongs to a dead writer.
-constexpr int READ_TRIES = 100000;
+
+/// How long task may lie interrupted within a write before it counts as dead: as long as its watchdog.
+constexpr std::chrono::milliseconds WRITER_PATIENCE{500};
 
 std::int64_t monotonic_ns() {
     timespec now{};
@@ -156,6 +159,11 @@ bool Client::isStopWaiting(Serial serial) {
                        [serial](const PostedStop &stop) { return stop.serial == serial; });
 }
 
+template <class Lock, class Value>
+bool Client::read_whole(const Lock &lock, Value &value) const {
+    return read_patiently(lock, value, WRITER_PATIENCE, [this] { return isMachineAlive(); });
+}
+
 Outcome Client::outcome(Serial serial) {
     for (const auto &[before, later] : replaced_stops_) {  // in their order: a later one may be replaced too
         serial = before == serial ? later : serial;
@@ -176,7 +184,7 @@ Outcome Client::outcome(Serial serial) {
     for (std::size_t i = 0; i < outcomes.size(); ++i) {
         const std::size_t place = (found_.place + i) % outcomes.size();  // mostly asked again
         mailbox::Outcome outcome;
-        if (outcomes[place].read(outcome, READ_TRIES) && outcome.serial == serial) {
+        if (read_whole(outcomes[place], outcome) && outcome.serial == serial) {
             found_ = {serial, told, place, {outcome.progress, outcome.reason.str()}};
             return found_.outcome;
         }
@@ -231,15 +239,14 @@ Result<> Client::wait_status(double timeout_s) {
 
 mailbox::Identity Client::identity() const {
     mailbox::Identity identity;
-    return segment_->identity.read(identity, READ_TRIES) ? identity : mailbox::Identity{};
+    return read_whole(segment_->identity, identity) ? identity : mailbox::Identity{};
 }
 
 Result<> Client::read_status() {
     if (segment_->cycles.load(std::memory_order_acquire) == 0) {
         return fail("the machine has not begun yet");
     }
-    return segment_->status.read(*status_, READ_TRIES) ? Result<>{}
-                                                       : fail("task died while it wrote its status");
+    return read_whole(segment_->status, *status_) ? Result<>{} : fail("task died while it wrote its status");
 }
 
 Result<std::optional<msgs::ToolTable>> Client::read_tools() {
@@ -248,8 +255,7 @@ Result<std::optional<msgs::ToolTable>> Client::read_tools() {
         return std::nullopt;
     }
     auto bytes = std::make_unique<mailbox::Bytes>();
-    constexpr int TRIES = 100;  // each copies much
-    if (!segment_->tools.read(*bytes, TRIES)) {
+    if (!read_whole(segment_->tools, *bytes)) {
         return fail("task died while it wrote the tool table");
     }
     msgs::ToolTable table;
@@ -268,7 +274,7 @@ std::optional<Client::Message> Client::next_message() {
         return std::nullopt;
     }
     auto read = std::make_unique<mailbox::NumberedMessage>();
-    const bool isWhole = segment_->messages[next_message_ % mailbox::MAX_MESSAGES].read(*read, READ_TRIES);
+    const bool isWhole = read_whole(segment_->messages[next_message_ % mailbox::MAX_MESSAGES], *read);
     if (!isWhole || read->number != next_message_) {  // overwritten meanwhile, or task died within it
         const std::uint64_t now = segment_->newest_message.load(std::memory_order_acquire);
         const std::uint64_t oldest =

@@ -78,6 +78,9 @@ class Client {
     void leave() noexcept;
     Serial post_stop(int place);
     bool isStopWaiting(Serial serial);
+    /// False when task died within writing it.
+    template <class Lock, class Value>
+    bool read_whole(const Lock &lock, Value &value) const;
     Result<> sleep(std::uint32_t heard, std::int64_t end_ns);
 
     std::optional<mailbox::Memory> memory_;  ///< of another process

@@ -24,8 +24,8 @@ struct Alternative {
 
 template <std::size_t I>
 constexpr Alternative alternative() {
-    using T = std::variant_alternative_t<I, Command>;
-    return {&DECLARATION<T>, [] { return Command(std::in_place_index<I>); },
+    using T = std::variant_alternative_t<I, CommandVariant>;
+    return {&DECLARATION<T>, [] { return Command(T{}); },
             [](const Command &command) -> const void * { return std::get_if<I>(&command); }};
 }
 
@@ -33,7 +33,8 @@ template <std::size_t... I>
 constexpr auto all_alternatives(std::index_sequence<I...>) {
     return std::array{alternative<I>()...};
 }
-constexpr auto ALTERNATIVES = all_alternatives(std::make_index_sequence<std::variant_size_v<Command>>());
+constexpr auto ALTERNATIVES =
+    all_alternatives(std::make_index_sequence<std::variant_size_v<CommandVariant>>());
 
 constexpr auto COMMANDS = [] {
     std::array<const Declaration *, ALTERNATIVES.size()> all{};

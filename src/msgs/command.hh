@@ -3,8 +3,12 @@
 // refused or failed with a reason.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <type_traits>
 #include <variant>
 
+#include "base/overloaded.hh"
 #include "msgs/device_commands.hh"
 #include "msgs/joint_commands.hh"
 #include "msgs/motion_commands.hh"
@@ -12,7 +16,7 @@
 
 namespace mw::msgs {
 
-using Command = std::variant<
+using CommandVariant = std::variant<
     SetState, SetMode, OpenProgram, RunProgram, ReadProgram, Mdi, PauseProgram, StepProgram, ResumeProgram,
     EndProgram, CloseProgram, ResetInterpreter, SynchInterpreter, SetOptionalStop, SetBlockDelete,
     StopOptionally, ReverseProgram, ForwardProgram, InitTask, HaltTask, AbortAll, InitMachine, HaltMachine,
@@ -32,5 +36,32 @@ using Command = std::variant<
     LubeOff, EstopOn, EstopOff, EstopReset, WaitInput, InitTool, HaltTool, AbortTool, PrepareTool, LoadTool,
     UnloadTool, LoadToolTable, SetToolEntry, SetToolNumber, StartToolChange, ConfirmToolChange, InitIo,
     HaltIo, AbortIo, SetIoCycleTime, CallIoPlugin>;
+
+/// Where a message stands in the variant.
+template <class Message, class Variant>
+inline constexpr std::size_t INDEX_IN = 0;
+template <class Message, class... All>
+inline constexpr std::size_t INDEX_IN<Message, std::variant<All...>> = [] {
+    constexpr std::array IS_IT{std::is_same_v<Message, All>...};
+    return static_cast<std::size_t>(std::find(IS_IT.begin(), IS_IT.end(), true) - IS_IT.begin());
+}();
+
+/// One of them. What a variant of so many does to its members is compiled once, in command.cc.
+class Command : public CommandVariant {
+  public:
+    using Variant = CommandVariant;
+    Command();
+    template <AlternativeOf<CommandVariant> Message>
+    Command(Message message) : Command(INDEX_IN<Message, CommandVariant>, &message) {}
+    Command(const Command &other);
+    Command(Command &&other) noexcept;
+    Command &operator=(const Command &other);
+    Command &operator=(Command &&other) noexcept;
+    ~Command();
+
+  private:
+    /// `message` is the alternative of that index; it is moved from.
+    Command(std::size_t index, void *message);
+};
 
 }  // namespace mw::msgs

@@ -9,6 +9,9 @@
 
 namespace mw::pyhost {
 
+/// How a call of the interpreter ended, as modules/interpreter.py knows it.
+inline constexpr int CODE_OK = 0, CODE_EXECUTE_FINISH = 2;
+
 /// Puts _millwright_script and _millwright_canon into sys.modules, once. Needs the GIL.
 void add_native_modules();
 void define_canon(py::module_ &module);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/atomic_file.hh"
+#include "pyhost/modules.hh"
 
 namespace mw::pyhost {
 
@@ -16,7 +17,7 @@ using Kind = ScriptOutcome::Kind;
 
 namespace {
 
-constexpr int CODE_OK = 0, CODE_EXIT = 1, CODE_EXECUTE_FINISH = 2, CODE_MIN_ERROR = 3;
+constexpr int CODE_EXIT = 1, CODE_MIN_ERROR = 3;
 
 const char *module_name(ScriptModule module) {
     return module == ScriptModule::REMAP ? "remap" : "oword";

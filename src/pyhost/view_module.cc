@@ -10,7 +10,7 @@ namespace {
 
 using interp::InterpreterView;
 
-constexpr int CODE_OK = 0, CODE_EXECUTE_FINISH = 2, CODE_ERROR = 5;
+constexpr int CODE_ERROR = 5;
 
 void require(const Result<> &result) {
     if (!result) {

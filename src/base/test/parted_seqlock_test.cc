@@ -5,9 +5,12 @@
 #include <gtest/gtest.h>
 
 #include "base/parted_seqlock.hh"
+#include "base/patient_read.hh"
 
 namespace mw {
 namespace {
+
+using namespace std::chrono_literals;
 
 struct Picture {
     std::int64_t head[2] = {7, 7};
@@ -79,7 +82,7 @@ TEST(PartedSeqlock, ReadersNeverSeePartsOfDifferentWrites) {
     picture.rows[0] = picture.rows[1] = picture.rows[2] = 0;
     lock->write(picture);
     std::atomic<bool> isDone{false};
-    std::thread writer([&] {
+    std::jthread writer([&] {
         for (std::int64_t i = 0; i < 60000; ++i) {
             const auto from = static_cast<int>(i % 3);
             const int to = (from + 1) % 3;
@@ -93,10 +96,10 @@ TEST(PartedSeqlock, ReadersNeverSeePartsOfDifferentWrites) {
     std::uint64_t reads = 0;
     for (bool isLast = false; !isLast; ++reads) {
         isLast = isDone;
-        ASSERT_TRUE(lock->read(often));
+        ASSERT_TRUE(read_patiently(*lock, often, 10s));
         ASSERT_EQ(often.value.rows[0] + often.value.rows[1] + often.value.rows[2], 0);
         if (reads % 5 == 0 || isLast) {
-            ASSERT_TRUE(lock->read(seldom));
+            ASSERT_TRUE(read_patiently(*lock, seldom, 10s));
             ASSERT_EQ(seldom.value.rows[0] + seldom.value.rows[1] + seldom.value.rows[2], 0);
         }
     }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <chrono>
 #include <thread>
 
 #include <gtest/gtest.h>
 
+#include "base/patient_read.hh"
 #include "base/seqlock.hh"
 #include "base/spsc_ring.hh"
 
@@ -47,7 +49,7 @@ TEST(Seqlock, ReadersNeverSeeAMixture) {
     };
     auto lock = std::make_unique<Seqlock<Snapshot>>();
     std::atomic<bool> isDone{false};
-    std::thread writer([&] {
+    std::jthread writer([&] {
         for (std::int64_t i = 0; i < 50000; ++i) {
             lock->write({{i, i, i, i, i}});
         }
@@ -57,12 +59,11 @@ TEST(Seqlock, ReadersNeverSeeAMixture) {
     Snapshot seen{};
     for (bool isLast = false; !isLast;) {
         isLast = isDone;
-        ASSERT_TRUE(lock->read(seen));
+        ASSERT_TRUE(read_patiently(*lock, seen, std::chrono::seconds(10)));
         for (const std::int64_t v : seen.a) {
             ASSERT_EQ(v, seen.a[0]);
         }
     }
-    writer.join();
     EXPECT_EQ(seen.a[0], 49999);
 }
 

@@ -9,15 +9,17 @@
 
 #include <string_view>
 #include <tuple>
+#include <type_traits>
+#include <utility>
 #include <variant>
 
+#include "base/overloaded.hh"
 #include "interp/canon/canon_actions.hh"
 #include "interp/canon/canon_moves.hh"
 
 namespace mw::interp {
 
-/// Any call. Closed: who handles calls handles each of these, and the compiler says which is missing.
-using CanonCall =
+using CanonVariant =
     std::variant<StraightFeed, StraightTraverse, ArcFeed, SetFeedRate, NurbsFeed, StraightProbe, RigidTap,
                  Dwell, StartSpeedFeedSynch, StopSpeedFeedSynch, OnReset, UseLengthUnits, SelectPlane,
                  SetG5xOffset, SetG92Offset, SetXyRotation, UseToolLengthOffset, SetFeedReference,
@@ -28,6 +30,22 @@ using CanonCall =
                  SetDigitalOutput, SetAnalogOutput, WaitInput, ProgramStop, ProgramEnd, PalletShuttle, Finish,
                  UserCode, ProgramComment, OperatorMessage, PrintLine, OpenLog, LogLine, CloseLog, LogProbes,
                  CanonError>;
+
+/// Any call. Closed: who handles calls handles each of these, and the compiler says which is missing. What a
+/// variant of so many does to its members is compiled once.
+class CanonCall : public CanonVariant {
+  public:
+    using Variant = CanonVariant;
+    CanonCall();
+    template <AlternativeOf<CanonVariant> Call>
+    CanonCall(Call &&call)
+        : CanonVariant(std::in_place_type<std::remove_cvref_t<Call>>, std::forward<Call>(call)) {}
+    CanonCall(const CanonCall &other);
+    CanonCall(CanonCall &&other) noexcept;
+    CanonCall &operator=(const CanonCall &other);
+    CanonCall &operator=(CanonCall &&other) noexcept;
+    ~CanonCall();
+};
 
 /// What a call is called in text.
 template <class Call>

@@ -63,9 +63,7 @@ struct UseSpindleSpeed {
     double surface_unit = 0;  ///< the metre or foot of a surface speed [machine units]
 };
 
-/// One call in machine coordinates. What is not a move keeps its order between moves. Alternatives of
-/// CanonCall that stand here as well have nothing in them that a frame changes.
-using MachineCall =
+using MachineVariant =
     std::variant<LineMove, ArcMove, ProbeMove, TapMove, Dwell, UseToolOffset, UseOffsets, UsePlanner,
                  SetSpindleMode, UseSpindleSpeed, StartSpindle, StopSpindle, OrientSpindle,
                  WaitOrientComplete, SelectTool, ChangeTool, ChangeToolNumber, SetToolTableEntry, ReloadTools,
@@ -73,6 +71,22 @@ using MachineCall =
                  SwitchAdaptiveFeed, SetDigitalOutput, SetAnalogOutput, WaitInput, ProgramStop, ProgramEnd,
                  PalletShuttle, Finish, UserCode, ProgramComment, OperatorMessage, PrintLine, OpenLog,
                  LogLine, CloseLog, LogProbes, CanonError>;
+
+/// One call in machine coordinates. What is not a move keeps its order between moves. Alternatives of
+/// CanonCall that stand here as well have nothing in them that a frame changes.
+class MachineCall : public MachineVariant {
+  public:
+    using Variant = MachineVariant;
+    MachineCall();
+    template <AlternativeOf<MachineVariant> Call>
+    MachineCall(Call &&call)
+        : MachineVariant(std::in_place_type<std::remove_cvref_t<Call>>, std::forward<Call>(call)) {}
+    MachineCall(const MachineCall &other);
+    MachineCall(MachineCall &&other) noexcept;
+    MachineCall &operator=(const MachineCall &other);
+    MachineCall &operator=(MachineCall &&other) noexcept;
+    ~MachineCall();
+};
 
 /// Takes one program in machine coordinates.
 class MachineCanon {

@@ -188,12 +188,12 @@ std::vector<std::string> declared_names(std::index_sequence<indices...>) {
             names.emplace_back(Call::NAME);
         }
     };
-    (add(static_cast<const std::variant_alternative_t<indices, CanonCall> *>(nullptr)), ...);
+    (add(static_cast<const std::variant_alternative_t<indices, CanonVariant> *>(nullptr)), ...);
     return names;
 }
 
 TEST(CanonCalls, HaveANameOfTheirOwnEach_I1) {
-    const auto names = declared_names(std::make_index_sequence<std::variant_size_v<CanonCall>>{});
+    const auto names = declared_names(std::make_index_sequence<std::variant_size_v<CanonVariant>>{});
     EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
 }
 
@@ -202,7 +202,7 @@ TEST(CanonCalls, AreAllInTheTableOfThisTest_I1) {
     for (const Printed &one : all_calls()) {
         seen.insert(one.call.index());
     }
-    EXPECT_EQ(seen.size(), std::variant_size_v<CanonCall>);
+    EXPECT_EQ(seen.size(), std::variant_size_v<CanonVariant>);
 }
 
 TEST(PrintCanon, WritesEachCallInItsForm_I1) {

@@ -22,7 +22,7 @@ BlockValues moving(int motion, std::initializer_list<std::pair<char, double>> wo
     return values;
 }
 
-class LatheCyclesAlone : public testing::Test {
+class LatheCyclesAlone : public ::testing::Test {
   protected:
     LatheCyclesAlone() {
         parts.state.plane = Plane::XZ;

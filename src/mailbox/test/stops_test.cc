@@ -26,11 +26,11 @@ void expect_places(std::index_sequence<I...>) {
     const auto expect = [](const msgs::Command &command) {
         EXPECT_EQ(stop_place(command).has_value(), isStop(command)) << command.index();
     };
-    (expect(std::variant_alternative_t<I, msgs::Command>{}), ...);
+    (expect(std::variant_alternative_t<I, msgs::CommandVariant>{}), ...);
 }
 
 TEST(Stops, OfTheWholeVocabularyHavePlacesAndNothingElseHas_D1) {
-    expect_places(std::make_index_sequence<std::variant_size_v<msgs::Command>>{});
+    expect_places(std::make_index_sequence<std::variant_size_v<msgs::CommandVariant>>{});
     for (int i = 0; i < 16; ++i) {
         EXPECT_TRUE(stop_place(msgs::JogStop{true, i}).has_value());
         EXPECT_TRUE(stop_place(msgs::JogStop{false, i}).has_value());

@@ -9,7 +9,7 @@
 namespace mw::motion {
 namespace {
 
-constexpr int X = geom::AXIS_X, Y = geom::AXIS_Y, Z = geom::AXIS_Z, A = geom::AXIS_A;
+constexpr int X = geom::AXIS_X, Y = geom::AXIS_Y, Z = geom::AXIS_Z;
 
 Settings with(std::initializer_list<std::tuple<Parameter, int, double>> values) {
     Settings settings;
@@ -38,7 +38,7 @@ TEST(Limits, JointsThatTheMachineDoesNotHaveMoveNoAxis) {
     ASSERT_TRUE(kinematics.configure("XYZABCUVW"));
     const AxisMap map = axis_map(kinematics, 3);
     EXPECT_TRUE(map.hasAxis(Z));
-    EXPECT_FALSE(map.hasAxis(A));
+    EXPECT_FALSE(map.hasAxis(geom::AXIS_A));
     EXPECT_EQ(fold_limits(Settings(), map, ALL_HOMED).axes, 7U);
 }
 
@@ -110,7 +110,7 @@ TEST(Limits, JerkOfTheMachineLimitsStraightJogsAndNoTurningOnes) {
     EXPECT_EQ(limits.path.jerk[X], 5000) << "the norm of X Y Z has a limit of its own";
     EXPECT_EQ(limits.axis_jog[X].jerk, 2000);
     EXPECT_EQ(limits.joint_jog[0].jerk, 2000);
-    EXPECT_EQ(limits.axis_jog[A].jerk, 3000);
+    EXPECT_EQ(limits.axis_jog[geom::AXIS_A].jerk, 3000);
     EXPECT_EQ(limits.joint_jog[1].jerk, 3000);
     const Settings off = with({{Parameter::TRAJ_MAX_JERK, 0, 2000}});
     EXPECT_EQ(fold_limits(off, axis_map("X", 1), ALL_HOMED).axis_jog[X].jerk, 0);
@@ -126,7 +126,7 @@ TEST(Limits, KinematicsThatNobodyMayAskLeaveAMarginForJoints) {
     map.kind = AxisMap::Kind::UNKNOWN;
     const FoldedLimits limits = fold_limits(s, map, ALL_HOMED);
     EXPECT_EQ(limits.path.velocity[X], 40);
-    EXPECT_EQ(limits.path.velocity[A], 20);
+    EXPECT_EQ(limits.path.velocity[geom::AXIS_A], 20);
     EXPECT_EQ(limits.axis_jog[X].velocity, 300) << "jogs ask the kinematics every cycle";
     map.kind = AxisMap::Kind::PLANNED;
     EXPECT_EQ(fold_limits(s, map, ALL_HOMED).path.velocity[X], 300) << "the planner keeps the joints' limits";

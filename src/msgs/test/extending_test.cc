@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The example of docs/extending/message.md.
-#include <fstream>
-#include <sstream>
 
 #include <gtest/gtest.h>
 
+#include "base/atomic_file.hh"
 #include "msgs/binary.hh"
 #include "msgs/check.hh"
 #include "msgs/json.hh"
@@ -28,12 +27,6 @@ inline constexpr auto DECLARED<SetGenericOutput> =
 
 namespace {
 
-std::string file_text(const std::string &path) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
-}
-
 TEST(ExtendingMessages, OneDeclarationGivesCodecsCheckAndText_F7) {
     const SetGenericOutput command{3, 1.5};
     EXPECT_EQ(to_json(object(command)), R"({"message":"SetGenericOutput","index":3,"value":1.5})");
@@ -52,12 +45,12 @@ TEST(ExtendingMessages, OneDeclarationGivesCodecsCheckAndText_F7) {
 }
 
 TEST(ExtendingMessages, ThePageShowsWhatIsCompiledHere_F7) {
-    const std::string source = file_text(MW_SOURCE_DIR "/src/msgs/test/extending_test.cc");
+    const std::string source = read_file(MW_SOURCE_DIR "/src/msgs/test/extending_test.cc").value();
     const std::string begin = "// begin of the example\n";
     const std::size_t from = source.find('\n' + begin) + 1 + begin.size();
     const std::string example = source.substr(from, source.find("// end of the example\n") - from);
     ASSERT_GT(example.size(), 200U);
-    EXPECT_NE(file_text(MW_SOURCE_DIR "/docs/extending/message.md").find(example), std::string::npos);
+    EXPECT_NE(read_file(MW_SOURCE_DIR "/docs/extending/message.md").value().find(example), std::string::npos);
 }
 
 }  // namespace

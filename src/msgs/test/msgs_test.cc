@@ -3,25 +3,18 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <set>
-#include <sstream>
 
 #include <gtest/gtest.h>
 
+#include "base/atomic_file.hh"
 #include "msgs/catalogue.hh"
 #include "msgs/reference.hh"
 #include "msgs/status.hh"
 
 namespace mw::msgs {
 namespace {
-
-std::string file_text(const std::string &path) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
-}
 
 std::vector<const Declaration *> all_declarations() {
     std::vector<const Declaration *> all(command_declarations().begin(), command_declarations().end());
@@ -124,7 +117,7 @@ TEST(Messages, EveryCommandIsAllowedWithItsOwnDefaultsUnlessItNeedsAText) {
 }
 
 TEST(Messages, TheReferencePageIsUpToDate) {
-    EXPECT_EQ(file_text(MW_SOURCE_DIR "/docs/messages.md"), reference_page())
+    EXPECT_EQ(read_file(MW_SOURCE_DIR "/docs/messages.md").value(), reference_page())
         << "build/release/bin/message_reference > docs/messages.md";
 }
 

@@ -2,18 +2,23 @@
 #include "task/link/motion_link.hh"
 
 #include <algorithm>
+#include <chrono>
+
+#include "base/patient_read.hh"
 
 namespace mw::task {
 namespace {
 
 /// Moves handed over and not complete; the planner looks ahead over at most this many.
 constexpr std::uint32_t PATH_WINDOW = 3000;
+/// A servo thread that lies interrupted within a write for longer has died; others tell of its death.
+constexpr std::chrono::milliseconds PATIENCE{20};
 
 }  // namespace
 
 MotionLink::MotionLink(motion::Channels &channels) : channels_(channels) {
     copy_.value.isInPosition = false;  // before motion has said so
-    if (channels_.status.read(copy_)) {
+    if (read_patiently(channels_.status, copy_, PATIENCE)) {
         epoch_ = copy_.value.epoch;
     }
 }
@@ -21,7 +26,7 @@ MotionLink::MotionLink(motion::Channels &channels) : channels_(channels) {
 MotionLink::News MotionLink::update() {
     News news;
     // Of a realtime side that has died while writing nothing more is told.
-    fresh_ = channels_.status.read(copy_) ? copy_.fresh : 0;
+    fresh_ = read_patiently(channels_.status, copy_, PATIENCE) ? copy_.fresh : 0;
     channels_.task_loops.fetch_add(1, std::memory_order_relaxed);
     take_answers(news);
     motion::Fault fault;

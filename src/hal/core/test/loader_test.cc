@@ -6,7 +6,7 @@
 namespace mw::hal {
 namespace {
 
-using testing::Test;
+using ::testing::Test;
 
 TEST(Loader, RunsACComponentFromASharedObject_B5) {
     TestMachine machine;

