@@ -43,7 +43,8 @@ struct UiWords {
             "computer. It is a\n"
             "client: the machine goes on without it, and it waits for a machine that is not up yet. Ends at "
             "SIGINT or SIGTERM.\n");
-        line.number("--port", "N", "listen on 127.0.0.1:N, 0: on a free port; 8850 without it", port, 0, 65535);
+        line.number("--port", "N", "listen on 127.0.0.1:N, 0: on a free port; 8850 without it", port, 0,
+                    65535);
         line.flag("--open", "show the screen in the desktop's browser", isOpening);
         line.text("--screen", "FOLDER", "serve the screen from there", screen);
         line.rest(rest);
@@ -92,8 +93,13 @@ Result<client::Client> connect(const std::string &instance, const std::string &i
     return client;
 }
 
-/// Where there is a desktop. Its program goes its own way.
-void open_browser(const std::string &address) {
+/// Where there is a desktop and a screen to show. Its program goes its own way.
+void open_browser(const std::string &address, const std::string &folder) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(folder + "/index.html", error)) {
+        fmt::print(stderr, "no browser is opened: no screen is installed in {}\n", folder);
+        return;
+    }
     if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) {
         return;
     }
@@ -123,7 +129,8 @@ int serve(const UiWords &words, const machine::LoadedConfig &loaded, diag::Sink 
     setup.screens.connect = [instance, ini] { return connect(instance, ini); };
     setup.screens.version = MW_VERSION;
     setup.screens.status_period_ns = static_cast<std::int64_t>(status_period_s(loaded.ini, sink) * 1e9);
-    setup.screen_folder = screen_folder(words.screen);
+    const std::string folder = screen_folder(words.screen);
+    setup.screen_folder = folder;
     PathReaders readers(loaded);
     setup.read_path = [&readers](const std::string &path) { return readers.read(path); };
 
@@ -133,7 +140,7 @@ int serve(const UiWords &words, const machine::LoadedConfig &loaded, diag::Sink 
     fmt::print("screen of {}: {}\n", loaded.machine.name, address);
     std::fflush(stdout);
     if (words.isOpening) {
-        open_browser(address);
+        open_browser(address, folder);
     }
     while (stop_signal == 0) {
         (*server)->run_for(api, api.count_screens() > 0 ? TICK : IDLE_TICK);

@@ -17,7 +17,8 @@ using ui::web::Increment;
 constexpr double MM_PER_INCH = 25.4;
 
 /// A number of the INI file above 0; a warning where it is none.
-std::optional<double> number(const config::IniFile &ini, const char *section, const char *key, diag::Sink &sink) {
+std::optional<double> number(const config::IniFile &ini, const char *section, const char *key,
+                             diag::Sink &sink) {
     const config::IniEntry *entry = ini.find(section, key);
     if (entry == nullptr) {
         return std::nullopt;
@@ -36,7 +37,8 @@ struct Key {
     const char *section, *key;
 };
 
-std::optional<double> first_of(const config::IniFile &ini, std::initializer_list<Key> keys, diag::Sink &sink) {
+std::optional<double> first_of(const config::IniFile &ini, std::initializer_list<Key> keys,
+                               diag::Sink &sink) {
     for (const Key &key : keys) {
         if (const auto value = number(ini, key.section, key.key, sink)) {
             return value;
@@ -58,12 +60,12 @@ std::optional<double> parse_fraction(std::string_view text) {
 
 std::optional<Increment> parse_increment(std::string_view text, double unit_mm) {
     constexpr std::array<std::pair<std::string_view, double>, 7> UNITS_MM{{{"mm", 1},
-                                                                          {"cm", 10},
-                                                                          {"um", 0.001},
-                                                                          {"in", MM_PER_INCH},
-                                                                          {"inch", MM_PER_INCH},
-                                                                          {"mil", MM_PER_INCH / 1000},
-                                                                          {"mils", MM_PER_INCH / 1000}}};
+                                                                           {"cm", 10},
+                                                                           {"um", 0.001},
+                                                                           {"in", MM_PER_INCH},
+                                                                           {"inch", MM_PER_INCH},
+                                                                           {"mil", MM_PER_INCH / 1000},
+                                                                           {"mils", MM_PER_INCH / 1000}}};
     text = trim(text);
     const std::size_t digits = std::min(text.find_first_not_of("0123456789./+-"), text.size());
     const auto value = parse_fraction(trim(text.substr(0, digits)));
@@ -100,11 +102,13 @@ std::vector<Increment> increments_of(const machine::LoadedConfig &loaded, bool h
     const double unit_mm = loaded.machine.isMetric ? 1 : MM_PER_INCH;
     std::vector<std::string> bad;
     const config::IniEntry *linear = loaded.ini.find("DISPLAY", "INCREMENTS");
-    const char *const presets = loaded.machine.isMetric ? "10 mm, 1 mm, 0.1 mm, 0.01 mm" : "1 in, 0.1 in, 0.01 in, 0.001 in";
+    const char *const presets =
+        loaded.machine.isMetric ? "10 mm, 1 mm, 0.1 mm, 0.01 mm" : "1 in, 0.1 in, 0.01 in, 0.001 in";
     std::vector<Increment> all = parse_increments(linear != nullptr ? linear->value : presets, unit_mm, bad);
     const config::IniEntry *angular = loaded.ini.find("DISPLAY", "ANGULAR_INCREMENTS");
     if (hasRotary) {
-        for (Increment one : parse_increments(angular != nullptr ? angular->value : "90, 10, 1, 0.1", 1, bad)) {
+        for (Increment one :
+             parse_increments(angular != nullptr ? angular->value : "90, 10, 1, 0.1", 1, bad)) {
             one.isAngular = true;
             all.push_back(std::move(one));
         }
@@ -157,7 +161,8 @@ std::optional<double> fastest_axis(const machine::LoadedConfig &loaded, bool isA
 
 }  // namespace
 
-std::vector<Increment> parse_increments(std::string_view text, double unit_mm, std::vector<std::string> &bad) {
+std::vector<Increment> parse_increments(std::string_view text, double unit_mm,
+                                        std::vector<std::string> &bad) {
     std::vector<Increment> all;
     for (const std::string &one : split_list(text)) {
         if (auto increment = parse_increment(one, unit_mm)) {
@@ -209,7 +214,8 @@ ui::web::MachineFacts machine_facts(const machine::LoadedConfig &loaded, diag::S
                 .value_or(fastest_axis(loaded, true, sink).value_or(1));
         facts.default_angular_velocity = std::min(
             facts.max_angular_velocity,
-            first_of(ini, {{"DISPLAY", "DEFAULT_ANGULAR_VELOCITY"}, {"TRAJ", "DEFAULT_ANGULAR_VELOCITY"}}, sink)
+            first_of(ini, {{"DISPLAY", "DEFAULT_ANGULAR_VELOCITY"}, {"TRAJ", "DEFAULT_ANGULAR_VELOCITY"}},
+                     sink)
                 .value_or(facts.max_angular_velocity / 4));
     }
     facts.increments = increments_of(loaded, hasRotary, sink);

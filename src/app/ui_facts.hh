@@ -15,8 +15,8 @@ namespace mw::app {
 /// What cannot be read is warned of in `sink` and left out.
 ui::web::MachineFacts machine_facts(const machine::LoadedConfig &loaded, diag::Sink &sink);
 
-/// The entries of [DISPLAY]INCREMENTS: "1 mm, .01 in, 1/8 in, 5 mil, 45 deg"; without commas blanks part them.
-/// `unit_mm`: of the machine unit. What is none of these is in `bad`.
+/// The entries of [DISPLAY]INCREMENTS: "1 mm, .01 in, 1/8 in, 5 mil, 45 deg"; without commas blanks part
+/// them. `unit_mm`: of the machine unit. What is none of these is in `bad`.
 std::vector<ui::web::Increment> parse_increments(std::string_view text, double unit_mm,
                                                  std::vector<std::string> &bad);
 

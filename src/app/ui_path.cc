@@ -46,9 +46,8 @@ Result<std::shared_ptr<ui::web::PieceQueue>> PathReaders::read(const std::string
 }
 
 void PathReaders::read_all(Reader &reader, const std::string &path) const {
-    ui::web::PathChunks chunks(
-        [&reader](std::string piece) { return reader.pieces->push(std::move(piece)); },
-        loaded_.machine.isMetric ? 1 : MM_PER_INCH);
+    ui::web::PathChunks chunks([&reader](std::string piece) { return reader.pieces->push(std::move(piece)); },
+                               loaded_.machine.isMetric ? 1 : MM_PER_INCH);
     auto tools = machine::ToolFile::load(loaded_.machine.tool_table_file);
     if (!tools.has_value()) {
         chunks.error(tools.error().str());

@@ -154,7 +154,8 @@ class Bench(Mill):
 
     def machine(self):
         process, path = self.begin('start', str(self.ini), '--no-display')
-        expect(wait_until(lambda: 'is up' in path.read_text() or process.poll() is not None), 'the machine comes up', path.read_text())
+        expect(wait_until(lambda: 'is up' in path.read_text() or process.poll() is not None) and process.poll() is None,
+               'the machine comes up', path.read_text())
         return process
 
     def server(self):
@@ -198,18 +199,31 @@ def switch_on_and_home(screen):
     expect(screen.until(lambda: screen.status['trajectory']['all_homed']), 'all are homed')
 
 
-def jog_and_cut(port, screen, more):
+def jog(screen, velocity, has_lease):
+    """Without leases only a jog that ends by itself is taken."""
+    if has_lease:
+        return screen.ask('JogContinuous', is_joint=True, index=0, velocity=velocity, lease_ms=5000)
+    return screen.ask('JogIncrement', is_joint=True, index=0, velocity=velocity, distance=200.0)
+
+
+def jog_and_cut(port, screen, has_lease):
     expect(screen.do('SetMode', mode='MANUAL') == 'DONE' and screen.do('SetTeleop', teleop=False) == 'DONE', 'joint mode')
     begin = screen.joint()['pos_cmd']
-    number = screen.ask('JogContinuous', is_joint=True, index=0, velocity=10.0, **more)
+    endless = screen.ask('JogContinuous', is_joint=True, index=0, velocity=10.0)
+    expect(screen.outcome(endless) == 'REFUSED' and 'lease' in screen.outcomes[endless].get('reason', ''),
+           'a jog that nothing would end is refused', screen.outcomes.get(endless))
+    screen.until(lambda: False, 0.2)
+    expect(screen.joint()['pos_cmd'] == begin, 'and nothing moves')
+    number = jog(screen, 10.0, has_lease)
     expect(screen.until(lambda: screen.joint()['pos_cmd'] > begin + 0.5), 'a jog moves', screen.outcomes.get(number))
     expect(screen.do('JogStop', is_joint=True, index=0) == 'DONE', 'a stop stops')
     expect(screen.until(lambda: screen.joint()['vel_cmd'] == 0), 'and it stands')
+    expect(screen.joint()['pos_cmd'] < begin + 190, 'where it was stopped', screen.joint())
 
     other = Screen(port)
     other.until(lambda: 'joints' in other.status)
     begin = other.joint()['pos_cmd']
-    other.ask('JogContinuous', is_joint=True, index=0, velocity=-10.0, **more)
+    jog(other, -10.0, has_lease)
     expect(other.until(lambda: other.joint()['pos_cmd'] < begin - 0.5), 'another screen jogs')
     other.cut()
     expect(screen.until(lambda: screen.joint()['vel_cmd'] == 0, 2), 'a jog ends with its connection', screen.joint())
@@ -286,7 +300,7 @@ def check(bench):
     schema = json.loads(http_ask(port, 'GET', '/api/schema')[1])
     command = next(c for c in schema['commands'] if c['name'] == 'JogContinuous')
     has_lease = any(f['name'] == 'lease_ms' for f in command['fields'])
-    jog_and_cut(port, screen, {'lease_ms': 5000} if has_lease else {})
+    jog_and_cut(port, screen, has_lease)
     programs(port, screen, bench)
     strangers(port)
     screen, server, port = who_is_killed(bench, screen, server, port)

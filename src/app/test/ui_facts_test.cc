@@ -75,9 +75,10 @@ class UiMachine : public testing::Test {
 };
 
 TEST_F(UiMachine, TheMillSaysWhatItIs_J1) {
-    const auto loaded = load("mill_mm", "INCREMENTS = 1 mm, 0.1 in, junk\nCYCLE_TIME = 0.1\nMAX_LINEAR_VELOCITY = 150\n",
-                             "\n[MDI_COMMAND_LIST]\nMDI_COMMAND_MACRO0 = G0 X0, Home X\nMDI_COMMAND_MACRO1 = G0 Y0\n"
-                             "[FILTER]\nPROGRAM_EXTENSION = .png,.gif Images\n");
+    const auto loaded =
+        load("mill_mm", "INCREMENTS = 1 mm, 0.1 in, junk\nCYCLE_TIME = 0.1\nMAX_LINEAR_VELOCITY = 150\n",
+             "\n[MDI_COMMAND_LIST]\nMDI_COMMAND_MACRO0 = G0 X0, Home X\nMDI_COMMAND_MACRO1 = G0 Y0\n"
+             "[FILTER]\nPROGRAM_EXTENSION = .png,.gif Images\n");
     ASSERT_NE(loaded, nullptr);
     const auto facts = machine_facts(*loaded, sink_);
     EXPECT_EQ(facts.name, "Millwright mill (mm)");

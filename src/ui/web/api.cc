@@ -33,8 +33,8 @@ std::optional<std::uint64_t> number(const Request &request, const char *name) {
 
 Api::Api(Sockets &sockets, Elsewhere &elsewhere, ApiSetup setup, Clock clock)
     : elsewhere_(elsewhere), setup_(std::move(setup)), clock_(std::move(clock)),
-      screens_(sockets, setup_.screens), files_(setup_.facts.program_prefix, setup_.facts.program_extensions) {
-}
+      screens_(sockets, setup_.screens),
+      files_(setup_.facts.program_prefix, setup_.facts.program_extensions) {}
 
 void Api::answer(const Request &request, Reply reply) {
     const std::string &path = request.path;
@@ -115,12 +115,14 @@ Response Api::metrics() const {
     Response response;
     response.type = "text/plain; version=0.0.4; charset=utf-8";
     const auto add = [&response](const char *name, const char *kind, const char *help, double value) {
-        response.body += fmt::format("# HELP millwright_{0} {1}\n# TYPE millwright_{0} {2}\nmillwright_{0} {3}\n",
-                                     name, help, kind, to_text(value));
+        response.body +=
+            fmt::format("# HELP millwright_{0} {1}\n# TYPE millwright_{0} {2}\nmillwright_{0} {3}\n", name,
+                        help, kind, to_text(value));
     };
     add("machine_up", "gauge", "1: the server is a client of a machine", screens_.isMachineUp() ? 1 : 0);
     add("screens", "gauge", "open sockets", static_cast<double>(screens_.count()));
-    add("commands_total", "counter", "commands of screens, without stops", static_cast<double>(counts.commands));
+    add("commands_total", "counter", "commands of screens, without stops",
+        static_cast<double>(counts.commands));
     add("stops_total", "counter", "stops of screens", static_cast<double>(counts.stops));
     add("refused_total", "counter", "commands refused", static_cast<double>(counts.refused));
     add("statuses_total", "counter", "statuses sent", static_cast<double>(counts.statuses));

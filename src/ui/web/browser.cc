@@ -5,6 +5,25 @@
 #include "mailbox/stops.hh"
 
 namespace mw::ui::web {
+namespace {
+
+/// Motion ends the jog by itself when nobody renews it. Not where jogs have no leases.
+template <class Jog>
+bool hasLease(const Jog &jog) {
+    if constexpr (requires { jog.lease_ms; }) {
+        return jog.lease_ms > 0;
+    } else {
+        return false;
+    }
+}
+
+/// Goes on for ever when the browser freezes, or the server is killed.
+bool isEndless(const msgs::Command &command) {
+    const auto *jog = std::get_if<msgs::JogContinuous>(&command);
+    return jog != nullptr && !hasLease(*jog);
+}
+
+}  // namespace
 
 void Browser::leave() {
     for (const Followed &one : std::exchange(followed_, {})) {
@@ -51,6 +70,12 @@ void Browser::carry_out(const Ask &ask, std::int64_t now_ns) {
     ++(isStop ? counts_.stops : counts_.commands);
     if (!client_.has_value()) {
         refuse(ask.id, "no machine is up");
+        return;
+    }
+    if (isEndless(command)) {
+        refuse(ask.id,
+               "a continuous jog from a screen needs a lease, lease_ms, so that it ends when the screen "
+               "is gone; jog by increments without one");
         return;
     }
     const bool isFollowed = followed_.size() < MOST_FOLLOWED;

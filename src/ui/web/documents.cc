@@ -186,9 +186,8 @@ std::string pong_text(const Ping &ping) {
 }
 
 std::string outcome_text(std::uint64_t id, const client::Outcome &outcome) {
-    const auto found =
-        std::ranges::find(msgs::NAMES<msgs::Progress>, static_cast<std::int64_t>(outcome.progress),
-                          &msgs::Name::value);
+    const auto found = std::ranges::find(msgs::NAMES<msgs::Progress>,
+                                         static_cast<std::int64_t>(outcome.progress), &msgs::Name::value);
     Json json{{"id", id}, {"progress", found->name}};
     if (!outcome.reason.empty()) {
         json["reason"] = outcome.reason;
@@ -197,9 +196,8 @@ std::string outcome_text(std::uint64_t id, const client::Outcome &outcome) {
 }
 
 std::string message_text(const client::Client::Message &message) {
-    const auto found =
-        std::ranges::find(msgs::NAMES<msgs::MessageKind>, static_cast<std::int64_t>(message.kind),
-                          &msgs::Name::value);
+    const auto found = std::ranges::find(msgs::NAMES<msgs::MessageKind>,
+                                         static_cast<std::int64_t>(message.kind), &msgs::Name::value);
     const bool isKnown = found != msgs::NAMES<msgs::MessageKind>.end();
     return one("message", Json{{"number", message.number},
                                {"kind", std::string("OPERATOR_") + (isKnown ? found->name : "TEXT")},

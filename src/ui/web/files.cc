@@ -31,8 +31,9 @@ std::string reason() {
 /// One step of a path: no way up, nothing hidden.
 bool isPlainName(std::string_view name) {
     return !name.empty() && name.size() <= LONGEST_NAME && name[0] != '.' &&
-           name.find_first_of("/\\") == std::string_view::npos &&
-           std::ranges::none_of(name, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+           name.find_first_of("/\\") == std::string_view::npos && std::ranges::none_of(name, [](char c) {
+               return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+           });
 }
 
 bool write_all(int fd, std::string_view bytes) {
@@ -69,7 +70,8 @@ std::string type_of(const std::string &path) {
          {".wasm", "application/wasm"},
          {".map", "application/json"},
          {".txt", "text/plain; charset=utf-8"}}};
-    const auto found = std::ranges::find_if(TYPES, [&](const auto &one) { return path.ends_with(one.first); });
+    const auto found =
+        std::ranges::find_if(TYPES, [&](const auto &one) { return path.ends_with(one.first); });
     return found == TYPES.end() ? "application/octet-stream" : found->second;
 }
 
@@ -90,8 +92,9 @@ Result<std::string> ProgramFiles::path_of(const std::string &name) const {
                     std::to_string(LONGEST_NAME) + " bytes");
     }
     const std::string lower = to_lower(name);
-    const bool isProgram = std::ranges::any_of(
-        extensions_, [&](const std::string &one) { return lower.ends_with(one) && lower.size() > one.size(); });
+    const bool isProgram = std::ranges::any_of(extensions_, [&](const std::string &one) {
+        return lower.ends_with(one) && lower.size() > one.size();
+    });
     if (!isProgram) {
         std::string all;
         for (const std::string &one : extensions_) {
@@ -115,8 +118,8 @@ Response ProgramFiles::list() const {
         }
     }
     if (error) {
-        return error_response(404, "cannot list the folder of programs '" + folder_ + "': " + error.message() +
-                                       "; [DISPLAY]PROGRAM_PREFIX names it");
+        return error_response(404, "cannot list the folder of programs '" + folder_ +
+                                       "': " + error.message() + "; [DISPLAY]PROGRAM_PREFIX names it");
     }
     std::ranges::sort(files, {}, &FileFacts::name);
     Response response;
@@ -178,9 +181,10 @@ Response ProgramFiles::write(const std::string &name, std::uint64_t offset, std:
         return error_response(400, path.error().str());
     }
     if (size > MOST_BYTES || offset > size || piece.size() > size - offset) {
-        return error_response(400, fmt::format("{} bytes at {} are not within a file of {} bytes, which is at "
-                                               "most {}",
-                                               piece.size(), offset, size, MOST_BYTES));
+        return error_response(400,
+                              fmt::format("{} bytes at {} are not within a file of {} bytes, which is at "
+                                          "most {}",
+                                          piece.size(), offset, size, MOST_BYTES));
     }
     if (offset == 0) {
         const Response begun = begin(name, size);
@@ -191,8 +195,9 @@ Response ProgramFiles::write(const std::string &name, std::uint64_t offset, std:
     const auto found = uploads_.find(name);
     if (found == uploads_.end() || found->second.at != offset || found->second.size != size) {
         const std::uint64_t at = found == uploads_.end() ? 0 : found->second.at;
-        return error_response(409, fmt::format("the upload of '{}' stands at byte {}, not {}: begin anew at 0",
-                                               name, at, offset));
+        return error_response(
+            409,
+            fmt::format("the upload of '{}' stands at byte {}, not {}: begin anew at 0", name, at, offset));
     }
     if (!write_all(found->second.fd, piece)) {
         const std::string why = reason();
@@ -258,7 +263,7 @@ Response screen_file(const std::string &folder, const std::string &path) {
     std::error_code error;
     if (!fs::is_regular_file(place, error)) {
         return error_response(404, path == "/" ? "the screen is not installed: there is no " + place +
-                                                     "; web/README.md says how it is built"
+                                                     "; 'millwright ui --screen FOLDER' names another place"
                                                : "there is no page '" + printable(path) + "'");
     }
     auto content = read_file(place);

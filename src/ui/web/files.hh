@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/result.hh"
 #include "ui/web/exchange.hh"
 
 namespace mw::ui::web {

@@ -25,8 +25,8 @@ Result<> Gate::check(const Asker &asker, std::string_view path) const {
         return fail("'" + printable(asker.host) + "' is no name of this server: open http://" + hosts_[0]);
     }
     constexpr std::string_view SCHEME = "http://";
-    const bool isOwnPage = asker.origin.empty() || (asker.origin.starts_with(SCHEME) &&
-                                                    isOurs(asker.origin.substr(SCHEME.size())));
+    const bool isOwnPage = asker.origin.empty() ||
+                           (asker.origin.starts_with(SCHEME) && isOurs(asker.origin.substr(SCHEME.size())));
     const bool isOwnSite = asker.site.empty() || asker.site == "same-origin" || asker.site == "none" ||
                            !path.starts_with("/api/");
     return isOwnPage && isOwnSite ? Result<>{} : fail("pages of other sites may ask nothing here");

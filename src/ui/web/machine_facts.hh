@@ -21,8 +21,8 @@ struct MachineFacts {
     int joints = 0;
     std::vector<std::string> joint_kinds;  ///< of each joint, "LINEAR" or "ANGULAR"
     bool isHomingForced = true;            ///< programs and MDI want homed joints
-    std::string linear_unit;     ///< "mm" or "inch"
-    std::string program_prefix;  ///< folder of programs
+    std::string linear_unit;               ///< "mm" or "inch"
+    std::string program_prefix;            ///< folder of programs
     double max_linear_velocity = 0, default_linear_velocity = 0;
     double max_angular_velocity = 0, default_angular_velocity = 0;
     std::vector<Increment> increments;

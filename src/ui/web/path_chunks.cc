@@ -110,7 +110,8 @@ void PathChunks::add_arc(const gcode::PreviewEvent &event) {
         const double begin = std::sqrt(dot(radius, radius));
         const double growth = begin > 0 ? std::sqrt(dot(last, last)) / begin - 1 : 0;
         const double turns = std::abs(event.angle_rad) / (2 * std::numbers::pi);
-        const double flat = std::clamp(1 - DEVIATION_MM / std::max(begin * unit_mm_, DEVIATION_MM), -1.0, 1.0);
+        const double flat =
+            std::clamp(1 - DEVIATION_MM / std::max(begin * unit_mm_, DEVIATION_MM), -1.0, 1.0);
         const double per_turn = std::clamp(std::numbers::pi / std::max(std::acos(flat), 1e-9),
                                            double{LEAST_PER_TURN}, double{MOST_PER_TURN});
         const auto chords = static_cast<int>(std::clamp(std::ceil(turns * per_turn), 1.0, MOST_CHORDS));

@@ -53,8 +53,8 @@ class Screens {
 
     Sockets &sockets_;
     ScreensSetup setup_;
-    std::string session_;                  ///< of this server: another one after its restart
-    std::optional<client::Client> watch_;  ///< reads status and messages for all
+    std::string session_;                      ///< of this server: another one after its restart
+    std::optional<client::Client> watch_;      ///< reads status and messages for all
     std::string reason_ = "no machine is up";  ///< why there is none
     bool hasStatus_ = false;
     std::map<SessionId, std::unique_ptr<Browser>> browsers_;

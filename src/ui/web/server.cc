@@ -2,6 +2,7 @@
 // The only file that includes Boost.Beast: a heavy header.
 #include "ui/web/server.hh"
 
+#include <fcntl.h>
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 
@@ -40,6 +41,11 @@ std::int64_t monotonic_ns() {
     return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
 }
 
+/// No program that is started from here keeps it open.
+void keep_to_ourselves(int socket) {
+    ::fcntl(socket, F_SETFD, FD_CLOEXEC);
+}
+
 /// Little waits in the kernel, so that what is sent is new; and it is sent at once.
 void send_promptly(tcp::socket &socket) {
     error_code ignored;
@@ -48,10 +54,25 @@ void send_promptly(tcp::socket &socket) {
     ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &MOST_UNSENT, sizeof MOST_UNSENT);
 }
 
+/// A connection as a WebSocket.
+class Link : public beast::tcp_stream {
+  public:
+    explicit Link(beast::tcp_stream stream) : beast::tcp_stream(std::move(stream)) {}
+};
+
+/// Called by Beast when a socket ends in order or is broken. The peer is not waited for, who may never go:
+/// what the socket has begun is to end now.
+template <class Handler>
+void async_teardown(beast::role_type, Link &link, Handler &&handler) {
+    error_code error;
+    link.socket().shutdown(tcp::socket::shutdown_send, error);
+    net::post(link.get_executor(), beast::bind_front_handler(std::forward<Handler>(handler), error_code{}));
+}
+
 /// Everything that a page needs is served from here, and no other page may hold it in a frame.
-constexpr const char *PAGE_RULES =
-    "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; worker-src 'self' blob:; "
-    "frame-ancestors 'none'";
+constexpr const char *PAGE_RULES = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' "
+                                   "data: blob:; worker-src 'self' blob:; "
+                                   "frame-ancestors 'none'";
 
 }  // namespace
 
@@ -83,7 +104,7 @@ class Server::Impl {
 class Session : public std::enable_shared_from_this<Session> {
   public:
     Session(Server::Impl &server, SessionId id, beast::tcp_stream stream)
-        : server_(server), id_(id), socket_(std::move(stream)) {
+        : server_(server), id_(id), socket_(Link(std::move(stream))) {
         ++server_.connections;
     }
     ~Session() { --server_.connections; }
@@ -93,8 +114,8 @@ class Session : public std::enable_shared_from_this<Session> {
     void accept(HttpRequest request) {
         request_ = std::move(request);
         socket_.next_layer().expires_never();
-        socket_.set_option(websocket::stream_base::timeout{std::chrono::seconds(2),
-                                                           websocket::stream_base::none(), false});
+        socket_.set_option(
+            websocket::stream_base::timeout{std::chrono::seconds(2), websocket::stream_base::none(), false});
         socket_.read_message_max(server_.limits.text_bytes);
         socket_.async_accept(request_, [self = shared_from_this()](error_code error) {
             if (error || self->isOver_) {
@@ -160,7 +181,7 @@ class Session : public std::enable_shared_from_this<Session> {
 
     Server::Impl &server_;
     SessionId id_;
-    websocket::stream<beast::tcp_stream> socket_;
+    websocket::stream<Link> socket_;
     HttpRequest request_;
     beast::flat_buffer buffer_;
     std::deque<std::string> waiting_;  ///< the first one is being sent
@@ -188,9 +209,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
         parser_->header_limit(server_.limits.header_bytes);
         parser_->body_limit(server_.limits.body_bytes);
         stream_.expires_after(server_.limits.request_time);
-        http::async_read(
-            stream_, buffer_, *parser_,
-            [self = shared_from_this()](error_code error, std::size_t) { self->take(error); });
+        http::async_read(stream_, buffer_, *parser_,
+                         [self = shared_from_this()](error_code error, std::size_t) { self->take(error); });
     }
 
   private:
@@ -208,7 +228,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
             return;  // or nobody is there
         }
         const HttpRequest &request = parser_->get();
-        isLast_ = !request.keep_alive();
+        // An answer to HEAD has no body by its rule, ours has: nothing may follow it.
+        isLast_ = !request.keep_alive() || request.method() == http::verb::head;
         auto asked = parse_target(view(request.target()));
         if (!asked.has_value()) {
             reply(error_response(400, "the path of the request is none"));
@@ -233,9 +254,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
         asked->method = view(request.method_string());
         asked->body = std::move(parser_->get().body());
         stream_.expires_never();
-        server_.application->answer(*asked, [self = shared_from_this()](Response response) {
-            self->reply(std::move(response));
-        });
+        server_.application->answer(
+            *asked, [self = shared_from_this()](Response response) { self->reply(std::move(response)); });
     }
 
     void open_socket(const Request &asked) {
@@ -302,9 +322,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
             net::post(self->server_.loop, [self] { self->next_piece(); });
         };
         switch (pieces_->take(piece_, wake)) {
-        case PieceQueue::State::LATER:
-            stream_.expires_never();
-            return;
+        case PieceQueue::State::LATER: stream_.expires_never(); return;
         case PieceQueue::State::PIECE:
             stream_.expires_after(server_.limits.request_time);
             net::async_write(stream_, http::make_chunk(net::const_buffer(piece_.data(), piece_.size())),
@@ -367,6 +385,7 @@ Result<> Server::Impl::open(int port) {
     const tcp::endpoint place(net::ip::address_v4::loopback(), static_cast<unsigned short>(port));
     acceptor.open(place.protocol(), error);
     if (!error) {
+        keep_to_ourselves(acceptor.native_handle());
         acceptor.set_option(net::socket_base::reuse_address(true), error);
     }
     if (!error) {
@@ -399,6 +418,7 @@ void Server::Impl::accept() {
             return;
         }
         if (connections < limits.connections) {
+            keep_to_ourselves(socket.native_handle());
             send_promptly(socket);
             std::make_shared<Connection>(*this, std::move(socket))->read();
         }

@@ -22,7 +22,7 @@ struct ServerLimits {
     int sessions = 16;     ///< sockets
     /// Requests of all browsers together. Texts from sockets are the application's to limit.
     double requests_per_s = 500, requests_at_once = 1000;
-    std::chrono::seconds request_time{30};  ///< for a request to come, and for its answer to be taken
+    std::chrono::milliseconds request_time{30000};  ///< for a request to come, and for its answer to be taken
 };
 
 struct ServerOptions {
@@ -40,8 +40,8 @@ class Server final : public Sockets {
     int port() const;
     /// Does what there is to do, waits for more, and returns when the time is over.
     void run_for(Application &application, std::chrono::nanoseconds time);
-    /// `act` is called within run_for(). Whoever calls this, and makers of pieces, end before the server. [any
-    /// thread]
+    /// `act` is called within run_for(). Whoever calls this, and makers of pieces, end before the server.
+    /// [any thread]
     void post(std::function<void()> act);
 
     void send(SessionId session, std::string text) override;

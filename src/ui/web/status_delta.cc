@@ -29,8 +29,8 @@ class Comparison {
                 continue;
             }
             const std::size_t undo = begin(before, field.name);
-            const bool differs = msgs::isSeries(field.type) ? series(field, now_at, told_at)
-                                                            : value(field, now_at, told_at);
+            const bool differs =
+                msgs::isSeries(field.type) ? series(field, now_at, told_at) : value(field, now_at, told_at);
             text.resize(differs ? text.size() : undo);
         }
         return end(before);

@@ -24,7 +24,8 @@ class ApiTest : public testing::Test {
   protected:
     ApiTest() {
         const auto *info = testing::UnitTest::GetInstance()->current_test_info();
-        folder = fs::temp_directory_path() / (std::string("mw_api_") + info->name() + std::to_string(::getpid()));
+        folder =
+            fs::temp_directory_path() / (std::string("mw_api_") + info->name() + std::to_string(::getpid()));
         fs::create_directories(folder / "web");
         std::ofstream(folder / "web/index.html") << "page";
         ApiSetup setup;

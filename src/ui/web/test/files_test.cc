@@ -21,7 +21,8 @@ class ProgramFilesTest : public testing::Test {
   protected:
     ProgramFilesTest() {
         const auto *info = testing::UnitTest::GetInstance()->current_test_info();
-        base_ = fs::temp_directory_path() / (std::string("mw_files_") + info->name() + std::to_string(::getpid()));
+        base_ = fs::temp_directory_path() /
+                (std::string("mw_files_") + info->name() + std::to_string(::getpid()));
         folder_ = base_ / "programs";
         fs::create_directories(folder_);
         files_.emplace(folder_.string(), std::vector<std::string>{".ngc", ".nc"});
@@ -33,7 +34,8 @@ class ProgramFilesTest : public testing::Test {
     void put(const fs::path &name, const std::string &text) const { std::ofstream(folder_ / name) << text; }
     std::vector<std::string> listed() const {
         std::vector<std::string> names;
-        for (const auto &one : nlohmann::json::parse(files_->list().body)["files"]) {
+        const auto list = nlohmann::json::parse(files_->list().body);
+        for (const auto &one : list.at("files")) {
             names.push_back(one["name"]);
         }
         return names;
@@ -95,8 +97,8 @@ TEST_F(ProgramFilesTest, WhatIsNotWholeLeavesNothing_J3) {
 
 TEST_F(ProgramFilesTest, NothingBesideTheProgramsIsReached_J3) {
     std::ofstream(base_ / "secret.ngc") << "secret";
-    for (const char *name : {"../secret.ngc", "..", ".", "", "/etc/passwd", ".x.ngc", "a/b.ngc", "x.sh", ".ngc", "a\\b.ngc",
-                             "a\nb.ngc"}) {
+    for (const char *name : {"../secret.ngc", "..", ".", "", "/etc/passwd", ".x.ngc", "a/b.ngc", "x.sh",
+                             ".ngc", "a\\b.ngc", "a\nb.ngc"}) {
         EXPECT_EQ(files_->read(name).status, 400) << name;
         EXPECT_EQ(files_->write(name, 0, 1, "x").status, 400) << name;
         EXPECT_EQ(files_->remove(name).status, 400) << name;
@@ -132,7 +134,8 @@ TEST_F(ProgramFilesTest, ThePagesOfTheScreenAreServedAndNothingElse_J3) {
     EXPECT_FALSE(screen_file(folder, "/").isKept);
     EXPECT_EQ(screen_file(folder, "/assets/a-1.js").type, "text/javascript; charset=utf-8");
     EXPECT_TRUE(screen_file(folder, "/assets/a-1.js").isKept);
-    for (const char *path : {"/../secret", "/.secret", "/assets", "/assets/", "/assets/../.secret", "//etc/passwd", "/assets//a-1.js"}) {
+    for (const char *path : {"/../secret", "/.secret", "/assets", "/assets/", "/assets/../.secret",
+                             "//etc/passwd", "/assets//a-1.js"}) {
         EXPECT_EQ(screen_file(folder, path).status, 404) << path;
     }
 }

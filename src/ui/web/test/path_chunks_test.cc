@@ -28,7 +28,8 @@ struct Path {
     std::string error;
     std::vector<std::uint32_t> kinds;
 
-    explicit Path(const std::string &bytes) {
+    explicit Path(const std::string &bytes) { take(bytes); }
+    void take(const std::string &bytes) {
         std::size_t at = 0;
         const auto word = [&] {
             std::uint32_t value = 0;
@@ -77,10 +78,16 @@ gcode::PreviewEvent move(gcode::PreviewKind kind, const geom::Pose &from, const 
 
 TEST(PathChunks, PointsLinesAndKindsComeBack_J3) {
     std::string bytes;
-    PathChunks chunks([&](std::string piece) { bytes += piece; return true; }, 1);
+    PathChunks chunks(
+        [&](std::string piece) {
+            bytes += piece;
+            return true;
+        },
+        1);
     const geom::Pose a{{1, 2, 3}}, b{{4, -5, 6}}, c{{0, 0, -7}};
     const std::array events{move(gcode::PreviewKind::RAPID, a, b, 3), move(gcode::PreviewKind::FEED, b, c, 4),
-                            move(gcode::PreviewKind::DWELL, c, c, 5), move(gcode::PreviewKind::PROBE, c, a, 6)};
+                            move(gcode::PreviewKind::DWELL, c, c, 5),
+                            move(gcode::PreviewKind::PROBE, c, a, 6)};
     EXPECT_TRUE(chunks.take(events));
     chunks.error("p.ngc:7: wrong");
     chunks.end(9);
@@ -104,8 +111,14 @@ TEST(PathChunks, PointsLinesAndKindsComeBack_J3) {
 TEST(PathChunks, AnArcIsChordsNearItsCircle_J3) {
     for (const double radius : {0.01, 1.0, 80.0}) {
         std::string bytes;
-        PathChunks chunks([&](std::string piece) { bytes += piece; return true; }, 1);
-        auto arc = move(gcode::PreviewKind::ARC, geom::Pose{{10 + radius, 5, 0}}, geom::Pose{{10, 5 + radius, -3}}, 1);
+        PathChunks chunks(
+            [&](std::string piece) {
+                bytes += piece;
+                return true;
+            },
+            1);
+        auto arc = move(gcode::PreviewKind::ARC, geom::Pose{{10 + radius, 5, 0}},
+                        geom::Pose{{10, 5 + radius, -3}}, 1);
         arc.centre = geom::Pose{{10, 5, 0}};
         arc.normal = geom::Pose{{0, 0, 1}};
         arc.angle_rad = 2.5 * std::numbers::pi;
@@ -129,7 +142,12 @@ TEST(PathChunks, AnArcIsChordsNearItsCircle_J3) {
 
 TEST(PathChunks, TheFirstPathComesAtOnceAndChunksGoOnWhereTheLastEnded_J3) {
     std::vector<std::string> pieces;
-    PathChunks chunks([&](std::string piece) { pieces.push_back(std::move(piece)); return true; }, 1);
+    PathChunks chunks(
+        [&](std::string piece) {
+            pieces.push_back(std::move(piece));
+            return true;
+        },
+        1);
     geom::Pose at;
     int line = 0;
     const auto batch = [&](std::size_t count) {
@@ -168,7 +186,12 @@ TEST(PathChunks, TheFirstPathComesAtOnceAndChunksGoOnWhereTheLastEnded_J3) {
 
 TEST(PathChunks, NothingIsMadeForNobody_J3) {
     int pushed = 0;
-    PathChunks chunks([&](const std::string &) { ++pushed; return false; }, 1);
+    PathChunks chunks(
+        [&](const std::string &) {
+            ++pushed;
+            return false;
+        },
+        1);
     const std::array events{move(gcode::PreviewKind::FEED, {}, geom::Pose{{1}}, 1)};
     EXPECT_FALSE(chunks.take(events));
     EXPECT_FALSE(chunks.take(events));

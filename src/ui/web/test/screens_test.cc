@@ -164,11 +164,12 @@ TEST_F(ScreensTest, WhatAConnectionJogsStopsWithIt_J3_C8) {
     go(300);
     open(1);
     open(2);
-    command(1, 1, "JogContinuous", R"("is_joint":true,"index":0,"velocity":5.0)");
-    command(1, 2, "JogIncrement", R"("is_joint":true,"index":1,"velocity":5.0,"distance":1.0)");
-    command(1, 3, "JogContinuous", R"("is_joint":false,"index":2,"velocity":5.0)");
+    const std::string jog = R"(,"velocity":5.0,"distance":100.0)";
+    command(1, 1, "JogIncrement", R"("is_joint":true,"index":0)" + jog);
+    command(1, 2, "JogAbsolute", R"("is_joint":true,"index":1,"velocity":5.0,"position":1.0)");
+    command(1, 3, "JogIncrement", R"("is_joint":false,"index":2)" + jog);
     command(1, 4, "JogStop", R"("is_joint":false,"index":2)");
-    command(2, 1, "JogContinuous", R"("is_joint":true,"index":1,"velocity":5.0)");
+    command(2, 1, "JogIncrement", R"("is_joint":true,"index":1)" + jog);
     EXPECT_EQ(go(20).size(), 5U);
     screens->closed(1);
     const auto stops = go(20);
@@ -179,6 +180,19 @@ TEST_F(ScreensTest, WhatAConnectionJogsStopsWithIt_J3_C8) {
     EXPECT_EQ(stop->index, 0);
     screens.reset();
     EXPECT_EQ(task.cycle().size(), 1U);
+}
+
+TEST_F(ScreensTest, AJogThatNothingWouldEndIsRefused_J3_C8) {
+    go(300);
+    open(1);
+    command(1, 1, "JogContinuous", R"("is_joint":true,"index":0,"velocity":5.0)");
+    EXPECT_TRUE(go(20).empty());
+    const auto outcomes = of_kind(1, "outcome");
+    ASSERT_EQ(outcomes.size(), 1U);
+    EXPECT_EQ(outcomes[0]["outcome"]["progress"], "REFUSED");
+    EXPECT_NE(outcomes[0]["outcome"]["reason"].get<std::string>().find("lease"), std::string::npos);
+    screens->closed(1);
+    EXPECT_TRUE(go(20).empty());  // it jogs nothing
 }
 
 TEST_F(ScreensTest, StopsAreNeverLimited_J3_D1) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The server as a browser meets it, over a socket of the loopback: requests, limits, frames (J3).
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <functional>
+#include <random>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -48,11 +50,12 @@ class Echo final : public Application {
 /// One connection of a browser, byte by byte.
 class Peer {
   public:
-    explicit Peer(int port) : fd_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
+    explicit Peer(int port, std::uint32_t address = INADDR_LOOPBACK)
+        : fd_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
         sockaddr_in place{};
         place.sin_family = AF_INET;
         place.sin_port = htons(static_cast<std::uint16_t>(port));
-        place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        place.sin_addr.s_addr = htonl(address);
         static_cast<void>(::connect(fd_, reinterpret_cast<sockaddr *>(&place), sizeof place));
     }
     ~Peer() { ::close(fd_); }
@@ -169,13 +172,17 @@ TEST_F(ServerTest, PagesOfOthersReachNothing_J3) {
     EXPECT_EQ(status_of(with_host("localhost:" + port)), "HTTP/1.1 200 OK");
     EXPECT_EQ(status_of(get("/x", "Origin: http://127.0.0.1:" + port + "\r\n")), "HTTP/1.1 200 OK");
     const std::size_t asked = echo.asked.size();
-    for (const std::string &name : {"evil.example:" + port, std::string("127.0.0.1"), std::string("localhost:1"), std::string("")}) {
+    for (const std::string &name :
+         {"evil.example:" + port, std::string("127.0.0.1"), std::string("localhost:1"), std::string("")}) {
         EXPECT_EQ(status_of(with_host(name)), "HTTP/1.1 403 Forbidden") << name;
     }
     EXPECT_EQ(status_of("GET /x HTTP/1.1\r\nConnection: close\r\n\r\n"), "HTTP/1.1 403 Forbidden");
-    for (const std::string origin : {"http://evil.example", "null", "https://127.0.0.1:", "http://127.0.0.1:1"}) {
+    for (const std::string origin :
+         {"http://evil.example", "null", "https://127.0.0.1:", "http://127.0.0.1:1"}) {
         EXPECT_EQ(status_of(get("/x", "Origin: " + origin + "\r\n")), "HTTP/1.1 403 Forbidden") << origin;
-        EXPECT_EQ(status_of(upgrade("/api/socket", "Origin: " + origin + "\r\n")).substr(0, 12), "HTTP/1.1 403") << origin;
+        EXPECT_EQ(status_of(upgrade("/api/socket", "Origin: " + origin + "\r\n")).substr(0, 12),
+                  "HTTP/1.1 403")
+            << origin;
     }
     EXPECT_EQ(status_of(get("/api/path", "Sec-Fetch-Site: cross-site\r\n")), "HTTP/1.1 403 Forbidden");
     EXPECT_EQ(echo.asked.size(), asked);
@@ -184,16 +191,18 @@ TEST_F(ServerTest, PagesOfOthersReachNothing_J3) {
 
 TEST_F(ServerTest, WhatIsTooLargeOrNoRequestIsRefused_J3) {
     listen();
-    EXPECT_EQ(status_of(get("/x", "X: " + std::string(20000, 'x') + "\r\n")), "HTTP/1.1 413 Payload Too Large");
-    EXPECT_EQ(status_of("PUT /f HTTP/1.1\r\n" + host() + "Content-Length: 2000000\r\n\r\n" + std::string(2000000, 'x')),
+    EXPECT_EQ(status_of(get("/x", "X: " + std::string(20000, 'x') + "\r\n")),
+              "HTTP/1.1 413 Payload Too Large");
+    EXPECT_EQ(status_of("PUT /f HTTP/1.1\r\n" + host() + "Content-Length: 2000000\r\n\r\n" +
+                        std::string(2000000, 'x')),
               "HTTP/1.1 413 Payload Too Large");
     EXPECT_EQ(status_of("nonsense\r\n\r\n"), "HTTP/1.1 400 Bad Request");
     EXPECT_EQ(status_of(get("/%zz")), "HTTP/1.1 400 Bad Request");
     EXPECT_EQ(status_of(get("/%0a")), "HTTP/1.1 400 Bad Request");
     EXPECT_EQ(status_of(get("*")), "HTTP/1.1 400 Bad Request");
     EXPECT_TRUE(echo.asked.empty());
-    EXPECT_EQ(status_of("PUT /f HTTP/1.1\r\n" + host() + "Connection: close\r\nContent-Length: 1048576\r\n\r\n" +
-                        std::string(1048576, 'x')),
+    EXPECT_EQ(status_of("PUT /f HTTP/1.1\r\n" + host() +
+                        "Connection: close\r\nContent-Length: 1048576\r\n\r\n" + std::string(1048576, 'x')),
               "HTTP/1.1 200 OK");
 }
 
@@ -216,7 +225,8 @@ TEST_F(ServerTest, ASocketCarriesTextsBothWays_J3) {
     EXPECT_NE(head.find("s3pPLMBiTxaQ9kYGzzhZRbK+xOo="), std::string::npos);  // of RFC 6455
     EXPECT_EQ(echo.open.size(), 1U);
     EXPECT_EQ(ask(peer, frame("hello"), "hello"), "\x81\x05hello");
-    EXPECT_EQ(ask(peer, frame("a", 0x01) + frame("bc", 0x80), "abc"), "\x81\x03" "abc");
+    EXPECT_EQ(ask(peer, frame("a", 0x01) + frame("bc", 0x80), "abc"), "\x81\x03"
+                                                                      "abc");
     write(peer, frame(std::string(65536, 'x')));
     EXPECT_TRUE(run_until([&] { return echo.texts.size() == 3; }));
     EXPECT_TRUE(server->isIdle(echo.open[0]) || run_until([&] { return server->isIdle(echo.open[0]); }));
@@ -224,8 +234,8 @@ TEST_F(ServerTest, ASocketCarriesTextsBothWays_J3) {
 
 TEST_F(ServerTest, ASocketThatMisbehavesIsClosedAndTold_J3) {
     listen();
-    const std::vector<std::string> bad{frame(std::string(65537, 'x')), frame("x", 0x82), frame("\xff\xfe"), "\x81\x01x",
-                                       frame("x", 0x83)};
+    const std::vector<std::string> bad{frame(std::string(65537, 'x')), frame("x", 0x82), frame("\xff\xfe"),
+                                       "\x81\x01x", frame("x", 0x83)};
     for (std::size_t i = 0; i < bad.size(); ++i) {
         {
             Peer peer(server->port());
@@ -250,7 +260,10 @@ TEST_F(ServerTest, AConnectionThatIsCutIsToldOnce_J3) {
     EXPECT_TRUE(ask(other, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
     server->close(echo.open[1]);
     server->close(echo.open[1]);
-    EXPECT_TRUE(run_until([&] { other.read(); return other.isClosed && echo.ended.size() == 2; }));
+    EXPECT_TRUE(run_until([&] {
+        other.read();
+        return other.isClosed && echo.ended.size() == 2;
+    }));
     server->run_for(echo, milliseconds(20));
     EXPECT_EQ(echo.ended.size(), 2U);
 }
@@ -323,6 +336,117 @@ TEST_F(ServerTest, WhoeverMakesPiecesEndsWhenNobodyReads_J3) {
     }
     EXPECT_TRUE(run_until([&] { return echo.pieces->isCancelled(); }));
     maker.join();
+}
+
+TEST_F(ServerTest, ItListensToThisComputerAlone_J3) {
+    listen();
+    Peer ours(server->port()), other(server->port(), INADDR_LOOPBACK + 1);
+    EXPECT_NE(ask(ours, get("/x"), "\r\n\r\n"), "");
+    EXPECT_TRUE(run_until([&] {
+        other.read();
+        return other.isClosed;
+    }));
+    EXPECT_EQ(other.received, "");
+}
+
+/// Those of the process that are bound to a port, and do not end when it becomes another program.
+int count_inherited(int port) {
+    int found = 0;
+    for (int fd = 0; fd < 1024; ++fd) {
+        sockaddr_in place{};
+        socklen_t size = sizeof place;
+        const bool isSocket = ::getsockname(fd, reinterpret_cast<sockaddr *>(&place), &size) == 0;
+        const bool isOfServer = isSocket && place.sin_family == AF_INET &&
+                                place.sin_port == htons(static_cast<std::uint16_t>(port));
+        found += isOfServer && (::fcntl(fd, F_GETFD) & FD_CLOEXEC) == 0 ? 1 : 0;
+    }
+    return found;
+}
+
+TEST_F(ServerTest, ABrowserThatItStartsDoesNotKeepItsPort_J3) {
+    listen();
+    Peer peer(server->port());
+    EXPECT_TRUE(ask(peer, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
+    EXPECT_EQ(count_inherited(server->port()), 0);
+}
+
+TEST_F(ServerTest, WhoNeverEndsHisRequestIsCutOff_J3) {
+    ServerLimits limits;
+    limits.request_time = milliseconds(300);
+    limits.connections = 2;
+    listen(limits);
+    Peer slow(server->port());
+    write(slow, "GET /x HTTP/1.1\r\nHost: ");
+    EXPECT_EQ(status_of(get("/x")), "HTTP/1.1 200 OK");  // nobody waits for it
+    EXPECT_TRUE(run_until([&] {
+        slow.read();
+        return slow.isClosed;
+    }));
+}
+
+TEST_F(ServerTest, ConnectionsBeyondTheMostAreClosed_J3) {
+    ServerLimits limits;
+    limits.connections = 2;
+    listen(limits);
+    {
+        Peer first(server->port()), second(server->port());
+        server->run_for(echo, milliseconds(20));
+        EXPECT_EQ(status_of(get("/x")), "");
+    }
+    EXPECT_TRUE(run_until([&] { return status_of(get("/x")) == "HTTP/1.1 200 OK"; }));
+}
+
+TEST_F(ServerTest, WhoDoesNotReadDelaysNobody_J3) {
+    listen();
+    Peer slow(server->port()), other(server->port());
+    EXPECT_TRUE(ask(slow, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
+    EXPECT_TRUE(ask(other, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
+    for (int i = 0; i < 1000; ++i) {
+        server->send(echo.open[0], std::string(4096, 'x'));
+        server->run_for(echo, std::chrono::microseconds(10));
+    }
+    ASSERT_FALSE(server->isIdle(echo.open[0]));
+    EXPECT_EQ(ask(other, frame("stop"), "stop"), "\x81\x04stop");
+    EXPECT_TRUE(echo.ended.empty());
+}
+
+TEST_F(ServerTest, ABrokenFrameEndsThoughThePeerStays_J3) {
+    listen();
+    Peer peer(server->port());
+    EXPECT_TRUE(ask(peer, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
+    write(peer, "\x81\x01x");
+    EXPECT_TRUE(run_until([&] { return echo.ended.size() == 1; }));
+}
+
+/// Bytes that begin as something does and go on as nothing does.
+TEST_F(ServerTest, AnythingMayComeOverAConnection_J3) {
+    listen();
+    std::mt19937_64 random(17);
+    const auto pick = [&random](std::size_t count) { return static_cast<std::size_t>(random() % count); };
+    for (int i = 0; i < 400; ++i) {
+        std::string bytes = get("/x", "Origin: http://127.0.0.1:" + std::to_string(server->port()) + "\r\n");
+        const bool isSocket = pick(2) == 0;
+        Peer peer(server->port());
+        if (isSocket) {
+            ASSERT_TRUE(ask(peer, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101")) << i;
+            bytes.clear();
+            for (std::size_t n = pick(4) + 1; n > 0; --n) {
+                bytes += frame(std::string(pick(300), static_cast<char>(random())),
+                               static_cast<unsigned char>(random()));
+            }
+        }
+        for (std::size_t n = pick(6); n > 0; --n) {
+            bytes[pick(bytes.size())] = static_cast<char>(random());
+        }
+        bytes.resize(pick(bytes.size()) + 1);
+        write(peer, bytes);
+        server->run_for(echo, milliseconds(1));
+    }
+    EXPECT_TRUE(run_until([&] { return echo.ended.size() == echo.open.size(); }));
+    echo.texts.clear();
+    Peer peer(server->port());
+    EXPECT_TRUE(ask(peer, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
+    EXPECT_EQ(ask(peer, frame("hello"), "hello"), "\x81\x05hello");
 }
 
 TEST_F(ServerTest, APortThatIsTakenIsToldWithWhatToDo_J3) {

@@ -53,11 +53,13 @@ void change_value(const msgs::Type &type, void *at, Random &random) {
     constexpr double REALS[] = {0.0, -0.0, 1e300, std::numeric_limits<double>::infinity(), 0.1};
     switch (type.kind) {
     case msgs::Kind::BOOL: msgs::set_integer(type, at, static_cast<std::int64_t>(random() % 2)); return;
-    case msgs::Kind::NAMED: msgs::set_integer(type, at, type.names[random() % type.names.size()].value); return;
+    case msgs::Kind::NAMED:
+        msgs::set_integer(type, at, type.names[random() % type.names.size()].value);
+        return;
     case msgs::Kind::INTEGER:
     case msgs::Kind::UNSIGNED: msgs::set_integer(type, at, static_cast<std::int64_t>(random() % 100)); return;
     case msgs::Kind::REAL:
-        msgs::set_real(at, random() % 4 == 0 ? REALS[random() % std::size(REALS)]
+        msgs::set_real(at, random() % 4 == 0    ? REALS[random() % std::size(REALS)]
                            : random() % 50 == 0 ? std::nan("")
                                                 : static_cast<double>(random() % 1000000) / 1e3);
         return;
@@ -135,7 +137,7 @@ TEST(StatusDelta, OnlyWhatHasChangedIsTold_J3) {
     EXPECT_EQ(delta.next(*status), "");
     status->joints[2].pos_cmd = 4.5;
     status->motion.analog_in[3] = 0.5;
-    status->task.program = "a.ngc";
+    status->task.program = std::string_view("a.ngc");
     EXPECT_EQ(delta.next(*status), R"({"task":{"program":"a.ngc"},"motion":{"analog_in":{"3":0.5}},)"
                                    R"("joints":{"2":{"pos_cmd":4.5}}})");
     EXPECT_EQ(delta.next(*status), "");
