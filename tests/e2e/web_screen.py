@@ -203,7 +203,7 @@ def jog(screen, velocity, has_lease):
     """Without leases only a jog that ends by itself is taken."""
     if has_lease:
         return screen.ask('JogContinuous', is_joint=True, index=0, velocity=velocity, lease_ms=5000)
-    return screen.ask('JogIncrement', is_joint=True, index=0, velocity=velocity, distance=200.0)
+    return screen.ask('JogIncrement', is_joint=True, index=0, velocity=abs(velocity), distance=20 * velocity)
 
 
 def jog_and_cut(port, screen, has_lease):
@@ -225,6 +225,7 @@ def jog_and_cut(port, screen, has_lease):
     begin = other.joint()['pos_cmd']
     jog(other, -10.0, has_lease)
     expect(other.until(lambda: other.joint()['pos_cmd'] < begin - 0.5), 'another screen jogs')
+    expect(screen.until(lambda: screen.joint()['vel_cmd'] != 0), 'as the first one sees')
     other.cut()
     expect(screen.until(lambda: screen.joint()['vel_cmd'] == 0, 2), 'a jog ends with its connection', screen.joint())
     where = screen.joint()['pos_cmd']
@@ -255,7 +256,7 @@ def programs(port, screen, bench):
     expect(screen.until(lambda: screen.outcomes.get(run, {}).get('progress') == 'STARTED', 5), 'a run is told as started')
     expect(screen.until(lambda: screen.status['task']['motion_line'] >= 2), 'the line is told')
     expect(screen.outcome(run) == 'DONE', 'and its end', screen.outcomes.get(run))
-    expect(abs(screen.joint()['pos_cmd'] - 15) < 1e-6, 'at its place', screen.joint()['pos_cmd'])
+    expect(screen.until(lambda: abs(screen.joint()['pos_cmd'] - 15) < 1e-6, 2), 'at its place', screen.joint()['pos_cmd'])
     run = screen.ask('RunProgram')
     screen.until(lambda: screen.joint()['vel_cmd'] != 0)
     expect(screen.do('AbortAll') == 'DONE', 'abort')

@@ -117,6 +117,7 @@ class Session : public std::enable_shared_from_this<Session> {
         socket_.set_option(
             websocket::stream_base::timeout{std::chrono::seconds(2), websocket::stream_base::none(), false});
         socket_.read_message_max(server_.limits.text_bytes);
+        socket_.auto_fragment(false);
         socket_.async_accept(request_, [self = shared_from_this()](error_code error) {
             if (error || self->isOver_) {
                 self->end();

@@ -230,6 +230,13 @@ TEST_F(ServerTest, ASocketCarriesTextsBothWays_J3) {
     write(peer, frame(std::string(65536, 'x')));
     EXPECT_TRUE(run_until([&] { return echo.texts.size() == 3; }));
     EXPECT_TRUE(server->isIdle(echo.open[0]) || run_until([&] { return server->isIdle(echo.open[0]); }));
+    peer.received.clear();
+    server->send(echo.open[0], std::string(20000, 'y'));  // as one frame
+    run_until([&] {
+        peer.read();
+        return peer.received.size() >= 65546 + 20004;
+    });
+    EXPECT_TRUE(peer.received.ends_with("\x81\x7e\x4e\x20" + std::string(20000, 'y')));
 }
 
 TEST_F(ServerTest, ASocketThatMisbehavesIsClosedAndTold_J3) {
