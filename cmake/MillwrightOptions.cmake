@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 # Compiler flags and the places where programs, modules and headers are built (the run-in-place layout).
 option(MW_TESTS "Build the tests" ON)
+# Off where each source shall show that it includes what it uses: in the presets dev, asan and tsan.
 option(MW_UNITY "Compile several sources of a test as one" ON)
 option(MW_BENCH "Build the benchmarks" OFF)
 option(MW_FUZZ "Build the fuzz targets (clang)" OFF)
