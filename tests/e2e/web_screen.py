@@ -265,8 +265,25 @@ def programs(port, screen, bench):
     expect(screen.until(lambda: screen.messages), 'with a message')
 
 
+def end_while_jogging(bench, server, port, has_lease):
+    """A server that ends in order takes its screens' jogs with it."""
+    screen = Screen(port)
+    expect(screen.until(lambda: 'joints' in screen.status) and screen.do('SetMode', mode='MANUAL') == 'DONE' and
+           screen.do('SetTeleop', teleop=False) == 'DONE', 'joint mode again')
+    begin = screen.joint()['pos_cmd']
+    jog(screen, -10.0, has_lease)
+    expect(screen.until(lambda: screen.joint()['pos_cmd'] < begin - 0.5), 'jogs again')
+    server.terminate()
+    expect(server.wait(STEP_S) == 0, 'the server ends in order')
+    server, port = bench.server()
+    screen = Screen(port)
+    expect(screen.until(lambda: 'joints' in screen.status and screen.joint()['vel_cmd'] == 0, 3), 'its jog has ended', screen.status.get('joints'))
+    expect(screen.joint()['pos_cmd'] > begin - 150, 'on its way', screen.joint())
+    return screen, server, port
+
+
 def who_is_killed(bench, screen, server, port):
-    """The server, then the machine."""
+    """The server; the machine goes on."""
     begin = screen.joint()['pos_cmd']
     screen.do('SetMode', mode='MANUAL')
     server.kill()
@@ -305,6 +322,7 @@ def check(bench):
     programs(port, screen, bench)
     strangers(port)
     screen, server, port = who_is_killed(bench, screen, server, port)
+    screen, server, port = end_while_jogging(bench, server, port, has_lease)
     machine.terminate()
     expect(screen.until(lambda: screen.machine == 'gone', 5), 'a screen is told that the machine is gone')
     second = bench.machine()
