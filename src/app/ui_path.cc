@@ -2,6 +2,7 @@
 #include "app/ui_path.hh"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "machine/ini_parameters.hh"
 #include "machine/program_check.hh"
@@ -48,6 +49,12 @@ Result<std::shared_ptr<ui::web::PieceQueue>> PathReaders::read(const std::string
 void PathReaders::read_all(Reader &reader, const std::string &path) const {
     ui::web::PathChunks chunks([&reader](std::string piece) { return reader.pieces->push(std::move(piece)); },
                                loaded_.machine.isMetric ? 1 : MM_PER_INCH);
+    std::error_code missing;  // which the reading itself tells, with its place
+    if (std::filesystem::exists(path, missing) && !std::filesystem::is_regular_file(path, missing)) {
+        chunks.error(path + " is no file");  // a pipe would never end
+        chunks.end(0);
+        return;
+    }
     auto tools = machine::ToolFile::load(loaded_.machine.tool_table_file);
     if (!tools.has_value()) {
         chunks.error(tools.error().str());

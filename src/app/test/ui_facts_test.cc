@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // What a screen is told of the machine, from its INI file (J1).
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -146,6 +147,17 @@ TEST_F(UiMachine, AProgramIsReadAsItsPath_J3) {
     EXPECT_EQ(kind, 1U);
     EXPECT_GT(count, 10U);
     EXPECT_EQ(bytes.size() % 4, 0U);
+}
+
+TEST_F(UiMachine, APipeIsNotRead_J3) {
+    const auto loaded = load("mill_mm");
+    ASSERT_NE(loaded, nullptr);
+    const std::string path = (folder_ / "pipe.ngc").string();
+    ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+    PathReaders readers(*loaded);
+    const auto pieces = readers.read(path);
+    ASSERT_TRUE(pieces.has_value());
+    EXPECT_NE(all_of(**pieces).find("pipe.ngc is no file"), std::string::npos);
 }
 
 TEST_F(UiMachine, ReadersEndWhenNobodyReads_J3) {

@@ -6,6 +6,7 @@
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
@@ -40,6 +41,9 @@ std::string_view view(beast::string_view text) {
 std::int64_t monotonic_ns() {
     return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
 }
+
+/// For what is still on its way when a connection ends.
+constexpr std::chrono::milliseconds DRAIN_TIME{2000};
 
 /// No program that is started from here keeps it open.
 void keep_to_ourselves(int socket) {
@@ -354,6 +358,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
         }
         error_code ignored;
         stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+        stream_.expires_after(std::min(server_.limits.request_time, DRAIN_TIME));
         drain();
     }
 
@@ -361,7 +366,6 @@ class Connection : public std::enable_shared_from_this<Connection> {
     void drain() {
         constexpr std::size_t MOST = 16UL * 1024 * 1024;
         buffer_.clear();
-        stream_.expires_after(std::chrono::seconds(2));
         stream_.async_read_some(buffer_.prepare(65536),
                                 [self = shared_from_this()](error_code error, std::size_t size) {
                                     self->drained_ += size;

@@ -391,6 +391,18 @@ TEST_F(ServerTest, WhoNeverEndsHisRequestIsCutOff_J3) {
     }));
 }
 
+TEST_F(ServerTest, WhoGoesOnAfterHisRefusalIsCutOff_J3) {
+    ServerLimits limits;
+    limits.request_time = milliseconds(300);
+    listen(limits);
+    Peer peer(server->port());
+    write(peer, "PUT /f HTTP/1.1\r\n" + host() + "Content-Length: 2000000\r\n\r\n");
+    EXPECT_TRUE(run_until([&] {  // byte by byte
+        std::string more = "x";
+        return !peer.write(more);
+    }));
+}
+
 TEST_F(ServerTest, ConnectionsBeyondTheMostAreClosed_J3) {
     ServerLimits limits;
     limits.connections = 2;
