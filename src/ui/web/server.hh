@@ -40,8 +40,8 @@ class Server final : public Sockets {
     int port() const;
     /// Does what there is to do, waits for more, and returns when the time is over.
     void run_for(Application &application, std::chrono::nanoseconds time);
-    /// `act` is called within run_for(). Whoever calls this, and makers of pieces, end before the server.
-    /// [any thread]
+    /// `act` is called within run_for(). Whoever calls this, replies and makers of pieces end before the
+    /// server. [any thread]
     void post(std::function<void()> act);
 
     void send(SessionId session, std::string text) override;

@@ -146,8 +146,8 @@ class ServerTest : public testing::Test {
         return bytes;
     }
 
-    Echo echo;
     std::unique_ptr<Server> server;
+    Echo echo;  ///< may hold a reply, which ends before the server
 };
 
 TEST_F(ServerTest, OneConnectionCarriesManyRequests_J3) {
