@@ -31,6 +31,7 @@ inline constexpr const char *DEGREE = "degrees";
 inline constexpr const char *RPM = "rev/min";
 inline constexpr const char *REVOLUTIONS = "revolutions";
 inline constexpr const char *SECOND = "s";
+inline constexpr const char *MILLISECOND = "ms";
 inline constexpr const char *NANOSECOND = "ns";
 inline constexpr const char *FACTOR = "1.0 is 100 %";
 }  // namespace unit

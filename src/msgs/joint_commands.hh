@@ -26,18 +26,29 @@ inline constexpr auto DECLARED<UnhomeJoint> =
             field<&UnhomeJoint::joint>("joint", "-1: all; -2: those of VOLATILE_HOME", unit::NONE,
                                        range(-2, MAX_JOINTS - 1)));
 
+/// A lease that is not 0 is at least so long. [ms]
+inline constexpr int SHORTEST_JOG_LEASE_MS = 20, LONGEST_JOG_LEASE_MS = 10000;
 struct JogContinuous {
     bool isJoint = true;
     int index = 0;
     double velocity = 0;
+    int lease_ms = 0;
+    bool isRenewal = false;
 };
 template <>
 inline constexpr auto DECLARED<JogContinuous> = declare(
-    "JogContinuous", 124, "EMC_JOG_CONT_TYPE", "moves until it is stopped",
+    "JogContinuous", 124, "EMC_JOG_CONT_TYPE",
+    "moves until it is stopped, or until its lease ends; the same command again renews the lease",
     field<&JogContinuous::isJoint>("is_joint", "true: a joint, in free mode; false: an axis, in teleop mode"),
     field<&JogContinuous::index>("index", "number of the joint, or of the axis: 0 X ... 8 W", unit::NONE,
                                  JOINTS),
-    field<&JogContinuous::velocity>("velocity", "the sign is the direction", unit::JOINT_SPEED));
+    field<&JogContinuous::velocity>("velocity", "the sign is the direction", unit::JOINT_SPEED),
+    optional(field<&JogContinuous::lease_ms>(
+        "lease_ms", "motion ends the jog when it is not renewed within so long, at least 20; 0: no lease",
+        unit::MILLISECOND, range(0, LONGEST_JOG_LEASE_MS))),
+    optional(field<&JogContinuous::isRenewal>(
+        "is_renewal", "true: renews the lease of a jog under way and never begins one, so that no jog goes "
+                      "on that was stopped; a refusal is told to its client alone")));
 
 struct JogIncrement {
     bool isJoint = true;

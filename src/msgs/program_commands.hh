@@ -123,7 +123,8 @@ inline constexpr auto DECLARED<StopOptionally> =
 struct ReverseProgram {};
 template <>
 inline constexpr auto DECLARED<ReverseProgram> =
-    declare("ReverseProgram", 520, "EMC_TASK_PLAN_REVERSE_TYPE", "goes back along the path when resumed");
+    declare("ReverseProgram", 520, "EMC_TASK_PLAN_REVERSE_TYPE",
+            "goes back along the path, of a held program when it is resumed");
 
 struct ForwardProgram {};
 template <>

@@ -65,6 +65,7 @@ void Task::configure(const std::vector<motion::SetParameter> &parameters) {
     for (const motion::SetParameter &parameter : parameters) {
         last_setting_ = motion_.send(parameter);
     }
+    motion_.send(motion::SetNumJoints{settings_.num_joints});
     last_setting_ = motion_.send(motion::SetWatchdog{true, settings_.watchdog_s});
 }
 
@@ -152,11 +153,18 @@ void Task::take_motion_news() {
         }
     };
     for (const motion::Fault &fault : news.faults) {
-        fail_or_post(true, motion::fault_text(fault), fault.source, AbortReason::MOTION_FAULT);
+        fail_or_post(!motion::isOfJog(fault.kind), motion::fault_text(fault), fault.source,
+                     AbortReason::MOTION_FAULT);
     }
     for (const auto &[answer, source] : news.refused) {
         const std::string text = motion::reason_text(answer);
-        fail_or_post(answer.isPath, text, source, AbortReason::EXECUTION_ERROR);
+        const auto order = orders_.refuse(answer.id, text);
+        if (order.has_value()) {
+            tell(order->ending);
+        }
+        if (!order.has_value() || order->reader == RefusalIsFor::EVERYBODY) {
+            fail_or_post(answer.isPath, text, source, AbortReason::EXECUTION_ERROR);
+        }
         tell(state_.refuse(answer.id, text));
         tell(mode_.refuse(answer.id, text));
         tell(homing_.refuse(answer.id, text));
@@ -189,6 +197,10 @@ void Task::end_requests() {
     const motion::Status &motion = motion_.status();
     tell(mode_.step(motion_.isAnswered(mode_.order()), motion.mode, now_ns_));
     tell(homing_.step(motion_.isAnswered(homing_.order()), motion));
+    const auto isAnswered = [this](motion::CommandId order) { return motion_.isAnswered(order); };
+    while (const auto ended = orders_.next(isAnswered, now_ns_)) {
+        tell(ended);
+    }
 }
 
 bool Task::isReadAheadAllowed() {

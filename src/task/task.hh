@@ -20,6 +20,7 @@
 #include "task/states/homing_request.hh"
 #include "task/states/inbox.hh"
 #include "task/states/machine_state.hh"
+#include "task/states/motion_orders.hh"
 #include "task/states/operating_mode.hh"
 #include "task/status.hh"
 
@@ -145,6 +146,7 @@ class Task {
     OperatingMode mode_;
     OutOfModeWatch out_of_mode_;
     HomingRequest homing_;
+    MotionOrders orders_;
 
     MachineWorld world_;
     ProgramReader reader_;

@@ -2,7 +2,10 @@
 // One handler for each of the operator's commands: done, started, or refused with the reason (C5).
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "base/overloaded.hh"
+#include "task/link/motion_words.hh"
 #include "task/task.hh"
 
 namespace mw::task {
@@ -27,11 +30,25 @@ concept PartOfStart = OneOf<T, InitTask, HaltTask, InitMachine, HaltMachine, Ini
                             HaltTraj, InitJoint, HaltJoint, InitTool, HaltTool, InitIo, HaltIo>;
 template <class T>
 concept NotYet =
-    OneOf<T, CloseProgram, ResetInterpreter, SynchInterpreter, StopOptionally, ReverseProgram, ForwardProgram,
-          SetDebug, SystemCommand, CallTaskPlugin, CallIoPlugin, SetMotionMode, SetTeleopVector, ClearProbe,
-          EnableFeedOverride, EnableSpindleOverride, EnableFeedHold, EnableAdaptiveFeed, EnableTraj,
-          DisableTraj, EnableJoint, DisableJoint, ActivateJoint, DeactivateJoint, SpindleIncrease,
-          SpindleDecrease, SpindleConstant, SetSpindleSpeed, LubeOn, LubeOff, SetToolEntry>;
+    OneOf<T, CloseProgram, ResetInterpreter, SynchInterpreter, StopOptionally, SetDebug, SystemCommand,
+          CallTaskPlugin, CallIoPlugin, SetMotionMode, SetTeleopVector, EnableTraj, DisableTraj,
+          SpindleIncrease, SpindleDecrease, SpindleConstant, SetSpindleSpeed, LubeOn, LubeOff, SetToolEntry>;
+/// What motion does by itself (task/link/motion_words.hh).
+template <class T>
+concept CarriedOutByMotion =
+    OneOf<T, SetFeedOverride, SetRapidOverride, SetSpindleOverride, SetMaxVelocity, EnableFeedOverride,
+          EnableSpindleOverride, EnableFeedHold, EnableAdaptiveFeed, OverrideLimits, EnableJoint,
+          DisableJoint, ActivateJoint, DeactivateJoint, ClearProbe, SetDigitalOutput, SetAnalogOutput,
+          EngageBrake, ReleaseBrake>;
+static_assert(SHORTEST_JOG_LEASE_MS / 1e3 == motion::SHORTEST_JOG_LEASE_S &&
+              LONGEST_JOG_LEASE_MS / 1e3 == motion::LONGEST_JOG_LEASE_S);
+
+/// Who is to read why `command` was refused: a client that renews its jog does so many times a second.
+RefusalIsFor reader_of_refusal(const Command &command) {
+    const auto *jog = std::get_if<JogContinuous>(&command);
+    return jog != nullptr && jog->isRenewal ? RefusalIsFor::ITS_CLIENT : RefusalIsFor::EVERYBODY;
+}
+
 /// Other names of the operator's abort.
 template <class T>
 concept AnyAbort = OneOf<T, AbortAll, AbortMachine, AbortTraj, AbortMotion, AbortTool, AbortIo>;
@@ -73,31 +90,12 @@ struct Task::Handler {
         task.world_.set_block_delete(command.isOn);
         return Progress::DONE;
     }
-    Outcome operator()(const SetFeedOverride &command) {
-        return send(motion::SetScale{motion::Scale::FEED, 0, command.factor});
+    template <CarriedOutByMotion C>
+    Outcome operator()(const C &command) {
+        return order(in_motion_words(command));
     }
-    Outcome operator()(const SetRapidOverride &command) {
-        return send(motion::SetScale{motion::Scale::RAPID, 0, command.factor});
-    }
-    Outcome operator()(const SetSpindleOverride &command) {
-        return send(motion::SetScale{motion::Scale::SPINDLE, command.spindle, command.factor});
-    }
-    Outcome operator()(const SetMaxVelocity &command) {
-        return send(motion::SetMaxVelocity{command.velocity});
-    }
-    Outcome operator()(const OverrideLimits &) { return send(motion::OverrideLimits{true}); }
-    Outcome operator()(const SetDigitalOutput &command) {
-        return send(motion::SetDigitalOutput{command.index, command.isOn});
-    }
-    Outcome operator()(const SetAnalogOutput &command) {
-        return send(motion::SetAnalogOutput{command.index, command.value});
-    }
-    Outcome operator()(const EngageBrake &command) {
-        return send(motion::SpindleBrake{command.spindle, true});
-    }
-    Outcome operator()(const ReleaseBrake &command) {
-        return send(motion::SpindleBrake{command.spindle, false});
-    }
+    Outcome operator()(const ReverseProgram &) { return turn_program(true); }
+    Outcome operator()(const ForwardProgram &) { return turn_program(false); }
     Outcome operator()(const MistOn &) { return set_coolant(&io::Controller::set_mist, true); }
     Outcome operator()(const MistOff &) { return set_coolant(&io::Controller::set_mist, false); }
     Outcome operator()(const FloodOn &) { return set_coolant(&io::Controller::set_flood, true); }
@@ -161,10 +159,17 @@ struct Task::Handler {
         task.post(kind, text);
         return Progress::DONE;
     }
-    template <class Motion>
-    Outcome jog(const Motion &motion) {
+    /// Done when motion has taken it.
+    Outcome order(const motion::CommandBody &body, RefusalIsFor reader = RefusalIsFor::EVERYBODY) {
+        task.orders_.begin(id, task.motion_.send(body), reader, task.now_ns_);
+        return Progress::STARTED;
+    }
+    Outcome jog(const motion::CommandBody &body, RefusalIsFor reader = RefusalIsFor::EVERYBODY) {
         const auto allowed = need_manual();
-        return allowed.has_value() ? send(motion) : std::unexpected(allowed.error());
+        return allowed.has_value() ? order(body, reader) : std::unexpected(allowed.error());
+    }
+    Outcome turn_program(bool isReverse) {
+        return task.run_.isRunning() ? order(motion::SetReverse{isReverse}) : fail("no program runs");
     }
     Result<> need_spindle(int spindle) const {
         return spindle < task.settings_.num_spindles ? Result<>{}
@@ -203,7 +208,9 @@ void Task::carry_out_commands() {
         if (!outcome.has_value()) {
             const std::string reason = outcome.error().str();
             desk_.tell(delivery->serial, Progress::REFUSED, reason);
-            post(MessageKind::OPERATOR_ERROR, reason);
+            if (reader_of_refusal(delivery->command) == RefusalIsFor::EVERYBODY) {
+                post(MessageKind::OPERATOR_ERROR, reason);
+            }
         } else if (*outcome != Progress::STARTED) {
             desk_.tell(delivery->serial, *outcome, {});
         }
@@ -394,12 +401,18 @@ Outcome Task::Handler::operator()(const UnhomeJoint &command) {
     if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
     }
-    task.motion_.send(motion::Unhome{command.joint});
-    return Progress::DONE;
+    return order(motion::Unhome{command.joint});
 }
 
 Outcome Task::Handler::operator()(const JogContinuous &command) {
-    return jog(motion::JogContinuous{{command.isJoint, command.index}, command.velocity});
+    if (command.lease_ms != 0 && command.lease_ms < SHORTEST_JOG_LEASE_MS) {
+        return fail(fmt::format("a jog cannot have a lease of {} ms: it is 0 (none) or from {} to {} ms",
+                                command.lease_ms, SHORTEST_JOG_LEASE_MS, LONGEST_JOG_LEASE_MS));
+    }
+    return jog(
+        motion::JogContinuous{
+            {command.isJoint, command.index}, command.velocity, command.lease_ms / 1e3, command.isRenewal},
+        reader_of_refusal(command));
 }
 
 Outcome Task::Handler::operator()(const JogIncrement &command) {

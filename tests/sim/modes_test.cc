@@ -101,6 +101,28 @@ TEST_F(ModesTest, TheFeedOverrideActsOnJogs_C4) {
     EXPECT_NEAR(joint_speed(0), 5, 1e-6);
 }
 
+TEST_F(ModesTest, AJogThatItsClientDoesNotRenewIsStoppedByMotion_C8) {
+    ask(task::SetMode{task::Mode::MANUAL});
+    for (int n = 0; n < 20; ++n) {
+        post(task::JogContinuous{true, 0, 20, 100, n > 0});
+        cycles(30);
+        EXPECT_TRUE(n < 4 || std::abs(joint_speed(0) - 20) < 1e-6) << joint_speed(0);
+    }
+    messages();
+    cycles(60);
+    EXPECT_NEAR(joint_speed(0), 20, 1e-6) << "the lease has not ended";
+    cycles(300);
+    EXPECT_EQ(joint_speed(0), 0);
+    EXPECT_EQ(messages(), "the jog of joint 0 was stopped: it was not renewed within 100 ms\n");
+    const auto late = ask(task::JogContinuous{true, 0, 20, 100, true});
+    EXPECT_EQ(progress(late), task::Progress::REFUSED);
+    EXPECT_EQ(joint_speed(0), 0);
+    EXPECT_EQ(messages(), "");
+    const auto fresh = ask(task::JogContinuous{true, 0, 20, 100});
+    EXPECT_EQ(progress(fresh), task::Progress::DONE) << reason(fresh);
+    EXPECT_GT(joint_speed(0), 0);
+}
+
 TEST_F(ModesTest, HomingDuringAJogStopsTheJogAndHomes_C4) {
     switch_on_config(SimMachine{}.write(folder_));  // joints that home where they stand
     ask(task::SetMode{task::Mode::MANUAL});

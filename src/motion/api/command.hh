@@ -36,6 +36,10 @@ struct SetJointActive {  ///< ACTIVATE_JOINT, DEACTIVATE_JOINT
     int joint = 0;
     bool isActive = true;
 };
+/// How many of the joints that were loaded the machine has (SET_NUM_JOINTS); all, at first.
+struct SetNumJoints {
+    int count = 0;
+};
 struct OverrideLimits {
     bool isOn = true;  ///< ends with the next jog
 };
@@ -80,9 +84,14 @@ struct JogTarget {
     bool isJoint = true;
     int index = 0;
 };
+/// A lease that is not renewed ends the jog, whatever has become of who asked for it. The same command again
+/// renews it, with a velocity and a lease that may be others.
+inline constexpr double SHORTEST_JOG_LEASE_S = 0.02, LONGEST_JOG_LEASE_S = 10;
 struct JogContinuous {
     JogTarget target;
-    double velocity = 0;  ///< signed
+    double velocity = 0;     ///< signed
+    double lease_s = 0;      ///< 0: it goes on until it is stopped
+    bool isRenewal = false;  ///< goes on with a jog that has a lease, never begins one
 };
 struct JogIncremental {
     JogTarget target;
@@ -153,11 +162,11 @@ struct SetParameter {
 };
 
 using CommandBody =
-    std::variant<Abort, Enable, Disable, SetMode, SetAmplifier, SetJointActive, OverrideLimits, SetWatchdog,
-                 Heartbeat, Pause, Resume, StepOnce, SetReverse, SetScale, SetSwitch, SetMaxVelocity,
-                 JogContinuous, JogIncremental, JogAbsolute, JogStop, Home, Unhome, SetTeleopVector,
-                 SpindleOn, SpindleOff, SpindleOrient, SpindleBrake, SetDigitalOutput, SetAnalogOutput,
-                 ClearProbeFlag, SetParameter, SetToolOffset>;
+    std::variant<Abort, Enable, Disable, SetMode, SetAmplifier, SetJointActive, SetNumJoints, OverrideLimits,
+                 SetWatchdog, Heartbeat, Pause, Resume, StepOnce, SetReverse, SetScale, SetSwitch,
+                 SetMaxVelocity, JogContinuous, JogIncremental, JogAbsolute, JogStop, Home, Unhome,
+                 SetTeleopVector, SpindleOn, SpindleOff, SpindleOrient, SpindleBrake, SetDigitalOutput,
+                 SetAnalogOutput, ClearProbeFlag, SetParameter, SetToolOffset>;
 
 struct Command {
     CommandId id = 0;

@@ -118,12 +118,15 @@ enum class Reason : std::uint16_t {
     QUEUE_FULL,
     PROBE_ALREADY_TRIPPED,
     NOT_A_NUMBER,
-    NOT_SUPPORTED,
+    NO_WAY_BACK,  ///< nothing is remembered of the path
     BAD_ARC,
     RIGID_TAPPING,
     JOG_INHIBITED,
     HOMING_INHIBITED,
     SYNCHRONISED_JOINT,  ///< a joint of a negative HOME_SEQUENCE is not jogged alone
+    NO_JOG_TO_RENEW,
+    SWITCHED_ON,     ///< the machine is to be off
+    TOO_FEW_JOINTS,  ///< index: those that the kinematics moves
     COUNT,
 };
 
@@ -157,8 +160,14 @@ enum class FaultKind : std::uint16_t {
     JOINT_TOO_FAST,   ///< value: over what is allowed; kinematics that cannot be planned with
     JOINT_LEFT_RANGE,
     THREAD_TOO_FAST,  ///< index: spindle; value: needed speed over the possible one
+    JOG_LEASE_ENDED,  ///< a jog was not renewed in time; detail: 1 a joint, 0 an axis; value: the lease [s]
     COUNT,
 };
+/// Of a jog: no path has failed.
+constexpr bool isOfJog(FaultKind kind) noexcept {
+    return kind == FaultKind::JOG_JOINT_LIMIT || kind == FaultKind::JOG_UNREACHABLE ||
+           kind == FaultKind::JOG_LEASE_ENDED;
+}
 struct Fault {
     FaultKind kind = FaultKind::FOLLOWING_ERROR;
     std::int16_t index = -1;

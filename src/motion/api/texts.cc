@@ -36,9 +36,10 @@ std::string reason_text(const Answer &answer) {
     case Reason::COUNT: return {};
     case Reason::NOT_ENABLED: return "the machine is off: turn it on first";
     case Reason::WRONG_MODE:
-        return answer.isPath
-                   ? "programmed moves need coordinated mode"
-                   : "not possible in this mode: joints jog and home in joint mode, axes jog in world mode";
+        return answer.isPath ? "programmed moves need coordinated mode"
+                             : "not possible in this mode: joints jog, home and unhome in joint mode, axes "
+                               "jog in world "
+                               "mode";
     case Reason::MOVING: return "the machine is moving: wait until it stands, or stop it";
     case Reason::NOT_HOMED: return "home all joints first";
     case Reason::HOMING: return "joints are being homed: wait, or abort homing";
@@ -67,7 +68,8 @@ std::string reason_text(const Answer &answer) {
     case Reason::QUEUE_FULL: return "the motion queue is full";
     case Reason::PROBE_ALREADY_TRIPPED: return "the probe is already tripped before the probing move";
     case Reason::NOT_A_NUMBER: return "a value is not a finite number";
-    case Reason::NOT_SUPPORTED: return "not supported yet by this motion controller";
+    case Reason::NO_WAY_BACK:
+        return "there is no way back: the path is remembered only while adaptive feed is on (M52 P1)";
     case Reason::RIGID_TAPPING:
         return "G33.1: rigid tapping is not supported by this version; tap with a floating holder (G84, G74)";
     case Reason::BAD_ARC: return "the arc's centre, normal and end do not make a helix";
@@ -80,6 +82,13 @@ std::string reason_text(const Answer &answer) {
             "{} has a negative HOME_SEQUENCE: jogging it alone would rack the machine; home, then jog "
             "its axis in world mode",
             joint_name(i));
+    case Reason::SWITCHED_ON: return "the machine is on: switch it off first";
+    case Reason::TOO_FEW_JOINTS:
+        return fmt::format(
+            "the kinematics moves {} joints: see [KINS]JOINTS and coordinates= of the kinematics", i);
+    case Reason::NO_JOG_TO_RENEW:
+        return fmt::format("there is no jog of {} to renew: it has ended or was stopped; begin it again",
+                           place_name(answer));
     }
     return "refused";
 }
@@ -119,6 +128,9 @@ std::string what_failed(const Fault &fault) {
             "the thread needs {:.2f} times the speed that the machine, or its velocity override, "
             "allows at the present speed of spindle {}: use a lower speed or a finer pitch",
             fault.value, i);
+    case FaultKind::JOG_LEASE_ENDED:
+        return fmt::format("the jog of {} was stopped: it was not renewed within {:g} ms",
+                           fault.detail != 0 ? joint_name(i) : axis_name(i), fault.value * 1e3);
     case FaultKind::KINEMATICS_FAILED: return "the kinematics could not reach the commanded pose";
     case FaultKind::PATH_LIMIT: return "the path left its limits";
     case FaultKind::SPINDLE_FAULT:

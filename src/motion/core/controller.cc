@@ -10,21 +10,27 @@ namespace mw::motion {
 
 Controller::Controller(const ControllerConfig &config, const kins::Kinematics &kinematics, Channels &channels,
                        PathLink &link) noexcept
-    : config_(config), kinematics_(kinematics), channels_(&channels), link_(&link),
-      map_(axis_map(kinematics, config.num_joints)), executor_(link.store, config.period_s) {
-    const kins::IdentityMap *identity = kinematics.identity();
-    const int used =
-        identity != nullptr ? std::min(identity->num_joints, config.num_joints) : config.num_joints;
-    joints_.count = config.num_joints;
-    jogs_.num_joints = config.num_joints;
+    : config_(config), loaded_joints_(config.num_joints), kinematics_(kinematics), channels_(&channels),
+      link_(&link), executor_(link.store, config.period_s) {
     spindles_.count = config.num_spindles;
     outputs_.num_digital = config.num_dio;
     outputs_.num_analog = config.num_aio;
-    homing_.num_joints = config.num_joints;
-    homing_.homing.set_num_joints(used);
-    for (int j = used; j < config.num_joints; ++j) {
+    use_joints(config.num_joints);
+    const kins::IdentityMap *identity = kinematics.identity();
+    for (int j = identity != nullptr ? identity->num_joints : config.num_joints; j < config.num_joints; ++j) {
         joints_[j].isActive = false;  // drives nothing until somebody activates it
     }
+}
+
+/// All that knows how many joints there are.
+void Controller::use_joints(int count) noexcept {
+    const kins::IdentityMap *identity = kinematics_.identity();
+    config_.num_joints = count;
+    joints_.count = count;
+    jogs_.num_joints = count;
+    homing_.num_joints = count;
+    homing_.homing.set_num_joints(identity != nullptr ? std::min(identity->num_joints, count) : count);
+    map_ = axis_map(kinematics_, count);
     publish_limits();
 }
 
@@ -67,6 +73,7 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
         executor_.step(cycle_);
     } else {
         step_homing(in);
+        step_leases(in);
         step_wheels(in);
         power_.mode == Mode::FREE ? move_joints(in) : move_axes(in);
     }
@@ -201,6 +208,15 @@ void Controller::drive_homing(const Inputs &in) noexcept {
             renumber(jog, joints_[j].pos_cmd, joints_[j].pos_cmd - jog.planner.position);
         }
         home_joint(jog, c, limits_.joint_jog[static_cast<std::size_t>(j)]);
+    }
+}
+
+/// Jogs that nobody renews stop here, whatever has become of task and client.
+void Controller::step_leases(const Inputs &in) noexcept {
+    for (JogTarget over = end_lease(jogs_, in.time_ns); over.index >= 0;
+         over = end_lease(jogs_, in.time_ns)) {
+        const auto lease_ns = static_cast<double>(jogs_.at(over).lease.length_ns);
+        raise(FaultKind::JOG_LEASE_ENDED, over.index, lease_ns * 1e-9, over.isJoint ? 1 : 0);
     }
 }
 

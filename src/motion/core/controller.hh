@@ -62,6 +62,8 @@ class Controller {
     Verdict abort_all(const Abort &command) noexcept;
     Verdict enable(const Inputs &in) noexcept;
     Verdict set_mode(Mode mode) noexcept;
+    void leave_lost_mode() noexcept;
+    Verdict set_num_joints(const Inputs &in, int count) noexcept;
     Verdict set_parameter(const SetParameter &command) noexcept;
     Verdict jog_vector(const Inputs &in, const geom::Pose &velocity) noexcept;
     JogSituation situation_of(const Inputs &in, const JogTarget &target) const noexcept;
@@ -69,11 +71,13 @@ class Controller {
     void publish_limits() noexcept;
 
     // --- controller.cc
+    void use_joints(int count) noexcept;
     void check_faults(const Inputs &in) noexcept;
     void check_joints(const Inputs &in) noexcept;
     void step_holds(const Inputs &in) noexcept;
     void step_homing(const Inputs &in) noexcept;
     void drive_homing(const Inputs &in) noexcept;
+    void step_leases(const Inputs &in) noexcept;
     void step_wheels(const Inputs &in) noexcept;
     void output_joints() noexcept;
     void stop_category_1(FaultKind kind, int index, double value) noexcept;
@@ -98,6 +102,7 @@ class Controller {
     void trace(const Inputs &in, const Status &status) noexcept;
 
     ControllerConfig config_;
+    int loaded_joints_;  ///< config_ has those that are in use
     const kins::Kinematics &kinematics_;
     Channels *channels_;
     PathLink *link_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Immediate commands: each is answered, done or refused with a reason.
 #include <algorithm>
+#include <cmath>
 
 #include "base/overloaded.hh"
 #include "motion/core/controller.hh"
@@ -45,8 +46,18 @@ Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
         },
         [&](const SetMode &c) { return set_mode(c.mode); },
         [&](const SetParameter &c) { return set_parameter(c); },
+        [&](const SetNumJoints &c) { return set_num_joints(in, c.count); },
         [&](const SetAmplifier &c) { return motion::take(joints_, c, power_.isEnabled); },
-        [&](const SetJointActive &c) { return motion::take(joints_, c, isAnythingMoving()); },
+        [&](const SetJointActive &c) {
+            const bool areAlone = !power_.isEnabled || power_.mode == Mode::FREE;
+            const Verdict verdict =
+                motion::take(joints_, c, {isAnythingMoving(), homing_.isUnderWay(), areAlone});
+            if (areAlone) {  // the pose is that of all joints from here, also for the command that follows
+                const bool isKnown = kinematics_.kind() == kins::Kind::BOTH && homing_.homing.isAllHomed();
+                follow_joints(place_, kinematics_, commanded(joints_).data(), isKnown);
+            }
+            return verdict;
+        },
         [&](const OneOf<SetWatchdog, Heartbeat> auto &c) { return motion::take(watchdog_, c); },
         [&](const OneOf<Pause, Resume, StepOnce, SetReverse, SetMaxVelocity> auto &c) {
             return motion::take(holds_, c);
@@ -77,6 +88,7 @@ Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
             const Verdict verdict = motion::take(homing_, c, conditions, settings_);
             if (verdict.reason == Reason::NONE) {
                 publish_limits();
+                leave_lost_mode();
             }
             return verdict;
         },
@@ -87,8 +99,10 @@ Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
         [&](const OneOf<SetDigitalOutput, SetAnalogOutput> auto &c) { return motion::take(outputs_, c); },
         [&](const ClearProbeFlag &c) { return motion::take(probe_, c); },
         [&](const SetToolOffset &c) {
-            tool_offset_ = c.offset;
-            return Verdict{};
+            const bool areNumbers =
+                std::all_of(c.offset.c.begin(), c.offset.c.end(), [](double x) { return std::isfinite(x); });
+            tool_offset_ = areNumbers ? c.offset : tool_offset_;
+            return Verdict{areNumbers ? Reason::NONE : Reason::NOT_A_NUMBER};
         },
     };
     return std::visit(handlers, body);
@@ -136,6 +150,15 @@ void Controller::disable() noexcept {
     switch_off(homing_, settings_);
     switch_off(spindles_);
     publish_limits();
+    leave_lost_mode();
+}
+
+/// Off, joints have lost their homes that the kinematics needs: nobody knows where a pose would take them.
+void Controller::leave_lost_mode() noexcept {
+    const bool isKnown = kinematics_.kind() == kins::Kind::IDENTITY || homing_.homing.isAllHomed();
+    if (!power_.isEnabled && !isKnown) {
+        power_.mode = Mode::FREE;
+    }
 }
 
 Verdict Controller::set_mode(Mode mode) noexcept {
@@ -151,8 +174,29 @@ Verdict Controller::set_mode(Mode mode) noexcept {
     retracing_.retrace.clear();
     rest_at(jogs_, commanded(joints_).data(), place_.cmd);
     release(holds_);
-    holds_.isReverse = false;
     power_.mode = mode;
+    return {};
+}
+
+/// A joint that is no longer there is not homed when it comes back, and then is where its motor is.
+Verdict Controller::set_num_joints(const Inputs &in, int count) noexcept {
+    const kins::IdentityMap *identity = kinematics_.identity();
+    const int needed = identity != nullptr ? std::min(identity->num_joints, loaded_joints_) : 1;
+    if (power_.isEnabled) {
+        return {Reason::SWITCHED_ON};
+    }
+    if (count > loaded_joints_) {
+        return verdict_of(count - 1, Reason::NO_SUCH_JOINT);
+    }
+    if (count < needed) {
+        return verdict_of(needed, Reason::TOO_FEW_JOINTS);
+    }
+    for (int j = count; j < config_.num_joints; ++j) {
+        homing_.homing.unhome(j);
+    }
+    use_joints(count);
+    read_feedback(joints_, in);
+    leave_lost_mode();
     return {};
 }
 
@@ -171,13 +215,16 @@ Verdict Controller::set_parameter(const SetParameter &command) noexcept {
     return {};
 }
 
-/// Every axis at its own speed, those at 0 stop.
+/// Every axis at its own speed, those at 0 stop; none of them where one is refused.
 Verdict Controller::jog_vector(const Inputs &in, const geom::Pose &velocity) noexcept {
     for (int i = 0; i < MAX_AXES; ++i) {
-        const Verdict verdict = jog_axis(jogs_, i, velocity[i], situation_of(in, {false, i}));
-        if (verdict.reason != Reason::NONE) {
-            return verdict;
+        const Reason reason = check_axis_jog(jogs_, i, velocity[i], situation_of(in, {false, i}));
+        if (reason != Reason::NONE) {
+            return verdict_of(i, reason);
         }
+    }
+    for (int i = 0; i < MAX_AXES; ++i) {
+        jog_axis(jogs_, i, velocity[i], situation_of(in, {false, i}));
     }
     return {};
 }
@@ -188,6 +235,7 @@ JogSituation Controller::situation_of(const Inputs &in, const JogTarget &target)
     if (!hasTarget(jogs_, target)) {
         return s;
     }
+    s.time_ns = in.time_ns;
     s.isReady = power_.isReady();
     s.mode = power_.mode;
     s.isHoming = homing_.isUnderWay();

@@ -15,6 +15,15 @@ PartMask new_parts(const PublishedStatus &published, const Status &s) noexcept {
            part_range(status_part::SPINDLES, s.num_spindles) | published.changed(s, SELDOM);
 }
 
+/// A joint that was loaded and is not in use: it asks nothing of its drive.
+void fill_unused(const JointInputs &in, int j, Outputs &out) noexcept {
+    const auto n = static_cast<std::size_t>(j);
+    out.status.joint[n] = {};
+    out.status.joint[n].motor_pos_fb = in.motor_pos_fb;
+    out.joint[n] = {};
+    out.joint[n].motor_pos_cmd = in.motor_pos_fb;
+}
+
 }  // namespace
 
 void Controller::publish(const Inputs &in, Outputs &out) noexcept {
@@ -38,6 +47,9 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
     fill(jogs_, power_.mode, place_.cmd, out);
     fill(homing_, out);
     fill(spindles_, in, power_.isEnabled, out);
+    for (int j = config_.num_joints; j < loaded_joints_; ++j) {
+        fill_unused(in.joint[static_cast<std::size_t>(j)], j, out);
+    }
     for (int i = 0; i < MAX_AXES; ++i) {
         AxisStatus &axis = s.axis[static_cast<std::size_t>(i)];
         axis.min_limit = settings_.get(Parameter::AXIS_MIN_LIMIT, i);

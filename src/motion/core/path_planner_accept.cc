@@ -15,6 +15,18 @@ bool isFinite(const geom::Pose &p) noexcept {
     return std::all_of(p.c.begin(), p.c.end(), [](double x) { return std::isfinite(x); });
 }
 
+/// Why a move cannot be made on such terms.
+Reason check_terms(const MoveTerms &terms, int num_spindles) noexcept {
+    const bool areNumbers = std::isfinite(terms.feed) && std::isfinite(terms.tolerance) &&
+                            std::isfinite(terms.naivecam_tolerance) && std::isfinite(terms.corner_scale) &&
+                            std::isfinite(terms.feed_per_revolution);
+    if (!areNumbers) {
+        return Reason::NOT_A_NUMBER;
+    }
+    const bool isSpindle = terms.synch_spindle >= 0 && terms.synch_spindle < num_spindles;
+    return terms.feed < 0 || terms.tolerance < 0 || !isSpindle ? Reason::OUT_OF_RANGE : Reason::NONE;
+}
+
 /// As the status and the trace name a move.
 MotionType type_of(const PathBody &body, const MoveTerms &terms) noexcept {
     if (std::holds_alternative<Probe>(body)) {
@@ -109,15 +121,12 @@ Reason PathPlanner::check_joints(const traj::Primitive &p) noexcept {
 
 Reason PathPlanner::accept_line(const PathCommand &c, const geom::Pose &end,
                                 const MoveTerms &terms) noexcept {
-    if (!isFinite(end) || !std::isfinite(terms.feed) || !std::isfinite(terms.tolerance) ||
-        !std::isfinite(terms.corner_scale)) {
-        return Reason::NOT_A_NUMBER;
-    }
-    if (terms.feed < 0 || terms.tolerance < 0 || terms.synch_spindle >= config_.num_spindles) {
-        return Reason::OUT_OF_RANGE;
+    Reason reason = isFinite(end) ? check_terms(terms, config_.num_spindles) : Reason::NOT_A_NUMBER;
+    if (reason != Reason::NONE) {
+        return reason;
     }
     const traj::Primitive p = traj::make_line(planner_.end(), end);
-    const Reason reason = check_reach(p);
+    reason = check_reach(p);
     if (reason != Reason::NONE) {
         return reason;
     }
@@ -130,20 +139,18 @@ Reason PathPlanner::accept_line(const PathCommand &c, const geom::Pose &end,
 }
 
 Reason PathPlanner::accept_arc(const PathCommand &c, const Arc &arc) noexcept {
-    const bool isSound = isFinite(arc.end) && isFinite(arc.centre) && isFinite(arc.normal) &&
-                         std::isfinite(arc.terms.feed) && std::isfinite(arc.terms.tolerance);
-    if (!isSound) {
-        return Reason::NOT_A_NUMBER;
-    }
-    if (arc.terms.feed < 0 || arc.terms.tolerance < 0 || arc.terms.synch_spindle >= config_.num_spindles) {
-        return Reason::OUT_OF_RANGE;
+    const bool areNumbers =
+        isFinite(arc.end) && isFinite(arc.centre) && isFinite(arc.normal) && std::isfinite(arc.angle_rad);
+    Reason reason = areNumbers ? check_terms(arc.terms, config_.num_spindles) : Reason::NOT_A_NUMBER;
+    if (reason != Reason::NONE) {
+        return reason;
     }
     traj::Primitive p;
     const traj::ArcShape shape{arc.centre, arc.normal, arc.angle_rad, arc.isInUvw};
     if (traj::make_arc(planner_.end(), arc.end, shape, p) != traj::ArcFault::NONE) {
         return Reason::BAD_ARC;
     }
-    const Reason reason = check_reach(p);
+    reason = check_reach(p);
     if (reason != Reason::NONE) {
         return reason;
     }

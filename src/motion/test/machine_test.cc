@@ -157,22 +157,45 @@ TEST(Machine, FeedMovesWaitForTheSpindleAndFollowIt_C15) {
     ASSERT_TRUE(rig.run_until([&] { return rig.isDone(id); }, 20));
 }
 
-TEST(Machine, DeactivatingAJointLeavesItsAmplifierAlone_C6) {
+TEST(Machine, ATeleopVectorMovesAllItsAxesOrNone_C5) {
     MotionRig rig;
-    rig.ready(Mode::FREE);
-    ASSERT_TRUE(rig.out->joint[1].isAmpEnabled);
-    const CommandId off = rig.send(SetJointActive{1, false});
-    rig.step(3);
-    EXPECT_TRUE(rig.isDone(off));
-    EXPECT_FALSE(rig.status().joint[1].isActive);
-    EXPECT_TRUE(rig.out->joint[1].isAmpEnabled);
-    rig.send(SetAmplifier{1, false});
-    rig.step(3);
-    EXPECT_FALSE(rig.out->joint[1].isAmpEnabled);
-    rig.send(SetJointActive{1, true});
-    rig.step(3);
-    EXPECT_TRUE(rig.status().joint[1].isActive);
-    EXPECT_FALSE(rig.out->joint[1].isAmpEnabled) << "and activating it does not raise it";
+    rig.ready(Mode::TELEOP);
+    geom::Pose velocity;
+    velocity[0] = 10;
+    velocity[geom::AXIS_C] = 5;
+    const CommandId refused = rig.send(SetTeleopVector{velocity});
+    rig.step(100);
+    EXPECT_EQ(rig.refusal(refused), Reason::NO_SUCH_AXIS);
+    EXPECT_EQ(rig.status().carte_pos_cmd, geom::Pose{});
+    velocity[geom::AXIS_C] = 0;
+    velocity[1] = -5;
+    const CommandId taken = rig.send(SetTeleopVector{velocity});
+    rig.step(100);
+    EXPECT_TRUE(rig.isDone(taken));
+    EXPECT_NEAR(rig.status().axis[0].velocity, 10, 1e-9);
+    EXPECT_NEAR(rig.status().axis[1].velocity, -5, 1e-9);
+}
+
+TEST(Machine, TheFeedScaleActsOnHoming_C4) {
+    MotionRig rig;
+    rig.set(Parameter::JOINT_HOME_SEARCH_VEL, 0, 10);
+    rig.set(Parameter::JOINT_HOME_LATCH_VEL, 0, 1);
+    rig.send(Enable{});
+    rig.step(2);
+    rig.send(SetScale{Scale::FEED, 0, 0.5});
+    rig.send(Home{0});
+    rig.step(300);
+    ASSERT_TRUE(rig.status().isHoming);
+    EXPECT_NEAR(rig.status().joint[0].vel_cmd, 5, 1e-9);
+    rig.send(SetScale{Scale::FEED, 0, 0});
+    rig.step(200);
+    EXPECT_EQ(rig.status().joint[0].vel_cmd, 0);
+    EXPECT_TRUE(rig.status().isHoming);
+    rig.send(SetScale{Scale::FEED, 0, 1});
+    rig.step(200);
+    EXPECT_NEAR(rig.status().joint[0].vel_cmd, 10, 1e-9);
+    rig.before_step = [](MotionRig &r) { r.in.joint[0].isHomeSwitchClosed = r.in.joint[0].motor_pos_fb > 4; };
+    EXPECT_TRUE(rig.run_until([&] { return rig.status().joint[0].isHomed; }, 30));
 }
 
 TEST(Machine, EveryPassOfAThreadBeginsAtTheSameSpindleAngle_C15) {

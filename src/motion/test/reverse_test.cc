@@ -164,7 +164,7 @@ TEST_P(Reverse, ByCommandWhereAdaptiveFeedIsOn_C4) {
     const CommandId refused = rig.send(SetReverse{true});
     rig.send(SetSwitch{Switch::ADAPTIVE_FEED, 0, true});
     rig.go(5);
-    EXPECT_EQ(rig.refusal(refused), Reason::NOT_SUPPORTED);
+    EXPECT_EQ(rig.refusal(refused), Reason::NO_WAY_BACK);
     geom::Pose end = far;
     end[0] = 60;
     rig.line(end, 50);
@@ -176,6 +176,24 @@ TEST_P(Reverse, ByCommandWhereAdaptiveFeedIsOn_C4) {
     rig.send(SetReverse{false});
     ASSERT_TRUE(rig.finish(flush, 10));
     EXPECT_EQ(rig.x(0), 60);
+    EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
+}
+
+TEST_P(Reverse, ByCommandEndsWithAnAbort_C4) {
+    ReverseRig rig(GetParam());
+    rig.zigzag(6);
+    rig.go(600);
+    rig.send(SetReverse{true});
+    rig.go(500);
+    EXPECT_TRUE(rig.status().isReverse);
+    rig.send(Abort{++rig.epoch});
+    rig.go(1000);
+    EXPECT_FALSE(rig.status().isReverse);
+    geom::Pose end;
+    end[0] = 1;
+    rig.line(end, 50);
+    ASSERT_TRUE(rig.finish(rig.send_path(Flush{}), 30)) << "the next path does not wait for a forward";
+    EXPECT_EQ(rig.x(0), 1);
     EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
 }
 

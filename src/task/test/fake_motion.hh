@@ -38,10 +38,15 @@ class FakeMotion {
     bool isHolding = false;
     bool isRefusingMoves = false;
     bool isModeStuck = false;
+    motion::Reason jog_refusal = motion::Reason::NONE;  ///< of each continuous jog
+    motion::JogContinuous last_jog;
+    motion::CommandBody last;  ///< of all immediate ones
     double corner_scale = -1;  ///< of the last move
 
   private:
     void take(const motion::Command &command) {
+        motion::Answer answer{command.id};
+        last = command.body;
         if (const auto *abort = std::get_if<motion::Abort>(&command.body)) {
             status.epoch = abort->new_epoch;
             log.emplace_back("abort");
@@ -55,6 +60,10 @@ class FakeMotion {
             log.emplace_back("jog stop");
         } else if (const auto *jog = std::get_if<motion::JogContinuous>(&command.body)) {
             log.push_back("jog " + std::to_string(jog->target.index));
+            last_jog = *jog;
+            answer.reason = jog_refusal;
+            answer.kind =
+                jog_refusal == motion::Reason::NONE ? motion::AnswerKind::DONE : motion::AnswerKind::REFUSED;
         } else if (const auto *on = std::get_if<motion::SpindleOn>(&command.body)) {
             log.push_back("spindle " + std::to_string(static_cast<int>(on->speed_rpm)));
         } else if (std::holds_alternative<motion::SpindleOff>(command.body)) {
@@ -64,7 +73,7 @@ class FakeMotion {
             log.push_back((isType ? "planner " : "setting ") + std::to_string(static_cast<int>(p->value)));
         }
         status.last_immediate_id = command.id;
-        channels_.servo_answers.push({command.id});
+        channels_.servo_answers.push(answer);
     }
 
     void take_path() {

@@ -7,6 +7,7 @@
 #include "task/states/homing_request.hh"
 #include "task/states/inbox.hh"
 #include "task/states/machine_state.hh"
+#include "task/states/motion_orders.hh"
 #include "task/states/operating_mode.hh"
 
 namespace mw::task {
@@ -31,6 +32,42 @@ TEST(Request, EndsOnceAndOnlyItsOwnOrderRefusesIt) {
     EXPECT_EQ(ended->reason, "not enabled");
     EXPECT_FALSE(request.refuse(3, "again").has_value());
     EXPECT_FALSE(request.isLate(1000));
+}
+
+TEST(MotionOrders, EndInTheirOrderWithWhatMotionSays_C5) {
+    MotionOrders orders;
+    const auto until = [](motion::CommandId last) {
+        return [last](motion::CommandId order) { return order <= last; };
+    };
+    EXPECT_FALSE(orders.next(until(100), 6).has_value());
+    orders.begin(1, 10, RefusalIsFor::EVERYBODY, 5);
+    orders.begin(2, 11, RefusalIsFor::ITS_CLIENT, 5);
+    orders.begin(3, 12, RefusalIsFor::EVERYBODY, 5);
+    EXPECT_FALSE(orders.next(until(9), 6).has_value());
+    EXPECT_FALSE(orders.refuse(13, "another's").has_value());
+    const auto refused = orders.refuse(11, "too far");
+    ASSERT_TRUE(refused.has_value());
+    EXPECT_EQ(refused->ending.command, 2U);
+    EXPECT_EQ(refused->ending.progress, Progress::REFUSED);
+    EXPECT_EQ(refused->ending.reason, "too far");
+    EXPECT_EQ(refused->reader, RefusalIsFor::ITS_CLIENT);
+    EXPECT_EQ(orders.next(until(12), 6)->command, 1U);
+    EXPECT_EQ(orders.next(until(12), 6)->command, 3U);
+    EXPECT_FALSE(orders.next(until(12), 6).has_value());
+}
+
+TEST(MotionOrders, FailWhereMotionDoesNotAnswer_C5) {
+    MotionOrders orders;
+    const auto none = [](motion::CommandId) { return false; };
+    orders.begin(1, 10, RefusalIsFor::EVERYBODY, 0);
+    orders.begin(2, 11, RefusalIsFor::EVERYBODY, 1);
+    EXPECT_FALSE(orders.next(none, CHANGE_TIMEOUT_NS).has_value());
+    const auto failed = orders.next(none, CHANGE_TIMEOUT_NS + 1);
+    ASSERT_TRUE(failed.has_value());
+    EXPECT_EQ(failed->command, 1U);
+    EXPECT_EQ(failed->progress, Progress::FAILED);
+    EXPECT_NE(failed->reason, "");
+    EXPECT_FALSE(orders.next(none, CHANGE_TIMEOUT_NS + 1).has_value());
 }
 
 class MachineStateTest : public testing::Test {

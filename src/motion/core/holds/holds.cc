@@ -55,7 +55,7 @@ Verdict take(Holds &holds, const SetReverse &command) noexcept {
     // Nothing is recorded to go back along without adaptive feed.
     const bool isRefused = command.isReverse && !holds.isAdaptiveFeedEnabled;
     holds.isReverse = command.isReverse && !isRefused;
-    return {isRefused ? Reason::NOT_SUPPORTED : Reason::NONE};
+    return {isRefused ? Reason::NO_WAY_BACK : Reason::NONE};
 }
 
 Verdict take(Holds &holds, const SetMaxVelocity &command) noexcept {
@@ -89,6 +89,7 @@ Verdict take(Holds &holds, const SetSwitch &command) noexcept {
 void release(Holds &holds) noexcept {
     holds.isPaused = false;
     holds.isStepping = false;
+    holds.isReverse = false;
 }
 
 void fill(const Holds &holds, Status &status) noexcept {

@@ -54,6 +54,9 @@ Verdict take(HomingDrive &drive, const Unhome &command, const HomeConditions &co
     if (conditions.isMoving) {
         return verdict_of(j, Reason::MOVING);
     }
+    if (conditions.isReady && conditions.mode != Mode::FREE) {
+        return verdict_of(j, Reason::WRONG_MODE);  // a pose stands on the homes
+    }
     for (int k = 0; k < drive.num_joints; ++k) {
         const bool isVolatile = j == VOLATILE_ONES && settings.isSet(Parameter::JOINT_VOLATILE_HOME, k);
         if (j == ALL || j == k || isVolatile) {

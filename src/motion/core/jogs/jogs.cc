@@ -2,6 +2,7 @@
 #include "motion/core/jogs/jogs.hh"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace mw::motion {
@@ -17,6 +18,15 @@ std::size_t at(int i) noexcept {
 
 Verdict verdict_of(const JogTarget &target, Reason reason) noexcept {
     return mw::motion::verdict_of(target.index, reason);
+}
+
+std::uint32_t bit_of(const JogTarget &target) noexcept {
+    static_assert(MAX_JOINTS + MAX_AXES <= 32);
+    return 1U << (target.isJoint ? target.index : MAX_JOINTS + target.index);
+}
+
+JogTarget target_of_bit(int bit) noexcept {
+    return {bit < MAX_JOINTS, bit < MAX_JOINTS ? bit : bit - MAX_JOINTS};
 }
 
 struct JogMove {
@@ -44,6 +54,7 @@ Reason start(Jogs &jogs, const JogTarget &target, const JogMove &move, const Jog
     jog.wanted_velocity = p.max_velocity;
     jog.wanted_acceleration = p.max_acceleration;
     jog.source = move.source;
+    jogs.leased &= ~bit_of(target);
     jogs.isTeleopStopped = jogs.isTeleopStopped && target.isJoint;
     jogs.isOverrideInJog = jogs.isOverrideInJog || jogs.areLimitsOverridden;
     return Reason::NONE;
@@ -54,6 +65,48 @@ Reason start_continuous(Jogs &jogs, const JogTarget &target, double velocity,
                         const JogSituation &s) noexcept {
     const double end = velocity > 0 ? s.range.high : s.range.low;
     return start(jogs, target, {end, velocity, JogSource::KEYBOARD}, s);
+}
+
+void begin_lease(Jogs &jogs, const JogContinuous &command, std::int64_t time_ns) noexcept {
+    constexpr double NS_PER_S = 1e9;
+    JogLease &lease = jogs.at(command.target).lease;
+    lease.length_ns = static_cast<std::int64_t>(command.lease_s * NS_PER_S + 0.5);
+    lease.end_ns = time_ns + lease.length_ns;
+    lease.isForward = command.velocity > 0;
+    jogs.leased |= bit_of(command.target);
+}
+
+bool isRenewable(const Jogs &jogs, const JogContinuous &command) noexcept {
+    const bool isLive = command.lease_s > 0 && (jogs.leased & bit_of(command.target)) != 0;
+    return isLive && jogs.at(command.target).lease.isForward == (command.velocity > 0);
+}
+
+/// The jog keeps where it goes to, so what has stood still at a limit stays there.
+void renew(Jogs &jogs, const JogContinuous &command, const JogSituation &s) noexcept {
+    Jog &jog = jogs.at(command.target);
+    traj::JogPlanner &p = jog.planner;
+    jog.wanted_velocity = std::min(std::abs(command.velocity), s.most.velocity);
+    p.target = std::clamp(p.target, std::min(s.range.low, p.position), std::max(s.range.high, p.position));
+    begin_lease(jogs, command, s.time_ns);
+}
+
+Reason check_lease(const JogContinuous &command) noexcept {
+    const bool isNone = command.lease_s == 0.0 && !command.isRenewal;
+    const bool isInRange = command.lease_s >= SHORTEST_JOG_LEASE_S && command.lease_s <= LONGEST_JOG_LEASE_S;
+    return isNone || isInRange ? Reason::NONE : Reason::OUT_OF_RANGE;
+}
+
+Reason start_leased(Jogs &jogs, const JogContinuous &command, const JogSituation &s) noexcept {
+    const double here = jogs.at(command.target).planner.position;
+    const bool isAtEnd = command.velocity > 0 ? here >= s.range.high : here <= s.range.low;
+    if (isAtEnd) {
+        return Reason::BEYOND_SOFT_LIMIT;
+    }
+    const Reason reason = start_continuous(jogs, command.target, command.velocity, s);
+    if (reason == Reason::NONE && command.lease_s > 0) {
+        begin_lease(jogs, command, s.time_ns);
+    }
+    return reason;
 }
 
 Verdict start_to(Jogs &jogs, const JogTarget &target, double position, double velocity,
@@ -95,18 +148,21 @@ Reason check(const Jogs &jogs, const JogTarget &target, double direction, const 
 }
 
 Verdict take(Jogs &jogs, const JogContinuous &command, const JogSituation &situation) noexcept {
-    const Reason reason = check(jogs, command.target, command.velocity, situation);
+    Reason reason = check(jogs, command.target, command.velocity, situation);
+    if (reason == Reason::NONE) {
+        reason = !std::isfinite(command.velocity) ? Reason::NOT_A_NUMBER
+                 : command.velocity == 0.0        ? Reason::OUT_OF_RANGE
+                                                  : check_lease(command);
+    }
     if (reason != Reason::NONE) {
         return verdict_of(command.target, reason);
     }
-    if (!std::isfinite(command.velocity)) {
-        return verdict_of(command.target, Reason::NOT_A_NUMBER);
+    if (isRenewable(jogs, command)) {
+        renew(jogs, command, situation);
+        return verdict_of(command.target, Reason::NONE);
     }
-    const double here = jogs.at(command.target).planner.position;
-    const bool isAtEnd = command.velocity > 0 ? here >= situation.range.high : here <= situation.range.low;
     return verdict_of(command.target,
-                      isAtEnd ? Reason::BEYOND_SOFT_LIMIT
-                              : start_continuous(jogs, command.target, command.velocity, situation));
+                      command.isRenewal ? Reason::NO_JOG_TO_RENEW : start_leased(jogs, command, situation));
 }
 
 Verdict take(Jogs &jogs, const JogIncremental &command, const JogSituation &situation) noexcept {
@@ -133,6 +189,7 @@ Verdict take(Jogs &jogs, const JogStop &command) noexcept {
                           command.target.isJoint ? Reason::NO_SUCH_JOINT : Reason::NO_SUCH_AXIS);
     }
     Jog &jog = jogs.at(command.target);
+    jogs.leased &= ~bit_of(command.target);
     if (jog.source != JogSource::NONE) {
         jog.planner.stop();
     }
@@ -145,17 +202,38 @@ Verdict take(Jogs &jogs, const OverrideLimits &command) noexcept {
     return {};
 }
 
-Verdict jog_axis(Jogs &jogs, int axis, double velocity, const JogSituation &situation) noexcept {
+Reason check_axis_jog(const Jogs &jogs, int axis, double velocity, const JogSituation &situation) noexcept {
+    const Reason reason = velocity == 0.0 ? Reason::NONE : check(jogs, {false, axis}, velocity, situation);
+    return reason == Reason::NONE && !std::isfinite(velocity) ? Reason::NOT_A_NUMBER : reason;
+}
+
+void jog_axis(Jogs &jogs, int axis, double velocity, const JogSituation &situation) noexcept {
     const JogTarget target{false, axis};
     if (velocity == 0.0) {
-        return take(jogs, JogStop{target});
+        take(jogs, JogStop{target});
+    } else {
+        start_continuous(jogs, target, velocity, situation);
     }
-    const Reason reason = check(jogs, target, velocity, situation);
-    return verdict_of(axis,
-                      reason != Reason::NONE ? reason : start_continuous(jogs, target, velocity, situation));
+}
+
+JogTarget end_lease(Jogs &jogs, std::int64_t time_ns) noexcept {
+    for (std::uint32_t left = jogs.leased; left != 0; left &= left - 1) {
+        const JogTarget target = target_of_bit(std::countr_zero(left));
+        Jog &jog = jogs.at(target);
+        if (time_ns < jog.lease.end_ns) {
+            continue;
+        }
+        jogs.leased &= ~bit_of(target);
+        if (!jog.planner.isAtRest()) {
+            jog.planner.stop();
+            return target;
+        }
+    }
+    return {true, -1};
 }
 
 void stop(Jogs &jogs) noexcept {
+    jogs.leased = 0;
     for (int j = 0; j < jogs.num_joints; ++j) {
         jogs.joint[at(j)].planner.stop();
     }
@@ -165,6 +243,7 @@ void stop(Jogs &jogs) noexcept {
 }
 
 void stop_at_once(Jogs &jogs) noexcept {
+    jogs.leased = 0;
     for (int j = 0; j < jogs.num_joints; ++j) {
         traj::JogPlanner &p = jogs.joint[at(j)].planner;
         p.reset(p.position);
@@ -175,6 +254,7 @@ void stop_at_once(Jogs &jogs) noexcept {
 }
 
 void forget_sources(Jogs &jogs) noexcept {
+    jogs.leased = 0;
     for (int j = 0; j < jogs.num_joints; ++j) {
         jogs.joint[at(j)].source = JogSource::NONE;
     }

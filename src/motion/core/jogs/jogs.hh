@@ -19,11 +19,18 @@ namespace mw::motion {
 /// What a jog is driven by.
 enum class JogSource : std::uint8_t { NONE, KEYBOARD, WHEEL };
 
+/// How long a continuous jog goes on without being renewed.
+struct JogLease {
+    std::int64_t length_ns = 0, end_ns = 0;
+    bool isForward = true;  ///< of the jog that it belongs to
+};
+
 struct Jog {
     traj::JogPlanner planner;
     double wanted_velocity = 0, wanted_acceleration = 0;  ///< before the override and joints limit them
     JogSource source = JogSource::NONE;
     std::int32_t wheel_counts = 0;
+    JogLease lease;
 };
 
 struct Jogs {
@@ -31,6 +38,7 @@ struct Jogs {
     bool areLimitsOverridden = false;  ///< limit switches are, until the next jog has ended
     bool isOverrideInJog = false;      ///< that jog has begun
     bool isTeleopStopped = false;      ///< by a joint's limit, and said
+    std::uint32_t leased = 0;          ///< bit per joint, then per axis, whose lease has not ended
     std::array<Jog, MAX_JOINTS> joint{};
     std::array<Jog, MAX_AXES> axis{};
 
@@ -57,6 +65,7 @@ struct JogSituation {
     bool isOnPosLimit = false, isOnNegLimit = false;
     JogLimits most;
     JogRange range;
+    std::int64_t time_ns = 0;  ///< now
 };
 
 /// Whether a jog may start at all; `direction` > 0, < 0, or 0 when not yet known.
@@ -68,8 +77,13 @@ Verdict take(Jogs &jogs, const JogIncremental &command, const JogSituation &situ
 Verdict take(Jogs &jogs, const JogAbsolute &command, const JogSituation &situation) noexcept;
 Verdict take(Jogs &jogs, const JogStop &command) noexcept;
 Verdict take(Jogs &jogs, const OverrideLimits &command) noexcept;
-/// One axis of SetTeleopVector: at 0 it stops.
-Verdict jog_axis(Jogs &jogs, int axis, double velocity, const JogSituation &situation) noexcept;
+/// One axis of SetTeleopVector, after all of them were checked: at 0 it stops.
+Reason check_axis_jog(const Jogs &jogs, int axis, double velocity, const JogSituation &situation) noexcept;
+void jog_axis(Jogs &jogs, int axis, double velocity, const JogSituation &situation) noexcept;
+
+/// Ends one lease that was not renewed in time, and its jog brakes: the joint or axis of which that is to be
+/// told, index -1 when there is none any more. Called until then, in each cycle before the jogs move.
+JogTarget end_lease(Jogs &jogs, std::int64_t time_ns) noexcept;
 
 /// Every jog brakes.
 void stop(Jogs &jogs) noexcept;

@@ -50,6 +50,12 @@ void follow_feedback(Joint &s) noexcept {
     s.motor_pos_cmd = s.motor_pos_fb;
 }
 
+/// Left out while its amplifier is on: the motor stays where it was told to be last.
+void hold(Joint &s) noexcept {
+    s.vel_cmd = 0;
+    s.acc_cmd = 0;
+}
+
 JointFault check(Joint &s, const Settings &settings, int j, bool isAtIndex, bool isLimitIgnored) noexcept {
     s.ferror = s.pos_cmd - s.pos_fb;
     const double vmax = settings.get(Parameter::JOINT_MAX_VELOCITY, j);
@@ -84,14 +90,22 @@ Verdict take(Joints &joints, const SetAmplifier &command, bool isEnabled) noexce
     return verdict_of(command.joint, Reason::NONE);
 }
 
-Verdict take(Joints &joints, const SetJointActive &command, bool isMoving) noexcept {
+Verdict take(Joints &joints, const SetJointActive &command, const ActivationConditions &conditions) noexcept {
     if (!hasJoint(joints, command.joint)) {
         return verdict_of(command.joint, Reason::NO_SUCH_JOINT);
     }
-    if (isMoving) {
+    Joint &joint = joints[command.joint];
+    if (conditions.isHoming) {
+        return verdict_of(command.joint, Reason::HOMING);
+    }
+    if (conditions.isMoving || !joint.backlash.filter.isAtRest()) {
         return verdict_of(command.joint, Reason::MOVING);
     }
-    joints[command.joint].isActive = command.isActive;  // its amplifier stays as it is
+    const bool isJoining = command.isActive && !joint.isActive;
+    if (isJoining && !conditions.areJointsAlone) {
+        return verdict_of(command.joint, Reason::WRONG_MODE);
+    }
+    joint.isActive = command.isActive;  // its amplifier stays as it is
     return verdict_of(command.joint, Reason::NONE);
 }
 
@@ -181,9 +195,13 @@ std::uint32_t output(Joints &joints, const Settings &settings, bool isEnabled, d
     std::uint32_t off = 0;
     for (int j = 0; j < joints.count; ++j) {
         Joint &s = joints[j];
-        if (!isEnabled || !s.isActive) {
+        if (!isEnabled || (!s.isActive && !s.isAmpWanted)) {
             follow_feedback(s);
             off |= 1U << j;
+            continue;
+        }
+        if (!s.isActive) {
+            hold(s);
             continue;
         }
         take_up(s, settings, j, period_s);

@@ -46,7 +46,11 @@ struct Joints {
 };
 
 Verdict take(Joints &joints, const SetAmplifier &command, bool isEnabled) noexcept;
-Verdict take(Joints &joints, const SetJointActive &command, bool isMoving) noexcept;
+struct ActivationConditions {
+    bool isMoving = false, isHoming = false;
+    bool areJointsAlone = true;  ///< off, or in free mode: no pose says where joints are to be
+};
+Verdict take(Joints &joints, const SetJointActive &command, const ActivationConditions &conditions) noexcept;
 
 /// Why the machine may not be switched on now, NONE when it may.
 Verdict check_start(const Joints &joints, const Inputs &in, bool areLimitsOverridden) noexcept;
@@ -68,8 +72,11 @@ struct JointCheck {
 /// `joint` is the one that has it.
 JointFault find_fault(Joints &joints, int &joint, const Settings &settings, const JointCheck &how) noexcept;
 
-/// The joint is told to be at `position` at the end of this cycle.
+/// The joint is told to be at `position` at the end of this cycle; one that is left out is told nothing.
 inline void follow(Joint &joint, double position, double period_s) noexcept {
+    if (!joint.isActive) {
+        return;
+    }
     const double v = (position - joint.pos_cmd) / period_s;
     joint.acc_cmd = (v - joint.vel_cmd) / period_s;
     joint.vel_cmd = v;

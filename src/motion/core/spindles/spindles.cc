@@ -81,7 +81,9 @@ Verdict take(Spindles &spindles, const SpindleOn &command, bool isEnabled) noexc
     if (!isEnabled) {
         return {Reason::NOT_ENABLED};
     }
-    if (!std::isfinite(command.speed_rpm) || !std::isfinite(command.css_factor)) {
+    const bool areNumbers = std::isfinite(command.speed_rpm) && std::isfinite(command.css_factor) &&
+                            std::isfinite(command.css_max_rpm) && std::isfinite(command.css_x_offset);
+    if (!areNumbers) {
         return {Reason::NOT_A_NUMBER};
     }
     Spindle &s = spindles[command.spindle];
@@ -112,6 +114,9 @@ Verdict take(Spindles &spindles, const SpindleOrient &command, bool isEnabled) n
     }
     if (!isEnabled) {
         return {Reason::NOT_ENABLED};
+    }
+    if (!std::isfinite(command.angle_deg)) {
+        return {Reason::NOT_A_NUMBER};
     }
     Spindle &s = spindles[command.spindle];
     stop_turning(s);

@@ -55,13 +55,16 @@ TEST(HoldsPart, AdaptiveFeedCountsOnlyWhereItIsOnAndNeverWhenItIsNoNumber) {
 
 TEST(HoldsPart, ReverseRunNeedsWhatIsRecordedWithAdaptiveFeed) {
     Holds holds;
-    EXPECT_EQ(take(holds, SetReverse{true}).reason, Reason::NOT_SUPPORTED);
+    EXPECT_EQ(take(holds, SetReverse{true}).reason, Reason::NO_WAY_BACK);
     take(holds, SetSwitch{Switch::ADAPTIVE_FEED, 0, true});
     EXPECT_EQ(take(holds, SetReverse{true}).reason, Reason::NONE);
     step(holds, {});
     EXPECT_TRUE(holds.isReverseWanted);
     step(holds, {-1, false, false, 0});
     EXPECT_FALSE(holds.isReverseWanted) << "backwards of backwards";
+    release(holds);
+    step(holds, {});
+    EXPECT_FALSE(holds.isReverseWanted) << "a stop ends it";
 }
 
 TEST(HoldsPart, ScalesBeyondTheirRangeAreRefused) {

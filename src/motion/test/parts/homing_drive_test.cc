@@ -63,6 +63,10 @@ TEST_F(HomingDrivePart, VolatileHomesAreLostWithPower) {
     conditions.isMoving = true;
     EXPECT_EQ(take(drive, Unhome{0}, conditions, settings).reason, Reason::MOVING);
     conditions.isMoving = false;
+    conditions.mode = Mode::COORD;
+    EXPECT_EQ(take(drive, Unhome{0}, conditions, settings).reason, Reason::WRONG_MODE);
+    EXPECT_EQ(homed_mask(drive), 1U) << "a refusal changes nothing";
+    conditions.mode = Mode::FREE;
     EXPECT_EQ(take(drive, Unhome{-2}, conditions, settings).reason, Reason::NONE);
     EXPECT_EQ(homed_mask(drive), 1U) << "only volatile ones";
     take(drive, Unhome{-1}, conditions, settings);

@@ -61,6 +61,53 @@ TEST(JogsPart, AContinuousJogEndsAtTheSoftLimit) {
     EXPECT_EQ(take(jogs, JogContinuous{JOINT, -80}, free_mode()).reason, Reason::NONE);
 }
 
+TEST(JogsPart, ALeaseIsRenewedByTheSameCommandAndEndsOnce_C8) {
+    constexpr std::int64_t MS = 1000000;
+    Jogs jogs = make();
+    JogSituation s = free_mode();
+    s.time_ns = 5 * MS;
+    EXPECT_EQ(take(jogs, JogContinuous{JOINT, 5, 0.1, true}, s).reason, Reason::NO_JOG_TO_RENEW);
+    for (const double lease_s : {-1.0, 0.019, 10.1, double{NAN}, double{INFINITY}}) {
+        EXPECT_EQ(take(jogs, JogContinuous{JOINT, 5, lease_s}, s).reason, Reason::OUT_OF_RANGE) << lease_s;
+    }
+    EXPECT_EQ(take(jogs, JogContinuous{JOINT, 5, 0, true}, s).reason, Reason::OUT_OF_RANGE);
+    EXPECT_TRUE(jogs.at(JOINT).planner.isAtRest()) << "a refusal moves nothing";
+    ASSERT_EQ(take(jogs, JogContinuous{JOINT, 5, 0.1}, s).reason, Reason::NONE);
+    run(jogs, JOINT, 50);
+    EXPECT_LT(end_lease(jogs, 104 * MS).index, 0);
+    s.time_ns = 104 * MS;
+    EXPECT_EQ(take(jogs, JogContinuous{JOINT, 8, 0.2, true}, s).reason, Reason::NONE);
+    EXPECT_EQ(jogs.at(JOINT).wanted_velocity, 8);
+    EXPECT_LT(end_lease(jogs, 303 * MS).index, 0);
+    const JogTarget over = end_lease(jogs, 304 * MS);
+    EXPECT_TRUE(over.isJoint);
+    EXPECT_EQ(over.index, 0);
+    EXPECT_LT(end_lease(jogs, 304 * MS).index, 0) << "told once";
+    EXPECT_LT(jogs.at(JOINT).planner.target, 1) << "it brakes";
+    s.time_ns = 305 * MS;
+    EXPECT_EQ(take(jogs, JogContinuous{JOINT, 8, 0.2, true}, s).reason, Reason::NO_JOG_TO_RENEW);
+}
+
+TEST(JogsPart, WhatStopsOrReplacesAJogEndsItsLease_C8) {
+    const auto isLeft = [](auto change) {
+        Jogs jogs = make();
+        EXPECT_EQ(take(jogs, JogContinuous{JOINT, 5, 0.1}, free_mode()).reason, Reason::NONE);
+        run(jogs, JOINT, 20);
+        change(jogs);
+        return take(jogs, JogContinuous{JOINT, 5, 0.1, true}, free_mode()).reason == Reason::NONE;
+    };
+    EXPECT_TRUE(isLeft([](Jogs &) {}));
+    EXPECT_TRUE(isLeft([](Jogs &j) { take(j, JogStop{{true, 1}}); })) << "another joint's";
+    EXPECT_FALSE(isLeft([](Jogs &j) { take(j, JogStop{JOINT}); }));
+    EXPECT_FALSE(isLeft([](Jogs &j) { stop(j); }));
+    EXPECT_FALSE(isLeft([](Jogs &j) { stop_at_once(j); }));
+    EXPECT_FALSE(isLeft([](Jogs &j) { forget_sources(j); }));
+    EXPECT_FALSE(isLeft([](Jogs &j) { take(j, JogIncremental{JOINT, 5, -1}, free_mode()); }));
+    EXPECT_FALSE(isLeft([](Jogs &j) { take(j, JogAbsolute{JOINT, 5, 1}, free_mode()); }));
+    EXPECT_FALSE(isLeft([](Jogs &j) { take(j, JogContinuous{JOINT, 5}, free_mode()); }));
+    EXPECT_FALSE(isLeft([](Jogs &j) { take(j, JogContinuous{JOINT, -5, 0.1}, free_mode()); })) << "turned";
+}
+
 TEST(JogsPart, IncrementsAddUpAndStayWithinTheRange) {
     Jogs jogs = make();
     EXPECT_EQ(take(jogs, JogIncremental{JOINT, 20, 4}, free_mode()).reason, Reason::NONE);
@@ -128,13 +175,16 @@ TEST(JogsPart, JogsStopWithinTheirLimitsOrAtOnce) {
 TEST(JogsPart, AxesAreJoggedInTeleopModeOnly) {
     Jogs jogs = make();
     JogSituation s = free_mode();
-    EXPECT_EQ(jog_axis(jogs, 0, 5, s).reason, Reason::WRONG_MODE);
+    EXPECT_EQ(check_axis_jog(jogs, 0, 5, s), Reason::WRONG_MODE);
+    EXPECT_EQ(check_axis_jog(jogs, 0, 0, s), Reason::NONE) << "it stops";
     s.mode = Mode::TELEOP;
-    EXPECT_EQ(jog_axis(jogs, 0, 5, s).reason, Reason::NONE);
+    EXPECT_EQ(check_axis_jog(jogs, 0, NAN, s), Reason::NOT_A_NUMBER);
+    EXPECT_EQ(check_axis_jog(jogs, 0, 5, s), Reason::NONE);
+    jog_axis(jogs, 0, 5, s);
     limit_axis(jogs.at(AXIS), 100, 0.5);
     EXPECT_EQ(jogs.at(AXIS).planner.max_velocity, 2.5);
     run(jogs, AXIS, 100);
-    EXPECT_EQ(jog_axis(jogs, 0, 0, s).reason, Reason::NONE);
+    jog_axis(jogs, 0, 0, s);
     run(jogs, AXIS, 100);
     EXPECT_TRUE(areAxesAtRest(jogs));
 }

@@ -114,7 +114,38 @@ TEST_F(JointsPart, SwitchedOffTheCommandFollowsTheMotor) {
     EXPECT_EQ(joints[0].motor_pos_cmd, 4);
     EXPECT_EQ(take(joints, SetAmplifier{0, true}, false).reason, Reason::NOT_ENABLED);
     EXPECT_EQ(take(joints, SetAmplifier{2, true}, true).reason, Reason::NO_SUCH_JOINT);
-    EXPECT_EQ(take(joints, SetJointActive{0, false}, true).reason, Reason::MOVING);
+    EXPECT_EQ(take(joints, SetJointActive{0, false}, {true, false, true}).reason, Reason::MOVING);
+    EXPECT_EQ(take(joints, SetJointActive{0, false}, {false, true, true}).reason, Reason::HOMING);
+}
+
+TEST_F(JointsPart, AJointThatIsLeftOutKeepsItsPlaceWhileItsAmplifierIsOn_C4) {
+    set(Parameter::JOINT_BACKLASH, 0, 0.2);
+    switch_on(joints);
+    for (int n = 1; n <= 1000; ++n) {
+        follow(joints[0], 0.001 * n, T);
+        output(joints, settings, true, T);
+    }
+    joints[0].motor_offset = 0;
+    const double motor = joints[0].motor_pos_cmd;
+    EXPECT_EQ(take(joints, SetJointActive{0, false}, {false, false, false}).reason, Reason::NONE);
+    EXPECT_TRUE(joints[0].isAmpWanted) << "the amplifier stays as it is";
+    for (int n = 1; n <= 100; ++n) {
+        follow(joints[0], 1 + 0.01 * n, T);            // where a pose would have it
+        in.joint[0].motor_pos_fb = motor - 0.001 * n;  // the axis gives way
+        read_feedback(joints, in);
+        EXPECT_EQ(fault_of(0), JointFault::NONE);
+        EXPECT_EQ(output(joints, settings, true, T), 0U);
+        EXPECT_EQ(joints[0].motor_pos_cmd, motor);
+        EXPECT_EQ(joints[0].vel_cmd, 0);
+        EXPECT_EQ(joints[0].acc_cmd, 0);
+    }
+    EXPECT_NEAR(joints[0].pos_cmd, 1, 1e-12);
+    EXPECT_EQ(take(joints, SetJointActive{0, true}, {false, false, false}).reason, Reason::WRONG_MODE);
+    EXPECT_EQ(take(joints, SetJointActive{0, true}, {false, false, true}).reason, Reason::NONE);
+    take(joints, SetJointActive{0, false}, {false, false, true});
+    take(joints, SetAmplifier{0, false}, true);
+    EXPECT_EQ(output(joints, settings, true, T), 1U) << "its amplifier is off: it follows the motor";
+    EXPECT_EQ(joints[0].motor_pos_cmd, in.joint[0].motor_pos_fb);
 }
 
 TEST_F(JointsPart, AJointThatDoesMoreThanItCanIsFound) {

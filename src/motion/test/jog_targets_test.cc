@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Jogs whose target changes in motion: limits hold at every sample, the last target is reached, and not later
+// than braking and beginning anew would need. MW_CAMPAIGN_SEEDS and MW_CAMPAIGN_FIRST choose the seeds.
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "testing/campaign_seeds.hh"
+#include "testing/limit_checker.hh"
+#include "testing/motion_rig.hh"
+
+namespace mw::motion {
+namespace jog_targets_test {
+namespace {
+
+using testing::MotionRig;
+
+constexpr double T = MotionRig::T;
+constexpr double SPEED = 100, LIMIT = 50;
+
+class TargetRun {
+  public:
+    TargetRun(Mode mode, double jerk, unsigned seed)
+        : random_(seed), mode_(mode), jerk_(jerk), acceleration_(std::pow(10.0, real(2.3, 3.5))),
+          rig_("XYZ", SPEED, acceleration_) {
+        for (int i = 0; i < 3; ++i) {
+            rig_.set(Parameter::JOINT_MIN_LIMIT, i, -LIMIT);
+            rig_.set(Parameter::JOINT_MAX_LIMIT, i, LIMIT);
+            if (jerk > 0) {
+                rig_.set(Parameter::JOINT_MAX_JERK, i, jerk);
+                rig_.set(Parameter::AXIS_MAX_JERK, i, jerk);
+            }
+        }
+        rig_.set(Parameter::TRAJ_PLANNER_TYPE, 0, jerk > 0 ? 1 : 0);
+        rig_.ready(mode);
+    }
+    void run() {
+        const JogTarget what{mode_ == Mode::FREE, 0};
+        const testing::AxisLimit limit{SPEED, acceleration_, jerk_ > 0 ? jerk_ : 1e300};
+        testing::LimitChecker checker(std::vector<testing::AxisLimit>{limit}, T);
+        double expected = 0;
+        double slowest = SPEED;
+        int since = 0;
+        for (int n = 0; n < 20000; ++n) {
+            const bool isNew = n < 12000 && chance(0.004);
+            if (isNew) {
+                const double speed = real(5, 1.2 * SPEED);
+                const bool isAbsolute = chance(0.6);
+                const double position = isAbsolute ? real(-LIMIT, LIMIT) : expected + real(-20, 20);
+                const CommandId id = isAbsolute ? rig_.send(JogAbsolute{what, speed, position})
+                                                : rig_.send(JogIncremental{what, speed, position - expected});
+                rig_.step();
+                const bool isInside = std::abs(position) <= LIMIT;
+                ASSERT_EQ(rig_.refusal(id), isInside ? Reason::NONE : Reason::BEYOND_SOFT_LIMIT);
+                ++(isInside ? taken : refused);
+                if (isInside) {
+                    expected = position;
+                    slowest = std::min(speed, SPEED);
+                    since = 0;
+                }
+            } else {
+                rig_.step();
+            }
+            const double p = rig_.out->joint[0].motor_pos_cmd;
+            checker.sample(&p);
+            ++since;
+            // To a stand from full speed, there and back over the whole way, and what the jerk limit adds.
+            const double tau = jerk_ > 0 ? 2.0 * acceleration_ / jerk_ : 0.0;
+            const double longest_s = 2 * SPEED / acceleration_ + 2 * LIMIT / slowest +
+                                     SPEED * SPEED / acceleration_ / slowest + 2 * tau + 10 * T;
+            if (since * T > longest_s) {
+                ASSERT_NEAR(p, expected, 1e-9) << "cycle " << n << ", " << since << " after the last target";
+                ++reached;
+            }
+            ASSERT_LE(std::abs(p), LIMIT + 1e-9);
+        }
+        EXPECT_TRUE(rig_.status().isInPosition);
+        EXPECT_TRUE(checker.isWithin()) << checker.report();
+        EXPECT_TRUE(rig_.faults.empty());
+    }
+    int taken = 0, refused = 0, reached = 0;
+
+  private:
+    double real(double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random_);
+    }
+    bool chance(double p) { return real(0, 1) < p; }
+
+    std::mt19937 random_;
+    Mode mode_;
+    double jerk_, acceleration_;
+    MotionRig rig_;
+};
+
+void run_all(Mode mode, double jerk) {
+    const auto [first, count] = testing::campaign_seeds(10);
+    int taken = 0, refused = 0, reached = 0;
+    for (int i = 0; i < count && !::testing::Test::HasFailure(); ++i) {
+        SCOPED_TRACE("seed " + std::to_string(first + i));
+        TargetRun run(mode, jerk, static_cast<unsigned>(first + i));
+        run.run();
+        taken += run.taken;
+        refused += run.refused;
+        reached += run.reached;
+    }
+    EXPECT_GT(taken, 20 * count);
+    EXPECT_LT(refused, taken / 2) << "increments beyond the soft limit";
+    EXPECT_GT(reached, 1000 * count);
+}
+
+TEST(JogTargets, MayChangeInMotionInFreeMode_C8) {
+    run_all(Mode::FREE, 0);
+}
+
+TEST(JogTargets, MayChangeInMotionInFreeModeWithJerkLimits_C8) {
+    run_all(Mode::FREE, 3e4);
+}
+
+TEST(JogTargets, MayChangeInMotionInTeleopMode_C9) {
+    run_all(Mode::TELEOP, 0);
+}
+
+TEST(JogTargets, MayChangeInMotionInTeleopModeWithJerkLimits_C9) {
+    run_all(Mode::TELEOP, 3e4);
+}
+
+}  // namespace
+}  // namespace jog_targets_test
+}  // namespace mw::motion

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Joints that are left out, taken in again, not there, or have lost their homes: no motor takes a step.
+#include <gtest/gtest.h>
+
+#include "kins/corexy.hh"
+#include "kins/rotary_table.hh"
+#include "testing/motion_rig.hh"
+
+namespace mw::motion {
+namespace {
+
+using testing::MotionRig;
+
+TEST(Machine, DeactivatingAJointLeavesItsAmplifierAlone_C6) {
+    MotionRig rig;
+    rig.ready(Mode::FREE);
+    ASSERT_TRUE(rig.out->joint[1].isAmpEnabled);
+    const CommandId off = rig.send(SetJointActive{1, false});
+    rig.step(3);
+    EXPECT_TRUE(rig.isDone(off));
+    EXPECT_FALSE(rig.status().joint[1].isActive);
+    EXPECT_TRUE(rig.out->joint[1].isAmpEnabled);
+    rig.send(SetAmplifier{1, false});
+    rig.step(3);
+    EXPECT_FALSE(rig.out->joint[1].isAmpEnabled);
+    rig.send(SetJointActive{1, true});
+    rig.step(3);
+    EXPECT_TRUE(rig.status().joint[1].isActive);
+    EXPECT_FALSE(rig.out->joint[1].isAmpEnabled) << "and activating it does not raise it";
+}
+
+TEST(Machine, AJointThatIsLeftOutComesBackWithoutAStep_C4) {
+    MotionRig rig;
+    rig.ready(Mode::TELEOP);
+    rig.send(SetJointActive{1, false});
+    rig.send(JogIncremental{{false, 1}, 50, 5});
+    rig.step(400);
+    EXPECT_EQ(rig.status().carte_pos_cmd[1], 5);
+    EXPECT_EQ(rig.out->joint[1].motor_pos_cmd, 0) << "it is held where it was left out";
+    const CommandId early = rig.send(SetJointActive{1, true});
+    const CommandId free = rig.send(SetMode{Mode::FREE});
+    const CommandId late = rig.send(SetJointActive{1, true});
+    rig.send(SetMode{Mode::TELEOP});  // in the same cycle
+    for (int n = 0; n < 5; ++n) {
+        rig.step();
+        ASSERT_EQ(rig.out->joint[1].motor_pos_cmd, 0);
+    }
+    EXPECT_EQ(rig.refusal(early), Reason::WRONG_MODE) << "the pose asks it to be at 5";
+    EXPECT_TRUE(rig.isDone(free));
+    EXPECT_TRUE(rig.isDone(late));
+    for (const Mode mode : {Mode::TELEOP, Mode::COORD, Mode::FREE}) {
+        rig.send(SetMode{mode});
+        for (int n = 0; n < 20; ++n) {
+            rig.step();
+            ASSERT_EQ(rig.out->joint[1].motor_pos_cmd, 0);
+        }
+        EXPECT_EQ(rig.status().mode, mode);
+    }
+    EXPECT_EQ(rig.status().carte_pos_cmd[1], 0);
+    EXPECT_TRUE(rig.status().isEnabled);
+}
+
+TEST(Machine, TheNumberOfJointsChangesWhileItIsOff_C12) {
+    kins::Trivial xyz;
+    xyz.configure("XYZ");
+    MotionRig rig(xyz, 5, 100, 1000);
+    EXPECT_EQ(rig.status().num_joints, 5);
+    const auto asked = [&](int count) {
+        const CommandId id = rig.send(SetNumJoints{count});
+        rig.step();
+        return rig.refusal(id);
+    };
+    EXPECT_EQ(asked(2), Reason::TOO_FEW_JOINTS);
+    EXPECT_EQ(asked(0), Reason::TOO_FEW_JOINTS);
+    EXPECT_EQ(asked(6), Reason::NO_SUCH_JOINT);
+    EXPECT_EQ(rig.status().num_joints, 5) << "a refusal changes nothing";
+    EXPECT_EQ(asked(3), Reason::NONE);
+    EXPECT_EQ(rig.status().num_joints, 3);
+    rig.in.joint[4].isAmpFaulted = true;
+    rig.ready(Mode::FREE);
+    EXPECT_TRUE(rig.status().isEnabled) << "a joint that is not there has no faults";
+    EXPECT_TRUE(rig.status().isAllHomed);
+    const CommandId gone = rig.send(JogContinuous{{true, 3}, 5});
+    rig.step();
+    EXPECT_EQ(rig.refusal(gone), Reason::NO_SUCH_JOINT);
+    EXPECT_EQ(asked(5), Reason::SWITCHED_ON);
+    rig.send(Disable{});
+    EXPECT_EQ(asked(5), Reason::NONE);
+    EXPECT_EQ(rig.status().num_joints, 5);
+    EXPECT_TRUE(rig.status().isAllHomed) << "the kinematics moves three";
+}
+
+TEST(Machine, AJointThatIsNoLongerThereIsOffAndComesBackWhereItsMotorIs_C12) {
+    kins::Trivial xyz;
+    xyz.configure("XYZ");
+    MotionRig rig(xyz, 4, 100, 1000);
+    rig.send(SetJointActive{3, true});
+    rig.ready(Mode::FREE);
+    rig.send(JogContinuous{{true, 3}, 20});
+    rig.step(300);
+    ASSERT_TRUE(rig.out->joint[3].isAmpEnabled);
+    ASSERT_TRUE(rig.out->joint[3].isKeyboardJogging);
+    rig.send(Disable{});
+    rig.send(SetNumJoints{3});  // in the same cycle
+    rig.step();
+    EXPECT_EQ(rig.status().num_joints, 3);
+    EXPECT_FALSE(rig.out->joint[3].isAmpEnabled);
+    EXPECT_FALSE(rig.out->joint[3].isKeyboardJogging);
+    EXPECT_FALSE(rig.status().joint[3].isHomed);
+    rig.before_step = [](MotionRig &r) { r.in.joint[3].motor_pos_fb = -7; };  // moved by hand
+    rig.step(10);
+    EXPECT_EQ(rig.out->joint[3].motor_pos_cmd, -7);
+    rig.send(SetNumJoints{4});
+    rig.send(Enable{});  // in the same cycle
+    for (int n = 0; n < 10; ++n) {
+        rig.step();
+        ASSERT_EQ(rig.out->joint[3].motor_pos_cmd, -7) << n;
+    }
+    EXPECT_TRUE(rig.status().isEnabled);
+    EXPECT_TRUE(rig.out->joint[3].isAmpEnabled);
+    EXPECT_TRUE(rig.faults.empty());
+}
+
+TEST(Machine, NotAllJointsOfATableAreThere_C12) {
+    kins::RotaryTable table;
+    MotionRig rig(table, 8, 100, 1000);
+    rig.send(SetNumJoints{5});
+    rig.ready(Mode::COORD);
+    EXPECT_EQ(rig.status().mode, Mode::COORD) << "five homed joints are all";
+    geom::Pose end;
+    end[0] = 10;
+    end[geom::AXIS_C] = 30;
+    rig.line(end, 50);
+    const CommandId flush = rig.send_path(Flush{});
+    EXPECT_TRUE(rig.run_until([&] { return rig.isDone(flush); }, 10));
+}
+
+TEST(Machine, APoseIsNotTakenUpByJointsThatHaveLostTheirHomes_C14) {
+    kins::CoreXy model;
+    MotionRig rig(model, 3, 100, 1000);
+    rig.set(Parameter::JOINT_VOLATILE_HOME, 0, 1);
+    for (const Mode mode : {Mode::COORD, Mode::TELEOP}) {
+        rig.ready(mode);
+        const CommandId early = rig.send(Unhome{1});
+        rig.step(2);
+        EXPECT_EQ(rig.refusal(early), Reason::WRONG_MODE);
+        ASSERT_EQ(rig.status().mode, mode);
+        rig.send(Disable{});
+        rig.step(2);
+        EXPECT_FALSE(rig.status().isAllHomed);
+        const double place = rig.in.joint[0].motor_pos_fb + 0.3;
+        rig.before_step = [&](MotionRig &r) { r.in.joint[0].motor_pos_fb = place; };  // moved by hand
+        rig.step(5);
+        rig.before_step = [](MotionRig &) {};
+        rig.send(Enable{});
+        for (int n = 0; n < 20; ++n) {
+            rig.step();
+            ASSERT_EQ(rig.out->joint[0].motor_pos_cmd, place) << n;
+        }
+        EXPECT_TRUE(rig.status().isEnabled);
+        EXPECT_EQ(rig.status().mode, Mode::FREE);
+    }
+}
+
+}  // namespace
+}  // namespace mw::motion
