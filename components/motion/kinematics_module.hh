@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The functions of kinematics.h over one of our models (kins/kinematics.hh).
+// The functions of kinematics.h over one of our models (kins/kinematics.hh), or over anything that has
+// forward and inverse as a model has.
 #pragma once
 
 #include "hal/api/hal.h"
@@ -9,40 +10,77 @@
 
 namespace mw::components {
 
+inline geom::Pose pose_of(const EmcPose &world) noexcept {
+    return {{world.tran.x, world.tran.y, world.tran.z, world.a, world.b, world.c, world.u, world.v, world.w}};
+}
+
 /// `world` holds a guess and what no joint drives. -1 when the model has no answer.
-inline int model_forward(const kins::Kinematics &model, const double *joint, EmcPose *world) noexcept {
-    geom::Pose pose{{world->tran.x, world->tran.y, world->tran.z, world->a, world->b, world->c, world->u,
-                     world->v, world->w}};
-    if (model.forward(joint, pose) != kins::Status::OK) {
+template <class Model>
+int model_forward(const Model &model, const double *joint, EmcPose *world) noexcept {
+    geom::Pose pose = pose_of(*world);
+    if (!isAnswered(model.forward(joint, pose))) {
         return -1;
     }
     *world = {{pose[0], pose[1], pose[2]}, pose[3], pose[4], pose[5], pose[6], pose[7], pose[8]};
     return 0;
 }
 
-inline int model_inverse(const kins::Kinematics &model, const EmcPose *world, double *joint) noexcept {
-    const geom::Pose pose{{world->tran.x, world->tran.y, world->tran.z, world->a, world->b, world->c,
-                           world->u, world->v, world->w}};
-    return model.inverse(pose, joint) == kins::Status::OK ? 0 : -1;
+template <class Model>
+kins::Status model_inverse(const Model &model, const EmcPose *world, double *joint) noexcept {
+    return model.inverse(pose_of(*world), joint);
+}
+
+/// 0 of what has no sides.
+template <class Model>
+int model_side(const Model &model, const geom::Pose &pose) noexcept {
+    if constexpr (requires { model.side(pose); }) {
+        return model.side(pose);
+    } else {
+        return 0;
+    }
 }
 
 }  // namespace mw::components
 
-/// Defines kinematicsForward, kinematicsInverse and kinematicsHome over `model`, an object of the module.
-#define MW_KINEMATICS(model)                                                                                 \
+/// Defines kinematicsForward, kinematicsInverse and kinematicsHome over `model`, an object of the module;
+/// mw_kinematics_inverse, which tells a singular pose from another (0 as it should be, 1 out of reach, 2
+/// singular); and mw_kinematics_side (kins/kinematics.hh).
+#define MW_KINEMATICS_FUNCTIONS(model)                                                                       \
     extern "C" int kinematicsForward(const double *joint, struct EmcPose *world,                             \
                                      const KINEMATICS_FORWARD_FLAGS *, KINEMATICS_INVERSE_FLAGS *) {         \
         return mw::components::model_forward(model, joint, world);                                           \
     }                                                                                                        \
     extern "C" int kinematicsInverse(const struct EmcPose *world, double *joint,                             \
                                      const KINEMATICS_INVERSE_FLAGS *, KINEMATICS_FORWARD_FLAGS *) {         \
-        return mw::components::model_inverse(model, world, joint);                                           \
+        return isAnswered(mw::components::model_inverse(model, world, joint)) ? 0 : -1;                      \
+    }                                                                                                        \
+    extern "C" RTAPI_EXPORT int mw_kinematics_inverse(const struct EmcPose *world, double *joint) {          \
+        return static_cast<int>(mw::components::model_inverse(model, world, joint));                         \
+    }                                                                                                        \
+    extern "C" RTAPI_EXPORT int mw_kinematics_side(const struct EmcPose *world) {                            \
+        return mw::components::model_side(model, mw::components::pose_of(*world));                           \
     }                                                                                                        \
     extern "C" int kinematicsHome(struct EmcPose *world, double *joint, KINEMATICS_FORWARD_FLAGS *fflags,    \
                                   KINEMATICS_INVERSE_FLAGS *iflags) {                                        \
         return kinematicsForward(joint, world, fflags, iflags);                                              \
     }                                                                                                        \
+    static_assert(true)
+
+/// The same for a module that has one type only.
+#define MW_KINEMATICS(model)                                                                                 \
+    MW_KINEMATICS_FUNCTIONS(model);                                                                          \
     extern "C" {                                                                                             \
     KINS_NOT_SWITCHABLE                                                                                      \
+    }                                                                                                        \
+    static_assert(true)
+
+/// Says that joints are not axes, and that no call leaves anything behind: the planner may call these
+/// functions while the servo thread does.
+#define MW_KINEMATICS_PURE                                                                                   \
+    extern "C" KINEMATICS_TYPE kinematicsType(void) {                                                        \
+        return KINEMATICS_BOTH;                                                                              \
+    }                                                                                                        \
+    extern "C" RTAPI_EXPORT int mw_kinematics_is_pure(void) {                                                \
+        return 1;                                                                                            \
     }                                                                                                        \
     static_assert(true)

@@ -12,7 +12,17 @@ namespace mw::kins {
 
 using geom::Pose;
 
-enum class Status : std::uint8_t { OK, UNREACHABLE };
+enum class Status : std::uint8_t {
+    OK,
+    UNREACHABLE,  ///< no answer; what was to be filled is as it was
+    /// Answered, but solutions meet here or there are infinitely many: a machine may stand here, and what it
+    /// stands at is kept, yet no path leads through.
+    SINGULAR,
+};
+/// True when there is an answer.
+constexpr bool isAnswered(Status status) noexcept {
+    return status != Status::UNREACHABLE;
+}
 enum class Kind : std::uint8_t { IDENTITY, FORWARD_ONLY, INVERSE_ONLY, BOTH };
 
 /// Which axis each joint drives, for machines whose joints are axes; -1 drives none.
@@ -35,12 +45,19 @@ struct IdentityMap {
 class Kinematics {
   public:
     virtual Kind kind() const noexcept = 0;
-    /// The pose of these joint positions. `pose` holds a guess (the last pose) for iterating models.
+    /// The pose of these joint positions. `pose` holds the last pose: iterating models begin there, and where
+    /// there are several poses the one of its side is taken. What no joint drives stays as it is.
     virtual Status forward(const double *joints, Pose &pose) const noexcept = 0;
-    /// The joint positions of this pose. `joints` holds the last ones, to pick among several solutions.
+    /// The joint positions of this pose. `joints` holds the last ones: of several solutions (elbow up or
+    /// down) theirs is taken, and of an angle the turn nearest to theirs.
     virtual Status inverse(const Pose &pose, double *joints) const noexcept = 0;
     /// Not null when each joint is one axis: limits then fold together without any Jacobian.
     virtual const IdentityMap *identity() const noexcept { return nullptr; }
+
+    /// Of poses that meet only at singular ones, which a pose is of: above and below the motors, either way
+    /// to put the struts of a platform together; a path from one to another leads through a singular pose. 0:
+    /// the model has one only, or the side is that of the joints.
+    virtual int side(const Pose &) const noexcept { return 0; }
 
     /// False when calls share hidden state, so that only the servo thread may make them.
     virtual bool isShareable() const noexcept { return true; }

@@ -2,17 +2,15 @@
 #include "kins/rotary_table.hh"
 
 #include <cmath>
-#include <numbers>
+
+#include "kins/frame.hh"
 
 namespace mw::kins {
 
-namespace {
-
-constexpr double RADIANS = std::numbers::pi / 180.0;
-
-}  // namespace
-
 Status RotaryTable::inverse(const Pose &pose, double *joints) const noexcept {
+    if (!isFinite(pose)) {
+        return Status::UNREACHABLE;
+    }
     const double c = std::cos(pose[geom::AXIS_C] * RADIANS);
     const double s = std::sin(pose[geom::AXIS_C] * RADIANS);
     const double x = c * pose[0] + s * pose[1];
@@ -29,6 +27,9 @@ Status RotaryTable::inverse(const Pose &pose, double *joints) const noexcept {
 }
 
 Status RotaryTable::forward(const double *joints, Pose &pose) const noexcept {
+    if (!areFinite(joints, 5)) {
+        return Status::UNREACHABLE;
+    }
     const double ca = std::cos(joints[3] * RADIANS);
     const double sa = std::sin(joints[3] * RADIANS);
     const double y = joints[1] - tilt_y_;

@@ -179,7 +179,8 @@ bool Planner::find_plan(const Snapshot &now, LeaderState from, bool isStop) noex
     easing_.begin();
     bool isRefused = false;
     Cause cause;
-    for (int n = 0; n < TimingTuning::ATTEMPTS; ++n) {
+    const int attempts = refusals_ > 0 ? TimingTuning::ATTEMPTS_AT_REST : TimingTuning::ATTEMPTS;
+    for (int n = 0; n < attempts; ++n) {
         if (!timing_.draft(view(), path_.store(), begin, from, isStop)) {
             break;
         }

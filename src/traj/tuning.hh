@@ -162,6 +162,8 @@ struct TimingTuning {
     static constexpr double RENEWAL = 0.6;
     /// Attempts at a plan before the one before it stays in force.
     static constexpr int ATTEMPTS = 24;
+    /// The same at rest, when all before were refused: nothing is in force then that could go on.
+    static constexpr int ATTEMPTS_AT_REST = 96;
     /// Planner periods at rest without a plan, a second of them, before it is told.
     static constexpr int MOST_REFUSALS = 200;
     /// Spindles never keep their speed: what changes by more than the first part is followed at once, by more

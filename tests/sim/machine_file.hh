@@ -17,6 +17,7 @@ struct SimJoint {
     double velocity = 200, acceleration = 1500;  ///< of the joint [units/s, units/s^2]
     double low = -1000, high = 1000;
     double jerk = 0;  ///< 0: none
+    double home = 0;  ///< where it stands when it is homed
 };
 
 struct SimMachine {
@@ -27,6 +28,8 @@ struct SimMachine {
     double velocity = 200, acceleration = 1500;  ///< along the path
     std::string traj;                            ///< further lines of [TRAJ]
     bool hasSpindle = false;
+    double axis_range = 0;  ///< soft limits of the axes on both sides; 0: those of their joints
+    std::string hal_lines;  ///< at the end of the HAL file
 
     /// Writes sim.ini and sim.hal into `folder`; the path of the INI file.
     std::string write(const std::filesystem::path &folder) const {
@@ -48,7 +51,12 @@ struct SimMachine {
         for (std::size_t j = 0; j < joints.size(); ++j) {
             out += fmt::format("net pos-{0} joint.{0}.motor-pos-cmd => joint.{0}.motor-pos-fb\n", j);
         }
-        return out;
+        return out + hal_lines;
+    }
+    static std::string limits_of(const SimJoint &s, double low, double high) {
+        return fmt::format("MAX_VELOCITY = {}\nMAX_ACCELERATION = {}\nMIN_LIMIT = {}\nMAX_LIMIT = {}\n{}",
+                           s.velocity, s.acceleration, low, high,
+                           s.jerk > 0 ? fmt::format("MAX_JERK = {}\n", s.jerk) : std::string());
     }
     std::string ini() const {
         std::string letters;
@@ -68,17 +76,15 @@ struct SimMachine {
         std::string seen;
         for (std::size_t j = 0; j < joints.size(); ++j) {
             const SimJoint &s = joints[j];
-            const std::string limits =
-                fmt::format("MAX_VELOCITY = {}\nMAX_ACCELERATION = {}\nMIN_LIMIT = {}\nMAX_LIMIT = {}\n{}",
-                            s.velocity, s.acceleration, s.low, s.high,
-                            s.jerk > 0 ? fmt::format("MAX_JERK = {}\n", s.jerk) : std::string());
-            out += fmt::format("[JOINT_{}]\nTYPE = {}\nFERROR = 10\nMIN_FERROR = 10\nHOME = 0\n"
-                               "HOME_SEQUENCE = 0\n{}",
-                               j, s.isAngular ? "ANGULAR" : "LINEAR", limits);
+            out += fmt::format("[JOINT_{0}]\nTYPE = {1}\nFERROR = 10\nMIN_FERROR = 10\nHOME = {2}\n"
+                               "HOME_OFFSET = {2}\nHOME_SEQUENCE = 0\n{3}",
+                               j, s.isAngular ? "ANGULAR" : "LINEAR", s.home, limits_of(s, s.low, s.high));
             const bool isNew = j < coordinates.size() && seen.find(coordinates[j]) == std::string::npos;
             if (isNew) {
                 seen += coordinates[j];
-                out += fmt::format("[AXIS_{}]\n{}", coordinates[j], limits);
+                out += fmt::format("[AXIS_{}]\n{}", coordinates[j],
+                                   axis_range > 0 ? limits_of(s, -axis_range, axis_range)
+                                                  : limits_of(s, s.low, s.high));
             }
         }
         return out;

@@ -127,6 +127,8 @@ enum class Reason : std::uint16_t {
     NO_JOG_TO_RENEW,
     SWITCHED_ON,     ///< the machine is to be off
     TOO_FEW_JOINTS,  ///< index: those that the kinematics moves
+    SINGULAR,        ///< through a pose of which the kinematics has many answers
+    POSE_UNKNOWN,    ///< the kinematics has no pose that leads to where the joints stand
     COUNT,
 };
 
@@ -161,6 +163,7 @@ enum class FaultKind : std::uint16_t {
     JOINT_LEFT_RANGE,
     THREAD_TOO_FAST,  ///< index: spindle; value: needed speed over the possible one
     JOG_LEASE_ENDED,  ///< a jog was not renewed in time; detail: 1 a joint, 0 an axis; value: the lease [s]
+    KINEMATICS_JUMP,  ///< index: the joint that would have stepped; value: by how much
     COUNT,
 };
 /// Of a jog: no path has failed.

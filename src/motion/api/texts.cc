@@ -61,6 +61,12 @@ std::string reason_text(const Answer &answer) {
                            joint_name(i));
     case Reason::JOINT_BEYOND_LIMIT: return "the move takes a joint beyond its soft limit";
     case Reason::UNREACHABLE: return "the kinematics cannot reach the move";
+    case Reason::SINGULAR:
+        return "the move leads through a singular pose of the kinematics or close by, or begins at one: go "
+               "around it, or jog a joint off it";
+    case Reason::POSE_UNKNOWN:
+        return "the kinematics has no pose for where the joints stand: jog the joints, or see what its "
+               "module starts looking from";
     case Reason::AMP_FAULT: return fmt::format("the amplifier of {} reports a fault", joint_name(i));
     case Reason::EXTERNAL_ENABLE_OFF:
         return "the external enable is off: pin motion.enable or the e-stop chain is FALSE";
@@ -132,6 +138,11 @@ std::string what_failed(const Fault &fault) {
         return fmt::format("the jog of {} was stopped: it was not renewed within {:g} ms",
                            fault.detail != 0 ? joint_name(i) : axis_name(i), fault.value * 1e3);
     case FaultKind::KINEMATICS_FAILED: return "the kinematics could not reach the commanded pose";
+    case FaultKind::KINEMATICS_JUMP:
+        return fmt::format(
+            "joint {} would have stepped by {:.6g}: was a pin of the kinematics changed away from where it "
+            "makes no difference?",
+            i, fault.value);
     case FaultKind::PATH_LIMIT: return "the path left its limits";
     case FaultKind::SPINDLE_FAULT:
         return fault.value != 0 ? fmt::format("spindle {} orient fault {}", i, static_cast<int>(fault.value))

@@ -73,8 +73,7 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
         executor_.step(cycle_);
     } else {
         step_homing(in);
-        step_leases(in);
-        step_wheels(in);
+        step_jogs(in);
         power_.mode == Mode::FREE ? move_joints(in) : move_axes(in);
     }
     output_joints();
@@ -211,16 +210,13 @@ void Controller::drive_homing(const Inputs &in) noexcept {
     }
 }
 
-/// Jogs that nobody renews stop here, whatever has become of task and client.
-void Controller::step_leases(const Inputs &in) noexcept {
+/// Jogs that nobody renews stop here, whatever has become of task and client; wheels turn others.
+void Controller::step_jogs(const Inputs &in) noexcept {
     for (JogTarget over = end_lease(jogs_, in.time_ns); over.index >= 0;
          over = end_lease(jogs_, in.time_ns)) {
         const auto lease_ns = static_cast<double>(jogs_.at(over).lease.length_ns);
         raise(FaultKind::JOG_LEASE_ENDED, over.index, lease_ns * 1e-9, over.isJoint ? 1 : 0);
     }
-}
-
-void Controller::step_wheels(const Inputs &in) noexcept {
     if (in.isJogStoppedNow) {
         stop_at_once(jogs_);
     } else if (in.isJogStopped && !homing_.homing.isActive()) {

@@ -9,6 +9,7 @@
 #include "motion/api/channels.hh"
 #include "motion/api/limits.hh"
 #include "motion/api/settings.hh"
+#include "motion/core/coord/lead.hh"
 #include "motion/core/coord/place.hh"
 #include "motion/core/coord/retracing.hh"
 #include "motion/core/holds/holds.hh"
@@ -69,6 +70,7 @@ class Controller {
     JogSituation situation_of(const Inputs &in, const JogTarget &target) const noexcept;
     void disable() noexcept;
     void publish_limits() noexcept;
+    void tell_standing() noexcept;
 
     // --- controller.cc
     void use_joints(int count) noexcept;
@@ -77,8 +79,7 @@ class Controller {
     void step_holds(const Inputs &in) noexcept;
     void step_homing(const Inputs &in) noexcept;
     void drive_homing(const Inputs &in) noexcept;
-    void step_leases(const Inputs &in) noexcept;
-    void step_wheels(const Inputs &in) noexcept;
+    void step_jogs(const Inputs &in) noexcept;
     void output_joints() noexcept;
     void stop_category_1(FaultKind kind, int index, double value) noexcept;
     void stop_category_0(FaultKind kind, int index, double value) noexcept;
@@ -110,6 +111,7 @@ class Controller {
     AxisMap map_;
     FoldedLimits limits_;
     std::uint32_t limits_version_ = 0;
+    Standing standing_;
 
     std::uint64_t cycle_ = 0;
     Epoch epoch_ = 0;
@@ -131,6 +133,10 @@ class Controller {
     geom::Pose tool_offset_;
     bool isCoordError_ = false;
 };
+
+inline Stride stride_of(const FoldedLimits &limits, const ControllerConfig &config) noexcept {
+    return {limits.joints.velocity.data(), config.period_s, config.num_joints};
+}
 
 /// The move that the path is executing; nullptr for none.
 inline const traj::MoveTag *active_move(const traj::Executor &executor, const traj::PathStore &store,

@@ -7,6 +7,14 @@
 #include "motion/core/controller.hh"
 
 namespace mw::motion {
+namespace {
+
+bool isPlaceKnown(const kins::Kinematics &kinematics, const geom::Pose &pose, const Joints &joints,
+                  const Stride &stride) noexcept {
+    return kinematics.kind() != kins::Kind::BOTH || leadsTo(kinematics, pose, commanded(joints), stride);
+}
+
+}  // namespace
 
 void Controller::handle_commands(const Inputs &in) noexcept {
     auto &answers = channels_->servo_answers;
@@ -131,6 +139,10 @@ Verdict Controller::enable(const Inputs &in) noexcept {
     if (verdict.reason != Reason::NONE) {
         return verdict;
     }
+    if (power_.mode != Mode::FREE && !(map_.areJointsAxes() || isPlaceKnown(kinematics_, place_.cmd, joints_,
+                                                                            stride_of(limits_, config_)))) {
+        return {Reason::POSE_UNKNOWN};
+    }
     switch_on(power_);
     switch_on(joints_);
     start_at(jogs_, commanded(joints_).data(), place_.cmd, in);
@@ -138,6 +150,7 @@ Verdict Controller::enable(const Inputs &in) noexcept {
     executor_.drop();
     executor_.set_position(place_.cmd);
     retracing_.retrace.clear();
+    tell_standing();
     return {};
 }
 
@@ -168,6 +181,10 @@ Verdict Controller::set_mode(Mode mode) noexcept {
     if (reason != Reason::NONE || mode == power_.mode) {
         return {reason};
     }
+    if (mode != Mode::FREE && !(map_.areJointsAxes() || isPlaceKnown(kinematics_, place_.cmd, joints_,
+                                                                     stride_of(limits_, config_)))) {
+        return {Reason::POSE_UNKNOWN};
+    }
     executor_.drop();
     executor_.hold(false);
     executor_.set_position(place_.cmd);
@@ -175,6 +192,7 @@ Verdict Controller::set_mode(Mode mode) noexcept {
     rest_at(jogs_, commanded(joints_).data(), place_.cmd);
     release(holds_);
     power_.mode = mode;
+    tell_standing();
     return {};
 }
 
@@ -253,6 +271,16 @@ JogSituation Controller::situation_of(const Inputs &in, const JogTarget &target)
     return s;
 }
 
+/// Where the joints stand decides on which side of elbows and wrists paths are driven.
+void Controller::tell_standing() noexcept {
+    if (map_.areJointsAxes()) {
+        return;
+    }
+    standing_.joints = commanded(joints_);
+    ++standing_.count;
+    publish_limits();
+}
+
 /// Limits of axes and joints folded together, for jogs and the path planner.
 void Controller::publish_limits() noexcept {
     limits_ = fold_limits(settings_, map_, {homed_mask(homing_), homing_.homing.isAllHomed()});
@@ -262,6 +290,9 @@ void Controller::publish_limits() noexcept {
     out.high = limits_.high;
     out.axes = limits_.axes;
     out.joints = limits_.joints;
+    out.standing = standing_.joints;
+    out.side = kinematics_.side(place_.cmd);
+    out.stands = standing_.count;
     out.corner_scale = settings_.get(Parameter::TRAJ_CORNER_SCALE);
     out.areTolerancesAdded = settings_.isSet(Parameter::TRAJ_ADDED_TOLERANCES);
     link_->limits.write(out);

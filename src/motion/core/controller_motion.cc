@@ -26,6 +26,9 @@ void Controller::move_axes(const Inputs &in) noexcept {
     check_probe(in);
     move_to(pose);
     if (power_.mode == Mode::COORD) {
+        if (!map_.areJointsAxes() && hasDropped(standing_, executor_.snapshot())) {
+            tell_standing();
+        }
         check_joint_steps();
         if (!retracing_.retrace.isAway()) {
             holds_.isAdaptiveFeedEnabled ? remember(pose) : retracing_.retrace.clear();
@@ -46,9 +49,9 @@ geom::Pose Controller::teleop_pose() noexcept {
     executor_.step(cycle_);
     executor_.set_position(place_.cmd);
     if (!map_.areJointsAxes()) {
-        const TeleopMachine machine{kinematics_,        limits_,
-                                    commanded(joints_), config_.num_joints,
-                                    holds_.jog_scale(), config_.period_s};
+        const TeleopMachine machine{
+            kinematics_,        limits_,          commanded(joints_),          config_.num_joints,
+            holds_.jog_scale(), config_.period_s, kinematics_.side(place_.cmd)};
         const TeleopStop stopped = limit_teleop(jogs_, machine);
         if (stopped.isNew && stopped.joint >= 0) {
             raise(FaultKind::JOG_JOINT_LIMIT, stopped.joint, 0);
@@ -82,9 +85,17 @@ geom::Pose Controller::path_pose() noexcept {
 
 void Controller::move_to(const geom::Pose &pose) noexcept {
     PerJoint positions = commanded(joints_);
-    if (kinematics_.inverse(pose, positions.data()) != kins::Status::OK) {
+    if (!isAnswered(kinematics_.inverse(pose, positions.data()))) {
         // The planner keeps off such poses; were one to come, nothing sensible can be commanded any more.
         stop_category_0(FaultKind::KINEMATICS_FAILED, -1, 0);
+        return;
+    }
+    const bool isPlanned = map_.kind == AxisMap::Kind::PLANNED;
+    const int jump =
+        isPlanned ? joint_that_jumps(positions, commanded(joints_), stride_of(limits_, config_)) : -1;
+    if (jump >= 0) {
+        const auto n = static_cast<std::size_t>(jump);
+        stop_category_0(FaultKind::KINEMATICS_JUMP, jump, positions[n] - joints_[jump].pos_cmd);
         return;
     }
     follow_pose(place_, pose, config_.period_s);

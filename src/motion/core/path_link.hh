@@ -23,6 +23,10 @@ struct PathLimits {
     geom::Pose low, high;             ///< soft limits per axis; +-infinity where none holds
     std::uint32_t axes = 0;           ///< bit per axis that the kinematics drive
     traj::JointLimits joints;         ///< where joints are not axes
+    /// Where the joints stood before the path: elbows and wrists are on the side of theirs
+    std::array<double, MAX_JOINTS> standing{};
+    int side = 0;              ///< of that place (kins::Kinematics)
+    std::uint32_t stands = 0;  ///< counts how often the joints stood anew
 };
 
 /// Written by the controller every servo cycle, one consistent picture.

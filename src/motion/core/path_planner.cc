@@ -55,6 +55,11 @@ void PathPlanner::update() noexcept {
 void PathPlanner::follow_controller() noexcept {
     if (view_.limits_version != limits_version_ && link_.limits.read(limits_, 1000)) {
         limits_version_ = view_.limits_version;
+        if (limits_.stands != stands_) {
+            stands_ = limits_.stands;
+            end_joints_ = limits_.standing;
+            map_.stand_at(limits_.standing, limits_.side);
+        }
         planner_.set_limits(limits_.limits);
         const bool isMapped = kinematics_.identity() == nullptr && kinematics_.isShareable();
         planner_.set_room(limits_.low, limits_.high);

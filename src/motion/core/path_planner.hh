@@ -3,6 +3,8 @@
 // period; allocates at construction only.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 
 #include "kins/kinematics.hh"
@@ -20,16 +22,37 @@ struct PathPlannerConfig {
     int num_dio = 4, num_aio = 4;
 };
 
-/// The inverse of pure kinematics, for the planner.
+/// The inverse of pure kinematics, for the planner. Of several answers it gives the one on the side of what
+/// it was told last, or has given last.
 class KinematicsMap final : public traj::JointMap {
   public:
+    using Joints = std::array<double, MAX_JOINTS>;
+
     explicit KinematicsMap(const kins::Kinematics &kinematics) noexcept : kinematics_(kinematics) {}
+    void stand_at(const Joints &joints, int side) noexcept {
+        near_ = joints;
+        side_ = side;
+    }
+    /// The joints at a pose, beside those that `joints` holds; SINGULAR also of a pose that only a singular
+    /// one leads to.
+    kins::Status find(const geom::Pose &pose, double *joints) const noexcept {
+        const bool isBeyond = side_ != 0 && kinematics_.side(pose) != side_;
+        const kins::Status status = kinematics_.inverse(pose, joints);
+        return isBeyond && isAnswered(status) ? kins::Status::SINGULAR : status;
+    }
     bool joints_at(const geom::Pose &pose, double *joints) const noexcept override {
-        return kinematics_.inverse(pose, joints) == kins::Status::OK;
+        std::copy(near_.begin(), near_.end(), joints);
+        const bool isFound = find(pose, joints) == kins::Status::OK;
+        if (isFound) {
+            std::copy_n(joints, near_.size(), near_.begin());
+        }
+        return isFound;
     }
 
   private:
     const kins::Kinematics &kinematics_;
+    mutable Joints near_{};  // [planner thread]
+    int side_ = 0;
 };
 
 /// After a refusal or a stop the rest of the same epoch's path commands is answered STALE, until a new epoch
@@ -63,6 +86,12 @@ class PathPlanner {
     Reason accept_analog(const PathCommand &c, const SynchedAnalogOutput &output) noexcept;
     Reason accept_event(const PathCommand &c, const traj::PathEvent &event) noexcept;
     Reason check_reach(const traj::Primitive &p) noexcept;
+    /// Where the joints are at a place of a path.
+    struct PathSample {
+        double at = 0;
+        std::array<double, MAX_JOINTS> joints{};
+    };
+    bool isSteady(const traj::Primitive &p, PathSample from, PathSample to) const noexcept;
     Reason check_joints(const traj::Primitive &p) noexcept;
     traj::MoveRequest request_for(const PathCommand &c, const MoveTerms &terms) const noexcept;
     void add_pending(const PathCommand &c, const SourceTag &source) noexcept;
@@ -82,6 +111,8 @@ class PathPlanner {
 
     PathView view_;
     PathLimits limits_;
+    std::array<double, MAX_JOINTS> end_joints_{};  ///< at the end of what was accepted last
+    std::uint32_t stands_ = 0;                     ///< of the limits
     std::uint32_t limits_version_ = 0;
     Epoch epoch_ = 0;
     bool isBroken_ = false;  ///< the path has a hole: nothing more of this epoch

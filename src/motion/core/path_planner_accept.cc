@@ -100,22 +100,72 @@ Reason PathPlanner::check_reach(const traj::Primitive &p) noexcept {
     return isChecked ? check_joints(p) : Reason::NONE;
 }
 
+/// True when the joints can follow from one place of the path to the next: halves of the way, down to where
+/// the joints change little, or so fast that the path would crawl. What jumps at a singular pose does so on
+/// any way, however short.
+bool PathPlanner::isSteady(const traj::Primitive &p, PathSample from, PathSample to) const noexcept {
+    constexpr double MUCH = 30;  // [machine units, degrees]
+    constexpr double LITTLE = 1;
+    constexpr double SLOWEST = 0.005;  // of the speed of the machine
+    constexpr int HALVINGS = 40;
+    const double wish = limits_.limits.velocity.back();
+    const double slowest = wish < traj::UNLIMITED ? SLOWEST * wish : 0.0;
+    const auto change = [&](const PathSample &a, const PathSample &b) {
+        double most = 0;
+        for (std::size_t j = 0; j < static_cast<std::size_t>(config_.num_joints); ++j) {
+            most = std::max(most, std::abs(b.joints[j] - a.joints[j]));
+        }
+        return most;
+    };
+    const auto isCrawling = [&](const PathSample &a, const PathSample &b) {
+        bool isSlow = false;
+        for (std::size_t j = 0; j < static_cast<std::size_t>(config_.num_joints); ++j) {
+            const double step = std::abs(b.joints[j] - a.joints[j]);
+            isSlow = isSlow || (step > LITTLE && limits_.joints.velocity[j] * (b.at - a.at) < step * slowest);
+        }
+        return isSlow;
+    };
+    bool isMuch = change(from, to) > MUCH;
+    for (int n = 0; n < HALVINGS && isMuch && !isCrawling(from, to); ++n) {
+        PathSample middle{0.5 * (from.at + to.at), from.joints};
+        if (map_.find(traj::position_at(p, middle.at), middle.joints.data()) != kins::Status::OK) {
+            return false;
+        }
+        (change(from, middle) > change(middle, to) ? to : from) = middle;
+        isMuch = change(from, to) > LITTLE;
+    }
+    return !isMuch && !isCrawling(from, to);
+}
+
 Reason PathPlanner::check_joints(const traj::Primitive &p) noexcept {
-    constexpr int SAMPLES = 64;
-    double joints[MAX_JOINTS] = {};
-    for (int n = 0; n <= SAMPLES; ++n) {
-        if (kinematics_.inverse(traj::position_at(p, p.length * n / SAMPLES), joints) != kins::Status::OK) {
+    // Enough that an angle which follows a circle never turns by half a turn between two.
+    constexpr int LEAST_SAMPLES = 64;
+    constexpr double SAMPLES_PER_RAD = 1.5;
+    constexpr double MOST_SAMPLES = 20000;
+    const double sweep = std::abs(p.omega) * p.length;
+    const int samples =
+        std::max(LEAST_SAMPLES, static_cast<int>(std::min(sweep * SAMPLES_PER_RAD, MOST_SAMPLES)));
+    PathSample last{0, end_joints_};
+    for (int n = 0; n <= samples; ++n) {
+        PathSample here{p.length * n / samples, last.joints};
+        const kins::Status status = map_.find(traj::position_at(p, here.at), here.joints.data());
+        if (status == kins::Status::UNREACHABLE) {
             return Reason::UNREACHABLE;
+        }
+        if (status == kins::Status::SINGULAR || (n > 0 && !isSteady(p, last, here))) {
+            return Reason::SINGULAR;
         }
         for (int j = 0; j < config_.num_joints; ++j) {
             const auto i = static_cast<std::size_t>(j);
-            if (joints[j] < limits_.joints.low[i] - SOFT_LIMIT_ROUNDING ||
-                joints[j] > limits_.joints.high[i] + SOFT_LIMIT_ROUNDING) {
+            if (here.joints[i] < limits_.joints.low[i] - SOFT_LIMIT_ROUNDING ||
+                here.joints[i] > limits_.joints.high[i] + SOFT_LIMIT_ROUNDING) {
                 refused_index_ = static_cast<std::int16_t>(j);
                 return Reason::JOINT_BEYOND_LIMIT;
             }
         }
+        last = here;
     }
+    end_joints_ = last.joints;
     return Reason::NONE;
 }
 

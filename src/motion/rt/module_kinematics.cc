@@ -27,6 +27,8 @@ Function find_function(const char *name) noexcept {
 const char *ModuleKinematics::find(int num_joints) noexcept {
     forward_ = find_function<decltype(forward_)>("kinematicsForward");
     inverse_ = find_function<decltype(inverse_)>("kinematicsInverse");
+    inverse_with_status_ = find_function<decltype(inverse_with_status_)>("mw_kinematics_inverse");
+    side_ = find_function<decltype(side_)>("mw_kinematics_side");
     const auto type = find_function<decltype(&kinematicsType)>("kinematicsType");
     if (forward_ == nullptr) {
         return "kinematicsForward";
@@ -116,14 +118,25 @@ kins::Status ModuleKinematics::inverse(const kins::Pose &pose, double *joints) c
         found[j] = joints[j];
     }
     const EmcPose world = to_c(pose);
-    bool isFound = inverse_(&world, found, &inverse_flags_, &forward_flags_) == 0;
+    kins::Status status = kins::Status::OK;
+    if (inverse_with_status_ != nullptr) {
+        status = static_cast<kins::Status>(inverse_with_status_(&world, found));
+    } else if (inverse_(&world, found, &inverse_flags_, &forward_flags_) != 0) {
+        status = kins::Status::UNREACHABLE;
+    }
+    bool isFound = isAnswered(status);
     for (const double x : found) {
         isFound = isFound && std::isfinite(x);
     }
     for (int j = 0; j < MAX_JOINTS && isFound; ++j) {
         joints[j] = found[j];
     }
-    return isFound ? kins::Status::OK : kins::Status::UNREACHABLE;
+    return isFound ? status : kins::Status::UNREACHABLE;
+}
+
+int ModuleKinematics::side(const kins::Pose &pose) const noexcept {
+    const EmcPose world = to_c(pose);
+    return side_ != nullptr ? side_(&world) : 0;
 }
 
 }  // namespace mw::motion

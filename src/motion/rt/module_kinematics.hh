@@ -18,6 +18,7 @@ class ModuleKinematics final : public kins::Kinematics {
     kins::Status forward(const double *joints, kins::Pose &pose) const noexcept override;
     kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept override;
     const kins::IdentityMap *identity() const noexcept override { return isIdentity_ ? &map_ : nullptr; }
+    int side(const kins::Pose &pose) const noexcept override;
     /// Modules that export mw_kinematics_is_pure say so themselves.
     bool isShareable() const noexcept override { return isIdentity_ || isPure_; }
 
@@ -26,6 +27,8 @@ class ModuleKinematics final : public kins::Kinematics {
 
     decltype(&kinematicsForward) forward_ = nullptr;
     decltype(&kinematicsInverse) inverse_ = nullptr;
+    int (*inverse_with_status_)(const EmcPose *, double *) = nullptr;  ///< of our own modules: tells SINGULAR
+    int (*side_)(const EmcPose *) = nullptr;                           ///< the same
     kins::Kind kind_ = kins::Kind::IDENTITY;
     bool isIdentity_ = false, isPure_ = false;
     kins::IdentityMap map_;

@@ -51,6 +51,8 @@ const char *word_for(Reason reason) {
     case Reason::SWITCHED_ON: return "on";
     case Reason::TOO_FEW_JOINTS: return "too few joints";
     case Reason::NO_JOG_TO_RENEW: return "no jog";
+    case Reason::SINGULAR: return "singular";
+    case Reason::POSE_UNKNOWN: return "pose unknown";
     case Reason::COUNT: break;
     }
     return "?";

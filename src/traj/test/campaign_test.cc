@@ -17,11 +17,11 @@ struct Asked {
     int programs = 0, driven = 0, ordered = 0;
 };
 
-void check(unsigned seed, bool isJerkLimited, Asked &asked, Kind kind = Kind::RANDOM) {
+void check(unsigned seed, bool isJerkLimited, Asked &asked, Kind kind = Kind::RANDOM, double seconds = 6.5) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Maker maker(seed, isJerkLimited);
     const Program program = kind == Kind::CURVE  ? maker.make_curve()
-                            : kind == Kind::LONG ? maker.make_long(seed % 4 == 1, 6.5)
+                            : kind == Kind::LONG ? maker.make_long(seed % 4 == 1, seconds)
                                                  : maker.make();
     ++asked.programs;
     if (program.primitives.empty()) {
@@ -84,6 +84,12 @@ TEST(Campaign, LongProgramsThatOnceFailedKeepJerkLimits_C13) {
         check(seed, true, asked, Kind::LONG);
         EXPECT_EQ(asked.driven, 1);
     }
+}
+
+TEST(Campaign, AProgramAtRestThatNeedsManyAttemptsGoesOn_C2) {
+    Asked asked;
+    check(61015998U, true, asked, Kind::LONG, 3);
+    EXPECT_EQ(asked.driven, 1);
 }
 
 TEST(Campaign, RandomProgramsKeepJerkLimits_C13) {

@@ -10,7 +10,7 @@ void read_feedback(Place &place, const kins::Kinematics &kinematics, const doubl
         place.fb = place.cmd;
     }
     const bool isAsked = kind == kins::Kind::IDENTITY || (areAllHomed && kind != kins::Kind::INVERSE_ONLY);
-    place.isFbValid = isAsked && kinematics.forward(joints, place.fb) == kins::Status::OK;
+    place.isFbValid = isAsked && isAnswered(kinematics.forward(joints, place.fb));
 }
 
 void follow_joints(Place &place, const kins::Kinematics &kinematics, const double *joints,

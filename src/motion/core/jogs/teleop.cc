@@ -36,13 +36,17 @@ struct TeleopLoad {
     std::array<std::array<std::array<double, MAX_JOINTS>, MAX_AXES>, MAX_AXES> q2{};
 };
 
+using Joints = std::array<double, MAX_JOINTS>;
+
+/// Beside where they stand. False also where only a singular pose leads.
+bool find_joints(const TeleopMachine &m, const geom::Pose &pose, Joints &joints) noexcept {
+    std::copy_n(m.joint_positions.begin(), m.num_joints, joints.begin());
+    return m.kinematics.side(pose) == m.side && m.kinematics.inverse(pose, joints.data()) == kins::Status::OK;
+}
+
 /// Takes the derivatives at one place into account; false when the kinematics has no answer there.
 bool add_load(const TeleopMachine &m, const geom::Pose &pose, TeleopLoad &load) noexcept {
-    using Joints = std::array<double, MAX_JOINTS>;
-    const auto joints_at = [&](const geom::Pose &p, Joints &q) {
-        std::copy_n(m.joint_positions.begin(), m.num_joints, q.begin());
-        return m.kinematics.inverse(p, q.data()) == kins::Status::OK;
-    };
+    const auto joints_at = [&](const geom::Pose &p, Joints &q) { return find_joints(m, p, q); };
     Joints here{};
     std::array<Joints, MAX_AXES> after{};
     Joints other{};
@@ -140,9 +144,8 @@ void apply_load(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs) noex
 
 /// The homed joint that this pose takes beyond its soft limits, farther than it is; -1 for none.
 int joint_left_by(const TeleopMachine &m, const geom::Pose &pose) noexcept {
-    std::array<double, MAX_JOINTS> q{};
-    std::copy_n(m.joint_positions.begin(), m.num_joints, q.begin());
-    if (m.kinematics.inverse(pose, q.data()) != kins::Status::OK) {
+    Joints q{};
+    if (!find_joints(m, pose, q)) {
         return m.num_joints;
     }
     for (int j = 0; j < m.num_joints; ++j) {

@@ -18,6 +18,7 @@ struct TeleopMachine {
     int num_joints = 0;
     double scale = 1;  ///< override
     double period_s = 1e-3;
+    int side = 0;  ///< of where it stands (kins::Kinematics)
 };
 
 struct TeleopStop {

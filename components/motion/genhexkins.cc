@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Kinematics of hexapods (kins/hexapod.hh), switchable to identity. Beside those of the model, pins (out):
+// genhexkins.last-iterations and max-iterations of the forward side, fwd-kins-fail when it found nothing,
+// correction.N of the struts; (in) genhexkins.x to c: where the forward side looks first when the last pose
+// leads nowhere.
+#include "components/motion/iterations.hh"
+#include "components/motion/switchable.hh"
+#include "kins/hexapod.hh"
+
+namespace {
+
+using mw::kins::Hexapod;
+using mw::kins::Pose;
+using mw::kins::Status;
+
+struct HexapodPins {
+    hal_float_t *guess[6];
+    hal_float_t *correction[Hexapod::STRUTS];
+    hal_bit_t *isFailed;
+};
+
+struct LiveHexapod {
+    mw::components::IteratingModel<Hexapod> iterating;
+    HexapodPins *pins = nullptr;
+
+    /// Of the servo thread only; the planner asks the other way.
+    Status forward(const double *joints, Pose &pose) const noexcept {
+        Status status = iterating.forward(joints, pose);
+        if (status == Status::UNREACHABLE) {
+            Pose guess = pose;
+            for (int i = 0; i < 6; ++i) {
+                guess[i] = *pins->guess[i];
+            }
+            status = iterating.forward(joints, guess);
+            pose = isAnswered(status) ? guess : pose;
+        }
+        *pins->isFailed = status == Status::UNREACHABLE;
+        if (isAnswered(status)) {
+            const auto corrections = iterating.model().corrections_at(pose);
+            for (std::size_t i = 0; i < Hexapod::STRUTS; ++i) {
+                *pins->correction[i] = corrections[i];
+            }
+        }
+        return status;
+    }
+    Status inverse(const Pose &pose, double *joints) const noexcept {
+        return iterating.inverse(pose, joints);
+    }
+    int side(const Pose &pose) const noexcept { return iterating.side(pose); }
+};
+
+LiveHexapod live;
+
+int declare_model(int comp_id, const char *) {
+    live.pins = static_cast<HexapodPins *>(hal_malloc(static_cast<long>(sizeof(HexapodPins))));
+    if (live.pins == nullptr) {
+        return -ENOMEM;
+    }
+    int status = hal_pin_bit_new("genhexkins.fwd-kins-fail", HAL_OUT, &live.pins->isFailed, comp_id);
+    for (int i = 0; i < 6 && status >= 0; ++i) {
+        status = hal_pin_float_newf(HAL_IN, &live.pins->guess[i], comp_id, "genhexkins.%c", "xyzabc"[i]);
+        status = status < 0 ? status
+                            : hal_pin_float_newf(HAL_OUT, &live.pins->correction[i], comp_id,
+                                                 "genhexkins.correction.%d", i);
+    }
+    return status < 0 ? status : live.iterating.declare(comp_id, "genhexkins");
+}
+
+}  // namespace
+
+MW_SWITCHABLE_MODULE(live, "genhexkins", "XYZABCUVW", declare_model);

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Pins from the table of a model's parameters, and modules made of a model and its pins.
+#pragma once
+
+#include <cerrno>
+#include <new>
+
+#include "components/motion/kinematics_module.hh"
+#include "kins/parameters.hh"
+
+namespace mw::components {
+
+/// The model as its pins have it at each call.
+template <class Model>
+class PinnedModel {
+  public:
+    /// Makes the pins PREFIX.NAME with what the table starts them at. 0 or a negated errno. [while loading]
+    int declare(int comp_id, const char *prefix) noexcept {
+        void *memory = hal_malloc(static_cast<long>(sizeof(Cells)));
+        if (memory == nullptr) {
+            return -ENOMEM;
+        }
+        cells_ = new (memory) Cells{};
+        for (std::size_t i = 0; i < Model::COUNT; ++i) {
+            const int status = declare_one(Model::PARAMETERS[i], cells_->of[i], comp_id, prefix);
+            if (status < 0) {
+                return status;
+            }
+        }
+        return 0;
+    }
+    Model model() const noexcept {
+        Model out = base_;
+        for (std::size_t i = 0; i < Model::COUNT; ++i) {
+            out.set(i, value_of(Model::PARAMETERS[i].kind, cells_->of[i].slot));
+        }
+        return out;
+    }
+    /// What is no pin of a model: its letters.
+    Model &base() noexcept { return base_; }
+    kins::Status forward(const double *joints, kins::Pose &pose) const noexcept {
+        return model().forward(joints, pose);
+    }
+    kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept {
+        return model().inverse(pose, joints);
+    }
+    int side(const kins::Pose &pose) const noexcept { return model().side(pose); }
+
+  private:
+    struct Cell {
+        void *slot = nullptr;  // the C API keeps it pointing at the value
+        double param = 0;
+    };
+    struct Cells {
+        std::array<Cell, Model::COUNT> of;
+    };
+
+    static int declare_one(const kins::Parameter &row, Cell &cell, int comp_id, const char *prefix) noexcept {
+        char name[HAL_NAME_LEN + 1];
+        if (rtapi_snprintf(name, sizeof name, "%s.%s", prefix, row.name) > HAL_NAME_LEN) {
+            return -EINVAL;
+        }
+        int status = 0;
+        switch (row.kind) {
+        case kins::PinKind::FLOAT: status = hal_pin_new(name, HAL_FLOAT, HAL_IN, &cell.slot, comp_id); break;
+        case kins::PinKind::FLOAT_IO:
+            status = hal_pin_new(name, HAL_FLOAT, HAL_IO, &cell.slot, comp_id);
+            break;
+        case kins::PinKind::FLOAT_PARAM:
+            cell.slot = &cell.param;
+            status = hal_param_new(name, HAL_FLOAT, HAL_RW, &cell.param, comp_id);
+            break;
+        case kins::PinKind::S32: status = hal_pin_new(name, HAL_S32, HAL_IN, &cell.slot, comp_id); break;
+        case kins::PinKind::U32: status = hal_pin_new(name, HAL_U32, HAL_IN, &cell.slot, comp_id); break;
+        case kins::PinKind::U32_IO: status = hal_pin_new(name, HAL_U32, HAL_IO, &cell.slot, comp_id); break;
+        }
+        if (status >= 0) {
+            start(row, cell.slot);
+        }
+        return status;
+    }
+    static void start(const kins::Parameter &row, void *slot) noexcept {
+        switch (row.kind) {
+        case kins::PinKind::FLOAT:
+        case kins::PinKind::FLOAT_IO:
+        case kins::PinKind::FLOAT_PARAM: *static_cast<volatile double *>(slot) = row.start; break;
+        case kins::PinKind::S32:
+            *static_cast<volatile rtapi_s32 *>(slot) = static_cast<rtapi_s32>(row.start);
+            break;
+        case kins::PinKind::U32:
+        case kins::PinKind::U32_IO:
+            *static_cast<volatile rtapi_u32 *>(slot) = static_cast<rtapi_u32>(row.start);
+            break;
+        }
+    }
+    static double value_of(kins::PinKind kind, const void *slot) noexcept {
+        switch (kind) {
+        case kins::PinKind::FLOAT:
+        case kins::PinKind::FLOAT_IO:
+        case kins::PinKind::FLOAT_PARAM: break;
+        case kins::PinKind::S32: return *static_cast<const volatile rtapi_s32 *>(slot);
+        case kins::PinKind::U32:
+        case kins::PinKind::U32_IO: return *static_cast<const volatile rtapi_u32 *>(slot);
+        }
+        return *static_cast<const volatile double *>(slot);
+    }
+
+    Model base_;
+    Cells *cells_ = nullptr;
+};
+
+}  // namespace mw::components
+
+/// A module of one type: the model with its pins, NAME.PARAMETER.
+#define MW_MODEL_MODULE(Model, name)                                                                         \
+    static mw::components::PinnedModel<Model> pinned;                                                        \
+    static int component = -1;                                                                               \
+    MW_KINEMATICS(pinned);                                                                                   \
+    MW_KINEMATICS_PURE;                                                                                      \
+    int rtapi_app_main(void) {                                                                               \
+        component = hal_init(name);                                                                          \
+        const int status = component < 0 ? component : pinned.declare(component, name);                      \
+        if (status < 0) {                                                                                    \
+            hal_exit(component);                                                                             \
+            return status;                                                                                   \
+        }                                                                                                    \
+        return hal_ready(component);                                                                         \
+    }                                                                                                        \
+    void rtapi_app_exit(void) {                                                                              \
+        hal_exit(component);                                                                                 \
+    }                                                                                                        \
+    static_assert(true)

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Kinematics of SCARA arms (kins/scara.hh), switchable to identity.
+#include "components/motion/switchable.hh"
+#include "kins/scara.hh"
+
+static mw::components::PinnedModel<mw::kins::Scara> pinned;
+
+static int declare_model(int comp_id, const char *) {
+    return pinned.declare(comp_id, "scarakins");
+}
+
+MW_SWITCHABLE_MODULE(pinned, "scarakins", "XYZABCUVW", declare_model);

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Kinematics of a rotary table A on a rotary table B (kins/tilting_table.hh): type 0 is identity, type 1 the
+// tables.
+#include "components/motion/switchable.hh"
+#include "kins/tilting_table.hh"
+
+static mw::components::PinnedModel<mw::kins::XyzabTable> pinned;
+
+static int declare_model(int comp_id, const char *) {
+    return pinned.declare(comp_id, "xyzab_tdr_kins");
+}
+
+MW_SWITCHABLE_MODULE_FROM(pinned, "xyzab_tdr_kins", "XYZAB", declare_model, 0);

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "kins/matrix.hh"
+
+#include <algorithm>
+
+#include "kins/spheres.hh"
+
+namespace mw::kins {
+
+bool Matrix::isSound() const noexcept {
+    return std::abs(spread_of(row(0), row(3), row(6))) > FLAT;
+}
+
+Status Matrix::forward(const double *joints, Pose &pose) const noexcept {
+    if (!isSound() || !areFinite(joints, geom::AXIS_COUNT)) {
+        return Status::UNREACHABLE;
+    }
+    // Cramer's rule: rows crossed are the columns of the inverse.
+    const Vector yz = cross(row(3), row(6));
+    const Vector zx = cross(row(6), row(0));
+    const Vector xy = cross(row(0), row(3));
+    const double determinant = dot(row(0), yz);
+    std::copy_n(joints, geom::AXIS_COUNT, pose.c.begin());
+    set_place(pose, (yz * joints[0] + zx * joints[1] + xy * joints[2]) * (1.0 / determinant));
+    return Status::OK;
+}
+
+Status Matrix::inverse(const Pose &pose, double *joints) const noexcept {
+    if (!isSound() || !isFinite(pose)) {
+        return Status::UNREACHABLE;
+    }
+    const Vector place = place_of(pose);
+    std::copy(pose.c.begin(), pose.c.end(), joints);
+    joints[0] = dot(row(0), place);
+    joints[1] = dot(row(3), place);
+    joints[2] = dot(row(6), place);
+    return Status::OK;
+}
+
+}  // namespace mw::kins

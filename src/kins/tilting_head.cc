@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "kins/tilting_head.hh"
+
+#include <algorithm>
+
+namespace mw::kins {
+
+/// What the joints of X, Y and Z are ahead of the place on the turned table.
+Vector TiltingHead::lead(double b, double u, double v, double w) const noexcept {
+    const double s = sine(b);
+    const double c = cosine(b);
+    return {u * c - (get(0) + w) * s, v, u * s + w * c - get(0) * (1.0 - c)};
+}
+
+Status TiltingHead::forward(const double *joints, Pose &pose) const noexcept {
+    if (!areFinite(joints, geom::AXIS_COUNT)) {
+        return Status::UNREACHABLE;
+    }
+    std::copy_n(joints, geom::AXIS_COUNT, pose.c.begin());
+    const Vector ahead =
+        lead(joints[geom::AXIS_B], joints[geom::AXIS_U], joints[geom::AXIS_V], joints[geom::AXIS_W]);
+    set_place(pose, turned_z(place_of(pose) - ahead, joints[geom::AXIS_C]));
+    return Status::OK;
+}
+
+Status TiltingHead::inverse(const Pose &pose, double *joints) const noexcept {
+    if (!isFinite(pose)) {
+        return Status::UNREACHABLE;
+    }
+    const Vector ahead = lead(pose[geom::AXIS_B], pose[geom::AXIS_U], pose[geom::AXIS_V], pose[geom::AXIS_W]);
+    const Vector place = turned_z(place_of(pose), -pose[geom::AXIS_C]) + ahead;
+    std::copy(pose.c.begin(), pose.c.end(), joints);
+    joints[0] = place.x;
+    joints[1] = place.y;
+    joints[2] = place.z;
+    return Status::OK;
+}
+
+}  // namespace mw::kins
