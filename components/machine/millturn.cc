@@ -3,6 +3,8 @@
 // Type 0 (mill): joints are the axes X Y Z A. Type 1 (turn): joint 0 is Z, joint 1 is -Y, joint 2 is X, and A
 // is a spindle. Switched through motion.switchkins-type. `millturn.0.fpin` (s32) counts runs of the function
 // millturn.0.fdemo.
+#include <atomic>
+
 #include "hal/api/kinematics.h"
 #include "hal/sdk/component.hh"
 
@@ -24,8 +26,8 @@ struct Millturn {
 namespace {
 
 enum MillturnType { MILL = 0, TURN = 1 };
-// Written by motion when it switches, in the thread that uses it.
-int current_type = MILL;
+// Written by the servo thread when motion switches, read by the planner's as well.
+std::atomic<int> current_type{MILL};
 
 }  // namespace
 
@@ -55,6 +57,10 @@ int kinematicsInverse(const struct EmcPose *world, double *joint, const KINEMATI
 int kinematicsHome(struct EmcPose *world, double *joint, KINEMATICS_FORWARD_FLAGS *fflags,
                    KINEMATICS_INVERSE_FLAGS *iflags) {
     return kinematicsForward(joint, world, fflags, iflags);
+}
+
+RTAPI_EXPORT int mw_kinematics_is_pure(void) {
+    return 1;
 }
 
 KINEMATICS_TYPE kinematicsType(void) {

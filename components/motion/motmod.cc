@@ -146,8 +146,9 @@ int make_pins() {
         return -12;  // ENOMEM
     }
     module.pins = new (memory) motion::MotionPins();
-    return module.pins->declare(
-        module.component, {num_joints, num_spindles, num_dio, num_aio, num_misc_error, unlock_joints_mask});
+    return module.pins->declare(module.component,
+                                {num_joints, num_spindles, num_dio, num_aio, num_misc_error,
+                                 unlock_joints_mask, module.kinematics.type_switch() != nullptr});
 }
 
 int make_functions() {

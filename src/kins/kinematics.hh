@@ -41,6 +41,16 @@ struct IdentityMap {
     }
 };
 
+/// Of kinematics with several types, such as a tilting table and the same machine with joints for axes.
+class TypeSwitch {
+  public:
+    /// False when there is no such type: then the one in force stays. While nothing moves. [servo thread]
+    virtual bool switch_to(int type) noexcept = 0;
+
+  protected:
+    ~TypeSwitch() = default;
+};
+
 /// `joints` has MAX_JOINTS elements [machine units or degrees]. Realtime-safe.
 class Kinematics {
   public:
@@ -58,6 +68,9 @@ class Kinematics {
     /// to put the struts of a platform together; a path from one to another leads through a singular pose. 0:
     /// the model has one only, or the side is that of the joints.
     virtual int side(const Pose &) const noexcept { return 0; }
+
+    /// Null where there is one type only.
+    virtual TypeSwitch *type_switch() const noexcept { return nullptr; }
 
     /// False when calls share hidden state, so that only the servo thread may make them.
     virtual bool isShareable() const noexcept { return true; }

@@ -47,7 +47,22 @@ void PathMonitor::on_move(motion::CommandId id, const motion::PathBody &body) {
     pieces_.push_back({id, PieceShape(piece), length});
 }
 
+/// The kinematics has been switched: the machine stands, in other coordinates.
+void PathMonitor::start_anew(const motion::TraceSample &sample) {
+    pose_kind_ = sample.pose_kind;
+    history_ = {sample.carte_pos_cmd, sample.carte_pos_cmd};
+    while (!pieces_.empty() && pieces_.front().id <= current_id_) {
+        pieces_.pop_front();
+    }
+    place_ = 0;
+    last_end_ = pieces_.empty() ? sample.carte_pos_cmd : last_end_;
+    isInRapid_ = true;
+}
+
 void PathMonitor::on_sample(const motion::TraceSample &sample) {
+    if (sample.pose_kind != pose_kind_) {
+        start_anew(sample);
+    }
     const Pose &p = sample.carte_pos_cmd;
     const Pose velocity = (p - history_[0]) * (1.0 / period_s_);
     const Pose before = (history_[0] - history_[1]) * (1.0 / period_s_);

@@ -38,6 +38,7 @@ class PathMonitor {
 
   private:
     void follow(const motion::TraceSample &sample);
+    void start_anew(const motion::TraceSample &sample);
     void look_at(std::size_t i, const geom::Pose &p, Nearest &best, std::size_t &place) const;
 
     double period_s_;
@@ -55,6 +56,7 @@ class PathMonitor {
     double group_length_ = 0;           ///< of what it stands for
     bool isInRapid_ = false;
     geom::Pose last_end_{};
+    std::uint8_t pose_kind_ = 0;
     std::array<geom::Pose, 2> history_{};  ///< the two samples before
     PathPoints points_;
 };

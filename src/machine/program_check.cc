@@ -20,11 +20,15 @@ namespace {
 /// Soft limits are compared with this slack, as rounding of offsets must not refuse a move to the very limit.
 constexpr double LIMIT_SLACK = 1e-6;
 
+/// Whether a move beyond a limit is one wherever the machine stands at the start.
+using IsCertain = std::function<bool(const diag::Diagnostic &)>;
+
 /// Looks at each move of a preview.
 class Checker {
   public:
-    Checker(const MachineConfig &machine, diag::Sink &sink, const CheckOptions &options)
-        : machine_(machine), sink_(sink), options_(options), limits_(machine.limits()), estimate_(machine) {
+    Checker(const MachineConfig &machine, diag::Sink &sink, const CheckOptions &options, IsCertain is_certain)
+        : machine_(machine), sink_(sink), options_(options), isCertain_(std::move(is_certain)),
+          limits_(machine.limits()), estimate_(machine) {
         estimate_.start(home_position(machine));
         result.lowest.fill(1e300);
         result.highest.fill(-1e300);
@@ -223,17 +227,22 @@ class Checker {
         if (event_->line == reported_line_ || sink_.count_errors() >= MAX_CHECK_ERRORS) {
             return;
         }
+        diag::Diagnostic error{
+            diag::Severity::ERROR,
+            {std::move(message), {preview_->file(event_->file), event_->line, column}, std::move(hint)},
+            {},
+            preview_->line_text(event_->file, event_->line)};
+        if (isCertain_ && !isCertain_(error)) {
+            return;
+        }
         reported_line_ = event_->line;
-        sink_.report(
-            {diag::Severity::ERROR,
-             {std::move(message), {preview_->file(event_->file), event_->line, column}, std::move(hint)},
-             {},
-             preview_->line_text(event_->file, event_->line)});
+        sink_.report(error);
     }
 
     const MachineConfig &machine_;
     diag::Sink &sink_;
     const CheckOptions &options_;
+    IsCertain isCertain_;  ///< empty: all are
     motion::FoldedLimits limits_;
     TimeEstimate estimate_;
     bool isTimed_ = true;
@@ -242,16 +251,6 @@ class Checker {
     int reported_line_ = -1;
     std::set<std::pair<std::uint32_t, int>> impossible_;  ///< file and line of what was told
 };
-
-gcode::PreviewOptions preview_options(const CheckOptions &check) {
-    gcode::PreviewOptions options;
-    options.max_errors = MAX_CHECK_ERRORS;
-    if (check.statements) {
-        options.statement_budget = options.idle_budget = static_cast<std::uint64_t>(*check.statements);
-        options.time_budget_s = 0;
-    }
-    return options;
-}
 
 }  // namespace
 
@@ -269,7 +268,110 @@ gcode::PreviewMachine preview_stand(const MachineConfig &machine) {
     return stand;
 }
 
+namespace {
+
+gcode::PreviewOptions preview_options(const CheckOptions &check) {
+    gcode::PreviewOptions options;
+    options.max_errors = MAX_CHECK_ERRORS;
+    if (check.statements) {
+        options.statement_budget = options.idle_budget = static_cast<std::uint64_t>(*check.statements);
+        options.time_budget_s = 0;
+    }
+    return options;
+}
+
+struct ProgramSources {
+    interp::ToolSource &tools;
+    interp::ParameterSource &parameters;
+};
+
+/// One reading of the program with the machine at `start`.
+CheckResult check_from(const geom::Pose &start, const MachineConfig &machine, const std::string &program,
+                       const ProgramSources &sources, diag::Sink &sink, const CheckOptions &check,
+                       IsCertain is_certain) {
+    gcode::Preview *source = nullptr;
+    gcode::PreviewMachine stand = preview_stand(machine);
+    stand.position = start;
+    stand.isBlockDeleteOn = check.isBlockDeleteOn;
+    const auto tell_unknown = [&](std::string_view what) {
+        if (source != nullptr) {
+            source->flush();  // errors before this place are none that might not be
+        }
+        check.unknown(source != nullptr ? source->place() : SourcePlace{}, what);
+    };
+    const bool hasScripts = !stand.interpreter.scripts.top_level.empty();
+    UnknownHalValues unknown_values(sources.parameters, [&] { tell_unknown("a value of HAL"); });
+    if (check.unknown) {
+        stand.interpreter.make_script_host = [&]() -> Result<std::unique_ptr<interp::ScriptHost>> {
+            return std::make_unique<UnscriptedHost>([&] { tell_unknown("Python"); });
+        };
+    }
+    // What scripts define is not known: an error of the interpreter may be none.
+    diag::Sink errors([&](const diag::Diagnostic &one) {
+        if (check.unknown && hasScripts) {
+            tell_unknown("Python");
+        } else if (source != nullptr) {
+            source->flush();  // findings come in the order of the program
+        }
+        sink.report(one);
+    });
+    Checker checker(machine, sink, check, std::move(is_certain));
+    gcode::Preview preview(
+        std::move(stand), sources.tools, check.unknown ? unknown_values : sources.parameters,
+        preview_options(check),
+        {[&](std::span<const gcode::PreviewEvent> events) { checker.take(events, *source); }, check.progress,
+         check.unknown});
+    source = &preview;
+    const gcode::PreviewEnd end = preview.run(program, errors);
+    checker.result.blocks = preview.progress().blocks;
+    checker.result.isCancelled = end == gcode::PreviewEnd::CANCELLED;
+    if (end == gcode::PreviewEnd::DONE && !sink.hasErrors()) {
+        checker.finish_time();
+    }
+    return checker.result;
+}
+
+std::string words_of(const diag::Diagnostic &one) {
+    return fmt::format("{}:{}: {}", one.what.place.file, one.what.place.line, one.what.message);
+}
+
+/// Where joints are not axes nobody knows the pose before the start. What is beyond a limit from two poses
+/// that have nothing in common is beyond it from all; the second is asked only when something is found.
+IsCertain beyond_from_elsewhere(const MachineConfig &machine, const std::string &program,
+                                const ProgramSources &sources, const CheckOptions &check) {
+    return [=, found = std::optional<std::set<std::string>>()](const diag::Diagnostic &error) mutable {
+        if (!found) {
+            found.emplace();
+            diag::Sink collected([&found](const diag::Diagnostic &one) { found->insert(words_of(one)); });
+            CheckOptions quiet;
+            quiet.statements = check.statements;
+            quiet.isBlockDeleteOn = check.isBlockDeleteOn;
+            quiet.progress = check.progress;
+            if (check.unknown) {
+                quiet.unknown = [](const SourcePlace &, std::string_view) {};
+            }
+            quiet.wantsTime = [] { return false; };
+            geom::Pose elsewhere = home_position(machine);
+            for (int axis = 0; axis < MAX_AXES; ++axis) {
+                elsewhere[axis] += 17.37 + 0.913 * axis;
+            }
+            check_from(elsewhere, machine, program, sources, collected, quiet, {});
+        }
+        return found->contains(words_of(error));
+    };
+}
+
+}  // namespace
+
 geom::Pose home_position(const MachineConfig &machine) {
+    if (!machine.isTrivial) {
+        const motion::FoldedLimits limits = machine.limits();
+        geom::Pose within;
+        for (int axis = 0; axis < MAX_AXES; ++axis) {
+            within[axis] = std::max(limits.low[axis], std::min(0.0, limits.high[axis]));
+        }
+        return within;
+    }
     std::array<double, MAX_JOINTS> home{};
     for (const motion::SetParameter &parameter : machine.parameters) {
         const bool isHome = parameter.parameter == static_cast<std::uint16_t>(motion::Parameter::JOINT_HOME);
@@ -287,44 +389,10 @@ geom::Pose home_position(const MachineConfig &machine) {
 
 CheckResult check_program(const MachineConfig &machine, const std::string &program, interp::ToolSource &tools,
                           interp::ParameterSource &parameters, diag::Sink &sink, const CheckOptions &check) {
-    gcode::Preview *source = nullptr;
-    gcode::PreviewMachine stand = preview_stand(machine);
-    stand.isBlockDeleteOn = check.isBlockDeleteOn;
-    const auto tell_unknown = [&](std::string_view what) {
-        if (source != nullptr) {
-            source->flush();  // errors before this place are none that might not be
-        }
-        check.unknown(source != nullptr ? source->place() : SourcePlace{}, what);
-    };
-    const bool hasScripts = !stand.interpreter.scripts.top_level.empty();
-    UnknownHalValues unknown_values(parameters, [&] { tell_unknown("a value of HAL"); });
-    if (check.unknown) {
-        stand.interpreter.make_script_host = [&]() -> Result<std::unique_ptr<interp::ScriptHost>> {
-            return std::make_unique<UnscriptedHost>([&] { tell_unknown("Python"); });
-        };
-    }
-    // What scripts define is not known: an error of the interpreter may be none.
-    diag::Sink errors([&](const diag::Diagnostic &one) {
-        if (check.unknown && hasScripts) {
-            tell_unknown("Python");
-        } else if (source != nullptr) {
-            source->flush();  // findings come in the order of the program
-        }
-        sink.report(one);
-    });
-    Checker checker(machine, sink, check);
-    gcode::Preview preview(
-        std::move(stand), tools, check.unknown ? unknown_values : parameters, preview_options(check),
-        {[&](std::span<const gcode::PreviewEvent> events) { checker.take(events, *source); }, check.progress,
-         check.unknown});
-    source = &preview;
-    const gcode::PreviewEnd end = preview.run(program, errors);
-    checker.result.blocks = preview.progress().blocks;
-    checker.result.isCancelled = end == gcode::PreviewEnd::CANCELLED;
-    if (end == gcode::PreviewEnd::DONE && !sink.hasErrors()) {
-        checker.finish_time();
-    }
-    return checker.result;
+    const ProgramSources sources{tools, parameters};
+    const IsCertain is_certain =
+        machine.isTrivial ? IsCertain{} : beyond_from_elsewhere(machine, program, sources, check);
+    return check_from(home_position(machine), machine, program, sources, sink, check, is_certain);
 }
 
 }  // namespace mw::machine

@@ -35,7 +35,8 @@ std::map<std::string, PinText> expected(const std::map<std::string, int> &counts
             std::string name = replaced(row.name, "NN", two);
             name = replaced(name, "N", std::to_string(i));
             name = i < MAX_AXES ? replaced(name, "L", std::string(1, geom::AXIS_LETTERS_LOWER[i])) : name;
-            if (!isUnlock || unlocked.contains(i)) {
+            const bool isOfSwitchable = row.name == "motion.switchkins-type";
+            if ((!isUnlock || unlocked.contains(i)) && !isOfSwitchable) {
                 out[name] = row;
             }
         }
@@ -77,6 +78,20 @@ TEST(MotmodPins, EveryRowOfTheTablesIsAPinAndEveryPinIsARow_B6) {
         EXPECT_EQ(pin.value.as_number(), row->second.start) << pin.name;
     }
     EXPECT_EQ(found, wanted.size());
+}
+
+TEST(MotmodPins, SwitchableKinematicsHaveThePinOfTheirType_C14) {
+    rtapi::VirtualScheduler clock;
+    hal::HalOptions options;
+    options.scheduler = &clock;
+    auto host = hal::LocalHost::create(options, {MW_MODULE_FOLDER});
+    ASSERT_TRUE(host.has_value());
+    ASSERT_TRUE((*host)->load_realtime("xyzac-trt-kins", {}).has_value());
+    ASSERT_TRUE((*host)->load_realtime("motmod", {"num_joints=5"}).has_value());
+    const std::vector<hal::PinInfo> pins = (*host)->hal().pins("motion.switchkins-type");
+    ASSERT_EQ(pins.size(), 1U);
+    EXPECT_EQ(pins[0].type, hal::Type::FLOAT);
+    EXPECT_EQ(pins[0].dir, hal::Dir::IN);
 }
 
 TEST(MotmodPins, TheManualPageHasEachRowAndNoOther_B6) {

@@ -59,6 +59,32 @@ TEST(PathMonitor, DeviationIsMeasuredInOrder) {
     EXPECT_NEAR(monitor.figures().cutting_length, 20.0, 1e-12);
 }
 
+TEST(PathMonitor, AnotherPoseOfJointsThatStandIsNoMotion_C14) {
+    PathMonitor monitor(1000000);
+    monitor.start(at(0, 0));
+    motion::Line line;
+    line.end = at(1, 0);
+    monitor.on_move(1, line);
+    for (double x = 0; x <= 1; x += 0.25) {
+        monitor.on_sample(sample(at(x, 0)));
+    }
+    const auto switched = [](double y) {
+        motion::TraceSample s = sample(at(101, y), 2);
+        s.pose_kind = 1;
+        return s;
+    };
+    monitor.on_sample(switched(0));
+    line.end = at(101, 5);
+    monitor.on_move(2, line);
+    for (double y = 0; y <= 5; y += 0.25) {
+        monitor.on_sample(switched(y));
+    }
+    EXPECT_NEAR(monitor.figures().peak_velocity[0], 250, 1e-9);
+    EXPECT_NEAR(monitor.figures().peak_velocity[1], 250, 1e-9);
+    EXPECT_NEAR(monitor.figures().deviation_linear, 0, 1e-9);
+    EXPECT_NEAR(monitor.figures().cutting_length, 6, 1e-9);
+}
+
 TEST(PathMonitor, MovesOfRotaryAxesAloneAreDegreesAndNoLength) {
     PathMonitor monitor(1000000);
     monitor.start(at(0, 0));

@@ -89,6 +89,17 @@ TEST_F(ProgramCheck, LimitsOfJointsAreNoneOfAxesWhereKinematicsAreBetween) {
     EXPECT_EQ(sink_.count_errors(), 0);
 }
 
+TEST_F(ProgramCheck, WhereKinematicsAreBetweenOnlyMovesThatAreBeyondFromAnywhereAreTold_C14) {
+    ASSERT_NE(config_, nullptr);
+    config_->machine.isTrivial = false;
+    check("G21 G90 G17\nG92 X200\nG0 X-10\nG92.1\nG0 X9999\nM2\n");
+    ASSERT_EQ(sink_.count_errors(), 1) << "nobody knows where X-10 is";
+    EXPECT_EQ(sink_.all()[0].what.place.line, 5);
+    config_->machine.isTrivial = true;
+    check("G21 G90 G17\nG92 X400\nG0 X-10\nG92.1\nM2\n");
+    EXPECT_EQ(sink_.count_errors(), 2) << "here X0 is home";
+}
+
 TEST_F(ProgramCheck, OtherThreadsAreTaken) {
     ASSERT_NE(config_, nullptr);
     check("G21 G90 G17 S100 M3\nG0 X10 Y10\nG33 Z-5 K1\nG0 Z0\nM2\n");

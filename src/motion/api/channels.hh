@@ -23,6 +23,8 @@ struct TraceSample {
     std::int32_t line = 0;
     std::uint8_t isEnabled = 0;  ///< amp enables of all active joints on
     std::uint8_t isInMotion = 0;
+    /// Counts, round and round, the switches of the kinematics: the same joints have another pose from there.
+    std::uint8_t pose_kind = 0;
     Epoch epoch = 0;
     geom::Pose carte_pos_cmd;
     std::array<double, MAX_JOINTS> joint_pos_cmd{};

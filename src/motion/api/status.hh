@@ -164,6 +164,9 @@ enum class FaultKind : std::uint16_t {
     THREAD_TOO_FAST,  ///< index: spindle; value: needed speed over the possible one
     JOG_LEASE_ENDED,  ///< a jog was not renewed in time; detail: 1 a joint, 0 an axis; value: the lease [s]
     KINEMATICS_JUMP,  ///< index: the joint that would have stepped; value: by how much
+    NO_KINEMATICS_TYPE,            ///< value: the type asked for
+    KINEMATICS_SWITCHED_ON_PATH,   ///< the same; the path was stopped
+    KINEMATICS_TYPE_WITHOUT_POSE,  ///< the same; it has no pose for where the joints stand
     COUNT,
 };
 /// Of a jog: no path has failed.

@@ -143,6 +143,18 @@ std::string what_failed(const Fault &fault) {
             "joint {} would have stepped by {:.6g}: was a pin of the kinematics changed away from where it "
             "makes no difference?",
             i, fault.value);
+    case FaultKind::NO_KINEMATICS_TYPE:
+        return fmt::format("motion.switchkins-type: the kinematics has no type {:g}; the one in force stays",
+                           fault.value);
+    case FaultKind::KINEMATICS_SWITCHED_ON_PATH:
+        return fmt::format(
+            "motion.switchkins-type was changed to {:g} while a path was driven: it was stopped. "
+            "Programs change it with M68 and wait with M66 E0 L0 before they go on",
+            fault.value);
+    case FaultKind::KINEMATICS_TYPE_WITHOUT_POSE:
+        return fmt::format("motion.switchkins-type: type {:g} of the kinematics has no pose where the joints "
+                           "stand; the one in force stays",
+                           fault.value);
     case FaultKind::PATH_LIMIT: return "the path left its limits";
     case FaultKind::SPINDLE_FAULT:
         return fault.value != 0 ? fmt::format("spindle {} orient fault {}", i, static_cast<int>(fault.value))

@@ -65,6 +65,7 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
     }
     check_faults(in);
     step_holds(in);
+    step_kinematics(in);
     for (int n = 0; n < config_.num_spindles; ++n) {
         const SpindleInputs &spindle = in.spindle[static_cast<std::size_t>(n)];
         executor_.set_spindle(n, spindle.revs, spindle.speed_in_rps);

@@ -9,6 +9,7 @@
 #include "motion/api/channels.hh"
 #include "motion/api/limits.hh"
 #include "motion/api/settings.hh"
+#include "motion/core/coord/kinematics_types.hh"
 #include "motion/core/coord/lead.hh"
 #include "motion/core/coord/place.hh"
 #include "motion/core/coord/retracing.hh"
@@ -66,7 +67,6 @@ class Controller {
     void leave_lost_mode() noexcept;
     Verdict set_num_joints(const Inputs &in, int count) noexcept;
     Verdict set_parameter(const SetParameter &command) noexcept;
-    Verdict jog_vector(const Inputs &in, const geom::Pose &velocity) noexcept;
     JogSituation situation_of(const Inputs &in, const JogTarget &target) const noexcept;
     void disable() noexcept;
     void publish_limits() noexcept;
@@ -77,6 +77,8 @@ class Controller {
     void check_faults(const Inputs &in) noexcept;
     void check_joints(const Inputs &in) noexcept;
     void step_holds(const Inputs &in) noexcept;
+    void step_kinematics(const Inputs &in) noexcept;
+    void switch_kinematics(kins::TypeSwitch &types) noexcept;
     void step_homing(const Inputs &in) noexcept;
     void drive_homing(const Inputs &in) noexcept;
     void step_jogs(const Inputs &in) noexcept;
@@ -100,7 +102,6 @@ class Controller {
     void publish(const Inputs &in, Outputs &out) noexcept;
     void fill_path(Status &status) const noexcept;
     void publish_view(const Inputs &in) noexcept;
-    void trace(const Inputs &in, const Status &status) noexcept;
 
     ControllerConfig config_;
     int loaded_joints_;  ///< config_ has those that are in use
@@ -127,6 +128,7 @@ class Controller {
     Holds holds_;
     TouchProbe probe_;
     Place place_;
+    KinematicsTypes types_;
     traj::Executor executor_;
     Retracing retracing_;
 

@@ -82,7 +82,13 @@ Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
             return motion::take(jogs_, c, situation_of(in, c.target));
         },
         [&](const OneOf<JogStop, OverrideLimits> auto &c) { return motion::take(jogs_, c); },
-        [&](const SetTeleopVector &c) { return jog_vector(in, c.velocity); },
+        [&](const SetTeleopVector &c) {
+            std::array<JogSituation, MAX_AXES> situations;
+            for (int i = 0; i < MAX_AXES; ++i) {
+                situations[static_cast<std::size_t>(i)] = situation_of(in, {false, i});
+            }
+            return motion::take(jogs_, c, situations.data());
+        },
         [&](const Home &c) {
             const HomeConditions conditions{power_.isReady(), power_.mode, in.isHomingInhibited, false};
             const Verdict verdict = motion::take(homing_, c, conditions);
@@ -230,20 +236,6 @@ Verdict Controller::set_parameter(const SetParameter &command) noexcept {
         configure(homing_, command.index, settings_);
     }
     publish_limits();
-    return {};
-}
-
-/// Every axis at its own speed, those at 0 stop; none of them where one is refused.
-Verdict Controller::jog_vector(const Inputs &in, const geom::Pose &velocity) noexcept {
-    for (int i = 0; i < MAX_AXES; ++i) {
-        const Reason reason = check_axis_jog(jogs_, i, velocity[i], situation_of(in, {false, i}));
-        if (reason != Reason::NONE) {
-            return verdict_of(i, reason);
-        }
-    }
-    for (int i = 0; i < MAX_AXES; ++i) {
-        jog_axis(jogs_, i, velocity[i], situation_of(in, {false, i}));
-    }
     return {};
 }
 

@@ -106,6 +106,59 @@ void Controller::move_to(const geom::Pose &pose) noexcept {
     }
 }
 
+/// The type that the pin wants, once nothing moves and no path waits.
+void Controller::step_kinematics(const Inputs &in) noexcept {
+    kins::TypeSwitch *types = kinematics_.type_switch();
+    if (types == nullptr) {
+        return;
+    }
+    TypeInputs now;
+    now.pin = in.kinematics_type;
+    now.isMoving = isAnythingMoving() || homing_.isUnderWay();
+    now.isOnPath = power_.mode == Mode::COORD &&
+                   (now.isMoving || link_->queue_depth.load(std::memory_order_relaxed) != 0);
+    now.seen = link_->type_asks_seen.load(std::memory_order_acquire);
+    switch (motion::step(types_, now)) {
+    case TypeStep::NONE:
+    case TypeStep::WAIT: return;
+    case TypeStep::NO_SUCH_TYPE: raise(FaultKind::NO_KINEMATICS_TYPE, -1, in.kinematics_type); return;
+    case TypeStep::ON_PATH:
+        raise(FaultKind::KINEMATICS_SWITCHED_ON_PATH, -1, in.kinematics_type);
+        executor_.drop();
+        isCoordError_ = true;
+        return;
+    case TypeStep::SWITCH: switch_kinematics(*types); return;
+    }
+}
+
+/// Joints stand, and have the pose of the new type from here. Where that has none for them the old one stays.
+void Controller::switch_kinematics(kins::TypeSwitch &types) noexcept {
+    geom::Pose pose = place_.cmd;
+    bool isSwitched = types.switch_to(types_.wanted);
+    if (!isSwitched) {
+        raise(FaultKind::NO_KINEMATICS_TYPE, -1, types_.wanted);
+    } else if (homing_.homing.isAllHomed()) {
+        const PerJoint joints = commanded(joints_);
+        const bool isKnown = isAnswered(kinematics_.forward(joints.data(), pose)) &&
+                             leadsTo(kinematics_, pose, joints, stride_of(limits_, config_));
+        if (!isKnown) {
+            raise(FaultKind::KINEMATICS_TYPE_WITHOUT_POSE, -1, types_.wanted);
+            types.switch_to(types_.type);
+            isSwitched = false;
+        }
+    }
+    settle(types_, isSwitched);
+    if (!isSwitched) {
+        return;
+    }
+    place_.cmd = pose;
+    executor_.drop();
+    executor_.set_position(pose);
+    retracing_.retrace.clear();
+    rest_at(jogs_, commanded(joints_).data(), pose);
+    tell_standing();
+}
+
 /// Kinematics that only this thread may call cannot be planned with: the machine stops where a joint has to
 /// do more than it can.
 void Controller::check_joint_steps() noexcept {

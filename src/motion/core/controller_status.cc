@@ -24,6 +24,31 @@ void fill_unused(const JointInputs &in, int j, Outputs &out) noexcept {
     out.joint[n].motor_pos_cmd = in.motor_pos_fb;
 }
 
+void trace(Channels &channels, const Inputs &in, const Status &s, const Joints &joints,
+           std::uint8_t pose_kind, bool isMoving) noexcept {
+    if (channels.isTracing.load(std::memory_order_relaxed) == 0) {
+        return;
+    }
+    TraceSample sample;
+    sample.time_ns = in.time_ns;
+    sample.cycle = s.cycle;
+    sample.path_id = s.active_path_id;
+    sample.line = s.source.line;
+    sample.isInMotion = isMoving ? 1 : 0;
+    sample.pose_kind = pose_kind;
+    sample.epoch = s.epoch;
+    sample.carte_pos_cmd = s.carte_pos_cmd;
+    sample.joint_pos_cmd = commanded(joints);
+    bool isAllOn = s.isEnabled;
+    for (int j = 0; j < s.num_joints; ++j) {
+        isAllOn = isAllOn && (joints[j].isAmpWanted || !joints[j].isActive);
+    }
+    sample.isEnabled = isAllOn ? 1 : 0;
+    if (!channels.trace.push(sample)) {
+        channels.trace_lost.fetch_add(1, std::memory_order_relaxed);
+    }
+}
+
 }  // namespace
 
 void Controller::publish(const Inputs &in, Outputs &out) noexcept {
@@ -59,7 +84,7 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
     out.tool_offset = tool_offset_;
     publish_view(in);
     channels_->status.write(s, new_parts(channels_->status, s));
-    trace(in, s);
+    trace(*channels_, in, s, joints_, types_.switches, isAnythingMoving());
 }
 
 /// What is being executed, and what is left of the path.
@@ -67,7 +92,8 @@ void Controller::fill_path(Status &s) const noexcept {
     s.queue_depth = link_->queue_depth.load(std::memory_order_relaxed);
     s.isQueueFull = link_->isQueueFull.load(std::memory_order_relaxed) != 0;
     s.last_path_id = link_->last_done_id.load(std::memory_order_acquire);
-    s.isInPosition = !isAnythingMoving() && (power_.mode != Mode::COORD || s.queue_depth == 0);
+    s.isInPosition =
+        !isAnythingMoving() && (power_.mode != Mode::COORD || s.queue_depth == 0) && !types_.isPending;
     s.current_velocity = place_.velocity;
     const traj::MoveTag *tag = active_move(executor_, link_->store, power_.mode);
     if (tag == nullptr) {
@@ -116,30 +142,9 @@ void Controller::publish_view(const Inputs &in) noexcept {
     v.probe_trips = probe_.trips;
     v.steps = holds_.steps;
     v.isStepping = holds_.isStepping;
+    v.type_asks = types_.asks;
+    v.isTypePending = types_.isPending;
     link_->view.write(v);
-}
-
-void Controller::trace(const Inputs &in, const Status &s) noexcept {
-    if (channels_->isTracing.load(std::memory_order_relaxed) == 0) {
-        return;
-    }
-    TraceSample sample;
-    sample.time_ns = in.time_ns;
-    sample.cycle = cycle_;
-    sample.path_id = s.active_path_id;
-    sample.line = s.source.line;
-    sample.isInMotion = isAnythingMoving() ? 1 : 0;
-    sample.epoch = epoch_;
-    sample.carte_pos_cmd = place_.cmd;
-    sample.joint_pos_cmd = commanded(joints_);
-    bool isAllOn = power_.isEnabled;
-    for (int j = 0; j < config_.num_joints; ++j) {
-        isAllOn = isAllOn && (joints_[j].isAmpWanted || !joints_[j].isActive);
-    }
-    sample.isEnabled = isAllOn ? 1 : 0;
-    if (!channels_->trace.push(sample)) {
-        channels_->trace_lost.fetch_add(1, std::memory_order_relaxed);
-    }
 }
 
 }  // namespace mw::motion

@@ -42,6 +42,7 @@ struct Inputs {
     bool isHomingInhibited = false, isJogInhibited = false;
     bool isJogStopped = false, isJogStoppedNow = false;
     double adaptive_feed = 1;
+    double kinematics_type = 0;     ///< motion.switchkins-type
     std::uint64_t misc_errors = 0;  ///< bit per input
     std::uint64_t digital_in = 0;
     std::array<double, MAX_ANALOG_IO> analog_in{};

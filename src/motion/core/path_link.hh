@@ -46,6 +46,8 @@ struct PathView {
     std::uint32_t probe_trips = 0;  ///< counts probe moves that were tripped
     std::uint32_t steps = 0;        ///< counts StepOnce
     bool isStepping = false;
+    std::uint32_t type_asks = 0;  ///< counts asks for another type of the kinematics
+    bool isTypePending = false;   ///< paths wait until it is in force
 };
 
 /// Copied only while neither side runs, for a controller that is saved or cloned.
@@ -55,6 +57,8 @@ struct PathLink {
     Seqlock<PathLimits> limits;  ///< controller -> planner
     /// planner -> controller: StepOnce count whose stop has been reached
     CopyableAtomic<std::uint32_t> steps_done{0};
+    /// planner -> controller: type_asks at which nothing was accepted that is not driven
+    CopyableAtomic<std::uint32_t> type_asks_seen{0};
     CopyableAtomic<std::uint32_t> queue_depth{0};   ///< planner -> controller
     CopyableAtomic<std::uint32_t> isQueueFull{0};   ///< planner -> controller
     CopyableAtomic<std::uint64_t> last_done_id{0};  ///< planner -> controller: last path command completed

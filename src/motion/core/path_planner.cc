@@ -169,7 +169,7 @@ bool PathPlanner::take_commands() noexcept {
 
 /// True when this command has to wait for something that the executor does first.
 bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
-    if (view_.executor.isDropping) {
+    if (view_.executor.isDropping || view_.isTypePending) {
         return true;
     }
     const bool isAfterProbe = !pending_.isEmpty() && pending_.newest().isProbe;
@@ -335,6 +335,9 @@ void PathPlanner::follow_steps() noexcept {
 }
 
 void PathPlanner::publish() noexcept {
+    if (pending_.isEmpty()) {
+        link_.type_asks_seen.store(view_.type_asks, std::memory_order_release);
+    }
     link_.queue_depth.store(pending_.size(), std::memory_order_relaxed);
     link_.isQueueFull.store(isQueueFull_ ? 1 : 0, std::memory_order_relaxed);
     link_.last_done_id.store(last_done_, std::memory_order_release);

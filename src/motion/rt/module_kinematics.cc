@@ -47,6 +47,10 @@ const char *ModuleKinematics::find(int num_joints) noexcept {
     }
     const auto is_pure = find_function<int (*)()>("mw_kinematics_is_pure");
     isPure_ = is_pure != nullptr && is_pure() != 0;
+    const auto is_switchable = find_function<decltype(&kinematicsSwitchable)>("kinematicsSwitchable");
+    if (is_switchable != nullptr && is_switchable() != 0) {
+        types_.switch_it = find_function<decltype(&kinematicsSwitch)>("kinematicsSwitch");
+    }
     // Only who says so has joints that are axes: a table whose axes cross looks so at every single one.
     const auto is_identity = find_function<int (*)()>("mw_kinematics_is_identity");
     const bool isSaid = kind_ == kins::Kind::IDENTITY || (is_identity != nullptr && is_identity() != 0);

@@ -7,6 +7,14 @@
 
 namespace mw::motion {
 
+/// The types of a module, by its own function.
+class ModuleTypes final : public kins::TypeSwitch {
+  public:
+    decltype(&kinematicsSwitch) switch_it = nullptr;
+
+    bool switch_to(int type) noexcept override { return switch_it(type) == 0; }
+};
+
 class ModuleKinematics final : public kins::Kinematics {
   public:
     /// Finds the functions among the loaded modules. Null, or the name of what is missing. [while loading]
@@ -19,6 +27,9 @@ class ModuleKinematics final : public kins::Kinematics {
     kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept override;
     const kins::IdentityMap *identity() const noexcept override { return isIdentity_ ? &map_ : nullptr; }
     int side(const kins::Pose &pose) const noexcept override;
+    kins::TypeSwitch *type_switch() const noexcept override {
+        return types_.switch_it != nullptr ? &types_ : nullptr;
+    }
     /// Modules that export mw_kinematics_is_pure say so themselves.
     bool isShareable() const noexcept override { return isIdentity_ || isPure_; }
 
@@ -29,6 +40,7 @@ class ModuleKinematics final : public kins::Kinematics {
     decltype(&kinematicsInverse) inverse_ = nullptr;
     int (*inverse_with_status_)(const EmcPose *, double *) = nullptr;  ///< of our own modules: tells SINGULAR
     int (*side_)(const EmcPose *) = nullptr;                           ///< the same
+    mutable ModuleTypes types_;
     kins::Kind kind_ = kins::Kind::IDENTITY;
     bool isIdentity_ = false, isPure_ = false;
     kins::IdentityMap map_;

@@ -136,6 +136,9 @@ inline constexpr auto JOINT = pin_table("joint.#",
     out<Count>("home-state", "", "step of homing, 0: none", [](const JointView &v) { return v.o.home_state; }));
 
 /// Only of joints in the unlock mask.
+inline constexpr auto SWITCHABLE = pin_table("motion",
+    in<double>("switchkins-type", "", "type of switchable kinematics; changed at rest only", [](Inputs &i, double v) { i.kinematics_type = v; }));
+
 inline constexpr auto UNLOCK = pin_table("joint.#",
     out<bool>("unlock", "", "of joints in unlock_joints_mask; locking indexers are not supported yet", Unused{}),
     in<bool>("is-unlocked", "", "the same", Unused{}));
@@ -193,6 +196,7 @@ void for_each(Show &&show) {
     sdk::for_each_pin(MISC_ERROR, show);
     sdk::for_each_pin(TOOL_OFFSET, show);
     sdk::for_each_pin(JOINT, show);
+    sdk::for_each_pin(SWITCHABLE, show);
     sdk::for_each_pin(UNLOCK, show);
     sdk::for_each_pin(AXIS, show);
     sdk::for_each_pin(SPINDLE, show);

@@ -15,6 +15,7 @@ struct PinCounts {
     int spindles = 1;
     int digital = 4, analog = 4, misc_errors = 0;
     int unlock_mask = 0;
+    bool isSwitchable = false;  ///< kinematics of several types
 };
 
 /// Lives in HAL memory.
@@ -30,6 +31,7 @@ class MotionPins {
   private:
     PinCounts counts_;
     sdk::PinSet<pins::MOTION> motion_;
+    sdk::PinSet<pins::SWITCHABLE> switchable_;
     sdk::PinSet<pins::DIGITAL> digital_[MAX_DIGITAL_IO];
     sdk::PinSet<pins::ANALOG> analog_[MAX_ANALOG_IO];
     sdk::PinSet<pins::MISC_ERROR> misc_error_[MAX_DIGITAL_IO];

@@ -13,6 +13,8 @@ namespace {
 constexpr std::uint32_t PATH_WINDOW = 3000;
 /// A servo thread that lies interrupted within a write for longer has died; others tell of its death.
 constexpr std::chrono::milliseconds PATIENCE{20};
+/// Servo cycles from an output to an input that is linked to it, through a component or two in between.
+constexpr std::uint64_t ROUND_TRIP_CYCLES = 4;
 
 }  // namespace
 
@@ -29,6 +31,7 @@ MotionLink::News MotionLink::update() {
     fresh_ = read_patiently(channels_.status, copy_, PATIENCE) ? copy_.fresh : 0;
     channels_.task_loops.fetch_add(1, std::memory_order_relaxed);
     take_answers(news);
+    follow_outputs();
     motion::Fault fault;
     while (channels_.servo_faults.pop(fault)) {
         news.faults.push_back(fault);
@@ -61,6 +64,17 @@ void MotionLink::take_answers(News &news) {
     }
 }
 
+void MotionLink::follow_outputs() {
+    if (last_output_id_ == 0 || !isAnswered(last_output_id_)) {
+        return;
+    }
+    const motion::Status &now = copy_.value;
+    output_cycle_ = output_cycle_ == 0 ? now.cycle : output_cycle_;
+    if (now.cycle >= output_cycle_ + ROUND_TRIP_CYCLES && now.isInPosition) {
+        last_output_id_ = 0;
+    }
+}
+
 motion::SourceTag MotionLink::take_source(motion::CommandId id) {
     motion::SourceTag source;
     while (!sources_.empty() && sources_.front().first <= id) {
@@ -74,6 +88,11 @@ motion::CommandId MotionLink::send(motion::CommandBody body) {
     backlog_.push_back({next_id_++, epoch_, body});
     pending_.push_back(backlog_.back().id);
     const motion::CommandId id = backlog_.back().id;
+    if (std::holds_alternative<motion::SetDigitalOutput>(body) ||
+        std::holds_alternative<motion::SetAnalogOutput>(body)) {
+        last_output_id_ = id;
+        output_cycle_ = 0;
+    }
     hand_over();
     return id;
 }

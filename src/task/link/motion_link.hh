@@ -41,6 +41,9 @@ class MotionLink {
     void flush();
     /// Nothing handed over is still to be executed and the machine is at rest at the end of it.
     bool isPathComplete() const;
+    /// What digital and analog outputs do to pins of motion has been seen: the machine may have another pose
+    /// since (motion.switchkins-type), and inputs that are linked to outputs follow them.
+    bool areOutputsSettled() const { return last_output_id_ == 0; }
     motion::CommandId last_path_id() const { return last_path_id_; }
     bool hasUnflushedPath() const { return last_path_id_ > flushed_id_; }
 
@@ -56,6 +59,7 @@ class MotionLink {
 
   private:
     void hand_over();
+    void follow_outputs();
     void take_answers(News &news);
     motion::SourceTag take_source(motion::CommandId id);
 
@@ -67,10 +71,12 @@ class MotionLink {
     std::deque<std::pair<motion::CommandId, motion::SourceTag>> sources_;
     std::vector<motion::CommandId> pending_;  ///< immediate commands not yet answered, in order
     motion::CommandId next_id_ = 1;
-    motion::CommandId last_path_id_ = 0;  ///< handed over
-    motion::CommandId flushed_id_ = 0;    ///< the last Flush
-    motion::CommandId completed_id_ = 0;  ///< the last path command answered
-    motion::CommandId aborted_id_ = 0;    ///< path commands up to this one belong to aborted work
+    motion::CommandId last_path_id_ = 0;    ///< handed over
+    motion::CommandId flushed_id_ = 0;      ///< the last Flush
+    motion::CommandId completed_id_ = 0;    ///< the last path command answered
+    motion::CommandId last_output_id_ = 0;  ///< whose effect may not have been seen, 0: none
+    std::uint64_t output_cycle_ = 0;        ///< of the first status after it was answered, 0: none yet
+    motion::CommandId aborted_id_ = 0;      ///< path commands up to this one belong to aborted work
     motion::Epoch epoch_ = 0;
     std::uint32_t path_outstanding_ = 0;
 };

@@ -87,7 +87,8 @@ Sequencer::Need Sequencer::need_of(const interp::MachineCall &call) {
                            interp::WaitOrientComplete, interp::SetToolTableEntry, interp::ReloadTools,
                            interp::SwitchMist, interp::SwitchFlood, interp::SwitchFeedOverride,
                            interp::SwitchSpeedOverride, interp::SwitchFeedHold, interp::SwitchAdaptiveFeed,
-                           interp::WaitInput, interp::UserCode> auto &) { return Need::MOTION; },
+                           interp::UserCode> auto &) { return Need::MOTION; },
+            [](const interp::WaitInput &) { return Need::OUTPUTS; },
             [](const OneOf<interp::ChangeTool, interp::ChangeToolNumber, interp::ProgramStop,
                            interp::ProgramEnd, interp::Finish> auto &) { return Need::MOTION_AND_IO; },
         },
@@ -154,7 +155,9 @@ bool Sequencer::isReady(const Item &item) {
     }
     motion_.flush();
     const bool isIoIdle = io_.action() == io::ToolAction::IDLE;
-    return motion_.isPathComplete() && (need == Need::MOTION || isIoIdle);
+    const bool isMotionDone =
+        motion_.isPathComplete() && (need != Need::OUTPUTS || motion_.areOutputsSettled());
+    return isMotionDone && (need != Need::MOTION_AND_IO || isIoIdle);
 }
 
 bool Sequencer::execute(const Item &item, std::int64_t now_ns) {

@@ -86,7 +86,7 @@ class Sequencer {
     void set_move_listener(MoveListener listener) { move_listener_ = std::move(listener); }
 
   private:
-    enum class Need : std::uint8_t { NOTHING, MOTION, MOTION_AND_IO };
+    enum class Need : std::uint8_t { NOTHING, MOTION, OUTPUTS, MOTION_AND_IO };
     enum class Wait : std::uint8_t { NONE, DWELL, INPUT, TOOL, ORIENT, USER_CODE, SETTING };
     static Need need_of(const interp::MachineCall &call);
     bool isWaitOver(std::int64_t now_ns);

@@ -216,6 +216,19 @@ void jog_axis(Jogs &jogs, int axis, double velocity, const JogSituation &situati
     }
 }
 
+Verdict take(Jogs &jogs, const SetTeleopVector &command, const JogSituation *situations) noexcept {
+    for (int i = 0; i < MAX_AXES; ++i) {
+        const Reason reason = check_axis_jog(jogs, i, command.velocity[i], situations[i]);
+        if (reason != Reason::NONE) {
+            return verdict_of(i, reason);
+        }
+    }
+    for (int i = 0; i < MAX_AXES; ++i) {
+        jog_axis(jogs, i, command.velocity[i], situations[i]);
+    }
+    return {};
+}
+
 JogTarget end_lease(Jogs &jogs, std::int64_t time_ns) noexcept {
     for (std::uint32_t left = jogs.leased; left != 0; left &= left - 1) {
         const JogTarget target = target_of_bit(std::countr_zero(left));

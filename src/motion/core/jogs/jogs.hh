@@ -80,6 +80,9 @@ Verdict take(Jogs &jogs, const OverrideLimits &command) noexcept;
 /// One axis of SetTeleopVector, after all of them were checked: at 0 it stops.
 Reason check_axis_jog(const Jogs &jogs, int axis, double velocity, const JogSituation &situation) noexcept;
 void jog_axis(Jogs &jogs, int axis, double velocity, const JogSituation &situation) noexcept;
+/// Every axis at its own speed, those at 0 stop; none of them where one is refused. `situations` has one for
+/// each axis.
+Verdict take(Jogs &jogs, const SetTeleopVector &command, const JogSituation *situations) noexcept;
 
 /// Ends one lease that was not renewed in time, and its jog brakes: the joint or axis of which that is to be
 /// told, index -1 when there is none any more. Called until then, in each cycle before the jogs move.

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Kinematics of several types, switched by motion.switchkins-type. The rig aborts the test program where a
+// joint does more than its limits allow, so no switch may make one jump.
+#include <algorithm>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "testing/motion_rig.hh"
+
+namespace mw::motion {
+namespace {
+
+using testing::MotionRig;
+
+/// Type 0: joints are X Y Z. Type 1: the same turned by a quarter about Z and 100 off. Type 2: has no pose
+/// but where joint 0 is at 10 or more. There are no others.
+class Turning final : public kins::Kinematics, public kins::TypeSwitch {
+  public:
+    int type = 0;
+
+    kins::Kind kind() const noexcept override { return kins::Kind::BOTH; }
+    kins::Status forward(const double *joints, geom::Pose &pose) const noexcept override {
+        if (type == 2 && joints[0] < 10) {
+            return kins::Status::UNREACHABLE;
+        }
+        pose[0] = type == 1 ? joints[1] + 100 : joints[0];
+        pose[1] = type == 1 ? -joints[0] : joints[1];
+        pose[2] = joints[2];
+        return kins::Status::OK;
+    }
+    kins::Status inverse(const geom::Pose &pose, double *joints) const noexcept override {
+        joints[0] = type == 1 ? -pose[1] : pose[0];
+        joints[1] = type == 1 ? pose[0] - 100 : pose[1];
+        joints[2] = pose[2];
+        return kins::Status::OK;
+    }
+    bool switch_to(int wanted) noexcept override {
+        type = wanted >= 0 && wanted <= 2 ? wanted : type;
+        return type == wanted;
+    }
+    kins::TypeSwitch *type_switch() const noexcept override { return const_cast<Turning *>(this); }
+};
+
+geom::Pose at(double x, double y, double z = 0) {
+    geom::Pose pose;
+    pose[0] = x;
+    pose[1] = y;
+    pose[2] = z;
+    return pose;
+}
+
+/// A machine that stands at joints 20, 30, 0 in coordinated mode.
+struct KinematicsTypesTest : ::testing::Test {
+    Turning kinematics;
+    MotionRig rig{kinematics, 3, 100, 1000};
+
+    KinematicsTypesTest() {
+        rig.ready();
+        drive(at(20, 30));
+    }
+    CommandId drive(const geom::Pose &end, double feed = 50) {
+        const CommandId id = rig.line(end, feed);
+        rig.send_path(Flush{});
+        EXPECT_TRUE(rig.run_until([&] { return rig.answer_to(id) != nullptr && rig.status().isInPosition; }));
+        return id;
+    }
+    void ask(double type) {
+        rig.in.kinematics_type = type;
+        rig.step();
+    }
+    void settle() {
+        ASSERT_TRUE(rig.run_until([this] { return rig.status().isInPosition; }, 10));
+    }
+    double joint(int j) const { return rig.out->joint[static_cast<std::size_t>(j)].motor_pos_cmd; }
+    void expect_joints(double a, double b) const {
+        EXPECT_NEAR(joint(0), a, 1e-9);
+        EXPECT_NEAR(joint(1), b, 1e-9);
+    }
+};
+
+TEST_F(KinematicsTypesTest, JointsStandWhileTheTypeChangesAndThePoseIsTheNewOne_C14) {
+    ask(1);
+    EXPECT_FALSE(rig.status().isInPosition) << "who waits for it waits for the new pose";
+    settle();
+    expect_joints(20, 30);
+    EXPECT_EQ(rig.status().carte_pos_cmd[0], 130);
+    EXPECT_EQ(rig.status().carte_pos_cmd[1], -20);
+    EXPECT_TRUE(rig.faults.empty());
+    drive(at(140, -20));
+    expect_joints(20, 40);
+    ask(0);
+    settle();
+    EXPECT_EQ(rig.status().carte_pos_cmd[1], 40);
+    drive(at(0, 0));
+    expect_joints(0, 0);
+}
+
+TEST_F(KinematicsTypesTest, MovesSentRightBehindTheChangeAreDrivenInTheNewType_C14) {
+    rig.in.kinematics_type = 1;
+    drive(at(100, -20));
+    expect_joints(20, 0);
+}
+
+TEST_F(KinematicsTypesTest, AChangeOnAPathStopsItAndSaysSo_C14) {
+    const CommandId first = rig.line(at(90, 30));
+    const CommandId second = rig.line(at(0, 0));
+    rig.step(200);
+    ASSERT_FALSE(rig.status().isInPosition);
+    ask(1);
+    ASSERT_EQ(rig.faults.size(), 1U);
+    EXPECT_EQ(rig.faults[0].kind, FaultKind::KINEMATICS_SWITCHED_ON_PATH);
+    settle();
+    EXPECT_EQ(rig.faults.size(), 1U);
+    EXPECT_FALSE(rig.isDone(first));
+    EXPECT_FALSE(rig.isDone(second));
+    EXPECT_EQ(rig.status().carte_pos_cmd[1], -joint(0)) << "at rest the type is the one asked for";
+    EXPECT_TRUE(rig.status().isEnabled);
+}
+
+TEST_F(KinematicsTypesTest, ATypeThatDoesNotExistIsToldOnceAndChangesNothing_C14) {
+    for (const double type : {7.0, 0.5, -1.0, std::nan(""), 1e300}) {
+        rig.faults.clear();
+        ask(type);
+        rig.step(50);
+        ASSERT_EQ(rig.faults.size(), 1U) << type;
+        EXPECT_EQ(rig.faults[0].kind, FaultKind::NO_KINEMATICS_TYPE);
+        EXPECT_EQ(kinematics.type, 0);
+        EXPECT_TRUE(rig.status().isInPosition);
+        ask(0);
+        rig.step(50);
+    }
+    drive(at(0, 0));
+    expect_joints(0, 0);
+}
+
+TEST_F(KinematicsTypesTest, ATypeWithoutAPoseHereIsRefused_C14) {
+    drive(at(5, 5));
+    ask(2);
+    rig.step(50);
+    ASSERT_EQ(rig.faults.size(), 1U);
+    EXPECT_EQ(rig.faults[0].kind, FaultKind::KINEMATICS_TYPE_WITHOUT_POSE);
+    EXPECT_EQ(kinematics.type, 0);
+    drive(at(10, 5));
+    ask(0);
+    ask(2);
+    settle();
+    EXPECT_EQ(kinematics.type, 2);
+    EXPECT_EQ(rig.faults.size(), 1U);
+}
+
+TEST_F(KinematicsTypesTest, AJogOfAnAxisEndsInTheTypeInWhichItWasBegun_C14) {
+    rig.send(SetMode{Mode::TELEOP});
+    rig.step(10);
+    const CommandId jog = rig.send(JogIncremental{{false, 0}, 20, 5});
+    rig.step(50);
+    EXPECT_EQ(rig.refusal(jog), Reason::NONE);
+    ask(1);
+    settle();
+    expect_joints(25, 30);
+    EXPECT_EQ(kinematics.type, 1);
+    rig.send(JogIncremental{{false, 0}, 20, 5});
+    rig.step(2);
+    settle();
+    expect_joints(25, 35);
+}
+
+TEST_F(KinematicsTypesTest, WithoutHomesTheTypeChangesAndNoPoseIsNeeded_C14) {
+    rig.send(SetMode{Mode::FREE});
+    rig.step(10);
+    rig.send(Unhome{-1});
+    rig.step(2);
+    ask(2);
+    rig.step(50);
+    EXPECT_EQ(kinematics.type, 2);
+    EXPECT_TRUE(rig.faults.empty());
+}
+
+/// At any instant of any program joints keep their limits (the rig sees to it), the pose is that of the
+/// joints, and a path that was not told as stopped is done.
+TEST_F(KinematicsTypesTest, AskedForAtAnyInstantNothingJumpsAndNothingIsLostInSilence_C14) {
+    std::mt19937 random(14);
+    std::uniform_int_distribution<int> pause(1, 400);
+    std::uniform_int_distribution<int> type(0, 1);
+    std::uniform_real_distribution<double> place(10, 90);
+    int stopped = 0;
+    int driven = 0;
+    for (int round = 0; round < 200; ++round) {
+        rig.faults.clear();
+        rig.send(Abort{++rig.epoch});
+        const bool isTurned = kinematics.type == 1;
+        CommandId last = 0;
+        for (int n = 0; n < 3; ++n) {
+            const double a = place(random);
+            const double b = place(random);
+            last = rig.line(isTurned ? at(100 + b, -a) : at(a, b), 80);
+        }
+        rig.send_path(Flush{});
+        rig.step(pause(random));
+        const bool isFinished = rig.isDone(last);
+        ask(type(random));
+        ASSERT_TRUE(
+            rig.run_until([&] { return rig.status().isInPosition && rig.answer_to(last) != nullptr; }));
+        const bool isStopped = !rig.faults.empty();
+        stopped += isStopped ? 1 : 0;
+        driven += rig.isDone(last) ? 1 : 0;
+        EXPECT_TRUE(isStopped != rig.isDone(last) || isFinished) << round;
+        geom::Pose pose;
+        const double joints[MAX_JOINTS] = {joint(0), joint(1), joint(2)};
+        kinematics.forward(joints, pose);
+        EXPECT_NEAR(geom::norm_xyz(pose - rig.status().carte_pos_cmd), 0, 1e-9) << round;
+        EXPECT_EQ(kinematics.type, static_cast<int>(rig.in.kinematics_type)) << round;
+    }
+    EXPECT_GT(stopped, 40);
+    EXPECT_GT(driven, 40);
+}
+
+}  // namespace
+}  // namespace mw::motion
