@@ -10,6 +10,7 @@ namespace mw::app {
 
 int command_start(const std::vector<std::string> &words);
 int command_run(const std::vector<std::string> &words);
+int command_ui(const std::vector<std::string> &words);
 int command_check(const std::vector<std::string> &words);
 
 }  // namespace mw::app

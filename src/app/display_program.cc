@@ -16,12 +16,16 @@
 
 #include <fmt/format.h>
 
+#include "base/own_place.hh"
 #include "base/text.hh"
 
 namespace mw::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// As DISPLAY = millwright: the screen of `millwright ui`.
+constexpr const char *OWN_SCREEN = "millwright";
 
 bool isProgram(const fs::path &path) {
     std::error_code error;
@@ -66,6 +70,11 @@ Result<std::vector<std::string>> DisplayProgram::words(const std::string &displa
     std::vector<std::string> words = split_words(display);
     if (words.empty()) {
         return fail("[DISPLAY]DISPLAY names no program", {ini, 0, 0});
+    }
+    if (words[0] == OWN_SCREEN) {
+        words[0] = program_folder() + "/millwright";
+        words.insert(words.begin() + 1, {"ui", ini, "--open"});
+        return words;
     }
     const std::string program = find_program(words[0], fs::path(ini).parent_path());
     if (program.empty()) {

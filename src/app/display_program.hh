@@ -16,7 +16,7 @@ namespace mw::app {
 class DisplayProgram {
   public:
     /// The words of its command line: the program, which is looked for beside the INI file and along PATH,
-    /// then "-ini", the INI file, and what else the key says.
+    /// then "-ini", the INI file, and what else the key says. "millwright" is the screen of `millwright ui`.
     static Result<std::vector<std::string>> words(const std::string &display, const std::string &ini);
 
     /// Starts it in the folder of the INI file, with INI_FILE_NAME and CONFIG_DIR in its environment.

@@ -21,6 +21,8 @@ constexpr const char *USAGE =
     "                                       in virtual time, or with --realtime by the clock\n"
     "  start MACHINE.ini                    keep the machine up for clients, until a signal or its display "
     "ends it\n"
+    "  ui MACHINE.ini                       serve the operator's screen of the machine that is up, to "
+    "browsers\n"
     "  check PROGRAM.ngc --ini MACHINE.ini  a program against a machine's limits, and the time it takes\n"
     "  format PROGRAM.ngc ...               write programs in one form, without a change of meaning\n"
     "  explain LINE                         say in words what a line of G-code does\n"
@@ -53,6 +55,9 @@ int main(int argc, char **argv) {
     }
     if (words[0] == "run") {
         return mw::app::command_run(rest);
+    }
+    if (words[0] == "ui") {
+        return mw::app::command_ui(rest);
     }
     if (words[0] == "check") {
         return mw::app::command_check(rest);

@@ -56,6 +56,8 @@ class Client {
     Result<> read_status();
     /// As it was read last.
     const msgs::MachineStatus &status() const { return status_->value; }
+    /// Parts of it (msgs::status_part) that the last read has copied: the others are as they were.
+    PartMask fresh_parts() const { return status_->fresh; }
     /// Sleeps until there is a newer status than the last one that was waited for.
     Result<> wait_status(double timeout_s);
     /// The tool table when it has changed since the last call; nothing otherwise.

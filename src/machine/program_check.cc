@@ -252,7 +252,9 @@ class Checker {
     std::set<std::pair<std::uint32_t, int>> impossible_;  ///< file and line of what was told
 };
 
-gcode::PreviewMachine stand_of(const MachineConfig &machine) {
+}  // namespace
+
+gcode::PreviewMachine preview_stand(const MachineConfig &machine) {
     gcode::PreviewMachine stand;
     stand.interpreter = machine.task.interpreter;
     stand.units = machine.task.machine_units;
@@ -265,6 +267,8 @@ gcode::PreviewMachine stand_of(const MachineConfig &machine) {
     };
     return stand;
 }
+
+namespace {
 
 gcode::PreviewOptions preview_options(const CheckOptions &check) {
     gcode::PreviewOptions options;
@@ -286,7 +290,7 @@ CheckResult check_from(const geom::Pose &start, const MachineConfig &machine, co
                        const ProgramSources &sources, diag::Sink &sink, const CheckOptions &check,
                        IsCertain is_certain) {
     gcode::Preview *source = nullptr;
-    gcode::PreviewMachine stand = stand_of(machine);
+    gcode::PreviewMachine stand = preview_stand(machine);
     stand.position = start;
     stand.isBlockDeleteOn = check.isBlockDeleteOn;
     const auto tell_unknown = [&](std::string_view what) {

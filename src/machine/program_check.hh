@@ -48,6 +48,9 @@ CheckResult check_program(const MachineConfig &machine, const std::string &progr
 
 inline constexpr int MAX_CHECK_ERRORS = 20;
 
+/// The machine as a program finds it, homed and without a tool; `machine` must outlive it.
+gcode::PreviewMachine preview_stand(const MachineConfig &machine);
+
 /// Where the machine stands when its joints are homed; where joints are not axes, a place within the limits.
 geom::Pose home_position(const MachineConfig &machine);
 

@@ -62,6 +62,12 @@ Json parts_to_json(const ConstObject &message) {
     return json;
 }
 
+std::string text_of(const Json &json) {
+    constexpr int COMPACT = -1;
+    constexpr bool IS_ASCII = false;
+    return json.dump(COMPACT, ' ', IS_ASCII, Json::error_handler_t::replace);
+}
+
 /// Nothing when it is not JSON.
 Json parse(std::string_view text) {
     constexpr bool HAS_EXCEPTIONS = false;
@@ -214,9 +220,11 @@ class Reading {
 std::string to_json(const ConstObject &message) {
     Json json{{NAME_KEY, message.declaration->name}};
     json.update(parts_to_json(message));
-    constexpr int COMPACT = -1;
-    constexpr bool IS_ASCII = false;
-    return json.dump(COMPACT, ' ', IS_ASCII, Json::error_handler_t::replace);
+    return text_of(json);
+}
+
+std::string to_json(const Field &field, const void *at) {
+    return text_of(element_to_json(field, at));
 }
 
 Result<std::string> json_name(std::string_view text) {

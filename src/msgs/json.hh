@@ -11,6 +11,8 @@
 namespace mw::msgs {
 
 std::string to_json(const ConstObject &message);
+/// A single value as it stands in its message; of an array an element.
+std::string to_json(const Field &field, const void *at);
 
 /// The value of "message", by which a reader finds the declaration.
 Result<std::string> json_name(std::string_view json);

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What a screen is told of the machine, from its INI file (J1).
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "app/ui_facts.hh"
+#include "app/ui_path.hh"
+#include "base/atomic_file.hh"
+
+namespace mw::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::pair<double, bool>> values(const std::vector<ui::web::Increment> &increments) {
+    std::vector<std::pair<double, bool>> out;
+    for (const auto &one : increments) {
+        out.emplace_back(one.value, one.isAngular);
+    }
+    return out;
+}
+
+TEST(UiFacts, IncrementsMixUnits_J1) {
+    std::vector<std::string> bad;
+    const auto all = parse_increments("1 mm, .01in, 1/8 inch, 5 mil,2cm , 10um, 45 deg, 0.5", 1, bad);
+    EXPECT_TRUE(bad.empty());
+    ASSERT_EQ(all.size(), 8U);
+    const double expected[] = {1, 0.254, 3.175, 0.127, 20, 0.01, 45, 0.5};
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        EXPECT_NEAR(all[i].value, expected[i], 1e-12) << all[i].text;
+        EXPECT_EQ(all[i].isAngular, i == 6);
+    }
+    EXPECT_EQ(all[1].text, ".01in");
+    EXPECT_EQ(values(parse_increments("1 .1 .01", 25.4, bad)),
+              (std::vector<std::pair<double, bool>>{{1, false}, {0.1, false}, {0.01, false}}));
+    EXPECT_NEAR(parse_increments("1 mm,", 25.4, bad).at(0).value, 1 / 25.4, 1e-15);
+    EXPECT_TRUE(bad.empty());
+    EXPECT_TRUE(parse_increments("continuous, x, 1 mile, -1, 1/0, 0, 1//2", 1, bad).empty());
+    EXPECT_EQ(bad, (std::vector<std::string>{"x", "1 mile", "-1", "1/0", "0", "1//2"}));
+}
+
+class UiMachine : public testing::Test {
+  protected:
+    UiMachine() {
+        folder_ = fs::temp_directory_path() / ("mw_ui_" + std::to_string(::getpid()));
+        fs::create_directories(folder_);
+    }
+    ~UiMachine() override { fs::remove_all(folder_); }
+
+    /// A machine of ours with more lines in sections of its own.
+    std::unique_ptr<machine::LoadedConfig> load(const std::string &ini, const std::string &display = "",
+                                                const std::string &more = "") {
+        const fs::path path = folder_ / "machine.ini";
+        std::string text = *read_file(std::string(MW_SOURCE_DIR "/configs/sim/") + ini + ".ini");
+        const std::size_t place = text.find("[DISPLAY]\n") + std::string("[DISPLAY]\n").size();
+        text.insert(place, display);
+        std::ofstream(path) << text << more;
+        auto loaded = machine::LoadedConfig::load(path.string(), sink_);
+        if (loaded != nullptr) {
+            loaded->machine.task.parameter_file.clear();
+            loaded->machine.tool_table_file.clear();
+        }
+        return loaded;
+    }
+
+    fs::path folder_;
+    diag::Sink sink_;
+};
+
+TEST_F(UiMachine, TheMillSaysWhatItIs_J1) {
+    const auto loaded =
+        load("mill_mm", "INCREMENTS = 1 mm, 0.1 in, junk\nCYCLE_TIME = 0.1\nMAX_LINEAR_VELOCITY = 150\n",
+             "\n[MDI_COMMAND_LIST]\nMDI_COMMAND_MACRO0 = G0 X0, Home X\nMDI_COMMAND_MACRO1 = G0 Y0\n"
+             "[FILTER]\nPROGRAM_EXTENSION = .png,.gif Images\n");
+    ASSERT_NE(loaded, nullptr);
+    const auto facts = machine_facts(*loaded, sink_);
+    EXPECT_EQ(facts.name, "Millwright mill (mm)");
+    EXPECT_EQ(facts.axes, "XYZ");
+    EXPECT_EQ(facts.joints, 3);
+    EXPECT_EQ(facts.joint_kinds, (std::vector<std::string>{"LINEAR", "LINEAR", "LINEAR"}));
+    EXPECT_TRUE(facts.isHomingForced);
+    EXPECT_EQ(facts.linear_unit, "mm");
+    EXPECT_EQ(facts.max_linear_velocity, 150);
+    EXPECT_EQ(facts.default_linear_velocity, 50);
+    EXPECT_EQ(facts.max_angular_velocity, 0);
+    ASSERT_EQ(facts.increments.size(), 2U);
+    EXPECT_NEAR(facts.increments[1].value, 2.54, 1e-12);
+    EXPECT_EQ(facts.mdi_commands, (std::vector<std::string>{"G0 X0, Home X", "G0 Y0"}));
+    EXPECT_NE(std::ranges::find(facts.program_extensions, ".gif"), facts.program_extensions.end());
+    EXPECT_EQ(std::ranges::find(facts.program_extensions, "images"), facts.program_extensions.end());
+    EXPECT_EQ(facts.program_prefix, fs::weakly_canonical(folder_ / "../../nc_files").string());
+    EXPECT_EQ(status_period_s(loaded->ini, sink_), 0.1);
+    EXPECT_EQ(sink_.count_errors(), 0);
+    EXPECT_NE(sink_.all().back().str().find("junk"), std::string::npos);
+}
+
+TEST_F(UiMachine, CycleTimeIsSecondsOrMilliseconds_J1) {
+    EXPECT_EQ(status_period_s(load("mill_mm", "CYCLE_TIME = 150\n")->ini, sink_), 0.15);
+    EXPECT_EQ(status_period_s(load("mill_mm", "CYCLE_TIME = 0.001\n")->ini, sink_), 0.02);
+    EXPECT_EQ(status_period_s(load("mill_mm")->ini, sink_), 0.05);
+}
+
+TEST_F(UiMachine, ARotaryAxisHasSpeedsAndSteps_J1) {
+    const auto loaded = load("mill_xyza");
+    ASSERT_NE(loaded, nullptr);
+    const auto facts = machine_facts(*loaded, sink_);
+    EXPECT_EQ(facts.axes, "XYZA");
+    EXPECT_GT(facts.max_angular_velocity, 0);
+    EXPECT_GT(facts.default_angular_velocity, 0);
+    EXPECT_TRUE(facts.increments.back().isAngular);
+}
+
+/// All that is made, until the end.
+std::string all_of(ui::web::PieceQueue &pieces) {
+    std::string bytes, piece;
+    while (true) {
+        switch (pieces.take(piece, [] {})) {
+        case ui::web::PieceQueue::State::PIECE: bytes += piece; break;
+        case ui::web::PieceQueue::State::LATER: std::this_thread::yield(); break;
+        case ui::web::PieceQueue::State::END: return bytes;
+        }
+    }
+}
+
+TEST_F(UiMachine, AProgramIsReadAsItsPath_J3) {
+    const auto loaded = load("mill_mm");
+    ASSERT_NE(loaded, nullptr);
+    const std::string path = (folder_ / "p.ngc").string();
+    std::ofstream(path) << "G21 G90 F1000\nG1 X10\nG2 X20 I5\nG1 Q\nM2\n";
+    PathReaders readers(*loaded);
+    const auto pieces = readers.read(path);
+    ASSERT_TRUE(pieces.has_value());
+    const std::string bytes = all_of(**pieces);
+    EXPECT_NE(bytes.find("p.ngc:4"), std::string::npos) << "the error with its place";
+    std::uint32_t kind = 0, size = 0, count = 0;
+    std::memcpy(&kind, bytes.data(), 4);
+    std::memcpy(&size, bytes.data() + 4, 4);
+    std::memcpy(&count, bytes.data() + 8, 4);
+    EXPECT_EQ(kind, 1U);
+    EXPECT_GT(count, 10U);
+    EXPECT_EQ(bytes.size() % 4, 0U);
+}
+
+TEST_F(UiMachine, APipeIsNotRead_J3) {
+    const auto loaded = load("mill_mm");
+    ASSERT_NE(loaded, nullptr);
+    const std::string path = (folder_ / "pipe.ngc").string();
+    ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+    PathReaders readers(*loaded);
+    const auto pieces = readers.read(path);
+    ASSERT_TRUE(pieces.has_value());
+    EXPECT_NE(all_of(**pieces).find("pipe.ngc is no file"), std::string::npos);
+}
+
+TEST_F(UiMachine, ReadersEndWhenNobodyReads_J3) {
+    const auto loaded = load("mill_mm");
+    const std::string path = (folder_ / "long.ngc").string();
+    std::ofstream(path) << "G21 F1000\no1 repeat [10000000]\nG1 X1\nG1 X0\no1 endrepeat\nM2\n";
+    PathReaders readers(*loaded);
+    for (std::size_t i = 0; i < PathReaders::MOST; ++i) {
+        EXPECT_TRUE(readers.read(path).has_value());
+    }
+    EXPECT_FALSE(readers.read(path).has_value());
+}  // they are ended here
+
+}  // namespace
+}  // namespace mw::app

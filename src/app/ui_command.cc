@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// millwright ui: serves a machine that is up to browsers.
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "app/commands.hh"
+#include "app/machine_access.hh"
+#include "app/ui_facts.hh"
+#include "app/ui_path.hh"
+#include "base/own_place.hh"
+#include "base/stop_signals.hh"
+#include "base/text.hh"
+#include "hal/core/hal.hh"
+#include "options/command_line.hh"
+#include "ui/web/api.hh"
+#include "ui/web/server.hh"
+
+namespace mw::app {
+namespace {
+
+constexpr int PRESET_PORT = 8850;
+/// Outcomes are looked for so often while a screen is open, and the machine otherwise.
+constexpr auto TICK = std::chrono::milliseconds(10), IDLE_TICK = std::chrono::milliseconds(100);
+
+struct UiWords {
+    std::string ini, screen;
+    int port = PRESET_PORT;
+    bool isOpening = false;
+    options::Words rest;
+
+    options::CommandLine line() {
+        options::CommandLine line(
+            "millwright ui MACHINE.ini [options]",
+            "Serves the operator's screen of a machine that 'millwright start' keeps up, to browsers on this "
+            "computer. It is a\n"
+            "client: the machine goes on without it, and it waits for a machine that is not up yet. Ends at "
+            "SIGINT or SIGTERM.\n");
+        line.number("--port", "N", "listen on 127.0.0.1:N, 0: on a free port; 8850 without it", port, 0,
+                    65535);
+        line.flag("--open", "show the screen in the desktop's browser", isOpening);
+        line.text("--screen", "FOLDER", "serve the screen from there", screen);
+        line.rest(rest);
+        line.footer("exit status: 0 ended in order, 1 refused or failed, 2 wrong usage\n");
+        return line;
+    }
+    Result<> parse(const std::vector<std::string> &words) {
+        const auto parsed = line().parse(words);
+        if (parsed.has_value() && rest.size() != 1) {
+            return fail("ui needs a machine's INI file", {}, "millwright ui MACHINE.ini");
+        }
+        ini = parsed.has_value() ? rest[0] : "";
+        return parsed;
+    }
+};
+
+/// Installed, and in the build folder.
+std::string screen_folder(const std::string &given) {
+    const std::string here = program_folder();
+    std::error_code error;
+    for (const std::string &folder : {given, here + "/../share/millwright/web"}) {
+        if (!folder.empty()) {
+            const auto whole = std::filesystem::weakly_canonical(folder, error);
+            return error ? folder : whole.string();
+        }
+    }
+    return given;
+}
+
+/// A client of the machine that is up, if it is the one of this INI file.
+Result<client::Client> connect(const std::string &instance, const std::string &ini) {
+    auto client = client::Client::connect(instance, client::Role::OPERATOR);
+    if (!client.has_value()) {
+        return client;
+    }
+    const mailbox::Identity identity = client->identity();
+    if (identity.ini.empty()) {
+        return fail("the machine starts");
+    }
+    if (!identity.isLasting) {
+        return fail("'millwright run' runs a program on a machine of its own");
+    }
+    if (identity.ini.str() != ini) {
+        return fail("the machine that is up was started from " + identity.ini.str() + ", not from " + ini);
+    }
+    return client;
+}
+
+/// Where there is a desktop and a screen to show. Its program goes its own way.
+void open_browser(const std::string &address, const std::string &folder) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(folder + "/index.html", error)) {
+        fmt::print(stderr, "no browser is opened: no screen is installed in {}\n", folder);
+        return;
+    }
+    if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) {
+        return;
+    }
+    std::string program = "xdg-open", words = address;
+    char *arguments[] = {program.data(), words.data(), nullptr};
+    pid_t pid = 0;
+    if (::posix_spawnp(&pid, program.c_str(), nullptr, nullptr, arguments, environ) != 0) {
+        fmt::print(stderr, "no xdg-open shows the screen: open {} in a browser\n", address);
+    }
+}
+
+std::int64_t now_ns() {
+    return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+}
+
+int serve(const UiWords &words, const machine::LoadedConfig &loaded, diag::Sink &sink) {
+    auto server = ui::web::Server::listen({.port = words.port, .limits = {}});
+    if (!server.has_value()) {
+        sink.error(server.error());
+        return 1;
+    }
+    const std::string ini = absolute_path(words.ini), instance = hal::default_instance();
+    ui::web::ApiSetup setup;
+    setup.facts = machine_facts(loaded, sink);
+    setup.facts.ini = ini;
+    setup.facts.instance = instance;
+    setup.screens.connect = [instance, ini] { return connect(instance, ini); };
+    setup.screens.version = MW_VERSION;
+    setup.screens.status_period_ns = static_cast<std::int64_t>(status_period_s(loaded.ini, sink) * 1e9);
+    const std::string folder = screen_folder(words.screen);
+    setup.screen_folder = folder;
+    PathReaders readers(loaded);
+    setup.read_path = [&readers](const std::string &path) { return readers.read(path); };
+
+    ui::web::Worker worker([&server](std::function<void()> act) { (*server)->post(std::move(act)); });
+    ui::web::Api api(**server, worker, std::move(setup), now_ns);
+    const std::string address = fmt::format("http://127.0.0.1:{}/", (*server)->port());
+    fmt::print("screen of {}: {}\n", loaded.machine.name, address);
+    std::fflush(stdout);
+    if (words.isOpening) {
+        open_browser(address, folder);
+    }
+    while (stop_signal == 0) {
+        (*server)->run_for(api, api.count_screens() > 0 ? TICK : IDLE_TICK);
+        api.tick();
+        ::waitpid(-1, nullptr, WNOHANG);  // the browser's starter
+    }
+    worker.end();
+    return 0;
+}
+
+}  // namespace
+
+int command_ui(const std::vector<std::string> &arguments) {
+    UiWords words;
+    if (options::wantsHelp(arguments)) {
+        fmt::print("{}", words.line().help());
+        return 0;
+    }
+    if (const auto parsed = words.parse(arguments); !parsed.has_value()) {
+        fmt::print(stderr, "millwright ui: {}\n", parsed.error().str());
+        return 2;
+    }
+    catch_stop_signals();
+    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", d.str()); });
+    const auto loaded = machine::LoadedConfig::load(words.ini, sink);
+    return loaded == nullptr ? 1 : serve(words, *loaded, sink);
+}
+
+}  // namespace mw::app

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "app/ui_facts.hh"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "base/text.hh"
+
+namespace mw::app {
+namespace {
+
+using ui::web::Increment;
+
+constexpr double MM_PER_INCH = 25.4;
+
+/// A number of the INI file above 0; a warning where it is none.
+std::optional<double> number(const config::IniFile &ini, const char *section, const char *key,
+                             diag::Sink &sink) {
+    const config::IniEntry *entry = ini.find(section, key);
+    if (entry == nullptr) {
+        return std::nullopt;
+    }
+    const auto value = parse_double(entry->value);
+    if (!value.has_value() || *value <= 0) {
+        sink.warning("[" + entry->section + "]" + entry->key + " is '" + entry->value +
+                         "', which is no number above 0: the screen does without it",
+                     entry->place);
+        return std::nullopt;
+    }
+    return value;
+}
+
+struct Key {
+    const char *section, *key;
+};
+
+std::optional<double> first_of(const config::IniFile &ini, std::initializer_list<Key> keys,
+                               diag::Sink &sink) {
+    for (const Key &key : keys) {
+        if (const auto value = number(ini, key.section, key.key, sink)) {
+            return value;
+        }
+    }
+    return std::nullopt;
+}
+
+/// "1/8" or ".5".
+std::optional<double> parse_fraction(std::string_view text) {
+    const std::size_t slash = text.find('/');
+    if (slash == std::string_view::npos) {
+        return parse_double(text);
+    }
+    const auto above = parse_double(text.substr(0, slash)), below = parse_double(text.substr(slash + 1));
+    const bool isWhole = above.has_value() && below.has_value() && *below != 0;
+    return isWhole ? std::optional(*above / *below) : std::nullopt;
+}
+
+std::optional<Increment> parse_increment(std::string_view text, double unit_mm) {
+    constexpr std::array<std::pair<std::string_view, double>, 7> UNITS_MM{{{"mm", 1},
+                                                                           {"cm", 10},
+                                                                           {"um", 0.001},
+                                                                           {"in", MM_PER_INCH},
+                                                                           {"inch", MM_PER_INCH},
+                                                                           {"mil", MM_PER_INCH / 1000},
+                                                                           {"mils", MM_PER_INCH / 1000}}};
+    text = trim(text);
+    const std::size_t digits = std::min(text.find_first_not_of("0123456789./+-"), text.size());
+    const auto value = parse_fraction(trim(text.substr(0, digits)));
+    const std::string unit = to_lower(trim(text.substr(digits)));
+    if (!value.has_value() || *value <= 0) {
+        return std::nullopt;
+    }
+    if (unit == "deg" || unit == "degree" || unit == "degrees") {
+        return Increment{std::string(text), *value, true};
+    }
+    const auto found = std::ranges::find(UNITS_MM, unit, &std::pair<std::string_view, double>::first);
+    if (!unit.empty() && found == UNITS_MM.end()) {
+        return std::nullopt;
+    }
+    return Increment{std::string(text), unit.empty() ? *value : *value * found->second / unit_mm, false};
+}
+
+std::vector<std::string> split_list(std::string_view text) {
+    if (text.find(',') == std::string_view::npos) {
+        return split_words(text);
+    }
+    std::vector<std::string> parts;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find(','), text.size());
+        if (const auto part = trim(text.substr(0, end)); !part.empty()) {
+            parts.emplace_back(part);
+        }
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return parts;
+}
+
+std::vector<Increment> increments_of(const machine::LoadedConfig &loaded, bool hasRotary, diag::Sink &sink) {
+    const double unit_mm = loaded.machine.isMetric ? 1 : MM_PER_INCH;
+    std::vector<std::string> bad;
+    const config::IniEntry *linear = loaded.ini.find("DISPLAY", "INCREMENTS");
+    const char *const presets =
+        loaded.machine.isMetric ? "10 mm, 1 mm, 0.1 mm, 0.01 mm" : "1 in, 0.1 in, 0.01 in, 0.001 in";
+    std::vector<Increment> all = parse_increments(linear != nullptr ? linear->value : presets, unit_mm, bad);
+    const config::IniEntry *angular = loaded.ini.find("DISPLAY", "ANGULAR_INCREMENTS");
+    if (hasRotary) {
+        for (Increment one :
+             parse_increments(angular != nullptr ? angular->value : "90, 10, 1, 0.1", 1, bad)) {
+            one.isAngular = true;
+            all.push_back(std::move(one));
+        }
+    }
+    for (const std::string &one : bad) {
+        sink.warning("[DISPLAY]INCREMENTS: '" + one + "' is no distance that the screen can offer",
+                     linear != nullptr ? linear->place : SourcePlace{});
+    }
+    return all;
+}
+
+std::string program_folder(const machine::LoadedConfig &loaded) {
+    const config::IniEntry *entry = loaded.ini.find("DISPLAY", "PROGRAM_PREFIX");
+    const std::string named = entry == nullptr ? "." : entry->value.substr(0, entry->value.find(':'));
+    const std::string folder = loaded.ini.resolve_path(named);
+    std::error_code error;
+    const auto whole = std::filesystem::weakly_canonical(folder, error);
+    return error ? folder : whole.string();
+}
+
+/// Of programs, and of what [FILTER] makes programs from.
+std::vector<std::string> extensions_of(const config::IniFile &ini) {
+    std::vector<std::string> all{".ngc", ".nc", ".tap", ".cnc", ".gcode"};
+    for (const config::IniEntry *entry : ini.find_all("FILTER", "PROGRAM_EXTENSION")) {
+        std::string list = entry->value;
+        std::ranges::replace(list, ',', ' ');
+        for (const std::string &word : split_words(list)) {
+            if (!word.starts_with('.') || word.size() == 1) {
+                break;  // the description
+            }
+            if (std::ranges::find(all, to_lower(word)) == all.end()) {
+                all.push_back(to_lower(word));
+            }
+        }
+    }
+    return all;
+}
+
+/// The highest speed of any axis of a kind.
+std::optional<double> fastest_axis(const machine::LoadedConfig &loaded, bool isAngular, diag::Sink &sink) {
+    std::optional<double> most;
+    for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
+        const std::string section = std::string("AXIS_") + geom::AXIS_LETTERS[axis];
+        if ((loaded.machine.axis_mask >> axis & 1U) != 0 && geom::isAngular(axis) == isAngular) {
+            most = std::max(most, number(loaded.ini, section.c_str(), "MAX_VELOCITY", sink));
+        }
+    }
+    return most;
+}
+
+}  // namespace
+
+std::vector<Increment> parse_increments(std::string_view text, double unit_mm,
+                                        std::vector<std::string> &bad) {
+    std::vector<Increment> all;
+    for (const std::string &one : split_list(text)) {
+        if (auto increment = parse_increment(one, unit_mm)) {
+            all.push_back(std::move(*increment));
+        } else if (!equals_ignoring_case(one, "continuous")) {  // which every screen offers
+            bad.push_back(one);
+        }
+    }
+    return all;
+}
+
+double status_period_s(const config::IniFile &ini, diag::Sink &sink) {
+    constexpr double PRESET_S = 0.05, LEAST_S = 0.02, MOST_S = 0.2, MS_PER_S = 1000;
+    const double given = number(ini, "DISPLAY", "CYCLE_TIME", sink).value_or(PRESET_S);
+    return std::clamp(given >= 1 ? given / MS_PER_S : given, LEAST_S, MOST_S);
+}
+
+ui::web::MachineFacts machine_facts(const machine::LoadedConfig &loaded, diag::Sink &sink) {
+    const config::IniFile &ini = loaded.ini;
+    const machine::MachineConfig &machine = loaded.machine;
+    ui::web::MachineFacts facts;
+    facts.name = machine.name;
+    bool hasRotary = false;
+    for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
+        if ((machine.axis_mask >> axis & 1U) != 0) {
+            facts.axes += geom::AXIS_LETTERS[axis];
+            hasRotary = hasRotary || geom::isAngular(axis);
+        }
+    }
+    facts.joints = machine.num_joints;
+    for (int joint = 0; joint < machine.num_joints; ++joint) {
+        const config::IniEntry *kind = ini.find("JOINT_" + std::to_string(joint), "TYPE");
+        const bool isAngular = kind != nullptr && equals_ignoring_case(kind->value, "ANGULAR");
+        facts.joint_kinds.emplace_back(isAngular ? "ANGULAR" : "LINEAR");
+    }
+    facts.isHomingForced = machine.task.isHomingForced;
+    facts.linear_unit = machine.isMetric ? "mm" : "inch";
+    facts.program_prefix = program_folder(loaded);
+    facts.max_linear_velocity =
+        first_of(ini, {{"DISPLAY", "MAX_LINEAR_VELOCITY"}, {"TRAJ", "MAX_LINEAR_VELOCITY"}}, sink)
+            .value_or(fastest_axis(loaded, false, sink).value_or(1));
+    facts.default_linear_velocity = std::min(
+        facts.max_linear_velocity,
+        first_of(ini, {{"DISPLAY", "DEFAULT_LINEAR_VELOCITY"}, {"TRAJ", "DEFAULT_LINEAR_VELOCITY"}}, sink)
+            .value_or(facts.max_linear_velocity / 4));
+    if (hasRotary) {
+        facts.max_angular_velocity =
+            first_of(ini, {{"DISPLAY", "MAX_ANGULAR_VELOCITY"}, {"TRAJ", "MAX_ANGULAR_VELOCITY"}}, sink)
+                .value_or(fastest_axis(loaded, true, sink).value_or(1));
+        facts.default_angular_velocity = std::min(
+            facts.max_angular_velocity,
+            first_of(ini, {{"DISPLAY", "DEFAULT_ANGULAR_VELOCITY"}, {"TRAJ", "DEFAULT_ANGULAR_VELOCITY"}},
+                     sink)
+                .value_or(facts.max_angular_velocity / 4));
+    }
+    facts.increments = increments_of(loaded, hasRotary, sink);
+    for (const config::IniEntry &entry : ini.entries()) {
+        if (entry.section == "MDI_COMMAND_LIST" && entry.key.starts_with("MDI_COMMAND")) {
+            facts.mdi_commands.push_back(entry.value);
+        }
+    }
+    facts.program_extensions = extensions_of(ini);
+    return facts;
+}
+
+}  // namespace mw::app

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "ui/web/api.hh"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/text.hh"
+
+namespace mw::ui::web {
+namespace {
+
+constexpr std::string_view API = "/api/", FILES = "/api/files/";
+
+Response document(std::string body) {
+    Response response;
+    response.body = std::move(body);
+    return response;
+}
+
+Response wrong_method(const Request &request) {
+    return error_response(400, "'" + printable(request.method) + "' is not possible with " +
+                                   printable(request.path));
+}
+
+/// A whole number of the query.
+std::optional<std::uint64_t> number(const Request &request, const char *name) {
+    const auto found = request.query.find(name);
+    return found == request.query.end() ? std::nullopt : parse_uint(found->second);
+}
+
+}  // namespace
+
+Api::Api(Sockets &sockets, Elsewhere &elsewhere, ApiSetup setup, Clock clock)
+    : elsewhere_(elsewhere), setup_(std::move(setup)), clock_(std::move(clock)),
+      screens_(sockets, setup_.screens),
+      files_(setup_.facts.program_prefix, setup_.facts.program_extensions) {}
+
+void Api::answer(const Request &request, Reply reply) {
+    const std::string &path = request.path;
+    if (path == "/api/files" || path.starts_with(FILES)) {
+        answer_files(request, path.size() > FILES.size() ? path.substr(FILES.size()) : "", std::move(reply));
+        return;
+    }
+    if (request.method != "GET") {
+        reply(wrong_method(request));
+    } else if (path == "/api/schema") {
+        reply(document(schema_document()));
+    } else if (path == "/api/machine") {
+        reply(document(machine_document(setup_.facts)));
+    } else if (path == "/api/path") {
+        reply(answer_path(request));
+    } else if (path == "/metrics") {
+        reply(metrics());
+    } else if (path.starts_with(API)) {
+        reply(error_response(404, "there is no '" + path + "'; docs/api.md names what there is"));
+    } else {
+        elsewhere_.run([folder = setup_.screen_folder, path] { return screen_file(folder, path); },
+                       std::move(reply));
+    }
+}
+
+void Api::answer_files(const Request &request, const std::string &name, Reply reply) {
+    if (name.empty()) {
+        if (request.method != "GET") {
+            reply(wrong_method(request));
+            return;
+        }
+        elsewhere_.run([this] { return files_.list(); }, std::move(reply));
+    } else if (request.method == "GET") {
+        elsewhere_.run([this, name] { return files_.read(name); }, std::move(reply));
+    } else if (request.method == "DELETE") {
+        elsewhere_.run([this, name] { return files_.remove(name); }, std::move(reply));
+    } else if (request.method == "PUT") {
+        write_file(request, name, std::move(reply));
+    } else {
+        reply(wrong_method(request));
+    }
+}
+
+void Api::write_file(const Request &request, const std::string &name, Reply reply) {
+    const bool isPiece = request.query.contains("offset") || request.query.contains("size");
+    const auto offset = isPiece ? number(request, "offset") : 0;
+    const auto size = isPiece ? number(request, "size") : request.body.size();
+    if (!offset.has_value() || !size.has_value()) {
+        reply(error_response(400, "a piece of a file needs ?offset=N&size=TOTAL, whole numbers of bytes"));
+        return;
+    }
+    elsewhere_.run([this, name, offset = *offset, size = *size,
+                    piece = request.body] { return files_.write(name, offset, size, piece); },
+                   std::move(reply));
+}
+
+Response Api::answer_path(const Request &request) {
+    const auto name = request.query.find("file");
+    if (name == request.query.end()) {
+        return error_response(400, "the path of which program? /api/path?file=NAME");
+    }
+    const auto path = files_.path_of(name->second);
+    if (!path.has_value()) {
+        return error_response(400, path.error().str());
+    }
+    auto pieces = setup_.read_path(*path);
+    if (!pieces.has_value()) {
+        return error_response(429, pieces.error().str());
+    }
+    Response response;
+    response.type = "application/octet-stream";
+    response.pieces = std::move(*pieces);
+    return response;
+}
+
+Response Api::metrics() const {
+    const Counts &counts = screens_.counts();
+    Response response;
+    response.type = "text/plain; version=0.0.4; charset=utf-8";
+    const auto add = [&response](const char *name, const char *kind, const char *help, double value) {
+        response.body +=
+            fmt::format("# HELP millwright_{0} {1}\n# TYPE millwright_{0} {2}\nmillwright_{0} {3}\n", name,
+                        help, kind, to_text(value));
+    };
+    add("machine_up", "gauge", "1: the server is a client of a machine", screens_.isMachineUp() ? 1 : 0);
+    add("screens", "gauge", "open sockets", static_cast<double>(screens_.count()));
+    add("commands_total", "counter", "commands of screens, without stops",
+        static_cast<double>(counts.commands));
+    add("stops_total", "counter", "stops of screens", static_cast<double>(counts.stops));
+    add("refused_total", "counter", "commands refused", static_cast<double>(counts.refused));
+    add("statuses_total", "counter", "statuses sent", static_cast<double>(counts.statuses));
+    add("messages_total", "counter", "messages to the operator", static_cast<double>(counts.messages));
+    if (const msgs::MachineStatus *status = screens_.status()) {
+        add("task_cycles_total", "counter", "cycles of task", static_cast<double>(status->cycle));
+        add("servo_cycles_total", "counter", "cycles of motion", static_cast<double>(status->motion.cycle));
+        add("state", "gauge", "1 e-stop, 2 reset, 3 off, 4 on", static_cast<double>(status->task.state));
+        add("interpreter_state", "gauge", "1 idle, 2 reading, 3 paused, 4 waiting",
+            static_cast<double>(status->task.interp_state));
+        add("programs_ended_total", "counter", "programs that have ended",
+            static_cast<double>(status->task.programs_ended));
+    }
+    return response;
+}
+
+}  // namespace mw::ui::web

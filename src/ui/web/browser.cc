@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "ui/web/browser.hh"
+
+#include "base/overloaded.hh"
+#include "mailbox/stops.hh"
+
+namespace mw::ui::web {
+namespace {
+
+/// Motion ends the jog by itself when nobody renews it. Not where jogs have no leases.
+template <class Jog>
+bool hasLease(const Jog &jog) {
+    if constexpr (requires { jog.lease_ms; }) {
+        return jog.lease_ms > 0;
+    } else {
+        return false;
+    }
+}
+
+/// Goes on for ever when the browser freezes, or the server is killed.
+bool isEndless(const msgs::Command &command) {
+    const auto *jog = std::get_if<msgs::JogContinuous>(&command);
+    return jog != nullptr && !hasLease(*jog);
+}
+
+}  // namespace
+
+void Browser::leave() {
+    for (const Followed &one : std::exchange(followed_, {})) {
+        send_(outcome_text(one.id, {msgs::Progress::FAILED, "the machine is gone"}));
+    }
+    client_.reset();
+    jogs_.clear();
+    hasWhole_ = false;
+}
+
+void Browser::stop_jogs() {
+    for (const auto &[isJoint, index] : std::exchange(jogs_, {})) {
+        if (client_.has_value()) {
+            static_cast<void>(client_->post(msgs::JogStop{isJoint, index}));
+        }
+    }
+}
+
+void Browser::receive(std::string_view text, std::int64_t now_ns) {
+    heard_ns_ = now_ns;
+    begun_.reset();
+    const auto read = read_text(text);
+    if (!read.has_value()) {
+        send_(error_response(400, read.error().str()).body);
+        return;
+    }
+    std::visit(Overloaded{[this](const Ping &ping) { send_(pong_text(ping)); },
+                          [this, now_ns](const Ask &ask) { carry_out(ask, now_ns); }},
+               *read);
+}
+
+void Browser::refuse(std::uint64_t id, std::string reason) {
+    ++counts_.refused;
+    send_(outcome_text(id, {msgs::Progress::REFUSED, std::move(reason)}));
+}
+
+void Browser::carry_out(const Ask &ask, std::int64_t now_ns) {
+    if (!ask.command.has_value()) {
+        refuse(ask.id, ask.command.error().str());
+        return;
+    }
+    const msgs::Command &command = *ask.command;
+    const bool isStop = mailbox::isStop(command);
+    ++(isStop ? counts_.stops : counts_.commands);
+    if (!client_.has_value()) {
+        refuse(ask.id, "no machine is up");
+        return;
+    }
+    if (isEndless(command)) {
+        refuse(ask.id,
+               "a continuous jog from a screen needs a lease, lease_ms, so that it ends when the screen "
+               "is gone; jog by increments without one");
+        return;
+    }
+    const bool isFollowed = followed_.size() < MOST_FOLLOWED;
+    if (!isStop && !isFollowed) {
+        refuse(ask.id, "as many commands as can be are under way");
+        return;
+    }
+    if (!isStop && !rate_.take(now_ns)) {
+        refuse(ask.id, "too many commands in a second");
+        return;
+    }
+    const auto posted = client_->post(command);
+    if (!posted.has_value()) {
+        refuse(ask.id, posted.error().str());
+        return;
+    }
+    note_jog(command);
+    if (!isFollowed) {  // never the oldest: what takes long is what a person waits for
+        send_(outcome_text(ask.id, {msgs::Progress::FAILED,
+                                    "it was handed over; too many others are under way to follow it"}));
+        return;
+    }
+    followed_.push_back({ask.id, *posted, now_ns});
+}
+
+void Browser::note_jog(const msgs::Command &command) {
+    const auto begin = [this](bool isJoint, int index) { begun_ = *jogs_.emplace(isJoint, index).first; };
+    if (const auto *jog = std::get_if<msgs::JogContinuous>(&command)) {
+        begin(jog->isJoint, jog->index);
+    } else if (const auto *step = std::get_if<msgs::JogIncrement>(&command)) {
+        begin(step->isJoint, step->index);
+    } else if (const auto *way = std::get_if<msgs::JogAbsolute>(&command)) {
+        begin(way->isJoint, way->index);
+    } else if (const auto *stop = std::get_if<msgs::JogStop>(&command)) {
+        jogs_.erase({stop->isJoint, stop->index});
+    }
+}
+
+void Browser::follow(std::int64_t now_ns) {
+    if (!client_.has_value()) {
+        return;
+    }
+    std::erase_if(followed_, [this, now_ns](Followed &one) {
+        const client::Outcome outcome = client_->outcome(one.serial);
+        const bool isOver = outcome.progress != msgs::Progress::STARTED;
+        const bool isToBeTold = isOver || (!one.isTold && now_ns - one.since_ns >= SOON_NS);
+        if (isToBeTold) {
+            one.isTold = true;
+            counts_.refused += outcome.progress == msgs::Progress::REFUSED ? 1 : 0;
+            send_(outcome_text(one.id, outcome));
+        }
+        return isOver;
+    });
+}
+
+void Browser::tell_status(const msgs::MachineStatus &status) {
+    if (!hasWhole_) {
+        hasWhole_ = true;
+        unread_ = 0;
+        ++counts_.statuses;
+        send_(status_text(delta_.whole(status), true));
+        return;
+    }
+    const PartMask parts = std::exchange(unread_, 0);
+    const std::string changes = parts == 0 ? "" : delta_.next(status, parts);
+    if (!changes.empty()) {
+        ++counts_.statuses;
+        send_(status_text(changes, false));
+    }
+}
+
+}  // namespace mw::ui::web

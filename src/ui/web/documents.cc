@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "ui/web/documents.hh"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "mailbox/stops.hh"
+#include "msgs/catalogue.hh"
+#include "msgs/value.hh"
+
+namespace mw::ui::web {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Of the largest command, with room.
+constexpr int MOST_LEVELS = 16;
+/// Numbers beyond are not exact in a browser.
+constexpr std::uint64_t MOST_ID = std::uint64_t{1} << 53;
+
+std::string text_of(const Json &json) {
+    constexpr int COMPACT = -1;
+    constexpr bool IS_ASCII = false;
+    return json.dump(COMPACT, ' ', IS_ASCII, Json::error_handler_t::replace);
+}
+
+std::string one(const char *key, Json value) {
+    Json json = Json::object();
+    json[key] = std::move(value);
+    return text_of(json);
+}
+
+/// Nothing when it is not JSON, or nested so deeply that it is no command.
+Json parse(std::string_view text) {
+    constexpr bool HAS_EXCEPTIONS = false;
+    bool isDeep = false;
+    const auto look = [&isDeep](int depth, Json::parse_event_t, Json &) {
+        isDeep = isDeep || depth > MOST_LEVELS;
+        return !isDeep;
+    };
+    Json json = Json::parse(text.begin(), text.end(), look, HAS_EXCEPTIONS);
+    return isDeep ? Json(Json::value_t::discarded) : json;
+}
+
+const char *kind_name(msgs::Kind kind) {
+    switch (kind) {
+    case msgs::Kind::BOOL: return "bool";
+    case msgs::Kind::INTEGER: return "integer";
+    case msgs::Kind::UNSIGNED: return "unsigned";
+    case msgs::Kind::REAL: return "real";
+    case msgs::Kind::NAMED: return "name";
+    case msgs::Kind::TEXT:
+    case msgs::Kind::FIXED_TEXT: return "text";
+    case msgs::Kind::PARTS: return "parts";
+    }
+    return "";
+}
+
+Json field_document(const msgs::Field &field) {
+    const msgs::Type &type = field.type;
+    Json json{{"name", field.name}, {"type", kind_name(type.kind)}};
+    if (type.kind == msgs::Kind::PARTS) {
+        json["parts"] = type.parts->name;
+    }
+    if (!type.names.empty()) {
+        Json &names = json["names"] = Json::array();
+        for (const msgs::Name &name : type.names) {
+            names.push_back(name.name);
+        }
+    }
+    if (type.list != nullptr) {
+        json["list"] = true;
+    } else if (type.isArray) {
+        json["count"] = type.count;
+    }
+    const bool isText = type.kind == msgs::Kind::TEXT || type.kind == msgs::Kind::FIXED_TEXT;
+    if (std::isfinite(field.range.min)) {
+        json["min"] = field.range.min;
+    }
+    if (std::isfinite(field.range.max)) {
+        json["max"] = field.range.max;
+    } else if (isText) {
+        json["max"] = msgs::longest_text(field);
+    }
+    json["unit"] = field.unit;
+    json["doc"] = field.doc;
+    if (field.presence == msgs::Presence::OPTIONAL) {
+        json["optional"] = true;
+    }
+    return json;
+}
+
+Json declaration_document(const msgs::Declaration &declaration) {
+    Json json{{"name", declaration.name}, {"number", declaration.number}, {"doc", declaration.doc}};
+    Json &fields = json["fields"] = Json::array();
+    for (const msgs::Field &field : declaration.fields) {
+        fields.push_back(field_document(field));
+    }
+    return json;
+}
+
+Json declarations_document(std::span<const msgs::Declaration *const> declarations) {
+    Json json = Json::array();
+    for (const msgs::Declaration *declaration : declarations) {
+        json.push_back(declaration_document(*declaration));
+    }
+    return json;
+}
+
+}  // namespace
+
+Response error_response(int status, std::string_view text) {
+    Response response;
+    response.status = status;
+    response.body = one("error", std::string(text));
+    return response;
+}
+
+std::string schema_document() {
+    return text_of(Json{{"commands", declarations_document(msgs::command_declarations())},
+                        {"status", declarations_document(msgs::status_declarations())}});
+}
+
+std::string machine_document(const MachineFacts &facts) {
+    Json increments = Json::array();
+    for (const Increment &increment : facts.increments) {
+        increments.push_back(
+            {{"text", increment.text}, {"value", increment.value}, {"angular", increment.isAngular}});
+    }
+    return text_of(Json{{"name", facts.name},
+                        {"ini", facts.ini},
+                        {"instance", facts.instance},
+                        {"axes", facts.axes},
+                        {"joints", facts.joints},
+                        {"joint_kinds", facts.joint_kinds},
+                        {"is_homing_forced", facts.isHomingForced},
+                        {"linear_unit", facts.linear_unit},
+                        {"program_prefix", facts.program_prefix},
+                        {"max_linear_velocity", facts.max_linear_velocity},
+                        {"default_linear_velocity", facts.default_linear_velocity},
+                        {"max_angular_velocity", facts.max_angular_velocity},
+                        {"default_angular_velocity", facts.default_angular_velocity},
+                        {"increments", std::move(increments)},
+                        {"mdi_commands", facts.mdi_commands},
+                        {"program_extensions", facts.program_extensions}});
+}
+
+std::string files_document(std::span<const FileFacts> files) {
+    Json list = Json::array();
+    for (const FileFacts &file : files) {
+        list.push_back({{"name", file.name}, {"size", file.size}, {"modified_s", file.modified_s}});
+    }
+    return one("files", std::move(list));
+}
+
+Result<std::variant<Ping, Ask>> read_text(std::string_view text) {
+    const Json json = parse(text);
+    if (!json.is_object()) {
+        return fail("this is no JSON object of at most 16 levels");
+    }
+    const auto ping = json.find("ping");
+    if (ping != json.end() && ping->is_number() && json.size() == 1) {
+        return Ping{ping->dump()};
+    }
+    const auto id = json.find("id");
+    const auto command = json.find("command");
+    if (id == json.end() || command == json.end() || json.size() != 2) {
+        return fail(R"(a text is {"ping": number} or {"id": number, "command": {...}})");
+    }
+    if (!id->is_number_unsigned() || id->get<std::uint64_t>() > MOST_ID) {
+        return fail("the id of a command is a whole number from 0 to 2^53");
+    }
+    return Ask{id->get<std::uint64_t>(), msgs::command_from_json(text_of(*command))};
+}
+
+std::string hello_text(const Hello &hello) {
+    return one("hello", Json{{"version", hello.version},
+                             {"client", hello.client},
+                             {"role", "operate"},
+                             {"session", hello.session}});
+}
+
+std::string pong_text(const Ping &ping) {
+    return R"({"pong":)" + ping.number + '}';
+}
+
+std::string outcome_text(std::uint64_t id, const client::Outcome &outcome) {
+    const auto found = std::ranges::find(msgs::NAMES<msgs::Progress>,
+                                         static_cast<std::int64_t>(outcome.progress), &msgs::Name::value);
+    Json json{{"id", id}, {"progress", found->name}};
+    if (!outcome.reason.empty()) {
+        json["reason"] = outcome.reason;
+    }
+    return one("outcome", std::move(json));
+}
+
+std::string message_text(const client::Client::Message &message) {
+    const auto found = std::ranges::find(msgs::NAMES<msgs::MessageKind>,
+                                         static_cast<std::int64_t>(message.kind), &msgs::Name::value);
+    const bool isKnown = found != msgs::NAMES<msgs::MessageKind>.end();
+    return one("message", Json{{"number", message.number},
+                               {"kind", std::string("OPERATOR_") + (isKnown ? found->name : "TEXT")},
+                               {"text", message.text}});
+}
+
+std::string machine_up_text(std::uint32_t client) {
+    return text_of(Json{{"machine", "up"}, {"client", client}});
+}
+
+std::string machine_gone_text(std::string_view reason) {
+    return text_of(Json{{"machine", "gone"}, {"reason", std::string(reason)}});
+}
+
+std::string status_text(std::string_view status, bool isWhole) {
+    return R"({"status":)" + std::string(status) + (isWhole ? R"(,"full":true})" : "}");
+}
+
+}  // namespace mw::ui::web

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What comes from a browser and what it gets, without the library that carries it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "ui/web/piece_queue.hh"
+
+namespace mw::ui::web {
+
+struct Request {
+    std::string method;  ///< "GET"
+    std::string path;    ///< decoded, without the query
+    std::map<std::string, std::string> query;
+    std::string body;
+};
+
+/// A path with its query as it stands in a request; nothing when it is not one (no leading '/', a broken
+/// escape, a control character).
+std::optional<Request> parse_target(std::string_view target);
+
+struct Response {
+    int status = 200;
+    std::string type = "application/json";
+    std::string body{};
+    bool isKept = false;  ///< the browser need never ask again: another content has another name
+    std::shared_ptr<PieceQueue> pieces{};  ///< instead of a body
+};
+
+/// To be called once, in the server's thread.
+using Reply = std::function<void(Response)>;
+
+/// A browser's open socket. Never 0, never given twice.
+using SessionId = std::uint64_t;
+
+/// What may be done with open sockets. [server's thread]
+class Sockets {
+  public:
+    virtual ~Sockets() = default;
+    /// After all that was sent before. A browser that lets too much wait is disconnected.
+    virtual void send(SessionId session, std::string text) = 0;
+    /// Nothing waits to be sent.
+    virtual bool isIdle(SessionId session) const = 0;
+    virtual void close(SessionId session) = 0;
+};
+
+/// Who answers. Never called from within a call to Sockets. [server's thread]
+class Application {
+  public:
+    virtual ~Application() = default;
+    virtual void answer(const Request &request, Reply reply) = 0;
+    virtual void opened(SessionId session) = 0;
+    virtual void received(SessionId session, std::string_view text) = 0;
+    virtual void closed(SessionId session) = 0;
+};
+
+}  // namespace mw::ui::web

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Who may ask, and how often.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.hh"
+
+namespace mw::ui::web {
+
+/// What a browser says about the page that asks; empty where it says nothing.
+struct Asker {
+    std::string_view host;    ///< header Host
+    std::string_view origin;  ///< header Origin
+    std::string_view site;    ///< header Sec-Fetch-Site
+};
+
+/// Lets pages of this server in and no others: neither those of other sites, nor those of a name that
+/// somebody else's name server leads here.
+class Gate {
+  public:
+    /// For a server on 127.0.0.1.
+    explicit Gate(int port);
+
+    Result<> check(const Asker &asker, std::string_view path) const;
+
+  private:
+    std::vector<std::string> hosts_;
+};
+
+/// A bucket of `at_once` requests that fills by `per_s`.
+class RateLimit {
+  public:
+    RateLimit(double per_s, double at_once) : per_s_(per_s), most_(at_once), left_(at_once) {}
+
+    /// False: not now. Time never goes back.
+    bool take(std::int64_t now_ns);
+
+  private:
+    double per_s_, most_, left_;
+    std::int64_t last_ns_ = 0;
+};
+
+}  // namespace mw::ui::web

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What a screen has to know of the machine before its status.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace mw::ui::web {
+
+/// A distance that a jog button offers.
+struct Increment {
+    std::string text;  ///< as it is shown, "0.1 in"
+    double value = 0;  ///< [machine units or degrees]
+    bool isAngular = false;
+};
+
+/// Lengths in machine units, angles in degrees, speeds in those per second.
+struct MachineFacts {
+    std::string name, ini, instance;
+    std::string axes;  ///< "XYZA"
+    int joints = 0;
+    std::vector<std::string> joint_kinds;  ///< of each joint, "LINEAR" or "ANGULAR"
+    bool isHomingForced = true;            ///< programs and MDI want homed joints
+    std::string linear_unit;               ///< "mm" or "inch"
+    std::string program_prefix;            ///< folder of programs
+    double max_linear_velocity = 0, default_linear_velocity = 0;
+    double max_angular_velocity = 0, default_angular_velocity = 0;
+    std::vector<Increment> increments;
+    std::vector<std::string> mdi_commands;
+    std::vector<std::string> program_extensions;  ///< with their dot, in lower case
+};
+
+}  // namespace mw::ui::web

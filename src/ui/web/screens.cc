@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "ui/web/screens.hh"
+
+#include <random>
+
+#include <fmt/format.h>
+
+namespace mw::ui::web {
+namespace {
+
+std::string random_name() {
+    std::random_device random;
+    return fmt::format("{:08x}{:08x}", random(), random());
+}
+
+}  // namespace
+
+Screens::Screens(Sockets &sockets, ScreensSetup setup)
+    : sockets_(sockets), setup_(std::move(setup)), session_(random_name()) {}
+
+const msgs::MachineStatus *Screens::status() const {
+    return watch_.has_value() && hasStatus_ ? &watch_->status() : nullptr;
+}
+
+bool Screens::join(Browser &browser) {
+    auto client = setup_.connect();
+    if (!client.has_value()) {
+        reason_ = client.error().str();
+        return false;
+    }
+    browser.join(std::move(*client));
+    return true;
+}
+
+void Screens::opened(SessionId session, std::int64_t now_ns) {
+    auto made = std::make_unique<Browser>(
+        [this, session](std::string text) { sockets_.send(session, std::move(text)); }, counts_, now_ns);
+    Browser &browser = *made;
+    browsers_[session] = std::move(made);
+    const bool isJoined = isMachineUp() && join(browser);
+    browser.tell(hello_text({setup_.version, browser.number(), session_}));
+    if (!isJoined) {
+        browser.tell(machine_gone_text(reason_));
+        return;
+    }
+    if (const msgs::MachineStatus *now = status()) {
+        browser.tell_status(*now);
+    }
+    for (const std::string &message : kept_) {
+        browser.tell(message);
+    }
+}
+
+void Screens::received(SessionId session, std::string_view text, std::int64_t now_ns) {
+    const auto found = browsers_.find(session);
+    if (found == browsers_.end()) {
+        return;
+    }
+    found->second->receive(text, now_ns);
+    const auto &begun = found->second->begun();
+    if (!begun.has_value()) {
+        return;
+    }
+    for (const auto &[other, browser] : browsers_) {
+        if (other != session) {
+            browser->give_up(*begun);
+        }
+    }
+}
+
+void Screens::closed(SessionId session) {
+    browsers_.erase(session);
+}
+
+void Screens::tick(std::int64_t now_ns) {
+    if (now_ns >= next_look_ns_) {
+        next_look_ns_ = now_ns + LOOK_NS;
+        look_for_machine();
+        for (const auto &[session, browser] : browsers_) {
+            if (browser->isSilent(now_ns)) {
+                sockets_.close(session);
+            }
+        }
+    }
+    if (!isMachineUp()) {
+        return;
+    }
+    for (const auto &[session, browser] : browsers_) {
+        browser->follow(now_ns);
+    }
+    if (now_ns >= next_status_ns_) {
+        next_status_ns_ = now_ns + setup_.status_period_ns;
+        pass_messages();
+        tell_statuses();
+    }
+}
+
+void Screens::look_for_machine() {
+    if (watch_.has_value() && !watch_->isMachineAlive()) {
+        lose_machine("the machine is no longer running");
+    }
+    if (!watch_.has_value()) {
+        auto client = setup_.connect();
+        if (!client.has_value()) {
+            reason_ = client.error().str();
+            return;
+        }
+        watch_.emplace(std::move(*client));
+        hasStatus_ = false;
+    }
+    for (const auto &[session, browser] : browsers_) {
+        if (!browser->isJoined() && join(*browser)) {
+            browser->tell(machine_up_text(browser->number()));
+        }
+    }
+}
+
+void Screens::lose_machine(const std::string &reason) {
+    reason_ = reason;
+    watch_.reset();
+    hasStatus_ = false;
+    kept_.clear();  // another machine counts its messages anew
+    for (const auto &[session, browser] : browsers_) {
+        if (browser->isJoined()) {
+            browser->leave();
+            browser->tell(machine_gone_text(reason));
+        }
+    }
+}
+
+void Screens::tell_all(const std::string &text) {
+    for (const auto &[session, browser] : browsers_) {
+        if (browser->isJoined()) {
+            browser->tell(text);
+        }
+    }
+}
+
+void Screens::pass_messages() {
+    while (const auto message = watch_->next_message()) {
+        ++counts_.messages;
+        const std::string text = message_text(*message);
+        tell_all(text);
+        kept_.push_back(text);
+        if (kept_.size() > MOST_KEPT) {
+            kept_.pop_front();
+        }
+    }
+}
+
+void Screens::tell_statuses() {
+    if (!watch_->read_status().has_value()) {
+        return;  // it has not begun, or has died, which the next look finds
+    }
+    hasStatus_ = true;
+    const PartMask fresh = watch_->fresh_parts();
+    for (const auto &[session, browser] : browsers_) {
+        browser->note_read(fresh);
+        // What a slow one cannot take now goes with its next one.
+        if (browser->isJoined() && sockets_.isIdle(session)) {
+            browser->tell_status(watch_->status());
+        }
+    }
+}
+
+}  // namespace mw::ui::web

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// All open screens and the machine that they are clients of: the protocol of /api/socket.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "ui/web/browser.hh"
+
+namespace mw::ui::web {
+
+struct ScreensSetup {
+    /// A client of the machine; an error says why there is none. Called for each screen and once for all.
+    std::function<Result<client::Client>()> connect;
+    std::string version;
+    std::int64_t status_period_ns = 50000000;
+};
+
+/// One thread; time is passed in and never goes back.
+class Screens {
+  public:
+    /// Between two looks for a machine, and whether it still lives.
+    static constexpr std::int64_t LOOK_NS = 250000000;
+    /// Messages that a new screen is told.
+    static constexpr std::size_t MOST_KEPT = 100;
+
+    Screens(Sockets &sockets, ScreensSetup setup);
+
+    void opened(SessionId session, std::int64_t now_ns);
+    void received(SessionId session, std::string_view text, std::int64_t now_ns);
+    void closed(SessionId session);
+    /// Every few milliseconds.
+    void tick(std::int64_t now_ns);
+
+    bool isMachineUp() const { return watch_.has_value(); }
+    std::size_t count() const { return browsers_.size(); }
+    const Counts &counts() const { return counts_; }
+    /// As read last; null when there is none.
+    const msgs::MachineStatus *status() const;
+
+  private:
+    void look_for_machine();
+    void lose_machine(const std::string &reason);
+    /// Makes a browser a client of the machine; false when it has no place left.
+    bool join(Browser &browser);
+    void pass_messages();
+    void tell_statuses();
+    void tell_all(const std::string &text);
+
+    Sockets &sockets_;
+    ScreensSetup setup_;
+    std::string session_;                      ///< of this server: another one after its restart
+    std::optional<client::Client> watch_;      ///< reads status and messages for all
+    std::string reason_ = "no machine is up";  ///< why there is none
+    bool hasStatus_ = false;
+    std::map<SessionId, std::unique_ptr<Browser>> browsers_;
+    std::deque<std::string> kept_;  ///< messages
+    Counts counts_;
+    std::int64_t next_look_ns_ = 0, next_status_ns_ = 0;
+};
+
+}  // namespace mw::ui::web

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The routes of docs/api.md (J3).
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "msgs/catalogue.hh"
+#include "ui/web/api.hh"
+#include "ui/web/test/fakes.hh"
+
+namespace mw::ui::web {
+namespace {
+
+namespace fs = std::filesystem;
+using test::FakeSockets;
+using test::FakeTask;
+using test::Here;
+using test::Json;
+
+class ApiTest : public testing::Test {
+  protected:
+    ApiTest() {
+        const auto *info = testing::UnitTest::GetInstance()->current_test_info();
+        folder =
+            fs::temp_directory_path() / (std::string("mw_api_") + info->name() + std::to_string(::getpid()));
+        fs::create_directories(folder / "web");
+        std::ofstream(folder / "web/index.html") << "page";
+        ApiSetup setup;
+        setup.facts.name = "Mill";
+        setup.facts.axes = "XYZ";
+        setup.facts.program_prefix = folder.string();
+        setup.facts.program_extensions = {".ngc"};
+        setup.facts.increments = {{"0.1 in", 2.54, false}};
+        setup.screen_folder = (folder / "web").string();
+        setup.screens.connect = [this] { return client::Client::join(task.memory.segment()); };
+        setup.read_path = [this](const std::string &path) -> Result<std::shared_ptr<PieceQueue>> {
+            read.push_back(path);
+            return read.size() < 2 ? Result<std::shared_ptr<PieceQueue>>(std::make_shared<PieceQueue>())
+                                   : fail("too many");
+        };
+        api.emplace(sockets, here, std::move(setup), [this] { return now_ns += 1000000; });
+    }
+    ~ApiTest() override {
+        api.reset();
+        fs::remove_all(folder);
+    }
+    Response ask(const std::string &method, const std::string &target, const std::string &body = "") {
+        Request request = *parse_target(target);
+        request.method = method;
+        request.body = body;
+        Response answer;
+        int answers = 0;
+        api->answer(request, [&](Response one) {
+            answer = std::move(one);
+            ++answers;
+        });
+        EXPECT_EQ(answers, 1) << target;
+        return answer;
+    }
+
+    fs::path folder;
+    FakeTask task;
+    FakeSockets sockets;
+    Here here;
+    std::vector<std::string> read;
+    std::int64_t now_ns = 1;
+    std::optional<Api> api;
+};
+
+TEST_F(ApiTest, TheSchemaHasEveryCommandAndStatusOfTheVocabulary_J3) {
+    const Json schema = Json::parse(ask("GET", "/api/schema").body);
+    EXPECT_EQ(schema["commands"].size(), msgs::command_declarations().size());
+    EXPECT_EQ(schema["status"].size(), msgs::status_declarations().size());
+    for (const Json &command : schema["commands"]) {
+        if (command["name"] == "JogStop") {
+            EXPECT_EQ(command["fields"][0]["name"], "is_joint");
+            EXPECT_EQ(command["fields"][0]["type"], "bool");
+            EXPECT_EQ(command["fields"][1]["max"], 15);
+        }
+        if (command["name"] == "SetState") {
+            EXPECT_EQ(command["fields"][0]["names"], Json::parse(R"(["ESTOP","ESTOP_RESET","OFF","ON"])"));
+        }
+    }
+}
+
+TEST_F(ApiTest, TheMachineIsWhatTheIniSays_J3) {
+    const Json machine = Json::parse(ask("GET", "/api/machine").body);
+    EXPECT_EQ(machine["name"], "Mill");
+    EXPECT_EQ(machine["axes"], "XYZ");
+    EXPECT_EQ(machine["increments"], Json::parse(R"([{"text":"0.1 in","value":2.54,"angular":false}])"));
+    EXPECT_EQ(machine["program_extensions"], Json::parse(R"([".ngc"])"));
+}
+
+TEST_F(ApiTest, ProgramsComeInPiecesAndGo_J3) {
+    EXPECT_EQ(ask("PUT", "/api/files/a%20b.ngc?offset=0&size=6", "G0X1").status, 200);
+    EXPECT_EQ(ask("PUT", "/api/files/a%20b.ngc?offset=5&size=6", "\n").status, 409);
+    EXPECT_EQ(ask("PUT", "/api/files/a%20b.ngc?offset=4&size=6", "\nM").status, 200);
+    EXPECT_EQ(ask("GET", "/api/files/a%20b.ngc").body, "G0X1\nM");
+    EXPECT_EQ(Json::parse(ask("GET", "/api/files").body)["files"][0]["name"], "a b.ngc");
+    EXPECT_EQ(ask("PUT", "/api/files/whole.ngc", "M2").status, 200);
+    EXPECT_EQ(ask("PUT", "/api/files/x.ngc?offset=0", "M2").status, 400);
+    EXPECT_EQ(ask("PUT", "/api/files/x.ngc?offset=-1&size=2", "M2").status, 400);
+    EXPECT_EQ(ask("DELETE", "/api/files/a%20b.ngc").status, 200);
+    EXPECT_EQ(ask("GET", "/api/files/a%20b.ngc").status, 404);
+    EXPECT_EQ(ask("GET", "/api/files/..%2fx.ngc").status, 400);
+    EXPECT_EQ(ask("POST", "/api/files/whole.ngc").status, 400);
+    EXPECT_EQ(ask("DELETE", "/api/files").status, 400);
+}
+
+TEST_F(ApiTest, ThePathOfAProgramIsReadWhileItIsSent_J3) {
+    EXPECT_EQ(ask("GET", "/api/path").status, 400);
+    EXPECT_EQ(ask("GET", "/api/path?file=../a.ngc").status, 400);
+    EXPECT_TRUE(read.empty());
+    EXPECT_NE(ask("GET", "/api/path?file=a.ngc").pieces, nullptr);
+    EXPECT_EQ(read, std::vector<std::string>{folder.string() + "/a.ngc"});
+    EXPECT_EQ(ask("GET", "/api/path?file=a.ngc").status, 429);
+}
+
+TEST_F(ApiTest, PagesFiguresAndWhatThereIsNot_J3) {
+    EXPECT_EQ(ask("GET", "/").body, "page");
+    EXPECT_EQ(ask("GET", "/assets/none.js").status, 404);
+    EXPECT_EQ(ask("GET", "/api/none").status, 404);
+    EXPECT_EQ(ask("PUT", "/", "x").status, 400);
+    EXPECT_FALSE(Json::parse(ask("GET", "/api/none").body)["error"].get<std::string>().empty());
+    EXPECT_NE(ask("GET", "/metrics").body.find("\nmillwright_machine_up 0\n"), std::string::npos);
+    task.cycle();
+    api->tick();
+    EXPECT_NE(ask("GET", "/metrics").body.find("\nmillwright_machine_up 1\n"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace mw::ui::web

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Stand-ins for the server and for task.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "client/client.hh"
+#include "mailbox/desk.hh"
+#include "ui/web/elsewhere.hh"
+#include "ui/web/exchange.hh"
+
+namespace mw::ui::web::test {
+
+using Json = nlohmann::json;
+
+class FakeSockets final : public Sockets {
+  public:
+    void send(SessionId session, std::string text) override { sent[session].push_back(Json::parse(text)); }
+    bool isIdle(SessionId session) const override { return !busy.contains(session) || !busy.at(session); }
+    void close(SessionId session) override { closed.push_back(session); }
+
+    std::vector<Json> take(SessionId session) { return std::exchange(sent[session], {}); }
+
+    std::map<SessionId, std::vector<Json>> sent;
+    std::map<SessionId, bool> busy;
+    std::vector<SessionId> closed;
+};
+
+/// Does each job at once.
+class Here final : public Elsewhere {
+  public:
+    void run(Job job, Reply reply) override { reply(job()); }
+};
+
+/// A task that does as the test says.
+class FakeTask {
+  public:
+    /// One cycle; each command is DONE unless it is kept.
+    std::vector<mailbox::Desk::Delivery> cycle() {
+        now_ns += 1000000;
+        auto taken = desk.take(now_ns);
+        for (const auto &delivery : taken) {
+            if (!isKeeping) {
+                desk.tell(delivery.serial, msgs::Progress::DONE, "");
+            }
+        }
+        desk.publish(*status);
+        return taken;
+    }
+
+    mailbox::Memory memory = mailbox::Memory::in_process();
+    mailbox::Desk desk{memory.segment()};
+    std::unique_ptr<msgs::MachineStatus> status = std::make_unique<msgs::MachineStatus>();
+    std::int64_t now_ns = 0;
+    bool isKeeping = false;
+};
+
+}  // namespace mw::ui::web::test

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A path in chunks: read back by the words of docs/api.md, it is the program's (J3).
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "ui/web/path_chunks.hh"
+
+namespace mw::ui::web {
+namespace {
+
+struct Point {
+    std::array<float, 3> place;
+    std::uint32_t line;
+    std::uint8_t kind;
+};
+
+/// What a browser makes of the bytes.
+struct Path {
+    std::vector<std::vector<Point>> moves;
+    std::array<float, 6> bounds{};
+    std::uint32_t lines = 0, points = 0;
+    std::string error;
+    std::vector<std::uint32_t> kinds;
+
+    explicit Path(const std::string &bytes) { take(bytes); }
+    void take(const std::string &bytes) {
+        std::size_t at = 0;
+        const auto word = [&] {
+            std::uint32_t value = 0;
+            std::memcpy(&value, bytes.data() + at, 4);
+            at += 4;
+            return value;
+        };
+        while (at < bytes.size()) {
+            const std::uint32_t kind = word(), size = word();
+            EXPECT_EQ(size % 4, 0U);
+            const std::size_t end = at + size;
+            ASSERT_LE(end, bytes.size());
+            kinds.push_back(kind);
+            if (kind == 1) {
+                const std::uint32_t count = word();
+                take_moves(bytes, at, count);
+            } else if (kind == 2) {
+                std::memcpy(bounds.data(), bytes.data() + at, sizeof bounds);
+            } else if (kind == 3) {
+                lines = word();
+                points = word();
+            } else {
+                error = bytes.substr(at, size);
+            }
+            at = end;
+        }
+    }
+    void take_moves(const std::string &bytes, std::size_t at, std::uint32_t count) {
+        std::vector<Point> &points_of = moves.emplace_back(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            std::memcpy(points_of[i].place.data(), bytes.data() + at + 12 * i, 12);
+            std::memcpy(&points_of[i].line, bytes.data() + at + 12 * count + 4 * i, 4);
+            points_of[i].kind = static_cast<std::uint8_t>(bytes[at + 16 * count + i]);
+        }
+    }
+};
+
+gcode::PreviewEvent move(gcode::PreviewKind kind, const geom::Pose &from, const geom::Pose &to, int line) {
+    gcode::PreviewEvent event;
+    event.kind = kind;
+    event.start = from;
+    event.end = to;
+    event.line = line;
+    return event;
+}
+
+TEST(PathChunks, PointsLinesAndKindsComeBack_J3) {
+    std::string bytes;
+    PathChunks chunks(
+        [&](std::string piece) {
+            bytes += piece;
+            return true;
+        },
+        1);
+    const geom::Pose a{{1, 2, 3}}, b{{4, -5, 6}}, c{{0, 0, -7}};
+    const std::array events{move(gcode::PreviewKind::RAPID, a, b, 3), move(gcode::PreviewKind::FEED, b, c, 4),
+                            move(gcode::PreviewKind::DWELL, c, c, 5),
+                            move(gcode::PreviewKind::PROBE, c, a, 6)};
+    EXPECT_TRUE(chunks.take(events));
+    chunks.error("p.ngc:7: wrong");
+    chunks.end(9);
+    const Path path(bytes);
+    ASSERT_EQ(path.moves.size(), 1U);
+    const auto &points = path.moves[0];
+    ASSERT_EQ(points.size(), 4U);
+    EXPECT_EQ(points[0].place, (std::array<float, 3>{1, 2, 3}));
+    EXPECT_EQ(points[1].place, (std::array<float, 3>{4, -5, 6}));
+    EXPECT_EQ(points[1].line, 3U);
+    EXPECT_EQ(points[1].kind, 0);
+    EXPECT_EQ(points[2].kind, 1);
+    EXPECT_EQ(points[3].line, 6U);
+    EXPECT_EQ(points[3].kind, 3);
+    EXPECT_EQ(path.bounds, (std::array<float, 6>{0, -5, -7, 4, 2, 6}));
+    EXPECT_EQ(path.lines, 9U);
+    EXPECT_EQ(path.points, 4U);
+    EXPECT_EQ(path.error, "p.ngc:7: wrong  ");
+}
+
+TEST(PathChunks, AnArcIsChordsNearItsCircle_J3) {
+    for (const double radius : {0.01, 1.0, 80.0}) {
+        std::string bytes;
+        PathChunks chunks(
+            [&](std::string piece) {
+                bytes += piece;
+                return true;
+            },
+            1);
+        auto arc = move(gcode::PreviewKind::ARC, geom::Pose{{10 + radius, 5, 0}},
+                        geom::Pose{{10, 5 + radius, -3}}, 1);
+        arc.centre = geom::Pose{{10, 5, 0}};
+        arc.normal = geom::Pose{{0, 0, 1}};
+        arc.angle_rad = 2.5 * std::numbers::pi;
+        EXPECT_TRUE(chunks.take(std::array{arc}));
+        chunks.end(1);
+        const auto points = Path(bytes).moves.at(0);
+        double turned = 0;
+        for (std::size_t i = 1; i < points.size(); ++i) {
+            const double x = points[i].place[0] - 10, y = points[i].place[1] - 5;
+            const double x0 = points[i - 1].place[0] - 10, y0 = points[i - 1].place[1] - 5;
+            const double rounding = 4e-5;  // of a float at 100
+            EXPECT_NEAR(std::hypot(x, y), radius, rounding);
+            EXPECT_GT(std::hypot((x + x0) / 2, (y + y0) / 2), radius - PathChunks::DEVIATION_MM - rounding);
+            turned += std::atan2(x0 * y - y0 * x, x0 * x + y0 * y);
+            EXPECT_NEAR(points[i].place[2], -3 * turned / arc.angle_rad, 2e-2);
+        }
+        EXPECT_NEAR(turned, arc.angle_rad, 0.02) << radius;
+        EXPECT_EQ(points.back().place, (std::array<float, 3>{10, static_cast<float>(5 + radius), -3}));
+    }
+}
+
+TEST(PathChunks, TheFirstPathComesAtOnceAndChunksGoOnWhereTheLastEnded_J3) {
+    std::vector<std::string> pieces;
+    PathChunks chunks(
+        [&](std::string piece) {
+            pieces.push_back(std::move(piece));
+            return true;
+        },
+        1);
+    geom::Pose at;
+    int line = 0;
+    const auto batch = [&](std::size_t count) {
+        std::vector<gcode::PreviewEvent> events;
+        for (std::size_t i = 0; i < count; ++i) {
+            const geom::Pose from = at;
+            at[0] += 1;
+            events.push_back(move(gcode::PreviewKind::FEED, from, at, ++line));
+        }
+        return events;
+    };
+    EXPECT_TRUE(chunks.take(batch(10)));
+    EXPECT_EQ(pieces.size(), 1U);
+    for (int i = 0; i < 40; ++i) {
+        EXPECT_TRUE(chunks.take(batch(1000)));
+    }
+    chunks.end(static_cast<std::uint32_t>(line));
+    std::string bytes;
+    for (const std::string &piece : pieces) {
+        bytes += piece;
+    }
+    const Path path(bytes);
+    ASSERT_GE(path.moves.size(), 3U);
+    std::uint32_t count = 1;
+    for (std::size_t i = 1; i < path.moves.size(); ++i) {
+        EXPECT_EQ(path.moves[i].front().place, path.moves[i - 1].back().place);
+    }
+    for (const auto &moves : path.moves) {
+        count += static_cast<std::uint32_t>(moves.size()) - 1;
+        EXPECT_LE(moves.size(), PathChunks::POINTS_PER_CHUNK + 1);
+    }
+    EXPECT_EQ(count, 40011U);
+    EXPECT_EQ(path.points, count);
+    EXPECT_EQ(path.kinds.back(), 3U);
+}
+
+TEST(PathChunks, NothingIsMadeForNobody_J3) {
+    int pushed = 0;
+    PathChunks chunks(
+        [&](const std::string &) {
+            ++pushed;
+            return false;
+        },
+        1);
+    const std::array events{move(gcode::PreviewKind::FEED, {}, geom::Pose{{1}}, 1)};
+    EXPECT_FALSE(chunks.take(events));
+    EXPECT_FALSE(chunks.take(events));
+    chunks.error("x");
+    chunks.end(1);
+    EXPECT_EQ(pushed, 1);
+}
+
+}  // namespace
+}  // namespace mw::ui::web

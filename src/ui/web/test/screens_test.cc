@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The protocol of /api/socket, with a task and a server that do as the test says (J3).
+#include <gtest/gtest.h>
+
+#include "ui/web/screens.hh"
+#include "ui/web/test/fakes.hh"
+
+namespace mw::ui::web {
+namespace {
+
+using test::FakeSockets;
+using test::FakeTask;
+using test::Json;
+
+constexpr std::int64_t MS = 1000000;
+
+class ScreensTest : public testing::Test {
+  protected:
+    ScreensTest() {
+        ScreensSetup setup;
+        setup.connect = [this]() -> Result<client::Client> {
+            return isUp ? client::Client::join(task.memory.segment()) : fail("no machine here");
+        };
+        setup.version = "0.1";
+        screens.emplace(sockets, setup);
+    }
+    /// Time goes on, in steps of a tick; task cycles between them.
+    std::vector<mailbox::Desk::Delivery> go(std::int64_t ms) {
+        std::vector<mailbox::Desk::Delivery> taken;
+        for (const std::int64_t end = now_ns + ms * MS; now_ns < end;) {
+            now_ns += 10 * MS;
+            for (auto &one : task.cycle()) {
+                taken.push_back(std::move(one));
+            }
+            screens->tick(now_ns);
+        }
+        return taken;
+    }
+    void say(SessionId session, const std::string &text) { screens->received(session, text, now_ns); }
+    void command(SessionId session, int id, const std::string &message, const std::string &fields = "") {
+        say(session, R"({"id":)" + std::to_string(id) + R"(,"command":{"message":")" + message + '"' +
+                         (fields.empty() ? "" : "," + fields) + "}}");
+    }
+    void open(SessionId session) {
+        screens->opened(session, now_ns);
+        sockets.take(session);
+    }
+    std::vector<Json> of_kind(SessionId session, const char *key) {
+        std::vector<Json> found;
+        for (const Json &one : sockets.take(session)) {
+            if (one.contains(key)) {
+                found.push_back(one);
+            }
+        }
+        return found;
+    }
+
+    FakeTask task;
+    FakeSockets sockets;
+    std::optional<Screens> screens;
+    std::int64_t now_ns = 1;
+    bool isUp = true;
+};
+
+TEST_F(ScreensTest, AScreenIsGreetedThenToldTheWholeThenChanges_J3) {
+    task.status->joints[1].pos_cmd = 3;
+    go(300);
+    screens->opened(7, now_ns);
+    const auto first = sockets.take(7);
+    ASSERT_EQ(first.size(), 2U);
+    EXPECT_EQ(first[0]["hello"]["version"], "0.1");
+    EXPECT_EQ(first[0]["hello"]["role"], "operate");
+    EXPECT_GT(first[0]["hello"]["client"], 0);
+    EXPECT_EQ(first[1]["full"], true);
+    EXPECT_EQ(first[1]["status"]["joints"][1]["pos_cmd"], 3);
+    task.status->joints[1].pos_cmd = 4;
+    go(50);
+    const auto later = of_kind(7, "status");
+    ASSERT_EQ(later.size(), 1U);
+    EXPECT_EQ(later[0]["status"]["joints"], Json::parse(R"({"1":{"pos_cmd":4.0}})"));
+    EXPECT_FALSE(later[0].contains("full"));
+}
+
+TEST_F(ScreensTest, ASlowScreenGetsFewerAndTheNewest_J3) {
+    go(300);
+    open(1);
+    open(2);
+    sockets.busy[1] = true;
+    for (int i = 1; i <= 10; ++i) {
+        task.status->joints[0].pos_cmd = i;
+        go(50);
+    }
+    EXPECT_TRUE(sockets.take(1).empty());
+    EXPECT_GE(of_kind(2, "status").size(), 9U);
+    sockets.busy[1] = false;
+    go(50);
+    const auto told = of_kind(1, "status");
+    ASSERT_EQ(told.size(), 1U);
+    EXPECT_EQ(told[0]["status"]["joints"]["0"]["pos_cmd"], 10);
+}
+
+TEST_F(ScreensTest, EachCommandHasItsOutcome_J3_D3) {
+    go(300);
+    open(1);
+    command(1, 7, "SetState", R"("state":"ESTOP_RESET")");
+    EXPECT_EQ(go(10).size(), 1U);
+    auto outcomes = of_kind(1, "outcome");
+    ASSERT_EQ(outcomes.size(), 1U);
+    EXPECT_EQ(outcomes[0]["outcome"], Json::parse(R"({"id":7,"progress":"DONE"})"));
+
+    task.isKeeping = true;
+    command(1, 8, "HomeJoint", R"("joint":-1)");
+    const auto taken = go(200);
+    ASSERT_EQ(taken.size(), 1U);
+    outcomes = of_kind(1, "outcome");
+    ASSERT_EQ(outcomes.size(), 1U);
+    EXPECT_EQ(outcomes[0]["outcome"], Json::parse(R"({"id":8,"progress":"STARTED"})"));
+    task.desk.tell(taken[0].serial, msgs::Progress::FAILED, "no switch");
+    go(10);
+    outcomes = of_kind(1, "outcome");
+    ASSERT_EQ(outcomes.size(), 1U);
+    EXPECT_EQ(outcomes[0]["outcome"], Json::parse(R"({"id":8,"progress":"FAILED","reason":"no switch"})"));
+}
+
+TEST_F(ScreensTest, WhatIsNoCommandIsRefusedWithAReason_J3) {
+    go(300);
+    open(1);
+    command(1, 1, "NoSuchThing");
+    command(1, 2, "JogStop", R"("is_joint":1,"index":0)");
+    command(1, 3, "SetFeedOverride", R"("factor":-5.0)");
+    for (const Json &one : of_kind(1, "outcome")) {
+        EXPECT_EQ(one["outcome"]["progress"], "REFUSED");
+        EXPECT_FALSE(one["outcome"]["reason"].get<std::string>().empty());
+    }
+    for (const char *text : {"", "{", "[]", "{}", R"({"id":-1,"command":{}})", R"({"id":1.5,"command":{}})",
+                             R"({"id":1})", R"({"command":{}})", R"({"ping":"x"})", "null"}) {
+        say(1, text);
+        const auto said = of_kind(1, "error");
+        EXPECT_EQ(said.size(), 1U) << text;
+    }
+    say(1, std::string(60000, '[') + std::string(4000, ']'));
+    say(1, R"({"id":9,"command":)" + std::string(30000, '[') + std::string(30000, ']') + "}");
+    EXPECT_EQ(of_kind(1, "error").size(), 2U);
+    EXPECT_TRUE(go(20).empty());
+}
+
+TEST_F(ScreensTest, APingIsAnsweredAndSilenceEnds_J3) {
+    go(300);
+    open(1);
+    open(2);
+    for (int i = 0; i < 11; ++i) {
+        say(1, R"({"ping":12.5})");
+        const auto pongs = of_kind(1, "pong");
+        ASSERT_EQ(pongs.size(), 1U);
+        EXPECT_EQ(pongs[0]["pong"], 12.5);
+        EXPECT_EQ(std::ranges::count(sockets.closed, SessionId{2}), 0);
+        go(500);
+    }
+    EXPECT_EQ(std::ranges::count(sockets.closed, SessionId{1}), 0);
+    EXPECT_GE(std::ranges::count(sockets.closed, SessionId{2}), 1);
+}
+
+TEST_F(ScreensTest, WhatAConnectionJogsStopsWithIt_J3_C8) {
+    go(300);
+    open(1);
+    open(2);
+    const std::string jog = R"(,"velocity":5.0,"distance":100.0)";
+    command(1, 1, "JogIncrement", R"("is_joint":true,"index":0)" + jog);
+    command(1, 2, "JogAbsolute", R"("is_joint":true,"index":1,"velocity":5.0,"position":1.0)");
+    command(1, 3, "JogIncrement", R"("is_joint":false,"index":2)" + jog);
+    command(1, 4, "JogStop", R"("is_joint":false,"index":2)");
+    command(2, 1, "JogIncrement", R"("is_joint":true,"index":1)" + jog);
+    EXPECT_EQ(go(20).size(), 5U);
+    screens->closed(1);
+    const auto stops = go(20);
+    ASSERT_EQ(stops.size(), 1U);  // joint 1 is jogged by the other one now
+    const auto *stop = std::get_if<msgs::JogStop>(&stops[0].command);
+    ASSERT_NE(stop, nullptr);
+    EXPECT_TRUE(stop->isJoint);
+    EXPECT_EQ(stop->index, 0);
+    screens.reset();
+    EXPECT_EQ(task.cycle().size(), 1U);
+}
+
+TEST_F(ScreensTest, AJogThatNothingWouldEndIsRefused_J3_C8) {
+    go(300);
+    open(1);
+    command(1, 1, "JogContinuous", R"("is_joint":true,"index":0,"velocity":5.0)");
+    EXPECT_TRUE(go(20).empty());
+    const auto outcomes = of_kind(1, "outcome");
+    ASSERT_EQ(outcomes.size(), 1U);
+    EXPECT_EQ(outcomes[0]["outcome"]["progress"], "REFUSED");
+    EXPECT_NE(outcomes[0]["outcome"]["reason"].get<std::string>().find("lease"), std::string::npos);
+    screens->closed(1);
+    EXPECT_TRUE(go(20).empty());  // it jogs nothing
+}
+
+TEST_F(ScreensTest, StopsAreNeverLimited_J3_D1) {
+    go(300);
+    open(1);
+    for (int i = 0; i < 1000; ++i) {
+        command(1, i, "SetFeedOverride", R"("factor":1.0)");
+    }
+    EXPECT_GT(of_kind(1, "outcome").size(), 900U);  // refused
+    for (int i = 0; i < 200; ++i) {
+        command(1, 2000 + i, "AbortAll");
+        command(1, 3000 + i, "SetState", R"("state":"ESTOP")");
+    }
+    bool isAborted = false, isEstop = false;
+    for (const auto &one : task.cycle()) {
+        isAborted = isAborted || std::holds_alternative<msgs::AbortAll>(one.command);
+        const auto *state = std::get_if<msgs::SetState>(&one.command);
+        isEstop = isEstop || (state != nullptr && state->state == msgs::State::ESTOP);
+    }
+    EXPECT_TRUE(isAborted);
+    EXPECT_TRUE(isEstop);
+    for (const Json &one : of_kind(1, "outcome")) {
+        EXPECT_NE(one["outcome"]["progress"], "REFUSED") << one;
+    }
+}
+
+TEST_F(ScreensTest, MessagesGoToAllAndToWhoComesLater_J3) {
+    go(300);
+    open(1);
+    task.desk.post(msgs::MessageKind::OPERATOR_ERROR, "tool \"4\" is missing");
+    go(50);
+    const auto told = of_kind(1, "message");
+    ASSERT_EQ(told.size(), 1U);
+    EXPECT_EQ(told[0]["message"],
+              Json::parse(R"({"number":1,"kind":"OPERATOR_ERROR","text":"tool \"4\" is missing"})"));
+    screens->opened(2, now_ns);
+    EXPECT_EQ(of_kind(2, "message"), told);
+}
+
+TEST_F(ScreensTest, WithoutAMachineAScreenIsToldAndCommandsAreRefused_J3) {
+    isUp = false;
+    go(300);
+    screens->opened(1, now_ns);
+    auto told = sockets.take(1);
+    ASSERT_EQ(told.size(), 2U);
+    EXPECT_EQ(told[0]["hello"]["client"], 0);
+    EXPECT_EQ(told[1]["machine"], "gone");
+    EXPECT_EQ(told[1]["reason"], "no machine here");
+    command(1, 5, "AbortAll");
+    told = sockets.take(1);
+    ASSERT_EQ(told.size(), 1U);
+    EXPECT_EQ(told[0]["outcome"]["progress"], "REFUSED");
+    isUp = true;
+    go(500);
+    told = sockets.take(1);
+    ASSERT_GE(told.size(), 2U);
+    EXPECT_EQ(told[0]["machine"], "up");
+    EXPECT_GT(told[0]["client"], 0);
+    EXPECT_EQ(told[1]["full"], true);
+}
+
+}  // namespace
+}  // namespace mw::ui::web

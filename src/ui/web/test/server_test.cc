@@ -1,0 +1,479 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The server as a browser meets it, over a socket of the loopback: requests, limits, frames (J3).
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <functional>
+#include <random>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "ui/web/server.hh"
+
+namespace mw::ui::web {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// Answers with what it was asked; a socket gets its own texts back.
+class Echo final : public Application {
+  public:
+    void answer(const Request &request, Reply reply) override {
+        asked.push_back(request);
+        if (pieces != nullptr) {
+            reply({.pieces = pieces});
+        } else if (isLater) {
+            later = std::move(reply);
+        } else {
+            reply({.type = "text/plain", .body = request.method + ' ' + request.path + '|' + request.body});
+        }
+    }
+    void opened(SessionId session) override { open.push_back(session); }
+    void received(SessionId session, std::string_view text) override {
+        texts.emplace_back(text);
+        server->send(session, std::string(text));
+    }
+    void closed(SessionId session) override { ended.push_back(session); }
+
+    Server *server = nullptr;
+    std::vector<Request> asked;
+    std::vector<SessionId> open, ended;
+    std::vector<std::string> texts;
+    std::shared_ptr<PieceQueue> pieces;
+    bool isLater = false;
+    Reply later;
+};
+
+/// One connection of a browser, byte by byte.
+class Peer {
+  public:
+    explicit Peer(int port, std::uint32_t address = INADDR_LOOPBACK)
+        : fd_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
+        sockaddr_in place{};
+        place.sin_family = AF_INET;
+        place.sin_port = htons(static_cast<std::uint16_t>(port));
+        place.sin_addr.s_addr = htonl(address);
+        static_cast<void>(::connect(fd_, reinterpret_cast<sockaddr *>(&place), sizeof place));
+    }
+    ~Peer() { ::close(fd_); }
+    Peer(const Peer &) = delete;
+    Peer &operator=(const Peer &) = delete;
+
+    /// As much as goes; false: the other side is gone.
+    bool write(std::string &bytes) const {
+        const ssize_t sent = ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+        bytes.erase(0, sent > 0 ? static_cast<std::size_t>(sent) : 0);
+        return sent >= 0 || errno == EAGAIN || errno == ENOTCONN || errno == EINPROGRESS;
+    }
+    /// Takes what is there.
+    void read() {
+        char bytes[65536];
+        ssize_t got = 0;
+        while ((got = ::recv(fd_, bytes, sizeof bytes, 0)) > 0) {
+            received.append(bytes, static_cast<std::size_t>(got));
+        }
+        isClosed = isClosed || got == 0 || (errno != EAGAIN && errno != ENOTCONN);
+    }
+
+    std::string received;
+    bool isClosed = false;
+
+  private:
+    int fd_;
+};
+
+class ServerTest : public testing::Test {
+  protected:
+    void listen(const ServerLimits &limits = {}) {
+        auto made = Server::listen({.port = 0, .limits = limits});
+        ASSERT_TRUE(made.has_value()) << made.error().str();
+        server = std::move(*made);
+        echo.server = server.get();
+    }
+    bool run_until(const std::function<bool()> &isDone) {
+        for (int i = 0; i < 5000 && !isDone(); ++i) {
+            server->run_for(echo, milliseconds(1));
+        }
+        return isDone();
+    }
+    std::string host() const { return "Host: 127.0.0.1:" + std::to_string(server->port()) + "\r\n"; }
+    void write(Peer &peer, std::string bytes) {
+        run_until([&] { return !peer.write(bytes) || bytes.empty(); });
+    }
+    /// All of the answer that comes until `end` is in it or the connection closes.
+    std::string ask(Peer &peer, const std::string &bytes, const std::string &end) {
+        peer.received.clear();
+        write(peer, bytes);
+        run_until([&] {
+            peer.read();
+            return peer.isClosed || (!end.empty() && peer.received.find(end) != std::string::npos);
+        });
+        return peer.received;
+    }
+    /// The first line of the answer, on a connection of its own.
+    std::string status_of(const std::string &bytes) {
+        Peer peer(server->port());
+        const std::string answer = ask(peer, bytes, "\r\n\r\n");
+        return answer.substr(0, answer.find('\r'));
+    }
+    std::string get(const std::string &path, const std::string &more = "") const {
+        return "GET " + path + " HTTP/1.1\r\n" + host() + more + "Connection: close\r\n\r\n";
+    }
+    std::string upgrade(const std::string &path = "/api/socket", const std::string &more = "") const {
+        return "GET " + path + " HTTP/1.1\r\n" + host() + more +
+               "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+               "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
+    }
+    /// A masked frame of a browser.
+    static std::string frame(const std::string &text, unsigned char opcode = 0x81) {
+        std::string bytes(1, static_cast<char>(opcode));
+        if (text.size() < 126) {
+            bytes += static_cast<char>(0x80 | text.size());
+        } else {
+            bytes += static_cast<char>(0x80 | 127);
+            for (int shift = 56; shift >= 0; shift -= 8) {
+                bytes += static_cast<char>(text.size() >> shift & 0xff);
+            }
+        }
+        const std::string mask = "\x11\x22\x33\x44";
+        bytes += mask;
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            bytes += static_cast<char>(text[i] ^ mask[i % 4]);
+        }
+        return bytes;
+    }
+
+    std::unique_ptr<Server> server;
+    Echo echo;  ///< may hold a reply, which ends before the server
+};
+
+TEST_F(ServerTest, OneConnectionCarriesManyRequests_J3) {
+    listen();
+    Peer peer(server->port());
+    const std::string first = ask(peer, "GET /a%20b?x=1&y=%2f HTTP/1.1\r\n" + host() + "\r\n", "GET /a b|");
+    EXPECT_TRUE(first.starts_with("HTTP/1.1 200 OK\r\n")) << first;
+    EXPECT_NE(first.find("X-Content-Type-Options: nosniff"), std::string::npos);
+    EXPECT_EQ(echo.asked.at(0).query.at("x"), "1");
+    EXPECT_EQ(echo.asked.at(0).query.at("y"), "/");
+    const std::string second =
+        ask(peer, "PUT /f HTTP/1.1\r\n" + host() + "Content-Length: 4\r\n\r\nbody", "PUT /f|body");
+    EXPECT_TRUE(second.starts_with("HTTP/1.1 200 OK\r\n")) << second;
+}
+
+TEST_F(ServerTest, PagesOfOthersReachNothing_J3) {
+    listen();
+    const std::string port = std::to_string(server->port());
+    const auto with_host = [](const std::string &name) {
+        return "GET /x HTTP/1.1\r\nHost: " + name + "\r\nConnection: close\r\n\r\n";
+    };
+    EXPECT_EQ(status_of(with_host("localhost:" + port)), "HTTP/1.1 200 OK");
+    EXPECT_EQ(status_of(get("/x", "Origin: http://127.0.0.1:" + port + "\r\n")), "HTTP/1.1 200 OK");
+    const std::size_t asked = echo.asked.size();
+    for (const std::string &name :
+         {"evil.example:" + port, std::string("127.0.0.1"), std::string("localhost:1"), std::string("")}) {
+        EXPECT_EQ(status_of(with_host(name)), "HTTP/1.1 403 Forbidden") << name;
+    }
+    EXPECT_EQ(status_of("GET /x HTTP/1.1\r\nConnection: close\r\n\r\n"), "HTTP/1.1 403 Forbidden");
+    for (const std::string origin :
+         {"http://evil.example", "null", "https://127.0.0.1:", "http://127.0.0.1:1"}) {
+        EXPECT_EQ(status_of(get("/x", "Origin: " + origin + "\r\n")), "HTTP/1.1 403 Forbidden") << origin;
+        EXPECT_EQ(status_of(upgrade("/api/socket", "Origin: " + origin + "\r\n")).substr(0, 12),
+                  "HTTP/1.1 403")
+            << origin;
+    }
+    EXPECT_EQ(status_of(get("/api/path", "Sec-Fetch-Site: cross-site\r\n")), "HTTP/1.1 403 Forbidden");
+    EXPECT_EQ(echo.asked.size(), asked);
+    EXPECT_TRUE(echo.open.empty());
+}
+
+TEST_F(ServerTest, WhatIsTooLargeOrNoRequestIsRefused_J3) {
+    listen();
+    EXPECT_EQ(status_of(get("/x", "X: " + std::string(20000, 'x') + "\r\n")),
+              "HTTP/1.1 413 Payload Too Large");
+    EXPECT_EQ(status_of("PUT /f HTTP/1.1\r\n" + host() + "Content-Length: 2000000\r\n\r\n" +
+                        std::string(2000000, 'x')),
+              "HTTP/1.1 413 Payload Too Large");
+    EXPECT_EQ(status_of("nonsense\r\n\r\n"), "HTTP/1.1 400 Bad Request");
+    EXPECT_EQ(status_of(get("/%zz")), "HTTP/1.1 400 Bad Request");
+    EXPECT_EQ(status_of(get("/%0a")), "HTTP/1.1 400 Bad Request");
+    EXPECT_EQ(status_of(get("*")), "HTTP/1.1 400 Bad Request");
+    EXPECT_TRUE(echo.asked.empty());
+    EXPECT_EQ(status_of("PUT /f HTTP/1.1\r\n" + host() +
+                        "Connection: close\r\nContent-Length: 1048576\r\n\r\n" + std::string(1048576, 'x')),
+              "HTTP/1.1 200 OK");
+}
+
+TEST_F(ServerTest, TooManyRequestsAreRefusedUntilLater_J3) {
+    ServerLimits limits;
+    limits.requests_per_s = 0.001;
+    limits.requests_at_once = 3;
+    listen(limits);
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(status_of(get("/x")), "HTTP/1.1 200 OK");
+    }
+    EXPECT_EQ(status_of(get("/x")), "HTTP/1.1 429 Too Many Requests");
+}
+
+TEST_F(ServerTest, ASocketCarriesTextsBothWays_J3) {
+    listen();
+    Peer peer(server->port());
+    const std::string head = ask(peer, upgrade(), "\r\n\r\n");
+    EXPECT_TRUE(head.starts_with("HTTP/1.1 101")) << head;
+    EXPECT_NE(head.find("s3pPLMBiTxaQ9kYGzzhZRbK+xOo="), std::string::npos);  // of RFC 6455
+    EXPECT_EQ(echo.open.size(), 1U);
+    EXPECT_EQ(ask(peer, frame("hello"), "hello"), "\x81\x05hello");
+    EXPECT_EQ(ask(peer, frame("a", 0x01) + frame("bc", 0x80), "abc"), "\x81\x03"
+                                                                      "abc");
+    write(peer, frame(std::string(65536, 'x')));
+    EXPECT_TRUE(run_until([&] { return echo.texts.size() == 3; }));
+    EXPECT_TRUE(server->isIdle(echo.open[0]) || run_until([&] { return server->isIdle(echo.open[0]); }));
+    peer.received.clear();
+    server->send(echo.open[0], std::string(20000, 'y'));  // as one frame
+    run_until([&] {
+        peer.read();
+        return peer.received.size() >= 65546 + 20004;
+    });
+    EXPECT_TRUE(peer.received.ends_with("\x81\x7e\x4e\x20" + std::string(20000, 'y')));
+}
+
+TEST_F(ServerTest, ASocketThatMisbehavesIsClosedAndTold_J3) {
+    listen();
+    const std::vector<std::string> bad{frame(std::string(65537, 'x')), frame("x", 0x82), frame("\xff\xfe"),
+                                       "\x81\x01x", frame("x", 0x83)};
+    for (std::size_t i = 0; i < bad.size(); ++i) {
+        {
+            Peer peer(server->port());
+            EXPECT_TRUE(ask(peer, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
+            static_cast<void>(ask(peer, bad[i], ""));
+            EXPECT_TRUE(peer.isClosed) << i;
+        }
+        EXPECT_TRUE(run_until([&] { return echo.ended.size() == i + 1; })) << i;
+    }
+    EXPECT_TRUE(echo.texts.empty());
+}
+
+TEST_F(ServerTest, AConnectionThatIsCutIsToldOnce_J3) {
+    listen();
+    {
+        Peer peer(server->port());
+        EXPECT_TRUE(ask(peer, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
+    }
+    EXPECT_TRUE(run_until([&] { return echo.ended.size() == 1; }));
+    EXPECT_EQ(echo.ended, echo.open);
+    Peer other(server->port());
+    EXPECT_TRUE(ask(other, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
+    server->close(echo.open[1]);
+    server->close(echo.open[1]);
+    EXPECT_TRUE(run_until([&] {
+        other.read();
+        return other.isClosed && echo.ended.size() == 2;
+    }));
+    server->run_for(echo, milliseconds(20));
+    EXPECT_EQ(echo.ended.size(), 2U);
+}
+
+TEST_F(ServerTest, AsManySocketsAsCanBe_J3) {
+    ServerLimits limits;
+    limits.sessions = 1;
+    listen(limits);
+    Peer peer(server->port());
+    EXPECT_TRUE(ask(peer, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
+    EXPECT_EQ(status_of(upgrade("/api/socket")).substr(0, 12), "HTTP/1.1 503");
+    EXPECT_EQ(status_of(upgrade("/other")).substr(0, 12), "HTTP/1.1 404");
+}
+
+TEST_F(ServerTest, WhoDoesNotReadDoesNotFillTheMemory_J3) {
+    ServerLimits limits;
+    limits.waiting_bytes = 1024 * 1024;
+    listen(limits);
+    Peer peer(server->port());
+    EXPECT_TRUE(ask(peer, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
+    bool wasBusy = false;
+    for (int i = 0; i < 20000 && echo.ended.empty(); ++i) {
+        server->send(echo.open[0], std::string(4096, 'x'));
+        server->run_for(echo, std::chrono::microseconds(10));
+        wasBusy = wasBusy || !server->isIdle(echo.open[0]);
+    }
+    EXPECT_TRUE(wasBusy);
+    EXPECT_TRUE(run_until([&] { return !echo.ended.empty(); }));
+}
+
+TEST_F(ServerTest, AnAnswerMayComeLaterFromAnotherThread_J3) {
+    listen();
+    echo.isLater = true;
+    Peer peer(server->port());
+    write(peer, get("/x"));
+    ASSERT_TRUE(run_until([&] { return echo.later != nullptr; }));
+    std::thread other([&] { server->post([&] { echo.later({.body = "at last"}); }); });
+    other.join();
+    EXPECT_NE(ask(peer, "", "at last").find("at last"), std::string::npos);
+}
+
+TEST_F(ServerTest, ABodyComesInPiecesWhileItIsMade_J3) {
+    listen();
+    echo.pieces = std::make_shared<PieceQueue>();
+    std::thread maker([pieces = echo.pieces] {
+        for (int i = 0; i < 300; ++i) {
+            ASSERT_TRUE(pieces->push(std::string(100000, static_cast<char>('a' + i % 26))));
+        }
+        pieces->end();
+    });
+    Peer peer(server->port());
+    const std::string answer = ask(peer, get("/x"), "");
+    maker.join();
+    EXPECT_NE(answer.find("Transfer-Encoding: chunked"), std::string::npos);
+    EXPECT_GT(answer.size(), 30000000U);
+    EXPECT_TRUE(answer.ends_with("0\r\n\r\n"));
+}
+
+TEST_F(ServerTest, WhoeverMakesPiecesEndsWhenNobodyReads_J3) {
+    listen();
+    echo.pieces = std::make_shared<PieceQueue>();
+    std::thread maker([pieces = echo.pieces] {
+        while (pieces->push(std::string(100000, 'x'))) {
+        }
+        pieces->end();
+    });
+    {
+        Peer peer(server->port());
+        static_cast<void>(ask(peer, get("/x"), "\r\n\r\n"));
+    }
+    EXPECT_TRUE(run_until([&] { return echo.pieces->isCancelled(); }));
+    maker.join();
+}
+
+TEST_F(ServerTest, ItListensToThisComputerAlone_J3) {
+    listen();
+    Peer ours(server->port()), other(server->port(), INADDR_LOOPBACK + 1);
+    EXPECT_NE(ask(ours, get("/x"), "\r\n\r\n"), "");
+    EXPECT_TRUE(run_until([&] {
+        other.read();
+        return other.isClosed;
+    }));
+    EXPECT_EQ(other.received, "");
+}
+
+/// Those of the process that are bound to a port, and do not end when it becomes another program.
+int count_inherited(int port) {
+    int found = 0;
+    for (int fd = 0; fd < 1024; ++fd) {
+        sockaddr_in place{};
+        socklen_t size = sizeof place;
+        const bool isSocket = ::getsockname(fd, reinterpret_cast<sockaddr *>(&place), &size) == 0;
+        const bool isOfServer = isSocket && place.sin_family == AF_INET &&
+                                place.sin_port == htons(static_cast<std::uint16_t>(port));
+        found += isOfServer && (::fcntl(fd, F_GETFD) & FD_CLOEXEC) == 0 ? 1 : 0;
+    }
+    return found;
+}
+
+TEST_F(ServerTest, ABrowserThatItStartsDoesNotKeepItsPort_J3) {
+    listen();
+    Peer peer(server->port());
+    EXPECT_TRUE(ask(peer, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
+    EXPECT_EQ(count_inherited(server->port()), 0);
+}
+
+TEST_F(ServerTest, WhoNeverEndsHisRequestIsCutOff_J3) {
+    ServerLimits limits;
+    limits.request_time = milliseconds(300);
+    limits.connections = 2;
+    listen(limits);
+    Peer slow(server->port());
+    write(slow, "GET /x HTTP/1.1\r\nHost: ");
+    EXPECT_EQ(status_of(get("/x")), "HTTP/1.1 200 OK");  // nobody waits for it
+    EXPECT_TRUE(run_until([&] {
+        slow.read();
+        return slow.isClosed;
+    }));
+}
+
+TEST_F(ServerTest, WhoGoesOnAfterHisRefusalIsCutOff_J3) {
+    ServerLimits limits;
+    limits.request_time = milliseconds(300);
+    listen(limits);
+    Peer peer(server->port());
+    write(peer, "PUT /f HTTP/1.1\r\n" + host() + "Content-Length: 2000000\r\n\r\n");
+    EXPECT_TRUE(run_until([&] {  // byte by byte
+        std::string more = "x";
+        return !peer.write(more);
+    }));
+}
+
+TEST_F(ServerTest, ConnectionsBeyondTheMostAreClosed_J3) {
+    ServerLimits limits;
+    limits.connections = 2;
+    listen(limits);
+    {
+        Peer first(server->port()), second(server->port());
+        server->run_for(echo, milliseconds(20));
+        EXPECT_EQ(status_of(get("/x")), "");
+    }
+    EXPECT_TRUE(run_until([&] { return status_of(get("/x")) == "HTTP/1.1 200 OK"; }));
+}
+
+TEST_F(ServerTest, WhoDoesNotReadDelaysNobody_J3) {
+    listen();
+    Peer slow(server->port()), other(server->port());
+    EXPECT_TRUE(ask(slow, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
+    EXPECT_TRUE(ask(other, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
+    for (int i = 0; i < 1000; ++i) {
+        server->send(echo.open[0], std::string(4096, 'x'));
+        server->run_for(echo, std::chrono::microseconds(10));
+    }
+    ASSERT_FALSE(server->isIdle(echo.open[0]));
+    EXPECT_EQ(ask(other, frame("stop"), "stop"), "\x81\x04stop");
+    EXPECT_TRUE(echo.ended.empty());
+}
+
+TEST_F(ServerTest, ABrokenFrameEndsThoughThePeerStays_J3) {
+    listen();
+    Peer peer(server->port());
+    EXPECT_TRUE(ask(peer, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
+    write(peer, "\x81\x01x");
+    EXPECT_TRUE(run_until([&] { return echo.ended.size() == 1; }));
+}
+
+/// Bytes that begin as something does and go on as nothing does.
+TEST_F(ServerTest, AnythingMayComeOverAConnection_J3) {
+    listen();
+    std::mt19937_64 random(17);
+    const auto pick = [&random](std::size_t count) { return static_cast<std::size_t>(random() % count); };
+    for (int i = 0; i < 400; ++i) {
+        std::string bytes = get("/x", "Origin: http://127.0.0.1:" + std::to_string(server->port()) + "\r\n");
+        const bool isSocket = pick(2) == 0;
+        Peer peer(server->port());
+        if (isSocket) {
+            ASSERT_TRUE(ask(peer, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101")) << i;
+            bytes.clear();
+            for (std::size_t n = pick(4) + 1; n > 0; --n) {
+                bytes += frame(std::string(pick(300), static_cast<char>(random())),
+                               static_cast<unsigned char>(random()));
+            }
+        }
+        for (std::size_t n = pick(6); n > 0; --n) {
+            bytes[pick(bytes.size())] = static_cast<char>(random());
+        }
+        bytes.resize(pick(bytes.size()) + 1);
+        write(peer, bytes);
+        server->run_for(echo, milliseconds(1));
+    }
+    EXPECT_TRUE(run_until([&] { return echo.ended.size() == echo.open.size(); }));
+    echo.texts.clear();
+    Peer peer(server->port());
+    EXPECT_TRUE(ask(peer, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
+    EXPECT_EQ(ask(peer, frame("hello"), "hello"), "\x81\x05hello");
+}
+
+TEST_F(ServerTest, APortThatIsTakenIsToldWithWhatToDo_J3) {
+    listen();
+    const auto second = Server::listen({.port = server->port(), .limits = {}});
+    ASSERT_FALSE(second.has_value());
+    EXPECT_NE(second.error().str().find("--port"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace mw::ui::web
