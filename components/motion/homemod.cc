@@ -1,11 +1,39 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Stands for motmod's built-in homing (src/homing), which existing start files load as a module of its own.
+// Stands for motmod's built-in homing (src/homing), which existing start files load as a module of its own;
+// and says whether the module that is to take its place is one.
+#include <string.h>
+
 #include "hal/api/hal.h"
+#include "hal/api/millwright_ext.h"
 #include "hal/api/rtapi_app.h"
+#include "motion/api/homing_functions.hh"
+
+static char *replaced_by = nullptr;
+RTAPI_MP_STRING(replaced_by, "the homing module that is loaded: refused where it lacks a function");
 
 static int component = -1;
 
+static bool isReplaced() {
+    char missing[600] = "";
+    for (const char *name : mw::motion::HOMING_FUNCTIONS) {
+        const bool isMissing = mw_ext_find_symbol(name) == nullptr;
+        const bool isRoom = strlen(missing) + strlen(name) + 3 < sizeof missing;
+        if (isMissing && isRoom) {
+            strcat(missing, missing[0] == '\0' ? "" : ", ");
+            strcat(missing, name);
+        }
+    }
+    if (missing[0] != '\0') {
+        rtapi_print_msg(RTAPI_MSG_ERR, "%s is no homing module, it lacks %s: see docs/extending/homing.md\n",
+                        replaced_by, missing);
+    }
+    return missing[0] == '\0';
+}
+
 int rtapi_app_main(void) {
+    if (replaced_by != nullptr && !isReplaced()) {
+        return -8;  // ENOEXEC
+    }
     component = hal_init("homemod");
     return component < 0 ? component : hal_ready(component);
 }

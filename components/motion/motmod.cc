@@ -11,6 +11,7 @@
 #include "hal/api/rtapi_app.h"
 #include "motion/core/controller.hh"
 #include "motion/core/path_planner.hh"
+#include "motion/rt/module_homing.hh"
 #include "motion/rt/module_kinematics.hh"
 #include "motion/rt/pins.hh"
 
@@ -46,6 +47,8 @@ constexpr int FAILED = -22;  // EINVAL
 /// Everything of this load but the pins and the channels, which live in shared memory.
 struct Module {
     motion::ModuleKinematics kinematics;
+    motion::ModuleHoming homing;
+    bool isHomingForeign = false;  ///< a module of a user homes
     motion::PathLink *link = nullptr;
     motion::Inputs in;
     motion::Outputs out;
@@ -120,6 +123,47 @@ int find_kinematics() {
     return module.kinematics.hold(module.component);
 }
 
+void set_unlock(int joint, int isWanted) {
+    module.homing.set_unlock(joint, isWanted != 0);
+}
+
+int get_unlock(int joint) {
+    return module.homing.isUnlocked(joint) ? 1 : 0;
+}
+
+/// A module of a user that homes, if one is loaded.
+int find_homing() {
+    const char *missing = nullptr;
+    const auto found = module.homing.find(missing);
+    if (found == motion::ModuleHoming::Found::NONE) {
+        return 0;
+    }
+    if (found == motion::ModuleHoming::Found::SOME) {
+        rtapi_print_msg(RTAPI_MSG_ERR,
+                        "motmod: a loaded module has some functions of a homing module, but not %s: see "
+                        "docs/extending/homing.md\n",
+                        missing);
+        return -2;  // ENOENT
+    }
+    const double period_s = static_cast<double>(servo_period_nsec) * 1e-9;
+    const int started =
+        module.homing.start_module(module.component, period_s, num_joints, set_unlock, get_unlock);
+    if (started != 0) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "motmod: the homing module cannot be used: homing_init answers %d\n",
+                        started);
+        return started < 0 ? started : FAILED;
+    }
+    module.isHomingForeign = true;
+    return module.homing.hold(module.component);
+}
+
+bool hasPin(const char *name) {
+    hal_type_t type = HAL_BIT;
+    hal_data_u *data = nullptr;
+    bool isConnected = false;
+    return hal_get_pin_value_by_name(name, &type, &data, &isConnected) == 0;
+}
+
 int make_channels() {
     module.shmem_id =
         rtapi_shmem_new(motion::Channels::SHMEM_KEY, module.component, sizeof(motion::Channels));
@@ -141,16 +185,18 @@ int make_pins() {
         return -12;  // ENOMEM
     }
     module.pins = new (memory) motion::MotionPins();
-    return module.pins->declare(module.component,
-                                {num_joints, num_spindles, num_dio, num_aio, num_misc_error,
-                                 unlock_joints_mask, module.kinematics.type_switch() != nullptr});
+    motion::PinCounts counts{num_joints, num_spindles, num_dio, num_aio, num_misc_error, unlock_joints_mask};
+    counts.isSwitchable = module.kinematics.type_switch() != nullptr;
+    counts.areHomingPinsMade = hasPin("joint.0.home-sw-in");
+    return module.pins->declare(module.component, counts);
 }
 
 int make_functions() {
     const double period_s = static_cast<double>(servo_period_nsec) * 1e-9;
     module.link = new (link_memory) motion::PathLink();
     module.controller =
-        new (controller_memory) motion::Controller({num_joints, num_spindles, num_dio, num_aio, period_s},
+        new (controller_memory) motion::Controller({num_joints, num_spindles, num_dio, num_aio, period_s,
+                                                    module.isHomingForeign ? &module.homing : nullptr},
                                                    module.kinematics, *module.channels, *module.link);
     module.planner =
         new (planner_memory) motion::PathPlanner({period_s, num_joints, num_spindles, num_dio, num_aio},
@@ -207,6 +253,7 @@ int rtapi_app_main(void) {
         return module.component;
     }
     int status = find_kinematics();
+    status = status == 0 ? find_homing() : status;
     status = status == 0 ? make_channels() : status;
     status = status == 0 ? make_pins() : status;
     status = status == 0 ? make_functions() : status;

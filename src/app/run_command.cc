@@ -136,10 +136,11 @@ class Run {
 
     /// What needs to be in the machine's process.
     bool isForClients() {
-        const char *option = !words_.trace.empty()  ? "--trace"
-                             : !words_.plot.empty() ? "--plot"
-                             : words_.isStrict      ? "--strict"
-                                                    : nullptr;
+        const char *option = !words_.trace.empty()           ? "--trace"
+                             : !words_.plot.empty()          ? "--plot"
+                             : words_.isStrict               ? "--strict"
+                             : !words_.homing_module.empty() ? "--homemod"
+                                                             : nullptr;
         if (option != nullptr) {
             sink_.error(
                 {fmt::format("{} needs a machine that is made for this program, and one is up already",
@@ -190,6 +191,7 @@ class Run {
         const machine::MachineParts parts{loaded_.ini, loaded_.reader, loaded_.machine, sink_};
         machine::MachineOptions options;
         options.isStrict = words_.isStrict;
+        options.homing_module = words_.homing_module;
         options.isToolTableTold = true;
         return words_.isRealtime ? machine::make_realtime_machine(parts, options)
                                  : machine::make_virtual_machine(parts, options);

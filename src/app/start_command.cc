@@ -21,7 +21,7 @@ namespace {
 constexpr std::int64_t DISPLAY_END_NS = 5000000000;
 
 struct StartWords {
-    std::string ini;
+    std::string ini, homing_module;
     bool isDisplayed = true, isStrict = false;
     options::Words rest;
 
@@ -37,6 +37,8 @@ struct StartWords {
                                   "saved. A second SIGINT ends it\n"
                                   "at once.\n");
         line.flag("--no-display", "start no display: up until a signal comes", isDisplayed, false);
+        line.text("--homemod", "NAME", "a homing module and its parameters, instead of [EMCMOT]HOMEMOD",
+                  homing_module);
         line.flag("--strict", "unknown INI keys are errors", isStrict);
         line.rest(rest);
         line.footer("exit status: 0 ended in order, 1 refused or failed, 2 wrong usage\n");
@@ -95,6 +97,7 @@ class Start {
     Result<> make() {
         machine::MachineOptions options;
         options.isStrict = words_.isStrict;
+        options.homing_module = words_.homing_module;
         options.isLasting = true;
         auto made =
             machine::make_realtime_machine({loaded_.ini, loaded_.reader, loaded_.machine, sink_}, options);

@@ -43,6 +43,8 @@ class Homing final : public Module {
 
     /// How long an indexer may take to unlock or lock [s].
     static constexpr double LONGEST_LOCKING_S = 30;
+    /// How long a contact may bounce [s]: so long after a change it is not judged again.
+    static constexpr double LONGEST_BOUNCE_S = 0.02;
 
   private:
     struct Joint {

@@ -17,9 +17,10 @@ struct Parameters {
     bool isLockingIndexer = false, isVolatile = false;
     int absolute_encoder = 0;
     int sequence = NO_SEQUENCE;
-    double travel = 0;    ///< how far to search at most
-    double max_skew = 0;  ///< how far apart joints of a team may get; 0: a hundredth of the range
-    int axis = -1;        ///< that it moves by itself or with others; -1: none
+    double travel = 0;         ///< how far to search at most
+    double max_skew = 0;       ///< how far apart joints of a team may get; 0: a hundredth of the range
+    double low = 0, high = 0;  ///< soft limits, which hold once the joint is homed
+    int axis = -1;             ///< that it moves by itself or with others; -1: none
     bool isActive = true;
 
     static constexpr int NO_SEQUENCE = 1000;
@@ -61,7 +62,6 @@ struct JointCommand {
 /// All functions: servo thread only; none allocates, locks or blocks. Arrays have MAX_JOINTS elements.
 class Module {
   public:
-    virtual ~Module() = default;
     virtual void set_num_joints(int count) noexcept = 0;
     virtual void configure(int joint, const Parameters &parameters) noexcept = 0;
     /// Starts one joint or, with -1, all by sequence.
@@ -69,6 +69,10 @@ class Module {
     /// Stops the whole of what is being homed. `why` is one of LIMIT, ABORT, OFF; `joint` has it, -1: none.
     virtual void abort(event::Event why, int joint) noexcept = 0;
     virtual void unhome(int joint) noexcept = 0;
+
+    /// In every cycle, on or off, before anything else and after everything.
+    virtual void read_pins() noexcept {}
+    virtual void write_pins() noexcept {}
 
     /// Advances by one cycle; `commands` of joints that are not homing are NONE.
     virtual void step(const JointInput *inputs, JointCommand *commands) noexcept = 0;
@@ -90,6 +94,9 @@ class Module {
     virtual std::uint32_t take_clamped() noexcept { return 0; }
     /// The outputs that depend on the switch of the machine are off from here.
     virtual void lock() noexcept = 0;
+
+  protected:
+    ~Module() = default;
 };
 
 }  // namespace mw::homing

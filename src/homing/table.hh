@@ -72,6 +72,7 @@ enum Event : std::uint32_t {
     ABORT = 1U << 16,
     OFF = 1U << 17,
     MEMBER_FAILED = 1U << 18,  ///< another joint that is being homed has failed
+    TEAM_SETTLED = 1U << 19,   ///< TEAM_AT_REST, and no contact bounces any more
 };
 }
 
@@ -150,21 +151,21 @@ inline constexpr Transition TRANSITIONS[] = {
     {State::INITIAL_BACKOFF, event::TEAM_OPEN, 0, 0, Action::STOP, State::INITIAL_BACKOFF_STOP},
     {State::INITIAL_BACKOFF, event::AT_REST | event::SWITCH_CLOSED, 0, 0, Action::STOP, State::IDLE,
      Failure::SWITCH_STUCK},
-    {State::INITIAL_BACKOFF_STOP, event::TEAM_AT_REST, 0, 0, Action::SEARCH, State::SEARCH},
+    {State::INITIAL_BACKOFF_STOP, event::TEAM_SETTLED, 0, 0, Action::SEARCH, State::SEARCH},
 
     {State::SEARCH, event::SWITCH_CLOSED, 0, 0, Action::STOP, State::SEARCH_STOP},
     {State::SEARCH, event::AT_REST, 0, 0, Action::STOP, State::IDLE, Failure::SWITCH_NOT_FOUND},
-    {State::SEARCH_STOP, event::TEAM_AT_REST | event::SWITCH_OPEN, 0, 0, Action::STOP, State::IDLE,
+    {State::SEARCH_STOP, event::TEAM_SETTLED | event::SWITCH_OPEN, 0, 0, Action::STOP, State::IDLE,
      Failure::SWITCH_LOST},
-    {State::SEARCH_STOP, event::TEAM_AT_REST, setting::SAME_WAY, 0, Action::BACK_OFF, State::LATCH_BACKOFF},
-    {State::SEARCH_STOP, event::TEAM_AT_REST, 0, 0, Action::LATCH, State::LATCH},
+    {State::SEARCH_STOP, event::TEAM_SETTLED, setting::SAME_WAY, 0, Action::BACK_OFF, State::LATCH_BACKOFF},
+    {State::SEARCH_STOP, event::TEAM_SETTLED, 0, 0, Action::LATCH, State::LATCH},
 
     {State::LATCH_BACKOFF, event::TEAM_OPEN, 0, 0, Action::STOP, State::LATCH_BACKOFF_STOP},
     {State::LATCH_BACKOFF, event::AT_REST | event::SWITCH_CLOSED, 0, 0, Action::STOP, State::IDLE,
      Failure::SWITCH_STUCK},
-    {State::LATCH_BACKOFF_STOP, event::TEAM_AT_REST | event::SWITCH_CLOSED, 0, 0, Action::STOP, State::IDLE,
+    {State::LATCH_BACKOFF_STOP, event::TEAM_SETTLED | event::SWITCH_CLOSED, 0, 0, Action::STOP, State::IDLE,
      Failure::SWITCH_CLOSED_AGAIN},
-    {State::LATCH_BACKOFF_STOP, event::TEAM_AT_REST, 0, 0, Action::LATCH, State::LATCH},
+    {State::LATCH_BACKOFF_STOP, event::TEAM_SETTLED, 0, 0, Action::LATCH, State::LATCH},
 
     {State::LATCH, event::SWITCH_CLOSED, setting::SAME_WAY | setting::INDEX, 0, Action::ASK_INDEX,
      State::INDEX},

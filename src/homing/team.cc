@@ -52,6 +52,7 @@ std::uint32_t Homing::team_events(int joint, const JointInput *inputs) const noe
     const Joint &j = at(joint);
     bool isClosed = inputs[joint].isSwitchClosed;
     bool areAtRest = inputs[joint].isAtRest;
+    int shortest = j.wait;
     bool areUnlocked = inputs[joint].isUnlocked || !j.parameters.isLockingIndexer;
     bool areLatched = j.state == State::LATCHED;
     bool areHere = true;
@@ -67,6 +68,7 @@ std::uint32_t Homing::team_events(int joint, const JointInput *inputs) const noe
         const Parameters &p = other.parameters;
         isClosed = isClosed || inputs[k].isSwitchClosed;
         areAtRest = areAtRest && inputs[k].isAtRest;
+        shortest = std::min(shortest, other.wait);
         areUnlocked = areUnlocked && (inputs[k].isUnlocked || !p.isLockingIndexer);
         areLatched = areLatched && other.state == State::LATCHED;
         areHere = areHere && other.state == j.state;
@@ -77,6 +79,8 @@ std::uint32_t Homing::team_events(int joint, const JointInput *inputs) const noe
     }
     std::uint32_t out = isClosed ? event::TEAM_CLOSED : event::TEAM_OPEN;
     out |= areAtRest && areHere ? event::TEAM_AT_REST : 0U;
+    const bool areSettled = areAtRest && areHere && shortest * period_s_ > LONGEST_BOUNCE_S;
+    out |= areSettled ? event::TEAM_SETTLED : 0U;
     out |= areUnlocked ? event::TEAM_UNLOCKED : 0U;
     out |= areLatched ? event::TEAM_LATCHED : 0U;
     out |= isOther ? event::TEAM_DIFFERS : 0U;

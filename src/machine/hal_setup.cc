@@ -82,6 +82,18 @@ class RealtimePrograms final : public lang::ProgramHost {
     lang::SystemProgramHost system_;
 };
 
+/// Loads a homing module of a user, and asks homemod whether it is one.
+Result<> load_homing(lang::Session &session, const HalStep &module) {
+    const std::vector<std::string> words = split_words(module.text);
+    if (words.empty() || words[0] == "homemod") {
+        return {};
+    }
+    const std::string place = module.place.str();
+    Result<> done = session.run_text("loadrt " + module.text, place);
+    done = done ? session.run_text("loadrt homemod replaced_by=" + words[0], place) : done;
+    return done ? session.run_text("unloadrt homemod", place) : done;
+}
+
 Result<> run_file_step(lang::Session &session, const HalStep &step) {
     const std::vector<std::string> words = split_words(step.text);
     if (words.empty()) {
@@ -165,9 +177,14 @@ Result<> HalSetup::run() {
     lang::ProgramHost &program_host = isVirtual ? static_cast<lang::ProgramHost &>(parts) : programs;
     lang::Session session(host_, program_host, output, session_options);
     const int errors_before = parts_.sink.count_errors();
-    const auto done = parts_.config.two_pass.empty()
-                          ? run_steps(session, parts_.config.hal_steps)
-                          : run_two_pass_steps(session, parts_.config.hal_steps, parts_.config.two_pass);
+    const HalStep asked{HalStep::Kind::COMMAND, options_.homing_module, {"--homemod", 0, 0}};
+    Result<> done =
+        load_homing(session, options_.homing_module.empty() ? parts_.config.homing_module : asked);
+    if (done) {
+        done = parts_.config.two_pass.empty()
+                   ? run_steps(session, parts_.config.hal_steps)
+                   : run_two_pass_steps(session, parts_.config.hal_steps, parts_.config.two_pass);
+    }
     if (!done) {
         // The session tells its own failures, with the line of the HAL file.
         Error error = done.error();

@@ -92,8 +92,8 @@ inline constexpr auto INI_KEYS = std::to_array<config::IniKey>({
     config::ini_elsewhere("EMCMOT", "COMM_TIMEOUT", "message channels of LinuxCNC"),
     config::ini_elsewhere("EMCMOT", "COMM_WAIT", "message channels of LinuxCNC"),
     config::ini_elsewhere("EMCMOT", "SHMEM_KEY", "message channels of LinuxCNC"),
-    config::ini_without_effect("EMCMOT", "HOMEMOD", "homing is part of motmod and cannot be exchanged",
-                               "homemod"),
+    config::ini_text("EMCMOT", "HOMEMOD",
+                     "a homing module and its parameters, instead of the built-in one (homemod)"),
 
     config::ini_number("TASK", "CYCLE_TIME", "s", 0.001, {0.0001, 1.0}, "of the task loop"),
     config::ini_text("TASK", "INTERPRETER", "a shared object that takes the place of RS-274/NGC"),

@@ -29,6 +29,7 @@ struct MachineOptions {
     bool isClockVirtual = false;   ///< set by make_virtual_machine()
     bool isStrict = false;         ///< unknown INI keys are errors
     bool isLasting = false;        ///< it stays up for clients when a program has ended
+    std::string homing_module;     ///< instead of [EMCMOT]HOMEMOD
     bool isToolTableTold = false;  ///< whoever makes the machine has said what is wrong with the tool table
     std::string instance;          ///< HAL instance of a realtime machine; empty: the user's default
     /// Extra folders for HAL library files, before our own.

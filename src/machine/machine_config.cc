@@ -283,6 +283,11 @@ void read_periods(IniReader &ini, MachineConfig &machine) {
 }
 
 void read_hal(IniReader &ini, MachineConfig &machine) {
+    const IniKey &homing = ini_key("EMCMOT", "HOMEMOD");
+    const std::vector<std::string> words = split_words(ini.text(homing));
+    if (!words.empty() && words[0] != "homemod") {
+        machine.homing_module = {HalStep::Kind::COMMAND, ini.text(homing), ini.find(homing)->place};
+    }
     for (const config::IniEntry *entry : ini.list(ini_key("HAL", "HALFILE"))) {
         machine.hal_steps.push_back({HalStep::Kind::FILE, entry->value, entry->place});
     }

@@ -86,6 +86,9 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
     if (power_.isStopping && !isAnythingMoving() && areAtRest(offsets_)) {
         disable();
     }
+    if (homing_.foreign != nullptr) {
+        homing_.foreign->read_pins();
+    }
     const PerJoint measured = read_feedback(joints_, in);
     read_feedback(place_, kinematics_, measured.data(), limits_.homed.areAll);
     const bool isDead = channels_->isTaskDead.load(std::memory_order_acquire) != 0;
@@ -112,6 +115,9 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
          failed &= failed - 1) {
         const int n = std::countr_zero(failed);
         raise(FaultKind::SPINDLE_FAULT, n, spindles_[n].orient_fault);
+    }
+    if (homing_.foreign != nullptr) {
+        homing_.foreign->write_pins();
     }
     publish(in, out);
     probe_.wasClosed = in.isProbeClosed;

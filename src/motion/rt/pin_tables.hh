@@ -100,11 +100,9 @@ inline constexpr auto TOOL_OFFSET = pin_table("motion",
 
 inline constexpr auto JOINT = pin_table("joint.#",
     in<double>("motor-pos-fb", "unit", "measured position of the motor", [](JointInputs &i, double v) { i.motor_pos_fb = v; }),
-    in<bool>("home-sw-in", "", "home switch", [](JointInputs &i, bool v) { i.isHomeSwitchClosed = v; }),
     in<bool>("pos-lim-sw-in", "", "upper limit switch", [](JointInputs &i, bool v) { i.isPosLimitClosed = v; }),
     in<bool>("neg-lim-sw-in", "", "lower limit switch", [](JointInputs &i, bool v) { i.isNegLimitClosed = v; }),
     in<bool>("amp-fault-in", "", "the amplifier has a fault", [](JointInputs &i, bool v) { i.isAmpFaulted = v; }),
-    in_out<bool>("index-enable", "", "homing waits for the index pulse; the encoder clears it there", [](JointInputs &i, bool v) { i.isIndexEnabled = v; }, [](const JointView &v) { return v.o.isIndexEnabled; }),
     in<Count>("jog-counts", "", "of the wheel", [](JointInputs &i, Count v) { i.wheel.counts = v; }),
     in<bool>("jog-enable", "", "the wheel moves the joint", [](JointInputs &i, bool v) { i.wheel.isEnabled = v; }),
     in<bool>("jog-vel-mode", "", "the joint stops when the wheel does", [](JointInputs &i, bool v) { i.wheel.isVelocityMode = v; }),
@@ -130,13 +128,18 @@ inline constexpr auto JOINT = pin_table("joint.#",
     out<bool>("error", "", "a fault, following error or limit switch", [](const JointView &v) { return v.s.isFaulted || v.s.isFerrorTripped || v.s.isOnPosHardLimit || v.s.isOnNegHardLimit; }),
     out<bool>("faulted", "", "amplifier fault", [](const JointView &v) { return v.s.isFaulted; }),
     out<bool>("f-errored", "", "the following error was too large", [](const JointView &v) { return v.s.isFerrorTripped; }),
-    out<bool>("homed", "", "the joint is homed", [](const JointView &v) { return v.s.isHomed; }),
-    out<bool>("homing", "", "the joint is being homed", [](const JointView &v) { return v.s.isHoming; }),
     out<bool>("pos-hard-limit", "", "on the upper limit switch", [](const JointView &v) { return v.s.isOnPosHardLimit; }),
     out<bool>("neg-hard-limit", "", "on the lower limit switch", [](const JointView &v) { return v.s.isOnNegHardLimit; }),
     out<bool>("free-tp-enable", "", "a jog or homing move is under way", [](const JointView &v) { return v.o.isFreePlanning; }),
     out<bool>("kb-jog-active", "", "jogged by command", [](const JointView &v) { return v.o.isKeyboardJogging; }),
-    out<bool>("wheel-jog-active", "", "jogged by wheel", [](const JointView &v) { return v.o.isWheelJogging; }),
+    out<bool>("wheel-jog-active", "", "jogged by wheel", [](const JointView &v) { return v.o.isWheelJogging; }));
+
+/// Unless a homing module makes its own.
+inline constexpr auto HOMING = pin_table("joint.#",
+    in<bool>("home-sw-in", "", "home switch", [](JointInputs &i, bool v) { i.isHomeSwitchClosed = v; }),
+    in_out<bool>("index-enable", "", "homing waits for the index pulse; the encoder clears it there", [](JointInputs &i, bool v) { i.isIndexEnabled = v; }, [](const JointView &v) { return v.o.isIndexEnabled; }),
+    out<bool>("homed", "", "the joint is homed", [](const JointView &v) { return v.s.isHomed; }),
+    out<bool>("homing", "", "the joint is being homed", [](const JointView &v) { return v.s.isHoming; }),
     out<Count>("home-state", "", "step of homing, 0: none", [](const JointView &v) { return v.o.home_state; }));
 
 /// Only of joints in the unlock mask.
@@ -200,6 +203,7 @@ void for_each(Show &&show) {
     sdk::for_each_pin(MISC_ERROR, show);
     sdk::for_each_pin(TOOL_OFFSET, show);
     sdk::for_each_pin(JOINT, show);
+    sdk::for_each_pin(HOMING, show);
     sdk::for_each_pin(SWITCHABLE, show);
     sdk::for_each_pin(UNLOCK, show);
     sdk::for_each_pin(AXIS, show);

@@ -31,6 +31,8 @@ int MotionPins::declare(int comp_id, const PinCounts &wanted) noexcept {
     status = status == 0 ? declare_each(analog_, comp_id, counts_.analog) : status;
     status = status == 0 ? declare_each(misc_error_, comp_id, counts_.misc_errors) : status;
     status = status == 0 ? declare_each(joint_, comp_id, counts_.joints) : status;
+    status =
+        status == 0 && !counts_.areHomingPinsMade ? declare_each(homing_, comp_id, counts_.joints) : status;
     const auto unlocked = static_cast<unsigned>(counts_.unlock_mask);
     status = status == 0 && unlocked != 0 ? declare_each(unlock_, comp_id, counts_.joints, unlocked) : status;
     status = status == 0 ? declare_each(axis_, comp_id, MAX_AXES) : status;
@@ -59,6 +61,9 @@ void MotionPins::read(Inputs &in) noexcept {
     }
     for (int j = 0; j < counts_.joints; ++j) {
         joint_[j].read(in.joint[at(j)]);
+        if (!counts_.areHomingPinsMade) {
+            homing_[j].read(in.joint[at(j)]);
+        }
         if (isUnlockable(j)) {
             unlock_[j].read(in.joint[at(j)]);
         }
@@ -83,9 +88,13 @@ void MotionPins::write(const Outputs &out) noexcept {
         analog_[i].write(ChannelOut{s, i});
     }
     for (int j = 0; j < counts_.joints; ++j) {
-        joint_[j].write(JointView{s.joint[at(j)], out.joint[at(j)]});
+        const JointView view{s.joint[at(j)], out.joint[at(j)]};
+        joint_[j].write(view);
+        if (!counts_.areHomingPinsMade) {
+            homing_[j].write(view);
+        }
         if (isUnlockable(j)) {
-            unlock_[j].write(JointView{s.joint[at(j)], out.joint[at(j)]});
+            unlock_[j].write(view);
         }
     }
     for (int i = 0; i < MAX_AXES; ++i) {

@@ -15,7 +15,8 @@ struct PinCounts {
     int spindles = 1;
     int digital = 4, analog = 4, misc_errors = 0;
     int unlock_mask = 0;
-    bool isSwitchable = false;  ///< kinematics of several types
+    bool isSwitchable = false;       ///< kinematics of several types
+    bool areHomingPinsMade = false;  ///< by a homing module
 };
 
 /// Lives in HAL memory.
@@ -41,6 +42,7 @@ class MotionPins {
     sdk::PinSet<pins::MISC_ERROR> misc_error_[MAX_DIGITAL_IO];
     sdk::PinSet<pins::TOOL_OFFSET> tool_offset_[MAX_AXES];
     sdk::PinSet<pins::JOINT> joint_[MAX_JOINTS];
+    sdk::PinSet<pins::HOMING> homing_[MAX_JOINTS];
     sdk::PinSet<pins::UNLOCK> unlock_[MAX_JOINTS];
     sdk::PinSet<pins::AXIS> axis_[MAX_AXES];
     sdk::PinSet<pins::SPINDLE> spindle_[MAX_SPINDLES];

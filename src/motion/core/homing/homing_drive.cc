@@ -11,14 +11,22 @@ namespace {
 
 constexpr int ALL = -1, VOLATILE_ONES = -2;
 
+/// Ours is called directly: this is asked in every cycle.
+template <class Function>
+auto with_module(const HomingDrive &drive, const Function &function) noexcept {
+    return drive.foreign != nullptr ? function(*drive.foreign) : function(drive.own);
+}
+
 }  // namespace
 
 std::uint32_t homed_mask(const HomingDrive &drive) noexcept {
-    std::uint32_t mask = 0;
-    for (int j = 0; j < drive.num_joints; ++j) {
-        mask |= drive.module().isHomed(j) ? 1U << j : 0U;
-    }
-    return mask;
+    return with_module(drive, [&](const auto &module) {
+        std::uint32_t mask = 0;
+        for (int j = 0; j < drive.num_joints; ++j) {
+            mask |= module.isHomed(j) ? 1U << j : 0U;
+        }
+        return mask;
+    });
 }
 
 bool isAllHomed(const HomingDrive &drive) noexcept {
@@ -92,6 +100,8 @@ void configure(HomingDrive &drive, int j, const Settings &settings) noexcept {
     const double range = get(Parameter::JOINT_MAX_LIMIT) - get(Parameter::JOINT_MIN_LIMIT);
     constexpr double LONGEST_SEARCH = 1e9;
     p.travel = std::isfinite(range) && range < LONGEST_SEARCH ? 2.0 * std::max(range, 0.0) : LONGEST_SEARCH;
+    p.low = get(Parameter::JOINT_MIN_LIMIT);
+    p.high = get(Parameter::JOINT_MAX_LIMIT);
     p.max_skew = get(Parameter::JOINT_HOME_MAX_SKEW);
     p.isLockingIndexer = settings.isSet(Parameter::JOINT_LOCKING_INDEXER, j);
     p.isVolatile = settings.isSet(Parameter::JOINT_VOLATILE_HOME, j);
@@ -175,13 +185,15 @@ bool areFinite(const HomingDrive &drive, const homing::JointCommand *commands) n
 
 void fill(const HomingDrive &drive, Outputs &out) noexcept {
     out.status.isHoming = drive.isUnderWay();
-    for (int j = 0; j < drive.num_joints; ++j) {
-        const auto n = static_cast<std::size_t>(j);
-        out.status.joint[n].isHoming = drive.module().isHoming(j);
-        out.joint[n].isIndexEnabled = drive.module().isIndexWanted(j);
-        out.joint[n].isUnlockWanted = drive.module().isUnlockWanted(j);
-        out.joint[n].home_state = drive.module().step_number(j);
-    }
+    with_module(drive, [&](const auto &module) {
+        for (int j = 0; j < drive.num_joints; ++j) {
+            const auto n = static_cast<std::size_t>(j);
+            out.status.joint[n].isHoming = module.isHoming(j);
+            out.joint[n].isIndexEnabled = module.isIndexWanted(j);
+            out.joint[n].isUnlockWanted = module.isUnlockWanted(j);
+            out.joint[n].home_state = module.step_number(j);
+        }
+    });
 }
 
 }  // namespace mw::motion

@@ -94,6 +94,7 @@ using Words = std::vector<std::pair<std::uint32_t, const char *>>;
 
 const Words EVENTS = {
     {event::BEGIN, "it is to home"},
+    {event::TEAM_SETTLED, "it and its team stand and have settled"},
     {event::TEAM_AT_REST, "it and its team stand"},
     {event::AT_REST, "it stands"},
     {event::SWITCH_CLOSED, "switch closed"},
@@ -214,7 +215,14 @@ struct Walk {
         }
         inputs[0].isIndexEnabled = false;
         inputs[1].isIndexEnabled = drive.own.isIndexWanted(1);
-        step_as_is();
+        step_while_in(state);
+    }
+    /// Long enough for contacts to settle.
+    void step_while_in(State state) {
+        constexpr int CYCLES = 25;
+        for (int n = 0; n < CYCLES && drive.own.state(0) == state; ++n) {
+            step_as_is();
+        }
     }
     bool reach(State target) {
         be_quiet(State::IDLE);
@@ -261,7 +269,9 @@ const std::vector<WalkedEvent> WALKED = {
     {"stands",
      [](Walk &w) {
          w.inputs[0].isAtRest = true;
-         w.step();
+         w.inputs[0].isIndexEnabled = w.drive.own.isIndexWanted(0);
+         w.inputs[1].isIndexEnabled = w.drive.own.isIndexWanted(1);
+         w.step_while_in(w.state());
      }},
     {"unlocked",
      [](Walk &w) {
