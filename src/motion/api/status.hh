@@ -27,6 +27,7 @@ struct JointStatus {
 
 struct AxisStatus {
     double velocity = 0, min_limit = 0, max_limit = 0;
+    double external_offset = 0;  ///< in carte_pos_cmd and carte_pos_fb
 };
 
 struct SpindleStatus {
@@ -60,7 +61,6 @@ struct Status {
     double current_velocity = 0;  ///< along the path [machine units/s]
     double requested_velocity = 0, distance_to_go = 0;
     geom::Pose carte_pos_cmd, carte_pos_fb, probed_pos, dtg;
-    geom::Pose external_offset;  ///< in carte_pos_cmd and carte_pos_fb, in none of the others
     bool isProbing = false, isProbeTripped = false, probe_value = false;
     double feed_scale = 1.0, rapid_scale = 1.0, net_feed_scale = 1.0;
     bool isFeedOverrideEnabled = true, isAdaptiveFeedEnabled = false, isFeedHoldEnabled = true;
@@ -71,6 +71,15 @@ struct Status {
     std::array<SpindleStatus, MAX_SPINDLES> spindle{};
     std::array<double, MAX_ANALOG_IO> analog_in{}, analog_out{};
 };
+
+/// Where programs see the machine: they know nothing of external offsets.
+inline geom::Pose programmed_position(const Status &status) noexcept {
+    geom::Pose pose = status.carte_pos_cmd;
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        pose[i] -= status.axis[static_cast<std::size_t>(i)].external_offset;
+    }
+    return pose;
+}
 
 /// The parts of `Status` in which it is published: who reads it often copies only what has changed.
 namespace status_part {

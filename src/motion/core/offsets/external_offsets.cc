@@ -141,8 +141,8 @@ void narrow(JogRange &jog, const ExternalOffsets &offsets, int axis) noexcept {
 void fill(const ExternalOffsets &offsets, Outputs &out) noexcept {
     out.isOffsetActive = false;
     out.isOffsetLimited = offsets.isLimited;
-    out.status.external_offset = offsets.pose;
     for (int i = 0; i < MAX_AXES; ++i) {
+        out.status.axis[at(i)].external_offset = offsets.pose[i];
         out.axis[at(i)].offset = offsets.pose[i];
         out.axis[at(i)].offset_request = offsets.axis[at(i)].request;
         out.isOffsetActive = out.isOffsetActive || offsets.pose[i] != 0.0;
