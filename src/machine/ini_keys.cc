@@ -177,7 +177,9 @@ std::vector<IniKey> all_ini_keys() {
     std::vector<IniKey> keys(INI_KEYS.begin(), INI_KEYS.end());
     keys.insert(keys.end(), interp::INI_KEYS.begin(), interp::INI_KEYS.end());
     for (const motion::ParameterInfo &info : motion::PARAMETERS) {
-        keys.push_back(ini_key(info.parameter));
+        if (!info.ini_section.empty()) {
+            keys.push_back(ini_key(info.parameter));
+        }
     }
     const std::vector<IniKey> others = ini_keys_of_others();
     keys.insert(keys.end(), others.begin(), others.end());

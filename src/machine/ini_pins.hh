@@ -2,25 +2,55 @@
 // Settings of the INI file that may be changed at run time by HAL pins: component "inihal".
 #pragma once
 
+#include <string>
+#include <variant>
+#include <vector>
+
 #include "base/result.hh"
 #include "hal/core/user_pin.hh"
+#include "motion/api/settings.hh"
 #include "task/task.hh"
 
 namespace mw::machine {
 
-/// ini.traj-planner-type (s32: 0, 1) and ini.traj-scurve-peak-scale (float: 0.1 to 1). Not realtime; one
-/// thread.
+/// ini.N.* of joints, ini.L.* of axes, ini.traj-*, by one table in ini_pins.cc. They hold what the INI file
+/// says, 0 where it says nothing. Not realtime; one thread.
 class IniPins {
   public:
-    /// Makes the component and its pins, which hold what the INI file says.
-    Result<> create(hal::Hal &hal, const std::vector<motion::SetParameter> &parameters);
+    /// Makes the component and its pins.
+    Result<> create(hal::Hal &hal, const std::vector<motion::SetParameter> &parameters, int num_joints);
     void destroy();
-    /// Tells task what has changed since the last call.
+    /// Tells task what has changed since the last call. Speeds and accelerations wait until nothing moves in
+    /// a mode of jogs, and nothing changes while joints home.
     void step(task::Task &task);
 
+    /// What a pin is for.
+    struct Use {
+        motion::Parameter parameter = motion::Parameter::COUNT;  ///< COUNT: nothing acts on it
+        bool isRate = false;                                     ///< changes at rest only
+        bool isPositive = false;
+    };
+
   private:
+    struct Pin {
+        std::string name;
+        std::variant<hal::UserPin<double>, hal::UserPin<std::int32_t>, hal::UserPin<bool>> pin;
+        Use use;
+        int index = 0;
+        double last = 0;
+        bool isWaiting = false, isWaitTold = false;
+
+        double value() const;
+        void set(double to);
+    };
+    void make_pins(int num_joints, hal::Hal &hal, Result<> &status);
+    bool isTaken(const Pin &pin, double value, task::Task &task) const;
+    void step(Pin &pin, task::Task &task);
+
     hal::Hal *hal_ = nullptr;
     int comp_id_ = 0;
+    std::vector<Pin> pins_;
+    motion::Settings settings_;  ///< as they were told to motion
     hal::UserPin<std::int32_t> planner_type_;
     hal::UserPin<double> corner_scale_;
     std::int32_t last_type_ = 0;

@@ -377,6 +377,9 @@ MachineConfig read_machine_config(config::IniReader &reader) {
     read_hal(reader, machine);
     read_interpreter(reader, machine);
     read_io(reader, machine);
+    constexpr double MM_PER_INCH = 25.4;
+    machine.parameters.push_back(
+        {static_cast<std::uint16_t>(Parameter::TRAJ_MM_PER_UNIT), 0, machine.isMetric ? 1.0 : MM_PER_INCH});
     machine.task.machine_units = machine.isMetric ? interp::LengthUnits::MM : interp::LengthUnits::INCH;
     machine.task.axis_mask = machine.axis_mask;
     machine.task.num_joints = machine.num_joints;

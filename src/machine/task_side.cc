@@ -72,7 +72,7 @@ Result<> TaskSide::identify() {
 Result<> TaskSide::make_pins() {
     auto status = io_pins_.create(host_.hal());
     if (status.has_value()) {
-        status = ini_pins_.create(host_.hal(), parts_.config.parameters);
+        status = ini_pins_.create(host_.hal(), parts_.config.parameters, parts_.config.num_joints);
     }
     if (status.has_value() && parts_.config.hasHalui) {
         status = halui_.create(host_.hal(), parts_.config.num_joints);

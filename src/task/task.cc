@@ -86,7 +86,7 @@ Result<> Task::start() {
 
 void Task::synch_interpreter() {
     show_world();
-    reader_.synch(motion_.status().carte_pos_cmd - motion::external_offset(motion_.status()));
+    reader_.synch(motion::programmed_position(motion_.status()));
 }
 
 Result<> Task::save_parameters() const {

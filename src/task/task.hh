@@ -77,6 +77,8 @@ class Task {
 
     /// Hands settings to the motion controller; a refused one comes as a message.
     void configure(const std::vector<motion::SetParameter> &parameters);
+    /// One setting, later on; whoever asks has seen that it is no time at which it cannot be.
+    void change(const motion::SetParameter &parameter) { motion_.send(parameter); }
     /// And a table of the errors of a joint's screw.
     void load_compensation(const std::vector<motion::LoadCompensation> &points) {
         motion_.send_table(points);

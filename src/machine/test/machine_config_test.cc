@@ -91,6 +91,23 @@ TEST(MachineConfig, ATableOfScrewErrorsIsReadAndChecked_C11) {
         Config(replaced(GOOD, "[JOINT_1]\n", "[JOINT_1]\nCOMP_FILE = " + name + "\n")).sink.hasErrors());
 }
 
+TEST(MachineConfig, ProbesInJogsAndExternalOffsetsAreSettingsOfMotion_C4_C15) {
+    using motion::Parameter;
+    const Config c(replaced(GOOD, "[AXIS_X]\n", "[AXIS_X]\nOFFSET_AV_RATIO = 0.2\n") +
+                   "[TRAJ]\nNO_PROBE_JOG_ERROR = 1\nNO_PROBE_HOME_ERROR = 1\n");
+    ASSERT_FALSE(c.sink.hasErrors());
+    EXPECT_EQ(c.parameter(Parameter::TRAJ_NO_PROBE_JOG_ERROR, 0), 1);
+    EXPECT_EQ(c.parameter(Parameter::TRAJ_NO_PROBE_HOME_ERROR, 0), 1);
+    EXPECT_EQ(c.parameter(Parameter::AXIS_OFFSET_RATIO, 0), 0.2);
+    EXPECT_EQ(c.parameter(Parameter::TRAJ_MM_PER_UNIT, 0), 25.4);
+    EXPECT_DOUBLE_EQ(c.machine.limits().path.velocity[0], 0.8);
+    EXPECT_DOUBLE_EQ(c.machine.limits().offset[0].velocity, 0.2);
+    EXPECT_TRUE(Config(replaced(GOOD, "[AXIS_X]\n", "[AXIS_X]\nOFFSET_AV_RATIO = 0.95\n")).sink.hasErrors());
+    std::string other = replaced(GOOD, "[AXIS_X]\n", "[AXIS_X]\nOFFSET_AV_RATIO = 0.2\n");
+    EXPECT_TRUE(Config(replaced(other, "trivkins coordinates=XZ", "tablekins"))
+                    .says("[AXIS_X]OFFSET_AV_RATIO has no effect"));
+}
+
 TEST(MachineConfig, SpeedOfRotaryAxesIsLimitedWhateverTheSpeedOfTheFirstJoint) {
     // Where kinematics are between, no joint is the axis: slow joints are no reason to forget the limit.
     const Config c("[TRAJ]\nCOORDINATES = X Y Z A C\nMAX_ANGULAR_VELOCITY = 5\n[KINS]\n"
@@ -113,10 +130,9 @@ TEST(MachineConfig, AnEmptyParameterFileIsTold_A3) {
 
 TEST(MachineConfig, KeysWithoutEffectAreNamedAndErrorsWhenStrict_A3) {
     for (const char *line :
-         {"[TRAJ]\nTPMOD = mytp\n", "[TRAJ]\nPOSITION_FILE = p.txt\n", "[TRAJ]\nNO_PROBE_JOG_ERROR = 1\n",
-          "[TRAJ]\nARC_BLEND_GAP_CYCLES = 4\n", "[HAL]\nPOSTGUI_HALFILE = x.hal\n",
-          "[HALUI]\nMDI_COMMAND = G0 X0\n", "[APPLICATIONS]\nAPP = x\n", "[TASK]\nTASK = mytask\n",
-          "[TASK]\nMDI_QUEUED_COMMANDS = 5\n", "[RS274NGC]\nLOG_FILE = x\n",
+         {"[TRAJ]\nTPMOD = mytp\n", "[TRAJ]\nPOSITION_FILE = p.txt\n", "[TRAJ]\nARC_BLEND_GAP_CYCLES = 4\n",
+          "[HAL]\nPOSTGUI_HALFILE = x.hal\n", "[HALUI]\nMDI_COMMAND = G0 X0\n", "[APPLICATIONS]\nAPP = x\n",
+          "[TASK]\nTASK = mytask\n", "[TASK]\nMDI_QUEUED_COMMANDS = 5\n", "[RS274NGC]\nLOG_FILE = x\n",
           "[RS274NGC]\nNO_DOWNCASE_OWORD = 1\n"}) {
         Config c(std::string(GOOD) + line);
         EXPECT_FALSE(c.sink.hasErrors()) << line;

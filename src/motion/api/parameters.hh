@@ -41,6 +41,11 @@ inline constexpr double NO_JERK_LIMIT = 1e9;
       "with jerk limits: part of the reachable speed in corners")                                            \
     X(TRAJ_ADDED_TOLERANCES, MACHINE, "TRAJ", "ADDED_TOLERANCES", FLAG, 0, 1, 0,                             \
       "lines may be joined within G64 Q on top of P")                                                        \
+    X(TRAJ_NO_PROBE_JOG_ERROR, MACHINE, "TRAJ", "NO_PROBE_JOG_ERROR", FLAG, 0, 1, 0,                         \
+      "a probe that trips in a jog does not stop it")                                                        \
+    X(TRAJ_NO_PROBE_HOME_ERROR, MACHINE, "TRAJ", "NO_PROBE_HOME_ERROR", FLAG, 0, 1, 0,                       \
+      "a probe that trips while homing does not stop it")                                                    \
+    X(TRAJ_MM_PER_UNIT, MACHINE, "", "", NONE, 1e-3, 1e6, 1, "millimetres of a machine unit")                \
     X(TRAJ_NO_FORCE_HOMING, MACHINE, "TRAJ", "NO_FORCE_HOMING", FLAG, 0, 1, 0,                               \
       "programs and MDI are taken before the joints are homed")                                              \
     X(MAX_FEED_SCALE, MACHINE, "DISPLAY", "MAX_FEED_OVERRIDE", NONE, 0, 1000, 1,                             \
@@ -121,7 +126,7 @@ struct ParameterInfo {
     Parameter parameter;
     std::string_view name;
     ParameterScope scope;
-    std::string_view ini_section;  ///< "JOINT_*" for JOINT_0 and so on
+    std::string_view ini_section;  ///< "JOINT_*" for JOINT_0 and so on; empty: no key of its own
     std::string_view ini_key;
     ParameterUnit unit;
     double lowest, highest, preset;

@@ -27,7 +27,7 @@ struct JointStatus {
 
 struct AxisStatus {
     double velocity = 0, min_limit = 0, max_limit = 0;
-    double offset = 0;  ///< external, in carte_pos_cmd and carte_pos_fb and in none of the other poses
+    double external_offset = 0;  ///< in carte_pos_cmd and carte_pos_fb
 };
 
 struct SpindleStatus {
@@ -72,13 +72,13 @@ struct Status {
     std::array<double, MAX_ANALOG_IO> analog_in{}, analog_out{};
 };
 
-/// External offsets of all axes.
-inline geom::Pose external_offset(const Status &status) noexcept {
-    geom::Pose offset;
-    for (int i = 0; i < MAX_AXES; ++i) {
-        offset[i] = status.axis[static_cast<std::size_t>(i)].offset;
+/// Where programs see the machine: they know nothing of external offsets.
+inline geom::Pose programmed_position(const Status &status) noexcept {
+    geom::Pose pose = status.carte_pos_cmd;
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        pose[i] -= status.axis[static_cast<std::size_t>(i)].external_offset;
     }
-    return offset;
+    return pose;
 }
 
 /// The parts of `Status` in which it is published: who reads it often copies only what has changed.

@@ -121,7 +121,10 @@ std::string what_failed(const Fault &fault) {
         return fmt::format(
             "the homing module asked for more than joint {} can do: it moves within its limits", i);
     case FaultKind::PROBE_NOT_TRIPPED: return "the probing move reached its end without a trip of the probe";
-    case FaultKind::PROBE_TRIPPED_IN_MOVE: return "probe tripped during a move that does not probe";
+    case FaultKind::PROBE_TRIPPED_IN_MOVE:
+        return fault.detail == 0 ? "probe tripped during a move that does not probe"
+                                 : "probe tripped in a jog or while homing, which has stopped: see "
+                                   "[TRAJ]NO_PROBE_JOG_ERROR and NO_PROBE_HOME_ERROR";
     case FaultKind::NO_WAY_ON:
         return "the planner finds no motion on from here that keeps all limits and the tolerance of the path";
     case FaultKind::JOG_JOINT_LIMIT:

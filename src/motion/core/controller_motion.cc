@@ -222,14 +222,18 @@ void Controller::check_probe(const Inputs &in) noexcept {
         probe.probing_move = path.move;
         probe.isAway = link_->store.move(path.move).isProbeAway;
     } else if (in.isProbeClosed && !probe_.wasClosed) {
-        probe.isMoving = !power_.isStopping && isAnythingMoving();
+        const bool isHoming = homing_.homing.isActive();
+        const Parameter ignored =
+            isHoming ? Parameter::TRAJ_NO_PROBE_HOME_ERROR : Parameter::TRAJ_NO_PROBE_JOG_ERROR;
+        const bool isIgnored = power_.mode != Mode::COORD && settings_.isSet(ignored);
+        probe.isMoving = !isIgnored && !power_.isStopping && isAnythingMoving();
         probe.isDropping = executor_.snapshot().isDropping;
     }
     switch (motion::step(probe_, probe, without(offsets_, place_.fb))) {
     case ProbeEvent::NONE: break;
     case ProbeEvent::FOUND: executor_.drop(); break;
     case ProbeEvent::TOUCHED:
-        raise(FaultKind::PROBE_TRIPPED_IN_MOVE, -1, 0);
+        raise(FaultKind::PROBE_TRIPPED_IN_MOVE, -1, 0, power_.mode != Mode::COORD ? 1 : 0);
         abort(homing_, homing::event::ABORT);
         executor_.drop();
         stop(jogs_);

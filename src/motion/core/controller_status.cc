@@ -82,6 +82,7 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
         axis.min_limit = settings_.get(Parameter::AXIS_MIN_LIMIT, i);
         axis.max_limit = settings_.get(Parameter::AXIS_MAX_LIMIT, i);
     }
+    out.mm_per_unit = settings_.get(Parameter::TRAJ_MM_PER_UNIT);
     out.isCoordError = isCoordError_;
     out.tool_offset = tool_offset_;
     publish_view(in);

@@ -96,6 +96,7 @@ struct Outputs {
     geom::Pose tool_offset;
     bool isJogging = false;
     bool isCoordError = false, isOnSoftLimit = false;
+    double mm_per_unit = 1;
     bool isOffsetActive = false, isOffsetLimited = false;
 };
 

@@ -42,7 +42,7 @@ namespace pins {
 using sdk::in, sdk::in_out, sdk::out, sdk::pin_table, sdk::Unused;
 using Count = std::int32_t;
 
-constexpr double PER_MINUTE = 60.0;
+constexpr double PER_MINUTE = 60.0, MM_PER_INCH = 25.4;
 
 /// [units/min] of the cut under way.
 inline double feed_upm(const Status &s) noexcept {
@@ -77,6 +77,10 @@ inline constexpr auto MOTION = pin_table("motion",
     out<double>("distance-to-go", "unit", "to the end of the move", [](const MotionView &v) { return v.out.status.distance_to_go; }),
     out<double>("requested-vel", "unit/s", "programmed speed of the move", [](const MotionView &v) { return v.out.status.requested_velocity; }),
     out<double>("feed-upm", "unit/min", "programmed feed with overrides; 0 in rapids", [](const MotionView &v) { return feed_upm(v.out.status); }),
+    out<double>("feed-inches-per-minute", "inch/min", "the same", [](const MotionView &v) { return feed_upm(v.out.status) * v.out.mm_per_unit / MM_PER_INCH; }),
+    out<double>("feed-inches-per-second", "inch/s", "the same", [](const MotionView &v) { return feed_upm(v.out.status) * v.out.mm_per_unit / MM_PER_INCH / PER_MINUTE; }),
+    out<double>("feed-mm-per-minute", "mm/min", "the same", [](const MotionView &v) { return feed_upm(v.out.status) * v.out.mm_per_unit; }),
+    out<double>("feed-mm-per-second", "mm/s", "the same", [](const MotionView &v) { return feed_upm(v.out.status) * v.out.mm_per_unit / PER_MINUTE; }),
     out<Count>("motion-type", "", "kind of the move, 0: none", [](const MotionView &v) { return v.out.status.motion_type; }),
     out<Count>("program-line", "", "line of the move", [](const MotionView &v) { return v.out.status.source.line; }),
     out<std::uint32_t>("servo.last-period", "ns", "between the last two cycles", [](const MotionView &v) { return v.last_period_ns; }),

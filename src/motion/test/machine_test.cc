@@ -395,5 +395,64 @@ TEST(Machine, ProbeContactInAJogStopsIt) {
     EXPECT_EQ(rig.faults[0].kind, FaultKind::PROBE_TRIPPED_IN_MOVE);
 }
 
+TEST(Machine, AProbeThatTripsInAJogMayBeLeftOutOfAccount_C4) {
+    MotionRig rig;
+    rig.set(Parameter::TRAJ_NO_PROBE_JOG_ERROR, 0, 1);
+    rig.ready(Mode::FREE);
+    rig.send(JogContinuous{{true, 2}, -20});
+    rig.step(200);
+    rig.in.isProbeClosed = true;
+    rig.step(200);
+    EXPECT_FALSE(rig.status().isInPosition) << "it goes on";
+    EXPECT_TRUE(rig.faults.empty());
+    rig.send(Abort{++rig.epoch});
+    rig.in.isProbeClosed = false;
+    rig.step(200);
+    rig.send(SetMode{Mode::COORD});
+    rig.step(5);
+    geom::Pose end;
+    end[0] = 50;
+    rig.line(end, 20);
+    rig.step(300);
+    rig.in.isProbeClosed = true;
+    rig.step(200);
+    ASSERT_EQ(rig.faults.size(), 1U) << "programs stop as before";
+    EXPECT_EQ(rig.faults[0].kind, FaultKind::PROBE_TRIPPED_IN_MOVE);
+    EXPECT_EQ(rig.faults[0].detail, 0);
+}
+
+TEST(Machine, AProbeThatTripsWhileHomingMayBeLeftOutOfAccount_C4_C10) {
+    for (const bool isIgnored : {false, true}) {
+        MotionRig rig;
+        rig.set(Parameter::TRAJ_NO_PROBE_HOME_ERROR, 0, isIgnored ? 1 : 0);
+        set_up_switch(rig);
+        rig.send(Enable{});
+        rig.send(Home{-1});
+        rig.step(100);
+        ASSERT_TRUE(rig.status().isHoming);
+        rig.in.isProbeClosed = true;
+        rig.run_until([&] { return !rig.status().isHoming; }, 20);
+        EXPECT_EQ(rig.status().isAllHomed, isIgnored);
+        EXPECT_EQ(rig.faults.empty(), isIgnored);
+    }
+}
+
+TEST(Machine, AProbingMoveIsRefusedWhereItsEndIsThereAtTheStart_C9) {
+    for (const bool isAway : {false, true}) {
+        MotionRig rig;
+        rig.ready();
+        rig.in.isProbeClosed = !isAway;
+        rig.step(10);
+        Probe probe;
+        probe.end[2] = -20;
+        probe.terms.feed = 10;
+        probe.isAway = isAway;
+        const CommandId id = rig.send_path(probe);
+        rig.step(100);
+        EXPECT_EQ(rig.refusal(id), Reason::PROBE_ALREADY_TRIPPED);
+        EXPECT_EQ(rig.out->joint[2].motor_pos_cmd, 0);
+    }
+}
+
 }  // namespace
 }  // namespace mw::motion

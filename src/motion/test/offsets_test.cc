@@ -89,7 +89,7 @@ TEST(Offsets, CountsMoveTheAxisBesideWhatIsProgrammed_C15) {
     EXPECT_DOUBLE_EQ(rig.motor(0), 2);
     EXPECT_DOUBLE_EQ(rig.shown(0), 0) << "axis.x.pos-cmd is what is programmed";
     EXPECT_DOUBLE_EQ(rig.status().carte_pos_cmd[0], 2);
-    EXPECT_DOUBLE_EQ(rig.status().axis[0].offset, 2);
+    EXPECT_DOUBLE_EQ(rig.status().axis[0].external_offset, 2);
     EXPECT_TRUE(rig.out->isOffsetActive);
     EXPECT_FALSE(rig.out->isOffsetLimited);
     rig.line(at(10, 5, 0), 0);
@@ -279,7 +279,7 @@ TEST(Offsets, AProbeTripsAtAPlaceOfTheProgram_C15) {
     ASSERT_TRUE(rig.finish(id));
     EXPECT_NEAR(rig.status().probed_pos[0], 5, 0.1);
     rig.go(200);
-    EXPECT_NEAR(rig.motor(0) - rig.status().axis[0].offset, rig.status().probed_pos[0], 0.1);
+    EXPECT_NEAR(rig.motor(0) - rig.status().axis[0].external_offset, rig.status().probed_pos[0], 0.1);
 }
 
 TEST(Offsets, AStopBrakesThemToo_C6_C15) {

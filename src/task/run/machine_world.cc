@@ -6,7 +6,7 @@ namespace mw::task {
 interp::MachineSnapshot snapshot_of(const motion::Status &motion, const io::Outputs &io,
                                     const Sequencer &sequencer) {
     interp::MachineSnapshot s;
-    s.position = motion.carte_pos_cmd - motion::external_offset(motion);  // programs know nothing of it
+    s.position = motion::programmed_position(motion);
     // A probe that has missed counts as having come to its end.
     s.probed_position = motion.isProbeTripped ? motion.probed_pos : s.position;
     s.isProbeTripped = motion.isProbeTripped;

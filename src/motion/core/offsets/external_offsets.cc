@@ -142,9 +142,7 @@ void fill(const ExternalOffsets &offsets, Outputs &out) noexcept {
     out.isOffsetActive = false;
     out.isOffsetLimited = offsets.isLimited;
     for (int i = 0; i < MAX_AXES; ++i) {
-        out.status.axis[static_cast<std::size_t>(i)].offset = offsets.pose[i];
-    }
-    for (int i = 0; i < MAX_AXES; ++i) {
+        out.status.axis[at(i)].external_offset = offsets.pose[i];
         out.axis[at(i)].offset = offsets.pose[i];
         out.axis[at(i)].offset_request = offsets.axis[at(i)].request;
         out.isOffsetActive = out.isOffsetActive || offsets.pose[i] != 0.0;
