@@ -16,6 +16,7 @@ constexpr double PLACE_ROUNDING = 2e-6, RATE_ROUNDING = 1e-5;
 constexpr double WITH_BACKLASH = 1.5;
 /// A path brakes along its curves, where part of the acceleration keeps it on them.
 constexpr double STOP_FACTOR = 2.2, STOP_SLACK_S = 0.02;
+constexpr double BLEND_S = 0.1;  ///< so long after a stop speeds may still grow
 /// Until commands that were on their way when the machine was stopped have been dropped [cycles].
 constexpr int IN_FLIGHT = 6;
 constexpr double MOVED = 1e-9;
@@ -141,7 +142,7 @@ void Judge::check_amplifiers(const Sample &s) {
             fail("amp", fmt::format("joint {} is on with an amplifier fault", j));
         }
         const double lag = std::abs(q.pos_cmd - q.pos_fb);
-        const double v = std::abs(q.pos_cmd - before.pos_cmd) / period_;
+        const double v = std::max(std::abs(q.pos_cmd - before.pos_cmd) / period_, std::abs(before_[j]));
         // Motion sees the feedback before it makes the next command, a cycle's way farther on.
         const double most = std::max(d.ferror * v / d.velocity, d.min_ferror) + v * period_;
         if (q.isAmpOn && before.isAmpOn && !q.isHoming && lag > 1.01 * most + PLACE_ROUNDING) {
@@ -191,7 +192,10 @@ void Judge::check_limits(const Sample &s) {
         }
         before_[j] = velocity_[j];
         judge.speed.sample(&place);
-        if (q.isHoming || last_.joints[j].isHoming) {
+        // What homing has begun may stop without a jerk limit, also when it is given up.
+        const bool isHoming = q.isHoming || last_.joints[j].isHoming;
+        judge.isUnjerked = isHoming || (judge.isUnjerked && std::abs(velocity_[j]) > MOVED);
+        if (judge.isUnjerked) {
             judge.jerk.restart();
         } else {
             judge.jerk.sample(&place);
@@ -305,6 +309,11 @@ void Judge::check_rest(const Sample &s) {
     }
     const double took = (cycles - standing_) * period_;
     const bool isStanding = standing_ >= 3 && cycles >= 3;
+    if (cycles * period_ <= BLEND_S && time_to_stop() > stop_least_s_) {
+        // In the middle of a blend all acceleration turns the motion round: it has to be left first.
+        begin_stop();
+        stop_due_s_ += BLEND_S;
+    }
     if (isMoving && cycles * period_ > stop_due_s_) {
         fail("stop", fmt::format("still moves {:.3f} s after the stop; its limits need {:.3f} s",
                                  cycles * period_, stop_least_s_));

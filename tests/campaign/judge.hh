@@ -74,7 +74,7 @@ class Judge {
     struct JointJudge {
         testing::LimitChecker speed, jerk;
         double reference = 0;  ///< of homing without a switch
-        bool wasHomed = false;
+        bool wasHomed = false, isUnjerked = false;
     };
     void check_numbers(const Sample &s);
     void check_amplifiers(const Sample &s);
