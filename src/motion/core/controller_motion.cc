@@ -222,7 +222,7 @@ void Controller::check_probe(const Inputs &in) noexcept {
         probe.probing_move = path.move;
         probe.isAway = link_->store.move(path.move).isProbeAway;
     } else if (in.isProbeClosed && !probe_.wasClosed) {
-        const bool isHoming = homing_.homing.isActive();
+        const bool isHoming = homing_.module().isActive();
         const Parameter ignored =
             isHoming ? Parameter::TRAJ_NO_PROBE_HOME_ERROR : Parameter::TRAJ_NO_PROBE_JOG_ERROR;
         const bool isIgnored = power_.mode != Mode::COORD && settings_.isSet(ignored);
