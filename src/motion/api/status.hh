@@ -120,7 +120,9 @@ enum class Reason : std::uint16_t {
     NOT_A_NUMBER,
     NO_WAY_BACK,  ///< nothing is remembered of the path
     BAD_ARC,
-    RIGID_TAPPING,
+    RIGID_TAPPING,  ///< the kinematics cannot
+    TAP_ROOM,       ///< index: the axis whose soft limit is too near
+    ONE_WAY_SPINDLE,
     JOG_INHIBITED,
     HOMING_INHIBITED,
     SYNCHRONISED_JOINT,  ///< a joint of a negative HOME_SEQUENCE is not jogged alone
@@ -164,6 +166,10 @@ enum class FaultKind : std::uint16_t {
     THREAD_TOO_FAST,  ///< index: spindle; value: needed speed over the possible one
     JOG_LEASE_ENDED,  ///< a jog was not renewed in time; detail: 1 a joint, 0 an axis; value: the lease [s]
     KINEMATICS_JUMP,  ///< index: the joint that would have stepped; value: by how much
+    TAP_TOO_FAST,     ///< index: spindle; value: needed speed over the possible one
+    TAP_TOO_ABRUPT,   ///< index: spindle; value: acceleration of its turning back over the possible one
+    TAP_TOO_SHALLOW,  ///< index: spindle; value: the way that is needed over the depth
+    TAP_LOST,         ///< index: spindle
     COUNT,
 };
 /// Of a jog: no path has failed.
