@@ -10,8 +10,8 @@ namespace mw::machine {
 namespace {
 
 constexpr std::array MISSING{
-    MissingAbility{gcode::PreviewKind::RIGID_TAP, "G33.1", "tap rigidly",
-                   "tap with G84 and a floating holder, or cut the thread with G33 or G76"},
+    MissingAbility{gcode::PreviewKind::RIGID_TAP, "G33.1", "tap rigidly where joints are not axes",
+                   "tap with G84 and a floating holder, or cut the thread with G33 or G76", true},
 };
 
 bool isBlank(char c) {
@@ -36,9 +36,10 @@ bool beginsWith(std::string_view text, std::string_view code) {
 
 }  // namespace
 
-const MissingAbility *missing_ability(const gcode::PreviewEvent &event) {
+const MissingAbility *missing_ability(const gcode::PreviewEvent &event, bool areJointsAxes) {
     const auto found = std::ranges::find(MISSING, event.kind, &MissingAbility::kind);
-    return found == MISSING.end() ? nullptr : &*found;
+    const bool isMissing = found != MISSING.end() && !(found->isForAxes && areJointsAxes);
+    return isMissing ? &*found : nullptr;
 }
 
 int column_of_code(std::string_view line, std::string_view code) {

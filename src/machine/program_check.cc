@@ -81,7 +81,7 @@ class Checker {
     }
     void take_event(const gcode::PreviewEvent &event) {
         using Kind = gcode::PreviewKind;
-        if (const MissingAbility *missing = missing_ability(event); missing != nullptr) {
+        if (const MissingAbility *missing = missing_ability(event, machine_.isTrivial); missing != nullptr) {
             report_impossible(*missing);
         }
         ProgrammedPiece piece;

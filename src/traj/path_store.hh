@@ -89,6 +89,17 @@ struct Phase {
     double x0 = 0, v0 = 0, a = 0, j = 0;
 };
 
+/// A tap along a line: x is 0 at the start and `depth` at the bottom.
+struct TapTerms {
+    double depth = 0;
+    double per_turn = 0;    ///< way along x in a turn
+    double back_scale = 1;  ///< speed of the spindle on the way back over that on the way in
+    double low = 0;         ///< x stays above
+    double high = 0;        ///< and below
+    double velocity = 0;    ///< highest along x
+    double acceleration = 0;
+};
+
 /// A pass over the pieces [first, last], from rest to rest, locked to the angle of a spindle.
 struct Pass {
     Sequence first = 0, last = 0;  ///< 0: none
@@ -96,6 +107,8 @@ struct Pass {
     double direction = 1;  ///< -1: the spindle turns backwards
     double share = 1;      ///< part of the pieces' accelerations for gaining speed and for braking
     double trim = 1;       ///< and for following the spindle in between
+    bool isTap = false;    ///< in along the first piece, and back to its start
+    TapTerms tap;          ///< its acceleration is the executor's to fill
 };
 
 /// Tells the executor which phases to follow. They never end with a stop beyond what is committed: when they

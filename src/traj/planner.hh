@@ -70,6 +70,12 @@ class Planner {
     /// Speed that the pass from this move on needs at the present speed of its spindle, over what the machine
     /// and the operator allow.
     double pass_load(Sequence move) const noexcept { return traj::pass_load(view(), move); }
+    bool isTap(Sequence move) const noexcept { return path_.move(move).request.isTap; }
+    TapVerdict check_tap(Sequence move) const noexcept { return traj::check_tap(view(), move); }
+    /// How fast spindles change their speed when they turn back: see SpindleReading.
+    void set_ramps(const std::array<std::array<double, 2>, MAX_SPINDLES> &ramps) noexcept {
+        conditions_.ramps = ramps;
+    }
     /// Seconds from a snapshot to the earliest start of a plan made with it.
     double latency_s() const noexcept { return static_cast<double>(settings_.latency) * settings_.period_s; }
     /// Move whose gate the executor waits at, 0: none.

@@ -213,6 +213,8 @@ struct PassTuning {
     static constexpr double LAG_RESERVE = 1.03, ROOM_SHARE = 0.95;
     /// Kept off the limits by what sums of rounding make.
     static constexpr double FULL = 0.9999;
+    /// A load that is over what is possible by rounding alone.
+    static constexpr double LOAD_ROUNDING = 1e-9;
     /// With jerk limits the acceleration may swing by what the mean can bring together: gaining speed takes
     /// one part, following the spindle the rest (0.88 + 0.11 < 1), and braking begins a mean later. A short
     /// pass shares evenly (2 * 0.49 < 1).
@@ -224,6 +226,29 @@ struct PassTuning {
     static constexpr double LONG_MEANS = 3.0;
 };
 
+/// Rigid tapping.
+struct TapTuning {
+    /// Speed of the spindle is what it has turned in so many cycles, with a mean in this part of it: one
+    /// count of 4,096 is then 0.03 turns/s at 1 ms. Its acceleration is smoothed over this time and part.
+    static constexpr std::uint64_t LEAST_SAMPLES = 8, MOST_SAMPLES = 64;
+    static constexpr double SPEED_MEANS = 0.5;
+    static constexpr double ACCELERATION_S = 0.01, ACCELERATION_MEANS = 0.4;
+    /// The helix counts as met within this part of a turn: a few counts. From then on a deviation is made
+    /// good at GAIN [1/s]; at LOST, a quarter of a turn, the thread or the tap is gone.
+    static constexpr double MET = 1e-3, GAIN = 60, LOST = 0.25;
+    /// Part of the acceleration with which the helix is met and the way home is made, and at most what the
+    /// spindle's own change of speed may ask for.
+    static constexpr double MEETING_SHARE = 0.97;
+    /// The tool leaves the thread by this much before the spindle turns forward again [turns].
+    static constexpr double CLEARANCE = 0.5;
+    /// Room that the tool has beyond its bottom on top of what the spindle is known to take, and that must be
+    /// there before the start and behind the bottom [turns].
+    static constexpr double MORE_ROOM = 2, LEAST_ROOM = 1;
+    /// After a stop the tool goes on with a spindle that comes to a stand as it is known to, this many times
+    /// as far and a turn more; so far where nothing is known. Slower than that it stands [turns/s].
+    static constexpr double RUN_OUT = 1.5, UNKNOWN_RUN_OUT = 5, STANDING = 0.02;
+};
+
 /// The servo side.
 struct ExecutorTuning {
     /// Distance from the end of a piece that is rounding, at a length of 1.
@@ -232,6 +257,10 @@ struct ExecutorTuning {
     static constexpr double STOPPED = 1e-9;
     /// The helix counts as met within this part of a turn, and as lost beyond the second.
     static constexpr double MET = 2e-5, LOST = 2e-3;
+    /// It also counts as met where it was this near for so many cycles: an encoder of 1,000 counts does no
+    /// better.
+    static constexpr double NEAR = 1e-3;
+    static constexpr int NEAR_CYCLES = 8;
     /// Once it is met: share of a deviation that is made good in a second [1/s]. A rough encoder must not
     /// shake the machine.
     static constexpr double GAIN = 60;

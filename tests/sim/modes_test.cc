@@ -158,12 +158,39 @@ TEST_F(ModesTest, TheSimulatedSpindleOrients_C15) {
     }
 }
 
-TEST_F(ModesTest, RigidTappingIsRefusedByItsName) {
-    start("G21 G90 M3 S500\nG0 Z5\nG33.1 Z-5 K1\nM2\n");
+TEST_F(ModesTest, RigidTappingGoesToItsDepthAndBack_C15) {
+    start("G21 G90 M3 S500\nG0 Z5\nG33.1 Z-5 K1\nG33.1 Z-5 K1 I2\nG0 X3\nM2\n");
+    samples_.clear();
+    ASSERT_EQ(finish(), task::Progress::DONE) << messages();
+    std::vector<double> bottoms;
+    bool isDown = false;
+    for (const motion::TraceSample &s : samples_) {
+        const double z = s.carte_pos_cmd[geom::AXIS_Z];
+        if (!isDown && z < 0) {
+            bottoms.push_back(0);
+        }
+        isDown = z < 0;
+        if (isDown) {
+            bottoms.back() = std::min(bottoms.back(), z);
+        }
+    }
+    ASSERT_EQ(bottoms.size(), 2U);
+    EXPECT_NEAR(bottoms[0], -5, 1) << "within a turn";
+    EXPECT_NEAR(bottoms[1], -5, 0.2) << "learned from the first";
+    EXPECT_NEAR(motion().carte_pos_cmd.z(), 5, 1e-9);
+    EXPECT_NEAR(motion().carte_pos_cmd.x(), 3, 1e-9);
+}
+
+TEST_F(ModesTest, ATapThatCannotBeIsRefusedWithItsPlace_C15) {
+    start("G21 G90 M3 S500\nG0 Z5\nG33.1 Z-5 K-1\nM2\n");
+    EXPECT_EQ(finish(), task::Progress::FAILED);
+    EXPECT_NE(messages().find("p.ngc:3"), std::string::npos) << messages();
+    start("G21 G90 M3 S500\nG0 Z5\nG33.1 Z4.9 K1\nM2\n");
     EXPECT_EQ(finish(), task::Progress::FAILED);
     const std::string all = messages();
     EXPECT_NE(all.find("p.ngc:3"), std::string::npos) << all;
-    EXPECT_NE(all.find("G33.1"), std::string::npos) << all;
+    EXPECT_NE(all.find("too shallow"), std::string::npos) << all;
+    EXPECT_NEAR(motion().carte_pos_cmd.z(), 5, 1e-9) << "nothing has moved";
 }
 
 class AxesTest : public VirtualMachineTest {};

@@ -48,8 +48,9 @@ class ProgramCheck : public testing::Test {
     diag::Sink sink_;
 };
 
-TEST_F(ProgramCheck, WhatNoMachineCanDoIsNamedWithItsPlace) {
+TEST_F(ProgramCheck, WhatTheMachineCannotDoIsNamedWithItsPlace) {
     ASSERT_NE(config_, nullptr);
+    config_->machine.isTrivial = false;
     check("G21 G90 G17\nS100 M3\nG0 X10 Y10\n(G33.1 here) g 033.1 Z-5 K1\nM5\nM2\n");
     ASSERT_EQ(sink_.count_errors(), 1);
     const Error &error = sink_.all()[0].what;
@@ -62,6 +63,7 @@ TEST_F(ProgramCheck, WhatNoMachineCanDoIsNamedWithItsPlace) {
 
 TEST_F(ProgramCheck, EveryPlaceIsToldAndEachOnce) {
     ASSERT_NE(config_, nullptr);
+    config_->machine.isTrivial = false;
     check("G21 G90 G17 S100 M3\nG0 X10 Y10\no1 repeat [5]\nG33.1 Z-5 K1\no1 endrepeat\n"
           "G0 X20\nG33.1 Z-5 K1\nM2\n");
     ASSERT_EQ(sink_.count_errors(), 2);
@@ -100,9 +102,9 @@ TEST_F(ProgramCheck, WhereKinematicsAreBetweenOnlyMovesThatAreBeyondFromAnywhere
     EXPECT_EQ(sink_.count_errors(), 2) << "here X0 is home";
 }
 
-TEST_F(ProgramCheck, OtherThreadsAreTaken) {
+TEST_F(ProgramCheck, ThreadsAndTapsAreTakenWhereJointsAreAxes_C15) {
     ASSERT_NE(config_, nullptr);
-    check("G21 G90 G17 S100 M3\nG0 X10 Y10\nG33 Z-5 K1\nG0 Z0\nM2\n");
+    check("G21 G90 G17 S100 M3\nG0 X10 Y10\nG33 Z-5 K1\nG0 Z0\nG33.1 Z-5 K1\nM2\n");
     EXPECT_EQ(sink_.count_errors(), 0);
 }
 

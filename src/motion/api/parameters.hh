@@ -113,7 +113,10 @@ inline constexpr double NO_JERK_LIMIT = 1e9;
     X(SPINDLE_MAX_REVERSE, SPINDLE, "SPINDLE_*", "MAX_REVERSE_VELOCITY", RPM, 0, UNBOUNDED, UNBOUNDED,       \
       "highest speed of M4")                                                                                 \
     X(SPINDLE_MIN_REVERSE, SPINDLE, "SPINDLE_*", "MIN_REVERSE_VELOCITY", RPM, 0, UNBOUNDED, 0,               \
-      "lowest speed of M4")
+      "lowest speed of M4")                                                                                  \
+    X(SPINDLE_RAMP, SPINDLE, "SPINDLE_*", "RAMP", NONE, 0, UNBOUNDED, 0,                                     \
+      "change of speed [rev/min each second] with which the spindle turns back: rigid tapping tells it so "  \
+      "much ahead; 0: learned from what the spindle does")
 
 enum class Parameter : std::uint16_t {
 #define MW_X(name, scope, section, key, unit, low, high, preset, doc) name,

@@ -130,7 +130,9 @@ enum class Reason : std::uint16_t {
     NOT_A_NUMBER,
     NO_WAY_BACK,  ///< nothing is remembered of the path
     BAD_ARC,
-    RIGID_TAPPING,
+    RIGID_TAPPING,  ///< the kinematics cannot
+    TAP_ROOM,       ///< index: the axis whose soft limit is too near
+    ONE_WAY_SPINDLE,
     JOG_INHIBITED,
     HOMING_INHIBITED,
     SYNCHRONISED_JOINT,  ///< a joint of a negative HOME_SEQUENCE is not jogged alone
@@ -180,6 +182,10 @@ enum class FaultKind : std::uint16_t {
     KINEMATICS_TYPE_WITHOUT_POSE,  ///< the same; it has no pose for where the joints stand
     HOMING_CLAMPED,                ///< a homing module has asked joint `index` for more than its limits allow
     FEEDBACK_LOST,                 ///< index: the joint whose feedback is not a number
+    TAP_TOO_FAST,                  ///< index: spindle; value: needed speed over the possible one
+    TAP_TOO_ABRUPT,   ///< index: spindle; value: acceleration of its turning back over the possible one
+    TAP_TOO_SHALLOW,  ///< index: spindle; value: the way that is needed over the depth
+    TAP_LOST,         ///< index: spindle
     COUNT,
 };
 /// Only told: no path has failed.

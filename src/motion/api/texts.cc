@@ -80,7 +80,17 @@ std::string reason_text(const Answer &answer) {
     case Reason::NO_WAY_BACK:
         return "there is no way back: the path is remembered only while adaptive feed is on (M52 P1)";
     case Reason::RIGID_TAPPING:
-        return "G33.1: rigid tapping is not supported by this version; tap with a floating holder (G84, G74)";
+        return "G33.1: rigid tapping wants a machine whose joints are its axes (trivkins); tap with a "
+               "floating "
+               "holder (G84, G74)";
+    case Reason::TAP_ROOM:
+        return fmt::format(
+            "the tap begins or ends too near to the soft limit of {}: the tool goes on by up to "
+            "a turn of the spindle while it turns back",
+            place_name(answer));
+    case Reason::ONE_WAY_SPINDLE:
+        return "rigid tapping turns the spindle back, but its range in one direction is 0: see "
+               "MAX_FORWARD_VELOCITY and MAX_REVERSE_VELOCITY";
     case Reason::BAD_ARC: return "the arc's centre, normal and end do not make a helix";
     case Reason::JOG_INHIBITED:
         return "jogging is inhibited: pin motion.jog-inhibit, motion.jog-stop or motion.jog-stop-immediate "
@@ -141,9 +151,28 @@ std::string what_failed(const Fault &fault) {
             i);
     case FaultKind::THREAD_TOO_FAST:
         return fmt::format(
-            "the thread needs {:.2f} times the speed that the machine, or its velocity override, "
-            "allows at the present speed of spindle {}: use a lower speed or a finer pitch",
+            "the thread needs {:.2f} times the speed that the machine, its velocity override, or the length "
+            "of the thread allows at the present speed of spindle {}: use a lower speed or a finer pitch",
             fault.value, i);
+    case FaultKind::TAP_TOO_FAST:
+        return fmt::format("the tap needs {:.2f} times the speed that the machine, or its velocity override, "
+                           "allows at the present speed of spindle {}: use a lower speed or a finer pitch",
+                           fault.value, i);
+    case FaultKind::TAP_TOO_ABRUPT:
+        return fmt::format(
+            "spindle {} turns back so fast that the tap needs {:.2f} times the acceleration that "
+            "the machine allows: lengthen the ramp of its drive, or use a finer pitch",
+            i, fault.value);
+    case FaultKind::TAP_TOO_SHALLOW:
+        return fmt::format(
+            "the hole is too shallow for the present speed of spindle {}: gaining speed and turning "
+            "back take {:.2f} times its depth; use a lower speed",
+            i, fault.value);
+    case FaultKind::TAP_LOST:
+        return fmt::format(
+            "the tool could not keep to spindle {} in a rigid tap: it did not turn back in time, or "
+            "its encoder jumped; the tap may be stuck in the hole",
+            i);
     case FaultKind::JOG_LEASE_ENDED:
         return fmt::format("the jog of {} was stopped: it was not renewed within {:g} ms",
                            fault.detail != 0 ? joint_name(i) : axis_name(i), fault.value * 1e3);

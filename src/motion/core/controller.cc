@@ -101,7 +101,8 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
     step_kinematics(in);
     for (int n = 0; n < config_.num_spindles; ++n) {
         const SpindleInputs &spindle = in.spindle[static_cast<std::size_t>(n)];
-        executor_.set_spindle(n, spindle.revs, spindle.speed_in_rps);
+        executor_.set_spindle(n, spindle.revs);
+        executor_.set_ramps(n, ramps_of(spindles_, n, settings_));
     }
     if (!power_.isEnabled) {
         executor_.step(cycle_);
@@ -111,7 +112,9 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
         power_.mode == Mode::FREE ? move_joints(in) : move_axes(in);
     }
     output_joints();
-    for (std::uint32_t failed = motion::step(spindles_, in, settings_, place_.cmd[geom::AXIS_X]); failed != 0;
+    const traj::TapDemand &tap = executor_.output().tap;
+    const SpindleCycle cycle{place_.cmd[geom::AXIS_X], {tap.spindle, tap.factor}, config_.period_s};
+    for (std::uint32_t failed = motion::step(spindles_, in, settings_, cycle); failed != 0;
          failed &= failed - 1) {
         const int n = std::countr_zero(failed);
         raise(FaultKind::SPINDLE_FAULT, n, spindles_[n].orient_fault);

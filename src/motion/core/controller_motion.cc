@@ -59,7 +59,9 @@ void Controller::move_axes(const Inputs &in) noexcept {
         }
         check_joint_steps();
         if (!retracing_.retrace.isAway()) {
-            holds_.isAdaptiveFeedEnabled ? remember(pose) : retracing_.retrace.clear();
+            // Nobody goes back through a hole that was tapped without turning the spindle.
+            const bool isTapping = executor_.output().tap.spindle >= 0;
+            holds_.isAdaptiveFeedEnabled && !isTapping ? remember(pose) : retracing_.retrace.clear();
         }
     }
     constexpr int MAX_EVENTS_PER_CYCLE = 64;
@@ -101,7 +103,11 @@ geom::Pose Controller::teleop_pose() noexcept {
 
 /// Of the path, or behind it while it is gone back.
 geom::Pose Controller::path_pose() noexcept {
-    geom::Pose pose = executor_.step(cycle_).position;
+    const traj::ExecutorOutput &path = executor_.step(cycle_);
+    geom::Pose pose = path.position;
+    if (path.tap.isLost) {
+        stop_category_1(FaultKind::TAP_LOST, path.tap.spindle, 0);
+    }
     const RetraceInputs in{
         executor_.snapshot().drops, holds_.isReverseWanted, holds_.isStandingWanted, power_.isStopping,
         executor_.isAtRest(),       holds_.reverse_rate,    config_.period_s};

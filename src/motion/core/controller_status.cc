@@ -139,6 +139,8 @@ void Controller::publish_view(const Inputs &in) noexcept {
         const auto i = static_cast<std::size_t>(n);
         v.spindle_rps[i] = in.spindle[i].speed_in_rps;
         v.spindle_revs[i] = in.spindle[i].revs;
+        v.spindle_ramps[i] = ramps_of(spindles_, n, settings_);
+        v.spindles_reversible |= isReversible(settings_, n) ? 1U << n : 0U;
         v.spindles_ready |= isReady(spindles_[n], in.spindle[i]) ? 1U << n : 0U;
     }
     v.isProbeClosed = in.isProbeClosed;

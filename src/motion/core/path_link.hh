@@ -50,6 +50,8 @@ struct PathView {
     double feed_scale = 1, rapid_scale = 1, max_feed_scale = 1, max_velocity = 0;
     std::array<double, MAX_SPINDLES> spindle_rps{}, spindle_revs{};
     std::uint32_t spindles_ready = 0;  ///< bit per spindle that is at speed or off
+    std::uint32_t spindles_reversible = 0;
+    std::array<std::array<double, 2>, MAX_SPINDLES> spindle_ramps{};  ///< see traj::SpindleReading
     bool isProbeClosed = false;
     std::uint32_t probe_trips = 0;  ///< counts probe moves that were tripped
     std::uint32_t steps = 0;        ///< counts StepOnce

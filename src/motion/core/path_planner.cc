@@ -87,6 +87,7 @@ void PathPlanner::follow_controller() noexcept {
     scales.max_feed = view_.max_feed_scale;
     scales.max_velocity = view_.max_velocity;
     scales.spindle_rps = view_.spindle_rps;
+    planner_.set_ramps(view_.spindle_ramps);
     planner_.set_scales(scales);
 }
 
@@ -254,7 +255,7 @@ Reason PathPlanner::accept(const PathCommand &c) noexcept {
     };
     const Overloaded handlers{
         [&](const Flush &) { return accept_flush(c); },
-        [&](const RigidTap &) { return on_path([] { return Reason::RIGID_TAPPING; }); },
+        [&](const RigidTap &tap) { return begun([&] { return accept_tap(c, tap); }); },
         [&](const Line &line) { return begun([&] { return accept_line(c, line.end, line.terms); }); },
         [&](const Arc &arc) { return begun([&] { return accept_arc(c, arc); }); },
         [&](const Probe &probe) { return begun([&] { return accept_probe(c, probe); }); },
@@ -285,7 +286,9 @@ void PathPlanner::open_gates() noexcept {
             return;
         }
         const bool isDriven = planner_.isLocked(gate);  // then the executor finds the moment
-        if (isDriven && !(planner_.isPassKnown(view_.executor) && isThreadPossible(gate))) {
+        const bool isTap = planner_.isTap(gate);
+        const bool isKnown = isTap || planner_.isPassKnown(view_.executor);
+        if (isDriven && !(isKnown && (isTap ? isTapPossible(gate) : isThreadPossible(gate)))) {
             return;
         }
         const double turned = (view_.spindle_revs[n] + rps * planner_.latency_s()) * (rps > 0 ? 1.0 : -1.0);
@@ -301,17 +304,38 @@ bool PathPlanner::isThreadPossible(traj::Sequence gate) noexcept {
     if (load <= 1.0 + ROUNDING) {
         return true;
     }
-    if (refused_gate_ != gate) {
-        refused_gate_ = gate;
-        Fault fault;
-        fault.kind = FaultKind::THREAD_TOO_FAST;
-        fault.index = static_cast<std::int16_t>(planner_.spindle_of(gate));
-        fault.value = load;
-        const traj::MoveTag &tag = link_.store.move(gate);
-        fault.source = {tag.line, tag.file_index, tag.block};
-        channels_.planner_faults.push(fault);
+    tell_impossible(gate, FaultKind::THREAD_TOO_FAST, load);
+    return false;
+}
+
+bool PathPlanner::isTapPossible(traj::Sequence gate) noexcept {
+    const traj::TapVerdict verdict = planner_.check_tap(gate);
+    switch (verdict.obstacle) {
+    case traj::TapObstacle::NONE: return true;
+    case traj::TapObstacle::TOO_FAST: tell_impossible(gate, FaultKind::TAP_TOO_FAST, verdict.value); break;
+    case traj::TapObstacle::TOO_ABRUPT:
+        tell_impossible(gate, FaultKind::TAP_TOO_ABRUPT, verdict.value);
+        break;
+    case traj::TapObstacle::TOO_SHALLOW:
+        tell_impossible(gate, FaultKind::TAP_TOO_SHALLOW, verdict.value);
+        break;
     }
     return false;
+}
+
+/// Once for each gate.
+void PathPlanner::tell_impossible(traj::Sequence gate, FaultKind kind, double value) noexcept {
+    if (refused_gate_ == gate) {
+        return;
+    }
+    refused_gate_ = gate;
+    Fault fault;
+    fault.kind = kind;
+    fault.index = static_cast<std::int16_t>(planner_.spindle_of(gate));
+    fault.value = value;
+    const traj::MoveTag &tag = link_.store.move(gate);
+    fault.source = {tag.line, tag.file_index, tag.block};
+    channels_.planner_faults.push(fault);
 }
 
 void PathPlanner::follow_steps() noexcept {

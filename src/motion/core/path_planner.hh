@@ -82,6 +82,7 @@ class PathPlanner {
     Reason accept_flush(const PathCommand &c) noexcept;
     Reason accept_line(const PathCommand &c, const geom::Pose &end, const MoveTerms &terms) noexcept;
     Reason accept_arc(const PathCommand &c, const Arc &arc) noexcept;
+    Reason accept_tap(const PathCommand &c, const RigidTap &tap) noexcept;
     Reason accept_probe(const PathCommand &c, const Probe &probe) noexcept;
     Reason accept_digital(const PathCommand &c, const SynchedDigitalOutput &output) noexcept;
     Reason accept_analog(const PathCommand &c, const SynchedAnalogOutput &output) noexcept;
@@ -101,6 +102,8 @@ class PathPlanner {
     void open_gates() noexcept;
     bool areSpindlesReady() const noexcept;
     bool isThreadPossible(traj::Sequence gate) noexcept;
+    bool isTapPossible(traj::Sequence gate) noexcept;
+    void tell_impossible(traj::Sequence gate, FaultKind kind, double value) noexcept;
     void publish() noexcept;
     void answer(CommandId id, AnswerKind kind, Reason reason) noexcept;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "motion/core/path_planner.hh"
+#include "traj/tuning.hh"
 
 namespace mw::motion {
 
@@ -38,6 +39,28 @@ MotionType type_of(const PathBody &body, const MoveTerms &terms) noexcept {
     }
     return std::holds_alternative<Arc>(body) ? MotionType::ARC : MotionType::FEED;
 }
+
+struct Room {
+    double way = 0;  ///< [machine units, degrees]
+    int axis = -1;   ///< whose limit it is
+};
+
+/// How far a line may go on behind its end, or before its start with the sense -1, to a soft limit.
+Room room_behind(const traj::Primitive &line, double sense, const PathLimits &limits) noexcept {
+    const geom::Pose &end = sense > 0 ? line.end : line.start;
+    Room room{traj::UNLIMITED, -1};
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        const double slope = sense * line.lin[i];
+        if (slope == 0) {
+            continue;
+        }
+        const double limit = slope > 0 ? limits.high[i] : limits.low[i];
+        const double way = (limit - end[i]) / slope;
+        room = way < room.way ? Room{way, i} : room;
+    }
+    return room;
+}
+
 }  // namespace
 
 traj::MoveRequest PathPlanner::request_for(const PathCommand &c, const MoveTerms &terms) const noexcept {
@@ -232,6 +255,52 @@ Reason PathPlanner::accept_arc(const PathCommand &c, const Arc &arc) noexcept {
     planner_.add(p, request_for(c, arc.terms));
     wasLocked_ = arc.terms.isThread();
     add_pending(c, arc.terms.source);
+    return Reason::NONE;
+}
+
+/// In with the spindle and out again, two moves that the executor drives as one.
+Reason PathPlanner::accept_tap(const PathCommand &c, const RigidTap &tap) noexcept {
+    Reason reason = isFinite(tap.end) && std::isfinite(tap.pitch_scale)
+                        ? check_terms(tap.terms, config_.num_spindles)
+                        : Reason::NOT_A_NUMBER;
+    if (reason != Reason::NONE) {
+        return reason;
+    }
+    if (kinematics_.identity() == nullptr) {
+        return Reason::RIGID_TAPPING;
+    }
+    const traj::Primitive in = traj::make_line(planner_.end(), tap.end);
+    const bool isLine = in.length > 1e-12 * (1.0 + geom::norm(tap.end));
+    if (!isLine || !tap.terms.isThread() || !(tap.pitch_scale > 0)) {
+        return Reason::OUT_OF_RANGE;
+    }
+    if ((view_.spindles_reversible & (1U << tap.terms.synch_spindle)) == 0) {
+        return Reason::ONE_WAY_SPINDLE;
+    }
+    reason = check_reach(in);
+    if (reason != Reason::NONE) {
+        return reason;
+    }
+    MoveTerms terms = tap.terms;
+    terms.mode = PathMode::EXACT_STOP;
+    traj::MoveRequest request = request_for(c, terms);
+    const Room before = room_behind(in, -1, limits_);
+    const Room behind = room_behind(in, 1, limits_);
+    const Room &least = before.way < behind.way ? before : behind;
+    if (least.way < traj::TapTuning::LEAST_ROOM * terms.feed_per_revolution) {
+        refused_index_ = static_cast<std::int16_t>(least.axis);
+        return Reason::TAP_ROOM;
+    }
+    request.isGated = request.isPhased = request.isTap = true;
+    request.tap_scale = tap.pitch_scale;
+    request.room_before = before.way;
+    request.room_behind = behind.way;
+    planner_.add(in, request);
+    request.isGated = request.isPhased = request.isTap = false;
+    planner_.add(traj::make_line(in.end, in.start), request);
+    planner_.release_end();
+    wasLocked_ = false;
+    add_pending(c, terms.source);
     return Reason::NONE;
 }
 

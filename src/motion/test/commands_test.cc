@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/spindle_plant.hh"
 #include "testing/motion_rig.hh"
 
 namespace mw::motion {
@@ -46,6 +47,8 @@ const char *word_for(Reason reason) {
     case Reason::NO_WAY_BACK: return "no way back";
     case Reason::BAD_ARC: return "bad arc";
     case Reason::RIGID_TAPPING: return "not supported";
+    case Reason::TAP_ROOM: return "no room";
+    case Reason::ONE_WAY_SPINDLE: return "one way";
     case Reason::JOG_INHIBITED: return "inhibited";
     case Reason::HOMING_INHIBITED: return "inhibited";
     case Reason::SYNCHRONISED_JOINT: return "synchronised";
@@ -137,6 +140,11 @@ std::vector<Case> cases() {
     };
     const auto now = [](const CommandBody &body) { return std::variant<CommandBody, PathBody>(body); };
     const auto path = [](const PathBody &body) { return std::variant<CommandBody, PathBody>(body); };
+    const auto tapping = [] {
+        MoveTerms t;
+        t.feed_per_revolution = 0.5;
+        return t;
+    };
     Arc arc;
     arc.end = at(PATH_END);
     arc.centre = at(PATH_END + 1);
@@ -188,7 +196,7 @@ std::vector<Case> cases() {
         {"SET_LINE", "Line", path(Line{at(PATH_END + 1), terms()})},
         {"SET_CIRCLE", "Arc", path(arc)},
         {"PROBE", "Probe", path(probe)},
-        {"RIGID_TAP", "RigidTap", path(RigidTap{at(PATH_END, 0, -1), 1, terms()})},
+        {"RIGID_TAP", "RigidTap", path(RigidTap{at(PATH_END, 0, -2), 1, tapping()})},
         {"CLEAR_PROBE_FLAG", "ClearProbeFlag", now(ClearProbeFlag{})},
         {"SPINDLE_ON", "SpindleOn", now(SpindleOn{0, 100})},
         {"SPINDLE_OFF", "SpindleOff", now(SpindleOff{})},
@@ -212,6 +220,18 @@ std::string result_of(const Case &c, Situation situation) {
     bring_to(rig, situation);
     const Status before = rig.status();
     const bool isPath = std::holds_alternative<PathBody>(c.body);
+    sim::SpindleTraits traits;
+    traits.ramp = 200;
+    sim::SpindlePlant spindle(traits);
+    if (isPath && std::holds_alternative<RigidTap>(std::get<PathBody>(c.body))) {
+        rig.before_step = [&](MotionRig &r) {
+            spindle.run(r.out->spindle[0].speed_rpm / 60, 0, MotionRig::T);
+            r.in.spindle[0].revs = spindle.shown_turns();
+            r.in.spindle[0].speed_in_rps = spindle.speed();
+        };
+        rig.send(SpindleOn{0, 600});
+        rig.step(100);
+    }
     const CommandId id =
         isPath ? rig.send_path(std::get<PathBody>(c.body)) : rig.send(std::get<CommandBody>(c.body));
     constexpr int MOST_CYCLES = 10000;
@@ -279,6 +299,13 @@ TEST(Commands, AValueThatIsNoNumberIsRefused_C5) {
     arc.angle_rad = nan;
     Probe probe;
     probe.end = far;
+    const auto tap = [](auto spoil) {
+        RigidTap move;
+        move.end = at(PATH_END, 0, -2);
+        move.terms.feed_per_revolution = 0.5;
+        spoil(move);
+        return move;
+    };
     struct Wrong {
         Situation situation;
         std::variant<CommandBody, PathBody> body;
@@ -317,6 +344,14 @@ TEST(Commands, AValueThatIsNoNumberIsRefused_C5) {
         path(line([&](MoveTerms &t) { t.synch_spindle = -1; })),
         path(arc),
         path(probe),
+        path(tap([&](RigidTap &t) { t.end = far; })),
+        path(tap([&](RigidTap &t) { t.end = at(PATH_END); })),
+        path(tap([&](RigidTap &t) { t.pitch_scale = nan; })),
+        path(tap([&](RigidTap &t) { t.pitch_scale = 0; })),
+        path(tap([&](RigidTap &t) { t.terms.feed_per_revolution = 0; })),
+        path(tap([&](RigidTap &t) { t.terms.feed_per_revolution = -1; })),
+        path(tap([&](RigidTap &t) { t.terms.feed_per_revolution = nan; })),
+        path(tap([&](RigidTap &t) { t.terms.synch_spindle = 1; })),
         path(SynchedAnalogOutput{0, nan}),
     };
     int number = 0;

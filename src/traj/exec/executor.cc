@@ -14,6 +14,11 @@ double x_at(const Phase &p, double t) noexcept {
     return p.x0 + t * (p.v0 + t * (0.5 * p.a + t * p.j * (1.0 / 6.0)));
 }
 
+/// A tap also goes beyond the ends of its line.
+Pose line_at(const Primitive &line, double x) noexcept {
+    return x == 0 ? line.start : x == line.length ? line.end : line.start + line.lin * x;
+}
+
 double v_at(const Phase &p, double t) noexcept {
     return p.v0 + t * (p.a + 0.5 * t * p.j);
 }
@@ -44,6 +49,7 @@ void Executor::take_commits() noexcept {
 
 const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
     take_commits();
+    out_.tap = {};
     state_.cycle = cycle;
     ++state_.tick;
     if (state_.motion == Motion::LOCKED) {
@@ -247,8 +253,9 @@ void Executor::hold(bool isHeld) noexcept {
     if (isHeld && !state_.isHeld && state_.motion == Motion::FOLLOW && !isFiltered()) {
         start_brake();
     }
+    const bool isAtStart = lock_.pass.isTap ? tap_.isWaiting() : state_.x <= 0 && state_.v <= 0;
     const bool isPassWaiting =
-        state_.motion == Motion::LOCKED && state_.piece == lock_.pass.first && state_.x <= 0 && state_.v <= 0;
+        state_.motion == Motion::LOCKED && state_.piece == lock_.pass.first && isAtStart;
     if (isHeld && isPassWaiting) {
         come_to_rest();
     }
@@ -274,13 +281,14 @@ void Executor::drop() noexcept {
 void Executor::stop_now() noexcept {
     state_.motion = Motion::REST;
     state_.v = 0;
+    out_.tap = {};
     set_position(out_.position);
     finish_drop();
 }
 
 /// Position, the move that it belongs to, and how many moves are complete.
 void Executor::locate() noexcept {
-    out_.velocity = state_.v;
+    out_.velocity = std::abs(state_.v);
     const bool isMoving = state_.motion != Motion::REST;
     out_.isOnProbe = false;
     if (state_.piece == 0) {
@@ -289,7 +297,9 @@ void Executor::locate() noexcept {
         return;
     }
     const Piece &piece = store_.piece(state_.piece);
-    leader_ = position_at(store_, piece, state_.x);
+    const bool isTapping = lock_.pass.isTap && state_.piece == lock_.pass.first;
+    leader_ = isTapping ? line_at(store_.primitive(piece.primitive), state_.x)
+                        : position_at(store_, piece, state_.x);
     leader_s_ = piece.programmed_s + state_.x;
     leader_tolerance_ = tolerance_at(piece, state_.x);
     const bool isBlend = piece.blend_d > 0;

@@ -8,8 +8,17 @@
 #include "base/limits.hh"
 #include "traj/exec/arc_mean.hh"
 #include "traj/exec/mean_filter.hh"
+#include "traj/exec/spindle_track.hh"
+#include "traj/exec/tap_follower.hh"
 
 namespace mw::traj {
+
+/// What a tap wants of its spindle.
+struct TapDemand {
+    int spindle = -1;     ///< -1: no tap is under way
+    double factor = 1;    ///< of the speed that the spindle was started with; 0: off, and not on by itself
+    bool isLost = false;  ///< the tool could not keep to the spindle
+};
 
 /// What the executor commands for the end of a cycle.
 struct ExecutorOutput {
@@ -19,6 +28,7 @@ struct ExecutorOutput {
     bool isMoving = false;
     double distance_to_go = 0;  ///< to the end of the move under way
     bool isOnProbe = false;
+    TapDemand tap;
 };
 
 /// What an executor remembers. A copy of it goes on in another executor whose store holds the same path.
@@ -43,19 +53,21 @@ class ExecutorState {
     std::uint64_t rest_ticks_ = MAX_FILTER;  ///< since the leader stands
     std::array<Sequence, HISTORY_CAPACITY> done_history_{};
 
-    std::array<double, MAX_SPINDLES> turns_{}, turns_per_s_{};
+    std::array<FollowedSpindle, MAX_SPINDLES> spindles_{};
     /// Of a pass: the helix is x = per_turn (turned() - origin - turns of the pieces passed).
     struct Lock {
         Pass pass;
         double origin = 0;        ///< turns of the spindle at which the helix passes the start
         double passed_turns = 0;  ///< of the pieces that are complete
         Sequence came_from = 0;   ///< piece at the start of the last cycle
+        int near_cycles = 0;      ///< since the tool was not near the helix
         double descent = 0;       ///< > 0: brakes with it to the end of the piece
         bool isOn = false;        ///< the tool is on the helix
         bool wasOn = false;       ///< it has been
         bool wasDescending = false;
     };
     Lock lock_;
+    TapFollower tap_;
 };
 
 /// All methods: servo thread only; bounded, no allocation.
@@ -65,7 +77,8 @@ class ExecutorState {
 /// With jerk limits (Commit::filter above 1) a leader does this and its mean is commanded; the planner then
 /// ends every plan with a stop, and answers `hold` and `drop` with a plan.
 /// Passes that are locked to a spindle's angle (Motion::LOCKED) it drives by itself, from rest to rest;
-/// `hold` waits for their end, since a thread that was held is scrap; `drop` brakes at once.
+/// `hold` waits for their end, since a thread that was held is scrap; `drop` brakes at once. In a tap it
+/// switches the spindle off and follows it to its stand.
 class Executor : private ExecutorState {
   public:
     explicit Executor(PathStore &store, double period_s) noexcept : ExecutorState(period_s), store_(store) {}
@@ -75,10 +88,15 @@ class Executor : private ExecutorState {
     /// The path begins at `pose`; only at rest and with nothing left of a path.
     void set_position(const Pose &pose) noexcept;
 
-    /// The angle [turns] and speed [turns/s] of a spindle; call before `step`.
-    void set_spindle(int spindle, double turns, double turns_per_s) noexcept {
-        turns_[static_cast<std::size_t>(spindle)] = turns;
-        turns_per_s_[static_cast<std::size_t>(spindle)] = turns_per_s;
+    /// The angle [turns] of a spindle; call every cycle before `step`: the speed is told from it.
+    void set_spindle(int spindle, double turns) noexcept {
+        FollowedSpindle &followed = spindles_[static_cast<std::size_t>(spindle)];
+        followed.turns = turns;
+        followed.track.take(turns, period_, static_cast<double>(state_.filter - 1) * period_);
+    }
+    /// How fast a spindle changes its speed when it turns back: see SpindleReading::ramp.
+    void set_ramps(int spindle, const std::array<double, 2> &ramps) noexcept {
+        spindles_[static_cast<std::size_t>(spindle)].ramp = ramps;
     }
 
     /// Advances to the end of `cycle`.
@@ -125,7 +143,12 @@ class Executor : private ExecutorState {
     double locked_speed() noexcept;
     bool descend(double v) noexcept;
     double leave_piece(double x) noexcept;
-    double turned() const noexcept;
+    struct Turned {
+        double turns = 0, per_s = 0;
+    };
+    Turned turned() const noexcept;
+    SpindleReading reading() const noexcept;
+    void advance_tap() noexcept;
 
     PathStore &store_;
 };

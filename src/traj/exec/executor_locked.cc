@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "traj/exec/closing_speed.hh"
 #include "traj/exec/executor.hh"
 #include "traj/tuning.hh"
 
@@ -20,21 +21,17 @@ AccelBound part_of(const AccelBound &bound, double share) noexcept {
     return out;
 }
 
-/// Difference of speed that can be taken back over the way `gap`, in whole cycles, with the acceleration a.
-double closing_speed(double gap, double a, double dt) noexcept {
-    const double size = std::abs(gap);
-    const double speed =
-        size <= a * dt * dt ? size / dt : a * (std::sqrt(0.25 * dt * dt + 2.0 * size / a) - 0.5 * dt);
-    return gap > 0 ? speed : -speed;
-}
-
 }  // namespace
 
-/// Where the spindle will be at the end of this cycle, or as much later as the mean is behind. [turns]
-double Executor::turned() const noexcept {
-    const auto n = static_cast<std::size_t>(lock_.pass.spindle);
-    const double ahead = 0.5 * static_cast<double>(state_.filter + 1) * period_;
-    return lock_.pass.direction * (turns_[n] + turns_per_s_[n] * ahead);
+/// Where the spindle will be at the end of this cycle, or as much later as the mean is behind, and how fast
+/// it will turn then. The mean over tau of places that are half of it ahead is late by the square's part.
+Executor::Turned Executor::turned() const noexcept {
+    const SpindleReading s = reading();
+    const double mean_s = static_cast<double>(state_.filter - 1) * period_;
+    const double ahead = period_ + 0.5 * mean_s;
+    const double bend = 0.5 * period_ * (period_ + mean_s) + mean_s * mean_s / 12.0;
+    return {lock_.pass.direction * (s.turns + s.turns_per_s * ahead + s.turns_per_s2 * bend),
+            lock_.pass.direction * (s.turns_per_s + s.turns_per_s2 * ahead)};
 }
 
 /// The pass begins so that its helix goes through the start at a whole turn, whatever the speed.
@@ -56,11 +53,17 @@ bool Executor::take_pass(const Commit &commit) noexcept {
     state_.x = 0;
     state_.v = 0;
     const Piece &piece = store_.piece(state_.piece);
-    const auto n = static_cast<std::size_t>(commit.pass.spindle);
-    const double v = piece.per_turn * std::max(0.0, commit.pass.direction * turns_per_s_[n]);
+    if (commit.pass.isTap) {
+        TapTerms terms = commit.pass.tap;
+        terms.acceleration = commit.pass.share * piece.acceleration.at(0);
+        tap_.begin(terms, reading(), 0.5 * static_cast<double>(state_.filter + 1) * period_);
+        return true;
+    }
+    const Turned spindle = turned();
+    const double v = piece.per_turn * std::max(0.0, spindle.per_s);
     const double a = ExecutorTuning::MEETING_SHARE * commit.pass.share * piece.acceleration.at(0);
     const double run_in = a > 0 && piece.per_turn > 0 ? 0.5 * v * v / (a * piece.per_turn) : 0.0;
-    lock_.origin = std::ceil(turned() + run_in);
+    lock_.origin = std::ceil(spindle.turns + run_in);
     return true;
 }
 
@@ -82,17 +85,20 @@ double Executor::acceleration_left() const noexcept {
 /// The speed for the coming cycle.
 double Executor::locked_speed() noexcept {
     const Piece &piece = store_.piece(state_.piece);
-    const auto n = static_cast<std::size_t>(lock_.pass.spindle);
+    const Turned spindle = turned();
     const double left = acceleration_left();
     const double trim = lock_.pass.trim * left;
     const double a = lock_.wasOn ? trim : lock_.pass.share * left;
-    const double helix_v = piece.per_turn * lock_.pass.direction * turns_per_s_[n];
-    const double helix_x = piece.per_turn * (turned() - lock_.origin - lock_.passed_turns);
+    const double helix_v = piece.per_turn * spindle.per_s;
+    const double helix_x = piece.per_turn * (spindle.turns - lock_.origin - lock_.passed_turns);
     // How far the tool would be ahead of the helix if it went at the helix's speed.
     const double gap = state_.x + helix_v * period_ - helix_x;
     const double part = std::abs(gap) / piece.per_turn;
-    lock_.isOn = lock_.isOn ? part < ExecutorTuning::LOST
-                            : part < ExecutorTuning::MET && std::abs(state_.v - helix_v) < a * period_;
+    // A rough encoder may never let it be met exactly.
+    lock_.near_cycles = part < ExecutorTuning::NEAR ? lock_.near_cycles + 1 : 0;
+    const bool isMet = part < ExecutorTuning::MET && std::abs(state_.v - helix_v) < a * period_;
+    lock_.isOn =
+        lock_.isOn ? part < ExecutorTuning::LOST : isMet || lock_.near_cycles >= ExecutorTuning::NEAR_CYCLES;
     lock_.wasOn = lock_.wasOn || lock_.isOn;
     const double wanted =
         helix_v - (lock_.isOn ? ExecutorTuning::GAIN * gap
@@ -133,9 +139,33 @@ double Executor::leave_piece(double x) noexcept {
     return x - piece.length;
 }
 
+SpindleReading Executor::reading() const noexcept {
+    return spindles_[static_cast<std::size_t>(lock_.pass.spindle)].reading();
+}
+
+/// One cycle of a tap: its line is the first piece, and the way back the rest of the pass.
+void Executor::advance_tap() noexcept {
+    const SpindleReading spindle = reading();
+    if (state_.isDropping) {
+        tap_.stop(spindle);
+    }
+    tap_.step(spindle, period_, static_cast<double>(state_.filter - 1) * period_);
+    state_.x = tap_.x();
+    state_.v = tap_.v();
+    out_.tap = {lock_.pass.spindle, tap_.spindle_factor(), tap_.isLost()};
+    if (!tap_.isOver()) {
+        return;
+    }
+    if (!state_.isDropping && !tap_.isLost()) {
+        state_.piece = lock_.pass.last;
+        state_.x = store_.piece(lock_.pass.last).length;
+    }
+    come_to_rest();
+}
+
 /// One cycle of a pass.
 void Executor::step_locked() noexcept {
-    advance_locked();
+    lock_.pass.isTap ? advance_tap() : advance_locked();
     state_.coasting.pass(-1, period_);  // for the plan that follows: the speed may just have fallen
 }
 

@@ -33,6 +33,8 @@ struct Conditions {
     Workspace workspace;
     Scales scales;
     SingleBlocks blocks;
+    /// How fast spindles change their speed when they turn back: see SpindleReading.
+    std::array<std::array<double, 2>, MAX_SPINDLES> ramps{};
 
     /// Driven by the executor, locked to the angle of a spindle. Machines whose joints are not axes drive
     /// threads by time.

@@ -29,6 +29,11 @@ struct MoveRequest {
     bool isLocked = false;  ///< keeps to the angle of the spindle: a thread
     bool isGated = false;   ///< a stop before it until the gate opens
     bool isPhased = false;  ///< the gate opens at a spindle phase
+    /// In to the end of this move with the spindle's angle, and out again along the next one, which is the
+    /// way back to its start.
+    bool isTap = false;
+    double tap_scale = 1;  ///< speed of the spindle on the way back over that on the way in
+    double room_before = 0, room_behind = 0;  ///< that the line has before its start and behind its end
 };
 
 }  // namespace mw::traj

@@ -237,7 +237,7 @@ TEST(Executor, APassMeetsItsHelixAtAWholeTurnAndStaysOnIt_C9) {
     int met = 0;
     double origin = 0;
     for (int n = 0; n < 3000 && (n < 2 || !rig.executor.isAtRest()); ++n) {
-        rig.executor.set_spindle(0, turns, RPS);
+        rig.executor.set_spindle(0, turns);
         rig.step(1);
         turns += RPS * PERIOD;
         const bool isInMiddle = rig.x() > 5 && rig.x() < 25;

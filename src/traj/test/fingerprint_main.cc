@@ -81,7 +81,7 @@ struct Drive {
         rps += maker.chance(0.002) ? maker.real(-1, 1) : 1e-4 * maker.real(-1, 1);
         rps = std::clamp(rps, -20.0, 20.0);
         turns += rps * Rig::T;
-        rig.executor.set_spindle(0, turns, rps);
+        rig.executor.set_spindle(0, turns);
         scales.spindle_rps[0] = rps;
         rig.planner.set_scales(scales);
     }

@@ -26,6 +26,41 @@ double turn_way(const PlannedPath &path, Sequence piece) noexcept {
     return 1.0 / ((1.0 - part) / way(p.move) + part / way(p.move + 1));
 }
 
+/// Part of the acceleration that a tap or a short pass may use: with jerk limits one change of it may come
+/// within the mean of another.
+double tap_share(const PathLimits &limits) noexcept {
+    return limits.isFiltered() ? PassTuning::SHORT_SHARE : PassTuning::FULL;
+}
+
+double tap_ramp(const std::array<double, 2> &ramp, double rps) noexcept {
+    return rps < 0 ? ramp[1] : ramp[0];
+}
+
+/// The way in and the way back, without regard to stops in between.
+void fill_tap(const PathView &view, Pass &pass, double rps) noexcept {
+    const PlannedPath &path = view.path;
+    const Sequence in = path.move_of(pass.first);
+    const MoveRequest &r = path.move(in).request;
+    pass.isTap = true;
+    pass.share = tap_share(view.conditions.limits);
+    pass.trim = pass.share;
+    while (pass.last < path.last_piece() && path.move_of(pass.last + 1) <= in + 1) {
+        ++pass.last;
+    }
+    TapTerms &tap = pass.tap;
+    tap.depth = path.primitive(in).length;
+    tap.per_turn = r.feed_per_revolution * r.tag.feed_ratio;
+    tap.back_scale = r.tap_scale;
+    tap.velocity = path.plan(pass.first).v_limit;
+    tap.low = -r.room_before;
+    tap.high = tap.depth + r.room_behind;
+    const double ramp = tap_ramp(view.conditions.ramps[static_cast<std::size_t>(r.spindle)], rps);
+    if (ramp > 0) {
+        const double turns = TapTuning::MORE_ROOM + rps * rps / ramp;
+        tap.high = std::min(tap.high, tap.depth + turns * tap.per_turn);
+    }
+}
+
 }  // namespace
 
 Sequence pass_end(const PathView &view, Sequence first) noexcept {
@@ -49,6 +84,10 @@ Pass make_pass(const PathView &view, Sequence first) noexcept {
     pass.direction = rps < 0 ? -1.0 : 1.0;
     pass.share = PassTuning::FULL;
     pass.trim = PassTuning::FULL;
+    if (r.isTap) {
+        fill_tap(view, pass, rps);
+        return pass;
+    }
     if (!limits.isFiltered()) {
         return pass;
     }
@@ -86,21 +125,56 @@ void fill_pass(PlannedPath &path, const PathLimits &limits, const Pass &pass) no
     }
 }
 
+TapVerdict check_tap(const PathView &view, Sequence move) noexcept {
+    const PlannedPath &path = view.path;
+    const MoveRequest &r = path.move(move).request;
+    const auto n = static_cast<std::size_t>(r.spindle);
+    const double rps = view.conditions.scales.spindle_rps[n];
+    const double ahead = std::abs(rps);
+    const std::array<double, 2> &ramp = view.conditions.ramps[n];
+    const double per_turn = r.feed_per_revolution * r.tag.feed_ratio;
+    const double load = pass_load(view, move) * std::max(1.0, r.tap_scale);
+    if (load > 1.0 + PassTuning::LOAD_ROUNDING) {
+        return {TapObstacle::TOO_FAST, load};
+    }
+    const Limits &limits = view.conditions.limits.fitted();
+    const double a =
+        tap_share(view.conditions.limits) *
+        limit_of(path.primitive(move), 0, path.primitive(move).length, limits, UNLIMITED).a.at(0);
+    const double abruptness = per_turn * std::max(ramp[0], ramp[1]) / (TapTuning::MEETING_SHARE * a);
+    if (abruptness > 1.0) {
+        return {TapObstacle::TOO_ABRUPT, abruptness};
+    }
+    const double turn_back = tap_ramp(ramp, rps);
+    const double run_in = 0.5 * std::pow(per_turn * ahead, 2) / (TapTuning::MEETING_SHARE * a);
+    const double overrun = turn_back > 0 ? 0.5 * ahead * ahead / turn_back * per_turn : 0.0;
+    const double depth = path.primitive(move).length;
+    if (run_in + overrun > depth) {
+        return {TapObstacle::TOO_SHALLOW, (run_in + overrun) / depth};
+    }
+    return {};
+}
+
 double pass_load(const PathView &view, Sequence move) noexcept {
     const PlannedPath &path = view.path;
     const Conditions &c = view.conditions;
     double load = 0;
+    double length = 0;
+    double ramps = 0;  // ways that gaining and losing the speed take, at the slower end
     for (Sequence n = move; n <= path.last_move(); ++n) {
         const MoveRequest &r = path.move(n).request;
         if (!c.isLocked(r) || (n > move && r.isGated)) {
             break;
         }
         const Primitive &p = path.primitive(n);
-        const double most = std::min(limit_of(p, 0, p.length, c.limits.fitted(), UNLIMITED).v,
-                                     c.scales.max_velocity * r.tag.feed_ratio);
-        load = std::max(load, turning_speed(r, c.scales) / most);
+        const SpeedLimit limit = limit_of(p, 0, p.length, c.limits.fitted(), UNLIMITED);
+        const double v = turning_speed(r, c.scales);
+        load = std::max(load, v / std::min(limit.v, c.scales.max_velocity * r.tag.feed_ratio));
+        length += p.length;
+        ramps = std::max(ramps, v * v / (tap_share(c.limits) * limit.a.at(v * v)));
     }
-    return load;
+    // Where no part of it would have the lead, the highest speed that leaves one goes with the root.
+    return ramps > length ? std::max(load, std::sqrt(ramps / length)) : load;
 }
 
 }  // namespace mw::traj

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "interp/codes/moves/spindle_moves.hh"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -49,11 +50,20 @@ bool move_with_spindle(const Code &code, const BlockValues &values, const Machin
     if (state.spindles[static_cast<std::size_t>(spindle)].direction == 0) {
         return fault.set(fmt::format("Spindle not turning in {}", name));
     }
-    if (values.at('k') == 0.0) {
-        return fault.set(fmt::format("The pitch K of {} must not be 0", name), values.column_of('k'));
+    if (!(values.at('k') > 0.0)) {
+        return fault.set(
+            fmt::format("The pitch K of {} must be greater than 0", name), values.column_of('k'),
+            "the end point and the spindle's direction say whether the thread is a left-hand one");
+    }
+    constexpr double SAME_SPEED = 1.0;
+    const double scale = values.at('i', SAME_SPEED);
+    if (!(scale > 0.0)) {
+        return fault.set(fmt::format("The factor I of {} must be greater than 0", name),
+                         values.column_of('i'));
     }
     Pose end;
-    if (!check_pitch(machine, state, fault, spindle, values.at('k'), values.column_of('k')) ||
+    const double pitch = values.at('k') * std::max(SAME_SPEED, scale);
+    if (!check_pitch(machine, state, fault, spindle, pitch, values.column_of('k')) ||
         !straight_target(values, state, end, fault)) {
         return false;
     }
@@ -65,9 +75,7 @@ bool move_with_spindle(const Code &code, const BlockValues &values, const Machin
         canon.take(StraightFeed{end});
         state.position = end;
     } else {
-        constexpr double SAME_SPEED = 1.0;
-        canon.take(
-            RigidTap{end[geom::AXIS_X], end[geom::AXIS_Y], end[geom::AXIS_Z], values.at('i', SAME_SPEED)});
+        canon.take(RigidTap{end[geom::AXIS_X], end[geom::AXIS_Y], end[geom::AXIS_Z], scale});
     }
     canon.take(StopSpeedFeedSynch{});
     return true;

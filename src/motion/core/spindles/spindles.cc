@@ -64,6 +64,23 @@ bool hasOrientFailed(Spindle &s, const SpindleInputs &pins) noexcept {
 void stop_turning(Spindle &s) noexcept {
     s.isOn = false;
     s.speed_rpm = 0;
+    s.tap_factor = 1;
+}
+
+double scale_of(const Spindle &s) noexcept {
+    return s.isOverrideEnabled ? s.scale : 1.0;
+}
+
+/// A tap keeps the override that it began with. One that has been stopped leaves the spindle off.
+void follow_tap(Spindle &s, int n, const TapTurning &tap) noexcept {
+    const bool isTapping = tap.spindle == n;
+    s.tap_scale = isTapping && !s.isTapping ? scale_of(s) : s.tap_scale;
+    s.isTapping = isTapping;
+    s.tap_factor = isTapping ? tap.factor : 1.0;
+    if (isTapping && tap.factor == 0) {
+        stop_turning(s);
+        s.isBrakeOn = true;
+    }
 }
 
 void end_orientation(Spindle &s) noexcept {
@@ -176,16 +193,29 @@ void switch_off(Spindles &spindles) noexcept {
     }
 }
 
-std::uint32_t step(Spindles &spindles, const Inputs &in, const Settings &settings, double x) noexcept {
+std::uint32_t step(Spindles &spindles, const Inputs &in, const Settings &settings,
+                   const SpindleCycle &cycle) noexcept {
     std::uint32_t faults = 0;
     for (int n = 0; n < spindles.count; ++n) {
         Spindle &s = spindles[n];
         const SpindleInputs &pins = in.spindle[at(n)];
-        const double rpm = within_range(settings, n, speed_of(s, x) * (s.isOverrideEnabled ? s.scale : 1.0));
+        follow_tap(s, n, cycle.tap);
+        const double scale = s.isTapping ? s.tap_scale : scale_of(s);
+        const double rpm = within_range(settings, n, speed_of(s, cycle.x) * scale * s.tap_factor);
         s.out_rpm = pins.isInhibited || !s.isOn ? 0.0 : rpm;
+        watch(s.turn_back, {s.out_rpm / 60.0, pins.revs, pins.speed_in_rps, cycle.period_s});
         faults |= hasOrientFailed(s, pins) ? 1U << n : 0U;
     }
     return faults;
+}
+
+std::array<double, 2> ramps_of(const Spindles &spindles, int n, const Settings &settings) noexcept {
+    return motion::ramps_of(spindles[n].turn_back, settings.get(Parameter::SPINDLE_RAMP, n) / 60.0);
+}
+
+bool isReversible(const Settings &settings, int n) noexcept {
+    return settings.get(Parameter::SPINDLE_MAX_FORWARD, n) > 0 &&
+           settings.get(Parameter::SPINDLE_MAX_REVERSE, n) > 0;
 }
 
 bool isReady(const Spindle &spindle, const SpindleInputs &in) noexcept {
@@ -199,8 +229,9 @@ void fill(const Spindles &spindles, const Inputs &in, bool isEnabled, Outputs &o
         SpindleOutputs &o = out.spindle[at(n)];
         o.speed_rpm = s.out_rpm;
         o.isOn = s.isOn && isEnabled;
-        o.isForward = o.isOn && s.speed_rpm > 0;
-        o.isReverse = o.isOn && s.speed_rpm < 0;
+        const double wanted_rpm = s.speed_rpm * s.tap_factor;
+        o.isForward = o.isOn && wanted_rpm > 0;
+        o.isReverse = o.isOn && wanted_rpm < 0;
         o.isBrakeOn = s.isBrakeOn;
         o.isOrienting = s.isOrienting;
         o.isLocked = s.isLocked;
@@ -208,11 +239,11 @@ void fill(const Spindles &spindles, const Inputs &in, bool isEnabled, Outputs &o
         o.orient_mode = s.orient_mode;
         o.isIndexEnabled = pins.isIndexEnabled;
         SpindleStatus &st = out.status.spindle[at(n)];
-        st.speed_cmd_rpm = s.speed_rpm;
+        st.speed_cmd_rpm = wanted_rpm;
         st.scale = s.scale;
         st.speed_in_rps = pins.speed_in_rps;
         st.revs = pins.revs;
-        st.direction = !s.isOn ? 0 : s.speed_rpm > 0 ? 1 : s.speed_rpm < 0 ? -1 : 0;
+        st.direction = !s.isOn ? 0 : wanted_rpm > 0 ? 1 : wanted_rpm < 0 ? -1 : 0;
         st.isOn = s.isOn;
         st.isAtSpeed = pins.isAtSpeed;
         st.isBrakeOn = s.isBrakeOn;

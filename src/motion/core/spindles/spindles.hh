@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Spindles: speed with override and limits, constant surface speed, brake, orientation.
+// Spindles: speed with override and limits, constant surface speed, brake, orientation, turning back for a
+// tap.
 #pragma once
 
 #include <array>
@@ -9,6 +10,7 @@
 #include "motion/api/command.hh"
 #include "motion/api/settings.hh"
 #include "motion/core/io.hh"
+#include "motion/core/spindles/turn_back.hh"
 #include "motion/core/verdict.hh"
 
 namespace mw::motion {
@@ -21,6 +23,16 @@ struct Spindle {
     bool isOrienting = false, isLocked = false;
     double orient_angle = 0;
     int orient_mode = 0, orient_state = 0, orient_fault = 0;
+    double tap_factor = 1;  ///< of the speed, while a tap is under way
+    double tap_scale = 1;   ///< the override that the tap began with
+    bool isTapping = false;
+    TurnBack turn_back;
+};
+
+/// What a tap under way wants of its spindle.
+struct TapTurning {
+    int spindle = -1;   ///< -1: none is under way
+    double factor = 1;  ///< of the speed that the spindle was started with; 0: off, and not on by itself
 };
 
 struct Spindles {
@@ -43,9 +55,19 @@ Verdict take(Spindles &spindles, const SetSwitch &command) noexcept;
 /// The machine goes off.
 void switch_off(Spindles &spindles) noexcept;
 
-/// One cycle; `x` is the commanded machine X, for constant surface speed. Bit per spindle whose orientation
-/// has failed in this cycle: `orient_fault` says with what.
-std::uint32_t step(Spindles &spindles, const Inputs &in, const Settings &settings, double x) noexcept;
+struct SpindleCycle {
+    double x = 0;  ///< commanded machine X, for constant surface speed
+    TapTurning tap;
+    double period_s = 1e-3;
+};
+/// One cycle. Bit per spindle whose orientation has failed in it: `orient_fault` says with what.
+std::uint32_t step(Spindles &spindles, const Inputs &in, const Settings &settings,
+                   const SpindleCycle &cycle) noexcept;
+
+/// How fast a spindle turns back, from turning on with its counts and against them [turns/s^2]; 0: not known.
+std::array<double, 2> ramps_of(const Spindles &spindles, int n, const Settings &settings) noexcept;
+/// It may turn in both directions.
+bool isReversible(const Settings &settings, int n) noexcept;
 
 /// Off, or at speed.
 bool isReady(const Spindle &spindle, const SpindleInputs &in) noexcept;

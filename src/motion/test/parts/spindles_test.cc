@@ -13,10 +13,14 @@ struct SpindlesPart : testing::Test {
     Inputs in;
     Settings settings;
     std::uint32_t failed = 0;
+    TapTurning tap;
 
     SpindlesPart() { spindles.count = 2; }
     double rpm(double x = 0) {
-        failed = step(spindles, in, settings, x);
+        SpindleCycle cycle;
+        cycle.x = x;
+        cycle.tap = tap;
+        failed = step(spindles, in, settings, cycle);
         return spindles[0].out_rpm;
     }
     void set(Parameter p, double value) {
@@ -84,6 +88,41 @@ TEST_F(SpindlesPart, OrientationLocksOrFailsOnce) {
     EXPECT_EQ(spindles[0].orient_fault, 7);
     rpm();
     EXPECT_EQ(failed, 0U) << "told once";
+}
+
+TEST_F(SpindlesPart, ATapTurnsItBackAtTheOverrideThatItBeganWith_C15) {
+    take(spindles, SpindleOn{0, 300}, true);
+    take(spindles, SetScale{Scale::SPINDLE, 0, 1.2});
+    tap = {0, 1};
+    EXPECT_EQ(rpm(), 360);
+    take(spindles, SetScale{Scale::SPINDLE, 0, 0.5});
+    EXPECT_EQ(rpm(), 360);
+    tap = {0, -2};
+    EXPECT_EQ(rpm(), -720);
+    Outputs out;
+    fill(spindles, in, true, out);
+    EXPECT_TRUE(out.spindle[0].isReverse);
+    EXPECT_FALSE(out.spindle[0].isForward);
+    EXPECT_EQ(out.status.spindle[0].direction, -1);
+    EXPECT_EQ(out.status.spindle[0].speed_cmd_rpm, -600);
+    tap = {};
+    EXPECT_EQ(rpm(), 150) << "now the override holds";
+}
+
+TEST_F(SpindlesPart, ATapThatIsStoppedLeavesItOff_C15) {
+    take(spindles, SpindleOn{0, 300}, true);
+    take(spindles, SpindleOn{1, 200}, true);
+    tap = {0, -1};
+    EXPECT_EQ(rpm(), -300);
+    tap = {0, 0};
+    EXPECT_EQ(rpm(), 0);
+    tap = {};
+    EXPECT_EQ(rpm(), 0) << "not on by itself";
+    EXPECT_FALSE(spindles[0].isOn);
+    EXPECT_TRUE(spindles[0].isBrakeOn);
+    EXPECT_EQ(spindles[1].out_rpm, 200) << "the other goes on";
+    take(spindles, SpindleOn{0, 300}, true);
+    EXPECT_EQ(rpm(), 300);
 }
 
 TEST_F(SpindlesPart, StatusTellsWhatEachDoes) {

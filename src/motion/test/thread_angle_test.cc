@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Where threads begin on the turn of a spindle that has inertia and an encoder of 4,096 counts, and whether
+// they keep to it: measured against the rotor's true angle.
+#include <cstdio>
+
+#include <gtest/gtest.h>
+
+#include "spindle_bench.hh"
+
+namespace mw::motion {
+namespace {
+
+constexpr double LEAD = 1.5, TOP = 5, BOTTOM = -20;
+constexpr double DEGREE = 1.0 / 360;
+
+sim::SpindleTraits mill_spindle() {
+    sim::SpindleTraits traits;
+    traits.ramp = 1000.0 / 60 / 0.5;  // 1,000 rpm in half a second
+    traits.slip = 0.1;
+    traits.first_turns = 0.37;
+    return traits;
+}
+
+class ThreadAngle : public ::testing::TestWithParam<bool> {
+  protected:
+    struct Pass {
+        std::size_t first = 0, met = 0, last = 0;  ///< samples: leaves the start, is well in, ends
+    };
+    /// One pass at the depth `x`, which loads the spindle from Z -6 on within 0.2 s.
+    Pass cut(SpindleBench &bench, double x, double load = 0) {
+        bench.rapid(14, TOP);
+        bench.rapid(x, TOP);
+        EXPECT_TRUE(bench.finish());
+        Pass pass;
+        pass.first = bench.samples.size();
+        double taken = 0;
+        bench.load = [&](const SpindleBench::Sample &s) {
+            return taken = std::min(load, taken + (s.z < -6 ? load * SpindleBench::T / 0.2 : 0.0));
+        };
+        bench.thread(x, BOTTOM, LEAD);
+        EXPECT_TRUE(bench.finish());
+        bench.load = [](const SpindleBench::Sample &) { return 0.0; };
+        const auto &s = bench.samples;
+        pass.met = pass.first;
+        while (pass.met < s.size() && s[pass.met].z > TOP - 8) {
+            ++pass.met;
+        }
+        pass.last = pass.met;
+        while (pass.last < s.size() && s[pass.last].z > BOTTOM + 6) {
+            ++pass.last;
+        }
+        return pass;
+    }
+};
+
+double apart(double a, double b) {
+    return std::abs(std::remainder(a - b, 1.0));
+}
+
+TEST_P(ThreadAngle, IsTheSameForAllPassesFrom100To3000Rpm_C15) {
+    SpindleBench bench(mill_spindle(), GetParam());
+    double first = NAN, worst = 0, wander = 0;
+    for (const double rpm : {100.0, 300.0, 500.0, 1000.0, 1700.0, 2400.0, 3000.0}) {
+        bench.spin(rpm);
+        for (const double x : {10.0, 9.8, 9.65}) {
+            bench.rig.step(37 + static_cast<int>(rpm) % 29);  // a pass may be asked for at any moment
+            const Pass pass = cut(bench, x);
+            const Helix helix = helix_of(bench.samples, pass.met, pass.last, LEAD);
+            first = std::isnan(first) ? helix.phase : first;
+            worst = std::max(worst, apart(helix.phase, first));
+            wander = std::max(wander, helix.farthest);
+            EXPECT_LE(apart(helix.phase, first), 0.2 * DEGREE) << rpm << " rpm, X " << x;
+            EXPECT_LE(helix.farthest, 0.2 * DEGREE) << rpm << " rpm, X " << x;
+        }
+    }
+    EXPECT_EQ(bench.limit_report(), "");
+    std::printf("start angle of G33%s: apart by %.4f degrees at most, within a pass by %.4f\n",
+                GetParam() ? " with jerk limits" : "", worst / DEGREE, wander / DEGREE);
+}
+
+TEST_P(ThreadAngle, IsKeptWhenTheSpindleIsSlowedWithinThePass_C15) {
+    SpindleBench bench(mill_spindle(), GetParam());
+    double first = NAN, at_start = 0, meanwhile = 0;
+    for (const double rpm : {300.0, 1000.0, 2000.0}) {
+        bench.spin(rpm);
+        for (const double load : {0.0, 0.5, 1.0}) {
+            const Pass pass = cut(bench, 10, load);  // a slip of up to 10 %
+            std::size_t loaded = pass.met;
+            while (bench.samples[loaded].z > -6) {
+                ++loaded;
+            }
+            const Helix helix = helix_of(bench.samples, pass.met, loaded, LEAD);
+            first = std::isnan(first) ? helix.phase : first;
+            at_start = std::max(at_start, apart(helix.phase, first));
+            for (std::size_t i = pass.met; i < pass.last; ++i) {
+                meanwhile = std::max(meanwhile, apart(helix_of(bench.samples, i, i + 1, LEAD).phase, first));
+            }
+        }
+    }
+    EXPECT_LE(at_start, 0.2 * DEGREE);
+    // A mean of 50 ms cannot foresee that the spindle begins to slow down.
+    EXPECT_LE(meanwhile, (GetParam() ? 1.5 : 0.2) * DEGREE);
+    EXPECT_EQ(bench.limit_report(), "");
+    std::printf("a spindle that slows down%s: apart by %.4f degrees before, by %.4f meanwhile\n",
+                GetParam() ? " with jerk limits" : "", at_start / DEGREE, meanwhile / DEGREE);
+}
+
+TEST_P(ThreadAngle, AThreadWithoutAPartAtItsLeadIsRefusedBeforeItMoves_C15) {
+    SpindleBench bench(mill_spindle(), GetParam());
+    bench.spin(2000);
+    bench.rapid(10, TOP);
+    ASSERT_TRUE(bench.finish());
+    // 100 mm/s takes more than 4 mm to gain and 4 mm to lose.
+    const CommandId id = bench.thread(10, TOP - 6, 3);
+    bench.rig.send_path(Flush{});
+    bench.rig.step(3000);
+    ASSERT_EQ(bench.rig.faults.size(), 1U);
+    EXPECT_EQ(bench.rig.faults[0].kind, FaultKind::THREAD_TOO_FAST);
+    EXPECT_EQ(bench.rig.faults[0].source.line, static_cast<std::int32_t>(id));
+    EXPECT_GT(bench.rig.faults[0].value, 1);
+    EXPECT_EQ(bench.samples.back().z, TOP) << "nothing has moved";
+}
+
+INSTANTIATE_TEST_SUITE_P(Planners, ThreadAngle, ::testing::Bool(),
+                         [](const auto &which) { return which.param ? "JerkLimited" : "Trapezoidal"; });
+
+}  // namespace
+}  // namespace mw::motion
