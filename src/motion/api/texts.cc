@@ -27,6 +27,41 @@ std::string place_name(const Answer &a) {
     return a.isPath ? axis_name(a.index) : fmt::format("joint or axis {}", a.index);
 }
 
+std::string kinematics_reason(const Answer &answer) {
+    switch (answer.reason) {
+    case Reason::JOINT_BEYOND_LIMIT: return "the move takes a joint beyond its soft limit";
+    case Reason::UNREACHABLE: return "the kinematics cannot reach the move";
+    case Reason::SINGULAR:
+        return "the move leads through a singular pose of the kinematics or close by, or begins at one: go "
+               "around it, or jog a joint off it";
+    case Reason::POSE_UNKNOWN:
+        return "the kinematics has no pose for where the joints stand: jog the joints, or see what its "
+               "module starts looking from";
+    case Reason::TOO_FEW_JOINTS:
+        return fmt::format(
+            "the kinematics moves {} joints: see [KINS]JOINTS and coordinates= of the kinematics",
+            answer.index);
+    default: return "refused";
+    }
+}
+
+std::string tap_reason(const Answer &answer) {
+    switch (answer.reason) {
+    case Reason::RIGID_TAPPING:
+        return "G33.1: rigid tapping wants a machine whose joints are its axes (trivkins); tap with a "
+               "floating holder (G84, G74)";
+    case Reason::TAP_ROOM:
+        return fmt::format(
+            "the tap begins or ends too near to the soft limit of {}: the tool goes on by up to "
+            "a turn of the spindle while it turns back",
+            place_name(answer));
+    case Reason::ONE_WAY_SPINDLE:
+        return "rigid tapping turns the spindle back, but its range in one direction is 0: see "
+               "MAX_FORWARD_VELOCITY and MAX_REVERSE_VELOCITY";
+    default: return "refused";
+    }
+}
+
 }  // namespace
 
 std::string reason_text(const Answer &answer) {
@@ -36,10 +71,10 @@ std::string reason_text(const Answer &answer) {
     case Reason::COUNT: return {};
     case Reason::NOT_ENABLED: return "the machine is off: turn it on first";
     case Reason::WRONG_MODE:
-        return answer.isPath ? "programmed moves need coordinated mode"
-                             : "not possible in this mode: joints jog, home and unhome in joint mode, axes "
-                               "jog in world "
-                               "mode";
+        return answer.isPath
+                   ? "programmed moves need coordinated mode"
+                   : "not possible in this mode: joints jog, home and unhome in joint mode, axes jog "
+                     "in world mode";
     case Reason::MOVING: return "the machine is moving: wait until it stands, or stop it";
     case Reason::NOT_HOMED: return "home all joints first";
     case Reason::HOMING: return "joints are being homed: wait, or abort homing";
@@ -59,14 +94,6 @@ std::string reason_text(const Answer &answer) {
     case Reason::ON_HARD_LIMIT:
         return fmt::format("{} is on a limit switch: jog off it (override limits to turn the machine on)",
                            joint_name(i));
-    case Reason::JOINT_BEYOND_LIMIT: return "the move takes a joint beyond its soft limit";
-    case Reason::UNREACHABLE: return "the kinematics cannot reach the move";
-    case Reason::SINGULAR:
-        return "the move leads through a singular pose of the kinematics or close by, or begins at one: go "
-               "around it, or jog a joint off it";
-    case Reason::POSE_UNKNOWN:
-        return "the kinematics has no pose for where the joints stand: jog the joints, or see what its "
-               "module starts looking from";
     case Reason::NO_FEEDBACK:
         return fmt::format("the feedback of {} is not a number: see what its pin motor-pos-fb is linked to",
                            joint_name(i));
@@ -79,18 +106,6 @@ std::string reason_text(const Answer &answer) {
     case Reason::NOT_A_NUMBER: return "a value is not a finite number";
     case Reason::NO_WAY_BACK:
         return "there is no way back: the path is remembered only while adaptive feed is on (M52 P1)";
-    case Reason::RIGID_TAPPING:
-        return "G33.1: rigid tapping wants a machine whose joints are its axes (trivkins); tap with a "
-               "floating "
-               "holder (G84, G74)";
-    case Reason::TAP_ROOM:
-        return fmt::format(
-            "the tap begins or ends too near to the soft limit of {}: the tool goes on by up to "
-            "a turn of the spindle while it turns back",
-            place_name(answer));
-    case Reason::ONE_WAY_SPINDLE:
-        return "rigid tapping turns the spindle back, but its range in one direction is 0: see "
-               "MAX_FORWARD_VELOCITY and MAX_REVERSE_VELOCITY";
     case Reason::BAD_ARC: return "the arc's centre, normal and end do not make a helix";
     case Reason::JOG_INHIBITED:
         return "jogging is inhibited: pin motion.jog-inhibit, motion.jog-stop or motion.jog-stop-immediate "
@@ -102,17 +117,91 @@ std::string reason_text(const Answer &answer) {
             "its axis in world mode",
             joint_name(i));
     case Reason::SWITCHED_ON: return "the machine is on: switch it off first";
-    case Reason::TOO_FEW_JOINTS:
-        return fmt::format(
-            "the kinematics moves {} joints: see [KINS]JOINTS and coordinates= of the kinematics", i);
     case Reason::NO_JOG_TO_RENEW:
         return fmt::format("there is no jog of {} to renew: it has ended or was stopped; begin it again",
                            place_name(answer));
+    case Reason::JOINT_BEYOND_LIMIT:
+    case Reason::UNREACHABLE:
+    case Reason::SINGULAR:
+    case Reason::POSE_UNKNOWN:
+    case Reason::TOO_FEW_JOINTS: return kinematics_reason(answer);
+    case Reason::RIGID_TAPPING:
+    case Reason::TAP_ROOM:
+    case Reason::ONE_WAY_SPINDLE: return tap_reason(answer);
     }
     return "refused";
 }
 
 namespace {
+
+std::string kinematics_fault(const Fault &fault) {
+    const int i = fault.index;
+    switch (fault.kind) {
+    case FaultKind::JOINT_TOO_FAST:
+        return fmt::format("joint {} had to move at {:.2f} times its limit of speed or acceleration: these "
+                           "kinematics cannot be planned with, so lower the feed or the limits of the axes",
+                           i, fault.value);
+    case FaultKind::JOINT_LEFT_RANGE:
+        return fmt::format(
+            "the path leads joint {} beyond its soft limit: these kinematics cannot be planned "
+            "with",
+            i);
+    case FaultKind::KINEMATICS_FAILED: return "the kinematics could not reach the commanded pose";
+    case FaultKind::KINEMATICS_JUMP:
+        return fmt::format(
+            "joint {} would have stepped by {:.6g}: was a pin of the kinematics changed away from where it "
+            "makes no difference?",
+            i, fault.value);
+    case FaultKind::NO_KINEMATICS_TYPE:
+        return fmt::format("motion.switchkins-type: the kinematics has no type {:g}; the one in force stays",
+                           fault.value);
+    case FaultKind::KINEMATICS_SWITCHED_ON_PATH:
+        return fmt::format(
+            "motion.switchkins-type was changed to {:g} while a path was driven: it was stopped. "
+            "Programs change it with M68 and wait with M66 E0 L0 before they go on",
+            fault.value);
+    case FaultKind::KINEMATICS_TYPE_WITHOUT_POSE:
+        return fmt::format("motion.switchkins-type: type {:g} of the kinematics has no pose where the joints "
+                           "stand; the one in force stays",
+                           fault.value);
+    case FaultKind::JOG_UNREACHABLE: return "the jog was stopped: the kinematics do not reach where it leads";
+    default: return "unknown motion fault";
+    }
+}
+
+std::string spindle_fault(const Fault &fault) {
+    const int i = fault.index;
+    switch (fault.kind) {
+    case FaultKind::THREAD_TOO_FAST:
+        return fmt::format(
+            "the thread needs {:.2f} times the speed that the machine, its velocity override, or the length "
+            "of the thread allows at the present speed of spindle {}: use a lower speed or a finer pitch",
+            fault.value, i);
+    case FaultKind::TAP_TOO_FAST:
+        return fmt::format("the tap needs {:.2f} times the speed that the machine, or its velocity override, "
+                           "allows at the present speed of spindle {}: use a lower speed or a finer pitch",
+                           fault.value, i);
+    case FaultKind::TAP_TOO_ABRUPT:
+        return fmt::format(
+            "spindle {} turns back so fast that the tap needs {:.2f} times the acceleration that "
+            "the machine allows: lengthen the ramp of its drive, or use a finer pitch",
+            i, fault.value);
+    case FaultKind::TAP_TOO_SHALLOW:
+        return fmt::format(
+            "the hole is too shallow for the present speed of spindle {}: gaining speed and turning "
+            "back take {:.2f} times its depth; use a lower speed",
+            i, fault.value);
+    case FaultKind::TAP_LOST:
+        return fmt::format(
+            "the tool could not keep to spindle {} in a rigid tap: it did not turn back in time, or "
+            "its encoder jumped; the tap may be stuck in the hole",
+            i);
+    case FaultKind::SPINDLE_FAULT:
+        return fault.value != 0 ? fmt::format("spindle {} orient fault {}", i, static_cast<int>(fault.value))
+                                : fmt::format("spindle {} amplifier fault", i);
+    default: return "unknown motion fault";
+    }
+}
 
 std::string what_failed(const Fault &fault) {
     const int i = fault.index;
@@ -139,66 +228,25 @@ std::string what_failed(const Fault &fault) {
         return "the planner finds no motion on from here that keeps all limits and the tolerance of the path";
     case FaultKind::JOG_JOINT_LIMIT:
         return fmt::format("the jog was stopped: joint {} would leave its soft limits", i);
-    case FaultKind::JOG_UNREACHABLE: return "the jog was stopped: the kinematics do not reach where it leads";
-    case FaultKind::JOINT_TOO_FAST:
-        return fmt::format("joint {} had to move at {:.2f} times its limit of speed or acceleration: these "
-                           "kinematics cannot be planned with, so lower the feed or the limits of the axes",
-                           i, fault.value);
-    case FaultKind::JOINT_LEFT_RANGE:
-        return fmt::format(
-            "the path leads joint {} beyond its soft limit: these kinematics cannot be planned "
-            "with",
-            i);
-    case FaultKind::THREAD_TOO_FAST:
-        return fmt::format(
-            "the thread needs {:.2f} times the speed that the machine, its velocity override, or the length "
-            "of the thread allows at the present speed of spindle {}: use a lower speed or a finer pitch",
-            fault.value, i);
-    case FaultKind::TAP_TOO_FAST:
-        return fmt::format("the tap needs {:.2f} times the speed that the machine, or its velocity override, "
-                           "allows at the present speed of spindle {}: use a lower speed or a finer pitch",
-                           fault.value, i);
-    case FaultKind::TAP_TOO_ABRUPT:
-        return fmt::format(
-            "spindle {} turns back so fast that the tap needs {:.2f} times the acceleration that "
-            "the machine allows: lengthen the ramp of its drive, or use a finer pitch",
-            i, fault.value);
-    case FaultKind::TAP_TOO_SHALLOW:
-        return fmt::format(
-            "the hole is too shallow for the present speed of spindle {}: gaining speed and turning "
-            "back take {:.2f} times its depth; use a lower speed",
-            i, fault.value);
-    case FaultKind::TAP_LOST:
-        return fmt::format(
-            "the tool could not keep to spindle {} in a rigid tap: it did not turn back in time, or "
-            "its encoder jumped; the tap may be stuck in the hole",
-            i);
     case FaultKind::JOG_LEASE_ENDED:
         return fmt::format("the jog of {} was stopped: it was not renewed within {:g} ms",
                            fault.detail != 0 ? joint_name(i) : axis_name(i), fault.value * 1e3);
-    case FaultKind::KINEMATICS_FAILED: return "the kinematics could not reach the commanded pose";
-    case FaultKind::KINEMATICS_JUMP:
-        return fmt::format(
-            "joint {} would have stepped by {:.6g}: was a pin of the kinematics changed away from where it "
-            "makes no difference?",
-            i, fault.value);
-    case FaultKind::NO_KINEMATICS_TYPE:
-        return fmt::format("motion.switchkins-type: the kinematics has no type {:g}; the one in force stays",
-                           fault.value);
-    case FaultKind::KINEMATICS_SWITCHED_ON_PATH:
-        return fmt::format(
-            "motion.switchkins-type was changed to {:g} while a path was driven: it was stopped. "
-            "Programs change it with M68 and wait with M66 E0 L0 before they go on",
-            fault.value);
-    case FaultKind::KINEMATICS_TYPE_WITHOUT_POSE:
-        return fmt::format("motion.switchkins-type: type {:g} of the kinematics has no pose where the joints "
-                           "stand; the one in force stays",
-                           fault.value);
     case FaultKind::PATH_LIMIT: return "the path left its limits";
-    case FaultKind::SPINDLE_FAULT:
-        return fault.value != 0 ? fmt::format("spindle {} orient fault {}", i, static_cast<int>(fault.value))
-                                : fmt::format("spindle {} amplifier fault", i);
     case FaultKind::MISC_ERROR: return "an error input of motion is on: see pins motion.misc-error-NN";
+    case FaultKind::JOINT_TOO_FAST:
+    case FaultKind::JOINT_LEFT_RANGE:
+    case FaultKind::KINEMATICS_FAILED:
+    case FaultKind::KINEMATICS_JUMP:
+    case FaultKind::NO_KINEMATICS_TYPE:
+    case FaultKind::KINEMATICS_SWITCHED_ON_PATH:
+    case FaultKind::KINEMATICS_TYPE_WITHOUT_POSE:
+    case FaultKind::JOG_UNREACHABLE: return kinematics_fault(fault);
+    case FaultKind::THREAD_TOO_FAST:
+    case FaultKind::TAP_TOO_FAST:
+    case FaultKind::TAP_TOO_ABRUPT:
+    case FaultKind::TAP_TOO_SHALLOW:
+    case FaultKind::TAP_LOST:
+    case FaultKind::SPINDLE_FAULT: return spindle_fault(fault);
     case FaultKind::COUNT: break;
     }
     return "unknown motion fault";

@@ -131,20 +131,21 @@ struct Case {
     std::variant<CommandBody, PathBody> body;
 };
 
+MoveTerms terms() {
+    MoveTerms t;
+    t.feed = 20;
+    return t;
+}
+MoveTerms tapping() {
+    MoveTerms t;
+    t.feed_per_revolution = 0.5;
+    return t;
+}
+
 std::vector<Case> cases() {
     const auto number = [](Parameter p) { return static_cast<std::uint16_t>(p); };
-    const auto terms = [] {
-        MoveTerms t;
-        t.feed = 20;
-        return t;
-    };
     const auto now = [](const CommandBody &body) { return std::variant<CommandBody, PathBody>(body); };
     const auto path = [](const PathBody &body) { return std::variant<CommandBody, PathBody>(body); };
-    const auto tapping = [] {
-        MoveTerms t;
-        t.feed_per_revolution = 0.5;
-        return t;
-    };
     Arc arc;
     arc.end = at(PATH_END);
     arc.centre = at(PATH_END + 1);
