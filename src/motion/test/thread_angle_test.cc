@@ -10,7 +10,7 @@
 namespace mw::motion {
 namespace {
 
-constexpr double LEAD = 1.5, TOP = 5, BOTTOM = -20;
+constexpr double LEAD = 1.5, PASS_TOP = 5, PASS_BOTTOM = -20;
 constexpr double DEGREE = 1.0 / 360;
 
 sim::SpindleTraits mill_spindle() {
@@ -28,8 +28,8 @@ class ThreadAngle : public ::testing::TestWithParam<bool> {
     };
     /// One pass at the depth `x`, which loads the spindle from Z -6 on within 0.2 s.
     Pass cut(SpindleBench &bench, double x, double load = 0) {
-        bench.rapid(14, TOP);
-        bench.rapid(x, TOP);
+        bench.rapid(14, PASS_TOP);
+        bench.rapid(x, PASS_TOP);
         EXPECT_TRUE(bench.finish());
         Pass pass;
         pass.first = bench.samples.size();
@@ -37,16 +37,16 @@ class ThreadAngle : public ::testing::TestWithParam<bool> {
         bench.load = [&](const SpindleBench::Sample &s) {
             return taken = std::min(load, taken + (s.z < -6 ? load * SpindleBench::T / 0.2 : 0.0));
         };
-        bench.thread(x, BOTTOM, LEAD);
+        bench.thread(x, PASS_BOTTOM, LEAD);
         EXPECT_TRUE(bench.finish());
         bench.load = [](const SpindleBench::Sample &) { return 0.0; };
         const auto &s = bench.samples;
         pass.met = pass.first;
-        while (pass.met < s.size() && s[pass.met].z > TOP - 8) {
+        while (pass.met < s.size() && s[pass.met].z > PASS_TOP - 8) {
             ++pass.met;
         }
         pass.last = pass.met;
-        while (pass.last < s.size() && s[pass.last].z > BOTTOM + 6) {
+        while (pass.last < s.size() && s[pass.last].z > PASS_BOTTOM + 6) {
             ++pass.last;
         }
         return pass;
@@ -108,17 +108,17 @@ TEST_P(ThreadAngle, IsKeptWhenTheSpindleIsSlowedWithinThePass_C15) {
 TEST_P(ThreadAngle, AThreadWithoutAPartAtItsLeadIsRefusedBeforeItMoves_C15) {
     SpindleBench bench(mill_spindle(), GetParam());
     bench.spin(2000);
-    bench.rapid(10, TOP);
+    bench.rapid(10, PASS_TOP);
     ASSERT_TRUE(bench.finish());
     // 100 mm/s takes more than 4 mm to gain and 4 mm to lose.
-    const CommandId id = bench.thread(10, TOP - 6, 3);
+    const CommandId id = bench.thread(10, PASS_TOP - 6, 3);
     bench.rig.send_path(Flush{});
     bench.rig.step(3000);
     ASSERT_EQ(bench.rig.faults.size(), 1U);
     EXPECT_EQ(bench.rig.faults[0].kind, FaultKind::THREAD_TOO_FAST);
     EXPECT_EQ(bench.rig.faults[0].source.line, static_cast<std::int32_t>(id));
     EXPECT_GT(bench.rig.faults[0].value, 1);
-    EXPECT_EQ(bench.samples.back().z, TOP) << "nothing has moved";
+    EXPECT_EQ(bench.samples.back().z, PASS_TOP) << "nothing has moved";
 }
 
 INSTANTIATE_TEST_SUITE_P(Planners, ThreadAngle, ::testing::Bool(),
