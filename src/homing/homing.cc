@@ -109,6 +109,7 @@ void Homing::fail(int joint, Failure why) noexcept {
         const Transition *row = isHoming(k) ? transition(k, event::MEMBER_FAILED) : nullptr;
         if (row != nullptr) {
             j.state = row->next;
+            j.isIndexReleased = j.isIndexWanted && !j.parameters.isIndexWithoutReset;
             j.isIndexWanted = false;
             j.isStopping = true;
         }
@@ -161,7 +162,11 @@ void Homing::step(const JointInput *inputs, JointCommand *commands) noexcept {
             commands[k] = {};
             commands[k].move = Move::STOP;
             commands[k].acceleration = j.team_acceleration;
+            // The place is no zero, but the motor must not be sent on by the reset.
+            commands[k].isSettingZero = j.isIndexReleased && !inputs[k].isIndexEnabled;
+            commands[k].zero = j.parameters.offset;
             j.isStopping = false;
+            j.isIndexReleased = false;
         } else if (j.state == State::LOCK || (j.state == State::IDLE && inputs[k].isAtRest)) {
             j.isUnlockWanted = false;
         }

@@ -37,7 +37,9 @@ class Homing final : public Module {
     State state(int joint) const noexcept { return at(joint).state; }
     int step_number(int joint) const noexcept override { return static_cast<int>(state(joint)); }
     bool isIndexWanted(int joint) const noexcept override { return at(joint).isIndexWanted; }
-    bool isAtIndex(int joint) const noexcept override { return state(joint) == State::INDEX; }
+    bool isAtIndex(int joint) const noexcept override {
+        return state(joint) == State::INDEX || at(joint).isIndexReleased;
+    }
     bool isUnlockWanted(int joint) const noexcept override { return at(joint).isUnlockWanted; }
     int take_failure(Failure &why) noexcept override;
 
@@ -52,8 +54,10 @@ class Homing final : public Module {
         State state = State::IDLE;
         bool isHomed = false;
         bool isIndexWanted = false, isUnlockWanted = false, isStopping = false;
-        int wait = 0;                  ///< cycles in this state
-        double way = 0;                ///< commanded since homing began, whatever became of its zero
+        bool isIndexReleased =
+            false;       ///< in this cycle, by a failure: the encoder may just have reset itself
+        int wait = 0;    ///< cycles in this state
+        double way = 0;  ///< commanded since homing began, whatever became of its zero
         double team_acceleration = 0;  ///< 0: its own
     };
     /// What a team can do together, and is asked to.

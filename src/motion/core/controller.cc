@@ -181,7 +181,7 @@ void Controller::check_joints(const Inputs &in) noexcept {
     const homing::Module &homing = homing_.module();
     JointCheck how;
     how.limits_ignored = jogs_.areLimitsOverridden ? ~0U : 0U;
-    for (int j = 0; j < config_.num_joints && homing.isActive(); ++j) {
+    for (int j = 0; j < config_.num_joints && homing.hasWork(); ++j) {
         const bool isIndexFound = !in.joint[static_cast<std::size_t>(j)].isIndexEnabled;
         how.at_index |= homing.isAtIndex(j) && isIndexFound ? 1U << j : 0U;
         how.limits_ignored |= homing_.isIgnoringLimits(j) ? 1U << j : 0U;

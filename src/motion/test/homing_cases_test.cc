@@ -64,6 +64,37 @@ TEST(HomingCases, TheMotorDoesNotStepWhereTheIndexResetsItsEncoder_C10) {
     }
 }
 
+TEST(HomingCases, NorDoesItWhenHomingIsAbortedInThatVeryCycle_C10) {
+    const auto made = [](HomingRig &m) {
+        m.set_up({{.start = 3, .switch_at = -20, .index_pitch = 5, .index_phase = 1.25}});
+        m.set(Parameter::JOINT_HOME_USE_INDEX, 1);
+        m.set_switch(0, 0, 2);
+        m.home(0);
+    };
+    HomingRig first;
+    made(first);
+    int cycles = 0;
+    for (; first.axes[0].isIndexEnabled() || cycles < 5; ++cycles) {
+        first.rig.step();
+    }
+    for (const int early : {1, 0, 2, -1}) {
+        HomingRig m;
+        made(m);
+        m.rig.step(cycles - early);
+        m.rig.send(Abort{2});
+        double longest = 0;
+        for (int n = 0; n < 300; ++n) {
+            const double before = m.axes[0].motor();
+            m.rig.step();
+            longest = std::max(longest, std::abs(m.axes[0].motor() - before));
+        }
+        EXPECT_LE(longest, early < 0 ? 50 * MotionRig::T : 2.0 * MotionRig::T * 1.001) << early;
+        EXPECT_EQ(m.fault(), "") << early;
+        EXPECT_TRUE(m.rig.status().isEnabled);
+        EXPECT_FALSE(m.isHomed(0));
+    }
+}
+
 TEST(HomingCases, AbsoluteEncodersAndImmediateTakeThePlaceWhereTheyStand_C10) {
     for (const int mode : {0, 1, 2}) {
         HomingRig m;
