@@ -228,10 +228,9 @@ struct PassTuning {
 
 /// Rigid tapping.
 struct TapTuning {
-    /// Speed of the spindle is what it has turned in so many cycles, with a mean in this part of it: one
-    /// count of 4,096 is then 0.03 turns/s at 1 ms. Its acceleration is smoothed over this time and part.
-    static constexpr std::uint64_t LEAST_SAMPLES = 8, MOST_SAMPLES = 64;
-    static constexpr double SPEED_MEANS = 0.5;
+    /// Speed of the spindle is what it has turned in so many cycles: one count of 4,096 is then 0.03 turns/s
+    /// at 1 ms. Its acceleration is smoothed over this time, and at least this part of a mean.
+    static constexpr std::size_t SPEED_SAMPLES = 8;
     static constexpr double ACCELERATION_S = 0.01, ACCELERATION_MEANS = 0.4;
     /// The helix counts as met within this part of a turn: a few counts. From then on a deviation is made
     /// good at GAIN [1/s]; at LOST, a quarter of a turn, the thread or the tap is gone.
@@ -255,11 +254,11 @@ struct ExecutorTuning {
     static constexpr double ARRIVED = 4e-12;
     /// A speed below this part of what the phase's acceleration makes in its time is a stop.
     static constexpr double STOPPED = 1e-9;
-    /// The helix counts as met within this part of a turn, and as lost beyond the second.
-    static constexpr double MET = 2e-5, LOST = 2e-3;
-    /// It also counts as met where it was this near for so many cycles: an encoder of 1,000 counts does no
-    /// better.
-    static constexpr double NEAR = 1e-3;
+    /// The helix counts as met within this part of a turn, and as lost beyond the second: what a count of the
+    /// encoder makes of the angle half a mean later is within it.
+    static constexpr double MET = 2e-5, LOST = 6e-3;
+    /// It also counts as met where it was this near for so many cycles: a rough encoder does no better.
+    static constexpr double NEAR = 2e-3;
     static constexpr int NEAR_CYCLES = 8;
     /// Once it is met: share of a deviation that is made good in a second [1/s]. A rough encoder must not
     /// shake the machine.

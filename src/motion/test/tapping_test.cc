@@ -159,6 +159,27 @@ TEST_P(Tapping, OverridesAndHoldsWaitForItsEnd_C15) {
     EXPECT_EQ(bench.limit_report(), "");
 }
 
+TEST_P(Tapping, AHoldBeforeItBeginsLeavesItWhole_C15) {
+    // Slow enough that the tool stands for a while before the helix comes.
+    SpindleBench bench(tap_spindle(), GetParam());
+    bench.spin(30);
+    bench.rapid(10, TOP);
+    ASSERT_TRUE(bench.finish());
+    for (const int at : {20, 200, 700, 1400}) {
+        const CommandId id = bench.tap(10, TOP - 6, PITCH);
+        bench.rig.step(at);
+        bench.rig.send(Pause{});
+        bench.rig.step(3000);
+        bench.rig.send(Resume{});
+        ASSERT_TRUE(bench.rig.run_until([&] { return bench.rig.isDone(id); })) << at;
+        bench.rig.step(100);  // with jerk limits it is told half a mean before it stands
+        EXPECT_EQ(bench.samples.back().z, TOP) << at;
+        EXPECT_EQ(bench.samples.back().command_rpm, 30) << at;
+    }
+    EXPECT_EQ(bench.limit_report(), "");
+    EXPECT_TRUE(bench.rig.faults.empty());
+}
+
 enum class Stop { ABORT, ESTOP, SPINDLE_FAULT, TASK_DEAD, DISABLE };
 
 class StoppedTapping : public ::testing::TestWithParam<std::tuple<Stop, bool>> {};

@@ -25,32 +25,28 @@ struct SpindleReading {
 
 class SpindleTrack {
   public:
-    /// Counted turns at the start of a cycle of `dt` seconds. With a mean of `mean_s` it looks at a longer
-    /// time: what is aimed at lies farther ahead.
+    /// Counted turns at the start of a cycle of `dt` seconds. With a mean of `mean_s` the acceleration is
+    /// told over a longer time: what is aimed at lies farther ahead.
     void take(double turns, double dt, double mean_s) noexcept {
-        const auto part = static_cast<std::uint64_t>(TapTuning::SPEED_MEANS * mean_s / dt);
-        const std::uint64_t window =
-            std::clamp<std::uint64_t>(part, TapTuning::LEAST_SAMPLES, TapTuning::MOST_SAMPLES);
-        samples_[count_ % samples_.size()] = turns;
-        const std::uint64_t back = std::min(window, count_);
-        const double oldest = samples_[(count_ - back) % samples_.size()];
+        constexpr std::size_t N = TapTuning::SPEED_SAMPLES;
+        const double oldest = count_ >= N ? samples_[count_ % N] : turns;
+        samples_[count_ % N] = turns;
         ++count_;
-        const double speed = (turns - oldest) / (static_cast<double>(window) * dt);
-        const double swing = window == window_ ? (speed - speed_) / dt : acceleration_;
+        const double speed = (turns - oldest) / (static_cast<double>(N) * dt);
+        const double swing = (speed - speed_) / dt;
         const double smoothing_s =
             std::max(TapTuning::ACCELERATION_S, TapTuning::ACCELERATION_MEANS * mean_s);
         acceleration_ += (swing - acceleration_) * dt / (dt + smoothing_s);
         speed_ = speed;
-        window_ = window;
-        window_s_ = static_cast<double>(window) * dt;
+        window_s_ = static_cast<double>(N) * dt;
     }
     double turns_per_s2() const noexcept { return acceleration_; }
     /// Brought from the middle of the samples to now.
     double turns_per_s() const noexcept { return speed_ + 0.5 * acceleration_ * window_s_; }
 
   private:
-    std::array<double, TapTuning::MOST_SAMPLES + 1> samples_{};
-    std::uint64_t count_ = 0, window_ = 0;
+    std::array<double, TapTuning::SPEED_SAMPLES> samples_{};
+    std::uint64_t count_ = 0;
     double speed_ = 0, acceleration_ = 0, window_s_ = 0;
 };
 

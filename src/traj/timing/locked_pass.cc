@@ -174,7 +174,7 @@ double pass_load(const PathView &view, Sequence move) noexcept {
         ramps = std::max(ramps, v * v / (tap_share(c.limits) * limit.a.at(v * v)));
     }
     // Where no part of it would have the lead, the highest speed that leaves one goes with the root.
-    return ramps > length ? std::max(load, std::sqrt(ramps / length)) : load;
+    return load <= 1.0 && ramps > length ? std::sqrt(ramps / length) : load;
 }
 
 }  // namespace mw::traj
