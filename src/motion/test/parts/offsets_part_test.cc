@@ -36,6 +36,8 @@ TEST_F(OffsetsPart, WhereItGoesToIsSeenACycleBeforeAndWeighedAgain_C15) {
     EXPECT_EQ(offsets.pose[0], 0);
     EXPECT_EQ(range(offsets).high[0], 15) << "who plans paths is told first";
     programmed.high[0] = 18;  // a move was taken before that was read
+    go(1);
+    EXPECT_NEAR(range(offsets).high[0], 2, 1e-9) << "not for one cycle on its way to 15";
     go(3000);
     EXPECT_NEAR(offsets.pose[0], 2, 1e-9);
     EXPECT_TRUE(offsets.isLimited);
