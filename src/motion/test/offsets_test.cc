@@ -295,6 +295,24 @@ TEST(Offsets, AStopBrakesThemToo_C6_C15) {
     EXPECT_TRUE(rig.checker.isWithin()) << rig.checker.report();
 }
 
+TEST(Offsets, TakenAwayTheShareLeavesTheOffsetWhereItIs_C6_C15) {
+    OffsetRig rig;
+    rig.ready();
+    rig.pins(0).counts = 300;
+    rig.go(60);
+    EXPECT_GT(rig.offset(0), 0.1);
+    rig.set(Parameter::AXIS_OFFSET_RATIO, 0, 0);
+    rig.go(1000);
+    EXPECT_NEAR(rig.motor(0), rig.offset(0), 1e-12);
+    rig.line(at(10, 0, 0), 20);
+    ASSERT_TRUE(rig.finish(rig.send_path(Flush{})));
+    EXPECT_NEAR(rig.motor(0), 10 + rig.offset(0), 1e-12);
+    rig.pins(0).isClearing = true;
+    rig.go(2000);
+    EXPECT_NEAR(rig.motor(0), 10, 1e-12);
+    EXPECT_TRUE(rig.checker.isWithin()) << rig.checker.report();
+}
+
 /// Wheels of every kind turn while programs run and axes are jogged; what is refused is counted.
 class OffsetCampaign : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(WithAndWithoutJerk, OffsetCampaign, ::testing::Bool());

@@ -59,9 +59,11 @@ void step(ExternalOffsets &offsets, const OffsetInputs &in) noexcept {
         traj::JogPlanner &p = offset.planner;
         if (in.isHonoured) {
             const JogLimits &most = in.limits.offset[at(i)];
-            p.max_velocity = most.velocity;
-            p.max_acceleration = most.acceleration;
-            p.max_jerk = most.jerk;
+            if (most.velocity > 0) {
+                p.max_velocity = most.velocity;
+                p.max_acceleration = most.acceleration;
+                p.max_jerk = most.jerk;
+            }
             p.target = allowed(offset, offset.next, room);
             offset.next = allowed(offset, offset.request, room);
             offset.isLimited = offset.next != offset.request;
@@ -75,7 +77,9 @@ void step(ExternalOffsets &offsets, const OffsetInputs &in) noexcept {
 void configure(ExternalOffsets &offsets, const FoldedLimits &limits) noexcept {
     offsets.axes = 0;
     for (int i = 0; i < MAX_AXES; ++i) {
-        offsets.axes |= limits.offset[at(i)].velocity > 0 ? 1U << i : 0U;
+        // One that is there stays, also when there are to be none any more.
+        const bool isThere = offsets.pose[i] != 0.0 || !offsets.axis[at(i)].planner.isAtRest();
+        offsets.axes |= limits.offset[at(i)].velocity > 0 || isThere ? 1U << i : 0U;
     }
     if (!limits.homed.areAll) {
         for (ExternalOffset &offset : offsets.axis) {
