@@ -15,12 +15,13 @@ static int component = -1;
 
 static bool isReplaced() {
     char missing[600] = "";
+    size_t length = 0;
     for (const char *name : mw::motion::HOMING_FUNCTIONS) {
         const bool isMissing = mw_ext_find_symbol(name) == nullptr;
-        const bool isRoom = strlen(missing) + strlen(name) + 3 < sizeof missing;
+        const bool isRoom = length + strlen(name) + 3 < sizeof missing;
         if (isMissing && isRoom) {
-            strcat(missing, missing[0] == '\0' ? "" : ", ");
-            strcat(missing, name);
+            rtapi_snprintf(missing + length, sizeof missing - length, "%s%s", length == 0 ? "" : ", ", name);
+            length = strlen(missing);
         }
     }
     if (missing[0] != '\0') {

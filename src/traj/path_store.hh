@@ -206,6 +206,7 @@ struct PathStore {
     /// Pieces up to here may be read by the executor. Release by the planner after filling, acquire by the
     /// executor.
     CopyableAtomic<Sequence> last_piece{0};
+    CopyableAtomic<std::uint32_t> updates{0};  ///< of the planner, for who waits for it
 
     Primitive &primitive(Sequence n) noexcept { return primitives[n % PRIMITIVE_CAPACITY]; }
     const Primitive &primitive(Sequence n) const noexcept { return primitives[n % PRIMITIVE_CAPACITY]; }

@@ -127,6 +127,7 @@ void Planner::start_pass(const Snapshot &now, const LeaderState &from) noexcept 
 }
 
 void Planner::update(const Snapshot &now) noexcept {
+    path_.store().updates.fetch_add(1, std::memory_order_relaxed);
     if (conditions_.isTried()) {
         plan_tried(now);
         return;

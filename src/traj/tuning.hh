@@ -266,6 +266,10 @@ struct ExecutorTuning {
     /// Part of the acceleration with which the helix is met: the spindle may still gain speed itself.
     static constexpr double MEETING_SHARE = 0.97;
     static constexpr int MOST_PIECES_PER_CYCLE = 64;
+    /// A planner that makes no update for so long, and for so many cycles, in a drop is not waited for: four
+    /// of its periods.
+    static constexpr double PLANNER_SILENCE_S = 0.02;
+    static constexpr int PLANNER_SILENCE_CYCLES = 4;
 };
 
 }  // namespace mw::traj

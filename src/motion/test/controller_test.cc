@@ -137,6 +137,51 @@ TEST(Controller, AbortStopsOnThePathWithinLimitsAndMakesOldCommandsStale_C5) {
     EXPECT_EQ(rig.out->joint[0].motor_pos_cmd, 1.0);
 }
 
+TEST(Controller, AnAbortStopsWithoutThePlannerToo_C5) {
+    for (const bool isJerkLimited : {false, true}) {
+        MotionRig rig;
+        for (int j = 0; j < 3; ++j) {
+            rig.set(Parameter::JOINT_MAX_JERK, j, 20000);
+        }
+        rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, isJerkLimited ? 1 : 0);
+        rig.ready();
+        rig.line(at(900), 80);
+        rig.send_path(Flush{});
+        rig.step(1000);
+        ASSERT_NEAR(rig.status().current_velocity, 80, 1e-6);
+        testing::LimitChecker checker(
+            std::vector<testing::AxisLimit>(3, {100, 1000, isJerkLimited ? 20000 : 1e300}), MotionRig::T);
+        const auto sample = [&] {
+            rig.step();
+            const double p[] = {rig.out->joint[0].motor_pos_cmd, rig.out->joint[1].motor_pos_cmd,
+                                rig.out->joint[2].motor_pos_cmd};
+            checker.sample(p);
+        };
+        rig.isPlannerAlive = false;
+        for (int i = 0; i < 5; ++i) {
+            sample();
+        }
+        rig.send(Abort{2});
+        int cycles = 0;
+        for (; cycles < 1000 && rig.status().current_velocity > 0; ++cycles) {
+            sample();
+        }
+        // v/a, twice a/j for the jerk, and what a planner is waited for.
+        EXPECT_LT(cycles, isJerkLimited ? 80 + 100 + 30 : 80 + 5);
+        for (int i = 0; i < 300; ++i) {
+            sample();
+        }
+        EXPECT_TRUE(checker.isWithin()) << checker.report();
+        EXPECT_EQ(rig.status().current_velocity, 0);
+        rig.isPlannerAlive = true;
+        for (int i = 0; i < 50; ++i) {
+            sample();
+        }
+        EXPECT_TRUE(checker.isWithin()) << "when it is back: " << checker.report();
+        EXPECT_TRUE(rig.status().isInPosition);
+    }
+}
+
 TEST(Controller, ModeChangesWhileMovingAreRefused_C5) {
     MotionRig rig;
     rig.ready();

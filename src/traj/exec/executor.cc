@@ -52,6 +52,9 @@ const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
     out_.tap = {};
     state_.cycle = cycle;
     ++state_.tick;
+    if (state_.isDropping && state_.motion == Motion::FOLLOW && isFiltered()) {
+        watch_planner();
+    }
     if (state_.motion == Motion::LOCKED) {
         step_locked();
     } else {
@@ -271,10 +274,23 @@ void Executor::drop() noexcept {
         return;
     }
     state_.isDropping = true;
+    silent_cycles_ = 0;
     if (state_.motion == Motion::FOLLOW && !isFiltered()) {
         start_brake();
     } else if (isAtRest()) {
         finish_drop();
+    }
+}
+
+/// A stop must not wait for a planner that is late or gone.
+void Executor::watch_planner() noexcept {
+    const std::uint32_t updates = store_.updates.load(std::memory_order_relaxed);
+    silent_cycles_ = updates != seen_updates_ ? 0 : silent_cycles_ + 1;
+    seen_updates_ = updates;
+    const bool isGone = silent_cycles_ > ExecutorTuning::PLANNER_SILENCE_CYCLES &&
+                        silent_cycles_ * period_ > ExecutorTuning::PLANNER_SILENCE_S;
+    if (isGone) {
+        start_brake();
     }
 }
 

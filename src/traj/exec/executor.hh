@@ -44,7 +44,9 @@ class ExecutorState {
     Sequence next_end_ = 0;   ///< the same of the waiting switch
     Phase brake_;             ///< the braking profile on the present piece
     double brake_time_ = 0;
-    bool isBrakeFinal_ = false;  ///< it ends in a stop
+    bool isBrakeFinal_ = false;       ///< it ends in a stop
+    std::uint32_t seen_updates_ = 0;  ///< of the planner, in a drop
+    int silent_cycles_ = 0;           ///< since the last one
     Pose leader_;
     double leader_s_ = 0, leader_tolerance_ = 0;
     Sequence leader_done_ = 0;
@@ -75,7 +77,8 @@ class ExecutorState {
 /// Follows phases; when they run out, or on `hold` and `drop`, it brakes with each piece's own acceleration
 /// along the path. A late or lost planner therefore means a stop on the path.
 /// With jerk limits (Commit::filter above 1) a leader does this and its mean is commanded; the planner then
-/// ends every plan with a stop, and answers `hold` and `drop` with a plan.
+/// ends every plan with a stop, and answers `hold` and `drop` with a plan. A planner that is away leaves a
+/// `drop` to the leader's own brake.
 /// Passes that are locked to a spindle's angle (Motion::LOCKED) it drives by itself, from rest to rest;
 /// `hold` waits for their end, since a thread that was held is scrap; `drop` brakes at once. In a tap it
 /// switches the spindle off and follows it to its stand.
@@ -133,6 +136,7 @@ class Executor : private ExecutorState {
     void locate() noexcept;
     void filter() noexcept;
     void finish_drop() noexcept;
+    void watch_planner() noexcept;
     bool isFiltered() const noexcept { return state_.filter > 1; }
 
     // --- executor_locked.cc
