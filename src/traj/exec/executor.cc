@@ -274,7 +274,7 @@ void Executor::drop() noexcept {
         return;
     }
     state_.isDropping = true;
-    silent_cycles_ = 0;
+    silence_.cycles = 0;
     if (state_.motion == Motion::FOLLOW && !isFiltered()) {
         start_brake();
     } else if (isAtRest()) {
@@ -285,10 +285,10 @@ void Executor::drop() noexcept {
 /// A stop must not wait for a planner that is late or gone.
 void Executor::watch_planner() noexcept {
     const std::uint32_t updates = store_.updates.load(std::memory_order_relaxed);
-    silent_cycles_ = updates != seen_updates_ ? 0 : silent_cycles_ + 1;
-    seen_updates_ = updates;
-    const bool isGone = silent_cycles_ > ExecutorTuning::PLANNER_SILENCE_CYCLES &&
-                        silent_cycles_ * period_ > ExecutorTuning::PLANNER_SILENCE_S;
+    silence_.cycles = updates != silence_.seen_updates ? 0 : silence_.cycles + 1;
+    silence_.seen_updates = updates;
+    const bool isGone = silence_.cycles > ExecutorTuning::PLANNER_SILENCE_CYCLES &&
+                        silence_.cycles * period_ > ExecutorTuning::PLANNER_SILENCE_S;
     if (isGone) {
         start_brake();
     }

@@ -31,6 +31,12 @@ struct ExecutorOutput {
     TapDemand tap;
 };
 
+/// Whether the planner is there in a drop.
+struct PlannerSilence {
+    std::uint32_t seen_updates = 0;
+    int cycles = 0;  ///< since the last one
+};
+
 /// What an executor remembers. A copy of it goes on in another executor whose store holds the same path.
 class ExecutorState {
   protected:
@@ -44,9 +50,8 @@ class ExecutorState {
     Sequence next_end_ = 0;   ///< the same of the waiting switch
     Phase brake_;             ///< the braking profile on the present piece
     double brake_time_ = 0;
-    bool isBrakeFinal_ = false;       ///< it ends in a stop
-    std::uint32_t seen_updates_ = 0;  ///< of the planner, in a drop
-    int silent_cycles_ = 0;           ///< since the last one
+    bool isBrakeFinal_ = false;  ///< it ends in a stop
+    PlannerSilence silence_;
     Pose leader_;
     double leader_s_ = 0, leader_tolerance_ = 0;
     Sequence leader_done_ = 0;
