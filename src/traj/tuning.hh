@@ -270,6 +270,8 @@ struct ExecutorTuning {
     /// of its periods.
     static constexpr double PLANNER_SILENCE_S = 0.02;
     static constexpr int PLANNER_SILENCE_CYCLES = 4;
+    /// A plan to stop that has not come so long after a drop is not waited for: six periods of the planner.
+    static constexpr double STOP_PLAN_WAIT_S = 0.03;
 };
 
 }  // namespace mw::traj

@@ -70,6 +70,7 @@ const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
                 state_.filter = next_switch_.filter;
                 mean_.reset(leader_, state_.filter, state_.tick);
             }
+            silence_.isStopping = next_switch_.isStop;
             state_.motion = Motion::FOLLOW;
             state_.plan = next_switch_.plan;
             state_.phase = next_switch_.begin;
@@ -275,6 +276,8 @@ void Executor::drop() noexcept {
     }
     state_.isDropping = true;
     silence_.cycles = 0;
+    silence_.waited = 0;
+    silence_.isStopping = false;
     if (state_.motion == Motion::FOLLOW && !isFiltered()) {
         start_brake();
     } else if (isAtRest()) {
@@ -282,14 +285,17 @@ void Executor::drop() noexcept {
     }
 }
 
-/// A stop must not wait for a planner that is late or gone.
+/// A stop must not wait for a planner that is late or gone, nor for one that finds no plan to stop.
 void Executor::watch_planner() noexcept {
     const std::uint32_t updates = store_.updates.load(std::memory_order_relaxed);
     silence_.cycles = updates != silence_.seen_updates ? 0 : silence_.cycles + 1;
     silence_.seen_updates = updates;
     const bool isGone = silence_.cycles > ExecutorTuning::PLANNER_SILENCE_CYCLES &&
                         silence_.cycles * period_ > ExecutorTuning::PLANNER_SILENCE_S;
-    if (isGone) {
+    ++silence_.waited;
+    const bool isWithoutPlan =
+        !silence_.isStopping && silence_.waited * period_ > ExecutorTuning::STOP_PLAN_WAIT_S;
+    if (isGone || isWithoutPlan) {
         start_brake();
     }
 }

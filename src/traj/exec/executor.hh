@@ -31,10 +31,12 @@ struct ExecutorOutput {
     TapDemand tap;
 };
 
-/// Whether the planner is there in a drop.
+/// Whether the planner is there in a drop, and stops the leader.
 struct PlannerSilence {
     std::uint32_t seen_updates = 0;
-    int cycles = 0;  ///< since the last one
+    int cycles = 0;           ///< since the last one
+    int waited = 0;           ///< cycles since the drop
+    bool isStopping = false;  ///< a plan to stop has been taken since
 };
 
 /// What an executor remembers. A copy of it goes on in another executor whose store holds the same path.
@@ -82,8 +84,8 @@ class ExecutorState {
 /// Follows phases; when they run out, or on `hold` and `drop`, it brakes with each piece's own acceleration
 /// along the path. A late or lost planner therefore means a stop on the path.
 /// With jerk limits (Commit::filter above 1) a leader does this and its mean is commanded; the planner then
-/// ends every plan with a stop, and answers `hold` and `drop` with a plan. A planner that is away leaves a
-/// `drop` to the leader's own brake.
+/// ends every plan with a stop, and answers `hold` and `drop` with a plan. A planner that is away, or
+/// finds none, leaves a `drop` to the leader's own brake.
 /// Passes that are locked to a spindle's angle (Motion::LOCKED) it drives by itself, from rest to rest;
 /// `hold` waits for their end, since a thread that was held is scrap; `drop` brakes at once. In a tap it
 /// switches the spindle off and follows it to its stand.

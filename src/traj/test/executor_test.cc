@@ -143,6 +143,24 @@ TEST(Executor, ADropStopsAndLeavesNothing_C6) {
     EXPECT_EQ(rig.executor.snapshot().drops, 1U);
 }
 
+TEST(Executor, ADropForWhichThePlannerFindsNoStopIsBrakedByTheLeader_C5) {
+    ServoRig rig;
+    rig.start(10, 20);
+    rig.step(100);
+    ASSERT_NEAR(rig.v(), V, 1e-9);
+    rig.executor.drop();
+    int level = 0;  // cycles without braking, while the planner lives
+    for (int n = 0; n < 1000 && !rig.executor.isAtRest(); ++n) {
+        rig.store->updates.fetch_add(1, std::memory_order_relaxed);
+        rig.step(1);
+        level += rig.v() >= V ? 1 : 0;
+    }
+    EXPECT_TRUE(rig.executor.isAtRest());
+    EXPECT_TRUE(rig.executor.isEmpty());
+    EXPECT_GT(level, 5) << "it has time to find one";
+    EXPECT_LE(level, 31);
+}
+
 TEST(Executor, CommandsTheMeanOfTheLeader_C13) {
     constexpr std::uint64_t FILTER = 20;
     ServoRig plain;
