@@ -23,7 +23,7 @@ EXCEPTIONS = {
     'Carousel': (13, 41, PINS),
     'Pid': (5, 44, PINS),
     'Settings': (0, 31, SETTINGS),
-    'Status': (0, 45, SETTINGS),
+    'Status': (0, 46, SETTINGS),
     'Hal': (74, 1, 'the operations on one HAL segment, most of them one call of the core'),
     'Recorder': (42, 5, OVERLOADS),
     'Task::Handler': (62, 2, OVERLOADS),

@@ -48,6 +48,25 @@ void read_coordinates(IniReader &ini, MachineConfig &machine) {
     }
 }
 
+/// HAL files load motmod by this line, where there are extra joints.
+int count_extra_joints(IniReader &ini, int num_joints) {
+    const IniKey &key = ini_key("EMCMOT", "EMCMOT");
+    const config::IniEntry *entry = ini.find(key);
+    for (const std::string &word : split_words(entry != nullptr ? entry->value : std::string())) {
+        constexpr std::string_view NAME = "num_extrajoints=";
+        if (!word.starts_with(NAME)) {
+            continue;
+        }
+        const auto count = parse_int(word.substr(NAME.size()));
+        if (count.has_value() && *count >= 0 && *count < num_joints) {
+            return static_cast<int>(*count);
+        }
+        ini.sink().error("[EMCMOT]EMCMOT: " + word + " is not possible", entry->place,
+                         "0 to [KINS]JOINTS - 1; the last joints are the extra ones");
+    }
+    return 0;
+}
+
 void read_kinematics(IniReader &ini, MachineConfig &machine) {
     machine.kinematics = split_words(ini.text(ini_key("KINS", "KINEMATICS")));
     machine.num_joints = static_cast<int>(ini.integer(ini_key("KINS", "JOINTS")));
@@ -58,6 +77,7 @@ void read_kinematics(IniReader &ini, MachineConfig &machine) {
         }
     }
     machine.axis_map = motion::axis_map(letters, machine.num_joints);
+    machine.axis_map.num_extra = count_extra_joints(ini, machine.num_joints);
     machine.isTrivial = !machine.kinematics.empty() && machine.kinematics.front() == "trivkins";
     machine.joint_of_axis.fill(-1);
     for (int joint = static_cast<int>(std::min<std::size_t>(letters.size(), MAX_JOINTS)) - 1; joint >= 0;

@@ -54,6 +54,22 @@ std::string replaced(std::string text, const std::string &from, const std::strin
     return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
+TEST(MachineConfig, ExtraJointsAreTheLastOnesAndLimitNoAxis_C12) {
+    const std::string more =
+        replaced(GOOD, "JOINTS = 2\n", "JOINTS = 3\n[EMCMOT]\nEMCMOT = motmod num_extrajoints=1\n") +
+        "[JOINT_2]\nMAX_VELOCITY = 7\nMAX_ACCELERATION = 70\nMAX_LIMIT = 0.5\n";
+    const Config c(more);
+    ASSERT_FALSE(c.sink.hasErrors());
+    EXPECT_EQ(c.machine.num_joints, 3);
+    EXPECT_EQ(c.machine.axis_map.num_extra, 1);
+    const motion::FoldedLimits limits = c.machine.limits();
+    EXPECT_EQ(limits.joints.count, 2);
+    EXPECT_EQ(limits.high[0], 2);
+    EXPECT_EQ(limits.joint_jog[2].velocity, 7);
+    const Config none(replaced(more, "num_extrajoints=1", "num_extrajoints=3"));
+    EXPECT_TRUE(none.says("num_extrajoints=3 is not possible"));
+}
+
 TEST(MachineConfig, AxesAndJointsAreDifferentThings_A3) {
     const Config c(GOOD);
     ASSERT_FALSE(c.sink.hasErrors());

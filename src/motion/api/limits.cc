@@ -76,7 +76,7 @@ void fold_axis(const Settings &s, const AxisMap &map, int axis, FoldedLimits &ou
     if (ratio > 0 && map.areJointsAxes() && map.hasAxis(axis)) {
         share_with_offset(ratio, all, out.axis_jog[at(axis)], out.offset[at(axis)]);
     }
-    for (int j = 0; j < map.num_joints && map.kind == AxisMap::Kind::UNKNOWN; ++j) {
+    for (int j = 0; j < map.num_led() && map.kind == AxisMap::Kind::UNKNOWN; ++j) {
         // Nothing is known of how joints follow axes: kept well below what those of the same kind can do.
         // Jogs are kept within the joints' limits in the servo thread.
         if (s.isSet(Parameter::JOINT_IS_ANGULAR, j) == geom::isAngular(axis)) {
@@ -115,12 +115,13 @@ bool AxisMap::hasAxis(int axis) const noexcept {
     return isFound;
 }
 
-AxisMap axis_map(const kins::Kinematics &kinematics, int num_joints) noexcept {
+AxisMap axis_map(const kins::Kinematics &kinematics, int num_joints, int num_extra) noexcept {
     AxisMap out;
     out.num_joints = num_joints;
+    out.num_extra = num_extra;
     out.axis_of_joint.fill(-1);
     if (const kins::IdentityMap *identity = kinematics.identity()) {
-        std::copy_n(identity->axis_of_joint.begin(), std::min(num_joints, identity->num_joints),
+        std::copy_n(identity->axis_of_joint.begin(), std::min(out.num_led(), identity->num_joints),
                     out.axis_of_joint.begin());
         return out;
     }
@@ -158,7 +159,7 @@ FoldedLimits fold_limits(const Settings &settings, const AxisMap &map, const Hom
     for (int joint = 0; joint < map.num_joints; ++joint) {
         fold_joint(settings, joint, out);
     }
-    out.joints.count = map.num_joints;
+    out.joints.count = map.num_led();
     return out;
 }
 

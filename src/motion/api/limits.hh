@@ -30,17 +30,20 @@ struct AxisMap {
     };
     Kind kind = Kind::JOINTS_ARE_AXES;
     int num_joints = 0;                                   ///< of the machine; there are no others
+    int num_extra = 0;                                    ///< the last of them, which no pose moves
     std::array<std::int8_t, MAX_JOINTS> axis_of_joint{};  ///< -1: none; used where joints are axes
 
     /// A joint of the machine moves this axis; kinematics may move any.
     bool hasAxis(int axis) const noexcept;
+    int num_led() const noexcept { return num_joints - num_extra; }  ///< that a pose moves
     bool areJointsAxes() const noexcept { return kind == Kind::JOINTS_ARE_AXES; }
     bool moves(int joint, int axis) const noexcept {
         return areJointsAxes() && axis_of_joint[static_cast<std::size_t>(joint)] == axis;
     }
 };
 
-AxisMap axis_map(const kins::Kinematics &kinematics, int num_joints) noexcept;
+/// The last `num_extra` of `num_joints` are none of the kinematics.
+AxisMap axis_map(const kins::Kinematics &kinematics, int num_joints, int num_extra = 0) noexcept;
 /// Joint n moves the axis of the n-th letter.
 AxisMap axis_map(std::string_view letters, int num_joints) noexcept;
 

@@ -65,6 +65,7 @@ struct Status {
     double feed_scale = 1.0, rapid_scale = 1.0, net_feed_scale = 1.0;
     bool isFeedOverrideEnabled = true, isAdaptiveFeedEnabled = false, isFeedHoldEnabled = true;
     int num_joints = 0, num_spindles = 0;
+    int num_extra_joints = 0;                       ///< the last of the joints, which no pose moves
     std::uint64_t digital_in = 0, digital_out = 0;  ///< bit per pin
     std::array<JointStatus, MAX_JOINTS> joint{};
     std::array<AxisStatus, MAX_AXES> axis{};
@@ -142,6 +143,7 @@ enum class Reason : std::uint16_t {
     SINGULAR,        ///< through a pose of which the kinematics has many answers
     POSE_UNKNOWN,    ///< the kinematics has no pose that leads to where the joints stand
     NO_FEEDBACK,     ///< a joint's feedback is not a number
+    DRIVEN_BY_PIN,   ///< an extra joint that is homed
     COUNT,
 };
 
@@ -183,15 +185,18 @@ enum class FaultKind : std::uint16_t {
     HOMING_CLAMPED,                ///< a homing module has asked joint `index` for more than its limits allow
     FEEDBACK_LOST,                 ///< index: the joint whose feedback is not a number
     TAP_TOO_FAST,                  ///< index: spindle; value: needed speed over the possible one
-    TAP_TOO_ABRUPT,   ///< index: spindle; value: acceleration of its turning back over the possible one
-    TAP_TOO_SHALLOW,  ///< index: spindle; value: the way that is needed over the depth
-    TAP_LOST,         ///< index: spindle
+    TAP_TOO_ABRUPT,     ///< index: spindle; value: acceleration of its turning back over the possible one
+    TAP_TOO_SHALLOW,    ///< index: spindle; value: the way that is needed over the depth
+    TAP_LOST,           ///< index: spindle
+    EXTRA_JOINT_LOST,   ///< index: the joint whose pin posthome-cmd is not a number
+    EXTRA_JOINT_LIMIT,  ///< index: the joint whose pin posthome-cmd asks for what lies beyond its range
     COUNT,
 };
 /// Only told: no path has failed.
 constexpr bool isOnlyTold(FaultKind kind) noexcept {
     return kind == FaultKind::HOMING_CLAMPED || kind == FaultKind::JOG_JOINT_LIMIT ||
-           kind == FaultKind::JOG_UNREACHABLE || kind == FaultKind::JOG_LEASE_ENDED;
+           kind == FaultKind::JOG_UNREACHABLE || kind == FaultKind::JOG_LEASE_ENDED ||
+           kind == FaultKind::EXTRA_JOINT_LIMIT;
 }
 struct Fault {
     FaultKind kind = FaultKind::FOLLOWING_ERROR;

@@ -43,7 +43,8 @@ Controller::Controller(const ControllerConfig &config, const kins::Kinematics &k
     homing_.foreign = config.homing;
     use_joints(config.num_joints);
     const kins::IdentityMap *identity = kinematics.identity();
-    for (int j = identity != nullptr ? identity->num_joints : config.num_joints; j < config.num_joints; ++j) {
+    const int led = config.num_led_joints();
+    for (int j = identity != nullptr ? identity->num_joints : led; j < led; ++j) {
         joints_[j].isActive = false;  // drives nothing until somebody activates it
     }
 }
@@ -55,9 +56,12 @@ void Controller::use_joints(int count) noexcept {
     joints_.count = count;
     jogs_.num_joints = count;
     homing_.num_joints = count;
-    homing_.num_to_home = identity != nullptr ? std::min(identity->num_joints, count) : count;
+    extra_.count = config_.num_extra_joints;
+    extra_.first = count - extra_.count;
+    homing_.num_to_home =
+        identity != nullptr && extra_.count == 0 ? std::min(identity->num_joints, count) : count;
     homing_.module().set_num_joints(homing_.num_to_home);
-    map_ = axis_map(kinematics_, count);
+    map_ = axis_map(kinematics_, count, extra_.count);
     for (int j = 0; j < count; ++j) {
         set_axis(homing_, j, map_.areJointsAxes() ? map_.axis_of_joint[static_cast<std::size_t>(j)] : -1);
     }
@@ -83,7 +87,7 @@ bool Controller::isAnythingMoving() const noexcept {
 
 void Controller::step(const Inputs &in, Outputs &out) noexcept {
     ++cycle_;
-    if (power_.isStopping && !isAnythingMoving() && areAtRest(offsets_)) {
+    if (power_.isStopping && !isAnythingMoving() && areAtRest(offsets_) && areAtRest(extra_)) {
         disable();
     }
     if (homing_.foreign != nullptr) {
@@ -110,6 +114,9 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
         step_homing(in);
         step_jogs(in);
         power_.mode == Mode::FREE ? move_joints(in) : move_axes(in);
+        if (extra_.count > 0) {
+            move_extra_joints(in);
+        }
     }
     output_joints();
     const traj::TapDemand &tap = executor_.output().tap;
@@ -156,6 +163,7 @@ void Controller::stop_category_1(FaultKind kind, int index, double value) noexce
     executor_.drop();
     stop(jogs_);
     stop(offsets_);
+    hold(extra_);
 }
 
 void Controller::check_faults(const Inputs &in) noexcept {
@@ -181,6 +189,7 @@ void Controller::check_joints(const Inputs &in) noexcept {
     const homing::Module &homing = homing_.module();
     JointCheck how;
     how.limits_ignored = jogs_.areLimitsOverridden ? ~0U : 0U;
+    how.feedback_ignored = extra_.mask() & limits_.homed.joints;
     for (int j = 0; j < config_.num_joints && homing.hasWork(); ++j) {
         const bool isIndexFound = !in.joint[static_cast<std::size_t>(j)].isIndexEnabled;
         how.at_index |= homing.isAtIndex(j) && isIndexFound ? 1U << j : 0U;
@@ -214,8 +223,9 @@ void Controller::step_holds(const Inputs &in) noexcept {
 
 void Controller::step_homing(const Inputs &in) noexcept {
     if (homing_.isDue) {
-        const HomeConditions conditions{true, power_.mode, in.isHomingInhibited, isAnythingMoving(),
-                                        inactive_joints(joints_)};
+        hold(extra_);
+        const HomeConditions conditions{true, power_.mode, in.isHomingInhibited,
+                                        isAnythingMoving() || !areAtRest(extra_), inactive_joints(joints_)};
         const homing::Failure why = begin_due(homing_, conditions);
         if (why != homing::Failure::NONE) {
             raise(FaultKind::HOMING_FAILED, homing_.due, 0, static_cast<std::uint16_t>(why));

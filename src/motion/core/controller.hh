@@ -13,6 +13,7 @@
 #include "motion/core/coord/lead.hh"
 #include "motion/core/coord/place.hh"
 #include "motion/core/coord/retracing.hh"
+#include "motion/core/extra_joints/extra_joints.hh"
 #include "motion/core/holds/holds.hh"
 #include "motion/core/homing/homing_drive.hh"
 #include "motion/core/io.hh"
@@ -36,7 +37,10 @@ struct ControllerConfig {
     int num_dio = 4;
     int num_aio = 4;
     double period_s = 1e-3;
+    int num_extra_joints = 0;          ///< the last joints, which no pose moves
     homing::Module *homing = nullptr;  ///< takes the place of ours; outlives the controller
+
+    int num_led_joints() const noexcept { return num_joints - num_extra_joints; }
 };
 
 /// Owns the parts of the machine and hands each, every cycle, what it needs of the others. Some megabytes, so
@@ -95,9 +99,9 @@ class Controller {
     void move_axes(const Inputs &in) noexcept;
     geom::Pose teleop_pose() noexcept;
     geom::Pose path_pose() noexcept;
+    void move_extra_joints(const Inputs &in) noexcept;
     void move_to(const geom::Pose &pose) noexcept;
     void check_joint_steps() noexcept;
-    void remember(const geom::Pose &pose) noexcept;
     void check_probe(const Inputs &in) noexcept;
 
     // --- controller_status.cc
@@ -132,6 +136,7 @@ class Controller {
     Place place_;
     KinematicsTypes types_;
     ExternalOffsets offsets_;
+    ExtraJoints extra_;
     traj::Executor executor_;
     Retracing retracing_;
 
@@ -140,7 +145,12 @@ class Controller {
 };
 
 inline Stride stride_of(const FoldedLimits &limits, const ControllerConfig &config) noexcept {
-    return {limits.joints.velocity.data(), config.period_s, config.num_joints};
+    return {limits.joints.velocity.data(), config.period_s, config.num_led_joints()};
+}
+
+inline ExtraJointInputs extra_inputs(const Inputs &in, const Joints &joints, const FoldedLimits &limits,
+                                     double period_s) noexcept {
+    return {in.joint, commanded(joints), limits, limits.homed.joints & ~inactive_joints(joints), period_s};
 }
 
 /// Where jogs or the path may lead to without external offsets.

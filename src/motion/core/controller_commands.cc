@@ -14,6 +14,10 @@ bool isPlaceKnown(const kins::Kinematics &kinematics, const geom::Pose &pose, co
     return kinematics.kind() != kins::Kind::BOTH || leadsTo(kinematics, pose, commanded(joints), stride);
 }
 
+bool isFinite(const geom::Pose &pose) noexcept {
+    return std::all_of(pose.c.begin(), pose.c.end(), [](double x) { return std::isfinite(x); });
+}
+
 }  // namespace
 
 void Controller::handle_commands(const Inputs &in) noexcept {
@@ -101,7 +105,9 @@ Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
             return verdict;
         },
         [&](const Unhome &c) {
-            const HomeConditions conditions{power_.isReady(), power_.mode, false, isAnythingMoving(), 0};
+            const HomeConditions conditions{
+                power_.isReady(),   power_.mode, false,
+                isAnythingMoving(), 0,           power_.isEnabled ? extra_.mask() & limits_.homed.joints : 0};
             const Verdict verdict = motion::take(homing_, c, conditions, settings_);
             if (verdict.reason == Reason::NONE) {
                 publish_limits();
@@ -116,8 +122,7 @@ Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
         [&](const OneOf<SetDigitalOutput, SetAnalogOutput> auto &c) { return motion::take(outputs_, c); },
         [&](const ClearProbeFlag &c) { return motion::take(probe_, c); },
         [&](const SetToolOffset &c) {
-            const bool areNumbers =
-                std::all_of(c.offset.c.begin(), c.offset.c.end(), [](double x) { return std::isfinite(x); });
+            const bool areNumbers = isFinite(c.offset);
             tool_offset_ = areNumbers ? c.offset : tool_offset_;
             return Verdict{areNumbers ? Reason::NONE : Reason::NOT_A_NUMBER};
         },
@@ -132,6 +137,7 @@ Verdict Controller::abort_all(const Abort &command) noexcept {
     abort(homing_, homing::event::ABORT);
     executor_.drop();
     stop(jogs_);
+    hold(extra_);
     release(holds_);
     isCoordError_ = false;
     return {};
@@ -156,6 +162,7 @@ Verdict Controller::enable(const Inputs &in) noexcept {
     switch_on(joints_);
     start_at_zero(offsets_, in);
     start_at(jogs_, commanded(joints_).data(), place_.cmd, in);
+    switch_on(extra_, extra_inputs(in, joints_, limits_, config_.period_s));
     isCoordError_ = false;
     executor_.drop();
     executor_.set_position(place_.cmd);
@@ -212,7 +219,8 @@ Verdict Controller::set_mode(Mode mode) noexcept {
 /// A joint that is no longer there is not homed when it comes back, and then is where its motor is.
 Verdict Controller::set_num_joints(const Inputs &in, int count) noexcept {
     const kins::IdentityMap *identity = kinematics_.identity();
-    const int needed = identity != nullptr ? std::min(identity->num_joints, loaded_joints_) : 1;
+    const int least = identity != nullptr ? std::min(identity->num_joints, loaded_joints_) : 1;
+    const int needed = extra_.count > 0 ? loaded_joints_ : least;  // extra joints are the last ones
     if (power_.isEnabled) {
         return {Reason::SWITCHED_ON};
     }
@@ -257,6 +265,7 @@ JogSituation Controller::situation_of(const Inputs &in, const JogTarget &target)
     s.mode = power_.mode;
     s.isHoming = homing_.isUnderWay();
     s.isInhibited = in.isJogInhibited || in.isJogStopped || in.isJogStoppedNow;
+    s.isDriven = target.isJoint && (extra_.mask() & limits_.homed.joints & 1U << target.index) != 0;
     s.isMovable = target.isJoint ? joints_[target.index].isActive : map_.hasAxis(target.index);
     if (target.isJoint) {
         const Joint &joint = joints_[target.index];

@@ -1,10 +1,27 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The motion of a cycle: joints by themselves (free), axes (teleop) or the path (coord) through the
 // kinematics.
+#include <bit>
+
 #include "motion/core/controller.hh"
 #include "motion/core/jogs/teleop.hh"
 
 namespace mw::motion {
+namespace {
+
+/// What the first `count` joints do, to come back to when the path is gone back.
+JointUse use_of(const Joints &joints, int count, double period_s) noexcept {
+    JointUse use;
+    use.count = count;
+    for (int j = 0; j < count; ++j) {
+        const auto n = static_cast<std::size_t>(j);
+        use.step[n] = joints[j].vel_cmd * period_s;
+        use.bend[n] = joints[j].acc_cmd * period_s * period_s;
+    }
+    return use;
+}
+
+}  // namespace
 
 PoseRange programmed_range(const Jogs &jogs, const PathLink &link, Mode mode,
                            const geom::Pose &pose) noexcept {
@@ -26,6 +43,9 @@ void Controller::move_joints(const Inputs &in) noexcept {
     executor_.step(cycle_);
     for (int j = 0; j < config_.num_joints; ++j) {
         Jog &jog = jogs_.at({true, j});
+        if (extra_.joint[static_cast<std::size_t>(j)].state != Following::NONE) {
+            continue;
+        }
         step_joint(jog, limits_.joints.velocity[static_cast<std::size_t>(j)], holds_.jog_scale(),
                    config_.period_s);
         follow(joints_[j], jog.planner.position, config_.period_s);
@@ -61,7 +81,12 @@ void Controller::move_axes(const Inputs &in) noexcept {
         if (!retracing_.retrace.isAway()) {
             // Nobody goes back through a hole that was tapped without turning the spindle.
             const bool isTapping = executor_.output().tap.spindle >= 0;
-            holds_.isAdaptiveFeedEnabled && !isTapping ? remember(pose) : retracing_.retrace.clear();
+            if (holds_.isAdaptiveFeedEnabled && !isTapping) {
+                const int count = map_.areJointsAxes() ? 0 : config_.num_led_joints();
+                record(retracing_, pose, use_of(joints_, count, config_.period_s), limits_, config_.period_s);
+            } else {
+                retracing_.retrace.clear();
+            }
         }
     }
     constexpr int MAX_EVENTS_PER_CYCLE = 64;
@@ -75,18 +100,39 @@ void Controller::move_axes(const Inputs &in) noexcept {
     }
 }
 
+/// In every mode: those that are homed go where their pins say.
+void Controller::move_extra_joints(const Inputs &in) noexcept {
+    const ExtraJointEvents events =
+        motion::step(extra_, extra_inputs(in, joints_, limits_, config_.period_s));
+    for (int j = extra_.first; j < config_.num_joints; ++j) {
+        const auto n = static_cast<std::size_t>(j);
+        const ExtraJoint &extra = extra_.joint[n];
+        if (extra.state != Following::NONE) {
+            follow(joints_[j], extra.planner.position(), config_.period_s);
+            jogs_.joint[n].planner.reset(extra.planner.position());
+        }
+    }
+    for (std::uint32_t beyond = events.beyond; beyond != 0; beyond &= beyond - 1) {
+        const int j = std::countr_zero(beyond);
+        raise(FaultKind::EXTRA_JOINT_LIMIT, j, in.joint[static_cast<std::size_t>(j)].posthome_cmd);
+    }
+    if (events.lost != 0) {
+        stop_category_1(FaultKind::EXTRA_JOINT_LOST, std::countr_zero(events.lost), 0);
+    }
+}
+
 geom::Pose Controller::teleop_pose() noexcept {
     executor_.step(cycle_);
     executor_.set_position(without(offsets_, place_.cmd));
     if (!map_.areJointsAxes()) {
         const TeleopMachine machine{
-            kinematics_,        limits_,          commanded(joints_),          config_.num_joints,
+            kinematics_,        limits_,          commanded(joints_),          config_.num_led_joints(),
             holds_.jog_scale(), config_.period_s, kinematics_.side(place_.cmd)};
         const TeleopStop stopped = limit_teleop(jogs_, machine);
         if (stopped.isNew && stopped.joint >= 0) {
             raise(FaultKind::JOG_JOINT_LIMIT, stopped.joint, 0);
         } else if (stopped.isNew) {
-            raise(FaultKind::JOG_UNREACHABLE, config_.num_joints, 0);
+            raise(FaultKind::JOG_UNREACHABLE, config_.num_led_joints(), 0);
         }
     }
     geom::Pose pose;
@@ -133,7 +179,7 @@ void Controller::move_to(const geom::Pose &pose) noexcept {
         return;
     }
     follow_pose(place_, pose, config_.period_s);
-    for (int j = 0; j < config_.num_joints; ++j) {
+    for (int j = 0; j < config_.num_led_joints(); ++j) {
         const auto n = static_cast<std::size_t>(j);
         follow(joints_[j], positions[n], config_.period_s);
         jogs_.joint[n].planner.reset(positions[n]);
@@ -204,18 +250,6 @@ void Controller::check_joint_steps() noexcept {
         stop_category_1(overrun.isOutside ? FaultKind::JOINT_LEFT_RANGE : FaultKind::JOINT_TOO_FAST,
                         overrun.joint, overrun.use);
     }
-}
-
-/// To come back to when the path is gone back.
-void Controller::remember(const geom::Pose &pose) noexcept {
-    JointUse use;
-    use.count = map_.areJointsAxes() ? 0 : config_.num_joints;
-    for (int j = 0; j < use.count; ++j) {
-        const auto n = static_cast<std::size_t>(j);
-        use.step[n] = joints_[j].vel_cmd * config_.period_s;
-        use.bend[n] = joints_[j].acc_cmd * config_.period_s * config_.period_s;
-    }
-    record(retracing_, pose, use, limits_, config_.period_s);
 }
 
 /// A probing move ends where the probe trips; in any other move a trip is a fault.

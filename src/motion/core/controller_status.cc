@@ -72,6 +72,7 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
     fill(joints_, settings_, {power_.isEnabled, jogs_.areLimitsOverridden, limits_.homed.joints}, out);
     fill(jogs_, power_.mode, without(offsets_, place_.cmd), out);
     fill(offsets_, out);
+    fill(extra_, limits_.homed.joints, out);
     fill(homing_, out);
     fill(spindles_, in, power_.isEnabled, out);
     for (int j = config_.num_joints; j < loaded_joints_; ++j) {

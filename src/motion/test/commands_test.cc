@@ -57,6 +57,7 @@ const char *word_for(Reason reason) {
     case Reason::NO_JOG_TO_RENEW: return "no jog";
     case Reason::SINGULAR: return "singular";
     case Reason::POSE_UNKNOWN: return "pose unknown";
+    case Reason::DRIVEN_BY_PIN: return "moved by a pin";
     case Reason::COUNT: break;
     }
     return "?";

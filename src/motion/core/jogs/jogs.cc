@@ -141,6 +141,9 @@ Reason check(const Jogs &jogs, const JogTarget &target, double direction, const 
     if (!s.isMovable) {
         return target.isJoint ? Reason::JOINT_INACTIVE : Reason::NO_SUCH_AXIS;
     }
+    if (s.isDriven) {
+        return Reason::DRIVEN_BY_PIN;
+    }
     if (s.isSynchronised) {
         return Reason::SYNCHRONISED_JOINT;
     }

@@ -63,6 +63,7 @@ struct JogSituation {
     bool isHoming = false, isInhibited = false;
     bool isMovable = false;       ///< the joint is active; a joint moves the axis
     bool isSynchronised = false;  ///< a joint that homes with others is not jogged alone
+    bool isDriven = false;        ///< by a pin
     bool isOnPosLimit = false, isOnNegLimit = false;
     JogLimits most;
     JogRange range;

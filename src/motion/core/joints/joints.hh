@@ -63,7 +63,8 @@ enum class JointFault : std::uint8_t { NONE, FEEDBACK_LOST, AMP_FAULT, FOLLOWING
 struct JointCheck {
     /// Bit per joint whose encoder is reset now: command and feedback are of two different zeros.
     std::uint32_t at_index = 0;
-    std::uint32_t limits_ignored = 0;  ///< bit per joint
+    std::uint32_t limits_ignored = 0;    ///< bit per joint
+    std::uint32_t feedback_ignored = 0;  ///< the same
 };
 /// Following error, amplifier and limit switches of the active joints from `joint` on, up to the first fault;
 /// `joint` is the one that has it.
