@@ -234,6 +234,29 @@ void limit_angular(IniReader &ini, int axis, MachineConfig &machine) {
           limits.path.acceleration);
 }
 
+/// A wrapped axis turns on and on in programs, so a limit ends it sooner or later.
+void check_wrapped(IniReader &ini, const std::string &section, int axis, const TravelKeys &travel) {
+    const IniKey &key = interp::ini_key("AXIS_*", "WRAPPED_ROTARY");
+    if (!ini.boolean(key, section)) {
+        return;
+    }
+    if (!geom::isAngular(axis)) {
+        ini.sink().warning('[' + section + "]WRAPPED_ROTARY has no effect: only A, B and C turn",
+                           ini.find(key, section)->place);
+        return;
+    }
+    constexpr double ENDLESS = 1e9;
+    const bool isBounded =
+        ini.real(travel.low, section, -INF) > -ENDLESS || ini.real(travel.high, section, INF) < ENDLESS;
+    if (isBounded) {
+        ini.sink().warning(
+            '[' + section +
+                "]WRAPPED_ROTARY: MIN_LIMIT and MAX_LIMIT hold all the same, and keep the axis from "
+                "turning on; leave them out",
+            ini.find(key, section)->place);
+    }
+}
+
 void read_axes(IniReader &ini, MachineConfig &machine) {
     const TravelKeys travel = {ini_key(Parameter::AXIS_MIN_LIMIT), ini_key(Parameter::AXIS_MAX_LIMIT),
                                ini_key("AXIS_*", "HOME")};
@@ -259,6 +282,7 @@ void read_axes(IniReader &ini, MachineConfig &machine) {
         if (geom::isAngular(axis)) {
             limit_angular(ini, axis, machine);
         }
+        check_wrapped(ini, section, axis, travel);
         ini.declare_in(section, "AXIS_*", all_ini_keys());
     }
 }

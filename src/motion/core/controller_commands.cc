@@ -122,9 +122,8 @@ Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
         [&](const OneOf<SetDigitalOutput, SetAnalogOutput> auto &c) { return motion::take(outputs_, c); },
         [&](const ClearProbeFlag &c) { return motion::take(probe_, c); },
         [&](const SetToolOffset &c) {
-            const bool areNumbers = isFinite(c.offset);
-            tool_offset_ = areNumbers ? c.offset : tool_offset_;
-            return Verdict{areNumbers ? Reason::NONE : Reason::NOT_A_NUMBER};
+            tool_offset_ = isFinite(c.offset) ? c.offset : tool_offset_;
+            return Verdict{isFinite(c.offset) ? Reason::NONE : Reason::NOT_A_NUMBER};
         },
     };
     return std::visit(handlers, body);
