@@ -54,6 +54,10 @@ inline constexpr auto INI_KEYS = std::to_array<config::IniKey>({
                      "folder of programs, where subroutines are looked for first"),
     config::ini_flag("AXIS_*", "WRAPPED_ROTARY", false,
                      "A, B and C: absolute words lie within a turn and their sign is the direction"),
+    config::ini_whole(
+        "AXIS_*", "LOCKING_INDEXER_JOINT", "", -1, {-1, 15},
+        "A, B and C: the joint that unlocks before the axis moves, alone and with G0, and locks "
+        "afterwards; -1: none"),
     config::ini_flag("DISPLAY", "LATHE", false, "the machine is a lathe: pictures show Z and X"),
 });
 

@@ -34,6 +34,8 @@ RotaryAxes read_rotary(config::IniReader &ini) {
         const std::string section = std::string("AXIS_") + geom::AXIS_LETTERS[axis];
         const int bit = axis - RotaryAxes::FIRST;
         out.wrapped |= ini.boolean(ini_key("AXIS_*", "WRAPPED_ROTARY"), section) ? 1U << bit : 0U;
+        out.indexer[static_cast<std::size_t>(bit)] =
+            static_cast<std::int8_t>(ini.integer(ini_key("AXIS_*", "LOCKING_INDEXER_JOINT"), section));
     }
     return out;
 }

@@ -148,6 +148,62 @@ TEST(Rotary, RandomWordsLeadToTheirAngleInTheirDirectionWithinATurn_I1) {
     }
 }
 
+constexpr const char *INDEXER = "[AXIS_A]\nLOCKING_INDEXER_JOINT = 3\n";
+
+TEST(Rotary, AnIndexerMovesAloneAndWithG0_I1) {
+    struct Case {
+        const char *text, *error;
+    };
+    const Case cases[] = {
+        {"G0 X1 A90", "Indexing axis A can only be moved alone"},
+        {"G53 G0 X1 A10", "Indexing axis A can only be moved alone"},
+        {"G91 G0 X1 A0", "Indexing axis A can only be moved alone"},
+        {"G0 @5 ^10 A10", "Indexing axis A can only be moved alone"},
+        {"G1 F10 A90", "Indexing axis A can only be moved with G0"},
+        {"G1 F10 X1 A0", "Indexing axis A can only be moved with G0"},
+        {"F10 G2 X10 I5 A10", "Indexing axis A can only be moved with G0"},
+        {"F10 G38.3 A20", "Indexing axis A can only be moved with G0"},
+        {"F10 G38.3 X3 A0", "Indexing axis A can only be moved with G0"},
+        {"S100 M3 G33 Z-1 K1 A20", "Indexing axis A can only be moved with G0"},
+    };
+    for (const Case &c : cases) {
+        Table table(INDEXER);
+        EXPECT_EQ(table.run(std::string("G0 Y1\n") + c.text + "\n"), Step::FAILED) << c.text;
+        EXPECT_NE(table.error().find(c.error), std::string::npos) << table.error();
+        EXPECT_NE(table.error().find(":2:"), std::string::npos) << table.error();
+    }
+    Table table(INDEXER);
+    const std::vector<double> way =
+        table.way("G0 X1\nG0 A90\nG1 F10 X2\nG91 G0 A-30\nG90\nG92 A5\nG10 L2 P1 A7 X1\nG92.1\nG0 B5 C6\n");
+    EXPECT_EQ(way, (std::vector<double>{0, 90, 90, 60, 60})) << "offsets are no moves";
+}
+
+TEST(Rotary, ItsMovesAreStopsAndG28MovesItByItself_I1) {
+    Table table(INDEXER);
+    table.way("G64 P1\nG0 X10\nA90\nX20\nG28 X5 A30\nG28 Y3\n");
+    struct Move {
+        double x, a;
+        geom::PathMode mode;
+    };
+    const auto STOP = geom::PathMode::EXACT_PATH, BLEND = geom::PathMode::BLEND;
+    const std::vector<Move> wanted = {{10, 0, BLEND}, {10, 90, STOP}, {20, 90, BLEND},
+                                      {20, 30, STOP}, {5, 30, BLEND}, {5, 0, STOP},
+                                      {0, 0, BLEND},  {0, 0, BLEND},  {0, 0, BLEND}};
+    ASSERT_EQ(table.record.lines.size(), wanted.size());
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        const LineMove &move = table.record.lines[i];
+        EXPECT_EQ(move.end[0], wanted[i].x) << i;
+        EXPECT_EQ(move.end[geom::AXIS_A], wanted[i].a) << i;
+        EXPECT_EQ(move.settings.mode, wanted[i].mode) << i;
+        EXPECT_TRUE(move.settings.isRapid) << i;
+    }
+}
+
+TEST(Rotary, AnIndexerMayBeWrappedToo_I1) {
+    Table table("[AXIS_A]\nLOCKING_INDEXER_JOINT = 3\nWRAPPED_ROTARY = 1\n");
+    EXPECT_EQ(table.way("G0 A90\nA-10\nA-10\nX1\n"), (std::vector<double>{90, 10, 10, 10}));
+}
+
 TEST(Rotary, WithoutTheKeyAnAngleIsAPlace_I1) {
     Table table("[AXIS_A]\nWRAPPED_ROTARY = 0\n");
     const std::vector<double> way = table.way("G0 A90\nA-10\nA400\nA0\nG28\n");

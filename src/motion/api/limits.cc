@@ -53,6 +53,22 @@ void share_with_offset(double ratio, Tightest &all, JogLimits &jog, JogLimits &o
     all.jerk = all.jerk < NO_JERK_LIMIT ? rest * all.jerk : all.jerk;
 }
 
+void fold_locks(const Settings &s, const AxisMap &map, int axis, FoldedLimits &out) noexcept {
+    const int named = static_cast<int>(s.get(Parameter::AXIS_LOCKING_INDEXER_JOINT, axis));
+    std::uint32_t locks = 0;
+    if (named >= 0 && named < map.num_joints) {
+        out.indexer[at(axis)] = static_cast<std::int8_t>(named);
+        locks = 1U << named;
+    }
+    for (int j = 0; j < map.num_joints; ++j) {
+        const std::uint32_t bit = s.isSet(Parameter::JOINT_LOCKING_INDEXER, j) ? 1U << j : 0U;
+        locks |= map.moves(j, axis) ? bit : 0U;
+        out.locks |= bit;
+    }
+    out.axis_locks[at(axis)] = locks;
+    out.locks |= locks;
+}
+
 void fold_axis(const Settings &s, const AxisMap &map, int axis, FoldedLimits &out) noexcept {
     Tightest all{s.get(Parameter::AXIS_MAX_VELOCITY, axis), s.get(Parameter::AXIS_MAX_ACCELERATION, axis),
                  s.get(Parameter::AXIS_MAX_JERK, axis)};
@@ -72,8 +88,9 @@ void fold_axis(const Settings &s, const AxisMap &map, int axis, FoldedLimits &ou
         geom::isAngular(axis) ? all.jerk : std::min(all.jerk, s.get(Parameter::TRAJ_MAX_JERK));
     out.axis_jog[at(axis)] = {all.velocity, all.acceleration,
                               isJerkLimited(s) ? jog_jerk(most_jog_jerk) : 0.0};
+    fold_locks(s, map, axis, out);
     const double ratio = s.get(Parameter::AXIS_OFFSET_RATIO, axis);
-    if (ratio > 0 && map.areJointsAxes() && map.hasAxis(axis)) {
+    if (ratio > 0 && out.axis_locks[at(axis)] == 0 && map.areJointsAxes() && map.hasAxis(axis)) {
         share_with_offset(ratio, all, out.axis_jog[at(axis)], out.offset[at(axis)]);
     }
     for (int j = 0; j < map.num_led() && map.kind == AxisMap::Kind::UNKNOWN; ++j) {

@@ -75,17 +75,32 @@ struct JogLimits {
     double jerk = 0;  ///< 0: none
 };
 
+inline constexpr std::array<std::int8_t, MAX_AXES> NO_INDEXERS = [] {
+    std::array<std::int8_t, MAX_AXES> none{};
+    none.fill(-1);
+    return none;
+}();
+
 struct FoldedLimits {
     traj::Limits path;       ///< of moves of axes: their own and those of the joints that move them
     geom::Pose low, high;    ///< soft limits of axes, with those of joints; +-infinity where none holds
     std::uint32_t axes = 0;  ///< bit per axis that a joint or the kinematics move
     traj::JointLimits joints;
     HomedJoints homed;
-    std::array<double, MAX_JOINTS> travel{};  ///< between the soft limits of a joint, homed or not
+    /// Joint whose lock a program opens for G0 of each axis; -1: none.
+    std::array<std::int8_t, MAX_AXES> indexer = NO_INDEXERS;
+    std::uint32_t locks = 0;                           ///< bit per joint that has a lock
+    std::array<std::uint32_t, MAX_AXES> axis_locks{};  ///< those of them that each axis moves
+    std::array<double, MAX_JOINTS> travel{};           ///< between the soft limits of a joint, homed or not
     std::array<JogLimits, MAX_JOINTS> joint_jog{};
     std::array<JogLimits, MAX_AXES> axis_jog{};
     std::array<JogLimits, MAX_AXES> offset{};  ///< external ones; velocity 0: the axis has none
 
+    /// Locks that are opened for a jog.
+    std::uint32_t locks_of(const JogTarget &target) const noexcept {
+        return target.isJoint ? locks & 1U << target.index
+                              : axis_locks[static_cast<std::size_t>(target.index)];
+    }
     const JogLimits &jog(const JogTarget &target) const noexcept {
         const auto i = static_cast<std::size_t>(target.index);
         return target.isJoint ? joint_jog[i] : axis_jog[i];

@@ -144,6 +144,8 @@ enum class Reason : std::uint16_t {
     POSE_UNKNOWN,    ///< the kinematics has no pose that leads to where the joints stand
     NO_FEEDBACK,     ///< a joint's feedback is not a number
     DRIVEN_BY_PIN,   ///< an extra joint that is homed
+    INDEXER_ALONE,   ///< a locking indexer moves alone, in programs with G0; others while it is locked
+    INDEXER_OPEN,    ///< a locking indexer has not locked
     COUNT,
 };
 
@@ -185,11 +187,14 @@ enum class FaultKind : std::uint16_t {
     HOMING_CLAMPED,                ///< a homing module has asked joint `index` for more than its limits allow
     FEEDBACK_LOST,                 ///< index: the joint whose feedback is not a number
     TAP_TOO_FAST,                  ///< index: spindle; value: needed speed over the possible one
-    TAP_TOO_ABRUPT,     ///< index: spindle; value: acceleration of its turning back over the possible one
-    TAP_TOO_SHALLOW,    ///< index: spindle; value: the way that is needed over the depth
-    TAP_LOST,           ///< index: spindle
-    EXTRA_JOINT_LOST,   ///< index: the joint whose pin posthome-cmd is not a number
-    EXTRA_JOINT_LIMIT,  ///< index: the joint whose pin posthome-cmd asks for what lies beyond its range
+    TAP_TOO_ABRUPT,        ///< index: spindle; value: acceleration of its turning back over the possible one
+    TAP_TOO_SHALLOW,       ///< index: spindle; value: the way that is needed over the depth
+    TAP_LOST,              ///< index: spindle
+    INDEXER_NOT_UNLOCKED,  ///< index: the joint, which was waited for too long
+    INDEXER_NOT_LOCKED,    ///< the same
+    INDEXER_LOCKED_IN_MOVE,  ///< index: the joint whose pin is-unlocked has fallen meanwhile
+    EXTRA_JOINT_LOST,        ///< index: the joint whose pin posthome-cmd is not a number
+    EXTRA_JOINT_LIMIT,       ///< index: the joint whose pin posthome-cmd asks for what lies beyond its range
     COUNT,
 };
 /// Only told: no path has failed.

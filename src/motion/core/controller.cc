@@ -113,6 +113,9 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
     } else {
         step_homing(in);
         step_jogs(in);
+        if (indexers_.mask != 0) {
+            step_indexers(in);
+        }
         power_.mode == Mode::FREE ? move_joints(in) : move_axes(in);
         if (extra_.count > 0) {
             move_extra_joints(in);
@@ -225,7 +228,8 @@ void Controller::step_homing(const Inputs &in) noexcept {
     if (homing_.isDue) {
         hold(extra_);
         const HomeConditions conditions{true, power_.mode, in.isHomingInhibited,
-                                        isAnythingMoving() || !areAtRest(extra_), inactive_joints(joints_)};
+                                        isAnythingMoving() || !areAtRest(extra_) || busy(indexers_) != 0,
+                                        inactive_joints(joints_)};
         const homing::Failure why = begin_due(homing_, conditions);
         if (why != homing::Failure::NONE) {
             raise(FaultKind::HOMING_FAILED, homing_.due, 0, static_cast<std::uint16_t>(why));
@@ -299,6 +303,42 @@ void Controller::step_jogs(const Inputs &in) noexcept {
         }
     }
     settle(jogs_, in);
+}
+
+/// Whoever is to move an indexer waits here for its lock.
+void Controller::step_indexers(const Inputs &in) noexcept {
+    IndexerInputs now;
+    now.period_s = config_.period_s;
+    now.unlocked = unlocked_pins(in);
+    for (int j = 0; j < config_.num_joints; ++j) {
+        const std::uint32_t bit = 1U << j;
+        const bool isHoming = homing_.module().isHoming(j) || homing_.module().isUnlockWanted(j);
+        now.homing |= isHoming ? bit : 0U;
+        now.moving |= joints_[j].vel_cmd != 0.0 ? bit : 0U;
+        const bool isJogged = power_.mode == Mode::FREE && !jogs_.at({true, j}).planner.isAtRest();
+        now.wanted |= isJogged ? bit : 0U;
+    }
+    for (int i = 0; i < MAX_AXES && power_.mode == Mode::TELEOP; ++i) {
+        now.wanted |= jogs_.at({false, i}).planner.isAtRest() ? 0U : limits_.locks_of({false, i});
+    }
+    // What the planner wants of a path that was dropped counts no more.
+    const std::uint64_t wish = link_->indexers_wanted.load(std::memory_order_acquire);
+    const bool isOfPath =
+        static_cast<std::uint32_t>(wish >> 32) == static_cast<std::uint32_t>(executor_.snapshot().drops);
+    if (power_.mode == Mode::COORD && power_.isReady() && isOfPath) {
+        now.wanted |= static_cast<std::uint32_t>(wish);
+    }
+    const IndexerEvent event = motion::step(indexers_, now);
+    if (event.fault == LockFault::LOCKED_IN_MOVE) {
+        stop_category_0(FaultKind::INDEXER_LOCKED_IN_MOVE, event.joint, 0);
+    } else if (event.fault != LockFault::NONE) {
+        raise(event.fault == LockFault::NOT_LOCKED ? FaultKind::INDEXER_NOT_LOCKED
+                                                   : FaultKind::INDEXER_NOT_UNLOCKED,
+              event.joint, 0);
+        executor_.drop();
+        stop(jogs_);
+        isCoordError_ = true;
+    }
 }
 
 void Controller::output_joints() noexcept {

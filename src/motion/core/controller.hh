@@ -16,6 +16,7 @@
 #include "motion/core/extra_joints/extra_joints.hh"
 #include "motion/core/holds/holds.hh"
 #include "motion/core/homing/homing_drive.hh"
+#include "motion/core/indexers/indexers.hh"
 #include "motion/core/io.hh"
 #include "motion/core/jogs/jogs.hh"
 #include "motion/core/joints/joints.hh"
@@ -88,6 +89,7 @@ class Controller {
     void step_homing(const Inputs &in) noexcept;
     void drive_homing(const Inputs &in) noexcept;
     void step_jogs(const Inputs &in) noexcept;
+    void step_indexers(const Inputs &in) noexcept;
     void output_joints() noexcept;
     void stop_category_1(FaultKind kind, int index, double value) noexcept;
     void stop_category_0(FaultKind kind, int index, double value) noexcept;
@@ -101,7 +103,6 @@ class Controller {
     geom::Pose path_pose() noexcept;
     void move_extra_joints(const Inputs &in) noexcept;
     void move_to(const geom::Pose &pose) noexcept;
-    void check_joint_steps() noexcept;
     void check_probe(const Inputs &in) noexcept;
 
     // --- controller_status.cc
@@ -137,10 +138,10 @@ class Controller {
     KinematicsTypes types_;
     ExternalOffsets offsets_;
     ExtraJoints extra_;
+    Indexers indexers_;
     traj::Executor executor_;
     Retracing retracing_;
 
-    geom::Pose tool_offset_;
     bool isCoordError_ = false;
 };
 

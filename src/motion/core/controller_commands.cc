@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Immediate commands: each is answered, done or refused with a reason.
 #include <algorithm>
-#include <cmath>
 
 #include "base/overloaded.hh"
 #include "motion/core/controller.hh"
@@ -14,8 +13,19 @@ bool isPlaceKnown(const kins::Kinematics &kinematics, const geom::Pose &pose, co
     return kinematics.kind() != kins::Kind::BOTH || leadsTo(kinematics, pose, commanded(joints), stride);
 }
 
-bool isFinite(const geom::Pose &pose) noexcept {
-    return std::all_of(pose.c.begin(), pose.c.end(), [](double x) { return std::isfinite(x); });
+/// An indexer is jogged while nothing else moves, and nothing else while one is under way.
+bool isBesideIndexer(const Jogs &jogs, const FoldedLimits &limits, const Indexers &indexers,
+                     const JogTarget &target) noexcept {
+    const std::uint32_t own = limits.locks_of(target);
+    bool is = (busy(indexers) & ~own) != 0;
+    const int count = target.isJoint ? jogs.num_joints : MAX_AXES;
+    for (int i = 0; i < count; ++i) {
+        const JogTarget other{target.isJoint, i};
+        const bool areOne = own != 0 && (limits.locks_of(other) & own) != 0;
+        const bool isLone = own != 0 || limits.locks_of(other) != 0;
+        is = is || (i != target.index && !areOne && isLone && !jogs.at(other).planner.isAtRest());
+    }
+    return is;
 }
 
 }  // namespace
@@ -120,11 +130,8 @@ Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
         },
         [&](const OneOf<SpindleOff, SpindleBrake> auto &c) { return motion::take(spindles_, c); },
         [&](const OneOf<SetDigitalOutput, SetAnalogOutput> auto &c) { return motion::take(outputs_, c); },
+        [&](const SetToolOffset &c) { return motion::take(outputs_, c); },
         [&](const ClearProbeFlag &c) { return motion::take(probe_, c); },
-        [&](const SetToolOffset &c) {
-            tool_offset_ = isFinite(c.offset) ? c.offset : tool_offset_;
-            return Verdict{isFinite(c.offset) ? Reason::NONE : Reason::NOT_A_NUMBER};
-        },
     };
     return std::visit(handlers, body);
 }
@@ -161,6 +168,7 @@ Verdict Controller::enable(const Inputs &in) noexcept {
     switch_on(joints_);
     start_at_zero(offsets_, in);
     start_at(jogs_, commanded(joints_).data(), place_.cmd, in);
+    switch_on(indexers_, {0, 0, unlocked_pins(in), 0, config_.period_s});
     switch_on(extra_, extra_inputs(in, joints_, limits_, config_.period_s));
     isCoordError_ = false;
     executor_.drop();
@@ -176,6 +184,7 @@ void Controller::disable() noexcept {
     switch_off(power_);
     release(holds_);
     switch_off(joints_);
+    switch_off(indexers_);
     forget_sources(jogs_);
     switch_off(homing_, settings_);
     switch_off(spindles_);
@@ -193,7 +202,8 @@ void Controller::leave_lost_mode() noexcept {
 
 Verdict Controller::set_mode(Mode mode) noexcept {
     const bool isOffsetMoving = mode == Mode::FREE && !areAtRest(offsets_);
-    const ModeConditions conditions{homing_.isUnderWay(), isAnythingMoving() || isOffsetMoving,
+    const ModeConditions conditions{homing_.isUnderWay(),
+                                    isAnythingMoving() || isOffsetMoving || busy(indexers_) != 0,
                                     kinematics_.kind() != kins::Kind::IDENTITY, isAllHomed(homing_)};
     const Reason reason = check_mode(power_, mode, conditions);
     if (reason != Reason::NONE || mode == power_.mode) {
@@ -273,6 +283,8 @@ JogSituation Controller::situation_of(const Inputs &in, const JogTarget &target)
         s.isOnPosLimit = joint.isOnPosHardLimit;
         s.isOnNegLimit = joint.isOnNegHardLimit;
     }
+    s.isLocked = limits_.locks_of(target) != 0;
+    s.isBesideIndexer = indexers_.mask != 0 && isBesideIndexer(jogs_, limits_, indexers_, target);
     s.most = limits_.jog(target);
     s.range = jog_range(limits_, map_, target, commanded(joints_).data());
     if (!target.isJoint) {
@@ -295,8 +307,10 @@ void Controller::tell_standing() noexcept {
 void Controller::publish_limits() noexcept {
     limits_ = fold_limits(settings_, map_, {homed_mask(homing_), isAllHomed(homing_)});
     configure(offsets_, limits_);
+    indexers_.mask = limits_.locks;
     PathLimits out;
     out.offset_axes = offsets_.axes;
+    out.indexer = limits_.indexer;
     out.limits = limits_.path;
     out.low = limits_.low;
     out.high = limits_.high;

@@ -41,13 +41,16 @@ PoseRange programmed_range(const Jogs &jogs, const PathLink &link, Mode mode,
 void Controller::move_joints(const Inputs &in) noexcept {
     check_probe(in);
     executor_.step(cycle_);
+    const std::uint32_t locked = held(indexers_);
     for (int j = 0; j < config_.num_joints; ++j) {
         Jog &jog = jogs_.at({true, j});
         if (extra_.joint[static_cast<std::size_t>(j)].state != Following::NONE) {
             continue;
         }
-        step_joint(jog, limits_.joints.velocity[static_cast<std::size_t>(j)], holds_.jog_scale(),
-                   config_.period_s);
+        if ((locked & 1U << j) == 0) {
+            step_joint(jog, limits_.joints.velocity[static_cast<std::size_t>(j)], holds_.jog_scale(),
+                       config_.period_s);
+        }
         follow(joints_[j], jog.planner.position, config_.period_s);
     }
     if (offsets_.axes != 0) {
@@ -77,11 +80,18 @@ void Controller::move_axes(const Inputs &in) noexcept {
         if (!map_.areJointsAxes() && hasDropped(standing_, executor_.snapshot())) {
             tell_standing();
         }
-        check_joint_steps();
+        // Kinematics that only this thread may call cannot be planned with: the machine stops where a joint
+        // has to do more than it can.
+        const bool isPlanned = map_.kind != AxisMap::Kind::UNKNOWN;
+        const Overrun overrun = isPlanned || !power_.isReady() ? Overrun{} : find_overrun(joints_, limits_);
+        if (overrun.joint >= 0) {
+            stop_category_1(overrun.isOutside ? FaultKind::JOINT_LEFT_RANGE : FaultKind::JOINT_TOO_FAST,
+                            overrun.joint, overrun.use);
+        }
         if (!retracing_.retrace.isAway()) {
-            // Nobody goes back through a hole that was tapped without turning the spindle.
-            const bool isTapping = executor_.output().tap.spindle >= 0;
-            if (holds_.isAdaptiveFeedEnabled && !isTapping) {
+            // Nobody goes back through a hole that was tapped without turning the spindle, nor behind a lock.
+            const bool isOneWay = executor_.output().tap.spindle >= 0 || busy(indexers_) != 0;
+            if (holds_.isAdaptiveFeedEnabled && !isOneWay) {
                 const int count = map_.areJointsAxes() ? 0 : config_.num_led_joints();
                 record(retracing_, pose, use_of(joints_, count, config_.period_s), limits_, config_.period_s);
             } else {
@@ -136,12 +146,15 @@ geom::Pose Controller::teleop_pose() noexcept {
         }
     }
     geom::Pose pose;
+    const std::uint32_t locked = held(indexers_);
     for (int i = 0; i < MAX_AXES; ++i) {
         Jog &jog = jogs_.at({false, i});
         if (map_.areJointsAxes()) {
             limit_axis(jog, limits_.jog({false, i}).velocity, holds_.jog_scale());
         }
-        jog.planner.step(config_.period_s);
+        if ((limits_.axis_locks[static_cast<std::size_t>(i)] & locked) == 0) {
+            jog.planner.step(config_.period_s);
+        }
         pose[i] = jog.planner.position;
     }
     return pose;
@@ -237,19 +250,6 @@ void Controller::switch_kinematics(kins::TypeSwitch &types) noexcept {
     retracing_.retrace.clear();
     rest_at(jogs_, commanded(joints_).data(), pose);
     tell_standing();
-}
-
-/// Kinematics that only this thread may call cannot be planned with: the machine stops where a joint has to
-/// do more than it can.
-void Controller::check_joint_steps() noexcept {
-    if (map_.kind != AxisMap::Kind::UNKNOWN || !power_.isReady()) {
-        return;
-    }
-    const Overrun overrun = find_overrun(joints_, limits_);
-    if (overrun.joint >= 0) {
-        stop_category_1(overrun.isOutside ? FaultKind::JOINT_LEFT_RANGE : FaultKind::JOINT_TOO_FAST,
-                        overrun.joint, overrun.use);
-    }
 }
 
 /// A probing move ends where the probe trips; in any other move a trip is a fault.

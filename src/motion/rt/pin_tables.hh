@@ -151,7 +151,7 @@ inline constexpr auto SWITCHABLE = pin_table("motion",
     in<double>("switchkins-type", "", "type of switchable kinematics; changed at rest only", [](Inputs &i, double v) { i.kinematics_type = v; }));
 
 inline constexpr auto UNLOCK = pin_table("joint.#",
-    out<bool>("unlock", "", "homing moves the joint: the indexer is to unlock; of joints in unlock_joints_mask", [](const JointView &v) { return v.o.isUnlockWanted; }),
+    out<bool>("unlock", "", "the joint is to move: the indexer is to unlock; of joints in unlock_joints_mask", [](const JointView &v) { return v.o.isUnlockWanted; }),
     in<bool>("is-unlocked", "", "it has", [](JointInputs &i, bool v) { i.isUnlocked = v; }));
 
 /// Only of extra joints.

@@ -58,6 +58,8 @@ const char *word_for(Reason reason) {
     case Reason::SINGULAR: return "singular";
     case Reason::POSE_UNKNOWN: return "pose unknown";
     case Reason::DRIVEN_BY_PIN: return "moved by a pin";
+    case Reason::INDEXER_ALONE: return "indexer alone";
+    case Reason::INDEXER_OPEN: return "indexer open";
     case Reason::COUNT: break;
     }
     return "?";
