@@ -27,7 +27,14 @@ class Phantom final : public Buffer {
     Result<bool> take(Received &, Timeout) override { return false; }
     Result<bool> look(Received &, Timeout) override { return false; }
     Result<bool> take_next(Received &, Timeout timeout) override {
-        return timeout.isForever() ? Result<bool>(bad("a PHANTOM never has a message to wait for")) : false;
+        if (timeout.isForever()) {
+            return bad("a PHANTOM never has a message to wait for");
+        }
+        Bell never;
+        for (const Deadline deadline(timeout); !deadline.isOver();) {
+            never.sleep(never.heard(), std::min(deadline.left_ns(), LONGEST_SLEEP_NS));
+        }
+        return false;
     }
     Result<> empty(Timeout) override { return {}; }
 
