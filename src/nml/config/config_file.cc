@@ -2,6 +2,7 @@
 #include "nml/config/config_file.hh"
 
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -199,6 +200,12 @@ Result<Config> load_config(const std::string &path, diag::Sink &sink) {
     Config config = parse_config(*text, path, sink);
     if (sink.count_errors() > before) {
         return fail_told("the NML configuration has wrong lines", {path, 0, 0});
+    }
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    for (BufferSettings &buffer : config.buffers) {
+        for (std::string *file : {&buffer.password_file, &buffer.file}) {
+            *file = file->empty() ? "" : (folder / *file).string();
+        }
     }
     return config;
 }

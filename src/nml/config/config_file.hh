@@ -16,7 +16,8 @@ namespace mw::nml {
 /// otherwise.
 Config parse_config(std::string_view text, const std::string &file, diag::Sink &sink);
 
-/// An error when the file cannot be read or a line of it is wrong; the sink has been told each.
+/// Files that its lines name are looked for in its folder. An error when the file cannot be read or a line of
+/// it is wrong; the sink has been told each.
 Result<Config> load_config(const std::string &path, diag::Sink &sink);
 
 }  // namespace mw::nml

@@ -27,6 +27,7 @@ struct StatusHead {
     int command_type = 0;
     std::uint64_t echo_serial_number = 0;
     CommandState state = CommandState::UNKNOWN;
+    msgs::FixedText<255> reason;  ///< of ERROR
 };
 
 /// A message of a type known when the program is compiled.
@@ -67,6 +68,7 @@ inline constexpr auto DECLARED<nml::StatusHead> =
     declare("StatusHead", 0, "", "of every status",
             field<&nml::StatusHead::command_type>("command_type", "number of the last command, 0: none"),
             field<&nml::StatusHead::echo_serial_number>("echo_serial_number", "of that command"),
-            field<&nml::StatusHead::state>("state", "how that command stands"));
+            field<&nml::StatusHead::state>("state", "how that command stands"),
+            field<&nml::StatusHead::reason>("reason", "why it was refused or has failed"));
 
 }  // namespace mw::msgs

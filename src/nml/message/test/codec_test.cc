@@ -144,11 +144,11 @@ TEST(NmlCodec, RawIsPackedInTheOrderOfTheFields_F6) {
 
 TEST(NmlCodec, AsciiAndDisplayCanBeReadByPeople_F6) {
     const Vocabulary vocabulary = Vocabulary::standard();
-    StatusMessage<msgs::IoStatus> io{{122, 9, CommandState::DONE}, {}};
+    StatusMessage<msgs::IoStatus> io{{122, 9, CommandState::DONE, {}}, {}};
     std::string bytes;
     ASSERT_TRUE(Codec(vocabulary, Encoding::DISPLAY).encode(view(io), bytes).has_value());
     EXPECT_EQ(bytes,
-              "EMC_IO_STAT_TYPE 1699\ncommand_type=122\necho_serial_number=9\nstate=DONE\n"
+              "EMC_IO_STAT_TYPE 1699\ncommand_type=122\necho_serial_number=9\nstate=DONE\nreason=\"\"\n"
               "aux.estop_requested=1\naux.chain_closed=0\ncoolant.mist=0\ncoolant.flood=0\nlube.on=0\n");
     CommandMessage<msgs::Mdi> mdi{{3}, {"G0 (\"a\\b\")\n"}};
     bytes.clear();
