@@ -7,6 +7,7 @@
 
 #include "testing/allocation_guard.hh"
 #include "traj/test/path_rig.hh"
+#include "traj/tuning.hh"
 
 namespace mw::traj::test {
 namespace {
@@ -122,6 +123,81 @@ TEST(Filtered, AnExactArcIsFollowedExactly_C13) {
             EXPECT_NEAR(geom::norm(p - at(0, 5)), 5, 1e-12);
         }
     }
+}
+
+/// X and Y by two belts.
+class Belts final : public JointMap {
+  public:
+    bool joints_at(const Pose &pose, double *joints) const noexcept override {
+        joints[0] = pose[0] + pose[1];
+        joints[1] = pose[0] - pose[1];
+        return true;
+    }
+};
+
+/// Most of a circle, exact, driven by belts that do half of what the axes may.
+struct BeltRig : JerkRig {
+    Belts map;
+    JointLimits joints;
+
+    BeltRig() {
+        joints.count = 2;
+        joints.velocity.fill(V);
+        joints.acceleration.fill(A / 2);
+        joints.jerk.fill(J / 2);
+        planner.set_joints(&map, joints);
+        ArcShape shape;
+        shape.centre = at(0, 20);
+        shape.normal[2] = 1;
+        shape.angle_rad = 1.5 * std::numbers::pi;
+        Primitive arc;
+        EXPECT_EQ(make_arc(Pose{}, at(-20, 20), shape, arc), ArcFault::NONE);
+        planner.add(arc, request(geom::PathMode::EXACT_PATH));
+        planner.release_end();
+    }
+    void expect_joints_within() const {
+        testing::LimitChecker checker({{V, A / 2, J / 2}, {V, A / 2, J / 2}}, T);
+        double belts[MAX_JOINTS] = {};
+        for (const Pose &p : samples) {
+            map.joints_at(p, belts);
+            checker.sample(belts);
+        }
+        EXPECT_TRUE(checker.isWithin()) << checker.report();
+    }
+};
+
+TEST(Filtered, AStopOnAnExactArcIsPlannedWhereJointsAreNotAxes_C13) {
+    const double tau = 0.02;  // A / J
+    for (std::uint64_t asked = 30; asked < 1500; asked += 37) {
+        BeltRig rig;
+        while (rig.cycle < asked) {
+            rig.step();
+        }
+        const double v = rig.executor.output().velocity;
+        const std::uint64_t brakes = rig.executor.snapshot().brakes;
+        rig.executor.drop();
+        while (rig.cycle < asked + 2000 && (!rig.executor.isAtRest() || rig.executor.snapshot().isDropping)) {
+            rig.step();
+        }
+        EXPECT_EQ(rig.executor.snapshot().brakes, brakes + 1) << "only the path's end: a plan has stopped it";
+        // Belts take sqrt(2) of the way; a third more for what curves take. Speeds may still grow at first.
+        const double most_s = 0.012 + 2 * tau + 1.35 * std::sqrt(2.0) * (v + 15) / (0.6 * A / 2);
+        EXPECT_LE(static_cast<double>(rig.cycle - asked) * Rig::T, most_s) << asked << ": " << v;
+        rig.expect_joints_within();
+    }
+}
+
+TEST(Filtered, AnExactArcIsAsFastAsJointsAllow_C13) {
+    BeltRig rig;
+    ASSERT_TRUE(rig.run(10));
+    rig.expect_joints_within();
+    // Belts take sqrt(2) of what the arc does; exact_arc_limit has the shares. Stands before and after it,
+    // the planner's period and latency.
+    const double v = V / std::sqrt(2.0);
+    const double a = CornerTuning::ALONG_ACCELERATION * A / 2 / std::sqrt(2.0);
+    const double way = 1.5 * std::numbers::pi * 20;
+    const double tau = A / J;
+    EXPECT_LE(static_cast<double>(rig.cycle) * Rig::T, 1.03 * (way / v + v / a) + 3 * tau + 0.015);
 }
 
 TEST(Filtered, AHoldStopsWithinTheJerkLimitAndGoesOn_C13) {
