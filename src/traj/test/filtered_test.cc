@@ -253,6 +253,38 @@ double circle_excursion(bool isBoxed) {
     return worst;
 }
 
+/// The time of a move that keeps near its line; the path before it was dropped on its way, or there was none.
+/// The mean is longer than the time to the second plan.
+std::uint64_t cycles_of_move(bool isAfterDrop) {
+    JerkRig rig;
+    Limits gentle = jerk_limits();
+    gentle.jerk.fill(J / 10);
+    rig.planner.set_limits(gentle);
+    rig.planner.begin(Pose{}, rig.executor.snapshot());
+    if (isAfterDrop) {
+        rig.planner.add(make_line(Pose{}, at(30)), request(geom::PathMode::BLEND, 0.1));
+        rig.planner.release_end();
+        while (rig.cycle < 400) {
+            rig.step();
+        }
+        rig.executor.drop();
+        while (rig.cycle < 1200) {
+            rig.step();
+        }
+    }
+    const Pose start = rig.executor.output().position;
+    rig.planner.begin(start, rig.executor.snapshot());
+    rig.planner.add(make_line(start, start + at(40)), request(geom::PathMode::BLEND, 0.1));
+    const std::uint64_t begun = rig.cycle;
+    EXPECT_TRUE(rig.run(10));
+    rig.expect_within();
+    return rig.cycle - begun;
+}
+
+TEST(Filtered, AMoveAfterADroppedPathIsAsFastAsAnyOther_C2) {
+    EXPECT_EQ(cycles_of_move(true), cycles_of_move(false));
+}
+
 TEST(Filtered, CurvesAreNotMovedBeyondSoftLimits_C13) {
     EXPECT_LE(circle_excursion(true), 1e-9);
     EXPECT_GT(circle_excursion(false), 1e-4);
