@@ -131,6 +131,7 @@ enum class Reason : std::uint16_t {
     NO_WAY_BACK,  ///< nothing is remembered of the path
     BAD_ARC,
     RIGID_TAPPING,  ///< the kinematics cannot
+    TAP_OFFSET,     ///< index: the axis of the tap that may have an external offset
     TAP_ROOM,       ///< index: the axis whose soft limit is too near
     ONE_WAY_SPINDLE,
     JOG_INHIBITED,
@@ -141,6 +142,7 @@ enum class Reason : std::uint16_t {
     TOO_FEW_JOINTS,  ///< index: those that the kinematics moves
     SINGULAR,        ///< through a pose of which the kinematics has many answers
     POSE_UNKNOWN,    ///< the kinematics has no pose that leads to where the joints stand
+    SIDE_APART,      ///< index: the joint that stands apart from the place that the pose has for it
     NO_FEEDBACK,     ///< a joint's feedback is not a number
     COUNT,
 };
@@ -186,12 +188,14 @@ enum class FaultKind : std::uint16_t {
     TAP_TOO_ABRUPT,   ///< index: spindle; value: acceleration of its turning back over the possible one
     TAP_TOO_SHALLOW,  ///< index: spindle; value: the way that is needed over the depth
     TAP_LOST,         ///< index: spindle
+    SIDE_APART,       ///< index: joint; switched on in free mode
     COUNT,
 };
 /// Only told: no path has failed.
 constexpr bool isOnlyTold(FaultKind kind) noexcept {
     return kind == FaultKind::HOMING_CLAMPED || kind == FaultKind::JOG_JOINT_LIMIT ||
-           kind == FaultKind::JOG_UNREACHABLE || kind == FaultKind::JOG_LEASE_ENDED;
+           kind == FaultKind::JOG_UNREACHABLE || kind == FaultKind::JOG_LEASE_ENDED ||
+           kind == FaultKind::SIDE_APART;
 }
 struct Fault {
     FaultKind kind = FaultKind::FOLLOWING_ERROR;

@@ -72,7 +72,7 @@ Controller::Controller(const Controller &other, Channels &channels, PathLink &li
 }
 
 bool Controller::isAnythingMoving() const noexcept {
-    const bool isOnPath = !executor_.isAtRest() || retracing_.retrace.isMoving();
+    const bool isOnPath = !executor_.isAtRest() || retracing_.retrace.isMoving() || sides_.areUnderWay();
     switch (power_.mode) {
     case Mode::FREE: return isOnPath || !areJointsAtRest(jogs_);
     case Mode::TELEOP: return isOnPath || !areAxesAtRest(jogs_);
@@ -155,6 +155,7 @@ void Controller::stop_category_1(FaultKind kind, int index, double value) noexce
     abort(homing_, homing::event::ABORT);
     executor_.drop();
     stop(jogs_);
+    stop(sides_);
     stop(offsets_);
 }
 
@@ -209,7 +210,8 @@ void Controller::step_holds(const Inputs &in) noexcept {
     motion::step(holds_, {in.adaptive_feed, in.isFeedHeld, in.isFeedInhibited,
                           link_->steps_done.load(std::memory_order_acquire)});
     const bool isReversing = holds_.isReverseWanted || retracing_.retrace.isAway();
-    executor_.hold(holds_.isStandingWanted || (power_.mode == Mode::COORD && isReversing));
+    executor_.hold(holds_.isStandingWanted || sides_.areUnderWay() ||
+                   (power_.mode == Mode::COORD && isReversing));
 }
 
 void Controller::step_homing(const Inputs &in) noexcept {

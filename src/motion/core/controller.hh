@@ -18,6 +18,7 @@
 #include "motion/core/io.hh"
 #include "motion/core/jogs/jogs.hh"
 #include "motion/core/joints/joints.hh"
+#include "motion/core/joints/sides.hh"
 #include "motion/core/offsets/external_offsets.hh"
 #include "motion/core/outputs/machine_outputs.hh"
 #include "motion/core/path_link.hh"
@@ -67,6 +68,7 @@ class Controller {
     Verdict enable(const Inputs &in) noexcept;
     Verdict set_mode(Mode mode) noexcept;
     void leave_lost_mode() noexcept;
+    Verdict lead_joints() noexcept;
     Verdict set_num_joints(const Inputs &in, int count) noexcept;
     Verdict set_parameter(const SetParameter &command) noexcept;
     JogSituation situation_of(const Inputs &in, const JogTarget &target) const noexcept;
@@ -97,7 +99,6 @@ class Controller {
     geom::Pose path_pose() noexcept;
     void move_to(const geom::Pose &pose) noexcept;
     void check_joint_steps() noexcept;
-    void remember(const geom::Pose &pose) noexcept;
     void check_probe(const Inputs &in) noexcept;
 
     // --- controller_status.cc
@@ -123,6 +124,7 @@ class Controller {
     Power power_;
     Watchdog watchdog_;
     Joints joints_;
+    Sides sides_;
     Jogs jogs_;
     HomingDrive homing_;
     Spindles spindles_;

@@ -6,6 +6,22 @@
 
 namespace mw::motion {
 
+namespace {
+
+/// What the first `count` joints do in this cycle.
+JointUse use_of(const Joints &joints, int count, double period_s) noexcept {
+    JointUse use;
+    use.count = count;
+    for (int j = 0; j < count; ++j) {
+        const auto n = static_cast<std::size_t>(j);
+        use.step[n] = joints[j].vel_cmd * period_s;
+        use.bend[n] = joints[j].acc_cmd * period_s * period_s;
+    }
+    return use;
+}
+
+}  // namespace
+
 PoseRange programmed_range(const Jogs &jogs, const PathLink &link, Mode mode,
                            const geom::Pose &pose) noexcept {
     constexpr int TRIES = 1000;
@@ -39,6 +55,15 @@ void Controller::move_joints(const Inputs &in) noexcept {
 
 /// Teleop and coord: every joint follows the pose.
 void Controller::move_axes(const Inputs &in) noexcept {
+    if (sides_.areUnderWay()) {
+        check_probe(in);
+        executor_.step(cycle_);
+        if (motion::step(sides_, joints_, config_.period_s) == SidesStep::STOPPED) {
+            power_.mode = Mode::FREE;  // each joint stands for itself
+            rest_at(jogs_, commanded(joints_).data(), without(offsets_, place_.cmd));
+        }
+        return;
+    }
     const geom::Pose pose = power_.mode == Mode::TELEOP ? teleop_pose() : path_pose();
     if (offsets_.axes != 0) {
         if (retracing_.retrace.isEmpty()) {
@@ -61,7 +86,13 @@ void Controller::move_axes(const Inputs &in) noexcept {
         if (!retracing_.retrace.isAway()) {
             // Nobody goes back through a hole that was tapped without turning the spindle.
             const bool isTapping = executor_.output().tap.spindle >= 0;
-            holds_.isAdaptiveFeedEnabled && !isTapping ? remember(pose) : retracing_.retrace.clear();
+            if (holds_.isAdaptiveFeedEnabled && !isTapping) {  // to come back to when the path is gone back
+                const JointUse use =
+                    use_of(joints_, map_.areJointsAxes() ? 0 : config_.num_joints, config_.period_s);
+                record(retracing_, pose, use, limits_, config_.period_s);
+            } else {
+                retracing_.retrace.clear();
+            }
         }
     }
     constexpr int MAX_EVENTS_PER_CYCLE = 64;
@@ -204,18 +235,6 @@ void Controller::check_joint_steps() noexcept {
         stop_category_1(overrun.isOutside ? FaultKind::JOINT_LEFT_RANGE : FaultKind::JOINT_TOO_FAST,
                         overrun.joint, overrun.use);
     }
-}
-
-/// To come back to when the path is gone back.
-void Controller::remember(const geom::Pose &pose) noexcept {
-    JointUse use;
-    use.count = map_.areJointsAxes() ? 0 : config_.num_joints;
-    for (int j = 0; j < use.count; ++j) {
-        const auto n = static_cast<std::size_t>(j);
-        use.step[n] = joints_[j].vel_cmd * config_.period_s;
-        use.bend[n] = joints_[j].acc_cmd * config_.period_s * config_.period_s;
-    }
-    record(retracing_, pose, use, limits_, config_.period_s);
 }
 
 /// A probing move ends where the probe trips; in any other move a trip is a fault.

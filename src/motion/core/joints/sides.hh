@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Joints stand a little off the place that the pose has for them: sides of a gantry that sagged while the
+// machine was off. In Cartesian modes the pose commands them, so they are led there first, within their
+// limits.
+#pragma once
+
+#include <array>
+
+#include "base/limits.hh"
+#include "motion/api/limits.hh"
+#include "motion/api/settings.hh"
+#include "motion/core/joints/joints.hh"
+#include "traj/exec/free_planner.hh"
+
+namespace mw::motion {
+
+struct Sides {
+    int count = 0;  ///< of joints that are led to their places, 0: all are there
+    bool isStopping = false;
+    std::array<traj::JogPlanner, MAX_JOINTS> planner{};
+
+    bool areUnderWay() const noexcept { return count > 0; }
+};
+
+/// Of a joint that is led by the pose: off its place by more than [JOINT_n]MIN_FERROR allows it at rest, -1
+/// for none. Joints that are left out are led nowhere. `led` is where the pose has them.
+int find_side_apart(const Joints &joints, const PerJoint &led, const Settings &settings) noexcept;
+
+/// Those that are off are led to `led`; nothing to do where all are there but for rounding.
+void begin(Sides &sides, const Joints &joints, const PerJoint &led, const FoldedLimits &limits) noexcept;
+/// They brake and stay where that leads.
+void stop(Sides &sides) noexcept;
+/// The machine is off: nothing is led.
+void forget(Sides &sides) noexcept;
+
+enum class SidesStep : bool {
+    GOES_ON,
+    STOPPED,  ///< on the way: the pose does not lead to where they stand
+};
+/// One cycle of those that are under way.
+SidesStep step(Sides &sides, Joints &joints, double period_s) noexcept;
+
+}  // namespace mw::motion
