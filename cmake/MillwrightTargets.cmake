@@ -59,7 +59,7 @@ function(mw_program name)
 endfunction()
 
 # Tests are compiled without optimisation, which would take half of their time; what they test is compiled with it.
-set(MW_TEST_FLAGS $<$<CONFIG:Release>:-O0>)
+set(MW_TEST_FLAGS -O0)
 
 # mw_unite(TARGET): several of its sources are compiled as one, which parses their common headers once.
 function(mw_unite target)

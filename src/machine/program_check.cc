@@ -336,10 +336,12 @@ std::string words_of(const diag::Diagnostic &one) {
 }
 
 /// Where joints are not axes nobody knows the pose before the start. What is beyond a limit from two poses
-/// that have nothing in common is beyond it from all; the second is asked only when something is found.
+/// that have nothing in common is beyond it from all; the second is asked only when something is found. What
+/// is handed over outlives the answer.
 IsCertain beyond_from_elsewhere(const MachineConfig &machine, const std::string &program,
                                 const ProgramSources &sources, const CheckOptions &check) {
-    return [=, found = std::optional<std::set<std::string>>()](const diag::Diagnostic &error) mutable {
+    return [&machine, &program, sources, &check,
+            found = std::optional<std::set<std::string>>()](const diag::Diagnostic &error) mutable {
         if (!found) {
             found.emplace();
             diag::Sink collected([&found](const diag::Diagnostic &one) { found->insert(words_of(one)); });

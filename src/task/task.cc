@@ -196,6 +196,9 @@ void Task::end_requests() {
     tell(state_.end_request(now_ns_));
     const motion::Status &motion = motion_.status();
     tell(mode_.step(motion_.isAnswered(mode_.order()), motion.mode, now_ns_));
+    if (!run_.isRunning()) {
+        mode_.follow(motion.mode);
+    }
     tell(homing_.step(motion_.isAnswered(homing_.order()), motion));
     const auto isAnswered = [this](motion::CommandId order) { return motion_.isAnswered(order); };
     while (const auto ended = orders_.next(isAnswered, now_ns_)) {

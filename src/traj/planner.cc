@@ -35,7 +35,7 @@ Sequence Planner::add(const Primitive &primitive, const MoveRequest &request) no
 
 bool Planner::add_event(PathEvent event) noexcept {
     builder_.keep_end();
-    event.after_move = path_.last_move();
+    event.after_move = path_.end_move();
     event.drops = drops_;
     return path_.store().events.push(event);
 }

@@ -51,7 +51,8 @@ class Planner {
     Sequence add(const Primitive &primitive, const MoveRequest &request) noexcept;
     /// Where the next move starts.
     const Pose &end() const noexcept { return builder_.end(); }
-    Sequence last_move() const noexcept { return path_.last_move(); }
+    /// Of this path, 0 as long as it has none.
+    Sequence last_move() const noexcept { return path_.end_move(); }
     /// An output change when what has been added so far is complete; false when there is no room.
     bool add_event(PathEvent event) noexcept;
     /// Nothing follows for now: the last move is planned to its very end.

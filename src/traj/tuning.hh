@@ -79,6 +79,8 @@ struct JointTuning {
     /// judges what this misses.
     static constexpr double SAMPLING_MARGIN = 1.02;
     static constexpr int SAMPLES = 3;
+    /// Of an arc that is one piece: two for what others are cut into.
+    static constexpr int MOST_SAMPLES = 2 * PathTuning::MOST_ARC_CUTS + 1;
     /// Path over which derivatives are taken: small against curves of machines, large against rounding
     /// (second differences of 1000 mm are then exact to 1e-6).
     static constexpr double STEP = 1e-3;

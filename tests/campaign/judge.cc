@@ -153,7 +153,9 @@ void Judge::check_amplifiers(const Sample &s) {
         if (isRise && !maySwitchOn_) {
             fail("energise", fmt::format("amplifier of joint {} comes on by itself", j));
         }
-        const double step = std::abs(q.motor_cmd - q.motor_fb);
+        // One that moves by itself is taken where motion has seen it, a cycle ago.
+        const double step =
+            std::min(std::abs(q.motor_cmd - q.motor_fb), std::abs(q.motor_cmd - before.motor_fb));
         if (isRise && step > d.velocity * period_ + PLACE_ROUNDING) {
             fail("step", fmt::format("joint {} is switched on {:.6g} from where its motor is", j, step));
         }

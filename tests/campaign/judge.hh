@@ -98,7 +98,6 @@ class Judge {
     Stop how_ = Stop::ALONG_THE_PATH;
     int delay_ = 0, since_stop_ = 0;
     double stop_due_s_ = 0, stop_least_s_ = 0;
-    int off_wait_ = 0;
     int standing_ = 0;
     int restless_ = 0;  ///< cycles left in which commands of before a stop may still arrive
     double slowest_stop_ = 0;

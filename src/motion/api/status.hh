@@ -132,6 +132,7 @@ enum class Reason : std::uint16_t {
     NO_WAY_BACK,  ///< nothing is remembered of the path
     BAD_ARC,
     RIGID_TAPPING,  ///< the kinematics cannot
+    TAP_OFFSET,     ///< index: the axis of the tap that may have an external offset
     TAP_ROOM,       ///< index: the axis whose soft limit is too near
     ONE_WAY_SPINDLE,
     JOG_INHIBITED,
@@ -142,6 +143,7 @@ enum class Reason : std::uint16_t {
     TOO_FEW_JOINTS,  ///< index: those that the kinematics moves
     SINGULAR,        ///< through a pose of which the kinematics has many answers
     POSE_UNKNOWN,    ///< the kinematics has no pose that leads to where the joints stand
+    SIDE_APART,      ///< index: the joint that stands apart from the place that the pose has for it
     NO_FEEDBACK,     ///< a joint's feedback is not a number
     DRIVEN_BY_PIN,   ///< an extra joint that is homed
     INDEXER_ALONE,   ///< a locking indexer moves alone, in programs with G0; others while it is locked
@@ -195,13 +197,14 @@ enum class FaultKind : std::uint16_t {
     INDEXER_LOCKED_IN_MOVE,  ///< index: the joint whose pin is-unlocked has fallen meanwhile
     EXTRA_JOINT_LOST,        ///< index: the joint whose pin posthome-cmd is not a number
     EXTRA_JOINT_LIMIT,       ///< index: the joint whose pin posthome-cmd asks for what lies beyond its range
+    SIDE_APART,              ///< index: joint; switched on in free mode
     COUNT,
 };
 /// Only told: no path has failed.
 constexpr bool isOnlyTold(FaultKind kind) noexcept {
     return kind == FaultKind::HOMING_CLAMPED || kind == FaultKind::JOG_JOINT_LIMIT ||
            kind == FaultKind::JOG_UNREACHABLE || kind == FaultKind::JOG_LEASE_ENDED ||
-           kind == FaultKind::EXTRA_JOINT_LIMIT;
+           kind == FaultKind::EXTRA_JOINT_LIMIT || kind == FaultKind::SIDE_APART;
 }
 struct Fault {
     FaultKind kind = FaultKind::FOLLOWING_ERROR;

@@ -37,6 +37,11 @@ std::string kinematics_reason(const Answer &answer) {
     case Reason::POSE_UNKNOWN:
         return "the kinematics has no pose for where the joints stand: jog the joints, or see what its "
                "module starts looking from";
+    case Reason::SIDE_APART:
+        return fmt::format(
+            "joint {} stands apart from the other joint of its axis by more than its MIN_FERROR: bring it "
+            "there, or home, in joint mode",
+            answer.index);
     case Reason::TOO_FEW_JOINTS:
         return fmt::format(
             "the kinematics moves {} joints: see [KINS]JOINTS and coordinates= of the kinematics",
@@ -50,6 +55,10 @@ std::string tap_reason(const Answer &answer) {
     case Reason::RIGID_TAPPING:
         return "G33.1: rigid tapping wants a machine whose joints are its axes (trivkins); tap with a "
                "floating holder (G84, G74)";
+    case Reason::TAP_OFFSET:
+        return fmt::format(
+            "{} may have an external offset (OFFSET_AV_RATIO): rigid tapping along it is not possible",
+            place_name(answer));
     case Reason::TAP_ROOM:
         return fmt::format(
             "the tap begins or ends too near to the soft limit of {}: the tool goes on by up to "
@@ -135,8 +144,10 @@ std::string reason_text(const Answer &answer) {
     case Reason::UNREACHABLE:
     case Reason::SINGULAR:
     case Reason::POSE_UNKNOWN:
+    case Reason::SIDE_APART:
     case Reason::TOO_FEW_JOINTS: return kinematics_reason(answer);
     case Reason::RIGID_TAPPING:
+    case Reason::TAP_OFFSET:
     case Reason::TAP_ROOM:
     case Reason::ONE_WAY_SPINDLE: return tap_reason(answer);
     }
@@ -260,6 +271,11 @@ std::string what_failed(const Fault &fault) {
     case FaultKind::JOG_LEASE_ENDED:
         return fmt::format("the jog of {} was stopped: it was not renewed within {:g} ms",
                            fault.detail != 0 ? joint_name(i) : axis_name(i), fault.value * 1e3);
+    case FaultKind::SIDE_APART:
+        return fmt::format(
+            "{} stands apart from the other joint of its axis by more than its MIN_FERROR: the machine is on "
+            "in joint mode; home, or bring it there, before axes move",
+            joint_name(i));
     case FaultKind::PATH_LIMIT: return "the path left its limits";
     case FaultKind::MISC_ERROR: return "an error input of motion is on: see pins motion.misc-error-NN";
     case FaultKind::JOINT_TOO_FAST:

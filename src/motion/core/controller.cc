@@ -34,8 +34,9 @@ homing::JointInput homing_input(const JointInputs &pins, const Joint &joint, con
 
 Controller::Controller(const ControllerConfig &config, const kins::Kinematics &kinematics, Channels &channels,
                        PathLink &link) noexcept
-    : config_(config), loaded_joints_(config.num_joints), kinematics_(kinematics), channels_(&channels),
-      link_(&link), executor_(link.store, config.period_s) {
+    : config_(config), kinematics_(kinematics), channels_(&channels), link_(&link),
+      executor_(link.store, config.period_s) {
+    joints_.loaded = config.num_joints;
     spindles_.count = config.num_spindles;
     outputs_.num_digital = config.num_dio;
     outputs_.num_analog = config.num_aio;
@@ -76,7 +77,7 @@ Controller::Controller(const Controller &other, Channels &channels, PathLink &li
 }
 
 bool Controller::isAnythingMoving() const noexcept {
-    const bool isOnPath = !executor_.isAtRest() || retracing_.retrace.isMoving();
+    const bool isOnPath = !executor_.isAtRest() || retracing_.retrace.isMoving() || sides_.areUnderWay();
     switch (power_.mode) {
     case Mode::FREE: return isOnPath || !areJointsAtRest(jogs_);
     case Mode::TELEOP: return isOnPath || !areAxesAtRest(jogs_);
@@ -101,7 +102,11 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
         stop_category_1(FaultKind::TASK_LOST, -1, watchdog_.standing_s);
     }
     check_faults(in);
-    step_holds(in);
+    motion::step(holds_, {in.adaptive_feed, in.isFeedHeld, in.isFeedInhibited,
+                          link_->steps_done.load(std::memory_order_acquire)});
+    const bool isReversing = holds_.isReverseWanted || retracing_.retrace.isAway();
+    executor_.hold(holds_.isStandingWanted || sides_.areApart() ||
+                   (power_.mode == Mode::COORD && isReversing));
     step_kinematics(in);
     for (int n = 0; n < config_.num_spindles; ++n) {
         const SpindleInputs &spindle = in.spindle[static_cast<std::size_t>(n)];
@@ -165,6 +170,7 @@ void Controller::stop_category_1(FaultKind kind, int index, double value) noexce
     abort(homing_, homing::event::ABORT);
     executor_.drop();
     stop(jogs_);
+    stop(sides_);
     stop(offsets_);
     hold(extra_);
 }
@@ -214,14 +220,6 @@ void Controller::check_joints(const Inputs &in) noexcept {
             break;
         }
     }
-}
-
-/// What keeps the path from moving on for now.
-void Controller::step_holds(const Inputs &in) noexcept {
-    motion::step(holds_, {in.adaptive_feed, in.isFeedHeld, in.isFeedInhibited,
-                          link_->steps_done.load(std::memory_order_acquire)});
-    const bool isReversing = holds_.isReverseWanted || retracing_.retrace.isAway();
-    executor_.hold(holds_.isStandingWanted || (power_.mode == Mode::COORD && isReversing));
 }
 
 void Controller::step_homing(const Inputs &in) noexcept {

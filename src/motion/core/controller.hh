@@ -20,6 +20,7 @@
 #include "motion/core/io.hh"
 #include "motion/core/jogs/jogs.hh"
 #include "motion/core/joints/joints.hh"
+#include "motion/core/joints/sides.hh"
 #include "motion/core/offsets/external_offsets.hh"
 #include "motion/core/outputs/machine_outputs.hh"
 #include "motion/core/path_link.hh"
@@ -72,6 +73,7 @@ class Controller {
     Verdict enable(const Inputs &in) noexcept;
     Verdict set_mode(Mode mode) noexcept;
     void leave_lost_mode() noexcept;
+    Verdict lead_joints() noexcept;
     Verdict set_num_joints(const Inputs &in, int count) noexcept;
     Verdict set_parameter(const SetParameter &command) noexcept;
     JogSituation situation_of(const Inputs &in, const JogTarget &target) const noexcept;
@@ -83,7 +85,6 @@ class Controller {
     void use_joints(int count) noexcept;
     void check_faults(const Inputs &in) noexcept;
     void check_joints(const Inputs &in) noexcept;
-    void step_holds(const Inputs &in) noexcept;
     void step_kinematics(const Inputs &in) noexcept;
     void switch_kinematics(kins::TypeSwitch &types) noexcept;
     void step_homing(const Inputs &in) noexcept;
@@ -110,8 +111,7 @@ class Controller {
     void fill_path(Status &status) const noexcept;
     void publish_view(const Inputs &in) noexcept;
 
-    ControllerConfig config_;
-    int loaded_joints_;  ///< config_ has those that are in use
+    ControllerConfig config_;  ///< with the joints that are in use
     const kins::Kinematics &kinematics_;
     Channels *channels_;
     PathLink *link_;
@@ -128,6 +128,7 @@ class Controller {
     Power power_;
     Watchdog watchdog_;
     Joints joints_;
+    Sides sides_;
     Jogs jogs_;
     HomingDrive homing_;
     Spindles spindles_;

@@ -144,6 +144,7 @@ Verdict Controller::abort_all(const Abort &command) noexcept {
     executor_.drop();
     stop(jogs_);
     hold(extra_);
+    stop(sides_);
     release(holds_);
     isCoordError_ = false;
     return {};
@@ -160,9 +161,14 @@ Verdict Controller::enable(const Inputs &in) noexcept {
     if (verdict.reason != Reason::NONE) {
         return verdict;
     }
-    if (power_.mode != Mode::FREE && !(map_.areJointsAxes() || isPlaceKnown(kinematics_, place_.cmd, joints_,
-                                                                            stride_of(limits_, config_)))) {
-        return {Reason::POSE_UNKNOWN};
+    if (power_.mode != Mode::FREE) {
+        const Verdict led = lead_joints();
+        if (led.reason == Reason::SIDE_APART) {
+            raise(FaultKind::SIDE_APART, led.index, 0);
+            power_.mode = Mode::FREE;  // each joint stands for itself
+        } else if (led.reason != Reason::NONE) {
+            return led;
+        }
     }
     switch_on(power_);
     switch_on(joints_);
@@ -181,6 +187,7 @@ Verdict Controller::enable(const Inputs &in) noexcept {
 void Controller::disable() noexcept {
     executor_.stop_now();
     stop_at_once(offsets_);
+    forget(sides_);
     switch_off(power_);
     release(holds_);
     switch_off(joints_);
@@ -200,6 +207,27 @@ void Controller::leave_lost_mode() noexcept {
     }
 }
 
+/// In Cartesian modes the pose commands the joints: to where they stand, but for a little that they are led.
+Verdict Controller::lead_joints() noexcept {
+    const bool isPlaced =
+        map_.areJointsAxes() || isPlaceKnown(kinematics_, place_.cmd, joints_, stride_of(limits_, config_));
+    PerJoint led = commanded(joints_);
+    const bool isModelled =
+        kinematics_.kind() == kins::Kind::IDENTITY || kinematics_.kind() == kins::Kind::BOTH;
+    if (!isPlaced) {
+        return {Reason::POSE_UNKNOWN};
+    }
+    if (!isModelled || !isAnswered(kinematics_.inverse(place_.cmd, led.data()))) {
+        return {};
+    }
+    const int apart = map_.areJointsAxes() ? find_side_apart(joints_, led, settings_) : -1;
+    if (apart >= 0) {
+        return verdict_of(apart, Reason::SIDE_APART);
+    }
+    begin(sides_, joints_, led, limits_);
+    return {};
+}
+
 Verdict Controller::set_mode(Mode mode) noexcept {
     const bool isOffsetMoving = mode == Mode::FREE && !areAtRest(offsets_);
     const ModeConditions conditions{homing_.isUnderWay(),
@@ -209,9 +237,14 @@ Verdict Controller::set_mode(Mode mode) noexcept {
     if (reason != Reason::NONE || mode == power_.mode) {
         return {reason};
     }
-    if (mode != Mode::FREE && !(map_.areJointsAxes() || isPlaceKnown(kinematics_, place_.cmd, joints_,
-                                                                     stride_of(limits_, config_)))) {
-        return {Reason::POSE_UNKNOWN};
+    if (mode != Mode::FREE) {
+        const Verdict led = lead_joints();
+        if (led.reason != Reason::NONE) {
+            return led;
+        }
+    }
+    if (mode == Mode::FREE) {
+        forget(sides_);
     }
     executor_.drop();
     executor_.hold(false);
@@ -228,12 +261,12 @@ Verdict Controller::set_mode(Mode mode) noexcept {
 /// A joint that is no longer there is not homed when it comes back, and then is where its motor is.
 Verdict Controller::set_num_joints(const Inputs &in, int count) noexcept {
     const kins::IdentityMap *identity = kinematics_.identity();
-    const int least = identity != nullptr ? std::min(identity->num_joints, loaded_joints_) : 1;
-    const int needed = extra_.count > 0 ? loaded_joints_ : least;  // extra joints are the last ones
+    const int least = identity != nullptr ? std::min(identity->num_joints, joints_.loaded) : 1;
+    const int needed = extra_.count > 0 ? joints_.loaded : least;  // extra joints are the last ones
     if (power_.isEnabled) {
         return {Reason::SWITCHED_ON};
     }
-    if (count > loaded_joints_) {
+    if (count > joints_.loaded) {
         return verdict_of(count - 1, Reason::NO_SUCH_JOINT);
     }
     if (count < needed) {

@@ -62,6 +62,17 @@ void Controller::move_joints(const Inputs &in) noexcept {
 
 /// Teleop and coord: every joint follows the pose.
 void Controller::move_axes(const Inputs &in) noexcept {
+    if (sides_.areApart()) {
+        check_probe(in);
+        executor_.step(cycle_);
+        const bool isWanted = link_->queue_depth.load(std::memory_order_relaxed) != 0 ||
+                              !areAxesAtRest(jogs_) || areAsked(offsets_, in.axis_offset);
+        if (motion::step(sides_, joints_, isWanted, config_.period_s) == SidesStep::STOPPED) {
+            power_.mode = Mode::FREE;  // each joint stands for itself
+            rest_at(jogs_, commanded(joints_).data(), without(offsets_, place_.cmd));
+        }
+        return;
+    }
     const geom::Pose pose = power_.mode == Mode::TELEOP ? teleop_pose() : path_pose();
     if (offsets_.axes != 0) {
         if (retracing_.retrace.isEmpty()) {

@@ -76,7 +76,7 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
     fill(homing_, out);
     fill(indexers_, out);
     fill(spindles_, in, power_.isEnabled, out);
-    for (int j = config_.num_joints; j < loaded_joints_; ++j) {
+    for (int j = config_.num_joints; j < joints_.loaded; ++j) {
         fill_unused(in.joint[static_cast<std::size_t>(j)], j, out);
     }
     for (int i = 0; i < MAX_AXES; ++i) {

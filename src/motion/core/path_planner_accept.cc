@@ -311,6 +311,13 @@ Reason PathPlanner::accept_tap(const PathCommand &c, const RigidTap &tap) noexce
     }
     const traj::Primitive in = traj::make_line(planner_.end(), tap.end);
     const bool isLine = in.length > 1e-12 * (1.0 + geom::norm(tap.end));
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        // The room for turning back beyond both ends would have to be kept free of offsets.
+        if (in.lin[i] != 0 && (limits_.offset_axes >> i & 1U) != 0) {
+            refused_index_ = static_cast<std::int16_t>(i);
+            return Reason::TAP_OFFSET;
+        }
+    }
     if (!isLine || !tap.terms.isThread() || !(tap.pitch_scale > 0)) {
         return Reason::OUT_OF_RANGE;
     }

@@ -47,6 +47,7 @@ const char *word_for(Reason reason) {
     case Reason::NO_WAY_BACK: return "no way back";
     case Reason::BAD_ARC: return "bad arc";
     case Reason::RIGID_TAPPING: return "not supported";
+    case Reason::TAP_OFFSET: return "offsets";
     case Reason::TAP_ROOM: return "no room";
     case Reason::ONE_WAY_SPINDLE: return "one way";
     case Reason::JOG_INHIBITED: return "inhibited";
@@ -60,6 +61,7 @@ const char *word_for(Reason reason) {
     case Reason::DRIVEN_BY_PIN: return "moved by a pin";
     case Reason::INDEXER_ALONE: return "indexer alone";
     case Reason::INDEXER_OPEN: return "indexer open";
+    case Reason::SIDE_APART: return "sides apart";
     case Reason::COUNT: break;
     }
     return "?";

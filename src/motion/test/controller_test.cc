@@ -279,6 +279,22 @@ TEST(Controller, IncrementalJogsAddUpAndStopAtTheLimit_C8) {
     EXPECT_EQ(rig.out->joint[0].motor_pos_cmd, 20.0);
 }
 
+TEST(Controller, OutputsWithoutAMoveComeOnAfterAMoveThatWasDropped_C4_C7) {
+    MotionRig rig;
+    rig.ready();
+    rig.line(at(50));
+    rig.send_path(Flush{});
+    rig.step(100);
+    rig.send(Abort{++rig.epoch});
+    rig.step(500);
+    rig.send_path(SynchedDigitalOutput{2, true});
+    const CommandId last = rig.send_path(Flush{});
+    rig.step(100);
+    EXPECT_TRUE(rig.isDone(last));
+    EXPECT_EQ(rig.status().digital_out & 4U, 4U);
+    EXPECT_TRUE(rig.status().isInPosition);
+}
+
 TEST(Controller, TeleopJogsAnAxisOfAGantry_C9) {
     MotionRig rig("XYYZ");
     rig.ready(Mode::TELEOP);

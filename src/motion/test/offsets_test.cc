@@ -282,6 +282,24 @@ TEST(Offsets, AProbeTripsAtAPlaceOfTheProgram_C15) {
     EXPECT_NEAR(rig.motor(0) - rig.status().axis[0].external_offset, rig.status().probed_pos[0], 0.1);
 }
 
+TEST(Offsets, ARigidTapAlongTheirAxisIsRefusedAlongAnotherItIsNot_C15) {
+    OffsetRig rig;
+    rig.ready();
+    RigidTap tap;
+    tap.terms.feed_per_revolution = 1;
+    tap.end = at(0, 0, -5);
+    const CommandId along = rig.send_path(tap);
+    rig.go(50);
+    EXPECT_EQ(rig.refusal(along), Reason::TAP_OFFSET) << "it turns back beyond what offsets are told of";
+    rig.send(Abort{++rig.epoch});
+    rig.go(20);
+    tap.end = at(0, -5, 0);
+    const CommandId beside = rig.send_path(tap);
+    rig.go(50);
+    EXPECT_EQ(rig.refusal(beside), Reason::NONE);
+    EXPECT_EQ(rig.link->queue_depth.load(), 1U) << "it waits for the spindle";
+}
+
 TEST(Offsets, AStopBrakesThemToo_C6_C15) {
     OffsetRig rig;
     rig.ready();

@@ -22,6 +22,12 @@ std::optional<Ending> OperatingMode::step(bool isAnswered, motion::Mode motion_m
     return std::nullopt;
 }
 
+void OperatingMode::follow(motion::Mode motion_mode) {
+    if (!isChanging() && motion_mode != motion::Mode::COORD) {
+        mode_ = Mode::MANUAL;
+    }
+}
+
 bool OutOfModeWatch::step(bool isOut, std::int64_t now_ns) {
     constexpr std::int64_t LONGEST_NS = 1000000000;
     since_ns_ = isOut ? std::optional(since_ns_.value_or(now_ns)) : std::nullopt;

@@ -17,6 +17,9 @@ class OperatingMode {
     motion::CommandId order() const { return request_.order(); }
     /// Once a cycle. `isAnswered`: motion has answered the order.
     std::optional<Ending> step(bool isAnswered, motion::Mode motion_mode, std::int64_t now_ns);
+    /// Once a cycle, as nothing runs: a motion controller that has left the coordinated mode by itself (homes
+    /// lost, sides of a gantry apart) takes no path. Whoever wants one asks for the mode again.
+    void follow(motion::Mode motion_mode);
     std::optional<Ending> refuse(motion::CommandId order, const std::string &reason) {
         return request_.refuse(order, reason);
     }

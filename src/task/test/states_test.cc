@@ -173,6 +173,17 @@ TEST(OperatingMode, StaysWhenMotionRefusesIsLateOrTheWorkIsAborted_D1) {
     EXPECT_EQ(mode.mode(), Mode::MANUAL);
 }
 
+TEST(OperatingMode, IsManualWhereMotionHasLeftTheCoordinatedModeByItself_D1) {
+    OperatingMode mode;
+    mode.begin(Mode::MDI, motion::Mode::COORD, 4, 20, 0);
+    mode.follow(motion::Mode::FREE);
+    ASSERT_EQ(mode.step(true, motion::Mode::COORD, 1)->progress, Progress::DONE) << "a change under way";
+    mode.follow(motion::Mode::COORD);
+    EXPECT_EQ(mode.mode(), Mode::MDI);
+    mode.follow(motion::Mode::FREE);
+    EXPECT_EQ(mode.mode(), Mode::MANUAL) << "so that asking for MDI again is no command without effect";
+}
+
 TEST(OutOfModeWatch, AllowsOneSecondAtATime_D1) {
     OutOfModeWatch watch;
     EXPECT_FALSE(watch.step(true, 5 * S));

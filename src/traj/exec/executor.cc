@@ -66,7 +66,8 @@ const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
         const bool isValid =
             next_switch_.brakes == state_.brakes && next_switch_.switch_cycle == cycle && isFree;
         if (isValid) {
-            if (next_switch_.filter != state_.filter) {
+            if (isAtRest()) {
+                // What is remembered begins here: before, the places were those of another path.
                 state_.filter = next_switch_.filter;
                 mean_.reset(leader_, state_.filter, state_.tick);
             }

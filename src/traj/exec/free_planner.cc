@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace mw::traj {
 
@@ -102,9 +103,10 @@ void JogPlanner::add_reach(double &low, double &high) const noexcept {
 
 /// From rest: the mean is as long as the acceleration needs to turn about.
 void JogPlanner::begin(double dt) noexcept {
-    const double samples = std::ceil(2.0 * max_acceleration / (max_jerk * dt) - 1e-9);
+    const double samples =
+        std::ceil((mean_s > 0 ? mean_s / dt : 2.0 * max_acceleration / (max_jerk * dt)) - 1e-9);
     length_ = static_cast<std::uint32_t>(std::clamp(samples, 2.0, static_cast<double>(MOST_SAMPLES)));
-    jerk_ = max_jerk;
+    jerk_ = max_jerk > 0 ? max_jerk : std::numeric_limits<double>::infinity();
     leader_.reset(position);
     origin_ = position;
     way_.fill(0.0);
@@ -123,7 +125,8 @@ void JogPlanner::add(double x) noexcept {
 }
 
 void JogPlanner::step(double dt) noexcept {
-    const bool isBeginning = length_ <= 1 && max_jerk > 0 && max_acceleration > 0 && velocity == 0.0;
+    const bool isSmooth = max_jerk > 0 || mean_s > 0;
+    const bool isBeginning = length_ <= 1 && isSmooth && max_acceleration > 0 && velocity == 0.0;
     if (isBeginning && position != target) {
         begin(dt);
     }

@@ -36,6 +36,9 @@ class JogPlanner : public FreePlanner {
   public:
     /// 0: none. Taken when a move begins at rest. [unit/s^3]
     double max_jerk = 0;
+    /// Of the mean of a move that begins at rest; 0: 2 A / J. Who gives it keeps other limits by
+    /// `max_acceleration`: J tau / 2 at most. [s]
+    double mean_s = 0;
 
     bool isAtRest() const noexcept { return length_ <= 1 && FreePlanner::isAtRest(); }
     void reset(double at) noexcept {
@@ -47,6 +50,10 @@ class JogPlanner : public FreePlanner {
     void step(double dt) noexcept;
     /// Farthest place where it may come to rest when it brakes after one more step.
     double rest_after(double dt) const noexcept;
+    /// What is commanded is its mean of the last samples, or itself.
+    const FreePlanner &leader() const noexcept { return length_ > 1 ? leader_ : *this; }
+    /// The time of the mean; 0: the leader itself is commanded.
+    double mean_in_force_s(double dt) const noexcept { return length_ > 1 ? length_ * dt : 0.0; }
     /// Widens `low` to `high` by where it may come to on its way to the target.
     void add_reach(double &low, double &high) const noexcept;
 

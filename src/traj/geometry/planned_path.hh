@@ -40,7 +40,10 @@ class PlannedPath {
         oldest_piece_ = first_piece_;
     }
     Sequence first_move() const noexcept { return first_move_; }
+    /// Of all paths; one that was dropped is never done.
     Sequence last_move() const noexcept { return last_move_; }
+    /// Of this path, 0 as long as it has none.
+    Sequence end_move() const noexcept { return last_move_ < first_move_ ? 0 : last_move_; }
     Sequence first_piece() const noexcept { return first_piece_; }
     Sequence last_piece() const noexcept { return last_piece_; }
     /// The executor's place; earlier pieces are free.

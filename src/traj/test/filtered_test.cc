@@ -7,6 +7,7 @@
 
 #include "testing/allocation_guard.hh"
 #include "traj/test/path_rig.hh"
+#include "traj/tuning.hh"
 
 namespace mw::traj::test {
 namespace {
@@ -124,6 +125,81 @@ TEST(Filtered, AnExactArcIsFollowedExactly_C13) {
     }
 }
 
+/// X and Y by two belts.
+class Belts final : public JointMap {
+  public:
+    bool joints_at(const Pose &pose, double *joints) const noexcept override {
+        joints[0] = pose[0] + pose[1];
+        joints[1] = pose[0] - pose[1];
+        return true;
+    }
+};
+
+/// Most of a circle, exact, driven by belts that do half of what the axes may.
+struct BeltRig : JerkRig {
+    Belts map;
+    JointLimits joints;
+
+    BeltRig() {
+        joints.count = 2;
+        joints.velocity.fill(V);
+        joints.acceleration.fill(A / 2);
+        joints.jerk.fill(J / 2);
+        planner.set_joints(&map, joints);
+        ArcShape shape;
+        shape.centre = at(0, 20);
+        shape.normal[2] = 1;
+        shape.angle_rad = 1.5 * std::numbers::pi;
+        Primitive arc;
+        EXPECT_EQ(make_arc(Pose{}, at(-20, 20), shape, arc), ArcFault::NONE);
+        planner.add(arc, request(geom::PathMode::EXACT_PATH));
+        planner.release_end();
+    }
+    void expect_joints_within() const {
+        testing::LimitChecker checker({{V, A / 2, J / 2}, {V, A / 2, J / 2}}, T);
+        double belts[MAX_JOINTS] = {};
+        for (const Pose &p : samples) {
+            map.joints_at(p, belts);
+            checker.sample(belts);
+        }
+        EXPECT_TRUE(checker.isWithin()) << checker.report();
+    }
+};
+
+TEST(Filtered, AStopOnAnExactArcIsPlannedWhereJointsAreNotAxes_C13) {
+    const double tau = 0.02;  // A / J
+    for (std::uint64_t asked = 30; asked < 1500; asked += 37) {
+        BeltRig rig;
+        while (rig.cycle < asked) {
+            rig.step();
+        }
+        const double v = rig.executor.output().velocity;
+        const std::uint64_t brakes = rig.executor.snapshot().brakes;
+        rig.executor.drop();
+        while (rig.cycle < asked + 2000 && (!rig.executor.isAtRest() || rig.executor.snapshot().isDropping)) {
+            rig.step();
+        }
+        EXPECT_EQ(rig.executor.snapshot().brakes, brakes + 1) << "only the path's end: a plan has stopped it";
+        // Belts take sqrt(2) of the way; a third more for what curves take. Speeds may still grow at first.
+        const double most_s = 0.012 + 2 * tau + 1.35 * std::sqrt(2.0) * (v + 15) / (0.6 * A / 2);
+        EXPECT_LE(static_cast<double>(rig.cycle - asked) * Rig::T, most_s) << asked << ": " << v;
+        rig.expect_joints_within();
+    }
+}
+
+TEST(Filtered, AnExactArcIsAsFastAsJointsAllow_C13) {
+    BeltRig rig;
+    ASSERT_TRUE(rig.run(10));
+    rig.expect_joints_within();
+    // Belts take sqrt(2) of what the arc does; exact_arc_limit has the shares. Stands before and after it,
+    // the planner's period and latency.
+    const double v = V / std::sqrt(2.0);
+    const double a = CornerTuning::ALONG_ACCELERATION * A / 2 / std::sqrt(2.0);
+    const double way = 1.5 * std::numbers::pi * 20;
+    const double tau = A / J;
+    EXPECT_LE(static_cast<double>(rig.cycle) * Rig::T, 1.03 * (way / v + v / a) + 3 * tau + 0.015);
+}
+
 TEST(Filtered, AHoldStopsWithinTheJerkLimitAndGoesOn_C13) {
     JerkRig rig;
     rig.planner.add(make_line(Pose{}, at(60)), request(geom::PathMode::EXACT_STOP));
@@ -175,6 +251,38 @@ double circle_excursion(bool isBoxed) {
         worst = std::max({worst, std::abs(p[0]) - RADIUS, -p[1], p[1] - 2 * RADIUS});
     }
     return worst;
+}
+
+/// The time of a move that keeps near its line; the path before it was dropped on its way, or there was none.
+/// The mean is longer than the time to the second plan.
+std::uint64_t cycles_of_move(bool isAfterDrop) {
+    JerkRig rig;
+    Limits gentle = jerk_limits();
+    gentle.jerk.fill(J / 10);
+    rig.planner.set_limits(gentle);
+    rig.planner.begin(Pose{}, rig.executor.snapshot());
+    if (isAfterDrop) {
+        rig.planner.add(make_line(Pose{}, at(30)), request(geom::PathMode::BLEND, 0.1));
+        rig.planner.release_end();
+        while (rig.cycle < 400) {
+            rig.step();
+        }
+        rig.executor.drop();
+        while (rig.cycle < 1200) {
+            rig.step();
+        }
+    }
+    const Pose start = rig.executor.output().position;
+    rig.planner.begin(start, rig.executor.snapshot());
+    rig.planner.add(make_line(start, start + at(40)), request(geom::PathMode::BLEND, 0.1));
+    const std::uint64_t begun = rig.cycle;
+    EXPECT_TRUE(rig.run(10));
+    rig.expect_within();
+    return rig.cycle - begun;
+}
+
+TEST(Filtered, AMoveAfterADroppedPathIsAsFastAsAnyOther_C2) {
+    EXPECT_EQ(cycles_of_move(true), cycles_of_move(false));
 }
 
 TEST(Filtered, CurvesAreNotMovedBeyondSoftLimits_C13) {

@@ -89,6 +89,26 @@ TEST(JogPlanner, RandomTargetChangesKeepTheJerkLimitToo_C8_C13) {
     }
 }
 
+TEST(JogPlanner, AMeanThatIsGivenBoundsTheJerkByTheAcceleration_C8_C13) {
+    JogPlanner p;
+    p.max_velocity = 100;
+    p.max_acceleration = 1000;
+    p.mean_s = 0.05;
+    p.target = 30;
+    testing::LimitChecker checker({{100, 1000, 2 * 1000 / 0.05}}, T);
+    for (int i = 0; i < 2000; ++i) {
+        if (i == 80) {  // in the middle of speeding up
+            p.target = -20;
+        }
+        p.step(T);
+        EXPECT_DOUBLE_EQ(p.mean_in_force_s(T), p.isAtRest() ? 0.0 : 0.05);
+        checker.sample(&p.position);
+    }
+    EXPECT_EQ(p.position, -20);
+    EXPECT_TRUE(checker.isWithin()) << checker.report();
+    EXPECT_GT(checker.worst_jerk(), 0.9) << "no gentler than it has to be";
+}
+
 TEST(JogPlanner, WithoutJerkLimitItIsThePlainOne_C8) {
     FreePlanner plain;
     JogPlanner jog;

@@ -103,7 +103,12 @@ TEST(Trial, JointsAreJudgedByTheKinematics_C13) {
         rig.conditions.workspace.joints.acceleration.fill(3 * A);
         rig.conditions.workspace.joints.jerk.fill(3 * J);
         rig.hill(A, 0.05, TAU);
-        EXPECT_EQ(rig.check().isSound, limit > 100) << limit;
+        const Verdict verdict = rig.check();
+        EXPECT_EQ(verdict.isSound, limit > 100) << limit;
+        // By how much, so that easing takes no more than that: here by little, as it has just become too
+        // fast.
+        const bool isMeasured = verdict.isSound || (verdict.excess > 1 && verdict.excess < 1.1);
+        EXPECT_TRUE(isMeasured) << verdict.excess;
     }
 }
 

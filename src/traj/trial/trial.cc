@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "traj/geometry/stretch.hh"
 #include "traj/tuning.hh"
 
 namespace mw::traj {
@@ -50,12 +51,16 @@ void Trial::start(const PathView &view, const Snapshot &now, const LeaderState &
                                 tolerance_at(piece, from.x), piece.move};
     tick_ = 2 * HISTORY_CAPACITY;
     const bool isFresh = now.motion == Motion::REST && now.isSettled;
+    arc_ = 0;
     for (std::uint64_t i = 0; i <= known; ++i) {
         const std::uint64_t back = known - i;
         const std::uint64_t tick = std::max(now.first_tick, now.tick > back ? now.tick - back : 0);
         Sample &to = sample(tick_ - back);
         to.leader = isFresh ? standing : store.history[tick % HISTORY_CAPACITY];
         to.piece = 0;
+    }
+    if (!isFresh && view.conditions.workspace.isMapped()) {
+        take_arc(view, now);
     }
     origin_ = standing.pose;
     s_origin_ = standing.s;
@@ -73,7 +78,7 @@ void Trial::start(const PathView &view, const Snapshot &now, const LeaderState &
     }
     joints_.begin();
     tolerance_tick_ = tick_;
-    along_tick_ = 0;
+    along_tick_ = arc_ != 0 ? arc_tick_ : 0;
 }
 
 /// What the executor still does until the plan begins.
@@ -193,8 +198,64 @@ bool Trial::isSwingSound(const PathLimits &limits) noexcept {
     return true;
 }
 
+/// The exact arc that the leader is within, 0: none.
+Sequence Trial::arc_at(const PathView &view, const LeaderSample &leader) noexcept {
+    const PlannedPath &path = view.path;
+    const Sequence m = leader.move;
+    if (m < path.first_move() || m > path.last_move()) {
+        return 0;
+    }
+    const Primitive &p = path.primitive(m);
+    const double x = leader.s - path.move(m).start_s;
+    const bool isOn =
+        isExactArc(p, path.move(m).request, view.conditions.limits) && x > on_along(p.length) && x < p.length;
+    return isOn ? m : 0;
+}
+
+/// The newest samples of the executor's history from the arc on that the leader is within, or has left so
+/// lately that the mean still covers it. Before it the leader has stood.
+void Trial::take_arc(const PathView &view, const Snapshot &now) noexcept {
+    const LeaderHistory &history = view.path.store().history;
+    const std::uint64_t filter = view.conditions.limits.filter();
+    const auto at = [&](std::uint64_t back) { return history[(now.tick - back) % HISTORY_CAPACITY]; };
+    std::uint64_t back = 0;
+    while (back < filter && back < now.tick && arc_ == 0) {
+        arc_ = arc_at(view, at(back++));
+    }
+    if (arc_ == 0) {
+        return;
+    }
+    arc_tick_ = tick_ - (back - 1);
+    const double start_s = view.path.move(arc_).start_s;
+    LeaderSample leader = at(0);
+    for (std::uint64_t i = 0; i <= filter + 4; ++i) {
+        const bool isKnown = leader.s > start_s && i < now.tick;
+        leader = isKnown ? at(i) : leader;
+        if (leader.s <= start_s) {
+            leader.s = start_s;
+            leader.pose = view.path.primitive(arc_).start;
+        }
+        sample(tick_ - i).leader = leader;
+    }
+}
+
+/// On an exact arc, and while the mean still covers a part of it, the mean place on it is commanded.
+Pose Trial::commanded(const PathView &view) noexcept {
+    const std::uint64_t filter = view.conditions.limits.filter();
+    if (const Sequence arc = arc_at(view, sample(tick_).leader); arc != 0) {
+        arc_ = arc;
+        arc_tick_ = tick_;
+    }
+    if (arc_ == 0 || tick_ >= arc_tick_ + filter) {
+        return mean(filter);
+    }
+    // The leader stands for the mean before and after, so all places of the mean are on the arc.
+    const double s = s_origin_ + s_sum_ / static_cast<double>(filter) - view.path.move(arc_).start_s;
+    return position_at(view.path.primitive(arc_), std::clamp(s, 0.0, view.path.primitive(arc_).length));
+}
+
 bool Trial::areJointsSound(const PathView &view) noexcept {
-    return joints_.isSound(view.conditions, mean(view.conditions.limits.filter()), tick_);
+    return joints_.isSound(view.conditions, commanded(view), tick_);
 }
 
 /// The leader is on an arc of which the mean place is commanded, or the mean still covers one: the limits
@@ -212,7 +273,8 @@ bool Trial::isNewestSound(const PathView &view) noexcept {
     const PathLimits &limits = view.conditions.limits;
     along_share_ = 0;
     if (view.conditions.workspace.isMapped() && !areJointsSound(view)) {
-        excess_ = TrialTuning::UNMEASURED;
+        const bool isMeasured = limits.isFiltered() && joints_.excess() > 1;
+        excess_ = isMeasured ? joints_.excess() : TrialTuning::UNMEASURED;
         return false;
     }
     if (!limits.isFiltered()) {

@@ -45,6 +45,9 @@ class Trial {
     bool isLeaderSound(const PathLimits &limits) const noexcept;
     bool isSwingSound(const PathLimits &limits) noexcept;
     bool isNearPath(const PathView &view) noexcept;
+    static Sequence arc_at(const PathView &view, const LeaderSample &leader) noexcept;
+    void take_arc(const PathView &view, const Snapshot &now) noexcept;
+    Pose commanded(const PathView &view) noexcept;
     bool areJointsSound(const PathView &view) noexcept;
     Pose mean(std::uint64_t filter) const noexcept {
         return origin_ + sum_ * (1.0 / static_cast<double>(filter));
@@ -59,6 +62,8 @@ class Trial {
     double s_sum_ = 0, s_origin_ = 0;
     std::uint64_t tolerance_tick_ = 0;  ///< the newest sample whose tolerance differs from the one before
     std::uint64_t along_tick_ = 0;      ///< the last on an arc that is followed exactly
+    Sequence arc_ = 0;                  ///< the move of which the mean place is commanded
+    std::uint64_t arc_tick_ = 0;        ///< the last on it
     double excess_ = 1, along_share_ = 0;
     JointTrial joints_;
 };

@@ -51,6 +51,7 @@ Reason start(Jogs &jogs, const JogTarget &target, const JogMove &move, const Jog
     p.max_velocity = std::min(std::abs(move.velocity), s.most.velocity);
     p.max_acceleration = s.most.acceleration;
     p.max_jerk = s.most.jerk;
+    p.mean_s = 0;
     jog.wanted_velocity = p.max_velocity;
     jog.wanted_acceleration = p.max_acceleration;
     jog.most_velocity = UNBOUNDED;

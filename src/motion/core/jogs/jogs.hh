@@ -34,12 +34,20 @@ struct Jog {
     JogLease lease;
 };
 
+/// Of axes on machines whose joints are not axes, with jerk limits.
+struct TeleopShares {
+    std::uint32_t axes = 0;     ///< bit per axis that has a share of what the joints can do
+    double calm_s = 0;          ///< for so long none of them has been faster than when all have a share
+    bool isMakingRoom = false;  ///< they do no more than then: others wait for theirs
+};
+
 struct Jogs {
     int num_joints = 0;
     bool areLimitsOverridden = false;  ///< limit switches are, until the next jog has ended
     bool isOverrideInJog = false;      ///< that jog has begun
     bool isTeleopStopped = false;      ///< by a joint's limit, and said
     std::uint32_t leased = 0;          ///< bit per joint, then per axis, whose lease has not ended
+    TeleopShares shares;
     std::array<Jog, MAX_JOINTS> joint{};
     std::array<Jog, MAX_AXES> axis{};
 

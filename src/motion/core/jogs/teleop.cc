@@ -4,16 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motion/core/jogs/teleop_load.hh"
+#include "motion/core/jogs/teleop_smooth.hh"
+
 namespace mw::motion {
 
 namespace {
 
-/// Over which derivatives are taken [machine units, degrees].
-constexpr double STEP = 1e-3;
-/// Between the places that are looked at, derivatives may be larger by this much.
-constexpr double MARGIN = 1.05;
-/// Part of a joint's acceleration that curves may take at the highest speed.
-constexpr double CURVE_SHARE = 0.5;
 /// Farther ahead than the jogs would come to rest, at least this [machine units, degrees].
 constexpr double LEAST_WINDOW = 0.5;
 /// What rounding of positions may make of a joint's soft limit.
@@ -21,98 +18,18 @@ constexpr double POSITION_ROUNDING = 1e-9;
 /// The acceleration may have to become less while it brakes.
 constexpr double BRAKE_MARGIN = 1.2;
 constexpr int MOST_CORNER_AXES = 5;
-/// A second difference below this is rounding.
-constexpr double LEAST_CURVE = 1e-6;
 
 std::size_t at(int i) noexcept {
     return static_cast<std::size_t>(i);
 }
 
-/// Largest derivatives of the joints by the axes that move.
-struct TeleopLoad {
-    std::array<int, MAX_AXES> axes{};
-    int count = 0;
-    std::array<std::array<double, MAX_JOINTS>, MAX_AXES> q1{};
-    std::array<std::array<std::array<double, MAX_JOINTS>, MAX_AXES>, MAX_AXES> q2{};
-};
-
-using Joints = std::array<double, MAX_JOINTS>;
-
-/// Beside where they stand. False also where only a singular pose leads.
-bool find_joints(const TeleopMachine &m, const geom::Pose &pose, Joints &joints) noexcept {
-    std::copy_n(m.joint_positions.begin(), m.num_joints, joints.begin());
-    return m.kinematics.side(pose) == m.side && m.kinematics.inverse(pose, joints.data()) == kins::Status::OK;
-}
-
-/// Takes the derivatives at one place into account; false when the kinematics has no answer there.
-bool add_load(const TeleopMachine &m, const geom::Pose &pose, TeleopLoad &load) noexcept {
-    const auto joints_at = [&](const geom::Pose &p, Joints &q) { return find_joints(m, p, q); };
-    Joints here{};
-    std::array<Joints, MAX_AXES> after{};
-    Joints other{};
-    bool isFound = joints_at(pose, here);
-    for (int i = 0; i < load.count && isFound; ++i) {
-        const int axis = load.axes[at(i)];
-        geom::Pose p = pose;
-        p[axis] += STEP;
-        isFound = joints_at(p, after[at(i)]);
-        p[axis] -= 2.0 * STEP;
-        isFound = isFound && joints_at(p, other);
-        for (std::size_t j = 0; j < at(m.num_joints) && isFound; ++j) {
-            const double q1 = std::abs(after[at(i)][j] - other[j]) / (2.0 * STEP);
-            const double q2 = std::abs(after[at(i)][j] - 2.0 * here[j] + other[j]) / (STEP * STEP);
-            load.q1[at(i)][j] = std::max(load.q1[at(i)][j], MARGIN * q1);
-            load.q2[at(i)][at(i)][j] = std::max(load.q2[at(i)][at(i)][j], MARGIN * q2);
-        }
-        for (int k = 0; k < i && isFound; ++k) {
-            p = pose;
-            p[axis] += STEP;
-            p[load.axes[at(k)]] += STEP;
-            isFound = joints_at(p, other);
-            for (std::size_t j = 0; j < at(m.num_joints) && isFound; ++j) {
-                const double both = other[j] - after[at(i)][j] - after[at(k)][j] + here[j];
-                double &q2 = load.q2[at(i)][at(k)][j];
-                q2 = std::max(q2, MARGIN * std::abs(both) / (STEP * STEP));
-                load.q2[at(k)][at(i)][j] = q2;
-            }
-        }
-    }
-    return isFound;
-}
-
 /// Shares what each joint can do evenly among the axes that move it.
 void apply_load(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs) noexcept {
     const double n = load.count;
-    std::array<double, MAX_AXES> v{};
-    for (int i = 0; i < load.count; ++i) {
-        const Jog &axis = jogs.axis[at(load.axes[at(i)])];
-        v[at(i)] = axis.wanted_velocity * m.scale;
-        for (int j = 0; j < m.num_joints; ++j) {
-            const double q1 = load.q1[at(i)][at(j)];
-            const double q2 = load.q2[at(i)][at(i)][at(j)];
-            const double curve = CURVE_SHARE * m.limits.joints.acceleration[at(j)] / (n * n);
-            if (q1 > 0) {
-                v[at(i)] = std::min(v[at(i)], m.limits.joints.velocity[at(j)] / (n * q1));
-            }
-            if (q2 > LEAST_CURVE) {
-                v[at(i)] = std::min(v[at(i)], std::sqrt(curve / q2));
-            }
-        }
-    }
-    for (int i = 0; i < load.count; ++i) {
-        for (int k = 0; k < i; ++k) {
-            for (int j = 0; j < m.num_joints; ++j) {
-                const double curve = CURVE_SHARE * m.limits.joints.acceleration[at(j)] / (n * n);
-                const double used = load.q2[at(i)][at(k)][at(j)] * v[at(i)] * v[at(k)];
-                const double factor = used > curve ? std::sqrt(curve / used) : 1.0;
-                v[at(i)] *= factor;
-                v[at(k)] *= factor;
-            }
-        }
-    }
+    AxisValues v = shared_speeds(m, load, jogs, load.count);
     // While one is still faster than its share the others do not take theirs, and it turns with its speed.
     constexpr double ROUNDING = 1e-9;
-    std::array<double, MAX_AXES> speed{};
+    AxisValues speed{};
     bool isOver = false;
     for (int i = 0; i < load.count; ++i) {
         speed[at(i)] = std::abs(jogs.axis[at(load.axes[at(i)])].planner.velocity);
@@ -144,7 +61,7 @@ void apply_load(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs) noex
 
 /// The homed joint that this pose takes beyond its soft limits, farther than it is; -1 for none.
 int joint_left_by(const TeleopMachine &m, const geom::Pose &pose) noexcept {
-    Joints q{};
+    JointsAt q{};
     if (!find_joints(m, pose, q)) {
         return m.num_joints;
     }
@@ -174,13 +91,15 @@ TeleopStop limit_teleop(Jogs &jogs, const TeleopMachine &m) noexcept {
         return {};
     }
     // Where it stands first: a jog that begins has no acceleration yet that the joints could bear.
+    load.isSmooth = m.limits.path.isJerkLimited;
     bool isFound = add_load(m, here, load);
-    apply_load(m, load, jogs);
+    load.isSmooth ? apply_smoothly(m, load, jogs, false) : apply_load(m, load, jogs);
     geom::Pose stop = here;  // where the axes come to rest when they brake a cycle from now
     geom::Pose far = here;
     for (int i = 0; i < load.count; ++i) {
         const int axis = load.axes[at(i)];
         const traj::JogPlanner &p = jogs.axis[at(axis)].planner;
+        load.speed[at(i)] = std::max(p.max_velocity, std::abs(p.velocity));
         const double way = p.rest_after(m.period_s) - here[axis];
         stop[axis] += BRAKE_MARGIN * way;
         const double sign = p.target >= here[axis] ? 1.0 : -1.0;
@@ -191,11 +110,12 @@ TeleopStop limit_teleop(Jogs &jogs, const TeleopMachine &m) noexcept {
         isFound = add_load(m, here + (far - here) * (static_cast<double>(n) / PLACES), load);
     }
     for (int i = 0; i < load.count && load.count > 1 && isFound; ++i) {
+        const int axis = load.axes[at(i)];
         geom::Pose p = here;
-        p[load.axes[at(i)]] = far[load.axes[at(i)]];
-        isFound = add_load(m, p, load);
+        p[axis] = far[axis];
+        isFound = add_load(m, p, load, {i, far[axis] - here[axis]});
     }
-    apply_load(m, load, jogs);
+    load.isSmooth ? apply_smoothly(m, load, jogs, true) : apply_load(m, load, jogs);
     // The axes stop one after the other: every corner of the box that they stop in counts.
     int left = isFound ? -1 : m.num_joints;
     const int corners = 1 << std::min(load.count, MOST_CORNER_AXES);

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "motion/core/jogs/teleop_load.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mw::motion {
+
+namespace {
+
+/// Over which derivatives are taken, and third ones [machine units, degrees].
+constexpr double STEP = 1e-3, SMOOTH_STEP = 0.1;
+/// Between the places that are looked at, derivatives may be larger by this much; where one axis moves and a
+/// joint follows it on a straight line, by rounding.
+constexpr double MARGIN = 1.05, STRAIGHT_MARGIN = 1.0 + 1e-6;
+
+std::size_t at(int i) noexcept {
+    return static_cast<std::size_t>(i);
+}
+
+/// Third differences along one axis.
+bool add_third(const TeleopMachine &m, const geom::Pose &pose, int i, TeleopLoad &load) noexcept {
+    const int axis = load.axes[at(i)];
+    constexpr int POINTS = 4;
+    constexpr double PLACES[POINTS] = {-2, -1, 1, 2};
+    constexpr double WEIGHTS[POINTS] = {-0.5, 1, -1, 0.5};
+    JointsAt sum{};
+    JointsAt q{};
+    for (int n = 0; n < POINTS; ++n) {
+        geom::Pose p = pose;
+        p[axis] += PLACES[n] * SMOOTH_STEP;
+        if (!find_joints(m, p, q)) {
+            return false;
+        }
+        for (int j = 0; j < m.num_joints; ++j) {
+            sum[at(j)] += WEIGHTS[n] * q[at(j)];
+        }
+    }
+    constexpr double CUBE = SMOOTH_STEP * SMOOTH_STEP * SMOOTH_STEP;
+    for (int j = 0; j < m.num_joints; ++j) {
+        double &q3 = load.q3[at(i)][at(j)];
+        q3 = std::max(q3, MARGIN * std::abs(sum[at(j)]) / CUBE);
+    }
+    return true;
+}
+
+/// How second derivatives change from the first place to one that is displaced along one axis.
+void add_turn(const TeleopMachine &m, const TeleopLoad &first, const double *q2, int i, int k, Displaced from,
+              TeleopLoad &load) noexcept {
+    const bool isAlone = i == from.index && k == from.index;
+    for (int j = 0; j < m.num_joints && !isAlone; ++j) {
+        const double change = std::abs(q2[j] - first.q2_here[at(i)][at(k)][at(j)]) / std::abs(from.way);
+        const double both = i == k ? 1.0 : 2.0;
+        load.turn[at(from.index)][at(j)] += both * MARGIN * change * load.speed[at(i)] * load.speed[at(k)];
+    }
+}
+
+}  // namespace
+
+bool find_joints(const TeleopMachine &m, const geom::Pose &pose, JointsAt &joints) noexcept {
+    std::copy_n(m.joint_positions.begin(), m.num_joints, joints.begin());
+    return m.kinematics.side(pose) == m.side && m.kinematics.inverse(pose, joints.data()) == kins::Status::OK;
+}
+
+bool add_load(const TeleopMachine &m, const geom::Pose &pose, TeleopLoad &load, Displaced from) noexcept {
+    const double step = load.isSmooth ? SMOOTH_STEP : STEP;
+    const auto joints_at = [&](const geom::Pose &p, JointsAt &q) { return find_joints(m, p, q); };
+    JointsAt here{};
+    std::array<JointsAt, MAX_AXES> after{};
+    JointsAt other{};
+    JointsAt signed_q2{};
+    const auto keep = [&](int i, int k) {
+        if (load.isSmooth && !load.isBegun) {
+            load.q2_here[at(i)][at(k)] = signed_q2;
+        } else if (load.isSmooth && from.index >= 0) {
+            add_turn(m, load, signed_q2.data(), i, k, from, load);
+        }
+    };
+    bool isFound = joints_at(pose, here);
+    for (int i = 0; i < load.count && isFound; ++i) {
+        const int axis = load.axes[at(i)];
+        geom::Pose p = pose;
+        p[axis] += step;
+        isFound = joints_at(p, after[at(i)]);
+        p[axis] -= 2.0 * step;
+        isFound = isFound && joints_at(p, other);
+        for (std::size_t j = 0; j < at(m.num_joints) && isFound; ++j) {
+            const double q1 = std::abs(after[at(i)][j] - other[j]) / (2.0 * step);
+            signed_q2[j] = (after[at(i)][j] - 2.0 * here[j] + other[j]) / (step * step);
+            const bool isStraight = load.isSmooth && load.count == 1 && std::abs(signed_q2[j]) <= LEAST_CURVE;
+            load.q1[at(i)][j] = std::max(load.q1[at(i)][j], (isStraight ? STRAIGHT_MARGIN : MARGIN) * q1);
+            load.q2[at(i)][at(i)][j] = std::max(load.q2[at(i)][at(i)][j], MARGIN * std::abs(signed_q2[j]));
+        }
+        keep(i, i);
+        for (int k = 0; k < i && isFound; ++k) {
+            p = pose;
+            p[axis] += step;
+            p[load.axes[at(k)]] += step;
+            isFound = joints_at(p, other);
+            for (std::size_t j = 0; j < at(m.num_joints) && isFound; ++j) {
+                const double both = other[j] - after[at(i)][j] - after[at(k)][j] + here[j];
+                signed_q2[j] = both / (step * step);
+                double &q2 = load.q2[at(i)][at(k)][j];
+                q2 = std::max(q2, MARGIN * std::abs(both) / (step * step));
+                load.q2[at(k)][at(i)][j] = q2;
+            }
+            keep(i, k);
+        }
+        const bool isThird = load.isSmooth && from.index < 0;
+        isFound = isFound && (!isThird || add_third(m, pose, i, load));
+    }
+    load.isBegun = true;
+    return isFound;
+}
+
+AxisValues shared_speeds(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs,
+                         double n) noexcept {
+    AxisValues v{};
+    for (int i = 0; i < load.count; ++i) {
+        const Jog &axis = jogs.axis[at(load.axes[at(i)])];
+        v[at(i)] = axis.wanted_velocity * m.scale;
+        for (int j = 0; j < m.num_joints; ++j) {
+            const double q1 = load.q1[at(i)][at(j)];
+            const double q2 = load.q2[at(i)][at(i)][at(j)];
+            const double curve = CURVE_SHARE * m.limits.joints.acceleration[at(j)] / (n * n);
+            if (q1 > 0) {
+                v[at(i)] = std::min(v[at(i)], m.limits.joints.velocity[at(j)] / (n * q1));
+            }
+            if (q2 > LEAST_CURVE) {
+                v[at(i)] = std::min(v[at(i)], std::sqrt(curve / q2));
+            }
+        }
+    }
+    for (int i = 0; i < load.count; ++i) {
+        for (int k = 0; k < i; ++k) {
+            for (int j = 0; j < m.num_joints; ++j) {
+                const double curve = CURVE_SHARE * m.limits.joints.acceleration[at(j)] / (n * n);
+                const double used = load.q2[at(i)][at(k)][at(j)] * v[at(i)] * v[at(k)];
+                const double factor = used > curve ? std::sqrt(curve / used) : 1.0;
+                v[at(i)] *= factor;
+                v[at(k)] *= factor;
+            }
+        }
+    }
+    return v;
+}
+
+}  // namespace mw::motion

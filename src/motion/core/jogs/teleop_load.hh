@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What jogs of axes ask of joints that are not axes: derivatives of the joints by the axes that move, at the
+// places that the jogs may come to, and the speeds that they leave.
+#pragma once
+
+#include <array>
+
+#include "motion/core/jogs/teleop.hh"
+
+namespace mw::motion {
+
+using JointsAt = std::array<double, MAX_JOINTS>;
+/// Of each axis that moves, in the order of TeleopLoad::axes.
+using AxisValues = std::array<double, MAX_AXES>;
+
+/// Largest derivatives of the joints by the axes that move.
+struct TeleopLoad {
+    std::array<int, MAX_AXES> axes{};
+    int count = 0;
+    std::array<JointsAt, MAX_AXES> q1{};
+    std::array<std::array<JointsAt, MAX_AXES>, MAX_AXES> q2{};
+
+    // With jerk limits only.
+    bool isSmooth = false;
+    std::array<JointsAt, MAX_AXES> q3{};  ///< by one axis alone
+    /// By an axis of what the curves of the others, and theirs with it, ask at `speed`.
+    std::array<JointsAt, MAX_AXES> turn{};
+    AxisValues speed{};
+    std::array<std::array<JointsAt, MAX_AXES>, MAX_AXES> q2_here{};  ///< at the first place, with sign
+    bool isBegun = false;                                            ///< that is known
+};
+
+/// Part of a joint's acceleration that curves may take at the highest speed.
+inline constexpr double CURVE_SHARE = 0.5;
+/// A second difference below this is rounding.
+inline constexpr double LEAST_CURVE = 1e-6;
+
+/// Beside where they stand. False also where only a singular pose leads.
+bool find_joints(const TeleopMachine &m, const geom::Pose &pose, JointsAt &joints) noexcept;
+
+/// A place that is `way` along one of the axes that move from the first place; -1: any other.
+struct Displaced {
+    int index = -1;
+    double way = 0;
+};
+/// Takes the derivatives at one place into account; false when the kinematics has no answer there.
+bool add_load(const TeleopMachine &m, const geom::Pose &pose, TeleopLoad &load, Displaced from = {}) noexcept;
+
+/// What joints leave of the speeds that are wanted when each is shared evenly among `n` axes.
+AxisValues shared_speeds(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs, double n) noexcept;
+
+}  // namespace mw::motion

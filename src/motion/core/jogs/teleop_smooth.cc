@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "motion/core/jogs/teleop_smooth.hh"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace mw::motion {
+
+namespace {
+
+/// Parts of a joint's jerk that curves may take at the highest speed: by accelerations on them, by their own
+/// change.
+constexpr double SWING_SHARE = 0.25, TURN_SHARE = 0.25;
+/// An axis keeps this part of the acceleration that speeds and accelerations of joints leave it, whatever
+/// their jerk does: it must be able to brake.
+constexpr double LEAST_SHARE = 0.02;
+constexpr double ROUNDING = 1e-9;
+constexpr double NONE = std::numeric_limits<double>::infinity();
+
+std::size_t at(int i) noexcept {
+    return static_cast<std::size_t>(i);
+}
+
+std::uint32_t bit_of(const TeleopLoad &load, int i) noexcept {
+    return 1U << load.axes[at(i)];
+}
+
+/// What the axes that share the joints may do; nothing where they have no share.
+struct Allowed {
+    AxisValues velocity{}, acceleration{}, mean_s{};
+};
+
+struct Sharing {
+    const TeleopMachine &m;
+    const TeleopLoad &load;
+    const Jogs &jogs;
+    std::uint32_t axes = 0;  ///< bit per axis that has a share
+    double n = 1;            ///< of them
+
+    const Jog &jog(int i) const noexcept { return jogs.axis[at(load.axes[at(i)])]; }
+    bool has(int i) const noexcept { return (axes & bit_of(load, i)) != 0; }
+    double jerk(int j) const noexcept {
+        const double most = m.limits.joints.jerk[at(j)];
+        return most < traj::UNLIMITED ? most : NONE;
+    }
+};
+
+/// The mean of an axis that begins: no longer than 2 A / J, nor than what brings it to its highest speed
+/// soonest, sqrt(2 V / J): V / a + 2 a / J is least there.
+double mean_for(const Sharing &s, int i, double acceleration, double jerk) noexcept {
+    if (jerk == NONE) {
+        return 0;
+    }
+    double v = s.m.limits.axis_jog[at(s.load.axes[at(i)])].velocity;
+    for (int j = 0; j < s.m.num_joints; ++j) {
+        const double q1 = s.load.q1[at(i)][at(j)];
+        v = q1 > 0 ? std::min(v, s.m.limits.joints.velocity[at(j)] / q1) : v;
+    }
+    return std::min(2.0 * acceleration / jerk, std::sqrt(2.0 * v / jerk));
+}
+
+/// Means, and the accelerations that they and the joints allow on straight ways.
+void share_straight(const Sharing &s, Allowed &out) noexcept {
+    for (int i = 0; i < s.load.count; ++i) {
+        if (!s.has(i)) {
+            continue;
+        }
+        const double own = s.m.limits.axis_jog[at(s.load.axes[at(i)])].jerk;
+        double a = s.jog(i).wanted_acceleration;
+        double jerk = own > 0 ? own : NONE;
+        for (int j = 0; j < s.m.num_joints; ++j) {
+            const double used = s.n * s.load.q1[at(i)][at(j)];
+            if (used > 0) {
+                a = std::min(a, s.m.limits.joints.acceleration[at(j)] / used);
+                jerk = std::min(jerk, s.jerk(j) / used);
+            }
+        }
+        const double in_force = s.jog(i).planner.mean_in_force_s(s.m.period_s);
+        const double tau = in_force > 0 ? in_force : mean_for(s, i, a, jerk);
+        out.mean_s[at(i)] = tau;
+        out.acceleration[at(i)] = jerk == NONE ? a : std::max(std::min(a, 0.5 * tau * jerk), LEAST_SHARE * a);
+    }
+}
+
+/// What accelerating at these speeds asks of a joint's jerk on curves, and what the speeds alone ask.
+double swing_of(const Sharing &s, const AxisValues &v, const AxisValues &a, int i, int j) noexcept {
+    double sum = 0;
+    for (int k = 0; k < s.load.count; ++k) {
+        sum += s.load.q2[at(i)][at(k)][at(j)] * a[at(k)];
+    }
+    return 3.0 * v[at(i)] * sum;
+}
+double turn_of(const Sharing &s, const AxisValues &v, int j) noexcept {
+    double sum = 0;
+    for (int i = 0; i < s.load.count; ++i) {
+        const double x = v[at(i)];
+        sum += x * (s.load.q3[at(i)][at(j)] * x * x + s.load.turn[at(i)][at(j)]);
+    }
+    return sum;
+}
+
+void slow_on_curves(const Sharing &s, Allowed &out) noexcept {
+    AxisValues &v = out.velocity;
+    for (int i = 0; i < s.load.count; ++i) {
+        for (int j = 0; j < s.m.num_joints && s.has(i); ++j) {
+            const double most = SWING_SHARE * s.jerk(j) / s.n;
+            const double used = swing_of(s, v, out.acceleration, i, j);
+            v[at(i)] *= used > most ? most / used : 1.0;
+        }
+    }
+    double factor = 1;
+    for (int j = 0; j < s.m.num_joints; ++j) {
+        const double most = TURN_SHARE * s.jerk(j);
+        const double used = turn_of(s, v, j);
+        factor = used > most ? std::min(factor, std::cbrt(most / used)) : factor;
+    }
+    for (double &x : v) {
+        x *= factor;
+    }
+}
+
+/// What curves at these speeds leave of the joints.
+void leave_for_curves(const Sharing &s, const AxisValues &speed, Allowed &out) noexcept {
+    const AxisValues straight = out.acceleration;
+    for (int j = 0; j < s.m.num_joints; ++j) {
+        double curve = 0;
+        double swing = 0;
+        for (int i = 0; i < s.load.count; ++i) {
+            for (int k = 0; k < s.load.count; ++k) {
+                curve += s.load.q2[at(i)][at(k)][at(j)] * speed[at(i)] * speed[at(k)];
+            }
+            swing += swing_of(s, speed, straight, i, j);
+        }
+        const double most = s.m.limits.joints.acceleration[at(j)];
+        const double a_left = std::max(most - curve, (1.0 - CURVE_SHARE) * most);
+        const double jerk = s.jerk(j);
+        const double jerk_left = jerk == NONE ? NONE
+                                              : std::max(jerk - swing - turn_of(s, speed, j),
+                                                         (1.0 - SWING_SHARE - TURN_SHARE) * jerk);
+        for (int i = 0; i < s.load.count; ++i) {
+            const double used = s.n * s.load.q1[at(i)][at(j)];
+            if (!s.has(i) || !(used > 0)) {
+                continue;
+            }
+            double a = a_left / used;
+            a = jerk_left < NONE
+                    ? std::min(a, std::max(0.5 * out.mean_s[at(i)] * jerk_left / used, LEAST_SHARE * a))
+                    : a;
+            out.acceleration[at(i)] = std::min(out.acceleration[at(i)], a);
+        }
+    }
+}
+
+/// Shared evenly among the axes of `axes`.
+Allowed share(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs, std::uint32_t axes,
+              int count) noexcept {
+    const Sharing s{m, load, jogs, axes, static_cast<double>(count)};
+    Allowed out;
+    out.velocity = shared_speeds(m, load, jogs, s.n);
+    AxisValues speed{};
+    for (int i = 0; i < load.count; ++i) {
+        out.velocity[at(i)] = s.has(i) ? out.velocity[at(i)] : 0.0;
+        const traj::JogPlanner &p = s.jog(i).planner;
+        speed[at(i)] = std::max(std::abs(p.velocity), std::abs(p.leader().velocity));
+    }
+    share_straight(s, out);
+    slow_on_curves(s, out);
+    // While one is still faster than its share the others do not take theirs.
+    bool isOver = false;
+    for (int i = 0; i < load.count; ++i) {
+        isOver = isOver || speed[at(i)] > out.velocity[at(i)] * (1.0 + ROUNDING);
+    }
+    for (int i = 0; i < load.count; ++i) {
+        double &v = out.velocity[at(i)];
+        v = isOver ? std::min(v, speed[at(i)]) : v;
+        speed[at(i)] = std::max(v, speed[at(i)]);
+    }
+    leave_for_curves(s, speed, out);
+    return out;
+}
+
+/// It can come to rest where it is sent, or before, with less acceleration.
+bool canTake(const traj::JogPlanner &p, double acceleration) noexcept {
+    const traj::FreePlanner &leader = p.leader();
+    const double v = leader.velocity;
+    const double rest = traj::stop_position(leader.position, v, acceleration);
+    return v == 0.0 || (v > 0 ? rest <= p.target : rest >= p.target);
+}
+
+}  // namespace
+
+void apply_smoothly(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs, bool isWhole) noexcept {
+    TeleopShares &shares = jogs.shares;
+    std::uint32_t moving = 0;
+    for (int i = 0; i < load.count; ++i) {
+        moving |= bit_of(load, i);
+    }
+    shares.axes &= moving;
+    shares.axes = shares.axes == 0 ? moving : shares.axes;
+    const bool isAnyWaiting = shares.axes != moving;
+    shares.isMakingRoom = shares.isMakingRoom && isAnyWaiting;
+    Allowed allowed = share(m, load, jogs, moving, load.count);
+    if (isAnyWaiting && isWhole && !shares.isMakingRoom) {
+        shares.isMakingRoom = true;
+        shares.calm_s = 0;
+        for (int i = 0; i < load.count; ++i) {
+            const traj::JogPlanner &p = jogs.axis[at(load.axes[at(i)])].planner;
+            const bool isHeld =
+                (shares.axes & bit_of(load, i)) != 0 && !canTake(p, allowed.acceleration[at(i)]);
+            shares.isMakingRoom = shares.isMakingRoom && !isHeld;
+        }
+    }
+    if (isAnyWaiting && !shares.isMakingRoom) {
+        allowed = share(m, load, jogs, shares.axes, std::popcount(shares.axes));
+    }
+    bool isCalm = true;
+    double longest_s = 0;
+    for (int i = 0; i < load.count; ++i) {
+        traj::JogPlanner &p = jogs.axis[at(load.axes[at(i)])].planner;
+        const bool hasShare = (shares.axes & bit_of(load, i)) != 0;
+        p.max_velocity = hasShare ? allowed.velocity[at(i)] : 0.0;
+        p.max_acceleration = allowed.acceleration[at(i)];
+        p.mean_s = allowed.mean_s[at(i)];
+        isCalm = isCalm && (!hasShare || std::abs(p.leader().velocity) <= p.max_velocity * (1.0 + ROUNDING));
+        longest_s = std::max(longest_s, p.mean_in_force_s(m.period_s));
+    }
+    if (!isWhole || !isAnyWaiting || !shares.isMakingRoom) {
+        return;
+    }
+    shares.calm_s = isCalm ? shares.calm_s + m.period_s : 0.0;
+    if (shares.calm_s > longest_s) {
+        shares = {moving, 0, false};
+    }
+}
+
+}  // namespace mw::motion

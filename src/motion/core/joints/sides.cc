@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "motion/core/joints/sides.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mw::motion {
+
+namespace {
+
+/// What rounding makes of a place [machine units, degrees].
+constexpr double ROUNDING = 1e-6;
+
+bool isApart(const Joint &joint, double led, double most) noexcept {
+    return joint.isActive && !(std::abs(joint.pos_cmd - led) <= most);
+}
+
+}  // namespace
+
+int find_side_apart(const Joints &joints, const PerJoint &led, const Settings &settings) noexcept {
+    for (int j = 0; j < joints.count; ++j) {
+        const double most = std::max(settings.get(Parameter::JOINT_MIN_FERROR, j), ROUNDING);
+        if (isApart(joints[j], led[static_cast<std::size_t>(j)], most)) {
+            return j;
+        }
+    }
+    return -1;
+}
+
+void begin(Sides &sides, const Joints &joints, const PerJoint &led, const FoldedLimits &limits) noexcept {
+    forget(sides);
+    for (int j = 0; j < joints.count; ++j) {
+        const auto n = static_cast<std::size_t>(j);
+        traj::JogPlanner &p = sides.planner[n];
+        p.reset(joints[j].pos_cmd);
+        if (isApart(joints[j], led[n], ROUNDING)) {
+            p.target = led[n];
+            p.max_velocity = limits.joint_jog[n].velocity;
+            p.max_acceleration = limits.joint_jog[n].acceleration;
+            p.max_jerk = limits.joint_jog[n].jerk;
+            ++sides.count;
+        }
+    }
+}
+
+void stop(Sides &sides) noexcept {
+    if (sides.areUnderWay()) {
+        sides.isStopping = true;
+        for (traj::JogPlanner &p : sides.planner) {
+            p.stop();
+        }
+    }
+}
+
+void forget(Sides &sides) noexcept {
+    sides.count = 0;
+    sides.isLeading = sides.isStopping = false;
+}
+
+SidesStep step(Sides &sides, Joints &joints, bool isMotionWanted, double period_s) noexcept {
+    sides.isLeading = sides.isLeading || isMotionWanted;
+    if (!sides.isLeading) {
+        return SidesStep::GOES_ON;
+    }
+    sides.count = 0;
+    for (int j = 0; j < joints.count; ++j) {
+        traj::JogPlanner &p = sides.planner[static_cast<std::size_t>(j)];
+        p.step(period_s);
+        follow(joints[j], p.position, period_s);
+        sides.count += p.isAtRest() ? 0 : 1;
+    }
+    const bool hasStopped = sides.isStopping && !sides.areApart();
+    if (!sides.areApart()) {
+        forget(sides);
+    }
+    return hasStopped ? SidesStep::STOPPED : SidesStep::GOES_ON;
+}
+
+}  // namespace mw::motion
