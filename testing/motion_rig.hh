@@ -52,8 +52,14 @@ struct MotionRig {
         kinematics.configure(coordinates);
         start(kinematics, kinematics.identity()->num_joints, velocity, acceleration);
     }
+    /// The last `extra` joints are extra ones, which no pose moves.
+    MotionRig(const char *coordinates, int extra) : num_extra_(extra) {
+        kinematics.configure(coordinates);
+        start(kinematics, kinematics.identity()->num_joints + extra, 100, 1000);
+    }
     /// A machine whose joints are not axes; `model` outlives the rig.
-    MotionRig(const kins::Kinematics &model, int joints, double velocity, double acceleration) {
+    MotionRig(const kins::Kinematics &model, int joints, double velocity, double acceleration, int extra = 0)
+        : num_extra_(extra) {
         start(model, joints, velocity, acceleration);
     }
     void start(const kins::Kinematics &model, int joints, double velocity, double acceleration) {
@@ -61,10 +67,10 @@ struct MotionRig {
         limits_.assign(static_cast<std::size_t>(joints), {});
         low_.assign(static_cast<std::size_t>(joints), -1e300);
         high_.assign(static_cast<std::size_t>(joints), 1e300);
-        controller = std::make_unique<motion::Controller>(motion::ControllerConfig{joints, 1, 4, 4, T}, model,
-                                                          *channels, *link);
-        planner = std::make_unique<motion::PathPlanner>(motion::PathPlannerConfig{T, joints, 1, 4, 4}, model,
-                                                        *channels, *link);
+        controller = std::make_unique<motion::Controller>(
+            motion::ControllerConfig{joints, 1, 4, 4, T, num_extra_}, model, *channels, *link);
+        planner = std::make_unique<motion::PathPlanner>(
+            motion::PathPlannerConfig{T, joints - num_extra_, 1, 4, 4}, model, *channels, *link);
         send(motion::Abort{epoch});
         for (int j = 0; j < joints; ++j) {
             set(motion::Parameter::JOINT_MAX_VELOCITY, j, velocity);
@@ -213,6 +219,7 @@ struct MotionRig {
         checker_->sample(positions.data());
     }
 
+    int num_extra_ = 0;
     bool isJudged_ = false;
     std::vector<AxisLimit> limits_;
     std::vector<double> low_, high_;

@@ -36,7 +36,7 @@ RTAPI_MP_INT(num_aio, "analog inputs and outputs, 1 to 64");
 static int num_misc_error = 0;
 RTAPI_MP_INT(num_misc_error, "further error inputs, 0 to 64");
 static int num_extrajoints = 0;
-RTAPI_MP_INT(num_extrajoints, "joints outside the kinematics; not supported yet");
+RTAPI_MP_INT(num_extrajoints, "the last joints, homed and then moved by joint.N.posthome-cmd");
 static int unlock_joints_mask = 0;
 RTAPI_MP_INT(unlock_joints_mask, "joints with unlock pins");
 
@@ -102,16 +102,11 @@ bool isConfigured() {
     if (!isSound) {
         return false;
     }
-    if (num_extrajoints != 0) {
-        rtapi_print_msg(RTAPI_MSG_ERR, "motmod: num_extrajoints=%d: extra joints are not supported yet\n",
-                        num_extrajoints);
-        return false;
-    }
-    return true;
+    return isInRange("num_extrajoints", num_extrajoints, 0, num_joints - 1);
 }
 
 int find_kinematics() {
-    const char *missing = module.kinematics.find(num_joints);
+    const char *missing = module.kinematics.find(num_joints - num_extrajoints);
     if (missing != nullptr) {
         rtapi_print_msg(
             RTAPI_MSG_ERR,
@@ -119,6 +114,15 @@ int find_kinematics() {
             "before motmod\n",
             missing);
         return -2;  // ENOENT
+    }
+    const kins::IdentityMap *map = module.kinematics.identity();
+    if (num_extrajoints > 0 && map != nullptr && map->num_joints != num_joints - num_extrajoints) {
+        rtapi_print_msg(
+            RTAPI_MSG_ERR,
+            "motmod: num_joints=%d with num_extrajoints=%d leaves %d joints to the kinematics, which moves "
+            "%d: see [KINS]JOINTS and coordinates= of the kinematics\n",
+            num_joints, num_extrajoints, num_joints - num_extrajoints, map->num_joints);
+        return FAILED;
     }
     return module.kinematics.hold(module.component);
 }
@@ -146,8 +150,8 @@ int find_homing() {
         return -2;  // ENOENT
     }
     const double period_s = static_cast<double>(servo_period_nsec) * 1e-9;
-    const int started =
-        module.homing.start_module(module.component, period_s, num_joints, set_unlock, get_unlock);
+    const int started = module.homing.start_module(module.component, period_s, {num_joints, num_extrajoints},
+                                                   set_unlock, get_unlock);
     if (started != 0) {
         rtapi_print_msg(RTAPI_MSG_ERR, "motmod: the homing module cannot be used: homing_init answers %d\n",
                         started);
@@ -185,7 +189,8 @@ int make_pins() {
         return -12;  // ENOMEM
     }
     module.pins = new (memory) motion::MotionPins();
-    motion::PinCounts counts{num_joints, num_spindles, num_dio, num_aio, num_misc_error, unlock_joints_mask};
+    motion::PinCounts counts{num_joints,     num_spindles,       num_dio,        num_aio,
+                             num_misc_error, unlock_joints_mask, num_extrajoints};
     counts.isSwitchable = module.kinematics.type_switch() != nullptr;
     counts.areHomingPinsMade = hasPin("joint.0.home-sw-in");
     return module.pins->declare(module.component, counts);
@@ -194,13 +199,13 @@ int make_pins() {
 int make_functions() {
     const double period_s = static_cast<double>(servo_period_nsec) * 1e-9;
     module.link = new (link_memory) motion::PathLink();
-    module.controller =
-        new (controller_memory) motion::Controller({num_joints, num_spindles, num_dio, num_aio, period_s,
-                                                    module.isHomingForeign ? &module.homing : nullptr},
-                                                   module.kinematics, *module.channels, *module.link);
-    module.planner =
-        new (planner_memory) motion::PathPlanner({period_s, num_joints, num_spindles, num_dio, num_aio},
-                                                 module.kinematics, *module.channels, *module.link);
+    module.controller = new (controller_memory)
+        motion::Controller({num_joints, num_spindles, num_dio, num_aio, period_s, num_extrajoints,
+                            module.isHomingForeign ? &module.homing : nullptr},
+                           module.kinematics, *module.channels, *module.link);
+    module.planner = new (planner_memory)
+        motion::PathPlanner({period_s, num_joints - num_extrajoints, num_spindles, num_dio, num_aio},
+                            module.kinematics, *module.channels, *module.link);
     int status = hal_export_funct("motion-command-handler", handle_commands, nullptr, 1, 0, module.component);
     if (status == 0) {
         status = hal_export_funct("motion-controller", control, nullptr, 1, 0, module.component);

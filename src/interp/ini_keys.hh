@@ -52,6 +52,12 @@ inline constexpr auto INI_KEYS = std::to_array<config::IniKey>({
     config::ini_whole("EMC", "DEBUG", "bits", 0, {-2147483648.0, 4294967295.0}, "told to scripts"),
     config::ini_text("DISPLAY", "PROGRAM_PREFIX",
                      "folder of programs, where subroutines are looked for first"),
+    config::ini_flag("AXIS_*", "WRAPPED_ROTARY", false,
+                     "A, B and C: absolute words lie within a turn and their sign is the direction"),
+    config::ini_whole(
+        "AXIS_*", "LOCKING_INDEXER_JOINT", "", -1, {-1, 15},
+        "A, B and C: the joint that unlocks before the axis moves, alone and with G0, and locks "
+        "afterwards; -1: none"),
     config::ini_flag("DISPLAY", "LATHE", false, "the machine is a lathe: pictures show Z and X"),
 });
 

@@ -28,6 +28,18 @@ int bits_of(config::IniReader &ini, const config::IniKey &key) {
     return static_cast<int>(static_cast<std::uint32_t>(ini.integer(key)));
 }
 
+RotaryAxes read_rotary(config::IniReader &ini) {
+    RotaryAxes out;
+    for (int axis = RotaryAxes::FIRST; axis <= RotaryAxes::LAST; ++axis) {
+        const std::string section = std::string("AXIS_") + geom::AXIS_LETTERS[axis];
+        const int bit = axis - RotaryAxes::FIRST;
+        out.wrapped |= ini.boolean(ini_key("AXIS_*", "WRAPPED_ROTARY"), section) ? 1U << bit : 0U;
+        out.indexer[static_cast<std::size_t>(bit)] =
+            static_cast<std::int8_t>(ini.integer(ini_key("AXIS_*", "LOCKING_INDEXER_JOINT"), section));
+    }
+    return out;
+}
+
 /// [PYTHON], with [EMC]DEBUG and [RS274NGC]LOG_LEVEL, which scripts can ask for.
 void read_scripts(config::IniReader &ini, Settings &out) {
     ScriptSettings &scripts = out.scripts;
@@ -73,6 +85,7 @@ Settings settings_from_ini(config::IniReader &ini) {
     out.isToolOffsetRetained = ini.boolean(ini_key("RS274NGC", "RETAIN_G43"));
     out.isArgumentCountNamed = ini.boolean(ini_key("RS274NGC", "OWORD_NARGS"));
     out.isLathe = ini.boolean(ini_key("DISPLAY", "LATHE"));
+    out.rotary = read_rotary(ini);
     out.orient_offset_deg = ini.real(ini_key("RS274NGC", "ORIENT_OFFSET"));
     out.center_arc_radius_tolerance_inch = ini.real(ini_key("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_INCH"));
     out.center_arc_radius_tolerance_mm = ini.real(ini_key("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_MM"));

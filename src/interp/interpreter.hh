@@ -15,6 +15,7 @@
 #include "diag/sink.hh"
 #include "interp/canon/canon.hh"
 #include "interp/program_interpreter.hh"
+#include "interp/rotary_axes.hh"
 #include "interp/world.hh"
 
 namespace mw::interp {
@@ -57,6 +58,7 @@ struct Settings {
     double center_arc_radius_tolerance_mm = 0.00127;
     double center_arc_radius_tolerance_inch = 0.00005;
     bool isLathe = false;
+    RotaryAxes rotary;
     bool isTask = false;  ///< #<_task>: a machine runs the program
     /// G74 and G84 in G18 and G19 print their X Y Z in the order of LinuxCNC's rs274, which is no tool path.
     bool isTapOrderOfRs274 = false;

@@ -71,9 +71,6 @@ inline constexpr auto INI_KEYS = std::to_array<config::IniKey>({
     config::ini_whole("JOINT_*", "COMP_FILE_TYPE", "", 0, {0, 1},
                       "0: position, where it is on the way up, on the way down; 1: position, what is to be "
                       "added on the way up, on the way down"),
-    config::ini_without_effect("AXIS_*", "WRAPPED_ROTARY", "the axis turns as far as the program says"),
-    config::ini_without_effect("AXIS_*", "LOCKING_INDEXER_JOINT",
-                               "only homing unlocks and locks indexers in this version"),
     config::ini_number("AXIS_*", "HOME", "machine units", 0.0,
                        {-config::INI_UNBOUNDED, config::INI_UNBOUNDED}, "of the joint that moves the axis"),
     config::ini_elsewhere("AXIS_*", "GEOMETRY", "displays"),

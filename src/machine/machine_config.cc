@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
 
@@ -48,6 +49,25 @@ void read_coordinates(IniReader &ini, MachineConfig &machine) {
     }
 }
 
+/// HAL files load motmod by this line, where there are extra joints.
+int count_extra_joints(IniReader &ini, int num_joints) {
+    const IniKey &key = ini_key("EMCMOT", "EMCMOT");
+    const config::IniEntry *entry = ini.find(key);
+    for (const std::string &word : split_words(entry != nullptr ? entry->value : std::string())) {
+        constexpr std::string_view NAME = "num_extrajoints=";
+        if (!word.starts_with(NAME)) {
+            continue;
+        }
+        const auto count = parse_int(word.substr(NAME.size()));
+        if (count.has_value() && *count >= 0 && *count < num_joints) {
+            return static_cast<int>(*count);
+        }
+        ini.sink().error("[EMCMOT]EMCMOT: " + word + " is not possible", entry->place,
+                         "0 to [KINS]JOINTS - 1; the last joints are the extra ones");
+    }
+    return 0;
+}
+
 void read_kinematics(IniReader &ini, MachineConfig &machine) {
     machine.kinematics = split_words(ini.text(ini_key("KINS", "KINEMATICS")));
     machine.num_joints = static_cast<int>(ini.integer(ini_key("KINS", "JOINTS")));
@@ -58,6 +78,7 @@ void read_kinematics(IniReader &ini, MachineConfig &machine) {
         }
     }
     machine.axis_map = motion::axis_map(letters, machine.num_joints);
+    machine.axis_map.num_extra = count_extra_joints(ini, machine.num_joints);
     machine.isTrivial = !machine.kinematics.empty() && machine.kinematics.front() == "trivkins";
     machine.joint_of_axis.fill(-1);
     for (int joint = static_cast<int>(std::min<std::size_t>(letters.size(), MAX_JOINTS)) - 1; joint >= 0;
@@ -214,6 +235,73 @@ void limit_angular(IniReader &ini, int axis, MachineConfig &machine) {
           limits.path.acceleration);
 }
 
+/// A wrapped axis turns on and on in programs, so a limit ends it sooner or later.
+void check_wrapped(IniReader &ini, const std::string &section, int axis, const TravelKeys &travel) {
+    const IniKey &key = interp::ini_key("AXIS_*", "WRAPPED_ROTARY");
+    if (!ini.boolean(key, section)) {
+        return;
+    }
+    if (!geom::isAngular(axis)) {
+        ini.sink().warning('[' + section + "]WRAPPED_ROTARY has no effect: only A, B and C turn",
+                           ini.find(key, section)->place);
+        return;
+    }
+    constexpr double ENDLESS = 1e9;
+    const bool isBounded =
+        ini.real(travel.low, section, -INF) > -ENDLESS || ini.real(travel.high, section, INF) < ENDLESS;
+    if (isBounded) {
+        ini.sink().warning(
+            '[' + section +
+                "]WRAPPED_ROTARY: MIN_LIMIT and MAX_LIMIT hold all the same, and keep the axis from "
+                "turning on; leave them out",
+            ini.find(key, section)->place);
+    }
+}
+
+/// Bits of unlock_joints_mask= of motmod, as HAL files load it.
+std::uint32_t unlock_mask(const IniReader &ini) {
+    const config::IniEntry *entry = ini.find(ini_key("EMCMOT", "EMCMOT"));
+    for (const std::string &word : split_words(entry != nullptr ? entry->value : std::string())) {
+        constexpr std::string_view NAME = "unlock_joints_mask=";
+        if (word.starts_with(NAME)) {
+            return static_cast<std::uint32_t>(std::strtoul(word.c_str() + NAME.size(), nullptr, 0));
+        }
+    }
+    return 0;
+}
+
+/// The joint whose lock a program opens for G0 of the axis, and what does not go with it.
+void read_indexer(IniReader &ini, const std::string &section, int axis, MachineConfig &machine) {
+    const IniKey &key = interp::ini_key("AXIS_*", "LOCKING_INDEXER_JOINT");
+    const int joint = static_cast<int>(ini.integer(key, section));
+    const config::IniEntry *entry = ini.find(key, section);
+    if (joint < 0 || entry == nullptr) {
+        return;
+    }
+    const std::string name = '[' + section + "]LOCKING_INDEXER_JOINT = " + entry->value;
+    if (!geom::isAngular(axis)) {
+        ini.sink().warning(name + " has no effect: only A, B and C have indexers", entry->place);
+        return;
+    }
+    const bool isOther = machine.isTrivial && !machine.axis_map.moves(joint, axis);
+    if (joint >= machine.num_joints || isOther) {
+        ini.sink().error(name + ": that joint does not move the axis", entry->place,
+                         "the joint of the axis, by the letters of coordinates=");
+        return;
+    }
+    if ((unlock_mask(ini) >> joint & 1U) == 0) {
+        ini.sink().warning(name + ": unlock_joints_mask= in [EMCMOT]EMCMOT does not have joint " +
+                               entry->value + "; without its pins the axis never unlocks",
+                           entry->place);
+    }
+    if (ini.real(ini_key(Parameter::AXIS_OFFSET_RATIO), section) > 0) {
+        ini.sink().warning('[' + section + "]OFFSET_AV_RATIO has no effect on a locking indexer",
+                           ini.find(ini_key(Parameter::AXIS_OFFSET_RATIO), section)->place);
+    }
+    machine.parameters.push_back({static_cast<std::uint16_t>(Parameter::AXIS_LOCKING_INDEXER_JOINT),
+                                  static_cast<std::int16_t>(axis), static_cast<double>(joint)});
+}
+
 void read_axes(IniReader &ini, MachineConfig &machine) {
     const TravelKeys travel = {ini_key(Parameter::AXIS_MIN_LIMIT), ini_key(Parameter::AXIS_MAX_LIMIT),
                                ini_key("AXIS_*", "HOME")};
@@ -239,6 +327,8 @@ void read_axes(IniReader &ini, MachineConfig &machine) {
         if (geom::isAngular(axis)) {
             limit_angular(ini, axis, machine);
         }
+        check_wrapped(ini, section, axis, travel);
+        read_indexer(ini, section, axis, machine);
         ini.declare_in(section, "AXIS_*", all_ini_keys());
     }
 }

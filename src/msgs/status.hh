@@ -11,6 +11,7 @@ namespace mw::msgs {
 struct TrajectoryStatus {
     std::uint32_t axis_mask = 0;
     int num_joints = 0;
+    int num_extra_joints = 0;
     int num_spindles = 0;
     MotionMode mode = MotionMode::FREE;
     bool isEnabled = false;
@@ -37,6 +38,8 @@ inline constexpr auto DECLARED<TrajectoryStatus> = declare(
     "TrajectoryStatus", 299, "EMC_TRAJ_STAT_TYPE", "motion as a whole and the move that is executed",
     field<&TrajectoryStatus::axis_mask>("axis_mask", "bit 0 X ... bit 8 W"),
     field<&TrajectoryStatus::num_joints>("num_joints", "joints that the machine has"),
+    field<&TrajectoryStatus::num_extra_joints>("num_extra_joints",
+                                               "the last of them, which pins move once they are homed"),
     field<&TrajectoryStatus::num_spindles>("num_spindles", "spindles that the machine has"),
     field<&TrajectoryStatus::mode>("mode", "of motion"),
     field<&TrajectoryStatus::isEnabled>("is_enabled", "motion is enabled"),

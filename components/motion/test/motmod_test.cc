@@ -131,7 +131,12 @@ TEST(Motmod, RefusesCountsOutOfRange_C12) {
     ASSERT_EQ(m.load("trivkins"), "ok");
     EXPECT_NE(m.load("motmod", {"num_joints=17"}).find("num_joints=17 is out of range"), std::string::npos);
     EXPECT_NE(m.load("motmod", {"num_spindles=9"}).find("num_spindles"), std::string::npos);
-    EXPECT_NE(m.load("motmod", {"num_extrajoints=1"}).find("not supported yet"), std::string::npos);
+    EXPECT_NE(m.load("motmod", {"num_joints=4", "num_extrajoints=4"}).find("num_extrajoints"),
+              std::string::npos);
+    EXPECT_NE(
+        m.load("motmod", {"num_joints=12", "num_extrajoints=1"}).find("leaves 11 joints to the kinematics"),
+        std::string::npos)
+        << "trivkins moves nine, or those of coordinates=";
     ASSERT_EQ(m.load("motmod", {"num_joints=2", "num_dio=7"}), "ok");
     EXPECT_EQ(m.host->hal().pins("joint.*.motor-pos-cmd").size(), 2U);
     EXPECT_EQ(m.host->hal().pins("axis.*.pos-cmd").size(), 9U);

@@ -23,7 +23,7 @@ std::vector<PinText> rows() {
 
 /// Each pin of a machine with so many of everything, by name.
 std::map<std::string, PinText> expected(const std::map<std::string, int> &counts,
-                                        const std::set<int> &unlocked) {
+                                        const std::set<int> &unlocked, int first_extra) {
     std::map<std::string, PinText> out;
     for (const PinText &row : rows()) {
         const std::string scope = row.name.substr(0, row.name.find_first_of("NL"));
@@ -36,7 +36,8 @@ std::map<std::string, PinText> expected(const std::map<std::string, int> &counts
             name = replaced(name, "N", std::to_string(i));
             name = i < MAX_AXES ? replaced(name, "L", std::string(1, geom::AXIS_LETTERS_LOWER[i])) : name;
             const bool isOfSwitchable = row.name == "motion.switchkins-type";
-            if ((!isUnlock || unlocked.contains(i)) && !isOfSwitchable) {
+            const bool isOfOthers = row.name == "joint.N.posthome-cmd" && i < first_extra;
+            if ((!isUnlock || unlocked.contains(i)) && !isOfSwitchable && !isOfOthers) {
                 out[name] = row;
             }
         }
@@ -51,10 +52,11 @@ TEST(MotmodPins, EveryRowOfTheTablesIsAPinAndEveryPinIsARow_B6) {
     auto host = hal::LocalHost::create(options, {MW_MODULE_FOLDER});
     ASSERT_TRUE(host.has_value());
     ASSERT_TRUE((*host)->load_realtime("trivkins", {}).has_value());
-    ASSERT_TRUE((*host)
-                    ->load_realtime("motmod", {"num_joints=12", "num_spindles=2", "num_dio=11", "num_aio=3",
-                                               "num_misc_error=2", "unlock_joints_mask=18"})
-                    .has_value());
+    ASSERT_TRUE(
+        (*host)
+            ->load_realtime("motmod", {"num_joints=12", "num_spindles=2", "num_dio=11", "num_aio=3",
+                                       "num_misc_error=2", "unlock_joints_mask=18", "num_extrajoints=3"})
+            .has_value());
     const std::map<std::string, int> counts = {{"joint.", 12},
                                                {"spindle.", 2},
                                                {"axis.", MAX_AXES},
@@ -64,7 +66,7 @@ TEST(MotmodPins, EveryRowOfTheTablesIsAPinAndEveryPinIsARow_B6) {
                                                {"motion.analog-in-", 3},
                                                {"motion.analog-out-", 3},
                                                {"motion.misc-error-", 2}};
-    const std::map<std::string, PinText> wanted = expected(counts, {1, 4});
+    const std::map<std::string, PinText> wanted = expected(counts, {1, 4}, 9);
     std::size_t found = 0;
     for (const hal::PinInfo &pin : (*host)->hal().pins("*")) {
         if (pin.owner != "motmod" || pin.name.ends_with(".time")) {

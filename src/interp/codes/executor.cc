@@ -4,6 +4,7 @@
 #include "base/overloaded.hh"
 #include "interp/codes/comments.hh"
 #include "interp/codes/modes/restore_modes.hh"
+#include "interp/codes/moves/rotary.hh"
 #include "interp/codes/moves/splines.hh"
 #include "interp/codes/synchronisation.hh"
 
@@ -24,6 +25,7 @@ Executor::Executor(World &world, ToolSource &tool_source, ParameterSource &sourc
                    Names &names)
     : tools(tool_source), script_levels{settings.debug_mask, settings.logging_level},
       machine_{world, settings}, source_(source), names_(names), evaluator_(parameters, names, *this, fault) {
+    state.rotary = settings.rotary;
 }
 
 // ------------------------------------------------------------------------------------------- one block
@@ -49,7 +51,8 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
         return true;  // settings and comments alone: lines of loops are mostly that
     }
     if (!choose_motion(values, state.motion, remaps, fault) || !check_open_nurbs(values, state, fault) ||
-        !axis_check_.check(values, machine_.world.axis_mask(), fault) || !check_words(values, fault)) {
+        !axis_check_.check(values, machine_.world.axis_mask(), fault) || !check_words(values, fault) ||
+        !check_rotary(values, state, fault)) {
         return false;
     }
     return run_codes(values, 0);

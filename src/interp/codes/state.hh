@@ -10,6 +10,7 @@
 #include "interp/canon/frame.hh"
 #include "interp/codes/comp/compensation.hh"
 #include "interp/codes/plane_geometry.hh"
+#include "interp/rotary_axes.hh"
 
 namespace mw::interp::detail {
 
@@ -63,6 +64,7 @@ struct SplineModes {
 struct State {
     Pose position;  ///< program coordinates [program units, degrees]
     Frame frame;    ///< [program units, degrees]
+    RotaryAxes rotary;
     int g5x_index = 1;
     int motion = MOTION_NONE;  ///< ten times the G code
     Plane plane = Plane::XY;

@@ -54,6 +54,46 @@ std::string replaced(std::string text, const std::string &from, const std::strin
     return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
+TEST(MachineConfig, ExtraJointsAreTheLastOnesAndLimitNoAxis_C12) {
+    const std::string more =
+        replaced(GOOD, "JOINTS = 2\n", "JOINTS = 3\n[EMCMOT]\nEMCMOT = motmod num_extrajoints=1\n") +
+        "[JOINT_2]\nMAX_VELOCITY = 7\nMAX_ACCELERATION = 70\nMAX_LIMIT = 0.5\n";
+    const Config c(more);
+    ASSERT_FALSE(c.sink.hasErrors());
+    EXPECT_EQ(c.machine.num_joints, 3);
+    EXPECT_EQ(c.machine.axis_map.num_extra, 1);
+    const motion::FoldedLimits limits = c.machine.limits();
+    EXPECT_EQ(limits.joints.count, 2);
+    EXPECT_EQ(limits.high[0], 2);
+    EXPECT_EQ(limits.joint_jog[2].velocity, 7);
+    const Config none(replaced(more, "num_extrajoints=1", "num_extrajoints=3"));
+    EXPECT_TRUE(none.says("num_extrajoints=3 is not possible"));
+}
+
+constexpr const char *TURNING =
+    "[TRAJ]\nCOORDINATES = X A\nLINEAR_UNITS = mm\n[KINS]\nKINEMATICS = trivkins coordinates=XA\nJOINTS = 2\n"
+    "[EMCMOT]\nEMCMOT = motmod unlock_joints_mask=0x2\n[HAL]\nHALFILE = LIB:core_sim.hal\n"
+    "[JOINT_0]\nMAX_VELOCITY = 1\nMAX_ACCELERATION = 10\n"
+    "[JOINT_1]\nTYPE = ANGULAR\nMAX_VELOCITY = 1\nMAX_ACCELERATION = 10\nLOCKING_INDEXER = 1\n"
+    "[AXIS_X]\nMIN_LIMIT = 0\nMAX_LIMIT = 10\n[AXIS_A]\nLOCKING_INDEXER_JOINT = 1\nWRAPPED_ROTARY = 1\n";
+
+TEST(MachineConfig, WrappedAxesAndIndexersAreReadAndWhatDoesNotFitIsSaid_A3_C10) {
+    const Config c(TURNING);
+    ASSERT_FALSE(c.sink.hasErrors());
+    EXPECT_FALSE(c.says("WRAPPED_ROTARY"));
+    EXPECT_FALSE(c.says("LOCKING_INDEXER_JOINT"));
+    EXPECT_EQ(c.parameter(motion::Parameter::AXIS_LOCKING_INDEXER_JOINT, geom::AXIS_A), 1);
+    EXPECT_EQ(c.machine.limits().indexer[geom::AXIS_A], 1);
+    EXPECT_TRUE(c.machine.task.interpreter.rotary.isWrapped(geom::AXIS_A));
+    EXPECT_EQ(c.machine.task.interpreter.rotary.indexer_joint(geom::AXIS_A), 1);
+    EXPECT_TRUE(Config(std::string(TURNING) + "MAX_LIMIT = 400\n").says("keep the axis from turning on"));
+    EXPECT_TRUE(Config(replaced(TURNING, "mask=0x2", "mask=0x1")).says("the axis never unlocks"));
+    EXPECT_TRUE(Config(replaced(TURNING, "INDEXER_JOINT = 1", "INDEXER_JOINT = 0")).sink.hasErrors());
+    EXPECT_TRUE(Config(replaced(TURNING, "INDEXER_JOINT = 1", "INDEXER_JOINT = 7")).sink.hasErrors());
+    EXPECT_TRUE(
+        Config(replaced(TURNING, "[AXIS_X]", "[AXIS_X]\nWRAPPED_ROTARY = 1")).says("only A, B and C"));
+}
+
 TEST(MachineConfig, AxesAndJointsAreDifferentThings_A3) {
     const Config c(GOOD);
     ASSERT_FALSE(c.sink.hasErrors());

@@ -53,6 +53,22 @@ void share_with_offset(double ratio, Tightest &all, JogLimits &jog, JogLimits &o
     all.jerk = all.jerk < NO_JERK_LIMIT ? rest * all.jerk : all.jerk;
 }
 
+void fold_locks(const Settings &s, const AxisMap &map, int axis, FoldedLimits &out) noexcept {
+    const int named = static_cast<int>(s.get(Parameter::AXIS_LOCKING_INDEXER_JOINT, axis));
+    std::uint32_t locks = 0;
+    if (named >= 0 && named < map.num_joints) {
+        out.indexer[at(axis)] = static_cast<std::int8_t>(named);
+        locks = 1U << named;
+    }
+    for (int j = 0; j < map.num_joints; ++j) {
+        const std::uint32_t bit = s.isSet(Parameter::JOINT_LOCKING_INDEXER, j) ? 1U << j : 0U;
+        locks |= map.moves(j, axis) ? bit : 0U;
+        out.locks |= bit;
+    }
+    out.axis_locks[at(axis)] = locks;
+    out.locks |= locks;
+}
+
 void fold_axis(const Settings &s, const AxisMap &map, int axis, FoldedLimits &out) noexcept {
     Tightest all{s.get(Parameter::AXIS_MAX_VELOCITY, axis), s.get(Parameter::AXIS_MAX_ACCELERATION, axis),
                  s.get(Parameter::AXIS_MAX_JERK, axis)};
@@ -72,11 +88,12 @@ void fold_axis(const Settings &s, const AxisMap &map, int axis, FoldedLimits &ou
         geom::isAngular(axis) ? all.jerk : std::min(all.jerk, s.get(Parameter::TRAJ_MAX_JERK));
     out.axis_jog[at(axis)] = {all.velocity, all.acceleration,
                               isJerkLimited(s) ? jog_jerk(most_jog_jerk) : 0.0};
+    fold_locks(s, map, axis, out);
     const double ratio = s.get(Parameter::AXIS_OFFSET_RATIO, axis);
-    if (ratio > 0 && map.areJointsAxes() && map.hasAxis(axis)) {
+    if (ratio > 0 && out.axis_locks[at(axis)] == 0 && map.areJointsAxes() && map.hasAxis(axis)) {
         share_with_offset(ratio, all, out.axis_jog[at(axis)], out.offset[at(axis)]);
     }
-    for (int j = 0; j < map.num_joints && map.kind == AxisMap::Kind::UNKNOWN; ++j) {
+    for (int j = 0; j < map.num_led() && map.kind == AxisMap::Kind::UNKNOWN; ++j) {
         // Nothing is known of how joints follow axes: kept well below what those of the same kind can do.
         // Jogs are kept within the joints' limits in the servo thread.
         if (s.isSet(Parameter::JOINT_IS_ANGULAR, j) == geom::isAngular(axis)) {
@@ -115,12 +132,13 @@ bool AxisMap::hasAxis(int axis) const noexcept {
     return isFound;
 }
 
-AxisMap axis_map(const kins::Kinematics &kinematics, int num_joints) noexcept {
+AxisMap axis_map(const kins::Kinematics &kinematics, int num_joints, int num_extra) noexcept {
     AxisMap out;
     out.num_joints = num_joints;
+    out.num_extra = num_extra;
     out.axis_of_joint.fill(-1);
     if (const kins::IdentityMap *identity = kinematics.identity()) {
-        std::copy_n(identity->axis_of_joint.begin(), std::min(num_joints, identity->num_joints),
+        std::copy_n(identity->axis_of_joint.begin(), std::min(out.num_led(), identity->num_joints),
                     out.axis_of_joint.begin());
         return out;
     }
@@ -158,7 +176,7 @@ FoldedLimits fold_limits(const Settings &settings, const AxisMap &map, const Hom
     for (int joint = 0; joint < map.num_joints; ++joint) {
         fold_joint(settings, joint, out);
     }
-    out.joints.count = map.num_joints;
+    out.joints.count = map.num_led();
     return out;
 }
 

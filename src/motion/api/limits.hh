@@ -30,17 +30,20 @@ struct AxisMap {
     };
     Kind kind = Kind::JOINTS_ARE_AXES;
     int num_joints = 0;                                   ///< of the machine; there are no others
+    int num_extra = 0;                                    ///< the last of them, which no pose moves
     std::array<std::int8_t, MAX_JOINTS> axis_of_joint{};  ///< -1: none; used where joints are axes
 
     /// A joint of the machine moves this axis; kinematics may move any.
     bool hasAxis(int axis) const noexcept;
+    int num_led() const noexcept { return num_joints - num_extra; }  ///< that a pose moves
     bool areJointsAxes() const noexcept { return kind == Kind::JOINTS_ARE_AXES; }
     bool moves(int joint, int axis) const noexcept {
         return areJointsAxes() && axis_of_joint[static_cast<std::size_t>(joint)] == axis;
     }
 };
 
-AxisMap axis_map(const kins::Kinematics &kinematics, int num_joints) noexcept;
+/// The last `num_extra` of `num_joints` are none of the kinematics.
+AxisMap axis_map(const kins::Kinematics &kinematics, int num_joints, int num_extra = 0) noexcept;
 /// Joint n moves the axis of the n-th letter.
 AxisMap axis_map(std::string_view letters, int num_joints) noexcept;
 
@@ -72,17 +75,32 @@ struct JogLimits {
     double jerk = 0;  ///< 0: none
 };
 
+inline constexpr std::array<std::int8_t, MAX_AXES> NO_INDEXERS = [] {
+    std::array<std::int8_t, MAX_AXES> none{};
+    none.fill(-1);
+    return none;
+}();
+
 struct FoldedLimits {
     traj::Limits path;       ///< of moves of axes: their own and those of the joints that move them
     geom::Pose low, high;    ///< soft limits of axes, with those of joints; +-infinity where none holds
     std::uint32_t axes = 0;  ///< bit per axis that a joint or the kinematics move
     traj::JointLimits joints;
     HomedJoints homed;
-    std::array<double, MAX_JOINTS> travel{};  ///< between the soft limits of a joint, homed or not
+    /// Joint whose lock a program opens for G0 of each axis; -1: none.
+    std::array<std::int8_t, MAX_AXES> indexer = NO_INDEXERS;
+    std::uint32_t locks = 0;                           ///< bit per joint that has a lock
+    std::array<std::uint32_t, MAX_AXES> axis_locks{};  ///< those of them that each axis moves
+    std::array<double, MAX_JOINTS> travel{};           ///< between the soft limits of a joint, homed or not
     std::array<JogLimits, MAX_JOINTS> joint_jog{};
     std::array<JogLimits, MAX_AXES> axis_jog{};
     std::array<JogLimits, MAX_AXES> offset{};  ///< external ones; velocity 0: the axis has none
 
+    /// Locks that are opened for a jog.
+    std::uint32_t locks_of(const JogTarget &target) const noexcept {
+        return target.isJoint ? locks & 1U << target.index
+                              : axis_locks[static_cast<std::size_t>(target.index)];
+    }
     const JogLimits &jog(const JogTarget &target) const noexcept {
         const auto i = static_cast<std::size_t>(target.index);
         return target.isJoint ? joint_jog[i] : axis_jog[i];

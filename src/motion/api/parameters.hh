@@ -93,7 +93,8 @@ inline constexpr double NO_JERK_LIMIT = 1e9;
     X(JOINT_HOME_MAX_SKEW, JOINT, "JOINT_*", "HOME_MAX_SKEW", LENGTH, 0, UNBOUNDED, 0,                       \
       "how far apart joints of one axis may get while they home; 0: a hundredth of their range")             \
     X(JOINT_LOCKING_INDEXER, JOINT, "JOINT_*", "LOCKING_INDEXER", FLAG, 0, 1, 0,                             \
-      "homing unlocks the joint, and locks it afterwards; jogs and programs do not yet")                     \
+      "homing and jogs unlock the joint before and lock it afterwards; for programs see "                    \
+      "[AXIS_l]LOCKING_INDEXER_JOINT")                                                                       \
     X(AXIS_MIN_LIMIT, AXIS, "AXIS_*", "MIN_LIMIT", LENGTH, -UNBOUNDED, UNBOUNDED, -1e99,                     \
       "lower soft limit; that of the joint where there is none")                                             \
     X(AXIS_MAX_LIMIT, AXIS, "AXIS_*", "MAX_LIMIT", LENGTH, -UNBOUNDED, UNBOUNDED, 1e99,                      \
@@ -104,6 +105,8 @@ inline constexpr double NO_JERK_LIMIT = 1e9;
       "of the axis; that of the joint where there is none")                                                  \
     X(AXIS_MAX_JERK, AXIS, "AXIS_*", "MAX_JERK", JERK, 0, UNBOUNDED, NO_JERK_LIMIT,                          \
       "of the axis; counts with PLANNER_TYPE = 1")                                                           \
+    X(AXIS_LOCKING_INDEXER_JOINT, AXIS, "", "", COUNT, -1, 15, -1,                                           \
+      "joint whose lock holds the axis; -1: none")                                                           \
     X(AXIS_OFFSET_RATIO, AXIS, "AXIS_*", "OFFSET_AV_RATIO", NONE, 0, 0.9, 0,                                 \
       "part of velocity and acceleration that external offsets have; 0: there are none")                     \
     X(SPINDLE_MAX_FORWARD, SPINDLE, "SPINDLE_*", "MAX_FORWARD_VELOCITY", RPM, 0, UNBOUNDED, UNBOUNDED,       \

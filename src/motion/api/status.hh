@@ -65,6 +65,7 @@ struct Status {
     double feed_scale = 1.0, rapid_scale = 1.0, net_feed_scale = 1.0;
     bool isFeedOverrideEnabled = true, isAdaptiveFeedEnabled = false, isFeedHoldEnabled = true;
     int num_joints = 0, num_spindles = 0;
+    int num_extra_joints = 0;                       ///< the last of the joints, which no pose moves
     std::uint64_t digital_in = 0, digital_out = 0;  ///< bit per pin
     std::array<JointStatus, MAX_JOINTS> joint{};
     std::array<AxisStatus, MAX_AXES> axis{};
@@ -144,6 +145,9 @@ enum class Reason : std::uint16_t {
     POSE_UNKNOWN,    ///< the kinematics has no pose that leads to where the joints stand
     SIDE_APART,      ///< index: the joint that stands apart from the place that the pose has for it
     NO_FEEDBACK,     ///< a joint's feedback is not a number
+    DRIVEN_BY_PIN,   ///< an extra joint that is homed
+    INDEXER_ALONE,   ///< a locking indexer moves alone, in programs with G0; others while it is locked
+    INDEXER_OPEN,    ///< a locking indexer has not locked
     COUNT,
 };
 
@@ -185,17 +189,22 @@ enum class FaultKind : std::uint16_t {
     HOMING_CLAMPED,                ///< a homing module has asked joint `index` for more than its limits allow
     FEEDBACK_LOST,                 ///< index: the joint whose feedback is not a number
     TAP_TOO_FAST,                  ///< index: spindle; value: needed speed over the possible one
-    TAP_TOO_ABRUPT,   ///< index: spindle; value: acceleration of its turning back over the possible one
-    TAP_TOO_SHALLOW,  ///< index: spindle; value: the way that is needed over the depth
-    TAP_LOST,         ///< index: spindle
-    SIDE_APART,       ///< index: joint; switched on in free mode
+    TAP_TOO_ABRUPT,        ///< index: spindle; value: acceleration of its turning back over the possible one
+    TAP_TOO_SHALLOW,       ///< index: spindle; value: the way that is needed over the depth
+    TAP_LOST,              ///< index: spindle
+    INDEXER_NOT_UNLOCKED,  ///< index: the joint, which was waited for too long
+    INDEXER_NOT_LOCKED,    ///< the same
+    INDEXER_LOCKED_IN_MOVE,  ///< index: the joint whose pin is-unlocked has fallen meanwhile
+    EXTRA_JOINT_LOST,        ///< index: the joint whose pin posthome-cmd is not a number
+    EXTRA_JOINT_LIMIT,       ///< index: the joint whose pin posthome-cmd asks for what lies beyond its range
+    SIDE_APART,              ///< index: joint; switched on in free mode
     COUNT,
 };
 /// Only told: no path has failed.
 constexpr bool isOnlyTold(FaultKind kind) noexcept {
     return kind == FaultKind::HOMING_CLAMPED || kind == FaultKind::JOG_JOINT_LIMIT ||
            kind == FaultKind::JOG_UNREACHABLE || kind == FaultKind::JOG_LEASE_ENDED ||
-           kind == FaultKind::SIDE_APART;
+           kind == FaultKind::EXTRA_JOINT_LIMIT || kind == FaultKind::SIDE_APART;
 }
 struct Fault {
     FaultKind kind = FaultKind::FOLLOWING_ERROR;

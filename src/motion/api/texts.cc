@@ -125,6 +125,17 @@ std::string reason_text(const Answer &answer) {
             "{} has a negative HOME_SEQUENCE: jogging it alone would rack the machine; home, then jog "
             "its axis in world mode",
             joint_name(i));
+    case Reason::DRIVEN_BY_PIN:
+        return fmt::format("{0} is an extra joint and homed: its pin joint.{1}.posthome-cmd moves it",
+                           joint_name(i), i);
+    case Reason::INDEXER_ALONE:
+        return fmt::format(
+            "{} is a locking indexer, or one is unlocked: it moves alone, in programs with G0, and nothing "
+            "else moves until it has locked",
+            place_name(answer));
+    case Reason::INDEXER_OPEN:
+        return "a locking indexer has not locked: jog it, or switch the machine off, and see its pin "
+               "joint.N.is-unlocked";
     case Reason::SWITCHED_ON: return "the machine is on: switch it off first";
     case Reason::NO_JOG_TO_RENEW:
         return fmt::format("there is no jog of {} to renew: it has ended or was stopped; begin it again",
@@ -219,6 +230,24 @@ std::string what_failed(const Fault &fault) {
     switch (fault.kind) {
     case FaultKind::FOLLOWING_ERROR: return fmt::format("joint {} following error", i);
     case FaultKind::FEEDBACK_LOST: return fmt::format("joint {} feedback is not a number", i);
+    case FaultKind::INDEXER_NOT_UNLOCKED:
+        return fmt::format(
+            "the locking indexer of joint {0} did not unlock in time: see joint.{0}.is-unlocked, which "
+            "joints in unlock_joints_mask= of motmod have",
+            i);
+    case FaultKind::INDEXER_NOT_LOCKED:
+        return fmt::format("the locking indexer of joint {0} did not lock in time: see joint.{0}.is-unlocked",
+                           i);
+    case FaultKind::INDEXER_LOCKED_IN_MOVE:
+        return fmt::format(
+            "the locking indexer of joint {0} locked while it was to move: see joint.{0}.is-unlocked", i);
+    case FaultKind::EXTRA_JOINT_LOST:
+        return fmt::format("joint.{}.posthome-cmd is not a number: see what the pin is linked to", i);
+    case FaultKind::EXTRA_JOINT_LIMIT:
+        return fmt::format(
+            "joint.{0}.posthome-cmd asks for {1:.6g}, beyond the soft limits of joint {0}: it goes no "
+            "farther than those",
+            i, fault.value);
     case FaultKind::AMP_FAULT: return fmt::format("joint {} amplifier fault", i);
     case FaultKind::HARD_LIMIT: return fmt::format("joint {} on limit switch error", i);
     case FaultKind::SOFT_LIMIT: return fmt::format("{} exceeded its soft limit", axis_name(i));

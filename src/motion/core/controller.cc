@@ -34,8 +34,9 @@ homing::JointInput homing_input(const JointInputs &pins, const Joint &joint, con
 
 Controller::Controller(const ControllerConfig &config, const kins::Kinematics &kinematics, Channels &channels,
                        PathLink &link) noexcept
-    : config_(config), loaded_joints_(config.num_joints), kinematics_(kinematics), channels_(&channels),
-      link_(&link), executor_(link.store, config.period_s) {
+    : config_(config), kinematics_(kinematics), channels_(&channels), link_(&link),
+      executor_(link.store, config.period_s) {
+    joints_.loaded = config.num_joints;
     spindles_.count = config.num_spindles;
     outputs_.num_digital = config.num_dio;
     outputs_.num_analog = config.num_aio;
@@ -43,7 +44,8 @@ Controller::Controller(const ControllerConfig &config, const kins::Kinematics &k
     homing_.foreign = config.homing;
     use_joints(config.num_joints);
     const kins::IdentityMap *identity = kinematics.identity();
-    for (int j = identity != nullptr ? identity->num_joints : config.num_joints; j < config.num_joints; ++j) {
+    const int led = config.num_led_joints();
+    for (int j = identity != nullptr ? identity->num_joints : led; j < led; ++j) {
         joints_[j].isActive = false;  // drives nothing until somebody activates it
     }
 }
@@ -55,9 +57,12 @@ void Controller::use_joints(int count) noexcept {
     joints_.count = count;
     jogs_.num_joints = count;
     homing_.num_joints = count;
-    homing_.num_to_home = identity != nullptr ? std::min(identity->num_joints, count) : count;
+    extra_.count = config_.num_extra_joints;
+    extra_.first = count - extra_.count;
+    homing_.num_to_home =
+        identity != nullptr && extra_.count == 0 ? std::min(identity->num_joints, count) : count;
     homing_.module().set_num_joints(homing_.num_to_home);
-    map_ = axis_map(kinematics_, count);
+    map_ = axis_map(kinematics_, count, extra_.count);
     for (int j = 0; j < count; ++j) {
         set_axis(homing_, j, map_.areJointsAxes() ? map_.axis_of_joint[static_cast<std::size_t>(j)] : -1);
     }
@@ -83,7 +88,7 @@ bool Controller::isAnythingMoving() const noexcept {
 
 void Controller::step(const Inputs &in, Outputs &out) noexcept {
     ++cycle_;
-    if (power_.isStopping && !isAnythingMoving() && areAtRest(offsets_)) {
+    if (power_.isStopping && !isAnythingMoving() && areAtRest(offsets_) && areAtRest(extra_)) {
         disable();
     }
     if (homing_.foreign != nullptr) {
@@ -97,7 +102,11 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
         stop_category_1(FaultKind::TASK_LOST, -1, watchdog_.standing_s);
     }
     check_faults(in);
-    step_holds(in);
+    motion::step(holds_, {in.adaptive_feed, in.isFeedHeld, in.isFeedInhibited,
+                          link_->steps_done.load(std::memory_order_acquire)});
+    const bool isReversing = holds_.isReverseWanted || retracing_.retrace.isAway();
+    executor_.hold(holds_.isStandingWanted || sides_.areApart() ||
+                   (power_.mode == Mode::COORD && isReversing));
     step_kinematics(in);
     for (int n = 0; n < config_.num_spindles; ++n) {
         const SpindleInputs &spindle = in.spindle[static_cast<std::size_t>(n)];
@@ -109,7 +118,13 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
     } else {
         step_homing(in);
         step_jogs(in);
+        if (indexers_.mask != 0) {
+            step_indexers(in);
+        }
         power_.mode == Mode::FREE ? move_joints(in) : move_axes(in);
+        if (extra_.count > 0) {
+            move_extra_joints(in);
+        }
     }
     output_joints();
     const traj::TapDemand &tap = executor_.output().tap;
@@ -157,6 +172,7 @@ void Controller::stop_category_1(FaultKind kind, int index, double value) noexce
     stop(jogs_);
     stop(sides_);
     stop(offsets_);
+    hold(extra_);
 }
 
 void Controller::check_faults(const Inputs &in) noexcept {
@@ -182,6 +198,7 @@ void Controller::check_joints(const Inputs &in) noexcept {
     const homing::Module &homing = homing_.module();
     JointCheck how;
     how.limits_ignored = jogs_.areLimitsOverridden ? ~0U : 0U;
+    how.feedback_ignored = extra_.mask() & limits_.homed.joints;
     for (int j = 0; j < config_.num_joints && homing.hasWork(); ++j) {
         const bool isIndexFound = !in.joint[static_cast<std::size_t>(j)].isIndexEnabled;
         how.at_index |= homing.isAtIndex(j) && isIndexFound ? 1U << j : 0U;
@@ -205,18 +222,11 @@ void Controller::check_joints(const Inputs &in) noexcept {
     }
 }
 
-/// What keeps the path from moving on for now.
-void Controller::step_holds(const Inputs &in) noexcept {
-    motion::step(holds_, {in.adaptive_feed, in.isFeedHeld, in.isFeedInhibited,
-                          link_->steps_done.load(std::memory_order_acquire)});
-    const bool isReversing = holds_.isReverseWanted || retracing_.retrace.isAway();
-    executor_.hold(holds_.isStandingWanted || sides_.areApart() ||
-                   (power_.mode == Mode::COORD && isReversing));
-}
-
 void Controller::step_homing(const Inputs &in) noexcept {
     if (homing_.isDue) {
-        const HomeConditions conditions{true, power_.mode, in.isHomingInhibited, isAnythingMoving(),
+        hold(extra_);
+        const HomeConditions conditions{true, power_.mode, in.isHomingInhibited,
+                                        isAnythingMoving() || !areAtRest(extra_) || busy(indexers_) != 0,
                                         inactive_joints(joints_)};
         const homing::Failure why = begin_due(homing_, conditions);
         if (why != homing::Failure::NONE) {
@@ -291,6 +301,42 @@ void Controller::step_jogs(const Inputs &in) noexcept {
         }
     }
     settle(jogs_, in);
+}
+
+/// Whoever is to move an indexer waits here for its lock.
+void Controller::step_indexers(const Inputs &in) noexcept {
+    IndexerInputs now;
+    now.period_s = config_.period_s;
+    now.unlocked = unlocked_pins(in);
+    for (int j = 0; j < config_.num_joints; ++j) {
+        const std::uint32_t bit = 1U << j;
+        const bool isHoming = homing_.module().isHoming(j) || homing_.module().isUnlockWanted(j);
+        now.homing |= isHoming ? bit : 0U;
+        now.moving |= joints_[j].vel_cmd != 0.0 ? bit : 0U;
+        const bool isJogged = power_.mode == Mode::FREE && !jogs_.at({true, j}).planner.isAtRest();
+        now.wanted |= isJogged ? bit : 0U;
+    }
+    for (int i = 0; i < MAX_AXES && power_.mode == Mode::TELEOP; ++i) {
+        now.wanted |= jogs_.at({false, i}).planner.isAtRest() ? 0U : limits_.locks_of({false, i});
+    }
+    // What the planner wants of a path that was dropped counts no more.
+    const std::uint64_t wish = link_->indexers_wanted.load(std::memory_order_acquire);
+    const bool isOfPath =
+        static_cast<std::uint32_t>(wish >> 32) == static_cast<std::uint32_t>(executor_.snapshot().drops);
+    if (power_.mode == Mode::COORD && power_.isReady() && isOfPath) {
+        now.wanted |= static_cast<std::uint32_t>(wish);
+    }
+    const IndexerEvent event = motion::step(indexers_, now);
+    if (event.fault == LockFault::LOCKED_IN_MOVE) {
+        stop_category_0(FaultKind::INDEXER_LOCKED_IN_MOVE, event.joint, 0);
+    } else if (event.fault != LockFault::NONE) {
+        raise(event.fault == LockFault::NOT_LOCKED ? FaultKind::INDEXER_NOT_LOCKED
+                                                   : FaultKind::INDEXER_NOT_UNLOCKED,
+              event.joint, 0);
+        executor_.drop();
+        stop(jogs_);
+        isCoordError_ = true;
+    }
 }
 
 void Controller::output_joints() noexcept {

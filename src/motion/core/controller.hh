@@ -13,8 +13,10 @@
 #include "motion/core/coord/lead.hh"
 #include "motion/core/coord/place.hh"
 #include "motion/core/coord/retracing.hh"
+#include "motion/core/extra_joints/extra_joints.hh"
 #include "motion/core/holds/holds.hh"
 #include "motion/core/homing/homing_drive.hh"
+#include "motion/core/indexers/indexers.hh"
 #include "motion/core/io.hh"
 #include "motion/core/jogs/jogs.hh"
 #include "motion/core/joints/joints.hh"
@@ -37,7 +39,10 @@ struct ControllerConfig {
     int num_dio = 4;
     int num_aio = 4;
     double period_s = 1e-3;
+    int num_extra_joints = 0;          ///< the last joints, which no pose moves
     homing::Module *homing = nullptr;  ///< takes the place of ours; outlives the controller
+
+    int num_led_joints() const noexcept { return num_joints - num_extra_joints; }
 };
 
 /// Owns the parts of the machine and hands each, every cycle, what it needs of the others. Some megabytes, so
@@ -80,12 +85,12 @@ class Controller {
     void use_joints(int count) noexcept;
     void check_faults(const Inputs &in) noexcept;
     void check_joints(const Inputs &in) noexcept;
-    void step_holds(const Inputs &in) noexcept;
     void step_kinematics(const Inputs &in) noexcept;
     void switch_kinematics(kins::TypeSwitch &types) noexcept;
     void step_homing(const Inputs &in) noexcept;
     void drive_homing(const Inputs &in) noexcept;
     void step_jogs(const Inputs &in) noexcept;
+    void step_indexers(const Inputs &in) noexcept;
     void output_joints() noexcept;
     void stop_category_1(FaultKind kind, int index, double value) noexcept;
     void stop_category_0(FaultKind kind, int index, double value) noexcept;
@@ -97,8 +102,8 @@ class Controller {
     void move_axes(const Inputs &in) noexcept;
     geom::Pose teleop_pose() noexcept;
     geom::Pose path_pose() noexcept;
+    void move_extra_joints(const Inputs &in) noexcept;
     void move_to(const geom::Pose &pose) noexcept;
-    void check_joint_steps() noexcept;
     void check_probe(const Inputs &in) noexcept;
 
     // --- controller_status.cc
@@ -106,8 +111,7 @@ class Controller {
     void fill_path(Status &status) const noexcept;
     void publish_view(const Inputs &in) noexcept;
 
-    ControllerConfig config_;
-    int loaded_joints_;  ///< config_ has those that are in use
+    ControllerConfig config_;  ///< with the joints that are in use
     const kins::Kinematics &kinematics_;
     Channels *channels_;
     PathLink *link_;
@@ -134,15 +138,21 @@ class Controller {
     Place place_;
     KinematicsTypes types_;
     ExternalOffsets offsets_;
+    ExtraJoints extra_;
+    Indexers indexers_;
     traj::Executor executor_;
     Retracing retracing_;
 
-    geom::Pose tool_offset_;
     bool isCoordError_ = false;
 };
 
 inline Stride stride_of(const FoldedLimits &limits, const ControllerConfig &config) noexcept {
-    return {limits.joints.velocity.data(), config.period_s, config.num_joints};
+    return {limits.joints.velocity.data(), config.period_s, config.num_led_joints()};
+}
+
+inline ExtraJointInputs extra_inputs(const Inputs &in, const Joints &joints, const FoldedLimits &limits,
+                                     double period_s) noexcept {
+    return {in.joint, commanded(joints), limits, limits.homed.joints & ~inactive_joints(joints), period_s};
 }
 
 /// Where jogs or the path may lead to without external offsets.

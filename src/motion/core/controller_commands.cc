@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Immediate commands: each is answered, done or refused with a reason.
 #include <algorithm>
-#include <cmath>
 
 #include "base/overloaded.hh"
 #include "motion/core/controller.hh"
@@ -12,6 +11,21 @@ namespace {
 bool isPlaceKnown(const kins::Kinematics &kinematics, const geom::Pose &pose, const Joints &joints,
                   const Stride &stride) noexcept {
     return kinematics.kind() != kins::Kind::BOTH || leadsTo(kinematics, pose, commanded(joints), stride);
+}
+
+/// An indexer is jogged while nothing else moves, and nothing else while one is under way.
+bool isBesideIndexer(const Jogs &jogs, const FoldedLimits &limits, const Indexers &indexers,
+                     const JogTarget &target) noexcept {
+    const std::uint32_t own = limits.locks_of(target);
+    bool is = (busy(indexers) & ~own) != 0;
+    const int count = target.isJoint ? jogs.num_joints : MAX_AXES;
+    for (int i = 0; i < count; ++i) {
+        const JogTarget other{target.isJoint, i};
+        const bool areOne = own != 0 && (limits.locks_of(other) & own) != 0;
+        const bool isLone = own != 0 || limits.locks_of(other) != 0;
+        is = is || (i != target.index && !areOne && isLone && !jogs.at(other).planner.isAtRest());
+    }
+    return is;
 }
 
 }  // namespace
@@ -101,7 +115,9 @@ Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
             return verdict;
         },
         [&](const Unhome &c) {
-            const HomeConditions conditions{power_.isReady(), power_.mode, false, isAnythingMoving(), 0};
+            const HomeConditions conditions{
+                power_.isReady(),   power_.mode, false,
+                isAnythingMoving(), 0,           power_.isEnabled ? extra_.mask() & limits_.homed.joints : 0};
             const Verdict verdict = motion::take(homing_, c, conditions, settings_);
             if (verdict.reason == Reason::NONE) {
                 publish_limits();
@@ -114,13 +130,8 @@ Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
         },
         [&](const OneOf<SpindleOff, SpindleBrake> auto &c) { return motion::take(spindles_, c); },
         [&](const OneOf<SetDigitalOutput, SetAnalogOutput> auto &c) { return motion::take(outputs_, c); },
+        [&](const SetToolOffset &c) { return motion::take(outputs_, c); },
         [&](const ClearProbeFlag &c) { return motion::take(probe_, c); },
-        [&](const SetToolOffset &c) {
-            const bool areNumbers =
-                std::all_of(c.offset.c.begin(), c.offset.c.end(), [](double x) { return std::isfinite(x); });
-            tool_offset_ = areNumbers ? c.offset : tool_offset_;
-            return Verdict{areNumbers ? Reason::NONE : Reason::NOT_A_NUMBER};
-        },
     };
     return std::visit(handlers, body);
 }
@@ -132,6 +143,7 @@ Verdict Controller::abort_all(const Abort &command) noexcept {
     abort(homing_, homing::event::ABORT);
     executor_.drop();
     stop(jogs_);
+    hold(extra_);
     stop(sides_);
     release(holds_);
     isCoordError_ = false;
@@ -162,6 +174,8 @@ Verdict Controller::enable(const Inputs &in) noexcept {
     switch_on(joints_);
     start_at_zero(offsets_, in);
     start_at(jogs_, commanded(joints_).data(), place_.cmd, in);
+    switch_on(indexers_, {0, 0, unlocked_pins(in), 0, config_.period_s});
+    switch_on(extra_, extra_inputs(in, joints_, limits_, config_.period_s));
     isCoordError_ = false;
     executor_.drop();
     executor_.set_position(place_.cmd);
@@ -177,6 +191,7 @@ void Controller::disable() noexcept {
     switch_off(power_);
     release(holds_);
     switch_off(joints_);
+    switch_off(indexers_);
     forget_sources(jogs_);
     switch_off(homing_, settings_);
     switch_off(spindles_);
@@ -215,7 +230,8 @@ Verdict Controller::lead_joints() noexcept {
 
 Verdict Controller::set_mode(Mode mode) noexcept {
     const bool isOffsetMoving = mode == Mode::FREE && !areAtRest(offsets_);
-    const ModeConditions conditions{homing_.isUnderWay(), isAnythingMoving() || isOffsetMoving,
+    const ModeConditions conditions{homing_.isUnderWay(),
+                                    isAnythingMoving() || isOffsetMoving || busy(indexers_) != 0,
                                     kinematics_.kind() != kins::Kind::IDENTITY, isAllHomed(homing_)};
     const Reason reason = check_mode(power_, mode, conditions);
     if (reason != Reason::NONE || mode == power_.mode) {
@@ -245,11 +261,12 @@ Verdict Controller::set_mode(Mode mode) noexcept {
 /// A joint that is no longer there is not homed when it comes back, and then is where its motor is.
 Verdict Controller::set_num_joints(const Inputs &in, int count) noexcept {
     const kins::IdentityMap *identity = kinematics_.identity();
-    const int needed = identity != nullptr ? std::min(identity->num_joints, loaded_joints_) : 1;
+    const int least = identity != nullptr ? std::min(identity->num_joints, joints_.loaded) : 1;
+    const int needed = extra_.count > 0 ? joints_.loaded : least;  // extra joints are the last ones
     if (power_.isEnabled) {
         return {Reason::SWITCHED_ON};
     }
-    if (count > loaded_joints_) {
+    if (count > joints_.loaded) {
         return verdict_of(count - 1, Reason::NO_SUCH_JOINT);
     }
     if (count < needed) {
@@ -290,6 +307,7 @@ JogSituation Controller::situation_of(const Inputs &in, const JogTarget &target)
     s.mode = power_.mode;
     s.isHoming = homing_.isUnderWay();
     s.isInhibited = in.isJogInhibited || in.isJogStopped || in.isJogStoppedNow;
+    s.isDriven = target.isJoint && (extra_.mask() & limits_.homed.joints & 1U << target.index) != 0;
     s.isMovable = target.isJoint ? joints_[target.index].isActive : map_.hasAxis(target.index);
     if (target.isJoint) {
         const Joint &joint = joints_[target.index];
@@ -298,6 +316,8 @@ JogSituation Controller::situation_of(const Inputs &in, const JogTarget &target)
         s.isOnPosLimit = joint.isOnPosHardLimit;
         s.isOnNegLimit = joint.isOnNegHardLimit;
     }
+    s.isLocked = limits_.locks_of(target) != 0;
+    s.isBesideIndexer = indexers_.mask != 0 && isBesideIndexer(jogs_, limits_, indexers_, target);
     s.most = limits_.jog(target);
     s.range = jog_range(limits_, map_, target, commanded(joints_).data());
     if (!target.isJoint) {
@@ -320,8 +340,10 @@ void Controller::tell_standing() noexcept {
 void Controller::publish_limits() noexcept {
     limits_ = fold_limits(settings_, map_, {homed_mask(homing_), isAllHomed(homing_)});
     configure(offsets_, limits_);
+    indexers_.mask = limits_.locks;
     PathLimits out;
     out.offset_axes = offsets_.axes;
+    out.indexer = limits_.indexer;
     out.limits = limits_.path;
     out.low = limits_.low;
     out.high = limits_.high;

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The motion of a cycle: joints by themselves (free), axes (teleop) or the path (coord) through the
 // kinematics.
+#include <bit>
+
 #include "motion/core/controller.hh"
 #include "motion/core/jogs/teleop.hh"
 
 namespace mw::motion {
-
 namespace {
 
-/// What the first `count` joints do in this cycle.
+/// What the first `count` joints do, to come back to when the path is gone back.
 JointUse use_of(const Joints &joints, int count, double period_s) noexcept {
     JointUse use;
     use.count = count;
@@ -40,10 +41,16 @@ PoseRange programmed_range(const Jogs &jogs, const PathLink &link, Mode mode,
 void Controller::move_joints(const Inputs &in) noexcept {
     check_probe(in);
     executor_.step(cycle_);
+    const std::uint32_t locked = held(indexers_);
     for (int j = 0; j < config_.num_joints; ++j) {
         Jog &jog = jogs_.at({true, j});
-        step_joint(jog, limits_.joints.velocity[static_cast<std::size_t>(j)], holds_.jog_scale(),
-                   config_.period_s);
+        if (extra_.joint[static_cast<std::size_t>(j)].state != Following::NONE) {
+            continue;
+        }
+        if ((locked & 1U << j) == 0) {
+            step_joint(jog, limits_.joints.velocity[static_cast<std::size_t>(j)], holds_.jog_scale(),
+                       config_.period_s);
+        }
         follow(joints_[j], jog.planner.position, config_.period_s);
     }
     if (offsets_.axes != 0) {
@@ -84,14 +91,20 @@ void Controller::move_axes(const Inputs &in) noexcept {
         if (!map_.areJointsAxes() && hasDropped(standing_, executor_.snapshot())) {
             tell_standing();
         }
-        check_joint_steps();
+        // Kinematics that only this thread may call cannot be planned with: the machine stops where a joint
+        // has to do more than it can.
+        const bool isPlanned = map_.kind != AxisMap::Kind::UNKNOWN;
+        const Overrun overrun = isPlanned || !power_.isReady() ? Overrun{} : find_overrun(joints_, limits_);
+        if (overrun.joint >= 0) {
+            stop_category_1(overrun.isOutside ? FaultKind::JOINT_LEFT_RANGE : FaultKind::JOINT_TOO_FAST,
+                            overrun.joint, overrun.use);
+        }
         if (!retracing_.retrace.isAway()) {
-            // Nobody goes back through a hole that was tapped without turning the spindle.
-            const bool isTapping = executor_.output().tap.spindle >= 0;
-            if (holds_.isAdaptiveFeedEnabled && !isTapping) {  // to come back to when the path is gone back
-                const JointUse use =
-                    use_of(joints_, map_.areJointsAxes() ? 0 : config_.num_joints, config_.period_s);
-                record(retracing_, pose, use, limits_, config_.period_s);
+            // Nobody goes back through a hole that was tapped without turning the spindle, nor behind a lock.
+            const bool isOneWay = executor_.output().tap.spindle >= 0 || busy(indexers_) != 0;
+            if (holds_.isAdaptiveFeedEnabled && !isOneWay) {
+                const int count = map_.areJointsAxes() ? 0 : config_.num_led_joints();
+                record(retracing_, pose, use_of(joints_, count, config_.period_s), limits_, config_.period_s);
             } else {
                 retracing_.retrace.clear();
             }
@@ -108,27 +121,51 @@ void Controller::move_axes(const Inputs &in) noexcept {
     }
 }
 
+/// In every mode: those that are homed go where their pins say.
+void Controller::move_extra_joints(const Inputs &in) noexcept {
+    const ExtraJointEvents events =
+        motion::step(extra_, extra_inputs(in, joints_, limits_, config_.period_s));
+    for (int j = extra_.first; j < config_.num_joints; ++j) {
+        const auto n = static_cast<std::size_t>(j);
+        const ExtraJoint &extra = extra_.joint[n];
+        if (extra.state != Following::NONE) {
+            follow(joints_[j], extra.planner.position(), config_.period_s);
+            jogs_.joint[n].planner.reset(extra.planner.position());
+        }
+    }
+    for (std::uint32_t beyond = events.beyond; beyond != 0; beyond &= beyond - 1) {
+        const int j = std::countr_zero(beyond);
+        raise(FaultKind::EXTRA_JOINT_LIMIT, j, in.joint[static_cast<std::size_t>(j)].posthome_cmd);
+    }
+    if (events.lost != 0) {
+        stop_category_1(FaultKind::EXTRA_JOINT_LOST, std::countr_zero(events.lost), 0);
+    }
+}
+
 geom::Pose Controller::teleop_pose() noexcept {
     executor_.step(cycle_);
     executor_.set_position(without(offsets_, place_.cmd));
     if (!map_.areJointsAxes()) {
         const TeleopMachine machine{
-            kinematics_,        limits_,          commanded(joints_),          config_.num_joints,
+            kinematics_,        limits_,          commanded(joints_),          config_.num_led_joints(),
             holds_.jog_scale(), config_.period_s, kinematics_.side(place_.cmd)};
         const TeleopStop stopped = limit_teleop(jogs_, machine);
         if (stopped.isNew && stopped.joint >= 0) {
             raise(FaultKind::JOG_JOINT_LIMIT, stopped.joint, 0);
         } else if (stopped.isNew) {
-            raise(FaultKind::JOG_UNREACHABLE, config_.num_joints, 0);
+            raise(FaultKind::JOG_UNREACHABLE, config_.num_led_joints(), 0);
         }
     }
     geom::Pose pose;
+    const std::uint32_t locked = held(indexers_);
     for (int i = 0; i < MAX_AXES; ++i) {
         Jog &jog = jogs_.at({false, i});
         if (map_.areJointsAxes()) {
             limit_axis(jog, limits_.jog({false, i}).velocity, holds_.jog_scale());
         }
-        jog.planner.step(config_.period_s);
+        if ((limits_.axis_locks[static_cast<std::size_t>(i)] & locked) == 0) {
+            jog.planner.step(config_.period_s);
+        }
         pose[i] = jog.planner.position;
     }
     return pose;
@@ -166,7 +203,7 @@ void Controller::move_to(const geom::Pose &pose) noexcept {
         return;
     }
     follow_pose(place_, pose, config_.period_s);
-    for (int j = 0; j < config_.num_joints; ++j) {
+    for (int j = 0; j < config_.num_led_joints(); ++j) {
         const auto n = static_cast<std::size_t>(j);
         follow(joints_[j], positions[n], config_.period_s);
         jogs_.joint[n].planner.reset(positions[n]);
@@ -224,19 +261,6 @@ void Controller::switch_kinematics(kins::TypeSwitch &types) noexcept {
     retracing_.retrace.clear();
     rest_at(jogs_, commanded(joints_).data(), pose);
     tell_standing();
-}
-
-/// Kinematics that only this thread may call cannot be planned with: the machine stops where a joint has to
-/// do more than it can.
-void Controller::check_joint_steps() noexcept {
-    if (map_.kind != AxisMap::Kind::UNKNOWN || !power_.isReady()) {
-        return;
-    }
-    const Overrun overrun = find_overrun(joints_, limits_);
-    if (overrun.joint >= 0) {
-        stop_category_1(overrun.isOutside ? FaultKind::JOINT_LEFT_RANGE : FaultKind::JOINT_TOO_FAST,
-                        overrun.joint, overrun.use);
-    }
 }
 
 /// A probing move ends where the probe trips; in any other move a trip is a fault.

@@ -67,14 +67,16 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
     fill(place_, s);
     fill(probe_, in.isProbeClosed, s);
     fill(holds_, s);
-    fill(outputs_, in, s);
+    fill(outputs_, in, out);
     fill_path(s);
     fill(joints_, settings_, {power_.isEnabled, jogs_.areLimitsOverridden, limits_.homed.joints}, out);
     fill(jogs_, power_.mode, without(offsets_, place_.cmd), out);
     fill(offsets_, out);
+    fill(extra_, limits_.homed.joints, out);
     fill(homing_, out);
+    fill(indexers_, out);
     fill(spindles_, in, power_.isEnabled, out);
-    for (int j = config_.num_joints; j < loaded_joints_; ++j) {
+    for (int j = config_.num_joints; j < joints_.loaded; ++j) {
         fill_unused(in.joint[static_cast<std::size_t>(j)], j, out);
     }
     for (int i = 0; i < MAX_AXES; ++i) {
@@ -84,7 +86,6 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
     }
     out.mm_per_unit = settings_.get(Parameter::TRAJ_MM_PER_UNIT);
     out.isCoordError = isCoordError_;
-    out.tool_offset = tool_offset_;
     publish_view(in);
     channels_->status.write(s, new_parts(channels_->status, s));
     trace(*channels_, in, s, joints_, types_.switches, isAnythingMoving());
@@ -95,8 +96,8 @@ void Controller::fill_path(Status &s) const noexcept {
     s.queue_depth = link_->queue_depth.load(std::memory_order_relaxed);
     s.isQueueFull = link_->isQueueFull.load(std::memory_order_relaxed) != 0;
     s.last_path_id = link_->last_done_id.load(std::memory_order_acquire);
-    s.isInPosition =
-        !isAnythingMoving() && (power_.mode != Mode::COORD || s.queue_depth == 0) && !types_.isPending;
+    s.isInPosition = !isAnythingMoving() && busy(indexers_) == 0 &&
+                     (power_.mode != Mode::COORD || s.queue_depth == 0) && !types_.isPending;
     s.current_velocity = place_.velocity;
     const traj::MoveTag *tag = active_move(executor_, link_->store, power_.mode);
     if (tag == nullptr) {
@@ -147,6 +148,9 @@ void Controller::publish_view(const Inputs &in) noexcept {
     v.probe_trips = probe_.trips;
     v.steps = holds_.steps;
     v.isStepping = holds_.isStepping;
+    v.indexers_unlocked = in_state(indexers_, LockState::UNLOCKED);
+    v.indexers_busy = busy(indexers_);
+    v.indexers_stuck = in_state(indexers_, LockState::STUCK);
     v.type_asks = types_.asks;
     v.isTypePending = types_.isPending;
     link_->view.write(v);

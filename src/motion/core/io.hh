@@ -32,6 +32,7 @@ struct JointInputs {
     bool isAmpFaulted = false;
     bool isIndexEnabled = false;
     bool isUnlocked = false;  ///< of a locking indexer
+    double posthome_cmd = 0;  ///< of an extra joint
     WheelInput wheel;
 };
 

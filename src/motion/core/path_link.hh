@@ -24,7 +24,8 @@ struct PathLimits {
     geom::Pose low, high;             ///< soft limits per axis; +-infinity where none holds
     std::uint32_t axes = 0;           ///< bit per axis that the kinematics drive
     std::uint32_t offset_axes = 0;    ///< bit per axis that may have an external offset
-    traj::JointLimits joints;         ///< where joints are not axes
+    std::array<std::int8_t, MAX_AXES> indexer = NO_INDEXERS;  ///< as in FoldedLimits
+    traj::JointLimits joints;                                 ///< where joints are not axes
     /// Where the joints stood before the path: elbows and wrists are on the side of theirs
     std::array<double, MAX_JOINTS> standing{};
     int side = 0;              ///< of that place (kins::Kinematics)
@@ -56,6 +57,8 @@ struct PathView {
     std::uint32_t probe_trips = 0;  ///< counts probe moves that were tripped
     std::uint32_t steps = 0;        ///< counts StepOnce
     bool isStepping = false;
+    /// Locking indexers, bit per joint: may move, wait or move, have not locked in time.
+    std::uint32_t indexers_unlocked = 0, indexers_busy = 0, indexers_stuck = 0;
     std::uint32_t type_asks = 0;  ///< counts asks for another type of the kinematics
     bool isTypePending = false;   ///< paths wait until it is in force
 };
@@ -73,6 +76,9 @@ struct PathLink {
     CopyableAtomic<std::uint32_t> steps_done{0};
     /// planner -> controller: type_asks at which nothing was accepted that is not driven
     CopyableAtomic<std::uint32_t> type_asks_seen{0};
+    /// planner -> controller: the joints that the path wants unlocked, above them the drops of paths it knows
+    /// of
+    CopyableAtomic<std::uint64_t> indexers_wanted{0};
     CopyableAtomic<std::uint32_t> queue_depth{0};   ///< planner -> controller
     CopyableAtomic<std::uint32_t> isQueueFull{0};   ///< planner -> controller
     CopyableAtomic<std::uint64_t> last_done_id{0};  ///< planner -> controller: last path command completed

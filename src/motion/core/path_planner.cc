@@ -128,6 +128,14 @@ void PathPlanner::complete_moves() noexcept {
         if (!isReached || (p.isFlush && !isStanding)) {
             return;
         }
+        if (p.indexer >= 0) {
+            const std::uint32_t open = view_.indexers_busy | view_.indexers_stuck;
+            const bool isLocked = p.isIndexed && (open >> p.indexer & 1U) == 0;
+            pending_.newest().isIndexed = isStanding;  // it is alone
+            if (!isLocked) {
+                return;
+            }
+        }
         if (p.isProbe && p.isTripRequired) {
             Fault fault;
             fault.kind = FaultKind::PROBE_NOT_TRIPPED;
@@ -176,12 +184,16 @@ bool PathPlanner::take_commands() noexcept {
 
 /// True when this command has to wait for something that the executor does first.
 bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
-    if (view_.executor.isDropping || view_.isTypePending) {
+    if (view_.executor.isDropping || view_.isTypePending ||
+        (pending_.isEmpty() && view_.indexers_busy != 0)) {
         return true;
     }
-    const bool isAfterProbe = !pending_.isEmpty() && pending_.newest().isProbe;
-    const bool isProbe = std::holds_alternative<Probe>(c.body);
-    if (isAfterProbe || (isProbe && !pending_.isEmpty())) {
+    const bool isAfterLone =
+        !pending_.isEmpty() && (pending_.newest().isProbe || pending_.newest().indexer >= 0);
+    const bool isIndexing = indexer_of(c.body) >= 0;
+    const bool isLone = std::holds_alternative<Probe>(c.body) || isIndexing;
+    const bool isStillMoving = isIndexing && isPathBegun_ && !isIdle();
+    if (isAfterLone || isStillMoving || (isLone && !pending_.isEmpty())) {
         planner_.release_end();
         return true;
     }
@@ -274,6 +286,12 @@ bool PathPlanner::areSpindlesReady() const noexcept {
 /// every pass begins at the same angle.
 void PathPlanner::open_gates() noexcept {
     const traj::Sequence gate = isPathBegun_ ? planner_.waiting_gate(view_.executor) : 0;
+    if (gate != 0 && !pending_.isEmpty() && pending_.newest().indexer >= 0) {
+        if ((view_.indexers_unlocked >> pending_.newest().indexer & 1U) != 0) {
+            planner_.open_gate(gate, 0);
+        }
+        return;
+    }
     if (gate == 0 || !areSpindlesReady()) {
         return;
     }
@@ -381,6 +399,9 @@ void PathPlanner::publish() noexcept {
     if (pending_.isEmpty()) {
         link_.type_asks_seen.store(view_.type_asks, std::memory_order_release);
     }
+    const int indexer = pending_.isEmpty() || pending_.newest().isIndexed ? -1 : pending_.newest().indexer;
+    const std::uint64_t wanted = indexer >= 0 ? std::uint64_t{1} << indexer : 0;
+    link_.indexers_wanted.store(drops_ << 32 | wanted, std::memory_order_release);
     link_.queue_depth.store(pending_.size(), std::memory_order_relaxed);
     link_.isQueueFull.store(isQueueFull_ ? 1 : 0, std::memory_order_relaxed);
     link_.last_done_id.store(last_done_, std::memory_order_release);

@@ -87,7 +87,8 @@ class PathPlanner {
     Reason accept_digital(const PathCommand &c, const SynchedDigitalOutput &output) noexcept;
     Reason accept_analog(const PathCommand &c, const SynchedAnalogOutput &output) noexcept;
     Reason accept_event(const PathCommand &c, const traj::PathEvent &event) noexcept;
-    Reason check_reach(const traj::Primitive &p) noexcept;
+    int indexer_of(const PathBody &body) const noexcept;
+    Reason check_reach(const traj::Primitive &p, int indexer = -1) noexcept;
     PoseRange room_for(const PoseRange &move) noexcept;
     void publish_extent() noexcept;
     /// Where the joints are at a place of a path.

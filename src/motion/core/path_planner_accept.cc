@@ -12,6 +12,8 @@ namespace mw::motion {
 namespace {
 
 constexpr double SOFT_LIMIT_ROUNDING = 1e-6;
+/// An axis that moves by less stands [machine units, degrees].
+constexpr double LEAST_WAY = 1e-9;
 
 bool isFinite(const geom::Pose &p) noexcept {
     return std::all_of(p.c.begin(), p.c.end(), [](double x) { return std::isfinite(x); });
@@ -122,16 +124,23 @@ PoseRange PathPlanner::room_for(const PoseRange &move) noexcept {
 }
 
 /// Soft limits over the whole extent, joints where they are not axes.
-Reason PathPlanner::check_reach(const traj::Primitive &p) noexcept {
+Reason PathPlanner::check_reach(const traj::Primitive &p, int indexer) noexcept {
     geom::Pose low;
     geom::Pose high;
     traj::extent(p, low, high);
     const PoseRange room = room_for({low, high});
+    if (view_.indexers_stuck != 0 && indexer < 0) {
+        return Reason::INDEXER_OPEN;
+    }
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
         refused_index_ = static_cast<std::int16_t>(i);
-        const bool isMoving = high[i] - low[i] > 1e-9;
+        const bool isMoving = high[i] - low[i] > LEAST_WAY;
         if (isMoving && (limits_.axes & (1U << i)) == 0) {
             return Reason::NO_SUCH_AXIS;
+        }
+        const int lock = limits_.indexer[static_cast<std::size_t>(i)];
+        if (isMoving && lock >= 0 && lock != indexer) {
+            return Reason::INDEXER_ALONE;
         }
         // A move that leads back in from outside is welcome as far as its end is inside.
         const double from = p.start[i];
@@ -217,6 +226,26 @@ Reason PathPlanner::check_joints(const traj::Primitive &p) noexcept {
     return Reason::NONE;
 }
 
+/// The joint whose lock is opened for a rapid move of its axis alone; -1: none, whatever else the body is.
+int PathPlanner::indexer_of(const PathBody &body) const noexcept {
+    const auto *line = std::get_if<Line>(&body);
+    if (line == nullptr || !line->terms.isRapid) {
+        return -1;
+    }
+    const geom::Pose way = line->end - (isPathBegun_ ? planner_.end() : view_.position);
+    int joint = -1;
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        if (std::abs(way[i]) <= LEAST_WAY) {
+            continue;
+        }
+        if (joint >= 0 || limits_.indexer[static_cast<std::size_t>(i)] < 0) {
+            return -1;
+        }
+        joint = limits_.indexer[static_cast<std::size_t>(i)];
+    }
+    return joint;
+}
+
 Reason PathPlanner::accept_line(const PathCommand &c, const geom::Pose &end,
                                 const MoveTerms &terms) noexcept {
     Reason reason = isFinite(end) ? check_terms(terms, config_.num_spindles) : Reason::NOT_A_NUMBER;
@@ -224,15 +253,26 @@ Reason PathPlanner::accept_line(const PathCommand &c, const geom::Pose &end,
         return reason;
     }
     const traj::Primitive p = traj::make_line(planner_.end(), end);
-    reason = check_reach(p);
+    const int indexer = indexer_of(c.body);
+    reason = check_reach(p, indexer);
     if (reason != Reason::NONE) {
         return reason;
     }
     if (p.length > 1e-12 * (1.0 + geom::norm(end))) {
-        planner_.add(p, request_for(c, terms));
+        traj::MoveRequest request = request_for(c, terms);
+        if (indexer >= 0) {  // comes alone, as a probe does, and waits at its gate until it is unlocked
+            request.join = PathMode::EXACT_STOP;
+            request.isGated = true;
+            request.tag.type = static_cast<std::uint8_t>(MotionType::INDEX_ROTARY);
+        }
+        planner_.add(p, request);
         wasLocked_ = terms.isThread();
     }
     add_pending(c, terms.source);
+    if (indexer >= 0) {
+        pending_.newest().indexer = indexer;
+        planner_.release_end();
+    }
     return Reason::NONE;
 }
 

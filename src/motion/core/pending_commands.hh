@@ -16,6 +16,8 @@ struct PendingCommand {
     SourceTag source;
     Epoch epoch = 0;
     bool isFlush = false, isProbe = false, isTripRequired = false;
+    int indexer = -1;        ///< joint that is unlocked for it
+    bool isIndexed = false;  ///< its move is complete, and it is to lock
 };
 
 /// Planner thread only. Who adds looks at size() first.

@@ -67,11 +67,11 @@ int ModuleHoming::hold(int comp_id) const noexcept {
     return mw_ext_use_module("do_homing", comp_id);
 }
 
-int ModuleHoming::start_module(int comp_id, double period_s, int num_joints, void (*on_unlock)(int, int),
+int ModuleHoming::start_module(int comp_id, double period_s, JointCounts counts, void (*on_unlock)(int, int),
                                int (*on_ask)(int)) noexcept {
-    num_joints_ = num_joints;
+    num_joints_ = counts.all;
     functions_.homeMotFunctions(on_unlock, on_ask);
-    return functions_.homing_init(comp_id, period_s, num_joints, 0, joints_.data());
+    return functions_.homing_init(comp_id, period_s, counts.all, counts.extra, joints_.data());
 }
 
 void ModuleHoming::set_unlock(int joint, bool isWanted) noexcept {

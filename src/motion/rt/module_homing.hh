@@ -31,6 +31,11 @@ struct HomingFunctions {
     decltype(&::get_homing_at_index_search_wait) get_homing_at_index_search_wait = nullptr;
 };
 
+/// Of the machine; the last `extra` ones are moved by no pose.
+struct JointCounts {
+    int all = 0, extra = 0;
+};
+
 class ModuleHoming final : public homing::Module {
   public:
     enum class Found : std::uint8_t { NONE, SOME, ALL };
@@ -41,7 +46,7 @@ class ModuleHoming final : public homing::Module {
     int hold(int comp_id) const noexcept;
     /// Starts it; it makes its pins. `on_unlock` and `on_ask` lead to set_unlock() and isUnlocked(). 0 or
     /// what it answers. [while loading]
-    int start_module(int comp_id, double period_s, int num_joints, void (*on_unlock)(int, int),
+    int start_module(int comp_id, double period_s, JointCounts counts, void (*on_unlock)(int, int),
                      int (*on_ask)(int)) noexcept;
 
     void set_unlock(int joint, bool isWanted) noexcept;

@@ -151,8 +151,12 @@ inline constexpr auto SWITCHABLE = pin_table("motion",
     in<double>("switchkins-type", "", "type of switchable kinematics; changed at rest only", [](Inputs &i, double v) { i.kinematics_type = v; }));
 
 inline constexpr auto UNLOCK = pin_table("joint.#",
-    out<bool>("unlock", "", "homing moves the joint: the indexer is to unlock; of joints in unlock_joints_mask", [](const JointView &v) { return v.o.isUnlockWanted; }),
+    out<bool>("unlock", "", "the joint is to move: the indexer is to unlock; of joints in unlock_joints_mask", [](const JointView &v) { return v.o.isUnlockWanted; }),
     in<bool>("is-unlocked", "", "it has", [](JointInputs &i, bool v) { i.isUnlocked = v; }));
+
+/// Only of extra joints.
+inline constexpr auto POSTHOME = pin_table("joint.#",
+    in<double>("posthome-cmd", "unit", "where an extra joint is to be once it is homed", [](JointInputs &i, double v) { i.posthome_cmd = v; }));
 
 inline constexpr auto AXIS = pin_table("axis.@",
     in<Count>("jog-counts", "", "of the wheel", [](AxisInputs &a, Count v) { a.wheel.counts = v; }),
@@ -210,6 +214,7 @@ void for_each(Show &&show) {
     sdk::for_each_pin(HOMING, show);
     sdk::for_each_pin(SWITCHABLE, show);
     sdk::for_each_pin(UNLOCK, show);
+    sdk::for_each_pin(POSTHOME, show);
     sdk::for_each_pin(AXIS, show);
     sdk::for_each_pin(SPINDLE, show);
 }

@@ -35,6 +35,8 @@ int MotionPins::declare(int comp_id, const PinCounts &wanted) noexcept {
         status == 0 && !counts_.areHomingPinsMade ? declare_each(homing_, comp_id, counts_.joints) : status;
     const auto unlocked = static_cast<unsigned>(counts_.unlock_mask);
     status = status == 0 && unlocked != 0 ? declare_each(unlock_, comp_id, counts_.joints, unlocked) : status;
+    const unsigned extra = ((1U << counts_.extra_joints) - 1U) << (counts_.joints - counts_.extra_joints);
+    status = status == 0 ? declare_each(posthome_, comp_id, counts_.joints, extra) : status;
     status = status == 0 ? declare_each(axis_, comp_id, MAX_AXES) : status;
     return status == 0 ? declare_each(spindle_, comp_id, counts_.spindles) : status;
 }
@@ -66,6 +68,9 @@ void MotionPins::read(Inputs &in) noexcept {
         }
         if (isUnlockable(j)) {
             unlock_[j].read(in.joint[at(j)]);
+        }
+        if (j >= counts_.joints - counts_.extra_joints) {
+            posthome_[j].read(in.joint[at(j)]);
         }
     }
     for (int i = 0; i < MAX_AXES; ++i) {

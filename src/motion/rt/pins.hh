@@ -15,6 +15,7 @@ struct PinCounts {
     int spindles = 1;
     int digital = 4, analog = 4, misc_errors = 0;
     int unlock_mask = 0;
+    int extra_joints = 0;            ///< the last ones
     bool isSwitchable = false;       ///< kinematics of several types
     bool areHomingPinsMade = false;  ///< by a homing module
 };
@@ -44,6 +45,7 @@ class MotionPins {
     sdk::PinSet<pins::JOINT> joint_[MAX_JOINTS];
     sdk::PinSet<pins::HOMING> homing_[MAX_JOINTS];
     sdk::PinSet<pins::UNLOCK> unlock_[MAX_JOINTS];
+    sdk::PinSet<pins::POSTHOME> posthome_[MAX_JOINTS];
     sdk::PinSet<pins::AXIS> axis_[MAX_AXES];
     sdk::PinSet<pins::SPINDLE> spindle_[MAX_SPINDLES];
     std::int64_t last_time_ns_ = 0;

@@ -58,6 +58,9 @@ const char *word_for(Reason reason) {
     case Reason::NO_JOG_TO_RENEW: return "no jog";
     case Reason::SINGULAR: return "singular";
     case Reason::POSE_UNKNOWN: return "pose unknown";
+    case Reason::DRIVEN_BY_PIN: return "moved by a pin";
+    case Reason::INDEXER_ALONE: return "indexer alone";
+    case Reason::INDEXER_OPEN: return "indexer open";
     case Reason::SIDE_APART: return "sides apart";
     case Reason::COUNT: break;
     }

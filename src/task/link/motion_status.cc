@@ -18,6 +18,7 @@ msgs::MotionMode mode_of(motion::Mode mode) {
 void tell_trajectory(const motion::Status &motion, unsigned axis_mask, msgs::TrajectoryStatus &t) {
     t.axis_mask = axis_mask;
     t.num_joints = motion.num_joints;
+    t.num_extra_joints = motion.num_extra_joints;
     t.num_spindles = motion.num_spindles;
     t.mode = mode_of(motion.mode);
     t.isEnabled = motion.isEnabled;

@@ -1,9 +1,23 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "interp/codes/moves/moves.hh"
 
+#include "interp/codes/moves/rotary.hh"
 #include "interp/codes/moves/targets.hh"
 
 namespace mw::interp::detail {
+namespace {
+
+/// A word of an indexer, which check_rotary() has seen to be the only one.
+bool isIndexing(const BlockValues &values, const State &state) {
+    for (int axis = RotaryAxes::FIRST; axis <= RotaryAxes::LAST; ++axis) {
+        if (state.rotary.isIndexer(axis) && values.has(geom::AXIS_LETTERS_LOWER[axis])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace
 
 bool move_straight(const Code &code, const BlockValues &values, State &state, CanonQueue &canon,
                    Fault &fault) {
@@ -34,7 +48,7 @@ bool move_straight(const Code &code, const BlockValues &values, State &state, Ca
         return true;
     }
     if (code.number == 0) {
-        canon.take(StraightTraverse{end});
+        isIndexing(values, state) ? take_indexing(end, state, canon) : canon.take(StraightTraverse{end});
     } else {
         if (state.feed_mode == FeedMode::INVERSE_TIME) {
             send_inverse_time(state, canon, straight_length(end - state.position));

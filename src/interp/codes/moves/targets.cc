@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "interp/canon/plane_axes.hh"
+#include "interp/codes/moves/rotary.hh"
 
 namespace mw::interp::detail {
 namespace {
@@ -33,7 +34,11 @@ Pose target(const BlockValues &values, const State &state) {
         const int axis = AXIS_OF_LETTER[index];
         const bool isHalved = axis == geom::AXIS_X && state.isDiameter;
         const double given = values.value[index] * (isHalved ? 0.5 : 1.0);
-        end[axis] = state.isIncremental ? end[axis] + given : given;
+        if (state.isIncremental) {
+            end[axis] += given;
+        } else {
+            end[axis] = state.rotary.isWrapped(axis) ? unwrapped(given, end[axis]) : given;
+        }
     }
     return end;
 }
@@ -90,7 +95,8 @@ bool straight_target(const BlockValues &values, const State &state, Pose &end, F
         const char name = geom::AXIS_LETTERS_LOWER[axis];
         if (values.has(name)) {
             const bool isHalved = axis == geom::AXIS_X && state.isDiameter;
-            machine[axis] = values.at(name) * (isHalved ? 0.5 : 1.0);
+            machine[axis] = state.rotary.isWrapped(axis) ? unwrapped(values.at(name), machine[axis])
+                                                         : values.at(name) * (isHalved ? 0.5 : 1.0);
         }
     }
     end = state.frame.to_program(machine);

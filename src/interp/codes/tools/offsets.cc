@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "interp/codes/tools/offsets.hh"
 
+#include "interp/codes/moves/rotary.hh"
 #include "interp/codes/moves/targets.hh"
 
 namespace mw::interp::detail {
@@ -129,16 +130,20 @@ bool go_to_reference(const Code &code, const BlockValues &values, const Machine 
         return fault.set("Cannot go to a reference point while cutter radius compensation is on");
     }
     const Pose by_way = target(values, state);
-    const Pose stored = state.frame.to_program(parameter_pose(parameters, first, to_program));
+    Pose place = parameter_pose(parameters, first, to_program);
+    const Pose before = state.frame.to_machine(by_way);
+    for (int axis = RotaryAxes::FIRST; axis <= RotaryAxes::LAST; ++axis) {
+        place[axis] = state.rotary.isWrapped(axis) ? unwrapped_place(place[axis], before[axis]) : place[axis];
+    }
+    const Pose stored = state.frame.to_program(place);
     Pose end = by_way;
     for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
         if (values.has(geom::AXIS_LETTERS_LOWER[axis]) || !values.hasAxes()) {
             end[axis] = stored[axis];
         }
     }
-    canon.take(StraightTraverse{by_way});
-    canon.take(StraightTraverse{end});
-    state.position = end;
+    take_rapid(by_way, state, canon);
+    take_rapid(end, state, canon);
     return true;
 }
 

@@ -74,11 +74,16 @@ Verdict take(HomingDrive &drive, const Unhome &command, const HomeConditions &co
     if (conditions.isReady && conditions.mode != Mode::FREE) {
         return verdict_of(j, Reason::WRONG_MODE);  // a pose stands on the homes
     }
+    std::uint32_t meant = 0;
     for (int k = 0; k < drive.num_joints; ++k) {
         const bool isVolatile = j == VOLATILE_ONES && settings.isSet(Parameter::JOINT_VOLATILE_HOME, k);
-        if (j == ALL || j == k || isVolatile) {
-            drive.module().unhome(k);
-        }
+        meant |= j == ALL || j == k || isVolatile ? 1U << k : 0U;
+    }
+    if (const std::uint32_t kept = meant & conditions.kept_while_on; kept != 0) {
+        return verdict_of(std::countr_zero(kept), Reason::SWITCHED_ON);
+    }
+    for (; meant != 0; meant &= meant - 1) {
+        drive.module().unhome(std::countr_zero(meant));
     }
     return verdict_of(j, Reason::NONE);
 }

@@ -46,7 +46,8 @@ struct HomeConditions {
     bool isReady = false;  ///< machine on, no stop under way
     Mode mode = Mode::FREE;
     bool isInhibited = false, isMoving = false;
-    std::uint32_t inactive = 0;  ///< bit per joint that is left out
+    std::uint32_t inactive = 0;       ///< bit per joint that is left out
+    std::uint32_t kept_while_on = 0;  ///< bit per joint that may not lose its home now
 };
 /// Done means asked for: whatever is jogged is to be brought to rest.
 Verdict take(HomingDrive &drive, const Home &command, const HomeConditions &conditions) noexcept;

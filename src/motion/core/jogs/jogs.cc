@@ -142,6 +142,12 @@ Reason check(const Jogs &jogs, const JogTarget &target, double direction, const 
     if (!s.isMovable) {
         return target.isJoint ? Reason::JOINT_INACTIVE : Reason::NO_SUCH_AXIS;
     }
+    if (s.isDriven) {
+        return Reason::DRIVEN_BY_PIN;
+    }
+    if (s.isBesideIndexer) {
+        return Reason::INDEXER_ALONE;
+    }
     if (s.isSynchronised) {
         return Reason::SYNCHRONISED_JOINT;
     }
@@ -224,6 +230,15 @@ Verdict take(Jogs &jogs, const SetTeleopVector &command, const JogSituation *sit
         if (reason != Reason::NONE) {
             return verdict_of(i, reason);
         }
+    }
+    int count = 0;
+    int locked = -1;
+    for (int i = 0; i < MAX_AXES; ++i) {
+        count += command.velocity[i] != 0.0 ? 1 : 0;
+        locked = command.velocity[i] != 0.0 && situations[i].isLocked ? i : locked;
+    }
+    if (locked >= 0 && count > 1) {
+        return verdict_of(locked, Reason::INDEXER_ALONE);
     }
     for (int i = 0; i < MAX_AXES; ++i) {
         jog_axis(jogs, i, command.velocity[i], situations[i]);

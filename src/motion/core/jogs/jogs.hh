@@ -69,8 +69,11 @@ struct JogSituation {
     bool isReady = false;  ///< machine on, no stop under way
     Mode mode = Mode::FREE;
     bool isHoming = false, isInhibited = false;
-    bool isMovable = false;       ///< the joint is active; a joint moves the axis
-    bool isSynchronised = false;  ///< a joint that homes with others is not jogged alone
+    bool isMovable = false;        ///< the joint is active; a joint moves the axis
+    bool isSynchronised = false;   ///< a joint that homes with others is not jogged alone
+    bool isDriven = false;         ///< by a pin
+    bool isLocked = false;         ///< a lock is opened for the jog
+    bool isBesideIndexer = false;  ///< something else moves, or one of the two is held by a lock
     bool isOnPosLimit = false, isOnNegLimit = false;
     JogLimits most;
     JogRange range;

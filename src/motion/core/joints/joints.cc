@@ -36,8 +36,11 @@ void hold(Joint &s) noexcept {
     s.acc_cmd = 0;
 }
 
-JointFault check(Joint &s, const Settings &settings, int j, bool isAtIndex, bool isLimitIgnored) noexcept {
-    if (s.isFeedbackLost) {
+JointFault check(Joint &s, const Settings &settings, int j, const JointCheck &how) noexcept {
+    const bool isAtIndex = (how.at_index >> j & 1U) != 0;
+    const bool isLimitIgnored = (how.limits_ignored >> j & 1U) != 0;
+    const bool isFeedbackIgnored = (how.feedback_ignored >> j & 1U) != 0;
+    if (s.isFeedbackLost && !isFeedbackIgnored) {
         return JointFault::FEEDBACK_LOST;
     }
     const double vmax = settings.get(Parameter::JOINT_MAX_VELOCITY, j);
@@ -48,7 +51,7 @@ JointFault check(Joint &s, const Settings &settings, int j, bool isAtIndex, bool
         // Its encoder counts from another zero already: the lag is that of the cycle before.
         return s.isFaulted ? JointFault::AMP_FAULT : JointFault::NONE;
     }
-    s.ferror = s.pos_cmd - s.pos_fb;
+    s.ferror = isFeedbackIgnored ? 0.0 : s.pos_cmd - s.pos_fb;
     s.ferror_highmark = std::max(s.ferror_highmark, std::abs(s.ferror));
     if (s.isFaulted) {
         return JointFault::AMP_FAULT;
@@ -176,11 +179,8 @@ std::uint32_t inactive_joints(const Joints &joints) noexcept {
 
 JointFault find_fault(Joints &joints, int &joint, const Settings &settings, const JointCheck &how) noexcept {
     for (; joint < joints.count; ++joint) {
-        const bool isAtIndex = (how.at_index >> joint & 1U) != 0;
-        const bool isIgnored = (how.limits_ignored >> joint & 1U) != 0;
-        const JointFault fault = joints[joint].isActive
-                                     ? check(joints[joint], settings, joint, isAtIndex, isIgnored)
-                                     : JointFault::NONE;
+        const JointFault fault =
+            joints[joint].isActive ? check(joints[joint], settings, joint, how) : JointFault::NONE;
         if (fault != JointFault::NONE) {
             return fault;
         }

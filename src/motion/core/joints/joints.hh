@@ -33,6 +33,7 @@ using PerJoint = std::array<double, MAX_JOINTS>;
 
 struct Joints {
     int count = 0;
+    int loaded = 0;  ///< that may be in use
     std::array<Joint, MAX_JOINTS> joint{};
 
     Joint &operator[](int j) noexcept { return joint[static_cast<std::size_t>(j)]; }
@@ -63,7 +64,8 @@ enum class JointFault : std::uint8_t { NONE, FEEDBACK_LOST, AMP_FAULT, FOLLOWING
 struct JointCheck {
     /// Bit per joint whose encoder is reset now: command and feedback are of two different zeros.
     std::uint32_t at_index = 0;
-    std::uint32_t limits_ignored = 0;  ///< bit per joint
+    std::uint32_t limits_ignored = 0;    ///< bit per joint
+    std::uint32_t feedback_ignored = 0;  ///< the same
 };
 /// Following error, amplifier and limit switches of the active joints from `joint` on, up to the first fault;
 /// `joint` is the one that has it.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The small parts: power and mode, watchdog, outputs.
 #include <cmath>
+#include <memory>
 
 #include <gtest/gtest.h>
 
@@ -72,10 +73,10 @@ TEST(OutputsPart, OutputsAreSetAtOnceAndByThePath) {
     event.isAnalog = true;
     event.value = 2.5;
     fire(outputs, event, false);
-    Status status;
-    fill(outputs, Inputs{}, status);
-    EXPECT_EQ(status.analog_out[3], 2.5);
-    EXPECT_EQ(status.digital_out, 12U);
+    const auto out = std::make_unique<Outputs>();
+    fill(outputs, Inputs{}, *out);
+    EXPECT_EQ(out->status.analog_out[3], 2.5);
+    EXPECT_EQ(out->status.digital_out, 12U);
 }
 
 TEST(OutputsPart, AStopThatPassesAPlaceOfThePathSwitchesNothingOn_C6) {
