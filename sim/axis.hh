@@ -44,6 +44,13 @@ class Axis {
     /// Switched on again: the drive begins where the motor stands.
     void hold_here() noexcept { last_command_ = motor_; }
 
+    /// Without power: somebody turns it to `position`, where it stands.
+    void turn_by_hand(double position) noexcept {
+        motor_ = position;
+        velocity_ = 0;
+        last_command_ = position;
+    }
+
     double motor() const noexcept { return motor_; }
     double load() const noexcept { return load_; }
     double velocity() const noexcept { return velocity_; }

@@ -8,16 +8,16 @@ import sys
 LAYER = {
     'base': 0, 'geom': 0, 'diag': 0, 'options': 0,
     'rtapi': 1, 'config': 1, 'msgs': 1, 'picture': 1, 'comp': 1,
-    'hal': 2, 'nml': 2, 'mailbox': 2,
+    'hal': 2, 'mailbox': 2,
     'kins': 3, 'traj': 3, 'homing': 3, 'interp': 3, 'tool': 3, 'client': 3, 'hal_lang': 3,
-    'motion': 4, 'pyhost': 4, 'hal_tools': 4, 'gcode': 4,
+    'motion': 4, 'pyhost': 4, 'hal_tools': 4, 'gcode': 4, 'nml': 4,
     'task': 5, 'io': 5,
     'machine': 6, 'ui': 6, 'python': 6,
     'app': 7,
     'cli': 8,
 }
 # Equal layers that may be used, user -> used.
-ALLOWED_EQUAL = {('geom', 'base'), ('diag', 'base'), ('options', 'base'), ('interp', 'tool'), ('task', 'io'), ('nml', 'hal'), ('machine', 'ui')}
+ALLOWED_EQUAL = {('geom', 'base'), ('diag', 'base'), ('options', 'base'), ('interp', 'tool'), ('task', 'io'), ('machine', 'ui')}
 # Domain libraries know neither HAL nor NML.
 FORBIDDEN = {(user, used) for user in ('kins', 'traj', 'homing', 'interp', 'tool') for used in ('hal', 'hal_lang', 'nml')}
 # Inside a folder: sub-folders in the order in which they may use each other.
@@ -27,7 +27,8 @@ INNER = {'motion': ['api', 'core', 'rt'],
          'task': ['link', 'sequencer', 'states', 'run'],
          'hal': ['api', 'sdk', 'core', 'host'],
          'hal_lang': ['lang', 'tcl'],
-         'hal_tools': ['stream', 'view', 'programs']}
+         'hal_tools': ['stream', 'view', 'programs'],
+         'nml': ['config', 'message', 'buffer', 'net', 'bridge']}
 # Folders beside src: what of src, and of each other, they may include. What is not here is left alone.
 BESIDE = {'components': {'hal', 'hal_tools', 'kins', 'traj', 'motion', 'rtapi', 'base', 'geom', 'components', 'sim'},
           'sim': {'hal', 'base', 'geom', 'sim'},

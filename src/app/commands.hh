@@ -11,6 +11,7 @@ namespace mw::app {
 int command_start(const std::vector<std::string> &words);
 int command_run(const std::vector<std::string> &words);
 int command_ui(const std::vector<std::string> &words);
+int command_nml(const std::vector<std::string> &words);
 int command_check(const std::vector<std::string> &words);
 
 }  // namespace mw::app

@@ -23,6 +23,8 @@ constexpr const char *USAGE =
     "ends it\n"
     "  ui MACHINE.ini                       serve the operator's screen of the machine that is up, to "
     "browsers\n"
+    "  nml FILE.nml                         the NML channels of the machine that is up, also over the "
+    "network\n"
     "  check PROGRAM.ngc --ini MACHINE.ini  a program against a machine's limits, and the time it takes\n"
     "  format PROGRAM.ngc ...               write programs in one form, without a change of meaning\n"
     "  explain LINE                         say in words what a line of G-code does\n"
@@ -58,6 +60,9 @@ int main(int argc, char **argv) {
     }
     if (words[0] == "ui") {
         return mw::app::command_ui(rest);
+    }
+    if (words[0] == "nml") {
+        return mw::app::command_nml(rest);
     }
     if (words[0] == "check") {
         return mw::app::command_check(rest);

@@ -9,7 +9,7 @@
 #include "msgs/binary.hh"
 #include "msgs/check.hh"
 #include "msgs/json.hh"
-#include "msgs/status.hh"
+#include "msgs/status_list.hh"
 #include "msgs/text.hh"
 
 namespace mw::msgs {
@@ -43,14 +43,11 @@ constexpr auto COMMANDS = [] {
     return all;
 }();
 
-constexpr std::array STATUSES{
-    &DECLARATION<MachineStatus>, &DECLARATION<TaskStatus>,      &DECLARATION<Waiting>,
-    &DECLARATION<CodesStatus>,   &DECLARATION<OffsetsStatus>,   &DECLARATION<TrajectoryStatus>,
-    &DECLARATION<ProbeStatus>,   &DECLARATION<OverridesStatus>, &DECLARATION<MotionStatus>,
-    &DECLARATION<JointStatus>,   &DECLARATION<AxisStatus>,      &DECLARATION<SpindleStatus>,
-    &DECLARATION<ToolStatus>,    &DECLARATION<IoStatus>,        &DECLARATION<AuxStatus>,
-    &DECLARATION<CoolantStatus>, &DECLARATION<LubeStatus>,      &DECLARATION<OperationStatus>,
-    &DECLARATION<ToolTable>,     &DECLARATION<ToolRecord>};
+template <class... Status>
+constexpr auto all_declarations(TypeList<Status...>) {
+    return std::array{&DECLARATION<Status>...};
+}
+constexpr auto STATUSES = all_declarations(StatusList{});
 
 bool isCalled(const Declaration &declaration, std::string_view name) {
     return name == declaration.name || (*declaration.nml != '\0' && name == declaration.nml);

@@ -219,6 +219,34 @@ void Rig::repair() {
     scheduler_.isPlannerHeld = false;
 }
 
+/// How far a joint is from the first one of its axis, by its motor.
+double Rig::askew(std::size_t joint) const {
+    const std::size_t first =
+        design_.isTrivial ? design_.coordinates.find(design_.coordinates[joint]) : joint;
+    const auto place = [this](std::size_t j) {
+        return plants_[j].axis.motor() - design_.joints[j].shaft_offset;
+    };
+    return place(joint) - place(first);
+}
+
+bool Rig::isAskew() const {
+    constexpr double VISIBLE = 0.5;
+    for (std::size_t j = 0; j < plants_.size(); ++j) {
+        if (std::abs(askew(j)) > VISIBLE) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void Rig::straighten() {
+    for (std::size_t j = 0; j < plants_.size(); ++j) {
+        if (const double by = askew(j); by != 0) {
+            plants_[j].axis.turn_by_hand(plants_[j].axis.motor() - by);
+        }
+    }
+}
+
 void Rig::trust_encoders() {
     for (Plant &p : plants_) {
         p.isTruthKnown = true;

@@ -91,6 +91,10 @@ class Rig final : public machine::Machine {
     void trip_amplifier(int joint) { plants_[static_cast<std::size_t>(joint)].amplifier.trip(); }
     /// The machine as an operator finds it who has looked for what was wrong.
     void repair();
+    /// Sides of a gantry do not stand together.
+    bool isAskew() const;
+    /// Switched off: they are turned together by hand, as motion jogs none alone.
+    void straighten();
     /// After homing: what encoders say is true again.
     void trust_encoders();
 
@@ -102,6 +106,7 @@ class Rig final : public machine::Machine {
   private:
     void step_task();
     void run_plants();
+    double askew(std::size_t joint) const;
     void take_sample();
 
     const Design &design_;

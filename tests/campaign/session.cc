@@ -178,6 +178,12 @@ bool Session::prepare() {
         cycle();
     }
     settle(10);
+    if (!areEncodersTrue_ && rig_->isAskew()) {
+        ask(msgs::SetState{msgs::State::OFF});
+        settle(10);
+        rig_->straighten();
+        cycle();
+    }
     if (isOver() || !switch_on()) {
         return false;
     }

@@ -210,7 +210,7 @@ void Controller::step_holds(const Inputs &in) noexcept {
     motion::step(holds_, {in.adaptive_feed, in.isFeedHeld, in.isFeedInhibited,
                           link_->steps_done.load(std::memory_order_acquire)});
     const bool isReversing = holds_.isReverseWanted || retracing_.retrace.isAway();
-    executor_.hold(holds_.isStandingWanted || sides_.areUnderWay() ||
+    executor_.hold(holds_.isStandingWanted || sides_.areApart() ||
                    (power_.mode == Mode::COORD && isReversing));
 }
 

@@ -227,6 +227,9 @@ Verdict Controller::set_mode(Mode mode) noexcept {
             return led;
         }
     }
+    if (mode == Mode::FREE) {
+        forget(sides_);
+    }
     executor_.drop();
     executor_.hold(false);
     const geom::Pose pose = without(offsets_, place_.cmd);

@@ -55,10 +55,12 @@ void Controller::move_joints(const Inputs &in) noexcept {
 
 /// Teleop and coord: every joint follows the pose.
 void Controller::move_axes(const Inputs &in) noexcept {
-    if (sides_.areUnderWay()) {
+    if (sides_.areApart()) {
         check_probe(in);
         executor_.step(cycle_);
-        if (motion::step(sides_, joints_, config_.period_s) == SidesStep::STOPPED) {
+        const bool isWanted = link_->queue_depth.load(std::memory_order_relaxed) != 0 ||
+                              !areAxesAtRest(jogs_) || areAsked(offsets_, in.axis_offset);
+        if (motion::step(sides_, joints_, isWanted, config_.period_s) == SidesStep::STOPPED) {
             power_.mode = Mode::FREE;  // each joint stands for itself
             rest_at(jogs_, commanded(joints_).data(), without(offsets_, place_.cmd));
         }

@@ -54,10 +54,14 @@ void stop(Sides &sides) noexcept {
 
 void forget(Sides &sides) noexcept {
     sides.count = 0;
-    sides.isStopping = false;
+    sides.isLeading = sides.isStopping = false;
 }
 
-SidesStep step(Sides &sides, Joints &joints, double period_s) noexcept {
+SidesStep step(Sides &sides, Joints &joints, bool isMotionWanted, double period_s) noexcept {
+    sides.isLeading = sides.isLeading || isMotionWanted;
+    if (!sides.isLeading) {
+        return SidesStep::GOES_ON;
+    }
     sides.count = 0;
     for (int j = 0; j < joints.count; ++j) {
         traj::JogPlanner &p = sides.planner[static_cast<std::size_t>(j)];
@@ -65,8 +69,10 @@ SidesStep step(Sides &sides, Joints &joints, double period_s) noexcept {
         follow(joints[j], p.position, period_s);
         sides.count += p.isAtRest() ? 0 : 1;
     }
-    const bool hasStopped = sides.isStopping && !sides.areUnderWay();
-    sides.isStopping = sides.isStopping && !hasStopped;
+    const bool hasStopped = sides.isStopping && !sides.areApart();
+    if (!sides.areApart()) {
+        forget(sides);
+    }
     return hasStopped ? SidesStep::STOPPED : SidesStep::GOES_ON;
 }
 

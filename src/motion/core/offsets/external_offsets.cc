@@ -120,6 +120,14 @@ bool areAtRest(const ExternalOffsets &offsets) noexcept {
                        [](const ExternalOffset &offset) { return offset.planner.isAtRest(); });
 }
 
+bool areAsked(const ExternalOffsets &offsets, const std::array<OffsetInput, MAX_AXES> &pins) noexcept {
+    std::uint32_t asked = 0;
+    for (std::size_t i = 0; i < pins.size(); ++i) {
+        asked |= pins[i].isEnabled ? 1U << i : 0U;
+    }
+    return (asked & offsets.axes) != 0;
+}
+
 PoseRange range(const ExternalOffsets &offsets) noexcept {
     PoseRange out;
     for (int i = 0; i < MAX_AXES; ++i) {

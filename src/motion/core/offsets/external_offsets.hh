@@ -50,6 +50,9 @@ void stop(ExternalOffsets &offsets) noexcept;
 void stop_at_once(ExternalOffsets &offsets) noexcept;
 bool areAtRest(const ExternalOffsets &offsets) noexcept;
 
+/// A pin asks for one.
+bool areAsked(const ExternalOffsets &offsets, const std::array<OffsetInput, MAX_AXES> &pins) noexcept;
+
 /// Where they may be from here on.
 PoseRange range(const ExternalOffsets &offsets) noexcept;
 /// What is programmed or jogged at a commanded or measured pose.

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Every struct that the status of a machine consists of, and the tool table.
+#pragma once
+
+#include "msgs/status.hh"
+
+namespace mw::msgs {
+
+template <class... Types>
+struct TypeList {};
+
+using StatusList =
+    TypeList<MachineStatus, TaskStatus, Waiting, CodesStatus, OffsetsStatus, TrajectoryStatus, ProbeStatus,
+             OverridesStatus, MotionStatus, JointStatus, AxisStatus, SpindleStatus, ToolStatus, IoStatus,
+             AuxStatus, CoolantStatus, LubeStatus, OperationStatus, ToolTable, ToolRecord>;
+
+}  // namespace mw::msgs

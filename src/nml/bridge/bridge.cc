@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "nml/bridge/bridge.hh"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "msgs/catalogue.hh"
+#include "msgs/check.hh"
+
+namespace mw::nml {
+namespace {
+
+/// As many as the mailbox takes from one client in a cycle.
+constexpr int COMMANDS_PER_STEP = mailbox::MAX_POSTED;
+/// Commands that were sent before.
+constexpr int MOST_OLD_COMMANDS = 1000000;
+/// Lines for the operator that wait for room; the oldest are lost first.
+constexpr std::size_t MAX_LINES = 256;
+
+CommandState state_of(msgs::Progress progress) {
+    switch (progress) {
+    case msgs::Progress::STARTED: return CommandState::EXECUTING;
+    case msgs::Progress::DONE: return CommandState::DONE;
+    case msgs::Progress::REFUSED:
+    case msgs::Progress::FAILED: break;
+    }
+    return CommandState::ERROR;
+}
+
+template <class Text>
+Result<WriteNumber> write_line(Channel &channel, std::uint64_t number, const std::string &text) {
+    CommandMessage<Text> line{{number}, {text.substr(0, msgs::MAX_TEXT)}};
+    return channel.write(view(line), AT_ONCE);  // whoever reads it may be at it: the next step tries again
+}
+
+Result<WriteNumber> write_line(Channel &channel, msgs::MessageKind kind, std::uint64_t number,
+                               const std::string &text) {
+    switch (kind) {
+    case msgs::MessageKind::OPERATOR_ERROR: return write_line<msgs::OperatorError>(channel, number, text);
+    case msgs::MessageKind::OPERATOR_TEXT: return write_line<msgs::OperatorText>(channel, number, text);
+    case msgs::MessageKind::OPERATOR_DISPLAY: break;
+    }
+    return write_line<msgs::OperatorDisplay>(channel, number, text);
+}
+
+}  // namespace
+
+Bridge::Bridge(Channel commands, Channel status, Channel errors, client::Client &client)
+    : commands_(std::move(commands)), statuses_(std::move(status)), errors_(std::move(errors)),
+      client_(client), status_(std::make_unique<StatusMessage<msgs::MachineStatus>>()) {}
+
+Result<std::unique_ptr<Bridge>> Bridge::open(const Connections &connections, client::Client &client) {
+    auto commands = Channel::open(connections, COMMAND_CHANNEL);
+    auto status = Channel::open(connections, STATUS_CHANNEL);
+    auto errors = Channel::open(connections, ERROR_CHANNEL);
+    for (const auto *channel : {&commands, &status, &errors}) {
+        if (!channel->has_value()) {
+            return std::unexpected(channel->error());
+        }
+    }
+    std::unique_ptr<Bridge> bridge(
+        new Bridge(std::move(*commands), std::move(*status), std::move(*errors), client));
+    const auto dropped = bridge->drop_old_commands();
+    return dropped.has_value() ? Result<std::unique_ptr<Bridge>>(std::move(bridge))
+                               : std::unexpected(dropped.error());
+}
+
+Result<> Bridge::drop_old_commands() {
+    for (int count = 0;; ++count) {
+        Received received;
+        const auto found = commands_.receive(received);
+        if (!found.has_value()) {
+            return std::unexpected(found.error());
+        }
+        if (!*found || count >= MOST_OLD_COMMANDS) {
+            if (count > 0) {
+                keep_message(
+                    msgs::MessageKind::OPERATOR_ERROR, 0,
+                    fmt::format(
+                        "{} commands are dropped: they were sent before the machine's channels were up",
+                        count));
+            }
+            return *found
+                       ? fail(fmt::format("{} is written to faster than it can be emptied", COMMAND_CHANNEL))
+                       : Result<>{};
+        }
+    }
+}
+
+Result<> Bridge::step() {
+    const auto taken = take_commands();
+    follow_last();
+    while (const auto message = client_.next_message()) {
+        keep_message(message->kind, message->number, message->text);
+    }
+    const auto told = tell_messages();
+    const auto published = publish();
+    return !taken.has_value() ? taken : !told.has_value() ? told : published;
+}
+
+Result<> Bridge::take_commands() {
+    for (int i = 0; i < COMMANDS_PER_STEP; ++i) {
+        if (!held_.has_value()) {
+            auto next = next_command();
+            if (!next.has_value()) {
+                return std::unexpected(next.error());
+            }
+            held_ = std::move(*next);
+        }
+        if (!held_.has_value() || !post(*held_)) {
+            return {};
+        }
+        held_.reset();
+    }
+    return {};
+}
+
+/// Nothing when there is none, or none that a machine may get.
+Result<std::optional<Bridge::Held>> Bridge::next_command() {
+    for (int i = 0; i < COMMANDS_PER_STEP; ++i) {
+        Received received;
+        const auto found = commands_.receive(received);
+        if (!found.has_value()) {
+            return std::unexpected(found.error());
+        }
+        if (!*found) {
+            return std::nullopt;
+        }
+        auto held = decode(received);
+        if (held.has_value()) {
+            return std::optional(std::move(*held));
+        }
+        StatusHead head;
+        head.echo_serial_number = commands_.isNumbered() ? received.number : 0;
+        refuse(head, held.error().str());
+    }
+    return std::nullopt;
+}
+
+Result<Bridge::Held> Bridge::decode(const Received &received) const {
+    const auto kind = commands_.codec().kind_of(received.bytes);
+    if (!kind.has_value()) {
+        return std::unexpected(kind.error());
+    }
+    auto command = msgs::make_command((*kind)->declaration->number);
+    if (!command.has_value()) {
+        return fail(fmt::format("{} is no command of this machine", (*kind)->name()));
+    }
+    Held held{std::move(*command), {}};
+    CommandHead head;
+    const auto decoded =
+        commands_.codec().decode(received.bytes, {msgs::object(head), msgs::object(held.command)});
+    if (!decoded.has_value()) {
+        return std::unexpected(decoded.error());
+    }
+    held.head.command_type = (*kind)->declaration->number;
+    held.head.echo_serial_number = commands_.isNumbered() ? received.number : head.serial_number;
+    held.head.state = CommandState::EXECUTING;
+    return held;
+}
+
+bool Bridge::post(const Held &held) {
+    const auto allowed = msgs::check(held.command);
+    if (!allowed.has_value()) {
+        refuse(held.head, allowed.error().str());
+        return true;
+    }
+    const auto serial = client_.post(held.command);
+    if (!serial.has_value()) {
+        return false;
+    }
+    last_ = {held.head, *serial};
+    isHeadNew_ = true;
+    return true;
+}
+
+void Bridge::refuse(StatusHead head, const std::string &reason) {
+    head.state = CommandState::ERROR;
+    head.reason.assign(reason);
+    last_ = {head, 0};
+    isHeadNew_ = true;
+    keep_message(msgs::MessageKind::OPERATOR_ERROR, 0, reason);
+}
+
+void Bridge::follow_last() {
+    if (last_.posted == 0) {
+        return;
+    }
+    const client::Outcome outcome = client_.outcome(last_.posted);
+    if (outcome.progress != msgs::Progress::STARTED) {
+        last_.posted = 0;
+        last_.head.state = state_of(outcome.progress);
+        last_.head.reason.assign(outcome.reason);
+        isHeadNew_ = true;
+    }
+}
+
+Result<> Bridge::publish() {
+    const auto read = client_.read_status();
+    if (!read.has_value()) {
+        return read;
+    }
+    if (client_.status().cycle == published_cycle_ && !isHeadNew_) {
+        return {};
+    }
+    status_->head = last_.head;
+    status_->body = client_.status();
+    const auto written = statuses_.write(view(*status_));
+    if (!written.has_value()) {
+        return std::unexpected(written.error());
+    }
+    published_cycle_ = status_->body.cycle;
+    isHeadNew_ = false;
+    return {};
+}
+
+void Bridge::keep_message(msgs::MessageKind kind, std::uint64_t number, const std::string &text) {
+    if (lines_.size() >= MAX_LINES) {
+        lines_.pop_front();
+        ++lost_lines_;
+    }
+    lines_.push_back({kind, number, text});
+}
+
+/// A full queue is no error: nobody may be listening.
+Result<> Bridge::tell_messages() {
+    if (lost_lines_ > 0 && write_line(errors_, msgs::MessageKind::OPERATOR_TEXT, 0,
+                                      fmt::format("{} messages were lost: nobody had read them", lost_lines_))
+                               .has_value()) {
+        lost_lines_ = 0;
+    }
+    while (!lines_.empty() &&
+           write_line(errors_, lines_.front().kind, lines_.front().number, lines_.front().text).has_value()) {
+        lines_.pop_front();
+    }
+    return {};
+}
+
+}  // namespace mw::nml

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Between the channels emcCommand, emcStatus and emcError and the mailbox of a machine, of which it is a
+// client like any other.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+
+#include "client/client.hh"
+#include "msgs/command.hh"
+#include "nml/bridge/channel.hh"
+
+namespace mw::nml {
+
+/// One thread.
+class Bridge {
+  public:
+    /// `client` must outlive it. The buffers are there. Commands that wait already are dropped, and that is
+    /// told: whoever sent them did not mean the machine of now.
+    static Result<std::unique_ptr<Bridge>> open(const Connections &connections, client::Client &client);
+
+    /// Hands on what has come since the last step: commands in their order, then the status when it is newer,
+    /// then messages for the operator. What is no message, or has values out of range, ends here with its
+    /// reason on emcError and in the status. An error: a channel cannot be used now; the next step tries
+    /// again.
+    Result<> step();
+
+  private:
+    /// The command that was taken last.
+    struct Last {
+        StatusHead head;
+        client::Serial posted = 0;  ///< 0: it has ended here
+    };
+    /// A command that the mailbox had no room for.
+    struct Held {
+        msgs::Command command;
+        StatusHead head;
+    };
+
+    Bridge(Channel commands, Channel status, Channel errors, client::Client &client);
+    Result<> drop_old_commands();
+    Result<> take_commands();
+    Result<std::optional<Held>> next_command();
+    Result<Held> decode(const Received &received) const;
+    /// False: it waits for room.
+    bool post(const Held &held);
+    void refuse(StatusHead head, const std::string &reason);
+    void follow_last();
+    Result<> publish();
+    Result<> tell_messages();
+    void keep_message(msgs::MessageKind kind, std::uint64_t number, const std::string &text);
+
+    Channel commands_, statuses_, errors_;
+    client::Client &client_;
+    Last last_;
+    bool isHeadNew_ = true;
+    std::uint64_t published_cycle_ = 0;
+    std::optional<Held> held_;
+    std::unique_ptr<StatusMessage<msgs::MachineStatus>> status_;
+    struct Line {
+        msgs::MessageKind kind;
+        std::uint64_t number;
+        std::string text;
+    };
+    std::deque<Line> lines_;  ///< that emcError had no room for
+    std::uint64_t lost_lines_ = 0;
+};
+
+/// The names of the channels.
+inline constexpr const char *COMMAND_CHANNEL = "emcCommand";
+inline constexpr const char *STATUS_CHANNEL = "emcStatus";
+inline constexpr const char *ERROR_CHANNEL = "emcError";
+
+}  // namespace mw::nml

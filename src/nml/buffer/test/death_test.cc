@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Processes that use a buffer and are killed at any instant (F5): what is read is whole, nobody hangs, no
+// message comes twice or out of order, and the buffer goes on.
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <random>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "diag/sink.hh"
+#include "nml/buffer/open.hh"
+#include "nml/config/config_file.hh"
+
+namespace mw::nml {
+namespace {
+
+constexpr int SIZE = 16000;
+constexpr int ROUNDS = 60;
+
+Config death_config(const std::string &options) {
+    diag::Sink sink;
+    return parse_config("B b SHMEM localhost " + std::to_string(SIZE) + " 0 0 1 8 78 " + options +
+                            "\nP master b LOCAL localhost RW 0 1 1 0\nP peer b LOCAL localhost RW 0 1 0 1\n",
+                        "test.nml", sink);
+}
+
+/// Bytes that tell a reader whether all of them are of one message, without the buffer's help.
+std::string telling(unsigned number) {
+    std::string bytes = std::to_string(number) + ":";
+    const std::size_t size = bytes.size() + number * 131 % 5000;
+    while (bytes.size() < size) {
+        bytes += static_cast<char>('a' + (bytes.size() * 7 + number) % 26);
+    }
+    return bytes;
+}
+
+::testing::AssertionResult isWhole(const std::string &bytes, unsigned &number) {
+    number = static_cast<unsigned>(std::strtoul(bytes.c_str(), nullptr, 10));
+    return bytes == telling(number) ? ::testing::AssertionSuccess()
+                                    : ::testing::AssertionFailure() << bytes.substr(0, 60);
+}
+
+class NmlDeathTest : public ::testing::TestWithParam<const char *> {
+  protected:
+    /// A process of ours that does `work` until it is killed.
+    template <class Work>
+    pid_t start(const Work &work) {
+        const pid_t pid = ::fork();
+        if (pid == 0) {
+            LocalPlaces local;
+            auto buffer =
+                open_buffer(config_.buffers[0], *config_.find_process("peer", "b"), instance_, local);
+            if (!buffer.has_value()) {
+                ::_exit(3);
+            }
+            work(**buffer);
+            ::_exit(4);
+        }
+        return pid;
+    }
+    /// It was killed by us and had not ended before.
+    static void end(pid_t pid) {
+        ::kill(pid, SIGKILL);
+        int status = 0;
+        ASSERT_EQ(::waitpid(pid, &status, 0), pid);
+        EXPECT_TRUE(WIFSIGNALED(status)) << "it ended by itself, status " << WEXITSTATUS(status);
+    }
+    std::unique_ptr<Buffer> open_master() {
+        auto buffer =
+            open_buffer(config_.buffers[0], *config_.find_process("master", "b"), instance_, local_);
+        EXPECT_TRUE(buffer.has_value());
+        return std::move(*buffer);
+    }
+
+    Config config_ = death_config(GetParam());
+    std::string instance_ = "death" + std::to_string(::getpid());
+    LocalPlaces local_;
+    std::mt19937 random_{7};
+};
+INSTANTIATE_TEST_SUITE_P(All, NmlDeathTest,
+                         ::testing::Values("mutex=os_sem", "mutex=none", "mutex=mao split",
+                                           "mutex=os_sem queue", "mutex=none queue"));
+
+TEST_P(NmlDeathTest, AWriterThatIsKilledLeavesWholeMessagesAndNobodyHangs_F5) {
+    const auto reader = open_master();
+    unsigned read = 0;
+    for (int round = 0; round < ROUNDS; ++round) {
+        const pid_t pid = start([](Buffer &buffer) {
+            for (unsigned i = 1; buffer.write(telling(i), FOREVER).has_value(); ++i) {
+            }
+        });
+        Received message;
+        unsigned number = 0, last = 0;
+        for (unsigned long left = 1 + random_() % 30; left > 0; --left) {
+            const auto found = reader->wait(message, {20.0});
+            ASSERT_TRUE(found.has_value() && *found) << (found.has_value() ? "" : found.error().str());
+            ASSERT_TRUE(isWhole(message.bytes, number));
+            ASSERT_GT(number, last) << "in their order, each once";
+            last = number;
+            ++read;
+        }
+        end(pid);
+        for (;;) {
+            const auto found = reader->read(message, {5.0});
+            ASSERT_TRUE(found.has_value()) << found.error().str();
+            if (!*found) {
+                break;
+            }
+            ASSERT_TRUE(isWhole(message.bytes, number));
+            ASSERT_GT(number, last);
+            last = number;
+            ++read;
+        }
+    }
+    EXPECT_GT(read, static_cast<unsigned>(ROUNDS));
+    ASSERT_TRUE(reader->write(telling(9), {1.0}).has_value()) << "and the buffer goes on";
+    Received message;
+    unsigned number = 0;
+    ASSERT_TRUE(reader->read(message, {1.0}).value());
+    EXPECT_TRUE(isWhole(message.bytes, number));
+}
+
+TEST_P(NmlDeathTest, AReaderThatIsKilledStopsNobody_F5) {
+    const auto writer = open_master();
+    for (int round = 0; round < ROUNDS; ++round) {
+        const pid_t pid = start([](Buffer &buffer) {
+            Received message;
+            unsigned number = 0;
+            while (buffer.wait(message, FOREVER).has_value() && isWhole(message.bytes, number)) {
+            }
+        });
+        for (auto i = 1 + static_cast<unsigned>(random_() % 40); i > 0; --i) {
+            const auto written = writer->write(telling(i), {20.0});
+            ASSERT_TRUE(written.has_value()) << written.error().str();
+        }
+        end(pid);
+        ASSERT_TRUE(writer->clear({5.0}).has_value());
+    }
+    ASSERT_TRUE(writer->write(telling(1), AT_ONCE).has_value());
+}
+
+TEST_P(NmlDeathTest, PlacesOfTheDeadAreFreeForOthers_F5) {
+    const auto master = open_master();
+    for (int i = 0; i < 20; ++i) {  // max_procs is 8
+        int ready[2];
+        ASSERT_EQ(::pipe(ready), 0);
+        const pid_t pid = start([&ready](Buffer &) {
+            const char open = 1;
+            while (::write(ready[1], &open, 1) == 1) {
+                ::pause();
+            }
+        });
+        char open = 0;
+        ::close(ready[1]);
+        EXPECT_EQ(::read(ready[0], &open, 1), 1) << "the place was refused";
+        ::close(ready[0]);
+        end(pid);
+    }
+}
+
+TEST(NmlDeath, MoreProcessesThanMaxProcsAreRefused_F2) {
+    diag::Sink sink;
+    const Config config =
+        parse_config("B b SHMEM localhost 100 0 0 1 1 79\nP p b LOCAL localhost RW 0 1 1 0\n"
+                     "P q b LOCAL localhost R 0 1 0 0\n",
+                     "test.nml", sink);
+    LocalPlaces local;
+    const std::string instance = "deathmax" + std::to_string(::getpid());
+    const auto mine = open_buffer(config.buffers[0], config.processes[0], instance, local);
+    ASSERT_TRUE(mine.has_value());
+    const pid_t pid = ::fork();
+    if (pid == 0) {
+        LocalPlaces others;
+        const auto second = open_buffer(config.buffers[0], config.processes[1], instance, others);
+        ::_exit(!second.has_value() && second.error().str().find("max_procs") != std::string::npos ? 0 : 1);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(pid, &status, 0), pid);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    const auto again = open_buffer(config.buffers[0], config.processes[1], instance, local);
+    EXPECT_TRUE(again.has_value()) << "a second connection of the same process takes no place";
+}
+
+TEST(NmlDeath, AReaderThatWaitsIsToldWhenTheMasterHasDied_F5) {
+    diag::Sink sink;
+    const Config config =
+        parse_config("B b SHMEM localhost 100 0 0 1 4 80\nP p b LOCAL localhost RW 0 1 1 0\n"
+                     "P q b LOCAL localhost R 0 1 0 0\n",
+                     "test.nml", sink);
+    const std::string instance = "deathm" + std::to_string(::getpid());
+    int ready[2];
+    ASSERT_EQ(::pipe(ready), 0);
+    const pid_t pid = ::fork();
+    if (pid == 0) {
+        LocalPlaces local;
+        const auto master = open_buffer(config.buffers[0], config.processes[0], instance, local);
+        const char open = 1;
+        if (!master.has_value() || ::write(ready[1], &open, 1) != 1) {
+            ::_exit(1);
+        }
+        for (;;) {
+            ::pause();
+        }
+    }
+    char open = 0;
+    ASSERT_EQ(::read(ready[0], &open, 1), 1);
+    LocalPlaces local;
+    const auto reader = open_buffer(config.buffers[0], config.processes[1], instance, local);
+    ASSERT_TRUE(reader.has_value()) << reader.error().str();
+    ::kill(pid, SIGKILL);
+    ASSERT_EQ(::waitpid(pid, nullptr, 0), pid);
+    Received message;
+    const auto found = (*reader)->wait(message, FOREVER);
+    ASSERT_FALSE(found.has_value());
+    EXPECT_NE(found.error().message.find("has ended"), std::string::npos);
+    ::close(ready[0]);
+    ::close(ready[1]);
+    const auto fresh = open_buffer(config.buffers[0], config.processes[0], instance, local);
+    EXPECT_TRUE(fresh.has_value()) << "what the dead left is replaced";
+}
+
+}  // namespace
+}  // namespace mw::nml

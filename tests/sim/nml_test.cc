@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A whole machine in virtual time, operated through NML channels.
+#include <unistd.h>
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "machine/loaded_config.hh"
+#include "machine/machine.hh"
+#include "msgs/catalogue.hh"
+#include "msgs/json.hh"
+#include "nml/bridge/bridge.hh"
+#include "nml/config/config_file.hh"
+#include "nml/message/sender.hh"
+#include "nml/net/server.hh"
+
+namespace mw::nml {
+namespace {
+
+constexpr std::string_view CHANNELS =
+    "B emcCommand {} localhost 8192 0 0 1 16 1001 TCP=1 xdr queue confirm_write serial\n"
+    "B emcError {} localhost 8192 0 0 3 16 1003 TCP=1 xdr queue\n"
+    "B emcStatus {} localhost 20480 0 0 2 16 1002 TCP=1 xdr\n"
+    "P emc emcCommand LOCAL localhost RW 0 1.0 0 0\nP emc emcStatus LOCAL localhost W 0 1.0 0 0\n"
+    "P emc emcError LOCAL localhost W 0 1.0 0 0\n"
+    "P emcsvr emcCommand LOCAL localhost W 1 1.0 1 2\nP emcsvr emcStatus LOCAL localhost R 1 1.0 1 2\n"
+    "P emcsvr emcError LOCAL localhost R 1 1.0 1 2\n"
+    "P xemc emcCommand {} localhost W 0 10.0 0 10\nP xemc emcStatus {} localhost R 0 10.0 0 10\n"
+    "P xemc emcError {} localhost R 0 10.0 0 10\n";
+
+/// A machine as it is made, in emergency stop.
+class OneMachine {
+  public:
+    OneMachine() : loaded_(machine::LoadedConfig::load(MW_SOURCE_DIR "/configs/sim/mill_mm.ini", sink_)) {
+        loaded_->machine.task.parameter_file.clear();
+        auto made =
+            machine::make_virtual_machine({loaded_->ini, loaded_->reader, loaded_->machine, sink_}, {});
+        EXPECT_TRUE(made.has_value()) << (made.has_value() ? "" : made.error().str());
+        machine_ = std::move(*made);
+    }
+    machine::Machine &operator*() { return *machine_; }
+    machine::Machine *operator->() { return machine_.get(); }
+
+  private:
+    diag::Sink sink_;
+    std::unique_ptr<machine::LoadedConfig> loaded_;
+    std::unique_ptr<machine::Machine> machine_;
+};
+
+/// A machine whose operator knows NML only.
+class NmlMachine {
+  public:
+    explicit NmlMachine(bool isRemote = false) : client_(*client::Client::join(machine_->mailbox())) {
+        diag::Sink sink;
+        const std::string place = isRemote ? "REMOTE" : "LOCAL";
+        config_ =
+            parse_config(fmt::format(fmt::runtime(CHANNELS), "SHMEM", "SHMEM", "SHMEM", place, place, place),
+                         "m.nml", sink);
+        EXPECT_FALSE(sink.hasErrors());
+        for (BufferSettings &buffer : config_.buffers) {
+            buffer.tcp_port = 0;
+        }
+        for (const BufferSettings &buffer : config_.buffers) {
+            masters_.push_back(
+                *open_buffer(buffer, *config_.find_process("emcsvr", buffer.name), instance_, local_));
+        }
+        if (isRemote) {
+            server_ = *Server::start(config_, "emcsvr", instance_, vocabulary_, local_);
+            for (BufferSettings &buffer : config_.buffers) {
+                buffer.tcp_port = server_->tcp_port();
+            }
+        }
+        bridge_ = *Bridge::open({config_, "emc", instance_, vocabulary_, local_}, client_);
+        const Connections mine{config_, "xemc", instance_, vocabulary_, local_};
+        commands_ = std::make_unique<Channel>(*Channel::open(mine, COMMAND_CHANNEL));
+        statuses_ = std::make_unique<Channel>(*Channel::open(mine, STATUS_CHANNEL));
+        errors_ = std::make_unique<Channel>(*Channel::open(mine, ERROR_CHANNEL));
+    }
+
+    /// `between`: while there is no bridge.
+    void restart_bridge(const std::function<void()> &between) {
+        bridge_.reset();
+        between();
+        bridge_ = *Bridge::open({config_, "emc", instance_, vocabulary_, local_}, client_);
+    }
+
+    template <class Body>
+    WriteNumber send(const Body &body) {
+        CommandMessage<Body> message{{}, body};
+        return send(view(message));
+    }
+    WriteNumber send(const MessageView &message) {
+        const auto number = commands_->write(message);
+        EXPECT_TRUE(number.has_value()) << (number.has_value() ? "" : number.error().str());
+        return number.value_or(0);
+    }
+    void cycle() {
+        const auto before = bridge_->step();
+        machine_->cycle();
+        const auto after = bridge_->step();
+        EXPECT_TRUE(before.has_value() && after.has_value());
+    }
+    /// What the status channel says now.
+    StatusMessage<msgs::MachineStatus> status() {
+        auto message = statuses_->peek();
+        EXPECT_TRUE(message.has_value() && message->has_value());
+        return {*(*message)->status_head(), *(*message)->get<msgs::MachineStatus>()};
+    }
+    /// Cycles until the command of that serial number has ended, or `most` cycles.
+    StatusHead end_of(WriteNumber serial, int most = 60000) {
+        StatusHead head;
+        for (int i = 0; i < most; ++i) {
+            cycle();
+            head = status().head;
+            if (head.echo_serial_number == serial && head.state != CommandState::EXECUTING) {
+                break;
+            }
+        }
+        return head;
+    }
+    template <class Body>
+    StatusHead done(const Body &body) {
+        return end_of(send(body));
+    }
+    /// The next line for the operator.
+    std::string error_line() {
+        auto message = errors_->read();
+        if (!message.has_value() || !message->has_value()) {
+            return "none";
+        }
+        const auto *error = (*message)->get<msgs::OperatorError>();
+        return error != nullptr ? error->text : (*message)->kind().name();
+    }
+    OneMachine &machine() { return machine_; }
+    Channel &commands() { return *commands_; }
+    Vocabulary &vocabulary() { return vocabulary_; }
+
+  private:
+    OneMachine machine_;
+    client::Client client_;
+    Config config_;
+    Vocabulary vocabulary_ = Vocabulary::standard();
+    LocalPlaces local_;
+    std::string instance_ = "nmlsim" + std::to_string(::getpid());
+    std::vector<std::unique_ptr<Buffer>> masters_;
+    std::unique_ptr<Server> server_;
+    std::unique_ptr<Bridge> bridge_;
+    std::unique_ptr<Channel> commands_, statuses_, errors_;
+};
+
+void expect_done(const StatusHead &head) {
+    EXPECT_EQ(head.state, CommandState::DONE) << head.reason.view();
+}
+
+void operate(NmlMachine &machine) {
+    using namespace msgs;
+    expect_done(machine.done(SetState{State::ESTOP_RESET}));
+    expect_done(machine.done(SetState{State::ON}));
+    expect_done(machine.done(HomeJoint{-1}));
+    expect_done(machine.done(SetMode{Mode::MDI}));
+    const StatusHead moved = machine.done(Mdi{"G53 G0 X12.5 Y3"});
+    expect_done(moved);
+    EXPECT_EQ(moved.command_type, 509);
+    const auto status = machine.status();
+    EXPECT_TRUE(status.body.trajectory.isAllHomed);
+    EXPECT_NEAR(status.body.trajectory.position_cmd[0], 12.5, 1e-9);
+    EXPECT_EQ(status.body.task.mode, Mode::MDI);
+    expect_done(machine.done(SetMode{Mode::MANUAL}));
+    expect_done(machine.done(SetTeleop{true}));
+    expect_done(machine.done(JogIncrement{false, 1, 10, -2}));
+}
+
+TEST(NmlMachine, AnOperatorWithSharedMemoryHomesMovesAndJogs_F8_F9) {
+    NmlMachine machine;
+    operate(machine);
+}
+
+TEST(NmlMachine, AnOperatorOverTcpHomesMovesAndJogs_F9) {
+    NmlMachine machine(true);
+    operate(machine);
+}
+
+TEST(NmlMachine, EachCommandIsEchoedWithItsSerialNumberAndEndsWithItsStateAndReason_F5) {
+    using namespace msgs;
+    NmlMachine machine;
+    const WriteNumber first = machine.send(Null{});
+    const WriteNumber second = machine.send(Mdi{"G0 X1"});
+    EXPECT_EQ(second, first + 1) << "one count for all writers";
+    const StatusHead head = machine.end_of(second);
+    EXPECT_EQ(head.state, CommandState::ERROR);
+    EXPECT_EQ(head.command_type, 509);
+    EXPECT_FALSE(head.reason.empty());
+    EXPECT_NE(machine.error_line(), "none") << "the operator is told too";
+    expect_done(machine.done(SetState{State::ESTOP_RESET}));
+    EXPECT_TRUE(machine.status().head.reason.empty());
+}
+
+TEST(NmlMachine, ValuesOutOfRangeAndWhatIsNoCommandAreRefusedWithTheReasonAndNothingElseHappens_F5) {
+    using namespace msgs;
+    NmlMachine machine;
+    const StatusHead far = machine.done(JogStop{true, 99});
+    EXPECT_EQ(far.state, CommandState::ERROR);
+    EXPECT_EQ(far.reason.view(), "JogStop: index is 99, allowed is 0 to 15");
+    StatusMessage<IoStatus> io;
+    const StatusHead status = machine.end_of(machine.send(view(io)));
+    EXPECT_EQ(status.state, CommandState::ERROR);
+    EXPECT_EQ(status.reason.view(), "EMC_IO_STAT_TYPE is no command of this machine");
+    const auto rubbish = machine.commands().buffer().write("rubbish", FOREVER);
+    const StatusHead bad = machine.end_of(*rubbish);
+    EXPECT_EQ(bad.state, CommandState::ERROR);
+    EXPECT_NE(bad.reason.view().find("too few for a message"), std::string::npos) << bad.reason.view();
+    expect_done(machine.done(Null{}));
+}
+
+TEST(NmlMachine, MoreCommandsThanTheMailboxTakesInACycleAllComeInTheirOrder_F5) {
+    using namespace msgs;
+    NmlMachine machine;
+    WriteNumber last = 0;
+    for (int i = 0; i < 60; ++i) {
+        last = machine.send(OperatorDisplay{std::to_string(i)});
+    }
+    machine.end_of(last);
+    EXPECT_EQ(machine.status().head.echo_serial_number, last);
+    EXPECT_EQ(machine.status().body.last_message, 60U);
+}
+
+TEST(NmlMachine, LinesForTheOperatorComeOnceAndWaitWhileNobodyReadsThem_F5) {
+    using namespace msgs;
+    NmlMachine machine;
+    for (int i = 0; i < 30; ++i) {
+        machine.done(OperatorError{std::string(500, static_cast<char>('a' + i % 26))});
+    }
+    int lines = 0;
+    for (std::string line = machine.error_line(); line != "none"; line = machine.error_line()) {
+        EXPECT_EQ(line, std::string(500, static_cast<char>('a' + lines % 26)));
+        ++lines;
+        machine.cycle();
+    }
+    EXPECT_EQ(lines, 30);
+}
+
+TEST(NmlMachine, CommandsThatWereSentBeforeTheChannelsWereUpAreDroppedAndToldNotCarriedOut_F8) {
+    using namespace msgs;
+    NmlMachine machine;
+    expect_done(machine.done(SetState{State::ESTOP_RESET}));
+    machine.restart_bridge([&machine] {
+        machine.send(SetState{State::ON});
+        machine.send(Mdi{"G0 X1"});
+    });
+    for (int i = 0; i < 100; ++i) {
+        machine.cycle();
+    }
+    EXPECT_EQ(machine.status().body.task.state, State::ESTOP_RESET);
+    EXPECT_EQ(machine.error_line(),
+              "2 commands are dropped: they were sent before the machine's channels were up");
+    expect_done(machine.done(SetState{State::ON}));
+}
+
+/// Cycles that a command gets; a longer one is then under way on both machines alike.
+constexpr int CYCLES_EACH = 20;
+
+/// What can be compared of two machines' statuses.
+std::string comparable(msgs::MachineStatus status) {
+    return msgs::to_json(msgs::object(static_cast<const msgs::MachineStatus &>(status)));
+}
+
+void put_texts(const msgs::Object &body) {
+    for (const msgs::Field &field : body.declaration->fields) {
+        if (field.type.kind == msgs::Kind::TEXT) {
+            *static_cast<std::string *>(field.at(body.data)) = "G0 X1";
+        }
+    }
+}
+
+/// Every command in emergency stop, then every command switched on.
+std::vector<msgs::Command> all_commands() {
+    std::vector<msgs::Command> all;
+    const auto add_each = [&all] {
+        for (const msgs::Declaration *declaration : msgs::command_declarations()) {
+            all.push_back(*msgs::make_command(declaration->number));
+            put_texts(msgs::object(all.back()));
+        }
+    };
+    add_each();
+    all.emplace_back(msgs::SetState{msgs::State::ESTOP_RESET});
+    all.emplace_back(msgs::SetState{msgs::State::ON});
+    add_each();
+    return all;
+}
+
+/// How a command stands after CYCLES_EACH, and the machine then.
+struct Seen {
+    CommandState state;
+    std::string reason, status;
+};
+
+std::vector<Seen> seen_through_the_mailbox(std::vector<msgs::Command> commands) {
+    OneMachine machine;
+    auto client = *client::Client::join(machine->mailbox());
+    std::vector<Seen> all;
+    for (const msgs::Command &command : commands) {
+        const auto serial = client.post(command);
+        EXPECT_TRUE(serial.has_value()) << serial.error().str();
+        for (int i = 0; i < CYCLES_EACH; ++i) {
+            machine->cycle();
+        }
+        const auto outcome = client.outcome(serial.value_or(0));
+        EXPECT_TRUE(client.read_status().has_value());
+        const CommandState state = outcome.progress == msgs::Progress::STARTED ? CommandState::EXECUTING
+                                   : outcome.progress == msgs::Progress::DONE  ? CommandState::DONE
+                                                                               : CommandState::ERROR;
+        all.push_back({state, outcome.reason.substr(0, 255), comparable(client.status())});
+    }
+    return all;
+}
+
+/// Two machines get the same commands at the same cycles: one from a client of its mailbox, one through NML.
+TEST(NmlMachine, EveryCommandDoesThroughNmlWhatItDoesThroughTheMailbox_F8) {
+    std::vector<msgs::Command> commands = all_commands();
+    const std::vector<Seen> expected = seen_through_the_mailbox(commands);
+    NmlMachine machine;
+    std::map<CommandState, int> count;
+    for (std::size_t n = 0; n < commands.size(); ++n) {
+        const msgs::Object body = msgs::object(commands[n]);
+        const std::string name = fmt::format("{} {}", n, body.declaration->name);
+        CommandHead head;
+        const WriteNumber number = machine.send({msgs::object(head), body});
+        for (int i = 0; i < CYCLES_EACH; ++i) {
+            machine.cycle();
+        }
+        const auto status = machine.status();
+        EXPECT_EQ(status.head.echo_serial_number, number) << name;
+        EXPECT_EQ(status.head.command_type, body.declaration->number) << name;
+        EXPECT_EQ(status.head.state, expected[n].state) << name << ": " << expected[n].reason;
+        EXPECT_EQ(status.head.reason.view(), expected[n].reason) << name;
+        EXPECT_EQ(comparable(status.body), expected[n].status) << name;
+        ++count[status.head.state];
+    }
+    // Neither side is silent: each kind of end is met.
+    EXPECT_GE(count[CommandState::DONE], 80)
+        << "refused " << count[CommandState::ERROR] << ", going on " << count[CommandState::EXECUTING];
+    EXPECT_GE(count[CommandState::ERROR], 80);
+}
+
+}  // namespace
+}  // namespace mw::nml
