@@ -18,30 +18,23 @@ std::size_t at(int i) noexcept {
     return static_cast<std::size_t>(i);
 }
 
-/// Third differences along one axis.
-bool add_third(const TeleopMachine &m, const geom::Pose &pose, int i, TeleopLoad &load) noexcept {
+/// Third differences along one axis; the joints a step `after` and `before` are known.
+bool add_third(const TeleopMachine &m, const geom::Pose &pose, int i, const JointsAt &after,
+               const JointsAt &before, TeleopLoad &load) noexcept {
     const int axis = load.axes[at(i)];
-    constexpr int POINTS = 4;
-    constexpr double PLACES[POINTS] = {-2, -1, 1, 2};
-    constexpr double WEIGHTS[POINTS] = {-0.5, 1, -1, 0.5};
-    JointsAt sum{};
-    JointsAt q{};
-    for (int n = 0; n < POINTS; ++n) {
-        geom::Pose p = pose;
-        p[axis] += PLACES[n] * SMOOTH_STEP;
-        if (!find_joints(m, p, q)) {
-            return false;
-        }
-        for (int j = 0; j < m.num_joints; ++j) {
-            sum[at(j)] += WEIGHTS[n] * q[at(j)];
-        }
-    }
+    JointsAt far_after{};
+    JointsAt far_before{};
+    geom::Pose p = pose;
+    p[axis] += 2.0 * SMOOTH_STEP;
+    bool isFound = find_joints(m, p, far_after);
+    p[axis] -= 4.0 * SMOOTH_STEP;
+    isFound = isFound && find_joints(m, p, far_before);
     constexpr double CUBE = SMOOTH_STEP * SMOOTH_STEP * SMOOTH_STEP;
-    for (int j = 0; j < m.num_joints; ++j) {
-        double &q3 = load.q3[at(i)][at(j)];
-        q3 = std::max(q3, MARGIN * std::abs(sum[at(j)]) / CUBE);
+    for (std::size_t j = 0; j < at(m.num_joints) && isFound; ++j) {
+        const double third = 0.5 * (far_after[j] - far_before[j]) - (after[j] - before[j]);
+        load.q3[at(i)][j] = std::max(load.q3[at(i)][j], MARGIN * std::abs(third) / CUBE);
     }
-    return true;
+    return isFound;
 }
 
 /// How second derivatives change from the first place to one that is displaced along one axis.
@@ -91,6 +84,8 @@ bool add_load(const TeleopMachine &m, const geom::Pose &pose, TeleopLoad &load, 
             load.q1[at(i)][j] = std::max(load.q1[at(i)][j], (isStraight ? STRAIGHT_MARGIN : MARGIN) * q1);
             load.q2[at(i)][at(i)][j] = std::max(load.q2[at(i)][at(i)][j], MARGIN * std::abs(signed_q2[j]));
         }
+        const bool isThird = load.isSmooth && from.index < 0;
+        isFound = isFound && (!isThird || add_third(m, pose, i, after[at(i)], other, load));
         keep(i, i);
         for (int k = 0; k < i && isFound; ++k) {
             p = pose;
@@ -106,8 +101,6 @@ bool add_load(const TeleopMachine &m, const geom::Pose &pose, TeleopLoad &load, 
             }
             keep(i, k);
         }
-        const bool isThird = load.isSmooth && from.index < 0;
-        isFound = isFound && (!isThird || add_third(m, pose, i, load));
     }
     load.isBegun = true;
     return isFound;
