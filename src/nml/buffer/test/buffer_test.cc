@@ -140,7 +140,7 @@ TEST_P(NmlBufferTest, AFullQueueSaysSoWhenTimeIsOverAndTakesMoreWhenOneWasTakenO
     EXPECT_EQ(a->write("x", {0.001}).value(), 8U) << "it has room for a small one";
     EXPECT_NE(a->write(std::string(84, 'q'), {0.001}).error().message.find("queue is full"),
               std::string::npos);
-    std::thread reader([&b] { read_one(*b); });
+    std::jthread reader([&b] { read_one(*b); });
     EXPECT_TRUE(a->write(std::string(84, 'q'), FOREVER).has_value());
     reader.join();
     EXPECT_NE(a->write(std::string(801, 'q'), FOREVER).error().message.find("larger than it"),
@@ -154,7 +154,7 @@ TEST_P(NmlBufferTest, AWaitingReaderWakesForAMessageAndForTheEndOfItsTime_F4_F5)
     Received message;
     EXPECT_FALSE(b->wait(message, {0.002}).value());
     EXPECT_FALSE(b->wait(message, AT_ONCE).value());
-    std::thread writer([&a] { EXPECT_TRUE(a->write("here", FOREVER).has_value()); });
+    std::jthread writer([&a] { EXPECT_TRUE(a->write("here", FOREVER).has_value()); });
     EXPECT_TRUE(b->wait(message, FOREVER).value());
     EXPECT_EQ(message.bytes, "here");
     writer.join();
@@ -165,9 +165,8 @@ TEST_P(NmlBufferTest, AReaderBesideABusyWriterNeverGetsHalfAMessage_F5) {
     OneBuffer setup(kind(), mutex(), 4000);
     const auto a = setup.open("master"), b = setup.open("reader");
     ASSERT_TRUE(a != nullptr && b != nullptr);
-    std::atomic<bool> isEnding{false};
-    std::thread writer([&] {
-        for (unsigned i = 0; !isEnding; ++i) {
+    const std::jthread writer([&a](const std::stop_token &end) {
+        for (unsigned i = 0; !end.stop_requested(); ++i) {
             const std::string bytes(1 + (i * 37) % 4000, static_cast<char>('a' + i % 26));
             ASSERT_TRUE(a->write(bytes, FOREVER).has_value());
         }
@@ -178,8 +177,6 @@ TEST_P(NmlBufferTest, AReaderBesideABusyWriterNeverGetsHalfAMessage_F5) {
         ASSERT_TRUE(found.has_value() && *found);
         ASSERT_EQ(message.bytes.find_first_not_of(message.bytes[0]), std::string::npos);
     }
-    isEnding = true;
-    writer.join();
 }
 
 TEST(NmlBuffer, RightsAreThoseOfTheProcessLine_F2) {

@@ -2,11 +2,14 @@
 // Processes that use a buffer and are killed at any instant (F5): what is read is whole, nobody hangs, no
 // message comes twice or out of order, and the buffer goes on.
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <random>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -18,7 +21,7 @@ namespace mw::nml {
 namespace {
 
 constexpr int SIZE = 16000;
-constexpr int ROUNDS = 60;
+constexpr int ROUNDS = 40;
 
 Config death_config(const std::string &options) {
     diag::Sink sink;
@@ -37,36 +40,70 @@ std::string telling(unsigned number) {
     return bytes;
 }
 
+/// Made once: a process that writes them does little else, so that it is mostly killed within a write.
+const std::vector<std::string> &telling_ones() {
+    static const std::vector<std::string> ALL = [] {
+        std::vector<std::string> all;
+        for (unsigned i = 1; i <= 500; ++i) {
+            all.push_back(telling(i));
+        }
+        return all;
+    }();
+    return ALL;
+}
+
 ::testing::AssertionResult isWhole(const std::string &bytes, unsigned &number) {
     number = static_cast<unsigned>(std::strtoul(bytes.c_str(), nullptr, 10));
     return bytes == telling(number) ? ::testing::AssertionSuccess()
                                     : ::testing::AssertionFailure() << bytes.substr(0, 60);
 }
 
-class NmlDeathTest : public ::testing::TestWithParam<const char *> {
-  protected:
-    /// A process of ours that does `work` until it is killed.
+/// A process of ours, which never outlives its test.
+class Child {
+  public:
     template <class Work>
-    pid_t start(const Work &work) {
-        const pid_t pid = ::fork();
-        if (pid == 0) {
-            LocalPlaces local;
-            auto buffer =
-                open_buffer(config_.buffers[0], *config_.find_process("peer", "b"), instance_, local);
-            if (!buffer.has_value()) {
-                ::_exit(3);
-            }
-            work(**buffer);
+    explicit Child(const Work &work) : pid_(::fork()) {
+        if (pid_ == 0) {
+            ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+            work();
             ::_exit(4);
         }
-        return pid;
     }
-    /// It was killed by us and had not ended before.
-    static void end(pid_t pid) {
-        ::kill(pid, SIGKILL);
+    Child(const Child &) = delete;
+    Child &operator=(const Child &) = delete;
+    ~Child() { kill(); }
+
+    /// True: it was us, and it had not ended before.
+    bool kill() {
+        if (pid_ <= 0) {
+            return false;
+        }
+        ::kill(pid_, SIGKILL);
         int status = 0;
-        ASSERT_EQ(::waitpid(pid, &status, 0), pid);
-        EXPECT_TRUE(WIFSIGNALED(status)) << "it ended by itself, status " << WEXITSTATUS(status);
+        return ::waitpid(std::exchange(pid_, -1), &status, 0) > 0 && WIFSIGNALED(status);
+    }
+    /// Its exit status, once it ends by itself.
+    int wait() {
+        int status = 0;
+        return ::waitpid(std::exchange(pid_, -1), &status, 0) > 0 && WIFEXITED(status) ? WEXITSTATUS(status)
+                                                                                       : -1;
+    }
+
+  private:
+    pid_t pid_;
+};
+
+class NmlDeathTest : public ::testing::TestWithParam<const char *> {
+  protected:
+    /// In another process, until it is killed.
+    template <class Work>
+    void use_buffer(const Work &work) {
+        LocalPlaces local;
+        auto buffer = open_buffer(config_.buffers[0], *config_.find_process("peer", "b"), instance_, local);
+        if (!buffer.has_value()) {
+            ::_exit(3);
+        }
+        work(**buffer);
     }
     std::unique_ptr<Buffer> open_master() {
         auto buffer =
@@ -86,23 +123,28 @@ INSTANTIATE_TEST_SUITE_P(All, NmlDeathTest,
 
 TEST_P(NmlDeathTest, AWriterThatIsKilledLeavesWholeMessagesAndNobodyHangs_F5) {
     const auto reader = open_master();
+    ASSERT_FALSE(telling_ones().empty());  // before processes are made, which then have them too
     unsigned read = 0;
+    WriteNumber last = 0;
     for (int round = 0; round < ROUNDS; ++round) {
-        const pid_t pid = start([](Buffer &buffer) {
-            for (unsigned i = 1; buffer.write(telling(i), FOREVER).has_value(); ++i) {
-            }
+        Child writer([this] {
+            use_buffer([](Buffer &buffer) {
+                const auto &all = telling_ones();
+                for (std::size_t i = 0; buffer.write(all[i % all.size()], FOREVER).has_value(); ++i) {
+                }
+            });
         });
         Received message;
-        unsigned number = 0, last = 0;
+        unsigned number = 0;
         for (unsigned long left = 1 + random_() % 30; left > 0; --left) {
             const auto found = reader->wait(message, {20.0});
             ASSERT_TRUE(found.has_value() && *found) << (found.has_value() ? "" : found.error().str());
             ASSERT_TRUE(isWhole(message.bytes, number));
-            ASSERT_GT(number, last) << "in their order, each once";
-            last = number;
+            ASSERT_GT(message.number, last) << "in their order, each once";
+            last = message.number;
             ++read;
         }
-        end(pid);
+        ASSERT_TRUE(writer.kill()) << "it ended by itself";
         for (;;) {
             const auto found = reader->read(message, {5.0});
             ASSERT_TRUE(found.has_value()) << found.error().str();
@@ -110,8 +152,8 @@ TEST_P(NmlDeathTest, AWriterThatIsKilledLeavesWholeMessagesAndNobodyHangs_F5) {
                 break;
             }
             ASSERT_TRUE(isWhole(message.bytes, number));
-            ASSERT_GT(number, last);
-            last = number;
+            ASSERT_GT(message.number, last);
+            last = message.number;
             ++read;
         }
     }
@@ -126,17 +168,19 @@ TEST_P(NmlDeathTest, AWriterThatIsKilledLeavesWholeMessagesAndNobodyHangs_F5) {
 TEST_P(NmlDeathTest, AReaderThatIsKilledStopsNobody_F5) {
     const auto writer = open_master();
     for (int round = 0; round < ROUNDS; ++round) {
-        const pid_t pid = start([](Buffer &buffer) {
-            Received message;
-            unsigned number = 0;
-            while (buffer.wait(message, FOREVER).has_value() && isWhole(message.bytes, number)) {
-            }
+        Child reader([this] {
+            use_buffer([](Buffer &buffer) {
+                Received message;
+                unsigned number = 0;
+                while (buffer.wait(message, FOREVER).has_value() && isWhole(message.bytes, number)) {
+                }
+            });
         });
         for (auto i = 1 + static_cast<unsigned>(random_() % 40); i > 0; --i) {
             const auto written = writer->write(telling(i), {20.0});
             ASSERT_TRUE(written.has_value()) << written.error().str();
         }
-        end(pid);
+        ASSERT_TRUE(reader.kill()) << "it ended by itself";
         ASSERT_TRUE(writer->clear({5.0}).has_value());
     }
     ASSERT_TRUE(writer->write(telling(1), AT_ONCE).has_value());
@@ -147,17 +191,19 @@ TEST_P(NmlDeathTest, PlacesOfTheDeadAreFreeForOthers_F5) {
     for (int i = 0; i < 20; ++i) {  // max_procs is 8
         int ready[2];
         ASSERT_EQ(::pipe(ready), 0);
-        const pid_t pid = start([&ready](Buffer &) {
-            const char open = 1;
-            while (::write(ready[1], &open, 1) == 1) {
-                ::pause();
-            }
+        Child peer([this, &ready] {
+            use_buffer([&ready](Buffer &) {
+                const char open = 1;
+                while (::write(ready[1], &open, 1) == 1) {
+                    ::pause();
+                }
+            });
         });
         char open = 0;
         ::close(ready[1]);
         EXPECT_EQ(::read(ready[0], &open, 1), 1) << "the place was refused";
         ::close(ready[0]);
-        end(pid);
+        ASSERT_TRUE(peer.kill()) << "it ended by itself";
     }
 }
 
@@ -171,15 +217,12 @@ TEST(NmlDeath, MoreProcessesThanMaxProcsAreRefused_F2) {
     const std::string instance = "deathmax" + std::to_string(::getpid());
     const auto mine = open_buffer(config.buffers[0], config.processes[0], instance, local);
     ASSERT_TRUE(mine.has_value());
-    const pid_t pid = ::fork();
-    if (pid == 0) {
+    Child other([&] {
         LocalPlaces others;
         const auto second = open_buffer(config.buffers[0], config.processes[1], instance, others);
         ::_exit(!second.has_value() && second.error().str().find("max_procs") != std::string::npos ? 0 : 1);
-    }
-    int status = 0;
-    ASSERT_EQ(::waitpid(pid, &status, 0), pid);
-    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    });
+    EXPECT_EQ(other.wait(), 0);
     const auto again = open_buffer(config.buffers[0], config.processes[1], instance, local);
     EXPECT_TRUE(again.has_value()) << "a second connection of the same process takes no place";
 }
@@ -193,8 +236,7 @@ TEST(NmlDeath, AReaderThatWaitsIsToldWhenTheMasterHasDied_F5) {
     const std::string instance = "deathm" + std::to_string(::getpid());
     int ready[2];
     ASSERT_EQ(::pipe(ready), 0);
-    const pid_t pid = ::fork();
-    if (pid == 0) {
+    Child keeper([&] {
         LocalPlaces local;
         const auto master = open_buffer(config.buffers[0], config.processes[0], instance, local);
         const char open = 1;
@@ -204,14 +246,13 @@ TEST(NmlDeath, AReaderThatWaitsIsToldWhenTheMasterHasDied_F5) {
         for (;;) {
             ::pause();
         }
-    }
+    });
     char open = 0;
     ASSERT_EQ(::read(ready[0], &open, 1), 1);
     LocalPlaces local;
     const auto reader = open_buffer(config.buffers[0], config.processes[1], instance, local);
     ASSERT_TRUE(reader.has_value()) << reader.error().str();
-    ::kill(pid, SIGKILL);
-    ASSERT_EQ(::waitpid(pid, nullptr, 0), pid);
+    ASSERT_TRUE(keeper.kill());
     Received message;
     const auto found = (*reader)->wait(message, FOREVER);
     ASSERT_FALSE(found.has_value());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Buffers through their server, on loopback.
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -107,7 +108,7 @@ TEST_P(NmlTransportTest, AClientWritesReadsPeeksWaitsAndClearsAsALocalOne_F6_F9)
     EXPECT_EQ(message.bytes, "anything");
     EXPECT_FALSE((*status)->read(message, {1.0}).value()) << "read already";
     EXPECT_TRUE((*status)->peek(message, {1.0}).value());
-    std::thread writer([this] { EXPECT_TRUE(sts_->write("later", FOREVER).has_value()); });
+    std::jthread writer([this] { EXPECT_TRUE(sts_->write("later", FOREVER).has_value()); });
     EXPECT_TRUE((*status)->wait(message, FOREVER).value());
     EXPECT_EQ(message.bytes, "later");
     writer.join();
@@ -228,6 +229,7 @@ TEST_F(NmlNetTest, AClientThatIsKilledHarmsNobodyElse_F6) {
         ASSERT_EQ(::pipe(ready), 0);
         const pid_t pid = ::fork();
         if (pid == 0) {
+            ::prctl(PR_SET_PDEATHSIG, SIGKILL);
             auto mine = client("cmd");
             const char open = 1;
             const std::string bytes = mine.has_value() ? mdi(vocabulary_, std::string(500, 'x')) : "";
