@@ -96,6 +96,7 @@ TEST_F(StartCheckTest, UserCodesAreNotRun_I1) {
 
 TEST_F(StartCheckTest, ProgramsWithoutEndAreReadUpToTheLimit_D1) {
     StartCheckOptions options;
+    options.most_seconds = 1000;  // the other limit
     options.most_blocks = 20000;
     const StartCheck found = check("G21 G90 F600\no1 while [1]\nG1 X10\nG1 X0\no1 endwhile\nM2\n", options);
     EXPECT_FALSE(found.isRefused) << said();

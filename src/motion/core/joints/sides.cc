@@ -2,6 +2,7 @@
 #include "motion/core/joints/sides.hh"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace mw::motion {
@@ -31,14 +32,14 @@ void begin(Sides &sides, const Joints &joints, const PerJoint &led, const Folded
     forget(sides);
     for (int j = 0; j < joints.count; ++j) {
         const auto n = static_cast<std::size_t>(j);
-        traj::JogPlanner &p = sides.planner[n];
-        p.reset(joints[j].pos_cmd);
         if (isApart(joints[j], led[n], ROUNDING)) {
+            traj::JogPlanner &p = sides.planner[n];
+            p.reset(joints[j].pos_cmd);
             p.target = led[n];
             p.max_velocity = limits.joint_jog[n].velocity;
             p.max_acceleration = limits.joint_jog[n].acceleration;
             p.max_jerk = limits.joint_jog[n].jerk;
-            ++sides.count;
+            sides.joints |= 1U << j;
         }
     }
 }
@@ -53,7 +54,7 @@ void stop(Sides &sides) noexcept {
 }
 
 void forget(Sides &sides) noexcept {
-    sides.count = 0;
+    sides.joints = 0;
     sides.isLeading = sides.isStopping = false;
 }
 
@@ -62,12 +63,12 @@ SidesStep step(Sides &sides, Joints &joints, bool isMotionWanted, double period_
     if (!sides.isLeading) {
         return SidesStep::GOES_ON;
     }
-    sides.count = 0;
-    for (int j = 0; j < joints.count; ++j) {
+    for (std::uint32_t left = sides.joints; left != 0; left &= left - 1) {
+        const int j = std::countr_zero(left);
         traj::JogPlanner &p = sides.planner[static_cast<std::size_t>(j)];
         p.step(period_s);
         follow(joints[j], p.position, period_s);
-        sides.count += p.isAtRest() ? 0 : 1;
+        sides.joints &= p.isAtRest() ? ~(1U << j) : ~0U;
     }
     const bool hasStopped = sides.isStopping && !sides.areApart();
     if (!sides.areApart()) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "base/limits.hh"
 #include "motion/api/limits.hh"
@@ -15,11 +16,11 @@
 namespace mw::motion {
 
 struct Sides {
-    int count = 0;  ///< of joints that are off their places
+    std::uint32_t joints = 0;  ///< bit per joint that is off its place
     bool isLeading = false, isStopping = false;
     std::array<traj::JogPlanner, MAX_JOINTS> planner{};
 
-    bool areApart() const noexcept { return count > 0; }
+    bool areApart() const noexcept { return joints != 0; }
     bool areUnderWay() const noexcept { return isLeading && areApart(); }
 };
 

@@ -99,6 +99,10 @@ class ServerTest : public testing::Test {
         }
         return isDone();
     }
+    /// The server knows of sockets a little after their peers have its answer.
+    bool areOpened(std::size_t count) {
+        return run_until([&] { return echo.open.size() == count; });
+    }
     std::string host() const { return "Host: 127.0.0.1:" + std::to_string(server->port()) + "\r\n"; }
     void write(Peer &peer, std::string bytes) {
         run_until([&] { return !peer.write(bytes) || bytes.empty(); });
@@ -223,7 +227,7 @@ TEST_F(ServerTest, ASocketCarriesTextsBothWays_J3) {
     const std::string head = ask(peer, upgrade(), "\r\n\r\n");
     EXPECT_TRUE(head.starts_with("HTTP/1.1 101")) << head;
     EXPECT_NE(head.find("s3pPLMBiTxaQ9kYGzzhZRbK+xOo="), std::string::npos);  // of RFC 6455
-    EXPECT_EQ(echo.open.size(), 1U);
+    ASSERT_TRUE(areOpened(1));
     EXPECT_EQ(ask(peer, frame("hello"), "hello"), "\x81\x05hello");
     EXPECT_EQ(ask(peer, frame("a", 0x01) + frame("bc", 0x80), "abc"), "\x81\x03"
                                                                       "abc");
@@ -265,6 +269,7 @@ TEST_F(ServerTest, AConnectionThatIsCutIsToldOnce_J3) {
     EXPECT_EQ(echo.ended, echo.open);
     Peer other(server->port());
     EXPECT_TRUE(ask(other, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
+    ASSERT_TRUE(areOpened(2));
     server->close(echo.open[1]);
     server->close(echo.open[1]);
     EXPECT_TRUE(run_until([&] {
@@ -291,6 +296,7 @@ TEST_F(ServerTest, WhoDoesNotReadDoesNotFillTheMemory_J3) {
     listen(limits);
     Peer peer(server->port());
     EXPECT_TRUE(ask(peer, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
+    ASSERT_TRUE(areOpened(1));
     bool wasBusy = false;
     for (int i = 0; i < 20000 && echo.ended.empty(); ++i) {
         server->send(echo.open[0], std::string(4096, 'x'));
@@ -420,6 +426,7 @@ TEST_F(ServerTest, WhoDoesNotReadDelaysNobody_J3) {
     Peer slow(server->port()), other(server->port());
     EXPECT_TRUE(ask(slow, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
     EXPECT_TRUE(ask(other, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
+    ASSERT_TRUE(areOpened(2));
     for (int i = 0; i < 1000; ++i) {
         server->send(echo.open[0], std::string(4096, 'x'));
         server->run_for(echo, std::chrono::microseconds(10));
