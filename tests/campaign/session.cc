@@ -160,6 +160,9 @@ bool Session::home() {
     settle(2);
     judge_.allow(Leave::MOVE);
     ask(msgs::UnhomeJoint{-1});
+    if (isStopped_) {
+        return false;  // whoever stops the machine does not home it at once
+    }
     const End end = ask(msgs::HomeJoint{-1}, 120);
     settle(5);
     if (!isOver() && !isStopped_ && end != End::DONE) {

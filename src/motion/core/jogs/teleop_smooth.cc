@@ -2,7 +2,6 @@
 #include "motion/core/jogs/teleop_smooth.hh"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -25,6 +24,14 @@ std::size_t at(int i) noexcept {
 
 std::uint32_t bit_of(const TeleopLoad &load, int i) noexcept {
     return 1U << load.axes[at(i)];
+}
+
+int count_of(std::uint32_t axes) noexcept {
+    int count = 0;
+    for (; axes != 0; axes &= axes - 1) {
+        ++count;
+    }
+    return count;
 }
 
 /// What the axes that share the joints may do; nothing where they have no share.
@@ -213,7 +220,7 @@ void apply_smoothly(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs, 
         }
     }
     if (isAnyWaiting && !shares.isMakingRoom) {
-        allowed = share(m, load, jogs, shares.axes, std::popcount(shares.axes));
+        allowed = share(m, load, jogs, shares.axes, count_of(shares.axes));
     }
     bool isCalm = true;
     double longest_s = 0;
