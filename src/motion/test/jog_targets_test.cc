@@ -124,6 +124,39 @@ TEST(JogTargets, MayChangeInMotionInTeleopModeWithJerkLimits_C9) {
     run_all(Mode::TELEOP, 3e4);
 }
 
+/// A jerk that is small beside the acceleration: the mean must not be as long as turning about at full
+/// acceleration takes.
+TEST(JogStops, AJogWithALowJerkStopsAsSoonAsItCan_C8_C13) {
+    constexpr double V = 100, A = 4000, J = 10000, SLOW = 8;
+    for (const bool isJoint : {true, false}) {
+        MotionRig rig("XYZ", V, A);
+        rig.set(Parameter::JOINT_MAX_JERK, 0, J);
+        rig.set(Parameter::TRAJ_MAX_JERK, 0, J);
+        rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, 1);
+        rig.ready(isJoint ? Mode::FREE : Mode::TELEOP);
+        testing::LimitChecker checker({{V, A, J}}, T);
+        const auto go = [&](int cycles) {
+            for (int i = 0; i < cycles; ++i) {
+                rig.step();
+                checker.sample(&rig.out->joint[0].motor_pos_cmd);
+            }
+        };
+        go(5);
+        rig.send(JogContinuous{{isJoint, 0}, SLOW});
+        go(1000);
+        EXPECT_NEAR(rig.status().joint[0].vel_cmd, SLOW, 1e-6);
+        rig.send(JogStop{{isJoint, 0}});
+        int cycles = 0;
+        while (cycles < 2000 && (cycles < 2 || !rig.status().isInPosition)) {
+            go(1);
+            ++cycles;
+        }
+        // The mean takes sqrt(2 V / J), before it the leader V / a with a half of what that mean allows.
+        EXPECT_LT(cycles, 160) << (isJoint ? "joint" : "axis");
+        EXPECT_EQ(checker.report(), "");
+    }
+}
+
 }  // namespace
 }  // namespace jog_targets_test
 }  // namespace mw::motion

@@ -29,6 +29,14 @@ JogTarget target_of_bit(int bit) noexcept {
     return {bit < MAX_JOINTS, bit < MAX_JOINTS ? bit : bit - MAX_JOINTS};
 }
 
+/// No longer than what brings a joint or axis to its highest speed soonest: V / a + 2 a / J is least at
+/// sqrt(2 V / J).
+double mean_for(const JogLimits &most) noexcept {
+    return most.jerk > 0
+               ? std::min(2.0 * most.acceleration, std::sqrt(2.0 * most.velocity * most.jerk)) / most.jerk
+               : 0.0;
+}
+
 struct JogMove {
     double position = 0, velocity = 0;
     JogSource source = JogSource::NONE;
@@ -51,7 +59,7 @@ Reason start(Jogs &jogs, const JogTarget &target, const JogMove &move, const Jog
     p.max_velocity = std::min(std::abs(move.velocity), s.most.velocity);
     p.max_acceleration = s.most.acceleration;
     p.max_jerk = s.most.jerk;
-    p.mean_s = 0;
+    p.mean_s = mean_for(s.most);
     jog.wanted_velocity = p.max_velocity;
     jog.wanted_acceleration = p.max_acceleration;
     jog.most_velocity = UNBOUNDED;
@@ -405,6 +413,7 @@ void home_joint(Jog &jog, const homing::JointCommand &command, const JogLimits &
     p.max_acceleration = of(command.acceleration, most.acceleration);
     // What stops where a switch says brakes as hard as the joint can.
     p.max_jerk = command.isSmooth && most.jerk > 0 ? of(command.jerk, most.jerk) : 0.0;
+    p.mean_s = mean_for({most.velocity, p.max_acceleration, p.max_jerk});
     if (command.move == homing::Move::STOP) {
         p.stop();
         return;
