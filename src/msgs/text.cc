@@ -7,11 +7,7 @@
 #include "msgs/value.hh"
 
 namespace mw::msgs {
-namespace {
 
-void append_fields(const ConstObject &message, const std::string &prefix, std::string &line);
-
-/// In quotes, without what would break the line.
 std::string quoted(std::string_view text) {
     std::string out = "\"";
     for (const char c : text) {
@@ -25,6 +21,10 @@ std::string quoted(std::string_view text) {
     }
     return out + '"';
 }
+
+namespace {
+
+void append_fields(const ConstObject &message, const std::string &prefix, std::string &line);
 
 std::string element_text(const Field &field, const void *at) {
     const Type &type = field.type;

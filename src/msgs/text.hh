@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "msgs/describe.hh"
 
@@ -10,5 +11,7 @@ namespace mw::msgs {
 
 /// "JogStop is_joint=true index=0".
 std::string to_text(const ConstObject &message);
+/// In quotes, without what would break a line: \", \\ and \xNN stand for it.
+std::string quoted(std::string_view text);
 
 }  // namespace mw::msgs

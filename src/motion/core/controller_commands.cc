@@ -237,14 +237,10 @@ Verdict Controller::set_mode(Mode mode) noexcept {
     if (reason != Reason::NONE || mode == power_.mode) {
         return {reason};
     }
-    if (mode != Mode::FREE) {
-        const Verdict led = lead_joints();
-        if (led.reason != Reason::NONE) {
-            return led;
-        }
-    }
     if (mode == Mode::FREE) {
         forget(sides_);
+    } else if (const Verdict led = lead_joints(); led.reason != Reason::NONE) {
+        return led;
     }
     executor_.drop();
     executor_.hold(false);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/text.hh"
+#include "msgs/text.hh"
 #include "msgs/value.hh"
 
 namespace mw::nml {
@@ -40,29 +41,13 @@ bool isWide(const Value &value) {
     return value.field.type.kind == msgs::Kind::UNSIGNED;
 }
 
-std::string quoted(std::string_view text) {
-    std::string out = "\"";
-    for (const char c : text) {
-        const auto code = static_cast<unsigned char>(c);
-        if (c == '"' || c == '\\') {
-            out += '\\';
-            out += c;
-        } else if (code < 0x20 || code == 0x7f) {
-            out += fmt::format("\\x{:02x}", code);
-        } else {
-            out += c;
-        }
-    }
-    return out += '"';
-}
-
 int hex_digit(char c) {
     constexpr std::string_view DIGITS = "0123456789abcdef";
     const std::size_t at = DIGITS.find(c);
     return at == std::string_view::npos ? -1 : static_cast<int>(at);
 }
 
-/// False when it is no text as quoted() writes it.
+/// False when it is no text as msgs::quoted() writes it.
 bool unquote(std::string_view text, std::string &plain) {
     plain.clear();
     if (text.size() < 2 || text.front() != '"' || text.back() != '"') {
@@ -127,7 +112,7 @@ bool TextWriter::real(const Value &value, double &number) {
 }
 
 bool TextWriter::text(const Value &value, std::string_view &text, std::size_t) {
-    put(value, quoted(text));
+    put(value, msgs::quoted(text));
     return true;
 }
 
