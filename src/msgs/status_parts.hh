@@ -14,7 +14,7 @@ namespace mw::msgs::status_part {
 /// motion with digital inputs and outputs; DEVICES: tool, I/O, the right to operate.
 inline constexpr int TASK = 0, PROGRAM = 1, CODES = 2, OFFSETS = 3, PATH = 4, ANALOG_IN = 5, ANALOG_OUT = 6,
                      JOINTS = 7, AXES = JOINTS + MAX_JOINTS, SPINDLES = AXES + 1,
-                     DEVICES = SPINDLES + MAX_SPINDLES, COUNT = DEVICES + 1;
+                     DEVICES = SPINDLES + MAX_SPINDLES, SETTINGS = DEVICES + 1, COUNT = SETTINGS + 1;
 
 inline constexpr PartStarts<COUNT> STARTS = [] {
     PartStarts<COUNT> starts{};
@@ -32,6 +32,7 @@ inline constexpr PartStarts<COUNT> STARTS = [] {
         starts[SPINDLES + i] = offsetof(MachineStatus, spindles) + i * sizeof(SpindleStatus);
     }
     starts[DEVICES] = offsetof(MachineStatus, tool);
+    starts[SETTINGS] = offsetof(MachineStatus, settings);
     return starts;
 }();
 

@@ -97,6 +97,9 @@ struct Task::Handler {
     }
     template <CarriedOutByMotion C>
     Outcome operator()(const C &command) {
+        if constexpr (std::is_same_v<C, SetMaxVelocity>) {
+            task.shown_settings_.limit_velocity(command.velocity);
+        }
         return order(in_motion_words(command));
     }
     Outcome operator()(const ReverseProgram &) { return turn_program(true); }

@@ -29,6 +29,8 @@ class TaskCanon final : public interp::MachineCanon {
     std::uint32_t blocks() const { return tag_.block; }
     /// The name of a file by the index in SourceTag.
     const std::string &file_name(std::uint32_t index) const { return files_[index]; }
+    /// The block that was read last, as it is written.
+    const std::string &block_text() const { return text_; }
     void reset();
     /// Where the machine is when nothing is queued.
     void set_position(const geom::Pose &position) { last_end_ = position; }
@@ -45,6 +47,7 @@ class TaskCanon final : public interp::MachineCanon {
     geom::Pose last_end_{};
     motion::SourceTag tag_{};
     std::vector<std::string> files_;
+    std::string text_;
 };
 
 }  // namespace mw::task

@@ -68,6 +68,9 @@ class Sequencer {
     /// What is being waited for: a pin or a state.
     Waiting waiting_for() const;
 
+    /// [s] of a dwell; 0 when there is none.
+    double dwell_left_s(std::int64_t now_ns) const;
+
     double input_value() const { return input_value_; }
     bool isInputTimedOut() const { return isInputTimedOut_; }
     /// Commanded spindle state, as programmed (unscaled).
