@@ -71,12 +71,12 @@ def check_ends(mill):
 
 def check_files(mill):
     marks = mill.ini.parent
-    (marks / 'end.hal').write_text('print the machine ends\n')
+    (marks / 'end.hal').write_text('print ending\n')
     extra = ('[HAL]\nSHUTDOWN = end.hal\nHALCMD = newsig by-command float\n'
              '[APPLICATIONS]\nDELAY = 0.05\nAPP = sh -c "echo $CONFIG_DIR > app.txt; exec sleep 60"\n')
     status, output = mill.launch('files', extra=extra)
     expect(status == 0, 'commands, applications and the last file', status, output)
-    expect('the machine ends' in output, 'the last file is run', output)
+    expect('ending' in output, 'the last file is run', output)
     status, output = mill.launch('status', extra='[HAL]\nHALFILE = wrong.hal\n')
     expect(status == 1, 'a missing file is an error', status, output)
     (marks / 'wrong.hal').write_text('net nothing no-such-pin\n')

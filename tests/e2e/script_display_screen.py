@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The display of script_display.py: what it is asked to check is the last word, or the last but one."""
 import os
+import pathlib
 import signal
 import sys
 import time
 
 import linuxcnc
 
+INSTANCE = f"MILLWRIGHT_INSTANCE={os.environ['MILLWRIGHT_INSTANCE']}".encode()
 s, c, e = linuxcnc.stat(), linuxcnc.command(), linuxcnc.error_channel()
 
 # Every attribute with its type, or the type and length of a tuple.
@@ -90,7 +92,8 @@ def status():
     assert (s.joints, s.axis_mask, s.spindles, s.kinematics_type) == (3, 7, 1, linuxcnc.KINEMATICS_IDENTITY)
     assert (s.linear_units, s.angular_units, s.cycle_time) == (1.0, 1.0, 0.001)
     assert s.max_velocity == 200 and s.max_acceleration == 1500 and s.program_units == 2
-    assert s.joint[0]['max_position_limit'] == 250 and s.joint[3]['max_position_limit'] == 1.0
+    limits = [joint['max_position_limit'] for joint in s.joint[:4]]
+    assert limits == [251.0, 201.0, 101.0, 1.0], limits
     assert s.ini_filename == os.environ['INI_FILE_NAME'] and os.path.isdir(os.environ['CONFIG_DIR'])
     tool = s.tool_table[1]
     assert tool.id == tool[0] and len(tool) == 14 and tool.diameter == s.toolinfo(tool.id)['diameter']
@@ -225,7 +228,7 @@ def program():
     messages = []
     while (message := e.poll()) is not None:
         messages.append(message)
-    assert (linuxcnc.OPERATOR_DISPLAY, 'hello') in messages, messages
+    assert (linuxcnc.OPERATOR_DISPLAY, ' hello') in messages, messages
     c.auto(linuxcnc.AUTO_RESUME)
     wait_for(lambda: s.delay_left > 0 and s.exec_state == linuxcnc.EXEC_WAITING_FOR_DELAY, 'the dwell')
     wait_for(lambda: s.interp_state == linuxcnc.INTERP_IDLE and s.state == linuxcnc.RCS_DONE, 'the end')
@@ -267,8 +270,9 @@ def main():
         os.kill(os.getppid(), signal.SIGTERM)
         time.sleep(60)
     if what == 'kill-realtime':
-        s.poll()
-        os.system(f'kill -9 $(pgrep -P {os.getppid()} millwright-rt)')
+        for path in pathlib.Path('/proc').glob('[0-9]*/environ'):
+            if (path.parent / 'comm').read_text().startswith('millwright-rt') and INSTANCE in path.read_bytes():
+                os.kill(int(path.parent.name), signal.SIGKILL)
         time.sleep(60)
     if what == 'wait':
         with open('waiting.txt', 'w', encoding='utf-8'):

@@ -19,9 +19,10 @@ RcsState rcs_state(const msgs::MachineStatus &status) {
     const bool isCommanded = status.last_progress == msgs::Progress::STARTED ||
                              status.task.interp_state != msgs::InterpState::IDLE ||
                              status.task.waiting.what != WaitFor::NOTHING;
-    // Jogs of axes are no work that is under way: screens give further commands meanwhile.
+    // Jogs of axes are no work that is under way: screens give further commands meanwhile. A line has ended
+    // with its last move, however the feedback follows.
     const bool isMoving = trajectory.queue_depth > 0 || trajectory.isHoming ||
-                          (!trajectory.isInPosition && trajectory.mode != msgs::MotionMode::TELEOP);
+                          (!trajectory.isInPosition && trajectory.mode == msgs::MotionMode::FREE);
     return isCommanded || isMoving ? RcsState::EXEC : RcsState::DONE;
 }
 

@@ -11,7 +11,9 @@ namespace mw::task {
 class ShownSettings {
   public:
     /// `fixed`: what does not come as a setting of motion.
-    explicit ShownSettings(const msgs::SettingsStatus &fixed) : shown_(fixed) {}
+    explicit ShownSettings(const msgs::SettingsStatus &fixed) : shown_(fixed) {
+        shown_.max_velocity = shown_.max_acceleration = most_velocity_;
+    }
 
     /// A setting that motion is told.
     void note(const motion::SetParameter &parameter);
@@ -21,7 +23,7 @@ class ShownSettings {
 
   private:
     msgs::SettingsStatus shown_;
-    double most_velocity_ = 0;  ///< [TRAJ]MAX_LINEAR_VELOCITY
+    double most_velocity_ = 1e99;  ///< [TRAJ]MAX_LINEAR_VELOCITY
 };
 
 }  // namespace mw::task
