@@ -52,7 +52,8 @@ const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
     out_.tap = {};
     state_.cycle = cycle;
     ++state_.tick;
-    if (state_.isDropping && state_.motion == Motion::FOLLOW && isFiltered()) {
+    const bool mustStop = state_.isDropping && state_.motion == Motion::FOLLOW && isFiltered();
+    if (mustStop && !silence_.isStopping) {
         watch_planner();
     }
     if (state_.motion == Motion::LOCKED) {
@@ -278,7 +279,6 @@ void Executor::drop() noexcept {
     state_.isDropping = true;
     silence_.cycles = 0;
     silence_.waited = 0;
-    silence_.isStopping = false;
     if (state_.motion == Motion::FOLLOW && !isFiltered()) {
         start_brake();
     } else if (isAtRest()) {
@@ -294,8 +294,7 @@ void Executor::watch_planner() noexcept {
     const bool isGone = silence_.cycles > ExecutorTuning::PLANNER_SILENCE_CYCLES &&
                         silence_.cycles * period_ > ExecutorTuning::PLANNER_SILENCE_S;
     ++silence_.waited;
-    const bool isWithoutPlan =
-        !silence_.isStopping && silence_.waited * period_ > ExecutorTuning::STOP_PLAN_WAIT_S;
+    const bool isWithoutPlan = silence_.waited * period_ > ExecutorTuning::STOP_PLAN_WAIT_S;
     if (isGone || isWithoutPlan) {
         start_brake();
     }

@@ -36,7 +36,7 @@ struct PlannerSilence {
     std::uint32_t seen_updates = 0;
     int cycles = 0;           ///< since the last one
     int waited = 0;           ///< cycles since the drop
-    bool isStopping = false;  ///< a plan to stop has been taken since
+    bool isStopping = false;  ///< the plan in force was made to stop
 };
 
 /// What an executor remembers. A copy of it goes on in another executor whose store holds the same path.
