@@ -14,9 +14,10 @@ namespace {
 constexpr double PLACE_ROUNDING = 2e-6, RATE_ROUNDING = 1e-5;
 /// With backlash the motor has to make up for it on top of the joint's motion.
 constexpr double WITH_BACKLASH = 1.5;
-/// A path brakes along its curves, where part of the acceleration keeps it on them.
+/// What a stop may take of the least, and on top of it for commands on their way.
 constexpr double STOP_FACTOR = 2.2, STOP_SLACK_S = 0.02;
-constexpr double BLEND_S = 0.1;  ///< so long after a stop speeds may still grow
+/// How often a stop under way is judged [cycles].
+constexpr int LOOK_EVERY = 16;
 /// Until commands that were on their way when the machine was stopped have been dropped [cycles].
 constexpr int IN_FLIGHT = 6;
 constexpr double MOVED = 1e-9;
@@ -39,6 +40,8 @@ Judge::Judge(const Design &design, double period_s) : design_(design), period_(p
     for (const JointDesign &j : design.joints) {
         joints_.push_back({checker_of(j, false, period_s), checker_of(j, design.isJerkLimited, period_s)});
     }
+    stop_path_.motors.resize(design.joints.size());
+    build_up_s_ = build_up_s();
     velocity_.assign(design.joints.size(), 0);
     before_.assign(design.joints.size(), 0);
 }
@@ -62,41 +65,107 @@ void Judge::stop(Stop how, int delay) {
     if (isWorse) {
         return;
     }
+    const bool isSame = isStopAwaited_ && how == Stop::ALONG_THE_PATH;
+    if (!isSame) {
+        delay_ = delay;
+        since_stop_ = 0;
+        begin_stop();
+    }
     how_ = how;
-    delay_ = isStopAwaited_ && how == Stop::ALONG_THE_PATH ? delay_ : delay;
-    since_stop_ = isStopAwaited_ && how == Stop::ALONG_THE_PATH ? since_stop_ : 0;
     isStopAwaited_ = true;
     restless_ = delay + IN_FLIGHT;
     maySwitchOn_ = mayMove_ = mayWork_ = false;
-    begin_stop();
 }
 
+/// The path begins with the samples that tell the speed.
 void Judge::begin_stop() {
-    stop_least_s_ = time_to_stop();
-    stop_due_s_ = STOP_FACTOR * stop_least_s_ + STOP_SLACK_S;
+    constexpr std::size_t KEPT = 3;
+    const std::size_t old = stop_path_.axes.size() - std::min(stop_path_.axes.size(), KEPT);
+    const auto forget = [old](auto &samples) {
+        samples.erase(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(old));
+    };
+    forget(stop_path_.axes);
+    for (std::vector<double> &motor : stop_path_.motors) {
+        forget(motor);
+    }
+    stop_path_.areAxesKnown = last_.areAxesKnown;
 }
 
-/// From the speeds of the last sample, by every joint's own acceleration and jerk and those along the path.
-double Judge::time_to_stop() const {
-    double most = 0;
-    double path2 = 0;
+/// By the accelerations of joints and axes along the path that was taken since, and what building them up
+/// takes where jerk is limited.
+LeastStop Judge::time_to_stop() const {
+    std::vector<StoppingGroup> groups;
     for (std::size_t j = 0; j < joints_.size(); ++j) {
         const JointDesign &d = design_.joints[j];
+        groups.push_back({{stop_path_.motors[j]}, built_up(d.isAngular, d.acceleration, d.jerk)});
+    }
+    StoppingGroup linear{{}, design_.acceleration};
+    for (const AxisDesign &a : design_.axes) {
+        std::vector<double> places;
+        for (const geom::Pose &pose : stop_path_.axes) {
+            places.push_back(pose[a.axis]);
+        }
+        if (!stop_path_.areAxesKnown) {
+            continue;
+        }
+        groups.push_back({{places}, built_up(geom::isAngular(a.axis), a.acceleration, a.jerk)});
+        if (!geom::isAngular(a.axis)) {
+            linear.places.push_back(places);
+        }
+    }
+    if (!linear.places.empty()) {
+        groups.push_back(linear);
+    }
+    LeastStop stop = least_stop(groups, period_);
+    stop.seconds += time_of_jerk();
+    return stop;
+}
+
+/// Of all that is linear, the longest time in which an acceleration is built up. Angular axes get no longer:
+/// docs/motion/planner.md, "Known limits".
+double Judge::build_up_s() const {
+    double most = 0;
+    const auto look = [&](bool isAngular, double acceleration, double jerk) {
+        most = !isAngular && jerk > 0 ? std::max(most, acceleration / jerk) : most;
+    };
+    for (const JointDesign &d : design_.joints) {
+        look(d.isAngular, d.acceleration, d.jerk);
+    }
+    for (const AxisDesign &a : design_.axes) {
+        look(geom::isAngular(a.axis), a.acceleration, a.jerk);
+    }
+    return most;
+}
+
+double Judge::built_up(bool isAngular, double acceleration, double jerk) const {
+    const bool isShort = design_.isJerkLimited && isAngular && jerk > 0 && build_up_s_ > 0;
+    return isShort ? std::min(acceleration, jerk * build_up_s_) : acceleration;
+}
+
+/// What building up accelerations takes of those who move as a stop begins.
+double Judge::time_of_jerk() const {
+    constexpr double UP_AND_DOWN = 2.5;
+    double most = 0;
+    for (std::size_t j = 0; j < joints_.size() && design_.isJerkLimited && stop_path_.axes.size() > 1; ++j) {
+        const JointDesign &d = design_.joints[j];
+        const std::vector<double> &motor = stop_path_.motors[j];
+        const bool isMoving = std::abs(motor[1] - motor[0]) > MOVED;
+        if (!isMoving) {
+            continue;
+        }
         double a = d.acceleration;
         double jerk = d.jerk;
+        most = jerk > 0 ? std::max(most, built_up(d.isAngular, a, jerk) / jerk) : most;
         for (const AxisDesign &x : design_.axes) {
-            // Who limits an axis may limit any joint; of machines whose joints are axes only its own.
+            // Who limits an axis may limit any joint.
             a = std::min(a, x.acceleration);
             jerk = x.jerk > 0 ? (jerk > 0 ? std::min(jerk, x.jerk) : x.jerk) : jerk;
         }
         a = d.isAngular ? a : std::min(a, design_.acceleration);
         jerk = design_.jerk > 0 ? (jerk > 0 ? std::min(jerk, design_.jerk) : design_.jerk) : jerk;
-        const double v = std::abs(velocity_[j]);
-        path2 += d.isAngular ? 0 : v * v;
-        const bool hasJerk = design_.isJerkLimited && jerk > 0;
-        most = std::max(most, v / a + (hasJerk && v > 0 ? 2.5 * a / jerk : 0));
+        most = jerk > 0 ? std::max(most, a / jerk) : most;
     }
-    return std::max(most, std::sqrt(path2) / design_.acceleration);
+    return UP_AND_DOWN * most;
 }
 
 void Judge::sample(const Sample &s) {
@@ -110,9 +179,22 @@ void Judge::sample(const Sample &s) {
     check_room(s);
     check_homes(s);
     check_outputs(s);
+    take_for_stop(s);
     check_rest(s);
     restless_ = std::max(0, restless_ - 1);
     last_ = s;
+}
+
+/// Until a stop begins, the last samples alone.
+void Judge::take_for_stop(const Sample &s) {
+    stop_path_.axes.push_back(s.axes);
+    stop_path_.areAxesKnown = stop_path_.areAxesKnown && s.areAxesKnown;
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+        stop_path_.motors[j].push_back(s.joints[j].motor_cmd + s.joints[j].turned);
+    }
+    if (!isStopAwaited_) {
+        begin_stop();
+    }
 }
 
 void Judge::check_numbers(const Sample &s) {
@@ -296,6 +378,10 @@ void Judge::check_rest(const Sample &s) {
     if (!isStopAwaited_) {
         return;
     }
+    watch_stop(isMoving, isOn);
+}
+
+void Judge::watch_stop(bool isMoving, bool isOn) {
     ++since_stop_;
     if (since_stop_ <= delay_) {
         begin_stop();  // it does not know yet
@@ -309,28 +395,33 @@ void Judge::check_rest(const Sample &s) {
         isStopAwaited_ = false;
         return;
     }
-    const double took = (cycles - standing_) * period_;
     const bool isStanding = standing_ >= 3 && cycles >= 3;
-    if (cycles * period_ <= BLEND_S && time_to_stop() > stop_least_s_) {
-        // In the middle of a blend all acceleration turns the motion round: it has to be left first.
-        begin_stop();
-        stop_due_s_ += BLEND_S;
-    }
-    if (isMoving && cycles * period_ > stop_due_s_) {
-        fail("stop", fmt::format("still moves {:.3f} s after the stop; its limits need {:.3f} s",
-                                 cycles * period_, stop_least_s_));
-        isStopAwaited_ = false;
+    if (isStanding || !isOn || cycles % LOOK_EVERY == 0) {
+        check_stop(isMoving && isOn, (cycles - standing_) * period_);
     }
     if (isStanding || !isOn) {
-        constexpr double WORTH_A_LOOK_S = 0.05;
-        slowest_stop_ =
-            stop_least_s_ > WORTH_A_LOOK_S ? std::max(slowest_stop_, took / stop_least_s_) : slowest_stop_;
         constexpr int OFF_WITHIN = 10;
         const bool mustBeOff = how_ == Stop::ALONG_THEN_OFF;
         if (mustBeOff && isOn && standing_ > OFF_WITHIN) {
             fail("stop", "it stands, and its amplifiers stay on");
         }
         isStopAwaited_ = mustBeOff && isOn && standing_ <= OFF_WITHIN;
+    }
+}
+
+void Judge::check_stop(bool isMoving, double took_s) {
+    const LeastStop least = time_to_stop();
+    if (isMoving && !least.isOver) {
+        return;  // nobody could have stopped on what there is of the path yet
+    }
+    if (took_s > STOP_FACTOR * least.seconds + STOP_SLACK_S) {
+        fail("stop", fmt::format("{} {:.3f} s after the stop; its limits need {:.3f} s",
+                                 isMoving ? "still moves" : "comes to rest", took_s, least.seconds));
+        isStopAwaited_ = false;
+    }
+    constexpr double WORTH_A_LOOK_S = 0.05;
+    if (!isMoving && least.seconds > WORTH_A_LOOK_S) {
+        slowest_stop_ = std::max(slowest_stop_, took_s / least.seconds);
     }
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "campaign/design.hh"
+#include "campaign/stop_bound.hh"
 #include "geom/pose.hh"
 #include "testing/limit_checker.hh"
 
@@ -83,8 +84,14 @@ class Judge {
     void check_homes(const Sample &s);
     void check_outputs(const Sample &s);
     void check_rest(const Sample &s);
+    void take_for_stop(const Sample &s);
     void begin_stop();
-    double time_to_stop() const;
+    void watch_stop(bool isMoving, bool isOn);
+    void check_stop(bool isMoving, double took_s);
+    LeastStop time_to_stop() const;
+    double time_of_jerk() const;
+    double build_up_s() const;
+    double built_up(bool isAngular, double acceleration, double jerk) const;
     void fail(const std::string &rule, const std::string &text);
 
     const Design &design_;
@@ -97,7 +104,14 @@ class Judge {
     bool isStopAwaited_ = false;
     Stop how_ = Stop::ALONG_THE_PATH;
     int delay_ = 0, since_stop_ = 0;
-    double stop_due_s_ = 0, stop_least_s_ = 0;
+    /// Commanded in the stop that is awaited, with the samples that tell its speed.
+    struct StopPath {
+        std::vector<std::vector<double>> motors;  ///< by joint, sample
+        std::vector<geom::Pose> axes;
+        bool areAxesKnown = false;
+    };
+    StopPath stop_path_;
+    double build_up_s_ = 0;
     int standing_ = 0;
     int restless_ = 0;  ///< cycles left in which commands of before a stop may still arrive
     double slowest_stop_ = 0;

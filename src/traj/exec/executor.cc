@@ -187,12 +187,14 @@ void Executor::start_brake() noexcept {
     brake_on_piece();
 }
 
-/// Sets up braking from the present state to a stop or to the end of the piece.
+/// Sets up braking from the present state to a stop, to where the piece allows another, or to its end.
 void Executor::brake_on_piece() noexcept {
     const Piece &piece = store_.piece(state_.piece);
-    const double left = std::max(0.0, piece.length - state_.x);
+    const bool isBefore = state_.x < piece.braking.from;
+    brake_end_ = isBefore ? piece.braking.from : piece.length;
+    const double left = std::max(0.0, brake_end_ - state_.x);
     const double v2 = state_.v * state_.v;
-    double a = piece.acceleration.at(v2);
+    double a = isBefore ? piece.acceleration.at(v2) : piece.braking.bound.at(v2);
     const double out2 = v2 - 2.0 * a * left;
     brake_time_ = 0;
     isBrakeFinal_ = out2 <= TimingTuning::STOP_FIT * v2;
@@ -226,6 +228,11 @@ double Executor::brake_along(double dt) noexcept {
         return 0;
     }
     state_.v = v_at(brake_, brake_.duration);
+    if (brake_end_ < piece.length) {
+        state_.x = brake_end_;
+        brake_on_piece();
+        return dt - left;
+    }
     if (state_.piece == store_.last_piece.load(std::memory_order_acquire)) {
         // The planner promises that this does not happen; were it wrong, the end of the path is where we
         // stop.

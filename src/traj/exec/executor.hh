@@ -53,6 +53,7 @@ class ExecutorState {
     Phase brake_;             ///< the braking profile on the present piece
     double brake_time_ = 0;
     bool isBrakeFinal_ = false;  ///< it ends in a stop
+    double brake_end_ = 0;       ///< where on the piece it ends otherwise
     PlannerSilence silence_;
     Pose leader_;
     double leader_s_ = 0, leader_tolerance_ = 0;
