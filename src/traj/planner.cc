@@ -163,32 +163,15 @@ void Planner::plan_tried(const Snapshot &now) noexcept {
         }
         break;
     }
-    case Demand::Kind::STOP:
-        if (!find_hard_stop(now, demand.from)) {
-            find_plan(now, demand.from, Ending::STOP);
-        }
-        break;
+    case Demand::Kind::STOP: find_plan(now, demand.from, Ending::HARD_STOP); break;
     case Demand::Kind::PASS: start_pass(now, demand.from); break;
     case Demand::Kind::EXTEND:  // every plan goes as far as it will
     case Demand::Kind::NOTHING: break;
     }
 }
 
-/// A stop with all that curves leave for braking; false when there is none, or the trial refuses it.
-bool Planner::find_hard_stop(const Snapshot &now, const LeaderState &from) noexcept {
-    const Sequence begin = timing_.phases_end();
-    const bool isMade =
-        timing_.draft(view(), path_.store(), begin, from, Ending::HARD_STOP) &&
-        trial_.check(view(), now, {from, begin, timing_.phases_end(), timing_.outlook(now)}).isSound &&
-        timing_.commit(view(), path_.store(), now, begin, Ending::HARD_STOP);
-    if (!isMade) {
-        timing_.discard(begin);
-    }
-    return isMade;
-}
-
-/// Makes plans until one passes the trial. False when the trial has refused them all; the plan before then
-/// stays in force, with its stop.
+/// Makes plans until one passes the trial; a hard stop only once. False when the trial has refused them all;
+/// the plan before then stays in force, with its stop.
 bool Planner::find_plan(const Snapshot &now, LeaderState from, Ending ending) noexcept {
     const Sequence begin = timing_.phases_end();
     const double standing =
@@ -199,16 +182,21 @@ bool Planner::find_plan(const Snapshot &now, LeaderState from, Ending ending) no
     Cause cause;
     const int attempts = refusals_ > 0 ? TimingTuning::ATTEMPTS_AT_REST : TimingTuning::ATTEMPTS;
     for (int n = 0; n < attempts; ++n) {
-        if (!timing_.draft(view(), path_.store(), begin, from, ending)) {
-            break;
-        }
-        const Verdict verdict =
-            trial_.check(view(), now, {from, begin, timing_.phases_end(), timing_.outlook(now)});
-        if (verdict.isSound) {
+        const bool isDrafted = timing_.draft(view(), path_.store(), begin, from, ending);
+        const TrialPlan plan{from, begin, timing_.phases_end(), timing_.outlook(now)};
+        const Verdict verdict = isDrafted ? trial_.check(view(), now, plan) : Verdict{};
+        if (isDrafted && verdict.isSound) {
             if (!timing_.commit(view(), path_.store(), now, begin, ending)) {
                 break;
             }
             return true;
+        }
+        if (ending == Ending::HARD_STOP) {
+            ending = Ending::STOP;
+            continue;
+        }
+        if (!isDrafted) {
+            break;
         }
         isRefused = true;
         cause = trial_.cause_of(verdict, conditions_.limits, from.v > 0 ? from.piece + 1 : from.piece);

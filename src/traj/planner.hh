@@ -107,7 +107,6 @@ class Planner {
     Sequence standing_before(const Snapshot &now) const noexcept;
     void plan_tried(const Snapshot &now) noexcept;
     bool find_plan(const Snapshot &now, LeaderState from, Ending ending) noexcept;
-    bool find_hard_stop(const Snapshot &now, const LeaderState &from) noexcept;
     bool ease(const LeaderState &from, const Verdict &verdict, const Cause &cause) noexcept;
     void start_pass(const Snapshot &now, const LeaderState &from) noexcept;
 

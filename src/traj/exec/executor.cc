@@ -191,45 +191,45 @@ void Executor::start_brake() noexcept {
 void Executor::brake_on_piece() noexcept {
     const Piece &piece = store_.piece(state_.piece);
     const bool isBefore = state_.x < piece.braking.from;
-    brake_end_ = isBefore ? piece.braking.from : piece.length;
-    const double left = std::max(0.0, brake_end_ - state_.x);
+    brake_.end = isBefore ? piece.braking.from : piece.length;
+    const double left = std::max(0.0, brake_.end - state_.x);
     const double v2 = state_.v * state_.v;
     double a = isBefore ? piece.acceleration.at(v2) : piece.braking.bound.at(v2);
     const double out2 = v2 - 2.0 * a * left;
-    brake_time_ = 0;
-    isBrakeFinal_ = out2 <= TimingTuning::STOP_FIT * v2;
-    if (!isBrakeFinal_) {
+    brake_.time = 0;
+    brake_.isFinal = out2 <= TimingTuning::STOP_FIT * v2;
+    if (!brake_.isFinal) {
         const double out = std::sqrt(out2);
         const double duration = 2.0 * left / (state_.v + out);
-        brake_ = {state_.piece, duration, state_.x, state_.v, -a, 0};
+        brake_.phase = {state_.piece, duration, state_.x, state_.v, -a, 0};
         return;
     }
     if (out2 > 0 && left > 0) {
         a = v2 / (2.0 * left);
     }
-    brake_ = {state_.piece, state_.v / a, state_.x, state_.v, -a, 0};
+    brake_.phase = {state_.piece, state_.v / a, state_.x, state_.v, -a, 0};
 }
 
 double Executor::brake_along(double dt) noexcept {
-    const double left = brake_.duration - brake_time_;
+    const double left = brake_.phase.duration - brake_.time;
     if (dt < left) {
-        brake_time_ += dt;
-        state_.x = x_at(brake_, brake_time_);
-        state_.v = v_at(brake_, brake_time_);
+        brake_.time += dt;
+        state_.x = x_at(brake_.phase, brake_.time);
+        state_.v = v_at(brake_.phase, brake_.time);
         return 0;
     }
     const Piece &piece = store_.piece(state_.piece);
-    if (isBrakeFinal_) {
-        const double stop = x_at(brake_, brake_.duration);
+    if (brake_.isFinal) {
+        const double stop = x_at(brake_.phase, brake_.phase.duration);
         state_.x = std::abs(stop - piece.length) <= ExecutorTuning::ARRIVED * (1.0 + piece.length)
                        ? piece.length
                        : std::min(stop, piece.length);
         come_to_rest();
         return 0;
     }
-    state_.v = v_at(brake_, brake_.duration);
-    if (brake_end_ < piece.length) {
-        state_.x = brake_end_;
+    state_.v = v_at(brake_.phase, brake_.phase.duration);
+    if (brake_.end < piece.length) {
+        state_.x = brake_.end;
         brake_on_piece();
         return dt - left;
     }
