@@ -24,7 +24,7 @@ namespace mw::campaign {
 namespace {
 
 struct Task {
-    unsigned first = 1, count = 100, processes = 2;
+    unsigned first = 1, count = 100, processes = 2, plan = PLAN_VERSION;
     std::string log, kept, commit, trace;
     std::set<std::string> known;
     bool isTold = false, isShrunk = true, isAnew = false;
@@ -59,7 +59,7 @@ std::string drive(const Task &task, unsigned seed, const std::string &kept) {
         const auto folder =
             std::filesystem::temp_directory_path() / fmt::format("mw_campaign_{}", ::getpid());
         std::filesystem::create_directory(folder);
-        const Plan plan = reduced(make_plan(seed), kept);
+        const Plan plan = reduced(make_plan(seed, task.plan), kept);
         const std::string line =
             line_of(Session(plan, folder, {task.isTold ? stdout : nullptr, task.trace, task.known}).run()) +
             '\n';
@@ -135,7 +135,7 @@ std::string str(const std::vector<Kept> &all) {
 
 /// Leaves out acts, troubles and blocks as long as the same rule is broken.
 std::string shrink(const Task &task, unsigned seed, const std::string &rule) {
-    const Plan plan = make_plan(seed);
+    const Plan plan = make_plan(seed, task.plan);
     std::vector<Kept> best;
     for (std::size_t n = 0; n < plan.acts.size(); ++n) {
         Kept k{n, {}, 0, plan.acts[n].blocks.size(), false};
@@ -210,14 +210,31 @@ int work(const Task &task, unsigned part, const std::set<unsigned> &done) {
             ++failed;
             std::printf("seed %u: %s\n", seed, verdict.substr(verdict.find("FAILED")).c_str());
             if (task.isShrunk) {
-                std::printf("  replay: script/campaign motion --first %u --kept %s --tell\n", seed,
-                            shrink(task, seed, rule).c_str());
+                const std::string plan =
+                    task.plan == PLAN_VERSION ? "" : fmt::format(" --plan {}", task.plan);
+                std::printf("  replay: script/campaign motion --first %u%s --kept %s --tell\n", seed,
+                            plan.c_str(), shrink(task, seed, rule).c_str());
             }
             std::fflush(stdout);
         }
     }
     ::close(file);
     return failed;
+}
+
+/// "# commit ID plan N" heads what a program has added; before there were several plans it named none.
+std::set<unsigned> plans_in(const std::string &name) {
+    std::set<unsigned> plans;
+    std::ifstream file(name);
+    for (std::string line; std::getline(file, line);) {
+        if (line.starts_with("# commit ")) {
+            const std::size_t at = line.find(" plan ");
+            plans.insert(at == std::string::npos
+                             ? 1U
+                             : static_cast<unsigned>(std::strtoul(line.c_str() + at + 6, nullptr, 10)));
+        }
+    }
+    return plans;
 }
 
 struct Sum {
@@ -288,9 +305,18 @@ int run(const Task &task) {
     if (task.isAnew) {
         std::filesystem::remove(task.log);
     }
+    for (const unsigned plan : plans_in(task.log)) {
+        if (plan != task.plan) {
+            std::fprintf(stderr,
+                         "%s has seeds of plan %u, which stand for other sessions than those of plan %u: "
+                         "begin another log, or this one with --anew\n",
+                         task.log.c_str(), plan, task.plan);
+            return 2;
+        }
+    }
     const std::set<unsigned> done = seeds_in(task.log);
     std::ofstream(task.log, std::ios::app)
-        << "# commit " << (task.commit.empty() ? "unknown" : task.commit) << '\n';
+        << "# commit " << (task.commit.empty() ? "unknown" : task.commit) << " plan " << task.plan << '\n';
     std::vector<pid_t> children;
     for (unsigned part = 0; part < task.processes; ++part) {
         const pid_t child = ::fork();
@@ -322,6 +348,8 @@ int main(int argc, char **argv) {
     line.number("--count", "N", "so many seeds (default 100)", task.count, 0, UINT32_MAX - 1);
     line.text("--log", "FILE", "where the verdicts go", task.log);
     line.number("--processes", "P", "at a time (default 2)", task.processes, 1, 1024);
+    line.number("--plan", "N", "what a seed stands for: 1, sessions of a minute, or 2 (default)", task.plan,
+                1, mw::campaign::PLAN_VERSION);
     line.text("--commit", "ID", "what was built, for the log", task.commit);
     line.text("--kept", "PARTS", "runs only these parts of the first seed", task.kept);
     line.flag("--tell", "runs the first seed and tells what happens", task.isTold);

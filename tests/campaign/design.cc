@@ -180,6 +180,57 @@ Design make_design(sim::Random &random) {
 
 namespace {
 
+void hasten_homing(sim::Random &random, JointDesign &j) {
+    constexpr double ROOM = 2.5;                                             // for the stop beyond the switch
+    const double jerk_way = j.jerk > 0 ? 0.5 * j.acceleration / j.jerk : 0;  // for each unit/s
+    // v (v / 2a + w) = ROOM
+    const double w = j.acceleration * jerk_way;
+    const double stoppable = std::sqrt(w * w + 2 * ROOM * j.acceleration) - w;
+    j.search = -rounded(std::clamp(0.6 * stoppable, 5.0, 0.9 * j.velocity), 0.1);
+    j.latch = rounded(std::copysign(random.real(2.5, 5), j.latch), 0.1);
+    j.start = j.home_switch_at + random.real(3, 25);
+    j.home = rounded(random.real(0.5 * j.low, 0.2 * j.high), 0.1);
+}
+
+}  // namespace
+
+void shorten(sim::Random &random, Design &design) {
+    for (std::size_t n = 0; n < design.joints.size(); ++n) {
+        JointDesign &j = design.joints[n];
+        const std::size_t first = design.isTrivial ? design.coordinates.find(design.coordinates[n]) : n;
+        if (first != n) {
+            // The other leg of a gantry.
+            const double shaft_offset = j.shaft_offset;
+            j = design.joints[first];
+            j.shaft_offset = shaft_offset;
+            continue;
+        }
+        if (!design.isTrivial) {
+            continue;
+        }
+        const double low = j.low;
+        j.low = rounded(-random.real(40, 100), 0.1);
+        j.high = rounded(random.real(40, 100), 0.1);
+        j.start = random.real(0.7 * j.low, 0.7 * j.high);
+        j.home_switch_at += j.low - low;
+        j.index_at += j.low - low;
+        j.home_offset += j.low - low;
+        if (j.home_kind != HomeKind::IMMEDIATE) {
+            hasten_homing(random, j);
+        } else {
+            j.home = j.home_offset = rounded(random.real(0.5 * j.low, 0.5 * j.high), 0.1);
+        }
+        for (AxisDesign &a : design.axes) {
+            if (a.axis == geom::axis_of_letter(design.coordinates[n])) {
+                a.low = j.low;
+                a.high = j.high;
+            }
+        }
+    }
+}
+
+namespace {
+
 template <class Limits>
 std::string limits_of(const Limits &s) {
     return fmt::format("MAX_VELOCITY = {}\nMAX_ACCELERATION = {}\nMIN_LIMIT = {}\nMAX_LIMIT = {}\n{}",

@@ -57,5 +57,7 @@ struct Design {
 };
 
 Design make_design(sim::Random &random);
+/// Ways become shorter and homing quicker, so that a session has time for more.
+void shorten(sim::Random &random, Design &design);
 
 }  // namespace mw::campaign

@@ -80,10 +80,13 @@ struct Act {
 struct Plan {
     std::uint64_t seed = 0;
     Design design;
+    double least_s = 1e300;  ///< of machine time: once it has passed the last act comes next
     std::vector<Act> acts;
 };
 
-Plan make_plan(std::uint64_t seed);
+/// Of what a seed stands for; 1: as it was first, sessions of a minute.
+inline constexpr unsigned PLAN_VERSION = 2;
+Plan make_plan(std::uint64_t seed, unsigned version = PLAN_VERSION);
 
 /// What is kept of a plan, to find a short one that fails too: "0,2:0-5,3x,4.1" are act 0, act 2 with those
 /// of its moves that are among its blocks 0 to 5, act 3 without troubles, act 4 with its trouble 1. Empty:

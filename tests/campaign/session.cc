@@ -209,6 +209,10 @@ Verdict Session::run() {
         return verdict_;
     }
     for (std::size_t n = 0; n < plan_.acts.size() && !isOver(); ++n) {
+        const bool isLast = n + 1 == plan_.acts.size();
+        if (!isLast && static_cast<double>(rig_->sample().cycle) * PERIOD_S > plan_.least_s) {
+            continue;
+        }
         if (tell_ != nullptr) {
             std::fprintf(tell_, "act %zu\n", n);
         }
@@ -275,7 +279,7 @@ void Session::jog(const Act &act) {
     }
     const bool isCalm = !isStopped_ && !isDisturbed_ && !isOver();
     const auto at = static_cast<std::size_t>(act.target);
-    if (isCalm && isIncrement && end == End::DONE && plan_.design.isTrivial) {
+    if (isCalm && plan_.design.isTrivial) {
         double low = -1e300;
         double high = 1e300;
         if (isJoint) {
@@ -286,8 +290,12 @@ void Session::jog(const Act &act) {
             low = !isJoint && a.axis == act.target ? a.low : low;
             high = !isJoint && a.axis == act.target ? a.high : high;
         }
-        const double wanted = std::clamp(from + act.distance, low, high);
-        if (std::abs(place() - wanted) > 1e-6) {
+        // One that would end beyond a limit is refused. An e-stop may have let it run out beyond them before.
+        const double wanted = from + act.distance;
+        const bool fits = wanted >= low && wanted <= high && from >= low && from <= high;
+        if (end != End::DONE && fits) {
+            fail("work", fmt::format("a jog from {:.6g} by {:.6g} is refused", from, act.distance));
+        } else if (isIncrement && end == End::DONE && std::abs(place() - wanted) > 1e-6) {
             fail("work",
                  fmt::format("a jog from {:.6g} by {:.6g} ends at {:.6g}", from, act.distance, place()));
         }
