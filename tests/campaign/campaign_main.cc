@@ -39,6 +39,9 @@ std::string line_of(const Verdict &v) {
     for (const auto &[rule, count] : v.known) {
         out += fmt::format(" | {} x known: {}", count, rule);
     }
+    for (const auto &[name, e] : v.extensions) {
+        out += e.ran > 0 ? fmt::format(" | with {} {} {}", name, e.ran, e.judged) : std::string();
+    }
     for (const auto &[reason, count] : v.refusals) {
         out += fmt::format(" | {} x {}", count, reason);
     }
@@ -242,7 +245,21 @@ struct Sum {
                   refused = 0, commands = 0;
     double seconds = 0, slowest = 0;
     std::map<std::string, std::uint64_t> refusals;
+    struct Extension {
+        std::uint64_t sessions = 0, ran = 0, judged = 0;
+    };
+    std::map<std::string, Extension> extensions;
 };
+
+/// "backlash 3 12"
+void add_extension(Sum &sum, const std::string &text) {
+    const std::size_t judged = text.find_last_of(' ', text.find_last_not_of(' '));
+    const std::size_t ran = text.find_last_of(' ', judged - 1);
+    Sum::Extension &e = sum.extensions[text.substr(0, ran)];
+    ++e.sessions;
+    e.ran += std::strtoul(text.c_str() + ran, nullptr, 10);
+    e.judged += std::strtoul(text.c_str() + judged, nullptr, 10);
+}
 
 /// Of all lines of the log.
 void print_sum(const std::string &log) {
@@ -274,6 +291,10 @@ void print_sum(const std::string &log) {
         std::string part;
         std::getline(rest, part, '|');
         while (std::getline(rest, part, '|')) {
+            if (part.starts_with(" with ")) {
+                add_extension(sum, part.substr(6));
+                continue;
+            }
             const std::size_t x = part.find(" x ");
             const std::size_t end = part.find_last_not_of(' ') + 1;
             sum.refusals[part.substr(x + 3, end - x - 3)] +=
@@ -283,13 +304,18 @@ void print_sum(const std::string &log) {
     std::printf("%llu runs, %llu failed, %.0f s of machine time (%llu shorter than 10 s), %llu stops\n"
                 "%llu programs, %llu to their end, %llu of these in the time that was estimated\n"
                 "the slowest stop took %.2f of what the limits need\n%llu commands, %llu refused or ended by "
-                "a stop:\n",
+                "a stop\n",
                 static_cast<unsigned long long>(sum.runs), static_cast<unsigned long long>(sum.failed),
                 sum.seconds, static_cast<unsigned long long>(sum.shorter),
                 static_cast<unsigned long long>(sum.stops), static_cast<unsigned long long>(sum.programs),
                 static_cast<unsigned long long>(sum.ended), static_cast<unsigned long long>(sum.timed),
                 sum.slowest, static_cast<unsigned long long>(sum.commands),
                 static_cast<unsigned long long>(sum.refused));
+    for (const auto &[name, e] : sum.extensions) {
+        std::printf("%s: in %llu runs, %llu times, judged %llu times\n", name.c_str(),
+                    static_cast<unsigned long long>(e.sessions), static_cast<unsigned long long>(e.ran),
+                    static_cast<unsigned long long>(e.judged));
+    }
     for (const auto &[reason, count] : sum.refusals) {
         std::printf("%8llu %s\n", static_cast<unsigned long long>(count), reason.c_str());
     }

@@ -12,7 +12,7 @@ namespace {
 
 /// What rounding may make of positions and of differences of them [units, relative].
 constexpr double PLACE_ROUNDING = 2e-6, RATE_ROUNDING = 1e-5;
-/// With backlash the motor has to make up for it on top of the joint's motion.
+/// Corrections of the motor's place come on top of the joint's motion.
 constexpr double WITH_BACKLASH = 1.5;
 /// A path brakes along its curves, where part of the acceleration keeps it on them.
 constexpr double STOP_FACTOR = 2.2, STOP_SLACK_S = 0.02;
@@ -23,7 +23,7 @@ constexpr double MOVED = 1e-9;
 constexpr double COUNTS_AT_INDEX = 2.1;
 
 testing::LimitChecker checker_of(const JointDesign &j, bool isJerk, double period_s) {
-    const double more = j.backlash > 0 ? WITH_BACKLASH : 1.0;
+    const double more = j.isCorrected() ? WITH_BACKLASH : 1.0;
     testing::AxisLimit limit;
     limit.velocity = j.velocity * more;
     limit.acceleration = j.acceleration * more;
@@ -31,6 +31,14 @@ testing::LimitChecker checker_of(const JointDesign &j, bool isJerk, double perio
         limit.jerk = j.jerk * more;
     }
     return {{limit}, period_s, RATE_ROUNDING};
+}
+
+/// How exactly homing knows where a slide is.
+double found_within(const JointDesign &d, double period_s) {
+    const bool hasIndex = d.home_kind == HomeKind::SWITCH_AND_INDEX;
+    const bool hasSwitch = d.home_kind == HomeKind::SWITCH;
+    const double latched = hasSwitch ? std::abs(d.latch) * (2 * period_s + d.bounce_s) + d.hysteresis : 0;
+    return latched + 3 / d.counts_per_unit + 1e-6 + (hasIndex ? 0.01 : 0);
 }
 
 }  // namespace
@@ -73,7 +81,20 @@ void Judge::stop(Stop how, int delay) {
 
 void Judge::begin_stop() {
     stop_least_s_ = time_to_stop();
-    stop_due_s_ = STOP_FACTOR * stop_least_s_ + STOP_SLACK_S;
+    stop_due_s_ = STOP_FACTOR * stop_least_s_ + STOP_SLACK_S + time_to_correct();
+}
+
+/// What corrections take to come to rest, of which the motion on top of which they come knows nothing.
+double Judge::time_to_correct() const {
+    double most = 0;
+    for (const JointDesign &d : design_.joints) {
+        const double way = d.isCorrected() ? d.play + 2 * d.screw_error : 0;
+        const bool hasJerk = design_.isJerkLimited && d.jerk > 0 && way > 0;
+        // With half of the limits.
+        most = std::max(most, 2 * std::sqrt(2 * way / d.acceleration) + 2 * way / d.velocity +
+                                  (hasJerk ? 2.5 * d.acceleration / d.jerk : 0));
+    }
+    return most;
 }
 
 /// From the speeds of the last sample, by every joint's own acceleration and jerk and those along the path.
@@ -111,6 +132,7 @@ void Judge::sample(const Sample &s) {
     check_homes(s);
     check_outputs(s);
     check_rest(s);
+    check_places(s);
     restless_ = std::max(0, restless_ - 1);
     last_ = s;
 }
@@ -251,14 +273,48 @@ void Judge::check_homes(const Sample &s) {
         if (!q.isHomed || !q.isTruthKnown || !std::isfinite(q.motor_fb)) {
             continue;
         }
-        const bool hasIndex = d.home_kind == HomeKind::SWITCH_AND_INDEX;
-        const bool hasSwitch = d.home_kind == HomeKind::SWITCH;
-        const double latched = hasSwitch ? std::abs(d.latch) * (2 * period_ + d.bounce_s) + d.hysteresis : 0;
-        const double allowed = latched + 3 / d.counts_per_unit + d.backlash + 1e-6 + (hasIndex ? 0.01 : 0);
         const double off = q.pos_fb - q.position - judge.reference;
+        // In motion corrections may be late, and play is on either side.
+        const double allowed = found_within(d, period_) + 2 * d.play + 2 * d.screw_error;
         if (!(std::abs(off) <= allowed)) {
             fail("homed", fmt::format("joint {} says {:.6g} and is at {:.6g}", j, q.pos_fb,
                                       q.position + judge.reference));
+        }
+    }
+}
+
+/// At rest a slide is where it is commanded: corrections have taken up play and what the screw is off.
+void Judge::check_places(const Sample &s) {
+    constexpr int RESTED = 60;           // the drive has settled
+    constexpr double DRIVE = 3e-3;       // friction holds it so near
+    constexpr double OVERSHOOT = 0.012;  // of the motor, which takes the slide with it one way only
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+        const JointSample &q = s.joints[j];
+        JointJudge &judge = joints_[j];
+        const JointDesign &d = design_.joints[j];
+        const bool isKnown =
+            q.isAmpOn && last_.joints[j].isAmpOn && q.isHomed && q.isTruthKnown && !q.isHoming;
+        judge.travel = isKnown ? judge.travel + std::abs(q.pos_cmd - last_.joints[j].pos_cmd) : 0;
+        judge.isPlaceKnown = judge.isPlaceKnown && q.isHomed && q.isTruthKnown;
+        // Until it has moved farther than the play nobody knows at which end of it the slide is.
+        const bool isJudged = d.isCorrected() && standing_ == RESTED && judge.travel > 1 + 4 * d.play;
+        if (!isJudged) {
+            continue;
+        }
+        const double off = q.position - q.pos_cmd;
+        judge.place = judge.isPlaceKnown ? judge.place : off;
+        judge.isPlaceKnown = true;
+        ++judged_[d.screw_type >= 0 ? "screw" : "backlash"];
+        const double allowed = DRIVE + 3 / d.counts_per_unit + (d.play > 0 ? OVERSHOOT : 0);
+        if (std::abs(off - judge.place) > allowed) {
+            fail("place", fmt::format("joint {} stands {:.6g} off, where it stood {:.6g} off before", j, off,
+                                      judge.place));
+        }
+        // Where the switch is met soon after a reversal play was not all taken up yet.
+        const double late = d.play + (design_.isJerkLimited ? d.screw_error : 0);
+        const bool isMeasured = d.home_kind != HomeKind::IMMEDIATE;
+        if (isMeasured && std::abs(off) > allowed + late + found_within(d, period_)) {
+            fail("place", fmt::format("joint {} stands {:.6g} off where it was homed to be", j, off));
         }
     }
 }
@@ -269,6 +325,23 @@ void Judge::check_outputs(const Sample &s) {
     if (isRising && !mayWork_ && restless_ == 0) {
         fail("energise",
              fmt::format("spindle at {}, outputs {:x} come on by themselves", s.spindle_rpm, s.outputs));
+    }
+}
+
+/// What has come to rest stays there, but for rounding, until somebody asks for a motion.
+void Judge::check_stale(const Sample &s, bool wasAtRest) {
+    const bool wasHeld = isHeld_;
+    isHeld_ = !mayMove_ && restless_ == 0 && (wasAtRest || wasHeld);
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+        const JointSample &q = s.joints[j];
+        const JointSample &before = last_.joints[j];
+        const bool isJudged = isHeld_ && wasHeld && q.isAmpOn && before.isAmpOn;
+        const double place = q.motor_cmd + q.turned;
+        const double held = isJudged ? joints_[j].held : isHeld_ ? before.motor_cmd + before.turned : place;
+        joints_[j].held = q.isAmpOn && before.isAmpOn ? held : place;
+        if (isHeld_ && q.isAmpOn && before.isAmpOn && std::abs(place - held) > PLACE_ROUNDING) {
+            fail("stale", fmt::format("joint {} moves, and nobody has asked for it since the last stop", j));
+        }
     }
 }
 
@@ -290,9 +363,7 @@ void Judge::check_rest(const Sample &s) {
     }
     const bool wasAtRest = isAtRest();
     standing_ = isMoving ? 0 : standing_ + 1;
-    if (isMoving && wasAtRest && !mayMove_ && restless_ == 0) {
-        fail("stale", "something moves that nobody has asked for since the last stop");
-    }
+    check_stale(s, wasAtRest);
     if (!isStopAwaited_) {
         return;
     }
@@ -323,8 +394,9 @@ void Judge::check_rest(const Sample &s) {
     }
     if (isStanding || !isOn) {
         constexpr double WORTH_A_LOOK_S = 0.05;
-        slowest_stop_ =
-            stop_least_s_ > WORTH_A_LOOK_S ? std::max(slowest_stop_, took / stop_least_s_) : slowest_stop_;
+        slowest_stop_ = stop_least_s_ > WORTH_A_LOOK_S
+                            ? std::max(slowest_stop_, (took - time_to_correct()) / stop_least_s_)
+                            : slowest_stop_;
         constexpr int OFF_WITHIN = 10;
         const bool mustBeOff = how_ == Stop::ALONG_THEN_OFF;
         if (mustBeOff && isOn && standing_ > OFF_WITHIN) {

@@ -69,22 +69,30 @@ class Judge {
     /// The time that stops took over what the limits need, the largest.
     double slowest_stop() const { return slowest_stop_; }
     std::uint64_t samples() const { return count_; }
+    /// What has been judged that not every session has, and how often.
+    const std::map<std::string, int> &judged() const { return judged_; }
 
   private:
     struct JointJudge {
         testing::LimitChecker speed, jerk;
         double reference = 0;  ///< of homing without a switch
-        bool wasHomed = false, isUnjerked = false;
+        double held = 0;       ///< where the motor was at rest
+        double travel = 0;     ///< since it was switched on
+        double place = 0;      ///< of the slide, off its command, when it stood before
+        bool wasHomed = false, isUnjerked = false, isPlaceKnown = false;
     };
     void check_numbers(const Sample &s);
     void check_amplifiers(const Sample &s);
     void check_limits(const Sample &s);
     void check_room(const Sample &s);
     void check_homes(const Sample &s);
+    void check_places(const Sample &s);
     void check_outputs(const Sample &s);
     void check_rest(const Sample &s);
+    void check_stale(const Sample &s, bool wasAtRest);
     void begin_stop();
     double time_to_stop() const;
+    double time_to_correct() const;
     void fail(const std::string &rule, const std::string &text);
 
     const Design &design_;
@@ -99,10 +107,12 @@ class Judge {
     int delay_ = 0, since_stop_ = 0;
     double stop_due_s_ = 0, stop_least_s_ = 0;
     int standing_ = 0;
-    int restless_ = 0;  ///< cycles left in which commands of before a stop may still arrive
+    bool isHeld_ = false;  ///< nothing may move
+    int restless_ = 0;     ///< cycles left in which commands of before a stop may still arrive
     double slowest_stop_ = 0;
     std::string report_;
     std::map<std::string, int> broken_known_;
+    std::map<std::string, int> judged_;
 };
 
 }  // namespace mw::campaign

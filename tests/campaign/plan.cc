@@ -121,11 +121,12 @@ void make_troubles(sim::Random &random, const Design &design, Act &act) {
 
 /// Sessions of 11 to 25 s.
 Plan make_short_plan(std::uint64_t seed) {
-    constexpr int MOST_ACTS = 12;
+    constexpr int MOST_ACTS = 18;
     Plan plan;
     sim::Random random(seed * 0x2545f4914f6cdd1dU + 2);
     plan.design = make_design(random);
     shorten(random, plan.design);
+    wear(random, plan.design);
     plan.least_s = random.real(10.5, 14);
     for (int n = 0; n < MOST_ACTS; ++n) {
         Act act = make_act(random, plan.design);

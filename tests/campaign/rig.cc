@@ -40,9 +40,9 @@ void LateScheduler::plan(void *self, std::int64_t period_ns) {
 
 Rig::Rig(const Design &design, std::uint64_t seed, std::string ini) : design_(design), ini_(std::move(ini)) {
     for (const JointDesign &j : design.joints) {
-        const double shaft = j.start + j.shaft_offset;
+        const double shaft = j.start + j.screw_error_at(j.start) + j.shaft_offset;
         sim::AxisSettings drive = j.drive;
-        drive.backlash = j.backlash;
+        drive.backlash = j.play;
         const sim::EncoderSettings encoder{j.counts_per_unit, j.index_spacing, j.index_at + j.shaft_offset};
         const sim::SwitchSettings home{j.home_switch_at, false, 0, j.hysteresis, j.bounce_s};
         plants_.push_back({sim::Axis(drive, shaft), sim::Encoder(encoder, shaft),
@@ -148,7 +148,8 @@ void Rig::run_plants() {
             p.isTruthKnown = true;
         }
         *pins.motor_fb = joint_faults[j].isEncoderNan ? NAN_VALUE : p.encoder.reading();
-        *pins.home_switch = p.home_switch.run(p.axis.load() - design_.joints[j].shaft_offset, PERIOD_S);
+        p.slide = design_.joints[j].slide_at(p.axis.load() - design_.joints[j].shaft_offset);
+        *pins.home_switch = p.home_switch.run(p.slide, PERIOD_S);
         *pins.pos_limit = joint_faults[j].isOnLimit;
         *pins.amp_fault = p.amplifier.isFaulted();
     }
@@ -174,7 +175,7 @@ void Rig::take_sample() {
         out.motor_fb = *pins.motor_fb;
         out.turned = p.turned;
         out.resets = p.resets;
-        out.position = p.axis.load() - design_.joints[j].shaft_offset;
+        out.position = p.slide;
         out.isTruthKnown = p.isTruthKnown;
         out.isAmpOn = *pins.is_amp_on;
         out.isHomed = *pins.is_homed;

@@ -58,6 +58,7 @@ struct Plant {
     sim::Encoder encoder;
     sim::BouncingSwitch home_switch;
     sim::Amplifier amplifier;
+    double slide = 0;   ///< where it is
     double turned = 0;  ///< by how much index marks have moved the encoder's zero
     int resets = 0;
     bool isTruthKnown = true, wasPowered = false;

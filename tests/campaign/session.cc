@@ -224,6 +224,13 @@ Verdict Session::run() {
     for (const auto &[rule, count] : judge_.broken_known()) {
         verdict_.known[rule] += count;
     }
+    for (const JointDesign &j : plan_.design.joints) {
+        verdict_.extensions["backlash"].ran += j.backlash > 0 ? 1 : 0;
+        verdict_.extensions["screw"].ran += j.screw_type >= 0 ? 1 : 0;
+    }
+    for (const auto &[name, count] : judge_.judged()) {
+        verdict_.extensions[name].judged += count;
+    }
     verdict_.slowest_stop = judge_.slowest_stop();
     return verdict_;
 }
@@ -292,7 +299,7 @@ void Session::jog(const Act &act) {
         }
         // One that would end beyond a limit is refused. An e-stop may have let it run out beyond them before.
         const double wanted = from + act.distance;
-        const bool fits = wanted >= low && wanted <= high && from >= low && from <= high;
+        const bool fits = wanted >= low && wanted <= high && from > low && from < high;
         if (end != End::DONE && fits) {
             fail("work", fmt::format("a jog from {:.6g} by {:.6g} is refused", from, act.distance));
         } else if (isIncrement && end == End::DONE && std::abs(place() - wanted) > 1e-6) {
