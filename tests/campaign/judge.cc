@@ -66,22 +66,22 @@ void Judge::allow(Leave leave) {
 }
 
 void Judge::stop(Stop how, int delay) {
-    const bool isWorse = isStopAwaited_ && how_ > how;
+    const bool isWorse = stop_.isAwaited && stop_.how > how;
     if (isWorse) {
         return;
     }
-    how_ = how;
-    delay_ = isStopAwaited_ && how == Stop::ALONG_THE_PATH ? delay_ : delay;
-    since_stop_ = isStopAwaited_ && how == Stop::ALONG_THE_PATH ? since_stop_ : 0;
-    isStopAwaited_ = true;
+    stop_.how = how;
+    stop_.delay = stop_.isAwaited && how == Stop::ALONG_THE_PATH ? stop_.delay : delay;
+    stop_.since = stop_.isAwaited && how == Stop::ALONG_THE_PATH ? stop_.since : 0;
+    stop_.isAwaited = true;
     restless_ = delay + IN_FLIGHT;
     maySwitchOn_ = mayMove_ = mayWork_ = false;
     begin_stop();
 }
 
 void Judge::begin_stop() {
-    stop_least_s_ = time_to_stop();
-    stop_due_s_ = STOP_FACTOR * stop_least_s_ + STOP_SLACK_S + time_to_correct();
+    stop_.least_s = time_to_stop();
+    stop_.due_s = STOP_FACTOR * stop_.least_s + STOP_SLACK_S + time_to_correct();
 }
 
 /// What corrections take to come to rest, of which the motion on top of which they come knows nothing.
@@ -364,45 +364,45 @@ void Judge::check_rest(const Sample &s) {
     const bool wasAtRest = isAtRest();
     standing_ = isMoving ? 0 : standing_ + 1;
     check_stale(s, wasAtRest);
-    if (!isStopAwaited_) {
+    if (!stop_.isAwaited) {
         return;
     }
-    ++since_stop_;
-    if (since_stop_ <= delay_) {
+    ++stop_.since;
+    if (stop_.since <= stop_.delay) {
         begin_stop();  // it does not know yet
         return;
     }
-    const int cycles = since_stop_ - delay_;
-    if (how_ == Stop::AT_ONCE) {
+    const int cycles = stop_.since - stop_.delay;
+    if (stop_.how == Stop::AT_ONCE) {
         if (isOn) {
             fail("stop", "amplifiers are on in the cycle of what must switch them off");
         }
-        isStopAwaited_ = false;
+        stop_.isAwaited = false;
         return;
     }
     const double took = (cycles - standing_) * period_;
     const bool isStanding = standing_ >= 3 && cycles >= 3;
-    if (cycles * period_ <= BLEND_S && time_to_stop() > stop_least_s_) {
+    if (cycles * period_ <= BLEND_S && time_to_stop() > stop_.least_s) {
         // In the middle of a blend all acceleration turns the motion round: it has to be left first.
         begin_stop();
-        stop_due_s_ += BLEND_S;
+        stop_.due_s += BLEND_S;
     }
-    if (isMoving && cycles * period_ > stop_due_s_) {
+    if (isMoving && cycles * period_ > stop_.due_s) {
         fail("stop", fmt::format("still moves {:.3f} s after the stop; its limits need {:.3f} s",
-                                 cycles * period_, stop_least_s_));
-        isStopAwaited_ = false;
+                                 cycles * period_, stop_.least_s));
+        stop_.isAwaited = false;
     }
     if (isStanding || !isOn) {
         constexpr double WORTH_A_LOOK_S = 0.05;
-        slowest_stop_ = stop_least_s_ > WORTH_A_LOOK_S
-                            ? std::max(slowest_stop_, (took - time_to_correct()) / stop_least_s_)
+        slowest_stop_ = stop_.least_s > WORTH_A_LOOK_S
+                            ? std::max(slowest_stop_, (took - time_to_correct()) / stop_.least_s)
                             : slowest_stop_;
         constexpr int OFF_WITHIN = 10;
-        const bool mustBeOff = how_ == Stop::ALONG_THEN_OFF;
+        const bool mustBeOff = stop_.how == Stop::ALONG_THEN_OFF;
         if (mustBeOff && isOn && standing_ > OFF_WITHIN) {
             fail("stop", "it stands, and its amplifiers stay on");
         }
-        isStopAwaited_ = mustBeOff && isOn && standing_ <= OFF_WITHIN;
+        stop_.isAwaited = mustBeOff && isOn && standing_ <= OFF_WITHIN;
     }
 }
 

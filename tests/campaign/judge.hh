@@ -65,7 +65,7 @@ class Judge {
     std::set<std::string> known;
     const std::map<std::string, int> &broken_known() const { return broken_known_; }
     /// Nothing moves and no stop is awaited.
-    bool isAtRest() const { return standing_ >= 3 && !isStopAwaited_; }
+    bool isAtRest() const { return standing_ >= 3 && !stop_.isAwaited; }
     /// The time that stops took over what the limits need, the largest.
     double slowest_stop() const { return slowest_stop_; }
     std::uint64_t samples() const { return count_; }
@@ -80,6 +80,12 @@ class Judge {
         double travel = 0;     ///< since it was switched on
         double place = 0;      ///< of the slide, off its command, when it stood before
         bool wasHomed = false, isUnjerked = false, isPlaceKnown = false;
+    };
+    struct AwaitedStop {
+        bool isAwaited = false;
+        Stop how = Stop::ALONG_THE_PATH;
+        int delay = 0, since = 0;  ///< cycles
+        double due_s = 0, least_s = 0;
     };
     void check_numbers(const Sample &s);
     void check_amplifiers(const Sample &s);
@@ -102,10 +108,7 @@ class Judge {
     std::vector<double> velocity_, before_;
     std::uint64_t count_ = 0;
     bool maySwitchOn_ = false, mayMove_ = false, mayWork_ = false;
-    bool isStopAwaited_ = false;
-    Stop how_ = Stop::ALONG_THE_PATH;
-    int delay_ = 0, since_stop_ = 0;
-    double stop_due_s_ = 0, stop_least_s_ = 0;
+    AwaitedStop stop_;
     int standing_ = 0;
     bool isHeld_ = false;  ///< nothing may move
     int restless_ = 0;     ///< cycles left in which commands of before a stop may still arrive
