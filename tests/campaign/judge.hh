@@ -45,6 +45,13 @@ enum class Stop {
     AT_ONCE,         ///< the amplifiers go off in the next sample
 };
 
+struct AwaitedStop {
+    bool isAwaited = false;
+    Stop how = Stop::ALONG_THE_PATH;
+    int delay = 0, since = 0;  ///< cycles
+    double due_s = 0, least_s = 0;
+};
+
 /// What an operator's fresh command allows until the next stop.
 enum class Leave { SWITCH_ON, MOVE, WORK };
 
@@ -80,12 +87,6 @@ class Judge {
         double travel = 0;     ///< since it was switched on
         double place = 0;      ///< of the slide, off its command, when it stood before
         bool wasHomed = false, isUnjerked = false, isPlaceKnown = false;
-    };
-    struct AwaitedStop {
-        bool isAwaited = false;
-        Stop how = Stop::ALONG_THE_PATH;
-        int delay = 0, since = 0;  ///< cycles
-        double due_s = 0, least_s = 0;
     };
     void check_numbers(const Sample &s);
     void check_amplifiers(const Sample &s);
