@@ -95,8 +95,10 @@ Plan make_long_plan(std::uint64_t seed) {
 Act make_act(sim::Random &random, const Design &design) {
     Act act;
     const double kind = random.real(0, 1);
-    if (kind < 0.6) {
+    if (kind < 0.5) {
         act.blocks = Writer(random, design).write(random.real(0.5, 2));
+    } else if (kind < 0.6 && design.isTrivial) {
+        act = Writer(random, design).write_probing();
     } else if (kind < 0.9) {
         act = make_jog(random, design);
     } else {
@@ -106,7 +108,7 @@ Act make_act(sim::Random &random, const Design &design) {
 }
 
 void make_troubles(sim::Random &random, const Design &design, Act &act) {
-    const int span_ms = act.work == Work::PROGRAM ? 2000 : 900;
+    const int span_ms = act.work == Work::PROGRAM || act.work == Work::PROBE ? 2000 : 900;
     while (random.chance(0.35)) {
         act.troubles.push_back(make_trouble(random, design, true, span_ms));
     }

@@ -18,8 +18,13 @@ class Writer {
 
     /// A program of lines and arcs that takes about so long at its feeds.
     std::vector<Block> write(double seconds);
+    /// Finds the walls of a room and leaves them again, or misses them.
+    Act write_probing();
 
   private:
+    double probe(const Contact &contact, bool isHigh, int kind, double to);
+    bool probe_wrongly(const Contact &contact, bool isHigh, bool isTouching);
+
     bool hasAxis(int axis) const;
     const AxisDesign &axis(int letter) const;
     void say(const std::string &text);

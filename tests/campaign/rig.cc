@@ -113,7 +113,7 @@ void Rig::step_task() {
 void Rig::cycle() {
     *pins_.chain = *pins_.user_enable && !faults.isChainOpen;
     *pins_.enable = !faults.isDisabled;
-    *pins_.probe = faults.isProbeClosed;
+    *pins_.probe = faults.isProbeClosed || isProbeTouching();
     *pins_.inhibit = faults.isFeedInhibited;
     *pins_.adaptive_feed = faults.isAdaptiveNan ? NAN_VALUE : 1.0;
     *pins_.spindle.amp_fault = faults.isSpindleFaulted;
@@ -121,6 +121,10 @@ void Rig::cycle() {
         side_->channels().isTaskDead.store(1);
     }
     run_plants();
+    constexpr double WELL_WITHIN = 0.5;
+    areWallsUp_ = areWallsUp_ || (!walls_.empty() && std::ranges::all_of(walls_, [this](const Wall &w) {
+                      return beyond_wall(w) < -WELL_WITHIN;
+                  }));
     ++cycles_;
     const bool isChainClosed = *pins_.chain;
     scheduler_.run_until(static_cast<std::int64_t>(cycles_) * PERIOD_NS);
@@ -196,6 +200,37 @@ void Rig::take_sample() {
 
 bool Rig::isSwitchedOn() const {
     return std::ranges::any_of(sample_.joints, [](const JointSample &j) { return j.isAmpOn; });
+}
+
+void Rig::set_contacts(const std::vector<Contact> &contacts) {
+    walls_.clear();
+    areWallsUp_ = false;
+    for (const Contact &c : contacts) {
+        const std::size_t joint = design_.coordinates.find(geom::AXIS_LETTERS[c.axis]);
+        // What machine and plant call a place differs where joints are homed as they stand.
+        const double by = plants_[joint].slide - sample_.joints[joint].pos_cmd;
+        walls_.push_back({joint, {c.axis, c.low + by, c.high + by}});
+    }
+}
+
+double Rig::beyond_walls(int axis) const {
+    if (!areWallsUp_) {
+        return -1;
+    }
+    double beyond = -1;
+    for (const Wall &w : walls_) {
+        beyond = w.at.axis == axis ? beyond_wall(w) : beyond;
+    }
+    return beyond;
+}
+
+double Rig::beyond_wall(const Wall &wall) const {
+    const double tip = plants_[wall.joint].slide;
+    return std::max(tip - wall.at.high, wall.at.low - tip);
+}
+
+bool Rig::isProbeTouching() const {
+    return std::ranges::any_of(walls_, [this](const Wall &w) { return areWallsUp_ && beyond_wall(w) > 0; });
 }
 
 void Rig::lose_encoder(int joint, bool isLost) {

@@ -67,7 +67,15 @@ void Session::cycle() {
     for (const JointSample &j : s.joints) {
         verdict_.hash = (verdict_.hash ^ std::bit_cast<std::uint64_t>(j.motor_cmd)) * 0x100000001b3U;
     }
+    if (act_ != nullptr && act_->work == Work::PROBE) {
+        for (const Contact &c : act_->contacts) {
+            beyond_walls_[c.axis] = std::max(beyond_walls_[c.axis], rig_->beyond_walls(c.axis));
+        }
+    }
     while (const auto message = rig_->client().next_message()) {
+        if (isRecording_) {
+            told_.push_back(message->text);
+        }
         if (tell_ != nullptr) {
             std::fprintf(tell_, "  [%.3f] %s\n", static_cast<double>(s.cycle) * PERIOD_S,
                          message->text.c_str());
@@ -175,6 +183,7 @@ bool Session::home() {
 bool Session::prepare() {
     act_ = nullptr;
     going_.clear();
+    rig_->set_contacts({});
     isStopped_ = isDisturbed_ = false;
     rig_->repair();
     for (int i = 0; i < 5 && !isOver(); ++i) {
@@ -238,7 +247,8 @@ Verdict Session::run() {
 void Session::perform(const Act &act) {
     isStopped_ = isDisturbed_ = false;
     switch (act.work) {
-    case Work::PROGRAM: run_program(act); break;
+    case Work::PROGRAM:
+    case Work::PROBE: run_program(act); break;
     case Work::JOG_JOINT:
     case Work::JOG_AXIS: jog(act); break;
     case Work::HOME:
