@@ -341,9 +341,10 @@ void Executor::locate() noexcept {
     const double along = isSecond ? y : start + along_piece - y;
     const bool isComplete = piece.isToEnd && state_.x >= piece.length;
     leader_done_ = std::max(leader_done_, isComplete ? move : move - 1);
-    out_.move = isComplete && !isMoving ? 0 : move;
+    // The mean comes to the end later: until then something may be found.
+    out_.isOnProbe = store_.move(move).isProbe && !(isComplete && isAtRest());
+    out_.move = isComplete && !isMoving && !out_.isOnProbe ? 0 : move;
     out_.distance_to_go = isComplete ? 0 : line.length - along;
-    out_.isOnProbe = store_.move(move).isProbe && !isComplete;
 }
 
 const PathEvent *Executor::due_event() noexcept {
