@@ -48,6 +48,7 @@ struct Settings {
     interp::Settings interpreter;
     std::string interpreter_plugin;  ///< [TASK]INTERPRETER: a shared object; empty: RS-274/NGC
     SequencerSettings sequencer;
+    io::Protocol changer_protocol;
     ToolChangePlace tool_change_place;
     /// A program of a user M code is waited for within a cycle: for virtual clocks.
     bool isUserProgramWaitedFor = false;
@@ -134,7 +135,7 @@ class Task {
 
     void finish_run(Progress progress, const std::string &reason);
     void tell(const std::optional<Ending> &ending);
-    void publish_tools();
+    void step_tools();
     void update_status();
     /// Takes the machine's position and state as the program's.
     void synch_interpreter();
@@ -163,6 +164,7 @@ class Task {
     PlannerMode planner_mode_;
 
     ShownTools tools_;
+    mailbox::Serial reload_command_ = 0;  ///< LoadToolTable that has not ended; 0: none
     Status status_;
     std::int64_t now_ns_ = 0;
     motion::CommandId last_setting_ = 0;
