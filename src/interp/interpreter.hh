@@ -42,6 +42,13 @@ struct RemapLine {
     SourcePlace place;
 };
 
+/// [EMCIO]: what M6 does before the changer begins, in this order.
+struct BeforeToolChange {
+    bool isSpindleLeftOn = false;
+    bool isQuillRaised = false;  ///< Z to machine zero
+    bool isAtG30 = false;        ///< all axes to the place of G30
+};
+
 struct Settings {
     std::vector<std::string>
         subroutine_path;  ///< [RS274NGC]SUBROUTINE_PATH and [DISPLAY]PROGRAM_PREFIX, in order
@@ -63,6 +70,7 @@ struct Settings {
     /// G74 and G84 in G18 and G19 print their X Y Z in the order of LinuxCNC's rs274, which is no tool path.
     bool isTapOrderOfRs274 = false;
     bool isToolOffsetRetained = false;  ///< [RS274NGC]RETAIN_G43: M6 and M61 apply the new tool's G43
+    BeforeToolChange tool_change;
     bool isArgumentCountNamed = false;  ///< [RS274NGC]OWORD_NARGS: #<n_args> in subroutines
     double orient_offset_deg = 0;
     double parameter_g73_peck_clearance_mm = 0.254, parameter_g83_peck_clearance_mm = 0.254;

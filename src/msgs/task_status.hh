@@ -169,6 +169,9 @@ struct ToolStatus {
     int prepared_index = -1;
     std::uint64_t table_version = 0;
     bool isPersonAsked = false;
+    bool isFaulted = false;
+    double cut_time_s = 0;
+    double cut_length = 0;
 };
 template <>
 inline constexpr auto DECLARED<ToolStatus> = declare(
@@ -177,7 +180,11 @@ inline constexpr auto DECLARED<ToolStatus> = declare(
     field<&ToolStatus::from_pocket>("from_pocket", "where it was taken from"),
     field<&ToolStatus::prepared_index>("prepared_index", "entry of the tool table prepared by T, -1 none"),
     field<&ToolStatus::table_version>("table_version", "counts changes of the tool table"),
-    field<&ToolStatus::isPersonAsked>("person_asked", "ConfirmToolChange is waited for"));
+    field<&ToolStatus::isPersonAsked>("person_asked", "ConfirmToolChange is waited for"),
+    field<&ToolStatus::isFaulted>("faulted", "the changer has told a fault that is not cleared"),
+    field<&ToolStatus::cut_time_s>("cut_time_s", "that the tool in the spindle has cut in its life",
+                                   unit::SECOND),
+    field<&ToolStatus::cut_length>("cut_length", "that it has cut", unit::LENGTH));
 
 struct AuxStatus {
     bool isEstopRequested = true;
@@ -201,10 +208,13 @@ inline constexpr auto DECLARED<CoolantStatus> =
 
 struct LubeStatus {
     bool isOn = false;
+    bool hasOil = true;
 };
 template <>
-inline constexpr auto DECLARED<LubeStatus> = declare("LubeStatus", 1599, "EMC_LUBE_STAT_TYPE", "lubrication",
-                                                     field<&LubeStatus::isOn>("on", "lubrication is on"));
+inline constexpr auto DECLARED<LubeStatus> =
+    declare("LubeStatus", 1599, "EMC_LUBE_STAT_TYPE", "lubrication",
+            field<&LubeStatus::isOn>("on", "lubrication is on"),
+            field<&LubeStatus::hasOil>("level_ok", "pin iocontrol.0.lube_level"));
 
 struct IoStatus {
     AuxStatus aux;

@@ -10,7 +10,7 @@ namespace mw::task {
 
 Task::Task(const Parts &parts, Settings settings)
     : settings_(std::move(settings)), parts_(parts), desk_(parts.mailbox), motion_(parts.channels),
-      mdi_queue_(settings_.mdi_queued_commands),
+      io_(settings_.changer_protocol), mdi_queue_(settings_.mdi_queued_commands),
       world_({settings_.machine_units, settings_.axis_mask, settings_.num_spindles}),
       reader_({world_, parts.tools, parts.parameters},
               {settings_.machine_units, settings_.tool_change_place, settings_.parameter_file,
@@ -78,6 +78,7 @@ Result<> Task::start() {
     if (!loaded.has_value()) {
         return loaded;
     }
+    show_first_tool(parts_.tools, io_);
     synch_interpreter();
     planner_mode_.announce();
     Result<> begun = reader_.interpreter().begin();
@@ -304,7 +305,20 @@ void Task::tell(const std::optional<Ending> &ending) {
     }
 }
 
-void Task::publish_tools() {
+void Task::step_tools() {
+    parts_.tools.step();
+    while (const auto warning = parts_.tools.take_warning()) {
+        post(MessageKind::OPERATOR_ERROR, *warning);
+    }
+    const auto read = reload_command_ != 0 ? parts_.tools.reload_result() : std::nullopt;
+    if (read.has_value()) {
+        const std::string reason = read->has_value() ? std::string() : read->error().str();
+        desk_.tell(std::exchange(reload_command_, 0), reason.empty() ? Progress::DONE : Progress::FAILED,
+                   reason);
+        if (!reason.empty()) {
+            post(MessageKind::OPERATOR_ERROR, reason);
+        }
+    }
     const auto table = tools_.step(parts_.tools);
     if (table.has_value() && !desk_.publish_tools(*table)) {
         post(MessageKind::OPERATOR_ERROR, "the tool table is too large to be shown to clients");
@@ -329,20 +343,23 @@ void Task::update_status() {
         task.read_line = reader_.interpreter().line();
         task.call_level = reader_.interpreter().call_level();
     }
-    task.waiting = homing_.isUnderWay() ? Waiting{WaitFor::HOMING, homing_.joint()}
-                   : run_.isRunning()   ? sequencer_.waiting_for()
-                                        : Waiting{};
+    task.waiting =
+        homing_.isUnderWay() ? Waiting{WaitFor::HOMING, homing_.joint()} : sequencer_.waiting_for();
     const interp::ActiveCodes codes = reader_.interpreter().active_codes();
     status_.codes = {codes.g, codes.m, codes.settings};
     approach_.show(status_.approach, status_.offsets, status_.codes);
-    publish_tools();
-    status_.tool = {io_.outputs.tool_number, io_.outputs.tool_from_pocket,
-                    sequencer_.tool_change().selected_index(), tools_.version()};
+    step_tools();
+    status_.tool = {io_.outputs.tool_number, io_.outputs.tool_from_pocket, sequencer_.selected_tool_index(),
+                    tools_.version()};
     status_.io.coolant.isMistOn = io_.outputs.coolant_mist;
     status_.io.coolant.isFloodOn = io_.outputs.coolant_flood;
     status_.tool.isPersonAsked = parts_.io_port.isPersonAsked();
     status_.io.aux = {io_.isEstopRequested(), io_.isChainClosed()};
-    status_.io.lube.isOn = io_.outputs.lube;
+    status_.tool.isFaulted = io_.outputs.toolchanger_faulted;
+    if (status_.io.lube.hasOil && !io_.hasOil()) {
+        post(MessageKind::OPERATOR_ERROR, "the lubrication wants oil: pin iocontrol.0.lube_level is FALSE");
+    }
+    status_.io.lube = {io_.outputs.lube, io_.hasOil()};
     ++status_.cycle;
     status_.time_ns = now_ns_;
     const PartMask told = tell_motion(motion_.status(), motion_.fresh_parts(), settings_.axis_mask, status_);

@@ -54,6 +54,7 @@ struct Settings {
     interp::Settings interpreter;
     std::string interpreter_plugin;  ///< [TASK]INTERPRETER: a shared object; empty: RS-274/NGC
     SequencerSettings sequencer;
+    io::Protocol changer_protocol;
     ToolChangePlace tool_change_place;
     int mdi_queued_commands = 10;  ///< lines of MDI that may wait behind the one that runs
     /// A program of a user M code is waited for within a cycle: for virtual clocks.
@@ -144,7 +145,7 @@ class Task {
 
     void finish_run(Progress progress, const std::string &reason);
     void tell(const std::optional<Ending> &ending);
-    void publish_tools();
+    void step_tools();
     void update_status();
     /// Takes the machine's position and state as the program's.
     void synch_interpreter();
@@ -175,6 +176,7 @@ class Task {
     PlannerMode planner_mode_;
 
     ShownTools tools_;
+    mailbox::Serial reload_command_ = 0;  ///< LoadToolTable that has not ended; 0: none
     Status status_;
     std::int64_t now_ns_ = 0;
     motion::CommandId last_setting_ = 0;

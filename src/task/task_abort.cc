@@ -6,7 +6,7 @@ namespace mw::task {
 
 void Task::fail_program(diag::Diagnostic what, AbortReason reason) {
     if (run_.phase() == RunPhase::CLEANING) {  // no clean-up of a clean-up
-        sequencer_.abort();
+        sequencer_.abort(static_cast<int>(AbortReason::EXECUTION_ERROR));
         run_.change(RunEvent::CLEANED);
         post(MessageKind::OPERATOR_ERROR, on_abort_.told(what.str()));
         return;
@@ -30,7 +30,7 @@ void Task::abort_work(AbortReason reason) {
     desk_.refuse(mdi_queue_.drop(), OVERTAKEN);
     motion_.abort();
     if (!isFollowing || run_.phase() != RunPhase::CLEANING) {
-        sequencer_.abort();
+        sequencer_.abort(static_cast<int>(reason));
         user_program_.stop();
         Start{*this}.drop();
         reader_.drop();

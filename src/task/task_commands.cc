@@ -6,6 +6,7 @@
 
 #include "base/overloaded.hh"
 #include "motion/api/screw_file.hh"
+#include "task/link/device_orders.hh"
 #include "task/link/motion_words.hh"
 #include "task/task_start.hh"
 
@@ -76,10 +77,11 @@ struct Task::Handler {
     }
     Outcome operator()(const ReverseProgram &) { return order(motion::SetReverse{true}); }
     Outcome operator()(const ForwardProgram &) { return order(motion::SetReverse{false}); }
-    Outcome operator()(const MistOn &) { return set_coolant(&io::Controller::set_mist, true); }
-    Outcome operator()(const MistOff &) { return set_coolant(&io::Controller::set_mist, false); }
-    Outcome operator()(const FloodOn &) { return set_coolant(&io::Controller::set_flood, true); }
-    Outcome operator()(const FloodOff &) { return set_coolant(&io::Controller::set_flood, false); }
+    template <OneOf<MistOn, MistOff, FloodOn, FloodOff, LubeOn, LubeOff> C>
+    Outcome operator()(const C &command) {
+        return done(switch_device(command, task.io_));
+    }
+    Outcome operator()(const SetToolEntry &command) { return done(set_tool(command, task.parts_.tools)); }
 
     Outcome operator()(const Null &) { return Progress::DONE; }
     Outcome operator()(const OperatorError &command) {
@@ -115,9 +117,8 @@ struct Task::Handler {
         task.motion_.send(body);
         return Progress::DONE;
     }
-    Outcome set_coolant(void (io::Controller::*set)(bool), bool isOn) {
-        (task.io_.*set)(isOn);
-        return Progress::DONE;
+    static Outcome done(const Result<> &result) {
+        return result.has_value() ? Outcome(Progress::DONE) : std::unexpected(result.error());
     }
     Outcome tell(MessageKind kind, const std::string &text) {
         task.post(kind, text);
@@ -416,8 +417,15 @@ Outcome Task::Handler::operator()(const SpindleOff &command) {
 }
 
 Outcome Task::Handler::operator()(const LoadToolTable &) {
-    const auto loaded = task.parts_.tools.reload();
-    return loaded.has_value() ? Outcome(Progress::DONE) : std::unexpected(loaded.error());
+    if (task.reload_command_ != 0) {
+        return fail("the tool table is being read already");
+    }
+    const auto begun = task.parts_.tools.reload();
+    if (!begun.has_value()) {
+        return std::unexpected(begun.error());
+    }
+    task.reload_command_ = id;
+    return Progress::STARTED;
 }
 
 Outcome Task::Handler::operator()(const ConfirmToolChange &) {

@@ -22,8 +22,8 @@ enum class CommandClass : std::uint8_t {
     MDI,           ///< one line
     JOG,           ///< moves by hand
     JOINTS,        ///< homing of joints
-    ENERGISE,      ///< starts a spindle, coolant
-    TOOL_TABLE,    ///< reads it again
+    ENERGISE,      ///< starts a spindle, coolant, lubrication
+    TOOL_TABLE,    ///< reads it again, or sets an entry
     SCREW_TABLE,   ///< what is set only while the machine is off
     CONFIRM,       ///< of an approach that is proposed
     RELEASE,       ///< lets the axes of a held program be jogged
@@ -58,9 +58,9 @@ concept Jog = OneOf<T, JogContinuous, JogIncrement, JogAbsolute, SetTeleopVector
 template <class T>
 concept Joints = OneOf<T, HomeJoint, UnhomeJoint>;
 template <class T>
-concept Energise = OneOf<T, SpindleOn, MistOn, FloodOn>;
+concept Energise = OneOf<T, SpindleOn, MistOn, FloodOn, LubeOn>;
 template <class T>
-concept ToolTable = OneOf<T, LoadToolTable>;
+concept ToolTable = OneOf<T, LoadToolTable, SetToolEntry>;
 template <class T>
 concept ScrewTable = OneOf<T, LoadCompensation>;
 template <class T>
@@ -87,9 +87,8 @@ concept PartOfStart = OneOf<T, InitTask, HaltTask, InitMachine, HaltMachine, Ini
 template <class T>
 concept OfTheMailbox = OneOf<T, ClaimOperation, HandOverOperation, ReleaseOperation>;
 template <class T>
-concept NotYet =
-    OneOf<T, SetDebug, SystemCommand, CallTaskPlugin, CallIoPlugin, SetMotionMode, EnableTraj, DisableTraj,
-          SpindleIncrease, SpindleDecrease, SpindleConstant, SetSpindleSpeed, LubeOn, LubeOff, SetToolEntry>;
+concept NotYet = OneOf<T, SetDebug, SystemCommand, CallTaskPlugin, CallIoPlugin, SetMotionMode, EnableTraj,
+                       DisableTraj, SpindleIncrease, SpindleDecrease, SpindleConstant, SetSpindleSpeed>;
 /// What motion does by itself (task/link/motion_words.hh).
 template <class T>
 concept CarriedOutByMotion =
@@ -103,8 +102,8 @@ concept AnyAbort = OneOf<T, AbortAll, AbortMachine, AbortTraj, AbortMotion, Abor
 template <class T>
 concept AnyTime = CarriedOutByMotion<T> || AnyAbort<T> ||
                   OneOf<T, SetState, EstopOn, EstopOff, EstopReset, JogStop, AbortJoint, SpindleOff, MistOff,
-                        FloodOff, SetOptionalStop, SetBlockDelete, ConfirmToolChange, ForgetRecovery, Null,
-                        OperatorError, OperatorText, OperatorDisplay>;
+                        FloodOff, LubeOff, SetOptionalStop, SetBlockDelete, ConfirmToolChange, ForgetRecovery,
+                        Null, OperatorError, OperatorText, OperatorDisplay>;
 
 /// Never taken, in any situation.
 template <class T>

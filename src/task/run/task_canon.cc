@@ -52,10 +52,6 @@ void TaskCanon::take(const interp::MachineCall &call) {
 std::vector<geom::Pose> tool_change_moves(const ToolChangePlace &place, const geom::Pose &position) {
     std::vector<geom::Pose> moves;
     geom::Pose end = position;
-    if (place.isQuillRaised) {
-        end[geom::AXIS_Z] = 0;
-        moves.push_back(end);
-    }
     if (place.coordinates > 0) {
         for (int axis = 0; axis < place.coordinates; ++axis) {
             end[axis] = place.position[axis];

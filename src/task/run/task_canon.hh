@@ -10,12 +10,11 @@
 
 namespace mw::task {
 
-/// Where the machine goes for a tool change ([EMCIO]TOOL_CHANGE_POSITION, TOOL_CHANGE_QUILL_UP; requirement
+/// Where the machine goes for a tool change ([EMCIO]TOOL_CHANGE_POSITION; requirement
 /// G5).
 struct ToolChangePlace {
-    bool isQuillRaised = false;  ///< Z to machine zero first
-    int coordinates = 0;         ///< how many of `position` are given: 0, 3, 6 or 9
-    geom::Pose position;         ///< [machine units], machine coordinates
+    int coordinates = 0;  ///< how many of `position` are given: 0, 3, 6 or 9
+    geom::Pose position;  ///< [machine units], machine coordinates
 };
 
 /// Where a tool change goes from `position`, in order; empty when it stays.

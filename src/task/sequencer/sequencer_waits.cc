@@ -15,6 +15,7 @@ bool Sequencer::isWaitOver(std::int64_t now_ns) {
     case Wait::DWELL: isOver = now_ns >= deadline_ns_; break;
     case Wait::INPUT: isOver = isInputWaitOver(now_ns); break;
     case Wait::TOOL: isOver = io_.action() == io::ToolAction::IDLE; break;
+    case Wait::TOOL_DATA: isOver = isToolDataRead(); break;
     case Wait::ORIENT: isOver = isOrientWaitOver(now_ns); break;
     case Wait::SETTING: isOver = motion_.isAnswered(awaited_setting_); break;
     case Wait::USER_CODE: {
@@ -30,6 +31,14 @@ bool Sequencer::isWaitOver(std::int64_t now_ns) {
         wait_ = Wait::NONE;
     }
     return isOver && !hasFailed_;
+}
+
+bool Sequencer::isToolDataRead() {
+    const std::optional<Result<>> result = tools_.reload_result();
+    if (result.has_value()) {
+        check(*result);
+    }
+    return result.has_value();
 }
 
 bool Sequencer::isOrientWaitOver(std::int64_t now_ns) {
@@ -94,6 +103,7 @@ Waiting Sequencer::waiting_for() const {
     case Wait::INPUT:
         return {awaited_input_.isAnalog ? WaitFor::ANALOG_INPUT : WaitFor::DIGITAL_INPUT,
                 awaited_input_.index};
+    case Wait::TOOL_DATA: return {WaitFor::TOOL_DATA, -1};
     case Wait::ORIENT: return {WaitFor::SPINDLE_ORIENTED, awaited_spindle_};
     case Wait::SETTING: return {WaitFor::SETTING, -1};
     case Wait::USER_CODE: return {WaitFor::USER_CODE, -1};
