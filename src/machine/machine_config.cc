@@ -369,6 +369,7 @@ void read_periods(IniReader &ini, MachineConfig &machine) {
     // A slow task cycle must not look like one that stands still.
     machine.task.watchdog_s = std::max(0.5, 10.0 * cycle_s);
     machine.task_period_ns = static_cast<std::int64_t>(std::llround(cycle_s * 1e9));
+    machine.task.mdi_queued_commands = static_cast<int>(ini.integer(ini_key("TASK", "MDI_QUEUED_COMMANDS")));
     machine.task.interpreter_plugin = ini.text(ini_key("TASK", "INTERPRETER"));
 }
 
@@ -423,15 +424,17 @@ void read_interpreter(IniReader &ini, MachineConfig &machine) {
 void read_io(IniReader &ini, MachineConfig &machine) {
     const std::string table = ini.text(ini_key("EMCIO", "TOOL_TABLE"));
     machine.tool_table_file = table.empty() ? "" : ini.file().resolve_path(table);
+    machine.tool_database = ini.text(ini_key("EMCIO", "DB_PROGRAM"));
+    machine.ini_folder = ini.file().folder();
     machine.isRandomToolchanger = ini.boolean(ini_key("EMCIO", "RANDOM_TOOLCHANGER"));
-    if (machine.isRandomToolchanger) {
-        ini.sink().error("[EMCIO]RANDOM_TOOLCHANGER = 1 is not supported by this version",
-                         ini.find(ini_key("EMCIO", "RANDOM_TOOLCHANGER"))->place);
-    }
-    machine.task.sequencer.isToolChangeWithSpindleOn =
-        ini.boolean(ini_key("EMCIO", "TOOL_CHANGE_WITH_SPINDLE_ON"));
+    machine.task.sequencer.isToolChangeWithSpindleOn = machine.task.interpreter.tool_change.isSpindleLeftOn;
+    const std::vector<std::string> program = split_words(ini.text(ini_key("EMCIO", "EMCIO")));
+    const bool isVersion2 = !program.empty() && program.front() == "iov2" &&
+                            ini.integer(ini_key("EMCIO", "PROTOCOL_VERSION")) == 2;
+    machine.task.changer_protocol = {
+        isVersion2, isVersion2 && std::ranges::find(program, "-support-start-change") != program.end()};
+    machine.task.sequencer.changer_error_text = ini.text(ini_key("TASK", "IO_ERROR"));
     task::ToolChangePlace &place = machine.task.tool_change_place;
-    place.isQuillRaised = ini.boolean(ini_key("EMCIO", "TOOL_CHANGE_QUILL_UP"));
     const config::IniEntry *position = ini.find(ini_key("EMCIO", "TOOL_CHANGE_POSITION"));
     if (position != nullptr) {
         const std::vector<std::string> words = split_words(position->value);

@@ -41,6 +41,9 @@ struct MachineConfig {
     double applications_delay_s = 0;
     std::string display;  ///< the program that the INI names, not started here
     std::string tool_table_file;
+    std::string
+        tool_database;  ///< the program that keeps the tools, with its arguments; empty: the file does
+    std::string ini_folder;
     bool isRandomToolchanger = false;
     task::Settings task;
     /// Every setting of the motion controller that the INI gives or that has a documented default.

@@ -25,8 +25,9 @@ TaskSide::~TaskSide() {
 }
 
 Result<> TaskSide::start(const MachineOptions &options) {
+    diag::Sink unheard;
     auto tools =
-        ToolFile::load(parts_.config.tool_table_file, options.isToolTableTold ? nullptr : &parts_.sink);
+        open_tools(parts_.config, options.isToolTableTold ? unheard : parts_.sink, {options.isClockVirtual});
     if (!tools.has_value()) {
         return std::unexpected(tools.error());
     }

@@ -144,6 +144,8 @@ struct MachineStatus {
     ToolStatus tool;
     IoStatus io;
     OperationStatus operation;
+    ApproachStatus approach;
+    RecoveryStatus recovery;
     SettingsStatus settings;
 };
 template <>
@@ -166,6 +168,8 @@ inline constexpr auto DECLARED<MachineStatus> = declare(
     field<&MachineStatus::spindles>("spindles", "by number"), field<&MachineStatus::tool>("tool", "changer"),
     field<&MachineStatus::io>("io", "e-stop chain, coolant"),
     field<&MachineStatus::operation>("operation", "who may operate"),
+    field<&MachineStatus::approach>("approach", "what a person is to confirm"),
+    field<&MachineStatus::recovery>("recovery", "what can be gone on with after a crash"),
     field<&MachineStatus::settings>("settings", "what is set for the machine"));
 
 struct ToolRecord {

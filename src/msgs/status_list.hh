@@ -9,9 +9,10 @@ namespace mw::msgs {
 template <class... Types>
 struct TypeList {};
 
-using StatusList = TypeList<MachineStatus, TaskStatus, Waiting, CodesStatus, OffsetsStatus, TrajectoryStatus,
-                            ProbeStatus, OverridesStatus, MotionStatus, JointStatus, AxisStatus,
-                            SpindleStatus, ToolStatus, IoStatus, AuxStatus, CoolantStatus, LubeStatus,
-                            OperationStatus, SettingsStatus, JointSettings, ToolTable, ToolRecord>;
+using StatusList =
+    TypeList<MachineStatus, TaskStatus, Waiting, CodesStatus, OffsetsStatus, TrajectoryStatus, ProbeStatus,
+             OverridesStatus, MotionStatus, JointStatus, AxisStatus, SpindleStatus, ToolStatus, IoStatus,
+             AuxStatus, CoolantStatus, LubeStatus, OperationStatus, SettingsStatus, JointSettings, ApproachMove, ApproachStatus,
+             RecoveryStatus, ToolTable, ToolRecord>;
 
 }  // namespace mw::msgs

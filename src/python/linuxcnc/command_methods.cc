@@ -36,7 +36,7 @@ void check_length(const std::string &text) {
 
 void open_program(Command &self, const std::string &path) {
     check_length(path);
-    self.send(msgs::Null{});  // clients count on two commands; opening one closes the other
+    self.send(msgs::CloseProgram{});
     self.send(msgs::OpenProgram{path});
 }
 

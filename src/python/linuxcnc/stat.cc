@@ -142,7 +142,7 @@ const Attribute OF_TASK[] = {
     MW_STAT("state", "RCS_*: of the last command and what is under way", static_cast<int>(rcs_state(s))),
     MW_STAT("task_mode", "MODE_*", static_cast<int>(s.task.mode)),
     MW_STAT("task_state", "STATE_*", static_cast<int>(s.task.state)),
-    MW_STAT("exec_state", "EXEC_*: what task waits for", static_cast<int>(exec_state(s))),
+    MW_STAT("exec_state", "EXEC_*: what task waits for", static_cast<int>(s.task.exec_state)),
     MW_STAT("interp_state", "INTERP_*", static_cast<int>(s.task.interp_state)),
     MW_STAT("call_level", "depth of subroutines", isIdle(s) ? 0 : s.task.call_level),
     MW_STAT("read_line", "line that the interpreter has read, 0 when idle", isIdle(s) ? 0 : s.task.read_line),
@@ -158,7 +158,7 @@ const Attribute OF_TASK[] = {
     MW_STAT("input_timeout", "the last M66 has waited in vain", static_cast<int>(s.task.isInputTimedOut)),
     MW_STAT("rotation_xy", "degrees, of the coordinate system", s.offsets.rotation_xy_deg),
     MW_STAT("delay_left", "seconds of a dwell", s.task.delay_left_s),
-    MW_STAT("queued_mdi_commands", "lines of MDI that wait", 0),
+    MW_STAT("queued_mdi_commands", "lines of MDI that wait", s.task.queued_mdi),
     MW_STAT("debug", "bits of [EMC]DEBUG", s.settings.debug),
     MW_STAT("taskbeat", "cycles of task", s.cycle),
     MW_STAT("gcodes", "modal G codes, ten times the number, -1 none", numbers(s.codes.g)),
@@ -234,7 +234,7 @@ const Attribute OF_DEVICES[] = {
     MW_STAT("mist", "0 or 1", static_cast<int>(s.io.coolant.isMistOn)),
     MW_STAT("flood", "0 or 1", static_cast<int>(s.io.coolant.isFloodOn)),
     MW_STAT("lube", "0 or 1", static_cast<int>(s.io.lube.isOn)),
-    MW_STAT("lube_level", "1: enough", s.cycle != 0 ? 1 : 0),
+    MW_STAT("lube_level", "1: enough", static_cast<int>(s.io.lube.hasOil)),
     MW_STAT("estop", "0 or 1", static_cast<int>(s.task.state == msgs::State::ESTOP)),
 };
 #undef MW_STAT

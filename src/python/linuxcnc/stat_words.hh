@@ -11,18 +11,4 @@ enum class RcsState : int { NONE = 0, DONE = 1, EXEC = 2, ERROR = 3 };
 /// The last command was refused or has failed: ERROR, until the next one. DONE: nothing is under way.
 RcsState rcs_state(const msgs::MachineStatus &status);
 
-/// Of `stat.exec_state`: what task waits for.
-enum class ExecState : int {
-    NONE = 0,
-    ERROR = 1,
-    DONE = 2,
-    WAITING_FOR_MOTION = 3,
-    WAITING_FOR_IO = 5,
-    WAITING_FOR_MOTION_AND_IO = 7,
-    WAITING_FOR_DELAY = 8,
-    WAITING_FOR_SYSTEM_CMD = 9,
-    WAITING_FOR_SPINDLE_ORIENTED = 10,
-};
-ExecState exec_state(const msgs::MachineStatus &status);
-
 }  // namespace mw::python
