@@ -68,9 +68,10 @@ class Sequencer {
     void on_tool_event(io::ToolEvent event);
     /// What is being waited for: a pin or a state.
     Waiting waiting_for() const;
-
     /// The same in the words of older clients.
     ExecState exec_state() const;
+    /// [s] of a dwell; 0 when there is none.
+    double dwell_left_s(std::int64_t now_ns) const;
 
     double input_value() const { return input_value_; }
     bool isInputTimedOut() const { return isInputTimedOut_; }

@@ -84,6 +84,12 @@ bool Sequencer::isInputWaitOver(std::int64_t now_ns) {
     return isMet || isInputTimedOut_;
 }
 
+double Sequencer::dwell_left_s(std::int64_t now_ns) const {
+    constexpr double NS_PER_S = 1e9;
+    const bool isDwelling = wait_ == Wait::DWELL && deadline_ns_ > now_ns;
+    return isDwelling ? static_cast<double>(deadline_ns_ - now_ns) / NS_PER_S : 0.0;
+}
+
 ExecState Sequencer::exec_state() const {
     switch (wait_) {
     case Wait::NONE: return blocked_;
