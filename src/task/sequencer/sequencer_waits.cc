@@ -95,7 +95,8 @@ ExecState Sequencer::exec_state() const {
     case Wait::NONE: return blocked_;
     case Wait::DWELL:
     case Wait::INPUT: return ExecState::WAITING_FOR_DELAY;
-    case Wait::TOOL: return ExecState::WAITING_FOR_IO;
+    case Wait::TOOL:
+    case Wait::TOOL_DATA: return ExecState::WAITING_FOR_IO;
     case Wait::ORIENT: return ExecState::WAITING_FOR_SPINDLE_ORIENTED;
     case Wait::SETTING: return ExecState::WAITING_FOR_MOTION;
     case Wait::USER_CODE: return ExecState::WAITING_FOR_SYSTEM_CMD;
