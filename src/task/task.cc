@@ -112,6 +112,7 @@ void Task::step(std::int64_t now_ns) {
     check_run_mode();
     step_clean_up();
     step_run();
+    Start{*this}.watch_hold();
     // What waits in the queue without a run are settings for displays; they do not move anything.
     planner_mode_.step(!run_.isRunning() && motion_.isPathComplete());
     parts_.io_port.write(io_.outputs);
@@ -143,7 +144,8 @@ void Task::step_run() {
 
 /// A run that motion does not let in ends.
 void Task::check_run_mode() {
-    const bool isOut = run_.isRunning() && motion_.status().mode != motion::Mode::COORD;
+    const bool isOut =
+        run_.isRunning() && run_.hold() != Hold::AWAY && motion_.status().mode != motion::Mode::COORD;
     if (out_of_mode_.step(isOut, now_ns_)) {
         fail_program({diag::Severity::ERROR, {"motion is not in coordinated mode: set the mode again"}},
                      AbortReason::EXECUTION_ERROR);
@@ -348,7 +350,7 @@ void Task::update_status() {
     task.waiting =
         homing_.isUnderWay() ? Waiting{WaitFor::HOMING, homing_.joint()} : sequencer_.waiting_for();
     task.delay_left_s = sequencer_.dwell_left_s(now_ns_);
-    task.isInputTimedOut = sequencer_.isInputTimedOut();
+    task.isInputTimedOut = sequencer_.input().isTimedOut;
     constexpr int INTERPRETER_ERROR = 5;  // as clients know it
     task.error_code = run_.error() != nullptr ? INTERPRETER_ERROR : 0;
     task.block.assign(reader_.canon().block_text());

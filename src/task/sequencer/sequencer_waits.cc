@@ -22,7 +22,7 @@ bool Sequencer::isWaitOver(std::int64_t now_ns) {
         const std::optional<Result<>> result = events_.user_code_result();
         isOver = result.has_value();
         if (isOver && !result->has_value()) {
-            fail_item(result->error().str());
+            check(fail(result->error().str()));
         }
         break;
     }
@@ -43,20 +43,21 @@ bool Sequencer::isToolDataRead() {
 
 bool Sequencer::isOrientWaitOver(std::int64_t now_ns) {
     constexpr int IN_PROGRESS = 1;
-    const bool isTold = isOrientTold_;
-    isOrientTold_ = orient_command_ == 0 || motion_.isAnswered(orient_command_);
+    const bool isTold = orient_.isTold;
+    orient_.isTold = orient_.command == 0 || motion_.isAnswered(orient_.command);
     if (!isTold) {  // what status says may still be about an earlier one
         return false;
     }
     const motion::SpindleStatus &spindle =
-        motion_.status().spindle[static_cast<std::size_t>(awaited_spindle_)];
+        motion_.status().spindle[static_cast<std::size_t>(orient_.spindle)];
     if (spindle.orient_fault != 0) {
-        fail_item(fmt::format("spindle {} reports orient fault {}", awaited_spindle_, spindle.orient_fault));
+        check(fail(fmt::format("spindle {} reports orient fault {}", orient_.spindle, spindle.orient_fault)));
         return true;
     }
     if (spindle.orient_state == IN_PROGRESS && now_ns >= deadline_ns_) {
-        fail_item(fmt::format("spindle {0} is not oriented within {1:g} seconds: pin spindle.{0}.is-oriented",
-                              awaited_spindle_, orient_timeout_s_));
+        check(
+            fail(fmt::format("spindle {0} is not oriented within {1:g} seconds: pin spindle.{0}.is-oriented",
+                             orient_.spindle, orient_.timeout_s)));
         return true;
     }
     return spindle.orient_state != IN_PROGRESS;
@@ -111,7 +112,7 @@ Waiting Sequencer::waiting_for() const {
         return {awaited_input_.isAnalog ? WaitFor::ANALOG_INPUT : WaitFor::DIGITAL_INPUT,
                 awaited_input_.index};
     case Wait::TOOL_DATA: return {WaitFor::TOOL_DATA, -1};
-    case Wait::ORIENT: return {WaitFor::SPINDLE_ORIENTED, awaited_spindle_};
+    case Wait::ORIENT: return {WaitFor::SPINDLE_ORIENTED, orient_.spindle};
     case Wait::SETTING: return {WaitFor::SETTING, -1};
     case Wait::USER_CODE: return {WaitFor::USER_CODE, -1};
     case Wait::NONE:
