@@ -415,6 +415,21 @@ void read_interpreter(IniReader &ini, MachineConfig &machine) {
     }
 }
 
+void read_panel(IniReader &ini, MachineConfig &machine) {
+    PanelConfig &panel = machine.panel;
+    panel.max_feed_override = ini.real(ini_key("DISPLAY", "MAX_FEED_OVERRIDE"));
+    panel.min_spindle_override = ini.real(ini_key("DISPLAY", "MIN_SPINDLE_OVERRIDE"));
+    panel.max_spindle_override = ini.real(ini_key("DISPLAY", "MAX_SPINDLE_OVERRIDE"));
+    for (const config::IniEntry *entry : ini.list(ini_key("HALUI", "MDI_COMMAND"))) {
+        panel.mdi_commands.push_back(entry->value);
+    }
+    for (const motion::SetParameter &parameter : machine.parameters) {
+        if (parameter.parameter == static_cast<std::uint16_t>(Parameter::TRAJ_MAX_VELOCITY)) {
+            panel.max_velocity = parameter.value;
+        }
+    }
+}
+
 void read_io(IniReader &ini, MachineConfig &machine) {
     const std::string table = ini.text(ini_key("EMCIO", "TOOL_TABLE"));
     machine.tool_table_file = table.empty() ? "" : ini.file().resolve_path(table);
@@ -469,6 +484,7 @@ MachineConfig read_machine_config(config::IniReader &reader) {
     read_hal(reader, machine);
     read_interpreter(reader, machine);
     read_io(reader, machine);
+    read_panel(reader, machine);
     constexpr double MM_PER_INCH = 25.4;
     machine.parameters.push_back(
         {static_cast<std::uint16_t>(Parameter::TRAJ_MM_PER_UNIT), 0, machine.isMetric ? 1.0 : MM_PER_INCH});

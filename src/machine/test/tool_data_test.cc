@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The tools of a machine in a file and in a database program.
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "base/atomic_file.hh"
 #include "machine/tool_data.hh"
@@ -15,7 +16,8 @@ namespace {
 
 class ToolDataTest : public ::testing::Test {
   protected:
-    ToolDataTest() : folder_(std::filesystem::temp_directory_path() / ("mw_tools_" + std::to_string(::getpid()))) {
+    ToolDataTest()
+        : folder_(std::filesystem::temp_directory_path() / ("mw_tools_" + std::to_string(::getpid()))) {
         std::filesystem::remove_all(folder_);
         std::filesystem::create_directory(folder_);
         config_.ini_folder = folder_.string();
@@ -65,7 +67,7 @@ class ToolDataTest : public ::testing::Test {
 };
 
 /// Answers g with two tools, everything else with FINI, and keeps a log.
-constexpr const char *GOOD = R"(echo v2.1
+constexpr const char *GOOD = R"sh(echo v2.1
 echo "$1 $2" > log
 while read -r line; do
     echo "$line" >> log
@@ -74,7 +76,7 @@ while read -r line; do
     *) echo "FINI (update recvd)";;
     esac
 done
-)";
+)sh";
 
 TEST_F(ToolDataTest, AMissingFileStartsEmptyWithAWarning_G1) {
     config_.tool_table_file = path("none.tbl");
@@ -83,9 +85,9 @@ TEST_F(ToolDataTest, AMissingFileStartsEmptyWithAWarning_G1) {
 }
 
 TEST_F(ToolDataTest, EachBadLineIsToldAlsoWhenTheFileIsReadAgain_G1) {
-    task::ToolStore &tools = open_file("T1 P1\nwhat\nT2 P2 K9\n");
+    task::ToolStore &tools = open_file("T1 P1\n!what\nT2 P2 K9\n");
     const std::string first = told();
-    EXPECT_NE(first.find("'w' is not a word"), std::string::npos) << first;
+    EXPECT_NE(first.find("'!' is not a word"), std::string::npos) << first;
     EXPECT_NE(first.find("'K' is not a word"), std::string::npos) << first;
     sink_.clear();
     write("tool.tbl", "T1 P1\nT3 P3 Z3\nT9\nT4 P4 X\n");
@@ -142,8 +144,7 @@ TEST_F(ToolDataTest, ADatabaseTellsItsToolsAndIsToldOfChanges_G1) {
     ASSERT_TRUE(tools.set_entry(0, tools.entry(2)).has_value());
     ASSERT_TRUE(tools.load_spindle(0).has_value());
     ASSERT_TRUE(tools.reload().has_value());
-    EXPECT_EQ(text("log"),
-              "one two\ng\nl T11  P0\np T10 P110 X1.5 Z0.1 D0.1\nu T0   P0\ng\n");
+    EXPECT_EQ(text("log"), "one two\ng\nl T11  P0\np T10 P110 X1.5 Z0.1 D0.1\nu T0   P0\ng\n");
     EXPECT_EQ(told(), "");
 }
 
@@ -172,13 +173,16 @@ TEST_F(ToolDataTest, ADatabaseThatCannotWorkStopsTheStartByName_G1) {
         const auto made = ToolDatabase::start(setup, sink_);
         return made.has_value() ? std::string() : made.error().message;
     };
-    EXPECT_NE(error_of("exit 3\n").find("'./db' cannot be asked: it has ended with status 3"), std::string::npos);
+    EXPECT_NE(error_of("exit 3\n").find("'./db' cannot be asked: it has ended with status 3"),
+              std::string::npos);
     EXPECT_NE(error_of("sleep 9\n").find("does not say its version within 0.3 s"), std::string::npos);
     EXPECT_NE(error_of("echo v1.0\nsleep 9\n").find("speaks version 'v1.0', not v2.1"), std::string::npos);
-    EXPECT_NE(error_of("echo v2.1\nread x\necho T1 P1\nsleep 9\n").find("does not answer to 'g' within 0.3 s"),
-              std::string::npos);
-    EXPECT_NE(error_of("echo v2.1\nread x\necho NAK busy\nsleep 9\n").find("does not tell its tools: NAK busy"),
-              std::string::npos);
+    EXPECT_NE(
+        error_of("echo v2.1\nread x\necho T1 P1\nsleep 9\n").find("does not answer to 'g' within 0.3 s"),
+        std::string::npos);
+    EXPECT_NE(
+        error_of("echo v2.1\nread x\necho NAK busy\nsleep 9\n").find("does not tell its tools: NAK busy"),
+        std::string::npos);
     config_.tool_database = "/no/such/program";
     EXPECT_FALSE(open_tools(config_, sink_, {true}).has_value());
 }
