@@ -94,6 +94,14 @@ struct FilePlace {
     std::uint64_t bytes = 0, bytes_in_all = 0;
 };
 
+/// The line that the next step runs.
+struct NextLine {
+    int line = 0;
+    int main_line = 0;         ///< of the main program: that line, or the one that has called
+    bool isInCall = false;     ///< of a subroutine or a remapped code
+    bool isInMainFile = true;  ///< the line is one of the main program's file
+};
+
 /// The interpreter of RS-274/NGC.
 class Interpreter final : public ProgramInterpreter {
   public:
@@ -143,6 +151,18 @@ class Interpreter final : public ProgramInterpreter {
     /// A line of a file that the interpreter has read, empty when it has not.
     std::string line_text(const std::string &file, int line) const;
     double parameter(int number) const override;
+
+    // For starts that are not at the first line (docs/task/run_from_line.md).
+    NextLine next_line() const;
+    /// Why nobody can begin at the next line although all before it is known; empty: one can.
+    std::string why_no_start() const;
+    /// Modes and parameters; calls and loops do not belong to it.
+    struct Kept;
+    std::shared_ptr<const Kept> keep() const;
+    /// Makes them what they were. Only at the top level, as after abort().
+    void restore(const Kept &kept);
+    /// Scripts that a step would run fail instead: what they do is not known.
+    void forbid_scripts(bool isForbidden);
 
   private:
     struct Impl;

@@ -92,8 +92,8 @@ inline constexpr auto INI_KEYS = std::to_array<config::IniKey>({
     config::ini_text("TASK", "INTERPRETER", "a shared object that takes the place of RS-274/NGC"),
     config::ini_without_effect(
         "TASK", "TASK", "task is part of millwright run; no other program takes its place", "milltask"),
-    config::ini_without_effect("TASK", "MDI_QUEUED_COMMANDS",
-                               "commands of a person are taken one after the other"),
+    config::ini_whole("TASK", "MDI_QUEUED_COMMANDS", "", 10, {0, 100000},
+                      "lines of MDI that may wait behind the one that runs"),
 
     config::ini_required(
         config::ini_list("HAL", "HALFILE", "HAL files in their order; .tcl files by haltcl")),

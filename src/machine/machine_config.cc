@@ -369,6 +369,7 @@ void read_periods(IniReader &ini, MachineConfig &machine) {
     // A slow task cycle must not look like one that stands still.
     machine.task.watchdog_s = std::max(0.5, 10.0 * cycle_s);
     machine.task_period_ns = static_cast<std::int64_t>(std::llround(cycle_s * 1e9));
+    machine.task.mdi_queued_commands = static_cast<int>(ini.integer(ini_key("TASK", "MDI_QUEUED_COMMANDS")));
     machine.task.interpreter_plugin = ini.text(ini_key("TASK", "INTERPRETER"));
 }
 

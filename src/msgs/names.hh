@@ -23,6 +23,37 @@ inline constexpr auto NAMES<InterpState> =
     std::array{named(InterpState::IDLE, "IDLE"), named(InterpState::READING, "READING"),
                named(InterpState::PAUSED, "PAUSED"), named(InterpState::WAITING, "WAITING")};
 
+/// What task waits for, in the words of clients written for LinuxCNC.
+enum class ExecState : std::uint8_t {
+    ERROR = 1,
+    DONE = 2,
+    WAITING_FOR_MOTION = 3,
+    WAITING_FOR_MOTION_QUEUE = 4,
+    WAITING_FOR_IO = 5,
+    WAITING_FOR_MOTION_AND_IO = 7,
+    WAITING_FOR_DELAY = 8,
+    WAITING_FOR_SYSTEM_CMD = 9,
+    WAITING_FOR_SPINDLE_ORIENTED = 10
+};
+template <>
+inline constexpr auto NAMES<ExecState> =
+    std::array{named(ExecState::ERROR, "ERROR"),
+               named(ExecState::DONE, "DONE"),
+               named(ExecState::WAITING_FOR_MOTION, "WAITING_FOR_MOTION"),
+               named(ExecState::WAITING_FOR_MOTION_QUEUE, "WAITING_FOR_MOTION_QUEUE"),
+               named(ExecState::WAITING_FOR_IO, "WAITING_FOR_IO"),
+               named(ExecState::WAITING_FOR_MOTION_AND_IO, "WAITING_FOR_MOTION_AND_IO"),
+               named(ExecState::WAITING_FOR_DELAY, "WAITING_FOR_DELAY"),
+               named(ExecState::WAITING_FOR_SYSTEM_CMD, "WAITING_FOR_SYSTEM_CMD"),
+               named(ExecState::WAITING_FOR_SPINDLE_ORIENTED, "WAITING_FOR_SPINDLE_ORIENTED")};
+
+/// Where moves lead that a person has to confirm before they are made.
+enum class ApproachTo : std::uint8_t { NOTHING, LINE, PLACE_LEFT, PLACE_LOST };
+template <>
+inline constexpr auto NAMES<ApproachTo> =
+    std::array{named(ApproachTo::NOTHING, "NOTHING"), named(ApproachTo::LINE, "LINE"),
+               named(ApproachTo::PLACE_LEFT, "PLACE_LEFT"), named(ApproachTo::PLACE_LOST, "PLACE_LOST")};
+
 enum class MotionMode : std::uint8_t { FREE = 1, COORD = 2, TELEOP = 3 };
 template <>
 inline constexpr auto NAMES<MotionMode> = std::array{

@@ -143,6 +143,8 @@ struct MachineStatus {
     ToolStatus tool;
     IoStatus io;
     OperationStatus operation;
+    ApproachStatus approach;
+    RecoveryStatus recovery;
 };
 template <>
 inline constexpr auto DECLARED<MachineStatus> = declare(
@@ -163,7 +165,9 @@ inline constexpr auto DECLARED<MachineStatus> = declare(
     field<&MachineStatus::axes>("axes", "X Y Z A B C U V W"),
     field<&MachineStatus::spindles>("spindles", "by number"), field<&MachineStatus::tool>("tool", "changer"),
     field<&MachineStatus::io>("io", "e-stop chain, coolant"),
-    field<&MachineStatus::operation>("operation", "who may operate"));
+    field<&MachineStatus::operation>("operation", "who may operate"),
+    field<&MachineStatus::approach>("approach", "what a person is to confirm"),
+    field<&MachineStatus::recovery>("recovery", "what can be gone on with after a crash"));
 
 struct ToolRecord {
     int toolno = -1;

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "base/limits.hh"
 #include "msgs/names.hh"
 
 namespace mw::msgs {
@@ -28,6 +29,8 @@ struct TaskStatus {
     State state = State::ESTOP;
     Mode mode = Mode::MANUAL;
     InterpState interp_state = InterpState::IDLE;
+    ExecState exec_state = ExecState::DONE;
+    bool isAway = false;
     bool isPaused = false;
     bool isStoppedByProgram = false;
     bool isOptionalStop = true;
@@ -38,6 +41,7 @@ struct TaskStatus {
     std::uint64_t stops = 0;
     std::uint64_t blocks = 0;
     int call_level = 0;
+    int queued_mdi = 0;
     std::uint64_t programs_ended = 0;
     Waiting waiting;
     alignas(8) FixedText<MAX_STATUS_TEXT> program;
@@ -48,6 +52,8 @@ inline constexpr auto DECLARED<TaskStatus> =
             field<&TaskStatus::state>("state", "of the machine"),
             field<&TaskStatus::mode>("mode", "of operation"),
             field<&TaskStatus::interp_state>("interp_state", "of the program"),
+            field<&TaskStatus::exec_state>("exec_state", "what task waits for"),
+            field<&TaskStatus::isAway>("is_away", "the axes of a held program are released for jogs"),
             field<&TaskStatus::isPaused>("is_paused", "held"),
             field<&TaskStatus::isStoppedByProgram>("stopped_by_program", "held by M0, M1 or M60"),
             field<&TaskStatus::isOptionalStop>("optional_stop", "M1 stops"),
@@ -59,6 +65,7 @@ inline constexpr auto DECLARED<TaskStatus> =
             field<&TaskStatus::stops>("stops", "M0, M1 and M60 that have held a program"),
             field<&TaskStatus::blocks>("blocks", "executed since the program started"),
             field<&TaskStatus::call_level>("call_level", "depth of subroutines"),
+            field<&TaskStatus::queued_mdi>("queued_mdi", "lines of MDI that wait behind the one that runs"),
             field<&TaskStatus::programs_ended>("programs_ended", "by M2, M30, end of file, abort or error"),
             field<&TaskStatus::waiting>("waiting", "what the program waits for"));
 
@@ -90,6 +97,71 @@ inline constexpr auto DECLARED<OffsetsStatus> =
             field<&OffsetsStatus::tool>("tool", "tool offset", unit::POSE),
             field<&OffsetsStatus::rotation_xy_deg>("rotation_xy_deg", "of the coordinate system about Z",
                                                    unit::DEGREE));
+
+struct ApproachMove {
+    geom::Pose end;
+    bool isRapid = true;
+};
+template <>
+inline constexpr auto DECLARED<ApproachMove> =
+    declare("ApproachMove", 0, "", "a move of an approach",
+            field<&ApproachMove::end>("end", "where it ends, machine coordinates", unit::POSE),
+            field<&ApproachMove::isRapid>("rapid", "a rapid; else at feed"));
+
+inline constexpr std::size_t MAX_APPROACH_MOVES = 4;
+/// Longest explanation that the status can tell. [bytes]
+inline constexpr std::size_t MAX_STATUS_REASON = 255;
+
+/// What is in force at the place where a program is to go on, and the way there.
+struct ApproachStatus {
+    std::uint64_t number = 0;
+    ApproachTo to = ApproachTo::NOTHING;
+    int line = 0;
+    int tool = 0;
+    bool mustChangeTool = false;
+    bool isMistOn = false;
+    bool isFloodOn = false;
+    double feed = 0;
+    std::array<double, MAX_SPINDLES> speeds_rpm{};
+    OffsetsStatus offsets;
+    CodesStatus codes;
+    std::uint32_t num_moves = 0;
+    std::array<ApproachMove, MAX_APPROACH_MOVES> moves{};
+};
+template <>
+inline constexpr auto DECLARED<ApproachStatus> =
+    declare("ApproachStatus", 0, "",
+            "how a program is to go on; ConfirmApproach with its number makes the moves",
+            field<&ApproachStatus::number>("number", "of the proposal, 0: none"),
+            field<&ApproachStatus::to>("to", "where the moves lead"),
+            field<&ApproachStatus::line>("line", "that is executed next"),
+            field<&ApproachStatus::tool>("tool", "that is to be in the spindle, 0 none"),
+            field<&ApproachStatus::mustChangeTool>("must_change_tool", "another is in the spindle now"),
+            field<&ApproachStatus::isMistOn>("mist", "mist goes on before the last move"),
+            field<&ApproachStatus::isFloodOn>("flood", "flood goes on before the last move"),
+            field<&ApproachStatus::feed>("feed", "of the last move", unit::SPEED),
+            field<&ApproachStatus::speeds_rpm>("speeds_rpm",
+                                               "of the spindles that start before the last move", unit::RPM),
+            field<&ApproachStatus::offsets>("offsets", "in force there"),
+            field<&ApproachStatus::codes>("codes", "in force there"),
+            field<&ApproachStatus::num_moves>("num_moves", "moves of the way"),
+            field<&ApproachStatus::moves>("moves", "in their order"));
+
+struct RecoveryStatus {
+    bool isOffered = false;
+    int line = 0;
+    std::uint64_t block = 0;
+    FixedText<MAX_STATUS_TEXT> program;
+    FixedText<MAX_STATUS_REASON> refusal;
+};
+template <>
+inline constexpr auto DECLARED<RecoveryStatus> = declare(
+    "RecoveryStatus", 0, "", "the program that was cut short when the controller ended last",
+    field<&RecoveryStatus::isOffered>("offered", "RecoverProgram goes on with it"),
+    field<&RecoveryStatus::line>("line", "that it goes on with"),
+    field<&RecoveryStatus::block>("block", "the same as a number, of the blocks since the start"),
+    field<&RecoveryStatus::program>("program", "path"),
+    field<&RecoveryStatus::refusal>("refusal", "why it cannot go on, empty: it can, or none was cut short"));
 
 struct ToolStatus {
     int in_spindle = 0;

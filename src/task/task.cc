@@ -4,16 +4,18 @@
 #include "interp/scripts/user_codes.hh"
 #include "motion/api/texts.hh"
 #include "task/link/motion_status.hh"
+#include "task/task_start.hh"
 
 namespace mw::task {
 
 Task::Task(const Parts &parts, Settings settings)
     : settings_(std::move(settings)), parts_(parts), desk_(parts.mailbox), motion_(parts.channels),
-      io_(settings_.changer_protocol),
+      io_(settings_.changer_protocol), mdi_queue_(settings_.mdi_queued_commands),
       world_({settings_.machine_units, settings_.axis_mask, settings_.num_spindles}),
       reader_({world_, parts.tools, parts.parameters},
               {settings_.machine_units, settings_.tool_change_place, settings_.parameter_file,
-               settings_.interpreter_plugin, settings_.interpreter}),
+               settings_.sequencer.isToolChangeWithSpindleOn, settings_.interpreter_plugin,
+               settings_.interpreter}),
       on_abort_(settings_.interpreter_plugin.empty() ? settings_.interpreter.on_abort_command
                                                      : std::string()),
       user_program_(settings_.isUserProgramWaitedFor),
@@ -128,6 +130,13 @@ void Task::step_run() {
     if (run_.phase() == RunPhase::FINISHING && sequencer_.isIdle() && !run_.isHeld()) {
         finish_run(Progress::DONE, {});
     }
+    while (!run_.isRunning()) {  // lines of MDI follow at once: nothing comes between them
+        const auto line = mdi_queue_.next();
+        if (!line.has_value()) {
+            break;
+        }
+        carry_out(line->command, Mdi{line->text});
+    }
 }
 
 /// A run that motion does not let in ends.
@@ -208,15 +217,14 @@ void Task::end_requests() {
     }
 }
 
-bool Task::isReadAheadAllowed() {
-    return run_.phase() != RunPhase::FINISHING && run_.hold() != Hold::STOPPED &&
-           reader_.queue().size() < settings_.read_ahead_items;
-}
-
 /// What an abort has stopped may still brake: a run begins where the machine is at rest.
 bool Task::begin_run() {
     if (!motion_.status().isInPosition) {
         return false;
+    }
+    if (run_.from_line() > 1) {
+        Start{*this}.begin();
+        return true;
     }
     run_.change(RunEvent::BEGUN);
     synch_interpreter();
@@ -230,8 +238,16 @@ void Task::run_interpreter() {
     if (run_.phase() == RunPhase::STARTING && !begin_run()) {
         return;
     }
+    if (run_.phase() == RunPhase::SEARCHING) {
+        Start{*this}.step();
+        return;
+    }
     show_world();
-    for (int i = 0; i < settings_.blocks_per_cycle && run_.isRunning() && isReadAheadAllowed(); ++i) {
+    const auto mayRead = [this] {
+        return run_.isRunning() && run_.phase() != RunPhase::FINISHING && run_.hold() != Hold::STOPPED &&
+               reader_.queue().size() < settings_.read_ahead_items;
+    };
+    for (int i = 0; i < settings_.blocks_per_cycle && mayRead(); ++i) {
         if (run_.phase() == RunPhase::SYNCHING) {
             if (!sequencer_.isIdle()) {
                 return;
@@ -320,6 +336,9 @@ void Task::update_status() {
     task.isPaused = run_.isHeld();
     task.isStoppedByProgram = run_.hold() == Hold::STOPPED;
     task.interp_state = run_.shown();
+    task.exec_state = run_.isRunning() ? sequencer_.exec_state() : ExecState::DONE;
+    task.isAway = run_.hold() == Hold::AWAY;
+    task.queued_mdi = mdi_queue_.size();
     if (run_.isRunning()) {
         task.read_line = reader_.interpreter().line();
         task.call_level = reader_.interpreter().call_level();
@@ -328,6 +347,7 @@ void Task::update_status() {
         homing_.isUnderWay() ? Waiting{WaitFor::HOMING, homing_.joint()} : sequencer_.waiting_for();
     const interp::ActiveCodes codes = reader_.interpreter().active_codes();
     status_.codes = {codes.g, codes.m, codes.settings};
+    approach_.show(status_.approach, status_.offsets, status_.codes);
     step_tools();
     status_.tool = {io_.outputs.tool_number, io_.outputs.tool_from_pocket, sequencer_.selected_tool_index(),
                     tools_.version()};

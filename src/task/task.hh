@@ -10,6 +10,8 @@
 #include "mailbox/desk.hh"
 #include "task/link/motion_link.hh"
 #include "task/link/shown_tools.hh"
+#include "task/run/admission.hh"
+#include "task/run/approach.hh"
 #include "task/run/machine_world.hh"
 #include "task/run/on_abort.hh"
 #include "task/run/program_reader.hh"
@@ -20,11 +22,15 @@
 #include "task/states/homing_request.hh"
 #include "task/states/inbox.hh"
 #include "task/states/machine_state.hh"
+#include "task/states/mdi_queue.hh"
 #include "task/states/motion_orders.hh"
 #include "task/states/operating_mode.hh"
 #include "task/status.hh"
 
 namespace mw::task {
+
+/// Why a command that waited was never begun.
+inline constexpr const char *OVERTAKEN = "it came before a stop";
 
 /// The pins of the I/O controller, as task reads and writes them once a cycle, and the person who changes
 /// tools by hand.
@@ -50,6 +56,7 @@ struct Settings {
     SequencerSettings sequencer;
     io::Protocol changer_protocol;
     ToolChangePlace tool_change_place;
+    int mdi_queued_commands = 10;  ///< lines of MDI that may wait behind the one that runs
     /// A program of a user M code is waited for within a cycle: for virtual clocks.
     bool isUserProgramWaitedFor = false;
     /// Task's loop standing still for so long stops the machine.
@@ -111,6 +118,9 @@ class Task {
   private:
     struct Handler;
     friend struct Handler;
+    /// Starts elsewhere than at the first line: task_search.cc.
+    struct Start;
+    friend struct Start;
 
     SequencerEvents make_events();
     SourcePlace place_of(const motion::SourceTag &source) const;
@@ -119,10 +129,10 @@ class Task {
     void end_requests();
     void check_run_mode();
     void carry_out_commands();
+    void carry_out(mailbox::Serial serial, const Command &command);
     void step_run();
     void run_interpreter();
     bool begin_run();
-    bool isReadAheadAllowed();
     void on_step_result(interp::Step result);
     bool on_stop(const interp::ProgramStop &stop, int line);
 
@@ -154,10 +164,12 @@ class Task {
     OutOfModeWatch out_of_mode_;
     HomingRequest homing_;
     MotionOrders orders_;
+    MdiQueue mdi_queue_;
 
     MachineWorld world_;
     ProgramReader reader_;
     ProgramRun run_;
+    Approach approach_;
     OnAbort on_abort_;
     UserProgram user_program_;
     Sequencer sequencer_;

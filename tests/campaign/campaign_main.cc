@@ -24,7 +24,7 @@ namespace mw::campaign {
 namespace {
 
 struct Task {
-    unsigned first = 1, count = 100, processes = 2;
+    unsigned first = 1, count = 100, processes = 2, plan = PLAN_VERSION;
     std::string log, kept, commit, trace;
     std::set<std::string> known;
     bool isTold = false, isShrunk = true, isAnew = false;
@@ -38,6 +38,9 @@ std::string line_of(const Verdict &v) {
                     v.hash, v.fault.empty() ? "ok" : "FAILED " + v.fault);
     for (const auto &[rule, count] : v.known) {
         out += fmt::format(" | {} x known: {}", count, rule);
+    }
+    for (const auto &[name, e] : v.extensions) {
+        out += e.ran > 0 ? fmt::format(" | with {} {} {}", name, e.ran, e.judged) : std::string();
     }
     for (const auto &[reason, count] : v.refusals) {
         out += fmt::format(" | {} x {}", count, reason);
@@ -59,7 +62,7 @@ std::string drive(const Task &task, unsigned seed, const std::string &kept) {
         const auto folder =
             std::filesystem::temp_directory_path() / fmt::format("mw_campaign_{}", ::getpid());
         std::filesystem::create_directory(folder);
-        const Plan plan = reduced(make_plan(seed), kept);
+        const Plan plan = reduced(make_plan(seed, task.plan), kept);
         const std::string line =
             line_of(Session(plan, folder, {task.isTold ? stdout : nullptr, task.trace, task.known}).run()) +
             '\n';
@@ -135,7 +138,7 @@ std::string str(const std::vector<Kept> &all) {
 
 /// Leaves out acts, troubles and blocks as long as the same rule is broken.
 std::string shrink(const Task &task, unsigned seed, const std::string &rule) {
-    const Plan plan = make_plan(seed);
+    const Plan plan = make_plan(seed, task.plan);
     std::vector<Kept> best;
     for (std::size_t n = 0; n < plan.acts.size(); ++n) {
         Kept k{n, {}, 0, plan.acts[n].blocks.size(), false};
@@ -210,8 +213,10 @@ int work(const Task &task, unsigned part, const std::set<unsigned> &done) {
             ++failed;
             std::printf("seed %u: %s\n", seed, verdict.substr(verdict.find("FAILED")).c_str());
             if (task.isShrunk) {
-                std::printf("  replay: script/campaign motion --first %u --kept %s --tell\n", seed,
-                            shrink(task, seed, rule).c_str());
+                const std::string plan =
+                    task.plan == PLAN_VERSION ? "" : fmt::format(" --plan {}", task.plan);
+                std::printf("  replay: script/campaign motion --first %u%s --kept %s --tell\n", seed,
+                            plan.c_str(), shrink(task, seed, rule).c_str());
             }
             std::fflush(stdout);
         }
@@ -220,12 +225,41 @@ int work(const Task &task, unsigned part, const std::set<unsigned> &done) {
     return failed;
 }
 
+/// "# commit ID plan N" heads what a program has added; before there were several plans it named none.
+std::set<unsigned> plans_in(const std::string &name) {
+    std::set<unsigned> plans;
+    std::ifstream file(name);
+    for (std::string line; std::getline(file, line);) {
+        if (line.starts_with("# commit ")) {
+            const std::size_t at = line.find(" plan ");
+            plans.insert(at == std::string::npos
+                             ? 1U
+                             : static_cast<unsigned>(std::strtoul(line.c_str() + at + 6, nullptr, 10)));
+        }
+    }
+    return plans;
+}
+
 struct Sum {
     std::uint64_t runs = 0, failed = 0, shorter = 0, stops = 0, ended = 0, programs = 0, timed = 0,
                   refused = 0, commands = 0;
     double seconds = 0, slowest = 0;
     std::map<std::string, std::uint64_t> refusals;
+    struct Extension {
+        std::uint64_t sessions = 0, ran = 0, judged = 0;
+    };
+    std::map<std::string, Extension> extensions;
 };
+
+/// "backlash 3 12"
+void add_extension(Sum &sum, const std::string &text) {
+    const std::size_t judged = text.find_last_of(' ', text.find_last_not_of(' '));
+    const std::size_t ran = text.find_last_of(' ', judged - 1);
+    Sum::Extension &e = sum.extensions[text.substr(0, ran)];
+    ++e.sessions;
+    e.ran += std::strtoul(text.c_str() + ran, nullptr, 10);
+    e.judged += std::strtoul(text.c_str() + judged, nullptr, 10);
+}
 
 /// Of all lines of the log.
 void print_sum(const std::string &log) {
@@ -257,6 +291,10 @@ void print_sum(const std::string &log) {
         std::string part;
         std::getline(rest, part, '|');
         while (std::getline(rest, part, '|')) {
+            if (part.starts_with(" with ")) {
+                add_extension(sum, part.substr(6));
+                continue;
+            }
             const std::size_t x = part.find(" x ");
             const std::size_t end = part.find_last_not_of(' ') + 1;
             sum.refusals[part.substr(x + 3, end - x - 3)] +=
@@ -266,13 +304,18 @@ void print_sum(const std::string &log) {
     std::printf("%llu runs, %llu failed, %.0f s of machine time (%llu shorter than 10 s), %llu stops\n"
                 "%llu programs, %llu to their end, %llu of these in the time that was estimated\n"
                 "the slowest stop took %.2f of what the limits need\n%llu commands, %llu refused or ended by "
-                "a stop:\n",
+                "a stop\n",
                 static_cast<unsigned long long>(sum.runs), static_cast<unsigned long long>(sum.failed),
                 sum.seconds, static_cast<unsigned long long>(sum.shorter),
                 static_cast<unsigned long long>(sum.stops), static_cast<unsigned long long>(sum.programs),
                 static_cast<unsigned long long>(sum.ended), static_cast<unsigned long long>(sum.timed),
                 sum.slowest, static_cast<unsigned long long>(sum.commands),
                 static_cast<unsigned long long>(sum.refused));
+    for (const auto &[name, e] : sum.extensions) {
+        std::printf("%s: in %llu runs, %llu times, judged %llu times\n", name.c_str(),
+                    static_cast<unsigned long long>(e.sessions), static_cast<unsigned long long>(e.ran),
+                    static_cast<unsigned long long>(e.judged));
+    }
     for (const auto &[reason, count] : sum.refusals) {
         std::printf("%8llu %s\n", static_cast<unsigned long long>(count), reason.c_str());
     }
@@ -288,9 +331,18 @@ int run(const Task &task) {
     if (task.isAnew) {
         std::filesystem::remove(task.log);
     }
+    for (const unsigned plan : plans_in(task.log)) {
+        if (plan != task.plan) {
+            std::fprintf(stderr,
+                         "%s has seeds of plan %u, which stand for other sessions than those of plan %u: "
+                         "begin another log, or this one with --anew\n",
+                         task.log.c_str(), plan, task.plan);
+            return 2;
+        }
+    }
     const std::set<unsigned> done = seeds_in(task.log);
     std::ofstream(task.log, std::ios::app)
-        << "# commit " << (task.commit.empty() ? "unknown" : task.commit) << '\n';
+        << "# commit " << (task.commit.empty() ? "unknown" : task.commit) << " plan " << task.plan << '\n';
     std::vector<pid_t> children;
     for (unsigned part = 0; part < task.processes; ++part) {
         const pid_t child = ::fork();
@@ -322,6 +374,8 @@ int main(int argc, char **argv) {
     line.number("--count", "N", "so many seeds (default 100)", task.count, 0, UINT32_MAX - 1);
     line.text("--log", "FILE", "where the verdicts go", task.log);
     line.number("--processes", "P", "at a time (default 2)", task.processes, 1, 1024);
+    line.number("--plan", "N", "what a seed stands for: 1, sessions of a minute, or 2 (default)", task.plan,
+                1, mw::campaign::PLAN_VERSION);
     line.text("--commit", "ID", "what was built, for the log", task.commit);
     line.text("--kept", "PARTS", "runs only these parts of the first seed", task.kept);
     line.flag("--tell", "runs the first seed and tells what happens", task.isTold);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -180,6 +181,106 @@ Design make_design(sim::Random &random) {
 
 namespace {
 
+void hasten_homing(sim::Random &random, JointDesign &j) {
+    constexpr double ROOM = 2.5;                                             // for the stop beyond the switch
+    const double jerk_way = j.jerk > 0 ? 0.5 * j.acceleration / j.jerk : 0;  // for each unit/s
+    // v (v / 2a + w) = ROOM
+    const double w = j.acceleration * jerk_way;
+    const double stoppable = std::sqrt(w * w + 2 * ROOM * j.acceleration) - w;
+    j.search = -rounded(std::clamp(0.6 * stoppable, 5.0, 0.9 * j.velocity), 0.1);
+    j.latch = rounded(std::copysign(random.real(2.5, 5), j.latch), 0.1);
+    j.start = j.home_switch_at + random.real(3, 25);
+    j.home = rounded(random.real(0.5 * j.low, 0.2 * j.high), 0.1);
+}
+
+/// The other leg of a gantry.
+void make_twin(JointDesign &j, const JointDesign &first) {
+    const double shaft_offset = j.shaft_offset;
+    j = first;
+    j.shaft_offset = shaft_offset;
+}
+
+std::size_t first_of_axis(const Design &design, std::size_t joint) {
+    return design.isTrivial ? design.coordinates.find(design.coordinates[joint]) : joint;
+}
+
+}  // namespace
+
+double JointDesign::screw_error_at(double x) const {
+    return screw_error * std::sin(2 * std::numbers::pi * x / screw_wave + screw_phase);
+}
+
+double JointDesign::slide_at(double turned) const {
+    double x = turned;
+    constexpr int ROUNDS = 4;  // each gains two digits and more
+    for (int i = 0; i < ROUNDS && screw_error > 0; ++i) {
+        x = turned - screw_error_at(x);
+    }
+    return x;
+}
+
+void wear(sim::Random &random, Design &design) {
+    const bool hasPlay = random.chance(0.3);
+    const bool hasScrews = random.chance(0.3);
+    for (std::size_t n = 0; n < design.joints.size(); ++n) {
+        JointDesign &j = design.joints[n];
+        if (const std::size_t first = first_of_axis(design, n); first != n) {
+            make_twin(j, design.joints[first]);
+            continue;
+        }
+        if (hasPlay && random.chance(0.7)) {
+            j.play = j.backlash = rounded(random.real(0.03, 0.3), 0.001);
+        }
+        // Without a switch nobody knows where on its screw a slide stands.
+        if (hasScrews && j.home_kind != HomeKind::IMMEDIATE && random.chance(0.8)) {
+            j.screw_error = rounded(random.real(0.02, 0.12), 0.001);
+            j.screw_wave = random.real(80, 300);
+            j.screw_phase = random.real(0, 6.28);
+            j.screw_type = random.whole(0, 1);
+            j.backlash = 0;  // the table has it
+        }
+        if (j.home_kind == HomeKind::SWITCH_AND_INDEX) {
+            // The mark is on the motor: BACKLASH is symmetrical to it, a table knows where the slide is.
+            const double lag = j.screw_type >= 0 ? std::copysign(0.5 * j.play, j.latch) : 0;
+            j.home_offset = j.slide_at(j.index_at - lag);
+        }
+    }
+}
+
+void shorten(sim::Random &random, Design &design) {
+    for (std::size_t n = 0; n < design.joints.size(); ++n) {
+        JointDesign &j = design.joints[n];
+        const std::size_t first = design.isTrivial ? design.coordinates.find(design.coordinates[n]) : n;
+        if (first != n) {
+            make_twin(j, design.joints[first]);
+            continue;
+        }
+        if (!design.isTrivial) {
+            continue;
+        }
+        const double low = j.low;
+        j.low = rounded(-random.real(40, 100), 0.1);
+        j.high = rounded(random.real(40, 100), 0.1);
+        j.start = random.real(0.7 * j.low, 0.7 * j.high);
+        j.home_switch_at += j.low - low;
+        j.index_at += j.low - low;
+        j.home_offset += j.low - low;
+        if (j.home_kind != HomeKind::IMMEDIATE) {
+            hasten_homing(random, j);
+        } else {
+            j.home = j.home_offset = rounded(random.real(0.5 * j.low, 0.5 * j.high), 0.1);
+        }
+        for (AxisDesign &a : design.axes) {
+            if (a.axis == geom::axis_of_letter(design.coordinates[n])) {
+                a.low = j.low;
+                a.high = j.high;
+            }
+        }
+    }
+}
+
+namespace {
+
 template <class Limits>
 std::string limits_of(const Limits &s) {
     return fmt::format("MAX_VELOCITY = {}\nMAX_ACCELERATION = {}\nMIN_LIMIT = {}\nMAX_LIMIT = {}\n{}",
@@ -198,7 +299,23 @@ std::string section_of(std::size_t n, const JointDesign &j) {
     if (j.home_kind == HomeKind::SWITCH_AND_INDEX) {
         out += "HOME_USE_INDEX = YES\n";
     }
+    if (j.screw_type >= 0) {
+        out += fmt::format("COMP_FILE = screw{}.txt\nCOMP_FILE_TYPE = {}\n", n, j.screw_type);
+    }
     return out + (j.backlash > 0 ? fmt::format("BACKLASH = {}\n", j.backlash) : std::string());
+}
+
+/// Type 0: where the slide is when the screw has been turned to a place; type 1: what is to be added.
+void write_screw(const std::filesystem::path &file, const JointDesign &j) {
+    constexpr double STEP = 1, BEYOND = 6;
+    std::ofstream out(file);
+    const double half = 0.5 * j.play;
+    for (double x = j.low - BEYOND; x < j.high + BEYOND; x += STEP) {
+        const double up = j.screw_error_at(x) + half;
+        const double down = j.screw_error_at(x) - half;
+        out << (j.screw_type == 0 ? fmt::format("{:.9f} {:.9f} {:.9f}\n", x, x - up, x - down)
+                                  : fmt::format("{:.9f} {:.9f} {:.9f}\n", x, up, down));
+    }
 }
 
 constexpr const char *HAL =
@@ -228,6 +345,9 @@ std::string Design::write(const std::filesystem::path &folder) const {
         jerk > 0 ? fmt::format("MAX_LINEAR_JERK = {}\n", jerk) : std::string(), kinematics, joints.size());
     for (std::size_t n = 0; n < joints.size(); ++n) {
         out += section_of(n, joints[n]);
+        if (joints[n].screw_type >= 0) {
+            write_screw(folder / fmt::format("screw{}.txt", n), joints[n]);
+        }
     }
     for (const AxisDesign &a : axes) {
         out += fmt::format("[AXIS_{}]\n{}", geom::AXIS_LETTERS[a.axis], limits_of(a));

@@ -20,11 +20,14 @@ struct JointDesign {
     double jerk = 0;  ///< 0: none
     double low = -100, high = 100;
     double ferror = 2, min_ferror = 1;
-    double backlash = 0;
+    double backlash = 0;  ///< [JOINT_n]BACKLASH; 0: none
+    int screw_type = -1;  ///< [JOINT_n]COMP_FILE_TYPE; below 0: no table
     HomeKind home_kind = HomeKind::IMMEDIATE;
     double home = 0, home_offset = 0, search = 0, latch = 0;
     int sequence = 0;
     // --- the plant
+    double play = 0;                                            ///< between motor and slide
+    double screw_error = 0, screw_wave = 100, screw_phase = 0;  ///< a sine [units, units, rad]
     double shaft_offset = 0;  ///< of the motor's shaft where the joint is at 0
     double start = 0;         ///< where the joint stands when the machine is made
     double counts_per_unit = 1e4;
@@ -33,6 +36,12 @@ struct JointDesign {
     double bounce_s = 0, hysteresis = 0.02;  ///< of the home switch
     double home_switch_at = 0;               ///< closed at and below this position
     sim::AxisSettings drive;
+
+    bool isCorrected() const { return backlash > 0 || screw_type >= 0; }
+    /// How much farther than the slide the screw has turned where the slide is at `x`, without play.
+    double screw_error_at(double x) const;
+    /// Where the slide is when the nut's place, by turns of the screw, is `turned`.
+    double slide_at(double turned) const;
 };
 
 struct AxisDesign {
@@ -57,5 +66,9 @@ struct Design {
 };
 
 Design make_design(sim::Random &random);
+/// Play and screws that are not even, and what the INI file says about them.
+void wear(sim::Random &random, Design &design);
+/// Ways become shorter and homing quicker, so that a session has time for more.
+void shorten(sim::Random &random, Design &design);
 
 }  // namespace mw::campaign

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "campaign/design.hh"
+#include "campaign/stop_bound.hh"
 #include "geom/pose.hh"
 #include "testing/limit_checker.hh"
 
@@ -45,6 +46,19 @@ enum class Stop {
     AT_ONCE,         ///< the amplifiers go off in the next sample
 };
 
+struct AwaitedStop {
+    bool isAwaited = false;
+    Stop how = Stop::ALONG_THE_PATH;
+    int delay = 0, since = 0;  ///< cycles
+    /// Commanded since, with the samples that tell the speed as it began.
+    struct Path {
+        std::vector<std::vector<double>> motors;  ///< by joint, sample
+        std::vector<geom::Pose> axes;
+        bool areAxesKnown = false;
+    };
+    Path path;
+};
+
 /// What an operator's fresh command allows until the next stop.
 enum class Leave { SWITCH_ON, MOVE, WORK };
 
@@ -65,26 +79,40 @@ class Judge {
     std::set<std::string> known;
     const std::map<std::string, int> &broken_known() const { return broken_known_; }
     /// Nothing moves and no stop is awaited.
-    bool isAtRest() const { return standing_ >= 3 && !isStopAwaited_; }
+    bool isAtRest() const { return standing_ >= 3 && !stop_.isAwaited; }
     /// The time that stops took over what the limits need, the largest.
     double slowest_stop() const { return slowest_stop_; }
     std::uint64_t samples() const { return count_; }
+    /// What has been judged that not every session has, and how often.
+    const std::map<std::string, int> &judged() const { return judged_; }
 
   private:
     struct JointJudge {
         testing::LimitChecker speed, jerk;
         double reference = 0;  ///< of homing without a switch
-        bool wasHomed = false, isUnjerked = false;
+        double held = 0;       ///< where the motor was at rest
+        double travel = 0;     ///< since it was switched on
+        double place = 0;      ///< of the slide, off its command, when it stood before
+        bool wasHomed = false, isUnjerked = false, isPlaceKnown = false;
     };
     void check_numbers(const Sample &s);
     void check_amplifiers(const Sample &s);
     void check_limits(const Sample &s);
     void check_room(const Sample &s);
     void check_homes(const Sample &s);
+    void check_places(const Sample &s);
     void check_outputs(const Sample &s);
     void check_rest(const Sample &s);
+    void check_stale(const Sample &s, bool wasAtRest);
+    void take_for_stop(const Sample &s);
     void begin_stop();
-    double time_to_stop() const;
+    void watch_stop(bool isMoving, bool isOn);
+    void check_stop(bool isMoving, double took_s);
+    LeastStop time_to_stop() const;
+    double time_of_jerk() const;
+    double time_to_correct() const;
+    double build_up_s() const;
+    double built_up(bool isAngular, double acceleration, double jerk) const;
     void fail(const std::string &rule, const std::string &text);
 
     const Design &design_;
@@ -94,15 +122,15 @@ class Judge {
     std::vector<double> velocity_, before_;
     std::uint64_t count_ = 0;
     bool maySwitchOn_ = false, mayMove_ = false, mayWork_ = false;
-    bool isStopAwaited_ = false;
-    Stop how_ = Stop::ALONG_THE_PATH;
-    int delay_ = 0, since_stop_ = 0;
-    double stop_due_s_ = 0, stop_least_s_ = 0;
+    AwaitedStop stop_;
+    double build_up_s_ = 0;
     int standing_ = 0;
-    int restless_ = 0;  ///< cycles left in which commands of before a stop may still arrive
+    bool isHeld_ = false;  ///< nothing may move
+    int restless_ = 0;     ///< cycles left in which commands of before a stop may still arrive
     double slowest_stop_ = 0;
     std::string report_;
     std::map<std::string, int> broken_known_;
+    std::map<std::string, int> judged_;
 };
 
 }  // namespace mw::campaign

@@ -13,6 +13,20 @@
 
 namespace mw::campaign {
 
+/// What is known of a probing move before it is made.
+struct ProbeMove {
+    int axis = -1;       ///< along which it goes; -1: no probing move
+    bool isMet = false;  ///< there is a contact to find, or to leave, on its way
+    double wall = 0;     ///< where
+    double speed = 0;    ///< [unit/s]
+};
+
+/// Outside of this room the probe has contact.
+struct Contact {
+    int axis = 0;
+    double low = 0, high = 0;
+};
+
 /// A line of a program with the path that it asks for, in machine coordinates.
 struct Block {
     std::string text;
@@ -22,9 +36,10 @@ struct Block {
     double angle_rad = 0;  ///< about +Z
     double dwell_s = 0;
     geom::MoveSettings settings;
+    ProbeMove probe;
 };
 
-enum class Work { PROGRAM, JOG_JOINT, JOG_AXIS, HOME };
+enum class Work { PROGRAM, JOG_JOINT, JOG_AXIS, HOME, PROBE };
 
 enum class Upset {
     ABORT,          ///< an operator's stop
@@ -70,6 +85,8 @@ struct Trouble {
 struct Act {
     Work work = Work::PROGRAM;
     std::vector<Block> blocks;
+    bool isToFail = false;  ///< a program that must not come to its end
+    std::vector<Contact> contacts;
     int target = 0;       ///< joint or axis
     double distance = 0;  ///< 0: continuous
     double velocity = 0;
@@ -80,10 +97,13 @@ struct Act {
 struct Plan {
     std::uint64_t seed = 0;
     Design design;
+    double least_s = 1e300;  ///< of machine time: once it has passed the last act comes next
     std::vector<Act> acts;
 };
 
-Plan make_plan(std::uint64_t seed);
+/// Of what a seed stands for; 1: as it was first, sessions of a minute.
+inline constexpr unsigned PLAN_VERSION = 2;
+Plan make_plan(std::uint64_t seed, unsigned version = PLAN_VERSION);
 
 /// What is kept of a plan, to find a short one that fails too: "0,2:0-5,3x,4.1" are act 0, act 2 with those
 /// of its moves that are among its blocks 0 to 5, act 3 without troubles, act 4 with its trouble 1. Empty:

@@ -40,9 +40,9 @@ void LateScheduler::plan(void *self, std::int64_t period_ns) {
 
 Rig::Rig(const Design &design, std::uint64_t seed, std::string ini) : design_(design), ini_(std::move(ini)) {
     for (const JointDesign &j : design.joints) {
-        const double shaft = j.start + j.shaft_offset;
+        const double shaft = j.start + j.screw_error_at(j.start) + j.shaft_offset;
         sim::AxisSettings drive = j.drive;
-        drive.backlash = j.backlash;
+        drive.backlash = j.play;
         const sim::EncoderSettings encoder{j.counts_per_unit, j.index_spacing, j.index_at + j.shaft_offset};
         const sim::SwitchSettings home{j.home_switch_at, false, 0, j.hysteresis, j.bounce_s};
         plants_.push_back({sim::Axis(drive, shaft), sim::Encoder(encoder, shaft),
@@ -113,7 +113,7 @@ void Rig::step_task() {
 void Rig::cycle() {
     *pins_.chain = *pins_.user_enable && !faults.isChainOpen;
     *pins_.enable = !faults.isDisabled;
-    *pins_.probe = faults.isProbeClosed;
+    *pins_.probe = faults.isProbeClosed || isProbeTouching();
     *pins_.inhibit = faults.isFeedInhibited;
     *pins_.adaptive_feed = faults.isAdaptiveNan ? NAN_VALUE : 1.0;
     *pins_.spindle.amp_fault = faults.isSpindleFaulted;
@@ -121,6 +121,10 @@ void Rig::cycle() {
         side_->channels().isTaskDead.store(1);
     }
     run_plants();
+    constexpr double WELL_WITHIN = 0.5;
+    areWallsUp_ = areWallsUp_ || (!walls_.empty() && std::ranges::all_of(walls_, [this](const Wall &w) {
+                      return beyond_wall(w) < -WELL_WITHIN;
+                  }));
     ++cycles_;
     const bool isChainClosed = *pins_.chain;
     scheduler_.run_until(static_cast<std::int64_t>(cycles_) * PERIOD_NS);
@@ -148,7 +152,8 @@ void Rig::run_plants() {
             p.isTruthKnown = true;
         }
         *pins.motor_fb = joint_faults[j].isEncoderNan ? NAN_VALUE : p.encoder.reading();
-        *pins.home_switch = p.home_switch.run(p.axis.load() - design_.joints[j].shaft_offset, PERIOD_S);
+        p.slide = design_.joints[j].slide_at(p.axis.load() - design_.joints[j].shaft_offset);
+        *pins.home_switch = p.home_switch.run(p.slide, PERIOD_S);
         *pins.pos_limit = joint_faults[j].isOnLimit;
         *pins.amp_fault = p.amplifier.isFaulted();
     }
@@ -174,7 +179,7 @@ void Rig::take_sample() {
         out.motor_fb = *pins.motor_fb;
         out.turned = p.turned;
         out.resets = p.resets;
-        out.position = p.axis.load() - design_.joints[j].shaft_offset;
+        out.position = p.slide;
         out.isTruthKnown = p.isTruthKnown;
         out.isAmpOn = *pins.is_amp_on;
         out.isHomed = *pins.is_homed;
@@ -195,6 +200,37 @@ void Rig::take_sample() {
 
 bool Rig::isSwitchedOn() const {
     return std::ranges::any_of(sample_.joints, [](const JointSample &j) { return j.isAmpOn; });
+}
+
+void Rig::set_contacts(const std::vector<Contact> &contacts) {
+    walls_.clear();
+    areWallsUp_ = false;
+    for (const Contact &c : contacts) {
+        const std::size_t joint = design_.coordinates.find(geom::AXIS_LETTERS[c.axis]);
+        // What machine and plant call a place differs where joints are homed as they stand.
+        const double by = plants_[joint].slide - sample_.joints[joint].pos_cmd;
+        walls_.push_back({joint, {c.axis, c.low + by, c.high + by}});
+    }
+}
+
+double Rig::beyond_walls(int axis) const {
+    if (!areWallsUp_) {
+        return -1;
+    }
+    double beyond = -1;
+    for (const Wall &w : walls_) {
+        beyond = w.at.axis == axis ? beyond_wall(w) : beyond;
+    }
+    return beyond;
+}
+
+double Rig::beyond_wall(const Wall &wall) const {
+    const double tip = plants_[wall.joint].slide;
+    return std::max(tip - wall.at.high, wall.at.low - tip);
+}
+
+bool Rig::isProbeTouching() const {
+    return std::ranges::any_of(walls_, [this](const Wall &w) { return areWallsUp_ && beyond_wall(w) > 0; });
 }
 
 void Rig::lose_encoder(int joint, bool isLost) {

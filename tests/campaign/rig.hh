@@ -10,6 +10,7 @@
 #include "campaign/design.hh"
 #include "campaign/judge.hh"
 #include "campaign/pins.hh"
+#include "campaign/plan.hh"
 #include "diag/sink.hh"
 #include "machine/loaded_config.hh"
 #include "machine/machine.hh"
@@ -58,6 +59,7 @@ struct Plant {
     sim::Encoder encoder;
     sim::BouncingSwitch home_switch;
     sim::Amplifier amplifier;
+    double slide = 0;   ///< where it is
     double turned = 0;  ///< by how much index marks have moved the encoder's zero
     int resets = 0;
     bool isTruthKnown = true, wasPowered = false;
@@ -86,6 +88,11 @@ class Rig final : public machine::Machine {
     bool isInPosition() const { return *pins_.in_position; }
     bool isSwitchedOn() const;
 
+    /// Where the probe has contact, in machine coordinates as they are now, once it has come into the room.
+    void set_contacts(const std::vector<Contact> &contacts);
+    /// How far the probe is beyond the walls of its room along an axis; below 0: within.
+    double beyond_walls(int axis) const;
+
     void lose_encoder(int joint, bool isLost);
     void jump_encoder(int joint, double by);
     void trip_amplifier(int joint) { plants_[static_cast<std::size_t>(joint)].amplifier.trip(); }
@@ -104,9 +111,15 @@ class Rig final : public machine::Machine {
     void hold_planner(bool isHeld) { scheduler_.isPlannerHeld = isHeld; }
 
   private:
+    struct Wall {
+        std::size_t joint = 0;
+        Contact at;  ///< by the slide of the joint
+    };
     void step_task();
     void run_plants();
+    double beyond_wall(const Wall &wall) const;
     double askew(std::size_t joint) const;
+    bool isProbeTouching() const;
     void take_sample();
 
     const Design &design_;
@@ -117,6 +130,8 @@ class Rig final : public machine::Machine {
     std::unique_ptr<hal::LocalHost> host_;
     std::unique_ptr<machine::TaskSide> side_;
     rtapi::PeriodicId periodic_{};
+    std::vector<Wall> walls_;
+    bool areWallsUp_ = false;
     std::vector<Plant> plants_;
     MachinePins pins_{};
     double spindle_rpm_ = 0, spindle_turns_ = 0;

@@ -67,7 +67,15 @@ void Session::cycle() {
     for (const JointSample &j : s.joints) {
         verdict_.hash = (verdict_.hash ^ std::bit_cast<std::uint64_t>(j.motor_cmd)) * 0x100000001b3U;
     }
+    if (act_ != nullptr && act_->work == Work::PROBE) {
+        for (const Contact &c : act_->contacts) {
+            beyond_walls_[c.axis] = std::max(beyond_walls_[c.axis], rig_->beyond_walls(c.axis));
+        }
+    }
     while (const auto message = rig_->client().next_message()) {
+        if (isRecording_) {
+            told_.push_back(message->text);
+        }
         if (tell_ != nullptr) {
             std::fprintf(tell_, "  [%.3f] %s\n", static_cast<double>(s.cycle) * PERIOD_S,
                          message->text.c_str());
@@ -175,6 +183,7 @@ bool Session::home() {
 bool Session::prepare() {
     act_ = nullptr;
     going_.clear();
+    rig_->set_contacts({});
     isStopped_ = isDisturbed_ = false;
     rig_->repair();
     for (int i = 0; i < 5 && !isOver(); ++i) {
@@ -209,6 +218,10 @@ Verdict Session::run() {
         return verdict_;
     }
     for (std::size_t n = 0; n < plan_.acts.size() && !isOver(); ++n) {
+        const bool isLast = n + 1 == plan_.acts.size();
+        if (!isLast && static_cast<double>(rig_->sample().cycle) * PERIOD_S > plan_.least_s) {
+            continue;
+        }
         if (tell_ != nullptr) {
             std::fprintf(tell_, "act %zu\n", n);
         }
@@ -220,6 +233,13 @@ Verdict Session::run() {
     for (const auto &[rule, count] : judge_.broken_known()) {
         verdict_.known[rule] += count;
     }
+    for (const JointDesign &j : plan_.design.joints) {
+        verdict_.extensions["backlash"].ran += j.backlash > 0 ? 1 : 0;
+        verdict_.extensions["screw"].ran += j.screw_type >= 0 ? 1 : 0;
+    }
+    for (const auto &[name, count] : judge_.judged()) {
+        verdict_.extensions[name].judged += count;
+    }
     verdict_.slowest_stop = judge_.slowest_stop();
     return verdict_;
 }
@@ -227,7 +247,8 @@ Verdict Session::run() {
 void Session::perform(const Act &act) {
     isStopped_ = isDisturbed_ = false;
     switch (act.work) {
-    case Work::PROGRAM: run_program(act); break;
+    case Work::PROGRAM:
+    case Work::PROBE: run_program(act); break;
     case Work::JOG_JOINT:
     case Work::JOG_AXIS: jog(act); break;
     case Work::HOME:
@@ -275,7 +296,7 @@ void Session::jog(const Act &act) {
     }
     const bool isCalm = !isStopped_ && !isDisturbed_ && !isOver();
     const auto at = static_cast<std::size_t>(act.target);
-    if (isCalm && isIncrement && end == End::DONE && plan_.design.isTrivial) {
+    if (isCalm && plan_.design.isTrivial) {
         double low = -1e300;
         double high = 1e300;
         if (isJoint) {
@@ -286,8 +307,12 @@ void Session::jog(const Act &act) {
             low = !isJoint && a.axis == act.target ? a.low : low;
             high = !isJoint && a.axis == act.target ? a.high : high;
         }
-        const double wanted = std::clamp(from + act.distance, low, high);
-        if (std::abs(place() - wanted) > 1e-6) {
+        // One that would end beyond a limit is refused. An e-stop may have let it run out beyond them before.
+        const double wanted = from + act.distance;
+        const bool fits = wanted >= low && wanted <= high && from > low && from < high;
+        if (end != End::DONE && fits) {
+            fail("work", fmt::format("a jog from {:.6g} by {:.6g} is refused", from, act.distance));
+        } else if (isIncrement && end == End::DONE && std::abs(place() - wanted) > 1e-6) {
             fail("work",
                  fmt::format("a jog from {:.6g} by {:.6g} ends at {:.6g}", from, act.distance, place()));
         }

@@ -14,6 +14,11 @@
 
 namespace mw::campaign {
 
+/// Something that not every session has.
+struct Extension {
+    int ran = 0, judged = 0;
+};
+
 struct Verdict {
     std::string fault;  ///< "rule: what"; empty: all held
     double seconds = 0;
@@ -22,6 +27,7 @@ struct Verdict {
     int commands = 0, refused = 0;
     std::map<std::string, int> known;     ///< how often rules were broken that are known to be
     std::map<std::string, int> refusals;  ///< by reason, figures replaced
+    std::map<std::string, Extension> extensions;
     double slowest_stop = 0, worst_time = 0;
     std::uint64_t hash = 0;  ///< of all that was commanded
 };
@@ -64,6 +70,7 @@ class Session {
     void begin_stop(const Trouble &t);
     void end(const Trouble &t);
     void check_program(const Act &act, const geom::Pose &from, double took_s);
+    void check_probing(const Act &act, End end);
     double estimate(const Act &act, const geom::Pose &from) const;
 
     const Plan &plan_;
@@ -87,6 +94,8 @@ class Session {
     bool isStopped_ = false, isDisturbed_ = false;
     bool isRecording_ = false;
     std::vector<geom::Pose> path_;
+    std::vector<std::string> told_;       ///< by the program
+    std::map<int, double> beyond_walls_;  ///< how far the probe has been, by axis
 };
 
 }  // namespace mw::campaign

@@ -66,6 +66,9 @@ void Session::run_program(const Act &act) {
     const geom::Pose from = rig_->sample().axes;
     path_.clear();
     path_.push_back(from);
+    told_.clear();
+    beyond_walls_.clear();
+    rig_->set_contacts(act.contacts);
     isRecording_ = true;
     begin_troubles(act);
     judge_.allow(Leave::WORK);
@@ -79,8 +82,12 @@ void Session::run_program(const Act &act) {
     }
     if (end == End::LATE) {
         fail("work", "the program does not end");
-    } else if (end != End::DONE && !isStopped_) {
+    } else if (end != End::DONE && !isStopped_ && !act.isToFail) {
         fail("work", "the program ends badly with nothing wrong");
+    } else if (end == End::DONE && !isStopped_ && act.isToFail) {
+        fail("work", "the program must not come to its end, and does");
+    } else if (act.work == Work::PROBE) {
+        check_probing(act, end);
     } else if (end == End::DONE) {
         ++verdict_.ended;
         check_program(act, from, took_s);

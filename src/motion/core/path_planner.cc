@@ -125,7 +125,7 @@ void PathPlanner::complete_moves() noexcept {
         const bool isReached = e.done_move >= p.after_move;
         const bool isStanding =
             e.motion == traj::Motion::REST && e.isSettled && e.done_move >= planner_.last_move();
-        if (!isReached || (p.isFlush && !isStanding)) {
+        if (!isReached || ((p.isFlush || p.isProbe) && !isStanding)) {
             return;
         }
         if (p.indexer >= 0) {
@@ -136,7 +136,12 @@ void PathPlanner::complete_moves() noexcept {
                 return;
             }
         }
-        if (p.isProbe && p.isTripRequired) {
+        if (p.isProbe && e.isDropping) {
+            return;  // its stop, which may lead to its very end, is not over
+        }
+        const bool isTripped = p.isProbe && view_.probe_trips != probe_trips_;
+        probe_trips_ = isTripped ? view_.probe_trips : probe_trips_;
+        if (p.isProbe && p.isTripRequired && !isTripped) {
             Fault fault;
             fault.kind = FaultKind::PROBE_NOT_TRIPPED;
             fault.source = p.source;

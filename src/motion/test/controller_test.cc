@@ -372,6 +372,35 @@ TEST(Controller, ProbeStopsWhereItTripsAndAnswersDone) {
     EXPECT_TRUE(rig.faults.empty());
 }
 
+TEST(Controller, AProbeThatTripsWhileItBrakesToItsEndHasTripped_C7) {
+    for (const bool isJerkLimited : {false, true}) {
+        for (double before = 0.05; before < 8; before *= 1.3) {
+            SCOPED_TRACE(before);
+            MotionRig rig;
+            if (isJerkLimited) {
+                rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, 1);
+                rig.set(Parameter::JOINT_MAX_JERK, 2, 10000);
+            }
+            rig.ready();
+            Probe probe;
+            probe.end[2] = -10;
+            probe.terms.feed = 60;
+            probe.mustTrip = true;
+            const CommandId id = rig.send_path(probe);
+            rig.before_step = [before](MotionRig &r) {
+                r.in.isProbeClosed = r.in.joint[2].motor_pos_fb <= -10 + before;
+            };
+            ASSERT_TRUE(rig.run_until([&] { return rig.answer_to(id) != nullptr; }));
+            EXPECT_TRUE(rig.isDone(id));
+            EXPECT_TRUE(rig.status().isProbeTripped);
+            EXPECT_TRUE(rig.faults.empty());
+            const CommandId after = rig.line({}, 0);
+            ASSERT_TRUE(rig.run_until([&] { return rig.answer_to(after) != nullptr; }));
+            EXPECT_TRUE(rig.isDone(after)) << "the path goes on";
+        }
+    }
+}
+
 TEST(Controller, ProbeThatMustTripAndDoesNotIsAFault) {
     MotionRig rig;
     rig.ready();

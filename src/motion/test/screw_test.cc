@@ -237,6 +237,41 @@ TEST(ScrewTables, ANewTableMovesNothing_C11) {
     EXPECT_NEAR(rig.status().joint[0].pos_cmd, place, 1e-12);
 }
 
+/// By play and by a table.
+class TakeUp : public ::testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(OfPlayAndOfATable, TakeUp, ::testing::Bool());
+
+TEST_P(TakeUp, SwitchedOnAgainAMotorStandsUntilTheJointMoves_C1_C11) {
+    ScrewRig rig(false);
+    if (GetParam()) {
+        rig.load(measure(0.4, 1));
+    } else {
+        rig.set(Parameter::JOINT_BACKLASH, 0, 0.4);
+    }
+    rig.ready(Mode::FREE);
+    rig.send(JogAbsolute{{true, 0}, V, 30});
+    rig.step(1500);
+    rig.send(JogAbsolute{{true, 0}, V, 29.999});
+    const double before = rig.out->joint[0].motor_pos_cmd;
+    ASSERT_TRUE(rig.run_until([&] { return rig.out->joint[0].motor_pos_cmd < before - 0.1; }));
+    rig.send(Disable{});
+    rig.step(20);
+    rig.send(Enable{});
+    rig.step(3);
+    const double motor = rig.out->joint[0].motor_pos_cmd;
+    EXPECT_GT(motor, before - 0.39) << "in the middle of it";
+    rig.step(500);
+    EXPECT_NEAR(rig.out->joint[0].motor_pos_cmd, motor, 1e-12) << "nobody has asked for a move";
+    rig.send(JogAbsolute{{true, 0}, V, 20});
+    rig.step(1500);
+    const double at_20 = rig.out->joint[0].motor_pos_cmd;
+    rig.send(JogAbsolute{{true, 0}, V, 10});
+    rig.step(1500);
+    rig.send(JogAbsolute{{true, 0}, V, 20});
+    rig.step(1500);
+    EXPECT_NEAR(rig.out->joint[0].motor_pos_cmd - at_20, 0.4, 1e-9) << "the whole of it at either side";
+}
+
 }  // namespace
 }  // namespace screw_test
 }  // namespace mw::motion

@@ -61,6 +61,22 @@ std::vector<geom::Pose> tool_change_moves(const ToolChangePlace &place, const ge
     return moves;
 }
 
+void TaskCanon::insert_first(const std::vector<interp::MachineCall> &calls, const geom::Pose &position,
+                             int line) {
+    ItemQueue behind;
+    behind.swap(queue_);
+    const geom::Pose end = last_end_;
+    const motion::SourceTag tag = tag_;
+    last_end_ = position;
+    tag_.line = line;
+    for (const interp::MachineCall &call : calls) {
+        take(call);
+    }
+    last_end_ = end;
+    tag_ = tag;
+    queue_.insert(queue_.end(), behind.begin(), behind.end());
+}
+
 void TaskCanon::change_tool() {
     for (const geom::Pose &end : tool_change_moves(place_, last_end_)) {
         interp::LineMove move;

@@ -29,6 +29,10 @@ class TaskCanon final : public interp::MachineCanon {
     /// The name of a file by the index in SourceTag.
     const std::string &file_name(std::uint32_t index) const { return files_[index]; }
     void reset();
+    /// So many have come before.
+    void set_blocks(std::uint32_t blocks) { tag_.block = blocks; }
+    /// What is done before all that waits, from `position` on; as of `line`.
+    void insert_first(const std::vector<interp::MachineCall> &calls, const geom::Pose &position, int line);
     /// Where the machine is when nothing is queued.
     void set_position(const geom::Pose &position) { last_end_ = position; }
 

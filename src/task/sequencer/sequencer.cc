@@ -98,6 +98,7 @@ Sequencer::Need Sequencer::need_of(const interp::MachineCall &call) {
 
 void Sequencer::step(std::int64_t now_ns) {
     isHeld_ = false;
+    blocked_ = ExecState::DONE;
     for (int i = 0; i < ITEMS_PER_CYCLE && !isHeld_; ++i) {
         if (hasFailed_ || !isWaitOver(now_ns) || isStepDone_) {
             return;
@@ -108,7 +109,16 @@ void Sequencer::step(std::int64_t now_ns) {
             return;
         }
         const Item &item = queue_.front();
-        if (isStepBoundary(item) || !isReady(item) || !execute(item, now_ns)) {
+        if (isStepBoundary(item)) {
+            return;
+        }
+        if (!isReady(item)) {
+            blocked_ = need_of(item.call) == Need::MOTION_AND_IO ? ExecState::WAITING_FOR_MOTION_AND_IO
+                                                                 : ExecState::WAITING_FOR_MOTION;
+            return;
+        }
+        if (!execute(item, now_ns)) {
+            blocked_ = ExecState::WAITING_FOR_MOTION_QUEUE;
             return;
         }
         if (!queue_.empty()) {
@@ -334,6 +344,7 @@ void Sequencer::on_tool_event(io::ToolEvent event) {
 }
 
 void Sequencer::abort(int reason) {
+    blocked_ = ExecState::DONE;
     log_.close();
     probe_log_.close();
     queue_.clear();

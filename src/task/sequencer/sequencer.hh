@@ -69,6 +69,9 @@ class Sequencer {
     /// What is being waited for: a pin or a state.
     Waiting waiting_for() const;
 
+    /// The same in the words of older clients.
+    ExecState exec_state() const;
+
     double input_value() const { return input_value_; }
     bool isInputTimedOut() const { return isInputTimedOut_; }
     /// Commanded spindle state, as programmed (unscaled).
@@ -124,7 +127,8 @@ class Sequencer {
     MoveListener move_listener_;
 
     Wait wait_ = Wait::NONE;
-    std::int64_t deadline_ns_ = 0;  ///< of a dwell or a time limit; 0: none
+    ExecState blocked_ = ExecState::DONE;  ///< what the item in front has waited for in the last step
+    std::int64_t deadline_ns_ = 0;         ///< of a dwell or a time limit; 0: none
     interp::WaitInput awaited_input_{};
     double input_value_ = 0, last_input_ = 0;
     bool isInputTimedOut_ = false;

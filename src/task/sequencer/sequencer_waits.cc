@@ -84,6 +84,19 @@ bool Sequencer::isInputWaitOver(std::int64_t now_ns) {
     return isMet || isInputTimedOut_;
 }
 
+ExecState Sequencer::exec_state() const {
+    switch (wait_) {
+    case Wait::NONE: return blocked_;
+    case Wait::DWELL:
+    case Wait::INPUT: return ExecState::WAITING_FOR_DELAY;
+    case Wait::TOOL: return ExecState::WAITING_FOR_IO;
+    case Wait::ORIENT: return ExecState::WAITING_FOR_SPINDLE_ORIENTED;
+    case Wait::SETTING: return ExecState::WAITING_FOR_MOTION;
+    case Wait::USER_CODE: return ExecState::WAITING_FOR_SYSTEM_CMD;
+    }
+    return ExecState::DONE;
+}
+
 Waiting Sequencer::waiting_for() const {
     switch (wait_) {
     case Wait::DWELL: return {WaitFor::DWELL, -1};

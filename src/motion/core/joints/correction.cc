@@ -15,6 +15,8 @@ constexpr double SHARE = 0.5;
 static_assert(STEEPEST_SCREW < SHARE);
 /// The side changes where the joint really turns back, not by the rounding of a stop.
 constexpr double TURN_ROUNDING = 1e-9;
+/// By so much a change of the mode may move a joint (`sides`): it is no move that somebody has asked for.
+constexpr double MODE_ROUNDING = 2e-6;
 
 std::size_t at(int i) noexcept {
     return static_cast<std::size_t>(i);
@@ -160,6 +162,10 @@ double MovingMean::step(double x, std::uint32_t length) noexcept {
 }
 
 void step(Correction &c, const Settings &settings, int joint, double position, double period_s) noexcept {
+    c.isHeld = c.isHeld && std::abs(position - c.extreme) <= MODE_ROUNDING;
+    if (c.isHeld) {
+        return;
+    }
     follow_side(c, position);
     const double velocity = settings.get(Parameter::JOINT_MAX_VELOCITY, joint);
     const Means means = means_of(settings, joint, period_s);
@@ -194,7 +200,8 @@ double renumber(Correction &c, double position) noexcept {
 
 void follow(Correction &c, double position) noexcept {
     renumber(c, position);
-    if (!c.isAtRest()) {  // it stands where it is, and goes on from there
+    c.isHeld = true;
+    if (!c.isAtRest()) {  // it stands where it is, and goes on from there with the joint's next move
         c.followed = c.position;
         c.follower.position = c.table.count > 0 ? c.position - c.raw : c.position;
         c.follower.velocity = 0;
@@ -206,6 +213,7 @@ void follow(Correction &c, double position) noexcept {
 
 double clear(Correction &c) noexcept {
     const double was = c.position;
+    c.isHeld = false;
     c.raw = 0;
     c.side = 0;
     c.follower = {};

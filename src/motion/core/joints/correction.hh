@@ -60,6 +60,7 @@ struct Correction {
     double last_position = 0;                    ///< of the joint
     double position = 0, velocity = 0;           ///< what is added
     MovingMean mean;
+    bool isHeld = false;  ///< switched on again: what is missing waits until the joint moves
     ScrewTable table;
 
     bool isAtRest() const noexcept { return follower.isAtRest() && velocity == 0.0 && mean.isAtRest(); }

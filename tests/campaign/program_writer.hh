@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Writes programs whose path it knows.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "campaign/plan.hh"
+
+namespace mw::campaign {
+
+/// Programs have as many digits.
+double to_grid(double x);
+
+class Writer {
+  public:
+    Writer(sim::Random &random, const Design &design) : random_(random), design_(design) {}
+
+    /// A program of lines and arcs that takes about so long at its feeds.
+    std::vector<Block> write(double seconds);
+    /// Finds the walls of a room and leaves them again, or misses them.
+    Act write_probing();
+
+  private:
+    double probe(const Contact &contact, bool isHigh, int kind, double to);
+    bool probe_wrongly(const Contact &contact, bool isHigh, bool isTouching);
+
+    bool hasAxis(int axis) const;
+    const AxisDesign &axis(int letter) const;
+    void say(const std::string &text);
+    void set_mode();
+    void spindle();
+    void output();
+    double place(const AxisDesign &a);
+    void move_to_start();
+    void push(const std::string &text, bool isRapid);
+    std::string feed_word();
+    double line();
+    double arc();
+
+    sim::Random &random_;
+    const Design &design_;
+    std::vector<Block> blocks_;
+    geom::MoveSettings settings_;
+    geom::Pose at_;
+    double feed_ = 1000;
+};
+
+}  // namespace mw::campaign
