@@ -40,8 +40,8 @@ TaskSide::~TaskSide() {
 
 Result<> TaskSide::start(const MachineOptions &options) {
     diag::Sink unheard;
-    auto tools =
-        open_tools(parts_.config, options.isToolTableTold ? unheard : parts_.sink, {options.isClockVirtual});
+    auto tools = open_tools(parts_.config, options.isToolTableTold ? unheard : parts_.sink,
+                            {!options.isClockVirtual, options.isClockVirtual});
     if (!tools.has_value()) {
         return std::unexpected(tools.error());
     }
