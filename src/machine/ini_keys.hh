@@ -14,8 +14,7 @@ namespace mw::machine {
 
 namespace why {
 inline constexpr const char *ARCS = "corners are blended by one planner, whose tolerance G64 P gives";
-inline constexpr const char *DISPLAYS = "displays run it, and millwright run starts none";
-inline constexpr const char *CLIENTS = "no client is started by this version";
+inline constexpr const char *DISPLAYS = "displays, which run it when their own pins are there";
 inline constexpr const char *DEFAULTS = "displays, as the speed that they begin with";
 }  // namespace why
 
@@ -100,9 +99,6 @@ inline constexpr auto INI_KEYS = std::to_array<config::IniKey>({
     config::ini_list("HAL", "HALCMD", "a HAL command, after the files"),
     config::ini_text("HAL", "TWOPASS", "not empty: the files are gone through twice"),
     config::ini_text("HAL", "HALUI", "not empty: halui takes part"),
-    config::ini_without_effect("HAL", "SHUTDOWN", "no HAL file is run at the end by this version"),
-    config::ini_without_effect("HAL", "POSTGUI_HALFILE", why::DISPLAYS),
-    config::ini_without_effect("HAL", "POSTGUI_HALCMD", why::DISPLAYS),
     config::ini_list("HALUI", "MDI_COMMAND", "a line for the pin halui.mdi-command-NN, in order"),
     config::ini_number("DISPLAY", "MAX_FEED_OVERRIDE", "", 1.0, {0.0, config::INI_UNBOUNDED},
                        "highest feed override that halui asks for"),
@@ -110,8 +106,12 @@ inline constexpr auto INI_KEYS = std::to_array<config::IniKey>({
                        "lowest spindle override that halui asks for"),
     config::ini_number("DISPLAY", "MAX_SPINDLE_OVERRIDE", "", 1.0, {0.0, config::INI_UNBOUNDED},
                        "highest spindle override that halui asks for"),
-    config::ini_without_effect("APPLICATIONS", "APP", why::CLIENTS),
-    config::ini_without_effect("APPLICATIONS", "DELAY", why::CLIENTS),
+    config::ini_text("HAL", "SHUTDOWN", "a HAL file that is run when the machine ends"),
+    config::ini_elsewhere("HAL", "POSTGUI_HALFILE", why::DISPLAYS),
+    config::ini_elsewhere("HAL", "POSTGUI_HALCMD", why::DISPLAYS),
+    config::ini_list("APPLICATIONS", "APP", "a program beside the display, with its words"),
+    config::ini_number("APPLICATIONS", "DELAY", "s", 0.0, {0.0, 3600.0},
+                       "from the start of the machine to that of those programs"),
 
     config::ini_text("EMCIO", "TOOL_TABLE", "file of the tool table"),
     config::ini_flag("EMCIO", "RANDOM_TOOLCHANGER", false,

@@ -386,6 +386,11 @@ void read_hal(IniReader &ini, MachineConfig &machine) {
         machine.hal_steps.push_back({HalStep::Kind::COMMAND, entry->value, entry->place});
     }
     machine.two_pass = ini.text(ini_key("HAL", "TWOPASS"));
+    machine.shutdown_file = ini.text(ini_key("HAL", "SHUTDOWN"));
+    for (const config::IniEntry *entry : ini.list(ini_key("APPLICATIONS", "APP"))) {
+        machine.applications.push_back(entry->value);
+    }
+    machine.applications_delay_s = ini.real(ini_key("APPLICATIONS", "DELAY"));
     machine.hasHalui = !ini.text(ini_key("HAL", "HALUI")).empty();
 }
 
@@ -493,6 +498,13 @@ MachineConfig read_machine_config(config::IniReader &reader) {
     machine.task.axis_mask = machine.axis_mask;
     machine.task.num_joints = machine.num_joints;
     machine.task.num_spindles = machine.num_spindles;
+    msgs::SettingsStatus &shown = machine.task.shown;
+    shown.linear_units = machine.isMetric ? 1.0 : 1.0 / MM_PER_INCH;
+    shown.cycle_time_s = static_cast<double>(machine.servo_period_ns) / 1e9;
+    shown.debug =
+        static_cast<std::uint32_t>(reader.integer(config::row_of(interp::INI_KEYS, "EMC", "DEBUG")));
+    shown.kinematics = machine.kinematics_kind();
+    shown.joints.fill({shown.linear_units, 0, 1, 1, msgs::JointKind::LINEAR});
     machine.task.isHomingForced = !reader.boolean(ini_key(Parameter::TRAJ_NO_FORCE_HOMING));
     return machine;
 }

@@ -45,6 +45,9 @@ struct MachineConfig {
     std::string two_pass;  ///< [HAL]TWOPASS: not empty when files are gone through twice
     bool hasHalui = false;
     PanelConfig panel;
+    std::string shutdown_file;              ///< a HAL file for the end, not run here
+    std::vector<std::string> applications;  ///< programs beside the display, not started here
+    double applications_delay_s = 0;
     std::string display;  ///< the program that the INI names, not started here
     std::string tool_table_file;
     std::string
@@ -64,6 +67,8 @@ struct MachineConfig {
 
     /// Once homed, for checks without moving.
     motion::FoldedLimits limits() const;
+    /// As the module says of itself: trivkins can be told.
+    msgs::Kinematics kinematics_kind() const;
 };
 
 /// Reads all sections that the system knows. Problems go to the reader's sink; the result is usable only when

@@ -83,6 +83,13 @@ template <>
 inline constexpr auto NAMES<JointKind> =
     std::array{named(JointKind::LINEAR, "LINEAR"), named(JointKind::ANGULAR, "ANGULAR")};
 
+/// What relates the joints to the axes.
+enum class Kinematics : std::uint8_t { IDENTITY = 1, FORWARD_ONLY = 2, INVERSE_ONLY = 3, BOTH = 4 };
+template <>
+inline constexpr auto NAMES<Kinematics> =
+    std::array{named(Kinematics::IDENTITY, "IDENTITY"), named(Kinematics::FORWARD_ONLY, "FORWARD_ONLY"),
+               named(Kinematics::INVERSE_ONLY, "INVERSE_ONLY"), named(Kinematics::BOTH, "BOTH")};
+
 /// What has to happen before the program goes on. The argument is the number of the pin, joint or spindle.
 enum class WaitFor : std::uint8_t {
     NOTHING,

@@ -4,6 +4,7 @@
 
 #include "base/limits.hh"
 #include "msgs/device_status.hh"
+#include "msgs/settings_status.hh"
 #include "msgs/task_status.hh"
 
 namespace mw::msgs {
@@ -145,6 +146,7 @@ struct MachineStatus {
     OperationStatus operation;
     ApproachStatus approach;
     RecoveryStatus recovery;
+    SettingsStatus settings;
 };
 template <>
 inline constexpr auto DECLARED<MachineStatus> = declare(
@@ -167,7 +169,8 @@ inline constexpr auto DECLARED<MachineStatus> = declare(
     field<&MachineStatus::io>("io", "e-stop chain, coolant"),
     field<&MachineStatus::operation>("operation", "who may operate"),
     field<&MachineStatus::approach>("approach", "what a person is to confirm"),
-    field<&MachineStatus::recovery>("recovery", "what can be gone on with after a crash"));
+    field<&MachineStatus::recovery>("recovery", "what can be gone on with after a crash"),
+    field<&MachineStatus::settings>("settings", "what is set for the machine"));
 
 struct ToolRecord {
     int toolno = -1;

@@ -12,7 +12,7 @@ struct TypeList {};
 using StatusList =
     TypeList<MachineStatus, TaskStatus, Waiting, CodesStatus, OffsetsStatus, TrajectoryStatus, ProbeStatus,
              OverridesStatus, MotionStatus, JointStatus, AxisStatus, SpindleStatus, ToolStatus, IoStatus,
-             AuxStatus, CoolantStatus, LubeStatus, OperationStatus, ApproachMove, ApproachStatus,
-             RecoveryStatus, ToolTable, ToolRecord>;
+             AuxStatus, CoolantStatus, LubeStatus, OperationStatus, SettingsStatus, JointSettings,
+             ApproachMove, ApproachStatus, RecoveryStatus, ToolTable, ToolRecord>;
 
 }  // namespace mw::msgs

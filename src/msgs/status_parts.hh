@@ -15,7 +15,8 @@ namespace mw::msgs::status_part {
 /// recovery.
 inline constexpr int TASK = 0, PROGRAM = 1, CODES = 2, OFFSETS = 3, PATH = 4, ANALOG_IN = 5, ANALOG_OUT = 6,
                      JOINTS = 7, AXES = JOINTS + MAX_JOINTS, SPINDLES = AXES + 1,
-                     DEVICES = SPINDLES + MAX_SPINDLES, APPROACH = DEVICES + 1, COUNT = APPROACH + 1;
+                     DEVICES = SPINDLES + MAX_SPINDLES, APPROACH = DEVICES + 1, SETTINGS = APPROACH + 1,
+                     COUNT = SETTINGS + 1;
 
 inline constexpr PartStarts<COUNT> STARTS = [] {
     PartStarts<COUNT> starts{};
@@ -34,6 +35,7 @@ inline constexpr PartStarts<COUNT> STARTS = [] {
     }
     starts[DEVICES] = offsetof(MachineStatus, tool);
     starts[APPROACH] = offsetof(MachineStatus, approach);
+    starts[SETTINGS] = offsetof(MachineStatus, settings);
     return starts;
 }();
 

@@ -24,6 +24,8 @@ std::string waiting_text(const Waiting &waiting);
 
 /// Longest path of a program that the status can tell. [bytes]
 inline constexpr std::size_t MAX_STATUS_TEXT = 1023;
+/// Longest block that it tells; of a longer one the beginning. [bytes]
+inline constexpr std::size_t MAX_STATUS_BLOCK = 255;
 
 struct TaskStatus {
     State state = State::ESTOP;
@@ -44,7 +46,11 @@ struct TaskStatus {
     int queued_mdi = 0;
     std::uint64_t programs_ended = 0;
     Waiting waiting;
+    double delay_left_s = 0;
+    bool isInputTimedOut = false;
+    int error_code = 0;
     alignas(8) FixedText<MAX_STATUS_TEXT> program;
+    FixedText<MAX_STATUS_BLOCK> block;
 };
 template <>
 inline constexpr auto DECLARED<TaskStatus> =
@@ -67,7 +73,11 @@ inline constexpr auto DECLARED<TaskStatus> =
             field<&TaskStatus::call_level>("call_level", "depth of subroutines"),
             field<&TaskStatus::queued_mdi>("queued_mdi", "lines of MDI that wait behind the one that runs"),
             field<&TaskStatus::programs_ended>("programs_ended", "by M2, M30, end of file, abort or error"),
-            field<&TaskStatus::waiting>("waiting", "what the program waits for"));
+            field<&TaskStatus::waiting>("waiting", "what the program waits for"),
+            field<&TaskStatus::delay_left_s>("delay_left", "of a dwell", unit::SECOND),
+            field<&TaskStatus::isInputTimedOut>("input_timeout", "the last M66 has waited in vain"),
+            field<&TaskStatus::error_code>("error_code", "0; 5 after a program or line that failed"),
+            field<&TaskStatus::block>("block", "that was read last; of MDI, the line"));
 
 struct CodesStatus {
     std::array<int, 17> g{};

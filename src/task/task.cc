@@ -41,7 +41,8 @@ Task::Task(const Parts &parts, Settings settings)
       user_program_(settings_.isUserProgramWaitedFor),
       sequencer_(reader_.queue(), motion_, io_, parts.tools, make_events(), settings_.sequencer),
       planner_mode_({[this](const motion::SetParameter &p) { return motion_.send(p); },
-                     [this](MessageKind kind, const std::string &text) { post(kind, text); }}) {}
+                     [this](MessageKind kind, const std::string &text) { post(kind, text); }}),
+      shown_settings_(settings_.shown) {}
 
 SequencerEvents Task::make_events() {
     SequencerEvents events;
@@ -86,6 +87,7 @@ SequencerEvents Task::make_events() {
 void Task::configure(const std::vector<motion::SetParameter> &parameters) {
     planner_mode_.configure(parameters);
     for (const motion::SetParameter &parameter : parameters) {
+        shown_settings_.note(parameter);
         last_setting_ = motion_.send(parameter);
     }
     motion_.send(motion::SetNumJoints{settings_.num_joints});
@@ -366,6 +368,12 @@ void Task::update_status() {
     }
     task.waiting =
         homing_.isUnderWay() ? Waiting{WaitFor::HOMING, homing_.joint()} : sequencer_.waiting_for();
+    task.delay_left_s = sequencer_.dwell_left_s(now_ns_);
+    task.isInputTimedOut = sequencer_.isInputTimedOut();
+    constexpr int INTERPRETER_ERROR = 5;  // as clients know it
+    task.error_code = run_.error() != nullptr ? INTERPRETER_ERROR : 0;
+    task.block.assign(reader_.canon().block_text());
+    status_.settings = shown_settings_.shown();
     const interp::ActiveCodes codes = reader_.interpreter().active_codes();
     status_.codes = {codes.g, codes.m, codes.settings};
     approach_.show(status_.approach, status_.offsets, status_.codes);

@@ -9,6 +9,7 @@
 #include "io/controller.hh"
 #include "mailbox/desk.hh"
 #include "task/link/motion_link.hh"
+#include "task/link/shown_settings.hh"
 #include "task/link/shown_tools.hh"
 #include "task/run/admission.hh"
 #include "task/run/approach.hh"
@@ -46,6 +47,7 @@ class IoPort {
 
 struct Settings {
     interp::LengthUnits machine_units = interp::LengthUnits::MM;
+    msgs::SettingsStatus shown;  ///< to clients; what motion is told is added by task
     unsigned axis_mask = 7;
     int num_joints = 3;
     int num_spindles = 1;
@@ -86,7 +88,10 @@ class Task {
     /// Hands settings to the motion controller; a refused one comes as a message.
     void configure(const std::vector<motion::SetParameter> &parameters);
     /// One setting, later on; whoever asks has seen that it is no time at which it cannot be.
-    void change(const motion::SetParameter &parameter) { motion_.send(parameter); }
+    void change(const motion::SetParameter &parameter) {
+        shown_settings_.note(parameter);
+        motion_.send(parameter);
+    }
     /// And a table of the errors of a joint's screw.
     void load_compensation(const std::vector<motion::LoadCompensation> &points) {
         motion_.send_table(points);
@@ -176,6 +181,7 @@ class Task {
     PlannerMode planner_mode_;
 
     ShownTools tools_;
+    ShownSettings shown_settings_;
     mailbox::Serial reload_command_ = 0;  ///< LoadToolTable that has not ended; 0: none
     Status status_;
     std::int64_t now_ns_ = 0;

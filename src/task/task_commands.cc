@@ -73,6 +73,9 @@ struct Task::Handler {
     }
     template <command_lists::CarriedOutByMotion C>
     Outcome operator()(const C &command) {
+        if constexpr (std::is_same_v<C, SetMaxVelocity>) {
+            task.shown_settings_.limit_velocity(command.velocity);
+        }
         return order(in_motion_words(command));
     }
     Outcome operator()(const ReverseProgram &) { return order(motion::SetReverse{true}); }

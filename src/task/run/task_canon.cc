@@ -6,6 +6,7 @@ namespace mw::task {
 void TaskCanon::reset() {
     tag_ = {};
     files_.clear();
+    text_.clear();
 }
 
 void TaskCanon::begin_block(const interp::BlockRef &block) {
@@ -22,6 +23,7 @@ void TaskCanon::begin_block(const interp::BlockRef &block) {
     }
     tag_.line = block.line;
     ++tag_.block;
+    text_ = block.text;
 }
 
 void TaskCanon::take(const interp::MachineCall &call) {

@@ -28,6 +28,8 @@ class TaskCanon final : public interp::MachineCanon {
     std::uint32_t blocks() const { return tag_.block; }
     /// The name of a file by the index in SourceTag.
     const std::string &file_name(std::uint32_t index) const { return files_[index]; }
+    /// The block that was read last, as it is written.
+    const std::string &block_text() const { return text_; }
     void reset();
     /// So many have come before.
     void set_blocks(std::uint32_t blocks) { tag_.block = blocks; }
@@ -48,6 +50,7 @@ class TaskCanon final : public interp::MachineCanon {
     geom::Pose last_end_{};
     motion::SourceTag tag_{};
     std::vector<std::string> files_;
+    std::string text_;
 };
 
 }  // namespace mw::task

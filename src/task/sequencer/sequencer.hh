@@ -68,9 +68,10 @@ class Sequencer {
     void on_tool_event(io::ToolEvent event);
     /// What is being waited for: a pin or a state.
     Waiting waiting_for() const;
-
     /// The same in the words of older clients.
     ExecState exec_state() const;
+    /// [s] of a dwell; 0 when there is none.
+    double dwell_left_s(std::int64_t now_ns) const;
 
     double input_value() const { return input_value_; }
     bool isInputTimedOut() const { return isInputTimedOut_; }
@@ -92,9 +93,7 @@ class Sequencer {
     void set_move_listener(MoveListener listener) { move_listener_ = std::move(listener); }
 
   private:
-    enum class Need : std::uint8_t { NOTHING, IO, MOTION, OUTPUTS, MOTION_AND_IO };
     enum class Wait : std::uint8_t { NONE, DWELL, INPUT, TOOL, TOOL_DATA, ORIENT, USER_CODE, SETTING };
-    static Need need_of(const interp::MachineCall &call);
     bool isWaitOver(std::int64_t now_ns);
     bool isInputWaitOver(std::int64_t now_ns);
     bool isOrientWaitOver(std::int64_t now_ns);

@@ -81,12 +81,19 @@ bool Sequencer::isInputWaitOver(std::int64_t now_ns) {
     return isMet || isInputTimedOut_;
 }
 
+double Sequencer::dwell_left_s(std::int64_t now_ns) const {
+    constexpr double NS_PER_S = 1e9;
+    const bool isDwelling = wait_ == Wait::DWELL && deadline_ns_ > now_ns;
+    return isDwelling ? static_cast<double>(deadline_ns_ - now_ns) / NS_PER_S : 0.0;
+}
+
 ExecState Sequencer::exec_state() const {
     switch (wait_) {
     case Wait::NONE: return blocked_;
     case Wait::DWELL:
     case Wait::INPUT: return ExecState::WAITING_FOR_DELAY;
-    case Wait::TOOL: return ExecState::WAITING_FOR_IO;
+    case Wait::TOOL:
+    case Wait::TOOL_DATA: return ExecState::WAITING_FOR_IO;
     case Wait::ORIENT: return ExecState::WAITING_FOR_SPINDLE_ORIENTED;
     case Wait::SETTING: return ExecState::WAITING_FOR_MOTION;
     case Wait::USER_CODE: return ExecState::WAITING_FOR_SYSTEM_CMD;
