@@ -100,8 +100,6 @@ inline constexpr auto INI_KEYS = std::to_array<config::IniKey>({
     config::ini_text("HAL", "TWOPASS", "not empty: the files are gone through twice"),
     config::ini_text("HAL", "HALUI", "not empty: halui takes part"),
     config::ini_list("HALUI", "MDI_COMMAND", "a line for the pin halui.mdi-command-NN, in order"),
-    config::ini_number("DISPLAY", "MAX_FEED_OVERRIDE", "", 1.0, {0.0, config::INI_UNBOUNDED},
-                       "highest feed override that halui asks for"),
     config::ini_number("DISPLAY", "MIN_SPINDLE_OVERRIDE", "", 0.0, {0.0, config::INI_UNBOUNDED},
                        "lowest spindle override that halui asks for"),
     config::ini_number("DISPLAY", "MAX_SPINDLE_OVERRIDE", "", 1.0, {0.0, config::INI_UNBOUNDED},

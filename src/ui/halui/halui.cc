@@ -45,7 +45,6 @@ Result<> Halui::create(hal::Hal &hal, const HaluiSettings &settings) {
     hal_ = &hal;
     comp_id_ = *id;
     settings_ = settings;
-    max_velocity_ = settings.max_velocity;
     mdi_ = MdiPins(settings.mdi_commands);
     Result<> status;
     make_pins(status);
@@ -248,10 +247,8 @@ void Halui::step_dials() {
     step_dial(feed_, now.feed, {0, settings_.max_feed_override},
               [](double value) { return msgs::SetFeedOverride{value}; });
     step_dial(rapid_, now.rapid, {0, 1}, [](double value) { return msgs::SetRapidOverride{value}; });
-    step_dial(velocity_, max_velocity_, {0, settings_.max_velocity}, [this](double value) {
-        max_velocity_ = value;
-        return msgs::SetMaxVelocity{value};
-    });
+    step_dial(velocity_, client_->status().settings.max_velocity, {0, settings_.max_velocity},
+              [](double value) { return msgs::SetMaxVelocity{value}; });
 }
 
 void Halui::step_spindle(int number) {
@@ -313,7 +310,7 @@ void Halui::show() {
     }
     feed_.pins.write(status.overrides.feed);
     rapid_.pins.write(status.overrides.rapid);
-    velocity_.pins.write(max_velocity_);
+    velocity_.pins.write(status.settings.max_velocity);
 }
 
 void Halui::show_axes(const msgs::MachineStatus &status) {

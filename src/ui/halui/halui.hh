@@ -85,7 +85,6 @@ class Halui {
     Turned<pins::VELOCITY_DIAL> velocity_;
     std::vector<hal::UserPinSet<pins::MDI_BUTTONS>> mdi_buttons_;
     MdiPins mdi_;
-    double max_velocity_ = 0;  ///< as it was asked for last
     double tool_diameter_ = 0;
     std::vector<client::Serial> pending_;  ///< whose end is not known yet
     bool isRefused_ = false;

@@ -27,7 +27,7 @@ TEST_F(HaluiInputs, DialsFollowWheelsAndButtons_J4) {
                               {"spindle.0.override", [](double v) { return SetSpindleOverride{v, 0}; }, 1.2,
                                [](MachineStatus &s, double v) { s.spindles[0].override_factor = v; }},
                               {"max-velocity", [](double v) { return SetMaxVelocity{v}; }, 100,
-                               [](MachineStatus &, double) {}, 100}};
+                               [](MachineStatus &s, double v) { s.settings.max_velocity = v; }, 100}};
     for (const DialCase &one : CASES) {
         SCOPED_TRACE(one.name);
         const std::string name = std::string(one.name) + '.';

@@ -147,6 +147,7 @@ TEST_F(HaluiTest, TheLampsOfAJointAreItsOwnAndThoseOfTheSelectedOne_J4) {
 
 TEST_F(HaluiTest, NumbersAreShown_J4) {
     status->tool.in_spindle = 7;
+    status->settings.max_velocity = 100;
     status->overrides.feed = 0.75;
     status->overrides.rapid = 0.5;
     status->spindles[0].override_factor = 1.1;
