@@ -64,14 +64,10 @@ bool carry_out(const Visitor &visitor, const interp::MachineCall &item) {
         item);
 }
 
-}  // namespace
+/// What must be done before a call is begun.
+enum class Need : std::uint8_t { NOTHING, IO, MOTION, OUTPUTS, MOTION_AND_IO };
 
-Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, ToolStore &tools,
-                     SequencerEvents events, SequencerSettings settings)
-    : queue_(queue), motion_(motion), io_(io), tools_(tools), events_(std::move(events)),
-      settings_(std::move(settings)), tool_change_(settings_.changer_error_text) {}
-
-Sequencer::Need Sequencer::need_of(const interp::MachineCall &call) {
+Need need_of(const interp::MachineCall &call) {
     return std::visit(
         Overloaded{
             [](const OneOf<interp::LineMove, interp::ArcMove, interp::SetSpindleMode, interp::OperatorMessage,
@@ -95,6 +91,13 @@ Sequencer::Need Sequencer::need_of(const interp::MachineCall &call) {
         },
         call);
 }
+
+}  // namespace
+
+Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, ToolStore &tools,
+                     SequencerEvents events, SequencerSettings settings)
+    : queue_(queue), motion_(motion), io_(io), tools_(tools), events_(std::move(events)),
+      settings_(std::move(settings)), tool_change_(settings_.changer_error_text) {}
 
 void Sequencer::step(std::int64_t now_ns) {
     isHeld_ = false;

@@ -108,12 +108,9 @@ class Sequencer {
     void set_move_listener(MoveListener listener) { move_listener_ = std::move(listener); }
 
   private:
-    enum class Need : std::uint8_t { NOTHING, IO, MOTION, OUTPUTS, MOTION_AND_IO };
     enum class Wait : std::uint8_t { NONE, DWELL, INPUT, TOOL, TOOL_DATA, ORIENT, USER_CODE, SETTING };
-    static Need need_of(const interp::MachineCall &call);
     bool isWaitOver(std::int64_t now_ns);
     bool isInputWaitOver(std::int64_t now_ns);
-    bool isToolDataRead();
     bool isOrientWaitOver(std::int64_t now_ns);
     bool isReady(const Item &item);
     bool isStepBoundary(const Item &item);

@@ -15,7 +15,12 @@ bool Sequencer::isWaitOver(std::int64_t now_ns) {
     case Wait::DWELL: isOver = now_ns >= deadline_ns_; break;
     case Wait::INPUT: isOver = isInputWaitOver(now_ns); break;
     case Wait::TOOL: isOver = io_.action() == io::ToolAction::IDLE; break;
-    case Wait::TOOL_DATA: isOver = isToolDataRead(); break;
+    case Wait::TOOL_DATA: {
+        const std::optional<Result<>> result = tools_.reload_result();
+        isOver = result.has_value();
+        check(result.value_or(Result<>{}));
+        break;
+    }
     case Wait::ORIENT: isOver = isOrientWaitOver(now_ns); break;
     case Wait::SETTING: isOver = motion_.isAnswered(awaited_setting_); break;
     case Wait::USER_CODE: {
@@ -31,14 +36,6 @@ bool Sequencer::isWaitOver(std::int64_t now_ns) {
         wait_ = Wait::NONE;
     }
     return isOver && !hasFailed_;
-}
-
-bool Sequencer::isToolDataRead() {
-    const std::optional<Result<>> result = tools_.reload_result();
-    if (result.has_value()) {
-        check(*result);
-    }
-    return result.has_value();
 }
 
 bool Sequencer::isOrientWaitOver(std::int64_t now_ns) {
