@@ -219,6 +219,14 @@ double JointDesign::slide_at(double turned) const {
     return x;
 }
 
+double Design::rise_s() const {
+    double most = jerk > 0 ? acceleration / jerk : 0;
+    for (const JointDesign &j : joints) {
+        most = std::max(most, j.jerk > 0 ? j.acceleration / j.jerk : 0);
+    }
+    return isJerkLimited ? most : 0;
+}
+
 void wear(sim::Random &random, Design &design) {
     const bool hasPlay = random.chance(0.3);
     const bool hasScrews = random.chance(0.3);
@@ -245,6 +253,16 @@ void wear(sim::Random &random, Design &design) {
             j.home_offset = j.slide_at(j.index_at - lag);
         }
     }
+}
+
+void equip_spindle(sim::Random &random, Design &design) {
+    sim::SpindleTraits &s = design.spindle;
+    design.hasSpindlePlant = true;
+    s.ramp = random.real(7000, 12000) / 60;
+    s.lag_s = random.chance(0.5) ? 0 : random.real(0.001, 0.006);
+    s.reaction_s = random.chance(0.5) ? 0 : random.real(0.001, 0.015);
+    s.counts_per_turn = random.chance(0.7) ? 4096 : 1024;
+    s.first_turns = random.real(0, 1);
 }
 
 void shorten(sim::Random &random, Design &design) {

@@ -9,6 +9,7 @@
 
 #include "sim/axis.hh"
 #include "sim/random.hh"
+#include "sim/spindle_plant.hh"
 
 namespace mw::campaign {
 
@@ -60,7 +61,11 @@ struct Design {
     std::vector<JointDesign> joints;
     std::vector<AxisDesign> axes;
     std::string hal_lines;
+    bool hasSpindlePlant = false;  ///< else one that follows a ramp exactly
+    sim::SpindleTraits spindle;
 
+    /// What acceleration takes to rise, of the slowest [s]; 0: no jerk limits.
+    double rise_s() const;
     /// Writes campaign.ini and campaign.hal; the path of the INI file.
     std::string write(const std::filesystem::path &folder) const;
 };
@@ -68,6 +73,8 @@ struct Design {
 Design make_design(sim::Random &random);
 /// Play and screws that are not even, and what the INI file says about them.
 void wear(sim::Random &random, Design &design);
+/// A spindle with a drive and an encoder.
+void equip_spindle(sim::Random &random, Design &design);
 /// Ways become shorter and homing quicker, so that a session has time for more.
 void shorten(sim::Random &random, Design &design);
 

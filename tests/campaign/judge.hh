@@ -31,7 +31,8 @@ struct Sample {
     std::uint64_t cycle = 0;
     bool isChainClosed = true, isEnableOn = true;  ///< as the servo cycle has read them
     bool isSpindleOn = false;
-    double spindle_rpm = 0;
+    double spindle_rpm = 0;     ///< commanded
+    double spindle_turns = 0;   ///< in truth
     std::uint32_t outputs = 0;  ///< bit per output that can do work: digital outputs, flood, mist
     bool areAxesKnown = false;  ///< all homed, teleop or coord
     geom::Pose axes;            ///< commanded
@@ -64,6 +65,8 @@ class Judge {
     /// sample; it may take `delay` cycles until motion hears of it.
     void stop(Stop how, int delay);
     void sample(const Sample &s);
+    /// Stops may take so much longer: what is in step with a spindle stands when that does.
+    double stops_with_spindle_s = 0;
 
     bool isSound() const { return report_.empty(); }
     /// What was broken first: rule, cycle, figures.

@@ -99,6 +99,8 @@ Act make_act(sim::Random &random, const Design &design) {
         act.blocks = Writer(random, design).write(random.real(0.5, 2));
     } else if (kind < 0.6 && design.isTrivial) {
         act = Writer(random, design).write_probing();
+    } else if (kind < 0.72 && design.isTrivial) {
+        act = Writer(random, design).write_in_step();
     } else if (kind < 0.9) {
         act = make_jog(random, design);
     } else {
@@ -108,7 +110,7 @@ Act make_act(sim::Random &random, const Design &design) {
 }
 
 void make_troubles(sim::Random &random, const Design &design, Act &act) {
-    const int span_ms = act.work == Work::PROGRAM || act.work == Work::PROBE ? 2000 : 900;
+    const int span_ms = isProgram(act.work) ? 2000 : 900;
     while (random.chance(0.35)) {
         act.troubles.push_back(make_trouble(random, design, true, span_ms));
     }
@@ -117,6 +119,10 @@ void make_troubles(sim::Random &random, const Design &design, Act &act) {
         // Who is dead does nothing any more: only the last act's task may die.
         Trouble &last = act.troubles.back();
         last.what = last.what == Upset::TASK_DEAD ? Upset::ABORT : last.what;
+    }
+    for (Trouble &t : act.troubles) {
+        // Who is in step needs what it measures.
+        t.what = t.what == Upset::SPINDLE_NAN && act.work == Work::SPINDLE ? Upset::PAUSE : t.what;
     }
     std::ranges::sort(act.troubles, {}, &Trouble::at_ms);
 }
@@ -129,6 +135,7 @@ Plan make_short_plan(std::uint64_t seed) {
     plan.design = make_design(random);
     shorten(random, plan.design);
     wear(random, plan.design);
+    equip_spindle(random, plan.design);
     plan.least_s = random.real(10.5, 14);
     for (int n = 0; n < MOST_ACTS; ++n) {
         Act act = make_act(random, plan.design);

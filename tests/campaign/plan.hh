@@ -27,6 +27,22 @@ struct Contact {
     double low = 0, high = 0;
 };
 
+/// What a program does in step with the spindle.
+enum class Sync {
+    NONE,
+    THREAD,    ///< passes of one helix: G33, G76
+    TAP,       ///< G33.1
+    PER_TURN,  ///< G95
+    SURFACE,   ///< G96 while X moves
+};
+struct SyncWish {
+    Sync kind = Sync::NONE;
+    double lead = 0;          ///< [unit/turn]; SURFACE: [m/min]
+    double from = 0, to = 0;  ///< along Z; SURFACE: along X
+    double rpm = 0;           ///< with its sign; SURFACE: the most
+    int passes = 0;           ///< at least
+};
+
 /// A line of a program with the path that it asks for, in machine coordinates.
 struct Block {
     std::string text;
@@ -39,7 +55,11 @@ struct Block {
     ProbeMove probe;
 };
 
-enum class Work { PROGRAM, JOG_JOINT, JOG_AXIS, HOME, PROBE };
+enum class Work { PROGRAM, JOG_JOINT, JOG_AXIS, HOME, PROBE, SPINDLE };
+/// A program is run.
+constexpr bool isProgram(Work work) {
+    return work == Work::PROGRAM || work == Work::PROBE || work == Work::SPINDLE;
+}
 
 enum class Upset {
     ABORT,          ///< an operator's stop
@@ -87,6 +107,7 @@ struct Act {
     std::vector<Block> blocks;
     bool isToFail = false;  ///< a program that must not come to its end
     std::vector<Contact> contacts;
+    SyncWish sync;
     int target = 0;       ///< joint or axis
     double distance = 0;  ///< 0: continuous
     double velocity = 0;

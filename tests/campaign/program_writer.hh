@@ -20,8 +20,18 @@ class Writer {
     std::vector<Block> write(double seconds);
     /// Finds the walls of a room and leaves them again, or misses them.
     Act write_probing();
+    /// In step with the spindle.
+    Act write_in_step();
 
   private:
+    void write_threads(SyncWish &sync);
+    void write_cycle(SyncWish &sync);
+    void write_taps(SyncWish &sync);
+    void write_per_turn(SyncWish &sync);
+    void write_surface(SyncWish &sync);
+    double speed_for_z(double share) const;
+    double way_to_speed(double v) const;
+    void start_spindle(double rpm);
     double probe(const Contact &contact, bool isHigh, int kind, double to);
     bool probe_wrongly(const Contact &contact, bool isHigh, bool isTouching);
 

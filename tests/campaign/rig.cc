@@ -38,7 +38,8 @@ void LateScheduler::plan(void *self, std::int64_t period_ns) {
     }
 }
 
-Rig::Rig(const Design &design, std::uint64_t seed, std::string ini) : design_(design), ini_(std::move(ini)) {
+Rig::Rig(const Design &design, std::uint64_t seed, std::string ini)
+    : design_(design), ini_(std::move(ini)), spindle_(design.spindle) {
     for (const JointDesign &j : design.joints) {
         const double shaft = j.start + j.screw_error_at(j.start) + j.shaft_offset;
         sim::AxisSettings drive = j.drive;
@@ -157,13 +158,24 @@ void Rig::run_plants() {
         *pins.pos_limit = joint_faults[j].isOnLimit;
         *pins.amp_fault = p.amplifier.isFaulted();
     }
+    run_spindle();
+}
+
+void Rig::run_spindle() {
     const double wanted = *pins_.spindle.speed_out;
-    const double change =
-        std::clamp(wanted - spindle_rpm_, -SPINDLE_RAMP * PERIOD_S, SPINDLE_RAMP * PERIOD_S);
-    spindle_rpm_ += std::isfinite(change) ? change : 0;
-    spindle_turns_ += spindle_rpm_ / 60 * PERIOD_S;
+    if (design_.hasSpindlePlant) {
+        spindle_.run(std::isfinite(wanted) ? wanted / 60 : 0, 0, PERIOD_S);
+        spindle_rpm_ = 60 * spindle_.speed();
+        spindle_turns_ = spindle_.turns();
+    } else {
+        const double change =
+            std::clamp(wanted - spindle_rpm_, -SPINDLE_RAMP * PERIOD_S, SPINDLE_RAMP * PERIOD_S);
+        spindle_rpm_ += std::isfinite(change) ? change : 0;
+        spindle_turns_ += spindle_rpm_ / 60 * PERIOD_S;
+    }
+    const double shown = design_.hasSpindlePlant ? spindle_.shown_turns() : spindle_turns_;
     *pins_.spindle.at_speed = std::abs(wanted - spindle_rpm_) < AT_SPEED_RPM;
-    *pins_.spindle.revs = faults.isSpindleNan ? NAN_VALUE : spindle_turns_;
+    *pins_.spindle.revs = faults.isSpindleNan ? NAN_VALUE : shown;
     *pins_.spindle.speed_in = faults.isSpindleNan ? NAN_VALUE : spindle_rpm_ / 60;
 }
 
@@ -192,6 +204,7 @@ void Rig::take_sample() {
     sample_.areAxesKnown = *pins_.are_all_homed && (*pins_.is_coord || *pins_.is_teleop);
     sample_.isSpindleOn = *pins_.spindle.is_on;
     sample_.spindle_rpm = *pins_.spindle.speed_out;
+    sample_.spindle_turns = spindle_turns_;
     sample_.outputs = 0;
     for (std::size_t i = 0; i < pins_.outputs.size(); ++i) {
         sample_.outputs |= *pins_.outputs[i] ? 1U << i : 0U;

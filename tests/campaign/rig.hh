@@ -20,6 +20,7 @@
 #include "sim/axis.hh"
 #include "sim/bouncing_switch.hh"
 #include "sim/encoder.hh"
+#include "sim/spindle_plant.hh"
 
 namespace mw::campaign {
 
@@ -117,6 +118,7 @@ class Rig final : public machine::Machine {
     };
     void step_task();
     void run_plants();
+    void run_spindle();
     double beyond_wall(const Wall &wall) const;
     double askew(std::size_t joint) const;
     bool isProbeTouching() const;
@@ -135,6 +137,7 @@ class Rig final : public machine::Machine {
     std::vector<Plant> plants_;
     MachinePins pins_{};
     double spindle_rpm_ = 0, spindle_turns_ = 0;
+    sim::SpindlePlant spindle_;
     std::uint64_t cycles_ = 0;
     Sample sample_;
 };

@@ -59,10 +59,12 @@ void Session::cycle() {
         for (const AxisDesign &a : plan_.design.axes) {
             trace_ << fmt::format(" {:.9g}", s.axes[a.axis]);
         }
-        trace_ << '\n';
+        trace_ << fmt::format(" {:.9g} {:.9g}\n", s.spindle_rpm, s.spindle_turns);
     }
     if (isRecording_) {
         path_.push_back(s.axes);
+        turns_.push_back(s.spindle_turns);
+        rpm_.push_back(s.spindle_rpm);
     }
     for (const JointSample &j : s.joints) {
         verdict_.hash = (verdict_.hash ^ std::bit_cast<std::uint64_t>(j.motor_cmd)) * 0x100000001b3U;
@@ -184,6 +186,7 @@ bool Session::prepare() {
     act_ = nullptr;
     going_.clear();
     rig_->set_contacts({});
+    judge_.stops_with_spindle_s = 0;
     isStopped_ = isDisturbed_ = false;
     rig_->repair();
     for (int i = 0; i < 5 && !isOver(); ++i) {
@@ -248,7 +251,8 @@ void Session::perform(const Act &act) {
     isStopped_ = isDisturbed_ = false;
     switch (act.work) {
     case Work::PROGRAM:
-    case Work::PROBE: run_program(act); break;
+    case Work::PROBE:
+    case Work::SPINDLE: run_program(act); break;
     case Work::JOG_JOINT:
     case Work::JOG_AXIS: jog(act); break;
     case Work::HOME:

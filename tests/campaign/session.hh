@@ -70,6 +70,10 @@ class Session {
     void begin_stop(const Trouble &t);
     void end(const Trouble &t);
     void check_program(const Act &act, const geom::Pose &from, double took_s);
+    void check_sync(const Act &act, End end);
+    void check_helix(const SyncWish &sync);
+    void check_per_turn(const SyncWish &sync);
+    void check_surface(const SyncWish &sync);
     void check_probing(const Act &act, End end);
     double estimate(const Act &act, const geom::Pose &from) const;
 
@@ -94,6 +98,7 @@ class Session {
     bool isStopped_ = false, isDisturbed_ = false;
     bool isRecording_ = false;
     std::vector<geom::Pose> path_;
+    std::vector<double> turns_, rpm_;     ///< of the spindle, with path_
     std::vector<std::string> told_;       ///< by the program
     std::map<int, double> beyond_walls_;  ///< how far the probe has been, by axis
 };

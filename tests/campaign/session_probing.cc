@@ -18,7 +18,8 @@ double way_to_stop(const Design &design, const JointDesign &joint, double speed)
     const double jerk = design.jerk > 0 && joint.jerk > 0 ? std::min(joint.jerk, design.jerk)
                                                           : std::max(joint.jerk, design.jerk);
     const double stop_s = speed / a + (design.isJerkLimited && jerk > 0 ? 2.5 * a / jerk : 0);
-    return speed * (FACTOR * stop_s + SLACK_S);
+    constexpr double DRIVE = 0.03;
+    return speed * (FACTOR * stop_s + SLACK_S) + DRIVE;
 }
 
 /// What is said of a probing move: found or not, and where.

@@ -66,9 +66,17 @@ void Session::run_program(const Act &act) {
     const geom::Pose from = rig_->sample().axes;
     path_.clear();
     path_.push_back(from);
+    turns_.assign(1, rig_->sample().spindle_turns);
+    rpm_.assign(1, rig_->sample().spindle_rpm);
     told_.clear();
     beyond_walls_.clear();
     rig_->set_contacts(act.contacts);
+    if (act.sync.kind == Sync::TAP) {
+        constexpr double LAGS = 7, SLACK_S = 0.05;
+        const sim::SpindleTraits &spindle = plan_.design.spindle;
+        judge_.stops_with_spindle_s = 2 * std::abs(act.sync.rpm) / 60 / spindle.ramp + LAGS * spindle.lag_s +
+                                      spindle.reaction_s + SLACK_S;
+    }
     isRecording_ = true;
     begin_troubles(act);
     judge_.allow(Leave::WORK);
@@ -88,6 +96,8 @@ void Session::run_program(const Act &act) {
         fail("work", "the program must not come to its end, and does");
     } else if (act.work == Work::PROBE) {
         check_probing(act, end);
+    } else if (act.work == Work::SPINDLE) {
+        check_sync(act, end);
     } else if (end == End::DONE) {
         ++verdict_.ended;
         check_program(act, from, took_s);
