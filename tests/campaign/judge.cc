@@ -81,7 +81,7 @@ void Judge::stop(Stop how, int delay) {
 
 void Judge::begin_stop() {
     stop_.least_s = time_to_stop();
-    stop_.due_s = STOP_FACTOR * stop_.least_s + STOP_SLACK_S + time_to_correct() + stops_with_spindle_s;
+    stop_.due_s = STOP_FACTOR * stop_.least_s + STOP_SLACK_S + time_to_correct() + stops_later_s;
 }
 
 /// What corrections take to come to rest, of which the motion on top of which they come knows nothing.
@@ -394,9 +394,10 @@ void Judge::check_rest(const Sample &s) {
     }
     if (isStanding || !isOn) {
         constexpr double WORTH_A_LOOK_S = 0.05;
-        slowest_stop_ = stop_.least_s > WORTH_A_LOOK_S
-                            ? std::max(slowest_stop_, (took - time_to_correct()) / stop_.least_s)
-                            : slowest_stop_;
+        slowest_stop_ =
+            stop_.least_s > WORTH_A_LOOK_S
+                ? std::max(slowest_stop_, (took - time_to_correct() - stops_later_s) / stop_.least_s)
+                : slowest_stop_;
         // The mean that keeps the jerk may stand before it is sure of it.
         const int off_within = 10 + static_cast<int>(design_.rise_s() / period_);
         const bool mustBeOff = stop_.how == Stop::ALONG_THEN_OFF;

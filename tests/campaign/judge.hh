@@ -65,8 +65,9 @@ class Judge {
     /// sample; it may take `delay` cycles until motion hears of it.
     void stop(Stop how, int delay);
     void sample(const Sample &s);
-    /// Stops may take so much longer: what is in step with a spindle stands when that does.
-    double stops_with_spindle_s = 0;
+    /// Stops may take so much longer: what is in step with a spindle stands when that does, and wheels may
+    /// have a part of the acceleration only.
+    double stops_later_s = 0;
 
     bool isSound() const { return report_.empty(); }
     /// What was broken first: rule, cycle, figures.
@@ -74,6 +75,8 @@ class Judge {
     /// Rules that are known to be broken: they are counted, and end nothing.
     std::set<std::string> known;
     const std::map<std::string, int> &broken_known() const { return broken_known_; }
+    /// What the speeds of the last sample need to come to rest, by all limits [s].
+    double time_to_stop() const;
     /// Nothing moves and no stop is awaited.
     bool isAtRest() const { return standing_ >= 3 && !stop_.isAwaited; }
     /// The time that stops took over what the limits need, the largest.
@@ -101,7 +104,6 @@ class Judge {
     void check_rest(const Sample &s);
     void check_stale(const Sample &s, bool wasAtRest);
     void begin_stop();
-    double time_to_stop() const;
     double time_to_correct() const;
     void fail(const std::string &rule, const std::string &text);
 

@@ -41,6 +41,19 @@ Act make_jog(sim::Random &random, const Design &design) {
     return act;
 }
 
+/// A jog by wheel, on the way of one by command.
+void turn_wheel(sim::Random &random, Act &act) {
+    Turning &t = act.turning;
+    t.isJoint = act.work == Work::JOG_JOINT;
+    t.scale = std::round(std::pow(10.0, random.real(-3, 0)) * 1e4) / 1e4;
+    t.counts_per_cycle = random.whole(1, 4) * (random.chance(0.5) ? 1 : -1);
+    t.pause = random.whole(1, 30);
+    t.cycles = random.whole(20, 800);
+    t.isVelocityMode = random.chance(0.4);
+    t.accel_fraction = random.chance(0.7) ? 1 : random.real(0.1, 1);
+    act.work = Work::WHEEL;
+}
+
 Trouble make_trouble(sim::Random &random, const Design &design, bool isPassingWanted, int span_ms) {
     Trouble t;
     const int first_passing = static_cast<int>(Upset::PAUSE);
@@ -103,6 +116,11 @@ Act make_act(sim::Random &random, const Design &design) {
         act = Writer(random, design).write_in_step();
     } else if (kind < 0.9) {
         act = make_jog(random, design);
+        if (random.chance(0.3)) {
+            turn_wheel(random, act);
+        } else if (act.distance == 0 && random.chance(0.4)) {
+            act.lease_ms = random.whole(30, 400);
+        }
     } else {
         act.work = Work::HOME;
     }

@@ -55,7 +55,7 @@ struct Block {
     ProbeMove probe;
 };
 
-enum class Work { PROGRAM, JOG_JOINT, JOG_AXIS, HOME, PROBE, SPINDLE };
+enum class Work { PROGRAM, JOG_JOINT, JOG_AXIS, HOME, PROBE, SPINDLE, WHEEL };
 /// A program is run.
 constexpr bool isProgram(Work work) {
     return work == Work::PROGRAM || work == Work::PROBE || work == Work::SPINDLE;
@@ -102,6 +102,16 @@ struct Trouble {
     double value = 0;
 };
 
+/// How somebody turns a wheel.
+struct Turning {
+    bool isJoint = true;
+    double scale = 0;            ///< of a count [units]
+    int counts_per_cycle = 0;    ///< with its sign
+    int cycles = 0, pause = 10;  ///< counts come for so long, every so many cycles
+    bool isVelocityMode = false;
+    double accel_fraction = 1;
+};
+
 struct Act {
     Work work = Work::PROGRAM;
     std::vector<Block> blocks;
@@ -112,6 +122,8 @@ struct Act {
     double distance = 0;  ///< 0: continuous
     double velocity = 0;
     int length_ms = 500;  ///< of a continuous jog
+    int lease_ms = 0;     ///< of it: whoever jogs goes without a stop; 0: none
+    Turning turning;
     std::vector<Trouble> troubles;
 };
 

@@ -246,6 +246,26 @@ bool Rig::isProbeTouching() const {
     return std::ranges::any_of(walls_, [this](const Wall &w) { return areWallsUp_ && beyond_wall(w) > 0; });
 }
 
+void Rig::link_wheel(const Turning *turning, int target) {
+    if (wheel_ != nullptr) {
+        *wheel_->is_enabled = false;
+    }
+    wheel_ = nullptr;
+    if (turning == nullptr) {
+        return;
+    }
+    const auto n = static_cast<std::size_t>(target);
+    wheel_ = turning->isJoint ? &pins_.joint_wheels[n] : &pins_.axis_wheels[n];
+    *wheel_->scale = turning->scale;
+    *wheel_->is_velocity_mode = turning->isVelocityMode;
+    *wheel_->accel_fraction = turning->accel_fraction;
+    *wheel_->is_enabled = true;
+}
+
+void Rig::turn_wheel(int counts) {
+    *wheel_->counts = *wheel_->counts + counts;
+}
+
 void Rig::lose_encoder(int joint, bool isLost) {
     Plant &p = plants_[static_cast<std::size_t>(joint)];
     p.encoder.lose(isLost);

@@ -94,6 +94,10 @@ class Rig final : public machine::Machine {
     /// How far the probe is beyond the walls of its room along an axis; below 0: within.
     double beyond_walls(int axis) const;
 
+    /// Links a wheel; nullptr: none moves anything.
+    void link_wheel(const Turning *turning, int target);
+    void turn_wheel(int counts);
+
     void lose_encoder(int joint, bool isLost);
     void jump_encoder(int joint, double by);
     void trip_amplifier(int joint) { plants_[static_cast<std::size_t>(joint)].amplifier.trip(); }
@@ -134,6 +138,7 @@ class Rig final : public machine::Machine {
     rtapi::PeriodicId periodic_{};
     std::vector<Wall> walls_;
     bool areWallsUp_ = false;
+    WheelPins *wheel_ = nullptr;
     std::vector<Plant> plants_;
     MachinePins pins_{};
     double spindle_rpm_ = 0, spindle_turns_ = 0;

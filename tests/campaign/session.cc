@@ -186,7 +186,8 @@ bool Session::prepare() {
     act_ = nullptr;
     going_.clear();
     rig_->set_contacts({});
-    judge_.stops_with_spindle_s = 0;
+    rig_->link_wheel(nullptr, 0);
+    judge_.stops_later_s = 0;
     isStopped_ = isDisturbed_ = false;
     rig_->repair();
     for (int i = 0; i < 5 && !isOver(); ++i) {
@@ -255,6 +256,7 @@ void Session::perform(const Act &act) {
     case Work::SPINDLE: run_program(act); break;
     case Work::JOG_JOINT:
     case Work::JOG_AXIS: jog(act); break;
+    case Work::WHEEL: turn(act); break;
     case Work::HOME:
         begin_troubles(act);
         home();
@@ -266,61 +268,6 @@ void Session::perform(const Act &act) {
         cycle();
     }
     settle(30);
-}
-
-void Session::jog(const Act &act) {
-    const bool isJoint = act.work == Work::JOG_JOINT;
-    if (!set_mode(msgs::Mode::MANUAL) || ask(msgs::SetTeleop{!isJoint}) != End::DONE) {
-        fail("work", "the jogs' mode is not set with the machine at rest");
-        return;
-    }
-    settle(2);
-    const auto place = [&] {
-        return isJoint ? rig_->sample().joints[static_cast<std::size_t>(act.target)].pos_cmd
-                       : rig_->sample().axes[act.target];
-    };
-    const double from = place();
-    begin_troubles(act);
-    judge_.allow(Leave::MOVE);
-    const bool isIncrement = act.distance != 0;
-    const client::Serial posted =
-        isIncrement ? post(msgs::JogIncrement{isJoint, act.target, std::abs(act.velocity), act.distance})
-                    : post(msgs::JogContinuous{isJoint, act.target, act.velocity, 0, false});
-    const End end = wait(posted, 5);
-    for (int i = 0; i < act.length_ms && !isOver(); ++i) {
-        step_troubles();
-        cycle();
-    }
-    if (!isIncrement) {
-        ask(msgs::JogStop{isJoint, act.target});
-    }
-    for (int i = 0; i < 120000 && !isOver() && !(judge_.isAtRest() && rig_->isInPosition()); ++i) {
-        step_troubles();
-        cycle();
-    }
-    const bool isCalm = !isStopped_ && !isDisturbed_ && !isOver();
-    const auto at = static_cast<std::size_t>(act.target);
-    if (isCalm && plan_.design.isTrivial) {
-        double low = -1e300;
-        double high = 1e300;
-        if (isJoint) {
-            low = plan_.design.joints[at].low;
-            high = plan_.design.joints[at].high;
-        }
-        for (const AxisDesign &a : plan_.design.axes) {
-            low = !isJoint && a.axis == act.target ? a.low : low;
-            high = !isJoint && a.axis == act.target ? a.high : high;
-        }
-        // One that would end beyond a limit is refused. An e-stop may have let it run out beyond them before.
-        const double wanted = from + act.distance;
-        const bool fits = wanted >= low && wanted <= high && from > low && from < high;
-        if (end != End::DONE && fits) {
-            fail("work", fmt::format("a jog from {:.6g} by {:.6g} is refused", from, act.distance));
-        } else if (isIncrement && end == End::DONE && std::abs(place() - wanted) > 1e-6) {
-            fail("work",
-                 fmt::format("a jog from {:.6g} by {:.6g} ends at {:.6g}", from, act.distance, place()));
-        }
-    }
 }
 
 }  // namespace mw::campaign

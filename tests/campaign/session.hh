@@ -64,6 +64,11 @@ class Session {
     void perform(const Act &act);
     void run_program(const Act &act);
     void jog(const Act &act);
+    void keep_lease(const Act &act);
+    void turn(const Act &act);
+    bool begin_manual(bool isJoint);
+    double place_of(const Act &act, bool isJoint) const;
+    std::pair<double, double> range_of(const Act &act, bool isJoint) const;
     void begin_troubles(const Act &act);
     void step_troubles();
     void begin(const Trouble &t);

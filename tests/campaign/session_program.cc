@@ -74,8 +74,8 @@ void Session::run_program(const Act &act) {
     if (act.sync.kind == Sync::TAP) {
         constexpr double LAGS = 7, SLACK_S = 0.05;
         const sim::SpindleTraits &spindle = plan_.design.spindle;
-        judge_.stops_with_spindle_s = 2 * std::abs(act.sync.rpm) / 60 / spindle.ramp + LAGS * spindle.lag_s +
-                                      spindle.reaction_s + SLACK_S;
+        judge_.stops_later_s = 2 * std::abs(act.sync.rpm) / 60 / spindle.ramp + LAGS * spindle.lag_s +
+                               spindle.reaction_s + SLACK_S;
     }
     isRecording_ = true;
     begin_troubles(act);
