@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "campaign/design.hh"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -255,6 +256,21 @@ void wear(sim::Random &random, Design &design) {
     }
 }
 
+bool Design::hasOffsets() const {
+    return std::ranges::any_of(axes, [](const AxisDesign &a) { return a.offset_ratio > 0; });
+}
+
+void allow_offsets(sim::Random &random, Design &design) {
+    const bool isWorn =
+        std::ranges::any_of(design.joints, [](const JointDesign &j) { return j.isCorrected(); });
+    if (isWorn || !design.isTrivial || !random.chance(0.4)) {
+        return;
+    }
+    for (AxisDesign &a : design.axes) {
+        a.offset_ratio = random.chance(0.6) ? rounded(random.real(0.1, 0.6), 0.01) : 0;
+    }
+}
+
 void equip_spindle(sim::Random &random, Design &design) {
     sim::SpindleTraits &s = design.spindle;
     design.hasSpindlePlant = true;
@@ -369,6 +385,7 @@ std::string Design::write(const std::filesystem::path &folder) const {
     }
     for (const AxisDesign &a : axes) {
         out += fmt::format("[AXIS_{}]\n{}", geom::AXIS_LETTERS[a.axis], limits_of(a));
+        out += a.offset_ratio > 0 ? fmt::format("OFFSET_AV_RATIO = {}\n", a.offset_ratio) : std::string();
     }
     std::ofstream(folder / "campaign.ini") << out;
     return (folder / "campaign.ini").string();

@@ -33,6 +33,12 @@ testing::LimitChecker checker_of(const JointDesign &j, bool isJerk, double perio
     return {{limit}, period_s, RATE_ROUNDING};
 }
 
+/// Of the motor, without the external offset: that has been asked for by HAL pins and goes on as long as it
+/// is.
+double own_place(const JointSample &q) {
+    return q.motor_cmd + q.turned - q.offset;
+}
+
 /// How exactly homing knows where a slide is.
 double found_within(const JointDesign &d, double period_s) {
     const bool hasIndex = d.home_kind == HomeKind::SWITCH_AND_INDEX;
@@ -95,6 +101,15 @@ double Judge::time_to_correct() const {
                                   (hasJerk ? 2.5 * d.acceleration / d.jerk : 0));
     }
     return most;
+}
+
+/// An offset on its own, from its highest speed.
+double Judge::time_to_brake() const {
+    double most = 0;
+    for (const JointDesign &d : design_.joints) {
+        most = std::max(most, d.velocity / d.acceleration);
+    }
+    return most + 3 * design_.rise_s();
 }
 
 /// From the speeds of the last sample, by every joint's own acceleration and jerk and those along the path.
@@ -172,6 +187,10 @@ void Judge::check_amplifiers(const Sample &s) {
                                     most));
         }
         const bool isRise = q.isAmpOn && !before.isAmpOn;
+        if (isRise && q.offset != 0) {
+            fail("offset",
+                 fmt::format("joint {} is switched on with an external offset of {:.6g}", j, q.offset));
+        }
         if (isRise && !maySwitchOn_) {
             fail("energise", fmt::format("amplifier of joint {} comes on by itself", j));
         }
@@ -336,8 +355,8 @@ void Judge::check_stale(const Sample &s, bool wasAtRest) {
         const JointSample &q = s.joints[j];
         const JointSample &before = last_.joints[j];
         const bool isJudged = isHeld_ && wasHeld && q.isAmpOn && before.isAmpOn;
-        const double place = q.motor_cmd + q.turned;
-        const double held = isJudged ? joints_[j].held : isHeld_ ? before.motor_cmd + before.turned : place;
+        const double place = own_place(q);
+        const double held = isJudged ? joints_[j].held : isHeld_ ? own_place(before) : place;
         joints_[j].held = q.isAmpOn && before.isAmpOn ? held : place;
         if (isHeld_ && q.isAmpOn && before.isAmpOn && std::abs(place - held) > PLACE_ROUNDING) {
             fail("stale", fmt::format("joint {} moves, and nobody has asked for it since the last stop", j));
@@ -346,21 +365,21 @@ void Judge::check_stale(const Sample &s, bool wasAtRest) {
 }
 
 void Judge::check_rest(const Sample &s) {
-    bool isMoving = false;
+    bool isMoving = false, isOffsetMoving = false;
     bool isOn = false, wasOn = false;
     for (std::size_t j = 0; j < joints_.size(); ++j) {
         const JointSample &q = s.joints[j];
         isOn = isOn || q.isAmpOn;
         wasOn = wasOn || last_.joints[j].isAmpOn;
-        isMoving =
-            isMoving ||
-            (q.isAmpOn && last_.joints[j].isAmpOn &&
-             std::abs(q.motor_cmd + q.turned - last_.joints[j].motor_cmd - last_.joints[j].turned) > MOVED);
+        isOffsetMoving = isOffsetMoving || q.offset != last_.joints[j].offset;
+        isMoving = isMoving || (q.isAmpOn && last_.joints[j].isAmpOn &&
+                                std::abs(own_place(q) - own_place(last_.joints[j])) > MOVED);
     }
     if (wasOn && !isOn) {
         maySwitchOn_ = mayMove_ = mayWork_ = false;
         restless_ = std::max(restless_, IN_FLIGHT);
     }
+    offsets_standing_ = isOffsetMoving ? 0 : offsets_standing_ + 1;
     const bool wasAtRest = isAtRest();
     standing_ = isMoving ? 0 : standing_ + 1;
     check_stale(s, wasAtRest);
@@ -399,7 +418,9 @@ void Judge::check_rest(const Sample &s) {
                 ? std::max(slowest_stop_, (took - time_to_correct() - stops_later_s) / stop_.least_s)
                 : slowest_stop_;
         // The mean that keeps the jerk may stand before it is sure of it.
-        const int off_within = 10 + static_cast<int>(design_.rise_s() / period_);
+        const int off_within =
+            10 +
+            static_cast<int>((design_.rise_s() + (design_.hasOffsets() ? time_to_brake() : 0)) / period_);
         const bool mustBeOff = stop_.how == Stop::ALONG_THEN_OFF;
         if (mustBeOff && isOn && standing_ > off_within) {
             fail("stop", "it stands, and its amplifiers stay on");

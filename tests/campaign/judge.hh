@@ -23,6 +23,7 @@ struct JointSample {
     int resets = 0;            ///< how often they have set it
     double position = 0;       ///< of the joint in truth, by the plant
     bool isTruthKnown = true;  ///< false once the encoder has lied
+    double offset = 0;         ///< external, of its axis; part of the commands
     bool isAmpOn = false, isHomed = false, isHoming = false;
     bool isAmpFaulted = false;
 };
@@ -79,6 +80,7 @@ class Judge {
     double time_to_stop() const;
     /// Nothing moves and no stop is awaited.
     bool isAtRest() const { return standing_ >= 3 && !stop_.isAwaited; }
+    bool areOffsetsAtRest() const { return offsets_standing_ >= 3; }
     /// The time that stops took over what the limits need, the largest.
     double slowest_stop() const { return slowest_stop_; }
     std::uint64_t samples() const { return count_; }
@@ -105,6 +107,7 @@ class Judge {
     void check_stale(const Sample &s, bool wasAtRest);
     void begin_stop();
     double time_to_correct() const;
+    double time_to_brake() const;
     void fail(const std::string &rule, const std::string &text);
 
     const Design &design_;
@@ -115,9 +118,9 @@ class Judge {
     std::uint64_t count_ = 0;
     bool maySwitchOn_ = false, mayMove_ = false, mayWork_ = false;
     AwaitedStop stop_;
-    int standing_ = 0;
-    bool isHeld_ = false;  ///< nothing may move
-    int restless_ = 0;     ///< cycles left in which commands of before a stop may still arrive
+    int standing_ = 0, offsets_standing_ = 0;  ///< for so many cycles
+    bool isHeld_ = false;                      ///< nothing may move
+    int restless_ = 0;  ///< cycles left in which commands of before a stop may still arrive
     double slowest_stop_ = 0;
     std::string report_;
     std::map<std::string, int> broken_known_;

@@ -36,8 +36,14 @@ std::string MachinePins::bind(hal::Hal &hal, std::size_t num_joints) {
     }
     for (const char c : std::string(geom::AXIS_LETTERS_LOWER)) {
         axis_wheels.push_back(wheel(fmt::format("axis.{}.", c)));
+        const std::string offset = fmt::format("axis.{}.eoffset", c);
+        offsets.push_back({static_cast<volatile std::int32_t *>(find(offset + "-counts", hal::Type::S32)),
+                           bit(offset + "-enable"), bit(offset + "-clear"), number(offset + "-scale"),
+                           number(offset), number(offset + "-request")});
         axes.push_back(number(fmt::format("axis.{}.pos-cmd", c)));
     }
+    is_offset_limited = bit("motion.eoffset-limited");
+    input = bit("motion.digital-in-00");
     in_position = bit("motion.in-position");
     is_coord = bit("motion.coord-mode");
     is_teleop = bit("motion.teleop-mode");

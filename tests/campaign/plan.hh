@@ -86,8 +86,12 @@ enum class Upset {
     PLANNER_LATE,    ///< a few periods
     PLANNER_LOST,    ///< a second
     WRONG_COMMANDS,  ///< modes, jogs and runs that do not fit what is under way
+    // --- not in the first plan
+    OFFSET,    ///< external, of an axis
+    ADAPTIVE,  ///< feed, -1 to 1
+    SPINDLE_OVERRIDE,
 };
-inline constexpr int UPSET_COUNT = static_cast<int>(Upset::WRONG_COMMANDS) + 1;
+inline constexpr int UPSET_COUNT = static_cast<int>(Upset::SPINDLE_OVERRIDE) + 1;
 const char *name_of(Upset upset);
 /// The work goes on after it.
 constexpr bool isPassing(Upset upset) {
@@ -115,6 +119,7 @@ struct Turning {
 struct Act {
     Work work = Work::PROGRAM;
     std::vector<Block> blocks;
+    bool isTimed = true;    ///< the time that it takes can be estimated
     bool isToFail = false;  ///< a program that must not come to its end
     std::vector<Contact> contacts;
     SyncWish sync;

@@ -98,7 +98,8 @@ Act Writer::write_in_step() {
     int kind = random_.whole(0, 4);
     // With a long mean a tool loses a spindle that turns back (docs/motion/spindles.md, Bounds).
     constexpr double LONG_S = 0.015;
-    kind = kind == 2 && design_.rise_s() > LONG_S ? 0 : kind;
+    const bool canTap = design_.rise_s() <= LONG_S && z.offset_ratio == 0;
+    kind = kind == 2 && !canTap ? 0 : kind;
     if (kind == 4) {
         write_surface(sync);
     } else {

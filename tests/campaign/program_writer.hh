@@ -16,6 +16,8 @@ class Writer {
   public:
     Writer(sim::Random &random, const Design &design) : random_(random), design_(design) {}
 
+    /// What it writes may wait for inputs (M66) and have adaptive feed (M52). True when it does.
+    bool allow_waits();
     /// A program of lines and arcs that takes about so long at its feeds.
     std::vector<Block> write(double seconds);
     /// Finds the walls of a room and leaves them again, or misses them.
@@ -54,6 +56,7 @@ class Writer {
     geom::MoveSettings settings_;
     geom::Pose at_;
     double feed_ = 1000;
+    bool mayWait_ = false, isAdaptive_ = false;
 };
 
 }  // namespace mw::campaign

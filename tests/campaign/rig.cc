@@ -116,7 +116,9 @@ void Rig::cycle() {
     *pins_.enable = !faults.isDisabled;
     *pins_.probe = faults.isProbeClosed || isProbeTouching();
     *pins_.inhibit = faults.isFeedInhibited;
-    *pins_.adaptive_feed = faults.isAdaptiveNan ? NAN_VALUE : 1.0;
+    *pins_.adaptive_feed = faults.isAdaptiveNan ? NAN_VALUE : faults.adaptive_feed;
+    constexpr std::uint64_t INPUT_MS = 150;
+    *pins_.input = cycles_ / INPUT_MS % 2 != 0;
     *pins_.spindle.amp_fault = faults.isSpindleFaulted;
     if (faults.isTaskDead) {
         side_->channels().isTaskDead.store(1);
@@ -193,6 +195,11 @@ void Rig::take_sample() {
         out.resets = p.resets;
         out.position = p.slide;
         out.isTruthKnown = p.isTruthKnown;
+        out.offset =
+            design_.isTrivial
+                ? *pins_.offsets[static_cast<std::size_t>(geom::axis_of_letter(design_.coordinates[j]))]
+                       .offset
+                : 0;
         out.isAmpOn = *pins.is_amp_on;
         out.isHomed = *pins.is_homed;
         out.isHoming = *pins.is_homing;
@@ -244,6 +251,31 @@ double Rig::beyond_wall(const Wall &wall) const {
 
 bool Rig::isProbeTouching() const {
     return std::ranges::any_of(walls_, [this](const Wall &w) { return areWallsUp_ && beyond_wall(w) > 0; });
+}
+
+void Rig::add_offset(int axis, double by) {
+    constexpr double SCALE = 0.01;
+    const OffsetPins &pins = pins_.offsets[static_cast<std::size_t>(axis)];
+    *pins.scale = SCALE;
+    *pins.is_enabled = true;
+    *pins.counts = *pins.counts + static_cast<std::int32_t>(std::lround(by / SCALE));
+}
+
+void Rig::clear_offsets(bool isWanted) {
+    for (const OffsetPins &pins : pins_.offsets) {
+        *pins.is_clearing = isWanted;
+    }
+}
+
+bool Rig::hasOffset() const {
+    return std::ranges::any_of(pins_.offsets,
+                               [](const OffsetPins &p) { return *p.offset != 0 || *p.request != 0; });
+}
+
+bool Rig::areOffsetsThere() const {
+    return *pins_.is_offset_limited || std::ranges::all_of(pins_.offsets, [](const OffsetPins &p) {
+        return std::abs(*p.offset - *p.request) < 1e-9;
+    });
 }
 
 void Rig::link_wheel(const Turning *turning, int target) {

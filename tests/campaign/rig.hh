@@ -50,6 +50,7 @@ struct JointFaults {
 /// What is wrong with the rest of the machine.
 struct MachineFaults {
     bool isChainOpen = false, isDisabled = false, isProbeClosed = false, isFeedInhibited = false;
+    double adaptive_feed = 1;
     bool isSpindleFaulted = false, isSpindleNan = false, isAdaptiveNan = false;
     bool isTaskHeld = false, isTaskDead = false;
 };
@@ -93,6 +94,13 @@ class Rig final : public machine::Machine {
     void set_contacts(const std::vector<Contact> &contacts);
     /// How far the probe is beyond the walls of its room along an axis; below 0: within.
     double beyond_walls(int axis) const;
+
+    /// Asks for another external offset of the axis; that of all to be cleared.
+    void add_offset(int axis, double by);
+    void clear_offsets(bool isWanted);
+    bool hasOffset() const;
+    /// Every offset is what is asked for, or a limit keeps it from that.
+    bool areOffsetsThere() const;
 
     /// Links a wheel; nullptr: none moves anything.
     void link_wheel(const Turning *turning, int target);

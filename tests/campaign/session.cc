@@ -129,7 +129,7 @@ void Session::settle(double most_s) {
     double t = 0;
     for (int calm = 0; calm < 20 && t < most_s && !isOver(); t += PERIOD_S) {
         cycle();
-        calm = judge_.isAtRest() ? calm + 1 : 0;
+        calm = judge_.isAtRest() && judge_.areOffsetsAtRest() ? calm + 1 : 0;
     }
     if (t >= most_s) {
         fail("work", "it does not come to rest");
@@ -181,6 +181,26 @@ bool Session::home() {
     return !isOver() && end == End::DONE;
 }
 
+/// An operator who wants to work without them.
+bool Session::clear_offsets() {
+    if (!set_mode(msgs::Mode::MANUAL) || ask(msgs::SetTeleop{true}) != End::DONE) {
+        return false;
+    }
+    settle(2);
+    judge_.allow(Leave::MOVE);
+    rig_->clear_offsets(true);
+    constexpr int MOST_MS = 20000;
+    for (int i = 0; i < MOST_MS && rig_->hasOffset() && !isOver(); ++i) {
+        cycle();
+    }
+    if (rig_->hasOffset()) {
+        fail("offset", "an external offset is not cleared");
+    }
+    rig_->clear_offsets(false);
+    cycle();
+    return !isOver();
+}
+
 /// Everything repaired, on and homed: what stops the next act is its own trouble.
 bool Session::prepare() {
     act_ = nullptr;
@@ -188,7 +208,7 @@ bool Session::prepare() {
     rig_->set_contacts({});
     rig_->link_wheel(nullptr, 0);
     judge_.stops_later_s = 0;
-    isStopped_ = isDisturbed_ = false;
+    isStopped_ = isDisturbed_ = isReversed_ = false;
     rig_->repair();
     for (int i = 0; i < 5 && !isOver(); ++i) {
         cycle();
@@ -212,7 +232,10 @@ bool Session::prepare() {
         rig_->trust_encoders();
         areEncodersTrue_ = true;
     }
-    return !isOver();
+    if (plan_.design.hasSpindlePlant) {
+        ask(msgs::SetSpindleOverride{1, 0});
+    }
+    return !isOver() && (!rig_->hasOffset() || clear_offsets());
 }
 
 Verdict Session::run() {
@@ -268,6 +291,17 @@ void Session::perform(const Act &act) {
         cycle();
     }
     settle(30);
+    if (isProgram(act.work) && plan_.design.hasOffsets() && !isStopped_ && !isOver()) {
+        Extension &count = verdict_.extensions["offsets"];
+        count.ran += rig_->hasOffset() ? 1 : 0;
+        for (int i = 0; i < 20000 && !rig_->areOffsetsThere() && !isOver(); ++i) {
+            cycle();
+        }
+        count.judged += rig_->hasOffset() ? 1 : 0;
+        if (!rig_->areOffsetsThere() && !isOver()) {
+            fail("offset", "an external offset does not get where it is asked to be");
+        }
+    }
 }
 
 }  // namespace mw::campaign

@@ -59,6 +59,7 @@ class Session {
     bool prepare();
     bool switch_on();
     bool home();
+    bool clear_offsets();
     bool set_mode(msgs::Mode mode);
 
     void perform(const Act &act);
@@ -72,6 +73,7 @@ class Session {
     void begin_troubles(const Act &act);
     void step_troubles();
     void begin(const Trouble &t);
+    void begin_offset(const Trouble &t);
     void begin_stop(const Trouble &t);
     void end(const Trouble &t);
     void check_program(const Act &act, const geom::Pose &from, double took_s);
@@ -100,7 +102,7 @@ class Session {
         std::uint64_t until = 0;
     };
     std::vector<Going> going_;
-    bool isStopped_ = false, isDisturbed_ = false;
+    bool isStopped_ = false, isDisturbed_ = false, isReversed_ = false;
     bool isRecording_ = false;
     std::vector<geom::Pose> path_;
     std::vector<double> turns_, rpm_;     ///< of the spindle, with path_
