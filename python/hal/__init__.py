@@ -20,7 +20,50 @@ from ._core import component as _component
 from ._core import error, item
 from . import query
 
-Pin = Param = item
+
+class _Wrapped:
+    """An item of HAL as a Python object, which widgets derive from together with classes of their toolkit."""
+
+    def __new__(cls, *args, **kwargs):
+        return super().__new__(cls)
+
+    def __init__(self, item, *args, **kwargs):
+        if isinstance(item, _Wrapped):
+            item = item._item
+        if not isinstance(item, _core.item):
+            raise TypeError(f"a HAL item is needed, not {type(item).__name__}")
+        self._item_wrap(item)
+
+    def _item_wrap(self, item):
+        self._item = item
+        for name in ("get", "set", "get_type", "get_name", "get_dir", "is_pin"):
+            setattr(self, name, getattr(item, name))
+        return self
+
+    def __getattr__(self, name):
+        if name == "_item":  # not made yet
+            raise AttributeError(name)
+        return getattr(self._item, name)  # what ports can do besides
+
+    def __repr__(self):
+        return repr(self._item)
+
+    name = property(lambda self: self._item.get_name(), doc="Without the prefix.")
+    type = property(lambda self: self._item.get_type())
+    dir = property(lambda self: self._item.get_dir())
+    value = property(lambda self: self._item.get(), lambda self, value: self._item.set(value))
+
+
+class Pin(_Wrapped):
+    """Pin(item): a pin of a component."""
+
+
+class Param(_Wrapped):
+    """Param(item): a parameter of a component."""
+
+
+def _wrap(item):
+    return Pin(item) if item.is_pin() else Param(item)
 
 
 def _end_by_interrupt():
@@ -36,6 +79,21 @@ class component(_component):
     def __init__(self, name, prefix=""):
         super().__init__(name, prefix or "")
         _end_by_interrupt()
+
+    def newpin(self, *args, **kwargs):
+        return Pin(_component.newpin(self, *args, **kwargs))
+
+    def newparam(self, *args, **kwargs):
+        return Param(_component.newparam(self, *args, **kwargs))
+
+    def getitem(self, name):
+        return _wrap(_component.getitem(self, name))
+
+    def getpin(self, name):
+        return Pin(_component.getpin(self, name))
+
+    def getparam(self, name):
+        return Param(_component.getparam(self, name))
 
 
 def __getattr__(name):

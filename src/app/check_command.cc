@@ -13,7 +13,7 @@
 #include "machine/ini_parameters.hh"
 #include "machine/loaded_config.hh"
 #include "machine/program_check.hh"
-#include "machine/tool_file.hh"
+#include "machine/tool_data.hh"
 #include "options/command_line.hh"
 
 namespace mw::app {
@@ -54,7 +54,7 @@ struct CheckWords {
     std::optional<std::int64_t> statements() const { return bound < 0 ? std::nullopt : std::optional(bound); }
 };
 
-int check_loaded(const CheckWords &words, const machine::LoadedConfig &loaded, machine::ToolFile &tools,
+int check_loaded(const CheckWords &words, const machine::LoadedConfig &loaded, interp::ToolSource &tools,
                  diag::Sink &sink) {
     machine::IniParameters values(loaded.ini, nullptr);
     ProgressLine progress;
@@ -119,7 +119,7 @@ int command_check(const std::vector<std::string> &arguments) {
     if (loaded == nullptr) {
         return 1;
     }
-    auto tools = machine::ToolFile::load(loaded->machine.tool_table_file, &sink);
+    auto tools = machine::read_tools(loaded->machine, sink);
     if (!tools.has_value()) {
         sink.error(tools.error());
         return 1;

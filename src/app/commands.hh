@@ -9,6 +9,8 @@
 namespace mw::app {
 
 int command_start(const std::vector<std::string> &words);
+/// The words of `linuxcnc`.
+int command_launch(const std::vector<std::string> &words);
 int command_run(const std::vector<std::string> &words);
 int command_ui(const std::vector<std::string> &words);
 int command_nml(const std::vector<std::string> &words);

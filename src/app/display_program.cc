@@ -66,7 +66,8 @@ std::string find_program(const std::string &name, const fs::path &folder) {
 
 }  // namespace
 
-Result<std::vector<std::string>> DisplayProgram::words(const std::string &display, const std::string &ini) {
+Result<std::vector<std::string>> DisplayProgram::words(const std::string &display, const std::string &ini,
+                                                       const std::vector<std::string> &more) {
     std::vector<std::string> words = split_words(display);
     if (words.empty()) {
         return fail("[DISPLAY]DISPLAY names no program", {ini, 0, 0});
@@ -76,13 +77,26 @@ Result<std::vector<std::string>> DisplayProgram::words(const std::string &displa
         words.insert(words.begin() + 1, {"ui", ini, "--open"});
         return words;
     }
+    if (words[0] == "dummy") {
+        return std::vector<std::string>{"/bin/sh", "-c", "echo 'press ENTER to end'; read -r line"};
+    }
+    const char *const tcl = std::getenv("LINUXCNC_TCL_DIR");
+    if (tcl != nullptr && (words[0] == "tklinuxcnc" || words[0] == "tkemc")) {
+        words[0] = std::string(tcl) + "/tklinuxcnc.tcl";
+    }
+    words.insert(words.end(), more.begin(), more.end());
     const std::string program = find_program(words[0], fs::path(ini).parent_path());
     if (program.empty()) {
         return fail("[DISPLAY]DISPLAY names '" + words[0] + "', which is no program that can be found",
                     {ini, 0, 0}, "--no-display keeps the machine up without one");
     }
+    const bool isShell = fs::path(words[0]).filename() == "linuxcncrsh";
     words[0] = program;
-    words.insert(words.begin() + 1, {"-ini", ini});
+    if (isShell) {
+        words.insert(words.end(), {"--", "-ini", ini});
+    } else {
+        words.insert(words.begin() + 1, {"-ini", ini});
+    }
     return words;
 }
 

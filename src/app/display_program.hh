@@ -16,8 +16,11 @@ namespace mw::app {
 class DisplayProgram {
   public:
     /// The words of its command line: the program, which is looked for beside the INI file and along PATH,
-    /// then "-ini", the INI file, and what else the key says. "millwright" is the screen of `millwright ui`.
-    static Result<std::vector<std::string>> words(const std::string &display, const std::string &ini);
+    /// then "-ini", the INI file, what else the key says, and the words `more`. "millwright" is the screen of
+    /// `millwright ui`, "linuxcncrsh" has its own words before the file, tklinuxcnc is a script of
+    /// $LINUXCNC_TCL_DIR, and "dummy" waits for ENTER.
+    static Result<std::vector<std::string>> words(const std::string &display, const std::string &ini,
+                                                  const std::vector<std::string> &more = {});
 
     /// Starts it in the folder of the INI file, with INI_FILE_NAME and CONFIG_DIR in its environment.
     static Result<DisplayProgram> start(const std::vector<std::string> &words, const std::string &ini);

@@ -19,7 +19,7 @@
 #include "machine/ini_parameters.hh"
 #include "machine/loaded_config.hh"
 #include "machine/machine.hh"
-#include "machine/tool_file.hh"
+#include "machine/tool_data.hh"
 #include "options/command_line.hh"
 
 namespace mw::app {
@@ -153,12 +153,12 @@ class Run {
 
     /// `tool` is in the spindle, 0: none.
     bool check(int tool) {
-        auto tools = machine::ToolFile::load(loaded_.machine.tool_table_file, &sink_);
+        auto tools = machine::read_tools(loaded_.machine, sink_);
         if (!tools.has_value()) {
             sink_.failure(tools.error());
             return false;
         }
-        if (tool > 0) {
+        if (tool > 0 && !(*tools)->isRandom()) {
             static_cast<void>((*tools)->load_spindle(std::max(0, (*tools)->index_of_tool(tool))));
         }
         machine::IniParameters values(loaded_.ini, nullptr);

@@ -6,7 +6,7 @@
 
 #include "machine/ini_parameters.hh"
 #include "machine/program_check.hh"
-#include "machine/tool_file.hh"
+#include "machine/tool_data.hh"
 #include "machine/unscripted.hh"
 #include "ui/web/path_chunks.hh"
 
@@ -55,7 +55,8 @@ void PathReaders::read_all(Reader &reader, const std::string &path) const {
         chunks.end(0);
         return;
     }
-    auto tools = machine::ToolFile::load(loaded_.machine.tool_table_file);
+    diag::Sink unheard;
+    auto tools = machine::read_tools(loaded_.machine, unheard);
     if (!tools.has_value()) {
         chunks.error(tools.error().str());
         chunks.end(0);

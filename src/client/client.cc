@@ -1,62 +1,32 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "client/client.hh"
 
-#include <time.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 #include <memory>
 
 #include <fmt/format.h>
 
-#include "base/patient_read.hh"
 #include "msgs/binary.hh"
 #include "msgs/catalogue.hh"
 
 namespace mw::client {
-namespace {
 
-constexpr std::int64_t NS_PER_S = 1000000000;
-/// A sleeper looks after so long whether the machine still lives.
-constexpr std::int64_t LONGEST_SLEEP_NS = 100000000;
-
-/// How long task may lie interrupted within a write before it counts as dead: as long as its watchdog.
-constexpr std::chrono::milliseconds WRITER_PATIENCE{500};
-
-std::int64_t monotonic_ns() {
-    timespec now{};
-    ::clock_gettime(CLOCK_MONOTONIC, &now);
-    return now.tv_sec * NS_PER_S + now.tv_nsec;
-}
-
-}  // namespace
-
-Client::Client(mailbox::Segment &segment, int slot, mailbox::ClientId id)
-    : segment_(&segment), slot_(slot), id_(id), status_(std::make_unique<msgs::PublishedStatus::Copy>()) {
-    const std::uint64_t newest = segment.newest_message.load(std::memory_order_acquire);
-    const std::uint64_t oldest = newest > mailbox::MAX_MESSAGES ? newest - mailbox::MAX_MESSAGES + 1 : 1;
-    next_message_ = std::max(oldest, segment.read_message.load(std::memory_order_relaxed) + 1);
-    heard_ = segment.bell.load(std::memory_order_acquire);
-}
+Client::Client(Viewer viewer, int slot, mailbox::ClientId id)
+    : viewer_(std::move(viewer)), slot_(slot), id_(id) {}
 
 Client::Client(Client &&other) noexcept
-    : memory_(std::move(other.memory_)), segment_(std::exchange(other.segment_, nullptr)), slot_(other.slot_),
-      id_(other.id_), next_message_(other.next_message_), tools_version_(other.tools_version_),
-      heard_(other.heard_), status_(std::move(other.status_)), found_(std::move(other.found_)),
-      posted_stops_(std::move(other.posted_stops_)), replaced_stops_(std::move(other.replaced_stops_)) {}
+    : viewer_(std::move(other.viewer_)), hasPlace_(std::exchange(other.hasPlace_, false)), slot_(other.slot_),
+      id_(other.id_), found_(std::move(other.found_)), posted_stops_(std::move(other.posted_stops_)),
+      replaced_stops_(std::move(other.replaced_stops_)) {}
 
 Client &Client::operator=(Client &&other) noexcept {
     if (this != &other) {
         leave();
-        memory_ = std::move(other.memory_);
-        segment_ = std::exchange(other.segment_, nullptr);
+        viewer_ = std::move(other.viewer_);
+        hasPlace_ = std::exchange(other.hasPlace_, false);
         slot_ = other.slot_;
         id_ = other.id_;
-        next_message_ = other.next_message_;
-        tools_version_ = other.tools_version_;
-        heard_ = other.heard_;
-        status_ = std::move(other.status_);
         found_ = std::move(other.found_);
         posted_stops_ = std::move(other.posted_stops_);
         replaced_stops_ = std::move(other.replaced_stops_);
@@ -69,14 +39,19 @@ Client::~Client() {
 }
 
 void Client::leave() noexcept {
-    if (segment_ != nullptr) {
+    if (hasPlace_) {
         // Release: task sees everything that was posted before.
         slot().isLeaving.store(1, std::memory_order_release);
-        segment_ = nullptr;
+        hasPlace_ = false;
     }
 }
 
 Result<Client> Client::join(mailbox::Segment &segment, Role role) {
+    return join(Viewer(segment), role);
+}
+
+Result<Client> Client::join(Viewer viewer, Role role) {
+    mailbox::Segment &segment = viewer.segment();
     const std::uint64_t me = mailbox::owner_word();
     // Before the place: task looks at no more places than numbers were given out.
     const mailbox::ClientId id = segment.client_ids.fetch_add(1, std::memory_order_acq_rel) + 1;
@@ -89,22 +64,15 @@ Result<Client> Client::join(mailbox::Segment &segment, Role role) {
         }
         slot.role.store(static_cast<std::uint8_t>(role), std::memory_order_relaxed);
         slot.client.store(id, std::memory_order_release);
-        return Client(segment, i, id);
+        return Client(std::move(viewer), i, id);
     }
     return fail(
         fmt::format("the machine has {} clients, which is as many as it can have", mailbox::MAX_CLIENTS));
 }
 
 Result<Client> Client::connect(const std::string &instance, Role role) {
-    auto memory = mailbox::Memory::attach(instance);
-    if (!memory.has_value()) {
-        return std::unexpected(memory.error());
-    }
-    auto client = join(memory->segment(), role);
-    if (client.has_value()) {
-        client->memory_ = std::move(*memory);
-    }
-    return client;
+    auto viewer = Viewer::attach(instance);
+    return viewer.has_value() ? join(std::move(*viewer), role) : std::unexpected(viewer.error());
 }
 
 Result<Serial> Client::post(const msgs::Command &command) {
@@ -125,7 +93,7 @@ Result<Serial> Client::post(const msgs::Command &command) {
         return fail(
             fmt::format("task has not taken the last {} commands of this client", mailbox::MAX_POSTED));
     }
-    posted->serial = segment_->serials.fetch_add(1, std::memory_order_relaxed) + 1;
+    posted->serial = viewer_.segment().serials.fetch_add(1, std::memory_order_relaxed) + 1;
     posted->size = static_cast<std::uint32_t>(bytes.size());
     std::memcpy(posted->bytes.data(), bytes.data(), bytes.size());
     slot().posted.push(*posted);
@@ -133,7 +101,7 @@ Result<Serial> Client::post(const msgs::Command &command) {
 }
 
 Serial Client::post_stop(int place) {
-    const Serial serial = segment_->serials.fetch_add(1, std::memory_order_relaxed) + 1;
+    const Serial serial = viewer_.segment().serials.fetch_add(1, std::memory_order_relaxed) + 1;
     // Release: task, which sees the stop, sees all that was posted before it.
     const Serial before =
         slot().stops[static_cast<std::size_t>(place)].exchange(serial, std::memory_order_acq_rel);
@@ -159,20 +127,11 @@ bool Client::isStopWaiting(Serial serial) {
                        [serial](const PostedStop &stop) { return stop.serial == serial; });
 }
 
-template <class Lock, class Value>
-bool Client::read_whole(const Lock &lock, Value &value) const {
-    return read_patiently(lock, value, WRITER_PATIENCE, [this] { return isMachineAlive(); });
-}
-
 Outcome Client::outcome(Serial serial) {
     for (const auto &[before, later] : replaced_stops_) {  // in their order: a later one may be replaced too
         serial = before == serial ? later : serial;
     }
-    if (isStopWaiting(serial)) {
-        return {};
-    }
-    // Acquire: pairs with task's release after it wrote the outcome.
-    if (slot().taken.load(std::memory_order_acquire) < serial) {
+    if (!isTaken(serial)) {
         return {};
     }
     // Before the outcomes: what is told later is looked at by the next call.
@@ -184,7 +143,7 @@ Outcome Client::outcome(Serial serial) {
     for (std::size_t i = 0; i < outcomes.size(); ++i) {
         const std::size_t place = (found_.place + i) % outcomes.size();  // mostly asked again
         mailbox::Outcome outcome;
-        if (read_whole(outcomes[place], outcome) && outcome.serial == serial) {
+        if (viewer_.read_whole(outcomes[place], outcome) && outcome.serial == serial) {
             found_ = {serial, told, place, {outcome.progress, outcome.reason.str()}};
             return found_.outcome;
         }
@@ -195,102 +154,24 @@ Outcome Client::outcome(Serial serial) {
                 serial, mailbox::MAX_OUTCOMES)};
 }
 
-Result<> Client::sleep(std::uint32_t heard, std::int64_t end_ns) {
-    const std::int64_t left_ns = end_ns - monotonic_ns();
-    if (left_ns <= 0) {
-        return fail("the time to wait is over");
-    }
-    const bool isRung = mailbox::Memory::wait(*segment_, heard, std::min(left_ns, LONGEST_SLEEP_NS));
-    if (!isRung && !isMachineAlive()) {
-        return fail("the machine is no longer running");
-    }
-    return {};
-}
-
 Result<Outcome> Client::wait(Serial serial, double timeout_s) {
-    const std::int64_t end_ns = monotonic_ns() + static_cast<std::int64_t>(timeout_s * 1e9);
-    while (true) {
-        const std::uint32_t heard = segment_->bell.load(std::memory_order_acquire);
-        Outcome now = outcome(serial);
-        if (now.progress != msgs::Progress::STARTED) {
-            return now;
-        }
-        const auto status = sleep(heard, end_ns);
-        if (!status.has_value()) {
-            return std::unexpected(status.error());
-        }
-    }
+    Outcome now;
+    const auto waited = viewer_.wait_until(
+        [&] {
+            now = outcome(serial);
+            return now.progress != msgs::Progress::STARTED;
+        },
+        timeout_s);
+    return waited.has_value() ? Result<Outcome>(now) : std::unexpected(waited.error());
 }
 
-Result<> Client::wait_status(double timeout_s) {
-    const std::int64_t end_ns = monotonic_ns() + static_cast<std::int64_t>(timeout_s * 1e9);
-    while (true) {
-        const std::uint32_t now = segment_->bell.load(std::memory_order_acquire);
-        if (now != heard_) {
-            heard_ = now;
-            return {};
-        }
-        const auto status = sleep(now, end_ns);
-        if (!status.has_value()) {
-            return status;
-        }
-    }
+Result<> Client::wait_taken(Serial serial, double timeout_s) {
+    return viewer_.wait_until([&] { return isTaken(serial); }, timeout_s);
 }
 
-mailbox::Identity Client::identity() const {
-    mailbox::Identity identity;
-    return read_whole(segment_->identity, identity) ? identity : mailbox::Identity{};
-}
-
-Result<> Client::read_status() {
-    if (segment_->cycles.load(std::memory_order_acquire) == 0) {
-        return fail("the machine has not begun yet");
-    }
-    return read_whole(segment_->status, *status_) ? Result<>{} : fail("task died while it wrote its status");
-}
-
-Result<std::optional<msgs::ToolTable>> Client::read_tools() {
-    const std::uint64_t version = segment_->tools_version.load(std::memory_order_acquire);
-    if (version == tools_version_) {
-        return std::nullopt;
-    }
-    auto bytes = std::make_unique<mailbox::Bytes>();
-    if (!read_whole(segment_->tools, *bytes)) {
-        return fail("task died while it wrote the tool table");
-    }
-    msgs::ToolTable table;
-    const std::size_t size = std::min<std::size_t>(bytes->size, bytes->bytes.size());
-    const auto status = msgs::decode({bytes->bytes.data(), size}, msgs::object(table));
-    if (!status.has_value()) {
-        return std::unexpected(status.error());
-    }
-    tools_version_ = bytes->version;
-    return table;
-}
-
-std::optional<Client::Message> Client::next_message() {
-    const std::uint64_t newest = segment_->newest_message.load(std::memory_order_acquire);
-    if (next_message_ > newest) {
-        return std::nullopt;
-    }
-    auto read = std::make_unique<mailbox::NumberedMessage>();
-    const bool isWhole = read_whole(segment_->messages[next_message_ % mailbox::MAX_MESSAGES], *read);
-    if (!isWhole || read->number != next_message_) {  // overwritten meanwhile, or task died within it
-        const std::uint64_t now = segment_->newest_message.load(std::memory_order_acquire);
-        const std::uint64_t oldest =
-            now > mailbox::MAX_MESSAGES ? now - mailbox::MAX_MESSAGES + 2 : next_message_ + 1;
-        const std::uint64_t first = std::max(oldest, next_message_ + 1);
-        const std::uint64_t lost = first - next_message_;
-        next_message_ = first;
-        return Message{first - 1, msgs::MessageKind::OPERATOR_TEXT,
-                       fmt::format("{} messages were lost: they came faster than this client read", lost)};
-    }
-    std::uint64_t told = segment_->read_message.load(std::memory_order_relaxed);
-    while (told < next_message_ &&
-           !segment_->read_message.compare_exchange_weak(told, next_message_, std::memory_order_relaxed)) {
-    }
-    ++next_message_;
-    return Message{read->number, read->kind, read->text.str()};
+bool Client::isTaken(Serial serial) {
+    // Acquire: pairs with task's release after it wrote the outcome.
+    return !isStopWaiting(serial) && slot().taken.load(std::memory_order_acquire) >= serial;
 }
 
 }  // namespace mw::client

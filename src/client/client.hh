@@ -10,8 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "mailbox/memory.hh"
-#include "mailbox/segment.hh"
+#include "client/viewer.hh"
 
 namespace mw::client {
 
@@ -47,50 +46,41 @@ class Client {
     /// Sleeps until the command ends; an error when the time is over or the machine is gone.
     Result<Outcome> wait(Serial serial, double timeout_s);
 
-    /// What the machine is; empty until it is ready for clients.
-    mailbox::Identity identity() const;
-    /// Its task's process lives. Always true in that process.
-    bool isMachineAlive() const { return !memory_.has_value() || memory_->isOwnerAlive(); }
+    /// Sleeps until task has taken the command, whatever becomes of it.
+    Result<> wait_taken(Serial serial, double timeout_s);
 
-    /// Brings status() up to date; an error before the first cycle and when task died within writing it.
-    Result<> read_status();
-    /// As it was read last.
-    const msgs::MachineStatus &status() const { return status_->value; }
-    /// Parts of it (msgs::status_part) that the last read has copied: the others are as they were.
-    PartMask fresh_parts() const { return status_->fresh; }
-    /// Sleeps until there is a newer status than the last one that was waited for.
-    Result<> wait_status(double timeout_s);
-    /// The tool table when it has changed since the last call; nothing otherwise.
-    Result<std::optional<msgs::ToolTable>> read_tools();
+    /// Sleeps at the bell until `isOver()`, as Viewer::wait_until.
+    template <class IsOver>
+    Result<> wait_until(const IsOver &isOver, double timeout_s) {
+        return viewer_.wait_until(isOver, timeout_s);
+    }
 
-    struct Message {
-        std::uint64_t number = 0;
-        msgs::MessageKind kind = msgs::MessageKind::OPERATOR_ERROR;
-        std::string text;
-    };
-    /// The next message; nothing when there is none. Messages that were overwritten before they were read
-    /// come as one that says how many.
-    std::optional<Message> next_message();
+    // What it sees, as any viewer (client/viewer.hh).
+    using Message = Viewer::Message;
+    mailbox::Identity identity() const { return viewer_.identity(); }
+    bool isMachineAlive() const { return viewer_.isMachineAlive(); }
+    Result<> read_status() { return viewer_.read_status(); }
+    const msgs::MachineStatus &status() const { return viewer_.status(); }
+    PartMask fresh_parts() const { return viewer_.fresh_parts(); }
+    Result<> wait_status(double timeout_s) { return viewer_.wait_status(timeout_s); }
+    Result<std::optional<msgs::ToolTable>> read_tools() { return viewer_.read_tools(); }
+    std::optional<Message> next_message(Viewer::Reading reading = Viewer::Reading::COUNTS) {
+        return viewer_.next_message(reading);
+    }
 
   private:
-    Client(mailbox::Segment &segment, int slot, mailbox::ClientId id);
-    mailbox::Slot &slot() const { return segment_->slots[static_cast<std::size_t>(slot_)]; }
+    Client(Viewer viewer, int slot, mailbox::ClientId id);
+    static Result<Client> join(Viewer viewer, Role role);
+    mailbox::Slot &slot() const { return viewer_.segment().slots[static_cast<std::size_t>(slot_)]; }
     void leave() noexcept;
     Serial post_stop(int place);
     bool isStopWaiting(Serial serial);
-    /// False when task died within writing it.
-    template <class Lock, class Value>
-    bool read_whole(const Lock &lock, Value &value) const;
-    Result<> sleep(std::uint32_t heard, std::int64_t end_ns);
+    bool isTaken(Serial serial);
 
-    std::optional<mailbox::Memory> memory_;  ///< of another process
-    mailbox::Segment *segment_ = nullptr;    ///< null after a move
+    Viewer viewer_;
+    bool hasPlace_ = true;  ///< false after a move
     int slot_ = 0;
     mailbox::ClientId id_ = 0;
-    std::uint64_t next_message_ = 1;
-    std::uint64_t tools_version_ = 0;
-    std::uint32_t heard_ = 0;
-    std::unique_ptr<msgs::PublishedStatus::Copy> status_;
     /// The outcome that was asked for last, where it was found, and how many had been told by then.
     struct Found {
         Serial serial = 0;

@@ -83,6 +83,9 @@ Settings settings_from_ini(config::IniReader &ini) {
     out.isIniReadable = ini.boolean(ini_key("RS274NGC", "INI_VARS"));
     out.isHalReadable = ini.boolean(ini_key("RS274NGC", "HAL_PIN_VARS"));
     out.isToolOffsetRetained = ini.boolean(ini_key("RS274NGC", "RETAIN_G43"));
+    out.tool_change.isSpindleLeftOn = ini.boolean(ini_key("EMCIO", "TOOL_CHANGE_WITH_SPINDLE_ON"));
+    out.tool_change.isQuillRaised = ini.boolean(ini_key("EMCIO", "TOOL_CHANGE_QUILL_UP"));
+    out.tool_change.isAtG30 = ini.boolean(ini_key("EMCIO", "TOOL_CHANGE_AT_G30"));
     out.isArgumentCountNamed = ini.boolean(ini_key("RS274NGC", "OWORD_NARGS"));
     out.isLathe = ini.boolean(ini_key("DISPLAY", "LATHE"));
     out.rotary = read_rotary(ini);

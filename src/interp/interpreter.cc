@@ -165,6 +165,57 @@ std::string Interpreter::line_text(const std::string &file, int line) const {
     return impl_->flow.files().line_text(file, line);
 }
 
+NextLine Interpreter::next_line() const {
+    const detail::Levels &levels = impl_->flow.levels();
+    const bool isScript = levels.isInCall() && levels.top().isInScript();
+    return {isScript ? 0 : levels.here().next, levels.main_line(), levels.isInCall(),
+            levels.here().program == levels.main()};
+}
+
+std::string Interpreter::why_no_start() const {
+    constexpr int G33 = 330, G33_1 = 331, FIRST_CYCLE = 730, LAST_CYCLE = 890;
+    const detail::State &state = impl_->executor.state;
+    if (state.comp.isOn() || state.comp.isExit() || isMoveHeld()) {
+        return "cutter compensation is on there";
+    }
+    if (state.spline.order != 0) {
+        return "it is in the middle of a NURBS";
+    }
+    const bool isCycle =
+        state.motion >= FIRST_CYCLE && state.motion <= LAST_CYCLE && state.motion != detail::MOTION_NONE;
+    if (state.cycle.isRunning && isCycle) {
+        return "it is in the middle of a canned cycle";
+    }
+    if (state.motion == G33 || state.motion == G33_1) {
+        return "moves follow the spindle there";
+    }
+    return {};
+}
+
+struct Interpreter::Kept {
+    detail::State state;
+    detail::Parameters parameters;
+    detail::SavedModes saved_modes;
+};
+
+std::shared_ptr<const Interpreter::Kept> Interpreter::keep() const {
+    const detail::Executor &executor = impl_->executor;
+    return std::make_shared<Kept>(executor.state, executor.parameters, executor.saved_modes);
+}
+
+void Interpreter::restore(const Kept &kept) {
+    detail::Executor &executor = impl_->executor;
+    executor.state = kept.state;
+    executor.parameters = kept.parameters;
+    executor.saved_modes = kept.saved_modes;
+    executor.tools.forget();
+    executor.awaited = {};
+}
+
+void Interpreter::forbid_scripts(bool isForbidden) {
+    impl_->flow.scripts().forbid(isForbidden);
+}
+
 double Interpreter::parameter(int number) const {
     const bool isInRange = number >= 1 && number < detail::PARAMETER_COUNT;
     return isInRange ? impl_->executor.evaluator().numbered(number) : 0.0;

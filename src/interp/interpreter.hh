@@ -42,6 +42,13 @@ struct RemapLine {
     SourcePlace place;
 };
 
+/// [EMCIO]: what M6 does before the changer begins, in this order.
+struct BeforeToolChange {
+    bool isSpindleLeftOn = false;
+    bool isQuillRaised = false;  ///< Z to machine zero
+    bool isAtG30 = false;        ///< all axes to the place of G30
+};
+
 struct Settings {
     std::vector<std::string>
         subroutine_path;  ///< [RS274NGC]SUBROUTINE_PATH and [DISPLAY]PROGRAM_PREFIX, in order
@@ -63,6 +70,7 @@ struct Settings {
     /// G74 and G84 in G18 and G19 print their X Y Z in the order of LinuxCNC's rs274, which is no tool path.
     bool isTapOrderOfRs274 = false;
     bool isToolOffsetRetained = false;  ///< [RS274NGC]RETAIN_G43: M6 and M61 apply the new tool's G43
+    BeforeToolChange tool_change;
     bool isArgumentCountNamed = false;  ///< [RS274NGC]OWORD_NARGS: #<n_args> in subroutines
     double orient_offset_deg = 0;
     double parameter_g73_peck_clearance_mm = 0.254, parameter_g83_peck_clearance_mm = 0.254;
@@ -84,6 +92,14 @@ struct Settings {
 /// How far the main program has been read.
 struct FilePlace {
     std::uint64_t bytes = 0, bytes_in_all = 0;
+};
+
+/// The line that the next step runs.
+struct NextLine {
+    int line = 0;
+    int main_line = 0;         ///< of the main program: that line, or the one that has called
+    bool isInCall = false;     ///< of a subroutine or a remapped code
+    bool isInMainFile = true;  ///< the line is one of the main program's file
 };
 
 /// The interpreter of RS-274/NGC.
@@ -135,6 +151,18 @@ class Interpreter final : public ProgramInterpreter {
     /// A line of a file that the interpreter has read, empty when it has not.
     std::string line_text(const std::string &file, int line) const;
     double parameter(int number) const override;
+
+    // For starts that are not at the first line (docs/task/run_from_line.md).
+    NextLine next_line() const;
+    /// Why nobody can begin at the next line although all before it is known; empty: one can.
+    std::string why_no_start() const;
+    /// Modes and parameters; calls and loops do not belong to it.
+    struct Kept;
+    std::shared_ptr<const Kept> keep() const;
+    /// Makes them what they were. Only at the top level, as after abort().
+    void restore(const Kept &kept);
+    /// Scripts that a step would run fail instead: what they do is not known.
+    void forbid_scripts(bool isForbidden);
 
   private:
     struct Impl;

@@ -1,26 +1,73 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "io/controller.hh"
 
+#include <utility>
+
 namespace mw::io {
 
 ToolEvent Controller::step(const Inputs &inputs) {
-    isChainClosed_ = inputs.emc_enable_in;
-    outputs.user_request_enable = mustPulseRequest_;
-    mustPulseRequest_ = false;
-    outputs.emc_abort = mustPulseAbort_;
-    mustPulseAbort_ = false;
+    step_chain(inputs);
+    hasOil_ = inputs.lube_level;
+    step_fault(inputs);
+    step_abort(inputs);
     outputs.state = action_ == ToolAction::IDLE ? 0 : 1;
-    return step_handshake(inputs);
+    const ToolEvent event = step_handshake(inputs);
+    return event == ToolEvent::NONE && isLate(inputs) ? ToolEvent::CHANGED_LATE : event;
+}
+
+void Controller::step_chain(const Inputs &inputs) {
+    isChainClosed_ = inputs.emc_enable_in;
+    outputs.user_request_enable = std::exchange(mustPulseRequest_, false);
+    if (mustLube_ && isChainClosed_) {
+        outputs.lube = true;
+        mustLube_ = false;
+    }
+}
+
+void Controller::step_fault(const Inputs &inputs) {
+    if (inputs.toolchanger_fault) {
+        fault_reason_ = inputs.toolchanger_reason;
+        outputs.toolchanger_faulted = true;
+    } else if (!protocol_.isVersion2 || inputs.toolchanger_clear_fault) {
+        outputs.toolchanger_faulted = false;
+    }
+    outputs.toolchanger_fault_ack = inputs.toolchanger_fault;
+}
+
+void Controller::step_abort(const Inputs &inputs) {
+    if (std::exchange(mustPulseAbort_, false)) {
+        outputs.emc_abort = true;
+        return;
+    }
+    const bool isAnswered = !protocol_.isVersion2 || inputs.emc_abort_ack;
+    if (!outputs.emc_abort || !isAnswered) {
+        return;
+    }
+    outputs.emc_abort = false;
+    outputs.emc_reason = 0;
+    action_ = action_ == ToolAction::ABORTING ? ToolAction::IDLE : action_;
+}
+
+ToolEvent Controller::end_by_fault() {
+    const bool isGoingOn = protocol_.isVersion2 && fault_reason_ > 0;
+    abort(REASON_CHANGER_FAULT);
+    isGivenUp_ = false;  // the changer itself says that it has not changed
+    return isGoingOn ? ToolEvent::FAULT_TOLD : ToolEvent::FAULT;
 }
 
 ToolEvent Controller::step_handshake(const Inputs &inputs) {
-    if (action_ == ToolAction::IDLE) {
+    if (action_ == ToolAction::IDLE || action_ == ToolAction::ABORTING) {
         return ToolEvent::NONE;
     }
-    if (inputs.toolchanger_fault) {
-        fault_reason_ = inputs.toolchanger_reason;
-        abort();
-        return ToolEvent::FAULT;
+    if (outputs.toolchanger_faulted) {
+        return end_by_fault();
+    }
+    if (action_ == ToolAction::STARTING) {
+        if (outputs.start_change && inputs.start_change_ack) {
+            outputs.start_change = false;
+            action_ = ToolAction::CHANGING;
+        }
+        return ToolEvent::NONE;
     }
     const bool isPreparing = action_ == ToolAction::PREPARING;
     bool &request = isPreparing ? outputs.tool_prepare : outputs.tool_change;
@@ -38,14 +85,23 @@ ToolEvent Controller::step_handshake(const Inputs &inputs) {
     return isPreparing ? ToolEvent::PREPARED : ToolEvent::CHANGED;
 }
 
+/// The changer has gone on after it was told not to: whoever knows the machine must say which tool is in.
+bool Controller::isLate(const Inputs &inputs) {
+    return isGivenUp_ && inputs.tool_changed && std::exchange(isGivenUp_, false);
+}
+
 void Controller::enter_estop() {
     outputs.user_enable_out = false;
+    outputs.lube = false;
+    mustLube_ = false;
     mustPulseRequest_ = false;
 }
 
 void Controller::leave_estop() {
     outputs.user_enable_out = true;
+    outputs.toolchanger_faulted = false;  // until the changer says again that it is
     mustPulseRequest_ = true;
+    mustLube_ = true;
 }
 
 void Controller::start_prepare(int number, int pocket, int index) {
@@ -56,16 +112,27 @@ void Controller::start_prepare(int number, int pocket, int index) {
 }
 
 void Controller::start_change() {
-    action_ = ToolAction::CHANGING;
+    isGivenUp_ = false;
+    outputs.start_change = protocol_.hasStartChange;
+    action_ = protocol_.hasStartChange ? ToolAction::STARTING : ToolAction::CHANGING;
 }
 
-void Controller::abort() {
-    if (action_ != ToolAction::IDLE) {
-        mustPulseAbort_ = true;
+void Controller::clear_prepared() {
+    outputs.tool_prep_number = outputs.tool_prep_pocket = outputs.tool_prep_index = 0;
+}
+
+void Controller::abort(int reason) {
+    const bool isUnderWay = action_ != ToolAction::IDLE;
+    if (action_ == ToolAction::ABORTING || (!isUnderWay && !protocol_.isVersion2)) {
+        return;
     }
+    isGivenUp_ = isGivenUp_ || outputs.tool_change;
+    mustPulseAbort_ = true;
+    outputs.emc_reason = reason;
     outputs.tool_prepare = false;
     outputs.tool_change = false;
-    action_ = ToolAction::IDLE;
+    outputs.start_change = false;
+    action_ = protocol_.isVersion2 ? ToolAction::ABORTING : ToolAction::IDLE;
 }
 
 msgs::WaitFor Controller::waiting_for() const {
@@ -73,8 +140,10 @@ msgs::WaitFor Controller::waiting_for() const {
     case ToolAction::IDLE: break;
     case ToolAction::PREPARING:
         return outputs.tool_prepare ? msgs::WaitFor::TOOL_PREPARED : msgs::WaitFor::TOOL_PREPARED_OFF;
+    case ToolAction::STARTING: return msgs::WaitFor::TOOL_START_CHANGE;
     case ToolAction::CHANGING:
         return outputs.tool_change ? msgs::WaitFor::TOOL_CHANGED : msgs::WaitFor::TOOL_CHANGED_OFF;
+    case ToolAction::ABORTING: return msgs::WaitFor::TOOL_ABORT_TAKEN;
     }
     return msgs::WaitFor::NOTHING;
 }

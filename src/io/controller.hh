@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The discrete I/O controller (requirement E1): e-stop chain, coolant, lube, tool prepare and change
-// handshakes. Pure: inputs in, outputs out, time passed in. Pins: io/pins.hh.
+// handshakes. Pure: inputs in, outputs out. Pins: io/pins.hh.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +18,9 @@ struct Inputs {
     bool lube_level = true;
     bool toolchanger_fault = false;
     int toolchanger_reason = 0;
+    bool toolchanger_clear_fault = false;
+    bool emc_abort_ack = false;
+    bool start_change_ack = false;
 };
 
 struct Outputs {
@@ -25,27 +28,49 @@ struct Outputs {
     bool user_request_enable = false;
     bool coolant_mist = false, coolant_flood = false, lube = false;
     bool tool_prepare = false, tool_change = false;
-    bool emc_abort = false;
+    bool emc_abort = false, start_change = false;
+    bool toolchanger_fault_ack = false, toolchanger_faulted = false;
+    int emc_reason = 0;  ///< why what was asked of the changer is given up
     int tool_prep_number = 0, tool_prep_pocket = 0, tool_prep_index = 0;
     int tool_number = 0, tool_from_pocket = 0;
     int state = 0;
 };
 
-enum class ToolAction : std::uint8_t { IDLE, PREPARING, CHANGING };
+/// How the changer wants to be spoken to ([EMCIO]EMCIO: io, or iov2 and its option).
+struct Protocol {
+    /// Aborts are answered by emc-abort-ack, a fault stays until it is cleared, and a reason above 0 lets the
+    /// program go on.
+    bool isVersion2 = false;
+    bool hasStartChange = false;  ///< start-change is raised and answered before tool-change
+};
+
+enum class ToolAction : std::uint8_t { IDLE, PREPARING, STARTING, CHANGING, ABORTING };
 
 /// What a finished handshake means for the tool table.
-enum class ToolEvent : std::uint8_t { NONE, PREPARED, CHANGED, FAULT };
+enum class ToolEvent : std::uint8_t {
+    NONE,
+    PREPARED,
+    CHANGED,
+    FAULT,         ///< the program must not go on
+    FAULT_TOLD,    ///< nothing has changed; the program goes on and finds out by #5600
+    CHANGED_LATE,  ///< tool-changed has come after the change was given up
+};
+
+/// EMC_ABORT_BY_TOOLCHANGER_FAULT
+inline constexpr int REASON_CHANGER_FAULT = 101;
 
 class Controller {
   public:
+    explicit Controller(const Protocol &protocol = {}) : protocol_(protocol) {}
     Outputs outputs{};
 
     /// One loop: sees the inputs, moves the handshakes on. Returns what has just been completed.
     ToolEvent step(const Inputs &inputs);
 
-    /// Opens the chain from our side: user-enable-out false.
+    /// Opens the chain from our side: user-enable-out false, lube off.
     void enter_estop();
-    /// Closes our side: user-enable-out true and one pulse of user-request-enable.
+    /// Closes our side: user-enable-out true and one pulse of user-request-enable; lube on once the chain is
+    /// closed.
     void leave_estop();
     bool isChainClosed() const { return isChainClosed_; }
     bool isEstopRequested() const { return !outputs.user_enable_out; }
@@ -54,8 +79,11 @@ class Controller {
     void start_prepare(int number, int pocket, int index);
     /// Starts tool-change to the prepared tool.
     void start_change();
-    /// Ends any handshake at once: requests drop, emc-abort pulses for one loop.
-    void abort();
+    /// The prepared tool is in: there is none any more.
+    void clear_prepared();
+    /// Ends any handshake at once: requests drop; emc-abort rises for one loop, in version 2 until it is
+    /// answered.
+    void abort(int reason);
     ToolAction action() const { return action_; }
     /// The pin that a handshake waits for.
     msgs::WaitFor waiting_for() const;
@@ -63,15 +91,26 @@ class Controller {
 
     void set_mist(bool isOn) { outputs.coolant_mist = isOn; }
     void set_flood(bool isOn) { outputs.coolant_flood = isOn; }
+    void set_lube(bool isOn) { outputs.lube = isOn; }
+    bool hasOil() const { return hasOil_; }
     void set_tool_in_spindle(int number, int from_pocket);
 
   private:
+    void step_chain(const Inputs &inputs);
+    void step_fault(const Inputs &inputs);
+    void step_abort(const Inputs &inputs);
     ToolEvent step_handshake(const Inputs &inputs);
+    ToolEvent end_by_fault();
+    bool isLate(const Inputs &inputs);
 
+    Protocol protocol_;
     ToolAction action_ = ToolAction::IDLE;
     bool isChainClosed_ = false;
     bool mustPulseRequest_ = false;
     bool mustPulseAbort_ = false;
+    bool mustLube_ = false;  ///< as soon as the chain is closed
+    bool hasOil_ = true;
+    bool isGivenUp_ = false;  ///< a change was given up before its answer
     int fault_reason_ = 0;
 };
 

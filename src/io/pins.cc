@@ -31,12 +31,11 @@ void Pins::destroy() {
 Inputs Pins::read() {
     PinInputs inputs;
     pins_.read(inputs);
-    isFaulted_ = inputs.isFaulted;
     return inputs.in;
 }
 
 void Pins::write(const Outputs &outputs) {
-    pins_.write(PinOutputs{outputs, isFaulted_});
+    pins_.write(PinOutputs{outputs});
 }
 
 }  // namespace mw::io

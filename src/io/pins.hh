@@ -23,7 +23,6 @@ class Pins {
   private:
     hal::Hal *hal_ = nullptr;
     int comp_id_ = 0;
-    bool isFaulted_ = false;
     hal::UserPinSet<pins::IOCONTROL> pins_;
 };
 

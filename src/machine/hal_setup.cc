@@ -168,7 +168,9 @@ Result<> HalSetup::run() {
     lang::SessionOptions session_options;
     session_options.hasPlaceholders = isVirtual;
     session_options.ini = &ini;
-    session_options.folders = {parts_.ini.folder()};
+    session_options.keepsGoing = options_.isKeptGoing;
+    session_options.folders = options_.hal_folders;
+    session_options.folders.push_back(parts_.ini.folder());
     session_options.library = options_.hal_library;
     for (const std::string &folder : lang::default_library()) {
         session_options.library.push_back(folder);

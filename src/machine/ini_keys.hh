@@ -14,8 +14,7 @@ namespace mw::machine {
 
 namespace why {
 inline constexpr const char *ARCS = "corners are blended by one planner, whose tolerance G64 P gives";
-inline constexpr const char *DISPLAYS = "displays run it, and millwright run starts none";
-inline constexpr const char *CLIENTS = "no client is started by this version";
+inline constexpr const char *DISPLAYS = "displays, which run it when their own pins are there";
 inline constexpr const char *DEFAULTS = "displays, as the speed that they begin with";
 }  // namespace why
 
@@ -92,31 +91,35 @@ inline constexpr auto INI_KEYS = std::to_array<config::IniKey>({
     config::ini_text("TASK", "INTERPRETER", "a shared object that takes the place of RS-274/NGC"),
     config::ini_without_effect(
         "TASK", "TASK", "task is part of millwright run; no other program takes its place", "milltask"),
-    config::ini_without_effect("TASK", "MDI_QUEUED_COMMANDS",
-                               "commands of a person are taken one after the other"),
+    config::ini_whole("TASK", "MDI_QUEUED_COMMANDS", "", 10, {0, 100000},
+                      "lines of MDI that may wait behind the one that runs"),
 
     config::ini_required(
         config::ini_list("HAL", "HALFILE", "HAL files in their order; .tcl files by haltcl")),
     config::ini_list("HAL", "HALCMD", "a HAL command, after the files"),
     config::ini_text("HAL", "TWOPASS", "not empty: the files are gone through twice"),
     config::ini_text("HAL", "HALUI", "not empty: halui takes part"),
-    config::ini_without_effect("HAL", "SHUTDOWN", "no HAL file is run at the end by this version"),
-    config::ini_without_effect("HAL", "POSTGUI_HALFILE", why::DISPLAYS),
-    config::ini_without_effect("HAL", "POSTGUI_HALCMD", why::DISPLAYS),
+    config::ini_text("HAL", "SHUTDOWN", "a HAL file that is run when the machine ends"),
+    config::ini_elsewhere("HAL", "POSTGUI_HALFILE", why::DISPLAYS),
+    config::ini_elsewhere("HAL", "POSTGUI_HALCMD", why::DISPLAYS),
     config::ini_without_effect("HALUI", "MDI_COMMAND",
                                "the pins halui.mdi-command-NN are not there in this version"),
-    config::ini_without_effect("APPLICATIONS", "APP", why::CLIENTS),
-    config::ini_without_effect("APPLICATIONS", "DELAY", why::CLIENTS),
+    config::ini_list("APPLICATIONS", "APP", "a program beside the display, with its words"),
+    config::ini_number("APPLICATIONS", "DELAY", "s", 0.0, {0.0, 3600.0},
+                       "from the start of the machine to that of those programs"),
 
     config::ini_text("EMCIO", "TOOL_TABLE", "file of the tool table"),
-    config::ini_flag("EMCIO", "RANDOM_TOOLCHANGER", false, "1 is refused by this version"),
-    config::ini_flag("EMCIO", "TOOL_CHANGE_WITH_SPINDLE_ON", false, "M6 leaves the spindle on"),
-    config::ini_flag("EMCIO", "TOOL_CHANGE_QUILL_UP", false, "M6 first raises Z"),
+    config::ini_flag("EMCIO", "RANDOM_TOOLCHANGER", false,
+                     "1: the changer puts the tool of the spindle into the pocket that the new one leaves; "
+                     "T0 is a tool then"),
     config::ini_text("EMCIO", "TOOL_CHANGE_POSITION", "machine coordinates of M6: 3, 6 or 9 numbers"),
     config::ini_elsewhere("EMCIO", "CYCLE_TIME", "I/O controllers that are processes of their own"),
-    config::ini_without_effect("EMCIO", "EMCIO", "the I/O controller is part of millwright run", "io iov2"),
-    config::ini_without_effect("EMCIO", "TOOL_CHANGE_AT_G30", "M6 does not move to G30 in this version", "0"),
-    config::ini_without_effect("EMCIO", "DB_PROGRAM", "tool databases are not asked by this version"),
+    config::ini_text("EMCIO", "EMCIO",
+                     "io, or iov2 [-support-start-change]: how the tool changer is spoken to"),
+    config::ini_whole("EMCIO", "PROTOCOL_VERSION", "", 2, {1, 2}, "1: iov2 speaks as io"),
+    config::ini_text("TASK", "IO_ERROR", "told for a fault of the changer with a negative reason, %d"),
+    config::ini_text("EMCIO", "DB_PROGRAM",
+                     "program that keeps the tools instead of TOOL_TABLE, with its arguments"),
 });
 
 /// Does not compile for a key that is not declared above.

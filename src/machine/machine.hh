@@ -34,6 +34,9 @@ struct MachineOptions {
     std::string instance;          ///< HAL instance of a realtime machine; empty: the user's default
     /// Extra folders for HAL library files, before our own.
     std::vector<std::string> hal_library;
+    /// Folders in which HAL files are looked for before that of the INI file.
+    std::vector<std::string> hal_folders;
+    bool isKeptGoing = false;  ///< what fails in a HAL file is told, and the rest of it is run
 };
 
 /// Realtime figures of a run; zero under the virtual clock.

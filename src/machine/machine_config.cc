@@ -369,6 +369,7 @@ void read_periods(IniReader &ini, MachineConfig &machine) {
     // A slow task cycle must not look like one that stands still.
     machine.task.watchdog_s = std::max(0.5, 10.0 * cycle_s);
     machine.task_period_ns = static_cast<std::int64_t>(std::llround(cycle_s * 1e9));
+    machine.task.mdi_queued_commands = static_cast<int>(ini.integer(ini_key("TASK", "MDI_QUEUED_COMMANDS")));
     machine.task.interpreter_plugin = ini.text(ini_key("TASK", "INTERPRETER"));
 }
 
@@ -385,6 +386,11 @@ void read_hal(IniReader &ini, MachineConfig &machine) {
         machine.hal_steps.push_back({HalStep::Kind::COMMAND, entry->value, entry->place});
     }
     machine.two_pass = ini.text(ini_key("HAL", "TWOPASS"));
+    machine.shutdown_file = ini.text(ini_key("HAL", "SHUTDOWN"));
+    for (const config::IniEntry *entry : ini.list(ini_key("APPLICATIONS", "APP"))) {
+        machine.applications.push_back(entry->value);
+    }
+    machine.applications_delay_s = ini.real(ini_key("APPLICATIONS", "DELAY"));
     machine.hasHalui = !ini.text(ini_key("HAL", "HALUI")).empty();
 }
 
@@ -418,15 +424,17 @@ void read_interpreter(IniReader &ini, MachineConfig &machine) {
 void read_io(IniReader &ini, MachineConfig &machine) {
     const std::string table = ini.text(ini_key("EMCIO", "TOOL_TABLE"));
     machine.tool_table_file = table.empty() ? "" : ini.file().resolve_path(table);
+    machine.tool_database = ini.text(ini_key("EMCIO", "DB_PROGRAM"));
+    machine.ini_folder = ini.file().folder();
     machine.isRandomToolchanger = ini.boolean(ini_key("EMCIO", "RANDOM_TOOLCHANGER"));
-    if (machine.isRandomToolchanger) {
-        ini.sink().error("[EMCIO]RANDOM_TOOLCHANGER = 1 is not supported by this version",
-                         ini.find(ini_key("EMCIO", "RANDOM_TOOLCHANGER"))->place);
-    }
-    machine.task.sequencer.isToolChangeWithSpindleOn =
-        ini.boolean(ini_key("EMCIO", "TOOL_CHANGE_WITH_SPINDLE_ON"));
+    machine.task.sequencer.isToolChangeWithSpindleOn = machine.task.interpreter.tool_change.isSpindleLeftOn;
+    const std::vector<std::string> program = split_words(ini.text(ini_key("EMCIO", "EMCIO")));
+    const bool isVersion2 = !program.empty() && program.front() == "iov2" &&
+                            ini.integer(ini_key("EMCIO", "PROTOCOL_VERSION")) == 2;
+    machine.task.changer_protocol = {
+        isVersion2, isVersion2 && std::ranges::find(program, "-support-start-change") != program.end()};
+    machine.task.sequencer.changer_error_text = ini.text(ini_key("TASK", "IO_ERROR"));
     task::ToolChangePlace &place = machine.task.tool_change_place;
-    place.isQuillRaised = ini.boolean(ini_key("EMCIO", "TOOL_CHANGE_QUILL_UP"));
     const config::IniEntry *position = ini.find(ini_key("EMCIO", "TOOL_CHANGE_POSITION"));
     if (position != nullptr) {
         const std::vector<std::string> words = split_words(position->value);
@@ -474,6 +482,13 @@ MachineConfig read_machine_config(config::IniReader &reader) {
     machine.task.axis_mask = machine.axis_mask;
     machine.task.num_joints = machine.num_joints;
     machine.task.num_spindles = machine.num_spindles;
+    msgs::SettingsStatus &shown = machine.task.shown;
+    shown.linear_units = machine.isMetric ? 1.0 : 1.0 / MM_PER_INCH;
+    shown.cycle_time_s = static_cast<double>(machine.servo_period_ns) / 1e9;
+    shown.debug =
+        static_cast<std::uint32_t>(reader.integer(config::row_of(interp::INI_KEYS, "EMC", "DEBUG")));
+    shown.kinematics = machine.kinematics_kind();
+    shown.joints.fill({shown.linear_units, 0, 1, 1, msgs::JointKind::LINEAR});
     machine.task.isHomingForced = !reader.boolean(ini_key(Parameter::TRAJ_NO_FORCE_HOMING));
     return machine;
 }

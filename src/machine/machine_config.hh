@@ -36,8 +36,14 @@ struct MachineConfig {
     std::vector<HalStep> hal_steps;
     std::string two_pass;  ///< [HAL]TWOPASS: not empty when files are gone through twice
     bool hasHalui = false;
+    std::string shutdown_file;              ///< a HAL file for the end, not run here
+    std::vector<std::string> applications;  ///< programs beside the display, not started here
+    double applications_delay_s = 0;
     std::string display;  ///< the program that the INI names, not started here
     std::string tool_table_file;
+    std::string
+        tool_database;  ///< the program that keeps the tools, with its arguments; empty: the file does
+    std::string ini_folder;
     bool isRandomToolchanger = false;
     task::Settings task;
     /// Every setting of the motion controller that the INI gives or that has a documented default.
@@ -52,6 +58,8 @@ struct MachineConfig {
 
     /// Once homed, for checks without moving.
     motion::FoldedLimits limits() const;
+    /// As the module says of itself: trivkins can be told.
+    msgs::Kinematics kinematics_kind() const;
 };
 
 /// Reads all sections that the system knows. Problems go to the reader's sink; the result is usable only when

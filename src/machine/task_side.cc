@@ -25,8 +25,9 @@ TaskSide::~TaskSide() {
 }
 
 Result<> TaskSide::start(const MachineOptions &options) {
+    diag::Sink unheard;
     auto tools =
-        ToolFile::load(parts_.config.tool_table_file, options.isToolTableTold ? nullptr : &parts_.sink);
+        open_tools(parts_.config, options.isToolTableTold ? unheard : parts_.sink, {options.isClockVirtual});
     if (!tools.has_value()) {
         return std::unexpected(tools.error());
     }
@@ -87,11 +88,14 @@ Result<> TaskSide::run_hal_files(const MachineOptions &options) {
         return tool_change_.create(host_.hal(), hand,
                                    [this, hand](const std::string &text) { tell_tool_change(hand, text); });
     };
-    const auto status = setup.run();
+    auto status = setup.run();
+    if (!status.has_value() && options.isKeptGoing) {
+        status = {};  // told
+    }
     if (status.has_value()) {
         parts_.reader.report_unknown(options.isStrict);
     }
-    return status.has_value() && parts_.sink.hasErrors()
+    return status.has_value() && parts_.sink.hasErrors() && !options.isKeptGoing
                ? fail_told("the INI file has errors", {parts_.ini.path(), 0, 0})
                : status;
 }

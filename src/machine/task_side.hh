@@ -14,7 +14,7 @@
 #include "machine/ini_pins.hh"
 #include "machine/machine.hh"
 #include "machine/tool_changer.hh"
-#include "machine/tool_file.hh"
+#include "machine/tool_data.hh"
 #include "task/task.hh"
 #include "ui/halui/halui.hh"
 
@@ -64,7 +64,7 @@ class TaskSide final : private task::IoPort {
     ui::Halui halui_;
     ManualToolChange tool_change_;
     IniParameters parameters_;
-    std::unique_ptr<ToolFile> tools_;
+    std::unique_ptr<task::ToolStore> tools_;
     bool isLasting_ = false;
     motion::Channels *channels_ = nullptr;
     std::unique_ptr<task::Task> task_;

@@ -1,23 +1,21 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "machine/tool_file.hh"
 
-#include <algorithm>
 #include <filesystem>
 
 #include "base/atomic_file.hh"
 
 namespace mw::machine {
 
-Result<std::unique_ptr<ToolFile>> ToolFile::load(const std::string &path, diag::Sink *sink) {
-    std::unique_ptr<ToolFile> file(new ToolFile(path));
-    diag::Sink silent;
-    diag::Sink &told = sink != nullptr ? *sink : silent;
+Result<std::unique_ptr<task::ToolStore>> ToolFile::load(const std::string &path, diag::Sink &sink,
+                                                        tool::Changer changer) {
+    std::unique_ptr<ToolFile> file(new ToolFile(path, changer));
     std::error_code error;
     if (!path.empty() && !std::filesystem::exists(path, error)) {
-        told.warning("there is no tool table '" + path + "': it starts empty");
+        sink.warning("there is no tool table '" + path + "': it starts empty");
         return file;
     }
-    const auto loaded = file->reload(told);
+    const auto loaded = file->read(sink);
     if (!loaded.has_value()) {
         return std::unexpected(loaded.error());
     }
@@ -25,11 +23,25 @@ Result<std::unique_ptr<ToolFile>> ToolFile::load(const std::string &path, diag::
 }
 
 Result<> ToolFile::reload() {
-    diag::Sink silent;
-    return reload(silent);
+    diag::Sink sink;
+    const Result<> done = read(sink);
+    warnings_.clear();
+    for (const diag::Diagnostic &one : sink.all()) {
+        warnings_.insert(warnings_.begin(), one.what.str());
+    }
+    return done;
 }
 
-Result<> ToolFile::reload(diag::Sink &sink) {
+std::optional<std::string> ToolFile::take_warning() {
+    if (warnings_.empty()) {
+        return std::nullopt;
+    }
+    std::string text = std::move(warnings_.back());
+    warnings_.pop_back();
+    return text;
+}
+
+Result<> ToolFile::read(diag::Sink &sink) {
     if (path_.empty()) {
         return {};
     }
@@ -37,30 +49,21 @@ Result<> ToolFile::reload(diag::Sink &sink) {
     if (!text.has_value()) {
         return std::unexpected(text.error());
     }
-    tool::Table table = tool::Table::parse_leniently(*text, path_, sink);
-    const int in_spindle = table_.entry(0).toolno;
-    table_ = std::move(table);
-    ++version_;
-    table_.load_spindle(in_spindle > 0 ? std::max(0, table_.index_of_tool(in_spindle)) : 0);
+    const auto changer = isRandom() ? tool::Changer::RANDOM : tool::Changer::FIXED;
+    replace(tool::Table::parse_leniently(*text, path_, sink, changer));
     return {};
 }
 
 Result<> ToolFile::load_spindle(int index) {
-    if (index < 0 || index >= table_.count()) {
-        return fail("the tool table has no entry " + std::to_string(index));
-    }
-    table_.load_spindle(index);
-    ++version_;
-    return {};
+    const bool isMoved = isRandom() && index != 0;
+    const Result<> done = ToolData::load_spindle(index);
+    return done.has_value() && isMoved ? save() : done;
 }
 
 Result<> ToolFile::set_entry(int index, const interp::ToolEntry &entry) {
-    if (index < 0 || index >= table_.count()) {
-        return fail("the tool table has no entry " + std::to_string(index));
-    }
-    table_.set_entry(index, entry);
-    ++version_;
-    return index == 0 || path_.empty() ? Result<>{} : table_.save(path_);
+    const bool isCopy = index == 0 && !isRandom();
+    const Result<> done = ToolData::set_entry(index, entry);
+    return done.has_value() && !isCopy ? save() : done;
 }
 
 }  // namespace mw::machine

@@ -2,38 +2,33 @@
 // The tool table file of a machine: the one owner of the tool data (requirement G4).
 #pragma once
 
-#include <memory>
 #include <string>
 
-#include "task/link/tool_store.hh"
-#include "tool/table.hh"
+#include "machine/tool_data.hh"
 
 namespace mw::machine {
 
 /// Not realtime; one thread. Each change is written to the file at once, atomically.
-class ToolFile final : public task::ToolStore {
+class ToolFile final : public ToolData {
   public:
-    /// An empty path is an empty table that lives in memory only; a file that is not there an empty one that
-    /// its first change makes. `sink` is warned of that and of lines that cannot be used.
-    static Result<std::unique_ptr<ToolFile>> load(const std::string &path, diag::Sink *sink = nullptr);
-
-    int count() const override { return table_.count(); }
-    interp::ToolEntry entry(int index) const override { return table_.entry(index); }
-    int index_of_tool(int toolno) const override { return table_.index_of_tool(toolno); }
-    bool isRandom() const override { return false; }
+    /// An empty path is an empty table that lives in memory only; a file that is not there an empty one.
+    /// `sink` is warned of that and of lines that cannot be used.
+    static Result<std::unique_ptr<task::ToolStore>> load(const std::string &path, diag::Sink &sink,
+                                                         tool::Changer changer = tool::Changer::FIXED);
 
     Result<> load_spindle(int index) override;
     Result<> set_entry(int index, const interp::ToolEntry &entry) override;
     Result<> reload() override;
-    std::uint64_t version() const override { return version_; }
+    std::optional<std::string> take_warning() override;
 
   private:
-    Result<> reload(diag::Sink &sink);
-    explicit ToolFile(std::string path) : path_(std::move(path)) {}
+    ToolFile(std::string path, tool::Changer changer)
+        : ToolData(tool::Table(changer)), path_(std::move(path)) {}
+    Result<> read(diag::Sink &sink);
+    Result<> save() const { return path_.empty() ? Result<>{} : table().save(path_); }
 
     std::string path_;
-    tool::Table table_;
-    std::uint64_t version_ = 1;
+    std::vector<std::string> warnings_;  ///< of the last reading, not told yet
 };
 
 }  // namespace mw::machine

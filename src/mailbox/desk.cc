@@ -293,7 +293,8 @@ void Desk::publish(msgs::MachineStatus &status, PartMask motion_parts) {
     namespace part = msgs::status_part;
     constexpr PartMask ALWAYS = part_range(part::TASK, 1);
     constexpr PartMask SELDOM = part_range(part::PROGRAM, 1) | part_range(part::CODES, 1) |
-                                part_range(part::OFFSETS, 1) | part_range(part::DEVICES, 1);
+                                part_range(part::OFFSETS, 1) | part_range(part::DEVICES, 1) |
+                                part_range(part::APPROACH, 2);
     status.operation = right_.status(now_ns_);
     status.last_message = newest_message();
     status.last_command = last_command_;

@@ -31,6 +31,13 @@ class Desk {
     /// How far a command has come. An end is final. That of the newest command is also in the status.
     void tell(Serial serial, msgs::Progress progress, const std::string &reason);
 
+    /// The same of commands that are not even begun.
+    void refuse(const std::vector<Serial> &commands, const std::string &reason) {
+        for (const Serial command : commands) {
+            tell(command, msgs::Progress::REFUSED, reason);
+        }
+    }
+
     /// A line for the operator; a longer one ends with "...".
     void post(msgs::MessageKind kind, std::string_view text);
     std::uint64_t newest_message() const { return segment_.newest_message.load(std::memory_order_relaxed); }

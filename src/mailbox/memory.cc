@@ -68,6 +68,10 @@ bool Memory::isOwnerAlive() const {
     return own_ != nullptr || rtapi::isAlive(shared_.owner());
 }
 
+int Memory::owner_pid() const {
+    return own_ != nullptr ? ::getpid() : shared_.owner().pid;
+}
+
 void Memory::ring(Segment &segment) {
     // Release: whoever sees the new value sees what was written before it.
     segment.bell.fetch_add(1, std::memory_order_release);

@@ -23,6 +23,8 @@ class Memory {
     Segment &segment() { return *segment_; }
     /// The process that made it lives. Always true in one process.
     bool isOwnerAlive() const;
+    /// That process, of a shared one; this one otherwise.
+    int owner_pid() const;
     /// Wakes whoever sleeps at the bell.
     static void ring(Segment &segment);
     /// Sleeps until the bell has another value than `heard`, or the time is over. True: it has.

@@ -23,6 +23,37 @@ inline constexpr auto NAMES<InterpState> =
     std::array{named(InterpState::IDLE, "IDLE"), named(InterpState::READING, "READING"),
                named(InterpState::PAUSED, "PAUSED"), named(InterpState::WAITING, "WAITING")};
 
+/// What task waits for, in the words of clients written for LinuxCNC.
+enum class ExecState : std::uint8_t {
+    ERROR = 1,
+    DONE = 2,
+    WAITING_FOR_MOTION = 3,
+    WAITING_FOR_MOTION_QUEUE = 4,
+    WAITING_FOR_IO = 5,
+    WAITING_FOR_MOTION_AND_IO = 7,
+    WAITING_FOR_DELAY = 8,
+    WAITING_FOR_SYSTEM_CMD = 9,
+    WAITING_FOR_SPINDLE_ORIENTED = 10
+};
+template <>
+inline constexpr auto NAMES<ExecState> =
+    std::array{named(ExecState::ERROR, "ERROR"),
+               named(ExecState::DONE, "DONE"),
+               named(ExecState::WAITING_FOR_MOTION, "WAITING_FOR_MOTION"),
+               named(ExecState::WAITING_FOR_MOTION_QUEUE, "WAITING_FOR_MOTION_QUEUE"),
+               named(ExecState::WAITING_FOR_IO, "WAITING_FOR_IO"),
+               named(ExecState::WAITING_FOR_MOTION_AND_IO, "WAITING_FOR_MOTION_AND_IO"),
+               named(ExecState::WAITING_FOR_DELAY, "WAITING_FOR_DELAY"),
+               named(ExecState::WAITING_FOR_SYSTEM_CMD, "WAITING_FOR_SYSTEM_CMD"),
+               named(ExecState::WAITING_FOR_SPINDLE_ORIENTED, "WAITING_FOR_SPINDLE_ORIENTED")};
+
+/// Where moves lead that a person has to confirm before they are made.
+enum class ApproachTo : std::uint8_t { NOTHING, LINE, PLACE_LEFT, PLACE_LOST };
+template <>
+inline constexpr auto NAMES<ApproachTo> =
+    std::array{named(ApproachTo::NOTHING, "NOTHING"), named(ApproachTo::LINE, "LINE"),
+               named(ApproachTo::PLACE_LEFT, "PLACE_LEFT"), named(ApproachTo::PLACE_LOST, "PLACE_LOST")};
+
 enum class MotionMode : std::uint8_t { FREE = 1, COORD = 2, TELEOP = 3 };
 template <>
 inline constexpr auto NAMES<MotionMode> = std::array{
@@ -52,6 +83,13 @@ template <>
 inline constexpr auto NAMES<JointKind> =
     std::array{named(JointKind::LINEAR, "LINEAR"), named(JointKind::ANGULAR, "ANGULAR")};
 
+/// What relates the joints to the axes.
+enum class Kinematics : std::uint8_t { IDENTITY = 1, FORWARD_ONLY = 2, INVERSE_ONLY = 3, BOTH = 4 };
+template <>
+inline constexpr auto NAMES<Kinematics> =
+    std::array{named(Kinematics::IDENTITY, "IDENTITY"), named(Kinematics::FORWARD_ONLY, "FORWARD_ONLY"),
+               named(Kinematics::INVERSE_ONLY, "INVERSE_ONLY"), named(Kinematics::BOTH, "BOTH")};
+
 /// What has to happen before the program goes on. The argument is the number of the pin, joint or spindle.
 enum class WaitFor : std::uint8_t {
     NOTHING,
@@ -62,6 +100,9 @@ enum class WaitFor : std::uint8_t {
     TOOL_PREPARED_OFF,
     TOOL_CHANGED,
     TOOL_CHANGED_OFF,
+    TOOL_START_CHANGE,
+    TOOL_ABORT_TAKEN,
+    TOOL_DATA,
     SPINDLE_ORIENTED,
     SETTING,
     USER_CODE,
@@ -76,6 +117,9 @@ inline constexpr auto NAMES<WaitFor> = std::array{named(WaitFor::NOTHING, "NOTHI
                                                   named(WaitFor::TOOL_PREPARED_OFF, "TOOL_PREPARED_OFF"),
                                                   named(WaitFor::TOOL_CHANGED, "TOOL_CHANGED"),
                                                   named(WaitFor::TOOL_CHANGED_OFF, "TOOL_CHANGED_OFF"),
+                                                  named(WaitFor::TOOL_START_CHANGE, "TOOL_START_CHANGE"),
+                                                  named(WaitFor::TOOL_ABORT_TAKEN, "TOOL_ABORT_TAKEN"),
+                                                  named(WaitFor::TOOL_DATA, "TOOL_DATA"),
                                                   named(WaitFor::SPINDLE_ORIENTED, "SPINDLE_ORIENTED"),
                                                   named(WaitFor::SETTING, "SETTING"),
                                                   named(WaitFor::USER_CODE, "USER_CODE"),

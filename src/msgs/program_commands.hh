@@ -38,13 +38,42 @@ inline constexpr auto DECLARED<OpenProgram> =
             field<&OpenProgram::path>("path", "of the file", unit::NONE, LINE));
 
 struct RunProgram {
-    int from_line = 0;  ///< only 0 and 1 (the start) are carried out
+    int from_line = 0;  ///< of the main program; what comes before is calculated, not made
 };
 template <>
 inline constexpr auto DECLARED<RunProgram> =
     declare("RunProgram", 507, "EMC_TASK_PLAN_RUN_TYPE", "runs the open program; done at its end",
-            optional(field<&RunProgram::from_line>("from_line", "0 and 1: the start; -1: only reads it",
-                                                   unit::NONE, range(-1, 1e9))));
+            optional(field<&RunProgram::from_line>(
+                "from_line",
+                "0 and 1: the start; above: what comes before is calculated, and the way there confirmed; "
+                "-1: only reads it",
+                unit::NONE, range(-1, 1e9))));
+
+/// The moves of ApproachStatus, which a person has seen, may be made.
+struct ConfirmApproach {
+    std::uint64_t number = 0;
+};
+template <>
+inline constexpr auto DECLARED<ConfirmApproach> =
+    declare("ConfirmApproach", 3005, "", "makes the moves that are proposed, then goes on with the program",
+            field<&ConfirmApproach::number>("number", "of the proposal, as ApproachStatus shows it"));
+
+/// Of a held program: it goes on later at the place that it has left.
+struct ReleaseAxes {};
+template <>
+inline constexpr auto DECLARED<ReleaseAxes> =
+    declare("ReleaseAxes", 3006, "", "lets the axes be jogged away from a program that is held");
+
+struct RecoverProgram {};
+template <>
+inline constexpr auto DECLARED<RecoverProgram> =
+    declare("RecoverProgram", 3007, "",
+            "goes on with the program that a power cut or a crash has ended, once the way is confirmed");
+
+struct ForgetRecovery {};
+template <>
+inline constexpr auto DECLARED<ForgetRecovery> =
+    declare("ForgetRecovery", 3008, "", "drops the offer to go on with a program that was cut short");
 
 struct ReadProgram {};
 template <>
@@ -89,7 +118,7 @@ struct ResetInterpreter {};
 template <>
 inline constexpr auto DECLARED<ResetInterpreter> =
     declare("ResetInterpreter", 515, "EMC_TASK_PLAN_INIT_TYPE",
-            "sets the interpreter to its start state and closes the program");
+            "ends what the interpreter has under way and closes the program");
 
 struct SynchInterpreter {};
 template <>

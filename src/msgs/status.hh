@@ -4,6 +4,7 @@
 
 #include "base/limits.hh"
 #include "msgs/device_status.hh"
+#include "msgs/settings_status.hh"
 #include "msgs/task_status.hh"
 
 namespace mw::msgs {
@@ -143,6 +144,9 @@ struct MachineStatus {
     ToolStatus tool;
     IoStatus io;
     OperationStatus operation;
+    ApproachStatus approach;
+    RecoveryStatus recovery;
+    SettingsStatus settings;
 };
 template <>
 inline constexpr auto DECLARED<MachineStatus> = declare(
@@ -163,7 +167,10 @@ inline constexpr auto DECLARED<MachineStatus> = declare(
     field<&MachineStatus::axes>("axes", "X Y Z A B C U V W"),
     field<&MachineStatus::spindles>("spindles", "by number"), field<&MachineStatus::tool>("tool", "changer"),
     field<&MachineStatus::io>("io", "e-stop chain, coolant"),
-    field<&MachineStatus::operation>("operation", "who may operate"));
+    field<&MachineStatus::operation>("operation", "who may operate"),
+    field<&MachineStatus::approach>("approach", "what a person is to confirm"),
+    field<&MachineStatus::recovery>("recovery", "what can be gone on with after a crash"),
+    field<&MachineStatus::settings>("settings", "what is set for the machine"));
 
 struct ToolRecord {
     int toolno = -1;

@@ -12,6 +12,7 @@ struct TypeList {};
 using StatusList =
     TypeList<MachineStatus, TaskStatus, Waiting, CodesStatus, OffsetsStatus, TrajectoryStatus, ProbeStatus,
              OverridesStatus, MotionStatus, JointStatus, AxisStatus, SpindleStatus, ToolStatus, IoStatus,
-             AuxStatus, CoolantStatus, LubeStatus, OperationStatus, ToolTable, ToolRecord>;
+             AuxStatus, CoolantStatus, LubeStatus, OperationStatus, SettingsStatus, JointSettings,
+             ApproachMove, ApproachStatus, RecoveryStatus, ToolTable, ToolRecord>;
 
 }  // namespace mw::msgs

@@ -11,10 +11,12 @@
 namespace mw::msgs::status_part {
 
 /// TASK: cycle, commands, messages, states and place in the program; PATH: trajectory, probe, overrides,
-/// motion with digital inputs and outputs; DEVICES: tool, I/O, the right to operate.
+/// motion with digital inputs and outputs; DEVICES: tool, I/O, the right to operate; APPROACH: that and
+/// recovery.
 inline constexpr int TASK = 0, PROGRAM = 1, CODES = 2, OFFSETS = 3, PATH = 4, ANALOG_IN = 5, ANALOG_OUT = 6,
                      JOINTS = 7, AXES = JOINTS + MAX_JOINTS, SPINDLES = AXES + 1,
-                     DEVICES = SPINDLES + MAX_SPINDLES, COUNT = DEVICES + 1;
+                     DEVICES = SPINDLES + MAX_SPINDLES, APPROACH = DEVICES + 1, SETTINGS = APPROACH + 1,
+                     COUNT = SETTINGS + 1;
 
 inline constexpr PartStarts<COUNT> STARTS = [] {
     PartStarts<COUNT> starts{};
@@ -32,6 +34,8 @@ inline constexpr PartStarts<COUNT> STARTS = [] {
         starts[SPINDLES + i] = offsetof(MachineStatus, spindles) + i * sizeof(SpindleStatus);
     }
     starts[DEVICES] = offsetof(MachineStatus, tool);
+    starts[APPROACH] = offsetof(MachineStatus, approach);
+    starts[SETTINGS] = offsetof(MachineStatus, settings);
     return starts;
 }();
 

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "base/limits.hh"
 #include "msgs/names.hh"
 
 namespace mw::msgs {
@@ -23,11 +24,15 @@ std::string waiting_text(const Waiting &waiting);
 
 /// Longest path of a program that the status can tell. [bytes]
 inline constexpr std::size_t MAX_STATUS_TEXT = 1023;
+/// Longest block that it tells; of a longer one the beginning. [bytes]
+inline constexpr std::size_t MAX_STATUS_BLOCK = 255;
 
 struct TaskStatus {
     State state = State::ESTOP;
     Mode mode = Mode::MANUAL;
     InterpState interp_state = InterpState::IDLE;
+    ExecState exec_state = ExecState::DONE;
+    bool isAway = false;
     bool isPaused = false;
     bool isStoppedByProgram = false;
     bool isOptionalStop = true;
@@ -38,9 +43,14 @@ struct TaskStatus {
     std::uint64_t stops = 0;
     std::uint64_t blocks = 0;
     int call_level = 0;
+    int queued_mdi = 0;
     std::uint64_t programs_ended = 0;
     Waiting waiting;
+    double delay_left_s = 0;
+    bool isInputTimedOut = false;
+    int error_code = 0;
     alignas(8) FixedText<MAX_STATUS_TEXT> program;
+    FixedText<MAX_STATUS_BLOCK> block;
 };
 template <>
 inline constexpr auto DECLARED<TaskStatus> =
@@ -48,6 +58,8 @@ inline constexpr auto DECLARED<TaskStatus> =
             field<&TaskStatus::state>("state", "of the machine"),
             field<&TaskStatus::mode>("mode", "of operation"),
             field<&TaskStatus::interp_state>("interp_state", "of the program"),
+            field<&TaskStatus::exec_state>("exec_state", "what task waits for"),
+            field<&TaskStatus::isAway>("is_away", "the axes of a held program are released for jogs"),
             field<&TaskStatus::isPaused>("is_paused", "held"),
             field<&TaskStatus::isStoppedByProgram>("stopped_by_program", "held by M0, M1 or M60"),
             field<&TaskStatus::isOptionalStop>("optional_stop", "M1 stops"),
@@ -59,8 +71,13 @@ inline constexpr auto DECLARED<TaskStatus> =
             field<&TaskStatus::stops>("stops", "M0, M1 and M60 that have held a program"),
             field<&TaskStatus::blocks>("blocks", "executed since the program started"),
             field<&TaskStatus::call_level>("call_level", "depth of subroutines"),
+            field<&TaskStatus::queued_mdi>("queued_mdi", "lines of MDI that wait behind the one that runs"),
             field<&TaskStatus::programs_ended>("programs_ended", "by M2, M30, end of file, abort or error"),
-            field<&TaskStatus::waiting>("waiting", "what the program waits for"));
+            field<&TaskStatus::waiting>("waiting", "what the program waits for"),
+            field<&TaskStatus::delay_left_s>("delay_left", "of a dwell", unit::SECOND),
+            field<&TaskStatus::isInputTimedOut>("input_timeout", "the last M66 has waited in vain"),
+            field<&TaskStatus::error_code>("error_code", "0; 5 after a program or line that failed"),
+            field<&TaskStatus::block>("block", "that was read last; of MDI, the line"));
 
 struct CodesStatus {
     std::array<int, 17> g{};
@@ -91,12 +108,80 @@ inline constexpr auto DECLARED<OffsetsStatus> =
             field<&OffsetsStatus::rotation_xy_deg>("rotation_xy_deg", "of the coordinate system about Z",
                                                    unit::DEGREE));
 
+struct ApproachMove {
+    geom::Pose end;
+    bool isRapid = true;
+};
+template <>
+inline constexpr auto DECLARED<ApproachMove> =
+    declare("ApproachMove", 0, "", "a move of an approach",
+            field<&ApproachMove::end>("end", "where it ends, machine coordinates", unit::POSE),
+            field<&ApproachMove::isRapid>("rapid", "a rapid; else at feed"));
+
+inline constexpr std::size_t MAX_APPROACH_MOVES = 4;
+/// Longest explanation that the status can tell. [bytes]
+inline constexpr std::size_t MAX_STATUS_REASON = 255;
+
+/// What is in force at the place where a program is to go on, and the way there.
+struct ApproachStatus {
+    std::uint64_t number = 0;
+    ApproachTo to = ApproachTo::NOTHING;
+    int line = 0;
+    int tool = 0;
+    bool mustChangeTool = false;
+    bool isMistOn = false;
+    bool isFloodOn = false;
+    double feed = 0;
+    std::array<double, MAX_SPINDLES> speeds_rpm{};
+    OffsetsStatus offsets;
+    CodesStatus codes;
+    std::uint32_t num_moves = 0;
+    std::array<ApproachMove, MAX_APPROACH_MOVES> moves{};
+};
+template <>
+inline constexpr auto DECLARED<ApproachStatus> =
+    declare("ApproachStatus", 0, "",
+            "how a program is to go on; ConfirmApproach with its number makes the moves",
+            field<&ApproachStatus::number>("number", "of the proposal, 0: none"),
+            field<&ApproachStatus::to>("to", "where the moves lead"),
+            field<&ApproachStatus::line>("line", "that is executed next"),
+            field<&ApproachStatus::tool>("tool", "that is to be in the spindle, 0 none"),
+            field<&ApproachStatus::mustChangeTool>("must_change_tool", "another is in the spindle now"),
+            field<&ApproachStatus::isMistOn>("mist", "mist goes on before the last move"),
+            field<&ApproachStatus::isFloodOn>("flood", "flood goes on before the last move"),
+            field<&ApproachStatus::feed>("feed", "of the last move", unit::SPEED),
+            field<&ApproachStatus::speeds_rpm>("speeds_rpm",
+                                               "of the spindles that start before the last move", unit::RPM),
+            field<&ApproachStatus::offsets>("offsets", "in force there"),
+            field<&ApproachStatus::codes>("codes", "in force there"),
+            field<&ApproachStatus::num_moves>("num_moves", "moves of the way"),
+            field<&ApproachStatus::moves>("moves", "in their order"));
+
+struct RecoveryStatus {
+    bool isOffered = false;
+    int line = 0;
+    std::uint64_t block = 0;
+    FixedText<MAX_STATUS_TEXT> program;
+    FixedText<MAX_STATUS_REASON> refusal;
+};
+template <>
+inline constexpr auto DECLARED<RecoveryStatus> = declare(
+    "RecoveryStatus", 0, "", "the program that was cut short when the controller ended last",
+    field<&RecoveryStatus::isOffered>("offered", "RecoverProgram goes on with it"),
+    field<&RecoveryStatus::line>("line", "that it goes on with"),
+    field<&RecoveryStatus::block>("block", "the same as a number, of the blocks since the start"),
+    field<&RecoveryStatus::program>("program", "path"),
+    field<&RecoveryStatus::refusal>("refusal", "why it cannot go on, empty: it can, or none was cut short"));
+
 struct ToolStatus {
     int in_spindle = 0;
     int from_pocket = 0;
     int prepared_index = -1;
     std::uint64_t table_version = 0;
     bool isPersonAsked = false;
+    bool isFaulted = false;
+    double cut_time_s = 0;
+    double cut_length = 0;
 };
 template <>
 inline constexpr auto DECLARED<ToolStatus> = declare(
@@ -105,7 +190,11 @@ inline constexpr auto DECLARED<ToolStatus> = declare(
     field<&ToolStatus::from_pocket>("from_pocket", "where it was taken from"),
     field<&ToolStatus::prepared_index>("prepared_index", "entry of the tool table prepared by T, -1 none"),
     field<&ToolStatus::table_version>("table_version", "counts changes of the tool table"),
-    field<&ToolStatus::isPersonAsked>("person_asked", "ConfirmToolChange is waited for"));
+    field<&ToolStatus::isPersonAsked>("person_asked", "ConfirmToolChange is waited for"),
+    field<&ToolStatus::isFaulted>("faulted", "the changer has told a fault that is not cleared"),
+    field<&ToolStatus::cut_time_s>("cut_time_s", "that the tool in the spindle has cut in its life",
+                                   unit::SECOND),
+    field<&ToolStatus::cut_length>("cut_length", "that it has cut", unit::LENGTH));
 
 struct AuxStatus {
     bool isEstopRequested = true;
@@ -129,10 +218,13 @@ inline constexpr auto DECLARED<CoolantStatus> =
 
 struct LubeStatus {
     bool isOn = false;
+    bool hasOil = true;
 };
 template <>
-inline constexpr auto DECLARED<LubeStatus> = declare("LubeStatus", 1599, "EMC_LUBE_STAT_TYPE", "lubrication",
-                                                     field<&LubeStatus::isOn>("on", "lubrication is on"));
+inline constexpr auto DECLARED<LubeStatus> =
+    declare("LubeStatus", 1599, "EMC_LUBE_STAT_TYPE", "lubrication",
+            field<&LubeStatus::isOn>("on", "lubrication is on"),
+            field<&LubeStatus::hasOil>("level_ok", "pin iocontrol.0.lube_level"));
 
 struct IoStatus {
     AuxStatus aux;

@@ -4,21 +4,25 @@
 #include "interp/scripts/user_codes.hh"
 #include "motion/api/texts.hh"
 #include "task/link/motion_status.hh"
+#include "task/task_start.hh"
 
 namespace mw::task {
 
 Task::Task(const Parts &parts, Settings settings)
     : settings_(std::move(settings)), parts_(parts), desk_(parts.mailbox), motion_(parts.channels),
+      io_(settings_.changer_protocol), mdi_queue_(settings_.mdi_queued_commands),
       world_({settings_.machine_units, settings_.axis_mask, settings_.num_spindles}),
       reader_({world_, parts.tools, parts.parameters},
               {settings_.machine_units, settings_.tool_change_place, settings_.parameter_file,
-               settings_.interpreter_plugin, settings_.interpreter}),
+               settings_.sequencer.isToolChangeWithSpindleOn, settings_.interpreter_plugin,
+               settings_.interpreter}),
       on_abort_(settings_.interpreter_plugin.empty() ? settings_.interpreter.on_abort_command
                                                      : std::string()),
       user_program_(settings_.isUserProgramWaitedFor),
       sequencer_(reader_.queue(), motion_, io_, parts.tools, make_events(), settings_.sequencer),
       planner_mode_({[this](const motion::SetParameter &p) { return motion_.send(p); },
-                     [this](MessageKind kind, const std::string &text) { post(kind, text); }}) {}
+                     [this](MessageKind kind, const std::string &text) { post(kind, text); }}),
+      shown_settings_(settings_.shown) {}
 
 SequencerEvents Task::make_events() {
     SequencerEvents events;
@@ -63,6 +67,7 @@ SequencerEvents Task::make_events() {
 void Task::configure(const std::vector<motion::SetParameter> &parameters) {
     planner_mode_.configure(parameters);
     for (const motion::SetParameter &parameter : parameters) {
+        shown_settings_.note(parameter);
         last_setting_ = motion_.send(parameter);
     }
     motion_.send(motion::SetNumJoints{settings_.num_joints});
@@ -75,6 +80,7 @@ Result<> Task::start() {
     if (!loaded.has_value()) {
         return loaded;
     }
+    show_first_tool(parts_.tools, io_);
     synch_interpreter();
     planner_mode_.announce();
     Result<> begun = reader_.interpreter().begin();
@@ -125,6 +131,13 @@ void Task::step_run() {
     }
     if (run_.phase() == RunPhase::FINISHING && sequencer_.isIdle() && !run_.isHeld()) {
         finish_run(Progress::DONE, {});
+    }
+    while (!run_.isRunning()) {  // lines of MDI follow at once: nothing comes between them
+        const auto line = mdi_queue_.next();
+        if (!line.has_value()) {
+            break;
+        }
+        carry_out(line->command, Mdi{line->text});
     }
 }
 
@@ -206,15 +219,14 @@ void Task::end_requests() {
     }
 }
 
-bool Task::isReadAheadAllowed() {
-    return run_.phase() != RunPhase::FINISHING && run_.hold() != Hold::STOPPED &&
-           reader_.queue().size() < settings_.read_ahead_items;
-}
-
 /// What an abort has stopped may still brake: a run begins where the machine is at rest.
 bool Task::begin_run() {
     if (!motion_.status().isInPosition) {
         return false;
+    }
+    if (run_.from_line() > 1) {
+        Start{*this}.begin();
+        return true;
     }
     run_.change(RunEvent::BEGUN);
     synch_interpreter();
@@ -228,8 +240,16 @@ void Task::run_interpreter() {
     if (run_.phase() == RunPhase::STARTING && !begin_run()) {
         return;
     }
+    if (run_.phase() == RunPhase::SEARCHING) {
+        Start{*this}.step();
+        return;
+    }
     show_world();
-    for (int i = 0; i < settings_.blocks_per_cycle && run_.isRunning() && isReadAheadAllowed(); ++i) {
+    const auto mayRead = [this] {
+        return run_.isRunning() && run_.phase() != RunPhase::FINISHING && run_.hold() != Hold::STOPPED &&
+               reader_.queue().size() < settings_.read_ahead_items;
+    };
+    for (int i = 0; i < settings_.blocks_per_cycle && mayRead(); ++i) {
         if (run_.phase() == RunPhase::SYNCHING) {
             if (!sequencer_.isIdle()) {
                 return;
@@ -287,7 +307,20 @@ void Task::tell(const std::optional<Ending> &ending) {
     }
 }
 
-void Task::publish_tools() {
+void Task::step_tools() {
+    parts_.tools.step();
+    while (const auto warning = parts_.tools.take_warning()) {
+        post(MessageKind::OPERATOR_ERROR, *warning);
+    }
+    const auto read = reload_command_ != 0 ? parts_.tools.reload_result() : std::nullopt;
+    if (read.has_value()) {
+        const std::string reason = read->has_value() ? std::string() : read->error().str();
+        desk_.tell(std::exchange(reload_command_, 0), reason.empty() ? Progress::DONE : Progress::FAILED,
+                   reason);
+        if (!reason.empty()) {
+            post(MessageKind::OPERATOR_ERROR, reason);
+        }
+    }
     const auto table = tools_.step(parts_.tools);
     if (table.has_value() && !desk_.publish_tools(*table)) {
         post(MessageKind::OPERATOR_ERROR, "the tool table is too large to be shown to clients");
@@ -305,23 +338,36 @@ void Task::update_status() {
     task.isPaused = run_.isHeld();
     task.isStoppedByProgram = run_.hold() == Hold::STOPPED;
     task.interp_state = run_.shown();
+    task.exec_state = run_.isRunning() ? sequencer_.exec_state() : ExecState::DONE;
+    task.isAway = run_.hold() == Hold::AWAY;
+    task.queued_mdi = mdi_queue_.size();
     if (run_.isRunning()) {
         task.read_line = reader_.interpreter().line();
         task.call_level = reader_.interpreter().call_level();
     }
-    task.waiting = homing_.isUnderWay() ? Waiting{WaitFor::HOMING, homing_.joint()}
-                   : run_.isRunning()   ? sequencer_.waiting_for()
-                                        : Waiting{};
+    task.waiting =
+        homing_.isUnderWay() ? Waiting{WaitFor::HOMING, homing_.joint()} : sequencer_.waiting_for();
+    task.delay_left_s = sequencer_.dwell_left_s(now_ns_);
+    task.isInputTimedOut = sequencer_.isInputTimedOut();
+    constexpr int INTERPRETER_ERROR = 5;  // as clients know it
+    task.error_code = run_.error() != nullptr ? INTERPRETER_ERROR : 0;
+    task.block.assign(reader_.canon().block_text());
+    status_.settings = shown_settings_.shown();
     const interp::ActiveCodes codes = reader_.interpreter().active_codes();
     status_.codes = {codes.g, codes.m, codes.settings};
-    publish_tools();
-    status_.tool = {io_.outputs.tool_number, io_.outputs.tool_from_pocket,
-                    sequencer_.tool_change().selected_index(), tools_.version()};
+    approach_.show(status_.approach, status_.offsets, status_.codes);
+    step_tools();
+    status_.tool = {io_.outputs.tool_number, io_.outputs.tool_from_pocket, sequencer_.selected_tool_index(),
+                    tools_.version()};
     status_.io.coolant.isMistOn = io_.outputs.coolant_mist;
     status_.io.coolant.isFloodOn = io_.outputs.coolant_flood;
     status_.tool.isPersonAsked = parts_.io_port.isPersonAsked();
     status_.io.aux = {io_.isEstopRequested(), io_.isChainClosed()};
-    status_.io.lube.isOn = io_.outputs.lube;
+    status_.tool.isFaulted = io_.outputs.toolchanger_faulted;
+    if (status_.io.lube.hasOil && !io_.hasOil()) {
+        post(MessageKind::OPERATOR_ERROR, "the lubrication wants oil: pin iocontrol.0.lube_level is FALSE");
+    }
+    status_.io.lube = {io_.outputs.lube, io_.hasOil()};
     ++status_.cycle;
     status_.time_ns = now_ns_;
     const PartMask told = tell_motion(motion_.status(), motion_.fresh_parts(), settings_.axis_mask, status_);

@@ -9,7 +9,10 @@
 #include "io/controller.hh"
 #include "mailbox/desk.hh"
 #include "task/link/motion_link.hh"
+#include "task/link/shown_settings.hh"
 #include "task/link/shown_tools.hh"
+#include "task/run/admission.hh"
+#include "task/run/approach.hh"
 #include "task/run/machine_world.hh"
 #include "task/run/on_abort.hh"
 #include "task/run/program_reader.hh"
@@ -20,11 +23,15 @@
 #include "task/states/homing_request.hh"
 #include "task/states/inbox.hh"
 #include "task/states/machine_state.hh"
+#include "task/states/mdi_queue.hh"
 #include "task/states/motion_orders.hh"
 #include "task/states/operating_mode.hh"
 #include "task/status.hh"
 
 namespace mw::task {
+
+/// Why a command that waited was never begun.
+inline constexpr const char *OVERTAKEN = "it came before a stop";
 
 /// The pins of the I/O controller, as task reads and writes them once a cycle, and the person who changes
 /// tools by hand.
@@ -40,6 +47,7 @@ class IoPort {
 
 struct Settings {
     interp::LengthUnits machine_units = interp::LengthUnits::MM;
+    msgs::SettingsStatus shown;  ///< to clients; what motion is told is added by task
     unsigned axis_mask = 7;
     int num_joints = 3;
     int num_spindles = 1;
@@ -48,7 +56,9 @@ struct Settings {
     interp::Settings interpreter;
     std::string interpreter_plugin;  ///< [TASK]INTERPRETER: a shared object; empty: RS-274/NGC
     SequencerSettings sequencer;
+    io::Protocol changer_protocol;
     ToolChangePlace tool_change_place;
+    int mdi_queued_commands = 10;  ///< lines of MDI that may wait behind the one that runs
     /// A program of a user M code is waited for within a cycle: for virtual clocks.
     bool isUserProgramWaitedFor = false;
     /// Task's loop standing still for so long stops the machine.
@@ -78,7 +88,10 @@ class Task {
     /// Hands settings to the motion controller; a refused one comes as a message.
     void configure(const std::vector<motion::SetParameter> &parameters);
     /// One setting, later on; whoever asks has seen that it is no time at which it cannot be.
-    void change(const motion::SetParameter &parameter) { motion_.send(parameter); }
+    void change(const motion::SetParameter &parameter) {
+        shown_settings_.note(parameter);
+        motion_.send(parameter);
+    }
     /// And a table of the errors of a joint's screw.
     void load_compensation(const std::vector<motion::LoadCompensation> &points) {
         motion_.send_table(points);
@@ -110,6 +123,9 @@ class Task {
   private:
     struct Handler;
     friend struct Handler;
+    /// Starts elsewhere than at the first line: task_search.cc.
+    struct Start;
+    friend struct Start;
 
     SequencerEvents make_events();
     SourcePlace place_of(const motion::SourceTag &source) const;
@@ -118,10 +134,10 @@ class Task {
     void end_requests();
     void check_run_mode();
     void carry_out_commands();
+    void carry_out(mailbox::Serial serial, const Command &command);
     void step_run();
     void run_interpreter();
     bool begin_run();
-    bool isReadAheadAllowed();
     void on_step_result(interp::Step result);
     bool on_stop(const interp::ProgramStop &stop, int line);
 
@@ -134,7 +150,7 @@ class Task {
 
     void finish_run(Progress progress, const std::string &reason);
     void tell(const std::optional<Ending> &ending);
-    void publish_tools();
+    void step_tools();
     void update_status();
     /// Takes the machine's position and state as the program's.
     void synch_interpreter();
@@ -153,16 +169,20 @@ class Task {
     OutOfModeWatch out_of_mode_;
     HomingRequest homing_;
     MotionOrders orders_;
+    MdiQueue mdi_queue_;
 
     MachineWorld world_;
     ProgramReader reader_;
     ProgramRun run_;
+    Approach approach_;
     OnAbort on_abort_;
     UserProgram user_program_;
     Sequencer sequencer_;
     PlannerMode planner_mode_;
 
     ShownTools tools_;
+    ShownSettings shown_settings_;
+    mailbox::Serial reload_command_ = 0;  ///< LoadToolTable that has not ended; 0: none
     Status status_;
     std::int64_t now_ns_ = 0;
     motion::CommandId last_setting_ = 0;

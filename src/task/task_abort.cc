@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The end of work that cannot go on, and what is done after it.
-#include "task/task.hh"
+#include "task/task_start.hh"
 
 namespace mw::task {
 
 void Task::fail_program(diag::Diagnostic what, AbortReason reason) {
     if (run_.phase() == RunPhase::CLEANING) {  // no clean-up of a clean-up
-        sequencer_.abort();
+        sequencer_.abort(static_cast<int>(AbortReason::EXECUTION_ERROR));
         run_.change(RunEvent::CLEANED);
         post(MessageKind::OPERATOR_ERROR, on_abort_.told(what.str()));
         return;
@@ -27,10 +27,12 @@ void Task::stop_run(const std::string &reason) {
 void Task::abort_work(AbortReason reason) {
     // A machine that goes off has mostly been stopped for another reason before: that clean-up goes on.
     const bool isFollowing = reason == AbortReason::STATE_NOT_ON && on_abort_.isCleanedUp();
+    desk_.refuse(mdi_queue_.drop(), OVERTAKEN);
     motion_.abort();
     if (!isFollowing || run_.phase() != RunPhase::CLEANING) {
-        sequencer_.abort();
+        sequencer_.abort(static_cast<int>(reason));
         user_program_.stop();
+        Start{*this}.drop();
         reader_.drop();
         run_.change(RunEvent::CLEAN);
     }

@@ -6,41 +6,13 @@
 
 #include "base/overloaded.hh"
 #include "motion/api/screw_file.hh"
+#include "task/link/device_orders.hh"
 #include "task/link/motion_words.hh"
-#include "task/task.hh"
+#include "task/task_start.hh"
 
 namespace mw::task {
 namespace {
 
-/// What an operator asks in G-code.
-template <class T>
-concept PartOfPrograms =
-    OneOf<T, LinearMove, CircularMove, ProbeMove, RigidTapMove, Delay, SetTermination, SetSpindleSync, SetG5x,
-          SetG92, SetRotation, SetToolOffset, SetTrajVelocity, SetTrajAcceleration, SetMotionId,
-          OrientSpindle, WaitOriented, WaitInput, PrepareTool, LoadTool, UnloadTool, SetToolNumber,
-          StartToolChange, ReadProgram, EndProgram>;
-/// What the INI file says.
-template <class T>
-concept PartOfConfiguration =
-    OneOf<T, SetJointKind, SetJointUnits, SetJointMinLimit, SetJointMaxLimit, SetJointFerror,
-          SetJointMinFerror, SetJointMaxVelocity, SetJointBacklash, SetJointHoming, SetTrajAxes, SetTrajUnits,
-          SetTrajCycleTime, SetMaxAcceleration, SetTrajHome, SetIoCycleTime>;
-/// What starts and ends with the machine.
-template <class T>
-concept PartOfStart = OneOf<T, InitTask, HaltTask, InitMachine, HaltMachine, InitMotion, HaltMotion, InitTraj,
-                            HaltTraj, InitJoint, HaltJoint, InitTool, HaltTool, InitIo, HaltIo>;
-template <class T>
-concept NotYet =
-    OneOf<T, CloseProgram, ResetInterpreter, SynchInterpreter, StopOptionally, SetDebug, SystemCommand,
-          CallTaskPlugin, CallIoPlugin, SetMotionMode, EnableTraj, DisableTraj, SpindleIncrease,
-          SpindleDecrease, SpindleConstant, SetSpindleSpeed, LubeOn, LubeOff, SetToolEntry>;
-/// What motion does by itself (task/link/motion_words.hh).
-template <class T>
-concept CarriedOutByMotion =
-    OneOf<T, SetFeedOverride, SetRapidOverride, SetSpindleOverride, SetMaxVelocity, EnableFeedOverride,
-          EnableSpindleOverride, EnableFeedHold, EnableAdaptiveFeed, OverrideLimits, EnableJoint,
-          DisableJoint, ActivateJoint, DeactivateJoint, ClearProbe, SetDigitalOutput, SetAnalogOutput,
-          EngageBrake, ReleaseBrake>;
 static_assert(SHORTEST_JOG_LEASE_MS / 1e3 == motion::SHORTEST_JOG_LEASE_S &&
               LONGEST_JOG_LEASE_MS / 1e3 == motion::LONGEST_JOG_LEASE_S);
 
@@ -49,10 +21,6 @@ RefusalIsFor reader_of_refusal(const Command &command) {
     const auto *jog = std::get_if<JogContinuous>(&command);
     return jog != nullptr && jog->isRenewal ? RefusalIsFor::ITS_CLIENT : RefusalIsFor::EVERYBODY;
 }
-
-/// Other names of the operator's abort.
-template <class T>
-concept AnyAbort = OneOf<T, AbortAll, AbortMachine, AbortTraj, AbortMotion, AbortTool, AbortIo>;
 
 }  // namespace
 
@@ -71,6 +39,14 @@ struct Task::Handler {
     Outcome operator()(const PauseProgram &command);
     Outcome operator()(const ResumeProgram &command);
     Outcome operator()(const Mdi &command);
+    Outcome operator()(const StopOptionally &);
+    Outcome operator()(const CloseProgram &);
+    Outcome operator()(const ResetInterpreter &);
+    Outcome operator()(const SynchInterpreter &);
+    Outcome operator()(const ConfirmApproach &command);
+    Outcome operator()(const ReleaseAxes &) { return fail("this version does not carry it out yet"); }
+    Outcome operator()(const RecoverProgram &) { return fail("this version does not carry it out yet"); }
+    Outcome operator()(const ForgetRecovery &) { return fail("this version does not carry it out yet"); }
     Outcome operator()(const SetTeleop &command);
     Outcome operator()(const HomeJoint &command);
     Outcome operator()(const UnhomeJoint &command);
@@ -79,7 +55,7 @@ struct Task::Handler {
     Outcome operator()(const JogAbsolute &command);
     Outcome operator()(const JogStop &command);
     Outcome operator()(const SetTeleopVector &command) {
-        return jog(motion::SetTeleopVector{command.velocity});
+        return order(motion::SetTeleopVector{command.velocity});
     }
     Outcome operator()(const LoadCompensation &command);
     Outcome operator()(const SpindleOn &command);
@@ -95,16 +71,20 @@ struct Task::Handler {
         task.world_.set_block_delete(command.isOn);
         return Progress::DONE;
     }
-    template <CarriedOutByMotion C>
+    template <command_lists::CarriedOutByMotion C>
     Outcome operator()(const C &command) {
+        if constexpr (std::is_same_v<C, SetMaxVelocity>) {
+            task.shown_settings_.limit_velocity(command.velocity);
+        }
         return order(in_motion_words(command));
     }
-    Outcome operator()(const ReverseProgram &) { return turn_program(true); }
-    Outcome operator()(const ForwardProgram &) { return turn_program(false); }
-    Outcome operator()(const MistOn &) { return set_coolant(&io::Controller::set_mist, true); }
-    Outcome operator()(const MistOff &) { return set_coolant(&io::Controller::set_mist, false); }
-    Outcome operator()(const FloodOn &) { return set_coolant(&io::Controller::set_flood, true); }
-    Outcome operator()(const FloodOff &) { return set_coolant(&io::Controller::set_flood, false); }
+    Outcome operator()(const ReverseProgram &) { return order(motion::SetReverse{true}); }
+    Outcome operator()(const ForwardProgram &) { return order(motion::SetReverse{false}); }
+    template <OneOf<MistOn, MistOff, FloodOn, FloodOff, LubeOn, LubeOff> C>
+    Outcome operator()(const C &command) {
+        return done(switch_device(command, task.io_));
+    }
+    Outcome operator()(const SetToolEntry &command) { return done(set_tool(command, task.parts_.tools)); }
 
     Outcome operator()(const Null &) { return Progress::DONE; }
     Outcome operator()(const OperatorError &command) {
@@ -123,42 +103,25 @@ struct Task::Handler {
     Outcome operator()(const StepTraj &) { return (*this)(StepProgram{}); }
     Outcome operator()(const ResumeTraj &) { return (*this)(ResumeProgram{}); }
     Outcome operator()(const AbortJoint &command) { return (*this)(JogStop{true, command.joint}); }
-    template <AnyAbort C>
+    template <command_lists::AnyAbort C>
     Outcome operator()(const C &) {
         return abort_all();
     }
 
-    template <PartOfPrograms C>
+    /// Never taken: the table has said so.
+    template <command_lists::Never C>
     Outcome operator()(const C &) {
-        return fail("this is a part of programs", {}, "give it as G-code, by Mdi");
-    }
-    template <PartOfConfiguration C>
-    Outcome operator()(const C &) {
-        return fail("this is set by the INI file and does not change while the machine runs");
-    }
-    template <PartOfStart C>
-    Outcome operator()(const C &) {
-        return fail("this begins and ends with the machine");
-    }
-    template <NotYet C>
-    Outcome operator()(const C &) {
-        return fail("this version does not carry it out yet");
-    }
-    template <OneOf<ClaimOperation, HandOverOperation, ReleaseOperation> C>
-    Outcome operator()(const C &) {
-        return fail("the right to operate belongs to clients that are connected");
+        return fail(refusal_of(class_of<C>(), Situation::MANUAL));
     }
 
   private:
     Outcome abort_all();
-    void refuse(const std::vector<mailbox::Serial> &dropped);
     Outcome send(const motion::CommandBody &body) {
         task.motion_.send(body);
         return Progress::DONE;
     }
-    Outcome set_coolant(void (io::Controller::*set)(bool), bool isOn) {
-        (task.io_.*set)(isOn);
-        return Progress::DONE;
+    static Outcome done(const Result<> &result) {
+        return result.has_value() ? Outcome(Progress::DONE) : std::unexpected(result.error());
     }
     Outcome tell(MessageKind kind, const std::string &text) {
         task.post(kind, text);
@@ -169,25 +132,9 @@ struct Task::Handler {
         task.orders_.begin(id, task.motion_.send(body), reader, task.now_ns_);
         return Progress::STARTED;
     }
-    Outcome jog(const motion::CommandBody &body, RefusalIsFor reader = RefusalIsFor::EVERYBODY) {
-        const auto allowed = need_manual();
-        return allowed.has_value() ? order(body, reader) : std::unexpected(allowed.error());
-    }
-    Outcome turn_program(bool isReverse) {
-        return task.run_.isRunning() ? order(motion::SetReverse{isReverse}) : fail("no program runs");
-    }
     Result<> need_spindle(int spindle) const {
         return spindle < task.settings_.num_spindles ? Result<>{}
                                                      : fail("there is no spindle " + std::to_string(spindle));
-    }
-    Result<> need_on() const {
-        return task.state_.state() == State::ON ? Result<>{} : fail("the machine is not on");
-    }
-    Result<> need_manual() const {
-        if (task.mode_.mode() != Mode::MANUAL) {
-            return fail("this needs manual mode");
-        }
-        return need_on();
     }
     /// Done when motion has agreed.
     void change_mode(Mode mode, motion::Mode motion_mode) {
@@ -209,28 +156,29 @@ using Outcome = Result<Progress>;
 void Task::carry_out_commands() {
     inbox_.add(desk_.take(now_ns_));
     while (const auto delivery = inbox_.next(mode_.isChanging())) {
-        const auto outcome = std::visit(Handler{*this, delivery->serial}, delivery->command);
-        if (!outcome.has_value()) {
-            const std::string reason = outcome.error().str();
-            desk_.tell(delivery->serial, Progress::REFUSED, reason);
-            if (reader_of_refusal(delivery->command) == RefusalIsFor::EVERYBODY) {
-                post(MessageKind::OPERATOR_ERROR, reason);
-            }
-        } else if (*outcome != Progress::STARTED) {
-            desk_.tell(delivery->serial, *outcome, {});
-        }
+        carry_out(delivery->serial, delivery->command);
     }
 }
 
-void Task::Handler::refuse(const std::vector<mailbox::Serial> &dropped) {
-    for (const mailbox::Serial waiting : dropped) {
-        task.desk_.tell(waiting, Progress::REFUSED, "it came before a stop");
+void Task::carry_out(mailbox::Serial serial, const Command &command) {
+    const auto admitted =
+        admit(class_of(command, mode_.mode()), situation_of(state_.state(), mode_.mode(), run_.state()));
+    const auto outcome = admitted.has_value() ? std::visit(Handler{*this, serial}, command)
+                                              : std::unexpected(admitted.error());
+    if (!outcome.has_value()) {
+        const std::string reason = outcome.error().str();
+        desk_.tell(serial, Progress::REFUSED, reason);
+        if (reader_of_refusal(command) == RefusalIsFor::EVERYBODY) {
+            post(MessageKind::OPERATOR_ERROR, reason);
+        }
+    } else if (*outcome != Progress::STARTED) {
+        desk_.tell(serial, *outcome, {});
     }
 }
 
 Outcome Task::Handler::operator()(const SetState &command) {
     if (command.state == State::ESTOP || command.state == State::OFF) {
-        refuse(task.inbox_.drop_before(id));
+        task.desk_.refuse(task.inbox_.drop_before(id), OVERTAKEN);
     }
     const MachineState::Asked asked = task.state_.ask(command.state, id, task.now_ns_);
     task.tell(asked.replaced);
@@ -266,17 +214,11 @@ Outcome Task::Handler::operator()(const SetMode &command) {
     if (command.mode == task.mode_.mode()) {
         return Progress::DONE;
     }
-    if (task.run_.isRunning()) {
-        return fail("cannot change the mode while a program or MDI line runs");
-    }
     change_mode(command.mode, command.mode == Mode::MANUAL ? motion::Mode::FREE : motion::Mode::COORD);
     return Progress::STARTED;
 }
 
 Outcome Task::Handler::operator()(const OpenProgram &command) {
-    if (task.run_.isRunning()) {
-        return fail("cannot open a program while one runs");
-    }
     const auto opened = task.reader_.interpreter().open(command.path);
     if (!opened.has_value()) {
         return std::unexpected(opened.error());
@@ -287,12 +229,6 @@ Outcome Task::Handler::operator()(const OpenProgram &command) {
 }
 
 Result<> Task::check_can_run() const {
-    if (state_.state() != State::ON) {
-        return fail("the machine is not on");
-    }
-    if (run_.isRunning()) {
-        return fail("a program or MDI line runs already");
-    }
     if (settings_.isHomingForced && !motion_.status().isAllHomed) {
         return fail("not all joints are homed", {}, "home the machine, or set [TRAJ]NO_FORCE_HOMING = 1");
     }
@@ -300,12 +236,8 @@ Result<> Task::check_can_run() const {
 }
 
 Outcome Task::Handler::operator()(const RunProgram &command) {
-    if (task.mode_.mode() != Mode::AUTO) {
-        return fail("running a program needs auto mode");
-    }
-    if (command.from_line > 1) {
-        return fail("running from line " + std::to_string(command.from_line) +
-                    " is not supported by this version");
+    if (command.from_line < 0) {
+        return fail("a program is not only read by a machine", {}, "millwright check looks through it");
     }
     if (task.status_.task.program.empty()) {
         return fail("no program is open");
@@ -318,7 +250,11 @@ Outcome Task::Handler::operator()(const RunProgram &command) {
     if (!opened.has_value()) {
         return std::unexpected(opened.error());
     }
-    return start_run(RunKind::PROGRAM);
+    const auto started = start_run(RunKind::PROGRAM);
+    if (started.has_value()) {
+        task.run_.set_from_line(command.from_line);
+    }
+    return started;
 }
 
 Outcome Task::Handler::operator()(const StepProgram &) {
@@ -352,7 +288,14 @@ Outcome Task::Handler::operator()(const PauseProgram &) {
     return send(motion::Pause{});
 }
 
+Outcome Task::Handler::operator()(const ConfirmApproach &command) {
+    return Start{task}.confirm(command.number);
+}
+
 Outcome Task::Handler::operator()(const ResumeProgram &) {
+    if (task.run_.hold() == Hold::PROPOSED) {
+        return Start{task}.confirm(0);
+    }
     const auto taken = task.run_.take(RunEvent::RESUME);
     if (!taken.has_value()) {
         return std::unexpected(taken.error());
@@ -361,16 +304,42 @@ Outcome Task::Handler::operator()(const ResumeProgram &) {
     return send(motion::Resume{});
 }
 
+/// As M1 here and now.
+Outcome Task::Handler::operator()(const StopOptionally &) {
+    if (!task.world_.isOptionalStopOn()) {
+        return fail("optional stops are off");
+    }
+    task.on_stop({.isOptional = true}, task.motion_.status().source.line);
+    return send(motion::Pause{});
+}
+
+Outcome Task::Handler::operator()(const CloseProgram &) {
+    task.reader_.interpreter().close();
+    task.status_.task.program.assign("");
+    return Progress::DONE;
+}
+
+Outcome Task::Handler::operator()(const ResetInterpreter &) {
+    task.reader_.drop();
+    return (*this)(CloseProgram{});
+}
+
+Outcome Task::Handler::operator()(const SynchInterpreter &) {
+    task.synch_interpreter();
+    const auto saved = task.save_parameters();
+    return saved.has_value() ? Outcome(Progress::DONE) : std::unexpected(saved.error());
+}
+
 Outcome Task::Handler::abort_all() {
-    refuse(task.inbox_.drop_before(id));
+    task.desk_.refuse(task.inbox_.drop_before(id), OVERTAKEN);
     task.stop_run("aborted");
     task.abort_work(AbortReason::ABORT);
     return Progress::DONE;
 }
 
 Outcome Task::Handler::operator()(const Mdi &command) {
-    if (task.mode_.mode() != Mode::MDI) {
-        return fail("MDI needs MDI mode");
+    if (task.run_.isRunning()) {
+        return task.mdi_queue_.add({id, command.line});
     }
     const auto allowed = task.check_can_run();
     if (!allowed.has_value()) {
@@ -380,19 +349,11 @@ Outcome Task::Handler::operator()(const Mdi &command) {
 }
 
 Outcome Task::Handler::operator()(const SetTeleop &command) {
-    const auto allowed = need_manual();
-    if (!allowed.has_value()) {
-        return std::unexpected(allowed.error());
-    }
     change_mode(task.mode_.mode(), command.isTeleop ? motion::Mode::TELEOP : motion::Mode::FREE);
     return Progress::STARTED;
 }
 
 Outcome Task::Handler::operator()(const HomeJoint &command) {
-    const auto allowed = need_manual();
-    if (!allowed.has_value()) {
-        return std::unexpected(allowed.error());
-    }
     if (task.homing_.isUnderWay()) {
         return fail("homing is under way already");
     }
@@ -402,10 +363,6 @@ Outcome Task::Handler::operator()(const HomeJoint &command) {
 }
 
 Outcome Task::Handler::operator()(const UnhomeJoint &command) {
-    const auto allowed = need_manual();
-    if (!allowed.has_value()) {
-        return std::unexpected(allowed.error());
-    }
     return order(motion::Unhome{command.joint});
 }
 
@@ -414,32 +371,29 @@ Outcome Task::Handler::operator()(const JogContinuous &command) {
         return fail(fmt::format("a jog cannot have a lease of {} ms: it is 0 (none) or from {} to {} ms",
                                 command.lease_ms, SHORTEST_JOG_LEASE_MS, LONGEST_JOG_LEASE_MS));
     }
-    return jog(
+    return order(
         motion::JogContinuous{
             {command.isJoint, command.index}, command.velocity, command.lease_ms / 1e3, command.isRenewal},
         reader_of_refusal(command));
 }
 
 Outcome Task::Handler::operator()(const JogIncrement &command) {
-    return jog(motion::JogIncremental{
+    return order(motion::JogIncremental{
         {command.isJoint, command.index}, std::fabs(command.velocity), command.distance});
 }
 
 Outcome Task::Handler::operator()(const JogAbsolute &command) {
-    return jog(
+    return order(
         motion::JogAbsolute{{command.isJoint, command.index}, std::fabs(command.velocity), command.position});
 }
 
 Outcome Task::Handler::operator()(const JogStop &command) {
-    refuse(task.inbox_.drop_jogs_before(id, command));
+    task.desk_.refuse(task.inbox_.drop_jogs_before(id, command), OVERTAKEN);
     return send(motion::JogStop{{command.isJoint, command.index}});
 }
 
 /// Done when the file is read and on its way to motion.
 Outcome Task::Handler::operator()(const LoadCompensation &command) {
-    if (task.state_.state() == State::ON) {
-        return fail("a table of screw errors is loaded while the machine is off");
-    }
     if (command.joint >= task.settings_.num_joints) {
         return fail(fmt::format("there is no joint {}", command.joint));
     }
@@ -453,10 +407,7 @@ Outcome Task::Handler::operator()(const LoadCompensation &command) {
 }
 
 Outcome Task::Handler::operator()(const SpindleOn &command) {
-    auto allowed = need_spindle(command.spindle);
-    if (allowed.has_value() && command.speed_rpm != 0) {
-        allowed = need_on();
-    }
+    const auto allowed = need_spindle(command.spindle);
     if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
     }
@@ -469,11 +420,15 @@ Outcome Task::Handler::operator()(const SpindleOff &command) {
 }
 
 Outcome Task::Handler::operator()(const LoadToolTable &) {
-    if (task.run_.isRunning()) {
-        return fail("cannot load the tool table while a program runs");
+    if (task.reload_command_ != 0) {
+        return fail("the tool table is being read already");
     }
-    const auto loaded = task.parts_.tools.reload();
-    return loaded.has_value() ? Outcome(Progress::DONE) : std::unexpected(loaded.error());
+    const auto begun = task.parts_.tools.reload();
+    if (!begun.has_value()) {
+        return std::unexpected(begun.error());
+    }
+    task.reload_command_ = id;
+    return Progress::STARTED;
 }
 
 Outcome Task::Handler::operator()(const ConfirmToolChange &) {

@@ -40,6 +40,8 @@ struct AccelBound {
         bound.alpha.fill(a);
         return bound;
     }
+    /// Through what is left at LimitTuning::CHORDS of the squared speed v^2.
+    static AccelBound through(const double (&left)[LINES + 1], double v) noexcept;
     /// The lesser of two up to the speed v; chords of it, so on the safe side.
     static AccelBound least(const AccelBound &x, const AccelBound &y, double v) noexcept;
     /// At the squared speed b, never negative.
@@ -62,6 +64,13 @@ struct AccelBound {
     }
 };
 
+/// How hard a stop may brake on a piece: by `bound` from x = `from` on, before it by the piece's
+/// acceleration.
+struct Braking {
+    double from = 0;
+    AccelBound bound;
+};
+
 /// A stretch of path with limits of its own: a part of one primitive, or of a blend between two.
 ///   part:  q(x) = A(offset + x)
 ///   blend: q(x) = A(L - d + z - z^2/4d) + B(z^2/4d) - corner,  z = offset + x in [0, 2d], L the length of A
@@ -76,6 +85,7 @@ struct Piece {
     double programmed_s = 0;  ///< where it begins on the programmed path, measured in s from the path's start
     double tolerance = 0;     ///< deviation from the programmed path that is allowed; 0: any
     AccelBound acceleration;  ///< along x, such that every axis keeps its limits [1/s^2]
+    Braking braking;          ///< the same for stops, which the speeds are not planned with
     // Of a pass that is locked to a spindle's angle, filled before the executor is told of the pass.
     double per_turn = 0;           ///< way along x in a turn of the spindle
     double v_most = 0;             ///< highest speed

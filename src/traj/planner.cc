@@ -157,22 +157,22 @@ void Planner::plan_tried(const Snapshot &now) noexcept {
     const Demand demand = timing_.tried_demand(view(), now);
     switch (demand.kind) {
     case Demand::Kind::PLAN: {
-        const bool isRefused = !find_plan(now, demand.from, false);
+        const bool isRefused = !find_plan(now, demand.from, Ending::ONWARD);
         if (now.motion == Motion::REST) {
             refusals_ = isRefused && now.isSettled ? refusals_ + 1 : 0;
         }
         break;
     }
-    case Demand::Kind::STOP: find_plan(now, demand.from, true); break;
+    case Demand::Kind::STOP: find_plan(now, demand.from, Ending::HARD_STOP); break;
     case Demand::Kind::PASS: start_pass(now, demand.from); break;
     case Demand::Kind::EXTEND:  // every plan goes as far as it will
     case Demand::Kind::NOTHING: break;
     }
 }
 
-/// Makes plans until one passes the trial. False when the trial has refused them all; the plan before then
-/// stays in force, with its stop.
-bool Planner::find_plan(const Snapshot &now, LeaderState from, bool isStop) noexcept {
+/// Makes plans until one passes the trial; a hard stop only once. False when the trial has refused them all;
+/// the plan before then stays in force, with its stop.
+bool Planner::find_plan(const Snapshot &now, LeaderState from, Ending ending) noexcept {
     const Sequence begin = timing_.phases_end();
     const double standing =
         TimingTuning::STANDING * path_.piece(from.piece).acceleration.at(0) * settings_.period_s;
@@ -182,16 +182,21 @@ bool Planner::find_plan(const Snapshot &now, LeaderState from, bool isStop) noex
     Cause cause;
     const int attempts = refusals_ > 0 ? TimingTuning::ATTEMPTS_AT_REST : TimingTuning::ATTEMPTS;
     for (int n = 0; n < attempts; ++n) {
-        if (!timing_.draft(view(), path_.store(), begin, from, isStop)) {
-            break;
-        }
-        const Verdict verdict =
-            trial_.check(view(), now, {from, begin, timing_.phases_end(), timing_.outlook(now)});
-        if (verdict.isSound) {
-            if (!timing_.commit(view(), path_.store(), now, begin, isStop)) {
+        const bool isDrafted = timing_.draft(view(), path_.store(), begin, from, ending);
+        const TrialPlan plan{from, begin, timing_.phases_end(), timing_.outlook(now)};
+        const Verdict verdict = isDrafted ? trial_.check(view(), now, plan) : Verdict{};
+        if (isDrafted && verdict.isSound) {
+            if (!timing_.commit(view(), path_.store(), now, begin, ending)) {
                 break;
             }
             return true;
+        }
+        if (ending == Ending::HARD_STOP) {
+            ending = Ending::STOP;
+            continue;
+        }
+        if (!isDrafted) {
+            break;
         }
         isRefused = true;
         cause = trial_.cause_of(verdict, conditions_.limits, from.v > 0 ? from.piece + 1 : from.piece);

@@ -106,7 +106,7 @@ class Planner {
     /// The move at whose very beginning the executor stands, 0: none.
     Sequence standing_before(const Snapshot &now) const noexcept;
     void plan_tried(const Snapshot &now) noexcept;
-    bool find_plan(const Snapshot &now, LeaderState from, bool isStop) noexcept;
+    bool find_plan(const Snapshot &now, LeaderState from, Ending ending) noexcept;
     bool ease(const LeaderState &from, const Verdict &verdict, const Cause &cause) noexcept;
     void start_pass(const Snapshot &now, const LeaderState &from) noexcept;
 

@@ -73,6 +73,23 @@ struct LimitTuning {
     static constexpr double CHORDS[] = {0, 0.5, 0.85, 1};
 };
 
+/// Stops on curves (braking_on).
+struct BrakingTuning {
+    /// Parts of a piece in which signs of derivatives are looked at: a blend has four pieces at most, so a
+    /// stop on it begins a twenty-fourth of it late at most.
+    static constexpr std::size_t INTERVALS = 6;
+    /// Where turning at the highest speed leaves this part of the acceleration, a stop by the sum is fast
+    /// enough: the slower the more is left.
+    static constexpr double ENOUGH = 0.5;
+    /// A piece that takes no longer at its highest speed delays no stop [s]. Dense programs are planned twice
+    /// as fast for it.
+    static constexpr double SHORT_S = 0.002;
+    /// What derivatives may be more than their differences tell.
+    static constexpr double MARGIN = 1.002;
+    /// A bound of its own has to be better by so much.
+    static constexpr double LEAST_GAIN = 1.05;
+};
+
 /// Limits of joints that are not axes (joint_rows).
 struct JointTuning {
     /// The derivatives are sampled at three places; between them they may be larger by this much. The trial

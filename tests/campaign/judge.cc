@@ -14,9 +14,10 @@ namespace {
 constexpr double PLACE_ROUNDING = 2e-6, RATE_ROUNDING = 1e-5;
 /// Corrections of the motor's place come on top of the joint's motion.
 constexpr double WITH_BACKLASH = 1.5;
-/// A path brakes along its curves, where part of the acceleration keeps it on them.
+/// What a stop may take of the least, and on top of it for commands on their way.
 constexpr double STOP_FACTOR = 2.2, STOP_SLACK_S = 0.02;
-constexpr double BLEND_S = 0.1;  ///< so long after a stop speeds may still grow
+/// How often a stop under way is judged [cycles].
+constexpr int LOOK_EVERY = 16;
 /// Until commands that were on their way when the machine was stopped have been dropped [cycles].
 constexpr int IN_FLIGHT = 6;
 constexpr double MOVED = 1e-9;
@@ -39,20 +40,14 @@ double own_place(const JointSample &q) {
     return q.motor_cmd + q.turned - q.offset;
 }
 
-/// How exactly homing knows where a slide is.
-double found_within(const JointDesign &d, double period_s) {
-    const bool hasIndex = d.home_kind == HomeKind::SWITCH_AND_INDEX;
-    const bool hasSwitch = d.home_kind == HomeKind::SWITCH;
-    const double latched = hasSwitch ? std::abs(d.latch) * (2 * period_s + d.bounce_s) + d.hysteresis : 0;
-    return latched + 3 / d.counts_per_unit + 1e-6 + (hasIndex ? 0.01 : 0);
-}
-
 }  // namespace
 
 Judge::Judge(const Design &design, double period_s) : design_(design), period_(period_s) {
     for (const JointDesign &j : design.joints) {
         joints_.push_back({checker_of(j, false, period_s), checker_of(j, design.isJerkLimited, period_s)});
     }
+    stop_.path.motors.resize(design.joints.size());
+    build_up_s_ = build_up_s();
     velocity_.assign(design.joints.size(), 0);
     before_.assign(design.joints.size(), 0);
 }
@@ -66,9 +61,9 @@ void Judge::fail(const std::string &rule, const std::string &text) {
 }
 
 void Judge::allow(Leave leave) {
-    maySwitchOn_ = maySwitchOn_ || leave == Leave::SWITCH_ON;
-    mayMove_ = mayMove_ || leave != Leave::SWITCH_ON;
-    mayWork_ = mayWork_ || leave == Leave::WORK;
+    allowed_.isSwitchingOn = allowed_.isSwitchingOn || leave == Leave::SWITCH_ON;
+    allowed_.isMotion = allowed_.isMotion || leave != Leave::SWITCH_ON;
+    allowed_.isWork = allowed_.isWork || leave == Leave::WORK;
 }
 
 void Judge::stop(Stop how, int delay) {
@@ -76,18 +71,31 @@ void Judge::stop(Stop how, int delay) {
     if (isWorse) {
         return;
     }
+    const bool isSame = stop_.isAwaited && how == Stop::ALONG_THE_PATH;
+    if (!isSame) {
+        stop_.delay = delay;
+        stop_.since = 0;
+        begin_stop();
+    }
     stop_.how = how;
-    stop_.delay = stop_.isAwaited && how == Stop::ALONG_THE_PATH ? stop_.delay : delay;
-    stop_.since = stop_.isAwaited && how == Stop::ALONG_THE_PATH ? stop_.since : 0;
     stop_.isAwaited = true;
     restless_ = delay + IN_FLIGHT;
-    maySwitchOn_ = mayMove_ = mayWork_ = false;
-    begin_stop();
+    allowed_.isSwitchingOn = allowed_.isMotion = allowed_.isWork = false;
 }
 
+/// The path begins with the samples that tell the speed.
 void Judge::begin_stop() {
-    stop_.least_s = time_to_stop();
-    stop_.due_s = STOP_FACTOR * stop_.least_s + STOP_SLACK_S + time_to_correct() + stops_later_s;
+    constexpr std::size_t KEPT = 3;
+    AwaitedStop::Path &path = stop_.path;
+    const std::size_t old = path.axes.size() - std::min(path.axes.size(), KEPT);
+    const auto forget = [old](auto &samples) {
+        samples.erase(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(old));
+    };
+    forget(path.axes);
+    for (std::vector<double> &motor : path.motors) {
+        forget(motor);
+    }
+    path.areAxesKnown = last_.areAxesKnown;
 }
 
 /// What corrections take to come to rest, of which the motion on top of which they come knows nothing.
@@ -103,7 +111,6 @@ double Judge::time_to_correct() const {
     return most;
 }
 
-/// An offset on its own, from its highest speed.
 double Judge::time_to_brake() const {
     double most = 0;
     for (const JointDesign &d : design_.joints) {
@@ -112,27 +119,81 @@ double Judge::time_to_brake() const {
     return most + 3 * design_.rise_s();
 }
 
-/// From the speeds of the last sample, by every joint's own acceleration and jerk and those along the path.
-double Judge::time_to_stop() const {
-    double most = 0;
-    double path2 = 0;
+/// By the accelerations of joints and axes along the path that was taken since, and what building them up
+/// takes where jerk is limited.
+LeastStop Judge::time_to_stop() const {
+    std::vector<StoppingGroup> groups;
     for (std::size_t j = 0; j < joints_.size(); ++j) {
         const JointDesign &d = design_.joints[j];
+        groups.push_back({{stop_.path.motors[j]}, built_up(d.isAngular, d.acceleration, d.jerk)});
+    }
+    StoppingGroup linear{{}, design_.acceleration};
+    for (const AxisDesign &a : design_.axes) {
+        std::vector<double> places;
+        for (const geom::Pose &pose : stop_.path.axes) {
+            places.push_back(pose[a.axis]);
+        }
+        if (!stop_.path.areAxesKnown) {
+            continue;
+        }
+        groups.push_back({{places}, built_up(geom::isAngular(a.axis), a.acceleration, a.jerk)});
+        if (!geom::isAngular(a.axis)) {
+            linear.places.push_back(places);
+        }
+    }
+    if (!linear.places.empty()) {
+        groups.push_back(linear);
+    }
+    LeastStop stop = least_stop(groups, period_);
+    stop.seconds += time_of_jerk();
+    return stop;
+}
+
+/// Of all that is linear, the longest time in which an acceleration is built up. Angular axes get no longer:
+/// docs/motion/planner.md, "Known limits".
+double Judge::build_up_s() const {
+    double most = 0;
+    const auto look = [&](bool isAngular, double acceleration, double jerk) {
+        most = !isAngular && jerk > 0 ? std::max(most, acceleration / jerk) : most;
+    };
+    for (const JointDesign &d : design_.joints) {
+        look(d.isAngular, d.acceleration, d.jerk);
+    }
+    for (const AxisDesign &a : design_.axes) {
+        look(geom::isAngular(a.axis), a.acceleration, a.jerk);
+    }
+    return most;
+}
+
+double Judge::built_up(bool isAngular, double acceleration, double jerk) const {
+    const bool isShort = design_.isJerkLimited && isAngular && jerk > 0 && build_up_s_ > 0;
+    return isShort ? std::min(acceleration, jerk * build_up_s_) : acceleration;
+}
+
+/// What building up accelerations takes of those who move as a stop begins.
+double Judge::time_of_jerk() const {
+    constexpr double UP_AND_DOWN = 2.5;
+    double most = 0;
+    for (std::size_t j = 0; j < joints_.size() && design_.isJerkLimited && stop_.path.axes.size() > 1; ++j) {
+        const JointDesign &d = design_.joints[j];
+        const std::vector<double> &motor = stop_.path.motors[j];
+        const bool isMoving = std::abs(motor[1] - motor[0]) > MOVED;
+        if (!isMoving) {
+            continue;
+        }
         double a = d.acceleration;
         double jerk = d.jerk;
+        most = jerk > 0 ? std::max(most, built_up(d.isAngular, a, jerk) / jerk) : most;
         for (const AxisDesign &x : design_.axes) {
-            // Who limits an axis may limit any joint; of machines whose joints are axes only its own.
+            // Who limits an axis may limit any joint.
             a = std::min(a, x.acceleration);
             jerk = x.jerk > 0 ? (jerk > 0 ? std::min(jerk, x.jerk) : x.jerk) : jerk;
         }
         a = d.isAngular ? a : std::min(a, design_.acceleration);
         jerk = design_.jerk > 0 ? (jerk > 0 ? std::min(jerk, design_.jerk) : design_.jerk) : jerk;
-        const double v = std::abs(velocity_[j]);
-        path2 += d.isAngular ? 0 : v * v;
-        const bool hasJerk = design_.isJerkLimited && jerk > 0;
-        most = std::max(most, v / a + (hasJerk && v > 0 ? 2.5 * a / jerk : 0));
+        most = jerk > 0 ? std::max(most, a / jerk) : most;
     }
-    return std::max(most, std::sqrt(path2) / design_.acceleration);
+    return UP_AND_DOWN * most;
 }
 
 void Judge::sample(const Sample &s) {
@@ -146,10 +207,23 @@ void Judge::sample(const Sample &s) {
     check_room(s);
     check_homes(s);
     check_outputs(s);
+    take_for_stop(s);
     check_rest(s);
     check_places(s);
     restless_ = std::max(0, restless_ - 1);
     last_ = s;
+}
+
+/// Until a stop begins, the last samples alone.
+void Judge::take_for_stop(const Sample &s) {
+    stop_.path.axes.push_back(s.axes);
+    stop_.path.areAxesKnown = stop_.path.areAxesKnown && s.areAxesKnown;
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+        stop_.path.motors[j].push_back(own_place(s.joints[j]));
+    }
+    if (!stop_.isAwaited) {
+        begin_stop();
+    }
 }
 
 void Judge::check_numbers(const Sample &s) {
@@ -191,7 +265,7 @@ void Judge::check_amplifiers(const Sample &s) {
             fail("offset",
                  fmt::format("joint {} is switched on with an external offset of {:.6g}", j, q.offset));
         }
-        if (isRise && !maySwitchOn_) {
+        if (isRise && !allowed_.isSwitchingOn) {
             fail("energise", fmt::format("amplifier of joint {} comes on by itself", j));
         }
         // One that moves by itself is taken where motion has seen it, a cycle ago.
@@ -278,70 +352,10 @@ void Judge::check_room(const Sample &s) {
     }
 }
 
-/// A joint that says that it is homed is where it says that it is.
-void Judge::check_homes(const Sample &s) {
-    for (std::size_t j = 0; j < joints_.size(); ++j) {
-        const JointSample &q = s.joints[j];
-        JointJudge &judge = joints_[j];
-        const JointDesign &d = design_.joints[j];
-        const bool isNew = q.isHomed && !judge.wasHomed;
-        judge.wasHomed = q.isHomed;
-        if (isNew) {
-            judge.reference = d.home_kind == HomeKind::IMMEDIATE ? q.pos_fb - q.position : 0;
-        }
-        if (!q.isHomed || !q.isTruthKnown || !std::isfinite(q.motor_fb)) {
-            continue;
-        }
-        const double off = q.pos_fb - q.position - judge.reference;
-        // In motion corrections may be late, and play is on either side.
-        const double allowed = found_within(d, period_) + 2 * d.play + 2 * d.screw_error;
-        if (!(std::abs(off) <= allowed)) {
-            fail("homed", fmt::format("joint {} says {:.6g} and is at {:.6g}", j, q.pos_fb,
-                                      q.position + judge.reference));
-        }
-    }
-}
-
-/// At rest a slide is where it is commanded: corrections have taken up play and what the screw is off.
-void Judge::check_places(const Sample &s) {
-    constexpr int RESTED = 60;           // the drive has settled
-    constexpr double DRIVE = 3e-3;       // friction holds it so near
-    constexpr double OVERSHOOT = 0.012;  // of the motor, which takes the slide with it one way only
-    for (std::size_t j = 0; j < joints_.size(); ++j) {
-        const JointSample &q = s.joints[j];
-        JointJudge &judge = joints_[j];
-        const JointDesign &d = design_.joints[j];
-        const bool isKnown =
-            q.isAmpOn && last_.joints[j].isAmpOn && q.isHomed && q.isTruthKnown && !q.isHoming;
-        judge.travel = isKnown ? judge.travel + std::abs(q.pos_cmd - last_.joints[j].pos_cmd) : 0;
-        judge.isPlaceKnown = judge.isPlaceKnown && q.isHomed && q.isTruthKnown;
-        // Until it has moved farther than the play nobody knows at which end of it the slide is.
-        const bool isJudged = d.isCorrected() && standing_ == RESTED && judge.travel > 1 + 4 * d.play;
-        if (!isJudged) {
-            continue;
-        }
-        const double off = q.position - q.pos_cmd;
-        judge.place = judge.isPlaceKnown ? judge.place : off;
-        judge.isPlaceKnown = true;
-        ++judged_[d.screw_type >= 0 ? "screw" : "backlash"];
-        const double allowed = DRIVE + 3 / d.counts_per_unit + (d.play > 0 ? OVERSHOOT : 0);
-        if (std::abs(off - judge.place) > allowed) {
-            fail("place", fmt::format("joint {} stands {:.6g} off, where it stood {:.6g} off before", j, off,
-                                      judge.place));
-        }
-        // Where the switch is met soon after a reversal play was not all taken up yet.
-        const double late = d.play + (design_.isJerkLimited ? d.screw_error : 0);
-        const bool isMeasured = d.home_kind != HomeKind::IMMEDIATE;
-        if (isMeasured && std::abs(off) > allowed + late + found_within(d, period_)) {
-            fail("place", fmt::format("joint {} stands {:.6g} off where it was homed to be", j, off));
-        }
-    }
-}
-
 void Judge::check_outputs(const Sample &s) {
     const bool isRising = (s.isSpindleOn && !last_.isSpindleOn) ||
                           (s.spindle_rpm != 0 && last_.spindle_rpm == 0) || (s.outputs & ~last_.outputs) != 0;
-    if (isRising && !mayWork_ && restless_ == 0) {
+    if (isRising && !allowed_.isWork && restless_ == 0) {
         fail("energise",
              fmt::format("spindle at {}, outputs {:x} come on by themselves", s.spindle_rpm, s.outputs));
     }
@@ -350,7 +364,7 @@ void Judge::check_outputs(const Sample &s) {
 /// What has come to rest stays there, but for rounding, until somebody asks for a motion.
 void Judge::check_stale(const Sample &s, bool wasAtRest) {
     const bool wasHeld = isHeld_;
-    isHeld_ = !mayMove_ && restless_ == 0 && (wasAtRest || wasHeld);
+    isHeld_ = !allowed_.isMotion && restless_ == 0 && (wasAtRest || wasHeld);
     for (std::size_t j = 0; j < joints_.size(); ++j) {
         const JointSample &q = s.joints[j];
         const JointSample &before = last_.joints[j];
@@ -376,7 +390,7 @@ void Judge::check_rest(const Sample &s) {
                                 std::abs(own_place(q) - own_place(last_.joints[j])) > MOVED);
     }
     if (wasOn && !isOn) {
-        maySwitchOn_ = mayMove_ = mayWork_ = false;
+        allowed_.isSwitchingOn = allowed_.isMotion = allowed_.isWork = false;
         restless_ = std::max(restless_, IN_FLIGHT);
     }
     offsets_standing_ = isOffsetMoving ? 0 : offsets_standing_ + 1;
@@ -386,6 +400,10 @@ void Judge::check_rest(const Sample &s) {
     if (!stop_.isAwaited) {
         return;
     }
+    watch_stop(isMoving, isOn);
+}
+
+void Judge::watch_stop(bool isMoving, bool isOn) {
     ++stop_.since;
     if (stop_.since <= stop_.delay) {
         begin_stop();  // it does not know yet
@@ -399,33 +417,36 @@ void Judge::check_rest(const Sample &s) {
         stop_.isAwaited = false;
         return;
     }
-    const double took = (cycles - standing_) * period_;
     const bool isStanding = standing_ >= 3 && cycles >= 3;
-    if (cycles * period_ <= BLEND_S && time_to_stop() > stop_.least_s) {
-        // In the middle of a blend all acceleration turns the motion round: it has to be left first.
-        begin_stop();
-        stop_.due_s += BLEND_S;
-    }
-    if (isMoving && cycles * period_ > stop_.due_s) {
-        fail("stop", fmt::format("still moves {:.3f} s after the stop; its limits need {:.3f} s",
-                                 cycles * period_, stop_.least_s));
-        stop_.isAwaited = false;
+    if (isStanding || !isOn || cycles % LOOK_EVERY == 0) {
+        check_stop(isMoving && isOn, (cycles - standing_) * period_);
     }
     if (isStanding || !isOn) {
-        constexpr double WORTH_A_LOOK_S = 0.05;
-        slowest_stop_ =
-            stop_.least_s > WORTH_A_LOOK_S
-                ? std::max(slowest_stop_, (took - time_to_correct() - stops_later_s) / stop_.least_s)
-                : slowest_stop_;
-        // The mean that keeps the jerk may stand before it is sure of it.
-        const int off_within =
-            10 +
-            static_cast<int>((design_.rise_s() + (design_.hasOffsets() ? time_to_brake() : 0)) / period_);
+        // The mean that keeps the jerk may stand before it is sure of it, and offsets brake on their own.
+        const double sure_s = design_.rise_s() + (design_.hasOffsets() ? time_to_brake() : 0);
+        const int off_within = 10 + static_cast<int>(sure_s / period_);
         const bool mustBeOff = stop_.how == Stop::ALONG_THEN_OFF;
         if (mustBeOff && isOn && standing_ > off_within) {
             fail("stop", "it stands, and its amplifiers stay on");
         }
         stop_.isAwaited = mustBeOff && isOn && standing_ <= off_within;
+    }
+}
+
+void Judge::check_stop(bool isMoving, double took_s) {
+    const LeastStop least = time_to_stop();
+    if (isMoving && !least.isOver) {
+        return;  // nobody could have stopped on what there is of the path yet
+    }
+    const double corrections_s = time_to_correct() + stops_later_s;
+    if (took_s > STOP_FACTOR * least.seconds + STOP_SLACK_S + corrections_s) {
+        fail("stop", fmt::format("{} {:.3f} s after the stop; its limits need {:.3f} s",
+                                 isMoving ? "still moves" : "comes to rest", took_s, least.seconds));
+        stop_.isAwaited = false;
+    }
+    constexpr double WORTH_A_LOOK_S = 0.05;
+    if (!isMoving && least.seconds > WORTH_A_LOOK_S) {
+        slowest_stop_ = std::max(slowest_stop_, (took_s - corrections_s) / least.seconds);
     }
 }
 

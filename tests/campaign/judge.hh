@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "campaign/design.hh"
+#include "campaign/stop_bound.hh"
 #include "geom/pose.hh"
 #include "testing/limit_checker.hh"
 
@@ -51,11 +52,22 @@ struct AwaitedStop {
     bool isAwaited = false;
     Stop how = Stop::ALONG_THE_PATH;
     int delay = 0, since = 0;  ///< cycles
-    double due_s = 0, least_s = 0;
+    /// Commanded since, with the samples that tell the speed as it began.
+    struct Path {
+        std::vector<std::vector<double>> motors;  ///< by joint, sample
+        std::vector<geom::Pose> axes;
+        bool areAxesKnown = false;
+    };
+    Path path;
 };
 
 /// What an operator's fresh command allows until the next stop.
 enum class Leave { SWITCH_ON, MOVE, WORK };
+
+/// Since the last stop.
+struct Allowed {
+    bool isSwitchingOn = false, isMotion = false, isWork = false;
+};
 
 class Judge {
   public:
@@ -76,8 +88,8 @@ class Judge {
     /// Rules that are known to be broken: they are counted, and end nothing.
     std::set<std::string> known;
     const std::map<std::string, int> &broken_known() const { return broken_known_; }
-    /// What the speeds of the last sample need to come to rest, by all limits [s].
-    double time_to_stop() const;
+    /// What the slowest joint needs from its highest speed [s].
+    double time_to_brake() const;
     /// Nothing moves and no stop is awaited.
     bool isAtRest() const { return standing_ >= 3 && !stop_.isAwaited; }
     bool areOffsetsAtRest() const { return offsets_standing_ >= 3; }
@@ -105,9 +117,15 @@ class Judge {
     void check_outputs(const Sample &s);
     void check_rest(const Sample &s);
     void check_stale(const Sample &s, bool wasAtRest);
+    void take_for_stop(const Sample &s);
     void begin_stop();
+    void watch_stop(bool isMoving, bool isOn);
+    void check_stop(bool isMoving, double took_s);
+    LeastStop time_to_stop() const;
+    double time_of_jerk() const;
     double time_to_correct() const;
-    double time_to_brake() const;
+    double build_up_s() const;
+    double built_up(bool isAngular, double acceleration, double jerk) const;
     void fail(const std::string &rule, const std::string &text);
 
     const Design &design_;
@@ -116,8 +134,9 @@ class Judge {
     Sample last_;
     std::vector<double> velocity_, before_;
     std::uint64_t count_ = 0;
-    bool maySwitchOn_ = false, mayMove_ = false, mayWork_ = false;
+    Allowed allowed_;
     AwaitedStop stop_;
+    double build_up_s_ = 0;
     int standing_ = 0, offsets_standing_ = 0;  ///< for so many cycles
     bool isHeld_ = false;                      ///< nothing may move
     int restless_ = 0;  ///< cycles left in which commands of before a stop may still arrive

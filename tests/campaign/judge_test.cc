@@ -172,6 +172,29 @@ TEST_F(JudgeTest, FindsAStopThatDoesNotComeAndOneThatIsLate) {
     EXPECT_EQ(late.report().substr(0, late.report().find(':')), "stop");
 }
 
+TEST(StopBound, IsTheTimeOfTheAccelerationOnALineAndOnAnArc) {
+    constexpr double V = 50, A = 1000, LONG_S = 0.5;
+    StoppingGroup line{{{}}, A};
+    StoppingGroup arc{{{}, {}}, A};
+    constexpr double RADIUS = 3;  // turning takes 833 of the 1000
+    for (int n = 0; n * T < LONG_S; ++n) {
+        const double s = V * n * T;
+        line.places[0].push_back(s);
+        arc.places[0].push_back(RADIUS * std::cos(s / RADIUS));
+        arc.places[1].push_back(RADIUS * std::sin(s / RADIUS));
+    }
+    EXPECT_NEAR(least_stop({line}, T).seconds, V / A, 1.5 * T);
+    EXPECT_TRUE(least_stop({line}, T).isOver);
+    // dv/dt = -sqrt(A^2 - (v^2/r)^2)
+    double expected = 0;
+    for (double v = V; v > 0; v -= 0.01) {
+        expected += 0.01 / std::sqrt(A * A - std::pow(v * v / RADIUS, 2));
+    }
+    EXPECT_NEAR(least_stop({arc}, T).seconds, expected, 2 * T);
+    line.places[0].resize(20);
+    EXPECT_FALSE(least_stop({line}, T).isOver) << "the path ends before";
+}
+
 TEST_F(JudgeTest, FindsAmplifiersThatStayOnAfterAStop) {
     judge_.allow(Leave::MOVE);
     feed(5);

@@ -133,7 +133,7 @@ void Session::turn(const Act &act) {
     }
     if (t.isVelocityMode && !isStopped_ && !isDisturbed_ && !isOver()) {
         // It stops when the wheel does, with its part of the acceleration.
-        judge_.stops_later_s = judge_.time_to_stop() * (1 / t.accel_fraction - 1) * 2.2 + 0.1;
+        judge_.stops_later_s = judge_.time_to_brake() * (1 / t.accel_fraction - 1) + 0.1;
         judge_.stop(Stop::ALONG_THE_PATH, 5);
     }
     for (int i = 0; i < LONGEST_MS && !isOver() && !(judge_.isAtRest() && rig_->isInPosition()); ++i) {

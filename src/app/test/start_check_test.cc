@@ -10,7 +10,7 @@
 #include "app/start_check.hh"
 #include "machine/ini_parameters.hh"
 #include "machine/loaded_config.hh"
-#include "machine/tool_file.hh"
+#include "machine/tool_data.hh"
 
 namespace mw::app {
 namespace {
@@ -28,7 +28,7 @@ class StartCheckTest : public testing::Test {
     StartCheck check(const std::string &program, const StartCheckOptions &options = {}) {
         const std::string path = (folder_ / "p.ngc").string();
         std::ofstream(path) << program;
-        auto tools = machine::ToolFile::load(loaded_->machine.tool_table_file);
+        auto tools = machine::read_tools(loaded_->machine, sink_);
         machine::IniParameters values(loaded_->ini, nullptr);
         sink_.clear();
         return check_before_start(loaded_->machine, path, **tools, values, sink_, options);

@@ -37,7 +37,7 @@ FeedLength feed_length(const Pose &from, const Pose &to) {
 }  // namespace
 
 MachineFrame::MachineFrame(MachineCanon &target, LengthUnits machine_units)
-    : target_(target), machine_units_(machine_units), units_(machine_units) {}
+    : target_(&target), machine_units_(machine_units), units_(machine_units) {}
 
 double MachineFrame::length_factor() const {
     if (units_ == machine_units_) {
@@ -71,7 +71,7 @@ void MachineFrame::take(const CanonCall &call) {
                                SetSpindleSpeed> auto &one) { convert(one); },
             [this](const OneOf<SetSpindleMode, StartSpindle> auto &one) {
                 if (hasSpindle(one.spindle)) {
-                    target_.take(one);
+                    target_->take(one);
                 }
             },
             [this](const OneOf<Dwell, StopSpindle, OrientSpindle, WaitOrientComplete, SelectTool, ChangeTool,
@@ -80,7 +80,7 @@ void MachineFrame::take(const CanonCall &call) {
                                SetDigitalOutput, SetAnalogOutput, WaitInput, ProgramStop, ProgramEnd,
                                PalletShuttle, Finish, UserCode, ProgramComment, OperatorMessage, PrintLine,
                                OpenLog, LogLine, CloseLog, LogProbes, CanonError> auto &one) {
-                target_.take(one);
+                target_->take(one);
             },
             [](const OneOf<OnReset, SetFeedReference> auto &) {},
         },
@@ -88,7 +88,7 @@ void MachineFrame::take(const CanonCall &call) {
 }
 
 void MachineFrame::announce_offsets() {
-    target_.take(UseOffsets{g5x_index_, g5x_, g92_, rotation_deg_});
+    target_->take(UseOffsets{g5x_index_, g5x_, g92_, rotation_deg_});
 }
 
 void MachineFrame::convert(const SetG5xOffset &call) {
@@ -109,15 +109,15 @@ void MachineFrame::convert(const SetXyRotation &call) {
 
 void MachineFrame::convert(const UseToolLengthOffset &call) {
     tool_ = to_machine_units(call.offset);
-    target_.take(UseToolOffset{tool_});
+    target_->take(UseToolOffset{tool_});
 }
 
 bool MachineFrame::hasSpindle(int spindle) {
     if (spindle >= 0 && spindle < MAX_SPINDLES) {
         return true;
     }
-    target_.take(CanonError{"There is no spindle " + std::to_string(spindle) + ": 0 to " +
-                            std::to_string(MAX_SPINDLES - 1)});
+    target_->take(CanonError{"There is no spindle " + std::to_string(spindle) + ": 0 to " +
+                             std::to_string(MAX_SPINDLES - 1)});
     return false;
 }
 
@@ -138,7 +138,7 @@ void MachineFrame::follow(const SetMotionControlMode &call) {
 
 void MachineFrame::convert(const SetPlannerMode &call) {
     corner_scale_ = call.type != 0 ? call.peak_scale : 0.0;
-    target_.take(UsePlanner{call.type != 0});
+    target_->take(UsePlanner{call.type != 0});
 }
 
 MoveSettings MachineFrame::rapid_settings() const {
@@ -172,14 +172,14 @@ MoveSettings MachineFrame::feed_settings(bool isLinear) const {
 
 void MachineFrame::convert(const StraightTraverse &call) {
     const Pose to = to_machine(call.end);
-    target_.take(LineMove{to, rapid_settings()});
+    target_->take(LineMove{to, rapid_settings()});
     position_ = to;
 }
 
 void MachineFrame::feed_to(const Pose &end) {
     const Pose to = to_machine(end);
     const FeedLength way = feed_length(position_, to);
-    target_.take(LineMove{to, feed_settings(way.isLinear)});
+    target_->take(LineMove{to, feed_settings(way.isLinear)});
     position_ = to;
 }
 
@@ -218,7 +218,7 @@ void MachineFrame::convert(const ArcFeed &arc) {
     move.end = to_machine(arc.end);
     turn(move, arc);
     move.settings = feed_settings(true);
-    target_.take(move);
+    target_->take(move);
     position_ = move.end;
 }
 
@@ -244,7 +244,7 @@ void MachineFrame::convert(const NurbsFeed &nurbs) {
 void MachineFrame::convert(const StraightProbe &call) {
     const Pose to = to_machine(call.end);
     const FeedLength way = feed_length(position_, to);
-    target_.take(ProbeMove{to, feed_settings(way.isLinear), call.kind});
+    target_->take(ProbeMove{to, feed_settings(way.isLinear), call.kind});
     position_ = to;
 }
 
@@ -255,7 +255,7 @@ void MachineFrame::convert(const RigidTap &call) {
     end[geom::AXIS_Z] = call.z;
     const Pose to = to_machine(end);
     const FeedLength way = feed_length(position_, to);
-    target_.take(TapMove{to, feed_settings(way.isLinear), call.scale});
+    target_->take(TapMove{to, feed_settings(way.isLinear), call.scale});
     // The tool comes back to where it began: the position stays.
 }
 
@@ -279,7 +279,7 @@ void MachineFrame::convert(const SetSpindleSpeed &call) {
     }
     constexpr double MM_IN_METRE = 1000.0, INCHES_IN_FOOT = 12.0;
     const double length = units_ == LengthUnits::INCH ? INCHES_IN_FOOT : MM_IN_METRE;
-    target_.take(UseSpindleSpeed{call.spindle, call.speed, length * length_factor()});
+    target_->take(UseSpindleSpeed{call.spindle, call.speed, length * length_factor()});
 }
 
 }  // namespace mw::interp

@@ -21,7 +21,7 @@ class MachineFrame final : public Canon {
     Pose to_program(const Pose &machine) const;
     Pose to_machine(const Pose &program) const;
 
-    void begin_block(const BlockRef &block) override { target_.begin_block(block); }
+    void begin_block(const BlockRef &block) override { target_->begin_block(block); }
     void take(const CanonCall &call) override;
 
   private:
@@ -58,7 +58,7 @@ class MachineFrame final : public Canon {
     MoveSettings rapid_settings() const;
     void turn(ArcMove &move, const ArcFeed &arc) const;
 
-    MachineCanon &target_;
+    MachineCanon *target_;
     LengthUnits machine_units_;
     LengthUnits units_ = LengthUnits::MM;
     Plane plane_ = Plane::XY;

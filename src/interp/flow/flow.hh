@@ -34,6 +34,7 @@ class Flow {
     const Levels &levels() const { return levels_; }
     const ProgramFiles &files() const { return files_; }
     const Scripts &scripts() const { return scripts_; }
+    Scripts &scripts() { return scripts_; }
     LoopBudget &budget() { return budget_; }
 
     /// Opens the script host if it is needed; see Scripts::load().

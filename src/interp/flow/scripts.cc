@@ -6,9 +6,24 @@
 #include <fmt/format.h>
 
 namespace mw::interp::detail {
+namespace {
+
+constexpr const char *FORBIDDEN = "what Python does here is known only when it runs";
+
+ScriptOutcome forbidden() {
+    ScriptOutcome outcome;
+    outcome.kind = ScriptOutcome::Kind::FAILED;
+    outcome.message = FORBIDDEN;
+    return outcome;
+}
+
+}  // namespace
 
 Result<> Scripts::need(const std::string &what, const SourcePlace &place, const Settings &settings,
                        InterpreterView &view) {
+    if (isForbidden_) {
+        return fail(FORBIDDEN, place);
+    }
     if (host_ != nullptr) {
         return {};
     }
@@ -85,6 +100,9 @@ Result<> Scripts::begin() {
 
 ScriptOutcome Scripts::call(ScriptModule module, const std::string &name, const ScriptArguments &arguments,
                             std::unique_ptr<SuspendedScript> &rest) {
+    if (isForbidden_) {
+        return forbidden();
+    }
     error_text.clear();
     ++depth_;
     ScriptOutcome outcome = host_->call(module, name, arguments, rest);
@@ -100,6 +118,9 @@ ScriptOutcome Scripts::resume(SuspendedScript &script) {
 }
 
 ScriptOutcome Scripts::run_text(std::string_view text) {
+    if (isForbidden_) {
+        return forbidden();
+    }
     ++depth_;
     ScriptOutcome outcome = host_->run_text(text);
     --depth_;
@@ -111,6 +132,10 @@ bool Scripts::hasName(std::string_view name) const {
 }
 
 std::optional<double> Scripts::value_of(std::string_view name) {
+    if (isForbidden_) {
+        fault_.set(FORBIDDEN);
+        return std::nullopt;
+    }
     const bool wasReading = isReadingName_;
     isReadingName_ = true;
     const Result<double> value = host_->named_parameter(std::string(name));

@@ -26,6 +26,8 @@ class Scripts final : public ScriptNames {
     Result<> need(const std::string &what, const SourcePlace &place, const Settings &settings,
                   InterpreterView &view);
     Result<> begin();
+    /// From here on every script fails before it begins.
+    void forbid(bool isForbidden) { isForbidden_ = isForbidden; }
     void close() { host_.reset(); }
 
     bool isOpen() const { return host_ != nullptr; }
@@ -58,6 +60,7 @@ class Scripts final : public ScriptNames {
     std::vector<std::string> names_, warnings_;
     int depth_ = 0;
     bool isReadingName_ = false;
+    bool isForbidden_ = false;
 };
 
 }  // namespace mw::interp::detail

@@ -280,13 +280,13 @@ TEST(ToolCodes, AToolIsSelectedThenLoaded_I1) {
     entry.diameter = 6;
     p.mill.tools.push_back(entry);
     const Code &t = *find_word_code('t');
-    EXPECT_FALSE(
-        change_tool(code('m', 6), block({}), p.machine, p.tools, p.state, p.canon, p.fault, p.outcome));
+    EXPECT_FALSE(change_tool(code('m', 6), block({}), p.machine, p.tools, p.parameters, p.state, p.canon,
+                             p.fault, p.outcome));
     EXPECT_FALSE(select_tool(t, block({{'t', 3}}), p.machine, p.tools, p.state, p.canon, p.fault, p.outcome));
     EXPECT_EQ(p.fault.message, "Requested tool 3 not found in the tool table");
     ASSERT_TRUE(select_tool(t, block({{'t', 7}}), p.machine, p.tools, p.state, p.canon, p.fault, p.outcome));
-    ASSERT_TRUE(
-        change_tool(code('m', 6), block({}), p.machine, p.tools, p.state, p.canon, p.fault, p.outcome));
+    ASSERT_TRUE(change_tool(code('m', 6), block({}), p.machine, p.tools, p.parameters, p.state, p.canon,
+                            p.fault, p.outcome));
     EXPECT_EQ(p.outcome, Outcome::SYNC);
     EXPECT_EQ(p.state.tool.in_spindle, 7);
     EXPECT_EQ(p.state.tool.diameter, 6);

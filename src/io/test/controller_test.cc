@@ -58,6 +58,112 @@ TEST(IoController, AFaultEndsTheHandshake_E1) {
     EXPECT_FALSE(io.outputs.emc_abort);
 }
 
+TEST(IoController, LubricationFollowsTheEmergencyStop_E1) {
+    Controller io;
+    Inputs in;
+    io.leave_estop();
+    io.step(in);
+    EXPECT_FALSE(io.outputs.lube) << "the chain is open";
+    in.emc_enable_in = true;
+    io.step(in);
+    EXPECT_TRUE(io.outputs.lube);
+    io.set_lube(false);
+    io.step(in);
+    EXPECT_FALSE(io.outputs.lube) << "nothing switches it on again by itself";
+    io.set_lube(true);
+    io.enter_estop();
+    io.step(in);
+    EXPECT_FALSE(io.outputs.lube);
+    in.lube_level = false;
+    io.step(in);
+    EXPECT_FALSE(io.hasOil());
+}
+
+TEST(IoController, AnAbortIsHeldUntilTheChangerHasTakenIt_E1) {
+    Controller io({true, false});
+    Inputs in;
+    io.start_change();
+    io.step(in);
+    ASSERT_TRUE(io.outputs.tool_change);
+    io.abort(8);
+    EXPECT_FALSE(io.outputs.tool_change) << "at once";
+    for (int i = 0; i < 5; ++i) {
+        io.step(in);
+        EXPECT_TRUE(io.outputs.emc_abort);
+        EXPECT_EQ(io.outputs.emc_reason, 8);
+        EXPECT_EQ(io.waiting_for(), msgs::WaitFor::TOOL_ABORT_TAKEN);
+    }
+    in.emc_abort_ack = true;
+    io.step(in);
+    EXPECT_FALSE(io.outputs.emc_abort);
+    EXPECT_EQ(io.action(), ToolAction::IDLE);
+}
+
+TEST(IoController, StartChangeComesBeforeToolChange_E1) {
+    Controller io({true, true});
+    Inputs in;
+    io.start_change();
+    io.step(in);
+    EXPECT_TRUE(io.outputs.start_change);
+    EXPECT_FALSE(io.outputs.tool_change);
+    EXPECT_EQ(io.waiting_for(), msgs::WaitFor::TOOL_START_CHANGE);
+    in.start_change_ack = true;
+    io.step(in);
+    io.step(in);
+    EXPECT_FALSE(io.outputs.start_change);
+    EXPECT_TRUE(io.outputs.tool_change);
+}
+
+TEST(IoController, AFaultIsAcknowledgedAndStaysUntilItIsCleared_E1) {
+    Controller io({true, false});
+    Inputs in;
+    in.toolchanger_fault = true;
+    in.toolchanger_reason = -3;
+    io.step(in);
+    EXPECT_TRUE(io.outputs.toolchanger_fault_ack);
+    in.toolchanger_fault = false;
+    io.step(in);
+    EXPECT_FALSE(io.outputs.toolchanger_fault_ack);
+    EXPECT_TRUE(io.outputs.toolchanger_faulted) << "the next change must not begin";
+    io.start_change();
+    EXPECT_EQ(io.step(in), ToolEvent::FAULT);
+    EXPECT_FALSE(io.outputs.tool_change);
+    EXPECT_EQ(io.fault_reason(), -3);
+    in.emc_abort_ack = true;
+    in.toolchanger_clear_fault = true;
+    io.step(in);
+    io.step(in);
+    EXPECT_FALSE(io.outputs.toolchanger_faulted);
+    io.start_change();
+    EXPECT_EQ(io.step(in), ToolEvent::NONE);
+    EXPECT_TRUE(io.outputs.tool_change);
+}
+
+TEST(IoController, AReasonAboveZeroLetsTheProgramGoOnInVersionTwoOnly_E1) {
+    for (const bool isVersion2 : {false, true}) {
+        Controller io({isVersion2, false});
+        Inputs in;
+        io.start_change();
+        io.step(in);
+        in.toolchanger_fault = true;
+        in.toolchanger_reason = 4;
+        EXPECT_EQ(io.step(in), isVersion2 ? ToolEvent::FAULT_TOLD : ToolEvent::FAULT);
+        EXPECT_EQ(io.outputs.emc_reason, REASON_CHANGER_FAULT);
+    }
+}
+
+TEST(IoController, AnAnswerAfterTheAbortIsTold_E1) {
+    Controller io;
+    Inputs in;
+    io.start_change();
+    io.step(in);
+    io.abort(8);
+    EXPECT_EQ(io.step(in), ToolEvent::NONE);
+    in.tool_changed = true;
+    EXPECT_EQ(io.step(in), ToolEvent::CHANGED_LATE);
+    EXPECT_EQ(io.step(in), ToolEvent::NONE) << "once";
+}
+
 TEST(IoController, LeavingEstopAsksTheChainOnce_D1) {
     Controller io;
     Inputs in;

@@ -43,6 +43,7 @@ Controller::Controller(const ControllerConfig &config, const kins::Kinematics &k
     homing_.own.set_period(config.period_s);
     homing_.foreign = config.homing;
     use_joints(config.num_joints);
+    jogs_.axes = limits_.axes;  // there are never more joints than now
     const kins::IdentityMap *identity = kinematics.identity();
     const int led = config.num_led_joints();
     for (int j = identity != nullptr ? identity->num_joints : led; j < led; ++j) {

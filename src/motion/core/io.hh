@@ -89,8 +89,11 @@ struct SpindleOutputs {
     bool isIndexEnabled = false;
 };
 
+inline constexpr std::uint32_t ALL_AXES = (1U << MAX_AXES) - 1U;
+
 struct Outputs {
     Status status;
+    std::uint32_t axes = ALL_AXES;  ///< bit per axis that the machine may have: of others no pin is read
     std::array<JointOutputs, MAX_JOINTS> joint{};
     std::array<AxisOutputs, MAX_AXES> axis{};
     std::array<SpindleOutputs, MAX_SPINDLES> spindle{};

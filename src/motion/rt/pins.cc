@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "motion/rt/pins.hh"
 
+#include <bit>
+
 namespace mw::motion {
 
 namespace {
@@ -73,7 +75,8 @@ void MotionPins::read(Inputs &in) noexcept {
             posthome_[j].read(in.joint[at(j)]);
         }
     }
-    for (int i = 0; i < MAX_AXES; ++i) {
+    for (std::uint32_t left = axes_; left != 0; left &= left - 1) {
+        const int i = std::countr_zero(left);
         AxisInputs axis{in.axis_wheel[at(i)], in.axis_offset[at(i)]};
         axis_[i].read(axis);
     }
@@ -102,8 +105,12 @@ void MotionPins::write(const Outputs &out) noexcept {
             unlock_[j].write(view);
         }
     }
-    for (int i = 0; i < MAX_AXES; ++i) {
+    axes_ = out.axes;
+    for (std::uint32_t left = axes_; left != 0; left &= left - 1) {
+        const int i = std::countr_zero(left);
         axis_[i].write(out.axis[at(i)]);
+    }
+    for (int i = 0; i < MAX_AXES; ++i) {
         tool_offset_[i].write(out.tool_offset.c[at(i)]);
     }
     for (int n = 0; n < counts_.spindles; ++n) {

@@ -36,6 +36,7 @@ class MotionPins {
     }
 
     PinCounts counts_;
+    std::uint32_t axes_ = ALL_AXES;  ///< as Outputs::axes
     sdk::PinSet<pins::MOTION> motion_;
     sdk::PinSet<pins::SWITCHABLE> switchable_;
     sdk::PinSet<pins::DIGITAL> digital_[MAX_DIGITAL_IO];

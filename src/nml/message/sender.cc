@@ -31,11 +31,12 @@ concept OfStart = OneOf<T, SetJointKind, SetJointUnits, SetJointMinLimit, SetJoi
 
 template <class T>
 concept OfOperator =
-    OneOf<T, SetState, SetMode, OpenProgram, RunProgram, ReadProgram, Mdi, PauseProgram, StepProgram,
-          ResumeProgram, EndProgram, CloseProgram, ResetInterpreter, SynchInterpreter, SetOptionalStop,
-          SetBlockDelete, StopOptionally, ReverseProgram, ForwardProgram, AbortAll, AbortMachine, Null,
-          SetDebug, SystemCommand, OperatorError, OperatorText, OperatorDisplay, ClaimOperation,
-          HandOverOperation, ReleaseOperation> ||
+    OneOf<T, SetState, SetMode, OpenProgram, RunProgram, ConfirmApproach, ReleaseAxes, RecoverProgram,
+          ForgetRecovery, ReadProgram, Mdi, PauseProgram, StepProgram, ResumeProgram, EndProgram,
+          CloseProgram, ResetInterpreter, SynchInterpreter, SetOptionalStop, SetBlockDelete, StopOptionally,
+          ReverseProgram, ForwardProgram, AbortAll, AbortMachine, Null, SetDebug, SystemCommand,
+          OperatorError, OperatorText, OperatorDisplay, ClaimOperation, HandOverOperation,
+          ReleaseOperation> ||
     OneOf<T, HomeJoint, UnhomeJoint, JogContinuous, JogIncrement, JogAbsolute, JogStop, OverrideLimits,
           AbortJoint, EnableJoint, DisableJoint, ActivateJoint, DeactivateJoint, LoadCompensation> ||
     OneOf<T, SetFeedOverride, SetRapidOverride, SetSpindleOverride, EnableFeedOverride, EnableSpindleOverride,

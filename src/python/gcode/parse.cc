@@ -47,13 +47,17 @@ class Parse {
     Parse(const py::object &canon, const py::handle &module)
         : object_(canon), module_(module), canon_(canon, tools_) {}
 
-    std::pair<int, int> run(const std::string &file, const std::array<std::string, 2> &codes) {
+    std::pair<int, int> run(const std::string &file, const std::vector<std::string> &codes) {
         prepare();
         check(interpreter_->begin());
         for (const std::string &code : codes) {
             if (!run_code(code)) {
                 return failed(1);
             }
+        }
+        if (file.empty()) {  // the codes alone
+            canon_.finish_batch();
+            return {CODE_OK, 0};
         }
         check(interpreter_->open(file));
         const std::pair<int, int> result = run_file();
@@ -183,6 +187,18 @@ std::string text_of(const py::object &code) {
     return code.is_none() ? std::string() : code.cast<std::string>();
 }
 
+/// A text, or a list of texts.
+std::vector<std::string> codes_of(const py::object &codes) {
+    if (!py::isinstance<py::list>(codes) && !py::isinstance<py::tuple>(codes)) {
+        return {text_of(codes)};
+    }
+    std::vector<std::string> out;
+    for (const py::handle code : codes) {
+        out.push_back(text_of(py::reinterpret_borrow<py::object>(code)));
+    }
+    return out;
+}
+
 }  // namespace
 
 void define_parse(py::module_ &module) {
@@ -194,16 +210,25 @@ void define_parse(py::module_ &module) {
         "parse",
         [self](const std::string &file, const py::object &canon, const py::object &unitcode,
                const py::object &initcode, const py::object &interpname) {
-            if (!text_of(interpname).empty()) {
+            // parse(file, canon, [code, ...], interpname) as well: then the fourth word is the name.
+            const bool isList = py::isinstance<py::list>(unitcode) || py::isinstance<py::tuple>(unitcode);
+            const std::string name = text_of(isList ? initcode : interpname);
+            if (!name.empty()) {
                 throw_runtime("gcode.parse: interpreters other than the built-in one are not supported, but "
                               "interpname is '" +
-                              text_of(interpname) + "'");
+                              name + "'");
             }
-            return Parse(canon, self).run(file, {text_of(unitcode), text_of(initcode)});
+            std::vector<std::string> codes = codes_of(unitcode);
+            if (!isList) {
+                codes.push_back(text_of(initcode));
+            }
+            return Parse(canon, self).run(file, codes);
         },
         py::arg("file"), py::arg("canon"), py::arg("unitcode") = "", py::arg("initcode") = "",
         py::arg("interpname") = "",
-        "parse(file, canon, unitcode='', initcode='', interpname='') -> (result, line)\n\n"
+        "parse(file, canon, unitcode='', initcode='', interpname='') -> (result, line)\n"
+        "parse(file, canon, [code, ...], interpname='') -> (result, line)\n\n"
+        "An empty file name: the codes alone. "
         "Interprets a program and calls the canon object's methods. A result above MIN_ERROR is an error, in "
         "`line` of the file; strerror(result) tells it. An exception in a method ends the program.");
     module.def(

@@ -98,6 +98,22 @@ class GcodeTest(unittest.TestCase):
         self.assertEqual(len(lines[3].mcodes), 10)
         self.assertEqual(lines[3].feed_rate, 10)
 
+    def test_codes_may_come_as_a_list_and_without_a_file(self):
+        """As screens call it (J2)."""
+        canon = Recorder()
+        result, _ = gcode.parse(self.write("G1 F600 X1\nM2\n"), canon, ["G20", "G91"], "")
+        self.assertLessEqual(result, gcode.MIN_ERROR)
+        self.assertEqual([args[0] for name, args in canon.calls if name == "straight_feed"], [1.0])
+        told = []
+
+        class Asked(Recorder):
+            def user_defined_function(self, number, p, q):
+                told.append((number, p))
+
+        result, _ = gcode.parse("", Asked(), "M199 P[2*3+1]", "M2")
+        self.assertLessEqual(result, gcode.MIN_ERROR)
+        self.assertEqual(told, [(99, 7.0)])
+
     def test_errors_have_line_and_text(self):
         _, (result, line) = self.parse("G0 X1\nG1 X2\nM2\n")
         self.assertGreater(result, gcode.MIN_ERROR)

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 
 #include "base/result.hh"
 #include "interp/world.hh"
@@ -11,11 +13,19 @@ namespace mw::task {
 
 class ToolStore : public interp::ToolSource {
   public:
-    /// Puts the tool of table entry `index` (0: none) into the spindle, by the rules of the changer.
+    /// Puts the tool of table entry `index` (0: none, of a random changer: the one that is there) into the
+    /// spindle, by the rules of the changer, and keeps that. An error: it is so, but could not be kept.
     virtual Result<> load_spindle(int index) = 0;
-    /// Changes an entry and saves the table.
+    /// Changes the data of the tool that `entry` names, and keeps them; `index` is where it was last.
     virtual Result<> set_entry(int index, const interp::ToolEntry &entry) = 0;
+    /// Begins to read the tools again.
     virtual Result<> reload() = 0;
+    /// How the reading has ended; nothing while it goes on.
+    virtual std::optional<Result<>> reload_result() { return Result<>{}; }
+    /// Once a cycle; never blocks.
+    virtual void step() {}
+    /// What the operator is to know of the data's keeper: nothing when there is no more.
+    virtual std::optional<std::string> take_warning() { return std::nullopt; }
     /// Another number after each change; never 0.
     virtual std::uint64_t version() const = 0;
 };

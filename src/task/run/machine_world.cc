@@ -26,7 +26,7 @@ interp::MachineSnapshot snapshot_of(const motion::Status &motion, const io::Outp
     s.tool_in_spindle = io.tool_number;
     s.isToolFaulted = fault.has_value();
     s.tool_fault_reason = fault.value_or(0);
-    s.selected_pocket = sequencer.tool_change().selected_index();
+    s.selected_pocket = sequencer.selected_tool_index();
     return s;
 }
 

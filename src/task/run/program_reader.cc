@@ -9,12 +9,13 @@ namespace mw::task {
 
 ProgramReader::ProgramReader(const Sources &sources, Setup setup)
     : sources_(sources), setup_(std::move(setup)), canon_(queue_, setup_.tool_change_place),
-      frame_(canon_, setup_.units) {
+      switch_({canon_, sources.world, sources.tools, sources.parameters}), frame_(switch_, setup_.units) {
     // A machine runs its programs: #<_task>, self.task of scripts, and M99 in the main program begins it
     // again.
     setup_.interpreter.isTask = true;
-    interp_ = std::make_unique<interp::Interpreter>(frame_, sources_.world, sources_.tools,
-                                                    sources_.parameters, setup_.interpreter);
+    auto rs274 = std::make_unique<interp::Interpreter>(frame_, switch_, switch_, switch_, setup_.interpreter);
+    rs274_ = rs274.get();
+    interp_ = std::move(rs274);
 }
 
 Result<> ProgramReader::load() {
@@ -26,6 +27,7 @@ Result<> ProgramReader::load() {
             return std::unexpected(opened.error());
         }
         interp_ = std::move(*opened);
+        rs274_ = nullptr;
     }
     return setup_.parameter_file.empty() ? Result<>{} : interp_->load_parameters(setup_.parameter_file);
 }
@@ -43,6 +45,34 @@ void ProgramReader::synch(const geom::Pose &position) {
 void ProgramReader::drop() {
     interp_->abort();
     interp_->announce();
+}
+
+Result<> ProgramReader::begin_search(int line) {
+    if (rs274_ == nullptr) {
+        return fail("only programs in G-code (RS-274/NGC) can begin at a line", {},
+                    "[TASK]INTERPRETER names another language");
+    }
+    kept_ = rs274_->keep();
+    kept_frame_ = frame_;
+    const SearchMachine::Real real{sources_.world, sources_.tools, sources_.parameters,
+                                   setup_.tool_change_place, setup_.isToolChangeWithSpindleOn};
+    search_ = std::make_unique<BlockSearch>(*rs274_, switch_, real, line);
+    return {};
+}
+
+void ProgramReader::accept_search() {
+    canon_.set_blocks(search_->blocks_before());
+    canon_.set_position(search_->found().position);
+    search_.reset();
+    kept_.reset();
+}
+
+void ProgramReader::cancel_search() {
+    search_.reset();
+    interp_->abort();
+    rs274_->restore(*kept_);
+    frame_ = *kept_frame_;
+    kept_.reset();
 }
 
 std::string ProgramReader::probe_line() const {

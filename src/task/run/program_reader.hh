@@ -3,10 +3,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "interp/canon/machine_frame.hh"
 #include "interp/interpreter.hh"
+#include "task/run/block_search.hh"
+#include "task/run/machine_switch.hh"
 #include "task/run/task_canon.hh"
 
 namespace mw::task {
@@ -18,7 +21,8 @@ class ProgramReader {
         interp::LengthUnits units = interp::LengthUnits::MM;
         ToolChangePlace tool_change_place;
         std::string parameter_file;  ///< empty: parameters live in memory only
-        std::string plugin;          ///< [TASK]INTERPRETER: a shared object; empty: RS-274/NGC
+        bool isToolChangeWithSpindleOn = false;
+        std::string plugin;  ///< [TASK]INTERPRETER: a shared object; empty: RS-274/NGC
         interp::Settings interpreter;
     };
     /// What a program may ask; all must outlive the reader.
@@ -39,6 +43,17 @@ class ProgramReader {
     /// The result of a probe, as a line of the file of (probeopen); empty when it has not tripped.
     std::string probe_line() const;
 
+    // A start elsewhere than at the first line of the program that is open (docs/task/run_from_line.md). The
+    // machine has been synched.
+    Result<> begin_search(int line);
+    BlockSearch::Outcome step_search(int lines) { return search_->step(lines); }
+    bool isSearching() const { return search_ != nullptr; }
+    const BlockSearch &search() const { return *search_; }
+    /// The program goes on from the place that was found.
+    void accept_search();
+    /// Modes, parameters and offsets are what they were before it.
+    void cancel_search();
+
     interp::ProgramInterpreter &interpreter() { return *interp_; }
     const interp::ProgramInterpreter &interpreter() const { return *interp_; }
     TaskCanon &canon() { return canon_; }
@@ -50,8 +65,13 @@ class ProgramReader {
     Setup setup_;
     ItemQueue queue_;
     TaskCanon canon_;
+    MachineSwitch switch_;
     interp::MachineFrame frame_;
     std::unique_ptr<interp::ProgramInterpreter> interp_;
+    interp::Interpreter *rs274_ = nullptr;  ///< the same; null: a plug-in
+    std::unique_ptr<BlockSearch> search_;
+    std::shared_ptr<const interp::Interpreter::Kept> kept_;  ///< as before the search
+    std::optional<interp::MachineFrame> kept_frame_;
 };
 
 }  // namespace mw::task

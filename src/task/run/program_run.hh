@@ -18,6 +18,9 @@ class ProgramRun {
   public:
     /// Refused while one runs. `line`: of MDI.
     Result<Progress> start(RunKind kind, mailbox::Serial command, const std::string &line = {});
+    /// Where the program begins; 0: at its first line.
+    int from_line() const { return from_line_; }
+    void set_from_line(int line) { from_line_ = line; }
     /// An event that cannot be in this state changes nothing and says why.
     Result<> take(RunEvent event) { return state_.take(event); }
     /// Of events that the run's own parts tell: one that comes too late changes nothing.
@@ -25,6 +28,7 @@ class ProgramRun {
     /// Over; the end of the command that has started it.
     std::optional<Ending> end(Progress progress, const std::string &reason);
 
+    const RunState &state() const { return state_; }
     RunPhase phase() const { return state_.phase(); }
     Hold hold() const { return state_.hold(); }
     bool isRunning() const { return state_.isRunning(); }
@@ -48,6 +52,7 @@ class ProgramRun {
     RunState state_;
     RunKind kind_ = RunKind::PROGRAM;
     std::string line_;
+    int from_line_ = 0;
     Request request_;
     std::optional<std::string> failure_;
     std::optional<diag::Diagnostic> error_;

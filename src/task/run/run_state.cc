@@ -25,8 +25,9 @@ constexpr Transition<Hold> no_hold(const char *why) {
 }
 
 constexpr auto IDLE = phase(RunPhase::IDLE), CLEANING = phase(RunPhase::CLEANING),
-               STARTING = phase(RunPhase::STARTING), READING = phase(RunPhase::READING),
-               SYNCHING = phase(RunPhase::SYNCHING), FINISHING = phase(RunPhase::FINISHING);
+               STARTING = phase(RunPhase::STARTING), SEARCHING = phase(RunPhase::SEARCHING),
+               READING = phase(RunPhase::READING), SYNCHING = phase(RunPhase::SYNCHING),
+               FINISHING = phase(RunPhase::FINISHING);
 constexpr auto BUSY = no_phase("a program or MDI line runs already");
 constexpr auto NOT_DUE = no_phase("no start is due");
 constexpr auto NOT_READING = no_phase("the interpreter does not read");
@@ -34,48 +35,63 @@ constexpr auto NO_SYNC = no_phase("the interpreter does not wait");
 constexpr auto NO_PAUSE = no_phase("nothing runs that could be paused");
 constexpr auto NO_RESUME = no_phase("nothing is paused");
 constexpr auto NO_STEP = no_phase("nothing runs that could be stepped");
+constexpr auto NO_RELEASE = no_phase("nothing is held whose axes could be released");
+constexpr auto NO_PLACE = no_phase("no way is proposed");
 constexpr auto NO_STOP = no_phase("nothing runs that could be stopped");
 
-/// Columns: IDLE, CLEANING, STARTING, READING, SYNCHING, FINISHING.
+/// Columns: IDLE, CLEANING, STARTING, SEARCHING, READING, SYNCHING, FINISHING.
 constexpr Table<RunPhase> PHASES{{
-    /* START */ {STARTING, STARTING, BUSY, BUSY, BUSY, BUSY},
-    /* BEGUN */ {NOT_DUE, NOT_DUE, READING, NOT_DUE, NOT_DUE, NOT_DUE},
-    /* SYNC */ {NOT_READING, NOT_READING, NOT_READING, SYNCHING, NOT_READING, NOT_READING},
-    /* SYNCED */ {NO_SYNC, NO_SYNC, NO_SYNC, NO_SYNC, READING, NO_SYNC},
-    /* READ */ {NOT_READING, NOT_READING, NOT_READING, FINISHING, FINISHING, FINISHING},
-    /* END */ {IDLE, CLEANING, IDLE, IDLE, IDLE, IDLE},
-    /* CLEAN */ {CLEANING, CLEANING, BUSY, BUSY, BUSY, BUSY},
-    /* CLEANED */ {IDLE, IDLE, STARTING, READING, SYNCHING, FINISHING},
-    /* PAUSE */ {NO_PAUSE, NO_PAUSE, STARTING, READING, SYNCHING, FINISHING},
-    /* RESUME */ {NO_RESUME, NO_RESUME, STARTING, READING, SYNCHING, FINISHING},
-    /* STEP */ {NO_STEP, NO_STEP, STARTING, READING, SYNCHING, FINISHING},
-    /* STEP_MOVE */ {NO_STEP, NO_STEP, STARTING, READING, SYNCHING, FINISHING},
-    /* STEP_DONE */ {NO_STEP, NO_STEP, STARTING, READING, SYNCHING, FINISHING},
-    /* PROGRAM_STOP */ {NO_STOP, NO_STOP, STARTING, READING, SYNCHING, FINISHING},
+    /* START */ {STARTING, STARTING, BUSY, BUSY, BUSY, BUSY, BUSY},
+    /* BEGUN */ {NOT_DUE, NOT_DUE, READING, READING, NOT_DUE, NOT_DUE, NOT_DUE},
+    /* SEARCH */ {NOT_DUE, NOT_DUE, SEARCHING, NOT_DUE, NOT_DUE, NOT_DUE, NOT_DUE},
+    /* SYNC */ {NOT_READING, NOT_READING, NOT_READING, NOT_READING, SYNCHING, NOT_READING, NOT_READING},
+    /* SYNCED */ {NO_SYNC, NO_SYNC, NO_SYNC, NO_SYNC, NO_SYNC, READING, NO_SYNC},
+    /* READ */ {NOT_READING, NOT_READING, NOT_READING, NOT_READING, FINISHING, FINISHING, FINISHING},
+    /* END */ {IDLE, CLEANING, IDLE, IDLE, IDLE, IDLE, IDLE},
+    /* CLEAN */ {CLEANING, CLEANING, BUSY, BUSY, BUSY, BUSY, BUSY},
+    /* CLEANED */ {IDLE, IDLE, STARTING, SEARCHING, READING, SYNCHING, FINISHING},
+    /* PAUSE */ {NO_PAUSE, NO_PAUSE, STARTING, SEARCHING, READING, SYNCHING, FINISHING},
+    /* RESUME */ {NO_RESUME, NO_RESUME, STARTING, SEARCHING, READING, SYNCHING, FINISHING},
+    /* STEP */ {NO_STEP, NO_STEP, STARTING, SEARCHING, READING, SYNCHING, FINISHING},
+    /* STEP_MOVE */ {NO_STEP, NO_STEP, STARTING, SEARCHING, READING, SYNCHING, FINISHING},
+    /* STEP_DONE */ {NO_STEP, NO_STEP, STARTING, SEARCHING, READING, SYNCHING, FINISHING},
+    /* PROGRAM_STOP */ {NO_STOP, NO_STOP, STARTING, SEARCHING, READING, SYNCHING, FINISHING},
+    /* RELEASE */ {NO_RELEASE, NO_RELEASE, NO_RELEASE, NO_RELEASE, READING, SYNCHING, FINISHING},
+    /* PROPOSE */ {NO_PLACE, NO_PLACE, NO_PLACE, SEARCHING, READING, SYNCHING, FINISHING},
+    /* CONFIRM */ {NO_PLACE, NO_PLACE, NO_PLACE, READING, READING, SYNCHING, FINISHING},
 }};
 
 constexpr auto GOING = hold(Hold::GOING), STEPPING = hold(Hold::STEPPING), HELD = hold(Hold::HELD),
-               STOPPED = hold(Hold::STOPPED);
+               STOPPED = hold(Hold::STOPPED), PROPOSED = hold(Hold::PROPOSED), AWAY = hold(Hold::AWAY);
 constexpr auto NOT_HELD = no_hold("nothing is paused");
 constexpr auto NOT_PAUSED = no_hold("single step needs a paused program");
 constexpr auto NOT_STEPPING = no_hold("no step is under way");
+constexpr auto NO_WAY = no_hold("no way is proposed");
+constexpr auto NOT_RELEASABLE = no_hold("the axes are released only from a program that is held");
+constexpr auto RETURN_FIRST = no_hold("the tool is away from the program: resume it first");
+constexpr auto CONFIRM_FIRST = no_hold("the way that is proposed waits for its confirmation");
+constexpr auto NOT_STANDING = no_hold("the program does not stand at a place to go on from");
 
-/// Columns: GOING, STEPPING, HELD, STOPPED.
+/// Columns: GOING, STEPPING, HELD, STOPPED, PROPOSED, AWAY.
 constexpr Table<Hold> HOLDS{{
-    /* START */ {GOING, GOING, GOING, GOING},
-    /* BEGUN */ {GOING, STEPPING, HELD, STOPPED},
-    /* SYNC */ {GOING, STEPPING, HELD, STOPPED},
-    /* SYNCED */ {GOING, STEPPING, HELD, STOPPED},
-    /* READ */ {GOING, STEPPING, HELD, STOPPED},
-    /* END */ {GOING, GOING, GOING, GOING},
-    /* CLEAN */ {GOING, GOING, GOING, GOING},
-    /* CLEANED */ {GOING, STEPPING, HELD, STOPPED},
-    /* PAUSE */ {HELD, HELD, HELD, STOPPED},
-    /* RESUME */ {NOT_HELD, NOT_HELD, GOING, GOING},
-    /* STEP */ {NOT_PAUSED, NOT_PAUSED, STEPPING, STEPPING},
-    /* STEP_MOVE */ {NOT_PAUSED, NOT_PAUSED, HELD, HELD},
-    /* STEP_DONE */ {NOT_STEPPING, HELD, NOT_STEPPING, NOT_STEPPING},
-    /* PROGRAM_STOP */ {STOPPED, STOPPED, STOPPED, STOPPED},
+    /* START */ {GOING, GOING, GOING, GOING, GOING, GOING},
+    /* BEGUN */ {GOING, STEPPING, HELD, STOPPED, PROPOSED, AWAY},
+    /* SEARCH */ {GOING, STEPPING, HELD, STOPPED, PROPOSED, AWAY},
+    /* SYNC */ {GOING, STEPPING, HELD, STOPPED, PROPOSED, AWAY},
+    /* SYNCED */ {GOING, STEPPING, HELD, STOPPED, PROPOSED, AWAY},
+    /* READ */ {GOING, STEPPING, HELD, STOPPED, PROPOSED, AWAY},
+    /* END */ {GOING, GOING, GOING, GOING, GOING, GOING},
+    /* CLEAN */ {GOING, GOING, GOING, GOING, GOING, GOING},
+    /* CLEANED */ {GOING, STEPPING, HELD, STOPPED, PROPOSED, AWAY},
+    /* PAUSE */ {HELD, HELD, HELD, STOPPED, PROPOSED, AWAY},
+    /* RESUME */ {NOT_HELD, NOT_HELD, GOING, GOING, GOING, RETURN_FIRST},
+    /* STEP */ {NOT_PAUSED, NOT_PAUSED, STEPPING, STEPPING, CONFIRM_FIRST, RETURN_FIRST},
+    /* STEP_MOVE */ {NOT_PAUSED, NOT_PAUSED, HELD, HELD, CONFIRM_FIRST, RETURN_FIRST},
+    /* STEP_DONE */ {NOT_STEPPING, HELD, NOT_STEPPING, NOT_STEPPING, NOT_STEPPING, NOT_STEPPING},
+    /* PROGRAM_STOP */ {STOPPED, STOPPED, STOPPED, STOPPED, PROPOSED, AWAY},
+    /* RELEASE */ {NOT_RELEASABLE, NOT_RELEASABLE, AWAY, AWAY, AWAY, AWAY},
+    /* PROPOSE */ {PROPOSED, NOT_STANDING, PROPOSED, NOT_STANDING, PROPOSED, PROPOSED},
+    /* CONFIRM */ {NO_WAY, NO_WAY, NO_WAY, NO_WAY, GOING, NO_WAY},
 }};
 
 template <class State>
@@ -91,6 +107,27 @@ Transition<RunPhase> transition(RunEvent event, RunPhase from) {
 
 Transition<Hold> transition(RunEvent event, Hold from) {
     return entry(HOLDS, event, from);
+}
+
+const char *name_of(RunPhase phase) {
+    constexpr std::array NAMES{"IDLE",    "CLEANING", "STARTING", "SEARCHING",
+                               "READING", "SYNCHING", "FINISHING"};
+    static_assert(NAMES.size() == static_cast<std::size_t>(RunPhase::COUNT));
+    return NAMES[static_cast<std::size_t>(phase)];
+}
+
+const char *name_of(Hold hold) {
+    constexpr std::array NAMES{"GOING", "STEPPING", "HELD", "STOPPED", "PROPOSED", "AWAY"};
+    static_assert(NAMES.size() == static_cast<std::size_t>(Hold::COUNT));
+    return NAMES[static_cast<std::size_t>(hold)];
+}
+
+const char *name_of(RunEvent event) {
+    constexpr std::array NAMES{"START",     "BEGUN",     "SEARCH",       "SYNC",    "SYNCED",  "READ",
+                               "END",       "CLEAN",     "CLEANED",      "PAUSE",   "RESUME",  "STEP",
+                               "STEP_MOVE", "STEP_DONE", "PROGRAM_STOP", "RELEASE", "PROPOSE", "CONFIRM"};
+    static_assert(NAMES.size() == static_cast<std::size_t>(RunEvent::COUNT));
+    return NAMES[static_cast<std::size_t>(event)];
 }
 
 Result<> RunState::take(RunEvent event) {

@@ -12,6 +12,7 @@ enum class RunPhase : std::uint8_t {
     IDLE,
     CLEANING,   ///< nothing runs; what an abort has asked for is on its way
     STARTING,   ///< asked for; begins when the axes are at rest
+    SEARCHING,  ///< what comes before the place where it is to begin is calculated
     READING,    ///< the interpreter reads ahead
     SYNCHING,   ///< the interpreter waits until everything before is done
     FINISHING,  ///< all is read; the rest is carried out
@@ -23,12 +24,15 @@ enum class Hold : std::uint8_t {
     STEPPING,  ///< until the end of a block
     HELD,      ///< by the operator, or after a step
     STOPPED,   ///< by M0, M1 or M60
+    PROPOSED,  ///< until a person confirms the way to where it goes on
+    AWAY,      ///< the axes are released: they are jogged, the program keeps its place
     COUNT
 };
 
 enum class RunEvent : std::uint8_t {
     START,         ///< the operator runs a program or line
     BEGUN,         ///< the axes are at rest, the interpreter begins
+    SEARCH,        ///< the same, not from the first line
     SYNC,          ///< the interpreter must wait
     SYNCED,        ///< it may go on
     READ,          ///< it has come to the end
@@ -41,6 +45,9 @@ enum class RunEvent : std::uint8_t {
     STEP_MOVE,     ///< the operator lets a held planner make one move
     STEP_DONE,     ///< the block is carried out
     PROGRAM_STOP,  ///< M0, M1 or M60 are reached
+    RELEASE,       ///< the operator wants the axes of a held program
+    PROPOSE,       ///< the way to where it goes on is known
+    CONFIRM,       ///< a person has agreed to it
     COUNT
 };
 
@@ -53,7 +60,7 @@ class RunState {
     RunPhase phase() const { return phase_; }
     Hold hold() const { return hold_; }
     bool isRunning() const { return phase_ >= RunPhase::STARTING; }
-    bool isHeld() const { return hold_ == Hold::HELD || hold_ == Hold::STOPPED; }
+    bool isHeld() const { return hold_ >= Hold::HELD; }
 
   private:
     RunPhase phase_ = RunPhase::IDLE;
@@ -68,5 +75,9 @@ struct Transition {
 };
 Transition<RunPhase> transition(RunEvent event, RunPhase from);
 Transition<Hold> transition(RunEvent event, Hold from);
+
+const char *name_of(RunPhase phase);
+const char *name_of(Hold hold);
+const char *name_of(RunEvent event);
 
 }  // namespace mw::task

@@ -6,6 +6,7 @@ namespace mw::task {
 void TaskCanon::reset() {
     tag_ = {};
     files_.clear();
+    text_.clear();
 }
 
 void TaskCanon::begin_block(const interp::BlockRef &block) {
@@ -22,6 +23,7 @@ void TaskCanon::begin_block(const interp::BlockRef &block) {
     }
     tag_.line = block.line;
     ++tag_.block;
+    text_ = block.text;
 }
 
 void TaskCanon::take(const interp::MachineCall &call) {
@@ -52,10 +54,6 @@ void TaskCanon::take(const interp::MachineCall &call) {
 std::vector<geom::Pose> tool_change_moves(const ToolChangePlace &place, const geom::Pose &position) {
     std::vector<geom::Pose> moves;
     geom::Pose end = position;
-    if (place.isQuillRaised) {
-        end[geom::AXIS_Z] = 0;
-        moves.push_back(end);
-    }
     if (place.coordinates > 0) {
         for (int axis = 0; axis < place.coordinates; ++axis) {
             end[axis] = place.position[axis];
@@ -63,6 +61,22 @@ std::vector<geom::Pose> tool_change_moves(const ToolChangePlace &place, const ge
         moves.push_back(end);
     }
     return moves;
+}
+
+void TaskCanon::insert_first(const std::vector<interp::MachineCall> &calls, const geom::Pose &position,
+                             int line) {
+    ItemQueue behind;
+    behind.swap(queue_);
+    const geom::Pose end = last_end_;
+    const motion::SourceTag tag = tag_;
+    last_end_ = position;
+    tag_.line = line;
+    for (const interp::MachineCall &call : calls) {
+        take(call);
+    }
+    last_end_ = end;
+    tag_ = tag;
+    queue_.insert(queue_.end(), behind.begin(), behind.end());
 }
 
 void TaskCanon::change_tool() {

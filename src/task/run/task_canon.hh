@@ -10,12 +10,11 @@
 
 namespace mw::task {
 
-/// Where the machine goes for a tool change ([EMCIO]TOOL_CHANGE_POSITION, TOOL_CHANGE_QUILL_UP; requirement
+/// Where the machine goes for a tool change ([EMCIO]TOOL_CHANGE_POSITION; requirement
 /// G5).
 struct ToolChangePlace {
-    bool isQuillRaised = false;  ///< Z to machine zero first
-    int coordinates = 0;         ///< how many of `position` are given: 0, 3, 6 or 9
-    geom::Pose position;         ///< [machine units], machine coordinates
+    int coordinates = 0;  ///< how many of `position` are given: 0, 3, 6 or 9
+    geom::Pose position;  ///< [machine units], machine coordinates
 };
 
 /// Where a tool change goes from `position`, in order; empty when it stays.
@@ -29,7 +28,13 @@ class TaskCanon final : public interp::MachineCanon {
     std::uint32_t blocks() const { return tag_.block; }
     /// The name of a file by the index in SourceTag.
     const std::string &file_name(std::uint32_t index) const { return files_[index]; }
+    /// The block that was read last, as it is written.
+    const std::string &block_text() const { return text_; }
     void reset();
+    /// So many have come before.
+    void set_blocks(std::uint32_t blocks) { tag_.block = blocks; }
+    /// What is done before all that waits, from `position` on; as of `line`.
+    void insert_first(const std::vector<interp::MachineCall> &calls, const geom::Pose &position, int line);
     /// Where the machine is when nothing is queued.
     void set_position(const geom::Pose &position) { last_end_ = position; }
 
@@ -45,6 +50,7 @@ class TaskCanon final : public interp::MachineCanon {
     geom::Pose last_end_{};
     motion::SourceTag tag_{};
     std::vector<std::string> files_;
+    std::string text_;
 };
 
 }  // namespace mw::task

@@ -69,14 +69,14 @@ bool carry_out(const Visitor &visitor, const interp::MachineCall &item) {
 Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, ToolStore &tools,
                      SequencerEvents events, SequencerSettings settings)
     : queue_(queue), motion_(motion), io_(io), tools_(tools), events_(std::move(events)),
-      settings_(settings) {}
+      settings_(std::move(settings)), tool_change_(settings_.changer_error_text) {}
 
 Sequencer::Need Sequencer::need_of(const interp::MachineCall &call) {
     return std::visit(
         Overloaded{
-            [](const OneOf<interp::LineMove, interp::ArcMove, interp::SetSpindleMode, interp::SelectTool,
-                           interp::OperatorMessage, interp::PrintLine, interp::OpenLog, interp::LogLine,
-                           interp::CloseLog, interp::LogProbes, interp::CanonError, interp::ProgramComment,
+            [](const OneOf<interp::LineMove, interp::ArcMove, interp::SetSpindleMode, interp::OperatorMessage,
+                           interp::PrintLine, interp::OpenLog, interp::LogLine, interp::CloseLog,
+                           interp::LogProbes, interp::CanonError, interp::ProgramComment,
                            interp::PalletShuttle> auto &) { return Need::NOTHING; },
             [](const OneOf<interp::SetDigitalOutput, interp::SetAnalogOutput> auto &output) {
                 return output.isSynched ? Need::NOTHING : Need::MOTION;
@@ -88,6 +88,7 @@ Sequencer::Need Sequencer::need_of(const interp::MachineCall &call) {
                            interp::SwitchMist, interp::SwitchFlood, interp::SwitchFeedOverride,
                            interp::SwitchSpeedOverride, interp::SwitchFeedHold, interp::SwitchAdaptiveFeed,
                            interp::UserCode> auto &) { return Need::MOTION; },
+            [](const interp::SelectTool &) { return Need::IO; },  // the changer does one thing at a time
             [](const interp::WaitInput &) { return Need::OUTPUTS; },
             [](const OneOf<interp::ChangeTool, interp::ChangeToolNumber, interp::ProgramStop,
                            interp::ProgramEnd, interp::Finish> auto &) { return Need::MOTION_AND_IO; },
@@ -97,6 +98,7 @@ Sequencer::Need Sequencer::need_of(const interp::MachineCall &call) {
 
 void Sequencer::step(std::int64_t now_ns) {
     isHeld_ = false;
+    blocked_ = ExecState::DONE;
     for (int i = 0; i < ITEMS_PER_CYCLE && !isHeld_; ++i) {
         if (hasFailed_ || !isWaitOver(now_ns) || isStepDone_) {
             return;
@@ -107,7 +109,16 @@ void Sequencer::step(std::int64_t now_ns) {
             return;
         }
         const Item &item = queue_.front();
-        if (isStepBoundary(item) || !isReady(item) || !execute(item, now_ns)) {
+        if (isStepBoundary(item)) {
+            return;
+        }
+        if (!isReady(item)) {
+            blocked_ = need_of(item.call) == Need::MOTION_AND_IO ? ExecState::WAITING_FOR_MOTION_AND_IO
+                                                                 : ExecState::WAITING_FOR_MOTION;
+            return;
+        }
+        if (!execute(item, now_ns)) {
+            blocked_ = ExecState::WAITING_FOR_MOTION_QUEUE;
             return;
         }
         if (!queue_.empty()) {
@@ -150,11 +161,11 @@ void Sequencer::start_step() {
 
 bool Sequencer::isReady(const Item &item) {
     const Need need = need_of(item.call);
-    if (need == Need::NOTHING) {
-        return true;
+    const bool isIoIdle = io_.action() == io::ToolAction::IDLE;
+    if (need == Need::NOTHING || need == Need::IO) {
+        return need == Need::NOTHING || isIoIdle;
     }
     motion_.flush();
-    const bool isIoIdle = io_.action() == io::ToolAction::IDLE;
     const bool isMotionDone =
         motion_.isPathComplete() && (need != Need::OUTPUTS || motion_.areOutputsSettled());
     return isMotionDone && (need != Need::MOTION_AND_IO || isIoIdle);
@@ -205,7 +216,10 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
             spindles_.use(offsets, motion_);
             events_.offsets(offsets);
         },
-        [&](const interp::ReloadTools &) { check(tools_.reload()); },
+        [&](const interp::ReloadTools &) {
+            check(tools_.reload());
+            wait_ = Wait::TOOL_DATA;
+        },
         [&](const interp::SelectTool &call) { check(tool_change_.select(call, tools_, io_)); },
         [&](const interp::ChangeToolNumber &call) { check(tool_change_.set_number(call, tools_, io_)); },
         [&](const interp::SetToolTableEntry &call) { check(tools_.set_entry(call.index, call.entry)); },
@@ -311,21 +325,36 @@ void Sequencer::perform(const interp::ChangeTool &) {
     if (!settings_.isToolChangeWithSpindleOn) {
         stop_spindles();
     }
-    tool_change_.start(io_);
-    wait_ = Wait::TOOL;
+    if (tool_change_.start(tools_, io_)) {
+        wait_ = Wait::TOOL;
+    }
 }
 
-void Sequencer::abort() {
+void Sequencer::on_tool_event(io::ToolEvent event) {
+    if (event == io::ToolEvent::CHANGED_LATE) {
+        events_.message(MessageKind::OPERATOR_ERROR,
+                        "the changer says iocontrol.0.tool-changed after the change was given up: look which "
+                        "tool is in the spindle, and say it with M61 Q<number>");
+        return;
+    }
+    if (event == io::ToolEvent::FAULT_TOLD) {
+        events_.message(MessageKind::OPERATOR_ERROR, tool_change_.fault_text(io_));
+    }
+    check(tool_change_.on_event(event, tools_, io_));
+}
+
+void Sequencer::abort(int reason) {
+    blocked_ = ExecState::DONE;
     log_.close();
     probe_log_.close();
     queue_.clear();
     wait_ = Wait::NONE;
-    tool_change_.abort();
+    tool_change_.abort(io_);
     spindles_.end_wait();
     isStepping_ = false;
     isStepDone_ = false;
     hasFailed_ = false;
-    io_.abort();
+    io_.abort(reason);
 }
 
 bool Sequencer::isIdle() const {

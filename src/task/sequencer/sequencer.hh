@@ -43,6 +43,7 @@ struct SequencerEvents {
 using MoveListener = std::function<void(motion::CommandId id, const motion::PathBody &move)>;
 
 struct SequencerSettings {
+    std::string changer_error_text;          ///< [TASK]IO_ERROR
     bool isToolChangeWithSpindleOn = false;  ///< [EMCIO]TOOL_CHANGE_WITH_SPINDLE_ON
     int smooth_planner = 1;  ///< [TRAJ]SMOOTH_PLANNER: what G64 R above 0 means; 0: it is refused
 };
@@ -55,8 +56,8 @@ class Sequencer {
 
     /// Issues what may be issued now. `now_ns` is the clock of the scheduler.
     void step(std::int64_t now_ns);
-    /// Drops everything that waits, also handshakes.
-    void abort();
+    /// Drops everything that waits, also handshakes; the changer is told why.
+    void abort(int reason);
     /// Nothing queued, nothing waited for, motion complete, no handshake.
     bool isIdle() const;
     /// After the current block's items motion comes to rest and isStepDone() is true.
@@ -64,9 +65,13 @@ class Sequencer {
     void end_step() { isStepping_ = false; }
     bool isStepDone() const { return isStepDone_; }
 
-    void on_tool_event(io::ToolEvent event) { check(tool_change_.on_event(event, tools_, io_)); }
+    void on_tool_event(io::ToolEvent event);
     /// What is being waited for: a pin or a state.
     Waiting waiting_for() const;
+    /// The same in the words of older clients.
+    ExecState exec_state() const;
+    /// [s] of a dwell; 0 when there is none.
+    double dwell_left_s(std::int64_t now_ns) const;
 
     double input_value() const { return input_value_; }
     bool isInputTimedOut() const { return isInputTimedOut_; }
@@ -83,14 +88,17 @@ class Sequencer {
     /// A line for the file of (probeopen); without one nothing happens.
     void log_probe(const std::string &line) { check(probe_log_.write(line)); }
     const ToolChange &tool_change() const { return tool_change_; }
+    /// Of the tool that is ready, in the table; -1: none.
+    int selected_tool_index() const { return tool_change_.selected_index(tools_); }
     void set_move_listener(MoveListener listener) { move_listener_ = std::move(listener); }
 
   private:
-    enum class Need : std::uint8_t { NOTHING, MOTION, OUTPUTS, MOTION_AND_IO };
-    enum class Wait : std::uint8_t { NONE, DWELL, INPUT, TOOL, ORIENT, USER_CODE, SETTING };
+    enum class Need : std::uint8_t { NOTHING, IO, MOTION, OUTPUTS, MOTION_AND_IO };
+    enum class Wait : std::uint8_t { NONE, DWELL, INPUT, TOOL, TOOL_DATA, ORIENT, USER_CODE, SETTING };
     static Need need_of(const interp::MachineCall &call);
     bool isWaitOver(std::int64_t now_ns);
     bool isInputWaitOver(std::int64_t now_ns);
+    bool isToolDataRead();
     bool isOrientWaitOver(std::int64_t now_ns);
     bool isReady(const Item &item);
     bool isStepBoundary(const Item &item);
@@ -120,7 +128,8 @@ class Sequencer {
     MoveListener move_listener_;
 
     Wait wait_ = Wait::NONE;
-    std::int64_t deadline_ns_ = 0;  ///< of a dwell or a time limit; 0: none
+    ExecState blocked_ = ExecState::DONE;  ///< what the item in front has waited for in the last step
+    std::int64_t deadline_ns_ = 0;         ///< of a dwell or a time limit; 0: none
     interp::WaitInput awaited_input_{};
     double input_value_ = 0, last_input_ = 0;
     bool isInputTimedOut_ = false;

@@ -15,6 +15,7 @@ bool Sequencer::isWaitOver(std::int64_t now_ns) {
     case Wait::DWELL: isOver = now_ns >= deadline_ns_; break;
     case Wait::INPUT: isOver = isInputWaitOver(now_ns); break;
     case Wait::TOOL: isOver = io_.action() == io::ToolAction::IDLE; break;
+    case Wait::TOOL_DATA: isOver = isToolDataRead(); break;
     case Wait::ORIENT: isOver = isOrientWaitOver(now_ns); break;
     case Wait::SETTING: isOver = motion_.isAnswered(awaited_setting_); break;
     case Wait::USER_CODE: {
@@ -30,6 +31,14 @@ bool Sequencer::isWaitOver(std::int64_t now_ns) {
         wait_ = Wait::NONE;
     }
     return isOver && !hasFailed_;
+}
+
+bool Sequencer::isToolDataRead() {
+    const std::optional<Result<>> result = tools_.reload_result();
+    if (result.has_value()) {
+        check(*result);
+    }
+    return result.has_value();
 }
 
 bool Sequencer::isOrientWaitOver(std::int64_t now_ns) {
@@ -75,12 +84,33 @@ bool Sequencer::isInputWaitOver(std::int64_t now_ns) {
     return isMet || isInputTimedOut_;
 }
 
+double Sequencer::dwell_left_s(std::int64_t now_ns) const {
+    constexpr double NS_PER_S = 1e9;
+    const bool isDwelling = wait_ == Wait::DWELL && deadline_ns_ > now_ns;
+    return isDwelling ? static_cast<double>(deadline_ns_ - now_ns) / NS_PER_S : 0.0;
+}
+
+ExecState Sequencer::exec_state() const {
+    switch (wait_) {
+    case Wait::NONE: return blocked_;
+    case Wait::DWELL:
+    case Wait::INPUT: return ExecState::WAITING_FOR_DELAY;
+    case Wait::TOOL:
+    case Wait::TOOL_DATA: return ExecState::WAITING_FOR_IO;
+    case Wait::ORIENT: return ExecState::WAITING_FOR_SPINDLE_ORIENTED;
+    case Wait::SETTING: return ExecState::WAITING_FOR_MOTION;
+    case Wait::USER_CODE: return ExecState::WAITING_FOR_SYSTEM_CMD;
+    }
+    return ExecState::DONE;
+}
+
 Waiting Sequencer::waiting_for() const {
     switch (wait_) {
     case Wait::DWELL: return {WaitFor::DWELL, -1};
     case Wait::INPUT:
         return {awaited_input_.isAnalog ? WaitFor::ANALOG_INPUT : WaitFor::DIGITAL_INPUT,
                 awaited_input_.index};
+    case Wait::TOOL_DATA: return {WaitFor::TOOL_DATA, -1};
     case Wait::ORIENT: return {WaitFor::SPINDLE_ORIENTED, awaited_spindle_};
     case Wait::SETTING: return {WaitFor::SETTING, -1};
     case Wait::USER_CODE: return {WaitFor::USER_CODE, -1};

@@ -30,13 +30,17 @@ RunState in(RunPhase phase, Hold hold) {
     case RunPhase::IDLE: break;
     case RunPhase::CLEANING: way = {CLEAN}; break;
     case RunPhase::STARTING: way = {START}; break;
+    case RunPhase::SEARCHING: way = {START, SEARCH}; break;
     case RunPhase::READING: way = {START, BEGUN}; break;
     case RunPhase::SYNCHING: way = {START, BEGUN, SYNC}; break;
     case RunPhase::FINISHING: way = {START, BEGUN, READ}; break;
     }
+    // In the phase before a program begins nothing can be released: it is proposed, then read.
     const std::vector<RunEvent> held = hold == Hold::HELD       ? std::vector{PAUSE}
                                        : hold == Hold::STOPPED  ? std::vector{PROGRAM_STOP}
                                        : hold == Hold::STEPPING ? std::vector{PAUSE, STEP}
+                                       : hold == Hold::AWAY     ? std::vector{PAUSE, RELEASE}
+                                       : hold == Hold::PROPOSED ? std::vector{PAUSE, PROPOSE}
                                                                 : std::vector<RunEvent>{};
     way.insert(way.end(), held.begin(), held.end());
     for (const RunEvent event : way) {
@@ -49,10 +53,16 @@ RunState in(RunPhase phase, Hold hold) {
 
 std::vector<RunState> all_states() {
     std::vector<RunState> states{in(RunPhase::IDLE, Hold::GOING), in(RunPhase::CLEANING, Hold::GOING)};
-    for (const RunPhase phase :
-         {RunPhase::STARTING, RunPhase::READING, RunPhase::SYNCHING, RunPhase::FINISHING}) {
+    for (const RunPhase phase : {RunPhase::STARTING, RunPhase::SEARCHING, RunPhase::READING,
+                                 RunPhase::SYNCHING, RunPhase::FINISHING}) {
         for (const Hold hold : all<Hold>()) {
-            states.push_back(in(phase, hold));
+            const bool isBegun = phase >= RunPhase::READING;
+            const bool canBe = hold == Hold::AWAY       ? isBegun
+                               : hold == Hold::PROPOSED ? isBegun || phase == RunPhase::SEARCHING
+                                                        : true;
+            if (canBe) {
+                states.push_back(in(phase, hold));
+            }
         }
     }
     return states;
@@ -77,7 +87,7 @@ TEST(RunState, ARefusedEventChangesNothingAndSaysWhy_C5) {
             }
         }
     }
-    EXPECT_EQ(refused + taken, 18 * 14);
+    EXPECT_EQ(refused + taken, (2 + 4 + 5 + 3 * 6) * 18);
     EXPECT_GT(refused, 50);
     EXPECT_GT(taken, 50);
 }
@@ -87,14 +97,21 @@ TEST(RunState, WhatEachEventDoesInEveryState_D3) {
         for (const RunEvent event : all<RunEvent>()) {
             RunState run = before;
             const bool isTaken = run.take(event).has_value();
-            const bool isRunning = before.isRunning();
+            const bool isRunning = before.isRunning(), isAway = before.hold() == Hold::AWAY;
+            const bool isStanding = before.hold() == Hold::HELD || before.hold() == Hold::STOPPED;
             const std::string where = what(before, event);
             switch (event) {
             case START:
                 EXPECT_EQ(isTaken, !isRunning) << where;
                 EXPECT_EQ(run.isHeld(), before.isHeld()) << where;
                 break;
-            case BEGUN: EXPECT_EQ(isTaken, before.phase() == RunPhase::STARTING) << where; break;
+            case BEGUN:
+                EXPECT_EQ(isTaken,
+                          before.phase() == RunPhase::STARTING || before.phase() == RunPhase::SEARCHING)
+                    << where;
+                EXPECT_EQ(run.hold(), before.hold()) << where;
+                break;
+            case SEARCH: EXPECT_EQ(isTaken, before.phase() == RunPhase::STARTING) << where; break;
             case SYNC: EXPECT_EQ(isTaken, before.phase() == RunPhase::READING) << where; break;
             case SYNCED: EXPECT_EQ(isTaken, before.phase() == RunPhase::SYNCHING) << where; break;
             case READ: EXPECT_EQ(isTaken, before.phase() >= RunPhase::READING) << where; break;
@@ -110,18 +127,18 @@ TEST(RunState, WhatEachEventDoesInEveryState_D3) {
             case PAUSE:
                 EXPECT_EQ(isTaken, isRunning) << where;
                 EXPECT_EQ(run.isHeld(), isRunning) << where;
-                EXPECT_EQ(run.hold() == Hold::STOPPED, before.hold() == Hold::STOPPED) << where;
+                EXPECT_TRUE(!before.isHeld() || run.hold() == before.hold()) << where;
                 break;
             case RESUME:
-                EXPECT_EQ(isTaken, before.isHeld()) << where;
-                EXPECT_FALSE(run.isHeld()) << where;
+                EXPECT_EQ(isTaken, before.isHeld() && !isAway) << where;
+                EXPECT_EQ(run.isHeld(), isAway) << where;
                 break;
             case STEP:
-                EXPECT_EQ(isTaken, before.isHeld()) << where;
+                EXPECT_EQ(isTaken, isStanding) << where;
                 EXPECT_EQ(run.hold() == Hold::STEPPING, isTaken || before.hold() == Hold::STEPPING) << where;
                 break;
             case STEP_MOVE:
-                EXPECT_EQ(isTaken, before.isHeld()) << where;
+                EXPECT_EQ(isTaken, isStanding) << where;
                 EXPECT_EQ(run.isHeld(), before.isHeld()) << where;
                 break;
             case STEP_DONE:
@@ -130,11 +147,25 @@ TEST(RunState, WhatEachEventDoesInEveryState_D3) {
                 break;
             case PROGRAM_STOP:
                 EXPECT_EQ(isTaken, isRunning) << where;
-                EXPECT_TRUE(!isTaken || run.hold() == Hold::STOPPED) << where;
+                EXPECT_TRUE(!isTaken || run.isHeld()) << where;
+                EXPECT_TRUE(!before.isHeld() || isStanding || run.hold() == before.hold()) << where;
+                break;
+            case RELEASE:
+                EXPECT_EQ(isTaken, before.isHeld() && before.phase() >= RunPhase::READING) << where;
+                EXPECT_EQ(run.hold() == Hold::AWAY, isTaken || isAway) << where;
+                break;
+            case PROPOSE:
+                EXPECT_TRUE(!isTaken || run.hold() == Hold::PROPOSED) << where;
+                EXPECT_TRUE(isTaken || !isAway) << where;
+                break;
+            case CONFIRM:
+                EXPECT_EQ(isTaken, before.hold() == Hold::PROPOSED) << where;
+                EXPECT_TRUE(!isTaken || (run.hold() == Hold::GOING && run.phase() >= RunPhase::READING))
+                    << where;
                 break;
             case COUNT: break;
             }
-            const bool isAboutHold = event >= PAUSE;
+            const bool isAboutHold = event >= PAUSE && event != CONFIRM;
             EXPECT_TRUE(!isAboutHold || run.phase() == before.phase()) << where;
         }
     }

@@ -155,10 +155,10 @@ class ToolChangeTest : public testing::Test {
 TEST_F(ToolChangeTest, PreparesThenBringsTheToolIntoTheSpindle_G4) {
     ASSERT_TRUE(change.select({5}, tools, io).has_value());
     EXPECT_EQ(io.outputs.tool_prep_pocket, 3);
-    EXPECT_EQ(change.selected_index(), 1);
+    EXPECT_EQ(change.selected_index(tools), 1);
     ASSERT_TRUE(work().has_value());
     EXPECT_EQ(tools.in_spindle, 0) << "only made ready";
-    change.start(io);
+    EXPECT_TRUE(change.start(tools, io));
     ASSERT_TRUE(work().has_value());
     EXPECT_EQ(tools.in_spindle, 5);
     EXPECT_EQ(io.outputs.tool_number, 5);
@@ -178,19 +178,67 @@ TEST_F(ToolChangeTest, AFaultOfTheChangerIsToldWithItsReasonUntilItWorksAgain_G4
     ASSERT_TRUE(change.select({5}, tools, io).has_value());
     ASSERT_TRUE(work().has_value());
     isFaulted = true;
-    change.start(io);
+    EXPECT_TRUE(change.start(tools, io));
     const auto failed = work();
     ASSERT_FALSE(failed.has_value());
     EXPECT_NE(failed.error().message.find("toolchanger-reason 17"), std::string::npos);
     EXPECT_EQ(change.fault_reason(), 17);
     EXPECT_EQ(tools.in_spindle, 0);
-    change.abort();
-    io.abort();
+    change.abort(io);
+    io.abort(8);
     isFaulted = false;
     EXPECT_EQ(change.fault_reason(), 17) << "an abort does not mend the changer";
     ASSERT_TRUE(change.select({5}, tools, io).has_value());
     ASSERT_TRUE(work().has_value());
     EXPECT_FALSE(change.fault_reason().has_value());
+}
+
+TEST_F(ToolChangeTest, TheToolThatIsInIsNotChangedForItself_G3) {
+    tools.in_spindle = 5;
+    ASSERT_TRUE(change.select({5}, tools, io).has_value());
+    ASSERT_TRUE(work().has_value());
+    EXPECT_FALSE(change.start(tools, io));
+    EXPECT_EQ(io.action(), io::ToolAction::IDLE);
+    EXPECT_TRUE(change.isSelected()) << "it is still the one that was asked for";
+}
+
+TEST_F(ToolChangeTest, AnAbortKeepsAToolThatIsReadyAndForgetsOneOnItsWay_G4) {
+    ASSERT_TRUE(change.select({5}, tools, io).has_value());
+    change.abort(io);
+    EXPECT_FALSE(change.isSelected()) << "nobody knows what the changer has got ready";
+    io.abort(8);
+    ASSERT_TRUE(change.select({5}, tools, io).has_value());
+    ASSERT_TRUE(work().has_value());
+    change.abort(io);
+    EXPECT_TRUE(change.isSelected());
+    EXPECT_TRUE(change.start(tools, io));
+    change.abort(io);
+    io.abort(8);
+    EXPECT_FALSE(change.isSelected());
+    ASSERT_TRUE(work().has_value());
+    EXPECT_EQ(tools.in_spindle, 0);
+}
+
+TEST_F(ToolChangeTest, AChangeClearsWhatWasPrepared_G4) {
+    ASSERT_TRUE(change.select({5}, tools, io).has_value());
+    ASSERT_TRUE(work().has_value());
+    EXPECT_EQ(io.outputs.tool_prep_number, 5);
+    EXPECT_TRUE(change.start(tools, io));
+    ASSERT_TRUE(work().has_value());
+    EXPECT_EQ(io.outputs.tool_prep_number, 0);
+    EXPECT_EQ(io.outputs.tool_prep_pocket, 0);
+    EXPECT_EQ(io.outputs.tool_prep_index, 0);
+}
+
+TEST_F(ToolChangeTest, AReasonBelowZeroIsToldInTheWordsOfTheIniFile_G4) {
+    ToolChange worded("Changer says %d!");
+    io.start_change();
+    io::Inputs in;
+    in.toolchanger_fault = true;
+    in.toolchanger_reason = -2;
+    const auto told = worded.on_event(io.step(in), tools, io);
+    ASSERT_FALSE(told.has_value());
+    EXPECT_EQ(told.error().message, "Changer says -2!");
 }
 
 TEST_F(ToolChangeTest, M61NamesTheToolWithoutAChange_G4) {

@@ -195,7 +195,7 @@ TEST_F(SequencerTest, AfterAFailureNothingBeginsUntilTheAbort_D2) {
     cycles(5);
     EXPECT_EQ(failures.size(), 1U);
     EXPECT_TRUE(texts.empty());
-    sequencer.abort();
+    sequencer.abort(8);
     EXPECT_TRUE(queue.empty());
     add(interp::PrintLine{"after"});
     cycle();

@@ -52,7 +52,8 @@ const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
     out_.tap = {};
     state_.cycle = cycle;
     ++state_.tick;
-    if (state_.isDropping && state_.motion == Motion::FOLLOW && isFiltered()) {
+    const bool mustStop = state_.isDropping && state_.motion == Motion::FOLLOW && isFiltered();
+    if (mustStop && !silence_.isStopping) {
         watch_planner();
     }
     if (state_.motion == Motion::LOCKED) {
@@ -186,45 +187,52 @@ void Executor::start_brake() noexcept {
     brake_on_piece();
 }
 
-/// Sets up braking from the present state to a stop or to the end of the piece.
+/// Sets up braking from the present state to a stop, to where the piece allows another, or to its end.
 void Executor::brake_on_piece() noexcept {
     const Piece &piece = store_.piece(state_.piece);
-    const double left = std::max(0.0, piece.length - state_.x);
+    const bool isBefore = state_.x < piece.braking.from;
+    brake_.end = isBefore ? piece.braking.from : piece.length;
+    const double left = std::max(0.0, brake_.end - state_.x);
     const double v2 = state_.v * state_.v;
-    double a = piece.acceleration.at(v2);
+    double a = isBefore ? piece.acceleration.at(v2) : piece.braking.bound.at(v2);
     const double out2 = v2 - 2.0 * a * left;
-    brake_time_ = 0;
-    isBrakeFinal_ = out2 <= TimingTuning::STOP_FIT * v2;
-    if (!isBrakeFinal_) {
+    brake_.time = 0;
+    brake_.isFinal = out2 <= TimingTuning::STOP_FIT * v2;
+    if (!brake_.isFinal) {
         const double out = std::sqrt(out2);
         const double duration = 2.0 * left / (state_.v + out);
-        brake_ = {state_.piece, duration, state_.x, state_.v, -a, 0};
+        brake_.phase = {state_.piece, duration, state_.x, state_.v, -a, 0};
         return;
     }
     if (out2 > 0 && left > 0) {
         a = v2 / (2.0 * left);
     }
-    brake_ = {state_.piece, state_.v / a, state_.x, state_.v, -a, 0};
+    brake_.phase = {state_.piece, state_.v / a, state_.x, state_.v, -a, 0};
 }
 
 double Executor::brake_along(double dt) noexcept {
-    const double left = brake_.duration - brake_time_;
+    const double left = brake_.phase.duration - brake_.time;
     if (dt < left) {
-        brake_time_ += dt;
-        state_.x = x_at(brake_, brake_time_);
-        state_.v = v_at(brake_, brake_time_);
+        brake_.time += dt;
+        state_.x = x_at(brake_.phase, brake_.time);
+        state_.v = v_at(brake_.phase, brake_.time);
         return 0;
     }
     const Piece &piece = store_.piece(state_.piece);
-    if (isBrakeFinal_) {
-        const double stop = x_at(brake_, brake_.duration);
+    if (brake_.isFinal) {
+        const double stop = x_at(brake_.phase, brake_.phase.duration);
         state_.x = std::abs(stop - piece.length) <= ExecutorTuning::ARRIVED * (1.0 + piece.length)
                        ? piece.length
                        : std::min(stop, piece.length);
         come_to_rest();
         return 0;
     }
-    state_.v = v_at(brake_, brake_.duration);
+    state_.v = v_at(brake_.phase, brake_.phase.duration);
+    if (brake_.end < piece.length) {
+        state_.x = brake_.end;
+        brake_on_piece();
+        return dt - left;
+    }
     if (state_.piece == store_.last_piece.load(std::memory_order_acquire)) {
         // The planner promises that this does not happen; were it wrong, the end of the path is where we
         // stop.
@@ -278,7 +286,6 @@ void Executor::drop() noexcept {
     state_.isDropping = true;
     silence_.cycles = 0;
     silence_.waited = 0;
-    silence_.isStopping = false;
     if (state_.motion == Motion::FOLLOW && !isFiltered()) {
         start_brake();
     } else if (isAtRest()) {
@@ -294,8 +301,7 @@ void Executor::watch_planner() noexcept {
     const bool isGone = silence_.cycles > ExecutorTuning::PLANNER_SILENCE_CYCLES &&
                         silence_.cycles * period_ > ExecutorTuning::PLANNER_SILENCE_S;
     ++silence_.waited;
-    const bool isWithoutPlan =
-        !silence_.isStopping && silence_.waited * period_ > ExecutorTuning::STOP_PLAN_WAIT_S;
+    const bool isWithoutPlan = silence_.waited * period_ > ExecutorTuning::STOP_PLAN_WAIT_S;
     if (isGone || isWithoutPlan) {
         start_brake();
     }

@@ -36,7 +36,15 @@ struct PlannerSilence {
     std::uint32_t seen_updates = 0;
     int cycles = 0;           ///< since the last one
     int waited = 0;           ///< cycles since the drop
-    bool isStopping = false;  ///< a plan to stop has been taken since
+    bool isStopping = false;  ///< the plan in force was made to stop
+};
+
+/// How the executor brakes by itself on the present piece.
+struct Brake {
+    Phase phase;
+    double time = 0;       ///< in it
+    bool isFinal = false;  ///< it ends in a stop
+    double end = 0;        ///< where on the piece it ends otherwise
 };
 
 /// What an executor remembers. A copy of it goes on in another executor whose store holds the same path.
@@ -50,9 +58,7 @@ class ExecutorState {
     Commit next_switch_;      ///< plan != 0: waits for its cycle
     Sequence phase_end_ = 0;  ///< phases of the plan taken end here
     Sequence next_end_ = 0;   ///< the same of the waiting switch
-    Phase brake_;             ///< the braking profile on the present piece
-    double brake_time_ = 0;
-    bool isBrakeFinal_ = false;  ///< it ends in a stop
+    Brake brake_;
     PlannerSilence silence_;
     Pose leader_;
     double leader_s_ = 0, leader_tolerance_ = 0;

@@ -89,10 +89,13 @@ int rows_of(const PerLimited &q1, const PerLimited &q2, const Limits &limits, Li
     return count;
 }
 
-AccelBound through_chords(const double *left, double v) noexcept {
+}  // namespace
+
+AccelBound AccelBound::through(const double (&left)[LINES + 1], double v) noexcept {
+    static_assert(std::size(LimitTuning::CHORDS) == LINES + 1);
     AccelBound out;
     const double b = v * v;
-    for (int k = 0; k < AccelBound::LINES; ++k) {
+    for (int k = 0; k < LINES; ++k) {
         const double beta = std::max(0.0, (left[k] - left[k + 1]) /
                                               ((LimitTuning::CHORDS[k + 1] - LimitTuning::CHORDS[k]) * b));
         out.beta[static_cast<std::size_t>(k)] = beta;
@@ -101,18 +104,15 @@ AccelBound through_chords(const double *left, double v) noexcept {
     return out;
 }
 
-}  // namespace
-
 AccelBound AccelBound::least(const AccelBound &x, const AccelBound &y, double v) noexcept {
     if (!(v < 1e100) || !(v > 0)) {
         return constant(std::min(x.at(0), y.at(0)));
     }
-    static_assert(std::size(LimitTuning::CHORDS) == LINES + 1);
     double left[LINES + 1];
     for (int k = 0; k <= LINES; ++k) {
         left[k] = std::min(x.at(LimitTuning::CHORDS[k] * v * v), y.at(LimitTuning::CHORDS[k] * v * v));
     }
-    return through_chords(left, v);
+    return through(left, v);
 }
 
 std::uint64_t filter_length(const Limits &limits, double period_s, double tolerance) noexcept {
@@ -178,7 +178,7 @@ SpeedLimit limit_of_rows(const LimitRow *rows, int count, double wish) noexcept 
     for (int k = 0; k <= AccelBound::LINES; ++k) {
         left[k] = acceleration_left(rows, count, LimitTuning::CHORDS[k] * out.v * out.v);
     }
-    out.a = through_chords(left, out.v);
+    out.a = AccelBound::through(left, out.v);
     return out;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "traj/geometry/braking.hh"
 #include "traj/geometry/path_builder.hh"
 
 namespace mw::traj {
@@ -33,11 +34,13 @@ void make_gentle(PlannedPath &path, Sequence from, double part) noexcept {
 /// Turning of curves close by leaves less for the path.
 void share_with_turning(PlannedPath &path, Sequence from, double taken) noexcept {
     for (Sequence k = from; k <= path.last_piece(); ++k) {
-        AccelBound &bound = path.store().piece(k).acceleration;
+        Piece &piece = path.store().piece(k);
+        AccelBound &bound = piece.acceleration;
         for (std::size_t i = 0; i < AccelBound::LINES; ++i) {
             bound.beta[i] += CornerTuning::SHARED_TURNS * bound.alpha[i] * taken;
             bound.alpha[i] *= CornerTuning::SHARED_REST;
         }
+        piece.braking = {0, bound};
     }
 }
 
@@ -179,6 +182,7 @@ void PathBuilder::add_piece(PlannedPath &path, const Conditions &c, const Piece 
                                                      : limit;
     Piece limited = piece;
     limited.acceleration = lowest.a;
+    limited.braking = braking_on(path.store(), piece, c, lowest);
     PlannedPiece plan;
     plan.v_limit = std::min(lowest.v, PathTuning::MOVES_PER_CYCLE * path.primitive(piece.primitive).length /
                                           c.limits.period_s());

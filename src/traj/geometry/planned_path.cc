@@ -14,10 +14,12 @@ void PlannedPath::append_piece(const Piece &piece, const PlannedPiece &plan_of_i
 
 void PlannedPath::scale(Sequence piece, double speed, double acceleration) noexcept {
     plan(piece).v_limit *= speed;
-    AccelBound &bound = store_.piece(piece).acceleration;
-    for (std::size_t i = 0; i < AccelBound::LINES; ++i) {
-        bound.alpha[i] *= acceleration;
-        bound.beta[i] *= acceleration;
+    Piece &p = store_.piece(piece);
+    for (AccelBound *bound : {&p.acceleration, &p.braking.bound}) {
+        for (std::size_t i = 0; i < AccelBound::LINES; ++i) {
+            bound->alpha[i] *= acceleration;
+            bound->beta[i] *= acceleration;
+        }
     }
 }
 

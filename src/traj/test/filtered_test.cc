@@ -220,6 +220,36 @@ TEST(Filtered, AHoldStopsWithinTheJerkLimitAndGoesOn_C13) {
     EXPECT_EQ(rig.samples.back(), at(60));
 }
 
+TEST(Filtered, ADropWithinAHoldKeepsThePlanThatStops_C5) {
+    Limits gentle = jerk_limits();
+    gentle.jerk.fill(J / 4);  // 0.08 s to the full acceleration
+    for (std::uint64_t later = 1; later < 150; later += 7) {
+        JerkRig rig;
+        rig.planner.set_limits(gentle);
+        rig.planner.begin(Pose{}, rig.executor.snapshot());
+        rig.planner.add(make_line(Pose{}, at(60)), request(geom::PathMode::EXACT_STOP));
+        rig.planner.release_end();
+        while (rig.cycle < 70) {
+            rig.step();  // it still gains speed
+        }
+        rig.executor.hold(true);
+        const std::uint64_t asked = rig.cycle;
+        while (rig.cycle < asked + later) {
+            rig.step();
+        }
+        rig.executor.drop();
+        while (rig.cycle < asked + 1000 && rig.executor.snapshot().isDropping) {
+            rig.step();
+        }
+        EXPECT_FALSE(rig.executor.snapshot().isDropping);
+        auto checker = make_checker(gentle, Rig::T);
+        for (const Pose &p : rig.samples) {
+            checker.sample(p.c.data());
+        }
+        EXPECT_TRUE(checker.isWithin()) << later << ": " << checker.report();
+    }
+}
+
 /// A circle of short chords from the origin.
 void add_circle(Rig &rig, double radius, double tolerance) {
     Pose from;

@@ -17,7 +17,7 @@ class Smooth {
         : draft_(draft), store_(store), view_(view), path_(view.path()), limits_(view.on.conditions.limits) {}
 
     bool advance() noexcept;
-    bool stop() noexcept;
+    bool stop(bool isHard) noexcept;
 
   private:
     bool canCoast(Sequence piece, double x, double v) noexcept;
@@ -179,7 +179,7 @@ bool Smooth::advance() noexcept {
     return true;
 }
 
-bool Smooth::stop() noexcept {
+bool Smooth::stop(bool isHard) noexcept {
     LeaderState &s = draft_.at;
     while (s.v > 0) {
         if (!draft_.hasRoom(view_.oldest_phase, TimingTuning::PHASES_PER_STOP)) {
@@ -188,7 +188,9 @@ bool Smooth::stop() noexcept {
         const Piece &p = path_.piece(s.piece);
         const bool isLast = s.piece == path_.last_piece();
         look_at(s.piece);
-        const double left = p.length - s.x;
+        const bool isBefore = isHard && s.x < p.braking.from;
+        const double end = isBefore ? p.braking.from : p.length;
+        const double left = end - s.x;
         if (!(left > 0)) {
             if (isLast) {
                 return s.v <= 0;
@@ -200,7 +202,7 @@ bool Smooth::stop() noexcept {
         const double out = out2(s.piece);
         const double wait = limits_.filter_s() - s.coasting.since_rise_s;
         const bool mayCoast =
-            v2 < p.acceleration.highest_before(out, left) * (1.0 - TimingTuning::SAME_SPEED);
+            v2 < p.acceleration.highest_before(out, p.length - s.x) * (1.0 - TimingTuning::SAME_SPEED);
         if (wait > TimingTuning::SOON && mayCoast) {
             coast(0, out);
             if (s.x > p.length * (1.0 - TimingTuning::ROUND_END)) {
@@ -208,16 +210,16 @@ bool Smooth::stop() noexcept {
             }
             continue;
         }
-        const double a = p.acceleration.at(v2);
+        const double a = isHard && !isBefore ? p.braking.bound.at(v2) : p.acceleration.at(v2);
         const double slowest2 = v2 - 2.0 * a * left;
-        const bool isStop = isLast || path_.plan(s.piece + 1).isStopBefore;
+        const bool isStop = !isBefore && (isLast || path_.plan(s.piece + 1).isStopBefore);
         if (isStop || slowest2 <= TimingTuning::STOP_FIT * v2) {
             // A stop that misses the end by rounding is fitted to it.
             draft_.append(store_, slowest2 < -TimingTuning::STOP_FIT * v2 ? v2 / (2.0 * a) : left, 0);
             return true;
         }
         draft_.append(store_, left, std::sqrt(slowest2));
-        s.x = p.length;
+        s.x = end;
     }
     return true;
 }
@@ -231,7 +233,11 @@ void append_smooth(PlanDraft &draft, PathStore &store, const TimingView &view, d
 }
 
 bool append_stop(PlanDraft &draft, PathStore &store, const TimingView &view) noexcept {
-    return Smooth(draft, store, view).stop();
+    return Smooth(draft, store, view).stop(false);
+}
+
+bool append_hard_stop(PlanDraft &draft, PathStore &store, const TimingView &view) noexcept {
+    return Smooth(draft, store, view).stop(true);
 }
 
 }  // namespace mw::traj

@@ -12,5 +12,7 @@ namespace mw::traj {
 void append_smooth(PlanDraft &draft, PathStore &store, const TimingView &view, double until_s) noexcept;
 /// From where the plan leads to a stop; false when there is no room for it.
 bool append_stop(PlanDraft &draft, PathStore &store, const TimingView &view) noexcept;
+/// The same with what curves leave for braking alone.
+bool append_hard_stop(PlanDraft &draft, PathStore &store, const TimingView &view) noexcept;
 
 }  // namespace mw::traj

@@ -153,7 +153,7 @@ void TimingPlan::extend(const PathView &view, PathStore &store, const Snapshot &
 }
 
 bool TimingPlan::draft(const PathView &view, PathStore &store, Sequence begin, const LeaderState &from,
-                       bool isStop) noexcept {
+                       Ending ending) noexcept {
     const TimingView timing{view, profile_, oldest_phase_};
     draft_.end = begin;
     draft_.begin(from);
@@ -162,15 +162,16 @@ bool TimingPlan::draft(const PathView &view, PathStore &store, Sequence begin, c
         draft_.wait(store, start_delay_s_);
     }
     const Sequence waited = draft_.end;
-    if (isStop && from.v <= 0) {
+    if (ending != Ending::ONWARD && from.v <= 0) {
         draft_.wait(store, settings_.period_s);
     }
-    if (!isStop) {
+    if (ending == Ending::ONWARD) {
         append_smooth(draft_, store, timing, start_delay_s_ + settings_.horizon_s);
     }
     const double until_s = draft_.seconds;
     const bool isEmpty = draft_.end == waited && from.v <= 0;
-    if (isEmpty || !append_stop(draft_, store, timing) || draft_.isStopPassed(view.path, begin)) {
+    const auto append = ending == Ending::HARD_STOP ? append_hard_stop : append_stop;
+    if (isEmpty || !append(draft_, store, timing) || draft_.isStopPassed(view.path, begin)) {
         return false;
     }
     draft_.seconds = until_s;
@@ -178,13 +179,13 @@ bool TimingPlan::draft(const PathView &view, PathStore &store, Sequence begin, c
 }
 
 bool TimingPlan::commit(const PathView &view, PathStore &store, const Snapshot &now, Sequence begin,
-                        bool isStop) noexcept {
+                        Ending ending) noexcept {
     Commit commit;
     commit.switch_cycle = now.cycle + settings_.latency;
     commit.begin = begin;
     commit.end = draft_.end;
     commit.filter = view.conditions.limits.filter();
-    commit.isStop = isStop;
+    commit.isStop = ending != Ending::ONWARD;
     const bool isTold = change_to(store, now, commit);
     start_delay_s_ = isTold ? 0.0 : start_delay_s_;
     return isTold;

@@ -14,6 +14,13 @@ struct PlannerSettings {
     bool isMerging = true;      ///< nearly straight lines become one
 };
 
+/// How a plan that is tried ends.
+enum class Ending : std::uint8_t {
+    ONWARD,     ///< it goes on as far as it will, and then stops
+    STOP,       ///< it stops
+    HARD_STOP,  ///< with what curves leave for braking alone
+};
+
 /// What an update has to do.
 struct Demand {
     enum class Kind : std::uint8_t {
@@ -67,10 +74,10 @@ class TimingPlan {
     }
     /// Makes a plan to be tried, with phases from `begin` on; false when there is none.
     bool draft(const PathView &view, PathStore &store, Sequence begin, const LeaderState &from,
-               bool isStop) noexcept;
+               Ending ending) noexcept;
     /// Tells the executor of it; false when there is no room.
     bool commit(const PathView &view, PathStore &store, const Snapshot &now, Sequence begin,
-                bool isStop) noexcept;
+                Ending ending) noexcept;
     /// Phases from `begin` on are free again.
     void discard(Sequence begin) noexcept { draft_.end = begin; }
 

@@ -54,6 +54,15 @@ void send_coordinates(const State &state, CanonQueue &canon) {
     canon.take(SetXyRotation{state.frame.rotation_deg});
 }
 
+Pose stored_place(int first, const Pose &before, const Machine &machine, const Parameters &parameters,
+                  const State &state) {
+    Pose place = parameter_pose(parameters, first, machine.to_program(state.units));
+    for (int axis = RotaryAxes::FIRST; axis <= RotaryAxes::LAST; ++axis) {
+        place[axis] = state.rotary.isWrapped(axis) ? unwrapped_place(place[axis], before[axis]) : place[axis];
+    }
+    return state.frame.to_program(place);
+}
+
 bool use_coordinates(const Code &code, const BlockValues &, const Machine &machine, Parameters &parameters,
                      State &state, CanonQueue &canon, Fault &fault) {
     const double to_program = machine.to_program(state.units);
@@ -130,12 +139,7 @@ bool go_to_reference(const Code &code, const BlockValues &values, const Machine 
         return fault.set("Cannot go to a reference point while cutter radius compensation is on");
     }
     const Pose by_way = target(values, state);
-    Pose place = parameter_pose(parameters, first, to_program);
-    const Pose before = state.frame.to_machine(by_way);
-    for (int axis = RotaryAxes::FIRST; axis <= RotaryAxes::LAST; ++axis) {
-        place[axis] = state.rotary.isWrapped(axis) ? unwrapped_place(place[axis], before[axis]) : place[axis];
-    }
-    const Pose stored = state.frame.to_program(place);
+    const Pose stored = stored_place(first, state.frame.to_machine(by_way), machine, parameters, state);
     Pose end = by_way;
     for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
         if (values.has(geom::AXIS_LETTERS_LOWER[axis]) || !values.hasAxes()) {

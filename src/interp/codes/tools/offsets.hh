@@ -22,6 +22,10 @@ void send_coordinates(const State &state, CanonQueue &canon);
 /// G54 to G59.3.
 bool use_coordinates(const Code &code, const BlockValues &values, const Machine &machine,
                      Parameters &parameters, State &state, CanonQueue &canon, Fault &fault);
+/// The place that G28.1 or G30.1 has stored, read in the frame in force; rotary axes that wrap turn the short
+/// way from `before`, a place in the machine.
+Pose stored_place(int first, const Pose &before, const Machine &machine, const Parameters &parameters,
+                  const State &state);
 /// G52, G92 and G92.1 to G92.3.
 bool shift_axes(const Code &code, const BlockValues &values, const Machine &machine, Parameters &parameters,
                 State &state, CanonQueue &canon, Fault &fault);

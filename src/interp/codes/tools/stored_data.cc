@@ -85,7 +85,9 @@ bool set_tool_data(int l, const BlockValues &values, const Machine &machine, Too
     }
     put_tool_entry(tools, canon, index, entry);
     if (index == state.tool.index) {
-        put_tool_entry(tools, canon, 0, entry);
+        if (!tools.isRandom()) {  // whose spindle holds the tool itself, no copy
+            put_tool_entry(tools, canon, 0, entry);
+        }
         const int was = state.tool.in_spindle;
         load_tool(tools, state.tool, index);
         state.tool.in_spindle = was;

@@ -4,10 +4,38 @@
 #include <fmt/format.h>
 
 #include "interp/codes/block_words.hh"
+#include "interp/codes/moves/rotary.hh"
 #include "interp/codes/tools/offsets.hh"
 
 namespace mw::interp::detail {
 namespace {
+
+void stop_spindles(const Machine &machine, State &state, CanonQueue &canon) {
+    for (int i = 0; i < machine.count_spindles(); ++i) {
+        state.spindles[static_cast<std::size_t>(i)].direction = 0;
+        canon.take(StopSpindle{i});
+    }
+}
+
+/// A rapid that screens need not draw.
+void take_hidden_rapid(const Pose &end, State &state, CanonQueue &canon) {
+    canon.take(ProgramComment{"AXIS,hide"});
+    take_rapid(end, state, canon);
+    canon.take(ProgramComment{"AXIS,show"});
+}
+
+/// To where tools are changed: up first, then across.
+void go_to_change(const Machine &machine, const Parameters &parameters, State &state, CanonQueue &canon) {
+    if (machine.settings.tool_change.isQuillRaised) {
+        Pose up = state.frame.to_machine(state.position);
+        up[geom::AXIS_Z] = 0;
+        take_hidden_rapid(state.frame.to_program(up), state, canon);
+    }
+    if (machine.settings.tool_change.isAtG30) {
+        const Pose before = state.frame.to_machine(state.position);
+        take_hidden_rapid(stored_place(P_G30, before, machine, parameters, state), state, canon);
+    }
+}
 
 /// RETAIN_G43: an offset that is in force follows the tool in the spindle and ends with the last one.
 void retain_tool_offset(const Machine &machine, State &state, CanonQueue &canon) {
@@ -78,19 +106,18 @@ bool select_tool(const Code &, const BlockValues &values, const Machine &, ToolT
     return true;
 }
 
-bool change_tool(const Code &, const BlockValues &, const Machine &machine, ToolTable &tools, State &state,
-                 CanonQueue &canon, Fault &fault, Outcome &outcome) {
+bool change_tool(const Code &, const BlockValues &, const Machine &machine, ToolTable &tools,
+                 Parameters &parameters, State &state, CanonQueue &canon, Fault &fault, Outcome &outcome) {
     if (state.comp.isOn()) {
         return fault.set("Cannot change tools while cutter radius compensation is on");
     }
     if (state.tool.selected_index < 0) {
         return fault.set("M6 needs a tool: there was no T word before");
     }
-    for (int i = 0; i < machine.count_spindles(); ++i) {
-        SpindleState &spindle = state.spindles[static_cast<std::size_t>(i)];
-        spindle.direction = 0;
-        canon.take(StopSpindle{i});
+    if (!machine.settings.tool_change.isSpindleLeftOn) {
+        stop_spindles(machine, state, canon);
     }
+    go_to_change(machine, parameters, state, canon);
     canon.take(ChangeTool{});
     load_tool(tools, state.tool, state.tool.selected_index);
     retain_tool_offset(machine, state, canon);
@@ -99,7 +126,7 @@ bool change_tool(const Code &, const BlockValues &, const Machine &machine, Tool
 }
 
 bool set_tool_number(const Code &, const BlockValues &values, const Machine &machine, ToolTable &tools,
-                     State &state, CanonQueue &canon, Fault &fault, Outcome &) {
+                     State &state, CanonQueue &canon, Fault &fault, Outcome &outcome) {
     int toolno = 0, index = 0;
     if (!whole_word(values, 'q', toolno, fault)) {
         return false;
@@ -114,6 +141,7 @@ bool set_tool_number(const Code &, const BlockValues &values, const Machine &mac
     canon.take(ChangeToolNumber{toolno});
     load_tool(tools, state.tool, index);
     retain_tool_offset(machine, state, canon);
+    outcome = tools.isRandom() ? Outcome::SYNC : outcome;  // tools have changed their places
     return true;
 }
 

@@ -7,6 +7,7 @@
 #include "interp/codes/outcome.hh"
 #include "interp/codes/state.hh"
 #include "interp/codes/tools/tool_table.hh"
+#include "interp/eval/parameters.hh"
 #include "interp/text/fault.hh"
 
 namespace mw::interp::detail {
@@ -16,7 +17,7 @@ bool select_tool(const Code &code, const BlockValues &values, const Machine &mac
                  State &state, CanonQueue &canon, Fault &fault, Outcome &outcome);
 /// M6. The program waits for the changer behind it.
 bool change_tool(const Code &code, const BlockValues &values, const Machine &machine, ToolTable &tools,
-                 State &state, CanonQueue &canon, Fault &fault, Outcome &outcome);
+                 Parameters &parameters, State &state, CanonQueue &canon, Fault &fault, Outcome &outcome);
 /// M61.
 bool set_tool_number(const Code &code, const BlockValues &values, const Machine &machine, ToolTable &tools,
                      State &state, CanonQueue &canon, Fault &fault, Outcome &outcome);

@@ -385,7 +385,8 @@ void settle(Jogs &jogs, const Inputs &in) noexcept {
         jog.source = jog.planner.isAtRest() ? JogSource::NONE : jog.source;
         isAnyJog = isAnyJog || jog.source != JogSource::NONE;
     }
-    for (int i = 0; i < MAX_AXES; ++i) {
+    for (std::uint32_t left = jogs.axes; left != 0; left &= left - 1) {
+        const int i = std::countr_zero(left);
         Jog &jog = jogs.axis[at(i)];
         jog.wheel_counts = in.axis_wheel[at(i)].counts;
         jog.source = jog.planner.isAtRest() ? JogSource::NONE : jog.source;
@@ -449,7 +450,9 @@ void fill(const Jogs &jogs, Mode mode, const geom::Pose &pose, Outputs &out) noe
         isJogging = isJogging || from.source != JogSource::NONE;
     }
     const bool isTeleop = mode == Mode::TELEOP;
-    for (int i = 0; i < MAX_AXES; ++i) {
+    out.axes = jogs.axes;
+    for (std::uint32_t left = jogs.axes; left != 0; left &= left - 1) {
+        const int i = std::countr_zero(left);
         const Jog &from = jogs.axis[at(i)];
         AxisOutputs &o = out.axis[at(i)];
         o.position = pose[i];

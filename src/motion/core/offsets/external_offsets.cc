@@ -2,6 +2,7 @@
 #include "motion/core/offsets/external_offsets.hh"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace mw::motion {
@@ -155,7 +156,8 @@ void narrow(JogRange &jog, const ExternalOffsets &offsets, int axis) noexcept {
 void fill(const ExternalOffsets &offsets, Outputs &out) noexcept {
     out.isOffsetActive = false;
     out.isOffsetLimited = offsets.isLimited;
-    for (int i = 0; i < MAX_AXES; ++i) {
+    for (std::uint32_t left = out.axes; left != 0; left &= left - 1) {
+        const int i = std::countr_zero(left);
         out.status.axis[at(i)].external_offset = offsets.pose[i];
         out.axis[at(i)].offset = offsets.pose[i];
         out.axis[at(i)].offset_request = offsets.axis[at(i)].request;

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "app/machine_start.hh"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "base/own_place.hh"
+#include "base/stop_signals.hh"
+#include "base/text.hh"
+#include "hal/core/hal.hh"
+
+namespace mw::app {
+namespace {
+
+/// Within so long the programs that were started end by themselves, and so does the file of [HAL]SHUTDOWN.
+constexpr std::int64_t END_NS = 5000000000;
+
+}  // namespace
+
+MachineStart::MachineStart(StartSettings settings, machine::LoadedConfig &loaded, diag::Sink &sink)
+    : settings_(std::move(settings)), loaded_(loaded), sink_(sink), instance_(hal::default_instance()) {}
+
+int MachineStart::run() {
+    auto status = prepare();
+    if (status.has_value()) {
+        status = make();
+    }
+    if (status.has_value()) {
+        status = keep_up();
+        const auto ended = take_down();
+        status = status.has_value() ? ended : status;
+    }
+    if (!status.has_value()) {
+        sink_.failure(status.error());
+        return 1;
+    }
+    return display_status_.value_or(0);
+}
+
+/// What can be refused before anything is made.
+Result<> MachineStart::prepare() {
+    if (const auto other = client::Client::connect(instance_); other.has_value()) {
+        return fail(fmt::format("a machine is up already as instance '{}': {}", instance_,
+                                other->identity().ini.str()),
+                    {}, "end it, or choose another name in MILLWRIGHT_INSTANCE");
+    }
+    if (settings_.isDisplayed && !loaded_.machine.display.empty()) {
+        auto display = DisplayProgram::words(loaded_.machine.display, absolute_path(settings_.ini),
+                                             settings_.display_words);
+        if (!display.has_value()) {
+            return std::unexpected(display.error());
+        }
+        display_words_ = std::move(*display);
+    }
+    return {};
+}
+
+Result<> MachineStart::make() {
+    settings_.options.isLasting = true;
+    auto made = machine::make_realtime_machine({loaded_.ini, loaded_.reader, loaded_.machine, sink_},
+                                               settings_.options);
+    if (!made.has_value()) {
+        return std::unexpected(made.error());
+    }
+    machine_ = std::move(*made);
+    access_.emplace(*machine_);
+    tell_messages();
+    fmt::print("{} is up: instance '{}', {}\n", loaded_.machine.name, instance_, settings_.ini);
+    std::fflush(stdout);
+    const auto delay_ns = static_cast<std::int64_t>(loaded_.machine.applications_delay_s * 1e9);
+    const std::string ini = absolute_path(settings_.ini);
+    side_programs_.emplace(settings_.isDisplayed ? loaded_.machine.applications : std::vector<std::string>{},
+                           ini, access_->now_ns() + delay_ns);
+    if (display_words_.empty()) {
+        return {};
+    }
+    auto display = DisplayProgram::start(display_words_, ini);
+    if (!display.has_value()) {
+        static_cast<void>(take_down());
+        return std::unexpected(display.error());
+    }
+    display_.emplace(std::move(*display));
+    return {};
+}
+
+Result<> MachineStart::keep_up() {
+    while (stop_signal == 0) {
+        if (auto status = cycle(); !status.has_value()) {
+            return status;
+        }
+        side_programs_->step(access_->now_ns(), sink_);
+        display_status_ = display_.has_value() ? display_->end() : std::nullopt;
+        if (display_status_.has_value()) {
+            if (*display_status_ != 0) {
+                sink_.note(fmt::format("the display ended with status {}", *display_status_));
+            }
+            return {};
+        }
+    }
+    sink_.note("stopped by " + stop_signal_name());
+    return {};
+}
+
+Result<> MachineStart::cycle() {
+    access_->cycle();
+    tell_messages();
+    if (auto health = access_->health(); !health.has_value()) {
+        return health;
+    }
+    save_at_end_of_program();
+    return {};
+}
+
+/// Offsets that a program has set outlive whatever comes later, and are seen by the look ahead of the
+/// next one.
+void MachineStart::save_at_end_of_program() {
+    const std::uint64_t ended = machine_->task().status().task.programs_ended;
+    if (ended == programs_ended_) {
+        return;
+    }
+    programs_ended_ = ended;
+    if (const auto saved = machine_->task().save_parameters(); !saved.has_value()) {
+        sink_.error(saved.error());
+    }
+}
+
+/// On every way out: what turns or moves first, the programs last.
+Result<> MachineStart::take_down() {
+    const bool isHealthy = access_->health().has_value();
+    if (isHealthy) {
+        switch_off(*access_);
+        tell_messages();
+    }
+    const auto saved = machine_->task().save_parameters();
+    end_programs();
+    if (isHealthy) {
+        run_shutdown_file();
+    }
+    access_.reset();
+    machine_.reset();
+    return saved;
+}
+
+void MachineStart::end_programs() {
+    if (display_.has_value()) {
+        display_->ask_to_end();
+    }
+    if (side_programs_.has_value()) {
+        side_programs_->ask_to_end();
+    }
+    const auto haveEnded = [this] {
+        return (!display_.has_value() || display_->end().has_value()) &&
+               (!side_programs_.has_value() || side_programs_->haveEnded());
+    };
+    const std::int64_t deadline_ns = access_->now_ns() + END_NS;
+    while (!haveEnded() && access_->now_ns() < deadline_ns) {
+        access_->cycle();  // what they ask for while they end is answered
+    }
+    if (display_.has_value()) {
+        display_->kill();
+    }
+    side_programs_.reset();
+}
+
+/// By halcmd, as the HAL is that of the realtime process; task goes on meanwhile.
+void MachineStart::run_shutdown_file() {
+    const std::string &file = loaded_.machine.shutdown_file;
+    if (file.empty()) {
+        return;
+    }
+    const std::string ini = absolute_path(settings_.ini);
+    auto run = DisplayProgram::start({program_folder() + "/halcmd", "-i", ini, "-f", file}, ini);
+    if (!run.has_value()) {
+        sink_.error("[HAL]SHUTDOWN = " + file + ": " + run.error().str());
+        return;
+    }
+    const std::int64_t deadline_ns = access_->now_ns() + END_NS;
+    while (!run->end().has_value() && access_->now_ns() < deadline_ns) {
+        access_->cycle();
+    }
+    if (run->end().value_or(1) != 0) {
+        sink_.error(run->end().has_value() ? "[HAL]SHUTDOWN = " + file + " has failed"
+                                           : "[HAL]SHUTDOWN = " + file + " does not come to its end");
+    }
+}
+
+void MachineStart::tell_messages() {
+    using Reading = client::Viewer::Reading;
+    while (const auto message = machine_->client().next_message(Reading::LOOKS_ON)) {
+        const bool isError = message->kind == msgs::MessageKind::OPERATOR_ERROR;
+        fmt::print(isError ? stderr : stdout, "{}\n", printable(message->text));
+        std::fflush(stdout);
+    }
+}
+
+}  // namespace mw::app

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A machine that is kept up with its display and the programs beside it, from the start to the end of all.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/display_program.hh"
+#include "app/machine_access.hh"
+#include "app/side_programs.hh"
+#include "machine/loaded_config.hh"
+
+namespace mw::app {
+
+struct StartSettings {
+    std::string ini;
+    bool isDisplayed = true;
+    std::vector<std::string> display_words;  ///< more words for the display
+    machine::MachineOptions options;
+};
+
+/// One thread. Whatever it has started is gone when run() returns.
+class MachineStart {
+  public:
+    MachineStart(StartSettings settings, machine::LoadedConfig &loaded, diag::Sink &sink);
+
+    /// The exit status: that of the display, 0 after a signal, 1 when something was refused or has failed.
+    int run();
+
+  private:
+    Result<> prepare();
+    Result<> make();
+    Result<> keep_up();
+    Result<> cycle();
+    void save_at_end_of_program();
+    Result<> take_down();
+    void end_programs();
+    void run_shutdown_file();
+    void tell_messages();
+
+    StartSettings settings_;
+    machine::LoadedConfig &loaded_;
+    diag::Sink &sink_;
+    std::string instance_;
+    std::vector<std::string> display_words_;
+    std::unique_ptr<machine::Machine> machine_;
+    std::optional<OwnMachine> access_;
+    std::optional<DisplayProgram> display_;
+    std::optional<SidePrograms> side_programs_;
+    std::optional<int> display_status_;
+    std::uint64_t programs_ended_ = 0;
+};
+
+}  // namespace mw::app

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "client/viewer.hh"
+
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "msgs/binary.hh"
+
+namespace mw::client {
+namespace {
+
+constexpr std::int64_t NS_PER_S = 1000000000;
+/// A sleeper looks after so long whether the machine still lives.
+constexpr std::int64_t LONGEST_SLEEP_NS = 100000000;
+
+std::int64_t monotonic_ns() {
+    timespec now{};
+    ::clock_gettime(CLOCK_MONOTONIC, &now);
+    return now.tv_sec * NS_PER_S + now.tv_nsec;
+}
+
+}  // namespace
+
+Viewer::Viewer(mailbox::Segment &segment)
+    : segment_(&segment), status_(std::make_unique<msgs::PublishedStatus::Copy>()) {
+    const std::uint64_t newest = segment.newest_message.load(std::memory_order_acquire);
+    const std::uint64_t oldest = newest > mailbox::MAX_MESSAGES ? newest - mailbox::MAX_MESSAGES + 1 : 1;
+    next_message_ = std::max(oldest, segment.read_message.load(std::memory_order_relaxed) + 1);
+    heard_ = segment.bell.load(std::memory_order_acquire);
+}
+
+Result<Viewer> Viewer::attach(const std::string &instance) {
+    auto memory = mailbox::Memory::attach(instance);
+    if (!memory.has_value()) {
+        return std::unexpected(memory.error());
+    }
+    Viewer viewer(memory->segment());
+    viewer.memory_ = std::move(*memory);
+    return viewer;
+}
+
+int Viewer::machine_pid() const {
+    return memory_.has_value() ? memory_->owner_pid() : ::getpid();
+}
+
+std::int64_t Viewer::end_of(double timeout_s) {
+    return monotonic_ns() + static_cast<std::int64_t>(timeout_s * 1e9);
+}
+
+Result<> Viewer::sleep(std::uint32_t heard, std::int64_t end_ns) const {
+    const std::int64_t left_ns = end_ns - monotonic_ns();
+    if (left_ns <= 0) {
+        return fail("the time to wait is over");
+    }
+    const bool isRung = mailbox::Memory::wait(*segment_, heard, std::min(left_ns, LONGEST_SLEEP_NS));
+    if (!isRung && !isMachineAlive()) {
+        return fail("the machine is no longer running");
+    }
+    return {};
+}
+
+Result<> Viewer::wait_status(double timeout_s) {
+    std::uint32_t now = heard_;
+    const auto waited = wait_until(
+        [&] {
+            now = segment_->bell.load(std::memory_order_acquire);
+            return now != heard_;
+        },
+        timeout_s);
+    heard_ = now;
+    return waited;
+}
+
+mailbox::Identity Viewer::identity() const {
+    mailbox::Identity identity;
+    return read_whole(segment_->identity, identity) ? identity : mailbox::Identity{};
+}
+
+Result<> Viewer::read_status() {
+    if (segment_->cycles.load(std::memory_order_acquire) == 0) {
+        return fail("the machine has not begun yet");
+    }
+    return read_whole(segment_->status, *status_) ? Result<>{} : fail("task died while it wrote its status");
+}
+
+Result<std::optional<msgs::ToolTable>> Viewer::read_tools() {
+    const std::uint64_t version = segment_->tools_version.load(std::memory_order_acquire);
+    if (version == tools_version_) {
+        return std::nullopt;
+    }
+    auto bytes = std::make_unique<mailbox::Bytes>();
+    if (!read_whole(segment_->tools, *bytes)) {
+        return fail("task died while it wrote the tool table");
+    }
+    msgs::ToolTable table;
+    const std::size_t size = std::min<std::size_t>(bytes->size, bytes->bytes.size());
+    const auto status = msgs::decode({bytes->bytes.data(), size}, msgs::object(table));
+    if (!status.has_value()) {
+        return std::unexpected(status.error());
+    }
+    tools_version_ = bytes->version;
+    return table;
+}
+
+std::optional<Viewer::Message> Viewer::next_message(Reading reading) {
+    const std::uint64_t newest = segment_->newest_message.load(std::memory_order_acquire);
+    if (next_message_ > newest) {
+        return std::nullopt;
+    }
+    auto read = std::make_unique<mailbox::NumberedMessage>();
+    const bool isWhole = read_whole(segment_->messages[next_message_ % mailbox::MAX_MESSAGES], *read);
+    if (!isWhole || read->number != next_message_) {  // overwritten meanwhile, or task died within it
+        const std::uint64_t now = segment_->newest_message.load(std::memory_order_acquire);
+        const std::uint64_t oldest =
+            now > mailbox::MAX_MESSAGES ? now - mailbox::MAX_MESSAGES + 2 : next_message_ + 1;
+        const std::uint64_t first = std::max(oldest, next_message_ + 1);
+        const std::uint64_t lost = first - next_message_;
+        next_message_ = first;
+        return Message{first - 1, msgs::MessageKind::OPERATOR_TEXT,
+                       fmt::format("{} messages were lost: they came faster than this client read", lost)};
+    }
+    std::uint64_t told = segment_->read_message.load(std::memory_order_relaxed);
+    while (reading == Reading::COUNTS && told < next_message_ &&
+           !segment_->read_message.compare_exchange_weak(told, next_message_, std::memory_order_relaxed)) {
+    }
+    ++next_message_;
+    return Message{read->number, read->kind, read->text.str()};
+}
+
+}  // namespace mw::client

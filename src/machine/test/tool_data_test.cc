@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The tools of a machine in a file and in a database program.
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "base/atomic_file.hh"
+#include "machine/tool_data.hh"
+#include "machine/tool_database.hh"
+
+namespace mw::machine {
+namespace {
+
+class ToolDataTest : public ::testing::Test {
+  protected:
+    ToolDataTest()
+        : folder_(std::filesystem::temp_directory_path() / ("mw_tools_" + std::to_string(::getpid()))) {
+        std::filesystem::remove_all(folder_);
+        std::filesystem::create_directory(folder_);
+        config_.ini_folder = folder_.string();
+    }
+    ~ToolDataTest() override { std::filesystem::remove_all(folder_); }
+
+    std::string path(const std::string &name) const { return (folder_ / name).string(); }
+    void write(const std::string &name, const std::string &text) { std::ofstream(path(name)) << text; }
+    std::string text(const std::string &name) const { return read_file(path(name)).value_or("none"); }
+    /// A file with these lines.
+    task::ToolStore &open_file(const std::string &lines, bool isRandom = false) {
+        write("tool.tbl", lines);
+        config_.tool_table_file = path("tool.tbl");
+        config_.isRandomToolchanger = isRandom;
+        return open();
+    }
+    /// A database program of this shell script, which logs what it is told.
+    task::ToolStore &open_database(const std::string &script, bool isRandom = false) {
+        write("db", "#!/bin/sh\n" + script);
+        std::filesystem::permissions(path("db"), std::filesystem::perms::owner_all);
+        config_.tool_database = "./db one two";
+        config_.isRandomToolchanger = isRandom;
+        return open();
+    }
+    task::ToolStore &open() {
+        auto made = open_tools(config_, sink_, {true});
+        error_ = made.has_value() ? "" : made.error().message;
+        tools_ = made.has_value() ? std::move(*made) : nullptr;
+        return *tools_;
+    }
+    std::string told() {
+        std::string all;
+        for (const diag::Diagnostic &one : sink_.all()) {
+            all += one.what.message + '\n';
+        }
+        while (const auto warning = tools_->take_warning()) {
+            all += *warning + '\n';
+        }
+        return all;
+    }
+
+    std::filesystem::path folder_;
+    MachineConfig config_;
+    diag::Sink sink_;
+    std::unique_ptr<task::ToolStore> tools_;
+    std::string error_;
+};
+
+/// Answers g with two tools, everything else with FINI, and keeps a log.
+constexpr const char *GOOD = R"sh(echo v2.1
+echo "$1 $2" > log
+while read -r line; do
+    echo "$line" >> log
+    case "$line" in
+    g) echo "T10 P110 Z0.1 D0.1"; echo "T11 P111 Z0.2 D0.2"; echo "FINI (get_cmd)";;
+    *) echo "FINI (update recvd)";;
+    esac
+done
+)sh";
+
+TEST_F(ToolDataTest, AMissingFileStartsEmptyWithAWarning_G1) {
+    config_.tool_table_file = path("none.tbl");
+    EXPECT_EQ(open().count(), 1);
+    EXPECT_NE(told().find("there is no tool table"), std::string::npos);
+}
+
+TEST_F(ToolDataTest, EachBadLineIsToldAlsoWhenTheFileIsReadAgain_G1) {
+    task::ToolStore &tools = open_file("T1 P1\n!what\nT2 P2 K9\n");
+    const std::string first = told();
+    EXPECT_NE(first.find("'!' is not a word"), std::string::npos) << first;
+    EXPECT_NE(first.find("'K' is not a word"), std::string::npos) << first;
+    sink_.clear();
+    write("tool.tbl", "T1 P1\nT3 P3 Z3\nT9\nT4 P4 X\n");
+    ASSERT_TRUE(tools.reload().has_value());
+    EXPECT_EQ(tools.index_of_tool(3), 2);
+    const std::string again = told();
+    EXPECT_NE(again.find("tool 9 has no P word"), std::string::npos) << again;
+    EXPECT_NE(again.find("X needs a number"), std::string::npos) << again;
+}
+
+TEST_F(ToolDataTest, AFixedChangerNeverWritesTheSpindle_G2) {
+    const std::string lines = "; mine\nT5 P3 Z5\nT7 P4 Z7\n";
+    task::ToolStore &tools = open_file(lines);
+    ASSERT_TRUE(tools.load_spindle(1).has_value());
+    EXPECT_EQ(tools.entry(0).toolno, 5);
+    EXPECT_EQ(text("tool.tbl"), lines);
+    interp::ToolEntry entry = tools.entry(2);
+    entry.offset[2] = 8;
+    ASSERT_TRUE(tools.set_entry(2, entry).has_value());
+    EXPECT_EQ(text("tool.tbl"), "; mine\nT5 P3 Z5\nT7 P4 Z8\n");
+    ASSERT_TRUE(tools.reload().has_value());
+    EXPECT_EQ(tools.entry(0).toolno, 5) << "reading the table does not empty the spindle";
+}
+
+TEST_F(ToolDataTest, ARandomChangerSavesEachSwap_G2) {
+    task::ToolStore &tools = open_file("T0 P0\nT5 P3 Z5\n", true);
+    ASSERT_TRUE(tools.load_spindle(3).has_value());
+    EXPECT_EQ(text("tool.tbl"), "T0 P3\nT5 P0 Z5\n");
+    interp::ToolEntry entry = tools.entry(0);
+    entry.diameter = 2;
+    ASSERT_TRUE(tools.set_entry(3, entry).has_value()) << "where it was when the program read it";
+    EXPECT_EQ(text("tool.tbl"), "T0 P3\nT5 P0 Z5 D2\n") << "a tool is changed by its number";
+    EXPECT_EQ(open().entry(0).toolno, 5) << "it is in the spindle at the next start";
+}
+
+TEST_F(ToolDataTest, AToolThatIsGoneIsNotChangedForAnother_G4) {
+    task::ToolStore &tools = open_file("T5 P3 Z5\nT7 P4 Z7\n");
+    interp::ToolEntry entry = tools.entry(1);
+    entry.toolno = 6;
+    EXPECT_FALSE(tools.set_entry(1, entry).has_value());
+    EXPECT_EQ(tools.entry(1).offset[2], 5);
+}
+
+TEST_F(ToolDataTest, ADatabaseTellsItsToolsAndIsToldOfChanges_G1) {
+    task::ToolStore &tools = open_database(GOOD);
+    ASSERT_EQ(error_, "");
+    ASSERT_EQ(tools.count(), 3);
+    EXPECT_EQ(tools.entry(1).toolno, 10);
+    EXPECT_EQ(tools.entry(2).offset[2], 0.2);
+    ASSERT_TRUE(tools.load_spindle(2).has_value());
+    interp::ToolEntry entry = tools.entry(1);
+    entry.offset[0] = 1.5;
+    ASSERT_TRUE(tools.set_entry(1, entry).has_value());
+    ASSERT_TRUE(tools.set_entry(0, tools.entry(2)).has_value());
+    ASSERT_TRUE(tools.load_spindle(0).has_value());
+    ASSERT_TRUE(tools.reload().has_value());
+    EXPECT_EQ(text("log"), "one two\ng\nl T11  P0\np T10 P110 X1.5 Z0.1 D0.1\nu T0   P0\ng\n");
+    EXPECT_EQ(told(), "");
+}
+
+TEST_F(ToolDataTest, ARandomChangersDatabaseIsToldBothMoves_G1_G2) {
+    task::ToolStore &tools = open_database(GOOD, true);
+    ASSERT_TRUE(tools.load_spindle(110).has_value());
+    ASSERT_TRUE(tools.load_spindle(111).has_value());
+    EXPECT_EQ(text("log"), "one two\ng\nl T10  P0\nu T10  P111\nl T11  P0\n");
+    EXPECT_EQ(text("db_spindle.tbl"), "T11 P0 Z0.2 D0.2\n");
+    EXPECT_EQ(open().entry(0).toolno, 11) << "kept beside the database, which knows nothing of it";
+}
+
+TEST_F(ToolDataTest, ADatabaseThatDoesNotAgreeIsHeard_G1) {
+    task::ToolStore &tools = open_database("echo v2.1\nread -r x\necho T1 P1\necho FINI\n"
+                                           "while read -r x; do echo \"NAK no such tool\"; done\n");
+    ASSERT_EQ(error_, "");
+    EXPECT_TRUE(tools.load_spindle(1).has_value()) << "the tool is in, whatever the database says";
+    EXPECT_NE(told().find("does not agree to 'l T1   P0  ': NAK no such tool"), std::string::npos);
+}
+
+TEST_F(ToolDataTest, ADatabaseThatCannotWorkStopsTheStartByName_G1) {
+    const auto error_of = [this](const std::string &script) {
+        write("db", "#!/bin/sh\n" + script);
+        std::filesystem::permissions(path("db"), std::filesystem::perms::owner_all);
+        ToolDatabase::Setup setup{"./db", folder_.string(), tool::Changer::FIXED, true, 0.3};
+        const auto made = ToolDatabase::start(setup, sink_);
+        return made.has_value() ? std::string() : made.error().message;
+    };
+    EXPECT_NE(error_of("exit 3\n").find("'./db' cannot be asked: it has ended with status 3"),
+              std::string::npos);
+    EXPECT_NE(error_of("sleep 9\n").find("does not say its version within 0.3 s"), std::string::npos);
+    EXPECT_NE(error_of("echo v1.0\nsleep 9\n").find("speaks version 'v1.0', not v2.1"), std::string::npos);
+    EXPECT_NE(
+        error_of("echo v2.1\nread x\necho T1 P1\nsleep 9\n").find("does not answer to 'g' within 0.3 s"),
+        std::string::npos);
+    EXPECT_NE(
+        error_of("echo v2.1\nread x\necho NAK busy\nsleep 9\n").find("does not tell its tools: NAK busy"),
+        std::string::npos);
+    config_.tool_database = "/no/such/program";
+    EXPECT_FALSE(open_tools(config_, sink_, {true}).has_value());
+}
+
+TEST_F(ToolDataTest, ADatabaseThatDiesLaterIsToldAndNothingWaits_G1) {
+    task::ToolStore &tools = open_database("echo v2.1\nread x\necho T1 P1\necho FINI\nread x\nexit 5\n");
+    ASSERT_EQ(error_, "");
+    static_cast<void>(tools.load_spindle(1));
+    EXPECT_EQ(tools.entry(0).toolno, 1) << "the table follows the machine";
+    EXPECT_NE(told().find("it has ended with status 5"), std::string::npos);
+    EXPECT_FALSE(tools.reload().has_value());
+    EXPECT_FALSE(tools.load_spindle(0).has_value());
+    EXPECT_EQ(tools.entry(0).toolno, 0);
+}
+
+}  // namespace
+}  // namespace mw::machine

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The tools of a machine in memory, and where they are kept: a file or a database program.
+#pragma once
+
+#include <memory>
+
+#include "diag/sink.hh"
+#include "machine/machine_config.hh"
+#include "task/link/tool_store.hh"
+#include "tool/table.hh"
+
+namespace mw::machine {
+
+/// Changes stay in memory: for those who look ahead. Not realtime; one thread.
+class ToolData : public task::ToolStore {
+  public:
+    explicit ToolData(tool::Table table) : table_(std::move(table)) {}
+
+    int count() const override { return table_.count(); }
+    interp::ToolEntry entry(int index) const override { return table_.entry(index); }
+    int index_of_tool(int toolno) const override { return table_.index_of_tool(toolno); }
+    bool isRandom() const override { return table_.isRandom(); }
+
+    Result<> load_spindle(int index) override;
+    Result<> set_entry(int index, const interp::ToolEntry &entry) override;
+    Result<> reload() override { return {}; }
+    std::uint64_t version() const override { return version_; }
+
+  protected:
+    const tool::Table &table() const { return table_; }
+    /// Takes the tools that were read; what the spindle of a fixed changer holds stays.
+    void replace(tool::Table table);
+
+  private:
+    tool::Table table_;
+    std::uint64_t version_ = 1;
+};
+
+/// How the tools of a machine are opened.
+struct ToolOptions {
+    bool isWaitedFor = false;  ///< a database program is waited for within a cycle: for virtual clocks
+};
+
+/// The owner of the machine's tools. `sink` is warned of lines that cannot be used.
+Result<std::unique_ptr<task::ToolStore>> open_tools(const MachineConfig &machine, diag::Sink &sink,
+                                                    const ToolOptions &options = {});
+/// The tools as they are now, for who looks ahead: nothing is written.
+Result<std::unique_ptr<task::ToolStore>> read_tools(const MachineConfig &machine, diag::Sink &sink);
+
+}  // namespace mw::machine

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// linuxcnc.error_channel: lines for the operator. Each reader gets every line from where it begins: what
+// nobody has read yet. When lines come faster than they are read the oldest are dropped, and a line says so.
+#include "python/linuxcnc/connection.hh"
+#include "python/linuxcnc/module.hh"
+
+namespace py = pybind11;
+
+namespace mw::python {
+namespace {
+
+class ErrorChannel {
+  public:
+    ErrorChannel() {
+        // What comes after it was made is not missed; without a machine yet, from the first poll() on.
+        try {
+            static_cast<void>(view_.viewer());
+        } catch (py::error_already_set &) {
+        }
+    }
+    py::object poll() {
+        const auto message = view_.viewer().next_message();
+        if (!message.has_value()) {
+            return py::none();
+        }
+        return py::make_tuple(static_cast<int>(message->kind), message->text);
+    }
+
+  private:
+    View view_;
+};
+
+}  // namespace
+
+void define_error_channel(py::module_ &module) {
+    py::class_<ErrorChannel>(module, "error_channel", "error_channel(): lines for the operator.")
+        .def(py::init<>())
+        .def("poll", &ErrorChannel::poll, "The next line as (kind, text), or None. Never waits.");
+}
+
+}  // namespace mw::python

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The path of the tool as a screen draws it: points in space with the colour of the move that led there.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "geom/pose.hh"
+
+namespace mw::python {
+
+using Colour = std::array<std::uint8_t, 4>;
+
+struct LoggedPoint {
+    float x = 0, y = 0, z = 0;
+    Colour colour{};
+    float a = 0, b = 0, c = 0;  ///< of foam cutters: where the other end of the wire is
+    Colour other_colour{};
+};
+static_assert(sizeof(LoggedPoint) == 32, "screens read points as rows of 32 bytes");
+
+/// Where the tool stands in space, of a machine whose [DISPLAY]GEOMETRY says which letters move and turn it,
+/// in their order, a minus before a letter turns it round.
+std::array<double, 3> vertex_of(const std::string &geometry, const geom::Pose &pose);
+
+/// One thread at a time.
+class LoggedPath {
+  public:
+    static constexpr std::size_t MAX_POINTS = 100000;
+
+    /// Takes a sample: the last point moves where the path goes straight on in the same colour.
+    void add(const LoggedPoint &sample);
+    void clear() { points_.clear(); }
+    const std::vector<LoggedPoint> &points() const { return points_; }
+
+  private:
+    bool isStraightOn(const LoggedPoint &sample) const;
+    std::vector<LoggedPoint> points_;
+};
+
+}  // namespace mw::python

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The parts of the extension behind `import linuxcnc`.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <string>
+
+namespace mw::python {
+
+/// Throws linuxcnc.error.
+[[noreturn]] void throw_error(const std::string &text);
+
+/// The instance of the machine that this process talks to: $MILLWRIGHT_INSTANCE, else the user's default.
+std::string machine_instance();
+
+void define_constants(pybind11::module_ &module);
+void define_ini(pybind11::module_ &module);
+void define_stat(pybind11::module_ &module);
+void define_command(pybind11::module_ &module);
+void define_error_channel(pybind11::module_ &module);
+void define_position_logger(pybind11::module_ &module);
+
+}  // namespace mw::python

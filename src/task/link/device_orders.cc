@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "task/link/device_orders.hh"
+
+#include <fmt/format.h>
+
+namespace mw::task {
+
+Result<> switch_device(const msgs::MistOn &, io::Controller &io) {
+    io.set_mist(true);
+    return {};
+}
+
+Result<> switch_device(const msgs::MistOff &, io::Controller &io) {
+    io.set_mist(false);
+    return {};
+}
+
+Result<> switch_device(const msgs::FloodOn &, io::Controller &io) {
+    io.set_flood(true);
+    return {};
+}
+
+Result<> switch_device(const msgs::FloodOff &, io::Controller &io) {
+    io.set_flood(false);
+    return {};
+}
+
+Result<> switch_device(const msgs::LubeOn &, io::Controller &io) {
+    if (io.isEstopRequested()) {
+        return fail("there is no lubrication in emergency stop");
+    }
+    io.set_lube(true);
+    return {};
+}
+
+Result<> switch_device(const msgs::LubeOff &, io::Controller &io) {
+    io.set_lube(false);
+    return {};
+}
+
+Result<> set_tool(const msgs::SetToolEntry &order, ToolStore &tools) {
+    const int index = tools.index_of_tool(order.toolno);
+    if (index < 0) {
+        return fail(fmt::format("tool {} is not in the tool table", order.toolno));
+    }
+    interp::ToolEntry entry = tools.entry(index);
+    if (order.pocket != 0 && order.pocket != entry.pocketno) {
+        return fail(
+            fmt::format("tool {} is in pocket {}: only the changer moves it", order.toolno, entry.pocketno));
+    }
+    entry.offset = order.offset;
+    entry.diameter = order.diameter;
+    entry.frontangle = order.frontangle_deg;
+    entry.backangle = order.backangle_deg;
+    entry.orientation = order.orientation;
+    const Result<> kept = tools.set_entry(index, entry);
+    const bool hasCopy = !tools.isRandom() && tools.entry(0).toolno == order.toolno;
+    return kept.has_value() && hasCopy ? tools.set_entry(0, entry) : kept;
+}
+
+}  // namespace mw::task

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The machine's settings as clients are shown them: what motion is told, in the words of the vocabulary.
+#pragma once
+
+#include "motion/api/command.hh"
+#include "msgs/status.hh"
+
+namespace mw::task {
+
+/// One thread.
+class ShownSettings {
+  public:
+    /// `fixed`: what does not come as a setting of motion.
+    explicit ShownSettings(const msgs::SettingsStatus &fixed) : shown_(fixed) {
+        shown_.max_velocity = shown_.max_acceleration = most_velocity_;
+    }
+
+    /// A setting that motion is told.
+    void note(const motion::SetParameter &parameter);
+    /// The operator limits the speed of the path; never above the machine's own.
+    void limit_velocity(double velocity);
+    const msgs::SettingsStatus &shown() const { return shown_; }
+
+  private:
+    msgs::SettingsStatus shown_;
+    double most_velocity_ = 1e99;  ///< [TRAJ]MAX_LINEAR_VELOCITY
+};
+
+}  // namespace mw::task

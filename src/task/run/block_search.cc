@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "task/run/block_search.hh"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace mw::task {
+
+BlockSearch::BlockSearch(interp::Interpreter &interpreter, MachineSwitch &machine,
+                         const SearchMachine::Real &real, int line)
+    : interpreter_(interpreter), switch_(machine), machine_(real), line_(line) {
+    switch_.set_search(&machine_);
+    interpreter_.forbid_scripts(true);
+}
+
+BlockSearch::BlockSearch(interp::Interpreter &interpreter, MachineSwitch &machine,
+                         const SearchMachine::Real &real, std::uint32_t block)
+    : interpreter_(interpreter), switch_(machine), machine_(real) {
+    switch_.set_search(&machine_, block);
+    interpreter_.forbid_scripts(true);
+}
+
+BlockSearch::~BlockSearch() {
+    switch_.set_search(nullptr);
+    interpreter_.forbid_scripts(false);
+}
+
+BlockSearch::Outcome BlockSearch::step(int lines) {
+    Outcome outcome = Outcome::GOING;
+    for (int i = 0; i < lines && outcome == Outcome::GOING; ++i) {
+        outcome = look_at_line();
+        outcome = outcome == Outcome::GOING ? run_line() : outcome;
+    }
+    return outcome;
+}
+
+BlockSearch::Outcome BlockSearch::refuse(const std::string &why) {
+    refusal_ = why;
+    return Outcome::REFUSED;
+}
+
+BlockSearch::Outcome BlockSearch::refuse_before(const std::string &why) {
+    const int nearest = last_possible_ > 0 ? last_possible_ : 1;
+    return refuse(line_ == 0 ? why
+                             : fmt::format("{}; the nearest line before it that can is {}", why, nearest));
+}
+
+/// Before the line is run.
+BlockSearch::Outcome BlockSearch::look_at_line() {
+    const interp::NextLine next = interpreter_.next_line();
+    if (line_ == 0) {
+        return Outcome::GOING;
+    }
+    const bool isIt = next.line == line_ && next.isInMainFile;
+    if (next.isInCall) {
+        return isIt ? refuse_before(
+                          fmt::format("line {} is in subroutine o<{}>, which line {} is the first to call",
+                                      line_, interpreter_.subroutine(), next.main_line))
+                    : Outcome::GOING;
+    }
+    const std::string why = interpreter_.why_no_start();
+    if (isIt) {
+        return !doubt_.empty()
+                   ? refuse_before(fmt::format("what holds at line {} depends on {}", line_, doubt_))
+               : !why.empty() ? refuse_before(fmt::format("nobody can begin at line {}: {}", line_, why))
+                              : Outcome::FOUND;
+    }
+    last_possible_ = why.empty() && doubt_.empty() ? next.line : last_possible_;
+    return Outcome::GOING;
+}
+
+BlockSearch::Outcome BlockSearch::run_line() {
+    const interp::Step step = interpreter_.step();
+    if (doubt_.empty() && !machine_.doubt().empty()) {
+        doubt_ = fmt::format("{} in line {}", machine_.doubt(), interpreter_.line());
+    }
+    if (switch_.isPassing()) {
+        return doubt_.empty() ? Outcome::FOUND
+                              : refuse("what holds where the program was left depends on " + doubt_);
+    }
+    switch (step) {
+    case interp::Step::OK: break;
+    case interp::Step::SYNC: interpreter_.synch(); break;
+    case interp::Step::FAILED: return refuse_before(interpreter_.error().str());
+    case interp::Step::PROGRAM_END:
+    case interp::Step::FILE_END:
+        if (line_ == 0) {
+            return refuse("the program ends before the place where it was left");
+        }
+        return first_behind_ > 0 ? refuse(fmt::format("line {} is never reached; the next line that is is {}",
+                                                      line_, first_behind_))
+                                 : refuse_before(fmt::format("line {} is never reached", line_));
+    }
+    const interp::NextLine next = interpreter_.next_line();
+    if (!next.isInCall && next.line > line_ && line_ > 0) {
+        first_behind_ = first_behind_ == 0 ? next.line : std::min(first_behind_, next.line);
+    }
+    return Outcome::GOING;
+}
+
+}  // namespace mw::task

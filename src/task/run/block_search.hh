@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Goes through a program to the place where it is to begin, without moving anything.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "interp/interpreter.hh"
+#include "task/run/machine_switch.hh"
+
+namespace mw::task {
+
+/// One thread; step() is bounded by its argument.
+class BlockSearch {
+  public:
+    enum class Outcome : std::uint8_t {
+        GOING,
+        FOUND,    ///< the next step of the interpreter runs the line
+        REFUSED,  ///< refusal() says why, and which line can
+    };
+    /// A line of the main program, from 1 on.
+    BlockSearch(interp::Interpreter &interpreter, MachineSwitch &machine, const SearchMachine::Real &real,
+                int line);
+    /// A block, as TaskCanon counts them, from 1 on: calls from it on have reached the machine's queue.
+    BlockSearch(interp::Interpreter &interpreter, MachineSwitch &machine, const SearchMachine::Real &real,
+                std::uint32_t block);
+    ~BlockSearch();
+    BlockSearch(const BlockSearch &) = delete;
+    BlockSearch &operator=(const BlockSearch &) = delete;
+
+    /// Runs so many lines at most.
+    Outcome step(int lines);
+    const std::string &refusal() const { return refusal_; }
+    /// As of the place that was found.
+    FoundModes found() const { return machine_.found(); }
+    /// That come before it.
+    std::uint32_t blocks_before() const { return machine_.blocks(); }
+
+  private:
+    Outcome look_at_line();
+    Outcome run_line();
+    Outcome refuse(const std::string &why);
+    Outcome refuse_before(const std::string &why);
+
+    interp::Interpreter &interpreter_;
+    MachineSwitch &switch_;
+    SearchMachine machine_;
+    int line_ = 0;           ///< 0: a block is looked for
+    int last_possible_ = 0;  ///< a start there would have been possible, 0: none yet
+    int first_behind_ = 0;   ///< the first line behind the wanted one that is reached, 0: none
+    std::string doubt_;      ///< with its line
+    std::string refusal_;
+};
+
+}  // namespace mw::task

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What the interpreter works with: the machine, or for a while one that is only reckoned with.
+#pragma once
+
+#include <utility>
+
+#include "interp/canon/machine_canon.hh"
+#include "interp/world.hh"
+#include "task/run/search_machine.hh"
+
+namespace mw::task {
+
+/// One thread.
+class MachineSwitch final : public interp::MachineCanon,
+                            public interp::World,
+                            public interp::ToolSource,
+                            public interp::ParameterSource {
+  public:
+    struct Real {
+        interp::MachineCanon &canon;
+        interp::World &world;
+        interp::ToolSource &tools;
+        interp::ParameterSource &parameters;
+    };
+    explicit MachineSwitch(const Real &real) : real_(real) {}
+
+    /// Everything goes to `search`, null: to the machine again. From block `first` of the program on (counted
+    /// from 1; 0: none) calls reach the machine's canon all the same.
+    void set_search(SearchMachine *search, std::uint32_t first = 0) {
+        search_ = search;
+        first_ = first;
+        isPassing_ = false;
+    }
+    /// That block has begun.
+    bool isPassing() const { return isPassing_; }
+
+    void begin_block(const interp::BlockRef &block) override {
+        isPassing_ = isPassing_ || (search_ != nullptr && first_ > 0 && search_->blocks() + 1 >= first_);
+        (isSearching() ? static_cast<interp::MachineCanon &>(*search_) : real_.canon).begin_block(block);
+    }
+    void take(const interp::MachineCall &call) override {
+        (isSearching() ? static_cast<interp::MachineCanon &>(*search_) : real_.canon).take(call);
+    }
+
+    interp::MachineSnapshot snapshot() const override { return world().snapshot(); }
+    interp::LengthUnits machine_units() const override { return world().machine_units(); }
+    double mm_per_machine_unit() const override { return world().mm_per_machine_unit(); }
+    unsigned axis_mask() const override { return world().axis_mask(); }
+    int count_spindles() const override { return world().count_spindles(); }
+    bool isBlockDeleteOn() const override { return world().isBlockDeleteOn(); }
+    bool isOptionalStopOn() const override { return world().isOptionalStopOn(); }
+    bool isSynchedAtOnce() const override { return world().isSynchedAtOnce(); }
+
+    int count() const override { return tools().count(); }
+    interp::ToolEntry entry(int index) const override { return tools().entry(index); }
+    int index_of_tool(int toolno) const override { return tools().index_of_tool(toolno); }
+    bool isRandom() const override { return tools().isRandom(); }
+
+    std::optional<double> ini_value(std::string_view section, std::string_view key) const override {
+        return parameters().ini_value(section, key);
+    }
+    std::optional<double> hal_value(std::string_view name) const override {
+        return parameters().hal_value(name);
+    }
+
+  private:
+    bool isSearching() const { return search_ != nullptr && !isPassing_; }
+    const interp::World &world() const { return search_ != nullptr ? *search_ : real_.world; }
+    const interp::ToolSource &tools() const { return search_ != nullptr ? *search_ : real_.tools; }
+    const interp::ParameterSource &parameters() const {
+        return search_ != nullptr ? *search_ : real_.parameters;
+    }
+
+    Real real_;
+    SearchMachine *search_ = nullptr;
+    std::uint32_t first_ = 0;
+    bool isPassing_ = false;
+};
+
+}  // namespace mw::task

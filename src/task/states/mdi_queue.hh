@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Lines of MDI that wait behind the one that runs ([TASK]MDI_QUEUED_COMMANDS).
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.hh"
+#include "mailbox/segment.hh"
+#include "task/command.hh"
+
+namespace mw::task {
+
+/// In their order. One thread.
+class MdiQueue {
+  public:
+    struct Line {
+        mailbox::Serial command = 0;
+        std::string text;
+    };
+    explicit MdiQueue(int most) : most_(most) {}
+
+    /// Refused when as many wait as may.
+    Result<Progress> add(Line line) {
+        if (size() >= most_) {
+            return fail(most_ == 0 ? "a line of MDI runs already"
+                                   : std::to_string(most_) + " lines of MDI wait already",
+                        {}, "[TASK]MDI_QUEUED_COMMANDS says how many may");
+        }
+        waiting_.push_back(std::move(line));
+        return Progress::STARTED;
+    }
+    std::optional<Line> next() {
+        if (waiting_.empty()) {
+            return std::nullopt;
+        }
+        Line line = std::move(waiting_.front());
+        waiting_.pop_front();
+        return line;
+    }
+    /// All of them; none waits any more.
+    std::vector<mailbox::Serial> drop() {
+        std::vector<mailbox::Serial> dropped;
+        for (const Line &line : waiting_) {
+            dropped.push_back(line.command);
+        }
+        waiting_.clear();
+        return dropped;
+    }
+    int size() const { return static_cast<int>(waiting_.size()); }
+
+  private:
+    int most_;
+    std::deque<Line> waiting_;
+};
+
+}  // namespace mw::task

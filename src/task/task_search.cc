@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "task/task_start.hh"
+
+namespace mw::task {
+
+void Task::Start::begin() {
+    task.run_.change(RunEvent::SEARCH);
+    task.synch_interpreter();
+    const auto begun = task.reader_.begin_search(task.run_.from_line());
+    if (!begun.has_value()) {
+        give_up(begun.error().str());
+    }
+}
+
+void Task::Start::step() {
+    if (!task.reader_.isSearching() || task.approach_.isOpen()) {
+        return;
+    }
+    switch (task.reader_.step_search(task.settings_.blocks_per_cycle)) {
+    case BlockSearch::Outcome::GOING: break;
+    case BlockSearch::Outcome::FOUND: propose(); break;
+    case BlockSearch::Outcome::REFUSED: give_up(task.reader_.search().refusal()); break;
+    }
+}
+
+void Task::Start::give_up(const std::string &reason) {
+    drop();
+    task.post(MessageKind::OPERATOR_ERROR, reason);
+    task.run_.set_error({diag::Severity::ERROR, {reason}});
+    task.finish_run(Progress::FAILED, reason);
+}
+
+void Task::Start::drop() {
+    task.approach_.forget();
+    if (task.reader_.isSearching()) {
+        task.reader_.cancel_search();
+    }
+}
+
+/// As high as Z goes: whatever stands on the table is below.
+double Task::Start::safe_height() const {
+    constexpr unsigned Z_BIT = 1U << geom::AXIS_Z;
+    constexpr double NO_LIMIT = 1e9;
+    const double highest = task.motion_.status().axis[geom::AXIS_Z].max_limit;
+    const bool isKnown = (task.settings_.axis_mask & Z_BIT) != 0 && std::fabs(highest) < NO_LIMIT;
+    return isKnown ? highest : -NO_LIMIT;
+}
+
+void Task::Start::propose() {
+    constexpr double MM_PER_INCH = 25.4;
+    const double units_per_mm = task.settings_.machine_units == interp::LengthUnits::MM ? 1 : 1 / MM_PER_INCH;
+    ApproachPlan plan;
+    plan.to = ApproachTo::LINE;
+    plan.line = task.run_.from_line();
+    plan.modes = task.reader_.search().found();
+    plan.tool_now = task.io_.outputs.tool_number;
+    plan.feed = plan.modes.feed > 0 ? plan.modes.feed : DEFAULT_APPROACH_FEED_MM_S * units_per_mm;
+    plan.from = motion::programmed_position(task.motion_.status());
+    plan.moves = approach_moves(plan.from, plan.modes.position, safe_height());
+    if (!plan.isNeeded()) {
+        task.run_.change(RunEvent::BEGUN);
+        go_on(plan);
+        return;
+    }
+    task.run_.change(RunEvent::PROPOSE);
+    task.post(MessageKind::OPERATOR_TEXT,
+              fmt::format("to begin at line {}: {}; resume confirms it, abort drops it", plan.line,
+                          approach_text(plan)));
+    task.approach_.propose(std::move(plan), task.now_ns_);
+}
+
+/// The calls of the approach come first, then what the program says from the line on.
+void Task::Start::go_on(const ApproachPlan &plan) {
+    task.reader_.accept_search();
+    task.reader_.canon().insert_first(plan.calls(), motion::programmed_position(task.motion_.status()),
+                                      plan.line);
+}
+
+Result<Progress> Task::Start::confirm(std::uint64_t number) {
+    auto allowed = task.approach_.check(number, task.now_ns_);
+    if (allowed.has_value() && !task.motion_.status().isInPosition) {
+        allowed = fail("the machine moves");
+    }
+    allowed = allowed.has_value() ? task.run_.take(RunEvent::CONFIRM) : allowed;
+    if (!allowed.has_value()) {
+        return std::unexpected(allowed.error());
+    }
+    const ApproachPlan plan = task.approach_.plan();
+    task.approach_.forget();
+    go_on(plan);
+    task.motion_.send(motion::Resume{});
+    return Progress::DONE;
+}
+
+}  // namespace mw::task

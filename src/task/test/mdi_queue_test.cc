@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Lines of MDI that wait behind the one that runs.
+#include "task/test/task_rig.hh"
+
+namespace mw::task {
+namespace {
+
+class MdiQueueTest : public TaskTest {
+  protected:
+    MdiQueueTest() : TaskTest(with_room_for_three()) {
+        EXPECT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);
+        motion.log.clear();
+    }
+    static Settings with_room_for_three() {
+        Settings settings;
+        settings.mdi_queued_commands = 3;
+        return settings;
+    }
+    std::vector<client::Serial> give(int lines) {
+        std::vector<client::Serial> given;
+        for (int i = 1; i <= lines; ++i) {
+            given.push_back(post(Mdi{"G21 F600 G1 X" + std::to_string(i)}));
+            cycles(3);
+        }
+        return given;
+    }
+};
+
+TEST_F(MdiQueueTest, LinesWaitBehindTheOneThatRunsAndRunInTheirOrder_D3) {
+    motion.isHolding = true;
+    const auto given = give(5);
+    EXPECT_EQ(task.status().task.queued_mdi, 3);
+    EXPECT_EQ(progress(given[3]), Progress::STARTED);
+    EXPECT_EQ(progress(given[4]), Progress::REFUSED);
+    EXPECT_NE(reason(given[4]).find("MDI_QUEUED_COMMANDS"), std::string::npos) << reason(given[4]);
+    motion.isHolding = false;
+    cycles(60);
+    EXPECT_EQ(joined(), "line 1, line 2, line 3, line 4");
+    for (int i = 0; i < 4; ++i) {
+        EXPECT_EQ(progress(given[static_cast<std::size_t>(i)]), Progress::DONE);
+    }
+    EXPECT_EQ(task.status().task.queued_mdi, 0);
+}
+
+TEST_F(MdiQueueTest, AnAbortLeavesNothingQueued_D1) {
+    for (const Command &stop : {Command{AbortAll{}}, Command{SetState{State::OFF}}, Command{EstopOn{}}}) {
+        motion.isHolding = true;
+        const auto given = give(3);
+        motion.log.clear();
+        ASSERT_EQ(ask(stop), Progress::DONE);
+        motion.isHolding = false;
+        cycles(60);
+        EXPECT_EQ(joined().find("line"), std::string::npos) << joined();
+        EXPECT_EQ(progress(given[0]), Progress::FAILED);
+        EXPECT_EQ(progress(given[1]), Progress::REFUSED);
+        EXPECT_EQ(reason(given[2]), "it came before a stop");
+        EXPECT_EQ(task.status().task.queued_mdi, 0);
+        ask(SetState{State::ESTOP_RESET});
+        ask(SetState{State::ON});
+        ask(SetMode{Mode::MDI});
+    }
+}
+
+TEST_F(MdiQueueTest, ALineThatFailsTakesTheWaitingOnesWithIt_D3) {
+    motion.isHolding = true;
+    const auto first = post(Mdi{"G21 F600 G1 X1"}), bad = post(Mdi{"G1 X1 X2"}),
+               last = post(Mdi{"G21 F600 G1 X9"});
+    cycles(5);
+    motion.isHolding = false;
+    cycles(60);
+    EXPECT_EQ(progress(first), Progress::DONE);
+    EXPECT_EQ(progress(bad), Progress::FAILED);
+    EXPECT_EQ(progress(last), Progress::REFUSED);
+    EXPECT_EQ(joined().find("line 9"), std::string::npos) << joined();
+}
+
+TEST_F(MdiQueueTest, AHeldLineHoldsThoseBehindIt_D3) {
+    motion.isHolding = true;
+    const auto given = give(2);
+    ASSERT_EQ(ask(PauseProgram{}), Progress::DONE);
+    motion.isHolding = false;
+    cycles(60);
+    EXPECT_EQ(progress(given[1]), Progress::STARTED);
+    EXPECT_EQ(joined().find("line 2"), std::string::npos);
+    ASSERT_EQ(ask(ResumeProgram{}), Progress::DONE);
+    cycles(60);
+    EXPECT_EQ(progress(given[1]), Progress::DONE);
+}
+
+TEST_F(MdiQueueTest, TheStatusTellsWhatTaskWaitsForInTheWordsOfOlderClients_D1) {
+    EXPECT_EQ(task.status().task.exec_state, msgs::ExecState::DONE);
+    post(Mdi{"G4 P0.1"});
+    cycles(10);
+    EXPECT_EQ(task.status().task.exec_state, msgs::ExecState::WAITING_FOR_DELAY);
+    cycles(200);
+    io.isChangerWorking = false;
+    post(Mdi{"T5 M6"});
+    cycles(20);
+    EXPECT_EQ(task.status().task.exec_state, msgs::ExecState::WAITING_FOR_IO);
+    ask(AbortAll{});
+    motion.isHolding = true;
+    post(Mdi{"G21 F600 G1 X1 M0"});
+    cycles(10);
+    EXPECT_EQ(task.status().task.exec_state, msgs::ExecState::WAITING_FOR_MOTION_AND_IO);
+    ask(AbortAll{});
+    cycles(10);
+    EXPECT_EQ(task.status().task.exec_state, msgs::ExecState::DONE);
+}
+
+}  // namespace
+}  // namespace mw::task

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// How hard stops may brake on curves, judged by differences of positions on them.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "traj/geometry/braking.hh"
+#include "traj/test/path_rig.hh"
+
+namespace mw::traj::test {
+namespace {
+
+/// X and Y by two belts.
+class Belts final : public JointMap {
+  public:
+    bool joints_at(const Pose &pose, double *joints) const noexcept override {
+        joints[0] = pose[0] + pose[1];
+        joints[1] = pose[0] - pose[1];
+        return true;
+    }
+};
+
+/// Arcs and blends of random primitives with random limits.
+class Curves {
+  public:
+    explicit Curves(unsigned seed) : random_(seed) {
+        conditions.limits.set(limits());
+        conditions.limits.begin(0);
+        const bool isBlend = chance();
+        store->primitive(1) = isBlend && chance() ? line(place()) : arc(place());
+        piece.primitive = 1;
+        piece.length = store->primitive(1).length;
+        if (isBlend) {
+            store->primitive(2) = chance() ? line(store->primitive(1).end) : arc(store->primitive(1).end);
+            piece.blend_d = 0.2 * std::min(piece.length, store->primitive(2).length);
+            piece.length = 2 * piece.blend_d;
+        }
+        // As the path is cut: 0.13 rad of an arc, a quarter of a blend.
+        const Primitive &p = store->primitive(1);
+        const double part = isBlend ? 0.25 : std::min(1.0, 0.13 / std::abs(p.omega * piece.length));
+        const double whole = piece.length;
+        piece.length *= part;
+        piece.offset = real(0, whole - piece.length);
+    }
+    SpeedLimit limit() const {
+        const Limits &limits = conditions.limits.fitted();
+        const SpeedLimit axes =
+            piece.blend_d > 0
+                ? limit_of_blend(store->primitive(1), store->primitive(2),
+                                 {piece.blend_d, piece.offset, piece.offset + piece.length}, limits, 1e6)
+                : limit_of(store->primitive(1), piece.offset, piece.offset + piece.length, limits, 1e6);
+        return conditions.workspace.isMapped()
+                   ? limit_with_joints(*store, piece, conditions.workspace, 0, axes)
+                   : axes;
+    }
+    void drive_belts() {
+        conditions.workspace.map = &belts_;
+        conditions.workspace.joints.count = 2;
+        for (std::size_t j = 0; j < 2; ++j) {
+            conditions.workspace.joints.velocity[j] = 1e6;
+            conditions.workspace.joints.acceleration[j] = std::pow(10.0, real(1.5, 4));
+        }
+    }
+
+    std::unique_ptr<PathStore> store = std::make_unique<PathStore>();
+    Piece piece;
+    Conditions conditions{1e-3};
+
+  private:
+    double real(double low, double high) { return std::uniform_real_distribution(low, high)(random_); }
+    bool chance() { return real(0, 1) < 0.5; }
+    Pose place() {
+        Pose p;
+        for (int i = 0; i < 4; ++i) {
+            p[i] = real(-10, 10);
+        }
+        return p;
+    }
+    Limits limits() {
+        Limits l;
+        l.velocity.fill(1e6);
+        l.jerk.fill(UNLIMITED);
+        for (double &a : l.acceleration) {
+            a = std::pow(10.0, real(1.5, 4));
+        }
+        return l;
+    }
+    Primitive line(const Pose &from) { return make_line(from, place()); }
+    Primitive arc(const Pose &from) {
+        const double radius = real(1, 5);
+        const double phase = real(0, 6);
+        ArcShape shape;
+        shape.angle_rad = real(0.5, 5);
+        shape.normal[2] = 1;
+        shape.centre = from;
+        shape.centre[0] -= radius * std::cos(phase);
+        shape.centre[1] -= radius * std::sin(phase);
+        Pose to = from;
+        to[0] = shape.centre[0] + radius * std::cos(phase + shape.angle_rad);
+        to[1] = shape.centre[1] + radius * std::sin(phase + shape.angle_rad);
+        Primitive p;
+        EXPECT_EQ(make_arc(from, to, shape, p), ArcFault::NONE);
+        return p;
+    }
+
+    std::mt19937 random_;
+    Belts belts_;
+};
+
+struct Derivatives {
+    Pose first, second;
+};
+
+Derivatives differences(const Curves &c, double x) {
+    const double h = 1e-3 * c.piece.length;
+    const Pose before = position_at(*c.store, c.piece, x - h);
+    const Pose here = position_at(*c.store, c.piece, x);
+    const Pose after = position_at(*c.store, c.piece, x + h);
+    return {(after - before) * (0.5 / h), ((after - here) - (here - before)) * (1.0 / (h * h))};
+}
+
+/// The worst of acceleration over limit at a place, driven at v and braked by a.
+double use_at(const Curves &c, double x, double v, double a) {
+    const Derivatives d = differences(c, x);
+    const Pose total = d.second * (v * v) - d.first * a;
+    const PerLimited &most = c.conditions.limits.fitted().acceleration;
+    double worst = geom::norm_xyz(total) / most[XYZ_NORM];
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        worst = std::max(worst, std::abs(total[i]) / most[static_cast<std::size_t>(i)]);
+    }
+    if (c.conditions.workspace.isMapped()) {
+        double belts[MAX_JOINTS] = {};
+        c.conditions.workspace.map->joints_at(total, belts);  // they are linear
+        for (std::size_t j = 0; j < 2; ++j) {
+            worst = std::max(worst, std::abs(belts[j]) / c.conditions.workspace.joints.acceleration[j]);
+        }
+    }
+    return worst;
+}
+
+struct Gain {
+    double worst = 0;
+    int harder = 0;  ///< twice as hard at the end of the piece, or more
+};
+
+/// Whoever brakes from `fast` on is slower soon, with the same braking.
+Gain gain_of(const Curves &c) {
+    const SpeedLimit limit = c.limit();
+    const Braking braking = braking_on(*c.store, c.piece, c.conditions, limit);
+    Gain gain;
+    for (const double fast : {1.0, 0.9, 0.5, 0.1}) {
+        const double a = braking.bound.at(fast * limit.v * fast * limit.v);
+        for (const double slower : {1.0, 0.8, 0.4, 0.0}) {
+            for (int n = 0; n <= 60; ++n) {
+                const double x = braking.from + (c.piece.length - braking.from) * n / 60;
+                gain.worst = std::max(gain.worst, use_at(c, x, slower * fast * limit.v, a));
+            }
+        }
+    }
+    const double top = limit.v * limit.v;
+    gain.harder = braking.bound.at(top) >= 2 * limit.a.at(top) ? 1 : 0;
+    return gain;
+}
+
+TEST(Braking, KeepsEveryAxisOnEveryCurveAtEverySpeed_C13) {
+    int harder = 0;
+    for (unsigned seed = 1; seed <= 3000; ++seed) {
+        const Gain gain = gain_of(Curves(seed));
+        ASSERT_LE(gain.worst, 1 + 1e-3) << seed;
+        harder += gain.harder;
+    }
+    EXPECT_GT(harder, 1000);
+}
+
+TEST(Braking, KeepsJointsThatAreNotAxes_C13) {
+    int harder = 0;
+    for (unsigned seed = 1; seed <= 1500; ++seed) {
+        Curves c(seed);
+        c.drive_belts();
+        const Gain gain = gain_of(c);
+        ASSERT_LE(gain.worst, 1 + 1e-3) << seed;
+        harder += gain.harder;
+    }
+    EXPECT_GT(harder, 500);
+}
+
+TEST(Braking, AStopInAReversalEndsWhereTheMachineNearlyStands_C5) {
+    Rig rig{Pose{}};
+    Limits limits;
+    limits.velocity.fill(100);
+    limits.acceleration.fill(200);
+    limits.acceleration[XYZ_NORM] = UNLIMITED;
+    limits.velocity[XYZ_NORM] = UNLIMITED;
+    rig.planner.set_limits(limits);
+    rig.planner.begin(Pose{}, rig.executor.snapshot());
+    Pose far;
+    far[0] = 40;
+    Pose back;
+    back[1] = 20;
+    MoveRequest request;
+    request.tag.requested_velocity = 100;
+    request.tolerance = 0.5;
+    rig.planner.add(make_line(Pose{}, far), request);
+    rig.planner.add(make_line(far, back), request);
+    rig.planner.release_end();
+    const auto vx = [&] { return (rig.samples.back()[0] - rig.samples[rig.samples.size() - 2][0]) / Rig::T; };
+    rig.step();
+    while (rig.samples.back()[0] < 39 && rig.cycle < 5000) {
+        rig.step();
+    }
+    const double v = vx();
+    ASSERT_GT(v, 5);
+    rig.executor.drop();
+    const std::uint64_t asked = rig.cycle;
+    double fastest_back = 0;
+    while (rig.executor.snapshot().isDropping && rig.cycle < asked + 2000) {
+        rig.step();
+        fastest_back = std::max(fastest_back, -vx());
+    }
+    EXPECT_LT(static_cast<double>(rig.cycle - asked) * Rig::T, 1.5 * v / 200 + 0.01);
+    EXPECT_LT(fastest_back, 0.3 * v) << "it does not gain speed again";
+    auto checker = make_checker(limits, Rig::T);
+    for (const Pose &p : rig.samples) {
+        checker.sample(p.c.data());
+    }
+    EXPECT_TRUE(checker.isWithin()) << checker.report();
+}
+
+}  // namespace
+}  // namespace mw::traj::test
