@@ -155,7 +155,51 @@ void make_trunnion(sim::Random &random, Design &d) {
                               random.whole(0, 60), random.whole(0, 20));
 }
 
+/// A head that tilts, with a quill.
+void make_head(sim::Random &random, Design &d) {
+    d.name = "head";
+    d.coordinates = "XYZBCW";
+    d.kinematics = "5axiskins";
+    d.isTrivial = false;
+    for (const int axis :
+         {geom::AXIS_X, geom::AXIS_Y, geom::AXIS_Z, geom::AXIS_B, geom::AXIS_C, geom::AXIS_W}) {
+        const bool isAngular = geom::isAngular(axis);
+        d.joints.push_back(make_plain(random, isAngular, isAngular ? 720 : 900, d.isJerkLimited));
+        AxisDesign a = axis_of(axis, make_joint(random, isAngular, d.isJerkLimited));
+        a.low = isAngular ? -40 : -60;
+        a.high = isAngular ? 40 : 60;
+        d.axes.push_back(a);
+    }
+}
+
+/// Three carriages on columns.
+void make_delta(sim::Random &random, Design &d) {
+    d.name = "delta";
+    d.coordinates = "XYZ";
+    d.kinematics = "lineardeltakins";
+    d.isTrivial = false;
+    for (int axis = 0; axis < 3; ++axis) {
+        JointDesign j = make_plain(random, false, 600, d.isJerkLimited);
+        j.low = 150;
+        j.start = j.home = j.home_offset = 450;
+        d.joints.push_back(j);
+        AxisDesign a = axis_of(axis, make_joint(random, false, d.isJerkLimited));
+        a.low = axis == geom::AXIS_Z ? 80 : -50;
+        a.high = axis == geom::AXIS_Z ? 280 : 50;
+        d.axes.push_back(a);
+    }
+}
+
 }  // namespace
+
+Design make_other_design(sim::Random &random) {
+    Design d;
+    d.isJerkLimited = random.chance(0.4);
+    d.velocity = power(random, 1.6, 2.6);
+    d.acceleration = power(random, 2.5, 3.8);
+    random.chance(0.5) ? make_head(random, d) : make_delta(random, d);
+    return d;
+}
 
 Design make_design(sim::Random &random) {
     Design d;

@@ -73,6 +73,8 @@ struct Design {
 };
 
 Design make_design(sim::Random &random);
+/// Of kinematics that the first plan does not have.
+Design make_other_design(sim::Random &random);
 /// Play and screws that are not even, and what the INI file says about them.
 void wear(sim::Random &random, Design &design);
 /// Axes that HAL pins may offset; those of machines whose joints are axes and do not wear.

@@ -119,6 +119,11 @@ Act make_act(sim::Random &random, const Design &design) {
         act = Writer(random, design).write_in_step();
     } else if (kind < 0.9) {
         act = make_jog(random, design);
+        if (design.name == "delta") {
+            // Legs that get far apart leave the room of the axes.
+            act.work = Work::JOG_AXIS;
+            act.target = random.whole(0, 2);
+        }
         if (random.chance(0.3)) {
             turn_wheel(random, act);
         } else if (act.distance == 0 && random.chance(0.4)) {
@@ -157,7 +162,8 @@ Plan make_short_plan(std::uint64_t seed) {
     constexpr int MOST_ACTS = 24;
     Plan plan;
     sim::Random random(seed * 0x2545f4914f6cdd1dU + 2);
-    plan.design = make_design(random);
+    const bool isOther = random.chance(0.12);
+    plan.design = isOther ? make_other_design(random) : make_design(random);
     shorten(random, plan.design);
     wear(random, plan.design);
     equip_spindle(random, plan.design);

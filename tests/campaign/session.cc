@@ -260,6 +260,11 @@ Verdict Session::run() {
     for (const auto &[rule, count] : judge_.broken_known()) {
         verdict_.known[rule] += count;
     }
+    if (!plan_.design.isTrivial) {
+        Extension &count = verdict_.extensions["kinematics " + plan_.design.name];
+        count.ran = verdict_.programs;
+        count.judged = verdict_.ended;
+    }
     for (const JointDesign &j : plan_.design.joints) {
         verdict_.extensions["backlash"].ran += j.backlash > 0 ? 1 : 0;
         verdict_.extensions["screw"].ran += j.screw_type >= 0 ? 1 : 0;
