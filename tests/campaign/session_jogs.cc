@@ -117,6 +117,10 @@ void Session::turn(const Act &act) {
     }
     const double from = place_of(act, t.isJoint);
     rig_->link_wheel(&t, act.target);
+    // Also a stop has the wheel's part of the acceleration.
+    constexpr double SLACK_S = 0.1;
+    judge_.stops_later_s =
+        judge_.time_to_brake() * (1 / t.accel_fraction - 1) + (t.accel_fraction < 1 ? SLACK_S : 0);
     for (int i = 0; i < 5 && !isOver(); ++i) {
         cycle();
     }
@@ -132,8 +136,8 @@ void Session::turn(const Act &act) {
         cycle();
     }
     if (t.isVelocityMode && !isStopped_ && !isDisturbed_ && !isOver()) {
-        // It stops when the wheel does, with its part of the acceleration.
-        judge_.stops_later_s = judge_.time_to_brake() * (1 / t.accel_fraction - 1) + 0.1;
+        // It stops when the wheel does.
+        judge_.stops_later_s += SLACK_S;
         judge_.stop(Stop::ALONG_THE_PATH, 5);
     }
     for (int i = 0; i < LONGEST_MS && !isOver() && !(judge_.isAtRest() && rig_->isInPosition()); ++i) {
