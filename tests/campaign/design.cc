@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "campaign/design.hh"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -154,7 +155,51 @@ void make_trunnion(sim::Random &random, Design &d) {
                               random.whole(0, 60), random.whole(0, 20));
 }
 
+/// A head that tilts, with a quill.
+void make_head(sim::Random &random, Design &d) {
+    d.name = "head";
+    d.coordinates = "XYZBCW";
+    d.kinematics = "5axiskins";
+    d.isTrivial = false;
+    for (const int axis :
+         {geom::AXIS_X, geom::AXIS_Y, geom::AXIS_Z, geom::AXIS_B, geom::AXIS_C, geom::AXIS_W}) {
+        const bool isAngular = geom::isAngular(axis);
+        d.joints.push_back(make_plain(random, isAngular, isAngular ? 720 : 900, d.isJerkLimited));
+        AxisDesign a = axis_of(axis, make_joint(random, isAngular, d.isJerkLimited));
+        a.low = isAngular ? -40 : -60;
+        a.high = isAngular ? 40 : 60;
+        d.axes.push_back(a);
+    }
+}
+
+/// Three carriages on columns.
+void make_delta(sim::Random &random, Design &d) {
+    d.name = "delta";
+    d.coordinates = "XYZ";
+    d.kinematics = "lineardeltakins";
+    d.isTrivial = false;
+    for (int axis = 0; axis < 3; ++axis) {
+        JointDesign j = make_plain(random, false, 600, d.isJerkLimited);
+        j.low = 150;
+        j.start = j.home = j.home_offset = 450;
+        d.joints.push_back(j);
+        AxisDesign a = axis_of(axis, make_joint(random, false, d.isJerkLimited));
+        a.low = axis == geom::AXIS_Z ? 80 : -50;
+        a.high = axis == geom::AXIS_Z ? 280 : 50;
+        d.axes.push_back(a);
+    }
+}
+
 }  // namespace
+
+Design make_other_design(sim::Random &random) {
+    Design d;
+    d.isJerkLimited = random.chance(0.4);
+    d.velocity = power(random, 1.6, 2.6);
+    d.acceleration = power(random, 2.5, 3.8);
+    random.chance(0.5) ? make_head(random, d) : make_delta(random, d);
+    return d;
+}
 
 Design make_design(sim::Random &random) {
     Design d;
@@ -219,6 +264,14 @@ double JointDesign::slide_at(double turned) const {
     return x;
 }
 
+double Design::rise_s() const {
+    double most = jerk > 0 ? acceleration / jerk : 0;
+    for (const JointDesign &j : joints) {
+        most = std::max(most, j.jerk > 0 ? j.acceleration / j.jerk : 0);
+    }
+    return isJerkLimited ? most : 0;
+}
+
 void wear(sim::Random &random, Design &design) {
     const bool hasPlay = random.chance(0.3);
     const bool hasScrews = random.chance(0.3);
@@ -245,6 +298,31 @@ void wear(sim::Random &random, Design &design) {
             j.home_offset = j.slide_at(j.index_at - lag);
         }
     }
+}
+
+bool Design::hasOffsets() const {
+    return std::ranges::any_of(axes, [](const AxisDesign &a) { return a.offset_ratio > 0; });
+}
+
+void allow_offsets(sim::Random &random, Design &design) {
+    const bool isWorn =
+        std::ranges::any_of(design.joints, [](const JointDesign &j) { return j.isCorrected(); });
+    if (isWorn || !design.isTrivial || !random.chance(0.4)) {
+        return;
+    }
+    for (AxisDesign &a : design.axes) {
+        a.offset_ratio = random.chance(0.6) ? rounded(random.real(0.1, 0.6), 0.01) : 0;
+    }
+}
+
+void equip_spindle(sim::Random &random, Design &design) {
+    sim::SpindleTraits &s = design.spindle;
+    design.hasSpindlePlant = true;
+    s.ramp = random.real(7000, 12000) / 60;
+    s.lag_s = random.chance(0.5) ? 0 : random.real(0.001, 0.006);
+    s.reaction_s = random.chance(0.5) ? 0 : random.real(0.001, 0.015);
+    s.counts_per_turn = random.chance(0.7) ? 4096 : 1024;
+    s.first_turns = random.real(0, 1);
 }
 
 void shorten(sim::Random &random, Design &design) {
@@ -351,6 +429,7 @@ std::string Design::write(const std::filesystem::path &folder) const {
     }
     for (const AxisDesign &a : axes) {
         out += fmt::format("[AXIS_{}]\n{}", geom::AXIS_LETTERS[a.axis], limits_of(a));
+        out += a.offset_ratio > 0 ? fmt::format("OFFSET_AV_RATIO = {}\n", a.offset_ratio) : std::string();
     }
     std::ofstream(folder / "campaign.ini") << out;
     return (folder / "campaign.ini").string();

@@ -9,6 +9,7 @@
 
 #include "sim/axis.hh"
 #include "sim/random.hh"
+#include "sim/spindle_plant.hh"
 
 namespace mw::campaign {
 
@@ -48,6 +49,7 @@ struct AxisDesign {
     int axis = 0;  ///< geom::Axis
     double velocity = 100, acceleration = 1000, jerk = 0;
     double low = -100, high = 100;
+    double offset_ratio = 0;  ///< [AXIS_l]OFFSET_AV_RATIO; 0: no external offsets
 };
 
 struct Design {
@@ -60,14 +62,25 @@ struct Design {
     std::vector<JointDesign> joints;
     std::vector<AxisDesign> axes;
     std::string hal_lines;
+    bool hasSpindlePlant = false;  ///< else one that follows a ramp exactly
+    sim::SpindleTraits spindle;
 
+    bool hasOffsets() const;
+    /// What acceleration takes to rise, of the slowest [s]; 0: no jerk limits.
+    double rise_s() const;
     /// Writes campaign.ini and campaign.hal; the path of the INI file.
     std::string write(const std::filesystem::path &folder) const;
 };
 
 Design make_design(sim::Random &random);
+/// Of kinematics that the first plan does not have.
+Design make_other_design(sim::Random &random);
 /// Play and screws that are not even, and what the INI file says about them.
 void wear(sim::Random &random, Design &design);
+/// Axes that HAL pins may offset; those of machines whose joints are axes and do not wear.
+void allow_offsets(sim::Random &random, Design &design);
+/// A spindle with a drive and an encoder.
+void equip_spindle(sim::Random &random, Design &design);
 /// Ways become shorter and homing quicker, so that a session has time for more.
 void shorten(sim::Random &random, Design &design);
 

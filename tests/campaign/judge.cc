@@ -34,12 +34,10 @@ testing::LimitChecker checker_of(const JointDesign &j, bool isJerk, double perio
     return {{limit}, period_s, RATE_ROUNDING};
 }
 
-/// How exactly homing knows where a slide is.
-double found_within(const JointDesign &d, double period_s) {
-    const bool hasIndex = d.home_kind == HomeKind::SWITCH_AND_INDEX;
-    const bool hasSwitch = d.home_kind == HomeKind::SWITCH;
-    const double latched = hasSwitch ? std::abs(d.latch) * (2 * period_s + d.bounce_s) + d.hysteresis : 0;
-    return latched + 3 / d.counts_per_unit + 1e-6 + (hasIndex ? 0.01 : 0);
+/// Of the motor, without the external offset: that has been asked for by HAL pins and goes on as long as it
+/// is.
+double own_place(const JointSample &q) {
+    return q.motor_cmd + q.turned - q.offset;
 }
 
 }  // namespace
@@ -63,9 +61,9 @@ void Judge::fail(const std::string &rule, const std::string &text) {
 }
 
 void Judge::allow(Leave leave) {
-    maySwitchOn_ = maySwitchOn_ || leave == Leave::SWITCH_ON;
-    mayMove_ = mayMove_ || leave != Leave::SWITCH_ON;
-    mayWork_ = mayWork_ || leave == Leave::WORK;
+    allowed_.isSwitchingOn = allowed_.isSwitchingOn || leave == Leave::SWITCH_ON;
+    allowed_.isMotion = allowed_.isMotion || leave != Leave::SWITCH_ON;
+    allowed_.isWork = allowed_.isWork || leave == Leave::WORK;
 }
 
 void Judge::stop(Stop how, int delay) {
@@ -82,7 +80,7 @@ void Judge::stop(Stop how, int delay) {
     stop_.how = how;
     stop_.isAwaited = true;
     restless_ = delay + IN_FLIGHT;
-    maySwitchOn_ = mayMove_ = mayWork_ = false;
+    allowed_.isSwitchingOn = allowed_.isMotion = allowed_.isWork = false;
 }
 
 /// The path begins with the samples that tell the speed.
@@ -111,6 +109,14 @@ double Judge::time_to_correct() const {
                                   (hasJerk ? 2.5 * d.acceleration / d.jerk : 0));
     }
     return most;
+}
+
+double Judge::time_to_brake() const {
+    double most = 0;
+    for (const JointDesign &d : design_.joints) {
+        most = std::max(most, d.velocity / d.acceleration);
+    }
+    return most + 3 * design_.rise_s();
 }
 
 /// By the accelerations of joints and axes along the path that was taken since, and what building them up
@@ -213,7 +219,7 @@ void Judge::take_for_stop(const Sample &s) {
     stop_.path.axes.push_back(s.axes);
     stop_.path.areAxesKnown = stop_.path.areAxesKnown && s.areAxesKnown;
     for (std::size_t j = 0; j < joints_.size(); ++j) {
-        stop_.path.motors[j].push_back(s.joints[j].motor_cmd + s.joints[j].turned);
+        stop_.path.motors[j].push_back(own_place(s.joints[j]));
     }
     if (!stop_.isAwaited) {
         begin_stop();
@@ -255,7 +261,11 @@ void Judge::check_amplifiers(const Sample &s) {
                                     most));
         }
         const bool isRise = q.isAmpOn && !before.isAmpOn;
-        if (isRise && !maySwitchOn_) {
+        if (isRise && q.offset != 0) {
+            fail("offset",
+                 fmt::format("joint {} is switched on with an external offset of {:.6g}", j, q.offset));
+        }
+        if (isRise && !allowed_.isSwitchingOn) {
             fail("energise", fmt::format("amplifier of joint {} comes on by itself", j));
         }
         // One that moves by itself is taken where motion has seen it, a cycle ago.
@@ -342,70 +352,10 @@ void Judge::check_room(const Sample &s) {
     }
 }
 
-/// A joint that says that it is homed is where it says that it is.
-void Judge::check_homes(const Sample &s) {
-    for (std::size_t j = 0; j < joints_.size(); ++j) {
-        const JointSample &q = s.joints[j];
-        JointJudge &judge = joints_[j];
-        const JointDesign &d = design_.joints[j];
-        const bool isNew = q.isHomed && !judge.wasHomed;
-        judge.wasHomed = q.isHomed;
-        if (isNew) {
-            judge.reference = d.home_kind == HomeKind::IMMEDIATE ? q.pos_fb - q.position : 0;
-        }
-        if (!q.isHomed || !q.isTruthKnown || !std::isfinite(q.motor_fb)) {
-            continue;
-        }
-        const double off = q.pos_fb - q.position - judge.reference;
-        // In motion corrections may be late, and play is on either side.
-        const double allowed = found_within(d, period_) + 2 * d.play + 2 * d.screw_error;
-        if (!(std::abs(off) <= allowed)) {
-            fail("homed", fmt::format("joint {} says {:.6g} and is at {:.6g}", j, q.pos_fb,
-                                      q.position + judge.reference));
-        }
-    }
-}
-
-/// At rest a slide is where it is commanded: corrections have taken up play and what the screw is off.
-void Judge::check_places(const Sample &s) {
-    constexpr int RESTED = 60;           // the drive has settled
-    constexpr double DRIVE = 3e-3;       // friction holds it so near
-    constexpr double OVERSHOOT = 0.012;  // of the motor, which takes the slide with it one way only
-    for (std::size_t j = 0; j < joints_.size(); ++j) {
-        const JointSample &q = s.joints[j];
-        JointJudge &judge = joints_[j];
-        const JointDesign &d = design_.joints[j];
-        const bool isKnown =
-            q.isAmpOn && last_.joints[j].isAmpOn && q.isHomed && q.isTruthKnown && !q.isHoming;
-        judge.travel = isKnown ? judge.travel + std::abs(q.pos_cmd - last_.joints[j].pos_cmd) : 0;
-        judge.isPlaceKnown = judge.isPlaceKnown && q.isHomed && q.isTruthKnown;
-        // Until it has moved farther than the play nobody knows at which end of it the slide is.
-        const bool isJudged = d.isCorrected() && standing_ == RESTED && judge.travel > 1 + 4 * d.play;
-        if (!isJudged) {
-            continue;
-        }
-        const double off = q.position - q.pos_cmd;
-        judge.place = judge.isPlaceKnown ? judge.place : off;
-        judge.isPlaceKnown = true;
-        ++judged_[d.screw_type >= 0 ? "screw" : "backlash"];
-        const double allowed = DRIVE + 3 / d.counts_per_unit + (d.play > 0 ? OVERSHOOT : 0);
-        if (std::abs(off - judge.place) > allowed) {
-            fail("place", fmt::format("joint {} stands {:.6g} off, where it stood {:.6g} off before", j, off,
-                                      judge.place));
-        }
-        // Where the switch is met soon after a reversal play was not all taken up yet.
-        const double late = d.play + (design_.isJerkLimited ? d.screw_error : 0);
-        const bool isMeasured = d.home_kind != HomeKind::IMMEDIATE;
-        if (isMeasured && std::abs(off) > allowed + late + found_within(d, period_)) {
-            fail("place", fmt::format("joint {} stands {:.6g} off where it was homed to be", j, off));
-        }
-    }
-}
-
 void Judge::check_outputs(const Sample &s) {
     const bool isRising = (s.isSpindleOn && !last_.isSpindleOn) ||
                           (s.spindle_rpm != 0 && last_.spindle_rpm == 0) || (s.outputs & ~last_.outputs) != 0;
-    if (isRising && !mayWork_ && restless_ == 0) {
+    if (isRising && !allowed_.isWork && restless_ == 0) {
         fail("energise",
              fmt::format("spindle at {}, outputs {:x} come on by themselves", s.spindle_rpm, s.outputs));
     }
@@ -414,13 +364,13 @@ void Judge::check_outputs(const Sample &s) {
 /// What has come to rest stays there, but for rounding, until somebody asks for a motion.
 void Judge::check_stale(const Sample &s, bool wasAtRest) {
     const bool wasHeld = isHeld_;
-    isHeld_ = !mayMove_ && restless_ == 0 && (wasAtRest || wasHeld);
+    isHeld_ = !allowed_.isMotion && restless_ == 0 && (wasAtRest || wasHeld);
     for (std::size_t j = 0; j < joints_.size(); ++j) {
         const JointSample &q = s.joints[j];
         const JointSample &before = last_.joints[j];
         const bool isJudged = isHeld_ && wasHeld && q.isAmpOn && before.isAmpOn;
-        const double place = q.motor_cmd + q.turned;
-        const double held = isJudged ? joints_[j].held : isHeld_ ? before.motor_cmd + before.turned : place;
+        const double place = own_place(q);
+        const double held = isJudged ? joints_[j].held : isHeld_ ? own_place(before) : place;
         joints_[j].held = q.isAmpOn && before.isAmpOn ? held : place;
         if (isHeld_ && q.isAmpOn && before.isAmpOn && std::abs(place - held) > PLACE_ROUNDING) {
             fail("stale", fmt::format("joint {} moves, and nobody has asked for it since the last stop", j));
@@ -429,21 +379,21 @@ void Judge::check_stale(const Sample &s, bool wasAtRest) {
 }
 
 void Judge::check_rest(const Sample &s) {
-    bool isMoving = false;
+    bool isMoving = false, isOffsetMoving = false;
     bool isOn = false, wasOn = false;
     for (std::size_t j = 0; j < joints_.size(); ++j) {
         const JointSample &q = s.joints[j];
         isOn = isOn || q.isAmpOn;
         wasOn = wasOn || last_.joints[j].isAmpOn;
-        isMoving =
-            isMoving ||
-            (q.isAmpOn && last_.joints[j].isAmpOn &&
-             std::abs(q.motor_cmd + q.turned - last_.joints[j].motor_cmd - last_.joints[j].turned) > MOVED);
+        isOffsetMoving = isOffsetMoving || q.offset != last_.joints[j].offset;
+        isMoving = isMoving || (q.isAmpOn && last_.joints[j].isAmpOn &&
+                                std::abs(own_place(q) - own_place(last_.joints[j])) > MOVED);
     }
     if (wasOn && !isOn) {
-        maySwitchOn_ = mayMove_ = mayWork_ = false;
+        allowed_.isSwitchingOn = allowed_.isMotion = allowed_.isWork = false;
         restless_ = std::max(restless_, IN_FLIGHT);
     }
+    offsets_standing_ = isOffsetMoving ? 0 : offsets_standing_ + 1;
     const bool wasAtRest = isAtRest();
     standing_ = isMoving ? 0 : standing_ + 1;
     check_stale(s, wasAtRest);
@@ -472,12 +422,14 @@ void Judge::watch_stop(bool isMoving, bool isOn) {
         check_stop(isMoving && isOn, (cycles - standing_) * period_);
     }
     if (isStanding || !isOn) {
-        constexpr int OFF_WITHIN = 10;
+        // The mean that keeps the jerk may stand before it is sure of it, and offsets brake on their own.
+        const double sure_s = design_.rise_s() + (design_.hasOffsets() ? time_to_brake() : 0);
+        const int off_within = 10 + static_cast<int>(sure_s / period_);
         const bool mustBeOff = stop_.how == Stop::ALONG_THEN_OFF;
-        if (mustBeOff && isOn && standing_ > OFF_WITHIN) {
+        if (mustBeOff && isOn && standing_ > off_within) {
             fail("stop", "it stands, and its amplifiers stay on");
         }
-        stop_.isAwaited = mustBeOff && isOn && standing_ <= OFF_WITHIN;
+        stop_.isAwaited = mustBeOff && isOn && standing_ <= off_within;
     }
 }
 
@@ -486,7 +438,7 @@ void Judge::check_stop(bool isMoving, double took_s) {
     if (isMoving && !least.isOver) {
         return;  // nobody could have stopped on what there is of the path yet
     }
-    const double corrections_s = time_to_correct();
+    const double corrections_s = time_to_correct() + stops_later_s;
     if (took_s > STOP_FACTOR * least.seconds + STOP_SLACK_S + corrections_s) {
         fail("stop", fmt::format("{} {:.3f} s after the stop; its limits need {:.3f} s",
                                  isMoving ? "still moves" : "comes to rest", took_s, least.seconds));

@@ -24,6 +24,7 @@ struct JointSample {
     int resets = 0;            ///< how often they have set it
     double position = 0;       ///< of the joint in truth, by the plant
     bool isTruthKnown = true;  ///< false once the encoder has lied
+    double offset = 0;         ///< external, of its axis; part of the commands
     bool isAmpOn = false, isHomed = false, isHoming = false;
     bool isAmpFaulted = false;
 };
@@ -32,7 +33,8 @@ struct Sample {
     std::uint64_t cycle = 0;
     bool isChainClosed = true, isEnableOn = true;  ///< as the servo cycle has read them
     bool isSpindleOn = false;
-    double spindle_rpm = 0;
+    double spindle_rpm = 0;     ///< commanded
+    double spindle_turns = 0;   ///< in truth
     std::uint32_t outputs = 0;  ///< bit per output that can do work: digital outputs, flood, mist
     bool areAxesKnown = false;  ///< all homed, teleop or coord
     geom::Pose axes;            ///< commanded
@@ -62,6 +64,11 @@ struct AwaitedStop {
 /// What an operator's fresh command allows until the next stop.
 enum class Leave { SWITCH_ON, MOVE, WORK };
 
+/// Since the last stop.
+struct Allowed {
+    bool isSwitchingOn = false, isMotion = false, isWork = false;
+};
+
 class Judge {
   public:
     Judge(const Design &design, double period_s);
@@ -71,6 +78,9 @@ class Judge {
     /// sample; it may take `delay` cycles until motion hears of it.
     void stop(Stop how, int delay);
     void sample(const Sample &s);
+    /// Stops may take so much longer: what is in step with a spindle stands when that does, and wheels may
+    /// have a part of the acceleration only.
+    double stops_later_s = 0;
 
     bool isSound() const { return report_.empty(); }
     /// What was broken first: rule, cycle, figures.
@@ -78,8 +88,11 @@ class Judge {
     /// Rules that are known to be broken: they are counted, and end nothing.
     std::set<std::string> known;
     const std::map<std::string, int> &broken_known() const { return broken_known_; }
+    /// What the slowest joint needs from its highest speed [s].
+    double time_to_brake() const;
     /// Nothing moves and no stop is awaited.
     bool isAtRest() const { return standing_ >= 3 && !stop_.isAwaited; }
+    bool areOffsetsAtRest() const { return offsets_standing_ >= 3; }
     /// The time that stops took over what the limits need, the largest.
     double slowest_stop() const { return slowest_stop_; }
     std::uint64_t samples() const { return count_; }
@@ -121,12 +134,12 @@ class Judge {
     Sample last_;
     std::vector<double> velocity_, before_;
     std::uint64_t count_ = 0;
-    bool maySwitchOn_ = false, mayMove_ = false, mayWork_ = false;
+    Allowed allowed_;
     AwaitedStop stop_;
     double build_up_s_ = 0;
-    int standing_ = 0;
-    bool isHeld_ = false;  ///< nothing may move
-    int restless_ = 0;     ///< cycles left in which commands of before a stop may still arrive
+    int standing_ = 0, offsets_standing_ = 0;  ///< for so many cycles
+    bool isHeld_ = false;                      ///< nothing may move
+    int restless_ = 0;  ///< cycles left in which commands of before a stop may still arrive
     double slowest_stop_ = 0;
     std::string report_;
     std::map<std::string, int> broken_known_;

@@ -199,7 +199,7 @@ TEST_F(JudgeTest, FindsAmplifiersThatStayOnAfterAStop) {
     judge_.allow(Leave::MOVE);
     feed(5);
     judge_.stop(Stop::ALONG_THEN_OFF, 0);
-    feed(30);
+    feed(100);
     EXPECT_EQ(rule(), "stop");
 }
 

@@ -20,8 +20,14 @@ std::string MachinePins::bind(hal::Hal &hal, std::size_t num_joints) {
     const auto number = [&](const std::string &name) {
         return static_cast<volatile double *>(find(name, hal::Type::FLOAT));
     };
+    const auto wheel = [&](const std::string &owner) {
+        return WheelPins{static_cast<volatile std::int32_t *>(find(owner + "jog-counts", hal::Type::S32)),
+                         bit(owner + "jog-enable"), bit(owner + "jog-vel-mode"), number(owner + "jog-scale"),
+                         number(owner + "jog-accel-fraction")};
+    };
     for (std::size_t j = 0; j < num_joints; ++j) {
         const std::string joint = fmt::format("joint.{}.", j);
+        joint_wheels.push_back(wheel(joint));
         joints.push_back(
             {number(joint + "pos-cmd"), number(joint + "pos-fb"), number(joint + "motor-pos-cmd"),
              number(joint + "motor-pos-fb"), bit(joint + "amp-enable-out"), bit(joint + "homed"),
@@ -29,8 +35,15 @@ std::string MachinePins::bind(hal::Hal &hal, std::size_t num_joints) {
              bit(joint + "pos-lim-sw-in"), bit(joint + "neg-lim-sw-in"), bit(joint + "amp-fault-in")});
     }
     for (const char c : std::string(geom::AXIS_LETTERS_LOWER)) {
+        axis_wheels.push_back(wheel(fmt::format("axis.{}.", c)));
+        const std::string offset = fmt::format("axis.{}.eoffset", c);
+        offsets.push_back({static_cast<volatile std::int32_t *>(find(offset + "-counts", hal::Type::S32)),
+                           bit(offset + "-enable"), bit(offset + "-clear"), number(offset + "-scale"),
+                           number(offset), number(offset + "-request")});
         axes.push_back(number(fmt::format("axis.{}.pos-cmd", c)));
     }
+    is_offset_limited = bit("motion.eoffset-limited");
+    input = bit("motion.digital-in-00");
     in_position = bit("motion.in-position");
     is_coord = bit("motion.coord-mode");
     is_teleop = bit("motion.teleop-mode");

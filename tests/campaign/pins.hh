@@ -2,6 +2,7 @@
 // The HAL pins between a machine and its plants.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,18 @@ struct SpindlePins {
     volatile double *speed_out, *revs, *speed_in;
 };
 
+struct WheelPins {
+    volatile std::int32_t *counts;
+    volatile bool *is_enabled, *is_velocity_mode;
+    volatile double *scale, *accel_fraction;
+};
+
+struct OffsetPins {
+    volatile std::int32_t *counts;
+    volatile bool *is_enabled, *is_clearing;
+    volatile double *scale, *offset, *request;
+};
+
 struct MachinePins {
     volatile bool *in_position, *is_coord, *is_teleop, *are_all_homed;  ///< of motion
     volatile bool *enable, *probe, *inhibit;                            ///< to motion
@@ -27,7 +40,10 @@ struct MachinePins {
     volatile double *adaptive_feed;
     SpindlePins spindle;
     std::vector<JointPins> joints;
-    std::vector<volatile double *> axes;   ///< commanded
+    std::vector<WheelPins> joint_wheels, axis_wheels;
+    std::vector<volatile double *> axes;  ///< commanded
+    std::vector<OffsetPins> offsets;      ///< of axes
+    volatile bool *is_offset_limited, *input;
     std::vector<volatile bool *> outputs;  ///< that can do work
 
     /// The name of a pin that is missing; empty when all are there. HAL files have been run: links move pins.

@@ -41,10 +41,24 @@ Act make_jog(sim::Random &random, const Design &design) {
     return act;
 }
 
-Trouble make_trouble(sim::Random &random, const Design &design, bool isPassingWanted, int span_ms) {
+/// A jog by wheel, on the way of one by command.
+void turn_wheel(sim::Random &random, Act &act) {
+    Turning &t = act.turning;
+    t.isJoint = act.work == Work::JOG_JOINT;
+    t.scale = std::round(std::pow(10.0, random.real(-3, 0)) * 1e4) / 1e4;
+    t.counts_per_cycle = random.whole(1, 4) * (random.chance(0.5) ? 1 : -1);
+    t.pause = random.whole(1, 30);
+    t.cycles = random.whole(20, 800);
+    t.isVelocityMode = random.chance(0.4);
+    t.accel_fraction = random.chance(0.7) ? 1 : random.real(0.1, 1);
+    act.work = Work::WHEEL;
+}
+
+Trouble make_trouble(sim::Random &random, const Design &design, bool isPassingWanted, int span_ms,
+                     Upset last = Upset::WRONG_COMMANDS) {
     Trouble t;
     const int first_passing = static_cast<int>(Upset::PAUSE);
-    t.what = static_cast<Upset>(isPassingWanted      ? random.whole(first_passing, UPSET_COUNT - 1)
+    t.what = static_cast<Upset>(isPassingWanted      ? random.whole(first_passing, static_cast<int>(last))
                                 : random.chance(0.4) ? 0
                                                      : random.whole(0, first_passing - 1));
     if (t.what == Upset::TASK_DEAD && random.chance(0.7)) {
@@ -96,11 +110,25 @@ Act make_act(sim::Random &random, const Design &design) {
     Act act;
     const double kind = random.real(0, 1);
     if (kind < 0.5) {
-        act.blocks = Writer(random, design).write(random.real(0.5, 2));
+        Writer writer(random, design);
+        act.isTimed = !writer.allow_waits();
+        act.blocks = writer.write(random.real(0.5, 2));
     } else if (kind < 0.6 && design.isTrivial) {
         act = Writer(random, design).write_probing();
+    } else if (kind < 0.72 && design.isTrivial) {
+        act = Writer(random, design).write_in_step();
     } else if (kind < 0.9) {
         act = make_jog(random, design);
+        if (design.name == "delta") {
+            // Legs that get far apart leave the room of the axes.
+            act.work = Work::JOG_AXIS;
+            act.target = random.whole(0, 2);
+        }
+        if (random.chance(0.3)) {
+            turn_wheel(random, act);
+        } else if (act.distance == 0 && random.chance(0.4)) {
+            act.lease_ms = random.whole(30, 400);
+        }
     } else {
         act.work = Work::HOME;
     }
@@ -108,9 +136,13 @@ Act make_act(sim::Random &random, const Design &design) {
 }
 
 void make_troubles(sim::Random &random, const Design &design, Act &act) {
-    const int span_ms = act.work == Work::PROGRAM || act.work == Work::PROBE ? 2000 : 900;
+    const int span_ms = isProgram(act.work) ? 2000 : 900;
     while (random.chance(0.35)) {
+        act.troubles.push_back(make_trouble(random, design, true, span_ms, Upset::SPINDLE_OVERRIDE));
+    }
+    if (design.hasOffsets() && random.chance(0.4)) {
         act.troubles.push_back(make_trouble(random, design, true, span_ms));
+        act.troubles.back().what = Upset::OFFSET;
     }
     if (random.chance(0.7)) {
         act.troubles.push_back(make_trouble(random, design, false, span_ms));
@@ -118,17 +150,24 @@ void make_troubles(sim::Random &random, const Design &design, Act &act) {
         Trouble &last = act.troubles.back();
         last.what = last.what == Upset::TASK_DEAD ? Upset::ABORT : last.what;
     }
+    for (Trouble &t : act.troubles) {
+        // Who is in step needs what it measures.
+        t.what = t.what == Upset::SPINDLE_NAN && act.work == Work::SPINDLE ? Upset::PAUSE : t.what;
+    }
     std::ranges::sort(act.troubles, {}, &Trouble::at_ms);
 }
 
 /// Sessions of 11 to 25 s.
 Plan make_short_plan(std::uint64_t seed) {
-    constexpr int MOST_ACTS = 18;
+    constexpr int MOST_ACTS = 24;
     Plan plan;
     sim::Random random(seed * 0x2545f4914f6cdd1dU + 2);
-    plan.design = make_design(random);
+    const bool isOther = random.chance(0.12);
+    plan.design = isOther ? make_other_design(random) : make_design(random);
     shorten(random, plan.design);
     wear(random, plan.design);
+    equip_spindle(random, plan.design);
+    allow_offsets(random, plan.design);
     plan.least_s = random.real(10.5, 14);
     for (int n = 0; n < MOST_ACTS; ++n) {
         Act act = make_act(random, plan.design);
@@ -149,10 +188,12 @@ Plan make_short_plan(std::uint64_t seed) {
 
 const char *name_of(Upset upset) {
     static constexpr const char *NAMES[UPSET_COUNT] = {
-        "abort",        "off",          "e-stop command", "e-stop",       "enable off",    "amp fault",
-        "limit switch", "encoder lost", "encoder jump",   "encoder NaN",  "spindle fault", "probe stuck",
-        "task hung",    "task dead",    "pause",          "spindle NaN",  "feed override", "rapid override",
-        "feed inhibit", "adaptive NaN", "planner late",   "planner lost", "wrong commands"};
+        "abort",           "off",           "e-stop command", "e-stop",          "enable off",
+        "amp fault",       "limit switch",  "encoder lost",   "encoder jump",    "encoder NaN",
+        "spindle fault",   "probe stuck",   "task hung",      "task dead",       "pause",
+        "spindle NaN",     "feed override", "rapid override", "feed inhibit",    "adaptive NaN",
+        "planner late",    "planner lost",  "wrong commands", "external offset", "adaptive feed",
+        "spindle override"};
     return NAMES[static_cast<int>(upset)];
 }
 

@@ -27,6 +27,22 @@ struct Contact {
     double low = 0, high = 0;
 };
 
+/// What a program does in step with the spindle.
+enum class Sync {
+    NONE,
+    THREAD,    ///< passes of one helix: G33, G76
+    TAP,       ///< G33.1
+    PER_TURN,  ///< G95
+    SURFACE,   ///< G96 while X moves
+};
+struct SyncWish {
+    Sync kind = Sync::NONE;
+    double lead = 0;          ///< [unit/turn]; SURFACE: [m/min]
+    double from = 0, to = 0;  ///< along Z; SURFACE: along X
+    double rpm = 0;           ///< with its sign; SURFACE: the most
+    int passes = 0;           ///< at least
+};
+
 /// A line of a program with the path that it asks for, in machine coordinates.
 struct Block {
     std::string text;
@@ -39,7 +55,11 @@ struct Block {
     ProbeMove probe;
 };
 
-enum class Work { PROGRAM, JOG_JOINT, JOG_AXIS, HOME, PROBE };
+enum class Work { PROGRAM, JOG_JOINT, JOG_AXIS, HOME, PROBE, SPINDLE, WHEEL };
+/// A program is run.
+constexpr bool isProgram(Work work) {
+    return work == Work::PROGRAM || work == Work::PROBE || work == Work::SPINDLE;
+}
 
 enum class Upset {
     ABORT,          ///< an operator's stop
@@ -66,8 +86,12 @@ enum class Upset {
     PLANNER_LATE,    ///< a few periods
     PLANNER_LOST,    ///< a second
     WRONG_COMMANDS,  ///< modes, jogs and runs that do not fit what is under way
+    // --- not in the first plan
+    OFFSET,    ///< external, of an axis
+    ADAPTIVE,  ///< feed, -1 to 1
+    SPINDLE_OVERRIDE,
 };
-inline constexpr int UPSET_COUNT = static_cast<int>(Upset::WRONG_COMMANDS) + 1;
+inline constexpr int UPSET_COUNT = static_cast<int>(Upset::SPINDLE_OVERRIDE) + 1;
 const char *name_of(Upset upset);
 /// The work goes on after it.
 constexpr bool isPassing(Upset upset) {
@@ -82,15 +106,29 @@ struct Trouble {
     double value = 0;
 };
 
+/// How somebody turns a wheel.
+struct Turning {
+    bool isJoint = true;
+    double scale = 0;            ///< of a count [units]
+    int counts_per_cycle = 0;    ///< with its sign
+    int cycles = 0, pause = 10;  ///< counts come for so long, every so many cycles
+    bool isVelocityMode = false;
+    double accel_fraction = 1;
+};
+
 struct Act {
     Work work = Work::PROGRAM;
     std::vector<Block> blocks;
+    bool isTimed = true;    ///< the time that it takes can be estimated
     bool isToFail = false;  ///< a program that must not come to its end
     std::vector<Contact> contacts;
+    SyncWish sync;
     int target = 0;       ///< joint or axis
     double distance = 0;  ///< 0: continuous
     double velocity = 0;
     int length_ms = 500;  ///< of a continuous jog
+    int lease_ms = 0;     ///< of it: whoever jogs goes without a stop; 0: none
+    Turning turning;
     std::vector<Trouble> troubles;
 };
 

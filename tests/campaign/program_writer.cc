@@ -16,6 +16,9 @@ double to_grid(double x) {
 std::vector<Block> Writer::write(double seconds) {
     say("G21 G90 G17 G94 G80 G40");
     set_mode();
+    if (isAdaptive_) {
+        say("M52 P1");
+    }
     move_to_start();
     if (random_.chance(0.3)) {
         spindle();
@@ -32,6 +35,9 @@ std::vector<Block> Writer::write(double seconds) {
         expected += random_.chance(0.3) && hasAxis(geom::AXIS_Y) ? arc() : line();
     }
     say("M63 P0");
+    if (isAdaptive_) {
+        say("M52 P0");
+    }
     say("M2");
     return std::move(blocks_);
 }
@@ -74,7 +80,17 @@ void Writer::spindle() {
     blocks_.push_back(b);
 }
 
+bool Writer::allow_waits() {
+    mayWait_ = random_.chance(0.2);
+    isAdaptive_ = random_.chance(0.2);
+    return mayWait_;
+}
+
 void Writer::output() {
+    if (mayWait_) {
+        const int kind = random_.whole(0, 4);  // at once, rise, fall, high, low
+        say(kind == 0 ? "M66 P0 L0" : fmt::format("M66 P0 L{} Q5", kind));
+    }
     say(random_.chance(0.5) ? "M62 P0" : "M63 P0");
     if (random_.chance(0.2)) {
         Block b;
@@ -86,12 +102,15 @@ void Writer::output() {
 
 /// Within the soft limits, with some room for the joints of other kinematics.
 double Writer::place(const AxisDesign &a) {
+    if (a.low > 0) {
+        return to_grid(a.low + random_.real(0.05, 0.95) * (a.high - a.low));
+    }
     return to_grid(random_.real(0.9 * a.low, 0.9 * a.high));
 }
 void Writer::move_to_start() {
     std::string text = "G0";
     for (const AxisDesign &a : design_.axes) {
-        at_[a.axis] = to_grid(0.5 * place(a));
+        at_[a.axis] = to_grid((a.low > 0 ? 1 : 0.5) * place(a));
         text += fmt::format(" {}{:.4f}", geom::AXIS_LETTERS[a.axis], at_[a.axis]);
     }
     push(text, true);

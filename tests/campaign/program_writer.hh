@@ -16,12 +16,24 @@ class Writer {
   public:
     Writer(sim::Random &random, const Design &design) : random_(random), design_(design) {}
 
+    /// What it writes may wait for inputs (M66) and have adaptive feed (M52). True when it does.
+    bool allow_waits();
     /// A program of lines and arcs that takes about so long at its feeds.
     std::vector<Block> write(double seconds);
     /// Finds the walls of a room and leaves them again, or misses them.
     Act write_probing();
+    /// In step with the spindle.
+    Act write_in_step();
 
   private:
+    void write_threads(SyncWish &sync);
+    void write_cycle(SyncWish &sync);
+    void write_taps(SyncWish &sync);
+    void write_per_turn(SyncWish &sync);
+    void write_surface(SyncWish &sync);
+    double speed_for_z(double share) const;
+    double way_to_speed(double v) const;
+    void start_spindle(double rpm);
     double probe(const Contact &contact, bool isHigh, int kind, double to);
     bool probe_wrongly(const Contact &contact, bool isHigh, bool isTouching);
 
@@ -44,6 +56,7 @@ class Writer {
     geom::MoveSettings settings_;
     geom::Pose at_;
     double feed_ = 1000;
+    bool mayWait_ = false, isAdaptive_ = false;
 };
 
 }  // namespace mw::campaign

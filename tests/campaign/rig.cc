@@ -38,7 +38,8 @@ void LateScheduler::plan(void *self, std::int64_t period_ns) {
     }
 }
 
-Rig::Rig(const Design &design, std::uint64_t seed, std::string ini) : design_(design), ini_(std::move(ini)) {
+Rig::Rig(const Design &design, std::uint64_t seed, std::string ini)
+    : design_(design), ini_(std::move(ini)), spindle_(design.spindle) {
     for (const JointDesign &j : design.joints) {
         const double shaft = j.start + j.screw_error_at(j.start) + j.shaft_offset;
         sim::AxisSettings drive = j.drive;
@@ -115,7 +116,9 @@ void Rig::cycle() {
     *pins_.enable = !faults.isDisabled;
     *pins_.probe = faults.isProbeClosed || isProbeTouching();
     *pins_.inhibit = faults.isFeedInhibited;
-    *pins_.adaptive_feed = faults.isAdaptiveNan ? NAN_VALUE : 1.0;
+    *pins_.adaptive_feed = faults.isAdaptiveNan ? NAN_VALUE : faults.adaptive_feed;
+    constexpr std::uint64_t INPUT_MS = 150;
+    *pins_.input = cycles_ / INPUT_MS % 2 != 0;
     *pins_.spindle.amp_fault = faults.isSpindleFaulted;
     if (faults.isTaskDead) {
         side_->channels().isTaskDead.store(1);
@@ -157,13 +160,24 @@ void Rig::run_plants() {
         *pins.pos_limit = joint_faults[j].isOnLimit;
         *pins.amp_fault = p.amplifier.isFaulted();
     }
+    run_spindle();
+}
+
+void Rig::run_spindle() {
     const double wanted = *pins_.spindle.speed_out;
-    const double change =
-        std::clamp(wanted - spindle_rpm_, -SPINDLE_RAMP * PERIOD_S, SPINDLE_RAMP * PERIOD_S);
-    spindle_rpm_ += std::isfinite(change) ? change : 0;
-    spindle_turns_ += spindle_rpm_ / 60 * PERIOD_S;
+    if (design_.hasSpindlePlant) {
+        spindle_.run(std::isfinite(wanted) ? wanted / 60 : 0, 0, PERIOD_S);
+        spindle_rpm_ = 60 * spindle_.speed();
+        spindle_turns_ = spindle_.turns();
+    } else {
+        const double change =
+            std::clamp(wanted - spindle_rpm_, -SPINDLE_RAMP * PERIOD_S, SPINDLE_RAMP * PERIOD_S);
+        spindle_rpm_ += std::isfinite(change) ? change : 0;
+        spindle_turns_ += spindle_rpm_ / 60 * PERIOD_S;
+    }
+    const double shown = design_.hasSpindlePlant ? spindle_.shown_turns() : spindle_turns_;
     *pins_.spindle.at_speed = std::abs(wanted - spindle_rpm_) < AT_SPEED_RPM;
-    *pins_.spindle.revs = faults.isSpindleNan ? NAN_VALUE : spindle_turns_;
+    *pins_.spindle.revs = faults.isSpindleNan ? NAN_VALUE : shown;
     *pins_.spindle.speed_in = faults.isSpindleNan ? NAN_VALUE : spindle_rpm_ / 60;
 }
 
@@ -181,6 +195,11 @@ void Rig::take_sample() {
         out.resets = p.resets;
         out.position = p.slide;
         out.isTruthKnown = p.isTruthKnown;
+        out.offset =
+            design_.isTrivial
+                ? *pins_.offsets[static_cast<std::size_t>(geom::axis_of_letter(design_.coordinates[j]))]
+                       .offset
+                : 0;
         out.isAmpOn = *pins.is_amp_on;
         out.isHomed = *pins.is_homed;
         out.isHoming = *pins.is_homing;
@@ -192,6 +211,7 @@ void Rig::take_sample() {
     sample_.areAxesKnown = *pins_.are_all_homed && (*pins_.is_coord || *pins_.is_teleop);
     sample_.isSpindleOn = *pins_.spindle.is_on;
     sample_.spindle_rpm = *pins_.spindle.speed_out;
+    sample_.spindle_turns = spindle_turns_;
     sample_.outputs = 0;
     for (std::size_t i = 0; i < pins_.outputs.size(); ++i) {
         sample_.outputs |= *pins_.outputs[i] ? 1U << i : 0U;
@@ -231,6 +251,51 @@ double Rig::beyond_wall(const Wall &wall) const {
 
 bool Rig::isProbeTouching() const {
     return std::ranges::any_of(walls_, [this](const Wall &w) { return areWallsUp_ && beyond_wall(w) > 0; });
+}
+
+void Rig::add_offset(int axis, double by) {
+    constexpr double SCALE = 0.01;
+    const OffsetPins &pins = pins_.offsets[static_cast<std::size_t>(axis)];
+    *pins.scale = SCALE;
+    *pins.is_enabled = true;
+    *pins.counts = *pins.counts + static_cast<std::int32_t>(std::lround(by / SCALE));
+}
+
+void Rig::clear_offsets(bool isWanted) {
+    for (const OffsetPins &pins : pins_.offsets) {
+        *pins.is_clearing = isWanted;
+    }
+}
+
+bool Rig::hasOffset() const {
+    return std::ranges::any_of(pins_.offsets,
+                               [](const OffsetPins &p) { return *p.offset != 0 || *p.request != 0; });
+}
+
+bool Rig::areOffsetsThere() const {
+    return *pins_.is_offset_limited || std::ranges::all_of(pins_.offsets, [](const OffsetPins &p) {
+        return std::abs(*p.offset - *p.request) < 1e-9;
+    });
+}
+
+void Rig::link_wheel(const Turning *turning, int target) {
+    if (wheel_ != nullptr) {
+        *wheel_->is_enabled = false;
+    }
+    wheel_ = nullptr;
+    if (turning == nullptr) {
+        return;
+    }
+    const auto n = static_cast<std::size_t>(target);
+    wheel_ = turning->isJoint ? &pins_.joint_wheels[n] : &pins_.axis_wheels[n];
+    *wheel_->scale = turning->scale;
+    *wheel_->is_velocity_mode = turning->isVelocityMode;
+    *wheel_->accel_fraction = turning->accel_fraction;
+    *wheel_->is_enabled = true;
+}
+
+void Rig::turn_wheel(int counts) {
+    *wheel_->counts = *wheel_->counts + counts;
 }
 
 void Rig::lose_encoder(int joint, bool isLost) {

@@ -20,6 +20,7 @@
 #include "sim/axis.hh"
 #include "sim/bouncing_switch.hh"
 #include "sim/encoder.hh"
+#include "sim/spindle_plant.hh"
 
 namespace mw::campaign {
 
@@ -49,6 +50,7 @@ struct JointFaults {
 /// What is wrong with the rest of the machine.
 struct MachineFaults {
     bool isChainOpen = false, isDisabled = false, isProbeClosed = false, isFeedInhibited = false;
+    double adaptive_feed = 1;
     bool isSpindleFaulted = false, isSpindleNan = false, isAdaptiveNan = false;
     bool isTaskHeld = false, isTaskDead = false;
 };
@@ -93,6 +95,17 @@ class Rig final : public machine::Machine {
     /// How far the probe is beyond the walls of its room along an axis; below 0: within.
     double beyond_walls(int axis) const;
 
+    /// Asks for another external offset of the axis; that of all to be cleared.
+    void add_offset(int axis, double by);
+    void clear_offsets(bool isWanted);
+    bool hasOffset() const;
+    /// Every offset is what is asked for, or a limit keeps it from that.
+    bool areOffsetsThere() const;
+
+    /// Links a wheel; nullptr: none moves anything.
+    void link_wheel(const Turning *turning, int target);
+    void turn_wheel(int counts);
+
     void lose_encoder(int joint, bool isLost);
     void jump_encoder(int joint, double by);
     void trip_amplifier(int joint) { plants_[static_cast<std::size_t>(joint)].amplifier.trip(); }
@@ -117,6 +130,7 @@ class Rig final : public machine::Machine {
     };
     void step_task();
     void run_plants();
+    void run_spindle();
     double beyond_wall(const Wall &wall) const;
     double askew(std::size_t joint) const;
     bool isProbeTouching() const;
@@ -132,9 +146,11 @@ class Rig final : public machine::Machine {
     rtapi::PeriodicId periodic_{};
     std::vector<Wall> walls_;
     bool areWallsUp_ = false;
+    WheelPins *wheel_ = nullptr;
     std::vector<Plant> plants_;
     MachinePins pins_{};
     double spindle_rpm_ = 0, spindle_turns_ = 0;
+    sim::SpindlePlant spindle_;
     std::uint64_t cycles_ = 0;
     Sample sample_;
 };

@@ -59,10 +59,12 @@ void Session::cycle() {
         for (const AxisDesign &a : plan_.design.axes) {
             trace_ << fmt::format(" {:.9g}", s.axes[a.axis]);
         }
-        trace_ << '\n';
+        trace_ << fmt::format(" {:.9g} {:.9g}\n", s.spindle_rpm, s.spindle_turns);
     }
     if (isRecording_) {
         path_.push_back(s.axes);
+        turns_.push_back(s.spindle_turns);
+        rpm_.push_back(s.spindle_rpm);
     }
     for (const JointSample &j : s.joints) {
         verdict_.hash = (verdict_.hash ^ std::bit_cast<std::uint64_t>(j.motor_cmd)) * 0x100000001b3U;
@@ -127,7 +129,7 @@ void Session::settle(double most_s) {
     double t = 0;
     for (int calm = 0; calm < 20 && t < most_s && !isOver(); t += PERIOD_S) {
         cycle();
-        calm = judge_.isAtRest() ? calm + 1 : 0;
+        calm = judge_.isAtRest() && judge_.areOffsetsAtRest() ? calm + 1 : 0;
     }
     if (t >= most_s) {
         fail("work", "it does not come to rest");
@@ -179,12 +181,34 @@ bool Session::home() {
     return !isOver() && end == End::DONE;
 }
 
+/// An operator who wants to work without them.
+bool Session::clear_offsets() {
+    if (!set_mode(msgs::Mode::MANUAL) || ask(msgs::SetTeleop{true}) != End::DONE) {
+        return false;
+    }
+    settle(2);
+    judge_.allow(Leave::MOVE);
+    rig_->clear_offsets(true);
+    constexpr int MOST_MS = 20000;
+    for (int i = 0; i < MOST_MS && rig_->hasOffset() && !isOver(); ++i) {
+        cycle();
+    }
+    if (rig_->hasOffset()) {
+        fail("offset", "an external offset is not cleared");
+    }
+    rig_->clear_offsets(false);
+    cycle();
+    return !isOver();
+}
+
 /// Everything repaired, on and homed: what stops the next act is its own trouble.
 bool Session::prepare() {
     act_ = nullptr;
     going_.clear();
     rig_->set_contacts({});
-    isStopped_ = isDisturbed_ = false;
+    rig_->link_wheel(nullptr, 0);
+    judge_.stops_later_s = 0;
+    isStopped_ = isDisturbed_ = isReversed_ = false;
     rig_->repair();
     for (int i = 0; i < 5 && !isOver(); ++i) {
         cycle();
@@ -208,7 +232,10 @@ bool Session::prepare() {
         rig_->trust_encoders();
         areEncodersTrue_ = true;
     }
-    return !isOver();
+    if (plan_.design.hasSpindlePlant) {
+        ask(msgs::SetSpindleOverride{1, 0});
+    }
+    return !isOver() && (!rig_->hasOffset() || clear_offsets());
 }
 
 Verdict Session::run() {
@@ -233,6 +260,11 @@ Verdict Session::run() {
     for (const auto &[rule, count] : judge_.broken_known()) {
         verdict_.known[rule] += count;
     }
+    if (!plan_.design.isTrivial) {
+        Extension &count = verdict_.extensions["kinematics " + plan_.design.name];
+        count.ran = verdict_.programs;
+        count.judged = verdict_.ended;
+    }
     for (const JointDesign &j : plan_.design.joints) {
         verdict_.extensions["backlash"].ran += j.backlash > 0 ? 1 : 0;
         verdict_.extensions["screw"].ran += j.screw_type >= 0 ? 1 : 0;
@@ -248,9 +280,11 @@ void Session::perform(const Act &act) {
     isStopped_ = isDisturbed_ = false;
     switch (act.work) {
     case Work::PROGRAM:
-    case Work::PROBE: run_program(act); break;
+    case Work::PROBE:
+    case Work::SPINDLE: run_program(act); break;
     case Work::JOG_JOINT:
     case Work::JOG_AXIS: jog(act); break;
+    case Work::WHEEL: turn(act); break;
     case Work::HOME:
         begin_troubles(act);
         home();
@@ -262,59 +296,15 @@ void Session::perform(const Act &act) {
         cycle();
     }
     settle(30);
-}
-
-void Session::jog(const Act &act) {
-    const bool isJoint = act.work == Work::JOG_JOINT;
-    if (!set_mode(msgs::Mode::MANUAL) || ask(msgs::SetTeleop{!isJoint}) != End::DONE) {
-        fail("work", "the jogs' mode is not set with the machine at rest");
-        return;
-    }
-    settle(2);
-    const auto place = [&] {
-        return isJoint ? rig_->sample().joints[static_cast<std::size_t>(act.target)].pos_cmd
-                       : rig_->sample().axes[act.target];
-    };
-    const double from = place();
-    begin_troubles(act);
-    judge_.allow(Leave::MOVE);
-    const bool isIncrement = act.distance != 0;
-    const client::Serial posted =
-        isIncrement ? post(msgs::JogIncrement{isJoint, act.target, std::abs(act.velocity), act.distance})
-                    : post(msgs::JogContinuous{isJoint, act.target, act.velocity, 0, false});
-    const End end = wait(posted, 5);
-    for (int i = 0; i < act.length_ms && !isOver(); ++i) {
-        step_troubles();
-        cycle();
-    }
-    if (!isIncrement) {
-        ask(msgs::JogStop{isJoint, act.target});
-    }
-    for (int i = 0; i < 120000 && !isOver() && !(judge_.isAtRest() && rig_->isInPosition()); ++i) {
-        step_troubles();
-        cycle();
-    }
-    const bool isCalm = !isStopped_ && !isDisturbed_ && !isOver();
-    const auto at = static_cast<std::size_t>(act.target);
-    if (isCalm && plan_.design.isTrivial) {
-        double low = -1e300;
-        double high = 1e300;
-        if (isJoint) {
-            low = plan_.design.joints[at].low;
-            high = plan_.design.joints[at].high;
+    if (isProgram(act.work) && plan_.design.hasOffsets() && !isStopped_ && !isOver()) {
+        Extension &count = verdict_.extensions["offsets"];
+        count.ran += rig_->hasOffset() ? 1 : 0;
+        for (int i = 0; i < 20000 && !rig_->areOffsetsThere() && !isOver(); ++i) {
+            cycle();
         }
-        for (const AxisDesign &a : plan_.design.axes) {
-            low = !isJoint && a.axis == act.target ? a.low : low;
-            high = !isJoint && a.axis == act.target ? a.high : high;
-        }
-        // One that would end beyond a limit is refused. An e-stop may have let it run out beyond them before.
-        const double wanted = from + act.distance;
-        const bool fits = wanted >= low && wanted <= high && from > low && from < high;
-        if (end != End::DONE && fits) {
-            fail("work", fmt::format("a jog from {:.6g} by {:.6g} is refused", from, act.distance));
-        } else if (isIncrement && end == End::DONE && std::abs(place() - wanted) > 1e-6) {
-            fail("work",
-                 fmt::format("a jog from {:.6g} by {:.6g} ends at {:.6g}", from, act.distance, place()));
+        count.judged += rig_->hasOffset() ? 1 : 0;
+        if (!rig_->areOffsetsThere() && !isOver()) {
+            fail("offset", "an external offset does not get where it is asked to be");
         }
     }
 }

@@ -59,17 +59,28 @@ class Session {
     bool prepare();
     bool switch_on();
     bool home();
+    bool clear_offsets();
     bool set_mode(msgs::Mode mode);
 
     void perform(const Act &act);
     void run_program(const Act &act);
     void jog(const Act &act);
+    void keep_lease(const Act &act);
+    void turn(const Act &act);
+    bool begin_manual(bool isJoint);
+    double place_of(const Act &act, bool isJoint) const;
+    std::pair<double, double> range_of(const Act &act, bool isJoint) const;
     void begin_troubles(const Act &act);
     void step_troubles();
     void begin(const Trouble &t);
+    void begin_offset(const Trouble &t);
     void begin_stop(const Trouble &t);
     void end(const Trouble &t);
     void check_program(const Act &act, const geom::Pose &from, double took_s);
+    void check_sync(const Act &act, End end);
+    void check_helix(const SyncWish &sync);
+    void check_per_turn(const SyncWish &sync);
+    void check_surface(const SyncWish &sync);
     void check_probing(const Act &act, End end);
     double estimate(const Act &act, const geom::Pose &from) const;
 
@@ -91,9 +102,10 @@ class Session {
         std::uint64_t until = 0;
     };
     std::vector<Going> going_;
-    bool isStopped_ = false, isDisturbed_ = false;
+    bool isStopped_ = false, isDisturbed_ = false, isReversed_ = false;
     bool isRecording_ = false;
     std::vector<geom::Pose> path_;
+    std::vector<double> turns_, rpm_;     ///< of the spindle, with path_
     std::vector<std::string> told_;       ///< by the program
     std::map<int, double> beyond_walls_;  ///< how far the probe has been, by axis
 };

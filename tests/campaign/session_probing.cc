@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // What a program that has probed must have found.
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -18,7 +19,8 @@ double way_to_stop(const Design &design, const JointDesign &joint, double speed)
     const double jerk = design.jerk > 0 && joint.jerk > 0 ? std::min(joint.jerk, design.jerk)
                                                           : std::max(joint.jerk, design.jerk);
     const double stop_s = speed / a + (design.isJerkLimited && jerk > 0 ? 2.5 * a / jerk : 0);
-    return speed * (FACTOR * stop_s + SLACK_S);
+    constexpr double DRIVE = 0.03;
+    return speed * (FACTOR * stop_s + SLACK_S) + DRIVE;
 }
 
 /// What is said of a probing move: found or not, and where.
@@ -44,7 +46,9 @@ void Session::check_probing(const Act &act, End end) {
     Extension &count = verdict_.extensions["probing"];
     ++count.ran;
     verdict_.ended += end == End::DONE ? 1 : 0;
-    if (isStopped_) {
+    const bool isOffset =
+        std::ranges::any_of(act.troubles, [](const Trouble &t) { return t.what == Upset::OFFSET; });
+    if (isStopped_ || isOffset) {  // an offset moves the probe, and not what is known of where it is
         return;
     }
     const std::vector<Found> found = read_found(told_);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Programs of a session, and what goes wrong meanwhile.
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -66,9 +67,17 @@ void Session::run_program(const Act &act) {
     const geom::Pose from = rig_->sample().axes;
     path_.clear();
     path_.push_back(from);
+    turns_.assign(1, rig_->sample().spindle_turns);
+    rpm_.assign(1, rig_->sample().spindle_rpm);
     told_.clear();
     beyond_walls_.clear();
     rig_->set_contacts(act.contacts);
+    if (act.sync.kind == Sync::TAP) {
+        constexpr double LAGS = 7, SLACK_S = 0.05;
+        const sim::SpindleTraits &spindle = plan_.design.spindle;
+        judge_.stops_later_s = 2 * std::abs(act.sync.rpm) / 60 / spindle.ramp + LAGS * spindle.lag_s +
+                               spindle.reaction_s + SLACK_S;
+    }
     isRecording_ = true;
     begin_troubles(act);
     judge_.allow(Leave::WORK);
@@ -88,6 +97,8 @@ void Session::run_program(const Act &act) {
         fail("work", "the program must not come to its end, and does");
     } else if (act.work == Work::PROBE) {
         check_probing(act, end);
+    } else if (act.work == Work::SPINDLE) {
+        check_sync(act, end);
     } else if (end == End::DONE) {
         ++verdict_.ended;
         check_program(act, from, took_s);
@@ -107,6 +118,9 @@ void Session::check_program(const Act &act, const geom::Pose &from, double took_
         fail("work", fmt::format("the program ends {:.3g} from its end", testing::pose_distance(at, last)));
         return;
     }
+    if (isReversed_) {
+        return;  // it has gone back and forth
+    }
     double longest = 0;
     double length = 0;
     for (std::size_t i = 1; i < path_.size(); ++i) {
@@ -122,15 +136,19 @@ void Session::check_program(const Act &act, const geom::Pose &from, double took_
         fail("path", fmt::format("more than {:.4g} beside the program, or out of order", allowed));
         return;
     }
-    const bool isTimed = !isDisturbed_ && !isStopped_ && plan_.design.isTrivial;
+    const bool isTimed = !isDisturbed_ && !isStopped_ && plan_.design.isTrivial && act.isTimed;
     if (isTimed) {
         ++verdict_.timed;
         const double expected = estimate(act, from);
         const double off = took_s / expected - 1;
         // Commands, ends of outputs and a start of the planner cost cycles that no estimate knows.
-        constexpr double PART = 0.01, SLACK_S = 0.1;
+        constexpr double PART = 0.01;
+        // A feed move that waits for a spindle begins at rest, also where it would have been blended into.
+        const bool hasSpindle =
+            std::ranges::any_of(act.blocks, [](const Block &b) { return b.text.starts_with("M3"); });
+        const double slack_s = hasSpindle ? 0.3 : 0.1;
         verdict_.worst_time = std::max(verdict_.worst_time, std::abs(took_s - expected) - PART * expected);
-        if (std::abs(took_s - expected) > PART * expected + SLACK_S) {
+        if (std::abs(took_s - expected) > PART * expected + slack_s) {
             fail("time", fmt::format("{:.3f} s where {:.3f} s are estimated, {:+.1f} %", took_s, expected,
                                      100 * off));
         }
@@ -265,6 +283,15 @@ void Session::begin_stop(const Trouble &t) {
     }
 }
 
+void Session::begin_offset(const Trouble &t) {
+    const AxisDesign &axis = plan_.design.axes[static_cast<std::size_t>(t.joint) % plan_.design.axes.size()];
+    if (axis.offset_ratio > 0 && !isStopped_) {
+        constexpr double MOST = 8;
+        judge_.allow(Leave::MOVE);
+        rig_->add_offset(axis.axis, MOST * (2 * t.value - 1));
+    }
+}
+
 void Session::begin(const Trouble &t) {
     switch (t.what) {
     case Upset::PAUSE: post(msgs::PauseProgram{}); break;
@@ -273,6 +300,12 @@ void Session::begin(const Trouble &t) {
     case Upset::RAPID_OVERRIDE: post(msgs::SetRapidOverride{t.value}); break;
     case Upset::FEED_INHIBIT: rig_->faults.isFeedInhibited = true; break;
     case Upset::ADAPTIVE_NAN: rig_->faults.isAdaptiveNan = true; break;
+    case Upset::OFFSET: begin_offset(t); break;
+    case Upset::ADAPTIVE:
+        rig_->faults.adaptive_feed = 2 * t.value - 1;
+        isReversed_ = isReversed_ || t.value < 0.5;
+        break;
+    case Upset::SPINDLE_OVERRIDE: post(msgs::SetSpindleOverride{0.5 + t.value, 0}); break;
     case Upset::PLANNER_LATE:
     case Upset::PLANNER_LOST: rig_->hold_planner(true); break;
     default:
@@ -299,6 +332,9 @@ void Session::end(const Trouble &t) {
     case Upset::RAPID_OVERRIDE: post(msgs::SetRapidOverride{1}); break;
     case Upset::FEED_INHIBIT: rig_->faults.isFeedInhibited = false; break;
     case Upset::ADAPTIVE_NAN: rig_->faults.isAdaptiveNan = false; break;
+    case Upset::ADAPTIVE: rig_->faults.adaptive_feed = 1; break;
+    case Upset::SPINDLE_OVERRIDE: post(msgs::SetSpindleOverride{1, 0}); break;
+    case Upset::OFFSET: rig_->clear_offsets(t.value < 0.2); break;
     case Upset::PLANNER_LATE:
     case Upset::PLANNER_LOST: rig_->hold_planner(false); break;
     case Upset::ESTOP: rig_->faults.isChainOpen = false; break;

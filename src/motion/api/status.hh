@@ -198,6 +198,7 @@ enum class FaultKind : std::uint16_t {
     EXTRA_JOINT_LOST,        ///< index: the joint whose pin posthome-cmd is not a number
     EXTRA_JOINT_LIMIT,       ///< index: the joint whose pin posthome-cmd asks for what lies beyond its range
     SIDE_APART,              ///< index: joint; switched on in free mode
+    SPINDLE_LOST,  ///< index: spindle whose feedback is not a number while a move is in step with it
     COUNT,
 };
 /// Only told: no path has failed.

@@ -218,6 +218,8 @@ std::string spindle_fault(const Fault &fault) {
             "the tool could not keep to spindle {} in a rigid tap: it did not turn back in time, or "
             "its encoder jumped; the tap may be stuck in the hole",
             i);
+    case FaultKind::SPINDLE_LOST:
+        return fmt::format("spindle {} feedback is not a number while a move is in step with it", i);
     case FaultKind::SPINDLE_FAULT:
         return fault.value != 0 ? fmt::format("spindle {} orient fault {}", i, static_cast<int>(fault.value))
                                 : fmt::format("spindle {} amplifier fault", i);
@@ -291,6 +293,7 @@ std::string what_failed(const Fault &fault) {
     case FaultKind::TAP_TOO_ABRUPT:
     case FaultKind::TAP_TOO_SHALLOW:
     case FaultKind::TAP_LOST:
+    case FaultKind::SPINDLE_LOST:
     case FaultKind::SPINDLE_FAULT: return spindle_fault(fault);
     case FaultKind::COUNT: break;
     }

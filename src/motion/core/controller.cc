@@ -102,7 +102,7 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
     if (motion::step(watchdog_, loops, isDead, config_.period_s)) {
         stop_category_1(FaultKind::TASK_LOST, -1, watchdog_.standing_s);
     }
-    check_faults(in);
+    check_faults(in, measure(spindles_, in));
     motion::step(holds_, {in.adaptive_feed, in.isFeedHeld, in.isFeedInhibited,
                           link_->steps_done.load(std::memory_order_acquire)});
     const bool isReversing = holds_.isReverseWanted || retracing_.retrace.isAway();
@@ -110,8 +110,7 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
                    (power_.mode == Mode::COORD && isReversing));
     step_kinematics(in);
     for (int n = 0; n < config_.num_spindles; ++n) {
-        const SpindleInputs &spindle = in.spindle[static_cast<std::size_t>(n)];
-        executor_.set_spindle(n, spindle.revs);
+        executor_.set_spindle(n, spindles_[n].turns);
         executor_.set_ramps(n, ramps_of(spindles_, n, settings_));
     }
     if (!power_.isEnabled) {
@@ -176,7 +175,7 @@ void Controller::stop_category_1(FaultKind kind, int index, double value) noexce
     hold(extra_);
 }
 
-void Controller::check_faults(const Inputs &in) noexcept {
+void Controller::check_faults(const Inputs &in, std::uint32_t spindles_lost) noexcept {
     if (!power_.isEnabled) {
         return;
     }
@@ -185,9 +184,13 @@ void Controller::check_faults(const Inputs &in) noexcept {
         return;
     }
     check_joints(in);
+    const int in_step = executor_.locked_spindle();
     for (int n = 0; n < config_.num_spindles; ++n) {
         if (in.spindle[static_cast<std::size_t>(n)].isAmpFaulted) {
             stop_category_1(FaultKind::SPINDLE_FAULT, n, 0);
+        }
+        if (n == in_step && (spindles_lost >> n & 1U) != 0) {
+            stop_category_1(FaultKind::SPINDLE_LOST, n, 0);
         }
     }
     if (in.misc_errors != 0) {

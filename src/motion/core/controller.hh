@@ -83,7 +83,8 @@ class Controller {
 
     // --- controller.cc
     void use_joints(int count) noexcept;
-    void check_faults(const Inputs &in) noexcept;
+    /// `spindles_lost`: bit per spindle whose feedback is not a number.
+    void check_faults(const Inputs &in, std::uint32_t spindles_lost) noexcept;
     void check_joints(const Inputs &in) noexcept;
     void step_kinematics(const Inputs &in) noexcept;
     void switch_kinematics(kins::TypeSwitch &types) noexcept;

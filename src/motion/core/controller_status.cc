@@ -138,8 +138,8 @@ void Controller::publish_view(const Inputs &in) noexcept {
     v.max_velocity = holds_.max_velocity;
     for (int n = 0; n < config_.num_spindles; ++n) {
         const auto i = static_cast<std::size_t>(n);
-        v.spindle_rps[i] = in.spindle[i].speed_in_rps;
-        v.spindle_revs[i] = in.spindle[i].revs;
+        v.spindle_rps[i] = spindles_[n].speed_rps;
+        v.spindle_revs[i] = spindles_[n].turns;
         v.spindle_ramps[i] = ramps_of(spindles_, n, settings_);
         v.spindles_reversible |= isReversible(settings_, n) ? 1U << n : 0U;
         v.spindles_ready |= isReady(spindles_[n], in.spindle[i]) ? 1U << n : 0U;

@@ -73,6 +73,27 @@ TEST(GantrySides, ALittleApartTheyAreLedTogetherWithoutAStep_C3_C9) {
     }
 }
 
+TEST(GantrySides, APinThatEnablesOffsetsAsksForNoMotionTheCountsDo_C1_C11) {
+    GantryRig rig;
+    rig.set(Parameter::AXIS_OFFSET_RATIO, 0, 0.3);
+    rig.in.axis_offset[0].isEnabled = true;
+    rig.in.axis_offset[0].scale = 0.01;
+    rig.in.axis_offset[0].counts = 300;
+    rig.step(10);
+    rig.sag(0.4);
+    rig.watch(3);
+    rig.send(Enable{});
+    rig.watch(300);
+    EXPECT_TRUE(rig.status().isEnabled);
+    EXPECT_EQ(rig.motor(2), 0.4) << "nothing moves by switching on";
+    const double x = rig.motor(0);
+    rig.in.axis_offset[0].counts += 100;
+    rig.watch(1000);
+    EXPECT_EQ(rig.motor(2), 0);
+    EXPECT_NEAR(rig.motor(0), x + 1, 1e-9);
+    EXPECT_EQ(rig.checker.report(), "");
+}
+
 TEST(GantrySides, FarApartTheyAreSwitchedOnInJointModeWhereTheyStand_C3_C4) {
     GantryRig rig;
     rig.sag(1.9);

@@ -321,6 +321,36 @@ TEST_P(Tapping, ASpindleThatDoesNotTurnBackOrJumpsEndsInAStop_C15) {
     }
 }
 
+TEST_P(Tapping, FeedbackThatIsNoNumberStopsWhatIsInStepAndNothingElse_C15) {
+    SpindleBench bench(tap_spindle(), GetParam());
+    const auto turn = bench.rig.before_step;
+    bool isLost = false;
+    bench.rig.before_step = [&](testing::MotionRig &r) {
+        turn(r);
+        if (isLost) {
+            r.in.spindle[0].revs = r.in.spindle[0].speed_in_rps = NAN;
+        }
+    };
+    bench.spin(1000);
+    isLost = true;
+    bench.rig.step(300);
+    isLost = false;
+    bench.rig.step(300);
+    EXPECT_TRUE(bench.rig.status().isEnabled);
+    const Hole hole = tap(bench, 10);
+    EXPECT_TRUE(hole.isMade);
+    EXPECT_LE(hole.farthest, 0.02);
+    bench.tap(10, BOTTOM, PITCH);
+    ASSERT_TRUE(bench.rig.run_until([&] { return bench.samples.back().z < -3; }));
+    isLost = true;
+    bench.rig.step(3000);
+    EXPECT_TRUE(kinds(bench.rig).contains(FaultKind::SPINDLE_LOST));
+    EXPECT_FALSE(bench.rig.status().isEnabled);
+    EXPECT_EQ(bench.rig.out->spindle[0].speed_rpm, 0);
+    EXPECT_GE(bench.samples.back().z, BOTTOM - 10 * PITCH) << "not on and on";
+    EXPECT_EQ(bench.limit_report(), "");
+}
+
 INSTANTIATE_TEST_SUITE_P(Planners, Tapping, ::testing::Bool(),
                          [](const auto &which) { return which.param ? "JerkLimited" : "Trapezoidal"; });
 

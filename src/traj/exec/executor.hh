@@ -130,6 +130,8 @@ class Executor : private ExecutorState {
     void drop_event() noexcept { store_.events.drop(); }
 
     bool isAtRest() const noexcept { return state_.motion == Motion::REST && state_.isSettled; }
+    /// The spindle that what moves is in step with, -1: none.
+    int locked_spindle() const noexcept { return state_.motion == Motion::LOCKED ? lock_.pass.spindle : -1; }
     /// Nothing is left of the path.
     bool isEmpty() const noexcept;
     const Snapshot &snapshot() const noexcept { return state_; }

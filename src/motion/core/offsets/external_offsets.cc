@@ -124,7 +124,9 @@ bool areAtRest(const ExternalOffsets &offsets) noexcept {
 bool areAsked(const ExternalOffsets &offsets, const std::array<OffsetInput, MAX_AXES> &pins) noexcept {
     std::uint32_t asked = 0;
     for (std::size_t i = 0; i < pins.size(); ++i) {
-        asked |= pins[i].isEnabled ? 1U << i : 0U;
+        const ExternalOffset &offset = offsets.axis[i];
+        const bool isAsked = pins[i].isEnabled && pins[i].counts != offset.counts;
+        asked |= isAsked || offset.request != offset.planner.position ? 1U << i : 0U;
     }
     return (asked & offsets.axes) != 0;
 }

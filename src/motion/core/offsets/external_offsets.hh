@@ -50,7 +50,7 @@ void stop(ExternalOffsets &offsets) noexcept;
 void stop_at_once(ExternalOffsets &offsets) noexcept;
 bool areAtRest(const ExternalOffsets &offsets) noexcept;
 
-/// A pin asks for one.
+/// Counts that have not been taken yet, or the way to what was asked for, want a motion.
 bool areAsked(const ExternalOffsets &offsets, const std::array<OffsetInput, MAX_AXES> &pins) noexcept;
 
 /// Where they may be from here on.

@@ -193,6 +193,19 @@ void switch_off(Spindles &spindles) noexcept {
     }
 }
 
+std::uint32_t measure(Spindles &spindles, const Inputs &in) noexcept {
+    std::uint32_t lost = 0;
+    for (int n = 0; n < spindles.count; ++n) {
+        Spindle &s = spindles[n];
+        const SpindleInputs &pins = in.spindle[at(n)];
+        const bool isCounted = std::isfinite(pins.revs);
+        s.turns = isCounted ? pins.revs : s.turns;
+        s.speed_rps = std::isfinite(pins.speed_in_rps) ? pins.speed_in_rps : 0.0;
+        lost |= isCounted ? 0U : 1U << n;
+    }
+    return lost;
+}
+
 std::uint32_t step(Spindles &spindles, const Inputs &in, const Settings &settings,
                    const SpindleCycle &cycle) noexcept {
     std::uint32_t faults = 0;
@@ -203,7 +216,7 @@ std::uint32_t step(Spindles &spindles, const Inputs &in, const Settings &setting
         const double scale = s.isTapping ? s.tap_scale : scale_of(s);
         const double rpm = within_range(settings, n, speed_of(s, cycle.x) * scale * s.tap_factor);
         s.out_rpm = pins.isInhibited || !s.isOn ? 0.0 : rpm;
-        watch(s.turn_back, {s.out_rpm / 60.0, pins.revs, pins.speed_in_rps, cycle.period_s});
+        watch(s.turn_back, {s.out_rpm / 60.0, s.turns, s.speed_rps, cycle.period_s});
         faults |= hasOrientFailed(s, pins) ? 1U << n : 0U;
     }
     return faults;

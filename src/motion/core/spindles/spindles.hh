@@ -19,6 +19,8 @@ struct Spindle {
     double speed_rpm = 0, css_factor = 0, css_max_rpm = 0, css_x_offset = 0;
     double scale = 1;
     double out_rpm = 0;
+    double turns = 0;      ///< the last ones counted that were a number
+    double speed_rps = 0;  ///< measured; 0 while that is no number
     bool isOn = false, isOverrideEnabled = true, isBrakeOn = false;
     bool isOrienting = false, isLocked = false;
     double orient_angle = 0;
@@ -54,6 +56,9 @@ Verdict take(Spindles &spindles, const SetScale &command) noexcept;
 Verdict take(Spindles &spindles, const SetSwitch &command) noexcept;
 /// The machine goes off.
 void switch_off(Spindles &spindles) noexcept;
+
+/// What the pins say of the spindles. Bit per spindle of which they say no number.
+std::uint32_t measure(Spindles &spindles, const Inputs &in) noexcept;
 
 struct SpindleCycle {
     double x = 0;  ///< commanded machine X, for constant surface speed

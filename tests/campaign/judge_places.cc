@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Whether slides are where joints say that they are.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "campaign/judge.hh"
+
+namespace mw::campaign {
+namespace {
+
+/// How exactly homing knows where a slide is.
+double found_within(const JointDesign &d, double period_s) {
+    const bool hasIndex = d.home_kind == HomeKind::SWITCH_AND_INDEX;
+    const bool hasSwitch = d.home_kind == HomeKind::SWITCH;
+    const double latched = hasSwitch ? std::abs(d.latch) * (2 * period_s + d.bounce_s) + d.hysteresis : 0;
+    return latched + 3 / d.counts_per_unit + 1e-6 + (hasIndex ? 0.01 : 0);
+}
+
+}  // namespace
+
+/// A joint that says that it is homed is where it says that it is.
+void Judge::check_homes(const Sample &s) {
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+        const JointSample &q = s.joints[j];
+        JointJudge &judge = joints_[j];
+        const JointDesign &d = design_.joints[j];
+        const bool isNew = q.isHomed && !judge.wasHomed;
+        judge.wasHomed = q.isHomed;
+        if (isNew) {
+            judge.reference = d.home_kind == HomeKind::IMMEDIATE ? q.pos_fb - q.position : 0;
+        }
+        if (!q.isHomed || !q.isTruthKnown || !std::isfinite(q.motor_fb)) {
+            continue;
+        }
+        const double off = q.pos_fb - q.position - judge.reference;
+        // In motion corrections may be late, and play is on either side.
+        const double allowed = found_within(d, period_) + 2 * d.play + 2 * d.screw_error;
+        if (!(std::abs(off) <= allowed)) {
+            fail("homed", fmt::format("joint {} says {:.6g} and is at {:.6g}", j, q.pos_fb,
+                                      q.position + judge.reference));
+        }
+    }
+}
+
+/// At rest a slide is where it is commanded: corrections have taken up play and what the screw is off.
+void Judge::check_places(const Sample &s) {
+    constexpr int RESTED = 60;           // the drive has settled
+    constexpr double DRIVE = 3e-3;       // friction holds it so near
+    constexpr double OVERSHOOT = 0.012;  // of the motor, which takes the slide with it one way only
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+        const JointSample &q = s.joints[j];
+        JointJudge &judge = joints_[j];
+        const JointDesign &d = design_.joints[j];
+        const bool isKnown =
+            q.isAmpOn && last_.joints[j].isAmpOn && q.isHomed && q.isTruthKnown && !q.isHoming;
+        judge.travel = isKnown ? judge.travel + std::abs(q.pos_cmd - last_.joints[j].pos_cmd) : 0;
+        judge.isPlaceKnown = judge.isPlaceKnown && q.isHomed && q.isTruthKnown;
+        // Until it has moved farther than the play nobody knows at which end of it the slide is.
+        const bool isJudged = d.isCorrected() && standing_ == RESTED && judge.travel > 1 + 4 * d.play;
+        if (!isJudged) {
+            continue;
+        }
+        const double off = q.position - q.pos_cmd;
+        judge.place = judge.isPlaceKnown ? judge.place : off;
+        judge.isPlaceKnown = true;
+        ++judged_[d.screw_type >= 0 ? "screw" : "backlash"];
+        const double allowed = DRIVE + 3 / d.counts_per_unit + (d.play > 0 ? OVERSHOOT : 0);
+        if (std::abs(off - judge.place) > allowed) {
+            fail("place", fmt::format("joint {} stands {:.6g} off, where it stood {:.6g} off before", j, off,
+                                      judge.place));
+        }
+        // Where the switch is met soon after a reversal play was not all taken up yet.
+        const double late = d.play + (design_.isJerkLimited ? d.screw_error : 0);
+        const bool isMeasured = d.home_kind != HomeKind::IMMEDIATE;
+        if (isMeasured && std::abs(off) > allowed + late + found_within(d, period_)) {
+            fail("place", fmt::format("joint {} stands {:.6g} off where it was homed to be", j, off));
+        }
+    }
+}
+
+}  // namespace mw::campaign
