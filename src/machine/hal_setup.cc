@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/stop_signals.hh"
 #include "base/text.hh"
 #include "hal_lang/lang/session.hh"
 #include "hal_lang/lang/two_pass.hh"
@@ -67,7 +68,7 @@ class SinkOutput final : public lang::Output {
 class RealtimePrograms final : public lang::ProgramHost {
   public:
     RealtimePrograms(lang::InProcessProgramHost &parts, std::set<std::string> names, hal::Hal &hal)
-        : parts_(parts), names_(std::move(names)), system_(hal) {}
+        : parts_(parts), names_(std::move(names)), system_(hal, &stop_signal) {}
     Result<lang::ProgramStart> start(const lang::ProgramRequest &request) override {
         const bool isPart = !request.argv.empty() && names_.count(lang::base_name(request.argv[0])) > 0;
         return isPart ? parts_.start(request) : system_.start(request);
@@ -168,6 +169,7 @@ Result<> HalSetup::run() {
     lang::SessionOptions session_options;
     session_options.hasPlaceholders = isVirtual;
     session_options.ini = &ini;
+    session_options.stop = &stop_signal;  // a program that never becomes ready does not hold a start for ever
     session_options.keepsGoing = options_.isKeptGoing;
     session_options.folders = options_.hal_folders;
     session_options.folders.push_back(parts_.ini.folder());

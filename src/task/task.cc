@@ -51,12 +51,7 @@ SequencerEvents Task::make_events() {
     events.stop = [this](const interp::ProgramStop &stop, int line) { return on_stop(stop, line); };
     events.end = [this] { run_.change(RunEvent::READ); };
     events.fail = [this](const std::string &text) { run_.note_failure(text); };
-    events.offsets = [this](const interp::UseOffsets &item) {
-        status_.offsets.g5x_index = item.g5x_index;
-        status_.offsets.g5x = item.g5x;
-        status_.offsets.g92 = item.g92;
-        status_.offsets.rotation_xy_deg = item.rotation_xy_deg;
-    };
+    events.offsets = [this](const interp::UseOffsets &item) { show_offsets(item); };
     events.tool_offset = [this](const interp::UseToolOffset &item) {
         status_.offsets.tool = item.offset;
         return motion_.send(motion::SetToolOffset{item.offset});
@@ -202,7 +197,10 @@ void Task::take_motion_news() {
         }
         tell(state_.refuse(answer.id, text));
         tell(mode_.refuse(answer.id, text));
-        tell(homing_.refuse(answer.id, text));
+        if (const auto refused = homing_.refuse(answer.id, text)) {
+            tell(refused);
+            desk_.refuse(homing_.drop(), "the joint before it was not homed");
+        }
     }
 }
 
@@ -227,6 +225,19 @@ void Task::update_state() {
     }
 }
 
+void Task::step_homing() {
+    const auto ended = homing_.step(motion_.isAnswered(homing_.order()), motion_.status());
+    tell(ended);
+    const bool hasFailed = ended.has_value() && ended->progress != Progress::DONE;
+    if (hasFailed || state_.state() != State::ON || mode_.mode() != Mode::MANUAL) {
+        desk_.refuse(homing_.drop(),
+                     "the joint before it was not homed, or the machine is no longer in manual mode");
+    }
+    if (const auto turn = homing_.take_turn()) {
+        homing_.begin(turn->joint, turn->command, motion_.send(motion::Home{turn->joint}));
+    }
+}
+
 void Task::end_requests() {
     tell(state_.end_request(now_ns_));
     const motion::Status &motion = motion_.status();
@@ -234,7 +245,7 @@ void Task::end_requests() {
     if (!run_.isRunning()) {
         mode_.follow(motion.mode);
     }
-    tell(homing_.step(motion_.isAnswered(homing_.order()), motion));
+    step_homing();
     const auto isAnswered = [this](motion::CommandId order) { return motion_.isAnswered(order); };
     while (const auto ended = orders_.next(isAnswered, now_ns_)) {
         tell(ended);
@@ -350,6 +361,24 @@ void Task::step_tools() {
     }
 }
 
+void Task::show_offsets(const interp::UseOffsets &item) {
+    status_.offsets.g5x_index = item.g5x_index;
+    status_.offsets.g5x = item.g5x;
+    status_.offsets.g92 = item.g92;
+    status_.offsets.rotation_xy_deg = item.rotation_xy_deg;
+}
+
+/// Without a run what was announced is in force: at the start, and after what an abort has dropped.
+void Task::show_idle_offsets() {
+    const TaskCanon &canon = reader_.canon();
+    if (!run_.isRunning() && canon.offsets().has_value()) {
+        show_offsets(*canon.offsets());
+    }
+    if (!run_.isRunning() && canon.tool_offset().has_value()) {
+        status_.offsets.tool = *canon.tool_offset();
+    }
+}
+
 void Task::update_status() {
     TaskStatus &task = status_.task;
     task.state = state_.state();
@@ -376,6 +405,7 @@ void Task::update_status() {
     task.error_code = run_.error() != nullptr ? INTERPRETER_ERROR : 0;
     task.block.assign(reader_.canon().block_text());
     status_.settings = shown_settings_.shown();
+    show_idle_offsets();
     const interp::ActiveCodes codes = reader_.interpreter().active_codes();
     status_.codes = {codes.g, codes.m, codes.settings};
     approach_.show(status_.approach, status_.offsets, status_.codes);

@@ -133,6 +133,7 @@ class Task {
     void take_motion_news();
     void update_state();
     void end_requests();
+    void step_homing();
     void check_run_mode();
     void carry_out_commands();
     void carry_out(mailbox::Serial serial, const Command &command);
@@ -153,6 +154,8 @@ class Task {
     void tell(const std::optional<Ending> &ending);
     void step_tools();
     void update_status();
+    void show_offsets(const interp::UseOffsets &item);
+    void show_idle_offsets();
     /// Takes the machine's position and state as the program's.
     void synch_interpreter();
     void show_world() { world_.show(snapshot_of(motion_.status(), io_.outputs, sequencer_)); }

@@ -41,6 +41,7 @@ void Task::abort_work(AbortReason reason) {
     io_.set_mist(false);
     run_.forget_failure();
     tell(homing_.give_up("aborted"));
+    desk_.refuse(homing_.drop(), OVERTAKEN);
     tell(mode_.give_up("aborted"));
     if (!isFollowing) {
         begin_clean_up(reason);

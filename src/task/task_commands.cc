@@ -366,7 +366,7 @@ Outcome Task::Handler::operator()(const SetTeleop &command) {
 
 Outcome Task::Handler::operator()(const HomeJoint &command) {
     if (task.homing_.isUnderWay()) {
-        return fail("homing is under way already");
+        return task.homing_.wait(command.joint, id);
     }
     task.motion_.send(motion::SetMode{motion::Mode::FREE});
     task.homing_.begin(command.joint, id, task.motion_.send(motion::Home{command.joint}));

@@ -95,6 +95,7 @@ def status():
     limits = [joint['max_position_limit'] for joint in s.joint[:4]]
     assert limits == [251.0, 201.0, 101.0, 1.0], limits
     assert s.ini_filename == os.environ['INI_FILE_NAME'] and os.path.isdir(os.environ['CONFIG_DIR'])
+    assert s.g5x_index == 1 and s.g5x_offset[0] == 0.5, 'what is in force before anything has run'
     tool = s.tool_table[1]
     assert tool.id == tool[0] and len(tool) == 14 and tool.diameter == s.toolinfo(tool.id)['diameter']
     for number in (0, 98765):
@@ -182,7 +183,7 @@ def commands():
     c.mdi('G0 X3 Y4')
     assert c.wait_complete() == linuxcnc.RCS_DONE
     s.poll()
-    assert s.position[:2] == (3.0, 4.0) and s.state == linuxcnc.RCS_DONE, s.position
+    assert s.position[:2] == (3.5, 4.0) and s.state == linuxcnc.RCS_DONE, s.position
     c.mdi('G1 X30 F60')
     assert c.wait_complete(0.2) == -1, 'it takes longer'
     s.poll()
@@ -223,7 +224,7 @@ def program():
     s.poll()
     assert s.file.endswith('short.ngc')
     c.auto(linuxcnc.AUTO_RUN, 0)
-    wait_for(lambda: s.task_paused == 1 and s.position[0] == 5, 'M0')
+    wait_for(lambda: s.task_paused == 1 and s.position[0] == 5.5, 'M0')
     assert s.interp_state == linuxcnc.INTERP_PAUSED and s.state == linuxcnc.RCS_EXEC
     messages = []
     while (message := e.poll()) is not None:
@@ -232,7 +233,7 @@ def program():
     c.auto(linuxcnc.AUTO_RESUME)
     wait_for(lambda: s.delay_left > 0 and s.exec_state == linuxcnc.EXEC_WAITING_FOR_DELAY, 'the dwell')
     wait_for(lambda: s.interp_state == linuxcnc.INTERP_IDLE and s.state == linuxcnc.RCS_DONE, 'the end')
-    assert s.position[0] == 10
+    assert s.position[0] == 10.5
     logger = linuxcnc.positionlogger(s, *[(10 * i, 0, 0, 255) for i in range(6)], 'XYZ')
     import threading
     thread = threading.Thread(target=logger.start, args=(0.002,))
@@ -246,7 +247,7 @@ def program():
     thread.join()
     rows, count, is_xyuv = logger.points()
     assert count == logger.npts >= 3 and len(rows) == 32 * count and not is_xyuv, count
-    assert logger.last(0)[:2] == (20.0, 20.0) and logger.get_colors()[2] == (20, 0, 0, 255)
+    assert logger.last(0)[:2] == (20.5, 20.0) and logger.get_colors()[2] == (20, 0, 0, 255)
     logger.clear()
     assert logger.npts == 0 and logger.last() is None
 

@@ -33,6 +33,9 @@ class Stat {
     /// Never waits for the machine, and costs it nothing: reads what it published last.
     void poll() {
         client::Viewer &viewer = view_.viewer();
+        if (viewer.segment().cycles.load(std::memory_order_acquire) == 0) {
+            return;  // programs of HAL files look before task has begun: nothing yet
+        }
         const auto read = viewer.read_status();
         if (!read.has_value()) {
             throw_error(read.error().str());

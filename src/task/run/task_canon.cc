@@ -34,19 +34,27 @@ void TaskCanon::take(const interp::MachineCall &call) {
                 add(move);
             },
             [this](const interp::ChangeTool &) { change_tool(); },
+            [this](const interp::UseOffsets &offsets) {
+                offsets_ = offsets;
+                add(offsets);
+            },
+            [this](const interp::UseToolOffset &offset) {
+                tool_offset_ = offset.offset;
+                add(offset);
+            },
             // Comments are for canons that print; this machine has no shuttle to move.
             [](const OneOf<interp::ProgramComment, interp::PalletShuttle> auto &) {},
-            [this](const OneOf<interp::TapMove, interp::Dwell, interp::UseToolOffset, interp::UseOffsets,
-                               interp::UsePlanner, interp::SetSpindleMode, interp::UseSpindleSpeed,
-                               interp::StartSpindle, interp::StopSpindle, interp::OrientSpindle,
-                               interp::WaitOrientComplete, interp::SelectTool, interp::ChangeToolNumber,
-                               interp::SetToolTableEntry, interp::ReloadTools, interp::SwitchMist,
-                               interp::SwitchFlood, interp::SwitchFeedOverride, interp::SwitchSpeedOverride,
-                               interp::SwitchFeedHold, interp::SwitchAdaptiveFeed, interp::SetDigitalOutput,
-                               interp::SetAnalogOutput, interp::WaitInput, interp::ProgramStop,
-                               interp::ProgramEnd, interp::Finish, interp::UserCode, interp::OperatorMessage,
-                               interp::PrintLine, interp::OpenLog, interp::LogLine, interp::CloseLog,
-                               interp::LogProbes, interp::CanonError> auto &one) { add(one); },
+            [this](
+                const OneOf<interp::TapMove, interp::Dwell, interp::UsePlanner, interp::SetSpindleMode,
+                            interp::UseSpindleSpeed, interp::StartSpindle, interp::StopSpindle,
+                            interp::OrientSpindle, interp::WaitOrientComplete, interp::SelectTool,
+                            interp::ChangeToolNumber, interp::SetToolTableEntry, interp::ReloadTools,
+                            interp::SwitchMist, interp::SwitchFlood, interp::SwitchFeedOverride,
+                            interp::SwitchSpeedOverride, interp::SwitchFeedHold, interp::SwitchAdaptiveFeed,
+                            interp::SetDigitalOutput, interp::SetAnalogOutput, interp::WaitInput,
+                            interp::ProgramStop, interp::ProgramEnd, interp::Finish, interp::UserCode,
+                            interp::OperatorMessage, interp::PrintLine, interp::OpenLog, interp::LogLine,
+                            interp::CloseLog, interp::LogProbes, interp::CanonError> auto &one) { add(one); },
         },
         call);
 }

@@ -2,6 +2,7 @@
 // The canon that runs a program: appends to the ordered queue, never blocks.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,10 @@ class TaskCanon final : public interp::MachineCanon {
     const std::string &file_name(std::uint32_t index) const { return files_[index]; }
     /// The block that was read last, as it is written.
     const std::string &block_text() const { return text_; }
+    /// The offsets that were announced last: those in force once the queue is carried out, and where nothing
+    /// runs. Nothing before the first.
+    const std::optional<interp::UseOffsets> &offsets() const { return offsets_; }
+    const std::optional<geom::Pose> &tool_offset() const { return tool_offset_; }
     void reset();
     /// So many have come before.
     void set_blocks(std::uint32_t blocks) { tag_.block = blocks; }
@@ -51,6 +56,8 @@ class TaskCanon final : public interp::MachineCanon {
     motion::SourceTag tag_{};
     std::vector<std::string> files_;
     std::string text_;
+    std::optional<interp::UseOffsets> offsets_;
+    std::optional<geom::Pose> tool_offset_;
 };
 
 }  // namespace mw::task

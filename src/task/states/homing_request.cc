@@ -9,6 +9,36 @@ void HomingRequest::begin(int joint, mailbox::Serial command, motion::CommandId 
     request_.set_order(order);
 }
 
+Result<Progress> HomingRequest::wait(int joint, mailbox::Serial command) {
+    bool isFree = joint >= 0 && joint_ >= 0 && joint != joint_;
+    for (const Turn &turn : waiting_) {
+        isFree &= turn.joint != joint;
+    }
+    if (!isFree) {
+        return fail("homing is under way already");
+    }
+    waiting_.push_back({joint, command});
+    return Progress::STARTED;
+}
+
+std::optional<HomingRequest::Turn> HomingRequest::take_turn() {
+    if (isUnderWay() || waiting_.empty()) {
+        return std::nullopt;
+    }
+    const Turn turn = waiting_.front();
+    waiting_.pop_front();
+    return turn;
+}
+
+std::vector<mailbox::Serial> HomingRequest::drop() {
+    std::vector<mailbox::Serial> dropped;
+    for (const Turn &turn : waiting_) {
+        dropped.push_back(turn.command);
+    }
+    waiting_.clear();
+    return dropped;
+}
+
 std::optional<Ending> HomingRequest::step(bool isAnswered, const motion::Status &motion) {
     if (!isUnderWay() || !isAnswered || motion.isHoming) {
         return std::nullopt;

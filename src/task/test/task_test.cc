@@ -124,18 +124,50 @@ TEST_F(TaskTest, AHoldOfARunThatWaitsForTheModeHoldsIt_D1) {
     EXPECT_EQ(progress(run), Progress::DONE);
 }
 
-TEST_F(TaskTest, HomingOfAnotherJointDoesNotLoseTheFirst_D1) {
+TEST_F(TaskTest, HomingOfAnotherJointWaitsForTheFirst_D1) {
     motion.status.isHoming = true;
     const auto first = post(HomeJoint{0});
     cycles(3);
-    EXPECT_EQ(ask(HomeJoint{1}, 3), Progress::REFUSED);
-    EXPECT_NE(reason(request).find("homing"), std::string::npos);
+    const auto second = post(HomeJoint{1});
+    cycles(3);
+    for (const int joint : {0, 1, -1}) {  // under way, waiting, all
+        EXPECT_EQ(ask(HomeJoint{joint}, 3), Progress::REFUSED);
+        EXPECT_NE(reason(request).find("homing"), std::string::npos);
+    }
     EXPECT_EQ(progress(first), Progress::STARTED);
+    EXPECT_EQ(progress(second), Progress::STARTED);
     EXPECT_EQ(task.status().task.waiting.index, 0);
     motion.status.isHoming = false;
     motion.status.joint[0].isHomed = true;
+    cycles(1);
+    motion.status.isHoming = true;
     cycles(3);
     EXPECT_EQ(progress(first), Progress::DONE) << reason(first);
+    EXPECT_EQ(progress(second), Progress::STARTED);
+    EXPECT_EQ(task.status().task.waiting.index, 1);
+    motion.status.isHoming = false;
+    motion.status.joint[1].isHomed = true;
+    cycles(3);
+    EXPECT_EQ(progress(second), Progress::DONE) << reason(second);
+}
+
+TEST_F(TaskTest, AJointThatWaitsToBeHomedIsNotAfterAStop_D1) {
+    for (const bool isAborted : {true, false}) {
+        motion.status.isHoming = true;
+        const auto first = post(HomeJoint{0});
+        cycles(3);
+        const auto second = post(HomeJoint{1});
+        cycles(3);
+        EXPECT_EQ(progress(second), Progress::STARTED);
+        if (isAborted) {
+            EXPECT_EQ(ask(AbortAll{}), Progress::DONE);
+        }
+        motion.status.isHoming = false;  // the first joint is not homed
+        cycles(5);
+        EXPECT_EQ(progress(first), Progress::FAILED) << reason(first);
+        EXPECT_EQ(progress(second), Progress::REFUSED) << reason(second);
+        EXPECT_EQ(task.status().task.waiting.what, WaitFor::NOTHING);
+    }
 }
 
 TEST_F(TaskTest, AProgramRunsToItsEnd_D1) {
