@@ -37,7 +37,7 @@ void run_program(benchmark::State &state, const char *ini, const char *program) 
         status = status.has_value() ? person.open_program(std::string(MW_SOURCE_DIR "/") + program) : status;
         const std::int64_t start_ns = (*machine)->now_ns();
         state.ResumeTiming();
-        status = status.has_value() ? person.run_program([] {}) : status;
+        status = status.has_value() ? person.run_program(1, [] {}) : status;
         state.PauseTiming();
         virtual_s += static_cast<double>((*machine)->now_ns() - start_ns) * 1e-9;
         person.switch_off();
