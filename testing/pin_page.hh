@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,12 @@ std::vector<PinText> pin_texts(const ForEach &for_each) {
     return out;
 }
 
+inline std::string number_text(double value) {
+    std::ostringstream text;
+    text << value;
+    return text.str();
+}
+
 /// The line of the manual page, in the form of scdoc.
 inline std::string page_line(const PinText &row) {
     std::string dir = hal::dir_name(row.dir);
@@ -51,7 +58,7 @@ inline std::string page_line(const PinText &row) {
     std::string line =
         '*' + replaced(row.name, "_", "\\_") + "* " + hal::type_name(row.type) + ' ' + replaced(dir, "/", "");
     const bool isBit = row.type == hal::Type::BIT;
-    line += row.start == 0 ? "" : isBit ? " (default: TRUE)" : " (default: 1)";
+    line += row.start == 0 ? "" : isBit ? " (default: TRUE)" : " (default: " + number_text(row.start) + ")";
     line += ": " + replaced(row.doc, "_", "\\_");
     return line + (row.unit.empty() ? "" : " \\[" + row.unit + "]") + "++";
 }

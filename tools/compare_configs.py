@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Runs the simulator configurations of an installed LinuxCNC under `millwright run`, in virtual time, and counts.
 
-usage: compare_configs.py [--bin DIR] [--configs DIR] [--hallib DIR] [--only TEXT] [--timeout S] [--out FILE]
+usage: compare_configs.py [--bin DIR] [--configs DIR] [--hallib DIR] [--only TEXT] [--timeout S] [--out FILE] [--start]
 
 Each configuration is run in a temporary copy of the whole folder, with a small program for its axes: every axis is
 moved a little within its limits. What is counted as run: the program came to its end with status 0.
+With --start: brought up by `linuxcnc -r` with a script as the display, which switches the machine on and ends it;
+configurations without an [EMC] section are parts of others and are left out.
 Nothing of that installation is started; its folder of HAL files is named once, in MILLWRIGHT_HALLIB.
 """
 import argparse
@@ -126,6 +128,47 @@ def run(options, ini, folder, place):
         return reason_of(text, status)
 
 
+SCREEN = """#!/usr/bin/env python3
+import sys, time
+import linuxcnc
+s, c = linuxcnc.stat(), linuxcnc.command()
+c.state(linuxcnc.STATE_ESTOP_RESET)
+c.wait_complete()
+c.state(linuxcnc.STATE_ON)
+c.wait_complete()
+s.poll()
+if s.task_state != linuxcnc.STATE_ON:
+    sys.exit("error: it does not switch on")
+"""
+
+
+def start(options, ini, folder, place):
+    """(class, line of the error); class "" when it has come up, was switched on and has ended with status 0."""
+    with tempfile.TemporaryDirectory(dir=place) as place:
+        copy = pathlib.Path(place) / "configs"
+        shutil.copytree(folder, copy, symlinks=True, copy_function=os.link)
+        mine = copy / ini.relative_to(folder)
+        screen = mine.parent / "mw_screen.py"
+        screen.write_text(SCREEN)
+        screen.chmod(0o755)
+        lines = [re.sub(r"^\s*DISPLAY\s*=.*", "DISPLAY = ./mw_screen.py", line) for line in merged(mine)]
+        mine.unlink()
+        mine.write_text("\n".join(lines) + "\n")
+        environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
+        environment.update(MILLWRIGHT_HALLIB=options.hallib, HOME=place, MILLWRIGHT_INSTANCE="configs-%d" % os.getpid())
+        with subprocess.Popen([options.bin + "/linuxcnc", "-r", str(mine)], cwd=mine.parent, env=environment,
+                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                              errors="replace") as process:
+            try:
+                text, _ = process.communicate(timeout=options.timeout)
+                status = process.returncode
+            except subprocess.TimeoutExpired:
+                process.terminate()
+                text, _ = process.communicate(timeout=30)
+                status = 124
+        return ("", "") if status == 0 else reason_of(text, status)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bin", default=str(ROOT / "build/release/bin"))
@@ -135,9 +178,13 @@ def main():
     parser.add_argument("--timeout", type=float, default=30.0)
     parser.add_argument("--out", default="", help="a table: configuration, class, first error")
     parser.add_argument("--least", type=int, default=0, help="fail when fewer run")
+    parser.add_argument("--start", action="store_true", help="bring each up with a script as its display")
     options = parser.parse_args()
     folder = pathlib.Path(options.configs)
+    judge = start if options.start else run
     inis = sorted(ini for ini in folder.rglob("*.ini") if options.only in str(ini.relative_to(folder)))
+    if options.start:
+        inis = [ini for ini in inis if re.search(r"^\[EMC\]", ini.read_text(errors="replace"), re.M)]
     if not inis:
         sys.exit("no configuration in " + options.configs)
     out = open(options.out, "w") if options.out else None
@@ -146,7 +193,7 @@ def main():
         whole = pathlib.Path(place) / "whole"
         shutil.copytree(folder, whole, symlinks=True)
         for ini in inis:
-            name, line = run(options, whole / ini.relative_to(folder), whole, place)
+            name, line = judge(options, whole / ini.relative_to(folder), whole, place)
             classes[name] += 1
             row = "%s\t%s\t%s" % (ini.relative_to(folder), name or "run", line.replace(place, ""))
             print(row if name else row.rstrip(), flush=True)

@@ -81,11 +81,12 @@ Result<> Operator::open_program(const std::string &path) {
     return status.has_value() ? ask(msgs::OpenProgram{path}, "opening the program") : status;
 }
 
-Result<> Operator::run_program(const std::function<void()> &each_cycle) {
+Result<> Operator::run_program(int from_line, const std::function<void()> &each_cycle) {
     const auto wall_start = std::chrono::steady_clock::now();
     const std::int64_t start_ns = machine_.now_ns();
     panel_.begin_program(program_lines_);
-    const auto status = wait_for(machine_.client().post(msgs::RunProgram{}), "the program", each_cycle);
+    const auto status =
+        wait_for(machine_.client().post(msgs::RunProgram{from_line}), "the program", each_cycle);
     figures_.cycle_time_s = static_cast<double>(machine_.now_ns() - start_ns) * 1e-9;
     figures_.wall_time_s =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();

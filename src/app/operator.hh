@@ -44,8 +44,8 @@ class Operator {
     Result<> home_all();
     Result<> set_switches(const ProgramSwitches &switches);
     Result<> open_program(const std::string &path);
-    /// Runs to the end. `each_cycle` is called after every task cycle.
-    Result<> run_program(const std::function<void()> &each_cycle);
+    /// Runs to the end, from a line (0: the first). `each_cycle` is called after every task cycle.
+    Result<> run_program(int from_line, const std::function<void()> &each_cycle);
     /// Stops whatever moves; the machine stays on.
     void stop();
     /// Stops whatever moves and switches the machine off.

@@ -82,6 +82,7 @@ void Panel::step() {
         }
     }
     look_at_stop();
+    look_at_approach();
     if (isRunning_ && hasLine_ && now - last_written_ >= WRITE_EVERY) {
         last_written_ = now;
         write_line();
@@ -99,7 +100,13 @@ void Panel::take_key(char key) {
     switch (key) {
     case 'h':
     case ' ': post(msgs::PauseProgram{}); break;
-    case 'r': post(msgs::ResumeProgram{}); break;
+    case 'r':
+        if (const std::uint64_t proposed = status().approach.number; proposed != 0) {
+            post(msgs::ConfirmApproach{proposed});
+        } else {
+            post(msgs::ResumeProgram{});
+        }
+        break;
     case 'a': post(msgs::AbortAll{}); break;
     case 't':
         if (status().tool.isPersonAsked) {
@@ -128,6 +135,25 @@ void Panel::look_at_stop() {
         sink_.note(fmt::format("program stop at line {}: waiting for {}", status.task.stop_line,
                                config_.hasHalui ? "pin halui.program.resume"
                                                 : "a signal, since there is neither a terminal nor halui"));
+    }
+}
+
+/// The message that task has posted says where it leads.
+void Panel::look_at_approach() {
+    const std::uint64_t proposed = status().approach.number;
+    if (proposed == 0 || proposed == approach_told_) {
+        return;
+    }
+    approach_told_ = proposed;
+    clear_line();
+    if (attendance_ == Attendance::SIMULATED) {
+        sink_.note("the way is confirmed by the simulated operator");
+        post(msgs::ConfirmApproach{proposed});
+    } else if (attendance_ == Attendance::TERMINAL) {
+        sink_.note("key r confirms the way, a drops it");
+    } else {
+        sink_.note(std::string("the way waits for ") +
+                   (config_.hasHalui ? "pin halui.program.resume" : "a signal, since nobody can confirm it"));
     }
 }
 

@@ -46,6 +46,7 @@ class Panel {
     void take_key(char key);
     void post(const msgs::Command &command);
     void look_at_stop();
+    void look_at_approach();
     void write_line();
     void clear_line();
     int line_reached();
@@ -59,7 +60,8 @@ class Panel {
     std::optional<Keyboard> keyboard_;
     bool hasLine_;  ///< standard error is a terminal
     bool isRunning_ = false;
-    std::uint64_t stops_told_ = 0;  ///< as Status::stops counts them
+    std::uint64_t stops_told_ = 0;     ///< as Status::stops counts them
+    std::uint64_t approach_told_ = 0;  ///< number of the proposal
     int stops_passed_ = 0;
     int lines_ = 0, line_ = 0;
     std::chrono::steady_clock::time_point last_written_{}, last_key_{};

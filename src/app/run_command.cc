@@ -220,10 +220,10 @@ class Run {
             status = recorder->open_trace(words_.trace, loaded_.machine);
         }
         if (!status.has_value() || recorder == nullptr) {
-            return status.has_value() ? person.run_program([] {}) : status;
+            return status.has_value() ? person.run_program(words_.from_line, [] {}) : status;
         }
         recorder->start();
-        status = person.run_program([recorder] { recorder->drain(); });
+        status = person.run_program(words_.from_line, [recorder] { recorder->drain(); });
         const auto finished = recorder->finish();
         return status.has_value() ? finished : status;
     }

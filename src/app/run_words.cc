@@ -7,6 +7,7 @@ namespace mw::app {
 namespace {
 
 constexpr double MOST_PATIENCE_S = 1e9;
+constexpr int MOST_LINES = 1000000000;
 
 options::CommandLine run_line(RunWords &run, options::Words &rest) {
     options::CommandLine line(
@@ -29,6 +30,9 @@ options::CommandLine run_line(RunWords &run, options::Words &rest) {
               run.isConfirmed);
     line.text("--trace", "FILE.csv", "write the commanded positions of every servo cycle", run.trace);
     line.text("--plot", "FILE", "draw the tool path, as .png or .svg; of a refused program too", run.plot);
+    line.number("--from-line", "N",
+                "begin at this line: what comes before is calculated, the way there confirmed by a person",
+                run.from_line, 1, MOST_LINES);
     line.number("--patience", "SECONDS",
                 "give up after so long without progress (default 60, in the machine's time)", run.patience_s,
                 0.001, MOST_PATIENCE_S);

@@ -14,6 +14,7 @@ struct RunWords {
     bool isRealtime = false, isStrict = false, isEstimated = true, isChecked = true, isConfirmed = false;
     ProgramSwitches switches;
     double patience_s = 60.0;
+    int from_line = 0;  ///< 0: the first
 };
 
 /// What --help says.

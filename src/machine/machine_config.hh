@@ -22,6 +22,14 @@ struct HalStep {
     SourcePlace place;
 };
 
+/// What pins for an operator need to know.
+struct PanelConfig {
+    double max_feed_override = 1;
+    double min_spindle_override = 0, max_spindle_override = 1;
+    double max_velocity = 0;                ///< [machine units/s]
+    std::vector<std::string> mdi_commands;  ///< [HALUI]MDI_COMMAND
+};
+
 struct MachineConfig {
     std::string name;
     std::string coordinates;  ///< upper case letters in the order given, "XYZ", "XYYZ"
@@ -36,6 +44,7 @@ struct MachineConfig {
     std::vector<HalStep> hal_steps;
     std::string two_pass;  ///< [HAL]TWOPASS: not empty when files are gone through twice
     bool hasHalui = false;
+    PanelConfig panel;
     std::string shutdown_file;              ///< a HAL file for the end, not run here
     std::vector<std::string> applications;  ///< programs beside the display, not started here
     double applications_delay_s = 0;

@@ -11,6 +11,20 @@ namespace {
 constexpr const char *ESTOP_PIN = "iocontrol.0.emc-enable-in";
 constexpr const char *MOTION_ESTOP_PIN = "motion.emc-enable-in";
 
+ui::HaluiSettings halui_settings(const MachineConfig &config) {
+    constexpr double MM_PER_INCH = 25.4;
+    ui::HaluiSettings settings;
+    settings.num_joints = config.num_joints;
+    settings.num_spindles = config.num_spindles;
+    settings.axis_mask = config.axis_mask;
+    settings.units_per_mm = config.isMetric ? 1.0 : 1.0 / MM_PER_INCH;
+    settings.max_feed_override = config.panel.max_feed_override;
+    settings.spindle_override = {config.panel.min_spindle_override, config.panel.max_spindle_override};
+    settings.max_velocity = config.panel.max_velocity;
+    settings.mdi_commands = config.panel.mdi_commands;
+    return settings;
+}
+
 }  // namespace
 
 TaskSide::TaskSide(const MachineParts &parts, hal::Host &host, mailbox::Memory mailbox)
@@ -26,8 +40,8 @@ TaskSide::~TaskSide() {
 
 Result<> TaskSide::start(const MachineOptions &options) {
     diag::Sink unheard;
-    auto tools =
-        open_tools(parts_.config, options.isToolTableTold ? unheard : parts_.sink, {options.isClockVirtual});
+    auto tools = open_tools(parts_.config, options.isToolTableTold ? unheard : parts_.sink,
+                            {!options.isClockVirtual, options.isClockVirtual});
     if (!tools.has_value()) {
         return std::unexpected(tools.error());
     }
@@ -76,7 +90,7 @@ Result<> TaskSide::make_pins() {
         status = ini_pins_.create(host_.hal(), parts_.config.parameters, parts_.config.num_joints);
     }
     if (status.has_value() && parts_.config.hasHalui) {
-        status = halui_.create(host_.hal(), parts_.config.num_joints);
+        status = halui_.create(host_.hal(), halui_settings(parts_.config));
     }
     return status;
 }

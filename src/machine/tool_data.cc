@@ -2,7 +2,9 @@
 #include "machine/tool_data.hh"
 
 #include <algorithm>
+#include <filesystem>
 
+#include "base/atomic_file.hh"
 #include "machine/tool_database.hh"
 #include "machine/tool_file.hh"
 
@@ -12,9 +14,45 @@ Result<> ToolData::load_spindle(int index) {
     if (index < 0 || index >= count()) {
         return fail("the tool table has no entry " + std::to_string(index));
     }
+    save_life();
     table_.load_spindle(index);
     ++version_;
     return {};
+}
+
+void ToolData::keep_life(const std::string &path, diag::Sink &sink) {
+    std::error_code missing;
+    if (std::filesystem::exists(path, missing)) {
+        const auto text = read_file(path);
+        const auto read =
+            text.has_value() ? tool::LifeBook::parse(*text, path) : std::unexpected(text.error());
+        if (!read.has_value()) {
+            sink.warning(read.error().message + ": the life of tools is not kept", read.error().place);
+            return;
+        }
+        life_ = *read;
+    }
+    life_path_ = path;
+}
+
+void ToolData::save_life() {
+    if (life_path_.empty() || unsaved_life_s_ == 0) {
+        return;
+    }
+    unsaved_life_s_ = 0;
+    static_cast<void>(write_file_atomically(life_path_, life_.text()));
+}
+
+void ToolData::note_cut(int toolno, const tool::CutLife &cut) {
+    constexpr double MOST_UNSAVED_S = 60;
+    if (cut.time_s <= 0) {
+        return;
+    }
+    life_.add(toolno, cut);
+    unsaved_life_s_ += cut.time_s;
+    if (unsaved_life_s_ > MOST_UNSAVED_S) {
+        save_life();
+    }
 }
 
 Result<> ToolData::set_entry(int index, const interp::ToolEntry &entry) {
@@ -39,8 +77,10 @@ void ToolData::replace(tool::Table table) {
     ++version_;
 }
 
-Result<std::unique_ptr<task::ToolStore>> open_tools(const MachineConfig &machine, diag::Sink &sink,
-                                                    const ToolOptions &options) {
+namespace {
+
+Result<std::unique_ptr<task::ToolStore>> open_kept(const MachineConfig &machine, diag::Sink &sink,
+                                                   const ToolOptions &options) {
     const auto changer = machine.isRandomToolchanger ? tool::Changer::RANDOM : tool::Changer::FIXED;
     if (!machine.tool_database.empty()) {
         return ToolDatabase::start({machine.tool_database, machine.ini_folder, changer, options.isWaitedFor},
@@ -49,12 +89,27 @@ Result<std::unique_ptr<task::ToolStore>> open_tools(const MachineConfig &machine
     return ToolFile::load(machine.tool_table_file, sink, changer);
 }
 
+}  // namespace
+
+Result<std::unique_ptr<task::ToolStore>> open_tools(const MachineConfig &machine, diag::Sink &sink,
+                                                    const ToolOptions &options) {
+    auto made = open_kept(machine, sink, options);
+    const bool hasPlace = !machine.tool_database.empty() || !machine.tool_table_file.empty();
+    if (made.has_value() && options.isLifeKept && hasPlace) {
+        const std::filesystem::path path = machine.tool_database.empty()
+                                               ? std::filesystem::path(machine.tool_table_file + ".life")
+                                               : std::filesystem::path(machine.ini_folder) / "tool.life";
+        static_cast<ToolData &>(**made).keep_life(path.string(), sink);
+    }
+    return made;
+}
+
 Result<std::unique_ptr<task::ToolStore>> read_tools(const MachineConfig &machine, diag::Sink &sink) {
     const auto opened = open_tools(machine, sink);
     if (!opened.has_value()) {
         return std::unexpected(opened.error());
     }
-    return std::make_unique<ToolData>(static_cast<const ToolData &>(**opened));
+    return std::make_unique<ToolData>(static_cast<const ToolData &>(**opened).table());
 }
 
 }  // namespace mw::machine

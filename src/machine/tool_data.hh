@@ -7,6 +7,7 @@
 #include "diag/sink.hh"
 #include "machine/machine_config.hh"
 #include "task/link/tool_store.hh"
+#include "tool/life.hh"
 #include "tool/table.hh"
 
 namespace mw::machine {
@@ -15,6 +16,9 @@ namespace mw::machine {
 class ToolData : public task::ToolStore {
   public:
     explicit ToolData(tool::Table table) : table_(std::move(table)) {}
+    ToolData(const ToolData &other) = delete;
+    ToolData &operator=(const ToolData &other) = delete;
+    ~ToolData() override { save_life(); }
 
     int count() const override { return table_.count(); }
     interp::ToolEntry entry(int index) const override { return table_.entry(index); }
@@ -26,18 +30,30 @@ class ToolData : public task::ToolStore {
     Result<> reload() override { return {}; }
     std::uint64_t version() const override { return version_; }
 
-  protected:
+    /// Keeps the life of tools in this file from here on; `sink` is warned when it cannot be read. It is
+    /// written at changes of the tool, after each minute in cut, and by save_life().
+    void keep_life(const std::string &path, diag::Sink &sink);
+    void save_life();
+    void note_cut(int toolno, const tool::CutLife &cut) override;
+    tool::CutLife life(int toolno) const override { return life_.of(toolno); }
+
     const tool::Table &table() const { return table_; }
+
+  protected:
     /// Takes the tools that were read; what the spindle of a fixed changer holds stays.
     void replace(tool::Table table);
 
   private:
     tool::Table table_;
     std::uint64_t version_ = 1;
+    tool::LifeBook life_;
+    std::string life_path_;  ///< empty: nowhere
+    double unsaved_life_s_ = 0;
 };
 
 /// How the tools of a machine are opened.
 struct ToolOptions {
+    bool isLifeKept = false;   ///< a machine that really cuts
     bool isWaitedFor = false;  ///< a database program is waited for within a cycle: for virtual clocks
 };
 

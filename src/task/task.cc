@@ -1,12 +1,32 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "task/task.hh"
 
+#include <algorithm>
+#include <cmath>
+
 #include "interp/scripts/user_codes.hh"
 #include "motion/api/texts.hh"
 #include "task/link/motion_status.hh"
 #include "task/task_start.hh"
 
 namespace mw::task {
+
+namespace {
+
+/// What the tool in the spindle has cut since that status: the axes fed while a spindle turned.
+tool::CutLife cut_since(const Status &status, std::int64_t now_ns) {
+    constexpr double S_PER_NS = 1e-9;
+    const double elapsed_s = static_cast<double>(now_ns - status.time_ns) * S_PER_NS;
+    const MoveKind kind = status.trajectory.move_kind;
+    const bool isFeeding = kind == MoveKind::FEED || kind == MoveKind::ARC;
+    const bool isTurning =
+        std::ranges::any_of(status.spindles, [](const SpindleStatus &spindle) { return spindle.isOn; });
+    const double velocity = std::abs(status.trajectory.current_velocity);
+    const bool isCutting = isFeeding && isTurning && velocity > 0 && status.tool.in_spindle > 0;
+    return isCutting ? tool::CutLife{elapsed_s, velocity * elapsed_s} : tool::CutLife{};
+}
+
+}  // namespace
 
 Task::Task(const Parts &parts, Settings settings)
     : settings_(std::move(settings)), parts_(parts), desk_(parts.mailbox), motion_(parts.channels),
@@ -112,6 +132,7 @@ void Task::step(std::int64_t now_ns) {
     check_run_mode();
     step_clean_up();
     step_run();
+    Start{*this}.watch_hold();
     // What waits in the queue without a run are settings for displays; they do not move anything.
     planner_mode_.step(!run_.isRunning() && motion_.isPathComplete());
     parts_.io_port.write(io_.outputs);
@@ -143,7 +164,8 @@ void Task::step_run() {
 
 /// A run that motion does not let in ends.
 void Task::check_run_mode() {
-    const bool isOut = run_.isRunning() && motion_.status().mode != motion::Mode::COORD;
+    const bool isOut =
+        run_.isRunning() && run_.hold() != Hold::AWAY && motion_.status().mode != motion::Mode::COORD;
     if (out_of_mode_.step(isOut, now_ns_)) {
         fail_program({diag::Severity::ERROR, {"motion is not in coordinated mode: set the mode again"}},
                      AbortReason::EXECUTION_ERROR);
@@ -321,6 +343,7 @@ void Task::step_tools() {
             post(MessageKind::OPERATOR_ERROR, reason);
         }
     }
+    parts_.tools.note_cut(status_.tool.in_spindle, cut_since(status_, now_ns_));
     const auto table = tools_.step(parts_.tools);
     if (table.has_value() && !desk_.publish_tools(*table)) {
         post(MessageKind::OPERATOR_ERROR, "the tool table is too large to be shown to clients");
@@ -348,7 +371,7 @@ void Task::update_status() {
     task.waiting =
         homing_.isUnderWay() ? Waiting{WaitFor::HOMING, homing_.joint()} : sequencer_.waiting_for();
     task.delay_left_s = sequencer_.dwell_left_s(now_ns_);
-    task.isInputTimedOut = sequencer_.isInputTimedOut();
+    task.isInputTimedOut = sequencer_.input().isTimedOut;
     constexpr int INTERPRETER_ERROR = 5;  // as clients know it
     task.error_code = run_.error() != nullptr ? INTERPRETER_ERROR : 0;
     task.block.assign(reader_.canon().block_text());
@@ -359,6 +382,9 @@ void Task::update_status() {
     step_tools();
     status_.tool = {io_.outputs.tool_number, io_.outputs.tool_from_pocket, sequencer_.selected_tool_index(),
                     tools_.version()};
+    const tool::CutLife life = parts_.tools.life(io_.outputs.tool_number);
+    status_.tool.cut_time_s = life.time_s;
+    status_.tool.cut_length = life.length;
     status_.io.coolant.isMistOn = io_.outputs.coolant_mist;
     status_.io.coolant.isFloodOn = io_.outputs.coolant_flood;
     status_.tool.isPersonAsked = parts_.io_port.isPersonAsked();

@@ -13,6 +13,7 @@
 #include "task/link/shown_tools.hh"
 #include "task/run/admission.hh"
 #include "task/run/approach.hh"
+#include "task/run/left_place.hh"
 #include "task/run/machine_world.hh"
 #include "task/run/on_abort.hh"
 #include "task/run/program_reader.hh"
@@ -175,6 +176,7 @@ class Task {
     ProgramReader reader_;
     ProgramRun run_;
     Approach approach_;
+    std::optional<LeftPlace> left_;  ///< while the run is held
     OnAbort on_abort_;
     UserProgram user_program_;
     Sequencer sequencer_;

@@ -44,9 +44,7 @@ struct Task::Handler {
     Outcome operator()(const ResetInterpreter &);
     Outcome operator()(const SynchInterpreter &);
     Outcome operator()(const ConfirmApproach &command);
-    Outcome operator()(const ReleaseAxes &) { return fail("this version does not carry it out yet"); }
-    Outcome operator()(const RecoverProgram &) { return fail("this version does not carry it out yet"); }
-    Outcome operator()(const ForgetRecovery &) { return fail("this version does not carry it out yet"); }
+    Outcome operator()(const ReleaseAxes &) { return Start{task}.release(id); }
     Outcome operator()(const SetTeleop &command);
     Outcome operator()(const HomeJoint &command);
     Outcome operator()(const UnhomeJoint &command);
@@ -120,6 +118,11 @@ struct Task::Handler {
         task.motion_.send(body);
         return Progress::DONE;
     }
+    /// On its path; a program that has left its place has none.
+    Outcome hold_motion() {
+        const bool isOnPath = task.run_.hold() != Hold::AWAY && task.run_.hold() != Hold::PROPOSED;
+        return isOnPath ? send(motion::Pause{}) : Outcome(Progress::DONE);
+    }
     static Outcome done(const Result<> &result) {
         return result.has_value() ? Outcome(Progress::DONE) : std::unexpected(result.error());
     }
@@ -174,6 +177,7 @@ void Task::carry_out(mailbox::Serial serial, const Command &command) {
     } else if (*outcome != Progress::STARTED) {
         desk_.tell(serial, *outcome, {});
     }
+    Start{*this}.watch_hold();
 }
 
 Outcome Task::Handler::operator()(const SetState &command) {
@@ -266,6 +270,10 @@ Outcome Task::Handler::operator()(const StepProgram &) {
         }
         static_cast<void>(task.run_.take(RunEvent::PAUSE));  // it begins held, and steps from there
     }
+    if (Start{task}.isReturnNeeded()) {
+        return fail("spindle, coolant or tool are not as when the program was held", {},
+                    "resume restores them");
+    }
     const bool isPlannerBusy = task.motion_.status().isPaused && task.motion_.status().queue_depth > 0;
     const auto taken = task.run_.take(isPlannerBusy && !isFirst ? RunEvent::STEP_MOVE : RunEvent::STEP);
     if (!taken.has_value()) {
@@ -285,7 +293,7 @@ Outcome Task::Handler::operator()(const PauseProgram &) {
     if (!taken.has_value()) {
         return std::unexpected(taken.error());
     }
-    return send(motion::Pause{});
+    return hold_motion();
 }
 
 Outcome Task::Handler::operator()(const ConfirmApproach &command) {
@@ -295,6 +303,9 @@ Outcome Task::Handler::operator()(const ConfirmApproach &command) {
 Outcome Task::Handler::operator()(const ResumeProgram &) {
     if (task.run_.hold() == Hold::PROPOSED) {
         return Start{task}.confirm(0);
+    }
+    if (Start{task}.isReturnNeeded()) {
+        return Start{task}.come_back();
     }
     const auto taken = task.run_.take(RunEvent::RESUME);
     if (!taken.has_value()) {
@@ -310,7 +321,7 @@ Outcome Task::Handler::operator()(const StopOptionally &) {
         return fail("optional stops are off");
     }
     task.on_stop({.isOptional = true}, task.motion_.status().source.line);
-    return send(motion::Pause{});
+    return hold_motion();
 }
 
 Outcome Task::Handler::operator()(const CloseProgram &) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -22,7 +23,7 @@ void Task::Start::step() {
     }
     switch (task.reader_.step_search(task.settings_.blocks_per_cycle)) {
     case BlockSearch::Outcome::GOING: break;
-    case BlockSearch::Outcome::FOUND: propose(); break;
+    case BlockSearch::Outcome::FOUND: propose_line(); break;
     case BlockSearch::Outcome::REFUSED: give_up(task.reader_.search().refusal()); break;
     }
 }
@@ -50,32 +51,66 @@ double Task::Start::safe_height() const {
     return isKnown ? highest : -NO_LIMIT;
 }
 
-void Task::Start::propose() {
+void Task::Start::complete(ApproachPlan &plan) const {
     constexpr double MM_PER_INCH = 25.4;
     const double units_per_mm = task.settings_.machine_units == interp::LengthUnits::MM ? 1 : 1 / MM_PER_INCH;
+    plan.feed = plan.modes.feed > 0 ? plan.modes.feed : DEFAULT_APPROACH_FEED_MM_S * units_per_mm;
+    plan.from = motion::programmed_position(task.motion_.status());
+    geom::Pose at = plan.from;
+    at[geom::AXIS_Z] = std::max(safe_height(), at[geom::AXIS_Z]);
+    plan.find_way(safe_height(), find_change_place(at, plan));
+}
+
+/// As M6 does it: the quill, G30, then TOOL_CHANGE_POSITION, which the canon sees to.
+geom::Pose Task::Start::find_change_place(geom::Pose at, ApproachPlan &plan) const {
+    constexpr int G30 = 5181;
+    const interp::BeforeToolChange &wanted = task.settings_.interpreter.tool_change;
+    plan.change_moves.clear();
+    if (wanted.isQuillRaised) {
+        at[geom::AXIS_Z] = 0;
+        plan.change_moves.push_back(at);
+    }
+    if (wanted.isAtG30) {
+        for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
+            const bool isThere = (task.settings_.axis_mask >> axis & 1U) != 0;
+            at[axis] = isThere ? task.reader_.interpreter().parameter(G30 + axis) : at[axis];
+        }
+        plan.change_moves.push_back(at);
+    }
+    const auto place = tool_change_moves(task.settings_.tool_change_place, at);
+    return place.empty() ? at : place.back();
+}
+
+void Task::Start::propose_line() {
     ApproachPlan plan;
     plan.to = ApproachTo::LINE;
     plan.line = task.run_.from_line();
     plan.modes = task.reader_.search().found();
     plan.tool_now = task.io_.outputs.tool_number;
-    plan.feed = plan.modes.feed > 0 ? plan.modes.feed : DEFAULT_APPROACH_FEED_MM_S * units_per_mm;
-    plan.from = motion::programmed_position(task.motion_.status());
-    plan.moves = approach_moves(plan.from, plan.modes.position, safe_height());
+    complete(plan);
     if (!plan.isNeeded()) {
         task.run_.change(RunEvent::BEGUN);
         go_on(plan);
         return;
     }
     task.run_.change(RunEvent::PROPOSE);
+    propose(std::move(plan));
+}
+
+void Task::Start::propose(ApproachPlan plan) {
+    complete(plan);
+    const std::string way = approach_text(plan);
     task.post(MessageKind::OPERATOR_TEXT,
-              fmt::format("to begin at line {}: {}; resume confirms it, abort drops it", plan.line,
-                          approach_text(plan)));
+              fmt::format("to go on at line {}: {}; resume confirms it, abort drops it", plan.line,
+                          way.empty() ? "nothing has to be brought about" : way));
     task.approach_.propose(std::move(plan), task.now_ns_);
 }
 
 /// The calls of the approach come first, then what the program says from the line on.
 void Task::Start::go_on(const ApproachPlan &plan) {
-    task.reader_.accept_search();
+    if (task.reader_.isSearching()) {
+        task.reader_.accept_search();
+    }
     task.reader_.canon().insert_first(plan.calls(), motion::programmed_position(task.motion_.status()),
                                       plan.line);
 }
@@ -84,6 +119,9 @@ Result<Progress> Task::Start::confirm(std::uint64_t number) {
     auto allowed = task.approach_.check(number, task.now_ns_);
     if (allowed.has_value() && !task.motion_.status().isInPosition) {
         allowed = fail("the machine moves");
+    }
+    if (allowed.has_value() && task.motion_.status().mode != motion::Mode::COORD) {
+        allowed = fail("motion is not in coordinated mode");
     }
     allowed = allowed.has_value() ? task.run_.take(RunEvent::CONFIRM) : allowed;
     if (!allowed.has_value()) {

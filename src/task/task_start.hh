@@ -21,9 +21,27 @@ struct Task::Start {
     /// Nothing is searched or proposed any more.
     void drop();
 
+    void watch_hold();
+    /// Lets the axes of a held program be jogged.
+    Result<Progress> release(mailbox::Serial command);
+    /// A resume has to bring something about first.
+    bool isReturnNeeded() const {
+        return task.run_.hold() == Hold::AWAY || (task.left_.has_value() && isSomethingOff());
+    }
+    Result<Progress> come_back();
+
   private:
-    void propose();
+    void propose_line();
+    /// What of it is the same for all: the way, the feed; then it is shown.
+    void propose(ApproachPlan plan);
+    void complete(ApproachPlan &plan) const;
+    /// Where a tool is changed when the machine comes from `at`.
+    geom::Pose find_change_place(geom::Pose at, ApproachPlan &plan) const;
     void go_on(const ApproachPlan &plan);
+    ApproachPlan plan_back() const;
+    Result<> take_path_back();
+    bool isSomethingOff() const;
+    geom::Pose offset_of_tool(int tool) const;
     void give_up(const std::string &reason);
     double safe_height() const;
 };

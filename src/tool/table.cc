@@ -122,20 +122,32 @@ void Table::take_text(std::string_view text, Reading &reading) {
     }
 }
 
+/// A tool that stands twice; two in one pocket of a random changer.
+void Table::refuse_twice(Reading &reading) const {
+    for (std::size_t i = 0; i < reading.tools.size(); ++i) {
+        const ToolEntry &tool = reading.tools[i].entry;
+        const auto same =
+            std::find_if(reading.tools.begin(), reading.tools.begin() + static_cast<std::ptrdiff_t>(i),
+                         [this, &tool](const ReadTool &earlier) {
+                             return earlier.entry.toolno == tool.toolno ||
+                                    (isRandom() && earlier.entry.pocketno == tool.pocketno);
+                         });
+        if (same == reading.tools.begin() + static_cast<std::ptrdiff_t>(i)) {
+            continue;
+        }
+        const bool isTool = same->entry.toolno == tool.toolno;
+        reading.skipped.warning(isTool ? fmt::format("tool {} is in the table twice", tool.toolno)
+                                       : fmt::format("tools {} and {} are in one pocket, P{}",
+                                                     same->entry.toolno, tool.toolno, tool.pocketno),
+                                reading.place_of(reading.tools[i]));
+    }
+}
+
 Result<Table> Table::parse(std::string_view text, const std::string &path, Changer changer) {
     Table table(changer);
     Reading reading{path};
     table.take_text(text, reading);
-    for (std::size_t i = 0; i < reading.tools.size(); ++i) {
-        for (std::size_t earlier = 0; earlier < i; ++earlier) {
-            if (reading.tools[earlier].entry.toolno == reading.tools[i].entry.toolno) {
-                reading.skipped.warning(
-                    fmt::format("tool {} is in the table twice", reading.tools[i].entry.toolno),
-                    reading.place_of(reading.tools[i]));
-                break;
-            }
-        }
-    }
+    table.refuse_twice(reading);
     if (reading.skipped.all().empty()) {
         table.place(reading);
         return table;

@@ -76,6 +76,7 @@ class Table {
     struct Reading;
     void take_text(std::string_view text, Reading &reading);
     void take_tool(const Result<ToolEntry> &made, Reading &reading);
+    void refuse_twice(Reading &reading) const;
     void check(Reading &reading) const;
     void check_pocket(Reading &reading, std::size_t later) const;
     void place(const Reading &reading);

@@ -86,6 +86,13 @@ struct Piece {
     double tolerance = 0;     ///< deviation from the programmed path that is allowed; 0: any
     AccelBound acceleration;  ///< along x, such that every axis keeps its limits [1/s^2]
     Braking braking;          ///< the same for stops, which the speeds are not planned with
+
+    /// How hard a stop brakes from x on at the squared speed b: never less than speeds are planned with.
+    double brake_at(double x, double b) const noexcept {
+        const double planned = acceleration.at(b);
+        const double alone = x < braking.from ? 0.0 : braking.bound.at(b);
+        return alone > planned ? alone : planned;
+    }
     // Of a pass that is locked to a spindle's angle, filled before the executor is told of the pass.
     double per_turn = 0;           ///< way along x in a turn of the spindle
     double v_most = 0;             ///< highest speed

@@ -222,7 +222,7 @@ TEST(IniKeys, EveryKeyWithoutEffectIsToldWhereItIsSet_A3) {
             << key.name;
         ++told;
     }
-    EXPECT_GT(told, 20);
+    EXPECT_GT(told, 10);
 }
 
 TEST(IniKeys, TheReferencePageIsThatOfTheDeclarations) {

@@ -8,6 +8,7 @@
 
 #include "base/result.hh"
 #include "interp/world.hh"
+#include "tool/life.hh"
 
 namespace mw::task {
 
@@ -26,6 +27,9 @@ class ToolStore : public interp::ToolSource {
     virtual void step() {}
     /// What the operator is to know of the data's keeper: nothing when there is no more.
     virtual std::optional<std::string> take_warning() { return std::nullopt; }
+    /// The tool has cut this much more, and all in its life.
+    virtual void note_cut(int, const tool::CutLife &) {}
+    virtual tool::CutLife life(int) const { return {}; }
     /// Another number after each change; never 0.
     virtual std::uint64_t version() const = 0;
 };

@@ -52,6 +52,19 @@ std::vector<ApproachMove> approach_moves(const geom::Pose &from, const geom::Pos
     return moves;
 }
 
+void ApproachPlan::find_way(double safe_z, const geom::Pose &changed_at) {
+    if (!mustChangeTool()) {
+        moves = approach_moves(from, modes.position, safe_z);
+        return;
+    }
+    geom::Pose up = from;
+    up[geom::AXIS_Z] = std::max(safe_z, from[geom::AXIS_Z]);
+    moves.clear();
+    moves.push_back({up, true});
+    const auto rest = approach_moves(changed_at, modes.position, safe_z);
+    moves.insert(moves.end(), rest.begin(), rest.end());
+}
+
 bool ApproachPlan::isNeeded() const {
     return !moves.empty() || mustChangeTool() || !modes.spindles.empty() || modes.isMistOn ||
            modes.isFloodOn || !modes.user_codes.empty();
@@ -74,6 +87,9 @@ std::vector<interp::MachineCall> ApproachPlan::calls() const {
         move(moves[done++]);
     }
     if (mustChangeTool()) {
+        for (const geom::Pose &place : change_moves) {
+            move({place, true});
+        }
         all.emplace_back(interp::SelectTool{modes.tool});
         all.emplace_back(interp::ChangeTool{});
     }
@@ -154,6 +170,7 @@ std::string approach_text(const ApproachPlan &plan) {
                                                    : axis == geom::AXIS_Z;
             words += isTold ? fmt::format(" {}{:.3f}", AXES[axis], move.end[axis]) : "";
         }
+        words = words.empty() ? fmt::format(" Z{:.3f}", move.end[geom::AXIS_Z]) : words;
         add(fmt::format("{} to machine{}", move.isRapid ? "rapid" : "feed", words));
         before = move.end;
     }

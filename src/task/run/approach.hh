@@ -28,9 +28,13 @@ struct ApproachPlan {
     int tool_now = 0;
     double feed = 0;  ///< of the last move [machine units/s]
     geom::Pose from;  ///< where the machine stands
+    /// Where M6 goes before the changer begins; none where it stays.
+    std::vector<geom::Pose> change_moves;
     std::vector<ApproachMove> moves;
 
     bool mustChangeTool() const { return modes.tool != tool_now; }
+    /// Fills in the moves: with a tool change, which ends at `changed_at`, up before it and again after it.
+    void find_way(double safe_z, const geom::Pose &changed_at);
     /// Something has to be done that a person must know of.
     bool isNeeded() const;
     /// What is done, in its order: up, tool, settings, spindles, over the place, coolant, down.

@@ -42,7 +42,7 @@ concept Mode = OneOf<T, SetMode>;
 template <class T>
 concept ProgramFile = OneOf<T, OpenProgram, CloseProgram, ResetInterpreter, SynchInterpreter>;
 template <class T>
-concept Run = OneOf<T, RunProgram, RecoverProgram>;
+concept Run = OneOf<T, RunProgram>;
 template <class T>
 concept Step = OneOf<T, StepProgram, StepTraj>;
 template <class T>
@@ -87,8 +87,9 @@ concept PartOfStart = OneOf<T, InitTask, HaltTask, InitMachine, HaltMachine, Ini
 template <class T>
 concept OfTheMailbox = OneOf<T, ClaimOperation, HandOverOperation, ReleaseOperation>;
 template <class T>
-concept NotYet = OneOf<T, SetDebug, SystemCommand, CallTaskPlugin, CallIoPlugin, SetMotionMode, EnableTraj,
-                       DisableTraj, SpindleIncrease, SpindleDecrease, SpindleConstant, SetSpindleSpeed>;
+concept NotYet =
+    OneOf<T, SetDebug, SystemCommand, CallTaskPlugin, CallIoPlugin, SetMotionMode, EnableTraj, DisableTraj,
+          SpindleIncrease, SpindleDecrease, SpindleConstant, SetSpindleSpeed, RecoverProgram, ForgetRecovery>;
 /// What motion does by itself (task/link/motion_words.hh).
 template <class T>
 concept CarriedOutByMotion =
@@ -102,8 +103,8 @@ concept AnyAbort = OneOf<T, AbortAll, AbortMachine, AbortTraj, AbortMotion, Abor
 template <class T>
 concept AnyTime = CarriedOutByMotion<T> || AnyAbort<T> ||
                   OneOf<T, SetState, EstopOn, EstopOff, EstopReset, JogStop, AbortJoint, SpindleOff, MistOff,
-                        FloodOff, LubeOff, SetOptionalStop, SetBlockDelete, ConfirmToolChange, ForgetRecovery,
-                        Null, OperatorError, OperatorText, OperatorDisplay>;
+                        FloodOff, LubeOff, SetOptionalStop, SetBlockDelete, ConfirmToolChange, Null,
+                        OperatorError, OperatorText, OperatorDisplay>;
 
 /// Never taken, in any situation.
 template <class T>

@@ -10,8 +10,8 @@ interp::MachineSnapshot snapshot_of(const motion::Status &motion, const io::Outp
     // A probe that has missed counts as having come to its end.
     s.probed_position = motion.isProbeTripped ? motion.probed_pos : s.position;
     s.isProbeTripped = motion.isProbeTripped;
-    s.input_value = sequencer.input_value();
-    s.isInputTimedOut = sequencer.isInputTimedOut();
+    s.input_value = sequencer.input().value;
+    s.isInputTimedOut = sequencer.input().isTimedOut;
     s.isMistOn = io.coolant_mist;
     s.isFloodOn = io.coolant_flood;
     s.isFeedOverrideEnabled = motion.isFeedOverrideEnabled;
@@ -19,8 +19,8 @@ interp::MachineSnapshot snapshot_of(const motion::Status &motion, const io::Outp
     s.isAdaptiveFeedEnabled = motion.isAdaptiveFeedEnabled;
     s.isSpeedOverrideEnabled = motion.spindle[0].isOverrideEnabled;
     for (std::size_t i = 0; i < s.spindle_speed.size(); ++i) {
-        s.spindle_speed[i] = sequencer.spindle_speed(static_cast<int>(i));
-        s.spindle_direction[i] = sequencer.spindle_direction(static_cast<int>(i));
+        s.spindle_speed[i] = sequencer.spindles().speed(static_cast<int>(i));
+        s.spindle_direction[i] = sequencer.spindles().direction(static_cast<int>(i));
     }
     const std::optional<int> fault = sequencer.tool_change().fault_reason();
     s.tool_in_spindle = io.tool_number;

@@ -86,6 +86,9 @@ void SearchMachine::change_tool() {
     if (machine_.selected_pocket < 0) {
         return;
     }
+    if (isRandom()) {
+        doubt("where a changer that swaps tools has put them (M6)");
+    }
     if (!real_.isToolChangeWithSpindleOn) {
         for (int i = 0; i < count_spindles(); ++i) {
             stop(i);

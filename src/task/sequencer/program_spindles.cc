@@ -64,6 +64,28 @@ void ProgramSpindles::command(int spindle, double signed_rpm, bool isWaiting, Mo
     send(spindle, motion);
 }
 
+std::vector<interp::MachineCall> ProgramSpindles::starts() const {
+    std::vector<interp::MachineCall> calls;
+    for (int i = 0; i < MAX_SPINDLES; ++i) {
+        const Spindle &state = spindles_[static_cast<std::size_t>(i)];
+        if (state.direction != 0) {
+            calls.emplace_back(interp::SetSpindleMode{i, state.css_max_rpm});
+            calls.emplace_back(interp::UseSpindleSpeed{i, state.speed, state.surface_unit});
+            calls.emplace_back(interp::StartSpindle{i, state.direction > 0, true});
+        }
+    }
+    return calls;
+}
+
+bool ProgramSpindles::isKeptBy(const ProgramSpindles &other) const {
+    for (std::size_t i = 0; i < spindles_.size(); ++i) {
+        if (!spindles_[i].isKeptBy(other.spindles_[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
 void ProgramSpindles::stop_all(MotionLink &motion) {
     for (int i = 0; i < motion.status().num_spindles; ++i) {
         stop({i}, motion);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "base/limits.hh"
 #include "interp/canon/machine_canon.hh"
@@ -24,6 +25,11 @@ class ProgramSpindles {
     void use(const interp::UseOffsets &offsets, MotionLink &motion);
     void use(const interp::UseToolOffset &offset, MotionLink &motion);
 
+    /// The calls that make all that turn turn as they do.
+    std::vector<interp::MachineCall> starts() const;
+    /// All that turn here turn the same way and speed there.
+    bool isKeptBy(const ProgramSpindles &other) const;
+
     /// As programmed, unscaled. [rev/min or surface units/min]
     double speed(int spindle) const { return spindles_[static_cast<std::size_t>(spindle)].speed; }
     int direction(int spindle) const { return spindles_[static_cast<std::size_t>(spindle)].direction; }
@@ -38,6 +44,11 @@ class ProgramSpindles {
         double css_max_rpm = 0;
         int direction = 0;
         bool isWaiting = false;
+
+        bool isKeptBy(const Spindle &other) const {
+            return direction == 0 || (direction == other.direction && speed == other.speed &&
+                                      surface_unit == other.surface_unit && css_max_rpm == other.css_max_rpm);
+        }
     };
     Spindle &at(int spindle) { return spindles_[static_cast<std::size_t>(spindle)]; }
     void send(int spindle, MotionLink &motion);

@@ -64,14 +64,10 @@ bool carry_out(const Visitor &visitor, const interp::MachineCall &item) {
         item);
 }
 
-}  // namespace
+/// What must be done before a call is begun.
+enum class Need : std::uint8_t { NOTHING, IO, MOTION, OUTPUTS, MOTION_AND_IO };
 
-Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, ToolStore &tools,
-                     SequencerEvents events, SequencerSettings settings)
-    : queue_(queue), motion_(motion), io_(io), tools_(tools), events_(std::move(events)),
-      settings_(std::move(settings)), tool_change_(settings_.changer_error_text) {}
-
-Sequencer::Need Sequencer::need_of(const interp::MachineCall &call) {
+Need need_of(const interp::MachineCall &call) {
     return std::visit(
         Overloaded{
             [](const OneOf<interp::LineMove, interp::ArcMove, interp::SetSpindleMode, interp::OperatorMessage,
@@ -96,8 +92,16 @@ Sequencer::Need Sequencer::need_of(const interp::MachineCall &call) {
         call);
 }
 
+}  // namespace
+
+Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, ToolStore &tools,
+                     SequencerEvents events, SequencerSettings settings)
+    : queue_(queue), motion_(motion), io_(io), tools_(tools), events_(std::move(events)),
+      settings_(std::move(settings)), tool_change_(settings_.changer_error_text) {}
+
 void Sequencer::step(std::int64_t now_ns) {
     isHeld_ = false;
+    sent_.forget(motion_.status().last_path_id);
     blocked_ = ExecState::DONE;
     for (int i = 0; i < ITEMS_PER_CYCLE && !isHeld_; ++i) {
         if (hasFailed_ || !isWaitOver(now_ns) || isStepDone_) {
@@ -127,14 +131,10 @@ void Sequencer::step(std::int64_t now_ns) {
     }
 }
 
-void Sequencer::fail_item(const std::string &text) {
-    hasFailed_ = true;
-    events_.fail(text);
-}
-
 void Sequencer::check(const Result<> &result) {
     if (!result.has_value()) {
-        fail_item(result.error().str());
+        hasFailed_ = true;
+        events_.fail(result.error().str());
     }
 }
 
@@ -186,7 +186,11 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
             return isProbeMade_;
         },
         [&](const OneOf<interp::SetDigitalOutput, interp::SetAnalogOutput> auto &output) {
-            return push_output(output);
+            const bool isTaken = push_output(output);
+            if (isTaken && output.isSynched) {
+                sent_.note(motion_.last_path_id(), item, motion::programmed_position(motion_.status()));
+            }
+            return isTaken;
         },
         [&](const interp::UsePlanner &planner) { return begin(planner); },
         [&](const OneOf<interp::Dwell, interp::WaitInput, interp::WaitOrientComplete> auto &wait) {
@@ -228,7 +232,7 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
         [&](const interp::StartSpindle &call) { spindles_.start(call, motion_); },
         [&](const interp::StopSpindle &call) { spindles_.stop(call, motion_); },
         [&](const interp::OrientSpindle &call) {
-            orient_command_ = motion_.send(motion::SpindleOrient{call.spindle, call.angle_deg, call.mode});
+            orient_.command = motion_.send(motion::SpindleOrient{call.spindle, call.angle_deg, call.mode});
         },
         [&](const interp::SwitchMist &call) { io_.set_mist(call.isOn); },
         [&](const interp::SwitchFlood &call) { io_.set_flood(call.isOn); },
@@ -252,6 +256,7 @@ bool Sequencer::push_move(const motion::PathBody &move, const geom::MoveSettings
     if (!motion_.hasPathRoom() || !motion_.push_path(move, item.source)) {
         return false;
     }
+    sent_.note(motion_.last_path_id(), item, motion::programmed_position(motion_.status()));
     if (move_listener_) {
         move_listener_(motion_.last_path_id(), move);
     }
@@ -292,10 +297,10 @@ void Sequencer::perform(const interp::WaitInput &input, std::int64_t now_ns) {
 
 void Sequencer::perform(const interp::WaitOrientComplete &orient, std::int64_t now_ns) {
     wait_ = Wait::ORIENT;
-    awaited_spindle_ = orient.spindle;
-    orient_timeout_s_ = orient.timeout_s;
+    orient_.spindle = orient.spindle;
+    orient_.timeout_s = orient.timeout_s;
     deadline_ns_ = now_ns + to_ns(orient.timeout_s);
-    isOrientTold_ = false;
+    orient_.isTold = false;
 }
 
 bool Sequencer::begin(const interp::UsePlanner &planner) {
@@ -330,6 +335,21 @@ void Sequencer::perform(const interp::ChangeTool &) {
     }
 }
 
+Result<> Sequencer::take_back(const geom::Pose &place) {
+    if (wait_ != Wait::NONE && wait_ != Wait::DWELL) {
+        return fail("a tool change or another wait is under way");
+    }
+    const std::string why = sent_.why_not(motion_.status(), place);
+    if (!why.empty()) {
+        return fail(why, {}, "it is resumed, or aborted");
+    }
+    const std::vector<Item> rest = sent_.rest(motion_.status(), place);
+    queue_.insert(queue_.begin(), rest.begin(), rest.end());
+    sent_.clear();
+    isStepping_ = isStepDone_ = false;
+    return {};
+}
+
 void Sequencer::on_tool_event(io::ToolEvent event) {
     if (event == io::ToolEvent::CHANGED_LATE) {
         events_.message(MessageKind::OPERATOR_ERROR,
@@ -344,6 +364,7 @@ void Sequencer::on_tool_event(io::ToolEvent event) {
 }
 
 void Sequencer::abort(int reason) {
+    sent_.clear();
     blocked_ = ExecState::DONE;
     log_.close();
     probe_log_.close();

@@ -15,6 +15,7 @@
 #include "task/sequencer/items.hh"
 #include "task/sequencer/program_log.hh"
 #include "task/sequencer/program_spindles.hh"
+#include "task/sequencer/sent_moves.hh"
 #include "task/sequencer/tool_change.hh"
 #include "task/status.hh"
 
@@ -48,6 +49,14 @@ struct SequencerSettings {
     int smooth_planner = 1;  ///< [TRAJ]SMOOTH_PLANNER: what G64 R above 0 means; 0: it is refused
 };
 
+/// The spindle that M19 is to bring to its angle.
+struct AwaitedOrient {
+    int spindle = 0;
+    motion::CommandId command = 0;  ///< the last M19
+    bool isTold = false;            ///< status is of a time after it
+    double timeout_s = 0;
+};
+
 /// One thread; step() once a task cycle, never blocks.
 class Sequencer {
   public:
@@ -73,15 +82,21 @@ class Sequencer {
     /// [s] of a dwell; 0 when there is none.
     double dwell_left_s(std::int64_t now_ns) const;
 
-    double input_value() const { return input_value_; }
-    bool isInputTimedOut() const { return isInputTimedOut_; }
-    /// Commanded spindle state, as programmed (unscaled).
-    double spindle_speed(int spindle) const { return spindles_.speed(spindle); }
-    int spindle_direction(int spindle) const { return spindles_.direction(spindle); }
+    /// The result of M66.
+    struct InputResult {
+        double value = 0;
+        bool isTimedOut = false;
+    };
+    InputResult input() const { return {input_value_, isInputTimedOut_}; }
     /// Starts or stops a spindle at once (operator's command).
     void command_spindle(int spindle, double signed_rpm, bool isWaiting) {
         spindles_.command(spindle, signed_rpm, isWaiting, motion_);
     }
+    /// As programmed (unscaled).
+    const ProgramSpindles &spindles() const { return spindles_; }
+    /// Of a program that is held: all that the planner has not done comes back into the queue; the caller
+    /// stops motion. An error says why it cannot be begun again from `place`.
+    Result<> take_back(const geom::Pose &place);
     void stop_spindles() { spindles_.stop_all(motion_); }
     /// Whether a probe was made since the last call.
     bool take_probe() { return std::exchange(isProbeMade_, false); }
@@ -93,17 +108,13 @@ class Sequencer {
     void set_move_listener(MoveListener listener) { move_listener_ = std::move(listener); }
 
   private:
-    enum class Need : std::uint8_t { NOTHING, IO, MOTION, OUTPUTS, MOTION_AND_IO };
     enum class Wait : std::uint8_t { NONE, DWELL, INPUT, TOOL, TOOL_DATA, ORIENT, USER_CODE, SETTING };
-    static Need need_of(const interp::MachineCall &call);
     bool isWaitOver(std::int64_t now_ns);
     bool isInputWaitOver(std::int64_t now_ns);
-    bool isToolDataRead();
     bool isOrientWaitOver(std::int64_t now_ns);
     bool isReady(const Item &item);
     bool isStepBoundary(const Item &item);
-    /// Tells the failure and begins nothing after it.
-    void fail_item(const std::string &text);
+    /// Tells a failure and begins nothing after it.
     void check(const Result<> &result);
     /// False when the item must be tried again next cycle.
     bool execute(const Item &item, std::int64_t now_ns);
@@ -133,11 +144,9 @@ class Sequencer {
     interp::WaitInput awaited_input_{};
     double input_value_ = 0, last_input_ = 0;
     bool isInputTimedOut_ = false;
-    int awaited_spindle_ = 0;
-    motion::CommandId orient_command_ = 0;  ///< the last M19
-    bool isOrientTold_ = false;             ///< status is of a time after it
-    double orient_timeout_s_ = 0;
+    AwaitedOrient orient_;
     motion::CommandId awaited_setting_ = 0;
+    SentMoves sent_;
     ToolChange tool_change_;
     ProgramSpindles spindles_;
     bool isStepping_ = false, isStepDone_ = false;

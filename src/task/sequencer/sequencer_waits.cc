@@ -15,14 +15,19 @@ bool Sequencer::isWaitOver(std::int64_t now_ns) {
     case Wait::DWELL: isOver = now_ns >= deadline_ns_; break;
     case Wait::INPUT: isOver = isInputWaitOver(now_ns); break;
     case Wait::TOOL: isOver = io_.action() == io::ToolAction::IDLE; break;
-    case Wait::TOOL_DATA: isOver = isToolDataRead(); break;
+    case Wait::TOOL_DATA: {
+        const std::optional<Result<>> result = tools_.reload_result();
+        isOver = result.has_value();
+        check(result.value_or(Result<>{}));
+        break;
+    }
     case Wait::ORIENT: isOver = isOrientWaitOver(now_ns); break;
     case Wait::SETTING: isOver = motion_.isAnswered(awaited_setting_); break;
     case Wait::USER_CODE: {
         const std::optional<Result<>> result = events_.user_code_result();
         isOver = result.has_value();
         if (isOver && !result->has_value()) {
-            fail_item(result->error().str());
+            check(fail(result->error().str()));
         }
         break;
     }
@@ -33,30 +38,23 @@ bool Sequencer::isWaitOver(std::int64_t now_ns) {
     return isOver && !hasFailed_;
 }
 
-bool Sequencer::isToolDataRead() {
-    const std::optional<Result<>> result = tools_.reload_result();
-    if (result.has_value()) {
-        check(*result);
-    }
-    return result.has_value();
-}
-
 bool Sequencer::isOrientWaitOver(std::int64_t now_ns) {
     constexpr int IN_PROGRESS = 1;
-    const bool isTold = isOrientTold_;
-    isOrientTold_ = orient_command_ == 0 || motion_.isAnswered(orient_command_);
+    const bool isTold = orient_.isTold;
+    orient_.isTold = orient_.command == 0 || motion_.isAnswered(orient_.command);
     if (!isTold) {  // what status says may still be about an earlier one
         return false;
     }
     const motion::SpindleStatus &spindle =
-        motion_.status().spindle[static_cast<std::size_t>(awaited_spindle_)];
+        motion_.status().spindle[static_cast<std::size_t>(orient_.spindle)];
     if (spindle.orient_fault != 0) {
-        fail_item(fmt::format("spindle {} reports orient fault {}", awaited_spindle_, spindle.orient_fault));
+        check(fail(fmt::format("spindle {} reports orient fault {}", orient_.spindle, spindle.orient_fault)));
         return true;
     }
     if (spindle.orient_state == IN_PROGRESS && now_ns >= deadline_ns_) {
-        fail_item(fmt::format("spindle {0} is not oriented within {1:g} seconds: pin spindle.{0}.is-oriented",
-                              awaited_spindle_, orient_timeout_s_));
+        check(
+            fail(fmt::format("spindle {0} is not oriented within {1:g} seconds: pin spindle.{0}.is-oriented",
+                             orient_.spindle, orient_.timeout_s)));
         return true;
     }
     return spindle.orient_state != IN_PROGRESS;
@@ -111,7 +109,7 @@ Waiting Sequencer::waiting_for() const {
         return {awaited_input_.isAnalog ? WaitFor::ANALOG_INPUT : WaitFor::DIGITAL_INPUT,
                 awaited_input_.index};
     case Wait::TOOL_DATA: return {WaitFor::TOOL_DATA, -1};
-    case Wait::ORIENT: return {WaitFor::SPINDLE_ORIENTED, awaited_spindle_};
+    case Wait::ORIENT: return {WaitFor::SPINDLE_ORIENTED, orient_.spindle};
     case Wait::SETTING: return {WaitFor::SETTING, -1};
     case Wait::USER_CODE: return {WaitFor::USER_CODE, -1};
     case Wait::NONE:

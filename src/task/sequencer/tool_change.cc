@@ -38,7 +38,9 @@ Result<> ToolChange::select(const interp::SelectTool &call, const ToolStore &too
 }
 
 bool ToolChange::start(const ToolStore &tools, io::Controller &io) {
-    const bool isThere = tools.entry(0).toolno == *selected_;
+    // An empty spindle is emptied again: after a start nobody knows whether it is.
+    const bool isTool = *selected_ > 0 || tools.isRandom();
+    const bool isThere = isTool && tools.entry(0).toolno == *selected_;
     if (isThere) {
         return false;
     }

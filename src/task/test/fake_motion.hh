@@ -92,6 +92,7 @@ class FakeMotion {
                 status.carte_pos_cmd = line->end;
                 log.push_back("line " + std::to_string(static_cast<int>(line->end.x())));
             }
+            status.last_path_id = isStale ? status.last_path_id : command.id;
             channels_.planner_answers.push(answer);
         }
     }

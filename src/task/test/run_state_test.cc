@@ -157,6 +157,7 @@ TEST(RunState, WhatEachEventDoesInEveryState_D3) {
             case PROPOSE:
                 EXPECT_TRUE(!isTaken || run.hold() == Hold::PROPOSED) << where;
                 EXPECT_TRUE(isTaken || !isAway) << where;
+                EXPECT_TRUE(isTaken || !isStanding || before.phase() < RunPhase::SEARCHING) << where;
                 break;
             case CONFIRM:
                 EXPECT_EQ(isTaken, before.hold() == Hold::PROPOSED) << where;

@@ -135,12 +135,12 @@ TEST_F(SequencerTest, AnInputIsWaitedForUntilItRisesOrItsTimeIsOver_D2) {
     EXPECT_EQ(sequencer.waiting_for().index, 3);
     status.digital_in = 1U << 3;
     cycles(2);
-    EXPECT_EQ(sequencer.input_value(), 1);
-    EXPECT_FALSE(sequencer.isInputTimedOut());
+    EXPECT_EQ(sequencer.input().value, 1);
+    EXPECT_FALSE(sequencer.input().isTimedOut);
     add(rise);
     cycles(1005);
-    EXPECT_TRUE(sequencer.isInputTimedOut()) << "it was high all the time";
-    EXPECT_EQ(sequencer.input_value(), -1);
+    EXPECT_TRUE(sequencer.input().isTimedOut) << "it was high all the time";
+    EXPECT_EQ(sequencer.input().value, -1);
 }
 
 TEST_F(SequencerTest, NothingBehindAStopBeginsInItsCycle_D1) {

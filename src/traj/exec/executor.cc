@@ -194,7 +194,7 @@ void Executor::brake_on_piece() noexcept {
     brake_.end = isBefore ? piece.braking.from : piece.length;
     const double left = std::max(0.0, brake_.end - state_.x);
     const double v2 = state_.v * state_.v;
-    double a = isBefore ? piece.acceleration.at(v2) : piece.braking.bound.at(v2);
+    double a = piece.brake_at(state_.x, v2);
     const double out2 = v2 - 2.0 * a * left;
     brake_.time = 0;
     brake_.isFinal = out2 <= TimingTuning::STOP_FIT * v2;

@@ -151,8 +151,14 @@ Gain gain_of(const Curves &c) {
     const SpeedLimit limit = c.limit();
     const Braking braking = braking_on(*c.store, c.piece, c.conditions, limit);
     Gain gain;
+    Piece piece = c.piece;
+    piece.acceleration = limit.a;
+    piece.braking = braking;
     for (const double fast : {1.0, 0.9, 0.5, 0.1}) {
-        const double a = braking.bound.at(fast * limit.v * fast * limit.v);
+        const double b = fast * limit.v * fast * limit.v;
+        const double a = piece.brake_at(braking.from, b);
+        // Else it would come too fast to where the planned speeds lead.
+        EXPECT_GE(a, limit.a.at(b));
         for (const double slower : {1.0, 0.8, 0.4, 0.0}) {
             for (int n = 0; n <= 60; ++n) {
                 const double x = braking.from + (c.piece.length - braking.from) * n / 60;

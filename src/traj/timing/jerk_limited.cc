@@ -210,7 +210,7 @@ bool Smooth::stop(bool isHard) noexcept {
             }
             continue;
         }
-        const double a = isHard && !isBefore ? p.braking.bound.at(v2) : p.acceleration.at(v2);
+        const double a = isHard ? p.brake_at(s.x, v2) : p.acceleration.at(v2);
         const double slowest2 = v2 - 2.0 * a * left;
         const bool isStop = !isBefore && (isLast || path_.plan(s.piece + 1).isStopBefore);
         if (isStop || slowest2 <= TimingTuning::STOP_FIT * v2) {

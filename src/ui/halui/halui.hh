@@ -1,25 +1,40 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Operator's commands as HAL pins: machine, e-stop, mode, home and program pins of `halui` (man page halui),
-// as ui/halui/pin_tables.hh has them.
+// The operator as HAL pins (man page halui), as ui/halui/pin_tables.hh has them: buttons, wheels, jogs,
+// lamps.
 #pragma once
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/limits.hh"
 #include "base/result.hh"
 #include "client/client.hh"
 #include "hal/core/user_pin_set.hh"
+#include "ui/halui/halui_parts.hh"
+#include "ui/halui/mdi_pins.hh"
 #include "ui/halui/pin_tables.hh"
 
 namespace mw::ui {
 
-/// A client of the machine. Input pins act on their rising edge. Not realtime; one thread.
+/// What the INI file says about them.
+struct HaluiSettings {
+    int num_joints = 3;
+    int num_spindles = 1;
+    unsigned axis_mask = 7;
+    double units_per_mm = 1;
+    double max_feed_override = 1;
+    DialRange spindle_override{0, 1};
+    double max_velocity = 0;                ///< [machine units/s]
+    std::vector<std::string> mdi_commands;  ///< [HALUI]MDI_COMMAND, in order
+};
+
+/// A client of the machine. Buttons act on their rising edge. Not realtime; one thread.
 class Halui {
   public:
-    /// Makes the component "halui" with pins for `num_joints` joints.
-    Result<> create(hal::Hal &hal, int num_joints);
+    /// Makes the component "halui" and its pins.
+    Result<> create(hal::Hal &hal, const HaluiSettings &settings);
     void destroy();
 
     /// Becomes a client of the machine: a panel, which another's right to operate does not lock out.
@@ -28,24 +43,52 @@ class Halui {
     void step();
 
   private:
-    /// An input pin that means one command.
-    struct Button {
-        hal::UserPin<bool> pin;
-        msgs::Command command;
-        bool wasOn = false;
-    };
-
-    /// Those of a table for an instance.
     template <class Table>
-    void make_buttons(const Table &table, int number, Result<> &status);
+    void make_buttons(const Table &table, int instance, int number, Result<> &status);
+    void make_pins(Result<> &status);
 
+    client::Serial ask(const msgs::Command &command);
+    void ask_all(const std::vector<msgs::Command> &commands);
+    void note_outcomes();
+    void step_buttons();
+    void step_jogs(std::int64_t now_ns);
+    template <class Set>
+    void step_selection(std::vector<Set> &sets, int &selected);
+    void step_dials();
+    template <class Dialled, class Make>
+    void step_dial(Dialled &one, double value, const DialRange &range, Make make);
+    void step_spindle(int number);
+    void step_mdi();
+    void show();
+    void show_axes(const msgs::MachineStatus &status);
+    bool hasAxis(int axis) const { return ((settings_.axis_mask >> static_cast<unsigned>(axis)) & 1U) != 0; }
+
+    HaluiSettings settings_;
     hal::Hal *hal_ = nullptr;
     std::optional<client::Client> client_;
     int comp_id_ = 0;
-    int num_joints_ = 0;
-    std::vector<Button> buttons_;
+    int joint_ = 0, axis_ = 0;  ///< selected
+    std::vector<HaluiButton> buttons_;
     hal::UserPinSet<pins::LAMPS> lamps_;
-    std::array<hal::UserPinSet<pins::JOINT_LAMPS>, MAX_JOINTS> joint_lamps_;
+    hal::UserPinSet<pins::JOINT_JOG_SETTINGS> joint_jog_settings_;
+    hal::UserPinSet<pins::AXIS_JOG_SETTINGS> axis_jog_settings_;
+    std::vector<Jogged<pins::JOINT_JOGS>> joints_;
+    std::vector<Jogged<pins::AXIS_JOGS>> axes_;
+    Jogged<pins::SELECTED_JOINT_JOGS> selected_joint_;
+    Jogged<pins::SELECTED_AXIS_JOGS> selected_axis_;
+    std::vector<hal::UserPinSet<pins::JOINT_LAMPS>> joint_lamps_;
+    hal::UserPinSet<pins::SELECTED_LAMPS> selected_lamps_;
+    std::array<hal::UserPinSet<pins::AXIS_LAMPS>, MAX_AXES> axis_lamps_;
+    std::vector<SpindlePins> spindles_;
+    Turned<pins::FEED_DIAL> feed_;
+    Turned<pins::RAPID_DIAL> rapid_;
+    Turned<pins::VELOCITY_DIAL> velocity_;
+    std::vector<hal::UserPinSet<pins::MDI_BUTTONS>> mdi_buttons_;
+    MdiPins mdi_;
+    double tool_diameter_ = 0;
+    std::vector<client::Serial> pending_;  ///< whose end is not known yet
+    bool isRefused_ = false;
+    std::uint32_t refusals_ = 0;
 };
 
 }  // namespace mw::ui

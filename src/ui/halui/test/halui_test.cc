@@ -4,59 +4,14 @@
 
 #include <gtest/gtest.h>
 
-#include "hal/core/host.hh"
-#include "mailbox/desk.hh"
-#include "msgs/catalogue.hh"
-#include "rtapi/virtual_scheduler.hh"
 #include "testing/pin_page.hh"
-#include "ui/halui/halui.hh"
+#include "ui/halui/test/halui_rig.hh"
 
 namespace mw::ui {
 namespace {
 
+using HaluiTest = HaluiRig;
 using testing::PinText;
-
-constexpr int JOINTS = 2;
-
-class HaluiTest : public ::testing::Test {
-  protected:
-    HaluiTest() {
-        hal::HalOptions options;
-        options.scheduler = &clock;
-        auto made = hal::LocalHost::create(options);
-        EXPECT_TRUE(made.has_value());
-        host = std::move(*made);
-        EXPECT_TRUE(halui.create(hal(), JOINTS).has_value());
-        EXPECT_TRUE(halui.join(memory.segment()).has_value());
-    }
-    ~HaluiTest() override { halui.destroy(); }
-    hal::Hal &hal() { return host->hal(); }
-    void set(const std::string &name, bool isOn) {
-        EXPECT_TRUE(hal().set("halui." + name, isOn ? "1" : "0").has_value()) << name;
-    }
-    bool lamp(const std::string &name) { return hal().get("halui." + name)->as_bit(); }
-    /// A cycle of task; what it was asked for, as text.
-    std::string cycle() {
-        std::string all;
-        halui.step();
-        for (const auto &delivery : desk.take(now_ns += 1000000)) {
-            all += (all.empty() ? "" : ", ") + msgs::to_text(delivery.command);
-            EXPECT_TRUE(delivery.isPanel) << "it is wired to the machine";
-            desk.tell(delivery.serial, msgs::Progress::DONE, "");
-        }
-        desk.publish(*status);
-        return all;
-    }
-    std::string asked(const msgs::Command &command) { return msgs::to_text(command); }
-
-    rtapi::VirtualScheduler clock;
-    std::unique_ptr<hal::LocalHost> host;
-    mailbox::Memory memory = mailbox::Memory::in_process();
-    mailbox::Desk desk{memory.segment()};
-    std::unique_ptr<msgs::MachineStatus> status = std::make_unique<msgs::MachineStatus>();
-    std::int64_t now_ns = 0;
-    Halui halui;
-};
 
 std::vector<PinText> rows() {
     return testing::pin_texts([](auto &&show) { pins::for_each(show); });
@@ -88,6 +43,13 @@ TEST_F(HaluiTest, EachButtonGivesItsCommandOnceOnItsRisingEdge_J4) {
                                                     {"flood.off", FloodOff{}},
                                                     {"mist.on", MistOn{}},
                                                     {"mist.off", MistOff{}},
+                                                    {"lube.on", LubeOn{}},
+                                                    {"lube.off", LubeOff{}},
+                                                    {"spindle.0.stop", SpindleOff{0}},
+                                                    {"spindle.0.brake-on", EngageBrake{0}},
+                                                    {"spindle.0.brake-off", ReleaseBrake{0}},
+                                                    {"joint.selected.home", HomeJoint{0}},
+                                                    {"joint.selected.unhome", UnhomeJoint{0}},
                                                     {"joint.0.home", HomeJoint{0}},
                                                     {"joint.1.home", HomeJoint{1}},
                                                     {"joint.0.unhome", UnhomeJoint{0}},
@@ -100,11 +62,6 @@ TEST_F(HaluiTest, EachButtonGivesItsCommandOnceOnItsRisingEdge_J4) {
         set(name, false);
         EXPECT_EQ(cycle(), "") << name << " is let go";
     }
-    std::size_t inputs = 0;
-    for (const hal::PinInfo &pin : hal().pins("halui.*")) {
-        inputs += pin.dir == hal::Dir::IN ? 1 : 0;
-    }
-    EXPECT_EQ(inputs, BUTTONS.size());
 }
 
 TEST_F(HaluiTest, ButtonsThatTaskHasNoRoomForAreTriedAgain_J4) {
@@ -128,31 +85,140 @@ TEST_F(HaluiTest, LampsShowTheStatusOfTheLastCycle_J4) {
         halui.step();
         std::string all;
         for (const hal::PinInfo &pin : hal().pins("halui.*")) {
-            all += pin.dir == hal::Dir::OUT && pin.value.as_bit() ? pin.name.substr(6) + ' ' : "";
+            all += pin.dir == hal::Dir::OUT && pin.type == hal::Type::BIT && pin.value.as_bit()
+                       ? pin.name.substr(6) + ' '
+                       : "";
         }
         return all;
     };
-    EXPECT_EQ(lit(), "estop.is-activated mode.is-joint mode.is-manual program.is-idle ");
+    EXPECT_EQ(lit(), "axis.x.is-selected estop.is-activated joint.0.is-selected mode.is-joint mode.is-manual "
+                     "program.block-delete.is-on program.is-idle program.optional-stop.is-on ");
     status->task.state = State::ON;
     status->task.mode = Mode::AUTO;
     status->task.interp_state = InterpState::READING;
+    status->task.isOptionalStop = status->task.isBlockDelete = false;
     status->trajectory.mode = MotionMode::COORD;
-    EXPECT_EQ(lit(), "machine.is-on mode.is-auto program.is-running ");
+    const std::string selected = "axis.x.is-selected joint.0.is-selected ";
+    EXPECT_EQ(lit(), selected + "machine.is-on mode.is-auto program.is-running ");
     status->task.interp_state = InterpState::PAUSED;
     status->joints[1].isHomed = true;
-    EXPECT_EQ(lit(), "joint.1.is-homed machine.is-on mode.is-auto program.is-paused ");
+    EXPECT_EQ(lit(), selected + "joint.1.is-homed machine.is-on mode.is-auto program.is-paused ");
     status->task.interp_state = InterpState::WAITING;
     status->task.mode = Mode::MDI;
     status->trajectory.mode = MotionMode::TELEOP;
-    EXPECT_EQ(lit(), "joint.1.is-homed machine.is-on mode.is-mdi mode.is-teleop program.is-running ");
+    EXPECT_EQ(lit(),
+              selected + "joint.1.is-homed machine.is-on mode.is-mdi mode.is-teleop program.is-running ");
+    status->io.coolant = {true, true};
+    status->io.lube.isOn = true;
+    status->spindles[0].isOn = status->spindles[0].isBrakeOn = true;
+    status->spindles[0].direction = -1;
+    EXPECT_EQ(lit(),
+              "axis.x.is-selected flood.is-on joint.0.is-selected joint.1.is-homed lube.is-on machine.is-on "
+              "mist.is-on mode.is-mdi mode.is-teleop program.is-running spindle.0.brake-is-on "
+              "spindle.0.is-on spindle.0.runs-backward ");
+    status->spindles[0].direction = 1;
+    EXPECT_NE(lit().find("spindle.0.runs-forward"), std::string::npos);
+}
+
+TEST_F(HaluiTest, TheLampsOfAJointAreItsOwnAndThoseOfTheSelectedOne_J4) {
+    using Lamp = bool msgs::JointStatus::*;
+    const std::map<std::string, Lamp> LAMPS = {{"is-homed", &msgs::JointStatus::isHomed},
+                                               {"has-fault", &msgs::JointStatus::isFaulted},
+                                               {"override-limits", &msgs::JointStatus::isOverridingLimits},
+                                               {"on-hard-min-limit", &msgs::JointStatus::isOnNegHardLimit},
+                                               {"on-hard-max-limit", &msgs::JointStatus::isOnPosHardLimit},
+                                               {"on-soft-min-limit", &msgs::JointStatus::isOnNegSoftLimit},
+                                               {"on-soft-max-limit", &msgs::JointStatus::isOnPosSoftLimit}};
+    cycle();
+    for (const auto &[name, member] : LAMPS) {
+        status->joints[1].*member = true;
+        cycle();
+        halui.step();
+        EXPECT_TRUE(lamp("joint.1." + name));
+        EXPECT_FALSE(lamp("joint.0." + name));
+        EXPECT_FALSE(lamp("joint.selected." + name)) << "joint 0 is selected";
+        EXPECT_EQ(press("joint.1.select"), "") << "choosing asks for nothing";
+        halui.step();
+        EXPECT_TRUE(lamp("joint.selected." + name));
+        press("joint.0.select");
+        status->joints[1].*member = false;
+    }
+}
+
+TEST_F(HaluiTest, NumbersAreShown_J4) {
+    status->tool.in_spindle = 7;
+    status->settings.max_velocity = 100;
+    status->overrides.feed = 0.75;
+    status->overrides.rapid = 0.5;
+    status->spindles[0].override_factor = 1.1;
+    for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
+        status->offsets.tool[axis] = axis + 1;
+        status->trajectory.position_cmd[axis] = 100 + axis;
+        status->trajectory.position_fb[axis] = 200 + axis;
+    }
+    status->offsets.g5x[0] = 10;
+    status->offsets.g92[0] = 1;
+    status->offsets.g5x[2] = 20;
+    msgs::ToolTable table{1, {{}}};
+    table.tools[0].diameter = 6.5;
+    ASSERT_TRUE(desk.publish_tools(table));
+    cycle();
+    cycle();
+    halui.step();
+    EXPECT_EQ(value("tool.number"), 7);
+    EXPECT_EQ(value("tool.diameter"), 6.5);
+    for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
+        EXPECT_EQ(value(std::string("tool.length_offset.") + geom::AXIS_LETTERS_LOWER[axis]), axis + 1);
+    }
+    EXPECT_EQ(value("feed-override.value"), 0.75);
+    EXPECT_EQ(value("rapid-override.value"), 0.5);
+    EXPECT_EQ(value("spindle.0.override.value"), 1.1);
+    EXPECT_EQ(value("max-velocity.value"), 100);
+    EXPECT_EQ(value("machine.units-per-mm"), 1);
+    EXPECT_EQ(value("axis.x.pos-commanded"), 100);
+    EXPECT_EQ(value("axis.z.pos-feedback"), 202);
+    EXPECT_EQ(value("axis.x.pos-relative"), 100 - 1 - 10 - 1);
+    EXPECT_EQ(value("axis.z.pos-relative"), 102 - 3 - 20);
+    status->offsets = {};
+    status->offsets.rotation_xy_deg = 90;
+    cycle();
+    halui.step();
+    EXPECT_NEAR(value("axis.x.pos-relative"), 101, 1e-9) << "what was Y";
+}
+
+TEST_F(HaluiTest, OneOfTheAxesAndJointsIsSelected_J4) {
+    cycle();
+    press("axis.z.select");
+    halui.step();
+    EXPECT_EQ(value("axis.selected"), 2);
+    EXPECT_TRUE(lamp("axis.z.is-selected"));
+    EXPECT_FALSE(lamp("axis.x.is-selected"));
+    press("axis.y.select");
+    halui.step();
+    EXPECT_EQ(value("axis.selected"), 2) << "the machine has no Y";
+    press("joint.1.select");
+    halui.step();
+    EXPECT_EQ(value("joint.selected"), 1);
+    EXPECT_EQ(press("joint.selected.home"), asked(msgs::HomeJoint{1}));
 }
 
 TEST_F(HaluiTest, EveryRowIsAPinAndEveryPinIsARow_J4) {
     std::map<std::string, PinText> wanted;
     for (const PinText &row : rows()) {
         EXPECT_FALSE(row.doc.empty()) << row.name;
-        for (int joint = 0; joint < JOINTS; ++joint) {
-            wanted[testing::replaced(row.name, "joint.N", "joint." + std::to_string(joint))] = row;
+        for (int i = 0; i < 9; ++i) {
+            const std::string number = std::to_string(i);
+            const bool isLamp = row.dir == hal::Dir::OUT;
+            const bool isJoint = row.name.find("joint.N") != std::string::npos && i < JOINTS;
+            const bool isAxis = row.name.find("axis.L") != std::string::npos && (!isLamp || i == 0 || i == 2);
+            const bool isMdi = row.name.find("-NN") != std::string::npos && i < 2;
+            const bool isSpindle = row.name.find("spindle.N") != std::string::npos && i == 0;
+            const bool isOne = row.name.find_first_of("NL") == std::string::npos;
+            if (isJoint || isAxis || isMdi || isSpindle || isOne) {
+                std::string name = testing::replaced(row.name, "NN", "0" + number);
+                name = testing::replaced(name, ".N", '.' + number);
+                wanted[testing::replaced(name, ".L", std::string(".") + geom::AXIS_LETTERS_LOWER[i])] = row;
+            }
         }
     }
     std::size_t found = 0;
@@ -163,7 +229,7 @@ TEST_F(HaluiTest, EveryRowIsAPinAndEveryPinIsARow_J4) {
         ++found;
         const auto row = wanted.find(pin.name);
         ASSERT_NE(row, wanted.end()) << pin.name;
-        EXPECT_EQ(pin.type, hal::Type::BIT) << pin.name;
+        EXPECT_EQ(pin.type, row->second.type) << pin.name;
         EXPECT_EQ(pin.dir, row->second.dir) << pin.name;
     }
     EXPECT_EQ(found, wanted.size());

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What was in force when a program was held: an operator may stop the spindle, jog and change the tool before
+// it goes on.
+#pragma once
+
+#include "geom/pose.hh"
+#include "task/sequencer/program_spindles.hh"
+
+namespace mw::task {
+
+struct LeftPlace {
+    geom::Pose position;  ///< of the machine; of when the axes were released
+    int line = 0;
+    int tool = 0;            ///< in the spindle
+    geom::Pose tool_offset;  ///< of that tool, in the table
+    ProgramSpindles spindles;
+    bool isMistOn = false, isFloodOn = false;
+};
+
+}  // namespace mw::task

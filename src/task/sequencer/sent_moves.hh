@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What was handed to the planner and is not done: it can be taken back and begun again from where the machine
+// stands.
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "base/result.hh"
+#include "motion/api/status.hh"
+#include "task/sequencer/items.hh"
+
+namespace mw::task {
+
+/// One thread.
+class SentMoves {
+  public:
+    /// `item` went on as path command `id`; `position` is where the machine stands if none is under way.
+    void note(motion::CommandId id, const Item &item, const geom::Pose &position);
+    /// Those up to `id` are done.
+    void forget(motion::CommandId id);
+    void clear() { sent_.clear(); }
+
+    /// Why the move under way cannot be begun again from `place`, in its middle; empty: it can.
+    std::string why_not(const motion::Status &status, const geom::Pose &place) const;
+    /// All that is not done, in its order; the move under way from `place` on.
+    std::vector<Item> rest(const motion::Status &status, const geom::Pose &place) const;
+
+  private:
+    struct Sent {
+        motion::CommandId id = 0;
+        Item item;
+        geom::Pose start;
+    };
+    std::deque<Sent>::const_iterator under_way(const motion::Status &status) const;
+
+    std::deque<Sent> sent_;
+    geom::Pose end_;  ///< of the last move that was noted
+};
+
+/// The rest of an arc that began at `start`, of which `to_go` is left [machine units], from `place` on:
+/// itself, with a short line to it before where `place` lies beside it (in a rounded corner).
+std::vector<interp::MachineCall> rest_of_arc(const interp::ArcMove &arc, const geom::Pose &start,
+                                             const geom::Pose &place, double to_go);
+
+}  // namespace mw::task

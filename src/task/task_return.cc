@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A held program whose axes are released, and the way back to its place.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "task/task_start.hh"
+
+namespace mw::task {
+
+/// After each command and each cycle: what an operator changes from here on is restored when it goes on.
+void Task::Start::watch_hold() {
+    if (!task.run_.isHeld()) {
+        task.left_.reset();
+        return;
+    }
+    if (task.left_.has_value()) {
+        return;
+    }
+    const io::Outputs &io = task.io_.outputs;
+    LeftPlace left;
+    left.line = task.motion_.status().source.line;
+    left.tool = io.tool_number;
+    left.tool_offset = offset_of_tool(left.tool);
+    left.spindles = task.sequencer_.spindles();
+    left.isMistOn = io.coolant_mist;
+    left.isFloodOn = io.coolant_flood;
+    task.left_ = left;
+}
+
+geom::Pose Task::Start::offset_of_tool(int tool) const {
+    const int index = tool > 0 ? task.parts_.tools.index_of_tool(tool) : -1;
+    return index >= 0 ? task.parts_.tools.entry(index).offset : geom::Pose{};
+}
+
+/// Spindle or coolant that the program had on are not on any more.
+bool Task::Start::isSomethingOff() const {
+    const LeftPlace &left = *task.left_;
+    const io::Outputs &io = task.io_.outputs;
+    return !left.spindles.isKeptBy(task.sequencer_.spindles()) || (left.isMistOn && !io.coolant_mist) ||
+           (left.isFloodOn && !io.coolant_flood) || left.tool != io.tool_number;
+}
+
+/// What the planner has not done waits in the queue again; motion stands and forgets it.
+Result<> Task::Start::take_path_back() {
+    const motion::Status &motion = task.motion_.status();
+    if (motion.current_velocity != 0) {
+        return fail("the machine still brakes");
+    }
+    const geom::Pose place = motion::programmed_position(motion);
+    const auto taken = task.sequencer_.take_back(place);
+    if (taken.has_value()) {
+        task.left_->position = place;
+        task.motion_.abort();
+    }
+    return taken;
+}
+
+Result<Progress> Task::Start::release(mailbox::Serial command) {
+    const Hold hold = task.run_.hold();
+    if (hold == Hold::AWAY) {
+        return Progress::DONE;
+    }
+    if (task.run_.phase() < RunPhase::READING) {
+        return fail("the program has not begun");
+    }
+    if (hold != Hold::PROPOSED) {
+        const auto taken = take_path_back();
+        if (!taken.has_value()) {
+            return std::unexpected(taken.error());
+        }
+    }
+    const auto released = task.run_.take(RunEvent::RELEASE);
+    if (!released.has_value()) {
+        return std::unexpected(released.error());
+    }
+    task.approach_.forget();
+    const auto by_hand = task.motion_.status().isAllHomed ? motion::Mode::TELEOP : motion::Mode::FREE;
+    task.mode_.begin(Mode::AUTO, by_hand, command, task.motion_.send(motion::SetMode{by_hand}), task.now_ns_);
+    return Progress::STARTED;
+}
+
+/// Resume of a program that cannot simply go on: the way back, and what has to be switched on again.
+Result<Progress> Task::Start::come_back() {
+    const motion::Status &motion = task.motion_.status();
+    const bool isAway = task.run_.hold() == Hold::AWAY;
+    if (isAway && !motion.isInPosition) {
+        return fail("the machine moves");
+    }
+    if (offset_of_tool(task.left_->tool) != task.left_->tool_offset) {
+        return fail(
+            fmt::format("the offset of tool {} has changed, and moves that were read ahead have the old one",
+                        task.left_->tool),
+            {}, "abort, and run from the line");
+    }
+    const auto taken = isAway ? Result<>{} : take_path_back();
+    const auto proposed = taken.has_value() ? task.run_.take(RunEvent::PROPOSE) : taken;
+    if (!proposed.has_value()) {
+        return std::unexpected(proposed.error());
+    }
+    if (motion.mode != motion::Mode::COORD) {
+        task.motion_.send(motion::SetMode{motion::Mode::COORD});
+    }
+    propose(plan_back());
+    return Progress::DONE;
+}
+
+ApproachPlan Task::Start::plan_back() const {
+    const LeftPlace &left = *task.left_;
+    ApproachPlan plan;
+    plan.to = ApproachTo::PLACE_LEFT;
+    plan.line = left.line;
+    plan.modes.position = left.position;
+    plan.modes.tool = left.tool;
+    plan.modes.isMistOn = left.isMistOn || task.io_.outputs.coolant_mist;
+    plan.modes.isFloodOn = left.isFloodOn || task.io_.outputs.coolant_flood;
+    plan.modes.spindles = left.spindles.starts();
+    for (std::size_t i = 0; i < plan.modes.speeds_rpm.size(); ++i) {
+        const int spindle = static_cast<int>(i);
+        plan.modes.speeds_rpm[i] = left.spindles.direction(spindle) * left.spindles.speed(spindle);
+    }
+    plan.tool_now = task.io_.outputs.tool_number;
+    return plan;
+}
+
+}  // namespace mw::task

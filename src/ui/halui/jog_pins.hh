@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The pins that jog one joint or axis, as commands.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "msgs/command.hh"
+#include "ui/halui/edge.hh"
+#include "ui/halui/pin_tables.hh"
+
+namespace mw::ui {
+
+/// A jog goes on while its pin says so, by a lease that is renewed: what has been stopped by anything else
+/// does not begin again before the pin has been let go.
+class JogPins {
+  public:
+    struct Target {
+        bool isJoint = true;
+        int index = 0;
+    };
+    /// Once a cycle; what is to be asked for. Another target ends the jog of the one before.
+    std::vector<msgs::Command> step(const JogInputs &now, const JogSettings &settings, const Target &target,
+                                    std::int64_t now_ns);
+
+  private:
+    /// Part of the jog speed, with its sign, that the pins ask for; 0: none.
+    static double part_of(const JogInputs &now, const JogSettings &settings);
+    void step_held(double part, double speed, std::int64_t now_ns, std::vector<msgs::Command> &asked);
+
+    Target target_;
+    double part_ = 0;         ///< of the jog that was asked for
+    bool isWaiting_ = false;  ///< until all pins are let go
+    bool isKnown_ = false;
+    std::int64_t renewed_ns_ = 0;
+    Edge plus_, minus_;
+};
+
+}  // namespace mw::ui
