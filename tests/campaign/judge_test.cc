@@ -247,7 +247,7 @@ TEST(Plan, OneSeedGivesOnePlanAndPartsOfItCanBeKept) {
         }
         EXPECT_GE(stops, 2);
     }
-    const Plan all = make_plan(18);
+    const Plan all = make_plan(18, 1);
     const Plan part = reduced(all, "0:1-2,1x,2.0");
     ASSERT_EQ(part.acts.size(), 3U);
     EXPECT_TRUE(part.acts[1].troubles.empty());
