@@ -143,7 +143,7 @@ class ToolJudge : public ::testing::Test {
     void restart() {
         machine_.reset();
         loaded_ = LoadedConfig::load(ini_, sink_);
-        ASSERT_NE(loaded_, nullptr);
+        ASSERT_NE(loaded_, nullptr) << (sink_.all().empty() ? "" : sink_.all().back().str());
         loaded_->machine.task.parameter_file.clear();
         auto made =
             make_virtual_machine({loaded_->ini, loaded_->reader, loaded_->machine, sink_}, MachineOptions{});
