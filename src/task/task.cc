@@ -7,6 +7,7 @@
 #include "interp/scripts/user_codes.hh"
 #include "motion/api/texts.hh"
 #include "task/link/motion_status.hh"
+#include "task/run/shown_offsets.hh"
 #include "task/task_start.hh"
 
 namespace mw::task {
@@ -51,7 +52,7 @@ SequencerEvents Task::make_events() {
     events.stop = [this](const interp::ProgramStop &stop, int line) { return on_stop(stop, line); };
     events.end = [this] { run_.change(RunEvent::READ); };
     events.fail = [this](const std::string &text) { run_.note_failure(text); };
-    events.offsets = [this](const interp::UseOffsets &item) { show_offsets(item); };
+    events.offsets = [this](const interp::UseOffsets &item) { show(item, status_.offsets); };
     events.tool_offset = [this](const interp::UseToolOffset &item) {
         status_.offsets.tool = item.offset;
         return motion_.send(motion::SetToolOffset{item.offset});
@@ -106,7 +107,7 @@ Result<> Task::start() {
 }
 
 void Task::synch_interpreter() {
-    show_world();
+    world_.show(snapshot_of(motion_.status(), io_.outputs, sequencer_));
     reader_.synch(motion::programmed_position(motion_.status()));
 }
 
@@ -277,7 +278,7 @@ void Task::run_interpreter() {
         Start{*this}.step();
         return;
     }
-    show_world();
+    world_.show(snapshot_of(motion_.status(), io_.outputs, sequencer_));
     const auto mayRead = [this] {
         return run_.isRunning() && run_.phase() != RunPhase::FINISHING && run_.hold() != Hold::STOPPED &&
                reader_.queue().size() < settings_.read_ahead_items;
@@ -361,24 +362,6 @@ void Task::step_tools() {
     }
 }
 
-void Task::show_offsets(const interp::UseOffsets &item) {
-    status_.offsets.g5x_index = item.g5x_index;
-    status_.offsets.g5x = item.g5x;
-    status_.offsets.g92 = item.g92;
-    status_.offsets.rotation_xy_deg = item.rotation_xy_deg;
-}
-
-/// Without a run what was announced is in force: at the start, and after what an abort has dropped.
-void Task::show_idle_offsets() {
-    const TaskCanon &canon = reader_.canon();
-    if (!run_.isRunning() && canon.offsets().has_value()) {
-        show_offsets(*canon.offsets());
-    }
-    if (!run_.isRunning() && canon.tool_offset().has_value()) {
-        status_.offsets.tool = *canon.tool_offset();
-    }
-}
-
 void Task::update_status() {
     TaskStatus &task = status_.task;
     task.state = state_.state();
@@ -405,7 +388,9 @@ void Task::update_status() {
     task.error_code = run_.error() != nullptr ? INTERPRETER_ERROR : 0;
     task.block.assign(reader_.canon().block_text());
     status_.settings = shown_settings_.shown();
-    show_idle_offsets();
+    if (!run_.isRunning()) {
+        show_announced(reader_.canon(), status_.offsets);
+    }
     const interp::ActiveCodes codes = reader_.interpreter().active_codes();
     status_.codes = {codes.g, codes.m, codes.settings};
     approach_.show(status_.approach, status_.offsets, status_.codes);

@@ -154,11 +154,8 @@ class Task {
     void tell(const std::optional<Ending> &ending);
     void step_tools();
     void update_status();
-    void show_offsets(const interp::UseOffsets &item);
-    void show_idle_offsets();
     /// Takes the machine's position and state as the program's.
     void synch_interpreter();
-    void show_world() { world_.show(snapshot_of(motion_.status(), io_.outputs, sequencer_)); }
     Result<> check_can_run() const;
 
     Settings settings_;

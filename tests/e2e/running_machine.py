@@ -205,7 +205,7 @@ def displays(bench):
                'with its words and environment', said.read_text())
         expect(machine.process.poll() is None and bench.pin('motion.motion-enabled') == 'FALSE', 'the machine is up while it runs')
         (bench.ini.parent / 'wish').write_text(status + '\n')
-        expect(machine.end() == (0 if status == '0' else 1), f'and ends with it ({status})', machine.text)
+        expect(machine.end() == int(status), f'and ends with it and its status ({status})', machine.text)
         expect(bench.is_down(), 'nothing is left')
         said.unlink()
     machine = bench.start()
