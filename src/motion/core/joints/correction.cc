@@ -167,6 +167,12 @@ void step(Correction &c, const Settings &settings, int joint, double position, d
         return;
     }
     follow_side(c, position);
+    const double backlash = settings.get(Parameter::JOINT_BACKLASH, joint);
+    if (backlash == 0 && c.table.count == 0 && c.position == 0 && c.isAtRest()) {
+        c.raw = 0;
+        c.last_position = position;
+        return;
+    }
     const double velocity = settings.get(Parameter::JOINT_MAX_VELOCITY, joint);
     const Means means = means_of(settings, joint, period_s);
     c.follower.max_acceleration = means.acceleration;
@@ -174,7 +180,7 @@ void step(Correction &c, const Settings &settings, int joint, double position, d
         c.follower.max_velocity = (SHARE - c.table.steepest) * velocity;
         follow_table(c, position, period_s);
     } else {
-        c.raw = 0.5 * settings.get(Parameter::JOINT_BACKLASH, joint) * c.side;
+        c.raw = 0.5 * backlash * c.side;
         c.follower.target = c.raw;
         c.follower.max_velocity = SHARE * velocity;
         c.follower.step(period_s);
