@@ -10,7 +10,6 @@
 namespace mw::campaign {
 namespace {
 
-constexpr double PERIOD_S = 1e-3;
 
 /// Samples in which only Z moves, and towards the end of the wish.
 struct Pass {
