@@ -10,7 +10,6 @@
 namespace mw::campaign {
 namespace {
 
-
 /// Samples in which only Z moves, and towards the end of the wish.
 struct Pass {
     std::size_t first = 0, last = 0;
