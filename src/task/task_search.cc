@@ -28,7 +28,8 @@ void Task::Start::step() {
     }
 }
 
-void Task::Start::give_up(const std::string &reason) {
+/// `reason` is a copy: the search that told it ends here.
+void Task::Start::give_up(std::string reason) {
     drop();
     task.post(MessageKind::OPERATOR_ERROR, reason);
     task.run_.set_error({diag::Severity::ERROR, {reason}});

@@ -42,7 +42,7 @@ struct Task::Start {
     Result<> take_path_back();
     bool isSomethingOff() const;
     geom::Pose offset_of_tool(int tool) const;
-    void give_up(const std::string &reason);
+    void give_up(std::string reason);
     double safe_height() const;
 };
 
