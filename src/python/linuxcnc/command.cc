@@ -18,6 +18,7 @@ namespace {
 
 constexpr double TAKEN_WITHIN_S = 5.0;
 constexpr double USUAL_TIMEOUT_S = 5.0;
+constexpr double SHOWN_WITHIN_S = 0.5;
 constexpr double HOMING_PATIENCE_S = 0.5;
 /// A sleeper sees so often whether Python has a signal for it (Ctrl-C).
 constexpr double LONGEST_SLEEP_S = 0.2;
@@ -79,6 +80,17 @@ void Command::send(const msgs::Command &command) {
     });
 }
 
+/// An outcome is told before the status of its cycle, and the queue of motion shows its end a cycle later:
+/// who polls next is to see that nothing is under way.
+void Command::show_end() {
+    const auto isShown = [this] {
+        const bool isRead = client_->read_status().has_value();
+        const msgs::MachineStatus &status = client_->status();
+        return isRead && (status.last_command != serial_ || rcs_state(status) != RcsState::EXEC);
+    };
+    static_cast<void>(client_->wait_until(isShown, SHOWN_WITHIN_S));
+}
+
 int Command::wait_complete(std::optional<double> timeout_s) {
     if (serial_ == 0) {
         return static_cast<int>(RcsState::DONE);
@@ -94,6 +106,9 @@ int Command::wait_complete(std::optional<double> timeout_s) {
         away([&] {
             if (const auto ended = client_->wait(serial_, slice_s); ended.has_value()) {
                 outcome = *ended;
+            }
+            if (outcome.progress != msgs::Progress::STARTED) {
+                show_end();
             }
         });
         left_s -= slice_s;

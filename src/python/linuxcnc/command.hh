@@ -26,6 +26,7 @@ class Command {
 
   private:
     client::Client &client();
+    void show_end();
     void refuse(const std::string &reason);
     /// `act` on the client without the GIL.
     template <class Act>
