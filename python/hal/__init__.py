@@ -11,8 +11,10 @@
 Values are bool (bit), float, and int. HAL refuses with hal.error; names that are unknown give RuntimeError, numbers
 that do not fit OverflowError. `halcmd unload` ends a component by a KeyboardInterrupt.
 """
+import atexit as _atexit
 import signal as _signal
 import threading as _threading
+import weakref as _weakref
 
 from . import _core
 from ._core import *  # noqa: F401,F403
@@ -73,12 +75,27 @@ def _end_by_interrupt():
         _signal.signal(_signal.SIGTERM, _signal.default_int_handler)
 
 
+_components = _weakref.WeakSet()
+
+
+@_atexit.register
+def _leave():
+    """A program that comes to its end in order leaves HAL, also when it has not asked for it."""
+    for one in list(_components):
+        one.exit()
+
+
 class component(_component):
     """component(name[, prefix]): a HAL component of this program."""
 
     def __init__(self, name, prefix=""):
         super().__init__(name, prefix or "")
+        _components.add(self)
         _end_by_interrupt()
+
+    def exit(self):
+        _components.discard(self)
+        super().exit()
 
     def newpin(self, *args, **kwargs):
         return Pin(_component.newpin(self, *args, **kwargs))
