@@ -149,6 +149,12 @@ Answer spindle_override(const Asked &asked) {
     });
 }
 
+Answer probe_tripped(const Asked &asked) {
+    const bool isTripped = asked.status.probe.isTripped;
+    return line(asked.settings.isOld() ? fmt::format("PROBE_TRIPPED {}", isTripped ? 1 : 0)
+                                       : fmt::format("PROBE_TRIPPED {}", isTripped ? "YES" : "NO"));
+}
+
 Answer debug(const Asked &asked) {
     const std::uint32_t mask = asked.status.settings.debug;
     return line(asked.settings.isOld() ? fmt::format("DEBUG {}", mask) : fmt::format("DEBUG 0x{:08x}", mask));
@@ -231,7 +237,7 @@ constexpr Question QUESTIONS[] = {
      [](const Asked &a) { return flag(a, "OVERRIDE_LIMITS", a.status.joints[0].isOverridingLimits, "1", "0"); }},
     {"PLAT", BOTH, [](const Asked &) { return line("PLAT Linux"); }},
     {"POS_OFFSET", BOTH, position_offset},
-    {"PROBE_TRIPPED", BOTH, [](const Asked &a) { return flag(a, "PROBE_TRIPPED", a.status.probe.isTripped, "1", "0"); }},
+    {"PROBE_TRIPPED", BOTH, probe_tripped},
     {"PROBE_VALUE", BOTH, [](const Asked &a) { return line(a.status.probe.isOn ? "PROBE_VALUE 1" : "PROBE_VALUE 0"); }},
     {"PROGRAM", BOTH, program},
     {"PROGRAM_ANGULAR_UNITS", BOTH, [](const Asked &) { return line("PROGRAM_ANGULAR_UNITS DEG"); }},

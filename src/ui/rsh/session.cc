@@ -95,10 +95,10 @@ void Session::step(double now_s) {
 
 void Session::carry_out(const std::string &line, double now_s) {
     const Words words = split_words(line);
-    if (own_.isGreeted && own_.isEchoing) {
+    const std::string command = to_upper(words[0]);
+    if (own_.isGreeted && own_.isEchoing && command != "HELLO") {
         output_ += line + "\r\n";
     }
-    const std::string command = to_upper(words[0]);
     const Words behind(words.begin() + 1, words.end());
     if (command == "HELLO") {
         hello(behind);
@@ -155,6 +155,10 @@ void Session::get(const Words &words) {
     const msgs::MachineStatus &status = own_.kept != nullptr ? *own_.kept : shared_.status();
     const Answer answer = answering == nullptr ? fail(fmt::format("Unknown question '{}'", printable(name)))
                                                : answering({settings_, shared_, own_, status, behind});
+    const bool isOnlyOrder = answering == nullptr && find_order(settings_, name) != nullptr;
+    if (isOnlyOrder && !settings_.isOld()) {
+        return;  // scripts ask so for what can only be set, and expect no line
+    }
     if (!answer.has_value()) {
         tell_error(answer.error().str());
         say(fmt::format("GET {} NAK", printable(name)), settings_.isOld() ? "\r\n\r\n" : "\r\n");
@@ -205,7 +209,7 @@ void Session::set(const Words &words, const std::string &rest, double now_s) {
     if (waiting->until == Until::AS_SET && !own_.isWaitingForDone) {
         waiting->until = Until::TAKEN;
     }
-    wait_.emplace(Wait{name, std::move(*waiting), own_.timeout_s > 0 ? now_s + own_.timeout_s : 0});
+    wait_.emplace(Wait{name, std::move(*waiting), own_.timeout_s > 0 ? now_s + own_.timeout_s : 0, 0});
 }
 
 void Session::shut_down() {
@@ -261,6 +265,15 @@ void Session::look_at_wait(double now_s) {
     const auto end = end_of(wait_->what);
     const bool isLate = wait_->end_s > 0 && now_s >= wait_->end_s;
     if (!end.has_value() && !isLate) {
+        return;
+    }
+    // What an order has changed is in the status when it is answered.
+    constexpr std::uint64_t CYCLES_TO_SHOW = 3;
+    const bool isShown = !end.has_value() || wait_->what.serials.empty() || !own_.isWaitingForDone;
+    if (!isShown && wait_->shown_cycle == 0) {
+        wait_->shown_cycle = shared_.status().cycle + CYCLES_TO_SHOW;
+    }
+    if (!isShown && shared_.status().cycle < wait_->shown_cycle) {
         return;
     }
     const std::string order = wait_->order;

@@ -45,7 +45,8 @@ class Session final : public Conversation {
     struct Wait {
         std::string order;
         Waiting what;
-        double end_s = 0;  ///< 0: for ever
+        double end_s = 0;               ///< 0: for ever
+        std::uint64_t shown_cycle = 0;  ///< of task, in which the status shows what has ended; 0: it has not
     };
 
     std::optional<std::string> next_line();
