@@ -227,10 +227,15 @@ Outcome Task::Handler::operator()(const SetState &command) {
 }
 
 Outcome Task::Handler::operator()(const SetMode &command) {
-    if (command.mode == task.mode_.mode()) {
+    const motion::Status &motion = task.motion_.status();
+    // By hand axes move once all joints are homed. Where joints move now nothing is changed under them.
+    const motion::Mode by_hand = motion.isAllHomed ? motion::Mode::TELEOP : motion::Mode::FREE;
+    const bool isWantedAgain = command.mode == Mode::MANUAL && motion.mode != by_hand &&
+                               motion.isInPosition && !task.homing_.isUnderWay();
+    if (command.mode == task.mode_.mode() && !isWantedAgain) {
         return Progress::DONE;
     }
-    change_mode(command.mode, command.mode == Mode::MANUAL ? motion::Mode::FREE : motion::Mode::COORD);
+    change_mode(command.mode, command.mode == Mode::MANUAL ? by_hand : motion::Mode::COORD);
     return Progress::STARTED;
 }
 

@@ -169,7 +169,7 @@ enum class FaultKind : std::uint16_t {
     ENABLE_LOST,
     TASK_LOST,
     HOMING_FAILED,
-    PROBE_NOT_TRIPPED,
+    PROBE_NOT_TRIPPED,  ///< at its end; detail: 1 where contact was to be lost
     PROBE_TRIPPED_IN_MOVE,
     KINEMATICS_FAILED,
     PATH_LIMIT,

@@ -266,7 +266,9 @@ std::string what_failed(const Fault &fault) {
     case FaultKind::HOMING_CLAMPED:
         return fmt::format(
             "the homing module asked for more than joint {} can do: it moves within its limits", i);
-    case FaultKind::PROBE_NOT_TRIPPED: return "the probing move reached its end without a trip of the probe";
+    case FaultKind::PROBE_NOT_TRIPPED:
+        return fault.detail == 0 ? "G38.2 move finished without making contact."
+                                 : "G38.4 move finished without breaking contact.";
     case FaultKind::PROBE_TRIPPED_IN_MOVE:
         return fault.detail == 0 ? "probe tripped during a move that does not probe"
                                  : "probe tripped in a jog or while homing, which has stopped: see "

@@ -144,6 +144,7 @@ void PathPlanner::complete_moves() noexcept {
         if (p.isProbe && p.isTripRequired && !isTripped) {
             Fault fault;
             fault.kind = FaultKind::PROBE_NOT_TRIPPED;
+            fault.detail = p.isAwayProbe ? 1 : 0;
             fault.source = p.source;
             channels_.planner_faults.push(fault);
         }
