@@ -6,6 +6,7 @@
 #include "interp/ast/syntax_errors.hh"
 #include "interp/codes/executor.hh"
 #include "interp/flow/flow.hh"
+#include "interp/kept.hh"
 
 namespace mw::interp {
 
@@ -192,12 +193,6 @@ std::string Interpreter::why_no_start() const {
     return {};
 }
 
-struct Interpreter::Kept {
-    detail::State state;
-    detail::Parameters parameters;
-    detail::SavedModes saved_modes;
-};
-
 std::shared_ptr<const Interpreter::Kept> Interpreter::keep() const {
     const detail::Executor &executor = impl_->executor;
     return std::make_shared<Kept>(executor.state, executor.parameters, executor.saved_modes);
@@ -210,6 +205,22 @@ void Interpreter::restore(const Kept &kept) {
     executor.saved_modes = kept.saved_modes;
     executor.tools.forget();
     executor.awaited = {};
+}
+
+Result<std::string> Interpreter::pack_kept() const {
+    return pack(*keep(), impl_->names);
+}
+
+Result<std::shared_ptr<const Interpreter::Kept>> Interpreter::unpack_kept(std::string_view bytes) {
+    auto kept = unpack(bytes, *keep(), impl_->names);
+    if (!kept.has_value()) {
+        return std::unexpected(kept.error());
+    }
+    return std::make_shared<const Kept>(std::move(*kept));
+}
+
+std::uint64_t Interpreter::count_script_calls() const {
+    return impl_->flow.scripts().count_calls();
 }
 
 void Interpreter::forbid_scripts(bool isForbidden) {

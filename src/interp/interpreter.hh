@@ -161,6 +161,11 @@ class Interpreter final : public ProgramInterpreter {
     std::shared_ptr<const Kept> keep() const;
     /// Makes them what they were. Only at the top level, as after abort().
     void restore(const Kept &kept);
+    /// What keep() gives as bytes, for another process; an error says what cannot be told so.
+    Result<std::string> pack_kept() const;
+    Result<std::shared_ptr<const Kept>> unpack_kept(std::string_view bytes);
+    /// How often Python was asked for something.
+    std::uint64_t count_script_calls() const;
     /// Scripts that a step would run fail instead: what they do is not known.
     void forbid_scripts(bool isForbidden);
 

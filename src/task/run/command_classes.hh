@@ -40,9 +40,9 @@ namespace command_lists {
 template <class T>
 concept Mode = OneOf<T, SetMode>;
 template <class T>
-concept ProgramFile = OneOf<T, OpenProgram, CloseProgram, ResetInterpreter, SynchInterpreter>;
+concept ProgramFile = OneOf<T, OpenProgram, CloseProgram, ResetInterpreter, SynchInterpreter, ForgetRecovery>;
 template <class T>
-concept Run = OneOf<T, RunProgram>;
+concept Run = OneOf<T, RunProgram, RecoverProgram>;
 template <class T>
 concept Step = OneOf<T, StepProgram, StepTraj>;
 template <class T>
@@ -87,9 +87,8 @@ concept PartOfStart = OneOf<T, InitTask, HaltTask, InitMachine, HaltMachine, Ini
 template <class T>
 concept OfTheMailbox = OneOf<T, ClaimOperation, HandOverOperation, ReleaseOperation>;
 template <class T>
-concept NotYet =
-    OneOf<T, SetDebug, SystemCommand, CallTaskPlugin, CallIoPlugin, SetMotionMode, EnableTraj, DisableTraj,
-          SpindleIncrease, SpindleDecrease, SpindleConstant, SetSpindleSpeed, RecoverProgram, ForgetRecovery>;
+concept NotYet = OneOf<T, SetDebug, SystemCommand, CallTaskPlugin, CallIoPlugin, SetMotionMode, EnableTraj,
+                       DisableTraj, SpindleIncrease, SpindleDecrease, SpindleConstant, SetSpindleSpeed>;
 /// What motion does by itself (task/link/motion_words.hh).
 template <class T>
 concept CarriedOutByMotion =
