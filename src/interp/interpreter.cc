@@ -174,7 +174,7 @@ NextLine Interpreter::next_line() const {
 }
 
 std::string Interpreter::why_no_start() const {
-    constexpr int G33 = 330, G33_1 = 331, FIRST_CYCLE = 730, LAST_CYCLE = 890;
+    constexpr int FIRST_CYCLE = 730, LAST_CYCLE = 890;
     const detail::State &state = impl_->executor.state;
     if (state.comp.isOn() || state.comp.isExit() || isMoveHeld()) {
         return "cutter compensation is on there";
@@ -187,10 +187,16 @@ std::string Interpreter::why_no_start() const {
     if (state.cycle.isRunning && isCycle) {
         return "it is in the middle of a canned cycle";
     }
-    if (state.motion == G33 || state.motion == G33_1) {
+    if (isThreading()) {
         return "moves follow the spindle there";
     }
     return {};
+}
+
+bool Interpreter::isThreading() const {
+    constexpr int G33 = 330, G33_1 = 331;
+    const int motion = impl_->executor.state.motion;
+    return motion == G33 || motion == G33_1;
 }
 
 std::shared_ptr<const Interpreter::Kept> Interpreter::keep() const {

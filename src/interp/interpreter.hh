@@ -156,6 +156,8 @@ class Interpreter final : public ProgramInterpreter {
     NextLine next_line() const;
     /// Why nobody can begin at the next line although all before it is known; empty: one can.
     std::string why_no_start() const;
+    /// G33 and G33.1 are the motion mode.
+    bool isThreading() const;
     /// Modes and parameters; calls and loops do not belong to it.
     struct Kept;
     std::shared_ptr<const Kept> keep() const;

@@ -57,6 +57,7 @@ BlockSearch::Outcome BlockSearch::look_at_line() {
                     : Outcome::GOING;
     }
     const std::string why = interpreter_.why_no_start();
+    wasThreading_ = interpreter_.isThreading();
     if (isIt) {
         return !doubt_.empty()
                    ? refuse_before(fmt::format("what holds at line {} depends on {}", line_, doubt_))
@@ -69,6 +70,9 @@ BlockSearch::Outcome BlockSearch::look_at_line() {
 
 /// What was calculated is what the machine has done.
 BlockSearch::Outcome BlockSearch::check_calls() {
+    if (wasThreading_ && interpreter_.isThreading()) {
+        return refuse_before("it is in the middle of moves that follow the spindle");
+    }
     return machine_.sum().value() == calls_
                ? Outcome::FOUND
                : refuse(

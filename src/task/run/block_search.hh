@@ -58,9 +58,10 @@ class BlockSearch {
     int line_ = 0;  ///< 0: a block is looked for
     std::uint64_t calls_ = 0;
     interp::Step last_step_ = interp::Step::OK;
-    int last_possible_ = 0;  ///< a start there would have been possible, 0: none yet
-    int first_behind_ = 0;   ///< the first line behind the wanted one that is reached, 0: none
-    std::string doubt_;      ///< with its line
+    bool wasThreading_ = false;  ///< before that step
+    int last_possible_ = 0;      ///< a start there would have been possible, 0: none yet
+    int first_behind_ = 0;       ///< the first line behind the wanted one that is reached, 0: none
+    std::string doubt_;          ///< with its line
     std::string refusal_;
 };
 
