@@ -160,8 +160,6 @@ class Task {
     /// Takes the machine's position and state as the program's.
     void synch_interpreter();
     Result<> check_can_run() const;
-    /// Of the tool table as it is.
-    std::uint64_t sum_of_tools();
 
     Settings settings_;
     Parts parts_;
@@ -192,7 +190,6 @@ class Task {
     ShownSettings shown_settings_;
     mailbox::Serial reload_command_ = 0;  ///< LoadToolTable that has not ended; 0: none
     Status status_;
-    std::uint64_t summed_version_ = 0, sum_of_tools_ = 0;
     std::int64_t now_ns_ = 0;
     motion::CommandId last_setting_ = 0;
 };

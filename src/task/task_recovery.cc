@@ -38,10 +38,10 @@ void Task::Start::step_journal() {
     const bool isUnderWay =
         task.run_.isProgram() && task.run_.phase() >= RunPhase::READING && task.run_.hold() != Hold::PROPOSED;
     if (isUnderWay && task.recovery_.isOn()) {
-        const auto [block, line] = task.sequencer_.under_way();
+        const motion::SourceTag source = task.sequencer_.under_way();
         const geom::Pose place = motion::programmed_position(task.motion_.status());
-        task.recovery_.step(task.now_ns_, {block, line, place, task.io_.outputs.tool_number},
-                            task.reader_.canon().marks(), task.sum_of_tools());
+        task.recovery_.step(task.now_ns_, {source.block, source.line, place, task.io_.outputs.tool_number},
+                            task.reader_.canon().marks(), task.parts_.tools);
     }
     task.recovery_.show(task.status_.recovery);
 }
@@ -54,21 +54,13 @@ void Task::Start::note_doubt() {
     }
 }
 
-std::uint64_t Task::sum_of_tools() {
-    if (summed_version_ != parts_.tools.version()) {
-        summed_version_ = parts_.tools.version();
-        sum_of_tools_ = task::sum_of_tools(parts_.tools);
-    }
-    return sum_of_tools_;
-}
-
 /// What is asked before anything is calculated.
 Result<> Task::Start::check_recovery() const {
     const auto offer = task.recovery_.offer();
     if (!offer.has_value()) {
         return std::unexpected(offer.error());
     }
-    if ((*offer)->progress->tools != task.sum_of_tools()) {
+    if ((*offer)->progress->tools != sum_of_tools(task.parts_.tools)) {
         return fail("the tool table has been changed since the program was cut short", {},
                     fmt::format("run it from line {}, or the nearest that can: that reckons with the tools "
                                 "as they are now",

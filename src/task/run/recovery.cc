@@ -69,8 +69,7 @@ void Recovery::begin_again() {
     writer_->begin(run_->start, run_->progress, run_->doubt);
 }
 
-void Recovery::step(std::int64_t now_ns, const RunPlace &place, CallMarks &marks,
-                    std::uint64_t sum_of_tools) {
+void Recovery::step(std::int64_t now_ns, const RunPlace &place, CallMarks &marks, const ToolStore &tools) {
     if (!run_.has_value()) {
         return;
     }
@@ -79,17 +78,21 @@ void Recovery::step(std::int64_t now_ns, const RunPlace &place, CallMarks &marks
     const bool isDue = now_ns - noted_ns_ >= EVERY_NS;
     if (place.block > 0 && (isFirst || (isElsewhere && isDue))) {
         noted_ns_ = now_ns;
-        note(place, marks, sum_of_tools);
+        note(place, marks, tools);
     }
 }
 
-void Recovery::note(const RunPlace &place, CallMarks &marks, std::uint64_t sum_of_tools) {
+void Recovery::note(const RunPlace &place, CallMarks &marks, const ToolStore &tools) {
     const std::uint32_t block = std::max(first_, place.block);
     const auto calls = marks.before(block);
     if (!calls.has_value()) {
         return;  // it has not begun
     }
-    run_->progress = journal::Progress{block, place.line, *calls, place.position, place.tool, sum_of_tools};
+    if (summed_version_ != tools.version()) {
+        summed_version_ = tools.version();
+        sum_of_tools_ = sum_of_tools(tools);
+    }
+    run_->progress = journal::Progress{block, place.line, *calls, place.position, place.tool, sum_of_tools_};
     writer_->note(*run_->progress);
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "journal/writer.hh"
+#include "task/link/tool_store.hh"
 #include "task/run/call_sum.hh"
 #include "task/run/start_record.hh"
 #include "task/status.hh"
@@ -39,7 +40,7 @@ class Recovery {
     /// The run that was offered goes on where it was.
     void begin_again();
     /// Once a cycle of the run. `marks`: the canon's; `tools` as they are.
-    void step(std::int64_t now_ns, const RunPlace &place, CallMarks &marks, std::uint64_t sum_of_tools);
+    void step(std::int64_t now_ns, const RunPlace &place, CallMarks &marks, const ToolStore &tools);
     void note_doubt(std::uint32_t block, int line, const std::string &what);
     /// The run has come to its end, by itself or because somebody wanted it.
     void end();
@@ -56,7 +57,7 @@ class Recovery {
     void show(RecoveryStatus &status) const;
 
   private:
-    void note(const RunPlace &place, CallMarks &marks, std::uint64_t sum_of_tools);
+    void note(const RunPlace &place, CallMarks &marks, const ToolStore &tools);
     void offer_run(journal::Run run);
 
     journal::Writer *writer_;
@@ -66,6 +67,7 @@ class Recovery {
     std::optional<journal::Run> run_;  ///< that goes on now
     std::uint32_t first_ = 0;          ///< its first block here
     std::int64_t noted_ns_ = 0;
+    std::uint64_t summed_version_ = 0, sum_of_tools_ = 0;
 };
 
 /// Of a file that was looked at when the machine came up and has not changed since.

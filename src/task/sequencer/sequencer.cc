@@ -155,15 +155,14 @@ bool Sequencer::isStepBoundary(const Item &item) {
     return true;
 }
 
-Sequencer::UnderWay Sequencer::under_way() const {
+motion::SourceTag Sequencer::under_way() const {
     const motion::SourceTag *const sent = sent_.oldest_after(motion_.status().last_path_id);
     if (sent != nullptr) {
-        return {sent->block, sent->line};
+        return *sent;
     }
     // What was taken back waits in front again.
     const bool isBack = !queue_.empty() && queue_.front().source.block < last_begun_.block;
-    const motion::SourceTag &source = isBack ? queue_.front().source : last_begun_;
-    return {source.block, source.line};
+    return isBack ? queue_.front().source : last_begun_;
 }
 
 void Sequencer::start_step() {

@@ -88,12 +88,8 @@ class Sequencer {
         bool isTimedOut = false;
     };
     InputResult input() const { return {input_value_, isInputTimedOut_}; }
-    /// The first block that is not done, and its line; 0 before the first.
-    struct UnderWay {
-        std::uint32_t block = 0;
-        int line = 0;
-    };
-    UnderWay under_way() const;
+    /// The first block that is not done; number 0 before the first.
+    motion::SourceTag under_way() const;
     /// Another program begins.
     void forget_place() { last_begun_ = {}; }
     /// Starts or stops a spindle at once (operator's command).
