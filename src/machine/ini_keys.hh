@@ -91,6 +91,9 @@ inline constexpr auto INI_KEYS = std::to_array<config::IniKey>({
     config::ini_text("TASK", "INTERPRETER", "a shared object that takes the place of RS-274/NGC"),
     config::ini_without_effect(
         "TASK", "TASK", "task is part of millwright run; no other program takes its place", "milltask"),
+    config::ini_text("TASK", "JOURNAL_FILE",
+                     "what a program that a power cut ends is gone on with; without it beside the parameter "
+                     "file, which gives it its name; none: there is none"),
     config::ini_whole("TASK", "MDI_QUEUED_COMMANDS", "", 10, {0, 100000},
                       "lines of MDI that may wait behind the one that runs"),
 

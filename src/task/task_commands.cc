@@ -44,6 +44,11 @@ struct Task::Handler {
     Outcome operator()(const ResetInterpreter &);
     Outcome operator()(const SynchInterpreter &);
     Outcome operator()(const ConfirmApproach &command);
+    Outcome operator()(const RecoverProgram &);
+    Outcome operator()(const ForgetRecovery &) {
+        task.recovery_.forget();
+        return Progress::DONE;
+    }
     Outcome operator()(const ReleaseAxes &) { return Start{task}.release(id); }
     Outcome operator()(const SetTeleop &command);
     Outcome operator()(const SetMotionMode &command);
@@ -161,6 +166,7 @@ struct Task::Handler {
         if (started.has_value()) {
             task.on_abort_.note_work();
             task.reader_.canon().reset();
+            task.sequencer_.forget_place();
         }
         return started;
     }
@@ -227,10 +233,15 @@ Outcome Task::Handler::operator()(const SetState &command) {
 }
 
 Outcome Task::Handler::operator()(const SetMode &command) {
-    if (command.mode == task.mode_.mode()) {
+    const motion::Status &motion = task.motion_.status();
+    // By hand axes move once all joints are homed. Where joints move now nothing is changed under them.
+    const motion::Mode by_hand = motion.isAllHomed ? motion::Mode::TELEOP : motion::Mode::FREE;
+    const bool isWantedAgain = command.mode == Mode::MANUAL && motion.mode != by_hand &&
+                               motion.isInPosition && !task.homing_.isUnderWay();
+    if (command.mode == task.mode_.mode() && !isWantedAgain) {
         return Progress::DONE;
     }
-    change_mode(command.mode, command.mode == Mode::MANUAL ? motion::Mode::FREE : motion::Mode::COORD);
+    change_mode(command.mode, command.mode == Mode::MANUAL ? by_hand : motion::Mode::COORD);
     return Progress::STARTED;
 }
 
@@ -269,6 +280,27 @@ Outcome Task::Handler::operator()(const RunProgram &command) {
     const auto started = start_run(RunKind::PROGRAM);
     if (started.has_value()) {
         task.run_.set_from_line(command.from_line);
+    }
+    return started;
+}
+
+Outcome Task::Handler::operator()(const RecoverProgram &) {
+    auto allowed = Start{task}.check_recovery();
+    allowed = allowed.has_value() ? task.check_can_run() : allowed;
+    if (!allowed.has_value()) {
+        return std::unexpected(allowed.error());
+    }
+    const auto opened = (*this)(OpenProgram{(*task.recovery_.offer())->start.program});
+    if (!opened.has_value()) {
+        return opened;
+    }
+    const auto read = task.reader_.interpreter().open(task.status_.task.program.str());
+    if (!read.has_value()) {
+        return std::unexpected(read.error());
+    }
+    const auto started = start_run(RunKind::PROGRAM);
+    if (started.has_value()) {
+        task.run_.set_recovery();
     }
     return started;
 }
@@ -355,7 +387,7 @@ Outcome Task::Handler::operator()(const SynchInterpreter &) {
 
 Outcome Task::Handler::abort_all() {
     task.desk_.refuse(task.inbox_.drop_before(id), OVERTAKEN);
-    task.stop_run("aborted");
+    task.stop_run("aborted", false);
     task.abort_work(AbortReason::ABORT);
     return Progress::DONE;
 }

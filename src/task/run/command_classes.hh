@@ -42,9 +42,9 @@ namespace command_lists {
 template <class T>
 concept Mode = OneOf<T, SetMode>;
 template <class T>
-concept ProgramFile = OneOf<T, OpenProgram, CloseProgram, ResetInterpreter, SynchInterpreter>;
+concept ProgramFile = OneOf<T, OpenProgram, CloseProgram, ResetInterpreter, SynchInterpreter, ForgetRecovery>;
 template <class T>
-concept Run = OneOf<T, RunProgram>;
+concept Run = OneOf<T, RunProgram, RecoverProgram>;
 template <class T>
 concept Step = OneOf<T, StepProgram, StepTraj>;
 template <class T>
@@ -95,7 +95,7 @@ template <class T>
 concept OfTheMailbox = OneOf<T, ClaimOperation, HandOverOperation, ReleaseOperation>;
 template <class T>
 concept NotYet = OneOf<T, SetDebug, SystemCommand, CallTaskPlugin, CallIoPlugin, EnableTraj, DisableTraj,
-                       SetSpindleSpeed, RecoverProgram, ForgetRecovery>;
+                       SetSpindleSpeed>;
 /// What motion does by itself (task/link/motion_words.hh).
 template <class T>
 concept CarriedOutByMotion =

@@ -233,7 +233,7 @@ TEST_F(NoSmoothPlanner, G64RIsRefused_C2) {
 
 TEST_F(TaskTest, CommandsThatCannotBeDoneAreRefusedWithAReason_C5) {
     EXPECT_EQ(ask(Mdi{"G0 X1"}), Progress::REFUSED);
-    EXPECT_EQ(reason(request), "MDI needs MDI mode");
+    EXPECT_EQ(reason(request), "Must be in MDI mode to issue MDI command");
     EXPECT_EQ(ask(RunProgram{}), Progress::REFUSED);
     EXPECT_EQ(ask(PauseProgram{}), Progress::REFUSED);
     EXPECT_EQ(ask(OpenProgram{"/nowhere.ngc"}), Progress::REFUSED);
