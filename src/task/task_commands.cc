@@ -63,15 +63,11 @@ struct Task::Handler {
     }
     Outcome operator()(const LoadCompensation &command);
     Outcome operator()(const SpindleOn &command);
-    Outcome operator()(const SpindleOff &command);
-    Outcome operator()(const SpindleIncrease &command) {
-        return change_speed(command.spindle, SPINDLE_STEP_RPM);
+    Outcome operator()(const SpindleOff &command) { return (*this)(SpindleOn{command.spindle, 0}); }
+    template <OneOf<SpindleIncrease, SpindleDecrease, SpindleConstant> C>
+    Outcome operator()(const C &command) {
+        return done(task.sequencer_.change_spindle_speed(command.spindle, speed_step_rpm(command)));
     }
-    Outcome operator()(const SpindleDecrease &command) {
-        return change_speed(command.spindle, -SPINDLE_STEP_RPM);
-    }
-    /// Each step is done at once: there is none to end.
-    Outcome operator()(const SpindleConstant &command) { return done(need_spindle(command.spindle)); }
     Outcome operator()(const LoadToolTable &command);
     Outcome operator()(const ConfirmToolChange &command);
 
@@ -127,10 +123,7 @@ struct Task::Handler {
     }
 
   private:
-    static constexpr double SPINDLE_STEP_RPM = 100, SLOWEST_SPINDLE_RPM = 1;
-
     Outcome abort_all();
-    Outcome change_speed(int spindle, double step_rpm);
     Outcome send(const motion::CommandBody &body) {
         task.motion_.send(body);
         return Progress::DONE;
@@ -478,28 +471,6 @@ Outcome Task::Handler::operator()(const SpindleOn &command) {
         return std::unexpected(allowed.error());
     }
     task.sequencer_.command_spindle(command.spindle, command.speed_rpm, false);
-    return Progress::DONE;
-}
-
-Outcome Task::Handler::operator()(const SpindleOff &command) {
-    return (*this)(SpindleOn{command.spindle, 0});
-}
-
-/// Of a spindle that turns: a step of its speed starts none, and stops none.
-Outcome Task::Handler::change_speed(int spindle, double step_rpm) {
-    const auto allowed = need_spindle(spindle);
-    if (!allowed.has_value()) {
-        return std::unexpected(allowed.error());
-    }
-    const ProgramSpindles &spindles = task.sequencer_.spindles();
-    if (spindles.direction(spindle) == 0) {
-        return fail(fmt::format("spindle {} stands", spindle));
-    }
-    if (spindles.isSurfaceSpeed(spindle)) {
-        return fail(fmt::format("spindle {} keeps a constant surface speed", spindle));
-    }
-    const double rpm = std::max(SLOWEST_SPINDLE_RPM, spindles.speed(spindle) + step_rpm);
-    task.sequencer_.command_spindle(spindle, spindles.direction(spindle) * rpm, false);
     return Progress::DONE;
 }
 

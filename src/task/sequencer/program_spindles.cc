@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "task/sequencer/program_spindles.hh"
 
+#include <algorithm>
 #include <cmath>
+
+#include <fmt/format.h>
 
 #include "interp/canon/surface_speed.hh"
 
@@ -62,6 +65,25 @@ void ProgramSpindles::command(int spindle, double signed_rpm, bool isWaiting, Mo
     }
     state.speed = std::fabs(signed_rpm);
     send(spindle, motion);
+}
+
+Result<> ProgramSpindles::change_speed(int spindle, double step_rpm, MotionLink &motion) {
+    constexpr double SLOWEST_RPM = 1;
+    if (spindle >= motion.status().num_spindles) {
+        return fail(fmt::format("there is no spindle {}", spindle));
+    }
+    const Spindle &state = at(spindle);
+    if (step_rpm == 0) {
+        return {};
+    }
+    if (state.direction == 0) {
+        return fail(fmt::format("spindle {} stands", spindle));
+    }
+    if (state.css_max_rpm > 0) {
+        return fail(fmt::format("spindle {} keeps a constant surface speed", spindle));
+    }
+    command(spindle, state.direction * std::max(SLOWEST_RPM, state.speed + step_rpm), false, motion);
+    return {};
 }
 
 std::vector<interp::MachineCall> ProgramSpindles::starts() const {
