@@ -158,7 +158,7 @@ using Outcome = Result<Progress>;
 
 void Task::carry_out_commands() {
     inbox_.add(desk_.take(now_ns_));
-    while (const auto delivery = inbox_.next(mode_.isChanging())) {
+    while (const auto delivery = inbox_.next(mode_.isChanging() || state_.isChanging())) {
         carry_out(delivery->serial, delivery->command);
     }
 }
