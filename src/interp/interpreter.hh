@@ -156,11 +156,18 @@ class Interpreter final : public ProgramInterpreter {
     NextLine next_line() const;
     /// Why nobody can begin at the next line although all before it is known; empty: one can.
     std::string why_no_start() const;
+    /// G33 and G33.1 are the motion mode.
+    bool isThreading() const;
     /// Modes and parameters; calls and loops do not belong to it.
     struct Kept;
     std::shared_ptr<const Kept> keep() const;
     /// Makes them what they were. Only at the top level, as after abort().
     void restore(const Kept &kept);
+    /// What keep() gives as bytes, for another process; an error says what cannot be told so.
+    Result<std::string> pack_kept() const;
+    Result<std::shared_ptr<const Kept>> unpack_kept(std::string_view bytes);
+    /// How often Python was asked for something.
+    std::uint64_t count_script_calls() const;
     /// Scripts that a step would run fail instead: what they do is not known.
     void forbid_scripts(bool isForbidden);
 

@@ -37,6 +37,7 @@ Task::Task(const Parts &parts, Settings settings)
               {settings_.machine_units, settings_.tool_change_place, settings_.parameter_file,
                settings_.sequencer.isToolChangeWithSpindleOn, settings_.interpreter_plugin,
                settings_.interpreter}),
+      recovery_(parts.journal),
       on_abort_(settings_.interpreter_plugin.empty() ? settings_.interpreter.on_abort_command
                                                      : std::string()),
       user_program_(settings_.isUserProgramWaitedFor),
@@ -99,6 +100,9 @@ Result<> Task::start() {
     show_first_tool(parts_.tools, io_);
     synch_interpreter();
     planner_mode_.announce();
+    if (const std::string offer = recovery_.find(); !offer.empty()) {
+        post(MessageKind::OPERATOR_TEXT, offer);
+    }
     Result<> begun = reader_.interpreter().begin();
     for (const std::string &warning : reader_.interpreter().warnings()) {
         post(MessageKind::OPERATOR_TEXT, warning);
@@ -107,8 +111,11 @@ Result<> Task::start() {
 }
 
 void Task::synch_interpreter() {
-    world_.show(snapshot_of(motion_.status(), io_.outputs, sequencer_));
-    reader_.synch(motion::programmed_position(motion_.status()));
+    interp::MachineSnapshot machine = snapshot_of(motion_.status(), io_.outputs, sequencer_);
+    machine.position = reader_.canon().exact(machine.position);
+    machine.probed_position = machine.isProbeTripped ? machine.probed_position : machine.position;
+    world_.show(machine);
+    reader_.synch(machine.position);
 }
 
 Result<> Task::save_parameters() const {
@@ -263,12 +270,14 @@ bool Task::begin_run() {
     if (!motion_.status().isInPosition) {
         return false;
     }
-    if (run_.from_line() > 1) {
-        Start{*this}.begin();
+    if (run_.from_line() > 1 || run_.isRecovery()) {
+        run_.isRecovery() ? Start{*this}.begin_recovery() : Start{*this}.begin();
         return true;
     }
     run_.change(RunEvent::BEGUN);
     synch_interpreter();
+    Start{*this}.prepare_journal();
+    recovery_.begin(1);
     if (run_.kind() == RunKind::MDI) {
         on_step_result(reader_.interpreter().execute(run_.line()));
     }
@@ -300,7 +309,9 @@ void Task::run_interpreter() {
                 sequencer_.log_probe(probe);
             }
         }
-        on_step_result(reader_.interpreter().step());
+        const interp::Step result = reader_.interpreter().step();
+        Start{*this}.note_doubt();
+        on_step_result(result);
     }
 }
 
@@ -337,6 +348,7 @@ void Task::finish_run(Progress progress, const std::string &reason) {
              "cutter compensation holds this move back until the next one or G40 says where it ends");
     }
     sequencer_.end_step();
+    recovery_.end();
     tell(run_.end(progress, reason));
 }
 
@@ -416,6 +428,7 @@ void Task::update_status() {
         post(MessageKind::OPERATOR_ERROR, "the lubrication wants oil: pin iocontrol.0.lube_level is FALSE");
     }
     status_.io.lube = {io_.outputs.lube, io_.hasOil()};
+    Start{*this}.step_journal();
     ++status_.cycle;
     status_.time_ns = now_ns_;
     const PartMask told = tell_motion(motion_.status(), motion_.fresh_parts(), settings_.axis_mask, status_);

@@ -13,14 +13,18 @@ void Task::fail_program(diag::Diagnostic what, AbortReason reason) {
     }
     // The operator has just typed a line of MDI: that needs no place, and clients compare its texts.
     post(MessageKind::OPERATOR_ERROR, run_.kind() == RunKind::MDI ? what.what.message : what.str());
+    if (reason == AbortReason::MOTION_FAULT) {
+        recovery_.cut_short();
+    }
     const std::string text = what.what.str();
     run_.set_error(std::move(what));
     finish_run(Progress::FAILED, text);
     abort_work(reason);
 }
 
-void Task::stop_run(const std::string &reason) {
+void Task::stop_run(const std::string &reason, bool isCutShort) {
     if (run_.isRunning()) {
+        isCutShort ? recovery_.cut_short() : recovery_.end();
         finish_run(Progress::FAILED, reason);
     }
 }

@@ -208,6 +208,11 @@ std::string spindle_fault(const Fault &fault) {
             "spindle {} turns back so fast that the tap needs {:.2f} times the acceleration that "
             "the machine allows: lengthen the ramp of its drive, or use a finer pitch",
             i, fault.value);
+    case FaultKind::TAP_TOO_SUDDEN:
+        return fmt::format(
+            "spindle {} turns back so suddenly that a tool within its jerk limits would leave the thread by "
+            "{:.2f} turns: lengthen the ramp of its drive, raise the jerk limits, or use a finer pitch",
+            i, fault.value);
     case FaultKind::TAP_TOO_SHALLOW:
         return fmt::format(
             "the hole is too shallow for the present speed of spindle {}: gaining speed and turning "
@@ -293,6 +298,7 @@ std::string what_failed(const Fault &fault) {
     case FaultKind::THREAD_TOO_FAST:
     case FaultKind::TAP_TOO_FAST:
     case FaultKind::TAP_TOO_ABRUPT:
+    case FaultKind::TAP_TOO_SUDDEN:
     case FaultKind::TAP_TOO_SHALLOW:
     case FaultKind::TAP_LOST:
     case FaultKind::SPINDLE_LOST:

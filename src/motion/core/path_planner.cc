@@ -340,6 +340,9 @@ bool PathPlanner::isTapPossible(traj::Sequence gate) noexcept {
     case traj::TapObstacle::TOO_ABRUPT:
         tell_impossible(gate, FaultKind::TAP_TOO_ABRUPT, verdict.value);
         break;
+    case traj::TapObstacle::TOO_SUDDEN:
+        tell_impossible(gate, FaultKind::TAP_TOO_SUDDEN, verdict.value);
+        break;
     case traj::TapObstacle::TOO_SHALLOW:
         tell_impossible(gate, FaultKind::TAP_TOO_SHALLOW, verdict.value);
         break;

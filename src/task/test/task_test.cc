@@ -293,6 +293,34 @@ TEST_F(TaskTest, CommandsThatCannotBeDoneAreRefusedWithAReason_C5) {
     EXPECT_NE(reason(request).find("not all joints are homed"), std::string::npos);
 }
 
+TEST_F(TaskTest, AScreenThatStartsInEmergencyStopChoosesJointsAndForgetsHoming_C5_J2) {
+    ASSERT_EQ(ask(SetState{State::ESTOP}), Progress::DONE);
+    EXPECT_EQ(ask(SetTeleop{false}), Progress::DONE);
+    EXPECT_EQ(ask(SetMotionMode{msgs::MotionMode::FREE}), Progress::DONE);
+    EXPECT_EQ(ask(SetMotionMode{msgs::MotionMode::COORD}), Progress::REFUSED);
+    EXPECT_EQ(ask(UnhomeJoint{-1}), Progress::DONE);
+    EXPECT_EQ(ask(HomeJoint{-1}), Progress::REFUSED);
+    ASSERT_EQ(ask(SetMode{Mode::AUTO}), Progress::DONE);
+    EXPECT_EQ(ask(SetTeleop{true}), Progress::DONE);
+    EXPECT_EQ(task.status().task.mode, Mode::MANUAL) << "as in any mode in which nothing runs";
+}
+
+TEST_F(TaskTest, ATurningSpindleChangesItsSpeedInStepsAndNeverItsSense_C5_J2) {
+    EXPECT_EQ(ask(SpindleIncrease{0}), Progress::REFUSED);
+    EXPECT_EQ(reason(request), "spindle 0 stands");
+    EXPECT_EQ(ask(SpindleIncrease{7}), Progress::REFUSED);
+    motion.log.clear();
+    ask(SpindleOn{0, -150});
+    ask(SpindleIncrease{0});
+    ask(SpindleDecrease{0});
+    ask(SpindleDecrease{0});
+    ask(SpindleDecrease{0});
+    EXPECT_EQ(ask(SpindleConstant{0}), Progress::DONE);
+    EXPECT_EQ(joined(), "spindle -150, spindle -250, spindle -150, spindle -50, spindle -1");
+    ask(SpindleOff{0});
+    EXPECT_EQ(ask(SpindleDecrease{0}), Progress::REFUSED);
+}
+
 TEST_F(TaskTest, AVectorOfTeleopSpeedsGoesToMotionInManualMode_C4) {
     SetTeleopVector vector;
     vector.velocity[0] = 3;
