@@ -94,7 +94,7 @@ export class ProgramEditor {
           lineNumbers(), history(), drawSelection(), highlightActiveLine(), highlightSelectionMatches(), lintGutter(), gcode,
           syntaxHighlighting(COLORS), THEME, running, keymap.of([...defaultKeymap, ...historyKeymap, ...searchKeymap]),
           this.writable.of(EditorState.readOnly.of(false)),
-          EditorView.contentAttributes.of({ 'aria-label': label }),
+          EditorView.contentAttributes.of({ 'aria-label': label, tabindex: '0' }),
           EditorView.updateListener.of((update) => {
             if (update.docChanged) {
               changed();
