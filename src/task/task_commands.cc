@@ -64,10 +64,13 @@ struct Task::Handler {
     Outcome operator()(const LoadCompensation &command);
     Outcome operator()(const SpindleOn &command);
     Outcome operator()(const SpindleOff &command) { return (*this)(SpindleOn{command.spindle, 0}); }
-    template <OneOf<SpindleIncrease, SpindleDecrease, SpindleConstant> C>
+    template <OneOf<SpindleIncrease, SpindleDecrease> C>
     Outcome operator()(const C &command) {
-        return done(task.sequencer_.change_spindle_speed(command.spindle, speed_step_rpm(command)));
+        const auto rpm = task.sequencer_.spindles().stepped_rpm(command.spindle, speed_step_rpm(command));
+        return rpm.has_value() ? (*this)(SpindleOn{command.spindle, *rpm}) : std::unexpected(rpm.error());
     }
+    /// Each step is done at once: there is none to end.
+    Outcome operator()(const SpindleConstant &command) { return done(need_spindle(command.spindle)); }
     Outcome operator()(const LoadToolTable &command);
     Outcome operator()(const ConfirmToolChange &command);
 
@@ -169,7 +172,7 @@ using Outcome = Result<Progress>;
 
 void Task::carry_out_commands() {
     inbox_.add(desk_.take(now_ns_));
-    while (const auto delivery = inbox_.next(mode_.isChanging())) {
+    while (const auto delivery = inbox_.next(mode_.isChanging() || state_.isChanging())) {
         carry_out(delivery->serial, delivery->command);
     }
 }

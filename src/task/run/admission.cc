@@ -15,7 +15,8 @@ constexpr Cell TAKEN = nullptr;
 constexpr Cell ESTOP = "the machine is in emergency stop", OFF = "the machine is not on";
 constexpr Cell RUNS = "a program or MDI line runs already",
                NOT_WHILE = "not while a program or MDI line runs";
-constexpr Cell NEEDS_AUTO = "running a program needs auto mode", NEEDS_MDI = "Must be in MDI mode to issue MDI command",
+constexpr Cell NEEDS_AUTO = "running a program needs auto mode",
+               NEEDS_MDI = "Must be in MDI mode to issue MDI command",
                NEEDS_MANUAL = "this needs manual mode",
                HELD_AXES = "release the axes of the held program first";
 constexpr Cell NO_PAUSE = "nothing runs that could be paused", NO_RESUME = "nothing is paused",

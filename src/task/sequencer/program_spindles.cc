@@ -67,23 +67,16 @@ void ProgramSpindles::command(int spindle, double signed_rpm, bool isWaiting, Mo
     send(spindle, motion);
 }
 
-Result<> ProgramSpindles::change_speed(int spindle, double step_rpm, MotionLink &motion) {
+Result<double> ProgramSpindles::stepped_rpm(int spindle, double step_rpm) const {
     constexpr double SLOWEST_RPM = 1;
-    if (spindle >= motion.status().num_spindles) {
-        return fail(fmt::format("there is no spindle {}", spindle));
-    }
-    const Spindle &state = at(spindle);
-    if (step_rpm == 0) {
-        return {};
-    }
+    const Spindle &state = spindles_[static_cast<std::size_t>(spindle)];
     if (state.direction == 0) {
         return fail(fmt::format("spindle {} stands", spindle));
     }
     if (state.css_max_rpm > 0) {
         return fail(fmt::format("spindle {} keeps a constant surface speed", spindle));
     }
-    command(spindle, state.direction * std::max(SLOWEST_RPM, state.speed + step_rpm), false, motion);
-    return {};
+    return state.direction * std::max(SLOWEST_RPM, state.speed + step_rpm);
 }
 
 std::vector<interp::MachineCall> ProgramSpindles::starts() const {

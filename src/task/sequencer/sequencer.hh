@@ -96,9 +96,6 @@ class Sequencer {
     void command_spindle(int spindle, double signed_rpm, bool isWaiting) {
         spindles_.command(spindle, signed_rpm, isWaiting, motion_);
     }
-    Result<> change_spindle_speed(int spindle, double step_rpm) {
-        return spindles_.change_speed(spindle, step_rpm, motion_);
-    }
     /// As programmed (unscaled).
     const ProgramSpindles &spindles() const { return spindles_; }
     /// Of a program that is held: all that the planner has not done comes back into the queue; the caller
