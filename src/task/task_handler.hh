@@ -55,12 +55,11 @@ struct Task::Handler {
     }
     Outcome operator()(const LoadCompensation &command);
     Outcome operator()(const SpindleOn &command);
-    Outcome operator()(const SpindleOff &command);
-    Outcome operator()(const SpindleIncrease &command) {
-        return change_speed(command.spindle, SPINDLE_STEP_RPM);
-    }
-    Outcome operator()(const SpindleDecrease &command) {
-        return change_speed(command.spindle, -SPINDLE_STEP_RPM);
+    Outcome operator()(const SpindleOff &command) { return (*this)(SpindleOn{command.spindle, 0}); }
+    template <OneOf<SpindleIncrease, SpindleDecrease> C>
+    Outcome operator()(const C &command) {
+        const auto rpm = task.sequencer_.spindles().stepped_rpm(command.spindle, speed_step_rpm(command));
+        return rpm.has_value() ? (*this)(SpindleOn{command.spindle, *rpm}) : std::unexpected(rpm.error());
     }
     /// Each step is done at once: there is none to end.
     Outcome operator()(const SpindleConstant &command) { return done(need_spindle(command.spindle)); }
@@ -121,10 +120,7 @@ struct Task::Handler {
     }
 
   private:
-    static constexpr double SPINDLE_STEP_RPM = 100, SLOWEST_SPINDLE_RPM = 1;
-
     Outcome abort_all();
-    Outcome change_speed(int spindle, double step_rpm);
     Outcome send(const motion::CommandBody &body) {
         task.motion_.send(body);
         return Progress::DONE;

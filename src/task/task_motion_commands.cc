@@ -80,28 +80,6 @@ Outcome Task::Handler::operator()(const SpindleOn &command) {
     return Progress::DONE;
 }
 
-Outcome Task::Handler::operator()(const SpindleOff &command) {
-    return (*this)(SpindleOn{command.spindle, 0});
-}
-
-/// Of a spindle that turns: a step of its speed starts none, and stops none.
-Outcome Task::Handler::change_speed(int spindle, double step_rpm) {
-    const auto allowed = need_spindle(spindle);
-    if (!allowed.has_value()) {
-        return std::unexpected(allowed.error());
-    }
-    const ProgramSpindles &spindles = task.sequencer_.spindles();
-    if (spindles.direction(spindle) == 0) {
-        return fail(fmt::format("spindle {} stands", spindle));
-    }
-    if (spindles.isSurfaceSpeed(spindle)) {
-        return fail(fmt::format("spindle {} keeps a constant surface speed", spindle));
-    }
-    const double rpm = std::max(SLOWEST_SPINDLE_RPM, spindles.speed(spindle) + step_rpm);
-    task.sequencer_.command_spindle(spindle, spindles.direction(spindle) * rpm, false);
-    return Progress::DONE;
-}
-
 Outcome Task::Handler::operator()(const LoadToolTable &) {
     if (task.reload_command_ != 0) {
         return fail("the tool table is being read already");
