@@ -287,6 +287,19 @@ describe('programs', () => {
     expect(drawn.length).toBeGreaterThan(3000); // an empty picture is smaller
   });
 
+  it('are drawn where the offsets put them, also when those change', async () => {
+    const low = async (): Promise<string> => (await page.getByTestId('path-canvas').getAttribute('data-low')) ?? '';
+    expect(await low()).toMatch(/^0\.000 0\.000 /);
+    const give = async (line: string): Promise<void> => {
+      await page.getByTestId('mdi-line').fill(line);
+      await page.getByTestId('mdi-line').press('Enter');
+    };
+    await give('G10 L2 P1 X-7 Y-4');
+    await until(async () => /^-7\.000 -4\.000 /.test(await low()), 'the path at its new place');
+    await give('G10 L2 P1 X0 Y0');
+    await until(async () => /^0\.000 0\.000 /.test(await low()), 'the path at its old place');
+  });
+
   it('run, hold, resume, and end where they say', async () => {
     await page.getByTestId('run').click();
     await untilText(page, 'run-state', 'Running');
