@@ -2,12 +2,14 @@
 #include "app/machine_start.hh"
 
 #include <cstdio>
+#include <filesystem>
 
 #include <fmt/format.h>
 
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
+#include "base/whole_path.hh"
 #include "hal/core/hal.hh"
 
 namespace mw::app {
@@ -46,7 +48,7 @@ Result<> MachineStart::prepare() {
                     {}, "end it, or choose another name in MILLWRIGHT_INSTANCE");
     }
     if (settings_.isDisplayed && !loaded_.machine.display.empty()) {
-        auto display = DisplayProgram::words(loaded_.machine.display, absolute_path(settings_.ini),
+        auto display = DisplayProgram::words(loaded_.machine.display, whole_path(settings_.ini),
                                              settings_.display_words);
         if (!display.has_value()) {
             return std::unexpected(display.error());
@@ -66,10 +68,11 @@ Result<> MachineStart::make() {
     machine_ = std::move(*made);
     access_.emplace(*machine_);
     tell_messages();
+    make_parameter_file();
     fmt::print("{} is up: instance '{}', {}\n", loaded_.machine.name, instance_, settings_.ini);
     std::fflush(stdout);
     const auto delay_ns = static_cast<std::int64_t>(loaded_.machine.applications_delay_s * 1e9);
-    const std::string ini = absolute_path(settings_.ini);
+    const std::string ini = whole_path(settings_.ini);
     side_programs_.emplace(settings_.isDisplayed ? loaded_.machine.applications : std::vector<std::string>{},
                            ini, access_->now_ns() + delay_ns);
     if (display_words_.empty()) {
@@ -82,6 +85,18 @@ Result<> MachineStart::make() {
     }
     display_.emplace(std::move(*display));
     return {};
+}
+
+/// Screens read it themselves, from their start.
+void MachineStart::make_parameter_file() {
+    const std::string &path = loaded_.machine.task.parameter_file;
+    std::error_code ignored;
+    if (path.empty() || std::filesystem::exists(path, ignored)) {
+        return;
+    }
+    if (const auto saved = machine_->task().save_parameters(); !saved.has_value()) {
+        sink_.warning(saved.error().str());
+    }
 }
 
 Result<> MachineStart::keep_up() {
@@ -169,7 +184,7 @@ void MachineStart::run_shutdown_file() {
     if (file.empty()) {
         return;
     }
-    const std::string ini = absolute_path(settings_.ini);
+    const std::string ini = whole_path(settings_.ini);
     auto run = DisplayProgram::start({program_folder() + "/halcmd", "-i", ini, "-f", file}, ini);
     if (!run.has_value()) {
         sink_.error("[HAL]SHUTDOWN = " + file + ": " + run.error().str());

@@ -21,6 +21,7 @@ constexpr const char *USAGE =
     "                                       in virtual time, or with --realtime by the clock\n"
     "  start MACHINE.ini                    keep the machine up for clients, until a signal or its display "
     "ends it\n"
+    "  recover                              go on with the program that a power cut has ended, at its place\n"
     "  ui MACHINE.ini                       serve the operator's screen of the machine that is up, to "
     "browsers\n"
     "  nml FILE.nml                         the NML channels of the machine that is up, also over the "
@@ -57,6 +58,9 @@ int main(int argc, char **argv) {
     }
     if (words[0] == "run") {
         return mw::app::command_run(rest);
+    }
+    if (words[0] == "recover") {
+        return mw::app::command_recover(rest);
     }
     if (words[0] == "ui") {
         return mw::app::command_ui(rest);

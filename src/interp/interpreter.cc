@@ -6,6 +6,7 @@
 #include "interp/ast/syntax_errors.hh"
 #include "interp/codes/executor.hh"
 #include "interp/flow/flow.hh"
+#include "interp/kept.hh"
 
 namespace mw::interp {
 
@@ -173,7 +174,7 @@ NextLine Interpreter::next_line() const {
 }
 
 std::string Interpreter::why_no_start() const {
-    constexpr int G33 = 330, G33_1 = 331, FIRST_CYCLE = 730, LAST_CYCLE = 890;
+    constexpr int FIRST_CYCLE = 730, LAST_CYCLE = 890;
     const detail::State &state = impl_->executor.state;
     if (state.comp.isOn() || state.comp.isExit() || isMoveHeld()) {
         return "cutter compensation is on there";
@@ -186,17 +187,17 @@ std::string Interpreter::why_no_start() const {
     if (state.cycle.isRunning && isCycle) {
         return "it is in the middle of a canned cycle";
     }
-    if (state.motion == G33 || state.motion == G33_1) {
+    if (isThreading()) {
         return "moves follow the spindle there";
     }
     return {};
 }
 
-struct Interpreter::Kept {
-    detail::State state;
-    detail::Parameters parameters;
-    detail::SavedModes saved_modes;
-};
+bool Interpreter::isThreading() const {
+    constexpr int G33 = 330, G33_1 = 331;
+    const int motion = impl_->executor.state.motion;
+    return motion == G33 || motion == G33_1;
+}
 
 std::shared_ptr<const Interpreter::Kept> Interpreter::keep() const {
     const detail::Executor &executor = impl_->executor;
@@ -210,6 +211,22 @@ void Interpreter::restore(const Kept &kept) {
     executor.saved_modes = kept.saved_modes;
     executor.tools.forget();
     executor.awaited = {};
+}
+
+Result<std::string> Interpreter::pack_kept() const {
+    return pack(*keep(), impl_->names);
+}
+
+Result<std::shared_ptr<const Interpreter::Kept>> Interpreter::unpack_kept(std::string_view bytes) {
+    auto kept = unpack(bytes, *keep(), impl_->names);
+    if (!kept.has_value()) {
+        return std::unexpected(kept.error());
+    }
+    return std::make_shared<const Kept>(std::move(*kept));
+}
+
+std::uint64_t Interpreter::count_script_calls() const {
+    return impl_->flow.scripts().count_calls();
 }
 
 void Interpreter::forbid_scripts(bool isForbidden) {

@@ -51,7 +51,7 @@ struct BeforeToolChange {
 
 struct Settings {
     std::vector<std::string>
-        subroutine_path;  ///< [RS274NGC]SUBROUTINE_PATH and [DISPLAY]PROGRAM_PREFIX, in order
+        subroutine_path;  ///< the INI file's folder, [DISPLAY]PROGRAM_PREFIX and [RS274NGC]SUBROUTINE_PATH
     std::vector<std::string> user_m_path;  ///< [RS274NGC]USER_M_PATH and PROGRAM_PREFIX: where M100..M199 are
     bool isUserCodeAssumed = false;        ///< M100..M199 need no program: for previews elsewhere
     std::string startup_code;              ///< [RS274NGC]RS274NGC_STARTUP_CODE
@@ -156,11 +156,18 @@ class Interpreter final : public ProgramInterpreter {
     NextLine next_line() const;
     /// Why nobody can begin at the next line although all before it is known; empty: one can.
     std::string why_no_start() const;
+    /// G33 and G33.1 are the motion mode.
+    bool isThreading() const;
     /// Modes and parameters; calls and loops do not belong to it.
     struct Kept;
     std::shared_ptr<const Kept> keep() const;
     /// Makes them what they were. Only at the top level, as after abort().
     void restore(const Kept &kept);
+    /// What keep() gives as bytes, for another process; an error says what cannot be told so.
+    Result<std::string> pack_kept() const;
+    Result<std::shared_ptr<const Kept>> unpack_kept(std::string_view bytes);
+    /// How often Python was asked for something.
+    std::uint64_t count_script_calls() const;
     /// Scripts that a step would run fail instead: what they do is not known.
     void forbid_scripts(bool isForbidden);
 

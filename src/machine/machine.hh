@@ -36,6 +36,9 @@ struct MachineOptions {
     std::vector<std::string> hal_library;
     /// Folders in which HAL files are looked for before that of the INI file.
     std::vector<std::string> hal_folders;
+    /// Keeps the journal instead of one of the machine's own; it outlives the machine. Without it a machine
+    /// under the virtual clock keeps none.
+    journal::Writer *journal = nullptr;
     bool isKeptGoing = false;  ///< what fails in a HAL file is told, and the rest of it is run
 };
 

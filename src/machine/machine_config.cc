@@ -411,6 +411,12 @@ void read_interpreter(IniReader &ini, MachineConfig &machine) {
             "[RS274NGC]PARAMETER_FILE is missing: offsets and parameters are not kept after a run",
             ini.file().place_of_section("RS274NGC"));
     }
+    const std::string journal = ini.text(ini_key("TASK", "JOURNAL_FILE"));
+    if (journal.empty() && !parameters.empty()) {
+        machine.journal_file = machine.task.parameter_file + ".journal";
+    } else if (!journal.empty() && journal != "none") {
+        machine.journal_file = ini.file().resolve_path(journal);
+    }
     machine.task.interpreter = interp::settings_from_ini(ini);
     const auto fastest = static_cast<std::uint16_t>(Parameter::TRAJ_MAX_VELOCITY);
     for (const motion::SetParameter &parameter : machine.parameters) {

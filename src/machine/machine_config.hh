@@ -53,6 +53,7 @@ struct MachineConfig {
     std::string
         tool_database;  ///< the program that keeps the tools, with its arguments; empty: the file does
     std::string ini_folder;
+    std::string journal_file;  ///< empty: programs are not journalled
     bool isRandomToolchanger = false;
     task::Settings task;
     /// Every setting of the motion controller that the INI gives or that has a documented default.

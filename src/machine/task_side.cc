@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "machine/task_side.hh"
 
-#include <filesystem>
-
+#include "base/whole_path.hh"
 #include "machine/hal_setup.hh"
 
 namespace mw::machine {
@@ -40,8 +39,13 @@ TaskSide::~TaskSide() {
 
 Result<> TaskSide::start(const MachineOptions &options) {
     diag::Sink unheard;
+    if (options.journal == nullptr && !options.isClockVirtual) {
+        journal_ = std::make_unique<journal::Writer>(journal::system_disk(), parts_.config.journal_file,
+                                                     journal::Works::ALONE);
+    }
+    journal::Writer *const journal = options.journal != nullptr ? options.journal : journal_.get();
     auto tools = open_tools(parts_.config, options.isToolTableTold ? unheard : parts_.sink,
-                            {!options.isClockVirtual, options.isClockVirtual});
+                            {journal, options.isClockVirtual});
     if (!tools.has_value()) {
         return std::unexpected(tools.error());
     }
@@ -58,7 +62,8 @@ Result<> TaskSide::start(const MachineOptions &options) {
     task::Settings settings = parts_.config.task;
     settings.isUserProgramWaitedFor = options.isClockVirtual;
     task_ = std::make_unique<task::Task>(
-        task::Parts{*channels_, *this, *tools_, parameters_, mailbox_.segment()}, std::move(settings));
+        task::Parts{*channels_, *this, *tools_, parameters_, mailbox_.segment(), journal},
+        std::move(settings));
     for (const auto &table : parts_.config.screw_tables) {
         task_->load_compensation(table);
     }
@@ -74,9 +79,7 @@ Result<> TaskSide::start(const MachineOptions &options) {
 /// From here on clients find a machine that is ready for them.
 Result<> TaskSide::identify() {
     mailbox::Identity identity;
-    std::error_code error;
-    const auto path = std::filesystem::canonical(parts_.ini.path(), error);
-    if (!identity.ini.assign(error ? parts_.ini.path() : path.string())) {
+    if (!identity.ini.assign(whole_path(parts_.ini.path()))) {
         return fail("the path of the INI file is too long", {parts_.ini.path(), 0, 0});
     }
     identity.isLasting = isLasting_;

@@ -10,6 +10,7 @@
 
 #include "hal/core/host.hh"
 #include "io/pins.hh"
+#include "journal/writer.hh"
 #include "machine/ini_parameters.hh"
 #include "machine/ini_pins.hh"
 #include "machine/machine.hh"
@@ -64,6 +65,7 @@ class TaskSide final : private task::IoPort {
     ui::Halui halui_;
     ManualToolChange tool_change_;
     IniParameters parameters_;
+    std::unique_ptr<journal::Writer> journal_;  ///< outlives all that it keeps things for
     std::unique_ptr<task::ToolStore> tools_;
     bool isLasting_ = false;
     motion::Channels *channels_ = nullptr;

@@ -20,7 +20,7 @@ Result<> ToolData::load_spindle(int index) {
     return {};
 }
 
-void ToolData::keep_life(const std::string &path, diag::Sink &sink) {
+void ToolData::keep_life(const std::string &path, journal::Writer &keeper, diag::Sink &sink) {
     std::error_code missing;
     if (std::filesystem::exists(path, missing)) {
         const auto text = read_file(path);
@@ -33,6 +33,7 @@ void ToolData::keep_life(const std::string &path, diag::Sink &sink) {
         life_ = *read;
     }
     life_path_ = path;
+    keeper_ = &keeper;
 }
 
 void ToolData::save_life() {
@@ -40,7 +41,7 @@ void ToolData::save_life() {
         return;
     }
     unsaved_life_s_ = 0;
-    static_cast<void>(write_file_atomically(life_path_, life_.text()));
+    keeper_->keep_file(life_path_, life_.text());
 }
 
 void ToolData::note_cut(int toolno, const tool::CutLife &cut) {
@@ -95,11 +96,11 @@ Result<std::unique_ptr<task::ToolStore>> open_tools(const MachineConfig &machine
                                                     const ToolOptions &options) {
     auto made = open_kept(machine, sink, options);
     const bool hasPlace = !machine.tool_database.empty() || !machine.tool_table_file.empty();
-    if (made.has_value() && options.isLifeKept && hasPlace) {
+    if (made.has_value() && options.keeper != nullptr && hasPlace) {
         const std::filesystem::path path = machine.tool_database.empty()
                                                ? std::filesystem::path(machine.tool_table_file + ".life")
                                                : std::filesystem::path(machine.ini_folder) / "tool.life";
-        static_cast<ToolData &>(**made).keep_life(path.string(), sink);
+        static_cast<ToolData &>(**made).keep_life(path.string(), *options.keeper, sink);
     }
     return made;
 }

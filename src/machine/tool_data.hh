@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "diag/sink.hh"
+#include "journal/writer.hh"
 #include "machine/machine_config.hh"
 #include "task/link/tool_store.hh"
 #include "tool/life.hh"
@@ -31,8 +32,9 @@ class ToolData : public task::ToolStore {
     std::uint64_t version() const override { return version_; }
 
     /// Keeps the life of tools in this file from here on; `sink` is warned when it cannot be read. It is
-    /// written at changes of the tool, after each minute in cut, and by save_life().
-    void keep_life(const std::string &path, diag::Sink &sink);
+    /// written at changes of the tool, after each minute in cut, and by save_life(): by `keeper`, who
+    /// outlives this.
+    void keep_life(const std::string &path, journal::Writer &keeper, diag::Sink &sink);
     void save_life();
     void note_cut(int toolno, const tool::CutLife &cut) override;
     tool::CutLife life(int toolno) const override { return life_.of(toolno); }
@@ -48,12 +50,13 @@ class ToolData : public task::ToolStore {
     std::uint64_t version_ = 1;
     tool::LifeBook life_;
     std::string life_path_;  ///< empty: nowhere
+    journal::Writer *keeper_ = nullptr;
     double unsaved_life_s_ = 0;
 };
 
 /// How the tools of a machine are opened.
 struct ToolOptions {
-    bool isLifeKept = false;   ///< a machine that really cuts
+    journal::Writer *keeper = nullptr;  ///< keeps the life of tools, of a machine that really cuts
     bool isWaitedFor = false;  ///< a database program is waited for within a cycle: for virtual clocks
 };
 

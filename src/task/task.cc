@@ -37,6 +37,7 @@ Task::Task(const Parts &parts, Settings settings)
               {settings_.machine_units, settings_.tool_change_place, settings_.parameter_file,
                settings_.sequencer.isToolChangeWithSpindleOn, settings_.interpreter_plugin,
                settings_.interpreter}),
+      recovery_(parts.journal),
       on_abort_(settings_.interpreter_plugin.empty() ? settings_.interpreter.on_abort_command
                                                      : std::string()),
       user_program_(settings_.isUserProgramWaitedFor),
@@ -99,6 +100,9 @@ Result<> Task::start() {
     show_first_tool(parts_.tools, io_);
     synch_interpreter();
     planner_mode_.announce();
+    if (const std::string offer = recovery_.find(); !offer.empty()) {
+        post(MessageKind::OPERATOR_TEXT, offer);
+    }
     Result<> begun = reader_.interpreter().begin();
     for (const std::string &warning : reader_.interpreter().warnings()) {
         post(MessageKind::OPERATOR_TEXT, warning);
@@ -107,8 +111,11 @@ Result<> Task::start() {
 }
 
 void Task::synch_interpreter() {
-    world_.show(snapshot_of(motion_.status(), io_.outputs, sequencer_));
-    reader_.synch(motion::programmed_position(motion_.status()));
+    interp::MachineSnapshot machine = snapshot_of(motion_.status(), io_.outputs, sequencer_);
+    machine.position = reader_.canon().exact(machine.position);
+    machine.probed_position = machine.isProbeTripped ? machine.probed_position : machine.position;
+    world_.show(machine);
+    reader_.synch(machine.position);
 }
 
 Result<> Task::save_parameters() const {
@@ -170,7 +177,7 @@ void Task::check_run_mode() {
 
 SourcePlace Task::place_of(const motion::SourceTag &source) const {
     const bool isInFile = run_.isProgram() && source.line > 0;
-    return {isInFile ? file_name(source.file_index) : "", source.line, source.line > 0 ? 1 : 0};
+    return isInFile ? SourcePlace{file_name(source.file_index), source.line, 1} : SourcePlace{};
 }
 
 void Task::take_motion_news() {
@@ -184,10 +191,15 @@ void Task::take_motion_news() {
         }
     };
     for (const motion::Fault &fault : news.faults) {
-        fail_or_post(!motion::isOnlyTold(fault.kind), motion::fault_text(fault), fault.source,
+        motion::Fault told = fault;
+        told.source.line = run_.isProgram() ? fault.source.line : 0;  // a line of MDI has no number
+        fail_or_post(!motion::isOnlyTold(fault.kind), motion::fault_text(told), fault.source,
                      AbortReason::MOTION_FAULT);
     }
     for (const auto &[answer, source] : news.refused) {
+        if (answer.reason == motion::Reason::MOVING && mode_.waits_for_rest(answer.id, now_ns_)) {
+            continue;
+        }
         const std::string text = motion::reason_text(answer);
         const auto order = orders_.refuse(answer.id, text);
         if (order.has_value()) {
@@ -236,12 +248,18 @@ void Task::step_homing() {
     }
     if (const auto turn = homing_.take_turn()) {
         homing_.begin(turn->joint, turn->command, motion_.send(motion::Home{turn->joint}));
+    } else if (ended.has_value() && mode_.mode() == Mode::MANUAL && !mode_.isChanging() &&
+               motion_.status().isAllHomed) {
+        motion_.send(motion::SetMode{motion::Mode::TELEOP});  // axes can be jogged from now on
     }
 }
 
 void Task::end_requests() {
     tell(state_.end_request(now_ns_));
     const motion::Status &motion = motion_.status();
+    if (mode_.isWaitingForRest() && motion.isInPosition) {
+        mode_.ask_again(motion_.send(motion::SetMode{mode_.wanted_motion_mode()}));
+    }
     tell(mode_.step(motion_.isAnswered(mode_.order()), motion.mode, now_ns_));
     if (!run_.isRunning()) {
         mode_.follow(motion.mode);
@@ -258,12 +276,14 @@ bool Task::begin_run() {
     if (!motion_.status().isInPosition) {
         return false;
     }
-    if (run_.from_line() > 1) {
-        Start{*this}.begin();
+    if (run_.from_line() > 1 || run_.isRecovery()) {
+        run_.isRecovery() ? Start{*this}.begin_recovery() : Start{*this}.begin();
         return true;
     }
     run_.change(RunEvent::BEGUN);
     synch_interpreter();
+    Start{*this}.prepare_journal();
+    recovery_.begin(1);
     if (run_.kind() == RunKind::MDI) {
         on_step_result(reader_.interpreter().execute(run_.line()));
     }
@@ -295,7 +315,9 @@ void Task::run_interpreter() {
                 sequencer_.log_probe(probe);
             }
         }
-        on_step_result(reader_.interpreter().step());
+        const interp::Step result = reader_.interpreter().step();
+        Start{*this}.note_doubt();
+        on_step_result(result);
     }
 }
 
@@ -332,6 +354,7 @@ void Task::finish_run(Progress progress, const std::string &reason) {
              "cutter compensation holds this move back until the next one or G40 says where it ends");
     }
     sequencer_.end_step();
+    recovery_.end();
     tell(run_.end(progress, reason));
 }
 
@@ -395,8 +418,10 @@ void Task::update_status() {
     status_.codes = {codes.g, codes.m, codes.settings};
     approach_.show(status_.approach, status_.offsets, status_.codes);
     step_tools();
-    status_.tool = {io_.outputs.tool_number, io_.outputs.tool_from_pocket, sequencer_.selected_tool_index(),
-                    tools_.version()};
+    // A tool that is being looked for is not ready yet.
+    const bool isReady = io_.action() != io::ToolAction::PREPARING;
+    status_.tool = {io_.outputs.tool_number, io_.outputs.tool_from_pocket,
+                    isReady ? sequencer_.selected_tool_index() : -1, tools_.version()};
     const tool::CutLife life = parts_.tools.life(io_.outputs.tool_number);
     status_.tool.cut_time_s = life.time_s;
     status_.tool.cut_length = life.length;
@@ -409,6 +434,7 @@ void Task::update_status() {
         post(MessageKind::OPERATOR_ERROR, "the lubrication wants oil: pin iocontrol.0.lube_level is FALSE");
     }
     status_.io.lube = {io_.outputs.lube, io_.hasOil()};
+    Start{*this}.step_journal();
     ++status_.cycle;
     status_.time_ns = now_ns_;
     const PartMask told = tell_motion(motion_.status(), motion_.fresh_parts(), settings_.axis_mask, status_);

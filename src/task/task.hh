@@ -18,6 +18,7 @@
 #include "task/run/on_abort.hh"
 #include "task/run/program_reader.hh"
 #include "task/run/program_run.hh"
+#include "task/run/recovery.hh"
 #include "task/sequencer/planner_mode.hh"
 #include "task/sequencer/sequencer.hh"
 #include "task/sequencer/user_program.hh"
@@ -76,6 +77,7 @@ struct Parts {
     ToolStore &tools;
     interp::ParameterSource &parameters;
     mailbox::Segment &mailbox;  ///< the only way in for commands, out for outcomes, messages and status
+    journal::Writer *journal = nullptr;  ///< null: programs are not journalled
 };
 
 /// Owns the parts of task, hands each what it needs in its step and passes on what it tells. One thread;
@@ -145,7 +147,8 @@ class Task {
 
     // task_abort.cc
     void fail_program(diag::Diagnostic what, AbortReason reason);
-    void stop_run(const std::string &reason);
+    /// `isCutShort`: nobody has wanted its end, so that it may be gone on with.
+    void stop_run(const std::string &reason, bool isCutShort = true);
     void abort_work(AbortReason reason);
     void begin_clean_up(AbortReason reason);
     void step_clean_up();
@@ -175,6 +178,7 @@ class Task {
     MachineWorld world_;
     ProgramReader reader_;
     ProgramRun run_;
+    Recovery recovery_;
     Approach approach_;
     std::optional<LeftPlace> left_;  ///< while the run is held
     OnAbort on_abort_;

@@ -11,15 +11,20 @@ void Task::fail_program(diag::Diagnostic what, AbortReason reason) {
         post(MessageKind::OPERATOR_ERROR, on_abort_.told(what.str()));
         return;
     }
-    post(MessageKind::OPERATOR_ERROR, what.str());
+    // The operator has just typed a line of MDI: that needs no place, and clients compare its texts.
+    post(MessageKind::OPERATOR_ERROR, run_.kind() == RunKind::MDI ? what.what.message : what.str());
+    if (reason == AbortReason::MOTION_FAULT) {
+        recovery_.cut_short();
+    }
     const std::string text = what.what.str();
     run_.set_error(std::move(what));
     finish_run(Progress::FAILED, text);
     abort_work(reason);
 }
 
-void Task::stop_run(const std::string &reason) {
+void Task::stop_run(const std::string &reason, bool isCutShort) {
     if (run_.isRunning()) {
+        isCutShort ? recovery_.cut_short() : recovery_.end();
         finish_run(Progress::FAILED, reason);
     }
 }
@@ -29,6 +34,7 @@ void Task::abort_work(AbortReason reason) {
     const bool isFollowing = reason == AbortReason::STATE_NOT_ON && on_abort_.isCleanedUp();
     desk_.refuse(mdi_queue_.drop(), OVERTAKEN);
     motion_.abort();
+    mode_.note_stop(now_ns_);
     if (!isFollowing || run_.phase() != RunPhase::CLEANING) {
         sequencer_.abort(static_cast<int>(reason));
         user_program_.stop();

@@ -11,6 +11,7 @@ namespace mw::task {
 void Task::Start::begin() {
     task.run_.change(RunEvent::SEARCH);
     task.synch_interpreter();
+    prepare_journal();
     const auto begun = task.reader_.begin_search(task.run_.from_line());
     if (!begun.has_value()) {
         give_up(begun.error().str());
@@ -23,8 +24,13 @@ void Task::Start::step() {
     }
     switch (task.reader_.step_search(task.settings_.blocks_per_cycle)) {
     case BlockSearch::Outcome::GOING: break;
-    case BlockSearch::Outcome::FOUND: propose_line(); break;
-    case BlockSearch::Outcome::REFUSED: give_up(task.reader_.search().refusal()); break;
+    case BlockSearch::Outcome::FOUND: task.run_.isRecovery() ? propose_recovery() : propose_line(); break;
+    case BlockSearch::Outcome::REFUSED:
+        if (task.run_.isRecovery()) {
+            task.recovery_.refuse(task.reader_.search().refusal());
+        }
+        give_up(task.reader_.search().refusal());
+        break;
     }
 }
 
@@ -109,11 +115,16 @@ void Task::Start::propose(ApproachPlan plan) {
 
 /// The calls of the approach come first, then what the program says from the line on.
 void Task::Start::go_on(const ApproachPlan &plan) {
+    auto last = interp::Step::OK;
     if (task.reader_.isSearching()) {
+        last = task.run_.isRecovery() ? task.reader_.search().last_step() : last;
         task.reader_.accept_search();
+        task.run_.isRecovery() ? task.recovery_.begin_again()
+                               : task.recovery_.begin(task.reader_.canon().blocks() + 1);
     }
     task.reader_.canon().insert_first(plan.calls(), motion::programmed_position(task.motion_.status()),
                                       plan.line);
+    task.on_step_result(last);
 }
 
 Result<Progress> Task::Start::confirm(std::uint64_t number) {

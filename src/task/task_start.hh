@@ -14,6 +14,12 @@ struct Task::Start {
 
     /// What comes before the line is calculated from here on.
     void begin();
+    /// The same for the program that was cut short.
+    Result<> check_recovery() const;
+    void begin_recovery();
+    void prepare_journal();
+    void step_journal();
+    void note_doubt();
     /// Once a cycle while it is.
     void step();
     /// A person has agreed; `number` as in Approach::check().
@@ -32,6 +38,7 @@ struct Task::Start {
 
   private:
     void propose_line();
+    void propose_recovery();
     /// What of it is the same for all: the way, the feed; then it is shown.
     void propose(ApproachPlan plan);
     void complete(ApproachPlan &plan) const;

@@ -173,6 +173,18 @@ describe('by hand', () => {
     await page.getByTestId('increment-continuous').click();
   });
 
+  it('begins nothing by keys while a question is open', async () => {
+    await page.getByTestId('touch-X').click();
+    await page.getByTestId('touch-off').focus();
+    const before = rig.position(0);
+    await page.keyboard.down('ArrowRight');
+    await sleep(200);
+    await page.keyboard.up('ArrowRight');
+    expect(rig.position(0)).toBe(before);
+    await page.keyboard.press('Escape');
+    expect(await page.getByTestId('touch-off').count()).toBe(0);
+  });
+
   it('does not jog by keys where somebody types', async () => {
     const before = rig.position(0);
     await page.getByTestId('mdi-line').focus();

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "base/bytes.hh"
 #include "base/limits.hh"
 #include "interp/canon/frame.hh"
 #include "interp/canon/nurbs.hh"
@@ -280,6 +281,47 @@ void MachineFrame::convert(const SetSpindleSpeed &call) {
     constexpr double MM_IN_METRE = 1000.0, INCHES_IN_FOOT = 12.0;
     const double length = units_ == LengthUnits::INCH ? INCHES_IN_FOOT : MM_IN_METRE;
     target_->take(UseSpindleSpeed{call.spindle, call.speed, length * length_factor()});
+}
+
+/// `frame` is constant on the way out.
+template <class Io, class Frame>
+void MachineFrame::fields(Io &io, Frame &frame) {
+    io.choice(frame.units_, LengthUnits::MM);
+    io.choice(frame.plane_, Plane::UW);
+    for (auto *pose : {&frame.position_, &frame.g5x_, &frame.g92_, &frame.tool_}) {
+        for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
+            io((*pose)[axis]);
+        }
+    }
+    io(frame.g5x_index_);
+    io(frame.rotation_deg_);
+    io(frame.feed_);
+    io.choice(frame.feed_mode_, FeedMode::UNITS_PER_REVOLUTION);
+    io.choice(frame.control_, geom::PathMode::BLEND);
+    io(frame.tolerance_);
+    io(frame.naivecam_);
+    io(frame.corner_scale_);
+    io(frame.synch_feed_);
+    io(frame.synch_spindle_);
+    io(frame.isVelocitySynched_);
+}
+
+std::string MachineFrame::pack() const {
+    Packer out;
+    fields(out, *this);
+    return out.bytes();
+}
+
+bool MachineFrame::unpack(std::string_view bytes) {
+    Unpacker in(bytes);
+    MachineFrame frame = *this;
+    fields(in, frame);
+    const bool isSpindle = frame.synch_spindle_ >= 0 && frame.synch_spindle_ < MAX_SPINDLES;
+    if (!in.isComplete() || !isSpindle) {
+        return false;
+    }
+    *this = frame;
+    return true;
 }
 
 }  // namespace mw::interp

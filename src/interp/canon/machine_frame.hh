@@ -2,6 +2,9 @@
 // From program coordinates to the machine's: maps each CanonCall to MachineCalls.
 #pragma once
 
+#include <string>
+#include <string_view>
+
 #include "interp/canon/canon.hh"
 #include "interp/canon/machine_canon.hh"
 
@@ -21,10 +24,16 @@ class MachineFrame final : public Canon {
     Pose to_program(const Pose &machine) const;
     Pose to_machine(const Pose &program) const;
 
+    /// All that it knows as bytes, and back; false when they are none.
+    std::string pack() const;
+    bool unpack(std::string_view bytes);
+
     void begin_block(const BlockRef &block) override { target_->begin_block(block); }
     void take(const CanonCall &call) override;
 
   private:
+    template <class Io, class Frame>
+    static void fields(Io &io, Frame &frame);
     /// What the machine need not hear of: it is in the coordinates and the settings of the calls that follow.
     void follow(const UseLengthUnits &call) { units_ = call.units; }
     void follow(const SelectPlane &call) { plane_ = call.plane; }

@@ -49,6 +49,12 @@ void Parameters::set_named(NameId id, bool isGlobal, double value) {
     locals.push_back({id, value});
 }
 
+void Parameters::forget_names() {
+    globals_.clear();
+    frames_[depth_ - 1].locals.clear();
+    log_.clear();
+}
+
 void Parameters::push_call() {
     if (depth_ == frames_.size()) {
         frames_.emplace_back();

@@ -82,6 +82,9 @@ class Parameters {
     std::optional<double> named(NameId id, bool isGlobal) const;
     void set_named(NameId id, bool isGlobal, double value);
 
+    /// Globals and names of the main program are not there any more.
+    void forget_names();
+
     void push_call();  ///< new local names; #1 to #30 are kept aside
     /// #1 and on of the call just made, for good: rollback() leaves them.
     void set_arguments(std::span<const double> given);

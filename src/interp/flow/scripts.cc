@@ -105,6 +105,7 @@ ScriptOutcome Scripts::call(ScriptModule module, const std::string &name, const 
     }
     error_text.clear();
     ++depth_;
+    ++calls_;
     ScriptOutcome outcome = host_->call(module, name, arguments, rest);
     --depth_;
     return outcome;
@@ -112,6 +113,7 @@ ScriptOutcome Scripts::call(ScriptModule module, const std::string &name, const 
 
 ScriptOutcome Scripts::resume(SuspendedScript &script) {
     ++depth_;
+    ++calls_;
     ScriptOutcome outcome = script.resume();
     --depth_;
     return outcome;
@@ -122,6 +124,7 @@ ScriptOutcome Scripts::run_text(std::string_view text) {
         return forbidden();
     }
     ++depth_;
+    ++calls_;
     ScriptOutcome outcome = host_->run_text(text);
     --depth_;
     return outcome;
@@ -138,6 +141,7 @@ std::optional<double> Scripts::value_of(std::string_view name) {
     }
     const bool wasReading = isReadingName_;
     isReadingName_ = true;
+    ++calls_;
     const Result<double> value = host_->named_parameter(std::string(name));
     isReadingName_ = wasReading;
     if (!value) {

@@ -2,6 +2,7 @@
 // The script language while programs run: its host, the names that scripts define, and the scripts that run.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -41,6 +42,8 @@ class Scripts final : public ScriptNames {
     ScriptOutcome run_text(std::string_view text);
     /// Scripts run now, one inside of the other: that many.
     int depth() const { return depth_; }
+    /// How often they were called, resumed or asked.
+    std::uint64_t count_calls() const { return calls_; }
     /// A named parameter's script runs: it may only look.
     bool isReadingName() const { return isReadingName_; }
 
@@ -59,6 +62,7 @@ class Scripts final : public ScriptNames {
     std::unique_ptr<ScriptHost> host_;
     std::vector<std::string> names_, warnings_;
     int depth_ = 0;
+    std::uint64_t calls_ = 0;
     bool isReadingName_ = false;
     bool isForbidden_ = false;
 };

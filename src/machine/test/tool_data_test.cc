@@ -43,7 +43,7 @@ class ToolDataTest : public ::testing::Test {
         return open();
     }
     task::ToolStore &open() {
-        auto made = open_tools(config_, sink_, {true, true});
+        auto made = open_tools(config_, sink_, {&keeper_, true});
         error_ = made.has_value() ? "" : made.error().message;
         tools_ = made.has_value() ? std::move(*made) : nullptr;
         return *tools_;
@@ -62,6 +62,7 @@ class ToolDataTest : public ::testing::Test {
     std::filesystem::path folder_;
     MachineConfig config_;
     diag::Sink sink_;
+    journal::Writer keeper_{journal::system_disk(), "", journal::Works::ON_CALL};
     std::unique_ptr<task::ToolStore> tools_;
     std::string error_;
 };
@@ -134,14 +135,19 @@ TEST_F(ToolDataTest, AToolThatIsGoneIsNotChangedForAnother_G4) {
 TEST_F(ToolDataTest, TheLifeOfToolsIsKeptBesideTheirTable_G1) {
     task::ToolStore &tools = open_file("T5 P1\nT6 P2\n");
     tools.note_cut(5, {30, 100});
+    keeper_.work();
     EXPECT_EQ(text("tool.tbl.life"), "none") << "not yet a minute";
     tools.note_cut(5, {31, 100});
+    EXPECT_EQ(text("tool.tbl.life"), "none") << "whoever cuts does not wait for the disk";
+    keeper_.work();
     EXPECT_NE(text("tool.tbl.life").find("T5 61.000 200.0000\n"), std::string::npos);
     tools.note_cut(6, {1, 2});
     ASSERT_TRUE(tools.load_spindle(1).has_value());
+    keeper_.work();
     EXPECT_NE(text("tool.tbl.life").find("T6 1.000 2.0000\n"), std::string::npos) << "at a change";
     tools.note_cut(6, {1, 2});
     tools_.reset();
+    keeper_.work();
     EXPECT_EQ(open().life(6).time_s, 2) << "and at the end";
     tools_.reset();
     write("tool.tbl.life", "broken\n");
@@ -149,6 +155,7 @@ TEST_F(ToolDataTest, TheLifeOfToolsIsKeptBesideTheirTable_G1) {
     EXPECT_NE(told().find("the life of tools is not kept"), std::string::npos);
     tools_->note_cut(5, {100, 1});
     tools_.reset();
+    keeper_.work();
     EXPECT_EQ(text("tool.tbl.life"), "broken\n") << "what cannot be read is not written over";
 }
 
@@ -205,7 +212,7 @@ TEST_F(ToolDataTest, ADatabaseThatCannotWorkStopsTheStartByName_G1) {
         error_of("echo v2.1\nread x\necho NAK busy\nsleep 9\n").find("does not tell its tools: NAK busy"),
         std::string::npos);
     config_.tool_database = "/no/such/program";
-    EXPECT_FALSE(open_tools(config_, sink_, {false, true}).has_value());
+    EXPECT_FALSE(open_tools(config_, sink_, {nullptr, true}).has_value());
 }
 
 TEST_F(ToolDataTest, ADatabaseThatDiesLaterIsToldAndNothingWaits_G1) {

@@ -15,9 +15,10 @@ BlockSearch::BlockSearch(interp::Interpreter &interpreter, MachineSwitch &machin
 }
 
 BlockSearch::BlockSearch(interp::Interpreter &interpreter, MachineSwitch &machine,
-                         const SearchMachine::Real &real, std::uint32_t block)
-    : interpreter_(interpreter), switch_(machine), machine_(real) {
-    switch_.set_search(&machine_, block);
+                         const SearchMachine::Real &real, const Block &block)
+    : interpreter_(interpreter), switch_(machine), machine_(real), calls_(block.calls) {
+    machine_.set_up(block.set_up);
+    switch_.set_search(&machine_, block.number);
     interpreter_.forbid_scripts(true);
 }
 
@@ -42,17 +43,13 @@ BlockSearch::Outcome BlockSearch::refuse(const std::string &why) {
 
 BlockSearch::Outcome BlockSearch::refuse_before(const std::string &why) {
     const int nearest = last_possible_ > 0 ? last_possible_ : 1;
-    return refuse(line_ == 0 ? why
-                             : fmt::format("{}; the nearest line before it that can is {}", why, nearest));
+    return refuse(fmt::format("{}; the nearest line before it that can is {}", why, nearest));
 }
 
 /// Before the line is run.
 BlockSearch::Outcome BlockSearch::look_at_line() {
     const interp::NextLine next = interpreter_.next_line();
-    if (line_ == 0) {
-        return Outcome::GOING;
-    }
-    const bool isIt = next.line == line_ && next.isInMainFile;
+    const bool isIt = line_ > 0 && next.line == line_ && next.isInMainFile;
     if (next.isInCall) {
         return isIt ? refuse_before(
                           fmt::format("line {} is in subroutine o<{}>, which line {} is the first to call",
@@ -60,6 +57,7 @@ BlockSearch::Outcome BlockSearch::look_at_line() {
                     : Outcome::GOING;
     }
     const std::string why = interpreter_.why_no_start();
+    wasThreading_ = interpreter_.isThreading();
     if (isIt) {
         return !doubt_.empty()
                    ? refuse_before(fmt::format("what holds at line {} depends on {}", line_, doubt_))
@@ -70,14 +68,27 @@ BlockSearch::Outcome BlockSearch::look_at_line() {
     return Outcome::GOING;
 }
 
+/// What was calculated is what the machine has done.
+BlockSearch::Outcome BlockSearch::check_calls() {
+    if (wasThreading_ && interpreter_.isThreading()) {
+        return refuse_before("it is in the middle of moves that follow the spindle");
+    }
+    return machine_.sum().value() == calls_
+               ? Outcome::FOUND
+               : refuse(
+                     "what the program says up to there is not what it said when it ran: a subroutine, the "
+                     "INI file or what it reads has changed since");
+}
+
 BlockSearch::Outcome BlockSearch::run_line() {
     const interp::Step step = interpreter_.step();
     if (doubt_.empty() && !machine_.doubt().empty()) {
         doubt_ = fmt::format("{} in line {}", machine_.doubt(), interpreter_.line());
     }
+    last_step_ = step;
     if (switch_.isPassing()) {
-        return doubt_.empty() ? Outcome::FOUND
-                              : refuse("what holds where the program was left depends on " + doubt_);
+        return doubt_.empty() ? check_calls()
+                              : refuse_before("what holds where the program was left depends on " + doubt_);
     }
     switch (step) {
     case interp::Step::OK: break;

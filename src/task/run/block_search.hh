@@ -21,9 +21,15 @@ class BlockSearch {
     /// A line of the main program, from 1 on.
     BlockSearch(interp::Interpreter &interpreter, MachineSwitch &machine, const SearchMachine::Real &real,
                 int line);
-    /// A block, as TaskCanon counts them, from 1 on: calls from it on have reached the machine's queue.
+    /// A block, as TaskCanon counts them, from 1 on: calls from it on have reached the machine's queue. The
+    /// program finds what `set_up` has brought about.
+    struct Block {
+        std::uint32_t number = 0;
+        std::uint64_t calls = 0;  ///< checksum of all that must have been asked for before it
+        std::vector<interp::MachineCall> set_up;
+    };
     BlockSearch(interp::Interpreter &interpreter, MachineSwitch &machine, const SearchMachine::Real &real,
-                std::uint32_t block);
+                const Block &block);
     ~BlockSearch();
     BlockSearch(const BlockSearch &) = delete;
     BlockSearch &operator=(const BlockSearch &) = delete;
@@ -35,20 +41,27 @@ class BlockSearch {
     FoundModes found() const { return machine_.found(); }
     /// That come before it.
     std::uint32_t blocks_before() const { return machine_.blocks(); }
+    const CallSum &sum() const { return machine_.sum(); }
+    /// How the step ended that has come there; what it asks for is still to be done.
+    interp::Step last_step() const { return last_step_; }
 
   private:
     Outcome look_at_line();
     Outcome run_line();
+    Outcome check_calls();
     Outcome refuse(const std::string &why);
     Outcome refuse_before(const std::string &why);
 
     interp::Interpreter &interpreter_;
     MachineSwitch &switch_;
     SearchMachine machine_;
-    int line_ = 0;           ///< 0: a block is looked for
-    int last_possible_ = 0;  ///< a start there would have been possible, 0: none yet
-    int first_behind_ = 0;   ///< the first line behind the wanted one that is reached, 0: none
-    std::string doubt_;      ///< with its line
+    int line_ = 0;  ///< 0: a block is looked for
+    std::uint64_t calls_ = 0;
+    interp::Step last_step_ = interp::Step::OK;
+    bool wasThreading_ = false;  ///< before that step
+    int last_possible_ = 0;      ///< a start there would have been possible, 0: none yet
+    int first_behind_ = 0;       ///< the first line behind the wanted one that is reached, 0: none
+    std::string doubt_;          ///< with its line
     std::string refusal_;
 };
 

@@ -2,6 +2,8 @@
 // What the interpreter works with: the machine, or for a while one that is only reckoned with.
 #pragma once
 
+#include <functional>
+#include <string>
 #include <utility>
 
 #include "interp/canon/machine_canon.hh"
@@ -21,8 +23,10 @@ class MachineSwitch final : public interp::MachineCanon,
         interp::World &world;
         interp::ToolSource &tools;
         interp::ParameterSource &parameters;
+        /// What was searched is reached: calls come to `canon` from here on.
+        std::function<void(const SearchMachine &)> begin_passing;
     };
-    explicit MachineSwitch(const Real &real) : real_(real) {}
+    explicit MachineSwitch(Real real) : real_(std::move(real)) {}
 
     /// Everything goes to `search`, null: to the machine again. From block `first` of the program on (counted
     /// from 1; 0: none) calls reach the machine's canon all the same.
@@ -33,12 +37,22 @@ class MachineSwitch final : public interp::MachineCanon,
     }
     /// That block has begun.
     bool isPassing() const { return isPassing_; }
+    /// What the program has learnt from the running machine since forget_doubt(), and cannot be calculated
+    /// again; empty: nothing.
+    const std::string &doubt() const { return doubt_; }
+    void forget_doubt() { doubt_.clear(); }
 
     void begin_block(const interp::BlockRef &block) override {
-        isPassing_ = isPassing_ || (search_ != nullptr && first_ > 0 && search_->blocks() + 1 >= first_);
+        if (!isPassing_ && search_ != nullptr && first_ > 0 && search_->blocks() + 1 >= first_) {
+            isPassing_ = true;
+            real_.begin_passing(*search_);
+        }
         (isSearching() ? static_cast<interp::MachineCanon &>(*search_) : real_.canon).begin_block(block);
     }
     void take(const interp::MachineCall &call) override {
+        if (!isSearching()) {
+            note_doubt(call);
+        }
         (isSearching() ? static_cast<interp::MachineCanon &>(*search_) : real_.canon).take(call);
     }
 
@@ -60,11 +74,23 @@ class MachineSwitch final : public interp::MachineCanon,
         return parameters().ini_value(section, key);
     }
     std::optional<double> hal_value(std::string_view name) const override {
+        doubt_ = search_ == nullptr ? "the HAL value " + std::string(name) : doubt_;
         return parameters().hal_value(name);
     }
 
   private:
     bool isSearching() const { return search_ != nullptr && !isPassing_; }
+    void note_doubt(const interp::MachineCall &call) {
+        if (std::holds_alternative<interp::ProbeMove>(call)) {
+            doubt_ = "a probe";
+        } else if (std::holds_alternative<interp::WaitInput>(call)) {
+            doubt_ = "an input (M66)";
+        } else if (std::holds_alternative<interp::ReloadTools>(call)) {
+            doubt_ = "a tool table that is read again (G10 L0)";
+        } else if (std::holds_alternative<interp::ChangeTool>(call) && isRandom()) {
+            doubt_ = "where a changer that swaps tools has put them (M6)";
+        }
+    }
     const interp::World &world() const { return search_ != nullptr ? *search_ : real_.world; }
     const interp::ToolSource &tools() const { return search_ != nullptr ? *search_ : real_.tools; }
     const interp::ParameterSource &parameters() const {
@@ -75,6 +101,7 @@ class MachineSwitch final : public interp::MachineCanon,
     SearchMachine *search_ = nullptr;
     std::uint32_t first_ = 0;
     bool isPassing_ = false;
+    mutable std::string doubt_;
 };
 
 }  // namespace mw::task

@@ -10,6 +10,7 @@
 #include "interp/interpreter.hh"
 #include "task/run/block_search.hh"
 #include "task/run/machine_switch.hh"
+#include "task/run/start_record.hh"
 #include "task/run/task_canon.hh"
 
 namespace mw::task {
@@ -46,6 +47,20 @@ class ProgramReader {
     // A start elsewhere than at the first line of the program that is open (docs/task/run_from_line.md). The
     // machine has been synched.
     Result<> begin_search(int line);
+    /// The same at a block of a program that has begun as `record` says, on a machine that has come up since.
+    struct LostPlace {
+        std::uint32_t block = 0;
+        std::uint64_t calls = 0;  ///< checksum
+    };
+    Result<> begin_recovery(StartRecord record, const LostPlace &place);
+    /// Modes and parameters as they are, for begin_recovery(); an error says why they cannot be told.
+    Result<> keep_start(StartRecord &record) const;
+    /// What the program has asked for is counted from here on.
+    void begin_marks();
+    /// Since then: what cannot be calculated again, empty for nothing.
+    std::string take_doubt();
+    /// Of the main program: that was read last, or that has called.
+    int main_line() const;
     BlockSearch::Outcome step_search(int lines) { return search_->step(lines); }
     bool isSearching() const { return search_ != nullptr; }
     const BlockSearch &search() const { return *search_; }
@@ -68,8 +83,10 @@ class ProgramReader {
     MachineSwitch switch_;
     interp::MachineFrame frame_;
     std::unique_ptr<interp::ProgramInterpreter> interp_;
-    interp::Interpreter *rs274_ = nullptr;  ///< the same; null: a plug-in
+    interp::Interpreter *rs274_ = nullptr;   ///< the same; null: a plug-in
+    std::optional<RecordedWorld> recorded_;  ///< what a recovery calculates with
     std::unique_ptr<BlockSearch> search_;
+    std::uint64_t script_calls_ = 0;                         ///< that are known
     std::shared_ptr<const interp::Interpreter::Kept> kept_;  ///< as before the search
     std::optional<interp::MachineFrame> kept_frame_;
 };

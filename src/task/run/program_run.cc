@@ -13,6 +13,7 @@ Result<Progress> ProgramRun::start(RunKind kind, mailbox::Serial command, const 
     kind_ = kind;
     line_ = line;
     from_line_ = 0;
+    isRecovery_ = false;
     request_.begin(command);
     error_.reset();
     return Progress::STARTED;

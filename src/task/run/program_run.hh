@@ -21,6 +21,9 @@ class ProgramRun {
     /// Where the program begins; 0: at its first line.
     int from_line() const { return from_line_; }
     void set_from_line(int line) { from_line_ = line; }
+    /// It goes on where it was cut short.
+    bool isRecovery() const { return isRecovery_; }
+    void set_recovery() { isRecovery_ = true; }
     /// An event that cannot be in this state changes nothing and says why.
     Result<> take(RunEvent event) { return state_.take(event); }
     /// Of events that the run's own parts tell: one that comes too late changes nothing.
@@ -53,6 +56,7 @@ class ProgramRun {
     RunKind kind_ = RunKind::PROGRAM;
     std::string line_;
     int from_line_ = 0;
+    bool isRecovery_ = false;
     Request request_;
     std::optional<std::string> failure_;
     std::optional<diag::Diagnostic> error_;

@@ -5,7 +5,18 @@ namespace mw::task {
 
 SearchMachine::SearchMachine(const Real &real) : real_(real), machine_(real.world.snapshot()) {}
 
+void SearchMachine::set_up(const std::vector<interp::MachineCall> &calls) {
+    for (const interp::MachineCall &call : calls) {
+        take(call);
+    }
+    if (machine_.selected_pocket > 0) {
+        selected_tool_ = entry(machine_.selected_pocket).toolno;
+    }
+    sum_ = {};
+}
+
 void SearchMachine::take(const interp::MachineCall &call) {
+    sum_.add(call);
     std::visit(
         Overloaded{
             [this](const OneOf<interp::LineMove, interp::ArcMove> auto &move) {

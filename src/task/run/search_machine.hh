@@ -13,6 +13,7 @@
 #include "base/limits.hh"
 #include "interp/canon/machine_canon.hh"
 #include "interp/world.hh"
+#include "task/run/call_sum.hh"
 #include "task/run/task_canon.hh"
 
 namespace mw::task {
@@ -52,7 +53,11 @@ class SearchMachine final : public interp::MachineCanon,
     /// The search begins with the machine as it is.
     explicit SearchMachine(const Real &real);
 
+    /// What holds before the program begins.
+    void set_up(const std::vector<interp::MachineCall> &calls);
     std::uint32_t blocks() const { return blocks_; }
+    /// Of all calls of the program so far.
+    const CallSum &sum() const { return sum_; }
     FoundModes found() const;
     /// What has made the rest unknown; empty: nothing.
     const std::string &doubt() const { return doubt_; }
@@ -95,6 +100,7 @@ class SearchMachine final : public interp::MachineCanon,
     Real real_;
     interp::MachineSnapshot machine_;
     std::uint32_t blocks_ = 0;
+    CallSum sum_;
     mutable std::string doubt_;
     std::array<Spindle, MAX_SPINDLES> spindles_{};
     std::map<int, interp::ToolEntry> entries_;  ///< that the program has changed; 0: the spindle's

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "task/run/task_canon.hh"
 
+#include <cmath>
+
 namespace mw::task {
 
 void TaskCanon::reset() {
     tag_ = {};
     files_.clear();
     text_.clear();
+    marks_.end();
 }
 
 void TaskCanon::begin_block(const interp::BlockRef &block) {
@@ -24,9 +27,15 @@ void TaskCanon::begin_block(const interp::BlockRef &block) {
     tag_.line = block.line;
     ++tag_.block;
     text_ = block.text;
+    marks_.begin_block(tag_.block);
 }
 
 void TaskCanon::take(const interp::MachineCall &call) {
+    marks_.add(call);
+    put(call);
+}
+
+void TaskCanon::put(const interp::MachineCall &call) {
     std::visit(
         Overloaded{
             [this](const OneOf<interp::LineMove, interp::ArcMove, interp::ProbeMove> auto &move) {
@@ -59,6 +68,16 @@ void TaskCanon::take(const interp::MachineCall &call) {
         call);
 }
 
+geom::Pose TaskCanon::exact(const geom::Pose &machine) const {
+    constexpr double ROUNDING = 1e-9;  // machine units, degrees
+    for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
+        if (!(std::fabs(machine[axis] - last_end_[axis]) < ROUNDING)) {
+            return machine;
+        }
+    }
+    return last_end_;
+}
+
 std::vector<geom::Pose> tool_change_moves(const ToolChangePlace &place, const geom::Pose &position) {
     std::vector<geom::Pose> moves;
     geom::Pose end = position;
@@ -80,7 +99,7 @@ void TaskCanon::insert_first(const std::vector<interp::MachineCall> &calls, cons
     last_end_ = position;
     tag_.line = line;
     for (const interp::MachineCall &call : calls) {
-        take(call);
+        put(call);
     }
     last_end_ = end;
     tag_ = tag;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "interp/canon/machine_canon.hh"
+#include "task/run/call_sum.hh"
 #include "task/sequencer/items.hh"
 
 namespace mw::task {
@@ -38,8 +39,13 @@ class TaskCanon final : public interp::MachineCanon {
     void reset();
     /// So many have come before.
     void set_blocks(std::uint32_t blocks) { tag_.block = blocks; }
+    /// Checksums of what the program asks for; off until they are begun.
+    CallMarks &marks() { return marks_; }
     /// What is done before all that waits, from `position` on; as of `line`.
     void insert_first(const std::vector<interp::MachineCall> &calls, const geom::Pose &position, int line);
+    /// Where the machine stands: the end of the last move, where it is that but for the rounding of those who
+    /// have brought it there. So what a program says does not depend on them.
+    geom::Pose exact(const geom::Pose &machine) const;
     /// Where the machine is when nothing is queued.
     void set_position(const geom::Pose &position) { last_end_ = position; }
 
@@ -47,6 +53,7 @@ class TaskCanon final : public interp::MachineCanon {
     void take(const interp::MachineCall &call) override;
 
   private:
+    void put(const interp::MachineCall &call);
     void add(const interp::MachineCall &call) { queue_.push_back({tag_, call}); }
     void change_tool();
 
@@ -56,6 +63,7 @@ class TaskCanon final : public interp::MachineCanon {
     motion::SourceTag tag_{};
     std::vector<std::string> files_;
     std::string text_;
+    CallMarks marks_;
     std::optional<interp::UseOffsets> offsets_;
     std::optional<geom::Pose> tool_offset_;
 };

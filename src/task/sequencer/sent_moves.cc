@@ -66,6 +66,11 @@ void SentMoves::forget(motion::CommandId id) {
     }
 }
 
+const motion::SourceTag *SentMoves::oldest_after(motion::CommandId id) const {
+    const auto first = std::ranges::find_if(sent_, [id](const Sent &one) { return one.id > id; });
+    return first == sent_.end() ? nullptr : &first->item.source;
+}
+
 std::deque<SentMoves::Sent>::const_iterator SentMoves::under_way(const motion::Status &status) const {
     return std::find_if(sent_.begin(), sent_.end(), [&](const Sent &one) {
         return status.active_path_id != 0 ? one.id >= status.active_path_id : one.id > status.last_path_id;

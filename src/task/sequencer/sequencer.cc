@@ -121,10 +121,12 @@ void Sequencer::step(std::int64_t now_ns) {
                                                                  : ExecState::WAITING_FOR_MOTION;
             return;
         }
+        const motion::SourceTag source = item.source;
         if (!execute(item, now_ns)) {
             blocked_ = ExecState::WAITING_FOR_MOTION_QUEUE;
             return;
         }
+        last_begun_ = source;
         if (!queue_.empty()) {
             queue_.pop_front();
         }
@@ -151,6 +153,16 @@ bool Sequencer::isStepBoundary(const Item &item) {
     motion_.flush();
     isStepDone_ = motion_.isPathComplete() && io_.action() == io::ToolAction::IDLE;
     return true;
+}
+
+motion::SourceTag Sequencer::under_way() const {
+    const motion::SourceTag *const sent = sent_.oldest_after(motion_.status().last_path_id);
+    if (sent != nullptr) {
+        return *sent;
+    }
+    // What was taken back waits in front again.
+    const bool isBack = !queue_.empty() && queue_.front().source.block < last_begun_.block;
+    return isBack ? queue_.front().source : last_begun_;
 }
 
 void Sequencer::start_step() {
@@ -365,6 +377,7 @@ void Sequencer::on_tool_event(io::ToolEvent event) {
 
 void Sequencer::abort(int reason) {
     sent_.clear();
+    last_begun_ = {};
     blocked_ = ExecState::DONE;
     log_.close();
     probe_log_.close();

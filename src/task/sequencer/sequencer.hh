@@ -88,6 +88,10 @@ class Sequencer {
         bool isTimedOut = false;
     };
     InputResult input() const { return {input_value_, isInputTimedOut_}; }
+    /// The first block that is not done; number 0 before the first.
+    motion::SourceTag under_way() const;
+    /// Another program begins.
+    void forget_place() { last_begun_ = {}; }
     /// Starts or stops a spindle at once (operator's command).
     void command_spindle(int spindle, double signed_rpm, bool isWaiting) {
         spindles_.command(spindle, signed_rpm, isWaiting, motion_);
@@ -153,7 +157,8 @@ class Sequencer {
     bool isHeld_ = false;     ///< by the stop that was executed last, for the rest of the cycle
     bool hasFailed_ = false;  ///< nothing more is begun until abort()
     std::uint32_t step_block_ = 0;
-    ProgramLog log_, probe_log_;  ///< of (log,...), of (probeopen ...)
+    motion::SourceTag last_begun_;  ///< of the last item that was begun
+    ProgramLog log_, probe_log_;    ///< of (log,...), of (probeopen ...)
     bool isProbeMade_ = false;
 };
 

@@ -170,6 +170,55 @@ TEST_F(TaskTest, AJointThatWaitsToBeHomedIsNotAfterAStop_D1) {
     }
 }
 
+TEST_F(TaskTest, AxesAreMovedByHandOnceAllJointsAreHomed_C4) {
+    using MotionMode = motion::Mode;
+    motion.status.isAllHomed = false;
+    motion.status.isHoming = true;
+    const auto homing = post(HomeJoint{-1});
+    cycles(3);
+    motion.status.isHoming = false;
+    motion.status.isAllHomed = true;
+    cycles(3);
+    EXPECT_EQ(progress(homing), Progress::DONE) << reason(homing);
+    EXPECT_EQ(motion.status.mode, MotionMode::TELEOP);
+    EXPECT_EQ(ask(SetTeleop{false}), Progress::DONE);
+    EXPECT_EQ(motion.status.mode, MotionMode::FREE);
+    EXPECT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);
+    EXPECT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE);
+    EXPECT_EQ(motion.status.mode, MotionMode::TELEOP);
+    // Asked for again it is the same mode; but nothing is changed under what moves.
+    EXPECT_EQ(ask(SetTeleop{false}), Progress::DONE);
+    motion.status.isInPosition = false;
+    EXPECT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE);
+    EXPECT_EQ(motion.status.mode, MotionMode::FREE);
+    motion.status.isInPosition = true;
+    EXPECT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE);
+    EXPECT_EQ(motion.status.mode, MotionMode::TELEOP);
+    motion.status.isAllHomed = false;
+    EXPECT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);
+    EXPECT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE);
+    EXPECT_EQ(motion.status.mode, MotionMode::FREE);
+}
+
+TEST_F(TaskTest, WhatComesRightBehindSwitchingOnWaitsForIt_D1) {
+    EXPECT_EQ(ask(SetState{State::OFF}), Progress::DONE);
+    const auto on = post(SetState{State::ON});
+    const auto homing = post(HomeJoint{0});
+    motion.status.joint[0].isHomed = true;
+    cycles(5);
+    EXPECT_EQ(progress(on), Progress::DONE) << reason(on);
+    EXPECT_EQ(progress(homing), Progress::DONE) << reason(homing);
+}
+
+TEST_F(TaskTest, TheErrorOfALineOfMdiIsToldBare_J1) {
+    EXPECT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);
+    EXPECT_EQ(ask(Mdi{"G43.2"}), Progress::FAILED);
+    EXPECT_EQ(messages(), "G43.2: No axes specified and H word missing\n");
+    open("G43.2\nM2\n");
+    EXPECT_EQ(ask(RunProgram{}), Progress::FAILED);
+    EXPECT_NE(messages().find("p.ngc:1:"), std::string::npos);
+}
+
 TEST_F(TaskTest, AProgramRunsToItsEnd_D1) {
     open("G21 F600\nG1 X1\nG1 X2\nM2\n");
     motion.log.clear();
@@ -233,7 +282,7 @@ TEST_F(NoSmoothPlanner, G64RIsRefused_C2) {
 
 TEST_F(TaskTest, CommandsThatCannotBeDoneAreRefusedWithAReason_C5) {
     EXPECT_EQ(ask(Mdi{"G0 X1"}), Progress::REFUSED);
-    EXPECT_EQ(reason(request), "MDI needs MDI mode");
+    EXPECT_EQ(reason(request), "Must be in MDI mode to issue MDI command");
     EXPECT_EQ(ask(RunProgram{}), Progress::REFUSED);
     EXPECT_EQ(ask(PauseProgram{}), Progress::REFUSED);
     EXPECT_EQ(ask(OpenProgram{"/nowhere.ngc"}), Progress::REFUSED);
@@ -242,6 +291,52 @@ TEST_F(TaskTest, CommandsThatCannotBeDoneAreRefusedWithAReason_C5) {
     open("M2\n");
     EXPECT_EQ(ask(RunProgram{}), Progress::REFUSED);
     EXPECT_NE(reason(request).find("not all joints are homed"), std::string::npos);
+}
+
+TEST_F(TaskTest, AScreenThatStartsInEmergencyStopChoosesJointsAndForgetsHoming_C5_J2) {
+    ASSERT_EQ(ask(SetState{State::ESTOP}), Progress::DONE);
+    EXPECT_EQ(ask(SetTeleop{false}), Progress::DONE);
+    EXPECT_EQ(ask(SetMotionMode{msgs::MotionMode::FREE}), Progress::DONE);
+    EXPECT_EQ(ask(SetMotionMode{msgs::MotionMode::COORD}), Progress::REFUSED);
+    EXPECT_EQ(ask(UnhomeJoint{-1}), Progress::DONE);
+    EXPECT_EQ(ask(HomeJoint{-1}), Progress::REFUSED);
+    ASSERT_EQ(ask(SetMode{Mode::AUTO}), Progress::DONE);
+    EXPECT_EQ(ask(SetTeleop{true}), Progress::DONE);
+    EXPECT_EQ(task.status().task.mode, Mode::MANUAL) << "as in any mode in which nothing runs";
+}
+
+TEST_F(TaskTest, AChangeOfModeAfterAStopWaitsUntilTheMachineStands_C5_D3) {
+    motion.status.isInPosition = false;  // a jog goes on
+    EXPECT_EQ(ask(SetMode{Mode::AUTO}), Progress::REFUSED);
+    for (const Command &stop : {Command{JogStop{false, 0}}, Command{AbortAll{}}}) {
+        motion.status.isInPosition = false;
+        post(stop);
+        const auto change = post(SetMode{Mode::MDI});
+        cycles(5);
+        EXPECT_EQ(progress(change), Progress::STARTED);
+        EXPECT_EQ(task.status().task.mode, Mode::MANUAL);
+        motion.status.isInPosition = true;
+        cycles(5);
+        EXPECT_EQ(progress(change), Progress::DONE);
+        EXPECT_EQ(task.status().task.mode, Mode::MDI);
+        ASSERT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE);
+    }
+}
+
+TEST_F(TaskTest, ATurningSpindleChangesItsSpeedInStepsAndNeverItsSense_C5_J2) {
+    EXPECT_EQ(ask(SpindleIncrease{0}), Progress::REFUSED);
+    EXPECT_EQ(reason(request), "spindle 0 stands");
+    EXPECT_EQ(ask(SpindleIncrease{7}), Progress::REFUSED);
+    motion.log.clear();
+    ask(SpindleOn{0, -150});
+    ask(SpindleIncrease{0});
+    ask(SpindleDecrease{0});
+    ask(SpindleDecrease{0});
+    ask(SpindleDecrease{0});
+    EXPECT_EQ(ask(SpindleConstant{0}), Progress::DONE);
+    EXPECT_EQ(joined(), "spindle -150, spindle -250, spindle -150, spindle -50, spindle -1");
+    ask(SpindleOff{0});
+    EXPECT_EQ(ask(SpindleDecrease{0}), Progress::REFUSED);
 }
 
 TEST_F(TaskTest, AVectorOfTeleopSpeedsGoesToMotionInManualMode_C4) {

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "journal/test/torn_disk.hh"
+#include "journal/writer.hh"
+
+namespace mw::journal {
+namespace {
+
+constexpr const char *PATH = "/m/sim.var.journal", *PROGRAM = "/m/p.ngc";
+
+Progress at_block(std::uint64_t block) {
+    Progress progress;
+    progress.block = block;
+    return progress;
+}
+
+class JournalWriter : public testing::Test {
+  protected:
+    JournalWriter() { disk.write_outside(PROGRAM, "G0 X1\n"); }
+    std::unique_ptr<Writer> open() {
+        return std::make_unique<Writer>(std::make_unique<test::TornDiskView>(disk), PATH, Works::ON_CALL);
+    }
+    test::TornDisk disk;
+};
+
+TEST_F(JournalWriter, ARunThatHasNotEndedIsFound_D3) {
+    auto writer = open();
+    EXPECT_FALSE(writer->found().run.has_value());
+    writer->begin({PROGRAM, {}, "state"});
+    writer->note(at_block(3));
+    writer->note(at_block(4));
+    EXPECT_TRUE(writer->work());
+    EXPECT_FALSE(writer->work());
+    writer->note(at_block(5));
+    writer.reset();
+    writer = open();
+    ASSERT_TRUE(writer->found().run.has_value());
+    EXPECT_EQ(writer->found().run->progress->block, 5U);
+    EXPECT_EQ(writer->found().run->start.state, "state");
+    EXPECT_EQ(writer->found().refusal, "");
+    disk.write_outside(PROGRAM, "G0 X2\n");
+    EXPECT_EQ(open()->found().refusal, "its file has been changed since");
+    disk.names.erase(PROGRAM);
+    EXPECT_EQ(open()->found().refusal, "its file is gone");
+}
+
+TEST_F(JournalWriter, ARunThatHasEndedOrIsForgottenIsNot_D3) {
+    auto writer = open();
+    writer->begin({PROGRAM, {}, "state"});
+    writer->note(at_block(3));
+    writer->end();
+    writer.reset();
+    writer = open();
+    EXPECT_FALSE(writer->found().run.has_value());
+    writer->begin({PROGRAM, {}, "state"});
+    writer->note(at_block(3));
+    writer->work();
+    writer->forget();
+    writer.reset();
+    EXPECT_FALSE(open()->found().run.has_value());
+    EXPECT_FALSE(disk.names.contains(PATH));
+}
+
+TEST_F(JournalWriter, AFileThatIsNoJournalIsTold_C5) {
+    disk.write_outside(PATH, "rubbish");
+    const auto trouble = open()->take_trouble();
+    ASSERT_TRUE(trouble.has_value());
+    EXPECT_EQ(*trouble,
+              "/m/sim.var.journal: this is no journal, or one of another version: a program that was "
+              "cut short cannot be gone on with");
+}
+
+TEST_F(JournalWriter, ItDoesNotGrowWithoutEnd) {
+    auto writer = open();
+    writer->begin({PROGRAM, {}, "state"});
+    for (std::uint64_t block = 1; block < 30000; ++block) {
+        writer->note(at_block(block));
+        writer->work();
+    }
+    EXPECT_LT(disk.files[disk.names[PATH]].now.size(), 2000000U);
+    writer.reset();
+    EXPECT_EQ(open()->found().run->progress->block, 29999U);
+}
+
+/// At each step of a disk that loses what was not synced: what was worked off before is there, files are old
+/// or new.
+TEST_F(JournalWriter, WhateverThePowerCutTakesWhatWasWorkedOffIsThere_D3) {
+    for (unsigned seed = 0; seed < 3000; ++seed) {
+        SCOPED_TRACE(seed);
+        std::mt19937_64 random(seed);
+        test::TornDisk fresh;
+        fresh.write_outside(PROGRAM, "G0 X1\n");
+        fresh.write_outside("/m/life", "old");
+        disk = fresh;
+        auto writer = open();
+        writer->begin({PROGRAM, {}, std::string(random() % 3000, 's')});
+        std::uint64_t sure = 0, asked = 0;
+        disk.steps_left = static_cast<long>(random() % 60);
+        while (!disk.isDead) {
+            const int notes = static_cast<int>(random() % 4);
+            for (int i = 0; i < notes; ++i) {
+                writer->note(at_block(++asked));
+            }
+            if (random() % 5 == 0) {
+                writer->keep_file("/m/life", std::string(random() % 2000, 'n'));
+            }
+            writer->work();
+            sure = disk.isDead ? sure : asked;
+        }
+        writer.reset();
+        disk.cut_power(random);
+        writer = open();
+        EXPECT_FALSE(writer->take_trouble().has_value());
+        const auto &found = writer->found().run;
+        const std::uint64_t block = found.has_value() ? found->progress->block : 0;
+        EXPECT_GE(block, sure);
+        EXPECT_LE(block, asked);
+        const std::string life = disk.files[disk.names["/m/life"]].now;
+        EXPECT_TRUE(life == "old" || life == std::string(life.size(), 'n')) << life;
+    }
+}
+
+TEST(JournalWriterThread, WritesToARealDiskBesideWhoAsks_D3) {
+    namespace fs = std::filesystem;
+    const fs::path folder = fs::temp_directory_path() / ("mw_journal_" + std::to_string(::getpid()));
+    fs::create_directory(folder);
+    std::ofstream(folder / "p.ngc") << "G0 X1\n";
+    const std::string path = folder / "j";
+    {
+        Writer writer(system_disk(), path, Works::ALONE);
+        writer.begin({folder / "p.ngc", {}, "state"});
+        for (std::uint64_t block = 1; block <= 500; ++block) {
+            writer.note(at_block(block));
+        }
+        writer.keep_file(folder / "life", "T1 1 1\n");
+    }
+    {
+        Writer writer(system_disk(), path, Works::ALONE);
+        EXPECT_EQ(writer.take_trouble(), std::nullopt);
+        ASSERT_TRUE(writer.found().run.has_value());
+        EXPECT_EQ(writer.found().run->progress->block, 500U);
+        EXPECT_EQ(writer.found().refusal, "");
+    }
+    std::ostringstream life;
+    life << std::ifstream(folder / "life").rdbuf();
+    EXPECT_EQ(life.str(), "T1 1 1\n");
+    Writer lost(system_disk(), folder / "none" / "j", Works::ON_CALL);
+    lost.begin({folder / "p.ngc", {}, "state"});
+    lost.work();
+    const auto trouble = lost.take_trouble();
+    ASSERT_TRUE(trouble.has_value());
+    EXPECT_NE(trouble->find("cannot open"), std::string::npos) << *trouble;
+    fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace mw::journal

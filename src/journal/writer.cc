@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "journal/writer.hh"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace mw::journal {
+namespace {
+
+/// Above what it began with; then it is written anew.
+constexpr std::uint64_t MOST_RECORD_BYTES = 1U << 20U;
+/// A disk that takes longer lets the journal fall behind the tool.
+constexpr double SLOW_S = 0.8;
+
+std::string whole(const Run &run) {
+    std::string bytes = begin_bytes(run.start);
+    bytes += run.doubt.has_value() ? record(*run.doubt) : "";
+    bytes += run.progress.has_value() ? record(*run.progress) : "";
+    bytes += run.hasEnded ? end_record() : "";
+    return bytes;
+}
+
+std::string why_not(Disk &disk, const Start &start) {
+    if (!disk.exists(start.program)) {
+        return "its file is gone";
+    }
+    const auto content = disk.read(start.program);
+    if (!content.has_value()) {
+        return content.error().message;
+    }
+    return mark_of(*content) == start.file ? "" : "its file has been changed since";
+}
+
+}  // namespace
+
+Writer::Writer(std::unique_ptr<Disk> disk, std::string path, Works works)
+    : disk_(std::move(disk)), path_(std::move(path)) {
+    find();
+    if (works == Works::ALONE) {
+        thread_ = std::thread([this] { run_thread(); });
+    }
+}
+
+Writer::~Writer() {
+    {
+        const std::lock_guard lock(mutex_);
+        isEnding_ = true;
+    }
+    asked_.notify_one();
+    if (thread_.joinable()) {
+        thread_.join();
+    } else {
+        work();
+    }
+}
+
+void Writer::find() {
+    if (path_.empty() || !disk_->exists(path_)) {
+        return;
+    }
+    const auto bytes = disk_->read(path_);
+    auto run = bytes.has_value() ? read_run(*bytes) : std::unexpected(bytes.error());
+    if (!run.has_value()) {
+        trouble_ =
+            path_ + ": " + run.error().message + ": a program that was cut short cannot be gone on with";
+    } else if (!run->hasEnded && run->progress.has_value()) {
+        found_.refusal = why_not(*disk_, run->start);
+        found_.run = std::move(*run);
+    }
+}
+
+void Writer::ask(Job job) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (job.kind == Kind::BEGIN || job.kind == Kind::FORGET) {  // what was before does not matter
+            std::erase_if(jobs_, [](const Job &one) { return one.kind != Kind::FILE; });
+        }
+        const auto same = std::ranges::find_if(jobs_, [&](const Job &one) {
+            return one.kind == job.kind &&
+                   (job.kind == Kind::FILE ? one.path == job.path
+                                           : job.kind == Kind::PROGRESS && &one == &jobs_.back());
+        });
+        if (same != jobs_.end()) {
+            *same = std::move(job);
+        } else {
+            jobs_.push_back(std::move(job));
+        }
+    }
+    asked_.notify_one();
+}
+
+void Writer::begin(Start start, std::optional<Progress> progress, std::optional<Doubt> doubt) {
+    ask({Kind::BEGIN, {std::move(start), std::move(progress), std::move(doubt), false}, {}, {}});
+}
+
+void Writer::note(const Progress &progress) {
+    ask({Kind::PROGRESS, {{}, progress, {}, false}, {}, {}});
+}
+
+void Writer::note(const Doubt &doubt) {
+    ask({Kind::DOUBT, {{}, {}, doubt, false}, {}, {}});
+}
+
+void Writer::end() {
+    ask({Kind::END, {}, {}, {}});
+}
+
+void Writer::forget() {
+    ask({Kind::FORGET, {}, {}, {}});
+}
+
+void Writer::keep_file(const std::string &path, std::string text) {
+    ask({Kind::FILE, {}, path, std::move(text)});
+}
+
+std::optional<std::string> Writer::take_trouble() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(trouble_, std::nullopt);
+}
+
+bool Writer::work() {
+    Jobs jobs;
+    {
+        const std::lock_guard lock(mutex_);
+        jobs.swap(jobs_);
+    }
+    do_jobs(jobs);
+    return !jobs.empty();
+}
+
+void Writer::run_thread() {
+    while (true) {
+        {
+            std::unique_lock lock(mutex_);
+            asked_.wait(lock, [this] { return isEnding_ || !jobs_.empty(); });
+            if (jobs_.empty()) {
+                return;
+            }
+        }
+        const auto began = std::chrono::steady_clock::now();
+        work();
+        const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+        if (took_s > SLOW_S) {
+            tell(fail("the disk was slow: after a power cut the program would go on at an earlier place"));
+        }
+    }
+}
+
+/// An error is told, and what comes after it is done all the same.
+void Writer::do_jobs(Jobs &jobs) {
+    for (Job &job : jobs) {
+        const auto done = do_job(job);
+        if (!done.has_value()) {
+            tell(done);
+        }
+    }
+    if (!records_.empty()) {
+        tell(write_records());
+    }
+}
+
+Result<> Writer::do_job(Job &job) {
+    switch (job.kind) {
+    case Kind::BEGIN: return begin_file(job);
+    case Kind::PROGRESS:
+        if (run_.has_value()) {
+            run_->progress = job.run.progress;
+            records_ += record(*job.run.progress);
+        }
+        return {};
+    case Kind::DOUBT:
+        if (run_.has_value() && !run_->doubt.has_value()) {
+            run_->doubt = job.run.doubt;
+            records_ += record(*job.run.doubt);
+        }
+        return {};
+    case Kind::END:
+        if (run_.has_value()) {
+            run_->hasEnded = true;
+            records_ += end_record();
+        }
+        return {};
+    case Kind::FORGET: {
+        run_.reset();
+        records_.clear();
+        const auto removed = disk_->remove(path_);
+        return removed.has_value() ? disk_->sync_folder_of(path_) : removed;
+    }
+    case Kind::FILE: return disk_->rewrite(job.path, job.text);
+    }
+    return {};
+}
+
+Result<> Writer::begin_file(Job &job) {
+    records_.clear();
+    run_.reset();
+    if (job.run.start.file == FileMark{}) {
+        const auto content = disk_->read(job.run.start.program);
+        if (!content.has_value()) {
+            return std::unexpected(content.error());
+        }
+        job.run.start.file = mark_of(*content);
+    }
+    run_ = std::move(job.run);
+    return rewrite();
+}
+
+Result<> Writer::rewrite() {
+    const std::string bytes = whole(*run_);
+    records_.clear();
+    const auto replaced = replace_file(*disk_, path_, bytes);
+    isFileSound_ = replaced.has_value();
+    bytes_ = 0;
+    return replaced;
+}
+
+Result<> Writer::write_records() {
+    if (!isFileSound_ || bytes_ + records_.size() > MOST_RECORD_BYTES) {
+        return rewrite();
+    }
+    // Behind a record that is torn no other is found.
+    isFileSound_ = false;
+    bytes_ += records_.size();
+    auto done = disk_->append(path_, records_);
+    records_.clear();
+    done = done.has_value() ? disk_->sync(path_) : done;
+    isFileSound_ = done.has_value();
+    return done;
+}
+
+void Writer::tell(const Result<> &result) {
+    const std::lock_guard lock(mutex_);
+    if (!result.has_value() && !isTroubleTold_) {
+        trouble_ = "journal: " + result.error().message;
+    }
+    isTroubleTold_ = !result.has_value();
+}
+
+}  // namespace mw::journal

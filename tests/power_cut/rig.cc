@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "power_cut/rig.hh"
+
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "app/operator.hh"
+
+namespace mw::power_cut {
+namespace {
+
+namespace files = std::filesystem;
+
+std::string content(const files::path &path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+}
+
+std::string bits(const geom::Pose &pose) {
+    std::string text;
+    for (const double coordinate : pose.c) {
+        text += fmt::format(" {:a}", coordinate);
+    }
+    return text;
+}
+
+std::string bits(const motion::MoveTerms &t) {
+    return fmt::format(" {} {} {} {} {:a} {:a} {:a} {:a}", t.isRapid, static_cast<int>(t.mode),
+                       static_cast<int>(t.synch_spindle), t.isVelocitySynched, t.feed, t.tolerance,
+                       t.naivecam_tolerance, t.feed_per_revolution);
+}
+
+struct Told {
+    std::uint32_t block = 0;
+    std::string text;
+};
+
+Told told(const motion::Line &move) {
+    return {move.terms.source.block, "line" + bits(move.end) + bits(move.terms)};
+}
+Told told(const motion::Arc &move) {
+    return {move.terms.source.block, "arc" + bits(move.end) + bits(move.centre) + bits(move.normal) +
+                                         fmt::format(" {:a}", move.angle_rad) + bits(move.terms)};
+}
+Told told(const motion::Probe &move) {
+    return {move.terms.source.block, "probe" + bits(move.end)};
+}
+Told told(const motion::RigidTap &move) {
+    return {move.terms.source.block, "tap" + bits(move.end) + bits(move.terms)};
+}
+template <class Other>
+Told told(const Other &) {
+    return {0, "other"};
+}
+
+}  // namespace
+
+Rig::Rig(files::path folder, journal::test::TornDisk &disk) : folder_(std::move(folder)), disk_(disk) {
+    files::create_directories(folder_);
+    files::copy_file(MW_SOURCE_DIR "/configs/sim/mill_mm.tbl", folder_ / "tools.tbl",
+                     files::copy_options::overwrite_existing);
+}
+
+Rig::~Rig() {
+    die();
+}
+
+void Rig::die() {
+    machine_.reset();
+    writer_.reset();
+    loaded_.reset();
+}
+
+std::string Rig::come_up(const std::vector<std::string> &mdi) {
+    loaded_ = machine::LoadedConfig::load(MW_SOURCE_DIR "/configs/sim/mill_mm.ini", sink_);
+    if (loaded_ == nullptr) {
+        return "the INI file cannot be read";
+    }
+    loaded_->machine.task.parameter_file = folder_ / "p.var";
+    loaded_->machine.tool_table_file = folder_ / "tools.tbl";
+    writer_ = std::make_unique<journal::Writer>(std::make_unique<journal::test::TornDiskView>(disk_),
+                                                "journal", journal::Works::ON_CALL);
+    machine::MachineOptions options;
+    options.journal = writer_.get();
+    auto made =
+        machine::make_virtual_machine({loaded_->ini, loaded_->reader, loaded_->machine, sink_}, options);
+    if (!made.has_value()) {
+        return made.error().str();
+    }
+    machine_ = std::move(*made);
+    app::OwnMachine own(*machine_);
+    app::Operator person(own, loaded_->machine, sink_, {});
+    auto up = person.switch_on();
+    up = up.has_value() ? person.home_all() : up;
+    if (!up.has_value()) {
+        return up.error().str();
+    }
+    for (const std::string &line : mdi) {
+        auto trouble = ask(msgs::SetMode{msgs::Mode::MDI});
+        trouble = trouble.empty() ? ask(msgs::Mdi{line}) : trouble;
+        if (!trouble.empty()) {
+            return line + ": " + trouble;
+        }
+    }
+    listen();
+    return ask(msgs::SetMode{msgs::Mode::AUTO});
+}
+
+void Rig::listen() {
+    recording = {};
+    told_ = 0;
+    machine_->task().set_move_listener([this](motion::CommandId id, const motion::PathBody &move) {
+        const Told one = std::visit([](const auto &body) { return told(body); }, move);
+        recording.calls.push_back({id, one.block, one.text});
+    });
+}
+
+void Rig::tell_what_is_on() {
+    const msgs::MachineStatus &now = status();
+    const motion::CommandId under_way = machine_->task().motion_status().active_path_id;
+    while (told_ < recording.calls.size() && recording.calls[told_].id <= under_way) {
+        recording.calls[told_++].bits +=
+            fmt::format(" on {} {} {} tool {}", now.spindles[0].direction, now.io.coolant.isFloodOn,
+                        now.io.coolant.isMistOn, now.tool.in_spindle);
+    }
+}
+
+std::string Rig::ask(const msgs::Command &command, int limit) {
+    const auto posted = machine_->client().post(command);
+    if (!posted.has_value()) {
+        return posted.error().str();
+    }
+    for (int i = 0; i < limit; ++i) {
+        machine_->cycle();
+        const auto outcome = machine_->client().outcome(*posted);
+        if (outcome.progress != msgs::Progress::STARTED) {
+            return outcome.progress == msgs::Progress::DONE ? "" : outcome.reason + " ";
+        }
+    }
+    return "it does not end";
+}
+
+std::string Rig::begin(const std::string &program, int from_line) {
+    const files::path path = folder_ / "p.ngc";
+    std::ofstream(path) << program;
+    disk_.write_outside(path, program);
+    const auto opened = ask(msgs::OpenProgram{path});
+    const auto posted = machine_->client().post(msgs::RunProgram{from_line});
+    run_ = posted.value_or(0);
+    return opened;
+}
+
+void Rig::cycle(std::mt19937_64 &random) {
+    machine_->cycle();
+    tell_what_is_on();
+    const motion::Status &motion = machine_->task().motion_status();
+    recording.under_tool.push_back(motion.active_path_id != 0 ? motion.source.block : 0);
+    late_ms_ =
+        late_ms_ < 0 ? static_cast<int>(random() % static_cast<unsigned>(most_late_ms + 1)) : late_ms_ - 1;
+    if (late_ms_ < 0 || steps_in_write >= 0) {
+        disk_.steps_left = steps_in_write;
+        writer_->work();
+    }
+    if (hasEnded() && !recording.isDone) {
+        recording.isDone = machine_->client().outcome(run_).progress == msgs::Progress::DONE;
+        static_cast<void>(machine_->task().save_parameters());
+        recording.parameters = content(folder_ / "p.var");
+    }
+}
+
+bool Rig::hasEnded() const {
+    return machine_->client().outcome(run_).progress != msgs::Progress::STARTED;
+}
+
+std::string Rig::outcome() {
+    return machine_->client().outcome(run_).reason;
+}
+
+const msgs::MachineStatus &Rig::status() {
+    return machine_->task().status();
+}
+
+std::string Rig::recover() {
+    const auto posted = machine_->client().post(msgs::RecoverProgram{});
+    if (!posted.has_value()) {
+        return posted.error().str();
+    }
+    run_ = *posted;
+    constexpr int LIMIT = 20000;
+    for (int i = 0; i < LIMIT && !hasEnded(); ++i) {
+        machine_->cycle();
+        if (status().approach.number != 0) {
+            return ask(msgs::ConfirmApproach{status().approach.number});
+        }
+    }
+    return hasEnded() ? outcome() + " " : "nothing is proposed";
+}
+
+}  // namespace mw::power_cut

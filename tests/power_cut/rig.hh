@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A mill in virtual time whose journal lies on a disk that loses what was not synced: runs a program, loses
+// its power, comes up again.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "diag/sink.hh"
+#include "journal/test/torn_disk.hh"
+#include "machine/loaded_config.hh"
+#include "machine/machine.hh"
+
+namespace mw::power_cut {
+
+/// A move as it was handed to the planner, with what was on: every bit of it.
+struct Call {
+    std::uint64_t id = 0;  ///< another one in each run
+    std::uint32_t block = 0;
+    std::string bits;
+    bool operator==(const Call &other) const { return block == other.block && bits == other.bits; }
+};
+
+/// How a run went.
+struct Recording {
+    std::vector<Call> calls;
+    /// Of each millisecond: the block of the move under the tool, 0 for none, as motion tells it.
+    std::vector<std::uint32_t> under_tool;
+    std::string parameters;  ///< the parameter file after it
+    bool isDone = false;
+};
+
+/// From an empty machine to its end; all errors are texts.
+class Rig {
+  public:
+    /// `folder` is its own; the machine's files are copied there.
+    Rig(std::filesystem::path folder, journal::test::TornDisk &disk);
+    ~Rig();
+
+    /// Comes up, switched on and homed; with MDI lines before the program. Empty, or what went wrong.
+    std::string come_up(const std::vector<std::string> &mdi);
+    /// Everything of the process is gone; `disk` has lost its power already.
+    void die();
+
+    std::string begin(const std::string &program, int from_line = 0);
+    /// One cycle of task; the journal is written when its time has come.
+    void cycle(std::mt19937_64 &random);
+    /// Neither running nor asked for.
+    bool hasEnded() const;
+    std::string outcome();
+    const msgs::MachineStatus &status();
+    /// Asks for what was cut short, confirms the way. Empty, or the refusal.
+    std::string recover();
+
+    /// Done, or why not.
+    std::string ask(const msgs::Command &command, int limit = 20000);
+    machine::Machine &machine() { return *machine_; }
+    const std::filesystem::path &folder() const { return folder_; }
+
+    Recording recording;
+    /// A power cut comes in the middle of a write of the journal, after so many steps; negative: not yet.
+    long steps_in_write = -1;
+    /// The journal's thread is late by up to so much. [ms]
+    int most_late_ms = 300;
+
+  private:
+    /// What is on is told with a move when motion has come to it.
+    void tell_what_is_on();
+    void listen();
+
+    std::filesystem::path folder_;
+    journal::test::TornDisk &disk_;
+    std::string program_;
+    diag::Sink sink_;
+    std::unique_ptr<machine::LoadedConfig> loaded_;
+    std::unique_ptr<journal::Writer> writer_;
+    std::unique_ptr<machine::Machine> machine_;
+    client::Serial run_ = 0;
+    int late_ms_ = -1;
+    std::size_t told_ = 0;  ///< moves that motion has come to
+};
+
+}  // namespace mw::power_cut
