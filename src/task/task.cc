@@ -197,6 +197,9 @@ void Task::take_motion_news() {
                      AbortReason::MOTION_FAULT);
     }
     for (const auto &[answer, source] : news.refused) {
+        if (answer.reason == motion::Reason::MOVING && mode_.waits_for_rest(answer.id, now_ns_)) {
+            continue;
+        }
         const std::string text = motion::reason_text(answer);
         const auto order = orders_.refuse(answer.id, text);
         if (order.has_value()) {
@@ -254,6 +257,9 @@ void Task::step_homing() {
 void Task::end_requests() {
     tell(state_.end_request(now_ns_));
     const motion::Status &motion = motion_.status();
+    if (mode_.isWaitingForRest() && motion.isInPosition) {
+        mode_.ask_again(motion_.send(motion::SetMode{mode_.wanted_motion_mode()}));
+    }
     tell(mode_.step(motion_.isAnswered(mode_.order()), motion.mode, now_ns_));
     if (!run_.isRunning()) {
         mode_.follow(motion.mode);

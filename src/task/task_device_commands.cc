@@ -64,6 +64,7 @@ Outcome Task::Handler::operator()(const JogAbsolute &command) {
 
 Outcome Task::Handler::operator()(const JogStop &command) {
     task.desk_.refuse(task.inbox_.drop_jogs_before(id, command), OVERTAKEN);
+    task.mode_.note_stop(task.now_ns_);
     return send(motion::JogStop{{command.isJoint, command.index}});
 }
 

@@ -305,6 +305,24 @@ TEST_F(TaskTest, AScreenThatStartsInEmergencyStopChoosesJointsAndForgetsHoming_C
     EXPECT_EQ(task.status().task.mode, Mode::MANUAL) << "as in any mode in which nothing runs";
 }
 
+TEST_F(TaskTest, AChangeOfModeAfterAStopWaitsUntilTheMachineStands_C5_D3) {
+    motion.status.isInPosition = false;  // a jog goes on
+    EXPECT_EQ(ask(SetMode{Mode::AUTO}), Progress::REFUSED);
+    for (const Command &stop : {Command{JogStop{false, 0}}, Command{AbortAll{}}}) {
+        motion.status.isInPosition = false;
+        post(stop);
+        const auto change = post(SetMode{Mode::MDI});
+        cycles(5);
+        EXPECT_EQ(progress(change), Progress::STARTED);
+        EXPECT_EQ(task.status().task.mode, Mode::MANUAL);
+        motion.status.isInPosition = true;
+        cycles(5);
+        EXPECT_EQ(progress(change), Progress::DONE);
+        EXPECT_EQ(task.status().task.mode, Mode::MDI);
+        ASSERT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE);
+    }
+}
+
 TEST_F(TaskTest, ATurningSpindleChangesItsSpeedInStepsAndNeverItsSense_C5_J2) {
     EXPECT_EQ(ask(SpindleIncrease{0}), Progress::REFUSED);
     EXPECT_EQ(reason(request), "spindle 0 stands");

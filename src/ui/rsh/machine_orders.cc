@@ -151,7 +151,7 @@ Result<Waiting> resume(const Ordered &o) {
 
 Result<Waiting> step(const Ordered &o) {
     if (isWrongMode(o, msgs::Mode::AUTO, msgs::DECLARATION<msgs::StepProgram>)) {
-        return fail("");
+        return o.settings.isOld() ? Result<Waiting>(Waiting{}) : fail("");  // 2.9: it was received
     }
     return ask(o, msgs::StepProgram{}, Until::TAKEN);
 }
