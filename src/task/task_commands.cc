@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// States, modes, programs: what the operator's commands do (C5). Those about joints and devices are in
-// task_device_commands.cc.
+// States, modes and programs: one handler for each of the operator's commands, done, started, or refused with
+// the reason (C5).
 #include "task/task_handler.hh"
 
 namespace mw::task {
-
 using Outcome = Result<Progress>;
 
 void Task::carry_out_commands() {
@@ -22,7 +21,8 @@ void Task::carry_out(mailbox::Serial serial, const Command &command) {
     if (!outcome.has_value()) {
         const std::string reason = outcome.error().str();
         desk_.tell(serial, Progress::REFUSED, reason);
-        if (reader_of_refusal(command) == RefusalIsFor::EVERYBODY) {
+        const auto *jog = std::get_if<JogContinuous>(&command);
+        if (jog == nullptr || reader_of_refusal(*jog) == RefusalIsFor::EVERYBODY) {
             post(MessageKind::OPERATOR_ERROR, reason);
         }
     } else if (*outcome != Progress::STARTED) {
@@ -234,6 +234,21 @@ Outcome Task::Handler::operator()(const Mdi &command) {
         return std::unexpected(allowed.error());
     }
     return start_run(RunKind::MDI, command.line);
+}
+
+/// Where nothing runs it is also the way into manual mode: screens ask for nothing else when their page of
+/// manual controls is opened.
+Outcome Task::Handler::operator()(const SetTeleop &command) {
+    const Mode mode = task.run_.isRunning() ? task.mode_.mode() : Mode::MANUAL;
+    change_mode(mode, command.isTeleop ? motion::Mode::TELEOP : motion::Mode::FREE);
+    return Progress::STARTED;
+}
+
+Outcome Task::Handler::operator()(const SetMotionMode &command) {
+    if (command.mode == msgs::MotionMode::COORD) {
+        return fail("motion is coordinated in auto and MDI mode, by itself");
+    }
+    return (*this)(SetTeleop{command.mode == msgs::MotionMode::TELEOP});
 }
 
 }  // namespace mw::task

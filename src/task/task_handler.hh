@@ -1,22 +1,19 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One handler for each of the operator's commands, of task's own files alone.
+// The handlers of the operator's commands, for the files that define them.
 #pragma once
 
-#include <cmath>
+#include <string>
+#include <type_traits>
 
-#include <fmt/format.h>
-
-#include "base/overloaded.hh"
 #include "task/link/device_orders.hh"
 #include "task/link/motion_words.hh"
 #include "task/task_start.hh"
 
 namespace mw::task {
 
-/// Who is to read why `command` was refused: a client that renews its jog does so many times a second.
-inline RefusalIsFor reader_of_refusal(const Command &command) {
-    const auto *jog = std::get_if<JogContinuous>(&command);
-    return jog != nullptr && jog->isRenewal ? RefusalIsFor::ITS_CLIENT : RefusalIsFor::EVERYBODY;
+/// Who is to read why a jog was refused: a client that renews it does so many times a second.
+inline RefusalIsFor reader_of_refusal(const JogContinuous &jog) noexcept {
+    return jog.isRenewal ? RefusalIsFor::ITS_CLIENT : RefusalIsFor::EVERYBODY;
 }
 
 /// What a handler says: started and going on, done, or a refusal.
@@ -58,12 +55,11 @@ struct Task::Handler {
     }
     Outcome operator()(const LoadCompensation &command);
     Outcome operator()(const SpindleOn &command);
-    Outcome operator()(const SpindleOff &command);
-    Outcome operator()(const SpindleIncrease &command) {
-        return change_speed(command.spindle, SPINDLE_STEP_RPM);
-    }
-    Outcome operator()(const SpindleDecrease &command) {
-        return change_speed(command.spindle, -SPINDLE_STEP_RPM);
+    Outcome operator()(const SpindleOff &command) { return (*this)(SpindleOn{command.spindle, 0}); }
+    template <OneOf<SpindleIncrease, SpindleDecrease> C>
+    Outcome operator()(const C &command) {
+        const auto rpm = task.sequencer_.spindles().stepped_rpm(command.spindle, speed_step_rpm(command));
+        return rpm.has_value() ? (*this)(SpindleOn{command.spindle, *rpm}) : std::unexpected(rpm.error());
     }
     /// Each step is done at once: there is none to end.
     Outcome operator()(const SpindleConstant &command) { return done(need_spindle(command.spindle)); }
@@ -85,8 +81,10 @@ struct Task::Handler {
         }
         return order(in_motion_words(command));
     }
-    Outcome operator()(const ReverseProgram &) { return order(motion::SetReverse{true}); }
-    Outcome operator()(const ForwardProgram &) { return order(motion::SetReverse{false}); }
+    template <OneOf<ReverseProgram, ForwardProgram> C>
+    Outcome operator()(const C &) {
+        return order(motion::SetReverse{std::is_same_v<C, ReverseProgram>});
+    }
     template <OneOf<MistOn, MistOff, FloodOn, FloodOff, LubeOn, LubeOff> C>
     Outcome operator()(const C &command) {
         return done(switch_device(command, task.io_));
@@ -122,10 +120,7 @@ struct Task::Handler {
     }
 
   private:
-    static constexpr double SPINDLE_STEP_RPM = 100, SLOWEST_SPINDLE_RPM = 1;
-
     Outcome abort_all();
-    Outcome change_speed(int spindle, double step_rpm);
     Outcome send(const motion::CommandBody &body) {
         task.motion_.send(body);
         return Progress::DONE;

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the operator's commands about joints, jogs, spindles and tools do (C5).
+// Handlers of what the operator asks of joints, axes, spindles and tools (C5).
+#include <cmath>
+
+#include <fmt/format.h>
+
 #include "motion/api/screw_file.hh"
 #include "task/task_handler.hh"
 
@@ -12,21 +16,6 @@ static_assert(SHORTEST_JOG_LEASE_MS / 1e3 == motion::SHORTEST_JOG_LEASE_S &&
 }  // namespace
 
 using Outcome = Result<Progress>;
-
-/// Where nothing runs it is also the way into manual mode: screens ask for nothing else when their page of
-/// manual controls is opened.
-Outcome Task::Handler::operator()(const SetTeleop &command) {
-    const Mode mode = task.run_.isRunning() ? task.mode_.mode() : Mode::MANUAL;
-    change_mode(mode, command.isTeleop ? motion::Mode::TELEOP : motion::Mode::FREE);
-    return Progress::STARTED;
-}
-
-Outcome Task::Handler::operator()(const SetMotionMode &command) {
-    if (command.mode == msgs::MotionMode::COORD) {
-        return fail("motion is coordinated in auto and MDI mode, by itself");
-    }
-    return (*this)(SetTeleop{command.mode == msgs::MotionMode::TELEOP});
-}
 
 Outcome Task::Handler::operator()(const HomeJoint &command) {
     if (task.homing_.isUnderWay()) {
@@ -88,28 +77,6 @@ Outcome Task::Handler::operator()(const SpindleOn &command) {
         return std::unexpected(allowed.error());
     }
     task.sequencer_.command_spindle(command.spindle, command.speed_rpm, false);
-    return Progress::DONE;
-}
-
-Outcome Task::Handler::operator()(const SpindleOff &command) {
-    return (*this)(SpindleOn{command.spindle, 0});
-}
-
-/// Of a spindle that turns: a step of its speed starts none, and stops none.
-Outcome Task::Handler::change_speed(int spindle, double step_rpm) {
-    const auto allowed = need_spindle(spindle);
-    if (!allowed.has_value()) {
-        return std::unexpected(allowed.error());
-    }
-    const ProgramSpindles &spindles = task.sequencer_.spindles();
-    if (spindles.direction(spindle) == 0) {
-        return fail(fmt::format("spindle {} stands", spindle));
-    }
-    if (spindles.isSurfaceSpeed(spindle)) {
-        return fail(fmt::format("spindle {} keeps a constant surface speed", spindle));
-    }
-    const double rpm = std::max(SLOWEST_SPINDLE_RPM, spindles.speed(spindle) + step_rpm);
-    task.sequencer_.command_spindle(spindle, spindles.direction(spindle) * rpm, false);
     return Progress::DONE;
 }
 
