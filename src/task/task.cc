@@ -421,7 +421,8 @@ void Task::update_status() {
     // A tool that is being looked for is not ready yet.
     const bool isReady = io_.action() != io::ToolAction::PREPARING;
     status_.tool = {io_.outputs.tool_number, io_.outputs.tool_from_pocket,
-                    isReady ? sequencer_.selected_tool_index() : -1, tools_.version()};
+                    isReady ? sequencer_.selected_tool_index() : status_.tool.prepared_index,
+                    tools_.version()};
     const tool::CutLife life = parts_.tools.life(io_.outputs.tool_number);
     status_.tool.cut_time_s = life.time_s;
     status_.tool.cut_length = life.length;
