@@ -30,6 +30,13 @@ void Task::Start::prepare_journal() {
                            kept.has_value() ? "" : kept.error().message);
 }
 
+void Task::Start::begin_journal(std::uint32_t first_block) {
+    const std::string dropped = task.recovery_.begin(first_block);
+    if (!dropped.empty()) {
+        task.post(MessageKind::OPERATOR_TEXT, dropped);
+    }
+}
+
 /// Once a cycle.
 void Task::Start::step_journal() {
     while (const auto trouble = task.recovery_.take_trouble()) {

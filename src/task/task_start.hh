@@ -18,6 +18,7 @@ struct Task::Start {
     Result<> check_recovery() const;
     void begin_recovery();
     void prepare_journal();
+    void begin_journal(std::uint32_t first_block);
     void step_journal();
     void note_doubt();
     /// Once a cycle while it is.
