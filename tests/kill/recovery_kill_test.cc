@@ -110,15 +110,14 @@ class KillRecovery : public ::testing::Test {
             machine = -1;
         }
     }
-    /// From the first program or the offer on to the instant of the kill; the bounds of what must be offered.
+    /// Lets it cut behind line `from` and kills it; the bounds of what must be offered.
     struct Bounds {
         int low = 0, high = 0;
     };
-    Bounds cut_and_kill(std::chrono::milliseconds cut_for) {
+    Bounds cut_and_kill(int from, std::chrono::milliseconds cut_for) {
         std::deque<std::pair<Clock::time_point, int>> seen;
-        const int from = line_now();
         const auto deadline = Clock::now() + std::chrono::seconds(60);
-        while (Clock::now() < deadline && line_now() <= std::max(from, 6)) {
+        while (Clock::now() < deadline && line_now() <= from) {
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
         }
         const auto end = Clock::now() + cut_for;
@@ -147,8 +146,10 @@ TEST_F(KillRecovery, TheProgramGoesOnAtTheRightLineAndNothingHasToBeCleaned_D3) 
         ASSERT_NO_FATAL_FAILURE(start());
         ASSERT_NO_FATAL_FAILURE(switch_on());
         static_cast<void>(client->read_status());
+        int from = 6;
         if (client->status().recovery.isOffered) {
             ++resumed;
+            from = client->status().recovery.line;
             const auto run = client->post(msgs::RecoverProgram{});
             ASSERT_TRUE(run.has_value());
             ASSERT_TRUE(client
@@ -166,7 +167,7 @@ TEST_F(KillRecovery, TheProgramGoesOnAtTheRightLineAndNothingHasToBeCleaned_D3) 
             ASSERT_NO_FATAL_FAILURE(ask(msgs::OpenProgram{folder / "p.ngc"}));
             ASSERT_TRUE(client->post(msgs::RunProgram{}).has_value());
         }
-        const Bounds bounds = cut_and_kill(std::chrono::milliseconds(300 + std::rand() % 2500));
+        const Bounds bounds = cut_and_kill(from, std::chrono::milliseconds(300 + std::rand() % 2500));
         client.reset();
         ASSERT_NO_FATAL_FAILURE(start());
         static_cast<void>(client->read_status());
@@ -175,6 +176,8 @@ TEST_F(KillRecovery, TheProgramGoesOnAtTheRightLineAndNothingHasToBeCleaned_D3) 
         EXPECT_LE(offer.line, bounds.high) << "later than the tool";
         EXPECT_GE(offer.line, bounds.low) << "more than a second of cutting before the tool";
         latest = std::max(latest, bounds.high - offer.line);
+        std::cout << "line " << bounds.low << " a second before, " << bounds.high << " at the kill, "
+                  << offer.line << " offered\n";
         if (offer.line > LINES - 200) {
             ASSERT_NO_FATAL_FAILURE(ask(msgs::ForgetRecovery{}));
         }
