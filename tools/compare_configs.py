@@ -16,9 +16,11 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CONFIGS = "/usr/share/doc/linuxcnc/examples/sample-configs/sim"
@@ -154,19 +156,58 @@ def start(options, ini, folder, place):
         lines = [re.sub(r"^\s*DISPLAY\s*=.*", "DISPLAY = ./mw_screen.py", line) for line in merged(mine)]
         mine.unlink()
         mine.write_text("\n".join(lines) + "\n")
+        instance = "configs-%d" % os.getpid()
         environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
-        environment.update(MILLWRIGHT_HALLIB=options.hallib, HOME=place, MILLWRIGHT_INSTANCE="configs-%d" % os.getpid())
-        with subprocess.Popen([options.bin + "/linuxcnc", "-r", str(mine)], cwd=mine.parent, env=environment,
-                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                              errors="replace") as process:
+        environment.update(MILLWRIGHT_HALLIB=options.hallib, HOME=place, MILLWRIGHT_INSTANCE=instance)
+        # Into a file: programs that outlive the launcher would keep a pipe open.
+        said = pathlib.Path(place) / "said.txt"
+        with open(said, "wb") as out, subprocess.Popen(
+                [options.bin + "/linuxcnc", "-r", str(mine)], cwd=mine.parent, env=environment, stdin=subprocess.DEVNULL,
+                stdout=out, stderr=subprocess.STDOUT) as process:
             try:
-                text, _ = process.communicate(timeout=options.timeout)
-                status = process.returncode
+                status = process.wait(timeout=options.timeout)
             except subprocess.TimeoutExpired:
-                process.terminate()
-                text, _ = process.communicate(timeout=30)
                 status = 124
-        return ("", "") if status == 0 else reason_of(text, status)
+                end(process)
+        left = kill_left(instance)
+        text = said.read_text(errors="replace")
+        if status != 0:
+            return reason_of(text, status)
+        return ("left behind", left[0]) if left else ("", "")
+
+
+def end(process):
+    process.terminate()
+    try:
+        process.wait(timeout=20)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+
+
+def kill_left(instance):
+    """Kills what was started for this instance and is still there; command lines."""
+    mark = ("MILLWRIGHT_INSTANCE=" + instance).encode()
+    for _ in range(20):  # programs that are ending get a second
+        left = [folder for folder in pathlib.Path("/proc").iterdir() if folder.name.isdigit() and has(folder, mark)]
+        if not left:
+            return []
+        time.sleep(0.05)
+    lines = []
+    for folder in left:
+        try:
+            lines.append((folder / "cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace"))
+            os.kill(int(folder.name), signal.SIGKILL)
+        except OSError:
+            continue  # it has ended meanwhile
+    return lines
+
+
+def has(folder, mark):
+    try:
+        return folder.name != str(os.getpid()) and mark in (folder / "environ").read_bytes().split(b"\0")
+    except OSError:
+        return False  # it has ended, or belongs to somebody else
 
 
 def main():

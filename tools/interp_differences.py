@@ -233,7 +233,7 @@ STRICTER = {
     'The feed is per revolution': 'G95 feed with spindle speed 0 in canned cycles',
     'The first G5 of a series': 'first G5 without I and J',
     'The tapers of G76 are longer': 'a G76 whose tapers are longer than the thread',
-    'The probe would not move': 'a probe that would not move',
+    'Start point too close to probe point': 'a probe that would not move',
     'G5.1 moves only the axes': 'lines after a G5.1',
     'g5.1 needs': 'lines after a G5.1',
     'G5.1 needs I or J': 'G5.1 with I0 J0',

@@ -9,10 +9,15 @@
     h["out"] = h["in"]
 
 Values are bool (bit), float, and int. HAL refuses with hal.error; names that are unknown give RuntimeError, numbers
-that do not fit OverflowError. `halcmd unload` ends a component by a KeyboardInterrupt.
+that do not fit OverflowError. `halcmd unload` ends a component by a KeyboardInterrupt, and a program that goes on in spite
+of it two seconds later; programs with the windows of Gtk or Qt leave HAL and end at once.
 """
+import atexit as _atexit
+import os as _os
 import signal as _signal
+import sys as _sys
 import threading as _threading
+import weakref as _weakref
 
 from . import _core
 from ._core import *  # noqa: F401,F403
@@ -66,11 +71,42 @@ def _wrap(item):
     return Pin(item) if item.is_pin() else Param(item)
 
 
+_components = _weakref.WeakSet()
+
+
+#: In the loops of these an interrupt is printed and forgotten.
+_TOOLKITS = ("gi.repository.Gtk", "PyQt5.QtWidgets", "PyQt6.QtWidgets", "PySide2.QtWidgets", "PySide6.QtWidgets")
+#: A program that swallows the interrupt ends so long after it all the same.
+_GRACE_S = 2.0
+
+
+@_atexit.register
+def _leave():
+    """A program that comes to its end in order leaves HAL, also when it has not asked for it."""
+    for one in list(_components):
+        one.exit()
+
+
+def _end_now():
+    _leave()
+    _os.kill(_os.getpid(), _signal.SIGTERM)
+
+
+def _on_terminate(number, frame):
+    _signal.signal(_signal.SIGTERM, _signal.SIG_DFL)
+    if any(name in _sys.modules for name in _TOOLKITS):
+        _end_now()
+    last = _threading.Timer(_GRACE_S, _end_now)
+    last.daemon = True
+    last.start()
+    raise KeyboardInterrupt
+
+
 def _end_by_interrupt():
     """Lets SIGTERM, with which HAL ends programs, come as a KeyboardInterrupt, unless the program decides itself."""
     if _threading.current_thread() is _threading.main_thread() \
             and _signal.getsignal(_signal.SIGTERM) == _signal.SIG_DFL:
-        _signal.signal(_signal.SIGTERM, _signal.default_int_handler)
+        _signal.signal(_signal.SIGTERM, _on_terminate)
 
 
 class component(_component):
@@ -78,7 +114,12 @@ class component(_component):
 
     def __init__(self, name, prefix=""):
         super().__init__(name, prefix or "")
+        _components.add(self)
         _end_by_interrupt()
+
+    def exit(self):
+        _components.discard(self)
+        super().exit()
 
     def newpin(self, *args, **kwargs):
         return Pin(_component.newpin(self, *args, **kwargs))

@@ -7,3 +7,5 @@ within reach.
 import pkgutil
 
 __path__ = pkgutil.extend_path(__path__, __name__)
+
+from .interpret import ArcsToSegmentsMixin, Translated  # noqa: E402,F401

@@ -15,6 +15,8 @@ int command_run(const std::vector<std::string> &words);
 int command_ui(const std::vector<std::string> &words);
 int command_recover(const std::vector<std::string> &words);
 int command_nml(const std::vector<std::string> &words);
+/// The words of `linuxcncrsh`.
+int command_rsh(const std::vector<std::string> &words);
 int command_check(const std::vector<std::string> &words);
 
 }  // namespace mw::app

@@ -15,6 +15,7 @@
 #include "app/machine_start.hh"
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
+#include "base/whole_path.hh"
 #include "hal/core/hal.hh"
 #include "machine/loaded_config.hh"
 #include "options/command_line.hh"
@@ -90,7 +91,7 @@ struct LaunchWords {
         case 'v': saysMore = true; break;
         case 'k': settings.options.isKeptGoing = true; break;
         case 'm': settings.options.homing_module = option.value; break;
-        case 'H': settings.options.hal_folders.push_back(absolute_path(option.value)); break;
+        case 'H': settings.options.hal_folders.push_back(whole_path(option.value)); break;
         case 't':
             if (option.value != "tpmod") {
                 return fail("-t " + option.value + ": the planner is part of motmod and cannot be exchanged");

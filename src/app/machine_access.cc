@@ -2,11 +2,11 @@
 #include "app/machine_access.hh"
 
 #include <chrono>
-#include <filesystem>
 
 #include <fmt/format.h>
 
 #include "base/stop_signals.hh"
+#include "base/whole_path.hh"
 
 namespace mw::app {
 namespace {
@@ -29,12 +29,6 @@ bool isMoving(client::Client &client) {
 
 }  // namespace
 
-std::string absolute_path(const std::string &path) {
-    std::error_code error;
-    const auto whole = std::filesystem::canonical(path, error);
-    return error ? path : whole.string();
-}
-
 Result<std::unique_ptr<RunningMachine>> RunningMachine::find(const std::string &instance,
                                                              const std::string &ini) {
     auto client = client::Client::connect(instance, client::Role::ATTENDED);
@@ -56,7 +50,7 @@ Result<std::unique_ptr<RunningMachine>> RunningMachine::find(const std::string &
                                 identity.ini.str()),
                     {}, "wait for its end; 'millwright start' makes a machine that programs share");
     }
-    if (identity.ini.str() != absolute_path(ini)) {
+    if (identity.ini.str() != whole_path(ini)) {
         return fail(fmt::format("the machine that runs as instance '{}' was started from {}, not from {}",
                                 instance, identity.ini.str(), ini));
     }

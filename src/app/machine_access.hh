@@ -71,9 +71,6 @@ class RunningMachine final : public MachineAccess {
     std::int64_t renewed_ns_ = 0;
 };
 
-/// The path that tells one INI file from another.
-std::string absolute_path(const std::string &path);
-
 /// Aborts whatever runs and waits until the machine stands.
 void stop_motion(MachineAccess &machine);
 /// As stop_motion(), then opens the e-stop chain: spindles, coolant and amplifiers are off.

@@ -8,6 +8,7 @@
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
+#include "base/whole_path.hh"
 #include "hal/core/hal.hh"
 
 namespace mw::app {
@@ -46,7 +47,7 @@ Result<> MachineStart::prepare() {
                     {}, "end it, or choose another name in MILLWRIGHT_INSTANCE");
     }
     if (settings_.isDisplayed && !loaded_.machine.display.empty()) {
-        auto display = DisplayProgram::words(loaded_.machine.display, absolute_path(settings_.ini),
+        auto display = DisplayProgram::words(loaded_.machine.display, whole_path(settings_.ini),
                                              settings_.display_words);
         if (!display.has_value()) {
             return std::unexpected(display.error());
@@ -69,7 +70,7 @@ Result<> MachineStart::make() {
     fmt::print("{} is up: instance '{}', {}\n", loaded_.machine.name, instance_, settings_.ini);
     std::fflush(stdout);
     const auto delay_ns = static_cast<std::int64_t>(loaded_.machine.applications_delay_s * 1e9);
-    const std::string ini = absolute_path(settings_.ini);
+    const std::string ini = whole_path(settings_.ini);
     side_programs_.emplace(settings_.isDisplayed ? loaded_.machine.applications : std::vector<std::string>{},
                            ini, access_->now_ns() + delay_ns);
     if (display_words_.empty()) {
@@ -169,7 +170,7 @@ void MachineStart::run_shutdown_file() {
     if (file.empty()) {
         return;
     }
-    const std::string ini = absolute_path(settings_.ini);
+    const std::string ini = whole_path(settings_.ini);
     auto run = DisplayProgram::start({program_folder() + "/halcmd", "-i", ini, "-f", file}, ini);
     if (!run.has_value()) {
         sink_.error("[HAL]SHUTDOWN = " + file + ": " + run.error().str());

@@ -15,6 +15,7 @@
 #include "app/summary.hh"
 #include "app/time_report.hh"
 #include "base/stop_signals.hh"
+#include "base/whole_path.hh"
 #include "hal/core/hal.hh"
 #include "machine/ini_parameters.hh"
 #include "machine/loaded_config.hh"
@@ -81,7 +82,7 @@ class Run {
         if (!isForClients() || !check(person.status().tool.in_spindle)) {
             return 1;
         }
-        words_.program = absolute_path(words_.program);  // it is another process that opens it
+        words_.program = whole_path(words_.program);  // it is another process that opens it
         auto status = isStarted(person);
         status = status.has_value() ? machine.take_over() : status;
         if (status.has_value()) {

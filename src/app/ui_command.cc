@@ -18,6 +18,7 @@
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
+#include "base/whole_path.hh"
 #include "hal/core/hal.hh"
 #include "options/command_line.hh"
 #include "ui/web/api.hh"
@@ -121,7 +122,7 @@ int serve(const UiWords &words, const machine::LoadedConfig &loaded, diag::Sink 
         sink.error(server.error());
         return 1;
     }
-    const std::string ini = absolute_path(words.ini), instance = hal::default_instance();
+    const std::string ini = whole_path(words.ini), instance = hal::default_instance();
     ui::web::ApiSetup setup;
     setup.facts = machine_facts(loaded, sink);
     setup.facts.ini = ini;

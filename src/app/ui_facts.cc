@@ -218,6 +218,12 @@ ui::web::MachineFacts machine_facts(const machine::LoadedConfig &loaded, diag::S
                      sink)
                 .value_or(facts.max_angular_velocity / 4));
     }
+    facts.max_feed_override = machine.panel.max_feed_override;
+    facts.min_spindle_override = machine.panel.min_spindle_override;
+    facts.max_spindle_override = machine.panel.max_spindle_override;
+    facts.default_spindle_speed =
+        first_of(ini, {{"DISPLAY", "DEFAULT_SPINDLE_0_SPEED"}, {"DISPLAY", "DEFAULT_SPINDLE_SPEED"}}, sink)
+            .value_or(0);
     facts.increments = increments_of(loaded, hasRotary, sink);
     for (const config::IniEntry &entry : ini.entries()) {
         if (entry.section == "MDI_COMMAND_LIST" && entry.key.starts_with("MDI_COMMAND")) {

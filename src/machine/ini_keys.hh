@@ -122,7 +122,7 @@ inline constexpr auto INI_KEYS = std::to_array<config::IniKey>({
     config::ini_elsewhere("EMCIO", "CYCLE_TIME", "I/O controllers that are processes of their own"),
     config::ini_text("EMCIO", "EMCIO",
                      "io, or iov2 [-support-start-change]: how the tool changer is spoken to"),
-    config::ini_whole("EMCIO", "PROTOCOL_VERSION", "", 2, {1, 2}, "1: iov2 speaks as io"),
+    config::ini_number("EMCIO", "PROTOCOL_VERSION", "", 2.0, {1, 2}, "below 2: iov2 speaks as io"),
     config::ini_text("TASK", "IO_ERROR", "told for a fault of the changer with a negative reason, %d"),
     config::ini_text("EMCIO", "DB_PROGRAM",
                      "program that keeps the tools instead of TOOL_TABLE, with its arguments"),

@@ -34,8 +34,8 @@ void read_io(IniReader &ini, MachineConfig &machine) {
     machine.isRandomToolchanger = ini.boolean(ini_key("EMCIO", "RANDOM_TOOLCHANGER"));
     machine.task.sequencer.isToolChangeWithSpindleOn = machine.task.interpreter.tool_change.isSpindleLeftOn;
     const std::vector<std::string> program = split_words(ini.text(ini_key("EMCIO", "EMCIO")));
-    const bool isVersion2 = !program.empty() && program.front() == "iov2" &&
-                            ini.integer(ini_key("EMCIO", "PROTOCOL_VERSION")) == 2;
+    const bool isVersion2 =
+        !program.empty() && program.front() == "iov2" && ini.real(ini_key("EMCIO", "PROTOCOL_VERSION")) >= 2;
     machine.task.changer_protocol = {
         isVersion2, isVersion2 && std::ranges::find(program, "-support-start-change") != program.end()};
     machine.task.sequencer.changer_error_text = ini.text(ini_key("TASK", "IO_ERROR"));

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "machine/task_side.hh"
 
-#include <filesystem>
-
+#include "base/whole_path.hh"
 #include "machine/hal_setup.hh"
 
 namespace mw::machine {
@@ -80,9 +79,7 @@ Result<> TaskSide::start(const MachineOptions &options) {
 /// From here on clients find a machine that is ready for them.
 Result<> TaskSide::identify() {
     mailbox::Identity identity;
-    std::error_code error;
-    const auto path = std::filesystem::canonical(parts_.ini.path(), error);
-    if (!identity.ini.assign(error ? parts_.ini.path() : path.string())) {
+    if (!identity.ini.assign(whole_path(parts_.ini.path()))) {
         return fail("the path of the INI file is too long", {parts_.ini.path(), 0, 0});
     }
     identity.isLasting = isLasting_;

@@ -177,7 +177,7 @@ void Task::check_run_mode() {
 
 SourcePlace Task::place_of(const motion::SourceTag &source) const {
     const bool isInFile = run_.isProgram() && source.line > 0;
-    return {isInFile ? file_name(source.file_index) : "", source.line, source.line > 0 ? 1 : 0};
+    return isInFile ? SourcePlace{file_name(source.file_index), source.line, 1} : SourcePlace{};
 }
 
 void Task::take_motion_news() {
@@ -191,7 +191,9 @@ void Task::take_motion_news() {
         }
     };
     for (const motion::Fault &fault : news.faults) {
-        fail_or_post(!motion::isOnlyTold(fault.kind), motion::fault_text(fault), fault.source,
+        motion::Fault told = fault;
+        told.source.line = run_.isProgram() ? fault.source.line : 0;  // a line of MDI has no number
+        fail_or_post(!motion::isOnlyTold(fault.kind), motion::fault_text(told), fault.source,
                      AbortReason::MOTION_FAULT);
     }
     for (const auto &[answer, source] : news.refused) {
@@ -243,6 +245,9 @@ void Task::step_homing() {
     }
     if (const auto turn = homing_.take_turn()) {
         homing_.begin(turn->joint, turn->command, motion_.send(motion::Home{turn->joint}));
+    } else if (ended.has_value() && mode_.mode() == Mode::MANUAL && !mode_.isChanging() &&
+               motion_.status().isAllHomed) {
+        motion_.send(motion::SetMode{motion::Mode::TELEOP});  // axes can be jogged from now on
     }
 }
 

@@ -11,7 +11,8 @@ void Task::fail_program(diag::Diagnostic what, AbortReason reason) {
         post(MessageKind::OPERATOR_ERROR, on_abort_.told(what.str()));
         return;
     }
-    post(MessageKind::OPERATOR_ERROR, what.str());
+    // The operator has just typed a line of MDI: that needs no place, and clients compare its texts.
+    post(MessageKind::OPERATOR_ERROR, run_.kind() == RunKind::MDI ? what.what.message : what.str());
     if (reason == AbortReason::MOTION_FAULT) {
         recovery_.cut_short();
     }

@@ -44,25 +44,29 @@ struct Task::Handler {
     Outcome operator()(const ResetInterpreter &);
     Outcome operator()(const SynchInterpreter &);
     Outcome operator()(const ConfirmApproach &command);
-    Outcome operator()(const RecoverProgram &);
-    Outcome operator()(const ForgetRecovery &) {
-        task.recovery_.forget();
-        return Progress::DONE;
+    template <OneOf<RecoverProgram, ForgetRecovery> C>
+    Outcome operator()(const C &) {
+        constexpr bool isForgetting = std::is_same_v<C, ForgetRecovery>;
+        const auto opened = isForgetting ? Start{task}.forget_recovery() : Start{task}.open_recovery();
+        return !opened.has_value() || isForgetting ? done(opened) : start_run(RunKind::RECOVERY);
     }
     Outcome operator()(const ReleaseAxes &) { return Start{task}.release(id); }
     Outcome operator()(const SetTeleop &command);
+    Outcome operator()(const SetMotionMode &command);
     Outcome operator()(const HomeJoint &command);
     Outcome operator()(const UnhomeJoint &command);
     Outcome operator()(const JogContinuous &command);
     Outcome operator()(const JogIncrement &command);
     Outcome operator()(const JogAbsolute &command);
     Outcome operator()(const JogStop &command);
-    Outcome operator()(const SetTeleopVector &command) {
-        return order(motion::SetTeleopVector{command.velocity});
-    }
+    Outcome operator()(const SetTeleopVector &c) { return order(motion::SetTeleopVector{c.velocity}); }
     Outcome operator()(const LoadCompensation &command);
     Outcome operator()(const SpindleOn &command);
     Outcome operator()(const SpindleOff &command);
+    Outcome operator()(const SpindleIncrease &c) { return change_speed(c.spindle, SPINDLE_STEP_RPM); }
+    Outcome operator()(const SpindleDecrease &c) { return change_speed(c.spindle, -SPINDLE_STEP_RPM); }
+    /// Each step is done at once: there is none to end.
+    Outcome operator()(const SpindleConstant &command) { return done(need_spindle(command.spindle)); }
     Outcome operator()(const LoadToolTable &command);
     Outcome operator()(const ConfirmToolChange &command);
 
@@ -118,7 +122,10 @@ struct Task::Handler {
     }
 
   private:
+    static constexpr double SPINDLE_STEP_RPM = 100, SLOWEST_SPINDLE_RPM = 1;
+
     Outcome abort_all();
+    Outcome change_speed(int spindle, double step_rpm);
     Outcome send(const motion::CommandBody &body) {
         task.motion_.send(body);
         return Progress::DONE;
@@ -221,10 +228,15 @@ Outcome Task::Handler::operator()(const SetState &command) {
 }
 
 Outcome Task::Handler::operator()(const SetMode &command) {
-    if (command.mode == task.mode_.mode()) {
+    const motion::Status &motion = task.motion_.status();
+    // By hand axes move once all joints are homed. Where joints move now nothing is changed under them.
+    const motion::Mode by_hand = motion.isAllHomed ? motion::Mode::TELEOP : motion::Mode::FREE;
+    const bool isWantedAgain = command.mode == Mode::MANUAL && motion.mode != by_hand &&
+                               motion.isInPosition && !task.homing_.isUnderWay();
+    if (command.mode == task.mode_.mode() && !isWantedAgain) {
         return Progress::DONE;
     }
-    change_mode(command.mode, command.mode == Mode::MANUAL ? motion::Mode::FREE : motion::Mode::COORD);
+    change_mode(command.mode, command.mode == Mode::MANUAL ? by_hand : motion::Mode::COORD);
     return Progress::STARTED;
 }
 
@@ -263,27 +275,6 @@ Outcome Task::Handler::operator()(const RunProgram &command) {
     const auto started = start_run(RunKind::PROGRAM);
     if (started.has_value()) {
         task.run_.set_from_line(command.from_line);
-    }
-    return started;
-}
-
-Outcome Task::Handler::operator()(const RecoverProgram &) {
-    auto allowed = Start{task}.check_recovery();
-    allowed = allowed.has_value() ? task.check_can_run() : allowed;
-    if (!allowed.has_value()) {
-        return std::unexpected(allowed.error());
-    }
-    const auto opened = (*this)(OpenProgram{(*task.recovery_.offer())->start.program});
-    if (!opened.has_value()) {
-        return opened;
-    }
-    const auto read = task.reader_.interpreter().open(task.status_.task.program.str());
-    if (!read.has_value()) {
-        return std::unexpected(read.error());
-    }
-    const auto started = start_run(RunKind::PROGRAM);
-    if (started.has_value()) {
-        task.run_.set_recovery();
     }
     return started;
 }
@@ -386,9 +377,19 @@ Outcome Task::Handler::operator()(const Mdi &command) {
     return start_run(RunKind::MDI, command.line);
 }
 
+/// Where nothing runs it is also the way into manual mode: screens ask for nothing else when their page of
+/// manual controls is opened.
 Outcome Task::Handler::operator()(const SetTeleop &command) {
-    change_mode(task.mode_.mode(), command.isTeleop ? motion::Mode::TELEOP : motion::Mode::FREE);
+    const Mode mode = task.run_.isRunning() ? task.mode_.mode() : Mode::MANUAL;
+    change_mode(mode, command.isTeleop ? motion::Mode::TELEOP : motion::Mode::FREE);
     return Progress::STARTED;
+}
+
+Outcome Task::Handler::operator()(const SetMotionMode &command) {
+    if (command.mode == msgs::MotionMode::COORD) {
+        return fail("motion is coordinated in auto and MDI mode, by itself");
+    }
+    return (*this)(SetTeleop{command.mode == msgs::MotionMode::TELEOP});
 }
 
 Outcome Task::Handler::operator()(const HomeJoint &command) {
@@ -455,6 +456,24 @@ Outcome Task::Handler::operator()(const SpindleOn &command) {
 
 Outcome Task::Handler::operator()(const SpindleOff &command) {
     return (*this)(SpindleOn{command.spindle, 0});
+}
+
+/// Of a spindle that turns: a step of its speed starts none, and stops none.
+Outcome Task::Handler::change_speed(int spindle, double step_rpm) {
+    const auto allowed = need_spindle(spindle);
+    if (!allowed.has_value()) {
+        return std::unexpected(allowed.error());
+    }
+    const ProgramSpindles &spindles = task.sequencer_.spindles();
+    if (spindles.direction(spindle) == 0) {
+        return fail(fmt::format("spindle {} stands", spindle));
+    }
+    if (spindles.isSurfaceSpeed(spindle)) {
+        return fail(fmt::format("spindle {} keeps a constant surface speed", spindle));
+    }
+    const double rpm = std::max(SLOWEST_SPINDLE_RPM, spindles.speed(spindle) + step_rpm);
+    task.sequencer_.command_spindle(spindle, spindles.direction(spindle) * rpm, false);
+    return Progress::DONE;
 }
 
 Outcome Task::Handler::operator()(const LoadToolTable &) {

@@ -76,6 +76,25 @@ Result<> Task::Start::check_recovery() const {
     return {};
 }
 
+Result<> Task::Start::open_recovery() {
+    auto opened = check_recovery();
+    opened = opened.has_value() ? task.check_can_run() : opened;
+    if (!opened.has_value()) {
+        return opened;
+    }
+    const std::string &program = (*task.recovery_.offer())->start.program;
+    opened = task.reader_.interpreter().open(program);
+    if (opened.has_value()) {
+        task.status_.task.program.assign(program);
+    }
+    return opened;
+}
+
+Result<> Task::Start::forget_recovery() {
+    task.recovery_.forget();
+    return {};
+}
+
 /// The program is open, the axes are at rest.
 void Task::Start::begin_recovery() {
     task.run_.change(RunEvent::SEARCH);

@@ -1,7 +1,22 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "traj/path_store.hh"
 
+#include <algorithm>
+#include <cmath>
+
+#include "traj/tuning.hh"
+
 namespace mw::traj {
+
+Piece::BrakeLeg Piece::brake_leg(double x, double b) const noexcept {
+    BrakeLeg leg{brake_at(x, b), x < braking.from ? braking.from : length};
+    const double slower = BrakingTuning::LOOK_AGAIN * b;
+    if (leg.a > 0 && brake_at(x, slower) > BrakingTuning::LOOK_GAIN * leg.a) {
+        const double way = std::max(0.5 * (b - slower) / leg.a, BrakingTuning::SHORT_S * std::sqrt(b));
+        leg.end = std::min(leg.end, x + way);
+    }
+    return leg;
+}
 
 Pose position_at(const PathStore &store, const Piece &piece, double x) noexcept {
     const Primitive &a = store.primitive(piece.primitive);

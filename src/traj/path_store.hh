@@ -93,6 +93,12 @@ struct Piece {
         const double alone = x < braking.from ? 0.0 : braking.bound.at(b);
         return alone > planned ? alone : planned;
     }
+    /// The same until x = `end`: where the piece allows more, be it by the place or by a speed that has
+    /// fallen.
+    struct BrakeLeg {
+        double a = 0, end = 0;
+    };
+    BrakeLeg brake_leg(double x, double b) const noexcept;
     // Of a pass that is locked to a spindle's angle, filled before the executor is told of the pass.
     double per_turn = 0;           ///< way along x in a turn of the spindle
     double v_most = 0;             ///< highest speed

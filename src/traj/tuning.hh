@@ -84,6 +84,9 @@ struct BrakingTuning {
     /// A piece that takes no longer at its highest speed delays no stop [s]. Dense programs are planned twice
     /// as fast for it.
     static constexpr double SHORT_S = 0.002;
+    /// As the speed falls turning leaves more: it is looked at anew where the squared speed has come down to
+    /// the first part, if that gives this many times as much, and not sooner than after SHORT_S.
+    static constexpr double LOOK_AGAIN = 0.7, LOOK_GAIN = 1.05;
     /// What derivatives may be more than their differences tell.
     static constexpr double MARGIN = 1.002;
     /// A bound of its own has to be better by so much.
@@ -257,6 +260,10 @@ struct TapTuning {
     /// Part of the acceleration with which the helix is met and the way home is made, and at most what the
     /// spindle's own change of speed may ask for.
     static constexpr double MEETING_SHARE = 0.97;
+    /// With a mean: a tap that would be farther off the helix, as its spindle turns back, is refused [turns].
+    /// The change is seen by this part of the mean late, and by what reading the speed takes, of which half
+    /// the square counts [s^2]. Measured, for means from 0.02 to 0.2 s: docs/motion/spindles.md.
+    static constexpr double MOST_OFF = 0.1, LATE_MEANS = 0.6, LATE_S2 = 2e-4;
     /// The tool leaves the thread by this much before the spindle turns forward again [turns].
     static constexpr double CLEARANCE = 0.5;
     /// Room that the tool has beyond its bottom on top of what the spindle is known to take, and that must be
@@ -279,6 +286,9 @@ struct ExecutorTuning {
     /// It also counts as met where it was this near for so many cycles: a rough encoder does no better.
     static constexpr double NEAR = 2e-3;
     static constexpr int NEAR_CYCLES = 8;
+    /// Or was on either side of it in turn: one with few counts tells the speed so roughly that it is never
+    /// near.
+    static constexpr int CROSSINGS = 3;
     /// Once it is met: share of a deviation that is made good in a second [1/s]. A rough encoder must not
     /// shake the machine.
     static constexpr double GAIN = 60;

@@ -374,7 +374,7 @@ int main(int argc, char **argv) {
     line.number("--count", "N", "so many seeds (default 100)", task.count, 0, UINT32_MAX - 1);
     line.text("--log", "FILE", "where the verdicts go", task.log);
     line.number("--processes", "P", "at a time (default 2)", task.processes, 1, 1024);
-    line.number("--plan", "N", "what a seed stands for: 1, sessions of a minute, or 2 (default)", task.plan,
+    line.number("--plan", "N", "what a seed stands for: 1, sessions of a minute, or 3 (default)", task.plan,
                 1, mw::campaign::PLAN_VERSION);
     line.text("--commit", "ID", "what was built, for the log", task.commit);
     line.text("--kept", "PARTS", "runs only these parts of the first seed", task.kept);
@@ -393,6 +393,11 @@ int main(int argc, char **argv) {
     if (!parsed || !isComplete) {
         std::fprintf(stderr, "%s\n%s", parsed ? "--log is missing" : parsed.error().str().c_str(),
                      line.help().c_str());
+        return 2;
+    }
+    constexpr unsigned REPLACED = 2;
+    if (task.plan == REPLACED) {
+        std::fputs("motion_campaign: nothing makes the sessions of plan 2 any more: use 1 or 3\n", stderr);
         return 2;
     }
     return mw::campaign::run(task);

@@ -104,9 +104,10 @@ double Judge::time_to_correct() const {
     for (const JointDesign &d : design_.joints) {
         const double way = d.isCorrected() ? d.play + 2 * d.screw_error : 0;
         const bool hasJerk = design_.isJerkLimited && d.jerk > 0 && way > 0;
+        const double jerk = !d.isAngular && design_.jerk > 0 ? std::min(d.jerk, design_.jerk) : d.jerk;
         // With half of the limits.
         most = std::max(most, 2 * std::sqrt(2 * way / d.acceleration) + 2 * way / d.velocity +
-                                  (hasJerk ? 2.5 * d.acceleration / d.jerk : 0));
+                                  (hasJerk ? 2.5 * d.acceleration / jerk : 0));
     }
     return most;
 }
@@ -136,7 +137,9 @@ LeastStop Judge::time_to_stop() const {
         if (!stop_.path.areAxesKnown) {
             continue;
         }
-        groups.push_back({{places}, built_up(geom::isAngular(a.axis), a.acceleration, a.jerk)});
+        // What external offsets may take is not there for stops.
+        const double own = (1 - a.offset_ratio) * a.acceleration;
+        groups.push_back({{places}, built_up(geom::isAngular(a.axis), own, a.jerk)});
         if (!geom::isAngular(a.axis)) {
             linear.places.push_back(places);
         }
@@ -426,10 +429,11 @@ void Judge::watch_stop(bool isMoving, bool isOn) {
         const double sure_s = design_.rise_s() + (design_.hasOffsets() ? time_to_brake() : 0);
         const int off_within = 10 + static_cast<int>(sure_s / period_);
         const bool mustBeOff = stop_.how == Stop::ALONG_THEN_OFF;
-        if (mustBeOff && isOn && standing_ > off_within) {
+        const int since = std::min(standing_, cycles);  // it may have stood long before
+        if (mustBeOff && isOn && since > off_within) {
             fail("stop", "it stands, and its amplifiers stay on");
         }
-        stop_.isAwaited = mustBeOff && isOn && standing_ <= off_within;
+        stop_.isAwaited = mustBeOff && isOn && since <= off_within;
     }
 }
 

@@ -197,6 +197,10 @@ const char *name_of(Upset upset) {
     return NAMES[static_cast<int>(upset)];
 }
 
+bool hasTrouble(const Act &act, Upset what) {
+    return std::ranges::any_of(act.troubles, [what](const Trouble &t) { return t.what == what; });
+}
+
 Plan make_plan(std::uint64_t seed, unsigned version) {
     Plan plan = version == 1 ? make_long_plan(seed) : make_short_plan(seed);
     plan.seed = seed;

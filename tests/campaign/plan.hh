@@ -139,8 +139,10 @@ struct Plan {
     std::vector<Act> acts;
 };
 
-/// Of what a seed stands for; 1: as it was first, sessions of a minute.
-inline constexpr unsigned PLAN_VERSION = 2;
+bool hasTrouble(const Act &act, Upset what);
+
+/// Of what a seed stands for; 1: as it was first, sessions of a minute; there is no 2 any more.
+inline constexpr unsigned PLAN_VERSION = 3;
 Plan make_plan(std::uint64_t seed, unsigned version = PLAN_VERSION);
 
 /// What is kept of a plan, to find a short one that fails too: "0,2:0-5,3x,4.1" are act 0, act 2 with those

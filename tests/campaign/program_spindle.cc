@@ -12,13 +12,13 @@ namespace mw::campaign {
 /// A part of what Z can.
 double Writer::speed_for_z(double share) const {
     const AxisDesign &z = axis(geom::AXIS_Z);
-    return share * std::min(z.velocity, design_.velocity);
+    return share * std::min((1 - z.offset_ratio) * z.velocity, design_.velocity);
 }
 
 /// Along Z, as a thread gains speed: with jerk limits part of the acceleration is kept for the spindle.
 double Writer::way_to_speed(double v) const {
     const AxisDesign &z = axis(geom::AXIS_Z);
-    const double a = 0.45 * std::min(z.acceleration, design_.acceleration);
+    const double a = 0.45 * std::min((1 - z.offset_ratio) * z.acceleration, design_.acceleration);
     const double jerk =
         z.jerk > 0 && design_.jerk > 0 ? std::min(z.jerk, design_.jerk) : std::max(z.jerk, design_.jerk);
     const double rise_s = design_.isJerkLimited && jerk > 0 ? 2 * a / jerk : 0;
@@ -87,6 +87,14 @@ void Writer::write_surface(SyncWish &sync) {
     say("G97 S300");
 }
 
+/// How far the mean of a tool is off the helix while the spindle turns back [turns]; measured, and written in
+/// docs/motion/spindles.md.
+double Writer::off_helix(double lead, double ramp, double mean_s) const {
+    const double a = 0.49 * std::min(axis(geom::AXIS_Z).acceleration, design_.acceleration);
+    const double use = std::min(0.99, lead * ramp / a);
+    return ramp * (2e-4 + 0.18 * mean_s * mean_s * use / (1 - use));
+}
+
 Act Writer::write_in_step() {
     Act act;
     act.work = Work::SPINDLE;
@@ -96,15 +104,13 @@ Act Writer::write_in_step() {
     set_mode();
     move_to_start();
     int kind = random_.whole(0, 4);
-    // With a long mean a tool loses a spindle that turns back (docs/motion/spindles.md, Bounds).
-    constexpr double LONG_S = 0.015;
-    const bool canTap = design_.rise_s() <= LONG_S && z.offset_ratio == 0;
-    kind = kind == 2 && !canTap ? 0 : kind;
+    kind = kind == 2 && z.offset_ratio > 0 ? 0 : kind;
     if (kind == 4) {
         write_surface(sync);
     } else {
         const double turns_s = random_.real(100, 1500) / 60;
-        const bool isTap = kind == 2;
+        bool isTap = kind == 2;
+        bool isSudden = false;
         sync.rpm = std::round(60 * turns_s) * (isTap || random_.chance(0.7) ? 1 : -1);
         const double most = speed_for_z(0.45) / std::abs(sync.rpm / 60);
         sync.lead = to_grid(std::min(random_.real(0.3, 3), most));
@@ -112,6 +118,18 @@ Act Writer::write_in_step() {
             // As the spindle turns back the tool changes its speed as fast.
             const double a = 0.4 * std::min(z.acceleration, design_.acceleration);
             sync.lead = to_grid(std::min(sync.lead, a / design_.spindle.ramp));
+            if (design_.isJerkLimited) {
+                // A tap that would be off its thread is refused; between the two either is right.
+                constexpr double LONGEST_MEAN = 1.25, WELL = 0.08, BADLY = 0.25;
+                const sim::SpindleTraits &s = design_.spindle;
+                // What motion may make of a drive that is late and lags.
+                constexpr double READING_S = 0.02;
+                const double gentle = turns_s / (turns_s / s.ramp + 2 * (s.lag_s + s.reaction_s) + READING_S);
+                isSudden = off_helix(sync.lead, gentle, design_.rise_s()) > BADLY;
+                const bool isWell = off_helix(sync.lead, s.ramp, LONGEST_MEAN * design_.rise_s()) < WELL;
+                isTap = isSudden || isWell;
+                kind = isTap ? kind : 0;
+            }
         }
         const double v = sync.lead * std::abs(sync.rpm) / 60;
         const double overrun = isTap ? sync.lead * turns_s * (turns_s / design_.spindle.ramp + 0.04) : 0;
@@ -123,7 +141,7 @@ Act Writer::write_in_step() {
         const bool fits = std::max(std::abs(sync.from), std::abs(sync.to)) + 3 * sync.lead <
                           0.95 * std::min(z.high, -z.low);
         sync.to = fits ? sync.to : to_grid(sync.from + side * 0.1);
-        act.isToFail = !fits;  // too short for the speed, or for the spindle
+        act.isToFail = !fits || isSudden;  // too short for the speed, or for the spindle
         start_spindle(sync.rpm);
         say(fmt::format("G0 Z{:.4f}", sync.from));
         switch (kind) {

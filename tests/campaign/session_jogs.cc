@@ -117,10 +117,12 @@ void Session::turn(const Act &act) {
     }
     const double from = place_of(act, t.isJoint);
     rig_->link_wheel(&t, act.target);
-    // Also a stop has the wheel's part of the acceleration.
     constexpr double SLACK_S = 0.1;
-    judge_.stops_later_s =
+    // With the wheel's part of the acceleration.
+    const double gently_s =
         judge_.time_to_brake() * (1 / t.accel_fraction - 1) + (t.accel_fraction < 1 ? SLACK_S : 0);
+    const bool isShared = !t.isJoint && !plan_.design.isTrivial;
+    judge_.stops_later_s = isShared ? gently_s : 0;
     for (int i = 0; i < 5 && !isOver(); ++i) {
         cycle();
     }
@@ -137,7 +139,7 @@ void Session::turn(const Act &act) {
     }
     if (t.isVelocityMode && !isStopped_ && !isDisturbed_ && !isOver()) {
         // It stops when the wheel does.
-        judge_.stops_later_s += SLACK_S;
+        judge_.stops_later_s = gently_s + SLACK_S;
         judge_.stop(Stop::ALONG_THE_PATH, 5);
     }
     for (int i = 0; i < LONGEST_MS && !isOver() && !(judge_.isAtRest() && rig_->isInPosition()); ++i) {

@@ -46,9 +46,7 @@ void Session::check_probing(const Act &act, End end) {
     Extension &count = verdict_.extensions["probing"];
     ++count.ran;
     verdict_.ended += end == End::DONE ? 1 : 0;
-    const bool isOffset =
-        std::ranges::any_of(act.troubles, [](const Trouble &t) { return t.what == Upset::OFFSET; });
-    if (isStopped_ || isOffset) {  // an offset moves the probe, and not what is known of where it is
+    if (isStopped_ || hasTrouble(act, Upset::OFFSET)) {  // it moves the probe, and not what is known of it
         return;
     }
     const std::vector<Found> found = read_found(told_);

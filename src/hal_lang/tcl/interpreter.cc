@@ -86,6 +86,9 @@ Error Interpreter::error_here(const std::string &path) const {
     std::string message = Tcl_GetStringResult(interpreter_);
     // What a HAL file that the script sourced said of its own place comes first.
     Error error{message, SourcePlace{path, line_of(trace, path), 0}, {}};
+    if (message.find("\"::tp::") != std::string::npos) {
+        error.hint = "the script is written for two passes: [HAL]TWOPASS = on";
+    }
     const std::string procedure = procedure_of(trace);
     if (!procedure.empty()) {
         error.hint = "in " + procedure;

@@ -169,7 +169,7 @@ enum class FaultKind : std::uint16_t {
     ENABLE_LOST,
     TASK_LOST,
     HOMING_FAILED,
-    PROBE_NOT_TRIPPED,
+    PROBE_NOT_TRIPPED,  ///< at its end; detail: 1 where contact was to be lost
     PROBE_TRIPPED_IN_MOVE,
     KINEMATICS_FAILED,
     PATH_LIMIT,
@@ -190,6 +190,7 @@ enum class FaultKind : std::uint16_t {
     FEEDBACK_LOST,                 ///< index: the joint whose feedback is not a number
     TAP_TOO_FAST,                  ///< index: spindle; value: needed speed over the possible one
     TAP_TOO_ABRUPT,        ///< index: spindle; value: acceleration of its turning back over the possible one
+    TAP_TOO_SUDDEN,        ///< index: spindle; value: by how much the tool would leave the helix [turns]
     TAP_TOO_SHALLOW,       ///< index: spindle; value: the way that is needed over the depth
     TAP_LOST,              ///< index: spindle
     INDEXER_NOT_UNLOCKED,  ///< index: the joint, which was waited for too long

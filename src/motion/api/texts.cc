@@ -208,6 +208,11 @@ std::string spindle_fault(const Fault &fault) {
             "spindle {} turns back so fast that the tap needs {:.2f} times the acceleration that "
             "the machine allows: lengthen the ramp of its drive, or use a finer pitch",
             i, fault.value);
+    case FaultKind::TAP_TOO_SUDDEN:
+        return fmt::format(
+            "spindle {} turns back so suddenly that a tool within its jerk limits would leave the thread by "
+            "{:.2f} turns: lengthen the ramp of its drive, raise the jerk limits, or use a finer pitch",
+            i, fault.value);
     case FaultKind::TAP_TOO_SHALLOW:
         return fmt::format(
             "the hole is too shallow for the present speed of spindle {}: gaining speed and turning "
@@ -261,7 +266,9 @@ std::string what_failed(const Fault &fault) {
     case FaultKind::HOMING_CLAMPED:
         return fmt::format(
             "the homing module asked for more than joint {} can do: it moves within its limits", i);
-    case FaultKind::PROBE_NOT_TRIPPED: return "the probing move reached its end without a trip of the probe";
+    case FaultKind::PROBE_NOT_TRIPPED:
+        return fault.detail == 0 ? "G38.2 move finished without making contact."
+                                 : "G38.4 move finished without breaking contact.";
     case FaultKind::PROBE_TRIPPED_IN_MOVE:
         return fault.detail == 0 ? "probe tripped during a move that does not probe"
                                  : "probe tripped in a jog or while homing, which has stopped: see "
@@ -291,6 +298,7 @@ std::string what_failed(const Fault &fault) {
     case FaultKind::THREAD_TOO_FAST:
     case FaultKind::TAP_TOO_FAST:
     case FaultKind::TAP_TOO_ABRUPT:
+    case FaultKind::TAP_TOO_SUDDEN:
     case FaultKind::TAP_TOO_SHALLOW:
     case FaultKind::TAP_LOST:
     case FaultKind::SPINDLE_LOST:

@@ -313,6 +313,7 @@ JogSituation Controller::situation_of(const Inputs &in, const JogTarget &target)
         s.isOnNegLimit = joint.isOnNegHardLimit;
     }
     s.isLocked = limits_.locks_of(target) != 0;
+    s.isShared = !target.isJoint && !map_.areJointsAxes();
     s.isBesideIndexer = indexers_.mask != 0 && isBesideIndexer(jogs_, limits_, indexers_, target);
     s.most = limits_.jog(target);
     s.range = jog_range(limits_, map_, target, commanded(joints_).data());

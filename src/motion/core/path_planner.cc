@@ -144,6 +144,7 @@ void PathPlanner::complete_moves() noexcept {
         if (p.isProbe && p.isTripRequired && !isTripped) {
             Fault fault;
             fault.kind = FaultKind::PROBE_NOT_TRIPPED;
+            fault.detail = p.isAwayProbe ? 1 : 0;
             fault.source = p.source;
             channels_.planner_faults.push(fault);
         }
@@ -338,6 +339,9 @@ bool PathPlanner::isTapPossible(traj::Sequence gate) noexcept {
     case traj::TapObstacle::TOO_FAST: tell_impossible(gate, FaultKind::TAP_TOO_FAST, verdict.value); break;
     case traj::TapObstacle::TOO_ABRUPT:
         tell_impossible(gate, FaultKind::TAP_TOO_ABRUPT, verdict.value);
+        break;
+    case traj::TapObstacle::TOO_SUDDEN:
+        tell_impossible(gate, FaultKind::TAP_TOO_SUDDEN, verdict.value);
         break;
     case traj::TapObstacle::TOO_SHALLOW:
         tell_impossible(gate, FaultKind::TAP_TOO_SHALLOW, verdict.value);

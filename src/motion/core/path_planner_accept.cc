@@ -371,6 +371,7 @@ Reason PathPlanner::accept_probe(const PathCommand &c, const Probe &probe) noexc
     planner_.release_end();
     pending_.newest().isProbe = true;
     pending_.newest().isTripRequired = probe.mustTrip;
+    pending_.newest().isAwayProbe = probe.isAway;
     return Reason::NONE;
 }
 

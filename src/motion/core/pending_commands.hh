@@ -15,7 +15,7 @@ struct PendingCommand {
     traj::Sequence after_move = 0;  ///< complete when this move is
     SourceTag source;
     Epoch epoch = 0;
-    bool isFlush = false, isProbe = false, isTripRequired = false;
+    bool isFlush = false, isProbe = false, isTripRequired = false, isAwayProbe = false;
     int indexer = -1;        ///< joint that is unlocked for it
     bool isIndexed = false;  ///< its move is complete, and it is to lock
 };

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "motion/api/texts.hh"
 #include "spindle_bench.hh"
 
 namespace mw::motion {
@@ -302,6 +303,25 @@ TEST_P(Tapping, WhatCannotBeIsRefusedBeforeItMoves_C15) {
     EXPECT_TRUE(bench.rig.run_until([&, id = bench.tap(10, BOTTOM, PITCH)] {
         return bench.rig.refusal(id) == Reason::TAP_ROOM;
     })) << "no turn of room below";
+}
+
+TEST_P(Tapping, ASpindleThatTurnsBackTooSuddenlyForTheJerkLimitsIsRefusedBeforeItMoves_C15) {
+    SpindleBench bench(tap_spindle(0.055), GetParam());  // 303 turns/s2
+    bench.spin(1000);
+    bench.rapid(10, TOP);
+    ASSERT_TRUE(bench.finish());
+    if (!GetParam()) {
+        EXPECT_TRUE(tap(bench, 10).isMade) << "without a mean it can be followed";
+        EXPECT_EQ(bench.limit_report(), "");
+        return;
+    }
+    const CommandId id = bench.tap(10, BOTTOM, PITCH);
+    bench.rig.step(3000);
+    EXPECT_EQ(kinds(bench.rig), std::set<FaultKind>{FaultKind::TAP_TOO_SUDDEN});
+    EXPECT_EQ(bench.rig.faults[0].source.line, static_cast<std::int32_t>(id));
+    EXPECT_GT(bench.rig.faults[0].value, 0.1);
+    EXPECT_EQ(bench.samples.back().z, TOP);
+    EXPECT_NE(fault_text(bench.rig.faults[0]).find("so suddenly"), std::string::npos);
 }
 
 TEST_P(Tapping, ASpindleThatDoesNotTurnBackOrJumpsEndsInAStop_C15) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "kins/corexy.hh"
+#include "kins/linear_delta.hh"
 #include "kins/rotary_table.hh"
 #include "testing/campaign_seeds.hh"
 #include "testing/motion_rig.hh"
@@ -89,6 +90,47 @@ TEST(Teleop, TiltedRotaryTableKeepsJointLimits_C13) {
     kins::RotaryTable table;
     table.set_tilt_axis(5, -40);
     jog_all(table, 5, "XYZAC");
+}
+
+TEST(Teleop, ADeltaComesToRestAtTheSoftLimitsOfItsAxes_C13) {
+    const auto [first, count] = testing::campaign_seeds(60);
+    int reached = 0;
+    for (int seed = first; seed < first + count && !::testing::Test::HasFailure(); ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        std::mt19937 random(static_cast<unsigned>(seed));
+        const auto real = [&](double low, double high) {
+            return std::uniform_real_distribution<double>(low, high)(random);
+        };
+        const kins::LinearDelta model;
+        MotionRig rig(model, 3, 100, 1000);
+        for (int j = 0; j < 3; ++j) {
+            rig.set(Parameter::JOINT_MAX_VELOCITY, j, std::pow(10.0, real(1.5, 2.5)));
+            rig.set(Parameter::JOINT_MAX_ACCELERATION, j, std::pow(10.0, real(2, 3.5)));
+            rig.set(Parameter::JOINT_MIN_LIMIT, j, -900);
+            rig.set(Parameter::JOINT_MAX_LIMIT, j, 900);
+        }
+        const double limit = real(20, 90);
+        for (int i = 0; i < 2; ++i) {
+            rig.set(Parameter::AXIS_MAX_ACCELERATION, i, std::pow(10.0, real(2.5, 3.7)));
+            rig.set(Parameter::AXIS_MIN_LIMIT, i, -limit);
+            rig.set(Parameter::AXIS_MAX_LIMIT, i, limit);
+        }
+        rig.ready(Mode::TELEOP);
+        const int axis = real(0, 1) < 0.5 ? 0 : 1;
+        for (const double sense : {1.0, -1.0}) {
+            rig.send(JogContinuous{{false, axis}, sense * 300});
+            double farthest = 0;
+            for (int n = 0; n < 6000; ++n) {
+                rig.step();
+                farthest = std::max(farthest, sense * rig.status().carte_pos_cmd[axis]);
+            }
+            ASSERT_LE(farthest, limit + 1e-6);
+            reached += farthest > limit - 1e-6 ? 1 : 0;
+        }
+        EXPECT_EQ(rig.joint_report(), "");
+        rig.forgive_joints();
+    }
+    EXPECT_GT(reached, count);
 }
 
 TEST(Teleop, ACoreXyJogGoesAsFastAsItsJointsAllow) {

@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "python/linuxcnc/logged_path.hh"
 
-#include <cctype>
 #include <cmath>
-#include <numbers>
 
 namespace mw::python {
 namespace {
 
 /// How far the cosine of a bend may be from 1 on a straight line.
 constexpr double STRAIGHT = 1e-4;
-
-void turn(double degrees, double &first, double &second) {
-    const double angle = degrees * std::numbers::pi / 180;
-    const double turned = first * std::cos(angle) - second * std::sin(angle);
-    second = first * std::sin(angle) + second * std::cos(angle);
-    first = turned;
-}
 
 std::array<double, 3> step_of(const LoggedPoint &from, const LoggedPoint &to) {
     return {to.x - from.x, to.y - from.y, to.z - from.z};
@@ -28,37 +19,11 @@ double dot(const std::array<double, 3> &a, const std::array<double, 3> &b) {
 
 }  // namespace
 
-std::array<double, 3> vertex_of(const std::string &geometry, const geom::Pose &pose) {
-    std::array<double, 3> p{};
-    double sign = 1;
-    for (const char written : geometry) {
-        const char letter = static_cast<char>(std::toupper(static_cast<unsigned char>(written)));
-        if (letter == '-') {
-            sign = -1;
-            continue;
-        }
-        const int axis = geom::axis_of_letter(letter);
-        const double value = axis < 0 ? 0.0 : sign * pose[axis];
-        switch (letter) {
-        case 'X':
-        case 'U': p[0] += value; break;
-        case 'Y':
-        case 'V': p[1] += value; break;
-        case 'Z':
-        case 'W': p[2] += value; break;
-        case 'A': turn(value, p[1], p[2]); break;
-        case 'B': turn(value, p[2], p[0]); break;
-        case 'C': turn(value, p[0], p[1]); break;
-        default: break;
-        }
-        sign = 1;
-    }
-    return p;
-}
-
+/// The step to the sample goes on in the direction of the last line. Compared with the line from its start,
+/// an arc would never leave it: each sample bends only a little from the one before.
 bool LoggedPath::isStraightOn(const LoggedPoint &sample) const {
     const LoggedPoint &last = points_.back(), &before = points_[points_.size() - 2];
-    const auto way = step_of(before, last), next = step_of(before, sample);
+    const auto way = step_of(before, last), next = step_of(last, sample);
     const double lengths = std::sqrt(dot(way, way) * dot(next, next));
     const bool isOtherEndStill = last.a == sample.a && last.b == sample.b && last.c == sample.c;
     return isOtherEndStill && (lengths == 0 || dot(way, next) / lengths > 1 - STRAIGHT);

@@ -4,10 +4,7 @@
 
 #include <array>
 #include <cstdint>
-#include <string>
 #include <vector>
-
-#include "geom/pose.hh"
 
 namespace mw::python {
 
@@ -20,10 +17,6 @@ struct LoggedPoint {
     Colour other_colour{};
 };
 static_assert(sizeof(LoggedPoint) == 32, "screens read points as rows of 32 bytes");
-
-/// Where the tool stands in space, of a machine whose [DISPLAY]GEOMETRY says which letters move and turn it,
-/// in their order, a minus before a letter turns it round.
-std::array<double, 3> vertex_of(const std::string &geometry, const geom::Pose &pose);
 
 /// One thread at a time.
 class LoggedPath {

@@ -3,6 +3,7 @@
 #include "python/linuxcnc/module.hh"
 
 #include "hal/core/hal.hh"
+#include "python/linuxcnc/view_geometry.hh"
 
 namespace py = pybind11;
 
@@ -27,5 +28,7 @@ PYBIND11_MODULE(_core, module) {
     mw::python::define_stat(module);
     mw::python::define_command(module);
     mw::python::define_error_channel(module);
-    mw::python::define_position_logger(module);
+    const auto view = std::make_shared<mw::python::ViewGeometry>();
+    mw::python::define_position_logger(module, view);
+    mw::python::define_drawing(module, view);
 }

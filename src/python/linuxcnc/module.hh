@@ -4,9 +4,12 @@
 
 #include <pybind11/pybind11.h>
 
+#include <memory>
 #include <string>
 
 namespace mw::python {
+
+class ViewGeometry;
 
 /// Throws linuxcnc.error.
 [[noreturn]] void throw_error(const std::string &text);
@@ -19,6 +22,7 @@ void define_ini(pybind11::module_ &module);
 void define_stat(pybind11::module_ &module);
 void define_command(pybind11::module_ &module);
 void define_error_channel(pybind11::module_ &module);
-void define_position_logger(pybind11::module_ &module);
+void define_position_logger(pybind11::module_ &module, const std::shared_ptr<ViewGeometry> &view);
+void define_drawing(pybind11::module_ &module, const std::shared_ptr<ViewGeometry> &view);
 
 }  // namespace mw::python

@@ -4,12 +4,15 @@
 
 #include <atomic>
 #include <chrono>
+#include <memory>
 #include <mutex>
 #include <thread>
 
 #include "python/linuxcnc/connection.hh"
+#include "python/linuxcnc/gl.hh"
 #include "python/linuxcnc/logged_path.hh"
 #include "python/linuxcnc/module.hh"
+#include "python/linuxcnc/view_geometry.hh"
 
 namespace py = pybind11;
 
@@ -44,7 +47,7 @@ Colours colours_of(const py::sequence &words) {
 
 class PositionLogger {
   public:
-    explicit PositionLogger(const py::args &words) {
+    PositionLogger(std::shared_ptr<ViewGeometry> view, const py::args &words) : view_(std::move(view)) {
         constexpr std::size_t GEOMETRY = 1 + COLOURS;
         if (words.size() < GEOMETRY + 1) {
             throw py::type_error("positionlogger(stat, six colours, geometry[, is_xyuv])");
@@ -56,11 +59,17 @@ class PositionLogger {
     PositionLogger(const PositionLogger &) = delete;
     PositionLogger &operator=(const PositionLogger &) = delete;
 
-    /// Samples until stop(), in the thread that calls it.
+    /// Samples until stop(), in the thread that calls it. A program that ends meanwhile takes this thread
+    /// down where it wants to go on in Python: by an unwinding that no destructor may be in the way of, as
+    /// gil_scoped_release is.
     void start(double interval_s) {
         isWanted_.store(true);
         const std::string instance = machine_instance();
-        py::gil_scoped_release release;
+        PyThreadState *const python = PyEval_SaveThread();
+        sample_until_stop(instance, interval_s);
+        PyEval_RestoreThread(python);
+    }
+    void sample_until_stop(const std::string &instance, double interval_s) {
         auto viewer = client::Viewer::attach(instance);
         while (isWanted_.load()) {
             if (!viewer.has_value()) {
@@ -110,6 +119,26 @@ class PositionLogger {
         }
         return out;
     }
+    /// Draws all points into the current context of OpenGL.
+    void draw() {
+        const Gl &gl = Gl::library();
+        const std::lock_guard lock(mutex_);
+        const auto &points = path_.points();
+        drawn_ = points.size();
+        if (points.empty()) {
+            return;
+        }
+        // A foam cutter's point is a line between the ends of its wire: two vertices of half the size.
+        const int stride = static_cast<int>(sizeof(LoggedPoint)) / (isFoam_ ? 2 : 1);
+        gl.enable_client_state(Gl::VERTEX_ARRAY);
+        gl.enable_client_state(Gl::COLOR_ARRAY);
+        gl.vertex_pointer(3, Gl::FLOAT, stride, &points.front().x);
+        gl.color_pointer(4, Gl::UNSIGNED_BYTE, stride, points.front().colour.data());
+        const int count = static_cast<int>(points.size());
+        gl.draw_arrays(isFoam_ ? Gl::LINES : Gl::LINE_STRIP, 0, isFoam_ ? 2 * count : count);
+        gl.disable_client_state(Gl::COLOR_ARRAY);
+        gl.disable_client_state(Gl::VERTEX_ARRAY);
+    }
     /// All points as bytes, which count as drawn.
     py::tuple points() {
         const std::lock_guard lock(mutex_);
@@ -135,7 +164,7 @@ class PositionLogger {
             point.x = f(pose[geom::AXIS_X]), point.y = f(pose[geom::AXIS_Y]), point.z = foam_z_;
             point.a = f(pose[geom::AXIS_U]), point.b = f(pose[geom::AXIS_V]), point.c = foam_w_;
         } else {
-            const auto place = vertex_of(geometry_, pose);
+            const auto place = vertex_of(geometry_, pose, view_->centre());
             point.x = f(place[0]), point.y = f(place[1]), point.z = f(place[2]);
             point.a = f(pose[geom::AXIS_A]), point.b = f(-pose[geom::AXIS_B]),
             point.c = f(pose[geom::AXIS_C]);
@@ -143,6 +172,7 @@ class PositionLogger {
         path_.add(point);
     }
 
+    std::shared_ptr<ViewGeometry> view_;
     std::mutex mutex_;
     std::atomic<bool> isWanted_{false};
     Colours colours_{};
@@ -155,11 +185,12 @@ class PositionLogger {
 
 }  // namespace
 
-void define_position_logger(py::module_ &module) {
+void define_position_logger(py::module_ &module, const std::shared_ptr<ViewGeometry> &view) {
     py::class_<PositionLogger>(module, "positionlogger",
                                "positionlogger(stat, six colours, geometry[, is_xyuv]): records where the "
                                "tool has been.")
-        .def(py::init<const py::args &>())
+        .def(
+            py::init([view](const py::args &words) { return std::make_unique<PositionLogger>(view, words); }))
         .def("start", &PositionLogger::start, py::arg("interval"),
              "Samples every so many seconds until stop(), in the calling thread.")
         .def("stop", &PositionLogger::stop)
@@ -170,6 +201,7 @@ void define_position_logger(py::module_ &module) {
         .def("set_depth", &PositionLogger::set_depth, py::arg("z"), py::arg("w"))
         .def("set_colors", &PositionLogger::set_colours)
         .def("get_colors", &PositionLogger::colours)
+        .def("call", &PositionLogger::draw, "Draws the path into the current context of OpenGL.")
         .def("points", &PositionLogger::points, "(bytes, count, is_xyuv): rows of 32 bytes.");
 }
 

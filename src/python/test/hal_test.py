@@ -287,6 +287,22 @@ class UnloadTest(unittest.TestCase):
             child.send_signal(signal.SIGTERM)
             self.assertEqual(child.wait(10), 7)
 
+    def test_a_program_that_swallows_the_interrupt_ends_and_leaves_hal(self):
+        code = ("import hal, time\nh = hal.component('deaf')\nh.ready()\n"
+                "while True:\n    try:\n        time.sleep(20)\n    except KeyboardInterrupt:\n        pass\n")
+        with subprocess.Popen([sys.executable, "-c", code]) as child:
+            end = time.monotonic() + 10
+            while not hal.component_is_ready("deaf") and time.monotonic() < end:
+                time.sleep(0.005)
+            child.send_signal(signal.SIGTERM)
+            self.assertEqual(child.wait(10), -signal.SIGTERM)
+        self.assertFalse(hal.component_exists("deaf"))
+
+    def test_a_program_that_ends_in_order_leaves_hal(self):
+        code = "import hal\nh = hal.component('brief')\nh.newpin('p', hal.HAL_BIT, hal.HAL_OUT)\nh.ready()\n"
+        self.assertEqual(subprocess.run([sys.executable, "-c", code], check=False).returncode, 0)
+        self.assertFalse(hal.component_exists("brief"))
+
 
 HAL_FILE = """
 loadrt threads name1=servo period1=1000000

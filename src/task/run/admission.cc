@@ -15,7 +15,8 @@ constexpr Cell TAKEN = nullptr;
 constexpr Cell ESTOP = "the machine is in emergency stop", OFF = "the machine is not on";
 constexpr Cell RUNS = "a program or MDI line runs already",
                NOT_WHILE = "not while a program or MDI line runs";
-constexpr Cell NEEDS_AUTO = "running a program needs auto mode", NEEDS_MDI = "MDI needs MDI mode",
+constexpr Cell NEEDS_AUTO = "running a program needs auto mode",
+               NEEDS_MDI = "Must be in MDI mode to issue MDI command",
                NEEDS_MANUAL = "this needs manual mode",
                HELD_AXES = "release the axes of the held program first";
 constexpr Cell NO_PAUSE = "nothing runs that could be paused", NO_RESUME = "nothing is paused",
@@ -55,8 +56,14 @@ constexpr std::array<Row, CLASSES> TABLE{{
     /* JOG */
     {ESTOP, OFF, TAKEN, NEEDS_MANUAL, NEEDS_MANUAL, HELD_AXES, HELD_AXES, TAKEN, NEEDS_MANUAL, NEEDS_MANUAL,
      NEEDS_MANUAL},
+    /* TELEOP */
+    {TAKEN, TAKEN, TAKEN, TAKEN, NEEDS_MANUAL, HELD_AXES, HELD_AXES, TAKEN, TAKEN, NEEDS_MANUAL,
+     NEEDS_MANUAL},
     /* JOINTS */
     {ESTOP, OFF, TAKEN, NEEDS_MANUAL, NEEDS_MANUAL, NEEDS_MANUAL, NEEDS_MANUAL, NEEDS_MANUAL, NEEDS_MANUAL,
+     NEEDS_MANUAL, NEEDS_MANUAL},
+    /* UNHOME */
+    {TAKEN, TAKEN, TAKEN, NEEDS_MANUAL, NEEDS_MANUAL, NEEDS_MANUAL, NEEDS_MANUAL, NEEDS_MANUAL, NEEDS_MANUAL,
      NEEDS_MANUAL, NEEDS_MANUAL},
     /* ENERGISE */
     {ESTOP, OFF, TAKEN, TAKEN, TAKEN, TAKEN, TAKEN, TAKEN, TAKEN, TAKEN, TAKEN},

@@ -21,7 +21,9 @@ enum class CommandClass : std::uint8_t {
     TURN,          ///< backwards along the path, and forwards again
     MDI,           ///< one line
     JOG,           ///< moves by hand
+    TELEOP,        ///< whether moves by hand are those of axes or of joints
     JOINTS,        ///< homing of joints
+    UNHOME,        ///< forgets where joints are
     ENERGISE,      ///< starts a spindle, coolant, lubrication
     TOOL_TABLE,    ///< reads it again, or sets an entry
     SCREW_TABLE,   ///< what is set only while the machine is off
@@ -54,11 +56,16 @@ concept Turn = OneOf<T, ReverseProgram, ForwardProgram>;
 template <class T>
 concept Line = OneOf<T, Mdi>;
 template <class T>
-concept Jog = OneOf<T, JogContinuous, JogIncrement, JogAbsolute, SetTeleopVector, SetTeleop>;
+concept Jog = OneOf<T, JogContinuous, JogIncrement, JogAbsolute, SetTeleopVector>;
 template <class T>
-concept Joints = OneOf<T, HomeJoint, UnhomeJoint>;
+concept Teleop = OneOf<T, SetTeleop, SetMotionMode>;
 template <class T>
-concept Energise = OneOf<T, SpindleOn, MistOn, FloodOn, LubeOn>;
+concept Joints = OneOf<T, HomeJoint>;
+template <class T>
+concept Unhome = OneOf<T, UnhomeJoint>;
+template <class T>
+concept Energise =
+    OneOf<T, SpindleOn, SpindleIncrease, SpindleDecrease, SpindleConstant, MistOn, FloodOn, LubeOn>;
 template <class T>
 concept ToolTable = OneOf<T, LoadToolTable, SetToolEntry>;
 template <class T>
@@ -87,8 +94,8 @@ concept PartOfStart = OneOf<T, InitTask, HaltTask, InitMachine, HaltMachine, Ini
 template <class T>
 concept OfTheMailbox = OneOf<T, ClaimOperation, HandOverOperation, ReleaseOperation>;
 template <class T>
-concept NotYet = OneOf<T, SetDebug, SystemCommand, CallTaskPlugin, CallIoPlugin, SetMotionMode, EnableTraj,
-                       DisableTraj, SpindleIncrease, SpindleDecrease, SpindleConstant, SetSpindleSpeed>;
+concept NotYet = OneOf<T, SetDebug, SystemCommand, CallTaskPlugin, CallIoPlugin, EnableTraj, DisableTraj,
+                       SetSpindleSpeed>;
 /// What motion does by itself (task/link/motion_words.hh).
 template <class T>
 concept CarriedOutByMotion =
@@ -125,7 +132,9 @@ constexpr CommandClass class_of() {
                                Turn<T>,
                                Line<T>,
                                Jog<T>,
+                               Teleop<T>,
                                Joints<T>,
+                               command_lists::Unhome<T>,
                                Energise<T>,
                                command_lists::ToolTable<T>,
                                ScrewTable<T>,

@@ -32,6 +32,9 @@ class ProgramSpindles {
 
     /// As programmed, unscaled. [rev/min or surface units/min]
     double speed(int spindle) const { return spindles_[static_cast<std::size_t>(spindle)].speed; }
+    bool isSurfaceSpeed(int spindle) const {
+        return spindles_[static_cast<std::size_t>(spindle)].css_max_rpm > 0;
+    }
     int direction(int spindle) const { return spindles_[static_cast<std::size_t>(spindle)].direction; }
     /// The next cut waits until the spindle has its speed.
     bool isNextCutWaiting() const { return isNextCutWaiting_; }

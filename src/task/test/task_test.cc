@@ -233,7 +233,7 @@ TEST_F(NoSmoothPlanner, G64RIsRefused_C2) {
 
 TEST_F(TaskTest, CommandsThatCannotBeDoneAreRefusedWithAReason_C5) {
     EXPECT_EQ(ask(Mdi{"G0 X1"}), Progress::REFUSED);
-    EXPECT_EQ(reason(request), "MDI needs MDI mode");
+    EXPECT_EQ(reason(request), "Must be in MDI mode to issue MDI command");
     EXPECT_EQ(ask(RunProgram{}), Progress::REFUSED);
     EXPECT_EQ(ask(PauseProgram{}), Progress::REFUSED);
     EXPECT_EQ(ask(OpenProgram{"/nowhere.ngc"}), Progress::REFUSED);
@@ -242,6 +242,34 @@ TEST_F(TaskTest, CommandsThatCannotBeDoneAreRefusedWithAReason_C5) {
     open("M2\n");
     EXPECT_EQ(ask(RunProgram{}), Progress::REFUSED);
     EXPECT_NE(reason(request).find("not all joints are homed"), std::string::npos);
+}
+
+TEST_F(TaskTest, AScreenThatStartsInEmergencyStopChoosesJointsAndForgetsHoming_C5_J2) {
+    ASSERT_EQ(ask(SetState{State::ESTOP}), Progress::DONE);
+    EXPECT_EQ(ask(SetTeleop{false}), Progress::DONE);
+    EXPECT_EQ(ask(SetMotionMode{msgs::MotionMode::FREE}), Progress::DONE);
+    EXPECT_EQ(ask(SetMotionMode{msgs::MotionMode::COORD}), Progress::REFUSED);
+    EXPECT_EQ(ask(UnhomeJoint{-1}), Progress::DONE);
+    EXPECT_EQ(ask(HomeJoint{-1}), Progress::REFUSED);
+    ASSERT_EQ(ask(SetMode{Mode::AUTO}), Progress::DONE);
+    EXPECT_EQ(ask(SetTeleop{true}), Progress::DONE);
+    EXPECT_EQ(task.status().task.mode, Mode::MANUAL) << "as in any mode in which nothing runs";
+}
+
+TEST_F(TaskTest, ATurningSpindleChangesItsSpeedInStepsAndNeverItsSense_C5_J2) {
+    EXPECT_EQ(ask(SpindleIncrease{0}), Progress::REFUSED);
+    EXPECT_EQ(reason(request), "spindle 0 stands");
+    EXPECT_EQ(ask(SpindleIncrease{7}), Progress::REFUSED);
+    motion.log.clear();
+    ask(SpindleOn{0, -150});
+    ask(SpindleIncrease{0});
+    ask(SpindleDecrease{0});
+    ask(SpindleDecrease{0});
+    ask(SpindleDecrease{0});
+    EXPECT_EQ(ask(SpindleConstant{0}), Progress::DONE);
+    EXPECT_EQ(joined(), "spindle -150, spindle -250, spindle -150, spindle -50, spindle -1");
+    ask(SpindleOff{0});
+    EXPECT_EQ(ask(SpindleDecrease{0}), Progress::REFUSED);
 }
 
 TEST_F(TaskTest, AVectorOfTeleopSpeedsGoesToMotionInManualMode_C4) {

@@ -190,11 +190,11 @@ void Executor::start_brake() noexcept {
 /// Sets up braking from the present state to a stop, to where the piece allows another, or to its end.
 void Executor::brake_on_piece() noexcept {
     const Piece &piece = store_.piece(state_.piece);
-    const bool isBefore = state_.x < piece.braking.from;
-    brake_.end = isBefore ? piece.braking.from : piece.length;
-    const double left = std::max(0.0, brake_.end - state_.x);
     const double v2 = state_.v * state_.v;
-    double a = piece.brake_at(state_.x, v2);
+    const Piece::BrakeLeg leg = piece.brake_leg(state_.x, v2);
+    brake_.end = leg.end;
+    const double left = std::max(0.0, brake_.end - state_.x);
+    double a = leg.a;
     const double out2 = v2 - 2.0 * a * left;
     brake_.time = 0;
     brake_.isFinal = out2 <= TimingTuning::STOP_FIT * v2;

@@ -75,6 +75,8 @@ class ExecutorState {
         double origin = 0;        ///< turns of the spindle at which the helix passes the start
         double passed_turns = 0;  ///< of the pieces that are complete
         Sequence came_from = 0;   ///< piece at the start of the last cycle
+        double gap = 0;           ///< of the last cycle: how far the tool is ahead of the helix
+        int crossings = 0;        ///< of the helix by the tool, since the start
         int near_cycles = 0;      ///< since the tool was not near the helix
         double descent = 0;       ///< > 0: brakes with it to the end of the piece
         bool isOn = false;        ///< the tool is on the helix

@@ -96,9 +96,13 @@ double Executor::locked_speed() noexcept {
     const double part = std::abs(gap) / piece.per_turn;
     // A rough encoder may never let it be met exactly.
     lock_.near_cycles = part < ExecutorTuning::NEAR ? lock_.near_cycles + 1 : 0;
+    const bool isCrossing = gap * lock_.gap < 0;
+    lock_.crossings += isCrossing ? 1 : 0;
+    lock_.gap = gap;
+    const bool isRough =
+        lock_.near_cycles >= ExecutorTuning::NEAR_CYCLES || lock_.crossings >= ExecutorTuning::CROSSINGS;
     const bool isMet = part < ExecutorTuning::MET && std::abs(state_.v - helix_v) < a * period_;
-    lock_.isOn =
-        lock_.isOn ? part < ExecutorTuning::LOST : isMet || lock_.near_cycles >= ExecutorTuning::NEAR_CYCLES;
+    lock_.isOn = lock_.isOn ? part < ExecutorTuning::LOST : isMet || isRough;
     lock_.wasOn = lock_.wasOn || lock_.isOn;
     const double wanted =
         helix_v - (lock_.isOn ? ExecutorTuning::GAIN * gap

@@ -12,7 +12,12 @@ double stop_position(double position, double velocity, double acceleration) noex
 }
 
 void FreePlanner::stop() noexcept {
-    target = stop_position(position, velocity, max_acceleration);
+    const double place = stop_position(position, velocity, max_acceleration);
+    // Who brakes to its target already comes to it, whatever whole cycles make of the way.
+    constexpr double CYCLES = 1e-3;
+    const bool isBehind = std::abs(place - target) <= CYCLES * std::abs(place - position) &&
+                          std::abs(place - position) > std::abs(target - position);
+    target = isBehind ? target : place;
 }
 
 namespace {
@@ -69,6 +74,7 @@ void JogPlanner::stop() noexcept {
         FreePlanner::stop();
         return;
     }
+    leader_.max_acceleration = std::min(max_acceleration, most_acceleration_);
     leader_.stop();
     target = leader_.target;
 }
@@ -107,6 +113,7 @@ void JogPlanner::begin(double dt) noexcept {
         std::ceil((mean_s > 0 ? mean_s / dt : 2.0 * max_acceleration / (max_jerk * dt)) - 1e-9);
     length_ = static_cast<std::uint32_t>(std::clamp(samples, 2.0, static_cast<double>(MOST_SAMPLES)));
     jerk_ = max_jerk > 0 ? max_jerk : std::numeric_limits<double>::infinity();
+    most_acceleration_ = 0.5 * jerk_ * length_ * dt;
     leader_.reset(position);
     origin_ = position;
     way_.fill(0.0);
@@ -136,7 +143,7 @@ void JogPlanner::step(double dt) noexcept {
     }
     leader_.target = target;
     leader_.max_velocity = max_velocity;
-    leader_.max_acceleration = std::min(max_acceleration, 0.5 * jerk_ * length_ * dt);
+    leader_.max_acceleration = std::min(max_acceleration, most_acceleration_);
     leader_.step(dt);
     const double way = leader_.position - origin_;
     add(way);

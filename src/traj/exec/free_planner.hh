@@ -66,7 +66,7 @@ class JogPlanner : public FreePlanner {
     std::array<double, MOST_SAMPLES> way_{};  ///< of the leader from origin_, the last samples
     std::uint32_t length_ = 1;                ///< of the mean; 1: the leader itself is commanded
     std::uint32_t next_ = 0, standing_ = 0;
-    double jerk_ = 0, origin_ = 0, sum_ = 0, rest_ = 0;
+    double jerk_ = 0, most_acceleration_ = 0, origin_ = 0, sum_ = 0, rest_ = 0;
 };
 
 /// Position that braking at `acceleration` from here leads to.

@@ -8,9 +8,21 @@ namespace mw::traj {
 
 namespace {
 
-/// Shares of the limits for changes of the rate; with HIGHEST_RATE their sums stay below 1.
-constexpr double ACCELERATION_SHARE = 0.4, TURN_SHARE = 0.25, JERK_SHARE = 0.3;
+/// Shares of the limits: what the rate's square leaves of acceleration, and of jerk so that the sum stays
+/// below 1 at HIGHEST_RATE.
+constexpr double SHARES = 0.96, TURN_SHARE = 0.25, JERK_SHARE = 0.3;
 constexpr double FASTEST_CHANGE = 50;  ///< of the rate [1/s]
+/// A place between samples is made of those up to so far beside it.
+constexpr std::int64_t BESIDE = 4;
+
+/// How fast a rate may change where samples use so much of the limits [1/s].
+double change_of_rate(const Retrace::Use &use, double rate) noexcept {
+    double change = FASTEST_CHANGE;
+    const double share = SHARES - rate * rate;
+    change = use.v_over_a > 0 ? std::min(change, share / use.v_over_a) : change;
+    return use.a_over_j > 0 ? std::min(change, TURN_SHARE / (3.0 * Retrace::HIGHEST_RATE * use.a_over_j))
+                            : change;
+}
 
 }  // namespace
 
@@ -61,20 +73,46 @@ geom::Pose Retrace::pose_at(double samples) const noexcept {
     return mid + sum;
 }
 
-void Retrace::start() noexcept {
+/// Of the samples from `newest` to `oldest` before the newest of all, and those beside them.
+Retrace::Use Retrace::most_between(std::int64_t newest, std::int64_t oldest) const noexcept {
+    const auto kept = static_cast<std::int64_t>(std::min(count_, CAPACITY)) - 1;
+    const auto last = static_cast<std::int64_t>(count_) - 1;
+    constexpr auto block = static_cast<std::int64_t>(BLOCK);
+    const std::int64_t first_block = (last - std::clamp<std::int64_t>(oldest + BESIDE, 0, kept)) / block;
+    const std::int64_t last_block = (last - std::clamp<std::int64_t>(newest - BESIDE, 0, kept)) / block;
     Use most;
-    for (std::uint64_t i = 0; i < CAPACITY / BLOCK && i * BLOCK < count_; ++i) {
-        most.v_over_a = std::max(most.v_over_a, blocks_[i].v_over_a);
-        most.v_over_j = std::max(most.v_over_j, blocks_[i].v_over_j);
-        most.a_over_j = std::max(most.a_over_j, blocks_[i].a_over_j);
+    for (std::int64_t n = first_block; n <= last_block; ++n) {
+        const Use &use = blocks_[static_cast<std::uint64_t>(n) % (CAPACITY / BLOCK)];
+        most.v_over_a = std::max(most.v_over_a, use.v_over_a);
+        most.v_over_j = std::max(most.v_over_j, use.v_over_j);
+        most.a_over_j = std::max(most.a_over_j, use.a_over_j);
     }
-    double change = FASTEST_CHANGE;
-    change = most.v_over_a > 0 ? std::min(change, ACCELERATION_SHARE / most.v_over_a) : change;
-    change = most.a_over_j > 0 ? std::min(change, TURN_SHARE / (3.0 * HIGHEST_RATE * most.a_over_j)) : change;
+    return most;
+}
+
+void Retrace::start() noexcept {
+    const Use most = most_between(0, CAPACITY);
     way_.reset(0);
-    way_.max_acceleration = change;
+    change_ = change_of_rate(most, HIGHEST_RATE);
+    way_.max_acceleration = change_;
     way_.max_jerk = most.v_over_j > 0 ? JERK_SHARE / most.v_over_j : 0.0;
     isAway_ = true;
+}
+
+/// With what the samples allow that it passes until it stands: they may be slower than the fastest of all.
+void Retrace::stop(double dt) noexcept {
+    if (way_.isAtRest()) {
+        return;
+    }
+    way_.max_acceleration = change_;
+    double newest = way_.position;
+    double oldest = way_.position;
+    way_.add_reach(oldest, newest);
+    const Use use =
+        most_between(static_cast<std::int64_t>(-newest / dt), static_cast<std::int64_t>(-oldest / dt));
+    const double rate = std::min(HIGHEST_RATE, std::abs(way_.leader().velocity));
+    way_.max_acceleration = change_of_rate(use, rate);
+    way_.stop();
 }
 
 geom::Pose Retrace::step(double dt, int direction, double rate) noexcept {
@@ -84,8 +122,9 @@ geom::Pose Retrace::step(double dt, int direction, double rate) noexcept {
     const auto kept = static_cast<double>(std::min(count_, CAPACITY)) - 3.0;
     way_.max_velocity = std::min(rate, HIGHEST_RATE);
     if (direction == 0) {
-        way_.stop();
+        stop(dt);
     } else {
+        way_.max_acceleration = change_;
         way_.target = direction < 0 ? -kept * dt : 0.0;
     }
     way_.step(dt);

@@ -40,18 +40,21 @@ class Retrace {
 
   private:
     static constexpr std::uint64_t STANDING = 4;
-    static constexpr std::uint64_t BLOCK = 512;
+    static constexpr std::uint64_t BLOCK = 64;
 
     const geom::Pose &sample(std::int64_t back) const noexcept;
     geom::Pose pose_at(double samples) const noexcept;
     void start() noexcept;
+    Use most_between(std::int64_t newest, std::int64_t oldest) const noexcept;
+    void stop(double dt) noexcept;
 
     std::array<geom::Pose, CAPACITY> samples_{};
     std::array<Use, CAPACITY / BLOCK> blocks_{};
     std::uint64_t count_ = 0;  ///< recorded since clear()
     std::uint64_t standing_ = 0;
     bool isAway_ = false;
-    JogPlanner way_;  ///< recorded time from where the path was left: 0 and below [s]
+    double change_ = 0;  ///< of the rate, that all samples allow [1/s]
+    JogPlanner way_;     ///< recorded time from where the path was left: 0 and below [s]
 };
 
 }  // namespace mw::traj

@@ -188,9 +188,10 @@ bool Smooth::stop(bool isHard) noexcept {
         const Piece &p = path_.piece(s.piece);
         const bool isLast = s.piece == path_.last_piece();
         look_at(s.piece);
-        const bool isBefore = isHard && s.x < p.braking.from;
-        const double end = isBefore ? p.braking.from : p.length;
-        const double left = end - s.x;
+        const double v2 = s.v * s.v;
+        const Piece::BrakeLeg leg =
+            isHard ? p.brake_leg(s.x, v2) : Piece::BrakeLeg{p.acceleration.at(v2), p.length};
+        const double left = leg.end - s.x;
         if (!(left > 0)) {
             if (isLast) {
                 return s.v <= 0;
@@ -198,7 +199,6 @@ bool Smooth::stop(bool isHard) noexcept {
             draft_.enter_next_piece();
             continue;
         }
-        const double v2 = s.v * s.v;
         const double out = out2(s.piece);
         const double wait = limits_.filter_s() - s.coasting.since_rise_s;
         const bool mayCoast =
@@ -210,16 +210,15 @@ bool Smooth::stop(bool isHard) noexcept {
             }
             continue;
         }
-        const double a = isHard ? p.brake_at(s.x, v2) : p.acceleration.at(v2);
-        const double slowest2 = v2 - 2.0 * a * left;
-        const bool isStop = !isBefore && (isLast || path_.plan(s.piece + 1).isStopBefore);
+        const double slowest2 = v2 - 2.0 * leg.a * left;
+        const bool isStop = leg.end >= p.length && (isLast || path_.plan(s.piece + 1).isStopBefore);
         if (isStop || slowest2 <= TimingTuning::STOP_FIT * v2) {
             // A stop that misses the end by rounding is fitted to it.
-            draft_.append(store_, slowest2 < -TimingTuning::STOP_FIT * v2 ? v2 / (2.0 * a) : left, 0);
+            draft_.append(store_, slowest2 < -TimingTuning::STOP_FIT * v2 ? v2 / (2.0 * leg.a) : left, 0);
             return true;
         }
         draft_.append(store_, left, std::sqrt(slowest2));
-        s.x = end;
+        s.x = leg.end;
     }
     return true;
 }

@@ -36,6 +36,14 @@ double tap_ramp(const std::array<double, 2> &ramp, double rps) noexcept {
     return rps < 0 ? ramp[1] : ramp[0];
 }
 
+/// How far the mean of a tool is off the helix [turns] while a spindle of this ramp turns back, where
+/// following it takes the part `use` of the tool's acceleration: the change is seen late, and made good with
+/// what is left.
+double off_helix(double ramp, double use, double mean_s) noexcept {
+    const double late_s = TapTuning::LATE_MEANS * mean_s;
+    return ramp * (TapTuning::LATE_S2 + 0.5 * late_s * late_s * use / (1.0 - use));
+}
+
 /// The way in and the way back, without regard to stops in between.
 void fill_tap(const PathView &view, Pass &pass, double rps) noexcept {
     const PlannedPath &path = view.path;
@@ -144,6 +152,14 @@ TapVerdict check_tap(const PathView &view, Sequence move) noexcept {
     const double abruptness = per_turn * std::max(ramp[0], ramp[1]) / (TapTuning::MEETING_SHARE * a);
     if (abruptness > 1.0) {
         return {TapObstacle::TOO_ABRUPT, abruptness};
+    }
+    const PathLimits &path_limits = view.conditions.limits;
+    if (path_limits.isFiltered()) {
+        const double use = TapTuning::MEETING_SHARE * abruptness;
+        const double off = off_helix(std::max(ramp[0], ramp[1]), use, path_limits.filter_s());
+        if (off > TapTuning::MOST_OFF) {
+            return {TapObstacle::TOO_SUDDEN, off};
+        }
     }
     const double turn_back = tap_ramp(ramp, rps);
     const double run_in = 0.5 * std::pow(per_turn * ahead, 2) / (TapTuning::MEETING_SHARE * a);

@@ -21,6 +21,7 @@ enum class TapObstacle : std::uint8_t {
     NONE,
     TOO_FAST,     ///< value: the speed that is needed over what the machine, or the operator, allows
     TOO_ABRUPT,   ///< value: the acceleration with which the spindle turns back over what the machine allows
+    TOO_SUDDEN,   ///< value: how far the mean would be off the helix as the spindle turns back [turns]
     TOO_SHALLOW,  ///< value: the depth that gaining speed and turning back take over what there is
 };
 struct TapVerdict {

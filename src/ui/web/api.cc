@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/text.hh"
+#include "msgs/json.hh"
 
 namespace mw::ui::web {
 namespace {
@@ -50,6 +51,8 @@ void Api::answer(const Request &request, Reply reply) {
         reply(document(machine_document(setup_.facts)));
     } else if (path == "/api/path") {
         reply(answer_path(request));
+    } else if (path == "/api/tools") {
+        reply(answer_tools());
     } else if (path == "/metrics") {
         reply(metrics());
     } else if (path.starts_with(API)) {
@@ -108,6 +111,12 @@ Response Api::answer_path(const Request &request) {
     response.type = "application/octet-stream";
     response.pieces = std::move(*pieces);
     return response;
+}
+
+Response Api::answer_tools() {
+    const auto table = screens_.tools();
+    return table.has_value() ? document(msgs::to_json(msgs::object(*table)))
+                             : error_response(503, table.error().str());
 }
 
 Response Api::metrics() const {

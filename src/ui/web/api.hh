@@ -46,6 +46,7 @@ class Api final : public Application {
     void answer_files(const Request &request, const std::string &name, Reply reply);
     void write_file(const Request &request, const std::string &name, Reply reply);
     Response answer_path(const Request &request);
+    Response answer_tools();
     Response metrics() const;
 
     Elsewhere &elsewhere_;

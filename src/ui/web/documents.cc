@@ -141,6 +141,10 @@ std::string machine_document(const MachineFacts &facts) {
                         {"default_linear_velocity", facts.default_linear_velocity},
                         {"max_angular_velocity", facts.max_angular_velocity},
                         {"default_angular_velocity", facts.default_angular_velocity},
+                        {"max_feed_override", facts.max_feed_override},
+                        {"min_spindle_override", facts.min_spindle_override},
+                        {"max_spindle_override", facts.max_spindle_override},
+                        {"default_spindle_speed", facts.default_spindle_speed},
                         {"increments", std::move(increments)},
                         {"mdi_commands", facts.mdi_commands},
                         {"program_extensions", facts.program_extensions}});

@@ -25,6 +25,9 @@ struct MachineFacts {
     std::string program_prefix;            ///< folder of programs
     double max_linear_velocity = 0, default_linear_velocity = 0;
     double max_angular_velocity = 0, default_angular_velocity = 0;
+    double max_feed_override = 1;  ///< 1.0 is 100 %
+    double min_spindle_override = 0, max_spindle_override = 1;
+    double default_spindle_speed = 0;  ///< that a screen proposes [rev/min]; 0: none is set
     std::vector<Increment> increments;
     std::vector<std::string> mdi_commands;
     std::vector<std::string> program_extensions;  ///< with their dot, in lower case

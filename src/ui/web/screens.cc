@@ -22,6 +22,20 @@ const msgs::MachineStatus *Screens::status() const {
     return watch_.has_value() && hasStatus_ ? &watch_->status() : nullptr;
 }
 
+Result<msgs::ToolTable> Screens::tools() {
+    if (!watch_.has_value()) {
+        return fail(reason_);
+    }
+    auto newer = watch_->read_tools();
+    if (!newer.has_value()) {
+        return std::unexpected(newer.error());
+    }
+    if (newer->has_value()) {
+        tools_ = std::move(**newer);
+    }
+    return tools_.has_value() ? Result<msgs::ToolTable>(*tools_) : fail("the machine has no tool table yet");
+}
+
 bool Screens::join(Browser &browser) {
     auto client = setup_.connect();
     if (!client.has_value()) {
@@ -119,6 +133,7 @@ void Screens::lose_machine(const std::string &reason) {
     reason_ = reason;
     watch_.reset();
     hasStatus_ = false;
+    tools_.reset();
     kept_.clear();  // another machine counts its messages anew
     for (const auto &[session, browser] : browsers_) {
         if (browser->isJoined()) {

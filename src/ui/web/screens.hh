@@ -41,6 +41,8 @@ class Screens {
     const Counts &counts() const { return counts_; }
     /// As read last; null when there is none.
     const msgs::MachineStatus *status() const;
+    /// The newest table; an error when there is none.
+    Result<msgs::ToolTable> tools();
 
   private:
     void look_for_machine();
@@ -57,6 +59,7 @@ class Screens {
     std::optional<client::Client> watch_;      ///< reads status and messages for all
     std::string reason_ = "no machine is up";  ///< why there is none
     bool hasStatus_ = false;
+    std::optional<msgs::ToolTable> tools_;  ///< as read last
     std::map<SessionId, std::unique_ptr<Browser>> browsers_;
     std::deque<std::string> kept_;  ///< messages
     Counts counts_;

@@ -142,6 +142,11 @@ TEST_F(TclTest, ExitEndsTheScriptOnly) {
     EXPECT_FALSE(last_result);
 }
 
+TEST_F(TclTest, AScriptForTwoPassesSaysSoInOne_B1) {
+    EXPECT_EQ(run("if {[namespace exists ::tp]} {error there}\n"), "");
+    EXPECT_NE(run("::tp::passnumber\n").find("TWOPASS = on"), std::string::npos);
+}
+
 TEST_F(TclTest, ScriptsTakePartInTwoPasses_B1) {
     TextOutput output;
     options.folders = {folder};
@@ -159,7 +164,7 @@ TEST_F(TclTest, WhatAScriptSavesIsThereInBothPasses_B1) {
     options.folders = {folder};
     Session session(*host, programs, output, options);
     write("one.tcl", "set name \"" + (folder / "saved").string() +
-                         ".[hal --pass]\"\nhal save comp $name\nclose [open $name]\n");
+                         ".[::tp::passnumber]\"\nhal save comp $name\nclose [open $name]\n");
     const Result<> result = run_two_pass(session, {{"one.tcl", {}}}, "on", TwoPassReport::NOTHING);
     EXPECT_TRUE(result) << output.errors;
     EXPECT_TRUE(fs::exists(folder / "saved.0"));

@@ -17,6 +17,9 @@ bool move_probe(const Code &code, const BlockValues &values, Parameters &paramet
     if (state.feed_mode == FeedMode::INVERSE_TIME) {
         return fault.set("Cannot probe in inverse time feed mode");
     }
+    if (state.feed == 0.0) {
+        return fault.set("Cannot probe with zero feed rate");
+    }
     if (!check_feed(values, code_name(code), state, fault)) {
         return false;
     }
@@ -25,7 +28,7 @@ bool move_probe(const Code &code, const BlockValues &values, Parameters &paramet
         return false;
     }
     if (end == state.position) {
-        return fault.set("The probe would not move: start and end are the same");
+        return fault.set("Start point too close to probe point");
     }
     state.motion = code.number;
     state.cycle.isRunning = false;

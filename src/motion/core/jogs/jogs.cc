@@ -42,6 +42,15 @@ struct JogMove {
     JogSource source = JogSource::NONE;
 };
 
+/// A stop takes all the acceleration that there is.
+void brake(Jog &jog) noexcept {
+    if (jog.brake_acceleration > jog.wanted_acceleration) {
+        jog.wanted_acceleration = jog.brake_acceleration;
+        jog.planner.max_acceleration = jog.brake_acceleration;
+    }
+    jog.planner.stop();
+}
+
 /// Sets the planner of a jog that has been checked.
 Reason start(Jogs &jogs, const JogTarget &target, const JogMove &move, const JogSituation &s) noexcept {
     if (!std::isfinite(move.position) || !std::isfinite(move.velocity)) {
@@ -62,6 +71,7 @@ Reason start(Jogs &jogs, const JogTarget &target, const JogMove &move, const Jog
     p.mean_s = mean_for(s.most);
     jog.wanted_velocity = p.max_velocity;
     jog.wanted_acceleration = p.max_acceleration;
+    jog.brake_acceleration = p.max_acceleration;
     jog.most_velocity = UNBOUNDED;
     jog.source = move.source;
     jogs.leased &= ~bit_of(target);
@@ -207,7 +217,7 @@ Verdict take(Jogs &jogs, const JogStop &command) noexcept {
     Jog &jog = jogs.at(command.target);
     jogs.leased &= ~bit_of(command.target);
     if (jog.source != JogSource::NONE) {
-        jog.planner.stop();
+        brake(jog);
     }
     return verdict_of(command.target, Reason::NONE);
 }
@@ -263,7 +273,7 @@ JogTarget end_lease(Jogs &jogs, std::int64_t time_ns) noexcept {
         }
         jogs.leased &= ~bit_of(target);
         if (!jog.planner.isAtRest()) {
-            jog.planner.stop();
+            brake(jog);
             return target;
         }
     }
@@ -273,10 +283,10 @@ JogTarget end_lease(Jogs &jogs, std::int64_t time_ns) noexcept {
 void stop(Jogs &jogs) noexcept {
     jogs.leased = 0;
     for (int j = 0; j < jogs.num_joints; ++j) {
-        jogs.joint[at(j)].planner.stop();
+        brake(jogs.joint[at(j)]);
     }
     for (Jog &jog : jogs.axis) {
-        jog.planner.stop();
+        brake(jog);
     }
 }
 
@@ -374,6 +384,8 @@ void jog_by_wheel(Jogs &jogs, const JogTarget &target, double distance, const Wh
         const bool isFraction = wheel.accel_fraction > 0 && wheel.accel_fraction <= 1;
         p.max_acceleration *= isFraction ? wheel.accel_fraction : 1.0;
         jog.wanted_acceleration = p.max_acceleration;
+        // What joints leave of an axis changes on its way: there a stop keeps to what it has.
+        jog.brake_acceleration = situation.isShared ? p.max_acceleration : jog.brake_acceleration;
     }
 }
 

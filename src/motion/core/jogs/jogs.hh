@@ -29,6 +29,7 @@ struct Jog {
     traj::JogPlanner planner;
     double wanted_velocity = 0, wanted_acceleration = 0;  ///< before the override and joints limit them
     double most_velocity = UNBOUNDED;                     ///< that the override may make of it
+    double brake_acceleration = 0;                        ///< what a stop takes: no wheel makes it gentler
     JogSource source = JogSource::NONE;
     std::int32_t wheel_counts = 0;
     JogLease lease;
@@ -74,6 +75,7 @@ struct JogSituation {
     bool isSynchronised = false;   ///< a joint that homes with others is not jogged alone
     bool isDriven = false;         ///< by a pin
     bool isLocked = false;         ///< a lock is opened for the jog
+    bool isShared = false;         ///< an axis of a machine whose joints are not axes
     bool isBesideIndexer = false;  ///< something else moves, or one of the two is held by a lock
     bool isOnPosLimit = false, isOnNegLimit = false;
     JogLimits most;

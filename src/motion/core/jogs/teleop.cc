@@ -37,7 +37,10 @@ void apply_load(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs) noex
     }
     for (int i = 0; i < load.count; ++i) {
         v[at(i)] = isOver ? std::min(v[at(i)], speed[at(i)]) : v[at(i)];
-        speed[at(i)] = std::max(v[at(i)], speed[at(i)]);
+        // What turning takes goes with the speed that it may have in this cycle, and not with the one that it
+        // may come to have: while it brakes more is left from cycle to cycle, never less.
+        const double soon = speed[at(i)] + jogs.axis[at(load.axes[at(i)])].wanted_acceleration * m.period_s;
+        speed[at(i)] = std::max(std::min(v[at(i)], soon), speed[at(i)]);
     }
     for (int i = 0; i < load.count; ++i) {
         Jog &axis = jogs.axis[at(load.axes[at(i)])];
@@ -103,7 +106,11 @@ TeleopStop limit_teleop(Jogs &jogs, const TeleopMachine &m) noexcept {
         const double way = p.rest_after(m.period_s) - here[axis];
         stop[axis] += BRAKE_MARGIN * way;
         const double sign = p.target >= here[axis] ? 1.0 : -1.0;
-        far[axis] += 2.0 * way + LEAST_WINDOW * sign;
+        // Not behind what it may come to at all: else more would be taken off while it brakes.
+        double low = here[axis];
+        double high = here[axis];
+        p.add_reach(low, high);
+        far[axis] = std::clamp(here[axis] + 2.0 * way, low, high) + LEAST_WINDOW * sign;
     }
     constexpr int PLACES = 2;
     for (int n = 1; n <= PLACES && isFound; ++n) {

@@ -32,6 +32,17 @@ void follow_side(Correction &c, double position) noexcept {
     c.extreme = isMove || isOnward ? position : c.extreme;
 }
 
+/// The motor pushes the slide to where it is to be. That is the direction of travel, but not where the joint
+/// turns back before play was taken up: then the slide has stayed behind.
+void follow_slide(Correction &c, double position, double backlash) noexcept {
+    const double motor = position + c.position;
+    c.slide = std::clamp(c.slide, motor - 0.5 * backlash, motor + 0.5 * backlash);
+    const double missing = position - c.slide;
+    if (std::abs(missing) > TURN_ROUNDING * (1.0 + std::abs(position))) {
+        c.side = missing > 0 ? 1 : -1;
+    }
+}
+
 /// What corrections are made with.
 struct Means {
     double acceleration = 0;
@@ -180,6 +191,9 @@ void step(Correction &c, const Settings &settings, int joint, double position, d
         c.follower.max_velocity = (SHARE - c.table.steepest) * velocity;
         follow_table(c, position, period_s);
     } else {
+        if (c.isSlideKnown) {
+            follow_slide(c, position, backlash);
+        }
         c.raw = 0.5 * backlash * c.side;
         c.follower.target = c.raw;
         c.follower.max_velocity = SHARE * velocity;
@@ -190,6 +204,11 @@ void step(Correction &c, const Settings &settings, int joint, double position, d
     const double before = c.position;
     c.position = c.mean.step(c.followed, means.samples);
     c.velocity = means.samples > 1 ? (c.position - before) / period_s : c.followed_velocity;
+    const bool isTakenUp = c.side != 0 && c.table.count == 0 && c.position == c.raw;
+    if (isTakenUp && !c.isSlideKnown) {
+        c.slide = position;
+        c.isSlideKnown = true;
+    }
     c.last_position = position;
 }
 
@@ -201,6 +220,7 @@ double renumber(Correction &c, double position) noexcept {
     c.mean.shift(by);
     c.last_position = position;
     c.extreme = position;
+    c.isSlideKnown = false;
     return by;
 }
 
@@ -220,6 +240,7 @@ void follow(Correction &c, double position) noexcept {
 double clear(Correction &c) noexcept {
     const double was = c.position;
     c.isHeld = false;
+    c.isSlideKnown = false;
     c.raw = 0;
     c.side = 0;
     c.follower = {};

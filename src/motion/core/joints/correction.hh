@@ -58,7 +58,9 @@ struct Correction {
     traj::FreePlanner follower;
     double followed = 0, followed_velocity = 0;  ///< before the jerk is limited
     double last_position = 0;                    ///< of the joint
-    double position = 0, velocity = 0;           ///< what is added
+    double slide = 0;                            ///< where play has left the slide, by what the motor did
+    bool isSlideKnown = false;          ///< play was once taken up since the motor was moved by others
+    double position = 0, velocity = 0;  ///< what is added
     MovingMean mean;
     bool isHeld = false;  ///< switched on again: what is missing waits until the joint moves
     ScrewTable table;

@@ -21,7 +21,7 @@ struct Spindle {
     double out_rpm = 0;
     double turns = 0;      ///< the last ones counted that were a number
     double speed_rps = 0;  ///< measured; 0 while that is no number
-    bool isOn = false, isOverrideEnabled = true, isBrakeOn = false;
+    bool isOn = false, isOverrideEnabled = true, isBrakeOn = true;
     bool isOrienting = false, isLocked = false;
     double orient_angle = 0;
     int orient_mode = 0, orient_state = 0, orient_fault = 0;

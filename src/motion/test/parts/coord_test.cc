@@ -95,6 +95,43 @@ TEST_F(RetracingPart, APathThatIsDroppedOnTheWayBackEndsWhereItComesToAStand) {
     EXPECT_TRUE(retracing->retrace.isEmpty());
 }
 
+TEST_F(RetracingPart, AStopWhereThePathWasSlowIsShort_C5) {
+    // At 20 units/s, then at 5, and it stands.
+    constexpr double A = 100;
+    limits.path.acceleration.fill(A);
+    for (int n = 0; n < 3000; ++n) {
+        x += n < 1000 ? 0.02 : n < 2990 ? 0.005 : 0;
+        record(*retracing, at(x), {}, limits, T);
+    }
+    const auto cycles_to_stop = [&](int back) {
+        const auto on = std::make_unique<Retracing>(*retracing);
+        RetraceInputs in;
+        in.isReverseWanted = in.isPathAtRest = true;
+        in.rate = 0.75;
+        in.period_s = T;
+        geom::Pose pose = at(x);
+        double last = x;
+        for (int n = 0; n < back; ++n) {
+            last = pose[0];
+            step(*on, pose, in);
+        }
+        const double v = (last - pose[0]) / T;
+        in.isStopping = true;
+        int n = 0;
+        for (double before = pose[0] + 1; pose[0] != before && n < 3000; ++n) {
+            before = pose[0];
+            step(*on, pose, in);
+        }
+        return std::pair{n, v};
+    };
+    const auto [slow, v] = cycles_to_stop(1500);
+    EXPECT_NEAR(v, 0.75 * 5, 0.1);
+    const auto [fast, high] = cycles_to_stop(3000);
+    EXPECT_GT(high, 10);
+    EXPECT_LE(slow * T, 1.5 * v / A) << "nearly as soon as can be";
+    EXPECT_GT(fast, 2 * slow);
+}
+
 TEST_F(RetracingPart, ACopyGoesTheSameWay) {
     for (int n = 0; n < 100; ++n) {
         go(true);

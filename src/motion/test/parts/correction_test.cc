@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "motion/core/joints/joints.hh"
+#include "sim/random.hh"
 #include "testing/limit_checker.hh"
 
 namespace mw::motion {
@@ -131,6 +132,36 @@ TEST_F(CorrectionPart, BacklashIsTakenUpWithinHalfTheJerkOfTheJoint_C11) {
     EXPECT_GT(checker.worst_jerk(), 0.4);
     EXPECT_EQ(go(-20), -0.2);
     EXPECT_EQ(go(20), 0.2);
+}
+
+TEST_F(CorrectionPart, ASlideIsWhereItIsToBeHoweverSoonTheJointTurnsBack_C11) {
+    constexpr double PLAY = 0.4;
+    set(Parameter::JOINT_BACKLASH, PLAY);
+    limit_jerk();
+    go(10);
+    double slide = at;  // of a machine with play, pushed by its motor
+    sim::Random random(7);
+    int short_turns = 0;
+    for (int n = 0; n < 300; ++n) {
+        for (int turn = 0; turn < 4; ++turn) {
+            const double way = random.real(-0.3, 0.3);
+            const int cycles = random.whole(3, 40);
+            short_turns += std::abs(way) < 0.5 * PLAY ? 1 : 0;
+            for (int k = 0; k < cycles; ++k) {
+                at += way / cycles;
+                step(correction, settings, 0, at, CYCLE_S);
+                slide = std::clamp(slide, at + correction.position - 0.5 * PLAY,
+                                   at + correction.position + 0.5 * PLAY);
+            }
+        }
+        for (int k = 0; k < 500; ++k) {
+            step(correction, settings, 0, at, CYCLE_S);
+            slide = std::clamp(slide, at + correction.position - 0.5 * PLAY,
+                               at + correction.position + 0.5 * PLAY);
+        }
+        ASSERT_NEAR(slide, at, 1e-7) << n;
+    }
+    EXPECT_GT(short_turns, 500);
 }
 
 TEST_F(CorrectionPart, SwitchedOffInTheMiddleItStandsAndGoesOnFromRest_C6) {

@@ -143,6 +143,38 @@ TEST(JogsPart, AWheelCountsTurnsAcrossTheWrapAndGivesWayToKeys) {
     EXPECT_EQ(turned(jogs.at(JOINT), wheel), 0.0) << "a key is held";
 }
 
+TEST(JogsPart, AStopOfAWheelTakesAllTheAcceleration_C5) {
+    for (const double jerk : {0.0, 2e4}) {
+        JogSituation s = free_mode();
+        s.most.jerk = jerk;
+        const auto cycles_to_stop = [&](double fraction, bool isWheelAlone) {
+            Jogs jogs = make();
+            WheelInput wheel;
+            wheel.isEnabled = wheel.isVelocityMode = true;
+            wheel.accel_fraction = fraction;
+            jog_by_wheel(jogs, JOINT, 15, wheel, s);
+            run(jogs, JOINT, 300);
+            if (isWheelAlone) {
+                turned(jogs.at(JOINT), wheel);
+            } else {
+                stop(jogs);
+            }
+            const double v = jogs.at(JOINT).planner.velocity;
+            int n = 0;
+            for (; !jogs.at(JOINT).planner.isAtRest() && n < 5000; ++n) {
+                run(jogs, JOINT, 1);
+            }
+            return std::pair{n, v};
+        };
+        const auto [stopped, v] = cycles_to_stop(0.1, false);
+        EXPECT_GT(v, 5);
+        EXPECT_LE(stopped * T, v / 500 + (jerk > 0 ? 0.06 : 0.002));
+        const auto [let_go, same] = cycles_to_stop(0.1, true);
+        EXPECT_EQ(same, v);
+        EXPECT_GE(let_go * T, v / 50) << "a wheel that stands is no stop";
+    }
+}
+
 TEST(JogsPart, OverriddenLimitsEndWithTheJog) {
     Jogs jogs = make();
     Inputs in;

@@ -70,6 +70,28 @@ class ApiTest : public testing::Test {
     std::optional<Api> api;
 };
 
+TEST_F(ApiTest, TheToolTableIsTold_G1) {
+    EXPECT_EQ(ask("GET", "/api/tools").status, 503) << "no machine is up";
+    msgs::ToolTable table;
+    table.version = 7;
+    table.tools.resize(2);
+    table.tools[1].toolno = 12;
+    table.tools[1].comment = "end mill";
+    ASSERT_TRUE(task.desk.publish_tools(table));
+    task.cycle();
+    api->tick();
+    for (int i = 0; i < 2; ++i) {  // asked again it has not changed
+        const Json told = Json::parse(ask("GET", "/api/tools").body);
+        EXPECT_EQ(told["version"], 7);
+        EXPECT_EQ(told["tools"][1]["toolno"], 12);
+        EXPECT_EQ(told["tools"][1]["comment"], "end mill");
+    }
+    table.version = 8;
+    table.tools[1].toolno = 13;
+    ASSERT_TRUE(task.desk.publish_tools(table));
+    EXPECT_EQ(Json::parse(ask("GET", "/api/tools").body)["tools"][1]["toolno"], 13);
+}
+
 TEST_F(ApiTest, TheSchemaHasEveryCommandAndStatusOfTheVocabulary_J3) {
     const Json schema = Json::parse(ask("GET", "/api/schema").body);
     EXPECT_EQ(schema["commands"].size(), msgs::command_declarations().size());

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What an operator does, as commands in their order. A sequence ends with the first command that is not done.
+import { Jogger } from './jog';
+import type { Command, Outcome } from './link';
+import { machine, send, sendQuietly, tellLocally, whenLost } from './machine.svelte';
+import { t } from './i18n/index.svelte';
+import { axisIndex, isAngularAxis, isProgramInches, type Mode } from './status';
+
+function isDone(outcome: Outcome): boolean {
+  return outcome.progress === 'DONE';
+}
+
+async function inOrder(...commands: Command[]): Promise<Outcome> {
+  let outcome: Outcome = { progress: 'DONE', reason: '' };
+  for (const command of commands) {
+    outcome = await send(command);
+    if (!isDone(outcome)) {
+      return outcome;
+    }
+  }
+  return outcome;
+}
+
+function toMode(mode: Mode): Command[] {
+  return machine.status?.task.mode === mode ? [] : [{ message: 'SetMode', mode }];
+}
+
+// Stops: one command each, sent in the event that asks for them.
+
+export function emergencyStop(): void {
+  jogger.releaseAll();
+  void send({ message: 'SetState', state: 'ESTOP' });
+}
+
+export function stopAll(): void {
+  jogger.releaseAll();
+  void send({ message: 'AbortAll' });
+}
+
+export function hold(): void {
+  void send({ message: 'PauseProgram' });
+}
+
+export function stopSpindle(spindle: number): void {
+  void send({ message: 'SpindleOff', spindle });
+}
+
+// Power and homing
+
+export const resetEmergencyStop = (): Promise<Outcome> => send({ message: 'SetState', state: 'ESTOP_RESET' });
+export const switchOn = (): Promise<Outcome> => send({ message: 'SetState', state: 'ON' });
+export const switchOff = (): Promise<Outcome> => send({ message: 'SetState', state: 'OFF' });
+
+/** Joints are homed in free mode; -1: all. */
+export function home(joint: number): Promise<Outcome> {
+  return inOrder(...toMode('MANUAL'), { message: 'HomeJoint', joint });
+}
+
+export function unhome(joint: number): Promise<Outcome> {
+  return inOrder(...toMode('MANUAL'), { message: 'UnhomeJoint', joint });
+}
+
+// Jogs
+
+function isPrepared(isJoint: boolean): boolean {
+  const status = machine.status;
+  const wanted = isJoint ? 'FREE' : 'TELEOP';
+  const isManual = status?.task.mode === 'MANUAL' || status?.task.is_away === true;
+  return isManual && status?.trajectory.mode === wanted;
+}
+
+export const jogger = new Jogger({
+  post: sendQuietly,
+  isPrepared,
+  prepare: async (isJoint) => {
+    const isAway = machine.status?.task.is_away === true;
+    const mode = isAway ? [] : toMode('MANUAL');
+    return isDone(await inOrder(...mode, { message: 'SetTeleop', teleop: !isJoint }));
+  },
+  every: (act, ms) => setInterval(act, ms),
+  cancel: (timer) => clearInterval(timer as number),
+  ended: (reason) => tellLocally(t('jog.ended', { reason })),
+});
+
+whenLost(() => jogger.releaseAll());
+
+/** Everything that ends a touch or the attention of the operator ends what moves by it. */
+export function endJogsWithAttention(target: Window): void {
+  const end = (): void => jogger.releaseAll();
+  target.addEventListener('blur', end);
+  target.addEventListener('pagehide', end);
+  target.addEventListener('freeze', end);
+  target.document.addEventListener('visibilitychange', () => {
+    if (target.document.hidden) {
+      end();
+    }
+  });
+}
+
+// Programs
+
+export function openProgram(path: string): Promise<Outcome> {
+  return inOrder(...toMode('AUTO'), { message: 'OpenProgram', path });
+}
+
+export function run(): Promise<Outcome> {
+  return inOrder(...toMode('AUTO'), { message: 'RunProgram' });
+}
+
+export function runFromLine(line: number): Promise<Outcome> {
+  return inOrder(...toMode('AUTO'), { message: 'RunProgram', from_line: line });
+}
+
+export const resume = (): Promise<Outcome> => send({ message: 'ResumeProgram' });
+export const releaseAxes = (): Promise<Outcome> => send({ message: 'ReleaseAxes' });
+export const confirmApproach = (number: number): Promise<Outcome> => send({ message: 'ConfirmApproach', number });
+export const confirmToolChange = (): Promise<Outcome> => send({ message: 'ConfirmToolChange' });
+
+export function step(): Promise<Outcome> {
+  const isIdle = machine.status?.task.interp_state === 'IDLE';
+  return inOrder(...(isIdle ? toMode('AUTO') : []), { message: 'StepProgram' });
+}
+
+export const setOptionalStop = (on: boolean): Promise<Outcome> => send({ message: 'SetOptionalStop', on });
+export const setBlockDelete = (on: boolean): Promise<Outcome> => send({ message: 'SetBlockDelete', on });
+
+// MDI
+
+export function mdi(line: string): Promise<Outcome> {
+  return inOrder(...toMode('MDI'), { message: 'Mdi', line });
+}
+
+const MM_PER_INCH = 25.4;
+
+/** A length in machine units as the program in force would write it. */
+export function inProgramUnits(value: number, letter: string): number {
+  if (isAngularAxis(axisIndex(letter)) || machine.facts === null || machine.status === null) {
+    return value;
+  }
+  const isMachineInch = machine.facts.linear_unit === 'inch';
+  const isInch = isProgramInches(machine.status.codes);
+  return isMachineInch === isInch ? value : isInch ? value / MM_PER_INCH : value * MM_PER_INCH;
+}
+
+/** The place where the tool stands becomes `value` (machine units) of the coordinate system in force. */
+export function touchOff(letter: string, value: number): Promise<Outcome> {
+  return mdi(`G10 L20 P0 ${letter}${inProgramUnits(value, letter).toFixed(6)}`);
+}
+
+// Spindle, coolant, overrides
+
+export function startSpindle(spindle: number, speed: number): Promise<Outcome> {
+  return send({ message: 'SpindleOn', spindle, speed_rpm: speed });
+}
+
+export const setFlood = (on: boolean): Promise<Outcome> => send({ message: on ? 'FloodOn' : 'FloodOff' });
+export const setMist = (on: boolean): Promise<Outcome> => send({ message: on ? 'MistOn' : 'MistOff' });
+
+export const setFeedOverride = (factor: number): Promise<Outcome> => send({ message: 'SetFeedOverride', factor });
+export const setRapidOverride = (factor: number): Promise<Outcome> => send({ message: 'SetRapidOverride', factor });
+export const setMaxVelocity = (velocity: number): Promise<Outcome> => send({ message: 'SetMaxVelocity', velocity });
+export const setSpindleOverride = (spindle: number, factor: number): Promise<Outcome> =>
+  send({ message: 'SetSpindleOverride', spindle, factor });
+export const overrideLimits = (): Promise<Outcome> => send({ message: 'OverrideLimits', joint: -1 });

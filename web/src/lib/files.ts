@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Programs in the machine's folder, by docs/api.md.
+
+export interface ProgramFile {
+  name: string;
+  size: number;
+  modified_s: number;
+}
+
+export const PIECE_BYTES = 1024 * 1024;
+
+async function ask(method: string, path: string, body?: Blob | string): Promise<Response> {
+  const answer = await fetch(path, { method, ...(body === undefined ? {} : { body }) });
+  if (!answer.ok) {
+    const told = (await answer.json().catch(() => null)) as { error?: string } | null;
+    throw new Error(told?.error ?? `${method} ${path}: ${answer.status}`);
+  }
+  return answer;
+}
+
+function address(name: string): string {
+  return `/api/files/${encodeURIComponent(name)}`;
+}
+
+export async function listPrograms(): Promise<ProgramFile[]> {
+  const told = (await (await ask('GET', '/api/files')).json()) as { files: ProgramFile[] };
+  return told.files;
+}
+
+export async function readProgram(name: string): Promise<string> {
+  return (await ask('GET', address(name))).text();
+}
+
+export async function deleteProgram(name: string): Promise<void> {
+  await ask('DELETE', address(name));
+}
+
+/** In pieces: a jog renews its lease on the same connection to the machine, and may not wait for a file. */
+export async function uploadProgram(name: string, content: Blob, tell: (share: number) => void): Promise<void> {
+  if (content.size === 0) {
+    await ask('PUT', address(name), '');
+    return;
+  }
+  for (let at = 0; at < content.size; at += PIECE_BYTES) {
+    tell(at / content.size);
+    const piece = content.slice(at, at + PIECE_BYTES);
+    await ask('PUT', `${address(name)}?offset=${at}&size=${content.size}`, piece);
+  }
+  tell(1);
+}

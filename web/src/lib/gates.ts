@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What may be done now, and if not, why and what opens it. The machine judges again, and its judgement counts;
+// these keep a person from asking for what it would refuse. No stop has a gate.
+import type { TextKey } from './i18n/en';
+import type { Values } from './i18n/text';
+import type { MachineFacts, MachineStatus } from './status';
+
+export interface Closed {
+  key: TextKey;
+  values?: Values;
+}
+
+/** Nothing where it is open. */
+export type Gate = Closed | null;
+
+export interface View {
+  isConnected: boolean;
+  isMachineUp: boolean;
+  role: string;
+  client: number;
+  status: MachineStatus | null;
+  facts: MachineFacts | null;
+}
+
+type Situation = 'estop' | 'off' | 'idle' | 'running' | 'held' | 'proposed' | 'away' | 'line';
+
+/** In the words of docs/task/states.md, with those of the modes put together. */
+export function situation(status: MachineStatus): Situation {
+  const { task } = status;
+  if (task.state === 'ESTOP') {
+    return 'estop';
+  }
+  if (task.state !== 'ON') {
+    return 'off';
+  }
+  if (status.approach.number !== 0) {
+    return 'proposed';
+  }
+  if (task.is_away) {
+    return 'away';
+  }
+  if (task.interp_state === 'IDLE') {
+    return 'idle';
+  }
+  if (task.mode === 'MDI') {
+    return 'line';
+  }
+  return task.is_paused ? 'held' : 'running';
+}
+
+const BUSY: Partial<Record<Situation, TextKey>> = {
+  running: 'gate.running',
+  held: 'gate.held',
+  proposed: 'gate.proposed',
+  away: 'gate.held',
+  line: 'gate.line',
+};
+
+/** What every command but a stop needs. */
+export function reach(view: View): Gate {
+  if (!view.isConnected) {
+    return { key: 'gate.connection' };
+  }
+  if (!view.isMachineUp || view.status === null || view.facts === null) {
+    return { key: 'gate.machine' };
+  }
+  if (view.role === 'view') {
+    return { key: 'gate.role' };
+  }
+  const { holder } = view.status.operation;
+  return holder !== 0 && holder !== view.client ? { key: 'gate.holder', values: { client: holder } } : null;
+}
+
+function closed(key: TextKey | undefined): Gate {
+  return key === undefined ? null : { key };
+}
+
+function atPower(status: MachineStatus): Gate {
+  const now = situation(status);
+  return now === 'estop' ? { key: 'gate.estop' } : now === 'off' ? { key: 'gate.off' } : null;
+}
+
+type Rule = (status: MachineStatus, facts: MachineFacts) => Gate;
+
+/** A gate made of reach() and of rules in their order: the first that is closed is what has to be done first. */
+function gate(...rules: Rule[]): (view: View) => Gate {
+  return (view) => {
+    const first = reach(view);
+    if (first !== null || view.status === null || view.facts === null) {
+      return first;
+    }
+    for (const rule of rules) {
+      const found = rule(view.status, view.facts);
+      if (found !== null) {
+        return found;
+      }
+    }
+    return null;
+  };
+}
+
+const isHomed: Rule = (status, facts) =>
+  facts.is_homing_forced && !status.trajectory.all_homed ? { key: 'gate.homed' } : null;
+const isIdle: Rule = (status) => closed(BUSY[situation(status)]);
+const isNotHoming: Rule = (status) => (status.trajectory.is_homing ? { key: 'gate.homing' } : null);
+
+export const canReset = gate();
+export const canSwitchOn = gate((status) => (status.task.state === 'ESTOP' ? { key: 'gate.estop' } : null));
+export const canSwitchOff = gate(atPower);
+export const canJog = gate(atPower, isNotHoming, (status) => {
+  const now = situation(status);
+  return now === 'away' ? null : closed(BUSY[now]);
+});
+export const canHome = gate(atPower, isIdle, isNotHoming);
+export const canOpen = gate(isIdle);
+export const canRun = gate(atPower, isIdle, isNotHoming, isHomed, (status) =>
+  status.task.program === '' ? { key: 'gate.program' } : null,
+);
+export const canResume = gate(atPower, (status) => {
+  const now = situation(status);
+  const isHeld = now === 'held' || now === 'away' || (now === 'line' && status.task.is_paused);
+  return isHeld ? null : now === 'proposed' ? { key: 'gate.proposed' } : { key: 'gate.not_held' };
+});
+export const canStep = gate(atPower, isNotHoming, isHomed, (status) => {
+  const now = situation(status);
+  if (now === 'idle') {
+    return status.task.program === '' ? { key: 'gate.program' } : null;
+  }
+  return now === 'held' || (now === 'line' && status.task.is_paused) ? null : closed(BUSY[now]);
+});
+export const canRelease = gate(atPower, (status) => {
+  const now = situation(status);
+  return now === 'held' || now === 'proposed' ? null : { key: 'gate.not_held' };
+});
+/** A line behind another one waits. */
+export const canMdi = gate(atPower, isNotHoming, isHomed, (status) => {
+  const now = situation(status);
+  return now === 'line' && !status.task.is_paused ? null : closed(BUSY[now]);
+});
+/** Set an offset: as a line, but nothing may run before it. */
+export const canTouchOff = gate(atPower, isNotHoming, isHomed, isIdle);
+export const canEnergise = gate(atPower);
+export const canOverride = gate();
+export const canOverrideFeed = gate((status) =>
+  status.overrides.feed_enabled ? null : { key: 'gate.feed_override' },
+);
+export const canChangeTools = gate(isIdle);
+
+export function canOverrideSpindle(index: number): (view: View) => Gate {
+  return gate((status) =>
+    status.spindles[index]?.override_enabled === false ? { key: 'gate.spindle_override' } : null,
+  );
+}

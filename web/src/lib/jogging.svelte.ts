@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What can be jogged now, and how fast.
+import { jogger } from './actions';
+import { machine } from './machine.svelte';
+import { prefs } from './prefs.svelte';
+import { axisIndex, isAngularAxis } from './status';
+
+export interface Target {
+  isJoint: boolean;
+  index: number;
+  letter: string;
+  name: string;
+  short: string;
+  isAngular: boolean;
+}
+
+export const jogKeys = $state({ isOn: true });
+
+/** Axes once all joints are homed, else joints one by one. */
+export function targets(): Target[] {
+  const { facts, status } = machine;
+  if (facts === null || status === null) {
+    return [];
+  }
+  if (status.trajectory.all_homed || !facts.is_homing_forced) {
+    return [...facts.axes].map((letter) => ({
+      isJoint: false,
+      index: axisIndex(letter),
+      letter,
+      name: letter,
+      short: letter,
+      isAngular: isAngularAxis(axisIndex(letter)),
+    }));
+  }
+  return facts.joint_kinds.map((kind, index) => ({
+    isJoint: true,
+    index,
+    letter: status.settings.kinematics === 'IDENTITY' && facts.joints === facts.axes.length ? (facts.axes[index] ?? '') : '',
+    name: `J${index}`,
+    short: `J${index}`,
+    isAngular: kind === 'ANGULAR',
+  }));
+}
+
+/** Machine units or degrees per second. */
+export function jogSpeed(isAngular: boolean, isRapid: boolean): number {
+  const { facts } = machine;
+  const highest = isAngular ? (facts?.max_angular_velocity ?? 0) : (facts?.max_linear_velocity ?? 0);
+  return isRapid ? highest : highest * prefs.jogShare;
+}
+
+export function press(target: Target, sign: number, isRapid: boolean): void {
+  void jogger.press({
+    isJoint: target.isJoint,
+    index: target.index,
+    velocity: sign * jogSpeed(target.isAngular, isRapid),
+    increment: prefs.increment,
+  });
+}
+
+export function release(target: { isJoint: boolean; index: number }): void {
+  jogger.release(target.isJoint, target.index);
+}
+
+/** The target that a key means. */
+export function targetOfKey(letter: string): Target | undefined {
+  return targets().find((one) => one.letter === letter);
+}

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The machine as this page knows it: one socket, one status, the messages, and what they mean together.
+import type { View } from './gates';
+import { Link, type Command, type Message, type Outcome, type Socket } from './link';
+import { mergeDelta, type MachineFacts, type MachineStatus } from './status';
+
+export interface Notice {
+  /** Of the page, rising. */
+  id: number;
+  kind: Message['kind'] | 'LOCAL';
+  text: string;
+  at: Date;
+  isRead: boolean;
+}
+
+const MOST_NOTICES = 300;
+/** What comes as the outcome of a command and as a message is one thing to tell. */
+const SAME_MS = 2000;
+const WAIT_FOR_MESSAGE_MS = 300;
+const STALE_MS = 1000;
+
+interface Known {
+  isConnected: boolean;
+  hasConnected: boolean;
+  isMachineUp: boolean;
+  goneReason: string;
+  client: number;
+  role: string;
+  version: string;
+  session: string;
+  status: MachineStatus | null;
+  facts: MachineFacts | null;
+  roundTripMs: number | null;
+  /** How old the status is, once it is too old to be shown as if it were current. [s] */
+  staleSeconds: number | null;
+}
+
+export const machine = $state<Known>({
+  isConnected: false,
+  hasConnected: false,
+  isMachineUp: false,
+  goneReason: '',
+  client: 0,
+  role: 'view',
+  version: '',
+  session: '',
+  status: null,
+  facts: null,
+  roundTripMs: null,
+  staleSeconds: null,
+});
+
+export const notices = $state<{ list: Notice[] }>({ list: [] });
+
+let lastNotice = 0;
+let statusAt = 0;
+let lastMessage = 0;
+const onLost: (() => void)[] = [];
+
+/** `act` is called when the connection or the machine goes. */
+export function whenLost(act: () => void): void {
+  onLost.push(act);
+}
+
+export function view(): View {
+  return machine;
+}
+
+function tell(kind: Notice['kind'], text: string): void {
+  const now = new Date();
+  const isKnown = notices.list.some((one) => one.text === text && now.getTime() - one.at.getTime() < SAME_MS);
+  if (isKnown || text === '') {
+    return;
+  }
+  notices.list.unshift({ id: ++lastNotice, kind, text, at: now, isRead: false });
+  if (notices.list.length > MOST_NOTICES) {
+    notices.list.length = MOST_NOTICES;
+  }
+}
+
+/** Something that this page itself has to say. */
+export function tellLocally(text: string): void {
+  tell('LOCAL', text);
+}
+
+async function fetchFacts(): Promise<void> {
+  const answer = await fetch('/api/machine');
+  if (answer.ok) {
+    machine.facts = (await answer.json()) as MachineFacts;
+    document.title = machine.facts.name;
+  } else {
+    tell('LOCAL', `GET /api/machine: ${answer.status}`);
+  }
+}
+
+function lose(): void {
+  for (const act of onLost) {
+    act();
+  }
+}
+
+const link = new Link(
+  {
+    opened(hello) {
+      machine.isConnected = true;
+      machine.hasConnected = true;
+      machine.client = hello.client;
+      machine.role = hello.role;
+      machine.version = hello.version;
+      if (machine.session !== hello.session) {
+        machine.session = hello.session;
+        lastMessage = 0;
+      }
+      machine.isMachineUp = hello.client !== 0;
+      fetchFacts().catch((error: unknown) => tell('LOCAL', String(error)));
+    },
+    closed() {
+      machine.isConnected = false;
+      machine.isMachineUp = false;
+      machine.roundTripMs = null;
+      lose();
+    },
+    status(delta, isWhole) {
+      statusAt = performance.now();
+      machine.staleSeconds = null;
+      if (isWhole || machine.status === null) {
+        machine.status = delta as unknown as MachineStatus;
+      } else {
+        mergeDelta(machine.status as unknown as Record<string, unknown>, delta);
+      }
+    },
+    message(message) {
+      if (message.number > lastMessage) {
+        lastMessage = message.number;
+        tell(message.kind, message.text);
+      }
+    },
+    machine(isUp, client, reason) {
+      machine.isMachineUp = isUp;
+      machine.client = client;
+      machine.goneReason = reason;
+      if (!isUp) {
+        machine.status = null;
+        lastMessage = 0;
+        lose();
+      }
+    },
+    roundTrip(ms) {
+      machine.roundTripMs = ms;
+    },
+  },
+  {
+    makeSocket: () => {
+      const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
+      return new WebSocket(`${scheme}://${location.host}/api/socket`) as unknown as Socket;
+    },
+    now: () => performance.now(),
+    later: (act, ms) => setTimeout(act, ms),
+    cancel: (timer) => clearTimeout(timer as number),
+  },
+);
+
+export function connect(): void {
+  link.open();
+  setInterval(() => {
+    const age = performance.now() - statusAt;
+    const isStale = machine.isMachineUp && machine.status !== null && age > STALE_MS;
+    machine.staleSeconds = isStale ? Math.floor(age / 1000) : null;
+  }, 500);
+}
+
+/** Without the word that messages have between place and text. */
+function essence(text: string): string {
+  return text.replace(': error: ', ': ').split('\n')[0] ?? '';
+}
+
+/** Task tells most of what it refuses as a message, too, which may come a little later. */
+function tellUnlessMessage(reason: string): void {
+  setTimeout(() => {
+    const since = Date.now() - SAME_MS;
+    const isTold = notices.list.some((one) => one.at.getTime() > since && essence(one.text).includes(essence(reason)));
+    if (!isTold) {
+      tell('LOCAL', reason);
+    }
+  }, WAIT_FOR_MESSAGE_MS);
+}
+
+/** Sends a command; what is refused or fails is told to the operator, too. */
+export async function send(command: Command, onStarted?: (outcome: Outcome) => void): Promise<Outcome> {
+  const outcome = await link.post(command, onStarted);
+  if (outcome.progress === 'REFUSED' || outcome.progress === 'FAILED') {
+    tellUnlessMessage(outcome.reason);
+  }
+  return outcome;
+}
+
+/** As send(), for what its caller tells itself. */
+export function sendQuietly(command: Command): Promise<Outcome> {
+  return link.post(command);
+}

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The stream of /api/path: chunks of moves, bounds, errors and the end, as docs/api.md has them.
+
+export interface Moves {
+  kind: 'moves';
+  count: number;
+  /** x, y, z of each point. */
+  places: Float32Array;
+  lines: Uint32Array;
+  /** 0 rapid, 1 feed, 2 arc, 3 probe: of the move that ends at the point. */
+  kinds: Uint8Array;
+}
+
+export type Chunk =
+  | Moves
+  | { kind: 'bounds'; low: [number, number, number]; high: [number, number, number] }
+  | { kind: 'end'; line: number; points: number }
+  | { kind: 'error'; text: string };
+
+const HEAD_BYTES = 8;
+
+function readMoves(body: ArrayBuffer): Moves {
+  const count = new DataView(body).getUint32(0, true);
+  const places = 4;
+  const lines = places + count * 12;
+  const kinds = lines + count * 4;
+  if (kinds + count > body.byteLength) {
+    throw new Error('a chunk of the path is shorter than it says');
+  }
+  return {
+    kind: 'moves',
+    count,
+    places: new Float32Array(body.slice(places, lines)),
+    lines: new Uint32Array(body.slice(lines, kinds)),
+    kinds: new Uint8Array(body.slice(kinds, kinds + count)),
+  };
+}
+
+function readChunk(kind: number, body: ArrayBuffer): Chunk {
+  const words = new DataView(body);
+  const three = (at: number): [number, number, number] => [
+    words.getFloat32(at, true),
+    words.getFloat32(at + 4, true),
+    words.getFloat32(at + 8, true),
+  ];
+  switch (kind) {
+    case 1:
+      return readMoves(body);
+    case 2:
+      return { kind: 'bounds', low: three(0), high: three(12) };
+    case 3:
+      return { kind: 'end', line: words.getUint32(0, true), points: words.getUint32(4, true) };
+    case 4:
+      return { kind: 'error', text: new TextDecoder().decode(body).trimEnd() };
+    default:
+      throw new Error(`the path has a chunk of the unknown kind ${kind}`);
+  }
+}
+
+/** Takes the bytes as they come, gives chunks that are whole. */
+export class ChunkReader {
+  private pieces: Uint8Array[] = [];
+  private bytes = 0;
+
+  take(piece: Uint8Array): Chunk[] {
+    this.pieces.push(piece);
+    this.bytes += piece.length;
+    const chunks: Chunk[] = [];
+    for (;;) {
+      const size = this.sizeOfNext();
+      if (size === null || this.bytes < size) {
+        return chunks;
+      }
+      const whole = this.cut(size);
+      const kind = new DataView(whole).getUint32(0, true);
+      chunks.push(readChunk(kind, whole.slice(HEAD_BYTES)));
+    }
+  }
+
+  /** Bytes of a chunk that has begun and not ended. */
+  get isWhole(): boolean {
+    return this.bytes === 0;
+  }
+
+  private sizeOfNext(): number | null {
+    if (this.bytes < HEAD_BYTES) {
+      return null;
+    }
+    const first = this.pieces[0];
+    if (first === undefined || first.length < HEAD_BYTES) {
+      this.join();
+    }
+    const head = this.pieces[0] as Uint8Array;
+    return HEAD_BYTES + new DataView(head.buffer, head.byteOffset).getUint32(4, true);
+  }
+
+  private join(): void {
+    const whole = new Uint8Array(this.bytes);
+    let at = 0;
+    for (const piece of this.pieces) {
+      whole.set(piece, at);
+      at += piece.length;
+    }
+    this.pieces = [whole];
+  }
+
+  private cut(size: number): ArrayBuffer {
+    this.join();
+    const whole = this.pieces[0] as Uint8Array;
+    const rest = whole.subarray(size);
+    this.pieces = rest.length > 0 ? [rest] : [];
+    this.bytes = rest.length;
+    return whole.slice(0, size).buffer as ArrayBuffer;
+  }
+}

@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The path, the tool and the limits of the machine, drawn when something has changed. Machine coordinates; Z is up.
+import {
+  Box3,
+  BoxGeometry,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  ColorManagement,
+  ConeGeometry,
+  EdgesGeometry,
+  GLSL3,
+  Group,
+  Line,
+  LinearSRGBColorSpace,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshBasicMaterial,
+  OrthographicCamera,
+  Scene,
+  ShaderMaterial,
+  Vector3,
+  WebGLRenderer,
+} from 'three';
+import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import type { Moves } from './chunks';
+import { thin } from './thin';
+
+export interface SceneColors {
+  background: string;
+  rapid: string;
+  feed: string;
+  arc: string;
+  probe: string;
+  current: string;
+  limits: string;
+  tool: string;
+  trail: string;
+}
+
+export type ViewName = 'top' | 'front' | 'side' | 'iso';
+
+// The kind of a move belongs to the point at which it ends, which is the one that decides under `flat`.
+const VERTEX = `
+  in float kind;
+  in uint line;
+  flat out float vKind;
+  flat out uint vLine;
+  void main() {
+    vKind = kind;
+    vLine = line;
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  }`;
+const FRAGMENT = `
+  precision highp float;
+  flat in float vKind;
+  flat in uint vLine;
+  uniform vec3 rapid, feed, arc, probe, current;
+  uniform uint currentLine;
+  out vec4 color;
+  void main() {
+    vec3 shade = vKind < 0.5 ? rapid : vKind < 1.5 ? feed : vKind < 2.5 ? arc : probe;
+    if (currentLine > 0u && vLine == currentLine) { shade = current; }
+    color = vec4(shade, 1.0);
+  }`;
+
+const DIRECTIONS: Record<ViewName, [number, number, number]> = {
+  top: [0, -0.0001, 1],
+  front: [0, -1, 0],
+  side: [1, 0, 0],
+  iso: [-0.6, -1, 0.75],
+};
+
+const TRAIL_POINTS = 4000;
+/** While it is turned, no more points than this are drawn. */
+const POINTS_IN_MOTION = 150_000;
+const STILL_AFTER_MS = 180;
+
+interface Piece {
+  whole: Line;
+  coarse: Line | null;
+}
+
+export class PathScene {
+  private readonly renderer: WebGLRenderer;
+  private readonly scene = new Scene();
+  private readonly camera = new OrthographicCamera(-100, 100, 100, -100, -1e5, 1e5);
+  private readonly controls: OrbitControls;
+  private readonly material: ShaderMaterial;
+  private readonly path = new Group();
+  private readonly tool: Mesh;
+  private readonly limits: LineSegments;
+  private readonly trail: Line;
+  private readonly trailPlaces = new Float32Array(TRAIL_POINTS * 3);
+  private trailCount = 0;
+  private pieces: Piece[] = [];
+  private box = new Box3();
+  private limitBox = new Box3();
+  private frame = 0;
+  private stillTimer: ReturnType<typeof setTimeout> | undefined;
+  private isMoving = false;
+  private points = 0;
+  /** How long the last frames took to be told to the GPU. [ms] */
+  readonly frameTimes: number[] = [];
+
+  constructor(canvas: HTMLCanvasElement) {
+    ColorManagement.enabled = false; // colours are those of the page
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'low-power' });
+    this.renderer.outputColorSpace = LinearSRGBColorSpace;
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = false;
+    this.controls.addEventListener('change', () => this.noteMotion());
+    this.material = new ShaderMaterial({
+      glslVersion: GLSL3,
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      uniforms: {
+        rapid: { value: new Color() },
+        feed: { value: new Color() },
+        arc: { value: new Color() },
+        probe: { value: new Color() },
+        current: { value: new Color() },
+        currentLine: { value: 0 },
+      },
+    });
+    this.tool = makeTool();
+    this.limits = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
+    const trailGeometry = new BufferGeometry();
+    trailGeometry.setAttribute('position', new BufferAttribute(this.trailPlaces, 3));
+    this.trail = new Line(trailGeometry, new LineBasicMaterial());
+    this.trail.frustumCulled = false;
+    trailGeometry.setDrawRange(0, 0);
+    this.scene.add(this.path, this.limits, this.trail, this.tool);
+    this.look('iso');
+  }
+
+  setColors(colors: SceneColors): void {
+    this.renderer.setClearColor(new Color(colors.background));
+    const { uniforms } = this.material;
+    for (const name of ['rapid', 'feed', 'arc', 'probe', 'current'] as const) {
+      uniforms[name]?.value.set(colors[name]);
+    }
+    (this.limits.material as LineBasicMaterial).color.set(colors.limits);
+    (this.trail.material as LineBasicMaterial).color.set(colors.trail);
+    (this.tool.material as MeshBasicMaterial).color.set(colors.tool);
+    this.draw();
+  }
+
+  clearPath(): void {
+    for (const { whole, coarse } of this.pieces) {
+      whole.geometry.dispose();
+      coarse?.geometry.dispose();
+    }
+    this.path.clear();
+    this.pieces = [];
+    this.points = 0;
+    this.box.makeEmpty();
+    this.trailCount = 0;
+    this.trail.geometry.setDrawRange(0, 0);
+    this.draw();
+  }
+
+  addMoves(moves: Moves): void {
+    const whole = this.makeLine(moves);
+    this.path.add(whole);
+    this.pieces.push({ whole, coarse: null });
+    this.points += moves.count;
+    const isFirst = this.box.isEmpty();
+    this.box.union(whole.geometry.boundingBox ?? new Box3());
+    if (isFirst) {
+      this.fit();
+    }
+    this.draw();
+  }
+
+  /** The path has come to its end: a coarse one is made for the time in which it is turned. */
+  finish(): void {
+    this.fit();
+    if (this.points <= POINTS_IN_MOTION) {
+      return;
+    }
+    const size = this.box.getSize(new Vector3()).length();
+    for (const piece of this.pieces) {
+      const { position, kind, line } = piece.whole.geometry.attributes;
+      const thinned = thin(
+        {
+          kind: 'moves',
+          count: position?.count ?? 0,
+          places: position?.array as Float32Array,
+          lines: line?.array as Uint32Array,
+          kinds: kind?.array as Uint8Array,
+        },
+        size / 500,
+      );
+      piece.coarse = this.makeLine(thinned);
+    }
+  }
+
+  setLimits(low: [number, number, number], high: [number, number, number]): void {
+    this.limitBox.set(new Vector3(...low), new Vector3(...high));
+    const size = this.limitBox.getSize(new Vector3());
+    const box = new BoxGeometry(size.x, size.y, size.z);
+    this.limits.geometry.dispose();
+    this.limits.geometry = new EdgesGeometry(box);
+    box.dispose();
+    this.limitBox.getCenter(this.limits.position);
+    if (this.box.isEmpty()) {
+      this.fit();
+    }
+    this.draw();
+  }
+
+  isBeyondLimits(): boolean {
+    const slack = 1e-4;
+    return !this.box.isEmpty() && !this.limitBox.isEmpty() && !this.limitBox.clone().expandByScalar(slack).containsBox(this.box);
+  }
+
+  /** Of the controlled point; with the trail of where it has been. */
+  setTool(x: number, y: number, z: number, isCutting: boolean): void {
+    if (this.tool.position.x === x && this.tool.position.y === y && this.tool.position.z === z) {
+      return;
+    }
+    this.tool.position.set(x, y, z);
+    if (isCutting) {
+      this.addToTrail(x, y, z);
+    }
+    this.draw();
+  }
+
+  setCurrentLine(line: number): void {
+    const { currentLine } = this.material.uniforms;
+    if (currentLine !== undefined && currentLine.value !== line) {
+      currentLine.value = line;
+      this.draw();
+    }
+  }
+
+  look(name: ViewName): void {
+    const [x, y, z] = DIRECTIONS[name];
+    const target = this.controls.target;
+    this.camera.position.set(target.x + x * 1000, target.y + y * 1000, target.z + z * 1000);
+    this.camera.lookAt(target);
+    this.fit();
+  }
+
+  /** The path, or the room of the machine where there is none, fills the picture. */
+  fit(): void {
+    const box = this.box.isEmpty() ? this.limitBox : this.box;
+    if (box.isEmpty()) {
+      return;
+    }
+    const centre = box.getCenter(new Vector3());
+    const offset = this.camera.position.clone().sub(this.controls.target).setLength(1000);
+    this.controls.target.copy(centre);
+    this.camera.position.copy(centre).add(offset);
+    this.camera.lookAt(centre);
+    this.camera.updateMatrixWorld();
+    let [wide, high] = [1e-3, 1e-3];
+    for (let i = 0; i < 8; ++i) {
+      const corner = new Vector3(
+        i & 1 ? box.max.x : box.min.x,
+        i & 2 ? box.max.y : box.min.y,
+        i & 4 ? box.max.z : box.min.z,
+      ).applyMatrix4(this.camera.matrixWorldInverse);
+      wide = Math.max(wide, Math.abs(corner.x));
+      high = Math.max(high, Math.abs(corner.y));
+    }
+    const room = 1.12;
+    this.camera.zoom = 1 / (room * Math.max(wide / this.camera.right, high / this.camera.top));
+    this.camera.updateProjectionMatrix();
+    this.scaleTool();
+    this.draw();
+  }
+
+  resize(width: number, height: number): void {
+    if (width < 2 || height < 2) {
+      return;
+    }
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.setSize(width, height, false);
+    const half = 100;
+    const aspect = width / height;
+    this.camera.top = half;
+    this.camera.bottom = -half;
+    this.camera.right = half * aspect;
+    this.camera.left = -half * aspect;
+    this.camera.updateProjectionMatrix();
+    this.fit();
+  }
+
+  dispose(): void {
+    cancelAnimationFrame(this.frame);
+    clearTimeout(this.stillTimer);
+    this.clearPath();
+    this.controls.dispose();
+    this.material.dispose();
+    this.renderer.dispose();
+  }
+
+  private makeLine(moves: Moves): Line {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', new BufferAttribute(moves.places, 3));
+    geometry.setAttribute('kind', new BufferAttribute(moves.kinds, 1));
+    geometry.setAttribute('line', new BufferAttribute(moves.lines, 1));
+    geometry.computeBoundingBox();
+    geometry.computeBoundingSphere();
+    return new Line(geometry, this.material);
+  }
+
+  private addToTrail(x: number, y: number, z: number): void {
+    if (this.trailCount === TRAIL_POINTS) {
+      this.trailPlaces.copyWithin(0, 3);
+      this.trailCount -= 1;
+    }
+    this.trailPlaces.set([x, y, z], this.trailCount * 3);
+    this.trailCount += 1;
+    const { geometry } = this.trail;
+    geometry.setDrawRange(0, this.trailCount);
+    const position = geometry.getAttribute('position');
+    position.needsUpdate = true;
+  }
+
+  private noteMotion(): void {
+    this.isMoving = true;
+    clearTimeout(this.stillTimer);
+    this.stillTimer = setTimeout(() => {
+      this.isMoving = false;
+      this.draw();
+    }, STILL_AFTER_MS);
+    this.scaleTool();
+    this.draw();
+  }
+
+  /** As large on the screen at any zoom. */
+  private scaleTool(): void {
+    this.tool.scale.setScalar(1 / this.camera.zoom);
+  }
+
+  private draw(): void {
+    if (this.frame !== 0) {
+      return;
+    }
+    this.frame = requestAnimationFrame(() => {
+      this.frame = 0;
+      const begin = performance.now();
+      this.choose();
+      this.renderer.render(this.scene, this.camera);
+      this.frameTimes.push(performance.now() - begin);
+      if (this.frameTimes.length > 600) {
+        this.frameTimes.shift();
+      }
+    });
+  }
+
+  /** Whole pieces while it stands, coarse ones while it is turned. */
+  private choose(): void {
+    const isCoarse = this.isMoving && this.points > POINTS_IN_MOTION;
+    const wanted = (piece: Piece): Line => (isCoarse && piece.coarse !== null ? piece.coarse : piece.whole);
+    if (this.pieces.length > 0 && this.path.children[0] !== wanted(this.pieces[0] as Piece)) {
+      this.path.clear();
+      this.path.add(...this.pieces.map(wanted));
+    }
+  }
+}
+
+/** A cone on its point. */
+function makeTool(): Mesh {
+  const geometry = new ConeGeometry(4, 14, 20);
+  geometry.rotateX(-Math.PI / 2);
+  geometry.translate(0, 0, 7);
+  return new Mesh(geometry, new MeshBasicMaterial({ transparent: true, opacity: 0.85 }));
+}

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The status as the server tells it: docs/messages.md, MachineStatus. Lengths in machine units, angles in degrees.
+
+export type State = 'ESTOP' | 'ESTOP_RESET' | 'OFF' | 'ON';
+export type Mode = 'MANUAL' | 'AUTO' | 'MDI';
+export type InterpState = 'IDLE' | 'READING' | 'PAUSED' | 'WAITING';
+
+export interface TaskStatus {
+  state: State;
+  mode: Mode;
+  interp_state: InterpState;
+  exec_state: string;
+  is_away: boolean;
+  is_paused: boolean;
+  stopped_by_program: boolean;
+  optional_stop: boolean;
+  block_delete: boolean;
+  program: string;
+  read_line: number;
+  motion_line: number;
+  stop_line: number;
+  programs_ended: number;
+  queued_mdi: number;
+  waiting: { what: string; index: number };
+  delay_left: number;
+  block: string;
+}
+
+export interface Codes {
+  g: number[];
+  m: number[];
+  settings: number[];
+}
+
+export interface Offsets {
+  g5x_index: number;
+  g5x: number[];
+  g92: number[];
+  tool: number[];
+  rotation_xy_deg: number;
+}
+
+export interface Trajectory {
+  num_joints: number;
+  num_spindles: number;
+  mode: 'FREE' | 'COORD' | 'TELEOP';
+  is_enabled: boolean;
+  in_position: boolean;
+  is_paused: boolean;
+  all_homed: boolean;
+  is_homing: boolean;
+  move_kind: string;
+  current_velocity: number;
+  requested_velocity: number;
+  distance_to_go: number;
+  position_cmd: number[];
+  position_fb: number[];
+  position_valid: boolean;
+  dtg: number[];
+}
+
+export interface Joint {
+  is_present: boolean;
+  pos_cmd: number;
+  pos_fb: number;
+  vel_cmd: number;
+  ferror: number;
+  min_limit: number;
+  max_limit: number;
+  is_enabled: boolean;
+  is_homing: boolean;
+  is_homed: boolean;
+  is_faulted: boolean;
+  on_neg_soft_limit: boolean;
+  on_pos_soft_limit: boolean;
+  on_neg_hard_limit: boolean;
+  on_pos_hard_limit: boolean;
+  ferror_tripped: boolean;
+  overriding_limits: boolean;
+}
+
+export interface Spindle {
+  is_present: boolean;
+  speed_cmd_rpm: number;
+  override_factor: number;
+  speed_in_rps: number;
+  direction: number;
+  is_on: boolean;
+  at_speed: boolean;
+  brake_on: boolean;
+  override_enabled: boolean;
+}
+
+export interface Approach {
+  number: number;
+  to: 'NOTHING' | 'LINE' | 'PLACE_LEFT' | 'PLACE_LOST';
+  line: number;
+  tool: number;
+  must_change_tool: boolean;
+  mist: boolean;
+  flood: boolean;
+  feed: number;
+  speeds_rpm: number[];
+  offsets: Offsets;
+  codes: Codes;
+  num_moves: number;
+  moves: { end: number[]; rapid: boolean }[];
+}
+
+export interface MachineStatus {
+  cycle: number;
+  time_ns: number;
+  task: TaskStatus;
+  codes: Codes;
+  offsets: Offsets;
+  trajectory: Trajectory;
+  probe: { position: number[]; is_probing: boolean; tripped: boolean; on: boolean };
+  overrides: { feed: number; rapid: number; net: number; feed_enabled: boolean };
+  joints: Joint[];
+  axes: { is_present: boolean; velocity: number; min_limit: number; max_limit: number }[];
+  spindles: Spindle[];
+  tool: {
+    in_spindle: number;
+    prepared_index: number;
+
+    table_version: number;
+    person_asked: boolean;
+    faulted: boolean;
+    cut_time_s: number;
+  };
+  io: {
+    aux: { estop_requested: boolean; chain_closed: boolean };
+    coolant: { mist: boolean; flood: boolean };
+  };
+  operation: { holder: number; lease_left_s: number };
+  approach: Approach;
+  settings: { max_velocity: number; linear_units: number; kinematics: string };
+}
+
+export interface MachineFacts {
+  name: string;
+  ini: string;
+  instance: string;
+  axes: string;
+  joints: number;
+  joint_kinds: string[];
+  is_homing_forced: boolean;
+  linear_unit: 'mm' | 'inch';
+  program_prefix: string;
+  max_linear_velocity: number;
+  default_linear_velocity: number;
+  max_angular_velocity: number;
+  default_angular_velocity: number;
+  increments: { text: string; value: number; angular: boolean }[];
+  mdi_commands: string[];
+  program_extensions: string[];
+  max_feed_override: number;
+  min_spindle_override: number;
+  max_spindle_override: number;
+  default_spindle_speed: number;
+}
+
+type Tree = { [key: string]: unknown };
+
+function isTree(value: unknown): value is Tree {
+  return typeof value === 'object' && value !== null;
+}
+
+/** Puts what has changed into `whole`, nested as in the whole; of arrays the elements by index. */
+export function mergeDelta(whole: Tree | unknown[], delta: Tree): void {
+  const target = whole as Tree;
+  for (const [key, value] of Object.entries(delta)) {
+    const old = target[key];
+    if (isTree(value) && !Array.isArray(value) && isTree(old)) {
+      mergeDelta(old, value);
+    } else {
+      target[key] = value;
+    }
+  }
+}
+
+export const AXIS_LETTERS = 'XYZABCUVW';
+
+/** Number of an axis in poses. */
+export function axisIndex(letter: string): number {
+  return AXIS_LETTERS.indexOf(letter);
+}
+
+export function isAngularAxis(index: number): boolean {
+  return index >= 3 && index <= 5;
+}
+
+/** Where the controlled point stands in the program's coordinates, in machine units. */
+export function workPosition(position: readonly number[], offsets: Offsets): number[] {
+  const at = position.map((value, i) => value - (offsets.g5x[i] ?? 0) - (offsets.tool[i] ?? 0));
+  const angle = (-offsets.rotation_xy_deg * Math.PI) / 180;
+  const [x, y] = [at[0] ?? 0, at[1] ?? 0];
+  if (angle !== 0) {
+    at[0] = x * Math.cos(angle) - y * Math.sin(angle);
+    at[1] = x * Math.sin(angle) + y * Math.cos(angle);
+  }
+  return at.map((value, i) => value - (offsets.g92[i] ?? 0));
+}
+
+/** Modal codes in force as they are written, "G54"; those that are none left out. */
+export function modalWords(codes: Codes): string[] {
+  const words: string[] = [];
+  for (const code of codes.g.slice(1)) {
+    if (code >= 0) {
+      words.push(`G${code % 10 === 0 ? code / 10 : (code / 10).toFixed(1)}`);
+    }
+  }
+  for (const code of codes.m.slice(1)) {
+    if (code >= 0) {
+      words.push(`M${code}`);
+    }
+  }
+  return words;
+}
+
+const SYSTEMS = ['', 'G54', 'G55', 'G56', 'G57', 'G58', 'G59', 'G59.1', 'G59.2', 'G59.3'];
+
+export function systemName(index: number): string {
+  return SYSTEMS[index] ?? `#${index}`;
+}
+
+/** G20: programs and MDI count in inches. */
+export function isProgramInches(codes: Codes): boolean {
+  return codes.g.includes(200);
+}

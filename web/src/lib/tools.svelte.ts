@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The tool table, read again when the status says that there is another one.
+import { machine, tellLocally } from './machine.svelte';
+
+export interface Tool {
+  toolno: number;
+  pocketno: number;
+  offset: number[];
+  diameter: number;
+  frontangle_deg: number;
+  backangle_deg: number;
+  orientation: number;
+  comment: string;
+}
+
+export const tools = $state<{ version: number; list: Tool[] }>({ version: -1, list: [] });
+
+let isReading = false;
+
+/** To be called in an effect: reads what is new. */
+export function followTools(): void {
+  const wanted = machine.isMachineUp ? (machine.status?.tool.table_version ?? -1) : -1;
+  if (wanted === -1) {
+    tools.version = -1;
+    return;
+  }
+  if (wanted !== tools.version && !isReading) {
+    isReading = true;
+    void read().finally(() => {
+      isReading = false;
+    });
+  }
+}
+
+async function read(): Promise<void> {
+  const answer = await fetch('/api/tools');
+  const told = (await answer.json()) as { version?: number; tools?: Tool[]; error?: string };
+  if (!answer.ok || told.tools === undefined || told.version === undefined) {
+    tellLocally(told.error ?? `GET /api/tools: ${answer.status}`);
+    return;
+  }
+  tools.list = told.tools;
+  tools.version = told.version;
+}
+
+/** Of the entry that T has prepared; null when it is not known yet. */
+export function preparedTool(): number | null {
+  const index = machine.status?.tool.prepared_index ?? -1;
+  return index < 0 ? null : (tools.list[index]?.toolno ?? null);
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Why something cannot be done now: shown where the operator looks, for as long as it takes to read.
+import type { Gate } from './gates';
+
+const SHOWN_MS = 8000;
+
+export const why = $state<{ gate: Gate; what: string; number: number }>({ gate: null, what: '', number: 0 });
+
+let timer: ReturnType<typeof setTimeout> | undefined;
+
+export function explain(gate: Gate, what: string): void {
+  why.gate = gate;
+  why.what = what;
+  why.number += 1;
+  clearTimeout(timer);
+  timer = setTimeout(() => {
+    why.gate = null;
+  }, SHOWN_MS);
+}
+
+export function forgetWhy(): void {
+  clearTimeout(timer);
+  why.gate = null;
+}
+
+/** Does it where the gate is open, else says why not. */
+export function through(gate: Gate, what: string, act: () => unknown): void {
+  if (gate === null) {
+    forgetWhy();
+    void act();
+  } else {
+    explain(gate, what);
+  }
+}

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A simulated mill by the clock, its server, and a browser: an instance, folders and ports of their own for each file.
+import { execFileSync, spawn, type ChildProcess } from 'node:child_process';
+import { cpSync, existsSync, mkdirSync, mkdtempSync, openSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { chromium, type Browser, type BrowserContextOptions, type Page } from 'playwright-core';
+import type { TestContext } from 'vitest';
+
+const ROOT = fileURLToPath(new URL('../..', import.meta.url));
+const BUILD = process.env['MW_BUILD'] ?? join(ROOT, 'build/release');
+const CHROMIUM = process.env['MW_CHROMIUM'] ?? '/usr/bin/chromium';
+const FLAGS = ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'];
+const STEP_MS = 40_000;
+
+const BY_HAND = `unlinkp iocontrol.0.tool-change
+unlinkp iocontrol.0.tool-changed
+`;
+
+export function sleep(ms: number): Promise<void> {
+  return new Promise((done) => setTimeout(done, ms));
+}
+
+export async function until(isTrue: () => boolean | Promise<boolean>, what: string, ms = STEP_MS): Promise<void> {
+  const deadline = Date.now() + ms;
+  while (!(await isTrue())) {
+    if (Date.now() > deadline) {
+      throw new Error(`waited in vain for: ${what}`);
+    }
+    await sleep(20);
+  }
+}
+
+interface Started {
+  process: ChildProcess;
+  output: string;
+}
+
+export class Rig {
+  readonly folder = mkdtempSync(join(tmpdir(), 'mw-screen-'));
+  readonly programs = join(this.folder, 'programs');
+  readonly ini: string;
+  private readonly env: NodeJS.ProcessEnv;
+  private readonly started: Started[] = [];
+  private browser: Browser | null = null;
+  private files = 0;
+  address = '';
+
+  constructor(change: (ini: string) => string = (ini) => ini, machine = 'mill_mm') {
+    if (!existsSync(CHROMIUM)) {
+      throw new Error(`there is no ${CHROMIUM}: script/bootstrap installs it`);
+    }
+    cpSync(join(ROOT, 'configs'), join(this.folder, 'configs'), { recursive: true, filter: (path) => !path.endsWith('.var') });
+    mkdirSync(this.programs);
+    this.ini = join(this.folder, `configs/sim/${machine}.ini`);
+    const plain = readFileSync(this.ini, 'utf8');
+    writeFileSync(join(this.folder, 'configs/sim/by_hand.hal'), BY_HAND);
+    writeFileSync(this.ini, change(plain.replace(/PROGRAM_PREFIX = .*/, `PROGRAM_PREFIX = ${this.programs}`)));
+    this.env = { ...process.env, MILLWRIGHT_INSTANCE: `screen-${process.pid}-${Math.floor(performance.now())}` };
+  }
+
+  write(name: string, text: string): void {
+    writeFileSync(join(this.programs, name), text);
+  }
+
+  private begin(words: string[]): Started {
+    const output = join(this.folder, `${this.files++}.out`);
+    const file = openSync(output, 'w');
+    const process = spawn(join(BUILD, 'bin/millwright'), words, { env: this.env, stdio: ['ignore', file, file] });
+    const one = { process, output };
+    this.started.push(one);
+    return one;
+  }
+
+  async startMachine(): Promise<ChildProcess> {
+    const one = this.begin(['start', this.ini, '--no-display']);
+    const told = (): string => readFileSync(one.output, 'utf8');
+    await until(() => told().includes('is up') || one.process.exitCode !== null, 'the machine');
+    if (one.process.exitCode !== null) {
+      throw new Error(`the machine has ended: ${told()}`);
+    }
+    return one.process;
+  }
+
+  /** On a free port, or on the one of before. */
+  async startServer(port = 0): Promise<ChildProcess> {
+    const one = this.begin(['ui', this.ini, '--port', String(port)]);
+    const told = (): string => readFileSync(one.output, 'utf8');
+    await until(() => told().includes('http://') || one.process.exitCode !== null, 'the server');
+    const address = /http:\/\/[\d.]+:\d+\//.exec(told())?.[0];
+    if (address === undefined) {
+      throw new Error(`the server has ended: ${told()}`);
+    }
+    this.address = address;
+    return one.process;
+  }
+
+  get port(): number {
+    return Number(new URL(this.address).port);
+  }
+
+  async page(options: BrowserContextOptions = {}): Promise<Page> {
+    this.browser ??= await chromium.launch({ executablePath: CHROMIUM, args: FLAGS });
+    const context = await this.browser.newContext({ viewport: { width: 1280, height: 800 }, locale: 'en-GB', colorScheme: 'dark', ...options });
+    const page = await context.newPage();
+    page.setDefaultTimeout(10_000);
+    const errors: string[] = [];
+    page.on('pageerror', (error) => errors.push(String(error)));
+    page.on('console', (text) => {
+      if (text.type() === 'error' && !text.text().includes('ERR_CONNECTION_REFUSED')) {
+        errors.push(text.text());
+      }
+    });
+    (page as Page & { errors: string[] }).errors = errors;
+    await page.goto(this.address);
+    return page;
+  }
+
+  /** A pin of HAL. */
+  pin(name: string): string {
+    return execFileSync(join(BUILD, 'bin/halcmd'), ['getp', name], { env: this.env, encoding: 'utf8' }).trim();
+  }
+  setPin(name: string, value: string): void {
+    execFileSync(join(BUILD, 'bin/halcmd'), ['setp', name, value], { env: this.env });
+  }
+  position(joint: number): number {
+    return Number(this.pin(`joint.${joint}.pos-cmd`));
+  }
+
+  async end(): Promise<void> {
+    await this.browser?.close();
+    for (const { process } of this.started) {
+      if (process.exitCode === null && process.signalCode === null) {
+        process.kill('SIGTERM');
+      }
+    }
+    await Promise.all(
+      this.started.map(async ({ process }) => {
+        try {
+          await until(() => process.exitCode !== null || process.signalCode !== null, 'an end', 10_000);
+        } catch {
+          process.kill('SIGKILL');
+        }
+      }),
+    );
+    rmSync(this.folder, { recursive: true, force: true });
+  }
+}
+
+export function errorsOf(page: Page): string[] {
+  return (page as Page & { errors: string[] }).errors;
+}
+
+export async function text(page: Page, id: string): Promise<string> {
+  return (await page.getByTestId(id).innerText()).trim();
+}
+
+export async function untilText(page: Page, id: string, wanted: string | RegExp, ms = 10_000): Promise<void> {
+  let last = '';
+  try {
+    await until(async () => {
+      last = (await page.getByTestId(id).first().isVisible()) ? (await page.getByTestId(id).first().innerText()).trim() : '';
+      return typeof wanted === 'string' ? last === wanted : wanted.test(last);
+    }, '', ms);
+  } catch {
+    throw new Error(`${id} is '${last}', not ${String(wanted)}`);
+  }
+}
+
+/** Out of emergency stop, on, homed: by the buttons. */
+export async function bringUp(page: Page): Promise<void> {
+  await page.getByTestId('reset').click();
+  await page.getByTestId('on').click();
+  await untilText(page, 'state', 'On');
+  await page.getByTestId('home-all').click();
+  await untilText(page, 'homed-0', 'homed', 30_000);
+  await untilText(page, 'homed-1', 'homed', 30_000);
+  await untilText(page, 'homed-2', 'homed', 30_000);
+  await untilText(page, 'run-state', 'Idle');
+}
+
+/** A picture of the page, and what it says, of a test that has failed: where MW_SCREEN_PICTURES names a folder. */
+export async function showFailure(context: TestContext, page: Page): Promise<void> {
+  const folder = process.env['MW_SCREEN_PICTURES'];
+  if (context.task.result?.state === 'fail' && folder !== undefined) {
+    await page.screenshot({ path: join(folder, `${context.task.name.replace(/\W+/g, '_')}.png`) });
+  }
+}

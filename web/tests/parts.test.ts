@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+import { describe, expect, it } from 'vitest';
+import { de } from '../src/lib/i18n/de';
+import { en, type TextKey } from '../src/lib/i18n/en';
+import { es } from '../src/lib/i18n/es';
+import { fill, placesOf } from '../src/lib/i18n/text';
+import { formatBytes, formatDuration, formatNumber, parseNumber } from '../src/lib/numbers';
+import { ChunkReader, type Chunk } from '../src/lib/path/chunks';
+import { thin } from '../src/lib/path/thin';
+import { mergeDelta, modalWords, workPosition } from '../src/lib/status';
+
+describe('numbers (A8)', () => {
+  it.each([
+    ['1', 1], ['-1.5', -1.5], ['+2,25', 2.25], ['.5', 0.5], [',5', 0.5], ['3.', 3], ['  7 ', 7],
+  ])('reads %s', (text, value) => expect(parseNumber(text)).toBe(value));
+  it.each(['', '1.2.3', '1,000.5', '1 000', 'x', '1e5', '-', '.', 'Infinity', '0x10', '1..'])('refuses %s', (text) => expect(parseNumber(text)).toBeNull());
+  it('shows no minus before a zero, and a dash where there is no number', () => {
+    expect(formatNumber(-0.0001, 3)).toBe('0.000');
+    expect(formatNumber(-0.0006, 3)).toBe('-0.001');
+    expect(formatNumber(1.5, 2, ',')).toBe('1,50');
+    expect(formatNumber(null, 3)).toBe('-');
+    expect(formatNumber(NaN, 3)).toBe('-');
+  });
+  it('shows times and sizes', () => {
+    expect(formatDuration(3661)).toBe('1:01:01');
+    expect(formatDuration(59.6)).toBe('1:00');
+    expect(formatBytes(999)).toBe('999 B');
+    expect(formatBytes(1_500_000)).toBe('1.5 MB');
+  });
+});
+
+describe('catalogues (A8)', () => {
+  it.each([['de', de], ['es', es]] as const)('%s has every text with the same places', (_name, catalogue) => {
+    expect(Object.keys(catalogue).sort()).toEqual(Object.keys(en).sort());
+    for (const key of Object.keys(en) as TextKey[]) {
+      expect(placesOf(catalogue[key]), key).toEqual(placesOf(en[key]));
+      expect(catalogue[key].trim(), key).not.toBe('');
+    }
+  });
+  it('fills places, and shows one that nobody fills', () => {
+    expect(fill('{a} of {b}', { a: 1 })).toBe('1 of {b}');
+  });
+});
+
+describe('status', () => {
+  it('takes what has changed, of arrays by index', () => {
+    const whole = { a: { b: 1, c: [1, 2, 3] }, joints: [{ p: 1, q: 2 }, { p: 3, q: 4 }], t: 'x' };
+    mergeDelta(whole, { a: { c: { 1: 9 } }, joints: { 1: { p: 7 } }, t: 'y' });
+    expect(whole).toEqual({ a: { b: 1, c: [1, 9, 3] }, joints: [{ p: 1, q: 2 }, { p: 7, q: 4 }], t: 'y' });
+  });
+  it('takes a value that became none, and one again', () => {
+    const whole: Record<string, unknown> = { v: 1 };
+    mergeDelta(whole, { v: null });
+    expect(whole['v']).toBeNull();
+    mergeDelta(whole, { v: 2 });
+    expect(whole['v']).toBe(2);
+  });
+  it('calculates work coordinates as the interpreter does: rotate(program + G92) + G5x + tool', () => {
+    const zero = [0, 0, 0, 0, 0, 0, 0, 0, 0];
+    const offsets = { g5x_index: 1, g5x: [10, 20, 5, ...zero.slice(3)], g92: [1, 2, 3, ...zero.slice(3)], tool: [0, 0, 7, ...zero.slice(3)], rotation_xy_deg: 90 };
+    // program (4, 5, 6) + G92 = (5, 7, 9); turned by 90 degrees (-7, 5, 9); + G5x + tool = (3, 25, 21)
+    const work = workPosition([3, 25, 21, 0, 0, 0, 0, 0, 0], offsets);
+    expect(work[0]).toBeCloseTo(4, 12);
+    expect(work[1]).toBeCloseTo(5, 12);
+    expect(work[2]).toBeCloseTo(6, 12);
+  });
+  it('writes codes as people do', () => {
+    expect(modalWords({ g: [0, 800, -1, 911, 540], m: [0, -1, 5], settings: [] })).toEqual(['G80', 'G91.1', 'G54', 'M5']);
+  });
+});
+
+function chunk(kind: number, body: Uint8Array): Uint8Array {
+  const bytes = new Uint8Array(8 + body.length);
+  new DataView(bytes.buffer).setUint32(0, kind, true);
+  new DataView(bytes.buffer).setUint32(4, body.length, true);
+  bytes.set(body, 8);
+  return bytes;
+}
+
+function movesBody(points: [number, number, number, number, number][]): Uint8Array {
+  const size = 4 + points.length * 17;
+  const body = new Uint8Array(size + ((4 - (size % 4)) % 4));
+  const words = new DataView(body.buffer);
+  words.setUint32(0, points.length, true);
+  points.forEach(([x, y, z, line, kind], i) => {
+    [x, y, z].forEach((value, axis) => words.setFloat32(4 + i * 12 + axis * 4, value, true));
+    words.setUint32(4 + points.length * 12 + i * 4, line, true);
+    words.setUint8(4 + points.length * 16 + i, kind);
+  });
+  return body;
+}
+
+describe('path', () => {
+  const stream = [
+    chunk(1, movesBody([[0, 0, 0, 1, 0], [1, 2, 3, 2, 1], [4, 5, 6, 3, 2]])),
+    chunk(4, new TextEncoder().encode('p.ngc:4:1: wrong   ')),
+    chunk(2, new Uint8Array(new Float32Array([0, 0, 0, 4, 5, 6]).buffer)),
+    chunk(3, new Uint8Array(new Uint32Array([4, 3]).buffer)),
+  ];
+  const whole = new Uint8Array(stream.reduce((size, one) => size + one.length, 0));
+  stream.reduce((at, one) => (whole.set(one, at), at + one.length), 0);
+
+  it.each([1, 3, 7, 64, 100_000])('is read the same in pieces of %i bytes', (size) => {
+    const reader = new ChunkReader();
+    const chunks: Chunk[] = [];
+    for (let at = 0; at < whole.length; at += size) {
+      chunks.push(...reader.take(whole.slice(at, at + size)));
+    }
+    expect(reader.isWhole).toBe(true);
+    expect(chunks.map((one) => one.kind)).toEqual(['moves', 'error', 'bounds', 'end']);
+    const moves = chunks[0];
+    if (moves?.kind !== 'moves') {
+      throw new Error('no moves');
+    }
+    expect([...moves.places]).toEqual([0, 0, 0, 1, 2, 3, 4, 5, 6]);
+    expect([...moves.lines]).toEqual([1, 2, 3]);
+    expect([...moves.kinds]).toEqual([0, 1, 2]);
+    expect(chunks[1]).toEqual({ kind: 'error', text: 'p.ngc:4:1: wrong' });
+    expect(chunks[3]).toEqual({ kind: 'end', line: 4, points: 3 });
+  });
+
+  it('refuses what is no path', () => {
+    expect(() => new ChunkReader().take(chunk(77, new Uint8Array(4)))).toThrow(/unknown kind 77/);
+    expect(() => new ChunkReader().take(chunk(1, new Uint8Array(new Uint32Array([1000]).buffer)))).toThrow(/shorter/);
+  });
+
+  it('is thinned without losing its ends, or where it changes', () => {
+    const count = 1000;
+    const places = new Float32Array(count * 3).map((_, i) => (i % 3 === 0 ? i / 3 / 100 : 0));
+    const kinds = new Uint8Array(count).map((_, i) => (i < 500 ? 0 : 1));
+    const thinned = thin({ kind: 'moves', count, places, lines: new Uint32Array(count), kinds }, 1);
+    expect(thinned.count).toBeLessThan(20);
+    expect(thinned.places[0]).toBe(0);
+    expect(thinned.places[(thinned.count - 1) * 3]).toBeCloseTo(9.99, 5);
+    const change = [...thinned.kinds].indexOf(1);
+    expect(thinned.places[(change - 1) * 3]).toBeCloseTo(4.99, 5);
+  });
+});

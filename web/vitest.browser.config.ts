@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+import { defineConfig } from 'vitest/config';
+
+// One machine and one browser after the other: two cores, and a machine by the clock.
+export default defineConfig({
+  test: {
+    include: ['tests-browser/**/*.test.ts'],
+    environment: 'node',
+    fileParallelism: false,
+    testTimeout: 45_000,
+    hookTimeout: 60_000,
+    bail: 1,
+  },
+});
