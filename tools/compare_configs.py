@@ -33,6 +33,7 @@ REASONS = [
     (r"tool (\d+) is in the table twice", "tool twice"),
     (r"not a word of a tool table", "tool table form"),
     (r"section \[(AXIS|JOINT)_\w\] is missing", "missing section"),
+    (r"no \$DISPLAY environment variable|cannot open display", "needs a display"),
     (r"RANDOM_TOOLCHANGER", "random tool changer"),
     (r"cannot open|cannot read", "missing file"),
     (r"is not found", "HAL file not found"),
@@ -93,7 +94,7 @@ def program_for(sections):
 
 
 def reason_of(text, status):
-    errors = [line for line in text.splitlines() if not re.search(r"(^| )(note|warning): ", line)]
+    errors = [line for line in text.splitlines() if not re.search(r"(^| )(note|warning): |^running as simulation", line)]
     for pattern, name in REASONS:
         for line in errors:
             found = re.search(pattern, line)

@@ -2,6 +2,7 @@
 #include "app/machine_start.hh"
 
 #include <cstdio>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -67,6 +68,7 @@ Result<> MachineStart::make() {
     machine_ = std::move(*made);
     access_.emplace(*machine_);
     tell_messages();
+    make_parameter_file();
     fmt::print("{} is up: instance '{}', {}\n", loaded_.machine.name, instance_, settings_.ini);
     std::fflush(stdout);
     const auto delay_ns = static_cast<std::int64_t>(loaded_.machine.applications_delay_s * 1e9);
@@ -83,6 +85,18 @@ Result<> MachineStart::make() {
     }
     display_.emplace(std::move(*display));
     return {};
+}
+
+/// Screens read it themselves, from their start.
+void MachineStart::make_parameter_file() {
+    const std::string &path = loaded_.machine.task.parameter_file;
+    std::error_code ignored;
+    if (path.empty() || std::filesystem::exists(path, ignored)) {
+        return;
+    }
+    if (const auto saved = machine_->task().save_parameters(); !saved.has_value()) {
+        sink_.warning(saved.error().str());
+    }
 }
 
 Result<> MachineStart::keep_up() {

@@ -32,6 +32,7 @@ class MachineStart {
   private:
     Result<> prepare();
     Result<> make();
+    void make_parameter_file();
     Result<> keep_up();
     Result<> cycle();
     void save_at_end_of_program();

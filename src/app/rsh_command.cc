@@ -44,7 +44,8 @@ struct RshWords {
         line.text("-e,--enablepw", "PASSWORD", "of SET ENABLE; EMCTOO without it", settings.enable_password);
         line.number("-s,--sessions", "N", "connections at a time; -1 without it: as many as come",
                     server.max_sessions, -1, 100000);
-        line.text("-d,--path", "FOLDER", "where programs are that are opened; that of the INI file without it",
+        line.text("-d,--path", "FOLDER",
+                  "where programs are that are opened; that of the INI file without it",
                   settings.program_folder);
         line.text("-b,--bind", "ADDRESS",
                   "listen there, so that other computers can connect; needs passwords of its own",
@@ -81,8 +82,8 @@ struct RshWords {
     /// The passwords that everybody knows protect nothing.
     Result<> check_passwords() const {
         const ui::rsh::Settings preset;
-        const bool isOpen = !server.address.empty() && server.address != "::1" &&
-                            !server.address.starts_with("127.");
+        const bool isOpen =
+            !server.address.empty() && server.address != "::1" && !server.address.starts_with("127.");
         if (isOpen && (settings.connect_password == preset.connect_password ||
                        settings.enable_password == preset.enable_password)) {
             return fail("--bind lets other computers move this machine: give passwords of your own", {},
@@ -100,8 +101,7 @@ Result<client::Viewer> attach_patiently(const std::string &instance) {
         const bool isReady =
             viewer.has_value() && !viewer->identity().ini.empty() && viewer->read_status().has_value();
         if (isReady || stop_signal != 0 || std::chrono::steady_clock::now() > end) {
-            return isReady || !viewer.has_value() ? std::move(viewer)
-                                                  : fail("the machine does not come up");
+            return isReady || !viewer.has_value() ? std::move(viewer) : fail("the machine does not come up");
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }

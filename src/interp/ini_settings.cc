@@ -67,6 +67,7 @@ Settings settings_from_ini(config::IniReader &ini) {
     Settings out;
     out.ini_folder = ini.file().folder();
     const config::IniKey &prefix = ini_key("DISPLAY", "PROGRAM_PREFIX");
+    out.subroutine_path.push_back(out.ini_folder);
     add_folders(ini, prefix, out.subroutine_path);
     add_folders(ini, ini_key("RS274NGC", "SUBROUTINE_PATH"), out.subroutine_path);
     add_folders(ini, prefix, out.user_m_path);

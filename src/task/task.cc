@@ -197,6 +197,9 @@ void Task::take_motion_news() {
                      AbortReason::MOTION_FAULT);
     }
     for (const auto &[answer, source] : news.refused) {
+        if (answer.reason == motion::Reason::MOVING && mode_.waits_for_rest(answer.id, now_ns_)) {
+            continue;
+        }
         const std::string text = motion::reason_text(answer);
         const auto order = orders_.refuse(answer.id, text);
         if (order.has_value()) {
@@ -254,6 +257,9 @@ void Task::step_homing() {
 void Task::end_requests() {
     tell(state_.end_request(now_ns_));
     const motion::Status &motion = motion_.status();
+    if (mode_.isWaitingForRest() && motion.isInPosition) {
+        mode_.ask_again(motion_.send(motion::SetMode{mode_.wanted_motion_mode()}));
+    }
     tell(mode_.step(motion_.isAnswered(mode_.order()), motion.mode, now_ns_));
     if (!run_.isRunning()) {
         mode_.follow(motion.mode);
@@ -412,8 +418,10 @@ void Task::update_status() {
     status_.codes = {codes.g, codes.m, codes.settings};
     approach_.show(status_.approach, status_.offsets, status_.codes);
     step_tools();
-    status_.tool = {io_.outputs.tool_number, io_.outputs.tool_from_pocket, sequencer_.selected_tool_index(),
-                    tools_.version()};
+    // A tool that is being looked for is not ready yet.
+    const bool isReady = io_.action() != io::ToolAction::PREPARING;
+    status_.tool = {io_.outputs.tool_number, io_.outputs.tool_from_pocket,
+                    isReady ? sequencer_.selected_tool_index() : -1, tools_.version()};
     const tool::CutLife life = parts_.tools.life(io_.outputs.tool_number);
     status_.tool.cut_time_s = life.time_s;
     status_.tool.cut_length = life.length;

@@ -34,6 +34,7 @@ void Task::abort_work(AbortReason reason) {
     const bool isFollowing = reason == AbortReason::STATE_NOT_ON && on_abort_.isCleanedUp();
     desk_.refuse(mdi_queue_.drop(), OVERTAKEN);
     motion_.abort();
+    mode_.note_stop(now_ns_);
     if (!isFollowing || run_.phase() != RunPhase::CLEANING) {
         sequencer_.abort(static_cast<int>(reason));
         user_program_.stop();

@@ -171,7 +171,7 @@ using Outcome = Result<Progress>;
 
 void Task::carry_out_commands() {
     inbox_.add(desk_.take(now_ns_));
-    while (const auto delivery = inbox_.next(mode_.isChanging())) {
+    while (const auto delivery = inbox_.next(mode_.isChanging() || state_.isChanging())) {
         carry_out(delivery->serial, delivery->command);
     }
 }
@@ -428,6 +428,7 @@ Outcome Task::Handler::operator()(const JogAbsolute &command) {
 
 Outcome Task::Handler::operator()(const JogStop &command) {
     task.desk_.refuse(task.inbox_.drop_jogs_before(id, command), OVERTAKEN);
+    task.mode_.note_stop(task.now_ns_);
     return send(motion::JogStop{{command.isJoint, command.index}});
 }
 

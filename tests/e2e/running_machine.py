@@ -71,6 +71,7 @@ class Bench(Mill):
     def up(self, *more):
         machine = self.start('--no-display', *more)
         expect(machine.wait_for('is up'), 'the machine comes up', machine.text)
+        expect((self.ini.parent / 'mill_mm.var').exists(), 'its parameter file is there for screens that read it')
         return machine
 
     def run(self, program, *more, ini=None):

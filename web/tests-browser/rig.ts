@@ -16,7 +16,16 @@ const STEP_MS = 40_000;
 
 const BY_HAND = `unlinkp iocontrol.0.tool-change
 unlinkp iocontrol.0.tool-changed
+loadusr -W hal_manualtoolchange
+net by-hand iocontrol.0.tool-change => hal_manualtoolchange.change
+net by-hand-done hal_manualtoolchange.changed => iocontrol.0.tool-changed
+net by-hand-number iocontrol.0.tool-prep-number => hal_manualtoolchange.number
 `;
+
+/** Tools are changed by a person. */
+export function byHand(ini: string): string {
+  return ini.replace('HALFILE = spindle_sim.hal\n', 'HALFILE = spindle_sim.hal\nHALFILE = by_hand.hal\n');
+}
 
 export function sleep(ms: number): Promise<void> {
   return new Promise((done) => setTimeout(done, ms));

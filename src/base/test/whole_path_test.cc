@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "base/whole_path.hh"
-
 #include <stdlib.h>
 
 #include <filesystem>
 #include <fstream>
 
 #include <gtest/gtest.h>
+
+#include "base/whole_path.hh"
 
 namespace mw {
 namespace {

@@ -35,7 +35,8 @@ KeptSources Executor::kept_sources() const {
             machine_.world,
             state.comp.compensated(state.position, state.plane),
             remaps.count_running(),
-            machine_.settings.isTask};
+            machine_.settings.isTask,
+            &tools};
 }
 
 bool Executor::isBuiltInName(std::string_view name) const {

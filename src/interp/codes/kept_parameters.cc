@@ -21,6 +21,17 @@ double flag(bool isSet) {
     return isSet ? 1.0 : 0.0;
 }
 
+/// The number of the pocket in which the entry at `index` is kept, -1 for none; 0 is the spindle of a random
+/// changer.
+double pocket_at(const Sources &e, int index) {
+    if (e.tools == nullptr || index < 0 || index >= e.tools->count()) {
+        return index;
+    }
+    const ToolEntry entry = e.tools->entry(index);
+    const bool isSpindle = index == 0;
+    return isSpindle ? (e.tools->isRandom() && entry.toolno >= 0 ? 0 : -1) : entry.pocketno;
+}
+
 struct Row {
     std::string_view name;
     Reader read;
@@ -71,9 +82,9 @@ constexpr Row ROWS[] = {
     {"_feed", [](const Sources &e) { return e.state.feed; }},
     {"_rpm", [](const Sources &e) { return spindle(e).speed; }},
     {"_current_tool", [](const Sources &e) { return static_cast<double>(e.state.tool.in_spindle); }},
-    {"_current_pocket", [](const Sources &e) { return static_cast<double>(e.state.tool.index); }},
+    {"_current_pocket", [](const Sources &e) { return pocket_at(e, e.state.tool.index); }},
     {"_selected_tool", [](const Sources &e) { return static_cast<double>(e.state.tool.selected); }},
-    {"_selected_pocket", [](const Sources &e) { return static_cast<double>(e.state.tool.selected_index); }},
+    {"_selected_pocket", [](const Sources &e) { return pocket_at(e, e.state.tool.selected_index); }},
     {"_value", [](const Sources &e) { return e.returned.value; }},
     {"_value_returned", [](const Sources &e) { return flag(e.returned.isSet); }},
     {"_task", [](const Sources &e) { return flag(e.isTask); }},

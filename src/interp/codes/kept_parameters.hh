@@ -9,6 +9,7 @@
 
 #include "interp/codes/around_block.hh"
 #include "interp/codes/state.hh"
+#include "interp/codes/tools/tool_table.hh"
 #include "interp/eval/parameters.hh"
 #include "interp/world.hh"
 
@@ -24,6 +25,7 @@ struct KeptSources {
     Pose position;  ///< of the tool, compensation included [program units, degrees]
     int running_remaps = 0;
     bool isTask = false;
+    const ToolTable *tools = nullptr;  ///< without it pockets are told as places in the table
 };
 
 bool isKeptName(std::string_view name);

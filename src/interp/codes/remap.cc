@@ -33,7 +33,7 @@ constexpr GroupNumber GROUPS[] = {
 constexpr int DEFAULT_G_GROUP = 1, DEFAULT_M_GROUP = 10;
 
 /// Codes of the dialect that may be given another meaning.
-constexpr int REMAPPABLE_M[] = {0, 1, 6, 7, 8, 9, 60, 61};
+constexpr int REMAPPABLE_M[] = {0, 1, 6, 7, 8, 9, 60, 61, 62, 63, 64, 65, 66, 67, 68};
 
 bool isWordCode(char letter) {
     return letter == 't' || letter == 's' || letter == 'f';

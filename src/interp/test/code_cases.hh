@@ -138,7 +138,7 @@ inline const BadCase MORE_BAD[] = {
     {"M3 S100 G33.1 Z-1 K1 I-1", "factor I"},
     {"M3 S100 G33.1 Z-1 K1 I0", "factor I"},
     {"G33.1 K1", "All axes missing"},
-    {"F1 G38.3 X0", "would not move"},
+    {"F1 G38.3 X0", "too close"},
     {"G38.4 X1", "zero feed rate"},
     {"G93 F1 G38.5 X1", "inverse time"},
     {"G40 D1", "D word with no g code"},

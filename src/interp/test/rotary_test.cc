@@ -23,6 +23,12 @@ Settings settings_of(const std::string &ini) {
     return settings_from_ini(reader);
 }
 
+TEST(IniSettings, SubroutinesAreLookedForBesideTheIniFileFirst_I1) {
+    const Settings settings =
+        settings_of("[RS274NGC]\nSUBROUTINE_PATH = /s:t\n[DISPLAY]\nPROGRAM_PREFIX = /p\n");
+    EXPECT_EQ(settings.subroutine_path, (std::vector<std::string>{".", "/p", "/s", "./t"}));
+}
+
 struct Table : Machine {
     explicit Table(const std::string &ini = "[AXIS_A]\nWRAPPED_ROTARY = 1\n[AXIS_C]\nWRAPPED_ROTARY = 1\n")
         : Machine(settings_of(ini)) {}

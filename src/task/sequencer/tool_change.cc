@@ -109,7 +109,7 @@ int ToolChange::selected_index(const ToolStore &tools) const {
 }
 
 void show_first_tool(const ToolStore &tools, io::Controller &io) {
-    io.set_tool_in_spindle(tools.isRandom() ? std::max(0, tools.entry(0).toolno) : 0, 0);
+    io.set_tool_in_spindle(tools.isRandom() ? tools.entry(0).toolno : 0, 0);
 }
 
 }  // namespace mw::task

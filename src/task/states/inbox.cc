@@ -25,7 +25,7 @@ bool isOfMachineState(const msgs::Command &command) {
         command);
 }
 
-/// What does not wait for the change of mode.
+/// What does not wait for a change of mode or state.
 bool isUrgent(const msgs::Command &command) {
     return (mailbox::isStop(command) && !isHold(command)) || isOfMachineState(command);
 }
@@ -51,9 +51,9 @@ void Inbox::add(std::vector<mailbox::Desk::Delivery> deliveries) {
     std::move(deliveries.begin(), deliveries.end(), std::back_inserter(waiting_));
 }
 
-std::optional<mailbox::Desk::Delivery> Inbox::next(bool isModeChanging) {
+std::optional<mailbox::Desk::Delivery> Inbox::next(bool isChanging) {
     const auto found = std::find_if(waiting_.begin(), waiting_.end(), [&](const auto &delivery) {
-        return !isModeChanging || isUrgent(delivery.command);
+        return !isChanging || isUrgent(delivery.command);
     });
     if (found == waiting_.end()) {
         return std::nullopt;

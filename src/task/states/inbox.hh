@@ -10,12 +10,12 @@
 
 namespace mw::task {
 
-/// In their order; while the mode changes only what stops, and what changes the machine's state, goes first.
-/// One thread.
+/// In their order; while mode or state change only what stops, and what changes the machine's state, goes
+/// first. One thread.
 class Inbox {
   public:
     void add(std::vector<mailbox::Desk::Delivery> deliveries);
-    std::optional<mailbox::Desk::Delivery> next(bool isModeChanging);
+    std::optional<mailbox::Desk::Delivery> next(bool isChanging);
     /// Takes out what was asked for before the stop `stop` and still waits: it would begin after it. Lines
     /// for the operator stay. The numbers of what was taken out.
     std::vector<mailbox::Serial> drop_before(mailbox::Serial stop);

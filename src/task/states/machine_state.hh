@@ -43,6 +43,8 @@ class MachineState {
     std::optional<Ending> end_request(std::int64_t now_ns);
 
     State state() const { return state_; }
+    /// What was asked for has not come about yet.
+    bool isChanging() const { return request_.isUnderWay(); }
 
   private:
     State state_ = State::ESTOP, wanted_ = State::ESTOP;

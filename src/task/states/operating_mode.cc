@@ -9,10 +9,25 @@ void OperatingMode::begin(Mode mode, motion::Mode motion_mode, mailbox::Serial c
     wanted_motion_mode_ = motion_mode;
     request_.begin(command, now_ns + CHANGE_TIMEOUT_NS);
     request_.set_order(order);
+    isWaitingForRest_ = false;
+}
+
+bool OperatingMode::waits_for_rest(motion::CommandId order, std::int64_t now_ns) {
+    const bool isBraking = stop_ns_.has_value() && now_ns - *stop_ns_ <= CHANGE_TIMEOUT_NS;
+    if (!isChanging() || order != request_.order() || !isBraking) {
+        return false;
+    }
+    isWaitingForRest_ = true;
+    return true;
+}
+
+void OperatingMode::ask_again(motion::CommandId order) {
+    request_.set_order(order);
+    isWaitingForRest_ = false;
 }
 
 std::optional<Ending> OperatingMode::step(bool isAnswered, motion::Mode motion_mode, std::int64_t now_ns) {
-    if (isChanging() && isAnswered && motion_mode == wanted_motion_mode_) {
+    if (isChanging() && !isWaitingForRest_ && isAnswered && motion_mode == wanted_motion_mode_) {
         mode_ = wanted_;
         return request_.end(Progress::DONE);
     }

@@ -28,9 +28,21 @@ class OperatingMode {
     }
     Mode mode() const { return mode_; }
 
+    /// A stop was asked for, of a run or a jog.
+    void note_stop(std::int64_t now_ns) { stop_ns_ = now_ns; }
+    /// Motion has refused `order` because the machine moves. True: it brakes after a stop, and the change
+    /// waits until it stands.
+    bool waits_for_rest(motion::CommandId order, std::int64_t now_ns);
+    bool isWaitingForRest() const { return isChanging() && isWaitingForRest_; }
+    /// It stands: `order` asks for the mode again.
+    void ask_again(motion::CommandId order);
+    motion::Mode wanted_motion_mode() const { return wanted_motion_mode_; }
+
   private:
     Mode mode_ = Mode::MANUAL, wanted_ = Mode::MANUAL;
     motion::Mode wanted_motion_mode_ = motion::Mode::FREE;
+    std::optional<std::int64_t> stop_ns_;
+    bool isWaitingForRest_ = false;
     Request request_;
 };
 

@@ -55,7 +55,12 @@ class FakeMotion {
         } else if (std::holds_alternative<motion::Disable>(command.body)) {
             status.isEnabled = false;
         } else if (const auto *mode = std::get_if<motion::SetMode>(&command.body)) {
-            status.mode = isModeStuck ? status.mode : mode->mode;
+            if (!status.isInPosition && mode->mode != status.mode) {
+                answer.kind = motion::AnswerKind::REFUSED;
+                answer.reason = motion::Reason::MOVING;
+            } else {
+                status.mode = isModeStuck ? status.mode : mode->mode;
+            }
         } else if (std::holds_alternative<motion::JogStop>(command.body)) {
             log.emplace_back("jog stop");
         } else if (const auto *jog = std::get_if<motion::JogContinuous>(&command.body)) {

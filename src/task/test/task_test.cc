@@ -170,6 +170,55 @@ TEST_F(TaskTest, AJointThatWaitsToBeHomedIsNotAfterAStop_D1) {
     }
 }
 
+TEST_F(TaskTest, AxesAreMovedByHandOnceAllJointsAreHomed_C4) {
+    using MotionMode = motion::Mode;
+    motion.status.isAllHomed = false;
+    motion.status.isHoming = true;
+    const auto homing = post(HomeJoint{-1});
+    cycles(3);
+    motion.status.isHoming = false;
+    motion.status.isAllHomed = true;
+    cycles(3);
+    EXPECT_EQ(progress(homing), Progress::DONE) << reason(homing);
+    EXPECT_EQ(motion.status.mode, MotionMode::TELEOP);
+    EXPECT_EQ(ask(SetTeleop{false}), Progress::DONE);
+    EXPECT_EQ(motion.status.mode, MotionMode::FREE);
+    EXPECT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);
+    EXPECT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE);
+    EXPECT_EQ(motion.status.mode, MotionMode::TELEOP);
+    // Asked for again it is the same mode; but nothing is changed under what moves.
+    EXPECT_EQ(ask(SetTeleop{false}), Progress::DONE);
+    motion.status.isInPosition = false;
+    EXPECT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE);
+    EXPECT_EQ(motion.status.mode, MotionMode::FREE);
+    motion.status.isInPosition = true;
+    EXPECT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE);
+    EXPECT_EQ(motion.status.mode, MotionMode::TELEOP);
+    motion.status.isAllHomed = false;
+    EXPECT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);
+    EXPECT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE);
+    EXPECT_EQ(motion.status.mode, MotionMode::FREE);
+}
+
+TEST_F(TaskTest, WhatComesRightBehindSwitchingOnWaitsForIt_D1) {
+    EXPECT_EQ(ask(SetState{State::OFF}), Progress::DONE);
+    const auto on = post(SetState{State::ON});
+    const auto homing = post(HomeJoint{0});
+    motion.status.joint[0].isHomed = true;
+    cycles(5);
+    EXPECT_EQ(progress(on), Progress::DONE) << reason(on);
+    EXPECT_EQ(progress(homing), Progress::DONE) << reason(homing);
+}
+
+TEST_F(TaskTest, TheErrorOfALineOfMdiIsToldBare_J1) {
+    EXPECT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);
+    EXPECT_EQ(ask(Mdi{"G43.2"}), Progress::FAILED);
+    EXPECT_EQ(messages(), "G43.2: No axes specified and H word missing\n");
+    open("G43.2\nM2\n");
+    EXPECT_EQ(ask(RunProgram{}), Progress::FAILED);
+    EXPECT_NE(messages().find("p.ngc:1:"), std::string::npos);
+}
+
 TEST_F(TaskTest, AProgramRunsToItsEnd_D1) {
     open("G21 F600\nG1 X1\nG1 X2\nM2\n");
     motion.log.clear();
@@ -254,6 +303,24 @@ TEST_F(TaskTest, AScreenThatStartsInEmergencyStopChoosesJointsAndForgetsHoming_C
     ASSERT_EQ(ask(SetMode{Mode::AUTO}), Progress::DONE);
     EXPECT_EQ(ask(SetTeleop{true}), Progress::DONE);
     EXPECT_EQ(task.status().task.mode, Mode::MANUAL) << "as in any mode in which nothing runs";
+}
+
+TEST_F(TaskTest, AChangeOfModeAfterAStopWaitsUntilTheMachineStands_C5_D3) {
+    motion.status.isInPosition = false;  // a jog goes on
+    EXPECT_EQ(ask(SetMode{Mode::AUTO}), Progress::REFUSED);
+    for (const Command &stop : {Command{JogStop{false, 0}}, Command{AbortAll{}}}) {
+        motion.status.isInPosition = false;
+        post(stop);
+        const auto change = post(SetMode{Mode::MDI});
+        cycles(5);
+        EXPECT_EQ(progress(change), Progress::STARTED);
+        EXPECT_EQ(task.status().task.mode, Mode::MANUAL);
+        motion.status.isInPosition = true;
+        cycles(5);
+        EXPECT_EQ(progress(change), Progress::DONE);
+        EXPECT_EQ(task.status().task.mode, Mode::MDI);
+        ASSERT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE);
+    }
 }
 
 TEST_F(TaskTest, ATurningSpindleChangesItsSpeedInStepsAndNeverItsSense_C5_J2) {

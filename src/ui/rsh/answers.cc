@@ -98,10 +98,12 @@ Answer program_codes(const Asked &asked) {
     const auto &g = asked.status.codes.g;
     for (std::size_t i = 1; i < g.size(); ++i) {  // [0] is the number of the line
         if (g[i] >= 0) {
-            text += g[i] % 10 == 0 ? fmt::format(" G{}", g[i] / 10) : fmt::format(" G{}.{}", g[i] / 10, g[i] % 10);
+            text += g[i] % 10 == 0 ? fmt::format(" G{}", g[i] / 10)
+                                   : fmt::format(" G{}.{}", g[i] / 10, g[i] % 10);
         }
     }
-    return line(fmt::format("{} F{:g} S{:g}", text, asked.status.codes.settings[1], asked.status.codes.settings[2]));
+    return line(
+        fmt::format("{} F{:g} S{:g}", text, asked.status.codes.settings[1], asked.status.codes.settings[2]));
 }
 
 Answer percent(const Asked &asked, const std::string &name, double factor) {
@@ -112,8 +114,9 @@ Answer percent(const Asked &asked, const std::string &name, double factor) {
 /// Of one spindle, the first without a number, or of all.
 template <class Each>
 Answer for_spindles(const Asked &asked, const Each &each) {
-    const auto asked_for =
-        asked.words.empty() ? Result<int>(0) : index_of(asked.words[0], "spindle", asked.settings.num_spindles);
+    const auto asked_for = asked.words.empty()
+                               ? Result<int>(0)
+                               : index_of(asked.words[0], "spindle", asked.settings.num_spindles);
     if (!asked_for.has_value()) {
         return std::unexpected(asked_for.error());
     }
@@ -139,7 +142,8 @@ Answer spindle(const Asked &asked) {
 Answer brake(const Asked &asked) {
     return for_spindles(asked, [&asked](int i, const msgs::SpindleStatus &spindle) {
         const char *const state = spindle.isBrakeOn ? "ON" : "OFF";
-        return line(asked.settings.isOld() ? fmt::format("BRAKE {}", state) : fmt::format("BRAKE {} {}", i, state));
+        return line(asked.settings.isOld() ? fmt::format("BRAKE {}", state)
+                                           : fmt::format("BRAKE {} {}", i, state));
     });
 }
 
@@ -182,7 +186,9 @@ constexpr Question QUESTIONS[] = {
     {"ABS_ACT_POS", BOTH, absolute_actual},
     {"ABS_CMD_POS", BOTH, absolute_commanded},
     {"ANGULAR_UNIT_CONVERSION", BOTH,
-     [](const Asked &a) { return line(fmt::format("ANGULAR_UNIT_CONVERSION {}", name_of(a.own.angle_unit))); }},
+     [](const Asked &a) {
+         return line(fmt::format("ANGULAR_UNIT_CONVERSION {}", name_of(a.own.angle_unit)));
+     }},
     {"AXIS_VELOCITY", NEWER, axis_velocity},
     {"BRAKE", BOTH, brake},
     {"CLIENTS", NEWER, [](const Asked &a) { return line(fmt::format("CLIENTS {}", a.shared.num_sessions)); }},
@@ -202,8 +208,10 @@ constexpr Question QUESTIONS[] = {
     {"ECHO", BOTH, [](const Asked &a) { return on_off("ECHO", a.own.isEchoing); }},
     {"ENABLE", BOTH, [](const Asked &a) { return on_off("ENABLE", a.own.isEnabled); }},
     {"ERROR", BOTH, [](const Asked &a) { return operator_line(a, "ERROR", MessageKind::OPERATOR_ERROR); }},
-    {"ESTOP", BOTH, [](const Asked &a) { return on_off("ESTOP", a.status.task.state == msgs::State::ESTOP); }},
-    {"FEED_OVERRIDE", BOTH, [](const Asked &a) { return percent(a, "FEED_OVERRIDE", a.status.overrides.feed); }},
+    {"ESTOP", BOTH,
+     [](const Asked &a) { return on_off("ESTOP", a.status.task.state == msgs::State::ESTOP); }},
+    {"FEED_OVERRIDE", BOTH,
+     [](const Asked &a) { return percent(a, "FEED_OVERRIDE", a.status.overrides.feed); }},
     {"FLOOD", BOTH, [](const Asked &a) { return on_off("FLOOD", a.status.io.coolant.isFloodOn); }},
     {"INI", NEWER, ini_entry},
     {"INIFILE", BOTH, [](const Asked &a) { return line("INIFILE " + ini_path(a.settings)); }},
@@ -219,13 +227,17 @@ constexpr Question QUESTIONS[] = {
          return line(fmt::format("KINEMATICS_TYPE {}", static_cast<int>(a.status.settings.kinematics)));
      }},
     {"LINEAR_UNIT_CONVERSION", BOTH,
-     [](const Asked &a) { return line(fmt::format("LINEAR_UNIT_CONVERSION {}", name_of(a.own.length_unit))); }},
+     [](const Asked &a) {
+         return line(fmt::format("LINEAR_UNIT_CONVERSION {}", name_of(a.own.length_unit)));
+     }},
     {"LUBE", BOTH, [](const Asked &a) { return on_off("LUBE", a.status.io.lube.isOn); }},
     {"LUBE_LEVEL", BOTH,
      [](const Asked &a) { return line(a.status.io.lube.hasOil ? "LUBE_LEVEL OK" : "LUBE_LEVEL LOW"); }},
-    {"MACHINE", BOTH, [](const Asked &a) { return on_off("MACHINE", a.status.task.state == msgs::State::ON); }},
+    {"MACHINE", BOTH,
+     [](const Asked &a) { return on_off("MACHINE", a.status.task.state == msgs::State::ON); }},
     {"MIST", BOTH, [](const Asked &a) { return on_off("MIST", a.status.io.coolant.isMistOn); }},
-    {"MODE", BOTH, [](const Asked &a) { return line(fmt::format("MODE {}", mode_name(a.status.task.mode))); }},
+    {"MODE", BOTH,
+     [](const Asked &a) { return line(fmt::format("MODE {}", mode_name(a.status.task.mode))); }},
     {"OPEN", NEWER, program},
     {"OPERATOR_DISPLAY", BOTH,
      [](const Asked &a) { return operator_line(a, "OPERATOR_DISPLAY", MessageKind::OPERATOR_DISPLAY); }},
@@ -234,11 +246,14 @@ constexpr Question QUESTIONS[] = {
     {"OPTIONAL_STOP", BOTH,
      [](const Asked &a) { return flag(a, "OPTIONAL_STOP", a.status.task.isOptionalStop, "1", "0"); }},
     {"OVERRIDE_LIMITS", BOTH,
-     [](const Asked &a) { return flag(a, "OVERRIDE_LIMITS", a.status.joints[0].isOverridingLimits, "1", "0"); }},
+     [](const Asked &a) {
+         return flag(a, "OVERRIDE_LIMITS", a.status.joints[0].isOverridingLimits, "1", "0");
+     }},
     {"PLAT", BOTH, [](const Asked &) { return line("PLAT Linux"); }},
     {"POS_OFFSET", BOTH, position_offset},
     {"PROBE_TRIPPED", BOTH, probe_tripped},
-    {"PROBE_VALUE", BOTH, [](const Asked &a) { return line(a.status.probe.isOn ? "PROBE_VALUE 1" : "PROBE_VALUE 0"); }},
+    {"PROBE_VALUE", BOTH,
+     [](const Asked &a) { return line(a.status.probe.isOn ? "PROBE_VALUE 1" : "PROBE_VALUE 0"); }},
     {"PROGRAM", BOTH, program},
     {"PROGRAM_ANGULAR_UNITS", BOTH, [](const Asked &) { return line("PROGRAM_ANGULAR_UNITS DEG"); }},
     {"PROGRAM_CODES", BOTH, program_codes},
@@ -265,9 +280,13 @@ constexpr Question QUESTIONS[] = {
     {"TOOL_OFFSET", BOTH, tool_offset},
     {"UPDATE", BOTH, [](const Asked &a) { return line(a.own.isUpdating ? "UPDATE AUTO" : "UPDATE NONE"); }},
     {"USER_ANGULAR_UNITS", BOTH,
-     [](const Asked &a) { return line("USER_ANGULAR_UNITS " + name_of_angle(a.status.settings.angular_units)); }},
+     [](const Asked &a) {
+         return line("USER_ANGULAR_UNITS " + name_of_angle(a.status.settings.angular_units));
+     }},
     {"USER_LINEAR_UNITS", BOTH,
-     [](const Asked &a) { return line("USER_LINEAR_UNITS " + name_of_length(a.status.settings.linear_units)); }},
+     [](const Asked &a) {
+         return line("USER_LINEAR_UNITS " + name_of_length(a.status.settings.linear_units));
+     }},
     {"VERBOSE", BOTH, [](const Asked &a) { return on_off("VERBOSE", a.own.isVerbose); }},
     {"WAIT_MODE", NEWER, wait_mode},
 };

@@ -46,8 +46,7 @@ Answer of_joints(const Asked &asked, const char *name, const char *blank, const 
     const bool isOld = asked.settings.isOld();
     std::optional<int> one;
     if (!asked.words.empty()) {
-        const auto joint =
-            index_of(asked.words[0], "joint", isOld ? MAX_JOINTS : asked.settings.num_joints);
+        const auto joint = index_of(asked.words[0], "joint", isOld ? MAX_JOINTS : asked.settings.num_joints);
         if (!joint.has_value()) {
             return std::unexpected(joint.error());
         }
@@ -59,8 +58,15 @@ Answer of_joints(const Asked &asked, const char *name, const char *blank, const 
     });
 }
 
+/// 2.9 tells machine units whatever conversion was set.
+double factor(const Asked &asked, bool isAngular) {
+    return asked.settings.isOld() ? 1
+           : isAngular            ? angle_factor(asked.own, asked.status)
+                                  : length_factor(asked.own, asked.status);
+}
+
 double factor_of_axis(const Asked &asked, int axis) {
-    return geom::isAngular(axis) ? angle_factor(asked.own, asked.status) : length_factor(asked.own, asked.status);
+    return factor(asked, geom::isAngular(axis));
 }
 
 Answer pose(const Asked &asked, const char *name, const geom::Pose &pose) {
@@ -80,8 +86,7 @@ geom::Pose relative(const Asked &asked, const geom::Pose &absolute) {
 }
 
 double factor_of_joint(const Asked &asked, const msgs::JointSettings &set) {
-    return set.kind == msgs::JointKind::ANGULAR ? angle_factor(asked.own, asked.status)
-                                                : length_factor(asked.own, asked.status);
+    return factor(asked, set.kind == msgs::JointKind::ANGULAR);
 }
 
 }  // namespace
@@ -121,7 +126,8 @@ Answer position_offset(const Asked &asked) {
         return no_such_value(word, "X Y Z A B C U V W R P");
     }
     return std::vector{fmt::format("POS_OFFSET {}{}{:f}", geom::AXIS_LETTERS[axis],
-                                   asked.settings.isOld() ? "  " : " ", offset[axis] * factor_of_axis(asked, axis))};
+                                   asked.settings.isOld() ? "  " : " ",
+                                   offset[axis] * factor_of_axis(asked, axis))};
 }
 
 Answer joint_fault(const Asked &asked) {
@@ -160,12 +166,11 @@ Answer joint_type(const Asked &asked) {
 }
 
 Answer joint_units(const Asked &asked) {
-    return of_joints(asked, "JOINT_UNITS", "  ",
-                     [](const msgs::JointStatus &joint, const msgs::JointSettings &set) {
-                         const double units = joint.isPresent ? set.units : 1.0;
-                         return set.kind == msgs::JointKind::ANGULAR ? name_of_angle(units)
-                                                                     : name_of_length(units);
-                     });
+    return of_joints(
+        asked, "JOINT_UNITS", "  ", [](const msgs::JointStatus &joint, const msgs::JointSettings &set) {
+            const double units = joint.isPresent ? set.units : 1.0;
+            return set.kind == msgs::JointKind::ANGULAR ? name_of_angle(units) : name_of_length(units);
+        });
 }
 
 Answer joint_velocity(const Asked &asked) {

@@ -20,17 +20,15 @@ Lines listed(Lines head, const Lines &names) {
 
 Lines help(const Settings &settings, const std::string &about) {
     if (about.empty()) {
-        return {"Available commands:",
-                "  Hello <password> <client name> <protocol version>",
-                "  Get <question>",
-                "  Set <order>",
-                "  Shutdown",
-                "  Quit",
+        return {"Available commands:", "  Hello <password> <client name> <protocol version>",
+                "  Get <question>",    "  Set <order>",
+                "  Shutdown",          "  Quit",
                 "  Help <command>"};
     }
     if (about == "GET") {
-        return listed({"Usage: Get <question>", "  Answers with the question and what is asked for. Questions:"},
-                      question_names(settings));
+        return listed(
+            {"Usage: Get <question>", "  Answers with the question and what is asked for. Questions:"},
+            question_names(settings));
     }
     if (about == "SET") {
         return listed({"Usage: Set <order>",
@@ -45,8 +43,9 @@ Lines help(const Settings &settings, const std::string &about) {
         return {"Usage: Quit", "  Ends this connection."};
     }
     if (about == "SHUTDOWN") {
-        return {"Usage: Shutdown", "  Ends the server, and with it the machine whose display it is. Needs 'Set "
-                                   "enable <password>'."};
+        return {"Usage: Shutdown",
+                "  Ends the server, and with it the machine whose display it is. Needs 'Set "
+                "enable <password>'."};
     }
     if (about == "HELP") {
         return {"Usage: Help <command>", "  Tells what a command is for."};

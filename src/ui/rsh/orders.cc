@@ -148,9 +148,10 @@ Result<Waiting> wait_heartbeat(const Ordered &o) {
     const double seconds = *periods * o.settings.task_period_s;
     const double longest = o.own.timeout_s > 0 ? o.own.timeout_s : LONGEST_S;
     if (seconds > longest) {
-        return fail(fmt::format("Invalid periods '{}', waiting time of {:.3f} seconds would exceed timeout of "
-                                "{:.3f} seconds",
-                                o.words[0], seconds, longest));
+        return fail(
+            fmt::format("Invalid periods '{}', waiting time of {:.3f} seconds would exceed timeout of "
+                        "{:.3f} seconds",
+                        o.words[0], seconds, longest));
     }
     Waiting waiting;
     const std::uint64_t end = o.status().cycle + static_cast<std::uint64_t>(*periods);
@@ -163,7 +164,8 @@ constexpr SpokenBy BOTH = SpokenBy::BOTH, NEWER = SpokenBy::NEWER, OLD = SpokenB
 /// In the order of the alphabet, as HELP lists them. Stops need no machine that is on.
 constexpr Row ROWS[] = {
     {BOTH, {"ABORT", Needs::ENABLE, "", abort_all}},
-    {BOTH, {"ANGULAR_UNIT_CONVERSION", Needs::MACHINE_ON, "<Deg | Rad | Grad | Auto | Custom>", set_angle_unit}},
+    {BOTH,
+     {"ANGULAR_UNIT_CONVERSION", Needs::MACHINE_ON, "<Deg | Rad | Grad | Auto | Custom>", set_angle_unit}},
     {BOTH, {"BRAKE", Needs::MACHINE_ON, "<On | Off> [spindle]", set_brake}},
     {OLD, {"COMM_MODE", Needs::HELLO, "<Ascii>", set_comm_mode}},
     {OLD, {"COMM_PROT", Needs::HELLO, "<version>", set_protocol}},
@@ -181,7 +183,8 @@ constexpr Row ROWS[] = {
     {NEWER, {"JOINT_HOME", Needs::MACHINE_ON, "<joint | -1>", home}},
     {NEWER, {"JOINT_UNHOME", Needs::MACHINE_ON, "<joint | -1>", unhome}},
     {NEWER, {"JOINT_WAIT_HOMED", Needs::MACHINE_ON, "<joint | -1>", wait_homed}},
-    {BOTH, {"LINEAR_UNIT_CONVERSION", Needs::MACHINE_ON, "<Inch | CM | MM | Auto | Custom>", set_length_unit}},
+    {BOTH,
+     {"LINEAR_UNIT_CONVERSION", Needs::MACHINE_ON, "<Inch | CM | MM | Auto | Custom>", set_length_unit}},
     {BOTH, {"LOAD_TOOL_TABLE", Needs::MACHINE_ON, "[file]", load_tool_table}},
     {BOTH, {"LUBE", Needs::MACHINE_ON, "<On | Off>", set_lube}},
     {BOTH, {"MACHINE", Needs::ENABLE, "<On | Off>", set_machine}},

@@ -20,10 +20,10 @@ enum class Needs : std::uint8_t { NOTHING, HELLO, ENABLE, MACHINE_ON };
 
 /// When an order is answered.
 enum class Until : std::uint8_t {
-    AS_SET,     ///< as WAIT_MODE says
-    TAKEN,      ///< when the machine has taken it: what it starts may take long
-    ENDED,      ///< when it has ended
-    WHATEVER,   ///< when it has ended, be it refused
+    AS_SET,    ///< as WAIT_MODE says
+    TAKEN,     ///< when the machine has taken it: what it starts may take long
+    ENDED,     ///< when it has ended
+    WHATEVER,  ///< when it has ended, be it refused
     WHATEVER_TAKEN
 };
 

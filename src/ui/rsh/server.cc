@@ -59,12 +59,15 @@ class Connection : public std::enable_shared_from_this<Connection> {
     Conversation &conversation() { return *conversation_; }
     /// Nothing more comes of it.
     bool isGone() const { return isGone_; }
+    /// It has asked for the end of the server, also when nothing more comes of it.
+    bool wantsShutdown() const { return wantsShutdown_; }
 
     void step(double now) {
         if (isGone_) {
             return;
         }
         conversation_->step(now);
+        wantsShutdown_ = conversation_->wantsShutdown();
         write();
         read();
     }
@@ -83,23 +86,23 @@ class Connection : public std::enable_shared_from_this<Connection> {
             return;
         }
         isReading_ = true;
-        socket_.async_read_some(net::buffer(bytes_), [self = shared_from_this()](error_code error,
-                                                                                 std::size_t size) {
-            self->isReading_ = false;
-            if (self->isGone_) {
-                return;
-            }
-            if (error && error != net::error::eof) {
-                self->end();
-                return;
-            }
-            if (error) {
-                self->isInputOver_ = true;
-                self->conversation_->end_input();
-            } else {
-                self->conversation_->take({self->bytes_.data(), size});
-            }
-        });
+        socket_.async_read_some(net::buffer(bytes_),
+                                [self = shared_from_this()](error_code error, std::size_t size) {
+                                    self->isReading_ = false;
+                                    if (self->isGone_) {
+                                        return;
+                                    }
+                                    if (error && error != net::error::eof) {
+                                        self->end();
+                                        return;
+                                    }
+                                    if (error) {
+                                        self->isInputOver_ = true;
+                                        self->conversation_->end_input();
+                                    } else {
+                                        self->conversation_->take({self->bytes_.data(), size});
+                                    }
+                                });
     }
     void write() {
         std::string &output = conversation_->output();
@@ -127,15 +130,17 @@ class Connection : public std::enable_shared_from_this<Connection> {
     std::unique_ptr<Conversation> conversation_;
     std::array<char, 4096> bytes_{};
     std::string sent_;
-    bool isReading_ = false, isWriting_ = false, isInputOver_ = false, isGone_ = false;
+    bool isReading_ = false, isWriting_ = false, isInputOver_ = false, isGone_ = false,
+         wantsShutdown_ = false;
 };
 
 }  // namespace
 
 class Server::Impl {
+    using Held = std::shared_ptr<Connection>;
+
   public:
-    Impl(const ServerSettings &settings, Making making)
-        : settings_(settings), making_(std::move(making)) {}
+    Impl(const ServerSettings &settings, Making making) : settings_(settings), making_(std::move(making)) {}
 
     Result<> open() {
         if (!settings_.address.empty()) {
@@ -151,23 +156,25 @@ class Server::Impl {
     int port() const { return port_; }
 
     void run(const std::function<bool()> &prepare, double idle_s) {
-        while (prepare() && !isShutdown()) {
+        while (prepare()) {
             const double now = now_s();
             for (const auto &connection : connections_) {
                 connection->step(now);
             }
+            if (std::ranges::any_of(connections_, [](const Held &held) { return held->wantsShutdown(); })) {
+                break;
+            }
             connections_.remove_if([](const auto &connection) { return connection->isGone(); });
             const double pause = std::ranges::any_of(connections_, isBusy) ? BUSY_S : idle_s;
             loop_.restart();
-            loop_.run_one_for(std::chrono::duration_cast<std::chrono::nanoseconds>(
-                std::chrono::duration<double>(pause)));
+            loop_.run_one_for(
+                std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(pause)));
             loop_.poll();
         }
         say_last_words();
     }
 
   private:
-    using Held = std::shared_ptr<Connection>;
     static bool isBusy(const Held &connection) {
         return !connection->isGone() && connection->conversation().isBusy();
     }
@@ -218,11 +225,6 @@ class Server::Impl {
             // This process has no descriptor left, or no memory: not again at once.
             pause_.expires_after(REST);
             pause_.async_wait([this, &acceptor](error_code) { accept(acceptor); });
-        });
-    }
-    bool isShutdown() const {
-        return std::ranges::any_of(connections_, [](const Held &connection) {
-            return !connection->isGone() && connection->conversation().wantsShutdown();
         });
     }
     void say_last_words() {

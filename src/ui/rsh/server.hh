@@ -12,10 +12,10 @@
 namespace mw::ui::rsh {
 
 struct ServerSettings {
-    int port = 5007;            ///< 0: a free one
-    std::string address;        ///< empty: this computer alone, by IPv4 and, where there is it, by IPv6
-    bool isIpv4Only = false;    ///< of this computer alone
-    int max_sessions = -1;      ///< -1: as many as come
+    int port = 5007;          ///< 0: a free one
+    std::string address;      ///< empty: this computer alone, by IPv4 and, where there is it, by IPv6
+    bool isIpv4Only = false;  ///< of this computer alone
+    int max_sessions = -1;    ///< -1: as many as come
 };
 
 /// One thread. Connections that nobody is at any more are found out by the kernel's probes.

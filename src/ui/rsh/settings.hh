@@ -12,8 +12,8 @@ namespace mw::ui::rsh {
 enum class Dialect { NEWER, OLD };
 
 struct Settings {
-    std::string name = "EMCNETSVR";       ///< as HELLO answers
-    std::string connect_password = "EMC"; ///< of HELLO
+    std::string name = "EMCNETSVR";        ///< as HELLO answers
+    std::string connect_password = "EMC";  ///< of HELLO
     std::string enable_password = "EMCTOO";
     std::string program_folder;  ///< of programs whose name is no path; empty: that of the INI file
     Dialect dialect = Dialect::NEWER;

@@ -41,7 +41,7 @@ LengthUnit shown_unit(const OwnState &own, const msgs::MachineStatus &status) {
 
 double length_factor(const OwnState &own, const msgs::MachineStatus &status) {
     const double mm = 1 / status.settings.linear_units;
-    switch (shown_unit(own, status)) {
+    switch (own.length_unit) {
     case LengthUnit::INCH: return mm / MM_PER_INCH;
     case LengthUnit::MM: return mm;
     case LengthUnit::CM: return mm / 10;
@@ -54,10 +54,10 @@ double length_factor(const OwnState &own, const msgs::MachineStatus &status) {
 double angle_factor(const OwnState &own, const msgs::MachineStatus &status) {
     const double deg = 1 / status.settings.angular_units;
     switch (own.angle_unit) {
-    case AngleUnit::AUTO:  // programs have degrees
     case AngleUnit::DEG: return deg;
     case AngleUnit::RAD: return deg * RAD_PER_DEG;
     case AngleUnit::GRAD: return deg * GRAD_PER_DEG;
+    case AngleUnit::AUTO:
     case AngleUnit::CUSTOM: break;
     }
     return 1;

@@ -16,7 +16,8 @@ std::string name_of_angle(double units_per_deg);
 LengthUnit program_unit(const msgs::MachineStatus &status);
 /// What AUTO means now.
 LengthUnit shown_unit(const OwnState &own, const msgs::MachineStatus &status);
-/// By which machine lengths, and angles, are multiplied to be told.
+/// By which machine lengths, and angles, are multiplied to be told: with AUTO they stay what they are, so
+/// that a program's G20 does not change what a client reads.
 double length_factor(const OwnState &own, const msgs::MachineStatus &status);
 double angle_factor(const OwnState &own, const msgs::MachineStatus &status);
 

@@ -37,10 +37,11 @@ Result<int> index_of(const std::string &word, const char *what, int count) {
 Result<int> axis_of(const std::string &word) {
     const auto value = parse_int(word);
     const int axis = value.has_value() && *value >= 0 && *value < geom::AXIS_COUNT ? static_cast<int>(*value)
-                     : word.size() == 1                                            ? geom::axis_of_letter(word[0])
-                                                                                   : -1;
-    return axis >= 0 ? Result<int>(axis)
-                     : fail(fmt::format("Invalid axis '{}', valid: X Y Z A B C U V W or 0 to 8", printable(word)));
+                     : word.size() == 1 ? geom::axis_of_letter(word[0])
+                                        : -1;
+    return axis >= 0
+               ? Result<int>(axis)
+               : fail(fmt::format("Invalid axis '{}', valid: X Y Z A B C U V W or 0 to 8", printable(word)));
 }
 
 }  // namespace mw::ui::rsh

@@ -4,6 +4,7 @@ import { Jogger } from './jog';
 import type { Command, Outcome } from './link';
 import { machine, send, sendQuietly, tellLocally, whenLost } from './machine.svelte';
 import { t } from './i18n/index.svelte';
+import type { Tool } from './tools.svelte';
 import { axisIndex, isAngularAxis, isProgramInches, type Mode } from './status';
 
 function isDone(outcome: Outcome): boolean {
@@ -145,6 +146,32 @@ export function inProgramUnits(value: number, letter: string): number {
 /** The place where the tool stands becomes `value` (machine units) of the coordinate system in force. */
 export function touchOff(letter: string, value: number): Promise<Outcome> {
   return mdi(`G10 L20 P0 ${letter}${inProgramUnits(value, letter).toFixed(6)}`);
+}
+
+// Tools
+
+/** As T and M6 in a line of MDI: what the INI file has for a change is done, too. */
+export function changeTool(toolno: number): Promise<Outcome> {
+  return mdi(`T${toolno} M6`);
+}
+
+/** The tip of the tool in the spindle stands at `value` (machine units) of the work coordinates. */
+export async function measureTool(toolno: number, value: number): Promise<Outcome> {
+  const outcome = await mdi(`G10 L10 P${toolno} Z${inProgramUnits(value, 'Z').toFixed(6)}`);
+  return isDone(outcome) ? mdi('G43') : outcome;
+}
+
+export function setToolEntry(tool: Tool): Promise<Outcome> {
+  return send({
+    message: 'SetToolEntry',
+    toolno: tool.toolno,
+    pocket: tool.pocketno,
+    offset: [...tool.offset],
+    diameter: tool.diameter,
+    frontangle_deg: tool.frontangle_deg,
+    backangle_deg: tool.backangle_deg,
+    orientation: tool.orientation,
+  });
 }
 
 // Spindle, coolant, overrides

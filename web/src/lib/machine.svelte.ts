@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The machine as this page knows it: one socket, one status, the messages, and what they mean together.
 import type { View } from './gates';
+import { record } from './history.svelte';
 import { Link, type Command, type Message, type Outcome, type Socket } from './link';
 import { mergeDelta, type MachineFacts, type MachineStatus } from './status';
 
@@ -127,6 +128,10 @@ const link = new Link(
         machine.status = delta as unknown as MachineStatus;
       } else {
         mergeDelta(machine.status as unknown as Record<string, unknown>, delta);
+      }
+      const now = machine.status;
+      if (now !== null) {
+        record(now.time_ns * 1e-9, now.trajectory.current_velocity, now.joints.slice(0, now.trajectory.num_joints).map((one) => one.ferror));
       }
     },
     message(message) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The open program: its name in the folder of programs, and when its path is to be read again.
+// The open program: its name in the folder of programs, and when it is to be read again, its errors.
 import { machine } from './machine.svelte';
 
-export const program = $state({ reads: 0 });
+export const program = $state<{ reads: number; errors: string[] }>({ reads: 0, errors: [] });
 
 /** In the folder of programs; nothing where none is open, or one from elsewhere. */
 export function openName(): string | null {

@@ -65,6 +65,7 @@ export interface Joint {
   pos_fb: number;
   vel_cmd: number;
   ferror: number;
+  ferror_highmark: number;
   min_limit: number;
   max_limit: number;
   is_enabled: boolean;
@@ -218,7 +219,7 @@ export function modalWords(codes: Codes): string[] {
   return words;
 }
 
-const SYSTEMS = ['', 'G54', 'G55', 'G56', 'G57', 'G58', 'G59', 'G59.1', 'G59.2', 'G59.3'];
+export const SYSTEMS = ['', 'G54', 'G55', 'G56', 'G57', 'G58', 'G59', 'G59.1', 'G59.2', 'G59.3'];
 
 export function systemName(index: number): string {
   return SYSTEMS[index] ?? `#${index}`;

@@ -43,8 +43,11 @@ async function read(): Promise<void> {
   tools.version = told.version;
 }
 
-/** Of the entry that T has prepared; null when it is not known yet. */
+/** What T has prepared, 0: an empty spindle; null when it is not known yet. */
 export function preparedTool(): number | null {
   const index = machine.status?.tool.prepared_index ?? -1;
+  if (index === 0) {
+    return 0; // the entry of the spindle itself: nothing is put in
+  }
   return index < 0 ? null : (tools.list[index]?.toolno ?? null);
 }

@@ -142,6 +142,22 @@ TEST_F(TclTest, ExitEndsTheScriptOnly) {
     EXPECT_FALSE(last_result);
 }
 
+TEST_F(TclTest, ThePackageLinuxcncReadsIniFilesAndSaysWhatItCannot_J2) {
+    const std::string path = write("some.ini", "[A]\n K = 1 2 \n# N = 1\nK=[x]\n[B]\nlone\nC = a=b\n");
+    const std::string source = "source " MW_SOURCE_DIR "/src/hal_lang/tcl/linuxcnc.tcl\n";
+    const std::string read = source + "parse_ini " + path + "\n";
+    EXPECT_EQ(
+        run(read +
+            "if {$::A(K) ne {{1 2} {[x]}} || $::B(C) ne {a=b} || [array size ::B] != 1} {error wrong}\n"),
+        "");
+    EXPECT_EQ(run(source +
+                  "if {![info exists linuxcnc::TCL_DIR] || [package provide Linuxcnc] != 1.0} {error no}\n"),
+              "");
+    EXPECT_EQ(run(source + "hal newsig from-package bit\n"), "");
+    EXPECT_TRUE(host->hal().hasSignal("from-package"));
+    EXPECT_NE(run(source + "emc_init -ini x\n").find("no Tcl commands for the machine"), std::string::npos);
+}
+
 TEST_F(TclTest, AScriptForTwoPassesSaysSoInOne_B1) {
     EXPECT_EQ(run("if {[namespace exists ::tp]} {error there}\n"), "");
     EXPECT_NE(run("::tp::passnumber\n").find("TWOPASS = on"), std::string::npos);

@@ -62,7 +62,7 @@ bool find_tool(const ToolTable &tools, int toolno, std::uint32_t column, int &in
 void load_tool(const ToolTable &tools, ToolModes &tool, int index) {
     const ToolEntry entry = index == 0 && !tools.isRandom() ? ToolEntry{} : tools.entry(index);
     tool.index = index;
-    tool.in_spindle = entry.toolno > 0 ? entry.toolno : 0;
+    tool.in_spindle = entry.toolno > 0 || tools.isRandom() ? entry.toolno : 0;  // random: -1 empty
     tool.offset = entry.offset;
     tool.diameter = entry.diameter;
     tool.frontangle = entry.frontangle;
@@ -183,7 +183,7 @@ bool set_tool_offset(const Code &code, const BlockValues &values, const Machine 
         if (toolno < 0) {
             return fault.set("Negative tool number: H must be 0 or more", values.column_of('h'));
         }
-        if (toolno == 0 && code.number == 430) {
+        if (toolno == 0 && code.number == 430 && !tools.isRandom()) {  // there T0 is a tool
             table = state.tool.offset;
         } else if (!find_tool(tools, toolno, values.column_of('h'), index, fault)) {
             return false;

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The port: connections in and out, on loopback.
-#include "ui/rsh/server.hh"
-
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -13,19 +11,21 @@
 
 #include <gtest/gtest.h>
 
+#include "ui/rsh/server.hh"
+
 namespace mw::ui::rsh {
 namespace {
 
 /// Says each byte again; ends at a full stop, and the server at an exclamation mark.
 class Echo final : public Conversation {
   public:
-    explicit Echo(std::atomic<int> &living) : living_(living) { ++living_; }
+    Echo(std::atomic<int> &living, bool isMute) : living_(living), isMute_(isMute) { ++living_; }
     ~Echo() override { --living_; }
     void take(std::string_view bytes) override { in_ += bytes; }
     void end_input() override { isOver_ = true; }
     bool isFull() const override { return false; }
     void step(double) override {
-        out_ += in_;
+        out_ += isMute_ ? "" : in_;
         isOver_ = isOver_ || in_.find('.') != std::string::npos;
         isEnd_ = isEnd_ || in_.find('!') != std::string::npos;
         isOver_ = isOver_ || isEnd_;
@@ -38,6 +38,7 @@ class Echo final : public Conversation {
 
   private:
     std::atomic<int> &living_;
+    bool isMute_;
     std::string in_, out_;
     bool isOver_ = false, isEnd_ = false;
 };
@@ -48,7 +49,7 @@ class RshServerTest : public ::testing::Test {
         ServerSettings settings;
         settings.port = 0;
         settings.max_sessions = max_sessions;
-        auto made = Server::listen(settings, [this] { return std::make_unique<Echo>(living); });
+        auto made = Server::listen(settings, [this] { return std::make_unique<Echo>(living, isMute); });
         ASSERT_TRUE(made.has_value()) << made.error().str();
         server = std::move(*made);
         thread = std::thread([this] { server->run([this] { return !isEnded; }, 0.01); });
@@ -82,12 +83,13 @@ class RshServerTest : public ::testing::Test {
     }
 
     std::atomic<int> living{0};
+    bool isMute = false;
     std::atomic<bool> isEnded{false};
     std::unique_ptr<Server> server;
     std::thread thread;
 };
 
-TEST_F(RshServerTest, SeveralAreServedAtOnceAndAPortIsHadOnce_F8) {
+TEST_F(RshServerTest, SeveralAreServedAtOnceAndAPortIsHadOnce_J4) {
     start();
     const int one = connect(), other = connect();
     say(other, "b");
@@ -106,7 +108,7 @@ TEST_F(RshServerTest, SeveralAreServedAtOnceAndAPortIsHadOnce_F8) {
     }
 }
 
-TEST_F(RshServerTest, MoreThanAreWantedAreTurnedAway_F8) {
+TEST_F(RshServerTest, MoreThanAreWantedAreTurnedAway_J4) {
     start(1);
     const int one = connect();
     say(one, "a");
@@ -117,7 +119,7 @@ TEST_F(RshServerTest, MoreThanAreWantedAreTurnedAway_F8) {
     ::close(other);
 }
 
-TEST_F(RshServerTest, LastWordsAreSaidWhenTheServerEnds_F8) {
+TEST_F(RshServerTest, LastWordsAreSaidWhenTheServerEnds_J4) {
     start();
     const int one = connect();
     say(one, "end!");
@@ -126,7 +128,17 @@ TEST_F(RshServerTest, LastWordsAreSaidWhenTheServerEnds_F8) {
     ::close(one);
 }
 
-TEST_F(RshServerTest, WhatIsLongComesWhole_F8) {
+TEST_F(RshServerTest, ItAlsoEndsForWhoHasNothingMoreToHear_J4) {
+    isMute = true;
+    start();
+    const int one = connect();
+    say(one, "!");
+    EXPECT_EQ(hear(one, 9), "");
+    thread.join();
+    ::close(one);
+}
+
+TEST_F(RshServerTest, WhatIsLongComesWhole_J4) {
     start();
     const int one = connect();
     std::string all(300000, 'x');
@@ -136,7 +148,7 @@ TEST_F(RshServerTest, WhatIsLongComesWhole_F8) {
     ::close(one);
 }
 
-TEST_F(RshServerTest, AnAddressThatIsNoneIsToldInOneLine_F8) {
+TEST_F(RshServerTest, AnAddressThatIsNoneIsToldInOneLine_J4) {
     ServerSettings settings;
     settings.address = "nowhere";
     const auto made = Server::listen(settings, [] { return nullptr; });

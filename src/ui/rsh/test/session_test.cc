@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A connection with a task that takes what it asks for.
-#include "ui/rsh/session.hh"
-
 #include <memory>
 #include <string>
 
@@ -10,6 +8,7 @@
 #include "mailbox/desk.hh"
 #include "msgs/catalogue.hh"
 #include "ui/rsh/answers.hh"
+#include "ui/rsh/session.hh"
 
 namespace mw::ui::rsh {
 namespace {
@@ -89,7 +88,7 @@ class OldRshTest : public RshTest {
     OldRshTest() : RshTest(Dialect::OLD) {}
 };
 
-TEST_F(RshTest, NothingIsCommandedBeforeHelloAndTheSecondPassword_F8) {
+TEST_F(RshTest, NothingIsCommandedBeforeHelloAndTheSecondPassword_J4) {
     EXPECT_EQ(say("set mode mdi"), "SET MODE NAK\r\n");
     EXPECT_EQ(say("hello WRONG me 1.0"), "HELLO NAK\r\n");
     EXPECT_EQ(say("hello EMC me 1.0"), "HELLO ACK EMCNETSVR 1.1\r\n");
@@ -105,7 +104,7 @@ TEST_F(RshTest, NothingIsCommandedBeforeHelloAndTheSecondPassword_F8) {
     EXPECT_EQ(say("set mode mdi"), "SET MODE NAK\r\n");
 }
 
-TEST_F(RshTest, AnOrderIsAnsweredWhenItHasEnded_F8) {
+TEST_F(RshTest, AnOrderIsAnsweredWhenItHasEnded_J4) {
     greet();
     progress = Progress::STARTED;
     EXPECT_EQ(say("set mdi g0 x1"), "");
@@ -120,14 +119,14 @@ TEST_F(RshTest, AnOrderIsAnsweredWhenItHasEnded_F8) {
     EXPECT_EQ(say("set mdi g0 x1"), "SET MDI ACK\r\n");
 }
 
-TEST_F(RshTest, AnOrderThatTakesTooLongIsAnsweredByNo_F8) {
+TEST_F(RshTest, AnOrderThatTakesTooLongIsAnsweredByNo_J4) {
     greet();
     say("set timeout 0.005");
     progress = Progress::STARTED;
     EXPECT_EQ(say("set mdi g0 x1"), "error: it has not ended within 0.005000 seconds\r\nSET MDI NAK\r\n");
 }
 
-TEST_F(RshTest, LinesArriveInPiecesAndWithAnyEnd_F8) {
+TEST_F(RshTest, LinesArriveInPiecesAndWithAnyEnd_J4) {
     greet();
     session->take("get mo");
     cycle();
@@ -141,7 +140,7 @@ TEST_F(RshTest, LinesArriveInPiecesAndWithAnyEnd_F8) {
     EXPECT_TRUE(session->isOver());
 }
 
-TEST_F(RshTest, ALineThatIsTooLongIsRefusedAsAWhole_F8) {
+TEST_F(RshTest, ALineThatIsTooLongIsRefusedAsAWhole_J4) {
     greet();
     EXPECT_EQ(say("set mdi g0 x1" + std::string(3 * MAX_LINE, ' ')),
               "error: the line has more than 4096 bytes\r\nSET LINE NAK\r\n");
@@ -152,7 +151,7 @@ TEST_F(RshTest, ALineThatIsTooLongIsRefusedAsAWhole_F8) {
     EXPECT_EQ(say("get mode"), "MODE MANUAL\r\n");
 }
 
-TEST_F(RshTest, WrongWordsAreToldAndAskNothing_F8) {
+TEST_F(RshTest, WrongWordsAreToldAndAskNothing_J4) {
     greet();
     EXPECT_EQ(say("set home 3"), "error: Invalid joint '3', valid range [-1,2]\r\nSET HOME NAK\r\n");
     EXPECT_EQ(say("set spindle forward 99"),
@@ -169,7 +168,7 @@ TEST_F(RshTest, WrongWordsAreToldAndAskNothing_F8) {
     EXPECT_EQ(asked, "");
 }
 
-TEST_F(RshTest, StopsNeedNoMachineThatIsOn_F8) {
+TEST_F(RshTest, StopsNeedNoMachineThatIsOn_J4) {
     greet();
     status->task.state = State::OFF;
     cycle();
@@ -180,7 +179,7 @@ TEST_F(RshTest, StopsNeedNoMachineThatIsOn_F8) {
     EXPECT_EQ(asked, msgs::to_text(msgs::SetState{State::ESTOP}));
 }
 
-TEST_F(RshTest, SpindlesTurnOneAtATimeAndStopAllTogether_F8) {
+TEST_F(RshTest, SpindlesTurnOneAtATimeAndStopAllTogether_J4) {
     greet();
     say("set spindle forward");
     EXPECT_EQ(asked, msgs::to_text(msgs::SpindleOn{0, 500}));
@@ -188,6 +187,13 @@ TEST_F(RshTest, SpindlesTurnOneAtATimeAndStopAllTogether_F8) {
     cycle();
     say("set spindle reverse 1");
     EXPECT_EQ(asked, msgs::to_text(msgs::SpindleOn{1, -800}));
+    status->spindles[1].isOn = true;
+    status->spindles[1].speed_cmd_rpm = -800;
+    cycle();
+    say("set spindle increase 1");
+    EXPECT_EQ(asked, msgs::to_text(msgs::SpindleOn{1, -900}));
+    say("set spindle increase 0");
+    EXPECT_EQ(asked, msgs::to_text(msgs::SpindleOff{0})) << "it stands";
     say("set spindle off");
     EXPECT_EQ(asked, msgs::to_text(msgs::SpindleOff{0}) + ", " + msgs::to_text(msgs::SpindleOff{1}));
     status->spindles[1].direction = -1;
@@ -195,7 +201,7 @@ TEST_F(RshTest, SpindlesTurnOneAtATimeAndStopAllTogether_F8) {
     EXPECT_EQ(say("get spindle -1"), "SPINDLE 0 OFF\r\nSPINDLE 1 REVERSE\r\n");
 }
 
-TEST_F(RshTest, AJogHasALeaseAndStopsWithItsConnection_F8_C5) {
+TEST_F(RshTest, AJogHasALeaseAndStopsWithItsConnection_J4_C5) {
     greet();
     EXPECT_EQ(say("set jog 1 -60"), "SET JOG ACK\r\n");
     EXPECT_EQ(asked, msgs::to_text(msgs::JogContinuous{true, 1, -1, 500}));
@@ -213,7 +219,7 @@ TEST_F(RshTest, AJogHasALeaseAndStopsWithItsConnection_F8_C5) {
     EXPECT_EQ(asked, msgs::to_text(msgs::JogStop{true, 1}));
 }
 
-TEST_F(RshTest, AJogThatHasEndedIsNotRenewed_F8_C5) {
+TEST_F(RshTest, AJogThatHasEndedIsNotRenewed_J4_C5) {
     greet();
     say("set jog 1 60");
     progress = Progress::REFUSED;  // the renewal: a limit has ended it
@@ -228,7 +234,7 @@ TEST_F(RshTest, AJogThatHasEndedIsNotRenewed_F8_C5) {
     EXPECT_FALSE(session->isBusy());
 }
 
-TEST_F(RshTest, AxesHaveLettersAndJointsNumbers_F8) {
+TEST_F(RshTest, AxesHaveLettersAndJointsNumbers_J4) {
     greet();
     EXPECT_EQ(say("set jog x 60"), "error: Invalid joint 'x', valid range [0,2]\r\nSET JOG NAK\r\n");
     status->trajectory.mode = msgs::MotionMode::TELEOP;
@@ -238,7 +244,7 @@ TEST_F(RshTest, AxesHaveLettersAndJointsNumbers_F8) {
     EXPECT_EQ(asked, msgs::to_text(msgs::JogIncrement{false, 1, 2, -0.5}));
 }
 
-TEST_F(RshTest, EveryErrorIsToldOnceAlsoToWhoComesLater_F8) {
+TEST_F(RshTest, EveryErrorIsToldOnceAlsoToWhoComesLater_J4) {
     greet();
     desk.post(MessageKind::OPERATOR_ERROR, "first");
     desk.post(MessageKind::OPERATOR_DISPLAY, "shown");
@@ -253,7 +259,7 @@ TEST_F(RshTest, EveryErrorIsToldOnceAlsoToWhoComesLater_F8) {
     EXPECT_EQ(say("get operator_text"), "OPERATOR_TEXT OK\r\n");
 }
 
-TEST_F(RshTest, PositionsAreToldInTheUnitsThatAreAskedFor_F8) {
+TEST_F(RshTest, PositionsAreToldInTheUnitsThatAreAskedFor_J4) {
     greet();
     status->codes.g[5] = 210;
     status->trajectory.position_cmd[0] = 25.4;
@@ -267,7 +273,7 @@ TEST_F(RshTest, PositionsAreToldInTheUnitsThatAreAskedFor_F8) {
     EXPECT_EQ(say("get display_linear_units"), "DISPLAY_LINEAR_UNITS INCH\r\n");
 }
 
-TEST_F(RshTest, AnOldStatusIsToldUntilItIsUpdated_F8) {
+TEST_F(RshTest, AnOldStatusIsToldUntilItIsUpdated_J4) {
     greet();
     say("set update none");
     status->task.mode = Mode::MDI;
@@ -277,7 +283,7 @@ TEST_F(RshTest, AnOldStatusIsToldUntilItIsUpdated_F8) {
     EXPECT_EQ(say("get mode"), "MODE MDI\r\n");
 }
 
-TEST_F(RshTest, ItWaitsForHomingAndSaysWhenNothingIsHomed_F8) {
+TEST_F(RshTest, ItWaitsForHomingAndSaysWhenNothingIsHomed_J4) {
     greet();
     status->joints[0].isHoming = true;
     cycle();
@@ -292,7 +298,7 @@ TEST_F(RshTest, ItWaitsForHomingAndSaysWhenNothingIsHomed_F8) {
     EXPECT_EQ(session->output(), "error: nothing is being homed\r\nSET JOINT_WAIT_HOMED NAK\r\n");
 }
 
-TEST_F(RshTest, OnlyWhoMayEndsTheServer_F8) {
+TEST_F(RshTest, OnlyWhoMayEndsTheServer_J4) {
     EXPECT_EQ(say("shutdown"), "SHUTDOWN NAK\r\n");
     EXPECT_FALSE(session->wantsShutdown());
     greet();
@@ -300,7 +306,7 @@ TEST_F(RshTest, OnlyWhoMayEndsTheServer_F8) {
     EXPECT_TRUE(session->wantsShutdown());
 }
 
-TEST_F(RshTest, EveryQuestionAndOrderOfHelpIsKnown_F8) {
+TEST_F(RshTest, EveryQuestionAndOrderOfHelpIsKnown_J4) {
     for (const Dialect dialect : {Dialect::NEWER, Dialect::OLD}) {
         settings.dialect = dialect;
         for (const std::string &name : question_names(settings)) {
@@ -312,7 +318,7 @@ TEST_F(RshTest, EveryQuestionAndOrderOfHelpIsKnown_F8) {
     }
 }
 
-TEST_F(OldRshTest, AnswersHaveTheEndsThatScriptsOf29Know_F8) {
+TEST_F(OldRshTest, AnswersHaveTheEndsThatScriptsOf29Know_J4) {
     EXPECT_EQ(say("set echo off"), "SET NAK\r\n");
     EXPECT_EQ(say("hello EMC me 1.0"), "HELLO ACK EMCNETSVR 1.1\r\n");
     EXPECT_EQ(say("set echo off"), "set echo off\r\n");

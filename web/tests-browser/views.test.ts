@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Every view in every size, light and dark: axe-core finds nothing, nothing runs out of the picture, and the stops can be
+// touched. With MW_SCREEN_PICTURES the pictures of docs/screen.md are made from the running program.
+import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { join } from 'node:path';
+import type { Page } from 'playwright-core';
+import { afterAll, beforeAll, describe, expect, it } from 'vitest';
+import { bringUp, byHand, Rig, sleep, untilText } from './rig';
+
+const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+const PICTURES = process.env['MW_SCREEN_PICTURES'];
+const SIZES = [[1280, 800], [800, 480], [390, 844]] as const;
+const TABS = ['path', 'programs', 'text', 'tools', 'offsets', 'plots', 'messages', 'settings'];
+const SMALL_TABS = ['jog', 'mdi', 'process', ...TABS];
+
+const rig = new Rig(byHand);
+let page: Page;
+
+interface Finding {
+  id: string;
+  nodes: { target: string[]; failureSummary: string }[];
+}
+
+async function judge(what: string): Promise<void> {
+  const found = await page.evaluate(async () => {
+    const { axe } = window as unknown as { axe: { run(options: object): Promise<{ violations: Finding[] }> } };
+    return (await axe.run({ resultTypes: ['violations'] })).violations;
+  });
+  expect(found.map((one) => `${what}: ${one.id} ${one.nodes.map((node) => `${node.target.join(' ')} ${node.failureSummary}`).join('; ')}`)).toEqual([]);
+}
+
+/** What can be touched lies in the picture, or in something that is scrolled, and the stops are on top. */
+async function isUsable(what: string): Promise<void> {
+  const wrong = await page.evaluate(() => {
+    const found: string[] = [];
+    if (document.documentElement.scrollWidth > window.innerWidth + 1) {
+      found.push(`the page is ${document.documentElement.scrollWidth} wide`);
+    }
+    for (const id of ['stop', 'estop', 'hold']) {
+      const element = document.querySelector(`[data-testid="${id}"]`);
+      const box = element?.getBoundingClientRect();
+      const top = box === undefined ? null : document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
+      if (element === null || top !== element) {
+        found.push(`${id} cannot be touched`);
+      }
+      if (box !== undefined && (box.width < 44 || box.height < 44)) {
+        found.push(`${id} is ${box.width} by ${box.height}`);
+      }
+    }
+    return found;
+  });
+  expect(wrong, what).toEqual([]);
+}
+
+async function picture(name: string): Promise<void> {
+  if (PICTURES !== undefined) {
+    await page.screenshot({ path: join(PICTURES, `${name}.png`) });
+  }
+}
+
+beforeAll(async () => {
+  rig.write('pocket.ngc', readFileSync(new URL('../../nc_files/pocket.ngc', import.meta.url), 'utf8'));
+  rig.write('part.ngc', 'G21 G90 F600\nG0 Z5\nT1 M6\nG1 X10\nM2\n');
+  await rig.startServer();
+  await rig.startMachine();
+  page = await rig.page();
+  await page.addScriptTag({ content: AXE }).catch(() => undefined);
+  if (!(await page.evaluate(() => 'axe' in window))) {
+    await page.evaluate(AXE); // the rules of the page let no other script in
+  }
+});
+
+afterAll(async () => {
+  await rig.end();
+});
+
+describe('before it is on', () => {
+  it.each(SIZES)('at %i by %i', async (width, height) => {
+    await page.setViewportSize({ width, height });
+    await untilText(page, 'state', 'Emergency stop');
+    await sleep(150);
+    await judge('emergency stop');
+    await isUsable('emergency stop');
+    await picture(`estop_${width}x${height}`);
+  });
+});
+
+describe('when it is on', () => {
+  beforeAll(async () => {
+    await page.setViewportSize({ width: 1280, height: 800 });
+    await bringUp(page);
+    await page.getByTestId('tab-programs').click();
+    await page.getByTestId('open-pocket.ngc').click();
+    await page.getByTestId('path-done').waitFor();
+    await page.getByTestId('mdi-line').fill('G0 Z10');
+    await page.getByTestId('mdi-send').click();
+    await untilText(page, 'machine-Z', '10.000');
+    await untilText(page, 'run-state', 'Idle');
+  });
+
+  describe.each(['dark', 'light'] as const)('%s', (theme) => {
+    it.each(SIZES)('each view at %i by %i', async (width, height) => {
+      await page.emulateMedia({ colorScheme: theme });
+      await page.setViewportSize({ width, height });
+      await sleep(100);
+      for (const tab of width === 1280 ? TABS : SMALL_TABS) {
+        await page.getByTestId(`tab-${tab}`).click();
+        await sleep(tab === 'path' || tab === 'plots' ? 350 : 120);
+        await judge(`${tab} ${width}x${height} ${theme}`);
+        await isUsable(`${tab} ${width}x${height} ${theme}`);
+        if (theme === 'dark' || (width === 1280 && tab === 'path')) {
+          await picture(`${tab}_${width}x${height}${theme === 'light' ? '_light' : ''}`);
+        }
+      }
+    }, 120_000);
+  });
+
+  it('a dialog, a question and a refusal', async () => {
+    await page.emulateMedia({ colorScheme: 'dark' });
+    for (const [width, height] of SIZES) {
+      await page.setViewportSize({ width, height });
+      await page.getByTestId('touch-X').click();
+      await judge(`touch-off ${width}`);
+      await isUsable(`touch-off ${width}`);
+      await picture(`touch_off_${width}x${height}`);
+      await page.getByTestId('touch-off').getByRole('button', { name: 'Close' }).click();
+    }
+    await page.setViewportSize({ width: 1280, height: 800 });
+    await page.getByTestId('tab-tools').click();
+    await page.getByTestId('load-1').click();
+    await page.getByTestId('tool-change').waitFor();
+    await judge('tool change');
+    await isUsable('tool change');
+    await picture('tool_change_1280x800');
+    await page.getByTestId('tool-change-done').click();
+    await untilText(page, 'run-state', 'Idle');
+    await page.getByTestId('resume').or(page.getByTestId('step')).first().waitFor();
+    await page.getByTestId('tab-programs').click();
+    await page.getByTestId('open-pocket.ngc').click();
+    await page.getByTestId('path-done').waitFor();
+    await page.getByTestId('run').click();
+    await untilText(page, 'run-state', /Running|Stopped/);
+    await sleep(3000);
+    await page.getByTestId('jog-X+').click({ force: true });
+    await page.getByTestId('why').waitFor();
+    await judge('running');
+    await isUsable('running');
+    await picture('running_1280x800');
+    await page.getByTestId('stop').click();
+    await untilText(page, 'run-state', 'Idle');
+  }, 60_000);
+});
