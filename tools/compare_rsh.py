@@ -27,15 +27,9 @@ REASONS = [  # (pattern of the line, why ours answers otherwise)
     (r'get comm_prot|set comm_prot', 'the manual takes every version up to 1.1'),
     (r'get time$', 'the time'),
     (r'get program_codes', 'without a parameter file the reference tells G92.2 where 2.10 and ours tell nothing'),
-    (r'get lube|set lube', 'lubrication goes by its own pins'),
-    (r'set mode mdi # homed|set jog x 1$', ''),
+    (r'get lube', 'the reference tells lubrication before anything has asked for it'),
     (r'get error # unhomed', 'a refusal of ours says what to do'),
-    (r'set wait done', 'the reference waits for what another line has asked for'),
-    (r'set pause|set resume|set step|set run|set open|get error # file', 'texts about files of our own'),
-    (r'get joint_units$|get joint_type$|get joint_units # all', 'of joints that the machine does not have'),
-    (r'get joint_pos # jog|get abs_cmd_pos # jog', 'where a jog stands depends on the time'),
-    (r'set optional_stop$|get spindle$|get brake$|get spindle_override$', 'the reference crashes'),
-    (r'get brake', 'as the machine says; the reference tells it before it has asked'),
+    (r'get joint_pos # jog', 'where a jog stands depends on the time'),
 ]
 INI = """[EMC]
 VERSION = 1.1

@@ -84,12 +84,17 @@ _GRACE_S = 2.0
 def _leave():
     """A program that comes to its end in order leaves HAL, also when it has not asked for it."""
     for one in list(_components):
-        one.exit()
+        try:
+            one.exit()
+        except error:
+            continue  # the instance is gone, and the component with it
 
 
 def _end_now():
-    _leave()
-    _os.kill(_os.getpid(), _signal.SIGTERM)
+    try:
+        _leave()
+    finally:
+        _os.kill(_os.getpid(), _signal.SIGTERM)
 
 
 def _on_terminate(number, frame):

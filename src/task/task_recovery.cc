@@ -90,11 +90,6 @@ Result<> Task::Start::open_recovery() {
     return opened;
 }
 
-Result<> Task::Start::forget_recovery() {
-    task.recovery_.forget();
-    return {};
-}
-
 /// The program is open, the axes are at rest.
 void Task::Start::begin_recovery() {
     task.run_.change(RunEvent::SEARCH);

@@ -16,7 +16,6 @@ struct Task::Start {
     void begin();
     /// The same for the program that was cut short.
     Result<> open_recovery();
-    Result<> forget_recovery();
     void begin_recovery();
     void prepare_journal();
     void begin_journal(std::uint32_t first_block);

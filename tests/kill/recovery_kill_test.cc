@@ -199,8 +199,8 @@ TEST_F(KillRecovery, TheProgramGoesOnAtTheRightLineAndNothingHasToBeCleaned_D3) 
         }
     }
     EXPECT_LE(stopped, count_kills() / 4) << "hardly anything was cut";
-    std::cout << count_kills() << " kills, " << stopped << " of them before it cut, " << resumed << " went on from the one before; at most " << latest
-              << " lines before that under the tool\n";
+    std::cout << count_kills() << " kills, " << stopped << " of them before it cut, " << resumed
+              << " went on from the one before; at most " << latest << " lines before that under the tool\n";
 }
 
 }  // namespace

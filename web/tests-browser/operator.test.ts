@@ -173,6 +173,18 @@ describe('by hand', () => {
     await page.getByTestId('increment-continuous').click();
   });
 
+  it('begins nothing by keys while a question is open', async () => {
+    await page.getByTestId('touch-X').click();
+    await page.getByTestId('touch-off').focus();
+    const before = rig.position(0);
+    await page.keyboard.down('ArrowRight');
+    await sleep(200);
+    await page.keyboard.up('ArrowRight');
+    expect(rig.position(0)).toBe(before);
+    await page.keyboard.press('Escape');
+    expect(await page.getByTestId('touch-off').count()).toBe(0);
+  });
+
   it('does not jog by keys where somebody types', async () => {
     const before = rig.position(0);
     await page.getByTestId('mdi-line').focus();
@@ -285,6 +297,19 @@ describe('programs', () => {
     await untilText(page, 'program', 'part.ngc');
     const drawn = await page.getByTestId('path-canvas').screenshot();
     expect(drawn.length).toBeGreaterThan(3000); // an empty picture is smaller
+  });
+
+  it('are drawn where the offsets put them, also when those change', async () => {
+    const low = async (): Promise<string> => (await page.getByTestId('path-canvas').getAttribute('data-low')) ?? '';
+    expect(await low()).toMatch(/^0\.000 0\.000 /);
+    const give = async (line: string): Promise<void> => {
+      await page.getByTestId('mdi-line').fill(line);
+      await page.getByTestId('mdi-line').press('Enter');
+    };
+    await give('G10 L2 P1 X-7 Y-4');
+    await until(async () => /^-7\.000 -4\.000 /.test(await low()), 'the path at its new place');
+    await give('G10 L2 P1 X0 Y0');
+    await until(async () => /^0\.000 0\.000 /.test(await low()), 'the path at its old place');
   });
 
   it('run, hold, resume, and end where they say', async () => {

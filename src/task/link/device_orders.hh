@@ -20,4 +20,12 @@ Result<> switch_device(const msgs::LubeOff &, io::Controller &io);
 /// Data of a tool that is in the table, and of its copy in the spindle; the changer alone moves tools.
 Result<> set_tool(const msgs::SetToolEntry &order, ToolStore &tools);
 
+// What is added to the speed of a spindle that turns.
+constexpr double speed_step_rpm(const msgs::SpindleIncrease &) {
+    return 100;
+}
+constexpr double speed_step_rpm(const msgs::SpindleDecrease &) {
+    return -100;
+}
+
 }  // namespace mw::task

@@ -94,8 +94,8 @@ concept PartOfStart = OneOf<T, InitTask, HaltTask, InitMachine, HaltMachine, Ini
 template <class T>
 concept OfTheMailbox = OneOf<T, ClaimOperation, HandOverOperation, ReleaseOperation>;
 template <class T>
-concept NotYet = OneOf<T, SetDebug, SystemCommand, CallTaskPlugin, CallIoPlugin, EnableTraj, DisableTraj,
-                       SetSpindleSpeed>;
+concept NotYet =
+    OneOf<T, SetDebug, SystemCommand, CallTaskPlugin, CallIoPlugin, EnableTraj, DisableTraj, SetSpindleSpeed>;
 /// What motion does by itself (task/link/motion_words.hh).
 template <class T>
 concept CarriedOutByMotion =

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "task/sequencer/program_spindles.hh"
 
+#include <algorithm>
 #include <cmath>
+
+#include <fmt/format.h>
 
 #include "interp/canon/surface_speed.hh"
 
@@ -62,6 +65,18 @@ void ProgramSpindles::command(int spindle, double signed_rpm, bool isWaiting, Mo
     }
     state.speed = std::fabs(signed_rpm);
     send(spindle, motion);
+}
+
+Result<double> ProgramSpindles::stepped_rpm(int spindle, double step_rpm) const {
+    constexpr double SLOWEST_RPM = 1;
+    const Spindle &state = spindles_[static_cast<std::size_t>(spindle)];
+    if (state.direction == 0) {
+        return fail(fmt::format("spindle {} stands", spindle));
+    }
+    if (state.css_max_rpm > 0) {
+        return fail(fmt::format("spindle {} keeps a constant surface speed", spindle));
+    }
+    return state.direction * std::max(SLOWEST_RPM, state.speed + step_rpm);
 }
 
 std::vector<interp::MachineCall> ProgramSpindles::starts() const {

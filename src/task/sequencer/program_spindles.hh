@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/limits.hh"
+#include "base/result.hh"
 #include "interp/canon/machine_canon.hh"
 #include "task/link/motion_link.hh"
 
@@ -20,6 +21,9 @@ class ProgramSpindles {
     void stop(const interp::StopSpindle &stop, MotionLink &motion);
     /// The operator's command, at once; 0 stops.
     void command(int spindle, double signed_rpm, bool isWaiting, MotionLink &motion);
+    /// [rev/min, with its sense] What a spindle that turns would turn at: a step of its speed starts none,
+    /// and stops none.
+    Result<double> stepped_rpm(int spindle, double step_rpm) const;
     void stop_all(MotionLink &motion);
     // Spindles with constant surface speed are told where their centre line is now.
     void use(const interp::UseOffsets &offsets, MotionLink &motion);
@@ -32,9 +36,6 @@ class ProgramSpindles {
 
     /// As programmed, unscaled. [rev/min or surface units/min]
     double speed(int spindle) const { return spindles_[static_cast<std::size_t>(spindle)].speed; }
-    bool isSurfaceSpeed(int spindle) const {
-        return spindles_[static_cast<std::size_t>(spindle)].css_max_rpm > 0;
-    }
     int direction(int spindle) const { return spindles_[static_cast<std::size_t>(spindle)].direction; }
     /// The next cut waits until the spindle has its speed.
     bool isNextCutWaiting() const { return isNextCutWaiting_; }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "ui/rsh/machine_orders.hh"
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -14,8 +12,6 @@ namespace {
 
 /// Of a spindle for which no speed was programmed. [rev/min]
 constexpr double PRESET_SPEED = 500;
-/// Of one increase or decrease. [rev/min]
-constexpr double SPEED_STEP = 100;
 constexpr double PERCENT = 100;
 
 const char *phrase(msgs::Mode mode) {
@@ -57,14 +53,6 @@ Result<Waiting> for_spindles(const Ordered &o, int spindle, const Make &make) {
 Result<int> spindle_at(const Ordered &o, std::size_t place, int preset) {
     return o.words.size() > place ? index_of(o.words[place], "spindle", o.settings.num_spindles)
                                   : Result<int>(preset);
-}
-
-/// Faster or slower, never the other way round; one that stands goes on standing.
-msgs::Command turned_by(const msgs::SpindleStatus &spindle, int number, double step_rpm) {
-    const double speed = std::max(0.0, std::abs(spindle.speed_cmd_rpm) + step_rpm);
-    const bool isTurning = spindle.isOn && speed > 0;
-    return isTurning ? msgs::Command(msgs::SpindleOn{number, std::copysign(speed, spindle.speed_cmd_rpm)})
-                     : msgs::Command(msgs::SpindleOff{number});
 }
 
 bool isWrongMode(const Ordered &o, msgs::Mode wanted, const msgs::Declaration &what) {
@@ -163,7 +151,7 @@ Result<Waiting> resume(const Ordered &o) {
 
 Result<Waiting> step(const Ordered &o) {
     if (isWrongMode(o, msgs::Mode::AUTO, msgs::DECLARATION<msgs::StepProgram>)) {
-        return fail("");
+        return o.settings.isOld() ? Result<Waiting>(Waiting{}) : fail("");  // 2.9: it was received
     }
     return ask(o, msgs::StepProgram{}, Until::TAKEN);
 }
@@ -205,15 +193,6 @@ Result<Waiting> set_spindle(const Ordered &o) {
     if (!turn.has_value()) {
         return std::unexpected(turn.error());
     }
-    if (*turn == Turn::CONSTANT) {
-        return Waiting{};  // it never changes by itself
-    }
-    if (*turn == Turn::INCREASE || *turn == Turn::DECREASE) {
-        return for_spindles(o, *spindle, [&](int i) {
-            return turned_by(o.status().spindles[static_cast<std::size_t>(i)], i,
-                             *turn == Turn::INCREASE ? SPEED_STEP : -SPEED_STEP);
-        });
-    }
     constexpr std::size_t S = 2;  // place in the settings
     const double programmed = o.status().codes.settings[S];
     const double speed = programmed > 0 ? programmed : PRESET_SPEED;
@@ -221,9 +200,9 @@ Result<Waiting> set_spindle(const Ordered &o) {
         switch (*turn) {
         case Turn::FORWARD: return msgs::SpindleOn{i, speed};
         case Turn::REVERSE: return msgs::SpindleOn{i, -speed};
-        case Turn::INCREASE:
-        case Turn::DECREASE:
-        case Turn::CONSTANT:
+        case Turn::INCREASE: return msgs::SpindleIncrease{i};
+        case Turn::DECREASE: return msgs::SpindleDecrease{i};
+        case Turn::CONSTANT: return msgs::SpindleConstant{i};
         case Turn::OFF: break;
         }
         return msgs::SpindleOff{i};

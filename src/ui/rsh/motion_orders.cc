@@ -160,7 +160,7 @@ Result<Waiting> override_limits(const Ordered &o) {
     }
     if (o.status().task.mode != msgs::Mode::MANUAL) {
         tell_wrong_mode(o, msgs::DECLARATION<msgs::OverrideLimits>);
-        return fail("");
+        return o.settings.isOld() ? Result<Waiting>(Waiting{}) : fail("");
     }
     if (*isOn) {
         return ask(o, msgs::OverrideLimits{});

@@ -2,7 +2,8 @@
 // What an operator does, as commands in their order. A sequence ends with the first command that is not done.
 import { Jogger } from './jog';
 import type { Command, Outcome } from './link';
-import { machine, send, sendQuietly, tellLocally, whenLost } from './machine.svelte';
+import { canOpen } from './gates';
+import { machine, send, sendQuietly, tellLocally, view, whenLost } from './machine.svelte';
 import { t } from './i18n/index.svelte';
 import type { Tool } from './tools.svelte';
 import { axisIndex, isAngularAxis, isProgramInches, type Mode } from './status';
@@ -129,6 +130,11 @@ export const setBlockDelete = (on: boolean): Promise<Outcome> => send({ message:
 
 export function mdi(line: string): Promise<Outcome> {
   return inOrder(...toMode('MDI'), { message: 'Mdi', line });
+}
+
+/** Task writes its parameter file, from which the path of a program is read: an offset survives a cut of the power, too. */
+export function keepOffsets(): Promise<Outcome> {
+  return canOpen(view()) === null ? sendQuietly({ message: 'SynchInterpreter' }) : Promise.resolve({ progress: 'REFUSED', reason: '' });
 }
 
 const MM_PER_INCH = 25.4;

@@ -49,6 +49,9 @@ function onDown(event: KeyboardEvent, actions: KeyActions): boolean {
   if (event.ctrlKey || event.altKey || event.metaKey || takesKeys(event.target)) {
     return false;
   }
+  if (document.querySelector('[role="dialog"]') !== null) {
+    return false; // who answers a question begins nothing else
+  }
   const jog = JOG_KEYS[event.key];
   if (jog !== undefined && actions.areJogKeysOn()) {
     if (!event.repeat) {

@@ -25,6 +25,7 @@ import {
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { Moves } from './chunks';
+import { sparse } from './sparse';
 import { thin } from './thin';
 
 export interface SceneColors {
@@ -73,12 +74,19 @@ const DIRECTIONS: Record<ViewName, [number, number, number]> = {
 };
 
 const TRAIL_POINTS = 4000;
-/** While it is turned, no more points than this are drawn. */
-const POINTS_IN_MOTION = 150_000;
+/** A path with more points is drawn coarsely while something moves, where drawing is slow. */
+const POINTS_IN_MOTION = 25_000;
+/** Along the diagonal of the path. */
+const CELLS = 250;
+/** So long a computer that draws slowly takes for POINTS_IN_MOTION; one with a GPU takes less than a tenth. */
+const SLOW_MS = 6;
+const MOST_FRAME_TIMES = 600;
 const STILL_AFTER_MS = 180;
 
+/** The same moves with all their points and with fewer. */
 interface Piece {
   whole: Line;
+  fine: Line | null;
   coarse: Line | null;
 }
 
@@ -100,13 +108,20 @@ export class PathScene {
   private frame = 0;
   private stillTimer: ReturnType<typeof setTimeout> | undefined;
   private isMoving = false;
+  /** Whole pieces take too long for this computer. */
+  private isSlow = false;
+  private lastFrameAt = 0;
+  private shown: keyof Piece = 'whole';
+  private isThinned = false;
+  private generation = 0;
+  private readonly seen = new Set<number>();
   private points = 0;
-  /** How long the last frames took to be told to the GPU. [ms] */
+  /** Between the last frames while something moved. [ms] */
   readonly frameTimes: number[] = [];
 
   constructor(canvas: HTMLCanvasElement) {
     ColorManagement.enabled = false; // colours are those of the page
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'low-power' });
+    this.renderer = new WebGLRenderer({ canvas, antialias: window.devicePixelRatio < 2, powerPreference: 'low-power' });
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
@@ -149,13 +164,19 @@ export class PathScene {
   }
 
   clearPath(): void {
-    for (const { whole, coarse } of this.pieces) {
+    for (const { whole, fine, coarse } of this.pieces) {
       whole.geometry.dispose();
+      fine?.geometry.dispose();
       coarse?.geometry.dispose();
     }
     this.path.clear();
     this.pieces = [];
     this.points = 0;
+    this.isSlow = false;
+    this.isThinned = false;
+    this.generation += 1;
+    this.seen.clear();
+    this.shown = 'whole';
     this.box.makeEmpty();
     this.trailCount = 0;
     this.trail.geometry.setDrawRange(0, 0);
@@ -164,38 +185,44 @@ export class PathScene {
 
   addMoves(moves: Moves): void {
     const whole = this.makeLine(moves);
-    this.path.add(whole);
-    this.pieces.push({ whole, coarse: null });
-    this.points += moves.count;
     const isFirst = this.box.isEmpty();
     this.box.union(whole.geometry.boundingBox ?? new Box3());
+    this.points += moves.count;
+    // While it is read, a long path is drawn coarsely: what is drawn again with each chunk must be little.
+    const isLong = this.points > POINTS_IN_MOTION;
+    const cell = this.box.getSize(new Vector3()).length() / CELLS;
+    const coarse = isLong ? this.makeSegments(sparse(moves, cell, this.seen)) : null;
+    this.path.add(coarse ?? whole);
+    this.pieces.push({ whole, fine: null, coarse });
     if (isFirst) {
       this.fit();
     }
     this.draw();
   }
 
-  /** The path has come to its end: a coarse one is made for the time in which it is turned. */
-  finish(): void {
+  /** The path has come to its end: what is drawn of it where drawing is slow is made, a piece at a time, so that jogs are renewed. */
+  async finish(): Promise<void> {
     this.fit();
     if (this.points <= POINTS_IN_MOTION) {
       return;
     }
+    const mine = ++this.generation;
     const size = this.box.getSize(new Vector3()).length();
+    const seen = new Set<number>();
     for (const piece of this.pieces) {
-      const { position, kind, line } = piece.whole.geometry.attributes;
-      const thinned = thin(
-        {
-          kind: 'moves',
-          count: position?.count ?? 0,
-          places: position?.array as Float32Array,
-          lines: line?.array as Uint32Array,
-          kinds: kind?.array as Uint8Array,
-        },
-        size / 500,
-      );
-      piece.coarse = this.makeLine(thinned);
+      const moves = movesOf(piece.whole);
+      piece.fine?.geometry.dispose();
+      piece.fine = this.makeLine(thin(moves, size / 2000));
+      piece.coarse = this.makeSegments(sparse(moves, size / CELLS, seen));
+      await new Promise((done) => setTimeout(done));
+      if (mine !== this.generation) {
+        return; // another program is open
+      }
     }
+    this.isThinned = true;
+    this.isSlow = this.measure();
+    this.show(this.wanted());
+    this.draw();
   }
 
   setLimits(low: [number, number, number], high: [number, number, number]): void {
@@ -226,7 +253,7 @@ export class PathScene {
     if (isCutting) {
       this.addToTrail(x, y, z);
     }
-    this.draw();
+    this.noteMotion();
   }
 
   setCurrentLine(line: number): void {
@@ -309,6 +336,11 @@ export class PathScene {
     return new Line(geometry, this.material);
   }
 
+  private makeSegments(moves: Moves): LineSegments {
+    const line = this.makeLine(moves);
+    return new LineSegments(line.geometry, this.material);
+  }
+
   private addToTrail(x: number, y: number, z: number): void {
     if (this.trailCount === TRAIL_POINTS) {
       this.trailPlaces.copyWithin(0, 3);
@@ -344,25 +376,63 @@ export class PathScene {
     }
     this.frame = requestAnimationFrame(() => {
       this.frame = 0;
-      const begin = performance.now();
       this.choose();
       this.renderer.render(this.scene, this.camera);
-      this.frameTimes.push(performance.now() - begin);
-      if (this.frameTimes.length > 600) {
-        this.frameTimes.shift();
-      }
+      this.judgeFrame();
     });
   }
 
-  /** Whole pieces while it stands, coarse ones while it is turned. */
-  private choose(): void {
-    const isCoarse = this.isMoving && this.points > POINTS_IN_MOTION;
-    const wanted = (piece: Piece): Line => (isCoarse && piece.coarse !== null ? piece.coarse : piece.whole);
-    if (this.pieces.length > 0 && this.path.children[0] !== wanted(this.pieces[0] as Piece)) {
-      this.path.clear();
-      this.path.add(...this.pieces.map(wanted));
+  /** Between two frames that were asked for one after the other. */
+  private judgeFrame(): void {
+    const now = performance.now();
+    if (this.isMoving) {
+      this.frameTimes.push(now - this.lastFrameAt);
+    }
+    this.lastFrameAt = now;
+    if (this.frameTimes.length > MOST_FRAME_TIMES) {
+      this.frameTimes.shift();
     }
   }
+
+  /** Draws the coarse path, which is short enough for everybody, and looks how long it takes. */
+  private measure(): boolean {
+    this.show('coarse');
+    const gl = this.renderer.getContext();
+    const pixel = new Uint8Array(4);
+    this.renderer.render(this.scene, this.camera); // what is made at first use
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+    const begin = performance.now();
+    this.renderer.render(this.scene, this.camera);
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel); // waits until it is drawn
+    return performance.now() - begin > SLOW_MS;
+  }
+
+  private wanted(): keyof Piece {
+    return !this.isSlow ? 'whole' : this.isMoving ? 'coarse' : 'fine';
+  }
+
+  private show(which: keyof Piece): void {
+    this.shown = which;
+    this.path.clear();
+    this.path.add(...this.pieces.map((piece) => piece[which] ?? piece.whole));
+  }
+
+  private choose(): void {
+    if (this.isThinned && this.shown !== this.wanted()) {
+      this.show(this.wanted());
+    }
+  }
+}
+
+function movesOf(line: Line): Moves {
+  const { position, kind, line: lines } = line.geometry.attributes;
+  return {
+    kind: 'moves',
+    count: position?.count ?? 0,
+    places: position?.array as Float32Array,
+    lines: lines?.array as Uint32Array,
+    kinds: kind?.array as Uint8Array,
+  };
 }
 
 /** A cone on its point. */

@@ -1,0 +1,208 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The judge of jogs by lease: a client of `millwright ui` jogs and is cut, silent or killed at a moment drawn by a seed. The
+joint must decelerate within 110 ms of the last renewal that the machine was given, and stand; a jog that is not cut does not stutter.
+
+What moved when is read from HAL every servo cycle or so: the position, and the servo thread's own time (an integrator of 1), so that a
+computer whose servo thread comes late is not taken for a jog that runs on. Nothing of the screen, the server or motion is asked.
+
+usage: deadman.py MILLWRIGHT HALCMD ROOT [--cuts N] [--seed S] [--slack-ms MS]    slack: of a computer that does other things
+"""
+import argparse
+import multiprocessing
+import os
+import pathlib
+import random
+import signal
+import sys
+import tempfile
+import threading
+import time
+
+from mill_by_hand import Findings
+from web_screen import Bench, Screen, switch_on_and_home
+
+LEASE_MS, RENEWAL_S = 100, 0.030
+BOUND_S = 0.110
+SPEED = 20.0  # mm/s; the mill of the tests brakes from it in 14 ms
+SAMPLE_S = 0.002
+STUTTER_S = 0.010
+SERVO_CLOCK = 'loadrt integ\naddf integ.0 servo-thread\nsetp integ.0.in 1\nnet servo-s integ.0.out\n'
+FOUND = Findings()
+
+
+class Watch(threading.Thread):
+    """Samples of where the joint is, and when. The stream of halsampler would be exact; HAL itself is asked instead."""
+
+    def __init__(self, bench):
+        super().__init__(daemon=True)
+        sys.path.insert(0, str(pathlib.Path(bench.millwright).parent.parent / 'lib/python'))
+        os.environ.update(bench.env)
+        import hal  # of the build, for the instance of the bench
+        self.component = hal.component(f'deadman{os.getpid()}')
+        self.pin = self.component.newpin('position', hal.HAL_FLOAT, hal.HAL_IN)
+        self.component.newpin('servo-s', hal.HAL_FLOAT, hal.HAL_IN)
+        self.component.ready()
+        hal.connect(f'deadman{os.getpid()}.position', 'Xpos')
+        hal.connect(f'deadman{os.getpid()}.servo-s', 'servo-s')
+        self.samples, self.is_on = [], True
+
+    def run(self):
+        while self.is_on:
+            self.samples.append((self.component['servo-s'], self.component['position'], time.monotonic()))
+            time.sleep(SAMPLE_S)
+
+    def servo_time(self, when):
+        """Of a moment by the computer's clock."""
+        return max((one[0] for one in self.samples if one[2] <= when), default=None)
+
+    def since(self, start):
+        return [one for one in self.samples if one[2] >= start]
+
+
+def jogger(port, sign, pipe, style):
+    """A process of its own: renews until it is told how to end, and tells when it has sent its last renewal."""
+    screen = Screen(port)
+    screen.until(lambda: 'joints' in screen.status)
+    fields = {'is_joint': False, 'index': 0, 'velocity': sign * SPEED, 'lease_ms': LEASE_MS}
+    screen.ask('JogContinuous', **fields)
+    last = time.monotonic()
+    pipe.send(('begun', last))
+    while not pipe.poll(max(0.0, last + RENEWAL_S - time.monotonic())):
+        screen.ask('JogContinuous', is_renewal=True, **fields)
+        last = time.monotonic()
+    end = pipe.recv()
+    if style == 'silent':  # it can wait to be told that its last renewal was taken: the lease counts from there
+        number = screen.last_id
+        screen.until(lambda: number in screen.outcomes, 0.09)
+        last = time.monotonic()
+    pipe.send(('last', last))
+    if style == 'cut':
+        screen.cut()
+    if style == 'stop':
+        screen.ask('JogStop', is_joint=False, index=0)
+        last = time.monotonic()
+    if end == 'silent' or style == 'killed':
+        time.sleep(10)  # open and silent, or killed meanwhile
+
+
+def last_motion(samples):
+    """When it moved last, by the samples."""
+    moved = [b[0] for a, b in zip(samples, samples[1:]) if abs(b[1] - a[1]) > 1e-7]
+    return moved[-1] if moved else None
+
+
+def begin_of_braking(samples):
+    """First sample from which on it is slower than its speed for good."""
+    fast = [b[0] for a, b in zip(samples, samples[1:]) if b[0] > a[0] and abs(b[1] - a[1]) / (b[0] - a[0]) > 0.9 * SPEED]
+    return fast[-1] if fast else None
+
+
+def stands_still(samples, begin, end):
+    """The longest time without motion between the two. [s]"""
+    longest, since = 0.0, None
+    for a, b in zip(samples, samples[1:]):
+        if begin < a[0] and b[0] < end and abs(b[1] - a[1]) < 1e-7:
+            since = a[0] if since is None else since
+            longest = max(longest, b[0] - since)
+        else:
+            since = None
+    return longest
+
+
+def one_cut(watch, port, chance, number, slack):
+    style = chance.choice(['cut', 'silent', 'killed', 'stop'])
+    sign = -1 if watch.component['position'] > 0 else 1
+    duration = chance.uniform(0.1, 0.45)
+    mine, theirs = multiprocessing.Pipe()
+    process = multiprocessing.Process(target=jogger, args=(port, sign, theirs, style), daemon=True)
+    process.start()
+    if not mine.poll(10):
+        FOUND.expect(False, f'cut {number}: a jog begins')
+        process.kill()
+        return None
+    begun = mine.recv()[1]
+    time.sleep(duration)
+    mine.send(style)
+    last = mine.recv()[1] if mine.poll(5) else None
+    if style == 'killed':
+        os.kill(process.pid, signal.SIGKILL)
+    FOUND.expect(last is not None, f'cut {number}: the client tells its last renewal')
+    time.sleep(0.35)
+    samples = watch.since(begun)
+    process.kill()
+    process.join()
+    braking, end = begin_of_braking(samples), last_motion(samples)
+    begun, last = watch.servo_time(begun), watch.servo_time(last) if last is not None else None
+    FOUND.expect(braking is not None and end is not None, f'cut {number} ({style}): it has jogged at its speed')
+    if braking is None or end is None or last is None or begun is None:
+        return None
+    FOUND.expect(braking - last <= BOUND_S + slack, f'cut {number} ({style}): decelerates {1000 * (braking - last):.1f} ms after the last renewal')
+    FOUND.expect(end <= last + BOUND_S + 0.05 + slack, f'cut {number} ({style}): runs on until {1000 * (end - last):.1f} ms')
+    still = stands_still(samples, begun + 0.08, last - 0.01)
+    FOUND.expect(still < STUTTER_S + slack, f'cut {number} ({style}): stands still for {1000 * still:.0f} ms in the middle of the jog')
+    return style, braking - last
+
+
+def still_on(port):
+    screen = Screen(port)
+    screen.until(lambda: 'task' in screen.status)
+    is_on = screen.status['task']['state'] == 'ON'
+    if not is_on:
+        print(screen.messages[-3:])
+    screen.cut()
+    return is_on
+
+
+def judge(bench, cuts, seed, slack):
+    with (bench.ini.parent / 'by_hand.hal').open('a') as file:
+        file.write(SERVO_CLOCK)
+    server, port = bench.server()
+    bench.machine()
+    screen = Screen(port)
+    switch_on_and_home(screen)
+    FOUND.expect(screen.do('SetMode', mode='MANUAL') == 'DONE' and screen.do('SetTeleop', teleop=True) == 'DONE', 'axes are jogged')
+    screen.cut()
+    watch = Watch(bench)
+    watch.start()
+    chance = random.Random(seed)
+    told = {}
+    for number in range(cuts):
+        watch.samples = []
+        result = one_cut(watch, port, chance, number, slack)
+        if result is not None:
+            told.setdefault(result[0], []).append(result[1])
+        elif not still_on(port):
+            FOUND.expect(False, f'cut {number}: the machine is on no more')
+            break
+    watch.is_on = False
+    watch.join()
+    FOUND.expect(sum(map(len, told.values())) >= 0.98 * cuts, 'nearly all cuts could be judged', told.keys())
+    for style, delays in sorted(told.items()):
+        delays.sort()
+        print(f'{style}: {len(delays)} cuts, at its speed until {1000 * delays[0]:.0f} to {1000 * delays[-1]:.0f} ms after the last renewal, '
+              f'median {1000 * delays[len(delays) // 2]:.0f}')
+    server.terminate()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument('millwright')
+    parser.add_argument('halcmd')
+    parser.add_argument('root')
+    parser.add_argument('--cuts', type=int, default=24)
+    parser.add_argument('--seed', type=int, default=1)
+    parser.add_argument('--slack-ms', type=float, default=0)
+    options = parser.parse_args()
+    multiprocessing.set_start_method('fork')
+    with tempfile.TemporaryDirectory() as folder:
+        bench = Bench(options.millwright, options.halcmd, options.root, pathlib.Path(folder))
+        try:
+            judge(bench, options.cuts, options.seed, options.slack_ms / 1000)
+        finally:
+            bench.end_all()
+    return FOUND.status()
+
+
+if __name__ == '__main__':
+    sys.exit(main())
