@@ -42,6 +42,7 @@ std::uint64_t sum_of(std::string_view bytes) {
 
 template <class Io, class AnyStart>
 void fields(Io &io, AnyStart &start, Start *) {
+    io(start.id);
     io(start.program);
     io(start.file.bytes);
     io(start.file.sum);
@@ -68,23 +69,23 @@ void fields(Io &io, AnyDoubt &doubt, Doubt *) {
 }
 
 /// Length, checksum, kind, fields; the checksum is of what follows it.
-std::string frame(Kind kind, const std::string &fields) {
+std::string frame(std::uint64_t key, Kind kind, const std::string &fields) {
     const std::string body = std::string(1, static_cast<char>(kind)) + fields;
     Packer head;
     head(static_cast<std::uint32_t>(body.size()));
-    head(sum_of(body));
+    head(key ^ sum_of(body));
     return head.bytes() + body;
 }
 
 template <class T>
-std::string packed(Kind kind, const T &value) {
+std::string packed(std::uint64_t key, Kind kind, const T &value) {
     Packer out;
     fields(out, value, static_cast<T *>(nullptr));
-    return frame(kind, out.bytes());
+    return frame(key, kind, out.bytes());
 }
 
 /// The next record that is whole; nothing at the end and before what is torn.
-std::optional<std::string_view> next_record(std::string_view &rest) {
+std::optional<std::string_view> next_record(std::string_view &rest, std::uint64_t key) {
     constexpr std::size_t HEAD = sizeof(std::uint32_t) + sizeof(std::uint64_t);
     std::uint32_t size = 0;
     std::uint64_t sum = 0;
@@ -95,7 +96,7 @@ std::optional<std::string_view> next_record(std::string_view &rest) {
         return std::nullopt;
     }
     const std::string_view body = rest.substr(HEAD, size);
-    if (sum_of(body) != sum) {
+    if ((key ^ sum_of(body)) != sum) {
         return std::nullopt;
     }
     rest.remove_prefix(HEAD + size);
@@ -139,19 +140,25 @@ FileMark mark_of(std::string_view content) {
 }
 
 std::string begin_bytes(const Start &start) {
-    return std::string(MAGIC) + packed(Kind::START, start);
+    return std::string(MAGIC) + packed(0, Kind::START, start);
 }
 
-std::string record(const Progress &progress) {
-    return packed(Kind::PROGRESS, progress);
+std::uint64_t key_of(const Start &start) {
+    Packer out;
+    fields(out, start, static_cast<Start *>(nullptr));
+    return sum_of(out.bytes());
 }
 
-std::string record(const Doubt &doubt) {
-    return packed(Kind::DOUBT, doubt);
+std::string record(std::uint64_t key, const Progress &progress) {
+    return packed(key, Kind::PROGRESS, progress);
 }
 
-std::string end_record() {
-    return frame(Kind::END, {});
+std::string record(std::uint64_t key, const Doubt &doubt) {
+    return packed(key, Kind::DOUBT, doubt);
+}
+
+std::string end_record(std::uint64_t key) {
+    return frame(key, Kind::END, {});
 }
 
 Result<Run> read_run(std::string_view bytes) {
@@ -160,11 +167,12 @@ Result<Run> read_run(std::string_view bytes) {
     }
     bytes.remove_prefix(MAGIC.size());
     Run run;
-    const auto first = next_record(bytes);
+    const auto first = next_record(bytes, 0);
     if (!first.has_value() || static_cast<Kind>((*first)[0]) != Kind::START || !unpack(*first, run.start)) {
         return fail("the beginning of the journal is damaged");
     }
-    while (const auto body = next_record(bytes)) {
+    const std::uint64_t key = key_of(run.start);
+    while (const auto body = next_record(bytes, key)) {
         if (!take(*body, run)) {
             return fail("the journal has a record that this version does not know");
         }

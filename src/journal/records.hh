@@ -24,7 +24,8 @@ FileMark mark_of(std::string_view content);
 
 /// What a program began with.
 struct Start {
-    std::string program;  ///< path
+    std::uint64_t id = 0;  ///< another one for each run
+    std::string program;   ///< path
     FileMark file;
     std::string state;  ///< task's own bytes: modes, parameters, tools, what was on
     bool operator==(const Start &) const = default;
@@ -57,9 +58,11 @@ struct Run {
 
 /// The beginning of a journal; records follow.
 std::string begin_bytes(const Start &start);
-std::string record(const Progress &progress);
-std::string record(const Doubt &doubt);
-std::string end_record();
+/// What the checksums of its records begin with: those of another run count for nothing behind it.
+std::uint64_t key_of(const Start &start);
+std::string record(std::uint64_t key, const Progress &progress);
+std::string record(std::uint64_t key, const Doubt &doubt);
+std::string end_record(std::uint64_t key);
 
 /// Reads as far as records are whole. An error: these bytes are no journal, or its beginning is damaged.
 Result<Run> read_run(std::string_view bytes);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "journal/writer.hh"
 
+#include <time.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -12,12 +15,14 @@ namespace {
 constexpr std::uint64_t MOST_RECORD_BYTES = 1U << 20U;
 /// A disk that takes longer lets the journal fall behind the tool.
 constexpr double SLOW_S = 0.8;
+constexpr std::int64_t NS_PER_S = 1000000000;
 
 std::string whole(const Run &run) {
+    const std::uint64_t key = key_of(run.start);
     std::string bytes = begin_bytes(run.start);
-    bytes += run.doubt.has_value() ? record(*run.doubt) : "";
-    bytes += run.progress.has_value() ? record(*run.progress) : "";
-    bytes += run.hasEnded ? end_record() : "";
+    bytes += run.doubt.has_value() ? record(key, *run.doubt) : "";
+    bytes += run.progress.has_value() ? record(key, *run.progress) : "";
+    bytes += run.hasEnded ? end_record(key) : "";
     return bytes;
 }
 
@@ -166,19 +171,19 @@ Result<> Writer::do_job(Job &job) {
     case Kind::PROGRESS:
         if (run_.has_value()) {
             run_->progress = job.run.progress;
-            records_ += record(*job.run.progress);
+            records_ += record(key_, *job.run.progress);
         }
         return {};
     case Kind::DOUBT:
         if (run_.has_value() && !run_->doubt.has_value()) {
             run_->doubt = job.run.doubt;
-            records_ += record(*job.run.doubt);
+            records_ += record(key_, *job.run.doubt);
         }
         return {};
     case Kind::END:
         if (run_.has_value()) {
             run_->hasEnded = true;
-            records_ += end_record();
+            records_ += end_record(key_);
         }
         return {};
     case Kind::FORGET: {
@@ -202,6 +207,11 @@ Result<> Writer::begin_file(Job &job) {
         }
         job.run.start.file = mark_of(*content);
     }
+    timespec now{};
+    ::clock_gettime(CLOCK_REALTIME, &now);
+    job.run.start.id = static_cast<std::uint64_t>(now.tv_sec * NS_PER_S + now.tv_nsec) ^
+                       static_cast<std::uint64_t>(::getpid());
+    key_ = key_of(job.run.start);
     run_ = std::move(job.run);
     return rewrite();
 }

@@ -88,6 +88,7 @@ class Writer {
 
     // Of whoever works.
     std::optional<Run> run_;    ///< as the file says it
+    std::uint64_t key_ = 0;     ///< of its records
     std::string records_;       ///< to be appended
     std::uint64_t bytes_ = 0;   ///< of the file
     bool isFileSound_ = false;  ///< records may be appended to it

@@ -22,6 +22,17 @@ std::int64_t monotonic_ns() {
     return now.tv_sec * NS_PER_S + now.tv_nsec;
 }
 
+/// After a crash of task its realtime process brakes, switches the amplifiers off and ends: the next start
+/// comes after that.
+void wait_for_end_of(const std::string &instance) {
+    constexpr std::int64_t PATIENCE_NS = 5 * NS_PER_S;
+    constexpr timespec A_WHILE{0, 20000000};
+    const std::int64_t end_ns = monotonic_ns() + PATIENCE_NS;
+    while (hal::isHostAlive(instance) && monotonic_ns() < end_ns) {
+        ::nanosleep(&A_WHILE, nullptr);
+    }
+}
+
 class RealtimeMachine final : public Machine {
   public:
     explicit RealtimeMachine(const MachineParts &parts) : parts_(parts), next_ns_(monotonic_ns()) {}
@@ -36,6 +47,7 @@ class RealtimeMachine final : public Machine {
 
     Result<> start(const MachineOptions &options) {
         const std::string instance = options.instance.empty() ? hal::default_instance() : options.instance;
+        wait_for_end_of(instance);
         auto host = hal::HostClient::start(instance, hal::MessagesTo::STDERR, hal::Lifetime::STARTER);
         if (!host.has_value()) {
             return std::unexpected(host.error());

@@ -283,7 +283,7 @@ bool Task::begin_run() {
     run_.change(RunEvent::BEGUN);
     synch_interpreter();
     Start{*this}.prepare_journal();
-    recovery_.begin(1);
+    Start{*this}.begin_journal(1);
     if (run_.kind() == RunKind::MDI) {
         on_step_result(reader_.interpreter().execute(run_.line()));
     }

@@ -118,24 +118,8 @@ Outcome Task::Handler::operator()(const RunProgram &command) {
 }
 
 Outcome Task::Handler::operator()(const RecoverProgram &) {
-    auto allowed = Start{task}.check_recovery();
-    allowed = allowed.has_value() ? task.check_can_run() : allowed;
-    if (!allowed.has_value()) {
-        return std::unexpected(allowed.error());
-    }
-    const auto opened = (*this)(OpenProgram{(*task.recovery_.offer())->start.program});
-    if (!opened.has_value()) {
-        return opened;
-    }
-    const auto read = task.reader_.interpreter().open(task.status_.task.program.str());
-    if (!read.has_value()) {
-        return std::unexpected(read.error());
-    }
-    const auto started = start_run(RunKind::PROGRAM);
-    if (started.has_value()) {
-        task.run_.set_recovery();
-    }
-    return started;
+    const auto opened = Start{task}.open_recovery();
+    return opened.has_value() ? start_run(RunKind::RECOVERY) : std::unexpected(opened.error());
 }
 
 Outcome Task::Handler::operator()(const StepProgram &) {

@@ -30,6 +30,13 @@ void Task::Start::prepare_journal() {
                            kept.has_value() ? "" : kept.error().message);
 }
 
+void Task::Start::begin_journal(std::uint32_t first_block) {
+    const std::string dropped = task.recovery_.begin(first_block);
+    if (!dropped.empty()) {
+        task.post(MessageKind::OPERATOR_TEXT, dropped);
+    }
+}
+
 /// Once a cycle.
 void Task::Start::step_journal() {
     while (const auto trouble = task.recovery_.take_trouble()) {
@@ -67,6 +74,20 @@ Result<> Task::Start::check_recovery() const {
                                 (*offer)->progress->line));
     }
     return {};
+}
+
+Result<> Task::Start::open_recovery() {
+    auto opened = check_recovery();
+    opened = opened.has_value() ? task.check_can_run() : opened;
+    if (!opened.has_value()) {
+        return opened;
+    }
+    const std::string &program = (*task.recovery_.offer())->start.program;
+    opened = task.reader_.interpreter().open(program);
+    if (opened.has_value()) {
+        task.status_.task.program.assign(program);
+    }
+    return opened;
 }
 
 /// The program is open, the axes are at rest.

@@ -120,7 +120,7 @@ void Task::Start::go_on(const ApproachPlan &plan) {
         last = task.run_.isRecovery() ? task.reader_.search().last_step() : last;
         task.reader_.accept_search();
         task.run_.isRecovery() ? task.recovery_.begin_again()
-                               : task.recovery_.begin(task.reader_.canon().blocks() + 1);
+                               : begin_journal(task.reader_.canon().blocks() + 1);
     }
     task.reader_.canon().insert_first(plan.calls(), motion::programmed_position(task.motion_.status()),
                                       plan.line);

@@ -15,9 +15,10 @@ struct Task::Start {
     /// What comes before the line is calculated from here on.
     void begin();
     /// The same for the program that was cut short.
-    Result<> check_recovery() const;
+    Result<> open_recovery();
     void begin_recovery();
     void prepare_journal();
+    void begin_journal(std::uint32_t first_block);
     void step_journal();
     void note_doubt();
     /// Once a cycle while it is.
@@ -37,6 +38,7 @@ struct Task::Start {
     Result<Progress> come_back();
 
   private:
+    Result<> check_recovery() const;
     void propose_line();
     void propose_recovery();
     /// What of it is the same for all: the way, the feed; then it is shown.

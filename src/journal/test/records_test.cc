@@ -7,8 +7,10 @@ namespace mw::journal {
 namespace {
 
 Start made_start() {
-    return {"/home/me/part.ngc", mark_of("G0 X1\n"), std::string("state\0with zeros", 16)};
+    return {12, "/home/me/part.ngc", mark_of("G0 X1\n"), std::string("state\0with zeros", 16)};
 }
+
+const std::uint64_t KEY = key_of(made_start());
 
 Progress made_progress(std::uint64_t block) {
     Progress progress;
@@ -21,8 +23,8 @@ Progress made_progress(std::uint64_t block) {
 }
 
 TEST(JournalRecords, ReadAsTheyWereWritten_D3) {
-    const auto read = read_run(begin_bytes(made_start()) + record(made_progress(5)) +
-                               record(Doubt{9, 11, "a probe"}) + record(made_progress(6)));
+    const auto read = read_run(begin_bytes(made_start()) + record(KEY, made_progress(5)) +
+                               record(KEY, Doubt{9, 11, "a probe"}) + record(KEY, made_progress(6)));
     ASSERT_TRUE(read.has_value()) << read.error().str();
     EXPECT_EQ(read->start, made_start());
     EXPECT_EQ(read->progress->block, 6U);
@@ -32,18 +34,26 @@ TEST(JournalRecords, ReadAsTheyWereWritten_D3) {
     EXPECT_EQ(read->progress->tool, 4);
     EXPECT_EQ(read->doubt->what, "a probe");
     EXPECT_FALSE(read->hasEnded);
-    EXPECT_TRUE(read_run(begin_bytes(made_start()) + end_record())->hasEnded);
+    EXPECT_TRUE(read_run(begin_bytes(made_start()) + end_record(KEY))->hasEnded);
+}
+
+TEST(JournalRecords, RecordsOfAnotherRunCountForNothing_D3) {
+    Start other = made_start();
+    other.id = 13;
+    const auto read = read_run(begin_bytes(other) + record(KEY, made_progress(5)));
+    ASSERT_TRUE(read.has_value());
+    EXPECT_FALSE(read->progress.has_value());
 }
 
 TEST(JournalRecords, ATornEndCountsForNothingAndADamagedBeginningIsAnError_D3) {
     const std::string begin = begin_bytes(made_start());
-    const std::string whole = begin + record(made_progress(5)) + record(made_progress(6));
+    const std::string whole = begin + record(KEY, made_progress(5)) + record(KEY, made_progress(6));
     for (std::size_t cut = 0; cut < whole.size(); ++cut) {
         const auto read = read_run(whole.substr(0, cut));
         EXPECT_EQ(read.has_value(), cut >= begin.size()) << cut;
         const std::uint64_t block =
             read.has_value() && read->progress.has_value() ? read->progress->block : 0;
-        EXPECT_EQ(block, cut < begin.size() + record(made_progress(5)).size() ? 0U : 5U) << cut;
+        EXPECT_EQ(block, cut < begin.size() + record(KEY, made_progress(5)).size() ? 0U : 5U) << cut;
     }
     for (std::size_t at = 0; at < whole.size(); ++at) {
         std::string torn = whole;

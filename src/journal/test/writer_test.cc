@@ -33,7 +33,7 @@ class JournalWriter : public testing::Test {
 TEST_F(JournalWriter, ARunThatHasNotEndedIsFound_D3) {
     auto writer = open();
     EXPECT_FALSE(writer->found().run.has_value());
-    writer->begin({PROGRAM, {}, "state"});
+    writer->begin({0, PROGRAM, {}, "state"});
     writer->note(at_block(3));
     writer->note(at_block(4));
     EXPECT_TRUE(writer->work());
@@ -53,13 +53,13 @@ TEST_F(JournalWriter, ARunThatHasNotEndedIsFound_D3) {
 
 TEST_F(JournalWriter, ARunThatHasEndedOrIsForgottenIsNot_D3) {
     auto writer = open();
-    writer->begin({PROGRAM, {}, "state"});
+    writer->begin({0, PROGRAM, {}, "state"});
     writer->note(at_block(3));
     writer->end();
     writer.reset();
     writer = open();
     EXPECT_FALSE(writer->found().run.has_value());
-    writer->begin({PROGRAM, {}, "state"});
+    writer->begin({0, PROGRAM, {}, "state"});
     writer->note(at_block(3));
     writer->work();
     writer->forget();
@@ -79,7 +79,7 @@ TEST_F(JournalWriter, AFileThatIsNoJournalIsTold_C5) {
 
 TEST_F(JournalWriter, ItDoesNotGrowWithoutEnd) {
     auto writer = open();
-    writer->begin({PROGRAM, {}, "state"});
+    writer->begin({0, PROGRAM, {}, "state"});
     for (std::uint64_t block = 1; block < 30000; ++block) {
         writer->note(at_block(block));
         writer->work();
@@ -100,7 +100,7 @@ TEST_F(JournalWriter, WhateverThePowerCutTakesWhatWasWorkedOffIsThere_D3) {
         fresh.write_outside("/m/life", "old");
         disk = fresh;
         auto writer = open();
-        writer->begin({PROGRAM, {}, std::string(random() % 3000, 's')});
+        writer->begin({0, PROGRAM, {}, std::string(random() % 3000, 's')});
         std::uint64_t sure = 0, asked = 0;
         disk.steps_left = static_cast<long>(random() % 60);
         while (!disk.isDead) {
@@ -135,7 +135,7 @@ TEST(JournalWriterThread, WritesToARealDiskBesideWhoAsks_D3) {
     const std::string path = folder / "j";
     {
         Writer writer(system_disk(), path, Works::ALONE);
-        writer.begin({folder / "p.ngc", {}, "state"});
+        writer.begin({0, folder / "p.ngc", {}, "state"});
         for (std::uint64_t block = 1; block <= 500; ++block) {
             writer.note(at_block(block));
         }
@@ -152,7 +152,7 @@ TEST(JournalWriterThread, WritesToARealDiskBesideWhoAsks_D3) {
     life << std::ifstream(folder / "life").rdbuf();
     EXPECT_EQ(life.str(), "T1 1 1\n");
     Writer lost(system_disk(), folder / "none" / "j", Works::ON_CALL);
-    lost.begin({folder / "p.ngc", {}, "state"});
+    lost.begin({0, folder / "p.ngc", {}, "state"});
     lost.work();
     const auto trouble = lost.take_trouble();
     ASSERT_TRUE(trouble.has_value());

@@ -13,7 +13,6 @@ Result<Progress> ProgramRun::start(RunKind kind, mailbox::Serial command, const 
     kind_ = kind;
     line_ = line;
     from_line_ = 0;
-    isRecovery_ = false;
     request_.begin(command);
     error_.reset();
     return Progress::STARTED;

@@ -11,7 +11,11 @@
 
 namespace mw::task {
 
-enum class RunKind : std::uint8_t { PROGRAM, MDI };
+enum class RunKind : std::uint8_t {
+    PROGRAM,
+    MDI,
+    RECOVERY,  ///< a program that goes on where it was cut short
+};
 
 /// One thread.
 class ProgramRun {
@@ -21,9 +25,7 @@ class ProgramRun {
     /// Where the program begins; 0: at its first line.
     int from_line() const { return from_line_; }
     void set_from_line(int line) { from_line_ = line; }
-    /// It goes on where it was cut short.
-    bool isRecovery() const { return isRecovery_; }
-    void set_recovery() { isRecovery_ = true; }
+    bool isRecovery() const { return kind_ == RunKind::RECOVERY; }
     /// An event that cannot be in this state changes nothing and says why.
     Result<> take(RunEvent event) { return state_.take(event); }
     /// Of events that the run's own parts tell: one that comes too late changes nothing.
@@ -36,7 +38,7 @@ class ProgramRun {
     Hold hold() const { return state_.hold(); }
     bool isRunning() const { return state_.isRunning(); }
     bool isHeld() const { return state_.isHeld(); }
-    bool isProgram() const { return isRunning() && kind_ == RunKind::PROGRAM; }
+    bool isProgram() const { return isRunning() && kind_ != RunKind::MDI; }
     /// Idle, reading, waiting or paused.
     InterpState shown() const;
     RunKind kind() const { return kind_; }  ///< of this run, or of the last one
@@ -56,7 +58,6 @@ class ProgramRun {
     RunKind kind_ = RunKind::PROGRAM;
     std::string line_;
     int from_line_ = 0;
-    bool isRecovery_ = false;
     Request request_;
     std::optional<std::string> failure_;
     std::optional<diag::Diagnostic> error_;

@@ -42,16 +42,21 @@ std::string Recovery::find() {
 
 void Recovery::prepare(const std::string &program, const StartRecord &record, const std::string &why_not) {
     prepared_ = journal::Run{};
-    prepared_->start = {program, {}, record.pack()};
+    prepared_->start = {0, program, {}, record.pack()};
     if (!why_not.empty()) {
         prepared_->doubt = journal::Doubt{0, 1, why_not};
     }
 }
 
-void Recovery::begin(std::uint32_t first) {
+std::string Recovery::begin(std::uint32_t first) {
     if (!prepared_.has_value()) {
-        return;
+        return {};
     }
+    std::string dropped =
+        offer_.has_value()
+            ? fmt::format("{} is no longer offered from line {} on: another start takes its place",
+                          offer_->start.program, offer_->progress->line)
+            : "";
     offer_.reset();
     refusal_.clear();
     run_ = std::move(prepared_);
@@ -59,6 +64,7 @@ void Recovery::begin(std::uint32_t first) {
     first_ = first;
     noted_ns_ = 0;
     writer_->begin(run_->start, {}, run_->doubt);
+    return dropped;
 }
 
 void Recovery::begin_again() {

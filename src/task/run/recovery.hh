@@ -35,8 +35,8 @@ class Recovery {
 
     /// A program is to begin. `why_not`: why its state cannot be told, empty: it can.
     void prepare(const std::string &program, const StartRecord &record, const std::string &why_not);
-    /// It begins, with block `first`.
-    void begin(std::uint32_t first);
+    /// It begins, with block `first`. A line for the operator where an offer ends with that, else empty.
+    std::string begin(std::uint32_t first);
     /// The run that was offered goes on where it was.
     void begin_again();
     /// Once a cycle of the run. `marks`: the canon's; `tools` as they are.
