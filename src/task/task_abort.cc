@@ -12,7 +12,11 @@ void Task::fail_program(diag::Diagnostic what, AbortReason reason) {
         return;
     }
     // The operator has just typed a line of MDI: that needs no place, and clients compare its texts.
-    post(MessageKind::OPERATOR_ERROR, run_.kind() == RunKind::MDI ? what.what.message : what.str());
+    const bool isTyped = run_.kind() == RunKind::MDI;
+    post(MessageKind::OPERATOR_ERROR, isTyped ? what.what.message : what.str());
+    if (isTyped && !what.what.hint.empty()) {
+        post(MessageKind::OPERATOR_TEXT, what.what.hint);
+    }
     if (reason == AbortReason::MOTION_FAULT) {
         recovery_.cut_short();
     }

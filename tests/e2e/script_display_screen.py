@@ -167,6 +167,8 @@ def commands():
     s.poll()
     assert s.state == linuxcnc.RCS_ERROR and e.poll() is not None, 'a refusal is told'
     ready()
+    c.teleop_enable(0)  # homed it stands in world mode
+    c.wait_complete()
     c.jog(linuxcnc.JOG_INCREMENT, 1, 0, 50, 2)
     assert c.serial > 0
     wait_for(lambda: s.joint_position[0] == 2, 'a joint has jogged')

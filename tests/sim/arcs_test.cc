@@ -162,7 +162,8 @@ TEST_F(RoundedArcsTest, AnArcOutOfThePlaneOfALaserIsRefused) {
     laser.joints.resize(2);
     switch_on_config(laser.write(folder_));
     EXPECT_EQ(mdi("G21 G18 G2 X10 Z0 I5 K0 F600"), task::Progress::FAILED);
-    EXPECT_NE(messages().find("axis Z"), std::string::npos);
+    const std::string told = messages();
+    EXPECT_NE(told.find("axis Z"), std::string::npos) << told;
 }
 
 }  // namespace

@@ -15,6 +15,8 @@ class ModesTest : public VirtualMachineTest {
   protected:
     void SetUp() override { switch_on(); }
     void jog_x(double velocity) {
+        ask(task::SetTeleop{false});  // homed it stands in world mode
+        cycles(10);
         ask(task::JogContinuous{true, 0, velocity});
         cycles(300);
     }
@@ -103,6 +105,8 @@ TEST_F(ModesTest, TheFeedOverrideActsOnJogs_C4) {
 
 TEST_F(ModesTest, AJogThatItsClientDoesNotRenewIsStoppedByMotion_C8) {
     ask(task::SetMode{task::Mode::MANUAL});
+    ask(task::SetTeleop{false});
+    cycles(10);
     for (int n = 0; n < 20; ++n) {
         post(task::JogContinuous{true, 0, 20, 100, n > 0});
         cycles(30);
