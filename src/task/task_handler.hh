@@ -58,6 +58,10 @@ struct Task::Handler {
     Outcome operator()(const SpindleOff &command) { return (*this)(SpindleOn{command.spindle, 0}); }
     template <OneOf<SpindleIncrease, SpindleDecrease> C>
     Outcome operator()(const C &command) {
+        const auto allowed = need_spindle(command.spindle);
+        if (!allowed.has_value()) {
+            return std::unexpected(allowed.error());
+        }
         const auto rpm = task.sequencer_.spindles().stepped_rpm(command.spindle, speed_step_rpm(command));
         return rpm.has_value() ? (*this)(SpindleOn{command.spindle, *rpm}) : std::unexpected(rpm.error());
     }

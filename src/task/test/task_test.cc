@@ -327,6 +327,7 @@ TEST_F(TaskTest, ATurningSpindleChangesItsSpeedInStepsAndNeverItsSense_C5_J2) {
     EXPECT_EQ(ask(SpindleIncrease{0}), Progress::REFUSED);
     EXPECT_EQ(reason(request), "spindle 0 stands");
     EXPECT_EQ(ask(SpindleIncrease{7}), Progress::REFUSED);
+    EXPECT_EQ(reason(request), "there is no spindle 7");
     motion.log.clear();
     ask(SpindleOn{0, -150});
     ask(SpindleIncrease{0});
