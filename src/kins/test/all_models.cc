@@ -8,6 +8,7 @@
 #include "kins/hexapod.hh"
 #include "kins/linear_delta.hh"
 #include "kins/matrix.hh"
+#include "kins/ortho_parallel.hh"
 #include "kins/pentapod.hh"
 #include "kins/puma.hh"
 #include "kins/rose.hh"
@@ -177,6 +178,22 @@ Verdict puma_verdict(const Pose &p, double d6) {
     return level < 0 ? Verdict::UNREACHABLE : arm_verdict(std::sqrt(level + z * z), 300, std::hypot(50, 400));
 }
 
+/// Of an arm whose shoulder stays ahead; lengths a1 a2 b c1 c2 c3 c4.
+Verdict ortho_parallel_verdict(const Pose &p, const std::array<double, 7> &l) {
+    const double a = p[3] * PI / 180;
+    const double b = p[4] * PI / 180;
+    const double c = p[5] * PI / 180;
+    const double x = p[0] - l[6] * (std::cos(c) * std::sin(b) * std::cos(a) + std::sin(c) * std::sin(a));
+    const double y = p[1] - l[6] * (std::sin(c) * std::sin(b) * std::cos(a) - std::cos(c) * std::sin(a));
+    const double z = p[2] - l[6] * std::cos(b) * std::cos(a) - l[3];
+    const double level = x * x + y * y - l[2] * l[2];
+    if (std::abs(level) < 1) {
+        return Verdict::UNKNOWN;
+    }
+    return level < 0 ? Verdict::UNREACHABLE
+                     : arm_verdict(std::hypot(std::sqrt(level) - l[0], z), l[4], std::hypot(l[1], l[5]));
+}
+
 void add_arms(std::vector<ModelCase> &out) {
     ModelCase scara{"scara",
                     with<Scara>({490, 340, 50, 250, 50, 50}),
@@ -210,6 +227,18 @@ void add_arms(std::vector<ModelCase> &out) {
     puma.areAnglesRpy = true;
     puma.judge = [](const Pose &p) { return puma_verdict(p, 70); };
     out.push_back(std::move(puma));
+
+    constexpr std::array<double, 7> ARM{25, -35, 12, 400, 315, 365, 80};
+    ModelCase ortho{"ortho_parallel",
+                    with<OrthoParallel>({ARM[0], ARM[1], ARM[2], ARM[3], ARM[4], ARM[5], ARM[6]}),
+                    "XYZABC",
+                    {{-800, 800}, {-800, 800}, {-400, 1200}, TURN, {-85, 85}, TURN},
+                    six,
+                    {0, 30, 60, 20, 30, 40},
+                    820};
+    ortho.areAnglesRpy = true;
+    ortho.judge = [ARM](const Pose &p) { return ortho_parallel_verdict(p, ARM); };
+    out.push_back(std::move(ortho));
 
     ModelCase serial{"serial", std::make_shared<Serial>(), "XYZABC", hand,
                      six,      {0, -45, 10, 20, 30, 40},   820};

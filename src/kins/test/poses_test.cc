@@ -10,6 +10,7 @@
 #include "kins/hexapod.hh"
 #include "kins/linear_delta.hh"
 #include "kins/matrix.hh"
+#include "kins/ortho_parallel.hh"
 #include "kins/pentapod.hh"
 #include "kins/puma.hh"
 #include "kins/rose.hh"
@@ -131,6 +132,37 @@ TEST(HandPoses, APumaAtZero_C14) {
     EXPECT_EQ(Puma{}.forward(turned.data(), pose), Status::OK);
     EXPECT_NEAR(pose[0], -70, 1e-12);
     EXPECT_NEAR(pose[1], 350, 1e-12);
+}
+
+/// Worked out on paper with the lengths of a KUKA KR 6 R700 of the paper named in ortho_parallel.hh.
+TEST(HandPoses, AnIndustrialArmUprightAndStretchedAhead_C14) {
+    OrthoParallel arm;
+    const double lengths[] = {25, -35, 0, 400, 315, 365, 80};
+    for (std::size_t i = 0; i < std::size(lengths); ++i) {
+        arm.set(i, lengths[i]);
+    }
+    Pose pose;
+    const Joints upright{};
+    EXPECT_EQ(arm.forward(upright.data(), pose), Status::OK);
+    EXPECT_NEAR(pose[0], 25 - 35, 1e-12);
+    EXPECT_NEAR(pose[1], 0, 1e-12);
+    EXPECT_NEAR(pose[2], 400 + 315 + 365 + 80, 1e-12);
+    // The upper arm up, the lower one and the hand ahead: what was ahead is now below.
+    const Joints ahead{0, 0, 90, 0, 0, 0};
+    pose = {};
+    EXPECT_EQ(arm.forward(ahead.data(), pose), Status::OK);
+    EXPECT_NEAR(pose[0], 25 + 365 + 80, 1e-12);
+    EXPECT_NEAR(pose[2], 400 + 315 + 35, 1e-12);
+    EXPECT_NEAR(pose[4], 90, 1e-6);
+    // Turned to Y, the upper arm ahead, the lower one down, the hand bent back to look ahead; 12 sideways.
+    arm.set(OrthoParallel::B, 12);
+    const Joints bent{90, 90, 90, 0, -90, 0};
+    pose = {};
+    EXPECT_EQ(arm.forward(bent.data(), pose), Status::OK);
+    EXPECT_NEAR(pose[0], -12, 1e-12);
+    EXPECT_NEAR(pose[1], 25 + 315 + 35 + 80, 1e-12);
+    EXPECT_NEAR(pose[2], 400 - 365, 1e-12);
+    expect_pair(arm, pose, {90, 90, 90, 0, -90, 0});
 }
 
 /// A machine that stands at a singular place stands still: its joints are kept as they are.
