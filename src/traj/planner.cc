@@ -163,14 +163,20 @@ void Planner::plan_tried(const Snapshot &now) noexcept {
         }
         break;
     }
-    case Demand::Kind::STOP: find_plan(now, demand.from, Ending::HARD_STOP); break;
+    case Demand::Kind::STOP: {
+        // On exact arcs the trial relies on the wait behind a rise.
+        const bool isAtOnce = demand.from.coasting.since_rise_s < conditions_.limits.filter_s() &&
+                              !path_.piece(demand.from.piece).isAlong;
+        find_plan(now, demand.from, isAtOnce ? Ending::STOP_AT_ONCE : Ending::HARD_STOP);
+        break;
+    }
     case Demand::Kind::PASS: start_pass(now, demand.from); break;
     case Demand::Kind::EXTEND:  // every plan goes as far as it will
     case Demand::Kind::NOTHING: break;
     }
 }
 
-/// Makes plans until one passes the trial; a hard stop only once. False when the trial has refused them all;
+/// Makes plans until one passes the trial; hard stops only once. False when the trial has refused them all;
 /// the plan before then stays in force, with its stop.
 bool Planner::find_plan(const Snapshot &now, LeaderState from, Ending ending) noexcept {
     const Sequence begin = timing_.phases_end();
@@ -191,8 +197,8 @@ bool Planner::find_plan(const Snapshot &now, LeaderState from, Ending ending) no
             }
             return true;
         }
-        if (ending == Ending::HARD_STOP) {
-            ending = Ending::STOP;
+        if (ending == Ending::STOP_AT_ONCE || ending == Ending::HARD_STOP) {
+            ending = ending == Ending::HARD_STOP ? Ending::STOP : Ending::HARD_STOP;
             continue;
         }
         if (!isDrafted) {

@@ -103,8 +103,9 @@ double Judge::time_to_correct() const {
     double most = 0;
     for (const JointDesign &d : design_.joints) {
         const double way = d.isCorrected() ? d.play + 2 * d.screw_error : 0;
-        const bool hasJerk = design_.isJerkLimited && d.jerk > 0 && way > 0;
-        const double jerk = !d.isAngular && design_.jerk > 0 ? std::min(d.jerk, design_.jerk) : d.jerk;
+        const bool isOfPath = !d.isAngular && design_.jerk > 0 && (d.jerk <= 0 || design_.jerk < d.jerk);
+        const double jerk = isOfPath ? design_.jerk : d.jerk;
+        const bool hasJerk = design_.isJerkLimited && jerk > 0 && way > 0;
         // With half of the limits.
         most = std::max(most, 2 * std::sqrt(2 * way / d.acceleration) + 2 * way / d.velocity +
                                   (hasJerk ? 2.5 * d.acceleration / jerk : 0));
@@ -173,14 +174,16 @@ double Judge::built_up(bool isAngular, double acceleration, double jerk) const {
     return isShort ? std::min(acceleration, jerk * build_up_s_) : acceleration;
 }
 
-/// What building up accelerations takes of those who move as a stop begins.
+/// What building up accelerations takes of those who move as a stop begins, or as the command for it is on
+/// its way.
 double Judge::time_of_jerk() const {
     constexpr double UP_AND_DOWN = 2.5;
     double most = 0;
     for (std::size_t j = 0; j < joints_.size() && design_.isJerkLimited && stop_.path.axes.size() > 1; ++j) {
         const JointDesign &d = design_.joints[j];
         const std::vector<double> &motor = stop_.path.motors[j];
-        const bool isMoving = std::abs(motor[1] - motor[0]) > MOVED;
+        const std::size_t soon = std::min(motor.size() - 1, static_cast<std::size_t>(IN_FLIGHT));
+        const bool isMoving = std::abs(motor[soon] - motor[0]) > MOVED;
         if (!isMoving) {
             continue;
         }
@@ -342,14 +345,17 @@ void Judge::check_room(const Sample &s) {
         const JointSample &before = last_.joints[j];
         const JointDesign &d = design_.joints[j];
         const bool isJudged = q.isAmpOn && before.isAmpOn && q.isHomed && before.isHomed;
-        if (isJudged && leaves(before.pos_cmd, q.pos_cmd, d.low, d.high)) {
+        const double back = back_to ? back_to->joints[j].pos_cmd : d.low;
+        if (isJudged && leaves(before.pos_cmd, q.pos_cmd, std::min(d.low, back), std::max(d.high, back))) {
             fail("room", fmt::format("joint {} goes to {:.9g}", j, q.pos_cmd));
         }
     }
     const bool areOn = s.joints[0].isAmpOn && last_.joints[0].isAmpOn;
     for (const AxisDesign &a : design_.axes) {
         const bool isJudged = areOn && s.areAxesKnown && last_.areAxesKnown;
-        if (isJudged && leaves(last_.axes[a.axis], s.axes[a.axis], a.low, a.high)) {
+        const double back = back_to ? back_to->axes[a.axis] : a.low;
+        if (isJudged &&
+            leaves(last_.axes[a.axis], s.axes[a.axis], std::min(a.low, back), std::max(a.high, back))) {
             fail("room", fmt::format("axis {} goes to {:.9g}", geom::AXIS_LETTERS[a.axis], s.axes[a.axis]));
         }
     }

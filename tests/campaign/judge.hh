@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -81,6 +82,8 @@ class Judge {
     /// Stops may take so much longer: what is in step with a spindle stands when that does, and wheels may
     /// have a part of the acceleration only.
     double stops_later_s = 0;
+    /// Where a path began that may be gone back along: who came from beyond a soft limit may get there again.
+    std::optional<Sample> back_to;
 
     bool isSound() const { return report_.empty(); }
     /// What was broken first: rule, cycle, figures.

@@ -41,6 +41,7 @@ struct SyncWish {
     double from = 0, to = 0;  ///< along Z; SURFACE: along X
     double rpm = 0;           ///< with its sign; SURFACE: the most
     int passes = 0;           ///< at least
+    bool isShort = false;     ///< too short to come to its speed
 };
 
 /// A line of a program with the path that it asks for, in machine coordinates.
@@ -121,6 +122,7 @@ struct Act {
     std::vector<Block> blocks;
     bool isTimed = true;    ///< the time that it takes can be estimated
     bool isToFail = false;  ///< a program that must not come to its end
+    bool mayFail = false;   ///< may be refused; what is made is right all the same
     std::vector<Contact> contacts;
     SyncWish sync;
     int target = 0;       ///< joint or axis

@@ -141,7 +141,10 @@ Act Writer::write_in_step() {
         const bool fits = std::max(std::abs(sync.from), std::abs(sync.to)) + 3 * sync.lead <
                           0.95 * std::min(z.high, -z.low);
         sync.to = fits ? sync.to : to_grid(sync.from + side * 0.1);
-        act.isToFail = !fits || isSudden;  // too short for the speed, or for the spindle
+        // Too short for the speed, or for the spindle; a feed by turns may be short.
+        act.isToFail = !fits && kind != 3;
+        act.mayFail = isSudden;
+        sync.isShort = !fits;
         start_spindle(sync.rpm);
         say(fmt::format("G0 Z{:.4f}", sync.from));
         switch (kind) {

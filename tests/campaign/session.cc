@@ -208,6 +208,7 @@ bool Session::prepare() {
     rig_->set_contacts({});
     rig_->link_wheel(nullptr, 0);
     judge_.stops_later_s = 0;
+    judge_.back_to.reset();
     isStopped_ = isDisturbed_ = isReversed_ = false;
     rig_->repair();
     for (int i = 0; i < 5 && !isOver(); ++i) {

@@ -16,9 +16,8 @@ constexpr double PERIOD_S = 1e-3;
 double way_to_stop(const Design &design, const JointDesign &joint, double speed) {
     constexpr double FACTOR = 2.2, SLACK_S = 0.02;  // as for any stop
     const double a = std::min(joint.acceleration, design.acceleration);
-    const double jerk = design.jerk > 0 && joint.jerk > 0 ? std::min(joint.jerk, design.jerk)
-                                                          : std::max(joint.jerk, design.jerk);
-    const double stop_s = speed / a + (design.isJerkLimited && jerk > 0 ? 2.5 * a / jerk : 0);
+    // All axes of a path have one mean, that of the slowest.
+    const double stop_s = speed / a + 2.5 * design.rise_s();
     constexpr double DRIVE = 0.03;
     return speed * (FACTOR * stop_s + SLACK_S) + DRIVE;
 }

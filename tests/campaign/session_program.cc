@@ -78,6 +78,9 @@ void Session::run_program(const Act &act) {
         judge_.stops_later_s = 2 * std::abs(act.sync.rpm) / 60 / spindle.ramp + LAGS * spindle.lag_s +
                                spindle.reaction_s + SLACK_S;
     }
+    if (hasTrouble(act, Upset::ADAPTIVE)) {
+        judge_.back_to = rig_->sample();
+    }
     if (plan_.design.isJerkLimited && hasTrouble(act, Upset::ADAPTIVE)) {
         // Where the path is gone back along, changes of the rate have a third of the jerk.
         judge_.stops_later_s += judge_.time_to_brake();
@@ -97,7 +100,7 @@ void Session::run_program(const Act &act) {
     const bool isProbeMoved = act.work == Work::PROBE && hasTrouble(act, Upset::OFFSET);
     if (end == End::LATE) {
         fail("work", "the program does not end");
-    } else if (end != End::DONE && !isStopped_ && !act.isToFail && !isProbeMoved) {
+    } else if (end != End::DONE && !isStopped_ && !act.isToFail && !act.mayFail && !isProbeMoved) {
         fail("work", "the program ends badly with nothing wrong");
     } else if (end == End::DONE && !isStopped_ && act.isToFail) {
         fail("work", "the program must not come to its end, and does");

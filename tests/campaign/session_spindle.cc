@@ -26,7 +26,9 @@ std::vector<Pass> passes_of(const std::vector<geom::Pose> &path, const SyncWish 
         if (!isAlone || !(z * sense > 1e-12)) {
             continue;
         }
-        if (all.empty() || all.back().last + 1 != i) {
+        // Z may wait for the spindle as it begins.
+        constexpr std::size_t WAIT = 3;
+        if (all.empty() || all.back().last + WAIT < i) {
             all.push_back({i - 1, i, 0});
         }
         all.back().last = i;
@@ -58,7 +60,7 @@ void Session::check_sync(const Act &act, End end) {
     Extension &count = verdict_.extensions[NAMES[static_cast<int>(act.sync.kind)]];
     ++count.ran;
     verdict_.ended += end == End::DONE ? 1 : 0;
-    if (isStopped_ || isDisturbed_ || act.isToFail || end != End::DONE) {
+    if (isStopped_ || isDisturbed_ || act.isToFail || end != End::DONE || act.sync.isShort) {
         return;
     }
     ++count.judged;

@@ -122,6 +122,28 @@ void fold_joint(const Settings &s, int j, FoldedLimits &out) noexcept {
                             isJerkLimited(s) ? jog_jerk(most_jog_jerk) : 0.0};
 }
 
+/// The joint that needs the longest mean: of linear ones where there are any with a jerk limit.
+traj::Limits::SlowJoint slow_joint(const Settings &s, const AxisMap &map) noexcept {
+    traj::Limits::SlowJoint slow;
+    double longest = 0;
+    for (int j = 0; j < map.num_led(); ++j) {
+        const double jerk = s.get(Parameter::JOINT_MAX_JERK, j);
+        if (!(jerk > 0 && jerk < NO_JERK_LIMIT)) {
+            continue;
+        }
+        const traj::Limits::SlowJoint joint{s.get(Parameter::JOINT_MAX_VELOCITY, j),
+                                            s.get(Parameter::JOINT_MAX_ACCELERATION, j), jerk,
+                                            s.isSet(Parameter::JOINT_IS_ANGULAR, j)};
+        const double mean_s = traj::time_of_mean(joint.velocity, joint.acceleration, jerk);
+        const bool isFirst = !(longest > 0) || (slow.isAngular && !joint.isAngular);
+        if (isFirst || (slow.isAngular == joint.isAngular && mean_s > longest)) {
+            slow = joint;
+            longest = mean_s;
+        }
+    }
+    return slow;
+}
+
 }  // namespace
 
 bool AxisMap::hasAxis(int axis) const noexcept {
@@ -173,6 +195,9 @@ FoldedLimits fold_limits(const Settings &settings, const AxisMap &map, const Hom
         std::min(settings.get(Parameter::TRAJ_MAX_ACCELERATION), traj::UNLIMITED);
     out.path.jerk[traj::XYZ_NORM] = path_jerk(settings.get(Parameter::TRAJ_MAX_JERK));
     out.path.isJerkLimited = isJerkLimited(settings);
+    if (map.kind == AxisMap::Kind::PLANNED) {
+        out.path.slow_joint = slow_joint(settings, map);
+    }
     for (int joint = 0; joint < map.num_joints; ++joint) {
         fold_joint(settings, joint, out);
     }

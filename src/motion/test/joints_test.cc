@@ -22,6 +22,7 @@ struct Machine {
     int joints;
     std::string axes;
     bool isJerkLimited;
+    bool areAxesJerkLimited = true;  ///< or joints alone
 };
 
 class Drive {
@@ -40,10 +41,10 @@ class Drive {
             limits_.push_back({v, a, jerk});
         }
         for (int i = 0; i < geom::AXIS_COUNT; ++i) {
-            // The filter follows the axes' jerk; the joints' own limits are what counts.
+            // The joints' own limits are what counts.
             const bool isSet = machine.isJerkLimited && !geom::isAngular(i);
             rig_.set(Parameter::AXIS_MAX_ACCELERATION, i, isSet ? 2000 : 1e6);
-            rig_.set(Parameter::AXIS_MAX_JERK, i, isSet ? 50000 : 1e9);
+            rig_.set(Parameter::AXIS_MAX_JERK, i, isSet && machine.areAxesJerkLimited ? 50000 : 1e9);
         }
         rig_.set(Parameter::TRAJ_PLANNER_TYPE, 0, machine.isJerkLimited ? 1 : 0);
         rig_.ready();
@@ -118,6 +119,13 @@ TEST(Joints, RotaryTableKeepsJointJerkLimits_C13) {
     kins::RotaryTable table;
     table.set_tilt_axis(5, -40);
     drive_all({table, 5, "XYZAC", true});
+}
+
+TEST(Joints, JerkLimitsOfJointsAloneAreKept_C13) {
+    kins::RotaryTable table;
+    table.set_tilt_axis(5, -40);
+    drive_all({kins::CoreXy{}, 3, "XYZ", true, false});
+    drive_all({table, 5, "XYZAC", true, false});
 }
 
 }  // namespace

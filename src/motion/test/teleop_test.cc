@@ -92,7 +92,15 @@ TEST(Teleop, TiltedRotaryTableKeepsJointLimits_C13) {
     jog_all(table, 5, "XYZAC");
 }
 
-TEST(Teleop, ADeltaComesToRestAtTheSoftLimitsOfItsAxes_C13) {
+/// Machines with random limits; both ways along one of two axes, to its soft limit and not beyond.
+struct ToSoftLimits {
+    const kins::Kinematics &model;
+    int joints;
+    std::array<int, 2> axes;
+    bool isJerkLimited;
+};
+
+void jog_to_soft_limits(const ToSoftLimits &machine) {
     const auto [first, count] = testing::campaign_seeds(60);
     int reached = 0;
     for (int seed = first; seed < first + count && !::testing::Test::HasFailure(); ++seed) {
@@ -101,22 +109,36 @@ TEST(Teleop, ADeltaComesToRestAtTheSoftLimitsOfItsAxes_C13) {
         const auto real = [&](double low, double high) {
             return std::uniform_real_distribution<double>(low, high)(random);
         };
-        const kins::LinearDelta model;
-        MotionRig rig(model, 3, 100, 1000);
-        for (int j = 0; j < 3; ++j) {
+        MotionRig rig(machine.model, machine.joints, 100, 1000);
+        for (int j = 0; j < machine.joints; ++j) {
+            const double a = std::pow(10.0, real(2, 3.5));
             rig.set(Parameter::JOINT_MAX_VELOCITY, j, std::pow(10.0, real(1.5, 2.5)));
-            rig.set(Parameter::JOINT_MAX_ACCELERATION, j, std::pow(10.0, real(2, 3.5)));
+            rig.set(Parameter::JOINT_MAX_ACCELERATION, j, a);
             rig.set(Parameter::JOINT_MIN_LIMIT, j, -900);
             rig.set(Parameter::JOINT_MAX_LIMIT, j, 900);
+            if (machine.isJerkLimited) {
+                rig.set(Parameter::JOINT_MAX_JERK, j, a * std::pow(10.0, real(1, 2)));
+            }
         }
         const double limit = real(20, 90);
-        for (int i = 0; i < 2; ++i) {
+        for (const int i : machine.axes) {
             rig.set(Parameter::AXIS_MAX_ACCELERATION, i, std::pow(10.0, real(2.5, 3.7)));
             rig.set(Parameter::AXIS_MIN_LIMIT, i, -limit);
             rig.set(Parameter::AXIS_MAX_LIMIT, i, limit);
         }
+        if (machine.isJerkLimited) {
+            rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, 1);
+            rig.set(Parameter::TRAJ_MAX_JERK, 0, 1e6);
+        }
+        // Away from its centre a table has to move along with what turns.
+        for (int j = 0; machine.isJerkLimited && j < 3; ++j) {
+            rig.in.joint[static_cast<std::size_t>(j)].motor_pos_fb = 40;
+            rig.set(Parameter::JOINT_HOME_OFFSET, j, 40);
+            rig.set(Parameter::JOINT_HOME, j, 40);
+        }
+        rig.step(4);
         rig.ready(Mode::TELEOP);
-        const int axis = real(0, 1) < 0.5 ? 0 : 1;
+        const int axis = machine.axes[real(0, 1) < 0.5 ? 0 : 1];
         for (const double sense : {1.0, -1.0}) {
             rig.send(JogContinuous{{false, axis}, sense * 300});
             double farthest = 0;
@@ -131,6 +153,17 @@ TEST(Teleop, ADeltaComesToRestAtTheSoftLimitsOfItsAxes_C13) {
         rig.forgive_joints();
     }
     EXPECT_GT(reached, count);
+}
+
+TEST(Teleop, ADeltaComesToRestAtTheSoftLimitsOfItsAxes_C13) {
+    const kins::LinearDelta delta;
+    jog_to_soft_limits({delta, 3, {0, 1}, false});
+}
+
+TEST(Teleop, ATableComesToRestAtItsSoftLimitsWithJerkLimits_C13) {
+    kins::RotaryTable table;
+    table.set_tilt_axis(5, -40);
+    jog_to_soft_limits({table, 5, {geom::AXIS_A, geom::AXIS_C}, true});
 }
 
 TEST(Teleop, ACoreXyJogGoesAsFastAsItsJointsAllow) {

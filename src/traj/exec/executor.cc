@@ -181,9 +181,41 @@ double Executor::follow(double dt) noexcept {
 }
 
 void Executor::start_brake() noexcept {
+    // A plan keeps its speed for so long after a rise, so the path allows it.
+    const bool isFalling = state_.plan != 0 && store_.phase(state_.phase).a < 0;
+    const double since_s = state_.coasting.since_rise_s;
+    brake_.wait_s = isFiltered() && !isFalling
+                        ? std::max(0.0, static_cast<double>(state_.filter) * period_ - since_s)
+                        : 0.0;
     state_.motion = Motion::BRAKE;
     ++state_.brakes;
     next_switch_.plan = 0;
+    brake_on_piece();
+}
+
+/// Returns the time that is left when the piece or the waiting is over.
+double Executor::coast_before_brake(double dt) noexcept {
+    const double length = store_.piece(state_.piece).length;
+    const double span = std::min(dt, brake_.wait_s);
+    const bool isWithin = state_.v * span < length - state_.x;
+    const double t = isWithin ? span : std::max(0.0, length - state_.x) / state_.v;
+    state_.coasting.pass(0, t);
+    state_.x = isWithin ? state_.x + state_.v * t : length;
+    brake_.wait_s -= t;
+    if (!isWithin && state_.piece == store_.last_piece.load(std::memory_order_acquire)) {
+        come_to_rest();  // the end of the path, as in brake_along
+    } else if (!isWithin) {
+        enter_next_piece();
+    } else if (brake_.wait_s <= TimingTuning::SOON) {
+        brake_.wait_s = 0;
+        brake_on_piece();
+    }
+    return dt - t;
+}
+
+void Executor::enter_next_piece() noexcept {
+    ++state_.piece;
+    state_.x = 0;
     brake_on_piece();
 }
 
@@ -211,6 +243,9 @@ void Executor::brake_on_piece() noexcept {
 }
 
 double Executor::brake_along(double dt) noexcept {
+    if (brake_.wait_s > TimingTuning::SOON && state_.v > 0) {
+        return coast_before_brake(dt);
+    }
     const double left = brake_.phase.duration - brake_.time;
     if (dt < left) {
         brake_.time += dt;
@@ -240,9 +275,7 @@ double Executor::brake_along(double dt) noexcept {
         come_to_rest();
         return 0;
     }
-    ++state_.piece;
-    state_.x = 0;
-    brake_on_piece();
+    enter_next_piece();
     return dt - left;
 }
 

@@ -45,6 +45,7 @@ struct Brake {
     double time = 0;       ///< in it
     bool isFinal = false;  ///< it ends in a stop
     double end = 0;        ///< where on the piece it ends otherwise
+    double wait_s = 0;     ///< before: until the mean has forgotten the last rise the speed is kept
 };
 
 /// What an executor remembers. A copy of it goes on in another executor whose store holds the same path.
@@ -149,6 +150,8 @@ class Executor : private ExecutorState {
     double brake_along(double dt) noexcept;
     void start_brake() noexcept;
     void brake_on_piece() noexcept;
+    double coast_before_brake(double dt) noexcept;
+    void enter_next_piece() noexcept;
     void come_to_rest() noexcept;
     void locate() noexcept;
     void filter() noexcept;

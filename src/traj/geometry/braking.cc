@@ -205,8 +205,10 @@ Demands demands_of(const Coordinates &joints, const JointLimits &limits, double 
 
 /// There is next to nothing to be gained on a piece that is over at once, or where turning at the highest
 /// speed leaves enough.
-bool isWorthALook(const PathStore &store, const Piece &piece, const SpeedLimit &limit) noexcept {
-    const bool isCurved = piece.blend_d > 0 || store.primitive(piece.primitive).isArc;
+bool isWorthALook(const PathStore &store, const Piece &piece, bool isMapped,
+                  const SpeedLimit &limit) noexcept {
+    // Lines are curves for joints that are not axes.
+    const bool isCurved = isMapped || piece.blend_d > 0 || store.primitive(piece.primitive).isArc;
     return isCurved && !piece.isAlong && limit.v < 1e100 && piece.length > BrakingTuning::SHORT_S * limit.v &&
            limit.a.at(limit.v * limit.v) < BrakingTuning::ENOUGH * limit.a.at(0);
 }
@@ -216,7 +218,7 @@ bool isWorthALook(const PathStore &store, const Piece &piece, const SpeedLimit &
 Braking braking_on(const PathStore &store, const Piece &piece, const Conditions &conditions,
                    const SpeedLimit &limit) noexcept {
     Braking best{0, limit.a};
-    if (!isWorthALook(store, piece, limit)) {
+    if (!isWorthALook(store, piece, conditions.workspace.isMapped(), limit)) {
         return best;
     }
     const Curve curve{store, piece, conditions};

@@ -91,6 +91,10 @@ int rows_of(const PerLimited &q1, const PerLimited &q2, const Limits &limits, Li
 
 }  // namespace
 
+double time_of_mean(double velocity, double acceleration, double jerk) noexcept {
+    return std::min(acceleration / jerk, std::sqrt(velocity / jerk));
+}
+
 AccelBound AccelBound::through(const double (&left)[LINES + 1], double v) noexcept {
     static_assert(std::size(LimitTuning::CHORDS) == LINES + 1);
     AccelBound out;
@@ -122,20 +126,23 @@ std::uint64_t filter_length(const Limits &limits, double period_s, double tolera
     double longest = 0;
     double longest_angular = 0;
     bool isNeeded = false;
-    for (std::size_t i = 0; i < limits.jerk.size(); ++i) {
-        if (!(limits.jerk[i] < 1e9 && limits.acceleration[i] < 1e9)) {
-            continue;
+    const auto add = [&](double velocity, double acceleration, double jerk, bool isAngular) {
+        if (!(jerk > 0 && jerk < 1e9 && acceleration < 1e9)) {
+            return;
         }
-        isNeeded = isNeeded || limits.acceleration[i] > limits.jerk[i] * period_s;
-        double length =
-            std::min(limits.acceleration[i] / limits.jerk[i], std::sqrt(limits.velocity[i] / limits.jerk[i]));
+        isNeeded = isNeeded || acceleration > jerk * period_s;
+        double length = time_of_mean(velocity, acceleration, jerk);
         if (tolerance > 0) {
-            length =
-                std::min(length, LimitTuning::CURVE_SHARE * std::cbrt(24.0 * tolerance / limits.jerk[i]));
+            length = std::min(length, LimitTuning::CURVE_SHARE * std::cbrt(24.0 * tolerance / jerk));
         }
-        double &of = geom::isAngular(static_cast<int>(i)) ? longest_angular : longest;
+        double &of = isAngular ? longest_angular : longest;
         of = std::max(of, length);
+    };
+    for (std::size_t i = 0; i < limits.jerk.size(); ++i) {
+        add(limits.velocity[i], limits.acceleration[i], limits.jerk[i], geom::isAngular(static_cast<int>(i)));
     }
+    const Limits::SlowJoint &joint = limits.slow_joint;
+    add(joint.velocity, joint.acceleration, joint.jerk, joint.isAngular);
     const double samples = std::ceil((longest > 0 ? longest : longest_angular) / period_s - 1e-9);
     return static_cast<std::uint64_t>(
         std::clamp(samples, isNeeded ? 2.0 : 1.0, static_cast<double>(MAX_FILTER)));

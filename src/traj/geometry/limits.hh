@@ -14,13 +14,23 @@ struct Limits {
     PerLimited acceleration{};  ///< [unit/s^2]
     PerLimited jerk{};          ///< [unit/s^3]; used when `isJerkLimited`
     bool isJerkLimited = false;
+    /// Of joints that are not axes, the one that needs the longest mean: its acceleration, velocity and jerk.
+    struct SlowJoint {
+        double velocity = 0, acceleration = 0, jerk = 0;  ///< jerk 0: none has a limit
+        bool isAngular = false;
+    };
+    SlowJoint slow_joint;
 };
 inline constexpr double UNLIMITED = 1e300;
 
+/// The time in which an acceleration is built up within a jerk limit, or the acceleration with which the
+/// velocity is reached soonest [s].
+double time_of_mean(double velocity, double acceleration, double jerk) noexcept;
+
 /// Samples of the mean that turns acceleration-limited motion into jerk-limited motion: the longest time that
-/// an axis of X Y Z U V W, or the XYZ norm, needs to build up its acceleration, or the acceleration with
-/// which it gets to its speed soonest; no longer than what suits curves within `tolerance` (0: none is kept).
-/// 1 without jerk limits. Formulas: docs/motion/planner.md.
+/// an axis of X Y Z U V W, the XYZ norm or a joint needs to build up its acceleration, or the acceleration
+/// with which it gets to its speed soonest; no longer than what suits curves within `tolerance` (0: none is
+/// kept). 1 without jerk limits. Formulas: docs/motion/planner.md.
 std::uint64_t filter_length(const Limits &limits, double period_s, double tolerance) noexcept;
 
 /// The limits with accelerations that a mean over `filter` samples can build up within the jerk limits.

@@ -17,7 +17,8 @@ class Smooth {
         : draft_(draft), store_(store), view_(view), path_(view.path()), limits_(view.on.conditions.limits) {}
 
     bool advance() noexcept;
-    bool stop(bool isHard) noexcept;
+    enum class Stop : std::uint8_t { GENTLE, HARD, AT_ONCE };
+    bool stop(Stop how) noexcept;
 
   private:
     bool canCoast(Sequence piece, double x, double v) noexcept;
@@ -179,7 +180,7 @@ bool Smooth::advance() noexcept {
     return true;
 }
 
-bool Smooth::stop(bool isHard) noexcept {
+bool Smooth::stop(Stop how) noexcept {
     LeaderState &s = draft_.at;
     while (s.v > 0) {
         if (!draft_.hasRoom(view_.oldest_phase, TimingTuning::PHASES_PER_STOP)) {
@@ -190,7 +191,7 @@ bool Smooth::stop(bool isHard) noexcept {
         look_at(s.piece);
         const double v2 = s.v * s.v;
         const Piece::BrakeLeg leg =
-            isHard ? p.brake_leg(s.x, v2) : Piece::BrakeLeg{p.acceleration.at(v2), p.length};
+            how != Stop::GENTLE ? p.brake_leg(s.x, v2) : Piece::BrakeLeg{p.acceleration.at(v2), p.length};
         const double left = leg.end - s.x;
         if (!(left > 0)) {
             if (isLast) {
@@ -200,7 +201,7 @@ bool Smooth::stop(bool isHard) noexcept {
             continue;
         }
         const double out = out2(s.piece);
-        const double wait = limits_.filter_s() - s.coasting.since_rise_s;
+        const double wait = how != Stop::AT_ONCE ? limits_.filter_s() - s.coasting.since_rise_s : 0.0;
         const bool mayCoast =
             v2 < p.acceleration.highest_before(out, p.length - s.x) * (1.0 - TimingTuning::SAME_SPEED);
         if (wait > TimingTuning::SOON && mayCoast) {
@@ -232,11 +233,11 @@ void append_smooth(PlanDraft &draft, PathStore &store, const TimingView &view, d
 }
 
 bool append_stop(PlanDraft &draft, PathStore &store, const TimingView &view) noexcept {
-    return Smooth(draft, store, view).stop(false);
+    return Smooth(draft, store, view).stop(Smooth::Stop::GENTLE);
 }
 
-bool append_hard_stop(PlanDraft &draft, PathStore &store, const TimingView &view) noexcept {
-    return Smooth(draft, store, view).stop(true);
+bool append_hard_stop(PlanDraft &draft, PathStore &store, const TimingView &view, bool isAtOnce) noexcept {
+    return Smooth(draft, store, view).stop(isAtOnce ? Smooth::Stop::AT_ONCE : Smooth::Stop::HARD);
 }
 
 }  // namespace mw::traj

@@ -12,7 +12,8 @@ namespace mw::traj {
 void append_smooth(PlanDraft &draft, PathStore &store, const TimingView &view, double until_s) noexcept;
 /// From where the plan leads to a stop; false when there is no room for it.
 bool append_stop(PlanDraft &draft, PathStore &store, const TimingView &view) noexcept;
-/// The same with what curves leave for braking alone.
-bool append_hard_stop(PlanDraft &draft, PathStore &store, const TimingView &view) noexcept;
+/// The same with what curves leave for braking alone. `isAtOnce`: also behind a rise that is still in the
+/// mean, which keeps to the jerk where both swings together do.
+bool append_hard_stop(PlanDraft &draft, PathStore &store, const TimingView &view, bool isAtOnce) noexcept;
 
 }  // namespace mw::traj

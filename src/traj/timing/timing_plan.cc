@@ -170,8 +170,12 @@ bool TimingPlan::draft(const PathView &view, PathStore &store, Sequence begin, c
     }
     const double until_s = draft_.seconds;
     const bool isEmpty = draft_.end == waited && from.v <= 0;
-    const auto append = ending == Ending::HARD_STOP ? append_hard_stop : append_stop;
-    if (isEmpty || !append(draft_, store, timing) || draft_.isStopPassed(view.path, begin)) {
+    const bool isHard = ending == Ending::HARD_STOP || ending == Ending::STOP_AT_ONCE;
+    const auto append = [&] {
+        return isHard ? append_hard_stop(draft_, store, timing, ending == Ending::STOP_AT_ONCE)
+                      : append_stop(draft_, store, timing);
+    };
+    if (isEmpty || !append() || draft_.isStopPassed(view.path, begin)) {
         return false;
     }
     draft_.seconds = until_s;

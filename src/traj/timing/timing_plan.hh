@@ -16,9 +16,10 @@ struct PlannerSettings {
 
 /// How a plan that is tried ends.
 enum class Ending : std::uint8_t {
-    ONWARD,     ///< it goes on as far as it will, and then stops
-    STOP,       ///< it stops
-    HARD_STOP,  ///< with what curves leave for braking alone
+    ONWARD,        ///< it goes on as far as it will, and then stops
+    STOP,          ///< it stops
+    HARD_STOP,     ///< with what curves leave for braking alone
+    STOP_AT_ONCE,  ///< hard, and without waiting until the mean has forgotten the last rise
 };
 
 /// What an update has to do.

@@ -160,6 +160,15 @@ void leave_for_curves(const Sharing &s, const AxisValues &speed, Allowed &out) n
     }
 }
 
+/// The speed that an axis may come to have within its mean: what turning takes goes with that. Who brakes
+/// gains none, so that its acceleration does not become less on the way to its stop.
+double soon(const Sharing &s, int i, double speed, const Allowed &allowed) noexcept {
+    const traj::JogPlanner &p = s.jog(i).planner;
+    const bool isBraking = std::abs(p.leader().velocity) < std::abs(p.velocity);
+    return isBraking ? speed
+                     : speed + allowed.acceleration[at(i)] * std::max(allowed.mean_s[at(i)], s.m.period_s);
+}
+
 /// Shared evenly among the axes of `axes`.
 Allowed share(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs, std::uint32_t axes,
               int count) noexcept {
@@ -182,7 +191,7 @@ Allowed share(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs, 
     for (int i = 0; i < load.count; ++i) {
         double &v = out.velocity[at(i)];
         v = isOver ? std::min(v, speed[at(i)]) : v;
-        speed[at(i)] = std::max(v, speed[at(i)]);
+        speed[at(i)] = std::max(std::min(v, soon(s, i, speed[at(i)], out)), speed[at(i)]);
     }
     leave_for_curves(s, speed, out);
     return out;
