@@ -201,6 +201,11 @@ void Task::take_motion_news() {
             continue;
         }
         const std::string text = motion::reason_text(answer);
+        if (answer.reason != motion::Reason::MOVING && mode_.isForJointsToo(answer.id)) {
+            mode_.fall_back(motion_.send(motion::SetMode{motion::Mode::FREE}));
+            post(MessageKind::OPERATOR_TEXT, text);
+            continue;
+        }
         const auto order = orders_.refuse(answer.id, text);
         if (order.has_value()) {
             tell(order->ending);

@@ -74,7 +74,8 @@ Outcome Task::Handler::operator()(const SetMode &command) {
     if (command.mode == task.mode_.mode() && !isWantedAgain) {
         return Progress::DONE;
     }
-    change_mode(command.mode, command.mode == Mode::MANUAL ? by_hand : motion::Mode::COORD);
+    const bool isByHand = command.mode == Mode::MANUAL;
+    change_mode(command.mode, isByHand ? by_hand : motion::Mode::COORD, isByHand);
     return Progress::STARTED;
 }
 

@@ -150,10 +150,10 @@ struct Task::Handler {
         return spindle < task.settings_.num_spindles ? Result<>{}
                                                      : fail("there is no spindle " + std::to_string(spindle));
     }
-    /// Done when motion has agreed.
-    void change_mode(Mode mode, motion::Mode motion_mode) {
+    /// Done when motion has agreed, to joints where `mayMoveJoints` and it cannot move axes.
+    void change_mode(Mode mode, motion::Mode motion_mode, bool mayMoveJoints = false) {
         const motion::CommandId order = task.motion_.send(motion::SetMode{motion_mode});
-        task.mode_.begin(mode, motion_mode, id, order, task.now_ns_);
+        task.mode_.begin(mode, motion_mode, id, order, task.now_ns_, mayMoveJoints);
     }
     Outcome start_run(RunKind kind, const std::string &line = {}) {
         Outcome started = task.run_.start(kind, id, line);

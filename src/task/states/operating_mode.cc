@@ -4,12 +4,13 @@
 namespace mw::task {
 
 void OperatingMode::begin(Mode mode, motion::Mode motion_mode, mailbox::Serial command,
-                          motion::CommandId order, std::int64_t now_ns) {
+                          motion::CommandId order, std::int64_t now_ns, bool mayMoveJoints) {
     wanted_ = mode;
     wanted_motion_mode_ = motion_mode;
     request_.begin(command, now_ns + CHANGE_TIMEOUT_NS);
     request_.set_order(order);
     isWaitingForRest_ = false;
+    mayMoveJoints_ = mayMoveJoints;
 }
 
 bool OperatingMode::waits_for_rest(motion::CommandId order, std::int64_t now_ns) {

@@ -10,9 +10,10 @@ namespace mw::task {
 /// A change is done when motion has made it. One thread.
 class OperatingMode {
   public:
-    /// `motion_mode` was ordered by `order`; an earlier change must have ended.
+    /// `motion_mode` was ordered by `order`; an earlier change must have ended. `mayMoveJoints`: manual mode
+    /// it is also where joints can be moved and axes cannot.
     void begin(Mode mode, motion::Mode motion_mode, mailbox::Serial command, motion::CommandId order,
-               std::int64_t now_ns);
+               std::int64_t now_ns, bool mayMoveJoints = false);
     bool isChanging() const { return request_.isUnderWay(); }
     motion::CommandId order() const { return request_.order(); }
     /// Once a cycle. `isAnswered`: motion has answered the order.
@@ -38,11 +39,22 @@ class OperatingMode {
     void ask_again(motion::CommandId order);
     motion::Mode wanted_motion_mode() const { return wanted_motion_mode_; }
 
+    /// Motion has refused `order`, axes, where joints will do.
+    bool isForJointsToo(motion::CommandId order) const {
+        return isChanging() && order == request_.order() && mayMoveJoints_ &&
+               wanted_motion_mode_ == motion::Mode::TELEOP;
+    }
+    /// `order` asks for joint mode instead.
+    void fall_back(motion::CommandId order) {
+        wanted_motion_mode_ = motion::Mode::FREE;
+        request_.set_order(order);
+    }
+
   private:
     Mode mode_ = Mode::MANUAL, wanted_ = Mode::MANUAL;
     motion::Mode wanted_motion_mode_ = motion::Mode::FREE;
     std::optional<std::int64_t> stop_ns_;
-    bool isWaitingForRest_ = false;
+    bool isWaitingForRest_ = false, mayMoveJoints_ = false;
     Request request_;
 };
 

@@ -38,7 +38,8 @@ class FakeMotion {
     bool isHolding = false;
     bool isRefusingMoves = false;
     bool isModeStuck = false;
-    motion::Reason jog_refusal = motion::Reason::NONE;  ///< of each continuous jog
+    motion::Reason teleop_refusal = motion::Reason::NONE;  ///< of each change to axes
+    motion::Reason jog_refusal = motion::Reason::NONE;     ///< of each continuous jog
     motion::JogContinuous last_jog;
     motion::CommandBody last;  ///< of all immediate ones
     double corner_scale = -1;  ///< of the last move
@@ -58,6 +59,9 @@ class FakeMotion {
             if (!status.isInPosition && mode->mode != status.mode) {
                 answer.kind = motion::AnswerKind::REFUSED;
                 answer.reason = motion::Reason::MOVING;
+            } else if (mode->mode == motion::Mode::TELEOP && teleop_refusal != motion::Reason::NONE) {
+                answer.kind = motion::AnswerKind::REFUSED;
+                answer.reason = teleop_refusal;
             } else {
                 status.mode = isModeStuck ? status.mode : mode->mode;
             }

@@ -86,6 +86,17 @@ TEST_F(TaskTest, M99InTheMainProgramBeginsItAgain_I1) {
     EXPECT_EQ(joined().substr(0, 14), "line 1, line 2");
 }
 
+TEST_F(TaskTest, ManualModeIsThatOfJointsWhereAxesCannotBeMoved_D1) {
+    ASSERT_EQ(ask(SetMode{Mode::AUTO}), Progress::DONE);
+    motion.teleop_refusal = motion::Reason::SIDE_APART;
+    EXPECT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE)
+        << "home or bring the sides together, in manual mode";
+    EXPECT_EQ(motion.status.mode, motion::Mode::FREE);
+    EXPECT_NE(messages().find("stands apart"), std::string::npos);
+    EXPECT_NE(ask(SetTeleop{true}), Progress::DONE) << "axes were asked for";
+    EXPECT_EQ(task.status().task.mode, Mode::MANUAL);
+}
+
 TEST_F(TaskTest, AStopDoesNotWaitForTheModeToChange_D1) {
     motion.isModeStuck = true;
     const auto mode = post(SetMode{Mode::AUTO});
