@@ -22,7 +22,7 @@ std::string order_of(const Queue &queue) {
     return tags;
 }
 
-TEST(ScheduleQueue, TheLowestPriorityComesFirstAndOfEqualsTheOlder) {
+TEST(ScheduleQueue, TheLowestPriorityComesFirstAndOfEqualsTheOlder_J4) {
     Queue queue;
     ASSERT_TRUE(queue.add(job(5, 1)).has_value());
     ASSERT_TRUE(queue.add(job(3, 2)).has_value());
@@ -35,7 +35,7 @@ TEST(ScheduleQueue, TheLowestPriorityComesFirstAndOfEqualsTheOlder) {
     EXPECT_EQ(order_of(queue), "1 2");
 }
 
-TEST(ScheduleQueue, TagsAreGivenAndUnique) {
+TEST(ScheduleQueue, TagsAreGivenAndUnique_J4) {
     Queue queue;
     ASSERT_TRUE(queue.set_last_auto_tag(10).has_value());
     ASSERT_TRUE(queue.add(job(1, 12)).has_value());
@@ -48,7 +48,7 @@ TEST(ScheduleQueue, TagsAreGivenAndUnique) {
     EXPECT_FALSE(queue.add(job(1, 0)).has_value()) << "no tag is left";
 }
 
-TEST(ScheduleQueue, WhatIsOutOfRangeIsRefused) {
+TEST(ScheduleQueue, WhatIsOutOfRangeIsRefused_J4) {
     Queue queue;
     Job bad = job(1, 0);
     bad.zone = 10;
@@ -64,7 +64,7 @@ TEST(ScheduleQueue, WhatIsOutOfRangeIsRefused) {
     EXPECT_TRUE(queue.jobs().empty());
 }
 
-TEST(ScheduleQueue, TheChecksumTellsTheOrder) {
+TEST(ScheduleQueue, TheChecksumTellsTheOrder_J4) {
     Queue one, other;
     EXPECT_EQ(one.checksum(), 0U);
     ASSERT_TRUE(one.add(job(1, 1)).has_value() && one.add(job(1, 2)).has_value());

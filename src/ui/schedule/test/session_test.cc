@@ -79,7 +79,7 @@ class ScheduleTest : public ::testing::Test {
     mailbox::Serial running = 0;
 };
 
-TEST_F(ScheduleTest, AnswersAreThoseOfTheOlderProgram) {
+TEST_F(ScheduleTest, AnswersAreThoseOfTheOlderProgram_J4) {
     EXPECT_EQ(say("get plat"), "PLAT Linux\r\n");
     EXPECT_EQ(say("hello EMC me"), "HELLO NAK\r\n");
     EXPECT_EQ(say("hello EMC me 1"), "HELLO ACK EMCNETSVR 1.1\r\n");
@@ -106,7 +106,7 @@ TEST_F(ScheduleTest, AnswersAreThoseOfTheOlderProgram) {
     EXPECT_TRUE(session->isOver());
 }
 
-TEST_F(ScheduleTest, WhatIsRefusedSaysWhy) {
+TEST_F(ScheduleTest, WhatIsRefusedSaysWhy_J4) {
     EXPECT_EQ(say("set qmode run"), "SET NAK\r\n") << "before HELLO";
     say("hello EMC me 1");
     say("set echo off");
@@ -121,7 +121,7 @@ TEST_F(ScheduleTest, WhatIsRefusedSaysWhy) {
     EXPECT_EQ(say(std::string(5000, 'x')), "error: the line has more than 4096 bytes\r\nSET LINE NAK\n\r");
 }
 
-TEST_F(ScheduleTest, ProgramsRunInTheirOrderWithWhatTheyAsk) {
+TEST_F(ScheduleTest, ProgramsRunInTheirOrderWithWhatTheyAsk_J4) {
     greet();
     say("set pgmadd 2 7 0 0 0 3 /q/b.ngc 50 80 0");
     say("set pgmadd 1 8 1 2 3 0 a.ngc 100 100 4");
@@ -135,7 +135,7 @@ TEST_F(ScheduleTest, ProgramsRunInTheirOrderWithWhatTheyAsk) {
     EXPECT_TRUE(first < origin && origin < a && a < zone && zone < b) << asked;
 }
 
-TEST_F(ScheduleTest, NothingFollowsAProgramThatFailed) {
+TEST_F(ScheduleTest, NothingFollowsAProgramThatFailed_J4) {
     greet();
     say("set pgmadd 1 7 0 0 0 1 a.ngc 100 100 0");
     say("set pgmadd 2 8 0 0 0 1 b.ngc 100 100 0");
@@ -148,7 +148,7 @@ TEST_F(ScheduleTest, NothingFollowsAProgramThatFailed) {
     EXPECT_EQ(scheduler->queue().jobs().size(), 2U) << "both are still there";
 }
 
-TEST_F(ScheduleTest, StopAbortsWhatRunsAndKeepsIt) {
+TEST_F(ScheduleTest, StopAbortsWhatRunsAndKeepsIt_J4) {
     greet();
     isRunning = true;
     say("set pgmadd 1 7 0 0 0 1 a.ngc 100 100 0");
@@ -171,7 +171,7 @@ TEST_F(ScheduleTest, StopAbortsWhatRunsAndKeepsIt) {
         << "nothing begins by itself after a stop";
 }
 
-TEST_F(ScheduleTest, AMachineThatIsNotReadyIsSaid) {
+TEST_F(ScheduleTest, AMachineThatIsNotReadyIsSaid_J4) {
     greet();
     say("set pgmadd 1 7 0 0 0 1 a.ngc 100 100 0");
     status->task.state = msgs::State::ESTOP;
