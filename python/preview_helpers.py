@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a preview has to run before a program, so that it begins as the machine would."""
 
-# Places in stat.gcodes of modes that stay in force from one program to the next: plane, distance, feed mode,
-# coordinate system, retract, diameter, arc distance. Motion, compensation and tool offsets do not belong here.
-_MODES = (3, 6, 7, 8, 10, 13, 14)
+# Places in stat.gcodes of modes that stay in force from one program to the next: plane, compensation (only off),
+# distance, feed mode, coordinate system, tool length, retract, diameter, arc distance. Motion does not belong here.
+_MODES = (3, 4, 6, 7, 8, 9, 10, 13, 14)
+# Codes that say nothing without words of their own, or that begin something.
+_LEFT_OUT = {410, 411, 420, 421, 431, 432}
 _METRIC_FROM = 0.5
+_LETTERS = 'XYZABCUVW'
+_INCREMENTAL = 910
 
 
 def _word(code):
@@ -12,16 +16,30 @@ def _word(code):
     return "G%d" % (code // 10) if code % 10 == 0 else "G%d.%d" % (code // 10, code % 10)
 
 
+def _place(stat):
+    """The block that leads to where the machine stands; nothing where that is not known."""
+    position = getattr(stat, "position", ())
+    mask = getattr(stat, "axis_mask", 0)
+    words = ["%s%.6f" % (letter, position[i]) for i, letter in enumerate(_LETTERS)
+             if mask >> i & 1 and i < len(position)]
+    return "G90 G53 G0 " + " ".join(words) if words else ""
+
+
 def create_unitcode_and_initcode(stat, ini):
-    """(unitcode, initcode) for gcode.parse: the units of the machine, then [RS274NGC]RS274NGC_STARTUP_CODE and the
-    modes that are in force on the machine (`stat` as linuxcnc.stat gives them), a line each."""
+    """(unitcode, initcode) for gcode.parse: the units of the machine, then, a block each, the modes that are in force on
+    it, which those of [RS274NGC]RS274NGC_STARTUP_CODE are a part of, and the way to where it stands (`stat` as
+    linuxcnc.stat gives them, now). Before the machine has said its modes they are those of the start-up code."""
+    if hasattr(stat, "poll"):
+        stat.poll()
     unitcode = "G21" if stat.linear_units > _METRIC_FROM else "G20"
-    lines = []
-    startup = ini.find("RS274NGC", "RS274NGC_STARTUP_CODE")
-    if startup:
-        lines.append(startup)
     gcodes = tuple(getattr(stat, "gcodes", ()) or ())
-    modes = [_word(gcodes[place]) for place in _MODES if place < len(gcodes) and gcodes[place] > 0]
-    if modes:
-        lines.append(" ".join(modes))
+    codes = [gcodes[place] for place in _MODES if place < len(gcodes)]
+    modes = [_word(code) for code in codes if code > 0 and code not in _LEFT_OUT]
+    startup = ini.find("RS274NGC", "RS274NGC_STARTUP_CODE")
+    lines = [" ".join(modes)] if modes else [startup] if startup else []
+    place = _place(stat) if modes else ""
+    if place:
+        lines.append(place)
+        if _INCREMENTAL in codes:
+            lines.append("G91")
     return unitcode, "\n".join(lines)

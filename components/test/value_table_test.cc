@@ -290,5 +290,34 @@ TEST(Message, ShowsItsTextAtTheWantedEdgeOnce_B6) {
     EXPECT_EQ(shown, "Oil\nOil\n");
 }
 
+TEST(Pushmsg, EachRisingEdgeShowsTheTextOfItsPin_B6) {
+    Bench bench("loadrt pushmsg emsg=Stuck,Jammed wmsg=Careful\naddf pushmsg t");
+    bench.pass(3);
+    ::testing::internal::CaptureStderr();
+    bench.set("pushmsg.error-01", 1);
+    bench.pass(5);
+    bench.set("pushmsg.error-02", 1);  // has no text
+    bench.set("pushmsg.error-01", 0);
+    bench.pass(2);
+    bench.set("pushmsg.error-01", 1);
+    bench.pass(2);
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(), "Jammed\nJammed\n");
+}
+
+TEST(LedDim, LooksAsBrightAsItIsAskedFor_B6) {
+    Bench bench("loadrt led_dim\naddf led-dim.0 t");
+    const auto at = [&bench](double lightness) {
+        bench.set("led-dim.0.in", lightness);
+        bench.pass();
+        return bench.get("led-dim.0.out");
+    };
+    EXPECT_EQ(at(0), 0.0);
+    EXPECT_NEAR(at(0.08), 0.08 * 100 / 903.3, 1e-12);
+    EXPECT_NEAR(at(0.5), 0.184187, 1e-6) << "CIE: L* = 50";
+    EXPECT_NEAR(at(1), 1.0, 1e-12);
+    EXPECT_EQ(at(7), 1.0);
+    EXPECT_EQ(at(-1), 0.0);
+}
+
 }  // namespace
 }  // namespace mw::components::test

@@ -15,8 +15,9 @@ int command_run(const std::vector<std::string> &words);
 int command_ui(const std::vector<std::string> &words);
 int command_recover(const std::vector<std::string> &words);
 int command_nml(const std::vector<std::string> &words);
-/// The words of `linuxcncrsh`.
+/// The words of `linuxcncrsh`, of `schedrmt`.
 int command_rsh(const std::vector<std::string> &words);
+int command_schedule(const std::vector<std::string> &words);
 int command_check(const std::vector<std::string> &words);
 
 }  // namespace mw::app

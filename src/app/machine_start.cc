@@ -203,8 +203,9 @@ void MachineStart::run_shutdown_file() {
 void MachineStart::tell_messages() {
     using Reading = client::Viewer::Reading;
     while (const auto message = machine_->client().next_message(Reading::LOOKS_ON)) {
-        const bool isError = message->kind == msgs::MessageKind::OPERATOR_ERROR;
-        fmt::print(isError ? stderr : stdout, "{}\n", printable(message->text));
+        // What (print,...) says is the program's output, which scripts read.
+        const bool isOutput = message->kind == msgs::MessageKind::OPERATOR_TEXT;
+        fmt::print(isOutput ? stdout : stderr, "{}\n", printable(message->text));
         std::fflush(stdout);
     }
 }

@@ -91,8 +91,8 @@ Settings settings_from_ini(config::IniReader &ini) {
     out.isLathe = ini.boolean(ini_key("DISPLAY", "LATHE"));
     out.rotary = read_rotary(ini);
     out.orient_offset_deg = ini.real(ini_key("RS274NGC", "ORIENT_OFFSET"));
-    out.center_arc_radius_tolerance_inch = ini.real(ini_key("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_INCH"));
-    out.center_arc_radius_tolerance_mm = ini.real(ini_key("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_MM"));
+    out.center_arc_tolerance.inch = ini.real(ini_key("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_INCH"));
+    out.center_arc_tolerance.mm = ini.real(ini_key("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_MM"));
     out.parameter_g73_peck_clearance_mm = ini.real(ini_key("RS274NGC", "PARAMETER_G73_PECK_CLEARANCE"));
     out.parameter_g83_peck_clearance_mm = ini.real(ini_key("RS274NGC", "PARAMETER_G83_PECK_CLEARANCE"));
     return out;

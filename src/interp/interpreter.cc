@@ -50,6 +50,13 @@ Result<> Interpreter::begin() {
         return loaded;
     }
     executor.canon.enter_block(nullptr, 0, 0, false, 0);
+    if (impl_->settings.start_tolerance_mm > 0) {
+        constexpr double MM_PER_INCH = 25.4;
+        detail::State &state = executor.state;
+        state.tolerance =
+            impl_->settings.start_tolerance_mm / (state.units == LengthUnits::INCH ? MM_PER_INCH : 1.0);
+        executor.canon.take(SetMotionControlMode{state.control, state.tolerance});
+    }
     executor.announce();
     executor.synch();
     executor.canon.flush(impl_->target);

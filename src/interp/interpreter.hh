@@ -49,6 +49,11 @@ struct BeforeToolChange {
     bool isAtG30 = false;        ///< all axes to the place of G30
 };
 
+/// By how much the radii of both ends of an arc may differ.
+struct CenterArcTolerance {
+    double mm = 0.00127, inch = 0.00005;
+};
+
 struct Settings {
     std::vector<std::string>
         subroutine_path;  ///< the INI file's folder, [DISPLAY]PROGRAM_PREFIX and [RS274NGC]SUBROUTINE_PATH
@@ -62,8 +67,9 @@ struct Settings {
     bool isFanucSubDisabled = false;
     bool isCoordinateSystemKept = false;  ///< M2 and M30 do not go back to G54
     double max_velocity_mm_s = 0;         ///< threads that need more are refused; 0: not known
-    double center_arc_radius_tolerance_mm = 0.00127;
-    double center_arc_radius_tolerance_inch = 0.00005;
+    CenterArcTolerance center_arc_tolerance;
+    /// G64 P before the first G64; 0: as fast as the machine can, however far from the corners.
+    double start_tolerance_mm = 0;
     bool isLathe = false;
     RotaryAxes rotary;
     bool isTask = false;  ///< #<_task>: a machine runs the program

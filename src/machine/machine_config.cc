@@ -24,6 +24,8 @@ using config::IniKind;
 using config::IniReader;
 using motion::Parameter;
 
+/// Corners are cut by this much until a program says G64: LinuxCNC's 0.001 inch, as measured.
+constexpr double START_TOLERANCE_MM = 0.0254;
 constexpr double INF = std::numeric_limits<double>::infinity();
 
 void read_names(IniReader &ini, MachineConfig &machine) {
@@ -418,6 +420,7 @@ void read_interpreter(IniReader &ini, MachineConfig &machine) {
         machine.journal_file = ini.file().resolve_path(journal);
     }
     machine.task.interpreter = interp::settings_from_ini(ini);
+    machine.task.interpreter.start_tolerance_mm = START_TOLERANCE_MM;
     const auto fastest = static_cast<std::uint16_t>(Parameter::TRAJ_MAX_VELOCITY);
     for (const motion::SetParameter &parameter : machine.parameters) {
         if (parameter.parameter == fastest && std::isfinite(parameter.value)) {

@@ -2,32 +2,13 @@
 #include "task/task.hh"
 
 #include <algorithm>
-#include <cmath>
 
 #include "interp/scripts/user_codes.hh"
 #include "motion/api/texts.hh"
-#include "task/link/motion_status.hh"
 #include "task/run/shown_offsets.hh"
 #include "task/task_start.hh"
 
 namespace mw::task {
-
-namespace {
-
-/// What the tool in the spindle has cut since that status: the axes fed while a spindle turned.
-tool::CutLife cut_since(const Status &status, std::int64_t now_ns) {
-    constexpr double S_PER_NS = 1e-9;
-    const double elapsed_s = static_cast<double>(now_ns - status.time_ns) * S_PER_NS;
-    const MoveKind kind = status.trajectory.move_kind;
-    const bool isFeeding = kind == MoveKind::FEED || kind == MoveKind::ARC;
-    const bool isTurning =
-        std::ranges::any_of(status.spindles, [](const SpindleStatus &spindle) { return spindle.isOn; });
-    const double velocity = std::abs(status.trajectory.current_velocity);
-    const bool isCutting = isFeeding && isTurning && velocity > 0 && status.tool.in_spindle > 0;
-    return isCutting ? tool::CutLife{elapsed_s, velocity * elapsed_s} : tool::CutLife{};
-}
-
-}  // namespace
 
 Task::Task(const Parts &parts, Settings settings)
     : settings_(std::move(settings)), parts_(parts), desk_(parts.mailbox), motion_(parts.channels),
@@ -287,10 +268,13 @@ bool Task::begin_run() {
     }
     run_.change(RunEvent::BEGUN);
     synch_interpreter();
+    reader_.note_codes();
     Start{*this}.prepare_journal();
     Start{*this}.begin_journal(1);
     if (run_.kind() == RunKind::MDI) {
-        on_step_result(reader_.interpreter().execute(run_.line()));
+        const interp::Step result = reader_.interpreter().execute(run_.line());
+        reader_.note_codes();
+        on_step_result(result);
     }
     return true;
 }
@@ -321,6 +305,7 @@ void Task::run_interpreter() {
             }
         }
         const interp::Step result = reader_.interpreter().step();
+        reader_.note_codes();
         Start{*this}.note_doubt();
         on_step_result(result);
     }
@@ -367,84 +352,6 @@ void Task::tell(const std::optional<Ending> &ending) {
     if (ending.has_value()) {
         desk_.tell(ending->command, ending->progress, ending->reason);
     }
-}
-
-void Task::step_tools() {
-    parts_.tools.step();
-    while (const auto warning = parts_.tools.take_warning()) {
-        post(MessageKind::OPERATOR_ERROR, *warning);
-    }
-    const auto read = reload_command_ != 0 ? parts_.tools.reload_result() : std::nullopt;
-    if (read.has_value()) {
-        const std::string reason = read->has_value() ? std::string() : read->error().str();
-        desk_.tell(std::exchange(reload_command_, 0), reason.empty() ? Progress::DONE : Progress::FAILED,
-                   reason);
-        if (!reason.empty()) {
-            post(MessageKind::OPERATOR_ERROR, reason);
-        }
-    }
-    parts_.tools.note_cut(status_.tool.in_spindle, cut_since(status_, now_ns_));
-    const auto table = tools_.step(parts_.tools);
-    if (table.has_value() && !desk_.publish_tools(*table)) {
-        post(MessageKind::OPERATOR_ERROR, "the tool table is too large to be shown to clients");
-    }
-}
-
-void Task::update_status() {
-    TaskStatus &task = status_.task;
-    task.state = state_.state();
-    task.mode = mode_.mode();
-    task.isOptionalStop = world_.isOptionalStopOn();
-    task.isBlockDelete = world_.isBlockDeleteOn();
-    task.motion_line = motion_.status().source.line;
-    task.blocks = reader_.canon().blocks();
-    task.isPaused = run_.isHeld();
-    task.isStoppedByProgram = run_.hold() == Hold::STOPPED;
-    task.interp_state = run_.shown();
-    task.exec_state = run_.isRunning() ? sequencer_.exec_state() : ExecState::DONE;
-    task.isAway = run_.hold() == Hold::AWAY;
-    task.queued_mdi = mdi_queue_.size();
-    if (run_.isRunning()) {
-        task.read_line = reader_.interpreter().line();
-        task.call_level = reader_.interpreter().call_level();
-    }
-    task.waiting =
-        homing_.isUnderWay() ? Waiting{WaitFor::HOMING, homing_.joint()} : sequencer_.waiting_for();
-    task.delay_left_s = sequencer_.dwell_left_s(now_ns_);
-    task.isInputTimedOut = sequencer_.input().isTimedOut;
-    constexpr int INTERPRETER_ERROR = 5;  // as clients know it
-    task.error_code = run_.error() != nullptr ? INTERPRETER_ERROR : 0;
-    task.block.assign(reader_.canon().block_text());
-    status_.settings = shown_settings_.shown();
-    if (!run_.isRunning()) {
-        show_announced(reader_.canon(), status_.offsets);
-    }
-    const interp::ActiveCodes codes = reader_.interpreter().active_codes();
-    status_.codes = {codes.g, codes.m, codes.settings};
-    approach_.show(status_.approach, status_.offsets, status_.codes);
-    step_tools();
-    // A tool that is being looked for is not ready yet.
-    const bool isReady = io_.action() != io::ToolAction::PREPARING;
-    status_.tool = {io_.outputs.tool_number, io_.outputs.tool_from_pocket,
-                    isReady ? sequencer_.selected_tool_index() : status_.tool.prepared_index,
-                    tools_.version()};
-    const tool::CutLife life = parts_.tools.life(io_.outputs.tool_number);
-    status_.tool.cut_time_s = life.time_s;
-    status_.tool.cut_length = life.length;
-    status_.io.coolant.isMistOn = io_.outputs.coolant_mist;
-    status_.io.coolant.isFloodOn = io_.outputs.coolant_flood;
-    status_.tool.isPersonAsked = parts_.io_port.isPersonAsked();
-    status_.io.aux = {io_.isEstopRequested(), io_.isChainClosed()};
-    status_.tool.isFaulted = io_.outputs.toolchanger_faulted;
-    if (status_.io.lube.hasOil && !io_.hasOil()) {
-        post(MessageKind::OPERATOR_ERROR, "the lubrication wants oil: pin iocontrol.0.lube_level is FALSE");
-    }
-    status_.io.lube = {io_.outputs.lube, io_.hasOil()};
-    Start{*this}.step_journal();
-    ++status_.cycle;
-    status_.time_ns = now_ns_;
-    const PartMask told = tell_motion(motion_.status(), motion_.fresh_parts(), settings_.axis_mask, status_);
-    desk_.publish(status_, told);
 }
 
 }  // namespace mw::task

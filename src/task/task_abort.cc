@@ -39,6 +39,7 @@ void Task::abort_work(AbortReason reason) {
     desk_.refuse(mdi_queue_.drop(), OVERTAKEN);
     motion_.abort();
     mode_.note_stop(now_ns_);
+    status_.task.motion_line = 0;
     if (!isFollowing || run_.phase() != RunPhase::CLEANING) {
         sequencer_.abort(static_cast<int>(reason));
         user_program_.stop();

@@ -86,6 +86,7 @@ Outcome Task::Handler::operator()(const OpenProgram &command) {
     }
     task.reader_.interpreter().close();
     task.status_.task.program.assign(command.path);
+    task.status_.task.motion_line = 0;
     return Progress::DONE;
 }
 

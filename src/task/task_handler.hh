@@ -161,6 +161,8 @@ struct Task::Handler {
             task.on_abort_.note_work();
             task.reader_.canon().reset();
             task.sequencer_.forget_place();
+            task.reader_.begin_codes();
+            task.status_.task.motion_line = 0;
         }
         return started;
     }

@@ -119,6 +119,7 @@ void Task::Start::go_on(const ApproachPlan &plan) {
     if (task.reader_.isSearching()) {
         last = task.run_.isRecovery() ? task.reader_.search().last_step() : last;
         task.reader_.accept_search();
+        task.reader_.note_codes();
         task.run_.isRecovery() ? task.recovery_.begin_again()
                                : begin_journal(task.reader_.canon().blocks() + 1);
     }

@@ -27,6 +27,8 @@ constexpr long POLL_NS = 2000000;
 constexpr long LOOK_NS = 10 * POLL_NS;
 /// A program that is not ready by then is mentioned.
 constexpr long PATIENCE_NS = 2000 * POLL_NS;
+/// From SIGTERM to SIGKILL: longer than our components in Python need whose loop swallows the interrupt.
+constexpr long GRACE_NS = 2500 * POLL_NS;
 
 void nap() {
     const timespec pause{0, POLL_NS};
@@ -145,20 +147,38 @@ Result<> SystemProgramHost::stop_all() {
             result = stopped;
         }
     }
-    // Give them the time that an orderly end takes.
-    constexpr int TRIES = 500;
-    for (int i = 0; i < TRIES && isProgramLeft(); ++i) {
-        reap();
-        nap();
-    }
+    // The time that an orderly end takes; who has not ended by then is made to.
+    await_end(GRACE_NS);
+    kill_programs();
+    await_end(PATIENCE_NS);
     hal_.reap_dead_components();
     return result;
 }
 
+void SystemProgramHost::await_end(long longest_ns) {
+    for (long waited_ns = 0; waited_ns < longest_ns && isProgramLeft(); waited_ns += POLL_NS) {
+        reap();
+        nap();
+    }
+}
+
+/// A program that does not hear SIGTERM would outlive the machine, with its pins and whatever it drives.
+void SystemProgramHost::kill_programs() {
+    for (const CompInfo &component : hal_.components()) {
+        if (isProgram(component) && kill(component.pid, SIGKILL) == 0) {
+            std::fprintf(stderr, "component '%s' (process %d) has not ended at SIGTERM: killed\n",
+                         component.name.c_str(), component.pid);
+        }
+    }
+}
+
+bool SystemProgramHost::isProgram(const CompInfo &component) {
+    return component.type == CompType::USER && component.pid > 0 && component.pid != getpid();
+}
+
 bool SystemProgramHost::isProgramLeft() const {
     for (const CompInfo &component : hal_.components()) {
-        const bool isProgram = component.type == CompType::USER && component.pid != getpid();
-        if (isProgram && kill(component.pid, 0) == 0) {
+        if (isProgram(component) && kill(component.pid, 0) == 0) {
             return true;
         }
     }

@@ -53,7 +53,10 @@ class SystemProgramHost final : public ProgramHost {
   private:
     Result<> wait_until_ready(const ProgramRequest &request, int pid);
     Result<> wait_for_status(const ProgramRequest &request, int pid);
+    static bool isProgram(const CompInfo &component);
     bool isProgramLeft() const;
+    void await_end(long longest_ns);
+    void kill_programs();
     void reap();
 
     Hal &hal_;

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 # What programs in Tcl source or require as "Linuxcnc": where things are, fonts, INI files, the command hal.
-# The commands emc_* that speak to a machine are not here yet; each says so.
+# The commands emc_* that speak to a machine are compiled and loaded from the same folder.
 
 package provide Linuxcnc 1.0
 
@@ -8,6 +8,12 @@ namespace eval linuxcnc {
     proc environment {name preset} {
         expr {[info exists ::env($name)] && $::env($name) ne "" ? $::env($name) : $preset}
     }
+    # Where this file is: screens of an installation have a link to it.
+    variable PART_DIR [info script]
+    while {[file type $PART_DIR] eq "link"} {
+        set PART_DIR [file join [file dirname $PART_DIR] [file readlink $PART_DIR]]
+    }
+    set PART_DIR [file dirname [file normalize $PART_DIR]]
     variable TCL_DIR [environment LINUXCNC_TCL_DIR [file dirname [info script]]]
     variable HOME [environment LINUXCNC_HOME /usr]
     variable BIN_DIR $HOME/bin
@@ -87,10 +93,8 @@ if {[info commands ::hal] eq ""} {
     }
 }
 
-proc emc_init {args} {
-    error "this version has no Tcl commands for the machine (emc_init, emc_...): take a screen in Python, as axis or\
-           touchy, or the Python module linuxcnc"
-}
+# The commands emc_* of a machine that is up are a part of their own.
+load [file join $linuxcnc::PART_DIR libmillwright_linuxcnc_tcl.so] Linuxcnc
 
 catch {
     package require msgcat

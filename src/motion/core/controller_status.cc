@@ -50,6 +50,16 @@ void trace(Channels &channels, const Inputs &in, const Status &s, const Joints &
     }
 }
 
+/// Directions stay where nothing moves.
+void fill_heading(const traj::Primitive &move, const geom::Pose &place, Outputs &out) noexcept {
+    const Status &s = out.status;
+    if (s.active_path_id != 0) {
+        out.heading = heading_of(move, s.motion_type, place, s.isReverse, out.heading);
+        return;
+    }
+    out.heading = {0, out.heading.direction_deg, out.heading.to_centre_deg, false, 0, {}};
+}
+
 }  // namespace
 
 void Controller::publish(const Inputs &in, Outputs &out) noexcept {
@@ -69,6 +79,7 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
     fill(holds_, s);
     fill(outputs_, in, out);
     fill_path(s);
+    fill_heading(link_->store.primitive(executor_.output().move), without(offsets_, place_.cmd), out);
     fill(joints_, settings_, {power_.isEnabled, jogs_.areLimitsOverridden, limits_.homed.joints}, out);
     fill(jogs_, power_.mode, without(offsets_, place_.cmd), out);
     fill(offsets_, out);

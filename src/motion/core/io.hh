@@ -7,6 +7,7 @@
 
 #include "base/limits.hh"
 #include "motion/api/status.hh"
+#include "motion/core/coord/heading.hh"
 
 namespace mw::motion {
 
@@ -98,6 +99,7 @@ struct Outputs {
     std::array<AxisOutputs, MAX_AXES> axis{};
     std::array<SpindleOutputs, MAX_SPINDLES> spindle{};
     geom::Pose tool_offset;
+    Heading heading;
     bool isJogging = false;
     bool isCoordError = false, isOnSoftLimit = false;
     double mm_per_unit = 1;

@@ -85,8 +85,15 @@ inline constexpr auto MOTION = pin_table("motion",
     out<Count>("program-line", "", "line of the move", [](const MotionView &v) { return v.out.status.source.line; }),
     out<std::uint32_t>("servo.last-period", "ns", "between the last two cycles", [](const MotionView &v) { return v.last_period_ns; }),
     out<Count>("interp.line-number", "", "line of the move", [](const MotionView &v) { return v.out.status.source.line; }),
-    out<Count>("interp.motion-type", "", "kind of the move, 0: none", [](const MotionView &v) { return v.out.status.motion_type; }),
-    out<double>("interp.feedrate", "unit/s", "programmed speed of the move", [](const MotionView &v) { return v.out.status.requested_velocity; }));
+    out<Count>("interp.motion-type", "", "ten times the G code of the move: 0, 10, 20, 30, 380 of probe moves", [](const MotionView &v) { return v.out.heading.g_code; }),
+    out<double>("interp.feedrate", "unit/s", "programmed speed of the move", [](const MotionView &v) { return v.out.status.requested_velocity; }),
+    out<double>("interp.arc-radius", "unit", "of the arc under way; 0 on other moves", [](const MotionView &v) { return v.out.heading.radius; }),
+    out<double>("interp.arc-center-x", "unit", "its centre, machine coordinates", [](const MotionView &v) { return v.out.heading.centre[0]; }),
+    out<double>("interp.arc-center-y", "unit", "the same", [](const MotionView &v) { return v.out.heading.centre[1]; }),
+    out<double>("interp.arc-center-z", "unit", "the same", [](const MotionView &v) { return v.out.heading.centre[2]; }),
+    out<double>("interp.heading", "deg", "where the tool heads in XY, counter-clockwise from X; stays where nothing moves", [](const MotionView &v) { return v.out.heading.direction_deg; }),
+    out<double>("interp.normal-heading", "deg", "from the tool to the centre of its arc; on lines 90 degrees left of the heading", [](const MotionView &v) { return v.out.heading.to_centre_deg; }),
+    out<bool>("interp.iscircle", "", "the move is an arc", [](const MotionView &v) { return v.out.heading.isArc; }));
 
 inline constexpr auto DIGITAL = pin_table("motion",
     in<bool>("digital-in-##", "", "for M66", [](ChannelIn &c, bool v) { c.in.digital_in |= v ? std::uint64_t{1} << c.number : 0U; }),

@@ -80,6 +80,19 @@ void Command::send(const msgs::Command &command) {
     });
 }
 
+void Command::send_and_look(const msgs::Command &command) {
+    constexpr double MOMENT_S = 0.01;
+    send(command);
+    if (!isRefused_) {
+        away([&] {
+            const auto ended = client_->wait(serial_, MOMENT_S);
+            if (ended.has_value() && ended->progress != msgs::Progress::STARTED) {
+                show_end();
+            }
+        });
+    }
+}
+
 /// An outcome is told before the status of its cycle, and the queue of motion shows its end a cycle later:
 /// who polls next is to see that nothing is under way.
 void Command::show_end() {

@@ -17,6 +17,9 @@ class Command {
     /// Hands the command over and waits until task has taken it and says so in its status, at most as long as
     /// clients are used to. What cannot be handed over is told to the operator and counts as refused.
     void send(const msgs::Command &command);
+    /// The same, and waits a moment for its end: scripts that have sent a line which takes no time find it
+    /// done when they look.
+    void send_and_look(const msgs::Command &command);
     /// How the last command stands: RCS_DONE, RCS_ERROR, or -1 when the time is over before it has ended.
     /// Sleeps at the machine's bell. Without a time the usual one, and homing is not waited for longer than
     /// HOMING_PATIENCE_S: screens go on, and a machine that homes on the spot is homed.

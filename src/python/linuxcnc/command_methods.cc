@@ -42,7 +42,7 @@ void open_program(Command &self, const std::string &path) {
 
 void mdi(Command &self, const std::string &line) {
     check_length(line);
-    self.send(msgs::Mdi{line});
+    self.send_and_look(msgs::Mdi{line});
 }
 
 void run_auto(Command &self, int word, std::optional<int> line) {

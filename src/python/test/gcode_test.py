@@ -245,7 +245,7 @@ class CanonTest(unittest.TestCase):
             with open(ini_path, "w") as out:
                 out.write("[RS274NGC]\nRS274NGC_STARTUP_CODE = G64 P0.01\n")
             codes = preview_helpers.create_unitcode_and_initcode(Status, linuxcnc.ini(ini_path))
-            self.assertEqual(codes, ("G21", "G64 P0.01\nG17 G91 G94 G55 G99 G97 G91.1"))
+            self.assertEqual(codes, ("G21", "G17 G40 G91 G94 G55 G49 G99 G97 G91.1"))
             canon = Canon(Status, 0)
             with contextlib.redirect_stdout(io.StringIO()) as printed:
                 result, _ = gcode.parse(path, canon, *codes)
@@ -254,6 +254,27 @@ class CanonTest(unittest.TestCase):
         self.assertEqual(canon.get_tool(1000)[0], -1)
         self.assertIn("straight_traverse 1 0 0 0 0 0 0 0 0\n", printed.getvalue())
         self.assertNotIn("straight_traverse 1 0 3.9", printed.getvalue())
+
+    def test_a_preview_begins_where_the_machine_stands(self):
+        class Status:
+            linear_units, axis_mask, position = 1.0, 0b101, (1.5, 7.0, -2.0, 0, 0, 0, 0, 0, 0)
+            polls = 0
+            gcodes = (0, 800, -1, 170, 410, 210, 900, 940, 540, 431, 990, 640, -1, 970, 911, 80, -1)
+
+            @classmethod
+            def poll(cls):
+                cls.polls += 1
+
+        with tempfile.TemporaryDirectory() as folder:
+            ini_path = os.path.join(folder, "m.ini")
+            with open(ini_path, "w") as out:
+                out.write("[RS274NGC]\nRS274NGC_STARTUP_CODE = G43.1 Z1\n")
+            ini = linuxcnc.ini(ini_path)
+            self.assertEqual(preview_helpers.create_unitcode_and_initcode(Status, ini),
+                             ("G21", "G17 G90 G94 G54 G99 G97 G91.1\nG90 G53 G0 X1.500000 Z-2.000000"))
+            self.assertEqual(Status.polls, 1)
+            Status.gcodes = ()
+            self.assertEqual(preview_helpers.create_unitcode_and_initcode(Status, ini), ("G21", "G43.1 Z1"))
 
 
 class IniTest(unittest.TestCase):

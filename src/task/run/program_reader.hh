@@ -9,6 +9,7 @@
 #include "interp/canon/machine_frame.hh"
 #include "interp/interpreter.hh"
 #include "task/run/block_search.hh"
+#include "task/run/codes_trail.hh"
 #include "task/run/machine_switch.hh"
 #include "task/run/start_record.hh"
 #include "task/run/task_canon.hh"
@@ -69,6 +70,11 @@ class ProgramReader {
     /// Modes, parameters and offsets are what they were before it.
     void cancel_search();
 
+    /// The codes of the block that was read last, and of those before it since begin_codes().
+    void note_codes() { codes_.note(canon_.blocks(), interp_->active_codes()); }
+    void begin_codes() { codes_.clear(); }
+    const CodesTrail &codes() const { return codes_; }
+
     interp::ProgramInterpreter &interpreter() { return *interp_; }
     const interp::ProgramInterpreter &interpreter() const { return *interp_; }
     TaskCanon &canon() { return canon_; }
@@ -80,6 +86,7 @@ class ProgramReader {
     Setup setup_;
     ItemQueue queue_;
     TaskCanon canon_;
+    CodesTrail codes_;
     MachineSwitch switch_;
     interp::MachineFrame frame_;
     std::unique_ptr<interp::ProgramInterpreter> interp_;

@@ -184,7 +184,7 @@ bool Sequencer::isReady(const Item &item) {
 }
 
 bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
-    const auto set_switch = [this](motion::Switch what, int spindle, bool isOn) {
+    const auto turn = [this](motion::Switch what, int spindle, bool isOn) {
         motion_.send(motion::SetSwitch{what, spindle, isOn});
     };
     const MoveSource source{item.source, spindles_.isNextCutWaiting()};
@@ -208,9 +208,7 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
         [&](const OneOf<interp::Dwell, interp::WaitInput, interp::WaitOrientComplete> auto &wait) {
             perform(wait, now_ns);
         },
-        [&](const OneOf<interp::UserCode, interp::UseToolOffset, interp::ChangeTool> auto &call) {
-            perform(call);
-        },
+        [&](const OneOf<interp::UserCode, interp::ChangeTool> auto &call) { perform(call); },
         [&](const interp::ProgramStop &stop) { isHeld_ = events_.stop(stop, item.source.line); },
         [&](const OneOf<interp::ProgramEnd, interp::Finish> auto &) {
             log_.close();
@@ -232,6 +230,10 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
             spindles_.use(offsets, motion_);
             events_.offsets(offsets);
         },
+        [&](const interp::UseToolOffset &offset) {
+            spindles_.use(offset, motion_);
+            wait_for_setting(events_.tool_offset(offset));
+        },
         [&](const interp::ReloadTools &) {
             check(tools_.reload());
             wait_ = Wait::TOOL_DATA;
@@ -248,16 +250,12 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
         },
         [&](const interp::SwitchMist &call) { io_.set_mist(call.isOn); },
         [&](const interp::SwitchFlood &call) { io_.set_flood(call.isOn); },
-        [&](const interp::SwitchFeedOverride &call) {
-            set_switch(motion::Switch::FEED_OVERRIDE, 0, call.isOn);
-        },
+        [&](const interp::SwitchFeedOverride &call) { turn(motion::Switch::FEED_OVERRIDE, 0, call.isOn); },
         [&](const interp::SwitchSpeedOverride &call) {
-            set_switch(motion::Switch::SPINDLE_OVERRIDE, call.spindle, call.isOn);
+            turn(motion::Switch::SPINDLE_OVERRIDE, call.spindle, call.isOn);
         },
-        [&](const interp::SwitchFeedHold &call) { set_switch(motion::Switch::FEED_HOLD, 0, call.isOn); },
-        [&](const interp::SwitchAdaptiveFeed &call) {
-            set_switch(motion::Switch::ADAPTIVE_FEED, 0, call.isOn);
-        },
+        [&](const interp::SwitchFeedHold &call) { turn(motion::Switch::FEED_HOLD, 0, call.isOn); },
+        [&](const interp::SwitchAdaptiveFeed &call) { turn(motion::Switch::ADAPTIVE_FEED, 0, call.isOn); },
         [](const OneOf<interp::ProgramComment, interp::PalletShuttle> auto &) {},
     };
     return carry_out(visitor, item.call);
@@ -282,7 +280,7 @@ bool Sequencer::push_output(const interp::SetDigitalOutput &output) {
     if (output.isSynched) {
         return motion_.push_path(motion::SynchedDigitalOutput{output.index, output.isOn});
     }
-    motion_.send(motion::SetDigitalOutput{output.index, output.isOn});
+    wait_for_setting(motion_.send(motion::SetDigitalOutput{output.index, output.isOn}));
     return true;
 }
 
@@ -290,7 +288,7 @@ bool Sequencer::push_output(const interp::SetAnalogOutput &output) {
     if (output.isSynched) {
         return motion_.push_path(motion::SynchedAnalogOutput{output.index, output.value});
     }
-    motion_.send(motion::SetAnalogOutput{output.index, output.value});
+    wait_for_setting(motion_.send(motion::SetAnalogOutput{output.index, output.value}));
     return true;
 }
 
@@ -326,13 +324,6 @@ void Sequencer::perform(const interp::UserCode &code) {
     const auto started = events_.start_user_code(code);
     check(started);
     wait_ = started.has_value() ? Wait::USER_CODE : wait_;
-}
-
-void Sequencer::perform(const interp::UseToolOffset &offset) {
-    spindles_.use(offset, motion_);
-    // Done once motion has it, so that pins show it when G43 is over.
-    awaited_setting_ = events_.tool_offset(offset);
-    wait_ = Wait::SETTING;
 }
 
 void Sequencer::perform(const interp::ChangeTool &) {

@@ -131,8 +131,12 @@ class Sequencer {
     void perform(const interp::WaitInput &input, std::int64_t now_ns);
     void perform(const interp::WaitOrientComplete &orient, std::int64_t now_ns);
     void perform(const interp::UserCode &code);
-    void perform(const interp::UseToolOffset &offset);
     void perform(const interp::ChangeTool &change);
+    /// Done once motion has it, so that pins show it when the block is over.
+    void wait_for_setting(motion::CommandId setting) {
+        awaited_setting_ = setting;
+        wait_ = Wait::SETTING;
+    }
 
     ItemQueue &queue_;
     MotionLink &motion_;

@@ -43,6 +43,7 @@ class FakeMotion {
     motion::JogContinuous last_jog;
     motion::CommandBody last;  ///< of all immediate ones
     double corner_scale = -1;  ///< of the last move
+    double tolerance = -1;     ///< the same
 
   private:
     void take(const motion::Command &command) {
@@ -98,6 +99,7 @@ class FakeMotion {
                 answer.index = 0;
             } else if (!isStale && line != nullptr) {
                 corner_scale = line->terms.corner_scale;
+                tolerance = line->terms.tolerance;
                 status.carte_pos_cmd = line->end;
                 log.push_back("line " + std::to_string(static_cast<int>(line->end.x())));
             }

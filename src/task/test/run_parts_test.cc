@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "interp/test/mill.hh"
+#include "task/run/codes_trail.hh"
 #include "task/run/machine_world.hh"
 #include "task/run/on_abort.hh"
 #include "task/run/program_run.hh"
@@ -53,6 +54,32 @@ TEST(ProgramRun, IsShownAsIdleReadingWaitingOrPaused_D1) {
     ASSERT_TRUE(run.take(RunEvent::RESUME).has_value());
     run.change(RunEvent::READ);
     EXPECT_EQ(run.shown(), InterpState::WAITING);
+}
+
+interp::ActiveCodes with_feed(double feed, int line) {
+    interp::ActiveCodes codes;
+    codes.g[0] = line;
+    codes.settings[1] = feed;
+    return codes;
+}
+
+TEST(CodesTrail, TellsWhatHoldsInTheBlockUnderWay_D2) {
+    CodesTrail trail;
+    EXPECT_TRUE(trail.isEmpty());
+    trail.note(0, with_feed(100, 0));
+    trail.note(3, with_feed(100, 3));
+    trail.note(4, with_feed(200, 4));
+    trail.note(4, with_feed(300, 4));  // waits for the machine and is told again
+    trail.note(7, with_feed(400, 9));
+    EXPECT_EQ(trail.at(0, 1).settings[1], 100);
+    EXPECT_EQ(trail.at(3, 3).settings[1], 100);
+    EXPECT_EQ(trail.at(4, 4).settings[1], 200);
+    EXPECT_EQ(trail.at(6, 6).settings[1], 200);
+    EXPECT_EQ(trail.at(9, 8).settings[1], 400);
+    EXPECT_EQ(trail.at(9, 8).g[0], 8) << "the number is that of the line under way";
+    EXPECT_EQ(trail.at(3, 3).settings[1], 100) << "a path can be gone back along";
+    trail.clear();
+    EXPECT_TRUE(trail.isEmpty());
 }
 
 /// A reader on a mill in memory.

@@ -14,26 +14,6 @@ namespace mw::ui::rsh {
 namespace {
 
 constexpr const char *PROTOCOL = "1.1";
-constexpr std::string_view LINE_ENDS("\r\n\0", 3);
-
-/// What is left of `line` behind its first `count` words.
-std::string behind_words(std::string_view line, int count) {
-    constexpr std::string_view BLANKS = " \t";
-    for (int i = 0; i < count; ++i) {
-        line = trim(line);
-        line.remove_prefix(std::min(line.find_first_of(BLANKS), line.size()));
-    }
-    return std::string(trim(line));
-}
-
-/// Takes as long whatever is wrong.
-bool isSame(std::string_view given, std::string_view wanted) {
-    unsigned difference = given.size() == wanted.size() ? 0 : 1;
-    for (std::size_t i = 0; i < given.size(); ++i) {
-        difference |= static_cast<unsigned char>(given[i] ^ wanted[wanted.empty() ? 0 : i % wanted.size()]);
-    }
-    return difference == 0;
-}
 
 }  // namespace
 
@@ -49,30 +29,17 @@ Session::~Session() {
 }
 
 void Session::take(std::string_view bytes) {
-    input_ += bytes;
+    input_.take(bytes);
 }
 
 std::optional<std::string> Session::next_line() {
-    while (true) {
-        const std::size_t end = input_.find_first_of(LINE_ENDS);
-        if (end == std::string::npos && (!isInputOver_ || input_.empty())) {
-            // Of a line that is too long nothing is kept but that it was.
-            if (input_.size() > MAX_LINE) {
-                isLineTooLong_ = true;
-                input_.clear();
-            }
-            return std::nullopt;
+    while (auto line = input_.next()) {
+        if (!line->isTooLong) {
+            return std::move(line->text);
         }
-        std::string line = input_.substr(0, end);
-        input_.erase(0, end == std::string::npos ? end : end + 1);
-        if (line.size() > MAX_LINE || std::exchange(isLineTooLong_, false)) {
-            refuse("LINE", fmt::format("the line has more than {} bytes", MAX_LINE));
-            continue;
-        }
-        if (!trim(line).empty()) {
-            return line;
-        }
+        refuse("LINE", fmt::format("the line has more than {} bytes", MAX_LINE));
     }
+    return std::nullopt;
 }
 
 void Session::step(double now_s) {
@@ -86,8 +53,8 @@ void Session::step(double now_s) {
         carry_out(*line, now_s);
         look_at_wait(now_s);
     }
-    const bool isAnswered = !wait_.has_value() && input_.empty();
-    if (isInputOver_ && isAnswered) {
+    const bool isAnswered = !wait_.has_value() && input_.waiting() == 0;
+    if (input_.isOver() && isAnswered) {
         commander_.stop_jogs();
         isOver_ = true;
     }
@@ -125,7 +92,7 @@ void Session::carry_out(const std::string &line, double now_s) {
 
 void Session::hello(const Words &words) {
     constexpr std::size_t PASSWORD_AND_NAME = 2;
-    if (words.size() < PASSWORD_AND_NAME || !isSame(words[0], settings_.connect_password)) {
+    if (words.size() < PASSWORD_AND_NAME || !isSamePassword(words[0], settings_.connect_password)) {
         if (!settings_.isOld()) {
             own_.isGreeted = own_.isEnabled = false;
         }

@@ -9,14 +9,12 @@
 
 #include "ui/rsh/commander.hh"
 #include "ui/rsh/conversation.hh"
+#include "ui/rsh/line_input.hh"
 #include "ui/rsh/orders.hh"
 #include "ui/rsh/own_state.hh"
 #include "ui/rsh/settings.hh"
 
 namespace mw::ui::rsh {
-
-/// Longest line that is read. [bytes]
-inline constexpr std::size_t MAX_LINE = 4096;
 
 /// One thread. A line is looked at when the one before it has been answered. What a connection jogs stops
 /// when it ends.
@@ -29,8 +27,8 @@ class Session final : public Conversation {
     Session &operator=(const Session &) = delete;
 
     void take(std::string_view bytes) override;
-    void end_input() override { isInputOver_ = true; }
-    bool isFull() const override { return input_.size() > MAX_WAITING; }
+    void end_input() override { input_.end(); }
+    bool isFull() const override { return input_.waiting() > MAX_WAITING; }
     void step(double now_s) override;
     std::string &output() override { return output_; }
     /// It waits for the machine or jogs it.
@@ -71,9 +69,10 @@ class Session final : public Conversation {
     Commander commander_;
     OwnState own_;
     std::deque<std::string> errors_;
-    std::string input_, output_;
+    LineInput input_;
+    std::string output_;
     std::optional<Wait> wait_;
-    bool isLineTooLong_ = false, isInputOver_ = false, isOver_ = false, wantsShutdown_ = false;
+    bool isOver_ = false, wantsShutdown_ = false;
 };
 
 }  // namespace mw::ui::rsh

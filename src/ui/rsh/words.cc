@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "ui/rsh/words.hh"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "base/text.hh"
@@ -10,6 +12,23 @@ namespace mw::ui::rsh {
 
 bool isSameWord(std::string_view word, std::string_view name) {
     return equals_ignoring_case(word, name);
+}
+
+std::string behind_words(std::string_view line, int count) {
+    constexpr std::string_view BLANKS = " \t";
+    for (int i = 0; i < count; ++i) {
+        line = trim(line);
+        line.remove_prefix(std::min(line.find_first_of(BLANKS), line.size()));
+    }
+    return std::string(trim(line));
+}
+
+bool isSamePassword(std::string_view given, std::string_view wanted) {
+    unsigned difference = given.size() == wanted.size() ? 0 : 1;
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        difference |= static_cast<unsigned char>(given[i] ^ wanted[wanted.empty() ? 0 : i % wanted.size()]);
+    }
+    return difference == 0;
 }
 
 std::unexpected<Error> no_such_value(const std::string &word, const std::string &valid) {

@@ -81,6 +81,15 @@ TEST_F(Loadusr, WaitsUntilReadyAndEndsProgramsInOrder_B1) {
     EXPECT_EQ(ended.out, "other user_component \nTRUE\nuser_component \n\n");
 }
 
+TEST_F(Loadusr, AProgramThatDoesNotHearSigtermIsKilled_B1) {
+    const Ended ended = run(
+        {"halrun", file("a.hal", "loadusr -Wn deaf user_component deaf deaf\nunloadusr all\nlist comp\n")});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    EXPECT_EQ(ended.out, "\n");
+    EXPECT_NE(ended.err.find("component 'deaf' (process "), std::string::npos) << ended.err;
+    EXPECT_NE(ended.err.find("has not ended at SIGTERM: killed"), std::string::npos) << ended.err;
+}
+
 TEST_F(Loadusr, StatusOfProgramsCountsUnlessIgnored_B1) {
     const Ended ended = run({"halrun", "-k",
                              file("a.hal", "loadusr -w true\nloadusr -w false\nloadusr -wi false\n"

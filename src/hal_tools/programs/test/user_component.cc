@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A program with a HAL component, for tests: user_component NAME [crash|late]. Ends at SIGTERM; `crash` when
-// its input pin NAME.in becomes TRUE; `late` is ready only after a while.
+// A program with a HAL component, for tests: user_component NAME [crash|late|deaf]. Ends at SIGTERM; `crash`
+// when its input pin NAME.in becomes TRUE; `late` is ready only after a while; `deaf` does not hear SIGTERM.
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,7 +25,7 @@ void nap(long ms) {
 int main(int argc, char **argv) {
     const std::string name = argc > 1 ? argv[1] : "user_component";
     const std::string mode = argc > 2 ? argv[2] : "";
-    signal(SIGTERM, [](int) { isEnding = 1; });
+    signal(SIGTERM, mode == "deaf" ? SIG_IGN : +[](int) { isEnding = 1; });
     const int comp = hal_init(name.c_str());
     if (comp < 0) {
         return 1;

@@ -43,6 +43,8 @@ bool set_units(const Code &code, const BlockValues &, State &state, CanonQueue &
         state.cycle.bottom *= factor;
         state.cycle.r *= factor;
         state.cycle.q *= factor;
+        state.tolerance *= factor;  // cycles set them again
+        state.naivecam *= factor;
     }
     canon.take(UseLengthUnits{units});
     return true;

@@ -82,8 +82,8 @@ bool plan_radius_arc(double radius, const Settings &settings, const State &state
     if (half == 0.0) {
         return fault.set("Current point same as end point of arc");
     }
-    const double tolerance = state.units == LengthUnits::MM ? settings.center_arc_radius_tolerance_mm
-                                                            : settings.center_arc_radius_tolerance_inch;
+    const double tolerance = state.units == LengthUnits::MM ? settings.center_arc_tolerance.mm
+                                                            : settings.center_arc_tolerance.inch;
     const double size = std::fabs(radius);
     if (half - size > tolerance) {
         return fault.set("Arc radius too small to reach end point");

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "kins/trivial.hh"
+#include "motion/core/coord/heading.hh"
 #include "motion/core/coord/place.hh"
 #include "motion/core/coord/retracing.hh"
 
@@ -140,6 +141,63 @@ TEST_F(RetracingPart, ACopyGoesTheSameWay) {
     for (int n = 0; n < 500; ++n) {
         ASSERT_EQ(go(n < 200).pose, go(*clone, n < 200).pose);
     }
+}
+
+geom::Pose place(double x, double y, double z = 0) {
+    geom::Pose p;
+    p[0] = x;
+    p[1] = y;
+    p[2] = z;
+    return p;
+}
+
+traj::Primitive arc(const geom::Pose &start, const geom::Pose &end, const geom::Pose &centre,
+                    double angle_rad, int normal = geom::AXIS_Z) {
+    traj::ArcShape shape;
+    shape.centre = centre;
+    shape.normal[normal] = 1;
+    shape.angle_rad = angle_rad;
+    traj::Primitive out;
+    EXPECT_EQ(traj::make_arc(start, end, shape, out), traj::ArcFault::NONE);
+    return out;
+}
+
+TEST(HeadingPart, LinesPointAlongTheirWay) {
+    const auto line = traj::make_line(place(1, 1), place(1, 3));
+    Heading h = heading_of(line, MotionType::FEED, place(1, 2), false, {});
+    EXPECT_EQ(h.g_code, 10);
+    EXPECT_NEAR(h.direction_deg, 90, 1e-9);
+    EXPECT_NEAR(h.to_centre_deg, 180, 1e-9);
+    EXPECT_FALSE(h.isArc);
+    EXPECT_EQ(h.radius, 0);
+    EXPECT_NEAR(heading_of(line, MotionType::FEED, place(1, 2), true, {}).direction_deg, 270, 1e-9);
+    const auto down = traj::make_line(place(1, 3), place(1, 3, -5));
+    h = heading_of(down, MotionType::TRAVERSE, place(1, 3, -1), false, h);
+    EXPECT_EQ(h.g_code, 0);
+    EXPECT_NEAR(h.direction_deg, 90, 1e-9) << "straight down it keeps what it was";
+}
+
+TEST(HeadingPart, ArcsPointAlongTheirTangentAndToTheirCentre) {
+    constexpr double PI = 3.14159265358979323846;
+    // G2 from three o'clock: down first, the centre to the left of the page.
+    const auto clockwise = arc(place(75, 50), place(75, 50), place(50, 50), -2 * PI);
+    Heading h = heading_of(clockwise, MotionType::ARC, place(75, 50), false, {});
+    EXPECT_EQ(h.g_code, 20);
+    EXPECT_TRUE(h.isArc);
+    EXPECT_NEAR(h.radius, 25, 1e-9);
+    EXPECT_NEAR(h.centre[0], 50, 1e-9);
+    EXPECT_NEAR(h.centre[1], 50, 1e-9);
+    EXPECT_NEAR(h.direction_deg, 270, 1e-9);
+    EXPECT_NEAR(h.to_centre_deg, 180, 1e-9);
+    const auto other = arc(place(50, 75), place(50, 75), place(75, 75), 2 * PI);
+    h = heading_of(other, MotionType::ARC, place(50, 75), false, {});
+    EXPECT_EQ(h.g_code, 30);
+    EXPECT_NEAR(h.direction_deg, 270, 1e-9);
+    EXPECT_NEAR(h.to_centre_deg, 0, 1e-9);
+    const auto helix = arc(place(1, 0, 0), place(1, 0, -4), place(0, 0, 0), 2 * PI);
+    h = heading_of(helix, MotionType::ARC, place(0, 1, -1), false, {});
+    EXPECT_NEAR(h.centre[2], -1, 1e-9) << "a helix takes its centre along";
+    EXPECT_NEAR(h.direction_deg, 180, 1e-9);
 }
 
 }  // namespace

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What task sends to motion as lines of text, in the words of LinuxCNC's motion-logger.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "base/limits.hh"
+#include "motion/api/command.hh"
+#include "motion/api/parameters.hh"
+#include "motion/api/path_command.hh"
+
+namespace mw::motion {
+
+/// One thread. Settings come as a list at the start, and are told once it is whole (SetNumJoints), in the
+/// order and under the names that tests of LinuxCNC know; each one that comes later is told at once.
+class LogText {
+  public:
+    using Lines = std::vector<std::string>;
+    LogText();
+
+    Lines of(const Command &command);
+    Lines of(const PathCommand &command);
+    /// Where the path ends.
+    const geom::Pose &position() const { return position_; }
+
+  private:
+    struct Told;
+    Lines settings(int num_joints);
+    Lines joint_settings(int joint) const;
+    Lines axis_settings(int axis) const;
+    void note(const SetParameter &setting);
+    double get(Parameter parameter, int index = 0) const;
+    std::string move_words(const geom::Pose &end, const MoveTerms &terms, MotionType type) const;
+    Lines with_synch(const MoveTerms &terms, std::string line);
+
+    static constexpr std::size_t INDEXES = MAX_JOINTS > MAX_AXES ? MAX_JOINTS : MAX_AXES;
+    std::array<std::array<double, INDEXES>, PARAMETERS.size()> values_{};
+    bool isConfigured_ = false;
+    int num_spindles_ = 1;
+    unsigned axes_ = 0;      ///< that have settings
+    double synch_feed_ = 0;  ///< of the last move [machine units per turn]
+    geom::Pose position_;
+};
+
+}  // namespace mw::motion

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Stands in for the motion controller at the channels: carries everything out at once, moves nothing, and
+// says what it was asked for.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "motion/api/channels.hh"
+#include "motion/logger/log_text.hh"
+
+namespace mw::motion {
+
+/// One thread.
+class StandIn {
+  public:
+    using Say = std::function<void(const std::string &)>;
+    /// `channels` are fresh and must outlive it.
+    StandIn(Channels &channels, Say say);
+
+    /// Answers what waits, in the order in which it was sent, and shows the state after it.
+    void step(std::int64_t time_ns);
+    bool isInPosition() const { return status_.isInPosition; }
+
+  private:
+    void take(const Command &command);
+    void take(const PathCommand &command);
+    void publish(std::int64_t time_ns);
+
+    Channels &channels_;
+    Say say_;
+    LogText text_;
+    Status status_;
+};
+
+}  // namespace mw::motion

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The shared part that wish and tclsh load: the commands emc_* of the package Linuxcnc.
+#include <tcl.h>
+
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "hal/core/hal.hh"
+#include "ui/tcl/commands.hh"
+
+#define MW_EXPORT __attribute__((visibility("default")))
+
+namespace mw::ui::tcl {
+namespace {
+
+/// What is jogged is renewed so often, as long as the program's events are served.
+constexpr int RENEWAL_MS = 80;
+
+/// The state of an interpreter: nothing until emc_init.
+struct Package {
+    std::unique_ptr<Shell> shell;
+    Tcl_TimerToken timer = nullptr;
+};
+
+struct Bound {
+    const CommandRow *row;
+    Package *package;
+};
+
+int answer(Tcl_Interp *tcl, const std::string &text, int code) {
+    Tcl_SetObjResult(tcl, Tcl_NewStringObj(text.data(), static_cast<int>(text.size())));
+    return code;
+}
+
+Words words_of(int count, Tcl_Obj *const objects[]) {
+    Words words;
+    for (int i = 1; i < count; ++i) {
+        int bytes = 0;
+        const char *const text = Tcl_GetStringFromObj(objects[i], &bytes);
+        words.emplace_back(text, static_cast<std::size_t>(bytes));
+    }
+    return words;
+}
+
+void renew(ClientData data) {
+    auto &package = *static_cast<Package *>(data);
+    package.timer = nullptr;
+    if (package.shell != nullptr && package.shell->isJogging()) {
+        package.shell->keep_jogging();
+        package.timer = Tcl_CreateTimerHandler(RENEWAL_MS, renew, data);
+    }
+}
+
+int call(ClientData data, Tcl_Interp *tcl, int count, Tcl_Obj *const objects[]) {
+    const Bound &bound = *static_cast<const Bound *>(data);
+    const CommandRow &row = *bound.row;
+    const int given = count - 1;
+    if (given < row.least || given > row.most) {
+        return answer(tcl,
+                      fmt::format("wrong # args: should be \"{}{}{}\"", row.name, *row.usage != 0 ? " " : "",
+                                  row.usage),
+                      TCL_ERROR);
+    }
+    Package &package = *bound.package;
+    if (package.shell == nullptr) {
+        return answer(tcl, "emc not connected", TCL_ERROR);
+    }
+    if (const auto looked = package.shell->look(); !looked.has_value()) {
+        return answer(tcl, looked.error().str(), TCL_ERROR);
+    }
+    const auto result = row.handler(*package.shell, words_of(count, objects));
+    if (package.shell->isJogging() && package.timer == nullptr) {
+        package.timer = Tcl_CreateTimerHandler(RENEWAL_MS, renew, &package);
+    }
+    return result.has_value() ? answer(tcl, *result, TCL_OK)
+                              : answer(tcl, fmt::format("{}: {}", row.name, result.error().str()), TCL_ERROR);
+}
+
+/// The INI file that the words name, else the machine's.
+Result<config::IniFile> find_ini(const Words &words, const client::Viewer &viewer) {
+    std::string path = viewer.identity().ini.str();
+    for (std::size_t i = 0; i + 1 < words.size(); ++i) {
+        path = words[i] == "-ini" || words[i] == "--ini" ? words[i + 1] : path;
+    }
+    diag::Sink quiet([](const diag::Diagnostic &) {});  // the machine has told what is wrong with it
+    std::error_code ignored;
+    return config::IniFile::load(std::filesystem::absolute(path, ignored).string(), quiet);
+}
+
+/// emc_init [-ini FILE] [-quick]
+int init(ClientData data, Tcl_Interp *tcl, int count, Tcl_Obj *const objects[]) {
+    auto &package = *static_cast<Package *>(data);
+    const std::string instance = hal::default_instance();
+    auto viewer = client::Viewer::attach(instance);
+    if (!viewer.has_value()) {
+        return answer(tcl, "no emc connection: " + viewer.error().str(), TCL_ERROR);
+    }
+    auto ini = find_ini(words_of(count, objects), *viewer);
+    if (!ini.has_value()) {
+        return answer(tcl, ini.error().str(), TCL_ERROR);
+    }
+    Tcl_SetVar2(tcl, "EMC_INIFILE", nullptr, ini->path().c_str(), TCL_GLOBAL_ONLY);
+    package.shell = std::make_unique<Shell>(
+        std::move(*viewer), [instance] { return client::Client::connect(instance); }, std::move(*ini));
+    return answer(tcl, "", TCL_OK);
+}
+
+/// A program that exits leaves the machine: what it jogs stops.
+void leave(ClientData data) {
+    static_cast<Package *>(data)->shell.reset();
+}
+
+void forget(ClientData data, Tcl_Interp *) {
+    auto *const package = static_cast<Package *>(data);
+    Tcl_DeleteExitHandler(leave, package);
+    if (package->timer != nullptr) {
+        Tcl_DeleteTimerHandler(package->timer);
+    }
+    delete package;
+}
+
+void forget_bound(ClientData data) {
+    delete static_cast<Bound *>(data);
+}
+
+}  // namespace
+}  // namespace mw::ui::tcl
+
+extern "C" MW_EXPORT int Linuxcnc_Init(Tcl_Interp *tcl) {
+    using namespace mw::ui::tcl;
+    if (Tcl_PkgRequire(tcl, "Tcl", "8.6", 0) == nullptr) {
+        return TCL_ERROR;
+    }
+    auto *const package = new Package;  // the interpreter's, until it is deleted
+    Tcl_CallWhenDeleted(tcl, forget, package);
+    Tcl_CreateExitHandler(leave, package);
+    Tcl_CreateObjCommand(tcl, "emc_init", init, package, nullptr);
+    for (const auto &table : {questions(), orders(), settings()}) {
+        for (const CommandRow &row : table) {
+            Tcl_CreateObjCommand(tcl, row.name, call, new Bound{&row, package}, forget_bound);
+        }
+    }
+    return TCL_OK;
+}
