@@ -19,5 +19,11 @@ int command_nml(const std::vector<std::string> &words);
 int command_rsh(const std::vector<std::string> &words);
 int command_schedule(const std::vector<std::string> &words);
 int command_check(const std::vector<std::string> &words);
+int command_doctor(const std::vector<std::string> &words);
+/// The words of `linuxcnc_check_ini`.
+int command_check_ini(const std::vector<std::string> &words);
+int command_select(const std::vector<std::string> &words);
+/// The words of `linuxcnc_var`.
+int command_var(const std::vector<std::string> &words);
 
 }  // namespace mw::app

@@ -16,6 +16,7 @@
 
 #include <fmt/format.h>
 
+#include "base/find_program.hh"
 #include "base/own_place.hh"
 #include "base/text.hh"
 
@@ -26,29 +27,6 @@ namespace fs = std::filesystem;
 
 /// As DISPLAY = millwright: the screen of `millwright ui`.
 constexpr const char *OWN_SCREEN = "millwright";
-
-bool isProgram(const fs::path &path) {
-    std::error_code error;
-    return fs::is_regular_file(path, error) && ::access(path.c_str(), X_OK) == 0;
-}
-
-/// Absolute; empty when there is none.
-std::string find_program(const std::string &name, const fs::path &folder) {
-    if (name.find('/') != std::string::npos) {
-        const fs::path path = folder / name;  // an absolute name stays as it is
-        return isProgram(path) ? path.string() : std::string();
-    }
-    const char *const path = std::getenv("PATH");
-    std::istringstream folders(folder.string() + ':' + (path != nullptr ? path : "/usr/bin:/bin"));
-    std::string one;
-    while (std::getline(folders, one, ':')) {
-        const fs::path candidate = fs::path(one.empty() ? "." : one) / name;
-        if (isProgram(candidate)) {
-            return fs::absolute(candidate).string();
-        }
-    }
-    return {};
-}
 
 /// In the forked child. Only async-signal-safe calls.
 [[noreturn]] void become_display(char *const argv[], const char *folder, pid_t parent, int failed) {
@@ -85,7 +63,7 @@ Result<std::vector<std::string>> DisplayProgram::words(const std::string &displa
         words[0] = std::string(tcl) + "/tklinuxcnc.tcl";
     }
     words.insert(words.end(), more.begin(), more.end());
-    const std::string program = find_program(words[0], fs::path(ini).parent_path());
+    const std::string program = find_program(words[0], fs::path(ini).parent_path().string());
     if (program.empty()) {
         return fail("[DISPLAY]DISPLAY names '" + words[0] + "', which is no program that can be found",
                     {ini, 0, 0}, "--no-display keeps the machine up without one");

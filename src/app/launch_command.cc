@@ -11,8 +11,10 @@
 #include <fmt/format.h>
 
 #include "app/commands.hh"
+#include "app/configurations.hh"
 #include "app/launch_environment.hh"
 #include "app/machine_start.hh"
+#include "app/select_command.hh"
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
 #include "base/whole_path.hh"
@@ -27,10 +29,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char *USAGE =
-    "usage: linuxcnc [options] MACHINE.ini [words for the display]\n"
+    "usage: linuxcnc [options] [MACHINE.ini [words for the display]]\n"
     "\n"
     "Brings the machine up with the display that [DISPLAY]DISPLAY names, and takes everything down when that "
     "ends.\n"
+    "Without an INI file a person at a terminal is asked which machine (millwright select).\n"
     "\n"
     "  -l, -             the INI file that ~/.linuxcncrc names as the last one\n"
     "  -H FOLDER         HAL files are looked for there first; may come several times\n"
@@ -103,20 +106,6 @@ struct LaunchWords {
     }
 };
 
-/// [PICKCONFIG]LAST_CONFIG of ~/.linuxcncrc.
-Result<std::string> last_configuration() {
-    const char *const home = std::getenv("HOME");
-    const std::string path = std::string(home != nullptr ? home : "") + "/.linuxcncrc";
-    diag::Sink ignored;
-    const auto file = config::IniFile::load(path, ignored);
-    const config::IniEntry *const entry =
-        file.has_value() ? file->find("PICKCONFIG", "LAST_CONFIG") : nullptr;
-    if (entry == nullptr || entry->value.empty()) {
-        return fail("no last configuration is known", {path, 0, 0}, "name an INI file");
-    }
-    return entry->value;
-}
-
 /// True: whoever sits at the terminal wants the machine that is up to end.
 bool isEndWanted(const std::string &ini) {
     fmt::print("A machine is up already: {}\nEnd it and start anew? [Y/n] ", ini);
@@ -168,12 +157,11 @@ SecondStart settle_second_start(diag::Sink &sink) {
 
 int launch(LaunchWords &words, diag::Sink &sink) {
     if (words.isLastAsked) {
-        const auto last = last_configuration();
-        if (!last.has_value()) {
-            sink.failure(last.error());
+        words.settings.ini = last_configuration();
+        if (words.settings.ini.empty()) {
+            sink.error("~/.linuxcncrc names no last configuration", {}, "name an INI file");
             return 1;
         }
-        words.settings.ini = *last;
     }
     std::error_code error;
     const fs::path ini = fs::absolute(words.settings.ini, error);
@@ -203,7 +191,15 @@ int command_launch(const std::vector<std::string> &arguments) {
         fmt::print("{}", USAGE);
         return 0;
     }
-    if (!parsed.has_value() || (words.settings.ini.empty() && !words.isLastAsked)) {
+    const bool isNoneNamed = words.settings.ini.empty() && !words.isLastAsked;
+    if (parsed.has_value() && isNoneNamed && ::isatty(STDIN_FILENO) != 0 && ::isatty(STDOUT_FILENO) != 0) {
+        const auto chosen = select_configuration();
+        if (!chosen.has_value() || chosen->empty()) {
+            fmt::print(stderr, "{}", chosen.has_value() ? "" : "linuxcnc: " + chosen.error().str() + "\n");
+            return chosen.has_value() ? 0 : 1;
+        }
+        words.settings.ini = *chosen;
+    } else if (!parsed.has_value() || isNoneNamed) {
         const std::string what = parsed.has_value() ? "name the INI file of a machine" : parsed.error().str();
         fmt::print(stderr, "linuxcnc: {}\n{}", what, USAGE);
         return 2;

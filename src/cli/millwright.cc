@@ -26,6 +26,10 @@ constexpr const char *USAGE =
     "browsers\n"
     "  nml FILE.nml                         the NML channels of the machine that is up, also over the "
     "network\n"
+    "  doctor MACHINE.ini                   what is wrong with a machine's files and this computer, before "
+    "the "
+    "start\n"
+    "  select                               choose a configuration and start it\n"
     "  check PROGRAM.ngc --ini MACHINE.ini  a program against a machine's limits, and the time it takes\n"
     "  format PROGRAM.ngc ...               write programs in one form, without a change of meaning\n"
     "  explain LINE                         say in words what a line of G-code does\n"
@@ -67,6 +71,12 @@ int main(int argc, char **argv) {
     }
     if (words[0] == "nml") {
         return mw::app::command_nml(rest);
+    }
+    if (words[0] == "doctor") {
+        return mw::app::command_doctor(rest);
+    }
+    if (words[0] == "select") {
+        return mw::app::command_select(rest);
     }
     if (words[0] == "check") {
         return mw::app::command_check(rest);

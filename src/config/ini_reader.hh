@@ -20,10 +20,12 @@ namespace mw::config {
 /// line and column; the value returned then is the default, so that reading goes on and reports them all.
 class IniReader {
   public:
-    IniReader(const IniFile &file, diag::Sink &sink) : file_(file), sink_(sink) {}
+    IniReader(const IniFile &file, diag::Sink &sink) : file_(file), sink_(&sink) {}
 
     const IniFile &file() const { return file_; }
-    diag::Sink &sink() { return sink_; }
+    diag::Sink &sink() { return *sink_; }
+    /// From now on problems go there.
+    void tell(diag::Sink &sink) { sink_ = &sink; }
 
     /// Makes the keys of a table known. Rows of "JOINT_*" and the like count with declare_in().
     void declare(std::span<const IniKey> keys);
@@ -66,7 +68,7 @@ class IniReader {
     std::optional<std::int64_t> whole(const IniEntry &entry, const IniKey &key);
 
     const IniFile &file_;
-    diag::Sink &sink_;
+    diag::Sink *sink_;
     std::map<std::string, std::set<std::string>, std::less<>> known_;
     std::set<std::string, std::less<>> open_;
     std::set<std::string, std::less<>> used_sections_;

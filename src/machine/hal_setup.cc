@@ -126,12 +126,17 @@ Result<> run_two_pass_steps(lang::Session &session, const std::vector<HalStep> &
     return done;
 }
 
-Result<> run_steps(lang::Session &session, const std::vector<HalStep> &steps) {
+/// Where the session keeps going after errors the steps do, too: each failure is told once.
+Result<> run_steps(lang::Session &session, const std::vector<HalStep> &steps, diag::Sink &sink) {
     for (const HalStep &step : steps) {
+        const int errors_before = sink.count_errors();
         const auto done = step.kind == HalStep::Kind::FILE ? run_file_step(session, step)
                                                            : session.run_text(step.text, step.place.str());
-        if (!done) {
+        if (!done && !session.options().keepsGoing) {
             return done;
+        }
+        if (!done && sink.count_errors() == errors_before) {
+            sink.error(done.error());
         }
     }
     return {};
@@ -186,7 +191,7 @@ Result<> HalSetup::run() {
         load_homing(session, options_.homing_module.empty() ? parts_.config.homing_module : asked);
     if (done) {
         done = parts_.config.two_pass.empty()
-                   ? run_steps(session, parts_.config.hal_steps)
+                   ? run_steps(session, parts_.config.hal_steps, parts_.sink)
                    : run_two_pass_steps(session, parts_.config.hal_steps, parts_.config.two_pass);
     }
     if (!done) {

@@ -30,7 +30,7 @@ class Launched(Mill):
         (self.ini.parent / 'screen.py').chmod(0o755)
         # A configuration without by_hand.hal: its tools are changed at once.
         text = self.ini.read_text().replace('HALFILE = by_hand.hal\n', '')
-        self.plain = text.replace('DISPLAY = axis\n', 'DISPLAY = ./screen.py first\n')
+        self.plain = text.replace('DISPLAY = millwright\n', 'DISPLAY = ./screen.py first\n')
         expect(self.plain != text, 'the configuration names a display')
         (self.ini.parent / 'mill_mm.var').write_text('5220\t1.0\n5221\t0.5\n')  # G54 is not at the machine's zero
 

@@ -337,7 +337,7 @@ def check(bench):
 
 def as_its_display(bench):
     text = bench.ini.read_text()
-    bench.ini.write_text(text.replace('DISPLAY = axis', 'DISPLAY = millwright --port 0'))
+    bench.ini.write_text(text.replace('DISPLAY = millwright', 'DISPLAY = millwright --port 0'))
     process, path = bench.begin('start', str(bench.ini))
     expect(wait_until(lambda: 'http://' in path.read_text() or process.poll() is not None), 'DISPLAY = millwright starts it', path.read_text())
     screen = Screen(int(re.search(r'http://127\.0\.0\.1:(\d+)/', path.read_text()).group(1)))
