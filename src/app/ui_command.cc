@@ -13,6 +13,8 @@
 
 #include "app/commands.hh"
 #include "app/machine_access.hh"
+#include "app/ui_dialogs.hh"
+#include "app/ui_door.hh"
 #include "app/ui_facts.hh"
 #include "app/ui_path.hh"
 #include "base/own_place.hh"
@@ -20,6 +22,7 @@
 #include "base/text.hh"
 #include "base/whole_path.hh"
 #include "hal/core/hal.hh"
+#include "hal/host/host_client.hh"
 #include "options/command_line.hh"
 #include "ui/web/api.hh"
 #include "ui/web/server.hh"
@@ -35,19 +38,29 @@ struct UiWords {
     std::string ini, screen;
     int port = PRESET_PORT;
     bool isOpening = false;
+    DoorWords door;
     options::Words rest;
 
     options::CommandLine line() {
         options::CommandLine line(
             "millwright ui MACHINE.ini [options]",
             "Serves the operator's screen of a machine that 'millwright start' keeps up, to browsers on this "
-            "computer. It is a\n"
-            "client: the machine goes on without it, and it waits for a machine that is not up yet. Ends at "
+            "computer, and with\n--listen on others. It is a client: the machine goes on without it, and it "
+            "waits for a machine that is not up yet. Ends at "
             "SIGINT or SIGTERM.\n");
         line.number("--port", "N", "listen on 127.0.0.1:N, 0: on a free port; 8850 without it", port, 0,
                     65535);
         line.flag("--open", "show the screen in the desktop's browser", isOpening);
         line.text("--screen", "FOLDER", "serve the screen from there", screen);
+        line.text("--listen", "ADDRESS[:PORT]",
+                  "let other computers in as well, with TLS and a token; 0.0.0.0: at every address; port "
+                  "8851 without one",
+                  door.listen);
+        line.texts("--name", "NAME", "a name by which they call this computer, beside its own", door.names);
+        line.text("--unprotected", "ROLE",
+                  "no TLS and no token: whoever reaches --listen may view, operate or configure; the screen "
+                  "says so",
+                  door.unprotected);
         line.rest(rest);
         line.footer("exit status: 0 ended in order, 1 refused or failed, 2 wrong usage\n");
         return line;
@@ -117,7 +130,19 @@ std::int64_t now_ns() {
 }
 
 int serve(const UiWords &words, const machine::LoadedConfig &loaded, diag::Sink &sink) {
-    auto server = ui::web::Server::listen({.port = words.port, .limits = {}});
+    // Its folder is needed only where other computers come in.
+    const auto folder_of_secrets = secrets_folder();
+    if (!words.door.listen.empty() && !folder_of_secrets.has_value()) {
+        sink.error(folder_of_secrets.error());
+        return 1;
+    }
+    const std::string secrets = folder_of_secrets.value_or("");
+    auto door = remote_door(words.door, secrets);
+    if (!door.has_value()) {
+        sink.error(door.error());
+        return 1;
+    }
+    auto server = ui::web::Server::listen({.port = words.port, .limits = {}, .remote = *door});
     if (!server.has_value()) {
         sink.error(server.error());
         return 1;
@@ -132,13 +157,24 @@ int serve(const UiWords &words, const machine::LoadedConfig &loaded, diag::Sink 
     setup.screens.status_period_ns = static_cast<std::int64_t>(status_period_s(loaded.ini, sink) * 1e9);
     const std::string folder = screen_folder(words.screen);
     setup.screen_folder = folder;
+    setup.dialogs = dialog_facts(loaded.ini, sink);
     PathReaders readers(loaded);
     setup.read_path = [&readers](const std::string &path) { return readers.read(path); };
 
-    ui::web::Worker worker([&server](std::function<void()> act) { (*server)->post(std::move(act)); });
-    ui::web::Api api(**server, worker, std::move(setup), now_ns);
+    setup.connect_hal = [instance]() -> Result<std::unique_ptr<hal::Host>> {
+        auto joined = hal::HostClient::connect(instance);
+        return joined.has_value() ? Result<std::unique_ptr<hal::Host>>(std::move(*joined))
+                                  : std::unexpected(joined.error());
+    };
+
+    const auto post = [&server](std::function<void()> act) { (*server)->post(std::move(act)); };
+    ui::web::Worker disk(post), hal_looks(post);
+    ui::web::Api api(**server, {disk, hal_looks}, std::move(setup), now_ns);
     const std::string address = fmt::format("http://127.0.0.1:{}/", (*server)->port());
     fmt::print("screen of {}: {}\n", loaded.machine.name, address);
+    if (door->has_value()) {
+        fmt::print("{}", door_text(**door, (*server)->remote_port(), secrets));
+    }
     std::fflush(stdout);
     if (words.isOpening) {
         open_browser(address, folder);
@@ -148,7 +184,8 @@ int serve(const UiWords &words, const machine::LoadedConfig &loaded, diag::Sink 
         api.tick();
         ::waitpid(-1, nullptr, WNOHANG);  // the browser's starter
     }
-    worker.end();
+    disk.end();
+    hal_looks.end();
     return 0;
 }
 

@@ -3,6 +3,7 @@ import './style.css';
 import { mount } from 'svelte';
 import App from './App.svelte';
 import { endJogsWithAttention } from './lib/actions';
+import { beginLogin } from './lib/login.svelte';
 import { connect } from './lib/machine.svelte';
 
 const target = document.getElementById('app');
@@ -11,4 +12,4 @@ if (target === null) {
 }
 mount(App, { target });
 endJogsWithAttention(window);
-connect();
+void beginLogin().then(connect);

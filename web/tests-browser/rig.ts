@@ -55,6 +55,8 @@ export class Rig {
   private browser: Browser | null = null;
   private files = 0;
   address = '';
+  /** Of the way in for other computers. */
+  remoteAddress = '';
 
   constructor(change: (ini: string) => string = (ini) => ini, machine = 'mill_mm') {
     if (!existsSync(CHROMIUM)) {
@@ -66,7 +68,7 @@ export class Rig {
     const plain = readFileSync(this.ini, 'utf8');
     writeFileSync(join(this.folder, 'configs/sim/by_hand.hal'), BY_HAND);
     writeFileSync(this.ini, change(plain.replace(/PROGRAM_PREFIX = .*/, `PROGRAM_PREFIX = ${this.programs}`)));
-    this.env = { ...process.env, MILLWRIGHT_INSTANCE: `screen-${process.pid}-${Math.floor(performance.now())}` };
+    this.env = { ...process.env, XDG_CONFIG_HOME: join(this.folder, 'config'), MILLWRIGHT_INSTANCE: `screen-${process.pid}-${Math.floor(performance.now())}` };
   }
 
   write(name: string, text: string): void {
@@ -93,11 +95,13 @@ export class Rig {
   }
 
   /** On a free port, or on the one of before. */
-  async startServer(port = 0): Promise<ChildProcess> {
-    const one = this.begin(['ui', this.ini, '--port', String(port)]);
+  async startServer(port = 0, words: string[] = []): Promise<ChildProcess> {
+    const one = this.begin(['ui', this.ini, '--port', String(port), ...words]);
     const told = (): string => readFileSync(one.output, 'utf8');
-    await until(() => told().includes('http://') || one.process.exitCode !== null, 'the server');
+    const wanted = words.includes('--listen') ? /for other computers.*\n/ : /http:\/\//;
+    await until(() => wanted.test(told()) || one.process.exitCode !== null, 'the server');
     const address = /http:\/\/[\d.]+:\d+\//.exec(told())?.[0];
+    this.remoteAddress = /for other computers.*(https?:\/\/[\d.]+:\d+\/)/.exec(told())?.[1] ?? '';
     if (address === undefined) {
       throw new Error(`the server has ended: ${told()}`);
     }
@@ -105,11 +109,17 @@ export class Rig {
     return one.process;
   }
 
+  /** The secret of a role, from the file that the server has made. */
+  token(role: string): string {
+    const text = readFileSync(join(this.folder, 'config/millwright/screen/tokens'), 'utf8');
+    return new RegExp(`^${role} (\\w+)$`, 'm').exec(text)?.[1] ?? '';
+  }
+
   get port(): number {
     return Number(new URL(this.address).port);
   }
 
-  async page(options: BrowserContextOptions = {}): Promise<Page> {
+  async page(options: BrowserContextOptions = {}, address = this.address): Promise<Page> {
     this.browser ??= await chromium.launch({ executablePath: CHROMIUM, args: FLAGS });
     const context = await this.browser.newContext({ viewport: { width: 1280, height: 800 }, locale: 'en-GB', colorScheme: 'dark', ...options });
     const page = await context.newPage();
@@ -117,12 +127,12 @@ export class Rig {
     const errors: string[] = [];
     page.on('pageerror', (error) => errors.push(String(error)));
     page.on('console', (text) => {
-      if (text.type() === 'error' && !text.text().includes('ERR_CONNECTION_REFUSED')) {
+      if (text.type() === 'error' && !/ERR_CONNECTION_REFUSED|status of 40[0-9]|code: 401/.test(text.text())) {
         errors.push(text.text());
       }
     });
     (page as Page & { errors: string[] }).errors = errors;
-    await page.goto(this.address);
+    await page.goto(address);
     return page;
   }
 

@@ -30,6 +30,9 @@ function makeRig() {
   let now = 0;
   let timers: { at: number; act: () => void }[] = [];
   const events: LinkEvents = {
+    values: () => 0,
+    questions: () => 0,
+    note: () => 0,
     opened: (hello) => told.push(`opened ${hello.client}`),
     closed: () => told.push('closed'),
     status: (delta, isWhole) => told.push(`status ${JSON.stringify(delta)} ${isWhole}`),

@@ -7,11 +7,16 @@
 
 #include "base/text.hh"
 #include "msgs/json.hh"
+#include "ui/web/access.hh"
 
 namespace mw::ui::web {
 namespace {
 
-constexpr std::string_view API = "/api/", FILES = "/api/files/";
+constexpr std::string_view API = "/api/", FILES = "/api/files/", HAL = "/api/hal/", SCOPE = "/api/scope";
+
+Response not_allowed(Role needed) {
+    return error_response(403, fmt::format("this needs a token of the role {}", role_name(needed)));
+}
 
 Response document(std::string body) {
     Response response;
@@ -32,13 +37,83 @@ std::optional<std::uint64_t> number(const Request &request, const char *name) {
 
 }  // namespace
 
-Api::Api(Sockets &sockets, Elsewhere &elsewhere, ApiSetup setup, Clock clock)
-    : elsewhere_(elsewhere), setup_(std::move(setup)), clock_(std::move(clock)),
-      screens_(sockets, setup_.screens),
-      files_(setup_.facts.program_prefix, setup_.facts.program_extensions) {}
+Api::Api(Sockets &sockets, const Threads &threads, ApiSetup setup, Clock clock)
+    : threads_(threads), setup_(std::move(setup)), clock_(std::move(clock)),
+      screens_(sockets, setup_.screens), files_(setup_.facts.program_prefix, setup_.facts.program_extensions),
+      hal_(setup_.connect_hal, setup_.dialogs) {}
+
+void Api::tick() {
+    const std::int64_t now_ns = clock_();
+    screens_.tick(now_ns);
+    if (now_ns >= next_watch_ns_ && !isHalRead_) {
+        next_watch_ns_ = now_ns + WATCH_NS;
+        look_at_hal();
+    }
+}
+
+void Api::closed(SessionId session) {
+    screens_.closed(session);
+    if (screens_.count() == 0) {  // nobody looks at the oscilloscope: it leaves the thread of the servo
+        threads_.hal.run([this] { return hal_.scope("DELETE", ""); }, [](const Response &) {});
+    }
+}
+
+void Api::look_at_hal() {
+    auto names = screens_.watched();
+    if (names.empty() && setup_.dialogs.empty()) {
+        return;
+    }
+    isHalRead_ = true;
+    const auto news = std::make_shared<HalDesk::News>();
+    threads_.hal.run(
+        [this, news, names = std::move(names)] {
+            *news = hal_.look(names);
+            return Response{};
+        },
+        [this, news](const Response &) {
+            isHalRead_ = false;
+            screens_.tell_values(news->values);
+            screens_.tell_questions(news->questions);
+            for (const std::string &note : news->notes) {
+                screens_.tell_note(note);
+            }
+        });
+}
+
+void Api::answer_hal(const Request &request, Reply reply) {
+    const auto later = [&](Elsewhere::Job job) { threads_.hal.run(std::move(job), std::move(reply)); };
+    const std::string &path = request.path, &method = request.method;
+    if (path == "/api/hal" && method == "GET") {
+        const auto glob = request.query.find("glob");
+        later([this, text = glob == request.query.end() ? "*" : glob->second] { return hal_.list(text); });
+    } else if (path.starts_with(HAL) && path.size() > HAL.size() && method == "PUT") {
+        later([this, name = path.substr(HAL.size()), body = request.body] { return hal_.set(name, body); });
+    } else if (path == "/api/questions" && method == "POST") {
+        later([this, body = request.body] { return hal_.answer(body); });
+    } else if (path == "/api/scope" && (method == "GET" || method == "POST" || method == "DELETE")) {
+        later([this, method, body = request.body] { return hal_.scope(method, body); });
+    } else if (path == "/api/scope/record" && method == "GET") {
+        later([this] { return hal_.record(); });
+    } else if (path == "/api/scope/force" && method == "POST") {
+        later([this] { return hal_.force(); });
+    } else {
+        reply(wrong_method(request));
+    }
+}
 
 void Api::answer(const Request &request, Reply reply) {
     const std::string &path = request.path;
+    const bool isOfHal = path == "/api/hal" || path.starts_with(HAL) || path.starts_with(SCOPE);
+    // A value of HAL can move anything, whatever the machine's state.
+    const Role needed = request.method == "GET" ? Role::VIEW : isOfHal ? Role::CONFIGURE : Role::OPERATE;
+    if (path.starts_with(API) && request.role < needed) {
+        reply(not_allowed(needed));
+        return;
+    }
+    if (isOfHal || path == "/api/questions") {
+        answer_hal(request, std::move(reply));
+        return;
+    }
     if (path == "/api/files" || path.starts_with(FILES)) {
         answer_files(request, path.size() > FILES.size() ? path.substr(FILES.size()) : "", std::move(reply));
         return;
@@ -58,8 +133,8 @@ void Api::answer(const Request &request, Reply reply) {
     } else if (path.starts_with(API)) {
         reply(error_response(404, "there is no '" + path + "'; docs/api.md names what there is"));
     } else {
-        elsewhere_.run([folder = setup_.screen_folder, path] { return screen_file(folder, path); },
-                       std::move(reply));
+        threads_.disk.run([folder = setup_.screen_folder, path] { return screen_file(folder, path); },
+                          std::move(reply));
     }
 }
 
@@ -69,11 +144,11 @@ void Api::answer_files(const Request &request, const std::string &name, Reply re
             reply(wrong_method(request));
             return;
         }
-        elsewhere_.run([this] { return files_.list(); }, std::move(reply));
+        threads_.disk.run([this] { return files_.list(); }, std::move(reply));
     } else if (request.method == "GET") {
-        elsewhere_.run([this, name] { return files_.read(name); }, std::move(reply));
+        threads_.disk.run([this, name] { return files_.read(name); }, std::move(reply));
     } else if (request.method == "DELETE") {
-        elsewhere_.run([this, name] { return files_.remove(name); }, std::move(reply));
+        threads_.disk.run([this, name] { return files_.remove(name); }, std::move(reply));
     } else if (request.method == "PUT") {
         write_file(request, name, std::move(reply));
     } else {
@@ -89,9 +164,9 @@ void Api::write_file(const Request &request, const std::string &name, Reply repl
         reply(error_response(400, "a piece of a file needs ?offset=N&size=TOTAL, whole numbers of bytes"));
         return;
     }
-    elsewhere_.run([this, name, offset = *offset, size = *size,
-                    piece = request.body] { return files_.write(name, offset, size, piece); },
-                   std::move(reply));
+    threads_.disk.run([this, name, offset = *offset, size = *size,
+                       piece = request.body] { return files_.write(name, offset, size, piece); },
+                      std::move(reply));
 }
 
 Response Api::answer_path(const Request &request) {

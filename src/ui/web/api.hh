@@ -9,6 +9,7 @@
 
 #include "ui/web/elsewhere.hh"
 #include "ui/web/files.hh"
+#include "ui/web/hal_desk.hh"
 #include "ui/web/screens.hh"
 
 namespace mw::ui::web {
@@ -20,40 +21,57 @@ struct ApiSetup {
     /// Begins to read a program in a thread of its own; an error when too many are read. The path is one of
     /// facts.program_prefix.
     std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path)> read_path;
+    HalDesk::Connect connect_hal;
+    std::vector<DialogFacts> dialogs{};
 };
 
-/// One thread, but for the jobs that it gives to `elsewhere`, which must end before it.
+/// What may block goes through one of them, so that neither waits for the other; both end before the Api.
+struct Threads {
+    Elsewhere &disk, &hal;
+};
+
+/// One thread, but for the jobs that it gives to `threads`.
 class Api final : public Application {
   public:
     /// Time that never goes back. [ns]
     using Clock = std::function<std::int64_t()>;
 
-    Api(Sockets &sockets, Elsewhere &elsewhere, ApiSetup setup, Clock clock);
+    /// Between two looks at what screens watch in HAL.
+    static constexpr std::int64_t WATCH_NS = 100000000;
+
+    Api(Sockets &sockets, const Threads &threads, ApiSetup setup, Clock clock);
 
     /// Every few milliseconds.
-    void tick() { screens_.tick(clock_()); }
+    void tick();
 
     void answer(const Request &request, Reply reply) override;
-    void opened(SessionId session) override { screens_.opened(session, clock_()); }
+    void opened(SessionId session, Role role, Protection protection) override {
+        screens_.opened(session, {role, protection}, clock_());
+    }
     void received(SessionId session, std::string_view text) override {
         screens_.received(session, text, clock_());
     }
-    void closed(SessionId session) override { screens_.closed(session); }
+    void closed(SessionId session) override;
 
     std::size_t count_screens() const { return screens_.count(); }
 
   private:
     void answer_files(const Request &request, const std::string &name, Reply reply);
     void write_file(const Request &request, const std::string &name, Reply reply);
+    void answer_hal(const Request &request, Reply reply);
+    void look_at_hal();
     Response answer_path(const Request &request);
     Response answer_tools();
     Response metrics() const;
 
-    Elsewhere &elsewhere_;
+    Threads threads_;
     ApiSetup setup_;
     Clock clock_;
     Screens screens_;
-    ProgramFiles files_;  ///< used by jobs alone
+    ProgramFiles files_;      ///< used by jobs alone
+    HalDesk hal_;             ///< used by jobs alone
+    bool isHalRead_ = false;  ///< at this moment
+    std::int64_t next_watch_ns_ = 0;
 };
 
 }  // namespace mw::ui::web

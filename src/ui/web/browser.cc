@@ -51,7 +51,11 @@ void Browser::receive(std::string_view text, std::int64_t now_ns) {
         return;
     }
     std::visit(Overloaded{[this](const Ping &ping) { send_(pong_text(ping)); },
-                          [this, now_ns](const Ask &ask) { carry_out(ask, now_ns); }},
+                          [this, now_ns](const Ask &ask) { carry_out(ask, now_ns); },
+                          [this](const Watch &watch) {
+                              watched_ = watch.names;
+                              told_values_.clear();
+                          }},
                *read);
 }
 
@@ -70,6 +74,10 @@ void Browser::carry_out(const Ask &ask, std::int64_t now_ns) {
     ++(isStop ? counts_.stops : counts_.commands);
     if (!client_.has_value()) {
         refuse(ask.id, "no machine is up");
+        return;
+    }
+    if (!isStop && role_ < Role::OPERATE) {
+        refuse(ask.id, "who came in with this token may look, and stop, but not operate");
         return;
     }
     if (isEndless(command)) {
@@ -144,6 +152,23 @@ void Browser::tell_status(const msgs::MachineStatus &status) {
     if (!changes.empty()) {
         ++counts_.statuses;
         send_(status_text(changes, false));
+    }
+}
+
+void Browser::tell_values(const std::map<std::string, std::string> &values) {
+    std::map<std::string, std::string> changed;
+    for (const std::string &name : watched_) {
+        const auto found = values.find(name);
+        if (found == values.end()) {
+            continue;  // watched since they were read
+        }
+        std::string &told = told_values_[name];
+        if (told != found->second) {
+            changed[name] = told = found->second;
+        }
+    }
+    if (!changed.empty()) {
+        send_(values_text(changed));
     }
 }
 

@@ -4,10 +4,12 @@
 
 #include <deque>
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "client/client.hh"
 #include "ui/web/documents.hh"
@@ -34,8 +36,8 @@ class Browser {
     /// A browser that says nothing for so long is gone.
     static constexpr std::int64_t SILENCE_NS = 5000000000;
 
-    Browser(Send send, Counts &counts, std::int64_t now_ns)
-        : send_(std::move(send)), counts_(counts), heard_ns_(now_ns) {}
+    Browser(Send send, Counts &counts, Role role, std::int64_t now_ns)
+        : send_(std::move(send)), counts_(counts), role_(role), heard_ns_(now_ns) {}
     ~Browser() { stop_jogs(); }
     Browser(const Browser &) = delete;
     Browser &operator=(const Browser &) = delete;
@@ -57,6 +59,10 @@ class Browser {
     /// The whole at first, then what has changed; nothing when nothing has.
     void tell_status(const msgs::MachineStatus &status);
     void tell(std::string text) { send_(std::move(text)); }
+    /// Names of HAL that it looks at.
+    const std::vector<std::string> &watched() const { return watched_; }
+    /// Tells those of its names that are new or have changed.
+    void tell_values(const std::map<std::string, std::string> &values);
     bool isSilent(std::int64_t now_ns) const { return now_ns - heard_ns_ > SILENCE_NS; }
 
     /// A joint or axis; that of a jog that this browser has begun.
@@ -79,10 +85,13 @@ class Browser {
 
     Send send_;
     Counts &counts_;
+    Role role_;
     std::optional<client::Client> client_;
     StatusDelta delta_;
     bool hasWhole_ = false;
     PartMask unread_ = 0;
+    std::vector<std::string> watched_;
+    std::map<std::string, std::string> told_values_;
     std::deque<Followed> followed_;
     std::set<Jogged> jogs_;
     std::optional<Jogged> begun_;  ///< by the last text

@@ -108,6 +108,14 @@ Json declarations_document(std::span<const msgs::Declaration *const> declaration
     return json;
 }
 
+Result<Watch> read_watch(const Json &names) {
+    const bool isList = names.is_array() && names.size() <= Watch::MOST;
+    if (!isList || !std::ranges::all_of(names, [](const Json &name) { return name.is_string(); })) {
+        return fail("what is watched is a list of at most " + std::to_string(Watch::MOST) + " names");
+    }
+    return Watch{names.get<std::vector<std::string>>()};
+}
+
 }  // namespace
 
 Response error_response(int status, std::string_view text) {
@@ -158,7 +166,7 @@ std::string files_document(std::span<const FileFacts> files) {
     return one("files", std::move(list));
 }
 
-Result<std::variant<Ping, Ask>> read_text(std::string_view text) {
+Result<std::variant<Ping, Ask, Watch>> read_text(std::string_view text) {
     const Json json = parse(text);
     if (!json.is_object()) {
         return fail("this is no JSON object of at most 16 levels");
@@ -167,10 +175,15 @@ Result<std::variant<Ping, Ask>> read_text(std::string_view text) {
     if (ping != json.end() && ping->is_number() && json.size() == 1) {
         return Ping{ping->dump()};
     }
+    if (json.contains("watch") && json.size() == 1) {
+        auto watch = read_watch(json["watch"]);
+        return watch.has_value() ? Result<std::variant<Ping, Ask, Watch>>(std::move(*watch))
+                                 : std::unexpected(watch.error());
+    }
     const auto id = json.find("id");
     const auto command = json.find("command");
     if (id == json.end() || command == json.end() || json.size() != 2) {
-        return fail(R"(a text is {"ping": number} or {"id": number, "command": {...}})");
+        return fail(R"(a text is {"ping": number}, {"watch": [names]} or {"id": number, "command": {...}})");
     }
     if (!id->is_number_unsigned() || id->get<std::uint64_t>() > MOST_ID) {
         return fail("the id of a command is a whole number from 0 to 2^53");
@@ -178,10 +191,18 @@ Result<std::variant<Ping, Ask>> read_text(std::string_view text) {
     return Ask{id->get<std::uint64_t>(), msgs::command_from_json(text_of(*command))};
 }
 
+std::optional<std::string> token_of_login(std::string_view text) {
+    const Json json = parse(text);
+    const auto token = json.is_object() ? json.find("token") : json.end();
+    const bool isToken = json.is_object() && token != json.end() && token->is_string();
+    return isToken ? std::optional(token->get<std::string>()) : std::nullopt;
+}
+
 std::string hello_text(const Hello &hello) {
     return one("hello", Json{{"version", hello.version},
                              {"client", hello.client},
-                             {"role", "operate"},
+                             {"role", hello.role},
+                             {"protection", hello.protection},
                              {"session", hello.session}});
 }
 
@@ -214,6 +235,24 @@ std::string machine_up_text(std::uint32_t client) {
 
 std::string machine_gone_text(std::string_view reason) {
     return text_of(Json{{"machine", "gone"}, {"reason", std::string(reason)}});
+}
+
+std::string questions_text(std::string_view questions) {
+    return R"({"questions":)" + std::string(questions) + '}';
+}
+
+std::string note_text(std::string_view note) {
+    return one("note", std::string(note));
+}
+
+std::string values_text(const std::map<std::string, std::string> &values) {
+    std::string text = R"({"hal":{)";
+    bool isFirst = true;
+    for (const auto &[name, value] : values) {
+        text += (isFirst ? "" : ",") + text_of(name) + ':' + value;
+        isFirst = false;
+    }
+    return text + "}}";
 }
 
 std::string status_text(std::string_view status, bool isWhole) {

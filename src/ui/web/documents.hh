@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "client/client.hh"
 #include "ui/web/exchange.hh"
@@ -38,11 +40,20 @@ struct Ask {
     std::uint64_t id = 0;
     Result<msgs::Command> command;
 };
-/// What a text from a browser's socket is; an error when it is neither.
-Result<std::variant<Ping, Ask>> read_text(std::string_view text);
+/// {"watch": ["joint.0.pos-cmd"]}: pins, signals and parameters of HAL.
+struct Watch {
+    static constexpr std::size_t MOST = 256;
+    std::vector<std::string> names;
+};
+/// What a text from a browser's socket is; an error when it is none of them.
+Result<std::variant<Ping, Ask, Watch>> read_text(std::string_view text);
+
+/// The token of {"token": "..."}; nothing when it is something else.
+std::optional<std::string> token_of_login(std::string_view text);
 
 struct Hello {
     std::string version;
+    std::string_view role, protection;
     std::uint32_t client = 0;  ///< number in the mailbox, 0: no machine
     std::string session;
 };
@@ -52,6 +63,12 @@ std::string outcome_text(std::uint64_t id, const client::Outcome &outcome);
 std::string message_text(const client::Client::Message &message);
 std::string machine_up_text(std::uint32_t client);
 std::string machine_gone_text(std::string_view reason);
+/// {"questions": [...]}, which are JSON already.
+std::string questions_text(std::string_view questions);
+/// {"note": "..."}: of HAL to the operator.
+std::string note_text(std::string_view note);
+/// {"hal": {"joint.0.pos-cmd": 1.5}}; the values are JSON already.
+std::string values_text(const std::map<std::string, std::string> &values);
 /// `status` is JSON already.
 std::string status_text(std::string_view status, bool isWhole);
 

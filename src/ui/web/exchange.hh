@@ -14,11 +14,28 @@
 
 namespace mw::ui::web {
 
+/// What whoever asks may do; each role may do what those before it may.
+enum class Role : std::uint8_t { NOBODY, VIEW, OPERATE, CONFIGURE };
+
+/// How the way is protected by which somebody came.
+enum class Protection : std::uint8_t {
+    LOCAL,  ///< none leaves this computer
+    TLS,    ///< encrypted, and only with a token
+    NONE    ///< by the wish of who started the server
+};
+
+/// Of one browser.
+struct Rights {
+    Role role = Role::NOBODY;
+    Protection protection = Protection::LOCAL;
+};
+
 struct Request {
     std::string method;  ///< "GET"
     std::string path;    ///< decoded, without the query
     std::map<std::string, std::string> query;
     std::string body;
+    Role role = Role::NOBODY;
 };
 
 /// A path with its query as it stands in a request; nothing when it is not one (no leading '/', a broken
@@ -31,6 +48,7 @@ struct Response {
     std::string body{};
     bool isKept = false;  ///< the browser need never ask again: another content has another name
     std::shared_ptr<PieceQueue> pieces{};  ///< instead of a body
+    std::string cookie{};                  ///< for the browser to keep; empty: none
 };
 
 /// To be called once, in the server's thread.
@@ -55,7 +73,7 @@ class Application {
   public:
     virtual ~Application() = default;
     virtual void answer(const Request &request, Reply reply) = 0;
-    virtual void opened(SessionId session) = 0;
+    virtual void opened(SessionId session, Role role, Protection protection) = 0;
     virtual void received(SessionId session, std::string_view text) = 0;
     virtual void closed(SessionId session) = 0;
 };

@@ -7,26 +7,28 @@
 
 namespace mw::ui::web {
 
-Gate::Gate(int port) {
-    constexpr int PORT_OF_HTTP = 80;
-    for (const char *name : {"127.0.0.1", "localhost"}) {
-        hosts_.push_back(std::string(name) + ':' + std::to_string(port));
-        if (port == PORT_OF_HTTP) {
-            hosts_.emplace_back(name);
-        }
-    }
+Gate::Gate(bool hasTls, int port, const std::vector<std::string> &names)
+    : scheme_(hasTls ? "https://" : "http://"), port_(":" + std::to_string(port)),
+      isPortPreset_(port == (hasTls ? 443 : 80)), names_(names) {}
+
+bool Gate::isOurs(std::string_view host, std::string_view address) const {
+    const std::string asked = to_lower(host);
+    const auto isNamed = [&](std::string_view name) {
+        const bool isStart = !name.empty() && asked.starts_with(name);
+        const std::string_view rest = isStart ? std::string_view(asked).substr(name.size()) : "";
+        return isStart && (rest == port_ || (rest.empty() && isPortPreset_));
+    };
+    return isNamed(address) || std::ranges::any_of(names_, isNamed);
 }
 
-Result<> Gate::check(const Asker &asker, std::string_view path) const {
-    const auto isOurs = [this](std::string_view host) {
-        return std::ranges::find(hosts_, to_lower(host)) != hosts_.end();
-    };
-    if (!isOurs(asker.host)) {
-        return fail("'" + printable(asker.host) + "' is no name of this server: open http://" + hosts_[0]);
+Result<> Gate::check(const Asker &asker, std::string_view path, std::string_view address) const {
+    if (!isOurs(asker.host, address)) {
+        const std::string_view known = names_.empty() ? address : std::string_view(names_[0]);
+        return fail("'" + printable(asker.host) + "' is no name of this server: open " + scheme_ +
+                    std::string(known) + port_);
     }
-    constexpr std::string_view SCHEME = "http://";
-    const bool isOwnPage = asker.origin.empty() ||
-                           (asker.origin.starts_with(SCHEME) && isOurs(asker.origin.substr(SCHEME.size())));
+    const bool isOwnPage = asker.origin.empty() || (asker.origin.starts_with(scheme_) &&
+                                                    isOurs(asker.origin.substr(scheme_.size()), address));
     const bool isOwnSite = asker.site.empty() || asker.site == "same-origin" || asker.site == "none" ||
                            !path.starts_with("/api/");
     return isOwnPage && isOwnSite ? Result<>{} : fail("pages of other sites may ask nothing here");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Who may ask, and how often.
+// Whose pages may ask, and how often.
 #pragma once
 
 #include <cstdint>
@@ -22,13 +22,19 @@ struct Asker {
 /// somebody else's name server leads here.
 class Gate {
   public:
-    /// For a server on 127.0.0.1.
-    explicit Gate(int port);
+    /// `names` of the server in small letters, without a port; an IPv6 address in brackets. `port` as it
+    /// listens.
+    Gate(bool hasTls, int port, const std::vector<std::string> &names);
 
-    Result<> check(const Asker &asker, std::string_view path) const;
+    /// `address`: where the connection ends on this side, a name of the server, too; empty: none.
+    Result<> check(const Asker &asker, std::string_view path, std::string_view address = {}) const;
 
   private:
-    std::vector<std::string> hosts_;
+    bool isOurs(std::string_view host, std::string_view address) const;
+
+    std::string scheme_, port_;
+    bool isPortPreset_;
+    std::vector<std::string> names_;
 };
 
 /// A bucket of `at_once` requests that fills by `per_s`.

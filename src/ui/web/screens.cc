@@ -2,8 +2,11 @@
 #include "ui/web/screens.hh"
 
 #include <random>
+#include <set>
 
 #include <fmt/format.h>
+
+#include "ui/web/access.hh"
 
 namespace mw::ui::web {
 namespace {
@@ -46,13 +49,18 @@ bool Screens::join(Browser &browser) {
     return true;
 }
 
-void Screens::opened(SessionId session, std::int64_t now_ns) {
+void Screens::opened(SessionId session, const Rights &rights, std::int64_t now_ns) {
     auto made = std::make_unique<Browser>(
-        [this, session](std::string text) { sockets_.send(session, std::move(text)); }, counts_, now_ns);
+        [this, session](std::string text) { sockets_.send(session, std::move(text)); }, counts_, rights.role,
+        now_ns);
     Browser &browser = *made;
     browsers_[session] = std::move(made);
     const bool isJoined = isMachineUp() && join(browser);
-    browser.tell(hello_text({setup_.version, browser.number(), session_}));
+    browser.tell(hello_text({setup_.version, role_name(rights.role), protection_name(rights.protection),
+                             browser.number(), session_}));
+    if (questions_ != "[]") {
+        browser.tell(questions_text(questions_));
+    }
     if (!isJoined) {
         browser.tell(machine_gone_text(reason_));
         return;
@@ -147,6 +155,37 @@ void Screens::tell_all(const std::string &text) {
     for (const auto &[session, browser] : browsers_) {
         if (browser->isJoined()) {
             browser->tell(text);
+        }
+    }
+}
+
+std::vector<std::string> Screens::watched() const {
+    std::set<std::string> names;
+    for (const auto &[session, browser] : browsers_) {
+        names.insert(browser->watched().begin(), browser->watched().end());
+    }
+    return {names.begin(), names.end()};
+}
+
+void Screens::tell_questions(const std::string &questions) {
+    if (questions != questions_) {
+        questions_ = questions;
+        for (const auto &[session, browser] : browsers_) {
+            browser->tell(questions_text(questions_));
+        }
+    }
+}
+
+void Screens::tell_note(const std::string &note) {
+    for (const auto &[session, browser] : browsers_) {
+        browser->tell(note_text(note));
+    }
+}
+
+void Screens::tell_values(const std::map<std::string, std::string> &values) {
+    for (const auto &[session, browser] : browsers_) {
+        if (sockets_.isIdle(session)) {
+            browser->tell_values(values);
         }
     }
 }

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "ui/web/browser.hh"
 
@@ -30,11 +31,18 @@ class Screens {
 
     Screens(Sockets &sockets, ScreensSetup setup);
 
-    void opened(SessionId session, std::int64_t now_ns);
+    void opened(SessionId session, const Rights &rights, std::int64_t now_ns);
     void received(SessionId session, std::string_view text, std::int64_t now_ns);
     void closed(SessionId session);
     /// Every few milliseconds.
     void tick(std::int64_t now_ns);
+
+    /// Names of HAL that any screen looks at, each once.
+    std::vector<std::string> watched() const;
+    /// What HAL asks persons: told when it changes, and to each new screen.
+    void tell_questions(const std::string &questions);
+    void tell_note(const std::string &note);
+    void tell_values(const std::map<std::string, std::string> &values);
 
     bool isMachineUp() const { return watch_.has_value(); }
     std::size_t count() const { return browsers_.size(); }
@@ -62,6 +70,7 @@ class Screens {
     std::optional<msgs::ToolTable> tools_;  ///< as read last
     std::map<SessionId, std::unique_ptr<Browser>> browsers_;
     std::deque<std::string> kept_;  ///< messages
+    std::string questions_ = "[]";  ///< of HAL, JSON
     Counts counts_;
     std::int64_t next_look_ns_ = 0, next_status_ns_ = 0;
 };

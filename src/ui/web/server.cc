@@ -1,38 +1,20 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The only file that includes Boost.Beast: a heavy header.
+// The only file that includes Boost.Beast, by headers of `detail`: a heavy header.
 #include "ui/web/server.hh"
 
-#include <fcntl.h>
-#include <netinet/tcp.h>
-#include <sys/socket.h>
-
 #include <algorithm>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/post.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
-#include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
-#include <boost/beast/websocket.hpp>
-#include <deque>
 #include <optional>
 #include <utility>
 
+#include "ui/web/detail/session.hh"
 #include "ui/web/documents.hh"
-#include "ui/web/gate.hh"
 
 namespace mw::ui::web {
 namespace {
 
-namespace net = boost::asio;
-namespace beast = boost::beast;
-namespace http = beast::http;
-namespace websocket = beast::websocket;
-using boost::system::error_code;
-using net::ip::tcp;
-
-using HttpRequest = http::request<http::string_body>;
+using namespace detail;
 
 std::string_view view(beast::string_view text) {
     return {text.data(), text.size()};
@@ -45,34 +27,6 @@ std::int64_t monotonic_ns() {
 /// For what is still on its way when a connection ends.
 constexpr std::chrono::milliseconds DRAIN_TIME{2000};
 
-/// No program that is started from here keeps it open.
-void keep_to_ourselves(int socket) {
-    ::fcntl(socket, F_SETFD, FD_CLOEXEC);
-}
-
-/// Little waits in the kernel, so that what is sent is new; and it is sent at once.
-void send_promptly(tcp::socket &socket) {
-    error_code ignored;
-    socket.set_option(tcp::no_delay(true), ignored);
-    constexpr int MOST_UNSENT = 16 * 1024;
-    ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &MOST_UNSENT, sizeof MOST_UNSENT);
-}
-
-/// A connection as a WebSocket.
-class Link : public beast::tcp_stream {
-  public:
-    explicit Link(beast::tcp_stream stream) : beast::tcp_stream(std::move(stream)) {}
-};
-
-/// Called by Beast when a socket ends in order or is broken. The peer is not waited for, who may never go:
-/// what the socket has begun is to end now.
-template <class Handler>
-void async_teardown(beast::role_type, Link &link, Handler &&handler) {
-    error_code error;
-    link.socket().shutdown(tcp::socket::shutdown_send, error);
-    net::post(link.get_executor(), beast::bind_front_handler(std::forward<Handler>(handler), error_code{}));
-}
-
 /// Everything that a page needs is served from here, and no other page may hold it in a frame.
 constexpr const char *PAGE_RULES = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' "
                                    "data: blob:; worker-src 'self' blob:; "
@@ -80,145 +34,42 @@ constexpr const char *PAGE_RULES = "default-src 'self'; style-src 'self' 'unsafe
 
 }  // namespace
 
-class Session;
-
-class Server::Impl {
-  public:
-    explicit Impl(const ServerOptions &options)
-        : limits(options.limits), requests(limits.requests_per_s, limits.requests_at_once) {}
-
-    Result<> open(int port);
-    void accept();
-    /// The socket is gone, for whatever reason.
-    void forget(SessionId id);
-
-    const ServerLimits limits;
-    int connections = 0;  ///< outlives the loop, which ends connections
-    Application *application = nullptr;
-    std::optional<Gate> gate;
-    RateLimit requests;
-    SessionId last_session = 0;
-    net::io_context loop{1};
-    tcp::acceptor acceptor{loop};
-    net::steady_timer pause{loop};  ///< where nothing can be accepted
-    std::map<SessionId, std::shared_ptr<Session>> sessions;
-};
-
-/// An open WebSocket.
-class Session : public std::enable_shared_from_this<Session> {
-  public:
-    Session(Server::Impl &server, SessionId id, beast::tcp_stream stream)
-        : server_(server), id_(id), socket_(Link(std::move(stream))) {
-        ++server_.connections;
-    }
-    ~Session() { --server_.connections; }
-    Session(const Session &) = delete;
-    Session &operator=(const Session &) = delete;
-
-    void accept(HttpRequest request) {
-        request_ = std::move(request);
-        socket_.next_layer().expires_never();
-        socket_.set_option(
-            websocket::stream_base::timeout{std::chrono::seconds(2), websocket::stream_base::none(), false});
-        socket_.read_message_max(server_.limits.text_bytes);
-        socket_.auto_fragment(false);
-        socket_.async_accept(request_, [self = shared_from_this()](error_code error) {
-            if (error || self->isOver_) {
-                self->end();
-                return;
-            }
-            self->isOpen_ = true;
-            self->server_.application->opened(self->id_);
-            self->read();
-        });
-    }
-    void send(std::string text) {
-        bytes_ += text.size();
-        if (isOver_ || bytes_ > server_.limits.waiting_bytes) {
-            end();
-            return;
-        }
-        waiting_.push_back(std::move(text));
-        if (waiting_.size() == 1) {
-            write();
-        }
-    }
-    bool isIdle() const { return isOpen_ && !isOver_ && waiting_.empty(); }
-    bool isOpen() const { return isOpen_; }
-    void end() {
-        if (isOver_) {
-            return;
-        }
-        isOver_ = true;
-        error_code ignored;
-        socket_.next_layer().socket().close(ignored);
-        net::post(server_.loop, [self = shared_from_this()] { self->server_.forget(self->id_); });
-    }
-
-  private:
-    void read() {
-        socket_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
-            if (error || self->isOver_ || !self->socket_.got_text()) {
-                self->end();
-                return;
-            }
-            const std::string text = beast::buffers_to_string(self->buffer_.data());
-            self->buffer_.consume(self->buffer_.size());
-            self->server_.application->received(self->id_, text);
-            self->read();
-        });
-    }
-    void write() {
-        socket_.text(true);
-        socket_.async_write(net::buffer(waiting_.front()),
-                            [self = shared_from_this()](error_code error, std::size_t) {
-                                if (error || self->isOver_) {
-                                    self->end();
-                                    return;
-                                }
-                                self->bytes_ -= self->waiting_.front().size();
-                                self->waiting_.pop_front();
-                                if (!self->waiting_.empty()) {
-                                    self->write();
-                                }
-                            });
-    }
-
-    Server::Impl &server_;
-    SessionId id_;
-    websocket::stream<Link> socket_;
-    HttpRequest request_;
-    beast::flat_buffer buffer_;
-    std::deque<std::string> waiting_;  ///< the first one is being sent
-    std::size_t bytes_ = 0;
-    bool isOpen_ = false, isOver_ = false;
-};
-
 /// One connection, one request after the other.
 class Connection : public std::enable_shared_from_this<Connection> {
   public:
-    Connection(Server::Impl &server, tcp::socket socket) : server_(server), stream_(std::move(socket)) {
-        ++server_.connections;
+    Connection(Server::Impl &server, Door &door, tcp::socket socket)
+        : server_(server), door_(door),
+          wire_(std::make_unique<Wire>(std::move(socket), door.tls.has_value() ? &*door.tls : nullptr)) {
+        ++door_.connections;
     }
     ~Connection() {
         if (pieces_ != nullptr) {
             pieces_->cancel();
         }
-        --server_.connections;
+        --door_.connections;
     }
     Connection(const Connection &) = delete;
     Connection &operator=(const Connection &) = delete;
 
+    void begin() {
+        expire_after(server_.limits.request_time);
+        wire_->async_greet([self = shared_from_this()](error_code error) {
+            if (!error) {
+                self->read();
+            }
+        });
+    }
+
+  private:
+    void expire_after(std::chrono::milliseconds time) { wire_->stream().expires_after(time); }
     void read() {
         parser_.emplace();
         parser_->header_limit(server_.limits.header_bytes);
         parser_->body_limit(server_.limits.body_bytes);
-        stream_.expires_after(server_.limits.request_time);
-        http::async_read(stream_, buffer_, *parser_,
+        expire_after(server_.limits.request_time);
+        http::async_read(*wire_, buffer_, *parser_,
                          [self = shared_from_this()](error_code error, std::size_t) { self->take(error); });
     }
-
-  private:
     void take(error_code error) {
         isLast_ = true;
         if (error == http::error::body_limit || error == http::error::header_limit) {
@@ -241,24 +92,37 @@ class Connection : public std::enable_shared_from_this<Connection> {
             return;
         }
         const auto allowed =
-            server_.gate->check({view(request[http::field::host]), view(request[http::field::origin]),
-                                 view(request["Sec-Fetch-Site"])},
-                                asked->path);
+            door_.gate->check({view(request[http::field::host]), view(request[http::field::origin]),
+                               view(request["Sec-Fetch-Site"])},
+                              asked->path, own_address_);
         if (!allowed.has_value()) {
             reply(error_response(403, allowed.error().str()));
             return;
         }
-        if (!server_.requests.take(monotonic_ns())) {
+        if (!door_.requests.take(monotonic_ns())) {
             reply(error_response(429, "too many requests: ask again later"));
+            return;
+        }
+        asked->role = door_.access.role_of(
+            {view(request[http::field::authorization]), view(request[http::field::cookie])}, door_.port);
+        asked->method = view(request.method_string());
+        if (asked->path == "/api/login") {
+            asked->body = std::move(parser_->get().body());
+            reply(door_.access.login(*asked, door_.port, monotonic_ns()));
+            return;
+        }
+        // The screen itself is no secret: it asks for the token.
+        const bool isForAll = !asked->path.starts_with("/api/") && asked->path != "/metrics";
+        if (asked->role == Role::NOBODY && !isForAll) {
+            reply(error_response(401, "show a token: 'Authorization: Bearer TOKEN', or POST /api/login"));
             return;
         }
         if (websocket::is_upgrade(request)) {
             open_socket(*asked);
             return;
         }
-        asked->method = view(request.method_string());
         asked->body = std::move(parser_->get().body());
-        stream_.expires_never();
+        wire_->stream().expires_never();
         server_.application->answer(
             *asked, [self = shared_from_this()](Response response) { self->reply(std::move(response)); });
     }
@@ -268,12 +132,13 @@ class Connection : public std::enable_shared_from_this<Connection> {
             reply(error_response(404, "there is no socket '" + asked.path + "', only /api/socket"));
             return;
         }
-        if (static_cast<int>(server_.sessions.size()) >= server_.limits.sessions) {
+        const bool isFull = static_cast<int>(server_.sessions.size()) >= server_.limits.sessions;
+        if (isFull || door_.sessions >= door_.most_sessions) {
             reply(error_response(503, "as many screens as can be are open: close one"));
             return;
         }
         const SessionId id = ++server_.last_session;
-        auto session = std::make_shared<Session>(server_, id, std::move(stream_));
+        auto session = std::make_shared<Session>(server_, door_, id, asked.role, std::move(wire_));
         server_.sessions[id] = session;
         session->accept(parser_->release());
     }
@@ -288,11 +153,14 @@ class Connection : public std::enable_shared_from_this<Connection> {
         message.set("X-Content-Type-Options", "nosniff");
         message.set("Content-Security-Policy", PAGE_RULES);
         message.set("Referrer-Policy", "no-referrer");
+        if (!response.cookie.empty()) {
+            message.set(http::field::set_cookie, response.cookie);
+        }
         message.keep_alive(!isLast_);
     }
 
     void reply(Response response) {
-        stream_.expires_after(server_.limits.request_time);
+        expire_after(server_.limits.request_time);
         if (response.pieces != nullptr) {
             reply_in_pieces(response);
             return;
@@ -302,7 +170,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
         message->body() = std::move(response.body);
         message->prepare_payload();
         http::async_write(
-            stream_, *message,
+            *wire_, *message,
             [self = shared_from_this(), message](error_code error, std::size_t) { self->end_reply(error); });
     }
 
@@ -316,7 +184,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
         set_head(head->message, response);
         head->message.chunked(true);
         head->serializer.emplace(head->message);
-        http::async_write_header(stream_, *head->serializer,
+        http::async_write_header(*wire_, *head->serializer,
                                  [self = shared_from_this(), head](error_code error, std::size_t) {
                                      error ? self->end_reply(error) : self->next_piece();
                                  });
@@ -327,18 +195,18 @@ class Connection : public std::enable_shared_from_this<Connection> {
             net::post(self->server_.loop, [self] { self->next_piece(); });
         };
         switch (pieces_->take(piece_, wake)) {
-        case PieceQueue::State::LATER: stream_.expires_never(); return;
+        case PieceQueue::State::LATER: wire_->stream().expires_never(); return;
         case PieceQueue::State::PIECE:
-            stream_.expires_after(server_.limits.request_time);
-            net::async_write(stream_, http::make_chunk(net::const_buffer(piece_.data(), piece_.size())),
+            expire_after(server_.limits.request_time);
+            net::async_write(*wire_, http::make_chunk(net::const_buffer(piece_.data(), piece_.size())),
                              [self = shared_from_this()](error_code error, std::size_t) {
                                  error ? self->end_reply(error) : self->next_piece();
                              });
             return;
         case PieceQueue::State::END:
-            stream_.expires_after(server_.limits.request_time);
+            expire_after(server_.limits.request_time);
             net::async_write(
-                stream_, http::make_chunk_last(),
+                *wire_, http::make_chunk_last(),
                 [self = shared_from_this()](error_code error, std::size_t) { self->end_reply(error); });
             return;
         }
@@ -357,8 +225,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
             return;
         }
         error_code ignored;
-        stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
-        stream_.expires_after(std::min(server_.limits.request_time, DRAIN_TIME));
+        wire_->stream().socket().shutdown(tcp::socket::shutdown_send, ignored);
+        expire_after(std::min(server_.limits.request_time, DRAIN_TIME));
         drain();
     }
 
@@ -366,17 +234,19 @@ class Connection : public std::enable_shared_from_this<Connection> {
     void drain() {
         constexpr std::size_t MOST = 16UL * 1024 * 1024;
         buffer_.clear();
-        stream_.async_read_some(buffer_.prepare(65536),
-                                [self = shared_from_this()](error_code error, std::size_t size) {
-                                    self->drained_ += size;
-                                    if (!error && self->drained_ < MOST) {
-                                        self->drain();
-                                    }
-                                });
+        wire_->async_read_some(buffer_.prepare(65536),
+                               [self = shared_from_this()](error_code error, std::size_t size) {
+                                   self->drained_ += size;
+                                   if (!error && self->drained_ < MOST) {
+                                       self->drain();
+                                   }
+                               });
     }
 
     Server::Impl &server_;
-    beast::tcp_stream stream_;
+    Door &door_;
+    std::unique_ptr<Wire> wire_;
+    const std::string own_address_ = wire_->own_address();
     beast::flat_buffer buffer_;
     std::optional<http::request_parser<http::string_body>> parser_;
     std::shared_ptr<PieceQueue> pieces_;
@@ -385,9 +255,53 @@ class Connection : public std::enable_shared_from_this<Connection> {
     bool isLast_ = false;
 };
 
-Result<> Server::Impl::open(int port) {
+Result<> Server::Impl::open(const ServerOptions &options) {
+    doors.push_back({.access = Access(Protection::LOCAL, Role::CONFIGURE),
+                     .requests = RateLimit(limits.requests_per_s, limits.requests_at_once),
+                     .most_connections = limits.connections,
+                     .most_sessions = limits.sessions});
+    const auto opened = listen(doors.back(), net::ip::address_v4::loopback(), options.port);
+    if (!opened.has_value()) {
+        return fail(opened.error().str(), {}, "--port chooses another one, 0 a free one");
+    }
+    doors.back().gate.emplace(false, doors.back().port, std::vector<std::string>{"127.0.0.1", "localhost"});
+    return options.remote.has_value() ? open_remote(*options.remote) : Result<>{};
+}
+
+Result<> Server::Impl::open_remote(const RemoteDoor &remote) {
     error_code error;
-    const tcp::endpoint place(net::ip::address_v4::loopback(), static_cast<unsigned short>(port));
+    const auto address = net::ip::make_address(remote.address, error);
+    if (error) {
+        return fail("'" + remote.address + "' is no address of a computer");
+    }
+    doors.push_back({.access = remote.access,
+                     .requests = RateLimit(limits.requests_per_s, limits.requests_at_once),
+                     .most_connections = limits.connections - limits.kept_connections,
+                     .most_sessions = limits.sessions - limits.kept_sessions});
+    Door &door = doors.back();
+    if (remote.tls.has_value()) {
+        door.tls.emplace(net::ssl::context::tls_server);
+        door.tls->set_options(net::ssl::context::no_tlsv1 | net::ssl::context::no_tlsv1_1, error);
+        error_code unused;
+        const std::string &certificate = remote.tls->certificate_pem, &key = remote.tls->key_pem;
+        door.tls->use_certificate_chain(net::buffer(certificate), error);
+        door.tls->use_private_key(net::buffer(key), net::ssl::context::pem, error ? unused : error);
+        if (error) {
+            return fail("the certificate and its key do not go together: " + error.message());
+        }
+    }
+    auto opened = listen(door, address, remote.port);
+    if (opened.has_value()) {
+        door.gate.emplace(door.tls.has_value(), door.port, remote.names);
+    }
+    return opened;
+}
+
+Result<> Server::Impl::listen(Door &door, const net::ip::address &address, int port) {
+    Listener &listener = listeners.emplace_back(loop, door);
+    tcp::acceptor &acceptor = listener.acceptor;
+    error_code error;
+    const tcp::endpoint place(address, static_cast<unsigned short>(port));
     acceptor.open(place.protocol(), error);
     if (!error) {
         keep_to_ourselves(acceptor.native_handle());
@@ -400,34 +314,39 @@ Result<> Server::Impl::open(int port) {
         acceptor.listen(net::socket_base::max_listen_connections, error);
     }
     if (error) {
-        return fail("cannot listen on 127.0.0.1:" + std::to_string(port) + ": " + error.message(), {},
-                    "--port chooses another one, 0 a free one");
+        return fail("cannot listen on " + bracketed(address) + ':' + std::to_string(port) + ": " +
+                    error.message());
     }
-    gate.emplace(acceptor.local_endpoint(error).port());
-    accept();
+    door.port = acceptor.local_endpoint(error).port();
+    accept(listener);
     return {};
 }
 
-void Server::Impl::accept() {
-    acceptor.async_accept([this](error_code error, tcp::socket socket) {
+void Server::Impl::accept(Listener &listener) {
+    listener.acceptor.async_accept([this, &listener](error_code error, tcp::socket socket) {
         if (error == net::error::operation_aborted) {
             return;
         }
         if (error) {  // no file handles left: not again at once
-            pause.expires_after(std::chrono::milliseconds(100));
-            pause.async_wait([this](error_code ended) {
+            listener.pause.expires_after(std::chrono::milliseconds(100));
+            listener.pause.async_wait([this, &listener](error_code ended) {
                 if (!ended) {
-                    accept();
+                    accept(listener);
                 }
             });
             return;
         }
-        if (connections < limits.connections) {
+        int connections = 0;
+        for (const Door &door : doors) {
+            connections += door.connections;
+        }
+        Door &door = listener.door;
+        if (connections < limits.connections && door.connections < door.most_connections) {
             keep_to_ourselves(socket.native_handle());
             send_promptly(socket);
-            std::make_shared<Connection>(*this, std::move(socket))->read();
+            std::make_shared<Connection>(*this, door, std::move(socket))->begin();
         }
-        accept();
+        accept(listener);
     });
 }
 
@@ -449,7 +368,7 @@ Server::~Server() = default;
 
 Result<std::unique_ptr<Server>> Server::listen(const ServerOptions &options) {
     auto impl = std::make_unique<Impl>(options);
-    const auto opened = impl->open(options.port);
+    const auto opened = impl->open(options);
     if (!opened.has_value()) {
         return std::unexpected(opened.error());
     }
@@ -457,8 +376,11 @@ Result<std::unique_ptr<Server>> Server::listen(const ServerOptions &options) {
 }
 
 int Server::port() const {
-    error_code ignored;
-    return impl_->acceptor.local_endpoint(ignored).port();
+    return impl_->doors[0].port;
+}
+
+int Server::remote_port() const {
+    return impl_->doors.size() > 1 ? impl_->doors[1].port : 0;
 }
 
 void Server::run_for(Application &application, std::chrono::nanoseconds time) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// HTTP/1.1 and WebSocket on one port of 127.0.0.1, by one thread.
+// HTTP/1.1 and WebSocket on one port of 127.0.0.1, and on one for other computers, by one thread.
 #pragma once
 
 #include <chrono>
@@ -8,7 +8,9 @@
 #include <string>
 
 #include "base/result.hh"
+#include "ui/web/access.hh"
 #include "ui/web/exchange.hh"
+#include "ui/web/secrets.hh"
 
 namespace mw::ui::web {
 
@@ -20,14 +22,27 @@ struct ServerLimits {
     std::size_t waiting_bytes = 4UL * 1024 * 1024;
     int connections = 64;  ///< open ones; sockets count
     int sessions = 16;     ///< sockets
-    /// Requests of all browsers together. Texts from sockets are the application's to limit.
+    /// Of these, those that only this computer may take.
+    int kept_connections = 16, kept_sessions = 4;
+    /// Requests of all browsers of one way in together. Texts from sockets are the application's to limit.
     double requests_per_s = 500, requests_at_once = 1000;
     std::chrono::milliseconds request_time{30000};  ///< for a request to come, and for its answer to be taken
 };
 
+/// A way in from other computers, beside that of this one.
+struct RemoteDoor {
+    std::string address;  ///< of this computer; 0.0.0.0 or ::, all of them
+    int port = 0;         ///< 0: a free one
+    /// By which browsers may call it, beside the address they reach.
+    std::vector<std::string> names;
+    Access access;  ///< with tokens where there is TLS
+    std::optional<Certificate> tls;
+};
+
 struct ServerOptions {
-    int port = 0;  ///< 0: a free one
+    int port = 0;  ///< on 127.0.0.1, 0: a free one
     ServerLimits limits{};
+    std::optional<RemoteDoor> remote{};
 };
 
 class Server final : public Sockets {
@@ -38,6 +53,8 @@ class Server final : public Sockets {
     ~Server() override;
 
     int port() const;
+    /// 0: nobody comes from other computers.
+    int remote_port() const;
     /// Does what there is to do, waits for more, and returns when the time is over.
     void run_for(Application &application, std::chrono::nanoseconds time);
     /// `act` is called within run_for(). Whoever calls this, replies and makers of pieces end before the

@@ -104,6 +104,11 @@ const isHomed: Rule = (status, facts) =>
 const isIdle: Rule = (status) => closed(BUSY[situation(status)]);
 const isNotHoming: Rule = (status) => (status.trajectory.is_homing ? { key: 'gate.homing' } : null);
 
+/** What changes the configuration under way: values of HAL, the oscilloscope in the servo's thread. */
+export function canConfigure(view: View): Gate {
+  return reach(view) ?? (view.role === 'configure' ? null : { key: 'gate.configure' });
+}
+
 export const canReset = gate();
 export const canSwitchOn = gate((status) => (status.task.state === 'ESTOP' ? { key: 'gate.estop' } : null));
 export const canSwitchOff = gate(atPower);

@@ -19,10 +19,26 @@ export interface Message {
   text: string;
 }
 
+/** null: there is no such name, or its number is not finite. */
+export type HalValue = number | boolean | null;
+
+/** What a pin of HAL asks the operator, or tells as long as it lasts ('none'). */
+export interface Question {
+  id: string;
+  number: number;
+  kind: 'ok' | 'yesno' | 'none';
+  title: string;
+  text: string;
+  details: string;
+  icon: string;
+}
+
 export interface Hello {
   version: string;
   client: number;
   role: string;
+  /** 'local', 'tls' or 'none'. */
+  protection: string;
   session: string;
 }
 
@@ -34,6 +50,9 @@ export interface LinkEvents {
   message(message: Message): void;
   machine(isUp: boolean, client: number, reason: string): void;
   roundTrip(ms: number): void;
+  values(values: Record<string, HalValue>): void;
+  questions(questions: Question[]): void;
+  note(text: string): void;
 }
 
 /** The parts of WebSocket that are used. */
@@ -122,6 +141,13 @@ export class Link {
     return new Promise((resolve) => this.pending.set(id, { done: resolve, started: onStarted }));
   }
 
+  /** Names of HAL whose values are told from now on, by this connection. */
+  look(names: readonly string[]): void {
+    if (this.isOpen) {
+      this.socket?.send(JSON.stringify({ watch: names }));
+    }
+  }
+
   private watch(socket: Socket): void {
     this.pingTimer = this.options.later(() => {
       if (socket !== this.socket || this.isEnded) {
@@ -168,6 +194,12 @@ export class Link {
       this.events.roundTrip(this.options.now() - (told['pong'] as number));
     } else if ('hello' in told) {
       this.events.opened(told['hello'] as Hello);
+    } else if ('hal' in told) {
+      this.events.values(told['hal'] as Record<string, HalValue>);
+    } else if ('questions' in told) {
+      this.events.questions(told['questions'] as Question[]);
+    } else if ('note' in told) {
+      this.events.note(String(told['note']));
     } else if ('machine' in told) {
       this.events.machine(told['machine'] === 'up', Number(told['client'] ?? 0), String(told['reason'] ?? ''));
     }

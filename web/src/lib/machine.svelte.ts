@@ -2,7 +2,8 @@
 // The machine as this page knows it: one socket, one status, the messages, and what they mean together.
 import type { View } from './gates';
 import { record } from './history.svelte';
-import { Link, type Command, type Message, type Outcome, type Socket } from './link';
+import { checkLogin } from './login.svelte';
+import { Link, type Command, type HalValue, type Message, type Outcome, type Question, type Socket } from './link';
 import { mergeDelta, type MachineFacts, type MachineStatus } from './status';
 
 export interface Notice {
@@ -27,6 +28,7 @@ interface Known {
   goneReason: string;
   client: number;
   role: string;
+  protection: string;
   version: string;
   session: string;
   status: MachineStatus | null;
@@ -43,6 +45,7 @@ export const machine = $state<Known>({
   goneReason: '',
   client: 0,
   role: 'view',
+  protection: '',
   version: '',
   session: '',
   status: null,
@@ -107,12 +110,15 @@ const link = new Link(
       machine.hasConnected = true;
       machine.client = hello.client;
       machine.role = hello.role;
+      machine.protection = hello.protection;
       machine.version = hello.version;
       if (machine.session !== hello.session) {
         machine.session = hello.session;
         lastMessage = 0;
       }
       machine.isMachineUp = hello.client !== 0;
+      questions.list = [];
+      link.look(watched);
       fetchFacts().catch((error: unknown) => tell('LOCAL', String(error)));
     },
     closed() {
@@ -120,6 +126,7 @@ const link = new Link(
       machine.isMachineUp = false;
       machine.roundTripMs = null;
       lose();
+      void checkLogin();
     },
     status(delta, isWhole) {
       statusAt = performance.now();
@@ -150,6 +157,15 @@ const link = new Link(
         lose();
       }
     },
+    questions(asked) {
+      questions.list = asked;
+    },
+    note(text) {
+      tell('OPERATOR_TEXT', text);
+    },
+    values(values) {
+      Object.assign(halValues, values);
+    },
     roundTrip(ms) {
       machine.roundTripMs = ms;
     },
@@ -164,6 +180,29 @@ const link = new Link(
     cancel: (timer) => clearTimeout(timer as number),
   },
 );
+
+/** What HAL asks. */
+export const questions = $state<{ list: Question[] }>({ list: [] });
+
+export async function answerQuestion(question: Question, yes: boolean): Promise<void> {
+  const answer = await fetch('/api/questions', { method: 'POST', body: JSON.stringify({ id: question.id, number: question.number, yes }) });
+  if (!answer.ok) {
+    tell('LOCAL', ((await answer.json()) as { error?: string }).error ?? `POST /api/questions: ${answer.status}`);
+  }
+}
+
+/** What is watched in HAL, as told last. */
+export const halValues = $state<Record<string, HalValue>>({});
+let watched: string[] = [];
+
+/** From now on `halValues` has these names and no others. */
+export function watchHal(names: readonly string[]): void {
+  watched = [...names];
+  for (const name of Object.keys(halValues)) {
+    delete halValues[name];
+  }
+  link.look(watched);
+}
 
 export function connect(): void {
   link.open();

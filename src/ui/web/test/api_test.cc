@@ -41,7 +41,8 @@ class ApiTest : public testing::Test {
             return read.size() < 2 ? Result<std::shared_ptr<PieceQueue>>(std::make_shared<PieceQueue>())
                                    : fail("too many");
         };
-        api.emplace(sockets, here, std::move(setup), [this] { return now_ns += 1000000; });
+        setup.connect_hal = []() -> Result<std::unique_ptr<hal::Host>> { return fail("no machine is up"); };
+        api.emplace(sockets, Threads{here, here}, std::move(setup), [this] { return now_ns += 1000000; });
     }
     ~ApiTest() override {
         api.reset();
@@ -51,6 +52,7 @@ class ApiTest : public testing::Test {
         Request request = *parse_target(target);
         request.method = method;
         request.body = body;
+        request.role = role;
         Response answer;
         int answers = 0;
         api->answer(request, [&](Response one) {
@@ -62,6 +64,7 @@ class ApiTest : public testing::Test {
     }
 
     fs::path folder;
+    Role role = Role::CONFIGURE;
     FakeTask task;
     FakeSockets sockets;
     Here here;

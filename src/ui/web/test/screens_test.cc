@@ -42,7 +42,7 @@ class ScreensTest : public testing::Test {
                          (fields.empty() ? "" : "," + fields) + "}}");
     }
     void open(SessionId session) {
-        screens->opened(session, now_ns);
+        screens->opened(session, {Role::OPERATE, Protection::LOCAL}, now_ns);
         sockets.take(session);
     }
     std::vector<Json> of_kind(SessionId session, const char *key) {
@@ -65,7 +65,7 @@ class ScreensTest : public testing::Test {
 TEST_F(ScreensTest, AScreenIsGreetedThenToldTheWholeThenChanges_J3) {
     task.status->joints[1].pos_cmd = 3;
     go(300);
-    screens->opened(7, now_ns);
+    screens->opened(7, {Role::OPERATE, Protection::LOCAL}, now_ns);
     const auto first = sockets.take(7);
     ASSERT_EQ(first.size(), 2U);
     EXPECT_EQ(first[0]["hello"]["version"], "0.1");
@@ -228,14 +228,14 @@ TEST_F(ScreensTest, MessagesGoToAllAndToWhoComesLater_J3) {
     ASSERT_EQ(told.size(), 1U);
     EXPECT_EQ(told[0]["message"],
               Json::parse(R"({"number":1,"kind":"OPERATOR_ERROR","text":"tool \"4\" is missing"})"));
-    screens->opened(2, now_ns);
+    screens->opened(2, {Role::OPERATE, Protection::LOCAL}, now_ns);
     EXPECT_EQ(of_kind(2, "message"), told);
 }
 
 TEST_F(ScreensTest, WithoutAMachineAScreenIsToldAndCommandsAreRefused_J3) {
     isUp = false;
     go(300);
-    screens->opened(1, now_ns);
+    screens->opened(1, {Role::OPERATE, Protection::LOCAL}, now_ns);
     auto told = sockets.take(1);
     ASSERT_EQ(told.size(), 2U);
     EXPECT_EQ(told[0]["hello"]["client"], 0);

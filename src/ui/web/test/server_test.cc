@@ -31,7 +31,10 @@ class Echo final : public Application {
             reply({.type = "text/plain", .body = request.method + ' ' + request.path + '|' + request.body});
         }
     }
-    void opened(SessionId session) override { open.push_back(session); }
+    void opened(SessionId session, Role role, Protection protection) override {
+        open.push_back(session);
+        rights.push_back({role, protection});
+    }
     void received(SessionId session, std::string_view text) override {
         texts.emplace_back(text);
         server->send(session, std::string(text));
@@ -42,6 +45,7 @@ class Echo final : public Application {
     std::vector<Request> asked;
     std::vector<SessionId> open, ended;
     std::vector<std::string> texts;
+    std::vector<Rights> rights;
     std::shared_ptr<PieceQueue> pieces;
     bool isLater = false;
     Reply later;
