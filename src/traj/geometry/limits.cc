@@ -91,10 +91,6 @@ int rows_of(const PerLimited &q1, const PerLimited &q2, const Limits &limits, Li
 
 }  // namespace
 
-double time_of_mean(double velocity, double acceleration, double jerk) noexcept {
-    return std::min(acceleration / jerk, std::sqrt(velocity / jerk));
-}
-
 AccelBound AccelBound::through(const double (&left)[LINES + 1], double v) noexcept {
     static_assert(std::size(LimitTuning::CHORDS) == LINES + 1);
     AccelBound out;

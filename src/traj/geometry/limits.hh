@@ -3,6 +3,9 @@
 // pure. Formulas: docs/motion/planner.md.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "traj/geometry/primitive.hh"
 #include "traj/path_store.hh"
 
@@ -25,7 +28,9 @@ inline constexpr double UNLIMITED = 1e300;
 
 /// The time in which an acceleration is built up within a jerk limit, or the acceleration with which the
 /// velocity is reached soonest [s].
-double time_of_mean(double velocity, double acceleration, double jerk) noexcept;
+inline double time_of_mean(double velocity, double acceleration, double jerk) noexcept {
+    return std::min(acceleration / jerk, std::sqrt(velocity / jerk));
+}
 
 /// Samples of the mean that turns acceleration-limited motion into jerk-limited motion: the longest time that
 /// an axis of X Y Z U V W, the XYZ norm or a joint needs to build up its acceleration, or the acceleration
