@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Runs the simulator configurations of an installed LinuxCNC under `millwright run`, in virtual time, and counts.
 
-usage: compare_configs.py [--bin DIR] [--configs DIR] [--hallib DIR] [--only TEXT] [--timeout S] [--out FILE] [--start]
+usage: compare_configs.py [--bin DIR] [--configs DIR] [--hallib DIR] [--only TEXT] [--timeout S] [--out FILE] [--start [--work]]
 
 Each configuration is run in a temporary copy of the whole folder, with a small program for its axes: every axis is
 moved a little within its limits. What is counted as run: the program came to its end with status 0.
 With --start: brought up by `linuxcnc -r` with a script as the display, which switches the machine on and ends it;
-configurations without an [EMC] section are parts of others and are left out.
+configurations without an [EMC] section are parts of others and are left out. --work besides homes, runs a line of MDI and
+the small program where joints are axes.
 Nothing of that installation is started; its folder of HAL files is named once, in MILLWRIGHT_HALLIB.
 """
 import argparse
@@ -89,7 +90,8 @@ def program_for(sections):
         low, high = number(axis.get("MIN_LIMIT"), -10), number(axis.get("MAX_LIMIT"), 10)
         home = number(axis.get("HOME"), 0.0)
         step = min(2.0, abs(high - low) / 20) * (1 if high - home >= home - low else -1)
-        lines += ["G1 %s%.4f" % (letter, step), "G1 %s%.4f" % (letter, -step)]
+        move = "G0" if "LOCKING_INDEXER_JOINT" in axis else "G1"  # a locked axis has no feed
+        lines += ["%s %s%.4f" % (move, letter, step), "%s %s%.4f" % (move, letter, -step)]
     return "\n".join(lines + ["G90", "M2", ""])
 
 
@@ -131,6 +133,9 @@ def run(options, ini, folder, place):
         return reason_of(text, status)
 
 
+#: Exit status of WORK where joints are not axes.
+NOT_IDENTITY = 3
+
 SCREEN = """#!/usr/bin/env python3
 import sys, time
 import linuxcnc
@@ -145,6 +150,55 @@ if s.task_state != linuxcnc.STATE_ON:
 """
 
 
+#: With --work, behind SCREEN: homes, runs a line of MDI and a program, and looks whether it is back where it began.
+WORK = """
+def fail(text):
+    while True:
+        told = errors.poll()
+        if told is None:
+            sys.exit("error: " + text)
+        text += "; " + told[1].strip()
+def until(what, holds, seconds):
+    end = time.monotonic() + seconds
+    while not holds():
+        if time.monotonic() > end:
+            fail(what)
+        time.sleep(0.02)
+        s.poll()
+errors = linuxcnc.error_channel()
+if s.kinematics_type != linuxcnc.KINEMATICS_IDENTITY:
+    sys.exit(IDENTITY_NOT)
+homed = lambda: all(s.homed[:s.joints - s.num_extrajoints])
+if not homed():
+    c.mode(linuxcnc.MODE_MANUAL)
+    c.wait_complete()
+    c.teleop_enable(0)
+    c.wait_complete()
+    c.home(-1)
+    until("it does not home", homed, 60)
+    until("it does not rest after homing", lambda: s.inpos and s.state == linuxcnc.RCS_DONE, 20)
+c.mode(linuxcnc.MODE_MDI)
+if c.wait_complete() != linuxcnc.RCS_DONE:
+    fail("no MDI mode")
+program = open(sys.argv[-1]).read().split()
+line = next(word for word in program if word[0] in "XYZABCUVW")
+c.mdi("G91 G0 " + line)
+if c.wait_complete(60) != linuxcnc.RCS_DONE:
+    fail("a line of MDI fails")
+c.mdi("G90")
+c.wait_complete()
+s.poll()
+began = s.position
+c.mode(linuxcnc.MODE_AUTO)
+c.wait_complete()
+c.program_open(sys.argv[-1])
+c.auto(linuxcnc.AUTO_RUN, 0)
+if c.wait_complete(120) != linuxcnc.RCS_DONE:
+    fail("the program fails")
+until("it does not come back", lambda: max(abs(a - b) for a, b in zip(began, s.position)) < 1e-4, 10)
+""".replace("IDENTITY_NOT", "3")
+
+
 def start(options, ini, folder, place):
     """(class, line of the error); class "" when it has come up, was switched on and has ended with status 0."""
     with tempfile.TemporaryDirectory(dir=place) as place:
@@ -152,9 +206,11 @@ def start(options, ini, folder, place):
         shutil.copytree(folder, copy, symlinks=True, copy_function=os.link)
         mine = copy / ini.relative_to(folder)
         screen = mine.parent / "mw_screen.py"
-        screen.write_text(SCREEN)
+        program = pathlib.Path(place) / "small.ngc"
+        program.write_text(program_for(values_of(mine)))
+        screen.write_text(SCREEN + (WORK if options.work else ""))
         screen.chmod(0o755)
-        lines = [re.sub(r"^\s*DISPLAY\s*=.*", "DISPLAY = ./mw_screen.py", line) for line in merged(mine)]
+        lines = [re.sub(r"^\s*DISPLAY\s*=.*", "DISPLAY = ./mw_screen.py %s" % program, line) for line in merged(mine)]
         mine.unlink()
         mine.write_text("\n".join(lines) + "\n")
         instance = "configs-%d" % os.getpid()
@@ -172,6 +228,8 @@ def start(options, ini, folder, place):
                 end(process)
         left = kill_left(instance)
         text = said.read_text(errors="replace")
+        if status == NOT_IDENTITY and options.work:
+            return "not identity", ""
         if status != 0:
             return reason_of(text, status)
         return ("left behind", left[0]) if left else ("", "")
@@ -220,6 +278,8 @@ def main():
     parser.add_argument("--timeout", type=float, default=30.0)
     parser.add_argument("--out", default="", help="a table: configuration, class, first error")
     parser.add_argument("--least", type=int, default=0, help="fail when fewer run")
+    parser.add_argument("--work", action="store_true",
+                        help="with --start: where joints are axes, home, run a line of MDI and a program")
     parser.add_argument("--start", action="store_true", help="bring each up with a script as its display")
     options = parser.parse_args()
     folder = pathlib.Path(options.configs)
