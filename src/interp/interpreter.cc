@@ -40,6 +40,10 @@ Result<> Interpreter::save_parameters(const std::string &path) const {
     return impl_->executor.parameters.save(path);
 }
 
+std::string Interpreter::parameter_text() const {
+    return impl_->executor.parameters.text();
+}
+
 Result<> Interpreter::begin() {
     detail::Executor &executor = impl_->executor;
     executor.state.units = impl_->settings.initial_units.value_or(executor.world().machine_units());

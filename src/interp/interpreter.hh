@@ -118,6 +118,8 @@ class Interpreter final : public ProgramInterpreter {
 
     Result<> load_parameters(const std::string &path) override;
     Result<> save_parameters(const std::string &path) const override;
+    /// What save_parameters() would write.
+    std::string parameter_text() const;
 
     /// Loads scripts, announces offsets, units and modes to the canon and runs the start-up code.
     Result<> begin() override;

@@ -78,6 +78,7 @@ void Writer::find() {
 void Writer::ask(Job job) {
     {
         const std::lock_guard lock(mutex_);
+        job.number = ++last_job_;
         if (job.kind == Kind::BEGIN || job.kind == Kind::FORGET) {  // what was before does not matter
             std::erase_if(jobs_, [](const Job &one) { return one.kind != Kind::FILE; });
         }
@@ -96,27 +97,40 @@ void Writer::ask(Job job) {
 }
 
 void Writer::begin(Start start, std::optional<Progress> progress, std::optional<Doubt> doubt) {
-    ask({Kind::BEGIN, {std::move(start), std::move(progress), std::move(doubt), false}, {}, {}});
+    ask({Kind::BEGIN, {std::move(start), std::move(progress), std::move(doubt), false}, {}, {}, 0});
 }
 
 void Writer::note(const Progress &progress) {
-    ask({Kind::PROGRESS, {{}, progress, {}, false}, {}, {}});
+    ask({Kind::PROGRESS, {{}, progress, {}, false}, {}, {}, 0});
 }
 
 void Writer::note(const Doubt &doubt) {
-    ask({Kind::DOUBT, {{}, {}, doubt, false}, {}, {}});
+    ask({Kind::DOUBT, {{}, {}, doubt, false}, {}, {}, 0});
 }
 
 void Writer::end() {
-    ask({Kind::END, {}, {}, {}});
+    ask({Kind::END, {}, {}, {}, 0});
 }
 
 void Writer::forget() {
-    ask({Kind::FORGET, {}, {}, {}});
+    ask({Kind::FORGET, {}, {}, {}, 0});
 }
 
 void Writer::keep_file(const std::string &path, std::string text) {
-    ask({Kind::FILE, {}, path, std::move(text)});
+    ask({Kind::FILE, {}, path, std::move(text), 0});
+}
+
+Result<> Writer::write_file(const std::string &path, const std::string &text) {
+    std::uint64_t number = 0;
+    {
+        const std::lock_guard lock(mutex_);
+        number = ++last_job_;
+        std::erase_if(jobs_, [&](const Job &one) { return one.kind == Kind::FILE && one.path == path; });
+    }
+    // The thread may have taken an older text already: it is done, or will find this number.
+    const std::lock_guard lock(disk_mutex_);
+    written_[path] = number;
+    return disk_->rewrite(path, text);
 }
 
 std::optional<std::string> Writer::take_trouble() {
@@ -155,12 +169,14 @@ void Writer::run_thread() {
 /// An error is told, and what comes after it is done all the same.
 void Writer::do_jobs(Jobs &jobs) {
     for (Job &job : jobs) {
+        const std::lock_guard lock(disk_mutex_);
         const auto done = do_job(job);
         if (!done.has_value()) {
             tell(done);
         }
     }
     if (!records_.empty()) {
+        const std::lock_guard lock(disk_mutex_);
         tell(write_records());
     }
 }
@@ -192,9 +208,15 @@ Result<> Writer::do_job(Job &job) {
         const auto removed = disk_->remove(path_);
         return removed.has_value() ? disk_->sync_folder_of(path_) : removed;
     }
-    case Kind::FILE: return disk_->rewrite(job.path, job.text);
+    case Kind::FILE: return do_file(job);
     }
     return {};
+}
+
+Result<> Writer::do_file(const Job &job) {
+    const auto written = written_.find(job.path);
+    const bool isOld = written != written_.end() && job.number < written->second;
+    return isOld ? Result<>{} : disk_->rewrite(job.path, job.text);
 }
 
 Result<> Writer::begin_file(Job &job) {

@@ -5,6 +5,7 @@
 
 #include <condition_variable>
 #include <deque>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -27,8 +28,8 @@ enum class Works : std::uint8_t {
     ON_CALL,  ///< in work(): for virtual clocks
 };
 
-/// What is asked is done in its order, each part synced before the next; a progress that waits is overtaken
-/// by the next one. Asked by one thread.
+/// What is asked is done in its order, each part synced before the next; a progress or a file that waits is
+/// overtaken by the next one. Asked by one thread.
 class Writer {
   public:
     /// `path`: of the journal; empty: runs are not journalled.
@@ -51,6 +52,9 @@ class Writer {
     /// Nobody wants to go on with it: there is no journal any more.
     void forget();
     void keep_file(const std::string &path, std::string text);
+    /// Waits for the disk: the file has this text when it returns, and nothing that was asked before comes
+    /// over it.
+    Result<> write_file(const std::string &path, const std::string &text);
 
     /// What the operator is to know, once.
     std::optional<std::string> take_trouble();
@@ -63,6 +67,7 @@ class Writer {
         Kind kind = Kind::END;
         Run run;  ///< of BEGIN; the field in question of PROGRESS and DOUBT
         std::string path, text;
+        std::uint64_t number = 0;  ///< counts what is asked
     };
     using Jobs = std::deque<Job>;
 
@@ -71,12 +76,13 @@ class Writer {
     void run_thread();
     void do_jobs(Jobs &jobs);
     Result<> do_job(Job &job);
+    Result<> do_file(const Job &job);
     Result<> begin_file(Job &job);
     Result<> write_records();
     Result<> rewrite();
     void tell(const Result<> &result);
 
-    std::unique_ptr<Disk> disk_;
+    std::unique_ptr<Disk> disk_;  ///< from the start on under disk_mutex_
     std::string path_;
     Found found_;
 
@@ -85,6 +91,10 @@ class Writer {
     Jobs jobs_;                           ///< under the mutex
     std::optional<std::string> trouble_;  ///< under the mutex
     bool isEnding_ = false;               ///< under the mutex
+    std::uint64_t last_job_ = 0;          ///< under the mutex
+
+    std::mutex disk_mutex_;                         ///< never taken within mutex_; the disk is used under it
+    std::map<std::string, std::uint64_t> written_;  ///< files by write_file(): which job; under that mutex
 
     // Of whoever works.
     std::optional<Run> run_;    ///< as the file says it

@@ -18,7 +18,7 @@ Task::Task(const Parts &parts, Settings settings)
               {settings_.machine_units, settings_.tool_change_place, settings_.parameter_file,
                settings_.sequencer.isToolChangeWithSpindleOn, settings_.interpreter_plugin,
                settings_.interpreter}),
-      recovery_(parts.journal),
+      parameter_file_(settings_.parameter_file, reader_, parts.journal), recovery_(parts.journal),
       on_abort_(settings_.interpreter_plugin.empty() ? settings_.interpreter.on_abort_command
                                                      : std::string()),
       user_program_(settings_.isUserProgramWaitedFor),
@@ -78,6 +78,7 @@ Result<> Task::start() {
     if (!loaded.has_value()) {
         return loaded;
     }
+    parameter_file_.note_loaded();
     show_first_tool(parts_.tools, io_);
     synch_interpreter();
     planner_mode_.announce();
@@ -97,10 +98,6 @@ void Task::synch_interpreter() {
     machine.probed_position = machine.isProbeTripped ? machine.probed_position : machine.position;
     world_.show(machine);
     reader_.synch(machine.position);
-}
-
-Result<> Task::save_parameters() const {
-    return reader_.save_parameters();
 }
 
 void Task::step(std::int64_t now_ns) {
@@ -299,6 +296,9 @@ void Task::run_interpreter() {
             }
             run_.change(RunEvent::SYNCED);
             synch_interpreter();
+            if (!run_.isProgram()) {  // what a program sets is saved at its end
+                parameter_file_.keep();
+            }
             const std::string probe = sequencer_.take_probe() ? reader_.probe_line() : "";
             if (!probe.empty()) {
                 sequencer_.log_probe(probe);
@@ -342,6 +342,9 @@ void Task::finish_run(Progress progress, const std::string &reason) {
     } else if (run_.isRunning() && progress == Progress::DONE && reader_.interpreter().isMoveHeld()) {
         post(MessageKind::OPERATOR_TEXT,
              "cutter compensation holds this move back until the next one or G40 says where it ends");
+    }
+    if (!run_.isProgram()) {  // a touch-off must outlive a crash that follows
+        parameter_file_.keep();
     }
     sequencer_.end_step();
     recovery_.end();

@@ -16,6 +16,7 @@
 #include "task/run/left_place.hh"
 #include "task/run/machine_world.hh"
 #include "task/run/on_abort.hh"
+#include "task/run/parameter_file.hh"
 #include "task/run/program_reader.hh"
 #include "task/run/program_run.hh"
 #include "task/run/recovery.hh"
@@ -104,8 +105,8 @@ class Task {
 
     /// Loads parameters and announces the start state to the interpreter. Errors name file, line and column.
     Result<> start();
-    /// Writes the parameter file. Call once at a clean end.
-    Result<> save_parameters() const;
+    /// Writes the parameter file and waits for it: at the end of the machine, or for one who is to read it.
+    Result<> save_parameters() { return parameter_file_.save(); }
 
     /// One task cycle at clock time `now_ns`.
     void step(std::int64_t now_ns);
@@ -177,6 +178,7 @@ class Task {
 
     MachineWorld world_;
     ProgramReader reader_;
+    ParameterFile parameter_file_;
     ProgramRun run_;
     Recovery recovery_;
     Approach approach_;

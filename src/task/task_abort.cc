@@ -83,6 +83,7 @@ void Task::step_clean_up() {
         sequencer_.step(now_ns_);
         if (sequencer_.isIdle()) {
             run_.change(RunEvent::CLEANED);
+            parameter_file_.keep();
         }
     }
 }

@@ -38,10 +38,15 @@ void Task::Start::begin_journal(std::uint32_t first_block) {
 }
 
 /// Once a cycle.
-void Task::Start::step_journal() {
+void Task::Start::show_journal() {
     while (const auto trouble = task.recovery_.take_trouble()) {
         task.post(MessageKind::OPERATOR_ERROR, *trouble);
     }
+    task.recovery_.show(task.status_.recovery);
+}
+
+/// Once a cycle, after the status: no client that outlives a crash has seen less than the journal says.
+void Task::Start::note_place() {
     const bool isUnderWay =
         task.run_.isProgram() && task.run_.phase() >= RunPhase::READING && task.run_.hold() != Hold::PROPOSED;
     if (isUnderWay && task.recovery_.isOn()) {
@@ -50,7 +55,6 @@ void Task::Start::step_journal() {
         task.recovery_.step(task.now_ns_, {source.block, source.line, place, task.io_.outputs.tool_number},
                             task.reader_.canon().marks(), task.parts_.tools);
     }
-    task.recovery_.show(task.status_.recovery);
 }
 
 /// After each step of the interpreter.

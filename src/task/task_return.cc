@@ -14,10 +14,15 @@ void Task::Start::watch_hold() {
         task.left_.reset();
         return;
     }
+    const io::Outputs &io = task.io_.outputs;
     if (task.left_.has_value()) {
+        // A change of the tool that the program has asked for goes on in a hold: its tool is the program's.
+        const bool isProgramChanging = task.sequencer_.exec_state() == ExecState::WAITING_FOR_IO;
+        task.left_->tool = isProgramChanging ? io.tool_number : task.left_->tool;
+        task.left_->tool_offset =
+            isProgramChanging ? offset_of_tool(io.tool_number) : task.left_->tool_offset;
         return;
     }
-    const io::Outputs &io = task.io_.outputs;
     LeftPlace left;
     left.line = task.motion_.status().source.line;
     left.tool = io.tool_number;

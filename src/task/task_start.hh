@@ -19,7 +19,8 @@ struct Task::Start {
     void begin_recovery();
     void prepare_journal();
     void begin_journal(std::uint32_t first_block);
-    void step_journal();
+    void show_journal();
+    void note_place();
     void note_doubt();
     /// Once a cycle while it is.
     void step();

@@ -117,11 +117,12 @@ void Task::update_status() {
         post(MessageKind::OPERATOR_ERROR, "the lubrication wants oil: pin iocontrol.0.lube_level is FALSE");
     }
     status_.io.lube = {io_.outputs.lube, io_.hasOil()};
-    Start{*this}.step_journal();
+    Start{*this}.show_journal();
     ++status_.cycle;
     status_.time_ns = now_ns_;
     const PartMask told = tell_motion(motion_.status(), motion_.fresh_parts(), settings_.axis_mask, status_);
     desk_.publish(status_, told);
+    Start{*this}.note_place();
 }
 
 }  // namespace mw::task

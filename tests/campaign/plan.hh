@@ -147,9 +147,7 @@ bool hasTrouble(const Act &act, Upset what);
 inline constexpr unsigned PLAN_VERSION = 3;
 Plan make_plan(std::uint64_t seed, unsigned version = PLAN_VERSION);
 
-/// What is kept of a plan, to find a short one that fails too: "0,2:0-5,3x,4.1" are act 0, act 2 with those
-/// of its moves that are among its blocks 0 to 5, act 3 without troubles, act 4 with its trouble 1. Empty:
-/// all.
+/// What is kept of a plan, in the words of campaign_runner/kept.hh; of blocks, moves alone are left out.
 Plan reduced(const Plan &plan, const std::string &kept);
 
 }  // namespace mw::campaign

@@ -2,7 +2,6 @@
 #include "power_cut/rig.hh"
 
 #include <fstream>
-#include <sstream>
 
 #include <fmt/format.h>
 
@@ -12,12 +11,6 @@ namespace mw::power_cut {
 namespace {
 
 namespace files = std::filesystem;
-
-std::string content(const files::path &path) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
-}
 
 std::string bits(const geom::Pose &pose) {
     std::string text;
@@ -75,11 +68,13 @@ void Rig::die() {
 }
 
 std::string Rig::come_up(const std::vector<std::string> &mdi) {
+    steps_in_write = -1;
     loaded_ = machine::LoadedConfig::load(MW_SOURCE_DIR "/configs/sim/mill_mm.ini", sink_);
     if (loaded_ == nullptr) {
         return "the INI file cannot be read";
     }
     loaded_->machine.task.parameter_file = folder_ / "p.var";
+    find_parameters();
     loaded_->machine.tool_table_file = folder_ / "tools.tbl";
     writer_ = std::make_unique<journal::Writer>(std::make_unique<journal::test::TornDiskView>(disk_),
                                                 "journal", journal::Works::ON_CALL);
@@ -107,6 +102,14 @@ std::string Rig::come_up(const std::vector<std::string> &mdi) {
     }
     listen();
     return ask(msgs::SetMode{msgs::Mode::AUTO});
+}
+
+/// The interpreter reads them from a real file: as the disk has it.
+void Rig::find_parameters() {
+    files::remove(folder_ / "p.var");
+    if (disk_.names.contains(folder_ / "p.var")) {
+        std::ofstream(folder_ / "p.var") << disk_.files[disk_.names[folder_ / "p.var"]].now;
+    }
 }
 
 void Rig::listen() {
@@ -167,7 +170,7 @@ void Rig::cycle(std::mt19937_64 &random) {
     if (hasEnded() && !recording.isDone) {
         recording.isDone = machine_->client().outcome(run_).progress == msgs::Progress::DONE;
         static_cast<void>(machine_->task().save_parameters());
-        recording.parameters = content(folder_ / "p.var");
+        recording.parameters = disk_.files[disk_.names[folder_ / "p.var"]].now;
     }
 }
 

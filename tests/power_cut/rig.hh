@@ -71,6 +71,7 @@ class Rig {
     /// What is on is told with a move when motion has come to it.
     void tell_what_is_on();
     void listen();
+    void find_parameters();
 
     std::filesystem::path folder_;
     journal::test::TornDisk &disk_;

@@ -105,6 +105,8 @@ class Parameters {
     Result<> load(const std::string &path);
     /// The same for text in memory; `path` names it in errors. On an error nothing is changed.
     Result<> parse(std::string_view text, const std::string &path);
+    /// As the file has it: the numbers that it had, and those that must be there.
+    std::string text() const;
     Result<> save(const std::string &path) const;
 
   private:

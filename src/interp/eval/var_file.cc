@@ -96,7 +96,7 @@ Result<> Parameters::parse(std::string_view text, const std::string &path) {
     return {};
 }
 
-Result<> Parameters::save(const std::string &path) const {
+std::string Parameters::text() const {
     std::set<int> numbers = required_numbers();
     numbers.insert(file_numbers_.begin(), file_numbers_.end());
     std::string out;
@@ -105,7 +105,11 @@ Result<> Parameters::save(const std::string &path) const {
             out += fmt::format("{}\t{:.6f}\n", number, get(number));
         }
     }
-    return write_file_atomically(path, out);
+    return out;
+}
+
+Result<> Parameters::save(const std::string &path) const {
+    return write_file_atomically(path, text());
 }
 
 }  // namespace mw::interp::detail

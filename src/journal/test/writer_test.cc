@@ -15,6 +15,12 @@ namespace {
 
 constexpr const char *PATH = "/m/sim.var.journal", *PROGRAM = "/m/p.ngc";
 
+std::string content(const std::filesystem::path &path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+}
+
 Progress at_block(std::uint64_t block) {
     Progress progress;
     progress.block = block;
@@ -75,6 +81,18 @@ TEST_F(JournalWriter, AFileThatIsNoJournalIsTold_C5) {
     EXPECT_EQ(*trouble,
               "/m/sim.var.journal: this is no journal, or one of another version: a program that was "
               "cut short cannot be gone on with");
+}
+
+TEST_F(JournalWriter, AFileThatIsWaitedForIsNewerThanWhatWasAskedBefore_D3) {
+    auto writer = open();
+    writer->keep_file("/m/p.var", "older");
+    ASSERT_TRUE(writer->write_file("/m/p.var", "newer").has_value());
+    EXPECT_EQ(disk.files[disk.names["/m/p.var"]].synced, "newer");
+    EXPECT_FALSE(writer->work());
+    writer->keep_file("/m/p.var", "newest");
+    writer->keep_file("/m/other", "other");
+    writer->work();
+    EXPECT_EQ(disk.files[disk.names["/m/p.var"]].synced, "newest");
 }
 
 TEST_F(JournalWriter, ItDoesNotGrowWithoutEnd) {
@@ -148,9 +166,16 @@ TEST(JournalWriterThread, WritesToARealDiskBesideWhoAsks_D3) {
         EXPECT_EQ(writer.found().run->progress->block, 500U);
         EXPECT_EQ(writer.found().refusal, "");
     }
-    std::ostringstream life;
-    life << std::ifstream(folder / "life").rdbuf();
-    EXPECT_EQ(life.str(), "T1 1 1\n");
+    EXPECT_EQ(content(folder / "life"), "T1 1 1\n");
+    {
+        Writer writer(system_disk(), "", Works::ALONE);
+        for (int i = 0; i < 200; ++i) {  // whatever the thread has taken already does not come over it
+            writer.keep_file(folder / "p.var", "older");
+            ASSERT_TRUE(writer.write_file(folder / "p.var", std::to_string(i)).has_value());
+            EXPECT_EQ(content(folder / "p.var"), std::to_string(i));
+        }
+    }
+    EXPECT_EQ(content(folder / "p.var"), "199");
     Writer lost(system_disk(), folder / "none" / "j", Works::ON_CALL);
     lost.begin({0, folder / "p.ngc", {}, "state"});
     lost.work();

@@ -42,6 +42,10 @@ Result<> ProgramReader::save_parameters() const {
     return setup_.parameter_file.empty() ? Result<>{} : interp_->save_parameters(setup_.parameter_file);
 }
 
+std::string ProgramReader::parameter_text() const {
+    return rs274_ != nullptr ? rs274_->parameter_text() : std::string();
+}
+
 void ProgramReader::synch(const geom::Pose &position) {
     canon_.set_position(position);
     frame_.set_position(position);

@@ -38,6 +38,9 @@ class ProgramReader {
     /// Opens the plug-in and reads the parameter file. Errors name file, line and column.
     Result<> load();
     Result<> save_parameters() const;
+    /// What the parameter file is to have; empty where a plug-in reads programs.
+    std::string parameter_text() const;
+    bool isGCode() const { return rs274_ != nullptr; }
     /// The world shows the machine as it is now; the position is the program's from here.
     void synch(const geom::Pose &position);
     /// Forgets what was read ahead, and tells again what is in force: displays and motion follow it.

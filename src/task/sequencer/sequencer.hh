@@ -71,7 +71,7 @@ class Sequencer {
     bool isIdle() const;
     /// After the current block's items motion comes to rest and isStepDone() is true.
     void start_step();
-    void end_step() { isStepping_ = false; }
+    void end_step() { isStepping_ = isStepDone_ = false; }
     bool isStepDone() const { return isStepDone_; }
 
     void on_tool_event(io::ToolEvent event);

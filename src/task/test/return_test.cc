@@ -63,6 +63,23 @@ TEST_F(ReturnTest, ItComesBackByTheWayThatIsConfirmedAndGoesOn_D3) {
     EXPECT_EQ(joined(), "line 20, spindle 500, line 3, line 3, line 7, line 8, spindle off");
 }
 
+/// The tool that came was taken for one that the operator had put in, and could not be put back either:
+/// nothing but an abort was left.
+TEST_F(ReturnTest, AProgramThatIsHeldInAToolChangeGoesOnWithItsTool_D3) {
+    open("G21 F600\nT5 M6\nG1 X3\nM2\n");
+    io.isChangerWorking = false;
+    const client::Serial run = post(RunProgram{});
+    cycles(30);
+    ASSERT_TRUE(io.outputs.tool_change);
+    ASSERT_EQ(ask(PauseProgram{}), Progress::DONE);
+    io.isChangerWorking = true;
+    cycles(30);
+    ASSERT_EQ(task.status().tool.in_spindle, 5);
+    ASSERT_EQ(ask(ResumeProgram{}), Progress::DONE) << reason(request);
+    cycles(200);
+    EXPECT_EQ(progress(run), Progress::DONE) << reason(run);
+}
+
 TEST_F(ReturnTest, ASpindleThatWasStoppedInAHoldIsNotForgotten_D3) {
     const auto run = hold();
     ASSERT_EQ(ask(SpindleOff{}), Progress::DONE);

@@ -45,9 +45,10 @@ class LoopedIo final : public IoPort {
 
 class TaskTest : public testing::Test {
   protected:
-    explicit TaskTest(const Settings &settings = {})
+    explicit TaskTest(const Settings &settings = {}, journal::Writer *journal = nullptr)
         : channels(std::make_unique<motion::Channels>()), motion(*channels), folder(made_folder()),
-          task({*channels, io, tools, parameters, mailbox.segment()}, settings_for(folder, settings)) {
+          task({*channels, io, tools, parameters, mailbox.segment(), journal},
+               settings_for(folder, settings)) {
         EXPECT_TRUE(task.start().has_value());
         EXPECT_EQ(ask(SetState{State::ESTOP_RESET}), Progress::DONE);
         EXPECT_EQ(ask(SetState{State::ON}), Progress::DONE);
@@ -61,6 +62,7 @@ class TaskTest : public testing::Test {
     }
     static Settings settings_for(const fs::path &folder, Settings settings) {
         settings.interpreter.user_m_path = {folder.string()};
+        settings.interpreter.subroutine_path = {folder.string()};
         settings.isUserProgramWaitedFor = true;
         return settings;
     }

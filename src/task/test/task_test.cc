@@ -50,6 +50,22 @@ TEST_F(TaskTest, AUserCodeThatFailsStopsTheProgram_I1) {
     EXPECT_EQ(joined().find("77"), std::string::npos);
 }
 
+/// The mark of a step that was done held back all that came behind it, later programs too.
+TEST_F(TaskTest, AResumeAfterAStepThatIsDoneGoesOn_D1) {
+    open("G21 F600\nG1 X1\nG1 X2\nG1 X3\nM2\n");
+    const client::Serial run = post(StepProgram{});
+    cycles(20);
+    ASSERT_TRUE(task.status().task.isPaused);
+    ASSERT_EQ(ask(StepProgram{}), Progress::DONE) << reason(request);
+    cycles(20);
+    ASSERT_TRUE(task.status().task.isPaused);
+    ASSERT_EQ(ask(ResumeProgram{}), Progress::DONE) << reason(request);
+    cycles(200);
+    EXPECT_EQ(progress(run), Progress::DONE) << reason(run);
+    ASSERT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE) << reason(request);
+    EXPECT_EQ(ask(Mdi{"G0 X5"}), Progress::DONE) << reason(request);
+}
+
 /// Reading ahead is bounded in each cycle, so that task hears the operator.
 TEST_F(TaskTest, AnEndlessLoopEndsWithAnAbort_I1) {
     open("o1 while [1]\n#1=[#1+1]\no1 endwhile\nM2\n");

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "task/run/parameter_file.hh"
+
+#include <utility>
+
+namespace mw::task {
+
+void ParameterFile::keep() {
+    if (!isWriterAsked()) {
+        return;
+    }
+    std::string text = reader_.parameter_text();
+    if (text != kept_) {
+        kept_ = text;
+        writer_->keep_file(path_, std::move(text));
+    }
+}
+
+Result<> ParameterFile::save() {
+    if (!isWriterAsked()) {
+        return reader_.save_parameters();
+    }
+    kept_ = reader_.parameter_text();
+    return writer_->write_file(path_, kept_);
+}
+
+}  // namespace mw::task

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What a machine may be in when a program or a line has not come to its end.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "task_campaign/beliefs.hh"
+
+namespace mw::task_campaign {
+
+/// The program to its end; nothing: a line of it must fail.
+std::optional<World> carried_out(const std::vector<Line> &lines, World world, bool isBlockDelete);
+/// Wherever the interpreter had read to, and the machine, which is behind it. No spindle turns.
+std::vector<World> after_stop(const std::vector<Line> &lines, const World &before, bool isBlockDelete);
+/// Nothing of a line of MDI, all of it, or all of it that the interpreter does.
+std::vector<World> with_or_without(const Line &line, const World &before);
+
+}  // namespace mw::task_campaign

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A whole machine in virtual time with several clients, a tool changer at its pins and a disk that can lose
+// what was not synced. It may die and come up again.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "client/client.hh"
+#include "diag/sink.hh"
+#include "journal/test/torn_disk.hh"
+#include "machine/loaded_config.hh"
+#include "machine/machine.hh"
+#include "task_campaign/plan.hh"
+
+namespace mw::task_campaign {
+
+/// What the changer does with what is asked of it.
+struct Changer {
+    int answer_ms = 20;
+    bool isFaulted = false;
+};
+
+class Bench {
+  public:
+    Bench(const Plan &plan, std::filesystem::path folder);
+    ~Bench();
+
+    /// Empty, or what went wrong.
+    std::string come_up();
+    /// All of the process is gone; with `isPowerCut` the disk loses what was not synced.
+    void die(bool isPowerCut);
+    bool isUp() const { return machine_ != nullptr; }
+    /// A cycle of task, a millisecond.
+    void cycle();
+    std::int64_t now_ms() const { return now_ms_; }
+
+    client::Client &client(int number) { return *clients_[static_cast<std::size_t>(number)]; }
+    /// As by kill -9; somebody else takes its place.
+    void lose_client(int number);
+    const msgs::MachineStatus &status() const { return machine_->task().status(); }
+    machine::Machine &machine() { return *machine_; }
+
+    /// What HAL sees of the machine.
+    struct Pins {
+        volatile bool *chain, *is_amp_on, *spindle_on, *mist, *flood, *tool_prepare, *tool_change,
+            *in_position;
+        volatile bool *tool_prepared, *tool_changed, *fault, *at_speed;
+        volatile double *speed_out;
+        volatile std::int32_t *tool_number;
+    };
+    const Pins &pins() const { return pins_; }
+
+    /// The parameter file as the disk has it: what the writer has done.
+    std::map<int, double> parameters() const;
+    std::string tool_table() const;
+    void write_tool_table(const std::vector<Tool> &tools) const;
+    std::string write_program(const std::string &text);
+    /// What was asked of the writer is done.
+    void flush() { writer_->work(); }
+    static constexpr int MOST_LATE_MS = 120;
+
+    Changer changer;
+
+  private:
+    void write_files() const;
+    void step_changer();
+    void step_disk();
+    std::string bind();
+    std::string join(std::size_t number);
+
+    Plan plan_;
+    std::filesystem::path folder_;
+    journal::test::TornDisk disk_;
+    std::mt19937_64 random_;
+    diag::Sink sink_;
+    std::unique_ptr<machine::LoadedConfig> loaded_;
+    std::unique_ptr<journal::Writer> writer_;
+    std::unique_ptr<machine::Machine> machine_;
+    std::array<std::unique_ptr<client::Client>, CLIENTS> clients_;
+    Pins pins_{};
+    std::int64_t now_ms_ = 0;
+    std::uint64_t programs_ended_ = 0;
+    int late_ms_ = 0, asked_ms_ = 0;
+};
+
+}  // namespace mw::task_campaign

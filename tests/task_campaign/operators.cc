@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "task_campaign/operators.hh"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace mw::task_campaign {
+namespace {
+
+/// Of a session, in which nothing takes long.
+constexpr std::int64_t MOST_MS = 600000;
+
+/// Figures are replaced, so that refusals can be counted by reason.
+std::string kind_of(const std::string &reason) {
+    std::string out;
+    for (const char c : reason) {
+        const bool isFigure = (c >= '0' && c <= '9') || (c == '.' && !out.empty() && out.back() == '#');
+        if (!isFigure) {
+            out += c;
+        } else if (out.empty() || out.back() != '#') {
+            out += '#';
+        }
+    }
+    const std::size_t path = out.find("/");
+    return path == std::string::npos ? out : out.substr(0, path) + "...";
+}
+
+}  // namespace
+
+void Operators::fail(const std::string &rule, const std::string &text) {
+    if (verdict_.fault.empty()) {
+        verdict_.fault =
+            fmt::format("{}: {} (at {:.3f} s)", rule, text, 1e-3 * static_cast<double>(bench_.now_ms()));
+    }
+}
+
+void Operators::tell(const std::string &text) const {
+    if (tell_ != nullptr) {
+        fmt::print(tell_, "{:.3f} {}\n", 1e-3 * static_cast<double>(bench_.now_ms()), text);
+    }
+}
+
+void Operators::cycle() {
+    if (isOver()) {
+        return;
+    }
+    bench_.cycle();
+    look_at_orders();
+    while (const auto message = tell_ != nullptr ? bench_.client(0).next_message() : std::nullopt) {
+        tell("  says: " + message->text);
+    }
+    if (bench_.now_ms() > MOST_MS) {
+        fail("time", "the session does not end");
+    }
+}
+
+void Operators::cycles(int count) {
+    for (int i = 0; i < count && !isOver(); ++i) {
+        cycle();
+    }
+}
+
+Operators::Serial Operators::post(int client, const msgs::Command &command, Expected expected,
+                                  std::int64_t patience_ms) {
+    const auto posted = bench_.client(client).post(command);
+    if (!posted.has_value()) {
+        fail("post", posted.error().str());
+        return 0;
+    }
+    const std::string name = std::visit(
+        [](const auto &body) { return std::string(msgs::DECLARED<std::decay_t<decltype(body)>>.name); },
+        command);
+    tell(fmt::format("{} posts {} ({})", client, name, *posted));
+    ++verdict_.commands;
+    const auto *mode = std::get_if<msgs::SetMode>(&command);
+    orders_.push_back({*posted, client, name, expected, bench_.now_ms(), patience_ms,
+                       mode != nullptr ? std::optional(mode->mode) : std::nullopt});
+    return *posted;
+}
+
+void Operators::look_at_orders() {
+    for (std::size_t i = 0; i < orders_.size();) {
+        const Order order = orders_[i];
+        const auto outcome = bench_.client(order.client).outcome(order.serial);
+        if (outcome.progress != msgs::Progress::STARTED) {
+            orders_.erase(orders_.begin() + static_cast<std::ptrdiff_t>(i));
+            note_end(order, outcome);
+            continue;
+        }
+        if (bench_.now_ms() > order.posted_ms + order.patience_ms) {
+            fail("unended", fmt::format("{} has no end after {} ms: {}", order.name, order.patience_ms,
+                                        what_it_waits_for()));
+        }
+        ++i;
+    }
+}
+
+std::string Operators::what_it_waits_for() const {
+    const msgs::TaskStatus &task = status().task;
+    const msgs::TrajectoryStatus &motion = status().trajectory;
+    return fmt::format(
+        "interpreter {}, waits for {} {}, paused {}, motion paused {}, stepping {}, {} moves, at "
+        "rest {}, line {}",
+        static_cast<int>(task.interp_state), static_cast<int>(task.exec_state),
+        static_cast<int>(task.waiting.what), task.isPaused, motion.isPaused, motion.isStepping,
+        motion.queue_depth, motion.isInPosition, task.motion_line);
+}
+
+void Operators::note_end(const Order &order, const client::Outcome &outcome) {
+    ended_[order.serial] = outcome;
+    tell(fmt::format("  {} of {}: {} {}", order.serial, order.client, static_cast<int>(outcome.progress),
+                     outcome.reason));
+    const bool isRefused = outcome.progress == msgs::Progress::REFUSED;
+    if (outcome.progress == msgs::Progress::DONE) {
+        mode_ = order.mode.value_or(mode_);
+    } else {
+        ++verdict_.refused;
+        ++verdict_.refusals[kind_of(outcome.reason)];
+        if (outcome.reason.empty()) {
+            fail("reason", order.name + " is refused without one");
+        }
+    }
+    if (order.expected == Expected::TAKEN && isRefused) {
+        fail("refusal", order.name + " is refused: " + outcome.reason);
+    }
+    if (order.expected == Expected::REFUSED && !isRefused) {
+        fail("admission", order.name + " is taken");
+    }
+}
+
+msgs::Progress Operators::progress_of(Serial serial) const {
+    const auto found = ended_.find(serial);
+    return found != ended_.end() ? found->second.progress : msgs::Progress::STARTED;
+}
+
+bool Operators::isWaited(Serial serial) const {
+    return std::ranges::any_of(orders_, [serial](const Order &order) { return order.serial == serial; });
+}
+
+void Operators::forget_orders(int client) {
+    std::erase_if(orders_, [client](const Order &order) { return client < 0 || order.client == client; });
+    if (client < 0) {
+        ended_.clear();  // another count begins
+    }
+}
+
+msgs::Progress Operators::ask(int client, const msgs::Command &command, Expected expected) {
+    const Serial serial = post(client, command, expected);
+    while (!isOver() && progress_of(serial) == msgs::Progress::STARTED) {
+        cycle();
+    }
+    return progress_of(serial);
+}
+
+void Operators::nurse() {
+    constexpr std::int64_t LOOKS_FOR_MS = 40;
+    const bool isWaiting = status().task.isPaused && !isHeldByUs_;
+    if (!isWaiting) {
+        held_since_ms_ = -1;
+        return;
+    }
+    held_since_ms_ = held_since_ms_ < 0 ? bench_.now_ms() : held_since_ms_;
+    if (bench_.now_ms() < held_since_ms_ + LOOKS_FOR_MS) {
+        return;
+    }
+    held_since_ms_ = -1;
+    if (status().approach.number != 0) {
+        post(1, msgs::ConfirmApproach{status().approach.number});
+    } else {
+        post(2, msgs::ResumeProgram{});
+    }
+}
+
+void Operators::settle() {
+    constexpr int MOST_CYCLES = 30000, REST_CYCLES = 5;
+    *bench_.pins().chain = true;
+    bench_.changer.isFaulted = false;
+    isHeldByUs_ = false;
+    int rest = 0;
+    for (int i = 0; i < MOST_CYCLES && !isOver(); ++i) {
+        nurse();
+        cycle();
+        const bool isQuiet = !isRunning() && orders_.empty() && *bench_.pins().in_position;
+        rest = isQuiet ? rest + 1 : 0;
+        if (rest > REST_CYCLES) {
+            bench_.flush();
+            return;
+        }
+    }
+    if (!isOver()) {
+        fail("rest", "the machine does not come to rest: " + what_it_waits_for());
+    }
+}
+
+}  // namespace mw::task_campaign

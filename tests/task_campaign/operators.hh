@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The people at the machine: post commands and see to it that each has an end, go on after holds.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "task_campaign/bench.hh"
+#include "task_campaign/plan.hh"
+
+namespace mw::task_campaign {
+
+struct Verdict {
+    std::string fault;  ///< "rule: what"; empty: all held
+    double seconds = 0;
+    int acts = 0, commands = 0, refused = 0, runs = 0, ended = 0, stopped = 0, crashes = 0, recovered = 0;
+    std::map<std::string, int> counts;    ///< how often troubles came while something ran, and so on
+    std::map<std::string, int> refusals;  ///< by reason, figures replaced
+};
+
+class Operators {
+  public:
+    Operators(const Plan &plan, const std::filesystem::path &folder, std::FILE *tell)
+        : bench_(plan, folder), tell_(tell) {}
+
+  protected:
+    using Serial = client::Serial;
+    enum class Expected { TAKEN, REFUSED, ANY };
+    struct Order {
+        Serial serial = 0;
+        int client = 0;
+        std::string name;
+        Expected expected = Expected::ANY;
+        std::int64_t posted_ms = 0, patience_ms = 0;
+        std::optional<msgs::Mode> mode;  ///< that it sets
+    };
+
+    void fail(const std::string &rule, const std::string &text);
+    bool isOver() const { return !verdict_.fault.empty(); }
+    void tell(const std::string &text) const;
+    void cycle();
+    void cycles(int count);
+    Serial post(int client, const msgs::Command &command, Expected expected = Expected::ANY,
+                std::int64_t patience_ms = 5000);
+    msgs::Progress ask(int client, const msgs::Command &command, Expected expected = Expected::ANY);
+    msgs::Progress progress_of(Serial serial) const;
+    bool isWaited(Serial serial) const;
+    /// Nobody waits for what this client has posted; -1: for anything.
+    void forget_orders(int client);
+    const msgs::MachineStatus &status() const { return bench_.status(); }
+    bool isRunning() const { return status().task.interp_state != msgs::InterpState::IDLE; }
+    /// Whoever stands there: goes on after holds, confirms what is proposed.
+    void nurse();
+    /// Until nothing runs, moves, waits or is to be written.
+    void settle();
+
+    Bench bench_;
+    std::FILE *tell_;
+    Verdict verdict_;
+    msgs::Mode mode_ = msgs::Mode::MANUAL;  ///< that was set last
+    bool isHeldByUs_ = false;               ///< nobody is to resume
+
+  private:
+    void look_at_orders();
+    void note_end(const Order &order, const client::Outcome &outcome);
+    std::string what_it_waits_for() const;
+
+    std::vector<Order> orders_;  ///< that have not ended
+    std::map<Serial, client::Outcome> ended_;
+    std::int64_t held_since_ms_ = -1;
+};
+
+}  // namespace mw::task_campaign

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Programs, from their beginning or a line, to their end, a stop or a crash, and after it.
+#include <algorithm>
+
+#include "task_campaign/after_stop.hh"
+#include "task_campaign/session.hh"
+
+namespace mw::task_campaign {
+namespace {
+
+constexpr std::int64_t RUN_PATIENCE_MS = 120000;
+
+std::string text_of(const std::vector<Line> &lines) {
+    std::string text;
+    for (const Line &line : lines) {
+        text += line.text() + "\n";
+    }
+    return text + "M2\n";
+}
+
+}  // namespace
+
+void Session::run_program(const Act &act) {
+    if (!prepare(msgs::Mode::AUTO)) {
+        return;
+    }
+    ask(act.client, msgs::OpenProgram{bench_.write_program(text_of(act.blocks))}, Expected::TAKEN);
+    const bool isFromLine = act.work == Work::FROM_LINE;
+    const int from = isFromLine ? 1 + static_cast<int>(act.seed % (act.blocks.size() + 1)) : 0;
+    begin_troubles(act);
+    ++verdict_.runs;
+    const std::uint64_t ended = status().task.programs_ended;
+    const Serial run = post(act.client, msgs::RunProgram{from}, isFromLine ? Expected::ANY : Expected::TAKEN,
+                            RUN_PATIENCE_MS);
+    constexpr int SOON_MS = 3;
+    const auto isUnderWay = [&] {
+        return isRunning() || isWaited(run) || bench_.now_ms() < began_ms_ + SOON_MS;
+    };
+    while (!isOver() && !isCrashed_ && isUnderWay()) {
+        step_troubles();
+        if (!isCrashed_) {
+            nurse();
+            cycle();
+        }
+        if (bench_.now_ms() > began_ms_ + RUN_PATIENCE_MS) {
+            fail("end", "the program does not end");
+        }
+    }
+    if (!isOver()) {
+        end_program_of(act, isCrashed_ ? End::CRASHED : end_of(run, ended));
+    }
+}
+
+Session::End Session::end_of(Serial run, std::uint64_t ended_before) const {
+    const msgs::Progress progress = progress_of(run);
+    if (progress == msgs::Progress::STARTED) {  // its client is gone: nobody was told
+        const bool isError = status().task.error_code != 0 || isStopped_;
+        return isError || status().task.programs_ended == ended_before ? End::FAILED : End::DONE;
+    }
+    return progress == msgs::Progress::DONE      ? End::DONE
+           : progress == msgs::Progress::REFUSED ? End::REFUSED
+                                                 : End::FAILED;
+}
+
+void Session::end_program_of(const Act &act, End end) {
+    if (end == End::CRASHED) {
+        end_by_crash(act);
+        return;
+    }
+    std::vector<World> whole, stopped;
+    for (const World &world : beliefs_.worlds) {
+        const auto after = carried_out(act.blocks, world, beliefs_.isBlockDelete);
+        if (after.has_value()) {
+            add(whole, *after);
+        }
+        for (const World &one : after_stop(act.blocks, world, beliefs_.isBlockDelete)) {
+            add(stopped, one);
+        }
+        if (act.work == Work::FROM_LINE) {  // its search has failed: nothing is changed
+            add(stopped, world);
+        }
+    }
+    if (end == End::DONE) {
+        ++verdict_.ended;
+        if (whole.empty()) {
+            fail("work", "a program that must fail has come to its end");
+        }
+        beliefs_.worlds = std::move(whole);
+    } else if (end == End::FAILED) {
+        ++verdict_.stopped;
+        const bool mayFail = isStopped_ || whole.size() < beliefs_.worlds.size();
+        if (!mayFail && act.work != Work::FROM_LINE) {
+            fail("work", "a program that nobody has stopped does not come to its end");
+        }
+        beliefs_.worlds = std::move(stopped);
+    }
+    note_stop();
+    if (end == End::FAILED) {
+        adopt_place(bench_, beliefs_);
+    }
+}
+
+/// The parameter file is as before the program; the tool table file as the machine had come to.
+void Session::end_by_crash(const Act &act) {
+    const std::vector<World> before = std::move(beliefs_.worlds);
+    const bool wasBlockDelete = std::exchange(beliefs_.isBlockDelete, true);
+    beliefs_.worlds.clear();
+    for (const World &world : before) {
+        for (const World &stopped : after_stop(act.blocks, world, wasBlockDelete)) {
+            add(beliefs_.worlds, after_crash({world.modes, stopped.doings}));
+            if (!wasRunning_) {  // it has just ended
+                add(beliefs_.worlds, after_crash(stopped));
+            }
+        }
+    }
+    if (before.size() == 1) {
+        recover(act, before[0], wasBlockDelete);
+    }
+}
+
+/// The program that the crash has cut short, where it is offered.
+void Session::recover(const Act &act, const World &before, bool isBlockDelete) {
+    const bool isOffered = status().recovery.isOffered;
+    ++verdict_.counts[isOffered ? "offered after a crash" : "not offered after a crash"];
+    if (!isOffered) {
+        if (!status().recovery.refusal.str().empty()) {
+            ++verdict_.counts["offer refused: " + std::string(status().recovery.refusal.str()).substr(0, 40)];
+        }
+        return;
+    }
+    settle();
+    check();
+    if (isOver() || !prepare(msgs::Mode::AUTO)) {
+        return;
+    }
+    if (act.seed % 4 == 0) {
+        ask(3, msgs::ForgetRecovery{}, Expected::TAKEN);
+        return;
+    }
+    const Serial run = post(3, msgs::RecoverProgram{}, Expected::ANY, RUN_PATIENCE_MS);
+    while (!isOver() && progress_of(run) == msgs::Progress::STARTED) {
+        nurse();
+        cycle();
+    }
+    if (isOver()) {
+        return;
+    }
+    const auto whole = carried_out(act.blocks, before, isBlockDelete);
+    if (progress_of(run) == msgs::Progress::DONE) {
+        ++verdict_.recovered;
+        if (!whole.has_value()) {
+            fail("work", "a program that must fail has come to its end after a crash");
+            return;
+        }
+        beliefs_.worlds = {*whole};
+        return;
+    }
+    for (const World &one : after_stop(act.blocks, before, isBlockDelete)) {
+        add(beliefs_.worlds, one);
+    }
+    beliefs_.switch_devices_off();
+    settle();
+    adopt_place(bench_, beliefs_);
+}
+
+}  // namespace mw::task_campaign

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What goes wrong in a run, and what other people do meanwhile.
+#include "task_campaign/session.hh"
+
+namespace mw::task_campaign {
+
+void Session::begin_troubles(const Act &act) {
+    act_ = &act;
+    began_ms_ = bench_.now_ms();
+    next_trouble_ = 0;
+    isStopped_ = areDevicesOff_ = isCrashed_ = isHeldByUs_ = false;
+}
+
+/// What a trouble has led to, once the machine is at rest.
+void Session::note_stop() {
+    settle();
+    if (!areDevicesOff_ || isCrashed_) {
+        return;
+    }
+    beliefs_.switch_devices_off();
+}
+
+void Session::step_troubles() {
+    const std::int64_t now = bench_.now_ms() - began_ms_;
+    while (!isCrashed_ && !isOver() && next_trouble_ < act_->troubles.size() &&
+           act_->troubles[next_trouble_].at_ms <= now) {
+        begin(act_->troubles[next_trouble_++]);
+    }
+}
+
+void Session::begin(const Trouble &t) {
+    ++verdict_.counts[name_of(t.what)];
+    tell(name_of(t.what));
+    isStopped_ = isStopped_ || isEnding(t.what);
+    const bool isEstop = t.what == Upset::ESTOP || t.what == Upset::CHAIN;
+    areDevicesOff_ = areDevicesOff_ || isEstop || t.what == Upset::ABORT || t.what == Upset::OFF;
+    if (areDevicesOff_ && status().task.isAway) {
+        mode_ = msgs::Mode::MANUAL;  // in which the axes were jogged
+    }
+    const bool goesOff = t.what == Upset::OFF && beliefs_.state == msgs::State::ON;
+    beliefs_.state = isEstop ? msgs::State::ESTOP : goesOff ? msgs::State::OFF : beliefs_.state;
+    switch (t.what) {
+    case Upset::PAUSE: post(t.client, msgs::PauseProgram{}); break;
+    case Upset::STEP:
+        post(t.client, msgs::PauseProgram{});
+        cycles(t.length_ms);
+        for (int i = 0; i < 3; ++i) {
+            post(t.client, msgs::StepProgram{});
+            cycles(t.length_ms);
+        }
+        break;
+    case Upset::LEAVE: leave(t); break;
+    case Upset::OVERRIDE:
+        beliefs_.feed_override = static_cast<double>(t.seed % 16 + 4) / 10;
+        ask(t.client, msgs::SetFeedOverride{beliefs_.feed_override}, Expected::TAKEN);
+        break;
+    case Upset::ODD: try_odd(t.client, t.seed, false); break;
+    case Upset::CLIENT_GONE:
+        forget_orders(t.client);
+        bench_.lose_client(t.client);
+        break;
+    case Upset::ABORT: ask(t.client, msgs::AbortAll{}, Expected::TAKEN); break;
+    case Upset::RESET_INTERPRETER: break;
+    case Upset::OFF: ask(t.client, msgs::SetState{msgs::State::OFF}, Expected::TAKEN); break;
+    case Upset::ESTOP: ask(t.client, msgs::SetState{msgs::State::ESTOP}, Expected::TAKEN); break;
+    case Upset::CHAIN:
+        *bench_.pins().chain = false;
+        cycles(t.length_ms);
+        *bench_.pins().chain = true;
+        break;
+    case Upset::CHANGER_FAULT: bench_.changer.isFaulted = true; break;
+    case Upset::KILLED:
+    case Upset::POWER_CUT: crash(t.what == Upset::POWER_CUT); break;
+    }
+}
+
+/// The tool is taken away from a held program and comes back.
+void Session::leave(const Trouble &t) {
+    isHeldByUs_ = true;
+    ask(t.client, msgs::PauseProgram{});
+    cycles(t.length_ms);
+    if (ask(t.client, msgs::ReleaseAxes{}) == msgs::Progress::DONE) {
+        ++verdict_.counts["axes released"];
+        ask(t.client, msgs::JogIncrement{false, 2, 100, 3.0});
+        cycles(60);
+    }
+    isHeldByUs_ = false;
+}
+
+void Session::crash(bool isPowerCut) {
+    isCrashed_ = true;
+    wasRunning_ = isRunning();
+    ++verdict_.crashes;
+    forget_orders(-1);
+    bench_.die(isPowerCut);
+    const std::string trouble = bench_.come_up();
+    if (!trouble.empty()) {
+        fail("start", "after a crash: " + trouble);
+        return;
+    }
+    beliefs_.state = msgs::State::ESTOP;
+    mode_ = msgs::Mode::MANUAL;
+    beliefs_.isHomed = false;
+    beliefs_.isOptionalStop = beliefs_.isBlockDelete = true;
+    beliefs_.feed_override = 1;
+    cycle();
+}
+
+}  // namespace mw::task_campaign
