@@ -121,12 +121,16 @@ mw::Result<> run(const std::string &path) {
 }  // namespace
 
 int main(int argc, char **argv) {
-    if (argc > 2) {
-        fmt::print(stderr, "usage: motion-logger [FILE]\n");
-        return 2;
+    const std::string first = argc > 1 ? argv[1] : "";
+    if (argc > 2 || first.starts_with("-")) {
+        const bool isAsked = first == "--help" || first == "-h";
+        fmt::print(isAsked ? stdout : stderr,
+                   "usage: motion-logger [FILE]\n"
+                   "  stands in for motmod and writes what task asks of it; loadusr -W starts it\n");
+        return isAsked ? 0 : 2;
     }
     mw::catch_stop_signals();
-    const auto ended = run(argc > 1 ? argv[1] : "");
+    const auto ended = run(first);
     if (!ended.has_value()) {
         fmt::print(stderr, "{}: {}\n", NAME, ended.error().str());
     }

@@ -36,26 +36,36 @@ std::vector<std::string> meter_words(const std::vector<std::string> &words, bool
     return names;
 }
 
+namespace {
+
+constexpr const char *METER_USAGE = "usage: halmeter [-s] [pin|sig|param NAME] [-g X Y [WIDTH]]\n"
+                                    "  shows it on the terminal (as `millwright hal NAME`), elsewhere as "
+                                    "lines of text; there is no window, so\n"
+                                    "  that -s and -g change nothing\n";
+constexpr const char *SCOPE_TEXT =
+    "halscope: there is no oscilloscope in a window. `millwright hal capture NAME... --help` records up to "
+    "16\n"
+    "pins, signals and parameters in realtime, with triggers, as CSV, PNG or SVG.\n";
+
+bool wantsHelp(const std::vector<std::string> &words) {
+    return words.size() == 1 && (words[0] == "--help" || words[0] == "-h");
+}
+
+}  // namespace
+
 int halmeter(const std::vector<std::string> &words, volatile std::sig_atomic_t &stop) {
-    const bool isTerminal = ::isatty(STDOUT_FILENO) != 0;
     bool isWrong = false;
-    const std::vector<std::string> wanted = meter_words(words, isTerminal, isWrong);
+    const std::vector<std::string> wanted = meter_words(words, ::isatty(STDOUT_FILENO) != 0, isWrong);
     if (isWrong) {
-        std::fprintf(
-            stderr,
-            "usage: halmeter [-s] [pin|sig|param NAME] [-g X Y [WIDTH]]\n"
-            "  shows it on the terminal (as `millwright hal NAME`), elsewhere as lines of text; there is no "
-            "window,\n  so that -s and -g change nothing\n");
-        return 2;
+        std::fputs(METER_USAGE, wantsHelp(words) ? stdout : stderr);
+        return wantsHelp(words) ? 0 : 2;
     }
     return command_hal(wanted, stop);
 }
 
-int halscope(const std::vector<std::string> &) {
-    std::fprintf(stderr, "halscope: there is no oscilloscope in a window. `millwright hal capture NAME... "
-                         "--help` records up to 16\n"
-                         "pins, signals and parameters in realtime, with triggers, as CSV, PNG or SVG.\n");
-    return 1;
+int halscope(const std::vector<std::string> &words) {
+    std::fputs(SCOPE_TEXT, wantsHelp(words) ? stdout : stderr);
+    return wantsHelp(words) ? 0 : 1;
 }
 
 }  // namespace mw::hal::view
