@@ -37,7 +37,21 @@ TaskSide::~TaskSide() {
     io_pins_.destroy();
 }
 
+/// Before anybody else: clients that ask again and again whether the machine is up take all places until task
+/// frees them.
+Result<> TaskSide::take_places() {
+    auto client = client::Client::join(mailbox_.segment());
+    if (!client.has_value()) {
+        return std::unexpected(client.error());
+    }
+    client_.emplace(std::move(*client));
+    return parts_.config.hasHalui ? halui_.join(mailbox_.segment()) : Result<>{};
+}
+
 Result<> TaskSide::start(const MachineOptions &options) {
+    if (const auto taken = take_places(); !taken.has_value()) {
+        return taken;
+    }
     diag::Sink unheard;
     if (options.journal == nullptr && !options.isClockVirtual) {
         journal_ = std::make_unique<journal::Writer>(journal::system_disk(), parts_.config.journal_file,
@@ -68,12 +82,7 @@ Result<> TaskSide::start(const MachineOptions &options) {
         task_->load_compensation(table);
     }
     task_->configure(parts_.config.parameters);
-    auto client = client::Client::join(mailbox_.segment());
-    if (!client.has_value()) {
-        return std::unexpected(client.error());
-    }
-    client_.emplace(std::move(*client));
-    return parts_.config.hasHalui ? halui_.join(mailbox_.segment()) : Result<>{};
+    return {};
 }
 
 /// From here on clients find a machine that is ready for them.

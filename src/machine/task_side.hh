@@ -47,6 +47,7 @@ class TaskSide final : private task::IoPort {
     bool isPersonAsked() const override { return tool_change_.isAsking(); }
     void confirm_tool_change() override { tool_change_.confirm(); }
 
+    Result<> take_places();
     Result<> identify();
     Result<bool> isConfigured();
     Result<> make_pins();

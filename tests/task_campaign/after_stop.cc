@@ -5,9 +5,12 @@
 
 namespace mw::task_campaign {
 
-std::optional<World> carried_out(const std::vector<Line> &lines, World world, bool isBlockDelete) {
-    for (const Line &line : lines) {
-        if (!apply(line, world, isBlockDelete)) {
+std::optional<World> carried_out(const std::vector<Line> &lines, World world, bool isBlockDelete,
+                                 std::size_t from) {
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const bool isMove = lines[i].kind == Kind::RAPID || lines[i].kind == Kind::FEED;
+        const bool isMade = !isMove || i + 1 >= from;  // what is only calculated meets no limit
+        if (!apply(lines[i], world, isBlockDelete) && isMade) {
             return std::nullopt;
         }
     }

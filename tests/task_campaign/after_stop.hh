@@ -9,8 +9,9 @@
 
 namespace mw::task_campaign {
 
-/// The program to its end; nothing: a line of it must fail.
-std::optional<World> carried_out(const std::vector<Line> &lines, World world, bool isBlockDelete);
+/// The program to its end, its moves from line `from` on; nothing: a line of it must fail.
+std::optional<World> carried_out(const std::vector<Line> &lines, World world, bool isBlockDelete,
+                                 std::size_t from = 1);
 /// Wherever the interpreter had read to, and the machine, which is behind it. No spindle turns.
 std::vector<World> after_stop(const std::vector<Line> &lines, const World &before, bool isBlockDelete);
 /// Nothing of a line of MDI, all of it, or all of it that the interpreter does.

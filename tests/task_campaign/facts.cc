@@ -110,7 +110,8 @@ bool apply_device(const Line &line, World &w) {
     case Kind::SET_TOOL: return set_tool(line, w);
     case Kind::SELECT: return isTool;
     case Kind::CHANGE:
-        if (isTool && d.in_spindle != line.number) {
+        // An empty spindle is emptied again: nobody knows whether it is.
+        if (isTool && (d.in_spindle != line.number || line.number == 0)) {
             d.load(line.number);
             d.direction = 0;
             d.turning_rpm = 0;

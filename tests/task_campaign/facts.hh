@@ -15,7 +15,7 @@ namespace mw::task_campaign {
 inline constexpr int AXES = 3, SYSTEMS = 6;
 inline constexpr double MM_PER_INCH = 25.4;
 /// Soft limits of all axes, on both sides. [mm]
-inline constexpr double LIMIT_MM = 400;
+inline constexpr double LIMIT_MM = 150;
 using Place = std::array<double, AXES>;  ///< [mm]
 
 struct Tool {

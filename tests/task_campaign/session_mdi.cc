@@ -36,6 +36,7 @@ void Session::run_mdi(const Act &act) {
             break;
         }
         typed.push_back({post(act.client, msgs::Mdi{line.text()}, Expected::ANY, LINE_PATIENCE_MS)});
+        tell("  " + line.text());
         while (act.isLineTypedLate && !isOver() && !isCrashed_ && isWaited(typed.back().serial)) {
             step_mdi(typed);
         }

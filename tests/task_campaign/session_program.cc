@@ -18,6 +18,11 @@ std::string text_of(const std::vector<Line> &lines) {
     return text + "M2\n";
 }
 
+/// Where it begins; 0: as a program does.
+std::size_t first_line_of(const Act &act) {
+    return act.work == Work::FROM_LINE ? 1 + act.seed % (act.blocks.size() + 1) : 0;
+}
+
 }  // namespace
 
 void Session::run_program(const Act &act) {
@@ -25,13 +30,11 @@ void Session::run_program(const Act &act) {
         return;
     }
     ask(act.client, msgs::OpenProgram{bench_.write_program(text_of(act.blocks))}, Expected::TAKEN);
-    const bool isFromLine = act.work == Work::FROM_LINE;
-    const int from = isFromLine ? 1 + static_cast<int>(act.seed % (act.blocks.size() + 1)) : 0;
+    const int from = static_cast<int>(first_line_of(act));
     begin_troubles(act);
     ++verdict_.runs;
     const std::uint64_t ended = status().task.programs_ended;
-    const Serial run = post(act.client, msgs::RunProgram{from}, isFromLine ? Expected::ANY : Expected::TAKEN,
-                            RUN_PATIENCE_MS);
+    const Serial run = post(act.client, msgs::RunProgram{from}, Expected::ANY, RUN_PATIENCE_MS);
     constexpr int SOON_MS = 3;
     const auto isUnderWay = [&] {
         return isRunning() || isWaited(run) || bench_.now_ms() < began_ms_ + SOON_MS;
@@ -69,7 +72,7 @@ void Session::end_program_of(const Act &act, End end) {
     }
     std::vector<World> whole, stopped;
     for (const World &world : beliefs_.worlds) {
-        const auto after = carried_out(act.blocks, world, beliefs_.isBlockDelete);
+        const auto after = carried_out(act.blocks, world, beliefs_.isBlockDelete, first_line_of(act));
         if (after.has_value()) {
             add(whole, *after);
         }
@@ -93,6 +96,9 @@ void Session::end_program_of(const Act &act, End end) {
             fail("work", "a program that nobody has stopped does not come to its end");
         }
         beliefs_.worlds = std::move(stopped);
+    }
+    if (end == End::REFUSED && !isStopped_ && act.work != Work::FROM_LINE) {
+        fail("refusal", "a program that may run is refused");
     }
     note_stop();
     if (end == End::FAILED) {
