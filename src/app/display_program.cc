@@ -52,7 +52,7 @@ Result<std::vector<std::string>> DisplayProgram::words(const std::string &displa
     }
     if (words[0] == OWN_SCREEN) {
         words[0] = program_folder() + "/millwright";
-        words.insert(words.begin() + 1, {"ui", ini, "--open"});
+        words.insert(words.begin() + 1, {"ui", ini, "--open", "--display"});
         return words;
     }
     if (words[0] == "dummy") {

@@ -13,10 +13,12 @@
 
 #include "app/commands.hh"
 #include "app/machine_access.hh"
+#include "app/side_programs.hh"
 #include "app/ui_dialogs.hh"
 #include "app/ui_door.hh"
 #include "app/ui_facts.hh"
 #include "app/ui_path.hh"
+#include "app/ui_tabs.hh"
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
@@ -37,7 +39,7 @@ constexpr auto TICK = std::chrono::milliseconds(10), IDLE_TICK = std::chrono::mi
 struct UiWords {
     std::string ini, screen;
     int port = PRESET_PORT;
-    bool isOpening = false;
+    bool isOpening = false, isDisplay = false;
     DoorWords door;
     options::Words rest;
 
@@ -51,6 +53,10 @@ struct UiWords {
         line.number("--port", "N", "listen on 127.0.0.1:N, 0: on a free port; 8850 without it", port, 0,
                     65535);
         line.flag("--open", "show the screen in the desktop's browser", isOpening);
+        line.flag("--display",
+                  "the machine's display: starts the programs of EMBED_TAB_COMMAND, and runs POSTGUI_HALFILE "
+                  "and _HALCMD",
+                  isDisplay);
         line.text("--screen", "FOLDER", "serve the screen from there", screen);
         line.text("--listen", "ADDRESS[:PORT]",
                   "let other computers in as well, with TLS and a token; 0.0.0.0: at every address; port "
@@ -107,26 +113,80 @@ Result<client::Client> connect(const std::string &instance, const std::string &i
     return client;
 }
 
-/// Where there is a desktop and a screen to show. Its program goes its own way.
-void open_browser(const std::string &address, const std::string &folder) {
+/// Where there is a desktop and a screen to show: the process of what opens it, which goes its own way. 0:
+/// none.
+pid_t open_browser(const std::string &address, const std::string &folder) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(folder + "/index.html", error)) {
         fmt::print(stderr, "no browser is opened: no screen is installed in {}\n", folder);
-        return;
+        return 0;
     }
     if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) {
-        return;
+        return 0;
     }
     std::string program = "xdg-open", words = address;
     char *arguments[] = {program.data(), words.data(), nullptr};
     pid_t pid = 0;
     if (::posix_spawnp(&pid, program.c_str(), nullptr, nullptr, arguments, environ) != 0) {
         fmt::print(stderr, "no xdg-open shows the screen: open {} in a browser\n", address);
+        return 0;
     }
+    return pid;
 }
 
 std::int64_t now_ns() {
     return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+}
+
+/// What the screens are told, but for the paths of programs.
+ui::web::ApiSetup setup_of(const UiWords &words, const machine::LoadedConfig &loaded, diag::Sink &sink) {
+    const std::string ini = whole_path(words.ini), instance = hal::default_instance();
+    ui::web::ApiSetup setup;
+    setup.facts = machine_facts(loaded, sink);
+    setup.facts.ini = ini;
+    setup.facts.instance = instance;
+    setup.screens.connect = [instance, ini] { return connect(instance, ini); };
+    setup.screens.version = MW_VERSION;
+    setup.screens.status_period_ns = static_cast<std::int64_t>(status_period_s(loaded.ini, sink) * 1e9);
+    setup.screen_folder = screen_folder(words.screen);
+    setup.dialogs = dialog_facts(loaded.ini, sink);
+    setup.connect_hal = [instance]() -> Result<std::unique_ptr<hal::Host>> {
+        auto joined = hal::HostClient::connect(instance);
+        return joined.has_value() ? Result<std::unique_ptr<hal::Host>>(std::move(*joined))
+                                  : std::unexpected(joined.error());
+    };
+    const auto commands = postgui_commands(loaded.ini, program_folder());
+    if (words.isDisplay && !commands.empty()) {
+        const std::string folder = std::filesystem::path(ini).parent_path().string();
+        setup.begin_hal = [commands, folder] { return run_postgui(commands, folder); };
+    }
+    return setup;
+}
+
+/// Until a signal comes.
+void run(ui::web::Server &server, const UiWords &words, const machine::LoadedConfig &loaded,
+         ui::web::ApiSetup setup, diag::Sink &sink) {
+    const std::string address = fmt::format("http://127.0.0.1:{}/", server.port()),
+                      folder = setup.screen_folder;
+    SidePrograms programs(words.isDisplay ? tab_programs(setup.facts.tabs) : std::vector<std::string>{},
+                          setup.facts.ini, 0);
+    PathReaders readers(loaded);
+    setup.read_path = [&readers](const std::string &path) { return readers.read(path); };
+    const auto post = [&server](std::function<void()> act) { server.post(std::move(act)); };
+    ui::web::Worker disk(post), hal_looks(post);
+    ui::web::Api api(server, {disk, hal_looks}, std::move(setup), now_ns);
+    pid_t browser = words.isOpening ? open_browser(address, folder) : 0;
+    while (stop_signal == 0) {
+        server.run_for(api, api.count_screens() > 0 ? TICK : IDLE_TICK);
+        api.tick();
+        programs.step(now_ns(), sink);
+        if (browser > 0 && ::waitpid(browser, nullptr, WNOHANG) != 0) {
+            browser = 0;
+        }
+    }
+    programs.ask_to_end();
+    disk.end();
+    hal_looks.end();
 }
 
 int serve(const UiWords &words, const machine::LoadedConfig &loaded, diag::Sink &sink) {
@@ -142,50 +202,25 @@ int serve(const UiWords &words, const machine::LoadedConfig &loaded, diag::Sink 
         sink.error(door.error());
         return 1;
     }
-    auto server = ui::web::Server::listen({.port = words.port, .limits = {}, .remote = *door});
+    ui::web::ApiSetup setup = setup_of(words, loaded, sink);
+    std::vector<std::string> frames;
+    for (const ui::web::Tab &tab : setup.facts.tabs) {
+        if (tab.kind == ui::web::Tab::Kind::FRAME) {
+            frames.push_back(tab.content);
+        }
+    }
+    auto server = ui::web::Server::listen(
+        {.port = words.port, .limits = {}, .remote = *door, .frames = std::move(frames)});
     if (!server.has_value()) {
         sink.error(server.error());
         return 1;
     }
-    const std::string ini = whole_path(words.ini), instance = hal::default_instance();
-    ui::web::ApiSetup setup;
-    setup.facts = machine_facts(loaded, sink);
-    setup.facts.ini = ini;
-    setup.facts.instance = instance;
-    setup.screens.connect = [instance, ini] { return connect(instance, ini); };
-    setup.screens.version = MW_VERSION;
-    setup.screens.status_period_ns = static_cast<std::int64_t>(status_period_s(loaded.ini, sink) * 1e9);
-    const std::string folder = screen_folder(words.screen);
-    setup.screen_folder = folder;
-    setup.dialogs = dialog_facts(loaded.ini, sink);
-    PathReaders readers(loaded);
-    setup.read_path = [&readers](const std::string &path) { return readers.read(path); };
-
-    setup.connect_hal = [instance]() -> Result<std::unique_ptr<hal::Host>> {
-        auto joined = hal::HostClient::connect(instance);
-        return joined.has_value() ? Result<std::unique_ptr<hal::Host>>(std::move(*joined))
-                                  : std::unexpected(joined.error());
-    };
-
-    const auto post = [&server](std::function<void()> act) { (*server)->post(std::move(act)); };
-    ui::web::Worker disk(post), hal_looks(post);
-    ui::web::Api api(**server, {disk, hal_looks}, std::move(setup), now_ns);
-    const std::string address = fmt::format("http://127.0.0.1:{}/", (*server)->port());
-    fmt::print("screen of {}: {}\n", loaded.machine.name, address);
+    fmt::print("screen of {}: http://127.0.0.1:{}/\n", loaded.machine.name, (*server)->port());
     if (door->has_value()) {
         fmt::print("{}", door_text(**door, (*server)->remote_port(), secrets));
     }
     std::fflush(stdout);
-    if (words.isOpening) {
-        open_browser(address, folder);
-    }
-    while (stop_signal == 0) {
-        (*server)->run_for(api, api.count_screens() > 0 ? TICK : IDLE_TICK);
-        api.tick();
-        ::waitpid(-1, nullptr, WNOHANG);  // the browser's starter
-    }
-    disk.end();
-    hal_looks.end();
+    run(**server, words, loaded, std::move(setup), sink);
     return 0;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "app/ui_tabs.hh"
 #include "base/text.hh"
 
 namespace mw::app {
@@ -159,6 +160,23 @@ std::optional<double> fastest_axis(const machine::LoadedConfig &loaded, bool isA
     return most;
 }
 
+std::string text_of(const config::IniFile &ini, const char *section, const char *key) {
+    const config::IniEntry *entry = ini.find(section, key);
+    return entry == nullptr ? std::string() : entry->value;
+}
+
+ui::web::ScreenFiles files_of(const config::IniFile &ini) {
+    const auto path = [&ini](const char *key) {
+        constexpr std::string_view FOLDER = "WORKINGFOLDER/";  // as other screens say it
+        const std::string named = text_of(ini, "DISPLAY", key);
+        const bool isHere = named.starts_with(FOLDER);
+        return named.empty() ? named : ini.resolve_path(isHere ? named.substr(FOLDER.size()) : named);
+    };
+    const std::string parameters = text_of(ini, "RS274NGC", "PARAMETER_FILE");
+    return {path("ICON"), path("MDI_HISTORY_FILE"), path("PREFERENCE_FILE_PATH"),
+            ini.resolve_path(parameters.empty() ? "rs274ngc.var" : parameters)};
+}
+
 }  // namespace
 
 std::vector<Increment> parse_increments(std::string_view text, double unit_mm,
@@ -185,6 +203,9 @@ ui::web::MachineFacts machine_facts(const machine::LoadedConfig &loaded, diag::S
     const machine::MachineConfig &machine = loaded.machine;
     ui::web::MachineFacts facts;
     facts.name = machine.name;
+    facts.title = text_of(ini, "DISPLAY", "TITLE");
+    facts.files = files_of(ini);
+    facts.tabs = tabs_of(ini, sink);
     bool hasRotary = false;
     for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
         if ((machine.axis_mask >> axis & 1U) != 0) {
@@ -208,6 +229,18 @@ ui::web::MachineFacts machine_facts(const machine::LoadedConfig &loaded, diag::S
         facts.max_linear_velocity,
         first_of(ini, {{"DISPLAY", "DEFAULT_LINEAR_VELOCITY"}, {"TRAJ", "DEFAULT_LINEAR_VELOCITY"}}, sink)
             .value_or(facts.max_linear_velocity / 4));
+    const auto lowest = [&](const char *key) {
+        return first_of(ini, {{"DISPLAY", key}, {"TRAJ", key}}, sink).value_or(0);
+    };
+    facts.min_linear_velocity = std::min(facts.max_linear_velocity, lowest("MIN_LINEAR_VELOCITY"));
+    facts.min_angular_velocity = hasRotary ? lowest("MIN_ANGULAR_VELOCITY") : 0;
+    facts.spindle_increment = first_of(ini, {{"DISPLAY", "SPINDLE_INCREMENT"}}, sink).value_or(100);
+    facts.min_spindle_speed =
+        first_of(ini, {{"DISPLAY", "MIN_SPINDLE_0_SPEED"}, {"DISPLAY", "MIN_SPINDLE_SPEED"}}, sink)
+            .value_or(0);
+    facts.max_spindle_speed =
+        first_of(ini, {{"DISPLAY", "MAX_SPINDLE_0_SPEED"}, {"DISPLAY", "MAX_SPINDLE_SPEED"}}, sink)
+            .value_or(0);
     if (hasRotary) {
         facts.max_angular_velocity =
             first_of(ini, {{"DISPLAY", "MAX_ANGULAR_VELOCITY"}, {"TRAJ", "MAX_ANGULAR_VELOCITY"}}, sink)

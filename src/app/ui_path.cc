@@ -8,6 +8,7 @@
 #include "machine/program_check.hh"
 #include "machine/tool_data.hh"
 #include "machine/unscripted.hh"
+#include "ui/web/elsewhere.hh"
 #include "ui/web/path_chunks.hh"
 
 namespace mw::app {
@@ -16,6 +17,8 @@ namespace {
 constexpr double MM_PER_INCH = 25.4;
 
 }  // namespace
+
+using ui::web::step_back;
 
 PathReaders::~PathReaders() {
     for (Reader &reader : readers_) {
@@ -38,6 +41,7 @@ Result<std::shared_ptr<ui::web::PieceQueue>> PathReaders::read(const std::string
     Reader &reader = readers_.emplace_back();
     reader.pieces = std::make_shared<ui::web::PieceQueue>();
     reader.thread = std::thread([this, &reader, path] {
+        step_back();
         read_all(reader, path);
         reader.pieces->end();
         // Release: whoever sees it may join without waiting.

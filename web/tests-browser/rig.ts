@@ -140,6 +140,9 @@ export class Rig {
   pin(name: string): string {
     return execFileSync(join(BUILD, 'bin/halcmd'), ['getp', name], { env: this.env, encoding: 'utf8' }).trim();
   }
+  signal(name: string): string {
+    return execFileSync(join(BUILD, 'bin/halcmd'), ['gets', name], { env: this.env, encoding: 'utf8' }).trim();
+  }
   setPin(name: string, value: string): void {
     execFileSync(join(BUILD, 'bin/halcmd'), ['setp', name, value], { env: this.env });
   }

@@ -12,7 +12,7 @@ TEST(DisplayProgram, MillwrightIsOurOwnScreen_J1) {
     const auto words = DisplayProgram::words("millwright --port 0", "/configs/mill.ini");
     ASSERT_TRUE(words.has_value());
     EXPECT_EQ(*words, (std::vector<std::string>{program_folder() + "/millwright", "ui", "/configs/mill.ini",
-                                                "--open", "--port", "0"}));
+                                                "--open", "--display", "--port", "0"}));
 }
 
 TEST(DisplayProgram, OthersGetTheFileByTheirOption_J1) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "ui/web/api.hh"
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 #include <fmt/format.h>
@@ -40,7 +42,49 @@ std::optional<std::uint64_t> number(const Request &request, const char *name) {
 Api::Api(Sockets &sockets, const Threads &threads, ApiSetup setup, Clock clock)
     : threads_(threads), setup_(std::move(setup)), clock_(std::move(clock)),
       screens_(sockets, setup_.screens), files_(setup_.facts.program_prefix, setup_.facts.program_extensions),
-      hal_(setup_.connect_hal, setup_.dialogs) {}
+      keepsakes_(setup_.facts), hal_(setup_.connect_hal, setup_.dialogs, setup_.begin_hal),
+      hasHalBegun_(setup_.begin_hal == nullptr) {
+    for (const Tab &tab : setup_.facts.tabs) {
+        if (tab.kind == Tab::Kind::PANEL) {
+            const auto names = settable_names(tab.content);
+            operable_.insert(operable_.end(), names.begin(), names.end());
+        }
+    }
+}
+
+Role Api::needed_role(const Request &request) const {
+    if (request.method == "GET") {
+        return Role::VIEW;
+    }
+    const bool isHal = request.path.starts_with(HAL);
+    if (!isHal && !request.path.starts_with(SCOPE)) {
+        return Role::OPERATE;
+    }
+    // A value of HAL can move anything, whatever the machine's state; those of a panel are meant for
+    // operators.
+    const bool isOfPanel =
+        isHal && std::ranges::find(operable_, request.path.substr(HAL.size())) != operable_.end();
+    return isOfPanel ? Role::OPERATE : Role::CONFIGURE;
+}
+
+bool Api::isKeepsake(const Request &request, Reply &reply) {
+    using Read = Response (*)(const Keepsakes &, const Request &);
+    static constexpr std::array<std::pair<std::string_view, Read>, 4> ROUTES{
+        {{"/api/mdi_history",
+          [](const Keepsakes &keep, const Request &asked) { return keep.mdi_history(asked); }},
+         {"/api/preferences",
+          [](const Keepsakes &keep, const Request &asked) { return keep.preferences(asked); }},
+         {"/api/icon", [](const Keepsakes &keep, const Request &) { return keep.icon(); }},
+         {"/api/offsets", [](const Keepsakes &keep, const Request &) { return keep.offsets(); }}}};
+    const auto *const found =
+        std::ranges::find(ROUTES, request.path, &std::pair<std::string_view, Read>::first);
+    if (found == ROUTES.end()) {
+        return false;
+    }
+    threads_.disk.run([this, request, read = found->second] { return read(keepsakes_, request); },
+                      std::move(reply));
+    return true;
+}
 
 void Api::tick() {
     const std::int64_t now_ns = clock_();
@@ -60,7 +104,7 @@ void Api::closed(SessionId session) {
 
 void Api::look_at_hal() {
     auto names = screens_.watched();
-    if (names.empty() && setup_.dialogs.empty()) {
+    if (names.empty() && setup_.dialogs.empty() && hasHalBegun_) {
         return;
     }
     isHalRead_ = true;
@@ -72,6 +116,7 @@ void Api::look_at_hal() {
         },
         [this, news](const Response &) {
             isHalRead_ = false;
+            hasHalBegun_ = news->hasBegun;
             screens_.tell_values(news->values);
             screens_.tell_questions(news->questions);
             for (const std::string &note : news->notes) {
@@ -103,15 +148,17 @@ void Api::answer_hal(const Request &request, Reply reply) {
 
 void Api::answer(const Request &request, Reply reply) {
     const std::string &path = request.path;
-    const bool isOfHal = path == "/api/hal" || path.starts_with(HAL) || path.starts_with(SCOPE);
-    // A value of HAL can move anything, whatever the machine's state.
-    const Role needed = request.method == "GET" ? Role::VIEW : isOfHal ? Role::CONFIGURE : Role::OPERATE;
+    const Role needed = needed_role(request);
     if (path.starts_with(API) && request.role < needed) {
         reply(not_allowed(needed));
         return;
     }
+    const bool isOfHal = path == "/api/hal" || path.starts_with(HAL) || path.starts_with(SCOPE);
     if (isOfHal || path == "/api/questions") {
         answer_hal(request, std::move(reply));
+        return;
+    }
+    if (isKeepsake(request, reply)) {
         return;
     }
     if (path == "/api/files" || path.starts_with(FILES)) {

@@ -10,6 +10,7 @@
 #include "ui/web/elsewhere.hh"
 #include "ui/web/files.hh"
 #include "ui/web/hal_desk.hh"
+#include "ui/web/keepsakes.hh"
 #include "ui/web/screens.hh"
 
 namespace mw::ui::web {
@@ -23,6 +24,7 @@ struct ApiSetup {
     std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path)> read_path;
     HalDesk::Connect connect_hal;
     std::vector<DialogFacts> dialogs{};
+    HalDesk::Begin begin_hal{};
 };
 
 /// What may block goes through one of them, so that neither waits for the other; both end before the Api.
@@ -58,6 +60,8 @@ class Api final : public Application {
   private:
     void answer_files(const Request &request, const std::string &name, Reply reply);
     void write_file(const Request &request, const std::string &name, Reply reply);
+    bool isKeepsake(const Request &request, Reply &reply);
+    Role needed_role(const Request &request) const;
     void answer_hal(const Request &request, Reply reply);
     void look_at_hal();
     Response answer_path(const Request &request);
@@ -68,9 +72,12 @@ class Api final : public Application {
     ApiSetup setup_;
     Clock clock_;
     Screens screens_;
-    ProgramFiles files_;      ///< used by jobs alone
-    HalDesk hal_;             ///< used by jobs alone
-    bool isHalRead_ = false;  ///< at this moment
+    ProgramFiles files_;  ///< used by jobs alone
+    Keepsakes keepsakes_;
+    std::vector<std::string> operable_;  ///< names of HAL that operators set by panels
+    HalDesk hal_;                        ///< used by jobs alone
+    bool hasHalBegun_ = false;           ///< what waits for HAL is done
+    bool isHalRead_ = false;             ///< at this moment
     std::int64_t next_watch_ns_ = 0;
 };
 

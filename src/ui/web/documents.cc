@@ -2,6 +2,7 @@
 #include "ui/web/documents.hh"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -130,13 +131,88 @@ std::string schema_document() {
                         {"status", declarations_document(msgs::status_declarations())}});
 }
 
+namespace {
+
+/// Of a panel, and whether a person sets a value by it.
+constexpr std::array<std::pair<std::string_view, bool>, 6> PARTS{{{"lamp", false},
+                                                                  {"value", false},
+                                                                  {"bar", false},
+                                                                  {"button", true},
+                                                                  {"switch", true},
+                                                                  {"number", true}}};
+
+Json tab_document(const Tab &tab) {
+    switch (tab.kind) {
+    case Tab::Kind::FRAME:
+        return {{"name", tab.name}, {"location", tab.location}, {"kind", "frame"}, {"address", tab.content}};
+    case Tab::Kind::PANEL:
+        return {
+            {"name", tab.name}, {"location", tab.location}, {"kind", "panel"}, {"panel", parse(tab.content)}};
+    case Tab::Kind::PROGRAM: break;
+    }
+    return {{"name", tab.name}, {"location", tab.location}, {"kind", "program"}, {"command", tab.content}};
+}
+
+}  // namespace
+
+Result<> check_panel(std::string_view text) {
+    const Json json = parse(text);
+    const auto rows = json.is_object() ? json.find("parts") : json.end();
+    if (!json.is_object() || rows == json.end() || !rows->is_array()) {
+        return fail(R"(a panel is {"parts": [...]} in JSON)");
+    }
+    for (const Json &row : *rows) {
+        const auto text_at = [&row](const char *key) {
+            return row.is_object() && row.contains(key) && row[key].is_string() ? row[key].get<std::string>()
+                                                                                : "";
+        };
+        const std::string kind = text_at("kind");
+        if (std::ranges::find(PARTS, kind, &std::pair<std::string_view, bool>::first) == PARTS.end()) {
+            return fail("'" + kind +
+                        "' is no part of a panel: lamp, value, bar, button, switch and number are");
+        }
+        if (text_at("name").empty() || text_at("label").empty()) {
+            return fail("each part of a panel has a label, and a name of HAL");
+        }
+    }
+    return {};
+}
+
+std::vector<std::string> settable_names(std::string_view panel) {
+    std::vector<std::string> names;
+    if (check_panel(panel).has_value()) {
+        for (const Json &row : parse(panel)["parts"]) {
+            const auto kind = std::ranges::find(PARTS, row["kind"].get<std::string>(),
+                                                &std::pair<std::string_view, bool>::first);
+            if (kind->second) {
+                names.push_back(row["name"].get<std::string>());
+            }
+        }
+    }
+    return names;
+}
+
 std::string machine_document(const MachineFacts &facts) {
     Json increments = Json::array();
     for (const Increment &increment : facts.increments) {
         increments.push_back(
             {{"text", increment.text}, {"value", increment.value}, {"angular", increment.isAngular}});
     }
+    Json tabs = Json::array();
+    for (const Tab &tab : facts.tabs) {
+        tabs.push_back(tab_document(tab));
+    }
     return text_of(Json{{"name", facts.name},
+                        {"title", facts.title},
+                        {"has_icon", !facts.files.icon.empty()},
+                        {"keeps_mdi_history", !facts.files.mdi_history.empty()},
+                        {"keeps_preferences", !facts.files.preferences.empty()},
+                        {"tabs", std::move(tabs)},
+                        {"min_linear_velocity", facts.min_linear_velocity},
+                        {"min_angular_velocity", facts.min_angular_velocity},
+                        {"spindle_increment", facts.spindle_increment},
+                        {"min_spindle_speed", facts.min_spindle_speed},
+                        {"max_spindle_speed", facts.max_spindle_speed},
                         {"ini", facts.ini},
                         {"instance", facts.instance},
                         {"axes", facts.axes},
@@ -156,6 +232,36 @@ std::string machine_document(const MachineFacts &facts) {
                         {"increments", std::move(increments)},
                         {"mdi_commands", facts.mdi_commands},
                         {"program_extensions", facts.program_extensions}});
+}
+
+std::string lines_document(std::span<const std::string> lines) {
+    return one("lines", std::vector<std::string>(lines.begin(), lines.end()));
+}
+
+std::optional<std::vector<std::string>> read_lines(std::string_view text, std::size_t most) {
+    const Json json = parse(text);
+    const auto lines = json.is_object() ? json.find("lines") : json.end();
+    if (!json.is_object() || lines == json.end() || !lines->is_array() || lines->size() > most) {
+        return std::nullopt;
+    }
+    const bool areLines = std::ranges::all_of(*lines, [](const Json &line) {
+        return line.is_string() &&
+               line.get_ref<const std::string &>().find_first_of("\r\n") == std::string::npos;
+    });
+    return areLines ? std::optional(lines->get<std::vector<std::string>>()) : std::nullopt;
+}
+
+bool isObject(std::string_view json) {
+    return parse(json).is_object();
+}
+
+std::string offsets_document(std::span<const std::array<double, 10>> systems) {
+    Json list = Json::array();
+    for (const std::array<double, 10> &system : systems) {
+        list.push_back({{"offset", std::vector<double>(system.begin(), system.end() - 1)},
+                        {"rotation_deg", system.back()}});
+    }
+    return one("systems", std::move(list));
 }
 
 std::string files_document(std::span<const FileFacts> files) {

@@ -2,6 +2,7 @@
 // The JSON of docs/api.md, but for the fields of the status.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -22,7 +23,18 @@ Response error_response(int status, std::string_view text);
 
 /// Commands and status as they are declared.
 std::string schema_document();
+/// An error when it is no panel as docs/screen.md has them.
+Result<> check_panel(std::string_view text);
+/// Names of HAL that a person may set by this panel, whatever he may otherwise.
+std::vector<std::string> settable_names(std::string_view panel);
 std::string machine_document(const MachineFacts &facts);
+
+std::string lines_document(std::span<const std::string> lines);
+/// Of {"lines": [...]}; nothing when it is something else, or there are more than `most`.
+std::optional<std::vector<std::string>> read_lines(std::string_view text, std::size_t most);
+bool isObject(std::string_view json);
+/// Nine offsets and the rotation [deg] of each coordinate system.
+std::string offsets_document(std::span<const std::array<double, 10>> systems);
 
 struct FileFacts {
     std::string name;

@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "ui/web/elsewhere.hh"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 namespace mw::ui::web {
+
+void step_back() noexcept {
+    constexpr int NICE = 10;
+    const auto self = static_cast<id_t>(::gettid());
+    static_cast<void>(::setpriority(PRIO_PROCESS, self, NICE));  // downwards it is always allowed
+}
 
 Worker::Worker(std::function<void(std::function<void()>)> post)
     : post_(std::move(post)), thread_([this] { work(); }) {}

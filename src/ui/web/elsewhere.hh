@@ -13,6 +13,9 @@
 
 namespace mw::ui::web {
 
+/// The calling thread lets the server's, through which leases of jogs are renewed, go first.
+void step_back() noexcept;
+
 /// Does what may block the server's thread in another one.
 class Elsewhere {
   public:

@@ -2,8 +2,10 @@
 #include "ui/web/hal_desk.hh"
 
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <thread>
 #include <utility>
 
 #include "ui/web/documents.hh"
@@ -35,6 +37,9 @@ Json json_of(const hal::Value &value) {
     }
     return nullptr;
 }
+
+/// What watches HAL waits for it.
+constexpr std::uint32_t MOST_PULSE_MS = 500;
 
 std::string text_of(const Json &json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -203,7 +208,19 @@ Response HalDesk::set(const std::string &name, std::string_view body) {
     }
     hal::Hal &hal = joined->hal();
     const bool isSignal = !hal.hasParam(name) && !hal.hasPin(name) && hal.hasSignal(name);
-    const auto done = isSignal ? hal.set_signal(name, *value) : hal.set(name, *value);
+    const auto put = [&](const std::string &text) {
+        return isSignal ? hal.set_signal(name, text) : hal.set(name, text);
+    };
+    const auto pulse_ms = member<std::uint32_t>(json, "pulse_ms", 0);
+    const auto before = isSignal ? hal.get_signal(name) : hal.get(name);
+    if (!pulse_ms.has_value() || *pulse_ms > MOST_PULSE_MS) {
+        return error_response(400, "a pulse is at most " + std::to_string(MOST_PULSE_MS) + " ms long");
+    }
+    auto done = put(*value);
+    if (done.has_value() && *pulse_ms > 0 && before.has_value()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(*pulse_ms));
+        done = put(before->str());
+    }
     return done.has_value() ? document(Json::object()) : error_response(400, done.error().str());
 }
 
@@ -259,6 +276,12 @@ HalDesk::News HalDesk::look(const std::vector<std::string> &names) {
         news.values = read(names);
     }
     look_at_dialogs(news);
+    if (begin_ != nullptr && host() != nullptr) {
+        for (std::string &note : std::exchange(begin_, nullptr)()) {
+            news.notes.push_back(std::move(note));
+        }
+    }
+    news.hasBegun = begin_ == nullptr;
     return news;
 }
 

@@ -27,8 +27,11 @@ class HalDesk {
     /// Points of a record that screens are told.
     static constexpr std::uint32_t MOST_SAMPLES = 100000;
 
-    explicit HalDesk(Connect connect, std::vector<DialogFacts> dialogs = {})
-        : connect_(std::move(connect)), dialogs_(std::move(dialogs)) {}
+    /// Called once, when HAL and the pins of dialogs are there; what it tells are notes for the operator.
+    using Begin = std::function<std::vector<std::string>()>;
+
+    explicit HalDesk(Connect connect, std::vector<DialogFacts> dialogs = {}, Begin begin = nullptr)
+        : connect_(std::move(connect)), begin_(std::move(begin)), dialogs_(std::move(dialogs)) {}
 
     /// {"pins": [...], "signals": [...], "params": [...]} of the names that match.
     Response list(const std::string &glob);
@@ -39,6 +42,7 @@ class HalDesk {
         std::map<std::string, std::string> values;
         std::string questions;           ///< a JSON list of what a person is asked
         std::vector<std::string> notes;  ///< for the operator
+        bool hasBegun = false;           ///< `begin` has been called, or there is none
     };
     News look(const std::vector<std::string> &names);
     /// POST {"id": "door", "number": 0, "yes": true}: a person's answer.
@@ -60,6 +64,7 @@ class HalDesk {
     Response begin(std::string_view body);
 
     Connect connect_;
+    Begin begin_;
     std::unique_ptr<hal::Host> host_;
     std::optional<hal::view::Capture> capture_;
     std::string thread_;  ///< of capture_, as it was asked for

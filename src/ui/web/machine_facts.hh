@@ -2,6 +2,7 @@
 // What a screen has to know of the machine before its status.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,10 +15,31 @@ struct Increment {
     bool isAngular = false;
 };
 
+/// What [DISPLAY]EMBED_TAB_... adds to the screen.
+struct Tab {
+    enum class Kind : std::uint8_t {
+        FRAME,   ///< a page of another server
+        PANEL,   ///< lamps, values and buttons bound to HAL
+        PROGRAM  ///< has a window of its own
+    };
+    std::string name, location;
+    Kind kind = Kind::PROGRAM;
+    std::string content;  ///< address, JSON of the panel, or command
+};
+
+/// Paths of small files that screens read and keep; empty: there is none.
+struct ScreenFiles {
+    std::string icon;  ///< a picture
+    /// Lines of MDI, and how operators like their screens: without a file each browser keeps its own.
+    std::string mdi_history, preferences;
+    std::string parameters;  ///< of the interpreter
+};
+
 /// Lengths in machine units, angles in degrees, speeds in those per second.
 struct MachineFacts {
     std::string name, ini, instance;
-    std::string axes;  ///< "XYZA"
+    std::string title;  ///< of the page
+    std::string axes;   ///< "XYZA"
     int joints = 0;
     std::vector<std::string> joint_kinds;  ///< of each joint, "LINEAR" or "ANGULAR"
     bool isHomingForced = true;            ///< programs and MDI want homed joints
@@ -25,11 +47,16 @@ struct MachineFacts {
     std::string program_prefix;            ///< folder of programs
     double max_linear_velocity = 0, default_linear_velocity = 0;
     double max_angular_velocity = 0, default_angular_velocity = 0;
-    double max_feed_override = 1;  ///< 1.0 is 100 %
+    double min_linear_velocity = 0, min_angular_velocity = 0;  ///< of jogs
+    double max_feed_override = 1;                              ///< 1.0 is 100 %
     double min_spindle_override = 0, max_spindle_override = 1;
+    double spindle_increment = 100, min_spindle_speed = 0,
+           max_spindle_speed = 0;      ///< [rev/min]; highest 0: none set
     double default_spindle_speed = 0;  ///< that a screen proposes [rev/min]; 0: none is set
     std::vector<Increment> increments;
     std::vector<std::string> mdi_commands;
+    ScreenFiles files;
+    std::vector<Tab> tabs;
     std::vector<std::string> program_extensions;  ///< with their dot, in lower case
 };
 

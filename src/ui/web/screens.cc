@@ -16,6 +16,14 @@ std::string random_name() {
     return fmt::format("{:08x}{:08x}", random(), random());
 }
 
+/// For screens that come later.
+void keep(std::deque<std::string> &kept, const std::string &text) {
+    kept.push_back(text);
+    if (kept.size() > Screens::MOST_KEPT) {
+        kept.pop_front();
+    }
+}
+
 }  // namespace
 
 Screens::Screens(Sockets &sockets, ScreensSetup setup)
@@ -177,9 +185,11 @@ void Screens::tell_questions(const std::string &questions) {
 }
 
 void Screens::tell_note(const std::string &note) {
+    const std::string text = note_text(note);
     for (const auto &[session, browser] : browsers_) {
-        browser->tell(note_text(note));
+        browser->tell(text);
     }
+    keep(kept_, text);
 }
 
 void Screens::tell_values(const std::map<std::string, std::string> &values) {
@@ -195,10 +205,7 @@ void Screens::pass_messages() {
         ++counts_.messages;
         const std::string text = message_text(*message);
         tell_all(text);
-        kept_.push_back(text);
-        if (kept_.size() > MOST_KEPT) {
-            kept_.pop_front();
-        }
+        keep(kept_, text);
     }
 }
 

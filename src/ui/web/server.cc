@@ -151,7 +151,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
         message.set(http::field::cache_control,
                     response.isKept ? "public, max-age=31536000, immutable" : "no-cache");
         message.set("X-Content-Type-Options", "nosniff");
-        message.set("Content-Security-Policy", PAGE_RULES);
+        message.set("Content-Security-Policy", server_.page_rules);
         message.set("Referrer-Policy", "no-referrer");
         if (!response.cookie.empty()) {
             message.set(http::field::set_cookie, response.cookie);
@@ -254,6 +254,14 @@ class Connection : public std::enable_shared_from_this<Connection> {
     std::size_t drained_ = 0;
     bool isLast_ = false;
 };
+
+Server::Impl::Impl(const ServerOptions &options) : limits(options.limits), page_rules(PAGE_RULES) {
+    page_rules += "; frame-src 'self'";
+    for (const std::string &address : options.frames) {
+        const bool isPlain = address.find_first_of(";, \t\r\n") == std::string::npos;
+        page_rules += isPlain ? ' ' + address : "";
+    }
+}
 
 Result<> Server::Impl::open(const ServerOptions &options) {
     doors.push_back({.access = Access(Protection::LOCAL, Role::CONFIGURE),

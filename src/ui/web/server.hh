@@ -43,6 +43,7 @@ struct ServerOptions {
     int port = 0;  ///< on 127.0.0.1, 0: a free one
     ServerLimits limits{};
     std::optional<RemoteDoor> remote{};
+    std::vector<std::string> frames{};  ///< addresses that pages may show in frames
 };
 
 class Server final : public Sockets {

@@ -71,7 +71,9 @@ export function matches(one: HalName, text: string): boolean {
   return text.toLowerCase().split(/\s+/).every((word) => whole.includes(word));
 }
 
-export const setHal = (name: string, value: string): Promise<unknown> => ask('PUT', `/api/hal/${encodeURIComponent(name)}`, { value });
+/** With `pulseMs` the server puts the old value back after that time: a page that dies meanwhile leaves nothing set. */
+export const setHal = (name: string, value: string, pulseMs = 0): Promise<unknown> =>
+  ask('PUT', `/api/hal/${encodeURIComponent(name)}`, pulseMs > 0 ? { value, pulse_ms: pulseMs } : { value });
 
 export const beginScope = (order: ScopeOrder): Promise<{ state: ScopeState }> => ask('POST', '/api/scope', order);
 export const scopeState = (): Promise<{ state: ScopeState }> => ask('GET', '/api/scope');

@@ -46,7 +46,8 @@ export function targets(): Target[] {
 export function jogSpeed(isAngular: boolean, isRapid: boolean): number {
   const { facts } = machine;
   const highest = isAngular ? (facts?.max_angular_velocity ?? 0) : (facts?.max_linear_velocity ?? 0);
-  return isRapid ? highest : highest * prefs.jogShare;
+  const lowest = isAngular ? (facts?.min_angular_velocity ?? 0) : (facts?.min_linear_velocity ?? 0);
+  return isRapid ? highest : Math.max(lowest, highest * prefs.jogShare);
 }
 
 export function press(target: Target, sign: number, isRapid: boolean): void {

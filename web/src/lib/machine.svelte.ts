@@ -3,6 +3,7 @@
 import type { View } from './gates';
 import { record } from './history.svelte';
 import { checkLogin } from './login.svelte';
+import { readKept } from './prefs.svelte';
 import { Link, type Command, type HalValue, type Message, type Outcome, type Question, type Socket } from './link';
 import { mergeDelta, type MachineFacts, type MachineStatus } from './status';
 
@@ -20,6 +21,8 @@ const MOST_NOTICES = 300;
 const SAME_MS = 2000;
 const WAIT_FOR_MESSAGE_MS = 300;
 const STALE_MS = 1000;
+/** A server tells what it keeps right behind its hello. */
+const RETOLD_MS = 2000;
 
 interface Known {
   isConnected: boolean;
@@ -57,6 +60,7 @@ export const machine = $state<Known>({
 export const notices = $state<{ list: Notice[] }>({ list: [] });
 
 let lastNotice = 0;
+let openedAt = 0;
 let statusAt = 0;
 let lastMessage = 0;
 const onLost: (() => void)[] = [];
@@ -91,7 +95,11 @@ async function fetchFacts(): Promise<void> {
   const answer = await fetch('/api/machine');
   if (answer.ok) {
     machine.facts = (await answer.json()) as MachineFacts;
-    document.title = machine.facts.name;
+    document.title = machine.facts.title || machine.facts.name;
+    if (machine.facts.has_icon) {
+      document.querySelector('link[rel="icon"]')?.setAttribute('href', '/api/icon');
+    }
+    await readKept(machine.facts.keeps_preferences, machine.facts.keeps_mdi_history);
   } else {
     tell('LOCAL', `GET /api/machine: ${answer.status}`);
   }
@@ -107,6 +115,7 @@ const link = new Link(
   {
     opened(hello) {
       machine.isConnected = true;
+      openedAt = performance.now();
       machine.hasConnected = true;
       machine.client = hello.client;
       machine.role = hello.role;
@@ -161,6 +170,9 @@ const link = new Link(
       questions.list = asked;
     },
     note(text) {
+      if (performance.now() - openedAt < RETOLD_MS && notices.list.some((one) => one.kind === 'OPERATOR_TEXT' && one.text === text)) {
+        return; // told again to a screen that has joined again
+      }
       tell('OPERATOR_TEXT', text);
     },
     values(values) {

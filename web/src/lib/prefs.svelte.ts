@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What this browser keeps of how its operator likes the screen. Nothing of the machine is among it.
+// How its operator likes the screen: kept in this browser, and at the machine where the INI file names files for it.
 
 export type Theme = 'auto' | 'dark' | 'light';
 export type Language = 'en' | 'de' | 'es';
@@ -43,7 +43,45 @@ function read(): Preferences {
 
 export const prefs = $state<Preferences>(read());
 
+/** What the machine keeps for all its screens. */
+const atMachine = { preferences: false, mdiHistory: false };
+
+async function put(path: string, value: object): Promise<void> {
+  await fetch(path, { method: 'PUT', body: JSON.stringify(value) });
+}
+
+/** Takes over what the machine keeps: [DISPLAY]PREFERENCE_FILE_PATH and MDI_HISTORY_FILE. A file that is another screen's stays
+ * as it is, and this browser keeps its own. */
+export async function readKept(hasPreferences: boolean, hasHistory: boolean): Promise<void> {
+  if (hasPreferences) {
+    const answer = await fetch('/api/preferences');
+    atMachine.preferences = answer.ok;
+    if (answer.ok) {
+      const { mdiHistory, ...kept } = { ...prefs, ...((await answer.json()) as Partial<Preferences>) };
+      Object.assign(prefs, kept);
+    }
+  }
+  if (hasHistory) {
+    const answer = await fetch('/api/mdi_history');
+    atMachine.mdiHistory = answer.ok;
+    if (answer.ok) {
+      prefs.mdiHistory = [...new Set(((await answer.json()) as { lines: string[] }).lines.reverse())];
+    }
+  }
+}
+
+export function keepMdiHistory(): void {
+  keepPreferences();
+  if (atMachine.mdiHistory) {
+    void put('/api/mdi_history', { lines: [...prefs.mdiHistory].reverse() });
+  }
+}
+
 export function keepPreferences(): void {
+  if (atMachine.preferences) {
+    const { mdiHistory, ...kept } = prefs;
+    void put('/api/preferences', kept);
+  }
   try {
     localStorage.setItem(KEY, JSON.stringify(prefs));
   } catch {

@@ -138,8 +138,35 @@ export interface MachineStatus {
   settings: { max_velocity: number; linear_units: number; kinematics: string };
 }
 
+export interface PanelPart {
+  kind: 'lamp' | 'value' | 'bar' | 'button' | 'switch' | 'number';
+  label: string;
+  /** A pin, signal or parameter of HAL. */
+  name: string;
+  unit?: string;
+  decimals?: number;
+  min?: number;
+  max?: number;
+}
+
+export type Tab = { name: string; location: string } & (
+  | { kind: 'frame'; address: string }
+  | { kind: 'panel'; panel: { parts: PanelPart[] } }
+  | { kind: 'program'; command: string }
+);
+
 export interface MachineFacts {
   name: string;
+  title: string;
+  has_icon: boolean;
+  keeps_mdi_history: boolean;
+  keeps_preferences: boolean;
+  tabs: Tab[];
+  min_linear_velocity: number;
+  min_angular_velocity: number;
+  spindle_increment: number;
+  min_spindle_speed: number;
+  max_spindle_speed: number;
   ini: string;
   instance: string;
   axes: string;

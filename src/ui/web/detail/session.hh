@@ -47,7 +47,7 @@ struct Listener {
 
 class Server::Impl {
   public:
-    explicit Impl(const ServerOptions &options) : limits(options.limits) {}
+    explicit Impl(const ServerOptions &options);
 
     Result<> open(const ServerOptions &options);
     Result<> open_remote(const RemoteDoor &remote);
@@ -57,6 +57,7 @@ class Server::Impl {
     void forget(SessionId id);
 
     const ServerLimits limits;
+    std::string page_rules;
     std::deque<detail::Door> doors;  ///< outlive the loop, which ends connections
     Application *application = nullptr;
     SessionId last_session = 0;

@@ -79,6 +79,15 @@ TEST_F(HalDeskTest, SetsWhatHalcmdSetsAndRefusesWhatItRefuses_B7) {
     EXPECT_EQ(bench.get("siggen.0.frequency"), 2.5);
 }
 
+TEST_F(HalDeskTest, APulseEndsByItself_J2) {
+    EXPECT_EQ(desk.set("free", R"({"value":"3"})").status, 200);
+    EXPECT_EQ(desk.set("free", R"({"value":"7","pulse_ms":1})").status, 200);
+    EXPECT_EQ(desk.look({"free"}).values["free"], "3.0");
+    EXPECT_EQ(desk.set("free", R"({"value":"7","pulse_ms":501})").status, 400);
+    EXPECT_EQ(desk.set("free", R"({"value":"x","pulse_ms":1})").status, 400);
+    EXPECT_EQ(desk.look({"free"}).values["free"], "3.0");
+}
+
 TEST_F(HalDeskTest, ReadsValuesAndSaysWhichAreNot_B7) {
     const auto values = desk.look({"siggen.0.frequency", "siggen.0.clock", "gone"}).values;
     EXPECT_EQ(values.at("siggen.0.frequency"), "10.0");

@@ -25,6 +25,8 @@ import {
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { Moves } from './chunks';
+import { isSoftware } from './graphics';
+import { joined, Pace, shuffled } from './motion';
 import { sparse } from './sparse';
 import { thin } from './thin';
 
@@ -81,9 +83,14 @@ const CELLS = 250;
 /** So long a computer that draws slowly takes for POINTS_IN_MOTION; one with a GPU takes less than a tenth. */
 const SLOW_MS = 6;
 const MOST_FRAME_TIMES = 600;
+/** Of a display. */
+const FRAME_MS = 16;
 const STILL_AFTER_MS = 180;
 
-/** The same moves with all their points and with fewer. */
+/** Pieces of the path that are drawn coarsely at first, while the computer is not known. */
+const FIRST_PACE = 6000;
+
+/** The same moves with all their points and with fewer; `coarse` while they are read. */
 interface Piece {
   whole: Line;
   fine: Line | null;
@@ -111,7 +118,13 @@ export class PathScene {
   /** Whole pieces take too long for this computer. */
   private isSlow = false;
   private lastFrameAt = 0;
-  private shown: keyof Piece = 'whole';
+  private askedAt = 0;
+  /** The path in few pieces, for while something moves. */
+  private motion: LineSegments | null = null;
+  private pace = new Pace(0);
+  /** Pieces of the fine path that have been drawn over the coarse one; null: it is not being refined. */
+  private refined: number | null = null;
+  private perFrame = 1;
   private isThinned = false;
   private generation = 0;
   private readonly seen = new Set<number>();
@@ -121,7 +134,7 @@ export class PathScene {
 
   constructor(canvas: HTMLCanvasElement) {
     ColorManagement.enabled = false; // colours are those of the page
-    this.renderer = new WebGLRenderer({ canvas, antialias: window.devicePixelRatio < 2, powerPreference: 'low-power' });
+    this.renderer = new WebGLRenderer({ canvas, antialias: window.devicePixelRatio < 2 && !isSoftware(), powerPreference: 'low-power', preserveDrawingBuffer: true });
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
@@ -176,7 +189,9 @@ export class PathScene {
     this.isThinned = false;
     this.generation += 1;
     this.seen.clear();
-    this.shown = 'whole';
+    this.motion?.geometry.dispose();
+    this.motion = null;
+    this.refined = null;
     this.box.makeEmpty();
     this.trailCount = 0;
     this.trail.geometry.setDrawRange(0, 0);
@@ -209,19 +224,24 @@ export class PathScene {
     const mine = ++this.generation;
     const size = this.box.getSize(new Vector3()).length();
     const seen = new Set<number>();
+    const parts: Moves[] = [];
     for (const piece of this.pieces) {
       const moves = movesOf(piece.whole);
       piece.fine?.geometry.dispose();
       piece.fine = this.makeLine(thin(moves, size / 2000));
-      piece.coarse = this.makeSegments(sparse(moves, size / CELLS, seen));
+      parts.push(sparse(moves, size / CELLS, seen));
       await new Promise((done) => setTimeout(done));
       if (mine !== this.generation) {
         return; // another program is open
       }
     }
+    const pairs = shuffled(joined(parts));
+    this.motion = this.makeSegments(pairs);
+    this.pace = new Pace(pairs.count / 2, FIRST_PACE);
     this.isThinned = true;
     this.isSlow = this.measure();
-    this.show(this.wanted());
+    this.path.clear();
+    this.path.add(...(this.isSlow ? [this.motion] : this.pieces.map((piece) => piece.whole)));
     this.draw();
   }
 
@@ -237,6 +257,11 @@ export class PathScene {
       this.fit();
     }
     this.draw();
+  }
+
+  /** For tests: what is drawn of a long path while it is turned. */
+  get piecesInMotion(): number {
+    return this.pace.pieces;
   }
 
   isBeyondLimits(): boolean {
@@ -371,24 +396,65 @@ export class PathScene {
   }
 
   private draw(): void {
-    if (this.frame !== 0) {
-      return;
-    }
-    this.frame = requestAnimationFrame(() => {
-      this.frame = 0;
-      this.choose();
-      this.renderer.render(this.scene, this.camera);
-      this.judgeFrame();
-    });
+    this.refined = null; // what was refined is drawn anew
+    this.ask();
   }
 
-  /** Between two frames that were asked for one after the other. */
+  private ask(): void {
+    if (this.frame === 0) {
+      this.askedAt = performance.now();
+      this.frame = requestAnimationFrame(() => this.drawFrame());
+    }
+  }
+
+  private drawFrame(): void {
+    this.frame = 0;
+    this.judgeFrame();
+    if (this.refined !== null) {
+      this.refine(this.refined);
+      return;
+    }
+    if (this.isThinned && this.isSlow) {
+      this.motion?.geometry.setDrawRange(0, this.pace.pieces * 2);
+    }
+    this.renderer.render(this.scene, this.camera);
+    if (this.isThinned && this.isSlow && !this.isMoving) {
+      this.perFrame = 1;
+      this.askToRefine(0);
+    }
+  }
+
+  /** The fine path over the coarse one, a few pieces a frame, so that whoever touches it again does not wait for the whole. */
+  private refine(done: number): void {
+    const pieces = this.pieces.slice(done, done + this.perFrame);
+    this.path.clear();
+    this.path.add(...pieces.map((piece) => piece.fine ?? piece.whole));
+    this.renderer.autoClear = false;
+    this.renderer.render(this.scene, this.camera);
+    this.renderer.autoClear = true;
+    this.path.clear();
+    this.path.add(...(this.motion === null ? [] : [this.motion]));
+    this.askToRefine(done + pieces.length);
+  }
+
+  private askToRefine(done: number): void {
+    this.refined = done < this.pieces.length ? done : null;
+    if (this.refined !== null) {
+      this.ask();
+    }
+  }
+
+  /** From the frame before, or from when this one was asked for where nothing was drawn between. */
   private judgeFrame(): void {
     const now = performance.now();
-    if (this.isMoving) {
-      this.frameTimes.push(now - this.lastFrameAt);
-    }
+    const took = now - Math.max(this.lastFrameAt, this.askedAt - FRAME_MS);
     this.lastFrameAt = now;
+    if (this.isMoving) {
+      this.frameTimes.push(took);
+      this.pace.note(took);
+    } else if (this.refined !== null) {
+      this.perFrame = took < 20 ? Math.min(this.perFrame * 2, 16) : took > 30 ? Math.max(this.perFrame >> 1, 1) : this.perFrame;
+    }
     if (this.frameTimes.length > MOST_FRAME_TIMES) {
       this.frameTimes.shift();
     }
@@ -396,7 +462,8 @@ export class PathScene {
 
   /** Draws the coarse path, which is short enough for everybody, and looks how long it takes. */
   private measure(): boolean {
-    this.show('coarse');
+    this.path.clear();
+    this.path.add(...(this.motion === null ? [] : [this.motion]));
     const gl = this.renderer.getContext();
     const pixel = new Uint8Array(4);
     this.renderer.render(this.scene, this.camera); // what is made at first use
@@ -405,22 +472,6 @@ export class PathScene {
     this.renderer.render(this.scene, this.camera);
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel); // waits until it is drawn
     return performance.now() - begin > SLOW_MS;
-  }
-
-  private wanted(): keyof Piece {
-    return !this.isSlow ? 'whole' : this.isMoving ? 'coarse' : 'fine';
-  }
-
-  private show(which: keyof Piece): void {
-    this.shown = which;
-    this.path.clear();
-    this.path.add(...this.pieces.map((piece) => piece[which] ?? piece.whole));
-  }
-
-  private choose(): void {
-    if (this.isThinned && this.shown !== this.wanted()) {
-      this.show(this.wanted());
-    }
   }
 }
 

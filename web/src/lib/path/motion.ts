@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// How much of a long path is drawn while something moves: as many pieces as keep a frame short on this computer. They lie in
+// the order of a shuffle, so that the first of them, however many, are spread over the whole path; nothing is sent to the
+// graphics card again.
+import type { Moves } from './chunks';
+
+/** A frame of 30 Hz, with room for what else the page does. [ms] */
+const LONG_MS = 28;
+const SHORT_MS = 18;
+const FEWEST = 1500;
+
+/** Pairs of points in another order, the same each time. */
+export function shuffled(pairs: Moves): Moves {
+  const count = pairs.count / 2;
+  const order = Uint32Array.from({ length: count }, (_, i) => i);
+  let seed = 12345;
+  for (let i = count - 1; i > 0; --i) {
+    seed = (Math.imul(seed, 1103515245) + 12345) >>> 0;
+    const other = seed % (i + 1);
+    [order[i], order[other]] = [order[other] ?? 0, order[i] ?? 0];
+  }
+  const out: Moves = {
+    kind: 'moves',
+    count: pairs.count,
+    places: new Float32Array(pairs.places.length),
+    lines: new Uint32Array(pairs.lines.length),
+    kinds: new Uint8Array(pairs.kinds.length),
+  };
+  order.forEach((from, to) => {
+    out.places.set(pairs.places.subarray(from * 6, from * 6 + 6), to * 6);
+    out.lines.set(pairs.lines.subarray(from * 2, from * 2 + 2), to * 2);
+    out.kinds.set(pairs.kinds.subarray(from * 2, from * 2 + 2), to * 2);
+  });
+  return out;
+}
+
+/** Several lists of pairs as one. */
+export function joined(parts: readonly Moves[]): Moves {
+  const count = parts.reduce((sum, one) => sum + one.count, 0);
+  const out: Moves = { kind: 'moves', count, places: new Float32Array(count * 3), lines: new Uint32Array(count), kinds: new Uint8Array(count) };
+  let at = 0;
+  for (const one of parts) {
+    out.places.set(one.places, at * 3);
+    out.lines.set(one.lines, at);
+    out.kinds.set(one.kinds, at);
+    at += one.count;
+  }
+  return out;
+}
+
+/** How many pieces the next frame has. */
+export class Pace {
+  private share: number;
+
+  constructor(
+    private readonly most: number,
+    first = most,
+  ) {
+    this.share = Math.min(first, most);
+  }
+
+  get pieces(): number {
+    return Math.floor(this.share);
+  }
+
+  /** `ms`: the frame before took, from its start to that of this one. */
+  note(ms: number): void {
+    if (ms > LONG_MS) {
+      this.share *= Math.max(0.5, LONG_MS / ms);
+    } else if (ms < SHORT_MS) {
+      this.share *= 1.08;
+    }
+    this.share = Math.min(Math.max(this.share, Math.min(FEWEST, this.most)), this.most);
+  }
+}
