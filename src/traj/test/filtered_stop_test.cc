@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Holds and drops with jerk limits.
+#include "traj/test/jerk_rig.hh"
+
+namespace mw::traj::test {
+namespace {
+
+TEST(Filtered, AHoldStopsWithinTheJerkLimitAndGoesOn_C13) {
+    JerkRig rig;
+    rig.planner.add(make_line(Pose{}, at(60)), request(geom::PathMode::EXACT_STOP));
+    rig.planner.release_end();
+    for (int i = 0; i < 300; ++i) {
+        rig.step();
+    }
+    rig.executor.hold(true);
+    const std::uint64_t asked = rig.cycle;
+    while (!rig.executor.isAtRest() && rig.cycle < asked + 1000) {
+        rig.step();
+    }
+    // Planner period, latency, v/a and twice the mean.
+    EXPECT_LT(rig.cycle - asked, 5U + 3U + 80U + 45U);
+    rig.executor.hold(false);
+    ASSERT_TRUE(rig.run(10));
+    rig.expect_within();
+    EXPECT_EQ(rig.samples.back(), at(60));
+}
+
+TEST(Filtered, ADropWithinAHoldKeepsThePlanThatStops_C5) {
+    Limits gentle = jerk_limits();
+    gentle.jerk.fill(J / 4);  // 0.08 s to the full acceleration
+    for (std::uint64_t later = 1; later < 150; later += 7) {
+        JerkRig rig;
+        rig.planner.set_limits(gentle);
+        rig.planner.begin(Pose{}, rig.executor.snapshot());
+        rig.planner.add(make_line(Pose{}, at(60)), request(geom::PathMode::EXACT_STOP));
+        rig.planner.release_end();
+        while (rig.cycle < 70) {
+            rig.step();  // it still gains speed
+        }
+        rig.executor.hold(true);
+        const std::uint64_t asked = rig.cycle;
+        while (rig.cycle < asked + later) {
+            rig.step();
+        }
+        rig.executor.drop();
+        while (rig.cycle < asked + 1000 && rig.executor.snapshot().isDropping) {
+            rig.step();
+        }
+        EXPECT_FALSE(rig.executor.snapshot().isDropping);
+        auto checker = make_checker(gentle, Rig::T);
+        for (const Pose &p : rig.samples) {
+            checker.sample(p.c.data());
+        }
+        EXPECT_TRUE(checker.isWithin()) << later << ": " << checker.report();
+    }
+}
+
+/// A line of 60 begun with gentle limits and dropped `after` cycles later, with the planner away from then on
+/// or not; the cycles until it stands and the way it has made meanwhile.
+struct Dropped {
+    std::uint64_t cycles = 0;
+    double way = 0;
+};
+Dropped drop_after(std::uint64_t after, bool isPlannerAlive) {
+    Limits gentle = jerk_limits();
+    gentle.jerk.fill(J / 4);  // 0.08 s to the full acceleration
+    JerkRig rig;
+    rig.planner.set_limits(gentle);
+    rig.planner.begin(Pose{}, rig.executor.snapshot());
+    rig.planner.add(make_line(Pose{}, at(60)), request(geom::PathMode::EXACT_STOP));
+    rig.planner.release_end();
+    while (rig.executor.isAtRest()) {
+        rig.step();
+    }
+    const std::uint64_t began = rig.cycle;
+    while (rig.cycle < began + after) {
+        rig.step();
+    }
+    rig.isPlannerAlive = isPlannerAlive;
+    rig.executor.drop();
+    const double from = rig.samples.back()[0];
+    while (rig.cycle < began + 1000 && rig.executor.snapshot().isDropping) {
+        rig.step();
+    }
+    auto checker = make_checker(gentle, Rig::T);
+    for (const Pose &p : rig.samples) {
+        checker.sample(p.c.data());
+    }
+    EXPECT_TRUE(checker.isWithin()) << after << ": " << checker.report();
+    EXPECT_FALSE(rig.executor.snapshot().isDropping) << after;
+    return {rig.cycle - began - after, rig.samples.back()[0] - from};
+}
+
+TEST(Filtered, AStopBehindTheStartDoesNotWaitForTheMean_C5) {
+    // The leader has moved for 5 ms and the planner's period: it brakes for as long, and the mean ends 80 ms
+    // later.
+    const Dropped soon = drop_after(5, true);
+    EXPECT_LT(soon.cycles, 5U + 10U + 20U + 80U);
+    EXPECT_LT(soon.way, 0.1) << "0.5 when the speed is kept for the time of the mean first";
+    for (std::uint64_t after = 1; after < 250; after += 3) {
+        drop_after(after, true);
+    }
+}
+
+TEST(Filtered, AStopWithoutAPlannerKeepsTheJerkLimit_C13) {
+    for (std::uint64_t after = 1; after < 250; after += 3) {
+        EXPECT_LT(drop_after(after, false).cycles, 30U + 80U + 80U + 80U + 5U) << after;
+    }
+}
+
+}  // namespace
+}  // namespace mw::traj::test

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Planner and executor with jerk limits, and moves to feed them.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "traj/test/path_rig.hh"
+
+namespace mw::traj::test {
+
+inline constexpr double V = 100, A = 1000, J = 50000;
+
+inline Limits jerk_limits() {
+    Limits l;
+    l.velocity.fill(V);
+    l.acceleration.fill(A);
+    l.jerk.fill(J);
+    l.velocity[XYZ_NORM] = UNLIMITED;
+    l.acceleration[XYZ_NORM] = UNLIMITED;
+    l.jerk[XYZ_NORM] = UNLIMITED;
+    l.isJerkLimited = true;
+    return l;
+}
+
+inline Pose at(double x, double y = 0) {
+    Pose p;
+    p[0] = x;
+    p[1] = y;
+    return p;
+}
+
+inline MoveRequest request(geom::PathMode join, double tolerance = 0) {
+    MoveRequest r;
+    r.tag.requested_velocity = 80;
+    r.join = join;
+    r.tolerance = tolerance;
+    return r;
+}
+
+struct JerkRig : Rig {
+    JerkRig() : Rig(Pose{}) {
+        planner.set_limits(jerk_limits());
+        planner.begin(Pose{}, executor.snapshot());
+    }
+    void expect_within() const {
+        auto checker = make_checker(jerk_limits(), T);
+        for (const Pose &p : samples) {
+            checker.sample(p.c.data());
+        }
+        EXPECT_TRUE(checker.isWithin()) << checker.report();
+    }
+};
+
+}  // namespace mw::traj::test
