@@ -189,7 +189,10 @@ double Judge::time_of_jerk() const {
         }
         double a = d.acceleration;
         double jerk = d.jerk;
-        most = jerk > 0 ? std::max(most, built_up(d.isAngular, a, jerk) / jerk) : most;
+        // One that moves alone builds up its own.
+        const double least =
+            !d.isAngular && design_.jerk > 0 && (jerk <= 0 || design_.jerk < jerk) ? design_.jerk : jerk;
+        most = least > 0 ? std::max(most, built_up(d.isAngular, a, least) / least) : most;
         for (const AxisDesign &x : design_.axes) {
             // Who limits an axis may limit any joint.
             a = std::min(a, x.acceleration);

@@ -102,7 +102,7 @@ void Session::run_program(const Act &act) {
         fail("work", "the program does not end");
     } else if (end != End::DONE && !isStopped_ && !act.isToFail && !act.mayFail && !isProbeMoved) {
         fail("work", "the program ends badly with nothing wrong");
-    } else if (end == End::DONE && !isStopped_ && act.isToFail) {
+    } else if (end == End::DONE && !isStopped_ && act.isToFail && !isProbeMoved) {
         fail("work", "the program must not come to its end, and does");
     } else if (act.work == Work::PROBE) {
         check_probing(act, end);
