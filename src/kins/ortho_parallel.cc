@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "kins/spherical_wrist.hh"
+
 namespace mw::kins {
 
 namespace {
@@ -105,21 +107,13 @@ Status OrthoParallel::place_wrist(const Vector &wrist, const Sides &sides, doubl
 }
 
 Status OrthoParallel::inverse(const Pose &pose, double *joints) const noexcept {
-    if (!isFinite(pose) || !areFinite(joints, JOINTS)) {
-        return Status::UNREACHABLE;
-    }
-    const Rotation hand = rotation_of(pose);
     const Sides sides = sides_of(joints);
-    double found[JOINTS];
-    std::copy_n(joints, JOINTS, found);
-    const Status placed = place_wrist(place_of(pose) - hand.z * get(C4), sides, found);
-    if (placed == Status::UNREACHABLE) {
-        return placed;
-    }
-    const Status turned = turn_wrist(arm_of(found).inverse() * hand, sides.wrist, found);
-    std::copy_n(found, JOINTS, joints);
-    std::copy_n(pose.c.begin() + geom::AXIS_U, 3, joints + JOINTS);
-    return placed == Status::OK ? turned : placed;
+    return inverse_by_wrist(
+        pose, get(C4), joints,
+        [&](const Vector &wrist, double *found) noexcept { return place_wrist(wrist, sides, found); },
+        [&](const Rotation &hand, double *found) noexcept {
+            return turn_wrist(arm_of(found).inverse() * hand, sides.wrist, found);
+        });
 }
 
 }  // namespace mw::kins

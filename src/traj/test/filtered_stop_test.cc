@@ -55,19 +55,19 @@ TEST(Filtered, ADropWithinAHoldKeepsThePlanThatStops_C5) {
     }
 }
 
-/// A line of 60 begun with gentle limits and dropped `after` cycles later, with the planner away from then on
-/// or not; the cycles until it stands and the way it has made meanwhile.
+/// A line of `length` begun with gentle limits and dropped `after` cycles later, with the planner away from
+/// then on or not; the cycles until it stands and the way it has made meanwhile.
 struct Dropped {
     std::uint64_t cycles = 0;
     double way = 0;
 };
-Dropped drop_after(std::uint64_t after, bool isPlannerAlive) {
+Dropped drop_after(std::uint64_t after, bool isPlannerAlive, double length = 60) {
     Limits gentle = jerk_limits();
     gentle.jerk.fill(J / 4);  // 0.08 s to the full acceleration
     JerkRig rig;
     rig.planner.set_limits(gentle);
     rig.planner.begin(Pose{}, rig.executor.snapshot());
-    rig.planner.add(make_line(Pose{}, at(60)), request(geom::PathMode::EXACT_STOP));
+    rig.planner.add(make_line(Pose{}, at(length)), request(geom::PathMode::EXACT_STOP));
     rig.planner.release_end();
     while (rig.executor.isAtRest()) {
         rig.step();
@@ -105,6 +105,13 @@ TEST(Filtered, AStopBehindTheStartDoesNotWaitForTheMean_C5) {
 TEST(Filtered, AStopWithoutAPlannerKeepsTheJerkLimit_C13) {
     for (std::uint64_t after = 1; after < 250; after += 3) {
         EXPECT_LT(drop_after(after, false).cycles, 30U + 80U + 80U + 80U + 5U) << after;
+    }
+    // Also where the path ends before the mean has forgotten the start.
+    for (const double length : {0.05, 0.5, 2.0, 5.0, 12.0}) {
+        for (std::uint64_t after = 1; after < 200; after += 3) {
+            SCOPED_TRACE(length);
+            drop_after(after, false, length);
+        }
     }
 }
 
