@@ -9,7 +9,7 @@ import { bringUp, byHand, judgeByAxe, Rig, sleep, untilText } from './rig';
 
 const PICTURES = process.env['MW_SCREEN_PICTURES'];
 const SIZES = [[1280, 800], [800, 480], [390, 844]] as const;
-const TABS = ['path', 'programs', 'text', 'tools', 'offsets', 'plots', 'hal', 'messages', 'settings'];
+const TABS = ['path', 'programs', 'text', 'tools', 'offsets', 'probing', 'plots', 'hal', 'messages', 'settings'];
 const SMALL_TABS = ['jog', 'mdi', 'process', ...TABS];
 
 const rig = new Rig(byHand);
