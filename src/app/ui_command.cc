@@ -142,6 +142,7 @@ void run(ui::web::Server &server, const UiWords &words, const machine::LoadedCon
     if (words.isOpening && std::getenv(BROWSER_WAITS) == nullptr) {
         browser.open(address, folder);
     }
+    ui::web::go_first();
     while (stop_signal == 0) {
         server.run_for(api, api.count_screens() > 0 ? TICK : IDLE_TICK);
         api.tick();
