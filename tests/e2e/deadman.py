@@ -6,9 +6,11 @@ joint must decelerate within 110 ms of the last renewal that the machine was giv
 What moved when is read from HAL every servo cycle or so: the position, and the servo thread's own time (an integrator of 1), so that a
 computer whose servo thread comes late is not taken for a jog that runs on. Nothing of the screen, the server or motion is asked.
 
-usage: deadman.py MILLWRIGHT HALCMD ROOT [--cuts N] [--seed S] [--slack-ms MS]    slack: of a computer that does other things
+usage: deadman.py MILLWRIGHT HALCMD ROOT [--cuts N] [--seed S] [--slack-ms MS] [--log FILE]
+slack: of a computer that does other things. log: a line of JSON for each cut; a campaign that was cut short goes on behind its last line.
 """
 import argparse
+import json
 import multiprocessing
 import os
 import pathlib
@@ -53,8 +55,13 @@ class Watch(threading.Thread):
             time.sleep(SAMPLE_S)
 
     def servo_time(self, when):
-        """Of a moment by the computer's clock."""
-        return max((one[0] for one in self.samples if one[2] <= when), default=None)
+        """Of a moment by the computer's clock: between the samples before and after it, which may be far apart where the
+        computer is busy."""
+        before = max((one for one in self.samples if one[2] <= when), key=lambda one: one[2], default=None)
+        after = min((one for one in self.samples if one[2] > when), key=lambda one: one[2], default=None)
+        if before is None or after is None:
+            return None
+        return before[0] + (after[0] - before[0]) * (when - before[2]) / (after[2] - before[2])
 
     def since(self, start):
         return [one for one in self.samples if one[2] >= start]
@@ -154,7 +161,13 @@ def still_on(port):
     return is_on
 
 
-def judge(bench, cuts, seed, slack):
+def read_log(path):
+    """The cuts of before, by their number."""
+    lines = path.read_text().splitlines() if path is not None and path.exists() else []
+    return {line['number']: line for line in map(json.loads, lines)}
+
+
+def judge(bench, cuts, seed, slack, log):
     with (bench.ini.parent / 'by_hand.hal').open('a') as file:
         file.write(SERVO_CLOCK)
     server, port = bench.server()
@@ -165,11 +178,20 @@ def judge(bench, cuts, seed, slack):
     screen.cut()
     watch = Watch(bench)
     watch.start()
-    chance = random.Random(seed)
-    told = {}
+    done, told = read_log(log), {}
+    for line in done.values():
+        if line['style'] is not None:
+            told.setdefault(line['style'], []).append(line['delay_s'])
     for number in range(cuts):
+        if number in done:
+            continue
         watch.samples = []
-        result = one_cut(watch, port, chance, number, slack)
+        found = len(FOUND.failures)
+        result = one_cut(watch, port, random.Random(f'{seed} {number}'), number, slack)
+        if log is not None:
+            with log.open('a') as file:
+                style, delay = result if result is not None else (None, None)
+                print(json.dumps({'number': number, 'seed': seed, 'style': style, 'delay_s': delay, 'failures': FOUND.failures[found:]}), file=file)
         if result is not None:
             told.setdefault(result[0], []).append(result[1])
         elif not still_on(port):
@@ -177,6 +199,8 @@ def judge(bench, cuts, seed, slack):
             break
     watch.is_on = False
     watch.join()
+    earlier = [failure for line in done.values() for failure in line['failures']]
+    FOUND.expect(not earlier, f'{len(earlier)} findings of before', *earlier[:20])
     FOUND.expect(sum(map(len, told.values())) >= 0.98 * cuts, 'nearly all cuts could be judged', told.keys())
     for style, delays in sorted(told.items()):
         delays.sort()
@@ -193,12 +217,13 @@ def main():
     parser.add_argument('--cuts', type=int, default=24)
     parser.add_argument('--seed', type=int, default=1)
     parser.add_argument('--slack-ms', type=float, default=0)
+    parser.add_argument('--log', type=pathlib.Path)
     options = parser.parse_args()
     multiprocessing.set_start_method('fork')
     with tempfile.TemporaryDirectory() as folder:
         bench = Bench(options.millwright, options.halcmd, options.root, pathlib.Path(folder))
         try:
-            judge(bench, options.cuts, options.seed, options.slack_ms / 1000)
+            judge(bench, options.cuts, options.seed, options.slack_ms / 1000, options.log)
         finally:
             bench.end_all()
     return FOUND.status()

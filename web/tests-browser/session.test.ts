@@ -98,6 +98,13 @@ describe('offsets', () => {
     await page.getByTestId('touch-off-set').click();
     await untilText(page, 'g5x-Y', '3.000');
     await untilText(page, 'work-Y', '-3.000');
+    // Those of another system are changed where they stand.
+    await page.getByTestId('offsets-all').locator('summary').click();
+    await page.getByTestId('all-G57-X').click();
+    await page.getByTestId('offset-value').fill('12,5');
+    await page.getByTestId('offset-set').click();
+    await untilText(page, 'all-G57-X', '12.500');
+    await untilText(page, 'g5x-X', '0.000');
     await page.getByTestId('offset-clear-Y').click();
     await untilText(page, 'g5x-Y', '0.000');
     await page.getByTestId('system-G54').click();

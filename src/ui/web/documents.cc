@@ -181,7 +181,8 @@ Result<> check_panel(std::string_view text) {
 std::vector<std::string> settable_names(std::string_view panel) {
     std::vector<std::string> names;
     if (check_panel(panel).has_value()) {
-        for (const Json &row : parse(panel)["parts"]) {
+        const Json json = parse(panel);  // outlives its rows
+        for (const Json &row : json["parts"]) {
             const auto kind = std::ranges::find(PARTS, row["kind"].get<std::string>(),
                                                 &std::pair<std::string_view, bool>::first);
             if (kind->second) {

@@ -4,10 +4,13 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include <gtest/gtest.h>
 
 #include "msgs/catalogue.hh"
+#include "msgs/json.hh"
+#include "ui/web/access.hh"
 #include "ui/web/api.hh"
 #include "ui/web/test/fakes.hh"
 
@@ -34,6 +37,8 @@ class ApiTest : public testing::Test {
         setup.facts.program_prefix = folder.string();
         setup.facts.program_extensions = {".ngc"};
         setup.facts.increments = {{"0.1 in", 2.54, false}};
+        setup.facts.tabs = {{"Door", "", Tab::Kind::PANEL,
+                             R"({"parts": [{"kind": "switch", "label": "Door", "name": "door"}]})"}};
         setup.screen_folder = (folder / "web").string();
         setup.screens.connect = [this] { return client::Client::join(task.memory.segment()); };
         setup.read_path = [this](const std::string &path) -> Result<std::shared_ptr<PieceQueue>> {
@@ -154,6 +159,102 @@ TEST_F(ApiTest, PagesFiguresAndWhatThereIsNot_J3) {
     task.cycle();
     api->tick();
     EXPECT_NE(ask("GET", "/metrics").body.find("\nmillwright_machine_up 1\n"), std::string::npos);
+}
+
+/// The table of docs/api.md, Who may: a row is a request and the least role that it needs.
+TEST_F(ApiTest, EachRequestNeedsTheRoleOfTheTable_J3) {
+    struct Row {
+        const char *method, *target, *body;
+        Role least;
+    };
+    constexpr Role ALL[] = {Role::VIEW, Role::OPERATE, Role::CONFIGURE};
+    const Row rows[] = {
+        {"GET", "/api/machine", "", Role::VIEW},
+        {"GET", "/api/schema", "", Role::VIEW},
+        {"GET", "/api/tools", "", Role::VIEW},
+        {"GET", "/api/files", "", Role::VIEW},
+        {"GET", "/api/files/a.ngc", "", Role::VIEW},
+        {"GET", "/api/path?file=a.ngc", "", Role::VIEW},
+        {"GET", "/api/offsets", "", Role::VIEW},
+        {"GET", "/api/preferences", "", Role::VIEW},
+        {"GET", "/api/mdi_history", "", Role::VIEW},
+        {"GET", "/api/icon", "", Role::VIEW},
+        {"GET", "/api/hal?glob=*", "", Role::VIEW},
+        {"GET", "/api/scope", "", Role::VIEW},
+        {"GET", "/api/scope/record", "", Role::VIEW},
+        {"GET", "/metrics", "", Role::VIEW},
+        {"PUT", "/api/files/a.ngc", "G0 X1", Role::OPERATE},
+        {"DELETE", "/api/files/a.ngc", "", Role::OPERATE},
+        {"PUT", "/api/preferences", "{}", Role::OPERATE},
+        {"PUT", "/api/mdi_history", R"({"lines": []})", Role::OPERATE},
+        {"POST", "/api/questions", R"({"id": "door", "number": 0, "yes": true})", Role::OPERATE},
+        {"PUT", "/api/hal/door", R"({"value": "1"})", Role::OPERATE},
+        {"PUT", "/api/hal/joint.0.amp-enable-out", R"({"value": "1"})", Role::CONFIGURE},
+        {"POST", "/api/scope", "{}", Role::CONFIGURE},
+        {"POST", "/api/scope/force", "", Role::CONFIGURE},
+        {"DELETE", "/api/scope", "", Role::CONFIGURE},
+    };
+    for (const Row &row : rows) {
+        for (const Role asking : ALL) {
+            role = asking;
+            const Response answer = ask(row.method, row.target, row.body);
+            const bool isRefused =
+                answer.status == 403 && answer.body.find("needs a token of the role") != std::string::npos;
+            EXPECT_EQ(isRefused, asking < row.least)
+                << row.method << ' ' << row.target << " as " << role_name(asking) << ": " << answer.status
+                << ' ' << answer.body;
+        }
+    }
+}
+
+TEST_F(ApiTest, EachCommandIsAStopOrNeedsAnOperator_J3) {
+    const std::set<std::string> stops{"EstopOn",     "AbortAll",     "AbortMachine", "AbortTraj",
+                                      "AbortMotion", "AbortJoint",   "AbortTool",    "AbortIo",
+                                      "JogStop",     "PauseProgram", "PauseTraj"};
+    constexpr Role ALL[] = {Role::VIEW, Role::OPERATE, Role::CONFIGURE};
+    task.cycle();
+    api->tick();
+    for (SessionId i = 0; i < 3; ++i) {
+        api->opened(i, ALL[i], Protection::TLS);
+    }
+    for (const msgs::Declaration *declaration : msgs::command_declarations()) {
+        const auto command = msgs::make_command(declaration->number);
+        ASSERT_TRUE(command.has_value()) << declaration->name;
+        if (std::holds_alternative<msgs::SetState>(*command)) {
+            continue;  // below
+        }
+        for (SessionId session = 0; session < 3; ++session) {
+            const Role asking = ALL[session];
+            sockets.take(session);
+            Json text{{"id", 1}, {"command", Json::parse(msgs::to_json(msgs::object(*command)))}};
+            for (Json &value : text["command"]) {
+                value = value == "" ? Json("x")
+                                    : value;  // an empty text is refused before anybody is asked for a role
+            }
+            api->received(session, text.dump());
+            task.cycle();
+            api->tick();
+            bool isOfRole = false;
+            for (const Json &told : sockets.take(session)) {
+                isOfRole |= told.dump().find("may look, and stop, but not operate") != std::string::npos;
+            }
+            const bool isStop = stops.contains(std::string(declaration->name));
+            EXPECT_EQ(isOfRole, asking == Role::VIEW && !isStop)
+                << declaration->name << " as " << role_name(asking);
+        }
+    }
+    // Of one command it depends on its word.
+    for (const auto &[state, isStop] :
+         {std::pair("ESTOP", true), {"OFF", true}, {"ON", false}, {"ESTOP_RESET", false}}) {
+        constexpr SessionId VIEWER = 0;
+        sockets.take(VIEWER);
+        api->received(VIEWER, std::string(R"({"id": 1, "command": {"message": "SetState", "state": ")") +
+                                  state + R"("}})");
+        task.cycle();
+        api->tick();
+        EXPECT_EQ(Json(sockets.take(VIEWER)).dump().find("may look, and stop") == std::string::npos, isStop)
+            << state;
+    }
 }
 
 }  // namespace

@@ -162,6 +162,22 @@ TEST_F(RemoteTest, OnlyATokenOpensIt_J3) {
     EXPECT_EQ(ask("/api/login", ""), "200\n{\"role\":\"\",\"protection\":\"tls\"}");
 }
 
+TEST_F(RemoteTest, WithoutATokenOnlyThePageAndTheLoginAreThere_J3) {
+    listen(true);
+    for (const char *path : {"/", "/api/login"}) {
+        EXPECT_EQ(ask(path, "").find("401"), std::string::npos) << path;
+    }
+    for (const char *path : {"/metrics", "/api/machine", "/api/schema", "/api/tools", "/api/files",
+                             "/api/files/a.ngc", "/api/path?file=a.ngc", "/api/offsets", "/api/preferences",
+                             "/api/mdi_history", "/api/icon", "/api/hal", "/api/hal/x", "/api/scope",
+                             "/api/scope/record", "/api/questions", "/api/socket", "/api/nothing"}) {
+        EXPECT_NE(ask(path, "").find("401"), std::string::npos) << path;
+        EXPECT_NE(ask(path, "Authorization: Bearer 0123456789abcdef0123456789abcdef\r\n").find("401"),
+                  std::string::npos)
+            << path;
+    }
+}
+
 TEST_F(RemoteTest, OtherNamesAndOtherSitesReachNothing_J3) {
     listen(true);
     const std::string port = std::to_string(server->remote_port());
