@@ -22,16 +22,28 @@ TEST(Plants, AnAmpTakesItsTimeAndKeepsAFaultUntilItIsOff_C3) {
 
 TEST(Plants, AnAxisFollowsWithInertiaAndPlay_C3) {
     Bench bench("loadrt plant_axis\naddf plant-axis.0 t\nsetp plant-axis.0.backlash 0.2");
-    bench.set("plant-axis.0.command", 5);
-    bench.pass(200);
+    const auto lead = [&](double from, double to) {
+        for (int i = 1; i <= 500; ++i) {
+            bench.set("plant-axis.0.command", from + (to - from) * i / 500.0);
+            bench.pass();
+        }
+        bench.pass(300);
+    };
+    lead(0, 1);
     EXPECT_EQ(bench.get("plant-axis.0.motor"), 0.0) << "without power";
+    lead(1, 0);
     bench.set("plant-axis.0.powered", 1);
-    bench.pass(500);
+    lead(0, 5);
     EXPECT_NEAR(bench.get("plant-axis.0.motor"), 5, 1e-6);
-    EXPECT_NEAR(bench.get("plant-axis.0.load"), 4.9, 1e-6) << "half the play behind";
-    bench.set("plant-axis.0.command", 0);
+    EXPECT_NEAR(bench.get("plant-axis.0.load"), 4.9, 1e-3) << "half the play behind";
+    lead(5, 0);
+    EXPECT_NEAR(bench.get("plant-axis.0.load"), 0.1, 1e-3);
+    bench.set("plant-axis.0.zero", 2);
     bench.pass(500);
-    EXPECT_NEAR(bench.get("plant-axis.0.load"), 0.1, 1e-6);
+    EXPECT_NEAR(bench.get("plant-axis.0.motor"), 2, 1e-6) << "where the drive's counter is zero";
+}
+
+TEST(Plants, AWeakDriveIsAsFastAsItsTorqueAllows_C3) {
     // A torque of 100 units/s^2 makes 100 units/s^2: 0.5 a t^2 after a tenth of a second.
     Bench weak("loadrt plant_axis\naddf plant-axis.0 t\nsetp plant-axis.0.peak-acceleration 100\n"
                "setp plant-axis.0.powered 1\nsetp plant-axis.0.command 1000");
