@@ -6,7 +6,7 @@ import re
 import sys
 
 LAYER = {
-    'base': 0, 'geom': 0, 'diag': 0, 'options': 0,
+    'base': 0, 'geom': 0, 'diag': 0, 'options': 0, 'language': 0,
     'rtapi': 1, 'config': 1, 'msgs': 1, 'picture': 1, 'comp': 1,
     'hal': 2, 'mailbox': 2,
     'kins': 3, 'traj': 3, 'homing': 3, 'interp': 3, 'tool': 3, 'journal': 3, 'client': 3, 'hal_lang': 3,
@@ -17,7 +17,7 @@ LAYER = {
     'cli': 8,
 }
 # Equal layers that may be used, user -> used.
-ALLOWED_EQUAL = {('geom', 'base'), ('diag', 'base'), ('options', 'base'), ('interp', 'tool'), ('task', 'io'), ('machine', 'ui'), ('doctor', 'machine')}
+ALLOWED_EQUAL = {('geom', 'base'), ('diag', 'base'), ('options', 'base'), ('language', 'base'), ('options', 'language'), ('interp', 'tool'), ('task', 'io'), ('machine', 'ui'), ('doctor', 'machine')}
 # Domain libraries know neither HAL nor NML.
 FORBIDDEN = {(user, used) for user in ('kins', 'traj', 'homing', 'interp', 'tool', 'journal') for used in ('hal', 'hal_lang', 'nml')}
 # Inside a folder: sub-folders in the order in which they may use each other.
