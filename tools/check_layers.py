@@ -10,7 +10,7 @@ LAYER = {
     'rtapi': 1, 'config': 1, 'msgs': 1, 'picture': 1, 'comp': 1,
     'hal': 2, 'mailbox': 2,
     'kins': 3, 'traj': 3, 'homing': 3, 'interp': 3, 'tool': 3, 'journal': 3, 'client': 3, 'hal_lang': 3,
-    'motion': 4, 'pyhost': 4, 'hal_tools': 4, 'gcode': 4, 'nml': 4,
+    'motion': 4, 'pyhost': 4, 'hal_tools': 4, 'gcode': 4, 'nml': 4, 'modbus': 4,
     'task': 5, 'io': 5,
     'machine': 6, 'ui': 6, 'python': 6, 'doctor': 6,
     'app': 7,

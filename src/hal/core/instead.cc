@@ -20,7 +20,7 @@ constexpr Absent ABSENT[] = {
      " hal_pi_gpio hal_ax5214h opto_ac5 pcl720 pluto_step pluto_servo serport setsserial elbpcom ",
      "drivers of boards come with a later version; this one runs simulated machines, programs of loadusr and "
      "components of your own"},
-    {" mb2hal gs2_vfd hy_vfd hy_gt_vfd pi500_vfd svd-ps_vfd vfdb_vfd vfs11_vfd wj200_vfd thermistor sendkeys "
+    {" gs2_vfd hy_vfd hy_gt_vfd pi500_vfd svd-ps_vfd vfdb_vfd vfs11_vfd wj200_vfd thermistor sendkeys "
      "shuttle"
      " xhc-hb04 xhc-whb04b-6 xhc-hb04-accels monitor-xhc-hb04 ",
      "that of an installed LinuxCNC runs on this HAL as it is: start the machine by script/screens "
