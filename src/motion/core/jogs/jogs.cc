@@ -37,6 +37,31 @@ double mean_for(const JogLimits &most) noexcept {
                : 0.0;
 }
 
+/// A jog at rest is over.
+bool isJogged(Jog &jog) noexcept {
+    if (jog.source != JogSource::NONE && jog.planner.isAtRest()) {
+        jog.source = JogSource::NONE;
+    }
+    return jog.source != JogSource::NONE;
+}
+
+/// What changes while axes follow a path.
+void fill_places(const Jogs &jogs, const geom::Pose &pose, Outputs &out) noexcept {
+    for (int j = 0; j < jogs.num_joints; ++j) {
+        const Jog &from = jogs.joint[at(j)];
+        out.status.joint[at(j)].isInPosition = from.planner.isAtRest();
+        out.joint[at(j)].free_pos_cmd = from.planner.target;
+        out.joint[at(j)].free_velocity_limit = from.planner.max_velocity;
+    }
+    for (std::uint32_t left = jogs.axes; left != 0; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        AxisOutputs &o = out.axis[at(i)];
+        o.position = pose[i];
+        o.teleop_position = pose[i];
+        o.teleop_velocity_limit = jogs.axis[at(i)].planner.max_velocity;
+    }
+}
+
 struct JogMove {
     double position = 0, velocity = 0;
     JogSource source = JogSource::NONE;
@@ -394,16 +419,15 @@ void settle(Jogs &jogs, const Inputs &in) noexcept {
     for (int j = 0; j < jogs.num_joints; ++j) {
         Jog &jog = jogs.joint[at(j)];
         jog.wheel_counts = in.joint[at(j)].wheel.counts;
-        jog.source = jog.planner.isAtRest() ? JogSource::NONE : jog.source;
-        isAnyJog = isAnyJog || jog.source != JogSource::NONE;
+        isAnyJog = isJogged(jog) || isAnyJog;
     }
     for (std::uint32_t left = jogs.axes; left != 0; left &= left - 1) {
         const int i = std::countr_zero(left);
         Jog &jog = jogs.axis[at(i)];
         jog.wheel_counts = in.axis_wheel[at(i)].counts;
-        jog.source = jog.planner.isAtRest() ? JogSource::NONE : jog.source;
-        isAnyJog = isAnyJog || jog.source != JogSource::NONE;
+        isAnyJog = isJogged(jog) || isAnyJog;
     }
+    jogs.isAnyJogged = isAnyJog;
     if (jogs.isOverrideInJog && !isAnyJog) {
         jogs.isOverrideInJog = false;
         jogs.areLimitsOverridden = false;
@@ -448,6 +472,12 @@ void step_joint(Jog &jog, double max_velocity, double scale, double period_s) no
 }
 
 void fill(const Jogs &jogs, Mode mode, const geom::Pose &pose, Outputs &out) noexcept {
+    const bool isQuiet = mode == Mode::COORD && !jogs.isAnyJogged;
+    if (isQuiet && out.areJogsQuiet) {
+        fill_places(jogs, pose, out);
+        return;
+    }
+    out.areJogsQuiet = isQuiet;
     bool isJogging = false;
     for (int j = 0; j < jogs.num_joints; ++j) {
         const Jog &from = jogs.joint[at(j)];
