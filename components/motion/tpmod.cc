@@ -11,7 +11,8 @@ RTAPI_MP_STRING(replaced_by, "the planner module that is loaded: refused where i
 static int component = -1;
 
 int rtapi_app_main(void) {
-    for (const char *name : {"mw_tp_init", "mw_tp_plan"}) {
+    static constexpr const char *FUNCTIONS[] = {"mw_tp_init", "mw_tp_plan"};
+    for (const char *name : FUNCTIONS) {
         if (replaced_by != nullptr && mw_ext_find_symbol(name) == nullptr) {
             rtapi_print_msg(RTAPI_MSG_ERR,
                             "%s is no planner module, it lacks %s: see docs/extending/planner.md\n",

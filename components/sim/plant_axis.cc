@@ -8,7 +8,7 @@ using namespace sdk;
 
 struct PlantAxis {
     static constexpr sim::AxisSettings START{};
-    In<double> command, peak_acceleration, coulomb_friction, viscous_friction, backlash, position_gain,
+    In<double> command, zero, peak_acceleration, coulomb_friction, viscous_friction, backlash, position_gain,
         velocity_gain;
     In<bool> powered;
     Out<double> motor, load, velocity;
@@ -17,6 +17,7 @@ struct PlantAxis {
 
     void declare(Declare &d) noexcept {
         d.pin(command, "command");
+        d.pin(zero, "zero");
         d.pin(powered, "powered");
         d.pin(peak_acceleration, "peak-acceleration", START.peak_acceleration);
         d.pin(coulomb_friction, "coulomb-friction");
@@ -36,7 +37,7 @@ struct PlantAxis {
             axis.hold_here();
         }
         wasPowered = powered;
-        axis.run(command, powered, static_cast<double>(period_ns) * 1e-9);
+        axis.run(command + zero, powered, static_cast<double>(period_ns) * 1e-9);
         motor = axis.motor();
         load = axis.load();
         velocity = axis.velocity();

@@ -10,7 +10,7 @@ struct PlantEncoder {
     In<double> shaft, counts_per_unit, index_spacing, index_at, jump_by;
     In<bool> lost, jump;
     InOut<bool> index_enable;
-    Out<double> position;
+    Out<double> position, zero;
     sim::Encoder encoder;
     bool wasJumping = false;
 
@@ -24,6 +24,7 @@ struct PlantEncoder {
         d.pin(jump_by, "jump-by");
         d.pin(index_enable, "index-enable");
         d.pin(position, "position");
+        d.pin(zero, "zero");
         d.function<&PlantEncoder::update>(this);
     }
     void update() noexcept {
@@ -39,6 +40,7 @@ struct PlantEncoder {
             index_enable = false;
         }
         position = encoder.reading();
+        zero = encoder.zero();
     }
 };
 

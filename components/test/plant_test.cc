@@ -48,6 +48,7 @@ TEST(Plants, AnEncoderCountsFindsItsIndexAndLosesItsCable_C3) {
     EXPECT_NEAR(bench.after("plant-encoder.0.shaft", 0.9, "plant-encoder.0.position"), 0.9, 1e-12);
     EXPECT_NEAR(bench.after("plant-encoder.0.shaft", 1.25, "plant-encoder.0.position"), 0.25, 1e-12);
     EXPECT_EQ(bench.get("plant-encoder.0.index-enable"), 0.0);
+    EXPECT_NEAR(bench.get("plant-encoder.0.zero"), 1, 1e-12);
     bench.set("plant-encoder.0.lost", 1);
     EXPECT_NEAR(bench.after("plant-encoder.0.shaft", 3, "plant-encoder.0.position"), 0.25, 1e-12);
     EXPECT_NEAR(bench.after("plant-encoder.0.lost", 0, "plant-encoder.0.position"), 0.25, 1e-12);

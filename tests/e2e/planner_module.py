@@ -37,7 +37,7 @@ def speeds(trace):
 
 
 def main():
-    programs, source = (pathlib.Path(word) for word in sys.argv[1:3])
+    programs, source = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
     failures, count = [], 0
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
