@@ -69,8 +69,10 @@ alignas(motion::Controller) unsigned char controller_memory[sizeof(motion::Contr
 alignas(motion::PathPlanner) unsigned char planner_memory[sizeof(motion::PathPlanner)];
 
 void handle_commands(void *, long) {
-    module.pins->read(module.in);
-    module.controller->handle_commands(module.in);
+    if (module.channels->hasCommands()) {
+        module.pins->read(module.in);
+        module.controller->handle_commands(module.in);
+    }
 }
 
 void control(void *, long) {

@@ -19,6 +19,7 @@
 #include "base/stop_signals.hh"
 #include "base/whole_path.hh"
 #include "hal/core/hal.hh"
+#include "language/language.hh"
 #include "machine/loaded_config.hh"
 #include "options/command_line.hh"
 #include "options/letters.hh"
@@ -184,24 +185,25 @@ int command_launch(const std::vector<std::string> &arguments) {
     LaunchWords words;
     const auto parsed = words.parse(arguments);
     if (words.isHelpAsked) {
-        fmt::print("{}", USAGE);
+        fmt::print("{}", language::shown(USAGE));
         return 0;
     }
     const bool isNoneNamed = words.settings.ini.empty() && !words.isLastAsked;
     if (parsed.has_value() && isNoneNamed && ::isatty(STDIN_FILENO) != 0 && ::isatty(STDOUT_FILENO) != 0) {
         const auto chosen = select_configuration();
         if (!chosen.has_value() || chosen->empty()) {
-            fmt::print(stderr, "{}", chosen.has_value() ? "" : "linuxcnc: " + chosen.error().str() + "\n");
+            fmt::print(stderr, "{}",
+                       chosen.has_value() ? "" : "linuxcnc: " + language::shown(chosen.error().str()) + "\n");
             return chosen.has_value() ? 0 : 1;
         }
         words.settings.ini = *chosen;
     } else if (!parsed.has_value() || isNoneNamed) {
         const std::string what = parsed.has_value() ? "name the INI file of a machine" : parsed.error().str();
-        fmt::print(stderr, "linuxcnc: {}\n{}", what, USAGE);
+        fmt::print(stderr, "linuxcnc: {}\n{}", language::shown(what), language::shown(USAGE));
         return 2;
     }
     catch_stop_signals();
-    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", d.str()); });
+    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
     return launch(words, sink);
 }
 

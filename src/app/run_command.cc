@@ -17,6 +17,7 @@
 #include "base/stop_signals.hh"
 #include "base/whole_path.hh"
 #include "hal/core/hal.hh"
+#include "language/language.hh"
 #include "machine/ini_parameters.hh"
 #include "machine/loaded_config.hh"
 #include "machine/machine.hh"
@@ -259,11 +260,11 @@ int command_run(const std::vector<std::string> &arguments) {
     }
     const auto words = parse_run(arguments);
     if (!words.has_value()) {
-        fmt::print(stderr, "millwright run: {}\n", words.error().str());
+        fmt::print(stderr, "millwright run: {}\n", language::shown(words.error().str()));
         return 2;
     }
     catch_stop_signals();
-    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", d.str()); });
+    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
     auto loaded = machine::LoadedConfig::load(words->ini, sink);
     return loaded == nullptr ? 1 : Run(*words, *loaded, sink).run();
 }

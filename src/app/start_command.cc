@@ -8,6 +8,7 @@
 #include "app/commands.hh"
 #include "app/machine_start.hh"
 #include "base/stop_signals.hh"
+#include "language/language.hh"
 #include "machine/loaded_config.hh"
 #include "options/command_line.hh"
 
@@ -60,11 +61,11 @@ int command_start(const std::vector<std::string> &arguments) {
         return 0;
     }
     if (const auto parsed = words.parse(arguments); !parsed.has_value()) {
-        fmt::print(stderr, "millwright start: {}\n", parsed.error().str());
+        fmt::print(stderr, "millwright start: {}\n", language::shown(parsed.error().str()));
         return 2;
     }
     catch_stop_signals();
-    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", d.str()); });
+    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
     auto loaded = machine::LoadedConfig::load(words.ini, sink);
     if (loaded == nullptr) {
         return 1;

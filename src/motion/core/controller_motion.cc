@@ -192,15 +192,15 @@ geom::Pose Controller::path_pose() noexcept {
 }
 
 void Controller::move_to(const geom::Pose &pose) noexcept {
-    PerJoint positions = commanded(joints_);
+    const PerJoint here = commanded(joints_);
+    PerJoint positions = here;
     if (!isAnswered(kinematics_.inverse(pose, positions.data()))) {
         // The planner keeps off such poses; were one to come, nothing sensible can be commanded any more.
         stop_category_0(FaultKind::KINEMATICS_FAILED, -1, 0);
         return;
     }
     const bool isPlanned = map_.kind == AxisMap::Kind::PLANNED;
-    const int jump =
-        isPlanned ? joint_that_jumps(positions, commanded(joints_), stride_of(limits_, config_)) : -1;
+    const int jump = isPlanned ? joint_that_jumps(positions, here, stride_of(limits_, config_)) : -1;
     if (jump >= 0) {
         const auto n = static_cast<std::size_t>(jump);
         stop_category_0(FaultKind::KINEMATICS_JUMP, jump, positions[n] - joints_[jump].pos_cmd);
