@@ -8,7 +8,9 @@
 namespace mw::traj {
 
 Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept
-    : settings_(settings), conditions_(settings.period_s), path_(store), timing_(settings) {}
+    : settings_(settings), conditions_(settings.period_s), path_(store), timing_(settings) {
+    conditions_.chooser = settings.chooser;
+}
 
 void Planner::set_joints(const JointMap *map, const JointLimits &limits) noexcept {
     conditions_.workspace.map = map;
@@ -247,17 +249,15 @@ bool Planner::ease(const LeaderState &from, const Verdict &verdict, const Cause 
     return true;
 }
 
-Overreach Planner::take_overreach() noexcept {
-    const Overreach &now = timing_.overreach();
-    const bool isNew = now.kind != Overreach::Kind::NONE && !isOverreachTold_;
-    isOverreachTold_ = isOverreachTold_ || isNew;
-    return isNew ? now : Overreach{};
-}
-
-bool Planner::take_stuck() noexcept {
-    const bool isStuck = refusals_ == TimingTuning::MOST_REFUSALS;
-    refusals_ += isStuck ? 1 : 0;
-    return isStuck;
+Trouble Planner::take_trouble() noexcept {
+    Trouble trouble;
+    trouble.isStuck = refusals_ == TimingTuning::MOST_REFUSALS;
+    refusals_ += trouble.isStuck ? 1 : 0;
+    if (!isOverreachTold_) {
+        trouble.overreach = timing_.overreach();
+        isOverreachTold_ = trouble.overreach.kind != Overreach::Kind::NONE;
+    }
+    return trouble;
 }
 
 }  // namespace mw::traj

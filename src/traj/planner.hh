@@ -10,6 +10,11 @@
 
 namespace mw::traj {
 
+struct Trouble {
+    bool isStuck = false;  ///< it has stood for a second without finding a plan that passes the trial
+    Overreach overreach;   ///< of who chooses speeds: the path stops
+};
+
 /// The face of the parts: PathBuilder makes pieces of moves, TimingPlan plans and commits phases, Trial looks
 /// at what would be commanded, Easing makes slower what it refuses. The parts know nothing of each other;
 /// what one says goes to the next by value.
@@ -97,12 +102,8 @@ class Planner {
     bool isStarving() const noexcept {
         return builder_.hasOpenEnd() && (timing_.isAtEndOf(path_) || path_.isAllDriven());
     }
-    /// Chooses speeds instead of the fastest; null: nobody. He stays valid.
-    void set_chooser(SpeedChooser *chooser) noexcept { conditions_.chooser = chooser; }
-    /// Once for each path: what the chooser has asked for too much. The path stops and does not go on.
-    Overreach take_overreach() noexcept;
-    /// True once when it has stood for a second without finding a plan that passes the trial.
-    bool take_stuck() noexcept;
+    /// Why the path does not go on; each once.
+    Trouble take_trouble() noexcept;
     std::uint32_t moves_left(const Snapshot &now) const noexcept;
 
   private:

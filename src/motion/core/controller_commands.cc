@@ -28,6 +28,17 @@ bool isBesideIndexer(const Jogs &jogs, const FoldedLimits &limits, const Indexer
     return is;
 }
 
+/// Nobody goes back to before a stop, or to before the spindle turned, stopped or had another tool.
+void forget_way(Retracing &retracing, const CommandBody &body) noexcept {
+    const bool isChange =
+        std::holds_alternative<SpindleOn>(body) || std::holds_alternative<SpindleOff>(body) ||
+        std::holds_alternative<SpindleOrient>(body) || std::holds_alternative<SpindleBrake>(body) ||
+        std::holds_alternative<SetToolOffset>(body) || std::holds_alternative<Abort>(body);
+    if (isChange && !retracing.retrace.isAway()) {
+        retracing.retrace.clear();
+    }
+}
+
 }  // namespace
 
 void Controller::handle_commands(const Inputs &in) noexcept {
@@ -46,7 +57,7 @@ void Controller::handle_commands(const Inputs &in) noexcept {
         if (isStale && !std::holds_alternative<Abort>(c->body)) {
             answer.kind = AnswerKind::STALE;
         } else {
-            forget_way(c->body);
+            forget_way(retracing_, c->body);
             const Verdict verdict = take(in, c->body);
             answer.kind = verdict.reason == Reason::NONE ? AnswerKind::DONE : AnswerKind::REFUSED;
             answer.reason = verdict.reason;
@@ -136,17 +147,6 @@ Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
         [&](const ClearProbeFlag &c) { return motion::take(probe_, c); },
     };
     return std::visit(handlers, body);
-}
-
-/// Nobody goes back to before a stop, or to before the spindle turned, stopped or had another tool.
-void Controller::forget_way(const CommandBody &body) noexcept {
-    const bool isChange =
-        std::holds_alternative<SpindleOn>(body) || std::holds_alternative<SpindleOff>(body) ||
-        std::holds_alternative<SpindleOrient>(body) || std::holds_alternative<SpindleBrake>(body) ||
-        std::holds_alternative<SetToolOffset>(body) || std::holds_alternative<Abort>(body);
-    if (isChange && !retracing_.retrace.isAway()) {
-        retracing_.retrace.clear();
-    }
 }
 
 Verdict Controller::abort_all(const Abort &command) noexcept {

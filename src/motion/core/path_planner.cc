@@ -28,9 +28,8 @@ std::uint64_t latency_cycles(double period_s) noexcept {
 PathPlanner::PathPlanner(const PathPlannerConfig &config, const kins::Kinematics &kinematics,
                          Channels &channels, PathLink &link) noexcept
     : config_(config), kinematics_(kinematics), map_(kinematics), channels_(channels), link_(link),
-      planner_(link.store, {config.servo_period_s, latency_cycles(config.servo_period_s), HORIZON_S}) {
-    planner_.set_chooser(config.chooser);
-}
+      planner_(link.store, {config.servo_period_s, latency_cycles(config.servo_period_s), HORIZON_S, true,
+                            config.chooser}) {}
 
 void PathPlanner::update() noexcept {
     if (!link_.view.read(view_, 1000)) {
@@ -50,10 +49,9 @@ void PathPlanner::update() noexcept {
     open_gates();
     if (isPathBegun_) {
         planner_.update(view_.executor);
-        if (config_.chooser != nullptr) {
-            tell_overreach(planner_.take_overreach());
-        }
-        if (planner_.take_stuck()) {
+        const traj::Trouble trouble = planner_.take_trouble();
+        tell_overreach(trouble.overreach);
+        if (trouble.isStuck) {
             Fault fault;
             fault.kind = FaultKind::NO_WAY_ON;
             fault.source = !pending_.isEmpty() ? pending_.oldest().source : SourceTag{};

@@ -55,8 +55,7 @@ struct Driven {
 };
 
 Driven drive(Chooser *chooser, const Limits &limits, double feed = 80) {
-    Rig rig(at(0));
-    rig.planner.set_chooser(chooser);
+    Rig rig(at(0), chooser);
     rig.planner.set_limits(limits);
     rig.planner.begin(at(0), rig.executor.snapshot());
     std::mt19937 random(5);
@@ -74,7 +73,7 @@ Driven drive(Chooser *chooser, const Limits &limits, double feed = 80) {
     for (int i = 0; i < 60000 && !out.isDone; ++i) {
         rig.step();
         out.checker.sample(rig.samples.back().c.data());
-        const Overreach told = rig.planner.take_overreach();
+        const Overreach told = rig.planner.take_trouble().overreach;
         out.overreach = told.kind != Kind::NONE ? told : out.overreach;
         out.fastest =
             std::max(out.fastest, geom::norm_xyz(rig.samples.back() - rig.samples.end()[-2]) / PERIOD);

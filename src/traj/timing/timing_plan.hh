@@ -8,10 +8,11 @@
 namespace mw::traj {
 
 struct PlannerSettings {
-    double period_s = 1e-3;     ///< of the servo
-    std::uint64_t latency = 3;  ///< cycles from a plan's making to its start
-    double horizon_s = 0.1;     ///< how far ahead phases are committed
-    bool isMerging = true;      ///< nearly straight lines become one
+    double period_s = 1e-3;           ///< of the servo
+    std::uint64_t latency = 3;        ///< cycles from a plan's making to its start
+    double horizon_s = 0.1;           ///< how far ahead phases are committed
+    bool isMerging = true;            ///< nearly straight lines become one
+    SpeedChooser *chooser = nullptr;  ///< chooses speeds instead of the fastest; stays valid
 };
 
 /// How a plan that is tried ends.
