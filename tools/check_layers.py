@@ -7,7 +7,7 @@ import sys
 
 LAYER = {
     'base': 0, 'geom': 0, 'diag': 0, 'options': 0, 'language': 0,
-    'rtapi': 1, 'config': 1, 'msgs': 1, 'picture': 1, 'comp': 1,
+    'rtapi': 1, 'config': 1, 'msgs': 1, 'picture': 1, 'comp': 1, 'setup': 1,
     'hal': 2, 'mailbox': 2,
     'kins': 3, 'traj': 3, 'homing': 3, 'interp': 3, 'tool': 3, 'journal': 3, 'client': 3, 'hal_lang': 3,
     'motion': 4, 'pyhost': 4, 'hal_tools': 4, 'gcode': 4, 'nml': 4, 'modbus': 4,

@@ -40,7 +40,7 @@ constexpr const char *USAGE =
     "  -H FOLDER         HAL files are looked for there first; may come several times\n"
     "  -k                go on after errors in HAL files\n"
     "  -m \"NAME PARAMS\"  a homing module, instead of [EMCMOT]HOMEMOD\n"
-    "  -t \"NAME PARAMS\"  a planner module: only tpmod, as the planner is part of motmod\n"
+    "  -t \"NAME PARAMS\"  a planner module instead of [TRAJ]TPMOD\n"
     "  -d, -v            say more\n"
     "  -r                taken for scripts: output is never redirected\n"
     "  -h                this text\n"
@@ -96,11 +96,7 @@ struct LaunchWords {
         case 'k': settings.options.isKeptGoing = true; break;
         case 'm': settings.options.homing_module = option.value; break;
         case 'H': settings.options.hal_folders.push_back(whole_path(option.value)); break;
-        case 't':
-            if (option.value != "tpmod") {
-                return fail("-t " + option.value + ": the planner is part of motmod and cannot be exchanged");
-            }
-            break;
+        case 't': settings.options.planner_module = option.value; break;
         default: break;
         }
         return {};

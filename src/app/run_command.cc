@@ -138,11 +138,12 @@ class Run {
 
     /// What needs to be in the machine's process.
     bool isForClients() {
-        const char *option = !words_.trace.empty()           ? "--trace"
-                             : !words_.plot.empty()          ? "--plot"
-                             : words_.isStrict               ? "--strict"
-                             : !words_.homing_module.empty() ? "--homemod"
-                                                             : nullptr;
+        const char *option = !words_.trace.empty()            ? "--trace"
+                             : !words_.plot.empty()           ? "--plot"
+                             : words_.isStrict                ? "--strict"
+                             : !words_.homing_module.empty()  ? "--homemod"
+                             : !words_.planner_module.empty() ? "--tpmod"
+                                                              : nullptr;
         if (option != nullptr) {
             sink_.error(
                 {fmt::format("{} needs a machine that is made for this program, and one is up already",
@@ -194,6 +195,7 @@ class Run {
         machine::MachineOptions options;
         options.isStrict = words_.isStrict;
         options.homing_module = words_.homing_module;
+        options.planner_module = words_.planner_module;
         options.isToolTableTold = true;
         return words_.isRealtime ? machine::make_realtime_machine(parts, options)
                                  : machine::make_virtual_machine(parts, options);

@@ -12,6 +12,8 @@
 
 #include "app/commands.hh"
 #include "app/configurations.hh"
+#include "app/first_steps.hh"
+#include "app/ui_browser.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
 #include "language/language.hh"
@@ -108,7 +110,8 @@ Result<std::string> select_configuration() {
 }
 
 int command_select(const std::vector<std::string> &arguments) {
-    bool isListed = false, isPrinted = false;
+    bool isListed = false, isPrinted = false, isInBrowser = false;
+    int port = SCREEN_PORT;
     options::Words rest;
     options::CommandLine line(
         "millwright select [options]",
@@ -116,6 +119,9 @@ int command_select(const std::vector<std::string> &arguments) {
         "`linuxcnc` does.\n");
     line.flag("--list", "print their paths and ask nothing", isListed);
     line.flag("--print", "print the path of the chosen one instead of starting it", isPrinted);
+    line.flag("--browser", "show them in a browser, with the wizard for a new machine", isInBrowser);
+    line.number("--port", "N", "with --browser: on 127.0.0.1:N, 0: on a free port; 8850 without it", port, 0,
+                65535);
     line.rest(rest);
     line.footer("Looked for in ~/millwright/configs, ~/linuxcnc/configs, the folders of "
                 "LINUXCNC_AUX_CONFIGS, that of\n"
@@ -140,7 +146,7 @@ int command_select(const std::vector<std::string> &arguments) {
         return 0;
     }
     catch_stop_signals();
-    const auto ini = select_configuration();
+    const auto ini = isInBrowser ? select_in_browser(port, true) : select_configuration();
     if (!ini.has_value()) {
         fmt::print(stderr, "millwright select: {}\n", language::shown(ini.error().str()));
         return 1;

@@ -16,7 +16,7 @@ namespace mw::app {
 namespace {
 
 struct StartWords {
-    std::string ini, homing_module;
+    std::string ini, homing_module, planner_module;
     bool isDisplayed = true, isStrict = false;
     options::Words rest;
 
@@ -34,6 +34,8 @@ struct StartWords {
         line.flag("--no-display", "start no display: up until a signal comes", isDisplayed, false);
         line.text("--homemod", "NAME", "a homing module and its parameters, instead of [EMCMOT]HOMEMOD",
                   homing_module);
+        line.text("--tpmod", "NAME", "a planner module and its parameters, instead of [TRAJ]TPMOD",
+                  planner_module);
         line.flag("--strict", "unknown INI keys are errors", isStrict);
         line.rest(rest);
         line.footer(
@@ -73,6 +75,7 @@ int command_start(const std::vector<std::string> &arguments) {
     settings.isDisplayed = words.isDisplayed;
     settings.options.isStrict = words.isStrict;
     settings.options.homing_module = words.homing_module;
+    settings.options.planner_module = words.planner_module;
     return MachineStart(settings, *loaded, sink).run();
 }
 

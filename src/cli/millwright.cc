@@ -31,6 +31,7 @@ constexpr const char *USAGE =
     "the "
     "start\n"
     "  select                               choose a configuration and start it\n"
+    "  setup FOLDER                         write the configuration of a new machine, and try it\n"
     "  check PROGRAM.ngc --ini MACHINE.ini  a program against a machine's limits, and the time it takes\n"
     "  format PROGRAM.ngc ...               write programs in one form, without a change of meaning\n"
     "  explain LINE                         say in words what a line of G-code does\n"
@@ -78,6 +79,9 @@ int main(int argc, char **argv) {
     }
     if (words[0] == "select") {
         return mw::app::command_select(rest);
+    }
+    if (words[0] == "setup") {
+        return mw::app::command_setup(rest);
     }
     if (words[0] == "check") {
         return mw::app::command_check(rest);
