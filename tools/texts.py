@@ -4,23 +4,25 @@
 
 usage: texts.py --list              the texts, one a line, as keys of the catalogues
        texts.py --check             exit status 1 lists what is missing, stale or damaged in po/LANGUAGE.po
+       texts.py --json LANGUAGE     {text: translation}, as the operator's screen reads it
        texts.py --update LANGUAGE   rewrites po/LANGUAGE.po: keeps what fits, adds what is missing without a translation
 
 A text is a string literal with more than one word in a folder of FOLDERS. What is put in at run time is {} in a key,
 whether the source has fmt's {:.3f} or "a" + name + "b". Nothing in the sources marks a text: what is none stands below.
 """
+import json
 import pathlib
 import re
 import sys
 
-FOLDERS = ('app', 'client', 'homing', 'interp', 'io', 'journal', 'kins', 'machine', 'mailbox', 'motion', 'options', 'task', 'tool')
+FOLDERS = ('app', 'client', 'config', 'doctor', 'homing', 'interp', 'io', 'journal', 'kins', 'machine', 'mailbox', 'motion', 'options', 'task', 'tool')
 # Manual pages, reference pages and `explain` are made from these; and what programs print for other programs.
 NOT_SHOWN = re.compile(r'/(test|bench|logger|canon)/|keys\.hh$|pin_tables\.hh$|motion/api/parameters\.hh$|states_page\.cc$'
                        r'|codes/code_texts\.cc$|app/summary\.cc$|app/time_report\.cc$|app/recorder\.cc$|app/plot\.cc$'
-                       r'|app/var_command\.cc$|command_classes\.hh$|/kins/\w+\.hh$|app/nml_command\.cc$|machine/ini_keys\.cc$')
+                       r'|config/ini(value|var|_strict|_escape|_script)\.cc$|app/var_command\.cc$|command_classes\.hh$|/kins/\w+\.hh$|app/nml_command\.cc$|machine/ini_keys\.cc$')
 # Clients look for these words (docs/compatibility.md), canon comments are rs274's output, and the compiler reads the others.
 NEVER = re.compile(r'on limit switch error|^interpreter: |^each command is of one class$|^A machine is up already|^Machine configuration file is'
-                   r'|^; life of tools|^(exec|port) \{\}$|^millwright \w+ [^a-z]*(\.ini|\.ngc|options|help)|^\{\} \[options\]|^(un)?loadrt |^echo |^-- -ini|^10? (in|mm), |^--connectpw and')
+                   r'|^; life of tools|^# What was answered|^there is no module $|^(exec|port) \{\}$|^millwright \w+ [^a-z]*(\.ini|\.ngc|options|help)|^\{\} \[options\]|^(un)?loadrt |^echo |^-- -ini|^10? (in|mm), |^--connectpw and')
 LANGUAGES = ('de', 'es')
 TOKEN = re.compile(r'''//[^\n]*|/\*.*?\*/|R"(\w*)\((.*?)\)\1"|"((?:[^"\\\n]|\\.)*)"|'(?:[^'\\\n]|\\.)+'|\w+|\s+|.''', re.S)
 ESCAPE = {'n': '\n', 't': '\t', '"': '"', '\\': '\\', "'": "'", 'r': '\r', '0': '\0', 'a': '\a'}
@@ -104,7 +106,7 @@ def key_of(text):
 
 def is_text(key):
     words = re.findall(r"[A-Za-z][a-z']+", HOLE.sub(' ', key))
-    return (len(words) >= 2 and ' ' in key.strip() or re.fullmatch(r'[A-Za-z]{3,} \{\}', key)) and not re.fullmatch(r'[A-Z0-9_ {}:=.,*/\[\]-]+', key)
+    return (len(words) >= 2 and ' ' in key.strip() or re.fullmatch(r'[A-Za-z]{3,} \{\}|(an?|the) [a-z]{3,}', key)) and not re.fullmatch(r'[A-Z0-9_ {}:=.,*/\[\]-]+', key)
 
 
 def texts(root):
@@ -208,6 +210,11 @@ def main():
         return 0
     if words == ['--check']:
         return check(root)
+    if len(words) == 2 and words[0] == '--json':
+        entries = read_po(root / 'po' / f'{words[1]}.po')
+        entries.pop('', None)
+        json.dump({key: text for key, text in entries.items() if text}, sys.stdout, ensure_ascii=False, indent=0)
+        return 0
     if len(words) == 2 and words[0] == '--update':
         path = root / 'po' / f'{words[1]}.po'
         write_po(path, words[1], texts(root), read_po(path))

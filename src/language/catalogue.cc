@@ -134,9 +134,13 @@ std::optional<std::string> Catalogue::find(std::string_view english, int depth) 
     return std::nullopt;
 }
 
-/// What would be a sentence behind "joint" is another text, which has no translation.
+/// What would be a sentence behind "joint" is another text, which has no translation. What begins a text is
+/// no place, kind or sentence with its colon: these are parts of their own.
 bool Catalogue::isFitting(const Pattern &pattern, const std::vector<std::string_view> &values,
                           int depth) const {
+    if (pattern.pieces.front().empty() && values.front().find(": ") != std::string_view::npos) {
+        return false;
+    }
     return !pattern.isName || std::ranges::all_of(values, [&](std::string_view value) {
         return value.find(' ') == std::string_view::npos ||
                (depth < MAX_DEPTH && composed(value, depth + 1).has_value());

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -68,39 +69,20 @@ TEST(Catalogue, ValuesThatAreTextsAreTranslatedAndNamesAreNot) {
     EXPECT_EQ(one.find("cannot open the_machine.ini"), "the_machine.ini geht nicht auf");
 }
 
-TEST(Catalogue, PlaceKindHintAndCallersAreParts) {
-    const Catalogue de = of("de");
-    EXPECT_EQ(
-        de.shown("a.ngc:3:7: error: Unknown g code used: 8.5\n  G8.5 X1\n      ^\n  called from a.ngc:9"),
-        "a.ngc:3:7: Fehler: Unbekannter g-Code: 8.5\n  G8.5 X1\n      ^\n  aufgerufen von a.ngc:9");
-    EXPECT_EQ(de.shown("Spindle not turning in G33 (turn the spindle more slowly)"),
-              "Die Spindel dreht nicht bei G33 (die Spindel langsamer drehen)");
-    EXPECT_EQ(de.shown("millwright run: unknown option --plto (did you mean --plot?)\n"),
-              "millwright run: unbekannte Option --plto (war --plot gemeint?)\n");
-    EXPECT_EQ(de.shown("option --plot needs a value"), "die Option --plot braucht einen Wert");
-}
-
-TEST(Catalogue, MessagesOfTheMachineAreInBothLanguages) {
-    EXPECT_EQ(
-        of("de").shown("the feedback of joint 2 is not a number: see what its pin motor-pos-fb is linked to"),
-        "die Rückmeldung von Gelenk 2 ist keine Zahl: nachsehen, womit ihr Pin motor-pos-fb verbunden ist");
-    EXPECT_EQ(
-        of("es").shown(
-            "homing of joint 1 failed: the home switch did not open when backing off; check the switch"),
-        "la búsqueda de origen de la articulación 1 ha fallado: el interruptor de origen no se abrió al "
-        "retroceder; revise el "
-        "interruptor");
-}
-
-TEST(Catalogue, TextsThatClientsLookForAndLinesOfProgramsStay) {
-    for (const char *language : {"de", "es"}) {
+TEST(Catalogue, TheCasesThatTheScreenHasTooAreShownAlike) {
+    std::ifstream file(std::string(MW_PO) + "/cases.json");
+    const auto cases = nlohmann::json::parse(file);
+    for (const auto &[language, texts] : cases.items()) {
         const Catalogue one = of(language);
-        EXPECT_EQ(one.shown("joint 1 on limit switch error"), "joint 1 on limit switch error");
-        EXPECT_EQ(one.shown("joint 1 has grown wings"), "joint 1 has grown wings");
-        EXPECT_EQ(one.shown("eval[the machine is not on]"), "eval[the machine is not on]");
-        EXPECT_EQ(one.shown("  (the machine is not on)"), "  (the machine is not on)");
-        EXPECT_EQ(one.shown(""), "");
+        for (const auto &[english, shown] : texts.items()) {
+            EXPECT_EQ(one.shown(english), shown.get<std::string>());
+        }
     }
+}
+
+TEST(Catalogue, ProgramNameAndNewlineStay) {
+    EXPECT_EQ(of("de").shown("millwright run: unknown option --plto (did you mean --plot?)\n"),
+              "millwright run: unbekannte Option --plto (war --plot gemeint?)\n");
 }
 
 /// `text` with the values in place of {} and {0}, {1}; written anew, not as the catalogue does it.
