@@ -12,6 +12,7 @@
 #include "base/stop_signals.hh"
 #include "config/ini_file.hh"
 #include "doctor/examine.hh"
+#include "language/language.hh"
 #include "options/command_line.hh"
 #include "options/letters.hh"
 
@@ -75,8 +76,8 @@ int command_doctor(const std::vector<std::string> &arguments) {
     const auto parsed = words.line().parse(arguments);
     if (!parsed.has_value() || words.rest.size() != 1) {
         fmt::print(stderr, "millwright doctor: {}\n",
-                   parsed.has_value() ? "needs one machine: millwright doctor MACHINE.ini"
-                                      : parsed.error().str());
+                   language::shown(parsed.has_value() ? "needs one machine: millwright doctor MACHINE.ini"
+                                                      : parsed.error().str()));
         return 2;
     }
     catch_stop_signals();
@@ -86,11 +87,13 @@ int command_doctor(const std::vector<std::string> &arguments) {
     const std::unique_ptr<std::FILE, decltype(close)> out(::fdopen(::dup(STDOUT_FILENO), "w"), close);
     diag::Sink sink([&](const diag::Diagnostic &finding) {
         counted.count(finding);
-        fmt::print(out.get(), "{}\n", doctor::finding_line(finding));
+        fmt::print(out.get(), "{}\n", language::shown(doctor::finding_line(finding)));
         std::fflush(out.get());
     });
     doctor::examine(words.rest[0], words.scope, stop_signal, sink);
-    fmt::print(stderr, "{}: {} errors, {} warnings\n", words.rest[0], counted.errors, counted.warnings);
+    fmt::print(stderr, "{}",
+               language::shown(fmt::format("{}: {} errors, {} warnings\n", words.rest[0], counted.errors,
+                                           counted.warnings)));
     return counted.errors > 0 || (words.isStrict && counted.warnings > 0) ? 1 : 0;
 }
 
@@ -112,7 +115,7 @@ int command_check_ini(const std::vector<std::string> &arguments) {
         }
     }
     if (isHelpAsked || !read.has_value() || read->words.size() != 1) {
-        fmt::print(isHelpAsked ? stdout : stderr, "{}", USAGE);
+        fmt::print(isHelpAsked ? stdout : stderr, "{}", language::shown(USAGE));
         return isHelpAsked ? 0 : 2;
     }
     const std::string &ini = read->words[0];
@@ -124,7 +127,8 @@ int command_check_ini(const std::vector<std::string> &arguments) {
     Counted counted;
     diag::Sink sink([&](const diag::Diagnostic &finding) {
         counted.count(finding);
-        fmt::print(stderr, "{}: {}: {}\n", ini, kind_of(finding.severity), finding.what.str());
+        fmt::print(stderr, "{}: {}: {}\n", ini, kind_of(finding.severity),
+                   language::shown(finding.what.str()));
     });
     doctor::examine(ini, {.hasHal = false, .hasSystem = false, .latency_s = 0}, stop_signal, sink);
     return counted.errors > 0 || (isStrict && counted.warnings > 0) ? 1 : 0;

@@ -16,6 +16,7 @@
 #include "app/ui_browser.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
+#include "language/language.hh"
 #include "options/command_line.hh"
 
 namespace mw::app {
@@ -76,7 +77,8 @@ std::optional<Choice> ask(const std::vector<Choice> &choices, const std::string 
         if (found.size() == 1) {
             return found[0];
         }
-        fmt::print("{}\n", found.empty() ? "there is no such one" : "several have that in their name:");
+        fmt::print("{}\n", language::shown(found.empty() ? "there is no such one"
+                                                         : "several have that in their name:"));
         for (const Choice &choice : found) {
             fmt::print("  {}\n", printable(choice.configuration->name));
         }
@@ -92,7 +94,7 @@ Result<std::string> select_configuration() {
         return fail("no configuration is found", {}, "LINUXCNC_AUX_CONFIGS names folders of configurations");
     }
     const std::string last = last_configuration();
-    fmt::print("Machine configurations\n");
+    fmt::print("{}", language::shown("Machine configurations\n"));
     const auto choice = ask(show(groups, last), last);
     if (!choice.has_value()) {
         return std::string();
@@ -146,7 +148,7 @@ int command_select(const std::vector<std::string> &arguments) {
     catch_stop_signals();
     const auto ini = isInBrowser ? select_in_browser(port, true) : select_configuration();
     if (!ini.has_value()) {
-        fmt::print(stderr, "millwright select: {}\n", ini.error().str());
+        fmt::print(stderr, "millwright select: {}\n", language::shown(ini.error().str()));
         return 1;
     }
     if (ini->empty()) {

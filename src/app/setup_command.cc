@@ -10,6 +10,7 @@
 #include "base/atomic_file.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
+#include "language/language.hh"
 #include "options/command_line.hh"
 
 namespace mw::app {
@@ -119,7 +120,7 @@ int command_setup(const std::vector<std::string> &arguments) {
     }
     const auto answers = answers_of(words);
     if (!answers.has_value()) {
-        fmt::print(stderr, "millwright setup: {}\n", answers.error().str());
+        fmt::print(stderr, "millwright setup: {}\n", language::shown(answers.error().str()));
         return 2;
     }
     if (words.areQuestionsShown) {
@@ -136,7 +137,7 @@ int command_setup(const std::vector<std::string> &arguments) {
     catch_stop_signals();
     const auto made = make_and_try(words, *answers, planned.plan);
     if (!made.has_value()) {
-        fmt::print(stderr, "millwright setup: {}\n", made.error().str());
+        fmt::print(stderr, "millwright setup: {}\n", language::shown(made.error().str()));
     }
     return made.has_value() ? 0 : 1;
 }

@@ -23,6 +23,7 @@
 #include "base/whole_path.hh"
 #include "hal/core/hal.hh"
 #include "hal/host/host_client.hh"
+#include "language/language.hh"
 #include "options/command_line.hh"
 #include "ui/web/api.hh"
 #include "ui/web/server.hh"
@@ -180,9 +181,10 @@ int serve(const UiWords &words, const machine::LoadedConfig &loaded, diag::Sink 
         sink.error(server.error());
         return 1;
     }
-    fmt::print("screen of {}: http://127.0.0.1:{}/\n", loaded.machine.name, (*server)->port());
+    fmt::print("{}", language::shown(fmt::format("screen of {}: http://127.0.0.1:{}/\n", loaded.machine.name,
+                                                 (*server)->port())));
     if (door->has_value()) {
-        fmt::print("{}", door_text(**door, (*server)->remote_port(), secrets));
+        fmt::print("{}", language::shown(door_text(**door, (*server)->remote_port(), secrets)));
     }
     std::fflush(stdout);
     run(**server, words, loaded, std::move(setup), sink);
@@ -198,11 +200,11 @@ int command_ui(const std::vector<std::string> &arguments) {
         return 0;
     }
     if (const auto parsed = words.parse(arguments); !parsed.has_value()) {
-        fmt::print(stderr, "millwright ui: {}\n", parsed.error().str());
+        fmt::print(stderr, "millwright ui: {}\n", language::shown(parsed.error().str()));
         return 2;
     }
     catch_stop_signals();
-    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", d.str()); });
+    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
     const auto loaded = machine::LoadedConfig::load(words.ini, sink);
     return loaded == nullptr ? 1 : serve(words, *loaded, sink);
 }

@@ -9,6 +9,7 @@
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
 #include "gcode/commands.hh"
+#include "hal/core/instead.hh"
 #include "hal_tools/view/commands.hh"
 
 namespace {
@@ -95,6 +96,8 @@ int main(int argc, char **argv) {
         mw::catch_stop_signals();
         return mw::hal::view::command_hal(rest, mw::stop_signal);
     }
-    std::fprintf(stderr, "millwright: unknown command '%s'; see millwright --help\n", words[0].c_str());
+    const std::string instead = mw::hal::instead_of(words[0]);
+    std::fprintf(stderr, "millwright: unknown command '%s'; %s\n", words[0].c_str(),
+                 instead.empty() ? "see millwright --help" : instead.c_str());
     return 2;
 }

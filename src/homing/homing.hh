@@ -37,10 +37,19 @@ class Homing final : public Module {
     bool isHomed(int joint) const noexcept override { return at(joint).isHomed; }
     bool isActive() const noexcept override { return sequence_ >= 0 || summary().isAnyHoming; }
     bool hasWork() const noexcept override { return sequence_ >= 0 || summary().isAnyBusy; }
-    /// Nothing is asked of any joint and no step shown: as if nobody had ever homed.
-    bool isQuiet() const noexcept { return summary().isQuiet; }
-    /// Bit per joint.
-    std::uint32_t homed() const noexcept { return summary().homed; }
+    struct Summary {
+        bool isCurrent = false;
+        bool isAnyHoming = false, isAnyBusy = false;
+        bool isQuiet = true;      ///< nothing is asked of any joint and no step shown
+        std::uint32_t homed = 0;  ///< bit per joint
+    };
+    /// Of all joints; made anew after any of them may have changed.
+    const Summary &summary() const noexcept {
+        if (!summary_.isCurrent) {
+            summarise();
+        }
+        return summary_;
+    }
     State state(int joint) const noexcept { return at(joint).state; }
     int step_number(int joint) const noexcept override { return static_cast<int>(state(joint)); }
     bool isIndexWanted(int joint) const noexcept override { return at(joint).isIndexWanted; }
@@ -71,18 +80,6 @@ class Homing final : public Module {
     struct Leg {
         double velocity = 0, most_velocity = 0, acceleration = 0, travel = 0;
     };
-    /// Of all joints; made anew after any of them may have changed.
-    struct Summary {
-        bool isCurrent = false;
-        bool isAnyHoming = false, isAnyBusy = false, isQuiet = true;
-        std::uint32_t homed = 0;
-    };
-    const Summary &summary() const noexcept {
-        if (!summary_.isCurrent) {
-            summarise();
-        }
-        return summary_;
-    }
     void summarise() const noexcept;
 
     Joint &at(int joint) noexcept {

@@ -36,7 +36,7 @@ bool isStop(const Command &command) {
     return std::visit(
         []<class C>(const C &) {
             return OneOf<C, EstopOn, AbortAll, AbortMachine, AbortTraj, AbortMotion, AbortJoint, AbortTool,
-                         AbortIo, JogStop, PauseProgram, PauseTraj>;
+                         AbortIo, JogStop, PauseProgram, PauseTraj, DisableTraj>;
         },
         command);
 }
@@ -46,7 +46,9 @@ std::optional<int> stop_place(const Command &command) {
         return std::nullopt;
     }
     const auto all = all_stops();
-    const std::string bytes = encode(command);
+    // Another name of the same.
+    const bool isOff = std::holds_alternative<DisableTraj>(command);
+    const std::string bytes = encode(isOff ? Command(SetState{State::OFF}) : command);
     const auto found =
         std::find_if(all.begin(), all.end(), [&](const Command &stop) { return encode(stop) == bytes; });
     return found == all.end() ? std::nullopt : std::optional(static_cast<int>(found - all.begin()));

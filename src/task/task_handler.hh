@@ -96,6 +96,10 @@ struct Task::Handler {
     Outcome operator()(const SetToolEntry &command) { return done(set_tool(command, task.parts_.tools)); }
 
     Outcome operator()(const Null &) { return Progress::DONE; }
+    Outcome operator()(const SetDebug &command) {
+        task.shown_settings_.set_debug(command.mask);
+        return Progress::DONE;
+    }
     Outcome operator()(const OperatorError &command) {
         return tell(MessageKind::OPERATOR_ERROR, command.text);
     }
@@ -105,9 +109,15 @@ struct Task::Handler {
     }
 
     // Other names of the same.
+    template <OneOf<EnableTraj, DisableTraj> C>
+    Outcome operator()(const C &) {
+        return (*this)(SetState{std::is_same_v<C, EnableTraj> ? State::ON : State::OFF});
+    }
     Outcome operator()(const EstopOn &) { return (*this)(SetState{State::ESTOP}); }
-    Outcome operator()(const EstopOff &) { return (*this)(SetState{State::ESTOP_RESET}); }
-    Outcome operator()(const EstopReset &) { return (*this)(SetState{State::ESTOP_RESET}); }
+    template <OneOf<EstopOff, EstopReset> C>
+    Outcome operator()(const C &) {
+        return (*this)(SetState{State::ESTOP_RESET});
+    }
     Outcome operator()(const PauseTraj &) { return (*this)(PauseProgram{}); }
     Outcome operator()(const StepTraj &) { return (*this)(StepProgram{}); }
     Outcome operator()(const ResumeTraj &) { return (*this)(ResumeProgram{}); }

@@ -104,18 +104,83 @@ void Task::Start::begin_recovery() {
         return;
     }
     auto record = StartRecord::unpack((*offer)->start.state);
-    const auto begun = record.has_value()
-                           ? task.reader_.begin_recovery(
-                                 std::move(*record), {static_cast<std::uint32_t>((*offer)->progress->block),
-                                                      (*offer)->progress->calls})
-                           : fail("its state was written by another version");
+    begin_block_search(record.has_value() ? Result<StartRecord>(std::move(*record))
+                                          : fail("its state was written by another version"),
+                       (*offer)->progress->calls);
+}
+
+void Task::Start::begin_block_search(Result<StartRecord> record, std::optional<std::uint64_t> calls) {
+    const auto block = static_cast<std::uint32_t>((*task.recovery_.offer())->progress->block);
+    const Result<> begun = record.has_value()
+                               ? task.reader_.begin_recovery(std::move(*record), {block, calls})
+                               : std::unexpected(record.error());
     if (!begun.has_value()) {
         task.recovery_.refuse(begun.error().str());
         give_up(begun.error().str());
     }
 }
 
+Result<Progress> Task::Start::calculate_again() {
+    const auto refused = [](const Error &why) {
+        return fail("the tool table has changed, and moves that were read ahead have the old one: " +
+                        why.str(),
+                    {}, "abort, and run from the line");
+    };
+    const motion::SourceTag source = task.sequencer_.under_way();
+    const std::string program = task.status_.task.program.str();
+    const Result<> called =
+        task.run_.isProgram()
+            ? task.recovery_.call_back({source.block, source.line, task.left_->position, task.left_->tool},
+                                       task.reader_.canon().marks())
+            : fail("it is a line of MDI");
+    if (!called.has_value()) {
+        return refused(called.error());
+    }
+    task.reader_.queue().clear();
+    task.reader_.interpreter().abort();
+    const Result<> opened = task.reader_.interpreter().open(program);
+    if (!opened.has_value()) {
+        task.recovery_.refuse(opened.error().str());
+        return refused(opened.error());
+    }
+    if (task.motion_.status().mode != motion::Mode::COORD) {
+        task.motion_.send(motion::SetMode{motion::Mode::COORD});
+    }
+    task.run_.begin_again();
+    task.reader_.canon().reset();
+    task.sequencer_.forget_place();
+    task.reader_.begin_codes();
+    return Progress::DONE;
+}
+
+/// It is the program that ran: once more, with the tools as they are now.
+void Task::Start::begin_with_tools_now() {
+    const FoundModes found = task.reader_.search().found();
+    auto record = with_tools_now(task.reader_.recorded(), found, task.parts_.tools);
+    task.reader_.cancel_search();
+    task.run_.go_on_anew();
+    const Result<> opened = task.reader_.interpreter().open((*task.recovery_.offer())->start.program);
+    if (!opened.has_value()) {
+        record = std::unexpected(opened.error());
+    }
+    begin_block_search(std::move(record), std::nullopt);
+}
+
+/// An offset that the program has not taken from the table stays what it was.
+bool Task::Start::isOldOffsetKept() const {
+    const FoundModes found = task.reader_.search().found();
+    const int index = found.tool > 0 ? task.parts_.tools.index_of_tool(found.tool) : -1;
+    const geom::Pose before = task.status_.offsets.tool;
+    const bool isSame = found.tool_offset.has_value() && found.tool_offset->offset == before;
+    return index >= 0 && isSame && before != geom::Pose{} && task.parts_.tools.entry(index).offset != before;
+}
+
 void Task::Start::propose_recovery() {
+    if (task.run_.kind() == RunKind::ANEW && isOldOffsetKept()) {
+        give_up(
+            "the tool offset in force is not from the table as it is now: no G43 of the program has set it");
+        return;
+    }
     ApproachPlan plan;
     plan.to = ApproachTo::PLACE_LOST;
     plan.line = (*task.recovery_.offer())->progress->line;

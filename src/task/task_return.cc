@@ -7,6 +7,14 @@
 #include "task/task_start.hh"
 
 namespace mw::task {
+namespace {
+
+void note_tools(LeftPlace &left, const ToolStore &tools) {
+    left.tools_version = tools.version();
+    left.tools = sum_of_tools(tools);
+}
+
+}  // namespace
 
 /// After each command and each cycle: what an operator changes from here on is restored when it goes on.
 void Task::Start::watch_hold() {
@@ -19,23 +27,24 @@ void Task::Start::watch_hold() {
         // A change of the tool that the program has asked for goes on in a hold: its tool is the program's.
         const bool isProgramChanging = task.sequencer_.exec_state() == ExecState::WAITING_FOR_IO;
         task.left_->tool = isProgramChanging ? io.tool_number : task.left_->tool;
-        task.left_->tool_offset =
-            isProgramChanging ? offset_of_tool(io.tool_number) : task.left_->tool_offset;
+        if (isProgramChanging && areToolsChanged()) {
+            note_tools(*task.left_, task.parts_.tools);
+        }
         return;
     }
     LeftPlace left;
     left.line = task.motion_.status().source.line;
     left.tool = io.tool_number;
-    left.tool_offset = offset_of_tool(left.tool);
+    note_tools(left, task.parts_.tools);
     left.spindles = task.sequencer_.spindles();
     left.isMistOn = io.coolant_mist;
     left.isFloodOn = io.coolant_flood;
     task.left_ = left;
 }
 
-geom::Pose Task::Start::offset_of_tool(int tool) const {
-    const int index = tool > 0 ? task.parts_.tools.index_of_tool(tool) : -1;
-    return index >= 0 ? task.parts_.tools.entry(index).offset : geom::Pose{};
+bool Task::Start::areToolsChanged() const {
+    return task.parts_.tools.version() != task.left_->tools_version &&
+           sum_of_tools(task.parts_.tools) != task.left_->tools;
 }
 
 /// Spindle or coolant that the program had on are not on any more.
@@ -92,11 +101,8 @@ Result<Progress> Task::Start::come_back() {
     if (isAway && !motion.isInPosition) {
         return fail("the machine moves");
     }
-    if (offset_of_tool(task.left_->tool) != task.left_->tool_offset) {
-        return fail(
-            fmt::format("the offset of tool {} has changed, and moves that were read ahead have the old one",
-                        task.left_->tool),
-            {}, "abort, and run from the line");
+    if (areToolsChanged()) {
+        return calculate_again();
     }
     const auto taken = isAway ? Result<>{} : take_path_back();
     const auto proposed = taken.has_value() ? task.run_.take(RunEvent::PROPOSE) : taken;

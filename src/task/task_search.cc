@@ -24,7 +24,11 @@ void Task::Start::step() {
     }
     switch (task.reader_.step_search(task.settings_.blocks_per_cycle)) {
     case BlockSearch::Outcome::GOING: break;
-    case BlockSearch::Outcome::FOUND: task.run_.isRecovery() ? propose_recovery() : propose_line(); break;
+    case BlockSearch::Outcome::FOUND:
+        task.run_.kind() == RunKind::AGAIN ? begin_with_tools_now()
+        : task.run_.isRecovery()           ? propose_recovery()
+                                           : propose_line();
+        break;
     case BlockSearch::Outcome::REFUSED:
         if (task.run_.isRecovery()) {
             task.recovery_.refuse(task.reader_.search().refusal());
@@ -117,11 +121,17 @@ void Task::Start::propose(ApproachPlan plan) {
 void Task::Start::go_on(const ApproachPlan &plan) {
     auto last = interp::Step::OK;
     if (task.reader_.isSearching()) {
-        last = task.run_.isRecovery() ? task.reader_.search().last_step() : last;
+        const bool isRecovery = task.run_.isRecovery();
+        last = isRecovery ? task.reader_.search().last_step() : last;
+        if (isRecovery) {
+            task.recovery_.begin_again(task.reader_.recorded(), task.reader_.search().sum().value(),
+                                       sum_of_tools(task.parts_.tools));
+        }
         task.reader_.accept_search();
         task.reader_.note_codes();
-        task.run_.isRecovery() ? task.recovery_.begin_again()
-                               : begin_journal(task.reader_.canon().blocks() + 1);
+        if (!isRecovery) {
+            begin_journal(task.reader_.canon().blocks() + 1);
+        }
     }
     task.reader_.canon().insert_first(plan.calls(), motion::programmed_position(task.motion_.status()),
                                       plan.line);

@@ -37,9 +37,16 @@ struct Task::Start {
         return task.run_.hold() == Hold::AWAY || (task.left_.has_value() && isSomethingOff());
     }
     Result<Progress> come_back();
+    /// Another tool table than when the program was held.
+    bool areToolsChanged() const;
 
   private:
     Result<> check_recovery() const;
+    /// What was read ahead has other tools: the program is calculated again up to the block under way.
+    Result<Progress> calculate_again();
+    void begin_with_tools_now();
+    bool isOldOffsetKept() const;
+    void begin_block_search(Result<StartRecord> record, std::optional<std::uint64_t> calls);
     void propose_line();
     void propose_recovery();
     /// What of it is the same for all: the way, the feed; then it is shown.
@@ -51,7 +58,6 @@ struct Task::Start {
     ApproachPlan plan_back() const;
     Result<> take_path_back();
     bool isSomethingOff() const;
-    geom::Pose offset_of_tool(int tool) const;
     void give_up(std::string reason);
     double safe_height() const;
 };

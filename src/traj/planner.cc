@@ -8,7 +8,9 @@
 namespace mw::traj {
 
 Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept
-    : settings_(settings), conditions_(settings.period_s), path_(store), timing_(settings) {}
+    : settings_(settings), conditions_(settings.period_s), path_(store), timing_(settings) {
+    conditions_.chooser = settings.chooser;
+}
 
 void Planner::set_joints(const JointMap *map, const JointLimits &limits) noexcept {
     conditions_.workspace.map = map;
@@ -27,6 +29,7 @@ void Planner::begin(const Pose &start, const Snapshot &now, double tolerance) no
     timing_.begin(now);
     drops_ = now.drops;
     refusals_ = 0;
+    isOverreachTold_ = false;
 }
 
 Sequence Planner::add(const Primitive &primitive, const MoveRequest &request) noexcept {
@@ -246,10 +249,15 @@ bool Planner::ease(const LeaderState &from, const Verdict &verdict, const Cause 
     return true;
 }
 
-bool Planner::take_stuck() noexcept {
-    const bool isStuck = refusals_ == TimingTuning::MOST_REFUSALS;
-    refusals_ += isStuck ? 1 : 0;
-    return isStuck;
+Trouble Planner::take_trouble() noexcept {
+    Trouble trouble;
+    trouble.isStuck = refusals_ == TimingTuning::MOST_REFUSALS;
+    refusals_ += trouble.isStuck ? 1 : 0;
+    if (!isOverreachTold_) {
+        trouble.overreach = timing_.overreach();
+        isOverreachTold_ = trouble.overreach.kind != Overreach::Kind::NONE;
+    }
+    return trouble;
 }
 
 }  // namespace mw::traj

@@ -10,6 +10,11 @@
 
 namespace mw::traj {
 
+struct Trouble {
+    bool isStuck = false;  ///< it has stood for a second without finding a plan that passes the trial
+    Overreach overreach;   ///< of who chooses speeds: the path stops
+};
+
 /// The face of the parts: PathBuilder makes pieces of moves, TimingPlan plans and commits phases, Trial looks
 /// at what would be commanded, Easing makes slower what it refuses. The parts know nothing of each other;
 /// what one says goes to the next by value.
@@ -97,8 +102,8 @@ class Planner {
     bool isStarving() const noexcept {
         return builder_.hasOpenEnd() && (timing_.isAtEndOf(path_) || path_.isAllDriven());
     }
-    /// True once when it has stood for a second without finding a plan that passes the trial.
-    bool take_stuck() noexcept;
+    /// Why the path does not go on; each once.
+    Trouble take_trouble() noexcept;
     std::uint32_t moves_left(const Snapshot &now) const noexcept;
 
   private:
@@ -118,7 +123,8 @@ class Planner {
     Trial trial_;
     Easing easing_;
     std::uint64_t drops_ = 0;  ///< Snapshot::drops of this path
-    int refusals_ = 0;         ///< planning at rest, one after the other, for which no plan passed
+    bool isOverreachTold_ = false;
+    int refusals_ = 0;  ///< planning at rest, one after the other, for which no plan passed
 };
 
 }  // namespace mw::traj

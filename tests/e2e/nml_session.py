@@ -38,8 +38,8 @@ P emcsvr emcError LOCAL localhost R 1 1.0 1 2
 class Client:
     """Speaks what docs/nml.md says."""
 
-    def __init__(self, port):
-        self.socket = socket.create_connection(('127.0.0.1', port), STEP_S)
+    def __init__(self, port, host='127.0.0.1'):
+        self.socket = socket.create_connection((host, port), STEP_S)
         self.requests = 0
 
     def receive(self, size):
@@ -118,7 +118,9 @@ class Bench(Mill):
 def operate(client):
     expect(client.do('EMC_TASK_SET_STATE_TYPE', 505, state='ESTOP_RESET') == ('DONE', '""'), 'e-stop reset')
     expect(client.do('EMC_TASK_SET_STATE_TYPE', 505, state='ON') == ('DONE', '""'), 'on')
-    expect(client.do('EMC_JOINT_HOME_TYPE', 123, joint=-1) == ('DONE', '""'), 'homing ends')
+    expect(client.do('EMC_TASK_SET_MODE_TYPE', 504, mode='MANUAL') == ('DONE', '""'), 'manual')
+    if client.status()['trajectory.all_homed'] != '1':
+        expect(client.do('EMC_JOINT_HOME_TYPE', 123, joint=-1) == ('DONE', '""'), 'homing ends')
     expect(client.status()['trajectory.all_homed'] == '1', 'all are homed')
     expect(client.do('EMC_TASK_SET_MODE_TYPE', 504, mode='MDI') == ('DONE', '""'), 'MDI')
     expect(client.do('EMC_TASK_PLAN_EXECUTE_TYPE', 509, line='"G53 G0 X7.5"') == ('DONE', '""'), 'a line is done')

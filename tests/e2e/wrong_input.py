@@ -87,7 +87,7 @@ def main():
             tag = f'wrong-{os.getpid()}-{number}'
             for mode in ([], ['--realtime', '--yes']):
                 done = subprocess.run([millwright, 'run', 'configs/sim/mill_mm.ini', 'p.ngc', *mode], cwd=folder,
-                                      env=dict(os.environ, MILLWRIGHT_INSTANCE=tag, LC_ALL='de_DE.UTF-8'),
+                                      env=dict(os.environ, MILLWRIGHT_INSTANCE=tag, LC_ALL='de_DE.UTF-8', LANGUAGE='en'),
                                       capture_output=True, text=True, timeout=60, check=False)
                 problems = []
                 if done.returncode != 1:

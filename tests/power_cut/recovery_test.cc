@@ -129,6 +129,105 @@ TEST_F(RecoveryTest, AnEmergencyStopLeavesAnOfferAnAbortAndAnErrorNone_D1) {
     EXPECT_FALSE(offer().isOffered);
 }
 
+/// A program that is left in the middle, and whose tool has got another length before it is come back to.
+class NewLengthTest : public RecoveryTest {
+  protected:
+    void leave(const std::string &program, int line) {
+        run_to(program, line);
+        ASSERT_EQ(rig->ask(msgs::PauseProgram{}), "");
+        cycles(500);
+        ASSERT_EQ(rig->ask(msgs::ReleaseAxes{}), "");
+        ASSERT_EQ(rig->ask(msgs::JogIncrement{false, 2, 20, 7.0}), "");
+        cycles(2000);
+    }
+    void measure(int tool, double z) {
+        msgs::SetToolEntry entry;
+        entry.toolno = entry.pocket = tool;
+        entry.offset[geom::AXIS_Z] = z;
+        ASSERT_EQ(rig->ask(entry), "");
+    }
+    /// Until the way is proposed; false when the program ends instead.
+    bool resume() {
+        EXPECT_EQ(rig->ask(msgs::ResumeProgram{}), "");
+        for (int i = 0; i < 1000 && status().approach.number == 0 && !rig->hasEnded(); ++i) {
+            rig->cycle(random);
+        }
+        return status().approach.number != 0;
+    }
+    double z() { return status().trajectory.position_cmd[geom::AXIS_Z]; }
+};
+
+TEST_F(NewLengthTest, ItGoesOnAtTheBlockUnderWayWithTheNewLength_D3) {
+    leave(SQUARE, 9);
+    const double old = status().offsets.tool[geom::AXIS_Z], longer = old + 2.25;
+    measure(2, longer);
+    ASSERT_TRUE(resume()) << rig->outcome();
+    EXPECT_EQ(status().approach.line, 9);
+    EXPECT_EQ(status().approach.offsets.tool[geom::AXIS_Z], longer);
+    const geom::Pose stands = status().trajectory.position_cmd;
+    cycles(300);
+    EXPECT_EQ(geom::norm_xyz(status().trajectory.position_cmd - stands), 0)
+        << "nothing moves before it is confirmed";
+    ASSERT_EQ(rig->ask(msgs::ConfirmApproach{status().approach.number}), "");
+    constexpr double ROUNDED_MM = 0.03;  // the corner into the last move
+    bool isAtBegin = false, isCutting = false;
+    for (int i = 0; i < 100000 && status().task.motion_line < 12 && !rig->hasEnded(); ++i) {
+        rig->cycle(random);
+        const geom::Pose &at = status().trajectory.position_cmd;
+        isAtBegin = isAtBegin || (std::fabs(at[0] - 20) < 1e-6 && std::fabs(at[1]) < 1e-6 &&
+                                  std::fabs(z() - (longer - 1)) < 1e-6);
+        isCutting = isCutting || status().task.motion_line >= 10;
+        ASSERT_GE(z(), longer - 1 - 1e-6) << "it never goes as deep as with the old length";
+        if (status().task.motion_line >= 10) {
+            ASSERT_NEAR(z(), longer - 1, ROUNDED_MM);
+        }
+    }
+    EXPECT_TRUE(isAtBegin && isCutting);
+    finish();
+    EXPECT_EQ(status().offsets.tool[geom::AXIS_Z], longer);
+    EXPECT_FALSE(offer().isOffered);
+}
+
+TEST_F(NewLengthTest, APowerCutBehindThatGoesOnWithTheNewLengthToo_D3) {
+    leave(SQUARE, 9);
+    const double longer = status().offsets.tool[geom::AXIS_Z] + 2.25;
+    measure(2, longer);
+    ASSERT_TRUE(resume()) << rig->outcome();
+    ASSERT_EQ(rig->ask(msgs::ConfirmApproach{status().approach.number}), "");
+    for (int i = 0; i < 60000 && status().task.motion_line != 10; ++i) {
+        rig->cycle(random);
+    }
+    cycles(400);
+    cut_and_come_up();
+    ASSERT_TRUE(offer().isOffered) << offer().refusal.str();
+    EXPECT_EQ(offer().line, 10);
+    EXPECT_EQ(rig->recover(), "");
+    finish();
+    EXPECT_EQ(status().offsets.tool[geom::AXIS_Z], longer);
+}
+
+TEST_F(NewLengthTest, WhereItCannotBeKnownTheProgramEndsAndSaysWhy_C5) {
+    leave("G21 G90 F600\nT2 M6\nG10 L1 P2 Z30\nG43\nG0 X0 Y0 Z5\nG1 X20\nG1 X0\nM2\n", 6);
+    measure(2, 31);
+    EXPECT_FALSE(resume());
+    EXPECT_NE(rig->outcome().find("the program itself sets the data of tool 2"), std::string::npos)
+        << rig->outcome();
+
+    ASSERT_EQ(rig->ask(msgs::SetMode{msgs::Mode::MDI}), "");
+    ASSERT_EQ(rig->ask(msgs::Mdi{"T2 M6"}), "");
+    ASSERT_EQ(rig->ask(msgs::Mdi{"G43"}), "");
+    ASSERT_EQ(rig->ask(msgs::SetMode{msgs::Mode::AUTO}), "");
+    leave("G21 G90 F600\nG0 X0 Y0 Z5\nG1 X20\nG1 X0\nM2\n", 3);
+    measure(2, 29);
+    EXPECT_FALSE(resume());
+    EXPECT_NE(rig->outcome().find("no G43 of the program has set it"), std::string::npos) << rig->outcome();
+
+    leave(SQUARE, 9);
+    measure(2, 28);
+    std::ofstream(folder / "p.ngc") << "G0 X1\nM2\n";
+    EXPECT_FALSE(resume()) << "it is another program meanwhile";
+}
+
 /// A program whose state at the place depends on what only the machine knew.
 struct Doubtful {
     const char *name, *program;
@@ -194,6 +293,26 @@ TEST_F(RecoveryTest, AProgramThatBeganAtALineIsOfferedTheSameWay_D3) {
     EXPECT_EQ(offer().line, 9);
     EXPECT_EQ(rig->recover(), "");
     finish();
+}
+
+TEST_F(RecoveryTest, TheOffsetsOfTheVeryBlockAreShownAndKept_D3) {
+    constexpr const char *PROGRAM = "G21 G90 G55 G43 H2 G1 X20 Z-30 F600\nG1 Y20 F600\nM2\n";
+    run_to(PROGRAM, 1);
+    finish();
+    const msgs::OffsetsStatus whole = status().offsets;
+    EXPECT_NE(whole.tool[geom::AXIS_Z], 0);
+    ASSERT_EQ(rig->ask(msgs::SetMode{msgs::Mode::MDI}), "");
+    ASSERT_EQ(rig->ask(msgs::Mdi{"G54 G49"}), "");
+    ASSERT_EQ(rig->ask(msgs::Mdi{"G53 G0 X0 Y0"}), "");
+    EXPECT_EQ(status().offsets.tool[geom::AXIS_Z], 0);
+    ASSERT_EQ(rig->ask(msgs::SetMode{msgs::Mode::AUTO}), "");
+    run_to(PROGRAM, 1);
+    cut_and_come_up();
+    ASSERT_EQ(offer().line, 1);
+    EXPECT_EQ(rig->recover(), "");
+    finish();
+    EXPECT_EQ(status().offsets.tool, whole.tool);
+    EXPECT_EQ(status().offsets.g5x_index, whole.g5x_index);
 }
 
 TEST_F(RecoveryTest, ARefusedStartAtALineKeepsAnOlderOffer) {

@@ -110,11 +110,14 @@ bool apply_device(const Line &line, World &w) {
     case Kind::SET_TOOL: return set_tool(line, w);
     case Kind::SELECT: return isTool;
     case Kind::CHANGE:
+        // It stops the spindle, whether the tool is there already or not.
+        if (isTool) {
+            d.direction = 0;
+            d.turning_rpm = 0;
+        }
         // An empty spindle is emptied again: nobody knows whether it is.
         if (isTool && (d.in_spindle != line.number || line.number == 0)) {
             d.load(line.number);
-            d.direction = 0;
-            d.turning_rpm = 0;
         }
         return isTool;
     case Kind::CALL_IT:

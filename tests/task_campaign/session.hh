@@ -64,6 +64,7 @@ class Session : private Operators {
     // --- of the act under way
     const Act *act_ = nullptr;
     std::int64_t began_ms_ = 0;
+    std::uint64_t ended_before_ = 0;  ///< programs
     std::size_t next_trouble_ = 0;
     bool isStopped_ = false;      ///< by a trouble: whatever becomes of it
     bool areDevicesOff_ = false;  ///< by a stop of the operator

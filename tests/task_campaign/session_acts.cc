@@ -151,7 +151,7 @@ void Session::try_odd(int client, std::uint64_t seed, bool isAtRest) {
         {msgs::StepTraj{}, taken_if(false)},
         {msgs::LinearMove{}, Expected::REFUSED},
         {msgs::EndProgram{}, Expected::REFUSED},
-        {msgs::SetDebug{}, Expected::REFUSED},
+        {msgs::SystemCommand{"true"}, Expected::REFUSED},
         {msgs::InitTask{}, Expected::REFUSED},
         {msgs::SetJointBacklash{}, Expected::REFUSED},
         {msgs::Null{}, Expected::TAKEN},

@@ -18,6 +18,17 @@ std::string text_of(const std::vector<Line> &lines) {
     return text + "M2\n";
 }
 
+std::vector<World> stopped_again(const std::vector<Line> &lines, const std::vector<World> &before,
+                                 bool isBlockDelete) {
+    std::vector<World> all;
+    for (const World &world : before) {
+        for (const World &one : after_stop(lines, world, isBlockDelete)) {
+            add(all, one);
+        }
+    }
+    return all;
+}
+
 /// Where it begins; 0: as a program does.
 std::size_t first_line_of(const Act &act) {
     return act.work == Work::FROM_LINE ? 1 + act.seed % (act.blocks.size() + 1) : 0;
@@ -33,7 +44,7 @@ void Session::run_program(const Act &act) {
     const int from = static_cast<int>(first_line_of(act));
     begin_troubles(act);
     ++verdict_.runs;
-    const std::uint64_t ended = status().task.programs_ended;
+    const std::uint64_t ended = ended_before_ = status().task.programs_ended;
     const Serial run = post(act.client, msgs::RunProgram{from}, Expected::ANY, RUN_PATIENCE_MS);
     constexpr int SOON_MS = 3;
     const auto isUnderWay = [&] {
@@ -95,6 +106,11 @@ void Session::end_program_of(const Act &act, End end) {
         if (!mayFail && act.work != Work::FROM_LINE) {
             fail("work", "a program that nobody has stopped does not come to its end");
         }
+        // A step that came too late has begun it again.
+        const std::uint64_t runs = status().task.programs_ended - ended_before_;
+        for (std::uint64_t again = 1; again < runs; ++again) {
+            stopped = stopped_again(act.blocks, stopped, beliefs_.isBlockDelete);
+        }
         beliefs_.worlds = std::move(stopped);
     }
     if (end == End::REFUSED && !isStopped_ && act.work != Work::FROM_LINE) {
@@ -151,7 +167,7 @@ void Session::recover(const Act &act, const World &before, bool isBlockDelete) {
     if (isOver()) {
         return;
     }
-    const auto whole = carried_out(act.blocks, before, isBlockDelete);
+    const auto whole = carried_out(act.blocks, before, isBlockDelete, first_line_of(act));
     if (progress_of(run) == msgs::Progress::DONE) {
         ++verdict_.recovered;
         if (!whole.has_value()) {

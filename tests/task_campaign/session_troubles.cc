@@ -44,7 +44,7 @@ void Session::begin(const Trouble &t) {
     case Upset::STEP:
         post(t.client, msgs::PauseProgram{});
         cycles(t.length_ms);
-        for (int i = 0; i < 3; ++i) {
+        for (int i = 0; i < 3 && isRunning(); ++i) {  // where nothing runs it would begin the program
             post(t.client, msgs::StepProgram{});
             cycles(t.length_ms);
         }

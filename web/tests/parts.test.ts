@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+import { execFileSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
 import { de } from '../src/lib/i18n/de';
 import { en, type TextKey } from '../src/lib/i18n/en';
 import { es } from '../src/lib/i18n/es';
+import { Texts } from '../src/lib/i18n/said';
 import { fill, placesOf } from '../src/lib/i18n/text';
 import { formatBytes, formatDuration, formatNumber, parseNumber } from '../src/lib/numbers';
 import { ChunkReader, type Chunk } from '../src/lib/path/chunks';
@@ -27,6 +30,17 @@ describe('numbers (A8)', () => {
     expect(formatBytes(999)).toBe('999 B');
     expect(formatBytes(1_500_000)).toBe('1.5 MB');
   });
+});
+
+describe('what the machine says (A8)', () => {
+  const cases = JSON.parse(readFileSync('../po/cases.json', 'utf8')) as Record<string, Record<string, string>>;
+  it.each(Object.entries(cases))('is in the language %s as in programs', (language, texts) => {
+    const catalogue = new Texts(JSON.parse(execFileSync('python3', ['../tools/texts.py', '--json', language], { encoding: 'utf8' })) as Record<string, string>);
+    for (const [english, shown] of Object.entries(texts)) {
+      expect(catalogue.shown(english)).toBe(shown);
+    }
+  });
+  it('stays English without a catalogue', () => expect(new Texts({}).shown('a.ngc:1: error: the machine is not on')).toBe('a.ngc:1: error: the machine is not on'));
 });
 
 describe('catalogues (A8)', () => {

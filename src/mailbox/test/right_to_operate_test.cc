@@ -59,7 +59,7 @@ TEST(RightToOperate, StopsAndHoldsAreAlwaysAllowedAndNothingElseIs_E1) {
              msgs::SetState{msgs::State::ESTOP}, msgs::SetState{msgs::State::OFF}, msgs::EstopOn{},
              msgs::AbortAll{}, msgs::AbortMachine{}, msgs::AbortTraj{}, msgs::AbortMotion{},
              msgs::AbortJoint{}, msgs::AbortTool{}, msgs::AbortIo{}, msgs::JogStop{}, msgs::PauseProgram{},
-             msgs::PauseTraj{}}) {
+             msgs::PauseTraj{}, msgs::DisableTraj{}}) {
         EXPECT_TRUE(right.check(2, stop).has_value()) << msgs::to_text(stop);
     }
     EXPECT_FALSE(right.check(2, msgs::SetState{msgs::State::ON}).has_value());
@@ -68,7 +68,7 @@ TEST(RightToOperate, StopsAndHoldsAreAlwaysAllowedAndNothingElseIs_E1) {
     for (const msgs::Declaration *declaration : msgs::command_declarations()) {
         allowed += right.check(2, *msgs::make_command(declaration->number)).has_value() ? 1 : 0;
     }
-    EXPECT_EQ(allowed, 12) << "SetState{ESTOP} and the eleven above that always stop";
+    EXPECT_EQ(allowed, 13) << "SetState{ESTOP} and the twelve above that always stop";
 }
 
 }  // namespace

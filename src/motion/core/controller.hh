@@ -58,8 +58,6 @@ class Controller {
     /// Takes up to MAX_COMMANDS_PER_CYCLE immediate commands and answers each (function
     /// motion-command-handler).
     void handle_commands(const Inputs &in) noexcept;
-    /// Whether there is anything for it to do.
-    bool hasCommands() const noexcept { return channels_->immediate.front() != nullptr; }
     /// One servo cycle (function motion-controller).
     void step(const Inputs &in, Outputs &out) noexcept;
 
@@ -118,7 +116,6 @@ class Controller {
     const kins::Kinematics &kinematics_;
     Channels *channels_;
     PathLink *link_;
-    PathView view_;  ///< as it was published last
     Settings settings_;
     AxisMap map_;
     FoldedLimits limits_;

@@ -100,9 +100,13 @@ void Controller::move_axes(const Inputs &in) noexcept {
                             overrun.joint, overrun.use);
         }
         if (!retracing_.retrace.isAway()) {
-            // Nobody goes back through a hole that was tapped without turning the spindle, nor behind a lock.
-            const bool isOneWay = executor_.output().tap.spindle >= 0 || busy(indexers_) != 0;
-            if (holds_.isAdaptiveFeedEnabled && !isOneWay) {
+            // Nobody goes back through a hole that was tapped, or along a thread, without the spindle in
+            // step, nor behind a lock.
+            const bool isOneWay = executor_.output().tap.spindle >= 0 || executor_.locked_spindle() >= 0 ||
+                                  busy(indexers_) != 0;
+            // External offsets keep out of what is remembered: that is worth it where it is asked for.
+            const bool isWanted = holds_.isAdaptiveFeedEnabled || offsets_.axes == 0;
+            if (isWanted && !isOneWay) {
                 const int count = map_.areJointsAxes() ? 0 : config_.num_led_joints();
                 record(retracing_, pose, use_of(joints_, count, config_.period_s), limits_, config_.period_s);
             } else {

@@ -162,7 +162,7 @@ void Controller::fill_path(Status &s) const noexcept {
 
 /// What the path planner sees.
 void Controller::publish_view(const Inputs &in) noexcept {
-    PathView &v = view_;
+    PathView &v = link_->newest;
     v.executor = executor_.snapshot();
     v.epoch = epoch_;
     v.mode = power_.mode;

@@ -19,6 +19,8 @@ class ShownSettings {
     void note(const motion::SetParameter &parameter);
     /// The operator limits the speed of the path; never above the machine's own.
     void limit_velocity(double velocity);
+    /// Bits as of [EMC]DEBUG, for clients that go by them.
+    void set_debug(std::uint32_t mask) { shown_.debug = mask; }
     const msgs::SettingsStatus &shown() const { return shown_; }
 
   private:

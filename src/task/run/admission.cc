@@ -52,7 +52,7 @@ constexpr std::array<Row, CLASSES> TABLE{{
     /* TURN */
     {NO_TURN, NO_TURN, NO_TURN, NO_TURN, TAKEN, TAKEN, CONFIRM, IS_AWAY, NO_TURN, TAKEN, TAKEN},
     /* MDI */
-    {ESTOP, OFF, NEEDS_MDI, NEEDS_MDI, NEEDS_MDI, NEEDS_MDI, NEEDS_MDI, NEEDS_MDI, TAKEN, TAKEN, TAKEN},
+    {ESTOP, OFF, NEEDS_MDI, NEEDS_MDI, NEEDS_MDI, NEEDS_MDI, NEEDS_MDI, IS_AWAY, TAKEN, TAKEN, TAKEN},
     /* JOG */
     {ESTOP, OFF, TAKEN, NEEDS_MANUAL, NEEDS_MANUAL, HELD_AXES, HELD_AXES, TAKEN, NEEDS_MANUAL, NEEDS_MANUAL,
      NEEDS_MANUAL},
@@ -79,7 +79,11 @@ constexpr std::array<Row, CLASSES> TABLE{{
     all("this is set by the INI file and does not change while the machine runs"),
     /* PART_OF_START */ all("this begins and ends with the machine"),
     /* OF_THE_MAILBOX */ all("the right to operate belongs to clients that are connected"),
-    /* NOT_YET */ all("this version does not carry it out yet"),
+    /* OF_PLUGINS */
+    all("task has no Python functions of its own (PYTHON_TASK); remapped codes run Python: [RS274NGC]REMAP"),
+    /* OF_THE_SYSTEM */
+    all("a machine runs no programs for those who can send messages to it; M100 to M199 run those that its "
+        "files name"),
 }};
 
 Situation of_run(const RunState &run, Situation idle, Situation running, Situation held) {

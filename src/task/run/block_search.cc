@@ -73,7 +73,7 @@ BlockSearch::Outcome BlockSearch::check_calls() {
     if (wasThreading_ && interpreter_.isThreading()) {
         return refuse_before("it is in the middle of moves that follow the spindle");
     }
-    return machine_.sum().value() == calls_
+    return !calls_.has_value() || machine_.sum().value() == *calls_
                ? Outcome::FOUND
                : refuse(
                      "what the program says up to there is not what it said when it ran: a subroutine, the "

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "interp/interpreter.hh"
@@ -25,7 +26,8 @@ class BlockSearch {
     /// program finds what `set_up` has brought about.
     struct Block {
         std::uint32_t number = 0;
-        std::uint64_t calls = 0;  ///< checksum of all that must have been asked for before it
+        /// Checksum of all that must have been asked for before it; nothing: whatever it is.
+        std::optional<std::uint64_t> calls;
         std::vector<interp::MachineCall> set_up;
     };
     BlockSearch(interp::Interpreter &interpreter, MachineSwitch &machine, const SearchMachine::Real &real,
@@ -56,7 +58,7 @@ class BlockSearch {
     MachineSwitch &switch_;
     SearchMachine machine_;
     int line_ = 0;  ///< 0: a block is looked for
-    std::uint64_t calls_ = 0;
+    std::optional<std::uint64_t> calls_;
     interp::Step last_step_ = interp::Step::OK;
     bool wasThreading_ = false;  ///< before that step
     int last_possible_ = 0;      ///< a start there would have been possible, 0: none yet

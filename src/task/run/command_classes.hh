@@ -33,7 +33,8 @@ enum class CommandClass : std::uint8_t {
     PART_OF_CONFIGURATION,
     PART_OF_START,
     OF_THE_MAILBOX,
-    NOT_YET,
+    OF_PLUGINS,     ///< Python functions of task, which ours has none of
+    OF_THE_SYSTEM,  ///< other programs
     COUNT
 };
 
@@ -79,8 +80,8 @@ template <class T>
 concept PartOfPrograms =
     OneOf<T, LinearMove, CircularMove, ProbeMove, RigidTapMove, Delay, SetTermination, SetSpindleSync, SetG5x,
           SetG92, SetRotation, SetToolOffset, SetTrajVelocity, SetTrajAcceleration, SetMotionId,
-          OrientSpindle, WaitOriented, WaitInput, PrepareTool, LoadTool, UnloadTool, SetToolNumber,
-          StartToolChange, ReadProgram, EndProgram>;
+          SetSpindleSpeed, OrientSpindle, WaitOriented, WaitInput, PrepareTool, LoadTool, UnloadTool,
+          SetToolNumber, StartToolChange, ReadProgram, EndProgram>;
 /// What the INI file says.
 template <class T>
 concept PartOfConfiguration =
@@ -94,8 +95,9 @@ concept PartOfStart = OneOf<T, InitTask, HaltTask, InitMachine, HaltMachine, Ini
 template <class T>
 concept OfTheMailbox = OneOf<T, ClaimOperation, HandOverOperation, ReleaseOperation>;
 template <class T>
-concept NotYet =
-    OneOf<T, SetDebug, SystemCommand, CallTaskPlugin, CallIoPlugin, EnableTraj, DisableTraj, SetSpindleSpeed>;
+concept OfPlugins = OneOf<T, CallTaskPlugin, CallIoPlugin>;
+template <class T>
+concept OfTheSystem = OneOf<T, SystemCommand>;
 /// What motion does by itself (task/link/motion_words.hh).
 template <class T>
 concept CarriedOutByMotion =
@@ -107,14 +109,16 @@ concept CarriedOutByMotion =
 template <class T>
 concept AnyAbort = OneOf<T, AbortAll, AbortMachine, AbortTraj, AbortMotion, AbortTool, AbortIo>;
 template <class T>
-concept AnyTime = CarriedOutByMotion<T> || AnyAbort<T> ||
-                  OneOf<T, SetState, EstopOn, EstopOff, EstopReset, JogStop, AbortJoint, SpindleOff, MistOff,
-                        FloodOff, LubeOff, SetOptionalStop, SetBlockDelete, ConfirmToolChange, Null,
-                        OperatorError, OperatorText, OperatorDisplay>;
+concept AnyTime =
+    CarriedOutByMotion<T> || AnyAbort<T> ||
+    OneOf<T, SetState, EnableTraj, DisableTraj, SetDebug, EstopOn, EstopOff, EstopReset, JogStop, AbortJoint,
+          SpindleOff, MistOff, FloodOff, LubeOff, SetOptionalStop, SetBlockDelete, ConfirmToolChange, Null,
+          OperatorError, OperatorText, OperatorDisplay>;
 
 /// Never taken, in any situation.
 template <class T>
-concept Never = PartOfPrograms<T> || PartOfConfiguration<T> || PartOfStart<T> || OfTheMailbox<T> || NotYet<T>;
+concept Never = PartOfPrograms<T> || PartOfConfiguration<T> || PartOfStart<T> || OfTheMailbox<T> ||
+                OfPlugins<T> || OfTheSystem<T>;
 
 }  // namespace command_lists
 
@@ -144,7 +148,8 @@ constexpr CommandClass class_of() {
                                PartOfConfiguration<T>,
                                PartOfStart<T>,
                                OfTheMailbox<T>,
-                               NotYet<T>};
+                               OfPlugins<T>,
+                               OfTheSystem<T>};
     static_assert(IS_IN.size() == static_cast<std::size_t>(CommandClass::COUNT));
     static_assert(std::count(IS_IN.begin(), IS_IN.end(), true) == 1, "each command is of one class");
     return static_cast<CommandClass>(std::find(IS_IN.begin(), IS_IN.end(), true) - IS_IN.begin());

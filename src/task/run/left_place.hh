@@ -3,6 +3,8 @@
 // it goes on.
 #pragma once
 
+#include <cstdint>
+
 #include "geom/pose.hh"
 #include "task/sequencer/program_spindles.hh"
 
@@ -11,8 +13,9 @@ namespace mw::task {
 struct LeftPlace {
     geom::Pose position;  ///< of the machine; of when the axes were released
     int line = 0;
-    int tool = 0;            ///< in the spindle
-    geom::Pose tool_offset;  ///< of that tool, in the table
+    int tool = 0;             ///< in the spindle
+    std::uint64_t tools = 0;  ///< checksum of the tool table
+    std::uint64_t tools_version = 0;
     ProgramSpindles spindles;
     bool isMistOn = false, isFloodOn = false;
 };

@@ -89,6 +89,8 @@ class MachineSwitch final : public interp::MachineCanon,
             doubt_ = "a tool table that is read again (G10 L0)";
         } else if (std::holds_alternative<interp::ChangeTool>(call) && isRandom()) {
             doubt_ = "where a changer that swaps tools has put them (M6)";
+        } else if (std::holds_alternative<interp::ChangeToolNumber>(call) && isRandom()) {
+            doubt_ = "where a changer that swaps tools has put them (M61)";
         }
     }
     const interp::World &world() const { return search_ != nullptr ? *search_ : real_.world; }

@@ -54,7 +54,7 @@ class ProgramReader {
     /// The same at a block of a program that has begun as `record` says, on a machine that has come up since.
     struct LostPlace {
         std::uint32_t block = 0;
-        std::uint64_t calls = 0;  ///< checksum
+        std::optional<std::uint64_t> calls;  ///< checksum; nothing: it is not compared
     };
     Result<> begin_recovery(StartRecord record, const LostPlace &place);
     /// Modes and parameters as they are, for begin_recovery(); an error says why they cannot be told.
@@ -68,6 +68,8 @@ class ProgramReader {
     BlockSearch::Outcome step_search(int lines) { return search_->step(lines); }
     bool isSearching() const { return search_ != nullptr; }
     const BlockSearch &search() const { return *search_; }
+    /// What a recovery calculates with.
+    const StartRecord &recorded() const { return recorded_->record(); }
     /// The program goes on from the place that was found.
     void accept_search();
     /// Modes, parameters and offsets are what they were before it.

@@ -18,6 +18,13 @@ Result<Progress> ProgramRun::start(RunKind kind, mailbox::Serial command, const 
     return Progress::STARTED;
 }
 
+void ProgramRun::begin_again() {
+    change(RunEvent::END);
+    change(RunEvent::START);
+    kind_ = RunKind::AGAIN;
+    from_line_ = 0;
+}
+
 std::optional<Ending> ProgramRun::end(Progress progress, const std::string &reason) {
     change(RunEvent::END);
     return request_.end(progress, reason);

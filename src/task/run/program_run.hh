@@ -15,6 +15,8 @@ enum class RunKind : std::uint8_t {
     PROGRAM,
     MDI,
     RECOVERY,  ///< a program that goes on where it was cut short
+    AGAIN,     ///< one whose tools were changed while it was held, calculated as it ran before
+    ANEW,      ///< and with the tools as they are now
 };
 
 /// One thread.
@@ -25,7 +27,10 @@ class ProgramRun {
     /// Where the program begins; 0: at its first line.
     int from_line() const { return from_line_; }
     void set_from_line(int line) { from_line_ = line; }
-    bool isRecovery() const { return kind_ == RunKind::RECOVERY; }
+    bool isRecovery() const { return kind_ >= RunKind::RECOVERY; }
+    /// The same command goes on at a place of the program, AGAIN and then ANEW.
+    void begin_again();
+    void go_on_anew() { kind_ = RunKind::ANEW; }
     /// An event that cannot be in this state changes nothing and says why.
     Result<> take(RunEvent event) { return state_.take(event); }
     /// Of events that the run's own parts tell: one that comes too late changes nothing.

@@ -67,9 +67,33 @@ std::string Recovery::begin(std::uint32_t first) {
     return dropped;
 }
 
-void Recovery::begin_again() {
+Result<> Recovery::call_back(const RunPlace &place, CallMarks &marks) {
+    if (!run_.has_value()) {
+        return fail("the program is not journalled ([TASK]JOURNAL_FILE)");
+    }
+    journal::Run run = *run_;
+    const std::uint32_t block = std::max(first_, place.block);
+    const auto calls = marks.before(block);
+    if (!calls.has_value()) {
+        return fail("it has not begun");
+    }
+    run.progress = journal::Progress{block, place.line, *calls, place.position, place.tool, sum_of_tools_};
+    const std::string why = refusal_of(run);
+    if (!why.empty()) {
+        return fail(why);
+    }
+    offer_ = std::move(run);
+    refusal_.clear();
+    run_.reset();
+    return {};
+}
+
+void Recovery::begin_again(const StartRecord &record, std::uint64_t calls, std::uint64_t tools) {
     run_ = std::move(offer_);
     offer_.reset();
+    run_->start.state = record.pack();
+    run_->progress->calls = calls;
+    run_->progress->tools = tools;
     first_ = static_cast<std::uint32_t>(run_->progress->block);
     noted_ns_ = 0;
     writer_->begin(run_->start, run_->progress, run_->doubt);

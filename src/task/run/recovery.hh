@@ -37,8 +37,12 @@ class Recovery {
     void prepare(const std::string &program, const StartRecord &record, const std::string &why_not);
     /// It begins, with block `first`. A line for the operator where an offer ends with that, else empty.
     std::string begin(std::uint32_t first);
-    /// The run that was offered goes on where it was.
-    void begin_again();
+    /// The run that was offered goes on where it was, from the start that it was calculated with; `calls` and
+    /// `tools`: checksums of what comes before that place, and of the tool table.
+    void begin_again(const StartRecord &record, std::uint64_t calls, std::uint64_t tools);
+    /// The run is to be calculated again up to `place`, because other tools are in the table: it is the one
+    /// that offer() tells from here on. Refused where what holds there cannot be calculated.
+    Result<> call_back(const RunPlace &place, CallMarks &marks);
     /// Once a cycle of the run. `marks`: the canon's; `tools` as they are.
     void step(std::int64_t now_ns, const RunPlace &place, CallMarks &marks, const ToolStore &tools);
     void note_doubt(std::uint32_t block, int line, const std::string &what);

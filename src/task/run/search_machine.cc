@@ -40,10 +40,7 @@ void SearchMachine::take(const interp::MachineCall &call) {
                 machine_.selected_pocket = one.toolno == 0 ? 0 : index_of_tool(one.toolno);
             },
             [this](const interp::ChangeTool &) { change_tool(); },
-            [this](const interp::ChangeToolNumber &one) {
-                load(one.toolno == 0 ? 0 : index_of_tool(one.toolno));
-                machine_.tool_in_spindle = one.toolno;
-            },
+            [this](const interp::ChangeToolNumber &one) { set_tool_number(one.toolno); },
             [this](const interp::SetToolTableEntry &one) { entries_[one.index] = one.entry; },
             [this](const interp::ReloadTools &) { doubt("a tool table that is read again (G10 L0)"); },
             [this](const interp::SwitchMist &one) { machine_.isMistOn = one.isOn; },
@@ -111,6 +108,19 @@ void SearchMachine::change_tool() {
     selected_tool_ = -1;
 }
 
+/// M61.
+void SearchMachine::set_tool_number(int toolno) {
+    const bool isThere = isRandom() && entry(0).toolno == toolno;
+    if (isThere) {
+        return;
+    }
+    if (isRandom()) {
+        doubt("where a changer that swaps tools has put them (M61)");
+    }
+    load(toolno == 0 ? 0 : index_of_tool(toolno));
+    machine_.tool_in_spindle = toolno;
+}
+
 void SearchMachine::load(int index) {
     interp::ToolEntry none;
     none.toolno = 0;
@@ -144,7 +154,7 @@ FoundModes SearchMachine::found() const {
         }
     };
     for (const auto &[index, entry] : entries_) {
-        if (index > 0) {
+        if (index > 0 || isRandom()) {  // of a fixed changer the copy of a tool that has a place of its own
             found.settings.emplace_back(interp::SetToolTableEntry{index, entry});
         }
     }

@@ -94,6 +94,7 @@ class SearchMachine final : public interp::MachineCanon,
     void doubt(const std::string &what) const { doubt_ = doubt_.empty() ? what : doubt_; }
     void move_to(const geom::Pose &end, const geom::MoveSettings &settings);
     void change_tool();
+    void set_tool_number(int toolno);
     void load(int index);
     void stop(int number);
 

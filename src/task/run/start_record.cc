@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "base/bytes.hh"
 #include "base/limits.hh"
 #include "base/overloaded.hh"
@@ -195,6 +197,57 @@ int RecordedWorld::index_of_tool(int toolno) const {
         }
     }
     return -1;
+}
+
+namespace {
+
+bool isSame(const interp::ToolEntry &a, const interp::ToolEntry &b) {
+    Packer packed_a, packed_b;
+    tool(packed_a, a);
+    tool(packed_b, b);
+    return packed_a.bytes() == packed_b.bytes();
+}
+
+/// What the program has set a tool's data to; null: it has not.
+const interp::ToolEntry *set_by_program(const FoundModes &found, int index) {
+    const interp::ToolEntry *last = nullptr;
+    for (const interp::MachineCall &call : found.settings) {
+        const auto *one = std::get_if<interp::SetToolTableEntry>(&call);
+        last = one != nullptr && one->index == index ? &one->entry : last;
+    }
+    return last;
+}
+
+}  // namespace
+
+Result<StartRecord> with_tools_now(StartRecord record, const FoundModes &found,
+                                   const interp::ToolSource &tools) {
+    if (tools.count() != static_cast<int>(record.tools.size())) {
+        return fail("other tools are in the table");
+    }
+    for (int i = tools.isRandom() ? 0 : 1; i < tools.count(); ++i) {
+        const interp::ToolEntry now = tools.entry(i);
+        interp::ToolEntry &then = record.tools[static_cast<std::size_t>(i)];
+        if (now.toolno != then.toolno) {
+            return fail("other tools are in the table");
+        }
+        const interp::ToolEntry *const set = set_by_program(found, i);
+        if (isSame(now, set != nullptr ? *set : then)) {
+            continue;
+        }
+        if (set != nullptr) {
+            return fail(
+                fmt::format("the program itself sets the data of tool {}, which were changed", now.toolno));
+        }
+        interp::ToolEntry &spindle = record.tools[0];
+        if (i > 0 && spindle.toolno == now.toolno) {  // the copy of a fixed changer
+            const int pocket = spindle.pocketno;
+            spindle = now;
+            spindle.pocketno = pocket;
+        }
+        then = now;
+    }
+    return record;
 }
 
 std::uint64_t sum_of_tools(const interp::ToolSource &tools) {

@@ -8,8 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#include "base/result.hh"
 #include "interp/canon/machine_canon.hh"
 #include "interp/world.hh"
+#include "task/run/search_machine.hh"
 
 namespace mw::task {
 
@@ -65,6 +67,12 @@ class RecordedWorld final : public interp::World, public interp::ToolSource {
     Real real_;
     StartRecord record_;
 };
+
+/// The same start with the tools as they are now in `tools`. `found`: what the program has brought about up
+/// to where it is to go on. Refused where other tools are in the table, or the program itself has set what
+/// was changed since.
+Result<StartRecord> with_tools_now(StartRecord record, const FoundModes &found,
+                                   const interp::ToolSource &tools);
 
 /// Of all entries but the copy of what is in the spindle.
 std::uint64_t sum_of_tools(const interp::ToolSource &tools);

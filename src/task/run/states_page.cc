@@ -53,7 +53,8 @@ constexpr std::array<Named, static_cast<std::size_t>(CommandClass::COUNT)> CLASS
     {"part of the configuration", ""},
     {"part of the start", ""},
     {"of the mailbox", ""},
-    {"not yet", ""},
+    {"of Python in task", "there is none"},
+    {"of the system", "runs other programs"},
 }};
 
 /// Refusals as numbers, in the order in which they come.

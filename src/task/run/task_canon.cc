@@ -103,6 +103,13 @@ void TaskCanon::insert_first(const std::vector<interp::MachineCall> &calls, cons
     }
     last_end_ = end;
     tag_ = tag;
+    for (const Item &item : behind) {  // announced before, in force after it
+        if (const auto *offsets = std::get_if<interp::UseOffsets>(&item.call)) {
+            offsets_ = *offsets;
+        } else if (const auto *offset = std::get_if<interp::UseToolOffset>(&item.call)) {
+            tool_offset_ = offset->offset;
+        }
+    }
     queue_.insert(queue_.end(), behind.begin(), behind.end());
 }
 

@@ -20,7 +20,8 @@ bool isHold(const msgs::Command &command) {
 bool isOfMachineState(const msgs::Command &command) {
     return std::visit(
         []<class C>(const C &) {
-            return OneOf<C, msgs::SetState, msgs::EstopOn, msgs::EstopOff, msgs::EstopReset>;
+            return OneOf<C, msgs::SetState, msgs::EstopOn, msgs::EstopOff, msgs::EstopReset, msgs::EnableTraj,
+                         msgs::DisableTraj>;
         },
         command);
 }

@@ -256,6 +256,24 @@ TEST_F(TaskTest, CommandsThatCannotBeDoneAreRefusedWithAReason_C5) {
     EXPECT_NE(reason(request).find("not all joints are homed"), std::string::npos);
 }
 
+TEST_F(TaskTest, CommandsOfOtherNamesDoTheirJobAndTheRestSaysWhyNot_F8) {
+    EXPECT_EQ(ask(SetDebug{0x4321}), Progress::DONE);
+    EXPECT_EQ(task.status().settings.debug, 0x4321U);
+    EXPECT_EQ(ask(DisableTraj{}), Progress::DONE) << reason(request);
+    cycles(5);
+    EXPECT_NE(task.status().task.state, State::ON);
+    EXPECT_EQ(ask(EnableTraj{}), Progress::DONE) << reason(request);
+    cycles(5);
+    EXPECT_EQ(task.status().task.state, State::ON);
+    EXPECT_EQ(ask(SystemCommand{"true"}), Progress::REFUSED);
+    EXPECT_NE(reason(request).find("M100 to M199"), std::string::npos);
+    EXPECT_EQ(ask(CallTaskPlugin{"x"}), Progress::REFUSED);
+    EXPECT_NE(reason(request).find("PYTHON_TASK"), std::string::npos);
+    EXPECT_EQ(ask(CallIoPlugin{"x"}), Progress::REFUSED);
+    EXPECT_EQ(ask(SetSpindleSpeed{0, 100}), Progress::REFUSED);
+    EXPECT_NE(reason(request).find("give it as G-code"), std::string::npos);
+}
+
 TEST_F(TaskTest, AScreenThatStartsInEmergencyStopChoosesJointsAndForgetsHoming_C5_J2) {
     ASSERT_EQ(ask(SetState{State::ESTOP}), Progress::DONE);
     EXPECT_EQ(ask(SetTeleop{false}), Progress::DONE);

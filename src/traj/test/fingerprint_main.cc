@@ -110,7 +110,7 @@ struct Drive {
         hash.add(rig.executor.output().velocity);
         hash.add(static_cast<double>(rig.planner.moves_left(now) + rig.planner.next_block(now)));
         hash.add((rig.planner.isStarving() ? 1.0 : 0.0) + (rig.planner.hasNext(now) ? 2.0 : 0.0) +
-                 (rig.planner.take_stuck() ? 4.0 : 0.0) + (rig.planner.hasRoom(now) ? 8.0 : 0.0));
+                 (rig.planner.take_trouble().isStuck ? 4.0 : 0.0) + (rig.planner.hasRoom(now) ? 8.0 : 0.0));
     }
     bool isOver() const {
         return rig.executor.isAtRest() && rig.executor.snapshot().done_move >= rig.planner.last_move();

@@ -18,13 +18,14 @@ struct Rig {
     static constexpr double T = 1e-3;
     std::unique_ptr<PathStore> store = std::make_unique<PathStore>();
     Executor executor{*store, T};
-    Planner planner{*store, PlannerSettings{T, 3, 0.1}};
+    Planner planner;
     std::uint64_t cycle = 0;
     std::vector<Pose> samples;
     int planner_period = 5;
     bool isPlannerAlive = true;
 
-    explicit Rig(const Pose &start) {
+    explicit Rig(const Pose &start, SpeedChooser *chooser = nullptr)
+        : planner(*store, PlannerSettings{T, 3, 0.1, true, chooser}) {
         executor.set_position(start);
         executor.step(cycle);
         planner.begin(start, executor.snapshot());

@@ -155,7 +155,7 @@ TEST(Planner, APlaceWithoutAWayOnIsTold_C5) {
     int told = 0;
     for (int i = 0; i < 5000; ++i) {
         rig.step();
-        told += rig.planner.take_stuck() ? 1 : 0;
+        told += rig.planner.take_trouble().isStuck ? 1 : 0;
     }
     EXPECT_EQ(told, 1);
     EXPECT_EQ(rig.samples.back(), Pose{});

@@ -8,10 +8,11 @@
 namespace mw::traj {
 
 struct PlannerSettings {
-    double period_s = 1e-3;     ///< of the servo
-    std::uint64_t latency = 3;  ///< cycles from a plan's making to its start
-    double horizon_s = 0.1;     ///< how far ahead phases are committed
-    bool isMerging = true;      ///< nearly straight lines become one
+    double period_s = 1e-3;           ///< of the servo
+    std::uint64_t latency = 3;        ///< cycles from a plan's making to its start
+    double horizon_s = 0.1;           ///< how far ahead phases are committed
+    bool isMerging = true;            ///< nearly straight lines become one
+    SpeedChooser *chooser = nullptr;  ///< chooses speeds instead of the fastest; stays valid
 };
 
 /// How a plan that is tried ends.
@@ -85,6 +86,8 @@ class TimingPlan {
     /// Hands the executor the pass that begins where it stands.
     void start_pass(PlannedPath &path, const Conditions &conditions, const Snapshot &now,
                     Sequence first) noexcept;
+    /// What who chooses speeds has asked for too much; the path does not go on.
+    const Overreach &overreach() const noexcept { return draft_.overreach; }
     /// The plan runs to the end of the known path.
     bool isAtEndOf(const PlannedPath &path) const noexcept { return draft_.isAtEndOf(path); }
 

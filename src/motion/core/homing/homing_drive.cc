@@ -21,7 +21,7 @@ auto with_module(const HomingDrive &drive, const Function &function) noexcept {
 
 std::uint32_t homed_mask(const HomingDrive &drive) noexcept {
     if (drive.foreign == nullptr) {
-        return drive.own.homed() & ((1U << drive.num_joints) - 1U);
+        return drive.own.summary().homed & ((1U << drive.num_joints) - 1U);
     }
     std::uint32_t mask = 0;
     for (int j = 0; j < drive.num_joints; ++j) {
@@ -191,7 +191,7 @@ bool areFinite(const HomingDrive &drive, const homing::JointCommand *commands) n
 
 void fill(const HomingDrive &drive, Outputs &out) noexcept {
     out.status.isHoming = drive.isUnderWay();
-    const bool isQuiet = drive.foreign == nullptr && drive.own.isQuiet();
+    const bool isQuiet = drive.foreign == nullptr && drive.own.summary().isQuiet;
     if (isQuiet && out.isHomingQuiet) {
         return;
     }

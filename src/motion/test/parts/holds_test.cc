@@ -53,11 +53,18 @@ TEST(HoldsPart, AdaptiveFeedCountsOnlyWhereItIsOnAndNeverWhenItIsNoNumber) {
     EXPECT_GT(holds.reverse_rate, 0);
 }
 
-TEST(HoldsPart, ReverseRunNeedsWhatIsRecordedWithAdaptiveFeed) {
+TEST(HoldsPart, ReverseRunNeedsAWayBack_C4) {
     Holds holds;
-    EXPECT_EQ(take(holds, SetReverse{true}).reason, Reason::NO_WAY_BACK);
+    EXPECT_EQ(take(holds, SetReverse{true}, false).reason, Reason::NO_WAY_BACK);
+    step(holds, {});
+    EXPECT_FALSE(holds.isReverseWanted);
+    EXPECT_EQ(take(holds, SetReverse{true}, true).reason, Reason::NONE);
+    step(holds, {});
+    EXPECT_TRUE(holds.isReverseWanted);
+    EXPECT_GT(holds.reverse_rate, 0) << "without adaptive feed";
+    EXPECT_EQ(take(holds, SetReverse{false}, false).reason, Reason::NONE) << "forward is always taken";
+    take(holds, SetReverse{true}, true);
     take(holds, SetSwitch{Switch::ADAPTIVE_FEED, 0, true});
-    EXPECT_EQ(take(holds, SetReverse{true}).reason, Reason::NONE);
     step(holds, {});
     EXPECT_TRUE(holds.isReverseWanted);
     step(holds, {-1, false, false, 0});

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What the machine says, which is English, in another language: found by the fixed parts of the text that a message was made
+// from. The same as src/language/catalogue does in programs; po/cases.json holds both to the same answers.
+
+interface Pattern {
+  pieces: string[]; // of the key, between what is put in
+  letters: number; // of all pieces
+  isName: boolean; // one word of its own ("joint {}"): what is put in is a name, too
+  translation: string;
+}
+
+const MAX_DEPTH = 5; // of a text within a text
+const countWords = (pieces: string[]): number => pieces.reduce((sum, piece) => sum + (piece.match(/[A-Za-z]{2,}/g) ?? []).length, 0);
+const hasWord = (text: string): boolean => (text.match(/[A-Za-z]/g) ?? []).length > 2;
+
+/** What stands between the pieces in `text`; null where they do not stand in it, in this order, from end to end. */
+function valuesBetween(pieces: string[], text: string): string[] | null {
+  const [first = '', ...others] = pieces;
+  if (!text.startsWith(first)) {
+    return null;
+  }
+  let rest = text.slice(first.length);
+  const values: string[] = [];
+  for (const [i, piece] of others.entries()) {
+    const isLast = i + 1 === others.length;
+    const at = isLast ? (rest.endsWith(piece) ? rest.length - piece.length : -1) : rest.indexOf(piece);
+    if (at < 0) {
+      return null;
+    }
+    values.push(rest.slice(0, at));
+    rest = rest.slice(at + piece.length);
+  }
+  return values;
+}
+
+/** The texts of one language. */
+export class Texts {
+  private readonly whole = new Map<string, string>();
+  private readonly patterns: Pattern[] = [];
+
+  constructor(entries: Record<string, string>) {
+    for (const [key, translation] of Object.entries(entries)) {
+      const pieces = key.split('{}');
+      if (pieces.length === 1) {
+        this.whole.set(key, translation);
+      } else {
+        this.patterns.push({ pieces, letters: pieces.join('').length, isName: countWords(pieces) < 2, translation });
+      }
+    }
+    this.patterns.sort((a, b) => b.letters - a.letters);
+  }
+
+  /** A message as it is shown; what is not known of it stays English. */
+  shown(english: string): string {
+    return this.find(english, 0) ?? (english.includes('\n') ? english.split('\n').map((line) => this.line(line)).join('\n') : this.line(english));
+  }
+
+  private line(text: string): string {
+    if (text.startsWith('  ')) {
+      const caller = text.startsWith('  called from ') ? this.find(text.slice(2), 0) : null;
+      return caller === null ? text : `  ${caller}`; // lines of a program stay as they are
+    }
+    return this.composed(text, 0) ?? text;
+  }
+
+  private find(text: string, depth: number): string | null {
+    const whole = this.whole.get(text);
+    if (whole !== undefined) {
+      return whole;
+    }
+    for (const pattern of this.patterns) {
+      const values = valuesBetween(pattern.pieces, text);
+      if (values !== null && this.isFitting(pattern, values, depth)) {
+        return this.filled(pattern, values, depth + 1);
+      }
+    }
+    return null;
+  }
+
+  private isFitting(pattern: Pattern, values: string[], depth: number): boolean {
+    if (pattern.pieces[0] === '' && values[0]?.includes(': ')) {
+      return false; // what begins a text is no place, kind or sentence with its colon: these are parts of their own
+    }
+    return !pattern.isName || values.every((value) => !value.includes(' ') || (depth < MAX_DEPTH && this.composed(value, depth + 1) !== null));
+  }
+
+  private filled(pattern: Pattern, values: string[], depth: number): string {
+    let next = 0;
+    return pattern.translation.replace(/\{(\d?)\}/g, (_place, which: string) => {
+      const value = values[which === '' ? next++ : Number(which)] ?? '';
+      return depth < MAX_DEPTH && hasWord(value) ? (this.composed(value, depth) ?? value) : value;
+    });
+  }
+
+  private composed(text: string, depth: number): string | null {
+    const found = this.find(text, depth);
+    return found !== null || depth >= MAX_DEPTH ? found : (this.withHint(text, depth) ?? this.inParts(text, depth) ?? this.withEnding(text, depth));
+  }
+
+  /** "MESSAGE (HINT)". */
+  private withHint(text: string, depth: number): string | null {
+    for (let at = text.endsWith(')') ? text.indexOf(' (') : -1; at >= 0; at = text.indexOf(' (', at + 1)) {
+      const head = text.slice(0, at), hint = text.slice(at + 2, -1);
+      const said = this.composed(head, depth + 1), advised = this.composed(hint, depth + 1);
+      if (said !== null || advised !== null) {
+        return `${said ?? head} (${advised ?? hint})`;
+      }
+    }
+    return null;
+  }
+
+  /** "PLACE: MESSAGE", "MESSAGE; MESSAGE". */
+  private inParts(text: string, depth: number): string | null {
+    for (const between of [': ', '; ']) {
+      for (let at = text.indexOf(between); at >= 0; at = text.indexOf(between, at + 1)) {
+        const head = text.slice(0, at), rest = text.slice(at + between.length);
+        const said = this.find(head, depth + 1), more = this.composed(rest, depth + 1);
+        if (said !== null || more !== null) {
+          return (said ?? head) + between + (more ?? rest);
+        }
+      }
+    }
+    return null;
+  }
+
+  /** A name with an ending that was put behind it: the key of the ending begins with a blank or a colon. */
+  private withEnding(text: string, depth: number): string | null {
+    for (let at = 1; at < text.length; ++at) {
+      if (text[at] !== ' ' && text[at] !== ':') {
+        continue;
+      }
+      const ending = text.slice(at), whole = this.whole.get(ending);
+      if (whole !== undefined) {
+        return text.slice(0, at) + whole;
+      }
+      for (const pattern of this.patterns) {
+        const values = pattern.pieces[0]?.startsWith(ending.charAt(0)) ? valuesBetween(pattern.pieces, ending) : null;
+        if (values !== null) {
+          return text.slice(0, at) + this.filled(pattern, values, depth + 1);
+        }
+      }
+    }
+    return null;
+  }
+}
