@@ -9,6 +9,7 @@ class Amplifier {
   public:
     explicit Amplifier(double rise_s = 0) noexcept : rise_s_(rise_s) {}
 
+    void set_rise(double rise_s) noexcept { rise_s_ = rise_s; }
     /// `dt` seconds with this enable; true when the motor has power.
     bool run(bool isEnabled, double dt) noexcept {
         on_s_ = isEnabled ? on_s_ + dt : 0.0;

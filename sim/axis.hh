@@ -23,6 +23,8 @@ class Axis {
     explicit Axis(const AxisSettings &settings = {}, double position = 0) noexcept
         : settings_(settings), motor_(position), load_(position), last_command_(position) {}
 
+    /// Other forces, friction and play from here on.
+    void set(const AxisSettings &settings) noexcept { settings_ = settings; }
     /// `dt` seconds towards `command`. Without power only friction acts.
     void run(double command, bool isPowered, double dt) noexcept {
         const double feed = std::isfinite(command) ? (command - last_command_) / dt : 0.0;

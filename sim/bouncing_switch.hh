@@ -20,6 +20,7 @@ class BouncingSwitch {
     explicit BouncingSwitch(const SwitchSettings &settings = {}, std::uint64_t seed = 1) noexcept
         : settings_(settings), random_(seed) {}
 
+    void set(const SwitchSettings &settings) noexcept { settings_ = settings; }
     /// The contact after `dt` seconds at `position`.
     bool run(double position, double dt) noexcept {
         const double beyond = (settings_.isAbove ? 1.0 : -1.0) * (position - settings_.at);

@@ -19,6 +19,8 @@ class Encoder {
     explicit Encoder(const EncoderSettings &settings = {}, double position = 0) noexcept
         : settings_(settings), zero_(position), seen_(position) {}
 
+    /// Another resolution or other marks from here on; the counter keeps its zero.
+    void set(const EncoderSettings &settings) noexcept { settings_ = settings; }
     /// Looks at the shaft. With `isIndexArmed` the counter is set to zero at the first mark that is passed;
     /// the return value says that this has happened.
     bool run(double position, bool isIndexArmed) noexcept {

@@ -28,6 +28,13 @@ class SpindlePlant {
         hasIndex_ = false;
     }
 
+    /// Another drive or load from here on; counts and angle stay.
+    void set_drive(double ramp, double lag_s, double reaction_s, double slip) noexcept {
+        traits_.ramp = ramp;
+        traits_.lag_s = lag_s;
+        traits_.reaction_s = reaction_s;
+        traits_.slip = slip;
+    }
     /// Turns for `dt` seconds under the command [turns/s] and a load from 0 to 1.
     void run(double command, double load, double dt) noexcept {
         if (command != wanted_) {

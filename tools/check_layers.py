@@ -6,18 +6,18 @@ import re
 import sys
 
 LAYER = {
-    'base': 0, 'geom': 0, 'diag': 0, 'options': 0,
-    'rtapi': 1, 'config': 1, 'msgs': 1, 'picture': 1, 'comp': 1,
+    'base': 0, 'geom': 0, 'diag': 0, 'options': 0, 'language': 0,
+    'rtapi': 1, 'config': 1, 'msgs': 1, 'picture': 1, 'comp': 1, 'setup': 1,
     'hal': 2, 'mailbox': 2,
     'kins': 3, 'traj': 3, 'homing': 3, 'interp': 3, 'tool': 3, 'journal': 3, 'client': 3, 'hal_lang': 3,
-    'motion': 4, 'pyhost': 4, 'hal_tools': 4, 'gcode': 4, 'nml': 4,
+    'motion': 4, 'pyhost': 4, 'hal_tools': 4, 'gcode': 4, 'nml': 4, 'modbus': 4,
     'task': 5, 'io': 5,
     'machine': 6, 'ui': 6, 'python': 6, 'doctor': 6,
     'app': 7,
     'cli': 8,
 }
 # Equal layers that may be used, user -> used.
-ALLOWED_EQUAL = {('geom', 'base'), ('diag', 'base'), ('options', 'base'), ('interp', 'tool'), ('task', 'io'), ('machine', 'ui'), ('doctor', 'machine')}
+ALLOWED_EQUAL = {('geom', 'base'), ('diag', 'base'), ('options', 'base'), ('language', 'base'), ('options', 'language'), ('interp', 'tool'), ('task', 'io'), ('machine', 'ui'), ('doctor', 'machine')}
 # Domain libraries know neither HAL nor NML.
 FORBIDDEN = {(user, used) for user in ('kins', 'traj', 'homing', 'interp', 'tool', 'journal') for used in ('hal', 'hal_lang', 'nml')}
 # Inside a folder: sub-folders in the order in which they may use each other.

@@ -275,13 +275,15 @@ def main():
     parser.add_argument("--configs", default=CONFIGS)
     parser.add_argument("--hallib", default=HALLIB)
     parser.add_argument("--only", default="", help="only configurations whose path contains this")
-    parser.add_argument("--timeout", type=float, default=30.0)
+    parser.add_argument("--timeout", type=float, help="30; with --work 120")
     parser.add_argument("--out", default="", help="a table: configuration, class, first error")
     parser.add_argument("--least", type=int, default=0, help="fail when fewer run")
     parser.add_argument("--work", action="store_true",
                         help="with --start: where joints are axes, home, run a line of MDI and a program")
     parser.add_argument("--start", action="store_true", help="bring each up with a script as its display")
     options = parser.parse_args()
+    options.bin = str(pathlib.Path(options.bin).resolve())
+    options.timeout = options.timeout or (120.0 if options.work else 30.0)
     folder = pathlib.Path(options.configs)
     judge = start if options.start else run
     inis = sorted(ini for ini in folder.rglob("*.ini") if options.only in str(ini.relative_to(folder)))

@@ -25,7 +25,8 @@ TOOLS = pathlib.Path(__file__).resolve().parent
 TYPES = {1: "bit", 2: "float", 3: "s32", 4: "u32"}
 DIRECTIONS = {16: "in", 32: "out", 48: "in/out", 64: "parameter, read only", 192: "parameter"}
 # Pins of LinuxCNC that ours lack, and why.
-KNOWN_PINS = {"userk.": "counters of the example of a user's type", "skgui.": "copies for one screen",
+KNOWN_PINS = {"userk.": "counters of the example of a user's type",
+              "userkins.in": "of a template", "userkins.out": "of a template", "userkins.param": "of a template",
               "pentakins.base.5.": "there are five struts", "pentakins.effector.5.": "there are five struts",
               "xyzab-tdr-kins.": "a placeholder of halcompile"}
 
@@ -44,6 +45,13 @@ MODELS = {
                 "pins": {"maxkins.pivot-length": 120}},
     "xyzac-trt-kins": {"joints": [MM, MM, MM, TILT, TURN], "size": 300, "offsets": True},
     "xyzbc-trt-kins": {"joints": [MM, MM, MM, TILT, TURN], "size": 300, "offsets": True},
+    "xyzac-trt-kins type 1": {"joints": [MM, MM, MM, TILT, TURN], "size": 300, "switch": 1},
+    "xyzac-trt-kins type 2": {"joints": [MM, MM, MM, TILT, TURN], "size": 300, "switch": 2},
+    "5axiskins type 2": {"joints": [MM, MM, MM, TILT, TURN, MM], "size": 300, "switch": 2},
+    "scarakins type 1": {"joints": [MM] * 6, "size": 640, "switch": 1},
+    "pumakins type 2": {"joints": HAND, "size": 820, "switch": 2},
+    "genserkins type 2": {"joints": [MM] * 9, "size": 820, "switch": 2},
+    "userkins": {"joints": [MM, MM, MM], "size": 300},
     "xyzab_tdr_kins": {"joints": [MM, MM, MM, TURN, TURN], "size": 300, "offsets": True, "switch": 1},
     "scarakins": {"joints": [TURN, (-170, -1), MM, TURN, TURN, TURN], "size": 640},
     "pumakins": {"joints": HAND, "size": 820, "rpy": True},
@@ -191,7 +199,7 @@ def compare_calls(model, theirs, ours, calls):
 def compare(name, model, options, task):
     random.seed(name + str(options.seed))
     calls = drawn_calls(model, options.poses)
-    theirs = ask(options.as_user, {**task, "path": f"{options.reference}/{name}.so", "calls": calls})
+    theirs = ask(options.as_user, {**task, "path": f"{options.reference}/{name.split()[0]}.so", "calls": calls})
     if isinstance(theirs, str):
         print(f"{name}: LinuxCNC's did not run: {theirs}")
         return 1
@@ -199,7 +207,7 @@ def compare(name, model, options, task):
     asked = [[call[0], call[1], call[2], their["back"][1] if their["back"][0] else call[3]]
              for call, their in zip(calls, theirs["calls"])]
     asked = [[*call[:3], [x if x == x else 0.0 for x in call[3]]] for call in asked]
-    ours = ask(options.as_user, {**task, "path": str(ROOT / options.build / "lib" / f"{name}.so"), "calls": asked})
+    ours = ask(options.as_user, {**task, "path": str(ROOT / options.build / "lib" / f"{name.split()[0]}.so"), "calls": asked})
     if isinstance(ours, str):
         print(f"{name}: ours did not run: {ours}")
         return 1

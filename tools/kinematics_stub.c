@@ -192,3 +192,15 @@ int rtapi_set_msg_level(int l) {
 void rtapi_mp_register(const void *info) {
     (void)info;
 }
+
+/* Millwright's: no other module is loaded. */
+void *mw_ext_find_symbol(const char *name) {
+    (void)name;
+    return NULL;
+}
+
+int mw_ext_use_module(const char *symbol, int comp_id) {
+    (void)symbol;
+    (void)comp_id;
+    return 0;
+}

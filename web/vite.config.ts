@@ -11,6 +11,8 @@ export default defineConfig({
     target: 'es2022',
     assetsInlineLimit: 0,
     chunkSizeWarningLimit: 1500,
+    // The screen of a machine, and the page that chooses one.
+    rollupOptions: { input: ['index.html', 'first.html'] },
   },
   worker: { format: 'es' },
 });

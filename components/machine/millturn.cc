@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // millturn: kinematics of a machine that mills and turns, with three linear joints X Y Z and one rotary A.
 // Type 0 (mill): joints are the axes X Y Z A. Type 1 (turn): joint 0 is Z, joint 1 is -Y, joint 2 is X, and A
-// is a spindle. Switched through motion.switchkins-type. `millturn.0.fpin` (s32) counts runs of the function
-// millturn.0.fdemo.
+// is a spindle. Switched through motion.switchkins-type. Pins kinstype.is-0 and is-1 (bit, out) tell which is
+// in force; `millturn.0.fpin` (s32) counts runs of the function millturn.0.fdemo.
 #include <atomic>
 
 #include "hal/api/kinematics.h"
@@ -13,11 +13,9 @@ using namespace sdk;
 
 struct Millturn {
     Out<std::int32_t> fpin;
+    Out<bool> is_type[2];  ///< of the first instance
 
-    void declare(Declare &d) noexcept {
-        d.pin(fpin, "fpin");
-        d.function<&Millturn::demo>(this, "fdemo");
-    }
+    void declare(Declare &d) noexcept;
     void demo() noexcept { fpin = next_count(fpin); }
 };
 
@@ -28,8 +26,23 @@ namespace {
 enum MillturnType { MILL = 0, TURN = 1 };
 // Written by the servo thread when motion switches, read by the planner's as well.
 std::atomic<int> current_type{MILL};
+mw::components::Millturn *first_instance = nullptr;
 
 }  // namespace
+
+void mw::components::Millturn::declare(Declare &d) noexcept {
+    d.pin(fpin, "fpin");
+    d.function<&Millturn::demo>(this, "fdemo");
+    if (d.index() > 0) {
+        return;
+    }
+    Declare types(d.comp_id(), "kinstype", 0);
+    types.pin(is_type[MILL], "is-0", true);
+    types.pin(is_type[TURN], "is-1", false);
+    if (d.keep(types.status())) {
+        first_instance = this;
+    }
+}
 
 extern "C" {
 
@@ -76,6 +89,10 @@ int kinematicsSwitch(int switchkins_type) {
         return -1;
     }
     current_type = switchkins_type;
+    if (first_instance != nullptr) {
+        first_instance->is_type[MILL] = switchkins_type == MILL;
+        first_instance->is_type[TURN] = switchkins_type == TURN;
+    }
     return 0;
 }
 

@@ -2,7 +2,7 @@
 // Kinematics of hexapods (kins/hexapod.hh), switchable to identity. Beside those of the model, pins (out):
 // genhexkins.last-iterations and max-iterations of the forward side, fwd-kins-fail when it found nothing,
 // correction.N of the struts; (in) genhexkins.x to c: where the forward side looks first when the last pose
-// leads nowhere.
+// leads nowhere; skgui.x to c: where the platform is, whatever type is in force, for screens that draw it.
 #include "components/motion/iterations.hh"
 #include "components/motion/switchable.hh"
 #include "kins/hexapod.hh"
@@ -17,11 +17,28 @@ struct HexapodPins {
     hal_float_t *guess[6];
     hal_float_t *correction[Hexapod::STRUTS];
     hal_bit_t *isFailed;
+    hal_float_t *shown[6];
 };
 
 struct LiveHexapod {
     mw::components::IteratingModel<Hexapod> iterating;
     HexapodPins *pins = nullptr;
+
+    void show(const Pose &pose) const noexcept {
+        for (int i = 0; i < 6; ++i) {
+            *pins->shown[i] = pose[i];
+        }
+    }
+    /// Where the platform is while another type is in force: of the servo thread.
+    void watch(const double *joints) const noexcept {
+        Pose pose;
+        for (int i = 0; i < 6; ++i) {
+            pose[i] = *pins->shown[i];
+        }
+        if (isAnswered(iterating.model().forward(joints, pose))) {
+            show(pose);
+        }
+    }
 
     /// Of the servo thread only; the planner asks the other way.
     Status forward(const double *joints, Pose &pose) const noexcept {
@@ -40,6 +57,7 @@ struct LiveHexapod {
             for (std::size_t i = 0; i < Hexapod::STRUTS; ++i) {
                 *pins->correction[i] = corrections[i];
             }
+            show(pose);
         }
         return status;
     }
@@ -62,6 +80,9 @@ int declare_model(int comp_id, const char *) {
         status = status < 0 ? status
                             : hal_pin_float_newf(HAL_OUT, &live.pins->correction[i], comp_id,
                                                  "genhexkins.correction.%d", i);
+        status = status < 0
+                     ? status
+                     : hal_pin_float_newf(HAL_IN, &live.pins->shown[i], comp_id, "skgui.%c", "xyzabc"[i]);
     }
     return status < 0 ? status : live.iterating.declare(comp_id, "genhexkins");
 }

@@ -98,11 +98,14 @@ int model_side(const Model &model, const geom::Pose &pose) noexcept {
 
 /// Says that joints are not axes, and that no call leaves anything behind: the planner may call these
 /// functions while the servo thread does.
-#define MW_KINEMATICS_PURE                                                                                   \
+#define MW_KINEMATICS_PURE MW_KINEMATICS_PURE_IF(true)
+
+/// The same where that is known after loading only.
+#define MW_KINEMATICS_PURE_IF(condition)                                                                     \
     extern "C" KINEMATICS_TYPE kinematicsType(void) {                                                        \
         return KINEMATICS_BOTH;                                                                              \
     }                                                                                                        \
     extern "C" RTAPI_EXPORT int mw_kinematics_is_pure(void) {                                                \
-        return 1;                                                                                            \
+        return (condition) ? 1 : 0;                                                                          \
     }                                                                                                        \
     static_assert(true)

@@ -13,6 +13,7 @@
 #include "motion/core/path_planner.hh"
 #include "motion/rt/module_homing.hh"
 #include "motion/rt/module_kinematics.hh"
+#include "motion/rt/module_planner.hh"
 #include "motion/rt/pins.hh"
 
 using namespace mw;
@@ -49,6 +50,8 @@ struct Module {
     motion::ModuleKinematics kinematics;
     motion::ModuleHoming homing;
     bool isHomingForeign = false;  ///< a module of a user homes
+    motion::ModulePlanner speeds;
+    bool areSpeedsForeign = false;  ///< a module of a user chooses speeds
     motion::PathLink *link = nullptr;
     motion::Inputs in;
     motion::Outputs out;
@@ -66,8 +69,10 @@ alignas(motion::Controller) unsigned char controller_memory[sizeof(motion::Contr
 alignas(motion::PathPlanner) unsigned char planner_memory[sizeof(motion::PathPlanner)];
 
 void handle_commands(void *, long) {
-    module.pins->read(module.in);
-    module.controller->handle_commands(module.in);
+    if (module.channels->hasCommands()) {
+        module.pins->read(module.in);
+        module.controller->handle_commands(module.in);
+    }
 }
 
 void control(void *, long) {
@@ -161,6 +166,30 @@ int find_homing() {
     return module.homing.hold(module.component);
 }
 
+/// A module of a user that plans speeds, if one is loaded.
+int find_planner() {
+    const char *missing = nullptr;
+    const auto found = module.speeds.find(missing);
+    if (found == motion::ModulePlanner::Found::NONE) {
+        return 0;
+    }
+    if (found == motion::ModulePlanner::Found::SOME) {
+        rtapi_print_msg(RTAPI_MSG_ERR,
+                        "motmod: a loaded module has a function of a planner module, but not %s: see "
+                        "docs/extending/planner.md\n",
+                        missing);
+        return -2;  // ENOENT
+    }
+    const int started = module.speeds.start(module.component, static_cast<double>(servo_period_nsec) * 1e-9);
+    if (started < 0) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "motmod: the planner module cannot be used: mw_tp_init answers %d\n",
+                        started);
+        return started;
+    }
+    module.areSpeedsForeign = true;
+    return 0;
+}
+
 bool hasPin(const char *name) {
     hal_type_t type = HAL_BIT;
     hal_data_u *data = nullptr;
@@ -196,6 +225,21 @@ int make_pins() {
     return module.pins->declare(module.component, counts);
 }
 
+/// Unless a module that was loaded before has made it, with that period.
+int make_thread(const char *name, long period_ns, int uses_fp) {
+    const long long there = mw_ext_thread_period(name);
+    if (there == 0) {
+        return hal_create_thread(name, static_cast<unsigned long>(period_ns), uses_fp);
+    }
+    if (there != period_ns) {
+        rtapi_print_msg(RTAPI_MSG_ERR,
+                        "motmod: the thread %s that is there has a period of %lld ns, motion wants %ld ns\n",
+                        name, there, period_ns);
+        return FAILED;
+    }
+    return 0;
+}
+
 int make_functions() {
     const double period_s = static_cast<double>(servo_period_nsec) * 1e-9;
     module.link = new (link_memory) motion::PathLink();
@@ -204,18 +248,18 @@ int make_functions() {
                             module.isHomingForeign ? &module.homing : nullptr},
                            module.kinematics, *module.channels, *module.link);
     module.planner = new (planner_memory)
-        motion::PathPlanner({period_s, num_joints - num_extrajoints, num_spindles, num_dio, num_aio},
+        motion::PathPlanner({period_s, num_joints - num_extrajoints, num_spindles, num_dio, num_aio,
+                             module.areSpeedsForeign ? &module.speeds : nullptr},
                             module.kinematics, *module.channels, *module.link);
     int status = hal_export_funct("motion-command-handler", handle_commands, nullptr, 1, 0, module.component);
     if (status == 0) {
         status = hal_export_funct("motion-controller", control, nullptr, 1, 0, module.component);
     }
     if (status == 0 && base_period_nsec > 0) {
-        status =
-            hal_create_thread("base-thread", static_cast<unsigned long>(base_period_nsec), base_thread_fp);
+        status = make_thread("base-thread", base_period_nsec, base_thread_fp);
     }
     if (status == 0) {
-        status = hal_create_thread("servo-thread", static_cast<unsigned long>(servo_period_nsec), 1);
+        status = make_thread("servo-thread", servo_period_nsec, 1);
     }
     return status;
 }
@@ -259,6 +303,7 @@ int rtapi_app_main(void) {
     }
     int status = find_kinematics();
     status = status == 0 ? find_homing() : status;
+    status = status == 0 ? find_planner() : status;
     status = status == 0 ? make_channels() : status;
     status = status == 0 ? make_pins() : status;
     status = status == 0 ? make_functions() : status;

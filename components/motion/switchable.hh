@@ -1,43 +1,75 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Modules that can be switched between a model and identity, where each joint is an axis: type 0 is the model
-// and type 1 identity, or the other way round with sparm=identityfirst. coordinates= are the letters of the
-// joints.
+// Modules of several types of kinematics, switched by motion.switchkins-type: models, identity, where each
+// joint is an axis, and a user's own. Type 0 is the model, type 1 identity, type 2 the user's; with
+// sparm=identityfirst identity is type 0 and the model type 1. coordinates= are the letters of the joints.
 #pragma once
 
+#include <array>
 #include <atomic>
 
 #include "components/motion/model_pins.hh"
+#include "components/motion/user_type.hh"
 #include "kins/trivial.hh"
 
 namespace mw::components {
 
 /// `Live` has forward and inverse.
 template <class Live>
+class PartOf final : public TypePart {
+  public:
+    explicit PartOf(const Live &live) noexcept : live_(live) {}
+    kins::Status forward(const double *joints, kins::Pose &pose) const noexcept override {
+        return live_.forward(joints, pose);
+    }
+    kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept override {
+        return live_.inverse(pose, joints);
+    }
+    int side(const kins::Pose &pose) const noexcept override { return model_side(live_, pose); }
+    void watch(const double *joints) const noexcept override {
+        if constexpr (requires { live_.watch(joints); }) {
+            live_.watch(joints);
+        }
+    }
+
+  private:
+    const Live &live_;
+};
+
 class Switchable {
   public:
-    Switchable(const Live &live, int identity_type) noexcept : live_(live), identity_type_(identity_type) {}
+    /// Model, identity, the user's.
+    explicit Switchable(const TypePart &model) noexcept : types_{&model, &identity_, &user_} {}
+    /// Identity, and one or two models; none is a user's.
+    Switchable(const TypePart *model, const TypePart *second) noexcept : types_{&identity_, model, second} {}
+    Switchable(const Switchable &) = delete;
+    Switchable &operator=(const Switchable &) = delete;
 
     /// Reads the arguments of the load and makes the pins kinstype.is-N. 0 or a negated errno, with a message
     /// in the log. [while loading]
     int declare(int comp_id, const char *module, const char *letters, const char *sparm) noexcept {
-        if (!identity_.configure(letters)) {
+        if (!letters_.configure(letters)) {
             rtapi_print_msg(RTAPI_MSG_ERR, "%s: coordinates=%s: expected up to 16 of the letters XYZABCUVW\n",
                             module, letters);
             return -EINVAL;
         }
-        if (sparm != nullptr && sparm[0] != '\0') {
-            if (!isSame(sparm, "identityfirst")) {
-                rtapi_print_msg(RTAPI_MSG_ERR, "%s: sparm=%s: expected identityfirst\n", module, sparm);
-                return -EINVAL;
-            }
-            identity_type_ = 0;
+        const bool isUsers = types_[MAX_TYPES - 1] == &user_;
+        int status = isUsers ? user_.declare(comp_id, module, letters, sparm) : 0;
+        if (status < 0) {
+            return status;
         }
-        pins_ = static_cast<hal_bit_t **>(hal_malloc(TYPES * static_cast<long>(sizeof(hal_bit_t *))));
+        if (sparm != nullptr && isSame(sparm, "identityfirst")) {
+            types_[1] = types_[0] == &identity_ ? types_[1] : types_[0];
+            types_[0] = &identity_;
+        } else if (sparm != nullptr && sparm[0] != '\0' && !user_.isThere()) {
+            rtapi_print_msg(RTAPI_MSG_ERR, "%s: sparm=%s: expected identityfirst\n", module, sparm);
+            return -EINVAL;
+        }
+        pins_ = static_cast<hal_bit_t **>(hal_malloc(MAX_TYPES * static_cast<long>(sizeof(hal_bit_t *))));
         if (pins_ == nullptr) {
             return -ENOMEM;
         }
-        for (int type = 0; type < TYPES; ++type) {
-            const int status = hal_pin_bit_newf(HAL_OUT, &pins_[type], comp_id, "kinstype.is-%d", type);
+        for (int type = 0; type < count(); ++type) {
+            status = hal_pin_bit_newf(HAL_OUT, &pins_[type], comp_id, "kinstype.is-%d", type);
             if (status < 0) {
                 return status;
             }
@@ -47,26 +79,33 @@ class Switchable {
     }
     /// 0 when there is such a type. While nothing moves. [servo]
     int switch_to(int type) noexcept {
-        if (type < 0 || type >= OUR_TYPES) {
+        if (type < 0 || type >= count()) {
             return -1;
         }
         type_.store(type, std::memory_order_release);
-        for (int i = 0; i < TYPES; ++i) {
+        for (int i = 0; i < count(); ++i) {
             *pins_[i] = i == type;
         }
         return 0;
     }
     kins::Status forward(const double *joints, kins::Pose &pose) const noexcept {
-        return isIdentity() ? identity_.forward(joints, pose) : live_.forward(joints, pose);
+        for (int i = 0; i < count(); ++i) {
+            const TypePart *part = types_[static_cast<std::size_t>(i)];
+            if (part != &now()) {
+                part->watch(joints);
+            }
+        }
+        return now().forward(joints, pose);
     }
     kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept {
-        return isIdentity() ? identity_.inverse(pose, joints) : live_.inverse(pose, joints);
+        return now().inverse(pose, joints);
     }
-    int side(const kins::Pose &pose) const noexcept { return isIdentity() ? 0 : model_side(live_, pose); }
+    int side(const kins::Pose &pose) const noexcept { return now().side(pose); }
+    /// True when any thread may ask at any time.
+    bool isPure() const noexcept { return user_.isPure(); }
 
   private:
-    static constexpr int TYPES = 3;      ///< with a pin of their own
-    static constexpr int OUR_TYPES = 2;  ///< a third is a user's
+    static constexpr int MAX_TYPES = 3;
 
     static bool isSame(const char *a, const char *b) noexcept {
         while (*a != '\0' && *a == *b) {
@@ -75,32 +114,37 @@ class Switchable {
         }
         return *a == *b;
     }
+    int count() const noexcept { return types_[MAX_TYPES - 1] == nullptr ? MAX_TYPES - 1 : MAX_TYPES; }
     /// Pairs with switch_to: the planner's thread sees a type only whole.
-    bool isIdentity() const noexcept { return type_.load(std::memory_order_acquire) == identity_type_; }
+    const TypePart &now() const noexcept {
+        return *types_[static_cast<std::size_t>(type_.load(std::memory_order_acquire))];
+    }
 
-    const Live &live_;
-    kins::Trivial identity_;
+    kins::Trivial letters_;
+    PartOf<kins::Trivial> identity_{letters_};
+    UserType user_{letters_};
+    std::array<const TypePart *, MAX_TYPES> types_;
     std::atomic<int> type_{0};
-    int identity_type_;
     hal_bit_t **pins_ = nullptr;
 };
 
 }  // namespace mw::components
 
-/// Type 0 is the model.
+/// A module of model, identity and a user's type. `live` is an object with forward and inverse;
+/// `declare_model(comp_id, letters)` makes its pins and takes its letters, 0 or a negated errno.
 #define MW_SWITCHABLE_MODULE(live, name, default_letters, declare_model)                                     \
-    MW_SWITCHABLE_MODULE_FROM(live, name, default_letters, declare_model, 1)
+    static mw::components::PartOf model_part(live);                                                          \
+    static mw::components::Switchable switchable(model_part);                                                \
+    MW_SWITCHED_MODULE(name, default_letters, declare_model)
 
-/// The arguments, the functions and the loading of such a module. `live` is an object with forward and
-/// inverse; `declare_model(comp_id, letters)` makes its pins and takes its letters, 0 or a negated errno.
-#define MW_SWITCHABLE_MODULE_FROM(live, name, default_letters, declare_model, identity_type)                 \
+/// The arguments, the functions and the loading of a module with an object `switchable`.
+#define MW_SWITCHED_MODULE(name, default_letters, declare_model)                                             \
     static char *coordinates;                                                                                \
     RTAPI_MP_STRING(coordinates, "axis letters in the order of the joints");                                 \
     static char *sparm;                                                                                      \
     RTAPI_MP_STRING(sparm, "identityfirst: type 0 is identity");                                             \
-    static mw::components::Switchable switchable(live, identity_type);                                       \
     MW_KINEMATICS_FUNCTIONS(switchable);                                                                     \
-    MW_KINEMATICS_PURE;                                                                                      \
+    MW_KINEMATICS_PURE_IF(switchable.isPure());                                                              \
     extern "C" int kinematicsSwitchable(void) {                                                              \
         return 1;                                                                                            \
     }                                                                                                        \

@@ -1,12 +1,24 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Stands for motmod's built-in trajectory planner (src/traj), which existing start files load as a module of
-// its own.
+// its own; and says whether the module that is to choose speeds in its place is one.
 #include "hal/api/hal.h"
+#include "hal/api/millwright_ext.h"
 #include "hal/api/rtapi_app.h"
+
+static char *replaced_by = nullptr;
+RTAPI_MP_STRING(replaced_by, "the planner module that is loaded: refused where it lacks a function");
 
 static int component = -1;
 
 int rtapi_app_main(void) {
+    for (const char *name : {"mw_tp_init", "mw_tp_plan"}) {
+        if (replaced_by != nullptr && mw_ext_find_symbol(name) == nullptr) {
+            rtapi_print_msg(RTAPI_MSG_ERR,
+                            "%s is no planner module, it lacks %s: see docs/extending/planner.md\n",
+                            replaced_by, name);
+            return -8;  // ENOEXEC
+        }
+    }
     component = hal_init("tpmod");
     return component < 0 ? component : hal_ready(component);
 }

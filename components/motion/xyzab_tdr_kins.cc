@@ -10,4 +10,7 @@ static int declare_model(int comp_id, const char *) {
     return pinned.declare(comp_id, "xyzab_tdr_kins");
 }
 
-MW_SWITCHABLE_MODULE_FROM(pinned, "xyzab_tdr_kins", "XYZAB", declare_model, 0);
+static mw::components::PartOf tables(pinned);
+static mw::components::Switchable switchable(&tables, nullptr);
+
+MW_SWITCHED_MODULE("xyzab_tdr_kins", "XYZAB", declare_model);

@@ -10,6 +10,7 @@
 #include "app/progress_line.hh"
 #include "app/time_report.hh"
 #include "base/stop_signals.hh"
+#include "language/language.hh"
 #include "machine/ini_parameters.hh"
 #include "machine/loaded_config.hh"
 #include "machine/program_check.hh"
@@ -99,7 +100,7 @@ int command_check(const std::vector<std::string> &arguments) {
     }
     const auto parsed = words.line().parse(arguments);
     if (!parsed.has_value()) {
-        fmt::print(stderr, "millwright check: {}\n", parsed.error().str());
+        fmt::print(stderr, "millwright check: {}\n", language::shown(parsed.error().str()));
         return 2;
     }
     if (words.rest.size() != 1 || words.ini.empty()) {
@@ -109,7 +110,7 @@ int command_check(const std::vector<std::string> &arguments) {
     }
     words.program = words.rest[0];
     catch_stop_signals();
-    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", d.str()); });
+    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
     const auto drawable = words.plot.empty() ? Result<>{} : check_picture(words.plot);
     if (!drawable.has_value()) {
         sink.error(drawable.error());

@@ -22,6 +22,8 @@ int command_check(const std::vector<std::string> &words);
 int command_doctor(const std::vector<std::string> &words);
 /// The words of `linuxcnc_check_ini`.
 int command_check_ini(const std::vector<std::string> &words);
+/// Words: a folder, then answers of the form key=value.
+int command_setup(const std::vector<std::string> &words);
 int command_select(const std::vector<std::string> &words);
 /// The words of `linuxcnc_var`.
 int command_var(const std::vector<std::string> &words);

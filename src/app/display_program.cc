@@ -19,6 +19,7 @@
 #include "base/find_program.hh"
 #include "base/own_place.hh"
 #include "base/text.hh"
+#include "hal/core/instead.hh"
 
 namespace mw::app {
 namespace {
@@ -65,8 +66,9 @@ Result<std::vector<std::string>> DisplayProgram::words(const std::string &displa
     words.insert(words.end(), more.begin(), more.end());
     const std::string program = find_program(words[0], fs::path(ini).parent_path().string());
     if (program.empty()) {
+        const std::string instead = hal::instead_of(fs::path(words[0]).filename().string());
         return fail("[DISPLAY]DISPLAY names '" + words[0] + "', which is no program that can be found",
-                    {ini, 0, 0}, "--no-display keeps the machine up without one");
+                    {ini, 0, 0}, instead.empty() ? "--no-display keeps the machine up without one" : instead);
     }
     const bool isShell = fs::path(words[0]).filename() == "linuxcncrsh";
     words[0] = program;

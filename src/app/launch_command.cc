@@ -19,6 +19,7 @@
 #include "base/stop_signals.hh"
 #include "base/whole_path.hh"
 #include "hal/core/hal.hh"
+#include "language/language.hh"
 #include "machine/loaded_config.hh"
 #include "options/command_line.hh"
 #include "options/letters.hh"
@@ -39,7 +40,7 @@ constexpr const char *USAGE =
     "  -H FOLDER         HAL files are looked for there first; may come several times\n"
     "  -k                go on after errors in HAL files\n"
     "  -m \"NAME PARAMS\"  a homing module, instead of [EMCMOT]HOMEMOD\n"
-    "  -t \"NAME PARAMS\"  a planner module: only tpmod, as the planner is part of motmod\n"
+    "  -t \"NAME PARAMS\"  a planner module instead of [TRAJ]TPMOD\n"
     "  -d, -v            say more\n"
     "  -r                taken for scripts: output is never redirected\n"
     "  -h                this text\n"
@@ -95,11 +96,7 @@ struct LaunchWords {
         case 'k': settings.options.isKeptGoing = true; break;
         case 'm': settings.options.homing_module = option.value; break;
         case 'H': settings.options.hal_folders.push_back(whole_path(option.value)); break;
-        case 't':
-            if (option.value != "tpmod") {
-                return fail("-t " + option.value + ": the planner is part of motmod and cannot be exchanged");
-            }
-            break;
+        case 't': settings.options.planner_module = option.value; break;
         default: break;
         }
         return {};
@@ -188,24 +185,25 @@ int command_launch(const std::vector<std::string> &arguments) {
     LaunchWords words;
     const auto parsed = words.parse(arguments);
     if (words.isHelpAsked) {
-        fmt::print("{}", USAGE);
+        fmt::print("{}", language::shown(USAGE));
         return 0;
     }
     const bool isNoneNamed = words.settings.ini.empty() && !words.isLastAsked;
     if (parsed.has_value() && isNoneNamed && ::isatty(STDIN_FILENO) != 0 && ::isatty(STDOUT_FILENO) != 0) {
         const auto chosen = select_configuration();
         if (!chosen.has_value() || chosen->empty()) {
-            fmt::print(stderr, "{}", chosen.has_value() ? "" : "linuxcnc: " + chosen.error().str() + "\n");
+            fmt::print(stderr, "{}",
+                       chosen.has_value() ? "" : "linuxcnc: " + language::shown(chosen.error().str()) + "\n");
             return chosen.has_value() ? 0 : 1;
         }
         words.settings.ini = *chosen;
     } else if (!parsed.has_value() || isNoneNamed) {
         const std::string what = parsed.has_value() ? "name the INI file of a machine" : parsed.error().str();
-        fmt::print(stderr, "linuxcnc: {}\n{}", what, USAGE);
+        fmt::print(stderr, "linuxcnc: {}\n{}", language::shown(what), language::shown(USAGE));
         return 2;
     }
     catch_stop_signals();
-    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", d.str()); });
+    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
     return launch(words, sink);
 }
 

@@ -10,6 +10,7 @@
 #include "base/stop_signals.hh"
 #include "base/text.hh"
 #include "base/whole_path.hh"
+#include "client/shown_message.hh"
 #include "hal/core/hal.hh"
 
 namespace mw::app {
@@ -205,7 +206,7 @@ void MachineStart::tell_messages() {
     while (const auto message = machine_->client().next_message(Reading::LOOKS_ON)) {
         // What (print,...) says is the program's output, which scripts read.
         const bool isOutput = message->kind == msgs::MessageKind::OPERATOR_TEXT;
-        fmt::print(isOutput ? stdout : stderr, "{}\n", printable(message->text));
+        fmt::print(isOutput ? stdout : stderr, "{}\n", printable(client::shown_message(*message)));
         std::fflush(stdout);
     }
 }

@@ -7,6 +7,7 @@
 #include "app/commands.hh"
 #include "base/stop_signals.hh"
 #include "hal/core/hal.hh"
+#include "language/language.hh"
 #include "nml/bridge/bridge.hh"
 #include "nml/config/config_file.hh"
 #include "nml/net/server.hh"
@@ -134,11 +135,11 @@ int command_nml(const std::vector<std::string> &arguments) {
         return 0;
     }
     if (const auto parsed = words.parse(arguments); !parsed.has_value()) {
-        fmt::print(stderr, "millwright nml: {}\n", parsed.error().str());
+        fmt::print(stderr, "millwright nml: {}\n", language::shown(parsed.error().str()));
         return 2;
     }
     catch_stop_signals();
-    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", d.str()); });
+    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
     const auto config = nml::load_config(words.file, sink);
     if (!config.has_value()) {
         return 1;

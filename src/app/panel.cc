@@ -12,6 +12,8 @@
 
 #include "base/stop_signals.hh"
 #include "base/text.hh"
+#include "client/shown_message.hh"
+#include "language/language.hh"
 
 namespace mw::app {
 namespace {
@@ -44,7 +46,7 @@ bool Panel::confirm(const std::string &question) {
     if (!keyboard_.has_value()) {
         return false;
     }
-    fmt::print(stderr, "{} [y/n] ", question);
+    fmt::print(stderr, "{} [y/n] ", language::shown(question));
     std::optional<char> key;
     while (stop_signal == 0 && machine_.health()) {
         machine_.cycle();
@@ -64,7 +66,8 @@ void Panel::begin_program(int lines) {
     isRunning_ = true;
     stops_told_ = status().task.stops;
     if (attendance_ == Attendance::TERMINAL) {
-        fmt::print(stderr, "keys: h or space hold, r resume, a abort, t the tool is changed\n");
+        fmt::print(stderr, "{}",
+                   language::shown("keys: h or space hold, r resume, a abort, t the tool is changed\n"));
     }
 }
 
@@ -166,7 +169,7 @@ bool Panel::isWaitingForPerson() const {
 void Panel::show(const client::Client::Message &message) {
     clear_line();
     const bool isError = message.kind == msgs::MessageKind::OPERATOR_ERROR;
-    fmt::print(isError ? stderr : stdout, "{}\n", printable(message.text));
+    fmt::print(isError ? stderr : stdout, "{}\n", printable(client::shown_message(message)));
     if (attendance_ != Attendance::SIMULATED) {
         std::fflush(stdout);  // someone may be asked for something
     }

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "language/language.hh"
+
 namespace mw::app {
 
 ProgressLine::ProgressLine() : isTerminal_(::isatty(STDERR_FILENO) == 1) {}
@@ -23,8 +25,9 @@ void ProgressLine::show(const gcode::PreviewProgress &now) {
     const double share = now.bytes_in_all > 0
                              ? 100.0 * static_cast<double>(now.bytes) / static_cast<double>(now.bytes_in_all)
                              : 0;
-    fmt::print(stderr, "\rreading: {:3.0f} % of the file, {} blocks, {:.0f} s\033[K", share, now.blocks,
-               seconds);
+    const std::string text =
+        fmt::format("reading: {:3.0f} % of the file, {} blocks, {:.0f} s", share, now.blocks, seconds);
+    fmt::print(stderr, "\r{}\033[K", language::shown(text));
 }
 
 void ProgressLine::clear() {

@@ -10,7 +10,9 @@
 #include "app/commands.hh"
 #include "base/text.hh"
 #include "client/client.hh"
+#include "client/shown_message.hh"
 #include "hal/core/hal.hh"
+#include "language/language.hh"
 #include "options/command_line.hh"
 
 namespace mw::app {
@@ -50,12 +52,14 @@ class Recovering {
         static_cast<void>(client_.read_status());
         const msgs::RecoveryStatus &offer = client_.status().recovery;
         if (offer.program.empty()) {
-            fmt::print("no program was cut short\n");
+            fmt::print("{}", language::shown("no program was cut short\n"));
             return {};
         }
-        fmt::print("{} was cut short at line {}\n", printable(offer.program.str()), offer.line);
+        fmt::print("{}", language::shown(fmt::format("{} was cut short at line {}\n",
+                                                     printable(offer.program.str()), offer.line)));
         if (!offer.isOffered) {
-            fmt::print("it cannot be gone on with there: {}\n", printable(offer.refusal.str()));
+            fmt::print("{}", language::shown(fmt::format("it cannot be gone on with there: {}\n",
+                                                         printable(offer.refusal.str()))));
         }
         if (words.isForgetting) {
             return ask(msgs::ForgetRecovery{});
@@ -100,7 +104,7 @@ class Recovering {
             return fail(client_.outcome(*posted).reason);
         }
         while (const auto message = client_.next_message(client::Viewer::Reading::LOOKS_ON)) {
-            fmt::print("{}\n", printable(message->text));
+            fmt::print("{}\n", printable(client::shown_message(*message)));
         }
         if (!isAgreed && !hasAgreed()) {
             const auto dropped = ask(msgs::AbortAll{});
@@ -113,7 +117,7 @@ class Recovering {
         if (::isatty(STDIN_FILENO) == 0) {
             return false;
         }
-        fmt::print("make this way and go on? [y/N] ");
+        fmt::print("{}", language::shown("make this way and go on? [y/N] "));
         std::fflush(stdout);
         std::string answer;
         return std::getline(std::cin, answer) && (answer == "y" || answer == "Y");
@@ -135,14 +139,14 @@ int command_recover(const std::vector<std::string> &arguments) {
         parsed = fail("recover takes no words", {}, "millwright recover --help");
     }
     if (!parsed.has_value()) {
-        fmt::print(stderr, "millwright recover: {}\n", parsed.error().str());
+        fmt::print(stderr, "millwright recover: {}\n", language::shown(parsed.error().str()));
         return 2;
     }
     auto client = client::Client::connect(hal::default_instance());
     const auto done = client.has_value() ? Recovering(std::move(*client)).run(words)
                                          : Result<>(std::unexpected(client.error()));
     if (!done.has_value()) {
-        fmt::print(stderr, "millwright recover: {}\n", done.error().str());
+        fmt::print(stderr, "millwright recover: {}\n", language::shown(done.error().str()));
     }
     return done.has_value() ? 0 : 1;
 }

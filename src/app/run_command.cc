@@ -17,6 +17,7 @@
 #include "base/stop_signals.hh"
 #include "base/whole_path.hh"
 #include "hal/core/hal.hh"
+#include "language/language.hh"
 #include "machine/ini_parameters.hh"
 #include "machine/loaded_config.hh"
 #include "machine/machine.hh"
@@ -137,11 +138,12 @@ class Run {
 
     /// What needs to be in the machine's process.
     bool isForClients() {
-        const char *option = !words_.trace.empty()           ? "--trace"
-                             : !words_.plot.empty()          ? "--plot"
-                             : words_.isStrict               ? "--strict"
-                             : !words_.homing_module.empty() ? "--homemod"
-                                                             : nullptr;
+        const char *option = !words_.trace.empty()            ? "--trace"
+                             : !words_.plot.empty()           ? "--plot"
+                             : words_.isStrict                ? "--strict"
+                             : !words_.homing_module.empty()  ? "--homemod"
+                             : !words_.planner_module.empty() ? "--tpmod"
+                                                              : nullptr;
         if (option != nullptr) {
             sink_.error(
                 {fmt::format("{} needs a machine that is made for this program, and one is up already",
@@ -193,6 +195,7 @@ class Run {
         machine::MachineOptions options;
         options.isStrict = words_.isStrict;
         options.homing_module = words_.homing_module;
+        options.planner_module = words_.planner_module;
         options.isToolTableTold = true;
         return words_.isRealtime ? machine::make_realtime_machine(parts, options)
                                  : machine::make_virtual_machine(parts, options);
@@ -257,11 +260,11 @@ int command_run(const std::vector<std::string> &arguments) {
     }
     const auto words = parse_run(arguments);
     if (!words.has_value()) {
-        fmt::print(stderr, "millwright run: {}\n", words.error().str());
+        fmt::print(stderr, "millwright run: {}\n", language::shown(words.error().str()));
         return 2;
     }
     catch_stop_signals();
-    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", d.str()); });
+    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
     auto loaded = machine::LoadedConfig::load(words->ini, sink);
     return loaded == nullptr ? 1 : Run(*words, *loaded, sink).run();
 }

@@ -43,6 +43,8 @@ options::CommandLine run_line(RunWords &run, options::Words &rest) {
     line.flag("--no-check", "start even a program that is known to fail", run.isChecked, false);
     line.text("--homemod", "NAME", "a homing module and its parameters, instead of [EMCMOT]HOMEMOD",
               run.homing_module);
+    line.text("--tpmod", "NAME", "a planner module and its parameters, instead of [TRAJ]TPMOD",
+              run.planner_module);
     line.flag("--strict", "unknown INI keys are errors", run.isStrict);
     line.rest(rest);
     line.footer("exit status: 0 the program ran to its end, 1 refused, failed or stopped, 2 wrong usage\n");

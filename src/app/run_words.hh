@@ -10,7 +10,7 @@
 namespace mw::app {
 
 struct RunWords {
-    std::string ini, program, trace, plot, homing_module;
+    std::string ini, program, trace, plot, homing_module, planner_module;
     bool isRealtime = false, isStrict = false, isEstimated = true, isChecked = true, isConfirmed = false;
     ProgramSwitches switches;
     double patience_s = 60.0;

@@ -12,8 +12,11 @@
 
 #include "app/commands.hh"
 #include "app/configurations.hh"
+#include "app/first_steps.hh"
+#include "app/ui_browser.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
+#include "language/language.hh"
 #include "options/command_line.hh"
 
 namespace mw::app {
@@ -74,7 +77,8 @@ std::optional<Choice> ask(const std::vector<Choice> &choices, const std::string 
         if (found.size() == 1) {
             return found[0];
         }
-        fmt::print("{}\n", found.empty() ? "there is no such one" : "several have that in their name:");
+        fmt::print("{}\n", language::shown(found.empty() ? "there is no such one"
+                                                         : "several have that in their name:"));
         for (const Choice &choice : found) {
             fmt::print("  {}\n", printable(choice.configuration->name));
         }
@@ -90,7 +94,7 @@ Result<std::string> select_configuration() {
         return fail("no configuration is found", {}, "LINUXCNC_AUX_CONFIGS names folders of configurations");
     }
     const std::string last = last_configuration();
-    fmt::print("Machine configurations\n");
+    fmt::print("{}", language::shown("Machine configurations\n"));
     const auto choice = ask(show(groups, last), last);
     if (!choice.has_value()) {
         return std::string();
@@ -106,7 +110,8 @@ Result<std::string> select_configuration() {
 }
 
 int command_select(const std::vector<std::string> &arguments) {
-    bool isListed = false, isPrinted = false;
+    bool isListed = false, isPrinted = false, isInBrowser = false;
+    int port = SCREEN_PORT;
     options::Words rest;
     options::CommandLine line(
         "millwright select [options]",
@@ -114,6 +119,9 @@ int command_select(const std::vector<std::string> &arguments) {
         "`linuxcnc` does.\n");
     line.flag("--list", "print their paths and ask nothing", isListed);
     line.flag("--print", "print the path of the chosen one instead of starting it", isPrinted);
+    line.flag("--browser", "show them in a browser, with the wizard for a new machine", isInBrowser);
+    line.number("--port", "N", "with --browser: on 127.0.0.1:N, 0: on a free port; 8850 without it", port, 0,
+                65535);
     line.rest(rest);
     line.footer("Looked for in ~/millwright/configs, ~/linuxcnc/configs, the folders of "
                 "LINUXCNC_AUX_CONFIGS, that of\n"
@@ -138,9 +146,9 @@ int command_select(const std::vector<std::string> &arguments) {
         return 0;
     }
     catch_stop_signals();
-    const auto ini = select_configuration();
+    const auto ini = isInBrowser ? select_in_browser(port, true) : select_configuration();
     if (!ini.has_value()) {
-        fmt::print(stderr, "millwright select: {}\n", ini.error().str());
+        fmt::print(stderr, "millwright select: {}\n", language::shown(ini.error().str()));
         return 1;
     }
     if (ini->empty()) {

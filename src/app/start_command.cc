@@ -8,6 +8,7 @@
 #include "app/commands.hh"
 #include "app/machine_start.hh"
 #include "base/stop_signals.hh"
+#include "language/language.hh"
 #include "machine/loaded_config.hh"
 #include "options/command_line.hh"
 
@@ -15,7 +16,7 @@ namespace mw::app {
 namespace {
 
 struct StartWords {
-    std::string ini, homing_module;
+    std::string ini, homing_module, planner_module;
     bool isDisplayed = true, isStrict = false;
     options::Words rest;
 
@@ -33,6 +34,8 @@ struct StartWords {
         line.flag("--no-display", "start no display: up until a signal comes", isDisplayed, false);
         line.text("--homemod", "NAME", "a homing module and its parameters, instead of [EMCMOT]HOMEMOD",
                   homing_module);
+        line.text("--tpmod", "NAME", "a planner module and its parameters, instead of [TRAJ]TPMOD",
+                  planner_module);
         line.flag("--strict", "unknown INI keys are errors", isStrict);
         line.rest(rest);
         line.footer(
@@ -58,11 +61,11 @@ int command_start(const std::vector<std::string> &arguments) {
         return 0;
     }
     if (const auto parsed = words.parse(arguments); !parsed.has_value()) {
-        fmt::print(stderr, "millwright start: {}\n", parsed.error().str());
+        fmt::print(stderr, "millwright start: {}\n", language::shown(parsed.error().str()));
         return 2;
     }
     catch_stop_signals();
-    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", d.str()); });
+    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
     auto loaded = machine::LoadedConfig::load(words.ini, sink);
     if (loaded == nullptr) {
         return 1;
@@ -72,6 +75,7 @@ int command_start(const std::vector<std::string> &arguments) {
     settings.isDisplayed = words.isDisplayed;
     settings.options.isStrict = words.isStrict;
     settings.options.homing_module = words.homing_module;
+    settings.options.planner_module = words.planner_module;
     return MachineStart(settings, *loaded, sink).run();
 }
 

@@ -12,6 +12,7 @@
 #include "base/stop_signals.hh"
 #include "base/text.hh"
 #include "hal/core/hal.hh"
+#include "language/language.hh"
 
 namespace mw::app {
 namespace {
@@ -145,12 +146,13 @@ int serve_text(TextServerWords words, const std::vector<std::string> &arguments,
         return 0;
     }
     if (const auto parsed = words.parse(arguments); !parsed.has_value()) {
-        fmt::print(stderr, "{}: {}\n", words.program, parsed.error().str());
+        fmt::print(stderr, "{}: {}\n", words.program, language::shown(parsed.error().str()));
         return 2;
     }
     catch_stop_signals();
-    diag::Sink sink(
-        [&words](const diag::Diagnostic &d) { fmt::print(stderr, "{}: {}\n", words.program, d.str()); });
+    diag::Sink sink([&words](const diag::Diagnostic &d) {
+        fmt::print(stderr, "{}: {}\n", words.program, language::shown(d.str()));
+    });
     const auto ended = serve(words, make, sink);
     if (!ended.has_value()) {
         sink.failure(ended.error());

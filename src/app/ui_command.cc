@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // millwright ui: serves a machine that is up to browsers.
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -12,8 +8,10 @@
 #include <fmt/format.h>
 
 #include "app/commands.hh"
+#include "app/first_steps.hh"
 #include "app/machine_access.hh"
 #include "app/side_programs.hh"
+#include "app/ui_browser.hh"
 #include "app/ui_dialogs.hh"
 #include "app/ui_door.hh"
 #include "app/ui_facts.hh"
@@ -25,6 +23,7 @@
 #include "base/whole_path.hh"
 #include "hal/core/hal.hh"
 #include "hal/host/host_client.hh"
+#include "language/language.hh"
 #include "options/command_line.hh"
 #include "ui/web/api.hh"
 #include "ui/web/server.hh"
@@ -32,13 +31,12 @@
 namespace mw::app {
 namespace {
 
-constexpr int PRESET_PORT = 8850;
 /// Outcomes are looked for so often while a screen is open, and the machine otherwise.
 constexpr auto TICK = std::chrono::milliseconds(10), IDLE_TICK = std::chrono::milliseconds(100);
 
 struct UiWords {
     std::string ini, screen;
-    int port = PRESET_PORT;
+    int port = SCREEN_PORT;
     bool isOpening = false, isDisplay = false;
     DoorWords door;
     options::Words rest;
@@ -81,19 +79,6 @@ struct UiWords {
     }
 };
 
-/// Installed, and in the build folder.
-std::string screen_folder(const std::string &given) {
-    const std::string here = program_folder();
-    std::error_code error;
-    for (const std::string &folder : {given, here + "/../share/millwright/web"}) {
-        if (!folder.empty()) {
-            const auto whole = std::filesystem::weakly_canonical(folder, error);
-            return error ? folder : whole.string();
-        }
-    }
-    return given;
-}
-
 /// A client of the machine that is up, if it is the one of this INI file.
 Result<client::Client> connect(const std::string &instance, const std::string &ini) {
     auto client = client::Client::connect(instance, client::Role::OPERATOR);
@@ -111,27 +96,6 @@ Result<client::Client> connect(const std::string &instance, const std::string &i
         return fail("the machine that is up was started from " + identity.ini.str() + ", not from " + ini);
     }
     return client;
-}
-
-/// Where there is a desktop and a screen to show: the process of what opens it, which goes its own way. 0:
-/// none.
-pid_t open_browser(const std::string &address, const std::string &folder) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(folder + "/index.html", error)) {
-        fmt::print(stderr, "no browser is opened: no screen is installed in {}\n", folder);
-        return 0;
-    }
-    if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) {
-        return 0;
-    }
-    std::string program = "xdg-open", words = address;
-    char *arguments[] = {program.data(), words.data(), nullptr};
-    pid_t pid = 0;
-    if (::posix_spawnp(&pid, program.c_str(), nullptr, nullptr, arguments, environ) != 0) {
-        fmt::print(stderr, "no xdg-open shows the screen: open {} in a browser\n", address);
-        return 0;
-    }
-    return pid;
 }
 
 std::int64_t now_ns() {
@@ -175,14 +139,16 @@ void run(ui::web::Server &server, const UiWords &words, const machine::LoadedCon
     const auto post = [&server](std::function<void()> act) { server.post(std::move(act)); };
     ui::web::Worker disk(post), hal_looks(post);
     ui::web::Api api(server, {disk, hal_looks}, std::move(setup), now_ns);
-    pid_t browser = words.isOpening ? open_browser(address, folder) : 0;
+    Browser browser;
+    if (words.isOpening && std::getenv(BROWSER_WAITS) == nullptr) {
+        browser.open(address, folder);
+    }
+    ui::web::go_first();
     while (stop_signal == 0) {
         server.run_for(api, api.count_screens() > 0 ? TICK : IDLE_TICK);
         api.tick();
         programs.step(now_ns(), sink);
-        if (browser > 0 && ::waitpid(browser, nullptr, WNOHANG) != 0) {
-            browser = 0;
-        }
+        browser.look();
     }
     programs.ask_to_end();
     disk.end();
@@ -215,9 +181,10 @@ int serve(const UiWords &words, const machine::LoadedConfig &loaded, diag::Sink 
         sink.error(server.error());
         return 1;
     }
-    fmt::print("screen of {}: http://127.0.0.1:{}/\n", loaded.machine.name, (*server)->port());
+    fmt::print("{}", language::shown(fmt::format("screen of {}: http://127.0.0.1:{}/\n", loaded.machine.name,
+                                                 (*server)->port())));
     if (door->has_value()) {
-        fmt::print("{}", door_text(**door, (*server)->remote_port(), secrets));
+        fmt::print("{}", language::shown(door_text(**door, (*server)->remote_port(), secrets)));
     }
     std::fflush(stdout);
     run(**server, words, loaded, std::move(setup), sink);
@@ -233,11 +200,11 @@ int command_ui(const std::vector<std::string> &arguments) {
         return 0;
     }
     if (const auto parsed = words.parse(arguments); !parsed.has_value()) {
-        fmt::print(stderr, "millwright ui: {}\n", parsed.error().str());
+        fmt::print(stderr, "millwright ui: {}\n", language::shown(parsed.error().str()));
         return 2;
     }
     catch_stop_signals();
-    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", d.str()); });
+    diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
     const auto loaded = machine::LoadedConfig::load(words.ini, sink);
     return loaded == nullptr ? 1 : serve(words, *loaded, sink);
 }

@@ -9,6 +9,7 @@
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
 #include "gcode/commands.hh"
+#include "hal/core/instead.hh"
 #include "hal_tools/view/commands.hh"
 
 namespace {
@@ -30,6 +31,7 @@ constexpr const char *USAGE =
     "the "
     "start\n"
     "  select                               choose a configuration and start it\n"
+    "  setup FOLDER                         write the configuration of a new machine, and try it\n"
     "  check PROGRAM.ngc --ini MACHINE.ini  a program against a machine's limits, and the time it takes\n"
     "  format PROGRAM.ngc ...               write programs in one form, without a change of meaning\n"
     "  explain LINE                         say in words what a line of G-code does\n"
@@ -78,6 +80,9 @@ int main(int argc, char **argv) {
     if (words[0] == "select") {
         return mw::app::command_select(rest);
     }
+    if (words[0] == "setup") {
+        return mw::app::command_setup(rest);
+    }
     if (words[0] == "check") {
         return mw::app::command_check(rest);
     }
@@ -91,6 +96,8 @@ int main(int argc, char **argv) {
         mw::catch_stop_signals();
         return mw::hal::view::command_hal(rest, mw::stop_signal);
     }
-    std::fprintf(stderr, "millwright: unknown command '%s'; see millwright --help\n", words[0].c_str());
+    const std::string instead = mw::hal::instead_of(words[0]);
+    std::fprintf(stderr, "millwright: unknown command '%s'; %s\n", words[0].c_str(),
+                 instead.empty() ? "see millwright --help" : instead.c_str());
     return 2;
 }

@@ -12,6 +12,7 @@
 
 #include "base/find_program.hh"
 #include "base/text.hh"
+#include "hal/core/instead.hh"
 #include "hal_lang/lang/session.hh"
 
 namespace mw::doctor {
@@ -144,13 +145,13 @@ void examine_programs(const IniFile &ini, diag::Sink &sink) {
     if (!screen.empty() && !isOwnDisplay(screen) && find_program(screen, folder_of(ini)).empty()) {
         sink.warning("[DISPLAY]DISPLAY: there is no program '" + screen +
                          "': only `start --no-display` brings the machine up",
-                     display->place,
-                     "screens of LinuxCNC are run by script/screens; ours is DISPLAY = millwright");
+                     display->place, hal::instead_of(screen));
     }
     for (const IniEntry *entry : ini.find_all("APPLICATIONS", "APP")) {
         const std::string name = first_word(*entry);
         if (!name.empty() && find_program(name, folder_of(ini)).empty()) {
-            sink.warning("[APPLICATIONS]APP: there is no program '" + name + '\'', entry->place);
+            sink.warning("[APPLICATIONS]APP: there is no program '" + name + '\'', entry->place,
+                         hal::instead_of(name));
         }
     }
     for (const IniEntry &entry : ini.entries()) {

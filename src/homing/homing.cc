@@ -7,21 +7,19 @@
 
 namespace mw::homing {
 
-bool Homing::isActive() const noexcept {
-    for (int j = 0; j < num_joints_; ++j) {
-        if (isHoming(j)) {
-            return true;
-        }
+void Homing::summarise() const noexcept {
+    Summary s;
+    for (int j = 0; j < MAX_JOINTS; ++j) {
+        const Joint &joint = at(j);
+        const bool isHere = j < num_joints_;
+        const bool isBusy = joint.state != State::IDLE || joint.isStopping || joint.isUnlockWanted;
+        s.isAnyHoming = s.isAnyHoming || (isHere && joint.state != State::IDLE);
+        s.isAnyBusy = s.isAnyBusy || (isHere && isBusy);
+        s.isQuiet = s.isQuiet && !isBusy && !joint.isIndexWanted;
+        s.homed |= joint.isHomed ? 1U << j : 0U;
     }
-    return sequence_ >= 0;
-}
-
-bool Homing::hasWork() const noexcept {
-    bool isOver = true;
-    for (int j = 0; j < num_joints_; ++j) {
-        isOver = isOver && !at(j).isStopping && !at(j).isUnlockWanted;
-    }
-    return !isOver || isActive();
+    s.isCurrent = true;
+    summary_ = s;
 }
 
 void Homing::begin(int joint) noexcept {

@@ -17,7 +17,10 @@ namespace mw::homing {
 class Homing final : public Module {
   public:
     void set_period(double period_s) noexcept { period_s_ = period_s; }
-    void set_num_joints(int count) noexcept override { num_joints_ = count; }
+    void set_num_joints(int count) noexcept override {
+        num_joints_ = count;
+        summary_.isCurrent = false;
+    }
     void configure(int joint, const Parameters &p) noexcept override { at(joint).parameters = p; }
     Parameters &parameters(int joint) noexcept { return at(joint).parameters; }
     const Parameters &parameters(int joint) const noexcept { return at(joint).parameters; }
@@ -32,8 +35,21 @@ class Homing final : public Module {
 
     bool isHoming(int joint) const noexcept override { return at(joint).state != State::IDLE; }
     bool isHomed(int joint) const noexcept override { return at(joint).isHomed; }
-    bool isActive() const noexcept override;
-    bool hasWork() const noexcept override;
+    bool isActive() const noexcept override { return sequence_ >= 0 || summary().isAnyHoming; }
+    bool hasWork() const noexcept override { return sequence_ >= 0 || summary().isAnyBusy; }
+    struct Summary {
+        bool isCurrent = false;
+        bool isAnyHoming = false, isAnyBusy = false;
+        bool isQuiet = true;      ///< nothing is asked of any joint and no step shown
+        std::uint32_t homed = 0;  ///< bit per joint
+    };
+    /// Of all joints; made anew after any of them may have changed.
+    const Summary &summary() const noexcept {
+        if (!summary_.isCurrent) {
+            summarise();
+        }
+        return summary_;
+    }
     State state(int joint) const noexcept { return at(joint).state; }
     int step_number(int joint) const noexcept override { return static_cast<int>(state(joint)); }
     bool isIndexWanted(int joint) const noexcept override { return at(joint).isIndexWanted; }
@@ -64,7 +80,12 @@ class Homing final : public Module {
     struct Leg {
         double velocity = 0, most_velocity = 0, acceleration = 0, travel = 0;
     };
-    Joint &at(int joint) noexcept { return joints_[static_cast<std::size_t>(joint)]; }
+    void summarise() const noexcept;
+
+    Joint &at(int joint) noexcept {
+        summary_.isCurrent = false;
+        return joints_[static_cast<std::size_t>(joint)];
+    }
     const Joint &at(int joint) const noexcept { return joints_[static_cast<std::size_t>(joint)]; }
 
     void begin(int joint) noexcept;
@@ -87,6 +108,7 @@ class Homing final : public Module {
     void go_home(int joint, const JointInput *inputs, JointCommand &out) noexcept;
 
     std::array<Joint, MAX_JOINTS> joints_{};
+    mutable Summary summary_;
     int num_joints_ = 0;
     double period_s_ = 1e-3;
     int sequence_ = -1;  ///< being homed by "all", -1: none

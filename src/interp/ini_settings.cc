@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "base/own_place.hh"
 #include "base/text.hh"
 #include "interp/ini_keys.hh"
 
@@ -70,6 +71,9 @@ Settings settings_from_ini(config::IniReader &ini) {
     out.subroutine_path.push_back(out.ini_folder);
     add_folders(ini, prefix, out.subroutine_path);
     add_folders(ini, ini_key("RS274NGC", "SUBROUTINE_PATH"), out.subroutine_path);
+    // Probing programs of ours, in a build folder and installed: those of a user go before.
+    out.subroutine_path.push_back(program_folder() + "/../share/probing");
+    out.subroutine_path.push_back(program_folder() + "/../share/millwright/nc_files/probing");
     add_folders(ini, prefix, out.user_m_path);
     add_folders(ini, ini_key("RS274NGC", "USER_M_PATH"), out.user_m_path);
     out.startup_code = ini.text(ini_key("RS274NGC", "RS274NGC_STARTUP_CODE"));

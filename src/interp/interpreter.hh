@@ -56,7 +56,7 @@ struct CenterArcTolerance {
 
 struct Settings {
     std::vector<std::string>
-        subroutine_path;  ///< the INI file's folder, [DISPLAY]PROGRAM_PREFIX and [RS274NGC]SUBROUTINE_PATH
+        subroutine_path;  ///< the INI file's folder, [DISPLAY]PROGRAM_PREFIX, [RS274NGC]SUBROUTINE_PATH, ours
     std::vector<std::string> user_m_path;  ///< [RS274NGC]USER_M_PATH and PROGRAM_PREFIX: where M100..M199 are
     bool isUserCodeAssumed = false;        ///< M100..M199 need no program: for previews elsewhere
     std::string startup_code;              ///< [RS274NGC]RS274NGC_STARTUP_CODE

@@ -83,16 +83,16 @@ class RealtimePrograms final : public lang::ProgramHost {
     lang::SystemProgramHost system_;
 };
 
-/// Loads a homing module of a user, and asks homemod whether it is one.
-Result<> load_homing(lang::Session &session, const HalStep &module) {
+/// Loads a module of a user in the place of `ours` (homemod, tpmod), and asks ours whether it is one.
+Result<> load_instead(lang::Session &session, const std::string &ours, const HalStep &module) {
     const std::vector<std::string> words = split_words(module.text);
-    if (words.empty() || words[0] == "homemod") {
+    if (words.empty() || words[0] == ours) {
         return {};
     }
     const std::string place = module.place.str();
     Result<> done = session.run_text("loadrt " + module.text, place);
-    done = done ? session.run_text("loadrt homemod replaced_by=" + words[0], place) : done;
-    return done ? session.run_text("unloadrt homemod", place) : done;
+    done = done ? session.run_text("loadrt " + ours + " replaced_by=" + words[0], place) : done;
+    return done ? session.run_text("unloadrt " + ours, place) : done;
 }
 
 Result<> run_file_step(lang::Session &session, const HalStep &step) {
@@ -186,9 +186,15 @@ Result<> HalSetup::run() {
     lang::ProgramHost &program_host = isVirtual ? static_cast<lang::ProgramHost &>(parts) : programs;
     lang::Session session(host_, program_host, output, session_options);
     const int errors_before = parts_.sink.count_errors();
-    const HalStep asked{HalStep::Kind::COMMAND, options_.homing_module, {"--homemod", 0, 0}};
-    Result<> done =
-        load_homing(session, options_.homing_module.empty() ? parts_.config.homing_module : asked);
+    const auto chosen = [](const std::string &asked, const char *option, const HalStep &of_file) {
+        return asked.empty() ? of_file : HalStep{HalStep::Kind::COMMAND, asked, {option, 0, 0}};
+    };
+    Result<> done = load_instead(session, "homemod",
+                                 chosen(options_.homing_module, "--homemod", parts_.config.homing_module));
+    if (done) {
+        done = load_instead(session, "tpmod",
+                            chosen(options_.planner_module, "--tpmod", parts_.config.planner_module));
+    }
     if (done) {
         done = parts_.config.two_pass.empty()
                    ? run_steps(session, parts_.config.hal_steps, parts_.sink)

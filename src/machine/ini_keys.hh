@@ -41,7 +41,10 @@ inline constexpr auto INI_KEYS = std::to_array<config::IniKey>({
     config::ini_whole("TRAJ", "SMOOTH_PLANNER", "", 1, {0, 1}, "1: G64 R may ask for jerk limits"),
     config::ini_elsewhere("TRAJ", "AXES", "old files; COORDINATES tells it"),
     config::ini_elsewhere("TRAJ", "CYCLE_TIME", "planners with a cycle of their own"),
-    config::ini_elsewhere("TRAJ", "HOME", "displays; joints are homed by their own keys"),
+    config::ini_text(
+        "TRAJ", "HOME",
+        "where forward kinematics that iterate look first, a number for each of COORDINATES [units, "
+        "degrees]; joints are homed by their own keys"),
     config::ini_elsewhere("TRAJ", "DEFAULT_LINEAR_VELOCITY", why::DEFAULTS),
     config::ini_elsewhere("TRAJ", "DEFAULT_LINEAR_ACCELERATION", why::DEFAULTS),
     config::ini_elsewhere("TRAJ", "DEFAULT_ANGULAR_VELOCITY", why::DEFAULTS),
@@ -50,8 +53,9 @@ inline constexpr auto INI_KEYS = std::to_array<config::IniKey>({
     config::ini_elsewhere("TRAJ", "DEFAULT_ACCELERATION", why::DEFAULTS),
     config::ini_elsewhere("TRAJ", "MAX_VELOCITY", "old files; today MAX_LINEAR_VELOCITY"),
     config::ini_elsewhere("TRAJ", "MAX_ACCELERATION", "old files; today MAX_LINEAR_ACCELERATION"),
-    config::ini_without_effect("TRAJ", "TPMOD", "the planner is part of motmod and cannot be exchanged",
-                               "tpmod"),
+    config::ini_text("TRAJ", "TPMOD",
+                     "a module that chooses speeds along the path, and its parameters; tpmod: none "
+                     "(docs/extending/planner.md)"),
     config::ini_without_effect("TRAJ", "POSITION_FILE",
                                "joint positions are not kept over a restart: home the machine"),
     config::ini_without_effect("TRAJ", "ARC_BLEND_ENABLE", why::ARCS, "1"),

@@ -30,6 +30,7 @@ struct MachineOptions {
     bool isStrict = false;         ///< unknown INI keys are errors
     bool isLasting = false;        ///< it stays up for clients when a program has ended
     std::string homing_module;     ///< instead of [EMCMOT]HOMEMOD
+    std::string planner_module;    ///< instead of [TRAJ]TPMOD
     bool isToolTableTold = false;  ///< whoever makes the machine has said what is wrong with the tool table
     std::string instance;          ///< HAL instance of a realtime machine; empty: the user's default
     /// Extra folders for HAL library files, before our own.

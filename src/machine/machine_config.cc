@@ -52,6 +52,27 @@ void read_coordinates(IniReader &ini, MachineConfig &machine) {
     }
 }
 
+/// [TRAJ]HOME: a number for each of COORDINATES.
+void read_first_place(IniReader &ini, MachineConfig &machine) {
+    const config::IniKey &key = ini_key("TRAJ", "HOME");
+    const std::vector<std::string> words = split_words(ini.text(key));
+    std::size_t n = 0;
+    for (const std::string &word : words) {
+        const std::optional<double> value = parse_double(word);
+        if (!value.has_value()) {
+            ini.sink().error("[TRAJ]HOME = '" + ini.text(key) + "' has the word '" + word + "'",
+                             ini.find(key)->place, "expected numbers, one for each axis");
+            return;
+        }
+        if (n < machine.coordinates.size()) {
+            const int axis = geom::axis_of_letter(machine.coordinates[n]);
+            machine.parameters.push_back({static_cast<std::uint16_t>(Parameter::AXIS_FIRST_PLACE),
+                                          static_cast<std::int16_t>(axis), *value});
+        }
+        ++n;
+    }
+}
+
 /// HAL files load motmod by this line, where there are extra joints.
 int count_extra_joints(IniReader &ini, int num_joints) {
     const IniKey &key = ini_key("EMCMOT", "EMCMOT");
@@ -377,11 +398,14 @@ void read_periods(IniReader &ini, MachineConfig &machine) {
 }
 
 void read_hal(IniReader &ini, MachineConfig &machine) {
-    const IniKey &homing = ini_key("EMCMOT", "HOMEMOD");
-    const std::vector<std::string> words = split_words(ini.text(homing));
-    if (!words.empty() && words[0] != "homemod") {
-        machine.homing_module = {HalStep::Kind::COMMAND, ini.text(homing), ini.find(homing)->place};
-    }
+    const auto read_module = [&](const IniKey &key, const char *ours, HalStep &module) {
+        const std::vector<std::string> words = split_words(ini.text(key));
+        if (!words.empty() && words[0] != ours) {
+            module = {HalStep::Kind::COMMAND, ini.text(key), ini.find(key)->place};
+        }
+    };
+    read_module(ini_key("EMCMOT", "HOMEMOD"), "homemod", machine.homing_module);
+    read_module(ini_key("TRAJ", "TPMOD"), "tpmod", machine.planner_module);
     for (const config::IniEntry *entry : ini.list(ini_key("HAL", "HALFILE"))) {
         machine.hal_steps.push_back({HalStep::Kind::FILE, entry->value, entry->place});
     }
@@ -444,6 +468,7 @@ MachineConfig read_machine_config(config::IniReader &reader) {
     reader.declare(all_ini_keys());
     read_names(reader, machine);
     read_coordinates(reader, machine);
+    read_first_place(reader, machine);
     read_kinematics(reader, machine);
     read_trajectory(reader, machine);
     read_joints(reader, machine);

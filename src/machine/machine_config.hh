@@ -40,7 +40,8 @@ struct MachineConfig {
     std::vector<std::string> kinematics;  ///< module and its arguments
     std::int64_t servo_period_ns = 1000000;
     std::int64_t task_period_ns = 1000000;
-    HalStep homing_module;  ///< of a user, with its parameters; empty: ours
+    HalStep homing_module;   ///< of a user, with its parameters; empty: ours
+    HalStep planner_module;  ///< the same
     std::vector<HalStep> hal_steps;
     std::string two_pass;  ///< [HAL]TWOPASS: not empty when files are gone through twice
     bool hasHalui = false;

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/text.hh"
+#include "language/language.hh"
 
 namespace mw::options {
 namespace {
@@ -47,10 +48,11 @@ struct Refused {
 
 /// As CLI11 says it, in our words.
 Error number_of_words(const std::string &names, int words) {
-    return {"option " + spoken(names) +
-            (words == 0   ? " takes no value"
-             : words == 1 ? " needs a value"
-                          : " takes " + std::to_string(words) + " words")};
+    if (words > 1) {
+        return {"option " + spoken(names) + " takes " + std::to_string(words) + " words"};
+    }
+    return {words == 0 ? "option " + spoken(names) + " takes no value"
+                       : "option " + spoken(names) + " needs a value"};
 }
 
 }  // namespace
@@ -215,7 +217,7 @@ Result<> CommandLine::parse(const Words &words) const {
 }
 
 std::string CommandLine::help() const {
-    std::string out = "usage: " + usage_ + "\n\n" + about_;
+    std::string out = "usage: " + usage_ + "\n\n" + language::shown(about_);
     out += options_.empty() ? "" : "\n";
     for (const Option &option : options_) {
         if (option.doc.empty()) {
@@ -224,9 +226,9 @@ std::string CommandLine::help() const {
         std::string head = "  " + option.names + (option.what.empty() ? "" : ' ' + option.what);
         head += head.size() + 2 > COLUMN ? '\n' + std::string(COLUMN, ' ')
                                          : std::string(COLUMN - head.size(), ' ');
-        out += head + wrapped(option.doc) + '\n';
+        out += head + wrapped(language::shown(option.doc)) + '\n';
     }
-    return out + (footer_.empty() ? "" : '\n' + footer_);
+    return out + (footer_.empty() ? "" : '\n' + language::shown(footer_));
 }
 
 bool wantsHelp(const Words &words) {

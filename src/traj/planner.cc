@@ -27,6 +27,7 @@ void Planner::begin(const Pose &start, const Snapshot &now, double tolerance) no
     timing_.begin(now);
     drops_ = now.drops;
     refusals_ = 0;
+    isOverreachTold_ = false;
 }
 
 Sequence Planner::add(const Primitive &primitive, const MoveRequest &request) noexcept {
@@ -244,6 +245,13 @@ bool Planner::ease(const LeaderState &from, const Verdict &verdict, const Cause 
         return false;
     }
     return true;
+}
+
+Overreach Planner::take_overreach() noexcept {
+    const Overreach &now = timing_.overreach();
+    const bool isNew = now.kind != Overreach::Kind::NONE && !isOverreachTold_;
+    isOverreachTold_ = isOverreachTold_ || isNew;
+    return isNew ? now : Overreach{};
 }
 
 bool Planner::take_stuck() noexcept {

@@ -97,6 +97,10 @@ class Planner {
     bool isStarving() const noexcept {
         return builder_.hasOpenEnd() && (timing_.isAtEndOf(path_) || path_.isAllDriven());
     }
+    /// Chooses speeds instead of the fastest; null: nobody. He stays valid.
+    void set_chooser(SpeedChooser *chooser) noexcept { conditions_.chooser = chooser; }
+    /// Once for each path: what the chooser has asked for too much. The path stops and does not go on.
+    Overreach take_overreach() noexcept;
     /// True once when it has stood for a second without finding a plan that passes the trial.
     bool take_stuck() noexcept;
     std::uint32_t moves_left(const Snapshot &now) const noexcept;
@@ -118,7 +122,8 @@ class Planner {
     Trial trial_;
     Easing easing_;
     std::uint64_t drops_ = 0;  ///< Snapshot::drops of this path
-    int refusals_ = 0;         ///< planning at rest, one after the other, for which no plan passed
+    bool isOverreachTold_ = false;
+    int refusals_ = 0;  ///< planning at rest, one after the other, for which no plan passed
 };
 
 }  // namespace mw::traj

@@ -9,7 +9,7 @@ import re
 import subprocess
 import sys
 
-COMMANDS = ('run', 'start', 'ui', 'doctor', 'select', 'check', 'format', 'explain', 'hal', 'hal watch', 'hal capture', 'hal graph', 'hal latency')
+COMMANDS = ('run', 'start', 'ui', 'doctor', 'select', 'setup', 'check', 'format', 'explain', 'hal', 'hal watch', 'hal capture', 'hal graph', 'hal latency')
 
 
 def main():

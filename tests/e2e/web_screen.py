@@ -61,7 +61,7 @@ class Screen:
 
     def ask(self, message, **fields):
         self.last_id += 1
-        self.send({'id': self.last_id, 'command': {'message': message, **fields}})
+        self.send({'id': self.last_id, 'command': {'message': message, **fields}, 'sent': time.monotonic() * 1000})
         return self.last_id
 
     def outcome(self, number):

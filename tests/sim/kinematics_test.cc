@@ -197,6 +197,11 @@ TEST_F(KinematicsTest, APlatformMovesOnceItsPoseIsKnown_C14) {
     EXPECT_NEAR(motion().carte_pos_cmd[geom::AXIS_Z], 20, 1e-3);
     EXPECT_EQ(mdi("G21 G90 G1 X3 Y-2 Z25 A5 B-4 C6 F600"), task::Progress::DONE) << messages();
     EXPECT_NEAR(motion().carte_pos_fb[geom::AXIS_B], -4, 1e-6);
+    hexapod.hal_lines.clear();
+    hexapod.traj = "HOME = 0 0 20 0 0 0\n";  // as the INI files of LinuxCNC tell it
+    switch_on_config(hexapod.write(folder_));
+    EXPECT_EQ(mdi("G21 G90 G1 X3 Y-2 Z25 A5 B-4 C6 F600"), task::Progress::DONE) << messages();
+    EXPECT_NEAR(motion().carte_pos_fb[geom::AXIS_Z], 25, 1e-6);
 }
 
 TEST_F(KinematicsTest, APinOfTheKinematicsThatIsChangedMakesNoJointStep_C14) {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A simulated mill by the clock, its server, and a browser: an instance, folders and ports of their own for each file.
+import { createRequire } from 'node:module';
+import { createServer } from 'node:net';
 import { execFileSync, spawn, type ChildProcess } from 'node:child_process';
 import { cpSync, existsSync, mkdirSync, mkdtempSync, openSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { chromium, type Browser, type BrowserContextOptions, type Page } from 'playwright-core';
-import type { TestContext } from 'vitest';
+import { expect, type TestContext } from 'vitest';
 
 const ROOT = fileURLToPath(new URL('../..', import.meta.url));
 const BUILD = process.env['MW_BUILD'] ?? join(ROOT, 'build/release');
@@ -94,6 +96,19 @@ export class Rig {
     return one.process;
   }
 
+  /** `millwright select --browser` for a person whose home is `home`, with configurations in `shop`. */
+  async startSelector(port: number, home: string, shop: string): Promise<ChildProcess> {
+    this.env['HOME'] = home;
+    this.env['LINUXCNC_AUX_CONFIGS'] = shop;
+    delete this.env['DISPLAY'];
+    delete this.env['WAYLAND_DISPLAY'];
+    const one = this.begin(['select', '--browser', '--port', String(port)]);
+    const told = (): string => readFileSync(one.output, 'utf8');
+    await until(() => told().includes('#key=') || one.process.exitCode !== null, 'the selector');
+    this.address = /http:\S+/.exec(told())?.[0] ?? '';
+    return one.process;
+  }
+
   /** On a free port, or on the one of before. */
   async startServer(port = 0, words: string[] = []): Promise<ChildProcess> {
     const one = this.begin(['ui', this.ini, '--port', String(port), ...words]);
@@ -168,6 +183,34 @@ export class Rig {
     );
     rmSync(this.folder, { recursive: true, force: true });
   }
+}
+
+export async function freePort(): Promise<number> {
+  return new Promise((done) => {
+    const server = createServer().listen(0, '127.0.0.1', () => {
+      const address = server.address();
+      server.close(() => done(typeof address === 'object' && address !== null ? address.port : 0));
+    });
+  });
+}
+
+const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+
+interface Finding {
+  id: string;
+  nodes: { target: string[]; failureSummary: string }[];
+}
+
+/** axe-core finds nothing. */
+export async function judgeByAxe(page: Page, what: string): Promise<void> {
+  if (!(await page.evaluate(() => 'axe' in window))) {
+    await page.evaluate(AXE); // the rules of the page let no script tag in
+  }
+  const found = await page.evaluate(async () => {
+    const { axe } = window as unknown as { axe: { run(options: object): Promise<{ violations: Finding[] }> } };
+    return (await axe.run({ resultTypes: ['violations'] })).violations;
+  });
+  expect(found.map((one) => `${what}: ${one.id} ${one.nodes.map((node) => `${node.target.join(' ')} ${node.failureSummary}`).join('; ')}`)).toEqual([]);
 }
 
 export function errorsOf(page: Page): string[] {

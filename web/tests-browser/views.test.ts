@@ -2,33 +2,20 @@
 // Every view in every size, light and dark: axe-core finds nothing, nothing runs out of the picture, and the stops can be
 // touched. With MW_SCREEN_PICTURES the pictures of docs/screen.md are made from the running program.
 import { readFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import type { Page } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
-import { bringUp, byHand, Rig, sleep, untilText } from './rig';
+import { bringUp, byHand, judgeByAxe, Rig, sleep, untilText } from './rig';
 
-const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const PICTURES = process.env['MW_SCREEN_PICTURES'];
 const SIZES = [[1280, 800], [800, 480], [390, 844]] as const;
-const TABS = ['path', 'programs', 'text', 'tools', 'offsets', 'plots', 'hal', 'messages', 'settings'];
+const TABS = ['path', 'programs', 'text', 'tools', 'offsets', 'probing', 'plots', 'hal', 'messages', 'settings'];
 const SMALL_TABS = ['jog', 'mdi', 'process', ...TABS];
 
 const rig = new Rig(byHand);
 let page: Page;
 
-interface Finding {
-  id: string;
-  nodes: { target: string[]; failureSummary: string }[];
-}
-
-async function judge(what: string): Promise<void> {
-  const found = await page.evaluate(async () => {
-    const { axe } = window as unknown as { axe: { run(options: object): Promise<{ violations: Finding[] }> } };
-    return (await axe.run({ resultTypes: ['violations'] })).violations;
-  });
-  expect(found.map((one) => `${what}: ${one.id} ${one.nodes.map((node) => `${node.target.join(' ')} ${node.failureSummary}`).join('; ')}`)).toEqual([]);
-}
+const judge = (what: string): Promise<void> => judgeByAxe(page, what);
 
 /** What can be touched lies in the picture, or in something that is scrolled, and the stops are on top. */
 async function isUsable(what: string): Promise<void> {
@@ -65,10 +52,6 @@ beforeAll(async () => {
   await rig.startServer();
   await rig.startMachine();
   page = await rig.page();
-  await page.addScriptTag({ content: AXE }).catch(() => undefined);
-  if (!(await page.evaluate(() => 'axe' in window))) {
-    await page.evaluate(AXE); // the rules of the page let no other script in
-  }
 });
 
 afterAll(async () => {

@@ -69,6 +69,19 @@ extern int identityKinematicsInverse(const struct EmcPose *world, double *joint,
                                      const KINEMATICS_INVERSE_FLAGS *iflags,
                                      KINEMATICS_FORWARD_FLAGS *fflags);
 
+/* A user's own type of a switchable module (type 2 of all that have a model and identity): what a component
+ * exports that is loaded before the module. Setup is called once while the module is loaded, with the letters
+ * of its joints, and makes the pins it wants for comp_id: 0, or negative, upon which the module is not
+ * loaded. The other two are as kinematicsForward and kinematicsInverse. */
+RTAPI_EXPORT extern int userkKinematicsSetup(const int comp_id, const char *coordinates,
+                                             kparms *ksetup_parms);
+RTAPI_EXPORT extern int userkKinematicsForward(const double *joint, struct EmcPose *world,
+                                               const KINEMATICS_FORWARD_FLAGS *fflags,
+                                               KINEMATICS_INVERSE_FLAGS *iflags);
+RTAPI_EXPORT extern int userkKinematicsInverse(const struct EmcPose *world, double *joint,
+                                               const KINEMATICS_INVERSE_FLAGS *iflags,
+                                               KINEMATICS_FORWARD_FLAGS *fflags);
+
 RTAPI_END_DECLS
 
 /* For modules with one type only. */

@@ -33,6 +33,9 @@ extern int mw_ext_pin_safe_value(const char *pin_name, const void *value);
  * Nothing happens under the virtual clock. */
 extern int mw_ext_watch_controller(rtapi_u32 *is_gone, const rtapi_u32 *is_safe, int comp_id);
 
+/* The period of a HAL thread [ns], 0 when there is none of that name. */
+extern long long mw_ext_thread_period(const char *name);
+
 /* 1 under the virtual clock. */
 extern int mw_ext_is_virtual(void);
 

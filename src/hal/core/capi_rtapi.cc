@@ -313,6 +313,19 @@ int mw_ext_watch_controller(rtapi_u32 *is_gone, const rtapi_u32 *is_safe, int co
     });
 }
 
+long long mw_ext_thread_period(const char *name) {
+    const Hal *hal = current();
+    if (hal == nullptr || name == nullptr) {
+        return 0;
+    }
+    for (const ThreadInfo &thread : hal->threads()) {
+        if (thread.name == name) {
+            return thread.period_ns;
+        }
+    }
+    return 0;
+}
+
 int mw_ext_is_virtual(void) {
     const Hal *hal = current();
     return hal != nullptr && hal->isVirtual() ? 1 : 0;

@@ -22,7 +22,7 @@
 #include "base/text.hh"
 #include "hal/api/rtapi.h"
 #include "hal/core/detail/impl.hh"
-#include "hal/core/later.hh"
+#include "hal/core/instead.hh"
 
 namespace mw::hal {
 
@@ -354,9 +354,9 @@ Result<> Loader::load(const std::string &name, const std::vector<std::string> &a
         for (const std::string &folder : folders_) {
             places += (places.empty() ? "" : ", ") + folder;
         }
-        const std::string later = driver_hint(name);
-        if (!later.empty()) {
-            return refuse(ENOENT, fmt::format("there is no module '{}'", name), later);
+        const std::string instead = instead_of(name);
+        if (!instead.empty()) {
+            return refuse(ENOENT, fmt::format("there is no module '{}'", name), instead);
         }
         const std::string near = nearest_name(name, modules_in(folders_));
         return refuse(ENOENT, fmt::format("there is no module '{}.so' in {}", name, places),

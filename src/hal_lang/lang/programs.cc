@@ -14,7 +14,7 @@
 
 #include <fmt/format.h>
 
-#include "hal/core/later.hh"
+#include "hal/core/instead.hh"
 
 extern char **environ;
 
@@ -60,7 +60,7 @@ Result<ProgramStart> SystemProgramHost::start(const ProgramRequest &request) {
     const int error = posix_spawnp(&pid, argv[0], nullptr, nullptr, argv.data(), environ);
     if (error != 0) {
         return fail(fmt::format("cannot start '{}': {}", request.argv[0], std::strerror(error)), {},
-                    driver_hint(base_name(request.argv[0])));
+                    instead_of(base_name(request.argv[0])));
     }
     children_.push_back(pid);
     Result<> waited;

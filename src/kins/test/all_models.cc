@@ -8,6 +8,7 @@
 #include "kins/hexapod.hh"
 #include "kins/linear_delta.hh"
 #include "kins/matrix.hh"
+#include "kins/nutating_head.hh"
 #include "kins/ortho_parallel.hh"
 #include "kins/pentapod.hh"
 #include "kins/puma.hh"
@@ -49,6 +50,14 @@ std::shared_ptr<Model> with(std::initializer_list<double> values) {
     return model;
 }
 
+/// With every length and angle that it knows.
+template <class Head>
+std::shared_ptr<Head> head_in(HeadFrame frame) {
+    auto head = with<Head>({70, -120, -400, 50, 120, 6, -9, 55, 0.3, 25, -130});
+    head->set_frame(frame);
+    return head;
+}
+
 /// Machines in which every pose can be reached.
 void add_cartesian(std::vector<ModelCase> &out) {
     const std::vector<Span> nine{MM, MM, MM, TURN, TILT, TURN, MM, MM, MM};
@@ -81,6 +90,11 @@ void add_cartesian(std::vector<ModelCase> &out) {
     add("xyzac_table", with<XyzacTable>({10, -20, 30, 4, 5, -6, 70}), "XYZAC", five);
     add("xyzbc_table", with<XyzbcTable>({10, -20, 30, 4, 5, -6, 70}), "XYZBC", five);
     add("xyzab_table", with<XyzabTable>({50, 3, -12, 10, -20, 30}), "XYZAB", {MM, MM, MM, TURN, TURN});
+    const std::vector<Span> six{MM, MM, MM, TURN, TURN, TURN};
+    add("head_over_a", head_in<NutatingHeadOverA>(HeadFrame::WORK), "XYZABC", six);
+    add("head_over_b", head_in<NutatingHeadOverB>(HeadFrame::WORK), "XYZABC", six);
+    add("head_over_a_in_plane", head_in<NutatingHeadOverA>(HeadFrame::TOOL), "XYZABC", six);
+    add("head_over_b_in_plane", head_in<NutatingHeadOverB>(HeadFrame::TOOL), "XYZABC", six);
 }
 
 /// Points held from three places, and the rose engine.

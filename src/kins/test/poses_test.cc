@@ -10,6 +10,7 @@
 #include "kins/hexapod.hh"
 #include "kins/linear_delta.hh"
 #include "kins/matrix.hh"
+#include "kins/nutating_head.hh"
 #include "kins/ortho_parallel.hh"
 #include "kins/pentapod.hh"
 #include "kins/puma.hh"
@@ -78,6 +79,57 @@ TEST(HandPoses, ATiltedHeadLeavesTheTipOfTheToolInPlace_C14) {
     expect_pair(head, {{0, 0, 0, 0, 90, 0, 5, 6, 7}}, {-107, 6, -95, 0, 90, 0, 5, 6, 7});
     expect_pair(head, {{0, 0, 0, 0, 90, 90}}, {-100, 0, -100, 0, 90, 90, 0, 0, 0});
     expect_pair(head, {{10, 0, 0, 0, 0, 90}}, {0, -10, 0, 0, 0, 90, 0, 0, 0});
+}
+
+template <class Head>
+Head head_with(double lean, double z_pivot) {
+    Head head;
+    head.set(Head::NUTATION, lean);
+    head.set(Head::Z_PIVOT, z_pivot);
+    return head;
+}
+
+TEST(HandPoses, AForkSwingsTheToolAboutItsPivot_C14) {
+    // The tool hangs 100 below the pivot; a quarter about X swings it to +Y, about Y to -X.
+    expect_pair(head_with<NutatingHeadOverB>(90, 100), {{0, 0, 0, 90, 0, 0}}, {0, -100, -100, 90, 0, 0});
+    expect_pair(head_with<NutatingHeadOverA>(90, 100), {{0, 0, 0, 0, 90, 0}}, {100, 0, -100, 0, 90, 0});
+    // With C turned by a quarter before that, what was +Y is -X.
+    expect_pair(head_with<NutatingHeadOverB>(90, 100), {{0, 0, 0, 90, 0, 90}}, {100, 0, -100, 90, 0, 90});
+}
+
+TEST(HandPoses, HalfATurnAboutAnAxisThatLeansBy45LaysTheToolLevel_C14) {
+    // Turned about what halves the angle between Z and Y, -Z comes to lie along -Y.
+    expect_pair(head_with<NutatingHeadOverA>(45, 100), {{0, 0, 0, 0, 180, 0}}, {0, 100, -100, 0, 180, 0});
+    expect_pair(head_with<NutatingHeadOverB>(45, 100), {{0, 0, 0, 180, 0, 0}}, {100, 0, -100, 180, 0, 0});
+    auto longer = head_with<NutatingHeadOverA>(45, 80);
+    longer.set(NutatingHeadOverA::TOOL, 20);
+    expect_pair(longer, {{0, 0, 0, 0, 180, 0}}, {0, 100, -100, 0, 180, 0});
+}
+
+TEST(HandPoses, TheAxisOfTheTableUnderAHeadStaysWhereItIs_C14) {
+    auto over_a = head_with<NutatingHeadOverA>(45, 100);
+    over_a.set(NutatingHeadOverA::ACROSS_ROT, 10);
+    over_a.set(NutatingHeadOverA::Z_ROT, 20);
+    expect_pair(over_a, {{5, 10, 20, 90, 0, 0}}, {5, 10, 20, 90, 0, 0});
+    // The work turns as the table does: what lay at +Y of its axis is above it after a quarter.
+    expect_pair(over_a, {{5, 10, 27, 90, 0, 0}}, {5, 17, 20, 90, 0, 0});
+    auto over_b = head_with<NutatingHeadOverB>(45, 100);
+    over_b.set(NutatingHeadOverB::ACROSS_ROT, 10);
+    over_b.set(NutatingHeadOverB::Z_ROT, 20);
+    expect_pair(over_b, {{10, 5, 13, 0, 90, 0}}, {17, 5, 20, 0, 90, 0});
+}
+
+TEST(HandPoses, InATiltedPlaneZRunsAlongTheTool_C14) {
+    auto head = head_with<NutatingHeadOverA>(45, 100);
+    head.set(NutatingHeadOverA::SECONDARY, 180);
+    head.set_frame(HeadFrame::TOOL);
+    // The tool points to -Y: off the work is +Y. The plane's origin is where joints are 0 with the head
+    // upright.
+    expect_pair(head, {{0, 0, 0, 0, 180, 0}}, {0, 100, -100, 0, 180, 0});
+    expect_pair(head, {{0, 0, 10, 0, 180, 0}}, {0, 110, -100, 0, 180, 0});
+    expect_pair(head, {{10, 0, 0, 0, 180, 0}}, {-10, 100, -100, 0, 180, 0});
+    head.set(NutatingHeadOverA::PRE_ROT, 3.14159265358979323846 / 2);
+    expect_pair(head, {{0, -10, 0, 0, 180, 0}}, {-10, 100, -100, 0, 180, 0});
 }
 
 TEST(HandPoses, LegsAreSidesOfTriangles_C14) {

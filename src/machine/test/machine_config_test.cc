@@ -170,8 +170,8 @@ TEST(MachineConfig, AnEmptyParameterFileIsTold_A3) {
 
 TEST(MachineConfig, KeysWithoutEffectAreNamedAndErrorsWhenStrict_A3) {
     for (const char *line :
-         {"[TRAJ]\nTPMOD = mytp\n", "[TRAJ]\nPOSITION_FILE = p.txt\n", "[TRAJ]\nARC_BLEND_GAP_CYCLES = 4\n",
-          "[TASK]\nTASK = mytask\n", "[RS274NGC]\nLOG_FILE = x\n", "[RS274NGC]\nNO_DOWNCASE_OWORD = 1\n"}) {
+         {"[TRAJ]\nPOSITION_FILE = p.txt\n", "[TRAJ]\nARC_BLEND_GAP_CYCLES = 4\n", "[TASK]\nTASK = mytask\n",
+          "[RS274NGC]\nLOG_FILE = x\n", "[RS274NGC]\nNO_DOWNCASE_OWORD = 1\n"}) {
         Config c(std::string(GOOD) + line);
         EXPECT_FALSE(c.sink.hasErrors()) << line;
         c.reader.report_unknown(true);

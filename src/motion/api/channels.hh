@@ -53,6 +53,9 @@ struct Channels {
     std::atomic<std::uint32_t> isTracing{0};
     std::atomic<std::uint64_t> trace_lost{0};
     SpscRing<TraceSample, 8192> trace;  ///< servo -> whoever traces
+
+    /// The servo thread has something to answer.
+    bool hasCommands() const noexcept { return immediate.front() != nullptr; }
 };
 
 }  // namespace mw::motion

@@ -107,6 +107,8 @@ inline constexpr double NO_JERK_LIMIT = 1e9;
       "of the axis; counts with PLANNER_TYPE = 1")                                                           \
     X(AXIS_LOCKING_INDEXER_JOINT, AXIS, "", "", COUNT, -1, 15, -1,                                           \
       "joint whose lock holds the axis; -1: none")                                                           \
+    X(AXIS_FIRST_PLACE, AXIS, "", "", LENGTH, -UNBOUNDED, UNBOUNDED, 0,                                      \
+      "where forward kinematics that iterate look first")                                                    \
     X(AXIS_OFFSET_RATIO, AXIS, "AXIS_*", "OFFSET_AV_RATIO", NONE, 0, 0.9, 0,                                 \
       "part of velocity and acceleration that external offsets have; 0: there are none")                     \
     X(SPINDLE_MAX_FORWARD, SPINDLE, "SPINDLE_*", "MAX_FORWARD_VELOCITY", RPM, 0, UNBOUNDED, UNBOUNDED,       \

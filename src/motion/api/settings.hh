@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <span>
 
 #include "base/limits.hh"
@@ -24,6 +25,8 @@ class Settings {
     double get(Parameter p, int index = 0) const noexcept {
         return values_[static_cast<std::size_t>(p)][static_cast<std::size_t>(index)];
     }
+    /// Above 0, another one after each change.
+    std::uint32_t version() const noexcept { return version_; }
     bool isSet(Parameter p, int index = 0) const noexcept { return get(p, index) != 0.0; }
 
     /// Why `value` cannot be taken, or NONE and it is taken.
@@ -54,11 +57,13 @@ class Settings {
             return reason;
         }
         values_[c.parameter][static_cast<std::size_t>(c.index)] = c.value;
+        version_ = version_ == UINT32_MAX ? 1 : version_ + 1;
         return Reason::NONE;
     }
 
   private:
     std::array<std::array<double, MAX_INDEX>, static_cast<std::size_t>(Parameter::COUNT)> values_{};
+    std::uint32_t version_ = 1;
 };
 
 /// The presets, and over them what `parameters` say; those out of range are left out.

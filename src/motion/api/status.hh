@@ -199,9 +199,12 @@ enum class FaultKind : std::uint16_t {
     EXTRA_JOINT_LOST,        ///< index: the joint whose pin posthome-cmd is not a number
     EXTRA_JOINT_LIMIT,       ///< index: the joint whose pin posthome-cmd asks for what lies beyond its range
     SIDE_APART,              ///< index: joint; switched on in free mode
+    PLANNER_MODULE,          ///< detail: PlannerModuleFault; value: what it asks for over what is possible
     SPINDLE_LOST,  ///< index: spindle whose feedback is not a number while a move is in step with it
     COUNT,
 };
+/// Of PLANNER_MODULE: what is wrong with the speeds that it wants.
+enum class PlannerModuleFault : std::uint16_t { NO_ANSWER = 1, TOO_FAST, TOO_HARD, TOO_LATE, NOT_THERE };
 /// Only told: no path has failed.
 constexpr bool isOnlyTold(FaultKind kind) noexcept {
     return kind == FaultKind::HOMING_CLAMPED || kind == FaultKind::JOG_JOINT_LIMIT ||

@@ -114,7 +114,7 @@ std::string reason_text(const Answer &answer) {
     case Reason::PROBE_ALREADY_TRIPPED: return "the probe is already tripped before the probing move";
     case Reason::NOT_A_NUMBER: return "a value is not a finite number";
     case Reason::NO_WAY_BACK:
-        return "there is no way back: the path is remembered only while adaptive feed is on (M52 P1)";
+        return "there is no way back: nothing is remembered of the path (docs/motion/commands.md)";
     case Reason::BAD_ARC: return "the arc's centre, normal and end do not make a helix";
     case Reason::JOG_INHIBITED:
         return "jogging is inhibited: pin motion.jog-inhibit, motion.jog-stop or motion.jog-stop-immediate "
@@ -155,6 +155,21 @@ std::string reason_text(const Answer &answer) {
 }
 
 namespace {
+
+std::string planner_module_fault(const Fault &fault) {
+    const char *what = "";
+    switch (static_cast<PlannerModuleFault>(fault.detail)) {
+    case PlannerModuleFault::NO_ANSWER: what = "gives no speeds, or what are no numbers"; break;
+    case PlannerModuleFault::NOT_THERE: what = "does not come to the end of a stretch"; break;
+    case PlannerModuleFault::TOO_FAST: what = "asks for {:.3g} of the highest speed"; break;
+    case PlannerModuleFault::TOO_HARD: what = "asks for {:.3g} of the highest acceleration"; break;
+    case PlannerModuleFault::TOO_LATE:
+        what = "comes to the end of a stretch with {:.3g} of the speed that can be kept behind it";
+        break;
+    }
+    return "the planner module of [TRAJ]TPMOD " + fmt::format(fmt::runtime(what), fault.value) +
+           ": the path was stopped within its limits";
+}
 
 std::string kinematics_fault(const Fault &fault) {
     const int i = fault.index;
@@ -273,6 +288,7 @@ std::string what_failed(const Fault &fault) {
         return fault.detail == 0 ? "probe tripped during a move that does not probe"
                                  : "probe tripped in a jog or while homing, which has stopped: see "
                                    "[TRAJ]NO_PROBE_JOG_ERROR and NO_PROBE_HOME_ERROR";
+    case FaultKind::PLANNER_MODULE: return planner_module_fault(fault);
     case FaultKind::NO_WAY_ON:
         return "the planner finds no motion on from here that keeps all limits and the tolerance of the path";
     case FaultKind::JOG_JOINT_LIMIT:

@@ -69,6 +69,7 @@ class Controller {
 
     // --- controller_commands.cc
     Verdict take(const Inputs &in, const CommandBody &body) noexcept;
+    void forget_way(const CommandBody &body) noexcept;
     Verdict abort_all(const Abort &command) noexcept;
     Verdict enable(const Inputs &in) noexcept;
     Verdict set_mode(Mode mode) noexcept;

@@ -46,6 +46,7 @@ void Controller::handle_commands(const Inputs &in) noexcept {
         if (isStale && !std::holds_alternative<Abort>(c->body)) {
             answer.kind = AnswerKind::STALE;
         } else {
+            forget_way(c->body);
             const Verdict verdict = take(in, c->body);
             answer.kind = verdict.reason == Reason::NONE ? AnswerKind::DONE : AnswerKind::REFUSED;
             answer.reason = verdict.reason;
@@ -83,8 +84,9 @@ Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
             return verdict;
         },
         [&](const OneOf<SetWatchdog, Heartbeat> auto &c) { return motion::take(watchdog_, c); },
-        [&](const OneOf<Pause, Resume, StepOnce, SetReverse, SetMaxVelocity> auto &c) {
-            return motion::take(holds_, c);
+        [&](const OneOf<Pause, Resume, StepOnce, SetMaxVelocity> auto &c) { return motion::take(holds_, c); },
+        [&](const SetReverse &c) {
+            return motion::take(holds_, c, power_.mode == Mode::COORD && retracing_.retrace.hasWay());
         },
         [&](const SetScale &c) {
             return c.what == Scale::SPINDLE
@@ -134,6 +136,17 @@ Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
         [&](const ClearProbeFlag &c) { return motion::take(probe_, c); },
     };
     return std::visit(handlers, body);
+}
+
+/// Nobody goes back to before a stop, or to before the spindle turned, stopped or had another tool.
+void Controller::forget_way(const CommandBody &body) noexcept {
+    const bool isChange =
+        std::holds_alternative<SpindleOn>(body) || std::holds_alternative<SpindleOff>(body) ||
+        std::holds_alternative<SpindleOrient>(body) || std::holds_alternative<SpindleBrake>(body) ||
+        std::holds_alternative<SetToolOffset>(body) || std::holds_alternative<Abort>(body);
+    if (isChange && !retracing_.retrace.isAway()) {
+        retracing_.retrace.clear();
+    }
 }
 
 Verdict Controller::abort_all(const Abort &command) noexcept {
@@ -287,6 +300,11 @@ Verdict Controller::set_parameter(const SetParameter &command) noexcept {
     }
     if (PARAMETERS[command.parameter].scope == ParameterScope::JOINT) {
         configure(homing_, command.index, settings_);
+    }
+    const bool isPlace = PARAMETERS[command.parameter].parameter == Parameter::AXIS_FIRST_PLACE;
+    if (isPlace && !map_.areJointsAxes() && limits_.homed.joints == 0) {
+        place_.cmd[command.index] = command.value;
+        place_.fb[command.index] = command.value;
     }
     publish_limits();
     return {};

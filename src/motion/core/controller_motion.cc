@@ -100,9 +100,13 @@ void Controller::move_axes(const Inputs &in) noexcept {
                             overrun.joint, overrun.use);
         }
         if (!retracing_.retrace.isAway()) {
-            // Nobody goes back through a hole that was tapped without turning the spindle, nor behind a lock.
-            const bool isOneWay = executor_.output().tap.spindle >= 0 || busy(indexers_) != 0;
-            if (holds_.isAdaptiveFeedEnabled && !isOneWay) {
+            // Nobody goes back through a hole that was tapped, or along a thread, without the spindle in
+            // step, nor behind a lock.
+            const bool isOneWay = executor_.output().tap.spindle >= 0 || executor_.locked_spindle() >= 0 ||
+                                  busy(indexers_) != 0;
+            // External offsets keep out of what is remembered: that is worth it where it is asked for.
+            const bool isWanted = holds_.isAdaptiveFeedEnabled || offsets_.axes == 0;
+            if (isWanted && !isOneWay) {
                 const int count = map_.areJointsAxes() ? 0 : config_.num_led_joints();
                 record(retracing_, pose, use_of(joints_, count, config_.period_s), limits_, config_.period_s);
             } else {
@@ -188,15 +192,15 @@ geom::Pose Controller::path_pose() noexcept {
 }
 
 void Controller::move_to(const geom::Pose &pose) noexcept {
-    PerJoint positions = commanded(joints_);
+    const PerJoint here = commanded(joints_);
+    PerJoint positions = here;
     if (!isAnswered(kinematics_.inverse(pose, positions.data()))) {
         // The planner keeps off such poses; were one to come, nothing sensible can be commanded any more.
         stop_category_0(FaultKind::KINEMATICS_FAILED, -1, 0);
         return;
     }
     const bool isPlanned = map_.kind == AxisMap::Kind::PLANNED;
-    const int jump =
-        isPlanned ? joint_that_jumps(positions, commanded(joints_), stride_of(limits_, config_)) : -1;
+    const int jump = isPlanned ? joint_that_jumps(positions, here, stride_of(limits_, config_)) : -1;
     if (jump >= 0) {
         const auto n = static_cast<std::size_t>(jump);
         stop_category_0(FaultKind::KINEMATICS_JUMP, jump, positions[n] - joints_[jump].pos_cmd);

@@ -20,6 +20,7 @@ PartMask new_parts(const PublishedStatus &published, const Status &s) noexcept {
 void fill_unused(const JointInputs &in, int j, Outputs &out) noexcept {
     const auto n = static_cast<std::size_t>(j);
     out.status.joint[n] = {};
+    out.settings_version = 0;  // its limits are due again once it is in use
     out.status.joint[n].motor_pos_fb = in.motor_pos_fb;
     out.joint[n] = {};
     out.joint[n].motor_pos_cmd = in.motor_pos_fb;
@@ -50,14 +51,41 @@ void trace(Channels &channels, const Inputs &in, const Status &s, const Joints &
     }
 }
 
+/// What the settings say themselves.
+void fill_settings(const Settings &settings, Outputs &out) noexcept {
+    Status &s = out.status;
+    for (int j = 0; j < s.num_joints; ++j) {
+        JointStatus &joint = s.joint[static_cast<std::size_t>(j)];
+        joint.min_limit = settings.get(Parameter::JOINT_MIN_LIMIT, j);
+        joint.max_limit = settings.get(Parameter::JOINT_MAX_LIMIT, j);
+        joint.max_velocity = settings.get(Parameter::JOINT_MAX_VELOCITY, j);
+        joint.max_acceleration = settings.get(Parameter::JOINT_MAX_ACCELERATION, j);
+    }
+    for (int i = 0; i < MAX_AXES; ++i) {
+        AxisStatus &axis = s.axis[static_cast<std::size_t>(i)];
+        axis.min_limit = settings.get(Parameter::AXIS_MIN_LIMIT, i);
+        axis.max_limit = settings.get(Parameter::AXIS_MAX_LIMIT, i);
+    }
+    out.mm_per_unit = settings.get(Parameter::TRAJ_MM_PER_UNIT);
+    out.settings_version = settings.version();
+}
+
 /// Directions stay where nothing moves.
-void fill_heading(const traj::Primitive &move, const geom::Pose &place, Outputs &out) noexcept {
+void fill_heading(const traj::PathStore &store, std::uint64_t move, const geom::Pose &place,
+                  Outputs &out) noexcept {
     const Status &s = out.status;
-    if (s.active_path_id != 0) {
-        out.heading = heading_of(move, s.motion_type, place, s.isReverse, out.heading);
+    Heading &heading = out.heading;
+    const HeadingOrigin origin{s.active_path_id, s.active_path_id != 0 ? move : 0, s.motion_type,
+                               s.isReverse};
+    if (origin == heading.origin && (!heading.isArc || origin.path_id == 0)) {
         return;
     }
-    out.heading = {0, out.heading.direction_deg, out.heading.to_centre_deg, false, 0, {}};
+    if (origin.path_id != 0) {
+        heading = heading_of(store.primitive(move), s.motion_type, place, s.isReverse, heading);
+    } else {
+        heading = {{}, 0, heading.direction_deg, heading.to_centre_deg, false, 0, {}};
+    }
+    heading.origin = origin;
 }
 
 }  // namespace
@@ -74,28 +102,28 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
     s.isTaskLost = watchdog_.isLost;
     s.num_joints = config_.num_joints;
     s.num_spindles = config_.num_spindles;
+    if (out.settings_version != settings_.version()) {
+        fill_settings(settings_, out);
+    }
     fill(place_, s);
     fill(probe_, in.isProbeClosed, s);
     fill(holds_, s);
     fill(outputs_, in, out);
     fill_path(s);
-    fill_heading(link_->store.primitive(executor_.output().move), without(offsets_, place_.cmd), out);
-    fill(joints_, settings_, {power_.isEnabled, jogs_.areLimitsOverridden, limits_.homed.joints}, out);
+    fill_heading(link_->store, executor_.output().move, without(offsets_, place_.cmd), out);
+    fill(joints_, {power_.isEnabled, jogs_.areLimitsOverridden, limits_.homed.joints}, out);
     fill(jogs_, power_.mode, without(offsets_, place_.cmd), out);
-    fill(offsets_, out);
+    if (offsets_.axes != 0 || !out.areOffsetsQuiet) {
+        fill(offsets_, out);
+    }
     fill(extra_, limits_.homed.joints, out);
+    out.isHomingQuiet = out.isHomingQuiet && indexers_.mask == 0;  // they add to what it shows
     fill(homing_, out);
     fill(indexers_, out);
     fill(spindles_, in, power_.isEnabled, out);
     for (int j = config_.num_joints; j < joints_.loaded; ++j) {
         fill_unused(in.joint[static_cast<std::size_t>(j)], j, out);
     }
-    for (int i = 0; i < MAX_AXES; ++i) {
-        AxisStatus &axis = s.axis[static_cast<std::size_t>(i)];
-        axis.min_limit = settings_.get(Parameter::AXIS_MIN_LIMIT, i);
-        axis.max_limit = settings_.get(Parameter::AXIS_MAX_LIMIT, i);
-    }
-    out.mm_per_unit = settings_.get(Parameter::TRAJ_MM_PER_UNIT);
     out.isCoordError = isCoordError_;
     publish_view(in);
     channels_->status.write(s, new_parts(channels_->status, s));
@@ -134,7 +162,7 @@ void Controller::fill_path(Status &s) const noexcept {
 
 /// What the path planner sees.
 void Controller::publish_view(const Inputs &in) noexcept {
-    PathView v;
+    PathView &v = link_->newest;
     v.executor = executor_.snapshot();
     v.epoch = epoch_;
     v.mode = power_.mode;
@@ -147,6 +175,8 @@ void Controller::publish_view(const Inputs &in) noexcept {
     v.rapid_scale = holds_.rapid_scale;
     v.max_feed_scale = std::max(1.0, settings_.get(Parameter::MAX_FEED_SCALE));
     v.max_velocity = holds_.max_velocity;
+    v.spindles_reversible = 0;
+    v.spindles_ready = 0;
     for (int n = 0; n < config_.num_spindles; ++n) {
         const auto i = static_cast<std::size_t>(n);
         v.spindle_rps[i] = spindles_[n].speed_rps;

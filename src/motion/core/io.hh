@@ -103,6 +103,10 @@ struct Outputs {
     bool isJogging = false;
     bool isCoordError = false, isOnSoftLimit = false;
     double mm_per_unit = 1;
+    bool isHomingQuiet = true;           ///< what homing shows is as when nothing homes
+    bool areJogsQuiet = false;           ///< what jogs show is as when nobody jogs
+    bool areOffsetsQuiet = false;        ///< no axis has an external offset, and all are shown so
+    std::uint32_t settings_version = 0;  ///< Settings::version() that `status` and mm_per_unit follow
     bool isOffsetActive = false, isOffsetLimited = false;
 };
 

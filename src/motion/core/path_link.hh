@@ -67,6 +67,7 @@ struct PathView {
 struct PathLink {
     traj::PathStore store;
     Seqlock<PathView> view;      ///< controller -> planner
+    PathView newest;             ///< what `view` was written from; the controller's own
     Seqlock<PathLimits> limits;  ///< controller -> planner
     /// Where external offsets may be, and where the path may: each side writes its own before it reads the
     /// other's, so that both never take the same room. Only while there are such offsets.

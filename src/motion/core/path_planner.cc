@@ -28,7 +28,9 @@ std::uint64_t latency_cycles(double period_s) noexcept {
 PathPlanner::PathPlanner(const PathPlannerConfig &config, const kins::Kinematics &kinematics,
                          Channels &channels, PathLink &link) noexcept
     : config_(config), kinematics_(kinematics), map_(kinematics), channels_(channels), link_(link),
-      planner_(link.store, {config.servo_period_s, latency_cycles(config.servo_period_s), HORIZON_S}) {}
+      planner_(link.store, {config.servo_period_s, latency_cycles(config.servo_period_s), HORIZON_S}) {
+    planner_.set_chooser(config.chooser);
+}
 
 void PathPlanner::update() noexcept {
     if (!link_.view.read(view_, 1000)) {
@@ -48,6 +50,9 @@ void PathPlanner::update() noexcept {
     open_gates();
     if (isPathBegun_) {
         planner_.update(view_.executor);
+        if (config_.chooser != nullptr) {
+            tell_overreach(planner_.take_overreach());
+        }
         if (planner_.take_stuck()) {
             Fault fault;
             fault.kind = FaultKind::NO_WAY_ON;
@@ -348,6 +353,27 @@ bool PathPlanner::isTapPossible(traj::Sequence gate) noexcept {
         break;
     }
     return false;
+}
+
+static_assert(static_cast<int>(traj::Overreach::Kind::NO_ANSWER) ==
+                  static_cast<int>(PlannerModuleFault::NO_ANSWER) &&
+              static_cast<int>(traj::Overreach::Kind::NOT_THERE) ==
+                  static_cast<int>(PlannerModuleFault::NOT_THERE));
+
+/// What a planner module wants and the machine cannot do is not driven: the path stops by itself, and that is
+/// its end.
+void PathPlanner::tell_overreach(const traj::Overreach &overreach) noexcept {
+    if (overreach.kind == traj::Overreach::Kind::NONE) {
+        return;
+    }
+    isBroken_ = true;
+    Fault fault;
+    fault.kind = FaultKind::PLANNER_MODULE;
+    fault.detail = static_cast<std::uint16_t>(overreach.kind);
+    fault.value = overreach.value;
+    const traj::MoveTag &tag = link_.store.move(overreach.move);
+    fault.source = {tag.line, tag.file_index, tag.block};
+    channels_.planner_faults.push(fault);
 }
 
 /// Once for each gate.

@@ -21,6 +21,7 @@ struct PathPlannerConfig {
     int num_joints = 3;
     int num_spindles = 1;
     int num_dio = 4, num_aio = 4;
+    traj::SpeedChooser *chooser = nullptr;  ///< a planner module of a user
 };
 
 /// The inverse of pure kinematics, for the planner. Of several answers it gives the one on the side of what
@@ -91,6 +92,7 @@ class PathPlanner {
     Reason check_reach(const traj::Primitive &p, int indexer = -1) noexcept;
     PoseRange room_for(const PoseRange &move) noexcept;
     void publish_extent() noexcept;
+    void tell_overreach(const traj::Overreach &overreach) noexcept;
     /// Where the joints are at a place of a path.
     struct PathSample {
         double at = 0;

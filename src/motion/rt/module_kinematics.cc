@@ -30,6 +30,7 @@ const char *ModuleKinematics::find(int num_joints) noexcept {
     inverse_with_status_ = find_function<decltype(inverse_with_status_)>("mw_kinematics_inverse");
     side_ = find_function<decltype(side_)>("mw_kinematics_side");
     const auto type = find_function<decltype(&kinematicsType)>("kinematicsType");
+    num_joints_ = num_joints;
     if (forward_ == nullptr) {
         return "kinematicsForward";
     }
@@ -117,8 +118,8 @@ kins::Status ModuleKinematics::forward(const double *joints, kins::Pose &pose) c
 }
 
 kins::Status ModuleKinematics::inverse(const kins::Pose &pose, double *joints) const noexcept {
-    double found[MAX_JOINTS];
-    for (int j = 0; j < MAX_JOINTS; ++j) {
+    double found[MAX_JOINTS] = {};  // a module may fill more than the machine has
+    for (int j = 0; j < num_joints_; ++j) {
         found[j] = joints[j];
     }
     const EmcPose world = to_c(pose);
@@ -129,10 +130,10 @@ kins::Status ModuleKinematics::inverse(const kins::Pose &pose, double *joints) c
         status = kins::Status::UNREACHABLE;
     }
     bool isFound = isAnswered(status);
-    for (const double x : found) {
-        isFound = isFound && std::isfinite(x);
+    for (int j = 0; j < num_joints_; ++j) {
+        isFound = isFound && std::isfinite(found[j]);
     }
-    for (int j = 0; j < MAX_JOINTS && isFound; ++j) {
+    for (int j = 0; j < num_joints_ && isFound; ++j) {
         joints[j] = found[j];
     }
     return isFound ? status : kins::Status::UNREACHABLE;

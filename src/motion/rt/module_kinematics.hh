@@ -41,6 +41,7 @@ class ModuleKinematics final : public kins::Kinematics {
     int (*inverse_with_status_)(const EmcPose *, double *) = nullptr;  ///< of our own modules: tells SINGULAR
     int (*side_)(const EmcPose *) = nullptr;                           ///< the same
     mutable ModuleTypes types_;
+    int num_joints_ = MAX_JOINTS;
     kins::Kind kind_ = kins::Kind::IDENTITY;
     bool isIdentity_ = false, isPure_ = false;
     kins::IdentityMap map_;

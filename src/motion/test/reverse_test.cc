@@ -152,31 +152,80 @@ TEST_P(Reverse, AnAbortOnTheWayBackStopsThereAndANewPathBeginsThere_C4) {
     EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
 }
 
-TEST_P(Reverse, ByCommandWhereAdaptiveFeedIsOn_C4) {
-    ReverseRig rig(GetParam());
-    geom::Pose far;
-    far[0] = 30;
-    far[1] = -20;
-    rig.line(far, 0);
-    ASSERT_TRUE(rig.finish(rig.send_path(Flush{}), 5));
-    rig.send(SetSwitch{Switch::ADAPTIVE_FEED, 0, false});
-    rig.go(5);
-    const CommandId refused = rig.send(SetReverse{true});
-    rig.send(SetSwitch{Switch::ADAPTIVE_FEED, 0, true});
-    rig.go(5);
-    EXPECT_EQ(rig.refusal(refused), Reason::NO_WAY_BACK);
-    geom::Pose end = far;
-    end[0] = 60;
-    rig.line(end, 50);
-    const CommandId flush = rig.send_path(Flush{});
-    rig.go(300);
-    rig.send(SetReverse{true});
-    rig.go(1500);
-    EXPECT_NEAR(rig.x(0), 30, 1e-2);
-    rig.send(SetReverse{false});
-    ASSERT_TRUE(rig.finish(flush, 10));
-    EXPECT_EQ(rig.x(0), 60);
-    EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
+TEST_P(Reverse, ByCommandWithAndWithoutAdaptiveFeed_C4) {
+    for (const bool isAdaptive : {false, true}) {
+        SCOPED_TRACE(isAdaptive);
+        ReverseRig rig(GetParam());
+        rig.send(SetSwitch{Switch::ADAPTIVE_FEED, 0, isAdaptive});
+        rig.go(5);
+        const CommandId refused = rig.send(SetReverse{true});
+        rig.go(5);
+        EXPECT_EQ(rig.refusal(refused), Reason::NO_WAY_BACK) << "nothing was driven";
+        geom::Pose end;
+        end[0] = 30;
+        end[1] = -20;
+        rig.line(end, 50);
+        const CommandId flush = rig.send_path(Flush{});
+        rig.go(500);
+        const CommandId back = rig.send(SetReverse{true});
+        rig.go(1500);
+        EXPECT_EQ(rig.refusal(back), Reason::NONE);
+        EXPECT_NEAR(rig.x(0), 0, 1e-2);
+        EXPECT_FALSE(rig.isDone(flush));
+        rig.send(SetReverse{false});
+        ASSERT_TRUE(rig.finish(flush, 10));
+        EXPECT_EQ(rig.x(0), 30);
+        EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
+    }
+}
+
+TEST_P(Reverse, NobodyGoesBackToBeforeTheSpindleOrTheToolChanged_C4) {
+    for (const CommandBody &change :
+         {CommandBody(SpindleOn{0, 100}), CommandBody(SpindleOff{0}), CommandBody(SetToolOffset{}),
+          CommandBody(SetMode{Mode::TELEOP}), CommandBody(Abort{})}) {
+        ReverseRig rig(GetParam());
+        geom::Pose end;
+        end[0] = 10;
+        rig.line(end, 50);
+        ASSERT_TRUE(rig.finish(rig.send_path(Flush{}), 5));
+        rig.go(10);
+        std::holds_alternative<Abort>(change) ? rig.send(Abort{++rig.epoch}) : rig.send(change);
+        rig.go(10);
+        const CommandId refused = rig.send(SetReverse{true});
+        rig.go(5);
+        EXPECT_EQ(rig.refusal(refused), Reason::NO_WAY_BACK) << change.index();
+    }
+}
+
+TEST_P(Reverse, CommandsAtAnyInstantKeepTheLimits_C4) {
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        ReverseRig rig(GetParam());
+        rig.send(SetSwitch{Switch::ADAPTIVE_FEED, 0, false});
+        const CommandId flush = rig.zigzag(30);
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<double> unit(0, 1);
+        bool isBack = false;
+        for (int i = 0; i < 20000; ++i) {
+            if (unit(random) < 0.004) {
+                isBack = !isBack;
+                rig.send(SetReverse{isBack});
+            }
+            if (unit(random) < 0.002) {
+                unit(random) < 0.5 ? rig.send(Pause{}) : rig.send(Resume{});
+            }
+            if (unit(random) < 0.002) {
+                rig.send(SetScale{Scale::FEED, 0, unit(random)});
+            }
+            rig.go(1);
+        }
+        rig.send(Resume{});
+        rig.send(SetScale{Scale::FEED, 0, 1});
+        rig.send(SetReverse{false});
+        ASSERT_TRUE(rig.finish(flush, 60));
+        EXPECT_EQ(rig.x(0), rig.last[0]);
+        EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
+    }
 }
 
 TEST_P(Reverse, ByCommandEndsWithAnAbort_C4) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // linuxcnc.error_channel: lines for the operator. Each reader gets every line from where it begins: what
 // nobody has read yet. When lines come faster than they are read the oldest are dropped, and a line says so.
+#include "client/shown_message.hh"
 #include "python/linuxcnc/connection.hh"
 #include "python/linuxcnc/module.hh"
 
@@ -23,7 +24,7 @@ class ErrorChannel {
         if (!message.has_value()) {
             return py::none();
         }
-        return py::make_tuple(static_cast<int>(message->kind), message->text);
+        return py::make_tuple(static_cast<int>(message->kind), client::shown_message(*message));
     }
 
   private:

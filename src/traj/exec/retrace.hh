@@ -30,8 +30,10 @@ class Retrace {
     void record(const geom::Pose &pose, const Use &use) noexcept;
     void clear() noexcept;
     bool isEmpty() const noexcept { return count_ == 0; }
+    /// There is something to go back along.
+    bool hasWay() const noexcept { return count_ > 2 * STANDING; }
     /// Nothing has been recorded for some samples but standing: one may go back from here.
-    bool isReady() const noexcept { return standing_ >= STANDING && count_ > 2 * STANDING; }
+    bool isReady() const noexcept { return standing_ >= STANDING && hasWay(); }
     /// Gone back and not yet where the path was left.
     bool isAway() const noexcept { return isAway_; }
     bool isMoving() const noexcept { return isAway_ && !way_.isAtRest(); }

@@ -10,6 +10,8 @@
 
 namespace mw::traj {
 
+class SpeedChooser;
+
 /// What may change while the path is under way.
 struct Scales {
     double feed = 1.0;
@@ -35,6 +37,7 @@ struct Conditions {
     SingleBlocks blocks;
     /// How fast spindles change their speed when they turn back: see SpindleReading.
     std::array<std::array<double, 2>, MAX_SPINDLES> ramps{};
+    SpeedChooser *chooser = nullptr;  ///< null: as fast as all that holds allows
 
     /// Driven by the executor, locked to the angle of a spindle. Machines whose joints are not axes drive
     /// threads by time.

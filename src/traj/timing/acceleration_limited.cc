@@ -2,6 +2,7 @@
 #include "traj/timing/acceleration_limited.hh"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "traj/tuning.hh"
@@ -28,6 +29,18 @@ void append_hill(PlanDraft &draft, PathStore &store, const AccelBound &bound, do
     draft.append(store, down, std::sqrt(end2));
 }
 
+/// As somebody else chooses; false when he asks for too much.
+bool append_chosen(PlanDraft &draft, PathStore &store, const TimingView &view, double cap,
+                   double out2) noexcept {
+    std::array<ChosenPhase, CHOSEN_PHASES> phases;
+    const int count = draft.choose(view, cap, out2, phases);
+    for (int n = 0; n < count; ++n) {
+        const ChosenPhase &phase = phases[static_cast<std::size_t>(n)];
+        draft.append(store, phase.length, phase.speed);
+    }
+    return count > 0;
+}
+
 /// One piece from the planned state on; false when the plan ends here for now.
 bool append_piece(PlanDraft &draft, PathStore &store, const TimingView &view) noexcept {
     LeaderState &s = draft.at;
@@ -42,8 +55,10 @@ bool append_piece(PlanDraft &draft, PathStore &store, const TimingView &view) no
         return true;
     }
     const double cap = speed_cap(view.on, s.piece);
-    const bool isRoom = draft.hasRoom(view.oldest_phase, TimingTuning::PHASES_PER_PIECE);
-    if (!isRoom || (s.v <= 0 && cap <= 0)) {
+    const bool isChosen = view.on.conditions.chooser != nullptr;
+    const bool isRoom =
+        draft.hasRoom(view.oldest_phase, isChosen ? CHOSEN_PHASES : TimingTuning::PHASES_PER_PIECE);
+    if (draft.overreach.kind != Overreach::Kind::NONE || !isRoom || (s.v <= 0 && cap <= 0)) {
         return false;
     }
     const double out2 = view.profile.out2(view.path(), s.piece);
@@ -66,6 +81,10 @@ bool append_piece(PlanDraft &draft, PathStore &store, const TimingView &view) no
     if (slowest2 >= out2 || s.v > cap) {
         const bool isFit = slowest2 <= out2 + TimingTuning::STOP_FIT * v2;
         draft.append(store, left, std::sqrt(isFit ? std::min(out2, v2) : slowest2));
+    } else if (isChosen) {
+        if (!append_chosen(draft, store, view, cap, out2)) {
+            return false;
+        }
     } else {
         append_hill(draft, store, p.acceleration, left, cap, out2);
     }

@@ -2,6 +2,7 @@
 #include "traj/timing/jerk_limited.hh"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "traj/tuning.hh"
@@ -24,6 +25,7 @@ class Smooth {
     bool canCoast(Sequence piece, double x, double v) noexcept;
     bool rise(double cap) noexcept;
     void coast(double cap, double out2) noexcept;
+    double chosen_cap(double cap) noexcept;
     bool start(double cap) noexcept;
     void move(const Piece &p, double cap) noexcept;
     double out2(Sequence piece) const noexcept { return view_.profile.out2(path_, piece); }
@@ -102,6 +104,21 @@ void Smooth::coast(double cap, double out2) noexcept {
     draft_.append(store_, std::max(way, TimingTuning::LEAST_COAST * left), s.v);
 }
 
+/// The highest speed that somebody else chooses on what is left of the piece: how it is come to is not his.
+double Smooth::chosen_cap(double cap) noexcept {
+    std::array<ChosenPhase, CHOSEN_PHASES> phases;
+    const LeaderState &s = draft_.at;
+    if (view_.on.conditions.chooser == nullptr || s.v > cap) {
+        return cap;
+    }
+    const int count = draft_.choose(view_, cap, out2(s.piece), phases);
+    double top = 0;
+    for (int n = 0; n < count; ++n) {
+        top = std::max(top, phases[static_cast<std::size_t>(n)].speed);
+    }
+    return std::min(cap, top);
+}
+
 /// From a stand; false when the plan ends with it.
 bool Smooth::start(double cap) noexcept {
     LeaderState &s = draft_.at;
@@ -167,10 +184,14 @@ bool Smooth::advance() noexcept {
         draft_.enter_next_piece();
         return true;
     }
-    const double cap = speed_cap(view_.on, s.piece);
     // The other half of the ring is for the stop.
     const bool isRoom = draft_.hasRoom(view_.oldest_phase, PHASE_CAPACITY / 2);
-    if (!isRoom || (s.v <= 0 && cap <= 0)) {
+    if (!isRoom || draft_.overreach.kind != Overreach::Kind::NONE) {
+        return false;
+    }
+    const double most = speed_cap(view_.on, s.piece);
+    const double cap = s.v <= 0 && most <= 0 ? 0.0 : chosen_cap(most);
+    if (draft_.overreach.kind != Overreach::Kind::NONE || (s.v <= 0 && cap <= 0)) {
         return false;
     }
     if (s.v <= 0) {

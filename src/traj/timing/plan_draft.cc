@@ -1,7 +1,34 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "traj/timing/plan_draft.hh"
 
+#include <algorithm>
+#include <cmath>
+
 namespace mw::traj {
+
+int PlanDraft::choose(const TimingView &view, double cap, double out2, std::span<ChosenPhase> out) noexcept {
+    const Piece &p = view.path().piece(at.piece);
+    SpeedStretch stretch;
+    stretch.length = p.length - at.x;
+    stretch.speed = at.v;
+    stretch.cap = cap;
+    stretch.out = std::min(cap, std::sqrt(out2));
+    stretch.at_rest = p.acceleration.at(0);
+    stretch.at_cap = p.acceleration.at(cap * cap);
+    stretch.line = view.path().store().move(p.move).line;
+    stretch.isEnd = at.piece == view.path().last_piece();
+    const int count = view.on.conditions.chooser->choose(stretch, out);
+    const bool isFit = count > 0 && count <= static_cast<int>(out.size());
+    overreach =
+        check_choice(stretch, p.acceleration, out.first(isFit ? static_cast<std::size_t>(count) : 0U));
+    overreach.move = p.move;
+    if (overreach.kind != Overreach::Kind::NONE) {
+        return 0;
+    }
+    ChosenPhase &last = out[static_cast<std::size_t>(count - 1)];
+    last.speed = std::min(last.speed, stretch.out);
+    return count;
+}
 
 void PlanDraft::append(PathStore &store, double length, double v1) noexcept {
     const double sum = at.v + v1;

@@ -2,6 +2,7 @@
 // A plan in the making: phases in the store's ring, and the state that they lead to.
 #pragma once
 
+#include "traj/timing/speed_choice.hh"
 #include "traj/timing/speed_profile.hh"
 
 namespace mw::traj {
@@ -20,6 +21,7 @@ struct PlanDraft {
     double seconds = 0;      ///< when, from its beginning on
     Sequence end = 1;        ///< number of the next phase
     Sequence looked_at = 0;  ///< the farthest piece that the plan depends on
+    Overreach overreach;     ///< of who chooses speeds: the plan does not go on
     Sequence reached = 0;    ///< the piece with whose end it ends, if that was the path's last, otherwise 0
 
     /// Another plan from this state on.
@@ -34,6 +36,9 @@ struct PlanDraft {
     bool hasRoom(Sequence oldest_phase, Sequence phases) const noexcept {
         return end + phases - oldest_phase < PHASE_CAPACITY;
     }
+    /// Asks who chooses speeds for what is left of the piece where the plan is; how many phases are in `out`.
+    /// None where he asks for too much, which is kept.
+    int choose(const TimingView &view, double cap, double out2, std::span<ChosenPhase> out) noexcept;
     /// Appends a phase over `length` that ends at the speed `v1`.
     void append(PathStore &store, double length, double v1) noexcept;
     /// Appends a stand.

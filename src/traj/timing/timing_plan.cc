@@ -15,6 +15,7 @@ void TimingPlan::begin(const Snapshot &now) noexcept {
     commitments_.begin(now, draft_.end);
     draft_.at = {};
     draft_.reached = 0;
+    draft_.overreach = {};
     start_delay_s_ = 0;
 }
 

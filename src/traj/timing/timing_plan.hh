@@ -85,6 +85,8 @@ class TimingPlan {
     /// Hands the executor the pass that begins where it stands.
     void start_pass(PlannedPath &path, const Conditions &conditions, const Snapshot &now,
                     Sequence first) noexcept;
+    /// What who chooses speeds has asked for too much; the path does not go on.
+    const Overreach &overreach() const noexcept { return draft_.overreach; }
     /// The plan runs to the end of the known path.
     bool isAtEndOf(const PlannedPath &path) const noexcept { return draft_.isAtEndOf(path); }
 

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "base/text.hh"
+#include "language/language.hh"
 #include "ui/rsh/answers.hh"
 
 namespace mw::ui::tcl {
@@ -153,7 +154,9 @@ Result<std::string> Shell::wait(bool untilDone) {
 
 std::optional<std::string> Shell::next_line(msgs::MessageKind kind) {
     static_cast<void>(view_.read());
-    return view_.next_line(kind, own.lines);
+    auto line = view_.next_line(kind, own.lines);
+    // As client::shown_message(): what programs say is in their own language.
+    return line.has_value() && kind != msgs::MessageKind::OPERATOR_DISPLAY ? language::shown(*line) : line;
 }
 
 }  // namespace mw::ui::tcl

@@ -69,7 +69,7 @@ void Browser::carry_out(const Ask &ask, std::int64_t now_ns) {
         refuse(ask.id, ask.command.error().str());
         return;
     }
-    const msgs::Command &command = *ask.command;
+    msgs::Command command = *ask.command;
     const bool isStop = mailbox::isStop(command);
     ++(isStop ? counts_.stops : counts_.commands);
     if (!client_.has_value()) {
@@ -95,6 +95,10 @@ void Browser::carry_out(const Ask &ask, std::int64_t now_ns) {
         refuse(ask.id, "too many commands in a second");
         return;
     }
+    if (!shorten_lease(command, ask, now_ns)) {
+        refuse(ask.id, "it came later than its lease is long: the way from the screen is slow");
+        return;
+    }
     const auto posted = client_->post(command);
     if (!posted.has_value()) {
         refuse(ask.id, posted.error().str());
@@ -107,6 +111,17 @@ void Browser::carry_out(const Ask &ask, std::int64_t now_ns) {
         return;
     }
     followed_.push_back({ask.id, *posted, now_ns});
+}
+
+bool Browser::shorten_lease(msgs::Command &command, const Ask &ask, std::int64_t now_ns) {
+    const double late_ms = ask.sent_ms.has_value() ? lateness_.of(*ask.sent_ms, now_ns) : 0;
+    auto *const jog = std::get_if<msgs::JogContinuous>(&command);
+    if (jog == nullptr || !hasLease(*jog)) {
+        return true;
+    }
+    const double left_ms = jog->lease_ms - late_ms;
+    jog->lease_ms = static_cast<int>(left_ms);
+    return left_ms >= msgs::SHORTEST_JOG_LEASE_MS;
 }
 
 void Browser::note_jog(const msgs::Command &command) {

@@ -14,6 +14,7 @@
 #include "client/client.hh"
 #include "ui/web/documents.hh"
 #include "ui/web/gate.hh"
+#include "ui/web/lateness.hh"
 #include "ui/web/status_delta.hh"
 
 namespace mw::ui::web {
@@ -79,6 +80,8 @@ class Browser {
         bool isTold = false;  ///< as STARTED
     };
     void carry_out(const Ask &ask, std::int64_t now_ns);
+    /// A lease counts from when it was asked for. False: it is over already.
+    bool shorten_lease(msgs::Command &command, const Ask &ask, std::int64_t now_ns);
     void refuse(std::uint64_t id, std::string reason);
     void note_jog(const msgs::Command &command);
     void stop_jogs();
@@ -95,6 +98,7 @@ class Browser {
     std::deque<Followed> followed_;
     std::set<Jogged> jogs_;
     std::optional<Jogged> begun_;  ///< by the last text
+    Lateness lateness_;
     RateLimit rate_{COMMANDS_PER_S, COMMANDS_AT_ONCE};
     std::int64_t heard_ns_;
 };

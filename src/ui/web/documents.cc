@@ -288,13 +288,17 @@ Result<std::variant<Ping, Ask, Watch>> read_text(std::string_view text) {
     }
     const auto id = json.find("id");
     const auto command = json.find("command");
-    if (id == json.end() || command == json.end() || json.size() != 2) {
-        return fail(R"(a text is {"ping": number}, {"watch": [names]} or {"id": number, "command": {...}})");
+    const auto sent = json.find("sent");
+    const bool isDated = sent != json.end() && sent->is_number() && std::isfinite(sent->get<double>());
+    if (id == json.end() || command == json.end() || json.size() != (isDated ? 3 : 2)) {
+        return fail(R"(a text is {"ping": number}, {"watch": [names]} or {"id": number, "command": {...}}, )"
+                    R"(with "sent": number where it is told)");
     }
     if (!id->is_number_unsigned() || id->get<std::uint64_t>() > MOST_ID) {
         return fail("the id of a command is a whole number from 0 to 2^53");
     }
-    return Ask{id->get<std::uint64_t>(), msgs::command_from_json(text_of(*command))};
+    return Ask{id->get<std::uint64_t>(), msgs::command_from_json(text_of(*command)),
+               isDated ? std::optional(sent->get<double>()) : std::nullopt};
 }
 
 std::optional<std::string> token_of_login(std::string_view text) {

@@ -51,6 +51,7 @@ struct Ping {
 struct Ask {
     std::uint64_t id = 0;
     Result<msgs::Command> command;
+    std::optional<double> sent_ms{};  ///< when, by the sender's clock
 };
 /// {"watch": ["joint.0.pos-cmd"]}: pins, signals and parameters of HAL.
 struct Watch {

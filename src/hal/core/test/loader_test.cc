@@ -37,7 +37,7 @@ TEST(Loader, SetsModuleParametersAndNamesTheKnownOnes) {
     EXPECT_NE(machine.load("counter", {"start"}).find("'start' is not of the form name=value"),
               std::string::npos);
     EXPECT_NE(machine.load("nothing").find("there is no module 'nothing.so'"), std::string::npos);
-    EXPECT_NE(machine.load("hostmot2").find("drivers of hardware come with a later version"),
+    EXPECT_NE(machine.load("hostmot2").find("drivers of boards come with a later version"),
               std::string::npos);
     EXPECT_NE(machine.load("countr").find("did you mean 'counter'?"), std::string::npos);
     EXPECT_TRUE(machine.hal().components().empty());

@@ -159,6 +159,10 @@ TEST_F(Death, RealtimeStartsStopsAndTellsWhatRuns_B4) {
     EXPECT_EQ(run({"realtime", "stop"}).status, 0);
     EXPECT_EQ(run({"realtime", "status"}).status, 1);
     EXPECT_EQ(run({"realtime", "begin"}).status, 2);
+    const Ended verified = run({"realtime", "verify"});
+    const bool isRealtime = verified.out == "realtime priority and locked memory\n";
+    EXPECT_EQ(verified.status, isRealtime ? 0 : 1) << verified.out << verified.err;
+    EXPECT_TRUE(isRealtime || verified.out.starts_with("no realtime: ")) << verified.out;
     EXPECT_EQ(leftovers(), std::vector<std::string>{});
 }
 

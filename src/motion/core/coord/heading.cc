@@ -15,14 +15,15 @@ constexpr int G0 = 0, G1 = 10, G2 = 20, G3 = 30, G38 = 380;
 
 using Vector = std::array<double, 3>;
 
+/// Of an angle within a turn of [0, 360).
 double turned(double degrees) noexcept {
-    const double left = std::fmod(degrees, FULL_TURN_DEG);
-    return left < 0 ? left + FULL_TURN_DEG : left;
+    const double low = degrees < 0 ? degrees + FULL_TURN_DEG : degrees;
+    return low >= FULL_TURN_DEG ? low - FULL_TURN_DEG : low;
 }
 
 /// False: it leads nowhere in XY.
 bool point(double x, double y, double &degrees) noexcept {
-    if (std::hypot(x, y) < LEAST_LENGTH) {
+    if (x * x + y * y < LEAST_LENGTH * LEAST_LENGTH) {
         return false;
     }
     degrees = turned(std::atan2(y, x) * DEG_PER_RAD);

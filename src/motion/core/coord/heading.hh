@@ -8,8 +8,18 @@
 
 namespace mw::motion {
 
+/// What a heading was made of; that of a line holds as long as this does.
+struct HeadingOrigin {
+    std::uint64_t path_id = 0;
+    std::uint64_t move = 0;  ///< number of the primitive
+    MotionType type = MotionType::NONE;
+    bool isReverse = false;
+    bool operator==(const HeadingOrigin &) const = default;
+};
+
 /// All 0 where no move is made.
 struct Heading {
+    HeadingOrigin origin;
     int g_code = 0;            ///< ten times that of the move: 0, 10, 20, 30; 380 of probe moves
     double direction_deg = 0;  ///< of the way in XY, counter-clockwise from X; [0, 360)
     double to_centre_deg = 0;  ///< from the tool to the centre of its arc; of a line, to its left

@@ -41,6 +41,9 @@ traj::Retrace::Use use_of(Retracing &r, const geom::Pose &pose, const JointUse &
     r.last_step = step;
     const traj::Limits &limits = folded.path;
     const auto add = [&](double v, double a, double most_a, double most_j) {
+        if (v == 0 && a == 0) {
+            return;
+        }
         use.v_over_a = std::max(use.v_over_a, std::abs(v) * per_s / most_a);
         if (limits.isJerkLimited) {
             use.v_over_j = std::max(use.v_over_j, std::abs(v) * per_s / most_j);

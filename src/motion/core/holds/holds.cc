@@ -51,9 +51,8 @@ Verdict take(Holds &holds, const StepOnce &) noexcept {
     return {};
 }
 
-Verdict take(Holds &holds, const SetReverse &command) noexcept {
-    // Nothing is recorded to go back along without adaptive feed.
-    const bool isRefused = command.isReverse && !holds.isAdaptiveFeedEnabled;
+Verdict take(Holds &holds, const SetReverse &command, bool isWayKnown) noexcept {
+    const bool isRefused = command.isReverse && !isWayKnown;
     holds.isReverse = command.isReverse && !isRefused;
     return {isRefused ? Reason::NO_WAY_BACK : Reason::NONE};
 }

@@ -38,7 +38,8 @@ void step(Holds &holds, const HoldInputs &in) noexcept;
 Verdict take(Holds &holds, const Pause &command) noexcept;
 Verdict take(Holds &holds, const Resume &command) noexcept;
 Verdict take(Holds &holds, const StepOnce &command) noexcept;
-Verdict take(Holds &holds, const SetReverse &command) noexcept;
+/// `isWayKnown`: there is a path to go back along.
+Verdict take(Holds &holds, const SetReverse &command, bool isWayKnown) noexcept;
 Verdict take(Holds &holds, const SetMaxVelocity &command) noexcept;
 /// Of feed and rapids; `max_feed_scale` is the machine's highest.
 Verdict take(Holds &holds, const SetScale &command, double max_feed_scale) noexcept;

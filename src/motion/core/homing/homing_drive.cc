@@ -20,13 +20,14 @@ auto with_module(const HomingDrive &drive, const Function &function) noexcept {
 }  // namespace
 
 std::uint32_t homed_mask(const HomingDrive &drive) noexcept {
-    return with_module(drive, [&](const auto &module) {
-        std::uint32_t mask = 0;
-        for (int j = 0; j < drive.num_joints; ++j) {
-            mask |= module.isHomed(j) ? 1U << j : 0U;
-        }
-        return mask;
-    });
+    if (drive.foreign == nullptr) {
+        return drive.own.summary().homed & ((1U << drive.num_joints) - 1U);
+    }
+    std::uint32_t mask = 0;
+    for (int j = 0; j < drive.num_joints; ++j) {
+        mask |= drive.foreign->isHomed(j) ? 1U << j : 0U;
+    }
+    return mask;
 }
 
 bool isAllHomed(const HomingDrive &drive) noexcept {
@@ -190,6 +191,11 @@ bool areFinite(const HomingDrive &drive, const homing::JointCommand *commands) n
 
 void fill(const HomingDrive &drive, Outputs &out) noexcept {
     out.status.isHoming = drive.isUnderWay();
+    const bool isQuiet = drive.foreign == nullptr && drive.own.summary().isQuiet;
+    if (isQuiet && out.isHomingQuiet) {
+        return;
+    }
+    out.isHomingQuiet = isQuiet;
     with_module(drive, [&](const auto &module) {
         for (int j = 0; j < drive.num_joints; ++j) {
             const auto n = static_cast<std::size_t>(j);

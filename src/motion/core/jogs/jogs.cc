@@ -37,6 +37,14 @@ double mean_for(const JogLimits &most) noexcept {
                : 0.0;
 }
 
+/// A jog at rest is over.
+bool isJogged(Jog &jog) noexcept {
+    if (jog.source != JogSource::NONE && jog.planner.isAtRest()) {
+        jog.source = JogSource::NONE;
+    }
+    return jog.source != JogSource::NONE;
+}
+
 struct JogMove {
     double position = 0, velocity = 0;
     JogSource source = JogSource::NONE;
@@ -394,16 +402,15 @@ void settle(Jogs &jogs, const Inputs &in) noexcept {
     for (int j = 0; j < jogs.num_joints; ++j) {
         Jog &jog = jogs.joint[at(j)];
         jog.wheel_counts = in.joint[at(j)].wheel.counts;
-        jog.source = jog.planner.isAtRest() ? JogSource::NONE : jog.source;
-        isAnyJog = isAnyJog || jog.source != JogSource::NONE;
+        isAnyJog = isJogged(jog) || isAnyJog;
     }
     for (std::uint32_t left = jogs.axes; left != 0; left &= left - 1) {
         const int i = std::countr_zero(left);
         Jog &jog = jogs.axis[at(i)];
         jog.wheel_counts = in.axis_wheel[at(i)].counts;
-        jog.source = jog.planner.isAtRest() ? JogSource::NONE : jog.source;
-        isAnyJog = isAnyJog || jog.source != JogSource::NONE;
+        isAnyJog = isJogged(jog) || isAnyJog;
     }
+    jogs.isAnyJogged = isAnyJog;
     if (jogs.isOverrideInJog && !isAnyJog) {
         jogs.isOverrideInJog = false;
         jogs.areLimitsOverridden = false;
@@ -445,39 +452,6 @@ void limit_axis(Jog &jog, double max_velocity, double scale) noexcept {
 void step_joint(Jog &jog, double max_velocity, double scale, double period_s) noexcept {
     jog.planner.max_velocity = std::min({jog.wanted_velocity * scale, max_velocity, jog.most_velocity});
     jog.planner.step(period_s);
-}
-
-void fill(const Jogs &jogs, Mode mode, const geom::Pose &pose, Outputs &out) noexcept {
-    bool isJogging = false;
-    for (int j = 0; j < jogs.num_joints; ++j) {
-        const Jog &from = jogs.joint[at(j)];
-        JointOutputs &o = out.joint[at(j)];
-        const bool isAtRest = from.planner.isAtRest();
-        out.status.joint[at(j)].isInPosition = isAtRest;
-        o.free_pos_cmd = from.planner.target;
-        o.free_velocity_limit = from.planner.max_velocity;
-        o.isFreePlanning = mode == Mode::FREE && !isAtRest;
-        o.isKeyboardJogging = from.source == JogSource::KEYBOARD;
-        o.isWheelJogging = from.source == JogSource::WHEEL;
-        isJogging = isJogging || from.source != JogSource::NONE;
-    }
-    const bool isTeleop = mode == Mode::TELEOP;
-    out.axes = jogs.axes;
-    for (std::uint32_t left = jogs.axes; left != 0; left &= left - 1) {
-        const int i = std::countr_zero(left);
-        const Jog &from = jogs.axis[at(i)];
-        AxisOutputs &o = out.axis[at(i)];
-        o.position = pose[i];
-        o.teleop_position = isTeleop ? from.planner.position : pose[i];
-        o.teleop_velocity = isTeleop ? from.planner.velocity : 0.0;
-        o.teleop_velocity_limit = from.planner.max_velocity;
-        o.isTeleopPlanning = isTeleop && !from.planner.isAtRest();
-        o.isKeyboardJogging = from.source == JogSource::KEYBOARD;
-        o.isWheelJogging = from.source == JogSource::WHEEL;
-        isJogging = isJogging || from.source != JogSource::NONE;
-        out.status.axis[at(i)].velocity = o.teleop_velocity;
-    }
-    out.isJogging = isJogging;
 }
 
 }  // namespace mw::motion

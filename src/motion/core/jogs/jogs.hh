@@ -46,6 +46,7 @@ struct Jogs {
     int num_joints = 0;
     bool areLimitsOverridden = false;  ///< limit switches are, until the next jog has ended
     bool isOverrideInJog = false;      ///< that jog has begun
+    bool isAnyJogged = false;          ///< by command or wheel, as of this cycle
     bool isTeleopStopped = false;      ///< by a joint's limit, and said
     std::uint32_t axes = ALL_AXES;     ///< bit per axis that the machine may have
     std::uint32_t leased = 0;          ///< bit per joint, then per axis, whose lease has not ended

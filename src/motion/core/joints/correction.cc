@@ -13,23 +13,11 @@ namespace {
 /// Part of the joint's own speed, acceleration and jerk with which corrections are made on top of its motion.
 constexpr double SHARE = 0.5;
 static_assert(STEEPEST_SCREW < SHARE);
-/// The side changes where the joint really turns back, not by the rounding of a stop.
-constexpr double TURN_ROUNDING = 1e-9;
 /// By so much a change of the mode may move a joint (`sides`): it is no move that somebody has asked for.
 constexpr double MODE_ROUNDING = 2e-6;
 
 std::size_t at(int i) noexcept {
     return static_cast<std::size_t>(i);
-}
-
-void follow_side(Correction &c, double position) noexcept {
-    const double moved = position - c.extreme;
-    const bool isMove = std::abs(moved) > TURN_ROUNDING * (1.0 + std::abs(position));
-    const bool isOnward = c.side != 0 && moved * c.side > 0;
-    if (isMove) {
-        c.side = moved > 0 ? 1 : -1;
-    }
-    c.extreme = isMove || isOnward ? position : c.extreme;
 }
 
 /// The motor pushes the slide to where it is to be. That is the direction of travel, but not where the joint
@@ -177,13 +165,12 @@ void step(Correction &c, const Settings &settings, int joint, double position, d
     if (c.isHeld) {
         return;
     }
-    follow_side(c, position);
     const double backlash = settings.get(Parameter::JOINT_BACKLASH, joint);
-    if (backlash == 0 && c.table.count == 0 && c.position == 0 && c.isAtRest()) {
-        c.raw = 0;
-        c.last_position = position;
+    if (isIdle(c, backlash)) {
+        follow_idle(c, position);
         return;
     }
+    follow_side(c, position);
     const double velocity = settings.get(Parameter::JOINT_MAX_VELOCITY, joint);
     const Means means = means_of(settings, joint, period_s);
     c.follower.max_acceleration = means.acceleration;

@@ -68,6 +68,27 @@ struct Correction {
     bool isAtRest() const noexcept { return follower.isAtRest() && velocity == 0.0 && mean.isAtRest(); }
 };
 
+/// No play, no table, and nothing left to take back: a joint so only remembers which way it goes.
+inline bool isIdle(const Correction &c, double backlash) noexcept {
+    return backlash == 0.0 && c.table.count == 0 && !c.isHeld && c.position == 0.0 && c.isAtRest();
+}
+/// The side changes where the joint really turns back, not by the rounding of a stop.
+inline constexpr double TURN_ROUNDING = 1e-9;
+inline void follow_side(Correction &c, double position) noexcept {
+    const double moved = position - c.extreme;
+    const bool isMove = std::abs(moved) > TURN_ROUNDING * (1.0 + std::abs(position));
+    const bool isOnward = c.side != 0 && moved * c.side > 0;
+    if (isMove) {
+        c.side = moved > 0 ? 1 : -1;
+    }
+    c.extreme = isMove || isOnward ? position : c.extreme;
+}
+/// One cycle of a joint that isIdle.
+inline void follow_idle(Correction &c, double position) noexcept {
+    follow_side(c, position);
+    c.raw = 0;
+    c.last_position = position;
+}
 /// One cycle of a joint that is to be at `position`.
 void step(Correction &correction, const Settings &settings, int joint, double position,
           double period_s) noexcept;

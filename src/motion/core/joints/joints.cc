@@ -37,31 +37,33 @@ void hold(Joint &s) noexcept {
 }
 
 JointFault check(Joint &s, const Settings &settings, int j, const JointCheck &how) noexcept {
-    const bool isAtIndex = (how.at_index >> j & 1U) != 0;
-    const bool isLimitIgnored = (how.limits_ignored >> j & 1U) != 0;
-    const bool isFeedbackIgnored = (how.feedback_ignored >> j & 1U) != 0;
+    const std::uint32_t own = 1U << j;
+    const bool isAtIndex = (how.at_index & own) != 0;
+    const bool isFeedbackIgnored = (how.feedback_ignored & own) != 0;
     if (s.isFeedbackLost && !isFeedbackIgnored) {
         return JointFault::FEEDBACK_LOST;
     }
     const double vmax = settings.get(Parameter::JOINT_MAX_VELOCITY, j);
     const double scaled =
         vmax > 0 ? settings.get(Parameter::JOINT_FERROR, j) * std::abs(s.vel_cmd) / vmax : 0.0;
-    s.ferror_limit = std::max(scaled, settings.get(Parameter::JOINT_MIN_FERROR, j));
+    const double allowed = std::max(scaled, settings.get(Parameter::JOINT_MIN_FERROR, j));
+    s.ferror_limit = allowed;
     if (isAtIndex) {
         // Its encoder counts from another zero already: the lag is that of the cycle before.
         return s.isFaulted ? JointFault::AMP_FAULT : JointFault::NONE;
     }
-    s.ferror = isFeedbackIgnored ? 0.0 : s.pos_cmd - s.pos_fb;
-    s.ferror_highmark = std::max(s.ferror_highmark, std::abs(s.ferror));
+    const double ferror = isFeedbackIgnored ? 0.0 : s.pos_cmd - s.pos_fb;
+    s.ferror = ferror;
+    s.ferror_highmark = std::max(s.ferror_highmark, std::abs(ferror));
     if (s.isFaulted) {
         return JointFault::AMP_FAULT;
     }
-    if (std::abs(s.ferror) > s.ferror_limit) {
+    if (std::abs(ferror) > allowed) {
         s.isFerrorTripped = true;
         return JointFault::FOLLOWING_ERROR;
     }
     const bool isOnLimit = s.isOnPosHardLimit || s.isOnNegHardLimit;
-    return isOnLimit && !isLimitIgnored ? JointFault::HARD_LIMIT : JointFault::NONE;
+    return isOnLimit && (how.limits_ignored & own) == 0 ? JointFault::HARD_LIMIT : JointFault::NONE;
 }
 
 }  // namespace
@@ -178,14 +180,18 @@ std::uint32_t inactive_joints(const Joints &joints) noexcept {
 }
 
 JointFault find_fault(Joints &joints, int &joint, const Settings &settings, const JointCheck &how) noexcept {
-    for (; joint < joints.count; ++joint) {
-        const JointFault fault =
-            joints[joint].isActive ? check(joints[joint], settings, joint, how) : JointFault::NONE;
+    const JointCheck own = how;
+    const int count = joints.count;
+    int j = joint;
+    JointFault fault = JointFault::NONE;
+    for (; j < count; ++j) {
+        fault = joints[j].isActive ? check(joints[j], settings, j, own) : JointFault::NONE;
         if (fault != JointFault::NONE) {
-            return fault;
+            break;
         }
     }
-    return JointFault::NONE;
+    joint = j;
+    return fault;
 }
 
 void shift(Joint &joint, double shift) noexcept {
@@ -218,7 +224,11 @@ std::uint32_t output(Joints &joints, const Settings &settings, bool isEnabled, d
             hold(s);
             continue;
         }
-        step(s.correction, settings, j, s.pos_cmd, period_s);
+        if (isIdle(s.correction, settings.get(Parameter::JOINT_BACKLASH, j))) {
+            follow_idle(s.correction, s.pos_cmd);
+        } else {
+            step(s.correction, settings, j, s.pos_cmd, period_s);
+        }
         s.motor_pos_cmd = s.pos_cmd + s.correction.position + s.motor_offset;
     }
     return off;
@@ -238,8 +248,7 @@ Overrun find_overrun(const Joints &joints, const FoldedLimits &limits) noexcept 
     return {};
 }
 
-void fill(const Joints &joints, const Settings &settings, const JointSituation &situation,
-          Outputs &out) noexcept {
+void fill(const Joints &joints, const JointSituation &situation, Outputs &out) noexcept {
     bool isOnSoftLimit = false;
     for (int j = 0; j < joints.count; ++j) {
         const Joint &from = joints[j];
@@ -252,10 +261,6 @@ void fill(const Joints &joints, const Settings &settings, const JointSituation &
         to.motor_pos_fb = from.motor_pos_fb;
         to.ferror = from.ferror;
         to.ferror_highmark = from.ferror_highmark;
-        to.min_limit = settings.get(Parameter::JOINT_MIN_LIMIT, j);
-        to.max_limit = settings.get(Parameter::JOINT_MAX_LIMIT, j);
-        to.max_velocity = settings.get(Parameter::JOINT_MAX_VELOCITY, j);
-        to.max_acceleration = settings.get(Parameter::JOINT_MAX_ACCELERATION, j);
         to.isActive = from.isActive;
         to.isEnabled = situation.isEnabled && from.isAmpWanted;
         to.isHomed = isHomed;

@@ -104,7 +104,7 @@ struct JointSituation {
     bool isEnabled = false, areLimitsOverridden = false;
     std::uint32_t homed = 0;
 };
-void fill(const Joints &joints, const Settings &settings, const JointSituation &situation,
-          Outputs &out) noexcept;
+/// Limits are those that `out` has already.
+void fill(const Joints &joints, const JointSituation &situation, Outputs &out) noexcept;
 
 }  // namespace mw::motion

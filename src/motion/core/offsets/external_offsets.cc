@@ -154,6 +154,7 @@ void narrow(JogRange &jog, const ExternalOffsets &offsets, int axis) noexcept {
 }
 
 void fill(const ExternalOffsets &offsets, Outputs &out) noexcept {
+    out.areOffsetsQuiet = offsets.axes == 0;
     out.isOffsetActive = false;
     out.isOffsetLimited = offsets.isLimited;
     for (std::uint32_t left = out.axes; left != 0; left &= left - 1) {

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -62,6 +65,81 @@ TEST_F(SpindlesPart, ConstantSurfaceSpeedFollowsTheDistanceFromTheAxis) {
     EXPECT_EQ(rpm(25), 1000);
     EXPECT_EQ(rpm(-35), 500);
     EXPECT_EQ(rpm(5), 2000) << "at the axis";
+}
+
+TEST_F(SpindlesPart, ConstantSurfaceSpeedKeepsTheLimitsOfTheSpindle_C15) {
+    set(Parameter::SPINDLE_MAX_FORWARD, 1500);
+    set(Parameter::SPINDLE_MIN_FORWARD, 200);
+    set(Parameter::SPINDLE_MAX_REVERSE, 900);
+    for (const double sign : {1.0, -1.0}) {
+        SpindleOn on{0, sign * 1000};
+        on.css_factor = 20000;
+        on.css_max_rpm = 2000;
+        take(spindles, on, true);
+        EXPECT_EQ(rpm(25), sign * 800);
+        EXPECT_EQ(rpm(0), sign * (sign > 0 ? 1500 : 900)) << "at the axis, where D allows more";
+        EXPECT_EQ(rpm(1000), sign * (sign > 0 ? 200 : 20)) << "far out";
+        take(spindles, SetScale{Scale::SPINDLE, 0, 2});
+        EXPECT_EQ(rpm(25), sign * (sign > 0 ? 1500 : 900)) << "the override is within the limits";
+        take(spindles, SetScale{Scale::SPINDLE, 0, 0.1});
+        EXPECT_EQ(rpm(25), sign * (sign > 0 ? 200 : 80));
+        take(spindles, SetScale{Scale::SPINDLE, 0, 1});
+    }
+}
+
+/// Each has its command, its limits and its override: what is told one changes no other.
+TEST_F(SpindlesPart, EightOfThemKnowNothingOfEachOther_C15) {
+    spindles.count = MAX_SPINDLES;
+    std::mt19937 random(8);
+    const auto real = [&](double low, double high) {
+        return std::uniform_real_distribution(low, high)(random);
+    };
+    struct Expected {
+        double most = 1e9, least = 0, scale = 1, speed = 0;
+        bool isInhibited = false;
+    };
+    std::array<Expected, MAX_SPINDLES> expected;
+    for (int round = 0; round < 4000; ++round) {
+        const int n = std::uniform_int_distribution(0, MAX_SPINDLES - 1)(random);
+        Expected &e = expected[static_cast<std::size_t>(n)];
+        switch (std::uniform_int_distribution(0, 5)(random)) {
+        case 0:
+            e.speed = real(1, 3000);
+            take(spindles, SpindleOn{n, e.speed}, true);
+            break;
+        case 1:
+            e.speed = 0;
+            take(spindles, SpindleOff{n});
+            break;
+        case 2:
+            e.scale = real(0, 2);
+            take(spindles, SetScale{Scale::SPINDLE, n, e.scale});
+            break;
+        case 3:
+            e.most = real(500, 2500);
+            settings.set({static_cast<std::uint16_t>(Parameter::SPINDLE_MAX_FORWARD),
+                          static_cast<std::int16_t>(n), e.most},
+                         MAX_JOINTS, MAX_SPINDLES);
+            break;
+        case 4:
+            e.least = real(0, 400);
+            settings.set({static_cast<std::uint16_t>(Parameter::SPINDLE_MIN_FORWARD),
+                          static_cast<std::int16_t>(n), e.least},
+                         MAX_JOINTS, MAX_SPINDLES);
+            break;
+        default:
+            e.isInhibited = !e.isInhibited;
+            in.spindle[static_cast<std::size_t>(n)].isInhibited = e.isInhibited;
+        }
+        rpm();
+        for (int other = 0; other < MAX_SPINDLES; ++other) {
+            const Expected &x = expected[static_cast<std::size_t>(other)];
+            const double wanted = x.speed * x.scale;
+            const double held =
+                wanted == 0 || x.isInhibited ? 0 : std::min(x.most, std::max(x.least, wanted));
+            ASSERT_DOUBLE_EQ(spindles[other].out_rpm, held) << "spindle " << other << ", round " << round;
+        }
+    }
 }
 
 TEST_F(SpindlesPart, AnInhibitedSpindleStandsAndGoesOnByItself) {

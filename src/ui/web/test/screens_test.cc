@@ -254,5 +254,49 @@ TEST_F(ScreensTest, WithoutAMachineAScreenIsToldAndCommandsAreRefused_J3) {
     EXPECT_EQ(told[1]["full"], true);
 }
 
+TEST_F(ScreensTest, ALeaseCountsFromWhenItWasAskedFor_J3) {
+    go(10);
+    open(1);
+    double sent_ms = 5000;
+    const auto lease = [&](int id, double late_ms, bool isRenewal) {
+        now_ns += static_cast<std::int64_t>(late_ms * 1e6);
+        say(1,
+            R"({"id":)" + std::to_string(id) + R"(,"sent":)" + std::to_string(sent_ms) +
+                R"(,"command":{"message":"JogContinuous","is_joint":false,"index":0,"velocity":5,"lease_ms":100)" +
+                (isRenewal ? R"(,"is_renewal":true}})" : "}}"));
+        now_ns += 30 * MS - static_cast<std::int64_t>(late_ms * 1e6);
+        sent_ms += 30;
+        for (const auto &delivery : task.cycle()) {
+            if (const auto *jog = std::get_if<msgs::JogContinuous>(&delivery.command)) {
+                return jog->lease_ms;
+            }
+        }
+        return 0;
+    };
+    EXPECT_EQ(lease(1, 0, false), 100);
+    EXPECT_EQ(lease(2, 0, true), 100);
+    EXPECT_NEAR(lease(3, 25, true), 75, 1);
+    EXPECT_NEAR(lease(4, 79, true), 21, 1);
+    EXPECT_EQ(lease(5, 85, true), 0) << "too little is left: it is refused";
+    EXPECT_EQ(lease(6, 0, true), 100);
+    bool isRefused = false;
+    for (const Json &one : sockets.take(1)) {
+        isRefused |=
+            one.contains("outcome") && one["outcome"]["id"] == 5 && one["outcome"]["progress"] == "REFUSED";
+    }
+    EXPECT_TRUE(isRefused);
+}
+
+TEST(Lateness, FollowsClocksThatDriftApart_J3) {
+    Lateness lateness;
+    // The sender's clock loses 100 parts in a million, for an hour.
+    double worst_ms = 0;
+    for (std::int64_t ms = 0; ms < 3600000; ms += 100) {
+        worst_ms = std::max(worst_ms, lateness.of(static_cast<double>(ms) * 0.9999, ms * MS));
+    }
+    EXPECT_LT(worst_ms, 1.0);
+    EXPECT_NEAR(lateness.of(3600000 * 0.9999, 3600050 * MS), 50, 1.0);
+}
+
 }  // namespace
 }  // namespace mw::ui::web

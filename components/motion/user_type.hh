@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The type of a switchable module that a user's own component gives: it is loaded before the module and
+// exports the three functions userkKinematics* of kinematics.h. Without one joints are axes.
+#pragma once
+
+#include "components/motion/kinematics_module.hh"
+#include "hal/api/millwright_ext.h"
+#include "kins/trivial.hh"
+
+namespace mw::components {
+
+/// One of the types of a module.
+class TypePart {
+  public:
+    virtual kins::Status forward(const double *joints, kins::Pose &pose) const noexcept = 0;
+    virtual kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept = 0;
+    virtual int side(const kins::Pose &pose) const noexcept = 0;
+    /// Where the joints are while another type is in force. [servo]
+    virtual void watch(const double *) const noexcept {}
+
+  protected:
+    ~TypePart() = default;
+};
+
+class UserType final : public TypePart {
+  public:
+    explicit UserType(const kins::Trivial &letters) noexcept : letters_(letters) {}
+    UserType(const UserType &) = delete;
+    UserType &operator=(const UserType &) = delete;
+
+    /// Finds the functions and sets them up. 0, what the user's setup answers when that is below, or a
+    /// negated errno; each with a message. [while loading]
+    int declare(int comp_id, const char *module, const char *letters, const char *sparm) noexcept {
+        setup_ = find<decltype(setup_)>("userkKinematicsSetup");
+        forward_ = find<decltype(forward_)>("userkKinematicsForward");
+        inverse_ = find<decltype(inverse_)>("userkKinematicsInverse");
+        if (setup_ == nullptr && forward_ == nullptr && inverse_ == nullptr) {
+            return 0;
+        }
+        if (setup_ == nullptr || forward_ == nullptr || inverse_ == nullptr) {
+            rtapi_print_msg(RTAPI_MSG_ERR,
+                            "%s: a user's type needs userkKinematicsSetup, userkKinematicsForward and "
+                            "userkKinematicsInverse, and one of them is missing\n",
+                            module);
+            return -EINVAL;
+        }
+        kparms parameters = {};
+        parameters.sparm = sparm;
+        parameters.kinsname = module;
+        parameters.halprefix = module;
+        parameters.required_coordinates = "";
+        parameters.allow_duplicates = 1;
+        parameters.max_joints = letters_.identity()->num_joints;
+        parameters.gui_kinstype = -1;
+        const int status = setup_(comp_id, letters, &parameters);
+        if (status < 0) {
+            rtapi_print_msg(RTAPI_MSG_ERR, "%s: the user's type did not set itself up (%d)\n", module,
+                            status);
+            return status;
+        }
+        const auto is_pure = find<int (*)()>("mw_userk_is_pure");
+        isPure_ = is_pure != nullptr && is_pure() != 0;
+        return mw_ext_use_module("userkKinematicsInverse", comp_id);
+    }
+    bool isThere() const noexcept { return forward_ != nullptr; }
+    bool isPure() const noexcept { return !isThere() || isPure_; }
+
+    kins::Status forward(const double *joints, kins::Pose &pose) const noexcept override {
+        if (forward_ == nullptr) {
+            return letters_.forward(joints, pose);
+        }
+        EmcPose world = {{pose[0], pose[1], pose[2]}, pose[3], pose[4], pose[5], pose[6], pose[7], pose[8]};
+        if (forward_(joints, &world, &forward_flags_, &inverse_flags_) != 0) {
+            return kins::Status::UNREACHABLE;
+        }
+        pose = pose_of(world);
+        return kins::Status::OK;
+    }
+    kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept override {
+        if (inverse_ == nullptr) {
+            return letters_.inverse(pose, joints);
+        }
+        const EmcPose world = {
+            {pose[0], pose[1], pose[2]}, pose[3], pose[4], pose[5], pose[6], pose[7], pose[8]};
+        const bool isFound = inverse_(&world, joints, &inverse_flags_, &forward_flags_) == 0;
+        return isFound ? kins::Status::OK : kins::Status::UNREACHABLE;
+    }
+    int side(const kins::Pose &) const noexcept override { return 0; }
+
+  private:
+    template <class Function>
+    static Function find(const char *name) noexcept {
+        return reinterpret_cast<Function>(mw_ext_find_symbol(name));
+    }
+
+    const kins::Trivial &letters_;
+    decltype(&userkKinematicsSetup) setup_ = nullptr;
+    decltype(&userkKinematicsForward) forward_ = nullptr;
+    decltype(&userkKinematicsInverse) inverse_ = nullptr;
+    // Of a user whose functions keep something in them; such a module is asked by the servo thread only.
+    mutable KINEMATICS_FORWARD_FLAGS forward_flags_ = 0;
+    mutable KINEMATICS_INVERSE_FLAGS inverse_flags_ = 0;
+    bool isPure_ = false;
+};
+
+}  // namespace mw::components

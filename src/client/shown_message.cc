@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "client/shown_message.hh"
+
+#include "language/language.hh"
+
+namespace mw::client {
+
+std::string shown_message(const Viewer::Message &message) {
+    return message.kind == msgs::MessageKind::OPERATOR_DISPLAY ? message.text : language::shown(message.text);
+}
+
+}  // namespace mw::client

@@ -1,0 +1,161 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""New machines of `millwright setup`: each kind, simulated and stepper, in mm and inch, starts and runs its first program.
+
+usage: first_steps.py MILLWRIGHT
+
+What the machine does is judged by others than itself: limits and scales as Python reads the INI file, the way from the
+trace of the run, and the pulses at the pins of the simulated port, counted by components that are put beside it.
+"""
+import configparser
+import csv
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+KINDS = {'mill': 'XYZ', 'router': 'XYZ', 'gantry': 'XYYZ', 'lathe': 'XZ', 'foam': 'XYUV'}
+SWITCHES = ('none', 'home', 'home_and_limits')
+
+
+class Bench:
+    def __init__(self, millwright, folder):
+        self.millwright, self.folder, self.failures = millwright, folder, 0
+
+    def expect(self, condition, what, more=''):
+        if not condition:
+            self.failures += 1
+            print(f'FAIL {what}\n{more}')
+
+    def run(self, *words):
+        return subprocess.run([self.millwright, *map(str, words)], capture_output=True, text=True, check=False, timeout=120,
+                              cwd=self.folder)
+
+
+def read_ini(path):
+    ini = configparser.ConfigParser(strict=False, interpolation=None)
+    ini.optionxform = str
+    ini.read(path)
+    return ini
+
+
+def add_counters(folder, joints, pins):
+    """Counts the rising edges of each step pin, up where its direction pin is low and down where it is high, from outside of the step generator."""
+    lines = ['loadrt conv_s32_float names=' + ','.join(f'number-{i}' for i in range(joints)), 'loadrt updown names=' + ','.join(f'tally-{i}' for i in range(joints)),
+             'loadrt and2 names=' + ','.join(f'is-up-{i},is-down-{i}' for i in range(joints)),
+             'loadrt not names=' + ','.join(f'is-forward-{i}' for i in range(joints))]
+    for i, (step, direction) in enumerate(pins):
+        lines += [f'net step-{i} parport.0.pin-{step:02d}-out-fake => is-up-{i}.in0 is-down-{i}.in0',
+                  f'net direction-{i} parport.0.pin-{direction:02d}-out-fake => is-down-{i}.in1 is-forward-{i}.in',
+                  f'net forward-{i} is-forward-{i}.out => is-up-{i}.in1',
+                  f'net up-{i} is-up-{i}.out => tally-{i}.countup',
+                  f'net down-{i} is-down-{i}.out => tally-{i}.countdown',
+                  f'net tally-{i} tally-{i}.count => number-{i}.in',
+                  f'net number-{i} number-{i}.out => motion.analog-in-{i:02d}']
+        for name in ('is-forward', 'is-up', 'is-down', 'tally', 'number'):
+            lines.append(f'addf {name}-{i} base-thread')
+    (folder / 'tally.hal').write_text('\n'.join(lines) + '\n')
+    ini = folder / 'machine.ini'
+    ini.write_text(ini.read_text().replace('HALUI = halui\n', 'HALUI = halui\nHALFILE = tally.hal\n'))
+    program = folder / 'nc_files/first_program.ngc'
+    asked = 'G4 P1\n' + ''.join(f'M66 E{i} L0\n(debug,steps #5399)\n' for i in range(joints))
+    program.write_text(program.read_text().replace('M2\n', asked + 'M2\n'))
+
+
+def check_way(bench, what, ini, trace, axes):
+    """Every sample is inside the limits, and each axis has moved through at least a fourth of its travel."""
+    with trace.open() as lines:
+        rows = list(csv.DictReader(lines))
+    for letter in dict.fromkeys(axes):
+        places = [float(row[f'axis.{letter.lower()}']) for row in rows]
+        low, high = (float(ini[f'AXIS_{letter}'][key]) for key in ('MIN_LIMIT', 'MAX_LIMIT'))
+        bench.expect(low <= min(places) and max(places) <= high, f'{what}: {letter} stays in {low} to {high}: {min(places)} to {max(places)}')
+        bench.expect(max(places) - min(places) >= 0.07 * (high - low), f'{what}: {letter} moves: {min(places)} to {max(places)}')
+    return rows[-1]
+
+
+def check_pulses(bench, what, ini, last, output, joints):
+    """From the start of the motor to its end: what it went since homing, and the place where it was homed."""
+    counts = [int(number) for number in re.findall(r'steps (-?\d+)', output)]
+    bench.expect(len(counts) == joints, f'{what}: {joints} counts', output)
+    for joint, count in enumerate(counts):
+        section = ini[f'JOINT_{joint}']
+        wanted = (float(last[f'joint.{joint}']) - float(section['HOME_OFFSET'])) * float(section['STEP_SCALE'])
+        bench.expect(abs(count - wanted) <= 2, f'{what}: motor {joint} has made {count} steps, not {wanted:.1f}')
+
+
+def check_machine(bench, kind, drives, units, switches):
+    what = f'{kind} {drives} {units} {switches}'
+    folder = bench.folder / what.replace(' ', '_')
+    done = bench.run('setup', folder, f'kind={kind}', f'drives={drives}', f'units={units}', f'switches={switches}', '--no-check')
+    bench.expect(done.returncode == 0, what, done.stdout + done.stderr)
+    ini = read_ini(folder / 'machine.ini')
+    axes = KINDS[kind]
+    bench.expect(ini['KINS']['JOINTS'] == str(len(axes)) and ini['TRAJ']['COORDINATES'].replace(' ', '') == axes, f'{what}: joints')
+    bench.expect(ini['TRAJ']['LINEAR_UNITS'] == units, f'{what}: unit')
+    # A motor that is homed where it stands has counted nothing before; one with a switch has gone to it.
+    is_counted = drives == 'stepper' and switches == 'none'
+    if is_counted:
+        names = ['x', 'y', 'y2', 'z'] if kind == 'gantry' else list(axes.lower())
+        answers = dict(line.split(' = ') for line in (folder / 'answers.txt').read_text().splitlines() if ' = ' in line)
+        add_counters(folder, len(axes), [(int(answers[f'{name}.step_pin']), int(answers[f'{name}.dir_pin'])) for name in names])
+    trace = folder / 'trace.csv'
+    ran = bench.run('run', folder / 'machine.ini', folder / 'nc_files/first_program.ngc', '--strict', '--trace', trace)
+    bench.expect(ran.returncode == 0 and 'warnings            0' in ran.stdout, f'{what} runs', ran.stdout + ran.stderr)
+    if ran.returncode == 0:
+        last = check_way(bench, what, ini, trace, axes)
+        if is_counted:
+            check_pulses(bench, what, ini, last, ran.stdout, len(axes))
+
+
+def check_refusals(bench):
+    folder = bench.folder / 'kept'
+    folder.mkdir()
+    (folder / 'mine.txt').write_text('mine')
+    done = bench.run('setup', folder)
+    bench.expect(done.returncode == 1 and 'is there already' in done.stderr and [p.name for p in folder.iterdir()] == ['mine.txt'],
+                 'a folder with something in it is not touched', done.stderr)
+    done = bench.run('setup', bench.folder / 'none', 'drives=stepper', 'x.microsteps=64', 'y.step_pin=2')
+    bench.expect(done.returncode == 1 and 'x.speed: motor X would need' in done.stderr and 'y.step_pin: pin 2 is used' in done.stderr
+                 and not (bench.folder / 'none').exists(), 'each fault is told, and nothing is written', done.stderr)
+    bench.expect(bench.run('setup').returncode == 2 and bench.run('setup', 'x', 'nonsense').returncode == 2, 'wrong usage')
+    left = [path.name for path in bench.folder.iterdir() if path.name.startswith('.')]
+    bench.expect(not left, f'nothing is left behind: {left}')
+
+
+def check_by_command(bench):
+    """With the trial of its own; again from the answers that were kept."""
+    first = bench.folder / 'deep/shop/first'
+    done = bench.run('setup', first, 'kind=router', 'drives=stepper', 'switches=home', 'switch.contacts=closed', 'x.max=500',
+                     'y.way_per_turn=-10', 'name=Fräse 1')
+    bench.expect(done.returncode == 0 and 'It runs' in done.stdout, 'made and tried', done.stdout + done.stderr)
+    second = bench.folder / 'second'
+    done = bench.run('setup', second, '--answers', first / 'answers.txt', '--no-check')
+    files = sorted(path.relative_to(second) for path in second.rglob('*') if path.is_file())
+    bench.expect(all((second / file).read_bytes() == (first / file).read_bytes() for file in files) and len(files) == 6,
+                 'the kept answers give the same machine', f'{files} {done.stderr}')
+    doctor = bench.run('doctor', second / 'machine.ini', '--no-system', '--latency', '0')
+    bench.expect(doctor.returncode == 0 and '0 errors, 0 warnings' in doctor.stderr, 'doctor finds nothing', doctor.stdout + doctor.stderr)
+    asked = bench.run('setup', '--questions', 'kind=foam')
+    bench.expect(asked.returncode == 0 and 'foam.width = 500' in asked.stdout, 'questions', asked.stdout)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as place:
+        bench = Bench(pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(place))
+        number = 0
+        for kind in KINDS:
+            for drives in ('simulated', 'stepper'):
+                for units in ('mm', 'inch'):
+                    check_machine(bench, kind, drives, units, SWITCHES[number % 3])
+                    number += 1
+            check_machine(bench, kind, 'stepper', 'mm', 'none') if SWITCHES[(number - 2) % 3] != 'none' else None
+        check_refusals(bench)
+        check_by_command(bench)
+    print(f'{bench.failures} failed')
+    return 1 if bench.failures else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The simulated mill of plants (configs/sim/plants.ini): what motion shows is what the plants do, and their
+// faults are seen. The truth is read at pins of the plants that motion does not have.
+#include <cmath>
+
+#include "sim/virtual_machine.hh"
+
+namespace mw::machine {
+namespace {
+
+class PlantsTest : public VirtualMachineTest {
+  protected:
+    void SetUp() override { switch_on_config(MW_SOURCE_DIR "/configs/sim/plants.ini"); }
+    double pin(const std::string &name) {
+        const auto value = machine_->hal().get(name);
+        EXPECT_TRUE(value.has_value()) << name;
+        return value.has_value() ? value->as_number() : NAN;
+    }
+};
+
+/// Play of 0.02 between motor and load, counts of 0.001.
+constexpr double PLAY = 0.011, COUNT = 0.001;
+
+TEST_F(PlantsTest, HomesToTheIndexMarksAndGoesWhereItSays_C10) {
+    for (const char *axis : {"x", "y", "z"}) {
+        EXPECT_NEAR(pin(std::string(axis) + "-axis.load"), 0, PLAY + COUNT) << axis;
+    }
+    ASSERT_EQ(mdi("G21 G90 G1 X30 Y-20 Z-10 F2000"), task::Progress::DONE) << messages();
+    cycles(300);
+    EXPECT_NEAR(pin("x-axis.load"), 30, PLAY + COUNT);
+    EXPECT_NEAR(pin("y-axis.load"), -20, PLAY + COUNT);
+    EXPECT_NEAR(pin("z-axis.load"), -10, PLAY + COUNT);
+    // From the other side: the play is made up.
+    ASSERT_EQ(mdi("G1 X25"), task::Progress::DONE) << messages();
+    cycles(300);
+    EXPECT_NEAR(pin("x-axis.load"), 25, PLAY + COUNT);
+}
+
+TEST_F(PlantsTest, AProbeFindsTheTable_G3) {
+    ASSERT_EQ(mdi("G21 G90 G38.2 Z-65 F300"), task::Progress::DONE) << messages();
+    // 5 mm/s: a servo period and a count on top of the play.
+    EXPECT_NEAR(motion().probed_pos[geom::AXIS_Z], -60.05, 0.005 + COUNT + 2 * PLAY);
+    set_pin("probe.stuck-open", "1");
+    cycles(5);
+    ASSERT_EQ(mdi("G0 Z0"), task::Progress::DONE) << messages();
+    EXPECT_NE(mdi("G38.2 Z-50 F3000"), task::Progress::DONE);
+    EXPECT_NE(messages().find("without making contact"), std::string::npos) << messages();
+}
+
+TEST_F(PlantsTest, ADriveThatFailsSwitchesTheMachineOff_C6) {
+    start("G21 G90 G1 X100 F3000\nM2\n");
+    cycles(600);
+    ASSERT_TRUE(motion().isEnabled);
+    set_pin("y-amp.trip", "1");
+    cycles(3);
+    EXPECT_FALSE(motion().isEnabled);
+    EXPECT_NE(messages().find("amp"), std::string::npos) << messages();
+    EXPECT_EQ(pin("x-amp.powered"), 0);
+}
+
+TEST_F(PlantsTest, AnEncoderWithoutItsCableIsAFollowingError_C13) {
+    start("G21 G90 G1 X100 F3000\nM2\n");
+    cycles(600);
+    set_pin("x-encoder.lost", "1");
+    cycles(200);
+    EXPECT_FALSE(motion().isEnabled);
+    EXPECT_NE(messages().find("following error"), std::string::npos) << messages();
+}
+
+TEST_F(PlantsTest, TheSpindleComesToItsSpeedBeforeTheCut_C15) {
+    start("G21 G90 M3 S1200\nG1 X20 F1000\nM2\n");
+    // 20 turns/s at 40 turns/s^2 take half a second.
+    cycles(400);
+    EXPECT_NEAR(motion().joint[0].pos_cmd, 0, 1e-9);
+    EXPECT_GT(pin("spindle.true-speed-rps"), 5);
+    EXPECT_EQ(finish(), task::Progress::DONE) << messages();
+    EXPECT_NEAR(motion().joint[0].pos_cmd, 20, 1e-9);
+}
+
+}  // namespace
+}  // namespace mw::machine

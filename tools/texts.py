@@ -1,0 +1,220 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The texts that people read, out of the sources, and their translations in po/.
+
+usage: texts.py --list              the texts, one a line, as keys of the catalogues
+       texts.py --check             exit status 1 lists what is missing, stale or damaged in po/LANGUAGE.po
+       texts.py --update LANGUAGE   rewrites po/LANGUAGE.po: keeps what fits, adds what is missing without a translation
+
+A text is a string literal with more than one word in a folder of FOLDERS. What is put in at run time is {} in a key,
+whether the source has fmt's {:.3f} or "a" + name + "b". Nothing in the sources marks a text: what is none stands below.
+"""
+import pathlib
+import re
+import sys
+
+FOLDERS = ('app', 'client', 'homing', 'interp', 'io', 'journal', 'kins', 'machine', 'mailbox', 'motion', 'options', 'task', 'tool')
+# Manual pages, reference pages and `explain` are made from these; and what programs print for other programs.
+NOT_SHOWN = re.compile(r'/(test|bench|logger|canon)/|keys\.hh$|pin_tables\.hh$|motion/api/parameters\.hh$|states_page\.cc$'
+                       r'|codes/code_texts\.cc$|app/summary\.cc$|app/time_report\.cc$|app/recorder\.cc$|app/plot\.cc$'
+                       r'|app/var_command\.cc$|command_classes\.hh$|/kins/\w+\.hh$|app/nml_command\.cc$|machine/ini_keys\.cc$')
+# Clients look for these words (docs/compatibility.md), canon comments are rs274's output, and the compiler reads the others.
+NEVER = re.compile(r'on limit switch error|^interpreter: |^each command is of one class$|^A machine is up already|^Machine configuration file is'
+                   r'|^; life of tools|^(exec|port) \{\}$|^millwright \w+ [^a-z]*(\.ini|\.ngc|options|help)|^\{\} \[options\]|^(un)?loadrt |^echo |^-- -ini|^10? (in|mm), |^--connectpw and')
+LANGUAGES = ('de', 'es')
+TOKEN = re.compile(r'''//[^\n]*|/\*.*?\*/|R"(\w*)\((.*?)\)\1"|"((?:[^"\\\n]|\\.)*)"|'(?:[^'\\\n]|\\.)+'|\w+|\s+|.''', re.S)
+ESCAPE = {'n': '\n', 't': '\t', '"': '"', '\\': '\\', "'": "'", 'r': '\r', '0': '\0', 'a': '\a'}
+HOLE = re.compile(r'\{[^{}]*\}')
+
+
+def tokens(source):
+    source = re.sub(r'^[ \t]*#[ \t]*include[^\n]*|static_assert\([^;]*;', '', source, flags=re.M)
+    for match in TOKEN.finditer(source):
+        token = match.group()
+        if token.isspace() or token.startswith(('//', '/*')):
+            continue
+        if match.group(3) is not None and token[0] == '"':
+            yield '"', re.sub(r'\\(x[0-9a-fA-F]{1,2}|[0-7]{3}|.)', unescape, match.group(3))
+        elif match.group(2) is not None:
+            yield '"', match.group(2)
+        else:
+            yield token, None
+
+
+def unescape(match):
+    what = match.group(1)
+    if what[0] == 'x':
+        return chr(int(what[1:], 16))
+    if len(what) == 3 and what.isdigit():
+        return chr(int(what, 8))
+    return ESCAPE.get(what, what)
+
+
+def end_of_operand(seq, at):
+    """Behind what is added to a text: up to the next + , ; or closing bracket of the same depth."""
+    depth = 0
+    while at < len(seq):
+        token = seq[at][0]
+        if token in '([{':
+            depth += 1
+        elif token in ')]}':
+            if depth == 0:
+                return at
+            depth -= 1
+        elif depth == 0 and token in ('+', ',', ';', '?', ':', '<', '>', '"') and not (token == ':' and near_colon(seq, at)):
+            return at
+        at += 1
+    return at
+
+
+def near_colon(seq, at):
+    return seq[at - 1][0] == ':' or (at + 1 < len(seq) and seq[at + 1][0] == ':')
+
+
+def whole_text(seq, at):
+    """The text that begins at a literal, and the other literals that are parts of it."""
+    parts = set()
+    text = ('{}' if at > 0 and seq[at - 1][0] == '+' or (at > 1 and seq[at - 1][0] == '=' and seq[at - 2][0] == '+') else '') + seq[at][1]
+    is_wrapped = at > 0 and seq[at - 1][0] == '('
+    at += 1
+    while at < len(seq):
+        if seq[at][0] == '"':
+            text += seq[at][1]
+            parts.add(at)
+            at += 1
+        elif seq[at][0] == ')' and at + 1 < len(seq) and seq[at + 1][0] == '+' and is_wrapped:
+            at += 1  # std::string("...") + name
+        elif seq[at][0] == '+' and at + 1 < len(seq):
+            if seq[at + 1][0] == '"':
+                at += 1
+                continue
+            at = end_of_operand(seq, at + 1)
+            text += '{}'
+        else:
+            break
+    return text, parts
+
+
+def key_of(text):
+    """As the catalogues have it: fmt's fields are {}, {{ is {."""
+    text = text.replace('{{', '\1').replace('}}', '\2')
+    text = re.sub(r'(\{\})+', '{}', HOLE.sub('{}', text)).replace('\033[K', '').strip('\r\n')
+    return text.replace('\1', '{').replace('\2', '}')
+
+
+def is_text(key):
+    words = re.findall(r"[A-Za-z][a-z']+", HOLE.sub(' ', key))
+    return (len(words) >= 2 and ' ' in key.strip() or re.fullmatch(r'[A-Za-z]{3,} \{\}', key)) and not re.fullmatch(r'[A-Z0-9_ {}:=.,*/\[\]-]+', key)
+
+
+def texts(root):
+    found = {}
+    for folder in FOLDERS:
+        for path in sorted((root / 'src' / folder).rglob('*')):
+            name = str(path.relative_to(root))
+            if path.suffix not in ('.cc', '.hh') or NOT_SHOWN.search(name):
+                continue
+            seq, done = list(tokens(path.read_text())), set()
+            for at, token in enumerate(seq):
+                if token[0] != '"' or at in done:
+                    continue
+                text, parts = whole_text(seq, at)
+                done |= parts
+                key = key_of(text)
+                if is_text(key) and not NEVER.search(key):
+                    found.setdefault(key, name)
+    found.update({word: 'src/diag/sink.cc' for word in ('error', 'warning', 'note')})
+    found.setdefault('called from {}', 'src/diag/sink.cc')
+    return found
+
+
+def quote(text):
+    return '"' + text.replace('\\', '\\\\').replace('"', '\\"').replace('\n', '\\n').replace('\t', '\\t').replace('\033', '\\033').replace('\r', '\\r') + '"'
+
+
+def read_po(path):
+    """{key: translation} of a catalogue whose strings stand in one line each or go on in the next ones."""
+    entries, key, into = {}, None, None
+    for line in path.read_text().splitlines() if path.exists() else ():
+        word = re.match(r'(msgid|msgstr)?\s*"(.*)"$', line)
+        if word is None:
+            continue
+        text = re.sub(r'\\(033|.)', lambda m: '\033' if m.group(1) == '033' else unescape(m), word.group(2))
+        if word.group(1) == 'msgid':
+            key, into = text, 'key'
+        elif word.group(1) == 'msgstr':
+            entries[key], into = text, 'text'
+        elif into == 'key':
+            key += text
+        else:
+            entries[key] += text
+    return entries
+
+
+def write_po(path, language, found, entries):
+    lines = ['# SPDX-License-Identifier: GPL-2.0-or-later', '# Made by tools/texts.py; the translations are written by hand.',
+             'msgid ""', 'msgstr ""', '"Project-Id-Version: millwright\\n"', '"PO-Revision-Date: 2026-11-24 00:00+0000\\n"',
+             '"Last-Translator: the authors of Millwright\\n"', f'"Language-Team: {language}\\n"', f'"Language: {language}\\n"', '"MIME-Version: 1.0\\n"',
+             '"Content-Type: text/plain; charset=UTF-8\\n"', '"Content-Transfer-Encoding: 8bit\\n"']
+    for key, name in sorted(found.items(), key=lambda item: (item[1], item[0])):
+        lines += ['', f'#: {name}', 'msgid ' + quote(key), 'msgstr ' + quote(entries.get(key, ''))]
+    path.write_text('\n'.join(lines) + '\n')
+
+
+def holes_of(text):
+    """How often each number is put in; {} counts up."""
+    found, count = [], 0
+    for hole in re.findall(r'\{(\d*)\}', text):
+        found.append(int(hole) if hole else count)
+        count += not hole
+    return found
+
+
+def damaged(key, text):
+    """What is wrong with a translation, or None."""
+    if not text:
+        return 'has no translation'
+    asked = key.count('{}')
+    if sorted(set(holes_of(text))) != list(range(asked)):
+        return f'{asked} values are put into the text, other ones into its translation'
+    for side in ('^\\s*', '\\s*$'):
+        if re.search(side, key).group() != re.search(side, text).group():
+            return 'blanks at its ends differ'
+    lost = [word for word in re.findall(r'\[[A-Z0-9_]+\]\w*|--[a-z-]+|[a-z]+\.\w+\.[\w.-]+', HOLE.sub('', key)) if word not in text]
+    return f'{lost[0]} is not in the translation' if lost else None
+
+
+def check(root):
+    found, problems = texts(root), []
+    for language in LANGUAGES:
+        entries = read_po(root / 'po' / f'{language}.po')
+        entries.pop('', None)
+        for key, name in found.items():
+            problem = damaged(key, entries.get(key, ''))
+            if problem is not None:
+                problems.append(f'{name}: {language}: {problem}: {quote(key)}')
+        problems += [f'po/{language}.po: no source has this text: {quote(key)}' for key in entries if key not in found]
+    for problem in problems:
+        print(problem)
+    return 1 if problems or not found else 0
+
+
+def main():
+    root = pathlib.Path(__file__).resolve().parent.parent
+    words = sys.argv[1:]
+    if words == ['--list']:
+        for key, name in sorted(texts(root).items(), key=lambda item: (item[1], item[0])):
+            print(f'{name}\t{quote(key)}')
+        return 0
+    if words == ['--check']:
+        return check(root)
+    if len(words) == 2 and words[0] == '--update':
+        path = root / 'po' / f'{words[1]}.po'
+        write_po(path, words[1], texts(root), read_po(path))
+        return 0
+    print(__doc__, file=sys.stderr)
+    return 2
+
+
+if __name__ == '__main__':
+    sys.exit(main())
