@@ -117,6 +117,14 @@ void Task::Start::propose(ApproachPlan plan) {
     task.approach_.propose(std::move(plan), task.now_ns_);
 }
 
+/// Lines that the program has skipped or not before it was cut short are so behind that, too.
+void Task::Start::restore_switches(const StartRecord &record) {
+    if (task.run_.kind() == RunKind::RECOVERY) {
+        task.world_.set_block_delete(record.isBlockDelete);
+        task.world_.set_optional_stop(record.isOptionalStop);
+    }
+}
+
 /// The calls of the approach come first, then what the program says from the line on.
 void Task::Start::go_on(const ApproachPlan &plan) {
     auto last = interp::Step::OK;
@@ -124,6 +132,7 @@ void Task::Start::go_on(const ApproachPlan &plan) {
         const bool isRecovery = task.run_.isRecovery();
         last = isRecovery ? task.reader_.search().last_step() : last;
         if (isRecovery) {
+            restore_switches(task.reader_.recorded());
             task.recovery_.begin_again(task.reader_.recorded(), task.reader_.search().sum().value(),
                                        sum_of_tools(task.parts_.tools));
         }

@@ -55,6 +55,7 @@ struct Task::Start {
     /// Where a tool is changed when the machine comes from `at`.
     geom::Pose find_change_place(geom::Pose at, ApproachPlan &plan) const;
     void go_on(const ApproachPlan &plan);
+    void restore_switches(const StartRecord &record);
     ApproachPlan plan_back() const;
     Result<> take_path_back();
     bool isSomethingOff() const;

@@ -188,6 +188,34 @@ TEST_F(NewLengthTest, ItGoesOnAtTheBlockUnderWayWithTheNewLength_D3) {
     EXPECT_FALSE(offer().isOffered);
 }
 
+/// The way back belongs to the block that is not done, not to what was read ahead.
+TEST_F(NewLengthTest, APowerCutOnTheWayBackOffersTheBlockUnderWay_D3) {
+    leave(SQUARE, 9);
+    ASSERT_TRUE(resume()) << rig->outcome();
+    ASSERT_EQ(rig->ask(msgs::ConfirmApproach{status().approach.number}), "");
+    cycles(400);
+    ASSERT_FALSE(rig->hasEnded());
+    cut_and_come_up();
+    ASSERT_TRUE(offer().isOffered);
+    EXPECT_EQ(offer().line, 9);
+    EXPECT_EQ(rig->recover(), "");
+    finish();
+}
+
+TEST_F(RecoveryTest, LinesThatAreNotSkippedAreNotSkippedBehindThatEither_D3) {
+    for (const bool isSkipping : {false, true}) {
+        ASSERT_EQ(rig->ask(msgs::SetBlockDelete{isSkipping}), "");
+        run_to("G21 G90 F600\nG1 X20 Y1\nG1 X0\n/G1 Y20\nM2\n", 2);
+        cut_and_come_up();
+        ASSERT_TRUE(offer().isOffered);
+        EXPECT_TRUE(status().task.isBlockDelete) << "as after each start";
+        EXPECT_EQ(rig->recover(), "");
+        EXPECT_EQ(status().task.isBlockDelete, isSkipping);
+        finish();
+        EXPECT_NEAR(status().trajectory.position_cmd[1], isSkipping ? 1 : 20, 1e-9);
+    }
+}
+
 TEST_F(NewLengthTest, APowerCutBehindThatGoesOnWithTheNewLengthToo_D3) {
     leave(SQUARE, 9);
     const double longer = status().offsets.tool[geom::AXIS_Z] + 2.25;

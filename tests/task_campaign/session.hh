@@ -70,6 +70,7 @@ class Session : private Operators {
     bool areDevicesOff_ = false;  ///< by a stop of the operator
     bool isCrashed_ = false;
     bool wasRunning_ = false;  ///< at the crash
+    bool wasBlockDelete_ = true, wasOptionalStop_ = true;
 };
 
 }  // namespace mw::task_campaign

@@ -125,10 +125,9 @@ void Session::end_program_of(const Act &act, End end) {
 /// The parameter file is as before the program; the tool table file as the machine had come to.
 void Session::end_by_crash(const Act &act) {
     const std::vector<World> before = std::move(beliefs_.worlds);
-    const bool wasBlockDelete = std::exchange(beliefs_.isBlockDelete, true);
     beliefs_.worlds.clear();
     for (const World &world : before) {
-        for (const World &stopped : after_stop(act.blocks, world, wasBlockDelete)) {
+        for (const World &stopped : after_stop(act.blocks, world, wasBlockDelete_)) {
             add(beliefs_.worlds, after_crash({world.modes, stopped.doings}));
             if (!wasRunning_) {  // it has just ended
                 add(beliefs_.worlds, after_crash(stopped));
@@ -136,7 +135,7 @@ void Session::end_by_crash(const Act &act) {
         }
     }
     if (before.size() == 1) {
-        recover(act, before[0], wasBlockDelete);
+        recover(act, before[0], wasBlockDelete_);
     }
 }
 
@@ -166,6 +165,13 @@ void Session::recover(const Act &act, const World &before, bool isBlockDelete) {
     }
     if (isOver()) {
         return;
+    }
+    // The switches are those with which it began, from when the way was confirmed on.
+    const msgs::TaskStatus &task = status().task;
+    const bool areRestored = task.isBlockDelete == wasBlockDelete_ && task.isOptionalStop == wasOptionalStop_;
+    if (progress_of(run) == msgs::Progress::DONE || areRestored) {
+        beliefs_.isBlockDelete = wasBlockDelete_;
+        beliefs_.isOptionalStop = wasOptionalStop_;
     }
     const auto whole = carried_out(act.blocks, before, isBlockDelete, first_line_of(act));
     if (progress_of(run) == msgs::Progress::DONE) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // What goes wrong in a run, and what other people do meanwhile.
+#include <utility>
+
 #include "task_campaign/session.hh"
 
 namespace mw::task_campaign {
@@ -101,7 +103,8 @@ void Session::crash(bool isPowerCut) {
     beliefs_.state = msgs::State::ESTOP;
     mode_ = msgs::Mode::MANUAL;
     beliefs_.isHomed = false;
-    beliefs_.isOptionalStop = beliefs_.isBlockDelete = true;
+    wasOptionalStop_ = std::exchange(beliefs_.isOptionalStop, true);
+    wasBlockDelete_ = std::exchange(beliefs_.isBlockDelete, true);
     beliefs_.feed_override = 1;
     cycle();
 }

@@ -26,7 +26,12 @@ Settings settings_of(const std::string &ini) {
 TEST(IniSettings, SubroutinesAreLookedForBesideTheIniFileFirst_I1) {
     const Settings settings =
         settings_of("[RS274NGC]\nSUBROUTINE_PATH = /s:t\n[DISPLAY]\nPROGRAM_PREFIX = /p\n");
-    EXPECT_EQ(settings.subroutine_path, (std::vector<std::string>{".", "/p", "/s", "./t"}));
+    std::vector<std::string> path = settings.subroutine_path;
+    while (!path.empty() && path.back().ends_with("/probing")) {
+        path.pop_back();  // our own programs, behind everything of the machine's
+    }
+    EXPECT_EQ(path, (std::vector<std::string>{".", "/p", "/s", "./t"}));
+    EXPECT_GT(settings.subroutine_path.size(), path.size());
 }
 
 struct Table : Machine {

@@ -97,6 +97,8 @@ void TaskCanon::insert_first(const std::vector<interp::MachineCall> &calls, cons
     const geom::Pose end = last_end_;
     const motion::SourceTag tag = tag_;
     last_end_ = position;
+    // They belong to what is done next, not to what was read last: nothing before that is done.
+    tag_ = behind.empty() ? tag_ : behind.front().source;
     tag_.line = line;
     for (const interp::MachineCall &call : calls) {
         put(call);
