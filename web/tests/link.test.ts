@@ -82,8 +82,8 @@ describe('Link', () => {
     const first = link.post({ message: 'Mdi', line: 'G0' }, () => (hasStarted = true));
     const second = link.post({ message: 'Null' });
     expect(socket.sent).toEqual([
-      { id: 1, command: { message: 'Mdi', line: 'G0' } },
-      { id: 2, command: { message: 'Null' } },
+      { id: 1, command: { message: 'Mdi', line: 'G0' }, sent: 0 },
+      { id: 2, command: { message: 'Null' }, sent: 0 },
     ]);
     socket.tell({ outcome: { id: 1, progress: 'STARTED' } });
     socket.tell({ outcome: { id: 2, progress: 'REFUSED', reason: 'no' } });
