@@ -210,7 +210,7 @@ TEST_F(ApiTest, EachRequestNeedsTheRoleOfTheTable_J3) {
 TEST_F(ApiTest, EachCommandIsAStopOrNeedsAnOperator_J3) {
     const std::set<std::string> stops{"EstopOn",     "AbortAll",     "AbortMachine", "AbortTraj",
                                       "AbortMotion", "AbortJoint",   "AbortTool",    "AbortIo",
-                                      "JogStop",     "PauseProgram", "PauseTraj"};
+                                      "JogStop",     "PauseProgram", "PauseTraj",    "DisableTraj"};
     constexpr Role ALL[] = {Role::VIEW, Role::OPERATE, Role::CONFIGURE};
     task.cycle();
     api->tick();
