@@ -169,10 +169,8 @@ Result<bool> TaskSide::isConfigured() {
     if (!task_->isConfigured()) {
         return false;
     }
-    while (const auto message = client_->next_message()) {
-        if (message->kind == msgs::MessageKind::OPERATOR_ERROR) {
-            return fail("a setting was refused: " + message->text, {parts_.ini.path(), 0, 0});
-        }
+    if (const std::string &why = task_->refused_setting(); !why.empty()) {
+        return fail("a setting was refused: " + why, {parts_.ini.path(), 0, 0});
     }
     return true;
 }

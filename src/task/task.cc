@@ -174,7 +174,10 @@ void Task::take_motion_news() {
         fail_or_post(!motion::isOnlyTold(fault.kind), motion::fault_text(told), fault.source,
                      AbortReason::MOTION_FAULT);
     }
-    for (const auto &[answer, source] : news.refused) {
+    for (const auto &[answer, source, isTable] : news.refused) {
+        if (refused_setting_.empty() && !answer.isPath && (isTable || answer.id <= last_setting_)) {
+            refused_setting_ = motion::reason_text(answer);
+        }
         if (answer.reason == motion::Reason::MOVING && mode_.waits_for_rest(answer.id, now_ns_)) {
             continue;
         }

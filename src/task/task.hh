@@ -89,7 +89,7 @@ class Task {
     Task(const Task &) = delete;
     Task &operator=(const Task &) = delete;
 
-    /// Hands settings to the motion controller; a refused one comes as a message.
+    /// Hands settings to the motion controller; a refused one comes as a message, and the first is kept.
     void configure(const std::vector<motion::SetParameter> &parameters);
     /// One setting, later on; whoever asks has seen that it is no time at which it cannot be.
     void change(const motion::SetParameter &parameter) {
@@ -102,6 +102,8 @@ class Task {
     }
     /// All settings handed over are answered.
     bool isConfigured() const { return motion_.isAnswered(last_setting_) && motion_.areTablesAnswered(); }
+    /// Why the first setting or table that was refused was, "" if none.
+    const std::string &refused_setting() const { return refused_setting_; }
 
     /// Loads parameters and announces the start state to the interpreter. Errors name file, line and column.
     Result<> start();
@@ -194,6 +196,7 @@ class Task {
     Status status_;
     std::int64_t now_ns_ = 0;
     motion::CommandId last_setting_ = 0;
+    std::string refused_setting_;
 };
 
 }  // namespace mw::task

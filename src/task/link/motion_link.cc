@@ -50,8 +50,10 @@ void MotionLink::take_answers(News &news) {
     motion::Answer answer;
     while (channels_.servo_answers.pop(answer)) {
         pending_.erase(std::remove(pending_.begin(), pending_.end(), answer.id), pending_.end());
+        const bool isTable =
+            std::find(table_pending_.begin(), table_pending_.end(), answer.id) != table_pending_.end();
         if (isToldRefusal(answer)) {
-            news.refused.push_back({answer, {}});
+            news.refused.push_back({answer, {}, isTable});
         }
     }
     while (channels_.planner_answers.pop(answer)) {
@@ -62,7 +64,7 @@ void MotionLink::take_answers(News &news) {
         --path_outstanding_;
         const motion::SourceTag source = take_source(answer.id);
         if (answer.kind == motion::AnswerKind::REFUSED) {
-            news.refused.push_back({answer, source});
+            news.refused.push_back({answer, source, false});
         }
     }
 }

@@ -18,6 +18,7 @@ class MotionLink {
     struct Refusal {
         motion::Answer answer;
         motion::SourceTag source;  ///< of a path command; line 0 when it is none
+        bool isTable = false;      ///< of a point of a screw table
     };
     struct News {
         std::vector<Refusal> refused;  ///< REFUSED only; STALE ones belong to work that was aborted

@@ -40,6 +40,7 @@ class FakeMotion {
     bool isModeStuck = false;
     motion::Reason teleop_refusal = motion::Reason::NONE;  ///< of each change to axes
     motion::Reason jog_refusal = motion::Reason::NONE;     ///< of each continuous jog
+    motion::Reason setting_refusal = motion::Reason::NONE;
     motion::JogContinuous last_jog;
     motion::CommandBody last;  ///< of all immediate ones
     double corner_scale = -1;  ///< of the last move
@@ -81,6 +82,9 @@ class FakeMotion {
         } else if (const auto *p = std::get_if<motion::SetParameter>(&command.body)) {
             const bool isType = p->parameter == static_cast<int>(motion::Parameter::TRAJ_PLANNER_TYPE);
             log.push_back((isType ? "planner " : "setting ") + std::to_string(static_cast<int>(p->value)));
+            answer.reason = setting_refusal;
+            answer.kind = setting_refusal == motion::Reason::NONE ? motion::AnswerKind::DONE
+                                                                  : motion::AnswerKind::REFUSED;
         }
         status.last_immediate_id = command.id;
         channels_.servo_answers.push(answer);
