@@ -30,17 +30,20 @@ class SpindlePlant {
 
     /// Another drive or load from here on; counts and angle stay.
     void set_drive(double ramp, double lag_s, double reaction_s, double slip) noexcept {
-        traits_.ramp = ramp;
-        traits_.lag_s = lag_s;
-        traits_.reaction_s = reaction_s;
-        traits_.slip = slip;
+        traits_.ramp = number_or_zero(ramp);
+        traits_.lag_s = number_or_zero(lag_s);
+        traits_.reaction_s = number_or_zero(reaction_s);
+        traits_.slip = std::clamp(number_or_zero(slip), 0.0, 1.0);
     }
-    /// Turns for `dt` seconds under the command [turns/s] and a load from 0 to 1.
+    /// Turns for `dt` seconds under the command [turns/s] and a load from 0 to 1. A command that is no number
+    /// is not heard; no drive goes beyond MOST_SPEED.
     void run(double command, double load, double dt) noexcept {
-        if (command != wanted_) {
-            wanted_ = command;
+        const double asked_for = std::clamp(command, -MOST_SPEED, MOST_SPEED);
+        if (asked_for != wanted_ && !std::isnan(asked_for)) {
+            wanted_ = asked_for;
             since_s_ = 0;
         }
+        const double loaded = std::clamp(number_or_zero(load), 0.0, 1.0);
         const double step = dt / STEPS;
         for (int n = 0; n < STEPS; ++n) {
             since_s_ += step;
@@ -50,7 +53,7 @@ class SpindlePlant {
             const double most = traits_.ramp > 0 ? traits_.ramp * step : INFINITY;
             const double before = speed_;
             drive_ += std::clamp(heard_ - drive_, -most, most);
-            const double asked = drive_ * (1.0 - traits_.slip * std::clamp(load, 0.0, 1.0));
+            const double asked = drive_ * (1.0 - traits_.slip * loaded);
             speed_ += traits_.lag_s > 0 ? (asked - speed_) * (1.0 - std::exp(-step / traits_.lag_s))
                                         : asked - speed_;
             const bool isJump = traits_.ramp <= 0 && traits_.lag_s <= 0;
@@ -80,6 +83,10 @@ class SpindlePlant {
 
   private:
     static constexpr int STEPS = 20;
+    static constexpr double MOST_SPEED = 1e6;   ///< [turns/s]
+    static constexpr double MOST_EDGES = 9e18;  ///< that are counted
+
+    static double number_or_zero(double x) noexcept { return std::isnan(x) ? 0.0 : x; }
 
     static std::int64_t floor_to(std::int64_t counts, std::int64_t per_turn) noexcept {
         const std::int64_t rest = counts % per_turn;
@@ -87,7 +94,8 @@ class SpindlePlant {
     }
     void count() noexcept {
         const auto per_turn = static_cast<double>(traits_.counts_per_turn);
-        const auto edges = static_cast<std::int64_t>(std::floor(turns_ * per_turn));
+        const double passed = std::clamp(std::floor(turns_ * per_turn), -MOST_EDGES, MOST_EDGES);
+        const auto edges = static_cast<std::int64_t>(passed);
         const std::int64_t mark = floor_to(edges, traits_.counts_per_turn);
         hasIndex_ = mark != mark_;
         index_ = std::max(mark, mark_) - lost_;
