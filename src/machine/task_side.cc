@@ -166,13 +166,8 @@ Result<> TaskSide::link_estop_chain() {
 }
 
 Result<bool> TaskSide::isConfigured() {
-    if (!task_->isConfigured()) {
-        return false;
-    }
-    if (const std::string &why = task_->refused_setting(); !why.empty()) {
-        return fail("a setting was refused: " + why, {parts_.ini.path(), 0, 0});
-    }
-    return true;
+    const auto isDone = task_->isConfigured();
+    return isDone.has_value() ? isDone : fail(isDone.error().message, {parts_.ini.path(), 0, 0});
 }
 
 Result<> TaskSide::finish_start(Machine &machine, int most_cycles) {

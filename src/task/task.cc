@@ -72,6 +72,14 @@ void Task::configure(const std::vector<motion::SetParameter> &parameters) {
     last_setting_ = motion_.send(motion::SetWatchdog{true, settings_.watchdog_s});
 }
 
+Result<bool> Task::isConfigured() const {
+    const bool isAnswered = motion_.isAnswered(last_setting_) && motion_.areTablesAnswered();
+    if (isAnswered && !refused_setting_.empty()) {
+        return fail("a setting was refused: " + refused_setting_);
+    }
+    return isAnswered;
+}
+
 Result<> Task::start() {
     motion_.update();
     const auto loaded = reader_.load();

@@ -100,10 +100,8 @@ class Task {
     void load_compensation(const std::vector<motion::LoadCompensation> &points) {
         motion_.send_table(points);
     }
-    /// All settings handed over are answered.
-    bool isConfigured() const { return motion_.isAnswered(last_setting_) && motion_.areTablesAnswered(); }
-    /// Why the first setting or table that was refused was, "" if none.
-    const std::string &refused_setting() const { return refused_setting_; }
+    /// All settings handed over are answered; an error, once they are, when one or a table was refused.
+    Result<bool> isConfigured() const;
 
     /// Loads parameters and announces the start state to the interpreter. Errors name file, line and column.
     Result<> start();

@@ -334,7 +334,7 @@ TEST_F(TaskTest, ATableOfScrewErrorsIsReadWhileTheMachineIsOff_C4_C11) {
     EXPECT_EQ(last->index, 1);
     EXPECT_EQ(last->count, 2);
     EXPECT_EQ(last->reverse, -0.02);
-    EXPECT_TRUE(task.isConfigured());
+    EXPECT_TRUE(task.isConfigured().value_or(false));
 }
 
 /// Clients may be there before a machine has come up: what they are refused does not end its start.
@@ -344,15 +344,14 @@ TEST_F(TaskTest, WhyASettingWasRefusedIsToldApartFromWhatClientsAre_A2) {
     EXPECT_EQ(ask(SetState{State::ON}), Progress::REFUSED);
     motion.jog_refusal = motion::Reason::NOT_ENABLED;
     cycles(3);
-    EXPECT_TRUE(task.isConfigured());
-    EXPECT_EQ(task.refused_setting(), "");
+    EXPECT_TRUE(task.isConfigured().value_or(false));
     motion.setting_refusal = motion::Reason::OUT_OF_RANGE;
     task.configure({{static_cast<std::uint16_t>(motion::Parameter::TRAJ_PLANNER_TYPE), 0, 1}});
     cycles(3);
-    EXPECT_TRUE(task.isConfigured());
     motion::Answer answer;
     answer.reason = motion::Reason::OUT_OF_RANGE;
-    EXPECT_EQ(task.refused_setting(), motion::reason_text(answer));
+    ASSERT_FALSE(task.isConfigured().has_value());
+    EXPECT_EQ(task.isConfigured().error().message, "a setting was refused: " + motion::reason_text(answer));
 }
 
 TEST_F(TaskTest, EveryCommandOfTheVocabularyIsAnsweredAndARefusalSaysWhy_C5) {
