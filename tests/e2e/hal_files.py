@@ -37,7 +37,7 @@ def main():
     failures = []
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
-        shutil.copytree(pathlib.Path(source) / 'configs', folder / 'configs')
+        shutil.copytree(pathlib.Path(source) / 'configs', folder / 'configs', ignore=shutil.ignore_patterns('*.var', '*.journal*'))
         machine = folder / 'configs/sim'
         for name, text in FILES.items():
             (machine / name).write_text(text)

@@ -23,7 +23,7 @@ def main():
     failures, count = [], 0
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
-        shutil.copytree(source / 'configs', folder / 'configs')
+        shutil.copytree(source / 'configs', folder / 'configs', ignore=shutil.ignore_patterns('*.var', '*.journal*'))
         machine = folder / 'configs/sim'
         environment = dict(os.environ, MILLWRIGHT_MODULE_PATH=str(folder))
         (machine / 'part.ngc').write_text(PROGRAM)

@@ -21,7 +21,7 @@ class Mill:
 
     def __init__(self, millwright, halcmd, root, folder, name):
         self.millwright, self.halcmd, self.folder = millwright, halcmd, folder
-        shutil.copytree(pathlib.Path(root) / 'configs', folder / 'configs', ignore=shutil.ignore_patterns('*.var'))
+        shutil.copytree(pathlib.Path(root) / 'configs', folder / 'configs', ignore=shutil.ignore_patterns('*.var', '*.journal*'))
         self.ini = folder / 'configs/sim/mill_mm.ini'
         plain = self.ini.read_text()
         changed = plain.replace('HALFILE = spindle_sim.hal\n', 'HALFILE = spindle_sim.hal\nHALFILE = by_hand.hal\nHALUI = halui\n')

@@ -41,7 +41,7 @@ def main():
     failures, count = [], 0
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
-        shutil.copytree(source / 'configs', folder / 'configs', ignore=shutil.ignore_patterns('*.var'))
+        shutil.copytree(source / 'configs', folder / 'configs', ignore=shutil.ignore_patterns('*.var', '*.journal*'))
         machine = folder / 'configs/sim'
         (folder / 'part.ngc').write_text(PROGRAM)
         example = (source / 'examples/planner/easytp.comp').read_text()

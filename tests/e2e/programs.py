@@ -34,7 +34,7 @@ def main():
         folder = pathlib.Path(temporary)
         # A copy, so that parameter files are written there and both runs begin alike.
         for copy in ('one', 'two'):
-            shutil.copytree(pathlib.Path(ini).parents[2], folder / copy, ignore=shutil.ignore_patterns('build', '.git', '*.var'))
+            shutil.copytree(pathlib.Path(ini).parents[2], folder / copy, ignore=shutil.ignore_patterns('build', '.git', '*.var', '*.journal*'))
         place = pathlib.Path(ini).relative_to(pathlib.Path(ini).parents[2])
         first, trace, plot = run(millwright, folder / 'one' / place, program, folder, 'first')
         print(first.stdout, first.stderr)

@@ -21,7 +21,7 @@ def main():
     programs, source = (pathlib.Path(word) for word in sys.argv[1:3])
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
-        shutil.copytree(source / 'configs', folder / 'configs', ignore=shutil.ignore_patterns('*.var'))
+        shutil.copytree(source / 'configs', folder / 'configs', ignore=shutil.ignore_patterns('*.var', '*.journal*'))
         machine = folder / 'configs/sim'
         built = subprocess.run([programs / 'halcompile', '--compile', '-o', folder / 'userthreads.so',
                                 source / 'examples/threads/userthreads.comp'], capture_output=True, text=True, check=False, timeout=60)
