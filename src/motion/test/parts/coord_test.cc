@@ -45,7 +45,7 @@ struct RetracingPart : testing::Test {
         limits.path.acceleration.fill(1000);
         for (int n = 0; n < 600; ++n) {
             x += n < 500 ? 0.02 * std::min(1.0, std::min(n / 100.0, (500 - n) / 100.0)) : 0.0;
-            record(*retracing, at(x), {}, limits, T);
+            record(*retracing, at(x), {limits, 0, T});
         }
     }
     struct Way {
@@ -60,7 +60,7 @@ struct RetracingPart : testing::Test {
         in.rate = 0.5;
         in.drops = drops;
         Way way{at(x)};
-        way.isNewStart = step(on, way.pose, in);
+        way.isNewStart = step(on, way.pose, in, {limits, 0, T});
         return way;
     }
 };
@@ -102,26 +102,25 @@ TEST_F(RetracingPart, AStopWhereThePathWasSlowIsShort_C5) {
     limits.path.acceleration.fill(A);
     for (int n = 0; n < 3000; ++n) {
         x += n < 1000 ? 0.02 : n < 2990 ? 0.005 : 0;
-        record(*retracing, at(x), {}, limits, T);
+        record(*retracing, at(x), {limits, 0, T});
     }
     const auto cycles_to_stop = [&](int back) {
         const auto on = std::make_unique<Retracing>(*retracing);
         RetraceInputs in;
         in.isReverseWanted = in.isPathAtRest = true;
         in.rate = 0.75;
-        in.period_s = T;
         geom::Pose pose = at(x);
         double last = x;
         for (int n = 0; n < back; ++n) {
             last = pose[0];
-            step(*on, pose, in);
+            step(*on, pose, in, {limits, 0, T});
         }
         const double v = (last - pose[0]) / T;
         in.isStopping = true;
         int n = 0;
         for (double before = pose[0] + 1; pose[0] != before && n < 3000; ++n) {
             before = pose[0];
-            step(*on, pose, in);
+            step(*on, pose, in, {limits, 0, T});
         }
         return std::pair{n, v};
     };
