@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "kins/corexy.hh"
 #include "kins/trivial.hh"
 #include "motion/core/coord/heading.hh"
 #include "motion/core/coord/place.hh"
@@ -33,6 +34,24 @@ TEST(PlacePart, JointsLeadOrThePoseDoes_C3) {
     read_feedback(place, kinematics, feedback, false);
     EXPECT_TRUE(place.isFbValid) << "joints that are axes need no homing";
     EXPECT_EQ(place.fb[0], 2.9);
+}
+
+TEST(PlacePart, WhereNobodyKnowsThePoseTheLastOneStandsAndIsNotValid_C3) {
+    const kins::CoreXy kinematics;
+    Place place;
+    place.fb = at(5);
+    place.cmd = at(7);
+    const double joints[MAX_JOINTS] = {3, 1};
+    read_feedback(place, kinematics, joints, false);
+    EXPECT_EQ(place.fb[0], 5) << "not homed";
+    EXPECT_FALSE(place.isFbValid);
+    read_feedback(place, kinematics, joints, true);
+    EXPECT_NEAR(place.fb[0], 2, 1e-12);
+    EXPECT_TRUE(place.isFbValid);
+    follow_joints(place, kinematics, joints, false);
+    EXPECT_EQ(place.cmd[0], 7);
+    follow_joints(place, kinematics, joints, true);
+    EXPECT_NEAR(place.cmd[0], 2, 1e-12);
 }
 
 /// A straight path at 20 unit/s that has just come to a stand.

@@ -40,7 +40,11 @@ struct JointsPart : testing::Test {
 TEST_F(JointsPart, SwitchedOnTheCommandIsTheFeedback_C4) {
     in.joint[0].motor_pos_fb = 12.5;
     read_feedback(joints, in);
+    joints[0].isFaulted = joints[0].isFerrorTripped = true;
+    joints[1].isActive = false;
     switch_on(joints);
+    EXPECT_FALSE(joints[0].isFaulted || joints[0].isFerrorTripped) << "what was is forgotten";
+    EXPECT_FALSE(joints[1].isAmpWanted) << "nobody uses it";
     output(joints, settings, true, T);
     EXPECT_EQ(joints[0].motor_pos_cmd, 12.5);
     EXPECT_TRUE(joints[0].isAmpWanted);
