@@ -76,6 +76,7 @@ void make_hexapod(sim::Random &random, Design &d) {
            {geom::AXIS_B, -10, 10},
            {geom::AXIS_C, -10, 10}},
           std::vector<Travel>(6, {false, 10, 60, 29.7462}));
+    d.hal_lines = "setp genhexkins.z 20\n";  // where the forward side begins to look
 }
 
 void make_tilting_head(sim::Random &random, Design &d) {

@@ -26,8 +26,10 @@ class Retrace {
         double a_over_j = 0;  ///< acceleration over the limit of jerk [s]
     };
 
-    /// A sample of the path itself; ones that stand are kept only as far as needed.
-    void record(const geom::Pose &pose, const Use &use) noexcept;
+    /// A sample of the path itself; ones that stand are kept only as far as needed. True when it is time to
+    /// say by include() what this one and those since the last time use.
+    bool record(const geom::Pose &pose) noexcept;
+    void include(const Use &use) noexcept;
     void clear() noexcept;
     bool isEmpty() const noexcept { return count_ == 0; }
     /// There is something to go back along.
