@@ -132,7 +132,7 @@ struct Pass {
     double share = 1;      ///< part of the pieces' accelerations for gaining speed and for braking
     double trim = 1;       ///< and for following the spindle in between
     bool isTap = false;    ///< in along the first piece, and back to its start
-    TapTerms tap;          ///< its acceleration is the executor's to fill
+    TapTerms tap;
 };
 
 /// Tells the executor which phases to follow. They never end with a stop beyond what is committed: when they
