@@ -134,7 +134,7 @@ void run(ui::web::Server &server, const UiWords &words, const machine::LoadedCon
                       folder = setup.screen_folder;
     SidePrograms programs(words.isDisplay ? tab_programs(setup.facts.tabs) : std::vector<std::string>{},
                           setup.facts.ini, 0);
-    PathReaders readers(loaded);
+    PathReaders readers(loaded, path_look(setup.facts));
     setup.read_path = [&readers](const std::string &path) { return readers.read(path); };
     const auto post = [&server](std::function<void()> act) { server.post(std::move(act)); };
     ui::web::Worker disk(post), hal_looks(post);

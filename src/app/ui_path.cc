@@ -52,7 +52,7 @@ Result<std::shared_ptr<ui::web::PieceQueue>> PathReaders::read(const std::string
 
 void PathReaders::read_all(Reader &reader, const std::string &path) const {
     ui::web::PathChunks chunks([&reader](std::string piece) { return reader.pieces->push(std::move(piece)); },
-                               loaded_.machine.isMetric ? 1 : MM_PER_INCH);
+                               loaded_.machine.isMetric ? 1 : MM_PER_INCH, look_);
     std::error_code missing;  // which the reading itself tells, with its place
     if (std::filesystem::exists(path, missing) && !std::filesystem::is_regular_file(path, missing)) {
         chunks.error(path + " is no file");  // a pipe would never end

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "machine/loaded_config.hh"
+#include "ui/web/path_geometry.hh"
 #include "ui/web/piece_queue.hh"
 
 namespace mw::app {
@@ -18,7 +19,8 @@ class PathReaders {
   public:
     static constexpr std::size_t MOST = 4;
 
-    explicit PathReaders(const machine::LoadedConfig &loaded) : loaded_(loaded) {}
+    PathReaders(const machine::LoadedConfig &loaded, ui::web::PathLook look)
+        : loaded_(loaded), look_(std::move(look)) {}
     /// Ends what is read.
     ~PathReaders();
     PathReaders(const PathReaders &) = delete;
@@ -36,6 +38,7 @@ class PathReaders {
     void read_all(Reader &reader, const std::string &path) const;
 
     const machine::LoadedConfig &loaded_;
+    ui::web::PathLook look_;
     std::list<Reader> readers_;
 };
 

@@ -124,6 +124,26 @@ TEST_F(UiMachine, ARotaryAxisHasSpeedsAndSteps_J1) {
     EXPECT_TRUE(facts.increments.back().isAngular);
 }
 
+TEST_F(UiMachine, TheKindOfMachineAndItsGeometryAreSaid_J1) {
+    using ui::web::MachineKind;
+    const auto facts = [this](const char *machine, const char *display) {
+        return machine_facts(*load(machine, display), sink_);
+    };
+    EXPECT_EQ(facts("mill_mm", "").look.kind, MachineKind::MILL);
+    EXPECT_EQ(facts("lathe", "").look.kind, MachineKind::LATHE);
+    EXPECT_EQ(facts("lathe", "BACK_TOOL_LATHE = 1\n").look.kind, MachineKind::BACK_LATHE);
+    EXPECT_EQ(facts("mill_mm", "MACHINE_TYPE_HINT = LATHE\n").look.kind, MachineKind::LATHE);
+    EXPECT_EQ(facts("mill_mm", "FOAM = 1\n").look.kind, MachineKind::FOAM);
+    EXPECT_NEAR(facts("mill_mm", "FOAM = 1\n").look.foam_w, 38.1, 1e-9);
+    EXPECT_EQ(facts("mill_mm", "FOAM = 1\nFOAM_Z = 2\nFOAM_W = 300\n").look.foam_w, 300);
+    EXPECT_TRUE(path_look(facts("mill_mm", "FOAM = 1\nFOAM_Z = 2\n")).foam.has_value());
+    EXPECT_EQ(facts("mill_xyza", "GEOMETRY = AXYZ\n").look.geometry, "AXYZ");
+    EXPECT_FALSE(path_look(facts("mill_xyza", "GEOMETRY = AXYZ\n")).geometry.isPlain());
+    EXPECT_EQ(sink_.all().size(), 0U);
+    EXPECT_EQ(facts("mill_xyza", "GEOMETRY = AX9\nMACHINE_TYPE_HINT = PRESS\n").look.geometry, "XYZABCUVW");
+    EXPECT_EQ(sink_.all().size(), 2U) << "what is not known is told";
+}
+
 /// All that is made, until the end.
 std::string all_of(ui::web::PieceQueue &pieces) {
     std::string bytes, piece;
@@ -141,7 +161,7 @@ TEST_F(UiMachine, AProgramIsReadAsItsPath_J3) {
     ASSERT_NE(loaded, nullptr);
     const std::string path = (folder_ / "p.ngc").string();
     std::ofstream(path) << "G21 G90 F1000\nG1 X10\nG2 X20 I5\nG1 Q\nM2\n";
-    PathReaders readers(*loaded);
+    PathReaders readers(*loaded, {});
     const auto pieces = readers.read(path);
     ASSERT_TRUE(pieces.has_value());
     const std::string bytes = all_of(**pieces);
@@ -150,6 +170,10 @@ TEST_F(UiMachine, AProgramIsReadAsItsPath_J3) {
     std::memcpy(&kind, bytes.data(), 4);
     std::memcpy(&size, bytes.data() + 4, 4);
     std::memcpy(&count, bytes.data() + 8, 4);
+    EXPECT_EQ(kind, 5U) << "feed and tool of what comes";
+    EXPECT_EQ(count, 1U);
+    std::memcpy(&kind, bytes.data() + 8 + size, 4);
+    std::memcpy(&count, bytes.data() + 16 + size, 4);
     EXPECT_EQ(kind, 1U);
     EXPECT_GT(count, 10U);
     EXPECT_EQ(bytes.size() % 4, 0U);
@@ -160,7 +184,7 @@ TEST_F(UiMachine, APipeIsNotRead_J3) {
     ASSERT_NE(loaded, nullptr);
     const std::string path = (folder_ / "pipe.ngc").string();
     ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
-    PathReaders readers(*loaded);
+    PathReaders readers(*loaded, {});
     const auto pieces = readers.read(path);
     ASSERT_TRUE(pieces.has_value());
     EXPECT_NE(all_of(**pieces).find("pipe.ngc is no file"), std::string::npos);
@@ -170,7 +194,7 @@ TEST_F(UiMachine, ReadersEndWhenNobodyReads_J3) {
     const auto loaded = load("mill_mm");
     const std::string path = (folder_ / "long.ngc").string();
     std::ofstream(path) << "G21 F1000\no1 repeat [10000000]\nG1 X1\nG1 X0\no1 endrepeat\nM2\n";
-    PathReaders readers(*loaded);
+    PathReaders readers(*loaded, {});
     for (std::size_t i = 0; i < PathReaders::MOST; ++i) {
         EXPECT_TRUE(readers.read(path).has_value());
     }

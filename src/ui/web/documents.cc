@@ -193,6 +193,20 @@ std::vector<std::string> settable_names(std::string_view panel) {
     return names;
 }
 
+namespace {
+
+const char *kind_name(MachineKind kind) {
+    switch (kind) {
+    case MachineKind::MILL: break;
+    case MachineKind::LATHE: return "lathe";
+    case MachineKind::BACK_LATHE: return "back_lathe";
+    case MachineKind::FOAM: return "foam";
+    }
+    return "mill";
+}
+
+}  // namespace
+
 std::string machine_document(const MachineFacts &facts) {
     Json increments = Json::array();
     for (const Increment &increment : facts.increments) {
@@ -217,6 +231,10 @@ std::string machine_document(const MachineFacts &facts) {
                         {"ini", facts.ini},
                         {"instance", facts.instance},
                         {"axes", facts.axes},
+                        {"kind", kind_name(facts.look.kind)},
+                        {"geometry", facts.look.geometry},
+                        {"foam_z", facts.look.foam_z},
+                        {"foam_w", facts.look.foam_w},
                         {"joints", facts.joints},
                         {"joint_kinds", facts.joint_kinds},
                         {"is_homing_forced", facts.isHomingForced},

@@ -9,10 +9,14 @@ export interface Moves {
   lines: Uint32Array;
   /** 0 rapid, 1 feed, 2 arc, 3 probe: of the move that ends at the point. */
   kinds: Uint8Array;
+  /** How each point is coloured, see shades.ts. */
+  shades: Uint8Array;
 }
 
 export type Chunk =
   | Moves
+  | (Omit<Moves, 'kind'> & { kind: 'wires' })
+  | { kind: 'ranges'; first: Uint32Array; feed: Float32Array; tool: Uint32Array }
   | { kind: 'bounds'; low: [number, number, number]; high: [number, number, number] }
   | { kind: 'end'; line: number; points: number }
   | { kind: 'error'; text: string };
@@ -33,7 +37,26 @@ function readMoves(body: ArrayBuffer): Moves {
     places: new Float32Array(body.slice(places, lines)),
     lines: new Uint32Array(body.slice(lines, kinds)),
     kinds: new Uint8Array(body.slice(kinds, kinds + count)),
+    shades: new Uint8Array(count),
   };
+}
+
+const RANGE_BYTES = 12;
+
+function readRanges(body: ArrayBuffer): Chunk {
+  const words = new DataView(body);
+  const count = words.getUint32(0, true);
+  if (4 + count * RANGE_BYTES > body.byteLength) {
+    throw new Error('a chunk of the path is shorter than it says');
+  }
+  const ranges = { kind: 'ranges' as const, first: new Uint32Array(count), feed: new Float32Array(count), tool: new Uint32Array(count) };
+  for (let i = 0; i < count; ++i) {
+    const at = 4 + i * RANGE_BYTES;
+    ranges.first[i] = words.getUint32(at, true);
+    ranges.feed[i] = words.getFloat32(at + 4, true);
+    ranges.tool[i] = words.getUint32(at + 8, true);
+  }
+  return ranges;
 }
 
 function readChunk(kind: number, body: ArrayBuffer): Chunk {
@@ -52,6 +75,10 @@ function readChunk(kind: number, body: ArrayBuffer): Chunk {
       return { kind: 'end', line: words.getUint32(0, true), points: words.getUint32(4, true) };
     case 4:
       return { kind: 'error', text: new TextDecoder().decode(body).trimEnd() };
+    case 5:
+      return readRanges(body);
+    case 6:
+      return { ...readMoves(body), kind: 'wires' };
     default:
       throw new Error(`the path has a chunk of the unknown kind ${kind}`);
   }
