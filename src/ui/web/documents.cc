@@ -283,6 +283,23 @@ std::string offsets_document(std::span<const std::array<double, 10>> systems) {
     return one("systems", std::move(list));
 }
 
+std::string time_sum_document(const TimeSum &sum) {
+    Json slowest = Json::array();
+    for (const SlowSpot &spot : sum.slowest) {
+        slowest.push_back({{"file", spot.file},
+                           {"is_in_program", spot.isInProgram},
+                           {"line", spot.line},
+                           {"lost_s", spot.lost_s},
+                           {"reason", spot.reason}});
+    }
+    return text_of(Json{{"total_s", sum.total_s},
+                        {"cutting_s", sum.cutting_s},
+                        {"rapid_s", sum.rapid_s},
+                        {"dwell_s", sum.dwell_s},
+                        {"is_complete", sum.isComplete},
+                        {"slowest", std::move(slowest)}});
+}
+
 std::string files_document(std::span<const FileFacts> files) {
     Json list = Json::array();
     for (const FileFacts &file : files) {

@@ -2,17 +2,18 @@
 #include "ui/web/path_chunks.hh"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <numbers>
+
+#include "ui/web/detail/chunk.hh"
 
 namespace mw::ui::web {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "chunks are little-endian");
+using detail::append;
+using detail::chunk;
+using detail::Chunk;
 
-enum class Chunk : std::uint32_t { MOVES = 1, BOUNDS = 2, END = 3, ERROR = 4, RANGES = 5, WIRES = 6 };
 enum class Move : std::uint8_t { RAPID = 0, FEED = 1, ARC = 2, PROBE = 3 };
 
 /// X, Y, Z of a pose, or with `first` AXIS_U the other end of a wire.
@@ -31,23 +32,6 @@ Place cross(const Place &a, const Place &b) {
 /// a + k b
 Place along(const Place &a, double k, const Place &b) {
     return {a[0] + k * b[0], a[1] + k * b[1], a[2] + k * b[2]};
-}
-
-template <class T>
-void append(std::string &bytes, T value) {
-    char raw[sizeof value];
-    std::memcpy(raw, &value, sizeof value);
-    bytes.append(raw, sizeof raw);
-}
-
-/// With its head, and padded to whole words.
-std::string chunk(Chunk kind, std::string body, char padding) {
-    constexpr std::size_t WORD = 4;
-    body.append((WORD - body.size() % WORD) % WORD, padding);
-    std::string bytes;
-    append(bytes, static_cast<std::uint32_t>(kind));
-    append(bytes, static_cast<std::uint32_t>(body.size()));
-    return bytes + body;
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The stream of /api/path: chunks of moves, bounds, errors and the end, as docs/api.md has them.
+// The streams of /api/path and /api/times: chunks of moves, bounds, errors, times and the end, as docs/api.md has them.
+import type { TimeSum } from './times';
+import type { TimedMoves } from './times_worker';
 
 export interface Moves {
   kind: 'moves';
@@ -17,6 +19,8 @@ export type Chunk =
   | Moves
   | (Omit<Moves, 'kind'> & { kind: 'wires' })
   | { kind: 'ranges'; first: Uint32Array; feed: Float32Array; tool: Uint32Array }
+  | { kind: 'times'; moves: TimedMoves }
+  | { kind: 'time_sum'; sum: TimeSum }
   | { kind: 'bounds'; low: [number, number, number]; high: [number, number, number] }
   | { kind: 'end'; line: number; points: number }
   | { kind: 'error'; text: string };
@@ -59,6 +63,24 @@ function readRanges(body: ArrayBuffer): Chunk {
   return ranges;
 }
 
+const MOVE_BYTES = 16;
+
+function readTimes(words: DataView): TimedMoves {
+  const count = words.getUint32(0, true);
+  if (4 + count * MOVE_BYTES > words.byteLength) {
+    throw new Error('a chunk of times is shorter than it says');
+  }
+  const moves = { points: new Uint32Array(count), lines: new Uint32Array(count), seconds: new Float32Array(count), velocities: new Float32Array(count) };
+  for (let i = 0; i < count; ++i) {
+    const at = 4 + i * MOVE_BYTES;
+    moves.points[i] = words.getUint32(at, true);
+    moves.lines[i] = words.getUint32(at + 4, true);
+    moves.seconds[i] = words.getFloat32(at + 8, true);
+    moves.velocities[i] = words.getFloat32(at + 12, true);
+  }
+  return moves;
+}
+
 function readChunk(kind: number, body: ArrayBuffer): Chunk {
   const words = new DataView(body);
   const three = (at: number): [number, number, number] => [
@@ -79,6 +101,10 @@ function readChunk(kind: number, body: ArrayBuffer): Chunk {
       return readRanges(body);
     case 6:
       return { ...readMoves(body), kind: 'wires' };
+    case 7:
+      return { kind: 'times', moves: readTimes(words) };
+    case 8:
+      return { kind: 'time_sum', sum: JSON.parse(new TextDecoder().decode(body)) as TimeSum };
     default:
       throw new Error(`the path has a chunk of the unknown kind ${kind}`);
   }
