@@ -57,10 +57,9 @@ constexpr Absent ABSENT[] = {
     {" classicladder classicladder_rt ", "there are no ladders yet; the components of logic (and2, or2, "
                                          "lut5, estop_latch, timedelay) or one of your own by "
                                          "halcompile do the same"},
-    {" scope_rt ",
-     "halscope of 2.9 looks into the HAL that it was made for; 'millwright hal capture' records pins"},
     {" plasmac ", "the component of plasma tables is not there yet: qtplasmac does not run"},
-    {" userkins homecomp axistest hal_lib tp boss_plc joint_axis_mapper histobinstream output_buffer "
+    {" homecomp axistest hal_lib tp boss_plc joint_axis_mapper histobinstream latencybinstream "
+     "timedeltalatch "
      "xhc_hb04_util ",
      "it is not there; halcompile makes it from its .comp file, where that is at hand"},
     {" tool_watch tool_mmap_read ",
