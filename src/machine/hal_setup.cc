@@ -68,7 +68,8 @@ class SinkOutput final : public lang::Output {
 /// Parts of this process first, then programs of the system.
 class RealtimePrograms final : public lang::ProgramHost {
   public:
-    RealtimePrograms(lang::InProcessProgramHost &parts, std::set<std::string> names, lang::ProgramHost &system)
+    RealtimePrograms(lang::InProcessProgramHost &parts, std::set<std::string> names,
+                     lang::ProgramHost &system)
         : parts_(parts), names_(std::move(names)), system_(system) {}
     Result<lang::ProgramStart> start(const lang::ProgramRequest &request) override {
         const bool isPart = !request.argv.empty() && names_.count(lang::base_name(request.argv[0])) > 0;

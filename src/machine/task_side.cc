@@ -28,7 +28,8 @@ ui::HaluiSettings halui_settings(const MachineConfig &config) {
 
 TaskSide::TaskSide(const MachineParts &parts, hal::Host &host, mailbox::Memory mailbox,
                    hal::lang::ProgramHost *programs)
-    : parts_(parts), host_(host), programs_(programs), mailbox_(std::move(mailbox)), parameters_(parts.ini, &host.hal()) {}
+    : parts_(parts), host_(host), programs_(programs), mailbox_(std::move(mailbox)),
+      parameters_(parts.ini, &host.hal()) {}
 
 TaskSide::~TaskSide() {
     task_.reset();

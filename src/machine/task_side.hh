@@ -27,7 +27,8 @@ namespace mw::machine {
 class TaskSide final : private task::IoPort {
   public:
     /// `programs`: what starts the programs of HAL files, and outlives this; null: none are started.
-    TaskSide(const MachineParts &parts, hal::Host &host, mailbox::Memory mailbox, hal::lang::ProgramHost *programs);
+    TaskSide(const MachineParts &parts, hal::Host &host, mailbox::Memory mailbox,
+             hal::lang::ProgramHost *programs);
     ~TaskSide() override;
 
     /// Makes pins, runs the HAL files, starts the threads, makes task and hands it the motion settings.

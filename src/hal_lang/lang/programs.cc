@@ -148,7 +148,8 @@ Result<> SystemProgramHost::stop_all() {
             result = stopped;
         }
     }
-    // Also who is still on the way to a component: it would come up on a HAL that is gone, or on the next one.
+    // Also who is still on the way to a component: it would come up on a HAL that is gone, or on the next
+    // one.
     reap();
     for (const int pid : children_) {
         kill(pid, SIGTERM);

@@ -33,7 +33,8 @@ class ProgramHost {
     virtual Result<ProgramStart> start(const ProgramRequest &request) = 0;
     /// Asks the program of a component to end (SIGTERM).
     virtual Result<> stop(const std::string &component) = 0;
-    /// Ends all programs of components, and those started here that have none yet; returns when they are gone.
+    /// Ends all programs of components, and those started here that have none yet; returns when they are
+    /// gone.
     virtual Result<> stop_all() = 0;
     /// Until the component is gone.
     virtual Result<> wait_for_end(const std::string &component) = 0;
