@@ -20,12 +20,12 @@ constexpr Absent ABSENT[] = {
      " hal_pi_gpio hal_ax5214h opto_ac5 pcl720 pluto_step pluto_servo serport setsserial elbpcom ",
      "drivers of boards come with a later version; this one runs simulated machines, programs of loadusr and "
      "components of your own"},
-    {" gs2_vfd hy_vfd hy_gt_vfd pi500_vfd svd-ps_vfd vfdb_vfd vfs11_vfd wj200_vfd thermistor sendkeys "
+    {" hy_vfd hy_gt_vfd pi500_vfd svd-ps_vfd vfs11_vfd wj200_vfd thermistor sendkeys "
      "shuttle"
      " xhc-hb04 xhc-whb04b-6 xhc-hb04-accels monitor-xhc-hb04 ",
      "that of an installed LinuxCNC runs on this HAL as it is: start the machine by script/screens "
      "(millwright-screens)"},
-    {" hal_input mitsub_vfd pmx485 pmx485-test sim-torch z_level_compensation scorbot-er-3 mdro "
+    {" mitsub_vfd pmx485 pmx485-test sim-torch z_level_compensation scorbot-er-3 mdro "
      "image-to-gcode"
      " qtplasmac_gcode qtplasmac-cfg2prefs qtplasmac-materials qtplasmac-plasmac2qt hal_bridge ",
      "it is a program in Python of LinuxCNC's package, and runs with our modules: start the machine by "
