@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
 #include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "machine/abilities.hh"
 #include "machine/path_monitor.hh"
 #include "machine/unscripted.hh"
 
@@ -58,9 +56,6 @@ class Checker {
   private:
     void take_event(const gcode::PreviewEvent &event) {
         using Kind = gcode::PreviewKind;
-        if (const MissingAbility *missing = missing_ability(event, machine_.isTrivial); missing != nullptr) {
-            report_impossible(*missing);
-        }
         ProgrammedPiece piece;
         piece.start = event.start;
         piece.end = event.end;
@@ -181,16 +176,6 @@ class Checker {
         return all - along * along;
     }
 
-    /// A line of a loop is told once.
-    void report_impossible(const MissingAbility &missing) {
-        if (!impossible_.emplace(event_->file, event_->line).second) {
-            return;
-        }
-        const int column = column_of_code(preview_->line_text(event_->file, event_->line), missing.code);
-        report(fmt::format("a machine of this version cannot {} ({})", missing.what, missing.code),
-               std::string(missing.remedy), column);
-    }
-
     /// One message for each line, not for each axis.
     void report(std::string message, std::string hint, int column = 1) {
         if (event_->line == reported_line_ || sink_.count_errors() >= MAX_CHECK_ERRORS) {
@@ -218,7 +203,6 @@ class Checker {
     const gcode::Preview *preview_ = nullptr;
     const gcode::PreviewEvent *event_ = nullptr;
     int reported_line_ = -1;
-    std::set<std::pair<std::uint32_t, int>> impossible_;  ///< file and line of what was told
 };
 
 }  // namespace

@@ -22,7 +22,7 @@ constexpr double AT_FEED = 1.02;
 Estimator::Estimator(const Limits &limits, double period_s, Listener listener)
     : limits_(limits), period_s_(period_s),
       period_power_{period_s, period_s * period_s, period_s * period_s * period_s},
-      listener_(std::move(listener)), store_(std::make_unique<PathStore>()),
+      listener_(std::move(listener)), store_(std::make_unique_for_overwrite<PathStore>()),
       executor_(std::make_unique<Executor>(*store_, period_s)),
       planner_(std::make_unique<Planner>(*store_, PlannerSettings{period_s, LATENCY, HORIZON_S, true})) {
     planner_->set_limits(limits);
