@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // millwright ui: serves a machine that is up to browsers.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -15,6 +16,7 @@
 #include "app/ui_dialogs.hh"
 #include "app/ui_door.hh"
 #include "app/ui_facts.hh"
+#include "app/ui_filter.hh"
 #include "app/ui_path.hh"
 #include "app/ui_tabs.hh"
 #include "base/own_place.hh"
@@ -109,6 +111,7 @@ ui::web::ApiSetup setup_of(const UiWords &words, const machine::LoadedConfig &lo
     setup.facts = machine_facts(loaded, sink);
     setup.facts.ini = ini;
     setup.facts.instance = instance;
+    setup.facts.filters.folder = filtered_folder(instance);
     setup.screens.connect = [instance, ini] { return connect(instance, ini); };
     setup.screens.version = MW_VERSION;
     setup.screens.status_period_ns = static_cast<std::int64_t>(status_period_s(loaded.ini, sink) * 1e9);
@@ -138,6 +141,20 @@ void run(ui::web::Server &server, const UiWords &words, const machine::LoadedCon
     setup.read_path = [&readers](const std::string &path) { return readers.read(path); };
     setup.read_times = [&readers](const std::string &path, const ui::web::TimeOverrides &overrides) {
         return readers.read_times(path, overrides);
+    };
+    setup.run_filter = [&readers, filters = filters_of(loaded.ini),
+                        folder = std::filesystem::path(setup.facts.ini).parent_path().string()](
+                           const std::string &path, const std::string &made) {
+        const std::string lower = to_lower(path);
+        const auto filter =
+            std::ranges::find_if(filters, [&](const auto &one) { return lower.ends_with(one.first); });
+        if (filter == filters.end()) {
+            return Result<std::shared_ptr<ui::web::PieceQueue>>(
+                fail("[FILTER] names no program for " + path));
+        }
+        return readers.run([command = filter->second, folder, path, made](ui::web::PieceQueue &pieces) {
+            run_filter({command, folder, path, made}, pieces);
+        });
     };
     const auto post = [&server](std::function<void()> act) { server.post(std::move(act)); };
     ui::web::Worker disk(post), hal_looks(post);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "app/ui_filter.hh"
 #include "app/ui_tabs.hh"
 #include "base/text.hh"
 #include "config/ini_value.hh"
@@ -322,6 +323,9 @@ ui::web::MachineFacts machine_facts(const machine::LoadedConfig &loaded, diag::S
         }
     }
     facts.program_extensions = extensions_of(ini);
+    for (const auto &[extension, command] : filters_of(ini)) {
+        facts.filters.extensions.push_back(extension);
+    }
     return facts;
 }
 

@@ -33,6 +33,10 @@ class PathReaders {
     /// The chunks of docs/api.md, while the program is read; an error when MOST are.
     Result<std::shared_ptr<ui::web::PieceQueue>> read(const std::string &path);
     /// How long its moves take, by the planner.
+    /// Something else that is told while it goes on, in the same number.
+    Result<std::shared_ptr<ui::web::PieceQueue>> run(std::function<void(ui::web::PieceQueue &)> job) {
+        return begin([job = std::move(job)](Reader &reader) { job(*reader.pieces); });
+    }
     Result<std::shared_ptr<ui::web::PieceQueue>> read_times(const std::string &path,
                                                             const ui::web::TimeOverrides &overrides);
 

@@ -70,7 +70,7 @@ export class Rig {
     const plain = readFileSync(this.ini, 'utf8');
     writeFileSync(join(this.folder, 'configs/sim/by_hand.hal'), BY_HAND);
     writeFileSync(this.ini, change(plain.replace(/PROGRAM_PREFIX = .*/, `PROGRAM_PREFIX = ${this.programs}`)));
-    this.env = { ...process.env, XDG_CONFIG_HOME: join(this.folder, 'config'), MILLWRIGHT_INSTANCE: `screen-${process.pid}-${Math.floor(performance.now())}` };
+    this.env = { ...process.env, XDG_CONFIG_HOME: join(this.folder, 'config'), XDG_CACHE_HOME: join(this.folder, 'cache'), MILLWRIGHT_INSTANCE: `screen-${process.pid}-${Math.floor(performance.now())}` };
   }
 
   write(name: string, text: string): void {
@@ -128,6 +128,23 @@ export class Rig {
   token(role: string): string {
     const text = readFileSync(join(this.folder, 'config/millwright/screen/tokens'), 'utf8');
     return new RegExp(`^${role} (\\w+)$`, 'm').exec(text)?.[1] ?? '';
+  }
+
+  /** Memory that the largest page of the browser has for itself, and its share of what it has with others. [MB] */
+  async pageMemory(): Promise<number> {
+    const session = await (this.browser as Browser).newBrowserCDPSession();
+    const { processInfo } = await session.send('SystemInfo.getProcessInfo');
+    await session.detach();
+    const sizes = processInfo
+      .filter((one) => one.type === 'renderer')
+      .map((one) => {
+        try {
+          return Number(/^Pss:\s+(\d+) kB/m.exec(readFileSync(`/proc/${one.id}/smaps_rollup`, 'utf8'))?.[1] ?? 0) / 1024;
+        } catch {
+          return 0; // it has just ended
+        }
+      });
+    return Math.max(...sizes);
   }
 
   get port(): number {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // What a screen is told of the machine, from its INI file (J1).
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "app/ui_facts.hh"
+#include "app/ui_filter.hh"
 #include "app/ui_path.hh"
 #include "base/atomic_file.hh"
 
@@ -252,6 +254,90 @@ TEST_F(UiMachine, AProgramWithErrorsHasNoTime_J3) {
     const Times times(all_of(**readers.read_times(path, {})));
     EXPECT_EQ(times.sum, "");
     EXPECT_NE(times.error.find("p.ngc:3"), std::string::npos);
+}
+
+/// What a filter of this shell script tells, and the program it has made.
+class Filter : public UiMachine {
+  protected:
+    std::string run(const std::string &script,
+                    const std::function<void(ui::web::PieceQueue &)> &meanwhile = {}) {
+        const std::string path = (folder_ / "filter").string();
+        std::ofstream(path) << "#!/bin/sh\n" << script;
+        fs::permissions(path, fs::perms::owner_all);
+        std::ofstream(folder_ / "it's a picture.png") << "pixels";
+        ui::web::PieceQueue pieces;
+        const FilterRun filter{"./filter -x", folder_.string(), (folder_ / "it's a picture.png").string(),
+                               made_};
+        std::thread other([&] {
+            run_filter(filter, pieces);
+            pieces.end();
+        });
+        if (meanwhile) {
+            meanwhile(pieces);
+        }
+        const std::string told = all_of(pieces);
+        other.join();
+        return told;
+    }
+    std::string made() const { return read_file(made_).value_or("none"); }
+    std::size_t files_beside() const {
+        const fs::path folder = fs::path(made_).parent_path();
+        return fs::exists(folder)
+                   ? static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), {}))
+                   : 0;
+    }
+    std::string made_ = (folder_ / "made/by/picture.png.ngc").string();
+};
+
+TEST_F(Filter, MakesAProgramAndTellsItsProgress_J1) {
+    const std::string told =
+        run("echo FILTER_PROGRESS=10 >&2; echo FILTER_PROGRESS=10 >&2; echo fine >&2\n"
+            "echo FILTER_PROGRESS=100 >&2; echo \"($1 $2 $AXIS_PROGRESS_BAR)\"; echo M2\n");
+    EXPECT_EQ(told, "{\"progress\":10}\n{\"progress\":100}\n{\"made\":\"" + made_ + "\"}\n");
+    EXPECT_EQ(made(), "(-x " + (folder_ / "it's a picture.png").string() + " 1)\nM2\n");
+}
+
+TEST_F(Filter, WhatGoesWrongIsToldAndLeavesTheProgramOfBefore_J1) {
+    run("echo M2\n");
+    for (const auto &[script, why] :
+         {std::pair{"echo half; echo no depth in it >&2; exit 3\n",
+                    "has ended with status 3: no depth in it"},
+          std::pair{"kill -9 $$\n", "has ended with status 137"},
+          std::pair{"echo nothing to cut >&2\n", "has made no program: nothing to cut"}}) {
+        const std::string told = run(script);
+        EXPECT_NE(told.find("\"error\":\"the filter './filter -x' "), std::string::npos) << told;
+        EXPECT_NE(told.find(why), std::string::npos) << told;
+        EXPECT_EQ(made(), "M2\n");
+        EXPECT_EQ(files_beside(), 1U);
+    }
+}
+
+TEST_F(Filter, EndsWithAllThatItHasStartedWhenNobodyWaits_J1) {
+    const std::string mark = (folder_ / "pid").string();
+    run("sh -c 'echo $$ > pid; trap \"\" TERM; while :; do sleep 0.1; done' &\nwait\n",
+        [&](ui::web::PieceQueue &pieces) {
+            while (read_file(mark).value_or("").empty()) {
+                std::this_thread::yield();
+            }
+            pieces.cancel();
+        });
+    const int pid = std::stoi(read_file(mark).value_or("0"));
+    ASSERT_GT(pid, 0);
+    while (::kill(pid, 0) == 0) {
+        std::this_thread::yield();  // until it is gone, or the test's time is over
+    }
+    EXPECT_EQ(made(), "none");
+    EXPECT_EQ(files_beside(), 0U);
+}
+
+TEST_F(UiMachine, FiltersAreThoseOfTheIniFile_J1) {
+    const auto loaded =
+        load("mill_mm", "",
+             "\n[FILTER]\nPROGRAM_EXTENSION = .png,.gif Images\npng = image-to-gcode --x\nPY = python3\n");
+    const auto filters = filters_of(loaded->ini);
+    EXPECT_EQ(filters,
+              (std::map<std::string, std::string>{{".png", "image-to-gcode --x"}, {".py", "python3"}}));
+    EXPECT_EQ(machine_facts(*loaded, sink_).filters.extensions, (std::vector<std::string>{".png", ".py"}));
 }
 
 TEST_F(UiMachine, APipeIsNotRead_J3) {

@@ -166,7 +166,9 @@ void Api::answer(const Request &request, Reply reply) {
         answer_files(request, path.size() > FILES.size() ? path.substr(FILES.size()) : "", std::move(reply));
         return;
     }
-    if (request.method != "GET") {
+    if (path == "/api/filter" && request.method == "POST") {
+        reply(answer_filter(request));
+    } else if (request.method != "GET") {
         reply(wrong_method(request));
     } else if (path == "/api/schema") {
         reply(document(schema_document()));
@@ -196,7 +198,8 @@ void Api::answer_files(const Request &request, const std::string &name, Reply re
         }
         threads_.disk.run([this] { return files_.list(); }, std::move(reply));
     } else if (request.method == "GET") {
-        threads_.disk.run([this, name] { return files_.read(name); }, std::move(reply));
+        const auto made = request.query.contains("made") ? made_of(name) : std::nullopt;
+        threads_.disk.run([this, name, made] { return files_.read(name, made); }, std::move(reply));
     } else if (request.method == "DELETE") {
         threads_.disk.run([this, name] { return files_.remove(name); }, std::move(reply));
     } else if (request.method == "PUT") {
@@ -245,7 +248,7 @@ Response Api::answer_path(const Request &request) {
     if (name == request.query.end()) {
         return error_response(400, "the path of which program? /api/path?file=NAME");
     }
-    const auto path = files_.path_of(name->second);
+    const auto path = program_of(name->second);
     return path.has_value() ? stream(setup_.read_path(*path)) : error_response(400, path.error().str());
 }
 
@@ -258,9 +261,39 @@ Response Api::answer_times(const Request &request) {
         return error_response(
             400, "/api/times?file=NAME&feed=1&rapid=1&max_velocity=0: overrides of at least 0.001");
     }
-    const auto path = files_.path_of(name->second);
+    const auto path = program_of(name->second);
     return path.has_value() ? stream(setup_.read_times(*path, {*feed, *rapid, *most}))
                             : error_response(400, path.error().str());
+}
+
+std::optional<std::string> Api::made_of(const std::string &name) const {
+    const std::string lower = to_lower(name);
+    const auto &all = setup_.facts.filters.extensions;
+    const bool isFiltered =
+        std::ranges::any_of(all, [&](const std::string &one) { return lower.ends_with(one); });
+    return isFiltered ? std::optional(setup_.facts.filters.folder + '/' + name + ".ngc") : std::nullopt;
+}
+
+Result<std::string> Api::program_of(const std::string &name) const {
+    auto path = files_.path_of(name);
+    const auto made = path.has_value() ? made_of(name) : std::nullopt;
+    return made.has_value() ? Result<std::string>(*made) : path;
+}
+
+Response Api::answer_filter(const Request &request) {
+    const auto name = request.query.find("file");
+    const auto path =
+        name == request.query.end() ? Result<std::string>(fail("which file?")) : files_.path_of(name->second);
+    if (!path.has_value()) {
+        return error_response(400, path.error().str());
+    }
+    const auto made = made_of(name->second);
+    if (!made.has_value()) {
+        return error_response(400, "[FILTER] names no program for '" + printable(name->second) + "'");
+    }
+    Response response = stream(setup_.run_filter(*path, *made));
+    response.type = response.pieces != nullptr ? "application/x-ndjson" : response.type;
+    return response;
 }
 
 Response Api::answer_tools() {

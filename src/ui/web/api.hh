@@ -26,6 +26,9 @@ struct ApiSetup {
     /// The same for its times, at the overrides of the second.
     std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path, const TimeOverrides &)>
         read_times{};
+    /// The same for a filter that makes `made` from `path`.
+    std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path, const std::string &made)>
+        run_filter{};
     HalDesk::Connect connect_hal;
     std::vector<DialogFacts> dialogs{};
     HalDesk::Begin begin_hal{};
@@ -70,6 +73,11 @@ class Api final : public Application {
     void look_at_hal();
     Response answer_path(const Request &request);
     Response answer_times(const Request &request);
+    Response answer_filter(const Request &request);
+    /// Path of the program that a filter has made, or would make, of a file; nothing where it is one itself.
+    std::optional<std::string> made_of(const std::string &name) const;
+    /// What is interpreted when this is opened.
+    Result<std::string> program_of(const std::string &name) const;
     Response answer_tools();
     Response metrics() const;
 

@@ -250,7 +250,9 @@ std::string machine_document(const MachineFacts &facts) {
                         {"default_spindle_speed", facts.default_spindle_speed},
                         {"increments", std::move(increments)},
                         {"mdi_commands", facts.mdi_commands},
-                        {"program_extensions", facts.program_extensions}});
+                        {"program_extensions", facts.program_extensions},
+                        {"filter_extensions", facts.filters.extensions},
+                        {"filtered_folder", facts.filters.folder}});
 }
 
 std::string lines_document(std::span<const std::string> lines) {
@@ -281,6 +283,18 @@ std::string offsets_document(std::span<const std::array<double, 10>> systems) {
                         {"rotation_deg", system.back()}});
     }
     return one("systems", std::move(list));
+}
+
+std::string filter_progress_text(int percent) {
+    return one("progress", percent) + '\n';
+}
+
+std::string filter_made_text(std::string_view path) {
+    return one("made", std::string(path)) + '\n';
+}
+
+std::string filter_error_text(std::string_view why) {
+    return one("error", std::string(why)) + '\n';
 }
 
 std::string time_sum_document(const TimeSum &sum) {

@@ -37,6 +37,10 @@ bool isObject(std::string_view json);
 /// Nine offsets and the rotation [deg] of each coordinate system.
 std::string offsets_document(std::span<const std::array<double, 10>> systems);
 
+/// Lines of what a filter tells: how far it is, or how it has ended.
+std::string filter_progress_text(int percent);
+std::string filter_made_text(std::string_view path);
+std::string filter_error_text(std::string_view why);
 std::string time_sum_document(const TimeSum &sum);
 
 struct FileFacts {

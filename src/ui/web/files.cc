@@ -127,11 +127,12 @@ Response ProgramFiles::list() const {
     return response;
 }
 
-Response ProgramFiles::read(const std::string &name) const {
-    const auto path = path_of(name);
+Response ProgramFiles::read(const std::string &name, const std::optional<std::string> &made) const {
+    auto path = path_of(name);
     if (!path.has_value()) {
         return error_response(400, path.error().str());
     }
+    path = made.value_or(*path);
     std::error_code error;
     const std::uintmax_t size = fs::is_regular_file(*path, error) ? fs::file_size(*path, error) : 0;
     if (error || !fs::is_regular_file(*path, error)) {

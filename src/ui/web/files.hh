@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,7 +29,8 @@ class ProgramFiles {
     ProgramFiles &operator=(const ProgramFiles &) = delete;
 
     Response list() const;
-    Response read(const std::string &name) const;
+    /// `made`: path of the program that a filter has made of it, which is read instead.
+    Response read(const std::string &name, const std::optional<std::string> &made = {}) const;
     /// A piece of a file of `size` bytes at its place. Pieces come in their order; the first one begins anew.
     /// With the last one the file gets its name, as a whole or not at all.
     Response write(const std::string &name, std::uint64_t offset, std::uint64_t size, std::string_view piece);

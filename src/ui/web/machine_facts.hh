@@ -43,6 +43,12 @@ enum class MachineKind : std::uint8_t {
     FOAM         ///< a wire through two planes
 };
 
+/// Files that a program of [FILTER] makes programs from.
+struct FilterFacts {
+    std::vector<std::string> extensions;  ///< with their dot, in lower case
+    std::string folder;                   ///< of the programs that are made, named as their file with ".ngc"
+};
+
 struct MachineLook {
     MachineKind kind = MachineKind::MILL;
     std::string geometry;           ///< as PathGeometry takes it
@@ -73,6 +79,7 @@ struct MachineFacts {
     ScreenFiles files;
     std::vector<Tab> tabs;
     std::vector<std::string> program_extensions;  ///< with their dot, in lower case
+    FilterFacts filters;
 };
 
 }  // namespace mw::ui::web

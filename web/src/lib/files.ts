@@ -27,8 +27,40 @@ export async function listPrograms(): Promise<ProgramFile[]> {
   return told.files;
 }
 
-export async function readProgram(name: string): Promise<string> {
-  return (await ask('GET', address(name))).text();
+/** `isMade`: what a filter has made of it. */
+export async function readProgram(name: string, isMade = false): Promise<string> {
+  return (await ask('GET', `${address(name)}${isMade ? '?made' : ''}`)).text();
+}
+
+type FilterLine = { progress: number } | { made: string } | { error: string };
+
+/** Runs a file's filter; gives the path of the program. Ends with the signal. */
+export async function runFilter(name: string, tell: (percent: number) => void, signal: AbortSignal): Promise<string> {
+  const answer = await fetch(`/api/filter?file=${encodeURIComponent(name)}`, { method: 'POST', signal });
+  if (!answer.ok || answer.body === null) {
+    const told = (await answer.json().catch(() => null)) as { error?: string } | null;
+    throw new Error(told?.error ?? `POST /api/filter: ${answer.status}`);
+  }
+  const reader = answer.body.pipeThrough(new TextDecoderStream()).getReader();
+  let rest = '';
+  for (;;) {
+    const { done, value } = await reader.read();
+    rest += value ?? '';
+    for (let end = rest.indexOf('\n'); end >= 0; end = rest.indexOf('\n')) {
+      const line = JSON.parse(rest.slice(0, end)) as FilterLine;
+      rest = rest.slice(end + 1);
+      if ('made' in line) {
+        return line.made;
+      }
+      if ('error' in line) {
+        throw new Error(line.error);
+      }
+      tell(line.progress);
+    }
+    if (done) {
+      throw new Error('the filter has told no end');
+    }
+  }
 }
 
 export async function deleteProgram(name: string): Promise<void> {

@@ -4,12 +4,26 @@ import { machine } from './machine.svelte';
 
 export const program = $state<{ reads: number; errors: string[] }>({ reads: 0, errors: [] });
 
+/** A name in a folder, without what comes behind it. */
+function nameIn(path: string, folder: string, end = ''): string | null {
+  const prefix = `${folder}/`;
+  const name = path.startsWith(prefix) && path.endsWith(end) ? path.slice(prefix.length, path.length - end.length) : '';
+  return name === '' || name.includes('/') ? null : name;
+}
+
+/** Made by a filter: the file that it was made from. */
+export function filteredName(): string | null {
+  return nameIn(machine.status?.task.program ?? '', machine.facts?.filtered_folder ?? '', '.ngc');
+}
+
 /** In the folder of programs; nothing where none is open, or one from elsewhere. */
 export function openName(): string | null {
-  const path = machine.status?.task.program ?? '';
-  const prefix = `${machine.facts?.program_prefix ?? ''}/`;
-  const name = path.startsWith(prefix) ? path.slice(prefix.length) : '';
-  return name === '' || name.includes('/') ? null : name;
+  return filteredName() ?? nameIn(machine.status?.task.program ?? '', machine.facts?.program_prefix ?? '');
+}
+
+/** What is opened runs a filter first. */
+export function hasFilter(name: string): boolean {
+  return (machine.facts?.filter_extensions ?? []).some((one) => name.toLowerCase().endsWith(one));
 }
 
 export function isOutside(): boolean {

@@ -188,6 +188,9 @@ export interface MachineFacts {
   increments: { text: string; value: number; angular: boolean }[];
   mdi_commands: string[];
   program_extensions: string[];
+  /** Of files that a program of [FILTER] makes programs from, which lie in the folder. */
+  filter_extensions: string[];
+  filtered_folder: string;
   max_feed_override: number;
   min_spindle_override: number;
   max_spindle_override: number;

@@ -35,7 +35,7 @@ class ApiTest : public testing::Test {
         setup.facts.name = "Mill";
         setup.facts.axes = "XYZ";
         setup.facts.program_prefix = folder.string();
-        setup.facts.program_extensions = {".ngc"};
+        setup.facts.program_extensions = {".ngc", ".png"};
         setup.facts.increments = {{"0.1 in", 2.54, false}};
         setup.facts.tabs = {{"Door", "", Tab::Kind::PANEL,
                              R"({"parts": [{"kind": "switch", "label": "Door", "name": "door"}]})"}};
@@ -44,6 +44,12 @@ class ApiTest : public testing::Test {
         setup.read_times = [this](const std::string &,
                                   const TimeOverrides &at) -> Result<std::shared_ptr<PieceQueue>> {
             overrides = at;
+            return std::make_shared<PieceQueue>();
+        };
+        setup.facts.filters = {{".png"}, "/made"};
+        setup.run_filter = [this](const std::string &path,
+                                  const std::string &made) -> Result<std::shared_ptr<PieceQueue>> {
+            filtered = {path, made};
             return std::make_shared<PieceQueue>();
         };
         setup.read_path = [this](const std::string &path) -> Result<std::shared_ptr<PieceQueue>> {
@@ -79,7 +85,7 @@ class ApiTest : public testing::Test {
     FakeSockets sockets;
     Here here;
     TimeOverrides overrides;
-    std::vector<std::string> read;
+    std::vector<std::string> read, filtered;
     std::int64_t now_ns = 1;
     std::optional<Api> api;
 };
@@ -127,7 +133,8 @@ TEST_F(ApiTest, TheMachineIsWhatTheIniSays_J3) {
     EXPECT_EQ(machine["name"], "Mill");
     EXPECT_EQ(machine["axes"], "XYZ");
     EXPECT_EQ(machine["increments"], Json::parse(R"([{"text":"0.1 in","value":2.54,"angular":false}])"));
-    EXPECT_EQ(machine["program_extensions"], Json::parse(R"([".ngc"])"));
+    EXPECT_EQ(machine["program_extensions"], Json::parse(R"([".ngc",".png"])"));
+    EXPECT_EQ(machine["filter_extensions"], Json::parse(R"([".png"])"));
 }
 
 TEST_F(ApiTest, ProgramsComeInPiecesAndGo_J3) {
@@ -144,6 +151,19 @@ TEST_F(ApiTest, ProgramsComeInPiecesAndGo_J3) {
     EXPECT_EQ(ask("GET", "/api/files/..%2fx.ngc").status, 400);
     EXPECT_EQ(ask("POST", "/api/files/whole.ngc").status, 400);
     EXPECT_EQ(ask("DELETE", "/api/files").status, 400);
+}
+
+TEST_F(ApiTest, AFilterRunsForItsExtensionAndItsProgramIsRead_J1) {
+    EXPECT_EQ(ask("POST", "/api/filter?file=a.ngc").status, 400) << "no filter for it";
+    EXPECT_EQ(ask("POST", "/api/filter?file=../a.png").status, 400);
+    EXPECT_EQ(ask("GET", "/api/filter?file=a.png").status, 404);
+    EXPECT_NE(ask("POST", "/api/filter?file=a.PNG").pieces, nullptr);
+    EXPECT_EQ(filtered, (std::vector<std::string>{folder.string() + "/a.PNG", "/made/a.PNG.ngc"}));
+    role = Role::VIEW;
+    EXPECT_EQ(ask("POST", "/api/filter?file=a.png").status, 403);
+    EXPECT_NE(ask("GET", "/api/path?file=a.png").pieces, nullptr);
+    EXPECT_EQ(read, std::vector<std::string>{"/made/a.png.ngc"});
+    EXPECT_EQ(ask("GET", "/api/files/a.png?made").status, 404) << "nothing is made yet";
 }
 
 TEST_F(ApiTest, TimesAreAskedForAtOverrides_J3) {
