@@ -194,6 +194,8 @@ def remains():
 
 def one(options):
     """Within the namespaces."""
+    # Where a shell has started this in the background it ignores the interrupt, and so would what it starts until that has a handler.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
     pathlib.Path('/var/tmp/cycles').mkdir(exist_ok=True)
     rng = random.Random(options.seed * 1000003 + options.one)
     way = WAYS[options.kind][options.one % len(WAYS[options.kind])]

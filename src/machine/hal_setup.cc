@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include <fmt/format.h>
@@ -67,8 +68,9 @@ class SinkOutput final : public lang::Output {
 /// Parts of this process first, then programs of the system.
 class RealtimePrograms final : public lang::ProgramHost {
   public:
-    RealtimePrograms(lang::InProcessProgramHost &parts, std::set<std::string> names, hal::Hal &hal)
-        : parts_(parts), names_(std::move(names)), system_(hal, &stop_signal) {}
+    RealtimePrograms(lang::InProcessProgramHost &parts, std::set<std::string> names,
+                     lang::ProgramHost &system)
+        : parts_(parts), names_(std::move(names)), system_(system) {}
     Result<lang::ProgramStart> start(const lang::ProgramRequest &request) override {
         const bool isPart = !request.argv.empty() && names_.count(lang::base_name(request.argv[0])) > 0;
         return isPart ? parts_.start(request) : system_.start(request);
@@ -80,7 +82,7 @@ class RealtimePrograms final : public lang::ProgramHost {
   private:
     lang::InProcessProgramHost &parts_;
     std::set<std::string> names_;
-    lang::SystemProgramHost system_;
+    lang::ProgramHost &system_;
 };
 
 /// Loads a module of a user in the place of `ours` (homemod, tpmod), and asks ours whether it is one.
@@ -169,7 +171,10 @@ Result<> HalSetup::run() {
     lang::InProcessProgramHost parts;
     parts.add_part("hal_manualtoolchange",
                    [this](const lang::ProgramRequest &) { return on_tool_change_program(); });
-    RealtimePrograms programs(parts, {"hal_manualtoolchange"}, host_.hal());
+    std::optional<RealtimePrograms> programs;
+    if (programs_ != nullptr) {
+        programs.emplace(parts, std::set<std::string>{"hal_manualtoolchange"}, *programs_);
+    }
     const bool isVirtual = host_.hal().isVirtual();
     lang::SessionOptions session_options;
     session_options.hasPlaceholders = isVirtual;
@@ -183,8 +188,8 @@ Result<> HalSetup::run() {
         session_options.library.push_back(folder);
     }
     offer_to_scripts(parts_.ini.path(), session_options.library);
-    lang::ProgramHost &program_host = isVirtual ? static_cast<lang::ProgramHost &>(parts) : programs;
-    lang::Session session(host_, program_host, output, session_options);
+    lang::ProgramHost *const program_host = programs ? static_cast<lang::ProgramHost *>(&*programs) : &parts;
+    lang::Session session(host_, *program_host, output, session_options);
     const int errors_before = parts_.sink.count_errors();
     const auto chosen = [](const std::string &asked, const char *option, const HalStep &of_file) {
         return asked.empty() ? of_file : HalStep{HalStep::Kind::COMMAND, asked, {option, 0, 0}};

@@ -5,14 +5,17 @@
 #include <functional>
 
 #include "hal/core/host.hh"
+#include "hal_lang/lang/programs.hh"
 #include "machine/machine.hh"
 
 namespace mw::machine {
 
 class HalSetup {
   public:
-    HalSetup(const MachineParts &parts, hal::Host &host, const MachineOptions &options)
-        : parts_(parts), host_(host), options_(options) {}
+    /// `programs`: starts what loadusr names beside the parts of this process; null: nothing else is started.
+    HalSetup(const MachineParts &parts, hal::Host &host, hal::lang::ProgramHost *programs,
+             const MachineOptions &options)
+        : parts_(parts), host_(host), programs_(programs), options_(options) {}
 
     /// Makes the in-process part for `loadusr hal_manualtoolchange`.
     std::function<Result<>()> on_tool_change_program;
@@ -24,6 +27,7 @@ class HalSetup {
   private:
     const MachineParts &parts_;
     hal::Host &host_;
+    hal::lang::ProgramHost *programs_;
     const MachineOptions &options_;
 };
 

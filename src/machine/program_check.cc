@@ -42,7 +42,7 @@ class Checker {
             event_ = &event;
             if (isTimed_) {
                 estimate_.set_place(preview.file(event.file), event.line, preview.section(event.section));
-                take_time(event);
+                estimate_.take(event);
             }
             take_event(event);
         }
@@ -54,29 +54,6 @@ class Checker {
     }
 
   private:
-    void take_time(const gcode::PreviewEvent &event) {
-        using Kind = gcode::PreviewKind;
-        switch (event.kind) {
-        case Kind::RAPID: estimate_.line(event.end, event.settings); break;
-        case Kind::FEED: estimate_.line(event.end, timed(event)); break;
-        case Kind::ARC:
-            estimate_.arc({event.end, event.centre, event.normal, event.angle_rad, timed(event)});
-            break;
-        case Kind::PROBE:
-            estimate_.stop();
-            estimate_.line(event.end, timed(event));
-            estimate_.stop();
-            break;
-        case Kind::RIGID_TAP:
-            estimate_.line(event.end, timed(event));
-            estimate_.line(event.start, timed(event));
-            break;
-        case Kind::DWELL: estimate_.dwell(event.value); break;
-        case Kind::TOOL_CHANGE: estimate_.set_tool(event.number); break;
-        case Kind::PLANNER: estimate_.set_smooth(event.number != 0); break;
-        case Kind::STOP: estimate_.stop(); break;
-        }
-    }
     void take_event(const gcode::PreviewEvent &event) {
         using Kind = gcode::PreviewKind;
         ProgrammedPiece piece;
@@ -106,14 +83,6 @@ class Checker {
         case Kind::PLANNER:
         case Kind::STOP: break;
         }
-    }
-    /// Moves that follow the spindle are timed at its programmed speed.
-    static geom::MoveSettings timed(const gcode::PreviewEvent &event) {
-        geom::MoveSettings out = event.settings;
-        if (out.feed_per_revolution > 0 && event.spindle_rpm > 0) {
-            out.feed = out.feed_per_revolution * event.spindle_rpm / 60.0;
-        }
-        return out;
     }
     void take_piece(const ProgrammedPiece &piece) {
         ++result.moves;

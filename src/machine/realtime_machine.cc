@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <optional>
 
+#include "base/stop_signals.hh"
 #include "hal/host/host_client.hh"
 #include "hal_lang/lang/programs.hh"
 #include "machine/machine.hh"
@@ -40,7 +42,9 @@ class RealtimeMachine final : public Machine {
         side_.reset();
         if (host_ != nullptr) {
             // Programs of loadusr live on the HAL of this machine: they end with it.
-            static_cast<void>(hal::lang::SystemProgramHost(host_->hal()).stop_all());
+            if (programs_) {
+                static_cast<void>(programs_->stop_all());
+            }
             static_cast<void>(host_->shut_down());
         }
     }
@@ -53,6 +57,7 @@ class RealtimeMachine final : public Machine {
             return std::unexpected(host.error());
         }
         host_ = std::move(*host);
+        programs_.emplace(host_->hal(), &stop_signal);
         const auto controlled = host_->control();
         if (!controlled.has_value()) {
             return controlled;
@@ -61,7 +66,7 @@ class RealtimeMachine final : public Machine {
         if (!mailbox.has_value()) {
             return std::unexpected(mailbox.error());
         }
-        side_ = std::make_unique<TaskSide>(parts_, *host_, std::move(*mailbox));
+        side_ = std::make_unique<TaskSide>(parts_, *host_, std::move(*mailbox), &*programs_);
         const auto started = side_->start(options);
         return started.has_value() ? side_->finish_start(*this, CONFIGURE_CYCLES) : started;
     }
@@ -107,6 +112,7 @@ class RealtimeMachine final : public Machine {
   private:
     MachineParts parts_;
     std::unique_ptr<hal::HostClient> host_;
+    std::optional<hal::lang::SystemProgramHost> programs_;
     std::unique_ptr<TaskSide> side_;
     std::int64_t next_ns_;
 };

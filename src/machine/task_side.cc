@@ -26,8 +26,10 @@ ui::HaluiSettings halui_settings(const MachineConfig &config) {
 
 }  // namespace
 
-TaskSide::TaskSide(const MachineParts &parts, hal::Host &host, mailbox::Memory mailbox)
-    : parts_(parts), host_(host), mailbox_(std::move(mailbox)), parameters_(parts.ini, &host.hal()) {}
+TaskSide::TaskSide(const MachineParts &parts, hal::Host &host, mailbox::Memory mailbox,
+                   hal::lang::ProgramHost *programs)
+    : parts_(parts), host_(host), programs_(programs), mailbox_(std::move(mailbox)),
+      parameters_(parts.ini, &host.hal()) {}
 
 TaskSide::~TaskSide() {
     task_.reset();
@@ -108,7 +110,7 @@ Result<> TaskSide::make_pins() {
 }
 
 Result<> TaskSide::run_hal_files(const MachineOptions &options) {
-    HalSetup setup(parts_, host_, options);
+    HalSetup setup(parts_, host_, programs_, options);
     const ToolHand hand = options.isClockVirtual ? ToolHand::SIMULATED : ToolHand::PERSON;
     setup.on_tool_change_program = [this, hand] {
         return tool_change_.create(host_.hal(), hand,

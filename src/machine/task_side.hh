@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hal/core/host.hh"
+#include "hal_lang/lang/programs.hh"
 #include "io/pins.hh"
 #include "journal/writer.hh"
 #include "machine/ini_parameters.hh"
@@ -25,7 +26,9 @@ namespace mw::machine {
 /// done.
 class TaskSide final : private task::IoPort {
   public:
-    TaskSide(const MachineParts &parts, hal::Host &host, mailbox::Memory mailbox);
+    /// `programs`: what starts the programs of HAL files, and outlives this; null: none are started.
+    TaskSide(const MachineParts &parts, hal::Host &host, mailbox::Memory mailbox,
+             hal::lang::ProgramHost *programs);
     ~TaskSide() override;
 
     /// Makes pins, runs the HAL files, starts the threads, makes task and hands it the motion settings.
@@ -59,6 +62,7 @@ class TaskSide final : private task::IoPort {
 
     MachineParts parts_;
     hal::Host &host_;
+    hal::lang::ProgramHost *programs_;
     mailbox::Memory mailbox_;  ///< outlives its clients
     std::optional<client::Client> client_;
     io::Pins io_pins_;

@@ -32,7 +32,7 @@ class VirtualMachine final : public Machine {
             return std::unexpected(host.error());
         }
         host_ = std::move(*host);
-        side_ = std::make_unique<TaskSide>(parts_, *host_, mailbox::Memory::in_process());
+        side_ = std::make_unique<TaskSide>(parts_, *host_, mailbox::Memory::in_process(), nullptr);
         const hal::UseInstance use(&host_->hal());
         // Components run in this process: their crash is its crash.
         hal::report_crashes("millwright");

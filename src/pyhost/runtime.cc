@@ -5,6 +5,7 @@
 #include <pybind11/embed.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <vector>
 
@@ -99,6 +100,42 @@ std::vector<std::string> places_of(const py::error_already_set &error) {
     return out;
 }
 
+/// The program that belongs to the library which is linked here, so that its modules are found whatever
+/// python3 is first on the PATH; a virtual environment that is in force goes before it. Empty: not found.
+std::string python_program() {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    if (const char *const environment = std::getenv("VIRTUAL_ENV")) {
+        const fs::path program = fs::path(environment) / "bin/python3";
+        return fs::exists(program, error) ? program.string() : "";
+    }
+    Dl_info info{};
+    if (::dladdr(reinterpret_cast<const void *>(&Py_IsInitialized), &info) == 0 ||
+        info.dli_fname == nullptr) {
+        return "";
+    }
+    const std::string name = fmt::format("bin/python{}.{}", PY_MAJOR_VERSION, PY_MINOR_VERSION);
+    for (fs::path at = fs::canonical(info.dli_fname, error).parent_path(); at.has_relative_path();
+         at = at.parent_path()) {
+        if (fs::exists(at / name, error)) {
+            return (at / name).string();
+        }
+    }
+    return "";
+}
+
+void initialize() {
+    PyConfig config;
+    PyConfig_InitIsolatedConfig(&config);
+    config.isolated = 0;
+    config.use_environment = 1;
+    config.install_signal_handlers = 0;
+    if (const std::string program = python_program(); !program.empty()) {
+        (void)PyConfig_SetBytesString(&config, &config.program_name, program.c_str());
+    }
+    py::initialize_interpreter(&config, 0, nullptr, false);
+}
+
 }  // namespace
 
 bool isForeignPython() {
@@ -111,7 +148,7 @@ void start_python() {
         return;
     }
     isStarted = true;
-    py::initialize_interpreter(false);
+    initialize();
     redirect_streams();
     PyEval_SaveThread();  // from now on every call takes the GIL itself
 }

@@ -84,7 +84,7 @@ std::string Rig::start() {
     }
     host_ = std::move(*host);
     const machine::MachineParts parts{loaded_->ini, loaded_->reader, loaded_->machine, sink_};
-    side_ = std::make_unique<machine::TaskSide>(parts, *host_, mailbox::Memory::in_process());
+    side_ = std::make_unique<machine::TaskSide>(parts, *host_, mailbox::Memory::in_process(), nullptr);
     const hal::UseInstance use(&host_->hal());
     machine::MachineOptions machine_options;
     machine_options.isClockVirtual = true;

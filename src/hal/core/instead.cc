@@ -20,12 +20,12 @@ constexpr Absent ABSENT[] = {
      " hal_pi_gpio hal_ax5214h opto_ac5 pcl720 pluto_step pluto_servo serport setsserial elbpcom ",
      "drivers of boards come with a later version; this one runs simulated machines, programs of loadusr and "
      "components of your own"},
-    {" gs2_vfd hy_vfd hy_gt_vfd pi500_vfd svd-ps_vfd vfdb_vfd vfs11_vfd wj200_vfd thermistor sendkeys "
+    {" hy_vfd hy_gt_vfd pi500_vfd svd-ps_vfd vfs11_vfd wj200_vfd thermistor sendkeys "
      "shuttle"
      " xhc-hb04 xhc-whb04b-6 xhc-hb04-accels monitor-xhc-hb04 ",
      "that of an installed LinuxCNC runs on this HAL as it is: start the machine by script/screens "
      "(millwright-screens)"},
-    {" hal_input mitsub_vfd pmx485 pmx485-test sim-torch z_level_compensation scorbot-er-3 mdro "
+    {" mitsub_vfd pmx485 pmx485-test sim-torch z_level_compensation scorbot-er-3 mdro "
      "image-to-gcode"
      " qtplasmac_gcode qtplasmac-cfg2prefs qtplasmac-materials qtplasmac-plasmac2qt hal_bridge ",
      "it is a program in Python of LinuxCNC's package, and runs with our modules: start the machine by "
@@ -57,10 +57,9 @@ constexpr Absent ABSENT[] = {
     {" classicladder classicladder_rt ", "there are no ladders yet; the components of logic (and2, or2, "
                                          "lut5, estop_latch, timedelay) or one of your own by "
                                          "halcompile do the same"},
-    {" scope_rt ",
-     "halscope of 2.9 looks into the HAL that it was made for; 'millwright hal capture' records pins"},
     {" plasmac ", "the component of plasma tables is not there yet: qtplasmac does not run"},
-    {" userkins homecomp axistest hal_lib tp boss_plc joint_axis_mapper histobinstream output_buffer "
+    {" homecomp axistest hal_lib tp boss_plc joint_axis_mapper histobinstream latencybinstream "
+     "timedeltalatch "
      "xhc_hb04_util ",
      "it is not there; halcompile makes it from its .comp file, where that is at hand"},
     {" tool_watch tool_mmap_read ",

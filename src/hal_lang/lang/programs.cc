@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -147,6 +148,12 @@ Result<> SystemProgramHost::stop_all() {
             result = stopped;
         }
     }
+    // Also who is still on the way to a component: it would come up on a HAL that is gone, or on the next
+    // one.
+    reap();
+    for (const int pid : children_) {
+        kill(pid, SIGTERM);
+    }
     // The time that an orderly end takes; who has not ended by then is made to.
     await_end(GRACE_NS);
     kill_programs();
@@ -170,6 +177,17 @@ void SystemProgramHost::kill_programs() {
                          component.name.c_str(), component.pid);
         }
     }
+    for (const int pid : children_) {
+        if (!isComponent(pid) && kill(pid, SIGKILL) == 0) {
+            std::fprintf(stderr, "a program of loadusr (process %d) has not ended at SIGTERM: killed\n", pid);
+        }
+    }
+}
+
+bool SystemProgramHost::isComponent(int pid) const {
+    const auto components = hal_.components();
+    return std::any_of(components.begin(), components.end(),
+                       [pid](const CompInfo &component) { return component.pid == pid; });
 }
 
 bool SystemProgramHost::isProgram(const CompInfo &component) {
@@ -182,7 +200,7 @@ bool SystemProgramHost::isProgramLeft() const {
             return true;
         }
     }
-    return false;
+    return !children_.empty();
 }
 
 /// Children that have ended would look alive until somebody asks for their status.

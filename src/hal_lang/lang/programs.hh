@@ -33,6 +33,8 @@ class ProgramHost {
     virtual Result<ProgramStart> start(const ProgramRequest &request) = 0;
     /// Asks the program of a component to end (SIGTERM).
     virtual Result<> stop(const std::string &component) = 0;
+    /// Ends all programs of components, and those started here that have none yet; returns when they are
+    /// gone.
     virtual Result<> stop_all() = 0;
     /// Until the component is gone.
     virtual Result<> wait_for_end(const std::string &component) = 0;
@@ -55,6 +57,7 @@ class SystemProgramHost final : public ProgramHost {
     Result<> wait_for_status(const ProgramRequest &request, int pid);
     static bool isProgram(const CompInfo &component);
     bool isProgramLeft() const;
+    bool isComponent(int pid) const;
     void await_end(long longest_ns);
     void kill_programs();
     void reap();

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Remapped codes with Python: prolog, procedure, epilog, function; waiting points; errors.
+#include <unistd.h>
+
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 
 #include "scripted.hh"
 
@@ -29,6 +34,28 @@ TEST(PythonRemap, PrologProcedureAndEpilogShareTheirLocalParameters_I1) {
                                   "STRAIGHT_TRAVERSE(7.0000, 1.0000, 0.0000, 0.0000, 0.0000, 0.0000)"}));
     ASSERT_EQ(it.run("M400\n"), Step::FAILED);
     EXPECT_EQ(it.error(), "user-defined M400: missing: P");
+}
+
+/// Another python3 before that of the library on the PATH, with a library of its own that has nothing in it.
+TEST(PythonRemap, FindsItsOwnModulesWhateverPythonIsFirstOnThePath_I1) {
+    namespace fs = std::filesystem;
+    const fs::path other = fs::temp_directory_path() / ("mw-other-python-" + std::to_string(::getpid()));
+    const fs::path modules = other / "lib" / ("python" MW_PYTHON_VERSION);
+    fs::create_directories(modules / "lib-dynload");
+    fs::create_directories(other / "bin");
+    std::ofstream(modules / "os.py") << "";
+    std::ofstream(other / "bin/python3") << "#!/bin/sh\n";
+    fs::permissions(other / "bin/python3", fs::perms::owner_all);
+    ::unsetenv("VIRTUAL_ENV");
+    ::setenv("PATH", ((other / "bin").string() + ":/usr/bin:/bin").c_str(), 1);
+    Scripted it;
+    it.remap("M400 modalgroup=5 py=where");
+    it.handlers(
+        "import sys\ndef where(self, **words):\n    emccanon.MESSAGE(sys.prefix)\n    return INTERP_OK\n");
+    EXPECT_EQ(it.run("M400\n"), Step::PROGRAM_END) << it.error();
+    ASSERT_EQ(it.story().size(), 1U);
+    EXPECT_EQ(it.story()[0].find(other.string()), std::string::npos) << it.story()[0];
+    fs::remove_all(other);
 }
 
 TEST(PythonRemap, PrologRunsBeforeItsProcedureIsLookedFor_I1) {

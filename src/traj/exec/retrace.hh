@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/raw_array.hh"
 #include "geom/pose.hh"
 #include "traj/exec/free_planner.hh"
 
@@ -52,7 +53,7 @@ class Retrace {
     Use most_between(std::int64_t newest, std::int64_t oldest) const noexcept;
     void stop(double dt) noexcept;
 
-    std::array<geom::Pose, CAPACITY> samples_{};
+    RawArray<geom::Pose, CAPACITY> samples_;
     std::array<Use, CAPACITY / BLOCK> blocks_{};
     std::uint64_t count_ = 0;  ///< recorded since clear()
     std::uint64_t standing_ = 0;

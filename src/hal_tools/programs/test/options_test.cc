@@ -90,6 +90,16 @@ TEST_F(Loadusr, AProgramThatDoesNotHearSigtermIsKilled_B1) {
     EXPECT_NE(ended.err.find("has not ended at SIGTERM: killed"), std::string::npos) << ended.err;
 }
 
+TEST_F(Loadusr, AProgramWithoutAComponentEndsWithTheOthers_A2) {
+    file("nap.sh", "echo $$ > nap.tmp\nmv nap.tmp nap.pid\nexec sleep 1000\n");
+    file("look.sh", "while [ ! -s nap.pid ]; do sleep 0.01; done\ncat nap.pid\n");
+    const Ended ended = run({"halrun", file("a.hal", "loadusr sh nap.sh\nloadusr -w sh look.sh\n")});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    const pid_t pid = std::stoi("0" + ended.out);
+    ASSERT_GT(pid, 1) << ended.out;
+    EXPECT_EQ(::kill(pid, 0), -1) << "it would come up on a HAL that is gone";
+}
+
 TEST_F(Loadusr, StatusOfProgramsCountsUnlessIgnored_B1) {
     const Ended ended = run({"halrun", "-k",
                              file("a.hal", "loadusr -w true\nloadusr -w false\nloadusr -wi false\n"

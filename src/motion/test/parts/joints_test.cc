@@ -187,10 +187,9 @@ TEST_F(JointsPart, PinsAndStatusShowEachOfWhatTheyAreMadeOf_C3) {
     const JointStatus &s = out.status.joint[1];
     const JointOutputs &o = out.joint[1];
     number = 1;
-    for (const double value :
-         {s.pos_cmd, s.pos_fb, s.vel_cmd, o.acc_cmd, o.coarse_pos, s.motor_pos_cmd, s.motor_pos_fb,
-          o.motor_offset, s.ferror, o.ferror_limit, s.ferror_highmark, o.backlash_raw, o.backlash_filtered,
-          o.backlash_velocity}) {
+    for (const double value : {s.pos_cmd, s.pos_fb, s.vel_cmd, o.acc_cmd, o.coarse_pos, s.motor_pos_cmd,
+                               s.motor_pos_fb, o.motor_offset, s.ferror, o.ferror_limit, s.ferror_highmark,
+                               o.backlash_raw, o.backlash_filtered, o.backlash_velocity}) {
         EXPECT_EQ(value, number++);
     }
     EXPECT_EQ(o.motor_pos_cmd, joint.motor_pos_cmd);
