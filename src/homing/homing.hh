@@ -96,7 +96,6 @@ class Homing final : public Module {
 
     bool areTeam(int a, int b) const noexcept;
     bool hasTeam(int joint) const noexcept;
-    bool isClosed(int joint, const JointInput *inputs) const noexcept;
     std::uint32_t settings_of(int joint) const noexcept;
     std::uint32_t events_of(int joint, const JointInput *inputs) const noexcept;
     std::uint32_t team_events(int joint, const JointInput *inputs) const noexcept;

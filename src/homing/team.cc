@@ -48,17 +48,16 @@ bool Homing::hasTeam(int joint) const noexcept {
     return false;
 }
 
-/// Its switch is closed, or the joint is to back off from it farther.
-bool Homing::isClosed(int joint, const JointInput *inputs) const noexcept {
-    const Joint &j = at(joint);
-    const bool isNear = j.state == State::LATCH_BACKOFF && !inputs[joint].isAtRest &&
-                        std::abs(j.way - j.closed_way) < j.parameters.clearance;
-    return inputs[joint].isSwitchClosed || isNear;
-}
-
 std::uint32_t Homing::team_events(int joint, const JointInput *inputs) const noexcept {
     const Joint &j = at(joint);
-    bool isAnyClosed = isClosed(joint, inputs);
+    // Or the joint is to back off from it farther.
+    const auto isClosed = [&](int n) {
+        const Joint &one = at(n);
+        const bool isNear = one.state == State::LATCH_BACKOFF && !inputs[n].isAtRest &&
+                            std::abs(one.way - one.closed_way) < one.parameters.clearance;
+        return inputs[n].isSwitchClosed || isNear;
+    };
+    bool isAnyClosed = isClosed(joint);
     bool areAtRest = inputs[joint].isAtRest;
     int shortest = j.wait;
     bool areUnlocked = inputs[joint].isUnlocked || !j.parameters.isLockingIndexer;
@@ -74,7 +73,7 @@ std::uint32_t Homing::team_events(int joint, const JointInput *inputs) const noe
         }
         const Joint &other = at(k);
         const Parameters &p = other.parameters;
-        isAnyClosed = isAnyClosed || isClosed(k, inputs);
+        isAnyClosed = isAnyClosed || isClosed(k);
         areAtRest = areAtRest && inputs[k].isAtRest;
         shortest = std::min(shortest, other.wait);
         areUnlocked = areUnlocked && (inputs[k].isUnlocked || !p.isLockingIndexer);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/result.hh"
+#include "interp/canon/machine_canon.hh"
 #include "mailbox/segment.hh"
 #include "task/command.hh"
 
@@ -22,6 +23,9 @@ class MdiQueue {
         std::optional<RigidTapMove> tap;  ///< instead of a text
     };
     explicit MdiQueue(int most) : most_(most) {}
+
+    SetSpindleSync sync;                 ///< of the taps that clients send
+    std::optional<interp::TapMove> tap;  ///< what the line that begins is instead of a text
 
     /// Refused when as many wait as may.
     Result<Progress> add(Line line) {
