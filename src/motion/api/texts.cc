@@ -87,6 +87,12 @@ std::string tap_reason(const Answer &answer) {
     }
 }
 
+const char *mode_reason(bool isPath) {
+    return isPath ? "programmed moves need coordinated mode"
+                  : "not possible in this mode: joints jog, home and unhome in joint mode, axes jog in world "
+                    "mode";
+}
+
 }  // namespace
 
 std::string reason_text(const Answer &answer) {
@@ -95,11 +101,7 @@ std::string reason_text(const Answer &answer) {
     case Reason::NONE:
     case Reason::COUNT: return {};
     case Reason::NOT_ENABLED: return "the machine is off: turn it on first";
-    case Reason::WRONG_MODE:
-        return answer.isPath
-                   ? "programmed moves need coordinated mode"
-                   : "not possible in this mode: joints jog, home and unhome in joint mode, axes jog "
-                     "in world mode";
+    case Reason::WRONG_MODE: return mode_reason(answer.isPath);
     case Reason::MOVING: return "the machine is moving: wait until it stands, or stop it";
     case Reason::NOT_HOMED: return "home all joints first";
     case Reason::HOMING: return "joints are being homed: wait, or abort homing";
