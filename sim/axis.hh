@@ -23,12 +23,21 @@ class Axis {
     explicit Axis(const AxisSettings &settings = {}, double position = 0) noexcept
         : settings_(settings), motor_(position), load_(position), last_command_(position) {}
 
-    /// Other forces, friction and play from here on.
-    void set(const AxisSettings &settings) noexcept { settings_ = settings; }
-    /// `dt` seconds towards `command`. Without power only friction acts.
+    /// Other forces, friction and play from here on; what is no number stays as it was.
+    void set(const AxisSettings &settings) noexcept {
+        for (double AxisSettings::*const one :
+             {&AxisSettings::peak_acceleration, &AxisSettings::coulomb_friction,
+              &AxisSettings::viscous_friction, &AxisSettings::backlash, &AxisSettings::position_gain,
+              &AxisSettings::velocity_gain}) {
+            settings_.*one = std::isfinite(settings.*one) ? settings.*one : settings_.*one;
+        }
+    }
+    /// `dt` seconds towards `command`; one that is no number, or beyond what the steps can be reckoned with,
+    /// is none. Without power only friction acts.
     void run(double command, bool isPowered, double dt) noexcept {
-        const double feed = std::isfinite(command) ? (command - last_command_) / dt : 0.0;
-        const double target = std::isfinite(command) ? command : last_command_;
+        const bool isNumber = std::abs(command) < FARTHEST;
+        const double feed = isNumber ? (command - last_command_) / dt : 0.0;
+        const double target = isNumber ? command : last_command_;
         const double from = last_command_;
         last_command_ = target;
         const double step = dt / STEPS;
@@ -59,6 +68,7 @@ class Axis {
 
   private:
     static constexpr int STEPS = 4;
+    static constexpr double FARTHEST = 1e100;
 
     void move(double force, double step) noexcept {
         force -= settings_.viscous_friction * velocity_;

@@ -3,6 +3,8 @@
 // bounces for a while after each. Realtime-safe.
 #pragma once
 
+#include <algorithm>
+
 #include "sim/random.hh"
 
 namespace mw::sim {
@@ -27,7 +29,7 @@ class BouncingSwitch {
         const double slack = isPressed_ ? settings_.hysteresis : 0.0;
         const bool isWithin = settings_.width <= 0.0 || beyond <= settings_.width + slack;
         const bool isPressed = beyond >= -slack && isWithin;
-        unsettled_s_ = isPressed != isPressed_ ? settings_.bounce_s : unsettled_s_ - dt;
+        unsettled_s_ = isPressed != isPressed_ ? settings_.bounce_s : std::max(0.0, unsettled_s_ - dt);
         isPressed_ = isPressed;
         return unsettled_s_ > 0.0 ? random_.chance(0.5) : isPressed_;
     }

@@ -21,9 +21,12 @@ class Encoder {
 
     /// Another resolution or other marks from here on; the counter keeps its zero.
     void set(const EncoderSettings &settings) noexcept { settings_ = settings; }
-    /// Looks at the shaft. With `isIndexArmed` the counter is set to zero at the first mark that is passed;
-    /// the return value says that this has happened.
+    /// Looks at the shaft; a place that is no number is not seen. With `isIndexArmed` the counter is set to
+    /// zero at the first mark that is passed; the return value says that this has happened.
     bool run(double position, bool isIndexArmed) noexcept {
+        if (!std::isfinite(position)) {
+            return false;
+        }
         const double before = seen_;
         seen_ = position;
         if (isLost_) {
@@ -33,7 +36,7 @@ class Encoder {
         if (isIndexArmed && settings_.index_spacing > 0) {
             const double a = (before - settings_.index_at) / settings_.index_spacing;
             const double b = (position - settings_.index_at) / settings_.index_spacing;
-            hasIndex = std::floor(a) != std::floor(b);
+            hasIndex = std::isfinite(a) && std::isfinite(b) && std::floor(a) != std::floor(b);
             if (hasIndex) {
                 const double mark = b > a ? std::floor(b) : std::floor(a);
                 zero_ = settings_.index_at + mark * settings_.index_spacing;
@@ -57,7 +60,7 @@ class Encoder {
         isLost_ = isLost;
     }
     /// Counts that were never there: the reading is `by` more from now on.
-    void jump(double by) noexcept { zero_ -= by; }
+    void jump(double by) noexcept { zero_ -= std::isfinite(by) ? by : 0.0; }
 
   private:
     EncoderSettings settings_;

@@ -35,15 +35,15 @@ class HomeAxis {
 
     Faults faults;
 
-    /// One period of `dt` [s] with the command in encoder units; `isIndexWanted`: the pin index-enable is
-    /// TRUE.
+    /// One period of `dt` [s] with the command in encoder units, where the motor stays if that is no number;
+    /// `isIndexWanted`: the pin index-enable is TRUE.
     void step(double command, bool isIndexWanted, double dt) {
         time_ += dt;
         isIndexEnabled_ = isIndexWanted && (isIndexEnabled_ || !wasWanted_);
         wasWanted_ = isIndexWanted;
         const double before = motor_;
         const double gain = build_.lag_s > 0 ? 1.0 - std::exp(-dt / build_.lag_s) : 1.0;
-        motor_ += gain * (command + zero_ - motor_);
+        motor_ += std::isfinite(command) ? gain * (command + zero_ - motor_) : 0.0;
         slide_ = std::clamp(slide_, motor_ - 0.5 * build_.play, motor_ + 0.5 * build_.play);
         if (isIndexEnabled_ && build_.index_pitch > 0 && !faults.isIndexMissing) {
             pass_index(before);

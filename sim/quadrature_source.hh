@@ -2,15 +2,17 @@
 // A simulated incremental encoder: turns a speed into phases A and B and an index pulse. Realtime-safe.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 namespace mw::sim {
 
 class QuadratureSource {
   public:
-    /// `counts_per_second` and `counts_per_turn` (four counts a pulse) hold until the next call.
+    /// `counts_per_second` and `counts_per_turn` (four counts a pulse) hold until the next call. A speed that
+    /// is no number is none.
     void set_speed(double counts_per_second, std::int32_t counts_per_turn) noexcept {
-        counts_per_second_ = counts_per_second;
+        counts_per_second_ = std::isnan(counts_per_second) ? 0.0 : counts_per_second;
         counts_per_turn_ = counts_per_turn > 0 ? counts_per_turn : 1;
     }
 

@@ -8,9 +8,13 @@ namespace mw::sim {
 
 class Spindle {
   public:
-    /// Turns for `dt` seconds at `turns_per_second`. With `isIndexEnabled` the position is set back at the
-    /// next whole turn, to what is past it; the return value says that this happened.
+    /// Turns for `dt` seconds at `turns_per_second`, or not at all where that is no number. With
+    /// `isIndexEnabled` the position is set back at the next whole turn, to what is past it; the return value
+    /// says that this happened.
     bool run(double turns_per_second, bool isIndexEnabled, double dt) noexcept {
+        if (!std::isfinite(turns_per_second)) {
+            return false;
+        }
         const double before = angle_;
         angle_ += turns_per_second * dt;
         const double turn = turns_per_second >= 0.0 ? std::floor(angle_) : std::ceil(angle_);

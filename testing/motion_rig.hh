@@ -25,8 +25,8 @@ struct MotionRig {
     static constexpr int PLANNER_PERIOD = 5;
 
     kins::Trivial kinematics;
-    std::unique_ptr<motion::Channels> channels = std::make_unique<motion::Channels>();
-    std::unique_ptr<motion::PathLink> link = std::make_unique<motion::PathLink>();
+    std::unique_ptr<motion::Channels> channels = std::make_unique_for_overwrite<motion::Channels>();
+    std::unique_ptr<motion::PathLink> link = std::make_unique_for_overwrite<motion::PathLink>();
     std::unique_ptr<motion::Controller> controller;
     std::unique_ptr<motion::PathPlanner> planner;
     motion::Inputs in;

@@ -1,10 +1,25 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+import { readFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
 import { svelte } from '@sveltejs/vite-plugin-svelte';
-import { defineConfig } from 'vite';
+import { defineConfig, type Plugin } from 'vite';
+
+const here = (name: string): string => fileURLToPath(new URL(name, import.meta.url));
+
+/** The page that chooses a machine: the frame of index.html with a program of its own. */
+function firstPage(): Plugin {
+  const path = here('first.html');
+  return {
+    name: 'first-page',
+    enforce: 'pre',
+    resolveId: (id) => (id.endsWith('first.html') ? path : null),
+    load: (id) => (id === path ? readFileSync(here('index.html'), 'utf8').replace('/src/main.ts', '/src/first/main.ts') : null),
+  };
+}
 
 // Everything that the page needs lies in the output: nothing is fetched from elsewhere.
 export default defineConfig({
-  plugins: [svelte()],
+  plugins: [firstPage(), svelte()],
   build: {
     outDir: process.env['MW_SCREEN_FOLDER'] ?? '../build/release/share/millwright/web',
     emptyOutDir: true,

@@ -206,7 +206,7 @@ int make_channels() {
                         static_cast<int>(sizeof(motion::Channels)));
         return module.shmem_id < 0 ? module.shmem_id : FAILED;
     }
-    module.channels = new (memory) motion::Channels();
+    module.channels = new (memory) motion::Channels;
     module.channels->layout_bytes = sizeof(motion::Channels);
     module.channels->magic = motion::Channels::MAGIC;
     return 0;
@@ -242,7 +242,7 @@ int make_thread(const char *name, long period_ns, int uses_fp) {
 
 int make_functions() {
     const double period_s = static_cast<double>(servo_period_nsec) * 1e-9;
-    module.link = new (link_memory) motion::PathLink();
+    module.link = new (link_memory) motion::PathLink;
     module.controller = new (controller_memory)
         motion::Controller({num_joints, num_spindles, num_dio, num_aio, period_s, num_extrajoints,
                             module.isHomingForeign ? &module.homing : nullptr},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Plants behave as the things that they stand for, by the laws of mechanics and not by what motion expects.
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -9,7 +10,10 @@
 #include "sim/axis.hh"
 #include "sim/bouncing_switch.hh"
 #include "sim/encoder.hh"
+#include "sim/home_axis.hh"
+#include "sim/quadrature_source.hh"
 #include "sim/random.hh"
+#include "sim/spindle.hh"
 #include "sim/touch_probe.hh"
 
 namespace mw::sim {
@@ -200,6 +204,85 @@ TEST(SimAmplifier, AFaultTakesThePowerAndStaysUntilItIsResetWhileOff) {
     EXPECT_TRUE(amp.reset());
     amp.run(true, T);
     EXPECT_TRUE(amp.run(true, T));
+}
+
+/// Each plant: 100 cycles, one with what is no number, and again; what it shows then.
+template <class Step>
+double after_no_number(Step step, double no_number) {
+    double shown = 0;
+    for (int i = 0; i < 100; ++i) {
+        shown = step(1.0, i);
+    }
+    step(no_number, 100);
+    for (int i = 0; i < 2000; ++i) {
+        shown = step(1.0, 101 + i);
+    }
+    return shown;
+}
+
+TEST(SimPlants, KeepNothingOfWhatIsNoNumber_B6) {
+    constexpr double NO_NUMBER = std::numeric_limits<double>::quiet_NaN();
+    constexpr double ENDLESS = std::numeric_limits<double>::infinity();
+    for (const double bad : {NO_NUMBER, ENDLESS, -ENDLESS, 1e307}) {
+        Axis axis;
+        const auto commanded = [&](double x, int) {
+            axis.run(x, true, T);
+            return axis.load();
+        };
+        EXPECT_NEAR(after_no_number(commanded, bad), 1, 1e-3) << bad;
+        Axis set;
+        const auto settings = [&](double x, int) {
+            set.set({1e5 * x, x, x, 0.01 * x, 300 * x, 100 * x});
+            set.run(1, true, T);
+            return set.motor();
+        };
+        EXPECT_NEAR(after_no_number(settings, NO_NUMBER), 1, 0.02);
+        Encoder shaft({.counts_per_unit = 1000, .index_spacing = 5, .index_at = 0});
+        const auto seen = [&](double x, int) {
+            shaft.run(x, true);
+            return shaft.reading();
+        };
+        EXPECT_NEAR(after_no_number(seen, std::abs(bad) < ENDLESS ? NO_NUMBER : bad), 1, 1e-3) << bad;
+        Encoder marks({.counts_per_unit = 1000, .index_spacing = 5, .index_at = 0});
+        const auto index_at = [&](double x, int i) {
+            marks.set({1000, 5, x});
+            marks.run(1 + 0.1 * (i % 2), true);
+            return marks.zero();
+        };
+        EXPECT_TRUE(std::isfinite(after_no_number(index_at, bad))) << bad;
+        Encoder jumping({.counts_per_unit = 1000});
+        const auto jump = [&](double x, int i) {
+            i == 100 ? jumping.jump(x) : void();
+            jumping.run(1, false);
+            return jumping.reading();
+        };
+        EXPECT_NEAR(after_no_number(jump, NO_NUMBER), 1, 1e-3);
+        BouncingSwitch lever({.at = 0.5});
+        const auto place = [&](double x, int) {
+            lever.set({0.5, true, 0, 0.1, std::isfinite(x) ? 0.002 : x});
+            return lever.run(x, T) ? 1.0 : 0.0;
+        };
+        EXPECT_EQ(after_no_number(place, bad), 1) << bad;
+        QuadratureSource counts;
+        const auto speed = [&](double x, int) {
+            counts.set_speed(100 * x, 400);
+            counts.run(T);
+            return static_cast<double>(counts.counts());
+        };
+        EXPECT_NEAR(after_no_number(speed, bad), 210, 2) << bad;
+        Spindle spindle;
+        const auto turn = [&](double x, int) {
+            spindle.run(std::abs(x) > 1 ? NO_NUMBER : x, false, T);
+            return spindle.position();
+        };
+        EXPECT_NEAR(after_no_number(turn, bad), 2.1, 0.01) << bad;
+        HomeAxis homed({.start = 0, .lag_s = 0.01});
+        const auto home = [&](double x, int) {
+            homed.step(std::abs(x) > 1 ? NO_NUMBER : x, false, T);
+            return homed.slide();
+        };
+        EXPECT_NEAR(after_no_number(home, bad), 1, 1e-3) << bad;
+    }
 }
 
 }  // namespace

@@ -134,8 +134,11 @@ void run(ui::web::Server &server, const UiWords &words, const machine::LoadedCon
                       folder = setup.screen_folder;
     SidePrograms programs(words.isDisplay ? tab_programs(setup.facts.tabs) : std::vector<std::string>{},
                           setup.facts.ini, 0);
-    PathReaders readers(loaded);
+    PathReaders readers(loaded, path_look(setup.facts));
     setup.read_path = [&readers](const std::string &path) { return readers.read(path); };
+    setup.read_times = [&readers](const std::string &path, const ui::web::TimeOverrides &overrides) {
+        return readers.read_times(path, overrides);
+    };
     const auto post = [&server](std::function<void()> act) { server.post(std::move(act)); };
     ui::web::Worker disk(post), hal_looks(post);
     ui::web::Api api(server, {disk, hal_looks}, std::move(setup), now_ns);

@@ -9,6 +9,7 @@
 
 #include "app/ui_tabs.hh"
 #include "base/text.hh"
+#include "config/ini_value.hh"
 
 namespace mw::app {
 namespace {
@@ -165,6 +166,57 @@ std::string text_of(const config::IniFile &ini, const char *section, const char 
     return entry == nullptr ? std::string() : entry->value;
 }
 
+bool isYes(const config::IniFile &ini, const char *key) {
+    return config::ini_bool(text_of(ini, "DISPLAY", key)).value_or(false);
+}
+
+/// [DISPLAY]LATHE, BACK_TOOL_LATHE and FOAM, or the same word as MACHINE_TYPE_HINT.
+ui::web::MachineKind kind_of(const config::IniFile &ini, diag::Sink &sink) {
+    using ui::web::MachineKind;
+    const config::IniEntry *hint = ini.find("DISPLAY", "MACHINE_TYPE_HINT");
+    const std::string word = hint == nullptr ? "" : to_lower(trim(hint->value));
+    if (isYes(ini, "BACK_TOOL_LATHE") || word == "back_tool_lathe") {
+        return MachineKind::BACK_LATHE;
+    }
+    if (isYes(ini, "LATHE") || word == "lathe") {
+        return MachineKind::LATHE;
+    }
+    if (isYes(ini, "FOAM") || word == "foam") {
+        return MachineKind::FOAM;
+    }
+    if (hint != nullptr && word != "mill") {
+        sink.warning("[DISPLAY]MACHINE_TYPE_HINT is '" + hint->value +
+                         "', and this screen knows MILL, LATHE, BACK_TOOL_LATHE and FOAM: it shows a mill",
+                     hint->place);
+    }
+    return MachineKind::MILL;
+}
+
+std::string geometry_of(const config::IniFile &ini, const std::string &axes, diag::Sink &sink) {
+    const config::IniEntry *entry = ini.find("DISPLAY", "GEOMETRY");
+    const std::string preset(ui::web::PathGeometry::PRESET);
+    if (entry == nullptr || trim(entry->value).empty()) {
+        return preset;
+    }
+    const auto parsed = ui::web::PathGeometry::parse(entry->value, axes);
+    if (!parsed.has_value()) {
+        sink.warning("[DISPLAY]" + parsed.error().message + ": paths are drawn as by " + preset,
+                     entry->place);
+    }
+    return parsed.has_value() ? entry->value : preset;
+}
+
+/// Where a plane of a foam cutter is drawn.
+double foam_height(const config::IniFile &ini, const char *key, double preset, diag::Sink &sink) {
+    const config::IniEntry *entry = ini.find("DISPLAY", key);
+    const auto value = entry == nullptr ? std::optional(preset) : parse_double(entry->value);
+    if (!value.has_value()) {
+        sink.warning("[DISPLAY]" + entry->key + " is '" + entry->value + "', which is no number",
+                     entry->place);
+    }
+    return value.value_or(preset);
+}
+
 ui::web::ScreenFiles files_of(const config::IniFile &ini) {
     const auto path = [&ini](const char *key) {
         constexpr std::string_view FOLDER = "WORKINGFOLDER/";  // as other screens say it
@@ -213,6 +265,12 @@ ui::web::MachineFacts machine_facts(const machine::LoadedConfig &loaded, diag::S
             hasRotary = hasRotary || geom::isAngular(axis);
         }
     }
+    constexpr double PLANES_APART_IN = 1.5;
+    facts.look.kind = kind_of(ini, sink);
+    facts.look.geometry = geometry_of(ini, facts.axes, sink);
+    facts.look.foam_z = foam_height(ini, "FOAM_Z", 0, sink);
+    facts.look.foam_w =
+        foam_height(ini, "FOAM_W", PLANES_APART_IN * (machine.isMetric ? MM_PER_INCH : 1), sink);
     facts.joints = machine.num_joints;
     for (int joint = 0; joint < machine.num_joints; ++joint) {
         const config::IniEntry *kind = ini.find("JOINT_" + std::to_string(joint), "TYPE");
@@ -265,6 +323,17 @@ ui::web::MachineFacts machine_facts(const machine::LoadedConfig &loaded, diag::S
     }
     facts.program_extensions = extensions_of(ini);
     return facts;
+}
+
+ui::web::PathLook path_look(const ui::web::MachineFacts &facts) {
+    ui::web::PathLook look;
+    if (const auto geometry = ui::web::PathGeometry::parse(facts.look.geometry, facts.axes)) {
+        look.geometry = *geometry;
+    }
+    if (facts.look.kind == ui::web::MachineKind::FOAM) {
+        look.foam = {facts.look.foam_z, facts.look.foam_w};
+    }
+    return look;
 }
 
 }  // namespace mw::app

@@ -9,6 +9,7 @@
 #include "diag/sink.hh"
 #include "machine/loaded_config.hh"
 #include "ui/web/machine_facts.hh"
+#include "ui/web/path_geometry.hh"
 
 namespace mw::app {
 
@@ -22,5 +23,8 @@ std::vector<ui::web::Increment> parse_increments(std::string_view text, double u
 
 /// [DISPLAY]CYCLE_TIME: seconds, from 1 on milliseconds; 20 to 200 ms, 50 ms where it is not set. [s]
 double status_period_s(const config::IniFile &ini, diag::Sink &sink);
+
+/// How paths of programs are drawn.
+ui::web::PathLook path_look(const ui::web::MachineFacts &facts);
 
 }  // namespace mw::app

@@ -6,10 +6,12 @@
 
 #include "machine/ini_parameters.hh"
 #include "machine/program_check.hh"
+#include "machine/time_estimate.hh"
 #include "machine/tool_data.hh"
 #include "machine/unscripted.hh"
 #include "ui/web/elsewhere.hh"
 #include "ui/web/path_chunks.hh"
+#include "ui/web/time_chunks.hh"
 
 namespace mw::app {
 namespace {
@@ -28,6 +30,15 @@ PathReaders::~PathReaders() {
 }
 
 Result<std::shared_ptr<ui::web::PieceQueue>> PathReaders::read(const std::string &path) {
+    return begin([this, path](Reader &reader) { read_all(reader, path); });
+}
+
+Result<std::shared_ptr<ui::web::PieceQueue>>
+PathReaders::read_times(const std::string &path, const ui::web::TimeOverrides &overrides) {
+    return begin([this, path, overrides](Reader &reader) { time_all(reader, path, overrides); });
+}
+
+Result<std::shared_ptr<ui::web::PieceQueue>> PathReaders::begin(std::function<void(Reader &)> job) {
     readers_.remove_if([](Reader &reader) {
         const bool isOver = reader.isOver.load(std::memory_order_acquire);
         if (isOver) {
@@ -40,9 +51,9 @@ Result<std::shared_ptr<ui::web::PieceQueue>> PathReaders::read(const std::string
     }
     Reader &reader = readers_.emplace_back();
     reader.pieces = std::make_shared<ui::web::PieceQueue>();
-    reader.thread = std::thread([this, &reader, path] {
+    reader.thread = std::thread([&reader, job = std::move(job)] {
         step_back();
-        read_all(reader, path);
+        job(reader);
         reader.pieces->end();
         // Release: whoever sees it may join without waiting.
         reader.isOver.store(true, std::memory_order_release);
@@ -50,21 +61,18 @@ Result<std::shared_ptr<ui::web::PieceQueue>> PathReaders::read(const std::string
     return reader.pieces;
 }
 
-void PathReaders::read_all(Reader &reader, const std::string &path) const {
-    ui::web::PathChunks chunks([&reader](std::string piece) { return reader.pieces->push(std::move(piece)); },
-                               loaded_.machine.isMetric ? 1 : MM_PER_INCH);
+std::uint32_t PathReaders::interpret(const Reader &reader, const std::string &path,
+                                     const Hearer &hearer) const {
     std::error_code missing;  // which the reading itself tells, with its place
     if (std::filesystem::exists(path, missing) && !std::filesystem::is_regular_file(path, missing)) {
-        chunks.error(path + " is no file");  // a pipe would never end
-        chunks.end(0);
-        return;
+        hearer.error(path + " is no file");  // a pipe would never end
+        return 0;
     }
     diag::Sink unheard;
     auto tools = machine::read_tools(loaded_.machine, unheard);
     if (!tools.has_value()) {
-        chunks.error(tools.error().str());
-        chunks.end(0);
-        return;
+        hearer.error(tools.error().str());
+        return 0;
     }
     machine::IniParameters ini_values(loaded_.ini, nullptr);
     machine::UnknownHalValues values(ini_values, [] {});
@@ -74,18 +82,77 @@ void PathReaders::read_all(Reader &reader, const std::string &path) const {
     };
     gcode::PreviewOptions options;
     options.blocks_per_report = 256;
+    gcode::Preview *source = nullptr;
     gcode::Preview preview(
         std::move(stand), **tools, values, options,
-        {[&chunks](std::span<const gcode::PreviewEvent> events) { static_cast<void>(chunks.take(events)); },
+        {[&](std::span<const gcode::PreviewEvent> events) { hearer.events(events, *source); },
          [&reader](const gcode::PreviewProgress &) { return !reader.pieces->isCancelled(); }});
+    source = &preview;
     diag::Sink errors([&](const diag::Diagnostic &one) {
         if (one.severity == diag::Severity::ERROR) {
             preview.flush();  // what comes before it
-            chunks.error(one.what.str());
+            hearer.error(one.what.str());
         }
     });
     static_cast<void>(preview.run(path, errors));  // its failures have been told
-    chunks.end(static_cast<std::uint32_t>(std::max(preview.place().line, 0)));
+    return static_cast<std::uint32_t>(std::max(preview.place().line, 0));
+}
+
+void PathReaders::read_all(Reader &reader, const std::string &path) const {
+    ui::web::PathChunks chunks([&reader](std::string piece) { return reader.pieces->push(std::move(piece)); },
+                               loaded_.machine.isMetric ? 1 : MM_PER_INCH, look_);
+    const std::uint32_t line =
+        interpret(reader, path,
+                  {[&](std::span<const gcode::PreviewEvent> events, const gcode::Preview &) {
+                       static_cast<void>(chunks.take(events));
+                   },
+                   [&](const std::string &error) { chunks.error(error); }});
+    chunks.end(line);
+}
+
+/// The same points are counted as those of the path.
+void PathReaders::time_all(Reader &reader, const std::string &path,
+                           const ui::web::TimeOverrides &overrides) const {
+    constexpr std::size_t SLOWEST = 30;
+    ui::web::TimeChunks chunks(
+        [&reader](std::string piece) { return reader.pieces->push(std::move(piece)); });
+    ui::web::PathChunks counted([](const std::string &) { return true; },
+                                loaded_.machine.isMetric ? 1 : MM_PER_INCH, look_);
+    machine::TimeEstimate estimate(loaded_.machine, {overrides.feed, overrides.rapid, overrides.max_velocity},
+                                   [&](const machine::TimedMove &move) {
+                                       chunks.move(static_cast<std::uint32_t>(move.id),
+                                                   static_cast<std::uint32_t>(std::max(move.line, 0)),
+                                                   move.seconds, move.top_velocity);
+                                   });
+    estimate.start(machine::home_position(loaded_.machine));
+    bool isSound = true;
+    interpret(reader, path,
+              {[&](std::span<const gcode::PreviewEvent> events, const gcode::Preview &preview) {
+                   for (const gcode::PreviewEvent &event : events) {
+                       if (reader.pieces->isCancelled()) {
+                           return;
+                       }
+                       static_cast<void>(counted.take({&event, 1}));
+                       estimate.set_place(preview.file(event.file), event.line,
+                                          preview.section(event.section));
+                       estimate.take(event, std::max(counted.count(), 1U) - 1);
+                   }
+               },
+               [&](const std::string &error) {
+                   isSound = false;
+                   chunks.error(error);
+               }});
+    if (reader.pieces->isCancelled() || !isSound) {
+        return;  // of a program with errors nobody knows how it goes on
+    }
+    const machine::TimeFigures &figures = estimate.finish(SLOWEST);
+    ui::web::TimeSum sum{figures.total_s, figures.cutting_s,  figures.rapid_s,
+                         figures.dwell_s, figures.isComplete, {}};
+    for (const machine::SlowPlace &place : figures.slowest) {
+        sum.slowest.push_back({std::filesystem::path(place.file).filename().string(), place.file == path,
+                               place.line, place.lost_s, place.limit});
+    }
+    chunks.end(sum);
 }
 
 }  // namespace mw::app

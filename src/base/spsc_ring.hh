@@ -2,12 +2,12 @@
 // A queue between one producer and one consumer, in one process or through shared memory.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <type_traits>
 
 #include "base/copyable_atomic.hh"
+#include "base/raw_array.hh"
 
 namespace mw {
 
@@ -66,7 +66,7 @@ class SpscRing {
   private:
     alignas(64) CopyableAtomic<std::uint32_t> head_{0};
     alignas(64) CopyableAtomic<std::uint32_t> tail_{0};
-    alignas(64) std::array<T, N> slots_{};
+    alignas(64) RawArray<T, N> slots_;
 };
 
 }  // namespace mw

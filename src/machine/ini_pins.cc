@@ -84,8 +84,14 @@ bool isLower(Parameter parameter) {
 
 }  // namespace
 
-double IniPins::Pin::value() const {
-    return std::visit([](const auto &p) { return static_cast<double>(p.get()); }, pin);
+inline double IniPins::Pin::value() const noexcept {
+    if (const auto *number = std::get_if<hal::UserPin<double>>(&pin)) {
+        return number->get();
+    }
+    if (const auto *whole = std::get_if<hal::UserPin<std::int32_t>>(&pin)) {
+        return whole->get();
+    }
+    return std::get<hal::UserPin<bool>>(pin).get() ? 1.0 : 0.0;
 }
 
 void IniPins::Pin::set(double to) {
@@ -227,7 +233,9 @@ void IniPins::step(Pin &pin, task::Task &task) {
 
 void IniPins::step(task::Task &task) {
     for (Pin &pin : pins_) {
-        step(pin, task);
+        if (pin.isWaiting || pin.value() != pin.last) {
+            step(pin, task);
+        }
     }
     const std::int32_t type = planner_type_;
     const double scale = corner_scale_;

@@ -40,7 +40,7 @@ class IniPins {
         double last = 0;
         bool isWaiting = false, isWaitTold = false;
 
-        double value() const;
+        double value() const noexcept;
         void set(double to);
     };
     void make_pins(int num_joints, hal::Hal &hal, Result<> &status);

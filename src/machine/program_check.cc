@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
 #include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "machine/abilities.hh"
 #include "machine/path_monitor.hh"
 #include "machine/unscripted.hh"
 
@@ -44,7 +42,7 @@ class Checker {
             event_ = &event;
             if (isTimed_) {
                 estimate_.set_place(preview.file(event.file), event.line, preview.section(event.section));
-                take_time(event);
+                estimate_.take(event);
             }
             take_event(event);
         }
@@ -56,34 +54,8 @@ class Checker {
     }
 
   private:
-    void take_time(const gcode::PreviewEvent &event) {
-        using Kind = gcode::PreviewKind;
-        switch (event.kind) {
-        case Kind::RAPID: estimate_.line(event.end, event.settings); break;
-        case Kind::FEED: estimate_.line(event.end, timed(event)); break;
-        case Kind::ARC:
-            estimate_.arc({event.end, event.centre, event.normal, event.angle_rad, timed(event)});
-            break;
-        case Kind::PROBE:
-            estimate_.stop();
-            estimate_.line(event.end, timed(event));
-            estimate_.stop();
-            break;
-        case Kind::RIGID_TAP:
-            estimate_.line(event.end, timed(event));
-            estimate_.line(event.start, timed(event));
-            break;
-        case Kind::DWELL: estimate_.dwell(event.value); break;
-        case Kind::TOOL_CHANGE: estimate_.set_tool(event.number); break;
-        case Kind::PLANNER: estimate_.set_smooth(event.number != 0); break;
-        case Kind::STOP: estimate_.stop(); break;
-        }
-    }
     void take_event(const gcode::PreviewEvent &event) {
         using Kind = gcode::PreviewKind;
-        if (const MissingAbility *missing = missing_ability(event, machine_.isTrivial); missing != nullptr) {
-            report_impossible(*missing);
-        }
         ProgrammedPiece piece;
         piece.start = event.start;
         piece.end = event.end;
@@ -111,14 +83,6 @@ class Checker {
         case Kind::PLANNER:
         case Kind::STOP: break;
         }
-    }
-    /// Moves that follow the spindle are timed at its programmed speed.
-    static geom::MoveSettings timed(const gcode::PreviewEvent &event) {
-        geom::MoveSettings out = event.settings;
-        if (out.feed_per_revolution > 0 && event.spindle_rpm > 0) {
-            out.feed = out.feed_per_revolution * event.spindle_rpm / 60.0;
-        }
-        return out;
     }
     void take_piece(const ProgrammedPiece &piece) {
         ++result.moves;
@@ -212,16 +176,6 @@ class Checker {
         return all - along * along;
     }
 
-    /// A line of a loop is told once.
-    void report_impossible(const MissingAbility &missing) {
-        if (!impossible_.emplace(event_->file, event_->line).second) {
-            return;
-        }
-        const int column = column_of_code(preview_->line_text(event_->file, event_->line), missing.code);
-        report(fmt::format("a machine of this version cannot {} ({})", missing.what, missing.code),
-               std::string(missing.remedy), column);
-    }
-
     /// One message for each line, not for each axis.
     void report(std::string message, std::string hint, int column = 1) {
         if (event_->line == reported_line_ || sink_.count_errors() >= MAX_CHECK_ERRORS) {
@@ -249,7 +203,6 @@ class Checker {
     const gcode::Preview *preview_ = nullptr;
     const gcode::PreviewEvent *event_ = nullptr;
     int reported_line_ = -1;
-    std::set<std::pair<std::uint32_t, int>> impossible_;  ///< file and line of what was told
 };
 
 }  // namespace

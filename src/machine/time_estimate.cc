@@ -14,7 +14,11 @@ namespace {
 /// Time lost in places that are kept until the worst are known; beyond that many the least are let go.
 constexpr std::size_t MOST_PLACES = 100000;
 
+/// Kinds of moves in their tags.
+enum class Shape : std::uint8_t { STRAIGHT, ARC };
+
 std::string name_of(const traj::MoveEstimate &move) {
+    const bool isArc = move.tag.type == static_cast<std::uint8_t>(Shape::ARC);
     const std::string axis = move.axis == traj::XYZ_NORM ? "[TRAJ] (X Y Z)"
                              : move.axis >= 0
                                  ? std::string(1, geom::AXIS_LETTERS[static_cast<std::size_t>(move.axis)])
@@ -22,7 +26,8 @@ std::string name_of(const traj::MoveEstimate &move) {
     switch (move.binding) {
     case traj::Binding::FEED: return "feed";
     case traj::Binding::VELOCITY: return "velocity of " + axis;
-    case traj::Binding::ACCELERATION: return "acceleration of " + axis;
+    case traj::Binding::ACCELERATION:
+        return isArc ? "curvature: acceleration of " + axis : "acceleration of " + axis;
     case traj::Binding::JERK: return "jerk of " + axis;
     case traj::Binding::TOLERANCE: return "tolerance or short moves";
     }
@@ -31,17 +36,22 @@ std::string name_of(const traj::MoveEstimate &move) {
 
 }  // namespace
 
-TimeEstimate::TimeEstimate(const MachineConfig &machine)
-    : settings_(motion::settings_of(machine.parameters)),
+TimeEstimate::TimeEstimate(const MachineConfig &machine, const Overrides &overrides, Watch watch)
+    : watch_(std::move(watch)), settings_(motion::settings_of(machine.parameters)),
       // An estimate knows no kinematics: each joint is taken for the axis of its letter.
       limits_(motion::fold_limits(settings_, machine.axis_map, motion::ALL_HOMED).path),
       corner_scale_(settings_.get(motion::Parameter::TRAJ_CORNER_SCALE)),
       isMergeAdded_(settings_.isSet(motion::Parameter::TRAJ_ADDED_TOLERANCES)),
       estimator_(std::make_unique<traj::Estimator>(limits_,
                                                    static_cast<double>(machine.servo_period_ns) * 1e-9,
-                                                   [this](const traj::MoveEstimate &move) { take(move); })) {
+                                                   [this](const traj::MoveEstimate &move) { count(move); })) {
     const motion::FoldedLimits room = machine.limits();
-    estimator_->set_machine(settings_.get(motion::Parameter::MAX_FEED_SCALE), room.low, room.high);
+    traj::Scales scales;
+    scales.feed = overrides.feed;
+    scales.rapid = overrides.rapid;
+    scales.max_velocity = overrides.max_velocity > 0 ? overrides.max_velocity : scales.max_velocity;
+    scales.max_feed = settings_.get(motion::Parameter::MAX_FEED_SCALE);
+    estimator_->set_machine(scales, room.low, room.high);
 }
 
 void TimeEstimate::start(const geom::Pose &position) {
@@ -73,6 +83,7 @@ traj::MoveRequest TimeEstimate::request_of(const geom::MoveSettings &settings) {
     traj::MoveRequest r;
     r.tag.requested_velocity = settings.feed;
     r.tag.line = line_;
+    r.tag.id = id_;
     r.tag.file_index = file_;
     r.tag.block = static_cast<std::uint32_t>(section_);
     r.isRapid = settings.isRapid || !(settings.feed > 0);
@@ -84,6 +95,42 @@ traj::MoveRequest TimeEstimate::request_of(const geom::MoveSettings &settings) {
     return r;
 }
 
+namespace {
+
+/// Moves that follow the spindle are timed at its programmed speed.
+geom::MoveSettings timed(const gcode::PreviewEvent &event) {
+    geom::MoveSettings out = event.settings;
+    if (out.feed_per_revolution > 0 && event.spindle_rpm > 0) {
+        out.feed = out.feed_per_revolution * event.spindle_rpm / 60.0;
+    }
+    return out;
+}
+
+}  // namespace
+
+void TimeEstimate::take(const gcode::PreviewEvent &event, std::uint64_t id) {
+    using Kind = gcode::PreviewKind;
+    id_ = id;
+    switch (event.kind) {
+    case Kind::RAPID: line(event.end, event.settings); break;
+    case Kind::FEED: line(event.end, timed(event)); break;
+    case Kind::ARC: arc({event.end, event.centre, event.normal, event.angle_rad, timed(event)}); break;
+    case Kind::PROBE:
+        stop();
+        line(event.end, timed(event));
+        stop();
+        break;
+    case Kind::RIGID_TAP:
+        line(event.end, timed(event));
+        line(event.start, timed(event));
+        break;
+    case Kind::DWELL: dwell(event.value); break;
+    case Kind::TOOL_CHANGE: set_tool(event.number); break;
+    case Kind::PLANNER: set_smooth(event.number != 0); break;
+    case Kind::STOP: stop(); break;
+    }
+}
+
 void TimeEstimate::line(const geom::Pose &end, const geom::MoveSettings &settings) {
     estimator_->add(traj::make_line(position_, end), request_of(settings));
     position_ = end;
@@ -93,7 +140,9 @@ void TimeEstimate::arc(const interp::ArcMove &move) {
     traj::Primitive p;
     const traj::ArcShape shape{move.centre, move.normal, move.angle_rad, geom::norm_uvw(move.normal) > 0};
     if (traj::make_arc(position_, move.end, shape, p) == traj::ArcFault::NONE) {
-        estimator_->add(p, request_of(move.settings));
+        traj::MoveRequest request = request_of(move.settings);
+        request.tag.type = static_cast<std::uint8_t>(Shape::ARC);
+        estimator_->add(p, request);
     }
     position_ = move.end;
 }
@@ -104,6 +153,9 @@ void TimeEstimate::dwell(double seconds) {
     figures_.by_tool[tool_] += seconds;
     if (section_ < figures_.by_section.size()) {
         figures_.by_section[section_].second += seconds;
+    }
+    if (watch_) {
+        watch_({id_, line_, seconds, 0});
     }
 }
 
@@ -123,7 +175,10 @@ void TimeEstimate::set_tool(int tool) {
     tool_ = tool;
 }
 
-void TimeEstimate::take(const traj::MoveEstimate &move) {
+void TimeEstimate::count(const traj::MoveEstimate &move) {
+    if (watch_) {
+        watch_({move.tag.id, move.tag.line, move.seconds, move.top_velocity});
+    }
     (move.tag.requested_velocity > 0 ? figures_.cutting_s : figures_.rapid_s) += move.seconds;
     figures_.by_tool[tool_] += move.seconds;
     if (move.tag.block < figures_.by_section.size()) {
@@ -146,7 +201,7 @@ void TimeEstimate::take(const traj::MoveEstimate &move) {
     place.limit = name_of(move);
 }
 
-const TimeFigures &TimeEstimate::finish() {
+const TimeFigures &TimeEstimate::finish(std::size_t slow_places) {
     estimator_->finish();
     figures_.isComplete = estimator_->isComplete();
     figures_.total_s = figures_.cutting_s + figures_.rapid_s + figures_.dwell_s;
@@ -156,7 +211,7 @@ const TimeFigures &TimeEstimate::finish() {
     }
     std::stable_sort(all.begin(), all.end(),
                      [](const SlowPlace &a, const SlowPlace &b) { return a.lost_s > b.lost_s; });
-    all.resize(std::min(all.size(), SLOW_PLACES));
+    all.resize(std::min(all.size(), slow_places));
     figures_.slowest = std::move(all);
     return figures_;
 }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "interp/canon/machine_canon.hh"
+#include "gcode/preview.hh"
 #include "machine/machine_config.hh"
 #include "traj/estimator.hh"
 
@@ -29,14 +29,32 @@ struct TimeFigures {
 };
 inline constexpr std::size_t SLOW_PLACES = 5;
 
+/// A move, or moves that the planner has made one, or a dwell.
+struct TimedMove {
+    std::uint64_t id = 0;  ///< of the last event in it, see TimeEstimate::take
+    int line = 0;          ///< of that
+    double seconds = 0;
+    double top_velocity = 0;  ///< along the feed length; 0 for a dwell
+};
+
+/// What an operator has set. [1: as programmed]
+struct Overrides {
+    double feed = 1, rapid = 1;
+    double max_velocity = 0;  ///< highest speed along the feed length, 0: none is set
+};
+
 /// Fed with the moves in order; one thread.
 class TimeEstimate {
   public:
-    explicit TimeEstimate(const MachineConfig &machine);
+    /// `watch` hears of each move in order, when the planner has driven it; may be empty.
+    using Watch = std::function<void(const TimedMove &)>;
+    explicit TimeEstimate(const MachineConfig &machine, const Overrides &overrides = {}, Watch watch = {});
 
     void start(const geom::Pose &position);
     /// `section` as Preview::section names it.
     void set_place(const std::string &file, int line, const std::string &section);
+    /// What a preview tells; `id` comes back in TimedMove.
+    void take(const gcode::PreviewEvent &event, std::uint64_t id = 0);
     void line(const geom::Pose &end, const geom::MoveSettings &settings);
     void arc(const interp::ArcMove &move);
     void dwell(double seconds);
@@ -45,12 +63,15 @@ class TimeEstimate {
     void set_tool(int tool);
     /// G64 R: with jerk limits from here on, or without.
     void set_smooth(bool isSmooth);
-    const TimeFigures &finish();
+    /// With at most so many slow places.
+    const TimeFigures &finish(std::size_t slow_places = SLOW_PLACES);
 
   private:
-    void take(const traj::MoveEstimate &move);
+    void count(const traj::MoveEstimate &move);
     traj::MoveRequest request_of(const geom::MoveSettings &settings);
 
+    Watch watch_;
+    std::uint64_t id_ = 0;
     motion::Settings settings_;
     traj::Limits limits_;
     double corner_scale_;  ///< of moves that name none

@@ -2,6 +2,7 @@
 #include "mailbox/memory.hh"
 
 #include <linux/futex.h>
+#include <sys/mman.h>
 #include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
@@ -30,10 +31,20 @@ std::string name_of(const std::string &instance) {
 }  // namespace
 
 Memory Memory::in_process() {
+    // Zeroed pages are an empty segment, and those that nobody looks at cost nothing.
+    void *pages =
+        ::mmap(nullptr, sizeof(Segment), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (pages == MAP_FAILED) {
+        throw std::bad_alloc();
+    }
     Memory memory;
-    memory.own_ = std::make_unique<Segment>();
+    memory.own_.reset(std::launder(static_cast<Segment *>(pages)));
     memory.segment_ = memory.own_.get();
     return memory;
+}
+
+void Memory::Unmap::operator()(Segment *segment) const noexcept {
+    ::munmap(segment, sizeof(Segment));
 }
 
 Result<Memory> Memory::create(const std::string &instance) {

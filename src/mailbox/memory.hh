@@ -31,8 +31,11 @@ class Memory {
     static bool wait(Segment &segment, std::uint32_t heard, std::int64_t timeout_ns);
 
   private:
+    struct Unmap {
+        void operator()(Segment *segment) const noexcept;
+    };
     Memory() = default;
-    std::unique_ptr<Segment> own_;
+    std::unique_ptr<Segment, Unmap> own_;
     rtapi::SharedMemory shared_;
     Segment *segment_ = nullptr;
 };

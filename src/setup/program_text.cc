@@ -85,7 +85,7 @@ std::string tool_table_text(const Plan &plan) {
     return fmt::format(
         "; Tools: number, pocket, diameter, length, remark. Measure the length before you cut.\n"
         "T1 P1 D{}{} ;first tool\n",
-        plan.kind == "lathe" ? "0" : diameter, plan.kind == "lathe" ? " X+0 Z+0 I+95 J+155 Q2" : " Z+0");
+        plan.kind == "lathe" ? "0" : diameter, plan.kind == "lathe" ? " X+0 Z+0 I+85 J+25 Q2" : " Z+0");
 }
 
 }  // namespace mw::setup

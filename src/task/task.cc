@@ -147,7 +147,7 @@ void Task::step_run() {
         if (!line.has_value()) {
             break;
         }
-        carry_out(line->command, Mdi{line->text});
+        carry_out(line->command, line->tap ? Command(*line->tap) : Command(Mdi{line->text}));
     }
 }
 
@@ -279,7 +279,11 @@ bool Task::begin_run() {
     reader_.note_codes();
     Start{*this}.prepare_journal();
     Start{*this}.begin_journal(1);
-    if (run_.kind() == RunKind::MDI) {
+    if (client_tap_.has_value()) {
+        reader_.canon().begin_block({});
+        reader_.canon().take(*std::exchange(client_tap_, std::nullopt));
+        run_.change(RunEvent::READ);
+    } else if (run_.kind() == RunKind::MDI) {
         const interp::Step result = reader_.interpreter().execute(run_.line());
         reader_.note_codes();
         on_step_result(result);

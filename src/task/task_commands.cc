@@ -213,13 +213,59 @@ Outcome Task::Handler::abort_all() {
 
 Outcome Task::Handler::operator()(const Mdi &command) {
     if (task.run_.isRunning()) {
-        return task.mdi_queue_.add({id, command.line});
+        return task.mdi_queue_.add({id, command.line, {}});
     }
     const auto allowed = task.check_can_run();
     if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
     }
     return start_run(RunKind::MDI, command.line);
+}
+
+/// Holds for the taps that clients send, until it is set anew or the work is aborted.
+Outcome Task::Handler::operator()(const SetSpindleSync &command) {
+    if (task.run_.isRunning()) {
+        return fail("a program or MDI line runs already");
+    }
+    const auto allowed = need_spindle(command.spindle);
+    if (!allowed.has_value()) {
+        return std::unexpected(allowed.error());
+    }
+    if (!(command.feed_per_revolution >= 0)) {
+        return fail("the way in a turn of the spindle is not below 0");
+    }
+    task.client_sync_ = command;
+    return Progress::DONE;
+}
+
+/// As G33.1 with the pitch of the SetSpindleSync before it: a line of MDI of which the end is known already.
+Outcome Task::Handler::operator()(const RigidTapMove &command) {
+    const SetSpindleSync &sync = task.client_sync_;
+    if (!(sync.feed_per_revolution > 0) || sync.isVelocityOnly) {
+        return fail("a tap keeps to the angle of a spindle", {}, "SetSpindleSync says with which pitch");
+    }
+    if (task.run_.isRunning()) {
+        return task.mdi_queue_.add({id, {}, command});
+    }
+    const auto allowed = task.check_can_run();
+    if (!allowed.has_value()) {
+        return std::unexpected(allowed.error());
+    }
+    const auto n = static_cast<std::size_t>(sync.spindle);
+    if (task.motion_.status().spindle[n].speed_cmd_rpm == 0) {
+        return fail("Spindle not turning in g33.1");
+    }
+    auto started = start_run(RunKind::MDI);
+    if (started.has_value()) {
+        interp::TapMove tap;
+        tap.end = command.end;
+        tap.scale = command.scale;
+        tap.settings.feed = command.velocity;
+        tap.settings.synch_spindle = static_cast<std::int8_t>(sync.spindle);
+        tap.settings.feed_per_revolution = sync.feed_per_revolution;
+        task.client_tap_ = tap;
+    }
+    return started;
 }
 
 /// Where nothing runs it is also the way into manual mode: screens ask for nothing else when their page of

@@ -31,6 +31,8 @@ struct Task::Handler {
     Outcome operator()(const PauseProgram &command);
     Outcome operator()(const ResumeProgram &command);
     Outcome operator()(const Mdi &command);
+    Outcome operator()(const SetSpindleSync &command);
+    Outcome operator()(const RigidTapMove &command);
     Outcome operator()(const StopOptionally &);
     Outcome operator()(const CloseProgram &);
     Outcome operator()(const ResetInterpreter &);

@@ -22,7 +22,7 @@ constexpr double AT_FEED = 1.02;
 Estimator::Estimator(const Limits &limits, double period_s, Listener listener)
     : limits_(limits), period_s_(period_s),
       period_power_{period_s, period_s * period_s, period_s * period_s * period_s},
-      listener_(std::move(listener)), store_(std::make_unique<PathStore>()),
+      listener_(std::move(listener)), store_(std::make_unique_for_overwrite<PathStore>()),
       executor_(std::make_unique<Executor>(*store_, period_s)),
       planner_(std::make_unique<Planner>(*store_, PlannerSettings{period_s, LATENCY, HORIZON_S, true})) {
     planner_->set_limits(limits);
@@ -33,10 +33,11 @@ void Estimator::set_limits(const Limits &limits) {
     planner_->set_limits(limits);
 }
 
-void Estimator::set_machine(double max_feed_scale, const Pose &low, const Pose &high) {
-    Scales scales;
-    scales.max_feed = std::max(1.0, max_feed_scale);
-    planner_->set_scales(scales);
+void Estimator::set_machine(const Scales &scales, const Pose &low, const Pose &high) {
+    Scales whole = scales;
+    whole.max_feed = std::max(1.0, scales.max_feed);
+    feed_scale_ = scales.feed;
+    planner_->set_scales(whole);
     planner_->set_room(low, high);
 }
 
@@ -117,6 +118,7 @@ void Estimator::count(const ExecutorOutput &out) {
         move_ = out.move;
     }
     ++move_cycles_;
+    move_top_ = std::max(move_top_, std::abs(out.velocity));
     constexpr std::uint64_t EACH = 64, EVERY = 8;
     const bool isShort = move_cycles_ <= EACH;
     const std::uint64_t phase = move_cycles_ % EVERY;
@@ -148,7 +150,9 @@ void Estimator::close_move() {
     e.tag = store_->move(move_);
     e.seconds = static_cast<double>(move_cycles_) * period_s_;
     const double length = store_->primitive(move_).length / std::max(e.tag.feed_ratio, 1e-300);
-    e.seconds_at_feed = e.tag.requested_velocity > 0 ? length / e.tag.requested_velocity : 0.0;
+    const double feed = feed_scale_ * e.tag.requested_velocity;
+    e.seconds_at_feed = feed > 0 ? length / feed : 0.0;
+    e.top_velocity = move_top_ / std::max(e.tag.feed_ratio, 1e-300);
     const bool isAtFeed = e.tag.requested_velocity > 0 && e.seconds <= AT_FEED * e.seconds_at_feed;
     if (!isAtFeed) {
         e.binding = Binding::TOLERANCE;
@@ -165,6 +169,7 @@ void Estimator::close_move() {
     }
     bound_ = {};
     move_cycles_ = 0;
+    move_top_ = 0;
     listener_(e);
 }
 

@@ -18,7 +18,8 @@ enum class Binding : std::uint8_t { FEED, VELOCITY, ACCELERATION, JERK, TOLERANC
 struct MoveEstimate {
     MoveTag tag;
     double seconds = 0;
-    double seconds_at_feed = 0;  ///< if it ran at its feed throughout; 0 for rapids
+    double seconds_at_feed = 0;  ///< if it ran at its feed, as overridden, throughout; 0 for rapids
+    double top_velocity = 0;     ///< along the feed length
     Binding binding = Binding::FEED;
     int axis = -1;  ///< geom::Axis of the binding limit, XYZ_NORM for the norm, -1 for none
 };
@@ -30,8 +31,9 @@ class Estimator {
 
     /// From the next begin() on.
     void set_limits(const Limits &limits);
-    /// The highest feed override that the plan is made ready for, and the soft limits.
-    void set_machine(double max_feed_scale, const Pose &low, const Pose &high);
+    /// The overrides under which it drives, with the highest that the plan is made ready for, and the soft
+    /// limits.
+    void set_machine(const Scales &scales, const Pose &low, const Pose &high);
     /// The path begins or goes on at `pose` after whatever is not motion.
     void begin(const Pose &pose);
     const Pose &end() const { return planner_->end(); }
@@ -52,6 +54,7 @@ class Estimator {
     double ratio(int i, int order) const;
 
     Limits limits_;
+    double feed_scale_ = 1;
     double period_s_;
     std::array<double, 3> period_power_;  ///< [s, s^2, s^3]
     Listener listener_;
@@ -61,6 +64,7 @@ class Estimator {
     std::uint64_t cycle_ = 0;
     Sequence move_ = 0;  ///< the one whose time is counted
     std::uint64_t move_cycles_ = 0;
+    double move_top_ = 0;  ///< highest speed along its parameter so far
     std::uint64_t standing_cycles_ = 0;
     bool isComplete_ = true;
     bool isFresh_ = true;  ///< nothing has been added to the path

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "base/copyable_atomic.hh"
+#include "base/raw_array.hh"
 #include "base/spsc_ring.hh"
 #include "traj/geometry/primitive.hh"
 
@@ -131,7 +132,7 @@ struct Pass {
     double share = 1;      ///< part of the pieces' accelerations for gaining speed and for braking
     double trim = 1;       ///< and for following the spindle in between
     bool isTap = false;    ///< in along the first piece, and back to its start
-    TapTerms tap;          ///< its acceleration is the executor's to fill
+    TapTerms tap;
 };
 
 /// Tells the executor which phases to follow. They never end with a stop beyond what is committed: when they
@@ -219,10 +220,10 @@ struct PathEvent {
 
 /// Owned by whoever assembles the two sides; some megabytes, so never on a stack.
 struct PathStore {
-    std::array<Primitive, PRIMITIVE_CAPACITY> primitives{};
-    std::array<MoveTag, PRIMITIVE_CAPACITY> moves{};
-    std::array<Piece, PIECE_CAPACITY> pieces{};
-    std::array<Phase, PHASE_CAPACITY> phases{};
+    RawArray<Primitive, PRIMITIVE_CAPACITY> primitives;
+    RawArray<MoveTag, PRIMITIVE_CAPACITY> moves;
+    RawArray<Piece, PIECE_CAPACITY> pieces;
+    RawArray<Phase, PHASE_CAPACITY> phases;
     LeaderHistory history{};  ///< executor -> planner; the last samples are read long before they are reused
     SpscRing<PathEvent, 1024> events;  ///< planner -> executor
     SpscRing<Commit, 64> commits;      ///< planner -> executor

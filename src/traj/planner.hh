@@ -4,6 +4,7 @@
 
 #include "traj/geometry/path_builder.hh"
 #include "traj/timing/locked_pass.hh"
+#include "traj/timing/tap_plan.hh"
 #include "traj/timing/timing_plan.hh"
 #include "traj/trial/easing.hh"
 #include "traj/trial/trial.hh"

@@ -108,6 +108,21 @@ struct JointTuning {
     static constexpr double JITTER = 1e-6;
 };
 
+/// Joints along the line of a tap (line_joints).
+struct LineJointTuning {
+    /// Places along the line, and the way over which derivatives are taken there: third differences of 1000
+    /// mm are then exact to 1e-7, and no machine's curves are as narrow.
+    static constexpr int PLACES = 33;
+    static constexpr double STEP = 0.02;
+    /// What rounding, or an inverse that iterates, makes of a joint's place, relative to it.
+    static constexpr double ROUNDING = 1e-12;
+    /// What derivatives may be more than their differences tell.
+    static constexpr double MARGIN = 1.01;
+    /// Part of acceleration and jerk that the curves of joints may take at the highest speed: the rest is for
+    /// following the spindle.
+    static constexpr double TURNING = 0.5;
+};
+
 /// Corners and arcs with jerk limits.
 struct CornerTuning {
     /// Part of the tolerance that blends may take where corners follow each other closely, and what a slight
@@ -263,12 +278,22 @@ struct TapTuning {
     /// With a mean: a tap that would be farther off the helix, as its spindle turns back, is refused [turns].
     /// The change is seen by this part of the mean late, and by what reading the speed takes, of which half
     /// the square counts [s^2]. Measured, for means from 0.02 to 0.2 s: docs/motion/spindles.md.
-    static constexpr double MOST_OFF = 0.1, LATE_MEANS = 0.6, LATE_S2 = 2e-4;
+    /// After a change the tool is on the helix again within so many means.
+    static constexpr double MOST_OFF = 0.1, LATE_MEANS = 0.6, LATE_S2 = 2e-4, SETTLING_MEANS = 2;
     /// The tool leaves the thread by this much before the spindle turns forward again [turns].
     static constexpr double CLEARANCE = 0.5;
     /// Room that the tool has beyond its bottom on top of what the spindle is known to take, and that must be
     /// there before the start and behind the bottom [turns].
     static constexpr double MORE_ROOM = 2, LEAST_ROOM = 1;
+    /// Where joints are not axes: the spindle may turn so much faster than now. The tool may go faster still,
+    /// up to all that joints allow, as long as their curves leave this part of the acceleration; speeds that
+    /// are tried. A line without a speed has this one.
+    static constexpr double OVERSPEED = 1.1, SPEED_WORTH = 0.9;
+    static constexpr int SPEED_STEPS = 8;
+    static constexpr double NO_SPEED = 1e-9;
+    /// And the room that is looked for beyond both ends of the line at most [turns]; what derivatives are
+    /// taken over stays within it [machine units].
+    static constexpr double MOST_ROOM = 25, ROOM_MARGIN = 3 * LineJointTuning::STEP;
     /// After a stop the tool goes on with a spindle that comes to a stand as it is known to, this many times
     /// as far and a turn more; so far where nothing is known. Slower than that it stands [turns/s].
     static constexpr double RUN_OUT = 1.5, UNKNOWN_RUN_OUT = 5, STANDING = 0.02;

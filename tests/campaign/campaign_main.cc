@@ -145,8 +145,9 @@ int main(int argc, char **argv) {
         "Random sessions at random machines. One line for each seed in the log; seeds that "
         "it has are not run again. Ends with 1 when something was broken.\n");
     order.add_to(line);
-    line.number("--plan", "N", "what a seed stands for: 1, sessions of a minute, or 3 (default)",
-                campaign.plan_version, 1, mw::campaign::PLAN_VERSION);
+    line.number("--plan", "N",
+                "what a seed stands for: 1, sessions of a minute, 3 (default), or 4, further kinematics",
+                campaign.plan_version, 1, mw::campaign::LAST_PLAN);
     line.text("--trace", "FILE", "with --tell: commands of joints and axes at every cycle", campaign.trace);
     line.take("--known", 1, "RULE", "known to be broken: counted, but no failure; may come several times",
               [&](const mw::options::Words &words) -> mw::Result<> {
@@ -161,7 +162,7 @@ int main(int argc, char **argv) {
     }
     constexpr unsigned REPLACED = 2;
     if (campaign.plan_version == REPLACED) {
-        std::fputs("motion_campaign: nothing makes the sessions of plan 2 any more: use 1 or 3\n", stderr);
+        std::fputs("motion_campaign: nothing makes the sessions of plan 2 any more: use 1, 3 or 4\n", stderr);
         return 2;
     }
     return mw::campaign_runner::run(campaign, order);

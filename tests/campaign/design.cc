@@ -8,13 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "campaign/design_parts.hh"
 #include "geom/pose.hh"
 
 namespace mw::campaign {
-namespace {
-
-/// Switches of the ends of travel are so far beyond the soft limits, home switches a part of it.
-constexpr double TO_HOME_SWITCH = 1;
 
 double rounded(double x, double step) {
     return std::round(x / step) * step;
@@ -44,6 +41,24 @@ JointDesign make_joint(sim::Random &random, bool isAngular, bool isJerkLimited) 
     return j;
 }
 
+JointDesign make_plain(sim::Random &random, bool isAngular, double reach, bool isJerkLimited) {
+    JointDesign j = make_joint(random, isAngular, isJerkLimited);
+    j.velocity = std::max(j.velocity, 60.0);
+    j.low = -reach;
+    j.high = reach;
+    j.start = 0;
+    return j;
+}
+
+AxisDesign axis_of(int axis, const JointDesign &j) {
+    return {axis, j.velocity, j.acceleration, j.jerk, j.low, j.high};
+}
+
+namespace {
+
+/// Switches of the ends of travel are so far beyond the soft limits, home switches a part of it.
+constexpr double TO_HOME_SWITCH = 1;
+
 void make_homing(sim::Random &random, JointDesign &j) {
     j.home = rounded(random.real(0.5 * j.low, 0.5 * j.high), 0.1);
     j.home_kind = random.chance(0.4)   ? HomeKind::IMMEDIATE
@@ -67,10 +82,6 @@ void make_homing(sim::Random &random, JointDesign &j) {
         j.index_at = rounded(j.home_switch_at + std::copysign(random.real(0.5, 1.5), j.latch), 0.01);
         j.home_offset = j.index_at;
     }
-}
-
-AxisDesign axis_of(int axis, const JointDesign &j) {
-    return {axis, j.velocity, j.acceleration, j.jerk, j.low, j.high};
 }
 
 /// The joints move the axes of the letters.
@@ -113,15 +124,6 @@ void make_trivial(sim::Random &random, Design &d, const std::string &letters) {
             a.acceleration = rounded(a.acceleration * random.real(0.3, 1), 0.01);
         }
     }
-}
-
-JointDesign make_plain(sim::Random &random, bool isAngular, double reach, bool isJerkLimited) {
-    JointDesign j = make_joint(random, isAngular, isJerkLimited);
-    j.velocity = std::max(j.velocity, 60.0);
-    j.low = -reach;
-    j.high = reach;
-    j.start = 0;
-    return j;
 }
 
 /// X and Y by two belts.

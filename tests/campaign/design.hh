@@ -56,6 +56,7 @@ struct Design {
     std::string name;  ///< of the kind, for the log
     std::string coordinates, kinematics;
     bool isTrivial = true;                       ///< joints are axes
+    bool isFurther = false;                      ///< of make_further_design()
     bool isJerkLimited = false;                  ///< PLANNER_TYPE = 1
     double velocity = 100, acceleration = 1000;  ///< along the path
     double jerk = 0;
@@ -75,6 +76,8 @@ struct Design {
 Design make_design(sim::Random &random);
 /// Of kinematics that the first plan does not have.
 Design make_other_design(sim::Random &random);
+/// Of kinematics that no plan before the fourth has.
+Design make_further_design(sim::Random &random);
 /// Play and screws that are not even, and what the INI file says about them.
 void wear(sim::Random &random, Design &design);
 /// Axes that HAL pins may offset; those of machines whose joints are axes and do not wear.

@@ -373,6 +373,14 @@ void Judge::check_outputs(const Sample &s) {
     }
 }
 
+bool Judge::mayBeAtRest() const {
+    bool isSlow = true;
+    for (std::size_t j = 0; j < velocity_.size(); ++j) {
+        isSlow = isSlow && std::abs(velocity_[j]) <= design_.joints[j].acceleration * period_;
+    }
+    return standing_ > 0 || isSlow;
+}
+
 /// What has come to rest stays there, but for rounding, until somebody asks for a motion.
 void Judge::check_stale(const Sample &s, bool wasAtRest) {
     const bool wasHeld = isHeld_;

@@ -95,6 +95,8 @@ class Judge {
     double time_to_brake() const;
     /// Nothing moves and no stop is awaited.
     bool isAtRest() const { return standing_ >= 3 && !stop_.isAwaited; }
+    /// It stands, or does in the next cycle.
+    bool mayBeAtRest() const;
     bool areOffsetsAtRest() const { return offsets_standing_ >= 3; }
     /// The time that stops took over what the limits need, the largest.
     double slowest_stop() const { return slowest_stop_; }

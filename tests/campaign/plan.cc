@@ -106,7 +106,7 @@ Plan make_long_plan(std::uint64_t seed) {
     return plan;
 }
 
-Act make_act(sim::Random &random, const Design &design) {
+Act make_act(sim::Random &random, const Design &design, unsigned version) {
     Act act;
     const double kind = random.real(0, 1);
     if (kind < 0.5) {
@@ -115,14 +115,15 @@ Act make_act(sim::Random &random, const Design &design) {
         act.blocks = writer.write(random.real(0.5, 2));
     } else if (kind < 0.6 && design.isTrivial) {
         act = Writer(random, design).write_probing();
-    } else if (kind < 0.72 && design.isTrivial) {
+    } else if (kind < 0.72 && (design.isTrivial || version > 3)) {
         act = Writer(random, design).write_in_step();
     } else if (kind < 0.9) {
         act = make_jog(random, design);
-        if (design.name == "delta") {
+        if (design.name == "delta" || design.isFurther) {
             // Legs that get far apart leave the room of the axes.
             act.work = Work::JOG_AXIS;
-            act.target = random.whole(0, 2);
+            const int last = design.isFurther ? static_cast<int>(design.axes.size()) - 1 : 2;
+            act.target = design.axes[static_cast<std::size_t>(random.whole(0, last))].axis;
         }
         if (random.chance(0.3)) {
             turn_wheel(random, act);
@@ -158,19 +159,23 @@ void make_troubles(sim::Random &random, const Design &design, Act &act) {
 }
 
 /// Sessions of 11 to 25 s.
-Plan make_short_plan(std::uint64_t seed) {
+Plan make_short_plan(std::uint64_t seed, unsigned version) {
     constexpr int MOST_ACTS = 24;
     Plan plan;
-    sim::Random random(seed * 0x2545f4914f6cdd1dU + 2);
-    const bool isOther = random.chance(0.12);
-    plan.design = isOther ? make_other_design(random) : make_design(random);
+    sim::Random random(seed * 0x2545f4914f6cdd1dU + (version > 3 ? version : 2));
+    const bool isFurther = version > 3 && random.chance(0.6);
+    const bool isOther = random.chance(version > 3 ? 0.3 : 0.12);
+    plan.design = isFurther ? make_further_design(random)
+                  : isOther ? make_other_design(random)
+                            : make_design(random);
+    plan.design.isFurther = isFurther;
     shorten(random, plan.design);
     wear(random, plan.design);
     equip_spindle(random, plan.design);
     allow_offsets(random, plan.design);
     plan.least_s = random.real(10.5, 14);
     for (int n = 0; n < MOST_ACTS; ++n) {
-        Act act = make_act(random, plan.design);
+        Act act = make_act(random, plan.design, version);
         if (n > 0) {
             make_troubles(random, plan.design, act);
         }
@@ -202,7 +207,7 @@ bool hasTrouble(const Act &act, Upset what) {
 }
 
 Plan make_plan(std::uint64_t seed, unsigned version) {
-    Plan plan = version == 1 ? make_long_plan(seed) : make_short_plan(seed);
+    Plan plan = version == 1 ? make_long_plan(seed) : make_short_plan(seed, version);
     plan.seed = seed;
     return plan;
 }

@@ -143,8 +143,9 @@ struct Plan {
 
 bool hasTrouble(const Act &act, Upset what);
 
-/// Of what a seed stands for; 1: as it was first, sessions of a minute; there is no 2 any more.
-inline constexpr unsigned PLAN_VERSION = 3;
+/// Of what a seed stands for; 1: as it was first, sessions of a minute; there is no 2 any more. 4: further
+/// kinematics, and taps where joints are not axes.
+inline constexpr unsigned PLAN_VERSION = 3, LAST_PLAN = 4;
 Plan make_plan(std::uint64_t seed, unsigned version = PLAN_VERSION);
 
 /// What is kept of a plan, in the words of campaign_runner/kept.hh; of blocks, moves alone are left out.

@@ -9,15 +9,28 @@
 
 namespace mw::campaign {
 
+/// Z with the joints that move along with it: where joints are not axes all that are linear may.
+AxisDesign Writer::z_with_joints() const {
+    AxisDesign z = axis(geom::AXIS_Z);
+    for (const JointDesign &j : design_.joints) {
+        if (!design_.isTrivial && !j.isAngular) {
+            z.velocity = std::min(z.velocity, j.velocity);
+            z.acceleration = std::min(z.acceleration, j.acceleration);
+            z.jerk = z.jerk > 0 && j.jerk > 0 ? std::min(z.jerk, j.jerk) : std::max(z.jerk, j.jerk);
+        }
+    }
+    return z;
+}
+
 /// A part of what Z can.
 double Writer::speed_for_z(double share) const {
-    const AxisDesign &z = axis(geom::AXIS_Z);
+    const AxisDesign z = z_with_joints();
     return share * std::min((1 - z.offset_ratio) * z.velocity, design_.velocity);
 }
 
 /// Along Z, as a thread gains speed: with jerk limits part of the acceleration is kept for the spindle.
 double Writer::way_to_speed(double v) const {
-    const AxisDesign &z = axis(geom::AXIS_Z);
+    const AxisDesign z = z_with_joints();
     const double a = 0.45 * std::min((1 - z.offset_ratio) * z.acceleration, design_.acceleration);
     const double jerk =
         z.jerk > 0 && design_.jerk > 0 ? std::min(z.jerk, design_.jerk) : std::max(z.jerk, design_.jerk);
@@ -90,7 +103,7 @@ void Writer::write_surface(SyncWish &sync) {
 /// How far the mean of a tool is off the helix while the spindle turns back [turns]; measured, and written in
 /// docs/motion/spindles.md.
 double Writer::off_helix(double lead, double ramp, double mean_s) const {
-    const double a = 0.49 * std::min(axis(geom::AXIS_Z).acceleration, design_.acceleration);
+    const double a = 0.49 * std::min(z_with_joints().acceleration, design_.acceleration);
     const double use = std::min(0.99, lead * ramp / a);
     return ramp * (2e-4 + 0.18 * mean_s * mean_s * use / (1 - use));
 }
@@ -99,12 +112,16 @@ Act Writer::write_in_step() {
     Act act;
     act.work = Work::SPINDLE;
     SyncWish &sync = act.sync;
-    const AxisDesign &z = axis(geom::AXIS_Z);
+    const AxisDesign z = z_with_joints();
     say("G21 G90 G17 G94 G80 G40 G97 G8");
     set_mode();
     move_to_start();
     int kind = random_.whole(0, 4);
     kind = kind == 2 && z.offset_ratio > 0 ? 0 : kind;
+    kind = design_.isTrivial ? kind : 2;
+    // Others tilt, or have curves along Z, which ask for more than Z itself.
+    const bool isPlainZ = design_.isTrivial || design_.name == "corexy" || design_.name == "delta" ||
+                          design_.name == "scarakins" || design_.name == "rosekins";
     if (kind == 4) {
         write_surface(sync);
     } else {
@@ -131,19 +148,23 @@ Act Writer::write_in_step() {
                 kind = isTap ? kind : 0;
             }
         }
+        if (kind == 0 && !design_.isTrivial) {
+            kind = 3;  // threads of these are driven by time
+        }
         const double v = sync.lead * std::abs(sync.rpm) / 60;
         const double overrun = isTap ? sync.lead * turns_s * (turns_s / design_.spindle.ramp + 0.04) : 0;
         const double length = 3 * way_to_speed(v) + 3 * overrun + random_.real(4, 12) * sync.lead + 0.2 * v;
         // From the middle, where there is room for it.
         const double side = random_.chance(0.5) ? 1 : -1;
-        sync.from = to_grid(-side * 0.4 * length);
+        const double middle = z.low > 0 || z.high < 0 ? to_grid(0.5 * (z.low + z.high)) : 0;
+        sync.from = to_grid(middle - side * 0.4 * length);
         sync.to = to_grid(sync.from + side * length);
-        const bool fits = std::max(std::abs(sync.from), std::abs(sync.to)) + 3 * sync.lead <
-                          0.95 * std::min(z.high, -z.low);
+        const bool fits = std::max(std::abs(sync.from - middle), std::abs(sync.to - middle)) + 3 * sync.lead <
+                          0.95 * std::min(z.high - middle, middle - z.low);
         sync.to = fits ? sync.to : to_grid(sync.from + side * 0.1);
         // Too short for the speed, or for the spindle; a feed by turns may be short.
         act.isToFail = !fits && kind != 3;
-        act.mayFail = isSudden;
+        act.mayFail = isSudden || !isPlainZ;
         sync.isShort = !fits;
         start_spindle(sync.rpm);
         say(fmt::format("G0 Z{:.4f}", sync.from));

@@ -102,7 +102,7 @@ void Writer::output() {
 
 /// Within the soft limits, with some room for the joints of other kinematics.
 double Writer::place(const AxisDesign &a) {
-    if (a.low > 0) {
+    if (a.low > 0 || a.high < 0) {
         return to_grid(a.low + random_.real(0.05, 0.95) * (a.high - a.low));
     }
     return to_grid(random_.real(0.9 * a.low, 0.9 * a.high));
@@ -110,7 +110,7 @@ double Writer::place(const AxisDesign &a) {
 void Writer::move_to_start() {
     std::string text = "G0";
     for (const AxisDesign &a : design_.axes) {
-        at_[a.axis] = to_grid((a.low > 0 ? 1 : 0.5) * place(a));
+        at_[a.axis] = to_grid((a.low > 0 || a.high < 0 ? 1 : 0.5) * place(a));
         text += fmt::format(" {}{:.4f}", geom::AXIS_LETTERS[a.axis], at_[a.axis]);
     }
     push(text, true);

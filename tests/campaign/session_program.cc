@@ -223,7 +223,6 @@ void Session::begin_stop(const Trouble &t) {
     constexpr int TO_TASK = 4;  // and from there to motion [cycles]
     const JointDesign &joint = plan_.design.joints[static_cast<std::size_t>(t.joint)];
     JointFaults &pins = rig_->joint_faults[static_cast<std::size_t>(t.joint)];
-    const bool isIdle = judge_.isAtRest();
     switch (t.what) {
     case Upset::ABORT:
         post(msgs::AbortAll{});
@@ -270,7 +269,7 @@ void Session::begin_stop(const Trouble &t) {
         judge_.stop(Stop::ALONG_THEN_OFF, 0);
         break;
     case Upset::PROBE_STUCK:
-        if (!isIdle && act_->work == Work::PROGRAM) {
+        if (!judge_.mayBeAtRest() && act_->work == Work::PROGRAM) {
             rig_->faults.isProbeClosed = true;
             judge_.stop(Stop::ALONG_THE_PATH, 0);
         }

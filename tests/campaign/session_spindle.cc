@@ -26,9 +26,13 @@ std::vector<Pass> passes_of(const std::vector<geom::Pose> &path, const SyncWish 
         if (!isAlone || !(z * sense > 1e-12)) {
             continue;
         }
-        // Z may wait for the spindle as it begins.
+        // Z may wait for the spindle as it begins; a move the same way may end where it begins.
         constexpr std::size_t WAIT = 3;
-        if (all.empty() || all.back().last + WAIT < i) {
+        const auto isAtStart = [&](std::size_t n) {
+            return std::abs(path[n][geom::AXIS_Z] - sync.from) <= 1e-6;
+        };
+        const bool isAnother = !all.empty() && isAtStart(i - 1) && !isAtStart(all.back().first);
+        if (all.empty() || isAnother || all.back().last + WAIT < i) {
             all.push_back({i - 1, i, 0});
         }
         all.back().last = i;

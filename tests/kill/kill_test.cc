@@ -178,6 +178,8 @@ TEST(Kill, TheDeathOfTaskStopsTheMachineAlongThePath) {
         ::waitpid(task, nullptr, 0);
         check_stop(samples, kill_ns);
         if (HasFailure()) {
+            ADD_FAILURE() << "kill " << i << ", " << samples.size() << " samples:\n"
+                          << content(folder / "log");
             break;
         }
     }

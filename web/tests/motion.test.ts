@@ -10,6 +10,7 @@ function line(count: number): Moves {
     places: Float32Array.from({ length: count * 6 }, (_, i) => Math.floor(i / 6) + (i % 6 >= 3 ? 0.5 : 0)),
     lines: Uint32Array.from({ length: count * 2 }, (_, i) => i >> 1),
     kinds: new Uint8Array(count * 2).fill(1),
+    shades: Uint8Array.from({ length: count * 2 }, (_, i) => (i >> 1) & 255),
   };
 }
 
@@ -18,6 +19,7 @@ it('keeps each pair together, and loses and doubles none', () => {
   expect(out.count).toBe(2000);
   const seen = Array.from({ length: 1000 }, (_, i) => {
     expect(out.lines[i * 2]).toBe(out.lines[i * 2 + 1]);
+    expect(out.shades[i * 2]).toBe((out.lines[i * 2] ?? 0) & 255);
     expect((out.places[i * 6 + 3] ?? 0) - (out.places[i * 6] ?? 0)).toBe(0.5);
     return out.lines[i * 2] ?? -1;
   });

@@ -142,7 +142,7 @@ describe('path', () => {
     const count = 1000;
     const places = new Float32Array(count * 3).map((_, i) => (i % 3 === 0 ? i / 3 / 100 : 0));
     const kinds = new Uint8Array(count).map((_, i) => (i < 500 ? 0 : 1));
-    const thinned = thin({ kind: 'moves', count, places, lines: new Uint32Array(count), kinds }, 1);
+    const thinned = thin({ kind: 'moves', count, places, lines: new Uint32Array(count), kinds, shades: new Uint8Array(count) }, 1);
     expect(thinned.count).toBeLessThan(20);
     expect(thinned.places[0]).toBe(0);
     expect(thinned.places[(thinned.count - 1) * 3]).toBeCloseTo(9.99, 5);

@@ -18,6 +18,7 @@ function square(turns: number): Moves {
     places: new Float32Array(points.flatMap(([x, y]) => [x ?? 0, y ?? 0, 0])),
     lines: new Uint32Array(points.length),
     kinds: new Uint8Array(points.length).fill(1),
+    shades: new Uint8Array(points.length),
   };
 }
 

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -124,6 +125,26 @@ TEST_F(UiMachine, ARotaryAxisHasSpeedsAndSteps_J1) {
     EXPECT_TRUE(facts.increments.back().isAngular);
 }
 
+TEST_F(UiMachine, TheKindOfMachineAndItsGeometryAreSaid_J1) {
+    using ui::web::MachineKind;
+    const auto facts = [this](const char *machine, const char *display) {
+        return machine_facts(*load(machine, display), sink_);
+    };
+    EXPECT_EQ(facts("mill_mm", "").look.kind, MachineKind::MILL);
+    EXPECT_EQ(facts("lathe", "").look.kind, MachineKind::LATHE);
+    EXPECT_EQ(facts("lathe", "BACK_TOOL_LATHE = 1\n").look.kind, MachineKind::BACK_LATHE);
+    EXPECT_EQ(facts("mill_mm", "MACHINE_TYPE_HINT = LATHE\n").look.kind, MachineKind::LATHE);
+    EXPECT_EQ(facts("mill_mm", "FOAM = 1\n").look.kind, MachineKind::FOAM);
+    EXPECT_NEAR(facts("mill_mm", "FOAM = 1\n").look.foam_w, 38.1, 1e-9);
+    EXPECT_EQ(facts("mill_mm", "FOAM = 1\nFOAM_Z = 2\nFOAM_W = 300\n").look.foam_w, 300);
+    EXPECT_TRUE(path_look(facts("mill_mm", "FOAM = 1\nFOAM_Z = 2\n")).foam.has_value());
+    EXPECT_EQ(facts("mill_xyza", "GEOMETRY = AXYZ\n").look.geometry, "AXYZ");
+    EXPECT_FALSE(path_look(facts("mill_xyza", "GEOMETRY = AXYZ\n")).geometry.isPlain());
+    EXPECT_EQ(sink_.all().size(), 0U);
+    EXPECT_EQ(facts("mill_xyza", "GEOMETRY = AX9\nMACHINE_TYPE_HINT = PRESS\n").look.geometry, "XYZABCUVW");
+    EXPECT_EQ(sink_.all().size(), 2U) << "what is not known is told";
+}
+
 /// All that is made, until the end.
 std::string all_of(ui::web::PieceQueue &pieces) {
     std::string bytes, piece;
@@ -141,7 +162,7 @@ TEST_F(UiMachine, AProgramIsReadAsItsPath_J3) {
     ASSERT_NE(loaded, nullptr);
     const std::string path = (folder_ / "p.ngc").string();
     std::ofstream(path) << "G21 G90 F1000\nG1 X10\nG2 X20 I5\nG1 Q\nM2\n";
-    PathReaders readers(*loaded);
+    PathReaders readers(*loaded, {});
     const auto pieces = readers.read(path);
     ASSERT_TRUE(pieces.has_value());
     const std::string bytes = all_of(**pieces);
@@ -150,9 +171,87 @@ TEST_F(UiMachine, AProgramIsReadAsItsPath_J3) {
     std::memcpy(&kind, bytes.data(), 4);
     std::memcpy(&size, bytes.data() + 4, 4);
     std::memcpy(&count, bytes.data() + 8, 4);
+    EXPECT_EQ(kind, 5U) << "feed and tool of what comes";
+    EXPECT_EQ(count, 1U);
+    std::memcpy(&kind, bytes.data() + 8 + size, 4);
+    std::memcpy(&count, bytes.data() + 16 + size, 4);
     EXPECT_EQ(kind, 1U);
     EXPECT_GT(count, 10U);
     EXPECT_EQ(bytes.size() % 4, 0U);
+}
+
+/// What the stream of times has: seconds of each line, the last point, the text at its end.
+struct Times {
+    std::map<std::uint32_t, double> by_line;
+    std::map<std::uint32_t, float> speeds;
+    std::uint32_t point = 0;
+    std::string sum, error;
+
+    explicit Times(const std::string &bytes) {
+        for (std::size_t at = 0; at < bytes.size();) {
+            const auto word = [&](std::size_t place) {
+                std::uint32_t value = 0;
+                std::memcpy(&value, bytes.data() + place, 4);
+                return value;
+            };
+            const std::uint32_t kind = word(at), size = word(at + 4);
+            at += 8;
+            for (std::size_t i = 0; kind == 7 && i < word(at); ++i) {
+                const std::size_t move = at + 4 + 16 * i;
+                float seconds = 0, speed = 0;
+                std::memcpy(&seconds, bytes.data() + move + 8, 4);
+                std::memcpy(&speed, bytes.data() + move + 12, 4);
+                EXPECT_GE(word(move), point) << "points rise";
+                point = word(move);
+                by_line[word(move + 4)] += seconds;
+                float &top = speeds[word(move + 4)];
+                top = std::max(top, speed);
+            }
+            (kind == 8 ? sum : kind == 4 ? error : unused_) = kind == 7 ? "" : bytes.substr(at, size);
+            at += size;
+        }
+    }
+
+  private:
+    std::string unused_;
+};
+
+TEST_F(UiMachine, TheTimeOfEachMoveIsThePlanners_J3) {
+    const auto loaded = load("mill_mm");
+    ASSERT_NE(loaded, nullptr);
+    const std::string path = (folder_ / "p.ngc").string();
+    std::ofstream(path) << "G21 G90 G61 F600\nG1 X100\nG4 P2.5\nG2 X101 I0.5 F60000\nG0 X0\nM2\n";
+    PathReaders readers(*loaded, {});
+    const Times plain(all_of(**readers.read_times(path, {})));
+    EXPECT_NEAR(plain.by_line.at(2), 10, 0.1) << "100 mm at 10 mm/s";
+    EXPECT_NEAR(plain.speeds.at(2), 10, 0.01);
+    EXPECT_NEAR(plain.by_line.at(3), 2.5, 1e-6);
+    EXPECT_LT(plain.speeds.at(4), 100) << "so small a circle allows less than its feed";
+    EXPECT_EQ(plain.error, "");
+    EXPECT_NE(plain.sum.find(R"("line":4)"), std::string::npos) << plain.sum;
+    EXPECT_NE(plain.sum.find("curvature: acceleration of"), std::string::npos) << plain.sum;
+    const auto pieces = readers.read(path);
+    const std::string bytes = all_of(**pieces);
+    std::uint32_t points = 0;
+    std::memcpy(&points, bytes.data() + bytes.size() - 4, 4);
+    EXPECT_EQ(plain.point + 1, points) << "points are counted as those of the path";
+    const Times half(all_of(**readers.read_times(path, {.feed = 0.5})));
+    EXPECT_NEAR(half.by_line.at(2), 20, 0.1);
+    EXPECT_NEAR(half.by_line.at(5), plain.by_line.at(5), 0.01) << "a rapid move has no feed";
+    const Times slow(all_of(**readers.read_times(path, {.rapid = 0.1, .max_velocity = 5})));
+    EXPECT_NEAR(slow.by_line.at(2), 20, 0.1) << "the highest speed holds for all";
+    EXPECT_GT(slow.by_line.at(5), 2 * plain.by_line.at(5));
+}
+
+TEST_F(UiMachine, AProgramWithErrorsHasNoTime_J3) {
+    const auto loaded = load("mill_mm");
+    ASSERT_NE(loaded, nullptr);
+    const std::string path = (folder_ / "p.ngc").string();
+    std::ofstream(path) << "G21 G90 F600\nG1 X100\nG1 Q\nM2\n";
+    PathReaders readers(*loaded, {});
+    const Times times(all_of(**readers.read_times(path, {})));
+    EXPECT_EQ(times.sum, "");
+    EXPECT_NE(times.error.find("p.ngc:3"), std::string::npos);
 }
 
 TEST_F(UiMachine, APipeIsNotRead_J3) {
@@ -160,7 +259,7 @@ TEST_F(UiMachine, APipeIsNotRead_J3) {
     ASSERT_NE(loaded, nullptr);
     const std::string path = (folder_ / "pipe.ngc").string();
     ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
-    PathReaders readers(*loaded);
+    PathReaders readers(*loaded, {});
     const auto pieces = readers.read(path);
     ASSERT_TRUE(pieces.has_value());
     EXPECT_NE(all_of(**pieces).find("pipe.ngc is no file"), std::string::npos);
@@ -170,7 +269,7 @@ TEST_F(UiMachine, ReadersEndWhenNobodyReads_J3) {
     const auto loaded = load("mill_mm");
     const std::string path = (folder_ / "long.ngc").string();
     std::ofstream(path) << "G21 F1000\no1 repeat [10000000]\nG1 X1\nG1 X0\no1 endrepeat\nM2\n";
-    PathReaders readers(*loaded);
+    PathReaders readers(*loaded, {});
     for (std::size_t i = 0; i < PathReaders::MOST; ++i) {
         EXPECT_TRUE(readers.read(path).has_value());
     }

@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include "machine/abilities.hh"
 #include "machine/loaded_config.hh"
 #include "machine/program_check.hh"
 
@@ -48,29 +47,6 @@ class ProgramCheck : public testing::Test {
     diag::Sink sink_;
 };
 
-TEST_F(ProgramCheck, WhatTheMachineCannotDoIsNamedWithItsPlace) {
-    ASSERT_NE(config_, nullptr);
-    config_->machine.isTrivial = false;
-    check("G21 G90 G17\nS100 M3\nG0 X10 Y10\n(G33.1 here) g 033.1 Z-5 K1\nM5\nM2\n");
-    ASSERT_EQ(sink_.count_errors(), 1);
-    const Error &error = sink_.all()[0].what;
-    EXPECT_NE(error.message.find("G33.1"), std::string::npos) << error.message;
-    EXPECT_NE(error.message.find("cannot"), std::string::npos) << error.message;
-    EXPECT_EQ(error.place.line, 4);
-    EXPECT_EQ(error.place.column, 14);
-    EXPECT_EQ(sink_.all()[0].line_text, "(G33.1 here) g 033.1 Z-5 K1");
-}
-
-TEST_F(ProgramCheck, EveryPlaceIsToldAndEachOnce) {
-    ASSERT_NE(config_, nullptr);
-    config_->machine.isTrivial = false;
-    check("G21 G90 G17 S100 M3\nG0 X10 Y10\no1 repeat [5]\nG33.1 Z-5 K1\no1 endrepeat\n"
-          "G0 X20\nG33.1 Z-5 K1\nM2\n");
-    ASSERT_EQ(sink_.count_errors(), 2);
-    EXPECT_EQ(sink_.all()[0].what.place.line, 4);
-    EXPECT_EQ(sink_.all()[1].what.place.line, 7);
-}
-
 TEST_F(ProgramCheck, LimitsOfAJointThatMovesAnAxisHoldForTheAxis) {
     ASSERT_NE(config_, nullptr);
     const auto number = static_cast<std::uint16_t>(motion::Parameter::JOINT_MAX_LIMIT);
@@ -102,8 +78,10 @@ TEST_F(ProgramCheck, WhereKinematicsAreBetweenOnlyMovesThatAreBeyondFromAnywhere
     EXPECT_EQ(sink_.count_errors(), 2) << "here X0 is home";
 }
 
-TEST_F(ProgramCheck, ThreadsAndTapsAreTakenWhereJointsAreAxes_C15) {
+TEST_F(ProgramCheck, ThreadsAndTapsAreTakenWhetherJointsAreAxesOrNot_C15) {
     ASSERT_NE(config_, nullptr);
+    check("G21 G90 G17 S100 M3\nG0 X10 Y10\nG33 Z-5 K1\nG0 Z0\nG33.1 Z-5 K1\nM2\n");
+    config_->machine.isTrivial = false;
     check("G21 G90 G17 S100 M3\nG0 X10 Y10\nG33 Z-5 K1\nG0 Z0\nG33.1 Z-5 K1\nM2\n");
     EXPECT_EQ(sink_.count_errors(), 0);
 }
@@ -120,14 +98,6 @@ TEST_F(ProgramCheck, WhatBoundsALongMoveIsWhatBoundsMostOfIt) {
     const SlowPlace &last = result.time->slowest.back();
     EXPECT_EQ(last.line, 4);
     EXPECT_NE(last.limit.find("acceleration"), std::string::npos) << last.limit;
-}
-
-TEST(Abilities, ColumnOfACodeIsFoundAsProgramsHaveIt) {
-    EXPECT_EQ(column_of_code("N10 G33.1 Z1", "G33.1"), 5);
-    EXPECT_EQ(column_of_code("g33.1z1", "G33.1"), 1);
-    EXPECT_EQ(column_of_code("G 3 3 . 1", "G33.1"), 1);
-    EXPECT_EQ(column_of_code("G33.15 G033.1", "G33.1"), 8);
-    EXPECT_EQ(column_of_code("X1 (G33.1) ; G33.1", "G33.1"), 1);
 }
 
 }  // namespace

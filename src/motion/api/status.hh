@@ -131,9 +131,10 @@ enum class Reason : std::uint16_t {
     NOT_A_NUMBER,
     NO_WAY_BACK,  ///< nothing is remembered of the path
     BAD_ARC,
-    RIGID_TAPPING,  ///< the kinematics cannot
-    TAP_OFFSET,     ///< index: the axis of the tap that may have an external offset
-    TAP_ROOM,       ///< index: the axis whose soft limit is too near
+    RIGID_TAPPING,   ///< kinematics that cannot be asked before
+    TAP_OFFSET,      ///< index: the axis of the tap that may have an external offset
+    TAP_ROOM,        ///< index: the axis whose soft limit is too near
+    TAP_JOINT_ROOM,  ///< index: the joint whose soft limit is too near; -1: the kinematics reaches no farther
     ONE_WAY_SPINDLE,
     JOG_INHIBITED,
     HOMING_INHIBITED,

@@ -53,17 +53,24 @@ std::string kinematics_reason(const Answer &answer) {
 std::string tap_reason(const Answer &answer) {
     switch (answer.reason) {
     case Reason::RIGID_TAPPING:
-        return "G33.1: rigid tapping wants a machine whose joints are its axes (trivkins); tap with a "
-               "floating holder (G84, G74)";
+        return "G33.1: rigid tapping wants kinematics that can be asked before a move whether the joints can "
+               "follow (mw_kinematics_is_pure); tap with a floating holder (G84, G74)";
     case Reason::TAP_OFFSET:
         return fmt::format(
             "{} may have an external offset (OFFSET_AV_RATIO): rigid tapping along it is not possible",
             place_name(answer));
+    case Reason::TAP_JOINT_ROOM:
+        if (answer.index < 0) {
+            return "the tap begins or ends too near to where the kinematics reaches no farther: the tool "
+                   "goes "
+                   "on by up to a turn of the spindle while it turns back";
+        }
+        [[fallthrough]];
     case Reason::TAP_ROOM:
         return fmt::format(
             "the tap begins or ends too near to the soft limit of {}: the tool goes on by up to "
             "a turn of the spindle while it turns back",
-            place_name(answer));
+            answer.reason == Reason::TAP_JOINT_ROOM ? joint_name(answer.index) : place_name(answer));
     case Reason::ONE_WAY_SPINDLE:
         return "rigid tapping turns the spindle back, but its range in one direction is 0: see "
                "MAX_FORWARD_VELOCITY and MAX_REVERSE_VELOCITY";
@@ -149,6 +156,7 @@ std::string reason_text(const Answer &answer) {
     case Reason::RIGID_TAPPING:
     case Reason::TAP_OFFSET:
     case Reason::TAP_ROOM:
+    case Reason::TAP_JOINT_ROOM:
     case Reason::ONE_WAY_SPINDLE: return tap_reason(answer);
     }
     return "refused";

@@ -9,16 +9,19 @@
 namespace mw::motion {
 namespace {
 
-/// What the first `count` joints do, to come back to when the path is gone back.
-JointUse use_of(const Joints &joints, int count, double period_s) noexcept {
-    JointUse use;
-    use.count = count;
-    for (int j = 0; j < count; ++j) {
-        const auto n = static_cast<std::size_t>(j);
-        use.step[n] = joints[j].vel_cmd * period_s;
-        use.bend[n] = joints[j].acc_cmd * period_s * period_s;
+/// To come back to when the path is gone back.
+void record_way(Retracing &retracing, const geom::Pose &pose, const Joints &joints,
+                const RetraceLimits &limits) noexcept {
+    const double t = limits.period_s;
+    for (int j = 0; j < limits.joints; ++j) {
+        record_joint(retracing, j, joints[j].vel_cmd * t, joints[j].acc_cmd * t * t);
     }
-    return use;
+    record(retracing, pose, limits);
+}
+
+RetraceLimits way_limits(const FoldedLimits &limits, const AxisMap &map,
+                         const ControllerConfig &config) noexcept {
+    return {limits, map.areJointsAxes() ? 0 : config.num_led_joints(), config.period_s};
 }
 
 }  // namespace
@@ -107,8 +110,7 @@ void Controller::move_axes(const Inputs &in) noexcept {
             // External offsets keep out of what is remembered: that is worth it where it is asked for.
             const bool isWanted = holds_.isAdaptiveFeedEnabled || offsets_.axes == 0;
             if (isWanted && !isOneWay) {
-                const int count = map_.areJointsAxes() ? 0 : config_.num_led_joints();
-                record(retracing_, pose, use_of(joints_, count, config_.period_s), limits_, config_.period_s);
+                record_way(retracing_, pose, joints_, way_limits(limits_, map_, config_));
             } else {
                 retracing_.retrace.clear();
             }
@@ -182,10 +184,9 @@ geom::Pose Controller::path_pose() noexcept {
     if (path.tap.isLost) {
         stop_category_1(FaultKind::TAP_LOST, path.tap.spindle, 0);
     }
-    const RetraceInputs in{
-        executor_.snapshot().drops, holds_.isReverseWanted, holds_.isStandingWanted, power_.isStopping,
-        executor_.isAtRest(),       holds_.reverse_rate,    config_.period_s};
-    if (motion::step(retracing_, pose, in)) {
+    const RetraceInputs in{executor_.snapshot().drops, holds_.isReverseWanted, holds_.isStandingWanted,
+                           power_.isStopping,          executor_.isAtRest(),   holds_.reverse_rate};
+    if (motion::step(retracing_, pose, in, way_limits(limits_, map_, config_))) {
         executor_.set_position(pose);
     }
     return pose;

@@ -69,6 +69,12 @@ class PathPlanner {
 
     static constexpr int MAX_COMMANDS_PER_UPDATE = 1024;
 
+    /// How far a line may go on.
+    struct Room {
+        double way = traj::UNLIMITED;  ///< [machine units, degrees]
+        int axis = -1, joint = -1;     ///< whose limit it is; joint MAX_JOINTS: that of the kinematics
+    };
+
   private:
     void follow_controller() noexcept;
     void follow_drops() noexcept;
@@ -98,6 +104,8 @@ class PathPlanner {
         double at = 0;
         std::array<double, MAX_JOINTS> joints{};
     };
+    Room room_for_joints(const traj::Primitive &line, double sense, const Room &axes,
+                         std::array<double, MAX_JOINTS> joints, double turn) const noexcept;
     bool isSteady(const traj::Primitive &p, PathSample from, PathSample to) const noexcept;
     Reason check_joints(const traj::Primitive &p) noexcept;
     traj::MoveRequest request_for(const PathCommand &c, const MoveTerms &terms) const noexcept;

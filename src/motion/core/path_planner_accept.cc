@@ -42,15 +42,10 @@ MotionType type_of(const PathBody &body, const MoveTerms &terms) noexcept {
     return std::holds_alternative<Arc>(body) ? MotionType::ARC : MotionType::FEED;
 }
 
-struct Room {
-    double way = 0;  ///< [machine units, degrees]
-    int axis = -1;   ///< whose limit it is
-};
-
 /// How far a line may go on behind its end, or before its start with the sense -1, to a soft limit.
-Room room_behind(const traj::Primitive &line, double sense, const PathLimits &limits) noexcept {
+PathPlanner::Room room_behind(const traj::Primitive &line, double sense, const PathLimits &limits) noexcept {
     const geom::Pose &end = sense > 0 ? line.end : line.start;
-    Room room{traj::UNLIMITED, -1};
+    PathPlanner::Room room;
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
         const double slope = sense * line.lin[i];
         if (slope == 0) {
@@ -58,7 +53,9 @@ Room room_behind(const traj::Primitive &line, double sense, const PathLimits &li
         }
         const double limit = slope > 0 ? limits.high[i] : limits.low[i];
         const double way = (limit - end[i]) / slope;
-        room = way < room.way ? Room{way, i} : room;
+        if (way < room.way) {
+            room = {way, i, -1};
+        }
     }
     return room;
 }
@@ -226,6 +223,37 @@ Reason PathPlanner::check_joints(const traj::Primitive &p) noexcept {
     return Reason::NONE;
 }
 
+/// How much of the room beyond an end of a line joints can follow, which stand at `joints` there; `turn`: way
+/// in a turn of the spindle.
+PathPlanner::Room PathPlanner::room_for_joints(const traj::Primitive &line, double sense, const Room &axes,
+                                               std::array<double, MAX_JOINTS> joints,
+                                               double turn) const noexcept {
+    constexpr int SAMPLES = 100;
+    const geom::Pose &end = sense > 0 ? line.end : line.start;
+    Room room = axes;
+    const double most = traj::TapTuning::MOST_ROOM * turn;
+    room.way = std::min(room.way, most);
+    const traj::Primitive on = traj::make_line(end, end + line.lin * (sense * most));
+    PathSample last{0, joints};
+    for (int n = 1; n <= SAMPLES && last.at < room.way; ++n) {
+        PathSample here{on.length * n / SAMPLES, last.joints};
+        const bool isFound =
+            map_.find(traj::position_at(on, here.at), here.joints.data()) == kins::Status::OK;
+        int stopped = isFound && isSteady(on, last, here) ? -1 : MAX_JOINTS;
+        for (int j = 0; j < config_.num_joints && stopped < 0; ++j) {
+            const auto i = static_cast<std::size_t>(j);
+            const bool isOut =
+                here.joints[i] < limits_.joints.low[i] || here.joints[i] > limits_.joints.high[i];
+            stopped = isOut ? j : stopped;
+        }
+        if (stopped >= 0) {
+            return {last.at - traj::TapTuning::ROOM_MARGIN, -1, stopped};
+        }
+        last = here;
+    }
+    return room;
+}
+
 /// The joint whose lock is opened for a rapid move of its axis alone; -1: none, whatever else the body is.
 int PathPlanner::indexer_of(const PathBody &body) const noexcept {
     const auto *line = std::get_if<Line>(&body);
@@ -306,8 +334,8 @@ Reason PathPlanner::accept_tap(const PathCommand &c, const RigidTap &tap) noexce
     if (reason != Reason::NONE) {
         return reason;
     }
-    if (kinematics_.identity() == nullptr) {
-        return Reason::RIGID_TAPPING;
+    if (kinematics_.identity() == nullptr && !kinematics_.isShareable()) {
+        return Reason::RIGID_TAPPING;  // nobody can tell in time what the joints would do
     }
     const traj::Primitive in = traj::make_line(planner_.end(), tap.end);
     const bool isLine = in.length > 1e-12 * (1.0 + geom::norm(tap.end));
@@ -324,20 +352,30 @@ Reason PathPlanner::accept_tap(const PathCommand &c, const RigidTap &tap) noexce
     if ((view_.spindles_reversible & (1U << tap.terms.synch_spindle)) == 0) {
         return Reason::ONE_WAY_SPINDLE;
     }
+    const std::array<double, MAX_JOINTS> start = end_joints_;
     reason = check_reach(in);
+    const std::array<double, MAX_JOINTS> bottom = end_joints_;
+    end_joints_ = start;  // where it ends
     if (reason != Reason::NONE) {
         return reason;
     }
     MoveTerms terms = tap.terms;
     terms.mode = PathMode::EXACT_STOP;
     traj::MoveRequest request = request_for(c, terms);
-    const Room before = room_behind(in, -1, limits_);
-    const Room behind = room_behind(in, 1, limits_);
-    const Room &least = before.way < behind.way ? before : behind;
-    if (least.way < traj::TapTuning::LEAST_ROOM * terms.feed_per_revolution) {
-        refused_index_ = static_cast<std::int16_t>(least.axis);
-        return Reason::TAP_ROOM;
+    Room before = room_behind(in, -1, limits_);
+    Room behind = room_behind(in, 1, limits_);
+    const double turn = terms.feed_per_revolution;
+    if (kinematics_.identity() == nullptr) {
+        before = room_for_joints(in, -1, before, start, turn);
+        behind = room_for_joints(in, 1, behind, bottom, turn);
     }
+    const Room &least = before.way < behind.way ? before : behind;
+    if (least.way < traj::TapTuning::LEAST_ROOM * turn) {
+        const int joint = least.joint < MAX_JOINTS ? least.joint : -1;
+        refused_index_ = static_cast<std::int16_t>(least.joint >= 0 ? joint : least.axis);
+        return least.joint >= 0 ? Reason::TAP_JOINT_ROOM : Reason::TAP_ROOM;
+    }
+    request.isTapped = true;
     request.isGated = request.isPhased = request.isTap = true;
     request.tap_scale = tap.pitch_scale;
     request.room_before = before.way;

@@ -11,7 +11,7 @@ using testing::MotionRig;
 
 /// A copy on channels of its own, with drives that follow as those of the rig do. Nobody plans for it.
 struct Clone {
-    std::unique_ptr<Channels> channels = std::make_unique<Channels>();
+    std::unique_ptr<Channels> channels = std::make_unique_for_overwrite<Channels>();
     std::unique_ptr<PathLink> link;
     std::unique_ptr<Controller> controller;
     Inputs in;

@@ -48,7 +48,8 @@ const char *word_for(Reason reason) {
     case Reason::BAD_ARC: return "bad arc";
     case Reason::RIGID_TAPPING: return "not supported";
     case Reason::TAP_OFFSET: return "offsets";
-    case Reason::TAP_ROOM: return "no room";
+    case Reason::TAP_ROOM:
+    case Reason::TAP_JOINT_ROOM: return "no room";
     case Reason::ONE_WAY_SPINDLE: return "one way";
     case Reason::JOG_INHIBITED: return "inhibited";
     case Reason::HOMING_INHIBITED: return "inhibited";

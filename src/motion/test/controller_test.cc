@@ -279,6 +279,26 @@ TEST(Controller, IncrementalJogsAddUpAndStopAtTheLimit_C8) {
     EXPECT_EQ(rig.out->joint[0].motor_pos_cmd, 20.0);
 }
 
+TEST(Controller, EachOfThePinsAgainstJogsRefusesThem_C4_C9) {
+    for (bool Inputs::*pin : {&Inputs::isJogInhibited, &Inputs::isJogStopped, &Inputs::isJogStoppedNow}) {
+        for (const bool isJoint : {true, false}) {
+            MotionRig rig;
+            rig.ready(isJoint ? Mode::FREE : Mode::TELEOP);
+            rig.in.*pin = true;
+            const CommandId refused = rig.send(JogContinuous{{isJoint, 1}, 20});
+            rig.step(50);
+            EXPECT_EQ(rig.refusal(refused), Reason::JOG_INHIBITED);
+            EXPECT_EQ(rig.out->joint[1].motor_pos_cmd, 0.0);
+            rig.in.*pin = false;
+            rig.step(50);
+            EXPECT_EQ(rig.out->joint[1].motor_pos_cmd, 0.0) << "what was refused stays refused";
+            rig.send(JogContinuous{{isJoint, 1}, 20});
+            rig.step(50);
+            EXPECT_GT(rig.out->joint[1].motor_pos_cmd, 0.1);
+        }
+    }
+}
+
 TEST(Controller, OutputsWithoutAMoveComeOnAfterAMoveThatWasDropped_C4_C7) {
     MotionRig rig;
     rig.ready();

@@ -162,5 +162,46 @@ TEST(Machine, APoseIsNotTakenUpByJointsThatHaveLostTheirHomes_C14) {
     }
 }
 
+TEST(Machine, ARefusedMoveNamesTheAxisOrJointThatCannot_C5_C13) {
+    kins::CoreXy model;
+    MotionRig rig(model, 3, 100, 1000);
+    for (int j = 0; j < 3; ++j) {
+        rig.set(Parameter::JOINT_MIN_LIMIT, j, -30);
+        rig.set(Parameter::JOINT_MAX_LIMIT, j, 30);
+    }
+    rig.set(Parameter::AXIS_MIN_LIMIT, 2, -20);
+    rig.set(Parameter::AXIS_MAX_LIMIT, 2, 20);
+    const auto answer = [&](double x, double y, double z) {
+        geom::Pose end;
+        end[0] = x;
+        end[1] = y;
+        end[2] = z;
+        rig.ready(Mode::COORD);
+        const CommandId id = rig.line(end, 50);
+        EXPECT_TRUE(rig.run_until([&] { return rig.answer_to(id) != nullptr; }, 1));
+        rig.send(Abort{++rig.epoch});
+        rig.step(50);
+        return *rig.answer_to(id);
+    };
+    const Answer first = answer(20, 20, 0);  // the sum is the first motor, the difference the second
+    EXPECT_EQ(first.reason, Reason::JOINT_BEYOND_LIMIT);
+    EXPECT_EQ(first.index, 0);
+    const Answer second = answer(20, -20, 0);
+    EXPECT_EQ(second.reason, Reason::JOINT_BEYOND_LIMIT);
+    EXPECT_EQ(second.index, 1);
+    const Answer third = answer(1, 1, 25);
+    EXPECT_EQ(third.reason, Reason::BEYOND_SOFT_LIMIT);
+    EXPECT_EQ(third.index, 2);
+
+    MotionRig without_a;
+    without_a.ready(Mode::COORD);
+    geom::Pose turned;
+    turned[geom::AXIS_A] = 5;
+    const CommandId id = without_a.line(turned, 50);
+    without_a.run_until([&] { return without_a.answer_to(id) != nullptr; }, 1);
+    EXPECT_EQ(without_a.answer_to(id)->reason, Reason::NO_SUCH_AXIS);
+    EXPECT_EQ(without_a.answer_to(id)->index, geom::AXIS_A);
+}
+
 }  // namespace
 }  // namespace mw::motion

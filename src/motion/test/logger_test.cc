@@ -45,7 +45,7 @@ class LoggerTest : public testing::Test {
         return line;
     }
 
-    std::unique_ptr<Channels> channels = std::make_unique<Channels>();
+    std::unique_ptr<Channels> channels = std::make_unique_for_overwrite<Channels>();
     std::string log;
     CommandId id = 0;
     Epoch epoch = 0;

@@ -22,35 +22,44 @@ struct SpindleBench {
         double x = 0, z = 0;
         double turns = 0, speed = 0;  ///< of the rotor: the truth
         double command_rpm = 0;
+        std::array<double, MAX_JOINTS> joints{};
+        geom::Pose pose;  ///< of a machine whose joints are not axes
     };
 
-    testing::MotionRig rig{"XYZ", VELOCITY, ACCELERATION};
+    testing::MotionRig rig;
     sim::SpindlePlant plant;
+    const kins::Kinematics *model = nullptr;  ///< null: joints are X Y Z
+    geom::Pose base;                          ///< X and Z of moves and samples count from it
     std::function<double(const Sample &)> load = [](const Sample &) { return 0.0; };
     bool isDriveDead = false;  ///< the drive keeps to what it was told last
     std::vector<Sample> samples;
 
-    explicit SpindleBench(const sim::SpindleTraits &traits, bool isJerkLimited = false) : plant(traits) {
-        if (isJerkLimited) {
-            rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, 1);
-            rig.set(Parameter::TRAJ_MAX_JERK, 0, JERK);
-            for (int j = 0; j < 3; ++j) {
-                rig.set(Parameter::JOINT_MAX_JERK, j, JERK);
-            }
+    explicit SpindleBench(const sim::SpindleTraits &traits, bool isJerkLimited = false)
+        : rig("XYZ", VELOCITY, ACCELERATION), plant(traits) {
+        begin(isJerkLimited);
+    }
+    /// A machine whose joints are not axes, and stand at `start`.
+    SpindleBench(const kins::Kinematics &kinematics, const std::vector<double> &start,
+                 const sim::SpindleTraits &traits, bool isJerkLimited)
+        : rig(kinematics, static_cast<int>(start.size()), VELOCITY, ACCELERATION), plant(traits),
+          model(&kinematics), num_joints_(static_cast<int>(start.size())) {
+        for (std::size_t j = 0; j < start.size(); ++j) {
+            rig.in.joint[j].motor_pos_fb = start[j];
+            rig.set(Parameter::JOINT_HOME, static_cast<int>(j), start[j]);
+            rig.set(Parameter::JOINT_HOME_OFFSET, static_cast<int>(j), start[j]);
         }
-        jerk_ = isJerkLimited ? JERK : 1e300;
-        rig.ready();
-        rig.before_step = [this](testing::MotionRig &r) { turn(r); };
-        rig.step(20);
+        rig.step(4);
+        begin(isJerkLimited);
+        base = rig.status().carte_pos_cmd;
     }
 
-    /// Stops with the report of whatever the axes did beyond their limits since the last call.
+    /// Whatever the joints did beyond their limits.
     std::string limit_report() {
         const testing::AxisLimit limit{VELOCITY, ACCELERATION, jerk_};
-        testing::LimitChecker checker({limit, limit}, T);
+        testing::LimitChecker checker(
+            std::vector<testing::AxisLimit>(static_cast<std::size_t>(num_joints_), limit), T);
         for (const Sample &s : samples) {
-            const double axes[] = {s.x, s.z};
-            checker.sample(axes);
+            checker.sample(s.joints.data());
         }
         return checker.report();
     }
@@ -60,9 +69,9 @@ struct SpindleBench {
         rig.run_until([this] { return rig.in.spindle[0].isAtSpeed; });
     }
     CommandId rapid(double x, double z) {
-        geom::Pose end;
-        end[geom::AXIS_X] = x;
-        end[geom::AXIS_Z] = z;
+        geom::Pose end = base;
+        end[geom::AXIS_X] += x;
+        end[geom::AXIS_Z] += z;
         return rig.line(end, 0, PathMode::EXACT_STOP);
     }
     MoveTerms synched(double lead) {
@@ -82,8 +91,9 @@ struct SpindleBench {
     }
     CommandId tap(double x, double z, double pitch, double scale = 1) {
         RigidTap move;
-        move.end[geom::AXIS_X] = x;
-        move.end[geom::AXIS_Z] = z;
+        move.end = base;
+        move.end[geom::AXIS_X] += x;
+        move.end[geom::AXIS_Z] += z;
         move.pitch_scale = scale;
         move.terms = synched(pitch);
         return rig.send_path(move);
@@ -97,12 +107,43 @@ struct SpindleBench {
     }
 
   private:
+    void begin(bool isJerkLimited) {
+        if (isJerkLimited) {
+            rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, 1);
+            rig.set(Parameter::TRAJ_MAX_JERK, 0, JERK);
+            for (int j = 0; j < num_joints_; ++j) {
+                rig.set(Parameter::JOINT_MAX_JERK, j, JERK);
+            }
+        }
+        jerk_ = isJerkLimited ? JERK : 1e300;
+        rig.ready();
+        rig.before_step = [this](testing::MotionRig &r) { turn(r); };
+        rig.step(20);
+    }
+    /// By the motors' commands.
+    Sample here(testing::MotionRig &r) const {
+        Sample s;
+        for (std::size_t j = 0; j < static_cast<std::size_t>(num_joints_); ++j) {
+            s.joints[j] = r.out->joint[j].motor_pos_cmd;
+        }
+        geom::Pose pose =
+            r.status().carte_pos_cmd;  // where an inverse alone is known, iteration begins there
+        if (model != nullptr) {
+            model->forward(s.joints.data(), pose);
+        }
+        s.x = model != nullptr ? pose[geom::AXIS_X] - base[geom::AXIS_X] : s.joints[0];
+        s.z = model != nullptr ? pose[geom::AXIS_Z] - base[geom::AXIS_Z] : s.joints[2];
+        s.pose = pose;
+        s.turns = plant.turns();
+        s.speed = plant.speed();
+        s.command_rpm = r.out->spindle[0].speed_rpm;
+        return s;
+    }
     void turn(testing::MotionRig &r) {
         command_ = isDriveDead ? command_ : r.out->spindle[0].speed_rpm / 60.0;
         plant.run(command_, samples.empty() ? 0.0 : load(samples.back()), T);
         if (r.cycle > 1) {
-            const double x = r.out->joint[0].motor_pos_cmd, z = r.out->joint[2].motor_pos_cmd;
-            samples.push_back({x, z, plant.turns(), plant.speed(), r.out->spindle[0].speed_rpm});
+            samples.push_back(here(r));
         }
         // The speed as an encoder counter tells it: counts over the last eight periods.
         constexpr std::size_t WINDOW = 8;
@@ -118,10 +159,58 @@ struct SpindleBench {
         in.isAtSpeed = std::abs(rps - wanted) <= 0.02 * std::abs(wanted) + 0.05;
     }
 
+    int num_joints_ = 3;
     double jerk_ = 1e300;
     double command_ = 0;
     std::vector<double> shown_;
 };
+
+inline constexpr double PITCH = 1.25, TOP = 5, BOTTOM = -20;
+
+inline sim::SpindleTraits tap_spindle(double seconds_to_1000_rpm = 0.5) {
+    sim::SpindleTraits traits;
+    traits.ramp = 1000.0 / 60 / seconds_to_1000_rpm;
+    traits.first_turns = 0.61;
+    return traits;
+}
+
+/// What a hole was like, by the truth.
+struct Hole {
+    bool isMade = false;
+    bool isOut = false;   ///< the spindle has turned back and forward again
+    double bottom = TOP;  ///< lowest Z
+    double top = -1e9;    ///< highest Z on the way back
+    double farthest = 0;  ///< of Z from the helix, through both reversals, over the pitch
+    double back_rpm = 0;  ///< highest speed on the way back
+};
+
+/// Of the samples from `from` on, once the tool is 4 deep. `sense`: of the spindle on the way in.
+inline Hole hole_of(const std::vector<SpindleBench::Sample> &s, std::size_t from, double pitch,
+                    double sense = 1) {
+    Hole hole;
+    std::vector<double> phases;
+    std::size_t i = from;
+    while (i < s.size() && s[i].z > TOP - 4) {
+        ++i;
+    }
+    bool isBack = false;
+    for (; i < s.size() && !hole.isOut; ++i) {
+        hole.bottom = std::min(hole.bottom, s[i].z);
+        isBack = isBack || sense * s[i].speed < 0;
+        hole.isOut = isBack && sense * s[i].speed > 0;
+        hole.top = isBack ? std::max(hole.top, s[i].z) : hole.top;
+        hole.back_rpm = isBack ? std::max(hole.back_rpm, -60 * sense * s[i].speed) : hole.back_rpm;
+        if (!hole.isOut) {
+            phases.push_back(s[i].z / pitch + sense * s[i].turns);
+        }
+    }
+    std::vector<double> sorted(phases.begin(), phases.begin() + std::min<long>(200, long(phases.size())));
+    std::sort(sorted.begin(), sorted.end());
+    for (const double p : phases) {
+        hole.farthest = std::max(hole.farthest, std::abs(p - sorted[sorted.size() / 2]));
+    }
+    return hole;
+}
 
 /// Of a stretch of samples cut along Z with a lead: where its helix passes Z 0, and how far it leaves it.
 struct Helix {

@@ -12,24 +12,6 @@
 namespace mw::motion {
 namespace {
 
-constexpr double PITCH = 1.25, TOP = 5, BOTTOM = -20;
-
-sim::SpindleTraits tap_spindle(double seconds_to_1000_rpm = 0.5) {
-    sim::SpindleTraits traits;
-    traits.ramp = 1000.0 / 60 / seconds_to_1000_rpm;
-    traits.first_turns = 0.61;
-    return traits;
-}
-
-/// What a hole was like, by the truth.
-struct Hole {
-    bool isMade = false;
-    double bottom = 0;    ///< lowest Z
-    double top = 0;       ///< highest Z on the way back
-    double farthest = 0;  ///< of Z from the helix, through both reversals, over the pitch
-    double back_rpm = 0;  ///< highest speed on the way back
-};
-
 class Tapping : public ::testing::TestWithParam<bool> {
   protected:
     /// Taps from TOP to BOTTOM at X and looks at all of it. `sense`: of the spindle on the way in.
@@ -38,33 +20,10 @@ class Tapping : public ::testing::TestWithParam<bool> {
         EXPECT_TRUE(bench.finish());
         const std::size_t from = bench.samples.size();
         bench.tap(x, BOTTOM, pitch, scale);
-        Hole hole;
-        hole.isMade = bench.finish();
-        const auto &s = bench.samples;
-        std::vector<double> phases;
-        std::size_t met = from;
-        while (met < s.size() && s[met].z > TOP - 4) {
-            ++met;
-        }
-        bool isBack = false, isOut = false;
-        hole.bottom = TOP;
-        hole.top = -1e9;
-        for (std::size_t i = met; i < s.size() && !isOut; ++i) {
-            hole.bottom = std::min(hole.bottom, s[i].z);
-            isBack = isBack || sense * s[i].speed < 0;
-            isOut = isBack && sense * s[i].speed > 0;
-            hole.top = isBack ? std::max(hole.top, s[i].z) : hole.top;
-            hole.back_rpm = isBack ? std::max(hole.back_rpm, -60 * sense * s[i].speed) : hole.back_rpm;
-            if (!isOut) {
-                phases.push_back(s[i].z / pitch + sense * s[i].turns);
-            }
-        }
-        EXPECT_TRUE(isOut || !hole.isMade) << "the spindle turned back twice";
-        std::vector<double> sorted(phases.begin(), phases.begin() + std::min<long>(200, long(phases.size())));
-        std::sort(sorted.begin(), sorted.end());
-        for (const double p : phases) {
-            hole.farthest = std::max(hole.farthest, std::abs(p - sorted[sorted.size() / 2]));
-        }
+        const bool isMade = bench.finish();
+        Hole hole = hole_of(bench.samples, from, pitch, sense);
+        hole.isMade = isMade;
+        EXPECT_TRUE(hole.isOut || !isMade) << "the spindle turned back twice";
         return hole;
     }
 };

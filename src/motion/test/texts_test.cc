@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <set>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -28,6 +29,10 @@ TEST(Texts, EveryReasonAndFaultHasOneOfItsOwn_C5) {
     limit.kind = FaultKind::HARD_LIMIT;
     limit.index = 0;
     EXPECT_EQ(fault_text(limit), "joint 0 on limit switch error");
+    for (const int line : {1, 2, 1000}) {
+        limit.source.line = line;
+        EXPECT_EQ(fault_text(limit), "joint 0 on limit switch error (line " + std::to_string(line) + ")");
+    }
 }
 
 }  // namespace

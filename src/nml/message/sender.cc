@@ -17,10 +17,10 @@ using namespace msgs;
 
 template <class T>
 concept OfInterpreter =
-    OneOf<T, LinearMove, CircularMove, ProbeMove, RigidTapMove, Delay, SetTermination, SetSpindleSync, SetG5x,
-          SetG92, SetRotation, SetToolOffset, SetTrajVelocity, SetTrajAcceleration, SetMotionId,
-          OrientSpindle, WaitOriented, WaitInput, PrepareTool, LoadTool, UnloadTool, SetToolNumber,
-          StartToolChange, SetToolEntry, ClearProbe, SetSpindleSpeed, CallTaskPlugin, CallIoPlugin>;
+    OneOf<T, LinearMove, CircularMove, ProbeMove, Delay, SetTermination, SetG5x, SetG92, SetRotation,
+          SetToolOffset, SetTrajVelocity, SetTrajAcceleration, SetMotionId, OrientSpindle, WaitOriented,
+          WaitInput, PrepareTool, LoadTool, UnloadTool, SetToolNumber, StartToolChange, SetToolEntry,
+          ClearProbe, SetSpindleSpeed, CallTaskPlugin, CallIoPlugin>;
 
 template <class T>
 concept OfStart = OneOf<T, SetJointKind, SetJointUnits, SetJointMinLimit, SetJointMaxLimit, SetJointFerror,
@@ -42,7 +42,7 @@ concept OfOperator =
     OneOf<T, SetFeedOverride, SetRapidOverride, SetSpindleOverride, EnableFeedOverride, EnableSpindleOverride,
           EnableFeedHold, EnableAdaptiveFeed, SetMaxVelocity, SetTeleop, SetMotionMode, SetTeleopVector,
           EnableTraj, DisableTraj, AbortTraj, PauseTraj, StepTraj, ResumeTraj, AbortMotion, SetAnalogOutput,
-          SetDigitalOutput> ||
+          SetDigitalOutput, SetSpindleSync, RigidTapMove> ||
     OneOf<T, SpindleOn, SpindleOff, SpindleIncrease, SpindleDecrease, SpindleConstant, ReleaseBrake,
           EngageBrake, MistOn, MistOff, FloodOn, FloodOff, LubeOn, LubeOff, EstopOn, EstopOff, EstopReset,
           AbortTool, LoadToolTable, ConfirmToolChange, AbortIo>;

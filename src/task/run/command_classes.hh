@@ -19,7 +19,7 @@ enum class CommandClass : std::uint8_t {
     PAUSE,         ///< holds what runs
     RESUME,        ///< goes on after a hold
     TURN,          ///< backwards along the path, and forwards again
-    MDI,           ///< one line
+    MDI,           ///< one line, or a tap that a client sends
     JOG,           ///< moves by hand
     TELEOP,        ///< whether moves by hand are those of axes or of joints
     JOINTS,        ///< homing of joints
@@ -55,7 +55,7 @@ concept Resume = OneOf<T, ResumeProgram, ResumeTraj>;
 template <class T>
 concept Turn = OneOf<T, ReverseProgram, ForwardProgram>;
 template <class T>
-concept Line = OneOf<T, Mdi>;
+concept Line = OneOf<T, Mdi, SetSpindleSync, RigidTapMove>;
 template <class T>
 concept Jog = OneOf<T, JogContinuous, JogIncrement, JogAbsolute, SetTeleopVector>;
 template <class T>
@@ -77,11 +77,10 @@ template <class T>
 concept Release = OneOf<T, ReleaseAxes>;
 /// What an operator asks in G-code.
 template <class T>
-concept PartOfPrograms =
-    OneOf<T, LinearMove, CircularMove, ProbeMove, RigidTapMove, Delay, SetTermination, SetSpindleSync, SetG5x,
-          SetG92, SetRotation, SetToolOffset, SetTrajVelocity, SetTrajAcceleration, SetMotionId,
-          SetSpindleSpeed, OrientSpindle, WaitOriented, WaitInput, PrepareTool, LoadTool, UnloadTool,
-          SetToolNumber, StartToolChange, ReadProgram, EndProgram>;
+concept PartOfPrograms = OneOf<T, LinearMove, CircularMove, ProbeMove, Delay, SetTermination, SetG5x, SetG92,
+                               SetRotation, SetToolOffset, SetTrajVelocity, SetTrajAcceleration, SetMotionId,
+                               SetSpindleSpeed, OrientSpindle, WaitOriented, WaitInput, PrepareTool, LoadTool,
+                               UnloadTool, SetToolNumber, StartToolChange, ReadProgram, EndProgram>;
 /// What the INI file says.
 template <class T>
 concept PartOfConfiguration =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Lines of MDI that wait behind the one that runs ([TASK]MDI_QUEUED_COMMANDS).
+// Lines of MDI, and taps that clients send, that wait behind the one that runs ([TASK]MDI_QUEUED_COMMANDS).
 #pragma once
 
 #include <deque>
@@ -19,6 +19,7 @@ class MdiQueue {
     struct Line {
         mailbox::Serial command = 0;
         std::string text;
+        std::optional<RigidTapMove> tap;  ///< instead of a text
     };
     explicit MdiQueue(int most) : most_(most) {}
 

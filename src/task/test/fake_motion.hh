@@ -43,6 +43,7 @@ class FakeMotion {
     motion::Reason setting_refusal = motion::Reason::NONE;
     motion::JogContinuous last_jog;
     motion::CommandBody last;  ///< of all immediate ones
+    motion::RigidTap last_tap;
     double corner_scale = -1;  ///< of the last move
     double tolerance = -1;     ///< the same
 
@@ -106,6 +107,10 @@ class FakeMotion {
                 tolerance = line->terms.tolerance;
                 status.carte_pos_cmd = line->end;
                 log.push_back("line " + std::to_string(static_cast<int>(line->end.x())));
+            }
+            if (const auto *tap = std::get_if<motion::RigidTap>(&command.body); !isStale && tap != nullptr) {
+                last_tap = *tap;
+                log.push_back("tap " + std::to_string(static_cast<int>(tap->end.z())));
             }
             status.last_path_id = isStale ? status.last_path_id : command.id;
             channels_.planner_answers.push(answer);

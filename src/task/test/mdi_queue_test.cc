@@ -107,5 +107,59 @@ TEST_F(MdiQueueTest, TheStatusTellsWhatTaskWaitsForInTheWordsOfOlderClients_D1) 
     EXPECT_EQ(task.status().task.exec_state, msgs::ExecState::DONE);
 }
 
+/// A tap from a client: the interpreter sends the same to motion for G33.1.
+TEST_F(MdiQueueTest, ATapOfAClientIsThatOfG33_1_C4) {
+    geom::Pose end = task.status().trajectory.position_cmd;
+    end[geom::AXIS_Z] -= 10;
+    EXPECT_EQ(ask(RigidTapMove{end, 5, 1.5}), Progress::REFUSED);
+    EXPECT_NE(reason(request).find("SetSpindleSync"), std::string::npos) << reason(request);
+    ASSERT_EQ(ask(SetSpindleSync{0, 1.25, true}), Progress::DONE);
+    EXPECT_EQ(ask(RigidTapMove{end, 5, 1.5}), Progress::REFUSED) << "the speed alone";
+    EXPECT_EQ(ask(SetSpindleSync{5, 1.25, false}), Progress::REFUSED) << "there is one spindle";
+    ASSERT_EQ(ask(SetSpindleSync{0, 1.25, false}), Progress::DONE);
+    EXPECT_EQ(ask(RigidTapMove{end, 5, 1.5}), Progress::REFUSED);
+    EXPECT_EQ(reason(request), "Spindle not turning in g33.1");
+    motion.status.spindle[0].speed_cmd_rpm = 500;
+    cycles(2);
+    EXPECT_EQ(ask(RigidTapMove{end, 5, 1.5}), Progress::DONE) << reason(request);
+    EXPECT_EQ(joined(), "tap -10");
+    const motion::RigidTap sent = motion.last_tap;
+    EXPECT_EQ(sent.end.z(), end.z());
+    EXPECT_EQ(sent.pitch_scale, 1.5);
+    EXPECT_EQ(sent.terms.feed_per_revolution, 1.25);
+    EXPECT_TRUE(sent.terms.isThread());
+    EXPECT_EQ(ask(Mdi{"G21 M3 S500 G33.1 Z-10 K1.25 I1.5"}), Progress::DONE) << reason(request);
+    EXPECT_EQ(motion.last_tap.end, sent.end);
+    EXPECT_EQ(motion.last_tap.pitch_scale, sent.pitch_scale);
+    EXPECT_EQ(motion.last_tap.terms.feed_per_revolution, sent.terms.feed_per_revolution);
+    EXPECT_EQ(motion.last_tap.terms.isVelocitySynched, sent.terms.isVelocitySynched);
+}
+
+TEST_F(MdiQueueTest, ATapOfAClientWaitsForItsTurnAndWantsMdiModeAndItsPitchAgainAfterAnAbort_C4) {
+    motion.status.spindle[0].speed_cmd_rpm = 500;
+    geom::Pose end = task.status().trajectory.position_cmd;
+    end[geom::AXIS_Z] -= 10;
+    ASSERT_EQ(ask(SetSpindleSync{0, 1.25, false}), Progress::DONE);
+    motion.isHolding = true;
+    const auto line = post(Mdi{"G21 F600 G1 X3"});
+    cycles(3);
+    const auto tap = post(RigidTapMove{end, 5, 1});
+    cycles(3);
+    EXPECT_EQ(ask(SetSpindleSync{0, 2, false}), Progress::REFUSED) << "that of the tap that waits stays";
+    motion.isHolding = false;
+    cycles(60);
+    EXPECT_EQ(progress(line), Progress::DONE);
+    EXPECT_EQ(progress(tap), Progress::DONE) << reason(tap);
+    EXPECT_EQ(joined(), "line 3, tap -10");
+    ASSERT_EQ(ask(AbortAll{}), Progress::DONE);
+    motion.status.spindle[0].speed_cmd_rpm = 500;
+    cycles(20);
+    EXPECT_EQ(ask(RigidTapMove{end, 5, 1}), Progress::REFUSED);
+    ASSERT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE);
+    EXPECT_EQ(ask(SetSpindleSync{0, 1.25, false}), Progress::REFUSED);
+    EXPECT_EQ(ask(RigidTapMove{end, 5, 1}), Progress::REFUSED);
+    EXPECT_EQ(reason(request), "Must be in MDI mode to issue MDI command");
+}
+
 }  // namespace
 }  // namespace mw::task

@@ -13,7 +13,7 @@ namespace {
 /// In another process the servo thread answers within its cycle and publishes its snapshot at the end of it:
 /// task may see the answer with the snapshot of before.
 TEST(MotionLink, AnAnswerCountsFromASnapshotThatKnowsOfIt_C10) {
-    auto channels = std::make_unique<motion::Channels>();
+    auto channels = std::make_unique_for_overwrite<motion::Channels>();
     motion::Status status;
     status.cycle = 10;
     channels->status.write(status);
@@ -37,7 +37,7 @@ TEST(MotionLink, AnAnswerCountsFromASnapshotThatKnowsOfIt_C10) {
 }
 
 TEST(MotionLink, ASnapshotAloneIsNoAnswer) {
-    auto channels = std::make_unique<motion::Channels>();
+    auto channels = std::make_unique_for_overwrite<motion::Channels>();
     MotionLink link(*channels);
     const motion::CommandId first = link.send(motion::Enable{}), second = link.send(motion::Disable{});
     motion::Status status;
@@ -79,7 +79,7 @@ std::vector<motion::LoadCompensation> table_of(int joint, int count) {
 }
 
 TEST(MotionLink, ALongTableLeavesRoomForACommandThatComesLater_C11) {
-    auto channels = std::make_unique<motion::Channels>();
+    auto channels = std::make_unique_for_overwrite<motion::Channels>();
     MotionLink link(*channels);
     motion::Status status;
     link.send_table(table_of(0, 10000));
@@ -98,7 +98,7 @@ TEST(MotionLink, ALongTableLeavesRoomForACommandThatComesLater_C11) {
 }
 
 TEST(MotionLink, ATableThatIsRefusedIsToldOnceAndTheRestStaysHere_C11) {
-    auto channels = std::make_unique<motion::Channels>();
+    auto channels = std::make_unique_for_overwrite<motion::Channels>();
     MotionLink link(*channels);
     motion::Status status;
     link.send_table(table_of(0, 10000));

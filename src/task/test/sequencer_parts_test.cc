@@ -69,7 +69,7 @@ class ProgramSpindlesTest : public testing::Test {
         return on != nullptr ? *on : motion::SpindleOn{};
     }
 
-    std::unique_ptr<motion::Channels> channels = std::make_unique<motion::Channels>();
+    std::unique_ptr<motion::Channels> channels = std::make_unique_for_overwrite<motion::Channels>();
     MotionLink link{*channels};
     ProgramSpindles spindles;
 };

@@ -79,7 +79,7 @@ class SequencerTest : public testing::Test {
         return e;
     }
 
-    std::unique_ptr<motion::Channels> channels = std::make_unique<motion::Channels>();
+    std::unique_ptr<motion::Channels> channels = std::make_unique_for_overwrite<motion::Channels>();
     motion::Status status{};
     MotionLink link{*channels};
     ItemQueue queue;

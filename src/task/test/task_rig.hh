@@ -46,9 +46,9 @@ class LoopedIo final : public IoPort {
 class TaskTest : public testing::Test {
   protected:
     explicit TaskTest(const Settings &settings = {}, journal::Writer *journal = nullptr)
-        : channels(std::make_unique<motion::Channels>()), motion(*channels), folder(made_folder()),
-          task({*channels, io, tools, parameters, mailbox.segment(), journal},
-               settings_for(folder, settings)) {
+        : channels(std::make_unique_for_overwrite<motion::Channels>()), motion(*channels),
+          folder(made_folder()), task({*channels, io, tools, parameters, mailbox.segment(), journal},
+                                      settings_for(folder, settings)) {
         EXPECT_TRUE(task.start().has_value());
         EXPECT_EQ(ask(SetState{State::ESTOP_RESET}), Progress::DONE);
         EXPECT_EQ(ask(SetState{State::ON}), Progress::DONE);

@@ -54,9 +54,7 @@ bool Executor::take_pass(const Commit &commit) noexcept {
     state_.v = 0;
     const Piece &piece = store_.piece(state_.piece);
     if (commit.pass.isTap) {
-        TapTerms terms = commit.pass.tap;
-        terms.acceleration = commit.pass.share * piece.acceleration.at(0);
-        tap_.begin(terms, reading(), 0.5 * static_cast<double>(state_.filter + 1) * period_);
+        tap_.begin(commit.pass.tap, reading(), 0.5 * static_cast<double>(state_.filter + 1) * period_);
         return true;
     }
     const Turned spindle = turned();

@@ -32,22 +32,29 @@ void Retrace::clear() noexcept {
     isAway_ = false;
 }
 
-void Retrace::record(const geom::Pose &pose, const Use &use) noexcept {
-    const bool isSame = count_ > 0 && pose == sample(0);
+bool Retrace::record(const geom::Pose &pose) noexcept {
+    const bool isSame = count_ > 0 && pose == samples_[(count_ - 1) % CAPACITY];
     standing_ = isSame ? standing_ + 1 : 0;
     if (standing_ > STANDING) {
-        return;
+        return false;
     }
     const std::uint64_t slot = count_ % CAPACITY;
-    Use &block = blocks_[slot / BLOCK];
     if (slot % BLOCK == 0) {
-        block = {};
+        blocks_[slot / BLOCK] = {};
     }
+    samples_[slot] = pose;
+    ++count_;
+    return count_ % BLOCK == 0;
+}
+
+void Retrace::include(const Use &use) noexcept {
+    if (count_ == 0) {
+        return;
+    }
+    Use &block = blocks_[(count_ - 1) % CAPACITY / BLOCK];
     block.v_over_a = std::max(block.v_over_a, use.v_over_a);
     block.v_over_j = std::max(block.v_over_j, use.v_over_j);
     block.a_over_j = std::max(block.a_over_j, use.a_over_j);
-    samples_[slot] = pose;
-    ++count_;
 }
 
 /// Sample `back` before the newest; beyond what there is, the outermost.

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/raw_array.hh"
 #include "geom/pose.hh"
 #include "traj/exec/free_planner.hh"
 
@@ -26,8 +27,10 @@ class Retrace {
         double a_over_j = 0;  ///< acceleration over the limit of jerk [s]
     };
 
-    /// A sample of the path itself; ones that stand are kept only as far as needed.
-    void record(const geom::Pose &pose, const Use &use) noexcept;
+    /// A sample of the path itself; ones that stand are kept only as far as needed. True when it is time to
+    /// say by include() what this one and those since the last time use.
+    bool record(const geom::Pose &pose) noexcept;
+    void include(const Use &use) noexcept;
     void clear() noexcept;
     bool isEmpty() const noexcept { return count_ == 0; }
     /// There is something to go back along.
@@ -50,7 +53,7 @@ class Retrace {
     Use most_between(std::int64_t newest, std::int64_t oldest) const noexcept;
     void stop(double dt) noexcept;
 
-    std::array<geom::Pose, CAPACITY> samples_{};
+    RawArray<geom::Pose, CAPACITY> samples_;
     std::array<Use, CAPACITY / BLOCK> blocks_{};
     std::uint64_t count_ = 0;  ///< recorded since clear()
     std::uint64_t standing_ = 0;

@@ -40,9 +40,9 @@ struct Conditions {
     SpeedChooser *chooser = nullptr;  ///< null: as fast as all that holds allows
 
     /// Driven by the executor, locked to the angle of a spindle. Machines whose joints are not axes drive
-    /// threads by time.
+    /// threads by time, but not taps.
     bool isLocked(const MoveRequest &request) const noexcept {
-        return !workspace.isMapped() && request.isLocked;
+        return request.isLocked && (request.isTapped || !workspace.isMapped());
     }
     /// Plans are tried out before they are committed.
     bool isTried() const noexcept { return limits.isFiltered() || workspace.isMapped(); }

@@ -32,7 +32,8 @@ struct MoveRequest {
     /// In to the end of this move with the spindle's angle, and out again along the next one, which is the
     /// way back to its start.
     bool isTap = false;
-    double tap_scale = 1;  ///< speed of the spindle on the way back over that on the way in
+    bool isTapped = false;  ///< this move, or the way back
+    double tap_scale = 1;   ///< speed of the spindle on the way back over that on the way in
     double room_before = 0, room_behind = 0;  ///< that the line has before its start and behind its end
 };
 

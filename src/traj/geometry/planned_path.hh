@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/raw_array.hh"
 #include "traj/geometry/move_request.hh"
 
 namespace mw::traj {
@@ -82,8 +83,8 @@ class PlannedPath {
 
   private:
     PathStore &store_;
-    std::array<PlannedMove, PRIMITIVE_CAPACITY> moves_{};
-    std::array<PlannedPiece, PIECE_CAPACITY> pieces_{};
+    RawArray<PlannedMove, PRIMITIVE_CAPACITY> moves_;
+    RawArray<PlannedPiece, PIECE_CAPACITY> pieces_;
     Sequence first_move_ = 1, last_move_ = 0;
     Sequence first_piece_ = 1, last_piece_ = 0;
     Sequence oldest_piece_ = 1;

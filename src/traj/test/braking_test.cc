@@ -65,7 +65,7 @@ class Curves {
         }
     }
 
-    std::unique_ptr<PathStore> store = std::make_unique<PathStore>();
+    std::unique_ptr<PathStore> store = std::make_unique_for_overwrite<PathStore>();
     Piece piece;
     Conditions conditions{1e-3};
 

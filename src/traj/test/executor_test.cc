@@ -183,7 +183,7 @@ TEST(Executor, CommandsTheMeanOfTheLeader_C13) {
 TEST(ArcMean, CommandsTheMeanPlaceOnTheArcUntilTheMeanHasLeftIt_C13) {
     constexpr std::uint64_t FILTER = 10;
     constexpr double RADIUS = 5;
-    auto store = std::make_unique<PathStore>();
+    auto store = std::make_unique_for_overwrite<PathStore>();
     Pose normal;
     normal[2] = 1;
     ASSERT_EQ(make_arc(Pose{}, at(0, 2 * RADIUS), {at(0, RADIUS), normal, std::numbers::pi, false},

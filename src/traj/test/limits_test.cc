@@ -122,7 +122,7 @@ TEST(LimitOf, AWishIsTheHighestSpeed_C1) {
 
 TEST(LimitOfBlend, KeepsEveryAxisAllAlongTheBlend_C2) {
     Stretches make(2);
-    auto store = std::make_unique<PathStore>();
+    auto store = std::make_unique_for_overwrite<PathStore>();
     int used = 0;
     for (int n = 0; n < 400; ++n) {
         store->primitive(1) = n % 3 == 0 ? make.arc(make.place(5), 4) : make.line(make.place(5), 6);
@@ -145,7 +145,7 @@ TEST(LimitOfBlend, KeepsEveryAxisAllAlongTheBlend_C2) {
 
 TEST(BlendForTolerance, StaysWithinItAndTakesAllOfItBetweenLines_C2) {
     Stretches make(3);
-    auto store = std::make_unique<PathStore>();
+    auto store = std::make_unique_for_overwrite<PathStore>();
     for (int n = 0; n < 300; ++n) {
         const Primitive a = make.line(make.place(5), 50);
         const Primitive b = make.line(a.end, 50);
@@ -257,7 +257,7 @@ TEST(LimitWithJoints, KeepsTheJointsWhereTheAxesStandStill_C13) {
     workspace.joints.count = 3;
     workspace.joints.velocity.fill(100);
     workspace.joints.acceleration.fill(1000);
-    auto store = std::make_unique<PathStore>();
+    auto store = std::make_unique_for_overwrite<PathStore>();
     Pose from = at(200);
     Pose to = from;
     to[geom::AXIS_C] = 5;

@@ -48,7 +48,7 @@ inline MoveRequest asking(double feed, geom::PathMode join = geom::PathMode::BLE
 
 /// A path and what holds for it, without a planner.
 struct Parts {
-    std::unique_ptr<PathStore> store = std::make_unique<PathStore>();
+    std::unique_ptr<PathStore> store = std::make_unique_for_overwrite<PathStore>();
     std::unique_ptr<PlannedPath> path = std::make_unique<PlannedPath>(*store);
     Conditions conditions{PERIOD};
 

@@ -16,7 +16,7 @@ namespace mw::traj::test {
 
 struct Rig {
     static constexpr double T = 1e-3;
-    std::unique_ptr<PathStore> store = std::make_unique<PathStore>();
+    std::unique_ptr<PathStore> store = std::make_unique_for_overwrite<PathStore>();
     Executor executor{*store, T};
     Planner planner;
     std::uint64_t cycle = 0;

@@ -266,7 +266,7 @@ TEST(Predict, IsWhereTheExecutorWillBe_C1) {
 }
 
 TEST(Commitments, APlanIsPendingUntilItsCycleAndVoidOnceTheExecutorHasBraked_C1) {
-    auto store = std::make_unique<PathStore>();
+    auto store = std::make_unique_for_overwrite<PathStore>();
     Commitments made;
     Snapshot now;
     made.begin(now, 1);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "traj/geometry/stretch.hh"
+#include "traj/timing/tap_plan.hh"
 #include "traj/tuning.hh"
 
 namespace mw::traj {
@@ -24,49 +25,6 @@ double turn_way(const PlannedPath &path, Sequence piece) noexcept {
     }
     const double part = (p.offset + 0.5 * p.length) / (2.0 * p.blend_d);
     return 1.0 / ((1.0 - part) / way(p.move) + part / way(p.move + 1));
-}
-
-/// Part of the acceleration that a tap or a short pass may use: with jerk limits one change of it may come
-/// within the mean of another.
-double tap_share(const PathLimits &limits) noexcept {
-    return limits.isFiltered() ? PassTuning::SHORT_SHARE : PassTuning::FULL;
-}
-
-double tap_ramp(const std::array<double, 2> &ramp, double rps) noexcept {
-    return rps < 0 ? ramp[1] : ramp[0];
-}
-
-/// How far the mean of a tool is off the helix [turns] while a spindle of this ramp turns back, where
-/// following it takes the part `use` of the tool's acceleration: the change is seen late, and made good with
-/// what is left.
-double off_helix(double ramp, double use, double mean_s) noexcept {
-    const double late_s = TapTuning::LATE_MEANS * mean_s;
-    return ramp * (TapTuning::LATE_S2 + 0.5 * late_s * late_s * use / (1.0 - use));
-}
-
-/// The way in and the way back, without regard to stops in between.
-void fill_tap(const PathView &view, Pass &pass, double rps) noexcept {
-    const PlannedPath &path = view.path;
-    const Sequence in = path.move_of(pass.first);
-    const MoveRequest &r = path.move(in).request;
-    pass.isTap = true;
-    pass.share = tap_share(view.conditions.limits);
-    pass.trim = pass.share;
-    while (pass.last < path.last_piece() && path.move_of(pass.last + 1) <= in + 1) {
-        ++pass.last;
-    }
-    TapTerms &tap = pass.tap;
-    tap.depth = path.primitive(in).length;
-    tap.per_turn = r.feed_per_revolution * r.tag.feed_ratio;
-    tap.back_scale = r.tap_scale;
-    tap.velocity = path.plan(pass.first).v_limit;
-    tap.low = -r.room_before;
-    tap.high = tap.depth + r.room_behind;
-    const double ramp = tap_ramp(view.conditions.ramps[static_cast<std::size_t>(r.spindle)], rps);
-    if (ramp > 0) {
-        const double turns = TapTuning::MORE_ROOM + rps * rps / ramp;
-        tap.high = std::min(tap.high, tap.depth + turns * tap.per_turn);
-    }
 }
 
 }  // namespace
@@ -93,7 +51,14 @@ Pass make_pass(const PathView &view, Sequence first) noexcept {
     pass.share = PassTuning::FULL;
     pass.trim = PassTuning::FULL;
     if (r.isTap) {
-        fill_tap(view, pass, rps);
+        pass.isTap = true;
+        pass.share = tap_share(limits);
+        pass.trim = pass.share;
+        pass.tap = tap_terms(view, first, rps);
+        const Sequence in = path.move_of(first);
+        while (pass.last < path.last_piece() && path.move_of(pass.last + 1) <= in + 1) {
+            ++pass.last;
+        }
         return pass;
     }
     if (!limits.isFiltered()) {
@@ -131,44 +96,6 @@ void fill_pass(PlannedPath &path, const PathLimits &limits, const Pass &pass) no
         const double v_before = k > pass.first ? path.plan(k - 1).v_limit : 0.0;
         out2 = std::min(p.v2_in, v_before * v_before);
     }
-}
-
-TapVerdict check_tap(const PathView &view, Sequence move) noexcept {
-    const PlannedPath &path = view.path;
-    const MoveRequest &r = path.move(move).request;
-    const auto n = static_cast<std::size_t>(r.spindle);
-    const double rps = view.conditions.scales.spindle_rps[n];
-    const double ahead = std::abs(rps);
-    const std::array<double, 2> &ramp = view.conditions.ramps[n];
-    const double per_turn = r.feed_per_revolution * r.tag.feed_ratio;
-    const double load = pass_load(view, move) * std::max(1.0, r.tap_scale);
-    if (load > 1.0 + PassTuning::LOAD_ROUNDING) {
-        return {TapObstacle::TOO_FAST, load};
-    }
-    const Limits &limits = view.conditions.limits.fitted();
-    const double a =
-        tap_share(view.conditions.limits) *
-        limit_of(path.primitive(move), 0, path.primitive(move).length, limits, UNLIMITED).a.at(0);
-    const double abruptness = per_turn * std::max(ramp[0], ramp[1]) / (TapTuning::MEETING_SHARE * a);
-    if (abruptness > 1.0) {
-        return {TapObstacle::TOO_ABRUPT, abruptness};
-    }
-    const PathLimits &path_limits = view.conditions.limits;
-    if (path_limits.isFiltered()) {
-        const double use = TapTuning::MEETING_SHARE * abruptness;
-        const double off = off_helix(std::max(ramp[0], ramp[1]), use, path_limits.filter_s());
-        if (off > TapTuning::MOST_OFF) {
-            return {TapObstacle::TOO_SUDDEN, off};
-        }
-    }
-    const double turn_back = tap_ramp(ramp, rps);
-    const double run_in = 0.5 * std::pow(per_turn * ahead, 2) / (TapTuning::MEETING_SHARE * a);
-    const double overrun = turn_back > 0 ? 0.5 * ahead * ahead / turn_back * per_turn : 0.0;
-    const double depth = path.primitive(move).length;
-    if (run_in + overrun > depth) {
-        return {TapObstacle::TOO_SHALLOW, (run_in + overrun) / depth};
-    }
-    return {};
 }
 
 double pass_load(const PathView &view, Sequence move) noexcept {

@@ -16,20 +16,6 @@ Sequence pass_end(const PathView &view, Sequence first) noexcept;
 /// The pass that begins with `first`, at the present speed of its spindle.
 Pass make_pass(const PathView &view, Sequence first) noexcept;
 
-/// Why a tap that begins with `move` cannot be made at the present speed of its spindle.
-enum class TapObstacle : std::uint8_t {
-    NONE,
-    TOO_FAST,     ///< value: the speed that is needed over what the machine, or the operator, allows
-    TOO_ABRUPT,   ///< value: the acceleration with which the spindle turns back over what the machine allows
-    TOO_SUDDEN,   ///< value: how far the mean would be off the helix as the spindle turns back [turns]
-    TOO_SHALLOW,  ///< value: the depth that gaining speed and turning back take over what there is
-};
-struct TapVerdict {
-    TapObstacle obstacle = TapObstacle::NONE;
-    double value = 0;
-};
-TapVerdict check_tap(const PathView &view, Sequence move) noexcept;
-
 /// Writes what the executor needs to know of each piece of the pass.
 void fill_pass(PlannedPath &path, const PathLimits &limits, const Pass &pass) noexcept;
 

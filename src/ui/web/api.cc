@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -173,6 +174,8 @@ void Api::answer(const Request &request, Reply reply) {
         reply(document(machine_document(setup_.facts)));
     } else if (path == "/api/path") {
         reply(answer_path(request));
+    } else if (path == "/api/times") {
+        reply(answer_times(request));
     } else if (path == "/api/tools") {
         reply(answer_tools());
     } else if (path == "/metrics") {
@@ -216,16 +219,9 @@ void Api::write_file(const Request &request, const std::string &name, Reply repl
                       std::move(reply));
 }
 
-Response Api::answer_path(const Request &request) {
-    const auto name = request.query.find("file");
-    if (name == request.query.end()) {
-        return error_response(400, "the path of which program? /api/path?file=NAME");
-    }
-    const auto path = files_.path_of(name->second);
-    if (!path.has_value()) {
-        return error_response(400, path.error().str());
-    }
-    auto pieces = setup_.read_path(*path);
+namespace {
+
+Response stream(Result<std::shared_ptr<PieceQueue>> pieces) {
     if (!pieces.has_value()) {
         return error_response(429, pieces.error().str());
     }
@@ -233,6 +229,38 @@ Response Api::answer_path(const Request &request) {
     response.type = "application/octet-stream";
     response.pieces = std::move(*pieces);
     return response;
+}
+
+/// A number of the query from 0 on; nothing where it is another thing.
+std::optional<double> factor(const Request &request, const char *name, double preset) {
+    const auto found = request.query.find(name);
+    const auto value = found == request.query.end() ? std::optional(preset) : parse_double(found->second);
+    return value.has_value() && std::isfinite(*value) && *value >= 0 ? value : std::nullopt;
+}
+
+}  // namespace
+
+Response Api::answer_path(const Request &request) {
+    const auto name = request.query.find("file");
+    if (name == request.query.end()) {
+        return error_response(400, "the path of which program? /api/path?file=NAME");
+    }
+    const auto path = files_.path_of(name->second);
+    return path.has_value() ? stream(setup_.read_path(*path)) : error_response(400, path.error().str());
+}
+
+Response Api::answer_times(const Request &request) {
+    const auto name = request.query.find("file");
+    const auto feed = factor(request, "feed", 1), rapid = factor(request, "rapid", 1),
+               most = factor(request, "max_velocity", 0);
+    constexpr double LEAST = 0.001;  // an override of nothing takes for ever
+    if (name == request.query.end() || !feed || !rapid || !most || *feed < LEAST || *rapid < LEAST) {
+        return error_response(
+            400, "/api/times?file=NAME&feed=1&rapid=1&max_velocity=0: overrides of at least 0.001");
+    }
+    const auto path = files_.path_of(name->second);
+    return path.has_value() ? stream(setup_.read_times(*path, {*feed, *rapid, *most}))
+                            : error_response(400, path.error().str());
 }
 
 Response Api::answer_tools() {

@@ -12,6 +12,7 @@
 #include "ui/web/hal_desk.hh"
 #include "ui/web/keepsakes.hh"
 #include "ui/web/screens.hh"
+#include "ui/web/time_chunks.hh"
 
 namespace mw::ui::web {
 
@@ -22,6 +23,9 @@ struct ApiSetup {
     /// Begins to read a program in a thread of its own; an error when too many are read. The path is one of
     /// facts.program_prefix.
     std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path)> read_path;
+    /// The same for its times, at the overrides of the second.
+    std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path, const TimeOverrides &)>
+        read_times{};
     HalDesk::Connect connect_hal;
     std::vector<DialogFacts> dialogs{};
     HalDesk::Begin begin_hal{};
@@ -65,6 +69,7 @@ class Api final : public Application {
     void answer_hal(const Request &request, Reply reply);
     void look_at_hal();
     Response answer_path(const Request &request);
+    Response answer_times(const Request &request);
     Response answer_tools();
     Response metrics() const;
 

@@ -193,6 +193,20 @@ std::vector<std::string> settable_names(std::string_view panel) {
     return names;
 }
 
+namespace {
+
+const char *kind_name(MachineKind kind) {
+    switch (kind) {
+    case MachineKind::MILL: break;
+    case MachineKind::LATHE: return "lathe";
+    case MachineKind::BACK_LATHE: return "back_lathe";
+    case MachineKind::FOAM: return "foam";
+    }
+    return "mill";
+}
+
+}  // namespace
+
 std::string machine_document(const MachineFacts &facts) {
     Json increments = Json::array();
     for (const Increment &increment : facts.increments) {
@@ -217,6 +231,10 @@ std::string machine_document(const MachineFacts &facts) {
                         {"ini", facts.ini},
                         {"instance", facts.instance},
                         {"axes", facts.axes},
+                        {"kind", kind_name(facts.look.kind)},
+                        {"geometry", facts.look.geometry},
+                        {"foam_z", facts.look.foam_z},
+                        {"foam_w", facts.look.foam_w},
                         {"joints", facts.joints},
                         {"joint_kinds", facts.joint_kinds},
                         {"is_homing_forced", facts.isHomingForced},
@@ -263,6 +281,23 @@ std::string offsets_document(std::span<const std::array<double, 10>> systems) {
                         {"rotation_deg", system.back()}});
     }
     return one("systems", std::move(list));
+}
+
+std::string time_sum_document(const TimeSum &sum) {
+    Json slowest = Json::array();
+    for (const SlowSpot &spot : sum.slowest) {
+        slowest.push_back({{"file", spot.file},
+                           {"is_in_program", spot.isInProgram},
+                           {"line", spot.line},
+                           {"lost_s", spot.lost_s},
+                           {"reason", spot.reason}});
+    }
+    return text_of(Json{{"total_s", sum.total_s},
+                        {"cutting_s", sum.cutting_s},
+                        {"rapid_s", sum.rapid_s},
+                        {"dwell_s", sum.dwell_s},
+                        {"is_complete", sum.isComplete},
+                        {"slowest", std::move(slowest)}});
 }
 
 std::string files_document(std::span<const FileFacts> files) {

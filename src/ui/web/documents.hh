@@ -15,6 +15,7 @@
 #include "client/client.hh"
 #include "ui/web/exchange.hh"
 #include "ui/web/machine_facts.hh"
+#include "ui/web/time_chunks.hh"
 
 namespace mw::ui::web {
 
@@ -35,6 +36,8 @@ std::optional<std::vector<std::string>> read_lines(std::string_view text, std::s
 bool isObject(std::string_view json);
 /// Nine offsets and the rotation [deg] of each coordinate system.
 std::string offsets_document(std::span<const std::array<double, 10>> systems);
+
+std::string time_sum_document(const TimeSum &sum);
 
 struct FileFacts {
     std::string name;

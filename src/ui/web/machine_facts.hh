@@ -35,11 +35,26 @@ struct ScreenFiles {
     std::string parameters;  ///< of the interpreter
 };
 
+/// How a machine is looked at.
+enum class MachineKind : std::uint8_t {
+    MILL,
+    LATHE,       ///< Z to the right, the tool in front of the part: X downwards
+    BACK_LATHE,  ///< the tool behind it: X upwards
+    FOAM         ///< a wire through two planes
+};
+
+struct MachineLook {
+    MachineKind kind = MachineKind::MILL;
+    std::string geometry;           ///< as PathGeometry takes it
+    double foam_z = 0, foam_w = 0;  ///< heights of the planes of a foam cutter [machine units]
+};
+
 /// Lengths in machine units, angles in degrees, speeds in those per second.
 struct MachineFacts {
     std::string name, ini, instance;
     std::string title;  ///< of the page
     std::string axes;   ///< "XYZA"
+    MachineLook look;
     int joints = 0;
     std::vector<std::string> joint_kinds;  ///< of each joint, "LINEAR" or "ANGULAR"
     bool isHomingForced = true;            ///< programs and MDI want homed joints

@@ -5,6 +5,6 @@ import First from './First.svelte';
 
 const target = document.getElementById('app');
 if (target === null) {
-  throw new Error('first.html has no element "app"');
+  throw new Error('the page has no element "app"');
 }
 mount(First, { target });

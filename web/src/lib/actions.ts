@@ -71,6 +71,13 @@ function isPrepared(isJoint: boolean): boolean {
   return isManual && status?.trajectory.mode === wanted;
 }
 
+const onJogsEnd: (() => void)[] = [];
+
+/** `act` is called when a jog has ended though nobody let go. */
+export function whenJogsEnd(act: () => void): void {
+  onJogsEnd.push(act);
+}
+
 export const jogger = new Jogger({
   post: sendQuietly,
   isPrepared,
@@ -81,7 +88,10 @@ export const jogger = new Jogger({
   },
   every: (act, ms) => setInterval(act, ms),
   cancel: (timer) => clearInterval(timer as number),
-  ended: (reason) => tellLocally(t('jog.ended', { reason })),
+  ended(reason) {
+    tellLocally(t('jog.ended', { reason }));
+    onJogsEnd.forEach((act) => act());
+  },
 });
 
 whenLost(() => jogger.releaseAll());
@@ -178,6 +188,25 @@ export function setToolEntry(tool: Tool): Promise<Outcome> {
     backangle_deg: tool.backangle_deg,
     orientation: tool.orientation,
   });
+}
+
+/** Pocket 0: one that is free. */
+export function addTool(tool: Tool): Promise<Outcome> {
+  return send({
+    message: 'AddTool',
+    toolno: tool.toolno,
+    pocket: tool.pocketno,
+    offset: [...tool.offset],
+    diameter: tool.diameter,
+    frontangle_deg: tool.frontangle_deg,
+    backangle_deg: tool.backangle_deg,
+    orientation: tool.orientation,
+    comment: tool.comment,
+  });
+}
+
+export function removeTool(toolno: number): Promise<Outcome> {
+  return send({ message: 'RemoveTool', toolno });
 }
 
 // Spindle, coolant, overrides

@@ -130,6 +130,14 @@ export class ProgramEditor {
     this.view.dispatch(setDiagnostics(this.view.state, diagnostics));
   }
 
+  /** The cursor goes to a line, which is brought into view. */
+  goTo(line: number): void {
+    const { doc } = this.view.state;
+    const at = doc.line(Math.min(Math.max(line, 1), doc.lines)).from;
+    this.view.dispatch({ selection: { anchor: at }, effects: EditorView.scrollIntoView(at, { y: 'center' }) });
+    this.view.focus();
+  }
+
   /** 0: none. It is brought into view when it changes. */
   showRunning(line: number): void {
     if (line === this.runningLine) {

@@ -76,6 +76,19 @@ export class Jogger {
     }
   }
 
+  /** With its sign; the jog goes on with it. Another direction ends the jog. */
+  changeSpeed(isJoint: boolean, index: number, velocity: number): void {
+    const held = this.held.get(`${isJoint ? 'joint' : 'axis'} ${index}`);
+    if (held === undefined) {
+      return;
+    }
+    if (Math.sign(velocity) !== Math.sign(held.jog.velocity)) {
+      this.release(isJoint, index);
+      return;
+    }
+    held.jog = { ...held.jog, velocity }; // the next renewal says it
+  }
+
   releaseAll(): void {
     for (const { jog } of [...this.held.values()]) {
       this.release(jog.isJoint, jog.index);
@@ -104,7 +117,7 @@ export class Jogger {
     };
     held.hasBegun = true;
     held.timer = this.io.every(() => {
-      void this.io.post({ ...command, is_renewal: true }).then((outcome) => this.judge(key, held, outcome));
+      void this.io.post({ ...command, velocity: held.jog.velocity, is_renewal: true }).then((outcome) => this.judge(key, held, outcome));
     }, RENEWAL_MS);
     this.judge(key, held, await this.io.post({ ...command }));
   }

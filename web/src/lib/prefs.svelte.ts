@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // How its operator likes the screen: kept in this browser, and at the machine where the INI file names files for it.
 
+import type { ColorBy } from './path/shades';
+
 export type Theme = 'auto' | 'dark' | 'light';
 export type Language = 'en' | 'de' | 'es';
 export type Unit = 'machine' | 'mm' | 'inch';
 
 export interface Preferences {
+  /** What the path is coloured by. */
+  colorBy: ColorBy;
   theme: Theme;
   language: Language;
   unit: Unit;
@@ -23,6 +27,7 @@ function firstLanguage(): Language {
 }
 
 const PRESETS: Preferences = {
+  colorBy: 'kind',
   theme: 'auto',
   language: firstLanguage(),
   unit: 'machine',

@@ -4,6 +4,7 @@ import { decimalSeparator } from './i18n/index.svelte';
 import { machine } from './machine.svelte';
 import { formatNumber } from './numbers';
 import { prefs } from './prefs.svelte';
+import { isDiameter } from './status';
 
 const MM_PER_INCH = 25.4;
 
@@ -40,4 +41,18 @@ const S_PER_MIN = 60;
 export function showFeed(perSecond: number | null | undefined): string {
   const factor = shownFactor() * S_PER_MIN;
   return formatNumber(perSecond === null || perSecond === undefined ? perSecond : perSecond * factor, shownUnit() === 'mm' ? 0 : 1, decimalSeparator());
+}
+
+export function isLathe(): boolean {
+  return machine.facts?.kind === 'lathe' || machine.facts?.kind === 'back_lathe';
+}
+
+/** What places along an axis are multiplied by: X of a lathe counts as diameter under G7, and so it is shown. */
+export function axisFactor(letter: string): number {
+  return letter === 'X' && isLathe() && machine.status !== null && isDiameter(machine.status.codes) ? 2 : 1;
+}
+
+/** With what is to be known of its figures: of a lathe, whether X is a diameter or a radius. */
+export function axisName(letter: string): string {
+  return letter === 'X' && isLathe() ? (axisFactor(letter) === 2 ? 'X⌀' : 'X r') : letter;
 }

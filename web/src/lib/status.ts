@@ -170,6 +170,12 @@ export interface MachineFacts {
   ini: string;
   instance: string;
   axes: string;
+  kind: 'mill' | 'lathe' | 'back_lathe' | 'foam';
+  /** [DISPLAY]GEOMETRY: where a pose is drawn. */
+  geometry: string;
+  /** Heights at which the planes of a foam cutter are drawn. */
+  foam_z: number;
+  foam_w: number;
   joints: number;
   joint_kinds: string[];
   is_homing_forced: boolean;
@@ -250,6 +256,11 @@ export const SYSTEMS = ['', 'G54', 'G55', 'G56', 'G57', 'G58', 'G59', 'G59.1', '
 
 export function systemName(index: number): string {
   return SYSTEMS[index] ?? `#${index}`;
+}
+
+/** G7: X counts as a diameter in programs and MDI. */
+export function isDiameter(codes: Codes): boolean {
+  return codes.g.includes(70);
 }
 
 /** G20: programs and MDI count in inches. */

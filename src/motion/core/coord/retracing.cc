@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace mw::motion {
 
@@ -10,6 +11,11 @@ namespace {
 
 std::size_t at(int i) noexcept {
     return static_cast<std::size_t>(i);
+}
+
+double square_xyz(const std::array<double, Changes::PADDED> &p) noexcept {
+    return p[geom::AXIS_X] * p[geom::AXIS_X] + p[geom::AXIS_Y] * p[geom::AXIS_Y] +
+           p[geom::AXIS_Z] * p[geom::AXIS_Z];
 }
 
 /// A path that is dropped while it is gone back ends where that comes to a stand.
@@ -25,55 +31,55 @@ void follow_drops(Retracing &r, std::uint64_t drops) noexcept {
     }
 }
 
-/// How much of the limits the step to `pose` uses.
-traj::Retrace::Use use_of(Retracing &r, const geom::Pose &pose, const JointUse &joints,
-                          const FoldedLimits &folded, double period_s) noexcept {
+/// How much of the limits the largest changes use.
+traj::Retrace::Use use_of(const Changes &changes, const RetraceLimits &in) noexcept {
     traj::Retrace::Use use;
-    if (r.retrace.isEmpty()) {
-        r.last_pose = pose;
-        r.last_step = {};
-        return use;
-    }
-    const double per_s = 1.0 / period_s;
-    const geom::Pose step = pose - r.last_pose;
-    const geom::Pose bend = step - r.last_step;
-    r.last_pose = pose;
-    r.last_step = step;
-    const traj::Limits &limits = folded.path;
+    const double per_s = 1.0 / in.period_s;
+    const traj::Limits &limits = in.folded.path;
     const auto add = [&](double v, double a, double most_a, double most_j) {
         if (v == 0 && a == 0) {
             return;
         }
-        use.v_over_a = std::max(use.v_over_a, std::abs(v) * per_s / most_a);
+        use.v_over_a = std::max(use.v_over_a, v * per_s / most_a);
         if (limits.isJerkLimited) {
-            use.v_over_j = std::max(use.v_over_j, std::abs(v) * per_s / most_j);
-            use.a_over_j = std::max(use.a_over_j, std::abs(a) * per_s * per_s / most_j);
+            use.v_over_j = std::max(use.v_over_j, v * per_s / most_j);
+            use.a_over_j = std::max(use.a_over_j, a * per_s * per_s / most_j);
         }
     };
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
-        add(step[i], bend[i], limits.acceleration[at(i)], limits.jerk[at(i)]);
+        add(changes.step[at(i)], changes.bend[at(i)], limits.acceleration[at(i)], limits.jerk[at(i)]);
     }
-    add(geom::norm_xyz(step), geom::norm_xyz(bend), limits.acceleration[traj::XYZ_NORM],
+    add(std::sqrt(changes.step_xyz2), std::sqrt(changes.bend_xyz2), limits.acceleration[traj::XYZ_NORM],
         limits.jerk[traj::XYZ_NORM]);
-    for (int j = 0; j < joints.count; ++j) {
-        add(joints.step[at(j)], joints.bend[at(j)], folded.joints.acceleration[at(j)],
-            folded.joints.jerk[at(j)]);
+    for (int j = 0; j < in.joints; ++j) {
+        add(changes.joint_step[at(j)], changes.joint_bend[at(j)], in.folded.joints.acceleration[at(j)],
+            in.folded.joints.jerk[at(j)]);
     }
     return use;
 }
 
+/// What has been recorded since the last time, weighed against the limits: that takes as long as recording
+/// some ten samples.
+void weigh(Retracing &r, const RetraceLimits &limits) noexcept {
+    r.retrace.include(use_of(r.changes, limits));
+    r.changes = {};
+}
+
 }  // namespace
 
-bool step(Retracing &r, geom::Pose &pose, const RetraceInputs &in) noexcept {
+bool step(Retracing &r, geom::Pose &pose, const RetraceInputs &in, const RetraceLimits &limits) noexcept {
     follow_drops(r, in.drops);
     traj::Retrace &retrace = r.retrace;
     const bool isFirst = !retrace.isAway() && in.isReverseWanted && !in.isStandingWanted && !in.isStopping;
     if (!retrace.isAway() && !(isFirst && in.isPathAtRest && retrace.isReady())) {
         return false;
     }
+    if (isFirst) {
+        weigh(r, limits);
+    }
     const bool isStill = in.isStandingWanted || r.isPathLeft || in.isStopping;
     const int direction = isStill ? 0 : in.isReverseWanted ? -1 : 1;
-    pose = retrace.step(in.period_s, direction, in.rate);
+    pose = retrace.step(limits.period_s, direction, in.rate);
     const bool isNewStart = r.isPathLeft && !retrace.isMoving();
     if (isNewStart) {
         r.isPathLeft = false;
@@ -82,9 +88,36 @@ bool step(Retracing &r, geom::Pose &pose, const RetraceInputs &in) noexcept {
     return isNewStart;
 }
 
-void record(Retracing &r, const geom::Pose &pose, const JointUse &joints, const FoldedLimits &limits,
-            double period_s) noexcept {
-    r.retrace.record(pose, use_of(r, pose, joints, limits, period_s));
+void record(Retracing &r, const geom::Pose &pose, const RetraceLimits &limits) noexcept {
+    alignas(16) std::array<double, Changes::PADDED> place;  // NOLINT: every element is set
+    std::memcpy(place.data(), pose.c.data(), sizeof pose.c);
+    place[geom::AXIS_COUNT] = 0;
+    Changes &changes = r.changes;
+    if (r.retrace.isEmpty()) {
+        changes = {};
+        r.last_step = {};
+    } else {
+        alignas(16) std::array<double, Changes::PADDED> step, bend;  // NOLINT: every element is set
+#pragma GCC unroll 5
+        for (std::size_t i = 0; i < Changes::PADDED; ++i) {
+            step[i] = place[i] - r.last_place[i];
+            bend[i] = step[i] - r.last_step[i];
+            r.last_step[i] = step[i];
+            changes.step[i] = std::max(changes.step[i], std::abs(step[i]));
+            changes.bend[i] = std::max(changes.bend[i], std::abs(bend[i]));
+        }
+        changes.step_xyz2 = std::max(changes.step_xyz2, square_xyz(step));
+        changes.bend_xyz2 = std::max(changes.bend_xyz2, square_xyz(bend));
+    }
+    r.last_place = place;
+    if (r.retrace.record(pose)) {
+        weigh(r, limits);
+    }
+}
+
+void record_joint(Retracing &r, int j, double step, double bend) noexcept {
+    r.changes.joint_step[at(j)] = std::max(r.changes.joint_step[at(j)], std::abs(step));
+    r.changes.joint_bend[at(j)] = std::max(r.changes.joint_bend[at(j)], std::abs(bend));
 }
 
 }  // namespace mw::motion

@@ -12,12 +12,23 @@
 
 namespace mw::motion {
 
+/// The largest changes of coordinates since they were last weighed against the limits: of a cycle (`step`)
+/// and of that from one cycle to the next (`bend`).
+struct Changes {
+    static constexpr std::size_t PADDED = 10;  ///< of the axes, for instructions that take two at once
+    alignas(16) std::array<double, PADDED> step{}, bend{};
+    double step_xyz2 = 0, bend_xyz2 = 0;  ///< squares of the norms of X Y Z
+    std::array<double, MAX_JOINTS> joint_step{}, joint_bend{};
+};
+
 /// Some megabytes, so never on a stack.
 struct Retracing {
     traj::Retrace retrace;
-    bool isPathLeft = false;          ///< the path was dropped while going back
-    std::uint64_t drops_seen = 0;     ///< of the executor
-    geom::Pose last_pose, last_step;  ///< that were recorded
+    bool isPathLeft = false;       ///< the path was dropped while going back
+    std::uint64_t drops_seen = 0;  ///< of the executor
+    Changes changes;
+    /// That were recorded last.
+    alignas(16) std::array<double, Changes::PADDED> last_place{}, last_step{};
 };
 
 struct RetraceInputs {
@@ -25,19 +36,21 @@ struct RetraceInputs {
     bool isReverseWanted = false, isStandingWanted = false, isStopping = false;
     bool isPathAtRest = false;
     double rate = 0;  ///< of the commanded speed
+};
+/// What limits the way back, where joints are not axes also that of the first `joints`.
+struct RetraceLimits {
+    const FoldedLimits &folded;
+    int joints = 0;
     double period_s = 1e-3;
 };
 /// Takes the pose of the path to the one that is to be commanded: behind it while the path is gone back. True
 /// when the path was dropped on the way back: the next one begins at `pose`.
-bool step(Retracing &retracing, geom::Pose &pose, const RetraceInputs &in) noexcept;
+bool step(Retracing &retracing, geom::Pose &pose, const RetraceInputs &in,
+          const RetraceLimits &limits) noexcept;
 
-/// What the joints do where they are not axes: the change of each in the last two cycles.
-struct JointUse {
-    int count = 0;  ///< 0: joints are axes
-    std::array<double, MAX_JOINTS> step{}, bend{};
-};
 /// Remembers a commanded pose of the path, to come back to.
-void record(Retracing &retracing, const geom::Pose &pose, const JointUse &joints, const FoldedLimits &limits,
-            double period_s) noexcept;
+void record(Retracing &retracing, const geom::Pose &pose, const RetraceLimits &limits) noexcept;
+/// Where joints are not axes, before record(): the change of joint `j` in the last cycle, and of that change.
+void record_joint(Retracing &retracing, int j, double step, double bend) noexcept;
 
 }  // namespace mw::motion

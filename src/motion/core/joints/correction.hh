@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "base/raw_array.hh"
 #include "motion/api/command.hh"
 #include "motion/api/settings.hh"
 #include "traj/exec/free_planner.hh"
@@ -18,7 +19,7 @@ struct ScrewTable {
     int count = 0;   ///< of points in force, 0: no table
     int filled = 0;  ///< of points of a table that is not whole yet
     double steepest = 0;
-    std::array<double, MAX_SCREW_POINTS> nominal{}, forward{}, reverse{};
+    RawArray<double, MAX_SCREW_POINTS> nominal, forward, reverse;  ///< the first `filled` of each
 };
 
 /// One point more, or the end of the table. A table that is not whole counts for nothing.

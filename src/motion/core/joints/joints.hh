@@ -34,7 +34,7 @@ using PerJoint = std::array<double, MAX_JOINTS>;
 struct Joints {
     int count = 0;
     int loaded = 0;  ///< that may be in use
-    std::array<Joint, MAX_JOINTS> joint{};
+    std::array<Joint, MAX_JOINTS> joint;
 
     Joint &operator[](int j) noexcept { return joint[static_cast<std::size_t>(j)]; }
     const Joint &operator[](int j) const noexcept { return joint[static_cast<std::size_t>(j)]; }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "kins/corexy.hh"
 #include "kins/trivial.hh"
 #include "motion/core/coord/heading.hh"
 #include "motion/core/coord/place.hh"
@@ -35,6 +36,24 @@ TEST(PlacePart, JointsLeadOrThePoseDoes_C3) {
     EXPECT_EQ(place.fb[0], 2.9);
 }
 
+TEST(PlacePart, WhereNobodyKnowsThePoseTheLastOneStandsAndIsNotValid_C3) {
+    const kins::CoreXy kinematics;
+    Place place;
+    place.fb = at(5);
+    place.cmd = at(7);
+    const double joints[MAX_JOINTS] = {3, 1};
+    read_feedback(place, kinematics, joints, false);
+    EXPECT_EQ(place.fb[0], 5) << "not homed";
+    EXPECT_FALSE(place.isFbValid);
+    read_feedback(place, kinematics, joints, true);
+    EXPECT_NEAR(place.fb[0], 2, 1e-12);
+    EXPECT_TRUE(place.isFbValid);
+    follow_joints(place, kinematics, joints, false);
+    EXPECT_EQ(place.cmd[0], 7);
+    follow_joints(place, kinematics, joints, true);
+    EXPECT_NEAR(place.cmd[0], 2, 1e-12);
+}
+
 /// A straight path at 20 unit/s that has just come to a stand.
 struct RetracingPart : testing::Test {
     std::unique_ptr<Retracing> retracing = std::make_unique<Retracing>();
@@ -45,7 +64,7 @@ struct RetracingPart : testing::Test {
         limits.path.acceleration.fill(1000);
         for (int n = 0; n < 600; ++n) {
             x += n < 500 ? 0.02 * std::min(1.0, std::min(n / 100.0, (500 - n) / 100.0)) : 0.0;
-            record(*retracing, at(x), {}, limits, T);
+            record(*retracing, at(x), {limits, 0, T});
         }
     }
     struct Way {
@@ -60,7 +79,7 @@ struct RetracingPart : testing::Test {
         in.rate = 0.5;
         in.drops = drops;
         Way way{at(x)};
-        way.isNewStart = step(on, way.pose, in);
+        way.isNewStart = step(on, way.pose, in, {limits, 0, T});
         return way;
     }
 };
@@ -102,26 +121,25 @@ TEST_F(RetracingPart, AStopWhereThePathWasSlowIsShort_C5) {
     limits.path.acceleration.fill(A);
     for (int n = 0; n < 3000; ++n) {
         x += n < 1000 ? 0.02 : n < 2990 ? 0.005 : 0;
-        record(*retracing, at(x), {}, limits, T);
+        record(*retracing, at(x), {limits, 0, T});
     }
     const auto cycles_to_stop = [&](int back) {
         const auto on = std::make_unique<Retracing>(*retracing);
         RetraceInputs in;
         in.isReverseWanted = in.isPathAtRest = true;
         in.rate = 0.75;
-        in.period_s = T;
         geom::Pose pose = at(x);
         double last = x;
         for (int n = 0; n < back; ++n) {
             last = pose[0];
-            step(*on, pose, in);
+            step(*on, pose, in, {limits, 0, T});
         }
         const double v = (last - pose[0]) / T;
         in.isStopping = true;
         int n = 0;
         for (double before = pose[0] + 1; pose[0] != before && n < 3000; ++n) {
             before = pose[0];
-            step(*on, pose, in);
+            step(*on, pose, in, {limits, 0, T});
         }
         return std::pair{n, v};
     };

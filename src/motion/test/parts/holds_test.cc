@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -84,6 +86,32 @@ TEST(HoldsPart, ScalesBeyondTheirRangeAreRefused) {
     EXPECT_EQ(holds.jog_scale(), 1.2);
     take(holds, SetSwitch{Switch::FEED_OVERRIDE, 0, false});
     EXPECT_EQ(holds.jog_scale(), 1.0);
+}
+
+TEST(HoldsPart, TheStatusShowsEachOfThem_C1) {
+    Holds holds;
+    Status status;
+    holds.feed_scale = 0.5;
+    holds.rapid_scale = 0.25;
+    holds.net_feed_scale = 0.125;
+    fill(holds, status);
+    EXPECT_EQ(status.feed_scale, 0.5);
+    EXPECT_EQ(status.rapid_scale, 0.25);
+    EXPECT_EQ(status.net_feed_scale, 0.125);
+    const std::vector<std::pair<bool Holds::*, bool Status::*>> shown = {
+        {&Holds::isFeedOverrideEnabled, &Status::isFeedOverrideEnabled},
+        {&Holds::isAdaptiveFeedEnabled, &Status::isAdaptiveFeedEnabled},
+        {&Holds::isFeedHoldEnabled, &Status::isFeedHoldEnabled},
+        {&Holds::isPaused, &Status::isPaused},
+        {&Holds::isStepping, &Status::isStepping},
+        {&Holds::isReverseWanted, &Status::isReverse}};
+    for (const auto &[from, to] : shown) {
+        for (const bool value : {true, false}) {
+            holds.*from = value;
+            fill(holds, status);
+            EXPECT_EQ(status.*to, value);
+        }
+    }
 }
 
 }  // namespace

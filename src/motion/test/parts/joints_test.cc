@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "motion/core/joints/joints.hh"
@@ -37,7 +40,11 @@ struct JointsPart : testing::Test {
 TEST_F(JointsPart, SwitchedOnTheCommandIsTheFeedback_C4) {
     in.joint[0].motor_pos_fb = 12.5;
     read_feedback(joints, in);
+    joints[0].isFaulted = joints[0].isFerrorTripped = true;
+    joints[1].isActive = false;
     switch_on(joints);
+    EXPECT_FALSE(joints[0].isFaulted || joints[0].isFerrorTripped) << "what was is forgotten";
+    EXPECT_FALSE(joints[1].isAmpWanted) << "nobody uses it";
     output(joints, settings, true, T);
     EXPECT_EQ(joints[0].motor_pos_cmd, 12.5);
     EXPECT_TRUE(joints[0].isAmpWanted);
@@ -164,6 +171,69 @@ TEST_F(JointsPart, AJointThatDoesMoreThanItCanIsFound) {
     EXPECT_TRUE(find_overrun(joints, limits).isOutside);
     joints[1].vel_cmd = -10;
     EXPECT_EQ(find_overrun(joints, limits).joint, -1) << "on the way back in";
+}
+
+TEST_F(JointsPart, PinsAndStatusShowEachOfWhatTheyAreMadeOf_C3) {
+    Joint &joint = joints[1];
+    int number = 1;
+    for (double *value : {&joint.pos_cmd, &joint.pos_fb, &joint.vel_cmd, &joint.acc_cmd, &joint.coarse_pos,
+                          &joint.motor_pos_cmd, &joint.motor_pos_fb, &joint.motor_offset, &joint.ferror,
+                          &joint.ferror_limit, &joint.ferror_highmark, &joint.correction.raw,
+                          &joint.correction.position, &joint.correction.velocity}) {
+        *value = number++;
+    }
+    Outputs out;
+    fill(joints, {}, out);
+    const JointStatus &s = out.status.joint[1];
+    const JointOutputs &o = out.joint[1];
+    number = 1;
+    for (const double value : {s.pos_cmd, s.pos_fb, s.vel_cmd, o.acc_cmd, o.coarse_pos, s.motor_pos_cmd,
+                               s.motor_pos_fb, o.motor_offset, s.ferror, o.ferror_limit, s.ferror_highmark,
+                               o.backlash_raw, o.backlash_filtered, o.backlash_velocity}) {
+        EXPECT_EQ(value, number++);
+    }
+    EXPECT_EQ(o.motor_pos_cmd, joint.motor_pos_cmd);
+    const std::vector<std::pair<bool Joint::*, bool JointStatus::*>> shown = {
+        {&Joint::isActive, &JointStatus::isActive},
+        {&Joint::isFaulted, &JointStatus::isFaulted},
+        {&Joint::isFerrorTripped, &JointStatus::isFerrorTripped},
+        {&Joint::isOnPosHardLimit, &JointStatus::isOnPosHardLimit},
+        {&Joint::isOnNegHardLimit, &JointStatus::isOnNegHardLimit}};
+    for (const auto &[from, to] : shown) {
+        for (const bool value : {true, false}) {
+            joint.*from = value;
+            fill(joints, {}, out);
+            EXPECT_EQ(s.*to, value);
+        }
+    }
+    for (const bool isEnabled : {false, true}) {
+        for (const bool isWanted : {false, true}) {
+            joint.isAmpWanted = isWanted;
+            fill(joints, {isEnabled, isWanted, 0}, out);
+            EXPECT_EQ(s.isEnabled, isEnabled && isWanted);
+            EXPECT_EQ(o.isAmpEnabled, isEnabled && isWanted);
+            EXPECT_EQ(s.isOverridingLimits, isWanted);
+        }
+    }
+}
+
+TEST_F(JointsPart, HomedJointsAreOnTheirSoftLimitsFromThereOn_C13) {
+    Outputs out;
+    out.status.joint[0].min_limit = -100;
+    out.status.joint[0].max_limit = 100;
+    out.status.joint[1].min_limit = -2;
+    out.status.joint[1].max_limit = 3;
+    const JointStatus &s = out.status.joint[1];
+    for (const double place : {-2.5, -2.0, -1.999, 0.0, 2.999, 3.0, 3.5}) {
+        joints[1].pos_cmd = place;
+        for (const std::uint32_t homed : {0U, 1U, 2U}) {
+            fill(joints, {true, false, homed}, out);
+            EXPECT_EQ(s.isHomed, homed == 2);
+            EXPECT_EQ(s.isOnNegSoftLimit, homed == 2 && place <= -2) << place;
+            EXPECT_EQ(s.isOnPosSoftLimit, homed == 2 && place >= 3) << place;
+            EXPECT_EQ(out.isOnSoftLimit, s.isOnNegSoftLimit || s.isOnPosSoftLimit);
+        }
+    }
 }
 
 }  // namespace

@@ -219,5 +219,46 @@ TEST_F(SpindlesPart, StatusTellsWhatEachDoes) {
     EXPECT_TRUE(spindles[1].isBrakeOn);
 }
 
+TEST_F(SpindlesPart, PinsAndStatusShowEachOfWhatTheyAreMadeOf) {
+    Spindle &s = spindles[1];
+    s.isOn = true;
+    s.speed_rpm = 120;
+    s.scale = 0.5;
+    s.out_rpm = 60;
+    s.orient_angle = 33;
+    s.orient_mode = 2;
+    s.orient_state = Spindles::ORIENT_FAULTED;
+    s.orient_fault = 7;
+    in.spindle[1].speed_in_rps = 1.25;
+    in.spindle[1].revs = 17.5;
+    for (const bool value : {true, false}) {
+        s.isBrakeOn = s.isOrienting = s.isLocked = s.isOverrideEnabled = value;
+        in.spindle[1].isAtSpeed = in.spindle[1].isIndexEnabled = value;
+        Outputs out;
+        fill(spindles, in, true, out);
+        const SpindleOutputs &pins = out.spindle[1];
+        EXPECT_EQ(pins.speed_rpm, 60);
+        EXPECT_TRUE(pins.isOn && pins.isForward && !pins.isReverse);
+        EXPECT_EQ(pins.isBrakeOn, value);
+        EXPECT_EQ(pins.isOrienting, value);
+        EXPECT_EQ(pins.isLocked, value);
+        EXPECT_EQ(pins.orient_angle, 33);
+        EXPECT_EQ(pins.orient_mode, 2);
+        EXPECT_EQ(pins.isIndexEnabled, value);
+        const SpindleStatus &status = out.status.spindle[1];
+        EXPECT_EQ(status.speed_cmd_rpm, 120);
+        EXPECT_EQ(status.scale, 0.5);
+        EXPECT_EQ(status.speed_in_rps, 1.25);
+        EXPECT_EQ(status.revs, 17.5);
+        EXPECT_EQ(status.direction, 1);
+        EXPECT_TRUE(status.isOn);
+        EXPECT_EQ(status.isAtSpeed, value);
+        EXPECT_EQ(status.isBrakeOn, value);
+        EXPECT_EQ(status.isOverrideEnabled, value);
+        EXPECT_EQ(status.orient_state, Spindles::ORIENT_FAULTED);
+        EXPECT_EQ(status.orient_fault, 7);
+    }
+}
+
 }  // namespace
 }  // namespace mw::motion

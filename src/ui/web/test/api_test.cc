@@ -41,6 +41,11 @@ class ApiTest : public testing::Test {
                              R"({"parts": [{"kind": "switch", "label": "Door", "name": "door"}]})"}};
         setup.screen_folder = (folder / "web").string();
         setup.screens.connect = [this] { return client::Client::join(task.memory.segment()); };
+        setup.read_times = [this](const std::string &,
+                                  const TimeOverrides &at) -> Result<std::shared_ptr<PieceQueue>> {
+            overrides = at;
+            return std::make_shared<PieceQueue>();
+        };
         setup.read_path = [this](const std::string &path) -> Result<std::shared_ptr<PieceQueue>> {
             read.push_back(path);
             return read.size() < 2 ? Result<std::shared_ptr<PieceQueue>>(std::make_shared<PieceQueue>())
@@ -73,6 +78,7 @@ class ApiTest : public testing::Test {
     FakeTask task;
     FakeSockets sockets;
     Here here;
+    TimeOverrides overrides;
     std::vector<std::string> read;
     std::int64_t now_ns = 1;
     std::optional<Api> api;
@@ -140,6 +146,17 @@ TEST_F(ApiTest, ProgramsComeInPiecesAndGo_J3) {
     EXPECT_EQ(ask("DELETE", "/api/files").status, 400);
 }
 
+TEST_F(ApiTest, TimesAreAskedForAtOverrides_J3) {
+    for (const char *wrong : {"", "?file=a.ngc&feed=0", "?file=a.ngc&feed=x", "?file=a.ngc&rapid=-1",
+                              "?file=a.ngc&max_velocity=inf", "?file=../a.ngc"}) {
+        EXPECT_EQ(ask("GET", std::string("/api/times") + wrong).status, 400) << wrong;
+    }
+    EXPECT_NE(ask("GET", "/api/times?file=a.ngc&feed=0.5&rapid=0.25&max_velocity=12").pieces, nullptr);
+    EXPECT_EQ(overrides.feed, 0.5);
+    EXPECT_EQ(overrides.rapid, 0.25);
+    EXPECT_EQ(overrides.max_velocity, 12);
+}
+
 TEST_F(ApiTest, ThePathOfAProgramIsReadWhileItIsSent_J3) {
     EXPECT_EQ(ask("GET", "/api/path").status, 400);
     EXPECT_EQ(ask("GET", "/api/path?file=../a.ngc").status, 400);
@@ -175,6 +192,7 @@ TEST_F(ApiTest, EachRequestNeedsTheRoleOfTheTable_J3) {
         {"GET", "/api/files", "", Role::VIEW},
         {"GET", "/api/files/a.ngc", "", Role::VIEW},
         {"GET", "/api/path?file=a.ngc", "", Role::VIEW},
+        {"GET", "/api/times?file=a.ngc", "", Role::VIEW},
         {"GET", "/api/offsets", "", Role::VIEW},
         {"GET", "/api/preferences", "", Role::VIEW},
         {"GET", "/api/mdi_history", "", Role::VIEW},

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,8 +22,16 @@ struct Point {
 };
 
 /// What a browser makes of the bytes.
+struct Range {
+    std::uint32_t first;
+    float feed;
+    std::uint32_t tool;
+    bool operator==(const Range &) const = default;
+};
+
 struct Path {
-    std::vector<std::vector<Point>> moves;
+    std::vector<std::vector<Point>> moves, wires;
+    std::vector<Range> ranges;
     std::array<float, 6> bounds{};
     std::uint32_t lines = 0, points = 0;
     std::string error;
@@ -45,7 +54,15 @@ struct Path {
             kinds.push_back(kind);
             if (kind == 1) {
                 const std::uint32_t count = word();
-                take_moves(bytes, at, count);
+                take_moves(bytes, at, count, moves);
+            } else if (kind == 5) {
+                for (std::uint32_t left = word(); left > 0; --left) {
+                    std::memcpy(&ranges.emplace_back(), bytes.data() + at, sizeof(Range));
+                    at += sizeof(Range);
+                }
+            } else if (kind == 6) {
+                const std::uint32_t count = word();
+                take_moves(bytes, at, count, wires);
             } else if (kind == 2) {
                 std::memcpy(bounds.data(), bytes.data() + at, sizeof bounds);
             } else if (kind == 3) {
@@ -57,8 +74,9 @@ struct Path {
             at = end;
         }
     }
-    void take_moves(const std::string &bytes, std::size_t at, std::uint32_t count) {
-        std::vector<Point> &points_of = moves.emplace_back(count);
+    static void take_moves(const std::string &bytes, std::size_t at, std::uint32_t count,
+                           std::vector<std::vector<Point>> &to) {
+        std::vector<Point> &points_of = to.emplace_back(count);
         for (std::size_t i = 0; i < count; ++i) {
             std::memcpy(points_of[i].place.data(), bytes.data() + at + 12 * i, 12);
             std::memcpy(&points_of[i].line, bytes.data() + at + 12 * count + 4 * i, 4);
@@ -160,7 +178,7 @@ TEST(PathChunks, TheFirstPathComesAtOnceAndChunksGoOnWhereTheLastEnded_J3) {
         return events;
     };
     EXPECT_TRUE(chunks.take(batch(10)));
-    EXPECT_EQ(pieces.size(), 1U);
+    EXPECT_EQ(pieces.size(), 2U) << "what holds for it, and the path";
     for (int i = 0; i < 40; ++i) {
         EXPECT_TRUE(chunks.take(batch(1000)));
     }
@@ -198,6 +216,101 @@ TEST(PathChunks, NothingIsMadeForNobody_J3) {
     chunks.error("x");
     chunks.end(1);
     EXPECT_EQ(pushed, 1);
+}
+
+/// The chunks of these events.
+Path path_of(std::span<const gcode::PreviewEvent> events, PathLook look = {}) {
+    std::string bytes;
+    PathChunks chunks(
+        [&](std::string piece) {
+            bytes += piece;
+            return true;
+        },
+        1, std::move(look));
+    EXPECT_TRUE(chunks.take(events));
+    chunks.end(1);
+    return Path(bytes);
+}
+
+TEST(PathChunks, FeedAndToolStandWhereTheyBegin_J3) {
+    const geom::Pose a{{0, 0, 0}}, b{{1, 0, 0}}, c{{2, 0, 0}}, d{{3, 0, 0}}, e{{4, 0, 0}};
+    std::vector<gcode::PreviewEvent> events{
+        move(gcode::PreviewKind::FEED, a, b, 1), move(gcode::PreviewKind::RAPID, b, c, 2),
+        move(gcode::PreviewKind::FEED, c, d, 3), move(gcode::PreviewKind::TOOL_CHANGE, d, d, 4),
+        move(gcode::PreviewKind::FEED, d, e, 5)};
+    events[0].settings.feed = events[2].settings.feed = 10;
+    events[3].number = 7;
+    events[4].settings.feed_per_revolution = 0.5;
+    events[4].spindle_rpm = 1200;
+    const Path path = path_of(events);
+    EXPECT_EQ(path.ranges, (std::vector<Range>{{0, 10, 0}, {4, 10, 7}}));
+}
+
+TEST(PathChunks, EachChunkBringsItsRanges_J3) {
+    std::vector<gcode::PreviewEvent> events;
+    constexpr std::uint32_t MANY = 3 * PathChunks::POINTS_PER_CHUNK;
+    for (std::uint32_t i = 0; i < MANY; ++i) {
+        events.push_back(move(gcode::PreviewKind::FEED, geom::Pose{{double(i)}}, geom::Pose{{i + 1.0}}, 1));
+        events.back().settings.feed = 1.0 + (i / 1000);
+    }
+    const Path path = path_of(events);
+    ASSERT_EQ(path.ranges.size(), (MANY + 999) / 1000);
+    for (std::size_t i = 1; i < path.ranges.size(); ++i) {
+        EXPECT_EQ(path.ranges[i],
+                  (Range{static_cast<std::uint32_t>(1000 * i + 1), 1.0F + static_cast<float>(i), 0}));
+    }
+}
+
+TEST(PathChunks, AFoamCutterHasTwoEnds_J3) {
+    geom::Pose to{{1, 2, 9}};
+    to[geom::AXIS_U] = 3;
+    to[geom::AXIS_V] = 4;
+    const std::array events{move(gcode::PreviewKind::FEED, geom::Pose{}, to, 1)};
+    PathLook look;
+    look.foam = {5, 50};
+    const Path path = path_of(events, look);
+    ASSERT_EQ(path.wires.size(), 1U);
+    EXPECT_EQ(path.moves[0][1].place, (std::array<float, 3>{1, 2, 5}));
+    EXPECT_EQ(path.wires[0][1].place, (std::array<float, 3>{3, 4, 50}));
+    EXPECT_EQ(path.bounds, (std::array<float, 6>{0, 0, 5, 3, 4, 50}));
+}
+
+TEST(PathGeometry, LettersAreDoneFromTheLastToTheFirst_J1) {
+    geom::Pose pose{{10, 2, 3, 90}};
+    const auto placed = [&](const char *text) { return PathGeometry::parse(text, "XYZA")->place(pose); };
+    const auto expect = [](const Place &is, const Place &wanted) {
+        for (std::size_t i = 0; i < is.size(); ++i) {
+            EXPECT_NEAR(is[i], wanted[i], 1e-12) << i;
+        }
+    };
+    expect(placed("XYZABCUVW"), {10, 2, 3});
+    expect(placed("AXYZ"), {10, -3, 2});
+    expect(placed("-AXYZ"), {10, 3, -2});
+    expect(placed("XAYZ"), {10, -3, 2});
+    expect(placed("ZAXY"), {10, 0, 5});
+    expect(placed("-XYZ"), {-10, 2, 3});
+    expect(placed("!AXYZ"), {10, -3, 2});
+    EXPECT_TRUE(PathGeometry().isPlain());
+    EXPECT_TRUE(PathGeometry::parse("XYZABCUVW", "XYZA")->isPlain());
+    EXPECT_FALSE(PathGeometry::parse("AXYZ", "XYZA")->isPlain());
+    EXPECT_TRUE(PathGeometry::parse("AXYZ", "XYZ")->isPlain()) << "there is no A to turn by";
+    EXPECT_FALSE(PathGeometry::parse("-XYZ", "XYZ")->isPlain());
+    EXPECT_FALSE(PathGeometry::parse("XYZUVW", "XYZU")->isPlain());
+    EXPECT_FALSE(PathGeometry::parse("XY9", "XYZ").has_value());
+}
+
+TEST(PathChunks, AStraightMoveThatTurnsIsACurve_J1) {
+    PathLook look;
+    look.geometry = *PathGeometry::parse("AXYZ", "XYZA");
+    const std::array events{
+        move(gcode::PreviewKind::FEED, geom::Pose{{0, 10, 0, 0}}, geom::Pose{{6, 10, 0, 360}}, 1)};
+    const Path path = path_of(events, look);
+    ASSERT_EQ(path.moves[0].size(), 121U);
+    for (const Point &point : path.moves[0]) {
+        EXPECT_NEAR(std::hypot(point.place[1], point.place[2]), 10, 1e-5);
+    }
+    EXPECT_NEAR(path.moves[0][60].place[0], 3, 1e-6);
+    EXPECT_NEAR(path.moves[0][30].place[2], 10, 1e-5) << "a positive turn about X lifts Y to Z";
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The stream of /api/path: chunks of moves, bounds, errors and the end, as docs/api.md has them.
+// The streams of /api/path and /api/times: chunks of moves, bounds, errors, times and the end, as docs/api.md has them.
+import type { TimeSum } from './times';
+import type { TimedMoves } from './times_worker';
 
 export interface Moves {
   kind: 'moves';
@@ -9,10 +11,16 @@ export interface Moves {
   lines: Uint32Array;
   /** 0 rapid, 1 feed, 2 arc, 3 probe: of the move that ends at the point. */
   kinds: Uint8Array;
+  /** How each point is coloured, see shades.ts. */
+  shades: Uint8Array;
 }
 
 export type Chunk =
   | Moves
+  | (Omit<Moves, 'kind'> & { kind: 'wires' })
+  | { kind: 'ranges'; first: Uint32Array; feed: Float32Array; tool: Uint32Array }
+  | { kind: 'times'; moves: TimedMoves }
+  | { kind: 'time_sum'; sum: TimeSum }
   | { kind: 'bounds'; low: [number, number, number]; high: [number, number, number] }
   | { kind: 'end'; line: number; points: number }
   | { kind: 'error'; text: string };
@@ -33,7 +41,44 @@ function readMoves(body: ArrayBuffer): Moves {
     places: new Float32Array(body.slice(places, lines)),
     lines: new Uint32Array(body.slice(lines, kinds)),
     kinds: new Uint8Array(body.slice(kinds, kinds + count)),
+    shades: new Uint8Array(count),
   };
+}
+
+const RANGE_BYTES = 12;
+
+function readRanges(body: ArrayBuffer): Chunk {
+  const words = new DataView(body);
+  const count = words.getUint32(0, true);
+  if (4 + count * RANGE_BYTES > body.byteLength) {
+    throw new Error('a chunk of the path is shorter than it says');
+  }
+  const ranges = { kind: 'ranges' as const, first: new Uint32Array(count), feed: new Float32Array(count), tool: new Uint32Array(count) };
+  for (let i = 0; i < count; ++i) {
+    const at = 4 + i * RANGE_BYTES;
+    ranges.first[i] = words.getUint32(at, true);
+    ranges.feed[i] = words.getFloat32(at + 4, true);
+    ranges.tool[i] = words.getUint32(at + 8, true);
+  }
+  return ranges;
+}
+
+const MOVE_BYTES = 16;
+
+function readTimes(words: DataView): TimedMoves {
+  const count = words.getUint32(0, true);
+  if (4 + count * MOVE_BYTES > words.byteLength) {
+    throw new Error('a chunk of times is shorter than it says');
+  }
+  const moves = { points: new Uint32Array(count), lines: new Uint32Array(count), seconds: new Float32Array(count), velocities: new Float32Array(count) };
+  for (let i = 0; i < count; ++i) {
+    const at = 4 + i * MOVE_BYTES;
+    moves.points[i] = words.getUint32(at, true);
+    moves.lines[i] = words.getUint32(at + 4, true);
+    moves.seconds[i] = words.getFloat32(at + 8, true);
+    moves.velocities[i] = words.getFloat32(at + 12, true);
+  }
+  return moves;
 }
 
 function readChunk(kind: number, body: ArrayBuffer): Chunk {
@@ -52,6 +97,14 @@ function readChunk(kind: number, body: ArrayBuffer): Chunk {
       return { kind: 'end', line: words.getUint32(0, true), points: words.getUint32(4, true) };
     case 4:
       return { kind: 'error', text: new TextDecoder().decode(body).trimEnd() };
+    case 5:
+      return readRanges(body);
+    case 6:
+      return { ...readMoves(body), kind: 'wires' };
+    case 7:
+      return { kind: 'times', moves: readTimes(words) };
+    case 8:
+      return { kind: 'time_sum', sum: JSON.parse(new TextDecoder().decode(body)) as TimeSum };
     default:
       throw new Error(`the path has a chunk of the unknown kind ${kind}`);
   }

@@ -25,11 +25,13 @@ export function shuffled(pairs: Moves): Moves {
     places: new Float32Array(pairs.places.length),
     lines: new Uint32Array(pairs.lines.length),
     kinds: new Uint8Array(pairs.kinds.length),
+    shades: new Uint8Array(pairs.shades.length),
   };
   order.forEach((from, to) => {
     out.places.set(pairs.places.subarray(from * 6, from * 6 + 6), to * 6);
     out.lines.set(pairs.lines.subarray(from * 2, from * 2 + 2), to * 2);
     out.kinds.set(pairs.kinds.subarray(from * 2, from * 2 + 2), to * 2);
+    out.shades.set(pairs.shades.subarray(from * 2, from * 2 + 2), to * 2);
   });
   return out;
 }
@@ -37,12 +39,13 @@ export function shuffled(pairs: Moves): Moves {
 /** Several lists of pairs as one. */
 export function joined(parts: readonly Moves[]): Moves {
   const count = parts.reduce((sum, one) => sum + one.count, 0);
-  const out: Moves = { kind: 'moves', count, places: new Float32Array(count * 3), lines: new Uint32Array(count), kinds: new Uint8Array(count) };
+  const out: Moves = { kind: 'moves', count, places: new Float32Array(count * 3), lines: new Uint32Array(count), kinds: new Uint8Array(count), shades: new Uint8Array(count) };
   let at = 0;
   for (const one of parts) {
     out.places.set(one.places, at * 3);
     out.lines.set(one.lines, at);
     out.kinds.set(one.kinds, at);
+    out.shades.set(one.shades, at);
     at += one.count;
   }
   return out;

@@ -7,75 +7,32 @@ import {
   BufferGeometry,
   Color,
   ColorManagement,
-  ConeGeometry,
   EdgesGeometry,
-  GLSL3,
   Group,
   Line,
   LinearSRGBColorSpace,
   LineBasicMaterial,
   LineSegments,
-  Mesh,
   MeshBasicMaterial,
   OrthographicCamera,
   Scene,
-  ShaderMaterial,
   Vector3,
   WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { Moves } from './chunks';
+import type { Spot } from './geometry';
 import { isSoftware } from './graphics';
+import { PathMaterials, type SceneColors } from './material';
 import { joined, Pace, shuffled } from './motion';
+import { shade, type ColorBy, type Ranges, type Shading } from './shades';
 import { sparse } from './sparse';
 import { thin } from './thin';
+import { makeCone, makeWire, tipGeometry, type LatheTip } from './tool';
+import { Trail } from './trail';
+import { VIEWS, type ViewName } from './views';
 
-export interface SceneColors {
-  background: string;
-  rapid: string;
-  feed: string;
-  arc: string;
-  probe: string;
-  current: string;
-  limits: string;
-  tool: string;
-  trail: string;
-}
-
-export type ViewName = 'top' | 'front' | 'side' | 'iso';
-
-// The kind of a move belongs to the point at which it ends, which is the one that decides under `flat`.
-const VERTEX = `
-  in float kind;
-  in uint line;
-  flat out float vKind;
-  flat out uint vLine;
-  void main() {
-    vKind = kind;
-    vLine = line;
-    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-  }`;
-const FRAGMENT = `
-  precision highp float;
-  flat in float vKind;
-  flat in uint vLine;
-  uniform vec3 rapid, feed, arc, probe, current;
-  uniform uint currentLine;
-  out vec4 color;
-  void main() {
-    vec3 shade = vKind < 0.5 ? rapid : vKind < 1.5 ? feed : vKind < 2.5 ? arc : probe;
-    if (currentLine > 0u && vLine == currentLine) { shade = current; }
-    color = vec4(shade, 1.0);
-  }`;
-
-const DIRECTIONS: Record<ViewName, [number, number, number]> = {
-  top: [0, -0.0001, 1],
-  front: [0, -1, 0],
-  side: [1, 0, 0],
-  iso: [-0.6, -1, 0.75],
-};
-
-const TRAIL_POINTS = 4000;
+export type { SceneColors } from './material';
 /** A path with more points is drawn coarsely while something moves, where drawing is slow. */
 const POINTS_IN_MOTION = 25_000;
 /** Along the diagonal of the path. */
@@ -90,8 +47,15 @@ const STILL_AFTER_MS = 180;
 /** Pieces of the path that are drawn coarsely at first, while the computer is not known. */
 const FIRST_PACE = 6000;
 
+/** Of the edges of a lathe tool in the picture, as a part of the machine's room. */
+const TIP_SHARE = 1 / 12;
+
 /** The same moves with all their points and with fewer; `coarse` while they are read. */
 interface Piece {
+  /** Number of its first point. */
+  first: number;
+  /** The other end of a foam cutter's wire. */
+  isWire: boolean;
   whole: Line;
   fine: Line | null;
   coarse: Line | null;
@@ -102,13 +66,15 @@ export class PathScene {
   private readonly scene = new Scene();
   private readonly camera = new OrthographicCamera(-100, 100, 100, -100, -1e5, 1e5);
   private readonly controls: OrbitControls;
-  private readonly material: ShaderMaterial;
+  private readonly materials = new PathMaterials();
   private readonly path = new Group();
-  private readonly tool: Mesh;
+  private readonly tool = makeCone();
+  private readonly wire = makeWire();
+  private isLatheTool = false;
+  private tip: LatheTip | null = null;
+  private view: ViewName = 'iso';
   private readonly limits: LineSegments;
-  private readonly trail: Line;
-  private readonly trailPlaces = new Float32Array(TRAIL_POINTS * 3);
-  private trailCount = 0;
+  private readonly trail = new Trail();
   private pieces: Piece[] = [];
   private box = new Box3();
   private limitBox = new Box3();
@@ -126,6 +92,7 @@ export class PathScene {
   private refined: number | null = null;
   private perFrame = 1;
   private isThinned = false;
+  private isRead = false;
   private generation = 0;
   private readonly seen = new Set<number>();
   private points = 0;
@@ -140,39 +107,18 @@ export class PathScene {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
     this.controls.addEventListener('change', () => this.noteMotion());
-    this.material = new ShaderMaterial({
-      glslVersion: GLSL3,
-      vertexShader: VERTEX,
-      fragmentShader: FRAGMENT,
-      uniforms: {
-        rapid: { value: new Color() },
-        feed: { value: new Color() },
-        arc: { value: new Color() },
-        probe: { value: new Color() },
-        current: { value: new Color() },
-        currentLine: { value: 0 },
-      },
-    });
-    this.tool = makeTool();
     this.limits = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
-    const trailGeometry = new BufferGeometry();
-    trailGeometry.setAttribute('position', new BufferAttribute(this.trailPlaces, 3));
-    this.trail = new Line(trailGeometry, new LineBasicMaterial());
-    this.trail.frustumCulled = false;
-    trailGeometry.setDrawRange(0, 0);
-    this.scene.add(this.path, this.limits, this.trail, this.tool);
+    this.scene.add(this.path, this.limits, this.trail.line, this.tool, this.wire);
     this.look('iso');
   }
 
   setColors(colors: SceneColors): void {
     this.renderer.setClearColor(new Color(colors.background));
-    const { uniforms } = this.material;
-    for (const name of ['rapid', 'feed', 'arc', 'probe', 'current'] as const) {
-      uniforms[name]?.value.set(colors[name]);
-    }
+    this.materials.setColors(colors);
     (this.limits.material as LineBasicMaterial).color.set(colors.limits);
-    (this.trail.material as LineBasicMaterial).color.set(colors.trail);
+    this.trail.setColor(colors.trail);
     (this.tool.material as MeshBasicMaterial).color.set(colors.tool);
+    (this.wire.material as LineBasicMaterial).color.set(colors.tool);
     this.draw();
   }
 
@@ -187,38 +133,50 @@ export class PathScene {
     this.points = 0;
     this.isSlow = false;
     this.isThinned = false;
+    this.isRead = false;
     this.generation += 1;
     this.seen.clear();
     this.motion?.geometry.dispose();
     this.motion = null;
     this.refined = null;
     this.box.makeEmpty();
-    this.trailCount = 0;
-    this.trail.geometry.setDrawRange(0, 0);
+    this.trail.clear();
     this.draw();
   }
 
-  addMoves(moves: Moves): void {
-    const whole = this.makeLine(moves);
+  /** The first point is that at which the moves before have ended. `isWire`: the other end of the same moves, which come first. */
+  addMoves(moves: Moves, isWire = false): void {
+    const whole = this.makeLine(moves, isWire);
+    const first = isWire ? this.points - moves.count : Math.max(this.points - 1, 0);
     const isFirst = this.box.isEmpty();
     this.box.union(whole.geometry.boundingBox ?? new Box3());
-    this.points += moves.count;
+    this.points = isWire ? this.points : first + moves.count;
     // While it is read, a long path is drawn coarsely: what is drawn again with each chunk must be little.
     const isLong = this.points > POINTS_IN_MOTION;
     const cell = this.box.getSize(new Vector3()).length() / CELLS;
-    const coarse = isLong ? this.makeSegments(sparse(moves, cell, this.seen)) : null;
-    this.path.add(coarse ?? whole);
-    this.pieces.push({ whole, fine: null, coarse });
+    const coarse = isLong ? this.makeSegments(sparse(moves, cell, this.seen), isWire) : null;
+    const piece = { whole, fine: null, coarse, first: Math.max(first, 0), isWire };
+    this.pieces.push(piece);
+    if (this.isShown(piece)) {
+      this.path.add(coarse ?? whole);
+    }
     if (isFirst) {
       this.fit();
     }
     this.draw();
   }
 
-  /** The path has come to its end: what is drawn of it where drawing is slow is made, a piece at a time, so that jogs are renewed. */
+  /** The path has come to its end. */
   async finish(): Promise<void> {
+    this.isRead = true;
     this.fit();
+    await this.prepareForMotion();
+  }
+
+  /** What is drawn of a long path where drawing is slow is made, a piece at a time, so that jogs are renewed. */
+  private async prepareForMotion(): Promise<void> {
     if (this.points <= POINTS_IN_MOTION) {
+      this.showAll();
       return;
     }
     const mine = ++this.generation;
@@ -228,20 +186,48 @@ export class PathScene {
     for (const piece of this.pieces) {
       const moves = movesOf(piece.whole);
       piece.fine?.geometry.dispose();
-      piece.fine = this.makeLine(thin(moves, size / 2000));
-      parts.push(sparse(moves, size / CELLS, seen));
+      piece.fine = this.makeLine(thin(moves, size / 2000), piece.isWire);
+      if (this.isShown(piece)) {
+        parts.push(sparse(moves, size / CELLS, seen));
+      }
       await new Promise((done) => setTimeout(done));
       if (mine !== this.generation) {
         return; // another program is open
       }
     }
     const pairs = shuffled(joined(parts));
+    this.motion?.geometry.dispose();
     this.motion = this.makeSegments(pairs);
     this.pace = new Pace(pairs.count / 2, FIRST_PACE);
     this.isThinned = true;
     this.isSlow = this.measure();
+    this.showAll();
+  }
+
+  private isShown(piece: Piece): boolean {
+    return this.view === 'xy' ? !piece.isWire : this.view === 'uv' ? piece.isWire : true;
+  }
+
+  private showAll(): void {
     this.path.clear();
-    this.path.add(...(this.isSlow ? [this.motion] : this.pieces.map((piece) => piece.whole)));
+    const pieces = this.pieces.filter((piece) => this.isShown(piece));
+    this.path.add(...(this.isSlow && this.motion !== null ? [this.motion] : pieces.map((piece) => piece.whole)));
+    this.draw();
+  }
+
+  /** From now on by these values; by what moves are where there are none. */
+  async setColoring(by: ColorBy, ranges: Ranges | null, shading: Shading): Promise<void> {
+    this.materials.colorBy(ranges === null ? 'kind' : by);
+    if (ranges !== null) {
+      for (const piece of this.pieces) {
+        shade(movesOf(piece.whole), piece.first, ranges, shading);
+        const attribute = piece.whole.geometry.getAttribute('shade');
+        attribute.needsUpdate = true;
+      }
+      if (this.isRead) {
+        await this.prepareForMotion();
+      }
+    }
     this.draw();
   }
 
@@ -253,6 +239,8 @@ export class PathScene {
     this.limits.geometry = new EdgesGeometry(box);
     box.dispose();
     this.limitBox.getCenter(this.limits.position);
+    this.limits.visible = true;
+    this.makeTip();
     if (this.box.isEmpty()) {
       this.fit();
     }
@@ -269,32 +257,79 @@ export class PathScene {
     return !this.box.isEmpty() && !this.limitBox.isEmpty() && !this.limitBox.clone().expandByScalar(slack).containsBox(this.box);
   }
 
-  /** Of the controlled point; with the trail of where it has been. */
-  setTool(x: number, y: number, z: number, isCutting: boolean): void {
-    if (this.tool.position.x === x && this.tool.position.y === y && this.tool.position.z === z) {
+  /** Without limits: what is drawn is not in the coordinates that have them. */
+  hideLimits(): void {
+    this.limitBox.makeEmpty();
+    this.limits.visible = false;
+  }
+
+  /** Of the controlled point; with the trail of where it has been. `other`: the end of a foam cutter's wire. */
+  setTool(spot: Spot, isCutting: boolean, other: Spot | null = null): void {
+    const [x, y, z] = spot;
+    const { position } = this.tool;
+    const ends = this.wire.geometry.getAttribute('position');
+    const isSame = other === null || (this.wire.visible && ends.getX(1) === Math.fround(other[0]) && ends.getY(1) === Math.fround(other[1]));
+    if (position.x === x && position.y === y && position.z === z && isSame) {
       return;
     }
-    this.tool.position.set(x, y, z);
+    position.set(x, y, z);
+    this.wire.visible = other !== null;
+    this.tool.visible = other === null && (!this.isLatheTool || this.tip !== null);
+    if (other !== null) {
+      ends.setXYZ(0, x, y, z);
+      ends.setXYZ(1, ...other);
+      ends.needsUpdate = true;
+    }
     if (isCutting) {
-      this.addToTrail(x, y, z);
+      this.trail.add(x, y, z);
     }
     this.noteMotion();
   }
 
+  /** From now on the tool of a lathe is drawn; null: there is none in the spindle. */
+  setLatheTool(tip: LatheTip | null): void {
+    this.isLatheTool = true;
+    this.tip = tip;
+    this.makeTip();
+    this.draw();
+  }
+
+  private makeTip(): void {
+    if (!this.isLatheTool) {
+      return;
+    }
+    const length = this.limitBox.isEmpty() ? 20 : this.limitBox.getSize(new Vector3()).length() * TIP_SHARE;
+    this.tool.visible = this.tip !== null;
+    if (this.tip !== null) {
+      this.tool.geometry.dispose();
+      this.tool.geometry = tipGeometry(this.tip, length);
+      this.tool.scale.setScalar(1);
+    }
+  }
+
   setCurrentLine(line: number): void {
-    const { currentLine } = this.material.uniforms;
-    if (currentLine !== undefined && currentLine.value !== line) {
-      currentLine.value = line;
+    if (this.materials.setCurrentLine(line)) {
       this.draw();
     }
   }
 
   look(name: ViewName): void {
-    const [x, y, z] = DIRECTIONS[name];
+    const { from, up, isFlat } = VIEWS[name];
+    const isOther = this.isShownBy(name) !== this.isShownBy(this.view);
+    this.view = name;
     const target = this.controls.target;
-    this.camera.position.set(target.x + x * 1000, target.y + y * 1000, target.z + z * 1000);
+    this.camera.up.set(...up);
+    this.camera.position.set(target.x + from[0] * 1000, target.y + from[1] * 1000, target.z + from[2] * 1000);
     this.camera.lookAt(target);
+    this.controls.enableRotate = isFlat !== true;
     this.fit();
+    if (isOther) {
+      void this.prepareForMotion();
+    }
+  }
+
+  private isShownBy(view: ViewName): string {
+    return view === 'xy' || view === 'uv' ? view : 'all';
   }
 
   /** The path, or the room of the machine where there is none, fills the picture. */
@@ -347,36 +382,24 @@ export class PathScene {
     clearTimeout(this.stillTimer);
     this.clearPath();
     this.controls.dispose();
-    this.material.dispose();
+    this.materials.dispose();
     this.renderer.dispose();
   }
 
-  private makeLine(moves: Moves): Line {
+  private makeLine(moves: Moves, isWire = false): Line {
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', new BufferAttribute(moves.places, 3));
     geometry.setAttribute('kind', new BufferAttribute(moves.kinds, 1));
+    geometry.setAttribute('shade', new BufferAttribute(moves.shades, 1));
     geometry.setAttribute('line', new BufferAttribute(moves.lines, 1));
     geometry.computeBoundingBox();
     geometry.computeBoundingSphere();
-    return new Line(geometry, this.material);
+    return new Line(geometry, isWire ? this.materials.wire : this.materials.path);
   }
 
-  private makeSegments(moves: Moves): LineSegments {
-    const line = this.makeLine(moves);
-    return new LineSegments(line.geometry, this.material);
-  }
-
-  private addToTrail(x: number, y: number, z: number): void {
-    if (this.trailCount === TRAIL_POINTS) {
-      this.trailPlaces.copyWithin(0, 3);
-      this.trailCount -= 1;
-    }
-    this.trailPlaces.set([x, y, z], this.trailCount * 3);
-    this.trailCount += 1;
-    const { geometry } = this.trail;
-    geometry.setDrawRange(0, this.trailCount);
-    const position = geometry.getAttribute('position');
-    position.needsUpdate = true;
+  private makeSegments(moves: Moves, isWire = false): LineSegments {
+    const line = this.makeLine(moves, isWire);
+    return new LineSegments(line.geometry, line.material);
   }
 
   private noteMotion(): void {
@@ -392,6 +415,9 @@ export class PathScene {
 
   /** As large on the screen at any zoom. */
   private scaleTool(): void {
+    if (this.isLatheTool) {
+      return;
+    }
     this.tool.scale.setScalar(1 / this.camera.zoom);
   }
 
@@ -428,7 +454,7 @@ export class PathScene {
   private refine(done: number): void {
     const pieces = this.pieces.slice(done, done + this.perFrame);
     this.path.clear();
-    this.path.add(...pieces.map((piece) => piece.fine ?? piece.whole));
+    this.path.add(...pieces.filter((piece) => this.isShown(piece)).map((piece) => piece.fine ?? piece.whole));
     this.renderer.autoClear = false;
     this.renderer.render(this.scene, this.camera);
     this.renderer.autoClear = true;
@@ -476,20 +502,13 @@ export class PathScene {
 }
 
 function movesOf(line: Line): Moves {
-  const { position, kind, line: lines } = line.geometry.attributes;
+  const { position, kind, shade: shades, line: lines } = line.geometry.attributes;
   return {
     kind: 'moves',
     count: position?.count ?? 0,
     places: position?.array as Float32Array,
     lines: lines?.array as Uint32Array,
     kinds: kind?.array as Uint8Array,
+    shades: shades?.array as Uint8Array,
   };
-}
-
-/** A cone on its point. */
-function makeTool(): Mesh {
-  const geometry = new ConeGeometry(4, 14, 20);
-  geometry.rotateX(-Math.PI / 2);
-  geometry.translate(0, 0, 7);
-  return new Mesh(geometry, new MeshBasicMaterial({ transparent: true, opacity: 0.85 }));
 }

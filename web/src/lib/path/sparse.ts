@@ -7,7 +7,7 @@ const SPAN = 1 << 16;
 
 /** Pairs of points, each a piece of the path in a cell where nothing was yet. `seen` goes from chunk to chunk. */
 export function sparse(moves: Moves, cell: number, seen: Set<number>): Moves {
-  const { places, lines, kinds, count } = moves;
+  const { places, lines, kinds, shades, count } = moves;
   const kept: number[] = [];
   const index = (value: number): number => Math.round(value / cell) & (SPAN - 1);
   for (let i = 1; i < count; ++i) {
@@ -27,11 +27,13 @@ export function sparse(moves: Moves, cell: number, seen: Set<number>): Moves {
     places: new Float32Array(kept.length * 6),
     lines: new Uint32Array(kept.length * 2),
     kinds: new Uint8Array(kept.length * 2),
+    shades: new Uint8Array(kept.length * 2),
   };
   kept.forEach((from, to) => {
     thinned.places.set(places.subarray(from * 3 - 3, from * 3 + 3), to * 6);
     thinned.lines.fill(lines[from] ?? 0, to * 2, to * 2 + 2);
     thinned.kinds.fill(kinds[from] ?? 0, to * 2, to * 2 + 2);
+    thinned.shades.fill(shades[from] ?? 0, to * 2, to * 2 + 2);
   });
   return thinned;
 }

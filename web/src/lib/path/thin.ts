@@ -4,7 +4,7 @@ import type { Moves } from './chunks';
 
 /** Keeps the ends of moves of another kind, and points farther than `distance` from the last one kept. */
 export function thin(moves: Moves, distance: number): Moves {
-  const { places, lines, kinds, count } = moves;
+  const { places, lines, kinds, shades, count } = moves;
   const kept: number[] = count > 0 ? [0] : [];
   const limit = distance * distance;
   let last = 0;
@@ -24,11 +24,13 @@ export function thin(moves: Moves, distance: number): Moves {
     places: new Float32Array(kept.length * 3),
     lines: new Uint32Array(kept.length),
     kinds: new Uint8Array(kept.length),
+    shades: new Uint8Array(kept.length),
   };
   kept.forEach((from, to) => {
     thinned.places.set(places.subarray(from * 3, from * 3 + 3), to * 3);
     thinned.lines[to] = lines[from] ?? 0;
     thinned.kinds[to] = kinds[from] ?? 0;
+    thinned.shades[to] = shades[from] ?? 0;
   });
   return thinned;
 }

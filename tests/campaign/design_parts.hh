@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What random machines are made of.
+#pragma once
+
+#include "campaign/design.hh"
+
+namespace mw::campaign {
+
+double rounded(double x, double step);
+/// Ten to the power of something between.
+double power(sim::Random &random, double low, double high);
+JointDesign make_joint(sim::Random &random, bool isAngular, bool isJerkLimited);
+/// Of a machine whose joints are not axes: from -reach to reach, homed where it stands.
+JointDesign make_plain(sim::Random &random, bool isAngular, double reach, bool isJerkLimited);
+AxisDesign axis_of(int axis, const JointDesign &j);
+
+}  // namespace mw::campaign

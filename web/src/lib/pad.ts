@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Jogs by a gamepad. An axis moves only while a button is held that is there for nothing else, and a stick that stands in its
+// middle when the button is pressed is moved out of it. Whatever ends that ends the jog, and both are asked for anew.
+
+/** What a browser tells of a pad. */
+export interface Pad {
+  index: number;
+  connected: boolean;
+  mapping: string;
+  axes: readonly number[];
+  buttons: readonly { pressed: boolean }[];
+  /** Of its last change. [ms] */
+  timestamp: number;
+}
+
+export interface PadIo {
+  /** With the part of the jog speed, -1 to 1. */
+  press(letter: string, share: number): void;
+  change(letter: string, share: number): void;
+  release(letter: string): void;
+  /** Nothing stands against a jog. */
+  isOpen(): boolean;
+  /** The jogs have ended though nobody let go. */
+  ended(why: 'lost' | 'still'): void;
+}
+
+/** Which way a stick moves an axis. */
+export interface StickAxis {
+  letter: string;
+  stick: number;
+  sign: number;
+}
+
+/** Both shoulder buttons of the standard layout. */
+const HOLD_BUTTONS = [4, 5];
+/** Of a stick: a worn one does not come back to its middle. */
+export const DEAD_ZONE = 0.2;
+/** A held stick is never quite still: a pad that tells nothing for so long has lost its radio. */
+export const STILL_MS = 4000;
+/** Changes of the speed are told by so many parts. */
+const STEPS = 20;
+
+/** Mill: left stick X and Y, right stick Z and the fourth axis. Lathe: as its picture has Z and X. */
+export function sticksOf(kind: string, axes: string): StickAxis[] {
+  const all: StickAxis[] =
+    kind === 'lathe' || kind === 'back_lathe'
+      ? [{ letter: 'Z', stick: 0, sign: 1 }, { letter: 'X', stick: 1, sign: kind === 'lathe' ? 1 : -1 }]
+      : [{ letter: 'X', stick: 0, sign: 1 }, { letter: 'Y', stick: 1, sign: -1 }, { letter: 'Z', stick: 3, sign: -1 }];
+  const fourth = [...axes].find((letter) => !'XYZ'.includes(letter));
+  if (fourth !== undefined && all.length === 3) {
+    all.push({ letter: fourth, stick: 2, sign: 1 });
+  }
+  return all.filter((one) => axes.includes(one.letter));
+}
+
+/** Nothing within the dead zone; from its edge on evenly up to 1. */
+export function shareOf(value: number): number {
+  const size = Math.abs(value);
+  if (!(size > DEAD_ZONE)) {
+    return 0;
+  }
+  const share = Math.min(1, (size - DEAD_ZONE) / (1 - DEAD_ZONE));
+  return (Math.sign(value) * Math.max(1, Math.round(share * STEPS))) / STEPS;
+}
+
+export class PadJogger {
+  private held = new Map<string, number>();
+  private isArmed = false;
+  private wasHolding = false;
+  private pad: number | null = null;
+  private lastChange = 0;
+  private lastTimestamp = -1;
+
+  constructor(private readonly io: PadIo) {}
+
+  /** To be called every few milliseconds with what navigator.getGamepads() says. */
+  look(pads: readonly (Pad | null)[], sticks: readonly StickAxis[], now: number): void {
+    const usable = pads.filter((one): one is Pad => one !== null && one.connected && one.mapping === 'standard');
+    const pad = usable.find((one) => one.index === this.pad) ?? (this.pad === null ? usable.find(isHolding) : undefined);
+    if (pad === undefined) {
+      if (this.pad !== null && this.held.size > 0) {
+        this.end('lost');
+      }
+      this.forget();
+      return;
+    }
+    this.pad = pad.index;
+    this.noteChange(pad, now);
+    if (!isHolding(pad)) {
+      this.releaseAll();
+      this.forget();
+      return;
+    }
+    if (!this.wasHolding) {
+      this.wasHolding = true;
+      this.isArmed = sticks.every((one) => shareOf(pad.axes[one.stick] ?? 0) === 0);
+    }
+    if (!this.isArmed) {
+      return;
+    }
+    if (!this.io.isOpen()) {
+      this.releaseAll();
+      this.isArmed = false;
+      return;
+    }
+    if (this.held.size > 0 && now - this.lastChange > STILL_MS) {
+      this.end('still');
+      return;
+    }
+    for (const { letter, stick, sign } of sticks) {
+      this.move(letter, sign * shareOf(pad.axes[stick] ?? 0));
+    }
+  }
+
+  /** The page has lost the attention: the button is pressed anew before anything moves. */
+  drop(): void {
+    this.releaseAll();
+    this.isArmed = false;
+  }
+
+  /** A jog has ended by what the machine said. */
+  noteEnd(): void {
+    this.held.clear();
+    this.isArmed = false;
+  }
+
+  private move(letter: string, share: number): void {
+    const now = this.held.get(letter) ?? 0;
+    if (share === now) {
+      return;
+    }
+    if (now !== 0 && Math.sign(share) !== Math.sign(now)) {
+      this.held.delete(letter);
+      this.io.release(letter);
+      return; // the other way begins with the next look
+    }
+    this.held.set(letter, share);
+    if (now === 0) {
+      this.io.press(letter, share);
+    } else {
+      this.io.change(letter, share);
+    }
+  }
+
+  private noteChange(pad: Pad, now: number): void {
+    if (pad.timestamp !== this.lastTimestamp) {
+      this.lastTimestamp = pad.timestamp;
+      this.lastChange = now;
+    }
+  }
+
+  private end(why: 'lost' | 'still'): void {
+    this.releaseAll();
+    this.isArmed = false;
+    this.io.ended(why);
+  }
+
+  private releaseAll(): void {
+    for (const letter of [...this.held.keys()]) {
+      this.held.delete(letter);
+      this.io.release(letter);
+    }
+  }
+
+  private forget(): void {
+    this.pad = null;
+    this.isArmed = false;
+    this.wasHolding = false;
+  }
+}
+
+function isHolding(pad: Pad): boolean {
+  return HOLD_BUTTONS.some((one) => pad.buttons[one]?.pressed === true);
+}

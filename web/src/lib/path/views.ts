@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// From where a path is looked at.
+import type { Spot } from './geometry';
+
+export type ViewName = 'top' | 'front' | 'side' | 'iso' | 'lathe' | 'back_lathe' | 'xy' | 'uv';
+
+/** Where the camera is, seen from what it looks at, and what is up in the picture. A lathe has Z to the right, and X downwards
+ * where the tool is before the part. */
+export const VIEWS: Record<ViewName, { from: Spot; up: Spot; isFlat?: boolean }> = {
+  top: { from: [0, -0.0001, 1], up: [0, 0, 1] },
+  front: { from: [0, -1, 0], up: [0, 0, 1] },
+  side: { from: [1, 0, 0], up: [0, 0, 1] },
+  iso: { from: [-0.6, -1, 0.75], up: [0, 0, 1] },
+  lathe: { from: [0, -1, 0], up: [-1, 0, 0], isFlat: true },
+  back_lathe: { from: [0, 1, 0], up: [1, 0, 0], isFlat: true },
+  xy: { from: [0, -0.0001, 1], up: [0, 0, 1], isFlat: true },
+  uv: { from: [0, -0.0001, 1], up: [0, 0, 1], isFlat: true },
+};

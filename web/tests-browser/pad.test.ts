@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Jogs by a gamepad that the page is told of (J3).
+import { afterAll, beforeAll, expect, it } from 'vitest';
+import type { Page } from 'playwright-core';
+import { bringUp, errorsOf, Rig, sleep, text, until, untilText } from './rig';
+
+const rig = new Rig();
+let page: Page;
+
+/** In place of navigator.getGamepads: `window.pad` is what it says. */
+const FAKED = `window.pad = null;
+navigator.getGamepads = () => [window.pad === null ? null : { index: 0, id: 'faked', connected: true, mapping: 'standard', timestamp: performance.now(),
+  axes: window.pad.axes, buttons: Array.from({ length: 17 }, (_, i) => ({ pressed: window.pad.hold && i === 4, value: 0, touched: false })) }];`;
+
+async function set(hold: boolean, axes: number[]): Promise<void> {
+  await page.evaluate(([held, all]) => {
+    (window as unknown as { pad: unknown }).pad = { hold: held, axes: all };
+  }, [hold, axes] as const);
+  await sleep(80);
+}
+async function unplug(): Promise<void> {
+  await page.evaluate(() => {
+    (window as unknown as { pad: unknown }).pad = null;
+  });
+}
+async function stands(): Promise<boolean> {
+  const [x, y] = [rig.position(0), rig.position(1)];
+  await sleep(150);
+  return x === rig.position(0) && y === rig.position(1);
+}
+
+beforeAll(async () => {
+  await rig.startServer();
+  await rig.startMachine();
+  page = await rig.page();
+  await page.evaluate(FAKED);
+  await bringUp(page);
+  await set(false, [0, 0, 0, 0]);
+  await page.getByTestId('pad-on').check();
+}, 60_000);
+
+afterAll(async () => {
+  await rig.end();
+});
+
+it('moves while button and stick are held, and stops when either is let go', async () => {
+  await set(false, [1, 0, 0, 0]);
+  expect(await stands()).toBe(true);
+  await set(false, [0, 0, 0, 0]);
+  await set(true, [0, 0, 0, 0]);
+  await set(true, [0.9, 0, 0, 0]);
+  await until(() => rig.position(0) > 3, 'X moves');
+  await set(true, [0.1, 0, 0, 0]);
+  await until(stands, 'a stand');
+  const x = rig.position(0);
+  await set(true, [0, 0.9, 0, 0]);
+  await until(() => rig.position(1) < -3, 'a stick towards the operator moves Y back');
+  await set(false, [0, 0.9, 0, 0]);
+  await until(stands, 'a stand');
+  expect(rig.position(0)).toBe(x);
+}, 60_000);
+
+it('moves slower with less', async () => {
+  await set(false, [0, 0, 0, 0]);
+  await set(true, [0, 0, 0, 0]);
+  await set(true, [0, -0.4, 0, 0]);
+  await untilText(page, 'velocity', /^7\d\d\b/); // a quarter of the stick's way, of 3000 mm/min
+  await set(true, [0, -0.6, 0, 0]);
+  await untilText(page, 'velocity', /^15\d\d\b/);
+  await set(false, [0, 0, 0, 0]);
+  await until(stands, 'a stand');
+}, 60_000);
+
+it('ends when the pad is gone, or the window loses the attention, and begins by itself no more', async () => {
+  for (const end of [unplug, () => page.evaluate(() => window.dispatchEvent(new Event('blur')))]) {
+    await set(false, [0, 0, 0, 0]);
+    await set(true, [0, 0, 0, 0]);
+    const before = rig.position(0);
+    await set(true, [-0.9, 0, 0, 0]);
+    await until(() => rig.position(0) < before - 2, 'X moves');
+    await end();
+    await until(stands, 'a stand');
+    await set(true, [-0.9, 0, 0, 0]);
+    expect(await stands()).toBe(true);
+  }
+}, 60_000);
+
+it('does nothing in another view, nor when it is switched off', async () => {
+  await set(false, [0, 0, 0, 0]);
+  await page.getByTestId('pad-on').uncheck();
+  await set(true, [0, 0, 0, 0]);
+  await set(true, [0.9, 0, 0, 0]);
+  expect(await stands()).toBe(true);
+  await page.getByTestId('pad-on').check();
+  expect(await stands()).toBe(true); // the stick is out of its middle
+  await page.setViewportSize({ width: 390, height: 844 });
+  await page.getByTestId('tab-path').click();
+  await set(false, [0, 0, 0, 0]);
+  await set(true, [0, 0, 0, 0]);
+  await set(true, [0.9, 0, 0, 0]);
+  expect(await stands()).toBe(true);
+  expect(await text(page, 'run-state')).toBe('Idle');
+  expect(errorsOf(page)).toEqual([]);
+}, 60_000);
