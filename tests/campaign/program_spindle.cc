@@ -165,7 +165,7 @@ Act Writer::write_in_step() {
         // Too short for the speed, or for the spindle; a feed by turns may be short.
         // In a small room what does not fit may be slow enough all the same.
         act.isToFail = !fits && kind != 3 && design_.isTrivial;
-        act.mayFail = isSudden || !isPlainZ || !fits;
+        act.mayFail = isSudden || !isPlainZ || (!fits && !design_.isTrivial);
         sync.isShort = !fits;
         start_spindle(sync.rpm);
         say(fmt::format("G0 Z{:.4f}", sync.from));
