@@ -15,6 +15,9 @@ struct FreePlanner {
     double target = 0;
     double max_velocity = 0;      ///< of this move [unit/s]
     double max_acceleration = 0;  ///< [unit/s^2]
+    /// It brakes with what it has in each cycle, until somebody sends it elsewhere than `brake_target`.
+    bool isBraking = false;
+    double brake_target = 0;
 
     bool isAtRest() const noexcept { return velocity == 0.0 && position == target; }
 
@@ -23,11 +26,15 @@ struct FreePlanner {
         position = at;
         velocity = 0;
         target = at;
+        isBraking = false;
     }
-    /// Brakes; ends where that leads.
+    /// Brakes; ends where that leads, which is the target. May be told again and again.
     void stop() noexcept;
     /// Advances by `dt` [s]. [servo]
     void step(double dt) noexcept;
+
+  private:
+    void brake(double dt) noexcept;
 };
 
 /// The same with a jerk limit. A mean over tau swings its acceleration by at most 2 A within tau, whatever

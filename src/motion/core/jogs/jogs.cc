@@ -419,6 +419,7 @@ void settle(Jogs &jogs, const Inputs &in) noexcept {
 
 void renumber(Jog &jog, double position, double shift) noexcept {
     jog.planner.target += shift;
+    jog.planner.brake_target += shift;
     jog.planner.position = position;
 }
 
