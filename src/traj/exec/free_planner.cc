@@ -18,8 +18,8 @@ void FreePlanner::stop() noexcept {
     const bool isBehind = std::abs(place - target) <= CYCLES * std::abs(place - position) &&
                           std::abs(place - position) > std::abs(target - position);
     if (!isBehind) {
-        target = brake_target = place;
-        isBraking = velocity != 0.0;
+        target = brake_target_ = place;
+        isBraking_ = velocity != 0.0;
     }
 }
 
@@ -47,8 +47,8 @@ void FreePlanner::brake(double dt) noexcept {
     const bool isOver = left > 0 || v <= ROUNDING * max_acceleration * dt;
     position += sign * p;
     velocity = isOver ? 0.0 : sign * v;
-    target = brake_target = stop_position(position, velocity, max_acceleration);
-    isBraking = velocity != 0.0;
+    target = brake_target_ = stop_position(position, velocity, max_acceleration);
+    isBraking_ = velocity != 0.0;
 }
 
 void FreePlanner::step(double dt) noexcept {
@@ -57,8 +57,8 @@ void FreePlanner::step(double dt) noexcept {
         velocity = a > 0 ? velocity : 0.0;
         return;
     }
-    isBraking = isBraking && target == brake_target;
-    if (isBraking) {
+    isBraking_ = isBraking_ && target == brake_target_;
+    if (isBraking_) {
         brake(dt);
         return;
     }

@@ -15,9 +15,6 @@ struct FreePlanner {
     double target = 0;
     double max_velocity = 0;      ///< of this move [unit/s]
     double max_acceleration = 0;  ///< [unit/s^2]
-    /// It brakes with what it has in each cycle, until somebody sends it elsewhere than `brake_target`.
-    bool isBraking = false;
-    double brake_target = 0;
 
     bool isAtRest() const noexcept { return velocity == 0.0 && position == target; }
 
@@ -26,7 +23,13 @@ struct FreePlanner {
         position = at;
         velocity = 0;
         target = at;
-        isBraking = false;
+        isBraking_ = false;
+    }
+    /// It is at `at`, by another zero: the target moves by `shift`.
+    void renumber(double at, double shift) noexcept {
+        position = at;
+        target += shift;
+        brake_target_ += shift;
     }
     /// Brakes; ends where that leads, which is the target. May be told again and again.
     void stop() noexcept;
@@ -35,6 +38,10 @@ struct FreePlanner {
 
   private:
     void brake(double dt) noexcept;
+
+    /// It brakes with what it has in each cycle, until somebody sends it elsewhere than `brake_target_`.
+    bool isBraking_ = false;
+    double brake_target_ = 0;
 };
 
 /// The same with a jerk limit. A mean over tau swings its acceleration by at most 2 A within tau, whatever
