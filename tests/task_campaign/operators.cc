@@ -47,6 +47,7 @@ void Operators::cycle() {
     }
     bench_.cycle();
     look_at_orders();
+    wasAway_ = status().task.isAway;
     while (const auto message = tell_ != nullptr ? bench_.client(0).next_message() : std::nullopt) {
         tell("  says: " + message->text);
     }
@@ -117,7 +118,7 @@ void Operators::note_end(const Order &order, const client::Outcome &outcome) {
         mode_ = order.mode.value_or(mode_);
         mayBeReleased_ = mayBeReleased_ && !order.mode;
     } else {
-        mayBeReleased_ = mayBeReleased_ || (order.isRelease && !isRefused);
+        mayBeReleased_ = mayBeReleased_ || ((order.isRelease || wasAway_) && !isRefused);
         ++verdict_.refused;
         ++verdict_.refusals[kind_of(outcome.reason)];
         if (outcome.reason.empty()) {

@@ -63,7 +63,8 @@ class Operators {
     std::FILE *tell_;
     Verdict verdict_;
     msgs::Mode mode_ = msgs::Mode::MANUAL;  ///< that was set last
-    /// Axes were being released when all was stopped: the mode of jogs may have come before that or not.
+    /// Axes were released, or were being so, when what held them came to its end: the mode may be that of
+    /// jogs.
     bool mayBeReleased_ = false;
     bool isHeldByUs_ = false;  ///< nobody is to resume
 
@@ -75,6 +76,7 @@ class Operators {
     std::vector<Order> orders_;  ///< that have not ended
     std::map<Serial, client::Outcome> ended_;
     std::int64_t held_since_ms_ = -1;
+    bool wasAway_ = false;  ///< a cycle ago
 };
 
 }  // namespace mw::task_campaign
