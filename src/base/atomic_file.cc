@@ -89,6 +89,25 @@ Result<> write_file_atomically(const std::string &path, std::string_view content
     return {};
 }
 
+std::string backup_of(const std::string &path) {
+    return path + ".bak";
+}
+
+Result<> write_file_with_backup(const std::string &path, std::string_view content) {
+    Result<> kept;
+    if (::access(path.c_str(), F_OK) == 0) {
+        const Result<std::string> old = read_file(path);
+        const std::string backup = backup_of(path);
+        if (!old.has_value()) {
+            kept = std::unexpected(old.error());
+        } else if (*old != content || ::access(backup.c_str(), F_OK) != 0) {
+            kept = write_file_atomically(backup, *old);
+        }
+    }
+    const Result<> written = write_file_atomically(path, content);
+    return written.has_value() ? kept : written;
+}
+
 Result<std::string> read_file(const std::string &path) {
     const FileHandle file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
     if (file.get() < 0) {

@@ -14,6 +14,14 @@ namespace mw {
 /// is removed.
 Result<> write_file_atomically(const std::string &path, std::string_view content);
 
+/// As write_file_atomically(); what `path` had is in `path` + ".bak" before. The same content again leaves a
+/// backup that is there as it is. Where the backup cannot be made, the file is written all the same, and the
+/// error returned.
+Result<> write_file_with_backup(const std::string &path, std::string_view content);
+
+/// The name of the backup of a file.
+std::string backup_of(const std::string &path);
+
 /// The whole file as text; the error names the file and the system's reason.
 Result<std::string> read_file(const std::string &path);
 

@@ -2,6 +2,7 @@
 // What the journal asks of a disk, step by step, so that tests can cut the power between any two of them.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -29,10 +30,19 @@ class Disk {
     virtual Result<> rewrite(const std::string &path, std::string_view bytes);
 };
 
+/// What becomes of the content that a file had.
+enum class Old : std::uint8_t {
+    DROPPED,
+    BACKED_UP,  ///< is in the file's name with .bak
+};
+
 /// Of this computer.
 std::unique_ptr<Disk> system_disk();
 
 /// The old content or the new one, whatever happens meanwhile.
 Result<> replace_file(Disk &disk, const std::string &path, std::string_view bytes);
+
+/// As Disk::rewrite(), the old content first in the backup, by the rule of write_file_with_backup().
+Result<> rewrite_with_backup(Disk &disk, const std::string &path, std::string_view bytes);
 
 }  // namespace mw::journal

@@ -97,4 +97,18 @@ Result<> replace_file(Disk &disk, const std::string &path, std::string_view byte
     return done.has_value() ? disk.sync_folder_of(path) : done;
 }
 
+Result<> rewrite_with_backup(Disk &disk, const std::string &path, std::string_view bytes) {
+    Result<> kept;
+    if (disk.exists(path)) {
+        const auto old = disk.read(path);
+        if (!old.has_value()) {
+            kept = std::unexpected(old.error());
+        } else if (*old != bytes || !disk.exists(backup_of(path))) {
+            kept = disk.rewrite(backup_of(path), *old);
+        }
+    }
+    const auto written = disk.rewrite(path, bytes);
+    return written.has_value() ? kept : written;
+}
+
 }  // namespace mw::journal

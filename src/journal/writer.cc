@@ -116,11 +116,15 @@ void Writer::forget() {
     ask({Kind::FORGET, {}, {}, {}, 0});
 }
 
-void Writer::keep_file(const std::string &path, std::string text) {
-    ask({Kind::FILE, {}, path, std::move(text), 0});
+void Writer::keep_file(const std::string &path, std::string text, Old old) {
+    ask({Kind::FILE, {}, path, std::move(text), 0, old});
 }
 
-Result<> Writer::write_file(const std::string &path, const std::string &text) {
+Result<> Writer::put_file(const std::string &path, const std::string &text, Old old) {
+    return old == Old::BACKED_UP ? rewrite_with_backup(*disk_, path, text) : disk_->rewrite(path, text);
+}
+
+Result<> Writer::write_file(const std::string &path, const std::string &text, Old old) {
     std::uint64_t number = 0;
     {
         const std::lock_guard lock(mutex_);
@@ -130,7 +134,7 @@ Result<> Writer::write_file(const std::string &path, const std::string &text) {
     // The thread may have taken an older text already: it is done, or will find this number.
     const std::lock_guard lock(disk_mutex_);
     written_[path] = number;
-    return disk_->rewrite(path, text);
+    return put_file(path, text, old);
 }
 
 std::optional<std::string> Writer::take_trouble() {
@@ -216,7 +220,7 @@ Result<> Writer::do_job(Job &job) {
 Result<> Writer::do_file(const Job &job) {
     const auto written = written_.find(job.path);
     const bool isOld = written != written_.end() && job.number < written->second;
-    return isOld ? Result<>{} : disk_->rewrite(job.path, job.text);
+    return isOld ? Result<>{} : put_file(job.path, job.text, job.old);
 }
 
 Result<> Writer::begin_file(Job &job) {

@@ -51,10 +51,10 @@ class Writer {
     void end();
     /// Nobody wants to go on with it: there is no journal any more.
     void forget();
-    void keep_file(const std::string &path, std::string text);
+    void keep_file(const std::string &path, std::string text, Old old = Old::DROPPED);
     /// Waits for the disk: the file has this text when it returns, and nothing that was asked before comes
     /// over it.
-    Result<> write_file(const std::string &path, const std::string &text);
+    Result<> write_file(const std::string &path, const std::string &text, Old old = Old::DROPPED);
 
     /// What the operator is to know, once.
     std::optional<std::string> take_trouble();
@@ -68,6 +68,7 @@ class Writer {
         Run run;  ///< of BEGIN; the field in question of PROGRESS and DOUBT
         std::string path, text;
         std::uint64_t number = 0;  ///< counts what is asked
+        Old old = Old::DROPPED;    ///< of FILE
     };
     using Jobs = std::deque<Job>;
 
@@ -77,6 +78,7 @@ class Writer {
     void do_jobs(Jobs &jobs);
     Result<> do_job(Job &job);
     Result<> do_file(const Job &job);
+    Result<> put_file(const std::string &path, const std::string &text, Old old);
     Result<> begin_file(Job &job);
     Result<> write_records();
     Result<> rewrite();

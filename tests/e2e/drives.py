@@ -16,7 +16,7 @@ import threading
 import time
 import tty
 
-from mb2hal import FAILED, expect, serve_rtu
+from modbus_slave import FAILED, expect, serve_rtu
 
 
 class Drive:

@@ -44,5 +44,26 @@ TEST_F(AtomicFile, AFailureNamesTheFile) {
     EXPECT_NE(result.error().message.find("missing/a"), std::string::npos);
 }
 
+TEST_F(AtomicFile, WhatItHadIsInTheBackup_D3) {
+    ASSERT_TRUE(write_file_with_backup(path("a"), "one").has_value());
+    EXPECT_FALSE(fs::exists(path("a.bak")));
+    ASSERT_TRUE(write_file_with_backup(path("a"), "two").has_value());
+    EXPECT_EQ(read_file(path("a.bak")).value(), "one");
+    ASSERT_TRUE(write_file_with_backup(path("a"), "two").has_value());
+    EXPECT_EQ(read_file(path("a.bak")).value(), "one");
+    fs::remove(path("a.bak"));
+    ASSERT_TRUE(write_file_with_backup(path("a"), "two").has_value());
+    EXPECT_EQ(read_file(path("a.bak")).value(), "two");
+}
+
+TEST_F(AtomicFile, WithoutAPlaceForTheBackupTheFileIsWrittenAndItIsTold) {
+    ASSERT_TRUE(write_file_with_backup(path("a"), "one").has_value());
+    fs::create_directory(path("a.bak"));
+    const auto result = write_file_with_backup(path("a"), "two");
+    ASSERT_FALSE(result.has_value());
+    EXPECT_NE(result.error().message.find("a.bak"), std::string::npos) << result.error().message;
+    EXPECT_EQ(read_file(path("a")).value(), "two");
+}
+
 }  // namespace
 }  // namespace mw

@@ -109,7 +109,7 @@ std::string Parameters::text() const {
 }
 
 Result<> Parameters::save(const std::string &path) const {
-    return write_file_atomically(path, text());
+    return write_file_with_backup(path, text());
 }
 
 }  // namespace mw::interp::detail

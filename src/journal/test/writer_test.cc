@@ -145,6 +145,44 @@ TEST_F(JournalWriter, WhateverThePowerCutTakesWhatWasWorkedOffIsThere_D3) {
     }
 }
 
+/// Texts of rising numbers: a power cut at any step leaves a whole file, and beside it a whole one before it.
+TEST_F(JournalWriter, WhateverThePowerCutTakesNeitherFileNorBackupIsLostOrHalf_D3) {
+    const auto text_of = [](int number) { return std::string(1500, static_cast<char>('a' + number)); };
+    const auto number_in = [](const std::string &text) {
+        EXPECT_EQ(text.size(), 1500U);
+        EXPECT_EQ(text.find_first_not_of(text.front()), std::string::npos);
+        return text.front() - 'a';
+    };
+    int with_backup = 0;
+    for (unsigned seed = 0; seed < 2000; ++seed) {
+        SCOPED_TRACE(seed);
+        std::mt19937_64 random(seed);
+        disk = {};
+        disk.write_outside("/m/p.var", text_of(0));
+        auto writer = open();
+        disk.steps_left = static_cast<long>(random() % 40);
+        int sure = 0, last = 0;
+        while (!disk.isDead) {
+            writer->keep_file("/m/p.var", text_of(++last), Old::BACKED_UP);
+            writer->work();
+            sure = disk.isDead ? sure : last;
+        }
+        writer.reset();
+        disk.cut_power(random);
+        const int now = number_in(disk.files[disk.names["/m/p.var"]].now);
+        EXPECT_GE(now, sure);
+        EXPECT_LE(now, last);
+        if (disk.names.contains("/m/p.var.bak")) {
+            ++with_backup;
+            const int before = number_in(disk.files[disk.names["/m/p.var.bak"]].now);
+            EXPECT_TRUE(before == now - 1 || before == now) << before << " beside " << now;
+        } else {
+            EXPECT_EQ(sure, 0);
+        }
+    }
+    EXPECT_GT(with_backup, 1000);
+}
+
 TEST(JournalWriterThread, WritesToARealDiskBesideWhoAsks_D3) {
     namespace fs = std::filesystem;
     const fs::path folder = fs::temp_directory_path() / ("mw_journal_" + std::to_string(::getpid()));

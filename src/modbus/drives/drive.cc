@@ -91,6 +91,26 @@ bool Registers::write(int address, std::uint16_t value) {
     return note(connect() && modbus_write_register(context_.get(), address, value) == 1);
 }
 
+void PinMaker::make(hal_float_t *&pin, hal_pin_dir_t way, const char *what) {
+    note(hal_pin_float_newf(way, &pin, id_, "%s.%s", component_.c_str(), what));
+}
+
+void PinMaker::make(hal_bit_t *&pin, hal_pin_dir_t way, const char *what) {
+    note(hal_pin_bit_newf(way, &pin, id_, "%s.%s", component_.c_str(), what));
+}
+
+void PinMaker::out(hal_s32_t *&pin, const char *what) {
+    note(hal_pin_s32_newf(HAL_OUT, &pin, id_, "%s.%s", component_.c_str(), what));
+}
+
+void PinMaker::setting(hal_float_t &param, const char *what) {
+    note(hal_param_float_newf(HAL_RW, &param, id_, "%s.%s", component_.c_str(), what));
+}
+
+void PinMaker::setting(hal_s32_t &param, const char *what) {
+    note(hal_param_s32_newf(HAL_RW, &param, id_, "%s.%s", component_.c_str(), what));
+}
+
 Result<> run(Drive &drive, const std::string &name, const Line &line,
              const volatile std::sig_atomic_t &stop) {
     const int id = hal_init(name.c_str());

@@ -56,6 +56,32 @@ class Registers {
     std::chrono::steady_clock::time_point retry_{};
 };
 
+/// Makes pins and parameters COMPONENT.WHAT; what HAL refused is known at the end.
+class PinMaker {
+  public:
+    PinMaker(int comp_id, const std::string &component) : id_(comp_id), component_(component) {}
+
+    void out(hal_float_t *&pin, const char *what) { make(pin, HAL_OUT, what); }
+    void out(hal_bit_t *&pin, const char *what) { make(pin, HAL_OUT, what); }
+    void out(hal_s32_t *&pin, const char *what);
+    void in(hal_float_t *&pin, const char *what) { make(pin, HAL_IN, what); }
+    void in(hal_bit_t *&pin, const char *what) { make(pin, HAL_IN, what); }
+    /// Parameters that may be written.
+    void setting(hal_float_t &param, const char *what);
+    void setting(hal_s32_t &param, const char *what);
+
+    bool isDone() const { return isGood_; }
+
+  private:
+    void make(hal_float_t *&pin, hal_pin_dir_t way, const char *what);
+    void make(hal_bit_t *&pin, hal_pin_dir_t way, const char *what);
+    void note(int result) { isGood_ = isGood_ && result == 0; }
+
+    int id_;
+    const std::string &component_;
+    bool isGood_ = true;
+};
+
 /// What the kinds of drives do differently.
 class Drive {
   public:

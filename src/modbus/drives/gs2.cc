@@ -62,46 +62,36 @@ bool Gs2::make_pins(int id, const std::string &name) {
         return false;
     }
     Pins &p = *pins_;
-    const char *n = name.c_str();
-    int bad = 0;
-    const auto number = [&](hal_float_t **pin, hal_pin_dir_t way, const char *what) {
-        bad |= hal_pin_float_newf(way, pin, id, "%s.%s", n, what);
-    };
-    const auto bit = [&](hal_bit_t **pin, hal_pin_dir_t way, const char *what) {
-        bad |= hal_pin_bit_newf(way, pin, id, "%s.%s", n, what);
-    };
-    const auto whole = [&](hal_s32_t **pin, const char *what) {
-        bad |= hal_pin_s32_newf(HAL_OUT, pin, id, "%s.%s", n, what);
-    };
-    whole(&p.status_1, "status-1");
-    whole(&p.status_2, "status-2");
-    whole(&p.firmware_revision, "firmware-revision");
-    number(&p.freq_cmd, HAL_OUT, "frequency-command");
-    number(&p.freq_out, HAL_OUT, "frequency-out");
-    number(&p.current, HAL_OUT, "output-current");
-    number(&p.dc_bus, HAL_OUT, "DC-bus-volts");
-    number(&p.voltage, HAL_OUT, "output-voltage");
-    number(&p.rpm, HAL_OUT, "motor-RPM");
-    number(&p.scale, HAL_OUT, "scale-frequency");
-    number(&p.power_factor, HAL_OUT, "power-factor");
-    number(&p.load, HAL_OUT, "load-percentage");
-    bit(&p.at_speed, HAL_OUT, "at-speed");
-    bit(&p.is_stopped, HAL_OUT, "is-stopped");
-    bit(&p.initialized, HAL_OUT, "initialized");
-    number(&p.speed_command, HAL_IN, "speed-command");
-    bit(&p.enable, HAL_IN, "enable");
-    bit(&p.spindle_on, HAL_IN, "spindle-on");
-    bit(&p.fwd, HAL_IN, "spindle-fwd");
-    bit(&p.rev, HAL_IN, "spindle-rev");
-    bit(&p.err_reset, HAL_IN, "err-reset");
-    bad |= hal_param_s32_newf(HAL_RW, &p.error_count, id, "%s.error-count", n);
-    bad |= hal_param_s32_newf(HAL_RW, &p.retval, id, "%s.retval", n);
-    bad |= hal_param_s32_newf(HAL_RW, &p.ack_delay, id, "%s.ack-delay", n);
-    bad |= hal_param_float_newf(HAL_RW, &p.loop_time, id, "%s.loop-time", n);
-    bad |= hal_param_float_newf(HAL_RW, &p.nameplate_hz, id, "%s.nameplate-HZ", n);
-    bad |= hal_param_float_newf(HAL_RW, &p.nameplate_rpm, id, "%s.nameplate-RPM", n);
-    bad |= hal_param_float_newf(HAL_RW, &p.tolerance, id, "%s.tolerance", n);
-    if (bad == 0) {
+    PinMaker make(id, name);
+    make.out(p.status_1, "status-1");
+    make.out(p.status_2, "status-2");
+    make.out(p.firmware_revision, "firmware-revision");
+    make.out(p.freq_cmd, "frequency-command");
+    make.out(p.freq_out, "frequency-out");
+    make.out(p.current, "output-current");
+    make.out(p.dc_bus, "DC-bus-volts");
+    make.out(p.voltage, "output-voltage");
+    make.out(p.rpm, "motor-RPM");
+    make.out(p.scale, "scale-frequency");
+    make.out(p.power_factor, "power-factor");
+    make.out(p.load, "load-percentage");
+    make.out(p.at_speed, "at-speed");
+    make.out(p.is_stopped, "is-stopped");
+    make.out(p.initialized, "initialized");
+    make.in(p.speed_command, "speed-command");
+    make.in(p.enable, "enable");
+    make.in(p.spindle_on, "spindle-on");
+    make.in(p.fwd, "spindle-fwd");
+    make.in(p.rev, "spindle-rev");
+    make.in(p.err_reset, "err-reset");
+    make.setting(p.error_count, "error-count");
+    make.setting(p.retval, "retval");
+    make.setting(p.ack_delay, "ack-delay");
+    make.setting(p.loop_time, "loop-time");
+    make.setting(p.nameplate_hz, "nameplate-HZ");
+    make.setting(p.nameplate_rpm, "nameplate-RPM");
+    make.setting(p.tolerance, "tolerance");
+    if (make.isDone()) {
         *p.enable = true;
         *p.fwd = true;
         p.error_count = 0;
@@ -112,7 +102,7 @@ bool Gs2::make_pins(int id, const std::string &name) {
         p.nameplate_rpm = 1730.0;
         p.tolerance = 0.01;
     }
-    return bad == 0;
+    return make.isDone();
 }
 
 /// Its times, how it stops, and that it stands. A spindle that was on before, or while the drive did not

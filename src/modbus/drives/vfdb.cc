@@ -59,54 +59,41 @@ bool Vfdb::make_pins(int id, const std::string &name) {
         return false;
     }
     Pins &p = *pins_;
-    const char *n = name.c_str();
-    int bad = 0;
-    const auto number = [&](hal_float_t **pin, hal_pin_dir_t way, const char *what) {
-        bad |= hal_pin_float_newf(way, pin, id, "%s.%s", n, what);
-    };
-    const auto bit = [&](hal_bit_t **pin, hal_pin_dir_t way, const char *what) {
-        bad |= hal_pin_bit_newf(way, pin, id, "%s.%s", n, what);
-    };
-    const auto whole = [&](hal_s32_t **pin, const char *what) {
-        bad |= hal_pin_s32_newf(HAL_OUT, pin, id, "%s.%s", n, what);
-    };
-    const auto setting = [&](hal_float_t &param, const char *what) {
-        bad |= hal_param_float_newf(HAL_RW, &param, id, "%s.%s", n, what);
-    };
-    whole(&p.status, "status");
-    whole(&p.error_count, "error-count");
-    whole(&p.error_code, "error-code");
-    number(&p.freq_cmd, HAL_OUT, "frequency-command");
-    number(&p.freq_out, HAL_OUT, "frequency-out");
-    number(&p.load, HAL_OUT, "inverter-load-percentage");
-    number(&p.max_rpm, HAL_OUT, "max-rpm");
-    number(&p.rpm, HAL_OUT, "motor-RPM");
-    number(&p.rps, HAL_OUT, "motor-RPS");
-    number(&p.voltage, HAL_OUT, "output-voltage");
-    number(&p.current, HAL_OUT, "output-current");
-    number(&p.freq_limit, HAL_OUT, "frequency-limit");
-    bit(&p.at_speed, HAL_OUT, "at-speed");
-    bit(&p.is_stopped, HAL_OUT, "is-stopped");
-    bit(&p.is_e_stopped, HAL_OUT, "is-e-stopped");
-    bit(&p.modbus_ok, HAL_OUT, "modbus-ok");
-    number(&p.speed_command, HAL_IN, "speed-command");
-    bit(&p.enable, HAL_IN, "enable");
-    bit(&p.spindle_on, HAL_IN, "spindle-on");
-    bit(&p.jog, HAL_IN, "jog-mode");
-    bit(&p.max_speed, HAL_IN, "max-speed");
-    setting(p.loop_time, "loop-time");
-    setting(p.nameplate_hz, "nameplate-HZ");
-    setting(p.nameplate_rpm, "nameplate-RPM");
-    setting(p.rpm_limit, "rpm-limit");
-    setting(p.tolerance, "tolerance");
-    if (bad == 0) {
+    PinMaker make(id, name);
+    make.out(p.status, "status");
+    make.out(p.error_count, "error-count");
+    make.out(p.error_code, "error-code");
+    make.out(p.freq_cmd, "frequency-command");
+    make.out(p.freq_out, "frequency-out");
+    make.out(p.load, "inverter-load-percentage");
+    make.out(p.max_rpm, "max-rpm");
+    make.out(p.rpm, "motor-RPM");
+    make.out(p.rps, "motor-RPS");
+    make.out(p.voltage, "output-voltage");
+    make.out(p.current, "output-current");
+    make.out(p.freq_limit, "frequency-limit");
+    make.out(p.at_speed, "at-speed");
+    make.out(p.is_stopped, "is-stopped");
+    make.out(p.is_e_stopped, "is-e-stopped");
+    make.out(p.modbus_ok, "modbus-ok");
+    make.in(p.speed_command, "speed-command");
+    make.in(p.enable, "enable");
+    make.in(p.spindle_on, "spindle-on");
+    make.in(p.jog, "jog-mode");
+    make.in(p.max_speed, "max-speed");
+    make.setting(p.loop_time, "loop-time");
+    make.setting(p.nameplate_hz, "nameplate-HZ");
+    make.setting(p.nameplate_rpm, "nameplate-RPM");
+    make.setting(p.rpm_limit, "rpm-limit");
+    make.setting(p.tolerance, "tolerance");
+    if (make.isDone()) {
         p.loop_time = 0.1;
         p.nameplate_hz = settings_.motor_hz;
         p.nameplate_rpm = settings_.motor_rpm;
         p.rpm_limit = settings_.motor_rpm;
         p.tolerance = 0.01;
     }
-    return bad == 0;
+    return make.isDone();
 }
 
 bool Vfdb::read(Registers &registers) {

@@ -12,7 +12,7 @@ void ParameterFile::keep() {
     std::string text = reader_.parameter_text();
     if (text != kept_) {
         kept_ = text;
-        writer_->keep_file(path_, std::move(text));
+        writer_->keep_file(path_, std::move(text), journal::Old::BACKED_UP);
     }
 }
 
@@ -21,7 +21,7 @@ Result<> ParameterFile::save() {
         return reader_.save_parameters();
     }
     kept_ = reader_.parameter_text();
-    return writer_->write_file(path_, kept_);
+    return writer_->write_file(path_, kept_, journal::Old::BACKED_UP);
 }
 
 }  // namespace mw::task

@@ -9,7 +9,8 @@
 
 namespace mw::task {
 
-/// Parameters with one way to the disk, so that no older text comes over a newer one. One thread.
+/// Parameters with one way to the disk, so that no older text comes over a newer one; what the file had
+/// before is its .bak. One thread.
 class ParameterFile {
   public:
     /// `path` empty: parameters live in memory only. Without a writer, or where a plug-in keeps its own,

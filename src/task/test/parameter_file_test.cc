@@ -6,7 +6,7 @@
 namespace mw::task {
 namespace {
 
-constexpr const char *FILE_NAME = "/m/p.var";
+constexpr const char *FILE_NAME = "/m/p.var", *BACKUP_NAME = "/m/p.var.bak";
 
 struct KeptOnDisk {
     journal::test::TornDisk disk;
@@ -98,6 +98,19 @@ TEST_F(ParameterFileTest, AnOlderTextNeverComesOverANewerOne_D3) {
     ASSERT_EQ(mdi("G10 L2 P1 X3"), Progress::DONE);
     writer.work();
     EXPECT_EQ(value_after_power_cut(5221), 3.0);
+}
+
+TEST_F(ParameterFileTest, TheBackupHasWhatTheFileHadBefore_D3) {
+    ASSERT_EQ(mdi("G10 L2 P1 X1"), Progress::DONE);
+    writer.work();
+    EXPECT_FALSE(disk.names.contains(BACKUP_NAME));
+    const std::string before = disk.files[disk.names[FILE_NAME]].now;
+    ASSERT_EQ(mdi("G10 L2 P1 X2"), Progress::DONE);
+    writer.work();
+    EXPECT_EQ(disk.files[disk.names[BACKUP_NAME]].now, before);
+    EXPECT_EQ(value_after_power_cut(5221), 2.0);
+    ASSERT_TRUE(task.save_parameters().has_value());
+    EXPECT_EQ(disk.files[disk.names[BACKUP_NAME]].now, before);
 }
 
 TEST_F(ParameterFileTest, AProgramKeepsItsOwnUntilItsEnd) {
