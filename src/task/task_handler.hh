@@ -96,6 +96,10 @@ struct Task::Handler {
         return done(switch_device(command, task.io_));
     }
     Outcome operator()(const SetToolEntry &command) { return done(set_tool(command, task.parts_.tools)); }
+    Outcome operator()(const AddTool &command) { return done(add_tool(command, task.parts_.tools)); }
+    Outcome operator()(const RemoveTool &command) {
+        return done(remove_tool(command, task.status_.tool.prepared_index, task.parts_.tools));
+    }
 
     Outcome operator()(const Null &) { return Progress::DONE; }
     Outcome operator()(const SetDebug &command) {

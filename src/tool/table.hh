@@ -56,6 +56,11 @@ class Table {
     /// The tool's number and pocket stay. Index 0 of FIXED changes the spindle's copy only.
     void set_entry(int index, const ToolEntry &entry);
     void add(const ToolEntry &entry);
+    /// Puts a new tool into its pocket; where that is 0, into the pocket of its own number or the lowest free
+    /// one. Its index; an error when its number or pocket is taken.
+    Result<int> put(ToolEntry entry);
+    /// The tool is gone, its line too; the others keep their indices. An error for the one in the spindle.
+    Result<> remove(int index);
     /// The tool at `index` is in the spindle from here on. FIXED: 0 means none. RANDOM: what was in the
     /// spindle is in its pocket then.
     void load_spindle(int index);
@@ -81,6 +86,8 @@ class Table {
     void check_pocket(Reading &reading, std::size_t later) const;
     void place(const Reading &reading);
     void clear_spindle();
+    /// Who is in a pocket, -1: nobody.
+    int owner_of(int pocketno) const;
 
     Changer changer_;
     std::vector<ToolEntry> entries_;

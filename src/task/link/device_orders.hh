@@ -19,6 +19,9 @@ Result<> switch_device(const msgs::LubeOff &, io::Controller &io);
 
 /// Data of a tool that is in the table, and of its copy in the spindle; the changer alone moves tools.
 Result<> set_tool(const msgs::SetToolEntry &order, ToolStore &tools);
+Result<> add_tool(const msgs::AddTool &order, ToolStore &tools);
+/// `prepared`: index of the tool that T has prepared, which stays.
+Result<> remove_tool(const msgs::RemoveTool &order, int prepared, ToolStore &tools);
 
 // What is added to the speed of a spindle that turns.
 constexpr double speed_step_rpm(const msgs::SpindleIncrease &) {
