@@ -180,12 +180,10 @@ std::string how(int status) {
                              : fmt::format("was ended by signal {}", WTERMSIG(status));
 }
 
-/// Too much, or nobody waits for it: asked to end, then ended.
-bool isToEnd(const ui::web::PieceQueue &pieces, int output) {
+bool isTooLarge(int output) {
     struct stat facts{};
-    const bool isTooLarge = ::fstat(output, &facts) == 0 &&
-                            static_cast<std::uint64_t>(facts.st_size) > ui::web::ProgramFiles::MOST_BYTES;
-    return isTooLarge || pieces.isCancelled();
+    return ::fstat(output, &facts) == 0 &&
+           static_cast<std::uint64_t>(facts.st_size) > ui::web::ProgramFiles::MOST_BYTES;
 }
 
 /// Into the open file `output`.
@@ -202,8 +200,8 @@ Result<> fill(const FilterRun &run, int output, ui::web::PieceQueue &pieces) {
     while (!status.has_value()) {
         told.take(child.listen());
         status = child.end();
-        if (!asked.has_value() && isToEnd(pieces, output)) {
-            child.signal_all(SIGTERM);
+        if (!asked.has_value() && (isTooLarge(output) || pieces.isCancelled())) {
+            child.signal_all(SIGTERM);  // and ended if it does not end
             asked = Clock::now();
         } else if (asked.has_value() && Clock::now() - *asked > PATIENCE) {
             child.signal_all(SIGKILL);
@@ -213,9 +211,10 @@ Result<> fill(const FilterRun &run, int output, ui::web::PieceQueue &pieces) {
         told.take(more);
     }
     if (asked.has_value()) {
-        return fail(fmt::format(
-            "the filter '{}' was ended: nobody waits for it, or it has made more than a program may have",
-            run.command));
+        return fail(isTooLarge(output)
+                        ? fmt::format("the filter '{}' was ended: it has made more than a program may have",
+                                      run.command)
+                        : fmt::format("the filter '{}' was ended: nobody waits for it", run.command));
     }
     if (*status != 0) {
         return fail(fmt::format("the filter '{}' {}: {}", run.command, how(*status), printable(told.all())));
@@ -260,6 +259,10 @@ void run_filter(const FilterRun &run, ui::web::PieceQueue &pieces) {
     const fs::path folder = fs::path(run.output).parent_path();
     fs::create_directories(folder, error);
     fs::permissions(folder, fs::perms::owner_all, error);  // nobody else puts a program there
+    if (error) {
+        refuse(fmt::format("cannot keep '{}' to oneself: {}", folder.string(), error.message()));
+        return;
+    }
     std::string temporary = folder.string() + "/.made-XXXXXX";
     const int output = ::mkostemp(temporary.data(), O_CLOEXEC);
     if (output < 0) {

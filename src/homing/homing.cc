@@ -141,6 +141,7 @@ void Homing::step(const JointInput *inputs, JointCommand *commands) noexcept {
     for (int k = 0; k < num_joints_; ++k) {
         commands[k] = {};
         at(k).way += inputs[k].vel_cmd * period_s_;
+        at(k).closed_way = inputs[k].isSwitchClosed ? at(k).way : at(k).closed_way;
         ++at(k).wait;
     }
     for (int k = 0; k < num_joints_; ++k) {

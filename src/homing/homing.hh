@@ -71,9 +71,10 @@ class Homing final : public Module {
         bool isHomed = false;
         bool isIndexWanted = false, isUnlockWanted = false, isStopping = false;
         bool isIndexReleased =
-            false;       ///< in this cycle, by a failure: the encoder may just have reset itself
-        int wait = 0;    ///< cycles in this state
-        double way = 0;  ///< commanded since homing began, whatever became of its zero
+            false;              ///< in this cycle, by a failure: the encoder may just have reset itself
+        int wait = 0;           ///< cycles in this state
+        double way = 0;         ///< commanded since homing began, whatever became of its zero
+        double closed_way = 0;  ///< `way` where its switch was closed last
         double team_acceleration = 0;  ///< 0: its own
     };
     /// What a team can do together, and is asked to.

@@ -20,7 +20,8 @@ struct Parameters {
     double travel = 0;         ///< how far to search at most
     double max_skew = 0;       ///< how far apart joints of a team may get; 0: a hundredth of the range
     double low = 0, high = 0;  ///< soft limits, which hold once the joint is homed
-    int axis = -1;             ///< that it moves by itself or with others; -1: none
+    double clearance = 0;  ///< how far to back off from the opening edge, to come again in the same direction
+    int axis = -1;         ///< that it moves by itself or with others; -1: none
     bool isActive = true;
 
     static constexpr int NO_SEQUENCE = 1000;

@@ -50,7 +50,14 @@ bool Homing::hasTeam(int joint) const noexcept {
 
 std::uint32_t Homing::team_events(int joint, const JointInput *inputs) const noexcept {
     const Joint &j = at(joint);
-    bool isClosed = inputs[joint].isSwitchClosed;
+    // Or the joint is to back off from it farther.
+    const auto isClosed = [&](int n) {
+        const Joint &one = at(n);
+        const bool isNear = one.state == State::LATCH_BACKOFF && !inputs[n].isAtRest &&
+                            std::abs(one.way - one.closed_way) < one.parameters.clearance;
+        return inputs[n].isSwitchClosed || isNear;
+    };
+    bool isAnyClosed = isClosed(joint);
     bool areAtRest = inputs[joint].isAtRest;
     int shortest = j.wait;
     bool areUnlocked = inputs[joint].isUnlocked || !j.parameters.isLockingIndexer;
@@ -66,7 +73,7 @@ std::uint32_t Homing::team_events(int joint, const JointInput *inputs) const noe
         }
         const Joint &other = at(k);
         const Parameters &p = other.parameters;
-        isClosed = isClosed || inputs[k].isSwitchClosed;
+        isAnyClosed = isAnyClosed || isClosed(k);
         areAtRest = areAtRest && inputs[k].isAtRest;
         shortest = std::min(shortest, other.wait);
         areUnlocked = areUnlocked && (inputs[k].isUnlocked || !p.isLockingIndexer);
@@ -77,7 +84,7 @@ std::uint32_t Homing::team_events(int joint, const JointInput *inputs) const noe
                   !areSameWay(j.parameters.latch_vel, p.latch_vel);
         isFarApart = isFarApart || isSkewed(joint, k, inputs);
     }
-    std::uint32_t out = isClosed ? event::TEAM_CLOSED : event::TEAM_OPEN;
+    std::uint32_t out = isAnyClosed ? event::TEAM_CLOSED : event::TEAM_OPEN;
     out |= areAtRest && areHere ? event::TEAM_AT_REST : 0U;
     const bool areSettled = areAtRest && areHere && shortest * period_s_ > LONGEST_BOUNCE_S;
     out |= areSettled ? event::TEAM_SETTLED : 0U;

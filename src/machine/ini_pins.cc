@@ -99,6 +99,17 @@ void IniPins::Pin::set(double to) {
     last = value();
 }
 
+/// LinuxCNC's name of it, with underscores, finds it too.
+template <class T>
+void IniPins::make_named(hal::UserPin<T> &pin, const std::string &name, hal::Hal &hal, Result<> &status) {
+    std::string legacy = name;
+    std::ranges::replace(legacy, '-', '_');
+    pin.make(hal, comp_id_, legacy, hal::Dir::IN, status);
+    if (status.has_value() && legacy != name) {
+        status = hal.alias_pin(legacy, name);
+    }
+}
+
 void IniPins::make_pins(int num_joints, hal::Hal &hal, Result<> &status) {
     const auto make = [&](const std::string &prefix, const IniPin &row, int index) {
         Pin pin;
@@ -110,7 +121,7 @@ void IniPins::make_pins(int num_joints, hal::Hal &hal, Result<> &status) {
         case PinType::WHOLE: pin.pin.emplace<hal::UserPin<std::int32_t>>(); break;
         case PinType::BIT: pin.pin.emplace<hal::UserPin<bool>>(); break;
         }
-        std::visit([&](auto &p) { p.make(hal, comp_id_, pin.name, hal::Dir::IN, status); }, pin.pin);
+        std::visit([&](auto &p) { make_named(p, pin.name, hal, status); }, pin.pin);
         if (status.has_value()) {
             pin.set(row.preset);
             pins_.push_back(std::move(pin));
@@ -129,8 +140,8 @@ void IniPins::make_pins(int num_joints, hal::Hal &hal, Result<> &status) {
     for (const IniPin &row : OF_TRAJECTORY) {
         make("ini.traj-", row, 0);
     }
-    planner_type_.make(hal, comp_id_, "ini.traj-planner-type", hal::Dir::IN, status);
-    corner_scale_.make(hal, comp_id_, "ini.traj-scurve-peak-scale", hal::Dir::IN, status);
+    make_named(planner_type_, "ini.traj-planner-type", hal, status);
+    make_named(corner_scale_, "ini.traj-scurve-peak-scale", hal, status);
 }
 
 Result<> IniPins::create(hal::Hal &hal, const std::vector<motion::SetParameter> &parameters, int num_joints) {

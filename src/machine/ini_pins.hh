@@ -43,6 +43,8 @@ class IniPins {
         double value() const noexcept;
         void set(double to);
     };
+    template <class T>
+    void make_named(hal::UserPin<T> &pin, const std::string &name, hal::Hal &hal, Result<> &status);
     void make_pins(int num_joints, hal::Hal &hal, Result<> &status);
     bool isTaken(const Pin &pin, double value, task::Task &task) const;
     void step(Pin &pin, task::Task &task);

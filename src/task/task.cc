@@ -279,9 +279,9 @@ bool Task::begin_run() {
     reader_.note_codes();
     Start{*this}.prepare_journal();
     Start{*this}.begin_journal(1);
-    if (client_tap_.has_value()) {
+    if (const auto tap = mdi_queue_.take_tap()) {
         reader_.canon().begin_block({});
-        reader_.canon().take(*std::exchange(client_tap_, std::nullopt));
+        reader_.canon().take(*tap);
         run_.change(RunEvent::READ);
     } else if (run_.kind() == RunKind::MDI) {
         const interp::Step result = reader_.interpreter().execute(run_.line());

@@ -175,8 +175,6 @@ class Task {
     HomingRequest homing_;
     MotionOrders orders_;
     MdiQueue mdi_queue_;
-    SetSpindleSync client_sync_;                 ///< of the taps that clients send
-    std::optional<interp::TapMove> client_tap_;  ///< of the line that begins
 
     MachineWorld world_;
     ProgramReader reader_;

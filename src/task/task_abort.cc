@@ -37,7 +37,6 @@ void Task::abort_work(AbortReason reason) {
     // A machine that goes off has mostly been stopped for another reason before: that clean-up goes on.
     const bool isFollowing = reason == AbortReason::STATE_NOT_ON && on_abort_.isCleanedUp();
     desk_.refuse(mdi_queue_.drop(), OVERTAKEN);
-    client_sync_ = {};
     motion_.abort();
     mode_.note_stop(now_ns_);
     status_.task.motion_line = 0;

@@ -234,13 +234,13 @@ Outcome Task::Handler::operator()(const SetSpindleSync &command) {
     if (!(command.feed_per_revolution >= 0)) {
         return fail("the way in a turn of the spindle is not below 0");
     }
-    task.client_sync_ = command;
+    task.mdi_queue_.set_sync(command);
     return Progress::DONE;
 }
 
 /// As G33.1 with the pitch of the SetSpindleSync before it: a line of MDI of which the end is known already.
 Outcome Task::Handler::operator()(const RigidTapMove &command) {
-    const SetSpindleSync &sync = task.client_sync_;
+    const SetSpindleSync &sync = task.mdi_queue_.sync();
     if (!(sync.feed_per_revolution > 0) || sync.isVelocityOnly) {
         return fail("a tap keeps to the angle of a spindle", {}, "SetSpindleSync says with which pitch");
     }
@@ -263,7 +263,7 @@ Outcome Task::Handler::operator()(const RigidTapMove &command) {
         tap.settings.feed = command.velocity;
         tap.settings.synch_spindle = static_cast<std::int8_t>(sync.spindle);
         tap.settings.feed_per_revolution = sync.feed_per_revolution;
-        task.client_tap_ = tap;
+        task.mdi_queue_.set_tap(tap);
     }
     return started;
 }

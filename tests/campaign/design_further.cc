@@ -95,19 +95,21 @@ void make_tilting_head(sim::Random &random, Design &d) {
 
 void make_pentapod(sim::Random &random, Design &d) {
     d.name = d.kinematics = "pentakins";
-    // The lengths of its struts at the pose 0.
-    constexpr double LENGTHS[] = {1170.5615, 1146.5712, 1062.7763, 1039.2500, 998.7848};
+    // The lengths of its struts at Z150. Around it there is a room without singular poses; lower ones have
+    // none.
+    constexpr double LENGTHS[] = {1033.6325, 1010.2512, 929.0184, 906.3236, 864.4091};
     std::vector<Travel> struts;
     for (const double length : LENGTHS) {
         struts.push_back({false, 400, 1800, length});
     }
     build(random, d,
-          {{geom::AXIS_X, -80, 80},
-           {geom::AXIS_Y, -80, 80},
-           {geom::AXIS_Z, -80, 80},
-           {geom::AXIS_A, -15, 15},
-           {geom::AXIS_B, -15, 15}},
+          {{geom::AXIS_X, -40, 40},
+           {geom::AXIS_Y, -40, 40},
+           {geom::AXIS_Z, 110, 190},
+           {geom::AXIS_A, -6, 6},
+           {geom::AXIS_B, -6, 6}},
           struts);
+    d.hal_lines = "setp pentakins.max-error 500\n";  // the forward side begins to look at Z0
 }
 
 void make_rose(sim::Random &random, Design &d) {

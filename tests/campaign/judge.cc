@@ -40,6 +40,11 @@ double own_place(const JointSample &q) {
     return q.motor_cmd + q.turned - q.offset;
 }
 
+/// Of an axis: what it is jogged or programmed to and its external offset take it there together.
+double axis_place(const Sample &s, int axis) {
+    return s.axes[axis] + s.offsets[axis];
+}
+
 }  // namespace
 
 Judge::Judge(const Design &design, double period_s) : design_(design), period_(period_s) {
@@ -356,10 +361,11 @@ void Judge::check_room(const Sample &s) {
     const bool areOn = s.joints[0].isAmpOn && last_.joints[0].isAmpOn;
     for (const AxisDesign &a : design_.axes) {
         const bool isJudged = areOn && s.areAxesKnown && last_.areAxesKnown;
-        const double back = back_to ? back_to->axes[a.axis] : a.low;
+        const double back = back_to ? axis_place(*back_to, a.axis) : a.low;
+        const double now = axis_place(s, a.axis);
         if (isJudged &&
-            leaves(last_.axes[a.axis], s.axes[a.axis], std::min(a.low, back), std::max(a.high, back))) {
-            fail("room", fmt::format("axis {} goes to {:.9g}", geom::AXIS_LETTERS[a.axis], s.axes[a.axis]));
+            leaves(axis_place(last_, a.axis), now, std::min(a.low, back), std::max(a.high, back))) {
+            fail("room", fmt::format("axis {} goes to {:.9g}", geom::AXIS_LETTERS[a.axis], now));
         }
     }
 }

@@ -38,7 +38,8 @@ struct Sample {
     double spindle_turns = 0;   ///< in truth
     std::uint32_t outputs = 0;  ///< bit per output that can do work: digital outputs, flood, mist
     bool areAxesKnown = false;  ///< all homed, teleop or coord
-    geom::Pose axes;            ///< commanded
+    geom::Pose axes;            ///< commanded, without external offsets
+    geom::Pose offsets;         ///< external ones, which come on top
     std::vector<JointSample> joints;
 };
 

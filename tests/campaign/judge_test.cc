@@ -96,6 +96,21 @@ TEST_F(JudgeTest, FindsWhatLeavesItsRoom) {
     EXPECT_EQ(rule(), "room");
 }
 
+TEST_F(JudgeTest, AsksForTheRoomOfAnAxisWithItsExternalOffset_C15) {
+    judge_.allow(Leave::MOVE);
+    move_to(45);
+    s_.axes[0] = 55;
+    s_.offsets[0] = -10;
+    feed(5);
+    s_.axes[0] = 55.000005;
+    feed();
+    EXPECT_EQ(rule(), "") << judge_.report();
+    s_.axes[0] = 49.999995;
+    s_.offsets[0] = 0.00001;
+    feed();
+    EXPECT_EQ(rule(), "room") << judge_.report();
+}
+
 TEST_F(JudgeTest, FindsAmplifiersThatAreOnWhenTheyMustNotBe) {
     const std::function<void(Sample &)> reasons[] = {
         [](Sample &s) { s.isChainClosed = false; },

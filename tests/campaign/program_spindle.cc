@@ -163,8 +163,9 @@ Act Writer::write_in_step() {
                           0.95 * std::min(z.high - middle, middle - z.low);
         sync.to = fits ? sync.to : to_grid(sync.from + side * 0.1);
         // Too short for the speed, or for the spindle; a feed by turns may be short.
-        act.isToFail = !fits && kind != 3;
-        act.mayFail = isSudden || !isPlainZ;
+        // In a small room what does not fit may be slow enough all the same.
+        act.isToFail = !fits && kind != 3 && design_.isTrivial;
+        act.mayFail = isSudden || !isPlainZ || (!fits && !design_.isTrivial);
         sync.isShort = !fits;
         start_spindle(sync.rpm);
         say(fmt::format("G0 Z{:.4f}", sync.from));

@@ -207,6 +207,7 @@ void Rig::take_sample() {
     }
     for (std::size_t i = 0; i < pins_.axes.size(); ++i) {
         sample_.axes.c[i] = *pins_.axes[i];
+        sample_.offsets.c[i] = *pins_.offsets[i].offset;
     }
     sample_.areAxesKnown = *pins_.are_all_homed && (*pins_.is_coord || *pins_.is_teleop);
     sample_.isSpindleOn = *pins_.spindle.is_on;

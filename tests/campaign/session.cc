@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "campaign/session.hh"
 
+#include <algorithm>
 #include <bit>
 #include <cctype>
 #include <cmath>
@@ -181,13 +182,21 @@ bool Session::home() {
     return !isOver() && end == End::DONE;
 }
 
-/// An operator who wants to work without them.
+/// An operator who wants to work without them. An offset stays as long as the axis would be beyond its limits
+/// without it.
 bool Session::clear_offsets() {
     if (!set_mode(msgs::Mode::MANUAL) || ask(msgs::SetTeleop{true}) != End::DONE) {
         return false;
     }
     settle(2);
     judge_.allow(Leave::MOVE);
+    for (const AxisDesign &a : plan_.design.axes) {
+        const double place = rig_->sample().axes[a.axis];
+        const double inside = std::clamp(place, a.low, a.high);
+        if (inside != place) {
+            ask(msgs::JogIncrement{false, a.axis, a.velocity, inside - place});
+        }
+    }
     rig_->clear_offsets(true);
     constexpr int MOST_MS = 20000;
     for (int i = 0; i < MOST_MS && rig_->hasOffset() && !isOver(); ++i) {

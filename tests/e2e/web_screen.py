@@ -248,7 +248,7 @@ def programs(port, screen, bench):
         kinds.append(kind)
         counts = struct.unpack_from('<II', body, at + 8) if kind == 3 else counts
         at += 8 + size
-    expect(status == 200 and kinds == [1, 2, 3] and counts[1] > 10, 'its path is told', kinds, counts)
+    expect(status == 200 and kinds == [5, 1, 2, 3] and counts[1] > 10, 'its path is told', kinds, counts)
 
     expect(screen.do('SetMode', mode='AUTO') == 'DONE', 'auto')
     expect(screen.do('OpenProgram', path=str(bench.programs / 'part.ngc')) == 'DONE', 'opens', screen.outcomes)

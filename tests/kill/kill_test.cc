@@ -19,6 +19,7 @@
 #include <gtest/gtest.h>
 
 #include "hal/core/hal.hh"
+#include "kill_count.hh"
 #include "motion/api/channels.hh"
 
 namespace mw {
@@ -29,11 +30,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double MAX_ACCELERATION = 1500.0;  // configs/sim/mill_mm.ini, X and Y
 constexpr std::int64_t BRAKING_WITHIN_NS = 50000000;
-
-int kills() {
-    const char *text = std::getenv("MILLWRIGHT_KILLS");
-    return text != nullptr ? std::atoi(text) : 2;
-}
 
 /// A square of 200 mm, over and over, at 60 mm/s.
 void write_program(const fs::path &path) {
@@ -157,7 +153,8 @@ TEST(Kill, TheDeathOfTaskStopsTheMachineAlongThePath) {
     const fs::path folder = fs::temp_directory_path() / ("mw_kill_" + std::to_string(::getpid()));
     fs::create_directory(folder);
     write_program(folder / "square.ngc");
-    for (int i = 0; i < kills(); ++i) {
+    const int kills = mw::testing::count_kills(2);
+    for (int i = 0; i < kills; ++i) {
         const std::string instance = "kill-" + std::to_string(::getpid()) + '-' + std::to_string(i);
         const pid_t task = start_program(folder / "square.ngc", instance, folder / "log");
         Observer observer;
@@ -178,6 +175,8 @@ TEST(Kill, TheDeathOfTaskStopsTheMachineAlongThePath) {
         ::waitpid(task, nullptr, 0);
         check_stop(samples, kill_ns);
         if (HasFailure()) {
+            ADD_FAILURE() << "kill " << i << ", " << samples.size() << " samples:\n"
+                          << content(folder / "log");
             break;
         }
     }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -18,6 +19,7 @@
 #include <gtest/gtest.h>
 
 #include "hal/core/hal.hh"
+#include "kill_count.hh"
 #include "motion/api/channels.hh"
 #include "rtapi/process.hh"
 #include "testing/lateness_probe.hh"
@@ -135,11 +137,11 @@ int wait_for_end(pid_t process) {
 }
 
 TEST_F(RealtimeDeath, AKilledRealtimeProcessEndsTheRunWithin50ms_B7) {
-    // Only kills count during which the machine gave its processors to this test.
-    constexpr int MAX_KILLS = 6;
-    constexpr std::size_t ENOUGH = 3;
+    // Only kills are timed during which the machine gave its processors to this test.
+    const int least = mw::testing::count_kills(3);
     std::vector<double> seconds;
-    for (int i = 0; i < MAX_KILLS && seconds.size() < ENOUGH; ++i) {
+    int count = 0;
+    for (; count < least || (count < 2 * least && seconds.size() < 3); ++count) {
         const pid_t task = start(true);
         const auto hal = join_moving(task);
         ASSERT_NE(hal, nullptr) << log();
@@ -162,6 +164,8 @@ TEST_F(RealtimeDeath, AKilledRealtimeProcessEndsTheRunWithin50ms_B7) {
         GTEST_SKIP() << "ended each time, and not timed: the machine had other work during every kill";
     }
     std::sort(seconds.begin(), seconds.end());
+    std::printf("%d kills, %zu timed: told %.2f ms after the kill in the median, %.2f ms at the latest\n",
+                count, seconds.size(), 1e3 * seconds[seconds.size() / 2], 1e3 * seconds.back());
     EXPECT_LT(seconds[seconds.size() / 2], 0.05);
 }
 

@@ -20,16 +20,15 @@
 #include <gtest/gtest.h>
 
 #include "client/client.hh"
+#include "kill_count.hh"
 
 namespace mw::kill {
 
 namespace files = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// How often each is killed: 3, or MILLWRIGHT_KILLS.
 inline int count_kills() {
-    const char *text = std::getenv("MILLWRIGHT_KILLS");
-    return text != nullptr ? std::atoi(text) : 3;
+    return testing::count_kills(3);
 }
 
 inline std::string content(const files::path &path) {

@@ -65,6 +65,8 @@ TEST_F(OffsetMachine, ATableOfScrewErrorsOfTheIniFileMovesTheMotor_C11) {
 
 TEST_F(OffsetMachine, SettingsOfTheIniFileMayBeTurnedByPins_C7) {
     EXPECT_EQ(number("ini.x.max-limit"), 100);
+    EXPECT_EQ(number("ini.x.max_limit"), 100) << "as files and scripts of LinuxCNC have it";
+    EXPECT_EQ(number("ini.traj_max_velocity"), number("ini.traj-max-velocity"));
     EXPECT_EQ(number("ini.0.max-velocity"), 200);
     messages();
     set_pin("ini.x.max-limit", "20");

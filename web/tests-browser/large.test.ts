@@ -76,7 +76,7 @@ it('is drawn while it is read, and turned without waiting', async () => {
   // Bounds for a computer that does other things, too; docs/screen.md has the figures of one that does not.
   expect(gaps.length).toBeGreaterThan(10);
   expect(Number(at(0.5))).toBeLessThan(150);
-  expect(whole).toBeLessThan(Math.max(20_000, LINES / 40));
+  expect(whole).toBeLessThan(Math.max(20_000, LINES / 250));
   expect(memory).toBeLessThan(500);
   await untilText(page, 'run-state', 'Idle');
 }, 300_000);

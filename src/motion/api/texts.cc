@@ -50,6 +50,15 @@ std::string kinematics_reason(const Answer &answer) {
     }
 }
 
+std::string indexer_reason(const Answer &answer) {
+    return answer.reason == Reason::INDEXER_OPEN
+               ? "a locking indexer has not locked: jog it, or switch the machine off, and see its pin "
+                 "joint.N.is-unlocked"
+               : fmt::format("{} is a locking indexer, or one is unlocked: it moves alone, in programs with "
+                             "G0, and nothing else moves until it has locked",
+                             place_name(answer));
+}
+
 std::string tap_reason(const Answer &answer) {
     switch (answer.reason) {
     case Reason::RIGID_TAPPING:
@@ -78,6 +87,12 @@ std::string tap_reason(const Answer &answer) {
     }
 }
 
+const char *mode_reason(bool isPath) {
+    return isPath ? "programmed moves need coordinated mode"
+                  : "not possible in this mode: joints jog, home and unhome in joint mode, axes jog in world "
+                    "mode";
+}
+
 }  // namespace
 
 std::string reason_text(const Answer &answer) {
@@ -86,11 +101,7 @@ std::string reason_text(const Answer &answer) {
     case Reason::NONE:
     case Reason::COUNT: return {};
     case Reason::NOT_ENABLED: return "the machine is off: turn it on first";
-    case Reason::WRONG_MODE:
-        return answer.isPath
-                   ? "programmed moves need coordinated mode"
-                   : "not possible in this mode: joints jog, home and unhome in joint mode, axes jog "
-                     "in world mode";
+    case Reason::WRONG_MODE: return mode_reason(answer.isPath);
     case Reason::MOVING: return "the machine is moving: wait until it stands, or stop it";
     case Reason::NOT_HOMED: return "home all joints first";
     case Reason::HOMING: return "joints are being homed: wait, or abort homing";
@@ -136,13 +147,7 @@ std::string reason_text(const Answer &answer) {
         return fmt::format("{0} is an extra joint and homed: its pin joint.{1}.posthome-cmd moves it",
                            joint_name(i), i);
     case Reason::INDEXER_ALONE:
-        return fmt::format(
-            "{} is a locking indexer, or one is unlocked: it moves alone, in programs with G0, and nothing "
-            "else moves until it has locked",
-            place_name(answer));
-    case Reason::INDEXER_OPEN:
-        return "a locking indexer has not locked: jog it, or switch the machine off, and see its pin "
-               "joint.N.is-unlocked";
+    case Reason::INDEXER_OPEN: return indexer_reason(answer);
     case Reason::SWITCHED_ON: return "the machine is on: switch it off first";
     case Reason::NO_JOG_TO_RENEW:
         return fmt::format("there is no jog of {} to renew: it has ended or was stopped; begin it again",

@@ -301,7 +301,13 @@ Verdict Controller::set_parameter(const SetParameter &command) noexcept {
     if (PARAMETERS[command.parameter].scope == ParameterScope::JOINT) {
         configure(homing_, command.index, settings_);
     }
-    const bool isPlace = PARAMETERS[command.parameter].parameter == Parameter::AXIS_FIRST_PLACE;
+    const Parameter changed = PARAMETERS[command.parameter].parameter;
+    if (changed == Parameter::MAX_FEED_SCALE || changed == Parameter::TRAJ_PLANNER_TYPE) {
+        for (int j = 0; j < config_.num_joints; ++j) {
+            note_play(homing_, j, settings_);
+        }
+    }
+    const bool isPlace = changed == Parameter::AXIS_FIRST_PLACE;
     if (isPlace && !map_.areJointsAxes() && limits_.homed.joints == 0) {
         place_.cmd[command.index] = command.value;
         place_.fb[command.index] = command.value;

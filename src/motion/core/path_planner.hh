@@ -57,6 +57,12 @@ class KinematicsMap final : public traj::JointMap {
     int side_ = 0;
 };
 
+/// How far a line may go on.
+struct LineRoom {
+    double way = traj::UNLIMITED;  ///< [machine units, degrees]
+    int axis = -1, joint = -1;     ///< whose limit it is; joint MAX_JOINTS: that of the kinematics
+};
+
 /// After a refusal or a stop the rest of the same epoch's path commands is answered STALE, until a new epoch
 /// or Enable: a path with a hole in it is never driven.
 class PathPlanner {
@@ -68,12 +74,6 @@ class PathPlanner {
     void update() noexcept;
 
     static constexpr int MAX_COMMANDS_PER_UPDATE = 1024;
-
-    /// How far a line may go on.
-    struct Room {
-        double way = traj::UNLIMITED;  ///< [machine units, degrees]
-        int axis = -1, joint = -1;     ///< whose limit it is; joint MAX_JOINTS: that of the kinematics
-    };
 
   private:
     void follow_controller() noexcept;
@@ -104,8 +104,8 @@ class PathPlanner {
         double at = 0;
         std::array<double, MAX_JOINTS> joints{};
     };
-    Room room_for_joints(const traj::Primitive &line, double sense, const Room &axes,
-                         std::array<double, MAX_JOINTS> joints, double turn) const noexcept;
+    LineRoom room_for_joints(const traj::Primitive &line, double sense, const LineRoom &axes,
+                             std::array<double, MAX_JOINTS> joints, double turn) const noexcept;
     bool isSteady(const traj::Primitive &p, PathSample from, PathSample to) const noexcept;
     Reason check_joints(const traj::Primitive &p) noexcept;
     traj::MoveRequest request_for(const PathCommand &c, const MoveTerms &terms) const noexcept;

@@ -43,9 +43,9 @@ MotionType type_of(const PathBody &body, const MoveTerms &terms) noexcept {
 }
 
 /// How far a line may go on behind its end, or before its start with the sense -1, to a soft limit.
-PathPlanner::Room room_behind(const traj::Primitive &line, double sense, const PathLimits &limits) noexcept {
+LineRoom room_behind(const traj::Primitive &line, double sense, const PathLimits &limits) noexcept {
     const geom::Pose &end = sense > 0 ? line.end : line.start;
-    PathPlanner::Room room;
+    LineRoom room;
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
         const double slope = sense * line.lin[i];
         if (slope == 0) {
@@ -225,12 +225,11 @@ Reason PathPlanner::check_joints(const traj::Primitive &p) noexcept {
 
 /// How much of the room beyond an end of a line joints can follow, which stand at `joints` there; `turn`: way
 /// in a turn of the spindle.
-PathPlanner::Room PathPlanner::room_for_joints(const traj::Primitive &line, double sense, const Room &axes,
-                                               std::array<double, MAX_JOINTS> joints,
-                                               double turn) const noexcept {
+LineRoom PathPlanner::room_for_joints(const traj::Primitive &line, double sense, const LineRoom &axes,
+                                      std::array<double, MAX_JOINTS> joints, double turn) const noexcept {
     constexpr int SAMPLES = 100;
     const geom::Pose &end = sense > 0 ? line.end : line.start;
-    Room room = axes;
+    LineRoom room = axes;
     const double most = traj::TapTuning::MOST_ROOM * turn;
     room.way = std::min(room.way, most);
     const traj::Primitive on = traj::make_line(end, end + line.lin * (sense * most));
@@ -362,14 +361,14 @@ Reason PathPlanner::accept_tap(const PathCommand &c, const RigidTap &tap) noexce
     MoveTerms terms = tap.terms;
     terms.mode = PathMode::EXACT_STOP;
     traj::MoveRequest request = request_for(c, terms);
-    Room before = room_behind(in, -1, limits_);
-    Room behind = room_behind(in, 1, limits_);
+    LineRoom before = room_behind(in, -1, limits_);
+    LineRoom behind = room_behind(in, 1, limits_);
     const double turn = terms.feed_per_revolution;
     if (kinematics_.identity() == nullptr) {
         before = room_for_joints(in, -1, before, start, turn);
         behind = room_for_joints(in, 1, behind, bottom, turn);
     }
-    const Room &least = before.way < behind.way ? before : behind;
+    const LineRoom &least = before.way < behind.way ? before : behind;
     if (least.way < traj::TapTuning::LEAST_ROOM * turn) {
         const int joint = least.joint < MAX_JOINTS ? least.joint : -1;
         refused_index_ = static_cast<std::int16_t>(least.joint >= 0 ? joint : least.axis);

@@ -177,6 +177,32 @@ TEST(HomingCases, ASwitchThatClosesAgainWhileStoppingIsNoZero_C10) {
         << m.fault();
 }
 
+/// A slow search comes to a stand at once behind the opening edge: without more of a way back the closing
+/// edge comes while play is still taken up.
+TEST(HomingCases, ALatchInTheDirectionOfTheSearchBeginsSoFarOffThatPlayIsTakenUpAtTheEdge_C10_C11) {
+    for (const double play : {0.1, 0.5, 2.0}) {
+        for (const double latch : {1.0, 5.0, 20.0}) {
+            for (const bool isJerkLimited : {false, true}) {
+                testing::HomingRig m("X");
+                m.set_up({{.start = 5, .switch_at = -10, .play = play}});
+                if (isJerkLimited) {
+                    m.set(Parameter::TRAJ_PLANNER_TYPE, 1);
+                    m.set(Parameter::TRAJ_MAX_JERK, 5000);
+                    m.set(Parameter::JOINT_MAX_JERK, 5000);
+                }
+                m.set(Parameter::JOINT_BACKLASH, play);
+                m.set(Parameter::JOINT_HOME_OFFSET, -10);
+                m.set_switch(0, -2, -latch);
+                m.home(0);
+                ASSERT_TRUE(m.wait()) << m.fault();
+                ASSERT_TRUE(m.isHomed(0)) << m.fault();
+                m.rig.step(500);
+                EXPECT_NEAR(m.zero(0), 0, latch * 2e-3 + 1e-9) << "play " << play << " latch " << latch;
+            }
+        }
+    }
+}
+
 TEST(HomingCases, InhibitKeepsHomingFromBeginningAndStopsNothing_C10) {
     HomingRig m;
     m.set_up({{.start = 0}});

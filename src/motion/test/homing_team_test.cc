@@ -20,6 +20,7 @@ struct Gantry {
     HomingRig m{"XYYZ"};
     double widest = 0;       ///< skew so far
     double widest_legs = 0;  ///< without the search and the final move
+    bool wasLeg = false;
     double start[2] = {};
 
     Gantry(const sim::HomeAxis::Build &one, const sim::HomeAxis::Build &other, double most_skew = 3) {
@@ -45,7 +46,9 @@ struct Gantry {
         const bool isLeg = state(1) != State::SEARCH && state(2) != State::SEARCH &&
                            state(1) != State::FINAL && state(1) != State::IDLE &&
                            state(1) != State::SEARCH_STOP;
-        widest_legs = std::max(widest_legs, isLeg ? std::abs(skew() - before) : 0.0);
+        // Slides follow their commands a cycle later.
+        widest_legs = std::max(widest_legs, isLeg && wasLeg ? std::abs(skew() - before) : 0.0);
+        wasLeg = isLeg;
     }
     void home() {
         m.rig.send(Home{1});

@@ -227,7 +227,7 @@ TEST(KinematicsTappingCampaign, AnyHoleOnAnyMachineIsMadeWithinItsJointsLimitsOr
     }
     std::printf("%d taps, %d made, %d refused\n", count, made, refused);
     EXPECT_GT(made, count / 4);
-    EXPECT_GT(refused, 0);
+    EXPECT_GE(refused, count / 60);  // one in twenty, and a short run may have none
 }
 
 INSTANTIATE_TEST_SUITE_P(Machines, KinematicsTapping,

@@ -5,9 +5,11 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/result.hh"
+#include "interp/canon/machine_canon.hh"
 #include "mailbox/segment.hh"
 #include "task/command.hh"
 
@@ -41,13 +43,21 @@ class MdiQueue {
         waiting_.pop_front();
         return line;
     }
-    /// All of them; none waits any more.
+    /// What the taps of clients from here on keep to.
+    void set_sync(const SetSpindleSync &sync) { sync_ = sync; }
+    const SetSpindleSync &sync() const { return sync_; }
+    /// The line that begins is this tap.
+    void set_tap(const interp::TapMove &tap) { tap_ = tap; }
+    std::optional<interp::TapMove> take_tap() { return std::exchange(tap_, std::nullopt); }
+    /// All of them; none waits any more, and none is about to begin.
     std::vector<mailbox::Serial> drop() {
         std::vector<mailbox::Serial> dropped;
         for (const Line &line : waiting_) {
             dropped.push_back(line.command);
         }
         waiting_.clear();
+        tap_.reset();
+        sync_ = {};
         return dropped;
     }
     int size() const { return static_cast<int>(waiting_.size()); }
@@ -55,6 +65,8 @@ class MdiQueue {
   private:
     int most_;
     std::deque<Line> waiting_;
+    SetSpindleSync sync_;
+    std::optional<interp::TapMove> tap_;
 };
 
 }  // namespace mw::task

@@ -17,7 +17,10 @@ void FreePlanner::stop() noexcept {
     constexpr double CYCLES = 1e-3;
     const bool isBehind = std::abs(place - target) <= CYCLES * std::abs(place - position) &&
                           std::abs(place - position) > std::abs(target - position);
-    target = isBehind ? target : place;
+    if (!isBehind) {
+        target = brake_target_ = place;
+        isBraking_ = velocity != 0.0;
+    }
 }
 
 namespace {
@@ -32,10 +35,31 @@ double go(double &p, double &v, double a, double span, double dt) noexcept {
 
 }  // namespace
 
+/// Where it ends follows from what it may do on the way: were the place kept, less acceleration would lead
+/// beyond it, and a place that is asked for anew in every cycle would never be braked for.
+void FreePlanner::brake(double dt) noexcept {
+    const double sign = velocity < 0 ? -1.0 : 1.0;
+    double p = 0;
+    double v = std::abs(velocity);
+    // Not a cycle more for what rounding leaves: two that brake together rest together.
+    constexpr double ROUNDING = 1e-9;
+    const double left = go(p, v, -max_acceleration, v / max_acceleration, dt);
+    const bool isOver = left > 0 || v <= ROUNDING * max_acceleration * dt;
+    position += sign * p;
+    velocity = isOver ? 0.0 : sign * v;
+    target = brake_target_ = stop_position(position, velocity, max_acceleration);
+    isBraking_ = velocity != 0.0;
+}
+
 void FreePlanner::step(double dt) noexcept {
     const double a = max_acceleration;
     if (!(a > 0) || isAtRest()) {
         velocity = a > 0 ? velocity : 0.0;
+        return;
+    }
+    isBraking_ = isBraking_ && target == brake_target_;
+    if (isBraking_) {
+        brake(dt);
         return;
     }
     // Turned so that the target lies beyond the place where braking now would lead.
@@ -145,6 +169,7 @@ void JogPlanner::step(double dt) noexcept {
     leader_.max_velocity = max_velocity;
     leader_.max_acceleration = std::min(max_acceleration, most_acceleration_);
     leader_.step(dt);
+    target = leader_.target;  // who brakes is told where that leads
     const double way = leader_.position - origin_;
     add(way);
     add(-way_[next_]);

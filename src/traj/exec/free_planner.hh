@@ -23,11 +23,25 @@ struct FreePlanner {
         position = at;
         velocity = 0;
         target = at;
+        isBraking_ = false;
     }
-    /// Brakes; ends where that leads.
+    /// It is at `at`, by another zero: the target moves by `shift`.
+    void renumber(double at, double shift) noexcept {
+        position = at;
+        target += shift;
+        brake_target_ += shift;
+    }
+    /// Brakes; ends where that leads, which is the target. May be told again and again.
     void stop() noexcept;
     /// Advances by `dt` [s]. [servo]
     void step(double dt) noexcept;
+
+  private:
+    void brake(double dt) noexcept;
+
+    /// It brakes with what it has in each cycle, until somebody sends it elsewhere than `brake_target_`.
+    bool isBraking_ = false;
+    double brake_target_ = 0;
 };
 
 /// The same with a jerk limit. A mean over tau swings its acceleration by at most 2 A within tau, whatever

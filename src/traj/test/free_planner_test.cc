@@ -125,5 +125,64 @@ TEST(JogPlanner, WithoutJerkLimitItIsThePlainOne_C8) {
     EXPECT_TRUE(jog.isAtRest());
 }
 
+/// A stop that is asked for in every cycle while what it may brake with changes, as joints leave more or less
+/// of it to an axis: at rest no later than with the least of it, and never faster than before.
+TEST(JogPlanner, AStopThatIsAskedForAgainAndAgainStops_C8_C13) {
+    for (const double mean_s : {0.0, 0.08}) {
+        for (unsigned seed = 1; seed <= 20; ++seed) {
+            std::mt19937 random(seed);
+            std::uniform_real_distribution<double> share(0.6, 1.0);
+            constexpr double A = 350, V = 56;
+            JogPlanner p;
+            p.max_velocity = 75;
+            p.max_acceleration = A;
+            p.mean_s = mean_s;
+            p.target = seed % 2 == 0 ? 1e6 : -1e6;
+            while (std::abs(p.velocity) < V) {
+                p.step(T);
+            }
+            const double from = p.leader().position;
+            const double fastest = std::abs(p.leader().velocity);
+            double before = fastest;
+            int cycles = 0;
+            for (; !p.isAtRest() && cycles < 5000; ++cycles) {
+                p.max_acceleration = cycles % 2 == 0 && seed < 10 ? 0.93 * A : A * share(random);
+                p.stop();
+                p.step(T);
+                ASSERT_LE(std::abs(p.leader().velocity), before + 1e-12) << "cycle " << cycles;
+                before = std::abs(p.leader().velocity);
+            }
+            EXPECT_TRUE(p.isAtRest());
+            EXPECT_LE(cycles * T, fastest / (0.6 * A) + mean_s + 3 * T);
+            EXPECT_LE(std::abs(p.position - from), 0.5 * fastest * fastest / (0.6 * A) + fastest * T);
+            EXPECT_EQ(p.position, p.target);
+        }
+    }
+}
+
+TEST(JogPlanner, WhoIsSentOnWhileItBrakesGoesThere_C8) {
+    for (const double mean_s : {0.0, 0.05}) {
+        JogPlanner p;
+        p.max_velocity = 50;
+        p.max_acceleration = 500;
+        p.mean_s = mean_s;
+        p.target = 100;
+        for (int i = 0; i < 200; ++i) {
+            p.step(T);
+        }
+        p.stop();
+        for (int i = 0; i < 30; ++i) {
+            p.step(T);
+        }
+        ASSERT_FALSE(p.isAtRest());
+        p.target = 3.25;
+        for (int i = 0; i < 2000; ++i) {
+            p.step(T);
+        }
+        EXPECT_TRUE(p.isAtRest());
+        EXPECT_EQ(p.position, 3.25);
+    }
+}
+
 }  // namespace
 }  // namespace mw::traj

@@ -58,8 +58,7 @@ traj::Retrace::Use use_of(const Changes &changes, const RetraceLimits &in) noexc
     return use;
 }
 
-/// What has been recorded since the last time, weighed against the limits: that takes as long as recording
-/// some ten samples.
+/// What has been recorded since the last time, weighed against the limits: takes longer than recording.
 void weigh(Retracing &r, const RetraceLimits &limits) noexcept {
     r.retrace.include(use_of(r.changes, limits));
     r.changes = {};

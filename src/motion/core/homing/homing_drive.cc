@@ -89,6 +89,32 @@ Verdict take(HomingDrive &drive, const Unhome &command, const HomeConditions &co
     return verdict_of(j, Reason::NONE);
 }
 
+namespace {
+
+/// The way at the latch velocity in which play is taken up, with the half of the joint's limits that
+/// corrections have: as far from the switch the slow move may begin.
+double way_of_play(const Settings &settings, int j) noexcept {
+    const auto get = [&](Parameter p) { return settings.get(p, j); };
+    const double play = get(Parameter::JOINT_BACKLASH);
+    const double v = 0.5 * get(Parameter::JOINT_MAX_VELOCITY);
+    const double a = 0.5 * get(Parameter::JOINT_MAX_ACCELERATION);
+    if (!(play > 0) || !(v > 0) || !(a > 0)) {
+        return 0;
+    }
+    const double jerk = get(Parameter::JOINT_MAX_JERK);
+    const bool hasMean = settings.isSet(Parameter::TRAJ_PLANNER_TYPE) && jerk < NO_JERK_LIMIT && jerk > 0;
+    const double seconds =
+        (play < v * v / a ? 2 * std::sqrt(play / a) : play / v + v / a) + (hasMean ? 4 * a / jerk : 0.0);
+    const double fastest = std::max(1.0, settings.get(Parameter::MAX_FEED_SCALE));
+    return seconds * std::min(2 * v, fastest * std::abs(get(Parameter::JOINT_HOME_LATCH_VEL)));
+}
+
+}  // namespace
+
+void note_play(HomingDrive &drive, int j, const Settings &settings) noexcept {
+    drive.own.parameters(j).clearance = way_of_play(settings, j);
+}
+
 void configure(HomingDrive &drive, int j, const Settings &settings) noexcept {
     const auto get = [&](Parameter p) { return settings.get(p, j); };
     homing::Parameters &p = drive.own.parameters(j);
@@ -109,6 +135,7 @@ void configure(HomingDrive &drive, int j, const Settings &settings) noexcept {
     p.low = get(Parameter::JOINT_MIN_LIMIT);
     p.high = get(Parameter::JOINT_MAX_LIMIT);
     p.max_skew = get(Parameter::JOINT_HOME_MAX_SKEW);
+    note_play(drive, j, settings);
     p.isLockingIndexer = settings.isSet(Parameter::JOINT_LOCKING_INDEXER, j);
     p.isVolatile = settings.isSet(Parameter::JOINT_VOLATILE_HOME, j);
     drive.module().configure(j, p);

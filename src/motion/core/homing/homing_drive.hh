@@ -56,6 +56,8 @@ Verdict take(HomingDrive &drive, const Unhome &command, const HomeConditions &co
 
 /// Takes the settings of joint j.
 void configure(HomingDrive &drive, int j, const Settings &settings) noexcept;
+/// How far to back off for play; `configure` does it too.
+void note_play(HomingDrive &drive, int j, const Settings &settings) noexcept;
 /// The axis that joint j moves, -1: none; joints of one axis that end homing together keep together.
 void set_axis(HomingDrive &drive, int j, int axis) noexcept;
 /// `joint`: the one that `why` has happened to, -1: none.

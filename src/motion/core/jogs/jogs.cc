@@ -418,8 +418,7 @@ void settle(Jogs &jogs, const Inputs &in) noexcept {
 }
 
 void renumber(Jog &jog, double position, double shift) noexcept {
-    jog.planner.target += shift;
-    jog.planner.position = position;
+    jog.planner.renumber(position, shift);
 }
 
 void home_joint(Jog &jog, const homing::JointCommand &command, const JogLimits &most) noexcept {
