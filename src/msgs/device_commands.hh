@@ -229,7 +229,7 @@ struct AddTool {
 template <>
 inline constexpr auto DECLARED<AddTool> = declare(
     "AddTool", 3012, "", "puts a new tool into the tool table",
-    field<&AddTool::toolno>("toolno", "number of the tool", unit::NONE, range(1, 99999)),
+    field<&AddTool::toolno>("toolno", "number of the tool, from 1 on", unit::NONE, range(0, 99999)),
     optional(field<&AddTool::pocket>("pocket", "where it is kept, 0: one that is free", unit::NONE,
                                      range(0, 1000))),
     optional(field<&AddTool::offset>("offset", "of the tool", unit::POSE)),

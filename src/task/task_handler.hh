@@ -95,10 +95,10 @@ struct Task::Handler {
     Outcome operator()(const C &command) {
         return done(switch_device(command, task.io_));
     }
-    Outcome operator()(const SetToolEntry &command) { return done(set_tool(command, task.parts_.tools)); }
-    Outcome operator()(const AddTool &command) { return done(add_tool(command, task.parts_.tools)); }
-    Outcome operator()(const RemoveTool &command) {
-        return done(remove_tool(command, task.status_.tool.prepared_index, task.parts_.tools));
+    template <OneOf<SetToolEntry, AddTool, RemoveTool> C>
+    Outcome operator()(const C &command) {
+        const ToolUse use{task.status_.tool.prepared_index, task.run_.hold() == Hold::AWAY};
+        return done(edit_tools(command, use, task.parts_.tools));
     }
 
     Outcome operator()(const Null &) { return Progress::DONE; }

@@ -239,6 +239,8 @@ void Table::place(const Reading &reading) {
     for (const ReadTool &tool : reading.tools) {
         if (tool.isUsable) {
             lines_[tool.line].entry = isRandom() ? tool.entry.pocketno : count();
+        } else {
+            lines_[tool.line].unused = {tool.entry.toolno, tool.entry.pocketno};
         }
         if (isRandom() && tool.isUsable) {
             for (int pocket = count(); pocket <= tool.entry.pocketno; ++pocket) {
@@ -290,7 +292,7 @@ void Table::add(const ToolEntry &entry) {
     for (int pocket = count(); pocket <= index; ++pocket) {
         entries_.push_back(empty_pocket(pocket));
     }
-    lines_.push_back({{}, index, true, false});
+    lines_.push_back({{}, index, {}, true, false});
     entries_[static_cast<std::size_t>(index)] = entry;
 }
 
@@ -299,6 +301,11 @@ int Table::owner_of(int pocketno) const {
     for (int i = lowest; i < count(); ++i) {
         if (entry(i).toolno >= lowest && entry(i).pocketno == pocketno) {
             return entry(i).toolno;
+        }
+    }
+    for (const Line &line : lines_) {
+        if (line.unused.has_value() && line.unused->second == pocketno) {
+            return line.unused->first;
         }
     }
     return NOBODY;
@@ -310,6 +317,13 @@ Result<int> Table::put(ToolEntry entry) {
     }
     if (index_of_tool(entry.toolno) >= 0) {
         return fail(fmt::format("tool {} is in the tool table already", entry.toolno));
+    }
+    if (std::ranges::any_of(lines_, [&](const Line &line) {
+            return line.unused.has_value() && line.unused->first == entry.toolno;
+        })) {
+        return fail(
+            fmt::format("lines of the tool table that contradict each other name tool {}", entry.toolno), {},
+            "correct them in its file, and read it again");
     }
     if (entry.pocketno == 0) {
         const bool isOwnFree = entry.toolno <= MAX_POCKET && owner_of(entry.toolno) == NOBODY;
@@ -341,7 +355,9 @@ Result<> Table::remove(int index) {
         return fail(fmt::format("tool {} is in the spindle: it is removed when it is not", toolno));
     }
     entries_[static_cast<std::size_t>(index)] = empty_pocket(isRandom() ? index : 0);
-    std::erase_if(lines_, [index](const Line &line) { return line.entry == index; });
+    std::erase_if(lines_, [index, toolno](const Line &line) {
+        return line.entry == index || (line.unused.has_value() && line.unused->first == toolno);
+    });
     return {};
 }
 

@@ -2,8 +2,10 @@
 // The tool table: the classic text file and what is in the spindle.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/result.hh"
@@ -57,9 +59,9 @@ class Table {
     void set_entry(int index, const ToolEntry &entry);
     void add(const ToolEntry &entry);
     /// Puts a new tool into its pocket; where that is 0, into the pocket of its own number or the lowest free
-    /// one. Its index; an error when its number or pocket is taken.
+    /// one. Its index; an error when its number or pocket is taken, also by lines that cannot be used.
     Result<int> put(ToolEntry entry);
-    /// The tool is gone, its line too; the others keep their indices. An error for the one in the spindle.
+    /// The tool is gone, its lines too; the others keep their indices. An error for the one in the spindle.
     Result<> remove(int index);
     /// The tool at `index` is in the spindle from here on. FIXED: 0 means none. RANDOM: what was in the
     /// spindle is in its pocket then.
@@ -69,6 +71,8 @@ class Table {
     struct Line {
         std::string text;
         int entry = NO_TOOL;  ///< index of its tool
+        /// Tool and pocket of a line that is kept as text, as it contradicts another.
+        std::optional<std::pair<int, int>> unused{};
         bool isChanged = false;
         bool isOldForm = false;
     };

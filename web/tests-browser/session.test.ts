@@ -98,13 +98,16 @@ describe('tools', () => {
     await judgeByAxe(page, 'a new tool');
     await page.getByTestId('tool-save').click();
     await untilText(page, 'tool-77', /T77\s+77\s+61\.500\s+0\.400\s+engraver/);
-    expect(readFileSync(table, 'utf8')).toBe(`${before}T77 P77 D0.4 Z+61.5 ;engraver\n`);
+    expect(readFileSync(table, 'utf8')).toBe(`${before}T77 P77 Z61.5 D0.4 ;engraver\n`);
     await page.getByTestId('tool-add').click();
     await page.getByTestId('tool-number').fill('78');
     await page.getByTestId('tool-pocket').fill('77');
     await page.getByTestId('tool-save').click();
     await until(async () => (await page.getByText(/pocket 77 is taken by tool 77/).count()) > 0, 'the refusal');
     await page.getByTestId('tool-dialog').getByRole('button', { name: 'Close' }).click();
+    while ((await page.getByTestId('notice').count()) > 0) {
+      await page.getByTestId('notice').getByRole('button').first().click();
+    }
     await page.getByTestId('edit-77').click();
     await page.getByTestId('tool-remove').click();
     await page.getByTestId('tool-remove').click();

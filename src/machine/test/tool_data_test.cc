@@ -149,10 +149,10 @@ TEST_F(ToolDataTest, ToolsAreAddedAndRemovedAndTheRestOfTheFileStays_G1_G4) {
     const std::uint64_t version = tools.version();
     ASSERT_TRUE(tools.add(entry).has_value());
     EXPECT_NE(tools.version(), version);
-    EXPECT_EQ(text("tool.tbl"), before + "T5 P5 D8 Z+12.5 ;new one\n");
+    EXPECT_EQ(text("tool.tbl"), before + "T5 P5 Z12.5 D8 ;new one\n");
     EXPECT_EQ(tools.index_of_tool(5), 3);
     ASSERT_TRUE(tools.remove(tools.index_of_tool(1)).has_value());
-    EXPECT_EQ(text("tool.tbl"), "; our tools\n\nT2 P2 D6 ;mill\nT5 P5 D8 Z+12.5 ;new one\n");
+    EXPECT_EQ(text("tool.tbl"), "; our tools\n\nT2 P2 D6 ;mill\nT5 P5 Z12.5 D8 ;new one\n");
     EXPECT_EQ(tools.index_of_tool(1), -1);
     EXPECT_EQ(tools.index_of_tool(2), 2) << "who has an index keeps it";
     EXPECT_EQ(tools.index_of_tool(5), 3);
@@ -198,6 +198,18 @@ TEST_F(ToolDataTest, ARandomChangersPocketsAreOneToolEach_G2_G4) {
     }
     EXPECT_EQ(tools.add(tool_of(5000, 0)).error().message,
               "there is no free pocket for tool 5000: they end with 1000");
+}
+
+TEST_F(ToolDataTest, LinesThatContradictEachOtherAreNotAddedToNorLeftBehind_G1_G4) {
+    const std::string before = "T1 P1 D3\nT1 P2 D4\nT2 P3 D5 ;first\nT2 P3 D5 ;again\nT3 P4\n";
+    task::ToolStore &tools = open_file(before);
+    EXPECT_EQ(tools.add(tool_of(1, 9)).error().message,
+              "lines of the tool table that contradict each other name tool 1");
+    EXPECT_EQ(tools.add(tool_of(8, 2)).error().message, "pocket 2 is taken by tool 1");
+    EXPECT_EQ(text("tool.tbl"), before);
+    ASSERT_TRUE(tools.remove(tools.index_of_tool(2)).has_value());
+    EXPECT_EQ(text("tool.tbl"), "T1 P1 D3\nT1 P2 D4\nT3 P4\n") << "its second line would bring it back";
+    EXPECT_EQ(open().index_of_tool(2), -1);
 }
 
 TEST_F(ToolDataTest, AChangeThatCannotBeKeptHasNotHappened_G4) {

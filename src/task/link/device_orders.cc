@@ -40,7 +40,7 @@ Result<> switch_device(const msgs::LubeOff &, io::Controller &io) {
     return {};
 }
 
-Result<> set_tool(const msgs::SetToolEntry &order, ToolStore &tools) {
+Result<> edit_tools(const msgs::SetToolEntry &order, const ToolUse &, ToolStore &tools) {
     const int index = tools.index_of_tool(order.toolno);
     if (index < 0) {
         return fail(fmt::format("tool {} is not in the tool table", order.toolno));
@@ -60,7 +60,7 @@ Result<> set_tool(const msgs::SetToolEntry &order, ToolStore &tools) {
     return kept.has_value() && hasCopy ? tools.set_entry(0, entry) : kept;
 }
 
-Result<> add_tool(const msgs::AddTool &order, ToolStore &tools) {
+Result<> edit_tools(const msgs::AddTool &order, const ToolUse &, ToolStore &tools) {
     const auto isControl = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
     if (std::ranges::any_of(order.comment, isControl)) {
         return fail("the comment of a tool is one line of text");
@@ -77,12 +77,16 @@ Result<> add_tool(const msgs::AddTool &order, ToolStore &tools) {
     return tools.add(entry);
 }
 
-Result<> remove_tool(const msgs::RemoveTool &order, int prepared, ToolStore &tools) {
+Result<> edit_tools(const msgs::RemoveTool &order, const ToolUse &use, ToolStore &tools) {
     const int index = tools.index_of_tool(order.toolno);
     if (index < 0) {
         return fail(fmt::format("tool {} is not in the tool table", order.toolno));
     }
-    if (index == prepared && tools.entry(0).toolno != order.toolno) {
+    if (use.isProgramHeld) {
+        return fail(fmt::format("a program is held that may call tool {}: it is removed when that has ended",
+                                order.toolno));
+    }
+    if (index == use.prepared_index && tools.entry(0).toolno != order.toolno) {
         return fail(fmt::format("tool {} is prepared for the next change: it is removed when another one is",
                                 order.toolno));
     }
