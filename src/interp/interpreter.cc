@@ -224,6 +224,13 @@ void Interpreter::restore(const Kept &kept) {
     executor.awaited = {};
 }
 
+void Interpreter::know_tools(const std::map<int, ToolEntry> &entries) {
+    for (const auto &[index, entry] : entries) {
+        impl_->executor.tools.set(index, entry);
+    }
+    impl_->executor.tools.commit();
+}
+
 Result<std::string> Interpreter::pack_kept() const {
     return pack(*keep(), impl_->names);
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -171,6 +172,8 @@ class Interpreter final : public ProgramInterpreter {
     std::shared_ptr<const Kept> keep() const;
     /// Makes them what they were. Only at the top level, as after abort().
     void restore(const Kept &kept);
+    /// Entries of the tool table that will be there by the next synch(): what has been told is on its way.
+    void know_tools(const std::map<int, ToolEntry> &entries);
     /// What keep() gives as bytes, for another process; an error says what cannot be told so.
     Result<std::string> pack_kept() const;
     Result<std::shared_ptr<const Kept>> unpack_kept(std::string_view bytes);

@@ -43,6 +43,9 @@ void Task::Start::give_up(std::string reason) {
     drop();
     task.post(MessageKind::OPERATOR_ERROR, reason);
     task.run_.set_error({diag::Severity::ERROR, {reason}});
+    if (task.run_.isHeld()) {
+        task.motion_.send(motion::Resume{});  // nothing is there to be held any more
+    }
     task.finish_run(Progress::FAILED, reason);
 }
 

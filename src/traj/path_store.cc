@@ -8,8 +8,42 @@
 
 namespace mw::traj {
 
+double Braking::at(std::size_t part, double b) const noexcept {
+    const Part &left = parts[part];
+    const double share = std::min(1.0, b / top);
+    std::size_t k = 1;
+    while (k < AccelBound::LINES && share > LimitTuning::CHORDS[k]) {
+        ++k;
+    }
+    const double before = LimitTuning::CHORDS[k - 1];
+    const double t = (share - before) / (LimitTuning::CHORDS[k] - before);
+    return left[k - 1] + t * (left[k] - left[k - 1]);
+}
+
+std::size_t Braking::part_at(double x, double length) noexcept {
+    const double n = length > 0 ? x / length * PARTS : 0.0;
+    const auto part = static_cast<std::size_t>(std::clamp(n, 0.0, PARTS - 1.0));
+    // Who stands at the end of a part is in the next one, whatever rounding makes of it.
+    const bool isOver = part + 1 < PARTS && x >= length * static_cast<double>(part + 1) / PARTS;
+    return isOver ? part + 1 : part;
+}
+
+double Braking::end_of(std::size_t part, double length) const noexcept {
+    std::size_t next = part + 1;
+    while (next < PARTS && parts[next] == parts[part]) {
+        ++next;
+    }
+    return next < PARTS ? length * static_cast<double>(next) / PARTS : length;
+}
+
+double Piece::brake_at(double x, double b) const noexcept {
+    const double planned = acceleration.at(b);
+    return braking.top > 0 ? std::max(planned, braking.at(Braking::part_at(x, length), b)) : planned;
+}
+
 Piece::BrakeLeg Piece::brake_leg(double x, double b) const noexcept {
-    BrakeLeg leg{brake_at(x, b), x < braking.from ? braking.from : length};
+    const bool isPlanned = !(braking.top > 0);
+    BrakeLeg leg{brake_at(x, b), isPlanned ? length : braking.end_of(Braking::part_at(x, length), length)};
     const double slower = BrakingTuning::LOOK_AGAIN * b;
     if (leg.a > 0 && brake_at(x, slower) > BrakingTuning::LOOK_GAIN * leg.a) {
         const double way = std::max(0.5 * (b - slower) / leg.a, BrakingTuning::SHORT_S * std::sqrt(b));

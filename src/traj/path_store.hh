@@ -65,11 +65,21 @@ struct AccelBound {
     }
 };
 
-/// How hard a stop may brake on a piece: by `bound` from x = `from` on, before it by the piece's
-/// acceleration.
+/// How hard a stop may brake on each part of a piece, parts of equal length, where that is more than what
+/// speeds are planned with: by the squared speed, chords between `LimitTuning::CHORDS` of the highest.
 struct Braking {
-    double from = 0;
-    AccelBound bound;
+    static constexpr std::size_t PARTS = 6;
+    using Part = std::array<float, AccelBound::LINES + 1>;  ///< [1/s^2]
+
+    double top = 0;  ///< the highest squared speed; 0: nowhere more than planned
+    std::array<Part, PARTS> parts{};
+
+    /// What a part allows at the squared speed b.
+    double at(std::size_t part, double b) const noexcept;
+    /// The part from `x` on, of a piece of `length`; the last one also behind its end.
+    static std::size_t part_at(double x, double length) noexcept;
+    /// Where parts that allow the same end.
+    double end_of(std::size_t part, double length) const noexcept;
 };
 
 /// A stretch of path with limits of its own: a part of one primitive, or of a blend between two.
@@ -89,12 +99,8 @@ struct Piece {
     Braking braking;          ///< the same for stops, which the speeds are not planned with
 
     /// How hard a stop brakes from x on at the squared speed b: never less than speeds are planned with.
-    double brake_at(double x, double b) const noexcept {
-        const double planned = acceleration.at(b);
-        const double alone = x < braking.from ? 0.0 : braking.bound.at(b);
-        return alone > planned ? alone : planned;
-    }
-    /// The same until x = `end`: where the piece allows more, be it by the place or by a speed that has
+    double brake_at(double x, double b) const noexcept;
+    /// The same until x = `end`: where the piece allows another, be it by the place or by a speed that has
     /// fallen.
     struct BrakeLeg {
         double a = 0, end = 0;

@@ -75,9 +75,6 @@ struct LimitTuning {
 
 /// Stops on curves (braking_on).
 struct BrakingTuning {
-    /// Parts of a piece in which signs of derivatives are looked at: a blend has four pieces at most, so a
-    /// stop on it begins a twenty-fourth of it late at most.
-    static constexpr std::size_t INTERVALS = 6;
     /// Where turning at the highest speed leaves this part of the acceleration, a stop by the sum is fast
     /// enough: the slower the more is left.
     static constexpr double ENOUGH = 0.5;
@@ -89,8 +86,10 @@ struct BrakingTuning {
     static constexpr double LOOK_AGAIN = 0.7, LOOK_GAIN = 1.05;
     /// What derivatives may be more than their differences tell.
     static constexpr double MARGIN = 1.002;
-    /// A bound of its own has to be better by so much.
+    /// A bound of its own has to be better by so much somewhere.
     static constexpr double LEAST_GAIN = 1.05;
+    /// Parts next to each other whose bounds differ by less have the lesser in common: fewer legs of a stop.
+    static constexpr double LIKE = 1.2;
 };
 
 /// Limits of joints that are not axes (joint_rows).

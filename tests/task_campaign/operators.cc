@@ -75,7 +75,8 @@ Operators::Serial Operators::post(int client, const msgs::Command &command, Expe
     ++verdict_.commands;
     const auto *mode = std::get_if<msgs::SetMode>(&command);
     orders_.push_back({*posted, client, name, expected, bench_.now_ms(), patience_ms,
-                       mode != nullptr ? std::optional(mode->mode) : std::nullopt});
+                       mode != nullptr ? std::optional(mode->mode) : std::nullopt,
+                       std::holds_alternative<msgs::ReleaseAxes>(command)});
     return *posted;
 }
 
@@ -114,7 +115,9 @@ void Operators::note_end(const Order &order, const client::Outcome &outcome) {
     const bool isRefused = outcome.progress == msgs::Progress::REFUSED;
     if (outcome.progress == msgs::Progress::DONE) {
         mode_ = order.mode.value_or(mode_);
+        mayBeReleased_ = mayBeReleased_ && !order.mode;
     } else {
+        mayBeReleased_ = mayBeReleased_ || (order.isRelease && !isRefused);
         ++verdict_.refused;
         ++verdict_.refusals[kind_of(outcome.reason)];
         if (outcome.reason.empty()) {

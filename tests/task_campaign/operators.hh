@@ -37,6 +37,7 @@ class Operators {
         Expected expected = Expected::ANY;
         std::int64_t posted_ms = 0, patience_ms = 0;
         std::optional<msgs::Mode> mode;  ///< that it sets
+        bool isRelease = false;
     };
 
     void fail(const std::string &rule, const std::string &text);
@@ -62,7 +63,9 @@ class Operators {
     std::FILE *tell_;
     Verdict verdict_;
     msgs::Mode mode_ = msgs::Mode::MANUAL;  ///< that was set last
-    bool isHeldByUs_ = false;               ///< nobody is to resume
+    /// Axes were being released when all was stopped: the mode of jogs may have come before that or not.
+    bool mayBeReleased_ = false;
+    bool isHeldByUs_ = false;  ///< nobody is to resume
 
   private:
     void look_at_orders();

@@ -35,6 +35,9 @@ Verdict Session::run() {
 }
 
 void Session::check() {
+    if (mayBeReleased_ && status().task.mode == msgs::Mode::MANUAL) {
+        mode_ = msgs::Mode::MANUAL;
+    }
     const std::string trouble = isOver() ? "" : judge(bench_, mode_, beliefs_);
     if (!trouble.empty()) {
         fail(trouble.substr(0, trouble.find(':')), trouble.substr(trouble.find(':') + 2));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -41,6 +42,7 @@ class BlockSearch {
     const std::string &refusal() const { return refusal_; }
     /// As of the place that was found.
     FoundModes found() const { return machine_.found(); }
+    const std::map<int, interp::ToolEntry> &tool_entries() const { return machine_.tool_entries(); }
     /// That come before it.
     std::uint32_t blocks_before() const { return machine_.blocks(); }
     const CallSum &sum() const { return machine_.sum(); }

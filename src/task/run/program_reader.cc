@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "task/run/program_reader.hh"
 
+#include <map>
+
 #include <fmt/format.h>
 
 #include "interp/plugin.hh"
@@ -131,6 +133,7 @@ std::string ProgramReader::take_doubt() {
 }
 
 void ProgramReader::accept_search() {
+    const std::map<int, interp::ToolEntry> on_their_way = search_->tool_entries();
     if (!switch_.isPassing()) {
         canon_.set_blocks(search_->blocks_before());
         canon_.set_position(search_->found().position);
@@ -139,6 +142,7 @@ void ProgramReader::accept_search() {
     search_.reset();
     recorded_.reset();
     kept_.reset();
+    rs274_->know_tools(on_their_way);
 }
 
 void ProgramReader::cancel_search() {

@@ -59,6 +59,8 @@ class SearchMachine final : public interp::MachineCanon,
     /// Of all calls of the program so far.
     const CallSum &sum() const { return sum_; }
     FoundModes found() const;
+    /// Of the tool table, what the program has changed; 0: what is in the spindle.
+    const std::map<int, interp::ToolEntry> &tool_entries() const { return entries_; }
     /// What has made the rest unknown; empty: nothing.
     const std::string &doubt() const { return doubt_; }
 

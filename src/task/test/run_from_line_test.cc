@@ -84,6 +84,17 @@ TEST_F(RunFromLineTest, ALineThatCannotIsRefusedWithTheNearestOneThatCan_C5) {
     EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << reason(request);
 }
 
+TEST_F(RunFromLineTest, OneThatIsPausedWhileItIsCalculatedAndRefusedHoldsNoOther_D1) {
+    open("G21 F600\nG0 Z5\nG41.1 D2 G1 X5\nY10\nX20\nG40 Y20\nM2\n");
+    const auto run = post(RunProgram{5});
+    const auto pause = post(PauseProgram{});
+    cycles(5);
+    EXPECT_EQ(progress(pause), Progress::DONE) << reason(pause);
+    EXPECT_EQ(progress(run), Progress::FAILED);
+    EXPECT_TRUE(std::holds_alternative<motion::Resume>(motion.last));
+    EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << reason(request);
+}
+
 TEST_F(RunFromLineTest, AStopWhileItIsCalculatedEndsIt_D1) {
     const auto run = from("#1=0\no1 while [1]\n#1=[#1+1]\no1 endwhile\nG0 X1\nM2\n", 5);
     cycles(20);

@@ -89,6 +89,10 @@ struct Shop {
     bool step() {
         const interp::Step step = reader.interpreter().step();
         if (step == interp::Step::SYNC) {
+            for (const interp::MachineCall &call : ahead) {
+                mill.obey(call);
+            }
+            ahead.clear();
             mill.obey(reader.queue());
             reader.synch(mill.state.position);
         }
@@ -111,6 +115,7 @@ struct Shop {
         return all;
     }
     ObedientMill mill;
+    std::vector<interp::MachineCall> ahead;  ///< of the queue: done when the interpreter waits for it
     static interp::Settings settings() {
         interp::Settings s;
         s.subroutine_path = {MW_SOURCE_DIR "/nc_files/lib"};
@@ -185,13 +190,9 @@ void judge(const std::string &path, Count &count) {
         ASSERT_TRUE(first_at.contains(line));
         const FoundModes found = shop.reader.search().found();
         shop.reader.accept_search();
-        // The approach brings the machine there.
-        for (const interp::MachineCall &call : found.settings) {
-            shop.mill.obey(call);
-        }
-        for (const interp::MachineCall &call : found.spindles) {
-            shop.mill.obey(call);
-        }
+        // The approach brings the machine there, while the interpreter reads ahead.
+        shop.ahead = found.settings;
+        shop.ahead.insert(shop.ahead.end(), found.spindles.begin(), found.spindles.end());
         shop.mill.state.position = found.position;
         shop.mill.state.tool_in_spindle = found.tool;
         shop.mill.state.isMistOn = found.isMistOn;
@@ -303,6 +304,18 @@ TEST_F(SearchTest, WhatIsInForceAtTheLineIsFound_D3) {
     EXPECT_EQ(found.feed, 5.0) << "300 mm/min";
     ASSERT_TRUE(found.offsets.has_value());
     EXPECT_EQ(found.offsets->g5x_index, 2);
+}
+
+TEST_F(SearchTest, WhatSkippedLinesHaveMadeOfToolsHoldsBeforeTheTableHasIt_D3) {
+    std::ofstream(path()) << "G10 L1 P1 Z-5\nT4 M6\nG0 X1\nG43 H1\nG0 Z0\nM2\n";
+    Shop shop(path());
+    ASSERT_TRUE(shop.reader.begin_search(3).has_value());
+    EXPECT_EQ(shop.reader.step_search(100), BlockSearch::Outcome::FOUND);
+    shop.reader.accept_search();
+    ASSERT_NE(shop.mill.tools[1].offset[geom::AXIS_Z], -5);
+    EXPECT_TRUE(shop.step() && shop.step());
+    ASSERT_TRUE(shop.reader.canon().tool_offset().has_value());
+    EXPECT_EQ((*shop.reader.canon().tool_offset())[geom::AXIS_Z], -5);
 }
 
 TEST_F(SearchTest, ASearchThatIsDroppedLeavesModesAndParametersAsTheyWere_D3) {

@@ -11,7 +11,7 @@ namespace mw::traj {
 
 namespace {
 
-constexpr std::size_t INTERVALS = BrakingTuning::INTERVALS;
+constexpr std::size_t INTERVALS = Braking::PARTS;
 constexpr std::size_t MOST = std::max<std::size_t>(geom::AXIS_COUNT, MAX_JOINTS);
 
 /// One interval of a piece as one coordinate sees it: first and second derivatives by the path at both ends,
@@ -62,7 +62,7 @@ struct Coordinates {
     const Coordinate *end() const noexcept { return items.data() + count; }
 };
 
-/// What braking asks of one coordinate from some interval on to the end of the piece.
+/// What braking asks of one coordinate on an interval.
 struct Demand {
     double shared = 0;   ///< largest first derivative where turning and braking pull the same way
     double turning = 0;  ///< largest second derivative
@@ -213,13 +213,50 @@ bool isWorthALook(const PathStore &store, const Piece &piece, bool isMapped,
            limit.a.at(limit.v * limit.v) < BrakingTuning::ENOUGH * limit.a.at(0);
 }
 
+/// Not above what it stands for.
+float lesser_float(double x) noexcept {
+    constexpr double ROUNDING = 1e-7;
+    return static_cast<float>(std::min(x, 1e30) * (1.0 - ROUNDING));
+}
+
+bool areAlike(const Braking::Part &low, const Braking::Part &high) noexcept {
+    for (std::size_t k = 0; k < low.size(); ++k) {
+        if (high[k] > static_cast<float>(BrakingTuning::LIKE) * low[k]) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// Neighbours that allow nearly the same allow what all of them do.
+void join_like(std::array<Braking::Part, Braking::PARTS> &parts) noexcept {
+    for (std::size_t from = 0, next = 0; from < parts.size(); from = next) {
+        Braking::Part low = parts[from];
+        Braking::Part high = low;
+        for (next = from + 1; next < parts.size(); ++next) {
+            Braking::Part lower = low;
+            Braking::Part higher = high;
+            for (std::size_t k = 0; k < low.size(); ++k) {
+                lower[k] = std::min(low[k], parts[next][k]);
+                higher[k] = std::max(high[k], parts[next][k]);
+            }
+            if (!areAlike(lower, higher)) {
+                break;
+            }
+            low = lower;
+            high = higher;
+        }
+        std::fill(parts.begin() + static_cast<std::ptrdiff_t>(from),
+                  parts.begin() + static_cast<std::ptrdiff_t>(next), low);
+    }
+}
+
 }  // namespace
 
 Braking braking_on(const PathStore &store, const Piece &piece, const Conditions &conditions,
                    const SpeedLimit &limit) noexcept {
-    Braking best{0, limit.a};
     if (!isWorthALook(store, piece, conditions.workspace.isMapped(), limit)) {
-        return best;
+        return {};
     }
     const Curve curve{store, piece, conditions};
     const Workspace &workspace = conditions.workspace;
@@ -227,33 +264,28 @@ Braking braking_on(const PathStore &store, const Piece &piece, const Conditions 
     Coordinates joints;
     curve.take_axes(axes);
     if (workspace.isMapped() && !curve.take_joints(joints)) {
-        return best;
+        return {};
     }
-    Demands by_axes = demands_of(axes, conditions.limits);
-    Demands by_joints = demands_of(joints, workspace.joints, conditions.limits.filter_s());
-    const double top = limit.v * limit.v;
-    const double shared = limit.a.at(top);
-    // What a part of the piece is worth is the squared speed that it takes away.
-    double worth = BrakingTuning::LEAST_GAIN * shared * piece.length;
-    for (std::size_t n = INTERVALS; n-- > 0;) {
+    Braking out{limit.v * limit.v, {}};
+    bool isGain = false;
+    for (std::size_t n = 0; n < INTERVALS; ++n) {
+        Demands by_axes = demands_of(axes, conditions.limits);
+        Demands by_joints = demands_of(joints, workspace.joints, conditions.limits.filter_s());
         by_axes.add(axes, n);
         by_axes.add_norm(axes, n, curve.isArc());
         by_joints.add(joints, n);
-        const double from = curve.interval() * static_cast<double>(n);
-        const auto room = [&](double b) {
-            return std::min(by_axes.room(b, axes.size()), by_joints.room(b, joints.size()));
-        };
-        const double gain = room(top) * (piece.length - from) + shared * from;
-        if (gain >= worth && gain > 0) {
-            worth = gain;
-            double left[AccelBound::LINES + 1];
-            for (int k = 0; k <= AccelBound::LINES; ++k) {
-                left[k] = room(LimitTuning::CHORDS[k] * top);
-            }
-            best = {from, AccelBound::through(left, limit.v)};
+        for (std::size_t k = 0; k <= AccelBound::LINES; ++k) {
+            const double b = LimitTuning::CHORDS[k] * out.top;
+            const double room = std::min(by_axes.room(b, axes.size()), by_joints.room(b, joints.size()));
+            out.parts[n][k] = lesser_float(room);
+            isGain = isGain || room > BrakingTuning::LEAST_GAIN * limit.a.at(b);
         }
     }
-    return best;
+    if (!isGain) {
+        return {};
+    }
+    join_like(out.parts);
+    return out;
 }
 
 }  // namespace mw::traj

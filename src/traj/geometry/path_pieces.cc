@@ -40,7 +40,7 @@ void share_with_turning(PlannedPath &path, Sequence from, double taken) noexcept
             bound.beta[i] += CornerTuning::SHARED_TURNS * bound.alpha[i] * taken;
             bound.alpha[i] *= CornerTuning::SHARED_REST;
         }
-        piece.braking = {0, bound};
+        piece.braking = {};
     }
 }
 

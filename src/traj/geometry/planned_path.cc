@@ -15,10 +15,13 @@ void PlannedPath::append_piece(const Piece &piece, const PlannedPiece &plan_of_i
 void PlannedPath::scale(Sequence piece, double speed, double acceleration) noexcept {
     plan(piece).v_limit *= speed;
     Piece &p = store_.piece(piece);
-    for (AccelBound *bound : {&p.acceleration, &p.braking.bound}) {
-        for (std::size_t i = 0; i < AccelBound::LINES; ++i) {
-            bound->alpha[i] *= acceleration;
-            bound->beta[i] *= acceleration;
+    for (std::size_t i = 0; i < AccelBound::LINES; ++i) {
+        p.acceleration.alpha[i] *= acceleration;
+        p.acceleration.beta[i] *= acceleration;
+    }
+    for (Braking::Part &part : p.braking.parts) {
+        for (float &left : part) {
+            left *= static_cast<float>(acceleration);
         }
     }
 }

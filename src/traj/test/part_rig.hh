@@ -73,7 +73,6 @@ struct Parts {
         piece.isToEnd = true;
         piece.programmed_s = start;
         piece.acceleration = AccelBound::constant(a);
-        piece.braking = {0, piece.acceleration};
         path->append_piece(piece, {v_limit, isStopBefore, conditions.limits.filter_s()});
         return path->last_piece();
     }
