@@ -33,8 +33,8 @@ void read_any(std::string_view bytes) {
 
 void read_behind_a_beginning(std::string_view bytes) {
     const journal::Start start{3, "p.ngc", journal::mark_of("G0"), "state"};
-    std::string file =
-        journal::begin_bytes(start) + journal::record(journal::key_of(start), journal::Progress{.block = 7, .position = {}});
+    std::string file = journal::begin_bytes(start) +
+                       journal::record(journal::key_of(start), journal::Progress{.block = 7, .position = {}});
     file += bytes;
     const auto run = journal::read_run(file);
     check(!run.has_value() || (run->start == start && run->progress.has_value()));
