@@ -69,6 +69,29 @@ Result<> ToolData::set_entry(int index, const interp::ToolEntry &entry) {
     return {};
 }
 
+Result<> ToolData::add(const interp::ToolEntry &entry) {
+    const auto put = table_.put(entry);
+    if (!put.has_value()) {
+        return std::unexpected(put.error());
+    }
+    ++version_;
+    return {};
+}
+
+Result<> ToolData::remove(int index) {
+    const Result<> removed = table_.remove(index);
+    version_ += removed.has_value() ? 1 : 0;
+    return removed;
+}
+
+void ToolData::forget_life(int toolno) {
+    if (life_.of(toolno).time_s > 0) {
+        life_.forget(toolno);
+        unsaved_life_s_ = std::max(unsaved_life_s_, 1e-9);
+        save_life();
+    }
+}
+
 void ToolData::replace(tool::Table table) {
     const int in_spindle = table_.entry(0).toolno;
     table_ = std::move(table);

@@ -28,6 +28,8 @@ class ToolData : public task::ToolStore {
 
     Result<> load_spindle(int index) override;
     Result<> set_entry(int index, const interp::ToolEntry &entry) override;
+    Result<> add(const interp::ToolEntry &entry) override;
+    Result<> remove(int index) override;
     Result<> reload() override { return {}; }
     std::uint64_t version() const override { return version_; }
 
@@ -44,6 +46,12 @@ class ToolData : public task::ToolStore {
   protected:
     /// Takes the tools that were read; what the spindle of a fixed changer holds stays.
     void replace(tool::Table table);
+    /// As it was before a change that could not be kept.
+    void restore(tool::Table table) {
+        table_ = std::move(table);
+        ++version_;
+    }
+    void forget_life(int toolno);
 
   private:
     tool::Table table_;

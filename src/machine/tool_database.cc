@@ -224,6 +224,19 @@ Result<> ToolDatabase::set_entry(int index, const interp::ToolEntry &entry) {
     return ask(Kind::CHANGE, "p " + tool::format_entry(changed));
 }
 
+Result<> ToolDatabase::add(const interp::ToolEntry &entry) {
+    return fail(fmt::format(
+        "tool {} is added to the tool database '{}', which keeps the tools; then the table is read again",
+        entry.toolno, program_.name()));
+}
+
+Result<> ToolDatabase::remove(int index) {
+    const bool isThere = index >= 0 && index < count();
+    return fail(fmt::format(
+        "tool {} is removed from the tool database '{}', which keeps the tools; then the table is read again",
+        isThere ? entry(index).toolno : -1, program_.name()));
+}
+
 Result<> ToolDatabase::reload() {
     tools_text_.clear();
     read_.reset();

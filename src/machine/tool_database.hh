@@ -35,6 +35,9 @@ class ToolDatabase final : public ToolData {
 
     Result<> load_spindle(int index) override;
     Result<> set_entry(int index, const interp::ToolEntry &entry) override;
+    /// The protocol has no words for it.
+    Result<> add(const interp::ToolEntry &entry) override;
+    Result<> remove(int index) override;
     Result<> reload() override;
     std::optional<Result<>> reload_result() override;
     void step() override;

@@ -60,6 +60,28 @@ Result<> ToolFile::load_spindle(int index) {
     return done.has_value() && isMoved ? save() : done;
 }
 
+Result<> ToolFile::add(const interp::ToolEntry &entry) {
+    tool::Table before = table();
+    const Result<> added = ToolData::add(entry);
+    const Result<> kept = added.has_value() ? save() : added;
+    if (added.has_value() && !kept.has_value()) {
+        restore(std::move(before));
+    }
+    return kept;
+}
+
+Result<> ToolFile::remove(int index) {
+    tool::Table before = table();
+    const Result<> removed = ToolData::remove(index);
+    const Result<> kept = removed.has_value() ? save() : removed;
+    if (removed.has_value() && !kept.has_value()) {
+        restore(std::move(before));
+    } else if (kept.has_value()) {
+        forget_life(before.entry(index).toolno);
+    }
+    return kept;
+}
+
 Result<> ToolFile::set_entry(int index, const interp::ToolEntry &entry) {
     const bool isCopy = index == 0 && !isRandom();
     const Result<> done = ToolData::set_entry(index, entry);

@@ -18,6 +18,8 @@ class ToolFile final : public ToolData {
 
     Result<> load_spindle(int index) override;
     Result<> set_entry(int index, const interp::ToolEntry &entry) override;
+    Result<> add(const interp::ToolEntry &entry) override;
+    Result<> remove(int index) override;
     Result<> reload() override;
     std::optional<std::string> take_warning() override;
 

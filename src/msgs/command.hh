@@ -35,8 +35,8 @@ using CommandVariant = std::variant<
     SetDigitalOutput, SpindleOn, SpindleOff, SpindleIncrease, SpindleDecrease, SpindleConstant, ReleaseBrake,
     EngageBrake, SetSpindleSpeed, OrientSpindle, WaitOriented, MistOn, MistOff, FloodOn, FloodOff, LubeOn,
     LubeOff, EstopOn, EstopOff, EstopReset, WaitInput, InitTool, HaltTool, AbortTool, PrepareTool, LoadTool,
-    UnloadTool, LoadToolTable, SetToolEntry, SetToolNumber, StartToolChange, ConfirmToolChange, InitIo,
-    HaltIo, AbortIo, SetIoCycleTime, CallIoPlugin>;
+    UnloadTool, LoadToolTable, SetToolEntry, AddTool, RemoveTool, SetToolNumber, StartToolChange,
+    ConfirmToolChange, InitIo, HaltIo, AbortIo, SetIoCycleTime, CallIoPlugin>;
 
 /// Where a message stands in the variant.
 template <class Message, class Variant>

@@ -216,6 +216,37 @@ inline constexpr auto DECLARED<SetToolEntry> = declare(
     optional(field<&SetToolEntry::backangle_deg>("backangle_deg", "lathe tools", unit::DEGREE)),
     optional(field<&SetToolEntry::orientation>("orientation", "lathe tools", unit::NONE, range(0, 9))));
 
+struct AddTool {
+    int toolno = 0;
+    int pocket = 0;
+    geom::Pose offset;
+    double diameter = 0;
+    double frontangle_deg = 0;
+    double backangle_deg = 0;
+    int orientation = 0;
+    std::string comment;
+};
+template <>
+inline constexpr auto DECLARED<AddTool> = declare(
+    "AddTool", 3012, "", "puts a new tool into the tool table",
+    field<&AddTool::toolno>("toolno", "number of the tool, from 1 on", unit::NONE, range(0, 99999)),
+    optional(field<&AddTool::pocket>("pocket", "where it is kept, 0: one that is free", unit::NONE,
+                                     range(0, 1000))),
+    optional(field<&AddTool::offset>("offset", "of the tool", unit::POSE)),
+    optional(field<&AddTool::diameter>("diameter", "of the tool", unit::LENGTH)),
+    optional(field<&AddTool::frontangle_deg>("frontangle_deg", "lathe tools", unit::DEGREE)),
+    optional(field<&AddTool::backangle_deg>("backangle_deg", "lathe tools", unit::DEGREE)),
+    optional(field<&AddTool::orientation>("orientation", "lathe tools", unit::NONE, range(0, 9))),
+    optional(field<&AddTool::comment>("comment", "of the tool, on one line", unit::NONE, range(0, 200))));
+
+struct RemoveTool {
+    int toolno = 0;
+};
+template <>
+inline constexpr auto DECLARED<RemoveTool> =
+    declare("RemoveTool", 3013, "", "takes a tool out of the tool table; not the one in the spindle",
+            field<&RemoveTool::toolno>("toolno", "number of the tool", unit::NONE, range(0, 99999)));
+
 struct SetToolNumber {
     int toolno = 0;
 };

@@ -95,7 +95,11 @@ struct Task::Handler {
     Outcome operator()(const C &command) {
         return done(switch_device(command, task.io_));
     }
-    Outcome operator()(const SetToolEntry &command) { return done(set_tool(command, task.parts_.tools)); }
+    template <OneOf<SetToolEntry, AddTool, RemoveTool> C>
+    Outcome operator()(const C &command) {
+        const ToolUse use{task.status_.tool.prepared_index, task.run_.hold() == Hold::AWAY};
+        return done(edit_tools(command, use, task.parts_.tools));
+    }
 
     Outcome operator()(const Null &) { return Progress::DONE; }
     Outcome operator()(const SetDebug &command) {

@@ -23,6 +23,8 @@ class LifeBook {
 
     void add(int toolno, const CutLife &cut);
     CutLife of(int toolno) const;
+    /// A tool of this number begins anew.
+    void forget(int toolno) { tools_.erase(toolno); }
     std::string text() const;
 
   private:

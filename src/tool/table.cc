@@ -239,6 +239,8 @@ void Table::place(const Reading &reading) {
     for (const ReadTool &tool : reading.tools) {
         if (tool.isUsable) {
             lines_[tool.line].entry = isRandom() ? tool.entry.pocketno : count();
+        } else {
+            lines_[tool.line].unused = {tool.entry.toolno, tool.entry.pocketno};
         }
         if (isRandom() && tool.isUsable) {
             for (int pocket = count(); pocket <= tool.entry.pocketno; ++pocket) {
@@ -290,8 +292,73 @@ void Table::add(const ToolEntry &entry) {
     for (int pocket = count(); pocket <= index; ++pocket) {
         entries_.push_back(empty_pocket(pocket));
     }
-    lines_.push_back({{}, index, true, false});
+    lines_.push_back({{}, index, {}, true, false});
     entries_[static_cast<std::size_t>(index)] = entry;
+}
+
+int Table::owner_of(int pocketno) const {
+    const int lowest = isRandom() ? 0 : 1;
+    for (int i = lowest; i < count(); ++i) {
+        if (entry(i).toolno >= lowest && entry(i).pocketno == pocketno) {
+            return entry(i).toolno;
+        }
+    }
+    for (const Line &line : lines_) {
+        if (line.unused.has_value() && line.unused->second == pocketno) {
+            return line.unused->first;
+        }
+    }
+    return NOBODY;
+}
+
+Result<int> Table::put(ToolEntry entry) {
+    if (entry.toolno <= 0) {
+        return fail("a new tool has a number from 1 on");
+    }
+    if (index_of_tool(entry.toolno) >= 0) {
+        return fail(fmt::format("tool {} is in the tool table already", entry.toolno));
+    }
+    if (std::ranges::any_of(lines_, [&](const Line &line) {
+            return line.unused.has_value() && line.unused->first == entry.toolno;
+        })) {
+        return fail(
+            fmt::format("lines of the tool table that contradict each other name tool {}", entry.toolno), {},
+            "correct them in its file, and read it again");
+    }
+    if (entry.pocketno == 0) {
+        const bool isOwnFree = entry.toolno <= MAX_POCKET && owner_of(entry.toolno) == NOBODY;
+        int pocket = isOwnFree ? entry.toolno : 1;
+        while (pocket <= MAX_POCKET && owner_of(pocket) != NOBODY) {
+            ++pocket;
+        }
+        entry.pocketno = pocket;
+    }
+    if (entry.pocketno < 0 || entry.pocketno > MAX_POCKET) {
+        return fail(
+            fmt::format("there is no free pocket for tool {}: they end with {}", entry.toolno, MAX_POCKET));
+    }
+    if (const int owner = owner_of(entry.pocketno); owner != NOBODY) {
+        return fail(fmt::format("pocket {} is taken by tool {}", entry.pocketno, owner));
+    }
+    add(entry);
+    return index_of_tool(entry.toolno);
+}
+
+Result<> Table::remove(int index) {
+    const int lowest = isRandom() ? 0 : 1;
+    const bool isThere = index >= lowest && index < count() && entry(index).toolno >= lowest;
+    if (!isThere) {
+        return fail(fmt::format("the tool table has no entry {}", index));
+    }
+    const int toolno = entry(index).toolno;
+    if (toolno == entry(0).toolno) {
+        return fail(fmt::format("tool {} is in the spindle: it is removed when it is not", toolno));
+    }
+    entries_[static_cast<std::size_t>(index)] = empty_pocket(isRandom() ? index : 0);
+    std::erase_if(lines_, [index, toolno](const Line &line) {
+        return line.entry == index || (line.unused.has_value() && line.unused->first == toolno);
+    });
+    return {};
 }
 
 void Table::load_spindle(int index) {

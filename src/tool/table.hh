@@ -2,8 +2,10 @@
 // The tool table: the classic text file and what is in the spindle.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/result.hh"
@@ -56,6 +58,11 @@ class Table {
     /// The tool's number and pocket stay. Index 0 of FIXED changes the spindle's copy only.
     void set_entry(int index, const ToolEntry &entry);
     void add(const ToolEntry &entry);
+    /// Puts a new tool into its pocket; where that is 0, into the pocket of its own number or the lowest free
+    /// one. Its index; an error when its number or pocket is taken, also by lines that cannot be used.
+    Result<int> put(ToolEntry entry);
+    /// The tool is gone, its lines too; the others keep their indices. An error for the one in the spindle.
+    Result<> remove(int index);
     /// The tool at `index` is in the spindle from here on. FIXED: 0 means none. RANDOM: what was in the
     /// spindle is in its pocket then.
     void load_spindle(int index);
@@ -64,6 +71,8 @@ class Table {
     struct Line {
         std::string text;
         int entry = NO_TOOL;  ///< index of its tool
+        /// Tool and pocket of a line that is kept as text, as it contradicts another.
+        std::optional<std::pair<int, int>> unused{};
         bool isChanged = false;
         bool isOldForm = false;
     };
@@ -81,6 +90,8 @@ class Table {
     void check_pocket(Reading &reading, std::size_t later) const;
     void place(const Reading &reading);
     void clear_spindle();
+    /// Who is in a pocket, -1: nobody.
+    int owner_of(int pocketno) const;
 
     Changer changer_;
     std::vector<ToolEntry> entries_;

@@ -157,6 +157,18 @@ class NewLengthTest : public RecoveryTest {
     double z() { return status().trajectory.position_cmd[geom::AXIS_Z]; }
 };
 
+TEST_F(NewLengthTest, ToolsThatTheProgramMayCallStayWhileItIsLeft_G4) {
+    leave(SQUARE, 9);
+    msgs::AddTool added;
+    added.toolno = 41;
+    EXPECT_EQ(rig->ask(added), "");
+    EXPECT_NE(rig->ask(msgs::RemoveTool{41}).find("a program is held that may call tool 41"),
+              std::string::npos);
+    EXPECT_EQ(rig->ask(msgs::AbortAll{}), "");
+    cycles(500);
+    EXPECT_EQ(rig->ask(msgs::RemoveTool{41}), "");
+}
+
 TEST_F(NewLengthTest, ItGoesOnAtTheBlockUnderWayWithTheNewLength_D3) {
     leave(SQUARE, 9);
     const double old = status().offsets.tool[geom::AXIS_Z], longer = old + 2.25;

@@ -54,6 +54,14 @@ struct Paper {
         spindle = number;
     }
     double z() const { return has(spindle) && (spindle > 0 || isRandom) ? tools.at(spindle).z : 0; }
+    /// Where a new tool comes without a place of its own.
+    int free_pocket(int number) const {
+        int pocket = number;
+        for (int next = 1; in_pocket(pocket) >= 0; ++next) {
+            pocket = next;
+        }
+        return pocket;
+    }
     double diameter() const {
         return has(spindle) && (spindle > 0 || isRandom) ? tools.at(spindle).diameter : 0;
     }
@@ -61,7 +69,8 @@ struct Paper {
 
 /// What has been tried, so that a campaign that does nothing is seen.
 struct Tried {
-    int changes = 0, same = 0, faults = 0, aborts = 0, refused = 0, entries = 0, restarts = 0, named = 0;
+    int changes = 0, same = 0, faults = 0, aborts = 0, refused = 0, entries = 0, restarts = 0, named = 0,
+        added = 0, removed = 0;
 };
 
 class ToolJudge : public ::testing::Test {
@@ -158,7 +167,7 @@ class ToolJudge : public ::testing::Test {
         paper_.spindle = paper_.isRandom ? paper_.in_pocket(0) : 0;
         paper_.from = 0;
         paper_.offset_z = 0;
-        isPrepared_ = false;
+        left_ = -1;
     }
     int any(int low, int high) { return std::uniform_int_distribution(low, high)(random_); }
     int any_tool() {
@@ -203,6 +212,9 @@ class ToolJudge : public ::testing::Test {
         isSwapped_ = false;
         const int was = paper_.spindle;
         const msgs::Progress ended = run(fmt::format("T{} M6", number), isFault ? at : -1, isAbort ? at : -1);
+        if (isLoadable(number)) {
+            left_ = isSwapped_ && ended == msgs::Progress::DONE ? -1 : number;
+        }
         if (!isLoadable(number)) {
             EXPECT_NE(ended, msgs::Progress::DONE) << number;
             ++tried_.refused;
@@ -259,6 +271,42 @@ class ToolJudge : public ::testing::Test {
             ++tried_.refused;
         }
     }
+    void add() {
+        constexpr int POCKETS[] = {0, 0, 3, 4, 50};
+        msgs::AddTool order;
+        order.toolno = std::max(5, any_tool());
+        order.pocket = POCKETS[any(0, 4)];
+        order.offset[2] = any(-400, 400) / 8.0;
+        order.diameter = any(0, 80) / 8.0;
+        order.comment = fmt::format("tool {}", order.toolno);
+        const bool isPocketTaken = order.pocket != 0 && paper_.in_pocket(order.pocket) >= 0;
+        const bool isDone = progress(ask(order)) == msgs::Progress::DONE;
+        EXPECT_EQ(isDone, !paper_.has(order.toolno) && !isPocketTaken)
+            << order.toolno << " P" << order.pocket;
+        if (isDone) {
+            const int pocket = order.pocket != 0 ? order.pocket : paper_.free_pocket(order.toolno);
+            paper_.tools[order.toolno] = {pocket, order.offset[2], order.diameter};
+            ++tried_.added;
+        } else {
+            ++tried_.refused;
+        }
+    }
+    void remove() {
+        const int number = any_tool();
+        messages();
+        const bool isDone = progress(ask(msgs::RemoveTool{number})) == msgs::Progress::DONE;
+        const std::string told = messages();
+        const bool isPrepared =
+            number == left_ && told.find("is prepared for the next change") != std::string::npos;
+        EXPECT_EQ(isDone, paper_.has(number) && paper_.spindle != number && !isPrepared)
+            << number << ": " << told;
+        if (isDone) {
+            paper_.tools.erase(number);
+            ++tried_.removed;
+        } else {
+            ++tried_.refused;
+        }
+    }
     void use_offset() {
         const bool isOff = any(0, 1) == 0;
         EXPECT_EQ(run(isOff ? "G49" : "G43"), msgs::Progress::DONE);
@@ -273,6 +321,9 @@ class ToolJudge : public ::testing::Test {
         case 4:
         case 5: set_entry(); break;
         case 6: use_offset(); break;
+        case 8:
+        case 9: add(); break;
+        case 10: remove(); break;
         case 7: EXPECT_EQ(progress(ask(msgs::LoadToolTable{})), msgs::Progress::DONE); break;
         default:
             restart();
@@ -338,7 +389,7 @@ class ToolJudge : public ::testing::Test {
         begin(isRandom, seed);
         std::string story;
         for (int i = 0; i < steps && !HasFailure(); ++i) {
-            const int kind = any(0, 19) == 0 ? 8 : any(0, 7);
+            const int kind = any(0, 19) == 0 ? 11 : any(0, 10);
             step(kind);
             story += fmt::format(" {}", kind);
             SCOPED_TRACE(fmt::format("seed {} {} step {}:{}", seed, isRandom ? "random" : "fixed", i, story));
@@ -355,7 +406,7 @@ class ToolJudge : public ::testing::Test {
     std::string ini_;
     Paper paper_;
     Tried tried_;
-    bool isPrepared_ = false;
+    int left_ = -1;  ///< tool of a change that the hand did not make: it may be prepared still
     bool isSwapped_ = false;
 };
 
@@ -363,18 +414,21 @@ TEST_F(ToolJudge, BothKindsOfChangersAreAsOnPaper_G1_G2_G3_G4) {
     const char *more = std::getenv("MW_TOOL_SEEDS");
     const int seeds = more != nullptr ? std::atoi(more) : 6;
     for (unsigned seed = 1; seed <= static_cast<unsigned>(seeds) && !HasFailure(); ++seed) {
-        judge(false, seed, 40);
-        judge(true, seed, 40);
+        judge(false, seed, 50);
+        judge(true, seed, 50);
     }
-    fmt::print("changes {} same {} faults {} aborts {} refused {} entries {} named {} restarts {}\n",
+    fmt::print("changes {} same {} faults {} aborts {} refused {} entries {} named {} restarts {} added {} "
+               "removed {}\n",
                tried_.changes, tried_.same, tried_.faults, tried_.aborts, tried_.refused, tried_.entries,
-               tried_.named, tried_.restarts);
+               tried_.named, tried_.restarts, tried_.added, tried_.removed);
     EXPECT_GT(tried_.changes, 5 * seeds);
     EXPECT_GT(tried_.faults, seeds / 2);
     EXPECT_GT(tried_.aborts, seeds / 2);
     EXPECT_GT(tried_.refused, seeds);
     EXPECT_GT(tried_.entries, 3 * seeds);
     EXPECT_GT(tried_.restarts, seeds / 2);
+    EXPECT_GT(tried_.added, 2 * seeds);
+    EXPECT_GT(tried_.removed, 2 * seeds);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@ import { readFileSync } from 'node:fs';
 import type { ChildProcess } from 'node:child_process';
 import type { Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, describe, expect, it } from 'vitest';
-import { bringUp, byHand, errorsOf, Rig, showFailure, sleep, text, until, untilText } from './rig';
+import { bringUp, byHand, errorsOf, Rig, showFailure, sleep, text, until, untilText, judgeByAxe } from './rig';
 
 const PART = `G21 G90 F1500
 T1 M6
@@ -85,6 +85,34 @@ describe('tools', () => {
     const table = rig.ini.replace('.ini', '.tbl');
     await until(() => /T3 .*D\+?9\.25/.test(readFileSync(table, 'utf8')), 'the file');
     expect(readFileSync(table, 'utf8')).toContain('drill 8.5 mm');
+  });
+
+  it('are added and removed, in their file, too', async () => {
+    const table = rig.ini.replace('.ini', '.tbl');
+    const before = readFileSync(table, 'utf8');
+    await page.getByTestId('tool-add').click();
+    await page.getByTestId('tool-number').fill('77');
+    await page.getByTestId('tool-remark').fill('engraver');
+    await page.getByTestId('tool-diameter').fill('0,4');
+    await page.getByTestId('tool-offset-Z').fill('61.5');
+    await judgeByAxe(page, 'a new tool');
+    await page.getByTestId('tool-save').click();
+    await untilText(page, 'tool-77', /T77\s+77\s+61\.500\s+0\.400\s+engraver/);
+    expect(readFileSync(table, 'utf8')).toBe(`${before}T77 P77 Z61.5 D0.4 ;engraver\n`);
+    await page.getByTestId('tool-add').click();
+    await page.getByTestId('tool-number').fill('78');
+    await page.getByTestId('tool-pocket').fill('77');
+    await page.getByTestId('tool-save').click();
+    await until(async () => (await page.getByText(/pocket 77 is taken by tool 77/).count()) > 0, 'the refusal');
+    await page.getByTestId('tool-dialog').getByRole('button', { name: 'Close' }).click();
+    while ((await page.getByTestId('notice').count()) > 0) {
+      await page.getByTestId('notice').getByRole('button').first().click();
+    }
+    await page.getByTestId('edit-77').click();
+    await page.getByTestId('tool-remove').click();
+    await page.getByTestId('tool-remove').click();
+    await until(async () => (await page.getByTestId('tool-77').count()) === 0, 'that it is gone');
+    expect(readFileSync(table, 'utf8')).toBe(before);
   });
 });
 

@@ -7,7 +7,7 @@ import { en, type TextKey } from '../src/lib/i18n/en';
 import { es } from '../src/lib/i18n/es';
 import { Texts } from '../src/lib/i18n/said';
 import { fill, placesOf } from '../src/lib/i18n/text';
-import { formatBytes, formatDuration, formatNumber, parseNumber } from '../src/lib/numbers';
+import { formatBytes, formatDuration, formatNumber, parseNumber, parseWhole } from '../src/lib/numbers';
 import { ChunkReader, type Chunk } from '../src/lib/path/chunks';
 import { thin } from '../src/lib/path/thin';
 import { mergeDelta, modalWords, workPosition } from '../src/lib/status';
@@ -17,6 +17,8 @@ describe('numbers (A8)', () => {
     ['1', 1], ['-1.5', -1.5], ['+2,25', 2.25], ['.5', 0.5], [',5', 0.5], ['3.', 3], ['  7 ', 7],
   ])('reads %s', (text, value) => expect(parseNumber(text)).toBe(value));
   it.each(['', '1.2.3', '1,000.5', '1 000', 'x', '1e5', '-', '.', 'Infinity', '0x10', '1..'])('refuses %s', (text) => expect(parseNumber(text)).toBeNull());
+  it.each([['1', 1], [' 77 ', 77], ['99999', 99999], ['007', 7]])('reads %s as the number of a tool', (text, value) => expect(parseWhole(text, 1, 99999)).toBe(value));
+  it.each(['', '0', '100000', '-1', '+1', '1.0', '1,5', '1e3', 'x', '9999999999'])('refuses %s as the number of a tool', (text) => expect(parseWhole(text, 1, 99999)).toBeNull());
   it('shows no minus before a zero, and a dash where there is no number', () => {
     expect(formatNumber(-0.0001, 3)).toBe('0.000');
     expect(formatNumber(-0.0006, 3)).toBe('-0.001');

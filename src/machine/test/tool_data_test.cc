@@ -132,6 +132,105 @@ TEST_F(ToolDataTest, AToolThatIsGoneIsNotChangedForAnother_G4) {
     EXPECT_EQ(tools.entry(1).offset[2], 5);
 }
 
+interp::ToolEntry tool_of(int toolno, int pocketno, double z = 0) {
+    interp::ToolEntry entry;
+    entry.toolno = toolno;
+    entry.pocketno = pocketno;
+    entry.offset[geom::AXIS_Z] = z;
+    return entry;
+}
+
+TEST_F(ToolDataTest, ToolsAreAddedAndRemovedAndTheRestOfTheFileStays_G1_G4) {
+    const std::string before = "; our tools\nT1 P1 D3 Z10 ; drill\n\nT2 P2 D6 ;mill\n";
+    task::ToolStore &tools = open_file(before);
+    interp::ToolEntry entry = tool_of(5, 0, 12.5);
+    entry.diameter = 8;
+    entry.comment = "new one";
+    const std::uint64_t version = tools.version();
+    ASSERT_TRUE(tools.add(entry).has_value());
+    EXPECT_NE(tools.version(), version);
+    EXPECT_EQ(text("tool.tbl"), before + "T5 P5 Z12.5 D8 ;new one\n");
+    EXPECT_EQ(tools.index_of_tool(5), 3);
+    ASSERT_TRUE(tools.remove(tools.index_of_tool(1)).has_value());
+    EXPECT_EQ(text("tool.tbl"), "; our tools\n\nT2 P2 D6 ;mill\nT5 P5 Z12.5 D8 ;new one\n");
+    EXPECT_EQ(tools.index_of_tool(1), -1);
+    EXPECT_EQ(tools.index_of_tool(2), 2) << "who has an index keeps it";
+    EXPECT_EQ(tools.index_of_tool(5), 3);
+    task::ToolStore &again = open();
+    EXPECT_EQ(again.entry(again.index_of_tool(5)).diameter, 8);
+    EXPECT_EQ(again.index_of_tool(1), -1);
+    EXPECT_EQ(told(), "");
+}
+
+TEST_F(ToolDataTest, WhatCannotBeAddedOrRemovedIsRefusedAndTheFileStays_G1_G4) {
+    const std::string before = "T1 P1\nT2 P7\n";
+    task::ToolStore &tools = open_file(before);
+    EXPECT_EQ(tools.add(tool_of(1, 9)).error().message, "tool 1 is in the tool table already");
+    EXPECT_EQ(tools.add(tool_of(3, 7)).error().message, "pocket 7 is taken by tool 2");
+    EXPECT_FALSE(tools.add(tool_of(0, 9)).has_value());
+    EXPECT_FALSE(tools.add(tool_of(3, 1001)).has_value());
+    ASSERT_TRUE(tools.load_spindle(1).has_value());
+    EXPECT_EQ(tools.remove(1).error().message, "tool 1 is in the spindle: it is removed when it is not");
+    EXPECT_FALSE(tools.remove(0).has_value());
+    EXPECT_FALSE(tools.remove(9).has_value());
+    EXPECT_EQ(text("tool.tbl"), before);
+    ASSERT_TRUE(tools.load_spindle(0).has_value());
+    EXPECT_TRUE(tools.remove(1).has_value());
+    EXPECT_EQ(text("tool.tbl"), "T2 P7\n");
+    ASSERT_TRUE(tools.add(tool_of(7, 0)).has_value());
+    EXPECT_EQ(text("tool.tbl"), "T2 P7\nT7 P1\n") << "its own pocket is taken: the lowest that is free";
+}
+
+TEST_F(ToolDataTest, ARandomChangersPocketsAreOneToolEach_G2_G4) {
+    task::ToolStore &tools = open_file("T1 P0\nT2 P1\nT3 P2\n", true);
+    EXPECT_EQ(tools.add(tool_of(9, 2)).error().message, "pocket 2 is taken by tool 3");
+    EXPECT_EQ(tools.remove(0).error().message, "tool 1 is in the spindle: it is removed when it is not");
+    ASSERT_TRUE(tools.remove(tools.index_of_tool(2)).has_value());
+    ASSERT_TRUE(tools.add(tool_of(9, 0)).has_value());
+    EXPECT_EQ(tools.entry(9).toolno, 9) << "the pocket of its number";
+    ASSERT_TRUE(tools.add(tool_of(2000, 0)).has_value());
+    EXPECT_EQ(tools.entry(1).toolno, 2000);
+    EXPECT_EQ(text("tool.tbl"), "T1 P0\nT3 P2\nT9 P9\nT2000 P1\n");
+    for (int pocket = 3; pocket <= tool::MAX_POCKET; ++pocket) {
+        if (pocket != 9) {
+            ASSERT_TRUE(tools.add(tool_of(10000 + pocket, pocket)).has_value());
+        }
+    }
+    EXPECT_EQ(tools.add(tool_of(5000, 0)).error().message,
+              "there is no free pocket for tool 5000: they end with 1000");
+}
+
+TEST_F(ToolDataTest, LinesThatContradictEachOtherAreNotAddedToNorLeftBehind_G1_G4) {
+    const std::string before = "T1 P1 D3\nT1 P2 D4\nT2 P3 D5 ;first\nT2 P3 D5 ;again\nT3 P4\n";
+    task::ToolStore &tools = open_file(before);
+    EXPECT_EQ(tools.add(tool_of(1, 9)).error().message,
+              "lines of the tool table that contradict each other name tool 1");
+    EXPECT_EQ(tools.add(tool_of(8, 2)).error().message, "pocket 2 is taken by tool 1");
+    EXPECT_EQ(text("tool.tbl"), before);
+    ASSERT_TRUE(tools.remove(tools.index_of_tool(2)).has_value());
+    EXPECT_EQ(text("tool.tbl"), "T1 P1 D3\nT1 P2 D4\nT3 P4\n") << "its second line would bring it back";
+    EXPECT_EQ(open().index_of_tool(2), -1);
+}
+
+TEST_F(ToolDataTest, AChangeThatCannotBeKeptHasNotHappened_G4) {
+    task::ToolStore &tools = open_file("T1 P1\nT2 P2\n");
+    std::filesystem::remove_all(folder_);  // nothing can be written there
+    EXPECT_FALSE(tools.add(tool_of(3, 3)).has_value());
+    EXPECT_EQ(tools.index_of_tool(3), -1);
+    EXPECT_FALSE(tools.remove(1).has_value());
+    EXPECT_EQ(tools.index_of_tool(1), 1);
+    std::filesystem::create_directory(folder_);
+    EXPECT_TRUE(tools.remove(1).has_value());
+    EXPECT_EQ(text("tool.tbl"), "T2 P2\n");
+}
+
+TEST_F(ToolDataTest, ADatabaseAddsAndRemovesByItself_G1) {
+    task::ToolStore &tools = open_database(GOOD);
+    EXPECT_NE(tools.add(tool_of(3, 3)).error().message.find("tool database"), std::string::npos);
+    EXPECT_NE(tools.remove(tools.index_of_tool(10)).error().message.find("tool 10"), std::string::npos);
+    EXPECT_EQ(tools.index_of_tool(10), 1);
+}
+
 TEST_F(ToolDataTest, TheLifeOfToolsIsKeptBesideTheirTable_G1) {
     task::ToolStore &tools = open_file("T5 P1\nT6 P2\n");
     tools.note_cut(5, {30, 100});

@@ -45,7 +45,7 @@ concept OfOperator =
           SetDigitalOutput, SetSpindleSync, RigidTapMove> ||
     OneOf<T, SpindleOn, SpindleOff, SpindleIncrease, SpindleDecrease, SpindleConstant, ReleaseBrake,
           EngageBrake, MistOn, MistOff, FloodOn, FloodOff, LubeOn, LubeOff, EstopOn, EstopOff, EstopReset,
-          AbortTool, LoadToolTable, ConfirmToolChange, AbortIo>;
+          AbortTool, LoadToolTable, AddTool, RemoveTool, ConfirmToolChange, AbortIo>;
 
 /// A command in none or in several of the lists does not compile.
 template <class T>

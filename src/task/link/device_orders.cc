@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "task/link/device_orders.hh"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace mw::task {
@@ -38,7 +40,7 @@ Result<> switch_device(const msgs::LubeOff &, io::Controller &io) {
     return {};
 }
 
-Result<> set_tool(const msgs::SetToolEntry &order, ToolStore &tools) {
+Result<> edit_tools(const msgs::SetToolEntry &order, const ToolUse &, ToolStore &tools) {
     const int index = tools.index_of_tool(order.toolno);
     if (index < 0) {
         return fail(fmt::format("tool {} is not in the tool table", order.toolno));
@@ -56,6 +58,39 @@ Result<> set_tool(const msgs::SetToolEntry &order, ToolStore &tools) {
     const Result<> kept = tools.set_entry(index, entry);
     const bool hasCopy = !tools.isRandom() && tools.entry(0).toolno == order.toolno;
     return kept.has_value() && hasCopy ? tools.set_entry(0, entry) : kept;
+}
+
+Result<> edit_tools(const msgs::AddTool &order, const ToolUse &, ToolStore &tools) {
+    const auto isControl = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+    if (std::ranges::any_of(order.comment, isControl)) {
+        return fail("the comment of a tool is one line of text");
+    }
+    interp::ToolEntry entry;
+    entry.toolno = order.toolno;
+    entry.pocketno = order.pocket;
+    entry.offset = order.offset;
+    entry.diameter = order.diameter;
+    entry.frontangle = order.frontangle_deg;
+    entry.backangle = order.backangle_deg;
+    entry.orientation = order.orientation;
+    entry.comment = order.comment;
+    return tools.add(entry);
+}
+
+Result<> edit_tools(const msgs::RemoveTool &order, const ToolUse &use, ToolStore &tools) {
+    const int index = tools.index_of_tool(order.toolno);
+    if (index < 0) {
+        return fail(fmt::format("tool {} is not in the tool table", order.toolno));
+    }
+    if (use.isProgramHeld) {
+        return fail(fmt::format("a program is held that may call tool {}: it is removed when that has ended",
+                                order.toolno));
+    }
+    if (index == use.prepared_index && tools.entry(0).toolno != order.toolno) {
+        return fail(fmt::format("tool {} is prepared for the next change: it is removed when another one is",
+                                order.toolno));
+    }
+    return tools.remove(index);
 }
 
 }  // namespace mw::task

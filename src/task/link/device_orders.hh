@@ -17,8 +17,16 @@ Result<> switch_device(const msgs::FloodOff &, io::Controller &io);
 Result<> switch_device(const msgs::LubeOn &, io::Controller &io);
 Result<> switch_device(const msgs::LubeOff &, io::Controller &io);
 
+/// What of the tool data stays as it is for now.
+struct ToolUse {
+    int prepared_index = 0;  ///< of the tool that T has prepared; 0 (of a fixed changer) and -1: none
+    bool isProgramHeld = false;
+};
 /// Data of a tool that is in the table, and of its copy in the spindle; the changer alone moves tools.
-Result<> set_tool(const msgs::SetToolEntry &order, ToolStore &tools);
+Result<> edit_tools(const msgs::SetToolEntry &order, const ToolUse &use, ToolStore &tools);
+Result<> edit_tools(const msgs::AddTool &order, const ToolUse &use, ToolStore &tools);
+/// Refused for tools in use: in the spindle, prepared, or any while a program is held that may call it.
+Result<> edit_tools(const msgs::RemoveTool &order, const ToolUse &use, ToolStore &tools);
 
 // What is added to the speed of a spindle that turns.
 constexpr double speed_step_rpm(const msgs::SpindleIncrease &) {

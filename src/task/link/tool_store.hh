@@ -19,6 +19,12 @@ class ToolStore : public interp::ToolSource {
     virtual Result<> load_spindle(int index) = 0;
     /// Changes the data of the tool that `entry` names, and keeps them; `index` is where it was last.
     virtual Result<> set_entry(int index, const interp::ToolEntry &entry) = 0;
+    /// Puts a new tool into the table and keeps it; pocket 0: one that is free. Nothing has changed on an
+    /// error.
+    virtual Result<> add(const interp::ToolEntry &) { return fail("tools are not added here"); }
+    /// Takes one out, that is not in the spindle; the others keep their indices. Nothing has changed on an
+    /// error.
+    virtual Result<> remove(int) { return fail("tools are not removed here"); }
     /// Begins to read the tools again.
     virtual Result<> reload() = 0;
     /// How the reading has ended; nothing while it goes on.

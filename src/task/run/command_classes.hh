@@ -68,7 +68,7 @@ template <class T>
 concept Energise =
     OneOf<T, SpindleOn, SpindleIncrease, SpindleDecrease, SpindleConstant, MistOn, FloodOn, LubeOn>;
 template <class T>
-concept ToolTable = OneOf<T, LoadToolTable, SetToolEntry>;
+concept ToolTable = OneOf<T, LoadToolTable, SetToolEntry, AddTool, RemoveTool>;
 template <class T>
 concept ScrewTable = OneOf<T, LoadCompensation>;
 template <class T>

@@ -190,6 +190,25 @@ export function setToolEntry(tool: Tool): Promise<Outcome> {
   });
 }
 
+/** Pocket 0: one that is free. */
+export function addTool(tool: Tool): Promise<Outcome> {
+  return send({
+    message: 'AddTool',
+    toolno: tool.toolno,
+    pocket: tool.pocketno,
+    offset: [...tool.offset],
+    diameter: tool.diameter,
+    frontangle_deg: tool.frontangle_deg,
+    backangle_deg: tool.backangle_deg,
+    orientation: tool.orientation,
+    comment: tool.comment,
+  });
+}
+
+export function removeTool(toolno: number): Promise<Outcome> {
+  return send({ message: 'RemoveTool', toolno });
+}
+
 // Spindle, coolant, overrides
 
 export function startSpindle(spindle: number, speed: number): Promise<Outcome> {

@@ -11,6 +11,12 @@ export function parseNumber(text: string): number | null {
   return Number.isFinite(value) ? value : null;
 }
 
+/** Digits alone: a number of a tool or a pocket, from `least` to `most`. */
+export function parseWhole(text: string, least: number, most: number): number | null {
+  const value = /^\d{1,9}$/.test(text.trim()) ? Number(text) : NaN;
+  return value >= least && value <= most ? value : null;
+}
+
 /** Without the minus of a zero; a dash where there is no number. */
 export function formatNumber(value: number | null | undefined, decimals: number, separator = '.'): string {
   if (value === null || value === undefined || !Number.isFinite(value)) {

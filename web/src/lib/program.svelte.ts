@@ -2,7 +2,8 @@
 // The open program: its name in the folder of programs, and when it is to be read again, its errors.
 import { machine } from './machine.svelte';
 
-export const program = $state<{ reads: number; errors: string[] }>({ reads: 0, errors: [] });
+/** `isPathUnderWay`: the page draws its path, which is not whole yet. */
+export const program = $state<{ reads: number; errors: string[]; isPathUnderWay: boolean }>({ reads: 0, errors: [], isPathUnderWay: false });
 
 /** A name in a folder, without what comes behind it. */
 function nameIn(path: string, folder: string, end = ''): string | null {

@@ -74,6 +74,7 @@ function read(file: string, feed: number, rapid: number, maxVelocity: number): v
 export function followTimes(): void {
   const name = machine.isConnected ? openName() : null;
   void program.reads;
+  const { isPathUnderWay } = program;
   const overrides = machine.status?.overrides;
   const [feed, rapid] = [overrides?.feed_enabled === false ? 1 : (overrides?.feed ?? 1), overrides?.rapid ?? 1];
   const most = machine.status?.settings.max_velocity ?? 0;
@@ -83,6 +84,9 @@ export function followTimes(): void {
     return;
   }
   progress.isReading = true;
+  if (isPathUnderWay) {
+    return; // the path comes first: both at once take the processor from each other
+  }
   settling = setTimeout(() => read(name, feed, rapid, most), SETTLE_MS);
 }
 

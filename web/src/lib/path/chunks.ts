@@ -27,30 +27,31 @@ export type Chunk =
 
 const HEAD_BYTES = 8;
 
-function readMoves(body: ArrayBuffer): Moves {
-  const count = new DataView(body).getUint32(0, true);
+/** Its arrays lie in the bytes of the chunk: a long path is not copied again. */
+function readMoves(words: DataView): Moves {
+  const count = words.getUint32(0, true);
   const places = 4;
   const lines = places + count * 12;
   const kinds = lines + count * 4;
-  if (kinds + count > body.byteLength) {
+  if (kinds + count > words.byteLength) {
     throw new Error('a chunk of the path is shorter than it says');
   }
+  const [buffer, at] = [words.buffer as ArrayBuffer, words.byteOffset];
   return {
     kind: 'moves',
     count,
-    places: new Float32Array(body.slice(places, lines)),
-    lines: new Uint32Array(body.slice(lines, kinds)),
-    kinds: new Uint8Array(body.slice(kinds, kinds + count)),
+    places: new Float32Array(buffer, at + places, count * 3),
+    lines: new Uint32Array(buffer, at + lines, count),
+    kinds: new Uint8Array(buffer, at + kinds, count),
     shades: new Uint8Array(count),
   };
 }
 
 const RANGE_BYTES = 12;
 
-function readRanges(body: ArrayBuffer): Chunk {
-  const words = new DataView(body);
+function readRanges(words: DataView): Chunk {
   const count = words.getUint32(0, true);
-  if (4 + count * RANGE_BYTES > body.byteLength) {
+  if (4 + count * RANGE_BYTES > words.byteLength) {
     throw new Error('a chunk of the path is shorter than it says');
   }
   const ranges = { kind: 'ranges' as const, first: new Uint32Array(count), feed: new Float32Array(count), tool: new Uint32Array(count) };
@@ -81,8 +82,7 @@ function readTimes(words: DataView): TimedMoves {
   return moves;
 }
 
-function readChunk(kind: number, body: ArrayBuffer): Chunk {
-  const words = new DataView(body);
+function readChunk(kind: number, words: DataView): Chunk {
   const three = (at: number): [number, number, number] => [
     words.getFloat32(at, true),
     words.getFloat32(at + 4, true),
@@ -90,21 +90,21 @@ function readChunk(kind: number, body: ArrayBuffer): Chunk {
   ];
   switch (kind) {
     case 1:
-      return readMoves(body);
+      return readMoves(words);
     case 2:
       return { kind: 'bounds', low: three(0), high: three(12) };
     case 3:
       return { kind: 'end', line: words.getUint32(0, true), points: words.getUint32(4, true) };
     case 4:
-      return { kind: 'error', text: new TextDecoder().decode(body).trimEnd() };
+      return { kind: 'error', text: new TextDecoder().decode(words).trimEnd() };
     case 5:
-      return readRanges(body);
+      return readRanges(words);
     case 6:
-      return { ...readMoves(body), kind: 'wires' };
+      return { ...readMoves(words), kind: 'wires' };
     case 7:
       return { kind: 'times', moves: readTimes(words) };
     case 8:
-      return { kind: 'time_sum', sum: JSON.parse(new TextDecoder().decode(body)) as TimeSum };
+      return { kind: 'time_sum', sum: JSON.parse(new TextDecoder().decode(words)) as TimeSum };
     default:
       throw new Error(`the path has a chunk of the unknown kind ${kind}`);
   }
@@ -126,7 +126,7 @@ export class ChunkReader {
       }
       const whole = this.cut(size);
       const kind = new DataView(whole).getUint32(0, true);
-      chunks.push(readChunk(kind, whole.slice(HEAD_BYTES)));
+      chunks.push(readChunk(kind, new DataView(whole, HEAD_BYTES)));
     }
   }
 
@@ -158,11 +158,20 @@ export class ChunkReader {
   }
 
   private cut(size: number): ArrayBuffer {
-    this.join();
-    const whole = this.pieces[0] as Uint8Array;
-    const rest = whole.subarray(size);
-    this.pieces = rest.length > 0 ? [rest] : [];
-    this.bytes = rest.length;
-    return whole.slice(0, size).buffer as ArrayBuffer;
+    const whole = new Uint8Array(size);
+    let at = 0;
+    while (at < size) {
+      const piece = this.pieces[0] as Uint8Array;
+      const taken = piece.subarray(0, size - at);
+      whole.set(taken, at);
+      at += taken.length;
+      if (taken.length < piece.length) {
+        this.pieces[0] = piece.subarray(taken.length);
+      } else {
+        this.pieces.shift();
+      }
+    }
+    this.bytes -= size;
+    return whole.buffer;
   }
 }

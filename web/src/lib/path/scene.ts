@@ -3,7 +3,6 @@
 import {
   Box3,
   BoxGeometry,
-  BufferAttribute,
   BufferGeometry,
   Color,
   ColorManagement,
@@ -13,6 +12,7 @@ import {
   LinearSRGBColorSpace,
   LineBasicMaterial,
   LineSegments,
+  type Material,
   MeshBasicMaterial,
   OrthographicCamera,
   Scene,
@@ -23,6 +23,7 @@ import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { Moves } from './chunks';
 import type { Spot } from './geometry';
 import { isSoftware } from './graphics';
+import { makeLine, makeSegments, movesOf } from './lines';
 import { PathMaterials, type SceneColors } from './material';
 import { joined, Pace, shuffled } from './motion';
 import { shade, type ColorBy, type Ranges, type Shading } from './shades';
@@ -30,7 +31,7 @@ import { sparse } from './sparse';
 import { thin } from './thin';
 import { makeCone, makeWire, tipGeometry, type LatheTip } from './tool';
 import { Trail } from './trail';
-import { VIEWS, type ViewName } from './views';
+import { halfSize, VIEWS, type ViewName } from './views';
 
 export type { SceneColors } from './material';
 /** A path with more points is drawn coarsely while something moves, where drawing is slow. */
@@ -43,6 +44,8 @@ const MOST_FRAME_TIMES = 600;
 /** Of a display. */
 const FRAME_MS = 16;
 const STILL_AFTER_MS = 180;
+/** Between frames of a long path while it is read: its reading and its drawing share the processor. */
+const READING_FRAME_MS = 250;
 
 /** Pieces of the path that are drawn coarsely at first, while the computer is not known. */
 const FIRST_PACE = 6000;
@@ -80,6 +83,7 @@ export class PathScene {
   private limitBox = new Box3();
   private frame = 0;
   private stillTimer: ReturnType<typeof setTimeout> | undefined;
+  private readingTimer: ReturnType<typeof setTimeout> | undefined;
   private isMoving = false;
   /** Whole pieces take too long for this computer. */
   private isSlow = false;
@@ -106,6 +110,7 @@ export class PathScene {
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
+    this.controls.addEventListener('start', () => this.noteMotion()); // what is being refined does not come before its first move
     this.controls.addEventListener('change', () => this.noteMotion());
     this.limits = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
     this.scene.add(this.path, this.limits, this.trail.line, this.tool, this.wire);
@@ -146,7 +151,7 @@ export class PathScene {
 
   /** The first point is that at which the moves before have ended. `isWire`: the other end of the same moves, which come first. */
   addMoves(moves: Moves, isWire = false): void {
-    const whole = this.makeLine(moves, isWire);
+    const whole = makeLine(moves, this.materialOf(isWire));
     const first = isWire ? this.points - moves.count : Math.max(this.points - 1, 0);
     const isFirst = this.box.isEmpty();
     this.box.union(whole.geometry.boundingBox ?? new Box3());
@@ -154,7 +159,7 @@ export class PathScene {
     // While it is read, a long path is drawn coarsely: what is drawn again with each chunk must be little.
     const isLong = this.points > POINTS_IN_MOTION;
     const cell = this.box.getSize(new Vector3()).length() / CELLS;
-    const coarse = isLong ? this.makeSegments(sparse(moves, cell, this.seen), isWire) : null;
+    const coarse = isLong ? makeSegments(sparse(moves, cell, this.seen), this.materialOf(isWire)) : null;
     const piece = { whole, fine: null, coarse, first: Math.max(first, 0), isWire };
     this.pieces.push(piece);
     if (this.isShown(piece)) {
@@ -162,8 +167,11 @@ export class PathScene {
     }
     if (isFirst) {
       this.fit();
+    } else if (!isLong || this.isMoving) {
+      this.draw();
+    } else {
+      this.readingTimer ??= setTimeout(() => this.draw(), READING_FRAME_MS);
     }
-    this.draw();
   }
 
   /** The path has come to its end. */
@@ -186,7 +194,7 @@ export class PathScene {
     for (const piece of this.pieces) {
       const moves = movesOf(piece.whole);
       piece.fine?.geometry.dispose();
-      piece.fine = this.makeLine(thin(moves, size / 2000), piece.isWire);
+      piece.fine = makeLine(thin(moves, size / 2000), this.materialOf(piece.isWire));
       if (this.isShown(piece)) {
         parts.push(sparse(moves, size / CELLS, seen));
       }
@@ -197,7 +205,7 @@ export class PathScene {
     }
     const pairs = shuffled(joined(parts));
     this.motion?.geometry.dispose();
-    this.motion = this.makeSegments(pairs);
+    this.motion = makeSegments(pairs, this.materials.path);
     this.pace = new Pace(pairs.count / 2, FIRST_PACE);
     this.isThinned = true;
     this.isSlow = this.measure();
@@ -344,16 +352,7 @@ export class PathScene {
     this.camera.position.copy(centre).add(offset);
     this.camera.lookAt(centre);
     this.camera.updateMatrixWorld();
-    let [wide, high] = [1e-3, 1e-3];
-    for (let i = 0; i < 8; ++i) {
-      const corner = new Vector3(
-        i & 1 ? box.max.x : box.min.x,
-        i & 2 ? box.max.y : box.min.y,
-        i & 4 ? box.max.z : box.min.z,
-      ).applyMatrix4(this.camera.matrixWorldInverse);
-      wide = Math.max(wide, Math.abs(corner.x));
-      high = Math.max(high, Math.abs(corner.y));
-    }
+    const [wide, high] = halfSize(box, this.camera.matrixWorldInverse);
     const room = 1.12;
     this.camera.zoom = 1 / (room * Math.max(wide / this.camera.right, high / this.camera.top));
     this.camera.updateProjectionMatrix();
@@ -378,28 +377,16 @@ export class PathScene {
   }
 
   dispose(): void {
+    this.clearPath();
     cancelAnimationFrame(this.frame);
     clearTimeout(this.stillTimer);
-    this.clearPath();
     this.controls.dispose();
     this.materials.dispose();
     this.renderer.dispose();
   }
 
-  private makeLine(moves: Moves, isWire = false): Line {
-    const geometry = new BufferGeometry();
-    geometry.setAttribute('position', new BufferAttribute(moves.places, 3));
-    geometry.setAttribute('kind', new BufferAttribute(moves.kinds, 1));
-    geometry.setAttribute('shade', new BufferAttribute(moves.shades, 1));
-    geometry.setAttribute('line', new BufferAttribute(moves.lines, 1));
-    geometry.computeBoundingBox();
-    geometry.computeBoundingSphere();
-    return new Line(geometry, isWire ? this.materials.wire : this.materials.path);
-  }
-
-  private makeSegments(moves: Moves, isWire = false): LineSegments {
-    const line = this.makeLine(moves, isWire);
-    return new LineSegments(line.geometry, line.material);
+  private materialOf(isWire: boolean): Material {
+    return isWire ? this.materials.wire : this.materials.path;
   }
 
   private noteMotion(): void {
@@ -421,7 +408,13 @@ export class PathScene {
     this.tool.scale.setScalar(1 / this.camera.zoom);
   }
 
+  private stopReadingTimer(): void {
+    clearTimeout(this.readingTimer);
+    this.readingTimer = undefined;
+  }
+
   private draw(): void {
+    this.stopReadingTimer();
     this.refined = null; // what was refined is drawn anew
     this.ask();
   }
@@ -499,16 +492,4 @@ export class PathScene {
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel); // waits until it is drawn
     return performance.now() - begin > SLOW_MS;
   }
-}
-
-function movesOf(line: Line): Moves {
-  const { position, kind, shade: shades, line: lines } = line.geometry.attributes;
-  return {
-    kind: 'moves',
-    count: position?.count ?? 0,
-    places: position?.array as Float32Array,
-    lines: lines?.array as Uint32Array,
-    kinds: kind?.array as Uint8Array,
-    shades: shades?.array as Uint8Array,
-  };
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // From where a path is looked at.
+import { Vector3, type Box3, type Matrix4 } from 'three';
 import type { Spot } from './geometry';
 
 export type ViewName = 'top' | 'front' | 'side' | 'iso' | 'lathe' | 'back_lathe' | 'xy' | 'uv';
@@ -16,3 +17,14 @@ export const VIEWS: Record<ViewName, { from: Spot; up: Spot; isFlat?: boolean }>
   xy: { from: [0, -0.0001, 1], up: [0, 0, 1], isFlat: true },
   uv: { from: [0, -0.0001, 1], up: [0, 0, 1], isFlat: true },
 };
+
+/** Of a box as the camera has it, from its middle to the right and upwards; never nothing. */
+export function halfSize(box: Box3, toCamera: Matrix4): [number, number] {
+  let [wide, high] = [1e-3, 1e-3];
+  for (let i = 0; i < 8; ++i) {
+    const corner = new Vector3(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z).applyMatrix4(toCamera);
+    wide = Math.max(wide, Math.abs(corner.x));
+    high = Math.max(high, Math.abs(corner.y));
+  }
+  return [wide, high];
+}

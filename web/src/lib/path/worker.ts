@@ -30,7 +30,7 @@ async function read(order: PathOrder, signal: AbortSignal): Promise<void> {
     for (const chunk of chunks.take(value)) {
       isEnded = isEnded || chunk.kind === 'end';
       const news: PathNews = { number: order.number, chunk };
-      const moved = chunk.kind === 'moves' || chunk.kind === 'wires' ? [chunk.places.buffer, chunk.lines.buffer, chunk.kinds.buffer, chunk.shades.buffer] : [];
+      const moved = chunk.kind === 'moves' || chunk.kind === 'wires' ? [chunk.places.buffer, chunk.shades.buffer] : []; // places, lines and kinds share one
       postMessage(news, { transfer: moved as ArrayBuffer[] });
     }
   }
