@@ -163,8 +163,10 @@ Result<SharedMemory> SharedMemory::attach(const std::string &name, const SharedL
                     {}, "all programs must come from the same build");
     }
     const std::size_t whole = HEADER_SIZE + header->reserve;
-    if (static_cast<std::uint64_t>(status.st_size) <
-        HEADER_SIZE + header->size.load(std::memory_order_relaxed)) {
+    // It grows before it says so, maybe since it was looked at first.
+    const std::uint64_t size = header->size.load(std::memory_order_acquire);
+    if (::fstat(memory.fd_, &status) != 0 ||
+        static_cast<std::uint64_t>(status.st_size) < HEADER_SIZE + size) {
         return fail(why(name) + "is shorter than it says");
     }
     ::munmap(memory.base_, memory.mapped_);

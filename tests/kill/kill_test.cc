@@ -95,6 +95,12 @@ struct Observer {
         return false;
     }
 
+    /// Of a machine that waits long for its processors the watchdog of task stops the motion.
+    bool isOn() const {
+        motion::PublishedStatus::Copy status;
+        return channels->status.read(status) && status.value.isEnabled;
+    }
+
     /// Samples until the amplifiers are off.
     std::vector<motion::TraceSample> record_until_off() {
         std::vector<motion::TraceSample> samples;
@@ -154,7 +160,8 @@ TEST(Kill, TheDeathOfTaskStopsTheMachineAlongThePath) {
     fs::create_directory(folder);
     write_program(folder / "square.ngc");
     const int kills = mw::testing::count_kills(2);
-    for (int i = 0; i < kills; ++i) {
+    int judged = 0;
+    for (int i = 0; i < 2 * kills && judged < kills; ++i) {
         const std::string instance = "kill-" + std::to_string(::getpid()) + '-' + std::to_string(i);
         const pid_t task = start_program(folder / "square.ngc", instance, folder / "log");
         Observer observer;
@@ -170,7 +177,13 @@ TEST(Kill, TheDeathOfTaskStopsTheMachineAlongThePath) {
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
         const std::int64_t kill_ns = observer.hal->now_ns();
+        const bool isOn = observer.isOn();
         ::kill(task, SIGKILL);
+        if (!isOn) {
+            ::waitpid(task, nullptr, 0);
+            continue;
+        }
+        ++judged;
         const auto samples = observer.record_until_off();
         ::waitpid(task, nullptr, 0);
         check_stop(samples, kill_ns);
@@ -180,6 +193,7 @@ TEST(Kill, TheDeathOfTaskStopsTheMachineAlongThePath) {
             break;
         }
     }
+    EXPECT_TRUE(HasFailure() || judged == kills) << judged << " of " << kills << " while the machine was on";
     fs::remove_all(folder);
 }
 

@@ -3,8 +3,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstring>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -36,6 +38,24 @@ TEST(SharedMemory, IsSeenByOthersAndGrowsInPlace) {
     EXPECT_EQ(other->data(), before);
     EXPECT_FALSE(mine->grow(200'000'000));
     EXPECT_EQ(other->owner(), this_process());
+}
+
+TEST(SharedMemory, CanBeJoinedWhileItGrows) {
+    auto mine = SharedMemory::create(name_of("join"), 4096, 64'000'000, LAYOUT);
+    ASSERT_TRUE(mine) << mine.error().str();
+    std::atomic<bool> isOver{false};
+    std::thread growing([&] {
+        for (std::size_t size = 8192; size < 60'000'000; size += 8192) {
+            EXPECT_TRUE(mine->grow(size));
+        }
+        isOver = true;
+    });
+    while (!isOver) {
+        const auto other = SharedMemory::attach(name_of("join"), LAYOUT);
+        EXPECT_TRUE(other) << other.error().str();
+        isOver = isOver || !other.has_value();
+    }
+    growing.join();
 }
 
 TEST(SharedMemory, RefusesAnotherVersionOrLayout) {
