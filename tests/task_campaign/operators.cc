@@ -116,9 +116,11 @@ void Operators::note_end(const Order &order, const client::Outcome &outcome) {
     const bool isRefused = outcome.progress == msgs::Progress::REFUSED;
     if (outcome.progress == msgs::Progress::DONE) {
         mode_ = order.mode.value_or(mode_);
-        mayBeReleased_ = mayBeReleased_ && !order.mode;
+        mode_under_way_ = order.mode ? std::nullopt : mode_under_way_;
     } else {
-        mayBeReleased_ = mayBeReleased_ || ((order.isRelease || wasAway_) && !isRefused);
+        const bool isOfJogs = order.isRelease || wasAway_;
+        const auto begun = isOfJogs ? std::optional(msgs::Mode::MANUAL) : order.mode;
+        mode_under_way_ = begun && !isRefused ? begun : mode_under_way_;
         ++verdict_.refused;
         ++verdict_.refusals[kind_of(outcome.reason)];
         if (outcome.reason.empty()) {

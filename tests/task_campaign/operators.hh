@@ -63,9 +63,9 @@ class Operators {
     std::FILE *tell_;
     Verdict verdict_;
     msgs::Mode mode_ = msgs::Mode::MANUAL;  ///< that was set last
-    /// Axes were released, or were being so, when what held them came to its end: the mode may be that of
-    /// jogs.
-    bool mayBeReleased_ = false;
+    /// Was being set when all was stopped, or that of jogs when what was left for them came to its end: it
+    /// may be in force or not.
+    std::optional<msgs::Mode> mode_under_way_;
     bool isHeldByUs_ = false;  ///< nobody is to resume
 
   private:

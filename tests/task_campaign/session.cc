@@ -35,8 +35,8 @@ Verdict Session::run() {
 }
 
 void Session::check() {
-    if (mayBeReleased_ && status().task.mode == msgs::Mode::MANUAL) {
-        mode_ = msgs::Mode::MANUAL;
+    if (mode_under_way_ == status().task.mode) {
+        mode_ = status().task.mode;
     }
     const std::string trouble = isOver() ? "" : judge(bench_, mode_, beliefs_);
     if (!trouble.empty()) {
