@@ -16,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "hal/core/hal.hh"
@@ -81,24 +82,24 @@ struct Observer {
         return false;
     }
 
+    /// Not next to rest, as at the square's corners, nor stopped by the watchdog of a computer that is too
+    /// busy.
+    bool isAtFeed() const {
+        motion::PublishedStatus::Copy status;
+        return channels->status.read(status) && status.value.isEnabled &&
+               status.value.motion_type == motion::MotionType::FEED && status.value.current_velocity > 59.0;
+    }
+
     /// Waits until the program moves at its feed.
-    bool wait_for_motion() {
+    bool wait_for_motion() const {
         const auto deadline = Clock::now() + std::chrono::seconds(60);
         while (Clock::now() < deadline) {
-            motion::PublishedStatus::Copy status;
-            if (channels->status.read(status) && status.value.motion_type == motion::MotionType::FEED &&
-                status.value.current_velocity > 59.0) {
+            if (isAtFeed()) {
                 return true;
             }
             std::this_thread::sleep_for(std::chrono::milliseconds(2));
         }
         return false;
-    }
-
-    /// Of a machine that waits long for its processors the watchdog of task stops the motion.
-    bool isOn() const {
-        motion::PublishedStatus::Copy status;
-        return channels->status.read(status) && status.value.isEnabled;
     }
 
     /// Samples until the amplifiers are off.
@@ -127,6 +128,19 @@ double speed(const motion::TraceSample &a, const motion::TraceSample &b) {
 double off_path(const geom::Pose &p) {
     const double dx = std::fabs(std::fabs(p[0]) - 100.0), dy = std::fabs(std::fabs(p[1]) - 100.0);
     return std::min(dx, dy);
+}
+
+/// The last samples, for whoever reads of a failure.
+std::string told(const std::vector<motion::TraceSample> &samples, std::int64_t kill_ns) {
+    constexpr std::size_t MOST = 12;
+    std::string text;
+    for (std::size_t i = samples.size() - std::min(samples.size(), MOST); i < samples.size(); ++i) {
+        const motion::TraceSample &s = samples[i];
+        text += fmt::format("cycle {} at {:.3f} ms, line {}, X{:.6f} Y{:.6f}, {}\n", s.cycle,
+                            static_cast<double>(s.time_ns - kill_ns) * 1e-6, s.line, s.carte_pos_cmd[0],
+                            s.carte_pos_cmd[1], s.isEnabled != 0 ? "on" : "off");
+    }
+    return text;
 }
 
 void check_stop(const std::vector<motion::TraceSample> &s, std::int64_t kill_ns) {
@@ -177,9 +191,9 @@ TEST(Kill, TheDeathOfTaskStopsTheMachineAlongThePath) {
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
         const std::int64_t kill_ns = observer.hal->now_ns();
-        const bool isOn = observer.isOn();
+        const bool isAtFeed = observer.isAtFeed();
         ::kill(task, SIGKILL);
-        if (!isOn) {
+        if (!isAtFeed) {
             ::waitpid(task, nullptr, 0);
             continue;
         }
@@ -189,11 +203,11 @@ TEST(Kill, TheDeathOfTaskStopsTheMachineAlongThePath) {
         check_stop(samples, kill_ns);
         if (HasFailure()) {
             ADD_FAILURE() << "kill " << i << ", " << samples.size() << " samples:\n"
-                          << content(folder / "log");
+                          << told(samples, kill_ns) << content(folder / "log");
             break;
         }
     }
-    EXPECT_TRUE(HasFailure() || judged == kills) << judged << " of " << kills << " while the machine was on";
+    EXPECT_TRUE(HasFailure() || judged == kills) << judged << " of " << kills << " at feed";
     fs::remove_all(folder);
 }
 
