@@ -119,6 +119,15 @@ struct Observer {
     }
 };
 
+/// What has stopped the machine, as task would be told.
+std::string told(SpscRing<motion::Fault, 256> &faults) {
+    std::string text;
+    for (motion::Fault fault; faults.pop(fault);) {
+        text += fmt::format("fault {} of {}, {}\n", static_cast<int>(fault.kind), fault.index, fault.value);
+    }
+    return text;
+}
+
 double speed(const motion::TraceSample &a, const motion::TraceSample &b) {
     const double cycles = static_cast<double>(b.cycle - a.cycle);
     return geom::norm_xyz(b.carte_pos_cmd - a.carte_pos_cmd) / (cycles * 1e-3);
@@ -203,7 +212,8 @@ TEST(Kill, TheDeathOfTaskStopsTheMachineAlongThePath) {
         check_stop(samples, kill_ns);
         if (HasFailure()) {
             ADD_FAILURE() << "kill " << i << ", " << samples.size() << " samples:\n"
-                          << told(samples, kill_ns) << content(folder / "log");
+                          << told(samples, kill_ns) << told(observer.channels->servo_faults)
+                          << content(folder / "log");
             break;
         }
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Task and clients in processes of their own, which are killed at any instant.
 #include <signal.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -86,10 +87,16 @@ TEST(MailboxProcess, ClientsKilledAtAnyInstantHurtNobody) {
     std::atomic<bool> isOver{false};
     std::thread task([&] { serve(*memory, isOver); });
     std::mt19937 random(1);
-    for (int round = 0; round < 60; ++round) {
+    void *shared =
+        ::mmap(nullptr, sizeof(std::atomic<int>), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    ASSERT_NE(shared, MAP_FAILED);
+    auto *placed = new (shared) std::atomic<int>{0};
+    // A busy computer gives some of them no time for a place.
+    for (int round = 0; round < 60 || (*placed < 21 && round < 1000); ++round) {
         const pid_t child = ::fork();
         if (child == 0) {
             auto client = Client::connect(name);
+            *placed += client.has_value() ? 1 : 0;
             for (int i = 0; client.has_value(); ++i) {
                 static_cast<void>(client->post(msgs::ClaimOperation{3600}));
                 static_cast<void>(client->post(msgs::Mdi{std::string(1000, 'x')}));
@@ -107,7 +114,8 @@ TEST(MailboxProcess, ClientsKilledAtAnyInstantHurtNobody) {
     }
     auto survivor = Client::connect(name);
     ASSERT_TRUE(survivor.has_value()) << survivor.error().str();
-    EXPECT_GT(survivor->id(), 20U) << "most of those that were killed had a place";
+    EXPECT_GT(survivor->id(), 20U) << "many of those that were killed had a place";
+    ::munmap(shared, sizeof(std::atomic<int>));
     Outcome outcome{Progress::REFUSED, ""};
     for (int i = 0; i < 200 && outcome.progress != Progress::DONE; ++i) {  // until the last dead one is seen
         const auto serial = survivor->post(msgs::RunProgram{});

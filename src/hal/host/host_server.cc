@@ -20,6 +20,7 @@
 
 #include <fmt/format.h>
 
+#include "base/atomic_file.hh"
 #include "hal/core/crash_report.hh"
 #include "hal/core/detail/impl.hh"
 #include "hal/core/host.hh"
@@ -55,6 +56,13 @@ Message answer_of(const Result<> &result) {
     return {"error", result.error().message, result.error().hint};
 }
 
+/// Of the process that a pidfd names; 0: none.
+std::int32_t pid_of(int fd) {
+    const auto told = fd >= 0 ? read_file(fmt::format("/proc/self/fdinfo/{}", fd)) : Result<std::string>("");
+    const std::size_t at = told.has_value() ? told->find("Pid:") : std::string::npos;
+    return at != std::string::npos ? std::atoi(told->c_str() + at + std::strlen("Pid:")) : 0;
+}
+
 }  // namespace
 
 struct HostServer::Impl {
@@ -65,6 +73,7 @@ struct HostServer::Impl {
     int signals = -1;
     int controller = -1;  ///< its pidfd
     int controller_socket = -1;
+    std::int32_t controller_pid = 0;  ///< until its components may end
     bool isEnding = false;
     std::int64_t gone_ns = 0;    ///< when the controlling process died; 0 while it lives
     std::int64_t looked_ns = 0;  ///< when programs were looked for
@@ -86,6 +95,7 @@ struct HostServer::Impl {
     void on_controller_gone();
     bool isControllerGone();
     void look_for_programs();
+    bool end_dead_components();
     void reap();
     void dismiss_programs() const;
     void serve(const std::vector<pollfd> &fds);
@@ -133,6 +143,7 @@ Result<> HostServer::Impl::listen() {
 Result<> HostServer::Impl::open(const HostServerOptions &options) {
     instance = options.instance;
     controller = options.controller_fd;
+    controller_pid = pid_of(controller);
     if (controller >= 0) {
         ::fcntl(controller, F_SETFD, FD_CLOEXEC);
     }
@@ -241,6 +252,7 @@ Message HostServer::Impl::take_control(const Client &client) {
         return {"error", std::string("cannot watch the controlling process: ") + std::strerror(errno), ""};
     }
     controller_socket = client.fd;
+    controller_pid = peer.pid;
     return {"ok"};
 }
 
@@ -327,10 +339,27 @@ void HostServer::Impl::look_for_programs() {
     looked_ns = host->now_ns();
 }
 
+/// Of processes that are gone. That of the controlling one waits until the machine stands: a process with
+/// threads counts as gone as soon as its first thread is, before its descriptor says so.
+bool HostServer::Impl::end_dead_components() {
+    const rtapi::ProcessId self = rtapi::this_process();
+    auto &hal = host->hal().impl();
+    bool isAny = false;
+    detail::Guard guard(hal);
+    hal.segment.each<detail::CompRecord>(detail::Kind::COMP, [&](detail::CompRecord &comp) {
+        const bool isSpared = comp.process == self || comp.process.pid == controller_pid;
+        if (!isSpared && !rtapi::isAlive(comp.process)) {
+            hal.remove_comp(comp, true);
+            isAny = true;
+        }
+    });
+    return isAny;
+}
+
 /// Ends the components of processes that are gone, and says whose.
 void HostServer::Impl::reap() {
     const auto known = host->hal().deaths();
-    if (host->hal().reap_dead_components().empty()) {
+    if (!end_dead_components()) {
         return;
     }
     for (const DeathInfo &death : host->hal().deaths()) {
@@ -367,6 +396,7 @@ bool HostServer::Impl::isSafeToEnd() {
 /// hardware. Not before the machine stands: an enable chain through the dead process would cut the braking
 /// short.
 void HostServer::Impl::take_safe_values() {
+    controller_pid = 0;
     reap();
     const timespec some_periods{0, 20'000'000};
     ::nanosleep(&some_periods, nullptr);

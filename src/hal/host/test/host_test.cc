@@ -2,6 +2,7 @@
 // The realtime process, and what happens when processes die. These tests wait for other processes, so their
 // time is the clock's; every wait has a limit.
 #include <signal.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -188,6 +189,44 @@ TEST_F(HostTest, BrakesAndEndsWhenTheControllingProcessDies) {
         static_cast<volatile std::int32_t *>(*hal.address_of("watcher.left", Type::S32));
     EXPECT_TRUE(isSoon([&] { return !isHostAlive(instance); }));
     EXPECT_EQ(*left, 0) << "it braked to the end";
+}
+
+/// Task has threads, and the kernel ends them one after the other: the first one is gone before the process
+/// is. An enable chain through its pins must not cut the braking short then.
+TEST_F(HostTest, OutputsOfTheControllingProcessStayUntilTheMachineStands_B7) {
+    auto client = start();
+    ASSERT_NE(client, nullptr);
+    Hal &hal = client->hal();
+    const pid_t controller = run_in_child([&] {
+        auto mine = HostClient::connect(instance);
+        HostClient *own = mine.value().release();
+        const int id = *own->hal().new_component("chain");
+        void **enable = *own->hal().new_pin("chain.enable", Type::BIT, Dir::OUT, id);
+        **reinterpret_cast<bool **>(enable) = true;
+        const bool isReady = own->hal().set_ready(id).has_value() && own->control().has_value();
+        std::thread([] {
+            ::usleep(50'000);
+            (void)::syscall(SYS_tgkill, ::getpid(), ::getpid(), SIGUSR1);  // out of its pause
+            while (true) {
+                ::pause();
+            }
+        }).detach();
+        ::signal(SIGUSR1, [](int) { (void)::syscall(SYS_exit, 0); });
+        return isReady;
+    });
+    ASSERT_NE(controller, 0);
+    const std::string status = "/proc/" + std::to_string(controller) + "/stat";
+    ASSERT_TRUE(isSoon([&] {
+        std::ifstream file(status);
+        std::string text;
+        std::getline(file, text);
+        return text.find(") Z") != std::string::npos;
+    }));
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the realtime process looks every 50
+    const auto enable = hal.get("chain.enable");
+    EXPECT_TRUE(enable.has_value() && enable->as_bit());
+    kill_now(controller);
+    EXPECT_TRUE(isSoon([&] { return !isHostAlive(instance); }));
 }
 
 TEST_F(HostTest, OutputsOfADeadProgramTakeTheirSafeValues) {
