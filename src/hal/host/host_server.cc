@@ -20,11 +20,11 @@
 
 #include <fmt/format.h>
 
-#include "base/atomic_file.hh"
 #include "hal/core/crash_report.hh"
 #include "hal/core/detail/impl.hh"
 #include "hal/core/host.hh"
 #include "hal/host/message.hh"
+#include "hal/host/processes.hh"
 
 namespace mw::hal {
 namespace {
@@ -56,21 +56,12 @@ Message answer_of(const Result<> &result) {
     return {"error", result.error().message, result.error().hint};
 }
 
-/// Of the process that a pidfd names; 0: none.
-std::int32_t pid_of(int fd) {
-    const auto told = fd >= 0 ? read_file(fmt::format("/proc/self/fdinfo/{}", fd)) : Result<std::string>("");
-    const std::size_t at = told.has_value() ? told->find("Pid:") : std::string::npos;
-    return at != std::string::npos ? std::atoi(told->c_str() + at + std::strlen("Pid:")) : 0;
-}
-
 }  // namespace
 
 struct HostServer::Impl {
     std::string instance;
     std::string path;
-    int lock = -1;
-    int listener = -1;
-    int signals = -1;
+    int lock = -1, listener = -1, signals = -1;
     int controller = -1;  ///< its pidfd
     int controller_socket = -1;
     std::int32_t controller_pid = 0;  ///< until its components may end
@@ -95,7 +86,6 @@ struct HostServer::Impl {
     void on_controller_gone();
     bool isControllerGone();
     void look_for_programs();
-    bool end_dead_components();
     void reap();
     void dismiss_programs() const;
     void serve(const std::vector<pollfd> &fds);
@@ -339,27 +329,10 @@ void HostServer::Impl::look_for_programs() {
     looked_ns = host->now_ns();
 }
 
-/// Of processes that are gone. That of the controlling one waits until the machine stands: a process with
-/// threads counts as gone as soon as its first thread is, before its descriptor says so.
-bool HostServer::Impl::end_dead_components() {
-    const rtapi::ProcessId self = rtapi::this_process();
-    auto &hal = host->hal().impl();
-    bool isAny = false;
-    detail::Guard guard(hal);
-    hal.segment.each<detail::CompRecord>(detail::Kind::COMP, [&](detail::CompRecord &comp) {
-        const bool isSpared = comp.process == self || comp.process.pid == controller_pid;
-        if (!isSpared && !rtapi::isAlive(comp.process)) {
-            hal.remove_comp(comp, true);
-            isAny = true;
-        }
-    });
-    return isAny;
-}
-
 /// Ends the components of processes that are gone, and says whose.
 void HostServer::Impl::reap() {
     const auto known = host->hal().deaths();
-    if (!end_dead_components()) {
+    if (!end_dead_components(host->hal(), controller_pid)) {
         return;
     }
     for (const DeathInfo &death : host->hal().deaths()) {
