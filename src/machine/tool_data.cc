@@ -37,7 +37,13 @@ void ToolData::keep_life(const std::string &path, journal::Writer &keeper, diag:
 }
 
 void ToolData::save_life() {
-    if (life_path_.empty() || unsaved_life_s_ == 0) {
+    if (unsaved_life_s_ != 0) {
+        write_life();
+    }
+}
+
+void ToolData::write_life() {
+    if (life_path_.empty()) {
         return;
     }
     unsaved_life_s_ = 0;
@@ -87,8 +93,7 @@ Result<> ToolData::remove(int index) {
 void ToolData::forget_life(int toolno) {
     if (life_.of(toolno).time_s > 0) {
         life_.forget(toolno);
-        unsaved_life_s_ = std::max(unsaved_life_s_, 1e-9);
-        save_life();
+        write_life();
     }
 }
 

@@ -54,6 +54,8 @@ class ToolData : public task::ToolStore {
     void forget_life(int toolno);
 
   private:
+    void write_life();
+
     tool::Table table_;
     std::uint64_t version_ = 1;
     tool::LifeBook life_;

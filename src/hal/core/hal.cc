@@ -341,12 +341,13 @@ Result<> Hal::delete_component(int comp_id) {
     return {};
 }
 
-std::vector<std::string> Hal::reap_dead_components() {
+std::vector<std::string> Hal::reap_dead_components(std::int32_t spared_pid) {
     Guard guard(*impl_);
     std::vector<std::string> names;
     const rtapi::ProcessId self = rtapi::this_process();
     impl_->segment.each<CompRecord>(Kind::COMP, [&](CompRecord &comp) {
-        if (comp.process != self && !rtapi::isAlive(comp.process)) {
+        const bool isSpared = comp.process == self || comp.process.pid == spared_pid;
+        if (!isSpared && !rtapi::isAlive(comp.process)) {
             names.emplace_back(comp.name_view());
             impl_->remove_comp(comp, true);
         }

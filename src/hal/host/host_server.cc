@@ -332,7 +332,7 @@ void HostServer::Impl::look_for_programs() {
 /// Ends the components of processes that are gone, and says whose.
 void HostServer::Impl::reap() {
     const auto known = host->hal().deaths();
-    if (!end_dead_components(host->hal(), controller_pid)) {
+    if (host->hal().reap_dead_components(controller_pid).empty()) {
         return;
     }
     for (const DeathInfo &death : host->hal().deaths()) {

@@ -177,9 +177,9 @@ export async function measureTool(toolno: number, value: number): Promise<Outcom
   return isDone(outcome) ? mdi('G43') : outcome;
 }
 
-export function setToolEntry(tool: Tool): Promise<Outcome> {
-  return send({
-    message: 'SetToolEntry',
+/** As messages name them. */
+function fieldsOf(tool: Tool) {
+  return {
     toolno: tool.toolno,
     pocket: tool.pocketno,
     offset: [...tool.offset],
@@ -187,22 +187,16 @@ export function setToolEntry(tool: Tool): Promise<Outcome> {
     frontangle_deg: tool.frontangle_deg,
     backangle_deg: tool.backangle_deg,
     orientation: tool.orientation,
-  });
+  };
+}
+
+export function setToolEntry(tool: Tool): Promise<Outcome> {
+  return send({ message: 'SetToolEntry', ...fieldsOf(tool) });
 }
 
 /** Pocket 0: one that is free. */
 export function addTool(tool: Tool): Promise<Outcome> {
-  return send({
-    message: 'AddTool',
-    toolno: tool.toolno,
-    pocket: tool.pocketno,
-    offset: [...tool.offset],
-    diameter: tool.diameter,
-    frontangle_deg: tool.frontangle_deg,
-    backangle_deg: tool.backangle_deg,
-    orientation: tool.orientation,
-    comment: tool.comment,
-  });
+  return send({ message: 'AddTool', ...fieldsOf(tool), comment: tool.comment });
 }
 
 export function removeTool(toolno: number): Promise<Outcome> {
