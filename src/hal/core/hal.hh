@@ -165,9 +165,6 @@ class Hal {
     /// Ends components whose process is gone; their outputs take their safe values first. The names of those
     /// ended. A process with threads counts as gone as soon as its first thread is, before its pidfd says so.
     std::vector<std::string> reap_dead_components();
-    /// Nobody ends the components of this process before spare_process(0), whoever reaps: the machine that it
-    /// controlled brakes through their outputs.
-    void spare_process(std::int32_t pid);
     /// The process of this component is about to be told to end: that it goes is no death.
     Result<> expect_end(int comp_id);
     /// The last components (at most 16) whose process died, oldest first; without those that are back.

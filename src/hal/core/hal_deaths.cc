@@ -58,9 +58,9 @@ std::vector<std::string> Hal::reap_dead_components() {
     return names;
 }
 
-void Hal::spare_process(std::int32_t pid) {
-    Guard guard(*impl_);
-    impl_->segment.header().spared_pid = pid;
+void Hal::Impl::spare_process(std::int32_t pid) {
+    Guard guard(*this);
+    segment.header().spared_pid = pid;
 }
 
 Result<> Hal::expect_end(int comp_id) {

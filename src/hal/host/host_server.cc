@@ -156,7 +156,7 @@ Result<> HostServer::Impl::open(const HostServerOptions &options) {
         return std::unexpected(made.error());
     }
     host = std::move(*made);
-    host->hal().spare_process(pid_of(controller));
+    host->hal().impl().spare_process(pid_of(controller));
     host->hal().set_realtime_missing(scheduler->missing());
     set_process_instance(&host->hal());
     auto listening = listen();
@@ -241,7 +241,7 @@ Message HostServer::Impl::take_control(const Client &client) {
         return {"error", std::string("cannot watch the controlling process: ") + std::strerror(errno), ""};
     }
     controller_socket = client.fd;
-    host->hal().spare_process(peer.pid);
+    host->hal().impl().spare_process(peer.pid);
     return {"ok"};
 }
 
@@ -368,7 +368,7 @@ bool HostServer::Impl::isSafeToEnd() {
 /// hardware. Not before the machine stands: an enable chain through the dead process would cut the braking
 /// short.
 void HostServer::Impl::take_safe_values() {
-    host->hal().spare_process(0);
+    host->hal().impl().spare_process(0);
     reap();
     const timespec some_periods{0, 20'000'000};
     ::nanosleep(&some_periods, nullptr);
