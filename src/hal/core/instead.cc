@@ -25,8 +25,7 @@ constexpr Absent ABSENT[] = {
      "that of an installed LinuxCNC runs on this HAL as it is: start the machine by script/screens "
      "(millwright-screens)"},
     {" mitsub_vfd pmx485 pmx485-test sim-torch z_level_compensation scorbot-er-3 "
-     "image-to-gcode"
-     " qtplasmac_gcode qtplasmac-cfg2prefs qtplasmac-materials qtplasmac-plasmac2qt hal_bridge ",
+     "qtplasmac_gcode qtplasmac-cfg2prefs qtplasmac-materials qtplasmac-plasmac2qt hal_bridge ",
      "it is a program in Python of LinuxCNC's package, and runs with our modules: start the machine by "
      "script/screens "
      "(millwright-screens)"},
