@@ -21,13 +21,11 @@ constexpr Absent ABSENT[] = {
      "drivers of boards come with a later version; this one runs simulated machines, programs of loadusr and "
      "components of your own"},
     {" hy_vfd hy_gt_vfd pi500_vfd svd-ps_vfd vfs11_vfd wj200_vfd thermistor sendkeys "
-     "shuttle"
-     " xhc-hb04 xhc-whb04b-6 xhc-hb04-accels monitor-xhc-hb04 ",
+     "xhc-hb04 xhc-whb04b-6 xhc-hb04-accels monitor-xhc-hb04 ",
      "that of an installed LinuxCNC runs on this HAL as it is: start the machine by script/screens "
      "(millwright-screens)"},
-    {" mitsub_vfd pmx485 pmx485-test sim-torch z_level_compensation scorbot-er-3 mdro "
-     "image-to-gcode"
-     " qtplasmac_gcode qtplasmac-cfg2prefs qtplasmac-materials qtplasmac-plasmac2qt hal_bridge ",
+    {" mitsub_vfd pmx485 pmx485-test sim-torch z_level_compensation scorbot-er-3 "
+     "qtplasmac_gcode qtplasmac-cfg2prefs qtplasmac-materials qtplasmac-plasmac2qt hal_bridge ",
      "it is a program in Python of LinuxCNC's package, and runs with our modules: start the machine by "
      "script/screens "
      "(millwright-screens)"},
