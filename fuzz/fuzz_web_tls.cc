@@ -67,7 +67,7 @@ struct Rig {
         require(made.has_value(), "no port is free");
         server = std::move(*made);
         api = web.api(*server);
-        own = std::make_unique<TlsPeer>(server->port(), TlsPeer::Wish{});
+        own = std::make_unique<TlsPeer>(server->port(), TlsPeer::Wish{.hasTls = false});
         own->out = socket(server->port());
         own->send();
     }

@@ -22,11 +22,13 @@ class TlsPeer {
     struct Wish {
         int version = 0;               ///< TLS1_2_VERSION; 0: the newest
         const char *groups = nullptr;  ///< as SSL_set1_groups_list() has them
+        bool hasTls = true;            ///< false: only `out` is sent and `taken` counted
     };
 
     TlsPeer(int port, const Wish &wish)
         : fd_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)), context_(SSL_CTX_new(TLS_client_method())),
-          tls_(SSL_new(context_)), in_(BIO_new(BIO_s_mem())), out_(BIO_new(BIO_s_mem())) {
+          tls_(SSL_new(context_)), hasTls_(wish.hasTls), in_(BIO_new(BIO_s_mem())),
+          out_(BIO_new(BIO_s_mem())) {
         sockaddr_in place{};
         place.sin_family = AF_INET;
         place.sin_port = htons(static_cast<std::uint16_t>(port));
@@ -63,7 +65,7 @@ class TlsPeer {
             BIO_write(in_, some, static_cast<int>(got));
         }
         isClosed = isClosed || got == 0 || errno != EAGAIN;
-        if (!isUp()) {
+        if (!isUp() && hasTls_) {
             SSL_do_handshake(tls_);
         }
         int size = 0;
@@ -97,6 +99,7 @@ class TlsPeer {
     int fd_;
     SSL_CTX *context_;
     SSL *tls_;
+    bool hasTls_;
     BIO *in_, *out_;
 };
 

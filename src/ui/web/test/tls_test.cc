@@ -185,7 +185,7 @@ TEST_F(TlsTest, ASpoiledByteEndsIt_J3) {
 TEST_F(TlsTest, GreetingsThatNeverEndAreEnded_J3) {
     limits.greeting_time = milliseconds(100);
     listen();
-    TlsPeer own(server->port(), {});  // a screen of this computer, which speaks no TLS
+    TlsPeer own(server->port(), {.hasTls = false});  // a screen of this computer, which speaks no TLS
     own.out = "GET /api/socket HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(server->port()) +
               "\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
               "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
