@@ -8,4 +8,4 @@ for place in ('../lib/python', '../lib/millwright/python'):  # of the build fold
     sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / place))
 from millwright.runtests import main  # noqa: E402
 
-sys.exit(main(sys.argv[1:]))
+sys.exit(main(sys.argv[1:], pathlib.Path(__file__).resolve().parent))

@@ -174,6 +174,22 @@ double Judge::build_up_s() const {
     return most;
 }
 
+/// The longest mean that any linear axis or joint asks for (docs/motion/planner.md, "Choice of tau").
+double Judge::longest_mean_s() const {
+    double most = 0;
+    const auto look = [&](bool isAngular, double velocity, double acceleration, double jerk) {
+        const double mean = jerk > 0 ? std::min(acceleration / jerk, std::sqrt(velocity / jerk)) : 0;
+        most = isAngular ? most : std::max(most, mean);
+    };
+    for (const JointDesign &d : design_.joints) {
+        look(d.isAngular, d.velocity, d.acceleration, d.jerk);
+    }
+    for (const AxisDesign &a : design_.axes) {
+        look(geom::isAngular(a.axis), a.velocity, a.acceleration, a.jerk);
+    }
+    return design_.isJerkLimited ? most : 0;
+}
+
 double Judge::built_up(bool isAngular, double acceleration, double jerk) const {
     const bool isShort = design_.isJerkLimited && isAngular && jerk > 0 && build_up_s_ > 0;
     return isShort ? std::min(acceleration, jerk * build_up_s_) : acceleration;
@@ -466,7 +482,9 @@ void Judge::check_stop(bool isMoving, double took_s) {
         return;  // nobody could have stopped on what there is of the path yet
     }
     const double corrections_s = time_to_correct() + stops_later_s;
-    if (took_s > STOP_FACTOR * least.seconds + STOP_SLACK_S + corrections_s) {
+    // All axes have one mean, also where the one that needs it stands.
+    const double mean_s = std::max(0.0, longest_mean_s() - time_of_jerk());
+    if (took_s > STOP_FACTOR * least.seconds + STOP_SLACK_S + corrections_s + mean_s) {
         fail("stop", fmt::format("{} {:.3f} s after the stop; its limits need {:.3f} s",
                                  isMoving ? "still moves" : "comes to rest", took_s, least.seconds));
         stop_.isAwaited = false;

@@ -18,6 +18,11 @@ TESTS = {
     'program': ({'test': '#!/bin/sh\necho 5\n', 'checkresult': '#!/bin/sh\ngrep -q 5 "$1"\n'}, 'passed'),
     'checked': ({'test': '#!/bin/sh\necho 5\n', 'checkresult': '#!/bin/sh\ngrep -q 6 "$1"\n'}, 'FAILED'),
     'endless': ({'test.sh': 'sleep 1000\n', 'expected': ''}, 'FAILED'),
+    'unjudged': ({'test.hal': GOOD}, 'FAILED'),
+    'lost': ({'test.hal': 'loadusr -w echo overrun\n', 'expected': 'overrun\n'}, 'FAILED'),
+    'spoken': ({'test.sh': 'echo overrun\n', 'expected': 'overrun\n'}, 'passed'),
+    'foreseen': ({'test.sh': 'echo 1\n', 'expected': '2\n', 'xfail': ''}, 'failed as expected'),
+    'mended': ({'test.sh': 'echo 1\n', 'expected': '1\n', 'xfail': ''}, 'FAILED'),
     'left': ({'test.sh': 'exit 1\n', 'expected': '', 'skip': ''}, 'skipped'),
     'taken': ({'test.sh': 'echo 1\n', 'expected': '1\n', 'skip': '#!/bin/sh\nexit 0\n'}, 'passed'),
 }
@@ -33,13 +38,15 @@ def main():
             for file, text in files.items():
                 (folder / file).write_text(text)
                 (folder / file).chmod(0o755 if text.startswith('#!') else 0o644)
-        env = {'PATH': f'{program.parent}:/usr/bin:/bin', 'HOME': place}
+        env = {'PATH': '/usr/bin:/bin', 'HOME': place}  # its own programs are found without it
         done = subprocess.run([program, '--patience', '5', place], env=env, capture_output=True, text=True, check=False, timeout=120)
         for name, (_, expected) in TESTS.items():
             if f'{expected}: {place}/some/{name}' not in done.stdout:
                 failures += 1
                 print(f'FAIL {name} is not {expected}')
-        if done.returncode != 1 or '4 passed, 4 failed, 1 skipped' not in done.stdout:
+        if done.returncode != 1 or '13 tests run, 5 successful, 7 failed + 1 expected, 1 skipped' not in done.stdout:
+            failures += 1
+        if done.stdout.count('some/lost: overrun detected in sampler') != 10 or '10 overruns detected, giving up' not in done.stdout:
             failures += 1
         if failures:
             print(done.stdout + done.stderr)

@@ -341,20 +341,6 @@ Result<> Hal::delete_component(int comp_id) {
     return {};
 }
 
-std::vector<std::string> Hal::reap_dead_components(std::int32_t spared_pid) {
-    Guard guard(*impl_);
-    std::vector<std::string> names;
-    const rtapi::ProcessId self = rtapi::this_process();
-    impl_->segment.each<CompRecord>(Kind::COMP, [&](CompRecord &comp) {
-        const bool isSpared = comp.process == self || comp.process.pid == spared_pid;
-        if (!isSpared && !rtapi::isAlive(comp.process)) {
-            names.emplace_back(comp.name_view());
-            impl_->remove_comp(comp, true);
-        }
-    });
-    return names;
-}
-
 Result<> Hal::set_insmod_args(int comp_id, std::string_view args) {
     Guard guard(*impl_);
     CompRecord *comp = impl_->find_comp(comp_id);

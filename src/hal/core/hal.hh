@@ -162,10 +162,9 @@ class Hal {
     Result<> set_ready(int comp_id, bool isReady = true);
     /// Ends a component: its functions leave the threads, its pins, parameters and functions vanish.
     Result<> delete_component(int comp_id);
-    /// Ends components whose process is gone, but for those of `spared_pid`; their outputs take their safe
-    /// values first. The names of those ended. A process with threads counts as gone as soon as its first
-    /// thread is, before its pidfd says so.
-    std::vector<std::string> reap_dead_components(std::int32_t spared_pid = 0);
+    /// Ends components whose process is gone; their outputs take their safe values first. The names of those
+    /// ended. A process with threads counts as gone as soon as its first thread is, before its pidfd says so.
+    std::vector<std::string> reap_dead_components();
     /// The process of this component is about to be told to end: that it goes is no death.
     Result<> expect_end(int comp_id);
     /// The last components (at most 16) whose process died, oldest first; without those that are back.

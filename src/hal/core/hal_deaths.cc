@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Components whose process died: who they were.
+// Components whose process died: their end, and who they were.
 #include <time.h>
 
 #include <algorithm>
@@ -41,6 +41,26 @@ std::vector<DeathInfo> Hal::deaths() const {
         }
     }
     return deaths;
+}
+
+std::vector<std::string> Hal::reap_dead_components() {
+    Guard guard(*impl_);
+    std::vector<std::string> names;
+    const rtapi::ProcessId self = rtapi::this_process();
+    const std::int32_t spared_pid = impl_->segment.header().spared_pid;
+    impl_->segment.each<CompRecord>(Kind::COMP, [&](CompRecord &comp) {
+        const bool isSpared = comp.process == self || comp.process.pid == spared_pid;
+        if (!isSpared && !rtapi::isAlive(comp.process)) {
+            names.emplace_back(comp.name_view());
+            impl_->remove_comp(comp, true);
+        }
+    });
+    return names;
+}
+
+void Hal::Impl::spare_process(std::int32_t pid) {
+    Guard guard(*this);
+    segment.header().spared_pid = pid;
 }
 
 Result<> Hal::expect_end(int comp_id) {

@@ -64,7 +64,6 @@ struct HostServer::Impl {
     int lock = -1, listener = -1, signals = -1;
     int controller = -1;  ///< its pidfd
     int controller_socket = -1;
-    std::int32_t controller_pid = 0;  ///< until its components may end
     bool isEnding = false;
     std::int64_t gone_ns = 0;    ///< when the controlling process died; 0 while it lives
     std::int64_t looked_ns = 0;  ///< when programs were looked for
@@ -133,7 +132,6 @@ Result<> HostServer::Impl::listen() {
 Result<> HostServer::Impl::open(const HostServerOptions &options) {
     instance = options.instance;
     controller = options.controller_fd;
-    controller_pid = pid_of(controller);
     if (controller >= 0) {
         ::fcntl(controller, F_SETFD, FD_CLOEXEC);
     }
@@ -158,6 +156,7 @@ Result<> HostServer::Impl::open(const HostServerOptions &options) {
         return std::unexpected(made.error());
     }
     host = std::move(*made);
+    host->hal().impl().spare_process(pid_of(controller));
     host->hal().set_realtime_missing(scheduler->missing());
     set_process_instance(&host->hal());
     auto listening = listen();
@@ -242,7 +241,7 @@ Message HostServer::Impl::take_control(const Client &client) {
         return {"error", std::string("cannot watch the controlling process: ") + std::strerror(errno), ""};
     }
     controller_socket = client.fd;
-    controller_pid = peer.pid;
+    host->hal().impl().spare_process(peer.pid);
     return {"ok"};
 }
 
@@ -332,7 +331,7 @@ void HostServer::Impl::look_for_programs() {
 /// Ends the components of processes that are gone, and says whose.
 void HostServer::Impl::reap() {
     const auto known = host->hal().deaths();
-    if (host->hal().reap_dead_components(controller_pid).empty()) {
+    if (host->hal().reap_dead_components().empty()) {
         return;
     }
     for (const DeathInfo &death : host->hal().deaths()) {
@@ -369,7 +368,7 @@ bool HostServer::Impl::isSafeToEnd() {
 /// hardware. Not before the machine stands: an enable chain through the dead process would cut the braking
 /// short.
 void HostServer::Impl::take_safe_values() {
-    controller_pid = 0;
+    host->hal().impl().spare_process(0);
     reap();
     const timespec some_periods{0, 20'000'000};
     ::nanosleep(&some_periods, nullptr);

@@ -35,6 +35,14 @@ double go(double &p, double &v, double a, double span, double dt) noexcept {
 
 }  // namespace
 
+/// The acceleration that brakes to the target where `a` would lead beyond it by what rounding of `a` from
+/// cycle to cycle makes of the way: at a soft limit that is beyond the limit.
+double fitted(double a, double way, double velocity) noexcept {
+    constexpr double ROUNDING = 1e-5;
+    const double needed = way * velocity > 0 ? 0.5 * velocity * velocity / std::abs(way) : 0.0;
+    return needed > a && needed <= a * (1.0 + ROUNDING) ? needed : a;
+}
+
 /// Where it ends follows from what it may do on the way: were the place kept, less acceleration would lead
 /// beyond it, and a place that is asked for anew in every cycle would never be braked for.
 void FreePlanner::brake(double dt) noexcept {
@@ -52,9 +60,8 @@ void FreePlanner::brake(double dt) noexcept {
 }
 
 void FreePlanner::step(double dt) noexcept {
-    const double a = max_acceleration;
-    if (!(a > 0) || isAtRest()) {
-        velocity = a > 0 ? velocity : 0.0;
+    if (!(max_acceleration > 0) || isAtRest()) {
+        velocity = max_acceleration > 0 ? velocity : 0.0;
         return;
     }
     isBraking_ = isBraking_ && target == brake_target_;
@@ -62,6 +69,7 @@ void FreePlanner::step(double dt) noexcept {
         brake(dt);
         return;
     }
+    const double a = fitted(max_acceleration, target - position, velocity);
     // Turned so that the target lies beyond the place where braking now would lead.
     const double sign = target >= stop_position(position, velocity, a) ? 1.0 : -1.0;
     const double d = (target - position) * sign;

@@ -42,6 +42,7 @@ SpeedLimit exact_arc_limit(const Primitive &p, const PathLimits &limits, double 
     const double radius = p.radius + std::max(0.0, p.dradius * p.length);
     double v = wish;
     double a = UNLIMITED;
+    double jerk_across = UNLIMITED;  // over the curvature, of who turns
     const auto count = [&](double round, double straight, std::size_t i) {
         const double q1 = round * radius * w + straight;
         const double q2 = round * (radius * w * w + 2.0 * std::abs(p.dradius) * w);
@@ -53,6 +54,7 @@ SpeedLimit exact_arc_limit(const Primitive &p, const PathLimits &limits, double 
         if (q2 > 0) {
             v = std::min({v, std::sqrt(CornerTuning::ALONG_TURNING * wanted.acceleration[i] / q2),
                           std::cbrt(CornerTuning::ALONG_JERK * wanted.jerk[i] / (q2 * w))});
+            jerk_across = std::min(jerk_across, CornerTuning::ALONG_CROSS_JERK * wanted.jerk[i] / q2);
         }
     };
     for (std::size_t i = 0; i < geom::AXIS_COUNT; ++i) {
@@ -65,10 +67,7 @@ SpeedLimit exact_arc_limit(const Primitive &p, const PathLimits &limits, double 
     if (p.space == geom::AXIS_X) {
         count(1, geom::norm_xyz(p.lin) + std::abs(p.dradius), XYZ_NORM);
     }
-    const double curvature = radius * w * w;
-    for (std::size_t i = 0; i < wanted.jerk.size() && curvature > 0; ++i) {
-        a = std::min(a, CornerTuning::ALONG_CROSS_JERK * wanted.jerk[i] / (3.0 * curvature * v));
-    }
+    a = std::min(a, jerk_across / (3.0 * v));
     return {v, AccelBound::constant(a)};
 }
 

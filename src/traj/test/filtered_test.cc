@@ -82,6 +82,30 @@ TEST(Filtered, AnExactArcIsFollowedExactly_C13) {
     }
 }
 
+/// Cycles of half an exact circle in X and Y of a machine whose Z may do so much.
+std::uint64_t cycles_of_half_circle(double z_acceleration, double z_jerk) {
+    JerkRig rig;
+    Limits limits = jerk_limits();
+    limits.acceleration[2] = z_acceleration;
+    limits.jerk[2] = z_jerk;
+    rig.planner.set_limits(limits);
+    rig.planner.begin(Pose{}, rig.executor.snapshot());
+    ArcShape shape;
+    shape.centre = at(0, 1);
+    shape.normal[2] = 1;
+    shape.angle_rad = std::numbers::pi;
+    Primitive arc;
+    EXPECT_EQ(make_arc(Pose{}, at(0, 2), shape, arc), ArcFault::NONE);
+    rig.planner.add(arc, request(geom::PathMode::EXACT_PATH));
+    EXPECT_TRUE(rig.run(10));
+    rig.expect_within();
+    return rig.cycle;
+}
+
+TEST(Filtered, AnAxisThatStandsDoesNotSlowAnExactArcDown_C13) {
+    EXPECT_EQ(cycles_of_half_circle(A / 20, J / 20), cycles_of_half_circle(A, J));
+}
+
 /// X and Y by two belts.
 class Belts final : public JointMap {
   public:

@@ -56,6 +56,27 @@ TEST(FreePlanner, RandomTargetChangesKeepTheLimits_C8) {
     }
 }
 
+/// Shares of joints are computed anew in each cycle, and no two are the same to the last digit.
+TEST(FreePlanner, RoundingOfItsAccelerationLeadsNobodyBeyondTheTarget_C8) {
+    for (unsigned seed = 1; seed <= 200; ++seed) {
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<double> unit(0, 1);
+        const double amax = std::pow(10.0, 1 + unit(random) * 3);
+        FreePlanner p;
+        p.max_velocity = std::pow(10.0, unit(random) * 3);
+        p.target = 100 * unit(random);
+        testing::LimitChecker checker({{p.max_velocity, amax * (1 + 1.1e-5)}}, T);
+        for (int i = 0; i < 2000000 && !p.isAtRest(); ++i) {
+            p.max_acceleration = amax * (1 - 4e-6 * unit(random));
+            p.step(T);
+            checker.sample(&p.position);
+            ASSERT_LE(p.position, p.target + 1e-12) << seed;
+        }
+        EXPECT_EQ(p.velocity, 0);
+        EXPECT_TRUE(checker.isWithin()) << checker.report();
+    }
+}
+
 TEST(JogPlanner, RandomTargetChangesKeepTheJerkLimitToo_C8_C13) {
     for (unsigned seed = 1; seed <= 50; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));

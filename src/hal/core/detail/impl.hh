@@ -89,6 +89,9 @@ struct Hal::Impl {
     void remove_funct(detail::FunctRecord &funct) noexcept;
     void remove_comp(detail::CompRecord &comp, bool isDead) noexcept;
     void note_death(const detail::CompRecord &comp) noexcept;
+    /// Nobody ends the components of this process before spare_process(0), whoever reaps: the machine that it
+    /// controlled brakes through their outputs.
+    void spare_process(std::int32_t pid);
     void point_slot(const detail::PinRecord &pin, detail::Offset value) noexcept;
     detail::Offset value_of(const detail::PinRecord &pin) const noexcept;
     template <class Change>

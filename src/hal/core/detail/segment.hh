@@ -190,6 +190,7 @@ struct Header {
     bool isRealtime;                         ///< threads have realtime priority
     std::array<char, 512> realtime_missing;  ///< why threads have none
     std::int32_t next_comp_id;
+    std::int32_t spared_pid;    ///< its components outlive it while the machine brakes; 0: none
     std::uint32_t death_count;  ///< since the start; the last DEATHS of them are kept
     std::array<DeathRecord, DEATHS> deaths;
     EndRecord end;

@@ -222,6 +222,7 @@ TEST_F(HostTest, OutputsOfTheControllingProcessStayUntilTheMachineStands_B7) {
         std::getline(file, text);
         return text.find(") Z") != std::string::npos;
     }));
+    EXPECT_TRUE(hal.reap_dead_components().empty()) << "nor does any other program";
     std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the realtime process looks every 50
     const auto enable = hal.get("chain.enable");
     EXPECT_TRUE(enable.has_value() && enable->as_bit());

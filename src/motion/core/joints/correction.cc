@@ -20,12 +20,15 @@ std::size_t at(int i) noexcept {
     return static_cast<std::size_t>(i);
 }
 
+/// Where play leaves the slide when the motor goes to `motor`.
+double pushed_slide(const Correction &c, double motor, double backlash) noexcept {
+    return std::clamp(c.slide, motor - 0.5 * backlash, motor + 0.5 * backlash);
+}
+
 /// The motor pushes the slide to where it is to be. That is the direction of travel, but not where the joint
 /// turns back before play was taken up: then the slide has stayed behind.
-void follow_slide(Correction &c, double position, double backlash) noexcept {
-    const double motor = position + c.position;
-    c.slide = std::clamp(c.slide, motor - 0.5 * backlash, motor + 0.5 * backlash);
-    const double missing = position - c.slide;
+void choose_side(Correction &c, double position, double backlash) noexcept {
+    const double missing = position - pushed_slide(c, position + c.position, backlash);
     if (std::abs(missing) > TURN_ROUNDING * (1.0 + std::abs(position))) {
         c.side = missing > 0 ? 1 : -1;
     }
@@ -36,7 +39,14 @@ struct Means {
     double acceleration = 0;
     std::uint32_t samples = 1;  ///< of the mean that keeps the jerk; 1: no limit
 };
-Means means_of(const Settings &settings, int joint, double period_s) noexcept {
+
+/// The mean that makes up a way of `d` soonest, or a change of speed by `dv`, with the jerk j: the leader
+/// gets the acceleration j tau / 2 and takes 2 sqrt(2 d / (j tau)) or 2 dv / (j tau), and the mean tau more.
+double mean_for(double d, double dv, double jerk) noexcept {
+    return std::max(std::cbrt(2.0 * d / jerk), std::sqrt(2.0 * dv / jerk));
+}
+
+Means means_of(const Correction &c, const Settings &settings, int joint, double period_s) noexcept {
     Means means{SHARE * settings.get(Parameter::JOINT_MAX_ACCELERATION, joint)};
     double jerk = settings.get(Parameter::JOINT_MAX_JERK, joint);
     if (!settings.isSet(Parameter::JOINT_IS_ANGULAR, joint)) {
@@ -46,8 +56,13 @@ Means means_of(const Settings &settings, int joint, double period_s) noexcept {
         return means;
     }
     constexpr double MOST = MovingMean::MOST_SAMPLES;
-    const double samples = std::ceil(2.0 * means.acceleration / (SHARE * jerk * period_s) - 1e-9);
-    means.samples = static_cast<std::uint32_t>(std::clamp(samples, 2.0, MOST));
+    const bool hasTable = c.table.count > 0;
+    const double way = hasTable ? c.table.widest : settings.get(Parameter::JOINT_BACKLASH, joint);
+    const double bend = hasTable ? c.table.steepest * settings.get(Parameter::JOINT_MAX_VELOCITY, joint) : 0;
+    const double most_s = 2.0 * means.acceleration / (SHARE * jerk);
+    const double mean_s = std::min(most_s, mean_for(std::abs(way), 2.0 * bend, SHARE * jerk));
+    const double samples = std::ceil(mean_s / period_s - 1e-9);
+    means.samples = c.mean.length(static_cast<std::uint32_t>(std::clamp(samples, 2.0, MOST)));
     means.acceleration = std::min(means.acceleration, 0.5 * SHARE * jerk * means.samples * period_s);
     return means;
 }
@@ -73,6 +88,7 @@ Reason take(ScrewTable &table, const LoadCompensation &point) noexcept {
         table.count = 0;
         table.filled = 0;
         table.steepest = 0;
+        table.widest = 0;
     }
     if (point.count == 0) {
         return Reason::NONE;
@@ -97,6 +113,7 @@ Reason take(ScrewTable &table, const LoadCompensation &point) noexcept {
         }
         table.steepest = std::max(table.steepest, rise / way);
     }
+    table.widest = std::max(table.widest, std::abs(point.forward - point.reverse));
     table.nominal[n] = point.nominal;
     table.forward[n] = point.forward;
     table.reverse[n] = point.reverse;
@@ -172,14 +189,14 @@ void step(Correction &c, const Settings &settings, int joint, double position, d
     }
     follow_side(c, position);
     const double velocity = settings.get(Parameter::JOINT_MAX_VELOCITY, joint);
-    const Means means = means_of(settings, joint, period_s);
+    const Means means = means_of(c, settings, joint, period_s);
     c.follower.max_acceleration = means.acceleration;
     if (c.table.count > 0) {
         c.follower.max_velocity = (SHARE - c.table.steepest) * velocity;
         follow_table(c, position, period_s);
     } else {
         if (c.isSlideKnown) {
-            follow_slide(c, position, backlash);
+            choose_side(c, position, backlash);
         }
         c.raw = 0.5 * backlash * c.side;
         c.follower.target = c.raw;
@@ -190,6 +207,7 @@ void step(Correction &c, const Settings &settings, int joint, double position, d
     }
     const double before = c.position;
     c.position = c.mean.step(c.followed, means.samples);
+    c.slide = c.isSlideKnown ? pushed_slide(c, position + c.position, backlash) : c.slide;
     c.velocity = means.samples > 1 ? (c.position - before) / period_s : c.followed_velocity;
     const bool isTakenUp = c.side != 0 && c.table.count == 0 && c.position == c.raw;
     if (isTakenUp && !c.isSlideKnown) {

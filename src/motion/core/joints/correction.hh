@@ -19,6 +19,7 @@ struct ScrewTable {
     int count = 0;   ///< of points in force, 0: no table
     int filled = 0;  ///< of points of a table that is not whole yet
     double steepest = 0;
+    double widest = 0;  ///< largest difference between the way up and the way down
     RawArray<double, MAX_SCREW_POINTS> nominal, forward, reverse;  ///< the first `filled` of each
 };
 
@@ -41,6 +42,10 @@ class MovingMean {
     /// All samples become larger.
     void shift(double by) noexcept { origin_ += by; }
     bool isAtRest() const noexcept { return length_ <= 1 || standing_ >= length_; }
+    /// Samples of the mean when the next one is to be of `wanted`.
+    std::uint32_t length(std::uint32_t wanted) const noexcept {
+        return standing_ >= length_ ? wanted : length_;
+    }
 
   private:
     void add(double x) noexcept;

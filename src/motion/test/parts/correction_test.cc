@@ -164,6 +164,42 @@ TEST_F(CorrectionPart, ASlideIsWhereItIsToBeHoweverSoonTheJointTurnsBack_C11) {
     EXPECT_GT(short_turns, 500);
 }
 
+/// A slide with play on an uneven screw, against which the joint stops at full speed: a motor that came back
+/// from behind its place would leave it there.
+TEST_F(CorrectionPart, ASlideWithPlayOnAnUnevenScrewIsWhereItIsToBe_C11) {
+    constexpr double PLAY = 0.14, WAVE_MM = 100, UNEVEN = 0.15, PITCH = 0.5;
+    const auto uneven = [](double x) { return UNEVEN * std::sin(x * 2 * M_PI / WAVE_MM); };
+    limit_jerk();
+    constexpr int POINTS = 161;
+    for (int n = 0; n < POINTS; ++n) {
+        const double x = PITCH * n - 40;
+        ASSERT_EQ(load(n, POINTS, x, uneven(x) + 0.5 * PLAY, uneven(x) - 0.5 * PLAY), Reason::NONE);
+    }
+    traj::JogPlanner jog;
+    jog.max_velocity = V;
+    jog.max_acceleration = A;
+    jog.max_jerk = J;
+    double slide = 0;  // by the angle of the screw
+    sim::Random random(7);
+    for (int n = 0; n < 200; ++n) {
+        jog.target = random.real(-35, 35);
+        const bool isFar = std::abs(jog.target - jog.position) > 5;
+        for (int k = 0; !jog.isAtRest() || k < 60; k = jog.isAtRest() ? k + 1 : 0) {
+            jog.step(CYCLE_S);
+            step(correction, settings, 0, jog.position, CYCLE_S);
+            const double motor = jog.position + correction.position;
+            slide = std::clamp(slide, motor - 0.5 * PLAY, motor + 0.5 * PLAY);
+        }
+        // The nut stands where the screw's angle and its unevenness put it.
+        double place = slide;
+        for (int i = 0; i < 20; ++i) {
+            place = slide - uneven(place);
+        }
+        ASSERT_TRUE(!isFar || std::abs(place - jog.position) < 0.002)
+            << n << ": " << place - jog.position << " off";
+    }
+}
+
 TEST_F(CorrectionPart, SwitchedOffInTheMiddleItStandsAndGoesOnFromRest_C6) {
     set(Parameter::JOINT_BACKLASH, 0.4);
     for (int n = 1; n <= 10; ++n) {
