@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What five screens and a long upload do to the server of the operator's screen (J3): how long a change takes to reach every
+"""What five screens, a long upload, and strangers at the port for other computers do to the server of the operator's screen (J3): how long a change takes to reach every
 screen, the server's share of a core, and a jog that is held during an upload: it does not stop, and its renewals are not held up.
 
 usage: screen_load.py MILLWRIGHT HALCMD ROOT [SECONDS] [UPLOAD_MB]
 Figures are those of this computer and of what else it does; what fails is only what no computer may do: a jog that stops.
 """
+import multiprocessing
 import os
 import pathlib
+import socket
+import ssl
 import statistics
 import sys
 import tempfile
@@ -132,6 +135,80 @@ def upload(port, megabytes):
     expect(status == 200, 'the upload is a program')
 
 
+class Strangers:
+    """At the port for other computers, in a process of their own: as many as find a place say nothing, others no greeting of
+    TLS, the rest greet again and again and have no token."""
+
+    SILENT, GARBAGE = 60, b'GET / HTTP/1.1\r\n\r\n' + bytes(range(256)) * 8
+
+    def __init__(self, port, seconds):
+        self.port, self.end, self.greetings = port, time.monotonic() + seconds, 0
+
+    def connect(self):
+        return socket.create_connection(('127.0.0.1', self.port), 2)
+
+    def keep_silent(self):
+        held = [self.connect() for _ in range(self.SILENT)]
+        time.sleep(max(0.0, self.end - time.monotonic()))
+        for one in held:
+            one.close()
+
+    def each(self, act):
+        while time.monotonic() < self.end:
+            try:
+                with self.connect() as one:
+                    act(one)
+            except OSError:
+                time.sleep(0.002)  # turned away
+
+    def babble(self, one):
+        one.sendall(self.GARBAGE)
+        time.sleep(0.02)
+
+    def greet(self, one):
+        context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+        context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
+        with context.wrap_socket(one):
+            self.greetings += 1
+
+    def run(self, told):
+        os.nice(5)
+        acts = [lambda: self.each(self.babble), lambda: self.each(self.greet), lambda: self.each(self.greet)]
+        threads = [threading.Thread(target=act) for act in acts]
+        for one in threads:
+            one.start()
+        time.sleep(max(0.0, (self.end - time.monotonic()) / 2))
+        self.keep_silent()
+        for one in threads:
+            one.join()
+        told.send(self.greetings)
+
+
+def strangers_come(port, seconds):
+    """How often one of them was greeted."""
+    mine, theirs = multiprocessing.Pipe()
+    process = multiprocessing.Process(target=Strangers(port, seconds).run, args=(theirs,), daemon=True)
+    process.start()
+    greetings = mine.recv() if mine.poll(seconds + 30) else 0
+    process.join()
+    return greetings
+
+
+def memory_mb(pid):
+    return int(pathlib.Path(f'/proc/{pid}/smaps_rollup').read_text().split('Pss:')[1].split()[0]) / 1024
+
+
+def among_strangers(port, remote_port, server, seconds):
+    before, used, greetings = memory_mb(server.pid), cpu_s(server.pid), []
+    jog, took = jog_during(port, lambda: greetings.append(strangers_come(remote_port, seconds)))
+    share = (cpu_s(server.pid) - used) / took
+    print(f'renewals among strangers, {greetings[0]} of them greeted in {took:.1f} s: {figures(jog.waits)}; {jog.stops} looks at a joint that stood; '
+          f'the server has {100 * share:.1f} % of a core, {before:.1f} MB before and {memory_mb(server.pid):.1f} MB after')
+    expect(greetings[0] > 0, 'strangers are heard')
+    expect(not jog.refused, 'the jog goes on among strangers', jog.refused[:2])
+    expect(memory_mb(server.pid) < before + 20, 'what strangers bring is not kept', before, memory_mb(server.pid))
+
+
 def main():
     millwright, halcmd, root = sys.argv[1:4]
     seconds = float(sys.argv[4]) if len(sys.argv) > 4 else 5
@@ -139,8 +216,10 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         bench = Bench(millwright, halcmd, root, pathlib.Path(folder))
         try:
+            bench.env['XDG_CONFIG_HOME'] = folder
             bench.machine()
-            server, port = bench.server()
+            server, port = bench.server('--listen', '127.0.0.1:0')
+            remote_port = bench.remote_port()
             first = Screen(port)
             switch_on_and_home(first)
             first.cut()
@@ -153,6 +232,7 @@ def main():
                 jog, took = jog_during(port, lambda size=size: upload(port, size))
                 print(f'renewals during an upload of {size} MB in {took:.1f} s: {figures(jog.waits)}; {jog.stops} looks at a joint that stood')
                 expect(not jog.refused, 'the jog goes on during the upload', size, jog.refused[:2])
+            among_strangers(port, remote_port, server, 2 * seconds)
         finally:
             bench.end_all()
     return FOUND.status()

@@ -158,10 +158,15 @@ class Bench(Mill):
                'the machine comes up', path.read_text())
         return process
 
-    def server(self):
-        process, path = self.begin('ui', str(self.ini), '--port', '0')
+    def server(self, *words):
+        process, path = self.begin('ui', str(self.ini), '--port', '0', *words)
         expect(wait_until(lambda: 'http://' in path.read_text() or process.poll() is not None), 'the server comes up', path.read_text())
         return process, int(re.search(r'http://127\.0\.0\.1:(\d+)/', path.read_text()).group(1))
+
+    def remote_port(self):
+        """Of a server that was started with --listen, which was the last one begun."""
+        expect(wait_until(lambda: 'for other computers' in self.files[-1].read_text()), 'other computers have a way in')
+        return int(re.search(r'for other computers.*https://127\.0\.0\.1:(\d+)/', self.files[-1].read_text()).group(1))
 
     def end_all(self):
         for process in self.started:

@@ -2,7 +2,7 @@
 // A lathe and a foam cutter as they are looked at; colours of a path (J1, J3).
 import { afterAll, describe, expect, it } from 'vitest';
 import type { Page } from 'playwright-core';
-import { errorsOf, judgeByAxe, Rig, text, until, untilText } from './rig';
+import { errorsOf, judgeByAxe, Rig, sleep, text, until, untilText } from './rig';
 
 const rigs: Rig[] = [];
 const PICTURES = process.env['MW_SCREEN_PICTURES'];
@@ -23,6 +23,16 @@ async function start(machine: string, change: (ini: string) => string, program: 
 afterAll(async () => {
   await Promise.all(rigs.map((rig) => rig.end()));
 });
+
+/** Of the path in each size. */
+async function pictures(page: Page, name: string): Promise<void> {
+  for (const [width, height] of PICTURES === undefined ? [] : ([[390, 844], [800, 480], [1280, 800]] as const)) {
+    await page.setViewportSize({ width, height });
+    await page.getByTestId('tab-path').click();
+    await sleep(600);
+    await page.screenshot({ path: `${PICTURES}/${name}_${width}x${height}.png` });
+  }
+}
 
 /** Where the orthographic camera puts a point: in parts of the picture, to the right and up. */
 async function seen(page: Page, point: [number, number, number]): Promise<{ right: number; up: number }> {
@@ -101,9 +111,7 @@ describe.each([['lathe', 'before', -1], ['back_lathe', 'behind', 1]] as const)('
     await send('G0 X70 Z5');
     await page.getByTestId('tab-path').click();
     await until(async () => (await pixelsOf(page, [0xd9, 0x98, 0x43])) > 20, 'the tip of the tool');
-    if (PICTURES !== undefined) {
-      await page.screenshot({ path: `${PICTURES}/${kind}_1280x800.png` });
-    }
+    await pictures(page, kind);
     expect(errorsOf(page)).toEqual([]);
     await rig.end();
   }, 60_000);
@@ -120,9 +128,11 @@ describe('colours', () => {
     await until(async () => (await pixelsOf(page, slow as never)) > 10 && (await pixelsOf(page, fast as never)) > 10, 'slow and fast');
     expect(await pixelsOf(page, feed as never)).toBe(0);
     await judgeByAxe(page, 'colours by feed');
+    await pictures(page, 'by_feed');
     await page.getByTestId('color-by').selectOption('tool');
     await untilText(page, 'legend', /T1.*T2/);
     await until(async () => (await pixelsOf(page, [0x7e, 0xe0, 0xa8])) > 10, 'the second tool');
+    await pictures(page, 'by_tool');
     await page.reload();
     await page.getByTestId('tab-path').click();
     await untilText(page, 'legend', /T1.*T2/);
@@ -149,9 +159,7 @@ describe('a foam cutter', () => {
     const wire = (): Promise<number[]> =>
       page.evaluate(() => [...(document.querySelector('canvas') as unknown as { scene: { wire: { geometry: { attributes: { position: { array: Float32Array } } } } } }).scene.wire.geometry.attributes.position.array]);
     await until(async () => (await wire())[5] === 150, 'the wire');
-    if (PICTURES !== undefined) {
-      await page.screenshot({ path: `${PICTURES}/foam_1280x800.png` });
-    }
+    await pictures(page, 'foam');
     expect(errorsOf(page)).toEqual([]);
     await rig.end();
   }, 60_000);

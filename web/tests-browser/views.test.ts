@@ -24,6 +24,30 @@ async function isUsable(what: string): Promise<void> {
     if (document.documentElement.scrollWidth > window.innerWidth + 1) {
       found.push(`the page is ${document.documentElement.scrollWidth} wide`);
     }
+    // Beside what scrolls sideways (the row of tabs, long text) nothing is cut off to the side, and no panel runs out below.
+    for (const one of document.querySelectorAll('main button, main input, main select')) {
+      const box = one.getBoundingClientRect();
+      let above = one.closest('.tabs, .cm-editor, .hidden-text, .sideways') === null && one.checkVisibility() ? one.parentElement : null;
+      for (; above !== null; above = above.parentElement) {
+        const room = above.getBoundingClientRect();
+        const isClip = getComputedStyle(above).overflowX !== 'visible' || above.classList.contains('panel');
+        if (isClip && (box.right > room.right + 1 || box.left < room.left - 1)) {
+          found.push(`${one.getAttribute('data-testid') ?? one.tagName} is cut off`);
+          break;
+        }
+      }
+    }
+    for (const one of document.querySelectorAll<HTMLElement>('main .panel')) {
+      const isOpen = getComputedStyle(one).overflowY === 'visible' && one.getBoundingClientRect().height > 0;
+      if (isOpen && one.scrollHeight > one.clientHeight + 2) {
+        found.push(`${one.getAttribute('aria-label') ?? 'a panel'} is ${one.clientHeight} high and has ${one.scrollHeight}`);
+      }
+    }
+    for (const one of document.querySelectorAll('.u-over')) {
+      if (one.getBoundingClientRect().height < 60) {
+        found.push('a plot is too flat');
+      }
+    }
     for (const id of ['stop', 'estop', 'hold']) {
       const element = document.querySelector(`[data-testid="${id}"]`);
       const box = element?.getBoundingClientRect();
@@ -92,12 +116,28 @@ describe('when it is on', () => {
         await sleep(tab === 'path' || tab === 'plots' ? 350 : 120);
         await judge(`${tab} ${width}x${height} ${theme}`);
         await isUsable(`${tab} ${width}x${height} ${theme}`);
-        if (theme === 'dark' || (width === 1280 && tab === 'path')) {
+        if (theme === 'dark' || tab === 'path') {
           await picture(`${tab}_${width}x${height}${theme === 'light' ? '_light' : ''}`);
         }
       }
     }, 120_000);
   });
+
+  it.each(['de', 'es'] as const)('in %s', async (language) => {
+    await page.emulateMedia({ colorScheme: 'dark' });
+    await page.getByTestId('tab-settings').click();
+    await page.getByTestId('language').selectOption(language);
+    for (const [width, height] of SIZES) {
+      await page.setViewportSize({ width, height });
+      for (const tab of width === 1280 ? TABS : SMALL_TABS) {
+        await page.getByTestId(`tab-${tab}`).click();
+        await sleep(100);
+        await isUsable(`${tab} ${width}x${height} ${language}`);
+      }
+    }
+    await page.getByTestId('tab-settings').click();
+    await page.getByTestId('language').selectOption('en');
+  }, 120_000);
 
   it('a dialog, a question and a refusal', async () => {
     await page.emulateMedia({ colorScheme: 'dark' });
@@ -108,6 +148,17 @@ describe('when it is on', () => {
       await isUsable(`touch-off ${width}`);
       await picture(`touch_off_${width}x${height}`);
       await page.getByTestId('touch-off').getByRole('button', { name: 'Close' }).click();
+    }
+    for (const [width, height] of SIZES) {
+      await page.setViewportSize({ width, height });
+      await page.getByTestId('tab-tools').click();
+      for (const [button, name] of [['tool-add', 'tool_add'], ['edit-2', 'tool_edit']] as const) {
+        await page.getByTestId(button).click();
+        await judge(`${name} ${width}`);
+        await isUsable(`${name} ${width}`);
+        await picture(`${name}_${width}x${height}`);
+        await page.getByTestId('tool-dialog').getByRole('button', { name: 'Close' }).click();
+      }
     }
     await page.setViewportSize({ width: 1280, height: 800 });
     await page.getByTestId('tab-tools').click();

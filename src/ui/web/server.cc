@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "ui/web/detail/session.hh"
+#include "ui/web/detail/tls.hh"
 #include "ui/web/documents.hh"
 
 namespace mw::ui::web {
@@ -26,6 +27,7 @@ std::int64_t monotonic_ns() {
 
 /// For what is still on its way when a connection ends.
 constexpr std::chrono::milliseconds DRAIN_TIME{2000};
+constexpr std::chrono::milliseconds ACCEPT_PAUSE{50};
 
 /// Everything that a page needs is served from here, and no other page may hold it in a frame.
 constexpr const char *PAGE_RULES = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' "
@@ -52,7 +54,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     Connection &operator=(const Connection &) = delete;
 
     void begin() {
-        expire_after(server_.limits.request_time);
+        expire_after(std::min(server_.limits.greeting_time, server_.limits.request_time));
         wire_->async_greet([self = shared_from_this()](error_code error) {
             if (!error) {
                 self->read();
@@ -284,16 +286,13 @@ Result<> Server::Impl::open_remote(const RemoteDoor &remote) {
     }
     doors.push_back({.access = remote.access,
                      .requests = RateLimit(limits.requests_per_s, limits.requests_at_once),
+                     .greetings = RateLimit(limits.greetings_per_s, limits.greetings_at_once),
                      .most_connections = limits.connections - limits.kept_connections,
                      .most_sessions = limits.sessions - limits.kept_sessions});
     Door &door = doors.back();
     if (remote.tls.has_value()) {
         door.tls.emplace(net::ssl::context::tls_server);
-        door.tls->set_options(net::ssl::context::no_tlsv1 | net::ssl::context::no_tlsv1_1, error);
-        error_code unused;
-        const std::string &certificate = remote.tls->certificate_pem, &key = remote.tls->key_pem;
-        door.tls->use_certificate_chain(net::buffer(certificate), error);
-        door.tls->use_private_key(net::buffer(key), net::ssl::context::pem, error ? unused : error);
+        error = set_up(*door.tls, *remote.tls);
         if (error) {
             return fail("the certificate and its key do not go together: " + error.message());
         }
@@ -330,18 +329,26 @@ Result<> Server::Impl::listen(Door &door, const net::ip::address &address, int p
     return {};
 }
 
+void Server::Impl::accept_later(Listener &listener) {
+    listener.pause.expires_after(ACCEPT_PAUSE);
+    listener.pause.async_wait([this, &listener](error_code ended) {
+        if (!ended) {
+            accept(listener);
+        }
+    });
+}
+
 void Server::Impl::accept(Listener &listener) {
+    if (listener.door.greetings.has_value() && !listener.door.greetings->take(monotonic_ns())) {
+        accept_later(listener);  // who comes waits in the kernel
+        return;
+    }
     listener.acceptor.async_accept([this, &listener](error_code error, tcp::socket socket) {
         if (error == net::error::operation_aborted) {
             return;
         }
         if (error) {  // no file handles left: not again at once
-            listener.pause.expires_after(std::chrono::milliseconds(100));
-            listener.pause.async_wait([this, &listener](error_code ended) {
-                if (!ended) {
-                    accept(listener);
-                }
-            });
+            accept_later(listener);
             return;
         }
         int connections = 0;

@@ -26,6 +26,10 @@ struct ServerLimits {
     int kept_connections = 16, kept_sessions = 4;
     /// Requests of all browsers of one way in together. Texts from sockets are the application's to limit.
     double requests_per_s = 500, requests_at_once = 1000;
+    /// Connections from other computers that begin. A greeting of TLS takes the thread of all screens 1 ms.
+    double greetings_per_s = 100, greetings_at_once = 100;
+    std::chrono::milliseconds greeting_time{
+        10000};  ///< for a greeting of TLS, from its first byte to its last
     std::chrono::milliseconds request_time{30000};  ///< for a request to come, and for its answer to be taken
 };
 

@@ -28,6 +28,7 @@ class Session;
 struct Door {
     Access access;
     RateLimit requests;
+    std::optional<RateLimit> greetings{};  ///< none: of this computer, as many as come
     int most_connections = 0, most_sessions = 0;
     int connections = 0, sessions = 0;
     int port = 0;
@@ -40,7 +41,7 @@ struct Listener {
     Listener(net::io_context &loop, Door &of) : door(of), acceptor(loop), pause(loop) {}
     Door &door;
     tcp::acceptor acceptor;
-    net::steady_timer pause;  ///< where nothing can be accepted
+    net::steady_timer pause;  ///< while nothing is accepted
 };
 
 }  // namespace detail
@@ -53,6 +54,7 @@ class Server::Impl {
     Result<> open_remote(const RemoteDoor &remote);
     Result<> listen(detail::Door &door, const detail::net::ip::address &address, int port);
     void accept(detail::Listener &listener);
+    void accept_later(detail::Listener &listener);
     /// The socket is gone, for whatever reason.
     void forget(SessionId id);
 

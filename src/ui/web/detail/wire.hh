@@ -52,6 +52,7 @@ class Wire {
     Wire(tcp::socket socket, net::ssl::context *tls) : stream_(std::move(socket)) {
         if (tls != nullptr) {
             tls_.emplace(stream_, *tls);
+            SSL_set_msg_callback_arg(tls_->native_handle(), &tls_messages_);
         }
     }
     Wire(const Wire &) = delete;
@@ -94,6 +95,7 @@ class Wire {
 
   private:
     beast::tcp_stream stream_;
+    int tls_messages_ = 0;
     std::optional<net::ssl::stream<beast::tcp_stream &>> tls_;
 };
 
