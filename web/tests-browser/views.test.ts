@@ -28,7 +28,8 @@ async function isUsable(what: string): Promise<void> {
     for (const one of document.querySelectorAll('main button, main input, main select')) {
       const box = one.getBoundingClientRect();
       let above = one.closest('.tabs, .cm-editor, .hidden-text, .sideways') === null && one.checkVisibility() ? one.parentElement : null;
-      for (; above !== null; above = above.parentElement) {
+      // A dialog lies over what it is in.
+      for (; above !== null && getComputedStyle(above).position !== 'fixed'; above = above.parentElement) {
         const room = above.getBoundingClientRect();
         const isClip = getComputedStyle(above).overflowX !== 'visible' || above.classList.contains('panel');
         if (isClip && (box.right > room.right + 1 || box.left < room.left - 1)) {
