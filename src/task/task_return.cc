@@ -72,19 +72,21 @@ Result<> Task::Start::take_path_back() {
 
 Result<Progress> Task::Start::release(mailbox::Serial command) {
     const Hold hold = task.run_.hold();
-    if (hold == Hold::AWAY) {
+    const bool isAway = hold == Hold::AWAY;
+    if (isAway && task.motion_.status().mode != motion::Mode::COORD) {
         return Progress::DONE;
     }
     if (task.run_.phase() < RunPhase::READING) {
         return fail("the program has not begun");
     }
-    if (hold != Hold::PROPOSED) {
+    if (!isAway && hold != Hold::PROPOSED) {
         const auto taken = take_path_back();
         if (!taken.has_value()) {
             return std::unexpected(taken.error());
         }
     }
-    const auto released = task.run_.take(RunEvent::RELEASE);
+    // Away, but motion, which had not come to rest yet, did not let them go: it is asked again.
+    const auto released = isAway ? Result<>{} : task.run_.take(RunEvent::RELEASE);
     if (!released.has_value()) {
         return std::unexpected(released.error());
     }

@@ -70,6 +70,8 @@ class Session : private Operators {
     bool areDevicesOff_ = false;  ///< by a stop of the operator
     bool isCrashed_ = false;
     bool wasRunning_ = false;  ///< at the crash
+    std::uint64_t runs_before_crash_ =
+        0;  ///< of the program, that had ended before the one that was cut short
     bool wasBlockDelete_ = true, wasOptionalStop_ = true;
 };
 

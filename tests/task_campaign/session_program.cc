@@ -124,8 +124,18 @@ void Session::end_program_of(const Act &act, End end) {
 
 /// The parameter file is as before the program; the tool table file as the machine had come to.
 void Session::end_by_crash(const Act &act) {
-    const std::vector<World> before = std::move(beliefs_.worlds);
+    std::vector<World> before = std::move(beliefs_.worlds);
     beliefs_.worlds.clear();
+    // A step that came too late has begun it again, from what its end had left.
+    for (std::uint64_t again = 0; again < runs_before_crash_; ++again) {
+        std::vector<World> left;
+        for (const World &world : before) {
+            for (const World &stopped : after_stop(act.blocks, world, wasBlockDelete_)) {
+                add(left, stopped);
+            }
+        }
+        before = std::move(left);
+    }
     for (const World &world : before) {
         for (const World &stopped : after_stop(act.blocks, world, wasBlockDelete_)) {
             add(beliefs_.worlds, after_crash({world.modes, stopped.doings}));

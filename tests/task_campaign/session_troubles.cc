@@ -37,7 +37,9 @@ void Session::begin(const Trouble &t) {
     const bool isEstop = t.what == Upset::ESTOP || t.what == Upset::CHAIN;
     areDevicesOff_ = areDevicesOff_ || isEstop || t.what == Upset::ABORT || t.what == Upset::OFF;
     if (areDevicesOff_ && status().task.isAway) {
-        mode_ = msgs::Mode::MANUAL;  // in which the axes were jogged
+        // In which the axes were jogged, where motion had let them go.
+        const bool areLetGo = status().trajectory.mode != msgs::MotionMode::COORD;
+        mode_ = areLetGo ? msgs::Mode::MANUAL : mode_;
     }
     const bool goesOff = t.what == Upset::OFF && beliefs_.state == msgs::State::ON;
     beliefs_.state = isEstop ? msgs::State::ESTOP : goesOff ? msgs::State::OFF : beliefs_.state;
@@ -92,6 +94,8 @@ void Session::leave(const Trouble &t) {
 void Session::crash(bool isPowerCut) {
     isCrashed_ = true;
     wasRunning_ = isRunning();
+    const std::uint64_t ended = status().task.programs_ended - ended_before_;
+    runs_before_crash_ = wasRunning_ || ended == 0 ? ended : ended - 1;
     ++verdict_.crashes;
     forget_orders(-1);
     bench_.die(isPowerCut);

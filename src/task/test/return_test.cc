@@ -43,6 +43,17 @@ TEST_F(ReturnTest, TheAxesAreJoggedOnlyOnceTheyAreReleased_D3) {
     EXPECT_EQ(ask(StepProgram{}), Progress::REFUSED);
 }
 
+TEST_F(ReturnTest, AxesThatMotionHasNotLetGoAreAskedForAgain_D3) {
+    hold();
+    motion.teleop_refusal = motion::Reason::MOVING;
+    ASSERT_EQ(ask(ReleaseAxes{}), Progress::REFUSED);
+    motion.teleop_refusal = motion::Reason::NONE;
+    EXPECT_EQ(motion.status.mode, motion::Mode::COORD);
+    ASSERT_EQ(ask(ReleaseAxes{}), Progress::DONE) << reason(request);
+    EXPECT_EQ(motion.status.mode, motion::Mode::TELEOP);
+    EXPECT_EQ(ask(JogContinuous{false, 0, 5}), Progress::DONE) << reason(request);
+}
+
 TEST_F(ReturnTest, ItComesBackByTheWayThatIsConfirmedAndGoesOn_D3) {
     const auto run = hold();
     ASSERT_EQ(ask(ReleaseAxes{}), Progress::DONE) << reason(request);
