@@ -46,8 +46,9 @@ pid_t start_program(const fs::path &program, const std::string &instance, const 
         const int fd = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
         ::dup2(fd, 1);
         ::dup2(fd, 2);
-        ::execl(MW_BIN_DIR "/millwright", "millwright", "run", MW_SOURCE_DIR "/configs/sim/mill_mm.ini",
-                program.c_str(), "--realtime", "--yes", static_cast<char *>(nullptr));
+        const fs::path machine = program.parent_path() / "sim/mill_mm.ini";
+        ::execl(MW_BIN_DIR "/millwright", "millwright", "run", machine.c_str(), program.c_str(), "--realtime",
+                "--yes", static_cast<char *>(nullptr));
         ::_exit(127);
     }
     return pid;
@@ -181,6 +182,7 @@ TEST(Kill, TheDeathOfTaskStopsTheMachineAlongThePath) {
     std::srand(static_cast<unsigned>(::getpid()));
     const fs::path folder = fs::temp_directory_path() / ("mw_kill_" + std::to_string(::getpid()));
     fs::create_directory(folder);
+    fs::copy(MW_SOURCE_DIR "/configs/sim", folder / "sim");  // the journal lies beside the machine's files
     write_program(folder / "square.ngc");
     const int kills = mw::testing::count_kills(2);
     int judged = 0;

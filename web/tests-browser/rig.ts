@@ -64,7 +64,7 @@ export class Rig {
     if (!existsSync(CHROMIUM)) {
       throw new Error(`there is no ${CHROMIUM}: script/bootstrap installs it`);
     }
-    cpSync(join(ROOT, 'configs'), join(this.folder, 'configs'), { recursive: true, filter: (path) => !path.endsWith('.var') });
+    cpSync(join(ROOT, 'configs'), join(this.folder, 'configs'), { recursive: true, filter: (path) => !/\.(var|journal)$/.test(path) });
     mkdirSync(this.programs);
     this.ini = join(this.folder, `configs/sim/${machine}.ini`);
     const plain = readFileSync(this.ini, 'utf8');

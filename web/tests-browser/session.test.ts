@@ -97,7 +97,7 @@ describe('tools', () => {
     await page.getByTestId('tool-offset-Z').fill('61.5');
     await judgeByAxe(page, 'a new tool');
     await page.getByTestId('tool-save').click();
-    await untilText(page, 'tool-77', /T77\s+77\s+61\.500\s+0\.400\s+engraver/);
+    await untilText(page, 'tool-77', /T77\s+Pocket 77, engraver\s+61\.500\s+0\.400/);
     expect(readFileSync(table, 'utf8')).toBe(`${before}T77 P77 Z61.5 D0.4 ;engraver\n`);
     await page.getByTestId('tool-add').click();
     await page.getByTestId('tool-number').fill('78');
