@@ -58,6 +58,7 @@ endfunction()
 function(mw_optimise_whole name)
   if(MW_LINK_TIME)
     target_compile_options(comp_${name} PRIVATE -flto)
+    # Only -flto itself undoes the -fno-lto of all else; the number is that of its processes.
     target_link_options(comp_${name} PRIVATE -flto -flto=2)
   endif()
 endfunction()

@@ -19,7 +19,7 @@ import sys
 import time
 
 PROGRAMS = {'test.hal': ('halrun', '-f'), 'test.sh': ('bash', '-x'), 'test': ()}
-LONGEST_OVERRUN = 10
+MOST_OVERRUNS = 10
 
 
 def is_program(path):
@@ -33,8 +33,8 @@ def find_tests(folders):
             names.sort()
             place = pathlib.Path(path)
             # A program called test is a test only beside what judges it: other folders have such programs too.
-            isJudged = 'expected' in files or 'checkresult' in files
-            if any(name in files and (isJudged or name != 'test') for name in PROGRAMS):
+            is_judged = 'expected' in files or 'checkresult' in files
+            if any(name in files and (is_judged or name != 'test') for name in PROGRAMS):
                 tests.append(place)
     return tests
 
@@ -89,14 +89,14 @@ def run_test(test, environment, patience_s):
     name = next(name for name in PROGRAMS if (test / name).exists())
     program = PROGRAMS[name]
     words = [*program, name] if program else [str((test / name).absolute())]
-    for count in range(1, LONGEST_OVERRUN + 1):
+    for count in range(1, MOST_OVERRUNS + 1):
         status = run_words(words, test, environment, patience_s)
         if status is None:
             return f'did not end in {patience_s:g} s'
         if not has_overrun(test, name):
             return check(test, environment) if status == 0 else f'ends with status {status}'
         print(f'{test}: overrun detected in sampler, run {count}', flush=True)
-    return f'{LONGEST_OVERRUN} overruns detected, giving up'
+    return f'{MOST_OVERRUNS} overruns detected, giving up'
 
 
 def show_end(count, failed):

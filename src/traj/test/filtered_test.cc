@@ -62,15 +62,20 @@ TEST(Filtered, CornersArePassedAtTheScaledSpeed_C2) {
     EXPECT_GT(corner_time(0.2), corner_time(1.0) + 0.01);
 }
 
-TEST(Filtered, AnExactArcIsFollowedExactly_C13) {
-    JerkRig rig;
+/// From the origin to 2 radius in Y.
+Primitive half_circle(double radius) {
     ArcShape shape;
-    shape.centre = at(0, 5);
+    shape.centre = at(0, radius);
     shape.normal[2] = 1;
     shape.angle_rad = std::numbers::pi;
     Primitive arc;
-    ASSERT_EQ(make_arc(Pose{}, at(0, 10), shape, arc), ArcFault::NONE);
-    rig.planner.add(arc, request(geom::PathMode::EXACT_PATH));
+    EXPECT_EQ(make_arc(Pose{}, at(0, 2 * radius), shape, arc), ArcFault::NONE);
+    return arc;
+}
+
+TEST(Filtered, AnExactArcIsFollowedExactly_C13) {
+    JerkRig rig;
+    rig.planner.add(half_circle(5), request(geom::PathMode::EXACT_PATH));
     rig.planner.add(make_line(at(0, 10), at(-20, 10)), request(geom::PathMode::EXACT_PATH));
     ASSERT_TRUE(rig.run(10));
     rig.expect_within();
@@ -90,13 +95,7 @@ std::uint64_t cycles_of_half_circle(double z_acceleration, double z_jerk) {
     limits.jerk[2] = z_jerk;
     rig.planner.set_limits(limits);
     rig.planner.begin(Pose{}, rig.executor.snapshot());
-    ArcShape shape;
-    shape.centre = at(0, 1);
-    shape.normal[2] = 1;
-    shape.angle_rad = std::numbers::pi;
-    Primitive arc;
-    EXPECT_EQ(make_arc(Pose{}, at(0, 2), shape, arc), ArcFault::NONE);
-    rig.planner.add(arc, request(geom::PathMode::EXACT_PATH));
+    rig.planner.add(half_circle(1), request(geom::PathMode::EXACT_PATH));
     EXPECT_TRUE(rig.run(10));
     rig.expect_within();
     return rig.cycle;
