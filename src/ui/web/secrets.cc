@@ -68,7 +68,7 @@ X509Ptr sign_new(EVP_PKEY *key, const std::vector<std::string> &names) {
     if (made == nullptr || RAND_bytes(serial.data(), serial.size()) != 1) {
         return nullptr;
     }
-    serial[0] &= 0x7fU;
+    serial[0] = static_cast<unsigned char>((serial[0] & 0x3fU) | 0x40U);  // positive, all bytes count: DER
     X509_set_version(made.get(), VERSION_3);
     ASN1_STRING_set(X509_get_serialNumber(made.get()), serial.data(), serial.size());
     X509_gmtime_adj(X509_getm_notBefore(made.get()), -24L * 3600);  // clocks differ
@@ -211,7 +211,8 @@ Result<Certificate> read_or_make_certificate(const std::string &folder,
     const Bio bio(BIO_new_mem_buf(text->data(), static_cast<int>(text->size())));
     const X509Ptr read(PEM_read_bio_X509(bio.get(), nullptr, nullptr, nullptr));
     if (read == nullptr) {
-        return fail("this is no certificate in PEM", {certificate_path, 0, 0});
+        return fail("this is no certificate in PEM", {certificate_path, 0, 0},
+                    "take it and key.pem beside it away: new ones are made");
     }
     auto fingerprint = fingerprint_of(read.get());
     if (!fingerprint.has_value()) {

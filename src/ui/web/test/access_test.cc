@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Tokens, roles and the files they are kept in (J3).
+#include <openssl/bn.h>
+#include <openssl/pem.h>
+#include <openssl/x509.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+#include <memory>
 
 #include <gtest/gtest.h>
 
@@ -149,6 +153,35 @@ TEST_F(AccessTest, ACertificateIsMadeOnceAndReadAgain_J3) {
     const auto half = read_or_make_certificate(folder.string(), {});
     ASSERT_FALSE(half.has_value());
     EXPECT_NE(half.error().str().find("without its key"), std::string::npos);
+}
+
+// A number that begins with a zero byte is none in DER: OpenSSL cannot read such a certificate again.
+TEST_F(AccessTest, ACertificateCanBeReadAgainWhateverItsNumber_J3) {
+    constexpr unsigned LONGEST_BITS = 127, WAYS = 20;
+    for (unsigned i = 0; i < WAYS; ++i) {
+        const auto made = read_or_make_certificate(folder.string(), {"mill"});
+        ASSERT_TRUE(made.has_value()) << made.error().str();
+        const std::string &text = made->certificate_pem;
+        const std::unique_ptr<BIO, decltype(&BIO_free)> bio(
+            BIO_new_mem_buf(text.data(), static_cast<int>(text.size())), &BIO_free);
+        const std::unique_ptr<X509, decltype(&X509_free)> read(
+            PEM_read_bio_X509(bio.get(), nullptr, nullptr, nullptr), &X509_free);
+        ASSERT_NE(read, nullptr);
+        const std::unique_ptr<BIGNUM, decltype(&BN_free)> number(
+            ASN1_INTEGER_to_BN(X509_get0_serialNumber(read.get()), nullptr), &BN_free);
+        EXPECT_EQ(static_cast<unsigned>(BN_num_bits(number.get())), LONGEST_BITS);
+        EXPECT_EQ(BN_is_negative(number.get()), 0);
+        fs::remove_all(folder);
+    }
+}
+
+TEST_F(AccessTest, WhatIsNoCertificateIsToldWithWhatToDo_J3) {
+    ASSERT_TRUE(read_or_make_certificate(folder.string(), {"mill"}).has_value());
+    std::ofstream(folder / "certificate.pem") << "nothing of the kind\n";
+    const auto again = read_or_make_certificate(folder.string(), {});
+    ASSERT_FALSE(again.has_value());
+    EXPECT_NE(again.error().str().find("no certificate in PEM"), std::string::npos);
+    EXPECT_NE(again.error().str().find("new ones are made"), std::string::npos) << again.error().str();
 }
 
 }  // namespace
