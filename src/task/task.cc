@@ -112,6 +112,7 @@ void Task::step(std::int64_t now_ns) {
     now_ns_ = now_ns;
     take_motion_news();
     sequencer_.on_tool_event(io_.step(parts_.io_port.read()));
+    Start{*this}.watch_hold();  // a tool that has come is known before a command goes on with it
     update_state();
     carry_out_commands();
     end_requests();

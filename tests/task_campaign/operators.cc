@@ -145,6 +145,10 @@ bool Operators::isWaited(Serial serial) const {
 }
 
 void Operators::forget_orders(int client) {
+    for (const Order &order : orders_) {
+        const bool isUnknown = client >= 0 && order.client == client && order.mode.has_value();
+        mode_under_way_ = isUnknown ? order.mode : mode_under_way_;
+    }
     std::erase_if(orders_, [client](const Order &order) { return client < 0 || order.client == client; });
     if (client < 0) {
         ended_.clear();  // another count begins

@@ -91,6 +91,23 @@ TEST_F(ReturnTest, AProgramThatIsHeldInAToolChangeGoesOnWithItsTool_D3) {
     EXPECT_EQ(progress(run), Progress::DONE) << reason(run);
 }
 
+/// The tool may come in the very cycle in which the program goes on.
+TEST_F(ReturnTest, AProgramThatIsHeldInAToolChangeGoesOnInWhateverCycleTheToolComes_D3) {
+    for (int wait = 0; wait < 6; ++wait) {
+        open("G21 F600\nT5 M6\nG1 X3\nT0 M6\nM2\n");
+        io.isChangerWorking = false;
+        const client::Serial run = post(RunProgram{});
+        cycles(30);
+        ASSERT_TRUE(io.outputs.tool_change);
+        ASSERT_EQ(ask(PauseProgram{}), Progress::DONE);
+        io.isChangerWorking = true;
+        cycles(wait);
+        ASSERT_EQ(ask(ResumeProgram{}), Progress::DONE) << reason(request);
+        cycles(200);
+        EXPECT_EQ(progress(run), Progress::DONE) << wait << ": " << reason(run);
+    }
+}
+
 TEST_F(ReturnTest, ASpindleThatWasStoppedInAHoldIsNotForgotten_D3) {
     const auto run = hold();
     ASSERT_EQ(ask(SpindleOff{}), Progress::DONE);
