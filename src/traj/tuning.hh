@@ -155,6 +155,8 @@ struct CornerTuning {
     /// acceleration built up in tau.
     static constexpr double ALONG_ACCELERATION = 0.6, ALONG_TURNING = 0.75;
     static constexpr double ALONG_JERK = 0.2, ALONG_CROSS_JERK = 0.5;
+    /// Of a part of it: all that the axes' directions there leave.
+    static constexpr double ALONG_SHARE = 0.98;
     static constexpr int SPEED_STEPS = 50;  ///< of bisection: more than a double has bits
 };
 

@@ -29,35 +29,6 @@ double largest_cosine(double from, double to) noexcept {
     return isTurningPoint ? 1.0 : std::max(std::abs(std::cos(from)), std::abs(std::cos(to)));
 }
 
-/// Largest |dq/ds| and |d2q/ds2| per coordinate on [from, to]; the last of each are those of the XYZ norm.
-void derivative_bounds(const Primitive &p, double from, double to, PerLimited &q1, PerLimited &q2) noexcept {
-    for (int i = 0; i < AXIS_COUNT; ++i) {
-        q1[static_cast<std::size_t>(i)] = std::abs(p.lin[i]);
-    }
-    q1[XYZ_NORM] = geom::norm_xyz(p.lin);
-    q2.fill(0.0);
-    if (!p.isArc) {
-        return;
-    }
-    const double w = std::abs(p.omega);
-    const double radius = end_radius(p);
-    const double drift = std::abs(p.dradius);
-    for (std::size_t i = 0; i < 3; ++i) {
-        const auto n = static_cast<std::size_t>(p.space) + i;
-        const double amplitude = std::hypot(p.u[i], p.v[i]);
-        const double phase = std::atan2(p.v[i], p.u[i]);
-        const double a = p.omega * from - phase;
-        const double b = p.omega * to - phase;
-        const double quarter = 0.5 * std::numbers::pi;
-        q1[n] += amplitude * (radius * w * largest_cosine(a + quarter, b + quarter) + drift);
-        q2[n] = amplitude * (radius * w * w * largest_cosine(a, b) + 2.0 * drift * w);
-    }
-    if (p.space == geom::AXIS_X) {
-        q1[XYZ_NORM] = std::hypot(q1[XYZ_NORM] + drift, radius * w);
-        q2[XYZ_NORM] = radius * w * w + 2.0 * drift * w;
-    }
-}
-
 /// Acceleration that row `r` leaves along the path at the squared speed b.
 double acceleration_left(const LimitRow &r, double b) noexcept {
     const double limit = r.acceleration * (1.0 - LimitTuning::ACCELERATION_MARGIN);
@@ -90,6 +61,34 @@ int rows_of(const PerLimited &q1, const PerLimited &q2, const Limits &limits, Li
 }
 
 }  // namespace
+
+void derivative_bounds(const Primitive &p, double from, double to, PerLimited &q1, PerLimited &q2) noexcept {
+    for (int i = 0; i < AXIS_COUNT; ++i) {
+        q1[static_cast<std::size_t>(i)] = std::abs(p.lin[i]);
+    }
+    q1[XYZ_NORM] = geom::norm_xyz(p.lin);
+    q2.fill(0.0);
+    if (!p.isArc) {
+        return;
+    }
+    const double w = std::abs(p.omega);
+    const double radius = end_radius(p);
+    const double drift = std::abs(p.dradius);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto n = static_cast<std::size_t>(p.space) + i;
+        const double amplitude = std::hypot(p.u[i], p.v[i]);
+        const double phase = std::atan2(p.v[i], p.u[i]);
+        const double a = p.omega * from - phase;
+        const double b = p.omega * to - phase;
+        const double quarter = 0.5 * std::numbers::pi;
+        q1[n] += amplitude * (radius * w * largest_cosine(a + quarter, b + quarter) + drift);
+        q2[n] = amplitude * (radius * w * w * largest_cosine(a, b) + 2.0 * drift * w);
+    }
+    if (p.space == geom::AXIS_X) {
+        q1[XYZ_NORM] = std::hypot(q1[XYZ_NORM] + drift, radius * w);
+        q2[XYZ_NORM] = radius * w * w + 2.0 * drift * w;
+    }
+}
 
 AccelBound AccelBound::through(const double (&left)[LINES + 1], double v) noexcept {
     static_assert(std::size(LimitTuning::CHORDS) == LINES + 1);

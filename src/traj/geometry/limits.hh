@@ -54,6 +54,10 @@ struct LimitRow {
     bool isRightAngled = false;  ///< q1 and q2 are lengths of vectors at right angles
 };
 
+/// Largest |dq/ds| and |d2q/ds2| per coordinate on the part [from, to] of a primitive; the last of each are
+/// those of the XYZ norm.
+void derivative_bounds(const Primitive &p, double from, double to, PerLimited &q1, PerLimited &q2) noexcept;
+
 /// Speeds and accelerations for which q1 v <= velocity and q1 |a| + q2 v^2 <= acceleration in every row, up
 /// to the speed `wish`.
 SpeedLimit limit_of_rows(const LimitRow *rows, int count, double wish) noexcept;

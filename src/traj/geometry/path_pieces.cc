@@ -151,10 +151,13 @@ void PathBuilder::add_part(PlannedPath &path, const Conditions &c, Piece piece, 
     int cuts = 1;
     piece.isAlong = isExactArc(p, m.request, c.limits);
     constexpr double MOST = PathTuning::MOST_ARC_CUTS;
+    const bool isPartly = piece.isAlong && !c.workspace.isMapped();
     if (piece.isAlong) {
         whole = exact_arc_limit(p, c.limits, wish);
-    } else if (p.isArc) {
-        const double cut = whole.v < wish ? PathTuning::ARC_CUT : PathTuning::ARC_CUT_WHEN_SLOW;
+    }
+    if (p.isArc && (isPartly || !piece.isAlong)) {
+        const bool isFine = isPartly || whole.v < wish;
+        const double cut = isFine ? PathTuning::ARC_CUT : PathTuning::ARC_CUT_WHEN_SLOW;
         const double pieces = std::ceil(std::abs(p.omega) * (to - from) / cut);
         cuts = static_cast<int>(std::clamp(pieces, 1.0, MOST));
     }
@@ -170,7 +173,10 @@ void PathBuilder::add_part(PlannedPath &path, const Conditions &c, Piece piece, 
         piece.programmed_s = m.start_s + begin;
         piece.length = end - begin;
         piece.isToEnd = isToEnd && i + 1 == cuts;
-        add_piece(path, c, piece, cuts == 1 ? whole : limit_of(p, begin, end, limits, wish));
+        add_piece(path, c, piece,
+                  isPartly    ? exact_arc_part(p, begin, end, c.limits, whole)
+                  : cuts == 1 ? whole
+                              : limit_of(p, begin, end, limits, wish));
         open_.isStop = false;
     }
 }

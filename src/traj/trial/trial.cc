@@ -59,7 +59,7 @@ void Trial::start(const PathView &view, const Snapshot &now, const LeaderState &
         to.leader = isFresh ? standing : store.history[tick % HISTORY_CAPACITY];
         to.piece = 0;
     }
-    if (!isFresh && view.conditions.workspace.isMapped()) {
+    if (!isFresh && (view.conditions.workspace.isMapped() || view.conditions.limits.isFiltered())) {
         take_arc(view, now);
     }
     origin_ = standing.pose;
@@ -77,6 +77,7 @@ void Trial::start(const PathView &view, const Snapshot &now, const LeaderState &
         }
     }
     joints_.begin();
+    axes_.begin();
     tolerance_tick_ = tick_;
     along_tick_ = arc_ != 0 ? arc_tick_ : 0;
 }
@@ -102,9 +103,8 @@ void Trial::drive_on(const PathView &view, const Snapshot &now, const TrialPlan 
             t = isOver ? store.phase(n).duration : t + dt;
             push_phase(view, store.phase(n), t);
         }
-        if (view.conditions.workspace.isMapped()) {
-            areJointsSound(view);  // committed already; what follows is compared with it
-        }
+        // Committed already; what follows is compared with it.
+        view.conditions.workspace.isMapped() ? areJointsSound(view) : areAxesSound(view);
     }
 }
 
@@ -255,11 +255,49 @@ Pose Trial::commanded(const PathView &view) noexcept {
 }
 
 bool Trial::areJointsSound(const PathView &view) noexcept {
-    return joints_.isSound(view.conditions, commanded(view), tick_);
+    const Workspace &workspace = view.conditions.workspace;
+    const JointLimits &joints = workspace.joints;
+    double *places = joints_.places(tick_);
+    std::fill_n(places, MAX_JOINTS, 0.0);
+    if (!workspace.map->joints_at(commanded(view), places)) {
+        joints_.forget();
+        return false;
+    }
+    return joints_.isSound({.count = static_cast<std::size_t>(joints.count),
+                            .velocity = joints.velocity.data(),
+                            .acceleration = joints.acceleration.data(),
+                            .jerk = joints.jerk.data(),
+                            .period_s = view.conditions.limits.period_s(),
+                            .isJerkLimited = view.conditions.limits.isFiltered()},
+                           tick_);
+}
+
+/// Where the leader or the mean is on an exact arc: the swing of the leader says nothing there.
+bool Trial::areAxesSound(const PathView &view) noexcept {
+    if (!view.conditions.limits.isFiltered()) {
+        return true;
+    }
+    const Pose at = commanded(view);
+    if (arc_ == 0 || tick_ >= arc_tick_ + view.conditions.limits.filter() + 3) {
+        return true;
+    }
+    const Primitive &arc = view.path.primitive(arc_);
+    const Limits &limits = view.conditions.limits.highest();
+    const Limits &wanted = view.conditions.limits.wanted();
+    std::copy_n(at.c.data(), geom::AXIS_COUNT, axes_.places(tick_));
+    return axes_.isSound({.count = geom::AXIS_COUNT,
+                          .velocity = limits.velocity.data(),
+                          .acceleration = limits.acceleration.data(),
+                          .jerk = wanted.jerk.data(),
+                          .hasNorm = true,
+                          .period_s = view.conditions.limits.period_s(),
+                          .isJerkLimited = true,
+                          .size = 2.0 * (arc.radius + std::max(0.0, arc.dradius * arc.length))},
+                         tick_);
 }
 
 /// The leader is on an arc of which the mean place is commanded, or the mean still covers one: the limits
-/// there are kept by exact_arc_limit.
+/// there are kept by exact_arc_limit and tried by areAxesSound.
 bool Trial::isOnExactArc(const PathView &view) noexcept {
     const Sequence piece = sample(tick_).piece;
     const Piece &on = view.path.piece(piece);
@@ -281,6 +319,11 @@ bool Trial::isNewestSound(const PathView &view) noexcept {
         return true;
     }
     const bool isExact = isOnExactArc(view);
+    if (!view.conditions.workspace.isMapped() && !areAxesSound(view)) {
+        excess_ = axes_.excess();
+        along_share_ = 1;
+        return false;
+    }
     if (!isLeaderSound(limits)) {
         excess_ = TrialTuning::UNMEASURED;
         return false;

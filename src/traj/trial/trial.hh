@@ -7,7 +7,7 @@
 #include <array>
 
 #include "traj/timing/speed_profile.hh"
-#include "traj/trial/joint_trial.hh"
+#include "traj/trial/limit_trial.hh"
 #include "traj/trial/verdict.hh"
 
 namespace mw::traj {
@@ -49,6 +49,7 @@ class Trial {
     void take_arc(const PathView &view, const Snapshot &now) noexcept;
     Pose commanded(const PathView &view) noexcept;
     bool areJointsSound(const PathView &view) noexcept;
+    bool areAxesSound(const PathView &view) noexcept;
     Pose mean(std::uint64_t filter) const noexcept {
         return origin_ + sum_ * (1.0 / static_cast<double>(filter));
     }
@@ -65,7 +66,8 @@ class Trial {
     Sequence arc_ = 0;                  ///< the move of which the mean place is commanded
     std::uint64_t arc_tick_ = 0;        ///< the last on it
     double excess_ = 1, along_share_ = 0;
-    JointTrial joints_;
+    LimitTrial joints_;  ///< where they are not axes
+    LimitTrial axes_;    ///< on an exact arc, where joints are axes
 };
 
 }  // namespace mw::traj
