@@ -8,7 +8,8 @@
 namespace mw::task_campaign {
 namespace {
 
-constexpr std::int64_t RUN_PATIENCE_MS = 120000;
+constexpr std::int64_t RUN_PATIENCE_MS =
+    300000;  // 300 mm of approach at 5 mm/s, at an override of 0.4, and the rest
 
 std::string text_of(const std::vector<Line> &lines) {
     std::string text;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "traj/geometry/exact_arc.hh"
 #include "traj/tuning.hh"
 
 namespace mw::traj {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "traj/geometry/corner.hh"
+#include "traj/geometry/exact_arc.hh"
 
 namespace mw::traj {
 

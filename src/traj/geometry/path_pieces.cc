@@ -2,8 +2,10 @@
 // Cuts moves and blends into pieces with limits of their own.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "traj/geometry/braking.hh"
+#include "traj/geometry/exact_arc.hh"
 #include "traj/geometry/path_builder.hh"
 
 namespace mw::traj {
@@ -147,16 +149,12 @@ void PathBuilder::add_part(PlannedPath &path, const Conditions &c, Piece piece, 
     const double from = piece.offset;
     const bool isToEnd = piece.isToEnd;
     const double wish = std::min(v, requested_speed(m, c.scales));
-    SpeedLimit whole = limit_of(p, from, to, limits, wish);
+    const SpeedLimit whole = limit_of(p, from, to, limits, wish);
     int cuts = 1;
     piece.isAlong = isExactArc(p, m.request, c.limits);
     constexpr double MOST = PathTuning::MOST_ARC_CUTS;
-    const bool isPartly = piece.isAlong && !c.workspace.isMapped();
-    if (piece.isAlong) {
-        whole = exact_arc_limit(p, c.limits, wish);
-    }
-    if (p.isArc && (isPartly || !piece.isAlong)) {
-        const bool isFine = isPartly || whole.v < wish;
+    if (p.isArc) {
+        const bool isFine = piece.isAlong || whole.v < wish;
         const double cut = isFine ? PathTuning::ARC_CUT : PathTuning::ARC_CUT_WHEN_SLOW;
         const double pieces = std::ceil(std::abs(p.omega) * (to - from) / cut);
         cuts = static_cast<int>(std::clamp(pieces, 1.0, MOST));
@@ -166,6 +164,11 @@ void PathBuilder::add_part(PlannedPath &path, const Conditions &c, Piece piece, 
         const double pieces = std::ceil(geom::norm_abc(p.lin) * (to - from) / PathTuning::JOINT_CUT_DEG);
         cuts = std::max(cuts, static_cast<int>(std::clamp(pieces, PathTuning::LEAST_JOINT_CUTS, MOST)));
     }
+    std::optional<ExactArc> exact;
+    if (piece.isAlong) {
+        piece.length = to - from;
+        exact.emplace(path.store(), piece, c, wish);
+    }
     for (int i = 0; i < cuts; ++i) {
         const double begin = from + (to - from) * i / cuts;
         const double end = i + 1 == cuts ? to : from + (to - from) * (i + 1) / cuts;
@@ -173,19 +176,19 @@ void PathBuilder::add_part(PlannedPath &path, const Conditions &c, Piece piece, 
         piece.programmed_s = m.start_s + begin;
         piece.length = end - begin;
         piece.isToEnd = isToEnd && i + 1 == cuts;
-        add_piece(path, c, piece,
-                  isPartly    ? exact_arc_part(p, begin, end, c.limits, whole)
-                  : cuts == 1 ? whole
-                              : limit_of(p, begin, end, limits, wish));
+        const SpeedLimit limit = exact.has_value() ? exact->limit_of(piece)
+                                 : cuts == 1       ? whole
+                                                   : limit_of(p, begin, end, limits, wish);
+        add_piece(path, c, piece, limit);
         open_.isStop = false;
     }
 }
 
 void PathBuilder::add_piece(PlannedPath &path, const Conditions &c, const Piece &piece,
                             const SpeedLimit &limit) noexcept {
-    const SpeedLimit lowest = c.workspace.isMapped() ? limit_with_joints(path.store(), piece, c.workspace,
-                                                                         c.limits.filter_s(), limit)
-                                                     : limit;
+    const bool isMapped = c.workspace.isMapped() && !piece.isAlong;
+    const SpeedLimit lowest =
+        isMapped ? limit_with_joints(path.store(), piece, c.workspace, c.limits.filter_s(), limit) : limit;
     Piece limited = piece;
     limited.acceleration = lowest.a;
     limited.braking = braking_on(path.store(), piece, c, lowest);

@@ -30,14 +30,6 @@ double turning_speed(const MoveRequest &request, const Scales &scales) noexcept;
 /// What the commanded path may be away from the move; 0: any.
 double tolerance_of(const PlannedMove &move, const PathLimits &limits) noexcept;
 
-/// Arcs that must be followed exactly lie between stops, and the mean is taken of the place on them.
-bool isExactArc(const Primitive &p, const MoveRequest &request, const PathLimits &limits) noexcept;
-/// One speed and acceleration for a whole arc that is followed exactly.
-SpeedLimit exact_arc_limit(const Primitive &p, const PathLimits &limits, double wish) noexcept;
-/// Its part [from, to] may take more acceleration along than the whole, at the same speed, where axes that
-/// limit it move little.
-SpeedLimit exact_arc_part(const Primitive &p, double from, double to, const PathLimits &limits,
-                          const SpeedLimit &whole) noexcept;
 /// On an arc the mean runs inside by curvature v^2 tau^2 / 24: the speed that keeps this in the tolerance.
 double mean_arc_speed(const Leg &leg, const PathLimits &limits) noexcept;
 /// A blend among other curves: one part of the acceleration is for turning, the other for the path.

@@ -51,12 +51,10 @@ int samples_of(const PathStore &store, const Piece &piece) noexcept {
                       JointTuning::MOST_SAMPLES);
 }
 
-using PerJoint = std::array<double, MAX_JOINTS>;
+}  // namespace
 
-/// Largest derivatives of each joint. With curvatures, q1 is the length of both as on a circle of that, where
-/// they are at right angles.
 void sample_rows(const PathStore &store, const Piece &piece, const Workspace &workspace,
-                 const PerJoint *curvatures, LimitRow *rows) noexcept {
+                 const double *curvatures, LimitRow *rows) noexcept {
     const int samples = samples_of(store, piece);
     const double h = std::min(JointTuning::STEP, 0.25 * piece.length);
     for (int n = 0; n < samples; ++n) {
@@ -72,58 +70,15 @@ void sample_rows(const PathStore &store, const Piece &piece, const Workspace &wo
             const double q1 = std::abs(after[j] - before[j]) / (2.0 * h);
             const double q2 = std::abs(after[j] - 2.0 * at[j] + before[j]) / (h * h);
             const double noise = 4.0 * 0x1p-52 * std::abs(at[j]) / (h * h);
-            const double k = curvatures != nullptr ? (*curvatures)[static_cast<std::size_t>(j)] : 0.0;
+            const double k = curvatures != nullptr ? curvatures[j] : 0.0;
             row.q1 = std::max(row.q1, k > 0 ? std::hypot(q1, q2 / k) : q1);
             row.q2 = std::max(row.q2, q2 > JointTuning::JITTER + 4.0 * noise ? q2 : 0.0);
         }
     }
 }
 
-/// An arc of which the mean place is commanded: joints do on it what axes do (exact_arc_limit), each on a
-/// curve of its own.
-SpeedLimit exact_arc_with_joints(const PathStore &store, const Piece &piece, const Workspace &workspace,
-                                 double filter_s, const SpeedLimit &limit) noexcept {
-    const JointLimits &joints = workspace.joints;
-    LimitRow rows[MAX_JOINTS];
-    sample_rows(store, piece, workspace, nullptr, rows);
-    PerJoint curvatures{};
-    curvatures.fill(std::abs(store.primitive(piece.primitive).omega));
-    for (std::size_t j = 0; j < curvatures.size(); ++j) {
-        const bool isMoving = rows[j].q1 > JointTuning::JITTER;
-        curvatures[j] = isMoving ? std::max(curvatures[j], rows[j].q2 / rows[j].q1) : curvatures[j];
-        rows[j] = {};
-    }
-    sample_rows(store, piece, workspace, &curvatures, rows);
-    double v = limit.v;
-    double a = UNLIMITED;
-    for (std::size_t j = 0; j < static_cast<std::size_t>(joints.count); ++j) {
-        const double q1 = rows[j].q1 * JointTuning::SAMPLING_MARGIN;
-        const double k = curvatures[j];
-        if (q1 > 0) {
-            v = std::min({v, joints.velocity[j] / q1,
-                          std::sqrt(CornerTuning::ALONG_TURNING * joints.acceleration[j] / (q1 * k)),
-                          std::cbrt(CornerTuning::ALONG_JERK * joints.jerk[j] / (q1 * k * k))});
-        }
-    }
-    for (std::size_t j = 0; j < static_cast<std::size_t>(joints.count); ++j) {
-        const double q1 = rows[j].q1 * JointTuning::SAMPLING_MARGIN;
-        if (q1 > 0) {
-            a = std::min({a,
-                          CornerTuning::ALONG_ACCELERATION *
-                              std::min(joints.acceleration[j], joints.jerk[j] * filter_s) / q1,
-                          CornerTuning::ALONG_CROSS_JERK * joints.jerk[j] / (3.0 * q1 * curvatures[j] * v)});
-        }
-    }
-    return {v, AccelBound::least(limit.a, AccelBound::constant(a), v)};
-}
-
-}  // namespace
-
 SpeedLimit limit_with_joints(const PathStore &store, const Piece &piece, const Workspace &workspace,
                              double filter_s, const SpeedLimit &limit) noexcept {
-    if (piece.isAlong) {
-        return exact_arc_with_joints(store, piece, workspace, filter_s, limit);
-    }
     const JointLimits &joints = workspace.joints;
     LimitRow rows[MAX_JOINTS];
     sample_rows(store, piece, workspace, nullptr, rows);

@@ -24,6 +24,12 @@ struct Workspace {
     Pose shift_within(const Pose &corner, const Pose &shift) const noexcept;
 };
 
+/// Largest derivatives of each joint along a piece, by differences of the inverse kinematics. With
+/// curvatures, one for each joint, q1 is the length of both as on a circle of that, where they are at right
+/// angles.
+void sample_rows(const PathStore &store, const Piece &piece, const Workspace &workspace,
+                 const double *curvatures, LimitRow *rows) noexcept;
+
 /// The limit of a piece, lowered to what its joints can do: their derivatives along it by differences of the
 /// inverse kinematics. `filter_s`: the time of the mean, 0 without jerk limits.
 SpeedLimit limit_with_joints(const PathStore &store, const Piece &piece, const Workspace &workspace,

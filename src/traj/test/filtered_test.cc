@@ -171,7 +171,7 @@ TEST(Filtered, AnExactArcIsAsFastAsJointsAllow_C13) {
     BeltRig rig;
     ASSERT_TRUE(rig.run(10));
     rig.expect_joints_within();
-    // Belts take sqrt(2) of what the arc does; exact_arc_limit has the shares. Stands before and after it,
+    // Belts take sqrt(2) of what the arc does; ExactArc has the shares. Stands before and after it,
     // the planner's period and latency.
     const double v = V / std::sqrt(2.0);
     const double a = CornerTuning::ALONG_ACCELERATION * A / 2 / std::sqrt(2.0);

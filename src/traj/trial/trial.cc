@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "traj/geometry/stretch.hh"
+#include "traj/geometry/exact_arc.hh"
 #include "traj/tuning.hh"
 
 namespace mw::traj {
@@ -297,7 +298,7 @@ bool Trial::areAxesSound(const PathView &view) noexcept {
 }
 
 /// The leader is on an arc of which the mean place is commanded, or the mean still covers one: the limits
-/// there are kept by exact_arc_limit and tried by areAxesSound.
+/// there are kept by ExactArc and tried by areAxesSound.
 bool Trial::isOnExactArc(const PathView &view) noexcept {
     const Sequence piece = sample(tick_).piece;
     const Piece &on = view.path.piece(piece);
