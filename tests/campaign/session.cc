@@ -63,6 +63,10 @@ void Session::cycle() {
         trace_ << fmt::format(" {:.9g} {:.9g}\n", s.spindle_rpm, s.spindle_turns);
     }
     if (isRecording_) {
+        const auto motor = &JointSample::motor_cmd;
+        const bool isLed = s.axes == path_.front() && !std::ranges::equal(s.joints, led_, {}, motor, motor);
+        led_s_ += isLed && !led_.empty() ? PERIOD_S : 0.0;
+        led_ = s.joints;
         path_.push_back(s.axes);
         turns_.push_back(s.spindle_turns);
         rpm_.push_back(s.spindle_rpm);

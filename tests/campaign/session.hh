@@ -105,6 +105,8 @@ class Session {
     bool isStopped_ = false, isDisturbed_ = false, isReversed_ = false;
     bool isRecording_ = false;
     std::vector<geom::Pose> path_;
+    std::vector<JointSample> led_;  ///< the joints where path_ ends
+    double led_s_ = 0;  ///< time in which joints were led to where the axes stood before the first move
     std::vector<double> turns_, rpm_;     ///< of the spindle, with path_
     std::vector<std::string> told_;       ///< by the program
     std::map<int, double> beyond_walls_;  ///< how far the probe has been, by axis

@@ -67,6 +67,8 @@ void Session::run_program(const Act &act) {
     const geom::Pose from = rig_->sample().axes;
     path_.clear();
     path_.push_back(from);
+    led_.clear();
+    led_s_ = 0;
     turns_.assign(1, rig_->sample().spindle_turns);
     rpm_.assign(1, rig_->sample().spindle_rpm);
     told_.clear();
@@ -110,7 +112,7 @@ void Session::run_program(const Act &act) {
         check_sync(act, end);
     } else if (end == End::DONE) {
         ++verdict_.ended;
-        check_program(act, from, took_s);
+        check_program(act, from, took_s - led_s_);
     }
 }
 
