@@ -257,8 +257,8 @@ TEST(TeleopJerk, AHexapodKeepsJointJerk_C13) {
     jog_smoothly({hexapod, "XYZABC", start, 4}, 1);
 }
 
-/// The limit of the joints is lowered while one axis has its old share and another begins: X brakes slowly, and
-/// Y would be at its new share long before X has come down to that.
+/// The limit of the joints is lowered while one axis has its old share and another begins: X brakes slowly,
+/// and Y would be at its new share long before X has come down to that.
 TEST(TeleopJerk, AnAxisTakesItsShareOnceTheOtherIsDownToItsOwn_C13) {
     kins::CoreXy model;
     MotionRig rig(model, 3, 100, 1000);
