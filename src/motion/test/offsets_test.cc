@@ -172,6 +172,26 @@ TEST(Offsets, SwitchedOffAndOnNothingMovesAndTheyAreZero_C15) {
     rig.expect_within();
 }
 
+/// The program goes on from where the machine stands: what was an offset is not taken back with a jump.
+TEST(Offsets, SwitchedOnInAProgramTheMachineStandsWhereItStood_C6_C15) {
+    OffsetRig rig;
+    rig.ready();
+    rig.pins(0).counts = 300;
+    rig.go(1000);
+    rig.send(Disable{});
+    rig.go(5);
+    const CommandId on = rig.send(Enable{});
+    rig.go(500);
+    ASSERT_TRUE(rig.isDone(on));
+    EXPECT_EQ(rig.status().mode, Mode::COORD);
+    EXPECT_DOUBLE_EQ(rig.motor(0), 3);
+    EXPECT_EQ(rig.offset(0), 0);
+    rig.line(at(4, 0, 0));
+    ASSERT_TRUE(rig.finish(rig.send_path(Flush{})));
+    EXPECT_NEAR(rig.motor(0), 4, 1e-12);
+    rig.expect_within();
+}
+
 TEST(Offsets, StayThroughModesAndJointJogsAndCountOnlyInModesOfAxes_C15) {
     OffsetRig rig;
     rig.ready(Mode::TELEOP);
