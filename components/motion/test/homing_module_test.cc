@@ -17,7 +17,7 @@
 namespace mw::motion {
 namespace {
 
-enum class Manner { MILD, FAST, FAR, NOT_A_NUMBER, STUBBORN, GIVING_UP, OWN_PINS };
+enum class Manner { MILD, FAST, FAR, NOT_A_NUMBER, STUBBORN, GIVING_UP, OWN_PINS, LETTING_GO };
 
 struct HomingModule : ::testing::Test {
     static constexpr double VELOCITY = 20, ACCELERATION = 300, RANGE = 30;
@@ -122,6 +122,18 @@ TEST_F(HomingModule, AnAbortStopsItWhetherItHearsOrNot_C2) {
     EXPECT_LT(stood, -1);
     run(2);
     EXPECT_EQ(motor(), stood);
+    EXPECT_TRUE(checker.isWithin()) << checker.report();
+}
+
+TEST_F(HomingModule, AJointThatItLetsGoOfBrakesAndStands_C2) {
+    ASSERT_NO_FATAL_FAILURE(start(Manner::LETTING_GO));
+    run(1);
+    const double stood = motor();
+    EXPECT_LT(stood, -2);
+    EXPECT_GT(stood, -2.2) << "it braked at once";
+    run(1);
+    EXPECT_EQ(motor(), stood);
+    EXPECT_EQ(host->hal().get("joint.0.homing")->as_number(), 1);
     EXPECT_TRUE(checker.isWithin()) << checker.report();
 }
 

@@ -90,6 +90,8 @@ inline void expand_name(const char *pattern, int number, char (&out)[HAL_NAME_LE
 template <const auto &TABLE>
 class PinSet {
   public:
+    /// Of a table whose names have no number; as below. [while loading]
+    int declare(int comp_id) noexcept { return declare(comp_id, 0); }
     /// 0 or a negated errno. [while loading]
     int declare(int comp_id, int number) noexcept {
         char scope[HAL_NAME_LEN + 1];

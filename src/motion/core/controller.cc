@@ -180,17 +180,17 @@ void Controller::check_faults(const Inputs &in, std::uint32_t spindles_lost) noe
         return;
     }
     if (!in.isEnableOn) {
-        stop_category_0(FaultKind::ENABLE_LOST, -1, 0);
+        stop_category_0(FaultKind::ENABLE_LOST, -1);
         return;
     }
     check_joints(in);
     const int in_step = executor_.locked_spindle();
     for (int n = 0; n < config_.num_spindles; ++n) {
         if (in.spindle[static_cast<std::size_t>(n)].isAmpFaulted) {
-            stop_category_1(FaultKind::SPINDLE_FAULT, n, 0);
+            stop_category_1(FaultKind::SPINDLE_FAULT, n);
         }
         if (n == in_step && (spindles_lost >> n & 1U) != 0) {
-            stop_category_1(FaultKind::SPINDLE_LOST, n, 0);
+            stop_category_1(FaultKind::SPINDLE_LOST, n);
         }
     }
     if (in.misc_errors != 0) {
@@ -211,8 +211,8 @@ void Controller::check_joints(const Inputs &in) noexcept {
     for (int j = 0; power_.isEnabled; ++j) {
         switch (find_fault(joints_, j, settings_, how)) {
         case JointFault::NONE: return;
-        case JointFault::FEEDBACK_LOST: stop_category_0(FaultKind::FEEDBACK_LOST, j, 0); break;
-        case JointFault::AMP_FAULT: stop_category_0(FaultKind::AMP_FAULT, j, 0); break;
+        case JointFault::FEEDBACK_LOST: stop_category_0(FaultKind::FEEDBACK_LOST, j); break;
+        case JointFault::AMP_FAULT: stop_category_0(FaultKind::AMP_FAULT, j); break;
         case JointFault::FOLLOWING_ERROR:
             stop_category_0(FaultKind::FOLLOWING_ERROR, j, joints_[j].ferror);
             break;
@@ -245,7 +245,7 @@ void Controller::step_homing(const Inputs &in) noexcept {
         raise(FaultKind::HOMING_FAILED, failure.joint, 0, static_cast<std::uint16_t>(failure.why));
     }
     for (std::uint32_t clamped = homing_.module().take_clamped(); clamped != 0; clamped &= clamped - 1) {
-        raise(FaultKind::HOMING_CLAMPED, std::countr_zero(clamped), 0);
+        raise(FaultKind::HOMING_CLAMPED, std::countr_zero(clamped));
     }
     if (limits_.homed.joints != homed_mask(homing_)) {
         publish_limits();
@@ -332,11 +332,11 @@ void Controller::step_indexers(const Inputs &in) noexcept {
     }
     const IndexerEvent event = motion::step(indexers_, now);
     if (event.fault == LockFault::LOCKED_IN_MOVE) {
-        stop_category_0(FaultKind::INDEXER_LOCKED_IN_MOVE, event.joint, 0);
+        stop_category_0(FaultKind::INDEXER_LOCKED_IN_MOVE, event.joint);
     } else if (event.fault != LockFault::NONE) {
         raise(event.fault == LockFault::NOT_LOCKED ? FaultKind::INDEXER_NOT_LOCKED
                                                    : FaultKind::INDEXER_NOT_UNLOCKED,
-              event.joint, 0);
+              event.joint);
         executor_.drop();
         stop(jogs_);
         isCoordError_ = true;

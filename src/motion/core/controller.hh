@@ -93,9 +93,9 @@ class Controller {
     void step_jogs(const Inputs &in) noexcept;
     void step_indexers(const Inputs &in) noexcept;
     void output_joints() noexcept;
-    void stop_category_1(FaultKind kind, int index, double value) noexcept;
-    void stop_category_0(FaultKind kind, int index, double value) noexcept;
-    void raise(FaultKind kind, int index, double value, std::uint16_t detail = 0) noexcept;
+    void stop_category_1(FaultKind kind, int index, double value = 0) noexcept;
+    void stop_category_0(FaultKind kind, int index, double value = 0) noexcept;
+    void raise(FaultKind kind, int index, double value = 0, std::uint16_t detail = 0) noexcept;
     bool isAnythingMoving() const noexcept;
 
     // --- controller_motion.cc

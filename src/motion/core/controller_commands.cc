@@ -177,7 +177,7 @@ Verdict Controller::enable(const Inputs &in) noexcept {
     if (power_.mode != Mode::FREE) {
         const Verdict led = lead_joints();
         if (led.reason == Reason::SIDE_APART) {
-            raise(FaultKind::SIDE_APART, led.index, 0);
+            raise(FaultKind::SIDE_APART, led.index);
             power_.mode = Mode::FREE;  // each joint stands for itself
         } else if (led.reason != Reason::NONE) {
             return led;

@@ -56,9 +56,7 @@ void Controller::move_joints(const Inputs &in) noexcept {
         }
         follow(joints_[j], jog.planner.position, config_.period_s);
     }
-    if (offsets_.axes != 0) {
-        motion::step(offsets_, {in.axis_offset, limits_, {}, false, config_.period_s});
-    }
+    motion::step(offsets_, {in.axis_offset, limits_, {}, false, config_.period_s});
     const bool isKnown = kinematics_.kind() == kins::Kind::BOTH && isAllHomed(homing_);
     follow_joints(place_, kinematics_, commanded(joints_).data(), isKnown);
 }
@@ -144,7 +142,7 @@ void Controller::move_extra_joints(const Inputs &in) noexcept {
         raise(FaultKind::EXTRA_JOINT_LIMIT, j, in.joint[static_cast<std::size_t>(j)].posthome_cmd);
     }
     if (events.lost != 0) {
-        stop_category_1(FaultKind::EXTRA_JOINT_LOST, std::countr_zero(events.lost), 0);
+        stop_category_1(FaultKind::EXTRA_JOINT_LOST, std::countr_zero(events.lost));
     }
 }
 
@@ -157,9 +155,9 @@ geom::Pose Controller::teleop_pose() noexcept {
             holds_.jog_scale(), config_.period_s, kinematics_.side(place_.cmd)};
         const TeleopStop stopped = limit_teleop(jogs_, machine);
         if (stopped.isNew && stopped.joint >= 0) {
-            raise(FaultKind::JOG_JOINT_LIMIT, stopped.joint, 0);
+            raise(FaultKind::JOG_JOINT_LIMIT, stopped.joint);
         } else if (stopped.isNew) {
-            raise(FaultKind::JOG_UNREACHABLE, config_.num_led_joints(), 0);
+            raise(FaultKind::JOG_UNREACHABLE, config_.num_led_joints());
         }
     }
     geom::Pose pose;
@@ -182,7 +180,7 @@ geom::Pose Controller::path_pose() noexcept {
     const traj::ExecutorOutput &path = executor_.step(cycle_);
     geom::Pose pose = path.position;
     if (path.tap.isLost) {
-        stop_category_1(FaultKind::TAP_LOST, path.tap.spindle, 0);
+        stop_category_1(FaultKind::TAP_LOST, path.tap.spindle);
     }
     const RetraceInputs in{executor_.snapshot().drops, holds_.isReverseWanted, holds_.isStandingWanted,
                            power_.isStopping,          executor_.isAtRest(),   holds_.reverse_rate};
@@ -197,7 +195,7 @@ void Controller::move_to(const geom::Pose &pose) noexcept {
     PerJoint positions = here;
     if (!isAnswered(kinematics_.inverse(pose, positions.data()))) {
         // The planner keeps off such poses; were one to come, nothing sensible can be commanded any more.
-        stop_category_0(FaultKind::KINEMATICS_FAILED, -1, 0);
+        stop_category_0(FaultKind::KINEMATICS_FAILED, -1);
         return;
     }
     const bool isPlanned = map_.kind == AxisMap::Kind::PLANNED;

@@ -215,7 +215,7 @@ void ModuleHoming::take_move(int joint, const homing::JointInput &in, homing::Jo
     const homing::Parameters &p = parameters_[at(joint)];
     const std::uint32_t bit = 1U << joint;
     if (tp.enable == 0 || tp.max_vel <= 0 || !isHoming(joint)) {
-        out.move = (driven_ & bit) != 0 ? homing::Move::STOP : homing::Move::NONE;
+        out.move = homing::Move::STOP;  // one that stands, or is told again, goes where it goes anyway
         driven_ &= ~bit;
         return;
     }

@@ -26,8 +26,8 @@ int declare_each(Set (&sets)[SIZE], int comp_id, int count, unsigned mask = ~0U)
 
 int MotionPins::declare(int comp_id, const PinCounts &wanted) noexcept {
     counts_ = wanted;
-    int status = motion_.declare(comp_id, 0);
-    status = status == 0 && counts_.isSwitchable ? switchable_.declare(comp_id, 0) : status;
+    int status = motion_.declare(comp_id);
+    status = status == 0 && counts_.isSwitchable ? switchable_.declare(comp_id) : status;
     status = status == 0 ? declare_each(tool_offset_, comp_id, MAX_AXES) : status;
     status = status == 0 ? declare_each(digital_, comp_id, counts_.digital) : status;
     status = status == 0 ? declare_each(analog_, comp_id, counts_.analog) : status;

@@ -194,6 +194,43 @@ TEST(ExtraJoints, SwitchingOnMovesNothingUntilThePinChanges_C8) {
     r.check();
 }
 
+TEST(ExtraJoints, PushedByHandWhileOffItStaysWhereItWasPushedTo_C8) {
+    ExtraRig r;
+    r.rig.ready(Mode::FREE);
+    r.pin() = 10;
+    r.step(2000);
+    ASSERT_EQ(r.motor(), 10);
+    r.rig.send(Disable{});
+    r.step(5);
+    r.rig.in.joint[EXTRA].motor_pos_fb = 7;
+    r.step(5);
+    r.rig.send(Enable{});
+    r.step(300);
+    EXPECT_TRUE(r.rig.status().isEnabled);
+    EXPECT_EQ(r.motor(), 7);
+    r.pin() = 9;
+    r.step(1000);
+    EXPECT_EQ(r.motor(), 9);
+    r.check();
+}
+
+/// joint.N.vel-cmd and acc-cmd are those of what the motor is told.
+TEST(ExtraJoints, ItsCommandedAccelerationIsThatOfItsMotion_C3_C8) {
+    for (const Mode mode : {Mode::FREE, Mode::TELEOP}) {
+        ExtraRig r;
+        r.rig.ready(mode);
+        r.pin() = 15;
+        double speed = r.speed();
+        for (int n = 0; n < 500; ++n) {
+            r.step();
+            ASSERT_NEAR(r.rig.out->joint[EXTRA].acc_cmd, (r.speed() - speed) / MotionRig::T, 1e-6) << n;
+            speed = r.speed();
+        }
+        EXPECT_GT(r.highest, 5);
+        r.check();
+    }
+}
+
 TEST(ExtraJoints, EveryStopBrakesItWithinItsLimitsBeforeTheMachineGoesOff_C13) {
     ExtraRig r;
     r.rig.ready(Mode::FREE);

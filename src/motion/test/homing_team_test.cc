@@ -108,6 +108,24 @@ TEST(HomingTeam, ASwitchThatIsNotFoundStopsBothBeforeTheyAreTooFarApart_C10) {
     }
 }
 
+TEST(HomingTeam, TheSmallerSkewOfTheTwoHolds_C10) {
+    for (const int dead : {1, 2}) {
+        for (const int narrow : {1, 2}) {
+            Gantry g({.start = 0, .switch_at = -20}, {.start = 0, .switch_at = -20});
+            g.m.set(Parameter::JOINT_HOME_MAX_SKEW, 0.5, narrow);
+            for (const int j : {1, 2}) {
+                g.m.set(Parameter::JOINT_MIN_LIMIT, -300, j);
+                g.m.set(Parameter::JOINT_MAX_LIMIT, 100, j);
+            }
+            g.m.axes[static_cast<std::size_t>(dead)].faults.isSwitchOpen = true;
+            g.home();
+            EXPECT_FALSE(g.m.isHomed(1) || g.m.isHomed(2));
+            EXPECT_LE(g.widest, 0.5 + 1e-9) << dead << narrow;
+            EXPECT_NE(g.m.fault().find("pushed askew"), std::string::npos) << g.m.fault();
+        }
+    }
+}
+
 TEST(HomingTeam, TheSlowerJointAndTheOverrideHoldForBoth_C10) {
     for (const double scale : {0.4, 1.0, 1.2}) {
         Gantry g({.start = 0, .switch_at = -20}, {.start = 0, .switch_at = -20});

@@ -220,6 +220,21 @@ TEST(Machine, ATeleopVectorMovesAllItsAxesOrNone_C5) {
     EXPECT_NEAR(rig.status().axis[1].velocity, -5, 1e-9);
 }
 
+TEST(Machine, HomingEndsAJogAndBeginsWhenItStands_C10) {
+    MotionRig rig;
+    rig.ready(Mode::FREE);
+    rig.send(JogContinuous{{true, 1}, 20});
+    rig.step(300);
+    ASSERT_GT(rig.status().joint[1].vel_cmd, 15);
+    const CommandId home = rig.send(Home{0});
+    rig.step(300);
+    EXPECT_TRUE(rig.isDone(home));
+    EXPECT_EQ(rig.status().joint[1].vel_cmd, 0);
+    EXPECT_FALSE(rig.status().isHoming);
+    EXPECT_TRUE(rig.status().isAllHomed);
+    EXPECT_TRUE(rig.faults.empty());
+}
+
 TEST(Machine, TheFeedScaleActsOnHoming_C4) {
     MotionRig rig;
     rig.set(Parameter::JOINT_HOME_SEARCH_VEL, 0, 10);

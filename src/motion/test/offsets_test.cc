@@ -172,6 +172,26 @@ TEST(Offsets, SwitchedOffAndOnNothingMovesAndTheyAreZero_C15) {
     rig.expect_within();
 }
 
+/// The program goes on from where the machine stands: what was an offset is not taken back with a jump.
+TEST(Offsets, SwitchedOnInAProgramTheMachineStandsWhereItStood_C6_C15) {
+    OffsetRig rig;
+    rig.ready();
+    rig.pins(0).counts = 300;
+    rig.go(1000);
+    rig.send(Disable{});
+    rig.go(5);
+    const CommandId on = rig.send(Enable{});
+    rig.go(500);
+    ASSERT_TRUE(rig.isDone(on));
+    EXPECT_EQ(rig.status().mode, Mode::COORD);
+    EXPECT_DOUBLE_EQ(rig.motor(0), 3);
+    EXPECT_EQ(rig.offset(0), 0);
+    rig.line(at(4, 0, 0));
+    ASSERT_TRUE(rig.finish(rig.send_path(Flush{})));
+    EXPECT_NEAR(rig.motor(0), 4, 1e-12);
+    rig.expect_within();
+}
+
 TEST(Offsets, StayThroughModesAndJointJogsAndCountOnlyInModesOfAxes_C15) {
     OffsetRig rig;
     rig.ready(Mode::TELEOP);
@@ -311,6 +331,70 @@ TEST(Offsets, AStopBrakesThemToo_C6_C15) {
     EXPECT_FALSE(rig.status().isEnabled);
     EXPECT_LT(rig.offset(0), 6);
     EXPECT_TRUE(rig.checker.isWithin()) << rig.checker.report();
+}
+
+/// Where the emergency stop has cut one off on its way it stays, and nothing waits for it to arrive.
+TEST(Offsets, CutOffOnTheirWayTheyAreAtRest_C6_C15) {
+    OffsetRig rig;
+    rig.ready(Mode::TELEOP);
+    rig.pins(0).counts = 3000;
+    rig.go(100);
+    rig.in.isEnableOn = false;
+    rig.go(2);
+    ASSERT_FALSE(rig.status().isEnabled);
+    const double stood = rig.motor(0);
+    EXPECT_GT(stood, 0.1);
+    const CommandId mode = rig.send(SetMode{Mode::FREE});
+    rig.go(3);
+    EXPECT_TRUE(rig.isDone(mode));
+    EXPECT_EQ(rig.status().mode, Mode::FREE);
+    rig.go(100);
+    EXPECT_EQ(rig.motor(0), stood);
+}
+
+/// While the planner plans the servo thread goes on: what it has accepted counts there from then on.
+TEST(Offsets, AMoveThatIsAcceptedKeepsItsRoomFromThatInstant_C13_C15) {
+    int refused = 0;
+    for (int lead = 0; lead < 3 * MotionRig::PLANNER_PERIOD; ++lead) {
+        OffsetRig rig;
+        for (int j = 0; j < 3; ++j) {
+            rig.set(Parameter::JOINT_MAX_ACCELERATION, j, 200 * A);  // far enough in a planner's period
+        }
+        rig.ready();
+        const CommandId to_the_limit = rig.line(at(LIMIT, 0, 0));
+        rig.step(lead);
+        rig.pins(0).counts = 3000;
+        for (int n = 0; n < 3000; ++n) {
+            rig.step();
+            ASSERT_LE(rig.motor(0), LIMIT + 2e-6) << lead;
+        }
+        const bool isRefused = rig.refusal(to_the_limit) == Reason::BEYOND_SOFT_LIMIT;
+        refused += isRefused ? 1 : 0;
+        EXPECT_NEAR(rig.motor(0), isRefused ? 30 : LIMIT, 1e-5) << lead;
+    }
+    EXPECT_GT(refused, 0);
+    EXPECT_LT(refused, 3 * MotionRig::PLANNER_PERIOD);
+}
+
+/// A soft limit keeps it at zero: it is gone with its share, and motion.eoffset-limited with it.
+TEST(Offsets, WithoutAShareNoneIsLimited_C15) {
+    OffsetRig rig;
+    rig.ready(Mode::TELEOP);
+    rig.send(JogContinuous{{false, 0}, 80});
+    rig.go(2000);
+    ASSERT_NEAR(rig.motor(0), LIMIT, 1e-6);
+    rig.send(JogAbsolute{{false, 0}, 80, LIMIT});
+    rig.go(200);
+    rig.pins(0).counts = 300;
+    rig.go(200);
+    ASSERT_TRUE(rig.out->isOffsetLimited);
+    ASSERT_EQ(rig.offset(0), 0);
+    for (const int axis : {0, 2}) {
+        rig.set(Parameter::AXIS_OFFSET_RATIO, axis, 0);
+    }
+    rig.go(10);
+    EXPECT_FALSE(rig.out->isOffsetLimited);
+    rig.expect_within();
 }
 
 TEST(Offsets, TakenAwayTheShareLeavesTheOffsetWhereItIs_C6_C15) {

@@ -257,6 +257,35 @@ TEST(TeleopJerk, AHexapodKeepsJointJerk_C13) {
     jog_smoothly({hexapod, "XYZABC", start, 4}, 1);
 }
 
+/// The limit of the joints is lowered while one axis has its old share and another begins: X brakes slowly,
+/// and Y would be at its new share long before X has come down to that.
+TEST(TeleopJerk, AnAxisTakesItsShareOnceTheOtherIsDownToItsOwn_C13) {
+    kins::CoreXy model;
+    MotionRig rig(model, 3, 100, 1000);
+    for (int j = 0; j < 3; ++j) {
+        rig.set(Parameter::JOINT_MAX_JERK, j, 20000);
+    }
+    rig.set(Parameter::AXIS_MAX_ACCELERATION, 0, 100);
+    rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, 1);
+    rig.set(Parameter::TRAJ_MAX_JERK, 0, 1e6);
+    rig.step(4);
+    rig.ready(Mode::TELEOP);
+    const auto speed = [&](std::size_t axis) { return std::abs(rig.out->axis[axis].teleop_velocity); };
+    rig.send(JogContinuous{{false, 0}, 1000});
+    ASSERT_TRUE(rig.run_until([&] { return speed(0) > 90; }, 5));
+    rig.send(JogContinuous{{false, 1}, 1000});
+    ASSERT_TRUE(rig.run_until([&] { return speed(1) > 0; }, 5));
+    ASSERT_GT(speed(0), 40);
+    for (int j = 0; j < 3; ++j) {
+        rig.set(Parameter::JOINT_MAX_VELOCITY, j, 60);
+    }
+    rig.step(3000);
+    EXPECT_GT(speed(0), 20);
+    EXPECT_NEAR(speed(1), speed(0), 1e-9) << "an even share";
+    EXPECT_EQ(rig.joint_report(), "");
+    rig.forgive_joints();
+}
+
 /// From rest to a speed: the least time, in which half of that way is gone.
 double ramp_s(double to, double a, double j) {
     return to > a * a / j ? to / a + a / j : 2.0 * std::sqrt(to / j);

@@ -8,10 +8,11 @@
 #include "rtapi.h"
 #include "rtapi_app.h"
 
-enum { MILD, FAST, FAR, NOT_A_NUMBER, STUBBORN, GIVING_UP, OWN_PINS };
+enum { MILD, FAST, FAR, NOT_A_NUMBER, STUBBORN, GIVING_UP, OWN_PINS, LETTING_GO };
 static int manner = MILD;
 RTAPI_MP_INT(manner,
-             "0 mild, 1 fast, 2 far, 3 not a number, 4 deaf to cancel, 5 gives up, 6 has pins of its own");
+             "0 mild, 1 fast, 2 far, 3 not a number, 4 deaf to cancel, 5 gives up, 6 has pins of its own, "
+             "7 lets go half way");
 
 static int component, joint_count, step[16];
 static bool homed[16];
@@ -85,7 +86,10 @@ bool do_homing(void) {
             step[j] = 2;
             break;
         case 2:
-            if (!joints[j].free_tp.active) {
+            if (manner == LETTING_GO && joints[j].pos_cmd < start[j] - 2) {
+                joints[j].free_tp.enable = 0;
+                step[j] = 5; /* and waits */
+            } else if (!joints[j].free_tp.active) {
                 joints[j].motor_offset = joints[j].motor_pos_fb - 10;
                 joints[j].free_tp.enable = 0;
                 step[j] = manner == GIVING_UP ? 0 : 3;

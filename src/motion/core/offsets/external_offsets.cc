@@ -82,6 +82,7 @@ void configure(ExternalOffsets &offsets, const FoldedLimits &limits) noexcept {
         const bool isThere = offsets.pose[i] != 0.0 || !offsets.axis[at(i)].planner.isAtRest();
         offsets.axes |= limits.offset[at(i)].velocity > 0 || isThere ? 1U << i : 0U;
     }
+    offsets.isLimited = offsets.isLimited && offsets.axes != 0;
     if (!limits.homed.areAll) {
         for (ExternalOffset &offset : offsets.axis) {
             const std::int32_t counts = offset.counts;

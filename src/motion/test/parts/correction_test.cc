@@ -69,6 +69,28 @@ TEST_F(CorrectionPart, ATableTakesThePlaceOfBacklash_C11) {
     EXPECT_NEAR(go(5), 0.4, 1e-12);
 }
 
+/// [TRAJ]MAX_LINEAR_JERK is one of lengths.
+TEST_F(CorrectionPart, AnAngularJointTakesUpItsPlayWithItsOwnJerk_C11) {
+    limit_jerk();
+    set(Parameter::JOINT_BACKLASH, 0.1);
+    const auto cycles_of = [&](double path_jerk, double isAngular) {
+        set(Parameter::TRAJ_MAX_JERK, path_jerk);
+        set(Parameter::JOINT_IS_ANGULAR, isAngular);
+        Correction c;
+        int last = 0;
+        for (int n = 0; n < 2000; ++n) {
+            const double before = c.position;
+            step(c, settings, 0, n == 0 ? 0.0 : 0.001, CYCLE_S);
+            last = c.position != before ? n : last;
+        }
+        return last;
+    };
+    const int least = cycles_of(10 * J, 0);
+    EXPECT_GT(least, 10);
+    EXPECT_GT(cycles_of(J / 50, 0), 2 * least);
+    EXPECT_EQ(cycles_of(J / 50, 1), least);
+}
+
 TEST_F(CorrectionPart, WhatIsNoTableIsRefused_C11) {
     EXPECT_EQ(load(1, 3, 0, 0, 0), Reason::OUT_OF_RANGE) << "not the first one";
     EXPECT_EQ(load(0, MAX_SCREW_POINTS + 1, 0, 0, 0), Reason::OUT_OF_RANGE);

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "motion/core/homing/homing_drive.hh"
@@ -53,6 +56,32 @@ TEST_F(HomingDrivePart, EachReasonAgainstHomingIsTold) {
     EXPECT_EQ(take(drive, Home{0}, conditions).reason, Reason::WRONG_MODE);
     conditions.isReady = false;
     EXPECT_EQ(take(drive, Home{0}, conditions).reason, Reason::NOT_ENABLED);
+}
+
+TEST_F(HomingDrivePart, AJointThatIsLeftOutIsNotHomedWhicheverItIs_C4) {
+    for (const int joint : {0, 1}) {
+        conditions.inactive = 1U << joint;
+        const Verdict verdict = take(drive, Home{joint}, conditions);
+        EXPECT_EQ(verdict.reason, Reason::JOINT_INACTIVE);
+        EXPECT_EQ(verdict.index, joint);
+        EXPECT_FALSE(drive.isUnderWay());
+    }
+}
+
+/// A latch faster than the joint is driven at its speed, and play taken up on that way.
+TEST_F(HomingDrivePart, PlayIsTakenUpAtNoMoreThanTheSpeedOfTheJoint_C10) {
+    const auto set = [&](Parameter p, double value) {
+        settings.set({static_cast<std::uint16_t>(p), 0, value}, 2, 1);
+    };
+    set(Parameter::JOINT_MAX_VELOCITY, 10);
+    set(Parameter::JOINT_MAX_ACCELERATION, 100);
+    set(Parameter::JOINT_BACKLASH, 0.1);
+    const double seconds = 2 * std::sqrt(0.1 / 50);  // with half of the acceleration, there and back
+    for (const double latch : {2.0, -8.0, 50.0}) {
+        set(Parameter::JOINT_HOME_LATCH_VEL, latch);
+        configure(drive, 0, settings);
+        EXPECT_NEAR(drive.own.parameters(0).clearance, seconds * std::min(std::abs(latch), 10.0), 1e-12);
+    }
 }
 
 TEST_F(HomingDrivePart, VolatileHomesAreLostWithPower) {

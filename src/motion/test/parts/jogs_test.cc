@@ -190,6 +190,29 @@ TEST(JogsPart, OverriddenLimitsEndWithTheJog) {
     EXPECT_EQ(jogs.at(JOINT).source, JogSource::NONE);
 }
 
+TEST(JogsPart, OneJoggedJointOrAxisIsEnoughToTellOfAJog_C8) {
+    for (const bool isJoint : {true, false}) {
+        Jogs jogs = make();
+        jogs.axes = 0b111;
+        const JogTarget target = isJoint ? JOINT : AXIS;
+        JogSituation situation = free_mode();
+        situation.mode = isJoint ? Mode::FREE : Mode::TELEOP;
+        const auto jog_is_active = [&] {
+            Outputs out;
+            settle(jogs, {});
+            fill(jogs, situation.mode, {}, out);
+            return out.isJogging;
+        };
+        EXPECT_FALSE(jog_is_active());
+        ASSERT_EQ(take(jogs, JogContinuous{target, 5}, situation).reason, Reason::NONE);
+        run(jogs, target, 20);
+        EXPECT_TRUE(jog_is_active());
+        take(jogs, JogStop{target});
+        run(jogs, target, 500);
+        EXPECT_FALSE(jog_is_active());
+    }
+}
+
 TEST(JogsPart, JogsStopWithinTheirLimitsOrAtOnce) {
     Jogs jogs = make();
     take(jogs, JogContinuous{JOINT, 50}, free_mode());

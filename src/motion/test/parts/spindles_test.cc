@@ -168,6 +168,27 @@ TEST_F(SpindlesPart, OrientationLocksOrFailsOnce) {
     EXPECT_EQ(failed, 0U) << "told once";
 }
 
+/// Whoever turns the spindle goes on for as long as spindle.N.orient is on.
+TEST_F(SpindlesPart, ADriveThatCannotOrientIsAskedNoLonger_C15) {
+    const auto orient_pin = [&] {
+        Outputs out;
+        fill(spindles, in, true, out);
+        return out.spindle[0].isOrienting;
+    };
+    take(spindles, SpindleOrient{0, 90, 1}, true);
+    rpm();
+    EXPECT_TRUE(orient_pin());
+    in.spindle[0].orient_fault = 7;
+    rpm();
+    EXPECT_FALSE(orient_pin());
+    EXPECT_FALSE(spindles[0].isLocked) << "it stands at no angle";
+    in.spindle[0].orient_fault = 0;
+    in.spindle[0].isOriented = true;
+    rpm();
+    EXPECT_FALSE(orient_pin());
+    EXPECT_EQ(spindles[0].orient_state, Spindles::ORIENT_FAULTED) << "until it is asked anew";
+}
+
 TEST_F(SpindlesPart, ATapTurnsItBackAtTheOverrideThatItBeganWith_C15) {
     take(spindles, SpindleOn{0, 300}, true);
     take(spindles, SetScale{Scale::SPINDLE, 0, 1.2});
