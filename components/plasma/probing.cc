@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Finding the material: down until a sensor closes, up until it opens.
+#include "components/plasma/plasma_core.hh"
+
+namespace mw::plasma {
+
+void Core::watch_sensors() noexcept {
+    wasOhmic_ = isOhmic_;
+    isOhmic_ = in_.ohmic_probe && in_.ohmic_probe_enable;
+    out_.sensor_active = in_.float_switch || in_.breakaway || wasOhmic_;
+    const bool isMoving = state_ >= State::PROBE_HEIGHT && state_ <= State::ZERO_HEIGHT;
+    out_.jog_inhibit = out_.sensor_active && !in_.override_jog && in_.program_is_idle && !isMoving;
+    // The relay counts when it has held its new state for the cycles of the debounce.
+    if (in_.ohmic_sense_in == out_.ohmic_sense_out) {
+        sense_count_ = 0;
+    } else {
+        sense_count_ += 1;
+        if (sense_count_ >= (in_.ohmic_sense_in ? in_.ohmic_sense_on_delay + 1 : in_.ohmic_sense_off_delay)) {
+            out_.ohmic_sense_out = in_.ohmic_sense_in;
+            sense_count_ = 0;
+        }
+    }
+}
+
+void Core::start_probing() noexcept {
+    ohmic_attempts_ = 0;
+    isProbeWaiting_ = false;
+    isRetry_ = false;
+    timer_.left_s = in_.offset_probe_delay;
+    state_ = State::PROBE_HEIGHT;
+}
+
+/// To where probing begins. A probe beside the torch goes to its place meanwhile.
+void Core::probe_height() noexcept {
+    out_.z_offset_enable = true;
+    out_.ohmic_enable = in_.ohmic_probe_enable;
+    isBeside_ = in_.ohmic_probe_enable && (in_.offset_probe_x != 0.0 || in_.offset_probe_y != 0.0);
+    bool isThere = true;
+    if (isBeside_) {
+        out_.xy_offset_enable = true;
+        isThere = moveSideways(counts_of(in_.offset_probe_x), counts_of(in_.offset_probe_y),
+                               steps_of(in_.setup_feed_rate));
+    }
+    timer_.runOut(period_s_);
+    const bool isContact = in_.ohmic_probe && in_.ohmic_probe_enable;
+    if (isContact || (in_.float_switch && ohmic_attempts_ == 0)) {
+        isFoundByContact_ = isContact;
+        isEarly_ = true;
+        state_ = State::PROBE_UP;
+        return;
+    }
+    const double base = in_.axis_z_position - in_.z_offset_current;
+    probe_target_ = counts_of(in_.axis_z_min_limit + in_.probe_start_height - base);
+    const bool isDown = in_.probe_start_height <= 0.0 || moveZ(probe_target_, steps_of(in_.setup_feed_rate));
+    if (isDown && isThere && isRetry_) {
+        isRetry_ = false;
+    } else if (isDown && isThere) {
+        state_ = State::PROBE_DOWN;
+    }
+}
+
+/// Down until the torch touches. When contact was to be sensed and only the float switch came, once more.
+void Core::probe_down() noexcept {
+    const bool isProbeOut = timer_.runOut(period_s_);
+    isEarly_ = false;
+    if (in_.float_switch) {
+        isFoundByContact_ = false;
+        if (in_.ohmic_probe_enable && ohmic_attempts_ < in_.ohmic_max_attempts) {
+            ohmic_attempts_ += 1;
+            isRetry_ = true;
+            state_ = State::PROBE_HEIGHT;
+        } else {
+            state_ = State::PROBE_UP;
+        }
+        return;
+    }
+    if (in_.ohmic_probe_enable && in_.ohmic_probe) {
+        isFoundByContact_ = true;
+        state_ = State::PROBE_UP;
+        return;
+    }
+    isProbeWaiting_ = !isProbeOut;
+    if (!isProbeOut) {
+        return;
+    }
+    if (in_.axis_z_position <= in_.axis_z_min_limit + in_.units_per_mm * 1.001) {
+        pending_ = Fault::NO_MATERIAL;
+        return;
+    }
+    out_.z_offset_counts -= steps_of(in_.probe_feed_rate);
+}
+
+/// Slowly up until the sensor opens. Contact before probing had begun is no height: it begins then.
+void Core::probe_up() noexcept {
+    const bool isClosed = in_.float_switch || (in_.ohmic_probe && in_.ohmic_probe_enable);
+    if (!isClosed) {
+        if (isEarly_ && isFoundByContact_) {
+            state_ = State::PROBE_DOWN;
+            return;
+        }
+        out_.ohmic_enable = false;
+        state_ = State::ZERO_HEIGHT;
+        return;
+    }
+    out_.z_offset_counts += in_.resolution * in_.probe_final_speed;
+}
+
+}  // namespace mw::plasma

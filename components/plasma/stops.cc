@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What ends a cut before its end: the operator, a sensor, a fault, the machine.
+#include "components/plasma/plasma_core.hh"
+
+namespace mw::plasma {
+
+Fault Core::sensor_fault() const noexcept {
+    return in_.breakaway ? Fault::BREAKAWAY
+           : in_.float_switch ? Fault::FLOAT_SWITCH
+           : in_.ohmic_probe_enable && (state_ == State::IDLE ? wasOhmic_ : in_.ohmic_probe)
+               ? Fault::OHMIC_PROBE
+                                                 : Fault::NONE;
+}
+
+/// Torch off and up. The program is paused, or the manual cut stopped, when it is not by now.
+void Core::fail(Fault fault) noexcept {
+    fault_ = fault;
+    pending_ = Fault::NONE;
+    if (isManualCut()) {
+        out_.cutting_stop = true;
+        stop(Stop::NONE);
+        return;
+    }
+    out_.program_pause = !in_.program_is_paused;
+    if (fault != Fault::NO_ARC) {
+        stop(Stop::PAUSED);
+    }
+}
+
+void Core::stop(Stop type) noexcept {
+    arc_off();
+    out_.z_offset_enable = true;
+    out_.program_resume = false;
+    isArcBad_ = false;
+    out_.cornerlock_is_locked = false;
+    out_.voidlock_is_locked = false;
+    out_.ohmic_enable = false;
+    out_.feed_hold = true;
+    hasProbed_ = false;
+    stop_ = type;
+    state_ = State::MAX_HEIGHT;
+}
+
+/// Nothing moves and nothing burns, as long as the inputs cannot be believed.
+void Core::halt(Fault fault) noexcept {
+    const bool wasBusy = state_ != State::IDLE && state_ != State::END_JOB;
+    torch_off();
+    out_.scribe_on = false;
+    out_.ohmic_enable = false;
+    if (!wasBusy) {
+        return;
+    }
+    if (pending_ != fault) {
+        fault_ = fault;
+    }
+    pending_ = fault;
+    out_.feed_hold = true;
+    out_.paused_motion = false;
+    out_.adaptive_feed = 1.0;
+}
+
+void Core::machine_off() noexcept {
+    torch_off();
+    out_.scribe_arm = out_.scribe_on = out_.ohmic_enable = false;
+    out_.paused_motion = out_.program_pause = out_.program_resume = out_.cutting_stop = false;
+    out_.consumable_changing = out_.cut_recovering = false;
+    out_.cornerlock_is_locked = out_.voidlock_is_locked = false;
+    out_.led_up = out_.led_down = false;
+    out_.target_volts = 0.0;
+    out_.laser_recovery_state = 0;
+    out_.adaptive_feed = 1.0;
+    out_.x_offset_counts = out_.y_offset_counts = out_.z_offset_counts = 0;
+    isZeroed_ = hasProbed_ = hasTarget_ = isConsumableWait_ = isAlarmed_ = false;
+    pending_ = Fault::NONE;
+    stop_ = Stop::NONE;
+    state_ = State::IDLE;
+}
+
+/// True when the operator ends what goes on: program stopped, paused, or the start taken back.
+bool Core::isStopped() noexcept {
+    const bool isCut = state_ >= State::PROBE_HEIGHT && state_ <= State::PAUSE_AT_END;
+    const bool isEnding = state_ >= State::SAFE_HEIGHT && state_ <= State::END_JOB;
+    const bool isIdleNow = in_.program_is_idle && !wasIdle_;
+    if (isProbeTest_) {
+        if (!in_.probe_test && state_ <= State::PIERCE_HEIGHT && isCut) {
+            state_ = State::PROBE_TEST;
+            isEndedNow_ = true;
+        }
+        return isEndedNow_;
+    }
+    if (state_ == State::END_JOB) {
+        return false;
+    }
+    const bool isBeside = state_ >= State::CONSUMABLES_OUT || out_.consumable_changing || out_.cut_recovering;
+    if (isStopAfterReturn_ && state_ == State::IDLE) {
+        isStopAfterReturn_ = false;
+        stop(Stop::WAIT);
+        return true;
+    }
+    if (isIdleNow && isBeside) {
+        isStopAfterReturn_ = true;
+        state_ = out_.cut_recovering ? State::RECOVERY_BACK : State::CONSUMABLES_BACK;
+        return false;
+    }
+    if (isIdleNow && state_ != State::SCRIBING && out_.z_offset_enable) {
+        stop(Stop::WAIT);
+        return true;
+    }
+    if (isCut && in_.program_is_paused) {
+        stop(Stop::PAUSED);
+        return true;
+    }
+    if (isCut && !isCutWanted()) {
+        end_by_operator();
+        return true;
+    }
+    return isEnding;
+}
+
+/// The start was taken back: the end of the cut in a program, the end of all in a manual cut.
+void Core::end_by_operator() noexcept {
+    if (state_ == State::PAUSE_AT_END) {
+        return;
+    }
+    if (isManualCut()) {
+        stop(Stop::WAIT);
+        return;
+    }
+    stop_ = Stop::CUT_ENDED;
+    out_.feed_hold = true;
+    out_.ohmic_enable = false;
+    const bool isCutting = state_ == State::CUT_BY_VOLTAGE || state_ == State::CUT_BY_SWITCHES;
+    if (isCutting && in_.pause_at_end > 0.0) {
+        timer_.left_s = in_.pause_at_end;
+        timer_.runOut(period_s_);
+        isEndedNow_ = true;
+        state_ = State::PAUSE_AT_END;
+        return;
+    }
+    arc_off();
+    isEndedNow_ = true;
+    state_ = State::SAFE_HEIGHT;
+}
+
+/// torch-off ends the arc within a cut; a cut goes on without it only as long as that says so.
+bool Core::isTorchAllowed() noexcept {
+    const bool isCutting = state_ == State::CUT_BY_VOLTAGE || state_ == State::CUT_BY_SWITCHES;
+    if (!isCutting) {
+        isTorchTaken_ = false;
+        return true;
+    }
+    if (in_.torch_off && out_.torch_on) {
+        arc_off();
+        isTorchTaken_ = true;
+    }
+    return in_.torch_off || !isTorchTaken_;
+}
+
+/// Before the state runs.
+void Core::watch_stops() noexcept {
+    isEndedNow_ = false;
+    if (pending_ != Fault::NONE) {
+        const Fault fault = pending_;
+        pending_ = Fault::NONE;
+        if (isProbeTest_) {
+            fault_ = fault;
+            out_.probe_test_error = true;
+            out_.probe_time += period_s_;
+            state_ = State::PROBE_TEST;
+        } else {
+            fail(fault);
+        }
+        return;
+    }
+    if (isStopped()) {
+        return;
+    }
+    if (!isTorchAllowed()) {
+        fail(Fault::ARC_LOST);
+        return;
+    }
+    const bool isProbing = state_ >= State::PROBE_HEIGHT && state_ <= State::PIERCE_HEIGHT;
+    const bool isCutting = state_ >= State::TORCH_ON && state_ <= State::PAUSE_AT_END;
+    const bool isWaiting = state_ == State::IDLE && !in_.program_is_idle && !wasIdle_;
+    Fault fault = Fault::NONE;
+    if (isProbing) {
+        fault = in_.breakaway ? Fault::BREAKAWAY : Fault::NONE;
+    } else if (isCutting || isWaiting) {
+        fault = sensor_fault();
+    }
+    if (fault != Fault::NONE) {
+        if (isProbeTest_) {
+            pending_ = fault;
+            return;
+        }
+        const bool isNews = !isAlarmed_;
+        isAlarmed_ = true;
+        fail(fault);
+        fault_ = isNews ? fault : Fault::NONE;
+        return;
+    }
+    if (out_.thc_active && in_.low_cut_volts > 0 && out_.arc_voltage_out < in_.low_cut_volts) {
+        isAlarmed_ = true;
+        fail(Fault::VOLTAGE_LOW);
+    }
+}
+
+/// Requests to the user interface stay until it has done what they ask.
+void Core::run_requests() noexcept {
+    if (out_.program_pause && in_.program_is_paused && state_ != State::PAUSED_MOTION) {
+        out_.program_pause = false;
+    }
+    if (in_.feed_reduction >= 10.0 && in_.feed_reduction <= 100.0 && !out_.paused_motion) {
+        out_.adaptive_feed = in_.feed_reduction * 0.01;
+    } else if (!out_.paused_motion) {
+        out_.adaptive_feed = 1.0;
+    }
+}
+
+}  // namespace mw::plasma
