@@ -37,8 +37,9 @@ bool Core::isVoltageGood() noexcept {
         if (!isWithin) {
             ok_count_ = 0;
         } else if (ok_count_ < in_.ok_sample_counts) {
-            ok_count_ = isSteady ? ok_count_ + 1 : 1;
+            ok_count_ = !wasWithin_ ? 1 : isSteady ? ok_count_ + 1 : 0;
         }
+        wasWithin_ = isWithin;
         if (!isWithin || ok_count_ < in_.ok_sample_counts) {
             return false;
         }
@@ -58,6 +59,7 @@ void Core::watch_arc() noexcept {
     if (!out_.torch_on) {
         out_.arc_ok_out = false;
         isArcBad_ = false;
+        wasWithin_ = false;
         return;
     }
     const bool isGood = in_.mode == 0 ? isVoltageGood() : in_.arc_ok_in;
@@ -75,12 +77,13 @@ void Core::watch_arc() noexcept {
     if (!isManualCut() && (in_.mode != 0 || out_.arc_ok_out)) {
         isArcBad_ = true;
     }
-    if (!out_.arc_ok_out || isArcIgnored() || in_.mesh_enable || isManualCut()) {
+    const bool isAllowed = isArcIgnored() || in_.mesh_enable || isManualCut();
+    if (!out_.arc_ok_out || (isAllowed && state_ != State::PAUSE_AT_END)) {
         return;
     }
     if (lost_.runOut(period_s_)) {
         out_.arc_ok_out = false;
-        const bool isCut = state_ >= State::CUT_HEIGHT && state_ <= State::PAUSE_AT_END;
+        const bool isCut = state_ >= State::PIERCE_DELAY && state_ <= State::CUT_BY_SWITCHES;
         if (isCut) {
             pending_ = Fault::ARC_LOST;
         }

@@ -11,6 +11,7 @@ void Core::zero_height() noexcept {
     const double way = isFoundByContact_ ? in_.ohmic_probe_offset : in_.float_switch_travel;
     if (!isZeroed_) {
         isZeroed_ = true;
+        hasZero_ = true;
         zero_counts_ = out_.z_offset_counts + counts_of(way);
         zero_mu_ = in_.axis_z_position + counts_of(way) * out_.offset_scale;
     }
@@ -74,12 +75,13 @@ void Core::wait_for_arc() noexcept {
         }
     }
     const bool isStarted = out_.arc_ok_out && !isSpotting_;
-    if (isStarted || isArcIgnored() || (in_.mesh_enable && in_.mesh_arc_ok)) {
+    const bool isUnwatched = isArcIgnored() || (in_.mesh_enable && in_.mesh_arc_ok);
+    if (isStarted || (isUnwatched && !isSpotting_)) {
         timer_.left_s = in_.pierce_delay;
         state_ = State::PIERCE_DELAY;
         return;
     }
-    const bool isMarking = isSpotting_ && out_.arc_voltage_out >= in_.spotting_threshold;
+    const bool isMarking = isSpotting_ && out_.arc_ok_out;
     if (timer_.runOut(period_s_) && !isMarking) {
         torch_off();
         timer_.left_s = in_.restart_delay;
@@ -103,7 +105,7 @@ void Core::pierce() noexcept {
     if (!timer_.runOut(period_s_)) {
         return;
     }
-    const bool isPuddle = in_.puddle_jump_height > 0.0 && !out_.cut_recovering;
+    const bool isPuddle = in_.puddle_jump_delay > 0.0 && !out_.cut_recovering;
     timer_.left_s = in_.puddle_jump_delay;
     state_ = isPuddle ? State::PUDDLE_JUMP : State::CUT_HEIGHT;
 }
@@ -111,7 +113,8 @@ void Core::pierce() noexcept {
 /// Over the puddle: the path begins at a height of its own.
 void Core::puddle_jump() noexcept {
     out_.feed_hold = false;
-    const double height = in_.pierce_height * std::min(in_.puddle_jump_height, 200.0) * 0.01;
+    const double percent = in_.puddle_jump_height > 0.0 ? std::min(in_.puddle_jump_height, 200.0) : 100.0;
+    const double height = in_.pierce_height * percent * 0.01;
     if (moveZ(height_counts(height), steps_of(in_.setup_feed_rate))) {
         if (timer_.runOut(period_s_)) {
             state_ = State::CUT_HEIGHT;
@@ -154,7 +157,7 @@ void Core::safe_height() noexcept {
     out_.cornerlock_is_locked = false;
     const double highest = in_.axis_z_max_limit - in_.max_offset * in_.units_per_mm - zero_mu_;
     const double wanted = in_.safe_height > 0.0 ? std::min(in_.safe_height, highest) : highest;
-    const std::int32_t target = isZeroed_ ? height_counts(wanted) : 0;
+    const std::int32_t target = hasZero_ ? height_counts(wanted) : 0;
     if (moveZ(target, steps_of(in_.setup_feed_rate))) {
         out_.feed_hold = false;
         state_ = State::END_CUT;

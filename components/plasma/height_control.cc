@@ -20,7 +20,6 @@ void Core::set_thc_pins() noexcept {
                       !out_.voidlock_is_locked;
     // The voltages before the cut count too when it is to begin as soon as they are steady.
     if (!out_.torch_on) {
-        steady_count_ = 0;
         sample_count_ = 0;
         sum_ = 0.0;
         next_sample_ = 0;
@@ -28,7 +27,10 @@ void Core::set_thc_pins() noexcept {
     }
     const int wanted = std::clamp(in_.thc_sample_counts, 1, MOST_SAMPLES);
     const double volts = out_.arc_voltage_out;
-    if (sample_count_ >= wanted) {
+    if (std::fabs(volts - last_voltage_) > in_.thc_sample_threshold) {
+        sample_count_ = 0;
+        sum_ = 0.0;
+    } else if (sample_count_ >= wanted) {
         const int oldest = (next_sample_ + MOST_SAMPLES - sample_count_) % MOST_SAMPLES;
         sum_ -= samples_[oldest];
         sample_count_ -= 1;
@@ -37,8 +39,6 @@ void Core::set_thc_pins() noexcept {
     next_sample_ = (next_sample_ + 1) % MOST_SAMPLES;
     sample_count_ += 1;
     sum_ += volts;
-    const bool isSteady = std::fabs(volts - sum_ / sample_count_) <= in_.thc_sample_threshold;
-    steady_count_ = isSteady ? steady_count_ + 1 : 0;
 }
 
 void Core::show_feed_rates() noexcept {
@@ -61,11 +61,11 @@ void Core::cut_by_voltage() noexcept {
         wait_for_target();
         return;
     }
-    if (!out_.thc_enabled) {
-        out_.led_up = out_.led_down = false;
+    if (isOverridden()) {
         return;
     }
-    if (isOverridden()) {
+    if (!out_.thc_enabled) {
+        out_.led_up = out_.led_down = false;
         return;
     }
     watch_locks();
@@ -85,7 +85,7 @@ void Core::wait_for_target() noexcept {
         return;
     }
     if (in_.use_auto_volts && in_.thc_auto) {
-        if (steady_count_ >= in_.thc_sample_counts && sample_count_ > 0) {
+        if (sample_count_ > 0 && sample_count_ >= in_.thc_sample_counts) {
             out_.target_volts = sum_ / sample_count_;
             hasTarget_ = true;
         }
@@ -151,24 +151,22 @@ bool Core::isOverridden() noexcept {
         return true;
     }
     if (in_.height_override != override_) {
-        isOverrideNew_ = true;
+        isOverrideNew_ = counts_of((in_.height_override - override_) * in_.height_per_volt) != 0;
+        override_ = isOverrideNew_ ? override_ : in_.height_override;
         out_.led_up = out_.led_down = false;
         return true;
     }
     return false;
 }
 
-/// PID on the error of the voltage.
+/// PID on the error of the voltage; errors below the threshold are none.
 void Core::hold_voltage() noexcept {
-    const double error = out_.target_volts + override_ - out_.arc_voltage_out;
+    const double deviation = out_.target_volts + override_ - out_.arc_voltage_out;
+    const double error = std::fabs(deviation) < in_.thc_threshold ? 0.0 : deviation;
     const double change = (error - last_error_) / period_s_;
     last_error_ = error;
     const double wanted =
         in_.pid_p_gain * error + in_.pid_i_gain * error * period_s_ + in_.pid_d_gain * change;
-    if (std::fabs(error) < in_.thc_threshold && in_.pid_d_gain == 0.0) {
-        out_.led_up = out_.led_down = false;
-        return;
-    }
     const double most = steps_of(in_.thc_feed_rate);
     const double counts = std::clamp(wanted * in_.resolution * 0.1, -most, most);
     move_height(static_cast<std::int32_t>(std::round(counts)), counts);

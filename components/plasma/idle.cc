@@ -46,7 +46,6 @@ bool Core::startOfCut() noexcept {
     }
     isSpotting_ = !in_.cutting_start;
     isProbeTest_ = false;
-    isZeroed_ = false;
     stop_ = Stop::NONE;
     out_.feed_hold = true;
     if (isNearLastCut()) {
@@ -85,7 +84,6 @@ bool Core::startOfSideAction() noexcept {
     } else if (in_.probe_test) {
         out_.feed_hold = true;
         isProbeTest_ = true;
-        isZeroed_ = false;
         if (sensor_fault() != Fault::NONE) {
             fault_ = Fault::SENSOR_BEFORE_TEST;
             out_.probe_test_error = true;

@@ -9,7 +9,7 @@ namespace mw::plasma {
 void Core::step(const Inputs &in, double period_s) noexcept {
     in_ = in;
     period_s_ = period_s;
-    started_ = state_;
+    before_ = started_ = state_;
     if (!areUsable()) {
         halt(Fault::NOT_A_NUMBER);
         finish();
@@ -35,6 +35,7 @@ void Core::step(const Inputs &in, double period_s) noexcept {
     } else {
         machine_off();
     }
+    inhibit_jog(isProbeTest_ ? before_ : started_);
     run_requests();
     count_times();
     finish();

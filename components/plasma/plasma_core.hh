@@ -113,6 +113,7 @@ class Core {
     void show_feed_rates() noexcept;
     // probing.cc
     void watch_sensors() noexcept;
+    void inhibit_jog(State state) noexcept;
     void probe_height() noexcept;
     void probe_down() noexcept;
     void probe_up() noexcept;
@@ -162,13 +163,14 @@ class Core {
     void recovery_back() noexcept;
     void follow_laser() noexcept;
     void leave_laser() noexcept;
+    bool moveStraight(std::int32_t x, std::int32_t y) noexcept;
     bool moveSideways(double x, double y, double step) noexcept;
     // plasma_core.cc
     void run_state() noexcept;
     void count_times() noexcept;
     void finish() noexcept;
     bool areUsable() const noexcept;
-    double steps_exactly(double rate_mu_min) const noexcept { return rate_mu_min / 60.0 * (period_s_ / out_.offset_scale); }
+    double steps_exactly(double rate_mu_min) const noexcept { return rate_mu_min * period_s_ / (60.0 * out_.offset_scale); }
     std::int32_t steps_of(double rate_mu_min) const noexcept;
     std::int32_t counts_of(double mu) const noexcept;
     std::int32_t height_counts(double height_mu) const noexcept;
@@ -185,7 +187,8 @@ class Core {
     Outputs out_;
     double period_s_ = 0.0;
     State state_ = State::IDLE;
-    State started_ = State::IDLE;  // when this cycle began
+    State before_ = State::IDLE;   // when this cycle began
+    State started_ = State::IDLE;  // after what stops a cut
     Stop stop_ = Stop::NONE;
     Fault fault_ = Fault::NONE;
     Fault pending_ = Fault::NONE;  // takes effect with the next cycle
@@ -193,7 +196,7 @@ class Core {
     bool wasIdle_ = true, wasRunning_ = false;
     // arc
     double filtered_ = 0.0, last_voltage_ = 0.0;
-    std::int32_t ok_count_ = 0, bad_count_ = 0, steady_count_ = 0;
+    std::int32_t ok_count_ = 0, bad_count_ = 0;
     bool isArcBad_ = false;  // the voltage was lost in this cut
     Countdown lost_;
     // the voltage to hold
@@ -219,7 +222,8 @@ class Core {
     Countdown timer_, spot_;
     std::int32_t starts_ = 0;
     int scribe_phase_ = 0;
-    bool wasTorchOn_ = false, isFoundByContact_ = false, isEarly_ = false, isStopAfterReturn_ = false, isEndedNow_ = false, isOverrideNew_ = false, isRetry_ = false, isTorchTaken_ = false, isBeside_ = false, isProbeWaiting_ = false;
+    bool wasTorchOn_ = false, isFoundByContact_ = false, isEarly_ = false, isStopAfterReturn_ = false, isEndedNow_ = false, isOverrideNew_ = false, isRetry_ = false, isTorchTaken_ = false, isBeside_ = false, isProbeWaiting_ = false, isUnderWay_ = false, isPulseNew_ = false, wasWithin_ = false, hasZero_ = false;
+    double step_x_ = 0.0, step_y_ = 0.0;
 };
 
 }  // namespace mw::plasma

@@ -8,8 +8,6 @@ void Core::watch_sensors() noexcept {
     wasOhmic_ = isOhmic_;
     isOhmic_ = in_.ohmic_probe && in_.ohmic_probe_enable;
     out_.sensor_active = in_.float_switch || in_.breakaway || wasOhmic_;
-    const bool isMoving = state_ >= State::PROBE_HEIGHT && state_ <= State::ZERO_HEIGHT;
-    out_.jog_inhibit = out_.sensor_active && !in_.override_jog && in_.program_is_idle && !isMoving;
     // The relay counts when it has held its new state for the cycles of the debounce.
     if (in_.ohmic_sense_in == out_.ohmic_sense_out) {
         sense_count_ = 0;
@@ -22,8 +20,15 @@ void Core::watch_sensors() noexcept {
     }
 }
 
+/// No jogging into what a sensor touches.
+void Core::inhibit_jog(State state) noexcept {
+    const bool isProbing = state >= State::PROBE_HEIGHT && state <= State::ZERO_HEIGHT;
+    out_.jog_inhibit = out_.sensor_active && !in_.override_jog && in_.program_is_idle && !isProbing;
+}
+
 void Core::start_probing() noexcept {
     ohmic_attempts_ = 0;
+    isZeroed_ = false;
     isProbeWaiting_ = false;
     isRetry_ = false;
     timer_.left_s = in_.offset_probe_delay;
@@ -102,7 +107,8 @@ void Core::probe_up() noexcept {
         state_ = State::ZERO_HEIGHT;
         return;
     }
-    out_.z_offset_counts += in_.resolution * in_.probe_final_speed;
+    constexpr int EARLY_SPEED = 10;
+    out_.z_offset_counts += in_.resolution * (isEarly_ ? EARLY_SPEED : in_.probe_final_speed);
 }
 
 }  // namespace mw::plasma

@@ -8,10 +8,16 @@ namespace mw::plasma {
 void Core::torch_pulse() noexcept {
     if (!out_.torch_on) {
         out_.torch_on = true;
-        timer_.left_s = in_.torch_pulse_time + period_s_;
+        timer_.left_s = in_.torch_pulse_time;
+        isPulseNew_ = true;
         return;
     }
-    if (!timer_.runOut(period_s_)) {
+    if (isPulseNew_) {
+        isPulseNew_ = false;
+        return;
+    }
+    timer_.runOut(period_s_);
+    if (timer_.left_s > 0.0) {
         return;
     }
     torch_off();

@@ -24,6 +24,31 @@ bool Core::moveSideways(double x, double y, double step) noexcept {
     return false;
 }
 
+/// To and from where consumables are changed: the step of each axis is set when the way begins.
+bool Core::moveStraight(std::int32_t x, std::int32_t y) noexcept {
+    if (!isUnderWay_) {
+        const double dx = static_cast<double>(x) - out_.x_offset_counts;
+        const double dy = static_cast<double>(y) - out_.y_offset_counts;
+        const double way = std::hypot(dx, dy);
+        const double share = way > 0.0 ? steps_exactly(in_.xy_feed_rate) / way : 0.0;
+        step_x_ = std::fabs(dx) * share;
+        step_y_ = std::fabs(dy) * share;
+        isUnderWay_ = true;
+    }
+    if (out_.x_offset_counts == x && out_.y_offset_counts == y) {
+        isUnderWay_ = false;
+        return true;
+    }
+    const auto approach = [](std::int32_t from, std::int32_t to, double step) {
+        const auto whole = static_cast<std::int64_t>(step);
+        const std::int64_t left = std::int64_t{to} - from;
+        return static_cast<std::int32_t>(from + (left > whole ? whole : left < -whole ? -whole : left));
+    };
+    out_.x_offset_counts = approach(out_.x_offset_counts, x, step_x_);
+    out_.y_offset_counts = approach(out_.y_offset_counts, y, step_y_);
+    return false;
+}
+
 void Core::consumables_out() noexcept {
     if (!out_.consumable_changing) {
         out_.consumable_changing = true;
@@ -33,8 +58,7 @@ void Core::consumables_out() noexcept {
     if (in_.breakaway || in_.float_switch || wasOhmic_) {
         return;
     }
-    const double step = steps_exactly(in_.xy_feed_rate);
-    if (moveSideways(in_.x_offset, in_.y_offset, step)) {
+    if (moveStraight(in_.x_offset, in_.y_offset)) {
         state_ = State::IDLE;
     }
 }
@@ -43,7 +67,7 @@ void Core::consumables_back() noexcept {
     if (in_.breakaway || in_.float_switch || wasOhmic_) {
         return;
     }
-    if (moveSideways(0.0, 0.0, steps_exactly(in_.xy_feed_rate))) {
+    if (moveStraight(0, 0)) {
         out_.consumable_changing = false;
         out_.feed_hold = false;
         state_ = State::IDLE;
@@ -107,7 +131,7 @@ void Core::leave_laser() noexcept {
 
 /// To the path: with the torch on at the feed rate of the cut, else at half of it.
 void Core::recovery_back() noexcept {
-    const double rate = in_.cut_feed_rate * (out_.torch_on || !in_.torch_enable ? 1.0 : 0.5);
+    const double rate = in_.cut_feed_rate * (stop_ == Stop::PAUSED ? 0.5 : 1.0);
     if (!moveSideways(0.0, 0.0, steps_exactly(rate))) {
         return;
     }

@@ -70,7 +70,7 @@ void Core::machine_off() noexcept {
     out_.laser_recovery_state = 0;
     out_.adaptive_feed = 1.0;
     out_.x_offset_counts = out_.y_offset_counts = out_.z_offset_counts = 0;
-    isZeroed_ = hasProbed_ = hasTarget_ = isConsumableWait_ = isAlarmed_ = false;
+    isZeroed_ = hasZero_ = hasProbed_ = hasTarget_ = isConsumableWait_ = isAlarmed_ = false;
     pending_ = Fault::NONE;
     stop_ = Stop::NONE;
     state_ = State::IDLE;
@@ -102,7 +102,8 @@ bool Core::isStopped() noexcept {
         state_ = out_.cut_recovering ? State::RECOVERY_BACK : State::CONSUMABLES_BACK;
         return false;
     }
-    if (isIdleNow && state_ != State::SCRIBING && out_.z_offset_enable) {
+    const bool isNothing = state_ == State::IDLE && stop_ == Stop::NONE;
+    if (isIdleNow && state_ != State::SCRIBING && !isNothing) {
         stop(Stop::WAIT);
         return true;
     }
@@ -129,9 +130,9 @@ void Core::end_by_operator() noexcept {
     stop_ = Stop::CUT_ENDED;
     out_.feed_hold = true;
     out_.ohmic_enable = false;
-    const bool isCutting = state_ == State::CUT_BY_VOLTAGE || state_ == State::CUT_BY_SWITCHES;
-    if (isCutting && in_.pause_at_end > 0.0) {
+    if (in_.pause_at_end > 0.0) {
         timer_.left_s = in_.pause_at_end;
+        timer_.runOut(period_s_);
         timer_.runOut(period_s_);
         isEndedNow_ = true;
         state_ = State::PAUSE_AT_END;
@@ -145,15 +146,16 @@ void Core::end_by_operator() noexcept {
 /// torch-off ends the arc within a cut; a cut goes on without it only as long as that says so.
 bool Core::isTorchAllowed() noexcept {
     const bool isCutting = state_ == State::CUT_BY_VOLTAGE || state_ == State::CUT_BY_SWITCHES;
+    const bool isBurning = state_ >= State::ARC_OK && state_ <= State::PAUSE_AT_END;
+    if (isBurning && in_.torch_off && out_.torch_on) {
+        arc_off();
+        isTorchTaken_ = isCutting;
+    }
     if (!isCutting) {
         isTorchTaken_ = false;
         return true;
     }
-    if (in_.torch_off && out_.torch_on) {
-        arc_off();
-        isTorchTaken_ = true;
-    }
-    return in_.torch_off || !isTorchTaken_;
+    return in_.torch_off || !isTorchTaken_ || isArcIgnored() || in_.mesh_enable;
 }
 
 /// Before the state runs.
@@ -210,8 +212,10 @@ void Core::run_requests() noexcept {
     if (out_.program_pause && in_.program_is_paused && state_ != State::PAUSED_MOTION) {
         out_.program_pause = false;
     }
-    if (in_.feed_reduction >= 10.0 && in_.feed_reduction <= 100.0 && !out_.paused_motion) {
-        out_.adaptive_feed = in_.feed_reduction * 0.01;
+    const bool isCutting = before_ == State::CUT_BY_VOLTAGE || before_ == State::CUT_BY_SWITCHES;
+    if (isCutting) {
+        const bool isReduced = in_.feed_reduction >= 10.0 && in_.feed_reduction <= 100.0;
+        out_.adaptive_feed = isReduced ? in_.feed_reduction * 0.01 : 1.0;
     } else if (!out_.paused_motion) {
         out_.adaptive_feed = 1.0;
     }

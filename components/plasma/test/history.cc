@@ -4,8 +4,8 @@
 //     plasmac_history SCRIPT INPUTS OUTPUTS
 //
 // SCRIPT has lines "set PIN VALUE" (before the first cycle), "at CYCLE PIN VALUE" in the order of cycles, and
-// "cycles N". PIN may be material, volts or z0 of the simulated table, or no-float, no-volts, no-sideways to
-// drive those inputs by the script. INPUTS gets every input of each cycle, OUTPUTS every output, in the order
+// "cycles N". PIN may be material, volts or z0 of the simulated table, no-float, no-volts, no-sideways to drive those
+// inputs by the script, program for a user interface that answers program-pause, or pause and resume. INPUTS gets every input of each cycle, OUTPUTS every output, in the order
 // of the tables of pins.
 #include <cstdio>
 #include <fstream>
@@ -30,6 +30,12 @@ void apply(test::Table &table, const std::string &pin, double value) {
         table.volts = value;
     } else if (pin == "z0") {
         table.z0_mu = value;
+    } else if (pin == "program") {
+        table.hasProgram = true;
+    } else if (pin == "pause") {
+        table.pause();
+    } else if (pin == "resume") {
+        table.resume();
     } else if (pin == "no-float") {
         table.hasFloat = false;
     } else if (pin == "no-volts") {

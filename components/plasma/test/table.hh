@@ -42,6 +42,7 @@ struct Table {
     Core core;
     double material_mu = 2.0, z0_mu = 90.0, volts = 100.0, ohmic_mu = -1e9;
     bool hasFloat = true, hasVolts = true, hasSideways = true;
+    bool hasProgram = false;  ///< halui answers program-pause and program-resume
 
     Table() {
         sdk::for_each_pin(INPUT_PINS, [&](const char *, const auto &row) { row.read(in, row.start); });
@@ -62,7 +63,25 @@ struct Table {
             in.arc_voltage_in = out().torch_on ? volts : 0.0;
         }
     }
+    void pause() {
+        in.program_is_paused = !in.program_is_idle;
+        in.program_is_running = false;
+    }
+    void resume() {
+        in.program_is_paused = false;
+        in.program_is_running = !in.program_is_idle;
+    }
+    void answer() {
+        if (out().program_pause && in.program_is_running) {
+            pause();
+        } else if (out().program_resume && in.program_is_paused) {
+            resume();
+        }
+    }
     void cycle() {
+        if (hasProgram) {
+            answer();
+        }
         move();
         core.step(in, PERIOD_S);
     }
