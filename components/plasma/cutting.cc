@@ -155,7 +155,7 @@ void Core::pause_at_end() noexcept {
 /// Up to where rapid moves are safe, but not above the highest place.
 void Core::safe_height() noexcept {
     out_.cornerlock_is_locked = false;
-    const double highest = in_.axis_z_max_limit - in_.max_offset * in_.units_per_mm - zero_mu_;
+    const double highest = in_.axis_z_max_limit - std::max(0, in_.max_offset) * in_.units_per_mm - zero_mu_;
     const double wanted = in_.safe_height > 0.0 ? std::min(in_.safe_height, highest) : highest;
     const std::int32_t target = hasZero_ ? height_counts(wanted) : 0;
     if (moveZ(target, steps_of(in_.setup_feed_rate))) {

@@ -146,7 +146,7 @@ void Core::watch_void() noexcept {
 bool Core::isOverridden() noexcept {
     if (isOverrideNew_) {
         isOverrideNew_ = false;
-        out_.z_offset_counts += counts_of((in_.height_override - override_) * in_.height_per_volt);
+        add_z(counts_of((in_.height_override - override_) * in_.height_per_volt));
         override_ = in_.height_override;
         return true;
     }
@@ -183,7 +183,7 @@ void Core::move_height(std::int32_t counts, double direction) noexcept {
         pending_ = Fault::THC_AT_TOP;
         return;
     }
-    out_.z_offset_counts += counts;
+    add_z(counts);
 }
 
 void Core::cut_by_switches() noexcept {
@@ -199,7 +199,7 @@ void Core::cut_by_switches() noexcept {
         return;
     }
     const double step = steps_of(in_.thc_feed_rate) * in_.pid_p_gain * 0.01;
-    move_height(static_cast<std::int32_t>(direction * step), direction);
+    move_height(to_counts(direction * std::max(0.0, step)), direction);
 }
 
 }  // namespace mw::plasma

@@ -43,7 +43,10 @@ void Core::step(const Inputs &in, double period_s) noexcept {
 
 /// Numbers that can be divided by, a period, and none that is infinite or no number.
 bool Core::areUsable() const noexcept {
-    return in_.areNumbers && period_s_ > 0.0 && in_.units_per_mm > 0.0 && in_.resolution > 0 && in_.gcode_scale > 0.0;
+    constexpr double LEAST = 1.0e-6;
+    constexpr std::int32_t MOST_RESOLUTION = 1000000;
+    return in_.areNumbers && period_s_ > 0.0 && in_.units_per_mm >= LEAST && in_.gcode_scale >= LEAST &&
+           in_.resolution > 0 && in_.resolution <= MOST_RESOLUTION;
 }
 
 void Core::run_state() noexcept {
@@ -106,20 +109,13 @@ void Core::finish() noexcept {
     wasRunning_ = in_.program_is_running;
 }
 
-namespace {
-constexpr double MOST_COUNTS = 2.0e9;  // within the 32 bits of the count pins
-
-std::int32_t to_counts(double counts) noexcept {
-    if (!(counts > -MOST_COUNTS)) {
-        return static_cast<std::int32_t>(-MOST_COUNTS);
-    }
-    return static_cast<std::int32_t>(counts < MOST_COUNTS ? counts : MOST_COUNTS);
-}
-}  // namespace
-
-/// Counts in one cycle at this rate.
+/// Counts in one cycle at this rate; none at a rate that is negative.
 std::int32_t Core::steps_of(double rate_mu_min) const noexcept {
     return to_counts(steps_exactly(rate_mu_min));
+}
+
+void Core::add_z(double counts) noexcept {
+    out_.z_offset_counts = to_counts(out_.z_offset_counts + counts);
 }
 
 std::int32_t Core::counts_of(double mu) const noexcept {

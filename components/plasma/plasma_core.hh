@@ -9,6 +9,7 @@
 // sideways.cc (X and Y).
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "components/plasma/plasma_io.hh"
@@ -78,6 +79,12 @@ struct Countdown {
         return false;
     }
 };
+
+/// Within the 32 bits of the pins of counts.
+inline std::int32_t to_counts(double counts) noexcept {
+    constexpr double MOST_COUNTS = 2.0e9;
+    return static_cast<std::int32_t>(std::clamp(counts, -MOST_COUNTS, MOST_COUNTS));
+}
 
 class Core {
   public:
@@ -170,10 +177,13 @@ class Core {
     void count_times() noexcept;
     void finish() noexcept;
     bool areUsable() const noexcept;
-    double steps_exactly(double rate_mu_min) const noexcept { return rate_mu_min * period_s_ / (60.0 * out_.offset_scale); }
+    double steps_exactly(double rate_mu_min) const noexcept {
+        return std::max(0.0, rate_mu_min) * period_s_ / (60.0 * out_.offset_scale);
+    }
     std::int32_t steps_of(double rate_mu_min) const noexcept;
     std::int32_t counts_of(double mu) const noexcept;
     std::int32_t height_counts(double height_mu) const noexcept;
+    void add_z(double counts) noexcept;
     bool moveZ(std::int32_t target, std::int32_t step) noexcept;
     void torch_off() noexcept { out_.torch_on = false; }
     void arc_off() noexcept {

@@ -35,7 +35,7 @@ struct Inputs {
         ohmic_sense_off_delay{}, ohmic_sense_on_delay{}, ok_sample_counts{}, probe_final_speed{},
         resolution{}, target_samples{}, thc_sample_counts{}, voidlock_off_cycles{}, voidlock_on_cycles{},
         voidlock_slope{}, x_offset{}, y_offset{};
-    bool areNumbers = true;  ///< no input of this cycle was infinite or not a number
+    bool areNumbers = true;  ///< no input of this cycle was infinite, beyond all measure or not a number
 };
 
 struct Outputs {

@@ -7,13 +7,16 @@
 
 namespace mw::plasma {
 
-/// Copies a pin into a member; what is not a number is reported instead, and the member keeps what it was.
+/// Nothing that is measured or set at a table is larger; products of such numbers stay finite.
+inline constexpr double MOST_VALUE = 1.0e9;
+
+/// Copies a pin into a member; what is no such number is reported instead, and the member keeps what it was.
 template <class T>
 struct ToMember {
     T Inputs::*member;
     constexpr void operator()(Inputs &in, T value) const noexcept {
         if constexpr (std::is_same_v<T, double>) {
-            if (value - value != 0.0) {
+            if (!(value >= -MOST_VALUE && value <= MOST_VALUE)) {
                 in.areNumbers = false;
                 return;
             }

@@ -92,7 +92,7 @@ void Core::probe_down() noexcept {
         pending_ = Fault::NO_MATERIAL;
         return;
     }
-    out_.z_offset_counts -= steps_of(in_.probe_feed_rate);
+    add_z(-steps_of(in_.probe_feed_rate));
 }
 
 /// Slowly up until the sensor opens. Contact before probing had begun is no height: it begins then.
@@ -108,7 +108,7 @@ void Core::probe_up() noexcept {
         return;
     }
     constexpr int EARLY_SPEED = 10;
-    out_.z_offset_counts += in_.resolution * (isEarly_ ? EARLY_SPEED : in_.probe_final_speed);
+    add_z(static_cast<double>(in_.resolution) * (isEarly_ ? EARLY_SPEED : std::max(0, in_.probe_final_speed)));
 }
 
 }  // namespace mw::plasma

@@ -15,8 +15,8 @@ bool Core::moveSideways(double x, double y, double step) noexcept {
         return true;
     }
     if (way <= step) {
-        out_.x_offset_counts = static_cast<std::int32_t>(x);
-        out_.y_offset_counts = static_cast<std::int32_t>(y);
+        out_.x_offset_counts = to_counts(x);
+        out_.y_offset_counts = to_counts(y);
     } else {
         out_.x_offset_counts += static_cast<std::int32_t>(dx * step / way);
         out_.y_offset_counts += static_cast<std::int32_t>(dy * step / way);
@@ -98,8 +98,8 @@ void Core::recovery_out() noexcept {
         const std::int64_t left = to - from;
         return static_cast<std::int32_t>(from + (left > step ? step : left < -step ? -step : left));
     };
-    const std::int64_t x = std::int64_t{in_.x_offset} + (isLaser ? in_.laser_x_offset : 0);
-    const std::int64_t y = std::int64_t{in_.y_offset} + (isLaser ? in_.laser_y_offset : 0);
+    const std::int64_t x = to_counts(0.0 + in_.x_offset + (isLaser ? in_.laser_x_offset : 0));
+    const std::int64_t y = to_counts(0.0 + in_.y_offset + (isLaser ? in_.laser_y_offset : 0));
     out_.x_offset_counts = approach(out_.x_offset_counts, x);
     out_.y_offset_counts = approach(out_.y_offset_counts, y);
     isAtTarget_ = out_.x_offset_counts == x && out_.y_offset_counts == y;
