@@ -105,7 +105,8 @@ void Core::pierce() noexcept {
     if (!timer_.runOut(period_s_)) {
         return;
     }
-    const bool isPuddle = in_.puddle_jump_delay > 0.0 && !out_.cut_recovering;
+    const bool isAsked = in_.puddle_jump_height > 0.0 || in_.puddle_jump_delay > 0.0;
+    const bool isPuddle = isAsked && !out_.cut_recovering;
     timer_.left_s = in_.puddle_jump_delay;
     state_ = isPuddle ? State::PUDDLE_JUMP : State::CUT_HEIGHT;
 }
@@ -156,7 +157,8 @@ void Core::pause_at_end() noexcept {
 void Core::safe_height() noexcept {
     out_.cornerlock_is_locked = false;
     const double highest = in_.axis_z_max_limit - std::max(0, in_.max_offset) * in_.units_per_mm - zero_mu_;
-    const double wanted = in_.safe_height > 0.0 ? std::min(in_.safe_height, highest) : highest;
+    const double above = highest - thc_shift_ * out_.offset_scale;
+    const double wanted = in_.safe_height > 0.0 ? std::min(in_.safe_height, above) : above;
     const std::int32_t target = hasZero_ ? height_counts(wanted) : 0;
     if (moveZ(target, steps_of(in_.setup_feed_rate))) {
         out_.feed_hold = false;

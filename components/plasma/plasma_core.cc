@@ -124,7 +124,7 @@ std::int32_t Core::counts_of(double mu) const noexcept {
 
 /// Offset counts at this height above the material.
 std::int32_t Core::height_counts(double height_mu) const noexcept {
-    return to_counts(zero_counts_ + height_mu / out_.offset_scale);
+    return to_counts(zero_counts_ + thc_shift_ + height_mu / out_.offset_scale);
 }
 
 /// One step of Z to `target`; true when it was there before.

@@ -223,6 +223,7 @@ class Core {
     // heights
     double zero_mu_ = 0.0;          // Z at the material
     std::int32_t zero_counts_ = 0;  // offset counts there
+    std::int32_t thc_shift_ = 0;    // how far the height control moved the torch from the cut height
     std::int32_t probe_target_ = 0;
     bool isZeroed_ = false, hasProbed_ = false, isTorchWait_ = false;
     bool isProbeTest_ = false, isSpotting_ = false, isConsumableWait_ = false, isAtTarget_ = false;

@@ -29,6 +29,7 @@ void Core::inhibit_jog(State state) noexcept {
 void Core::start_probing() noexcept {
     ohmic_attempts_ = 0;
     isZeroed_ = false;
+    thc_shift_ = 0;
     isProbeWaiting_ = false;
     isRetry_ = false;
     timer_.left_s = in_.offset_probe_delay;

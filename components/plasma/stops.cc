@@ -72,6 +72,7 @@ void Core::machine_off() noexcept {
     out_.x_offset_counts = out_.y_offset_counts = out_.z_offset_counts = 0;
     isZeroed_ = hasZero_ = hasProbed_ = hasTarget_ = isConsumableWait_ = isAlarmed_ = false;
     pending_ = Fault::NONE;
+    thc_shift_ = 0;
     stop_ = Stop::NONE;
     state_ = State::IDLE;
 }
@@ -126,6 +127,9 @@ void Core::end_by_operator() noexcept {
     if (isManualCut()) {
         stop(Stop::WAIT);
         return;
+    }
+    if (state_ == State::CUT_BY_VOLTAGE || state_ == State::CUT_BY_SWITCHES) {
+        thc_shift_ += out_.z_offset_counts - height_counts(in_.cut_height);
     }
     stop_ = Stop::CUT_ENDED;
     out_.feed_hold = true;
