@@ -157,6 +157,7 @@ void Core::pause_at_end() noexcept {
 void Core::safe_height() noexcept {
     out_.cornerlock_is_locked = false;
     const double highest = in_.axis_z_max_limit - std::max(0, in_.max_offset) * in_.units_per_mm - zero_mu_;
+    thc_shift_ = std::max(0, thc_shift_);  // a torch that was lowered goes to the full safe height
     const double above = highest - thc_shift_ * out_.offset_scale;
     const double wanted = in_.safe_height > 0.0 ? std::min(in_.safe_height, above) : above;
     const std::int32_t target = hasZero_ ? height_counts(wanted) : 0;
