@@ -7,7 +7,7 @@
 namespace mw::plasma {
 
 /// Mode 0 and 1 measure the arc; the sign of the input does not matter (either polarity of a divider).
-void Core::measure_voltage() noexcept {
+void Arc::measure_voltage() noexcept {
     constexpr double TWO_PI = 6.283185307179586;
     last_voltage_ = out_.arc_voltage_out;
     const double share =
@@ -23,13 +23,9 @@ void Core::measure_voltage() noexcept {
     out_.arc_voltage_out = std::fabs(volts) < in_.zero_window ? 0.0 : volts;
 }
 
-bool Core::isArcIgnored() const noexcept {
-    return in_.ignore_arc_ok_0 || in_.ignore_arc_ok_1;
-}
-
-/// Mode 0: between the limits for as many readings as asked for, steps between two of them not too large. Once
-/// good, one reading outside is bad, or as many as asked for while the height control works.
-bool Core::isVoltageGood() noexcept {
+/// Mode 0: between the limits for as many readings as asked for, steps between two of them not too large.
+/// Once good, one reading outside is bad, or as many as asked for while the height control works.
+bool Arc::isVoltageGood() noexcept {
     const double volts = out_.arc_voltage_out;
     const bool isWithin = volts >= in_.arc_ok_low && volts <= in_.arc_ok_high;
     if (!out_.arc_ok_out) {
@@ -55,7 +51,7 @@ bool Core::isVoltageGood() noexcept {
 }
 
 /// Sets arc-ok-out; an arc that was good may be missing for arc-lost-delay.
-void Core::watch_arc() noexcept {
+void Arc::watch_arc() noexcept {
     if (!out_.torch_on) {
         out_.arc_ok_out = false;
         isArcBad_ = false;

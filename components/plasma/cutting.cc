@@ -6,31 +6,7 @@
 
 namespace mw::plasma {
 
-/// Where the sensor opened, and the way it took from there, is the zero of all heights.
-void Core::zero_height() noexcept {
-    const double way = isFoundByContact_ ? in_.ohmic_probe_offset : in_.float_switch_travel;
-    if (!isZeroed_) {
-        isZeroed_ = true;
-        hasZero_ = true;
-        zero_counts_ = out_.z_offset_counts + counts_of(way);
-        zero_mu_ = in_.axis_z_position + counts_of(way) * out_.offset_scale;
-    }
-    const bool isBack = !isBeside_ || moveSideways(0.0, 0.0, steps_of(in_.setup_feed_rate));
-    if (!moveZ(zero_counts_, steps_of(in_.setup_feed_rate)) || !isBack) {
-        return;
-    }
-    hasProbed_ = true;
-    last_cut_x_ = in_.axis_x_position;
-    last_cut_y_ = in_.axis_y_position;
-    const bool areMissing = in_.pierce_height <= 0.0 || in_.cut_height <= 0.0 || in_.cut_volts <= 0.0;
-    if (areMissing && !isProbeTest_) {
-        pending_ = Fault::HEIGHTS_MISSING;
-        return;
-    }
-    state_ = State::PIERCE_HEIGHT;
-}
-
-void Core::pierce_height() noexcept {
+void Cutting::pierce_height() noexcept {
     if (!moveZ(height_counts(in_.pierce_height), steps_of(in_.setup_feed_rate))) {
         return;
     }
@@ -47,7 +23,7 @@ void Core::pierce_height() noexcept {
 }
 
 /// The torch on, after the delay when it is not the first time.
-void Core::start_torch() noexcept {
+void Cutting::start_torch() noexcept {
     if (starts_ >= in_.arc_max_starts) {
         if (!out_.program_pause) {
             fail(Fault::NO_ARC);
@@ -67,7 +43,7 @@ void Core::start_torch() noexcept {
     state_ = State::ARC_OK;
 }
 
-void Core::wait_for_arc() noexcept {
+void Cutting::wait_for_arc() noexcept {
     if (isSpotting_) {
         spot();
         if (state_ != State::ARC_OK) {
@@ -91,7 +67,7 @@ void Core::wait_for_arc() noexcept {
 }
 
 /// A spot: torch off when its time is over, which begins with the voltage.
-void Core::spot() noexcept {
+void Cutting::spot() noexcept {
     if (out_.arc_voltage_out >= in_.spotting_threshold) {
         if (spot_.runOut(period_s_)) {
             torch_off();
@@ -101,7 +77,7 @@ void Core::spot() noexcept {
     }
 }
 
-void Core::pierce() noexcept {
+void Cutting::pierce() noexcept {
     if (!timer_.runOut(period_s_)) {
         return;
     }
@@ -112,7 +88,7 @@ void Core::pierce() noexcept {
 }
 
 /// Over the puddle: the path begins at a height of its own.
-void Core::puddle_jump() noexcept {
+void Cutting::puddle_jump() noexcept {
     out_.feed_hold = false;
     const double percent = in_.puddle_jump_height > 0.0 ? std::min(in_.puddle_jump_height, 200.0) : 100.0;
     const double height = in_.pierce_height * percent * 0.01;
@@ -123,7 +99,7 @@ void Core::puddle_jump() noexcept {
     }
 }
 
-void Core::cut_height() noexcept {
+void Cutting::cut_height() noexcept {
     if (!moveZ(height_counts(in_.cut_height), steps_of(in_.setup_feed_rate))) {
         return;
     }
@@ -134,19 +110,7 @@ void Core::cut_height() noexcept {
     start_cut();
 }
 
-void Core::start_cut() noexcept {
-    out_.feed_hold = false;
-    hasTarget_ = false;
-    target_count_ = 0;
-    isVoidWatched_ = false;
-    last_error_ = 0.0;
-    override_ = 0.0;
-    isOverrideNew_ = false;
-    timer_.left_s = in_.thc_delay;
-    state_ = in_.mode == 2 ? State::CUT_BY_SWITCHES : State::CUT_BY_VOLTAGE;
-}
-
-void Core::pause_at_end() noexcept {
+void Cutting::pause_at_end() noexcept {
     if (timer_.runOut(period_s_)) {
         torch_off();
         state_ = State::SAFE_HEIGHT;
@@ -154,7 +118,7 @@ void Core::pause_at_end() noexcept {
 }
 
 /// Up to where rapid moves are safe, but not above the highest place.
-void Core::safe_height() noexcept {
+void Cutting::safe_height() noexcept {
     out_.cornerlock_is_locked = false;
     const double highest = in_.axis_z_max_limit - std::max(0, in_.max_offset) * in_.units_per_mm - zero_mu_;
     thc_shift_ = std::max(0, thc_shift_);  // a torch that was lowered goes to the full safe height
@@ -168,7 +132,7 @@ void Core::safe_height() noexcept {
 }
 
 /// The offset of Z taken away.
-void Core::max_height() noexcept {
+void Cutting::max_height() noexcept {
     if (!moveZ(0, steps_of(in_.setup_feed_rate))) {
         return;
     }
@@ -180,7 +144,7 @@ void Core::max_height() noexcept {
     state_ = State::END_CUT;
 }
 
-void Core::end_cut() noexcept {
+void Cutting::end_cut() noexcept {
     out_.target_volts = 0.0;
     out_.adaptive_feed = 1.0;
     out_.cutting_stop = false;
@@ -193,7 +157,7 @@ void Core::end_cut() noexcept {
 }
 
 /// Nothing starts before motion has taken the offsets away.
-void Core::end_job() noexcept {
+void Cutting::end_job() noexcept {
     out_.paused_motion = false;
     if (in_.offsets_active) {
         return;

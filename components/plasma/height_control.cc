@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The cut and its height: the voltage to hold, what locks the height (corners, gaps), and the PID that holds it.
+// The cut and its height: the voltage to hold, what locks the height (corners, gaps), and the PID that holds
+// it.
 #include <algorithm>
 #include <cmath>
 
@@ -7,12 +8,12 @@
 
 namespace mw::plasma {
 
-bool Core::isThcWanted() const noexcept {
+bool HeightControl::isThcWanted() const noexcept {
     return in_.thc_enable && !in_.thc_disable && !in_.mesh_enable && !isArcIgnored();
 }
 
 /// thc-enabled and thc-active say what was true when the cycle before ended.
-void Core::set_thc_pins() noexcept {
+void HeightControl::set_thc_pins() noexcept {
     out_.thc_enabled = isThcWanted() && !isArcBad_;
     const bool isCut = state_ == State::CUT_BY_VOLTAGE || state_ == State::CUT_BY_SWITCHES;
     const bool isReady = state_ == State::CUT_BY_SWITCHES || hasTarget_;
@@ -41,16 +42,28 @@ void Core::set_thc_pins() noexcept {
     sum_ += volts;
 }
 
-void Core::show_feed_rates() noexcept {
+void HeightControl::show_feed_rates() noexcept {
     const double base = in_.cut_feed_rate > 0.0 ? in_.cut_feed_rate : in_.feed_upm;
     out_.requested_feed_rate = base * in_.feed_override / in_.gcode_scale;
 }
 
-bool Core::isAtSpeed(double share) const noexcept {
+bool HeightControl::isAtSpeed(double share) const noexcept {
     return in_.current_velocity * 60.0 >= out_.requested_feed_rate * share;
 }
 
-void Core::cut_by_voltage() noexcept {
+void HeightControl::start_cut() noexcept {
+    out_.feed_hold = false;
+    hasTarget_ = false;
+    target_count_ = 0;
+    isVoidWatched_ = false;
+    last_error_ = 0.0;
+    override_ = 0.0;
+    isOverrideNew_ = false;
+    timer_.left_s = in_.thc_delay;
+    state_ = in_.mode == 2 ? State::CUT_BY_SWITCHES : State::CUT_BY_VOLTAGE;
+}
+
+void HeightControl::cut_by_voltage() noexcept {
     show_feed_rates();
     if (!out_.torch_on || in_.mesh_enable || isArcIgnored()) {
         out_.led_up = out_.led_down = false;
@@ -77,7 +90,7 @@ void Core::cut_by_voltage() noexcept {
 }
 
 /// The voltage to hold: that of the material, or the one measured when it is steady or the delay is over.
-void Core::wait_for_target() noexcept {
+void HeightControl::wait_for_target() noexcept {
     constexpr double FULL_SPEED = 0.999;
     if (!isAtSpeed(FULL_SPEED)) {
         timer_.left_s = in_.thc_delay;
@@ -108,14 +121,14 @@ void Core::wait_for_target() noexcept {
     }
 }
 
-void Core::watch_locks() noexcept {
+void HeightControl::watch_locks() noexcept {
     const double share = in_.cornerlock_threshold * 0.01;
     out_.cornerlock_is_locked = in_.cornerlock_enable && !isAtSpeed(share);
     watch_void();
 }
 
 /// A gap: the voltage changes steeply for some cycles; free again when it has been flat for some.
-void Core::watch_void() noexcept {
+void HeightControl::watch_void() noexcept {
     const double change = std::fabs(out_.arc_voltage_out - void_voltage_);
     void_voltage_ = out_.arc_voltage_out;
     if (!in_.voidlock_enable) {
@@ -143,7 +156,7 @@ void Core::watch_void() noexcept {
 }
 
 /// A change of the override moves the torch at once by what it is worth; the control waits meanwhile.
-bool Core::isOverridden() noexcept {
+bool HeightControl::isOverridden() noexcept {
     if (isOverrideNew_) {
         isOverrideNew_ = false;
         add_z(counts_of((in_.height_override - override_) * in_.height_per_volt));
@@ -160,7 +173,7 @@ bool Core::isOverridden() noexcept {
 }
 
 /// PID on the error of the voltage; errors below the threshold are none.
-void Core::hold_voltage() noexcept {
+void HeightControl::hold_voltage() noexcept {
     const double deviation = out_.target_volts + override_ - out_.arc_voltage_out;
     const double error = std::fabs(deviation) < in_.thc_threshold ? 0.0 : deviation;
     const double change = (error - last_error_) / period_s_;
@@ -172,7 +185,7 @@ void Core::hold_voltage() noexcept {
     move_height(static_cast<std::int32_t>(std::round(counts)), counts);
 }
 
-void Core::move_height(std::int32_t counts, double direction) noexcept {
+void HeightControl::move_height(std::int32_t counts, double direction) noexcept {
     out_.led_up = direction > 0.0;
     out_.led_down = direction < 0.0;
     if (direction < 0.0 && in_.axis_z_position <= in_.axis_z_min_limit + in_.units_per_mm) {
@@ -186,7 +199,7 @@ void Core::move_height(std::int32_t counts, double direction) noexcept {
     add_z(counts);
 }
 
-void Core::cut_by_switches() noexcept {
+void HeightControl::cut_by_switches() noexcept {
     show_feed_rates();
     if (!out_.torch_on || !out_.thc_enabled) {
         out_.led_up = out_.led_down = false;

@@ -6,7 +6,7 @@
 
 namespace mw::plasma {
 
-void Core::idle() noexcept {
+void Idle::idle() noexcept {
     out_.ohmic_enable = in_.offset_set_probe;
     out_.scribe_arm = in_.offset_set_scribe;
     if (isAlarmed_) {
@@ -34,12 +34,12 @@ void Core::idle() noexcept {
 }
 
 /// Near the last cut, or the last probe, the height found there is good enough.
-bool Core::isNearLastCut() const noexcept {
+bool Idle::isNearLastCut() const noexcept {
     const double way = std::hypot(in_.axis_x_position - last_cut_x_, in_.axis_y_position - last_cut_y_);
     return in_.skip_ihs_distance > 0.0 && hasProbed_ && way < in_.skip_ihs_distance;
 }
 
-bool Core::startOfCut() noexcept {
+bool Idle::startOfCut() noexcept {
     const bool isWanted = in_.cutting_start || in_.spotting_start;
     if (!isWanted || out_.program_pause || in_.program_is_paused) {
         return false;
@@ -57,7 +57,7 @@ bool Core::startOfCut() noexcept {
 }
 
 /// Paused within a cut: consumables, recovery, or along the path.
-bool Core::startWhilePaused() noexcept {
+bool Idle::startWhilePaused() noexcept {
     if (in_.consumable_change && !out_.consumable_changing) {
         isConsumableWait_ = true;
         state_ = State::MAX_HEIGHT;
@@ -75,7 +75,7 @@ bool Core::startWhilePaused() noexcept {
     return true;
 }
 
-bool Core::startOfSideAction() noexcept {
+bool Idle::startOfSideAction() noexcept {
     if (in_.scribe_start && in_.program_is_running) {
         scribe_phase_ = 0;
         state_ = State::SCRIBING;

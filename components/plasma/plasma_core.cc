@@ -106,41 +106,6 @@ void Core::finish() noexcept {
     out_.z_height = in_.axis_z_position - zero_mu_;
     out_.current_feed_rate = in_.current_velocity * 60.0;
     wasIdle_ = in_.program_is_idle;
-    wasRunning_ = in_.program_is_running;
-}
-
-/// Counts in one cycle at this rate; none at a rate that is negative.
-std::int32_t Core::steps_of(double rate_mu_min) const noexcept {
-    return to_counts(steps_exactly(rate_mu_min));
-}
-
-void Core::add_z(double counts) noexcept {
-    out_.z_offset_counts = to_counts(out_.z_offset_counts + counts);
-}
-
-std::int32_t Core::counts_of(double mu) const noexcept {
-    return to_counts(mu / out_.offset_scale);
-}
-
-/// Offset counts at this height above the material.
-std::int32_t Core::height_counts(double height_mu) const noexcept {
-    return to_counts(zero_counts_ + thc_shift_ + height_mu / out_.offset_scale);
-}
-
-/// One step of Z to `target`; true when it was there before.
-bool Core::moveZ(std::int32_t target, std::int32_t step) noexcept {
-    const std::int64_t left = std::int64_t{target} - out_.z_offset_counts;
-    if (left == 0) {
-        return true;
-    }
-    if (left > step) {
-        out_.z_offset_counts += step;
-    } else if (left < -std::int64_t{step}) {
-        out_.z_offset_counts -= step;
-    } else {
-        out_.z_offset_counts = target;
-    }
-    return false;
 }
 
 }  // namespace mw::plasma

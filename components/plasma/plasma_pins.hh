@@ -30,12 +30,12 @@ struct FromMember {
     constexpr T operator()(const Outputs &out) const noexcept { return out.*member; }
 };
 
-template <class T>
-constexpr auto in(const char *name, const char *unit, const char *doc, T Inputs::*member, T start = T{}) {
+template <class T, class Group>
+constexpr auto in(const char *name, const char *unit, const char *doc, T Group::*member, T start = T{}) {
     return sdk::in<T>(name, unit, doc, ToMember<T>{member}, start);
 }
-template <class T>
-constexpr auto out(const char *name, const char *unit, const char *doc, T Outputs::*member) {
+template <class T, class Group>
+constexpr auto out(const char *name, const char *unit, const char *doc, T Group::*member) {
     return sdk::out<T>(name, unit, doc, FromMember<T>{member});
 }
 

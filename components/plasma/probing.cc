@@ -4,7 +4,7 @@
 
 namespace mw::plasma {
 
-void Core::watch_sensors() noexcept {
+void Probing::watch_sensors() noexcept {
     wasOhmic_ = isOhmic_;
     isOhmic_ = in_.ohmic_probe && in_.ohmic_probe_enable;
     out_.sensor_active = in_.float_switch || in_.breakaway || wasOhmic_;
@@ -21,12 +21,12 @@ void Core::watch_sensors() noexcept {
 }
 
 /// No jogging into what a sensor touches.
-void Core::inhibit_jog(State state) noexcept {
+void Probing::inhibit_jog(State state) noexcept {
     const bool isProbing = state >= State::PROBE_HEIGHT && state <= State::ZERO_HEIGHT;
     out_.jog_inhibit = out_.sensor_active && !in_.override_jog && in_.program_is_idle && !isProbing;
 }
 
-void Core::start_probing() noexcept {
+void Probing::start_probing() noexcept {
     ohmic_attempts_ = 0;
     isZeroed_ = false;
     thc_shift_ = 0;
@@ -37,7 +37,7 @@ void Core::start_probing() noexcept {
 }
 
 /// To where probing begins. A probe beside the torch goes to its place meanwhile.
-void Core::probe_height() noexcept {
+void Probing::probe_height() noexcept {
     out_.z_offset_enable = true;
     out_.ohmic_enable = in_.ohmic_probe_enable;
     isBeside_ = in_.ohmic_probe_enable && (in_.offset_probe_x != 0.0 || in_.offset_probe_y != 0.0);
@@ -66,7 +66,7 @@ void Core::probe_height() noexcept {
 }
 
 /// Down until the torch touches. When contact was to be sensed and only the float switch came, once more.
-void Core::probe_down() noexcept {
+void Probing::probe_down() noexcept {
     const bool isProbeOut = timer_.runOut(period_s_);
     isEarly_ = false;
     if (in_.float_switch) {
@@ -97,7 +97,7 @@ void Core::probe_down() noexcept {
 }
 
 /// Slowly up until the sensor opens. Contact before probing had begun is no height: it begins then.
-void Core::probe_up() noexcept {
+void Probing::probe_up() noexcept {
     const bool isClosed = in_.float_switch || (in_.ohmic_probe && in_.ohmic_probe_enable);
     if (!isClosed) {
         if (isEarly_ && isFoundByContact_) {
@@ -109,7 +109,32 @@ void Core::probe_up() noexcept {
         return;
     }
     constexpr int EARLY_SPEED = 10;
-    add_z(static_cast<double>(in_.resolution) * (isEarly_ ? EARLY_SPEED : std::max(0, in_.probe_final_speed)));
+    add_z(static_cast<double>(in_.resolution) *
+          (isEarly_ ? EARLY_SPEED : std::max(0, in_.probe_final_speed)));
+}
+
+/// Where the sensor opened, and the way it took from there, is the zero of all heights.
+void Probing::zero_height() noexcept {
+    const double way = isFoundByContact_ ? in_.ohmic_probe_offset : in_.float_switch_travel;
+    if (!isZeroed_) {
+        isZeroed_ = true;
+        hasZero_ = true;
+        zero_counts_ = out_.z_offset_counts + counts_of(way);
+        zero_mu_ = in_.axis_z_position + counts_of(way) * out_.offset_scale;
+    }
+    const bool isBack = !isBeside_ || moveSideways(0.0, 0.0, steps_of(in_.setup_feed_rate));
+    if (!moveZ(zero_counts_, steps_of(in_.setup_feed_rate)) || !isBack) {
+        return;
+    }
+    hasProbed_ = true;
+    last_cut_x_ = in_.axis_x_position;
+    last_cut_y_ = in_.axis_y_position;
+    const bool areMissing = in_.pierce_height <= 0.0 || in_.cut_height <= 0.0 || in_.cut_volts <= 0.0;
+    if (areMissing && !isProbeTest_) {
+        pending_ = Fault::HEIGHTS_MISSING;
+        return;
+    }
+    state_ = State::PIERCE_HEIGHT;
 }
 
 }  // namespace mw::plasma

@@ -5,7 +5,7 @@
 namespace mw::plasma {
 
 /// The torch on for the time of the pulse.
-void Core::torch_pulse() noexcept {
+void SideActions::torch_pulse() noexcept {
     if (!out_.torch_on) {
         out_.torch_on = true;
         timer_.left_s = in_.torch_pulse_time;
@@ -26,7 +26,7 @@ void Core::torch_pulse() noexcept {
     }
 }
 
-void Core::ohmic_test() noexcept {
+void SideActions::ohmic_test() noexcept {
     out_.ohmic_enable = in_.ohmic_test;
     if (!in_.ohmic_test) {
         state_ = State::IDLE;
@@ -34,7 +34,7 @@ void Core::ohmic_test() noexcept {
 }
 
 /// Waits at the pierce height, or where the test failed, until it is taken back; then up.
-void Core::probe_test() noexcept {
+void SideActions::probe_test() noexcept {
     out_.z_offset_enable = true;
     if (in_.probe_test) {
         return;
@@ -47,7 +47,7 @@ void Core::probe_test() noexcept {
 }
 
 /// Down, on, then the path; while paused neither.
-void Core::scribe() noexcept {
+void SideActions::scribe() noexcept {
     if (!in_.scribe_start || in_.program_is_idle) {
         out_.scribe_arm = out_.scribe_on = false;
         state_ = State::IDLE;
@@ -78,7 +78,7 @@ void Core::scribe() noexcept {
 }
 
 /// Along the path, forward or back, while the operator holds the key.
-void Core::paused_motion() noexcept {
+void SideActions::paused_motion() noexcept {
     const double speed = in_.paused_motion_speed;
     if (speed != 0.0) {
         out_.adaptive_feed = speed < -1.0 ? -1.0 : speed > 1.0 ? 1.0 : speed;

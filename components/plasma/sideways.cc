@@ -6,26 +6,8 @@
 
 namespace mw::plasma {
 
-/// One step of the offsets towards (x, y), along a line; true when they were there before.
-bool Core::moveSideways(double x, double y, double step) noexcept {
-    const double dx = x - out_.x_offset_counts;
-    const double dy = y - out_.y_offset_counts;
-    const double way = std::hypot(dx, dy);
-    if (way == 0.0) {
-        return true;
-    }
-    if (way <= step) {
-        out_.x_offset_counts = to_counts(x);
-        out_.y_offset_counts = to_counts(y);
-    } else {
-        out_.x_offset_counts += static_cast<std::int32_t>(dx * step / way);
-        out_.y_offset_counts += static_cast<std::int32_t>(dy * step / way);
-    }
-    return false;
-}
-
 /// To and from where consumables are changed: the step of each axis is set when the way begins.
-bool Core::moveStraight(std::int32_t x, std::int32_t y) noexcept {
+bool Sideways::moveStraight(std::int32_t x, std::int32_t y) noexcept {
     if (!isUnderWay_) {
         const double dx = static_cast<double>(x) - out_.x_offset_counts;
         const double dy = static_cast<double>(y) - out_.y_offset_counts;
@@ -49,7 +31,7 @@ bool Core::moveStraight(std::int32_t x, std::int32_t y) noexcept {
     return false;
 }
 
-void Core::consumables_out() noexcept {
+void Sideways::consumables_out() noexcept {
     if (!out_.consumable_changing) {
         out_.consumable_changing = true;
         out_.xy_offset_enable = true;
@@ -63,7 +45,7 @@ void Core::consumables_out() noexcept {
     }
 }
 
-void Core::consumables_back() noexcept {
+void Sideways::consumables_back() noexcept {
     if (in_.breakaway || in_.float_switch || wasOhmic_) {
         return;
     }
@@ -75,7 +57,7 @@ void Core::consumables_back() noexcept {
 }
 
 /// Off the path as far as the operator says, and as far again as the laser is from the torch.
-void Core::recovery_out() noexcept {
+void Sideways::recovery_out() noexcept {
     if (!in_.program_is_paused) {
         state_ = State::IDLE;
         return;
@@ -93,8 +75,7 @@ void Core::recovery_out() noexcept {
         return;
     }
     const auto approach = [&](std::int32_t from, std::int64_t to) {
-        const auto step =
-            static_cast<std::int64_t>(std::round(steps_exactly(in_.cut_feed_rate) * 0.5));
+        const auto step = static_cast<std::int64_t>(std::round(steps_exactly(in_.cut_feed_rate) * 0.5));
         const std::int64_t left = to - from;
         return static_cast<std::int32_t>(from + (left > step ? step : left < -step ? -step : left));
     };
@@ -106,7 +87,7 @@ void Core::recovery_out() noexcept {
 }
 
 /// One step a cycle: asked for, going there, there.
-void Core::follow_laser() noexcept {
+void Sideways::follow_laser() noexcept {
     if (in_.laser_recovery_start <= 0) {
         return;
     }
@@ -119,7 +100,7 @@ void Core::follow_laser() noexcept {
 }
 
 /// From under the laser to under the torch, before a cut begins again.
-void Core::leave_laser() noexcept {
+void Sideways::leave_laser() noexcept {
     if (out_.laser_recovery_state < 5) {
         out_.laser_recovery_state = out_.laser_recovery_state < 4 ? 4 : 5;
         return;
@@ -130,7 +111,7 @@ void Core::leave_laser() noexcept {
 }
 
 /// To the path: with the torch on at the feed rate of the cut, else at half of it.
-void Core::recovery_back() noexcept {
+void Sideways::recovery_back() noexcept {
     const double rate = in_.cut_feed_rate * (stop_ == Stop::PAUSED ? 0.5 : 1.0);
     if (!moveSideways(0.0, 0.0, steps_exactly(rate))) {
         return;

@@ -4,45 +4,8 @@
 
 namespace mw::plasma {
 
-Fault Core::sensor_fault() const noexcept {
-    return in_.breakaway ? Fault::BREAKAWAY
-           : in_.float_switch ? Fault::FLOAT_SWITCH
-           : in_.ohmic_probe_enable && (state_ == State::IDLE ? wasOhmic_ : in_.ohmic_probe)
-               ? Fault::OHMIC_PROBE
-                                                 : Fault::NONE;
-}
-
-/// Torch off and up. The program is paused, or the manual cut stopped, when it is not by now.
-void Core::fail(Fault fault) noexcept {
-    fault_ = fault;
-    pending_ = Fault::NONE;
-    if (isManualCut()) {
-        out_.cutting_stop = true;
-        stop(Stop::NONE);
-        return;
-    }
-    out_.program_pause = !in_.program_is_paused;
-    if (fault != Fault::NO_ARC) {
-        stop(Stop::PAUSED);
-    }
-}
-
-void Core::stop(Stop type) noexcept {
-    arc_off();
-    out_.z_offset_enable = true;
-    out_.program_resume = false;
-    isArcBad_ = false;
-    out_.cornerlock_is_locked = false;
-    out_.voidlock_is_locked = false;
-    out_.ohmic_enable = false;
-    out_.feed_hold = true;
-    hasProbed_ = false;
-    stop_ = type;
-    state_ = State::MAX_HEIGHT;
-}
-
 /// Nothing moves and nothing burns, as long as the inputs cannot be believed.
-void Core::halt(Fault fault) noexcept {
+void Stops::halt(Fault fault) noexcept {
     const bool wasBusy = state_ != State::IDLE && state_ != State::END_JOB;
     torch_off();
     out_.scribe_on = false;
@@ -59,7 +22,7 @@ void Core::halt(Fault fault) noexcept {
     out_.adaptive_feed = 1.0;
 }
 
-void Core::machine_off() noexcept {
+void Stops::machine_off() noexcept {
     torch_off();
     out_.scribe_arm = out_.scribe_on = out_.ohmic_enable = false;
     out_.paused_motion = out_.program_pause = out_.program_resume = out_.cutting_stop = false;
@@ -70,7 +33,7 @@ void Core::machine_off() noexcept {
     out_.laser_recovery_state = 0;
     out_.adaptive_feed = 1.0;
     out_.x_offset_counts = out_.y_offset_counts = out_.z_offset_counts = 0;
-    isZeroed_ = hasZero_ = hasProbed_ = hasTarget_ = isConsumableWait_ = isAlarmed_ = false;
+    hasZero_ = hasProbed_ = hasTarget_ = isConsumableWait_ = isAlarmed_ = false;
     pending_ = Fault::NONE;
     thc_shift_ = 0;
     stop_ = Stop::NONE;
@@ -78,7 +41,7 @@ void Core::machine_off() noexcept {
 }
 
 /// True when the operator ends what goes on: program stopped, paused, or the start taken back.
-bool Core::isStopped() noexcept {
+bool Stops::isStopped() noexcept {
     const bool isCut = state_ >= State::PROBE_HEIGHT && state_ <= State::PAUSE_AT_END;
     const bool isEnding = state_ >= State::SAFE_HEIGHT && state_ <= State::END_JOB;
     const bool isIdleNow = in_.program_is_idle && !wasIdle_;
@@ -120,7 +83,7 @@ bool Core::isStopped() noexcept {
 }
 
 /// The start was taken back: the end of the cut in a program, the end of all in a manual cut.
-void Core::end_by_operator() noexcept {
+void Stops::end_by_operator() noexcept {
     if (state_ == State::PAUSE_AT_END) {
         return;
     }
@@ -148,7 +111,7 @@ void Core::end_by_operator() noexcept {
 }
 
 /// torch-off ends the arc within a cut; a cut goes on without it only as long as that says so.
-bool Core::isTorchAllowed() noexcept {
+bool Stops::isTorchAllowed() noexcept {
     const bool isCutting = state_ == State::CUT_BY_VOLTAGE || state_ == State::CUT_BY_SWITCHES;
     const bool isBurning = state_ >= State::ARC_OK && state_ <= State::PAUSE_AT_END;
     if (isBurning && in_.torch_off && out_.torch_on) {
@@ -163,7 +126,7 @@ bool Core::isTorchAllowed() noexcept {
 }
 
 /// Before the state runs.
-void Core::watch_stops() noexcept {
+void Stops::watch_stops() noexcept {
     isEndedNow_ = false;
     if (pending_ != Fault::NONE) {
         const Fault fault = pending_;
@@ -212,7 +175,7 @@ void Core::watch_stops() noexcept {
 }
 
 /// Requests to the user interface stay until it has done what they ask.
-void Core::run_requests() noexcept {
+void Stops::run_requests() noexcept {
     if (out_.program_pause && in_.program_is_paused && state_ != State::PAUSED_MOTION) {
         out_.program_pause = false;
     }

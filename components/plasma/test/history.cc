@@ -4,9 +4,9 @@
 //     plasmac_history SCRIPT INPUTS OUTPUTS
 //
 // SCRIPT has lines "set PIN VALUE" (before the first cycle), "at CYCLE PIN VALUE" in the order of cycles, and
-// "cycles N". PIN may be material, volts or z0 of the simulated table, no-float, no-volts, no-sideways to drive those
-// inputs by the script, program for a user interface that answers program-pause, or pause and resume. INPUTS gets every input of each cycle, OUTPUTS every output, in the order
-// of the tables of pins.
+// "cycles N". PIN may be material, volts or z0 of the simulated table, no-float, no-volts, no-sideways to
+// drive those inputs by the script, program for a user interface that answers program-pause, or pause and
+// resume. INPUTS gets every input of each cycle, OUTPUTS every output, in the order of the tables of pins.
 #include <cstdio>
 #include <fstream>
 #include <string>

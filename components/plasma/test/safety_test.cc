@@ -172,7 +172,7 @@ TEST(PlasmaSafety, WildInputsNeverComeOutAsNoNumbers_B6) {
                     using Value = typename std::remove_cvref_t<decltype(row)>::Value;
                     if (index++ == chosen) {
                         const double value = wild[random() % 10];
-                        row.read(table.in, std::is_same_v<Value, double> ? static_cast<Value>(value)
+                        row.read(table.in, std::is_same_v<Value, double>     ? static_cast<Value>(value)
                                            : std::fabs(value) < 2147483648.0 ? static_cast<Value>(value)
                                                                              : Value{});
                     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A plasma table for tests: Z goes where the offset counts say one cycle later, the float switch closes at the
-// material, the arc has its voltage while the torch is on. Pins are reached by name.
+// A plasma table for tests: Z goes where the offset counts say one cycle later, the float switch closes at
+// the material, the arc has its voltage while the torch is on. Pins are reached by name.
 #pragma once
 
 #include <cmath>
