@@ -57,8 +57,7 @@ void Cutting::wait_for_arc() noexcept {
         state_ = State::PIERCE_DELAY;
         return;
     }
-    const bool isMarking = isSpotting_ && out_.arc_ok_out;
-    if (timer_.runOut(period_s_) && !isMarking) {
+    if (timer_.runOut(period_s_)) {
         torch_off();
         timer_.left_s = in_.restart_delay;
         timer_.runOut(period_s_);
@@ -121,10 +120,10 @@ void Cutting::pause_at_end() noexcept {
 void Cutting::safe_height() noexcept {
     out_.cornerlock_is_locked = false;
     const double highest = in_.axis_z_max_limit - std::max(0, in_.max_offset) * in_.units_per_mm - zero_mu_;
-    thc_shift_ = std::max(0, thc_shift_);  // a torch that was lowered goes to the full safe height
-    const double above = highest - thc_shift_ * out_.offset_scale;
-    const double wanted = in_.safe_height > 0.0 ? std::min(in_.safe_height, above) : above;
-    const std::int32_t target = hasZero_ ? height_counts(wanted) : 0;
+    // A torch that was raised keeps its distance; one that was lowered goes to the full safe height.
+    const double raised = std::max(0, thc_shift_) * out_.offset_scale;
+    const double wanted = in_.safe_height > 0.0 ? std::min(in_.safe_height + raised, highest) : highest;
+    const std::int32_t target = hasZero_ ? height_counts(wanted) - thc_shift_ : 0;
     if (moveZ(target, steps_of(in_.setup_feed_rate))) {
         out_.feed_hold = false;
         state_ = State::END_CUT;
