@@ -55,7 +55,6 @@ constexpr Absent ABSENT[] = {
     {" classicladder classicladder_rt ", "there are no ladders yet; the components of logic (and2, or2, "
                                          "lut5, estop_latch, timedelay) or one of your own by "
                                          "halcompile do the same"},
-    {" plasmac ", "the component of plasma tables is not there yet: qtplasmac does not run"},
     {" homecomp axistest hal_lib tp boss_plc joint_axis_mapper histobinstream latencybinstream "
      "timedeltalatch "
      "xhc_hb04_util ",

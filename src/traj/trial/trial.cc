@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "traj/geometry/stretch.hh"
 #include "traj/geometry/exact_arc.hh"
+#include "traj/geometry/stretch.hh"
 #include "traj/tuning.hh"
 
 namespace mw::traj {

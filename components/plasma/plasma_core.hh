@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The plasma controller without HAL: one call of step() a servo period. It finds the material, starts the
+// arc, pierces, cuts while it holds the height by the arc voltage, retracts, and goes back when something is
+// wrong. Z (and X, Y for consumables and recovery) moves by offset counts that motion adds to its own
+// position.
+//
+// The states and their numbers are those of plasmac (state-out). Each part knows those above it.
+#pragma once
+
+#include <array>
+
+#include "components/plasma/plasma_shared.hh"
+
+namespace mw::plasma {
+
+/// The arc: arc.cc.
+class Arc : protected Shared {
+  protected:
+    void measure_voltage() noexcept;
+    void watch_arc() noexcept;
+
+    double last_voltage_ = 0.0;
+    bool hasTarget_ = false;  // the height control has a voltage to hold
+    std::int32_t ok_count_ = 0;
+
+  private:
+    bool isVoltageGood() noexcept;
+
+    double filtered_ = 0.0;
+    std::int32_t bad_count_ = 0;
+    bool wasWithin_ = false;
+    Countdown lost_;
+};
+
+/// The cut and its height: height_control.cc.
+class HeightControl : protected Arc {
+  protected:
+    void set_thc_pins() noexcept;
+    void start_cut() noexcept;
+    void cut_by_voltage() noexcept;
+    void cut_by_switches() noexcept;
+
+  private:
+    void wait_for_target() noexcept;
+    bool isOverridden() noexcept;
+    void watch_locks() noexcept;
+    void watch_void() noexcept;
+    void hold_voltage() noexcept;
+    void move_height(std::int32_t counts, double direction) noexcept;
+    bool isThcWanted() const noexcept;
+    bool isAtSpeed(double share) const noexcept;
+    void show_feed_rates() noexcept;
+
+    static constexpr int MOST_SAMPLES = 1000;
+    std::array<double, MOST_SAMPLES> samples_{};  // steady voltages, the newest before next_sample_
+    int next_sample_ = 0, sample_count_ = 0;
+    double sum_ = 0.0;
+    std::int32_t target_count_ = 0;
+    double target_sum_ = 0.0;
+    double last_error_ = 0.0, override_ = 0.0;
+    bool isOverrideNew_ = false;
+    double void_voltage_ = 0.0;
+    std::int32_t steep_count_ = 0, flat_count_ = 0;
+    bool isVoidWatched_ = false;
+};
+
+/// X and Y beside the path: sideways.cc.
+class Sideways : protected HeightControl {
+  protected:
+    void consumables_out() noexcept;
+    void consumables_back() noexcept;
+    void recovery_out() noexcept;
+    void recovery_back() noexcept;
+    void leave_laser() noexcept;
+
+  private:
+    void follow_laser() noexcept;
+    bool moveStraight(std::int32_t x, std::int32_t y) noexcept;
+
+    bool isUnderWay_ = false, isAtTarget_ = false;
+    double step_x_ = 0.0, step_y_ = 0.0;
+};
+
+/// Finding the material: probing.cc.
+class Probing : protected Sideways {
+  protected:
+    void watch_sensors() noexcept;
+    void inhibit_jog(State state) noexcept;
+    void start_probing() noexcept;
+    void probe_height() noexcept;
+    void probe_down() noexcept;
+    void probe_up() noexcept;
+    void zero_height() noexcept;
+
+    bool isProbeWaiting_ = false;
+    double last_cut_x_ = 0.0, last_cut_y_ = 0.0;
+
+  private:
+    bool isZeroed_ = false, isOhmic_ = false;
+    bool isFoundByContact_ = false, isEarly_ = false, isRetry_ = false, isBeside_ = false;
+    std::int32_t ohmic_attempts_ = 0, sense_count_ = 0;
+    std::int32_t probe_target_ = 0;
+};
+
+/// From the zero height to the end: cutting.cc.
+class Cutting : protected Probing {
+  protected:
+    void pierce_height() noexcept;
+    void start_torch() noexcept;
+    void wait_for_arc() noexcept;
+    void pierce() noexcept;
+    void puddle_jump() noexcept;
+    void cut_height() noexcept;
+    void pause_at_end() noexcept;
+    void safe_height() noexcept;
+    void max_height() noexcept;
+    void end_cut() noexcept;
+    void end_job() noexcept;
+
+    bool isConsumableWait_ = false;
+
+  private:
+    void spot() noexcept;
+
+    Countdown spot_;
+    std::int32_t starts_ = 0;
+};
+
+/// What is no cut: side_actions.cc.
+class SideActions : protected Cutting {
+  protected:
+    void torch_pulse() noexcept;
+    void ohmic_test() noexcept;
+    void probe_test() noexcept;
+    void scribe() noexcept;
+    void paused_motion() noexcept;
+
+    int scribe_phase_ = 0;
+
+  private:
+    bool isPulseNew_ = false;
+};
+
+/// What ends a cut before its end: stops.cc.
+class Stops : protected SideActions {
+  protected:
+    void watch_stops() noexcept;
+    void halt(Fault fault) noexcept;
+    void machine_off() noexcept;
+    void run_requests() noexcept;
+
+    bool isAlarmed_ = false;      // a sensor ended the cut
+    bool isEndedNow_ = false;     // by the operator, in this cycle
+    State before_ = State::IDLE;  // when this cycle began
+
+  private:
+    bool isStopped() noexcept;
+    bool isTorchAllowed() noexcept;
+    void end_by_operator() noexcept;
+
+    bool isStopAfterReturn_ = false, isTorchTaken_ = false;
+};
+
+/// What starts what: idle.cc.
+class Idle : protected Stops {
+  protected:
+    void idle() noexcept;
+
+  private:
+    bool startOfCut() noexcept;
+    bool startWhilePaused() noexcept;
+    bool startOfSideAction() noexcept;
+    bool isNearLastCut() const noexcept;
+};
+
+class Core : protected Idle {
+  public:
+    /// One servo period of `period_s` [s]. [servo]
+    void step(const Inputs &in, double period_s) noexcept;
+    const Outputs &out() const noexcept { return out_; }
+    State state() const noexcept { return state_; }
+    /// What went wrong since the last call. [servo]
+    Fault take_fault() noexcept {
+        const Fault fault = fault_;
+        fault_ = Fault::NONE;
+        return fault;
+    }
+
+  private:
+    void run_state() noexcept;
+    void count_times() noexcept;
+    void finish() noexcept;
+    bool areUsable() const noexcept;
+
+    State started_ = State::IDLE;  // after what stops a cut
+    bool wasTorchOn_ = false;
+};
+
+}  // namespace mw::plasma
