@@ -68,26 +68,26 @@ class NmlMachine {
         }
         for (const BufferSettings &buffer : config_.buffers) {
             masters_.push_back(
-                *open_buffer(buffer, *config_.find_process("emcsvr", buffer.name), instance_, local_));
+                open_buffer(buffer, *config_.find_process("emcsvr", buffer.name), instance_, local_).value());
         }
         if (isRemote) {
-            server_ = *Server::start(config_, "emcsvr", instance_, vocabulary_, local_);
+            server_ = Server::start(config_, "emcsvr", instance_, vocabulary_, local_).value();
             for (BufferSettings &buffer : config_.buffers) {
                 buffer.tcp_port = server_->tcp_port();
             }
         }
-        bridge_ = *Bridge::open({config_, "emc", instance_, vocabulary_, local_}, client_);
+        bridge_ = Bridge::open({config_, "emc", instance_, vocabulary_, local_}, client_).value();
         const Connections mine{config_, "xemc", instance_, vocabulary_, local_};
-        commands_ = std::make_unique<Channel>(*Channel::open(mine, COMMAND_CHANNEL));
-        statuses_ = std::make_unique<Channel>(*Channel::open(mine, STATUS_CHANNEL));
-        errors_ = std::make_unique<Channel>(*Channel::open(mine, ERROR_CHANNEL));
+        commands_ = std::make_unique<Channel>(Channel::open(mine, COMMAND_CHANNEL).value());
+        statuses_ = std::make_unique<Channel>(Channel::open(mine, STATUS_CHANNEL).value());
+        errors_ = std::make_unique<Channel>(Channel::open(mine, ERROR_CHANNEL).value());
     }
 
     /// `between`: while there is no bridge.
     void restart_bridge(const std::function<void()> &between) {
         bridge_.reset();
         between();
-        bridge_ = *Bridge::open({config_, "emc", instance_, vocabulary_, local_}, client_);
+        bridge_ = Bridge::open({config_, "emc", instance_, vocabulary_, local_}, client_).value();
     }
 
     template <class Body>

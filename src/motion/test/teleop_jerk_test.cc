@@ -305,6 +305,35 @@ double least_time_s(double way, double v, double a, double j) {
     return 2.0 * ramp_s(low, a, j);
 }
 
+/// Tower 0 of a delta stands across X: its joint hardly moves with X where a jog begins, and a quarter as
+/// fast as X where that stops. The mean of the jog, kept from begin to end, has to serve the stop as well.
+TEST(TeleopJerk, AJogThatBeginsWhereAJointHardlyMovesStopsSoonWhereItDoes_C8_C13) {
+    kins::LinearDelta delta;
+    delta.set(0, 130.25);
+    delta.set(1, 269);
+    MotionRig rig(delta, 3, 400, 3000);
+    constexpr double JERK = 1500;
+    rig.set(Parameter::JOINT_MAX_ACCELERATION, 0, 200);
+    rig.set(Parameter::JOINT_MAX_JERK, 0, JERK);
+    rig.set(Parameter::AXIS_MAX_VELOCITY, 0, 60);
+    rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, 1);
+    rig.set(Parameter::TRAJ_MAX_JERK, 0, 1e6);
+    rig.step(4);
+    rig.ready(Mode::TELEOP);
+    const double from = rig.status().carte_pos_cmd[0];
+    rig.send(JogContinuous{{false, 0}, 60});
+    ASSERT_TRUE(rig.run_until([&] { return rig.status().carte_pos_cmd[0] > from + 70; }, 5));
+    rig.send(JogStop{{false, 0}});
+    int cycles = 0;
+    for (rig.step(2); cycles < 10000 && rig.out->axis[0].isTeleopPlanning; ++cycles) {
+        rig.step();
+    }
+    constexpr double JOINT_PER_X = 0.36, SPEED = 60;  // no more than that within the way
+    EXPECT_LE(cycles * MotionRig::T, 2.2 * ramp_s(SPEED, 200 / JOINT_PER_X, JERK / JOINT_PER_X) + 0.02);
+    EXPECT_EQ(rig.joint_report(), "");
+    rig.forgive_joints();
+}
+
 /// Along X of a CoreXY both belts do what the axis does, so the least time is known. A jog takes longer by
 /// the time of its mean at most, tau = min(2 A / J, sqrt(2 V / J)), and one that comes to its speed by 42 %.
 TEST(TeleopJerk, AJogOfAStraightJointLineIsNearTheLeastTime_C13) {

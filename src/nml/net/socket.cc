@@ -47,13 +47,17 @@ struct FreeAddresses {
 };
 using Addresses = std::unique_ptr<addrinfo, FreeAddresses>;
 
+/// "localhost" is this computer's loopback, also where no hosts file says so (RFC 6761, 6.3).
 Result<Addresses> find_addresses(const std::string &host, int port, Transport transport, bool isListening) {
     addrinfo wanted{};
     wanted.ai_family = AF_UNSPEC;
     wanted.ai_socktype = transport == Transport::TCP ? SOCK_STREAM : SOCK_DGRAM;
     wanted.ai_flags = AI_NUMERICSERV | (isListening ? AI_PASSIVE : 0);
     addrinfo *found = nullptr;
-    const int error = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &wanted, &found);
+    int error = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &wanted, &found);
+    if (error != 0 && host == "localhost") {
+        error = ::getaddrinfo("127.0.0.1", std::to_string(port).c_str(), &wanted, &found);
+    }
     if (error != 0) {
         return fail(fmt::format("host '{}': {}", host, ::gai_strerror(error)));
     }

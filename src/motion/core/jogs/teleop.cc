@@ -96,6 +96,12 @@ TeleopStop limit_teleop(Jogs &jogs, const TeleopMachine &m) noexcept {
     // Where it stands first: a jog that begins has no acceleration yet that the joints could bear.
     load.isSmooth = m.limits.path.isJerkLimited;
     bool isFound = add_load(m, here, load);
+    for (int i = 0; i < load.count && load.isSmooth; ++i) {
+        const traj::JogPlanner &p = jogs.axis[at(load.axes[at(i)])].planner;
+        if (p.mean_in_force_s(m.period_s) == 0.0) {
+            add_sent(m, here, i, p.target, load);
+        }
+    }
     load.isSmooth ? apply_smoothly(m, load, jogs, false) : apply_load(m, load, jogs);
     geom::Pose stop = here;  // where the axes come to rest when they brake a cycle from now
     geom::Pose far = here;

@@ -106,6 +106,34 @@ bool add_load(const TeleopMachine &m, const geom::Pose &pose, TeleopLoad &load, 
     return isFound;
 }
 
+void add_sent(const TeleopMachine &m, const geom::Pose &here, int i, double target,
+              TeleopLoad &load) noexcept {
+    constexpr int MOST_PLACES = 8;
+    const int axis = load.axes[at(i)];
+    double most = std::abs(target - here[axis]);
+    for (int j = 0; j < m.num_joints; ++j) {
+        const double range = m.limits.joints.high[at(j)] - m.limits.joints.low[at(j)];
+        const double q1 = load.q1[at(i)][at(j)];
+        most = q1 > 0 ? std::min(most, range / q1) : most;
+    }
+    double way = target < here[axis] ? -most : most;
+    for (int n = 0; n < MOST_PLACES; ++n, way *= 0.5) {
+        JointsAt before{};
+        JointsAt after{};
+        geom::Pose p = here;
+        p[axis] += way - SMOOTH_STEP;
+        bool isFound = find_joints(m, p, before);
+        p[axis] += 2.0 * SMOOTH_STEP;
+        isFound = isFound && find_joints(m, p, after);
+        if (isFound) {
+            for (std::size_t j = 0; j < at(m.num_joints); ++j) {
+                load.q1_sent[at(i)][j] = std::abs(after[j] - before[j]) / (2.0 * SMOOTH_STEP);
+            }
+            return;
+        }
+    }
+}
+
 AxisValues shared_speeds(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs,
                          double n) noexcept {
     AxisValues v{};

@@ -28,6 +28,8 @@ struct TeleopLoad {
     AxisValues speed{};
     std::array<std::array<JointsAt, MAX_AXES>, MAX_AXES> q2_here{};  ///< at the first place, with sign
     bool isBegun = false;                                            ///< that is known
+    /// Of an axis that begins, where it is sent or nearest to that: its mean is to serve it there as well.
+    std::array<JointsAt, MAX_AXES> q1_sent{};
 };
 
 /// Part of a joint's acceleration that curves may take at the highest speed.
@@ -45,6 +47,11 @@ struct Displaced {
 };
 /// Takes the derivatives at one place into account; false when the kinematics has no answer there.
 bool add_load(const TeleopMachine &m, const geom::Pose &pose, TeleopLoad &load, Displaced from = {}) noexcept;
+
+/// Looks where an axis that begins is sent: there, else half of the way there, and so on, a few times;
+/// nowhere else does a place without joints matter to it.
+void add_sent(const TeleopMachine &m, const geom::Pose &here, int i, double target,
+              TeleopLoad &load) noexcept;
 
 /// What joints leave of the speeds that are wanted when each is shared evenly among `n` axes.
 AxisValues shared_speeds(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs, double n) noexcept;

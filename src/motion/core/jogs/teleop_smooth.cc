@@ -54,18 +54,36 @@ struct Sharing {
     }
 };
 
-/// The mean of an axis that begins: no longer than 2 A / J, nor than what brings it to its highest speed
-/// soonest, sqrt(2 V / J): V / a + 2 a / J is least there.
-double mean_for(const Sharing &s, int i, double acceleration, double jerk) noexcept {
-    if (jerk == NONE) {
-        return 0;
+/// What joints that move so much with it leave of the acceleration and jerk of an axis on a straight way.
+struct Straight {
+    double acceleration = 0, jerk = NONE;
+};
+Straight straight(const Sharing &s, int i, const JointsAt &q1) noexcept {
+    const double own = s.m.limits.axis_jog[at(s.load.axes[at(i)])].jerk;
+    Straight out{s.jog(i).wanted_acceleration, own > 0 ? own : NONE};
+    for (int j = 0; j < s.m.num_joints; ++j) {
+        const double used = s.n * q1[at(j)];
+        if (used > 0) {
+            out.acceleration = std::min(out.acceleration, s.m.limits.joints.acceleration[at(j)] / used);
+            out.jerk = std::min(out.jerk, s.jerk(j) / used);
+        }
     }
+    return out;
+}
+
+/// The mean of an axis that begins: no longer than 2 A / J, nor than what brings it to its highest speed
+/// soonest, sqrt(2 V / J): V / a + 2 a / J is least there. It keeps its mean until it stands: where it is
+/// sent joints may have to do more for it than where it begins.
+double mean_for(const Sharing &s, int i) noexcept {
+    JointsAt q1 = s.load.q1[at(i)];
     double v = s.m.limits.axis_jog[at(s.load.axes[at(i)])].velocity;
     for (int j = 0; j < s.m.num_joints; ++j) {
-        const double q1 = s.load.q1[at(i)][at(j)];
-        v = q1 > 0 ? std::min(v, s.m.limits.joints.velocity[at(j)] / q1) : v;
+        q1[at(j)] = std::max(q1[at(j)], s.load.q1_sent[at(i)][at(j)]);
+        v = q1[at(j)] > 0 ? std::min(v, s.m.limits.joints.velocity[at(j)] / q1[at(j)]) : v;
     }
-    return std::min(2.0 * acceleration / jerk, std::sqrt(2.0 * v / jerk));
+    const Straight most = straight(s, i, q1);
+    return most.jerk == NONE ? 0.0
+                             : std::min(2.0 * most.acceleration / most.jerk, std::sqrt(2.0 * v / most.jerk));
 }
 
 /// Means, and the accelerations that they and the joints allow on straight ways.
@@ -74,18 +92,9 @@ void share_straight(const Sharing &s, Allowed &out) noexcept {
         if (!s.has(i)) {
             continue;
         }
-        const double own = s.m.limits.axis_jog[at(s.load.axes[at(i)])].jerk;
-        double a = s.jog(i).wanted_acceleration;
-        double jerk = own > 0 ? own : NONE;
-        for (int j = 0; j < s.m.num_joints; ++j) {
-            const double used = s.n * s.load.q1[at(i)][at(j)];
-            if (used > 0) {
-                a = std::min(a, s.m.limits.joints.acceleration[at(j)] / used);
-                jerk = std::min(jerk, s.jerk(j) / used);
-            }
-        }
+        const auto [a, jerk] = straight(s, i, s.load.q1[at(i)]);
         const double in_force = s.jog(i).planner.mean_in_force_s(s.m.period_s);
-        const double tau = in_force > 0 ? in_force : mean_for(s, i, a, jerk);
+        const double tau = in_force > 0 ? in_force : mean_for(s, i);
         out.mean_s[at(i)] = tau;
         out.acceleration[at(i)] = jerk == NONE ? a : std::max(std::min(a, 0.5 * tau * jerk), LEAST_SHARE * a);
     }
