@@ -91,6 +91,26 @@ TEST_F(CorrectionPart, AnAngularJointTakesUpItsPlayWithItsOwnJerk_C11) {
     EXPECT_EQ(cycles_of(J / 50, 1), least);
 }
 
+/// A long play needs the mean that keeps the jerk at all of the acceleration, 2 a / j, and none that is
+/// longer.
+TEST_F(CorrectionPart, ALongPlayIsTakenUpWithoutDelay_C11) {
+    limit_jerk();
+    constexpr double PLAY = 20, HALF = 0.5;  // of what the joint can do
+    constexpr int REVERSAL = 2000;
+    set(Parameter::JOINT_BACKLASH, PLAY);
+    int last = 0;
+    double from = 0;
+    for (int n = 0; n < 2 * REVERSAL; ++n) {
+        from = n == REVERSAL ? correction.position : from;
+        const double before = correction.position;
+        step(correction, settings, 0, n == 0 || n >= REVERSAL ? 0.0 : 0.001, CYCLE_S);
+        last = correction.position != before ? n - REVERSAL : last;
+    }
+    EXPECT_NEAR(std::abs(correction.position - from), PLAY, 1e-9);
+    const double seconds = PLAY / (HALF * V) + V / A + 2 * A / J;
+    EXPECT_NEAR(last * CYCLE_S, seconds, 0.005);
+}
+
 TEST_F(CorrectionPart, WhatIsNoTableIsRefused_C11) {
     EXPECT_EQ(load(1, 3, 0, 0, 0), Reason::OUT_OF_RANGE) << "not the first one";
     EXPECT_EQ(load(0, MAX_SCREW_POINTS + 1, 0, 0, 0), Reason::OUT_OF_RANGE);

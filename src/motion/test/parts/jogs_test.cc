@@ -4,6 +4,7 @@
 #include "kins/rotary_table.hh"
 #include "motion/core/jogs/jogs.hh"
 #include "motion/core/jogs/teleop.hh"
+#include "motion/core/jogs/teleop_load.hh"
 
 namespace mw::motion {
 namespace {
@@ -256,6 +257,31 @@ TEST(JogsPart, HomingMovesAJointNoFasterThanItCan) {
     EXPECT_EQ(jogs.at(JOINT).planner.max_jerk, 0);
     renumber(jogs.at(JOINT), 6, 6);
     EXPECT_EQ(jogs.at(JOINT).planner.target, 2);
+}
+
+/// Joint 0 is X cos C + Y sin C: what it accelerates by while X and C both move goes with the product of
+/// their speeds, twice, as in any square of a sum.
+TEST(TeleopPart, WhatTwoAxesAskOfAJointTogetherIsCountedForEachOfThem_C13) {
+    const kins::RotaryTable table;
+    const FoldedLimits limits;
+    TeleopMachine machine{table, limits};
+    machine.num_joints = 5;
+    geom::Pose pose;
+    pose[geom::AXIS_X] = 50;
+    pose[geom::AXIS_C] = 30;
+    ASSERT_EQ(table.inverse(pose, machine.joint_positions.data()), kins::Status::OK);
+    for (const bool isSmooth : {false, true}) {
+        TeleopLoad load;
+        load.axes = {geom::AXIS_X, geom::AXIS_C};
+        load.count = 2;
+        load.isSmooth = isSmooth;
+        ASSERT_TRUE(add_load(machine, pose, load));
+        constexpr double RAD = 3.14159265358979 / 180;
+        const double exact = 0.5 * RAD;  // sin 30
+        EXPECT_GE(load.q2[0][1][0], exact);
+        EXPECT_NEAR(load.q2[0][1][0], exact, 0.1 * exact) << "with a margin";
+        EXPECT_EQ(load.q2[1][0][0], load.q2[0][1][0]);
+    }
 }
 
 TEST(TeleopPart, AJogOfATableStopsBeforeAJointLeavesItsRange) {
