@@ -137,7 +137,10 @@ struct Pass {
     double direction = 1;  ///< -1: the spindle turns backwards
     double share = 1;      ///< part of the pieces' accelerations for gaining speed and for braking
     double trim = 1;       ///< and for following the spindle in between
-    bool isTap = false;    ///< in along the first piece, and back to its start
+    /// By which the acceleration may change within the mean [unit/s^2]: a stop that comes while speed is
+    /// gained has what that leaves. 0: any.
+    double swing = 0;
+    bool isTap = false;  ///< in along the first piece, and back to its start
     TapTerms tap;
 };
 

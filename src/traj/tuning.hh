@@ -127,6 +127,9 @@ struct CornerTuning {
     /// Part of the tolerance that blends may take where corners follow each other closely, and what a slight
     /// turn is spread by. Measured: both are flat.
     static constexpr double GEOMETRY_SHARE = 0.35, SPREAD_SHARE = 0.05;
+    /// Part of tau that the faster side of a slight turn may lose on its blend, which is passed at the speed
+    /// of the slower.
+    static constexpr double SPREAD_WORTH = 0.1;
     /// Part that the mean may take on an arc. Measured: less costs time; 0.96 gains up to 0.4 % with gentle
     /// jerk limits, nothing with stiff ones.
     static constexpr double ARC_SHARE = 0.92;

@@ -34,12 +34,6 @@ testing::LimitChecker checker_of(const JointDesign &j, bool isJerk, double perio
     return {{limit}, period_s, RATE_ROUNDING};
 }
 
-/// Of the motor, without the external offset: that has been asked for by HAL pins and goes on as long as it
-/// is.
-double own_place(const JointSample &q) {
-    return q.motor_cmd + q.turned - q.offset;
-}
-
 /// Of an axis: what it is jogged or programmed to and its external offset take it there together.
 double axis_place(const Sample &s, int axis) {
     return s.axes[axis] + s.offsets[axis];
@@ -122,6 +116,9 @@ double Judge::time_to_brake() const {
     double most = 0;
     for (const JointDesign &d : design_.joints) {
         most = std::max(most, d.velocity / d.acceleration);
+    }
+    for (const AxisDesign &a : design_.axes) {
+        most = std::max(most, a.velocity / a.acceleration);
     }
     return most + 3 * design_.rise_s();
 }
@@ -249,7 +246,7 @@ void Judge::take_for_stop(const Sample &s) {
     stop_.path.axes.push_back(s.axes);
     stop_.path.areAxesKnown = stop_.path.areAxesKnown && s.areAxesKnown;
     for (std::size_t j = 0; j < joints_.size(); ++j) {
-        stop_.path.motors[j].push_back(own_place(s.joints[j]));
+        stop_.path.motors[j].push_back(s.joints[j].motor_place());
     }
     if (!stop_.isAwaited) {
         begin_stop();
@@ -403,23 +400,6 @@ bool Judge::mayBeAtRest() const {
     return standing_ > 0 || isSlow;
 }
 
-/// What has come to rest stays there, but for rounding, until somebody asks for a motion.
-void Judge::check_stale(const Sample &s, bool wasAtRest) {
-    const bool wasHeld = isHeld_;
-    isHeld_ = !allowed_.isMotion && restless_ == 0 && (wasAtRest || wasHeld);
-    for (std::size_t j = 0; j < joints_.size(); ++j) {
-        const JointSample &q = s.joints[j];
-        const JointSample &before = last_.joints[j];
-        const bool isJudged = isHeld_ && wasHeld && q.isAmpOn && before.isAmpOn;
-        const double place = own_place(q);
-        const double held = isJudged ? joints_[j].held : isHeld_ ? own_place(before) : place;
-        joints_[j].held = q.isAmpOn && before.isAmpOn ? held : place;
-        if (isHeld_ && q.isAmpOn && before.isAmpOn && std::abs(place - held) > PLACE_ROUNDING) {
-            fail("stale", fmt::format("joint {} moves, and nobody has asked for it since the last stop", j));
-        }
-    }
-}
-
 void Judge::check_rest(const Sample &s) {
     bool isMoving = false, isOffsetMoving = false;
     bool isOn = false, wasOn = false;
@@ -429,7 +409,7 @@ void Judge::check_rest(const Sample &s) {
         wasOn = wasOn || last_.joints[j].isAmpOn;
         isOffsetMoving = isOffsetMoving || q.offset != last_.joints[j].offset;
         isMoving = isMoving || (q.isAmpOn && last_.joints[j].isAmpOn &&
-                                std::abs(own_place(q) - own_place(last_.joints[j])) > MOVED);
+                                std::abs(q.motor_place() - last_.joints[j].motor_place()) > MOVED);
     }
     if (wasOn && !isOn) {
         allowed_.isSwitchingOn = allowed_.isMotion = allowed_.isWork = false;

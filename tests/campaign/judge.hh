@@ -28,6 +28,9 @@ struct JointSample {
     double offset = 0;         ///< external, of its axis; part of the commands
     bool isAmpOn = false, isHomed = false, isHoming = false;
     bool isAmpFaulted = false;
+    /// Of the motor, without the external offset: that has been asked for by HAL pins and goes on as long as
+    /// it is.
+    double motor_place() const { return motor_cmd + turned - offset; }
 };
 
 struct Sample {
@@ -145,7 +148,7 @@ class Judge {
     AwaitedStop stop_;
     double build_up_s_ = 0;
     int standing_ = 0, offsets_standing_ = 0;  ///< for so many cycles
-    bool isHeld_ = false;                      ///< nothing may move
+    int held_cycles_ = 0;                      ///< since nothing may move; 0: it may
     int restless_ = 0;  ///< cycles left in which commands of before a stop may still arrive
     double slowest_stop_ = 0;
     std::string report_;

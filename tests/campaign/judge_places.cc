@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Whether slides are where joints say that they are.
+// Whether slides are where joints say that they are, and stay where they rest.
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -8,6 +9,10 @@
 
 namespace mw::campaign {
 namespace {
+
+constexpr double HELD_ROUNDING = 2e-6;  ///< of what rests [units]
+/// What a motion may have left to go in the mean where it seems to stand [units].
+constexpr double IN_THE_MEAN = 1e-3;
 
 /// How exactly homing knows where a slide is.
 double found_within(const JointDesign &d, double period_s) {
@@ -18,6 +23,30 @@ double found_within(const JointDesign &d, double period_s) {
 }
 
 }  // namespace
+
+/// What has come to rest stays there, but for rounding, until somebody asks for a motion. A command that came
+/// with the stop may still be in the mean that keeps the jerk: too slow to see at first, and what play there
+/// is is made up where it turns about.
+void Judge::check_stale(const Sample &s, bool wasAtRest) {
+    const bool wasHeld = held_cycles_ > 0;
+    const bool isHeld = !allowed_.isMotion && restless_ == 0 && (wasAtRest || wasHeld);
+    held_cycles_ = isHeld ? held_cycles_ + 1 : 0;
+    const double rise_s = design_.rise_s();
+    const int settling = rise_s > 0 ? static_cast<int>((rise_s + time_to_correct()) / period_) : 0;
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+        const JointDesign &d = design_.joints[j];
+        const JointSample &q = s.joints[j];
+        const JointSample &before = last_.joints[j];
+        const bool isKept = isHeld && wasHeld && q.isAmpOn && before.isAmpOn && held_cycles_ != settling + 1;
+        const double place = q.motor_place();
+        const double held = isKept ? joints_[j].held : isHeld ? before.motor_place() : place;
+        joints_[j].held = q.isAmpOn && before.isAmpOn ? held : place;
+        const double mean_part = held_cycles_ <= settling ? IN_THE_MEAN + std::max(d.backlash, d.play) : 0.0;
+        if (isHeld && q.isAmpOn && before.isAmpOn && std::abs(place - held) > HELD_ROUNDING + mean_part) {
+            fail("stale", fmt::format("joint {} moves, and nobody has asked for it since the last stop", j));
+        }
+    }
+}
 
 /// A joint that says that it is homed is where it says that it is.
 void Judge::check_homes(const Sample &s) {

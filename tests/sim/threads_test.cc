@@ -35,14 +35,14 @@ struct Judged {
 
 class ThreadsTest : public VirtualMachineTest {
   protected:
-    void make(bool isJerkLimited) {
+    void make(bool isJerkLimited, double velocity = 150) {
         SimMachine lathe;
         lathe.coordinates = "XZ";
         lathe.kinematics = "trivkins coordinates=XZ";
         lathe.hasSpindle = true;
-        lathe.velocity = 150;
+        lathe.velocity = velocity_ = velocity;
         lathe.acceleration = ACCELERATION;
-        lathe.joints.assign(2, {false, 150, ACCELERATION, -500, 500, isJerkLimited ? JERK : 0});
+        lathe.joints.assign(2, {false, velocity, ACCELERATION, -500, 500, isJerkLimited ? JERK : 0});
         lathe.traj = isJerkLimited ? fmt::format("PLANNER_TYPE = 1\nMAX_LINEAR_JERK = {}\n", JERK) : "";
         isJerkLimited_ = isJerkLimited;
         switch_on_config(lathe.write(folder_));
@@ -59,7 +59,8 @@ class ThreadsTest : public VirtualMachineTest {
     }
     void check_limits() const {
         const double jerk = isJerkLimited_ ? JERK : 1e300;
-        mw::testing::LimitChecker checker({{150, ACCELERATION, jerk}, {150, ACCELERATION, jerk}}, T);
+        mw::testing::LimitChecker checker({{velocity_, ACCELERATION, jerk}, {velocity_, ACCELERATION, jerk}},
+                                          T);
         for (const Sample &s : trace_) {
             const double axes[] = {s.x, s.z};
             checker.sample(axes);
@@ -120,6 +121,7 @@ class ThreadsTest : public VirtualMachineTest {
         return v * v / (2 * ACCELERATION) + 0.5 * v * jerk_s + 2 * v * T;
     }
     bool isJerkLimited_ = false;
+    double velocity_ = 0;
     std::vector<Sample> trace_;
 };
 
@@ -296,6 +298,31 @@ TEST_P(ThreadModes, AnAbortBrakesInTheThreadWithinTheLimits_C15) {
     EXPECT_GT(motion().carte_pos_cmd.z(), z - 3);
     check_limits();
     EXPECT_EQ(mdi("G0 X14 Z5"), task::Progress::DONE) << messages();
+}
+
+/// The mean of this machine is as long as its speed needs, sqrt(2 V / J): not all of its acceleration can be
+/// turned about within it. An abort comes while the tool gains its speed.
+TEST_P(ThreadModes, AnAbortWhileTheToolGainsSpeedKeepsTheLimits_C13_C15) {
+    make(GetParam(), 40);
+    for (const int later : {2, 6, 12, 20, 30, 40}) {
+        start(THREAD);
+        trace_.clear();
+        const auto isAtDepth = [&] { return std::abs(trace_.back().x - 10) < 1e-9; };
+        for (int i = 0; i < 20000 && (trace_.empty() || !isAtDepth() || trace_.back().z > 4.99); ++i) {
+            cycle();
+        }
+        ASSERT_TRUE(isAtDepth() && trace_.back().z > 3) << "it has just begun";
+        for (int i = 0; i < later; ++i) {
+            cycle();
+        }
+        post(task::AbortAll{});
+        for (int i = 0; i < 1000; ++i) {
+            cycle();
+        }
+        EXPECT_TRUE(motion().isInPosition) << later;
+        check_limits();
+        EXPECT_EQ(mdi("G0 X14 Z5"), task::Progress::DONE) << messages();
+    }
 }
 
 TEST_P(ThreadModes, TheToolFollowsASpindleThatIsSlowedByTheCut_C15) {

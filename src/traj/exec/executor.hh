@@ -7,6 +7,7 @@
 
 #include "base/limits.hh"
 #include "traj/exec/arc_mean.hh"
+#include "traj/exec/locked_state.hh"
 #include "traj/exec/mean_filter.hh"
 #include "traj/exec/spindle_track.hh"
 #include "traj/exec/tap_follower.hh"
@@ -70,21 +71,7 @@ class ExecutorState {
     std::array<Sequence, HISTORY_CAPACITY> done_history_{};
 
     std::array<FollowedSpindle, MAX_SPINDLES> spindles_{};
-    /// Of a pass: the helix is x = per_turn (turned() - origin - turns of the pieces passed).
-    struct Lock {
-        Pass pass;
-        double origin = 0;        ///< turns of the spindle at which the helix passes the start
-        double passed_turns = 0;  ///< of the pieces that are complete
-        Sequence came_from = 0;   ///< piece at the start of the last cycle
-        double gap = 0;           ///< of the last cycle: how far the tool is ahead of the helix
-        int crossings = 0;        ///< of the helix by the tool, since the start
-        int near_cycles = 0;      ///< since the tool was not near the helix
-        double descent = 0;       ///< > 0: brakes with it to the end of the piece
-        bool isOn = false;        ///< the tool is on the helix
-        bool wasOn = false;       ///< it has been
-        bool wasDescending = false;
-    };
-    Lock lock_;
+    LockedState lock_;
     TapFollower tap_;
 };
 

@@ -174,7 +174,9 @@ void Executor::step_locked() noexcept {
 void Executor::advance_locked() noexcept {
     const double wanted = locked_speed();
     lock_.came_from = state_.piece;
-    if (!descend(wanted)) {
+    const bool isDescending = descend(wanted);
+    lock_.gain.take(isDescending ? 0.0 : (wanted - state_.v) / period_, state_.filter);
+    if (!isDescending) {
         state_.v = wanted;
         state_.x += wanted * period_;
         lock_.wasDescending = false;
@@ -193,8 +195,9 @@ void Executor::advance_locked() noexcept {
          ++n) {
         const Piece &piece = store_.piece(state_.piece);
         const double left = piece.length - state_.x;
-        const double most = lock_.pass.share * piece.acceleration.at(state_.v * state_.v);
-        const double a = state_.isDropping ? most : lock_.descent;
+        const double a = state_.isDropping
+                             ? lock_.dropping_acceleration(piece.acceleration.at(state_.v * state_.v))
+                             : lock_.descent;
         const double stop_s = a > 0 ? state_.v / a : 0.0;
         const double end_v2 = std::max(0.0, state_.v * state_.v - 2.0 * a * left);
         const bool isAtEnd = end_v2 > 0 || (!state_.isDropping && piece.v2_out > 0);

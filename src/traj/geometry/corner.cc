@@ -87,15 +87,26 @@ Corner mean_stop(const Bend &bend, double share) noexcept {
     return stop;
 }
 
+/// How wide a blend may be so that what is faster on one side of it loses next to nothing on the blend, which
+/// is passed at `slow`.
+double worth_spreading(const Bend &bend, double slow) noexcept {
+    const Primitive &a = bend.a.line;
+    const Primitive &b = bend.b.line;
+    const double fast = std::max(limit_of(a, 0, a.length, bend.limits(), bend.wish_before()).v,
+                                 limit_of(b, 0, b.length, bend.limits(), bend.wish_after()).v);
+    const double lost_per_way = 1.0 / slow - 1.0 / fast;
+    return lost_per_way > 0 ? CornerTuning::SPREAD_WORTH * bend.path().filter_s() / lost_per_way : UNLIMITED;
+}
+
 /// The blend alone, without regard to the corners near it.
-double spread_blend(const Bend &bend, double half, double fit) noexcept {
+double spread_blend(const Bend &bend, double half, double fit, double most) noexcept {
     const Primitive &a = bend.a.line;
     const Primitive &b = bend.b.line;
     double d = std::min(half, fit);
     if (bend.tolerance > 0) {
         // A slight turn is spread as far as that costs next to nothing.
-        d = std::max(
-            d, std::min(half, blend_d_for_tolerance(a, b, CornerTuning::SPREAD_SHARE * bend.tolerance)));
+        const double spread = blend_d_for_tolerance(a, b, CornerTuning::SPREAD_SHARE * bend.tolerance);
+        d = std::max(d, std::min({half, spread, most}));
     }
     if (bend.tolerance > 0 && (a.isArc || b.isArc)) {
         // Standing, too, the blend is within the tolerance; between lines it is so by what it takes at speed.
@@ -122,11 +133,12 @@ Corner mean_corner(const Bend &bend) noexcept {
     const SpeedLimit on_a = limit_of(a, 0, a.length, bend.limits(), wish);
     const SpeedLimit on_b = limit_of(b, 0, b.length, bend.limits(), wish);
     double v = std::min(on_a.v, on_b.v);
+    const double most_spread = worth_spreading(bend, v);
     const double need =
         blend_d_for_speed(a, b, bend.limits(), 1.0) * CornerTuning::TURNING_FIT;  // d = need v^2
     v = tolerance > 0 ? std::min(v, speed_through(CornerTuning::TOLERANCE_SHARE * share, need, half, tau))
                       : v;
-    double d = spread_blend(bend, half, need * v * v);
+    double d = spread_blend(bend, half, need * v * v, most_spread);
     const double spacing = 0.5 * (a.length + b.length);
     const bool isDense = v * tau > CornerTuning::DENSE * spacing;
     if (isDense && tolerance > 0) {

@@ -47,6 +47,32 @@ TEST(Filtered, ACornerUsesTheToleranceAndNoMore_C13) {
     EXPECT_GT(nearest, 0.002);
 }
 
+/// A rapid and a slow cut at half a degree to it: the blend between them is passed at the cut's speed, so it
+/// is no wider than that needs, whatever the tolerance would let it be.
+TEST(Filtered, ARapidBeforeASlowCutAtASlightAngleStaysRapid_C2_C13) {
+    const auto time_with = [](double tolerance) {
+        JerkRig rig;
+        MoveRequest rapid = request(geom::PathMode::BLEND, tolerance);
+        MoveRequest cut = rapid;
+        cut.tag.requested_velocity = 4;
+        rig.planner.add(make_line(Pose{}, at(4)), rapid);
+        rig.planner.add(make_line(at(4), at(12, 0.07)), cut);
+        EXPECT_TRUE(rig.run(10));
+        rig.expect_within();
+        return static_cast<double>(rig.cycle) * Rig::T;
+    };
+    JerkRig stopping;
+    MoveRequest move = request(geom::PathMode::EXACT_STOP);
+    stopping.planner.add(make_line(Pose{}, at(4)), move);
+    move.tag.requested_velocity = 4;
+    stopping.planner.add(make_line(at(4), at(12, 0.07)), move);
+    ASSERT_TRUE(stopping.run(10));
+    const double with_stop = static_cast<double>(stopping.cycle) * Rig::T;
+    for (const double tolerance : {0.02, 0.05, 0.5}) {
+        EXPECT_LE(time_with(tolerance), with_stop) << "tolerance " << tolerance;
+    }
+}
+
 double corner_time(double corner_scale) {
     JerkRig rig;
     MoveRequest r = request(geom::PathMode::BLEND, 0.5);

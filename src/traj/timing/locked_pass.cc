@@ -27,6 +27,18 @@ double turn_way(const PlannedPath &path, Sequence piece) noexcept {
     return 1.0 / ((1.0 - part) / way(p.move) + part / way(p.move + 1));
 }
 
+/// What the mean can spread of a change of acceleration along a line.
+double swing_of(const PathLimits &limits, const Primitive &line) noexcept {
+    const Pose t = derivative_at(line, 0);
+    const PerLimited &jerk = limits.wanted().jerk;
+    double swing = jerk[XYZ_NORM] / std::max(geom::norm_xyz(t), 1e-300);
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        const double part = std::abs(t[i]);
+        swing = part > 0 ? std::min(swing, jerk[static_cast<std::size_t>(i)] / part) : swing;
+    }
+    return PassTuning::FULL * swing * limits.filter_s();
+}
+
 }  // namespace
 
 Sequence pass_end(const PathView &view, Sequence first) noexcept {
@@ -75,6 +87,7 @@ Pass make_pass(const PathView &view, Sequence first) noexcept {
     const double even = isOneMove ? PassTuning::SHORT_SHARE : PassTuning::CORNER_SHARE;
     pass.share = isLong ? PassTuning::LONG_SHARE : even;
     pass.trim = isLong ? PassTuning::LONG_TRIM : even;
+    pass.swing = isLong ? swing_of(limits, path.primitive(path.move_of(first))) : 0.0;
     return pass;
 }
 
