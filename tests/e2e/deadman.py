@@ -3,8 +3,7 @@
 """The judge of jogs by lease: a client of `millwright ui` jogs and is cut, silent or killed at a moment drawn by a seed. The
 joint must decelerate within 110 ms of the last renewal that the machine was given, and stand; a jog that is not cut does not stutter.
 
-What moved when is read from HAL every servo cycle or so: the position, and the servo thread's own time (an integrator of 1), so that a
-computer whose servo thread comes late is not taken for a jog that runs on. Nothing of the screen, the server or motion is asked.
+What moved when is told by joint_watch.py.
 
 usage: deadman.py MILLWRIGHT HALCMD ROOT [--cuts N] [--seed S] [--slack-ms MS] [--log FILE]
 slack: of a computer that does other things. log: a line of JSON for each cut; a campaign that was cut short goes on behind its last line.
@@ -18,53 +17,17 @@ import random
 import signal
 import sys
 import tempfile
-import threading
 import time
 
+from joint_watch import SERVO_CLOCK, Watch, begin_of_braking, last_motion, stands_still
 from mill_by_hand import Findings
 from web_screen import Bench, Screen, switch_on_and_home
 
 LEASE_MS, RENEWAL_S = 100, 0.030
 BOUND_S = 0.110
 SPEED = 20.0  # mm/s; the mill of the tests brakes from it in 14 ms
-SAMPLE_S = 0.002
 STUTTER_S = 0.010
-SERVO_CLOCK = 'loadrt integ\naddf integ.0 servo-thread\nsetp integ.0.in 1\nnet servo-s integ.0.out\n'
 FOUND = Findings()
-
-
-class Watch(threading.Thread):
-    """Samples of where the joint is, and when. The stream of halsampler would be exact; HAL itself is asked instead."""
-
-    def __init__(self, bench):
-        super().__init__(daemon=True)
-        sys.path.insert(0, str(pathlib.Path(bench.millwright).parent.parent / 'lib/python'))
-        os.environ.update(bench.env)
-        import hal  # of the build, for the instance of the bench
-        self.component = hal.component(f'deadman{os.getpid()}')
-        self.pin = self.component.newpin('position', hal.HAL_FLOAT, hal.HAL_IN)
-        self.component.newpin('servo-s', hal.HAL_FLOAT, hal.HAL_IN)
-        self.component.ready()
-        hal.connect(f'deadman{os.getpid()}.position', 'Xpos')
-        hal.connect(f'deadman{os.getpid()}.servo-s', 'servo-s')
-        self.samples, self.is_on = [], True
-
-    def run(self):
-        while self.is_on:
-            self.samples.append((self.component['servo-s'], self.component['position'], time.monotonic()))
-            time.sleep(SAMPLE_S)
-
-    def servo_time(self, when):
-        """Of a moment by the computer's clock: between the samples before and after it, which may be far apart where the
-        computer is busy."""
-        before = max((one for one in self.samples if one[2] <= when), key=lambda one: one[2], default=None)
-        after = min((one for one in self.samples if one[2] > when), key=lambda one: one[2], default=None)
-        if before is None or after is None:
-            return None
-        return before[0] + (after[0] - before[0]) * (when - before[2]) / (after[2] - before[2])
-
-    def since(self, start):
-        return [one for one in self.samples if one[2] >= start]
 
 
 def jogger(port, sign, pipe, style):
@@ -93,30 +56,6 @@ def jogger(port, sign, pipe, style):
         time.sleep(10)  # open and silent, or killed meanwhile
 
 
-def last_motion(samples):
-    """When it moved last, by the samples."""
-    moved = [b[0] for a, b in zip(samples, samples[1:]) if abs(b[1] - a[1]) > 1e-7]
-    return moved[-1] if moved else None
-
-
-def begin_of_braking(samples):
-    """First sample from which on it is slower than its speed for good."""
-    fast = [b[0] for a, b in zip(samples, samples[1:]) if b[0] > a[0] and abs(b[1] - a[1]) / (b[0] - a[0]) > 0.9 * SPEED]
-    return fast[-1] if fast else None
-
-
-def stands_still(samples, begin, end):
-    """The longest time without motion between the two. [s]"""
-    longest, since = 0.0, None
-    for a, b in zip(samples, samples[1:]):
-        if begin < a[0] and b[0] < end and abs(b[1] - a[1]) < 1e-7:
-            since = a[0] if since is None else since
-            longest = max(longest, b[0] - since)
-        else:
-            since = None
-    return longest
-
-
 def one_cut(watch, port, chance, number, slack):
     style = chance.choice(['cut', 'silent', 'killed', 'stop'])
     sign = -1 if watch.component['position'] > 0 else 1
@@ -139,7 +78,7 @@ def one_cut(watch, port, chance, number, slack):
     samples = watch.since(begun)
     process.kill()
     process.join()
-    braking, end = begin_of_braking(samples), last_motion(samples)
+    braking, end = begin_of_braking(samples, SPEED), last_motion(samples)
     begun, last = watch.servo_time(begun), watch.servo_time(last) if last is not None else None
     FOUND.expect(braking is not None and end is not None, f'cut {number} ({style}): it has jogged at its speed')
     if braking is None or end is None or last is None or begun is None:
@@ -176,7 +115,7 @@ def judge(bench, cuts, seed, slack, log):
     switch_on_and_home(screen)
     FOUND.expect(screen.do('SetMode', mode='MANUAL') == 'DONE' and screen.do('SetTeleop', teleop=True) == 'DONE', 'axes are jogged')
     screen.cut()
-    watch = Watch(bench)
+    watch = Watch(pathlib.Path(bench.millwright).parent.parent / 'lib/python', bench.env)
     watch.start()
     done, told = read_log(log), {}
     for line in done.values():

@@ -168,6 +168,13 @@ export class Rig {
     return page;
   }
 
+  /** Samples of the X axis, lines of tests/e2e/joint_watch.py, until its standard input is closed. */
+  watchJoint(): ChildProcess {
+    const process = spawn('python3', [join(ROOT, 'tests/e2e/joint_watch.py'), join(BUILD, 'lib/python')], { env: this.env, stdio: ['pipe', 'pipe', 'inherit'] });
+    this.started.push({ process, output: '' });
+    return process;
+  }
+
   /** A pin of HAL. */
   pin(name: string): string {
     return execFileSync(join(BUILD, 'bin/halcmd'), ['getp', name], { env: this.env, encoding: 'utf8' }).trim();

@@ -8,7 +8,7 @@ import { es } from '../src/lib/i18n/es';
 import { Texts } from '../src/lib/i18n/said';
 import { fill, placesOf } from '../src/lib/i18n/text';
 import { formatBytes, formatDuration, formatNumber, parseNumber, parseWhole } from '../src/lib/numbers';
-import { ChunkReader, type Chunk } from '../src/lib/path/chunks';
+import { ChunkReader, readChunks, type Chunk, type Moves } from '../src/lib/path/chunks';
 import { thin } from '../src/lib/path/thin';
 import { mergeDelta, modalWords, workPosition } from '../src/lib/status';
 
@@ -135,6 +135,33 @@ describe('path', () => {
     expect(chunks[3]).toEqual({ kind: 'end', line: 4, points: 3 });
   });
 
+  const kindsOf = async (type: 'bytes' | undefined, bytes: Uint8Array, size: number): Promise<string[]> => {
+    const start = (control: { enqueue(piece: Uint8Array): void; close(): void }): void => {
+      for (let at = 0; at < bytes.length; at += size) {
+        control.enqueue(bytes.slice(at, at + size));
+      }
+      control.close();
+    };
+    const source = (type === 'bytes' ? { type, start } : { start }) as UnderlyingDefaultSource<Uint8Array>;
+    const kinds: string[] = [];
+    for await (const one of readChunks(new ReadableStream<Uint8Array>(source))) {
+      kinds.push(one.kind === 'moves' ? `${one.count} moves to ${[...one.places.slice(-3)].join()}` : one.kind);
+    }
+    return kinds;
+  };
+
+  it.each([
+    ['bytes', 1], ['bytes', 7], ['bytes', 100_000], [undefined, 1], [undefined, 7], [undefined, 100_000],
+  ] as ['bytes' | undefined, number][])('is read the same from a stream (%s) in pieces of %i bytes', async (type, size) => {
+    expect(await kindsOf(type, whole, size)).toEqual(['3 moves to 4,5,6', 'error', 'bounds', 'end']);
+  });
+
+  it.each(['bytes', undefined] as const)('that ends in the middle of a chunk is told (%s)', async (type) => {
+    await expect(kindsOf(type, whole.slice(0, -3), 7)).rejects.toThrow(/in the middle/);
+    await expect(kindsOf(type, whole.slice(0, -9), 7)).rejects.toThrow(/in the middle/);
+    await expect(kindsOf(type, whole.slice(0, 5), 7)).rejects.toThrow(/in the middle/);
+  });
+
   it('refuses what is no path', () => {
     expect(() => new ChunkReader().take(chunk(77, new Uint8Array(4)))).toThrow(/unknown kind 77/);
     expect(() => new ChunkReader().take(chunk(1, new Uint8Array(new Uint32Array([1000]).buffer)))).toThrow(/shorter/);
@@ -148,6 +175,8 @@ describe('path', () => {
     expect(thinned.count).toBeLessThan(20);
     expect(thinned.places[0]).toBe(0);
     expect(thinned.places[(thinned.count - 1) * 3]).toBeCloseTo(9.99, 5);
+    const same: Moves = { kind: 'moves', count, places, lines: new Uint32Array(count), kinds, shades: new Uint8Array(count) };
+    expect(thin(same, 0.001)).toBe(same); // a copy would be as large
     const change = [...thinned.kinds].indexOf(1);
     expect(thinned.places[(change - 1) * 3]).toBeCloseTo(4.99, 5);
   });

@@ -200,6 +200,7 @@ Reason PathPlanner::check_joints(const traj::Primitive &p) noexcept {
     const int samples =
         std::max(LEAST_SAMPLES, static_cast<int>(std::min(sweep * SAMPLES_PER_RAD, MOST_SAMPLES)));
     PathSample last{0, end_joints_};
+    std::array<double, MAX_JOINTS> begin{};
     for (int n = 0; n <= samples; ++n) {
         PathSample here{p.length * n / samples, last.joints};
         const kins::Status status = map_.find(traj::position_at(p, here.at), here.joints.data());
@@ -209,10 +210,15 @@ Reason PathPlanner::check_joints(const traj::Primitive &p) noexcept {
         if (status == kins::Status::SINGULAR || (n > 0 && !isSteady(p, last, here))) {
             return Reason::SINGULAR;
         }
+        begin = n == 0 ? here.joints : begin;
+        const bool isOnTheWay = n < samples;
         for (int j = 0; j < config_.num_joints; ++j) {
             const auto i = static_cast<std::size_t>(j);
-            if (here.joints[i] < limits_.joints.low[i] - SOFT_LIMIT_ROUNDING ||
-                here.joints[i] > limits_.joints.high[i] + SOFT_LIMIT_ROUNDING) {
+            // A joint that stands beyond its limit, as after a coast, comes back into it, and no farther out.
+            const double low = isOnTheWay ? std::min(limits_.joints.low[i], begin[i]) : limits_.joints.low[i];
+            const double high =
+                isOnTheWay ? std::max(limits_.joints.high[i], begin[i]) : limits_.joints.high[i];
+            if (here.joints[i] < low - SOFT_LIMIT_ROUNDING || here.joints[i] > high + SOFT_LIMIT_ROUNDING) {
                 refused_index_ = static_cast<std::int16_t>(j);
                 return Reason::JOINT_BEYOND_LIMIT;
             }

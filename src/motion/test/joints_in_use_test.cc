@@ -193,6 +193,14 @@ TEST(Machine, ARefusedMoveNamesTheAxisOrJointThatCannot_C5_C13) {
     EXPECT_EQ(third.reason, Reason::BEYOND_SOFT_LIMIT);
     EXPECT_EQ(third.index, 2);
 
+    ASSERT_EQ(answer(5, 15, 0).reason, Reason::NONE);
+    rig.step(2000);
+    rig.set(Parameter::JOINT_MAX_LIMIT, 0, 18);  // it stands at 20
+    EXPECT_EQ(answer(5.5, 15.5, 0).reason, Reason::JOINT_BEYOND_LIMIT) << "farther out";
+    EXPECT_EQ(answer(4.5, 14.5, 0).reason, Reason::JOINT_BEYOND_LIMIT) << "nearer, and still beyond it";
+    EXPECT_EQ(answer(2, 8, 0).reason, Reason::NONE) << "back";
+    rig.forgive_joints();
+
     MotionRig without_a;
     without_a.ready(Mode::COORD);
     geom::Pose turned;

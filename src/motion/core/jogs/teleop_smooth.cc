@@ -15,6 +15,8 @@ constexpr double SWING_SHARE = 0.25, TURN_SHARE = 0.25;
 /// An axis keeps this part of the acceleration that speeds and accelerations of joints leave it, whatever
 /// their jerk does: it must be able to brake.
 constexpr double LEAST_SHARE = 0.02;
+/// Of what is left now, while it brakes: derivatives have a margin of 1.05.
+constexpr double KEPT_SHARE = 1.02;
 constexpr double ROUNDING = 1e-9;
 constexpr double NONE = std::numeric_limits<double>::infinity();
 
@@ -169,13 +171,16 @@ void leave_for_curves(const Sharing &s, const AxisValues &speed, Allowed &out) n
     }
 }
 
+bool isBraking(const traj::JogPlanner &p) noexcept {
+    return std::abs(p.leader().velocity) < std::abs(p.velocity);
+}
+
 /// The speed that an axis may come to have within its mean: what turning takes goes with that. Who brakes
 /// gains none, so that its acceleration does not become less on the way to its stop.
 double soon(const Sharing &s, int i, double speed, const Allowed &allowed) noexcept {
     const traj::JogPlanner &p = s.jog(i).planner;
-    const bool isBraking = std::abs(p.leader().velocity) < std::abs(p.velocity);
-    return isBraking ? speed
-                     : speed + allowed.acceleration[at(i)] * std::max(allowed.mean_s[at(i)], s.m.period_s);
+    return isBraking(p) ? speed
+                        : speed + allowed.acceleration[at(i)] * std::max(allowed.mean_s[at(i)], s.m.period_s);
 }
 
 /// Shared evenly among the axes of `axes`.
@@ -204,6 +209,13 @@ Allowed share(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs, 
     }
     leave_for_curves(s, speed, out);
     return out;
+}
+
+/// Who brakes keeps the acceleration that it has begun with where the places that are looked at, which move
+/// with it, show a little less than before: else it would go beyond where it is sent.
+double kept(const traj::JogPlanner &p, double acceleration) noexcept {
+    const double before = std::min(p.leader().max_acceleration, KEPT_SHARE * acceleration);
+    return isBraking(p) ? std::max(acceleration, before) : acceleration;
 }
 
 /// It can come to rest where it is sent, or before, with less acceleration.
@@ -246,7 +258,7 @@ void apply_smoothly(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs, 
         traj::JogPlanner &p = jogs.axis[at(load.axes[at(i)])].planner;
         const bool hasShare = (shares.axes & bit_of(load, i)) != 0;
         p.max_velocity = hasShare ? allowed.velocity[at(i)] : 0.0;
-        p.max_acceleration = allowed.acceleration[at(i)];
+        p.max_acceleration = isWhole ? kept(p, allowed.acceleration[at(i)]) : allowed.acceleration[at(i)];
         p.mean_s = allowed.mean_s[at(i)];
         isCalm = isCalm && (!hasShare || std::abs(p.leader().velocity) <= p.max_velocity * (1.0 + ROUNDING));
         longest_s = std::max(longest_s, p.mean_in_force_s(m.period_s));

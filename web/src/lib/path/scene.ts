@@ -194,7 +194,8 @@ export class PathScene {
     for (const piece of this.pieces) {
       const moves = movesOf(piece.whole);
       piece.fine?.geometry.dispose();
-      piece.fine = makeLine(thin(moves, size / 2000), this.materialOf(piece.isWire));
+      const fewer = thin(moves, size / 2000);
+      piece.fine = fewer === moves ? null : makeLine(fewer, this.materialOf(piece.isWire));
       if (this.isShown(piece)) {
         parts.push(sparse(moves, size / CELLS, seen));
       }

@@ -2,7 +2,11 @@
 // A path with fewer points that looks the same from afar: for the time in which it is turned.
 import type { Moves } from './chunks';
 
-/** Keeps the ends of moves of another kind, and points farther than `distance` from the last one kept. */
+/** With more of its points than this, a path is not worth a copy with fewer. */
+const WORTH_A_COPY = 0.5;
+
+/** Keeps the ends of moves of another kind, and points farther than `distance` from the last one kept; the moves themselves
+ * where that would be most of them. */
 export function thin(moves: Moves, distance: number): Moves {
   const { places, lines, kinds, shades, count } = moves;
   const kept: number[] = count > 0 ? [0] : [];
@@ -17,6 +21,9 @@ export function thin(moves: Moves, distance: number): Moves {
       kept.push(i);
       last = i;
     }
+  }
+  if (kept.length > WORTH_A_COPY * count) {
+    return moves;
   }
   const thinned: Moves = {
     kind: 'moves',

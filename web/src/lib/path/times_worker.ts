@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Reads the times of a program off the main thread.
-import { ChunkReader } from './chunks';
+import { readChunks } from './chunks';
 import type { TimeSum } from './times';
 
 export interface TimesOrder {
@@ -29,27 +29,19 @@ async function read(order: TimesOrder, signal: AbortSignal): Promise<void> {
     const told = (await answer.json().catch(() => null)) as { error?: string } | null;
     throw new Error(told?.error ?? `GET /api/times: ${answer.status}`);
   }
-  const reader = answer.body.getReader();
-  const chunks = new ChunkReader();
   let isEnded = false;
   let fault = '';
-  for (;;) {
-    const { done, value } = await reader.read();
-    if (done) {
-      break;
-    }
-    for (const chunk of chunks.take(value)) {
-      if (chunk.kind === 'times') {
-        const { moves } = chunk;
-        const news: TimesNews = { number: order.number, moves };
-        postMessage(news, { transfer: [moves.points.buffer, moves.lines.buffer, moves.seconds.buffer, moves.velocities.buffer] as ArrayBuffer[] });
-      } else if (chunk.kind === 'time_sum') {
-        isEnded = true;
-        const news: TimesNews = { number: order.number, sum: chunk.sum };
-        postMessage(news);
-      } else if (chunk.kind === 'error') {
-        fault ||= chunk.text;
-      }
+  for await (const chunk of readChunks(answer.body)) {
+    if (chunk.kind === 'times') {
+      const { moves } = chunk;
+      const news: TimesNews = { number: order.number, moves };
+      postMessage(news, { transfer: [moves.points.buffer, moves.lines.buffer, moves.seconds.buffer, moves.velocities.buffer] as ArrayBuffer[] });
+    } else if (chunk.kind === 'time_sum') {
+      isEnded = true;
+      const news: TimesNews = { number: order.number, sum: chunk.sum };
+      postMessage(news);
+    } else if (chunk.kind === 'error') {
+      fault ||= chunk.text;
     }
   }
   if (!isEnded) {

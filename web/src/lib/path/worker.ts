@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Reads a path off the main thread, which renews the leases of jogs meanwhile.
-import { ChunkReader, type Chunk } from './chunks';
+import { readChunks, type Chunk } from './chunks';
 
 export interface PathOrder {
   file: string;
@@ -19,22 +19,14 @@ async function read(order: PathOrder, signal: AbortSignal): Promise<void> {
     const told = (await answer.json().catch(() => null)) as { error?: string } | null;
     throw new Error(told?.error ?? `GET /api/path: ${answer.status}`);
   }
-  const reader = answer.body.getReader();
-  const chunks = new ChunkReader();
   let isEnded = false;
-  for (;;) {
-    const { done, value } = await reader.read();
-    if (done) {
-      break;
-    }
-    for (const chunk of chunks.take(value)) {
-      isEnded = isEnded || chunk.kind === 'end';
-      const news: PathNews = { number: order.number, chunk };
-      const moved = chunk.kind === 'moves' || chunk.kind === 'wires' ? [chunk.places.buffer, chunk.shades.buffer] : []; // places, lines and kinds share one
-      postMessage(news, { transfer: moved as ArrayBuffer[] });
-    }
+  for await (const chunk of readChunks(answer.body)) {
+    isEnded = isEnded || chunk.kind === 'end';
+    const news: PathNews = { number: order.number, chunk };
+    const moved = chunk.kind === 'moves' || chunk.kind === 'wires' ? [chunk.places.buffer, chunk.shades.buffer] : []; // places, lines and kinds share one
+    postMessage(news, { transfer: moved as ArrayBuffer[] });
   }
-  if (!isEnded || !chunks.isWhole) {
+  if (!isEnded) {
     throw new Error('the path has ended in the middle');
   }
 }
