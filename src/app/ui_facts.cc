@@ -227,7 +227,7 @@ ui::web::ScreenFiles files_of(const config::IniFile &ini) {
     };
     const std::string parameters = text_of(ini, "RS274NGC", "PARAMETER_FILE");
     return {path("ICON"), path("MDI_HISTORY_FILE"), path("PREFERENCE_FILE_PATH"),
-            ini.resolve_path(parameters.empty() ? "rs274ngc.var" : parameters)};
+            ini.resolve_path(parameters.empty() ? "rs274ngc.var" : parameters), path("LOG_FILE")};
 }
 
 }  // namespace

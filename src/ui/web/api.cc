@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ctime>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -43,14 +45,34 @@ std::optional<std::uint64_t> number(const Request &request, const char *name) {
 Api::Api(Sockets &sockets, const Threads &threads, ApiSetup setup, Clock clock)
     : threads_(threads), setup_(std::move(setup)), clock_(std::move(clock)),
       screens_(sockets, setup_.screens), files_(setup_.facts.program_prefix, setup_.facts.program_extensions),
-      keepsakes_(setup_.facts), hal_(setup_.connect_hal, setup_.dialogs, setup_.begin_hal),
-      hasHalBegun_(setup_.begin_hal == nullptr) {
+      keepsakes_(setup_.facts), log_(setup_.facts.files.log),
+      hal_(setup_.connect_hal, setup_.dialogs, setup_.begin_hal), hasHalBegun_(setup_.begin_hal == nullptr) {
+    if (!setup_.facts.files.log.empty()) {
+        screens_.keep_log([this](const std::string &line) { write_log(line); });
+    }
     for (const Tab &tab : setup_.facts.tabs) {
         if (tab.kind == Tab::Kind::PANEL) {
             const auto names = settable_names(tab.content);
             operable_.insert(operable_.end(), names.begin(), names.end());
         }
     }
+}
+
+/// The first line that cannot be written is told, and is the last that was tried.
+void Api::write_log(const std::string &line) {
+    const auto failed = std::make_shared<std::string>();
+    threads_.disk.run(
+        [this, failed, line, when = std::time(nullptr)] {
+            const auto added = log_.add(when, line);
+            *failed = added.has_value() ? "" : added.error().message;
+            return Response{};
+        },
+        [this, failed](const Response &) {
+            if (!failed->empty() && screens_.isLogKept()) {
+                screens_.keep_log({});
+                screens_.tell_note(*failed);
+            }
+        });
 }
 
 Role Api::needed_role(const Request &request) const {

@@ -11,6 +11,7 @@
 #include "ui/web/files.hh"
 #include "ui/web/hal_desk.hh"
 #include "ui/web/keepsakes.hh"
+#include "ui/web/message_log.hh"
 #include "ui/web/screens.hh"
 #include "ui/web/time_chunks.hh"
 
@@ -67,6 +68,7 @@ class Api final : public Application {
   private:
     void answer_files(const Request &request, const std::string &name, Reply reply);
     void write_file(const Request &request, const std::string &name, Reply reply);
+    void write_log(const std::string &line);
     bool isKeepsake(const Request &request, Reply &reply);
     Role needed_role(const Request &request) const;
     void answer_hal(const Request &request, Reply reply);
@@ -87,6 +89,7 @@ class Api final : public Application {
     Screens screens_;
     ProgramFiles files_;  ///< used by jobs alone
     Keepsakes keepsakes_;
+    MessageLog log_;                     ///< used by jobs alone
     std::vector<std::string> operable_;  ///< names of HAL that operators set by panels
     HalDesk hal_;                        ///< used by jobs alone
     bool hasHalBegun_ = false;           ///< what waits for HAL is done

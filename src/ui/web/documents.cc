@@ -380,12 +380,15 @@ std::string outcome_text(std::uint64_t id, const client::Outcome &outcome) {
     return one("outcome", std::move(json));
 }
 
-std::string message_text(const client::Client::Message &message) {
+std::string message_kind(const client::Client::Message &message) {
     const auto found = std::ranges::find(msgs::NAMES<msgs::MessageKind>,
                                          static_cast<std::int64_t>(message.kind), &msgs::Name::value);
-    const bool isKnown = found != msgs::NAMES<msgs::MessageKind>.end();
+    return found != msgs::NAMES<msgs::MessageKind>.end() ? std::string(found->name) : "TEXT";
+}
+
+std::string message_text(const client::Client::Message &message) {
     return one("message", Json{{"number", message.number},
-                               {"kind", std::string("OPERATOR_") + (isKnown ? found->name : "TEXT")},
+                               {"kind", "OPERATOR_" + message_kind(message)},
                                {"text", message.text}});
 }
 

@@ -80,6 +80,8 @@ struct Hello {
 std::string hello_text(const Hello &hello);
 std::string pong_text(const Ping &ping);
 std::string outcome_text(std::uint64_t id, const client::Outcome &outcome);
+/// "ERROR", "TEXT", "DISPLAY".
+std::string message_kind(const client::Client::Message &message);
 std::string message_text(const client::Client::Message &message);
 std::string machine_up_text(std::uint32_t client);
 std::string machine_gone_text(std::string_view reason);

@@ -33,6 +33,7 @@ struct ScreenFiles {
     /// Lines of MDI, and how operators like their screens: without a file each browser keeps its own.
     std::string mdi_history, preferences;
     std::string parameters;  ///< of the interpreter
+    std::string log;         ///< what operators have been told
 };
 
 /// How a machine is looked at.

@@ -136,6 +136,7 @@ void Screens::look_for_machine() {
             return;
         }
         watch_.emplace(std::move(*client));
+        log("the machine is up");
         hasStatus_ = false;
     }
     for (const auto &[session, browser] : browsers_) {
@@ -145,8 +146,15 @@ void Screens::look_for_machine() {
     }
 }
 
+void Screens::log(const std::string &line) const {
+    if (log_) {
+        log_(line);
+    }
+}
+
 void Screens::lose_machine(const std::string &reason) {
     reason_ = reason;
+    log(reason);
     watch_.reset();
     hasStatus_ = false;
     tools_.reset();
@@ -185,6 +193,7 @@ void Screens::tell_questions(const std::string &questions) {
 }
 
 void Screens::tell_note(const std::string &note) {
+    log("NOTE: " + note);
     const std::string text = note_text(note);
     for (const auto &[session, browser] : browsers_) {
         browser->tell(text);
@@ -203,6 +212,7 @@ void Screens::tell_values(const std::map<std::string, std::string> &values) {
 void Screens::pass_messages() {
     while (const auto message = watch_->next_message()) {
         ++counts_.messages;
+        log(message_kind(*message) + ": " + std::string(message->text));
         const std::string text = message_text(*message);
         tell_all(text);
         keep(kept_, text);

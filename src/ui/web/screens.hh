@@ -37,6 +37,11 @@ class Screens {
     /// Every few milliseconds.
     void tick(std::int64_t now_ns);
 
+    /// Whoever writes down what operators are told: "ERROR: joint 0 following error", "the machine is up".
+    void keep_log(std::function<void(std::string line)> log) { log_ = std::move(log); }
+
+    bool isLogKept() const { return log_ != nullptr; }
+
     /// Names of HAL that any screen looks at, each once.
     std::vector<std::string> watched() const;
     /// What HAL asks persons: told when it changes, and to each new screen.
@@ -60,6 +65,7 @@ class Screens {
     void pass_messages();
     void tell_statuses();
     void tell_all(const std::string &text);
+    void log(const std::string &line) const;
 
     Sockets &sockets_;
     ScreensSetup setup_;
@@ -71,6 +77,7 @@ class Screens {
     std::map<SessionId, std::unique_ptr<Browser>> browsers_;
     std::deque<std::string> kept_;  ///< messages
     std::string questions_ = "[]";  ///< of HAL, JSON
+    std::function<void(std::string)> log_;
     Counts counts_;
     std::int64_t next_look_ns_ = 0, next_status_ns_ = 0;
 };

@@ -232,6 +232,18 @@ TEST_F(ScreensTest, MessagesGoToAllAndToWhoComesLater_J3) {
     EXPECT_EQ(of_kind(2, "message"), told);
 }
 
+TEST_F(ScreensTest, WhatOperatorsAreToldIsWrittenDown_J1) {
+    std::vector<std::string> lines;
+    screens->keep_log([&](const std::string &line) { lines.push_back(line); });
+    go(300);  // without an open screen
+    task.desk.post(msgs::MessageKind::OPERATOR_ERROR, "tool 4 is missing");
+    task.desk.post(msgs::MessageKind::OPERATOR_TEXT, "done");
+    go(50);
+    screens->tell_note("a panel is missing");
+    EXPECT_EQ(lines, (std::vector<std::string>{"the machine is up", "ERROR: tool 4 is missing", "TEXT: done",
+                                               "NOTE: a panel is missing"}));
+}
+
 TEST_F(ScreensTest, WithoutAMachineAScreenIsToldAndCommandsAreRefused_J3) {
     isUp = false;
     go(300);
