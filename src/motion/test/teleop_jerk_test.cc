@@ -286,6 +286,40 @@ TEST(TeleopJerk, AnAxisTakesItsShareOnceTheOtherIsDownToItsOwn_C13) {
     rig.forgive_joints();
 }
 
+/// One that comes to its target with all of its acceleration keeps it: the other begins later.
+class NoOvershoot : public ::testing::TestWithParam<bool> {};
+
+TEST_P(NoOvershoot, OfAJogWhereAnotherBegins_C8_C13) {
+    kins::CoreXy model;
+    for (int begin = 600; begin < 1000; begin += 8) {
+        MotionRig rig(model, 3, 100, 1000);
+        if (GetParam()) {
+            for (int j = 0; j < 3; ++j) {
+                rig.set(Parameter::JOINT_MAX_JERK, j, 20000);
+            }
+            rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, 1);
+            rig.set(Parameter::TRAJ_MAX_JERK, 0, 1e6);
+        }
+        rig.step(4);
+        rig.ready(Mode::TELEOP);
+        rig.send(JogAbsolute{{false, 1}, 20, 1});  // both have been at work before
+        rig.send(JogAbsolute{{false, 0}, 20, 1});
+        rig.step(1000);
+        rig.send(JogAbsolute{{false, 0}, 1000, 80});
+        rig.step(begin);
+        rig.send(JogAbsolute{{false, 1}, 1000, 30});
+        double farthest = 0;
+        for (int n = 0; n < 4000; ++n) {
+            rig.step();
+            farthest = std::max(farthest, rig.status().carte_pos_cmd[0]);
+        }
+        EXPECT_LE(farthest, 80 + 1e-9) << begin;
+        EXPECT_NEAR(rig.status().carte_pos_cmd[0], 80, 1e-9) << begin;
+        EXPECT_NEAR(rig.status().carte_pos_cmd[1], 30, 1e-9) << begin;
+    }
+}
+INSTANTIATE_TEST_SUITE_P(TeleopJerk, NoOvershoot, ::testing::Bool());
+
 /// From rest to a speed: the least time, in which half of that way is gone.
 double ramp_s(double to, double a, double j) {
     return to > a * a / j ? to / a + a / j : 2.0 * std::sqrt(to / j);

@@ -37,9 +37,9 @@ struct Jog {
 
 /// Of axes on machines whose joints are not axes, with jerk limits.
 struct TeleopShares {
-    std::uint32_t axes = 0;     ///< bit per axis that has a share of what the joints can do
-    double calm_s = 0;          ///< for so long none of them has been faster than when all have a share
-    bool isMakingRoom = false;  ///< they do no more than then: others wait for theirs
+    std::uint32_t axes = 0;  ///< bit per axis that has a share of what the joints can do
+    double calm_s = 0;       ///< for so long none of them has been faster than when all of `room` have one
+    std::uint32_t room = 0;  ///< bit per axis: they do no more than when all of these have a share; 0: any
 };
 
 struct Jogs {

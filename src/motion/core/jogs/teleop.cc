@@ -23,28 +23,12 @@ std::size_t at(int i) noexcept {
     return static_cast<std::size_t>(i);
 }
 
-/// Shares what each joint can do evenly among the axes that move it.
-void apply_load(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs) noexcept {
-    const double n = load.count;
-    AxisValues v = shared_speeds(m, load, jogs, load.count);
-    // While one is still faster than its share the others do not take theirs, and it turns with its speed.
-    constexpr double ROUNDING = 1e-9;
-    AxisValues speed{};
-    bool isOver = false;
+/// What `n` axes that share the joints evenly may accelerate with when they turn with these speeds.
+AxisValues accelerations(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs, double n,
+                         const AxisValues &speed) noexcept {
+    AxisValues out{};
     for (int i = 0; i < load.count; ++i) {
-        speed[at(i)] = std::abs(jogs.axis[at(load.axes[at(i)])].planner.velocity);
-        isOver = isOver || speed[at(i)] > v[at(i)] * (1.0 + ROUNDING);
-    }
-    for (int i = 0; i < load.count; ++i) {
-        v[at(i)] = isOver ? std::min(v[at(i)], speed[at(i)]) : v[at(i)];
-        // What turning takes goes with the speed that it may have in this cycle, and not with the one that it
-        // may come to have: while it brakes more is left from cycle to cycle, never less.
-        const double soon = speed[at(i)] + jogs.axis[at(load.axes[at(i)])].wanted_acceleration * m.period_s;
-        speed[at(i)] = std::max(std::min(v[at(i)], soon), speed[at(i)]);
-    }
-    for (int i = 0; i < load.count; ++i) {
-        Jog &axis = jogs.axis[at(load.axes[at(i)])];
-        double a = axis.wanted_acceleration;
+        double a = jogs.axis[at(load.axes[at(i)])].wanted_acceleration;
         for (int j = 0; j < m.num_joints; ++j) {
             double curve = 0;
             for (int k = 0; k < load.count; ++k) {
@@ -57,9 +41,74 @@ void apply_load(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs) noex
             const double q1 = load.q1[at(i)][at(j)];
             a = q1 > 0 ? std::min(a, left / (n * q1)) : a;
         }
-        axis.planner.max_velocity = v[at(i)];
-        axis.planner.max_acceleration = a;
+        out[at(i)] = a;
     }
+    return out;
+}
+
+/// One that moves would go beyond where it is sent if all had their share and came to the speeds of that.
+bool isAnyHeld(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs,
+               const AxisValues &now) noexcept {
+    AxisValues speed = shared_speeds(m, load, jogs, load.count);
+    for (int i = 0; i < load.count; ++i) {
+        speed[at(i)] = std::max(speed[at(i)], now[at(i)]);
+    }
+    const AxisValues a = accelerations(m, load, jogs, load.count, speed);
+    bool isHeld = false;
+    for (int i = 0; i < load.count; ++i) {
+        isHeld = isHeld || !canTake(jogs.axis[at(load.axes[at(i)])].planner, a[at(i)], m.period_s);
+    }
+    return isHeld;
+}
+
+/// Shares what each joint can do evenly among the axes that move it. As long as one needs what it has to stop
+/// where it is sent, none begins beside it, and none gets faster.
+void apply_load(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs) noexcept {
+    AxisValues speed{};
+    int moving = 0;
+    for (int i = 0; i < load.count; ++i) {
+        speed[at(i)] = std::abs(jogs.axis[at(load.axes[at(i)])].planner.velocity);
+        moving += speed[at(i)] > 0 ? 1 : 0;
+    }
+    const bool isHeld = load.count > 1 && moving > 0 && isAnyHeld(m, load, jogs, speed);
+    const double n = isHeld ? moving : load.count;
+    AxisValues v = shared_speeds(m, load, jogs, n);
+    // While one is still faster than its share the others do not take theirs, and it turns with its speed.
+    constexpr double ROUNDING = 1e-9;
+    bool isOver = isHeld;
+    for (int i = 0; i < load.count; ++i) {
+        isOver = isOver || speed[at(i)] > v[at(i)] * (1.0 + ROUNDING);
+    }
+    for (int i = 0; i < load.count; ++i) {
+        v[at(i)] = isOver ? std::min(v[at(i)], speed[at(i)]) : v[at(i)];
+        // What turning takes goes with the speed that it may have in this cycle, and not with the one that it
+        // may come to have: while it brakes more is left from cycle to cycle, never less.
+        const double soon = speed[at(i)] + jogs.axis[at(load.axes[at(i)])].wanted_acceleration * m.period_s;
+        speed[at(i)] = std::max(std::min(v[at(i)], soon), speed[at(i)]);
+    }
+    const AxisValues a = accelerations(m, load, jogs, n, speed);
+    for (int i = 0; i < load.count; ++i) {
+        Jog &axis = jogs.axis[at(load.axes[at(i)])];
+        axis.planner.max_velocity = v[at(i)];
+        axis.planner.max_acceleration = with_reserve(load, axis.planner, a[at(i)]);
+    }
+}
+
+double speed_of(const traj::JogPlanner &p) noexcept {
+    return std::max(std::abs(p.velocity), std::abs(p.leader().velocity));
+}
+
+/// Of the axis that takes longest.
+double time_to_stop(const TeleopLoad &load, const Jogs &jogs, double period_s) noexcept {
+    double most_s = 0;
+    for (int i = 0; i < load.count; ++i) {
+        const traj::JogPlanner &p = jogs.axis[at(load.axes[at(i)])].planner;
+        // With what it had in the last cycle: that has looked as far ahead.
+        const double had = p.leader().max_acceleration;
+        const double a = had > 0 ? std::min(had, p.max_acceleration) : p.max_acceleration;
+        most_s = std::max(most_s, (a > 0 ? speed_of(p) / a : 0.0) + p.mean_in_force_s(period_s));
+    }
+    return most_s;
 }
 
 /// The homed joint that this pose takes beyond its soft limits, farther than it is; -1 for none.
@@ -103,6 +152,7 @@ TeleopStop limit_teleop(Jogs &jogs, const TeleopMachine &m) noexcept {
         }
     }
     load.isSmooth ? apply_smoothly(m, load, jogs, false) : apply_load(m, load, jogs);
+    const double longest_s = load.count > 1 ? time_to_stop(load, jogs, m.period_s) : 0.0;
     geom::Pose stop = here;  // where the axes come to rest when they brake a cycle from now
     geom::Pose far = here;
     for (int i = 0; i < load.count; ++i) {
@@ -116,7 +166,9 @@ TeleopStop limit_teleop(Jogs &jogs, const TeleopMachine &m) noexcept {
         double low = here[axis];
         double high = here[axis];
         p.add_reach(low, high);
-        far[axis] = std::clamp(here[axis] + 2.0 * way, low, high) + LEAST_WINDOW * sign;
+        // While another brakes this one goes on, and turns what the joints do for the other.
+        const double on = std::max(2.0 * std::abs(way), BRAKE_MARGIN * speed_of(p) * longest_s);
+        far[axis] = std::clamp(here[axis] + std::copysign(on, way), low, high) + LEAST_WINDOW * sign;
     }
     constexpr int PLACES = 2;
     for (int n = 1; n <= PLACES && isFound; ++n) {

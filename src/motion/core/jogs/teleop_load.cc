@@ -10,8 +10,8 @@ namespace {
 
 /// Over which derivatives are taken, and third ones [machine units, degrees].
 constexpr double STEP = 1e-3, SMOOTH_STEP = 0.1;
-/// Between the places that are looked at, derivatives may be larger by this much; where one axis moves and a
-/// joint follows it on a straight line, by rounding.
+/// Between the places that are looked at, derivatives may be larger by this much; where a joint follows the
+/// axes that move on straight lines, by rounding.
 constexpr double MARGIN = 1.05, STRAIGHT_MARGIN = 1.0 + 1e-6;
 
 std::size_t at(int i) noexcept {
@@ -62,6 +62,8 @@ bool add_load(const TeleopMachine &m, const geom::Pose &pose, TeleopLoad &load, 
     std::array<JointsAt, MAX_AXES> after{};
     JointsAt other{};
     JointsAt signed_q2{};
+    std::array<JointsAt, MAX_AXES> q1{};
+    std::array<JointsAt, MAX_AXES> bend{};  // greatest second derivative with any axis that moves
     const auto keep = [&](int i, int k) {
         if (load.isSmooth && !load.isBegun) {
             load.q2_here[at(i)][at(k)] = signed_q2;
@@ -78,10 +80,9 @@ bool add_load(const TeleopMachine &m, const geom::Pose &pose, TeleopLoad &load, 
         p[axis] -= 2.0 * step;
         isFound = isFound && joints_at(p, other);
         for (std::size_t j = 0; j < at(m.num_joints) && isFound; ++j) {
-            const double q1 = std::abs(after[at(i)][j] - other[j]) / (2.0 * step);
+            q1[at(i)][j] = std::abs(after[at(i)][j] - other[j]) / (2.0 * step);
             signed_q2[j] = (after[at(i)][j] - 2.0 * here[j] + other[j]) / (step * step);
-            const bool isStraight = load.isSmooth && load.count == 1 && std::abs(signed_q2[j]) <= LEAST_CURVE;
-            load.q1[at(i)][j] = std::max(load.q1[at(i)][j], (isStraight ? STRAIGHT_MARGIN : MARGIN) * q1);
+            bend[at(i)][j] = std::max(bend[at(i)][j], std::abs(signed_q2[j]));
             load.q2[at(i)][at(i)][j] = std::max(load.q2[at(i)][at(i)][j], MARGIN * std::abs(signed_q2[j]));
         }
         const bool isThird = load.isSmooth && from.index < 0;
@@ -95,6 +96,8 @@ bool add_load(const TeleopMachine &m, const geom::Pose &pose, TeleopLoad &load, 
             for (std::size_t j = 0; j < at(m.num_joints) && isFound; ++j) {
                 const double both = other[j] - after[at(i)][j] - after[at(k)][j] + here[j];
                 signed_q2[j] = both / (step * step);
+                bend[at(i)][j] = std::max(bend[at(i)][j], std::abs(signed_q2[j]));
+                bend[at(k)][j] = std::max(bend[at(k)][j], std::abs(signed_q2[j]));
                 double &q2 = load.q2[at(i)][at(k)][j];
                 q2 = std::max(q2, MARGIN * std::abs(both) / (step * step));
                 load.q2[at(k)][at(i)][j] = q2;
@@ -103,6 +106,13 @@ bool add_load(const TeleopMachine &m, const geom::Pose &pose, TeleopLoad &load, 
         }
     }
     load.isBegun = true;
+    for (int i = 0; i < load.count && isFound; ++i) {
+        for (std::size_t j = 0; j < at(m.num_joints); ++j) {
+            const bool isStraight = load.isSmooth && bend[at(i)][j] <= LEAST_CURVE;
+            const double margin = isStraight ? STRAIGHT_MARGIN : MARGIN;
+            load.q1[at(i)][j] = std::max(load.q1[at(i)][j], margin * q1[at(i)][j]);
+        }
+    }
     return isFound;
 }
 
@@ -164,6 +174,32 @@ AxisValues shared_speeds(const TeleopMachine &m, const TeleopLoad &load, const J
         }
     }
     return v;
+}
+
+double with_reserve(const TeleopLoad &load, const traj::JogPlanner &p, double acceleration) noexcept {
+    constexpr double PLANNED = 0.75;
+    bool isCurved = false;
+    for (int i = 0; i < load.count; ++i) {
+        for (int k = 0; k < load.count; ++k) {
+            const JointsAt &q2 = load.q2[at(i)][at(k)];
+            isCurved = isCurved || std::ranges::any_of(q2, [](double x) { return x > LEAST_CURVE; });
+        }
+    }
+    const traj::FreePlanner &leader = p.leader();
+    const double way = p.target - leader.position;
+    if (load.count < 2 || !isCurved || !(leader.velocity * way > 0)) {
+        return acceleration;
+    }
+    constexpr double ROUNDING = 1.0 + 1e-9;
+    const double needed = ROUNDING * leader.velocity * leader.velocity / (2.0 * std::abs(way));
+    return std::clamp(needed, PLANNED * acceleration, acceleration);
+}
+
+bool canTake(const traj::JogPlanner &p, double acceleration, double period_s) noexcept {
+    const traj::FreePlanner &leader = p.leader();
+    const double v = leader.velocity;
+    const double rest = traj::stop_position(leader.position + v * period_s, v, acceleration);
+    return v == 0.0 || (v > 0 ? rest <= p.target : rest >= p.target);
 }
 
 }  // namespace mw::motion

@@ -56,4 +56,11 @@ void add_sent(const TeleopMachine &m, const geom::Pose &here, int i, double targ
 /// What joints leave of the speeds that are wanted when each is shared evenly among `n` axes.
 AxisValues shared_speeds(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs, double n) noexcept;
 
+/// What an axis takes of the acceleration that it may have. Where several axes move joints along curves it
+/// keeps a part for its stop: what others do meanwhile may leave it less than now.
+double with_reserve(const TeleopLoad &load, const traj::JogPlanner &p, double acceleration) noexcept;
+
+/// It can come to rest where it is sent, or before, with less acceleration from the next cycle on.
+bool canTake(const traj::JogPlanner &p, double acceleration, double period_s) noexcept;
+
 }  // namespace mw::motion

@@ -15,8 +15,9 @@ constexpr double SWING_SHARE = 0.25, TURN_SHARE = 0.25;
 /// An axis keeps this part of the acceleration that speeds and accelerations of joints leave it, whatever
 /// their jerk does: it must be able to brake.
 constexpr double LEAST_SHARE = 0.02;
-/// Of what is left now, while it brakes: derivatives have a margin of 1.05.
-constexpr double KEPT_SHARE = 1.02;
+/// Of what is left now, while it brakes: derivatives have a margin of 1.05. All of that where another axis is
+/// there that waits: by then the joints may have followed straight lines, without that margin.
+constexpr double KEPT_ALONE = 1.02, KEPT_BESIDE = 1.05001;
 constexpr double ROUNDING = 1e-9;
 constexpr double NONE = std::numeric_limits<double>::infinity();
 
@@ -183,6 +184,18 @@ double soon(const Sharing &s, int i, double speed, const Allowed &allowed) noexc
                         : speed + allowed.acceleration[at(i)] * std::max(allowed.mean_s[at(i)], s.m.period_s);
 }
 
+/// One would go beyond where it is sent if all came to their speeds: curves would leave it too little.
+bool isAnyHeld(const Sharing &s, const Allowed &allowed) noexcept {
+    Allowed worst = allowed;
+    leave_for_curves(s, worst.velocity, worst);
+    bool isHeld = false;
+    for (int i = 0; i < s.load.count; ++i) {
+        isHeld = isHeld || (s.has(i) && s.load.count > 1 &&
+                            !canTake(s.jog(i).planner, worst.acceleration[at(i)], s.m.period_s));
+    }
+    return isHeld;
+}
+
 /// Shared evenly among the axes of `axes`.
 Allowed share(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs, std::uint32_t axes,
               int count) noexcept {
@@ -198,7 +211,7 @@ Allowed share(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs, 
     share_straight(s, out);
     slow_on_curves(s, out);
     // While one is still faster than its share the others do not take theirs.
-    bool isOver = false;
+    bool isOver = isAnyHeld(s, out);
     for (int i = 0; i < load.count; ++i) {
         isOver = isOver || speed[at(i)] > out.velocity[at(i)] * (1.0 + ROUNDING);
     }
@@ -213,17 +226,34 @@ Allowed share(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs, 
 
 /// Who brakes keeps the acceleration that it has begun with where the places that are looked at, which move
 /// with it, show a little less than before: else it would go beyond where it is sent.
-double kept(const traj::JogPlanner &p, double acceleration) noexcept {
-    const double before = std::min(p.leader().max_acceleration, KEPT_SHARE * acceleration);
-    return isBraking(p) ? std::max(acceleration, before) : acceleration;
+double kept(const TeleopLoad &load, const traj::JogPlanner &p, double acceleration) noexcept {
+    const double before = p.leader().max_acceleration;
+    const double share = load.count > 1 ? KEPT_BESIDE : KEPT_ALONE;
+    const bool isKept = isBraking(p) && before <= share * acceleration;
+    return isKept ? std::max(acceleration, before) : acceleration;
 }
 
-/// It can come to rest where it is sent, or before, with less acceleration.
-bool canTake(const traj::JogPlanner &p, double acceleration) noexcept {
-    const traj::FreePlanner &leader = p.leader();
-    const double v = leader.velocity;
-    const double rest = traj::stop_position(leader.position, v, acceleration);
-    return v == 0.0 || (v > 0 ? rest <= p.target : rest >= p.target);
+}  // namespace
+
+namespace {
+
+/// Those that wait have room made for them where all that have a share can do with less; else they wait on,
+/// and so do those that come while room is made for others.
+void make_room(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs, std::uint32_t moving) noexcept {
+    TeleopShares &shares = jogs.shares;
+    if (shares.room == moving || shares.axes == moving) {
+        return;
+    }
+    const Allowed allowed = share(m, load, jogs, moving, load.count);
+    for (int i = 0; i < load.count; ++i) {
+        const bool hasShare = (shares.axes & bit_of(load, i)) != 0;
+        const traj::JogPlanner &p = jogs.axis[at(load.axes[at(i)])].planner;
+        if (hasShare && !canTake(p, allowed.acceleration[at(i)], m.period_s)) {
+            return;
+        }
+    }
+    shares.room = moving;
+    shares.calm_s = 0;
 }
 
 }  // namespace
@@ -236,39 +266,31 @@ void apply_smoothly(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs, 
     }
     shares.axes &= moving;
     shares.axes = shares.axes == 0 ? moving : shares.axes;
-    const bool isAnyWaiting = shares.axes != moving;
-    shares.isMakingRoom = shares.isMakingRoom && isAnyWaiting;
-    Allowed allowed = share(m, load, jogs, moving, load.count);
-    if (isAnyWaiting && isWhole && !shares.isMakingRoom) {
-        shares.isMakingRoom = true;
-        shares.calm_s = 0;
-        for (int i = 0; i < load.count; ++i) {
-            const traj::JogPlanner &p = jogs.axis[at(load.axes[at(i)])].planner;
-            const bool isHeld =
-                (shares.axes & bit_of(load, i)) != 0 && !canTake(p, allowed.acceleration[at(i)]);
-            shares.isMakingRoom = shares.isMakingRoom && !isHeld;
-        }
+    shares.room &= moving;
+    shares.room = (shares.room & ~shares.axes) == 0 ? 0 : shares.room | shares.axes;
+    if (isWhole) {
+        make_room(m, load, jogs, moving);
     }
-    if (isAnyWaiting && !shares.isMakingRoom) {
-        allowed = share(m, load, jogs, shares.axes, count_of(shares.axes));
-    }
+    const std::uint32_t counted = shares.room != 0 ? shares.room : shares.axes;
+    const Allowed allowed = share(m, load, jogs, counted, count_of(counted));
     bool isCalm = true;
     double longest_s = 0;
     for (int i = 0; i < load.count; ++i) {
         traj::JogPlanner &p = jogs.axis[at(load.axes[at(i)])].planner;
         const bool hasShare = (shares.axes & bit_of(load, i)) != 0;
         p.max_velocity = hasShare ? allowed.velocity[at(i)] : 0.0;
-        p.max_acceleration = isWhole ? kept(p, allowed.acceleration[at(i)]) : allowed.acceleration[at(i)];
+        const double a = allowed.acceleration[at(i)];
+        p.max_acceleration = with_reserve(load, p, isWhole ? kept(load, p, a) : a);
         p.mean_s = allowed.mean_s[at(i)];
         isCalm = isCalm && (!hasShare || std::abs(p.leader().velocity) <= p.max_velocity * (1.0 + ROUNDING));
         longest_s = std::max(longest_s, p.mean_in_force_s(m.period_s));
     }
-    if (!isWhole || !isAnyWaiting || !shares.isMakingRoom) {
+    if (!isWhole || shares.room == 0) {
         return;
     }
     shares.calm_s = isCalm ? shares.calm_s + m.period_s : 0.0;
     if (shares.calm_s > longest_s) {
-        shares = {moving, 0, false};
+        shares = {shares.room, 0, 0};
     }
 }
 
