@@ -31,7 +31,7 @@ double beyond(Model model) {
     switch (model) {
     case Model::COREXY: return 1e-6;
     case Model::DELTA: return 1e-4;
-    case Model::TABLE: return 0.25;
+    case Model::TABLE: return 0.15;
     }
     return 0;
 }

@@ -130,21 +130,19 @@ int joint_left_by(const TeleopMachine &m, const geom::Pose &pose) noexcept {
 
 }  // namespace
 
-TeleopStop limit_teleop(Jogs &jogs, const TeleopMachine &m) noexcept {
+namespace {
+
+/// What axes ask of the joints at the places of this cycle.
+struct Look {
     TeleopLoad load;
-    geom::Pose here;
-    for (int i = 0; i < MAX_AXES; ++i) {
-        here[i] = jogs.axis[at(i)].planner.position;
-        if (!jogs.axis[at(i)].planner.isAtRest()) {
-            load.axes[at(load.count++)] = i;
-        }
-    }
-    if (load.count == 0) {
-        return {};
-    }
-    // Where it stands first: a jog that begins has no acceleration yet that the joints could bear.
-    load.isSmooth = m.limits.path.isJerkLimited;
-    bool isFound = add_load(m, here, load);
+    geom::Pose stop;  ///< where they come to rest when they brake a cycle from now
+    bool isFound = true;
+};
+
+/// Where it stands first: a jog that begins has no acceleration yet that the joints could bear.
+void look_here(const TeleopMachine &m, const geom::Pose &here, Jogs &jogs, Look &look) noexcept {
+    TeleopLoad &load = look.load;
+    look.isFound = add_load(m, here, load);
     for (int i = 0; i < load.count && load.isSmooth; ++i) {
         const traj::JogPlanner &p = jogs.axis[at(load.axes[at(i)])].planner;
         if (p.mean_in_force_s(m.period_s) == 0.0) {
@@ -152,15 +150,20 @@ TeleopStop limit_teleop(Jogs &jogs, const TeleopMachine &m) noexcept {
         }
     }
     load.isSmooth ? apply_smoothly(m, load, jogs, false) : apply_load(m, load, jogs);
+}
+
+/// Then as far ahead as they may come while they brake.
+void look_ahead(const TeleopMachine &m, const geom::Pose &here, const Jogs &jogs, Look &look) noexcept {
+    TeleopLoad &load = look.load;
     const double longest_s = load.count > 1 ? time_to_stop(load, jogs, m.period_s) : 0.0;
-    geom::Pose stop = here;  // where the axes come to rest when they brake a cycle from now
+    look.stop = here;
     geom::Pose far = here;
     for (int i = 0; i < load.count; ++i) {
         const int axis = load.axes[at(i)];
         const traj::JogPlanner &p = jogs.axis[at(axis)].planner;
         load.speed[at(i)] = std::max(p.max_velocity, std::abs(p.velocity));
         const double way = p.rest_after(m.period_s) - here[axis];
-        stop[axis] += BRAKE_MARGIN * way;
+        look.stop[axis] += BRAKE_MARGIN * way;
         const double sign = p.target >= here[axis] ? 1.0 : -1.0;
         // Not behind what it may come to at all: else more would be taken off while it brakes.
         double low = here[axis];
@@ -171,24 +174,84 @@ TeleopStop limit_teleop(Jogs &jogs, const TeleopMachine &m) noexcept {
         far[axis] = std::clamp(here[axis] + std::copysign(on, way), low, high) + LEAST_WINDOW * sign;
     }
     constexpr int PLACES = 2;
-    for (int n = 1; n <= PLACES && isFound; ++n) {
-        isFound = add_load(m, here + (far - here) * (static_cast<double>(n) / PLACES), load);
+    for (int n = 1; n <= PLACES && look.isFound; ++n) {
+        look.isFound = add_load(m, here + (far - here) * (static_cast<double>(n) / PLACES), load);
     }
-    for (int i = 0; i < load.count && load.count > 1 && isFound; ++i) {
+    for (int i = 0; i < load.count && load.count > 1 && look.isFound; ++i) {
         const int axis = load.axes[at(i)];
         geom::Pose p = here;
         p[axis] = far[axis];
-        isFound = add_load(m, p, load, {i, far[axis] - here[axis]});
+        look.isFound = add_load(m, p, load, {i, far[axis] - here[axis]});
     }
-    load.isSmooth ? apply_smoothly(m, load, jogs, true) : apply_load(m, load, jogs);
+}
+
+/// The axes of a look without those that wait: these stand, so that nothing of what they would ask is asked.
+Look without_waiting(const Look &all, std::uint32_t counted, Jogs &jogs) noexcept {
+    Look some;
+    some.load.isSmooth = true;
+    for (int i = 0; i < all.load.count; ++i) {
+        const int axis = all.load.axes[at(i)];
+        traj::JogPlanner &p = jogs.axis[at(axis)].planner;
+        if ((counted & (1U << axis)) != 0) {
+            some.load.axes[at(some.load.count++)] = axis;
+        } else {
+            p.max_velocity = p.max_acceleration = p.mean_s = 0;
+        }
+    }
+    return some;
+}
+
+/// Sets what the axes may do; what all of them ask.
+Look limit_axes(const TeleopMachine &m, const geom::Pose &here, Jogs &jogs) noexcept {
+    Look all;
+    all.load.isSmooth = m.limits.path.isJerkLimited;
+    for (int i = 0; i < MAX_AXES; ++i) {
+        if (!jogs.axis[at(i)].planner.isAtRest()) {
+            all.load.axes[at(all.load.count++)] = i;
+        }
+    }
+    if (all.load.count == 0) {
+        return all;
+    }
+    look_here(m, here, jogs, all);
+    look_ahead(m, here, jogs, all);
+    if (!all.load.isSmooth) {
+        apply_load(m, all.load, jogs);
+        return all;
+    }
+    make_room(m, all.load, jogs);
+    const std::uint32_t counted = counted_axes(jogs.shares);
+    Look some = without_waiting(all, counted, jogs);
+    if (some.load.count < all.load.count) {
+        look_here(m, here, jogs, some);
+        look_ahead(m, here, jogs, some);
+    }
+    const Look &last = some.load.count < all.load.count ? some : all;
+    apply_smoothly(m, last.load, jogs, true);
+    settle_shares(m, last.load, jogs);
+    return all;
+}
+
+}  // namespace
+
+TeleopStop limit_teleop(Jogs &jogs, const TeleopMachine &m) noexcept {
+    geom::Pose here;
+    for (int i = 0; i < MAX_AXES; ++i) {
+        here[i] = jogs.axis[at(i)].planner.position;
+    }
+    const Look look = limit_axes(m, here, jogs);
+    const TeleopLoad &load = look.load;
+    if (load.count == 0) {
+        return {};
+    }
     // The axes stop one after the other: every corner of the box that they stop in counts.
-    int left = isFound ? -1 : m.num_joints;
+    int left = look.isFound ? -1 : m.num_joints;
     const int corners = 1 << std::min(load.count, MOST_CORNER_AXES);
     for (int n = 1; n < corners && left < 0; ++n) {
-        geom::Pose corner = stop;
+        geom::Pose corner = look.stop;
         for (int i = 0; i < std::min(load.count, MOST_CORNER_AXES); ++i) {
             const int axis = load.axes[at(i)];
-            corner[axis] = (n & (1 << i)) != 0 ? stop[axis] : here[axis];
+            corner[axis] = (n & (1 << i)) != 0 ? look.stop[axis] : here[axis];
         }
         left = joint_left_by(m, corner);
     }

@@ -233,15 +233,33 @@ double kept(const TeleopLoad &load, const traj::JogPlanner &p, double accelerati
     return isKept ? std::max(acceleration, before) : acceleration;
 }
 
+std::uint32_t all_of(const TeleopLoad &load) noexcept {
+    std::uint32_t all = 0;
+    for (int i = 0; i < load.count; ++i) {
+        all |= bit_of(load, i);
+    }
+    return all;
+}
+
+/// Who has come to rest is neither waited for nor has a share.
+void forget_resting(TeleopShares &shares, std::uint32_t moving) noexcept {
+    shares.axes &= moving;
+    shares.axes = shares.axes == 0 ? moving : shares.axes;
+    shares.room &= moving;
+    shares.room = (shares.room & ~shares.axes) == 0 ? 0 : shares.room | shares.axes;
+}
+
 }  // namespace
 
-namespace {
+std::uint32_t counted_axes(const TeleopShares &shares) noexcept {
+    return shares.room != 0 ? shares.room : shares.axes;
+}
 
-/// Those that wait have room made for them where all that have a share can do with less; else they wait on,
-/// and so do those that come while room is made for others.
-void make_room(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs, std::uint32_t moving) noexcept {
+void make_room(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs) noexcept {
     TeleopShares &shares = jogs.shares;
-    if (shares.room == moving || shares.axes == moving) {
+    const std::uint32_t moving = all_of(load);
+    forget_resting(shares, moving);
+    if (counted_axes(shares) == moving) {
         return;
     }
     const Allowed allowed = share(m, load, jogs, moving, load.count);
@@ -256,25 +274,11 @@ void make_room(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs, std::
     shares.calm_s = 0;
 }
 
-}  // namespace
-
 void apply_smoothly(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs, bool isWhole) noexcept {
     TeleopShares &shares = jogs.shares;
-    std::uint32_t moving = 0;
-    for (int i = 0; i < load.count; ++i) {
-        moving |= bit_of(load, i);
-    }
-    shares.axes &= moving;
-    shares.axes = shares.axes == 0 ? moving : shares.axes;
-    shares.room &= moving;
-    shares.room = (shares.room & ~shares.axes) == 0 ? 0 : shares.room | shares.axes;
-    if (isWhole) {
-        make_room(m, load, jogs, moving);
-    }
-    const std::uint32_t counted = shares.room != 0 ? shares.room : shares.axes;
+    forget_resting(shares, all_of(load));
+    const std::uint32_t counted = counted_axes(shares);
     const Allowed allowed = share(m, load, jogs, counted, count_of(counted));
-    bool isCalm = true;
-    double longest_s = 0;
     for (int i = 0; i < load.count; ++i) {
         traj::JogPlanner &p = jogs.axis[at(load.axes[at(i)])].planner;
         const bool hasShare = (shares.axes & bit_of(load, i)) != 0;
@@ -282,11 +286,21 @@ void apply_smoothly(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs, 
         const double a = allowed.acceleration[at(i)];
         p.max_acceleration = with_reserve(load, p, isWhole ? kept(load, p, a) : a);
         p.mean_s = allowed.mean_s[at(i)];
+    }
+}
+
+void settle_shares(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs) noexcept {
+    TeleopShares &shares = jogs.shares;
+    if (shares.room == 0) {
+        return;
+    }
+    bool isCalm = true;
+    double longest_s = 0;
+    for (int i = 0; i < load.count; ++i) {
+        const traj::JogPlanner &p = jogs.axis[at(load.axes[at(i)])].planner;
+        const bool hasShare = (shares.axes & bit_of(load, i)) != 0;
         isCalm = isCalm && (!hasShare || std::abs(p.leader().velocity) <= p.max_velocity * (1.0 + ROUNDING));
         longest_s = std::max(longest_s, p.mean_in_force_s(m.period_s));
-    }
-    if (!isWhole || shares.room == 0) {
-        return;
     }
     shares.calm_s = isCalm ? shares.calm_s + m.period_s : 0.0;
     if (shares.calm_s > longest_s) {

@@ -7,8 +7,18 @@
 
 namespace mw::motion {
 
-/// Sets speed, acceleration and mean of the axes that move. An axis that begins while others move waits until
-/// they have come down to what all of them may do. `isWhole`: `load` has all places of this cycle.
+/// An axis that begins while others move waits until they have come down to what all of them may do. Those
+/// that have a share, and those that room is made for.
+std::uint32_t counted_axes(const TeleopShares &shares) noexcept;
+
+/// Sets speed, acceleration and mean of the axes that move. `isWhole`: `load` has all places of this cycle.
 void apply_smoothly(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs, bool isWhole) noexcept;
+
+/// Those that wait have room made for them where all that have a share can do with less; else they wait on,
+/// and so do those that come while room is made for others. `load` has all that move.
+void make_room(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs) noexcept;
+
+/// Once a cycle, when all is set: they have their share as soon as there is room.
+void settle_shares(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs) noexcept;
 
 }  // namespace mw::motion
