@@ -69,6 +69,7 @@ struct Demand {
     double alone = 0;    ///< largest first derivative where they pull against each other
     double acceleration = UNLIMITED;
     bool isRightAngled = false;  ///< turning is across the path, or pulls forward along it
+    double forward = UNLIMITED;  ///< by at least so much of a unit of b, of a vector [unit/s^2]
 
     void add(double first, double second, bool isAgainst) noexcept {
         double &of = isAgainst ? alone : shared;
@@ -79,7 +80,11 @@ struct Demand {
     double room(double b) const noexcept {
         const double limit = acceleration * (1.0 - LimitTuning::ACCELERATION_MARGIN);
         const double used = std::min(limit, turning * b);
-        const double left = isRightAngled ? std::sqrt(limit * limit - used * used) : limit - used;
+        // |turning b - shared braking| <= limit: what pulls forward is braked away first. It goes on with
+        // this where it is slower, and has no such pull: no more than it may at rest.
+        const double pull = std::min(forward * b, used);
+        const double across = std::sqrt(std::max(0.0, pull * pull + limit * limit - used * used));
+        const double left = isRightAngled ? std::min(limit, pull + across) : limit - used;
         return std::min(alone > 0 ? limit / alone : UNLIMITED, shared > 0 ? left / shared : UNLIMITED);
     }
 };
@@ -124,6 +129,9 @@ struct Demands {
         norm.add(std::sqrt(std::max(before.first2, after.first2)),
                  std::sqrt(std::max(before.second2, after.second2)), false);
         norm.isRightAngled = norm.isRightAngled && (isArc || (before.both >= 0 && after.both >= 0));
+        const double first = norm.shared / BrakingTuning::MARGIN;
+        const double both = isArc ? 0.0 : std::max(0.0, std::min(before.both, after.both));
+        norm.forward = std::min(norm.forward, first > 0 ? both / (first * BrakingTuning::MARGIN) : 0.0);
     }
 };
 
