@@ -445,8 +445,9 @@ void Judge::watch_stop(bool isMoving, bool isOn) {
         check_stop(isMoving && isOn, (cycles - standing_) * period_);
     }
     if (isStanding || !isOn) {
-        // The mean that keeps the jerk may stand before it is sure of it, and offsets brake on their own.
-        const double sure_s = design_.rise_s() + (design_.hasOffsets() ? time_to_brake() : 0);
+        // The mean that keeps the jerk, 2 A / J, may stand before it is sure of it; offsets brake on their
+        // own.
+        const double sure_s = 2 * design_.rise_s() + (design_.hasOffsets() ? time_to_brake() : 0);
         const int off_within = 10 + static_cast<int>(sure_s / period_);
         const bool mustBeOff = stop_.how == Stop::ALONG_THEN_OFF;
         const int since = std::min(standing_, cycles);  // it may have stood long before
