@@ -214,7 +214,7 @@ TEST_F(JudgeTest, FindsAmplifiersThatStayOnAfterAStop) {
     judge_.allow(Leave::MOVE);
     feed(5);
     judge_.stop(Stop::ALONG_THEN_OFF, 0);
-    feed(100);
+    feed(150);  // 2 A / J are 100
     EXPECT_EQ(rule(), "stop");
 }
 
