@@ -129,9 +129,8 @@ struct Demands {
         norm.add(std::sqrt(std::max(before.first2, after.first2)),
                  std::sqrt(std::max(before.second2, after.second2)), false);
         norm.isRightAngled = norm.isRightAngled && (isArc || (before.both >= 0 && after.both >= 0));
-        const double first = norm.shared / BrakingTuning::MARGIN;
         const double both = isArc ? 0.0 : std::max(0.0, std::min(before.both, after.both));
-        norm.forward = std::min(norm.forward, first > 0 ? both / (first * BrakingTuning::MARGIN) : 0.0);
+        norm.forward = std::min(norm.forward, norm.shared > 0 ? both / norm.shared : 0.0);
     }
 };
 

@@ -3,9 +3,9 @@
 
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <system_error>
 
 namespace mw::ui::web {
 
@@ -40,7 +40,7 @@ Result<> MessageLog::add(std::time_t when, std::string_view text) {
     file << line << std::flush;
     if (!file) {
         return fail("[DISPLAY]LOG_FILE " + path_ + ": " +
-                    (errno != 0 ? std::strerror(errno) : "it cannot be written"));
+                    (errno != 0 ? std::generic_category().message(errno) : "it cannot be written"));
     }
     return {};
 }

@@ -28,20 +28,21 @@ AxisValues accelerations(const TeleopMachine &m, const TeleopLoad &load, const J
                          const AxisValues &speed) noexcept {
     AxisValues out{};
     for (int i = 0; i < load.count; ++i) {
-        double a = jogs.axis[at(load.axes[at(i)])].wanted_acceleration;
-        for (int j = 0; j < m.num_joints; ++j) {
-            double curve = 0;
-            for (int k = 0; k < load.count; ++k) {
-                for (int l = 0; l < load.count; ++l) {
-                    curve += load.q2[at(k)][at(l)][at(j)] * speed[at(k)] * speed[at(l)];
-                }
+        out[at(i)] = jogs.axis[at(load.axes[at(i)])].wanted_acceleration;
+    }
+    for (int j = 0; j < m.num_joints; ++j) {
+        double curve = 0;
+        for (int k = 0; k < load.count; ++k) {
+            for (int l = 0; l < load.count; ++l) {
+                curve += load.q2[at(k)][at(l)][at(j)] * speed[at(k)] * speed[at(l)];
             }
-            const double most = m.limits.joints.acceleration[at(j)];
-            const double left = std::max(most - curve, (1.0 - CURVE_SHARE) * most);
-            const double q1 = load.q1[at(i)][at(j)];
-            a = q1 > 0 ? std::min(a, left / (n * q1)) : a;
         }
-        out[at(i)] = a;
+        const double most = m.limits.joints.acceleration[at(j)];
+        const double left = std::max(most - curve, (1.0 - CURVE_SHARE) * most);
+        for (int i = 0; i < load.count; ++i) {
+            const double q1 = load.q1[at(i)][at(j)];
+            out[at(i)] = q1 > 0 ? std::min(out[at(i)], left / (n * q1)) : out[at(i)];
+        }
     }
     return out;
 }
@@ -127,10 +128,6 @@ int joint_left_by(const TeleopMachine &m, const geom::Pose &pose) noexcept {
     }
     return -1;
 }
-
-}  // namespace
-
-namespace {
 
 /// What axes ask of the joints at the places of this cycle.
 struct Look {

@@ -178,21 +178,20 @@ AxisValues shared_speeds(const TeleopMachine &m, const TeleopLoad &load, const J
 
 double with_reserve(const TeleopLoad &load, const traj::JogPlanner &p, double acceleration) noexcept {
     constexpr double PLANNED = 0.75;
-    bool isCurved = false;
-    for (int i = 0; i < load.count; ++i) {
-        for (int k = 0; k < load.count; ++k) {
-            const JointsAt &q2 = load.q2[at(i)][at(k)];
-            isCurved = isCurved || std::ranges::any_of(q2, [](double x) { return x > LEAST_CURVE; });
-        }
-    }
     const traj::FreePlanner &leader = p.leader();
     const double way = p.target - leader.position;
-    if (load.count < 2 || !isCurved || !(leader.velocity * way > 0)) {
+    if (load.count < 2 || !(leader.velocity * way > 0)) {
         return acceleration;
+    }
+    bool isCurved = false;
+    for (int i = 0; i < load.count && !isCurved; ++i) {
+        for (int k = 0; k < load.count && !isCurved; ++k) {
+            isCurved = std::ranges::any_of(load.q2[at(i)][at(k)], [](double x) { return x > LEAST_CURVE; });
+        }
     }
     constexpr double ROUNDING = 1.0 + 1e-9;
     const double needed = ROUNDING * leader.velocity * leader.velocity / (2.0 * std::abs(way));
-    return std::clamp(needed, PLANNED * acceleration, acceleration);
+    return isCurved ? std::clamp(needed, PLANNED * acceleration, acceleration) : acceleration;
 }
 
 bool canTake(const traj::JogPlanner &p, double acceleration, double period_s) noexcept {

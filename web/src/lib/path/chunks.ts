@@ -194,7 +194,7 @@ async function fill(reader: ReadableStreamBYOBReader, size: number): Promise<Arr
   return buffer;
 }
 
-/** What browsers read into buffers of ours leaves nothing to collect: of ten million moves that is a third of the memory. */
+/** What browsers read into buffers of ours leaves nothing to collect. */
 async function* readInto(reader: ReadableStreamBYOBReader): AsyncGenerator<Chunk> {
   for (;;) {
     const head = await fill(reader, HEAD_BYTES);
