@@ -7,6 +7,26 @@
 
 namespace mw::traj {
 
+namespace {
+
+/// What is tried where the trial refuses to end so; the same where what is eased is the path.
+Ending gentler_than(Ending ending) noexcept {
+    switch (ending) {
+    case Ending::STOP_AT_ONCE: return Ending::HARD_STOP;
+    case Ending::HARD_STOP: return Ending::STOP;
+    case Ending::STOP: return Ending::SOFT_STOP;
+    case Ending::SOFT_STOP: return Ending::SOFTER_STOP;
+    case Ending::SOFTER_STOP: return Ending::LATE_STOP;
+    case Ending::LATE_STOP: return Ending::LATER_STOP;
+    case Ending::LATER_STOP: return Ending::EASED_STOP;
+    case Ending::EASED_STOP:
+    case Ending::ONWARD: break;
+    }
+    return ending;
+}
+
+}  // namespace
+
 Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept
     : settings_(settings), conditions_(settings.period_s), path_(store), timing_(settings) {
     conditions_.chooser = settings.chooser;
@@ -167,9 +187,7 @@ void Planner::plan_tried(const Snapshot &now) noexcept {
         break;
     }
     case Demand::Kind::STOP: {
-        // On exact arcs the trial relies on the wait behind a rise.
-        const bool isAtOnce = demand.from.coasting.since_rise_s < conditions_.limits.filter_s() &&
-                              !path_.piece(demand.from.piece).isAlong;
+        const bool isAtOnce = demand.from.coasting.since_rise_s < conditions_.limits.filter_s();
         find_plan(now, demand.from, isAtOnce ? Ending::STOP_AT_ONCE : Ending::HARD_STOP);
         break;
     }
@@ -179,8 +197,8 @@ void Planner::plan_tried(const Snapshot &now) noexcept {
     }
 }
 
-/// Makes plans until one passes the trial; hard stops only once. False when the trial has refused them all;
-/// the plan before then stays in force, with its stop.
+/// Makes plans until one passes the trial; each kind of stop but the last only once. False when the trial has
+/// refused them all; the plan before then stays in force, with its stop.
 bool Planner::find_plan(const Snapshot &now, LeaderState from, Ending ending) noexcept {
     const Sequence begin = timing_.phases_end();
     const double standing =
@@ -200,8 +218,8 @@ bool Planner::find_plan(const Snapshot &now, LeaderState from, Ending ending) no
             }
             return true;
         }
-        if (ending == Ending::STOP_AT_ONCE || ending == Ending::HARD_STOP) {
-            ending = ending == Ending::HARD_STOP ? Ending::STOP : Ending::HARD_STOP;
+        if (const Ending gentler = gentler_than(ending); gentler != ending) {
+            ending = gentler;
             continue;
         }
         if (!isDrafted) {

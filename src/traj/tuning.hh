@@ -183,6 +183,8 @@ struct TimingTuning {
     /// Braking that misses a stop at a piece's end by rounding alone is fitted to it; piece accelerations
     /// keep LimitTuning::ACCELERATION_MARGIN, ten times this.
     static constexpr double STOP_FIT = 1e-7;
+    /// Parts of the brake with which stops begin where the whole of it is refused.
+    static constexpr double SOFT_STOP = 0.7, SOFTER_STOP = 0.4, LATER_STOP = -0.2;
     /// Speeds that differ by this part are the same.
     static constexpr double SAME_SPEED = 1e-9;
     /// A speed below this part of what one sample's acceleration gives is rounding.

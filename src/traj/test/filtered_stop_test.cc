@@ -115,5 +115,55 @@ TEST(Filtered, AStopWithoutAPlannerKeepsTheJerkLimit_C13) {
     }
 }
 
+/// Drops a path `after` cycles behind its beginning; how often the leader has left a plan by itself.
+template <typename Fill>
+std::uint64_t leader_brakes(std::uint64_t after, const Limits &limits, const Fill &fill) {
+    JerkRig rig;
+    rig.planner.set_limits(limits);
+    rig.planner.begin(Pose{}, rig.executor.snapshot());
+    fill(rig.planner);
+    rig.planner.release_end();
+    while (rig.cycle < after) {
+        rig.step();
+    }
+    const std::uint64_t before = rig.executor.snapshot().brakes;
+    rig.executor.drop();
+    while (rig.cycle < after + 2000 && (!rig.executor.isAtRest() || rig.executor.snapshot().isDropping)) {
+        rig.step();
+    }
+    EXPECT_TRUE(rig.executor.isAtRest()) << after;
+    auto checker = make_checker(limits, Rig::T);
+    for (const Pose &p : rig.samples) {
+        checker.sample(p.c.data());
+    }
+    EXPECT_TRUE(checker.isWithin()) << after << ": " << checker.report();
+    return rig.executor.snapshot().brakes - before - 1;  // the end of the drop counts
+}
+
+TEST(Filtered, AStopIsPlannedWhileTheMeanHoldsATurn_C5_C13) {
+    Limits gentle = jerk_limits();
+    gentle.jerk.fill(J / 4);  // 0.08 s to the full acceleration
+    for (std::uint64_t after = 20; after < 1200; after += 3) {
+        const std::uint64_t turn = leader_brakes(after, gentle, [](Planner &planner) {
+            Pose from;
+            for (const Pose &to : {at(4), at(8, 1.5), at(8.5, 4), at(20, 6)}) {
+                planner.add(make_line(from, to), request(geom::PathMode::BLEND, 0.05));
+                from = to;
+            }
+        });
+        const std::uint64_t round = leader_brakes(after, gentle, [](Planner &planner) {
+            Pose from;
+            for (int i = 1; i <= 40; ++i) {
+                const double angle = 0.1 * i;
+                const Pose to = at(8 * std::sin(angle), 8 * (1 - std::cos(angle)));
+                planner.add(make_line(from, to), request(geom::PathMode::BLEND, 0.05));
+                from = to;
+            }
+        });
+        EXPECT_EQ(turn, 0U) << after;
+        EXPECT_EQ(round, 0U) << after;
+    }
+}
+
 }  // namespace
 }  // namespace mw::traj::test

@@ -210,7 +210,7 @@ TEST(JerkLimited, AStopFromAnyMomentOfAPlanKeepsTheLimits_C13) {
         made.draft.begin({1, 0, 0, {}});
         const PathView view = parts.view();
         append_smooth(made.draft, *parts.store, {view, *made.profile, 1}, until);
-        ASSERT_TRUE(append_stop(made.draft, *parts.store, {view, *made.profile, 1}));
+        ASSERT_TRUE(append_stop(made.draft, *parts.store, {view, *made.profile, 1}, {}));
         expect_sound_phases(parts, 1, made.draft.end);
         EXPECT_FALSE(made.draft.isStopPassed(*parts.path, 1));
     }

@@ -18,8 +18,7 @@ class Smooth {
         : draft_(draft), store_(store), view_(view), path_(view.path()), limits_(view.on.conditions.limits) {}
 
     bool advance() noexcept;
-    enum class Stop : std::uint8_t { GENTLE, HARD, AT_ONCE };
-    bool stop(Stop how) noexcept;
+    bool stop(const StopShape &shape) noexcept;
 
   private:
     bool canCoast(Sequence piece, double x, double v) noexcept;
@@ -28,6 +27,7 @@ class Smooth {
     double chosen_cap(double cap) noexcept;
     bool start(double cap) noexcept;
     void move(const Piece &p, double cap) noexcept;
+    double softened(const Piece &p, const Piece::BrakeLeg &leg, double share) const noexcept;
     double out2(Sequence piece) const noexcept { return view_.profile.out2(path_, piece); }
     void look_at(Sequence piece) noexcept { draft_.looked_at = std::max(draft_.looked_at, piece); }
 
@@ -201,8 +201,19 @@ bool Smooth::advance() noexcept {
     return true;
 }
 
-bool Smooth::stop(Stop how) noexcept {
+/// The share of the leg's brake, more where what follows could not be kept or the speed were too high.
+double Smooth::softened(const Piece &p, const Piece::BrakeLeg &leg, double share) const noexcept {
+    const LeaderState &s = draft_.at;
+    const double v2 = s.v * s.v;
+    const double cap = speed_cap(view_.on, s.piece);
+    const double kept2 = p.acceleration.highest_before(out2(s.piece), p.length - leg.end);
+    const double needed = (v2 - std::min(kept2, std::max(v2, cap * cap))) / (2.0 * (leg.end - s.x));
+    return std::clamp(needed, share * leg.a, leg.a);
+}
+
+bool Smooth::stop(const StopShape &shape) noexcept {
     LeaderState &s = draft_.at;
+    const double soft_until_s = shape.first_share < 1 ? draft_.seconds + limits_.filter_s() : 0.0;
     while (s.v > 0) {
         if (!draft_.hasRoom(view_.oldest_phase, TimingTuning::PHASES_PER_STOP)) {
             return false;
@@ -212,7 +223,7 @@ bool Smooth::stop(Stop how) noexcept {
         look_at(s.piece);
         const double v2 = s.v * s.v;
         const Piece::BrakeLeg leg =
-            how != Stop::GENTLE ? p.brake_leg(s.x, v2) : Piece::BrakeLeg{p.acceleration.at(v2), p.length};
+            shape.isHard ? p.brake_leg(s.x, v2) : Piece::BrakeLeg{p.acceleration.at(v2), p.length};
         const double left = leg.end - s.x;
         if (!(left > 0)) {
             if (isLast) {
@@ -222,7 +233,9 @@ bool Smooth::stop(Stop how) noexcept {
             continue;
         }
         const double out = out2(s.piece);
-        const double wait = how != Stop::AT_ONCE ? limits_.filter_s() - s.coasting.since_rise_s : 0.0;
+        // On exact arcs the trial relies on the wait behind a rise.
+        const bool isWaiting = !shape.isAtOnce || p.isAlong;
+        const double wait = isWaiting ? limits_.filter_s() - s.coasting.since_rise_s : 0.0;
         const bool mayCoast =
             v2 < p.acceleration.highest_before(out, p.length - s.x) * (1.0 - TimingTuning::SAME_SPEED);
         if (wait > TimingTuning::SOON && mayCoast) {
@@ -232,11 +245,18 @@ bool Smooth::stop(Stop how) noexcept {
             }
             continue;
         }
-        const double slowest2 = v2 - 2.0 * leg.a * left;
+        const double soft_s = soft_until_s - draft_.seconds;
+        const bool isSoft = soft_s > TimingTuning::SOON;
+        const double a = isSoft ? softened(p, leg, shape.first_share) : leg.a;
+        const double slowest2 = v2 - 2.0 * a * left;
+        if (isSoft && s.v * soft_s - 0.5 * a * soft_s * soft_s < left && a * soft_s < s.v) {
+            draft_.append(store_, s.v * soft_s - 0.5 * a * soft_s * soft_s, s.v - a * soft_s);
+            continue;
+        }
         const bool isStop = leg.end >= p.length && (isLast || path_.plan(s.piece + 1).isStopBefore);
         if (isStop || slowest2 <= TimingTuning::STOP_FIT * v2) {
             // A stop that misses the end by rounding is fitted to it.
-            draft_.append(store_, slowest2 < -TimingTuning::STOP_FIT * v2 ? v2 / (2.0 * leg.a) : left, 0);
+            draft_.append(store_, slowest2 < -TimingTuning::STOP_FIT * v2 ? v2 / (2.0 * a) : left, 0);
             return true;
         }
         draft_.append(store_, left, std::sqrt(slowest2));
@@ -253,12 +273,9 @@ void append_smooth(PlanDraft &draft, PathStore &store, const TimingView &view, d
     }
 }
 
-bool append_stop(PlanDraft &draft, PathStore &store, const TimingView &view) noexcept {
-    return Smooth(draft, store, view).stop(Smooth::Stop::GENTLE);
-}
-
-bool append_hard_stop(PlanDraft &draft, PathStore &store, const TimingView &view, bool isAtOnce) noexcept {
-    return Smooth(draft, store, view).stop(isAtOnce ? Smooth::Stop::AT_ONCE : Smooth::Stop::HARD);
+bool append_stop(PlanDraft &draft, PathStore &store, const TimingView &view,
+                 const StopShape &shape) noexcept {
+    return Smooth(draft, store, view).stop(shape);
 }
 
 }  // namespace mw::traj

@@ -8,12 +8,19 @@
 
 namespace mw::traj {
 
+/// How a stop is made.
+struct StopShape {
+    bool isHard = false;  ///< with what curves leave for braking alone
+    /// Also behind a rise that is still in the mean, which keeps to the jerk where both swings together do.
+    bool isAtOnce = false;
+    /// Part of the brake for as long as the mean takes, more only where what follows could not be kept: the
+    /// mean may still hold a turn from which the whole brake swings too far.
+    double first_share = 1;
+};
+
 /// Appends phases until the plan lasts `until_s` or ends for now.
 void append_smooth(PlanDraft &draft, PathStore &store, const TimingView &view, double until_s) noexcept;
 /// From where the plan leads to a stop; false when there is no room for it.
-bool append_stop(PlanDraft &draft, PathStore &store, const TimingView &view) noexcept;
-/// The same with what curves leave for braking alone. `isAtOnce`: also behind a rise that is still in the
-/// mean, which keeps to the jerk where both swings together do.
-bool append_hard_stop(PlanDraft &draft, PathStore &store, const TimingView &view, bool isAtOnce) noexcept;
+bool append_stop(PlanDraft &draft, PathStore &store, const TimingView &view, const StopShape &shape) noexcept;
 
 }  // namespace mw::traj

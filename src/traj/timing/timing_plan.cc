@@ -10,6 +10,25 @@
 
 namespace mw::traj {
 
+namespace {
+
+StopShape stop_shape(Ending ending) noexcept {
+    switch (ending) {
+    case Ending::ONWARD:
+    case Ending::EASED_STOP:
+    case Ending::STOP: return {};
+    case Ending::HARD_STOP: return {.isHard = true};
+    case Ending::STOP_AT_ONCE: return {.isHard = true, .isAtOnce = true};
+    case Ending::SOFT_STOP: return {true, true, TimingTuning::SOFT_STOP};
+    case Ending::SOFTER_STOP: return {true, true, TimingTuning::SOFTER_STOP};
+    case Ending::LATE_STOP: return {true, true, 0};
+    case Ending::LATER_STOP: return {true, true, TimingTuning::LATER_STOP};
+    }
+    return {};
+}
+
+}  // namespace
+
 void TimingPlan::begin(const Snapshot &now) noexcept {
     profile_.begin();
     commitments_.begin(now, draft_.end);
@@ -171,12 +190,8 @@ bool TimingPlan::draft(const PathView &view, PathStore &store, Sequence begin, c
     }
     const double until_s = draft_.seconds;
     const bool isEmpty = draft_.end == waited && from.v <= 0;
-    const bool isHard = ending == Ending::HARD_STOP || ending == Ending::STOP_AT_ONCE;
-    const auto append = [&] {
-        return isHard ? append_hard_stop(draft_, store, timing, ending == Ending::STOP_AT_ONCE)
-                      : append_stop(draft_, store, timing);
-    };
-    if (isEmpty || !append() || draft_.isStopPassed(view.path, begin)) {
+    if (isEmpty || !append_stop(draft_, store, timing, stop_shape(ending)) ||
+        draft_.isStopPassed(view.path, begin)) {
         return false;
     }
     draft_.seconds = until_s;
