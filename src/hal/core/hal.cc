@@ -273,6 +273,8 @@ Result<int> Hal::Impl::add_comp(std::string_view name_wanted, CompType type) {
     comp->process = rtapi::this_process();
     comp->base = segment.base();
     segment.insert(Kind::COMP, *comp);
+    // Other processes and threads do not write beside what this one does.
+    segment.separate_values();
     return comp->id;
 }
 

@@ -76,7 +76,7 @@ Result<> set_pin_or_param(Hal::Impl &hal, std::string_view name, const From &fro
         if (!value) {
             return std::unexpected(value.error());
         }
-        hal.write(param->value, *value);
+        hal.write(param->address, *value);
         return {};
     }
     PinRecord *pin = hal.find_pin(name);
@@ -122,7 +122,7 @@ Result<> set_signal_value(Hal::Impl &hal, std::string_view name, const From &fro
     if (!value) {
         return std::unexpected(value.error());
     }
-    hal.write(hal.segment.offset_of(&signal->value), *value);
+    hal.write(signal->value, *value);
     return {};
 }
 
@@ -159,11 +159,11 @@ void Hal::Impl::link_pin(PinRecord &pin, SignalRecord &signal) noexcept {
     }
     // A port's queue belongs to the signal.
     if (signal.type != Type::PORT && signal.readers + signal.writers + signal.bidirectionals == 0) {
-        write(segment.offset_of(&signal.value), read(pin.type, segment.offset_of(&pin.value)));
+        write(signal.value, read(pin.type, pin.value));
     }
     pin.signal = segment.offset_of(&signal);
     ++count_of(signal, pin.dir);
-    point_slot(pin, segment.offset_of(&signal.value));
+    point_slot(pin, signal.value);
 }
 
 void Hal::Impl::unlink_pin(PinRecord &pin) noexcept {
@@ -172,15 +172,16 @@ void Hal::Impl::unlink_pin(PinRecord &pin) noexcept {
         return;
     }
     if (signal->type != Type::PORT) {
-        write(segment.offset_of(&pin.value), read(pin.type, segment.offset_of(&signal->value)));
+        write(pin.value, read(pin.type, signal->value));
     }
     pin.signal = 0;
     --count_of(*signal, pin.dir);
-    point_slot(pin, segment.offset_of(&pin.value));
+    point_slot(pin, pin.value);
 }
 
 Result<> Hal::Impl::make_queue(SignalRecord &signal, std::uint32_t size) {
-    if (signal.value != 0) {
+    auto *queue = segment.at<std::uint64_t>(signal.value);
+    if (*queue != 0) {
         return refuse(EBUSY, fmt::format("port signal '{}' has its size already", signal.name_view()));
     }
     if (size < 2 || size > HAL_PORT_SIZE_MAX) {
@@ -193,7 +194,7 @@ Result<> Hal::Impl::make_queue(SignalRecord &signal, std::uint32_t size) {
     }
     segment.at<PortQueue>(offset)->size = size;
     // Release: who sees the queue sees its size.
-    __atomic_store_n(&signal.value, offset, __ATOMIC_RELEASE);
+    __atomic_store_n(queue, std::uint64_t{offset}, __ATOMIC_RELEASE);
     return {};
 }
 
@@ -365,7 +366,7 @@ Result<Value> Hal::get_signal(std::string_view name) const {
     if (signal == nullptr) {
         return impl_->no_such(Kind::SIGNAL, name);
     }
-    return impl_->read(signal->type, impl_->segment.offset_of(&signal->value));
+    return impl_->read(signal->type, signal->value);
 }
 
 Result<Value> Hal::get_param(std::string_view name) const {
@@ -374,13 +375,13 @@ Result<Value> Hal::get_param(std::string_view name) const {
     if (param == nullptr) {
         return impl_->no_such(Kind::PARAM, name);
     }
-    return impl_->read(param->type, param->value);
+    return impl_->read(param->type, param->address);
 }
 
 Result<Value> Hal::get(std::string_view name) const {
     Guard guard(*impl_);
     if (const ParamRecord *param = impl_->find_param(name)) {
-        return impl_->read(param->type, param->value);
+        return impl_->read(param->type, param->address);
     }
     if (const PinRecord *pin = impl_->find_pin(name)) {
         return impl_->read(pin->type, impl_->value_of(*pin));
@@ -426,13 +427,13 @@ Result<volatile void *> Hal::address_of(std::string_view name, Type type) {
     Offset value = 0;
     if (const ParamRecord *param = impl_->find_param(name)) {
         found = param->type;
-        value = param->value;
+        value = param->address;
     } else if (const PinRecord *pin = impl_->find_pin(name)) {
         found = pin->type;
         value = impl_->value_of(*pin);
     } else if (const SignalRecord *signal = impl_->find_signal(name)) {
         found = signal->type;
-        value = impl_->segment.offset_of(&signal->value);
+        value = signal->value;
     } else {
         return impl_->no_such(Kind::PIN, name);
     }

@@ -55,7 +55,7 @@ ParamInfo info_of(const Hal::Impl &hal, const ParamRecord &param) {
     info.dir = param.dir;
     info.owner = hal.comp_name(param.comp);
     info.owner_id = hal.comp_id(param.comp);
-    info.value = hal.read(param.type, param.value);
+    info.value = hal.read(param.type, param.address);
     return info;
 }
 
@@ -63,7 +63,7 @@ SignalInfo info_of(const Hal::Impl &hal, const SignalRecord &signal) {
     SignalInfo info;
     info.name = signal.name_view();
     info.type = signal.type;
-    info.value = hal.read(signal.type, hal.segment.offset_of(&signal.value));
+    info.value = hal.read(signal.type, signal.value);
     info.readers = signal.readers;
     info.writers = signal.writers;
     info.bidirectionals = signal.bidirectionals;

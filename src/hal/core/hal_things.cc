@@ -27,7 +27,7 @@ ParamRecord *Hal::Impl::find_param(std::string_view wanted) const noexcept {
 
 Offset Hal::Impl::value_of(const PinRecord &pin) const noexcept {
     const auto *signal = segment.at<SignalRecord>(pin.signal);
-    return segment.offset_of(signal != nullptr ? &signal->value : &pin.value);
+    return signal != nullptr ? signal->value : pin.value;
 }
 
 /// One aligned store into the owner's mapping: the component sees the old value's place or the new one's.
@@ -85,7 +85,7 @@ Result<> Hal::Impl::add_pin(std::string_view wanted, Type type, Dir dir, void **
     pin->dir = dir;
     pin->comp = segment.offset_of(&comp);
     pin->slot = segment.offset_of(slot);
-    point_slot(*pin, segment.offset_of(&pin->value));
+    point_slot(*pin, pin->value);
     segment.insert(Kind::PIN, *pin);
     return {};
 }
@@ -129,7 +129,7 @@ Result<> Hal::Impl::add_param(std::string_view wanted, Type type, Dir dir, void 
     param->type = type;
     param->dir = dir;
     param->comp = segment.offset_of(&comp);
-    param->value = segment.offset_of(address);
+    param->address = segment.offset_of(address);
     segment.insert(Kind::PARAM, *param);
     return {};
 }

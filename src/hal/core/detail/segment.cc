@@ -32,7 +32,7 @@ void Segment::initialise(bool isVirtual) noexcept {
     fresh->isVirtual = isVirtual;
     // Three apart, as numbers of LinuxCNC's owners are.
     fresh->next_comp_id = 4;
-    fresh->top = static_cast<Offset>((sizeof(Header) + 63) / 64 * 64);
+    fresh->top = static_cast<Offset>((sizeof(Header) + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE);
 }
 
 void Segment::lock() noexcept {
@@ -68,6 +68,26 @@ Offset Segment::allocate(std::size_t bytes, std::size_t alignment) noexcept {
     return static_cast<Offset>(start);
 }
 
+Offset Segment::allocate_value() noexcept {
+    Header &h = header();
+    if (h.next_value == h.end_of_values) {
+        const Offset block = allocate(BLOCK_OF_VALUES, CACHE_LINE);
+        if (block == 0) {
+            return 0;
+        }
+        h.next_value = block;
+        h.end_of_values = block + BLOCK_OF_VALUES;
+    }
+    const Offset value = h.next_value;
+    h.next_value += sizeof(std::uint64_t);
+    return value;
+}
+
+void Segment::separate_values() noexcept {
+    Header &h = header();
+    h.next_value = static_cast<Offset>((h.next_value + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE);
+}
+
 Record *Segment::find(Kind kind, std::string_view name) const noexcept {
     const std::uint32_t hash = hash_of(name);
     for (Offset offset = table(kind).buckets[hash % BUCKETS]; offset != 0;) {
@@ -82,15 +102,23 @@ Record *Segment::find(Kind kind, std::string_view name) const noexcept {
 
 Record *Segment::make_raw(Kind kind, std::string_view name, std::size_t size) noexcept {
     Table &of = table(kind);
+    const bool hasValue = kind == Kind::PIN || kind == Kind::SIGNAL;
     Record *record = at<Record>(of.free);
     if (record != nullptr) {
         of.free = record->next;
+        const Offset value = record->value;
         std::memset(static_cast<void *>(record), 0, size);
+        record->value = value;
     } else {
-        record = at<Record>(allocate(size, 64));
+        const Offset value = hasValue ? allocate_value() : 0;
+        record = hasValue && value == 0 ? nullptr : at<Record>(allocate(size, CACHE_LINE));
         if (record == nullptr) {
             return nullptr;
         }
+        record->value = value;
+    }
+    if (hasValue) {
+        *at<std::uint64_t>(record->value) = 0;
     }
     record->hash = hash_of(name);
     std::memcpy(record->name.data(), name.data(), std::min(name.size(), NAME_LENGTH));
@@ -164,7 +192,7 @@ void Segment::repair() noexcept {
                                      : signal->bidirectionals);
         }
         const auto *comp = at<CompRecord>(pin.comp);
-        const Offset value = offset_of(signal != nullptr ? &signal->value : &pin.value);
+        const Offset value = signal != nullptr ? signal->value : pin.value;
         if (comp != nullptr && pin.slot != 0) {
             __atomic_store_n(at<std::uint64_t>(pin.slot), comp->base + value, __ATOMIC_RELEASE);
         }

@@ -26,7 +26,9 @@ inline constexpr std::size_t GROWTH = 1U << 20U;
 inline constexpr std::size_t RESERVE = 256U << 20U;
 inline constexpr std::size_t THREAD_FUNCTIONS = 1024;
 inline constexpr std::size_t END_TEXT = 512;
-inline constexpr std::uint32_t ABI_VERSION = 1;
+inline constexpr std::size_t CACHE_LINE = 64;
+inline constexpr std::size_t BLOCK_OF_VALUES = 4096;
+inline constexpr std::uint32_t ABI_VERSION = 2;
 
 enum class Kind : std::uint8_t {
     COMP,
@@ -47,6 +49,10 @@ struct Record {
     Offset next;       ///< in the table's list, newest first; in its free list once removed
     Offset hash_next;  ///< in the bucket
     std::uint32_t hash;
+    /// Of pins and signals: 8 bytes in a block of values, which stay with the record when it is used again. A
+    /// component's values lie side by side: the servo thread reads and writes hundreds of them in a cycle. A
+    /// pin's is in use while it is not linked. What it holds: realtime
+    Offset value;
     std::array<char, NAME_LENGTH + 1> name;
 
     std::string_view name_view() const noexcept { return name.data(); }
@@ -71,7 +77,6 @@ struct PinRecord : Record {
     Offset signal;
     Offset slot;  ///< the pointer that the component reads through
     Offset alias;
-    alignas(8) std::uint64_t value;  ///< while not linked. realtime
     std::uint64_t safe_value;
 };
 
@@ -79,14 +84,13 @@ struct ParamRecord : Record {
     Type type;
     Dir dir;
     Offset comp;
-    Offset value;  ///< realtime
+    Offset address;  ///< of its value, in memory of the component. realtime
     Offset alias;
 };
 
 struct SignalRecord : Record {
     Type type;
     std::int32_t readers, writers, bidirectionals;
-    alignas(8) std::uint64_t value;  ///< realtime
 };
 
 struct FunctRecord : Record {
@@ -194,7 +198,8 @@ struct Header {
     std::uint32_t death_count;  ///< since the start; the last DEATHS of them are kept
     std::array<DeathRecord, DEATHS> deaths;
     EndRecord end;
-    Offset top;  ///< first byte never handed out
+    Offset top;                        ///< first byte never handed out
+    Offset next_value, end_of_values;  ///< what is left of the newest block of values
     std::array<Table, static_cast<std::size_t>(Kind::COUNT)> tables;
 };
 
@@ -252,6 +257,8 @@ class Segment {
     T *make(Kind kind, std::string_view name) noexcept {
         return static_cast<T *>(make_raw(kind, name, sizeof(T)));
     }
+    /// The next value lies in another cache line than those before.
+    void separate_values() noexcept;
     /// Puts a filled record into its table.
     void insert(Kind kind, Record &record) noexcept;
     void remove(Kind kind, Record &record) noexcept;
@@ -267,6 +274,7 @@ class Segment {
     }
 
   private:
+    Offset allocate_value() noexcept;
     Record *make_raw(Kind kind, std::string_view name, std::size_t size) noexcept;
     void unhash(Kind kind, Record &record) noexcept;
     void repair() noexcept;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <set>
+
 #include <gtest/gtest.h>
 
 #include "hal/core/test/machine.hh"
@@ -34,6 +36,27 @@ TEST_F(HalTest, LinkMovesTheSlotAndUnlinkKeepsTheValue) {
     EXPECT_EQ(read(in), 5.5);
     ASSERT_TRUE(hal.delete_signal("s"));
     EXPECT_EQ(read(out), 6.5);
+}
+
+TEST_F(HalTest, ValuesOfAComponentLieSideBySideAndAloneInTheirCacheLines) {
+    const auto place = [](void **slot) { return reinterpret_cast<std::uintptr_t>(*slot); };
+    std::set<std::uintptr_t> lines;
+    for (int i = 0; i < 600; ++i) {
+        void **slot = pin("p" + std::to_string(i), i % 2 == 0 ? Type::BIT : Type::FLOAT, Dir::IN);
+        EXPECT_EQ(place(slot) % 8, 0U);
+        lines.insert(place(slot) / 64);
+    }
+    EXPECT_EQ(lines.size(), 600U / 8);
+    const int other = *hal.new_component("other");
+    void **of_other = *hal.new_pin("other.p", Type::FLOAT, Dir::OUT, other);
+    EXPECT_FALSE(lines.contains(place(of_other) / 64));
+    // Used again, a value is zero.
+    write(of_other, 3);
+    const std::uintptr_t used = place(of_other);
+    ASSERT_TRUE(hal.delete_component(other));
+    void **again = pin("again", Type::FLOAT, Dir::OUT);
+    EXPECT_EQ(place(again), used);
+    EXPECT_EQ(read(again), 0);
 }
 
 TEST_F(HalTest, NetRulesRefuseSecondWritersAndChangeNothing) {
