@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Compares the pins and parameters of motion and of the INI settings with those of an installed LinuxCNC, as black boxes.
 
-usage: compare_pins.py [--bin DIR] [--user NAME] [--timeout S]
+usage: compare_pins.py [--bin DIR] [--timeout S]
 
 One configuration of three joints is brought up by both, with a display that only lists what HAL has. A pin of the reference
 that ours lacks, or has with another type or direction, has a reason in REASONS below, or is a failure. An underscore and a
-hyphen are the same, as in our HAL. Run as root the reference runs as NAME (op), apart from whatever else runs.
+hyphen are the same, as in our HAL. Run as root the reference runs as nobody, apart from whatever else runs.
 """
 import argparse
 import os
@@ -104,7 +104,7 @@ def of_reference(options, folder):
     configuration(folder)
     words = ["/usr/bin/linuxcnc", str(folder / "pins.ini")]
     if os.geteuid() == 0:
-        inner = f"ip link set lo up; mount -t tmpfs none /dev/shm; exec runuser -u {options.user} -- {' '.join(words)}"
+        inner = f"ip link set lo up; mount -t tmpfs none /dev/shm; exec setpriv --reuid=65534 --regid=65534 --clear-groups {' '.join(words)}"
         words = ["unshare", "--ipc", "--net", "--mount", "--pid", "--fork", "--mount-proc", "--kill-child", "bash", "-c", inner]
     environment = {"PATH": "/usr/bin:/bin:/usr/sbin:/sbin", "HOME": str(folder)}
     return bring_up(words, folder, environment, options.timeout)
@@ -123,7 +123,6 @@ def reason_for(name):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bin", default=str(ROOT / "build/release/bin"))
-    parser.add_argument("--user", default="op")
     parser.add_argument("--timeout", type=float, default=60)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as theirs, tempfile.TemporaryDirectory() as mine:
