@@ -27,7 +27,9 @@ class Smooth {
     double chosen_cap(double cap) noexcept;
     bool start(double cap) noexcept;
     void move(const Piece &p, double cap) noexcept;
+    bool mustCoast(const StopShape &shape, const Piece &p) const noexcept;
     double softened(const Piece &p, const Piece::BrakeLeg &leg, double share) const noexcept;
+    bool brake(const StopShape &shape, double soft_until_s) noexcept;
     double out2(Sequence piece) const noexcept { return view_.profile.out2(path_, piece); }
     void look_at(Sequence piece) noexcept { draft_.looked_at = std::max(draft_.looked_at, piece); }
 
@@ -212,56 +214,64 @@ double Smooth::softened(const Piece &p, const Piece::BrakeLeg &leg, double share
 }
 
 bool Smooth::stop(const StopShape &shape) noexcept {
-    LeaderState &s = draft_.at;
     const double soft_until_s = shape.first_share < 1 ? draft_.seconds + limits_.filter_s() : 0.0;
-    while (s.v > 0) {
-        if (!draft_.hasRoom(view_.oldest_phase, TimingTuning::PHASES_PER_STOP)) {
+    while (draft_.at.v > 0) {
+        const bool isRoom = draft_.hasRoom(view_.oldest_phase, TimingTuning::PHASES_PER_STOP);
+        if (!isRoom || !brake(shape, soft_until_s)) {
             return false;
         }
-        const Piece &p = path_.piece(s.piece);
-        const bool isLast = s.piece == path_.last_piece();
-        look_at(s.piece);
-        const double v2 = s.v * s.v;
-        const Piece::BrakeLeg leg =
-            shape.isHard ? p.brake_leg(s.x, v2) : Piece::BrakeLeg{p.acceleration.at(v2), p.length};
-        const double left = leg.end - s.x;
-        if (!(left > 0)) {
-            if (isLast) {
-                return s.v <= 0;
-            }
-            draft_.enter_next_piece();
-            continue;
-        }
-        const double out = out2(s.piece);
-        // On exact arcs the trial relies on the wait behind a rise.
-        const bool isWaiting = !shape.isAtOnce || p.isAlong;
-        const double wait = isWaiting ? limits_.filter_s() - s.coasting.since_rise_s : 0.0;
-        const bool mayCoast =
-            v2 < p.acceleration.highest_before(out, p.length - s.x) * (1.0 - TimingTuning::SAME_SPEED);
-        if (wait > TimingTuning::SOON && mayCoast) {
-            coast(0, out);
-            if (s.x > p.length * (1.0 - TimingTuning::ROUND_END)) {
-                s.x = p.length;
-            }
-            continue;
-        }
-        const double soft_s = soft_until_s - draft_.seconds;
-        const bool isSoft = soft_s > TimingTuning::SOON;
-        const double a = isSoft ? softened(p, leg, shape.first_share) : leg.a;
-        const double slowest2 = v2 - 2.0 * a * left;
-        if (isSoft && s.v * soft_s - 0.5 * a * soft_s * soft_s < left && a * soft_s < s.v) {
-            draft_.append(store_, s.v * soft_s - 0.5 * a * soft_s * soft_s, s.v - a * soft_s);
-            continue;
-        }
-        const bool isStop = leg.end >= p.length && (isLast || path_.plan(s.piece + 1).isStopBefore);
-        if (isStop || slowest2 <= TimingTuning::STOP_FIT * v2) {
-            // A stop that misses the end by rounding is fitted to it.
-            draft_.append(store_, slowest2 < -TimingTuning::STOP_FIT * v2 ? v2 / (2.0 * a) : left, 0);
-            return true;
-        }
-        draft_.append(store_, left, std::sqrt(slowest2));
-        s.x = leg.end;
     }
+    return true;
+}
+
+/// A rise is still in the mean and the speed may be kept for now.
+bool Smooth::mustCoast(const StopShape &shape, const Piece &p) const noexcept {
+    const LeaderState &s = draft_.at;
+    // On exact arcs the trial relies on the wait behind a rise.
+    const bool isWaiting = !shape.isAtOnce || p.isAlong;
+    const double wait = isWaiting ? limits_.filter_s() - s.coasting.since_rise_s : 0.0;
+    const double kept2 = p.acceleration.highest_before(out2(s.piece), p.length - s.x);
+    return wait > TimingTuning::SOON && s.v * s.v < kept2 * (1.0 - TimingTuning::SAME_SPEED);
+}
+
+/// Appends a phase of a stop, or goes on to the next piece; false where the path is over.
+bool Smooth::brake(const StopShape &shape, double soft_until_s) noexcept {
+    LeaderState &s = draft_.at;
+    const Piece &p = path_.piece(s.piece);
+    const bool isLast = s.piece == path_.last_piece();
+    look_at(s.piece);
+    const double v2 = s.v * s.v;
+    const Piece::BrakeLeg leg =
+        shape.isHard ? p.brake_leg(s.x, v2) : Piece::BrakeLeg{p.acceleration.at(v2), p.length};
+    const double left = leg.end - s.x;
+    if (!(left > 0)) {
+        if (!isLast) {
+            draft_.enter_next_piece();
+        }
+        return !isLast;
+    }
+    if (mustCoast(shape, p)) {
+        coast(0, out2(s.piece));
+        s.x = s.x > p.length * (1.0 - TimingTuning::ROUND_END) ? p.length : s.x;
+        return true;
+    }
+    const double soft_s = soft_until_s - draft_.seconds;
+    const bool isSoft = soft_s > TimingTuning::SOON;
+    const double a = isSoft ? softened(p, leg, shape.first_share) : leg.a;
+    const double soft_way = soft_s * (s.v - 0.5 * a * soft_s);
+    if (isSoft && soft_way < left && a * soft_s < s.v) {
+        draft_.append(store_, soft_way, s.v - a * soft_s);
+        return true;
+    }
+    const double slowest2 = v2 - 2.0 * a * left;
+    const bool isStop = leg.end >= p.length && (isLast || path_.plan(s.piece + 1).isStopBefore);
+    if (isStop || slowest2 <= TimingTuning::STOP_FIT * v2) {
+        // A stop that misses the end by rounding is fitted to it.
+        draft_.append(store_, slowest2 < -TimingTuning::STOP_FIT * v2 ? v2 / (2.0 * a) : left, 0);
+        return true;
+    }
+    draft_.append(store_, left, std::sqrt(slowest2));
+    s.x = leg.end;
     return true;
 }
 
