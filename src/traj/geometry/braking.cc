@@ -216,7 +216,7 @@ bool isWorthALook(const PathStore &store, const Piece &piece, bool isMapped,
                   const SpeedLimit &limit) noexcept {
     // Lines are curves for joints that are not axes.
     const bool isCurved = isMapped || piece.blend_d > 0 || store.primitive(piece.primitive).isArc;
-    return isCurved && !piece.isAlong && limit.v < 1e100 && piece.length > BrakingTuning::SHORT_S * limit.v &&
+    return isCurved && limit.v < 1e100 && piece.length > BrakingTuning::SHORT_S * limit.v &&
            limit.a.at(limit.v * limit.v) < BrakingTuning::ENOUGH * limit.a.at(0);
 }
 

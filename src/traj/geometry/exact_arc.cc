@@ -102,47 +102,71 @@ void ExactArc::slow_down_for_joints(const Piece &stretch) noexcept {
     }
 }
 
-SpeedLimit ExactArc::limit_of(const Piece &part) const noexcept {
-    const double a = std::min(acceleration_of_axes(part), acceleration_of_joints(part));
-    return {v_, AccelBound::constant(a)};
-}
-
 // The leader's acceleration counts where the mean place is, at most v tau away from the leader.
-Piece ExactArc::reach_of(const Piece &part) const noexcept {
+ExactArc::Seen ExactArc::seen(const Piece &part) const noexcept {
     const double reach = v_ * tau_;
     Piece wide = part;
     wide.offset = std::max(0.0, part.offset - reach);
     wide.length = std::min(arc_.length, part.offset + part.length + reach) - wide.offset;
-    return wide;
+    Seen seen{};
+    derivative_bounds(arc_, wide.offset, wide.offset + wide.length, seen.q1, seen.q2);
+    if (!workspace_.isMapped()) {
+        return seen;
+    }
+    LimitRow rows[MAX_JOINTS];
+    sample_rows(store_, wide, workspace_, nullptr, rows);
+    for (std::size_t j = 0; j < static_cast<std::size_t>(workspace_.joints.count); ++j) {
+        seen.joint_q1[j] = std::min(joint_q1_[j], rows[j].q1 * JointTuning::SAMPLING_MARGIN +
+                                                      rows[j].q2 * wide.length / (JointTuning::SAMPLES - 1));
+        seen.joint_q2[j] = rows[j].q2 * JointTuning::SAMPLING_MARGIN * JointTuning::SAMPLING_MARGIN;
+    }
+    return seen;
 }
 
-double ExactArc::acceleration_of_axes(const Piece &part) const noexcept {
-    const Piece wide = reach_of(part);
+SpeedLimit ExactArc::limit_of(const Seen &part) const noexcept {
+    return {v_, AccelBound::constant(acceleration_at(part, v_))};
+}
+
+Braking ExactArc::braking_of(const Piece &part) const noexcept {
+    const Seen seen_here = seen(part);
+    Braking out{v_ * v_, {}};
+    for (std::size_t k = 0; k <= AccelBound::LINES; ++k) {
+        const double v = std::sqrt(LimitTuning::CHORDS[k]) * v_;
+        // What is commanded is faster than the leader that brakes, by half of what it loses in tau.
+        const double mean_v = std::min(v_, v + 0.5 * tau_ * acceleration_at(seen_here, v));
+        const double a = acceleration_at(seen_here, mean_v) * (1.0 - LimitTuning::ACCELERATION_MARGIN);
+        for (Braking::Part &to : out.parts) {
+            to[k] = static_cast<float>(a);
+        }
+    }
+    return out;
+}
+
+double ExactArc::acceleration_at(const Seen &part, double v) const noexcept {
+    return std::min(acceleration_of_axes(part, v), acceleration_of_joints(part, v));
+}
+
+double ExactArc::acceleration_of_axes(const Seen &part, double v) const noexcept {
     const double w2 = arc_.omega * arc_.omega;
-    PerLimited q1;
-    PerLimited q2;
-    derivative_bounds(arc_, wide.offset, wide.offset + wide.length, q1, q2);
     double a = UNLIMITED;
-    for (std::size_t i = 0; i < q1.size(); ++i) {
+    for (std::size_t i = 0; i < part.q1.size(); ++i) {
         if (!(q1_[i] > 0)) {
             continue;
         }
         const Allowed allowed{wanted_.acceleration[i], wanted_.jerk[i]};
-        const double q3 = (q1[i] + 3.0 * std::abs(arc_.dradius)) * w2;
-        const double here = q1[i] > 0 ? along_this_way(q1[i], q2[i], q3, allowed, v_, tau_) : UNLIMITED;
-        a = std::min(a, std::max(along_any_way(q1_[i], q2_[i], allowed, v_, tau_), here));
+        const double q3 = (part.q1[i] + 3.0 * std::abs(arc_.dradius)) * w2;
+        const double here =
+            part.q1[i] > 0 ? along_this_way(part.q1[i], part.q2[i], q3, allowed, v, tau_) : UNLIMITED;
+        a = std::min(a, std::max(along_any_way(q1_[i], q2_[i], allowed, v, tau_), here));
     }
     return a;
 }
 
-double ExactArc::acceleration_of_joints(const Piece &part) const noexcept {
+double ExactArc::acceleration_of_joints(const Seen &part, double v) const noexcept {
     if (!workspace_.isMapped()) {
         return UNLIMITED;
     }
     const JointLimits &joints = workspace_.joints;
-    const Piece wide = reach_of(part);
-    LimitRow rows[MAX_JOINTS];
-    sample_rows(store_, wide, workspace_, nullptr, rows);
     double a = UNLIMITED;
     for (std::size_t j = 0; j < static_cast<std::size_t>(joints.count); ++j) {
         const double most = joint_q1_[j];
@@ -151,11 +175,10 @@ double ExactArc::acceleration_of_joints(const Piece &part) const noexcept {
         }
         const double k = joint_k_[j];
         const Allowed allowed{joints.acceleration[j], joints.jerk[j]};
-        const double least = along_any_way(most, most * k, allowed, v_, tau_);
-        const double q1 = std::min(most, rows[j].q1 * JointTuning::SAMPLING_MARGIN +
-                                             rows[j].q2 * wide.length / (JointTuning::SAMPLES - 1));
-        const double q2 = rows[j].q2 * JointTuning::SAMPLING_MARGIN * JointTuning::SAMPLING_MARGIN;
-        const double here = q1 > 0 ? along_this_way(q1, q2, most * k * k, allowed, v_, tau_) : UNLIMITED;
+        const double least = along_any_way(most, most * k, allowed, v, tau_);
+        const double q1 = part.joint_q1[j];
+        const double here =
+            q1 > 0 ? along_this_way(q1, part.joint_q2[j], most * k * k, allowed, v, tau_) : UNLIMITED;
         a = std::min(a, std::max(least, here));
     }
     return a;

@@ -20,15 +20,24 @@ class ExactArc {
     ExactArc(const PathStore &store, const Piece &stretch, const Conditions &conditions,
              double wish) noexcept;
 
-    SpeedLimit limit_of(const Piece &part) const noexcept;
+    SpeedLimit limit_of(const Piece &part) const noexcept { return limit_of(seen(part)); }
+    /// What stops may take on the part: the slower, the more turning leaves.
+    Braking braking_of(const Piece &part) const noexcept;
 
   private:
     using PerJoint = std::array<double, MAX_JOINTS>;
+    /// Largest derivatives where the mean place may be while the leader is on a part.
+    struct Seen {
+        PerLimited q1, q2;
+        PerJoint joint_q1, joint_q2;
+    };
 
     void slow_down_for_joints(const Piece &stretch) noexcept;
-    Piece reach_of(const Piece &part) const noexcept;
-    double acceleration_of_axes(const Piece &part) const noexcept;
-    double acceleration_of_joints(const Piece &part) const noexcept;
+    Seen seen(const Piece &part) const noexcept;
+    SpeedLimit limit_of(const Seen &part) const noexcept;
+    double acceleration_at(const Seen &part, double v) const noexcept;
+    double acceleration_of_axes(const Seen &part, double v) const noexcept;
+    double acceleration_of_joints(const Seen &part, double v) const noexcept;
 
     const PathStore &store_;
     const Primitive &arc_;

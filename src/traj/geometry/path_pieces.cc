@@ -176,6 +176,7 @@ void PathBuilder::add_part(PlannedPath &path, const Conditions &c, Piece piece, 
         piece.programmed_s = m.start_s + begin;
         piece.length = end - begin;
         piece.isToEnd = isToEnd && i + 1 == cuts;
+        piece.braking = exact.has_value() ? exact->braking_of(piece) : Braking{};
         const SpeedLimit limit = exact.has_value() ? exact->limit_of(piece)
                                  : cuts == 1       ? whole
                                                    : limit_of(p, begin, end, limits, wish);
@@ -191,7 +192,9 @@ void PathBuilder::add_piece(PlannedPath &path, const Conditions &c, const Piece 
         isMapped ? limit_with_joints(path.store(), piece, c.workspace, c.limits.filter_s(), limit) : limit;
     Piece limited = piece;
     limited.acceleration = lowest.a;
-    limited.braking = braking_on(path.store(), piece, c, lowest);
+    if (!piece.isAlong) {
+        limited.braking = braking_on(path.store(), piece, c, lowest);
+    }
     PlannedPiece plan;
     plan.v_limit = std::min(lowest.v, PathTuning::MOVES_PER_CYCLE * path.primitive(piece.primitive).length /
                                           c.limits.period_s());

@@ -165,5 +165,34 @@ TEST(Filtered, AStopIsPlannedWhileTheMeanHoldsATurn_C5_C13) {
     }
 }
 
+/// Of a machine whose Z alone asks for a long mean.
+TEST(Filtered, AStopOnAnExactArcBrakesAtOnceAndHarderWhereItIsSlower_C5_C13) {
+    Limits limits = jerk_limits();
+    limits.jerk[2] = J / 5;  // 0.1 s to the full acceleration
+    for (std::uint64_t after = 30; after < 900; after += 29) {
+        JerkRig rig;
+        rig.planner.set_limits(limits);
+        rig.planner.begin(Pose{}, rig.executor.snapshot());
+        rig.planner.add(half_circle(20), request(geom::PathMode::EXACT_PATH));
+        rig.planner.release_end();
+        while (rig.cycle < after) {
+            rig.step();
+        }
+        const double v = rig.executor.output().velocity;
+        rig.executor.drop();
+        while (rig.cycle < after + 2000 && (!rig.executor.isAtRest() || rig.executor.snapshot().isDropping)) {
+            rig.step();
+        }
+        // Planner's period and latency, the mean, and braking with three quarters of what an axis may.
+        const double most_s = 0.013 + 0.1 + (v + 10) / (0.75 * A);
+        EXPECT_LE(static_cast<double>(rig.cycle - after) * Rig::T, most_s) << after << ": " << v;
+        auto checker = make_checker(limits, Rig::T);
+        for (const Pose &p : rig.samples) {
+            checker.sample(p.c.data());
+        }
+        EXPECT_TRUE(checker.isWithin()) << after << ": " << checker.report();
+    }
+}
+
 }  // namespace
 }  // namespace mw::traj::test

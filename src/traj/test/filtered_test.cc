@@ -88,17 +88,6 @@ TEST(Filtered, CornersArePassedAtTheScaledSpeed_C2) {
     EXPECT_GT(corner_time(0.2), corner_time(1.0) + 0.01);
 }
 
-/// From the origin to 2 radius in Y.
-Primitive half_circle(double radius) {
-    ArcShape shape;
-    shape.centre = at(0, radius);
-    shape.normal[2] = 1;
-    shape.angle_rad = std::numbers::pi;
-    Primitive arc;
-    EXPECT_EQ(make_arc(Pose{}, at(0, 2 * radius), shape, arc), ArcFault::NONE);
-    return arc;
-}
-
 TEST(Filtered, AnExactArcIsFollowedExactly_C13) {
     JerkRig rig;
     rig.planner.add(half_circle(5), request(geom::PathMode::EXACT_PATH));
@@ -162,6 +151,7 @@ struct BeltRig : JerkRig {
         planner.release_end();
     }
     void expect_joints_within() const {
+        expect_within();
         testing::LimitChecker checker({{V, A / 2, J / 2}, {V, A / 2, J / 2}}, T);
         double belts[MAX_JOINTS] = {};
         for (const Pose &p : samples) {

@@ -2,6 +2,8 @@
 // Planner and executor with jerk limits, and moves to feed them.
 #pragma once
 
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 #include "traj/test/path_rig.hh"
@@ -35,6 +37,17 @@ inline MoveRequest request(geom::PathMode join, double tolerance = 0) {
     r.join = join;
     r.tolerance = tolerance;
     return r;
+}
+
+/// From the origin to 2 radius in Y.
+inline Primitive half_circle(double radius) {
+    ArcShape shape;
+    shape.centre = at(0, radius);
+    shape.normal[2] = 1;
+    shape.angle_rad = std::numbers::pi;
+    Primitive arc;
+    EXPECT_EQ(make_arc(Pose{}, at(0, 2 * radius), shape, arc), ArcFault::NONE);
+    return arc;
 }
 
 struct JerkRig : Rig {

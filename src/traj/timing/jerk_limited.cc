@@ -227,9 +227,7 @@ bool Smooth::stop(const StopShape &shape) noexcept {
 /// A rise is still in the mean and the speed may be kept for now.
 bool Smooth::mustCoast(const StopShape &shape, const Piece &p) const noexcept {
     const LeaderState &s = draft_.at;
-    // On exact arcs the trial relies on the wait behind a rise.
-    const bool isWaiting = !shape.isAtOnce || p.isAlong;
-    const double wait = isWaiting ? limits_.filter_s() - s.coasting.since_rise_s : 0.0;
+    const double wait = shape.isAtOnce ? 0.0 : limits_.filter_s() - s.coasting.since_rise_s;
     const double kept2 = p.acceleration.highest_before(out2(s.piece), p.length - s.x);
     return wait > TimingTuning::SOON && s.v * s.v < kept2 * (1.0 - TimingTuning::SAME_SPEED);
 }
