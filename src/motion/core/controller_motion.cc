@@ -148,7 +148,6 @@ void Controller::move_extra_joints(const Inputs &in) noexcept {
 
 geom::Pose Controller::teleop_pose() noexcept {
     executor_.step(cycle_);
-    executor_.set_position(without(offsets_, place_.cmd));
     if (!map_.areJointsAxes()) {
         const TeleopMachine machine{
             kinematics_,        limits_,          commanded(joints_),          config_.num_led_joints(),
