@@ -153,6 +153,9 @@ struct CornerTuning {
     /// A corner is passed where building up its speed and the stand saved take more than this part of tau.
     /// Measured: flat.
     static constexpr double PASS_WORTH = 0.8;
+    /// A corner that is passed at what is gained in this part of tau is stopped at: the leader would keep such
+    /// a speed for tau before and behind it. Measured: 0.02 to 0.1 the same.
+    static constexpr double CRAWL = 0.05;
     /// Of a whole arc that is followed exactly. Turning is across the path, the rest along it:
     /// 0.6^2 + 0.75^2 < 1 of the acceleration; of the jerk (0.6 + 0.2)^2 + 0.5^2 < 1, 0.6 from the
     /// acceleration built up in tau.

@@ -167,7 +167,9 @@ Corner mean_corner(const Bend &bend) noexcept {
                       .v = v,
                       .turning = std::clamp(used, CornerTuning::LEAST_TURNING, CornerTuning::TURNING_SHARE)};
     const double most = std::max(on_a.a.at(0), on_b.a.at(0));
-    return v / most + stop.dwell_s > CornerTuning::PASS_WORTH * tau ? pass : stop;
+    // The leader keeps v for tau before the blend and behind it: a crawl takes longer than a stop.
+    const bool isCrawl = v / most < CornerTuning::CRAWL * tau;
+    return !isCrawl && v / most + stop.dwell_s > CornerTuning::PASS_WORTH * tau ? pass : stop;
 }
 
 }  // namespace

@@ -73,6 +73,29 @@ TEST(Filtered, ARapidBeforeASlowCutAtASlightAngleStaysRapid_C2_C13) {
     }
 }
 
+/// Seconds for chords of a circle with corners of that many radians.
+double chords_time(geom::PathMode join, double turn) {
+    constexpr double RADIUS = 20;
+    JerkRig rig;
+    Pose from;
+    for (int i = 1; i <= 20; ++i) {
+        const Pose to = at(RADIUS * std::sin(turn * i), RADIUS * (1 - std::cos(turn * i)));
+        rig.planner.add(make_line(from, to), request(join));
+        from = to;
+    }
+    EXPECT_TRUE(rig.run(30));
+    rig.expect_within();
+    return static_cast<double>(rig.cycle) * Rig::T;
+}
+
+TEST(Filtered, ExactPathIsNeverSlowerThanExactStop_C2_C13) {
+    for (const double turn : {0.0005, 0.002, 0.005, 0.01, 0.019, 0.021}) {
+        EXPECT_LE(chords_time(geom::PathMode::EXACT_PATH, turn),
+                  chords_time(geom::PathMode::EXACT_STOP, turn))
+            << turn;
+    }
+}
+
 double corner_time(double corner_scale) {
     JerkRig rig;
     MoveRequest r = request(geom::PathMode::BLEND, 0.5);
