@@ -16,6 +16,8 @@ constexpr double PLACE_ROUNDING = 2e-6, RATE_ROUNDING = 1e-5;
 constexpr double WITH_BACKLASH = 1.5;
 /// What a stop may take of the least, and on top of it for commands on their way.
 constexpr double STOP_FACTOR = 2.2, STOP_SLACK_S = 0.02;
+/// For so long a planner that is away may still come (docs/motion/planner.md).
+constexpr double WAIT_FOR_PLANNER_S = 0.02;
 /// How often a stop under way is judged [cycles].
 constexpr int LOOK_EVERY = 16;
 /// Until commands that were on their way when the machine was stopped have been dropped [cycles].
@@ -74,6 +76,7 @@ void Judge::stop(Stop how, int delay) {
     if (!isSame) {
         stop_.delay = delay;
         stop_.since = 0;
+        stop_.wasPlannerAway = false;
         begin_stop();
     }
     stop_.how = how;
@@ -423,6 +426,7 @@ void Judge::check_rest(const Sample &s) {
     if (!stop_.isAwaited) {
         return;
     }
+    stop_.wasPlannerAway = stop_.wasPlannerAway || s.isPlannerAway;
     watch_stop(isMoving, isOn);
 }
 
@@ -466,7 +470,8 @@ void Judge::check_stop(bool isMoving, double took_s) {
     const double corrections_s = time_to_correct() + stops_later_s;
     // All axes have one mean, also where the one that needs it stands.
     const double mean_s = std::max(0.0, longest_mean_s() - time_of_jerk());
-    if (took_s > STOP_FACTOR * least.seconds + STOP_SLACK_S + corrections_s + mean_s) {
+    const double waited_s = stop_.wasPlannerAway ? WAIT_FOR_PLANNER_S : 0.0;
+    if (took_s > STOP_FACTOR * least.seconds + STOP_SLACK_S + waited_s + corrections_s + mean_s) {
         fail("stop", fmt::format("{} {:.3f} s after the stop; its limits need {:.3f} s",
                                  isMoving ? "still moves" : "comes to rest", took_s, least.seconds));
         stop_.isAwaited = false;

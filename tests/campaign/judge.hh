@@ -36,6 +36,7 @@ struct JointSample {
 struct Sample {
     std::uint64_t cycle = 0;
     bool isChainClosed = true, isEnableOn = true;  ///< as the servo cycle has read them
+    bool isPlannerAway = false;                    ///< it has no chance to answer
     bool isSpindleOn = false;
     double spindle_rpm = 0;     ///< commanded
     double spindle_turns = 0;   ///< in truth
@@ -56,7 +57,8 @@ enum class Stop {
 struct AwaitedStop {
     bool isAwaited = false;
     Stop how = Stop::ALONG_THE_PATH;
-    int delay = 0, since = 0;  ///< cycles
+    int delay = 0, since = 0;     ///< cycles
+    bool wasPlannerAway = false;  ///< at some time since
     /// Commanded since, with the samples that tell the speed as it began.
     struct Path {
         std::vector<std::vector<double>> motors;  ///< by joint, sample
