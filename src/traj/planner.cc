@@ -16,7 +16,8 @@ Ending gentler_than(Ending ending) noexcept {
     case Ending::HARD_STOP: return Ending::STOP;
     case Ending::STOP: return Ending::SOFT_STOP;
     case Ending::SOFT_STOP: return Ending::SOFTER_STOP;
-    case Ending::SOFTER_STOP: return Ending::LATE_STOP;
+    case Ending::SOFTER_STOP: return Ending::SOFTEST_STOP;
+    case Ending::SOFTEST_STOP: return Ending::LATE_STOP;
     case Ending::LATE_STOP: return Ending::LATER_STOP;
     case Ending::LATER_STOP: return Ending::EASED_STOP;
     case Ending::EASED_STOP:

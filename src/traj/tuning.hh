@@ -153,8 +153,8 @@ struct CornerTuning {
     /// A corner is passed where building up its speed and the stand saved take more than this part of tau.
     /// Measured: flat.
     static constexpr double PASS_WORTH = 0.8;
-    /// A corner that is passed at what is gained in this part of tau is stopped at: the leader would keep such
-    /// a speed for tau before and behind it. Measured: 0.02 to 0.1 the same.
+    /// A corner that is passed at what is gained in this part of tau is stopped at: the leader would keep
+    /// such a speed for tau before and behind it. Measured: 0.02 to 0.1 the same.
     static constexpr double CRAWL = 0.05;
     /// Of a whole arc that is followed exactly. Turning is across the path, the rest along it:
     /// 0.6^2 + 0.75^2 < 1 of the acceleration; of the jerk (0.6 + 0.2)^2 + 0.5^2 < 1, 0.6 from the
@@ -187,7 +187,7 @@ struct TimingTuning {
     /// keep LimitTuning::ACCELERATION_MARGIN, ten times this.
     static constexpr double STOP_FIT = 1e-7;
     /// Parts of the brake with which stops begin where the whole of it is refused.
-    static constexpr double SOFT_STOP = 0.7, SOFTER_STOP = 0.4, LATER_STOP = -0.2;
+    static constexpr double SOFT_STOP = 0.7, SOFTER_STOP = 0.4, SOFTEST_STOP = 0.2, LATER_STOP = -0.2;
     /// Speeds that differ by this part are the same.
     static constexpr double SAME_SPEED = 1e-9;
     /// A speed below this part of what one sample's acceleration gives is rounding.
@@ -333,8 +333,12 @@ struct ExecutorTuning {
     /// of its periods.
     static constexpr double PLANNER_SILENCE_S = 0.02;
     static constexpr int PLANNER_SILENCE_CYCLES = 4;
-    /// A plan to stop that has not come so long after a drop is not waited for: six periods of the planner.
-    static constexpr double STOP_PLAN_WAIT_S = 0.03;
+    /// A plan to stop that has not come so long after a drop is not waited for: as long as what is committed
+    /// goes on before it stops, and half of that.
+    static constexpr double STOP_PLAN_WAIT_S = 0.15;
+    /// The plan in force, which was tried, is driven to its end where that takes no longer than braking from
+    /// here, which was not, and so much more.
+    static constexpr double LATER_S = 0.04;
 };
 
 }  // namespace mw::traj

@@ -180,13 +180,16 @@ double Executor::follow(double dt) noexcept {
     return dt - left;
 }
 
-void Executor::start_brake() noexcept {
-    // A plan keeps its speed for so long after a rise, so the path allows it.
+/// A plan keeps its speed for so long after a rise, so the path allows it.
+double Executor::wait_behind_rise() const noexcept {
     const bool isFalling = state_.plan != 0 && store_.phase(state_.phase).a < 0;
     const double since_s = state_.coasting.since_rise_s;
-    brake_.wait_s = isFiltered() && !isFalling
-                        ? std::max(0.0, static_cast<double>(state_.filter) * period_ - since_s)
-                        : 0.0;
+    return isFiltered() && !isFalling ? std::max(0.0, static_cast<double>(state_.filter) * period_ - since_s)
+                                      : 0.0;
+}
+
+void Executor::start_brake() noexcept {
+    brake_.wait_s = wait_behind_rise();
     state_.motion = Motion::BRAKE;
     ++state_.brakes;
     next_switch_.plan = 0;
@@ -326,7 +329,25 @@ void Executor::drop() noexcept {
     }
 }
 
-/// A stop must not wait for a planner that is late or gone, nor for one that finds no plan to stop.
+/// The plan in force ends in a stop that was tried, and soon enough beside braking from here.
+bool Executor::isPlanSoonOver() const noexcept {
+    constexpr Sequence MOST = 64;
+    if (phase_end_ - state_.phase > MOST) {
+        return false;
+    }
+    double left_s = -state_.time_in_phase;
+    for (Sequence n = state_.phase; n < phase_end_; ++n) {
+        left_s += store_.phase(n).duration;
+    }
+    const Phase &last = store_.phase(phase_end_ - 1);
+    const double end_v = last.v0 + last.a * last.duration;
+    const double a = store_.piece(state_.piece).brake_leg(state_.x, state_.v * state_.v).a;
+    const double brake_s = wait_behind_rise() + state_.v / a;
+    return end_v <= ExecutorTuning::STOPPED * last.v0 && left_s <= brake_s + ExecutorTuning::LATER_S;
+}
+
+/// A stop must not wait for a planner that is late or gone. One that looks for a sound stop is waited for
+/// longer: the plan in force ends in one.
 void Executor::watch_planner() noexcept {
     const std::uint32_t updates = store_.updates.load(std::memory_order_relaxed);
     silence_.cycles = updates != silence_.seen_updates ? 0 : silence_.cycles + 1;
@@ -335,7 +356,7 @@ void Executor::watch_planner() noexcept {
                         silence_.cycles * period_ > ExecutorTuning::PLANNER_SILENCE_S;
     ++silence_.waited;
     const bool isWithoutPlan = silence_.waited * period_ > ExecutorTuning::STOP_PLAN_WAIT_S;
-    if (isGone || isWithoutPlan) {
+    if ((isGone || isWithoutPlan) && !isPlanSoonOver()) {
         start_brake();
     }
 }

@@ -21,6 +21,7 @@ StopShape stop_shape(Ending ending) noexcept {
     case Ending::STOP_AT_ONCE: return {.isHard = true, .isAtOnce = true};
     case Ending::SOFT_STOP: return {true, true, TimingTuning::SOFT_STOP};
     case Ending::SOFTER_STOP: return {true, true, TimingTuning::SOFTER_STOP};
+    case Ending::SOFTEST_STOP: return {true, true, TimingTuning::SOFTEST_STOP};
     case Ending::LATE_STOP: return {true, true, 0};
     case Ending::LATER_STOP: return {true, true, TimingTuning::LATER_STOP};
     }

@@ -23,6 +23,7 @@ enum class Ending : std::uint8_t {
     STOP_AT_ONCE,  ///< hard, and without waiting until the mean has forgotten the last rise
     SOFT_STOP,     ///< hard, but with a share only for as long as the mean takes
     SOFTER_STOP,   ///< with a smaller one
+    SOFTEST_STOP,  ///< with the smallest
     LATE_STOP,     ///< with none at first
     LATER_STOP,    ///< it still gains some speed at first
     EASED_STOP,    ///< it stops on a path that is made slower where that is refused
