@@ -44,10 +44,13 @@ double Piece::brake_at(double x, double b) const noexcept {
 Piece::BrakeLeg Piece::brake_leg(double x, double b) const noexcept {
     const bool isPlanned = !(braking.top > 0);
     BrakeLeg leg{brake_at(x, b), isPlanned ? length : braking.end_of(Braking::part_at(x, length), length)};
-    const double slower = BrakingTuning::LOOK_AGAIN * b;
-    if (leg.a > 0 && brake_at(x, slower) > BrakingTuning::LOOK_GAIN * leg.a) {
-        const double way = std::max(0.5 * (b - slower) / leg.a, BrakingTuning::SHORT_S * std::sqrt(b));
-        leg.end = std::min(leg.end, x + way);
+    for (const BrakingTuning::Look &look : BrakingTuning::LOOKS) {
+        const double slower = look.slower * b;
+        if (leg.a > 0 && brake_at(x, slower) > look.gain * leg.a) {
+            const double way = std::max(0.5 * (b - slower) / leg.a, BrakingTuning::SHORT_S * std::sqrt(b));
+            leg.end = std::min(leg.end, x + way);
+            break;
+        }
     }
     return leg;
 }

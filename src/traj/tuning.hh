@@ -78,12 +78,18 @@ struct BrakingTuning {
     /// Where turning at the highest speed leaves this part of the acceleration, a stop by the sum is fast
     /// enough: the slower the more is left.
     static constexpr double ENOUGH = 0.5;
+    /// An arc that turns by more than this has parts where other axes, or joints, move [rad].
+    static constexpr double SWEEP = 0.2;
     /// A piece that takes no longer at its highest speed delays no stop [s]. Dense programs are planned twice
     /// as fast for it.
     static constexpr double SHORT_S = 0.002;
     /// As the speed falls turning leaves more: it is looked at anew where the squared speed has come down to
-    /// the first part, if that gives this many times as much, and not sooner than after SHORT_S.
-    static constexpr double LOOK_AGAIN = 0.7, LOOK_GAIN = 1.05;
+    /// a part, if that gives this many times as much, and not sooner than after SHORT_S. Who turns with
+    /// nearly all that there is gains the more the sooner he looks.
+    struct Look {
+        double slower, gain;
+    };
+    static constexpr Look LOOKS[] = {{0.97, 1.5}, {0.9, 1.3}, {0.7, 1.05}};
     /// What derivatives may be more than their differences tell.
     static constexpr double MARGIN = 1.002;
     /// A bound of its own has to be better by so much somewhere.

@@ -117,7 +117,13 @@ struct Demands {
             of[i].add(at.most_first, at.most_second, at.isAgainst());
         }
     }
-    void add_norm(const Coordinates &axes, std::size_t interval, bool isArc) noexcept {
+    /// Of a circle, or a helix, in X Y Z: the same everywhere.
+    void take_circle(const Primitive &arc) noexcept {
+        norm.shared = std::hypot(arc.radius * arc.omega, geom::norm_xyz(arc.lin));
+        norm.turning = arc.radius * arc.omega * arc.omega;
+        norm.forward = 0;
+    }
+    void add_norm(const Coordinates &axes, std::size_t interval) noexcept {
         Norm before, after;
         for (const Coordinate &axis : axes) {
             if (axis.number < 3) {
@@ -128,8 +134,8 @@ struct Demands {
         }
         norm.add(std::sqrt(std::max(before.first2, after.first2)),
                  std::sqrt(std::max(before.second2, after.second2)), false);
-        norm.isRightAngled = norm.isRightAngled && (isArc || (before.both >= 0 && after.both >= 0));
-        const double both = isArc ? 0.0 : std::max(0.0, std::min(before.both, after.both));
+        norm.isRightAngled = norm.isRightAngled && before.both >= 0 && after.both >= 0;
+        const double both = std::max(0.0, std::min(before.both, after.both));
         norm.forward = std::min(norm.forward, norm.shared > 0 ? both / norm.shared : 0.0);
     }
 };
@@ -215,9 +221,12 @@ Demands demands_of(const Coordinates &joints, const JointLimits &limits, double 
 bool isWorthALook(const PathStore &store, const Piece &piece, bool isMapped,
                   const SpeedLimit &limit) noexcept {
     // Lines are curves for joints that are not axes.
-    const bool isCurved = isMapped || piece.blend_d > 0 || store.primitive(piece.primitive).isArc;
+    const Primitive &p = store.primitive(piece.primitive);
+    const bool isCurved = isMapped || piece.blend_d > 0 || p.isArc;
+    const bool isSweeping =
+        !(piece.blend_d > 0) && p.isArc && std::abs(p.omega) * piece.length > BrakingTuning::SWEEP;
     return isCurved && limit.v < 1e100 && piece.length > BrakingTuning::SHORT_S * limit.v &&
-           limit.a.at(limit.v * limit.v) < BrakingTuning::ENOUGH * limit.a.at(0);
+           (isSweeping || limit.a.at(limit.v * limit.v) < BrakingTuning::ENOUGH * limit.a.at(0));
 }
 
 /// Not above what it stands for.
@@ -279,7 +288,11 @@ Braking braking_on(const PathStore &store, const Piece &piece, const Conditions 
         Demands by_axes = demands_of(axes, conditions.limits);
         Demands by_joints = demands_of(joints, workspace.joints, conditions.limits.filter_s());
         by_axes.add(axes, n);
-        by_axes.add_norm(axes, n, curve.isArc());
+        if (curve.isArc()) {
+            by_axes.take_circle(store.primitive(piece.primitive));
+        } else {
+            by_axes.add_norm(axes, n);
+        }
         by_joints.add(joints, n);
         for (std::size_t k = 0; k <= AccelBound::LINES; ++k) {
             const double b = LimitTuning::CHORDS[k] * out.top;
