@@ -119,8 +119,10 @@ struct Demands {
     }
     /// Of a circle, or a helix, in X Y Z: the same everywhere.
     void take_circle(const Primitive &arc) noexcept {
-        norm.shared = std::hypot(arc.radius * arc.omega, geom::norm_xyz(arc.lin));
-        norm.turning = arc.radius * arc.omega * arc.omega;
+        const double askew = askew_of(arc);
+        norm.acceleration *= 1.0 - askew;
+        norm.shared = std::hypot(arc.radius * arc.omega, geom::norm_xyz(arc.lin)) * (1.0 + askew);
+        norm.turning = arc.radius * arc.omega * arc.omega * (1.0 + askew);
         norm.forward = 0;
     }
     void add_norm(const Coordinates &axes, std::size_t interval) noexcept {
@@ -148,7 +150,7 @@ struct Curve {
     double interval() const noexcept { return piece.length / INTERVALS; }
     bool isArc() const noexcept {
         const Primitive &p = store.primitive(piece.primitive);
-        return !(piece.blend_d > 0) && p.isArc && p.dradius == 0.0 && p.space == geom::AXIS_X;
+        return !(piece.blend_d > 0) && p.isArc && p.space == geom::AXIS_X && isNearlyCircle(p);
     }
     void take_axes(Coordinates &axes) const noexcept {
         Pose at[INTERVALS + 1];

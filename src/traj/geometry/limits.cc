@@ -191,8 +191,9 @@ SpeedLimit limit_of(const Primitive &p, double from, double to, const Limits &li
     LimitRow rows[LIMITED_COUNT];
     const int count = rows_of(q1, q2, limits, rows);
     // The normal and the tangent of an arc are at right angles.
-    if (p.isArc && p.dradius == 0.0 && rows[count - 1].q2 == q2[XYZ_NORM] && q2[XYZ_NORM] > 0) {
+    if (isNearlyCircle(p) && rows[count - 1].q2 == q2[XYZ_NORM] && q2[XYZ_NORM] > 0) {
         rows[count - 1].isRightAngled = true;
+        rows[count - 1].acceleration *= 1.0 - askew_of(p);
     }
     return limit_of_rows(rows, count, wish);
 }

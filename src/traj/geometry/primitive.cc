@@ -151,6 +151,14 @@ void extent(const Primitive &p, Pose &low, Pose &high) noexcept {
     }
 }
 
+double askew_of(const Primitive &arc) noexcept {
+    // The tangent by dr / (r omega), the second derivative, 2 dr omega of r omega^2, by twice that.
+    constexpr double OF_DRIFT = 4.0;
+    const double radius = std::min(arc.radius, arc.radius + arc.dradius * arc.length);
+    const double round = radius * std::abs(arc.omega);
+    return round > 0 ? OF_DRIFT * std::abs(arc.dradius) / round : 1.0;
+}
+
 Primitive make_line(const Pose &start, const Pose &end) noexcept {
     Primitive p;
     p.start = start;

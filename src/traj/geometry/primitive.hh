@@ -50,6 +50,16 @@ FeedLength feed_length(const Primitive &p) noexcept;
 /// Smallest box that holds the whole primitive: [low, high] per coordinate.
 void extent(const Primitive &p, Pose &low, Pose &high) noexcept;
 
+/// How far from a right angle an arc's tangent and its second derivative may be [rad]: by what its radius
+/// drifts.
+double askew_of(const Primitive &arc) noexcept;
+/// Radii in programs are rounded: such an arc counts as a circle, with what it may be askew taken off the
+/// acceleration.
+inline bool isNearlyCircle(const Primitive &p) noexcept {
+    constexpr double MOST_ASKEW = 4e-3;
+    return p.isArc && askew_of(p) < MOST_ASKEW;
+}
+
 /// A straight line. `length` is 0 when the ends are the same pose.
 Primitive make_line(const Pose &start, const Pose &end) noexcept;
 

@@ -99,8 +99,11 @@ class Curves {
         shape.centre[0] -= radius * std::cos(phase);
         shape.centre[1] -= radius * std::sin(phase);
         Pose to = from;
-        to[0] = shape.centre[0] + radius * std::cos(phase + shape.angle_rad);
-        to[1] = shape.centre[1] + radius * std::sin(phase + shape.angle_rad);
+        // As programs round it, exact, or a spiral.
+        const double drift = chance() ? 0.0 : std::pow(10.0, real(-6, -3));
+        const double end = radius * (1 + drift);
+        to[0] = shape.centre[0] + end * std::cos(phase + shape.angle_rad);
+        to[1] = shape.centre[1] + end * std::sin(phase + shape.angle_rad);
         Primitive p;
         EXPECT_EQ(make_arc(from, to, shape, p), ArcFault::NONE);
         return p;
@@ -281,6 +284,36 @@ void stop_in_a_reversal(double by_axis, double by_norm) {
         checker.sample(p.c.data());
     }
     EXPECT_TRUE(checker.isWithin()) << checker.report();
+}
+
+TEST(Braking, AnArcWithARoundedRadiusIsBrakedOnAsACircle_C5) {
+    const auto brake_on = [](double off) {
+        Curves c(1);
+        Limits limits = c.conditions.limits.fitted();
+        limits.acceleration.fill(1e5);
+        limits.acceleration[XYZ_NORM] = 368;
+        c.conditions.limits.set(limits);
+        c.conditions.limits.begin(0);
+        ArcShape shape;
+        shape.angle_rad = 2;
+        shape.normal[2] = 1;
+        Pose from, to;
+        from[0] = 4.8;
+        to[0] = (4.8 + off) * std::cos(2);
+        to[1] = (4.8 + off) * std::sin(2);
+        EXPECT_EQ(make_arc(from, to, shape, c.store->primitive(1)), ArcFault::NONE);
+        c.piece = {};
+        c.piece.primitive = 1;
+        c.piece.length = 0.6;
+        const SpeedLimit limit = c.limit();
+        c.piece.acceleration = limit.a;
+        c.piece.braking = braking_on(*c.store, c.piece, c.conditions, limit);
+        return c.piece.brake_at(0, 0.96 * limit.v * limit.v);
+    };
+    const double on_circle = brake_on(0);
+    EXPECT_GT(on_circle, 0.1 * 368)
+        << "turning takes 0.96 of the acceleration; 0.04 are left for both in line";
+    EXPECT_NEAR(brake_on(1e-4), on_circle, 0.01 * on_circle);
 }
 
 TEST(Braking, AStopInAReversalEndsWhereTheMachineNearlyStands_C5) {
