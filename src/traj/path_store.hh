@@ -189,6 +189,21 @@ struct Coasting {
             since_fall_s += dt;
         }
     }
+    /// Who stands after a rise has fallen, however slightly he moved.
+    void stand(double dt) noexcept {
+        if (since_rise_s < since_fall_s) {
+            since_fall_s = 0;
+            since_rise_s = LONG_AGO;
+        }
+        pass(0, dt);
+    }
+    void pass(const Phase &phase, double dt) noexcept {
+        if (phase.a == 0 && phase.v0 == 0) {
+            stand(dt);
+        } else {
+            pass(phase.a, dt);
+        }
+    }
 };
 
 /// The executor's state at the end of a servo cycle. With a mean over several samples (jerk limits) this is

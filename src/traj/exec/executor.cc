@@ -112,7 +112,7 @@ void Executor::filter() noexcept {
     done_history_[state_.tick % HISTORY_CAPACITY] = leader_done_;
     rest_ticks_ = isResting ? rest_ticks_ + 1 : 0;
     if (isResting) {
-        state_.coasting.pass(0, period_);
+        state_.coasting.stand(period_);
     }
     state_.isSettled = isResting && rest_ticks_ >= state_.filter;
     const bool isPlain = !isFiltered() || state_.isSettled;
@@ -144,7 +144,7 @@ void Executor::advance(double dt) noexcept {
 double Executor::follow(double dt) noexcept {
     const Phase &p = store_.phase(state_.phase);
     const double left = p.duration - state_.time_in_phase;
-    state_.coasting.pass(p.a, std::min(dt, left));
+    state_.coasting.pass(p, std::min(dt, left));
     if (dt < left) {
         state_.time_in_phase += dt;
         state_.x = x_at(p, state_.time_in_phase);

@@ -216,6 +216,21 @@ TEST(JerkLimited, AStopFromAnyMomentOfAPlanKeepsTheLimits_C13) {
     }
 }
 
+TEST(Coasting, WhoStandsBehindARiseHasFallen_C13) {
+    Coasting coasting;
+    coasting.stand(1);
+    EXPECT_GE(coasting.since_fall_s, Coasting::LONG_AGO) << "it has never moved";
+    coasting.pass({1, 0.001, 0, 0, 5, 0}, 0.001);
+    coasting.pass({1, 0.06, 0, 5e-3, 0, 0}, 0.06);
+    EXPECT_GE(coasting.since_fall_s, Coasting::LONG_AGO) << "it keeps its speed";
+    // So slow that it ends without braking.
+    coasting.pass({1, 0.002, 3e-4, 0, 0, 0}, 0.002);
+    EXPECT_DOUBLE_EQ(coasting.since_fall_s, 0.002);
+    EXPECT_GE(coasting.since_rise_s, Coasting::LONG_AGO);
+    coasting.stand(0.01);
+    EXPECT_DOUBLE_EQ(coasting.since_fall_s, 0.012);
+}
+
 TEST(PlanDraft, TellsOfAPlaceThatItShouldHaveStoodAt_C13) {
     Parts parts(even_limits(V, A, J));
     parts.add_straight(1, 50, A);

@@ -36,14 +36,14 @@ std::optional<LeaderState> predict(const PlannedPath &path, const Snapshot &now,
     for (std::uint64_t c = 0; c < outlook.latency && !isOver; ++c) {
         double dt = outlook.period_s;
         while (!isOver && dt >= store.phase(n).duration - t) {
-            state.coasting.pass(store.phase(n).a, store.phase(n).duration - t);
+            state.coasting.pass(store.phase(n), store.phase(n).duration - t);
             dt -= store.phase(n).duration - t;
             isOver = n + 1 >= outlook.phases_end;
             n += isOver ? 0 : 1;
             t = 0;
         }
         if (!isOver) {
-            state.coasting.pass(store.phase(n).a, dt);
+            state.coasting.pass(store.phase(n), dt);
             t += dt;
         }
     }

@@ -46,7 +46,7 @@ void PlanDraft::append(PathStore &store, double length, double v1) noexcept {
 void PlanDraft::wait(PathStore &store, double duration) noexcept {
     store.phase(end++) = {at.piece, duration, at.x, 0, 0, 0};
     seconds += duration;
-    at.coasting.pass(0, duration);
+    at.coasting.stand(duration);
 }
 
 bool PlanDraft::isStopPassed(const PlannedPath &path, Sequence begin) const noexcept {

@@ -216,15 +216,17 @@ Sequence Trial::arc_at(const PathView &view, const LeaderSample &leader) noexcep
     return isOn ? m : 0;
 }
 
-/// The newest samples of the executor's history from the arc on that the leader is within, or has left so
-/// lately that the mean still covers it. Before it the leader has stood.
+/// The newest samples of the executor's history from the arc on that the leader moves on, or did so lately
+/// that the mean still covers it. Before it the leader has stood.
 void Trial::take_arc(const PathView &view, const Snapshot &now) noexcept {
     const LeaderHistory &history = view.path.store().history;
     const std::uint64_t filter = view.conditions.limits.filter();
     const auto at = [&](std::uint64_t back) { return history[(now.tick - back) % HISTORY_CAPACITY]; };
     std::uint64_t back = 0;
     while (back < filter && back < now.tick && arc_ == 0) {
-        arc_ = arc_at(view, at(back++));
+        const bool isMoving = at(back).s != at(back + 1).s;
+        arc_ = isMoving ? arc_at(view, at(back)) : 0;
+        ++back;
     }
     if (arc_ == 0) {
         return;
@@ -246,7 +248,8 @@ void Trial::take_arc(const PathView &view, const Snapshot &now) noexcept {
 /// On an exact arc, and while the mean still covers a part of it, the mean place on it is commanded.
 Pose Trial::commanded(const PathView &view) noexcept {
     const std::uint64_t filter = view.conditions.limits.filter();
-    if (const Sequence arc = arc_at(view, sample(tick_).leader); arc != 0) {
+    const bool isMoving = sample(tick_).leader.s != sample(tick_ - 1).leader.s;
+    if (const Sequence arc = arc_at(view, sample(tick_).leader); arc != 0 && isMoving) {
         arc_ = arc;
         arc_tick_ = tick_;
     }
