@@ -143,6 +143,17 @@ TEST(Motmod, RefusesCountsOutOfRange_C12) {
     EXPECT_EQ(m.host->hal().pins("motion.digital-in-*").size(), 7U);
 }
 
+TEST(Motmod, KinematicsThatLackAFunctionAreRefusedByItsName_C2_C14) {
+    for (const std::string name : {"Forward", "Inverse", "Type"}) {
+        Machine m;
+        ASSERT_EQ(m.load("tpmod"), "ok");
+        ASSERT_EQ(m.load("homemod"), "ok");
+        ASSERT_EQ(m.load("without" + name), "ok");
+        const std::string answer = m.load("motmod", {"num_joints=3"});
+        EXPECT_NE(answer.find("exports kinematics" + name + ":"), std::string::npos) << answer;
+    }
+}
+
 TEST(Motmod, TrivkinsRefusesLettersThatAreNoAxes_C14) {
     Machine m;
     EXPECT_NE(m.load("trivkins", {"coordinates=XQ"}).find("XYZABCUVW"), std::string::npos);

@@ -320,8 +320,9 @@ void Controller::step_indexers(const Inputs &in) noexcept {
         const bool isJogged = power_.mode == Mode::FREE && !jogs_.at({true, j}).planner.isAtRest();
         now.wanted |= isJogged ? bit : 0U;
     }
-    for (int i = 0; i < MAX_AXES && power_.mode == Mode::TELEOP; ++i) {
-        now.wanted |= jogs_.at({false, i}).planner.isAtRest() ? 0U : limits_.locks_of({false, i});
+    for (std::uint32_t left = power_.mode == Mode::TELEOP ? jogs_.axes : 0U; left != 0; left &= left - 1) {
+        const JogTarget axis{false, std::countr_zero(left)};
+        now.wanted |= jogs_.at(axis).planner.isAtRest() ? 0U : limits_.locks_of(axis);
     }
     // What the planner wants of a path that was dropped counts no more.
     const std::uint64_t wish = link_->indexers_wanted.load(std::memory_order_acquire);

@@ -370,6 +370,27 @@ TEST(Commands, AValueThatIsNoNumberIsRefused_C5) {
     }
 }
 
+/// The planner looks every few cycles only: by then the last move may be over and its path dropped.
+TEST(Commands, AMoveThatWasOverBeforeAStopIsDone_C4) {
+    for (const bool isOver : {true, false}) {
+        MotionRig rig;
+        rig.ready(Mode::COORD);
+        const CommandId move = rig.line(at(2), 50);
+        ASSERT_TRUE(rig.run_until([&] { return rig.status().carte_pos_cmd[0] > 0.5; }, 1));
+        rig.isPlannerAlive = false;
+        rig.step(isOver ? 100 : 1);
+        ASSERT_EQ(rig.status().carte_pos_cmd[0] == 2, isOver);
+        rig.send(Abort{++rig.epoch});
+        rig.step();
+        ASSERT_EQ(rig.answer_to(move), nullptr);
+        rig.isPlannerAlive = true;
+        ASSERT_TRUE(rig.run_until([&] { return rig.answer_to(move) != nullptr; }, 1));
+        EXPECT_EQ(rig.answer_to(move)->kind, isOver ? AnswerKind::DONE : AnswerKind::STALE);
+        rig.step();
+        EXPECT_EQ(rig.status().last_path_id, isOver ? move : 0);
+    }
+}
+
 /// Each alternative of the two channels has a line in the table and is described.
 TEST(Commands, EveryDeclarationIsOnThePage_C4) {
     std::set<std::size_t> immediate, path;

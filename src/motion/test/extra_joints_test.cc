@@ -129,6 +129,24 @@ TEST(ExtraJoints, ItStopsAtItsSoftLimitWithoutOvershootAndThatIsToldOnce_C13) {
     r.check();
 }
 
+TEST(ExtraJoints, APinThatAsksForTooMuchWhenItTakesOverIsTold_C13) {
+    ExtraRig r;
+    r.pin() = 30;
+    r.rig.ready(Mode::FREE);
+    r.step(2000);
+    EXPECT_EQ(r.motor(), 20);
+    ASSERT_EQ(r.rig.faults.size(), 1u);
+    EXPECT_EQ(r.rig.faults[0].kind, FaultKind::EXTRA_JOINT_LIMIT);
+    EXPECT_EQ(r.rig.faults[0].value, 30);
+    r.rig.send(SetJointActive{EXTRA, false});
+    r.step(5);
+    r.rig.send(SetJointActive{EXTRA, true});
+    r.step(500);
+    EXPECT_EQ(r.rig.faults.size(), 2u) << "and again when it takes over once more";
+    EXPECT_EQ(r.motor(), 20);
+    r.check();
+}
+
 TEST(ExtraJoints, APinThatIsNoNumberIsAFaultNotAMotion_C13) {
     for (const double nonsense :
          {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {

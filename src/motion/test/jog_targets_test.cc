@@ -157,6 +157,48 @@ TEST(JogStops, AJogWithALowJerkStopsAsSoonAsItCan_C8_C13) {
     }
 }
 
+/// A wheel at the axis, by a tenth each count.
+void turn_to(MotionRig &rig, std::int32_t counts) {
+    WheelInput &wheel = rig.in.axis_wheel[geom::AXIS_Y];
+    wheel.isEnabled = true;
+    wheel.scale = 0.1;
+    wheel.counts = counts;
+}
+
+TEST(JogTargets, AWheelMovesAnAxisByItsCountsAndNoFarther_C9_C15) {
+    MotionRig rig;
+    rig.ready(Mode::FREE);
+    turn_to(rig, 40);
+    rig.step(300);
+    rig.send(SetMode{Mode::TELEOP});
+    rig.step(300);
+    EXPECT_EQ(rig.out->joint[1].motor_pos_cmd, 0) << "turned in a mode in which it moves nothing";
+    for (const std::int32_t counts : {65, 35, 36}) {
+        turn_to(rig, counts);
+        rig.step(400);
+        EXPECT_NEAR(rig.out->joint[1].motor_pos_cmd, 0.1 * (counts - 40), 1e-9);
+    }
+    EXPECT_EQ(rig.out->joint[0].motor_pos_cmd, 0);
+}
+
+TEST(JogTargets, TurnsOfAWheelWhileTheMachineIsOffMoveNoAxis_C9_C15) {
+    MotionRig rig;
+    rig.ready(Mode::TELEOP);
+    turn_to(rig, 0);
+    rig.step(5);
+    rig.send(Disable{});
+    rig.step(5);
+    turn_to(rig, 25);
+    rig.step(5);
+    rig.send(Enable{});
+    rig.step(300);
+    ASSERT_EQ(rig.status().mode, Mode::TELEOP);
+    EXPECT_EQ(rig.out->joint[1].motor_pos_cmd, 0);
+    turn_to(rig, 30);
+    rig.step(300);
+    EXPECT_NEAR(rig.out->joint[1].motor_pos_cmd, 0.5, 1e-9);
+}
+
 }  // namespace
 }  // namespace jog_targets_test
 }  // namespace mw::motion

@@ -176,5 +176,45 @@ TEST(Teleop, ACoreXyJogGoesAsFastAsItsJointsAllow) {
     EXPECT_EQ(rig.joint_report(), "");
 }
 
+/// Keeps how far out in X the joints of a pose were asked for.
+class AskedKinematics final : public kins::Kinematics {
+  public:
+    mutable double farthest = 0;
+
+    kins::Kind kind() const noexcept override { return kins::Kind::BOTH; }
+    kins::Status forward(const double *joints, kins::Pose &pose) const noexcept override {
+        return model_.forward(joints, pose);
+    }
+    kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept override {
+        farthest = std::max(farthest, pose[0]);
+        return model_.inverse(pose, joints);
+    }
+
+  private:
+    kins::CoreXy model_;
+};
+
+/// What that costs is paid once, and no place out there matters to an axis that has its mean.
+TEST(Teleop, OnlyAJogThatBeginsIsLookedAtWhereItIsSent_C9) {
+    constexpr double SENT = 400, NEAR = 20;
+    AskedKinematics model;
+    MotionRig rig(model, 3, 100, 1000);
+    rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, 1);
+    rig.set(Parameter::TRAJ_MAX_JERK, 0, 1e6);
+    for (int j = 0; j < 3; ++j) {
+        rig.set(Parameter::JOINT_MAX_JERK, j, 20000);
+    }
+    rig.step(4);
+    rig.ready(Mode::TELEOP);
+    model.farthest = 0;
+    rig.send(JogAbsolute{{false, geom::AXIS_X}, 50, SENT});
+    rig.step();
+    EXPECT_GT(model.farthest, SENT - 1);
+    model.farthest = 0;
+    rig.step(500);
+    EXPECT_GT(rig.status().carte_pos_cmd[0], NEAR);
+    EXPECT_LT(model.farthest, rig.status().carte_pos_cmd[0] + NEAR);
+}
+
 }  // namespace
 }  // namespace mw::motion

@@ -258,7 +258,6 @@ std::uint32_t counted_axes(const TeleopShares &shares) noexcept {
 void make_room(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs) noexcept {
     TeleopShares &shares = jogs.shares;
     const std::uint32_t moving = all_of(load);
-    forget_resting(shares, moving);
     if (counted_axes(shares) == moving) {
         return;
     }

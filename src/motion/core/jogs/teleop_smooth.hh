@@ -15,7 +15,8 @@ std::uint32_t counted_axes(const TeleopShares &shares) noexcept;
 void apply_smoothly(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs, bool isWhole) noexcept;
 
 /// Those that wait have room made for them where all that have a share can do with less; else they wait on,
-/// and so do those that come while room is made for others. `load` has all that move.
+/// and so do those that come while room is made for others. `load` has all that move, and apply_smoothly has
+/// had it in this cycle: who has come to rest is forgotten there.
 void make_room(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs) noexcept;
 
 /// Once a cycle, when all is set: they have their share as soon as there is room.

@@ -278,5 +278,23 @@ TEST_F(CorrectionPart, AZeroThatIsFoundTellsHowMuchMoreIsAdded_C11) {
     EXPECT_NEAR(go(10), 0.5, 1e-12) << "and nothing moves for it";
 }
 
+/// A rotary joint after many turns: a place is known less exactly there, and where it stands rounding may
+/// take it to and fro.
+TEST_F(CorrectionPart, FarOutTheRoundingOfAStopTurnsNothingBack_C11) {
+    constexpr double PLAY = 0.3;
+    set(Parameter::JOINT_BACKLASH, PLAY);
+    for (const double sense : {1.0, -1.0}) {
+        correction = {};
+        at = sense * 1e6 / 3;
+        EXPECT_EQ(go(at + sense), sense * 0.5 * PLAY);
+        for (int n = 0; n < 100; ++n) {
+            const double place = n % 2 == 0 ? std::nextafter(at, 0.0) : at;
+            step(correction, settings, 0, place, CYCLE_S);
+            ASSERT_EQ(correction.position, sense * 0.5 * PLAY) << n;
+        }
+        EXPECT_EQ(go(at - 0.01 * sense), -sense * 0.5 * PLAY) << "a way back that is one does";
+    }
+}
+
 }  // namespace
 }  // namespace mw::motion

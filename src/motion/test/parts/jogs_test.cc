@@ -214,6 +214,23 @@ TEST(JogsPart, OneJoggedJointOrAxisIsEnoughToTellOfAJog_C8) {
     }
 }
 
+TEST(JogsPart, AJointIsInPositionUnlessItIsJogged_C8) {
+    Jogs jogs = make();
+    const auto in_position = [&] {
+        Outputs out;
+        settle(jogs, {});
+        fill(jogs, Mode::FREE, {}, out);
+        return std::pair(out.status.joint[0].isInPosition, out.status.joint[1].isInPosition);
+    };
+    EXPECT_EQ(in_position(), std::pair(true, true));
+    ASSERT_EQ(take(jogs, JogContinuous{JOINT, 5}, free_mode()).reason, Reason::NONE);
+    run(jogs, JOINT, 20);
+    EXPECT_EQ(in_position(), std::pair(false, true));
+    take(jogs, JogStop{JOINT});
+    run(jogs, JOINT, 500);
+    EXPECT_EQ(in_position(), std::pair(true, true));
+}
+
 TEST(JogsPart, JogsStopWithinTheirLimitsOrAtOnce) {
     Jogs jogs = make();
     take(jogs, JogContinuous{JOINT, 50}, free_mode());

@@ -63,5 +63,17 @@ TEST(ProbePart, BrakingBehindAContactIsNoTouch) {
     EXPECT_EQ(step(probe, in, at(2)), ProbeEvent::NONE);
 }
 
+/// An earlier trip excuses no contact that comes while nothing brakes, and no braking one that follows no
+/// trip.
+TEST(ProbePart, ATripOrAStopAloneExcusesNoContact_C9) {
+    TouchProbe probe;
+    ProbeInputs in;
+    in.isClosed = in.isMoving = in.isDropping = true;
+    EXPECT_EQ(step(probe, in, at(2)), ProbeEvent::TOUCHED) << "nothing has been probed";
+    step(probe, probing(true), at(1));
+    in.isDropping = false;
+    EXPECT_EQ(step(probe, in, at(2)), ProbeEvent::TOUCHED) << "its stop is over";
+}
+
 }  // namespace
 }  // namespace mw::motion

@@ -63,5 +63,30 @@ TEST_F(TurnBackPart, AReversalThatIsTakenBackTeachesNothing_C15) {
     EXPECT_EQ(ramps_of(turn_back, 0), before);
 }
 
+/// With a period that adds up without rounding.
+TEST_F(TurnBackPart, IsWaitedForUpToAMinuteAndNoLonger_C15) {
+    constexpr double PERIOD_S = 0.5, SPEED = 10, WAY = 40;
+    constexpr int MINUTE = 120;
+    for (const int late : {0, 1}) {
+        TurnBack t;
+        double turns = 0;
+        const auto see = [&](double wanted, double by) {
+            turns += by;
+            watch(t, {wanted, turns, by / PERIOD_S, PERIOD_S});
+        };
+        see(0, 0);
+        see(SPEED, SPEED * PERIOD_S);
+        see(SPEED, SPEED * PERIOD_S);
+        see(-SPEED, SPEED * PERIOD_S);
+        see(-SPEED, WAY);
+        for (int n = 3; n < MINUTE + late; ++n) {
+            see(-SPEED, 0);
+        }
+        EXPECT_EQ(ramps_of(t, 0)[0], 0) << "it has not turned back yet";
+        see(-SPEED, -1);
+        EXPECT_EQ(ramps_of(t, 0)[0], late == 0 ? 0.5 * SPEED * SPEED / WAY : 0) << late;
+    }
+}
+
 }  // namespace
 }  // namespace mw::motion
