@@ -189,8 +189,14 @@ geom::Pose Controller::path_pose() noexcept {
     if (path.tap.isLost) {
         stop_category_1(FaultKind::TAP_LOST, path.tap.spindle);
     }
-    const RetraceInputs in{executor_.snapshot().drops, holds_.isReverseWanted, holds_.isStandingWanted,
-                           power_.isStopping,          executor_.isAtRest(),   holds_.reverse_rate};
+    // Who has done all that was commanded stays: a program that waits knows that place as its own.
+    const bool isPathHeld = executor_.isAtRest() && !executor_.isEmpty();
+    const RetraceInputs in{executor_.snapshot().drops,
+                           holds_.isReverseWanted,
+                           holds_.isStandingWanted,
+                           power_.isStopping,
+                           isPathHeld,
+                           holds_.reverse_rate};
     const RetraceLimits limits = way_limits(limits_, map_, config_);
     follow_way(retracing_, joints_, limits);
     if (motion::step(retracing_, pose, in, limits)) {

@@ -200,6 +200,28 @@ TEST_P(Reverse, AnAbortBeforeAnythingIsSeenToGoBackMovesNothing_C5) {
     EXPECT_GT(judged, 2);
 }
 
+/// A program that waits for something else knows the end of its last move as the place where it is.
+TEST_P(Reverse, NobodyGoesBackFromTheEndOfAllThatWasCommanded_C15) {
+    ReverseRig rig(GetParam());
+    ASSERT_TRUE(rig.finish(rig.zigzag(4), 30));
+    rig.in.adaptive_feed = -1;
+    for (int i = 0; i < 1000; ++i) {
+        rig.go(1);
+        ASSERT_EQ(rig.x(0), rig.last[0]);
+        ASSERT_EQ(rig.x(1), rig.last[1]);
+    }
+    geom::Pose end = rig.last;
+    end[0] += 10;
+    rig.line(end, 50);
+    const CommandId flush = rig.send_path(Flush{});
+    rig.go(500);
+    EXPECT_LT(rig.x(0), rig.last[0] - 1) << "there is something to come back for";
+    rig.in.adaptive_feed = 1;
+    ASSERT_TRUE(rig.finish(flush, 30));
+    EXPECT_EQ(rig.x(0), end[0]);
+    EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
+}
+
 TEST_P(Reverse, ByCommandWithAndWithoutAdaptiveFeed_C4) {
     for (const bool isAdaptive : {false, true}) {
         SCOPED_TRACE(isAdaptive);

@@ -93,7 +93,7 @@ bool step(Retracing &r, geom::Pose &pose, const RetraceInputs &in, const Retrace
     follow_drops(r, in.drops);
     traj::Retrace &retrace = r.retrace;
     const bool isFirst = !retrace.isAway() && in.isReverseWanted && !in.isStandingWanted && !in.isStopping;
-    if (!retrace.isAway() && !(isFirst && in.isPathAtRest && retrace.isReady())) {
+    if (!retrace.isAway() && !(isFirst && in.isPathHeld && retrace.isReady())) {
         return false;
     }
     if (isFirst) {

@@ -37,8 +37,8 @@ struct Retracing {
 struct RetraceInputs {
     std::uint64_t drops = 0;  ///< of the executor
     bool isReverseWanted = false, isStandingWanted = false, isStopping = false;
-    bool isPathAtRest = false;
-    double rate = 0;  ///< of the commanded speed
+    bool isPathHeld = false;  ///< it stands, and there is more of it to go on with
+    double rate = 0;          ///< of the commanded speed
 };
 /// What limits the way back, where joints are not axes also that of the first `joints`.
 struct RetraceLimits {
