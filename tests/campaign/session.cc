@@ -229,6 +229,9 @@ bool Session::clear_offsets() {
     }
     rig_->clear_offsets(false);
     cycle();
+    if (!judge_.isAtRest()) {
+        settle(10);  // of the jogs: who comes from far beyond a limit takes longer than the offset
+    }
     return !isOver();
 }
 
