@@ -387,10 +387,10 @@ std::string section_of(std::size_t n, const JointDesign &j) {
 
 /// Type 0: where the slide is when the screw has been turned to a place; type 1: what is to be added.
 void write_screw(const std::filesystem::path &file, const JointDesign &j) {
-    constexpr double STEP = 1, BEYOND = 6;
     std::ofstream out(file);
     const double half = 0.5 * j.play;
-    for (double x = j.low - BEYOND; x < j.high + BEYOND; x += STEP) {
+    constexpr double BEYOND = JointDesign::TABLE_BEYOND;
+    for (double x = j.low - BEYOND; x < j.high + BEYOND; x += JointDesign::TABLE_STEP) {
         const double up = j.screw_error_at(x) + half;
         const double down = j.screw_error_at(x) - half;
         out << (j.screw_type == 0 ? fmt::format("{:.9f} {:.9f} {:.9f}\n", x, x - up, x - down)

@@ -39,6 +39,11 @@ struct JointDesign {
     sim::AxisSettings drive;
 
     bool isCorrected() const { return backlash > 0 || screw_type >= 0; }
+    /// A table goes so far beyond the soft limits; farther out nobody knows the screw.
+    static constexpr double TABLE_BEYOND = 6, TABLE_STEP = 1;
+    bool isInTable(double x) const {
+        return screw_type < 0 || (x >= low - TABLE_BEYOND && x <= high + TABLE_BEYOND - TABLE_STEP);
+    }
     /// How much farther than the slide the screw has turned where the slide is at `x`, without play.
     double screw_error_at(double x) const;
     /// Where the slide is when the nut's place, by turns of the screw, is `turned`.

@@ -86,7 +86,8 @@ void Judge::check_places(const Sample &s) {
         judge.travel = isKnown ? judge.travel + std::abs(q.pos_cmd - last_.joints[j].pos_cmd) : 0;
         judge.isPlaceKnown = judge.isPlaceKnown && q.isHomed && q.isTruthKnown;
         // Until it has moved farther than the play nobody knows at which end of it the slide is.
-        const bool isJudged = d.isCorrected() && standing_ == RESTED && judge.travel > 1 + 4 * d.play;
+        const bool isJudged =
+            d.isCorrected() && standing_ == RESTED && judge.travel > 1 + 4 * d.play && d.isInTable(q.pos_cmd);
         if (!isJudged) {
             continue;
         }

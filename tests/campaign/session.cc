@@ -153,6 +153,21 @@ bool Session::set_mode(msgs::Mode mode) {
     return end == End::DONE;
 }
 
+/// Switched off at speed they run out. Switched on meanwhile they may trip their following errors: no drive
+/// stops them at once.
+void Session::await_slides() {
+    constexpr double STANDING = 1e-3, MOST_S = 20;  // a count, as motion has read it
+    int calm = 0;
+    for (double t = 0; calm < 20 && t < MOST_S && !isOver(); t += PERIOD_S) {
+        const std::vector<JointSample> before = rig_->sample().joints;
+        cycle();
+        const bool areStanding = std::ranges::equal(
+            before, rig_->sample().joints, [](double a, double b) { return !(std::abs(a - b) > STANDING); },
+            &JointSample::motor_fb, &JointSample::motor_fb);
+        calm = areStanding ? calm + 1 : 0;
+    }
+}
+
 bool Session::switch_on() {
     constexpr int TRIES = 3;
     for (int i = 0; i < TRIES && !isOver() && state() != msgs::State::ON; ++i) {
@@ -160,6 +175,9 @@ bool Session::switch_on() {
         judge_.allow(Leave::SWITCH_ON);
         ask(msgs::SetState{msgs::State::ON});
         settle(2);
+        if (state() != msgs::State::ON) {
+            await_slides();
+        }
     }
     if (!isOver() && state() != msgs::State::ON) {
         fail("work", "the machine cannot be switched on with nothing wrong");
@@ -211,6 +229,9 @@ bool Session::clear_offsets() {
     }
     rig_->clear_offsets(false);
     cycle();
+    if (!judge_.isAtRest()) {
+        settle(10);  // of the jogs: who comes from far beyond a limit takes longer than the offset
+    }
     return !isOver();
 }
 

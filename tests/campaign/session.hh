@@ -57,6 +57,7 @@ class Session {
     msgs::State state();
 
     bool prepare();
+    void await_slides();
     bool switch_on();
     bool home();
     bool clear_offsets();
@@ -81,6 +82,7 @@ class Session {
     void check_helix(const SyncWish &sync);
     void check_per_turn(const SyncWish &sync);
     void check_surface(const SyncWish &sync);
+    bool isProbeMoved(const Act &act) const;
     void check_probing(const Act &act, End end);
     double estimate(const Act &act, const geom::Pose &from) const;
 

@@ -41,11 +41,20 @@ std::vector<Found> read_found(const std::vector<std::string> &told) {
 
 }  // namespace
 
+/// An offset moves the probe: it may miss the wall, and the next move begins without contact. Where the path
+/// is gone back along (M52 of a program that was aborted is still in force) it meets the wall that it came
+/// through.
+bool Session::isProbeMoved(const Act &act) const {
+    const bool isGoneBack = isReversed_ && rig_->client().status().overrides.isAdaptiveFeedEnabled;
+    return act.work == Work::PROBE && (hasTrouble(act, Upset::OFFSET) || isGoneBack);
+}
+
 void Session::check_probing(const Act &act, End end) {
     Extension &count = verdict_.extensions["probing"];
     ++count.ran;
     verdict_.ended += end == End::DONE ? 1 : 0;
-    if (isStopped_ || hasTrouble(act, Upset::OFFSET)) {  // it moves the probe, and not what is known of it
+    const bool isUnknown = isProbeMoved(act) && end != End::DONE;
+    if (isStopped_ || isUnknown || hasTrouble(act, Upset::OFFSET)) {  // not what is known of the probe
         return;
     }
     const std::vector<Found> found = read_found(told_);

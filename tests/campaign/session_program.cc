@@ -98,13 +98,12 @@ void Session::run_program(const Act &act) {
     if (isOver()) {
         return;
     }
-    // An offset moves the probe: it may miss the wall, and the next move begins without contact.
-    const bool isProbeMoved = act.work == Work::PROBE && hasTrouble(act, Upset::OFFSET);
+    const bool mayMiss = isProbeMoved(act);
     if (end == End::LATE) {
         fail("work", "the program does not end");
-    } else if (end != End::DONE && !isStopped_ && !act.isToFail && !act.mayFail && !isProbeMoved) {
+    } else if (end != End::DONE && !isStopped_ && !act.isToFail && !act.mayFail && !mayMiss) {
         fail("work", "the program ends badly with nothing wrong");
-    } else if (end == End::DONE && !isStopped_ && act.isToFail && !isProbeMoved) {
+    } else if (end == End::DONE && !isStopped_ && act.isToFail && !mayMiss) {
         fail("work", "the program must not come to its end, and does");
     } else if (act.work == Work::PROBE) {
         check_probing(act, end);

@@ -26,13 +26,17 @@ std::vector<Pass> passes_of(const std::vector<geom::Pose> &path, const SyncWish 
         if (!isAlone || !(z * sense > 1e-12)) {
             continue;
         }
-        // Z may wait for the spindle as it begins; a move the same way may end where it begins.
+        // Z may wait for the spindle as it begins, and with few counts stand again until it has gone a part
+        // of a turn; a move the same way may end where it begins.
         constexpr std::size_t WAIT = 3;
+        constexpr double BEGUN = 1e-3;
         const auto isAtStart = [&](std::size_t n) {
             return std::abs(path[n][geom::AXIS_Z] - sync.from) <= 1e-6;
         };
         const bool isAnother = !all.empty() && isAtStart(i - 1) && !isAtStart(all.back().first);
-        if (all.empty() || isAnother || all.back().last + WAIT < i) {
+        const bool isGoingOn =
+            !all.empty() && (all.back().last + WAIT >= i || all.back().length < BEGUN * std::abs(sync.lead));
+        if (!isGoingOn || isAnother) {
             all.push_back({i - 1, i, 0});
         }
         all.back().last = i;

@@ -19,6 +19,14 @@ void record_way(Retracing &retracing, const geom::Pose &pose, const Joints &join
     record(retracing, pose, limits);
 }
 
+/// While it is gone back.
+void follow_way(Retracing &retracing, const Joints &joints, const RetraceLimits &limits) noexcept {
+    const double t = limits.period_s;
+    for (int j = 0; j < limits.joints && retracing.retrace.isMoving(); ++j) {
+        follow_joint(retracing, j, joints[j].vel_cmd * t, joints[j].acc_cmd * t * t);
+    }
+}
+
 RetraceLimits way_limits(const FoldedLimits &limits, const AxisMap &map,
                          const ControllerConfig &config) noexcept {
     return {limits, map.areJointsAxes() ? 0 : config.num_led_joints(), config.period_s};
@@ -181,9 +189,17 @@ geom::Pose Controller::path_pose() noexcept {
     if (path.tap.isLost) {
         stop_category_1(FaultKind::TAP_LOST, path.tap.spindle);
     }
-    const RetraceInputs in{executor_.snapshot().drops, holds_.isReverseWanted, holds_.isStandingWanted,
-                           power_.isStopping,          executor_.isAtRest(),   holds_.reverse_rate};
-    if (motion::step(retracing_, pose, in, way_limits(limits_, map_, config_))) {
+    // Who has done all that was commanded stays: a program that waits knows that place as its own.
+    const bool isPathHeld = executor_.isAtRest() && !executor_.isEmpty();
+    const RetraceInputs in{executor_.snapshot().drops,
+                           holds_.isReverseWanted,
+                           holds_.isStandingWanted,
+                           power_.isStopping,
+                           isPathHeld,
+                           holds_.reverse_rate};
+    const RetraceLimits limits = way_limits(limits_, map_, config_);
+    follow_way(retracing_, joints_, limits);
+    if (motion::step(retracing_, pose, in, limits)) {
         executor_.set_position(pose);
     }
     return pose;

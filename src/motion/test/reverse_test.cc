@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Negative adaptive feed: back along the path that was commanded and forward again, within every limit.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <random>
@@ -149,6 +151,74 @@ TEST_P(Reverse, AnAbortOnTheWayBackStopsThereAndANewPathBeginsThere_C4) {
     const CommandId flush = rig.send_path(Flush{});
     ASSERT_TRUE(rig.finish(flush, 30));
     EXPECT_EQ(rig.x(0), 1);
+    EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
+}
+
+/// The way back begins where the path came to rest: too slowly to be seen at first. Who is stopped then
+/// stands.
+TEST_P(Reverse, AnAbortBeforeAnythingIsSeenToGoBackMovesNothing_C5) {
+    constexpr double SEEN = 1e-9, NOTHING = 2e-6;
+    int judged = 0;
+    for (int wait = 0; wait < 150; wait += 3) {
+        SCOPED_TRACE(wait);
+        ReverseRig rig(GetParam());
+        rig.zigzag(6);
+        rig.go(400);
+        rig.in.adaptive_feed = -0.75;
+        const auto farthest = [&](const std::array<double, 3> &from) {
+            double most = 0;
+            for (std::size_t i = 0; i < 3; ++i) {
+                most = std::max(most, std::abs(rig.x(i) - from[i]));
+            }
+            return most;
+        };
+        int standing = 0;
+        const auto go = [&] {
+            const std::array<double, 3> before{rig.x(0), rig.x(1), rig.x(2)};
+            rig.go(1);
+            standing = farthest(before) <= SEEN ? standing + 1 : 0;
+        };
+        for (int i = 0; i < 2000 && standing < 3; ++i) {
+            go();
+        }
+        for (int i = 0; i < wait; ++i) {
+            go();
+        }
+        const std::array<double, 3> place{rig.x(0), rig.x(1), rig.x(2)};
+        rig.send(Abort{++rig.epoch});
+        double most = 0;
+        for (int i = 0; i < 500; ++i) {
+            rig.go(1);
+            most = std::max(most, farthest(place));
+        }
+        if (standing >= 3) {
+            ++judged;
+            EXPECT_LT(most, NOTHING);
+        }
+        EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
+    }
+    EXPECT_GT(judged, 2);
+}
+
+/// A program that waits for something else knows the end of its last move as the place where it is.
+TEST_P(Reverse, NobodyGoesBackFromTheEndOfAllThatWasCommanded_C15) {
+    ReverseRig rig(GetParam());
+    ASSERT_TRUE(rig.finish(rig.zigzag(4), 30));
+    rig.in.adaptive_feed = -1;
+    for (int i = 0; i < 1000; ++i) {
+        rig.go(1);
+        ASSERT_EQ(rig.x(0), rig.last[0]);
+        ASSERT_EQ(rig.x(1), rig.last[1]);
+    }
+    geom::Pose end = rig.last;
+    end[0] += 10;
+    rig.line(end, 50);
+    const CommandId flush = rig.send_path(Flush{});
+    rig.go(500);
+    EXPECT_LT(rig.x(0), rig.last[0] - 1) << "there is something to come back for";
+    rig.in.adaptive_feed = 1;
+    ASSERT_TRUE(rig.finish(flush, 30));
+    EXPECT_EQ(rig.x(0), end[0]);
     EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
 }
 

@@ -105,6 +105,30 @@ TEST_P(ThreadAngle, IsKeptWhenTheSpindleIsSlowedWithinThePass_C15) {
                 GetParam() ? " with jerk limits" : "", at_start / DEGREE, meanwhile / DEGREE);
 }
 
+/// What few counts make of the speed puts the helix on either side of a tool that is still slower: it is not
+/// met before the speed is right, since what is gained from there is a tenth of the acceleration.
+TEST_P(ThreadAngle, IsNotTakenForMetByFewCountsWhileSpeedIsGained_C15) {
+    constexpr double GENTLE = 90;
+    for (const int counts : {500, 1024, 4096}) {
+        for (const double rpm : {380.0, 520.0, 663.0}) {
+            SCOPED_TRACE(::testing::Message() << counts << " counts, " << rpm << " rpm");
+            sim::SpindleTraits traits;
+            traits.ramp = 150;
+            traits.counts_per_turn = counts;
+            traits.first_turns = 0.14;
+            SpindleBench bench(traits, GetParam());
+            bench.rig.set(Parameter::AXIS_MAX_ACCELERATION, 2, GENTLE);
+            bench.rig.step(20);
+            bench.spin(rpm);
+            for (int n = 0; n < 4; ++n) {
+                bench.rig.step(37 + 61 * n);
+                const Pass pass = cut(bench, 10);
+                EXPECT_LE(helix_of(bench.samples, pass.met, pass.last, LEAD).farthest, 0.01);
+            }
+        }
+    }
+}
+
 TEST_P(ThreadAngle, AThreadWithoutAPartAtItsLeadIsRefusedBeforeItMoves_C15) {
     SpindleBench bench(mill_spindle(), GetParam());
     bench.spin(2000);

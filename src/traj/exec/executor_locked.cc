@@ -92,9 +92,12 @@ double Executor::locked_speed() noexcept {
     // How far the tool would be ahead of the helix if it went at the helix's speed.
     const double gap = state_.x + helix_v * period_ - helix_x;
     const double part = std::abs(gap) / piece.per_turn;
+    // With what is left to follow, the rest of the speed is made good within what counts as lost.
+    const double slower = state_.v - helix_v;
+    const bool isAsFast = 0.5 * slower * slower <= trim * ExecutorTuning::LOST * piece.per_turn;
     // A rough encoder may never let it be met exactly.
     lock_.near_cycles = part < ExecutorTuning::NEAR ? lock_.near_cycles + 1 : 0;
-    const bool isCrossing = gap * lock_.gap < 0;
+    const bool isCrossing = isAsFast && gap * lock_.gap < 0;
     lock_.crossings += isCrossing ? 1 : 0;
     lock_.gap = gap;
     const bool isRough =
@@ -102,11 +105,12 @@ double Executor::locked_speed() noexcept {
     const bool isMet = part < ExecutorTuning::MET && std::abs(state_.v - helix_v) < a * period_;
     lock_.isOn = lock_.isOn ? part < ExecutorTuning::LOST : isMet || isRough;
     lock_.wasOn = lock_.wasOn || lock_.isOn;
+    // Who is behind comes to the helix faster than it, and has to get slower.
+    const double closing = ExecutorTuning::MEETING_SHARE * (gap > 0 ? a : std::min(a, trim));
     const double wanted =
-        helix_v - (lock_.isOn ? ExecutorTuning::GAIN * gap
-                              : closing_speed(gap, ExecutorTuning::MEETING_SHARE * a, period_));
-    const double slower = lock_.wasDescending ? 0.5 : 1.0;
-    const double low = std::max(0.0, state_.v - slower * trim * period_);
+        helix_v - (lock_.isOn ? ExecutorTuning::GAIN * gap : closing_speed(gap, closing, period_));
+    const double fall = lock_.wasDescending ? 0.5 : 1.0;
+    const double low = std::max(0.0, state_.v - fall * trim * period_);
     return std::clamp(std::min(wanted, piece.v_most), low, state_.v + a * period_);
 }
 

@@ -4,22 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "traj/exec/closing_speed.hh"
+
 namespace mw::traj {
-namespace {
-
-/// The highest speed of a cycle that still ends at `room` when it gets slower by `step` in each cycle after:
-/// with m whole steps and a rest f of one, the way is step * dt * ((m + 1) f + m (m + 1) / 2).
-double speed_within(double room, double step, double dt) noexcept {
-    const double y = room / (step * dt);
-    if (!(y > 0)) {
-        return 0;
-    }
-    double m = std::floor(0.5 * (std::sqrt(8.0 * y + 1.0) - 1.0));
-    m -= m * (m + 1) > 2.0 * y ? 1.0 : 0.0;
-    return step * (m + (y - 0.5 * m * (m + 1)) / (m + 1));
-}
-
-}  // namespace
 
 void FollowPlanner::reset(double at, const FollowLimits &limits, double dt) noexcept {
     position_ = leader_ = wanted_ = at;

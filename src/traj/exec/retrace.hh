@@ -40,6 +40,8 @@ class Retrace {
     /// Gone back and not yet where the path was left.
     bool isAway() const noexcept { return isAway_; }
     bool isMoving() const noexcept { return isAway_ && !way_.isAtRest(); }
+    /// Stands at once: for who goes so slowly that no limit notices.
+    void stand() noexcept { way_.reset(way_.position); }
     /// Goes on for one period: back, forward, or to a stand; `rate` from 0 to HIGHEST_RATE.
     geom::Pose step(double dt, int direction, double rate) noexcept;
 

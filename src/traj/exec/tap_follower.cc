@@ -99,7 +99,9 @@ double TapFollower::following_speed(const Turning &t, double dt) noexcept {
 double TapFollower::wanted_speed(const Turning &t, double dt) noexcept {
     const double a = terms_.acceleration;
     switch (phase_) {
-    case TapPhase::HOME: return -closing_speed(x_, TapTuning::MEETING_SHARE * a, dt);
+    // Braked for in steps of whole cycles that end there: who goes beyond it turns the drive's play about.
+    case TapPhase::HOME:
+        return -std::copysign(speed_within(std::abs(x_), TapTuning::MEETING_SHARE * a * dt, dt), x_);
     case TapPhase::OVER: return 0;
     case TapPhase::STOPPING: {
         const bool isFollowing = !isLost_ && std::abs(t.turned - stop_turned_) <= run_out_ &&

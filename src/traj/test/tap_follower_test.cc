@@ -104,6 +104,30 @@ TEST(TapFollower, KeepsToTheAngleThroughBothReversalsAndEndsAtItsStart_C15) {
     }
 }
 
+/// What turns back turns the play of the drive about: who comes home from above stands there at once.
+TEST(TapFollower, TheWayHomeEndsWithoutTurningBack_C15) {
+    for (int n = 0; n < 60; ++n) {
+        SCOPED_TRACE(n);
+        TapTerms t = terms();
+        t.acceleration = 400 + 31.7 * n;
+        t.per_turn = 0.15 + 0.02 * n;
+        t.depth = 6 + 0.1 * n;
+        Tapping tapping(500.0 / 60, 150);
+        double before = 0, beyond = 0;
+        bool wasHome = false;
+        ASSERT_TRUE(tapping.run(150, t, [&](Tapping &now) {
+            const double x = now.tap.x();
+            wasHome = wasHome || (now.tap.phase() == TapPhase::HOME && x > before);
+            beyond = wasHome ? std::max(beyond, x) : beyond;
+            before = x;
+        }));
+        EXPECT_TRUE(wasHome);
+        EXPECT_LT(beyond, 1e-9);
+        EXPECT_EQ(tapping.tap.x(), 0);
+        EXPECT_LE(tapping.highest_a, t.acceleration * (1 + 1e-9));
+    }
+}
+
 TEST(TapFollower, TurnsBackAtTheBottomWhereNothingIsKnownOfTheSpindle_C15) {
     Tapping tapping(1000.0 / 60, 1000.0 / 60 / 0.5);
     ASSERT_TRUE(tapping.run(0, terms()));

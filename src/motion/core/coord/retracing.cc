@@ -40,10 +40,10 @@ traj::Retrace::Use use_of(const Changes &changes, const RetraceLimits &in) noexc
         if (v == 0 && a == 0) {
             return;
         }
-        use.v_over_a = std::max(use.v_over_a, v * per_s / most_a);
+        use.v_over_a = std::max(use.v_over_a, std::abs(v) * per_s / most_a);
         if (limits.isJerkLimited) {
-            use.v_over_j = std::max(use.v_over_j, v * per_s / most_j);
-            use.a_over_j = std::max(use.a_over_j, a * per_s * per_s / most_j);
+            use.v_over_j = std::max(use.v_over_j, std::abs(v) * per_s / most_j);
+            use.a_over_j = std::max(use.a_over_j, std::abs(a) * per_s * per_s / most_j);
         }
     };
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
@@ -64,21 +64,53 @@ void weigh(Retracing &r, const RetraceLimits &limits) noexcept {
     r.changes = {};
 }
 
+/// Where the way back goes so slowly that standing at once is within all limits: the path came to rest there,
+/// and what it was recorded with is gone back with.
+bool mayStandAtOnce(const Changes &last, const RetraceLimits &limits) noexcept {
+    // A step that ends asks for the jerk of twice itself, and of its bend.
+    constexpr double STEP_SHARE = 0.25, BEND_SHARE = 0.5;
+    const double t = limits.period_s;
+    const traj::Retrace::Use use = use_of(last, limits);
+    return use.v_over_a <= STEP_SHARE * t && use.v_over_j <= STEP_SHARE * t * t &&
+           use.a_over_j <= BEND_SHARE * t;
+}
+
+void follow_way(Retracing &r, const geom::Pose &pose) noexcept {
+    Changes &last = r.last;
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        const double step = pose[i] - r.way_pose[i];
+        last.bend[at(i)] = step - last.step[at(i)];
+        last.step[at(i)] = step;
+    }
+    last.step_xyz2 = square_xyz(last.step);
+    last.bend_xyz2 = square_xyz(last.bend);
+    r.way_pose = pose;
+}
+
 }  // namespace
 
 bool step(Retracing &r, geom::Pose &pose, const RetraceInputs &in, const RetraceLimits &limits) noexcept {
     follow_drops(r, in.drops);
     traj::Retrace &retrace = r.retrace;
     const bool isFirst = !retrace.isAway() && in.isReverseWanted && !in.isStandingWanted && !in.isStopping;
-    if (!retrace.isAway() && !(isFirst && in.isPathAtRest && retrace.isReady())) {
+    if (!retrace.isAway() && !(isFirst && in.isPathHeld && retrace.isReady())) {
         return false;
     }
     if (isFirst) {
         weigh(r, limits);
+        r.way_pose = pose;
+        r.last = {};
+        r.wasStill = false;
     }
     const bool isStill = in.isStandingWanted || r.isPathLeft || in.isStopping;
+    // Braked as all else it would be led where the path was faster: seen to go off after the stop.
+    if (isStill && !r.wasStill && retrace.isMoving() && mayStandAtOnce(r.last, limits)) {
+        retrace.stand();
+    }
+    r.wasStill = isStill;
     const int direction = isStill ? 0 : in.isReverseWanted ? -1 : 1;
     pose = retrace.step(limits.period_s, direction, in.rate);
+    follow_way(r, pose);
     const bool isNewStart = r.isPathLeft && !retrace.isMoving();
     if (isNewStart) {
         r.isPathLeft = false;
@@ -117,6 +149,11 @@ void record(Retracing &r, const geom::Pose &pose, const RetraceLimits &limits) n
 void record_joint(Retracing &r, int j, double step, double bend) noexcept {
     r.changes.joint_step[at(j)] = std::max(r.changes.joint_step[at(j)], std::abs(step));
     r.changes.joint_bend[at(j)] = std::max(r.changes.joint_bend[at(j)], std::abs(bend));
+}
+
+void follow_joint(Retracing &r, int j, double step, double bend) noexcept {
+    r.last.joint_step[at(j)] = step;
+    r.last.joint_bend[at(j)] = bend;
 }
 
 }  // namespace mw::motion

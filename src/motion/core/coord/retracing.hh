@@ -25,17 +25,20 @@ struct Changes {
 struct Retracing {
     traj::Retrace retrace;
     bool isPathLeft = false;       ///< the path was dropped while going back
+    bool wasStill = false;         ///< told to stand in the last cycle
     std::uint64_t drops_seen = 0;  ///< of the executor
     Changes changes;
     /// That were recorded last.
     alignas(16) std::array<double, Changes::PADDED> last_place{}, last_step{};
+    geom::Pose way_pose;  ///< commanded last on the way back
+    Changes last;         ///< there, in the last cycle, with their signs
 };
 
 struct RetraceInputs {
     std::uint64_t drops = 0;  ///< of the executor
     bool isReverseWanted = false, isStandingWanted = false, isStopping = false;
-    bool isPathAtRest = false;
-    double rate = 0;  ///< of the commanded speed
+    bool isPathHeld = false;  ///< it stands, and there is more of it to go on with
+    double rate = 0;          ///< of the commanded speed
 };
 /// What limits the way back, where joints are not axes also that of the first `joints`.
 struct RetraceLimits {
@@ -47,6 +50,9 @@ struct RetraceLimits {
 /// when the path was dropped on the way back: the next one begins at `pose`.
 bool step(Retracing &retracing, geom::Pose &pose, const RetraceInputs &in,
           const RetraceLimits &limits) noexcept;
+/// Where joints are not axes, on the way back before step(): the change of joint `j` in the last cycle, and
+/// of that change.
+void follow_joint(Retracing &retracing, int j, double step, double bend) noexcept;
 
 /// Remembers a commanded pose of the path, to come back to.
 void record(Retracing &retracing, const geom::Pose &pose, const RetraceLimits &limits) noexcept;

@@ -75,7 +75,7 @@ struct RetracingPart : testing::Test {
     Way go(Retracing &on, bool isReverse, std::uint64_t drops = 0) const {
         RetraceInputs in;
         in.isReverseWanted = isReverse;
-        in.isPathAtRest = true;
+        in.isPathHeld = true;
         in.rate = 0.5;
         in.drops = drops;
         Way way{at(x)};
@@ -126,7 +126,7 @@ TEST_F(RetracingPart, AStopWhereThePathWasSlowIsShort_C5) {
     const auto cycles_to_stop = [&](int back) {
         const auto on = std::make_unique<Retracing>(*retracing);
         RetraceInputs in;
-        in.isReverseWanted = in.isPathAtRest = true;
+        in.isReverseWanted = in.isPathHeld = true;
         in.rate = 0.75;
         geom::Pose pose = at(x);
         double last = x;
