@@ -6,7 +6,9 @@ namespace mw::traj {
 std::optional<Pose> ArcMean::follow(const PathStore &store, const Piece *piece, double x, std::uint64_t tick,
                                     std::uint64_t filter) noexcept {
     const bool isOn = piece != nullptr && piece->isAlong && filter > 1;
-    const bool isWithin = isOn && x > on_along(piece->length) && x < piece->length;
+    // Of the arc, not of its piece: it may stand where two of them meet.
+    const double s = isOn ? piece->offset + x : 0.0;
+    const bool isWithin = isOn && s > on_along(piece->length) && s < store.primitive(piece->primitive).length;
     const bool isNew = isWithin && primitive_ != piece->primitive;
     if (isNew) {
         primitive_ = piece->primitive;

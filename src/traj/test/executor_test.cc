@@ -217,6 +217,43 @@ TEST(ArcMean, CommandsTheMeanPlaceOnTheArcUntilTheMeanHasLeftIt_C13) {
     EXPECT_NEAR(commanded, piece.length / 0.1 + FILTER, 2);
 }
 
+/// A feed override of 0 may let it stand there for longer than the mean.
+TEST(ArcMean, WhoStandsWhereTwoPiecesOfAnArcMeetGoesOnFromThere_C5_C13) {
+    constexpr std::uint64_t FILTER = 10;
+    auto store = std::make_unique_for_overwrite<PathStore>();
+    Pose normal;
+    normal[2] = 1;
+    ASSERT_EQ(make_arc(Pose{}, at(0, 10), {at(0, 5), normal, std::numbers::pi, false}, store->primitive(1)),
+              ArcFault::NONE);
+    Piece first;
+    first.primitive = 1;
+    first.length = 0.5 * store->primitive(1).length;
+    first.isAlong = true;
+    Piece second = first;
+    second.offset = first.length;
+    for (const bool isOnSecond : {false, true}) {
+        ArcMean mean;
+        Pose before;
+        std::uint64_t tick = 1;
+        const auto follow = [&](const Piece &piece, double x) {
+            const Pose here = position_at(store->primitive(1), piece.offset + x);
+            const Pose p = mean.follow(*store, &piece, x, tick, FILTER).value_or(here);
+            ASSERT_LT(geom::norm(p - before), 0.11) << "tick " << tick;
+            before = p;
+            ++tick;
+        };
+        for (double x = 0; x < first.length; x += 0.1) {
+            follow(first, x);
+        }
+        for (int n = 0; n < 50; ++n) {
+            isOnSecond ? follow(second, 0) : follow(first, first.length);
+        }
+        for (double x = 0; x < second.length; x += 0.1) {
+            follow(second, x);
+        }
+    }
+}
+
 TEST(Executor, AnEventIsDueWhenItsMoveIsCompleteAndNeverOnAnotherPath_C7) {
     ServoRig rig;
     PathEvent here;
