@@ -105,7 +105,10 @@ void Trial::drive_on(const PathView &view, const Snapshot &now, const TrialPlan 
             push_phase(view, store.phase(n), t);
         }
         // Committed already; what follows is compared with it.
-        view.conditions.workspace.isMapped() ? areJointsSound(view) : areAxesSound(view);
+        if (view.conditions.workspace.isMapped()) {
+            areJointsSound(view);
+        }
+        areAxesSound(view);
     }
 }
 
@@ -320,7 +323,7 @@ bool Trial::isNewestSound(const PathView &view) noexcept {
         return true;
     }
     const bool isExact = isOnExactArc(view);
-    if (!view.conditions.workspace.isMapped() && !areAxesSound(view)) {
+    if (!areAxesSound(view)) {
         excess_ = axes_.excess();
         along_share_ = 1;
         return false;
