@@ -50,6 +50,9 @@ FeedLength feed_length(const Primitive &p) noexcept;
 /// Smallest box that holds the whole primitive: [low, high] per coordinate.
 void extent(const Primitive &p, Pose &low, Pose &high) noexcept;
 
+/// The same of slope . q, such as a joint that goes in proportion to axes.
+void extent_along(const Primitive &p, const Pose &slope, double &low, double &high) noexcept;
+
 /// A straight line. `length` is 0 when the ends are the same pose.
 Primitive make_line(const Pose &start, const Pose &end) noexcept;
 
