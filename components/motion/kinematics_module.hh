@@ -3,6 +3,8 @@
 // forward and inverse as a model has.
 #pragma once
 
+#include <algorithm>
+
 #include "hal/api/hal.h"
 #include "hal/api/kinematics.h"
 #include "hal/api/rtapi_app.h"
@@ -45,11 +47,27 @@ int model_side(const Model &model, const geom::Pose &pose) noexcept {
     }
 }
 
+/// Of what is linear: `slope` has MAX_JOINTS rows of AXIS_COUNT. The joints that are, a bit each.
+template <class Model>
+unsigned model_linear(const Model &model, double *slope, unsigned *axes) noexcept {
+    *axes = 0;
+    if constexpr (requires { model.linear(); }) {
+        const kins::LinearJoints linear = model.linear();
+        for (std::size_t j = 0; j < linear.slope.size(); ++j) {
+            std::copy_n(linear.slope[j].c.begin(), geom::AXIS_COUNT, slope + j * geom::AXIS_COUNT);
+        }
+        *axes = linear.axes;
+        return linear.joints;
+    } else {
+        return 0;
+    }
+}
+
 }  // namespace mw::components
 
 /// Defines kinematicsForward, kinematicsInverse and kinematicsHome over `model`, an object of the module;
 /// mw_kinematics_inverse, which tells a singular pose from another (0 as it should be, 1 out of reach, 2
-/// singular); and mw_kinematics_side (kins/kinematics.hh).
+/// singular); mw_kinematics_side and mw_kinematics_linear (kins/kinematics.hh).
 #define MW_KINEMATICS_FUNCTIONS(model)                                                                       \
     extern "C" int kinematicsForward(const double *joint, struct EmcPose *world,                             \
                                      const KINEMATICS_FORWARD_FLAGS *, KINEMATICS_INVERSE_FLAGS *) {         \
@@ -64,6 +82,9 @@ int model_side(const Model &model, const geom::Pose &pose) noexcept {
     }                                                                                                        \
     extern "C" RTAPI_EXPORT int mw_kinematics_side(const struct EmcPose *world) {                            \
         return mw::components::model_side(model, mw::components::pose_of(*world));                           \
+    }                                                                                                        \
+    extern "C" RTAPI_EXPORT unsigned mw_kinematics_linear(double *slope, unsigned *axes) {                   \
+        return mw::components::model_linear(model, slope, axes);                                             \
     }                                                                                                        \
     extern "C" int kinematicsHome(struct EmcPose *world, double *joint, KINEMATICS_FORWARD_FLAGS *fflags,    \
                                   KINEMATICS_INVERSE_FLAGS *iflags) {                                        \

@@ -45,6 +45,7 @@ class PinnedModel {
         return model().inverse(pose, joints);
     }
     int side(const kins::Pose &pose) const noexcept { return model().side(pose); }
+    kins::LinearJoints linear() const noexcept { return model().linear(); }
 
   private:
     struct Cell {

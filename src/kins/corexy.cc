@@ -29,4 +29,12 @@ Status CoreXy::inverse(const Pose &pose, double *joints) const noexcept {
     return Status::OK;
 }
 
+LinearJoints CoreXy::linear() const noexcept {
+    LinearJoints out = joints_like_axes();
+    out.slope[0][geom::AXIS_Y] = 1;
+    out.slope[1][geom::AXIS_X] = 1;
+    out.slope[1][geom::AXIS_Y] = -1;
+    return out;
+}
+
 }  // namespace mw::kins

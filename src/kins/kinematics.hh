@@ -41,6 +41,28 @@ struct IdentityMap {
     }
 };
 
+/// Joints that go in proportion to axes, everywhere alike: joint = slope . pose.
+struct LinearJoints {
+    std::uint32_t joints = 0;              ///< bit per joint that does
+    std::uint32_t axes = 0;                ///< bit per axis that moves no joints but these
+    std::array<Pose, MAX_JOINTS> slope{};  ///< of each of them, by axis
+
+    constexpr bool moves(int joint, int axis) const noexcept {
+        return (joints >> joint & 1U) != 0 && slope[static_cast<std::size_t>(joint)][axis] != 0;
+    }
+    constexpr bool operator==(const LinearJoints &) const noexcept = default;
+};
+
+/// Joint n is axis n.
+constexpr LinearJoints joints_like_axes() noexcept {
+    LinearJoints out;
+    out.joints = out.axes = (1U << geom::AXIS_COUNT) - 1U;
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        out.slope[static_cast<std::size_t>(i)][i] = 1;
+    }
+    return out;
+}
+
 /// Of kinematics with several types, such as a tilting table and the same machine with joints for axes.
 class TypeSwitch {
   public:
@@ -63,6 +85,9 @@ class Kinematics {
     virtual Status inverse(const Pose &pose, double *joints) const noexcept = 0;
     /// Not null when each joint is one axis: limits then fold together without any Jacobian.
     virtual const IdentityMap *identity() const noexcept { return nullptr; }
+
+    /// Which joints are linear, and how; with parameters as they are now. None where joints are axes.
+    virtual LinearJoints linear() const noexcept { return {}; }
 
     /// Of poses that meet only at singular ones, which a pose is of: above and below the motors, either way
     /// to put the struts of a platform together; a path from one to another leads through a singular pose. 0:

@@ -37,4 +37,15 @@ Status Matrix::inverse(const Pose &pose, double *joints) const noexcept {
     return Status::OK;
 }
 
+LinearJoints Matrix::linear() const noexcept {
+    LinearJoints out = joints_like_axes();
+    bool areNumbers = true;
+    for (int j = 0; j < 3; ++j) {
+        const Vector c = row(3 * static_cast<std::size_t>(j));
+        set_place(out.slope[static_cast<std::size_t>(j)], c);
+        areNumbers = areNumbers && isFinite(c);
+    }
+    return areNumbers ? out : LinearJoints{};
+}
+
 }  // namespace mw::kins

@@ -21,6 +21,7 @@ class Matrix final : public Parametric<MATRIX_PARAMETERS> {
     /// UNREACHABLE both ways while the matrix has no inverse.
     Status forward(const double *joints, Pose &pose) const noexcept override;
     Status inverse(const Pose &pose, double *joints) const noexcept override;
+    LinearJoints linear() const noexcept override;
 
   private:
     Vector row(std::size_t first) const noexcept { return {get(first), get(first + 1), get(first + 2)}; }

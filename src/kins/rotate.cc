@@ -27,4 +27,15 @@ Status Rotate::inverse(const Pose &pose, double *joints) const noexcept {
     return Status::OK;
 }
 
+/// X and Y move joints 0 and 1 as C has turned them, and C turns these too.
+LinearJoints Rotate::linear() const noexcept {
+    LinearJoints out = joints_like_axes();
+    constexpr std::uint32_t TURNED_JOINTS = 3;
+    constexpr std::uint32_t TURNING_AXES = 1U << geom::AXIS_X | 1U << geom::AXIS_Y | 1U << geom::AXIS_C;
+    out.joints &= ~TURNED_JOINTS;
+    out.axes &= ~TURNING_AXES;
+    out.slope[0] = out.slope[1] = {};
+    return out;
+}
+
 }  // namespace mw::kins

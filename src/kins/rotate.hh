@@ -13,6 +13,7 @@ class Rotate final : public Kinematics {
     Kind kind() const noexcept override { return Kind::BOTH; }
     Status forward(const double *joints, Pose &pose) const noexcept override;
     Status inverse(const Pose &pose, double *joints) const noexcept override;
+    LinearJoints linear() const noexcept override;
 };
 
 }  // namespace mw::kins

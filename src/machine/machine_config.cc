@@ -13,6 +13,7 @@
 #include "interp/ini_settings.hh"
 #include "machine/ini_keys.hh"
 #include "machine/io_config.hh"
+#include "machine/offset_axes.hh"
 #include "motion/api/parameters.hh"
 #include "motion/api/screw_file.hh"
 
@@ -104,6 +105,7 @@ void read_kinematics(IniReader &ini, MachineConfig &machine) {
     machine.axis_map = motion::axis_map(letters, machine.num_joints);
     machine.axis_map.num_extra = count_extra_joints(ini, machine.num_joints);
     machine.isTrivial = !machine.kinematics.empty() && machine.kinematics.front() == "trivkins";
+    machine.axis_map.set_linear(linear_joints(machine.kinematics));
     machine.joint_of_axis.fill(-1);
     for (int joint = static_cast<int>(std::min<std::size_t>(letters.size(), MAX_JOINTS)) - 1; joint >= 0;
          --joint) {
@@ -341,13 +343,7 @@ void read_axes(IniReader &ini, MachineConfig &machine) {
                              ini.find(travel.low, section)->place);
         }
         read_parameters(ini, section, "AXIS_*", axis, machine);
-        const IniKey ratio = ini_key(Parameter::AXIS_OFFSET_RATIO);
-        if (!machine.isTrivial && ini.real(ratio, section) > 0) {
-            ini.sink().warning('[' + section +
-                                   "]OFFSET_AV_RATIO has no effect: external offsets are for "
-                                   "machines whose joints are axes (trivkins)",
-                               ini.find(ratio, section)->place);
-        }
+        check_offset(ini, section, axis, machine);
         if (geom::isAngular(axis)) {
             limit_angular(ini, axis, machine);
         }

@@ -38,9 +38,10 @@ void Planner::set_joints(const JointMap *map, const JointLimits &limits) noexcep
     conditions_.workspace.joints = limits;
 }
 
-void Planner::set_room(const Pose &low, const Pose &high) noexcept {
+void Planner::set_room(const Pose &low, const Pose &high, const JointRoom &joints) noexcept {
     conditions_.workspace.low = low;
     conditions_.workspace.high = high;
+    conditions_.workspace.joint_room = joints;
 }
 
 void Planner::begin(const Pose &start, const Snapshot &now, double tolerance) noexcept {

@@ -42,8 +42,9 @@ class Planner {
     void set_joints(const JointMap *map, const JointLimits &limits) noexcept;
 
     /// Soft limits of the axes: the path is not moved beyond them, wherever the program leads. None to begin
-    /// with; +-infinity where none holds.
-    void set_room(const Pose &low, const Pose &high) noexcept;
+    /// with; +-infinity where none holds. Joints with a room are kept within that, others within their soft
+    /// limits.
+    void set_room(const Pose &low, const Pose &high, const JointRoom &joints = {}) noexcept;
 
     /// A new path begins at `start`, where the executor rests with nothing left of another. `tolerance`: of
     /// its first move, 0 when that keeps none.

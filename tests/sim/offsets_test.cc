@@ -98,5 +98,60 @@ TEST_F(OffsetMachine, ASpeedTurnedByAPinWaitsUntilNothingMovesInManualMode_C7) {
     EXPECT_EQ(motion().joint[0].max_velocity, 5);
 }
 
+/// A plasma table of two belts: height control by the offset of Z, and the table's own by those of X and Y.
+class BeltMachine : public OffsetMachine {
+  protected:
+    void SetUp() override {
+        SimMachine sim;
+        sim.kinematics = "corexykins";
+        sim.axis_range = 100;
+        sim.joints[0].low = sim.joints[1].low = -150;
+        sim.joints[0].high = sim.joints[1].high = 150;
+        sim.write(folder_);
+        for (const char letter : {'X', 'Y', 'Z'}) {
+            insert(fmt::format("[AXIS_{}]\n", letter), "OFFSET_AV_RATIO = 0.3\n");
+        }
+        switch_on_config((folder_ / "sim.ini").string());
+        ASSERT_NE(machine_, nullptr);
+        for (const char letter : {'x', 'y', 'z'}) {
+            set_pin(fmt::format("axis.{}.eoffset-enable", letter), "1");
+            set_pin(fmt::format("axis.{}.eoffset-scale", letter), "0.01");
+        }
+        cycles(3);
+    }
+};
+
+TEST_F(BeltMachine, ACoreXYTableCutsAndFollowsTheHeightThatItsPinAsksFor_C15) {
+    EXPECT_EQ(messages().find("OFFSET_AV_RATIO"), std::string::npos);
+    start("G21 G90 G1 F3000 X40 Y10\nX-20\nM2\n");
+    for (int n = 0; n < 40; ++n) {
+        set_pin("axis.z.eoffset-counts", std::to_string(20 * (n % 7)));
+        cycles(50);
+    }
+    ASSERT_EQ(finish(), task::Progress::DONE) << messages();
+    cycles(1000);
+    EXPECT_NEAR(number("axis.z.eoffset"), 0.8, 1e-9);
+    EXPECT_NEAR(number("axis.z.pos-cmd"), 0, 1e-9);
+    EXPECT_NEAR(number("joint.2.motor-pos-cmd"), 0.8, 1e-9);
+    EXPECT_NEAR(number("joint.0.motor-pos-cmd"), -10, 1e-9);
+    EXPECT_NEAR(number("joint.1.motor-pos-cmd"), -30, 1e-9);
+    EXPECT_TRUE(pin("motion.eoffset-active"));
+}
+
+TEST_F(BeltMachine, BeltsEndWhereProgramAndOffsetTakeThemTogether_C13_C15) {
+    ASSERT_EQ(mdi("G21 G90 G0 X90 Y40"), task::Progress::DONE) << messages();
+    set_pin("axis.y.eoffset-counts", "3000");
+    cycles(2000);
+    EXPECT_NEAR(number("axis.y.eoffset"), 20, 1e-6) << "joint 0 is X + Y, and ends at 150";
+    EXPECT_TRUE(pin("motion.eoffset-limited"));
+    EXPECT_EQ(mdi("X91"), task::Progress::FAILED);
+    EXPECT_NE(messages().find("takes a joint beyond its soft limit"), std::string::npos);
+    ASSERT_EQ(mdi("G0 X50"), task::Progress::DONE) << messages();
+    cycles(2000);
+    EXPECT_NEAR(number("axis.y.eoffset"), 30, 1e-9);
+    EXPECT_NEAR(number("joint.0.motor-pos-cmd"), 120, 1e-9);
+    EXPECT_FALSE(pin("motion.eoffset-limited"));
+}
+
 }  // namespace
 }  // namespace mw::machine

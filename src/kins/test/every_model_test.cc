@@ -361,5 +361,38 @@ TEST_P(EveryModel, UndoesItselfOnAGrid_C14) {
 INSTANTIATE_TEST_SUITE_P(Kinematics, EveryModel, testing::ValuesIn(all_models()),
                          [](const auto &one) { return one.param.name; });
 
+/// External offsets rely on it: what they add to these joints is the same everywhere, and they move no
+/// others.
+TEST_P(EveryModel, WhatItSaysIsLinearIsSo_C15) {
+    const LinearJoints linear = model().linear();
+    for (int n = 0; n < draws() / 20; ++n) {
+        const Pose pose = drawn_pose();
+        Joints joints = home();
+        if (model().inverse(pose, joints.data()) != Status::OK) {
+            continue;
+        }
+        for (int j = 0; j < MAX_JOINTS; ++j) {
+            const auto k = static_cast<std::size_t>(j);
+            if ((linear.joints >> j & 1U) != 0) {
+                ASSERT_NEAR(joints[k], geom::dot(linear.slope[k], pose), 1e-9) << "joint " << j;
+            }
+        }
+        for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+            Pose other = pose;
+            other[i] += 0.5;
+            Joints moved = joints;
+            const bool isSaid = (linear.axes >> i & 1U) != 0;
+            if (!isSaid || model().inverse(other, moved.data()) != Status::OK) {
+                continue;
+            }
+            for (int j = 0; j < MAX_JOINTS; ++j) {
+                const auto k = static_cast<std::size_t>(j);
+                const bool isLinear = (linear.joints >> j & 1U) != 0;
+                ASSERT_TRUE(isLinear || moved[k] == joints[k]) << "axis " << i << " moves joint " << j;
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace mw::kins::test

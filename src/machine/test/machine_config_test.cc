@@ -146,6 +146,19 @@ TEST(MachineConfig, ProbesInJogsAndExternalOffsetsAreSettingsOfMotion_C4_C15) {
     std::string other = replaced(GOOD, "[AXIS_X]\n", "[AXIS_X]\nOFFSET_AV_RATIO = 0.2\n");
     EXPECT_TRUE(Config(replaced(other, "trivkins coordinates=XZ", "tablekins"))
                     .says("[AXIS_X]OFFSET_AV_RATIO has no effect"));
+    other = replaced(GOOD, "[AXIS_X]\n", "[AXIS_X]\nMAX_VELOCITY = 1\nOFFSET_AV_RATIO = 0.2\n");
+    const Config table(replaced(other, "trivkins coordinates=XZ", "tablekins"));
+    EXPECT_DOUBLE_EQ(table.machine.limits().path.velocity[0], 1) << "the axis keeps all of its speed";
+    for (const char *linear : {"corexykins", "matrixkins"}) {
+        const Config with(replaced(other, "trivkins coordinates=XZ", linear));
+        EXPECT_FALSE(with.says("OFFSET_AV_RATIO")) << linear;
+        EXPECT_DOUBLE_EQ(with.machine.limits().offset[0].velocity, 0.2) << linear;
+    }
+    EXPECT_TRUE(Config(replaced(other, "trivkins coordinates=XZ", "rotatekins"))
+                    .says("[AXIS_X]OFFSET_AV_RATIO has no effect"));
+    other = replaced(GOOD, "[AXIS_Z]\n", "[AXIS_Z]\nOFFSET_AV_RATIO = 0.2\n");
+    other = replaced(replaced(other, "trivkins coordinates=XZ", "rotatekins"), "JOINTS = 2", "JOINTS = 3");
+    EXPECT_FALSE(Config(other).says("OFFSET_AV_RATIO"));
 }
 
 TEST(MachineConfig, SpeedOfRotaryAxesIsLimitedWhateverTheSpeedOfTheFirstJoint) {

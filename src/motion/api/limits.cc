@@ -2,6 +2,8 @@
 #include "motion/api/limits.hh"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 
 namespace mw::motion {
 
@@ -69,6 +71,15 @@ void fold_locks(const Settings &s, const AxisMap &map, int axis, FoldedLimits &o
     out.locks |= locks;
 }
 
+/// A joint that the axis moves has a lock.
+bool isLocked(const AxisMap &map, int axis, const FoldedLimits &out) noexcept {
+    bool isAny = out.axis_locks[at(axis)] != 0;
+    for (int j = 0; j < map.num_led(); ++j) {
+        isAny = isAny || (map.linear.moves(j, axis) && (out.locks >> j & 1U) != 0);
+    }
+    return isAny;
+}
+
 void fold_axis(const Settings &s, const AxisMap &map, int axis, FoldedLimits &out) noexcept {
     Tightest all{s.get(Parameter::AXIS_MAX_VELOCITY, axis), s.get(Parameter::AXIS_MAX_ACCELERATION, axis),
                  s.get(Parameter::AXIS_MAX_JERK, axis)};
@@ -90,7 +101,7 @@ void fold_axis(const Settings &s, const AxisMap &map, int axis, FoldedLimits &ou
                               isJerkLimited(s) ? jog_jerk(most_jog_jerk) : 0.0};
     fold_locks(s, map, axis, out);
     const double ratio = s.get(Parameter::AXIS_OFFSET_RATIO, axis);
-    if (ratio > 0 && out.axis_locks[at(axis)] == 0 && map.areJointsAxes() && map.hasAxis(axis)) {
+    if (ratio > 0 && !isLocked(map, axis, out) && map.mayHaveOffset(axis)) {
         share_with_offset(ratio, all, out.axis_jog[at(axis)], out.offset[at(axis)]);
     }
     for (int j = 0; j < map.num_led() && map.kind == AxisMap::Kind::UNKNOWN; ++j) {
@@ -122,17 +133,56 @@ void fold_joint(const Settings &s, int j, FoldedLimits &out) noexcept {
                             isJerkLimited(s) ? jog_jerk(most_jog_jerk) : 0.0};
 }
 
+bool isOffsetOf(const AxisMap &map, int j, int axis, const FoldedLimits &out) noexcept {
+    return out.offset[at(axis)].velocity > 0 && map.linear.moves(j, axis);
+}
+
+/// Of a joint that is no axis each offset has its ratio of what all axes that have one may do at once.
+void limit_offsets(const Settings &s, const AxisMap &map, int j, FoldedLimits &out) noexcept {
+    double sum = 0;
+    for (int axis = 0; axis < MAX_AXES; ++axis) {
+        sum += isOffsetOf(map, j, axis, out) ? std::abs(map.linear.slope[at(j)][axis]) : 0.0;
+    }
+    const JogLimits &whole = out.joint_jog[at(j)];
+    for (int axis = 0; axis < MAX_AXES; ++axis) {
+        if (!isOffsetOf(map, j, axis, out)) {
+            continue;
+        }
+        JogLimits &offset = out.offset[at(axis)];
+        const double share = s.get(Parameter::AXIS_OFFSET_RATIO, axis) / sum;
+        offset.velocity = std::min(offset.velocity, share * whole.velocity);
+        offset.acceleration = std::min(offset.acceleration, share * whole.acceleration);
+        const bool isTighter = whole.jerk > 0 && !(offset.jerk > 0 && offset.jerk <= share * whole.jerk);
+        offset.jerk = isTighter ? share * whole.jerk : offset.jerk;
+    }
+}
+
+/// What offsets cannot take of a joint, by whatever limits them, is of paths and jogs.
+void leave_to_paths(const AxisMap &map, int j, FoldedLimits &out) noexcept {
+    traj::JointLimits &left = out.path_joints;
+    for (int axis = 0; axis < MAX_AXES; ++axis) {
+        if (!isOffsetOf(map, j, axis, out)) {
+            continue;
+        }
+        const JogLimits &offset = out.offset[at(axis)];
+        const double slope = std::abs(map.linear.slope[at(j)][axis]);
+        left.velocity[at(j)] -= slope * offset.velocity;
+        left.acceleration[at(j)] -= slope * offset.acceleration;
+        left.jerk[at(j)] -= left.jerk[at(j)] < traj::UNLIMITED ? slope * offset.jerk : 0.0;
+    }
+}
+
 /// The joint that needs the longest mean: of linear ones where there are any with a jerk limit.
-traj::Limits::SlowJoint slow_joint(const Settings &s, const AxisMap &map) noexcept {
+traj::Limits::SlowJoint slow_joint(const Settings &s, const AxisMap &map,
+                                   const traj::JointLimits &joints) noexcept {
     traj::Limits::SlowJoint slow;
     double longest = 0;
     for (int j = 0; j < map.num_led(); ++j) {
-        const double jerk = s.get(Parameter::JOINT_MAX_JERK, j);
-        if (!(jerk > 0 && jerk < NO_JERK_LIMIT)) {
+        const double jerk = joints.jerk[at(j)];
+        if (!(jerk > 0 && s.get(Parameter::JOINT_MAX_JERK, j) < NO_JERK_LIMIT)) {
             continue;
         }
-        const traj::Limits::SlowJoint joint{s.get(Parameter::JOINT_MAX_VELOCITY, j),
-                                            s.get(Parameter::JOINT_MAX_ACCELERATION, j), jerk,
+        const traj::Limits::SlowJoint joint{joints.velocity[at(j)], joints.acceleration[at(j)], jerk,
                                             s.isSet(Parameter::JOINT_IS_ANGULAR, j)};
         const double mean_s = traj::time_of_mean(joint.velocity, joint.acceleration, jerk);
         const bool isFirst = !(longest > 0) || (slow.isAngular && !joint.isAngular);
@@ -154,6 +204,30 @@ bool AxisMap::hasAxis(int axis) const noexcept {
     return isFound;
 }
 
+void AxisMap::set_linear(const kins::LinearJoints &all) noexcept {
+    linear = all;
+    linear.joints &= (1U << num_led()) - 1U;
+    for (int axis = 0; axis < MAX_AXES; ++axis) {
+        bool isMoving = false;
+        for (int j = 0; j < num_led(); ++j) {
+            isMoving = isMoving || linear.moves(j, axis);
+        }
+        linear.axes &= isMoving ? ~0U : ~(1U << axis);
+    }
+}
+
+bool AxisMap::isAsIn(const kins::Kinematics &kinematics) const noexcept {
+    AxisMap now;
+    now.num_joints = num_joints;
+    now.num_extra = num_extra;
+    now.set_linear(kinematics.linear());
+    return now.linear == linear;
+}
+
+bool AxisMap::mayHaveOffset(int axis) const noexcept {
+    return areJointsAxes() ? hasAxis(axis) : (linear.axes >> axis & 1U) != 0;
+}
+
 AxisMap axis_map(const kins::Kinematics &kinematics, int num_joints, int num_extra) noexcept {
     AxisMap out;
     out.num_joints = num_joints;
@@ -165,6 +239,9 @@ AxisMap axis_map(const kins::Kinematics &kinematics, int num_joints, int num_ext
         return out;
     }
     out.kind = kinematics.isShareable() ? AxisMap::Kind::PLANNED : AxisMap::Kind::UNKNOWN;
+    if (out.kind == AxisMap::Kind::PLANNED) {
+        out.set_linear(kinematics.linear());
+    }
     return out;
 }
 
@@ -195,13 +272,57 @@ FoldedLimits fold_limits(const Settings &settings, const AxisMap &map, const Hom
         std::min(settings.get(Parameter::TRAJ_MAX_ACCELERATION), traj::UNLIMITED);
     out.path.jerk[traj::XYZ_NORM] = path_jerk(settings.get(Parameter::TRAJ_MAX_JERK));
     out.path.isJerkLimited = isJerkLimited(settings);
-    if (map.kind == AxisMap::Kind::PLANNED) {
-        out.path.slow_joint = slow_joint(settings, map);
-    }
     for (int joint = 0; joint < map.num_joints; ++joint) {
         fold_joint(settings, joint, out);
     }
     out.joints.count = map.num_led();
+    out.path_joints = out.joints;
+    const int shared = map.areJointsAxes() ? 0 : map.num_led();
+    for (int joint = 0; joint < shared; ++joint) {
+        limit_offsets(settings, map, joint, out);
+    }
+    for (int joint = 0; joint < shared; ++joint) {
+        leave_to_paths(map, joint, out);
+    }
+    if (map.kind == AxisMap::Kind::PLANNED) {
+        out.path.slow_joint = slow_joint(settings, map, out.path_joints);
+    }
+    return out;
+}
+
+JointRange SharedJoints::at(const geom::Pose &pose) const noexcept {
+    return within({pose, pose});
+}
+
+JointRange SharedJoints::within(const PoseRange &range) const noexcept {
+    JointRange out;
+    for (std::uint32_t left = joints; left != 0; left &= left - 1) {
+        const auto j = static_cast<std::size_t>(std::countr_zero(left));
+        for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+            const double k = slope[j][i];
+            if (k != 0) {
+                out.low[j] += k * (k > 0 ? range.low[i] : range.high[i]);
+                out.high[j] += k * (k > 0 ? range.high[i] : range.low[i]);
+            }
+        }
+    }
+    return out;
+}
+
+SharedJoints shared_joints(const kins::LinearJoints &linear, std::uint32_t offset_axes) noexcept {
+    SharedJoints out;
+    for (std::uint32_t left = linear.joints; left != 0; left &= left - 1) {
+        const int j = std::countr_zero(left);
+        std::uint32_t axes = 0;
+        for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+            axes |= linear.moves(j, i) ? 1U << i : 0U;
+        }
+        if ((axes & offset_axes) != 0) {
+            out.joints |= 1U << j;
+            out.axes |= axes;
+            out.slope[at(j)] = linear.slope[at(j)];
+        }
+    }
     return out;
 }
 

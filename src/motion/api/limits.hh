@@ -32,10 +32,17 @@ struct AxisMap {
     int num_joints = 0;                                   ///< of the machine; there are no others
     int num_extra = 0;                                    ///< the last of them, which no pose moves
     std::array<std::int8_t, MAX_JOINTS> axis_of_joint{};  ///< -1: none; used where joints are axes
+    kins::LinearJoints linear;                            ///< of joints that are no axes
 
     /// A joint of the machine moves this axis; kinematics may move any.
     bool hasAxis(int axis) const noexcept;
     int num_led() const noexcept { return num_joints - num_extra; }  ///< that a pose moves
+    /// Those of the joints that the machine has and a pose moves, and the axes that move any of them.
+    void set_linear(const kins::LinearJoints &all) noexcept;
+    /// False when a parameter of the kinematics has been changed that says how joints are linear.
+    bool isAsIn(const kins::Kinematics &kinematics) const noexcept;
+    /// Whatever the axis adds to what a jog or a path does is known to its joints.
+    bool mayHaveOffset(int axis) const noexcept;
     bool areJointsAxes() const noexcept { return kind == Kind::JOINTS_ARE_AXES; }
     bool moves(int joint, int axis) const noexcept {
         return areJointsAxes() && axis_of_joint[static_cast<std::size_t>(joint)] == axis;
@@ -70,6 +77,44 @@ struct PoseRange {
     }
 };
 
+/// The same of each joint.
+struct JointRange {
+    std::array<double, MAX_JOINTS> low{}, high{};
+
+    void include(const JointRange &other) noexcept {
+        for (std::size_t j = 0; j < low.size(); ++j) {
+            low[j] = std::min(low[j], other.low[j]);
+            high[j] = std::max(high[j], other.high[j]);
+        }
+    }
+};
+
+/// Joints that are no axes, go in proportion to axes, and are moved by an axis that may have an external
+/// offset: what is programmed and offsets share their travel.
+struct SharedJoints {
+    std::uint32_t joints = 0;  ///< bit per joint
+    std::uint32_t axes = 0;    ///< bit per axis that moves one of them
+    std::array<geom::Pose, MAX_JOINTS> slope{};
+
+    /// Where they are at a pose; 0 of others.
+    JointRange at(const geom::Pose &pose) const noexcept;
+    /// Where they may be while each axis is anywhere in its range.
+    JointRange within(const PoseRange &range) const noexcept;
+};
+/// Of axes that may have one, a bit each.
+SharedJoints shared_joints(const kins::LinearJoints &linear, std::uint32_t offset_axes) noexcept;
+
+/// Where something is or may come to, of each axis, and of shared joints.
+struct Reach {
+    PoseRange axes;
+    JointRange joints;
+
+    void include(const Reach &other) noexcept {
+        axes.include(other.axes);
+        joints.include(other.joints);
+    }
+};
+
 struct JogLimits {
     double velocity = 0, acceleration = 0;
     double jerk = 0;  ///< 0: none
@@ -86,6 +131,7 @@ struct FoldedLimits {
     geom::Pose low, high;    ///< soft limits of axes, with those of joints; +-infinity where none holds
     std::uint32_t axes = 0;  ///< bit per axis that a joint or the kinematics move
     traj::JointLimits joints;
+    traj::JointLimits path_joints;  ///< what external offsets leave of them to paths and jogs of axes
     HomedJoints homed;
     /// Joint whose lock a program opens for G0 of each axis; -1: none.
     std::array<std::int8_t, MAX_AXES> indexer = NO_INDEXERS;

@@ -132,7 +132,7 @@ enum class Reason : std::uint16_t {
     NO_WAY_BACK,  ///< nothing is remembered of the path
     BAD_ARC,
     RIGID_TAPPING,   ///< kinematics that cannot be asked before
-    TAP_OFFSET,      ///< index: the axis of the tap that may have an external offset
+    TAP_OFFSET,      ///< index: an axis of the tap; external offsets move it or its joints
     TAP_ROOM,        ///< index: the axis whose soft limit is too near
     TAP_JOINT_ROOM,  ///< index: the joint whose soft limit is too near; -1: the kinematics reaches no farther
     ONE_WAY_SPINDLE,

@@ -66,7 +66,8 @@ std::string tap_reason(const Answer &answer) {
                "follow (mw_kinematics_is_pure); tap with a floating holder (G84, G74)";
     case Reason::TAP_OFFSET:
         return fmt::format(
-            "{} may have an external offset (OFFSET_AV_RATIO): rigid tapping along it is not possible",
+            "{}, or another axis that moves its joints, may have an external offset (OFFSET_AV_RATIO): rigid "
+            "tapping along it is not possible",
             place_name(answer));
     case Reason::TAP_JOINT_ROOM:
         if (answer.index < 0) {

@@ -247,7 +247,8 @@ void Controller::step_homing(const Inputs &in) noexcept {
     for (std::uint32_t clamped = homing_.module().take_clamped(); clamped != 0; clamped &= clamped - 1) {
         raise(FaultKind::HOMING_CLAMPED, std::countr_zero(clamped));
     }
-    if (limits_.homed.joints != homed_mask(homing_)) {
+    const bool isOtherMap = offsets_.shared.joints != 0 && !map_.isAsIn(kinematics_);
+    if (limits_.homed.joints != homed_mask(homing_) || isOtherMap) {
         publish_limits();
     }
 }

@@ -157,8 +157,8 @@ inline ExtraJointInputs extra_inputs(const Inputs &in, const Joints &joints, con
 }
 
 /// Where jogs or the path may lead to without external offsets.
-PoseRange programmed_range(const Jogs &jogs, const PathLink &link, Mode mode,
-                           const geom::Pose &pose) noexcept;
+Reach programmed_range(const Jogs &jogs, const PathLink &link, Mode mode, const geom::Pose &pose,
+                       const SharedJoints &shared) noexcept;
 
 /// The move that the path is executing; nullptr for none.
 inline const traj::MoveTag *active_move(const traj::Executor &executor, const traj::PathStore &store,

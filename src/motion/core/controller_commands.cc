@@ -359,8 +359,9 @@ void Controller::tell_standing() noexcept {
 
 /// Limits of axes and joints folded together, for jogs and the path planner.
 void Controller::publish_limits() noexcept {
+    map_.set_linear(map_.kind == AxisMap::Kind::PLANNED ? kinematics_.linear() : kins::LinearJoints{});
     limits_ = fold_limits(settings_, map_, {homed_mask(homing_), isAllHomed(homing_)});
-    configure(offsets_, limits_);
+    configure(offsets_, limits_, map_);
     indexers_.mask = limits_.locks;
     PathLimits out;
     out.offset_axes = offsets_.axes;
@@ -369,7 +370,8 @@ void Controller::publish_limits() noexcept {
     out.low = limits_.low;
     out.high = limits_.high;
     out.axes = limits_.axes;
-    out.joints = limits_.joints;
+    out.joints = limits_.path_joints;
+    out.shared = offsets_.shared;
     out.standing = standing_.joints;
     out.side = kinematics_.side(place_.cmd);
     out.stands = standing_.count;

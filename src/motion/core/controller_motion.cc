@@ -34,16 +34,23 @@ RetraceLimits way_limits(const FoldedLimits &limits, const AxisMap &map,
 
 }  // namespace
 
-PoseRange programmed_range(const Jogs &jogs, const PathLink &link, Mode mode,
-                           const geom::Pose &pose) noexcept {
+Reach programmed_range(const Jogs &jogs, const PathLink &link, Mode mode, const geom::Pose &pose,
+                       const SharedJoints &shared) noexcept {
     constexpr int TRIES = 1000;
-    PoseRange out{pose, pose};
+    Reach out{{pose, pose}, shared.at(pose)};
     PathExtent path;
     if (mode == Mode::COORD && link.extent.read(path, TRIES) && !path.isEmpty) {
         out.include(path.range);
     }
-    for (int i = 0; i < MAX_AXES && mode == Mode::TELEOP; ++i) {
-        jogs.at({false, i}).planner.add_reach(out.low[i], out.high[i]);
+    if (mode == Mode::TELEOP) {
+        PoseRange stops{pose, pose};
+        for (int i = 0; i < MAX_AXES; ++i) {
+            jogs.at({false, i}).planner.add_reach(out.axes.low[i], out.axes.high[i]);
+            // Before joints' limits jogs stop with a margin: nothing takes that from one under way.
+            stops.low[i] += TELEOP_BRAKE_MARGIN * (out.axes.low[i] - pose[i]);
+            stops.high[i] += TELEOP_BRAKE_MARGIN * (out.axes.high[i] - pose[i]);
+        }
+        out.joints.include(shared.within(stops));
     }
     return out;
 }
@@ -85,10 +92,11 @@ void Controller::move_axes(const Inputs &in) noexcept {
     const geom::Pose pose = power_.mode == Mode::TELEOP ? teleop_pose() : path_pose();
     if (offsets_.axes != 0) {
         if (retracing_.retrace.isEmpty()) {
-            offsets_.travelled = {pose, pose};
+            offsets_.travelled = {{pose, pose}, offsets_.shared.at(pose)};
         }
-        offsets_.travelled.include(pose);
-        OffsetInputs offsets{in.axis_offset, limits_, programmed_range(jogs_, *link_, power_.mode, pose)};
+        offsets_.travelled.include({{pose, pose}, offsets_.shared.at(pose)});
+        OffsetInputs offsets{in.axis_offset, limits_,
+                             programmed_range(jogs_, *link_, power_.mode, pose, offsets_.shared)};
         offsets.programmed.include(offsets_.travelled);
         offsets.isHonoured = power_.isReady() && limits_.homed.areAll;
         offsets.period_s = config_.period_s;
@@ -157,9 +165,17 @@ void Controller::move_extra_joints(const Inputs &in) noexcept {
 geom::Pose Controller::teleop_pose() noexcept {
     executor_.step(cycle_);
     if (!map_.areJointsAxes()) {
-        const TeleopMachine machine{
-            kinematics_,        limits_,          commanded(joints_),          config_.num_led_joints(),
-            holds_.jog_scale(), config_.period_s, kinematics_.side(place_.cmd)};
+        PerJoint places = commanded(joints_);
+        traj::JointLimits left = limits_.path_joints;
+        take_off(offsets_, places, left);
+        const TeleopMachine machine{kinematics_,
+                                    limits_,
+                                    left,
+                                    places,
+                                    config_.num_led_joints(),
+                                    holds_.jog_scale(),
+                                    config_.period_s,
+                                    kinematics_.side(place_.cmd)};
         const TeleopStop stopped = limit_teleop(jogs_, machine);
         if (stopped.isNew && stopped.joint >= 0) {
             raise(FaultKind::JOG_JOINT_LIMIT, stopped.joint);

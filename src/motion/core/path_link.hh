@@ -26,6 +26,7 @@ struct PathLimits {
     std::uint32_t offset_axes = 0;    ///< bit per axis that may have an external offset
     std::array<std::int8_t, MAX_AXES> indexer = NO_INDEXERS;  ///< as in FoldedLimits
     traj::JointLimits joints;                                 ///< where joints are not axes
+    SharedJoints shared;                                      ///< with external offsets
     /// Where the joints stood before the path: elbows and wrists are on the side of theirs
     std::array<double, MAX_JOINTS> standing{};
     int side = 0;              ///< of that place (kins::Kinematics)
@@ -34,7 +35,7 @@ struct PathLimits {
 
 /// Where the path may lead, as far as it is planned and not driven.
 struct PathExtent {
-    PoseRange range;
+    Reach range;
     bool isEmpty = true;
 };
 

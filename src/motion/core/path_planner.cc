@@ -415,17 +415,23 @@ void PathPlanner::follow_steps() noexcept {
     }
 }
 
-/// Corners stay within it too, on axes with external offsets.
+/// Corners stay within it too, on axes with external offsets and joints that these move.
 void PathPlanner::publish_extent() noexcept {
     const PathExtent extent = window_.extent();
     link_.extent.write(extent);
     PoseRange room{limits_.low, limits_.high};
     for (int i = 0; i < geom::AXIS_COUNT && !extent.isEmpty; ++i) {
         const bool isShared = (limits_.offset_axes >> i & 1U) != 0;
-        room.low[i] = isShared ? extent.range.low[i] - CORNER_ROUNDING : room.low[i];
-        room.high[i] = isShared ? extent.range.high[i] + CORNER_ROUNDING : room.high[i];
+        room.low[i] = isShared ? extent.range.axes.low[i] - CORNER_ROUNDING : room.low[i];
+        room.high[i] = isShared ? extent.range.axes.high[i] + CORNER_ROUNDING : room.high[i];
     }
-    planner_.set_room(room.low, room.high);
+    traj::JointRoom joints;
+    joints.joints = extent.isEmpty ? 0 : limits_.shared.joints;
+    for (std::size_t j = 0; j < joints.low.size(); ++j) {
+        joints.low[j] = extent.range.joints.low[j] - CORNER_ROUNDING;
+        joints.high[j] = extent.range.joints.high[j] + CORNER_ROUNDING;
+    }
+    planner_.set_room(room.low, room.high, joints);
 }
 
 void PathPlanner::publish() noexcept {

@@ -96,7 +96,7 @@ class PathPlanner {
     Reason accept_event(const PathCommand &c, const traj::PathEvent &event) noexcept;
     int indexer_of(const PathBody &body) const noexcept;
     Reason check_reach(const traj::Primitive &p, int indexer = -1) noexcept;
-    PoseRange room_for(const PoseRange &move) noexcept;
+    Reach room_for(const Reach &move) noexcept;
     void publish_extent() noexcept;
     void tell_overreach(const traj::Overreach &overreach) noexcept;
     /// Where the joints are at a place of a path.
@@ -107,7 +107,8 @@ class PathPlanner {
     LineRoom room_for_joints(const traj::Primitive &line, double sense, const LineRoom &axes,
                              std::array<double, MAX_JOINTS> joints, double turn) const noexcept;
     bool isSteady(const traj::Primitive &p, PathSample from, PathSample to) const noexcept;
-    Reason check_joints(const traj::Primitive &p) noexcept;
+    Reason check_joints(const traj::Primitive &p, const JointRange &room) noexcept;
+    Reason check_shared(const traj::Primitive &p, const JointRange &move, const JointRange &room) noexcept;
     traj::MoveRequest request_for(const PathCommand &c, const MoveTerms &terms) const noexcept;
     void add_pending(const PathCommand &c, const SourceTag &source) noexcept;
     void open_gates() noexcept;

@@ -2,6 +2,7 @@
 // Checks of path commands, and what the planner is told of those that are taken.
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 
 #include "motion/core/path_planner.hh"
@@ -60,6 +61,16 @@ LineRoom room_behind(const traj::Primitive &line, double sense, const PathLimits
     return room;
 }
 
+/// How far joints that external offsets move as well go on a move; 0 of others.
+JointRange shared_extent(const traj::Primitive &p, const SharedJoints &shared) noexcept {
+    JointRange out;
+    for (std::uint32_t left = shared.joints; left != 0; left &= left - 1) {
+        const auto j = static_cast<std::size_t>(std::countr_zero(left));
+        traj::extent_along(p, shared.slope[j], out.low[j], out.high[j]);
+    }
+    return out;
+}
+
 }  // namespace
 
 traj::MoveRequest PathPlanner::request_for(const PathCommand &c, const MoveTerms &terms) const noexcept {
@@ -99,8 +110,8 @@ void PathPlanner::add_pending(const PathCommand &c, const SourceTag &source) noe
 
 /// Soft limits, less where external offsets are or may come to. The move is told first: offsets grow no
 /// farther than it lets them from here on.
-PoseRange PathPlanner::room_for(const PoseRange &move) noexcept {
-    PoseRange room{limits_.low, limits_.high};
+Reach PathPlanner::room_for(const Reach &move) noexcept {
+    Reach room{{limits_.low, limits_.high}, {limits_.joints.low, limits_.joints.high}};
     if (limits_.offset_axes == 0) {
         return room;
     }
@@ -110,12 +121,17 @@ PoseRange PathPlanner::room_for(const PoseRange &move) noexcept {
     std::atomic_thread_fence(std::memory_order_seq_cst);
     PoseRange offsets;
     if (!link_.offsets.read(offsets, TRIES)) {
-        return {room.high, room.low};  // nothing fits: no servo cycle takes so long
+        return {{room.axes.high, room.axes.low}, {}};  // nothing fits: no servo cycle takes so long
     }
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
         const bool isShared = (limits_.offset_axes >> i & 1U) != 0;
-        room.low[i] -= isShared ? offsets.low[i] : 0.0;
-        room.high[i] -= isShared ? offsets.high[i] : 0.0;
+        room.axes.low[i] -= isShared ? offsets.low[i] : 0.0;
+        room.axes.high[i] -= isShared ? offsets.high[i] : 0.0;
+    }
+    const JointRange taken = limits_.shared.within(offsets);
+    for (std::size_t j = 0; j < taken.low.size(); ++j) {  // 0 of joints that are not shared
+        room.joints.low[j] -= taken.low[j];
+        room.joints.high[j] -= taken.high[j];
     }
     return room;
 }
@@ -125,7 +141,9 @@ Reason PathPlanner::check_reach(const traj::Primitive &p, int indexer) noexcept 
     geom::Pose low;
     geom::Pose high;
     traj::extent(p, low, high);
-    const PoseRange room = room_for({low, high});
+    const JointRange joints = shared_extent(p, limits_.shared);
+    const Reach reach = room_for({{low, high}, joints});
+    const PoseRange &room = reach.axes;
     if (view_.indexers_stuck != 0 && indexer < 0) {
         return Reason::INDEXER_OPEN;
     }
@@ -151,7 +169,24 @@ Reason PathPlanner::check_reach(const traj::Primitive &p, int indexer) noexcept 
     }
     refused_index_ = -1;
     const bool isChecked = kinematics_.identity() == nullptr && kinematics_.isShareable();
-    return isChecked ? check_joints(p) : Reason::NONE;
+    const Reason reason = isChecked ? check_joints(p, reach.joints) : Reason::NONE;
+    return reason == Reason::NONE ? check_shared(p, joints, reach.joints) : reason;
+}
+
+/// Between the places that check_joints() looks at a joint on an arc goes farther; these are known exactly.
+Reason PathPlanner::check_shared(const traj::Primitive &p, const JointRange &move,
+                                 const JointRange &room) noexcept {
+    const JointRange start = limits_.shared.at(p.start);
+    for (std::uint32_t left = limits_.shared.joints; left != 0; left &= left - 1) {
+        const auto j = static_cast<std::size_t>(std::countr_zero(left));
+        const bool isOut = move.low[j] < std::min(room.low[j], start.low[j]) - SOFT_LIMIT_ROUNDING ||
+                           move.high[j] > std::max(room.high[j], start.high[j]) + SOFT_LIMIT_ROUNDING;
+        if (isOut) {
+            refused_index_ = static_cast<std::int16_t>(j);
+            return Reason::JOINT_BEYOND_LIMIT;
+        }
+    }
+    return Reason::NONE;
 }
 
 /// True when the joints can follow from one place of the path to the next: halves of the way, down to where
@@ -191,7 +226,7 @@ bool PathPlanner::isSteady(const traj::Primitive &p, PathSample from, PathSample
     return !isMuch && !isCrawling(from, to);
 }
 
-Reason PathPlanner::check_joints(const traj::Primitive &p) noexcept {
+Reason PathPlanner::check_joints(const traj::Primitive &p, const JointRange &room) noexcept {
     // Enough that an angle which follows a circle never turns by half a turn between two.
     constexpr int LEAST_SAMPLES = 64;
     constexpr double SAMPLES_PER_RAD = 1.5;
@@ -215,9 +250,8 @@ Reason PathPlanner::check_joints(const traj::Primitive &p) noexcept {
         for (int j = 0; j < config_.num_joints; ++j) {
             const auto i = static_cast<std::size_t>(j);
             // A joint that stands beyond its limit, as after a coast, comes back into it, and no farther out.
-            const double low = isOnTheWay ? std::min(limits_.joints.low[i], begin[i]) : limits_.joints.low[i];
-            const double high =
-                isOnTheWay ? std::max(limits_.joints.high[i], begin[i]) : limits_.joints.high[i];
+            const double low = isOnTheWay ? std::min(room.low[i], begin[i]) : room.low[i];
+            const double high = isOnTheWay ? std::max(room.high[i], begin[i]) : room.high[i];
             if (here.joints[i] < low - SOFT_LIMIT_ROUNDING || here.joints[i] > high + SOFT_LIMIT_ROUNDING) {
                 refused_index_ = static_cast<std::int16_t>(j);
                 return Reason::JOINT_BEYOND_LIMIT;
@@ -346,7 +380,7 @@ Reason PathPlanner::accept_tap(const PathCommand &c, const RigidTap &tap) noexce
     const bool isLine = in.length > 1e-12 * (1.0 + geom::norm(tap.end));
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
         // The room for turning back beyond both ends would have to be kept free of offsets.
-        if (in.lin[i] != 0 && (limits_.offset_axes >> i & 1U) != 0) {
+        if (in.lin[i] != 0 && ((limits_.offset_axes | limits_.shared.axes) >> i & 1U) != 0) {
             refused_index_ = static_cast<std::int16_t>(i);
             return Reason::TAP_OFFSET;
         }

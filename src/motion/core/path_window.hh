@@ -15,7 +15,7 @@ class PathWindow {
 
     void clear() noexcept { *this = {}; }
     /// `move` is the last one before what is added.
-    void add(const PoseRange &range, traj::Sequence move) noexcept {
+    void add(const Reach &range, traj::Sequence move) noexcept {
         Lot &lot = count_ == 0 ? older_ : newer_;
         widen(lot, range);
         lot.last = move + 1;
@@ -42,7 +42,7 @@ class PathWindow {
         PathExtent extent;
         traj::Sequence last = 0;
     };
-    static void widen(Lot &lot, const PoseRange &range) noexcept {
+    static void widen(Lot &lot, const Reach &range) noexcept {
         if (lot.extent.isEmpty) {
             lot.extent = {range, false};
         } else {

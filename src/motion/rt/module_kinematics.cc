@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "motion/rt/module_kinematics.hh"
 
+#include <algorithm>
 #include <cmath>
 
 #include "hal/api/millwright_ext.h"
@@ -29,6 +30,7 @@ const char *ModuleKinematics::find(int num_joints) noexcept {
     inverse_ = find_function<decltype(inverse_)>("kinematicsInverse");
     inverse_with_status_ = find_function<decltype(inverse_with_status_)>("mw_kinematics_inverse");
     side_ = find_function<decltype(side_)>("mw_kinematics_side");
+    linear_ = find_function<decltype(linear_)>("mw_kinematics_linear");
     const auto type = find_function<decltype(&kinematicsType)>("kinematicsType");
     num_joints_ = num_joints;
     if (forward_ == nullptr) {
@@ -142,6 +144,20 @@ kins::Status ModuleKinematics::inverse(const kins::Pose &pose, double *joints) c
 int ModuleKinematics::side(const kins::Pose &pose) const noexcept {
     const EmcPose world = to_c(pose);
     return side_ != nullptr ? side_(&world) : 0;
+}
+
+kins::LinearJoints ModuleKinematics::linear() const noexcept {
+    kins::LinearJoints out;
+    if (linear_ != nullptr && isPure_ && !isIdentity_) {
+        double slope[MAX_JOINTS * geom::AXIS_COUNT] = {};
+        unsigned axes = 0;
+        out.joints = linear_(slope, &axes);
+        out.axes = axes;
+        for (std::size_t j = 0; j < out.slope.size(); ++j) {
+            std::copy_n(slope + j * geom::AXIS_COUNT, geom::AXIS_COUNT, out.slope[j].c.begin());
+        }
+    }
+    return out;
 }
 
 }  // namespace mw::motion

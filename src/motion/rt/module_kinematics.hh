@@ -27,6 +27,7 @@ class ModuleKinematics final : public kins::Kinematics {
     kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept override;
     const kins::IdentityMap *identity() const noexcept override { return isIdentity_ ? &map_ : nullptr; }
     int side(const kins::Pose &pose) const noexcept override;
+    kins::LinearJoints linear() const noexcept override;
     kins::TypeSwitch *type_switch() const noexcept override {
         return types_.switch_it != nullptr ? &types_ : nullptr;
     }
@@ -40,6 +41,7 @@ class ModuleKinematics final : public kins::Kinematics {
     decltype(&kinematicsInverse) inverse_ = nullptr;
     int (*inverse_with_status_)(const EmcPose *, double *) = nullptr;  ///< of our own modules: tells SINGULAR
     int (*side_)(const EmcPose *) = nullptr;                           ///< the same
+    unsigned (*linear_)(double *, unsigned *) = nullptr;               ///< the same
     mutable ModuleTypes types_;
     int num_joints_ = MAX_JOINTS;
     kins::Kind kind_ = kins::Kind::IDENTITY;

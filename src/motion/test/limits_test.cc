@@ -2,7 +2,9 @@
 // The one place where limits of joints, axes and the machine become the limits of paths and jogs.
 #include <gtest/gtest.h>
 
+#include "kins/corexy.hh"
 #include "kins/rotary_table.hh"
+#include "kins/rotate.hh"
 #include "kins/trivial.hh"
 #include "motion/api/limits.hh"
 
@@ -141,6 +143,75 @@ TEST(Limits, WhereJointsAreNoAxesTheirSoftLimitsAreNoneOfAxes) {
     const FoldedLimits limits = fold_limits(s, map, ALL_HOMED);
     EXPECT_LT(limits.low[X], -1e9);
     EXPECT_EQ(limits.joints.low[0], -1);
+}
+
+/// X + Y and X - Y: half of a joint is each axis's when both go at once, and its ratio of that its offset's.
+TEST(Limits, ExternalOffsetsHaveTheirShareOfJointsThatAreNoAxes_C13_C15) {
+    Settings s = with({{Parameter::AXIS_OFFSET_RATIO, X, 0.3},
+                       {Parameter::AXIS_OFFSET_RATIO, Y, 0.1},
+                       {Parameter::TRAJ_PLANNER_TYPE, 0, 1},
+                       {Parameter::TRAJ_MAX_JERK, 0, 1e6}});
+    for (int j = 0; j < 3; ++j) {
+        const SetParameter v{static_cast<std::uint16_t>(Parameter::JOINT_MAX_VELOCITY),
+                             static_cast<std::int16_t>(j), 100};
+        const SetParameter a{static_cast<std::uint16_t>(Parameter::JOINT_MAX_ACCELERATION),
+                             static_cast<std::int16_t>(j), 1000};
+        const SetParameter k{static_cast<std::uint16_t>(Parameter::JOINT_MAX_JERK),
+                             static_cast<std::int16_t>(j), 20000};
+        for (const SetParameter &one : {v, a, k}) {
+            ASSERT_EQ(s.set(one, MAX_JOINTS, MAX_SPINDLES), Reason::NONE);
+        }
+    }
+    const kins::CoreXy corexy;
+    const AxisMap map = axis_map(corexy, 3);
+    EXPECT_TRUE(map.mayHaveOffset(X));
+    EXPECT_FALSE(map.mayHaveOffset(geom::AXIS_A)) << "no joint of the machine moves it";
+    const FoldedLimits limits = fold_limits(s, map, ALL_HOMED);
+    EXPECT_DOUBLE_EQ(limits.path_joints.velocity[0], 80);
+    EXPECT_DOUBLE_EQ(limits.path_joints.acceleration[1], 800);
+    EXPECT_DOUBLE_EQ(limits.path_joints.jerk[1], 16000);
+    EXPECT_DOUBLE_EQ(limits.path_joints.velocity[2], 100);
+    EXPECT_EQ(limits.joints.velocity[0], 100) << "what jogs of joints have";
+    EXPECT_DOUBLE_EQ(limits.offset[X].velocity, 15);
+    EXPECT_DOUBLE_EQ(limits.offset[Y].acceleration, 50);
+    EXPECT_DOUBLE_EQ(limits.offset[X].jerk, 3000);
+    EXPECT_EQ(limits.offset[Z].velocity, 0);
+    const SharedJoints shared = shared_joints(map.linear, 1U << X);
+    EXPECT_EQ(shared.joints, 3U);
+    EXPECT_EQ(shared.axes, 3U);
+    PoseRange range;
+    range.low[X] = -1;
+    range.high[X] = 2;
+    range.high[Y] = 5;
+    EXPECT_EQ(shared.within(range).high[0], 7);
+    EXPECT_EQ(shared.within(range).low[1], -6);
+    EXPECT_EQ(shared.within(range).high[2], 0) << "not shared";
+}
+
+TEST(Limits, WhatTurnsWithAnotherAxisHasNoExternalOffset_C15) {
+    const kins::Rotate rotate;
+    const kins::RotaryTable table;
+    const AxisMap turned = axis_map(rotate, 6);
+    EXPECT_FALSE(turned.mayHaveOffset(X));
+    EXPECT_FALSE(turned.mayHaveOffset(geom::AXIS_C));
+    EXPECT_TRUE(turned.mayHaveOffset(Z));
+    EXPECT_FALSE(axis_map(table, 5).mayHaveOffset(Z));
+    const Settings s = with({{Parameter::AXIS_OFFSET_RATIO, X, 0.3}, {Parameter::AXIS_MAX_VELOCITY, X, 50}});
+    const FoldedLimits limits = fold_limits(s, turned, ALL_HOMED);
+    EXPECT_EQ(limits.offset[X].velocity, 0);
+    EXPECT_EQ(limits.path.velocity[X], 50) << "nothing is kept for one that does not come";
+}
+
+TEST(Limits, AJointWithALockHasNoExternalOffset_C15) {
+    const kins::Rotate rotate;
+    const Settings s = with({{Parameter::AXIS_OFFSET_RATIO, geom::AXIS_A, 0.3},
+                             {Parameter::AXIS_OFFSET_RATIO, Z, 0.3},
+                             {Parameter::AXIS_MAX_VELOCITY, geom::AXIS_A, 50},
+                             {Parameter::AXIS_MAX_VELOCITY, Z, 50},
+                             {Parameter::JOINT_LOCKING_INDEXER, 3, 1}});
+    const FoldedLimits limits = fold_limits(s, axis_map(rotate, 6), ALL_HOMED);
+    EXPECT_EQ(limits.offset[geom::AXIS_A].velocity, 0);
+    EXPECT_GT(limits.offset[Z].velocity, 0);
 }
 
 }  // namespace

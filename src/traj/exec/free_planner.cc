@@ -176,6 +176,7 @@ void JogPlanner::step(double dt) noexcept {
     leader_.target = target;
     leader_.max_velocity = max_velocity;
     leader_.max_acceleration = std::min(max_acceleration, most_acceleration_);
+    const double leader_before = leader_.position;
     leader_.step(dt);
     target = leader_.target;  // who brakes is told where that leads
     const double way = leader_.position - origin_;
@@ -183,7 +184,9 @@ void JogPlanner::step(double dt) noexcept {
     add(-way_[next_]);
     way_[next_] = way;
     next_ = next_ + 1 == length_ ? 0 : next_ + 1;
-    standing_ = leader_.isAtRest() ? standing_ + 1 : 0;
+    // At the end of every cycle it rests also while it is sent a little on in each.
+    const bool isOn = leader_.position != leader_before;
+    standing_ = !leader_.isAtRest() ? 0 : isOn ? 1 : standing_ + 1;
     const double before = position;
     const bool isOver = standing_ >= length_;
     position = isOver ? target : origin_ + (sum_ + rest_) / length_;

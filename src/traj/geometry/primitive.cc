@@ -159,6 +159,77 @@ double askew_of(const Primitive &arc) noexcept {
     return round > 0 ? OF_DRIFT * std::abs(arc.dradius) / round : 1.0;
 }
 
+namespace {
+
+/// A sum of coordinates along an arc: base + lin s + (radius + dradius s) amplitude cos(omega s - phase).
+struct ArcSum {
+    const Primitive &arc;
+    double base = 0, lin = 0, amplitude = 0, phase = 0;
+
+    double at(double s) const noexcept {
+        return base + lin * s + (arc.radius + arc.dradius * s) * amplitude * std::cos(arc.omega * s - phase);
+    }
+    /// The place nearest to `s` where it turns back, by Newton's method.
+    double turn_near(double s) const noexcept {
+        constexpr int STEPS = 5;
+        for (int n = 0; n < STEPS; ++n) {
+            const double c = amplitude * std::cos(arc.omega * s - phase);
+            const double d = amplitude * std::sin(arc.omega * s - phase);
+            const double radius = arc.radius + arc.dradius * s;
+            const double slope = lin + arc.dradius * c - radius * arc.omega * d;
+            const double bend = -2.0 * arc.dradius * arc.omega * d - radius * arc.omega * arc.omega * c;
+            s -= bend != 0 ? slope / bend : 0.0;
+        }
+        return s;
+    }
+};
+
+ArcSum sum_along(const Primitive &p, const Pose &slope) noexcept {
+    double u = 0;
+    double v = 0;
+    for (int i = 0; i < 3; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        u += slope[p.space + i] * p.u[k];
+        v += slope[p.space + i] * p.v[k];
+    }
+    return {p, geom::dot(slope, p.base), geom::dot(slope, p.lin), std::hypot(u, v), std::atan2(v, u)};
+}
+
+}  // namespace
+
+void extent_along(const Primitive &p, const Pose &slope, double &low, double &high) noexcept {
+    const double start = geom::dot(slope, p.start);
+    const double end = geom::dot(slope, p.end);
+    low = std::min(start, end);
+    high = std::max(start, end);
+    const ArcSum sum = p.isArc ? sum_along(p, slope) : ArcSum{p};
+    // With the radius of the middle it turns where sin(omega s - phase - lead) = level; Newton's method does
+    // the rest. `AROUND`: what that may move a place by [rad].
+    constexpr double AROUND = 0.2;
+    constexpr double TURN = 2.0 * std::numbers::pi;
+    constexpr int MOST_TURNS = 100000;
+    const double turning = (p.radius + 0.5 * p.dradius * p.length) * p.omega;
+    const double lead = std::atan2(p.dradius, turning);
+    const double level = sum.lin / (sum.amplitude * std::hypot(turning, p.dradius));
+    constexpr double HARDLY = 1.2;  // beyond it goes one way only
+    if (!p.isArc || sum.amplitude == 0.0 || !(std::abs(level) < HARDLY)) {
+        return;
+    }
+    const double sweep = p.omega * p.length;
+    const double from = std::min(0.0, sweep) - AROUND;
+    const double to = std::max(0.0, sweep) + AROUND;
+    const double first = std::asin(std::clamp(level, -1.0, 1.0));
+    for (const double angle : {first, std::numbers::pi - first}) {
+        const double base = sum.phase + lead + angle;
+        double at = base + TURN * std::ceil((from - base) / TURN);
+        for (int n = 0; at <= to && n < MOST_TURNS; ++n, at += TURN) {
+            const double x = sum.at(std::clamp(sum.turn_near(at / p.omega), 0.0, p.length));
+            low = std::min(low, x);
+            high = std::max(high, x);
+        }
+    }
+}
+
 Primitive make_line(const Pose &start, const Pose &end) noexcept {
     Primitive p;
     p.start = start;

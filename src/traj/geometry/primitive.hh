@@ -60,6 +60,9 @@ inline bool isNearlyCircle(const Primitive &p) noexcept {
     return p.isArc && askew_of(p) < MOST_ASKEW;
 }
 
+/// The same of slope . q, such as a joint that goes in proportion to axes.
+void extent_along(const Primitive &p, const Pose &slope, double &low, double &high) noexcept;
+
 /// A straight line. `length` is 0 when the ends are the same pose.
 Primitive make_line(const Pose &start, const Pose &end) noexcept;
 

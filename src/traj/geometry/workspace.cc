@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "traj/tuning.hh"
@@ -13,6 +14,13 @@ bool Workspace::holds(const Pose &pose) const noexcept {
     bool isInside = true;
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
         isInside = isInside && pose[i] >= low[i] && pose[i] <= high[i];
+    }
+    double at[MAX_JOINTS] = {};
+    const bool isAsked = isInside && isMapped() && joint_room.joints != 0;
+    isInside = isInside && (!isAsked || map->joints_at(pose, at));
+    for (std::uint32_t left = isAsked ? joint_room.joints : 0; left != 0; left &= left - 1) {
+        const auto j = static_cast<std::size_t>(std::countr_zero(left));
+        isInside = isInside && at[j] >= joint_room.low[j] && at[j] <= joint_room.high[j];
     }
     return isInside;
 }
@@ -32,8 +40,11 @@ Pose Workspace::shift_within(const Pose &corner, const Pose &shift) const noexce
     bool isInside = map->joints_at(corner + kept, moved);
     for (int j = 0; j < joints.count && isInside; ++j) {
         const auto n = static_cast<std::size_t>(j);
-        isInside = moved[j] >= std::min(joints.low[n], as_programmed[j]) &&
-                   moved[j] <= std::max(joints.high[n], as_programmed[j]);
+        const bool isKept = (joint_room.joints >> j & 1U) != 0;
+        const double least = isKept ? joint_room.low[n] : joints.low[n];
+        const double most = isKept ? joint_room.high[n] : joints.high[n];
+        isInside =
+            moved[j] >= std::min(least, as_programmed[j]) && moved[j] <= std::max(most, as_programmed[j]);
     }
     return isInside ? kept : Pose{};
 }

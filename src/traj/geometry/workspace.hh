@@ -2,22 +2,32 @@
 // Where the machine may go: soft limits of the axes, and joints that are not axes.
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include "traj/geometry/joint_map.hh"
 #include "traj/geometry/limits.hh"
 
 namespace mw::traj {
 
+/// Where some joints are kept, within their soft limits.
+struct JointRoom {
+    std::uint32_t joints = 0;  ///< bit per joint
+    std::array<double, MAX_JOINTS> low{}, high{};
+};
+
 struct Workspace {
     Pose low, high;                 ///< soft limits of the axes; the path is not moved beyond them
     const JointMap *map = nullptr;  ///< null: the axes' limits are all there are
     JointLimits joints;             ///< with a map
+    JointRoom joint_room;           ///< the same
 
     Workspace() noexcept {
         low.c.fill(-UNLIMITED);
         high.c.fill(UNLIMITED);
     }
     bool isMapped() const noexcept { return map != nullptr; }
-    /// Within the soft limits of the axes.
+    /// Within the soft limits of the axes and the room of joints that have one.
     bool holds(const Pose &pose) const noexcept;
     /// What of `shift` leaves the moved corner within the soft limits. The commanded path runs inside of the
     /// corners, so it keeps them as well.

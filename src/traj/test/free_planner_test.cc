@@ -205,5 +205,22 @@ TEST(JogPlanner, WhoIsSentOnWhileItBrakesGoesThere_C8) {
     }
 }
 
+/// A target that goes a little on in every cycle is reached in each of them: it is under way nevertheless.
+TEST(JogPlanner, ATargetThatCreepsMakesNoJump_C8_C13) {
+    JogPlanner p;
+    p.max_velocity = 50;
+    p.max_acceleration = 500;
+    p.max_jerk = 20000;
+    mw::testing::LimitChecker checker({{50, 500, 20000}}, T);
+    for (int i = 0; i < 3000; ++i) {
+        p.target = std::min(1e-4 * i, 0.1);
+        p.step(T);
+        checker.sample(&p.position);
+    }
+    EXPECT_TRUE(checker.isWithin()) << checker.report();
+    EXPECT_TRUE(p.isAtRest());
+    EXPECT_EQ(p.position, 0.1);
+}
+
 }  // namespace
 }  // namespace mw::traj

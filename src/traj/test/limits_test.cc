@@ -286,5 +286,33 @@ TEST(Workspace, ACornerIsMovedOnlyWithinTheSoftLimits_C13) {
     EXPECT_FALSE(workspace.holds(at(10.5)));
 }
 
+/// Joint 0 is X + Y, joint 1 X - Y.
+struct Belts final : JointMap {
+    bool joints_at(const Pose &pose, double *joints) const noexcept override {
+        joints[0] = pose[0] + pose[1];
+        joints[1] = pose[0] - pose[1];
+        return true;
+    }
+};
+
+TEST(Workspace, ACornerIsMovedOnlyWithinTheRoomThatJointsHave_C13_C15) {
+    const Belts belts;
+    Workspace workspace;
+    workspace.map = &belts;
+    workspace.joints.count = 2;
+    workspace.joints.low.fill(-100);
+    workspace.joints.high.fill(100);
+    EXPECT_EQ(workspace.shift_within(at(10, 10), at(1, 1)), at(1, 1));
+    EXPECT_TRUE(workspace.holds(at(40, 40)));
+    workspace.joint_room.joints = 1;
+    workspace.joint_room.low[0] = -21;
+    workspace.joint_room.high[0] = 21;
+    EXPECT_EQ(workspace.shift_within(at(10, 10), at(1, 1)), at(0, 0)) << "what offsets may have begins there";
+    EXPECT_EQ(workspace.shift_within(at(10, 10), at(1, -1)), at(1, -1));
+    EXPECT_EQ(workspace.shift_within(at(20, 10), at(-1, 0)), at(-1, 0)) << "back from outside";
+    EXPECT_TRUE(workspace.holds(at(40, -40))) << "joint 1 has its soft limits";
+    EXPECT_FALSE(workspace.holds(at(40, 40)));
+}
+
 }  // namespace
 }  // namespace mw::traj::test

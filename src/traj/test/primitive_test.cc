@@ -206,5 +206,45 @@ TEST(Extent, HoldsTheArcAndLittleMore) {
     EXPECT_GT(count, 2500);
 }
 
+TEST(Extent, AlongASumOfCoordinatesHoldsTheArcAndLittleMore_C13_C15) {
+    Arcs arcs(3);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> share(-2, 2);
+    int count = 0;
+    for (int n = 0; n < 4000; ++n) {
+        Primitive p;
+        const double climb = n % 2 == 0 ? 0.0 : share(random) * 10;
+        if (!arcs.next(n % 3, n % 4 < 2 ? 12 : 1, climb, p)) {
+            continue;
+        }
+        ++count;
+        const Pose slope{{share(random), share(random), share(random)}};
+        double low = 0;
+        double high = 0;
+        extent_along(p, slope, low, high);
+        double least = geom::dot(slope, p.start);
+        double most = least;
+        constexpr int POINTS = 4000;
+        for (int k = 0; k <= POINTS; ++k) {
+            const double x = geom::dot(slope, position_at(p, p.length * k / POINTS));
+            ASSERT_GE(x, low - 1e-11) << "arc " << n;
+            ASSERT_LE(x, high + 1e-11) << "arc " << n;
+            least = std::min(least, x);
+            most = std::max(most, x);
+        }
+        const double step = std::abs(p.omega) * p.length / POINTS;
+        const double bulge = geom::norm(slope) * p.radius * step * step + 1e-9;
+        ASSERT_LE(least - low, bulge) << "arc " << n;
+        ASSERT_LE(high - most, bulge) << "arc " << n;
+    }
+    EXPECT_GT(count, 2500);
+    const Primitive line = make_line(flat(1, 2), flat(-3, 5));
+    double low = 0;
+    double high = 0;
+    extent_along(line, Pose{{1, -1}}, low, high);
+    EXPECT_EQ(low, -8);
+    EXPECT_EQ(high, -1);
+}
+
 }  // namespace
 }  // namespace mw::traj::test

@@ -52,8 +52,8 @@ traj::Retrace::Use use_of(const Changes &changes, const RetraceLimits &in) noexc
     add(std::sqrt(changes.step_xyz2), std::sqrt(changes.bend_xyz2), limits.acceleration[traj::XYZ_NORM],
         limits.jerk[traj::XYZ_NORM]);
     for (int j = 0; j < in.joints; ++j) {
-        add(changes.joint_step[at(j)], changes.joint_bend[at(j)], in.folded.joints.acceleration[at(j)],
-            in.folded.joints.jerk[at(j)]);
+        add(changes.joint_step[at(j)], changes.joint_bend[at(j)], in.folded.path_joints.acceleration[at(j)],
+            in.folded.path_joints.jerk[at(j)]);
     }
     return use;
 }

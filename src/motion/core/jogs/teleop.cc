@@ -15,8 +15,7 @@ namespace {
 constexpr double LEAST_WINDOW = 0.5;
 /// What rounding of positions may make of a joint's soft limit.
 constexpr double POSITION_ROUNDING = 1e-9;
-/// The acceleration may have to become less while it brakes.
-constexpr double BRAKE_MARGIN = 1.2;
+constexpr double BRAKE_MARGIN = TELEOP_BRAKE_MARGIN;
 constexpr int MOST_CORNER_AXES = 5;
 
 std::size_t at(int i) noexcept {
@@ -37,7 +36,7 @@ AxisValues accelerations(const TeleopMachine &m, const TeleopLoad &load, const J
                 curve += load.q2[at(k)][at(l)][at(j)] * speed[at(k)] * speed[at(l)];
             }
         }
-        const double most = m.limits.joints.acceleration[at(j)];
+        const double most = m.joints.acceleration[at(j)];
         const double left = std::max(most - curve, (1.0 - CURVE_SHARE) * most);
         for (int i = 0; i < load.count; ++i) {
             const double q1 = load.q1[at(i)][at(j)];
@@ -119,8 +118,8 @@ int joint_left_by(const TeleopMachine &m, const geom::Pose &pose) noexcept {
         return m.num_joints;
     }
     for (int j = 0; j < m.num_joints; ++j) {
-        const double low = std::min(m.limits.joints.low[at(j)], m.joint_positions[at(j)]);
-        const double high = std::max(m.limits.joints.high[at(j)], m.joint_positions[at(j)]);
+        const double low = std::min(m.joints.low[at(j)], m.joint_positions[at(j)]);
+        const double high = std::max(m.joints.high[at(j)], m.joint_positions[at(j)]);
         const bool isLeft = q[at(j)] < low - POSITION_ROUNDING || q[at(j)] > high + POSITION_ROUNDING;
         if (isLeft) {
             return j;

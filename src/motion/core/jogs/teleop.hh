@@ -14,12 +14,17 @@ namespace mw::motion {
 struct TeleopMachine {
     const kins::Kinematics &kinematics;
     const FoldedLimits &limits;
-    std::array<double, MAX_JOINTS> joint_positions{};
+    const traj::JointLimits &joints;                   ///< what external offsets leave of them
+    std::array<double, MAX_JOINTS> joint_positions{};  ///< without external offsets
     int num_joints = 0;
     double scale = 1;  ///< override
     double period_s = 1e-3;
     int side = 0;  ///< of where it stands (kins::Kinematics)
 };
+
+/// Jogs stop before a joint's limit with this much more way than they need: the acceleration may have to
+/// become less while they brake.
+inline constexpr double TELEOP_BRAKE_MARGIN = 1.2;
 
 struct TeleopStop {
     bool isNew = false;  ///< jogs were stopped in this cycle, and were not before

@@ -122,7 +122,7 @@ void add_sent(const TeleopMachine &m, const geom::Pose &here, int i, double targ
     const int axis = load.axes[at(i)];
     double most = std::abs(target - here[axis]);
     for (int j = 0; j < m.num_joints; ++j) {
-        const double range = m.limits.joints.high[at(j)] - m.limits.joints.low[at(j)];
+        const double range = m.joints.high[at(j)] - m.joints.low[at(j)];
         const double q1 = load.q1[at(i)][at(j)];
         most = q1 > 0 ? std::min(most, range / q1) : most;
     }
@@ -149,13 +149,14 @@ AxisValues shared_speeds(const TeleopMachine &m, const TeleopLoad &load, const J
     AxisValues v{};
     for (int i = 0; i < load.count; ++i) {
         const Jog &axis = jogs.axis[at(load.axes[at(i)])];
-        v[at(i)] = axis.wanted_velocity * m.scale;
+        const double most = m.limits.axis_jog[at(load.axes[at(i)])].velocity;
+        v[at(i)] = std::min(axis.wanted_velocity * m.scale, most);
         for (int j = 0; j < m.num_joints; ++j) {
             const double q1 = load.q1[at(i)][at(j)];
             const double q2 = load.q2[at(i)][at(i)][at(j)];
-            const double curve = CURVE_SHARE * m.limits.joints.acceleration[at(j)] / (n * n);
+            const double curve = CURVE_SHARE * m.joints.acceleration[at(j)] / (n * n);
             if (q1 > 0) {
-                v[at(i)] = std::min(v[at(i)], m.limits.joints.velocity[at(j)] / (n * q1));
+                v[at(i)] = std::min(v[at(i)], m.joints.velocity[at(j)] / (n * q1));
             }
             if (q2 > LEAST_CURVE) {
                 v[at(i)] = std::min(v[at(i)], std::sqrt(curve / q2));
@@ -165,7 +166,7 @@ AxisValues shared_speeds(const TeleopMachine &m, const TeleopLoad &load, const J
     for (int i = 0; i < load.count; ++i) {
         for (int k = 0; k < i; ++k) {
             for (int j = 0; j < m.num_joints; ++j) {
-                const double curve = CURVE_SHARE * m.limits.joints.acceleration[at(j)] / (n * n);
+                const double curve = CURVE_SHARE * m.joints.acceleration[at(j)] / (n * n);
                 const double used = load.q2[at(i)][at(k)][at(j)] * v[at(i)] * v[at(k)];
                 const double factor = used > curve ? std::sqrt(curve / used) : 1.0;
                 v[at(i)] *= factor;

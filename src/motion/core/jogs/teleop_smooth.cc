@@ -52,7 +52,7 @@ struct Sharing {
     const Jog &jog(int i) const noexcept { return jogs.axis[at(load.axes[at(i)])]; }
     bool has(int i) const noexcept { return (axes & bit_of(load, i)) != 0; }
     double jerk(int j) const noexcept {
-        const double most = m.limits.joints.jerk[at(j)];
+        const double most = m.joints.jerk[at(j)];
         return most < traj::UNLIMITED ? most : NONE;
     }
 };
@@ -67,7 +67,7 @@ Straight straight(const Sharing &s, int i, const JointsAt &q1) noexcept {
     for (int j = 0; j < s.m.num_joints; ++j) {
         const double used = s.n * q1[at(j)];
         if (used > 0) {
-            out.acceleration = std::min(out.acceleration, s.m.limits.joints.acceleration[at(j)] / used);
+            out.acceleration = std::min(out.acceleration, s.m.joints.acceleration[at(j)] / used);
             out.jerk = std::min(out.jerk, s.jerk(j) / used);
         }
     }
@@ -82,7 +82,7 @@ double mean_for(const Sharing &s, int i) noexcept {
     double v = s.m.limits.axis_jog[at(s.load.axes[at(i)])].velocity;
     for (int j = 0; j < s.m.num_joints; ++j) {
         q1[at(j)] = std::max(q1[at(j)], s.load.q1_sent[at(i)][at(j)]);
-        v = q1[at(j)] > 0 ? std::min(v, s.m.limits.joints.velocity[at(j)] / q1[at(j)]) : v;
+        v = q1[at(j)] > 0 ? std::min(v, s.m.joints.velocity[at(j)] / q1[at(j)]) : v;
     }
     const Straight most = straight(s, i, q1);
     return most.jerk == NONE ? 0.0
@@ -152,7 +152,7 @@ void leave_for_curves(const Sharing &s, const AxisValues &speed, Allowed &out) n
             }
             swing += swing_of(s, speed, straight, i, j);
         }
-        const double most = s.m.limits.joints.acceleration[at(j)];
+        const double most = s.m.joints.acceleration[at(j)];
         const double a_left = std::max(most - curve, (1.0 - CURVE_SHARE) * most);
         const double jerk = s.jerk(j);
         const double jerk_left = jerk == NONE ? NONE

@@ -45,18 +45,43 @@ double allowed(const ExternalOffset &offset, double to, const JogRange &room) no
     return std::clamp(to, std::min(room.low, rest), std::max(room.high, rest));
 }
 
+JogRange both(const JogRange &a, const JogRange &b) noexcept {
+    return {std::max(a.low, b.low), std::min(a.high, b.high)};
+}
+
+/// What soft limits of shared joints leave this axis beside what is programmed and what the others may take.
+JogRange room_of_joints(const ExternalOffsets &offsets, const OffsetInputs &in, PoseRange others,
+                        int axis) noexcept {
+    JogRange room{-UNBOUNDED, UNBOUNDED};
+    others.low[axis] = others.high[axis] = 0;
+    const JointRange taken = offsets.shared.within(others);
+    for (std::uint32_t left = offsets.shared.joints; left != 0; left &= left - 1) {
+        const auto j = static_cast<std::size_t>(std::countr_zero(left));
+        const double k = offsets.shared.slope[j][axis];
+        if (k != 0) {
+            const double low = (in.limits.joints.low[j] - in.programmed.joints.low[j] - taken.low[j]) / k;
+            const double high = (in.limits.joints.high[j] - in.programmed.joints.high[j] - taken.high[j]) / k;
+            room = both(room, k > 0 ? JogRange{low, high} : JogRange{high, low});
+        }
+    }
+    return room;
+}
+
 }  // namespace
 
 void step(ExternalOffsets &offsets, const OffsetInputs &in) noexcept {
     offsets.isLimited = false;
+    const bool isShared = offsets.shared.joints != 0;
+    PoseRange all = isShared ? range(offsets) : PoseRange{};
     for (int i = 0; i < MAX_AXES; ++i) {
         if (!hasOffset(offsets, i)) {
             continue;
         }
         ExternalOffset &offset = offsets.axis[at(i)];
         take_counts(offset, in.pins[at(i)], in.isHonoured);
-        const JogRange room{in.limits.low[i] - in.programmed.low[i],
-                            in.limits.high[i] - in.programmed.high[i]};
+        JogRange room{in.limits.low[i] - in.programmed.axes.low[i],
+                      in.limits.high[i] - in.programmed.axes.high[i]};
+        room = isShared ? both(room, room_of_joints(offsets, in, all, i)) : room;
         traj::JogPlanner &p = offset.planner;
         if (in.isHonoured) {
             const JogLimits &most = in.limits.offset[at(i)];
@@ -69,19 +94,25 @@ void step(ExternalOffsets &offsets, const OffsetInputs &in) noexcept {
             offset.next = allowed(offset, offset.request, room);
             offset.isLimited = offset.next != offset.request;
         }
+        if (isShared) {
+            const JogRange reach = reach_of(offset);
+            all.low[i] = reach.low;
+            all.high[i] = reach.high;
+        }
         p.step(in.period_s);
         offsets.pose[i] = p.position;
         offsets.isLimited = offsets.isLimited || offset.isLimited;
     }
 }
 
-void configure(ExternalOffsets &offsets, const FoldedLimits &limits) noexcept {
+void configure(ExternalOffsets &offsets, const FoldedLimits &limits, const AxisMap &map) noexcept {
     offsets.axes = 0;
     for (int i = 0; i < MAX_AXES; ++i) {
         // One that is there stays, also when there are to be none any more.
         const bool isThere = offsets.pose[i] != 0.0 || !offsets.axis[at(i)].planner.isAtRest();
         offsets.axes |= limits.offset[at(i)].velocity > 0 || isThere ? 1U << i : 0U;
     }
+    offsets.shared = shared_joints(map.linear, offsets.axes);
     offsets.isLimited = offsets.isLimited && offsets.axes != 0;
     if (!limits.homed.areAll) {
         for (ExternalOffset &offset : offsets.axis) {
@@ -151,6 +182,18 @@ void narrow(JogRange &jog, const ExternalOffsets &offsets, int axis) noexcept {
         const JogRange reach = reach_of(offsets.axis[at(axis)]);
         jog.low -= reach.low;
         jog.high -= reach.high;
+    }
+}
+
+void take_off(const ExternalOffsets &offsets, std::array<double, MAX_JOINTS> &joints,
+              traj::JointLimits &limits) noexcept {
+    const JointRange here = offsets.shared.at(offsets.pose);
+    const JointRange reach = offsets.shared.within(range(offsets));
+    for (std::uint32_t left = offsets.shared.joints; left != 0; left &= left - 1) {
+        const auto j = static_cast<std::size_t>(std::countr_zero(left));
+        joints[j] -= here.low[j];
+        limits.low[j] -= reach.low[j];
+        limits.high[j] -= reach.high[j];
     }
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Offsets of axes that HAL pins ask for (axis.L.eoffset-*), on top of jogs and paths (C15). Each has its own
-// share of the axis's velocity, acceleration and jerk, so that the sum keeps the limits; it only grows as far
-// as what is jogged or programmed stays within the soft limits with it.
+// share of the axis's velocity, acceleration and jerk, and of those of joints that are no axes, so that the
+// sum keeps the limits; it only grows as far as what is jogged or programmed stays within the soft limits
+// with it.
 #pragma once
 
 #include <array>
@@ -26,15 +27,16 @@ struct ExternalOffset {
 struct ExternalOffsets {
     std::uint32_t axes = 0;  ///< bit per axis that may have one
     std::array<ExternalOffset, MAX_AXES> axis{};
+    SharedJoints shared;  ///< that these axes move
     geom::Pose pose;      ///< in force
-    PoseRange travelled;  ///< what the path can be gone back along
+    Reach travelled;      ///< what the path can be gone back along
     bool isLimited = false;
 };
 
 struct OffsetInputs {
     const std::array<OffsetInput, MAX_AXES> &pins;
     const FoldedLimits &limits;
-    PoseRange programmed;     ///< where jogs and paths may go without offsets
+    Reach programmed;         ///< where jogs and paths may go without offsets
     bool isHonoured = false;  ///< on, all joints homed, in a mode of axes, and no stop under way
     double period_s = 1e-3;
 };
@@ -42,7 +44,7 @@ struct OffsetInputs {
 void step(ExternalOffsets &offsets, const OffsetInputs &in) noexcept;
 
 /// The limits have changed; all offsets end where a joint is not homed any more.
-void configure(ExternalOffsets &offsets, const FoldedLimits &limits) noexcept;
+void configure(ExternalOffsets &offsets, const FoldedLimits &limits, const AxisMap &map) noexcept;
 /// They are zero from here, and the pins count from here; nothing moves.
 void start_at_zero(ExternalOffsets &offsets, const Inputs &in) noexcept;
 /// All of them brake; they stand in this cycle.
@@ -59,6 +61,9 @@ PoseRange range(const ExternalOffsets &offsets) noexcept;
 geom::Pose without(const ExternalOffsets &offsets, const geom::Pose &pose) noexcept;
 /// The range of a jog is what the offset leaves of it.
 void narrow(JogRange &jog, const ExternalOffsets &offsets, int axis) noexcept;
+/// Joints at their commanded places, and their soft limits, without what offsets have of them.
+void take_off(const ExternalOffsets &offsets, std::array<double, MAX_JOINTS> &joints,
+              traj::JointLimits &limits) noexcept;
 
 void fill(const ExternalOffsets &offsets, Outputs &out) noexcept;
 

@@ -281,7 +281,7 @@ TEST(JogsPart, HomingMovesAJointNoFasterThanItCan) {
 TEST(TeleopPart, WhatTwoAxesAskOfAJointTogetherIsCountedForEachOfThem_C13) {
     const kins::RotaryTable table;
     const FoldedLimits limits;
-    TeleopMachine machine{table, limits};
+    TeleopMachine machine{table, limits, limits.path_joints};
     machine.num_joints = 5;
     geom::Pose pose;
     pose[geom::AXIS_X] = 50;
@@ -314,7 +314,7 @@ TEST(TeleopPart, AJogOfATableStopsBeforeAJointLeavesItsRange) {
         set(Parameter::JOINT_MAX_LIMIT, j, j < 3 ? 40 : 360);
     }
     const FoldedLimits limits = fold_limits(settings, axis_map(table, 5), ALL_HOMED);
-    TeleopMachine machine{table, limits};
+    TeleopMachine machine{table, limits, limits.path_joints};
     machine.num_joints = 5;
     Jogs jogs = make();
     geom::Pose pose;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "kins/corexy.hh"
 #include "motion/core/offsets/external_offsets.hh"
 
 namespace mw::motion {
@@ -12,14 +13,14 @@ struct OffsetsPart : ::testing::Test {
     ExternalOffsets offsets;
     FoldedLimits limits;
     Inputs in;
-    PoseRange programmed;
+    Reach programmed;
 
     OffsetsPart() {
         limits.homed.areAll = true;
         limits.offset[0] = {10, 100, 0};
         limits.low[0] = -20;
         limits.high[0] = 20;
-        configure(offsets, limits);
+        configure(offsets, limits, axis_map("X", 1));
         in.axis_offset[0].isEnabled = true;
         in.axis_offset[0].scale = 0.1;
     }
@@ -35,13 +36,13 @@ TEST_F(OffsetsPart, WhereItGoesToIsSeenACycleBeforeAndWeighedAgain_C15) {
     go(1);
     EXPECT_EQ(offsets.pose[0], 0);
     EXPECT_EQ(range(offsets).high[0], 15) << "who plans paths is told first";
-    programmed.high[0] = 18;  // a move was taken before that was read
+    programmed.axes.high[0] = 18;  // a move was taken before that was read
     go(1);
     EXPECT_NEAR(range(offsets).high[0], 2, 1e-9) << "not for one cycle on its way to 15";
     go(3000);
     EXPECT_NEAR(offsets.pose[0], 2, 1e-9);
     EXPECT_TRUE(offsets.isLimited);
-    programmed.high[0] = 5;
+    programmed.axes.high[0] = 5;
     go(3000);
     EXPECT_NEAR(offsets.pose[0], 15, 1e-9);
     EXPECT_FALSE(offsets.isLimited);
@@ -50,7 +51,7 @@ TEST_F(OffsetsPart, WhereItGoesToIsSeenACycleBeforeAndWeighedAgain_C15) {
 TEST_F(OffsetsPart, NoMoveThatComesLaterMakesItGoBack_C15) {
     in.axis_offset[0].counts = 100;
     go(3000);
-    programmed.high[0] = 15;
+    programmed.axes.high[0] = 15;
     go(3000);
     EXPECT_NEAR(offsets.pose[0], 10, 1e-9);
 }
@@ -71,6 +72,52 @@ TEST_F(OffsetsPart, CountsWrapAndWhatIsNoNumberCountsForNothing_C15) {
     go(100, false);
     go(2000);
     EXPECT_NEAR(offsets.pose[0], 1, 1e-9) << "what is turned while they are not honoured is lost";
+}
+
+/// X and Y of belts: what one takes of a joint's travel is not there for the other, nor for what is
+/// programmed.
+TEST_F(OffsetsPart, TwoOfOneJointNeverTakeTheSameRoom_C13_C15) {
+    const kins::CoreXy corexy;
+    limits.offset[1] = {10, 100, 0};
+    limits.low[1] = -20;
+    limits.high[1] = 20;
+    limits.joints.low.fill(-30);
+    limits.joints.high.fill(30);
+    configure(offsets, limits, axis_map(corexy, 3));
+    in.axis_offset[1] = in.axis_offset[0];
+    programmed.joints.high[0] = 20;  // a move leads there, another back from it
+    in.axis_offset[0].counts = 80;
+    in.axis_offset[1].counts = 80;
+    for (int n = 0; n < 3000; ++n) {
+        go(1);
+        const JointRange taken = offsets.shared.within(range(offsets));
+        ASSERT_LE(programmed.joints.high[0] + taken.high[0], 30 + 1e-9);
+        ASSERT_GE(taken.low[1], -30 - 1e-9);
+    }
+    EXPECT_NEAR(offsets.pose[0] + offsets.pose[1], 10, 1e-9) << "all there is";
+    EXPECT_TRUE(offsets.isLimited);
+    in.axis_offset[1].counts = -80;  // Y leads back, and X has its room
+    go(4000);
+    EXPECT_NEAR(offsets.pose[0], 8, 1e-9);
+    EXPECT_NEAR(offsets.pose[1], -8, 1e-9);
+    EXPECT_FALSE(offsets.isLimited);
+}
+
+TEST_F(OffsetsPart, WhatTheyHaveOfAJointIsTakenOffForJogs_C9_C15) {
+    const kins::CoreXy corexy;
+    limits.joints.low.fill(-30);
+    limits.joints.high.fill(30);
+    configure(offsets, limits, axis_map(corexy, 3));
+    in.axis_offset[0].counts = 80;
+    go(3000);
+    std::array<double, MAX_JOINTS> joints{};
+    joints.fill(10);
+    traj::JointLimits left = limits.joints;
+    take_off(offsets, joints, left);
+    EXPECT_NEAR(joints[0], 2, 1e-9);
+    EXPECT_NEAR(left.high[0], 22, 1e-9);
+    EXPECT_NEAR(left.low[1], -38, 1e-9);
+    EXPECT_EQ(left.high[2], 30) << "no offset moves it";
 }
 
 }  // namespace
