@@ -23,6 +23,32 @@ double v_at(const Phase &p, double t) noexcept {
     return p.v0 + t * (p.a + 0.5 * t * p.j);
 }
 
+/// How long the speed is kept before braking: a plan keeps its speed for so long after a rise, so the path
+/// allows it.
+double wait_behind_rise(const PathStore &store, const Snapshot &now, double period_s) noexcept {
+    const bool isFalling = now.plan != 0 && store.phase(now.phase).a < 0;
+    const double mean_s = now.filter > 1 ? static_cast<double>(now.filter) * period_s : 0.0;
+    return isFalling ? 0.0 : std::max(0.0, mean_s - now.coasting.since_rise_s);
+}
+
+/// The plan in force, phases up to `end`, ends in a stop that was tried, and soon enough beside braking from
+/// here.
+bool isPlanSoonOver(const PathStore &store, const Snapshot &now, Sequence end, double period_s) noexcept {
+    constexpr Sequence MOST = 64;
+    if (end - now.phase > MOST) {
+        return false;
+    }
+    double left_s = -now.time_in_phase;
+    for (Sequence n = now.phase; n < end; ++n) {
+        left_s += store.phase(n).duration;
+    }
+    const Phase &last = store.phase(end - 1);
+    const double end_v = last.v0 + last.a * last.duration;
+    const double a = store.piece(now.piece).brake_leg(now.x, now.v * now.v).a;
+    const double brake_s = wait_behind_rise(store, now, period_s) + now.v / a;
+    return end_v <= ExecutorTuning::STOPPED * last.v0 && left_s <= brake_s + ExecutorTuning::LATER_S;
+}
+
 }  // namespace
 
 void Executor::take_commits() noexcept {
@@ -180,16 +206,8 @@ double Executor::follow(double dt) noexcept {
     return dt - left;
 }
 
-/// A plan keeps its speed for so long after a rise, so the path allows it.
-double Executor::wait_behind_rise() const noexcept {
-    const bool isFalling = state_.plan != 0 && store_.phase(state_.phase).a < 0;
-    const double since_s = state_.coasting.since_rise_s;
-    return isFiltered() && !isFalling ? std::max(0.0, static_cast<double>(state_.filter) * period_ - since_s)
-                                      : 0.0;
-}
-
 void Executor::start_brake() noexcept {
-    brake_.wait_s = wait_behind_rise();
+    brake_.wait_s = wait_behind_rise(store_, state_, period_);
     state_.motion = Motion::BRAKE;
     ++state_.brakes;
     next_switch_.plan = 0;
@@ -329,23 +347,6 @@ void Executor::drop() noexcept {
     }
 }
 
-/// The plan in force ends in a stop that was tried, and soon enough beside braking from here.
-bool Executor::isPlanSoonOver() const noexcept {
-    constexpr Sequence MOST = 64;
-    if (phase_end_ - state_.phase > MOST) {
-        return false;
-    }
-    double left_s = -state_.time_in_phase;
-    for (Sequence n = state_.phase; n < phase_end_; ++n) {
-        left_s += store_.phase(n).duration;
-    }
-    const Phase &last = store_.phase(phase_end_ - 1);
-    const double end_v = last.v0 + last.a * last.duration;
-    const double a = store_.piece(state_.piece).brake_leg(state_.x, state_.v * state_.v).a;
-    const double brake_s = wait_behind_rise() + state_.v / a;
-    return end_v <= ExecutorTuning::STOPPED * last.v0 && left_s <= brake_s + ExecutorTuning::LATER_S;
-}
-
 /// A stop must not wait for a planner that is late or gone. One that looks for a sound stop is waited for
 /// longer: the plan in force ends in one.
 void Executor::watch_planner() noexcept {
@@ -356,7 +357,7 @@ void Executor::watch_planner() noexcept {
                         silence_.cycles * period_ > ExecutorTuning::PLANNER_SILENCE_S;
     ++silence_.waited;
     const bool isWithoutPlan = silence_.waited * period_ > ExecutorTuning::STOP_PLAN_WAIT_S;
-    if ((isGone || isWithoutPlan) && !isPlanSoonOver()) {
+    if ((isGone || isWithoutPlan) && !isPlanSoonOver(store_, state_, phase_end_, period_)) {
         start_brake();
     }
 }

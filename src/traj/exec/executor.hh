@@ -135,7 +135,6 @@ class Executor : private ExecutorState {
     void advance(double dt) noexcept;
     double follow(double dt) noexcept;
     double brake_along(double dt) noexcept;
-    double wait_behind_rise() const noexcept;
     void start_brake() noexcept;
     void brake_on_piece() noexcept;
     double coast_before_brake(double dt) noexcept;
@@ -144,7 +143,6 @@ class Executor : private ExecutorState {
     void locate() noexcept;
     void filter() noexcept;
     void finish_drop() noexcept;
-    bool isPlanSoonOver() const noexcept;
     void watch_planner() noexcept;
     bool isFiltered() const noexcept { return state_.filter > 1; }
 
