@@ -371,7 +371,15 @@ void Judge::check_room(const Sample &s) {
         const JointDesign &d = design_.joints[j];
         const bool isJudged = q.isAmpOn && before.isAmpOn && q.isHomed && before.isHomed;
         const double back = back_to ? back_to->joints[j].pos_cmd : d.low;
-        if (isJudged && leaves(before.pos_cmd, q.pos_cmd, std::min(d.low, back), std::max(d.high, back))) {
+        double low = std::min(d.low, back);
+        double high = std::max(d.high, back);
+        for (std::size_t k = 0; design_.isTrivial && k < joints_.size(); ++k) {
+            // Sides of a gantry that have run out beyond a limit are led together where one of them stands.
+            const bool isSide = design_.coordinates[k] == design_.coordinates[j];
+            low = isSide ? std::min(low, last_.joints[k].pos_cmd) : low;
+            high = isSide ? std::max(high, last_.joints[k].pos_cmd) : high;
+        }
+        if (isJudged && leaves(before.pos_cmd, q.pos_cmd, low, high)) {
             fail("room", fmt::format("joint {} goes to {:.9g}", j, q.pos_cmd));
         }
     }
