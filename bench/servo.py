@@ -71,7 +71,7 @@ def figures(folder, log, options, unit):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--joints", type=int, default=3)
+    parser.add_argument("--joints", type=int, choices=range(3, 10), default=3)
     parser.add_argument("--runs", type=int, default=5)
     parser.add_argument("--cycles", type=int, default=200000)
     parser.add_argument("--period", type=int, default=200000, help="servo period [ns]")

@@ -36,6 +36,11 @@ double Braking::end_of(std::size_t part, double length) const noexcept {
     return next < PARTS ? length * static_cast<double>(next) / PARTS : length;
 }
 
+bool Phase::isStop(double period_s) const noexcept {
+    const double v = v0 + duration * (a + 0.5 * duration * j);
+    return v <= ExecutorTuning::STOPPED * std::abs(a) * (duration + period_s);
+}
+
 double Piece::brake_at(double x, double b) const noexcept {
     const double planned = acceleration.at(b);
     return braking.top > 0 ? std::max(planned, braking.at(Braking::part_at(x, length), b)) : planned;

@@ -117,6 +117,9 @@ struct Phase {
     Sequence piece = 0;
     double duration = 0;
     double x0 = 0, v0 = 0, a = 0, j = 0;
+
+    /// It ends with a speed that is 0 but for rounding.
+    bool isStop(double period_s) const noexcept;
 };
 
 /// A tap along a line: x is 0 at the start and `depth` at the bottom.

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "motion/api/texts.hh"
+#include "motion/test/foreign_homing.hh"
 #include "motion/test/homing_rig.hh"
 #include "testing/limit_checker.hh"
 
@@ -311,30 +312,8 @@ TEST(HomingCases, AnAbortedIndexerLocksWhenItStandsAndSwitchedOffAtOnce_C10) {
     }
 }
 
-/// One of a user that says when it has something to do.
-struct CountedModule final : homing::Module {
-    bool isBusy = false;
-    int steps = 0;
-    void set_num_joints(int) noexcept override {}
-    void configure(int, const homing::Parameters &) noexcept override {}
-    void start(int) noexcept override { isBusy = true; }
-    void abort(homing::event::Event, int) noexcept override { isBusy = false; }
-    void unhome(int) noexcept override {}
-    void step(const homing::JointInput *, homing::JointCommand *) noexcept override { ++steps; }
-    bool isHoming(int) const noexcept override { return isBusy; }
-    bool isHomed(int) const noexcept override { return false; }
-    bool isActive() const noexcept override { return isBusy; }
-    bool hasWork() const noexcept override { return isBusy; }
-    int step_number(int) const noexcept override { return 0; }
-    bool isIndexWanted(int) const noexcept override { return false; }
-    bool isAtIndex(int) const noexcept override { return false; }
-    bool isUnlockWanted(int) const noexcept override { return false; }
-    int take_failure(homing::Failure &) noexcept override { return -1; }
-    void lock() noexcept override {}
-};
-
 TEST(HomingCases, AModuleIsAskedForMovesInCyclesInWhichItHasWorkAndInNoOther_C2) {
-    CountedModule module;
+    ForeignModule module;
     MotionRig rig;
     rig.controller = std::make_unique<Controller>(ControllerConfig{3, 1, 4, 4, MotionRig::T, 0, &module},
                                                   rig.kinematics, *rig.channels, *rig.link);

@@ -9,7 +9,8 @@ std::optional<Pose> ArcMean::follow(const PathStore &store, const Piece *piece, 
     // Of the arc, not of its piece: it may stand where two of them meet.
     const double s = isOn ? piece->offset + x : 0.0;
     const double from = isOn && piece->primitive == seen_ ? seen_s_ : 0.0;
-    const bool isWithin = isOn && s > on_along(piece->length) && s < store.primitive(piece->primitive).length;
+    const double length = isOn ? store.primitive(piece->primitive).length : 0.0;
+    const bool isWithin = isOn && s > on_along(length) && s < length;
     const bool isMoving = isWithin && s != from;
     if (isMoving && primitive_ != piece->primitive) {
         primitive_ = piece->primitive;

@@ -42,11 +42,9 @@ bool isPlanSoonOver(const PathStore &store, const Snapshot &now, Sequence end, d
     for (Sequence n = now.phase; n < end; ++n) {
         left_s += store.phase(n).duration;
     }
-    const Phase &last = store.phase(end - 1);
-    const double end_v = last.v0 + last.a * last.duration;
     const double a = store.piece(now.piece).brake_leg(now.x, now.v * now.v).a;
     const double brake_s = wait_behind_rise(store, now, period_s) + now.v / a;
-    return end_v <= ExecutorTuning::STOPPED * last.v0 && left_s <= brake_s + ExecutorTuning::LATER_S;
+    return store.phase(end - 1).isStop(period_s) && left_s <= brake_s + ExecutorTuning::LATER_S;
 }
 
 }  // namespace
@@ -194,11 +192,7 @@ double Executor::follow(double dt) noexcept {
     if (std::abs(state_.x - length) <= ExecutorTuning::ARRIVED * (1.0 + length)) {
         state_.x = length;
     }
-    // A plan that ends in a stop ends with a speed that is 0 but for rounding.
-    const bool isStop =
-        std::abs(state_.v) <= ExecutorTuning::STOPPED * std::abs(p.a) * (p.duration + period_) ||
-        state_.v <= 0;
-    if (isStop) {
+    if (p.isStop(period_)) {
         come_to_rest();
     } else {
         start_brake();

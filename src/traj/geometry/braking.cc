@@ -231,12 +231,6 @@ bool isWorthALook(const PathStore &store, const Piece &piece, bool isMapped,
            (isSweeping || limit.a.at(limit.v * limit.v) < BrakingTuning::ENOUGH * limit.a.at(0));
 }
 
-/// Not above what it stands for.
-float lesser_float(double x) noexcept {
-    constexpr double ROUNDING = 1e-7;
-    return static_cast<float>(std::min(x, 1e30) * (1.0 - ROUNDING));
-}
-
 bool areAlike(const Braking::Part &low, const Braking::Part &high) noexcept {
     for (std::size_t k = 0; k < low.size(); ++k) {
         if (high[k] > static_cast<float>(BrakingTuning::LIKE) * low[k]) {
@@ -270,6 +264,11 @@ void join_like(std::array<Braking::Part, Braking::PARTS> &parts) noexcept {
 }
 
 }  // namespace
+
+float lesser_float(double x) noexcept {
+    constexpr double ROUNDING = 1e-7;
+    return static_cast<float>(std::min(x, 1e30) * (1.0 - ROUNDING));
+}
 
 Braking braking_on(const PathStore &store, const Piece &piece, const Conditions &conditions,
                    const SpeedLimit &limit) noexcept {

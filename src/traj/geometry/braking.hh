@@ -13,4 +13,7 @@ namespace mw::traj {
 Braking braking_on(const PathStore &store, const Piece &piece, const Conditions &conditions,
                    const SpeedLimit &limit) noexcept;
 
+/// For Braking::Part: not above what it stands for.
+float lesser_float(double x) noexcept;
+
 }  // namespace mw::traj

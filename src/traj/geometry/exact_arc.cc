@@ -123,20 +123,20 @@ ExactArc::Seen ExactArc::seen(const Piece &part) const noexcept {
     return seen;
 }
 
-SpeedLimit ExactArc::limit_of(const Seen &part) const noexcept {
-    return {v_, AccelBound::constant(acceleration_at(part, v_))};
+ExactArc::Allowance ExactArc::allowance_of(const Piece &part) const noexcept {
+    const Seen here = seen(part);
+    return {{v_, AccelBound::constant(acceleration_at(here, v_))}, braking_of(here)};
 }
 
-Braking ExactArc::braking_of(const Piece &part) const noexcept {
-    const Seen seen_here = seen(part);
+Braking ExactArc::braking_of(const Seen &part) const noexcept {
     Braking out{v_ * v_, {}};
     for (std::size_t k = 0; k <= AccelBound::LINES; ++k) {
         const double v = std::sqrt(LimitTuning::CHORDS[k]) * v_;
         // What is commanded is faster than the leader that brakes, by half of what it loses in tau.
-        const double mean_v = std::min(v_, v + 0.5 * tau_ * acceleration_at(seen_here, v));
-        const double a = acceleration_at(seen_here, mean_v) * (1.0 - LimitTuning::ACCELERATION_MARGIN);
+        const double mean_v = std::min(v_, v + 0.5 * tau_ * acceleration_at(part, v));
+        const double a = acceleration_at(part, mean_v) * (1.0 - LimitTuning::ACCELERATION_MARGIN);
         for (Braking::Part &to : out.parts) {
-            to[k] = static_cast<float>(a);
+            to[k] = lesser_float(a);
         }
     }
     return out;

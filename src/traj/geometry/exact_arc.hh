@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "traj/geometry/conditions.hh"
+#include "traj/geometry/braking.hh"
 #include "traj/geometry/planned_path.hh"
 
 namespace mw::traj {
@@ -20,9 +20,11 @@ class ExactArc {
     ExactArc(const PathStore &store, const Piece &stretch, const Conditions &conditions,
              double wish) noexcept;
 
-    SpeedLimit limit_of(const Piece &part) const noexcept { return limit_of(seen(part)); }
-    /// What stops may take on the part: the slower, the more turning leaves.
-    Braking braking_of(const Piece &part) const noexcept;
+    struct Allowance {
+        SpeedLimit speed;
+        Braking braking;  ///< of stops: the slower, the more turning leaves
+    };
+    Allowance allowance_of(const Piece &part) const noexcept;
 
   private:
     using PerJoint = std::array<double, MAX_JOINTS>;
@@ -34,7 +36,7 @@ class ExactArc {
 
     void slow_down_for_joints(const Piece &stretch) noexcept;
     Seen seen(const Piece &part) const noexcept;
-    SpeedLimit limit_of(const Seen &part) const noexcept;
+    Braking braking_of(const Seen &part) const noexcept;
     double acceleration_at(const Seen &part, double v) const noexcept;
     double acceleration_of_axes(const Seen &part, double v) const noexcept;
     double acceleration_of_joints(const Seen &part, double v) const noexcept;

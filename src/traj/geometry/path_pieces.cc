@@ -176,10 +176,14 @@ void PathBuilder::add_part(PlannedPath &path, const Conditions &c, Piece piece, 
         piece.programmed_s = m.start_s + begin;
         piece.length = end - begin;
         piece.isToEnd = isToEnd && i + 1 == cuts;
-        piece.braking = exact.has_value() ? exact->braking_of(piece) : Braking{};
-        const SpeedLimit limit = exact.has_value() ? exact->limit_of(piece)
-                                 : cuts == 1       ? whole
-                                                   : limit_of(p, begin, end, limits, wish);
+        SpeedLimit limit = whole;
+        if (exact.has_value()) {
+            const ExactArc::Allowance allowed = exact->allowance_of(piece);
+            limit = allowed.speed;
+            piece.braking = allowed.braking;
+        } else if (cuts > 1) {
+            limit = limit_of(p, begin, end, limits, wish);
+        }
         add_piece(path, c, piece, limit);
         open_.isStop = false;
     }

@@ -151,14 +151,6 @@ void extent(const Primitive &p, Pose &low, Pose &high) noexcept {
     }
 }
 
-double askew_of(const Primitive &arc) noexcept {
-    // The tangent by dr / (r omega), the second derivative, 2 dr omega of r omega^2, by twice that.
-    constexpr double OF_DRIFT = 4.0;
-    const double radius = std::min(arc.radius, arc.radius + arc.dradius * arc.length);
-    const double round = radius * std::abs(arc.omega);
-    return round > 0 ? OF_DRIFT * std::abs(arc.dradius) / round : 1.0;
-}
-
 namespace {
 
 /// A sum of coordinates along an arc: base + lin s + (radius + dradius s) amplitude cos(omega s - phase).
@@ -228,6 +220,14 @@ void extent_along(const Primitive &p, const Pose &slope, double &low, double &hi
             high = std::max(high, x);
         }
     }
+}
+
+double askew_of(const Primitive &arc) noexcept {
+    // The tangent by dr / (r omega), the second derivative, 2 dr omega of r omega^2, by twice that.
+    constexpr double OF_DRIFT = 4.0;
+    const double radius = std::min(arc.radius, arc.radius + arc.dradius * arc.length);
+    const double round = radius * std::abs(arc.omega);
+    return round > 0 ? OF_DRIFT * std::abs(arc.dradius) / round : 1.0;
 }
 
 Primitive make_line(const Pose &start, const Pose &end) noexcept {

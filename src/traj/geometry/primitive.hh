@@ -49,6 +49,8 @@ FeedLength feed_length(const Primitive &p) noexcept;
 
 /// Smallest box that holds the whole primitive: [low, high] per coordinate.
 void extent(const Primitive &p, Pose &low, Pose &high) noexcept;
+/// The same of slope . q, such as a joint that goes in proportion to axes.
+void extent_along(const Primitive &p, const Pose &slope, double &low, double &high) noexcept;
 
 /// How far from a right angle an arc's tangent and its second derivative may be [rad]: by what its radius
 /// drifts.
@@ -59,9 +61,6 @@ inline bool isNearlyCircle(const Primitive &p) noexcept {
     constexpr double MOST_ASKEW = 4e-3;
     return p.isArc && askew_of(p) < MOST_ASKEW;
 }
-
-/// The same of slope . q, such as a joint that goes in proportion to axes.
-void extent_along(const Primitive &p, const Pose &slope, double &low, double &high) noexcept;
 
 /// A straight line. `length` is 0 when the ends are the same pose.
 Primitive make_line(const Pose &start, const Pose &end) noexcept;

@@ -8,20 +8,11 @@
 #include <gtest/gtest.h>
 
 #include "traj/geometry/braking.hh"
+#include "traj/test/belts.hh"
 #include "traj/test/path_rig.hh"
 
 namespace mw::traj::test {
 namespace {
-
-/// X and Y by two belts.
-class Belts final : public JointMap {
-  public:
-    bool joints_at(const Pose &pose, double *joints) const noexcept override {
-        joints[0] = pose[0] + pose[1];
-        joints[1] = pose[0] - pose[1];
-        return true;
-    }
-};
 
 /// Arcs and blends of random primitives with random limits.
 class Curves {

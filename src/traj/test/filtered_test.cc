@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "testing/allocation_guard.hh"
+#include "traj/test/belts.hh"
 #include "traj/test/jerk_rig.hh"
 #include "traj/tuning.hh"
 
@@ -142,16 +143,6 @@ std::uint64_t cycles_of_half_circle(double z_acceleration, double z_jerk) {
 TEST(Filtered, AnAxisThatStandsDoesNotSlowAnExactArcDown_C13) {
     EXPECT_EQ(cycles_of_half_circle(A / 20, J / 20), cycles_of_half_circle(A, J));
 }
-
-/// X and Y by two belts.
-class Belts final : public JointMap {
-  public:
-    bool joints_at(const Pose &pose, double *joints) const noexcept override {
-        joints[0] = pose[0] + pose[1];
-        joints[1] = pose[0] - pose[1];
-        return true;
-    }
-};
 
 /// Most of a circle, exact, driven by belts that do half of what the axes may.
 struct BeltRig : JerkRig {

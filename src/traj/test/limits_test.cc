@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "traj/test/belts.hh"
 #include "traj/test/part_rig.hh"
 
 namespace mw::traj::test {
@@ -285,15 +286,6 @@ TEST(Workspace, ACornerIsMovedOnlyWithinTheSoftLimits_C13) {
     EXPECT_TRUE(workspace.holds(at(10)));
     EXPECT_FALSE(workspace.holds(at(10.5)));
 }
-
-/// Joint 0 is X + Y, joint 1 X - Y.
-struct Belts final : JointMap {
-    bool joints_at(const Pose &pose, double *joints) const noexcept override {
-        joints[0] = pose[0] + pose[1];
-        joints[1] = pose[0] - pose[1];
-        return true;
-    }
-};
 
 TEST(Workspace, ACornerIsMovedOnlyWithinTheRoomThatJointsHave_C13_C15) {
     const Belts belts;

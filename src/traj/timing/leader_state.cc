@@ -57,7 +57,7 @@ std::optional<LeaderState> predict(const PlannedPath &path, const Snapshot &now,
     if (!isOver) {
         return state;
     }
-    const bool isStop = state.v <= ExecutorTuning::STOPPED * std::abs(p.a) * (p.duration + outlook.period_s);
+    const bool isStop = p.isStop(outlook.period_s);
     state.v = 0;
     const double length = path.piece(p.piece).length;
     const bool isAtEnd = std::abs(state.x - length) <= ExecutorTuning::ARRIVED * (1.0 + length);

@@ -19,11 +19,14 @@ StopShape stop_shape(Ending ending) noexcept {
     case Ending::STOP: return {};
     case Ending::HARD_STOP: return {.isHard = true};
     case Ending::STOP_AT_ONCE: return {.isHard = true, .isAtOnce = true};
-    case Ending::SOFT_STOP: return {true, true, TimingTuning::SOFT_STOP};
-    case Ending::SOFTER_STOP: return {true, true, TimingTuning::SOFTER_STOP};
-    case Ending::SOFTEST_STOP: return {true, true, TimingTuning::SOFTEST_STOP};
-    case Ending::LATE_STOP: return {true, true, 0};
-    case Ending::LATER_STOP: return {true, true, TimingTuning::LATER_STOP};
+    case Ending::SOFT_STOP: return {.isHard = true, .isAtOnce = true, .first_share = TimingTuning::SOFT_STOP};
+    case Ending::SOFTER_STOP:
+        return {.isHard = true, .isAtOnce = true, .first_share = TimingTuning::SOFTER_STOP};
+    case Ending::SOFTEST_STOP:
+        return {.isHard = true, .isAtOnce = true, .first_share = TimingTuning::SOFTEST_STOP};
+    case Ending::LATE_STOP: return {.isHard = true, .isAtOnce = true, .first_share = 0};
+    case Ending::LATER_STOP:
+        return {.isHard = true, .isAtOnce = true, .first_share = TimingTuning::LATER_STOP};
     }
     return {};
 }

@@ -15,7 +15,6 @@ namespace {
 constexpr double LEAST_WINDOW = 0.5;
 /// What rounding of positions may make of a joint's soft limit.
 constexpr double POSITION_ROUNDING = 1e-9;
-constexpr double BRAKE_MARGIN = TELEOP_BRAKE_MARGIN;
 constexpr int MOST_CORNER_AXES = 5;
 
 std::size_t at(int i) noexcept {
@@ -159,14 +158,14 @@ void look_ahead(const TeleopMachine &m, const geom::Pose &here, const Jogs &jogs
         const traj::JogPlanner &p = jogs.axis[at(axis)].planner;
         load.speed[at(i)] = std::max(p.max_velocity, std::abs(p.velocity));
         const double way = p.rest_after(m.period_s) - here[axis];
-        look.stop[axis] += BRAKE_MARGIN * way;
+        look.stop[axis] += TELEOP_BRAKE_MARGIN * way;
         const double sign = p.target >= here[axis] ? 1.0 : -1.0;
         // Not behind what it may come to at all: else more would be taken off while it brakes.
         double low = here[axis];
         double high = here[axis];
         p.add_reach(low, high);
         // While another brakes this one goes on, and turns what the joints do for the other.
-        const double on = std::max(2.0 * std::abs(way), BRAKE_MARGIN * speed_of(p) * longest_s);
+        const double on = std::max(2.0 * std::abs(way), TELEOP_BRAKE_MARGIN * speed_of(p) * longest_s);
         far[axis] = std::clamp(here[axis] + std::copysign(on, way), low, high) + LEAST_WINDOW * sign;
     }
     constexpr int PLACES = 2;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "motion/core/homing/homing_drive.hh"
+#include "motion/test/foreign_homing.hh"
 
 namespace mw::motion {
 namespace {
@@ -120,27 +121,6 @@ TEST_F(HomingDrivePart, WhatFailsIsToldOnceAndWhatIsAbortedIsNot) {
     EXPECT_FALSE(drive.isUnderWay());
 }
 
-/// One of a user: its joint homes until it is told to end or gives up.
-struct ForeignModule final : homing::Module {
-    bool areAllHoming = false;
-    void set_num_joints(int) noexcept override {}
-    void configure(int, const homing::Parameters &) noexcept override {}
-    void start(int) noexcept override { areAllHoming = true; }
-    void abort(homing::event::Event, int) noexcept override { areAllHoming = false; }
-    void unhome(int) noexcept override {}
-    void step(const homing::JointInput *, homing::JointCommand *) noexcept override {}
-    bool isHoming(int) const noexcept override { return areAllHoming; }
-    bool isHomed(int) const noexcept override { return false; }
-    bool isActive() const noexcept override { return areAllHoming; }
-    bool hasWork() const noexcept override { return areAllHoming; }
-    int step_number(int) const noexcept override { return 0; }
-    bool isIndexWanted(int) const noexcept override { return false; }
-    bool isAtIndex(int) const noexcept override { return false; }
-    bool isUnlockWanted(int) const noexcept override { return false; }
-    int take_failure(homing::Failure &) noexcept override { return -1; }
-    void lock() noexcept override {}
-};
-
 TEST_F(HomingDrivePart, AModuleOfAUserThatGivesUpHasFailedAndOneThatIsToldToEndHasNot_C2_C10) {
     ForeignModule module;
     drive.foreign = &module;
@@ -151,7 +131,7 @@ TEST_F(HomingDrivePart, AModuleOfAUserThatGivesUpHasFailedAndOneThatIsToldToEndH
         if (isTold) {
             abort(drive, homing::event::ABORT);
         }
-        module.areAllHoming = false;
+        module.isBusy = false;
         const HomingFailure failure = take_failure(drive);
         EXPECT_EQ(failure.joint, isTold ? -1 : 0);
         EXPECT_EQ(failure.why, isTold ? homing::Failure::NONE : homing::Failure::MODULE_FAILED);
