@@ -28,7 +28,7 @@ void fill_unused(const JointInputs &in, int j, Outputs &out) noexcept {
 
 void trace(Channels &channels, const Inputs &in, const Status &s, const Joints &joints,
            std::uint8_t pose_kind, bool isMoving) noexcept {
-    if (channels.isTracing.load(std::memory_order_relaxed) == 0) {
+    if (channels.isTracing.load(std::memory_order_relaxed) == 0) [[likely]] {
         return;
     }
     TraceSample sample;
@@ -77,7 +77,7 @@ void fill_heading(const traj::PathStore &store, std::uint64_t move, const geom::
     Heading &heading = out.heading;
     const HeadingOrigin origin{s.active_path_id, s.active_path_id != 0 ? move : 0, s.motion_type,
                                s.isReverse};
-    if (origin == heading.origin && (!heading.isArc || origin.path_id == 0)) {
+    if (origin == heading.origin && (!heading.isArc || origin.path_id == 0)) [[likely]] {
         return;
     }
     if (origin.path_id != 0) {
@@ -102,18 +102,19 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
     s.isTaskLost = watchdog_.isLost;
     s.num_joints = config_.num_joints;
     s.num_spindles = config_.num_spindles;
-    if (out.settings_version != settings_.version()) {
+    if (out.settings_version != settings_.version()) [[unlikely]] {
         fill_settings(settings_, out);
     }
     fill(place_, s);
     fill(probe_, in.isProbeClosed, s);
     fill(holds_, s);
     fill(outputs_, in, out);
-    fill_path(s);
-    fill_heading(link_->store, executor_.output().move, without(offsets_, place_.cmd), out);
+    const geom::Pose programmed = without(offsets_, place_.cmd);
+    fill_path(s, programmed);
+    fill_heading(link_->store, executor_.output().move, programmed, out);
     fill(joints_, {power_.isEnabled, jogs_.areLimitsOverridden, limits_.homed.joints}, out);
-    fill(jogs_, power_.mode, without(offsets_, place_.cmd), out);
-    if (offsets_.axes != 0 || !out.areOffsetsQuiet) {
+    fill(jogs_, power_.mode, programmed, out);
+    if (offsets_.axes != 0 || !out.areOffsetsQuiet) [[unlikely]] {
         fill(offsets_, out);
     }
     fill(extra_, limits_.homed.joints, out);
@@ -125,13 +126,13 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
         fill_unused(in.joint[static_cast<std::size_t>(j)], j, out);
     }
     out.isCoordError = isCoordError_;
-    publish_view(in);
+    publish_view(in, programmed);
     channels_->status.write(s, new_parts(channels_->status, s));
     trace(*channels_, in, s, joints_, types_.switches, isAnythingMoving());
 }
 
-/// What is being executed, and what is left of the path.
-void Controller::fill_path(Status &s) const noexcept {
+/// What is being executed, and what is left of the path. `programmed`: the place without external offsets.
+void Controller::fill_path(Status &s, const geom::Pose &programmed) const noexcept {
     s.queue_depth = link_->queue_depth.load(std::memory_order_relaxed);
     s.isQueueFull = link_->isQueueFull.load(std::memory_order_relaxed) != 0;
     s.last_path_id = link_->last_done_id.load(std::memory_order_acquire);
@@ -156,12 +157,12 @@ void Controller::fill_path(Status &s) const noexcept {
     s.current_velocity = e.velocity / tag->feed_ratio;
     s.requested_velocity = tag->requested_velocity;
     s.distance_to_go = e.distance_to_go / tag->feed_ratio;
-    s.dtg = tag->end - without(offsets_, place_.cmd);
+    s.dtg = tag->end - programmed;
     s.isProbing = e.isOnProbe;
 }
 
 /// What the path planner sees.
-void Controller::publish_view(const Inputs &in) noexcept {
+void Controller::publish_view(const Inputs &in, const geom::Pose &programmed) noexcept {
     PathView &v = link_->newest;
     v.executor = executor_.snapshot();
     v.epoch = epoch_;
@@ -170,7 +171,7 @@ void Controller::publish_view(const Inputs &in) noexcept {
     v.isStopping = power_.isStopping || retracing_.isPathLeft;
     v.enables = power_.enables;
     v.limits_version = limits_version_;
-    v.position = without(offsets_, place_.cmd);
+    v.position = programmed;
     v.feed_scale = holds_.net_feed_scale;
     v.rapid_scale = holds_.rapid_scale;
     v.max_feed_scale = std::max(1.0, settings_.get(Parameter::MAX_FEED_SCALE));
@@ -195,7 +196,7 @@ void Controller::publish_view(const Inputs &in) noexcept {
     v.type_asks = types_.asks;
     v.isTypePending = types_.isPending;
     link_->view.write(v);
-    if (offsets_.axes != 0) {
+    if (offsets_.axes != 0) [[unlikely]] {
         link_->offsets.write(range(offsets_));
         std::atomic_thread_fence(std::memory_order_seq_cst);  // before the extent of the path is read again
     }
