@@ -92,9 +92,15 @@ struct SpindleOutputs {
 
 inline constexpr std::uint32_t ALL_AXES = (1U << MAX_AXES) - 1U;
 
+/// Parts of the status that seldom change.
+inline constexpr PartMask SELDOM_PARTS = part_range(status_part::AXES, 1) |
+                                         part_range(status_part::ANALOG_IN, 1) |
+                                         part_range(status_part::ANALOG_OUT, 1);
+
 struct Outputs {
     Status status;
-    std::uint32_t axes = ALL_AXES;  ///< bit per axis that the machine may have: of others no pin is read
+    PartMask touched = SELDOM_PARTS;  ///< of these, what may be other than it was published last
+    std::uint32_t axes = ALL_AXES;    ///< bit per axis that the machine may have: of others no pin is read
     std::array<JointOutputs, MAX_JOINTS> joint{};
     std::array<AxisOutputs, MAX_AXES> axis{};
     std::array<SpindleOutputs, MAX_SPINDLES> spindle{};
