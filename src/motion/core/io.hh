@@ -62,23 +62,33 @@ struct Inputs {
     std::array<SpindleInputs, MAX_SPINDLES> spindle{};
 };
 
-/// Beside `Status`, which holds most of what the pins show.
-struct JointOutputs {
-    double motor_pos_cmd = 0;
-    double coarse_pos = 0, acc_cmd = 0;
+/// What seldom changes of what pins show of a joint: it is compared before it is written.
+struct SeldomJointOutputs {
     double backlash_raw = 0, backlash_filtered = 0, backlash_velocity = 0;
     double motor_offset = 0;
-    double free_pos_cmd = 0, free_velocity_limit = 0, ferror_limit = 0;
+    double free_velocity_limit = 0;
     bool isAmpEnabled = false;
     bool isIndexEnabled = false, isUnlockWanted = false;
     bool isFreePlanning = false, isKeyboardJogging = false, isWheelJogging = false;
     int home_state = 0;
 };
 
-struct AxisOutputs {
-    double position = 0, teleop_position = 0, teleop_velocity = 0, teleop_velocity_limit = 0;
+/// Beside `Status`, which holds most of what the pins show.
+struct JointOutputs : SeldomJointOutputs {
+    double motor_pos_cmd = 0;
+    double coarse_pos = 0, acc_cmd = 0;
+    double free_pos_cmd = 0, ferror_limit = 0;
+};
+
+/// As SeldomJointOutputs.
+struct SeldomAxisOutputs {
+    double teleop_velocity = 0, teleop_velocity_limit = 0;
     double offset = 0, offset_request = 0;
     bool isTeleopPlanning = false, isKeyboardJogging = false, isWheelJogging = false;
+};
+
+struct AxisOutputs : SeldomAxisOutputs {
+    double position = 0, teleop_position = 0;
 };
 
 struct SpindleOutputs {
