@@ -36,9 +36,9 @@ extern int mw_ext_watch_controller(rtapi_u32 *is_gone, const rtapi_u32 *is_safe,
 /* The period of a HAL thread [ns], 0 when there is none of that name. */
 extern long long mw_ext_thread_period(const char *name);
 
-/* Zeroed memory for what a realtime function looks at in every cycle, in pages of 2 MB where the kernel has them;
- * in the realtime process it is there from the start. NULL where there are not so many bytes. Give it back with
- * the same count, once nothing uses it any more. */
+/* Zeroed memory for what a realtime function looks at in every cycle, in pages of 2 MB where the kernel has
+ * them; in the realtime process it is there from the start. NULL where there are not so many bytes. Give it
+ * back with the same count, once nothing uses it any more. */
 extern void *mw_ext_memory_new(unsigned long bytes);
 extern void mw_ext_memory_delete(void *memory, unsigned long bytes);
 
