@@ -45,6 +45,13 @@ namespace {
 
 constexpr int FAILED = -22;  // EINVAL
 
+/// What is too large for the library itself.
+struct Memory {
+    alignas(motion::PathLink) unsigned char link[sizeof(motion::PathLink)];
+    alignas(motion::Controller) unsigned char controller[sizeof(motion::Controller)];
+    alignas(motion::PathPlanner) unsigned char planner[sizeof(motion::PathPlanner)];
+};
+
 /// Everything of this load but the pins and the channels, which live in shared memory.
 struct Module {
     motion::ModuleKinematics kinematics;
@@ -59,15 +66,12 @@ struct Module {
     motion::Channels *channels = nullptr;
     motion::Controller *controller = nullptr;
     motion::PathPlanner *planner = nullptr;
+    Memory *memory = nullptr;
     int component = -1, planner_id = -1, shmem_id = -1;
     rtapi_u32 is_safe = 0;  ///< the task process is gone, motion has stopped and the amplifiers are off
 };
 
 Module module;
-alignas(motion::PathLink) unsigned char link_memory[sizeof(motion::PathLink)];
-alignas(motion::Controller) unsigned char controller_memory[sizeof(motion::Controller)];
-alignas(motion::PathPlanner) unsigned char planner_memory[sizeof(motion::PathPlanner)];
-
 void handle_commands(void *, long) {
     if (module.channels->hasCommands()) {
         module.pins->read(module.in);
@@ -240,17 +244,27 @@ int make_thread(const char *name, long period_ns, int uses_fp) {
     return 0;
 }
 
-int make_functions() {
+int make_controller() {
+    module.memory = static_cast<Memory *>(mw_ext_memory_new(sizeof(Memory)));
+    if (module.memory == nullptr) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "motmod: no memory for the controller (%d bytes)\n",
+                        static_cast<int>(sizeof(Memory)));
+        return -12;  // ENOMEM
+    }
     const double period_s = static_cast<double>(servo_period_nsec) * 1e-9;
-    module.link = new (link_memory) motion::PathLink;
-    module.controller = new (controller_memory)
+    module.link = new (module.memory->link) motion::PathLink;
+    module.controller = new (module.memory->controller)
         motion::Controller({num_joints, num_spindles, num_dio, num_aio, period_s, num_extrajoints,
                             module.isHomingForeign ? &module.homing : nullptr},
                            module.kinematics, *module.channels, *module.link);
-    module.planner = new (planner_memory)
+    module.planner = new (module.memory->planner)
         motion::PathPlanner({period_s, num_joints - num_extrajoints, num_spindles, num_dio, num_aio,
                              module.areSpeedsForeign ? &module.speeds : nullptr},
                             module.kinematics, *module.channels, *module.link);
+    return 0;
+}
+
+int make_functions() {
     int status = hal_export_funct("motion-command-handler", handle_commands, nullptr, 1, 0, module.component);
     if (status == 0) {
         status = hal_export_funct("motion-controller", control, nullptr, 1, 0, module.component);
@@ -289,6 +303,7 @@ void take_down() {
         rtapi_shmem_delete(module.shmem_id, module.component);
     }
     hal_exit(module.component);
+    mw_ext_memory_delete(module.memory, sizeof(Memory));
 }
 
 }  // namespace
@@ -306,6 +321,7 @@ int rtapi_app_main(void) {
     status = status == 0 ? find_planner() : status;
     status = status == 0 ? make_channels() : status;
     status = status == 0 ? make_pins() : status;
+    status = status == 0 ? make_controller() : status;
     status = status == 0 ? make_functions() : status;
     status = status == 0 ? start_planner() : status;
     status = status == 0 ? watch_task() : status;

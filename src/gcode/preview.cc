@@ -141,19 +141,16 @@ class Preview::Impl final : public MachineCanon, public World {
                 [this](const UseToolOffset &one) { tool_offset_ = one.offset; },
                 [this](const UseOffsets &one) { offsets_ = one; },
                 [this](const SetSpindleMode &one) { spindle(one.spindle).css_max_rpm = one.css_max_rpm; },
-                [this](const UseSpindleSpeed &one) {
-                    spindle(one.spindle).speed = std::abs(one.speed);
-                    spindle(one.spindle).surface_unit = one.surface_unit;
-                },
+                [this](const OneOf<UseSpindleSpeed, StartSpindle, StopSpindle> auto &one) { turn(one); },
                 [this](const SelectTool &one) { selected_ = one.toolno; },
                 [this](const OneOf<ProgramStop, PalletShuttle> auto &) {
                     add_standing(PreviewKind::STOP, 0, 0);
                 },
-                [](const OneOf<StartSpindle, StopSpindle, OrientSpindle, WaitOrientComplete,
-                               SetToolTableEntry, ReloadTools, SwitchMist, SwitchFlood, SwitchFeedOverride,
-                               SwitchSpeedOverride, SwitchFeedHold, SwitchAdaptiveFeed, SetDigitalOutput,
-                               SetAnalogOutput, ProgramEnd, Finish, UserCode, OperatorMessage, PrintLine,
-                               OpenLog, LogLine, CloseLog, LogProbes> auto &) {},
+                [](const OneOf<OrientSpindle, WaitOrientComplete, SetToolTableEntry, ReloadTools, SwitchMist,
+                               SwitchFlood, SwitchFeedOverride, SwitchSpeedOverride, SwitchFeedHold,
+                               SwitchAdaptiveFeed, SetDigitalOutput, SetAnalogOutput, ProgramEnd, Finish,
+                               UserCode, OperatorMessage, PrintLine, OpenLog, LogLine, CloseLog,
+                               LogProbes> auto &) {},
             },
             call);
     }
@@ -175,7 +172,24 @@ class Preview::Impl final : public MachineCanon, public World {
   private:
     struct SpindleState {
         double speed = 0, surface_unit = 0, css_max_rpm = 0;
+        bool isTurning = false, isWaiting = false;
     };
+    void turn(const UseSpindleSpeed &one) {
+        SpindleState &state = spindle(one.spindle);
+        const double speed = std::abs(one.speed);
+        const bool isNew = state.speed != speed || state.surface_unit != one.surface_unit;
+        state.speed = speed;
+        state.surface_unit = one.surface_unit;
+        isCutWaiting_ = isNew && state.isTurning ? state.isWaiting : isCutWaiting_;
+    }
+    void turn(const StartSpindle &one) {
+        spindle(one.spindle).isTurning = true;
+        spindle(one.spindle).isWaiting = isCutWaiting_ = one.isWaiting;
+    }
+    void turn(const StopSpindle &one) {
+        spindle(one.spindle).isTurning = false;
+        isCutWaiting_ = isCutWaiting_ && std::ranges::any_of(spindles_, &SpindleState::isTurning);
+    }
     void show(const ArcMove &move) {
         PreviewEvent event = place_;
         event.kind = PreviewKind::ARC;
@@ -292,6 +306,8 @@ class Preview::Impl final : public MachineCanon, public World {
         mark_progress(event.settings, std::max(geom::norm(end - position_), arc_length));
         event.start = convert(position_);
         event.end = convert(end);
+        event.isSpindleAwaited = isCutWaiting_ && !event.settings.isRapid;
+        isCutWaiting_ = isCutWaiting_ && event.settings.isRapid;
         if (event.settings.feed_per_revolution > 0) {
             event.spindle_rpm = spindle_rpm(event.settings.synch_spindle, 0.5 * (position_[0] + end[0]));
         }
@@ -358,6 +374,7 @@ class Preview::Impl final : public MachineCanon, public World {
     std::uint32_t section_ = sections_.number_of("");
     int tool_, selected_ = -1;
     std::array<SpindleState, MAX_SPINDLES> spindles_{};
+    bool isCutWaiting_ = false;  ///< the next cut waits for a spindle, as task lets it
     SpindleState &spindle(int number) { return spindles_[static_cast<std::size_t>(number)]; }
     Pose position_, tool_offset_;
     UseOffsets offsets_;

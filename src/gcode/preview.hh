@@ -30,9 +30,10 @@ enum class PreviewKind : std::uint8_t {
 /// A move, or what stands between moves. Poses are in the coordinates that were asked for.
 struct PreviewEvent {
     PreviewKind kind = PreviewKind::RAPID;
-    bool isByMachine = false;   ///< a move that the machine makes by itself, at a tool change
-    geom::Pose start, end;      ///< the same for what is no move
-    geom::Pose centre, normal;  ///< of an arc, as in ArcMove
+    bool isByMachine = false;       ///< a move that the machine makes by itself, at a tool change
+    bool isSpindleAwaited = false;  ///< motion stands before this move until the spindle has its speed
+    geom::Pose start, end;          ///< the same for what is no move
+    geom::Pose centre, normal;      ///< of an arc, as in ArcMove
     double angle_rad = 0;
     geom::MoveSettings settings;  ///< of a move [machine units]
     /// Of the spindle that a move follows, half-way, as programmed (G96 counted). [rev/min]

@@ -111,6 +111,9 @@ geom::MoveSettings timed(const gcode::PreviewEvent &event) {
 void TimeEstimate::take(const gcode::PreviewEvent &event, std::uint64_t id) {
     using Kind = gcode::PreviewKind;
     id_ = id;
+    if (event.isSpindleAwaited) {
+        stop();  // how long it waits nobody knows, but it begins at rest
+    }
     switch (event.kind) {
     case Kind::RAPID: line(event.end, event.settings); break;
     case Kind::FEED: line(event.end, timed(event)); break;

@@ -2,6 +2,8 @@
 #include "traj/planner.hh"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "traj/tuning.hh"
 
@@ -9,22 +11,20 @@ namespace mw::traj {
 
 namespace {
 
-/// What is tried where the trial refuses to end so; the same where what is eased is the path.
-Ending gentler_than(Ending ending) noexcept {
-    switch (ending) {
-    case Ending::STOP_AT_ONCE: return Ending::HARD_STOP;
-    case Ending::HARD_STOP: return Ending::STOP;
-    case Ending::STOP: return Ending::SOFT_STOP;
-    case Ending::SOFT_STOP: return Ending::SOFTER_STOP;
-    case Ending::SOFTER_STOP: return Ending::SOFTEST_STOP;
-    case Ending::SOFTEST_STOP: return Ending::LATE_STOP;
-    case Ending::LATE_STOP: return Ending::LATER_STOP;
-    case Ending::LATER_STOP: return Ending::EASED_STOP;
-    case Ending::EASED_STOP:
-    case Ending::ONWARD: break;
+constexpr std::size_t STOP_COUNT = 2 + TimingTuning::STOP_SHARES.size() * TimingTuning::FIRST_SHARES.size();
+
+/// What stops are tried as before what is eased is the path.
+constexpr std::array<StopShape, STOP_COUNT> stop_shapes() noexcept {
+    std::array<StopShape, STOP_COUNT> shapes{StopShape{}, StopShape{.isHard = true}};
+    std::size_t n = 2;
+    for (const double share : TimingTuning::STOP_SHARES) {
+        for (const double first : TimingTuning::FIRST_SHARES) {
+            shapes[n++] = {.isHard = true, .isAtOnce = true, .first_share = share * first, .share = share};
+        }
     }
-    return ending;
+    return shapes;
 }
+constexpr std::array<StopShape, STOP_COUNT> STOPS = stop_shapes();
 
 }  // namespace
 
@@ -189,8 +189,7 @@ void Planner::plan_tried(const Snapshot &now) noexcept {
         break;
     }
     case Demand::Kind::STOP: {
-        const bool isAtOnce = demand.from.coasting.since_rise_s < conditions_.limits.filter_s();
-        find_plan(now, demand.from, isAtOnce ? Ending::STOP_AT_ONCE : Ending::HARD_STOP);
+        find_stop(now, demand.from);
         break;
     }
     case Demand::Kind::PASS: start_pass(now, demand.from); break;
@@ -199,13 +198,52 @@ void Planner::plan_tried(const Snapshot &now) noexcept {
     }
 }
 
-/// Makes plans until one passes the trial; each kind of stop but the last only once. False when the trial has
-/// refused them all; the plan before then stays in force, with its stop.
-bool Planner::find_plan(const Snapshot &now, LeaderState from, Ending ending) noexcept {
-    const Sequence begin = timing_.phases_end();
+/// A speed that is rounding is none.
+LeaderState Planner::without_rounding(LeaderState from) const noexcept {
     const double standing =
         TimingTuning::STANDING * path_.piece(from.piece).acceleration.at(0) * settings_.period_s;
     from.v = from.v < standing ? 0.0 : from.v;
+    return from;
+}
+
+bool Planner::isSound(const Snapshot &now, const LeaderState &from, Sequence begin) noexcept {
+    return trial_.check(view(), now, {from, begin, timing_.phases_end(), timing_.outlook(now)}).isSound;
+}
+
+/// The stop that stands soonest of those that pass the trial; where it refuses all, one on a path that is
+/// eased.
+void Planner::find_stop(const Snapshot &now, const LeaderState &at) noexcept {
+    const Sequence begin = timing_.phases_end();
+    const LeaderState from = without_rounding(at);
+    const auto draft = [&](const StopShape &shape) {
+        return timing_.draft(view(), path_.store(), begin, from, Ending::STOP, shape);
+    };
+    std::array<std::pair<double, std::size_t>, STOP_COUNT> stops;
+    std::size_t count = 0;
+    for (std::size_t n = 0; n < STOPS.size(); ++n) {
+        if (draft(STOPS[n])) {
+            stops[count++] = {timing_.stop_seconds(), n};
+        }
+    }
+    std::sort(stops.begin(), stops.begin() + static_cast<std::ptrdiff_t>(count));
+    for (std::size_t n = 0; n < count; ++n) {
+        const bool isSame = n > 0 && stops[n].first == stops[n - 1].first;
+        if (!isSame && draft(STOPS[stops[n].second]) && isSound(now, from, begin)) {
+            if (!timing_.commit(view(), path_.store(), now, begin, Ending::STOP)) {
+                timing_.discard(begin);
+            }
+            return;
+        }
+    }
+    timing_.discard(begin);
+    find_plan(now, from, Ending::STOP);
+}
+
+/// Makes plans, on a path that is eased where one is refused, until one passes the trial. False when it has
+/// refused them all; the plan before then stays in force, with its stop.
+bool Planner::find_plan(const Snapshot &now, LeaderState from, Ending ending) noexcept {
+    const Sequence begin = timing_.phases_end();
+    from = without_rounding(from);
     easing_.begin();
     bool isRefused = false;
     Cause cause;
@@ -219,10 +257,6 @@ bool Planner::find_plan(const Snapshot &now, LeaderState from, Ending ending) no
                 break;
             }
             return true;
-        }
-        if (const Ending gentler = gentler_than(ending); gentler != ending) {
-            ending = gentler;
-            continue;
         }
         if (!isDrafted) {
             break;

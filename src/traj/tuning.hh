@@ -3,6 +3,7 @@
 // the reason is a measurement, docs/motion/planner.md ("Figures") tells what another value costs.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -192,8 +193,10 @@ struct TimingTuning {
     /// Braking that misses a stop at a piece's end by rounding alone is fitted to it; piece accelerations
     /// keep LimitTuning::ACCELERATION_MARGIN, ten times this.
     static constexpr double STOP_FIT = 1e-7;
-    /// Parts of the brake with which stops begin where the whole of it is refused.
-    static constexpr double SOFT_STOP = 0.7, SOFTER_STOP = 0.4, SOFTEST_STOP = 0.2, LATER_STOP = -0.2;
+    /// Parts of the brake that stops are tried with, and of these the parts with which they begin; below 0
+    /// some speed is gained at first.
+    static constexpr std::array STOP_SHARES{1.0, 0.8, 0.6, 0.4};
+    static constexpr std::array FIRST_SHARES{1.0, 0.7, 0.4, 0.2, 0.0, -0.2};
     /// Speeds that differ by this part are the same.
     static constexpr double SAME_SPEED = 1e-9;
     /// A speed below this part of what one sample's acceleration gives is rounding.

@@ -70,6 +70,7 @@ class Session {
     void turn(const Act &act);
     bool begin_manual(bool isJoint);
     double place_of(const Act &act, bool isJoint) const;
+    bool areSidesApart() const;
     std::pair<double, double> range_of(const Act &act, bool isJoint) const;
     void begin_troubles(const Act &act);
     void step_troubles();

@@ -153,12 +153,9 @@ void Session::check_program(const Act &act, const geom::Pose &from, double took_
         const double off = took_s / expected - 1;
         // Commands, ends of outputs and a start of the planner cost cycles that no estimate knows.
         constexpr double PART = 0.01;
-        // A feed move that waits for a spindle begins at rest, also where it would have been blended into.
-        const bool hasSpindle =
-            std::ranges::any_of(act.blocks, [](const Block &b) { return b.text.starts_with("M3"); });
-        const double slack_s = hasSpindle ? 0.3 : 0.1;
+        constexpr double SLACK_S = 0.1;
         verdict_.worst_time = std::max(verdict_.worst_time, std::abs(took_s - expected) - PART * expected);
-        if (std::abs(took_s - expected) > PART * expected + slack_s) {
+        if (std::abs(took_s - expected) > PART * expected + SLACK_S) {
             fail("time", fmt::format("{:.3f} s where {:.3f} s are estimated, {:+.1f} %", took_s, expected,
                                      100 * off));
         }
@@ -168,7 +165,15 @@ void Session::check_program(const Act &act, const geom::Pose &from, double took_
 double Session::estimate(const Act &act, const geom::Pose &from) const {
     machine::TimeEstimate time(rig_->config());
     time.start(from);
+    bool isCutWaiting = false;
     for (const Block &b : act.blocks) {
+        const bool isStart = b.text.starts_with("M3");
+        const bool isCut = b.isMove && !b.settings.isRapid;
+        if (isCut && isCutWaiting) {
+            // The first one waits for the spindle, so it begins at rest.
+            time.stop();
+        }
+        isCutWaiting = (isCutWaiting || isStart) && !isCut;
         if (b.isArc) {
             interp::ArcMove arc;
             arc.end = b.end;
@@ -181,7 +186,7 @@ double Session::estimate(const Act &act, const geom::Pose &from) const {
             time.line(b.end, b.settings);
         } else if (b.dwell_s > 0) {
             time.dwell(b.dwell_s);
-        } else if (!b.isTimed || b.text.starts_with("M3")) {
+        } else if (!b.isTimed || isStart) {
             time.stop();
         }
     }

@@ -65,6 +65,24 @@ struct Machine {
     }
 };
 
+TEST(Motmod, APinThatSeldomChangesIsSeenInTheCycleAfterItWasLinked_B6) {
+    Machine m;
+    ASSERT_NO_FATAL_FAILURE(m.start());
+    m.ready();
+    hal::Hal &hal = m.host->hal();
+    ASSERT_EQ(m.value("joint.1.homed"), 1);
+    ASSERT_EQ(m.value("joint.1.amp-enable-out"), 1);
+    // A signal that has a reader keeps its value when a writer joins.
+    ASSERT_TRUE(hal.net("homed", {"joint.0.home-sw-in"}));
+    ASSERT_TRUE(hal.net("amp", {"joint.1.jog-enable"}));
+    ASSERT_TRUE(hal.net("homed", {"joint.1.homed"}));
+    ASSERT_TRUE(hal.net("amp", {"joint.1.amp-enable-out"}));
+    ASSERT_EQ(m.value("joint.0.home-sw-in"), 0);
+    m.run(0.001);
+    EXPECT_EQ(m.value("joint.0.home-sw-in"), 1);
+    EXPECT_EQ(m.value("joint.1.jog-enable"), 1);
+}
+
 TEST(Motmod, ALineFromThePathChannelReachesTheMotorPins_C1) {
     Machine m;
     ASSERT_NO_FATAL_FAILURE(m.start());

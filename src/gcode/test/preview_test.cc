@@ -127,6 +127,19 @@ TEST_F(PreviewRun, TellsHowFastTheSpindleTurnsThatAMoveFollows_I1) {
     EXPECT_EQ(speeds[3], 0);
 }
 
+TEST_F(PreviewRun, TellsWhichMovesWaitForTheSpindle_I1) {
+    ASSERT_EQ(run("G21 G90 G94 F100\nG1 X1\nS500 M3\nG0 X2\nG1 X3\nG1 X4\nS600\nG1 X5\nS600\nG1 "
+                  "X6\nS700\nM5\nG1 X7\nM2\n"),
+              PreviewEnd::DONE);
+    std::vector<double> waiting;
+    for (const PreviewEvent &event : events) {
+        if (event.isSpindleAwaited) {
+            waiting.push_back(event.end.x());
+        }
+    }
+    EXPECT_EQ(waiting, (std::vector<double>{3, 5}));
+}
+
 TEST_F(PreviewRun, RefusesAxesThatTheMachineDoesNotHave_I1) {
     axis_mask = 7;
     EXPECT_EQ(run("G21\nG0 X1\nG0 X2 A10\nM2\n"), PreviewEnd::FAILED);

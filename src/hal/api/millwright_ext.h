@@ -36,6 +36,17 @@ extern int mw_ext_watch_controller(rtapi_u32 *is_gone, const rtapi_u32 *is_safe,
 /* The period of a HAL thread [ns], 0 when there is none of that name. */
 extern long long mw_ext_thread_period(const char *name);
 
+/* Zeroed memory for what a realtime function looks at in every cycle, in pages of 2 MB where the kernel has
+ * them; in the realtime process it is there from the start. NULL where there are not so many bytes. Give it
+ * back with the same count, once nothing uses it any more. */
+extern void *mw_ext_memory_new(unsigned long bytes);
+extern void mw_ext_memory_delete(void *memory, unsigned long bytes);
+
+/* Counts the links of pins that are made and undone in this instance: who writes a pin only when its value
+ * changes writes it anew when this has. Read it as an atomic; it stays while the module is loaded, and may be
+ * read in realtime. NULL where there is no instance. */
+extern const rtapi_u32 *mw_ext_links(void);
+
 /* 1 under the virtual clock. */
 extern int mw_ext_is_virtual(void);
 

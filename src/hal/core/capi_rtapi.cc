@@ -326,6 +326,13 @@ long long mw_ext_thread_period(const char *name) {
     return 0;
 }
 
+const rtapi_u32 *mw_ext_links(void) {
+    static_assert(sizeof(Header::links) == sizeof(rtapi_u32));
+    Hal *hal = current();
+    return hal != nullptr ? reinterpret_cast<const rtapi_u32 *>(&hal->impl().segment.header().links)
+                          : nullptr;
+}
+
 int mw_ext_is_virtual(void) {
     const Hal *hal = current();
     return hal != nullptr && hal->isVirtual() ? 1 : 0;

@@ -35,6 +35,8 @@ void Hal::Impl::point_slot(const PinRecord &pin, Offset value) noexcept {
     const auto *comp = segment.at<CompRecord>(pin.comp);
     // Release: a thread that follows the new address sees the value that was put there before.
     __atomic_store_n(segment.at<std::uint64_t>(pin.slot), comp->base + value, __ATOMIC_RELEASE);
+    // Release: who sees the count writes to the new address.
+    segment.header().links.fetch_add(1, std::memory_order_release);
 }
 
 namespace {

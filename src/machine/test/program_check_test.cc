@@ -100,5 +100,20 @@ TEST_F(ProgramCheck, WhatBoundsALongMoveIsWhatBoundsMostOfIt) {
     EXPECT_NE(last.limit.find("acceleration"), std::string::npos) << last.limit;
 }
 
+TEST_F(ProgramCheck, TheTimeKnowsThatACutThatWaitsForTheSpindleBeginsAtRest) {
+    ASSERT_NE(config_, nullptr);
+    const auto seconds = [&](const std::string &spindle) {
+        const CheckResult result =
+            check("G21 G90 G17 G64 P0.05\n" + spindle + "G0 X-100\nG1 X-200 F60000\nM2\n");
+        EXPECT_EQ(sink_.count_errors(), 0);
+        return result.time ? result.time->total_s : 0.0;
+    };
+    const double blended_s = seconds("");
+    const double from_rest_s = seconds("S500 M3\n");
+    EXPECT_GT(from_rest_s, blended_s * 1.05);
+    EXPECT_EQ(seconds("S500 M3\nM5\n"), blended_s);
+    EXPECT_GT(seconds("S500 M3\nM5\nM3\n"), blended_s * 1.05);
+}
+
 }  // namespace
 }  // namespace mw::machine

@@ -8,12 +8,17 @@
 namespace mw::motion {
 namespace {
 
-/// Parts that may be other than in the last cycle; what seldom changes is compared.
-PartMask new_parts(const PublishedStatus &published, const Status &s) noexcept {
-    constexpr PartMask SELDOM = part_range(status_part::AXES, 1) | part_range(status_part::ANALOG_IN, 1) |
-                                part_range(status_part::ANALOG_OUT, 1);
+/// Parts that may be other than in the last cycle; what seldom changes is compared where somebody has touched
+/// it.
+PartMask new_parts(const PublishedStatus &published, Outputs &out) noexcept {
+    const Status &s = out.status;
+    PartMask seldom = 0;
+    if (out.touched != 0) [[unlikely]] {
+        seldom = published.changed(s, out.touched);
+        out.touched = 0;
+    }
     return part_range(status_part::WHOLE_MACHINE, 1) | part_range(status_part::JOINTS, s.num_joints) |
-           part_range(status_part::SPINDLES, s.num_spindles) | published.changed(s, SELDOM);
+           part_range(status_part::SPINDLES, s.num_spindles) | seldom;
 }
 
 /// A joint that was loaded and is not in use: it asks nothing of its drive.
@@ -66,6 +71,7 @@ void fill_settings(const Settings &settings, Outputs &out) noexcept {
         axis.min_limit = settings.get(Parameter::AXIS_MIN_LIMIT, i);
         axis.max_limit = settings.get(Parameter::AXIS_MAX_LIMIT, i);
     }
+    out.touched |= part_range(status_part::AXES, 1);
     out.mm_per_unit = settings.get(Parameter::TRAJ_MM_PER_UNIT);
     out.settings_version = settings.version();
 }
@@ -127,7 +133,7 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
     }
     out.isCoordError = isCoordError_;
     publish_view(in, programmed);
-    channels_->status.write(s, new_parts(channels_->status, s));
+    channels_->status.write(s, new_parts(channels_->status, out));
     trace(*channels_, in, s, joints_, types_.switches, isAnythingMoving());
 }
 

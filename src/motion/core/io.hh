@@ -62,23 +62,33 @@ struct Inputs {
     std::array<SpindleInputs, MAX_SPINDLES> spindle{};
 };
 
-/// Beside `Status`, which holds most of what the pins show.
-struct JointOutputs {
-    double motor_pos_cmd = 0;
-    double coarse_pos = 0, acc_cmd = 0;
+/// What seldom changes of what pins show of a joint: it is compared before it is written.
+struct SeldomJointOutputs {
     double backlash_raw = 0, backlash_filtered = 0, backlash_velocity = 0;
     double motor_offset = 0;
-    double free_pos_cmd = 0, free_velocity_limit = 0, ferror_limit = 0;
+    double free_velocity_limit = 0;
     bool isAmpEnabled = false;
     bool isIndexEnabled = false, isUnlockWanted = false;
     bool isFreePlanning = false, isKeyboardJogging = false, isWheelJogging = false;
     int home_state = 0;
 };
 
-struct AxisOutputs {
-    double position = 0, teleop_position = 0, teleop_velocity = 0, teleop_velocity_limit = 0;
+/// Beside `Status`, which holds most of what the pins show.
+struct JointOutputs : SeldomJointOutputs {
+    double motor_pos_cmd = 0;
+    double coarse_pos = 0, acc_cmd = 0;
+    double free_pos_cmd = 0, ferror_limit = 0;
+};
+
+/// As SeldomJointOutputs.
+struct SeldomAxisOutputs {
+    double teleop_velocity = 0, teleop_velocity_limit = 0;
     double offset = 0, offset_request = 0;
     bool isTeleopPlanning = false, isKeyboardJogging = false, isWheelJogging = false;
+};
+
+struct AxisOutputs : SeldomAxisOutputs {
+    double position = 0, teleop_position = 0;
 };
 
 struct SpindleOutputs {
@@ -92,9 +102,15 @@ struct SpindleOutputs {
 
 inline constexpr std::uint32_t ALL_AXES = (1U << MAX_AXES) - 1U;
 
+/// Parts of the status that seldom change.
+inline constexpr PartMask SELDOM_PARTS = part_range(status_part::AXES, 1) |
+                                         part_range(status_part::ANALOG_IN, 1) |
+                                         part_range(status_part::ANALOG_OUT, 1);
+
 struct Outputs {
     Status status;
-    std::uint32_t axes = ALL_AXES;  ///< bit per axis that the machine may have: of others no pin is read
+    PartMask touched = SELDOM_PARTS;  ///< of these, what may be other than it was published last
+    std::uint32_t axes = ALL_AXES;    ///< bit per axis that the machine may have: of others no pin is read
     std::array<JointOutputs, MAX_JOINTS> joint{};
     std::array<AxisOutputs, MAX_AXES> axis{};
     std::array<SpindleOutputs, MAX_SPINDLES> spindle{};

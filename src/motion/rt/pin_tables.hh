@@ -125,13 +125,16 @@ inline constexpr auto JOINT = pin_table("joint.#",
     out<double>("vel-cmd", "unit/s", "commanded speed", [](const JointView &v) { return v.s.vel_cmd; }),
     out<double>("acc-cmd", "unit/s2", "commanded acceleration", [](const JointView &v) { return v.o.acc_cmd; }),
     out<double>("coarse-pos-cmd", "unit", "commanded position", [](const JointView &v) { return v.o.coarse_pos; }),
+    out<double>("f-error", "unit", "following error", [](const JointView &v) { return v.s.ferror; }),
+    out<double>("f-error-lim", "unit", "following error that is allowed now", [](const JointView &v) { return v.o.ferror_limit; }),
+    out<double>("free-pos-cmd", "unit", "where a jog or homing goes", [](const JointView &v) { return v.o.free_pos_cmd; }));
+
+/// Written when something of it has changed, as all tables SELDOM_*.
+inline constexpr auto SELDOM_JOINT = pin_table("joint.#",
     out<double>("motor-offset", "unit", "from joint to motor, set by homing", [](const JointView &v) { return v.o.motor_offset; }),
     out<double>("backlash-corr", "unit", "backlash to take up", [](const JointView &v) { return v.o.backlash_raw; }),
     out<double>("backlash-filt", "unit", "backlash taken up so far", [](const JointView &v) { return v.o.backlash_filtered; }),
     out<double>("backlash-vel", "unit/s", "with which it is taken up", [](const JointView &v) { return v.o.backlash_velocity; }),
-    out<double>("f-error", "unit", "following error", [](const JointView &v) { return v.s.ferror; }),
-    out<double>("f-error-lim", "unit", "following error that is allowed now", [](const JointView &v) { return v.o.ferror_limit; }),
-    out<double>("free-pos-cmd", "unit", "where a jog or homing goes", [](const JointView &v) { return v.o.free_pos_cmd; }),
     out<double>("free-vel-lim", "unit/s", "its speed", [](const JointView &v) { return v.o.free_velocity_limit; }),
     out<bool>("amp-enable-out", "", "the amplifier may be on", [](const JointView &v) { return v.o.isAmpEnabled; }),
     out<bool>("active", "", "the joint is used", [](const JointView &v) { return v.s.isActive; }),
@@ -148,7 +151,9 @@ inline constexpr auto JOINT = pin_table("joint.#",
 /// Unless a homing module makes its own.
 inline constexpr auto HOMING = pin_table("joint.#",
     in<bool>("home-sw-in", "", "home switch", [](JointInputs &i, bool v) { i.isHomeSwitchClosed = v; }),
-    in_out<bool>("index-enable", "", "homing waits for the index pulse; the encoder clears it there", [](JointInputs &i, bool v) { i.isIndexEnabled = v; }, [](const JointView &v) { return v.o.isIndexEnabled; }),
+    in_out<bool>("index-enable", "", "homing waits for the index pulse; the encoder clears it there", [](JointInputs &i, bool v) { i.isIndexEnabled = v; }, [](const JointView &v) { return v.o.isIndexEnabled; }));
+
+inline constexpr auto SELDOM_HOMING = pin_table("joint.#",
     out<bool>("homed", "", "the joint is homed", [](const JointView &v) { return v.s.isHomed; }),
     out<bool>("homing", "", "the joint is being homed", [](const JointView &v) { return v.s.isHoming; }),
     out<Count>("home-state", "", "step of homing, 0: none", [](const JointView &v) { return v.o.home_state; }));
@@ -175,10 +180,12 @@ inline constexpr auto AXIS = pin_table("axis.@",
     in<bool>("eoffset-enable", "", "they do", [](AxisInputs &a, bool v) { a.offset.isEnabled = v; }),
     in<bool>("eoffset-clear", "", "the external offset goes to zero", [](AxisInputs &a, bool v) { a.offset.isClearing = v; }),
     in<double>("eoffset-scale", "unit", "for each count", [](AxisInputs &a, double v) { a.offset.scale = v; }),
+    out<double>("pos-cmd", "unit", "commanded position", [](const AxisOutputs &o) { return o.position; }),
+    out<double>("teleop-pos-cmd", "unit", "the same, of the jog", [](const AxisOutputs &o) { return o.teleop_position; }));
+
+inline constexpr auto SELDOM_AXIS = pin_table("axis.@",
     out<double>("eoffset", "unit", "external offset", [](const AxisOutputs &o) { return o.offset; }),
     out<double>("eoffset-request", "unit", "where it goes to", [](const AxisOutputs &o) { return o.offset_request; }),
-    out<double>("pos-cmd", "unit", "commanded position", [](const AxisOutputs &o) { return o.position; }),
-    out<double>("teleop-pos-cmd", "unit", "the same, of the jog", [](const AxisOutputs &o) { return o.teleop_position; }),
     out<double>("teleop-vel-cmd", "unit/s", "speed of the jog", [](const AxisOutputs &o) { return o.teleop_velocity; }),
     out<double>("teleop-vel-lim", "unit/s", "highest speed of the jog", [](const AxisOutputs &o) { return o.teleop_velocity_limit; }),
     out<bool>("teleop-tp-enable", "", "a jog is under way", [](const AxisOutputs &o) { return o.isTeleopPlanning; }),
@@ -218,11 +225,14 @@ void for_each(Show &&show) {
     sdk::for_each_pin(MISC_ERROR, show);
     sdk::for_each_pin(TOOL_OFFSET, show);
     sdk::for_each_pin(JOINT, show);
+    sdk::for_each_pin(SELDOM_JOINT, show);
     sdk::for_each_pin(HOMING, show);
+    sdk::for_each_pin(SELDOM_HOMING, show);
     sdk::for_each_pin(SWITCHABLE, show);
     sdk::for_each_pin(UNLOCK, show);
     sdk::for_each_pin(POSTHOME, show);
     sdk::for_each_pin(AXIS, show);
+    sdk::for_each_pin(SELDOM_AXIS, show);
     sdk::for_each_pin(SPINDLE, show);
 }
 

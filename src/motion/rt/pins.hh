@@ -3,6 +3,8 @@
 // machine has.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "base/limits.hh"
@@ -35,8 +37,21 @@ class MotionPins {
         return (static_cast<unsigned>(counts_.unlock_mask) >> joint & 1U) != 0;
     }
 
+    /// What pins show that seldom changes, as words.
+    template <std::size_t BYTES>
+    using Shown = std::array<std::uint64_t, BYTES / 8>;
+    static constexpr std::size_t FLAGS = offsetof(JointStatus, isActive);  ///< from there to the end
+
+    bool areLinksOther() noexcept;
+
     PinCounts counts_;
-    std::uint32_t axes_ = ALL_AXES;  ///< as Outputs::axes
+    std::uint32_t axes_ = ALL_AXES;         ///< as Outputs::axes
+    const std::uint32_t *links_ = nullptr;  ///< of HAL: counts the links of pins
+    std::uint32_t last_links_ = 0;
+    std::uint32_t last_axes_ = 0;  ///< none: all are written in the first cycle
+    std::array<Shown<sizeof(SeldomJointOutputs)>, MAX_JOINTS> joint_shown_{};
+    std::array<Shown<sizeof(JointStatus) - FLAGS>, MAX_JOINTS> flags_shown_{};
+    std::array<Shown<sizeof(SeldomAxisOutputs)>, MAX_AXES> axis_shown_{};
     sdk::PinSet<pins::MOTION> motion_;
     sdk::PinSet<pins::SWITCHABLE> switchable_;
     sdk::PinSet<pins::DIGITAL> digital_[MAX_DIGITAL_IO];
@@ -44,10 +59,13 @@ class MotionPins {
     sdk::PinSet<pins::MISC_ERROR> misc_error_[MAX_DIGITAL_IO];
     sdk::PinSet<pins::TOOL_OFFSET> tool_offset_[MAX_AXES];
     sdk::PinSet<pins::JOINT> joint_[MAX_JOINTS];
+    sdk::PinSet<pins::SELDOM_JOINT> seldom_joint_[MAX_JOINTS];
     sdk::PinSet<pins::HOMING> homing_[MAX_JOINTS];
+    sdk::PinSet<pins::SELDOM_HOMING> seldom_homing_[MAX_JOINTS];
     sdk::PinSet<pins::UNLOCK> unlock_[MAX_JOINTS];
     sdk::PinSet<pins::POSTHOME> posthome_[MAX_JOINTS];
     sdk::PinSet<pins::AXIS> axis_[MAX_AXES];
+    sdk::PinSet<pins::SELDOM_AXIS> seldom_axis_[MAX_AXES];
     sdk::PinSet<pins::SPINDLE> spindle_[MAX_SPINDLES];
     std::int64_t last_time_ns_ = 0;
 };

@@ -3,11 +3,13 @@
 // place at every sample. MW_CAMPAIGN_SEEDS and MW_CAMPAIGN_FIRST choose the seeds.
 #include <random>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "kins/corexy.hh"
 #include "kins/linear_delta.hh"
 #include "kins/rotary_table.hh"
+#include "kins/tilting_head.hh"
 #include "testing/campaign_seeds.hh"
 #include "testing/motion_rig.hh"
 
@@ -98,6 +100,7 @@ struct ToSoftLimits {
     int joints;
     std::array<int, 2> axes;
     bool isJerkLimited;
+    int before_first = 0;  ///< seeds that are passed over
 };
 
 void jog_to_soft_limits(const ToSoftLimits &machine) {
@@ -105,7 +108,7 @@ void jog_to_soft_limits(const ToSoftLimits &machine) {
     int reached = 0;
     for (int seed = first; seed < first + count && !::testing::Test::HasFailure(); ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
-        std::mt19937 random(static_cast<unsigned>(seed));
+        std::mt19937 random(static_cast<unsigned>(machine.before_first + seed));
         const auto real = [&](double low, double high) {
             return std::uniform_real_distribution<double>(low, high)(random);
         };
@@ -146,7 +149,7 @@ void jog_to_soft_limits(const ToSoftLimits &machine) {
                 rig.step();
                 farthest = std::max(farthest, sense * rig.status().carte_pos_cmd[axis]);
             }
-            ASSERT_LE(farthest, limit + 1e-6);
+            ASSERT_LE(farthest, limit + 1e-9);
             reached += farthest > limit - 1e-6 ? 1 : 0;
         }
         EXPECT_EQ(rig.joint_report(), "");
@@ -160,10 +163,69 @@ TEST(Teleop, ADeltaComesToRestAtTheSoftLimitsOfItsAxes_C13) {
     jog_to_soft_limits({delta, 3, {0, 1}, false});
 }
 
+TEST(Teleop, ADeltaComesToRestAtTheSoftLimitsOfItsAxesWithJerkLimits_C13) {
+    const kins::LinearDelta delta;
+    jog_to_soft_limits({delta, 3, {0, 1}, true, 850});
+}
+
+TEST(Teleop, AHeadComesToRestAtTheSoftLimitsOfItsAxes_C13) {
+    const kins::TiltingHead head;
+    jog_to_soft_limits({head, 6, {geom::AXIS_B, geom::AXIS_W}, false});
+}
+
 TEST(Teleop, ATableComesToRestAtItsSoftLimitsWithJerkLimits_C13) {
     kins::RotaryTable table;
     table.set_tilt_axis(5, -40);
     jog_to_soft_limits({table, 5, {geom::AXIS_A, geom::AXIS_C}, true});
+}
+
+/// A wheel that is turned slowly sends it a little on time and again, so that it brakes and goes on at the
+/// same mean speed. It never goes back on that way.
+TEST(Teleop, WhoCreepsBehindAWheelTurnsNotBack_C8_C13_C15) {
+    const kins::TiltingHead head;
+    MotionRig rig(head, 6, 60, 630);
+    constexpr std::array<double, 6> VELOCITY{211, 60, 126, 185, 60, 252};
+    constexpr std::array<double, 6> ACCELERATION{758, 2210, 1096, 274.36, 632, 289};
+    constexpr std::array<double, 6> JERK{67676, 74226, 24777, 1e6, 97500, 3504};
+    for (int j = 0; j < 6; ++j) {
+        rig.set(Parameter::JOINT_MAX_VELOCITY, j, VELOCITY[static_cast<std::size_t>(j)]);
+        rig.set(Parameter::JOINT_MAX_ACCELERATION, j, ACCELERATION[static_cast<std::size_t>(j)]);
+        rig.set(Parameter::JOINT_MAX_JERK, j, JERK[static_cast<std::size_t>(j)]);
+    }
+    rig.set(Parameter::AXIS_MAX_VELOCITY, geom::AXIS_B, 170);
+    rig.set(Parameter::AXIS_MAX_ACCELERATION, geom::AXIS_B, 3600);
+    rig.set(Parameter::AXIS_MIN_LIMIT, geom::AXIS_B, -400);
+    rig.set(Parameter::AXIS_MAX_LIMIT, geom::AXIS_B, 400);
+    rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, 1);
+    rig.set(Parameter::TRAJ_MAX_JERK, 0, 1e6);
+    rig.step(4);
+    rig.ready(Mode::TELEOP);
+    WheelInput &wheel = rig.in.axis_wheel[geom::AXIS_B];
+    wheel.isEnabled = true;
+    wheel.scale = 3.8e-3;
+    const auto place = [&] { return rig.status().carte_pos_cmd[geom::AXIS_B]; };
+    // The more the tool stands askew, the more turning it takes of what the slides have.
+    for (const double from : {-302.4, -250.0, -50.0, 20.0, 70.0, 140.0, 280.0, 301.5, 302.362476}) {
+        rig.send(JogAbsolute{{false, geom::AXIS_B}, 100, from});
+        ASSERT_TRUE(rig.run_until([&] { return std::abs(place() - from) < 1e-9; }, 60));
+        rig.step(500);
+        for (int cycles = 1; cycles <= 12; ++cycles) {
+            wheel.scale = -wheel.scale;
+            SCOPED_TRACE(fmt::format("from {}, a count each {} cycles", from, cycles));
+            const double begin = place();
+            double before = begin;
+            for (int n = 0; n < 1000; ++n) {
+                wheel.counts += n % cycles == 0 && n < 500 ? 1 : 0;
+                rig.step();
+                ASSERT_GE((place() - before) / wheel.scale, -1e-9) << "cycle " << n;
+                before = place();
+            }
+            const int counts = (499 / cycles) + 1;
+            EXPECT_NEAR(before - begin, wheel.scale * counts, 1e-9);
+        }
+    }
+    EXPECT_EQ(rig.joint_report(), "");
+    rig.forgive_joints();
 }
 
 TEST(Teleop, ACoreXyJogGoesAsFastAsItsJointsAllow) {

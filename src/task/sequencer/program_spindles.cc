@@ -25,7 +25,12 @@ void ProgramSpindles::send(int spindle, MotionLink &motion) {
         on.speed_rpm = state.direction * state.speed;
     }
     motion.send(on);
-    isNextCutWaiting_ = state.isWaiting;
+    set_awaited(spindle, state.isWaiting);
+}
+
+void ProgramSpindles::set_awaited(int spindle, bool isAwaited) {
+    const std::uint32_t bit = 1U << spindle;
+    awaited_ = isAwaited ? awaited_ | bit : awaited_ & ~bit;
 }
 
 void ProgramSpindles::set_mode(const interp::SetSpindleMode &mode) {
@@ -51,6 +56,7 @@ void ProgramSpindles::start(const interp::StartSpindle &start, MotionLink &motio
 
 void ProgramSpindles::stop(const interp::StopSpindle &stop, MotionLink &motion) {
     at(stop.spindle).direction = 0;
+    set_awaited(stop.spindle, false);
     motion.send(motion::SpindleOff{stop.spindle});
 }
 
@@ -60,7 +66,7 @@ void ProgramSpindles::command(int spindle, double signed_rpm, bool isWaiting, Mo
     state.direction = signed_rpm > 0 ? 1 : (signed_rpm < 0 ? -1 : 0);
     state.isWaiting = isWaiting;
     if (state.direction == 0) {
-        motion.send(motion::SpindleOff{spindle});
+        stop({spindle}, motion);
         return;
     }
     state.speed = std::fabs(signed_rpm);

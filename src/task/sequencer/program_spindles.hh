@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "base/limits.hh"
@@ -37,9 +38,10 @@ class ProgramSpindles {
     /// As programmed, unscaled. [rev/min or surface units/min]
     double speed(int spindle) const { return spindles_[static_cast<std::size_t>(spindle)].speed; }
     int direction(int spindle) const { return spindles_[static_cast<std::size_t>(spindle)].direction; }
-    /// The next cut waits until the spindle has its speed.
-    bool isNextCutWaiting() const { return isNextCutWaiting_; }
-    void end_wait() { isNextCutWaiting_ = false; }
+    /// The next cut waits until spindles have the speed that they were told since the last one; nobody waits
+    /// for one that was stopped.
+    bool isNextCutWaiting() const { return awaited_ != 0; }
+    void end_wait() { awaited_ = 0; }
 
   private:
     struct Spindle {
@@ -56,13 +58,14 @@ class ProgramSpindles {
     };
     Spindle &at(int spindle) { return spindles_[static_cast<std::size_t>(spindle)]; }
     void send(int spindle, MotionLink &motion);
+    void set_awaited(int spindle, bool isAwaited);
     void follow_offsets(MotionLink &motion);
 
     std::array<Spindle, MAX_SPINDLES> spindles_{};
     interp::UseOffsets offsets_;
     interp::UseToolOffset tool_offset_;
-    double centre_line_x_ = 0;  ///< machine X of the program's X0 [machine units]
-    bool isNextCutWaiting_ = false;
+    double centre_line_x_ = 0;   ///< machine X of the program's X0 [machine units]
+    std::uint32_t awaited_ = 0;  ///< bit per spindle
 };
 
 }  // namespace mw::task

@@ -96,6 +96,28 @@ TEST_F(ProgramSpindlesTest, StartWithTheSpeedThatWasSetAndFollowANewOne_D2) {
     EXPECT_EQ(spindles.speed(0), 700);
 }
 
+/// A move that waits begins at rest: after G97 S300 and M5 nobody is to stop in a corner for nothing.
+TEST_F(ProgramSpindlesTest, NobodyWaitsForOneThatWasStopped_D2) {
+    spindles.set_speed({0, 300, 0}, link);
+    spindles.start({0, true, true}, link);
+    spindles.stop({0}, link);
+    EXPECT_FALSE(spindles.isNextCutWaiting());
+    spindles.command(0, 500, true, link);
+    EXPECT_TRUE(spindles.isNextCutWaiting());
+    spindles.command(0, 0, true, link);
+    EXPECT_FALSE(spindles.isNextCutWaiting());
+}
+
+TEST_F(ProgramSpindlesTest, EachIsWaitedForWhateverOthersAreTold_D2) {
+    spindles.command(0, 500, true, link);
+    spindles.command(1, 800, false, link);
+    EXPECT_TRUE(spindles.isNextCutWaiting());
+    spindles.stop({1}, link);
+    EXPECT_TRUE(spindles.isNextCutWaiting());
+    spindles.stop({0}, link);
+    EXPECT_FALSE(spindles.isNextCutWaiting());
+}
+
 TEST_F(ProgramSpindlesTest, WithConstantSurfaceSpeedFollowTheirCentreLine_D2) {
     constexpr double EXACT = 1e-9;
     spindles.set_mode({0, 3000});

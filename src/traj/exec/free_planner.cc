@@ -99,6 +99,10 @@ void FreePlanner::step(double dt) noexcept {
     }
     position += p * sign;
     velocity = v * sign;
+    // Who comes to rest and may not go on is there, whatever rounding of the way leaves: else it never rests.
+    constexpr double ROUNDING = 1e-7;
+    const bool isThere = velocity == 0.0 && std::abs(target - position) <= ROUNDING * a * dt * dt;
+    position = isThere ? target : position;
 }
 
 void JogPlanner::stop() noexcept {

@@ -47,6 +47,10 @@ struct FreePlanner {
 /// The same with a jerk limit. A mean over tau swings its acceleration by at most 2 A within tau, whatever
 /// the target does, so tau = 2 A / J keeps the limit; the place ends where the leader does, tau later.
 class JogPlanner : public FreePlanner {
+    /// Of the mean; 1: the leader itself is commanded. First: asked in every cycle, with what it derives
+    /// from.
+    std::uint32_t length_ = 1;
+
   public:
     /// 0: none. Taken when a move begins at rest. [unit/s^3]
     double max_jerk = 0;
@@ -77,10 +81,9 @@ class JogPlanner : public FreePlanner {
     void add(double x) noexcept;
 
     FreePlanner leader_;
-    std::array<double, MOST_SAMPLES> way_{};  ///< of the leader from origin_, the last samples
-    std::uint32_t length_ = 1;                ///< of the mean; 1: the leader itself is commanded
     std::uint32_t next_ = 0, standing_ = 0;
     double jerk_ = 0, most_acceleration_ = 0, origin_ = 0, sum_ = 0, rest_ = 0;
+    std::array<double, MOST_SAMPLES> way_{};  ///< of the leader from origin_, the last samples
 };
 
 /// Position that braking at `acceleration` from here leads to.

@@ -194,5 +194,36 @@ TEST(Filtered, AStopOnAnExactArcBrakesAtOnceAndHarderWhereItIsSlower_C5_C13) {
     }
 }
 
+/// X, slower than the others, comes to its turning point with all of its acceleration. A stop there swings it
+/// from one side to the other, which takes two means, and is no reason to brake along the whole curve.
+TEST(Filtered, AStopWhereASlowAxisTurnsBackIsAsSoonAsItsSwingAllows_C5_C13) {
+    constexpr double SLOW = 168, SLOW_JERK = 5700, RADIUS = 12;
+    constexpr std::uint64_t MOST = 310;  // 360 to 550 where braking shares with turning all along it
+    Limits limits = jerk_limits();
+    limits.acceleration[0] = SLOW;
+    limits.jerk[0] = SLOW_JERK;
+    limits.acceleration[1] = 1600;
+    for (std::uint64_t after = 490; after < 800; after += 10) {
+        JerkRig rig;
+        rig.planner.set_limits(limits);
+        rig.planner.begin(Pose{}, rig.executor.snapshot(), 0.05);
+        rig.planner.add(half_circle(RADIUS), request(geom::PathMode::BLEND, 0.05));
+        rig.planner.release_end();
+        while (rig.cycle < after) {
+            rig.step();
+        }
+        rig.executor.drop();
+        while (rig.cycle < after + 2000 && (!rig.executor.isAtRest() || rig.executor.snapshot().isDropping)) {
+            rig.step();
+        }
+        EXPECT_LT(rig.cycle - after, MOST) << after << " at X " << rig.samples[after - 1][0];
+        auto checker = make_checker(limits, Rig::T);
+        for (const Pose &p : rig.samples) {
+            checker.sample(p.c.data());
+        }
+        EXPECT_TRUE(checker.isWithin()) << after << ": " << checker.report();
+    }
+}
+
 }  // namespace
 }  // namespace mw::traj::test

@@ -56,6 +56,35 @@ TEST(FreePlanner, RandomTargetChangesKeepTheLimits_C8) {
     }
 }
 
+/// A feed override of zero, and the stop that somebody asks for then, find it on its last way to the target.
+TEST(FreePlanner, WhoMayHaveNoSpeedAnyMoreComesToRestFromEverywhere_C8) {
+    for (unsigned seed = 1; seed <= 2000; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<double> unit(0, 1);
+        FreePlanner p;
+        p.max_velocity = std::pow(10.0, 1 + unit(random));
+        p.max_acceleration = std::pow(10.0, 2 + unit(random));
+        p.position = 1000 * (unit(random) - 0.5);
+        p.target = p.position + 50 * (unit(random) - 0.5);
+        testing::LimitChecker checker({{p.max_velocity, p.max_acceleration}}, T);
+        while (stop_position(p.position, p.velocity, p.max_acceleration) != p.target && !p.isAtRest() &&
+               std::abs(p.target - p.position) >
+                   0.5 * p.velocity * p.velocity / p.max_acceleration * (1 + 1e-9)) {
+            p.step(T);
+            checker.sample(&p.position);
+        }
+        p.max_velocity = 0;
+        p.stop();
+        for (double v = std::abs(p.velocity); v > -2 * p.max_acceleration * T; v -= p.max_acceleration * T) {
+            p.step(T);
+            checker.sample(&p.position);
+        }
+        EXPECT_TRUE(p.isAtRest()) << p.target - p.position;
+        EXPECT_TRUE(checker.isWithin()) << checker.report();
+    }
+}
+
 /// Shares of joints are computed anew in each cycle, and no two are the same to the last digit.
 TEST(FreePlanner, RoundingOfItsAccelerationLeadsNobodyBeyondTheTarget_C8) {
     for (unsigned seed = 1; seed <= 200; ++seed) {

@@ -4,34 +4,10 @@
 #include <cmath>
 
 #include "traj/timing/acceleration_limited.hh"
-#include "traj/timing/jerk_limited.hh"
 #include "traj/timing/locked_pass.hh"
 #include "traj/tuning.hh"
 
 namespace mw::traj {
-
-namespace {
-
-StopShape stop_shape(Ending ending) noexcept {
-    switch (ending) {
-    case Ending::ONWARD:
-    case Ending::EASED_STOP:
-    case Ending::STOP: return {};
-    case Ending::HARD_STOP: return {.isHard = true};
-    case Ending::STOP_AT_ONCE: return {.isHard = true, .isAtOnce = true};
-    case Ending::SOFT_STOP: return {.isHard = true, .isAtOnce = true, .first_share = TimingTuning::SOFT_STOP};
-    case Ending::SOFTER_STOP:
-        return {.isHard = true, .isAtOnce = true, .first_share = TimingTuning::SOFTER_STOP};
-    case Ending::SOFTEST_STOP:
-        return {.isHard = true, .isAtOnce = true, .first_share = TimingTuning::SOFTEST_STOP};
-    case Ending::LATE_STOP: return {.isHard = true, .isAtOnce = true, .first_share = 0};
-    case Ending::LATER_STOP:
-        return {.isHard = true, .isAtOnce = true, .first_share = TimingTuning::LATER_STOP};
-    }
-    return {};
-}
-
-}  // namespace
 
 void TimingPlan::begin(const Snapshot &now) noexcept {
     profile_.begin();
@@ -177,7 +153,7 @@ void TimingPlan::extend(const PathView &view, PathStore &store, const Snapshot &
 }
 
 bool TimingPlan::draft(const PathView &view, PathStore &store, Sequence begin, const LeaderState &from,
-                       Ending ending) noexcept {
+                       Ending ending, const StopShape &shape) noexcept {
     const TimingView timing{view, profile_, oldest_phase_};
     draft_.end = begin;
     draft_.begin(from);
@@ -194,10 +170,10 @@ bool TimingPlan::draft(const PathView &view, PathStore &store, Sequence begin, c
     }
     const double until_s = draft_.seconds;
     const bool isEmpty = draft_.end == waited && from.v <= 0;
-    if (isEmpty || !append_stop(draft_, store, timing, stop_shape(ending)) ||
-        draft_.isStopPassed(view.path, begin)) {
+    if (isEmpty || !append_stop(draft_, store, timing, shape) || draft_.isStopPassed(view.path, begin)) {
         return false;
     }
+    stop_s_ = draft_.seconds;
     draft_.seconds = until_s;
     return true;
 }

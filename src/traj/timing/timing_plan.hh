@@ -3,6 +3,7 @@
 #pragma once
 
 #include "traj/timing/commitments.hh"
+#include "traj/timing/jerk_limited.hh"
 #include "traj/timing/plan_draft.hh"
 
 namespace mw::traj {
@@ -17,16 +18,8 @@ struct PlannerSettings {
 
 /// How a plan that is tried ends.
 enum class Ending : std::uint8_t {
-    ONWARD,        ///< it goes on as far as it will, and then stops
-    STOP,          ///< it stops
-    HARD_STOP,     ///< with what curves leave for braking alone
-    STOP_AT_ONCE,  ///< hard, and without waiting until the mean has forgotten the last rise
-    SOFT_STOP,     ///< hard, but with a share only for as long as the mean takes
-    SOFTER_STOP,   ///< with a smaller one
-    SOFTEST_STOP,  ///< with the smallest
-    LATE_STOP,     ///< with none at first
-    LATER_STOP,    ///< it still gains some speed at first
-    EASED_STOP,    ///< it stops on a path that is made slower where that is refused
+    ONWARD,  ///< it goes on as far as it will, and then stops
+    STOP,    ///< it stops
 };
 
 /// What an update has to do.
@@ -81,8 +74,10 @@ class TimingPlan {
         return {commitments_.phases_end(now), settings_.latency, settings_.period_s};
     }
     /// Makes a plan to be tried, with phases from `begin` on; false when there is none.
-    bool draft(const PathView &view, PathStore &store, Sequence begin, const LeaderState &from,
-               Ending ending) noexcept;
+    bool draft(const PathView &view, PathStore &store, Sequence begin, const LeaderState &from, Ending ending,
+               const StopShape &shape = {}) noexcept;
+    /// How long the plan that was made lasts until it stands.
+    double stop_seconds() const noexcept { return stop_s_; }
     /// Tells the executor of it; false when there is no room.
     bool commit(const PathView &view, PathStore &store, const Snapshot &now, Sequence begin,
                 Ending ending) noexcept;
@@ -112,6 +107,7 @@ class TimingPlan {
     Commitments commitments_;
     Sequence oldest_phase_ = 1;
     double start_delay_s_ = 0;
+    double stop_s_ = 0;
     int steady_updates_ = 0;  ///< since spindles have changed their speeds by more than a little
 };
 

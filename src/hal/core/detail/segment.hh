@@ -189,6 +189,7 @@ struct Table {
 struct Header {
     pthread_mutex_t mutex;                 ///< robust and shared between processes
     std::atomic<std::uint32_t> isRunning;  ///< threads are started. realtime
+    std::atomic<std::uint32_t> links;      ///< counts how often a pin was pointed at a value. realtime
     std::atomic<std::uint8_t> lock;
     bool isVirtual;
     bool isRealtime;                         ///< threads have realtime priority

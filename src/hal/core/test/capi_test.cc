@@ -11,6 +11,7 @@
 
 #include "hal/api/hal.h"
 #include "hal/api/kinematics.h"
+#include "hal/api/millwright_ext.h"
 #include "hal/api/rtapi_firmware.h"
 #include "hal/api/rtapi_mutex.h"
 #include "hal/api/rtapi_parport.h"
@@ -46,6 +47,18 @@ struct CInterface : ::testing::Test {
 int add_name(hal_query_t *query, void *names) {
     *static_cast<std::string *>(names) += std::string(query->name) + " ";
     return 0;
+}
+
+TEST_F(CInterface, GivesZeroedMemoryInHugePages_B5) {
+    constexpr std::size_t HUGE_PAGE = std::size_t{2} << 20U;
+    constexpr std::size_t BYTES = HUGE_PAGE + 100;
+    auto *memory = static_cast<unsigned char *>(mw_ext_memory_new(BYTES));
+    ASSERT_NE(memory, nullptr);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(memory) % HUGE_PAGE, 0U);
+    EXPECT_EQ(memory[0] + memory[BYTES - 1], 0);
+    memory[BYTES - 1] = 1;
+    mw_ext_memory_delete(memory, BYTES);
+    mw_ext_memory_delete(nullptr, BYTES);
 }
 
 TEST_F(CInterface, ListsWhatThereIs_B5) {

@@ -25,14 +25,16 @@ struct JogLease {
     bool isForward = true;  ///< of the jog that it belongs to
 };
 
-struct Jog {
-    traj::JogPlanner planner;
+/// What each cycle looks at of a jog that stands comes first and fills two lines of the cache: behind it are
+/// the samples of its planner.
+struct alignas(64) Jog {
+    JogSource source = JogSource::NONE;
+    std::int32_t wheel_counts = 0;
     double wanted_velocity = 0, wanted_acceleration = 0;  ///< before the override and joints limit them
     double most_velocity = UNBOUNDED;                     ///< that the override may make of it
     double brake_acceleration = 0;                        ///< what a stop takes: no wheel makes it gentler
-    JogSource source = JogSource::NONE;
-    std::int32_t wheel_counts = 0;
     JogLease lease;
+    traj::JogPlanner planner;
 };
 
 /// Of axes on machines whose joints are not axes, with jerk limits.

@@ -11,7 +11,7 @@ std::size_t at(int i) noexcept {
     return static_cast<std::size_t>(i);
 }
 
-/// What changes while axes follow a path.
+/// What changes while axes follow a path: the speeds of their jogs do not.
 void fill_places(const Jogs &jogs, const geom::Pose &pose, Outputs &out) noexcept {
     for (int j = 0; j < jogs.num_joints; ++j) {
         const Jog &from = jogs.joint[at(j)];
@@ -24,7 +24,6 @@ void fill_places(const Jogs &jogs, const geom::Pose &pose, Outputs &out) noexcep
         AxisOutputs &o = out.axis[at(i)];
         o.position = pose[i];
         o.teleop_position = pose[i];
-        o.teleop_velocity_limit = jogs.axis[at(i)].planner.max_velocity;
     }
 }
 
@@ -51,6 +50,7 @@ void fill(const Jogs &jogs, Mode mode, const geom::Pose &pose, Outputs &out) noe
         isJogging = isJogging || from.source != JogSource::NONE;
     }
     const bool isTeleop = mode == Mode::TELEOP;
+    out.touched |= part_range(status_part::AXES, 1);
     out.axes = jogs.axes;
     for (std::uint32_t left = jogs.axes; left != 0; left &= left - 1) {
         const int i = std::countr_zero(left);

@@ -62,7 +62,7 @@ bool isAnyHeld(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs,
 
 /// Shares what each joint can do evenly among the axes that move it. As long as one needs what it has to stop
 /// where it is sent, none begins beside it, and none gets faster.
-void apply_load(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs) noexcept {
+void apply_load(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs, bool isWhole) noexcept {
     AxisValues speed{};
     int moving = 0;
     for (int i = 0; i < load.count; ++i) {
@@ -89,7 +89,10 @@ void apply_load(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs) noex
     for (int i = 0; i < load.count; ++i) {
         Jog &axis = jogs.axis[at(load.axes[at(i)])];
         axis.planner.max_velocity = v[at(i)];
-        axis.planner.max_acceleration = with_reserve(load, axis.planner, a[at(i)]);
+        const double had = load.had[at(i)];
+        const bool isKept = isWhole && mustBrake(axis.planner, had);
+        axis.planner.max_acceleration =
+            with_reserve(load, axis.planner, kept(had, a[at(i)], KEPT_ALONE, isKept));
     }
 }
 
@@ -144,7 +147,7 @@ void look_here(const TeleopMachine &m, const geom::Pose &here, Jogs &jogs, Look 
             add_sent(m, here, i, p.target, load);
         }
     }
-    load.isSmooth ? apply_smoothly(m, load, jogs, false) : apply_load(m, load, jogs);
+    load.isSmooth ? apply_smoothly(m, load, jogs, false) : apply_load(m, load, jogs, false);
 }
 
 /// Then as far ahead as they may come while they brake.
@@ -188,6 +191,7 @@ Look without_waiting(const Look &all, std::uint32_t counted, Jogs &jogs) noexcep
         const int axis = all.load.axes[at(i)];
         traj::JogPlanner &p = jogs.axis[at(axis)].planner;
         if ((counted & (1U << axis)) != 0) {
+            some.load.had[at(some.load.count)] = all.load.had[at(i)];
             some.load.axes[at(some.load.count++)] = axis;
         } else {
             p.max_velocity = p.max_acceleration = p.mean_s = 0;
@@ -201,7 +205,8 @@ Look limit_axes(const TeleopMachine &m, const geom::Pose &here, Jogs &jogs) noex
     Look all;
     all.load.isSmooth = m.limits.path.isJerkLimited;
     for (int i = 0; i < MAX_AXES; ++i) {
-        if (!jogs.axis[at(i)].planner.isAtRest()) {
+        if (const traj::JogPlanner &p = jogs.axis[at(i)].planner; !p.isAtRest()) {
+            all.load.had[at(all.load.count)] = p.leader().max_acceleration;
             all.load.axes[at(all.load.count++)] = i;
         }
     }
@@ -211,7 +216,7 @@ Look limit_axes(const TeleopMachine &m, const geom::Pose &here, Jogs &jogs) noex
     look_here(m, here, jogs, all);
     look_ahead(m, here, jogs, all);
     if (!all.load.isSmooth) {
-        apply_load(m, all.load, jogs);
+        apply_load(m, all.load, jogs, true);
         return all;
     }
     make_room(m, all.load, jogs);

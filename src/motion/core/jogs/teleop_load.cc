@@ -195,6 +195,18 @@ double with_reserve(const TeleopLoad &load, const traj::JogPlanner &p, double ac
     return isCurved ? std::clamp(needed, PLANNED * acceleration, acceleration) : acceleration;
 }
 
+bool mustBrake(const traj::JogPlanner &p, double acceleration) noexcept {
+    constexpr double NEARLY = 0.9;
+    const traj::FreePlanner &leader = p.leader();
+    const double v = leader.velocity;
+    const double way = p.target - leader.position;
+    return v * way > 0 && v * v >= NEARLY * 2.0 * acceleration * std::abs(way);
+}
+
+double kept(double had, double acceleration, double share, bool isBraking) noexcept {
+    return isBraking && had <= share * acceleration ? std::max(acceleration, had) : acceleration;
+}
+
 bool canTake(const traj::JogPlanner &p, double acceleration, double period_s) noexcept {
     const traj::FreePlanner &leader = p.leader();
     const double v = leader.velocity;

@@ -17,6 +17,7 @@ using AxisValues = std::array<double, MAX_AXES>;
 struct TeleopLoad {
     std::array<int, MAX_AXES> axes{};
     int count = 0;
+    AxisValues had{};  ///< accelerations of the last cycle
     std::array<JointsAt, MAX_AXES> q1{};
     std::array<std::array<JointsAt, MAX_AXES>, MAX_AXES> q2{};
 
@@ -34,6 +35,8 @@ struct TeleopLoad {
 
 /// Part of a joint's acceleration that curves may take at the highest speed.
 inline constexpr double CURVE_SHARE = 0.5;
+/// Of what is left now, while it brakes: derivatives have a margin of 1.05.
+inline constexpr double KEPT_ALONE = 1.02;
 /// A second difference below this is rounding.
 inline constexpr double LEAST_CURVE = 1e-6;
 
@@ -59,6 +62,13 @@ AxisValues shared_speeds(const TeleopMachine &m, const TeleopLoad &load, const J
 /// What an axis takes of the acceleration that it may have. Where several axes move joints along curves it
 /// keeps a part for its stop: what others do meanwhile may leave it less than now.
 double with_reserve(const TeleopLoad &load, const traj::JogPlanner &p, double acceleration) noexcept;
+
+/// It has nearly as little way left to where it is sent as this acceleration needs for its stop.
+bool mustBrake(const traj::JogPlanner &p, double acceleration) noexcept;
+
+/// Who brakes keeps the acceleration of the last cycle where the places that are looked at, which move with
+/// it, show less than before by no more than `share`: else it would go beyond where it is sent.
+double kept(double had, double acceleration, double share, bool isBraking) noexcept;
 
 /// It can come to rest where it is sent, or before, with less acceleration from the next cycle on.
 bool canTake(const traj::JogPlanner &p, double acceleration, double period_s) noexcept;

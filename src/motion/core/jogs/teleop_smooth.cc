@@ -15,9 +15,9 @@ constexpr double SWING_SHARE = 0.25, TURN_SHARE = 0.25;
 /// An axis keeps this part of the acceleration that speeds and accelerations of joints leave it, whatever
 /// their jerk does: it must be able to brake.
 constexpr double LEAST_SHARE = 0.02;
-/// Of what is left now, while it brakes: derivatives have a margin of 1.05. All of that where another axis is
-/// there that waits: by then the joints may have followed straight lines, without that margin.
-constexpr double KEPT_ALONE = 1.02, KEPT_BESIDE = 1.05001;
+/// All of the margin that derivatives have where another axis is there that waits: by then the joints may
+/// have followed straight lines, without that margin.
+constexpr double KEPT_BESIDE = 1.05001;
 constexpr double ROUNDING = 1e-9;
 constexpr double NONE = std::numeric_limits<double>::infinity();
 
@@ -172,16 +172,19 @@ void leave_for_curves(const Sharing &s, const AxisValues &speed, Allowed &out) n
     }
 }
 
-bool isBraking(const traj::JogPlanner &p) noexcept {
-    return std::abs(p.leader().velocity) < std::abs(p.velocity);
+/// What is commanded follows its leader by half a mean, so that who creeps behind a wheel may brake at any
+/// speed.
+bool isBraking(const traj::JogPlanner &p, double acceleration) noexcept {
+    return std::abs(p.leader().velocity) < std::abs(p.velocity) || mustBrake(p, acceleration);
 }
 
 /// The speed that an axis may come to have within its mean: what turning takes goes with that. Who brakes
 /// gains none, so that its acceleration does not become less on the way to its stop.
 double soon(const Sharing &s, int i, double speed, const Allowed &allowed) noexcept {
     const traj::JogPlanner &p = s.jog(i).planner;
-    return isBraking(p) ? speed
-                        : speed + allowed.acceleration[at(i)] * std::max(allowed.mean_s[at(i)], s.m.period_s);
+    return isBraking(p, s.load.had[at(i)])
+               ? speed
+               : speed + allowed.acceleration[at(i)] * std::max(allowed.mean_s[at(i)], s.m.period_s);
 }
 
 /// One would go beyond where it is sent if all came to their speeds: curves would leave it too little.
@@ -222,15 +225,6 @@ Allowed share(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs, 
     }
     leave_for_curves(s, speed, out);
     return out;
-}
-
-/// Who brakes keeps the acceleration that it has begun with where the places that are looked at, which move
-/// with it, show a little less than before: else it would go beyond where it is sent.
-double kept(const TeleopLoad &load, const traj::JogPlanner &p, double acceleration) noexcept {
-    const double before = p.leader().max_acceleration;
-    const double share = load.count > 1 ? KEPT_BESIDE : KEPT_ALONE;
-    const bool isKept = isBraking(p) && before <= share * acceleration;
-    return isKept ? std::max(acceleration, before) : acceleration;
 }
 
 std::uint32_t all_of(const TeleopLoad &load) noexcept {
@@ -283,7 +277,10 @@ void apply_smoothly(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs, 
         const bool hasShare = (shares.axes & bit_of(load, i)) != 0;
         p.max_velocity = hasShare ? allowed.velocity[at(i)] : 0.0;
         const double a = allowed.acceleration[at(i)];
-        p.max_acceleration = with_reserve(load, p, isWhole ? kept(load, p, a) : a);
+        const double had = load.had[at(i)];
+        const double most =
+            isWhole ? kept(had, a, load.count > 1 ? KEPT_BESIDE : KEPT_ALONE, isBraking(p, had)) : a;
+        p.max_acceleration = with_reserve(load, p, most);
         p.mean_s = allowed.mean_s[at(i)];
     }
 }

@@ -51,24 +51,26 @@ class MovingMean {
     void add(double x) noexcept;
 
     std::array<double, MOST_SAMPLES> way_{};  ///< from origin_
-    std::uint32_t length_ = 1, next_ = 0;
-    std::uint32_t standing_ = MOST_SAMPLES;  ///< samples that were equal, up to here
     double origin_ = 0, sum_ = 0, rest_ = 0, last_ = 0;
+    std::uint32_t next_ = 0, length_ = 1;
+    std::uint32_t standing_ = MOST_SAMPLES;  ///< samples that were equal, up to here
 };
 
+/// What a joint needs in each cycle that has neither lies side by side, between the samples of the mean and
+/// the points of the table.
 struct Correction {
-    double raw = 0;      ///< what is to be added
-    double extreme = 0;  ///< the farthest place since the joint has turned back last
-    int side = 0;        ///< +1 or -1 once the joint has moved
-    /// Backlash: what is added. Table: what is still missing, beside what the table says.
-    traj::FreePlanner follower;
     double followed = 0, followed_velocity = 0;  ///< before the jerk is limited
-    double last_position = 0;                    ///< of the joint
     double slide = 0;                            ///< where play has left the slide, by what the motor did
+    MovingMean mean;
+    int side = 0;                       ///< +1 or -1 once the joint has moved
+    bool isHeld = false;                ///< switched on again: what is missing waits until the joint moves
     bool isSlideKnown = false;          ///< play was once taken up since the motor was moved by others
     double position = 0, velocity = 0;  ///< what is added
-    MovingMean mean;
-    bool isHeld = false;  ///< switched on again: what is missing waits until the joint moves
+    double raw = 0;                     ///< what is to be added
+    double extreme = 0;                 ///< the farthest place since the joint has turned back last
+    double last_position = 0;           ///< of the joint
+    /// Backlash: what is added. Table: what is still missing, beside what the table says.
+    traj::FreePlanner follower;
     ScrewTable table;
 
     bool isAtRest() const noexcept { return follower.isAtRest() && velocity == 0.0 && mean.isAtRest(); }

@@ -202,6 +202,7 @@ void take_off(const ExternalOffsets &offsets, std::array<double, MAX_JOINTS> &jo
 
 void fill(const ExternalOffsets &offsets, Outputs &out) noexcept {
     out.areOffsetsQuiet = offsets.axes == 0;
+    out.touched |= part_range(status_part::AXES, 1);
     out.isOffsetActive = false;
     out.isOffsetLimited = offsets.isLimited;
     for (std::uint32_t left = out.axes; left != 0; left &= left - 1) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "motion/core/outputs/machine_outputs.hh"
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 namespace mw::motion {
 
@@ -10,6 +12,13 @@ namespace {
 void set_digital(MachineOutputs &outputs, int index, bool isOn) noexcept {
     const std::uint64_t bit = std::uint64_t{1} << index;
     outputs.digital = isOn ? outputs.digital | bit : outputs.digital & ~bit;
+}
+
+/// Puts `value` in the place of another; whether it is another.
+bool replace(double &place, double value) noexcept {
+    const bool isOther = std::bit_cast<std::uint64_t>(place) != std::bit_cast<std::uint64_t>(value);
+    place = value;
+    return isOther;
 }
 
 }  // namespace
@@ -59,8 +68,10 @@ void fill(const MachineOutputs &outputs, const Inputs &in, Outputs &out) noexcep
     status.digital_in = in.digital_in;
     status.digital_out = outputs.digital;
     for (std::size_t i = 0; i < static_cast<std::size_t>(outputs.num_analog); ++i) {
-        status.analog_in[i] = in.analog_in[i];
-        status.analog_out[i] = outputs.analog[i];
+        const bool isInOther = replace(status.analog_in[i], in.analog_in[i]);
+        const bool isOutOther = replace(status.analog_out[i], outputs.analog[i]);
+        out.touched |= part_range(status_part::ANALOG_IN, isInOther ? 1 : 0) |
+                       part_range(status_part::ANALOG_OUT, isOutOther ? 1 : 0);
     }
 }
 

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Memory in pages of 2 MB, where the kernel has them. What a servo cycle looks at lies in some fifty of the
+// small pages of 4 KB: on a virtual machine a good part of its waiting for memory goes into finding those.
+
+#include <sys/mman.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "hal/api/millwright_ext.h"
+
+namespace {
+
+constexpr std::size_t HUGE_PAGE = std::size_t{2} << 20U;
+
+constexpr std::size_t rounded_up(std::size_t bytes) noexcept {
+    return (bytes + HUGE_PAGE - 1) / HUGE_PAGE * HUGE_PAGE;
+}
+
+}  // namespace
+
+extern "C" {
+
+void *mw_ext_memory_new(unsigned long bytes) {
+    const std::size_t size = rounded_up(bytes);
+    // Not to be touched at first: where memory is locked, small pages would be there before huge ones are
+    // asked for.
+    void *all = ::mmap(nullptr, size + HUGE_PAGE, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (all == MAP_FAILED) {
+        return nullptr;
+    }
+    auto *begin = static_cast<unsigned char *>(all);
+    const std::size_t before =
+        rounded_up(reinterpret_cast<std::uintptr_t>(all)) - reinterpret_cast<std::uintptr_t>(all);
+    if (before > 0) {
+        ::munmap(begin, before);
+    }
+    begin += before;
+    if (before < HUGE_PAGE) {
+        ::munmap(begin + size, HUGE_PAGE - before);
+    }
+    ::madvise(begin, size, MADV_HUGEPAGE);  // a kernel without them says no, and nothing is lost
+    if (::mprotect(begin, size, PROT_READ | PROT_WRITE) != 0) {
+        ::munmap(begin, size);
+        return nullptr;
+    }
+    return begin;
+}
+
+void mw_ext_memory_delete(void *memory, unsigned long bytes) {
+    if (memory != nullptr) {
+        ::munmap(memory, rounded_up(bytes));
+    }
+}
+
+}  // extern "C"
