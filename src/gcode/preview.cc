@@ -141,7 +141,12 @@ class Preview::Impl final : public MachineCanon, public World {
                 [this](const UseToolOffset &one) { tool_offset_ = one.offset; },
                 [this](const UseOffsets &one) { offsets_ = one; },
                 [this](const SetSpindleMode &one) { spindle(one.spindle).css_max_rpm = one.css_max_rpm; },
-                [this](const OneOf<UseSpindleSpeed, StartSpindle, StopSpindle> auto &one) { turn(one); },
+                [this](const StartSpindle &one) {
+                    SpindleState &state = spindle(one.spindle);
+                    state.isTurning = true;
+                    state.isWaiting = isCutWaiting_ = one.isWaiting;
+                },
+                [this](const OneOf<UseSpindleSpeed, StopSpindle> auto &one) { turn(one); },
                 [this](const SelectTool &one) { selected_ = one.toolno; },
                 [this](const OneOf<ProgramStop, PalletShuttle> auto &) {
                     add_standing(PreviewKind::STOP, 0, 0);
@@ -181,10 +186,6 @@ class Preview::Impl final : public MachineCanon, public World {
         state.speed = speed;
         state.surface_unit = one.surface_unit;
         isCutWaiting_ = isNew && state.isTurning ? state.isWaiting : isCutWaiting_;
-    }
-    void turn(const StartSpindle &one) {
-        spindle(one.spindle).isTurning = true;
-        spindle(one.spindle).isWaiting = isCutWaiting_ = one.isWaiting;
     }
     void turn(const StopSpindle &one) {
         spindle(one.spindle).isTurning = false;

@@ -26,6 +26,47 @@ constexpr std::array<StopShape, STOP_COUNT> stop_shapes() noexcept {
 }
 constexpr std::array<StopShape, STOP_COUNT> STOPS = stop_shapes();
 
+/// What a stop is made with, and from where.
+struct StopSearch {
+    TimingPlan &timing;
+    Trial &trial;
+    PathStore &store;
+    const PathView &view;
+    const Snapshot &now;
+    LeaderState from;
+
+    /// Commits the stop that stands soonest of those that pass the trial; false where it refuses all.
+    bool commit_soonest() noexcept;
+
+  private:
+    bool draft(Sequence begin, std::size_t shape) noexcept {
+        return timing.draft(view, store, begin, from, Ending::STOP, STOPS[shape]);
+    }
+};
+
+bool StopSearch::commit_soonest() noexcept {
+    const Sequence begin = timing.phases_end();
+    std::array<std::pair<double, std::size_t>, STOP_COUNT> stops;
+    std::size_t count = 0;
+    for (std::size_t n = 0; n < STOPS.size(); ++n) {
+        if (draft(begin, n)) {
+            stops[count++] = {timing.stop_seconds(), n};
+        }
+    }
+    std::sort(stops.begin(), stops.begin() + static_cast<std::ptrdiff_t>(count));
+    for (std::size_t n = 0; n < count; ++n) {
+        const bool isSame = n > 0 && stops[n].first == stops[n - 1].first;
+        const bool isSound =
+            !isSame && draft(begin, stops[n].second) &&
+            trial.check(view, now, {from, begin, timing.phases_end(), timing.outlook(now)}).isSound;
+        if (isSound && timing.commit(view, store, now, begin, Ending::STOP)) {
+            return true;
+        }
+    }
+    timing.discard(begin);
+    return false;
+}
+
 }  // namespace
 
 Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept
@@ -188,62 +229,25 @@ void Planner::plan_tried(const Snapshot &now) noexcept {
         }
         break;
     }
-    case Demand::Kind::STOP: {
-        find_stop(now, demand.from);
-        break;
-    }
+    case Demand::Kind::STOP: find_plan(now, demand.from, Ending::STOP); break;
     case Demand::Kind::PASS: start_pass(now, demand.from); break;
     case Demand::Kind::EXTEND:  // every plan goes as far as it will
     case Demand::Kind::NOTHING: break;
     }
 }
 
-/// A speed that is rounding is none.
-LeaderState Planner::without_rounding(LeaderState from) const noexcept {
+/// Makes plans until one passes the trial; a stop as it is before what is eased is the path. False when the
+/// trial has refused them all; the plan before then stays in force, with its stop.
+bool Planner::find_plan(const Snapshot &now, LeaderState from, Ending ending) noexcept {
+    const Sequence begin = timing_.phases_end();
     const double standing =
         TimingTuning::STANDING * path_.piece(from.piece).acceleration.at(0) * settings_.period_s;
     from.v = from.v < standing ? 0.0 : from.v;
-    return from;
-}
-
-bool Planner::isSound(const Snapshot &now, const LeaderState &from, Sequence begin) noexcept {
-    return trial_.check(view(), now, {from, begin, timing_.phases_end(), timing_.outlook(now)}).isSound;
-}
-
-/// The stop that stands soonest of those that pass the trial; where it refuses all, one on a path that is
-/// eased.
-void Planner::find_stop(const Snapshot &now, const LeaderState &at) noexcept {
-    const Sequence begin = timing_.phases_end();
-    const LeaderState from = without_rounding(at);
-    const auto draft = [&](const StopShape &shape) {
-        return timing_.draft(view(), path_.store(), begin, from, Ending::STOP, shape);
-    };
-    std::array<std::pair<double, std::size_t>, STOP_COUNT> stops;
-    std::size_t count = 0;
-    for (std::size_t n = 0; n < STOPS.size(); ++n) {
-        if (draft(STOPS[n])) {
-            stops[count++] = {timing_.stop_seconds(), n};
-        }
+    const PathView on = view();
+    if (ending == Ending::STOP &&
+        StopSearch{timing_, trial_, path_.store(), on, now, from}.commit_soonest()) {
+        return true;
     }
-    std::sort(stops.begin(), stops.begin() + static_cast<std::ptrdiff_t>(count));
-    for (std::size_t n = 0; n < count; ++n) {
-        const bool isSame = n > 0 && stops[n].first == stops[n - 1].first;
-        if (!isSame && draft(STOPS[stops[n].second]) && isSound(now, from, begin)) {
-            if (!timing_.commit(view(), path_.store(), now, begin, Ending::STOP)) {
-                timing_.discard(begin);
-            }
-            return;
-        }
-    }
-    timing_.discard(begin);
-    find_plan(now, from, Ending::STOP);
-}
-
-/// Makes plans, on a path that is eased where one is refused, until one passes the trial. False when it has
-/// refused them all; the plan before then stays in force, with its stop.
-bool Planner::find_plan(const Snapshot &now, LeaderState from, Ending ending) noexcept {
-    const Sequence begin = timing_.phases_end();
-    from = without_rounding(from);
     easing_.begin();
     bool isRefused = false;
     Cause cause;

@@ -113,9 +113,6 @@ class Planner {
     /// The move at whose very beginning the executor stands, 0: none.
     Sequence standing_before(const Snapshot &now) const noexcept;
     void plan_tried(const Snapshot &now) noexcept;
-    LeaderState without_rounding(LeaderState from) const noexcept;
-    bool isSound(const Snapshot &now, const LeaderState &from, Sequence begin) noexcept;
-    void find_stop(const Snapshot &now, const LeaderState &at) noexcept;
     bool find_plan(const Snapshot &now, LeaderState from, Ending ending) noexcept;
     bool ease(const LeaderState &from, const Verdict &verdict, const Cause &cause) noexcept;
     void start_pass(const Snapshot &now, const LeaderState &from) noexcept;

@@ -119,6 +119,7 @@ inline constexpr auto JOINT = pin_table("joint.#",
     in<bool>("jog-vel-mode", "", "the joint stops when the wheel does", [](JointInputs &i, bool v) { i.wheel.isVelocityMode = v; }),
     in<double>("jog-scale", "unit", "for each count", [](JointInputs &i, double v) { i.wheel.scale = v; }),
     in<double>("jog-accel-fraction", "", "part of the acceleration for the wheel", [](JointInputs &i, double v) { i.wheel.accel_fraction = v; }, 1.0),
+    out<bool>("amp-enable-out", "", "the amplifier may be on", [](const JointView &v) { return v.o.isAmpEnabled; }),
     out<double>("motor-pos-cmd", "unit", "commanded position of the motor", [](const JointView &v) { return v.o.motor_pos_cmd; }),
     out<double>("pos-cmd", "unit", "commanded position", [](const JointView &v) { return v.s.pos_cmd; }),
     out<double>("pos-fb", "unit", "measured position", [](const JointView &v) { return v.s.pos_fb; }),
@@ -129,14 +130,14 @@ inline constexpr auto JOINT = pin_table("joint.#",
     out<double>("f-error-lim", "unit", "following error that is allowed now", [](const JointView &v) { return v.o.ferror_limit; }),
     out<double>("free-pos-cmd", "unit", "where a jog or homing goes", [](const JointView &v) { return v.o.free_pos_cmd; }));
 
-/// Written when something of it has changed, as all tables SELDOM_*.
+/// Written when something of it has changed, as all tables SELDOM_*. What switches amplifiers is written in every
+/// cycle all the same.
 inline constexpr auto SELDOM_JOINT = pin_table("joint.#",
     out<double>("motor-offset", "unit", "from joint to motor, set by homing", [](const JointView &v) { return v.o.motor_offset; }),
     out<double>("backlash-corr", "unit", "backlash to take up", [](const JointView &v) { return v.o.backlash_raw; }),
     out<double>("backlash-filt", "unit", "backlash taken up so far", [](const JointView &v) { return v.o.backlash_filtered; }),
     out<double>("backlash-vel", "unit/s", "with which it is taken up", [](const JointView &v) { return v.o.backlash_velocity; }),
     out<double>("free-vel-lim", "unit/s", "its speed", [](const JointView &v) { return v.o.free_velocity_limit; }),
-    out<bool>("amp-enable-out", "", "the amplifier may be on", [](const JointView &v) { return v.o.isAmpEnabled; }),
     out<bool>("active", "", "the joint is used", [](const JointView &v) { return v.s.isActive; }),
     out<bool>("in-position", "", "no jog or homing move is under way", [](const JointView &v) { return v.s.isInPosition; }),
     out<bool>("error", "", "a fault, following error or limit switch", [](const JointView &v) { return v.s.isFaulted || v.s.isFerrorTripped || v.s.isOnPosHardLimit || v.s.isOnNegHardLimit; }),

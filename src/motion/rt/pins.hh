@@ -39,6 +39,7 @@ class MotionPins {
 
     /// What pins show that seldom changes, as words.
     template <std::size_t BYTES>
+        requires(BYTES % 8 == 0)
     using Shown = std::array<std::uint64_t, BYTES / 8>;
     static constexpr std::size_t FLAGS = offsetof(JointStatus, isActive);  ///< from there to the end
 
