@@ -42,8 +42,10 @@ struct Pose {
     constexpr bool operator==(const Pose &) const noexcept = default;
 };
 
+// Sums are written out: in a servo cycle each loop costs two jumps that nobody predicts.
 constexpr Pose operator+(const Pose &p, const Pose &q) noexcept {
     Pose r;
+#pragma GCC unroll 9
     for (int i = 0; i < AXIS_COUNT; ++i) {
         r[i] = p[i] + q[i];
     }
@@ -52,6 +54,7 @@ constexpr Pose operator+(const Pose &p, const Pose &q) noexcept {
 
 constexpr Pose operator-(const Pose &p, const Pose &q) noexcept {
     Pose r;
+#pragma GCC unroll 9
     for (int i = 0; i < AXIS_COUNT; ++i) {
         r[i] = p[i] - q[i];
     }

@@ -45,7 +45,7 @@ class Homing final : public Module {
     };
     /// Of all joints; made anew after any of them may have changed.
     const Summary &summary() const noexcept {
-        if (!summary_.isCurrent) {
+        if (!summary_.isCurrent) [[unlikely]] {
             summarise();
         }
         return summary_;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A servo cycle from feedback to motor commands; faults and stops.
+// A servo cycle from feedback to motor commands; faults and stops. [[likely]] and [[unlikely]] here and in
+// the parts mark the way through a cycle in which nothing happens: between two cycles the processor forgets
+// its jumps, and each one that is taken costs as much as a dozen instructions (docs/performance.md).
 #include "motion/core/controller.hh"
 
 #include <algorithm>
@@ -89,17 +91,17 @@ bool Controller::isAnythingMoving() const noexcept {
 
 void Controller::step(const Inputs &in, Outputs &out) noexcept {
     ++cycle_;
-    if (power_.isStopping && !isAnythingMoving() && areAtRest(offsets_) && areAtRest(extra_)) {
+    if (power_.isStopping && !isAnythingMoving() && areAtRest(offsets_) && areAtRest(extra_)) [[unlikely]] {
         disable();
     }
-    if (homing_.foreign != nullptr) {
+    if (homing_.foreign != nullptr) [[unlikely]] {
         homing_.foreign->read_pins();
     }
     const PerJoint measured = read_feedback(joints_, in);
     read_feedback(place_, kinematics_, measured.data(), limits_.homed.areAll);
     const bool isDead = channels_->isTaskDead.load(std::memory_order_acquire) != 0;
     const std::uint64_t loops = channels_->task_loops.load(std::memory_order_relaxed);
-    if (motion::step(watchdog_, loops, isDead, config_.period_s)) {
+    if (motion::step(watchdog_, loops, isDead, config_.period_s)) [[unlikely]] {
         stop_category_1(FaultKind::TASK_LOST, -1, watchdog_.standing_s);
     }
     check_faults(in, measure(spindles_, in));
@@ -113,16 +115,20 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
         executor_.set_spindle(n, spindles_[n].turns);
         executor_.set_ramps(n, ramps_of(spindles_, n, settings_));
     }
-    if (!power_.isEnabled) {
+    if (!power_.isEnabled) [[unlikely]] {
         executor_.step(cycle_);
     } else {
         step_homing(in);
         step_jogs(in);
-        if (indexers_.mask != 0) {
+        if (indexers_.mask != 0) [[unlikely]] {
             step_indexers(in);
         }
-        power_.mode == Mode::FREE ? move_joints(in) : move_axes(in);
-        if (extra_.count > 0) {
+        if (power_.mode == Mode::FREE) [[unlikely]] {
+            move_joints(in);
+        } else {
+            move_axes(in);
+        }
+        if (extra_.count > 0) [[unlikely]] {
             move_extra_joints(in);
         }
     }
@@ -134,7 +140,7 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
         const int n = std::countr_zero(failed);
         raise(FaultKind::SPINDLE_FAULT, n, spindles_[n].orient_fault);
     }
-    if (homing_.foreign != nullptr) {
+    if (homing_.foreign != nullptr) [[unlikely]] {
         homing_.foreign->write_pins();
     }
     publish(in, out);
@@ -176,24 +182,24 @@ void Controller::stop_category_1(FaultKind kind, int index, double value) noexce
 }
 
 void Controller::check_faults(const Inputs &in, std::uint32_t spindles_lost) noexcept {
-    if (!power_.isEnabled) {
+    if (!power_.isEnabled) [[unlikely]] {
         return;
     }
-    if (!in.isEnableOn) {
+    if (!in.isEnableOn) [[unlikely]] {
         stop_category_0(FaultKind::ENABLE_LOST, -1);
         return;
     }
     check_joints(in);
     const int in_step = executor_.locked_spindle();
     for (int n = 0; n < config_.num_spindles; ++n) {
-        if (in.spindle[static_cast<std::size_t>(n)].isAmpFaulted) {
+        if (in.spindle[static_cast<std::size_t>(n)].isAmpFaulted) [[unlikely]] {
             stop_category_1(FaultKind::SPINDLE_FAULT, n);
         }
-        if (n == in_step && (spindles_lost >> n & 1U) != 0) {
+        if (n == in_step && (spindles_lost >> n & 1U) != 0) [[unlikely]] {
             stop_category_1(FaultKind::SPINDLE_LOST, n);
         }
     }
-    if (in.misc_errors != 0) {
+    if (in.misc_errors != 0) [[unlikely]] {
         stop_category_1(FaultKind::MISC_ERROR, -1, static_cast<double>(in.misc_errors));
     }
 }
@@ -203,10 +209,12 @@ void Controller::check_joints(const Inputs &in) noexcept {
     JointCheck how;
     how.limits_ignored = jogs_.areLimitsOverridden ? ~0U : 0U;
     how.feedback_ignored = extra_.mask() & limits_.homed.joints;
-    for (int j = 0; j < config_.num_joints && homing.hasWork(); ++j) {
-        const bool isIndexFound = !in.joint[static_cast<std::size_t>(j)].isIndexEnabled;
-        how.at_index |= homing.isAtIndex(j) && isIndexFound ? 1U << j : 0U;
-        how.limits_ignored |= homing_.isIgnoringLimits(j) ? 1U << j : 0U;
+    if (homing_.hasWork()) [[unlikely]] {
+        for (int j = 0; j < config_.num_joints; ++j) {
+            const bool isIndexFound = !in.joint[static_cast<std::size_t>(j)].isIndexEnabled;
+            how.at_index |= homing.isAtIndex(j) && isIndexFound ? 1U << j : 0U;
+            how.limits_ignored |= homing_.isIgnoringLimits(j) ? 1U << j : 0U;
+        }
     }
     for (int j = 0; power_.isEnabled; ++j) {
         switch (find_fault(joints_, j, settings_, how)) {
@@ -227,7 +235,7 @@ void Controller::check_joints(const Inputs &in) noexcept {
 }
 
 void Controller::step_homing(const Inputs &in) noexcept {
-    if (homing_.isDue) {
+    if (homing_.isDue) [[unlikely]] {
         hold(extra_);
         const HomeConditions conditions{true, power_.mode, in.isHomingInhibited,
                                         isAnythingMoving() || !areAtRest(extra_) || busy(indexers_) != 0,
@@ -237,18 +245,18 @@ void Controller::step_homing(const Inputs &in) noexcept {
             raise(FaultKind::HOMING_FAILED, homing_.due, 0, static_cast<std::uint16_t>(why));
         }
     }
-    if (homing_.module().hasWork()) {
+    if (homing_.hasWork()) [[unlikely]] {
         drive_homing(in);
     }
     const HomingFailure failure = take_failure(homing_);
-    if (failure.why != homing::Failure::NONE) {
+    if (failure.why != homing::Failure::NONE) [[unlikely]] {
         raise(FaultKind::HOMING_FAILED, failure.joint, 0, static_cast<std::uint16_t>(failure.why));
     }
-    for (std::uint32_t clamped = homing_.module().take_clamped(); clamped != 0; clamped &= clamped - 1) {
+    for (std::uint32_t clamped = homing_.take_clamped(); clamped != 0; clamped &= clamped - 1) {
         raise(FaultKind::HOMING_CLAMPED, std::countr_zero(clamped));
     }
     const bool isOtherMap = offsets_.shared.joints != 0 && !map_.isAsIn(kinematics_);
-    if (limits_.homed.joints != homed_mask(homing_) || isOtherMap) {
+    if (limits_.homed.joints != homed_mask(homing_) || isOtherMap) [[unlikely]] {
         publish_limits();
     }
 }
@@ -289,9 +297,9 @@ void Controller::step_jogs(const Inputs &in) noexcept {
         const auto lease_ns = static_cast<double>(jogs_.at(over).lease.length_ns);
         raise(FaultKind::JOG_LEASE_ENDED, over.index, lease_ns * 1e-9, over.isJoint ? 1 : 0);
     }
-    if (in.isJogStoppedNow) {
+    if (in.isJogStoppedNow) [[unlikely]] {
         stop_at_once(jogs_);
-    } else if (in.isJogStopped && !homing_.module().isActive()) {
+    } else if (in.isJogStopped && !homing_.isActive()) [[unlikely]] {
         stop(jogs_);
     }
     const bool areJoints = power_.mode == Mode::FREE;
@@ -301,7 +309,7 @@ void Controller::step_jogs(const Inputs &in) noexcept {
         const auto n = static_cast<std::size_t>(i);
         const WheelInput &wheel = areJoints ? in.joint[n].wheel : in.axis_wheel[n];
         const double distance = turned(jogs_.at(target), wheel);
-        if (distance != 0.0) {
+        if (distance != 0.0) [[unlikely]] {
             jog_by_wheel(jogs_, target, distance, wheel, situation_of(in, target));
         }
     }
@@ -351,7 +359,7 @@ void Controller::output_joints() noexcept {
         const int j = std::countr_zero(off);
         jogs_.at({true, j}).planner.reset(joints_[j].pos_fb);
     }
-    if (power_.isEnabled) {
+    if (power_.isEnabled) [[likely]] {
         return;
     }
     follow_joints(place_, kinematics_, commanded(joints_).data(), place_.isFbValid);

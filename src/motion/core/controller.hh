@@ -109,8 +109,8 @@ class Controller {
 
     // --- controller_status.cc
     void publish(const Inputs &in, Outputs &out) noexcept;
-    void fill_path(Status &status) const noexcept;
-    void publish_view(const Inputs &in) noexcept;
+    void fill_path(Status &status, const geom::Pose &programmed) const noexcept;
+    void publish_view(const Inputs &in, const geom::Pose &programmed) noexcept;
 
     ControllerConfig config_;  ///< with the joints that are in use
     const kins::Kinematics &kinematics_;

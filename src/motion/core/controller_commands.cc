@@ -291,7 +291,7 @@ Verdict Controller::set_num_joints(const Inputs &in, int count) noexcept {
 }
 
 Verdict Controller::set_parameter(const SetParameter &command) noexcept {
-    if (homing_.module().isActive()) {
+    if (homing_.isActive()) {
         return verdict_of(command.index, Reason::HOMING);
     }
     const Reason reason = settings_.set(command, config_.num_joints, config_.num_spindles);

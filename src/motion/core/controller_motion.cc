@@ -78,7 +78,7 @@ void Controller::move_joints(const Inputs &in) noexcept {
 
 /// Teleop and coord: every joint follows the pose.
 void Controller::move_axes(const Inputs &in) noexcept {
-    if (sides_.areApart()) {
+    if (sides_.areApart()) [[unlikely]] {
         check_probe(in);
         executor_.step(cycle_);
         const bool isWanted = link_->queue_depth.load(std::memory_order_relaxed) != 0 ||
@@ -90,7 +90,8 @@ void Controller::move_axes(const Inputs &in) noexcept {
         return;
     }
     const geom::Pose pose = power_.mode == Mode::TELEOP ? teleop_pose() : path_pose();
-    if (offsets_.axes != 0) {
+    geom::Pose target = pose;
+    if (offsets_.axes != 0) [[unlikely]] {
         if (retracing_.retrace.isEmpty()) {
             offsets_.travelled = {{pose, pose}, offsets_.shared.at(pose)};
         }
@@ -101,18 +102,19 @@ void Controller::move_axes(const Inputs &in) noexcept {
         offsets.isHonoured = power_.isReady() && limits_.homed.areAll;
         offsets.period_s = config_.period_s;
         motion::step(offsets_, offsets);
+        target = pose + offsets_.pose;
     }
     check_probe(in);
-    move_to(offsets_.axes != 0 ? pose + offsets_.pose : pose);
-    if (power_.mode == Mode::COORD) {
-        if (!map_.areJointsAxes() && hasDropped(standing_, executor_.snapshot())) {
+    move_to(target);
+    if (power_.mode == Mode::COORD) [[likely]] {
+        if (!map_.areJointsAxes() && hasDropped(standing_, executor_.snapshot())) [[unlikely]] {
             tell_standing();
         }
         // Kinematics that only this thread may call cannot be planned with: the machine stops where a joint
         // has to do more than it can.
         const bool isPlanned = map_.kind != AxisMap::Kind::UNKNOWN;
         const Overrun overrun = isPlanned || !power_.isReady() ? Overrun{} : find_overrun(joints_, limits_);
-        if (overrun.joint >= 0) {
+        if (overrun.joint >= 0) [[unlikely]] {
             stop_category_1(overrun.isOutside ? FaultKind::JOINT_LEFT_RANGE : FaultKind::JOINT_TOO_FAST,
                             overrun.joint, overrun.use);
         }
@@ -133,7 +135,7 @@ void Controller::move_axes(const Inputs &in) noexcept {
     constexpr int MAX_EVENTS_PER_CYCLE = 64;
     for (int n = 0; n < MAX_EVENTS_PER_CYCLE; ++n) {
         const traj::PathEvent *event = executor_.due_event();
-        if (event == nullptr) {
+        if (event == nullptr) [[likely]] {
             return;
         }
         fire(outputs_, *event, executor_.snapshot().isDropping);
@@ -202,7 +204,7 @@ geom::Pose Controller::teleop_pose() noexcept {
 geom::Pose Controller::path_pose() noexcept {
     const traj::ExecutorOutput &path = executor_.step(cycle_);
     geom::Pose pose = path.position;
-    if (path.tap.isLost) {
+    if (path.tap.isLost) [[unlikely]] {
         stop_category_1(FaultKind::TAP_LOST, path.tap.spindle);
     }
     // Who has done all that was commanded stays: a program that waits knows that place as its own.
@@ -215,7 +217,7 @@ geom::Pose Controller::path_pose() noexcept {
                            holds_.reverse_rate};
     const RetraceLimits limits = way_limits(limits_, map_, config_);
     follow_way(retracing_, joints_, limits);
-    if (motion::step(retracing_, pose, in, limits)) {
+    if (motion::step(retracing_, pose, in, limits)) [[unlikely]] {
         executor_.set_position(pose);
     }
     return pose;
@@ -224,14 +226,14 @@ geom::Pose Controller::path_pose() noexcept {
 void Controller::move_to(const geom::Pose &pose) noexcept {
     const PerJoint here = commanded(joints_);
     PerJoint positions = here;
-    if (!isAnswered(kinematics_.inverse(pose, positions.data()))) {
+    if (!isAnswered(kinematics_.inverse(pose, positions.data()))) [[unlikely]] {
         // The planner keeps off such poses; were one to come, nothing sensible can be commanded any more.
         stop_category_0(FaultKind::KINEMATICS_FAILED, -1);
         return;
     }
     const bool isPlanned = map_.kind == AxisMap::Kind::PLANNED;
     const int jump = isPlanned ? joint_that_jumps(positions, here, stride_of(limits_, config_)) : -1;
-    if (jump >= 0) {
+    if (jump >= 0) [[unlikely]] {
         const auto n = static_cast<std::size_t>(jump);
         stop_category_0(FaultKind::KINEMATICS_JUMP, jump, positions[n] - joints_[jump].pos_cmd);
         return;
@@ -247,7 +249,7 @@ void Controller::move_to(const geom::Pose &pose) noexcept {
 /// The type that the pin wants, once nothing moves and no path waits.
 void Controller::step_kinematics(const Inputs &in) noexcept {
     kins::TypeSwitch *types = kinematics_.type_switch();
-    if (types == nullptr) {
+    if (types == nullptr) [[likely]] {
         return;
     }
     TypeInputs now;
@@ -303,11 +305,11 @@ void Controller::check_probe(const Inputs &in) noexcept {
     const bool isProbing = power_.mode == Mode::COORD && path.isOnProbe && path.isMoving;
     ProbeInputs probe;
     probe.isClosed = in.isProbeClosed;
-    if (isProbing) {
+    if (isProbing) [[unlikely]] {
         probe.probing_move = path.move;
         probe.isAway = link_->store.move(path.move).isProbeAway;
-    } else if (in.isProbeClosed && !probe_.wasClosed) {
-        const bool isHoming = homing_.module().isActive();
+    } else if (in.isProbeClosed && !probe_.wasClosed) [[unlikely]] {
+        const bool isHoming = homing_.isActive();
         const Parameter ignored =
             isHoming ? Parameter::TRAJ_NO_PROBE_HOME_ERROR : Parameter::TRAJ_NO_PROBE_JOG_ERROR;
         const bool isIgnored = power_.mode != Mode::COORD && settings_.isSet(ignored);

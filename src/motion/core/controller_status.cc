@@ -12,8 +12,11 @@ namespace {
 /// it.
 PartMask new_parts(const PublishedStatus &published, Outputs &out) noexcept {
     const Status &s = out.status;
-    const PartMask seldom = out.touched != 0 ? published.changed(s, out.touched) : 0;
-    out.touched = 0;
+    PartMask seldom = 0;
+    if (out.touched != 0) [[unlikely]] {
+        seldom = published.changed(s, out.touched);
+        out.touched = 0;
+    }
     return part_range(status_part::WHOLE_MACHINE, 1) | part_range(status_part::JOINTS, s.num_joints) |
            part_range(status_part::SPINDLES, s.num_spindles) | seldom;
 }
@@ -30,7 +33,7 @@ void fill_unused(const JointInputs &in, int j, Outputs &out) noexcept {
 
 void trace(Channels &channels, const Inputs &in, const Status &s, const Joints &joints,
            std::uint8_t pose_kind, bool isMoving) noexcept {
-    if (channels.isTracing.load(std::memory_order_relaxed) == 0) {
+    if (channels.isTracing.load(std::memory_order_relaxed) == 0) [[likely]] {
         return;
     }
     TraceSample sample;
@@ -80,7 +83,7 @@ void fill_heading(const traj::PathStore &store, std::uint64_t move, const geom::
     Heading &heading = out.heading;
     const HeadingOrigin origin{s.active_path_id, s.active_path_id != 0 ? move : 0, s.motion_type,
                                s.isReverse};
-    if (origin == heading.origin && (!heading.isArc || origin.path_id == 0)) {
+    if (origin == heading.origin && (!heading.isArc || origin.path_id == 0)) [[likely]] {
         return;
     }
     if (origin.path_id != 0) {
@@ -105,18 +108,19 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
     s.isTaskLost = watchdog_.isLost;
     s.num_joints = config_.num_joints;
     s.num_spindles = config_.num_spindles;
-    if (out.settings_version != settings_.version()) {
+    if (out.settings_version != settings_.version()) [[unlikely]] {
         fill_settings(settings_, out);
     }
     fill(place_, s);
     fill(probe_, in.isProbeClosed, s);
     fill(holds_, s);
     fill(outputs_, in, out);
-    fill_path(s);
-    fill_heading(link_->store, executor_.output().move, without(offsets_, place_.cmd), out);
+    const geom::Pose programmed = without(offsets_, place_.cmd);
+    fill_path(s, programmed);
+    fill_heading(link_->store, executor_.output().move, programmed, out);
     fill(joints_, {power_.isEnabled, jogs_.areLimitsOverridden, limits_.homed.joints}, out);
-    fill(jogs_, power_.mode, without(offsets_, place_.cmd), out);
-    if (offsets_.axes != 0 || !out.areOffsetsQuiet) {
+    fill(jogs_, power_.mode, programmed, out);
+    if (offsets_.axes != 0 || !out.areOffsetsQuiet) [[unlikely]] {
         fill(offsets_, out);
     }
     fill(extra_, limits_.homed.joints, out);
@@ -128,13 +132,13 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
         fill_unused(in.joint[static_cast<std::size_t>(j)], j, out);
     }
     out.isCoordError = isCoordError_;
-    publish_view(in);
+    publish_view(in, programmed);
     channels_->status.write(s, new_parts(channels_->status, out));
     trace(*channels_, in, s, joints_, types_.switches, isAnythingMoving());
 }
 
-/// What is being executed, and what is left of the path.
-void Controller::fill_path(Status &s) const noexcept {
+/// What is being executed, and what is left of the path. `programmed`: the place without external offsets.
+void Controller::fill_path(Status &s, const geom::Pose &programmed) const noexcept {
     s.queue_depth = link_->queue_depth.load(std::memory_order_relaxed);
     s.isQueueFull = link_->isQueueFull.load(std::memory_order_relaxed) != 0;
     s.last_path_id = link_->last_done_id.load(std::memory_order_acquire);
@@ -159,12 +163,12 @@ void Controller::fill_path(Status &s) const noexcept {
     s.current_velocity = e.velocity / tag->feed_ratio;
     s.requested_velocity = tag->requested_velocity;
     s.distance_to_go = e.distance_to_go / tag->feed_ratio;
-    s.dtg = tag->end - without(offsets_, place_.cmd);
+    s.dtg = tag->end - programmed;
     s.isProbing = e.isOnProbe;
 }
 
 /// What the path planner sees.
-void Controller::publish_view(const Inputs &in) noexcept {
+void Controller::publish_view(const Inputs &in, const geom::Pose &programmed) noexcept {
     PathView &v = link_->newest;
     v.executor = executor_.snapshot();
     v.epoch = epoch_;
@@ -173,7 +177,7 @@ void Controller::publish_view(const Inputs &in) noexcept {
     v.isStopping = power_.isStopping || retracing_.isPathLeft;
     v.enables = power_.enables;
     v.limits_version = limits_version_;
-    v.position = without(offsets_, place_.cmd);
+    v.position = programmed;
     v.feed_scale = holds_.net_feed_scale;
     v.rapid_scale = holds_.rapid_scale;
     v.max_feed_scale = std::max(1.0, settings_.get(Parameter::MAX_FEED_SCALE));
@@ -198,7 +202,7 @@ void Controller::publish_view(const Inputs &in) noexcept {
     v.type_asks = types_.asks;
     v.isTypePending = types_.isPending;
     link_->view.write(v);
-    if (offsets_.axes != 0) {
+    if (offsets_.axes != 0) [[unlikely]] {
         link_->offsets.write(range(offsets_));
         std::atomic_thread_fence(std::memory_order_seq_cst);  // before the extent of the path is read again
     }

@@ -110,10 +110,13 @@ kins::Status ModuleKinematics::forward(const double *joints, kins::Pose &pose) c
     EmcPose world = to_c(pose);
     const bool isFound = forward_(joints, &world, &forward_flags_, &inverse_flags_) == 0;
     const geom::Pose found = from_c(world);
-    for (const double x : found.c) {
-        if (!isFound || !std::isfinite(x)) {
-            return kins::Status::UNREACHABLE;
-        }
+    bool areNumbers = isFound;
+#pragma GCC unroll 9
+    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        areNumbers &= std::isfinite(found[i]);
+    }
+    if (!areNumbers) {
+        return kins::Status::UNREACHABLE;
     }
     pose = found;
     return kins::Status::OK;

@@ -70,12 +70,13 @@ int MotionPins::declare(int comp_id, const PinCounts &wanted) noexcept {
     return status == 0 ? declare_each(spindle_, comp_id, counts_.spindles) : status;
 }
 
+/// What seldom is there is out of the way: a jump that is taken is not predicted once in a cycle.
 void MotionPins::read(Inputs &in) noexcept {
     in.time_ns = rtapi_get_time();
     in.digital_in = 0;
     in.misc_errors = 0;
     motion_.read(in);
-    if (counts_.isSwitchable) {
+    if (counts_.isSwitchable) [[unlikely]] {
         switchable_.read(in);
     }
     for (int i = 0; i < counts_.digital; ++i) {
@@ -92,13 +93,13 @@ void MotionPins::read(Inputs &in) noexcept {
     }
     for (int j = 0; j < counts_.joints; ++j) {
         joint_[j].read(in.joint[at(j)]);
-        if (!counts_.areHomingPinsMade) {
+        if (!counts_.areHomingPinsMade) [[likely]] {
             homing_[j].read(in.joint[at(j)]);
         }
-        if (isUnlockable(j)) {
+        if (isUnlockable(j)) [[unlikely]] {
             unlock_[j].read(in.joint[at(j)]);
         }
-        if (j >= counts_.joints - counts_.extra_joints) {
+        if (j >= counts_.joints - counts_.extra_joints) [[unlikely]] {
             posthome_[j].read(in.joint[at(j)]);
         }
     }
@@ -136,17 +137,17 @@ void MotionPins::write(const Outputs &out) noexcept {
     for (int j = 0; j < counts_.joints; ++j) {
         const JointView view{s.joint[at(j)], out.joint[at(j)]};
         joint_[j].write(view);
-        if (!counts_.areHomingPinsMade) {
+        if (!counts_.areHomingPinsMade) [[likely]] {
             homing_[j].write(view);
         }
-        if (isUnlockable(j)) {
+        if (isUnlockable(j)) [[unlikely]] {
             unlock_[j].write(view);
         }
         const bool areFlagsOther =
             replace(flags_shown_[at(j)], reinterpret_cast<const unsigned char *>(&view.s) + FLAGS);
         const bool areOthers =
             replace(joint_shown_[at(j)], static_cast<const SeldomJointOutputs *>(&view.o)) || areFlagsOther;
-        if (areOthers || areAllDue) {
+        if (areOthers || areAllDue) [[unlikely]] {
             seldom_joint_[j].write(view);
             if (!counts_.areHomingPinsMade) {
                 seldom_homing_[j].write(view);
@@ -158,10 +159,11 @@ void MotionPins::write(const Outputs &out) noexcept {
         const AxisOutputs &axis = out.axis[at(i)];
         axis_[i].write(axis);
         const bool isOther = replace(axis_shown_[at(i)], static_cast<const SeldomAxisOutputs *>(&axis));
-        if (isOther || areAllDue) {
+        if (isOther || areAllDue) [[unlikely]] {
             seldom_axis_[i].write(axis);
         }
     }
+#pragma GCC unroll 9
     for (int i = 0; i < MAX_AXES; ++i) {
         tool_offset_[i].write(out.tool_offset.c[at(i)]);
     }

@@ -19,7 +19,7 @@ std::optional<Pose> ArcMean::follow(const PathStore &store, const Piece *piece, 
     }
     seen_ = isOn ? piece->primitive : 0;
     seen_s_ = s;
-    if (primitive_ == 0) {
+    if (primitive_ == 0) [[likely]] {
         return std::nullopt;
     }
     const Primitive &arc = store.primitive(primitive_);

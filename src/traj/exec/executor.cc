@@ -6,6 +6,7 @@
 
 #include "traj/tuning.hh"
 
+// [[likely]] marks what most cycles do: see motion/core/controller.cc.
 namespace mw::traj {
 
 namespace {
@@ -50,7 +51,7 @@ bool isPlanSoonOver(const PathStore &store, const Snapshot &now, Sequence end, d
 }  // namespace
 
 void Executor::take_commits() noexcept {
-    while (const Commit *c = store_.commits.front()) {
+    while (const Commit *c = store_.commits.front()) [[unlikely]] {
         if (c->pass.first != 0) {
             take_pass(*c);
         } else if (c->isSwitch) {
@@ -77,16 +78,16 @@ const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
     state_.cycle = cycle;
     ++state_.tick;
     const bool mustStop = state_.isDropping && state_.motion == Motion::FOLLOW && isFiltered();
-    if (mustStop && !silence_.isStopping) {
+    if (mustStop && !silence_.isStopping) [[unlikely]] {
         watch_planner();
     }
-    if (state_.motion == Motion::LOCKED) {
+    if (state_.motion == Motion::LOCKED) [[unlikely]] {
         step_locked();
     } else {
         advance(period_);
     }
     const bool isDue = next_switch_.plan != 0 && next_switch_.switch_cycle <= cycle;
-    if (isDue) {
+    if (isDue) [[unlikely]] {
         const bool isFree = next_switch_.isStop || (!state_.isHeld && !state_.isDropping);
         const bool isValid =
             next_switch_.brakes == state_.brakes && next_switch_.switch_cycle == cycle && isFree;
@@ -111,7 +112,7 @@ const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
     locate();
     filter();
     const bool isDropOver = state_.isDropping && isAtRest();
-    if (isDropOver) {
+    if (isDropOver) [[unlikely]] {
         finish_drop();
     }
     return out_;
@@ -135,14 +136,14 @@ void Executor::filter() noexcept {
     sample = {leader_, leader_s_, leader_tolerance_, out_.move};
     done_history_[state_.tick % HISTORY_CAPACITY] = leader_done_;
     rest_ticks_ = isResting ? rest_ticks_ + 1 : 0;
-    if (isResting) {
+    if (isResting) [[unlikely]] {
         state_.coasting.stand(period_);
     }
     state_.isSettled = isResting && rest_ticks_ >= state_.filter;
     const bool isPlain = !isFiltered() || state_.isSettled;
     const Piece *piece = state_.piece != 0 ? &store_.piece(state_.piece) : nullptr;
     const std::optional<Pose> on_arc = arc_.follow(store_, piece, state_.x, state_.tick, state_.filter);
-    if (isPlain || on_arc) {
+    if (isPlain || on_arc) [[likely]] {
         // Also keeps rounding from gathering in the mean.
         out_.position = on_arc && !isPlain ? *on_arc : leader_;
         mean_.reset(leader_, state_.filter, state_.tick);
@@ -169,7 +170,7 @@ double Executor::follow(double dt) noexcept {
     const Phase &p = store_.phase(state_.phase);
     const double left = p.duration - state_.time_in_phase;
     state_.coasting.pass(p, std::min(dt, left));
-    if (dt < left) {
+    if (dt < left) [[likely]] {
         state_.time_in_phase += dt;
         state_.x = x_at(p, state_.time_in_phase);
         state_.v = v_at(p, state_.time_in_phase);
@@ -311,20 +312,24 @@ void Executor::finish_drop() noexcept {
 }
 
 void Executor::hold(bool isHeld) noexcept {
-    if (isHeld && !state_.isHeld && state_.motion == Motion::FOLLOW && !isFiltered()) {
+    if (!isHeld) [[likely]] {
+        state_.isHeld = false;
+        return;
+    }
+    if (!state_.isHeld && state_.motion == Motion::FOLLOW && !isFiltered()) {
         start_brake();
     }
     const bool isAtStart = lock_.pass.isTap ? tap_.isWaiting() : state_.x <= 0 && state_.v <= 0;
     const bool isPassWaiting =
         state_.motion == Motion::LOCKED && state_.piece == lock_.pass.first && isAtStart;
-    if (isHeld && isPassWaiting) {
+    if (isPassWaiting) {
         come_to_rest();
     }
-    if (isHeld && !state_.isHeld && state_.motion == Motion::REST) {
+    if (!state_.isHeld && state_.motion == Motion::REST) {
         ++state_.brakes;
         next_switch_.plan = 0;
     }
-    state_.isHeld = isHeld;
+    state_.isHeld = true;
 }
 
 void Executor::drop() noexcept {
@@ -369,7 +374,7 @@ void Executor::locate() noexcept {
     out_.velocity = std::abs(state_.v);
     const bool isMoving = state_.motion != Motion::REST;
     out_.isOnProbe = false;
-    if (state_.piece == 0) {
+    if (state_.piece == 0) [[unlikely]] {
         out_.move = 0;
         out_.distance_to_go = 0;
         return;

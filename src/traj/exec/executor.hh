@@ -121,7 +121,12 @@ class Executor : private ExecutorState {
 
     bool isAtRest() const noexcept { return state_.motion == Motion::REST && state_.isSettled; }
     /// The spindle that what moves is in step with, -1: none.
-    int locked_spindle() const noexcept { return state_.motion == Motion::LOCKED ? lock_.pass.spindle : -1; }
+    int locked_spindle() const noexcept {
+        if (state_.motion == Motion::LOCKED) [[unlikely]] {
+            return lock_.pass.spindle;
+        }
+        return -1;
+    }
     /// Nothing is left of the path.
     bool isEmpty() const noexcept;
     const Snapshot &snapshot() const noexcept { return state_; }

@@ -34,13 +34,14 @@ Vec3 across(const Vec3 &v, const Vec3 &n) noexcept {
 }  // namespace
 
 Pose position_at(const Primitive &p, double s) noexcept {
-    if (s <= 0) {
+    if (s <= 0) [[unlikely]] {
         return p.start;
     }
-    if (s >= p.length) {
+    if (s >= p.length) [[unlikely]] {
         return p.end;
     }
     Pose q;
+#pragma GCC unroll 9
     for (int i = 0; i < AXIS_COUNT; ++i) {
         q[i] = p.base[i] + p.lin[i] * s;
     }

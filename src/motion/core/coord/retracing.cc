@@ -20,7 +20,7 @@ double square_xyz(const std::array<double, Changes::PADDED> &p) noexcept {
 
 /// A path that is dropped while it is gone back ends where that comes to a stand.
 void follow_drops(Retracing &r, std::uint64_t drops) noexcept {
-    if (drops == r.drops_seen) {
+    if (drops == r.drops_seen) [[likely]] {
         return;
     }
     r.drops_seen = drops;
@@ -93,7 +93,7 @@ bool step(Retracing &r, geom::Pose &pose, const RetraceInputs &in, const Retrace
     follow_drops(r, in.drops);
     traj::Retrace &retrace = r.retrace;
     const bool isFirst = !retrace.isAway() && in.isReverseWanted && !in.isStandingWanted && !in.isStopping;
-    if (!retrace.isAway() && !(isFirst && in.isPathHeld && retrace.isReady())) {
+    if (!retrace.isAway() && !(isFirst && in.isPathHeld && retrace.isReady())) [[likely]] {
         return false;
     }
     if (isFirst) {
@@ -124,7 +124,7 @@ void record(Retracing &r, const geom::Pose &pose, const RetraceLimits &limits) n
     std::memcpy(place.data(), pose.c.data(), sizeof pose.c);
     place[geom::AXIS_COUNT] = 0;
     Changes &changes = r.changes;
-    if (r.retrace.isEmpty()) {
+    if (r.retrace.isEmpty()) [[unlikely]] {
         changes = {};
         r.last_step = {};
     } else {
@@ -141,7 +141,7 @@ void record(Retracing &r, const geom::Pose &pose, const RetraceLimits &limits) n
         changes.bend_xyz2 = std::max(changes.bend_xyz2, square_xyz(bend));
     }
     r.last_place = place;
-    if (r.retrace.record(pose)) {
+    if (r.retrace.record(pose)) [[unlikely]] {
         weigh(r, limits);
     }
 }

@@ -20,7 +20,7 @@ auto with_module(const HomingDrive &drive, const Function &function) noexcept {
 }  // namespace
 
 std::uint32_t homed_mask(const HomingDrive &drive) noexcept {
-    if (drive.foreign == nullptr) {
+    if (drive.foreign == nullptr) [[likely]] {
         return drive.own.summary().homed & ((1U << drive.num_joints) - 1U);
     }
     std::uint32_t mask = 0;
@@ -194,7 +194,7 @@ int joint_given_up(HomingDrive &drive) noexcept {
 
 HomingFailure take_failure(HomingDrive &drive) noexcept {
     HomingFailure out;
-    if (drive.foreign != nullptr) {
+    if (drive.foreign != nullptr) [[unlikely]] {
         out.joint = joint_given_up(drive);
         out.why = out.joint >= 0 ? homing::Failure::MODULE_FAILED : homing::Failure::NONE;
         return out;
@@ -219,7 +219,7 @@ bool areFinite(const HomingDrive &drive, const homing::JointCommand *commands) n
 void fill(const HomingDrive &drive, Outputs &out) noexcept {
     out.status.isHoming = drive.isUnderWay();
     const bool isQuiet = drive.foreign == nullptr && drive.own.summary().isQuiet;
-    if (isQuiet && out.isHomingQuiet) {
+    if (isQuiet && out.isHomingQuiet) [[likely]] {
         return;
     }
     out.isHomingQuiet = isQuiet;

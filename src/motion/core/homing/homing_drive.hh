@@ -31,8 +31,27 @@ struct HomingDrive {
     const homing::Module &module() const noexcept {
         return foreign != nullptr ? *foreign : static_cast<const homing::Module &>(own);
     }
+    // What every cycle asks, of ours without the look-up that module() costs.
+    bool isActive() const noexcept {
+        if (foreign != nullptr) [[unlikely]] {
+            return foreign->isActive();
+        }
+        return own.isActive();
+    }
+    bool hasWork() const noexcept {
+        if (foreign != nullptr) [[unlikely]] {
+            return foreign->hasWork();
+        }
+        return own.hasWork();
+    }
+    std::uint32_t take_clamped() noexcept {
+        if (foreign != nullptr) [[unlikely]] {
+            return foreign->take_clamped();
+        }
+        return own.take_clamped();
+    }
     /// Or about to begin.
-    bool isUnderWay() const noexcept { return module().isActive() || isDue; }
+    bool isUnderWay() const noexcept { return isActive() || isDue; }
     bool isIgnoringLimits(int joint) const noexcept {
         return module().isHoming(joint) && own.parameters(joint).isIgnoringLimits;
     }

@@ -39,7 +39,10 @@ double mean_for(const JogLimits &most) noexcept {
 
 /// A jog at rest is over.
 bool isJogged(Jog &jog) noexcept {
-    if (jog.source != JogSource::NONE && jog.planner.isAtRest()) {
+    if (jog.source == JogSource::NONE) [[likely]] {
+        return false;
+    }
+    if (jog.planner.isAtRest()) {
         jog.source = JogSource::NONE;
     }
     return jog.source != JogSource::NONE;
@@ -273,7 +276,7 @@ Verdict take(Jogs &jogs, const SetTeleopVector &command, const JogSituation *sit
 }
 
 JogTarget end_lease(Jogs &jogs, std::int64_t time_ns) noexcept {
-    for (std::uint32_t left = jogs.leased; left != 0; left &= left - 1) {
+    for (std::uint32_t left = jogs.leased; left != 0; left &= left - 1) [[unlikely]] {
         const JogTarget target = target_of_bit(std::countr_zero(left));
         Jog &jog = jogs.at(target);
         if (time_ns < jog.lease.end_ns) {
@@ -411,7 +414,7 @@ void settle(Jogs &jogs, const Inputs &in) noexcept {
         isAnyJog = isJogged(jog) || isAnyJog;
     }
     jogs.isAnyJogged = isAnyJog;
-    if (jogs.isOverrideInJog && !isAnyJog) {
+    if (jogs.isOverrideInJog && !isAnyJog) [[unlikely]] {
         jogs.isOverrideInJog = false;
         jogs.areLimitsOverridden = false;
     }

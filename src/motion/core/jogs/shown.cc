@@ -31,7 +31,7 @@ void fill_places(const Jogs &jogs, const geom::Pose &pose, Outputs &out) noexcep
 
 void fill(const Jogs &jogs, Mode mode, const geom::Pose &pose, Outputs &out) noexcept {
     const bool isQuiet = mode == Mode::COORD && !jogs.isAnyJogged;
-    if (isQuiet && out.areJogsQuiet) {
+    if (isQuiet && out.areJogsQuiet) [[likely]] {
         fill_places(jogs, pose, out);
         return;
     }

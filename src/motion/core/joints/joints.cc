@@ -40,7 +40,7 @@ JointFault check(Joint &s, const Settings &settings, int j, const JointCheck &ho
     const std::uint32_t own = 1U << j;
     const bool isAtIndex = (how.at_index & own) != 0;
     const bool isFeedbackIgnored = (how.feedback_ignored & own) != 0;
-    if (s.isFeedbackLost && !isFeedbackIgnored) {
+    if (s.isFeedbackLost && !isFeedbackIgnored) [[unlikely]] {
         return JointFault::FEEDBACK_LOST;
     }
     const double vmax = settings.get(Parameter::JOINT_MAX_VELOCITY, j);
@@ -48,17 +48,17 @@ JointFault check(Joint &s, const Settings &settings, int j, const JointCheck &ho
         vmax > 0 ? settings.get(Parameter::JOINT_FERROR, j) * std::abs(s.vel_cmd) / vmax : 0.0;
     const double allowed = std::max(scaled, settings.get(Parameter::JOINT_MIN_FERROR, j));
     s.ferror_limit = allowed;
-    if (isAtIndex) {
+    if (isAtIndex) [[unlikely]] {
         // Its encoder counts from another zero already: the lag is that of the cycle before.
         return s.isFaulted ? JointFault::AMP_FAULT : JointFault::NONE;
     }
     const double ferror = isFeedbackIgnored ? 0.0 : s.pos_cmd - s.pos_fb;
     s.ferror = ferror;
     s.ferror_highmark = std::max(s.ferror_highmark, std::abs(ferror));
-    if (s.isFaulted) {
+    if (s.isFaulted) [[unlikely]] {
         return JointFault::AMP_FAULT;
     }
-    if (std::abs(ferror) > allowed) {
+    if (std::abs(ferror) > allowed) [[unlikely]] {
         s.isFerrorTripped = true;
         return JointFault::FOLLOWING_ERROR;
     }
@@ -186,7 +186,7 @@ JointFault find_fault(Joints &joints, int &joint, const Settings &settings, cons
     JointFault fault = JointFault::NONE;
     for (; j < count; ++j) {
         fault = joints[j].isActive ? check(joints[j], settings, j, own) : JointFault::NONE;
-        if (fault != JointFault::NONE) {
+        if (fault != JointFault::NONE) [[unlikely]] {
             break;
         }
     }
@@ -215,16 +215,16 @@ std::uint32_t output(Joints &joints, const Settings &settings, bool isEnabled, d
     std::uint32_t off = 0;
     for (int j = 0; j < joints.count; ++j) {
         Joint &s = joints[j];
-        if (!isEnabled || (!s.isActive && !s.isAmpWanted)) {
+        if (!isEnabled || (!s.isActive && !s.isAmpWanted)) [[unlikely]] {
             follow_feedback(s);
             off |= 1U << j;
             continue;
         }
-        if (!s.isActive) {
+        if (!s.isActive) [[unlikely]] {
             hold(s);
             continue;
         }
-        if (isIdle(s.correction, settings.get(Parameter::JOINT_BACKLASH, j))) {
+        if (isIdle(s.correction, settings.get(Parameter::JOINT_BACKLASH, j))) [[likely]] {
             follow_idle(s.correction, s.pos_cmd);
         } else {
             step(s.correction, settings, j, s.pos_cmd, period_s);

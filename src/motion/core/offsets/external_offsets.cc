@@ -174,7 +174,10 @@ PoseRange range(const ExternalOffsets &offsets) noexcept {
 }
 
 geom::Pose without(const ExternalOffsets &offsets, const geom::Pose &pose) noexcept {
-    return offsets.axes != 0 ? pose - offsets.pose : pose;
+    if (offsets.axes != 0) [[unlikely]] {
+        return pose - offsets.pose;
+    }
+    return pose;
 }
 
 void narrow(JogRange &jog, const ExternalOffsets &offsets, int axis) noexcept {

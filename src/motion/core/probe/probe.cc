@@ -4,7 +4,7 @@
 namespace mw::motion {
 
 ProbeEvent step(TouchProbe &probe, const ProbeInputs &in, const geom::Pose &position) noexcept {
-    if (in.probing_move != 0) {
+    if (in.probing_move != 0) [[unlikely]] {
         if (probe.move != in.probing_move) {
             probe.move = in.probing_move;
             probe.isTripped = false;

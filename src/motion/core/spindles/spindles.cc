@@ -43,7 +43,7 @@ double within_range(const Settings &settings, int n, double rpm) noexcept {
 
 /// Goes on with an orientation; true when it fails.
 bool hasOrientFailed(Spindle &s, const SpindleInputs &pins) noexcept {
-    if (!s.isOrienting || s.orient_state != Spindles::ORIENT_IN_PROGRESS) {
+    if (!s.isOrienting || s.orient_state != Spindles::ORIENT_IN_PROGRESS) [[likely]] {
         return false;
     }
     if (pins.orient_fault != 0) {

@@ -71,11 +71,8 @@ void watch(TurnBack &t, const SpindleMotion &now) noexcept {
 }
 
 std::array<double, 2> ramps_of(const TurnBack &t, double given) noexcept {
-    std::array<double, 2> out{};
-    for (std::size_t i = 0; i < out.size(); ++i) {
-        out[i] = t.learned[i] > 0 ? t.learned[i] : given > 0 ? given : t.guessed;
-    }
-    return out;
+    const double otherwise = given > 0 ? given : t.guessed;
+    return {t.learned[0] > 0 ? t.learned[0] : otherwise, t.learned[1] > 0 ? t.learned[1] : otherwise};
 }
 
 }  // namespace mw::motion
