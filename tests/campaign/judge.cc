@@ -135,6 +135,7 @@ LeastStop Judge::time_to_stop() const {
         groups.push_back({{stop_.path.motors[j]}, built_up(d.isAngular, d.acceleration, d.jerk)});
     }
     StoppingGroup linear{{}, design_.acceleration};
+    double least_s = 0;
     for (const AxisDesign &a : design_.axes) {
         std::vector<double> places;
         for (const geom::Pose &pose : stop_.path.axes) {
@@ -145,6 +146,8 @@ LeastStop Judge::time_to_stop() const {
         }
         // What external offsets may take is not there for stops.
         const double own = (1 - a.offset_ratio) * a.acceleration;
+        const double jerk = design_.isJerkLimited ? a.jerk : 0;
+        least_s = std::max(least_s, least_stop_with_jerk(places, jerk, period_));
         groups.push_back({{places}, built_up(geom::isAngular(a.axis), own, a.jerk)});
         if (!geom::isAngular(a.axis)) {
             linear.places.push_back(places);
@@ -154,7 +157,7 @@ LeastStop Judge::time_to_stop() const {
         groups.push_back(linear);
     }
     LeastStop stop = least_stop(groups, period_);
-    stop.seconds += time_of_jerk();
+    stop.seconds = std::max(stop.seconds + time_of_jerk(), least_s);
     return stop;
 }
 

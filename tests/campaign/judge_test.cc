@@ -244,6 +244,20 @@ TEST_F(JudgeTest, CountsRulesThatAreKnownToBeBroken) {
     EXPECT_EQ(judge_.broken_known().at("homed"), 3);
 }
 
+TEST(StopBound, WithJerkAnAccelerationThatRisesComesDownFirst_C3) {
+    constexpr double J = 1000;
+    const auto moving = [](double v, double a) {
+        return std::vector<double>{0, (v - a * T) * T, (2 * v - a * T) * T};
+    };
+    EXPECT_NEAR(least_stop_with_jerk(moving(10, 0), J, T), 2 * std::sqrt(10 / J), 1e-9);
+    // 0.1 s to no acceleration, by then 15/s; half of that is gone after sqrt(15 / J), as much again to rest.
+    EXPECT_NEAR(least_stop_with_jerk(moving(10, 100), J, T), 0.1 + 2 * std::sqrt(15 / J), 1e-9);
+    EXPECT_NEAR(least_stop_with_jerk(moving(-10, -100), J, T), 0.1 + 2 * std::sqrt(15 / J), 1e-9);
+    // Of a stop from 15/s that began 0.1 s ago.
+    EXPECT_NEAR(least_stop_with_jerk(moving(10, -100), J, T), 2 * std::sqrt(15 / J) - 0.1, 1e-9);
+    EXPECT_EQ(least_stop_with_jerk(moving(10, 100), 0, T), 0);
+}
+
 TEST(Plan, OneSeedGivesOnePlanAndPartsOfItCanBeKept) {
     for (std::uint64_t seed = 1; seed <= 50; ++seed) {
         const Plan a = make_plan(seed);

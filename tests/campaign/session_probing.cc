@@ -13,9 +13,12 @@ namespace {
 constexpr double PERIOD_S = 1e-3;
 
 /// How far a probe that is so fast may go on when it has found something.
-double way_to_stop(const Design &design, const JointDesign &joint, double speed) {
+double way_to_stop(const Design &design, const JointDesign &joint, int axis, double speed) {
     constexpr double FACTOR = 2.2, SLACK_S = 0.02;  // as for any stop
-    const double a = std::min(joint.acceleration, design.acceleration);
+    double a = std::min(joint.acceleration, design.acceleration);
+    for (const AxisDesign &one : design.axes) {
+        a = one.axis == axis ? std::min(a, (1 - one.offset_ratio) * one.acceleration) : a;
+    }
     // All axes of a path have one mean, that of the slowest.
     const double stop_s = speed / a + 2.5 * design.rise_s();
     constexpr double DRIVE = 0.03;
@@ -71,7 +74,7 @@ void Session::check_probing(const Act &act, End end) {
         const double late = 2.5 * probe.speed * PERIOD_S + 3 / joint.counts_per_unit + 0.02 + 2 * joint.play +
                             2 * joint.screw_error;
         farthest[probe.axis] =
-            std::max(farthest[probe.axis], late + way_to_stop(plan_.design, joint, probe.speed));
+            std::max(farthest[probe.axis], late + way_to_stop(plan_.design, joint, probe.axis, probe.speed));
         if (n == found.size()) {
             continue;
         }

@@ -63,4 +63,14 @@ LeastStop least_stop(const std::vector<StoppingGroup> &groups, double period_s) 
     return stop;
 }
 
+double least_stop_with_jerk(const std::vector<double> &places, double jerk, double period_s) {
+    if (!(jerk > 0) || places.size() < 3) {
+        return 0;
+    }
+    const double v = (places[2] - places[1]) / period_s;
+    const double a = (v - (places[1] - places[0]) / period_s) / period_s;
+    const double rising = v < 0 ? -a : a;  // negative: a part of the stop is done
+    return rising / jerk + 2 * std::sqrt((std::abs(v) + 0.5 * rising * rising / jerk) / jerk);
+}
+
 }  // namespace mw::campaign
