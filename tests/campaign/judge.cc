@@ -407,14 +407,6 @@ void Judge::check_outputs(const Sample &s) {
     }
 }
 
-bool Judge::mayBeAtRest() const {
-    bool isSlow = true;
-    for (std::size_t j = 0; j < velocity_.size(); ++j) {
-        isSlow = isSlow && std::abs(velocity_[j]) <= design_.joints[j].acceleration * period_;
-    }
-    return standing_ > 0 || isSlow;
-}
-
 void Judge::check_rest(const Sample &s) {
     bool isMoving = false, isOffsetMoving = false;
     bool isOn = false, wasOn = false;
