@@ -41,6 +41,46 @@ class NameList {
     std::uint32_t last_ = 0;
 };
 
+/// What the program has told its spindles, and whether the next cut waits for one, as task lets it.
+class ProgrammedSpindles {
+  public:
+    struct Spindle {
+        double speed = 0, surface_unit = 0, css_max_rpm = 0;
+        bool isTurning = false, isWaiting = false;
+    };
+    const Spindle &at(int number) const { return spindles_[static_cast<std::size_t>(number)]; }
+
+    void take(const SetSpindleMode &one) { at(one.spindle).css_max_rpm = one.css_max_rpm; }
+    void take(const UseSpindleSpeed &one) {
+        Spindle &spindle = at(one.spindle);
+        const double speed = std::abs(one.speed);
+        const bool isNew = spindle.speed != speed || spindle.surface_unit != one.surface_unit;
+        spindle.speed = speed;
+        spindle.surface_unit = one.surface_unit;
+        isCutWaiting_ = isNew && spindle.isTurning ? spindle.isWaiting : isCutWaiting_;
+    }
+    void take(const StartSpindle &one) {
+        at(one.spindle).isTurning = true;
+        at(one.spindle).isWaiting = isCutWaiting_ = one.isWaiting;
+    }
+    void take(const StopSpindle &one) {
+        at(one.spindle).isTurning = false;
+        isCutWaiting_ = isCutWaiting_ && std::ranges::any_of(spindles_, &Spindle::isTurning);
+    }
+    /// Whether this move waits; a cut takes the wait, so that those behind it do not.
+    bool take_wait(const MoveSettings &move) {
+        const bool isAwaited = isCutWaiting_ && !move.isRapid;
+        isCutWaiting_ = isCutWaiting_ && move.isRapid;
+        return isAwaited;
+    }
+
+  private:
+    Spindle &at(int number) { return spindles_[static_cast<std::size_t>(number)]; }
+
+    std::array<Spindle, MAX_SPINDLES> spindles_{};
+    bool isCutWaiting_ = false;
+};
+
 /// The text after "section," in a comment; nothing when it is another comment.
 std::string_view section_name(std::string_view comment) {
     constexpr std::string_view KEY = "section,";
@@ -140,13 +180,9 @@ class Preview::Impl final : public MachineCanon, public World {
                 },
                 [this](const UseToolOffset &one) { tool_offset_ = one.offset; },
                 [this](const UseOffsets &one) { offsets_ = one; },
-                [this](const SetSpindleMode &one) { spindle(one.spindle).css_max_rpm = one.css_max_rpm; },
-                [this](const StartSpindle &one) {
-                    SpindleState &state = spindle(one.spindle);
-                    state.isTurning = true;
-                    state.isWaiting = isCutWaiting_ = one.isWaiting;
+                [this](const OneOf<SetSpindleMode, UseSpindleSpeed, StartSpindle, StopSpindle> auto &one) {
+                    spindles_.take(one);
                 },
-                [this](const OneOf<UseSpindleSpeed, StopSpindle> auto &one) { turn(one); },
                 [this](const SelectTool &one) { selected_ = one.toolno; },
                 [this](const OneOf<ProgramStop, PalletShuttle> auto &) {
                     add_standing(PreviewKind::STOP, 0, 0);
@@ -175,22 +211,6 @@ class Preview::Impl final : public MachineCanon, public World {
     bool isOptionalStopOn() const override { return true; }
 
   private:
-    struct SpindleState {
-        double speed = 0, surface_unit = 0, css_max_rpm = 0;
-        bool isTurning = false, isWaiting = false;
-    };
-    void turn(const UseSpindleSpeed &one) {
-        SpindleState &state = spindle(one.spindle);
-        const double speed = std::abs(one.speed);
-        const bool isNew = state.speed != speed || state.surface_unit != one.surface_unit;
-        state.speed = speed;
-        state.surface_unit = one.surface_unit;
-        isCutWaiting_ = isNew && state.isTurning ? state.isWaiting : isCutWaiting_;
-    }
-    void turn(const StopSpindle &one) {
-        spindle(one.spindle).isTurning = false;
-        isCutWaiting_ = isCutWaiting_ && std::ranges::any_of(spindles_, &SpindleState::isTurning);
-    }
     void show(const ArcMove &move) {
         PreviewEvent event = place_;
         event.kind = PreviewKind::ARC;
@@ -307,8 +327,7 @@ class Preview::Impl final : public MachineCanon, public World {
         mark_progress(event.settings, std::max(geom::norm(end - position_), arc_length));
         event.start = convert(position_);
         event.end = convert(end);
-        event.isSpindleAwaited = isCutWaiting_ && !event.settings.isRapid;
-        isCutWaiting_ = isCutWaiting_ && event.settings.isRapid;
+        event.isSpindleAwaited = spindles_.take_wait(event.settings);
         if (event.settings.feed_per_revolution > 0) {
             event.spindle_rpm = spindle_rpm(event.settings.synch_spindle, 0.5 * (position_[0] + end[0]));
         }
@@ -317,7 +336,7 @@ class Preview::Impl final : public MachineCanon, public World {
     }
     /// With the tool at machine X `x`.
     double spindle_rpm(int spindle, double x) const {
-        const SpindleState &state = spindles_[static_cast<std::size_t>(spindle)];
+        const ProgrammedSpindles::Spindle &state = spindles_.at(spindle);
         if (!(state.css_max_rpm > 0)) {
             return state.speed;
         }
@@ -374,9 +393,7 @@ class Preview::Impl final : public MachineCanon, public World {
     NameList files_, sections_;
     std::uint32_t section_ = sections_.number_of("");
     int tool_, selected_ = -1;
-    std::array<SpindleState, MAX_SPINDLES> spindles_{};
-    bool isCutWaiting_ = false;  ///< the next cut waits for a spindle, as task lets it
-    SpindleState &spindle(int number) { return spindles_[static_cast<std::size_t>(number)]; }
+    ProgrammedSpindles spindles_;
     Pose position_, tool_offset_;
     UseOffsets offsets_;
     diag::Sink *sink_ = nullptr;

@@ -35,8 +35,8 @@ struct StopSearch {
     const Snapshot &now;
     LeaderState from;
 
-    /// Commits the stop that stands soonest of those that pass the trial; false where it refuses all.
-    bool commit_soonest() noexcept;
+    /// Drafts the stop that stands soonest of those that pass the trial; false where it refuses all.
+    bool draft_soonest() noexcept;
 
   private:
     bool draft(Sequence begin, std::size_t shape) noexcept {
@@ -44,7 +44,7 @@ struct StopSearch {
     }
 };
 
-bool StopSearch::commit_soonest() noexcept {
+bool StopSearch::draft_soonest() noexcept {
     const Sequence begin = timing.phases_end();
     std::array<std::pair<double, std::size_t>, STOP_COUNT> stops;
     std::size_t count = 0;
@@ -56,10 +56,8 @@ bool StopSearch::commit_soonest() noexcept {
     std::sort(stops.begin(), stops.begin() + static_cast<std::ptrdiff_t>(count));
     for (std::size_t n = 0; n < count; ++n) {
         const bool isSame = n > 0 && stops[n].first == stops[n - 1].first;
-        const bool isSound =
-            !isSame && draft(begin, stops[n].second) &&
-            trial.check(view, now, {from, begin, timing.phases_end(), timing.outlook(now)}).isSound;
-        if (isSound && timing.commit(view, store, now, begin, Ending::STOP)) {
+        if (!isSame && draft(begin, stops[n].second) &&
+            trial.check(view, now, {from, begin, timing.phases_end(), timing.outlook(now)}).isSound) {
             return true;
         }
     }
@@ -244,8 +242,10 @@ bool Planner::find_plan(const Snapshot &now, LeaderState from, Ending ending) no
         TimingTuning::STANDING * path_.piece(from.piece).acceleration.at(0) * settings_.period_s;
     from.v = from.v < standing ? 0.0 : from.v;
     const PathView on = view();
-    if (ending == Ending::STOP &&
-        StopSearch{timing_, trial_, path_.store(), on, now, from}.commit_soonest()) {
+    if (ending == Ending::STOP && StopSearch{timing_, trial_, path_.store(), on, now, from}.draft_soonest()) {
+        if (!timing_.commit(on, path_.store(), now, begin, ending)) {
+            timing_.discard(begin);
+        }
         return true;
     }
     easing_.begin();

@@ -55,6 +55,9 @@ struct AxisDesign {
     double velocity = 100, acceleration = 1000, jerk = 0;
     double low = -100, high = 100;
     double offset_ratio = 0;  ///< [AXIS_l]OFFSET_AV_RATIO; 0: no external offsets
+
+    /// What external offsets leave for paths and their stops.
+    double acceleration_of_path() const { return (1 - offset_ratio) * acceleration; }
 };
 
 struct Design {

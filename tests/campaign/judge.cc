@@ -144,11 +144,9 @@ LeastStop Judge::time_to_stop() const {
         if (!stop_.path.areAxesKnown) {
             continue;
         }
-        // What external offsets may take is not there for stops.
-        const double own = (1 - a.offset_ratio) * a.acceleration;
         const double jerk = design_.isJerkLimited ? a.jerk : 0;
         least_s = std::max(least_s, least_stop_with_jerk(places, jerk, period_));
-        groups.push_back({{places}, built_up(geom::isAngular(a.axis), own, a.jerk)});
+        groups.push_back({{places}, built_up(geom::isAngular(a.axis), a.acceleration_of_path(), a.jerk)});
         if (!geom::isAngular(a.axis)) {
             linear.places.push_back(places);
         }

@@ -31,7 +31,7 @@ double Writer::speed_for_z(double share) const {
 /// Along Z, as a thread gains speed: with jerk limits part of the acceleration is kept for the spindle.
 double Writer::way_to_speed(double v) const {
     const AxisDesign z = z_with_joints();
-    const double a = 0.45 * std::min((1 - z.offset_ratio) * z.acceleration, design_.acceleration);
+    const double a = 0.45 * std::min(z.acceleration_of_path(), design_.acceleration);
     const double jerk =
         z.jerk > 0 && design_.jerk > 0 ? std::min(z.jerk, design_.jerk) : std::max(z.jerk, design_.jerk);
     const double rise_s = design_.isJerkLimited && jerk > 0 ? 2 * a / jerk : 0;

@@ -17,7 +17,7 @@ double way_to_stop(const Design &design, const JointDesign &joint, int axis, dou
     constexpr double FACTOR = 2.2, SLACK_S = 0.02;  // as for any stop
     double a = std::min(joint.acceleration, design.acceleration);
     for (const AxisDesign &one : design.axes) {
-        a = one.axis == axis ? std::min(a, (1 - one.offset_ratio) * one.acceleration) : a;
+        a = one.axis == axis ? std::min(a, one.acceleration_of_path()) : a;
     }
     // All axes of a path have one mean, that of the slowest.
     const double stop_s = speed / a + 2.5 * design.rise_s();

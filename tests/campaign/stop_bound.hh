@@ -22,9 +22,9 @@ struct LeastStop {
 };
 LeastStop least_stop(const std::vector<StoppingGroup> &groups, double period_s);
 
-/// Seconds that a coordinate needs whose jerk is at most `jerk` [unit/s^3], by the speed and acceleration
-/// that it has at the third of its samples and with no other limit: a / J, and 2 sqrt(v / J) from the speed
-/// that it has by then. 0 where there is no limit of jerk.
+/// Seconds that a coordinate needs at least whose jerk is at most `jerk` [unit/s^3], by the speed and
+/// acceleration that it has at the third of its samples and with no other limit: a / J, and 2 sqrt(v / J)
+/// from the speed that it has by then. 0 where there is no limit of jerk.
 double least_stop_with_jerk(const std::vector<double> &places, double jerk, double period_s);
 
 }  // namespace mw::campaign
