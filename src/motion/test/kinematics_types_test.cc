@@ -118,6 +118,32 @@ TEST_F(KinematicsTypesTest, AChangeOnAPathStopsItAndSaysSo_C14) {
     EXPECT_TRUE(rig.status().isEnabled);
 }
 
+TEST_F(KinematicsTypesTest, AnErrorOfThePathIsShownUntilAStopOrTheNextSwitchingOn_C14_G1) {
+    for (const bool isAborted : {true, false}) {
+        EXPECT_FALSE(rig.out->isCoordError);
+        rig.line(at(rig.status().carte_pos_cmd[0] + 20, 30));
+        rig.step(200);
+        ASSERT_FALSE(rig.status().isInPosition);
+        ask(isAborted ? 1 : 0);
+        settle();
+        EXPECT_TRUE(rig.out->isCoordError);
+        rig.send(SetMode{Mode::TELEOP});
+        rig.step(5);
+        EXPECT_TRUE(rig.out->isCoordError);
+        if (isAborted) {
+            rig.send(Abort{++rig.epoch});
+        } else {
+            rig.send(Disable{});
+            rig.step(5);
+            rig.send(Enable{});
+        }
+        rig.step(5);
+        EXPECT_FALSE(rig.out->isCoordError);
+        rig.send(SetMode{Mode::COORD});
+        rig.step(MotionRig::PLANNER_PERIOD);
+    }
+}
+
 TEST_F(KinematicsTypesTest, ATypeThatDoesNotExistIsToldOnceAndChangesNothing_C14) {
     for (const double type : {7.0, 0.5, -1.0, std::nan(""), 1e300}) {
         rig.faults.clear();
@@ -125,6 +151,8 @@ TEST_F(KinematicsTypesTest, ATypeThatDoesNotExistIsToldOnceAndChangesNothing_C14
         rig.step(50);
         ASSERT_EQ(rig.faults.size(), 1U) << type;
         EXPECT_EQ(rig.faults[0].kind, FaultKind::NO_KINEMATICS_TYPE);
+        EXPECT_EQ(rig.faults[0].index, -1) << "it is no joint's";
+        EXPECT_FALSE(rig.out->isCoordError) << "the path is not touched";
         EXPECT_EQ(kinematics.type, 0);
         EXPECT_TRUE(rig.status().isInPosition);
         ask(0);

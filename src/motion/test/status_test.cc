@@ -151,5 +151,38 @@ TEST(StatusOfMotion, ReadersHaveTheWholeOfIt_C1) {
     EXPECT_EQ(reader->value.axis[1].max_limit, 5);
 }
 
+/// A trace has a sample for each cycle with what the status of that cycle says.
+TEST(StatusOfMotion, ATraceSaysOfEachCycleWhatItsStatusSays_C1) {
+    MotionRig rig;
+    rig.ready();
+    TraceSample sample;
+    rig.step(3);
+    EXPECT_FALSE(rig.channels->trace.pop(sample)) << "nobody has asked";
+    rig.channels->isTracing.store(1);
+    geom::Pose end;
+    end[0] = 5;
+    rig.line(end, 50);
+    int moving = 0, hasMoved = 0;
+    geom::Pose last = rig.status().carte_pos_cmd;
+    for (int n = 0; n < 300; ++n) {
+        rig.step();
+        const Status &s = rig.status();
+        ASSERT_TRUE(rig.channels->trace.pop(sample));
+        EXPECT_EQ(sample.time_ns, rig.in.time_ns);
+        EXPECT_EQ(sample.cycle, s.cycle);
+        EXPECT_EQ(sample.path_id, s.active_path_id);
+        EXPECT_EQ(sample.line, s.source.line);
+        EXPECT_EQ(sample.epoch, s.epoch);
+        EXPECT_EQ(sample.carte_pos_cmd, s.carte_pos_cmd);
+        EXPECT_EQ(sample.joint_pos_cmd[0], s.joint[0].pos_cmd);
+        hasMoved += s.carte_pos_cmd != last ? 1 : 0;
+        last = s.carte_pos_cmd;
+        moving += sample.isInMotion;
+        EXPECT_FALSE(rig.channels->trace.pop(sample)) << "one for each cycle";
+    }
+    EXPECT_GT(hasMoved, 100);
+    EXPECT_NEAR(moving, hasMoved, 2) << "the last step of a move ends at rest";
+}
+
 }  // namespace
 }  // namespace mw::motion
