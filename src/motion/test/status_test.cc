@@ -151,6 +151,27 @@ TEST(StatusOfMotion, ReadersHaveTheWholeOfIt_C1) {
     EXPECT_EQ(reader->value.axis[1].max_limit, 5);
 }
 
+/// Off, there is no move.
+TEST(StatusOfMotion, NothingIsUnderWayOnceTheMachineIsOff_C1_C5) {
+    MotionRig rig;
+    rig.ready();
+    geom::Pose end;
+    end[0] = 20;
+    const CommandId id = rig.line(end, 30);
+    rig.step(200);
+    ASSERT_EQ(rig.status().active_path_id, id);
+    ASSERT_GT(rig.status().current_velocity, 0);
+    rig.in.isEnableOn = false;
+    rig.step(5);
+    const Status &s = rig.status();
+    EXPECT_FALSE(s.isEnabled);
+    EXPECT_EQ(s.active_path_id, 0U);
+    EXPECT_EQ(s.source.line, 0);
+    EXPECT_EQ(s.motion_type, MotionType::NONE);
+    EXPECT_EQ(s.current_velocity, 0);
+    EXPECT_EQ(s.distance_to_go, 0);
+}
+
 /// A trace has a sample for each cycle with what the status of that cycle says.
 TEST(StatusOfMotion, ATraceSaysOfEachCycleWhatItsStatusSays_C1) {
     MotionRig rig;
