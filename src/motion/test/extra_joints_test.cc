@@ -370,6 +370,22 @@ TEST(ExtraJoints, TheyAreTheLastOnesAndStayInUse_C12) {
     EXPECT_TRUE(r.rig.isDone(same));
 }
 
+/// One joint too many would be one of nobody, or beyond them all.
+TEST(ExtraJoints, SwitchingOnReadiesThemAndNoneBeside_C2) {
+    ExtraJoints extra;
+    extra.first = 2;
+    extra.count = 3;
+    const std::array<JointInputs, MAX_JOINTS> pins{};
+    const FoldedLimits limits;
+    const ExtraJointInputs in{pins, {}, limits, ~0U, MotionRig::T};
+    switch_on(extra, in);
+    for (int j = 0; j < MAX_JOINTS; ++j) {
+        const bool isOne = j >= extra.first && j < extra.first + extra.count;
+        EXPECT_EQ(extra.joint[static_cast<std::size_t>(j)].state, isOne ? Following::READY : Following::NONE)
+            << j;
+    }
+}
+
 TEST(ExtraJoints, AlsoOnMachinesWhoseJointsAreNotAxes_C14) {
     const kins::CoreXy corexy;
     MotionRig rig(corexy, 4, 100, 1000, 1);
