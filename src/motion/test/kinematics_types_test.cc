@@ -162,6 +162,41 @@ TEST_F(KinematicsTypesTest, ATypeThatDoesNotExistIsToldOnceAndChangesNothing_C14
     expect_joints(0, 0);
 }
 
+/// Pushed by hand to where no pose is known, off, in a mode in which the pose commands the joints.
+TEST_F(KinematicsTypesTest, WithoutAPoseTheMachineGoesOnInJointModeAlone_C6_C14) {
+    ask(2);
+    settle();
+    for (const Mode mode : {Mode::TELEOP, Mode::COORD}) {
+        drive(at(20, 30));
+        rig.send(SetMode{mode});
+        rig.step(5);
+        rig.in.isEnableOn = false;
+        rig.step(5);
+        ASSERT_FALSE(rig.status().isEnabled);
+        rig.in.isEnableOn = true;
+        rig.in.joint[0].motor_pos_fb = 5;
+        rig.step(5);
+        ASSERT_EQ(joint(0), 5) << "it is where it was pushed to";
+        const CommandId on = rig.send(Enable{});
+        rig.step(5);
+        EXPECT_EQ(rig.refusal(on), Reason::POSE_UNKNOWN);
+        EXPECT_FALSE(rig.status().isEnabled);
+        rig.send(SetMode{Mode::FREE});
+        const CommandId on_free = rig.send(Enable{});
+        const CommandId teleop = rig.send(SetMode{Mode::TELEOP});
+        rig.step(5);
+        EXPECT_TRUE(rig.isDone(on_free));
+        EXPECT_EQ(rig.refusal(teleop), Reason::POSE_UNKNOWN);
+        expect_joints(5, 30);
+        const CommandId back = rig.send(JogAbsolute{{true, 0}, 50, 20});
+        rig.step(2000);
+        EXPECT_TRUE(rig.isDone(back));
+        rig.send(SetMode{Mode::COORD});
+        rig.step(5);
+        ASSERT_EQ(rig.status().mode, Mode::COORD);
+    }
+}
+
 TEST_F(KinematicsTypesTest, ATypeWithoutAPoseHereIsRefused_C14) {
     drive(at(5, 5));
     ask(2);
