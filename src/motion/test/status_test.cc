@@ -151,6 +151,37 @@ TEST(StatusOfMotion, ReadersHaveTheWholeOfIt_C1) {
     EXPECT_EQ(reader->value.axis[1].max_limit, 5);
 }
 
+/// More moves than the planner has room for: that is shown as long as they wait, whether they are driven
+/// then or a stop takes them away.
+TEST(StatusOfMotion, TheQueueIsFullOnlyWhileMovesWaitForRoom_C1) {
+    constexpr int MOVES = 5000;
+    for (const bool isAborted : {false, true}) {
+        MotionRig rig;
+        rig.ready();
+        CommandId last = 0;
+        int sent = 0;
+        int full = 0;
+        const auto isOver = [&] {
+            for (int n = 0; n < 10 && sent < MOVES; ++n) {
+                geom::Pose end;
+                end[sent % 2] = 0.02;
+                last = rig.line(end, 0, PathMode::EXACT_PATH);
+                ++sent;
+            }
+            full += rig.status().isQueueFull ? 1 : 0;
+            return sent == MOVES && (rig.isDone(last) || (isAborted && rig.status().isQueueFull));
+        };
+        ASSERT_TRUE(rig.run_until(isOver, 200));
+        EXPECT_GT(full, 0);
+        if (isAborted) {
+            rig.send(Abort{++rig.epoch});
+        }
+        rig.step(100);
+        EXPECT_FALSE(rig.status().isQueueFull);
+        EXPECT_EQ(rig.status().queue_depth, 0U);
+    }
+}
+
 /// Off, there is no move.
 TEST(StatusOfMotion, NothingIsUnderWayOnceTheMachineIsOff_C1_C5) {
     MotionRig rig;
