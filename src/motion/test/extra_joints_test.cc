@@ -68,7 +68,10 @@ TEST(ExtraJoints, ThePinMovesAJointFromHomingOnAndNotBefore_C2_C8) {
         r.pin() = 5 * (1 - std::cos(2 * n * MotionRig::T));
         r.step();
         ASSERT_NEAR(r.motor(), r.pin() + 3, 1e-9) << "a pin within the limits is followed without lag";
+        ASSERT_TRUE(n < 100 || !r.rig.status().joint[EXTRA].isInPosition || n % 1571 < 30) << n;
     }
+    r.step(500);
+    EXPECT_TRUE(r.rig.status().joint[EXTRA].isInPosition) << "the pin stands";
     r.check();
 }
 
