@@ -278,5 +278,54 @@ TEST_F(KinematicsTypesTest, AskedForAtAnyInstantNothingJumpsAndNothingIsLostInSi
     EXPECT_GT(driven, 40);
 }
 
+/// Joints are X Y Z; only in type 1 that is said of them to be so everywhere.
+class SaidLinear final : public kins::Kinematics, public kins::TypeSwitch {
+  public:
+    int type = 0;
+
+    kins::Kind kind() const noexcept override { return kins::Kind::BOTH; }
+    kins::Status forward(const double *joints, geom::Pose &pose) const noexcept override {
+        std::copy_n(joints, 3, pose.c.begin());
+        return kins::Status::OK;
+    }
+    kins::Status inverse(const geom::Pose &pose, double *joints) const noexcept override {
+        std::copy_n(pose.c.begin(), 3, joints);
+        return kins::Status::OK;
+    }
+    kins::LinearJoints linear() const noexcept override {
+        return type == 1 ? kins::joints_like_axes() : kins::LinearJoints{};
+    }
+    bool switch_to(int wanted) noexcept override {
+        type = wanted;
+        return true;
+    }
+    kins::TypeSwitch *type_switch() const noexcept override { return const_cast<SaidLinear *>(this); }
+};
+
+/// External offsets are for joints that go in proportion to axes: in whatever mode the type was changed.
+TEST(KinematicsTypes, OffsetsAreThereFromTheChangeOnToATypeThatAllowsThem_C14_C15) {
+    for (const Mode mode : {Mode::TELEOP, Mode::COORD}) {
+        const SaidLinear kinematics;
+        MotionRig rig(kinematics, 3, 100, 1000);
+        for (int i = 0; i < 3; ++i) {
+            rig.set(Parameter::AXIS_MAX_VELOCITY, i, 100);
+            rig.set(Parameter::AXIS_MAX_ACCELERATION, i, 1000);
+        }
+        rig.set(Parameter::AXIS_OFFSET_RATIO, 2, 0.5);
+        rig.in.axis_offset[2].isEnabled = true;
+        rig.in.axis_offset[2].scale = 0.01;
+        rig.ready(mode);
+        rig.in.axis_offset[2].counts = 100;
+        rig.step(1000);
+        EXPECT_EQ(rig.out->axis[2].offset, 0) << "none in type 0";
+        rig.in.kinematics_type = 1;
+        rig.step(1000);
+        EXPECT_EQ(rig.out->axis[2].offset, 0) << "what was turned before moves nothing";
+        rig.in.axis_offset[2].counts = 300;
+        rig.step(1000);
+        EXPECT_NEAR(rig.out->axis[2].offset, 2, 1e-9);
+    }
+}
+
 }  // namespace
 }  // namespace mw::motion
