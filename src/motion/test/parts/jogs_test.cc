@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "kins/rotary_table.hh"
@@ -298,6 +300,35 @@ TEST(TeleopPart, WhatTwoAxesAskOfAJointTogetherIsCountedForEachOfThem_C13) {
         EXPECT_GE(load.q2[0][1][0], exact);
         EXPECT_NEAR(load.q2[0][1][0], exact, 0.1 * exact) << "with a margin";
         EXPECT_EQ(load.q2[1][0][0], load.q2[0][1][0]);
+    }
+}
+
+/// An arm that reaches X by either sense of joint 0 and keeps that which it is told; nobody moves joint 1.
+struct Elbow final : kins::Kinematics {
+    kins::Kind kind() const noexcept override { return kins::Kind::BOTH; }
+    kins::Status forward(const double *joints, geom::Pose &pose) const noexcept override {
+        pose[0] = joints[0] * joints[0];
+        return kins::Status::OK;
+    }
+    kins::Status inverse(const geom::Pose &pose, double *joints) const noexcept override {
+        joints[0] = std::copysign(std::sqrt(pose[0]), joints[0]);
+        return kins::Status::OK;
+    }
+};
+
+TEST(TeleopPart, JointsAreSoughtFromWhereTheyStand_C13_C14) {
+    const Elbow elbow;
+    const FoldedLimits limits;
+    TeleopMachine machine{elbow, limits, limits.path_joints};
+    machine.num_joints = 2;
+    for (const double sense : {1.0, -1.0}) {
+        machine.joint_positions = {3 * sense, 7};
+        geom::Pose pose;
+        pose[0] = 16;
+        JointsAt q{};
+        ASSERT_TRUE(find_joints(machine, pose, q));
+        EXPECT_EQ(q[0], 4 * sense);
+        EXPECT_EQ(q[1], 7);
     }
 }
 
