@@ -303,6 +303,33 @@ TEST(TeleopPart, WhatTwoAxesAskOfAJointTogetherIsCountedForEachOfThem_C13) {
     }
 }
 
+/// With jerk limits also how that changes while C turns: the product of three speeds, two of them C's.
+TEST(TeleopPart, WhatACurveOfTwoAxesChangesByWhileOneTurnsIsCountedForThatOne_C13) {
+    const kins::RotaryTable table;
+    const FoldedLimits limits;
+    TeleopMachine machine{table, limits, limits.path_joints};
+    machine.num_joints = 5;
+    constexpr double WAY = 5, X_SPEED = 20, C_SPEED = 30, RAD = 3.14159265358979 / 180;
+    geom::Pose pose;
+    pose[geom::AXIS_X] = 50;
+    pose[geom::AXIS_C] = 30;
+    ASSERT_EQ(table.inverse(pose, machine.joint_positions.data()), kins::Status::OK);
+    TeleopLoad load;
+    load.axes = {geom::AXIS_X, geom::AXIS_C};
+    load.count = 2;
+    load.isSmooth = true;
+    load.speed = {X_SPEED, C_SPEED};
+    ASSERT_TRUE(add_load(machine, pose, load));
+    EXPECT_EQ(load.turn[1][0], 0) << "as yet it stands";
+    pose[geom::AXIS_C] += WAY;
+    ASSERT_TRUE(add_load(machine, pose, load, {1, WAY}));
+    const double change = (std::sin(35 * RAD) - std::sin(30 * RAD)) * RAD / WAY;
+    const double exact = 2 * change * X_SPEED * C_SPEED;
+    EXPECT_GE(load.turn[1][0], exact);
+    EXPECT_NEAR(load.turn[1][0], exact, 0.1 * exact) << "with a margin";
+    EXPECT_EQ(load.turn[0][0], 0) << "X moves, and changes nothing of it";
+}
+
 /// An arm that reaches X by either sense of joint 0 and keeps that which it is told; nobody moves joint 1.
 struct Elbow final : kins::Kinematics {
     kins::Kind kind() const noexcept override { return kins::Kind::BOTH; }
