@@ -5,9 +5,12 @@
 Three joints, or more, run the same program of arcs and short lines by the clock; in every servo cycle the component sampler takes
 motion-controller.time and motion-command-handler.time. Runs are interleaved; the first second of each is left out.
 Prints median, 99th and 99.9th percentile and worst case of their sum [ns]; LinuxCNC counts ticks of the time stamp counter,
-which are converted by /proc/cpuinfo. usage: script/bench servo, or after it bench/servo.py [--joints 3] [--runs 5] [--cycles 200000] [--period 200000]
+which are converted by /proc/cpuinfo. On a host whose speed changes from one run to the next, --together runs both at the same time,
+their threads on the same processor, so that cycles of the two take turns; then ratios of pairs are what is to be read.
+usage: script/bench servo, or after it bench/servo.py [--joints 3] [--runs 5] [--cycles 200000] [--period 200000] [--together]
 """
 import argparse
+import concurrent.futures
 import pathlib
 import shutil
 import subprocess
@@ -69,6 +72,24 @@ def figures(folder, log, options, unit):
     return *np.percentile(total, (50, 99, 99.9)), np.max(total)
 
 
+def one_run(folder, options, isOurs):
+    """Median, 99th and 99.9th percentile and worst case of one run [ns]."""
+    if isOurs:
+        prepare(folder, options)
+        return figures(folder, run_ours(folder), options, 1.0)
+    prepare(folder, argparse.Namespace(**{**vars(options), "jerk": False}))
+    return figures(folder, compare_traj.run_reference(folder), options, 1.0 / ticks_per_ns())
+
+
+def runs(work, options, has_reference):
+    """Figures of ours and of the reference's of each pair, one after the other or both at once."""
+    with concurrent.futures.ThreadPoolExecutor(2 if options.together else 1) as pool:
+        for run in range(options.runs):
+            ours = pool.submit(one_run, work / f"ours-{run}", options, True)
+            theirs = pool.submit(one_run, work / f"reference-{run}", options, False) if has_reference else None
+            yield ours.result(), theirs.result() if theirs else None
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--joints", type=int, choices=range(3, 10), default=3)
@@ -76,22 +97,18 @@ def main():
     parser.add_argument("--cycles", type=int, default=200000)
     parser.add_argument("--period", type=int, default=200000, help="servo period [ns]")
     parser.add_argument("--jerk", action="store_true", help="ours with jerk limits")
+    parser.add_argument("--together", action="store_true", help="both of a pair at the same time")
     options = parser.parse_args()
     has_reference = shutil.which("linuxcnc") is not None
     ours, theirs = [], []
     with tempfile.TemporaryDirectory() as name:
         work = pathlib.Path(name)
         work.chmod(0o755)
-        for run in range(options.runs):
-            folder = work / f"ours-{run}"
-            prepare(folder, options)
-            ours.append(figures(folder, run_ours(folder), options, 1.0))
-            print("ours       median {:7.0f}  99 % {:7.0f}  99.9 % {:7.0f}  worst {:9.0f} ns".format(*ours[-1]), flush=True)
-            if has_reference:
-                folder = work / f"reference-{run}"
-                prepare(folder, argparse.Namespace(**{**vars(options), "jerk": False}))
-                theirs.append(figures(folder, compare_traj.run_reference(folder), options, 1.0 / ticks_per_ns()))
-                print("reference  median {:7.0f}  99 % {:7.0f}  99.9 % {:7.0f}  worst {:9.0f} ns".format(*theirs[-1]), flush=True)
+        for mine, other in runs(work, options, has_reference):
+            for who, row, all_rows in (("ours", mine, ours), ("reference", other, theirs)):
+                if row:
+                    all_rows.append(row)
+                    print("{:10} median {:7.0f}  99 % {:7.0f}  99.9 % {:7.0f}  worst {:9.0f} ns".format(who, *row), flush=True)
     mine = np.median(np.array(ours), axis=0)
     print("\nmedian of the runs: ours {:.0f}, {:.0f}, {:.0f}; worst of all {:.0f} ns".format(*mine[:3], np.max(np.array(ours)[:, 3])))
     if not theirs:
@@ -99,6 +116,8 @@ def main():
     other = np.median(np.array(theirs), axis=0)
     print("reference {:.0f}, {:.0f}, {:.0f}; worst of all {:.0f} ns\nratio: median {:.2f}, 99 % {:.2f}, 99.9 % {:.2f}".format(
         *other[:3], np.max(np.array(theirs)[:, 3]), *(mine[:3] / other[:3])))
+    pairs = np.array(ours)[:, 0] / np.array(theirs)[:, 0]
+    print("medians of each pair: {}; median of these ratios {:.2f}".format(" ".join(f"{r:.2f}" for r in pairs), np.median(pairs)))
     return 0 if mine[0] <= other[0] and mine[1] <= other[1] else 1
 
 

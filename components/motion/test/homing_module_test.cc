@@ -90,6 +90,24 @@ TEST_F(HomingModule, HomesAndGivesTheJointItsPlace_C2) {
     EXPECT_LE(checker.worst_velocity(), 5.0 / VELOCITY + 1e-6) << "as slowly as it asked for";
 }
 
+TEST_F(HomingModule, SeesFeedbackAndLimitsOfThisCycle_C2) {
+    ASSERT_NO_FATAL_FAILURE(start(Manner::MILD));
+    const auto pin = [&](const char *name) { return host->hal().get(name)->as_number(); };
+    int moving = 0;
+    for (int n = 0; n < 5000; ++n) {
+        const double before = motor();
+        run(0.001);
+        moving += motor() != before ? 1 : 0;
+        ASSERT_EQ(pin("wildhome.0.motor-pos-fb"), before);
+        ASSERT_NEAR(pin("wildhome.0.pos-fb"), before - pin("wildhome.0.motor-offset"), 1e-12) << n;
+    }
+    EXPECT_GT(moving, 500);
+    EXPECT_EQ(pin("wildhome.0.vel-limit"), VELOCITY);
+    EXPECT_EQ(pin("wildhome.0.acc-limit"), ACCELERATION);
+    EXPECT_EQ(pin("wildhome.0.min-pos-limit"), -RANGE / 2);
+    EXPECT_EQ(pin("wildhome.0.max-pos-limit"), RANGE / 2);
+}
+
 TEST_F(HomingModule, IsKeptWithinSpeedAccelerationAndRangeAndThatIsTold_C2) {
     for (const Manner manner : {Manner::FAST, Manner::FAR}) {
         ASSERT_NO_FATAL_FAILURE(start(manner));

@@ -105,6 +105,35 @@ TEST(Motmod, ALineFromThePathChannelReachesTheMotorPins_C1) {
     EXPECT_EQ(m.value("motion.in-position"), 1);
 }
 
+/// Each of them, and no other.
+TEST(Motmod, InputsAndOutputsOfProgramsAreThoseOfTheirPins_C9) {
+    Machine m;
+    ASSERT_NO_FATAL_FAILURE(m.start());
+    m.ready();
+    auto seen = std::make_unique<PublishedStatus::Copy>();
+    hal::Hal &hal = m.host->hal();
+    for (std::uint16_t n = 0; n < 4; ++n) {
+        const std::string number = "-0" + std::to_string(n);
+        ASSERT_TRUE(hal.set("motion.digital-in" + number, "TRUE"));
+        ASSERT_TRUE(hal.set("motion.analog-in" + number, std::to_string(n + 1.5)));
+        m.send(SetDigitalOutput{n, true});
+        m.send(SetAnalogOutput{n, 0.25 * (n + 1)});
+        m.run(0.002);
+        ASSERT_TRUE(m.channels->status.read(*seen));
+        EXPECT_EQ(seen->value.digital_in, 1U << n);
+        for (std::size_t i = 0; i < 4; ++i) {
+            const std::string other = "-0" + std::to_string(i);
+            EXPECT_EQ(seen->value.analog_in[i], i == n ? n + 1.5 : 0.0) << i;
+            EXPECT_EQ(m.value("motion.digital-out" + other), i == n ? 1 : 0) << i;
+            EXPECT_EQ(m.value("motion.analog-out" + other), i == n ? 0.25 * (n + 1) : 0.0) << i;
+        }
+        ASSERT_TRUE(hal.set("motion.digital-in" + number, "FALSE"));
+        ASSERT_TRUE(hal.set("motion.analog-in" + number, "0"));
+        m.send(SetDigitalOutput{n, false});
+        m.send(SetAnalogOutput{n, 0});
+    }
+}
+
 TEST(Motmod, EstopChainDropsTheAmplifiersInTheSameServoCycle) {
     Machine m;
     ASSERT_NO_FATAL_FAILURE(m.start());

@@ -203,6 +203,30 @@ TEST(Homing, OneFailureStopsTheWholeGroup_C10) {
     EXPECT_FALSE(m.homing.isActive());
 }
 
+TEST(Homing, AnIndexerHasThirtySecondsToUnlockAndNoCycleLess_C10_C12) {
+    for (const bool isSecondTime : {false, true}) {
+        Machine m(1);
+        Parameters p = switch_home(-10, 1);
+        p.isLockingIndexer = true;
+        m.homing.parameters(0) = p;
+        for (int n = 0; n < (isSecondTime ? 700 : 0); ++n) {
+            m.step();  // whatever it has stood for before
+        }
+        m.homing.start(0);
+        const int cycles = static_cast<int>(Homing::LONGEST_LOCKING_S / T);
+        for (int n = 0; n < cycles; ++n) {
+            m.step();
+            ASSERT_TRUE(m.homing.isUnlockWanted(0)) << n;
+            ASSERT_TRUE(m.homing.isHoming(0)) << n;
+        }
+        m.step();
+        EXPECT_FALSE(m.homing.isHoming(0));
+        Failure why{};
+        EXPECT_EQ(m.homing.take_failure(why), 0);
+        EXPECT_EQ(why, Failure::NOT_UNLOCKED);
+    }
+}
+
 TEST(Homing, BadSettingsFailWithTheirReason_C10) {
     const auto failure_of = [](const Parameters &p, double start) {
         Machine m(1);

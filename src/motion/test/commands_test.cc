@@ -2,6 +2,7 @@
 // Every command in every situation of the machine, compared with the table of docs/motion/commands.md.
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <set>
 #include <sstream>
 #include <string>
@@ -367,6 +368,16 @@ TEST(Commands, AValueThatIsNoNumberIsRefused_C5) {
         const std::string word = result_of({"", "", wrong.body}, wrong.situation);
         EXPECT_NE(word, "done");
         EXPECT_NE(word, "no answer");
+    }
+}
+
+/// One that is not finite is no number either, whatever a check of its sign says.
+TEST(Commands, APitchScaleThatIsNoNumberIsToldAsSuch_C5) {
+    for (const double scale : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+        EXPECT_EQ(
+            result_of({"", "", PathBody{RigidTap{at(PATH_END, 0, -2), scale, tapping()}}}, Situation::COORD),
+            "no number")
+            << scale;
     }
 }
 

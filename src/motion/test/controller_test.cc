@@ -421,17 +421,22 @@ TEST(Controller, AProbeThatTripsWhileItBrakesToItsEndHasTripped_C7) {
     }
 }
 
-TEST(Controller, ProbeThatMustTripAndDoesNotIsAFault) {
-    MotionRig rig;
-    rig.ready();
-    Probe probe;
-    probe.end = at(0, 0, -2);
-    probe.terms.feed = 10;
-    const CommandId id = rig.send_path(probe);
-    ASSERT_TRUE(rig.run_until([&] { return rig.isDone(id); }, 10));
-    ASSERT_EQ(rig.faults.size(), 1U);
-    EXPECT_EQ(rig.faults[0].kind, FaultKind::PROBE_NOT_TRIPPED);
-    EXPECT_FALSE(rig.status().isProbeTripped);
+TEST(Controller, ProbeThatMustTripAndDoesNotIsAFault_C9) {
+    for (const bool isAway : {false, true}) {
+        MotionRig rig;
+        rig.ready();
+        rig.in.isProbeClosed = isAway;
+        Probe probe;
+        probe.end = at(0, 0, -2);
+        probe.isAway = isAway;
+        probe.terms.feed = 10;
+        const CommandId id = rig.send_path(probe);
+        ASSERT_TRUE(rig.run_until([&] { return rig.isDone(id); }, 10));
+        ASSERT_EQ(rig.faults.size(), 1U);
+        EXPECT_EQ(rig.faults[0].kind, FaultKind::PROBE_NOT_TRIPPED);
+        EXPECT_EQ(rig.faults[0].detail, isAway ? 1 : 0) << "which of making and breaking contact is told";
+        EXPECT_FALSE(rig.status().isProbeTripped);
+    }
 }
 
 TEST(Controller, SynchedOutputsChangeWhereThePathPasses) {

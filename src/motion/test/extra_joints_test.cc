@@ -68,7 +68,10 @@ TEST(ExtraJoints, ThePinMovesAJointFromHomingOnAndNotBefore_C2_C8) {
         r.pin() = 5 * (1 - std::cos(2 * n * MotionRig::T));
         r.step();
         ASSERT_NEAR(r.motor(), r.pin() + 3, 1e-9) << "a pin within the limits is followed without lag";
+        ASSERT_TRUE(n < 100 || !r.rig.status().joint[EXTRA].isInPosition || n % 1571 < 30) << n;
     }
+    r.step(500);
+    EXPECT_TRUE(r.rig.status().joint[EXTRA].isInPosition) << "the pin stands";
     r.check();
 }
 
@@ -368,6 +371,22 @@ TEST(ExtraJoints, TheyAreTheLastOnesAndStayInUse_C12) {
     const CommandId same = r.rig.send(SetNumJoints{4});
     r.step();
     EXPECT_TRUE(r.rig.isDone(same));
+}
+
+/// One joint too many would be one of nobody, or beyond them all.
+TEST(ExtraJoints, SwitchingOnReadiesThemAndNoneBeside_C2) {
+    ExtraJoints extra;
+    extra.first = 2;
+    extra.count = 3;
+    const std::array<JointInputs, MAX_JOINTS> pins{};
+    const FoldedLimits limits;
+    const ExtraJointInputs in{pins, {}, limits, ~0U, MotionRig::T};
+    switch_on(extra, in);
+    for (int j = 0; j < MAX_JOINTS; ++j) {
+        const bool isOne = j >= extra.first && j < extra.first + extra.count;
+        EXPECT_EQ(extra.joint[static_cast<std::size_t>(j)].state, isOne ? Following::READY : Following::NONE)
+            << j;
+    }
 }
 
 TEST(ExtraJoints, AlsoOnMachinesWhoseJointsAreNotAxes_C14) {

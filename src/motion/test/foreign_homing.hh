@@ -8,7 +8,7 @@ namespace mw::motion {
 
 /// Its joint homes until it is told to end or gives up; it says when it has something to do.
 struct ForeignModule final : homing::Module {
-    bool isBusy = false;
+    bool isBusy = false, areHomed = false;
     int steps = 0;  ///< cycles in which it was asked for moves
     void set_num_joints(int) noexcept override {}
     void configure(int, const homing::Parameters &) noexcept override {}
@@ -17,7 +17,7 @@ struct ForeignModule final : homing::Module {
     void unhome(int) noexcept override {}
     void step(const homing::JointInput *, homing::JointCommand *) noexcept override { ++steps; }
     bool isHoming(int) const noexcept override { return isBusy; }
-    bool isHomed(int) const noexcept override { return false; }
+    bool isHomed(int) const noexcept override { return areHomed; }
     bool isActive() const noexcept override { return isBusy; }
     bool hasWork() const noexcept override { return isBusy; }
     int step_number(int) const noexcept override { return 0; }

@@ -118,6 +118,32 @@ TEST_F(KinematicsTypesTest, AChangeOnAPathStopsItAndSaysSo_C14) {
     EXPECT_TRUE(rig.status().isEnabled);
 }
 
+TEST_F(KinematicsTypesTest, AnErrorOfThePathIsShownUntilAStopOrTheNextSwitchingOn_C14_G1) {
+    for (const bool isAborted : {true, false}) {
+        EXPECT_FALSE(rig.out->isCoordError);
+        rig.line(at(rig.status().carte_pos_cmd[0] + 20, 30));
+        rig.step(200);
+        ASSERT_FALSE(rig.status().isInPosition);
+        ask(isAborted ? 1 : 0);
+        settle();
+        EXPECT_TRUE(rig.out->isCoordError);
+        rig.send(SetMode{Mode::TELEOP});
+        rig.step(5);
+        EXPECT_TRUE(rig.out->isCoordError);
+        if (isAborted) {
+            rig.send(Abort{++rig.epoch});
+        } else {
+            rig.send(Disable{});
+            rig.step(5);
+            rig.send(Enable{});
+        }
+        rig.step(5);
+        EXPECT_FALSE(rig.out->isCoordError);
+        rig.send(SetMode{Mode::COORD});
+        rig.step(MotionRig::PLANNER_PERIOD);
+    }
+}
+
 TEST_F(KinematicsTypesTest, ATypeThatDoesNotExistIsToldOnceAndChangesNothing_C14) {
     for (const double type : {7.0, 0.5, -1.0, std::nan(""), 1e300}) {
         rig.faults.clear();
@@ -125,6 +151,8 @@ TEST_F(KinematicsTypesTest, ATypeThatDoesNotExistIsToldOnceAndChangesNothing_C14
         rig.step(50);
         ASSERT_EQ(rig.faults.size(), 1U) << type;
         EXPECT_EQ(rig.faults[0].kind, FaultKind::NO_KINEMATICS_TYPE);
+        EXPECT_EQ(rig.faults[0].index, -1) << "it is no joint's";
+        EXPECT_FALSE(rig.out->isCoordError) << "the path is not touched";
         EXPECT_EQ(kinematics.type, 0);
         EXPECT_TRUE(rig.status().isInPosition);
         ask(0);
@@ -132,6 +160,41 @@ TEST_F(KinematicsTypesTest, ATypeThatDoesNotExistIsToldOnceAndChangesNothing_C14
     }
     drive(at(0, 0));
     expect_joints(0, 0);
+}
+
+/// Pushed by hand to where no pose is known, off, in a mode in which the pose commands the joints.
+TEST_F(KinematicsTypesTest, WithoutAPoseTheMachineGoesOnInJointModeAlone_C6_C14) {
+    ask(2);
+    settle();
+    for (const Mode mode : {Mode::TELEOP, Mode::COORD}) {
+        drive(at(20, 30));
+        rig.send(SetMode{mode});
+        rig.step(5);
+        rig.in.isEnableOn = false;
+        rig.step(5);
+        ASSERT_FALSE(rig.status().isEnabled);
+        rig.in.isEnableOn = true;
+        rig.in.joint[0].motor_pos_fb = 5;
+        rig.step(5);
+        ASSERT_EQ(joint(0), 5) << "it is where it was pushed to";
+        const CommandId on = rig.send(Enable{});
+        rig.step(5);
+        EXPECT_EQ(rig.refusal(on), Reason::POSE_UNKNOWN);
+        EXPECT_FALSE(rig.status().isEnabled);
+        rig.send(SetMode{Mode::FREE});
+        const CommandId on_free = rig.send(Enable{});
+        const CommandId teleop = rig.send(SetMode{Mode::TELEOP});
+        rig.step(5);
+        EXPECT_TRUE(rig.isDone(on_free));
+        EXPECT_EQ(rig.refusal(teleop), Reason::POSE_UNKNOWN);
+        expect_joints(5, 30);
+        const CommandId back = rig.send(JogAbsolute{{true, 0}, 50, 20});
+        rig.step(2000);
+        EXPECT_TRUE(rig.isDone(back));
+        rig.send(SetMode{Mode::COORD});
+        rig.step(5);
+        ASSERT_EQ(rig.status().mode, Mode::COORD);
+    }
 }
 
 TEST_F(KinematicsTypesTest, ATypeWithoutAPoseHereIsRefused_C14) {
@@ -213,6 +276,55 @@ TEST_F(KinematicsTypesTest, AskedForAtAnyInstantNothingJumpsAndNothingIsLostInSi
     }
     EXPECT_GT(stopped, 40);
     EXPECT_GT(driven, 40);
+}
+
+/// Joints are X Y Z; only in type 1 that is said of them to be so everywhere.
+class SaidLinear final : public kins::Kinematics, public kins::TypeSwitch {
+  public:
+    int type = 0;
+
+    kins::Kind kind() const noexcept override { return kins::Kind::BOTH; }
+    kins::Status forward(const double *joints, geom::Pose &pose) const noexcept override {
+        std::copy_n(joints, 3, pose.c.begin());
+        return kins::Status::OK;
+    }
+    kins::Status inverse(const geom::Pose &pose, double *joints) const noexcept override {
+        std::copy_n(pose.c.begin(), 3, joints);
+        return kins::Status::OK;
+    }
+    kins::LinearJoints linear() const noexcept override {
+        return type == 1 ? kins::joints_like_axes() : kins::LinearJoints{};
+    }
+    bool switch_to(int wanted) noexcept override {
+        type = wanted;
+        return true;
+    }
+    kins::TypeSwitch *type_switch() const noexcept override { return const_cast<SaidLinear *>(this); }
+};
+
+/// External offsets are for joints that go in proportion to axes: in whatever mode the type was changed.
+TEST(KinematicsTypes, OffsetsAreThereFromTheChangeOnToATypeThatAllowsThem_C14_C15) {
+    for (const Mode mode : {Mode::TELEOP, Mode::COORD}) {
+        const SaidLinear kinematics;
+        MotionRig rig(kinematics, 3, 100, 1000);
+        for (int i = 0; i < 3; ++i) {
+            rig.set(Parameter::AXIS_MAX_VELOCITY, i, 100);
+            rig.set(Parameter::AXIS_MAX_ACCELERATION, i, 1000);
+        }
+        rig.set(Parameter::AXIS_OFFSET_RATIO, 2, 0.5);
+        rig.in.axis_offset[2].isEnabled = true;
+        rig.in.axis_offset[2].scale = 0.01;
+        rig.ready(mode);
+        rig.in.axis_offset[2].counts = 100;
+        rig.step(1000);
+        EXPECT_EQ(rig.out->axis[2].offset, 0) << "none in type 0";
+        rig.in.kinematics_type = 1;
+        rig.step(1000);
+        EXPECT_EQ(rig.out->axis[2].offset, 0) << "what was turned before moves nothing";
+        rig.in.axis_offset[2].counts = 300;
+        rig.step(1000);
+        EXPECT_NEAR(rig.out->axis[2].offset, 2, 1e-9);
+    }
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // External offsets on machines whose joints are no axes but go in proportion to them: CoreXY, axes as
 // measured, a turned table. What motors are told is judged by formulas of this file alone.
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -77,6 +79,53 @@ TEST(LinearOffsets, OffsetsOfBothAxesOfABeltAndAPathShareWhatTheJointCanDo_C13_C
         EXPECT_GT(rig.joints->worst_velocity(), 0.9) << "both take their shares at once";
         rig.expect_within();
     }
+}
+
+/// Mean speeds on a circle of chords, `sense` of its angle, where mostly joint 0 and where mostly joint 1 is
+/// far out. It goes beyond the circle in all directions later.
+std::array<double, 2> speeds_on_circle(double sense) {
+    constexpr double RADIUS = 5, CHORD_RAD = 0.05, TOLERANCE = 0.01;
+    LinearMachine m = corexy(true);
+    m.ratio = {0.3, 0.3, 0};
+    LinearRig rig(m);
+    rig.begin(Mode::COORD);
+    rig.line(at(RADIUS, 0, 0), 0);
+    EXPECT_TRUE(rig.finish());
+    for (int n = 1; n <= 2.5 * std::numbers::pi / CHORD_RAD; ++n) {
+        const double angle = n * CHORD_RAD;
+        rig.rig->line(at(RADIUS * std::cos(angle), sense * RADIUS * std::sin(angle), 0), 50, PathMode::BLEND,
+                      TOLERANCE);
+    }
+    for (const double far : {20.0, -20.0}) {
+        rig.line(at(far, 0, 0), 0);
+        rig.line(at(0, far * sense, 0), 0);
+    }
+    const CommandId last = rig.rig->send_path(Flush{});
+    std::array<double, 2> sum{}, samples{};
+    for (int n = 0; n < 10000 && !rig.rig->isDone(last); ++n) {
+        rig.go(1);
+        const double q0 = std::abs(rig.motor(0));
+        const double q1 = std::abs(rig.motor(1));
+        const double speed = rig.rig->status().current_velocity;
+        const bool isOnCircle = std::hypot(rig.pose()[0], rig.pose()[1]) < RADIUS + TOLERANCE && speed > 10;
+        if (isOnCircle && std::abs(q0 - q1) > RADIUS) {
+            sum[q0 > q1 ? 0 : 1] += speed;
+            samples[q0 > q1 ? 0 : 1] += 1;
+        }
+    }
+    EXPECT_TRUE(rig.rig->isDone(last));
+    rig.expect_within();
+    return {sum[0] / samples[0], sum[1] / samples[1]};
+}
+
+/// Corners of chords are moved out, against the mean, as far as the path goes elsewhere, and whichever joint
+/// that takes farther out: mirrored, a circle is driven the same with the joints exchanged.
+TEST(LinearOffsets, ACircleOfChordsIsDrivenTheSameInTheDirectionOfEitherJoint_C13_C15) {
+    const auto [left_0, left_1] = speeds_on_circle(1);
+    const auto [right_0, right_1] = speeds_on_circle(-1);
+    EXPECT_GT(left_0, 30);
+    EXPECT_NEAR(left_0, right_1, 0.005 * left_0);
+    EXPECT_NEAR(left_1, right_0, 0.005 * left_1);
 }
 
 TEST(LinearOffsets, AJogHasWhatOffsetsLeaveOfTheJoints_C8_C13_C15) {

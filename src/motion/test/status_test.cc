@@ -151,5 +151,90 @@ TEST(StatusOfMotion, ReadersHaveTheWholeOfIt_C1) {
     EXPECT_EQ(reader->value.axis[1].max_limit, 5);
 }
 
+/// More moves than the planner has room for: that is shown as long as they wait, whether they are driven
+/// then or a stop takes them away.
+TEST(StatusOfMotion, TheQueueIsFullOnlyWhileMovesWaitForRoom_C1) {
+    constexpr int MOVES = 5000;
+    for (const bool isAborted : {false, true}) {
+        MotionRig rig;
+        rig.ready();
+        CommandId last = 0;
+        int sent = 0;
+        int full = 0;
+        const auto isOver = [&] {
+            for (int n = 0; n < 10 && sent < MOVES; ++n) {
+                geom::Pose end;
+                end[sent % 2] = 0.02;
+                last = rig.line(end, 0, PathMode::EXACT_PATH);
+                ++sent;
+            }
+            full += rig.status().isQueueFull ? 1 : 0;
+            return sent == MOVES && (rig.isDone(last) || (isAborted && rig.status().isQueueFull));
+        };
+        ASSERT_TRUE(rig.run_until(isOver, 200));
+        EXPECT_GT(full, 0);
+        if (isAborted) {
+            rig.send(Abort{++rig.epoch});
+        }
+        rig.step(100);
+        EXPECT_FALSE(rig.status().isQueueFull);
+        EXPECT_EQ(rig.status().queue_depth, 0U);
+    }
+}
+
+/// Off, there is no move.
+TEST(StatusOfMotion, NothingIsUnderWayOnceTheMachineIsOff_C1_C5) {
+    MotionRig rig;
+    rig.ready();
+    geom::Pose end;
+    end[0] = 20;
+    const CommandId id = rig.line(end, 30);
+    rig.step(200);
+    ASSERT_EQ(rig.status().active_path_id, id);
+    ASSERT_GT(rig.status().current_velocity, 0);
+    rig.in.isEnableOn = false;
+    rig.step(5);
+    const Status &s = rig.status();
+    EXPECT_FALSE(s.isEnabled);
+    EXPECT_EQ(s.active_path_id, 0U);
+    EXPECT_EQ(s.source.line, 0);
+    EXPECT_EQ(s.motion_type, MotionType::NONE);
+    EXPECT_EQ(s.current_velocity, 0);
+    EXPECT_EQ(s.distance_to_go, 0);
+}
+
+/// A trace has a sample for each cycle with what the status of that cycle says.
+TEST(StatusOfMotion, ATraceSaysOfEachCycleWhatItsStatusSays_C1) {
+    MotionRig rig;
+    rig.ready();
+    TraceSample sample;
+    rig.step(3);
+    EXPECT_FALSE(rig.channels->trace.pop(sample)) << "nobody has asked";
+    rig.channels->isTracing.store(1);
+    geom::Pose end;
+    end[0] = 5;
+    rig.line(end, 50);
+    int moving = 0, hasMoved = 0;
+    geom::Pose last = rig.status().carte_pos_cmd;
+    for (int n = 0; n < 300; ++n) {
+        rig.step();
+        const Status &s = rig.status();
+        ASSERT_TRUE(rig.channels->trace.pop(sample));
+        EXPECT_EQ(sample.time_ns, rig.in.time_ns);
+        EXPECT_EQ(sample.cycle, s.cycle);
+        EXPECT_EQ(sample.path_id, s.active_path_id);
+        EXPECT_EQ(sample.line, s.source.line);
+        EXPECT_EQ(sample.epoch, s.epoch);
+        EXPECT_EQ(sample.carte_pos_cmd, s.carte_pos_cmd);
+        EXPECT_EQ(sample.joint_pos_cmd[0], s.joint[0].pos_cmd);
+        hasMoved += s.carte_pos_cmd != last ? 1 : 0;
+        last = s.carte_pos_cmd;
+        moving += sample.isInMotion;
+        EXPECT_FALSE(rig.channels->trace.pop(sample)) << "one for each cycle";
+    }
+    EXPECT_GT(hasMoved, 100);
+    EXPECT_NEAR(moving, hasMoved, 2) << "the last step of a move ends at rest";
+}
+
 }  // namespace
 }  // namespace mw::motion

@@ -35,5 +35,20 @@ TEST(Texts, EveryReasonAndFaultHasOneOfItsOwn_C5) {
     }
 }
 
+TEST(Texts, ARefusalNamesTheJointOrAxisWhereThatIsKnown_C5) {
+    Answer a;
+    a.reason = Reason::INDEXER_ALONE;
+    const auto has = [&](const char *name) {
+        return reason_text(a).starts_with(std::string(name) + " is a");
+    };
+    for (const bool isPath : {false, true}) {
+        a.isPath = isPath;
+        a.index = -1;
+        EXPECT_TRUE(has("a joint or axis")) << reason_text(a);
+        a.index = 2;
+        EXPECT_TRUE(has(isPath ? "axis Z" : "joint or axis 2")) << reason_text(a);
+    }
+}
+
 }  // namespace
 }  // namespace mw::motion

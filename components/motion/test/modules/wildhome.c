@@ -18,8 +18,13 @@ static int component, joint_count, step[16];
 static bool homed[16];
 static double start[16];
 static emcmot_joint_t *joints;
+/* What it sees of a joint in each cycle is shown by pins. */
+#define SEEN 7
+static const char *const seen_names[SEEN] = {"pos-fb",        "motor-pos-fb",  "vel-limit",   "acc-limit",
+                                             "min-pos-limit", "max-pos-limit", "motor-offset"};
 static struct pins {
     hal_bit_t *home_switch[16];
+    hal_float_t *seen[16][SEEN];
 } *pins;
 
 int rtapi_app_main(void) {
@@ -35,7 +40,7 @@ void homeMotFunctions(void (*set_unlock)(int, int), int (*get_unlock)(int)) {
     (void)get_unlock;
 }
 int homing_init(int id, double servo_period, int n_joints, int n_extrajoints, emcmot_joint_t *pjoints) {
-    int j, status = 0;
+    int i, j, status = 0;
     (void)servo_period;
     (void)n_extrajoints;
     joints = pjoints;
@@ -43,6 +48,10 @@ int homing_init(int id, double servo_period, int n_joints, int n_extrajoints, em
     pins = hal_malloc(sizeof *pins);
     for (j = 0; j < n_joints && manner == OWN_PINS && status == 0; j++) {
         status = hal_pin_bit_newf(HAL_IN, &pins->home_switch[j], id, "joint.%d.home-sw-in", j);
+    }
+    for (i = 0; i < n_joints * SEEN && status == 0; i++) {
+        status = hal_pin_float_newf(HAL_OUT, &pins->seen[i / SEEN][i % SEEN], id, "wildhome.%d.%s", i / SEEN,
+                                    seen_names[i % SEEN]);
     }
     return status;
 }
@@ -75,9 +84,19 @@ static void go(int j, double to) {
     joints[j].free_tp.max_acc = manner == FAST ? 1e9 : 100;
     joints[j].free_tp.enable = 1;
 }
+static void show_seen(int j) {
+    const double values[SEEN] = {joints[j].pos_fb,      joints[j].motor_pos_fb,  joints[j].vel_limit,
+                                 joints[j].acc_limit,   joints[j].min_pos_limit, joints[j].max_pos_limit,
+                                 joints[j].motor_offset};
+    int i;
+    for (i = 0; i < SEEN; i++) {
+        *pins->seen[j][i] = values[i];
+    }
+}
 bool do_homing(void) {
     int j;
     for (j = 0; j < joint_count; j++) {
+        show_seen(j);
         switch (step[j]) {
         case 1:
             start[j] = joints[j].pos_cmd;

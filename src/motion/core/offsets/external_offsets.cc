@@ -78,6 +78,9 @@ void step(ExternalOffsets &offsets, const OffsetInputs &in) noexcept {
             continue;
         }
         ExternalOffset &offset = offsets.axis[at(i)];
+        if ((offsets.added >> i & 1U) != 0) [[unlikely]] {
+            offset.counts = in.pins[at(i)].counts;
+        }
         take_counts(offset, in.pins[at(i)], in.isHonoured);
         JogRange room{in.limits.low[i] - in.programmed.axes.low[i],
                       in.limits.high[i] - in.programmed.axes.high[i]};
@@ -103,15 +106,18 @@ void step(ExternalOffsets &offsets, const OffsetInputs &in) noexcept {
         offsets.pose[i] = p.position;
         offsets.isLimited = offsets.isLimited || offset.isLimited;
     }
+    offsets.added = 0;
 }
 
 void configure(ExternalOffsets &offsets, const FoldedLimits &limits, const AxisMap &map) noexcept {
+    const std::uint32_t had = offsets.axes;
     offsets.axes = 0;
     for (int i = 0; i < MAX_AXES; ++i) {
         // One that is there stays, also when there are to be none any more.
         const bool isThere = offsets.pose[i] != 0.0 || !offsets.axis[at(i)].planner.isAtRest();
         offsets.axes |= limits.offset[at(i)].velocity > 0 || isThere ? 1U << i : 0U;
     }
+    offsets.added = (offsets.added | ~had) & offsets.axes;
     offsets.shared = shared_joints(map.linear, offsets.axes);
     offsets.isLimited = offsets.isLimited && offsets.axes != 0;
     if (!limits.homed.areAll) {
@@ -130,6 +136,7 @@ void start_at_zero(ExternalOffsets &offsets, const Inputs &in) noexcept {
         offsets.axis[at(i)] = {};
         offsets.axis[at(i)].counts = in.axis_offset[at(i)].counts;
     }
+    offsets.added = 0;
     offsets.pose = {};
     offsets.isLimited = false;
 }
@@ -160,7 +167,7 @@ bool areAsked(const ExternalOffsets &offsets, const std::array<OffsetInput, MAX_
         const bool isAsked = pins[i].isEnabled && pins[i].counts != offset.counts;
         asked |= isAsked || offset.request != offset.planner.position ? 1U << i : 0U;
     }
-    return (asked & offsets.axes) != 0;
+    return (asked & offsets.axes & ~offsets.added) != 0;
 }
 
 PoseRange range(const ExternalOffsets &offsets) noexcept {

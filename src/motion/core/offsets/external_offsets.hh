@@ -26,6 +26,8 @@ struct ExternalOffset {
 
 struct ExternalOffsets {
     std::uint32_t axes = 0;  ///< bit per axis that may have one
+    std::uint32_t added =
+        0;  ///< of them, since the last cycle: what pins were turned before counts for nothing
     std::array<ExternalOffset, MAX_AXES> axis{};
     SharedJoints shared;  ///< that these axes move
     geom::Pose pose;      ///< in force

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
+#include <array>
 #include <memory>
 
 #include <gtest/gtest.h>
@@ -6,6 +8,7 @@
 #include "kins/corexy.hh"
 #include "kins/trivial.hh"
 #include "motion/core/coord/heading.hh"
+#include "motion/core/coord/lead.hh"
 #include "motion/core/coord/place.hh"
 #include "motion/core/coord/retracing.hh"
 
@@ -34,6 +37,24 @@ TEST(PlacePart, JointsLeadOrThePoseDoes_C3) {
     read_feedback(place, kinematics, feedback, false);
     EXPECT_TRUE(place.isFbValid) << "joints that are axes need no homing";
     EXPECT_EQ(place.fb[0], 2.9);
+}
+
+/// Models that iterate come back to a place within 1e-4: no step, however slow the joints are.
+TEST(LeadPart, APoseLeadsToWhereTheJointsStandWithinACycleOfThem_C3) {
+    const kins::CoreXy kinematics;
+    for (const double velocity : {100.0, 0.001}) {
+        std::array<double, MAX_JOINTS> most{};
+        most.fill(velocity);
+        const Stride stride{most.data(), T, 3};
+        const double within = std::max(velocity * T, 1e-4);
+        for (const double off : {0.0, 0.9 * within, 1.1 * within}) {
+            for (const std::size_t j : {0U, 1U, 2U}) {
+                JointValues here{5, 5};
+                here[j] -= off;
+                EXPECT_EQ(leadsTo(kinematics, at(5), here, stride), off < within) << velocity << ' ' << off;
+            }
+        }
+    }
 }
 
 TEST(PlacePart, WhereNobodyKnowsThePoseTheLastOneStandsAndIsNotValid_C3) {

@@ -254,10 +254,31 @@ TEST_F(CorrectionPart, SwitchedOffInTheMiddleItStandsAndGoesOnFromRest_C6) {
         EXPECT_EQ(correction.position, stood);
         EXPECT_EQ(correction.velocity, 0);
     }
-    double last = stood;
     step(correction, settings, 0, 0.1, CYCLE_S);
-    EXPECT_LE((correction.position - last) / CYCLE_S, 0.5 * A * CYCLE_S);
+    EXPECT_EQ(correction.position, stood) << "as long as the joint does";
+    step(correction, settings, 0, 0.101, CYCLE_S);
+    EXPECT_GT(correction.position, stood);
+    EXPECT_LE((correction.position - stood) / CYCLE_S, 0.5 * A * CYCLE_S);
     EXPECT_NEAR(go(1), 0.2, 1e-12);
+}
+
+/// What had been under way before is no speed of the next move.
+TEST_F(CorrectionPart, SwitchedOffBetweenTheSidesOfATableItGoesOnFromRest_C6_C11) {
+    load_three();
+    go(5);
+    double place = 5;
+    for (int n = 0; n < 12; ++n) {  // back, where the table has other values
+        place -= 0.01;
+        step(correction, settings, 0, place, CYCLE_S);
+    }
+    ASSERT_LT(correction.velocity, -5) << "the other side is being made up for";
+    const double stood = correction.position;
+    follow(correction, place);
+    EXPECT_EQ(correction.position, stood);
+    EXPECT_EQ(correction.velocity, 0);
+    place -= 1e-3;
+    step(correction, settings, 0, place, CYCLE_S);
+    EXPECT_LE(std::abs(correction.position - stood) / CYCLE_S, A * CYCLE_S);
 }
 
 TEST_F(CorrectionPart, MovedByHandWhileOffTheTableGoesAlong_C11) {

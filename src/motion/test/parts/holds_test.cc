@@ -39,6 +39,21 @@ TEST(HoldsPart, AStepPausesWhereItEnds) {
     EXPECT_TRUE(holds.isPaused);
 }
 
+TEST(HoldsPart, AStopEndsPausesAndStepsAndKeepsTheScales_C4) {
+    Holds holds;
+    take(holds, SetScale{Scale::FEED, 0, 0.5}, 1.2);
+    take(holds, Pause{});
+    take(holds, StepOnce{});
+    release(holds);
+    EXPECT_FALSE(holds.isStepping) << "the next program runs";
+    take(holds, Pause{});
+    release(holds);
+    EXPECT_FALSE(holds.isPaused);
+    step(holds, {1, false, false, 1});
+    EXPECT_FALSE(holds.isPaused) << "nor does it pause where the step would have ended";
+    EXPECT_EQ(holds.net_feed_scale, 0.5);
+}
+
 TEST(HoldsPart, AdaptiveFeedCountsOnlyWhereItIsOnAndNeverWhenItIsNoNumber) {
     Holds holds;
     take(holds, SetScale{Scale::FEED, 0, 0.5}, 1.2);

@@ -136,6 +136,12 @@ TEST_F(HomingDrivePart, AModuleOfAUserThatGivesUpHasFailedAndOneThatIsToldToEndH
         EXPECT_EQ(failure.joint, isTold ? -1 : 0);
         EXPECT_EQ(failure.why, isTold ? homing::Failure::NONE : homing::Failure::MODULE_FAILED);
     }
+    take(drive, Home{0}, conditions);
+    begin_due(drive, conditions);
+    EXPECT_EQ(take_failure(drive).joint, -1);
+    module.isBusy = false;
+    module.areHomed = true;
+    EXPECT_EQ(take_failure(drive).joint, -1) << "it has homed what it was to home";
 }
 
 }  // namespace

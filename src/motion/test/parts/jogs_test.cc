@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "kins/rotary_table.hh"
@@ -298,6 +300,62 @@ TEST(TeleopPart, WhatTwoAxesAskOfAJointTogetherIsCountedForEachOfThem_C13) {
         EXPECT_GE(load.q2[0][1][0], exact);
         EXPECT_NEAR(load.q2[0][1][0], exact, 0.1 * exact) << "with a margin";
         EXPECT_EQ(load.q2[1][0][0], load.q2[0][1][0]);
+    }
+}
+
+/// With jerk limits also how that changes while C turns: the product of three speeds, two of them C's.
+TEST(TeleopPart, WhatACurveOfTwoAxesChangesByWhileOneTurnsIsCountedForThatOne_C13) {
+    const kins::RotaryTable table;
+    const FoldedLimits limits;
+    TeleopMachine machine{table, limits, limits.path_joints};
+    machine.num_joints = 5;
+    constexpr double WAY = 5, X_SPEED = 20, C_SPEED = 30, RAD = 3.14159265358979 / 180;
+    geom::Pose pose;
+    pose[geom::AXIS_X] = 50;
+    pose[geom::AXIS_C] = 30;
+    ASSERT_EQ(table.inverse(pose, machine.joint_positions.data()), kins::Status::OK);
+    TeleopLoad load;
+    load.axes = {geom::AXIS_X, geom::AXIS_C};
+    load.count = 2;
+    load.isSmooth = true;
+    load.speed = {X_SPEED, C_SPEED};
+    ASSERT_TRUE(add_load(machine, pose, load));
+    EXPECT_EQ(load.turn[1][0], 0) << "as yet it stands";
+    pose[geom::AXIS_C] += WAY;
+    ASSERT_TRUE(add_load(machine, pose, load, {1, WAY}));
+    const double change = (std::sin(35 * RAD) - std::sin(30 * RAD)) * RAD / WAY;
+    const double exact = 2 * change * X_SPEED * C_SPEED;
+    EXPECT_GE(load.turn[1][0], exact);
+    EXPECT_NEAR(load.turn[1][0], exact, 0.1 * exact) << "with a margin";
+    EXPECT_EQ(load.turn[0][0], 0) << "X moves, and changes nothing of it";
+}
+
+/// An arm that reaches X by either sense of joint 0 and keeps that which it is told; nobody moves joint 1.
+struct Elbow final : kins::Kinematics {
+    kins::Kind kind() const noexcept override { return kins::Kind::BOTH; }
+    kins::Status forward(const double *joints, geom::Pose &pose) const noexcept override {
+        pose[0] = joints[0] * joints[0];
+        return kins::Status::OK;
+    }
+    kins::Status inverse(const geom::Pose &pose, double *joints) const noexcept override {
+        joints[0] = std::copysign(std::sqrt(pose[0]), joints[0]);
+        return kins::Status::OK;
+    }
+};
+
+TEST(TeleopPart, JointsAreSoughtFromWhereTheyStand_C13_C14) {
+    const Elbow elbow;
+    const FoldedLimits limits;
+    TeleopMachine machine{elbow, limits, limits.path_joints};
+    machine.num_joints = 2;
+    for (const double sense : {1.0, -1.0}) {
+        machine.joint_positions = {3 * sense, 7};
+        geom::Pose pose;
+        pose[0] = 16;
+        JointsAt q{};
+        ASSERT_TRUE(find_joints(machine, pose, q));
+        EXPECT_EQ(q[0], 4 * sense);
+        EXPECT_EQ(q[1], 7);
     }
 }
 

@@ -21,6 +21,7 @@ struct OffsetsPart : ::testing::Test {
         limits.low[0] = -20;
         limits.high[0] = 20;
         configure(offsets, limits, axis_map("X", 1));
+        start_at_zero(offsets, in);
         in.axis_offset[0].isEnabled = true;
         in.axis_offset[0].scale = 0.1;
     }
@@ -46,6 +47,33 @@ TEST_F(OffsetsPart, WhereItGoesToIsSeenACycleBeforeAndWeighedAgain_C15) {
     go(3000);
     EXPECT_NEAR(offsets.pose[0], 15, 1e-9);
     EXPECT_FALSE(offsets.isLimited);
+}
+
+/// A change of the kinematics or of a ratio is no turn of a wheel.
+TEST_F(OffsetsPart, WhatWasTurnedBeforeAnAxisCouldHaveOneMovesNothing_C15) {
+    for (const bool isEnabled : {true, false}) {
+        in.axis_offset[1].isEnabled = isEnabled;
+        in.axis_offset[1].scale = 0.1;
+        in.axis_offset[1].counts = 70;
+        go(10);
+        limits.offset[1] = {10, 100, 0};
+        limits.low[1] = -20;
+        limits.high[1] = 20;
+        configure(offsets, limits, axis_map("XY", 2));
+        EXPECT_FALSE(areAsked(offsets, in.axis_offset));
+        go(100);
+        EXPECT_EQ(offsets.pose[1], 0);
+        in.axis_offset[1].isEnabled = true;
+        in.axis_offset[1].counts += 20;
+        EXPECT_TRUE(areAsked(offsets, in.axis_offset));
+        go(3000);
+        EXPECT_NEAR(offsets.pose[1], 2, 1e-9);
+        in.axis_offset[1].isClearing = true;
+        go(3000);
+        in.axis_offset[1].isClearing = false;
+        limits.offset[1] = {};
+        configure(offsets, limits, axis_map("XY", 2));
+    }
 }
 
 TEST_F(OffsetsPart, NoMoveThatComesLaterMakesItGoBack_C15) {
@@ -75,7 +103,7 @@ TEST_F(OffsetsPart, CountsWrapAndWhatIsNoNumberCountsForNothing_C15) {
 }
 
 /// X and Y of belts: what one takes of a joint's travel is not there for the other, nor for what is
-/// programmed.
+/// programmed. To either side.
 TEST_F(OffsetsPart, TwoOfOneJointNeverTakeTheSameRoom_C13_C15) {
     const kins::CoreXy corexy;
     limits.offset[1] = {10, 100, 0};
@@ -83,24 +111,33 @@ TEST_F(OffsetsPart, TwoOfOneJointNeverTakeTheSameRoom_C13_C15) {
     limits.high[1] = 20;
     limits.joints.low.fill(-30);
     limits.joints.high.fill(30);
-    configure(offsets, limits, axis_map(corexy, 3));
-    in.axis_offset[1] = in.axis_offset[0];
-    programmed.joints.high[0] = 20;  // a move leads there, another back from it
-    in.axis_offset[0].counts = 80;
-    in.axis_offset[1].counts = 80;
-    for (int n = 0; n < 3000; ++n) {
-        go(1);
-        const JointRange taken = offsets.shared.within(range(offsets));
-        ASSERT_LE(programmed.joints.high[0] + taken.high[0], 30 + 1e-9);
-        ASSERT_GE(taken.low[1], -30 - 1e-9);
+    for (const int side : {1, -1}) {
+        offsets = {};
+        programmed = {};
+        in.axis_offset[0].counts = 0;
+        configure(offsets, limits, axis_map(corexy, 3));
+        in.axis_offset[1] = in.axis_offset[0];
+        start_at_zero(offsets, in);
+        // A move leads there, another back from it.
+        (side > 0 ? programmed.joints.high : programmed.joints.low)[0] = 20 * side;
+        in.axis_offset[0].counts = 80 * side;
+        in.axis_offset[1].counts = 80 * side;
+        for (int n = 0; n < 3000; ++n) {
+            go(1);
+            const JointRange taken = offsets.shared.within(range(offsets));
+            for (const std::size_t j : {0U, 1U}) {
+                ASSERT_LE(programmed.joints.high[j] + taken.high[j], 30 + 1e-9);
+                ASSERT_GE(programmed.joints.low[j] + taken.low[j], -30 - 1e-9);
+            }
+        }
+        EXPECT_NEAR(offsets.pose[0] + offsets.pose[1], 10 * side, 1e-9) << "all there is";
+        EXPECT_TRUE(offsets.isLimited);
+        in.axis_offset[1].counts = -80 * side;  // Y leads back, and X has its room
+        go(4000);
+        EXPECT_NEAR(offsets.pose[0], 8 * side, 1e-9);
+        EXPECT_NEAR(offsets.pose[1], -8 * side, 1e-9);
+        EXPECT_FALSE(offsets.isLimited);
     }
-    EXPECT_NEAR(offsets.pose[0] + offsets.pose[1], 10, 1e-9) << "all there is";
-    EXPECT_TRUE(offsets.isLimited);
-    in.axis_offset[1].counts = -80;  // Y leads back, and X has its room
-    go(4000);
-    EXPECT_NEAR(offsets.pose[0], 8, 1e-9);
-    EXPECT_NEAR(offsets.pose[1], -8, 1e-9);
-    EXPECT_FALSE(offsets.isLimited);
 }
 
 TEST_F(OffsetsPart, WhatTheyHaveOfAJointIsTakenOffForJogs_C9_C15) {
@@ -108,6 +145,7 @@ TEST_F(OffsetsPart, WhatTheyHaveOfAJointIsTakenOffForJogs_C9_C15) {
     limits.joints.low.fill(-30);
     limits.joints.high.fill(30);
     configure(offsets, limits, axis_map(corexy, 3));
+    start_at_zero(offsets, in);
     in.axis_offset[0].counts = 80;
     go(3000);
     std::array<double, MAX_JOINTS> joints{};

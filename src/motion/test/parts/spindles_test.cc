@@ -42,6 +42,21 @@ TEST_F(SpindlesPart, TurnOnlyWhileTheMachineIsOn) {
     EXPECT_EQ(rpm(), 0);
 }
 
+/// M3 and M4 release the brake, M5 engages it, and it may be released to turn one by hand.
+TEST_F(SpindlesPart, TheBrakeIsOffWhileOneTurns_C7) {
+    const auto isBrakeOn = [&] { return spindles[0].isBrakeOn; };
+    for (const double speed : {300.0, -300.0}) {
+        take(spindles, SpindleBrake{0, true});
+        EXPECT_TRUE(isBrakeOn());
+        take(spindles, SpindleOn{0, speed}, true);
+        EXPECT_FALSE(isBrakeOn());
+        take(spindles, SpindleOff{0});
+        EXPECT_TRUE(isBrakeOn());
+        take(spindles, SpindleBrake{0, false});
+        EXPECT_FALSE(isBrakeOn());
+    }
+}
+
 TEST_F(SpindlesPart, SpeedIsScaledAndKeptWithinItsRange) {
     set(Parameter::SPINDLE_MAX_FORWARD, 1000);
     set(Parameter::SPINDLE_MIN_FORWARD, 100);
