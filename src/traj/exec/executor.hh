@@ -141,6 +141,7 @@ class Executor : private ExecutorState {
     double follow(double dt) noexcept;
     double brake_along(double dt) noexcept;
     void start_brake() noexcept;
+    double brake_within_swing(const Piece &piece, double hardest) const noexcept;
     void brake_on_piece() noexcept;
     double coast_before_brake(double dt) noexcept;
     void enter_next_piece() noexcept;
