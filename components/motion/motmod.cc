@@ -72,14 +72,14 @@ struct Module {
 };
 
 Module module;
-void handle_commands(void *, long) {
+[[gnu::hot]] void handle_commands(void *, long) {
     if (module.channels->hasCommands()) {
         module.pins->read(module.in);
         module.controller->handle_commands(module.in);
     }
 }
 
-void control(void *, long) {
+[[gnu::hot]] void control(void *, long) {
     module.pins->read(module.in);
     module.controller->step(module.in, module.out);
     module.pins->write(module.out);

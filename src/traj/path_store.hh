@@ -282,7 +282,7 @@ constexpr double tolerance_at(const Piece &piece, double x) noexcept {
 }
 
 /// Position at `x` of a piece. [servo, planner]
-Pose position_at(const PathStore &store, const Piece &piece, double x) noexcept;
+[[gnu::hot]] Pose position_at(const PathStore &store, const Piece &piece, double x) noexcept;
 
 /// dq/dx at `x` of a piece. [servo, planner]
 Pose derivative_at(const PathStore &store, const Piece &piece, double x) noexcept;

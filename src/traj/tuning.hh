@@ -323,6 +323,9 @@ struct ExecutorTuning {
     static constexpr double ARRIVED = 4e-12;
     /// A speed below this part of what the phase's acceleration makes in its time is a stop.
     static constexpr double STOPPED = 1e-9;
+    /// A stop without a planner takes the first part of what the piece allows, as turning changes as well
+    /// while it comes into the mean, and no less than the second.
+    static constexpr double SWING_SHARE = 0.9, LEAST_BRAKE = 0.2;
     /// The helix counts as met within this part of a turn, and as lost beyond the second: what a count of the
     /// encoder makes of the angle half a mean later is within it.
     static constexpr double MET = 2e-5, LOST = 6e-3;

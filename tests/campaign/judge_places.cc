@@ -109,17 +109,19 @@ void Judge::check_places(const Sample &s) {
     }
 }
 
+/// In the cycle that looks at a pin next: two cycles of braking are left at most.
 bool Judge::mayBeAtRest() const {
+    constexpr double CYCLES = 2;
     bool isSlow = true;
     for (std::size_t j = 0; j < velocity_.size(); ++j) {
-        isSlow = isSlow && std::abs(velocity_[j]) <= design_.joints[j].acceleration * period_;
+        isSlow = isSlow && std::abs(velocity_[j]) <= CYCLES * design_.joints[j].acceleration * period_;
     }
     // A play may still be taken up where the path stands.
     const std::vector<geom::Pose> &path = stop_.path.axes;
     bool isPathSlow = last_.areAxesKnown && path.size() > 1;
     for (const AxisDesign &a : design_.axes) {
         isPathSlow = isPathSlow && std::abs(path.back()[a.axis] - path[path.size() - 2][a.axis]) <=
-                                       a.acceleration * period_ * period_;
+                                       CYCLES * a.acceleration * period_ * period_;
     }
     return standing_ > 0 || isSlow || isPathSlow;
 }

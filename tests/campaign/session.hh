@@ -105,6 +105,7 @@ class Session {
         std::uint64_t until = 0;
     };
     std::vector<Going> going_;
+    std::uint64_t commanded_ = 0;  ///< cycle of the last commands of any kind
     bool isStopped_ = false, isDisturbed_ = false, isReversed_ = false;
     bool isRecording_ = false;
     std::vector<geom::Pose> path_;

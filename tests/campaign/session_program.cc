@@ -278,6 +278,9 @@ void Session::begin_stop(const Trouble &t) {
         if (!judge_.mayBeAtRest() && act_->work == Work::PROGRAM) {
             rig_->faults.isProbeClosed = true;
             judge_.stop(Stop::ALONG_THE_PATH, 0);
+            if (rig_->sample().cycle < commanded_ + TO_TASK) {  // task may have these after the stop
+                judge_.allow(Leave::WORK);
+            }
         }
         break;
     case Upset::TASK_HUNG:
@@ -326,6 +329,7 @@ void Session::begin(const Trouble &t) {
         if (act_->work == Work::PROGRAM && !isStopped_) {
             // Those that come when the program has just ended are commands as any others.
             judge_.allow(Leave::WORK);
+            commanded_ = rig_->sample().cycle;
             post(msgs::SetMode{msgs::Mode::MANUAL});
             post(msgs::JogIncrement{false, 0, 5, 5});
             post(msgs::JogContinuous{true, t.joint, 5, 0, false});

@@ -57,9 +57,9 @@ class Controller {
 
     /// Takes up to MAX_COMMANDS_PER_CYCLE immediate commands and answers each (function
     /// motion-command-handler).
-    void handle_commands(const Inputs &in) noexcept;
+    [[gnu::hot]] void handle_commands(const Inputs &in) noexcept;
     /// One servo cycle (function motion-controller).
-    void step(const Inputs &in, Outputs &out) noexcept;
+    [[gnu::hot]] void step(const Inputs &in, Outputs &out) noexcept;
 
     static constexpr int MAX_COMMANDS_PER_CYCLE = 64;
 
@@ -68,49 +68,49 @@ class Controller {
     Controller(const Controller &other) noexcept = default;
 
     // --- controller_commands.cc
-    Verdict take(const Inputs &in, const CommandBody &body) noexcept;
-    Verdict abort_all(const Abort &command) noexcept;
-    Verdict enable(const Inputs &in) noexcept;
-    Verdict set_mode(Mode mode) noexcept;
-    void leave_lost_mode() noexcept;
-    Verdict lead_joints() noexcept;
-    Verdict set_num_joints(const Inputs &in, int count) noexcept;
-    Verdict set_parameter(const SetParameter &command) noexcept;
+    [[gnu::cold]] Verdict take(const Inputs &in, const CommandBody &body) noexcept;
+    [[gnu::cold]] Verdict abort_all(const Abort &command) noexcept;
+    [[gnu::cold]] Verdict enable(const Inputs &in) noexcept;
+    [[gnu::cold]] Verdict set_mode(Mode mode) noexcept;
+    [[gnu::cold]] void leave_lost_mode() noexcept;
+    [[gnu::cold]] Verdict lead_joints() noexcept;
+    [[gnu::cold]] Verdict set_num_joints(const Inputs &in, int count) noexcept;
+    [[gnu::cold]] Verdict set_parameter(const SetParameter &command) noexcept;
     JogSituation situation_of(const Inputs &in, const JogTarget &target) const noexcept;
-    void disable() noexcept;
-    void publish_limits() noexcept;
-    void tell_standing() noexcept;
+    [[gnu::cold]] void disable() noexcept;
+    [[gnu::cold]] void publish_limits() noexcept;
+    [[gnu::cold]] void tell_standing() noexcept;
 
     // --- controller.cc
-    void use_joints(int count) noexcept;
+    [[gnu::cold]] void use_joints(int count) noexcept;
     /// `spindles_lost`: bit per spindle whose feedback is not a number.
-    void check_faults(const Inputs &in, std::uint32_t spindles_lost) noexcept;
-    void check_joints(const Inputs &in) noexcept;
-    void step_kinematics(const Inputs &in) noexcept;
-    void switch_kinematics(kins::TypeSwitch &types) noexcept;
-    void step_homing(const Inputs &in) noexcept;
-    void drive_homing(const Inputs &in) noexcept;
-    void step_jogs(const Inputs &in) noexcept;
-    void step_indexers(const Inputs &in) noexcept;
-    void output_joints() noexcept;
-    void stop_category_1(FaultKind kind, int index, double value = 0) noexcept;
-    void stop_category_0(FaultKind kind, int index, double value = 0) noexcept;
-    void raise(FaultKind kind, int index, double value = 0, std::uint16_t detail = 0) noexcept;
-    bool isAnythingMoving() const noexcept;
+    [[gnu::hot]] void check_faults(const Inputs &in, std::uint32_t spindles_lost) noexcept;
+    [[gnu::hot]] void check_joints(const Inputs &in) noexcept;
+    [[gnu::hot]] void step_kinematics(const Inputs &in) noexcept;
+    [[gnu::cold]] void switch_kinematics(kins::TypeSwitch &types) noexcept;
+    [[gnu::hot]] void step_homing(const Inputs &in) noexcept;
+    [[gnu::cold]] void drive_homing(const Inputs &in) noexcept;
+    [[gnu::hot]] void step_jogs(const Inputs &in) noexcept;
+    [[gnu::cold]] void step_indexers(const Inputs &in) noexcept;
+    [[gnu::hot]] void output_joints() noexcept;
+    [[gnu::cold]] void stop_category_1(FaultKind kind, int index, double value = 0) noexcept;
+    [[gnu::cold]] void stop_category_0(FaultKind kind, int index, double value = 0) noexcept;
+    [[gnu::cold]] void raise(FaultKind kind, int index, double value = 0, std::uint16_t detail = 0) noexcept;
+    [[gnu::hot]] bool isAnythingMoving() const noexcept;
 
     // --- controller_motion.cc
     void move_joints(const Inputs &in) noexcept;
-    void move_axes(const Inputs &in) noexcept;
+    [[gnu::hot]] void move_axes(const Inputs &in) noexcept;
     geom::Pose teleop_pose() noexcept;
-    geom::Pose path_pose() noexcept;
+    [[gnu::hot]] geom::Pose path_pose() noexcept;
     void move_extra_joints(const Inputs &in) noexcept;
-    void move_to(const geom::Pose &pose) noexcept;
-    void check_probe(const Inputs &in) noexcept;
+    [[gnu::hot]] void move_to(const geom::Pose &pose) noexcept;
+    [[gnu::hot]] void check_probe(const Inputs &in) noexcept;
 
     // --- controller_status.cc
-    void publish(const Inputs &in, Outputs &out) noexcept;
-    void fill_path(Status &status, const geom::Pose &programmed) const noexcept;
-    void publish_view(const Inputs &in, const geom::Pose &programmed) noexcept;
+    [[gnu::hot]] void publish(const Inputs &in, Outputs &out) noexcept;
+    [[gnu::hot]] void fill_path(Status &status, const geom::Pose &programmed) const noexcept;
+    [[gnu::hot]] void publish_view(const Inputs &in, const geom::Pose &programmed) noexcept;
 
     ControllerConfig config_;  ///< with the joints that are in use
     const kins::Kinematics &kinematics_;

@@ -23,8 +23,8 @@ class ModuleKinematics final : public kins::Kinematics {
     int hold(int comp_id) const noexcept;
 
     kins::Kind kind() const noexcept override { return kind_; }
-    kins::Status forward(const double *joints, kins::Pose &pose) const noexcept override;
-    kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept override;
+    [[gnu::hot]] kins::Status forward(const double *joints, kins::Pose &pose) const noexcept override;
+    [[gnu::hot]] kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept override;
     const kins::IdentityMap *identity() const noexcept override { return isIdentity_ ? &map_ : nullptr; }
     int side(const kins::Pose &pose) const noexcept override;
     kins::LinearJoints linear() const noexcept override;

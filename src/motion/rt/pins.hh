@@ -28,9 +28,9 @@ class MotionPins {
     /// Makes the pins; 0 or a negated errno. [while loading]
     int declare(int comp_id, const PinCounts &wanted) noexcept;
     /// [servo]
-    void read(Inputs &in) noexcept;
+    [[gnu::hot]] void read(Inputs &in) noexcept;
     /// [servo]
-    void write(const Outputs &out) noexcept;
+    [[gnu::hot]] void write(const Outputs &out) noexcept;
 
   private:
     bool isUnlockable(int joint) const noexcept {

@@ -235,6 +235,27 @@ void Executor::enter_next_piece() noexcept {
     brake_on_piece();
 }
 
+/// Where braking pulls against what turning takes, `hardest` takes all that a coordinate can do once more.
+/// What the mean still holds of turning at a higher speed is taken off it: where turning takes all of A at
+/// the highest speed, the swing q2 (b_old - b) + q1 a is A at most then. Braking less hard than speeds are
+/// planned with is for stops that do not leave the piece.
+double Executor::brake_within_swing(const Piece &piece, double hardest) const noexcept {
+    if (!isFiltered() || !(piece.braking.top > 0)) {
+        return hardest;
+    }
+    const auto place = [this](std::uint64_t back) {
+        return store_.history[(state_.tick - back) % HISTORY_CAPACITY].s;
+    };
+    const double v2 = state_.v * state_.v;
+    const std::uint64_t known = state_.tick - state_.first_tick;
+    const std::uint64_t back = std::min(state_.filter, std::max<std::uint64_t>(known, 2) - 1);
+    const double v_old = (place(back) - place(back + 1)) / period_;
+    const double gone = std::max(0.0, v_old * v_old - v2) / piece.braking.top;
+    const double a = hardest * std::max(ExecutorTuning::LEAST_BRAKE, ExecutorTuning::SWING_SHARE - gone);
+    const bool isOnPiece = v2 <= 2.0 * a * (piece.length - state_.x);
+    return isOnPiece ? a : std::max(piece.acceleration.at(v2), a);
+}
+
 /// Sets up braking from the present state to a stop, to where the piece allows another, or to its end.
 void Executor::brake_on_piece() noexcept {
     const Piece &piece = store_.piece(state_.piece);
@@ -242,7 +263,7 @@ void Executor::brake_on_piece() noexcept {
     const Piece::BrakeLeg leg = piece.brake_leg(state_.x, v2);
     brake_.end = leg.end;
     const double left = std::max(0.0, brake_.end - state_.x);
-    double a = leg.a;
+    double a = brake_within_swing(piece, leg.a);
     const double out2 = v2 - 2.0 * a * left;
     brake_.time = 0;
     brake_.isFinal = out2 <= TimingTuning::STOP_FIT * v2;
@@ -261,6 +282,10 @@ void Executor::brake_on_piece() noexcept {
 double Executor::brake_along(double dt) noexcept {
     if (brake_.wait_s > TimingTuning::SOON && state_.v > 0) {
         return coast_before_brake(dt);
+    }
+    const bool isLookedAgain = isFiltered() && dt >= period_ && store_.piece(state_.piece).braking.top > 0;
+    if (isLookedAgain && state_.v > 0) {
+        brake_on_piece();
     }
     const double left = brake_.phase.duration - brake_.time;
     if (dt < left) {

@@ -92,7 +92,7 @@ class Executor : private ExecutorState {
     Executor(const Executor &other, PathStore &store) noexcept : ExecutorState(other), store_(store) {}
 
     /// The path begins at `pose`; only at rest and with nothing left of a path.
-    void set_position(const Pose &pose) noexcept;
+    [[gnu::cold]] void set_position(const Pose &pose) noexcept;
 
     /// The angle [turns] of a spindle; call every cycle before `step`: the speed is told from it.
     void set_spindle(int spindle, double turns) noexcept {
@@ -106,14 +106,14 @@ class Executor : private ExecutorState {
     }
 
     /// Advances to the end of `cycle`.
-    const ExecutorOutput &step(std::uint64_t cycle) noexcept;
+    [[gnu::hot]] const ExecutorOutput &step(std::uint64_t cycle) noexcept;
 
     /// Held: brakes and takes no plans until released.
     void hold(bool isHeld) noexcept;
     /// Brakes; when at rest everything that is left of the path is dropped.
     void drop() noexcept;
     /// Stops dead where it is and drops the path (amplifiers are off, nothing can follow a profile).
-    void stop_now() noexcept;
+    [[gnu::cold]] void stop_now() noexcept;
 
     /// The next event whose place has been passed, or nullptr; pop with `drop_event`.
     const PathEvent *due_event() noexcept;
@@ -137,23 +137,24 @@ class Executor : private ExecutorState {
 
   private:
     void take_commits() noexcept;
-    void advance(double dt) noexcept;
-    double follow(double dt) noexcept;
-    double brake_along(double dt) noexcept;
-    void start_brake() noexcept;
-    void brake_on_piece() noexcept;
-    double coast_before_brake(double dt) noexcept;
-    void enter_next_piece() noexcept;
-    void come_to_rest() noexcept;
-    void locate() noexcept;
-    void filter() noexcept;
-    void finish_drop() noexcept;
-    void watch_planner() noexcept;
+    [[gnu::hot]] void advance(double dt) noexcept;
+    [[gnu::hot]] double follow(double dt) noexcept;
+    [[gnu::cold]] double brake_along(double dt) noexcept;
+    [[gnu::cold]] void start_brake() noexcept;
+    [[gnu::cold]] double brake_within_swing(const Piece &piece, double hardest) const noexcept;
+    [[gnu::cold]] void brake_on_piece() noexcept;
+    [[gnu::cold]] double coast_before_brake(double dt) noexcept;
+    [[gnu::cold]] void enter_next_piece() noexcept;
+    [[gnu::cold]] void come_to_rest() noexcept;
+    [[gnu::hot]] void locate() noexcept;
+    [[gnu::hot]] void filter() noexcept;
+    [[gnu::cold]] void finish_drop() noexcept;
+    [[gnu::cold]] void watch_planner() noexcept;
     bool isFiltered() const noexcept { return state_.filter > 1; }
 
     // --- executor_locked.cc
-    bool take_pass(const Commit &commit) noexcept;
-    void step_locked() noexcept;
+    [[gnu::cold]] bool take_pass(const Commit &commit) noexcept;
+    [[gnu::cold]] void step_locked() noexcept;
     void advance_locked() noexcept;
     double acceleration_left() const noexcept;
     double locked_speed() noexcept;

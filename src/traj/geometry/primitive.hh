@@ -32,7 +32,7 @@ struct Primitive {
 };
 
 /// The position at `s`; exactly `start` at s <= 0 and exactly `end` at s >= length. [servo, planner]
-Pose position_at(const Primitive &p, double s) noexcept;
+[[gnu::hot]] Pose position_at(const Primitive &p, double s) noexcept;
 
 /// dq/ds at `s`. [servo, planner]
 Pose derivative_at(const Primitive &p, double s) noexcept;

@@ -16,8 +16,8 @@ struct Place {
 
 /// The measured pose. Forward kinematics of an iterating model wants a homed machine; where a model has none
 /// the command stands in.
-void read_feedback(Place &place, const kins::Kinematics &kinematics, const double *joints,
-                   bool areAllHomed) noexcept;
+[[gnu::hot]] void read_feedback(Place &place, const kins::Kinematics &kinematics, const double *joints,
+                                bool areAllHomed) noexcept;
 /// Joints lead; the commanded pose follows them where it is known.
 void follow_joints(Place &place, const kins::Kinematics &kinematics, const double *joints,
                    bool isKnown) noexcept;

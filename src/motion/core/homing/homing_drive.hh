@@ -58,7 +58,7 @@ struct HomingDrive {
 };
 
 /// Bit per homed joint: soft limits hold from there on.
-std::uint32_t homed_mask(const HomingDrive &drive) noexcept;
+[[gnu::hot]] std::uint32_t homed_mask(const HomingDrive &drive) noexcept;
 bool isAllHomed(const HomingDrive &drive) noexcept;
 
 struct HomeConditions {

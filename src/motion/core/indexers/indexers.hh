@@ -53,7 +53,7 @@ void switch_on(Indexers &indexers, const IndexerInputs &in) noexcept;
 /// Joints that may not be moved now.
 std::uint32_t held(const Indexers &indexers) noexcept;
 /// Joints that wait for their lock, or move.
-std::uint32_t busy(const Indexers &indexers) noexcept;
+[[gnu::hot]] std::uint32_t busy(const Indexers &indexers) noexcept;
 std::uint32_t in_state(const Indexers &indexers, LockState state) noexcept;
 
 void fill(const Indexers &indexers, Outputs &out) noexcept;

@@ -104,7 +104,7 @@ Verdict take(Jogs &jogs, const SetTeleopVector &command, const JogSituation *sit
 
 /// Ends one lease that was not renewed in time, and its jog brakes: the joint or axis of which that is to be
 /// told, index -1 when there is none any more. Called until then, in each cycle before the jogs move.
-JogTarget end_lease(Jogs &jogs, std::int64_t time_ns) noexcept;
+[[gnu::hot]] JogTarget end_lease(Jogs &jogs, std::int64_t time_ns) noexcept;
 
 /// Every jog brakes.
 void stop(Jogs &jogs) noexcept;

@@ -55,7 +55,7 @@ void switch_on(Joints &joints) noexcept;
 void switch_off(Joints &joints) noexcept;
 
 /// Gives the measured positions.
-PerJoint read_feedback(Joints &joints, const Inputs &in) noexcept;
+[[gnu::hot]] PerJoint read_feedback(Joints &joints, const Inputs &in) noexcept;
 PerJoint commanded(const Joints &joints) noexcept;
 /// Bit per joint that is left out.
 std::uint32_t inactive_joints(const Joints &joints) noexcept;
@@ -90,7 +90,8 @@ void set_zero(Joint &joint, double zero) noexcept;
 
 /// Motor positions: with corrections and offset while on, what the motors say while off. Bit per joint that
 /// is off.
-std::uint32_t output(Joints &joints, const Settings &settings, bool isEnabled, double period_s) noexcept;
+[[gnu::hot]] std::uint32_t output(Joints &joints, const Settings &settings, bool isEnabled,
+                                  double period_s) noexcept;
 
 /// The joint that does more than it can or leaves its soft limits, -1: none.
 struct Overrun {
