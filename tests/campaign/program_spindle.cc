@@ -159,8 +159,11 @@ Act Writer::write_in_step() {
         const double middle = z.low > 0 || z.high < 0 ? to_grid(0.5 * (z.low + z.high)) : 0;
         sync.from = to_grid(middle - side * 0.4 * length);
         sync.to = to_grid(sync.from + side * length);
-        const bool fits = std::max(std::abs(sync.from - middle), std::abs(sync.to - middle)) + 3 * sync.lead <
-                          0.95 * std::min(z.high - middle, middle - z.low);
+        const double room = std::min(z.high - middle, middle - z.low);
+        const bool fits =
+            std::max(std::abs(sync.from - middle), std::abs(sync.to - middle)) + 3 * sync.lead < 0.95 * room;
+        const double far = middle - side * std::min(std::abs(sync.from - middle), 0.9 * room);
+        sync.from = fits ? sync.from : to_grid(far);
         sync.to = fits ? sync.to : to_grid(sync.from + side * 0.1);
         // Too short for the speed, or for the spindle; a feed by turns may be short.
         // In a small room what does not fit may be slow enough all the same.
