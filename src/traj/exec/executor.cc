@@ -48,6 +48,29 @@ bool isPlanSoonOver(const PathStore &store, const Snapshot &now, Sequence end, d
     return store.phase(end - 1).isStop(period_s) && left_s <= brake_s + ExecutorTuning::LATER_S;
 }
 
+/// Where braking pulls against what turning takes, `hardest` takes all that a coordinate can do once more.
+/// What the mean still holds of turning at a higher speed is taken off it: where turning takes all of A at
+/// the highest speed, the swing q2 (b_old - b) + q1 a is A at most then. Braking less hard than speeds are
+/// planned with is for stops that do not leave the piece.
+double brake_within_swing(const PathStore &store, const Snapshot &now, double hardest,
+                          double period_s) noexcept {
+    const Piece &piece = store.piece(now.piece);
+    if (now.filter <= 1 || !(piece.braking.top > 0)) {
+        return hardest;
+    }
+    const auto place = [&](std::uint64_t back) {
+        return store.history[(now.tick - back) % HISTORY_CAPACITY].s;
+    };
+    const double v2 = now.v * now.v;
+    const std::uint64_t known = now.tick - now.first_tick;
+    const std::uint64_t back = std::min(now.filter, std::max<std::uint64_t>(known, 2) - 1);
+    const double v_old = (place(back) - place(back + 1)) / period_s;
+    const double gone = std::max(0.0, v_old * v_old - v2) / piece.braking.top;
+    const double a = hardest * std::max(ExecutorTuning::LEAST_BRAKE, ExecutorTuning::SWING_SHARE - gone);
+    const bool isOnPiece = v2 <= 2.0 * a * (piece.length - now.x);
+    return isOnPiece ? a : std::max(piece.acceleration.at(v2), a);
+}
+
 }  // namespace
 
 void Executor::take_commits() noexcept {
@@ -235,27 +258,6 @@ void Executor::enter_next_piece() noexcept {
     brake_on_piece();
 }
 
-/// Where braking pulls against what turning takes, `hardest` takes all that a coordinate can do once more.
-/// What the mean still holds of turning at a higher speed is taken off it: where turning takes all of A at
-/// the highest speed, the swing q2 (b_old - b) + q1 a is A at most then. Braking less hard than speeds are
-/// planned with is for stops that do not leave the piece.
-double Executor::brake_within_swing(const Piece &piece, double hardest) const noexcept {
-    if (!isFiltered() || !(piece.braking.top > 0)) {
-        return hardest;
-    }
-    const auto place = [this](std::uint64_t back) {
-        return store_.history[(state_.tick - back) % HISTORY_CAPACITY].s;
-    };
-    const double v2 = state_.v * state_.v;
-    const std::uint64_t known = state_.tick - state_.first_tick;
-    const std::uint64_t back = std::min(state_.filter, std::max<std::uint64_t>(known, 2) - 1);
-    const double v_old = (place(back) - place(back + 1)) / period_;
-    const double gone = std::max(0.0, v_old * v_old - v2) / piece.braking.top;
-    const double a = hardest * std::max(ExecutorTuning::LEAST_BRAKE, ExecutorTuning::SWING_SHARE - gone);
-    const bool isOnPiece = v2 <= 2.0 * a * (piece.length - state_.x);
-    return isOnPiece ? a : std::max(piece.acceleration.at(v2), a);
-}
-
 /// Sets up braking from the present state to a stop, to where the piece allows another, or to its end.
 void Executor::brake_on_piece() noexcept {
     const Piece &piece = store_.piece(state_.piece);
@@ -263,7 +265,7 @@ void Executor::brake_on_piece() noexcept {
     const Piece::BrakeLeg leg = piece.brake_leg(state_.x, v2);
     brake_.end = leg.end;
     const double left = std::max(0.0, brake_.end - state_.x);
-    double a = brake_within_swing(piece, leg.a);
+    double a = brake_within_swing(store_, state_, leg.a, period_);
     const double out2 = v2 - 2.0 * a * left;
     brake_.time = 0;
     brake_.isFinal = out2 <= TimingTuning::STOP_FIT * v2;

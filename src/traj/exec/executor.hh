@@ -141,7 +141,6 @@ class Executor : private ExecutorState {
     [[gnu::hot]] double follow(double dt) noexcept;
     [[gnu::cold]] double brake_along(double dt) noexcept;
     [[gnu::cold]] void start_brake() noexcept;
-    [[gnu::cold]] double brake_within_swing(const Piece &piece, double hardest) const noexcept;
     [[gnu::cold]] void brake_on_piece() noexcept;
     [[gnu::cold]] double coast_before_brake(double dt) noexcept;
     [[gnu::cold]] void enter_next_piece() noexcept;
