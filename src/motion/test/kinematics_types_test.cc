@@ -118,7 +118,7 @@ TEST_F(KinematicsTypesTest, AChangeOnAPathStopsItAndSaysSo_C14) {
     EXPECT_TRUE(rig.status().isEnabled);
 }
 
-TEST_F(KinematicsTypesTest, AnErrorOfThePathIsShownUntilAStopOrTheNextSwitchingOn_C14_G1) {
+TEST_F(KinematicsTypesTest, AnErrorOfThePathIsShownUntilAStopOrTheNextSwitchingOn_C1_C14) {
     for (const bool isAborted : {true, false}) {
         EXPECT_FALSE(rig.out->isCoordError);
         rig.line(at(rig.status().carte_pos_cmd[0] + 20, 30));
@@ -305,7 +305,7 @@ class SaidLinear final : public kins::Kinematics, public kins::TypeSwitch {
 /// External offsets are for joints that go in proportion to axes: in whatever mode the type was changed.
 TEST(KinematicsTypes, OffsetsAreThereFromTheChangeOnToATypeThatAllowsThem_C14_C15) {
     for (const Mode mode : {Mode::TELEOP, Mode::COORD}) {
-        const SaidLinear kinematics;
+        SaidLinear kinematics;
         MotionRig rig(kinematics, 3, 100, 1000);
         for (int i = 0; i < 3; ++i) {
             rig.set(Parameter::AXIS_MAX_VELOCITY, i, 100);

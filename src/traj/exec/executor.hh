@@ -153,7 +153,7 @@ class Executor : private ExecutorState {
 
     // --- executor_locked.cc
     [[gnu::cold]] bool take_pass(const Commit &commit) noexcept;
-    [[gnu::cold]] void step_locked() noexcept;
+    void step_locked() noexcept;
     void advance_locked() noexcept;
     double acceleration_left() const noexcept;
     double locked_speed() noexcept;

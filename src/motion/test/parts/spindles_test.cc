@@ -43,7 +43,7 @@ TEST_F(SpindlesPart, TurnOnlyWhileTheMachineIsOn) {
 }
 
 /// M3 and M4 release the brake, M5 engages it, and it may be released to turn one by hand.
-TEST_F(SpindlesPart, TheBrakeIsOffWhileOneTurns_C7) {
+TEST_F(SpindlesPart, TheBrakeIsOffWhileOneTurns_C15) {
     const auto isBrakeOn = [&] { return spindles[0].isBrakeOn; };
     for (const double speed : {300.0, -300.0}) {
         take(spindles, SpindleBrake{0, true});
