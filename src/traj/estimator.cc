@@ -54,13 +54,13 @@ void Estimator::add(const Primitive &primitive, const MoveRequest &request) {
     if (!(primitive.length > 1e-12)) {
         return;
     }
-    const double tolerance = planner_->path_tolerance(request);
-    if (!isFresh_ && !planner_->suits(tolerance)) {
+    const PathDemand demand = planner_->demand_of(request, primitive.start, primitive.end);
+    if (!isFresh_ && !planner_->suits(demand)) {
         finish();
         isFresh_ = true;
     }
     if (isFresh_) {
-        planner_->begin(planner_->end(), executor_->snapshot(), tolerance);
+        planner_->begin(planner_->end(), executor_->snapshot(), demand);
         isFresh_ = false;
     }
     while (!planner_->hasRoom(executor_->snapshot())) {

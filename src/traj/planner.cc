@@ -83,8 +83,8 @@ void Planner::set_room(const Pose &low, const Pose &high, const JointRoom &joint
     conditions_.workspace.joint_room = joints;
 }
 
-void Planner::begin(const Pose &start, const Snapshot &now, double tolerance) noexcept {
-    conditions_.limits.begin(tolerance);
+void Planner::begin(const Pose &start, const Snapshot &now, const PathDemand &demand) noexcept {
+    conditions_.limits.begin(demand);
     path_.begin();
     builder_.begin(start);
     timing_.begin(now);

@@ -28,15 +28,17 @@ class Planner {
 
     /// Holds for moves added from now on; jerk limits from the next `begin` on.
     void set_limits(const Limits &limits) noexcept { conditions_.limits.set(limits); }
-    /// The path that begins now with `tolerance` would be made as the present one.
-    bool isFilterCurrent(double tolerance) const noexcept { return conditions_.limits.isCurrent(tolerance); }
-    /// The tolerance that a path of such moves is made for; 0: any suits.
-    double path_tolerance(const MoveRequest &request) const noexcept {
-        return conditions_.limits.path_tolerance(request);
+    /// The path that begins now with such a move would be made as the present one.
+    bool isFilterCurrent(const PathDemand &demand) const noexcept {
+        return conditions_.limits.isCurrent(demand);
     }
-    /// With jerk limits a path is made for the tolerance that it began with; a much smaller one asks for
-    /// another path, from a stop. 0: none is kept.
-    bool suits(double tolerance) const noexcept { return conditions_.limits.suits(tolerance); }
+    /// What a path that begins with such a move, from `start` to `end`, is made for.
+    PathDemand demand_of(const MoveRequest &request, const Pose &start, const Pose &end) const noexcept {
+        return conditions_.limits.demand_of(request, start, end);
+    }
+    /// With jerk limits a path is made for what it began with; a much smaller tolerance, or rotary axes that
+    /// it began without, ask for another path, from a stop.
+    bool suits(const PathDemand &demand) const noexcept { return conditions_.limits.suits(demand); }
 
     /// For machines whose joints are not axes; `map` stays valid. Null: the axes' limits are all there are.
     void set_joints(const JointMap *map, const JointLimits &limits) noexcept;
@@ -46,9 +48,9 @@ class Planner {
     /// limits.
     void set_room(const Pose &low, const Pose &high, const JointRoom &joints = {}) noexcept;
 
-    /// A new path begins at `start`, where the executor rests with nothing left of another. `tolerance`: of
-    /// its first move, 0 when that keeps none.
-    void begin(const Pose &start, const Snapshot &now, double tolerance = 0) noexcept;
+    /// A new path begins at `start`, where the executor rests with nothing left of another. `demand`: of
+    /// its first move.
+    void begin(const Pose &start, const Snapshot &now, const PathDemand &demand = {}) noexcept;
 
     /// There is room for one more move.
     bool hasRoom(const Snapshot &now) const noexcept {

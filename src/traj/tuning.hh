@@ -67,6 +67,9 @@ struct LimitTuning {
     /// The mean is at most this part longer than what is best on curves: see docs/motion/planner.md.
     /// Measured: 0.96 is 0.8 % slower, 1.5 as fast.
     static constexpr double CURVE_SHARE = 1.2;
+    /// Part of what rotary axes need for themselves that the mean has at least where they turn beside linear
+    /// ones: a stop of theirs then takes twice as long as their limits need at most.
+    static constexpr double TURNING_SHARE = 0.5;
     /// Room that keeps fitted stops (Executor) and rounding inside the limits.
     static constexpr double ACCELERATION_MARGIN = 1e-6;
     /// Parts of the highest squared speed between which the acceleration that is left is a chord: denser
@@ -323,9 +326,9 @@ struct ExecutorTuning {
     static constexpr double ARRIVED = 4e-12;
     /// A speed below this part of what the phase's acceleration makes in its time is a stop.
     static constexpr double STOPPED = 1e-9;
-    /// A stop without a planner takes the first part of what the piece allows, as turning changes as well
-    /// while it comes into the mean, and no less than the second.
-    static constexpr double SWING_SHARE = 0.9, LEAST_BRAKE = 0.2;
+    /// Part of the jerk limits that a stop without a planner takes; how finely its brake is chosen.
+    static constexpr double FULL_JERK = 0.998;
+    static constexpr int BRAKE_STEPS = 30;
     /// The helix counts as met within this part of a turn, and as lost beyond the second: what a count of the
     /// encoder makes of the angle half a mean later is within it.
     static constexpr double MET = 2e-5, LOST = 6e-3;

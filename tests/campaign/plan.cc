@@ -206,6 +206,21 @@ bool hasTrouble(const Act &act, Upset what) {
     return std::ranges::any_of(act.troubles, [what](const Trouble &t) { return t.what == what; });
 }
 
+Plan without_planner_at_stops(Plan plan) {
+    constexpr int AWAY_MS = 700;
+    for (Act &act : plan.acts) {
+        std::vector<Trouble> all;
+        for (const Trouble &t : act.troubles) {
+            if (!isPassing(t.what)) {
+                all.push_back({Upset::PLANNER_LOST, t.at_ms, AWAY_MS, t.joint, 0});
+            }
+            all.push_back(t);
+        }
+        act.troubles = std::move(all);
+    }
+    return plan;
+}
+
 Plan make_plan(std::uint64_t seed, unsigned version) {
     Plan plan = version == 1 ? make_long_plan(seed) : make_short_plan(seed, version);
     plan.seed = seed;

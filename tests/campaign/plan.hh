@@ -148,6 +148,9 @@ bool hasTrouble(const Act &act, Upset what);
 inline constexpr unsigned PLAN_VERSION = 3, LAST_PLAN = 4;
 Plan make_plan(std::uint64_t seed, unsigned version = PLAN_VERSION);
 
+/// The same with the planner lost as each stop begins, and for a while.
+Plan without_planner_at_stops(Plan plan);
+
 /// What is kept of a plan, in the words of campaign_runner/kept.hh; of blocks, moves alone are left out.
 Plan reduced(const Plan &plan, const std::string &kept);
 

@@ -174,7 +174,7 @@ bool Session::switch_on() {
         ask(msgs::SetState{msgs::State::ESTOP_RESET});
         judge_.allow(Leave::SWITCH_ON);
         ask(msgs::SetState{msgs::State::ON});
-        settle(2);
+        settle(LONGEST_CALM_S);
         if (state() != msgs::State::ON) {
             await_slides();
         }
@@ -190,7 +190,7 @@ bool Session::home() {
         return false;
     }
     ask(msgs::SetTeleop{false});
-    settle(2);
+    settle(LONGEST_CALM_S);
     judge_.allow(Leave::MOVE);
     ask(msgs::UnhomeJoint{-1});
     if (isStopped_) {
@@ -210,7 +210,7 @@ bool Session::clear_offsets() {
     if (!set_mode(msgs::Mode::MANUAL) || ask(msgs::SetTeleop{true}) != End::DONE) {
         return false;
     }
-    settle(2);
+    settle(LONGEST_CALM_S);
     judge_.allow(Leave::MOVE);
     for (const AxisDesign &a : plan_.design.axes) {
         const double place = rig_->sample().axes[a.axis];

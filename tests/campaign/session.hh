@@ -32,6 +32,9 @@ struct Verdict {
     std::uint64_t hash = 0;  ///< of all that was commanded
 };
 
+/// A jog, or an external offset that is begun just before, takes no longer to come to rest.
+inline constexpr double LONGEST_CALM_S = 10;
+
 struct Telling {
     std::FILE *stream = nullptr;  ///< what happens
     std::string trace;            ///< file of what is commanded; empty: none

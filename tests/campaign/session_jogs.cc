@@ -18,7 +18,7 @@ bool Session::begin_manual(bool isJoint) {
         fail("work", "the jogs' mode is not set with the machine at rest");
         return false;
     }
-    settle(2);
+    settle(LONGEST_CALM_S);
     return true;
 }
 

@@ -63,7 +63,7 @@ void Session::run_program(const Act &act) {
         fail("work", "the program is not opened with the machine at rest");
         return;
     }
-    settle(2);
+    settle(LONGEST_CALM_S);
     const geom::Pose from = rig_->sample().axes;
     path_.clear();
     path_.push_back(from);

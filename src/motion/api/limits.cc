@@ -172,21 +172,20 @@ void leave_to_paths(const AxisMap &map, int j, FoldedLimits &out) noexcept {
     }
 }
 
-/// The joint that needs the longest mean: of linear ones where there are any with a jerk limit.
-traj::Limits::SlowJoint slow_joint(const Settings &s, const AxisMap &map,
-                                   const traj::JointLimits &joints) noexcept {
+/// The joint that needs the longest mean, of the linear or of the rotary ones.
+traj::Limits::SlowJoint slow_joint(const Settings &s, const AxisMap &map, const traj::JointLimits &joints,
+                                   bool isAngular) noexcept {
     traj::Limits::SlowJoint slow;
     double longest = 0;
     for (int j = 0; j < map.num_led(); ++j) {
         const double jerk = joints.jerk[at(j)];
-        if (!(jerk > 0 && s.get(Parameter::JOINT_MAX_JERK, j) < NO_JERK_LIMIT)) {
+        const bool isLimited = jerk > 0 && s.get(Parameter::JOINT_MAX_JERK, j) < NO_JERK_LIMIT;
+        if (!isLimited || s.isSet(Parameter::JOINT_IS_ANGULAR, j) != isAngular) {
             continue;
         }
-        const traj::Limits::SlowJoint joint{joints.velocity[at(j)], joints.acceleration[at(j)], jerk,
-                                            s.isSet(Parameter::JOINT_IS_ANGULAR, j)};
+        const traj::Limits::SlowJoint joint{joints.velocity[at(j)], joints.acceleration[at(j)], jerk};
         const double mean_s = traj::time_of_mean(joint.velocity, joint.acceleration, jerk);
-        const bool isFirst = !(longest > 0) || (slow.isAngular && !joint.isAngular);
-        if (isFirst || (slow.isAngular == joint.isAngular && mean_s > longest)) {
+        if (mean_s > longest) {
             slow = joint;
             longest = mean_s;
         }
@@ -285,7 +284,8 @@ FoldedLimits fold_limits(const Settings &settings, const AxisMap &map, const Hom
         leave_to_paths(map, joint, out);
     }
     if (map.kind == AxisMap::Kind::PLANNED) {
-        out.path.slow_joint = slow_joint(settings, map, out.path_joints);
+        out.path.slow_linear_joint = slow_joint(settings, map, out.path_joints, false);
+        out.path.slow_rotary_joint = slow_joint(settings, map, out.path_joints, true);
     }
     return out;
 }

@@ -39,7 +39,7 @@ homing::JointInput homing_input(const JointInputs &pins, const Joint &joint, con
 Controller::Controller(const ControllerConfig &config, const kins::Kinematics &kinematics, Channels &channels,
                        PathLink &link) noexcept
     : config_(config), kinematics_(kinematics), channels_(&channels), link_(&link),
-      executor_(link.store, config.period_s) {
+      executor_(link.store, config.period_s, lone_stops_.limits()) {
     joints_.loaded = config.num_joints;
     spindles_.count = config.num_spindles;
     outputs_.num_digital = config.num_dio;
@@ -78,7 +78,9 @@ Controller::Controller(const Controller &other, Channels &channels, PathLink &li
     : Controller(other) {
     channels_ = &channels;
     link_ = &link;
-    std::construct_at(&executor_, other.executor_, link.store);
+    std::construct_at(&lone_stops_, kinematics_, joints_);
+    lone_stops_.set(limits_, map_.kind == AxisMap::Kind::PLANNED);
+    std::construct_at(&executor_, other.executor_, link.store, lone_stops_.limits());
 }
 
 bool Controller::isAnythingMoving() const noexcept {

@@ -27,6 +27,7 @@
 #include "motion/core/power/power.hh"
 #include "motion/core/probe/probe.hh"
 #include "motion/core/spindles/spindles.hh"
+#include "motion/core/stop_joints.hh"
 #include "motion/core/verdict.hh"
 #include "motion/core/watchdog/watchdog.hh"
 #include "traj/exec/executor.hh"
@@ -43,6 +44,12 @@ struct ControllerConfig {
     homing::Module *homing = nullptr;  ///< takes the place of ours; outlives the controller
 
     int num_led_joints() const noexcept { return num_joints - num_extra_joints; }
+};
+
+/// Of the commands.
+struct Received {
+    Epoch epoch = 0;        ///< what is older is stale
+    CommandId last_id = 0;  ///< of those that are answered at once
 };
 
 /// Owns the parts of the machine and hands each, every cycle, what it needs of the others. Some megabytes, so
@@ -123,8 +130,7 @@ class Controller {
     Standing standing_;
 
     std::uint64_t cycle_ = 0;
-    Epoch epoch_ = 0;
-    CommandId last_id_ = 0;
+    Received received_;
 
     Power power_;
     Watchdog watchdog_;
@@ -141,6 +147,7 @@ class Controller {
     ExternalOffsets offsets_;
     ExtraJoints extra_;
     Indexers indexers_;
+    LoneStops lone_stops_{kinematics_, joints_};
     traj::Executor executor_;
     Retracing retracing_;
 

@@ -53,7 +53,7 @@ void Controller::handle_commands(const Inputs &in) noexcept {
         Answer answer;
         answer.id = c->id;
         // Epochs are compared across their wrap.
-        const bool isStale = static_cast<std::int32_t>(c->epoch - epoch_) < 0;
+        const bool isStale = static_cast<std::int32_t>(c->epoch - received_.epoch) < 0;
         if (isStale && !std::holds_alternative<Abort>(c->body)) {
             answer.kind = AnswerKind::STALE;
         } else {
@@ -64,7 +64,7 @@ void Controller::handle_commands(const Inputs &in) noexcept {
             answer.index = verdict.index;
         }
         answers.push(answer);
-        last_id_ = answer.id;
+        received_.last_id = answer.id;
         channels_->immediate.drop();
     }
 }
@@ -150,8 +150,8 @@ Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
 }
 
 Verdict Controller::abort_all(const Abort &command) noexcept {
-    if (static_cast<std::int32_t>(command.new_epoch - epoch_) > 0) {
-        epoch_ = command.new_epoch;
+    if (static_cast<std::int32_t>(command.new_epoch - received_.epoch) > 0) {
+        received_.epoch = command.new_epoch;
     }
     abort(homing_, homing::event::ABORT);
     executor_.drop();
@@ -363,6 +363,7 @@ void Controller::publish_limits() noexcept {
     limits_ = fold_limits(settings_, map_, {homed_mask(homing_), isAllHomed(homing_)});
     configure(offsets_, limits_, map_);
     indexers_.mask = limits_.locks;
+    lone_stops_.set(limits_, map_.kind == AxisMap::Kind::PLANNED);
     PathLimits out;
     out.offset_axes = offsets_.axes;
     out.indexer = limits_.indexer;

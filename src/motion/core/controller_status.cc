@@ -100,8 +100,8 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
     Status &s = out.status;
     s.cycle = cycle_;
     s.time_ns = in.time_ns;
-    s.epoch = epoch_;
-    s.last_immediate_id = last_id_;
+    s.epoch = received_.epoch;
+    s.last_immediate_id = received_.last_id;
     s.mode = power_.mode;
     s.isEnabled = power_.isEnabled;
     s.isAllHomed = limits_.homed.areAll;
@@ -171,7 +171,7 @@ void Controller::fill_path(Status &s, const geom::Pose &programmed) const noexce
 void Controller::publish_view(const Inputs &in, const geom::Pose &programmed) noexcept {
     PathView &v = link_->newest;
     v.executor = executor_.snapshot();
-    v.epoch = epoch_;
+    v.epoch = received_.epoch;
     v.mode = power_.mode;
     v.isEnabled = power_.isEnabled;
     v.isStopping = power_.isStopping || retracing_.isPathLeft;

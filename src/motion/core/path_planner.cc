@@ -206,7 +206,7 @@ bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
         planner_.release_end();
         return true;
     }
-    if (isPathBegun_ && !isIdle() && !planner_.suits(tolerance_of(c))) {
+    if (isPathBegun_ && !isIdle() && !planner_.suits(demand_of(c))) {
         planner_.release_end();
         return true;
     }
@@ -219,12 +219,16 @@ bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
     return isQueueFull_ || pending_.size() + 2 >= PendingCommands::CAPACITY;
 }
 
-/// The tolerance that a path of such moves is made for; 0: any suits.
-double PathPlanner::tolerance_of(const PathCommand &c) const noexcept {
+/// What a path of such moves is made for.
+traj::PathDemand PathPlanner::demand_of(const PathCommand &c) const noexcept {
     const auto *line = std::get_if<Line>(&c.body);
     const auto *arc = std::get_if<Arc>(&c.body);
-    const MoveTerms *terms = line != nullptr ? &line->terms : arc != nullptr ? &arc->terms : nullptr;
-    return terms != nullptr ? planner_.path_tolerance(request_for(c, *terms)) : 0.0;
+    if (line == nullptr && arc == nullptr) {
+        return {};
+    }
+    const geom::Pose &start = isPathBegun_ ? planner_.end() : view_.position;
+    return line != nullptr ? planner_.demand_of(request_for(c, line->terms), start, line->end)
+                           : planner_.demand_of(request_for(c, arc->terms), start, arc->end);
 }
 
 /// Everything that was accepted is driven.
@@ -238,9 +242,9 @@ bool PathPlanner::isIdle() const noexcept {
 void PathPlanner::begin_path(const PathCommand &c) noexcept {
     const bool isOutput = std::holds_alternative<SynchedDigitalOutput>(c.body) ||
                           std::holds_alternative<SynchedAnalogOutput>(c.body);
-    const double tolerance = tolerance_of(c);
-    if (!isPathBegun_ || (!isOutput && isIdle() && !planner_.isFilterCurrent(tolerance))) {
-        planner_.begin(view_.position, view_.executor, tolerance);
+    const traj::PathDemand demand = demand_of(c);
+    if (!isPathBegun_ || (!isOutput && isIdle() && !planner_.isFilterCurrent(demand))) {
+        planner_.begin(view_.position, view_.executor, demand);
         isPathBegun_ = true;
     }
 }

@@ -48,27 +48,9 @@ bool isPlanSoonOver(const PathStore &store, const Snapshot &now, Sequence end, d
     return store.phase(end - 1).isStop(period_s) && left_s <= brake_s + ExecutorTuning::LATER_S;
 }
 
-/// Where braking pulls against what turning takes, `hardest` takes all that a coordinate can do once more.
-/// What the mean still holds of turning at a higher speed is taken off it: where turning takes all of A at
-/// the highest speed, the swing q2 (b_old - b) + q1 a is A at most then. Braking less hard than speeds are
-/// planned with is for stops that do not leave the piece.
-double brake_within_swing(const PathStore &store, const Snapshot &now, double hardest,
-                          double period_s) noexcept {
-    const Piece &piece = store.piece(now.piece);
-    if (now.filter <= 1 || !(piece.braking.top > 0)) {
-        return hardest;
-    }
-    const auto place = [&](std::uint64_t back) {
-        return store.history[(now.tick - back) % HISTORY_CAPACITY].s;
-    };
-    const double v2 = now.v * now.v;
-    const std::uint64_t known = now.tick - now.first_tick;
-    const std::uint64_t back = std::min(now.filter, std::max<std::uint64_t>(known, 2) - 1);
-    const double v_old = (place(back) - place(back + 1)) / period_s;
-    const double gone = std::max(0.0, v_old * v_old - v2) / piece.braking.top;
-    const double a = hardest * std::max(ExecutorTuning::LEAST_BRAKE, ExecutorTuning::SWING_SHARE - gone);
-    const bool isOnPiece = v2 <= 2.0 * a * (piece.length - now.x);
-    return isOnPiece ? a : std::max(piece.acceleration.at(v2), a);
+/// Jerk limits tell how hard a stop may brake. Exact arcs have brakes of their own.
+bool isGuarded(const PathStore &store, const Snapshot &now, const StopLimits *limits) noexcept {
+    return limits != nullptr && now.filter > 1 && !store.piece(now.piece).isAlong;
 }
 
 }  // namespace
@@ -226,10 +208,12 @@ double Executor::follow(double dt) noexcept {
 
 void Executor::start_brake() noexcept {
     brake_.wait_s = wait_behind_rise(store_, state_, period_);
+    brake_.most = 0;
+    brake_.plan_phase = state_.phase;
     state_.motion = Motion::BRAKE;
     ++state_.brakes;
     next_switch_.plan = 0;
-    brake_on_piece();
+    brake_on_piece(period_);
 }
 
 /// Returns the time that is left when the piece or the waiting is over.
@@ -244,28 +228,33 @@ double Executor::coast_before_brake(double dt) noexcept {
     if (!isWithin && state_.piece == store_.last_piece.load(std::memory_order_acquire)) {
         come_to_rest();  // the end of the path, as in brake_along
     } else if (!isWithin) {
-        enter_next_piece();
+        enter_next_piece(dt - t);
     } else if (brake_.wait_s <= TimingTuning::SOON) {
         brake_.wait_s = 0;
-        brake_on_piece();
+        brake_on_piece(dt - t);
     }
     return dt - t;
 }
 
-void Executor::enter_next_piece() noexcept {
+void Executor::enter_next_piece(double dt) noexcept {
     ++state_.piece;
     state_.x = 0;
-    brake_on_piece();
+    brake_on_piece(dt);
 }
 
-/// Sets up braking from the present state to a stop, to where the piece allows another, or to its end.
-void Executor::brake_on_piece() noexcept {
+/// Sets up braking from the present state to a stop, to where the piece allows another, or to its end. `dt`
+/// is left of the cycle, for which the brake was chosen on an earlier piece.
+void Executor::brake_on_piece(double dt) noexcept {
     const Piece &piece = store_.piece(state_.piece);
     const double v2 = state_.v * state_.v;
     const Piece::BrakeLeg leg = piece.brake_leg(state_.x, v2);
     brake_.end = leg.end;
     const double left = std::max(0.0, brake_.end - state_.x);
-    double a = brake_within_swing(store_, state_, leg.a, period_);
+    double a = leg.a;
+    if (v2 > 0 && isGuarded(store_, state_, stop_limits_)) {
+        const double least = least_brake(store_, state_, brake_.plan_phase, phase_end_, dt);
+        a = std::min(leg.a, std::max(brake_.most, least));
+    }
     const double out2 = v2 - 2.0 * a * left;
     brake_.time = 0;
     brake_.isFinal = out2 <= TimingTuning::STOP_FIT * v2;
@@ -285,9 +274,12 @@ double Executor::brake_along(double dt) noexcept {
     if (brake_.wait_s > TimingTuning::SOON && state_.v > 0) {
         return coast_before_brake(dt);
     }
-    const bool isLookedAgain = isFiltered() && dt >= period_ && store_.piece(state_.piece).braking.top > 0;
-    if (isLookedAgain && state_.v > 0) {
-        brake_on_piece();
+    if (dt >= period_ && state_.v > 0 && isGuarded(store_, state_, stop_limits_)) {
+        const double hardest = store_.piece(state_.piece).brake_leg(state_.x, state_.v * state_.v).a;
+        const double least = least_brake(store_, state_, brake_.plan_phase, phase_end_, period_);
+        brake_.most = brake_within_jerk(store_, state_, out_.position, *stop_limits_,
+                                        {std::min(least, hardest), hardest}, period_);
+        brake_on_piece(dt);
     }
     const double left = brake_.phase.duration - brake_.time;
     if (dt < left) {
@@ -308,7 +300,7 @@ double Executor::brake_along(double dt) noexcept {
     state_.v = v_at(brake_.phase, brake_.phase.duration);
     if (brake_.end < piece.length) {
         state_.x = brake_.end;
-        brake_on_piece();
+        brake_on_piece(dt - left);
         return dt - left;
     }
     if (state_.piece == store_.last_piece.load(std::memory_order_acquire)) {
@@ -318,7 +310,7 @@ double Executor::brake_along(double dt) noexcept {
         come_to_rest();
         return 0;
     }
-    enter_next_piece();
+    enter_next_piece(dt - left);
     return dt - left;
 }
 
@@ -374,7 +366,7 @@ void Executor::drop() noexcept {
 }
 
 /// A stop must not wait for a planner that is late or gone. One that looks for a sound stop is waited for
-/// longer: the plan in force ends in one.
+/// longer: the plan in force ends in one. Where the leader stands between two moves it stays.
 void Executor::watch_planner() noexcept {
     const std::uint32_t updates = store_.updates.load(std::memory_order_relaxed);
     silence_.cycles = updates != silence_.seen_updates ? 0 : silence_.cycles + 1;
@@ -383,7 +375,13 @@ void Executor::watch_planner() noexcept {
                         silence_.cycles * period_ > ExecutorTuning::PLANNER_SILENCE_S;
     ++silence_.waited;
     const bool isWithoutPlan = silence_.waited * period_ > ExecutorTuning::STOP_PLAN_WAIT_S;
-    if ((isGone || isWithoutPlan) && !isPlanSoonOver(store_, state_, phase_end_, period_)) {
+    const bool isBetween =
+        state_.v == 0 && store_.phase(state_.phase).a == 0 && state_.phase + 1 < phase_end_;
+    if (isBetween) {
+        ++state_.brakes;
+        next_switch_.plan = 0;
+        come_to_rest();
+    } else if ((isGone || isWithoutPlan) && !isPlanSoonOver(store_, state_, phase_end_, period_)) {
         start_brake();
     }
 }

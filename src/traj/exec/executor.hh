@@ -8,6 +8,7 @@
 #include "base/limits.hh"
 #include "traj/exec/arc_mean.hh"
 #include "traj/exec/locked_state.hh"
+#include "traj/exec/lone_brake.hh"
 #include "traj/exec/mean_filter.hh"
 #include "traj/exec/spindle_track.hh"
 #include "traj/exec/tap_follower.hh"
@@ -43,10 +44,12 @@ struct PlannerSilence {
 /// How the executor brakes by itself on the present piece.
 struct Brake {
     Phase phase;
-    double time = 0;       ///< in it
-    bool isFinal = false;  ///< it ends in a stop
-    double end = 0;        ///< where on the piece it ends otherwise
-    double wait_s = 0;     ///< before: until the mean has forgotten the last rise the speed is kept
+    double time = 0;          ///< in it
+    bool isFinal = false;     ///< it ends in a stop
+    double end = 0;           ///< where on the piece it ends otherwise
+    double wait_s = 0;        ///< before: until the mean has forgotten the last rise the speed is kept
+    double most = 0;          ///< what jerk limits leave in this cycle [1/s^2]
+    Sequence plan_phase = 0;  ///< of the plan that it has left, where the leader is now
 };
 
 /// What an executor remembers. A copy of it goes on in another executor whose store holds the same path.
@@ -87,9 +90,12 @@ class ExecutorState {
 /// switches the spindle off and follows it to its stand.
 class Executor : private ExecutorState {
   public:
-    explicit Executor(PathStore &store, double period_s) noexcept : ExecutorState(period_s), store_(store) {}
+    /// `limits` stay valid; what they hold may change. Null: stops without a planner know no jerk limits.
+    explicit Executor(PathStore &store, double period_s, const StopLimits *limits = nullptr) noexcept
+        : ExecutorState(period_s), store_(store), stop_limits_(limits) {}
     /// Goes on where `other` is; `store` holds the same path.
-    Executor(const Executor &other, PathStore &store) noexcept : ExecutorState(other), store_(store) {}
+    Executor(const Executor &other, PathStore &store, const StopLimits *limits) noexcept
+        : ExecutorState(other), store_(store), stop_limits_(limits) {}
 
     /// The path begins at `pose`; only at rest and with nothing left of a path.
     [[gnu::cold]] void set_position(const Pose &pose) noexcept;
@@ -141,9 +147,9 @@ class Executor : private ExecutorState {
     [[gnu::hot]] double follow(double dt) noexcept;
     [[gnu::cold]] double brake_along(double dt) noexcept;
     [[gnu::cold]] void start_brake() noexcept;
-    [[gnu::cold]] void brake_on_piece() noexcept;
+    [[gnu::cold]] void brake_on_piece(double dt) noexcept;
     [[gnu::cold]] double coast_before_brake(double dt) noexcept;
-    [[gnu::cold]] void enter_next_piece() noexcept;
+    [[gnu::cold]] void enter_next_piece(double dt) noexcept;
     [[gnu::cold]] void come_to_rest() noexcept;
     [[gnu::hot]] void locate() noexcept;
     [[gnu::hot]] void filter() noexcept;
@@ -167,6 +173,7 @@ class Executor : private ExecutorState {
     void advance_tap() noexcept;
 
     PathStore &store_;
+    const StopLimits *stop_limits_;
 };
 
 }  // namespace mw::traj

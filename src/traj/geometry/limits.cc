@@ -114,12 +114,12 @@ AccelBound AccelBound::least(const AccelBound &x, const AccelBound &y, double v)
     return through(left, v);
 }
 
-std::uint64_t filter_length(const Limits &limits, double period_s, double tolerance) noexcept {
+std::uint64_t filter_length(const Limits &limits, double period_s, const PathDemand &demand) noexcept {
     if (!limits.isJerkLimited) {
         return 1;
     }
-    double longest = 0;
-    double longest_angular = 0;
+    double linear_s = 0;
+    double rotary_s = 0;
     bool isNeeded = false;
     const auto add = [&](double velocity, double acceleration, double jerk, bool isAngular) {
         if (!(jerk > 0 && jerk < 1e9 && acceleration < 1e9)) {
@@ -127,18 +127,23 @@ std::uint64_t filter_length(const Limits &limits, double period_s, double tolera
         }
         isNeeded = isNeeded || acceleration > jerk * period_s;
         double length = time_of_mean(velocity, acceleration, jerk);
-        if (tolerance > 0) {
-            length = std::min(length, LimitTuning::CURVE_SHARE * std::cbrt(24.0 * tolerance / jerk));
+        if (demand.tolerance > 0) {
+            length = std::min(length, LimitTuning::CURVE_SHARE * std::cbrt(24.0 * demand.tolerance / jerk));
         }
-        double &of = isAngular ? longest_angular : longest;
+        double &of = isAngular ? rotary_s : linear_s;
         of = std::max(of, length);
     };
     for (std::size_t i = 0; i < limits.jerk.size(); ++i) {
         add(limits.velocity[i], limits.acceleration[i], limits.jerk[i], geom::isAngular(static_cast<int>(i)));
     }
-    const Limits::SlowJoint &joint = limits.slow_joint;
-    add(joint.velocity, joint.acceleration, joint.jerk, joint.isAngular);
-    const double samples = std::ceil((longest > 0 ? longest : longest_angular) / period_s - 1e-9);
+    const auto add_joint = [&](const Limits::SlowJoint &joint, bool isAngular) {
+        add(joint.velocity, joint.acceleration, joint.jerk, isAngular);
+    };
+    add_joint(limits.slow_linear_joint, false);
+    add_joint(limits.slow_rotary_joint, true);
+    const double turning_s = demand.isTurning ? LimitTuning::TURNING_SHARE * rotary_s : 0.0;
+    const double samples =
+        std::ceil((linear_s > 0 ? std::max(linear_s, turning_s) : rotary_s) / period_s - 1e-9);
     return static_cast<std::uint64_t>(
         std::clamp(samples, isNeeded ? 2.0 : 1.0, static_cast<double>(MAX_FILTER)));
 }

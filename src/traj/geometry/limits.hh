@@ -17,14 +17,19 @@ struct Limits {
     PerLimited acceleration{};  ///< [unit/s^2]
     PerLimited jerk{};          ///< [unit/s^3]; used when `isJerkLimited`
     bool isJerkLimited = false;
-    /// Of joints that are not axes, the one that needs the longest mean: its acceleration, velocity and jerk.
+    /// Of joints that are not axes, the linear and the rotary one that need the longest mean.
     struct SlowJoint {
         double velocity = 0, acceleration = 0, jerk = 0;  ///< jerk 0: none has a limit
-        bool isAngular = false;
     };
-    SlowJoint slow_joint;
+    SlowJoint slow_linear_joint, slow_rotary_joint;
 };
 inline constexpr double UNLIMITED = 1e300;
+
+/// What a path is made for: its first move tells.
+struct PathDemand {
+    double tolerance = 0;    ///< 0: none is kept
+    bool isTurning = false;  ///< rotary axes move
+};
 
 /// The time in which an acceleration is built up within a jerk limit, or the acceleration with which the
 /// velocity is reached soonest [s].
@@ -34,9 +39,10 @@ inline double time_of_mean(double velocity, double acceleration, double jerk) no
 
 /// Samples of the mean that turns acceleration-limited motion into jerk-limited motion: the longest time that
 /// an axis of X Y Z U V W, the XYZ norm or a joint needs to build up its acceleration, or the acceleration
-/// with which it gets to its speed soonest; no longer than what suits curves within `tolerance` (0: none is
-/// kept). 1 without jerk limits. Formulas: docs/motion/planner.md.
-std::uint64_t filter_length(const Limits &limits, double period_s, double tolerance) noexcept;
+/// with which it gets to its speed soonest; no longer than what suits curves within the tolerance. Where
+/// rotary axes turn, at least a part of what they need. 1 without jerk limits. Formulas:
+/// docs/motion/planner.md.
+std::uint64_t filter_length(const Limits &limits, double period_s, const PathDemand &demand) noexcept;
 
 /// The limits with accelerations that a mean over `filter` samples can build up within the jerk limits.
 Limits limits_for_filter(const Limits &limits, std::uint64_t filter, double period_s) noexcept;

@@ -31,22 +31,32 @@ void PathLimits::set(const Limits &limits) noexcept {
     }
 }
 
-void PathLimits::begin(double tolerance) noexcept {
-    filter_ = filter_length(wanted_, period_s_, tolerance);
+void PathLimits::begin(const PathDemand &demand) noexcept {
+    filter_ = filter_length(wanted_, period_s_, demand);
+    isTurning_ = demand.isTurning;
     filter_s_ = isFiltered() ? static_cast<double>(filter_) * period_s_ : 0.0;
     highest_ = wanted_;
     set(Limits{wanted_});
 }
 
-bool PathLimits::suits(double tolerance) const noexcept {
-    const auto wanted = static_cast<double>(filter_length(wanted_, period_s_, tolerance));
-    return tolerance <= 0 || static_cast<double>(filter_) <= wanted * PathTuning::MOST_UNSUITED;
+/// A path that rotary axes have a part in keeps its longer mean for lines between: a stop at each would cost
+/// more.
+bool PathLimits::suits(const PathDemand &demand) const noexcept {
+    const PathDemand asked{demand.tolerance, demand.isTurning || isTurning_};
+    const auto wanted = static_cast<double>(filter_length(wanted_, period_s_, asked));
+    const auto present = static_cast<double>(filter_);
+    const bool isTooLong = demand.tolerance > 0 && present > wanted * PathTuning::MOST_UNSUITED;
+    const bool isTooShort = demand.isTurning && !isTurning_ && wanted > present * PathTuning::MOST_UNSUITED;
+    return !isTooLong && !isTooShort;
 }
 
-double PathLimits::path_tolerance(const MoveRequest &request) const noexcept {
-    return request.join != geom::PathMode::BLEND ? 0.0
-           : request.tolerance > 0               ? request.tolerance
-                                                 : nominal_tolerance_;
+PathDemand PathLimits::demand_of(const MoveRequest &request, const Pose &start,
+                                 const Pose &end) const noexcept {
+    constexpr double ROUNDING_DEG = 1e-9;
+    const double tolerance = request.join != geom::PathMode::BLEND ? 0.0
+                             : request.tolerance > 0               ? request.tolerance
+                                                                   : nominal_tolerance_;
+    return {tolerance, geom::norm_abc(end - start) > ROUNDING_DEG};
 }
 
 double PathLimits::free_tolerance(const Primitive &primitive) const noexcept {

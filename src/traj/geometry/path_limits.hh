@@ -14,17 +14,18 @@ class PathLimits {
 
     /// Holds for moves added from now on; jerk limits from the next `begin` on.
     void set(const Limits &limits) noexcept;
-    /// A path begins with a move of this tolerance; 0: none is kept.
-    void begin(double tolerance) noexcept;
+    /// A path begins with a move that asks for this.
+    void begin(const PathDemand &demand) noexcept;
 
-    /// A path that begins with `tolerance` would have the same mean.
-    bool isCurrent(double tolerance) const noexcept {
-        return filter_length(wanted_, period_s_, tolerance) == filter_;
+    /// A path that begins with such a move would have the same mean.
+    bool isCurrent(const PathDemand &demand) const noexcept {
+        return filter_length(wanted_, period_s_, demand) == filter_;
     }
-    /// The mean is not much too long for moves of this tolerance; 0: any suits.
-    bool suits(double tolerance) const noexcept;
-    /// What a path of such moves is made for; 0: any suits.
-    double path_tolerance(const MoveRequest &request) const noexcept;
+    /// The mean is not much too long for the tolerance of such moves, nor, on a path that rotary axes had no
+    /// part in, much too short for these.
+    bool suits(const PathDemand &demand) const noexcept;
+    /// What a path that begins with such a move, from `start` to `end`, is made for.
+    PathDemand demand_of(const MoveRequest &request, const Pose &start, const Pose &end) const noexcept;
     /// What the mean may take of a move for which the program gives no tolerance.
     double free_tolerance(const Primitive &primitive) const noexcept;
 
@@ -44,6 +45,7 @@ class PathLimits {
     Limits wanted_, highest_, fitted_;
     std::uint64_t filter_ = 1;      ///< samples of the mean that is commanded; 1: no jerk limits
     double filter_s_ = 0;           ///< the same in time
+    bool isTurning_ = false;        ///< the path was begun with rotary axes
     double nominal_tolerance_ = 0;  ///< of moves without one on a path with jerk limits, at least
 };
 

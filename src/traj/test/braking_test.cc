@@ -19,7 +19,7 @@ class Curves {
   public:
     explicit Curves(unsigned seed) : random_(seed) {
         conditions.limits.set(limits());
-        conditions.limits.begin(0);
+        conditions.limits.begin({});
         const bool isBlend = chance();
         store->primitive(1) = isBlend && chance() ? line(place()) : arc(place());
         piece.primitive = 1;
@@ -284,7 +284,7 @@ TEST(Braking, AnArcWithARoundedRadiusIsBrakedOnAsACircle_C5) {
         limits.acceleration.fill(1e5);
         limits.acceleration[XYZ_NORM] = 368;
         c.conditions.limits.set(limits);
-        c.conditions.limits.begin(0);
+        c.conditions.limits.begin({});
         ArcShape shape;
         shape.angle_rad = 2;
         shape.normal[2] = 1;

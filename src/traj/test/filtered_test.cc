@@ -287,8 +287,8 @@ double circle_time(double first) {
     limits.jerk.fill(5000);  // 0.2 s to the full acceleration
     Rig rig{Pose{}};
     rig.planner.set_limits(limits);
-    rig.planner.begin(Pose{}, rig.executor.snapshot(), first);
-    EXPECT_EQ(rig.planner.suits(P), first == P);
+    rig.planner.begin(Pose{}, rig.executor.snapshot(), {first});
+    EXPECT_EQ(rig.planner.suits({P}), first == P);
     add_circle(rig, RADIUS, P);
     EXPECT_TRUE(rig.run(60));
     return static_cast<double>(rig.cycle) * Rig::T;
@@ -311,7 +311,7 @@ TEST(Filtered, AnArcWithoutAToleranceKeepsItsSize_C13) {
     Primitive arc;
     ASSERT_EQ(make_arc(Pose{}, Pose{}, shape, arc), ArcFault::NONE);
     rig.planner.begin(Pose{}, rig.executor.snapshot(),
-                      rig.planner.path_tolerance(request(geom::PathMode::BLEND)));
+                      rig.planner.demand_of(request(geom::PathMode::BLEND), Pose{}, Pose{}));
     rig.planner.add(arc, request(geom::PathMode::BLEND));
     ASSERT_TRUE(rig.run(30));
     for (const Pose &p : rig.samples) {
@@ -325,10 +325,10 @@ TEST(Filtered, RotaryAxesAloneHaveTheirJerkLimits_C13) {
     for (int i = 0; i < geom::AXIS_COUNT; ++i) {
         limits.jerk[static_cast<std::size_t>(i)] = geom::isAngular(i) ? J : UNLIMITED;
     }
-    EXPECT_EQ(filter_length(limits, Rig::T, 0), 20U);
-    EXPECT_GE(filter_length(limits, Rig::T, 1e-9), 2U);
+    EXPECT_EQ(filter_length(limits, Rig::T, {}), 20U);
+    EXPECT_GE(filter_length(limits, Rig::T, {1e-9}), 2U);
     limits.isJerkLimited = false;
-    EXPECT_EQ(filter_length(limits, Rig::T, 0), 1U);
+    EXPECT_EQ(filter_length(limits, Rig::T, {}), 1U);
 }
 
 TEST(Filtered, TheFeedIsKeptWhereLinesAndArcsMeet_C13) {
@@ -340,7 +340,7 @@ TEST(Filtered, TheFeedIsKeptWhereLinesAndArcsMeet_C13) {
     rig.planner.set_limits(limits);
     MoveRequest move = request(geom::PathMode::BLEND, 0.025);
     move.tag.requested_velocity = FEED;
-    rig.planner.begin(Pose{}, rig.executor.snapshot(), rig.planner.path_tolerance(move));
+    rig.planner.begin(Pose{}, rig.executor.snapshot(), rig.planner.demand_of(move, Pose{}, Pose{}));
     // Round a rectangle: along, and a quarter to the left, four times.
     Pose from, centre = at(50, R), corner = at(50 + R, R);
     Pose normal;

@@ -204,13 +204,52 @@ TEST(AccelBound, TheLesserOfTwoIsBelowBothAndNoHigherThanNeeded_C13) {
 
 TEST(FilterLength, IsTheTimeToBuildUpTheAccelerationOrLessWhereThatIsFaster_C13) {
     // A/J = 0.02 s; sqrt(V/J) = 0.1 s.
-    EXPECT_EQ(filter_length(even_limits(500, 1000, 50000), PERIOD, 0), 20U);
+    EXPECT_EQ(filter_length(even_limits(500, 1000, 50000), PERIOD, {}), 20U);
     // sqrt(V/J) = 0.01 s.
-    EXPECT_EQ(filter_length(even_limits(5, 1000, 50000), PERIOD, 0), 10U);
+    EXPECT_EQ(filter_length(even_limits(5, 1000, 50000), PERIOD, {}), 10U);
     // 1.2 (24 P/J)^(1/3) = 0.012 s.
-    EXPECT_EQ(filter_length(even_limits(500, 1000, 50000), PERIOD, 1e-6 * 50000 / 24), 12U);
-    EXPECT_EQ(filter_length(even_limits(500, 1000), PERIOD, 0), 1U);
-    EXPECT_EQ(filter_length(even_limits(500, 1000, 1), PERIOD, 0), MAX_FILTER);
+    EXPECT_EQ(filter_length(even_limits(500, 1000, 50000), PERIOD, {1e-6 * 50000 / 24}), 12U);
+    EXPECT_EQ(filter_length(even_limits(500, 1000), PERIOD, {}), 1U);
+    EXPECT_EQ(filter_length(even_limits(500, 1000, 1), PERIOD, {}), MAX_FILTER);
+}
+
+/// A rotary axis that builds up its acceleration in 0.1 s beside linear ones that do in 0.02 s.
+Limits with_slow_rotary_axis() {
+    Limits limits = even_limits(500, 1000, 50000);
+    limits.jerk[geom::AXIS_A] = 10000;
+    return limits;
+}
+
+Pose turned(double a_deg) {
+    Pose p;
+    p[geom::AXIS_A] = a_deg;
+    return p;
+}
+
+TEST(FilterLength, HasAPartOfWhatRotaryAxesNeedWhereTheyTurn_C13) {
+    EXPECT_EQ(filter_length(with_slow_rotary_axis(), PERIOD, {}), 20U);
+    EXPECT_EQ(filter_length(with_slow_rotary_axis(), PERIOD, {0, true}), 50U);
+    // 1.2 (24 P/J)^(1/3) = 0.06 s for the rotary axis, 0.035 s for the others.
+    EXPECT_EQ(filter_length(with_slow_rotary_axis(), PERIOD, {0.0521, true}), 31U);
+}
+
+TEST(PathLimits, APathBegunWithoutRotaryAxesIsNotForThemButOneBegunWithThemIsForAll_C13) {
+    PathLimits limits(PERIOD);
+    limits.set(with_slow_rotary_axis());
+    MoveRequest exact;
+    exact.join = geom::PathMode::EXACT_PATH;
+    const PathDemand line = limits.demand_of(exact, turned(3), turned(3));
+    const PathDemand turn = limits.demand_of(exact, turned(3), turned(4));
+    limits.begin(line);
+    EXPECT_EQ(limits.filter(), 20U);
+    EXPECT_TRUE(limits.suits(line));
+    EXPECT_FALSE(limits.suits(turn));
+    limits.begin(turn);
+    EXPECT_EQ(limits.filter(), 50U);
+    EXPECT_TRUE(limits.suits(line));
+    EXPECT_TRUE(limits.suits(turn));
+    EXPECT_FALSE(limits.isCurrent(line)) << "a path that begins with a line has the shorter mean again";
+    EXPECT_FALSE(limits.suits({1e-6})) << "a tolerance that is kept counts on either";
 }
 
 TEST(LimitsForFilter, NoAxisAcceleratesMoreThanTheMeanCanBuildUp_C13) {
@@ -224,19 +263,19 @@ TEST(PathLimits, TheMeanBelongsToAPathAndLimitsMayRiseOnTheWay_C13) {
     PathLimits limits(PERIOD);
     limits.set(even_limits(500, 1000, 50000));
     EXPECT_FALSE(limits.isFiltered());
-    limits.begin(0);
+    limits.begin({});
     EXPECT_EQ(limits.filter(), 20U);
     limits.set(even_limits(500, 400, 5000));
     EXPECT_EQ(limits.filter(), 20U);
-    EXPECT_FALSE(limits.isCurrent(0));
+    EXPECT_FALSE(limits.isCurrent({}));
     EXPECT_DOUBLE_EQ(limits.fitted().acceleration[0], 100);
     EXPECT_DOUBLE_EQ(limits.highest().acceleration[0], 1000);
-    limits.begin(0);
+    limits.begin({});
     EXPECT_EQ(limits.filter(), 80U);
     EXPECT_DOUBLE_EQ(limits.highest().acceleration[0], 400);
     // 1.2 (24 P/J)^(1/3) is far below the mean's 80 ms.
-    EXPECT_FALSE(limits.suits(1e-6));
-    EXPECT_TRUE(limits.suits(0));
+    EXPECT_FALSE(limits.suits({1e-6}));
+    EXPECT_TRUE(limits.suits({}));
 }
 
 /// X and Y turned by the angle of C.

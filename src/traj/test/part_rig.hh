@@ -54,7 +54,7 @@ struct Parts {
 
     explicit Parts(const Limits &limits, double tolerance = 0) {
         conditions.limits.set(limits);
-        conditions.limits.begin(tolerance);
+        conditions.limits.begin({tolerance});
     }
     PathView view() const { return {*path, conditions}; }
 

@@ -17,7 +17,8 @@ namespace mw::traj::test {
 struct Rig {
     static constexpr double T = 1e-3;
     std::unique_ptr<PathStore> store = std::make_unique_for_overwrite<PathStore>();
-    Executor executor{*store, T};
+    StopLimits stop_limits;  ///< none to begin with
+    Executor executor{*store, T, &stop_limits};
     Planner planner;
     std::uint64_t cycle = 0;
     std::vector<Pose> samples;
