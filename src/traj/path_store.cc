@@ -37,8 +37,7 @@ double Braking::end_of(std::size_t part, double length) const noexcept {
 }
 
 bool Phase::isStop(double period_s) const noexcept {
-    const double v = v0 + duration * (a + 0.5 * duration * j);
-    return v <= ExecutorTuning::STOPPED * std::abs(a) * (duration + period_s);
+    return v_at(duration) <= ExecutorTuning::STOPPED * std::abs(a) * (duration + period_s);
 }
 
 double Piece::brake_at(double x, double b) const noexcept {

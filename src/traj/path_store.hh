@@ -118,6 +118,9 @@ struct Phase {
     double duration = 0;
     double x0 = 0, v0 = 0, a = 0, j = 0;
 
+    /// Place and speed at the time t in it.
+    double x_at(double t) const noexcept { return x0 + t * (v0 + t * (0.5 * a + t * j * (1.0 / 6.0))); }
+    double v_at(double t) const noexcept { return v0 + t * (a + 0.5 * t * j); }
     /// It ends with a speed that is 0 but for rounding.
     bool isStop(double period_s) const noexcept;
 };

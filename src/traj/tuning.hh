@@ -68,7 +68,8 @@ struct LimitTuning {
     /// Measured: 0.96 is 0.8 % slower, 1.5 as fast.
     static constexpr double CURVE_SHARE = 1.2;
     /// Part of what rotary axes need for themselves that the mean has at least where they turn beside linear
-    /// ones: a stop of theirs then takes twice as long as their limits need at most.
+    /// ones: where no tolerance makes it shorter, a stop of theirs takes twice as long as their
+    /// limits need at most.
     static constexpr double TURNING_SHARE = 0.5;
     /// Room that keeps fitted stops (Executor) and rounding inside the limits.
     static constexpr double ACCELERATION_MARGIN = 1e-6;

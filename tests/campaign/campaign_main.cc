@@ -117,12 +117,12 @@ class MotionCampaign final : public campaign_runner::Campaign {
     bool isPlanTheUsualOne() const override { return plan_version == PLAN_VERSION; }
     std::string run(unsigned seed, const std::string &kept, const std::filesystem::path &folder,
                     bool isTold) override {
-        const Plan plan = reduced(plan_of(seed), kept);
+        const Plan plan = reduced(make_plan(seed, plan_version), kept);
         return line_of(Session(plan, folder, {isTold ? stdout : nullptr, trace, known}).run());
     }
     std::vector<campaign_runner::ActSize> acts_of(unsigned seed) const override {
         std::vector<campaign_runner::ActSize> sizes;
-        for (const Act &act : plan_of(seed).acts) {
+        for (const Act &act : make_plan(seed, plan_version).acts) {
             sizes.push_back({act.troubles.size(), act.blocks.size()});
         }
         return sizes;
@@ -130,15 +130,8 @@ class MotionCampaign final : public campaign_runner::Campaign {
     void print_sum(std::istream &log) const override { print_lines(log); }
 
     unsigned plan_version = PLAN_VERSION;
-    bool isPlannerLost = false;  ///< at every stop
     std::string trace;
     std::set<std::string> known;
-
-  private:
-    Plan plan_of(unsigned seed) const {
-        Plan plan = make_plan(seed, plan_version);
-        return isPlannerLost ? without_planner_at_stops(std::move(plan)) : plan;
-    }
 };
 
 }  // namespace
@@ -153,9 +146,9 @@ int main(int argc, char **argv) {
         "it has are not run again. Ends with 1 when something was broken.\n");
     order.add_to(line);
     line.number("--plan", "N",
-                "what a seed stands for: 1, sessions of a minute, 3 (default), or 4, further kinematics",
+                "what a seed stands for: 1, sessions of a minute, 3 (default), 4, further kinematics, or "
+                "5, the planner is lost at every stop",
                 campaign.plan_version, 1, mw::campaign::LAST_PLAN);
-    line.flag("--planner-lost", "the planner is lost at every stop", campaign.isPlannerLost);
     line.text("--trace", "FILE", "with --tell: commands of joints and axes at every cycle", campaign.trace);
     line.take("--known", 1, "RULE", "known to be broken: counted, but no failure; may come several times",
               [&](const mw::options::Words &words) -> mw::Result<> {
@@ -170,7 +163,8 @@ int main(int argc, char **argv) {
     }
     constexpr unsigned REPLACED = 2;
     if (campaign.plan_version == REPLACED) {
-        std::fputs("motion_campaign: nothing makes the sessions of plan 2 any more: use 1, 3 or 4\n", stderr);
+        std::fputs("motion_campaign: nothing makes the sessions of plan 2 any more: use 1, 3, 4 or 5\n",
+                   stderr);
         return 2;
     }
     return mw::campaign_runner::run(campaign, order);

@@ -206,6 +206,8 @@ bool hasTrouble(const Act &act, Upset what) {
     return std::ranges::any_of(act.troubles, [what](const Trouble &t) { return t.what == what; });
 }
 
+namespace {
+
 Plan without_planner_at_stops(Plan plan) {
     constexpr int AWAY_MS = 700;
     for (Act &act : plan.acts) {
@@ -221,7 +223,12 @@ Plan without_planner_at_stops(Plan plan) {
     return plan;
 }
 
+}  // namespace
+
 Plan make_plan(std::uint64_t seed, unsigned version) {
+    if (version == PLANNER_LOST_PLAN) {
+        return without_planner_at_stops(make_plan(seed));
+    }
     Plan plan = version == 1 ? make_long_plan(seed) : make_short_plan(seed, version);
     plan.seed = seed;
     return plan;

@@ -144,12 +144,10 @@ struct Plan {
 bool hasTrouble(const Act &act, Upset what);
 
 /// Of what a seed stands for; 1: as it was first, sessions of a minute; there is no 2 any more. 4: further
-/// kinematics, and taps where joints are not axes.
-inline constexpr unsigned PLAN_VERSION = 3, LAST_PLAN = 4;
+/// kinematics, and taps where joints are not axes. 5: as 3, with the planner lost as each stop begins and for
+/// a while.
+inline constexpr unsigned PLAN_VERSION = 3, PLANNER_LOST_PLAN = 5, LAST_PLAN = 5;
 Plan make_plan(std::uint64_t seed, unsigned version = PLAN_VERSION);
-
-/// The same with the planner lost as each stop begins, and for a while.
-Plan without_planner_at_stops(Plan plan);
 
 /// What is kept of a plan, in the words of campaign_runner/kept.hh; of blocks, moves alone are left out.
 Plan reduced(const Plan &plan, const std::string &kept);

@@ -11,17 +11,9 @@ namespace mw::traj {
 
 namespace {
 
-double x_at(const Phase &p, double t) noexcept {
-    return p.x0 + t * (p.v0 + t * (0.5 * p.a + t * p.j * (1.0 / 6.0)));
-}
-
 /// A tap also goes beyond the ends of its line.
 Pose line_at(const Primitive &line, double x) noexcept {
     return x == 0 ? line.start : x == line.length ? line.end : line.start + line.lin * x;
-}
-
-double v_at(const Phase &p, double t) noexcept {
-    return p.v0 + t * (p.a + 0.5 * t * p.j);
 }
 
 /// How long the speed is kept before braking: a plan keeps its speed for so long after a rise, so the path
@@ -177,8 +169,8 @@ double Executor::follow(double dt) noexcept {
     state_.coasting.pass(p, std::min(dt, left));
     if (dt < left) [[likely]] {
         state_.time_in_phase += dt;
-        state_.x = x_at(p, state_.time_in_phase);
-        state_.v = v_at(p, state_.time_in_phase);
+        state_.x = p.x_at(state_.time_in_phase);
+        state_.v = p.v_at(state_.time_in_phase);
         state_.piece = p.piece;
         return 0;
     }
@@ -192,8 +184,8 @@ double Executor::follow(double dt) noexcept {
         return dt - left;
     }
     state_.piece = p.piece;
-    state_.x = x_at(p, p.duration);
-    state_.v = v_at(p, p.duration);
+    state_.x = p.x_at(p.duration);
+    state_.v = p.v_at(p.duration);
     const double length = store_.piece(p.piece).length;
     if (std::abs(state_.x - length) <= ExecutorTuning::ARRIVED * (1.0 + length)) {
         state_.x = length;
@@ -284,20 +276,20 @@ double Executor::brake_along(double dt) noexcept {
     const double left = brake_.phase.duration - brake_.time;
     if (dt < left) {
         brake_.time += dt;
-        state_.x = x_at(brake_.phase, brake_.time);
-        state_.v = v_at(brake_.phase, brake_.time);
+        state_.x = brake_.phase.x_at(brake_.time);
+        state_.v = brake_.phase.v_at(brake_.time);
         return 0;
     }
     const Piece &piece = store_.piece(state_.piece);
     if (brake_.isFinal) {
-        const double stop = x_at(brake_.phase, brake_.phase.duration);
+        const double stop = brake_.phase.x_at(brake_.phase.duration);
         state_.x = std::abs(stop - piece.length) <= ExecutorTuning::ARRIVED * (1.0 + piece.length)
                        ? piece.length
                        : std::min(stop, piece.length);
         come_to_rest();
         return 0;
     }
-    state_.v = v_at(brake_.phase, brake_.phase.duration);
+    state_.v = brake_.phase.v_at(brake_.phase.duration);
     if (brake_.end < piece.length) {
         state_.x = brake_.end;
         brake_on_piece(dt - left);

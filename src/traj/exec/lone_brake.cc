@@ -13,30 +13,16 @@ namespace {
 
 using geom::AXIS_COUNT;
 
-struct Place {
-    Sequence piece = 0;
-    double x = 0;
-};
-
-Place place_behind(const PathStore &store, const Snapshot &now, double way) noexcept {
-    const Sequence last = store.last_piece.load(std::memory_order_acquire);
-    Place p{now.piece, now.x + way};
-    for (int i = 0; i < ExecutorTuning::MOST_PIECES_PER_CYCLE && p.piece < last; ++i) {
-        const double length = store.piece(p.piece).length;
-        if (p.x <= length) {
-            break;
-        }
-        p = {p.piece + 1, p.x - length};
-    }
-    p.x = std::min(p.x, store.piece(p.piece).length);
-    return p;
-}
-
-/// Where the leader is a cycle on.
+/// Where the leader is a cycle on, braking no harder than to stand then; never beyond the path.
 Pose leader_ahead(const PathStore &store, const Snapshot &now, double brake, double period_s) noexcept {
-    const double t = brake * period_s > now.v ? now.v / brake : period_s;
-    const Place place = place_behind(store, now, t * (now.v - 0.5 * brake * t));
-    return position_at(store, store.piece(place.piece), place.x);
+    const Sequence last = store.last_piece.load(std::memory_order_acquire);
+    Sequence n = now.piece;
+    double x = now.x + period_s * (now.v - 0.5 * brake * period_s);
+    for (int i = 0; i < ExecutorTuning::MOST_PIECES_PER_CYCLE && n < last && x > store.piece(n).length; ++i) {
+        x -= store.piece(n).length;
+        ++n;
+    }
+    return position_at(store, store.piece(n), std::min(x, store.piece(n).length));
 }
 
 /// The last three places that were commanded, newest first, and how the next one follows from the leader's.
@@ -103,7 +89,11 @@ class JerkRows {
         for (int i = 0; i < ExecutorTuning::BRAKE_STEPS; ++i) {
             const double left = low + (high - low) / 3.0;
             const double right = high - (high - low) / 3.0;
-            (load(left) <= load(right) ? high : low) = load(left) <= load(right) ? right : left;
+            if (load(left) <= load(right)) {
+                high = right;
+            } else {
+                low = left;
+            }
         }
         double best = 0.5 * (low + high);
         double beyond = 1;
@@ -149,11 +139,6 @@ double squared_speed(const Phase &phase, double x) noexcept {
     return std::max(0.0, phase.v0 * phase.v0 + 2.0 * phase.a * (x - phase.x0));
 }
 
-/// Where a phase ends on its piece.
-double end_of(const Phase &p) noexcept {
-    return p.x0 + p.duration * (p.v0 + p.duration * (0.5 * p.a + p.duration * p.j * (1.0 / 6.0)));
-}
-
 }  // namespace
 
 double least_brake(const PathStore &store, const Snapshot &now, Sequence &phase, Sequence end,
@@ -169,7 +154,7 @@ double least_brake(const PathStore &store, const Snapshot &now, Sequence &phase,
         for (; piece < p.piece; ++piece) {
             to_piece += store.piece(piece).length;
         }
-        const double to_end = p.piece < piece ? 0.0 : to_piece + end_of(p);
+        const double to_end = p.piece < piece ? 0.0 : to_piece + p.x_at(p.duration);
         if (to_end <= PASSED * way) {
             phase = n + 1;
             continue;

@@ -35,7 +35,7 @@ void Trial::push(const LeaderSample &leader, Sequence piece, std::uint64_t filte
 void Trial::push_phase(const PathView &view, const Phase &phase, double t) noexcept {
     const PathStore &store = view.path.store();
     const Piece &piece = store.piece(phase.piece);
-    const double x = phase.x0 + t * (phase.v0 + t * (0.5 * phase.a + t * phase.j * (1.0 / 6.0)));
+    const double x = phase.x_at(t);
     const bool isSecond = piece.blend_d > 0 && piece.offset + x >= piece.blend_d;
     push({position_at(store, piece, x), piece.programmed_s + x, tolerance_at(piece, x),
           piece.move + (isSecond ? 1 : 0)},
