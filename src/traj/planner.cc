@@ -11,20 +11,27 @@ namespace mw::traj {
 
 namespace {
 
+constexpr std::size_t HARDER_COUNT = TimingTuning::HARDER_SHARES.size() * TimingTuning::FIRST_SHARES.size();
 constexpr std::size_t STOP_COUNT = 2 + TimingTuning::STOP_SHARES.size() * TimingTuning::FIRST_SHARES.size();
 
-/// What stops are tried as before what is eased is the path.
-constexpr std::array<StopShape, STOP_COUNT> stop_shapes() noexcept {
-    std::array<StopShape, STOP_COUNT> shapes{StopShape{}, StopShape{.isHard = true}};
+/// What stops are tried as before what is eased is the path; behind STOP_COUNT those for exact arcs alone.
+constexpr std::array<StopShape, STOP_COUNT + HARDER_COUNT> stop_shapes() noexcept {
+    std::array<StopShape, STOP_COUNT + HARDER_COUNT> shapes{StopShape{}, StopShape{.isHard = true}};
     std::size_t n = 2;
-    for (const double share : TimingTuning::STOP_SHARES) {
+    const auto add = [&](double share) {
         for (const double first : TimingTuning::FIRST_SHARES) {
             shapes[n++] = {.isHard = true, .isAtOnce = true, .first_share = share * first, .share = share};
         }
+    };
+    for (const double share : TimingTuning::STOP_SHARES) {
+        add(share);
+    }
+    for (const double share : TimingTuning::HARDER_SHARES) {
+        add(share);
     }
     return shapes;
 }
-constexpr std::array<StopShape, STOP_COUNT> STOPS = stop_shapes();
+constexpr std::array STOPS = stop_shapes();
 
 /// What a stop is made with, and from where.
 struct StopSearch {
@@ -46,9 +53,10 @@ struct StopSearch {
 
 bool StopSearch::draft_soonest() noexcept {
     const Sequence begin = timing.phases_end();
-    std::array<std::pair<double, std::size_t>, STOP_COUNT> stops;
+    std::array<std::pair<double, std::size_t>, STOPS.size()> stops;
     std::size_t count = 0;
-    for (std::size_t n = 0; n < STOPS.size(); ++n) {
+    const std::size_t shapes = view.path.piece(from.piece).isAlong ? STOPS.size() : STOP_COUNT;
+    for (std::size_t n = 0; n < shapes; ++n) {
         if (draft(begin, n)) {
             stops[count++] = {timing.stop_seconds(), n};
         }

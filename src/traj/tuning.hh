@@ -201,6 +201,9 @@ struct TimingTuning {
     /// some speed is gained at first.
     static constexpr std::array STOP_SHARES{1.0, 0.8, 0.6, 0.4};
     static constexpr std::array FIRST_SHARES{1.0, 0.7, 0.4, 0.2, 0.0, -0.2};
+    /// On exact arcs, which share their acceleration in fixed parts: the trial judges the mean place there,
+    /// and what an axis does not take as it turns another has for braking.
+    static constexpr std::array HARDER_SHARES{5.0, 2.5, 1.5};
     /// Speeds that differ by this part are the same.
     static constexpr double SAME_SPEED = 1e-9;
     /// A speed below this part of what one sample's acceleration gives is rounding.

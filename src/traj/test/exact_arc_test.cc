@@ -73,6 +73,31 @@ TEST(ExactArc, StopsWithWhatTheAxesMayWhereItIs_C2) {
     EXPECT_LT(static_cast<double>(rig.cycle - asked) * Rig::T, 0.6 * v / (0.6 * A / 8) + 2 * tau);
 }
 
+/// A slow Y on a small arc: what it does not need for its turning back is left for braking, which X does.
+TEST(ExactArc, StopsWithWhatTurningLeavesWhereASlowAxisTurnsBack_C5_C13) {
+    constexpr double RADIUS = 1.8, SLOW = 45;
+    Limits limits = jerk_limits();
+    limits.acceleration[0] = 390;
+    limits.acceleration[1] = SLOW;
+    limits.acceleration[2] = 2400;
+    limits.jerk[1] = 16000;
+    limits.jerk[2] = 33000;              // which asks for a mean of 0.07 s
+    constexpr std::uint64_t MOST = 150;  // 225 to 292 by the shares of the arc
+    for (std::uint64_t after = 420; after < 600; after += 20) {
+        ArcRig rig(limits);
+        rig.planner.add(exact_arc(RADIUS, -0.2, 3.5), request(geom::PathMode::EXACT_PATH));
+        rig.planner.release_end();
+        while (rig.cycle < after) {
+            rig.step();
+        }
+        EXPECT_GT(rig.executor.output().velocity, 7.5) << after;
+        rig.executor.drop();
+        rig.go_to_rest(after + 2000);
+        EXPECT_LT(rig.cycle - after, MOST) << after;
+        rig.expect_axes_within(after);
+    }
+}
+
 TEST(ExactArc, KeepsLimitsOfAxesThatDiffer_C2) {
     for (std::uint64_t seed = 1; seed <= 150; ++seed) {
         std::mt19937_64 random(seed);

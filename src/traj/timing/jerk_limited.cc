@@ -256,7 +256,7 @@ bool Smooth::brake(const StopShape &shape, double soft_until_s) noexcept {
     const double soft_s = soft_until_s - draft_.seconds;
     const bool isSoft = soft_s > TimingTuning::SOON;
     const double share = isSoft ? shape.first_share : shape.share;
-    const double a = share < 1 ? softened(p, leg, share) : leg.a;
+    const double a = share < 1 ? softened(p, leg, share) : share * leg.a;
     const double soft_way = soft_s * (s.v - 0.5 * a * soft_s);
     if (isSoft && soft_way < left && a * soft_s < s.v) {
         draft_.append(store_, soft_way, s.v - a * soft_s);

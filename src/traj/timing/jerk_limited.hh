@@ -16,8 +16,9 @@ struct StopShape {
     /// Part of the brake for as long as the mean takes, more only where what follows could not be kept: the
     /// mean may still hold a turn from which the whole brake swings too far.
     double first_share = 1;
-    double share =
-        1;  ///< the same behind that: a stop that is over within the mean swings it by all it takes
+    /// The same behind that: a stop that is over within the mean swings it by all it takes. More than 1: the
+    /// trial alone knows what is left.
+    double share = 1;
 };
 
 /// Appends phases until the plan lasts `until_s` or ends for now.
