@@ -2,6 +2,7 @@
 # To be sourced: parts of a long script, each with the time that it took.
 #   part NAME COMMAND...   says the name, runs the command, keeps the seconds; a failure ends the script
 #   print_parts            one line a part; also printed when a part fails
+#   until_minute N COMMAND...   ends the command, and all that it started, when the script is N minutes old: 124 then
 parts_done=()
 
 part() {
@@ -20,4 +21,10 @@ part() {
 print_parts() {
     echo "== time of each part"
     printf '%s\n' "${parts_done[@]}"
+}
+
+until_minute() {
+    local left=$(($1 * 60 - SECONDS))
+    shift
+    timeout --kill-after=10 $((left > 1 ? left : 1)) "$@"
 }
