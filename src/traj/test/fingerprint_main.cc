@@ -5,29 +5,15 @@
 // traj_fingerprint --first N --count M: one line per seed; compare the output of two builds.
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <optional>
 
 #include "options/command_line.hh"
 #include "traj/test/campaign.hh"
 #include "traj/test/sample_hash.hh"
+#include "traj/test/turning_table.hh"
 
 namespace mw::traj::test {
 namespace {
-
-/// A table that turns about Z below a tool that moves over X Y Z: the joints run on curves where paths are
-/// straight.
-class TurningTable final : public JointMap {
-  public:
-    bool joints_at(const Pose &pose, double *joints) const noexcept override {
-        const double c = pose[geom::AXIS_C] * std::numbers::pi / 180;
-        joints[0] = pose[0] * std::cos(c) - pose[1] * std::sin(c);
-        joints[1] = pose[0] * std::sin(c) + pose[1] * std::cos(c);
-        joints[2] = pose[2];
-        joints[3] = pose[geom::AXIS_C];
-        return std::abs(pose[0]) < 1e5;
-    }
-};
 
 JointLimits table_limits(Maker &maker) {
     JointLimits l;

@@ -9,6 +9,7 @@
 
 #include "traj/test/belts.hh"
 #include "traj/test/part_rig.hh"
+#include "traj/test/turning_table.hh"
 
 namespace mw::traj::test {
 namespace {
@@ -278,23 +279,11 @@ TEST(PathLimits, TheMeanBelongsToAPathAndLimitsMayRiseOnTheWay_C13) {
     EXPECT_TRUE(limits.suits({}));
 }
 
-/// X and Y turned by the angle of C.
-class Turned final : public JointMap {
-  public:
-    bool joints_at(const Pose &pose, double *joints) const noexcept override {
-        const double c = pose[geom::AXIS_C] * std::numbers::pi / 180;
-        joints[0] = pose[0] * std::cos(c) - pose[1] * std::sin(c);
-        joints[1] = pose[0] * std::sin(c) + pose[1] * std::cos(c);
-        joints[2] = pose[geom::AXIS_C];
-        return true;
-    }
-};
-
 TEST(LimitWithJoints, KeepsTheJointsWhereTheAxesStandStill_C13) {
-    const Turned map;
+    const TurningTable map;
     Workspace workspace;
     workspace.map = &map;
-    workspace.joints.count = 3;
+    workspace.joints.count = 4;
     workspace.joints.velocity.fill(100);
     workspace.joints.acceleration.fill(1000);
     auto store = std::make_unique_for_overwrite<PathStore>();

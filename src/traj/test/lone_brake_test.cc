@@ -1,22 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Stops with jerk limits while the planner is away.
 #include "traj/test/jerk_rig.hh"
+#include "traj/test/turning_table.hh"
 
 namespace mw::traj::test {
 namespace {
-
-/// X and Y turned by the angle of C, as on a rotary table whose axis is CENTRE beside the path.
-class Table final : public JointMap {
-  public:
-    bool joints_at(const Pose &pose, double *joints) const noexcept override {
-        const double c = pose[geom::AXIS_C] * std::numbers::pi / 180;
-        constexpr double CENTRE = 60;
-        joints[0] = (pose[0] + CENTRE) * std::cos(c) - pose[1] * std::sin(c);
-        joints[1] = (pose[0] + CENTRE) * std::sin(c) + pose[1] * std::cos(c);
-        joints[2] = pose[geom::AXIS_C];
-        return true;
-    }
-};
 
 struct LoneStop {
     std::uint64_t cycles = 0;  ///< from the drop until it stands
@@ -43,7 +31,7 @@ LoneStop drop_on_circle(std::uint64_t after, bool areLimitsKnown, const JointMap
     constexpr double RADIUS = 8;
     const Limits limits = gentle_limits();
     JointLimits joints;
-    joints.count = map != nullptr ? 3 : 0;
+    joints.count = map != nullptr ? 4 : 0;
     joints.velocity.fill(V);
     joints.acceleration.fill(A);
     joints.jerk.fill(J / 4);
@@ -111,7 +99,7 @@ TEST(LoneBrake, OnACurveKeepsTheJerkLimitsOfAxes_C5_C13) {
 }
 
 TEST(LoneBrake, OnACurveKeepsTheJerkLimitsOfJoints_C5_C13) {
-    const Table table;
+    const TurningTable table(60);
     const Worst known = worst_of_circle(true, &table);
     EXPECT_LE(known.jerk, 1.00001);
     EXPECT_GT(worst_of_circle(false, &table).jerk, 1.01) << "the curve is none that asks for it";
