@@ -50,6 +50,31 @@ std::vector<geom::Pose> programmed_path(const Act &act, const geom::Pose &from, 
     return path;
 }
 
+const AxisDesign &offset_axis(const Design &design, const Trouble &t) {
+    return design.axes[static_cast<std::size_t>(t.joint) % design.axes.size()];
+}
+
+/// What the offset is asked to become.
+double offset_of(const Trouble &t) {
+    constexpr double MOST = 8;
+    return MOST * (2 * t.value - 1);
+}
+
+/// A move that is read when the offset is there already may be refused: together they are beyond a soft
+/// limit.
+bool isRoomShort(const Design &design, const Act &act, const geom::Pose &from) {
+    constexpr double STEP = 0.5, SLACK = 0.1;
+    const std::vector<geom::Pose> path = programmed_path(act, from, STEP);
+    return std::ranges::any_of(act.troubles, [&](const Trouble &t) {
+        const AxisDesign &axis = offset_axis(design, t);
+        return t.what == Upset::OFFSET && axis.offset_ratio > 0 &&
+               std::ranges::any_of(path, [&](const geom::Pose &p) {
+                   const double place = p[axis.axis] + offset_of(t);
+                   return place > axis.high - SLACK || place < axis.low + SLACK;
+               });
+    });
+}
+
 }  // namespace
 
 void Session::run_program(const Act &act) {
@@ -99,9 +124,10 @@ void Session::run_program(const Act &act) {
         return;
     }
     const bool mayMiss = isProbeMoved(act);
+    const bool mayFail = act.isToFail || act.mayFail || mayMiss || isRoomShort(plan_.design, act, from);
     if (end == End::LATE) {
         fail("work", "the program does not end");
-    } else if (end != End::DONE && !isStopped_ && !act.isToFail && !act.mayFail && !mayMiss) {
+    } else if (end != End::DONE && !isStopped_ && !mayFail) {
         fail("work", "the program ends badly with nothing wrong");
     } else if (end == End::DONE && !isStopped_ && act.isToFail && !mayMiss) {
         fail("work", "the program must not come to its end, and does");
@@ -301,11 +327,10 @@ void Session::begin_stop(const Trouble &t) {
 }
 
 void Session::begin_offset(const Trouble &t) {
-    const AxisDesign &axis = plan_.design.axes[static_cast<std::size_t>(t.joint) % plan_.design.axes.size()];
+    const AxisDesign &axis = offset_axis(plan_.design, t);
     if (axis.offset_ratio > 0 && !isStopped_) {
-        constexpr double MOST = 8;
         judge_.allow(Leave::MOVE);
-        rig_->add_offset(axis.axis, MOST * (2 * t.value - 1));
+        rig_->add_offset(axis.axis, offset_of(t));
     }
 }
 
