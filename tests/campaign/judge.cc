@@ -126,6 +126,10 @@ double Judge::time_to_brake() const {
     return most + 3 * design_.rise_s();
 }
 
+double Judge::time_to_be_sure() const {
+    return 2 * design_.rise_s() + (design_.hasOffsets() ? time_to_brake() : 0);
+}
+
 /// By the accelerations of joints and axes along the path that was taken since, and what building them up
 /// takes where jerk is limited.
 LeastStop Judge::time_to_stop() const {
@@ -450,10 +454,7 @@ void Judge::watch_stop(bool isMoving, bool isOn) {
         check_stop(isMoving && isOn, (cycles - standing_) * period_);
     }
     if (isStanding || !isOn) {
-        // The mean that keeps the jerk, 2 A / J, may stand before it is sure of it; offsets brake on their
-        // own.
-        const double sure_s = 2 * design_.rise_s() + (design_.hasOffsets() ? time_to_brake() : 0);
-        const int off_within = 10 + static_cast<int>(sure_s / period_);
+        const int off_within = 10 + static_cast<int>(time_to_be_sure() / period_);
         const bool mustBeOff = stop_.how == Stop::ALONG_THEN_OFF;
         const int since = std::min(standing_, cycles);  // it may have stood long before
         if (mustBeOff && isOn && since > off_within) {

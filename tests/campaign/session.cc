@@ -146,6 +146,10 @@ msgs::State Session::state() {
 }
 
 bool Session::set_mode(msgs::Mode mode) {
+    const int sure = static_cast<int>(judge_.time_to_be_sure() / PERIOD_S);
+    for (int i = 0; i < sure && !rig_->isInPosition() && !isOver(); ++i) {
+        cycle();
+    }
     const End end = ask(msgs::SetMode{mode});
     if (end != End::DONE && !isStopped_) {
         fail("work", "the mode is not set with the machine at rest");
