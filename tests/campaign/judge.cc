@@ -127,7 +127,8 @@ double Judge::time_to_brake() const {
 }
 
 double Judge::time_to_be_sure() const {
-    return 2 * design_.rise_s() + (design_.hasOffsets() ? time_to_brake() : 0);
+    const double mean_s = std::max(2 * design_.rise_s(), longest_mean_s());
+    return mean_s + (design_.hasOffsets() ? time_to_brake() : 0);
 }
 
 /// By the accelerations of joints and axes along the path that was taken since, and what building them up

@@ -99,8 +99,8 @@ class Judge {
     const std::map<std::string, int> &broken_known() const { return broken_known_; }
     /// What the slowest joint needs from its highest speed [s].
     double time_to_brake() const;
-    /// The mean that keeps the jerk, 2 A / J, may stand before it is sure of it, and offsets brake on their
-    /// own: for so long motion may say that it moves, though it stands [s].
+    /// The mean that keeps the jerk, 2 A / J of a joint or that of the path, may stand before it is sure of
+    /// it, and offsets brake on their own: for so long motion may say that it moves, though it stands [s].
     double time_to_be_sure() const;
     /// Nothing moves and no stop is awaited.
     bool isAtRest() const { return standing_ >= 3 && !stop_.isAwaited; }

@@ -27,6 +27,7 @@ struct Verdict {
     int commands = 0, refused = 0;
     std::map<std::string, int> known;     ///< how often rules were broken that are known to be
     std::map<std::string, int> refusals;  ///< by reason, figures replaced
+    /// Also the stops, by what; judged: those that came while something moved.
     std::map<std::string, Extension> extensions;
     double slowest_stop = 0, worst_time = 0;
     std::uint64_t hash = 0;  ///< of all that was commanded

@@ -255,6 +255,9 @@ void Session::begin_stop(const Trouble &t) {
     constexpr int TO_TASK = 4;  // and from there to motion [cycles]
     const JointDesign &joint = plan_.design.joints[static_cast<std::size_t>(t.joint)];
     JointFaults &pins = rig_->joint_faults[static_cast<std::size_t>(t.joint)];
+    Extension &count = verdict_.extensions[fmt::format("stop by {}", name_of(t.what))];
+    ++count.ran;
+    count.judged += judge_.isAtRest() ? 0 : 1;
     switch (t.what) {
     case Upset::ABORT:
         post(msgs::AbortAll{});
