@@ -200,6 +200,7 @@ enum class FaultKind : std::uint16_t {
     EXTRA_JOINT_LOST,        ///< index: the joint whose pin posthome-cmd is not a number
     EXTRA_JOINT_LIMIT,       ///< index: the joint whose pin posthome-cmd asks for what lies beyond its range
     SIDE_APART,              ///< index: joint; switched on in free mode
+    POSE_UNKNOWN,            ///< the kinematics has none for where the joints stand; the same
     PLANNER_MODULE,          ///< detail: PlannerModuleFault; value: what it asks for over what is possible
     SPINDLE_LOST,  ///< index: spindle whose feedback is not a number while a move is in step with it
     COUNT,
@@ -210,7 +211,8 @@ enum class PlannerModuleFault : std::uint16_t { NO_ANSWER = 1, TOO_FAST, TOO_HAR
 constexpr bool isOnlyTold(FaultKind kind) noexcept {
     return kind == FaultKind::HOMING_CLAMPED || kind == FaultKind::JOG_JOINT_LIMIT ||
            kind == FaultKind::JOG_UNREACHABLE || kind == FaultKind::JOG_LEASE_ENDED ||
-           kind == FaultKind::EXTRA_JOINT_LIMIT || kind == FaultKind::SIDE_APART;
+           kind == FaultKind::EXTRA_JOINT_LIMIT || kind == FaultKind::SIDE_APART ||
+           kind == FaultKind::POSE_UNKNOWN;
 }
 struct Fault {
     FaultKind kind = FaultKind::FOLLOWING_ERROR;

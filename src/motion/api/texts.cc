@@ -315,6 +315,9 @@ std::string what_failed(const Fault &fault) {
             "{} stands apart from the other joint of its axis by more than its MIN_FERROR: the machine is on "
             "in joint mode; home, or bring it there, before axes move",
             joint_name(i));
+    case FaultKind::POSE_UNKNOWN:
+        return "the kinematics has no pose for where the joints stand: the machine is on in joint mode; "
+               "home, or jog the joints to where it has one, before axes move";
     case FaultKind::PATH_LIMIT: return "the path left its limits";
     case FaultKind::MISC_ERROR: return "an error input of motion is on: see pins motion.misc-error-NN";
     case FaultKind::JOINT_TOO_FAST:

@@ -176,11 +176,10 @@ Verdict Controller::enable(const Inputs &in) noexcept {
     }
     if (power_.mode != Mode::FREE) {
         const Verdict led = lead_joints();
-        if (led.reason == Reason::SIDE_APART) {
-            raise(FaultKind::SIDE_APART, led.index);
+        if (led.reason != Reason::NONE) {
+            const bool isSideApart = led.reason == Reason::SIDE_APART;
+            raise(isSideApart ? FaultKind::SIDE_APART : FaultKind::POSE_UNKNOWN, led.index);
             power_.mode = Mode::FREE;  // each joint stands for itself
-        } else if (led.reason != Reason::NONE) {
-            return led;
         }
     }
     switch_on(power_);
