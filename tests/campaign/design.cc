@@ -274,6 +274,21 @@ double Design::rise_s() const {
     return isJerkLimited ? most : 0;
 }
 
+double Design::longest_mean_s() const {
+    double most = 0;
+    const auto look = [&](bool isAngular, double v, double a, double j) {
+        const double mean = j > 0 ? std::min(a / j, std::sqrt(v / j)) : 0;
+        most = isAngular ? most : std::max(most, mean);
+    };
+    for (const JointDesign &d : joints) {
+        look(d.isAngular, d.velocity, d.acceleration, d.jerk);
+    }
+    for (const AxisDesign &x : axes) {
+        look(geom::isAngular(x.axis), x.velocity, x.acceleration, x.jerk);
+    }
+    return isJerkLimited ? most : 0;
+}
+
 void wear(sim::Random &random, Design &design) {
     const bool hasPlay = random.chance(0.3);
     const bool hasScrews = random.chance(0.3);

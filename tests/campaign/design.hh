@@ -77,6 +77,8 @@ struct Design {
     bool hasOffsets() const;
     /// What acceleration takes to rise, of the slowest [s]; 0: no jerk limits.
     double rise_s() const;
+    /// The longest mean that any linear axis or joint asks for (docs/motion/planner.md, "Choice of tau") [s].
+    double longest_mean_s() const;
     /// Writes campaign.ini and campaign.hal; the path of the INI file.
     std::string write(const std::filesystem::path &folder) const;
 };

@@ -127,7 +127,7 @@ double Judge::time_to_brake() const {
 }
 
 double Judge::time_to_be_sure() const {
-    const double mean_s = std::max(2 * design_.rise_s(), longest_mean_s());
+    const double mean_s = std::max(2 * design_.rise_s(), design_.longest_mean_s());
     return mean_s + (design_.hasOffsets() ? time_to_brake() : 0);
 }
 
@@ -178,22 +178,6 @@ double Judge::build_up_s() const {
         look(geom::isAngular(a.axis), a.acceleration, a.jerk);
     }
     return most;
-}
-
-/// The longest mean that any linear axis or joint asks for (docs/motion/planner.md, "Choice of tau").
-double Judge::longest_mean_s() const {
-    double most = 0;
-    const auto look = [&](bool isAngular, double velocity, double acceleration, double jerk) {
-        const double mean = jerk > 0 ? std::min(acceleration / jerk, std::sqrt(velocity / jerk)) : 0;
-        most = isAngular ? most : std::max(most, mean);
-    };
-    for (const JointDesign &d : design_.joints) {
-        look(d.isAngular, d.velocity, d.acceleration, d.jerk);
-    }
-    for (const AxisDesign &a : design_.axes) {
-        look(geom::isAngular(a.axis), a.velocity, a.acceleration, a.jerk);
-    }
-    return design_.isJerkLimited ? most : 0;
 }
 
 double Judge::built_up(bool isAngular, double acceleration, double jerk) const {
@@ -472,7 +456,7 @@ void Judge::check_stop(bool isMoving, double took_s) {
     }
     const double corrections_s = time_to_correct() + stops_later_s;
     // All axes have one mean, also where the one that needs it stands.
-    const double mean_s = std::max(0.0, longest_mean_s() - time_of_jerk());
+    const double mean_s = std::max(0.0, design_.longest_mean_s() - time_of_jerk());
     const double waited_s = stop_.wasPlannerAway ? WAIT_FOR_PLANNER_S : 0.0;
     if (took_s > STOP_FACTOR * least.seconds + STOP_SLACK_S + waited_s + corrections_s + mean_s) {
         fail("stop", fmt::format("{} {:.3f} s after the stop; its limits need {:.3f} s",

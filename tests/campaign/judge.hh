@@ -139,7 +139,6 @@ class Judge {
     double time_of_jerk() const;
     double time_to_correct() const;
     double build_up_s() const;
-    double longest_mean_s() const;
     double built_up(bool isAngular, double acceleration, double jerk) const;
     void fail(const std::string &rule, const std::string &text);
 

@@ -91,8 +91,10 @@ void Session::check_helix(const SyncWish &sync) {
         return;
     }
     const double rough = 2.0 / d.spindle.counts_per_turn;
-    const double mean_s = 2 * d.rise_s();
-    const double late = sync.kind == Sync::TAP ? d.spindle.ramp * mean_s * mean_s / 4 : 0;
+    // Worse than 0.1 turns by its estimate, which is true within a third, a tap is refused.
+    constexpr double WORST = 0.1 * 4 / 3;
+    const double mean_s = 2 * std::max(d.rise_s(), d.longest_mean_s());
+    const double late = sync.kind == Sync::TAP ? std::min(d.spindle.ramp * mean_s * mean_s / 4, WORST) : 0;
     const double most =
         rough + (d.isJerkLimited ? 0.02 : 0.005) + (sync.kind == Sync::TAP ? 0.015 : 0) + late;
     const double sense = sync.to > sync.from ? 1 : -1;
