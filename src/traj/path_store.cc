@@ -8,15 +8,22 @@
 
 namespace mw::traj {
 
+static_assert(std::size(BrakingTuning::DENSE_CHORDS) == Braking::MOST_NODES);
+
+std::span<const double> Braking::nodes() const noexcept {
+    return isDense ? std::span<const double>(BrakingTuning::DENSE_CHORDS) : LimitTuning::CHORDS;
+}
+
 double Braking::at(std::size_t part, double b) const noexcept {
     const Part &left = parts[part];
+    const std::span<const double> shares = nodes();
     const double share = std::min(1.0, b / top);
     std::size_t k = 1;
-    while (k < AccelBound::LINES && share > LimitTuning::CHORDS[k]) {
+    while (k + 1 < shares.size() && share > shares[k]) {
         ++k;
     }
-    const double before = LimitTuning::CHORDS[k - 1];
-    const double t = (share - before) / (LimitTuning::CHORDS[k] - before);
+    const double before = shares[k - 1];
+    const double t = (share - before) / (shares[k] - before);
     return left[k - 1] + t * (left[k] - left[k - 1]);
 }
 
@@ -48,13 +55,18 @@ double Piece::brake_at(double x, double b) const noexcept {
 Piece::BrakeLeg Piece::brake_leg(double x, double b) const noexcept {
     const bool isPlanned = !(braking.top > 0);
     BrakeLeg leg{brake_at(x, b), isPlanned ? length : braking.end_of(Braking::part_at(x, length), length)};
-    for (const BrakingTuning::Look &look : BrakingTuning::LOOKS) {
+    const auto ends_by = [&](const BrakingTuning::Look &look) {
         const double slower = look.slower * b;
-        if (leg.a > 0 && brake_at(x, slower) > look.gain * leg.a) {
-            const double way = std::max(0.5 * (b - slower) / leg.a, BrakingTuning::SHORT_S * std::sqrt(b));
-            leg.end = std::min(leg.end, x + way);
-            break;
+        if (!(leg.a > 0) || !(brake_at(x, slower) > look.gain * leg.a)) {
+            return false;
         }
+        const double way = std::max(0.5 * (b - slower) / leg.a, BrakingTuning::SHORT_S * std::sqrt(b));
+        leg.end = std::min(leg.end, x + way);
+        return true;
+    };
+    const bool isSoon = braking.isDense && std::ranges::any_of(BrakingTuning::DENSE_LOOKS, ends_by);
+    if (!isSoon) {
+        std::ranges::any_of(BrakingTuning::LOOKS, ends_by);
     }
     return leg;
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <span>
 
 #include "base/copyable_atomic.hh"
 #include "base/raw_array.hh"
@@ -66,14 +67,18 @@ struct AccelBound {
 };
 
 /// How hard a stop may brake on each part of a piece, parts of equal length, where that is more than what
-/// speeds are planned with: by the squared speed, chords between `LimitTuning::CHORDS` of the highest.
+/// speeds are planned with: by the squared speed, chords between parts of the highest.
 struct Braking {
     static constexpr std::size_t PARTS = 6;
-    using Part = std::array<float, AccelBound::LINES + 1>;  ///< [1/s^2]
+    static constexpr std::size_t MOST_NODES = 7;
+    using Part = std::array<float, MOST_NODES>;  ///< [1/s^2]
 
-    double top = 0;  ///< the highest squared speed; 0: nowhere more than planned
+    double top = 0;        ///< the highest squared speed; 0: nowhere more than planned
+    bool isDense = false;  ///< chords between `BrakingTuning::DENSE_CHORDS`, else `LimitTuning::CHORDS`
     std::array<Part, PARTS> parts{};
 
+    /// Parts of `top` at which the bounds are known.
+    std::span<const double> nodes() const noexcept;
     /// What a part allows at the squared speed b.
     double at(std::size_t part, double b) const noexcept;
     /// The part from `x` on, of a piece of `length`; the last one also behind its end.

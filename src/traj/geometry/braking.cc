@@ -283,7 +283,7 @@ Braking braking_on(const PathStore &store, const Piece &piece, const Conditions 
     if (workspace.isMapped() && !curve.take_joints(joints)) {
         return {};
     }
-    Braking out{limit.v * limit.v, {}};
+    Braking out{limit.v * limit.v, !(conditions.limits.filter_s() > 0), {}};
     bool isGain = false;
     for (std::size_t n = 0; n < INTERVALS; ++n) {
         Demands by_axes = demands_of(axes, conditions.limits);
@@ -295,8 +295,8 @@ Braking braking_on(const PathStore &store, const Piece &piece, const Conditions 
             by_axes.add_norm(axes, n);
         }
         by_joints.add(joints, n);
-        for (std::size_t k = 0; k <= AccelBound::LINES; ++k) {
-            const double b = LimitTuning::CHORDS[k] * out.top;
+        for (std::size_t k = 0; k < out.nodes().size(); ++k) {
+            const double b = out.nodes()[k] * out.top;
             const double room = std::min(by_axes.room(b, axes.size()), by_joints.room(b, joints.size()));
             out.parts[n][k] = lesser_float(room);
             isGain = isGain || room > BrakingTuning::LEAST_GAIN * limit.a.at(b);

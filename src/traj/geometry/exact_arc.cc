@@ -129,7 +129,7 @@ ExactArc::Allowance ExactArc::allowance_of(const Piece &part) const noexcept {
 }
 
 Braking ExactArc::braking_of(const Seen &part) const noexcept {
-    Braking out{v_ * v_, {}};
+    Braking out{v_ * v_, false, {}};
     for (std::size_t k = 0; k <= AccelBound::LINES; ++k) {
         const double v = std::sqrt(LimitTuning::CHORDS[k]) * v_;
         // What is commanded is faster than the leader that brakes, by half of what it loses in tau.

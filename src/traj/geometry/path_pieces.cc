@@ -199,9 +199,11 @@ void PathBuilder::add_piece(PlannedPath &path, const Conditions &c, const Piece 
     if (!piece.isAlong) {
         limited.braking = braking_on(path.store(), piece, c, lowest);
     }
+    const bool isDense = limited.braking.top > 0 && limited.braking.isDense;
+    const double v = isDense ? lowest.v * BrakingTuning::DENSE_DRIVEN : lowest.v;
     PlannedPiece plan;
-    plan.v_limit = std::min(lowest.v, PathTuning::MOVES_PER_CYCLE * path.primitive(piece.primitive).length /
-                                          c.limits.period_s());
+    plan.v_limit = std::min(v, PathTuning::MOVES_PER_CYCLE * path.primitive(piece.primitive).length /
+                                   c.limits.period_s());
     plan.isStopBefore = open_.isStop;
     plan.dwell_s = open_.isStop ? open_.before.dwell_s : c.limits.filter_s();
     path.append_piece(limited, plan);

@@ -307,6 +307,48 @@ TEST(Braking, AnArcWithARoundedRadiusIsBrakedOnAsACircle_C5) {
     EXPECT_NEAR(brake_on(1e-4), on_circle, 0.01 * on_circle);
 }
 
+/// From v, where turning takes all of A, a stop takes v/A times the integral of 1/sqrt(1 - u^4) from 0 to 1.
+TEST(Braking, WhoTurnsWithAllThatThereIsGetsAwayFromItAtOnce_C5) {
+    constexpr double A = 460, RADIUS = 20, INTEGRAL = 1.311;
+    Rig rig{Pose{}};
+    Limits limits;
+    limits.velocity.fill(1000);
+    limits.acceleration.fill(1500);
+    limits.acceleration[XYZ_NORM] = A;
+    limits.velocity[XYZ_NORM] = UNLIMITED;
+    rig.planner.set_limits(limits);
+    rig.planner.begin(Pose{}, rig.executor.snapshot());
+    ArcShape shape;
+    shape.angle_rad = 12;
+    shape.normal[2] = 1;
+    shape.centre[0] = RADIUS;
+    Pose end;
+    end[0] = RADIUS - RADIUS * std::cos(12.0);
+    end[1] = -RADIUS * std::sin(12.0);
+    Primitive arc;
+    ASSERT_EQ(make_arc(Pose{}, end, shape, arc), ArcFault::NONE);
+    MoveRequest request;
+    request.tag.requested_velocity = 1000;
+    rig.planner.add(arc, request);
+    rig.planner.release_end();
+    while (rig.cycle < 1200) {
+        rig.step();
+    }
+    const double v = geom::norm_xyz(rig.samples.back() - rig.samples[rig.samples.size() - 2]) / Rig::T;
+    ASSERT_GT(v * v / RADIUS, 0.999 * A);
+    rig.executor.drop();
+    const std::uint64_t asked = rig.cycle;
+    while (rig.executor.snapshot().isDropping && rig.cycle < asked + 2000) {
+        rig.step();
+    }
+    EXPECT_LT(static_cast<double>(rig.cycle - asked) * Rig::T, 1.2 * INTEGRAL * v / A);
+    auto checker = make_checker(limits, Rig::T);
+    for (const Pose &p : rig.samples) {
+        checker.sample(p.c.data());
+    }
+    EXPECT_TRUE(checker.isWithin()) << checker.report();
+}
+
 TEST(Braking, AStopInAReversalEndsWhereTheMachineNearlyStands_C5) {
     stop_in_a_reversal(200, UNLIMITED);
     stop_in_a_reversal(1e4, 200);
