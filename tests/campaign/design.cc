@@ -289,6 +289,11 @@ double Design::longest_mean_s() const {
     return isJerkLimited ? most : 0;
 }
 
+double Design::gentlest_ramp(double turns_s) const {
+    constexpr double READING_S = 0.02;
+    return turns_s / (turns_s / spindle.ramp + 2 * (spindle.lag_s + spindle.reaction_s) + READING_S);
+}
+
 void wear(sim::Random &random, Design &design) {
     const bool hasPlay = random.chance(0.3);
     const bool hasScrews = random.chance(0.3);

@@ -79,6 +79,9 @@ struct Design {
     double rise_s() const;
     /// The longest mean that any linear axis or joint asks for (docs/motion/planner.md, "Choice of tau") [s].
     double longest_mean_s() const;
+    /// What motion may take for the ramp of its spindle, whose drive is late and lags, as it has started to a
+    /// speed [turns/s] and not turned back yet [turns/s^2].
+    double gentlest_ramp(double turns_s) const;
     /// Writes campaign.ini and campaign.hal; the path of the INI file.
     std::string write(const std::filesystem::path &folder) const;
 };

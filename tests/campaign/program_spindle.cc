@@ -138,12 +138,9 @@ Act Writer::write_in_step() {
             if (design_.isJerkLimited) {
                 // A tap that would be off its thread is refused; between the two either is right.
                 constexpr double LONGEST_MEAN = 1.25, WELL = 0.08, BADLY = 0.25;
-                const sim::SpindleTraits &s = design_.spindle;
-                // What motion may make of a drive that is late and lags.
-                constexpr double READING_S = 0.02;
-                const double gentle = turns_s / (turns_s / s.ramp + 2 * (s.lag_s + s.reaction_s) + READING_S);
-                isSudden = off_helix(sync.lead, gentle, design_.rise_s()) > BADLY;
-                const bool isWell = off_helix(sync.lead, s.ramp, LONGEST_MEAN * design_.rise_s()) < WELL;
+                const double mean_s = std::max(design_.rise_s(), design_.longest_mean_s());
+                isSudden = off_helix(sync.lead, design_.gentlest_ramp(turns_s), mean_s) > BADLY;
+                const bool isWell = off_helix(sync.lead, design_.spindle.ramp, LONGEST_MEAN * mean_s) < WELL;
                 isTap = isSudden || isWell;
                 kind = isTap ? kind : 0;
             }

@@ -91,10 +91,11 @@ void Session::check_helix(const SyncWish &sync) {
         return;
     }
     const double rough = 2.0 / d.spindle.counts_per_turn;
-    // Worse than 0.1 turns by its estimate, which is true within a third, a tap is refused.
-    constexpr double WORST = 0.1 * 4 / 3;
+    // A tap is refused if motion expects it farther off than 0.1 turns, of what it knows of the ramp; it is
+    // right within a half.
+    const double worst = 0.1 * 1.5 * d.spindle.ramp / d.gentlest_ramp(std::abs(sync.rpm) / 60);
     const double mean_s = 2 * std::max(d.rise_s(), d.longest_mean_s());
-    const double late = sync.kind == Sync::TAP ? std::min(d.spindle.ramp * mean_s * mean_s / 4, WORST) : 0;
+    const double late = sync.kind == Sync::TAP ? std::min(d.spindle.ramp * mean_s * mean_s / 4, worst) : 0;
     const double most =
         rough + (d.isJerkLimited ? 0.02 : 0.005) + (sync.kind == Sync::TAP ? 0.015 : 0) + late;
     const double sense = sync.to > sync.from ? 1 : -1;
