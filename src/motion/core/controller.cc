@@ -34,6 +34,15 @@ homing::JointInput homing_input(const JointInputs &pins, const Joint &joint, con
     return out;
 }
 
+/// [TRAJ]HOME
+geom::Pose first_place(const Settings &settings) noexcept {
+    geom::Pose pose;
+    for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
+        pose[axis] = settings.get(Parameter::AXIS_FIRST_PLACE, axis);
+    }
+    return pose;
+}
+
 }  // namespace
 
 Controller::Controller(const ControllerConfig &config, const kins::Kinematics &kinematics, Channels &channels,
@@ -261,6 +270,9 @@ void Controller::step_homing(const Inputs &in) noexcept {
     }
     const bool isOtherMap = offsets_.shared.joints != 0 && !map_.isAsIn(kinematics_);
     if (limits_.homed.joints != homed_mask(homing_) || isOtherMap) [[unlikely]] {
+        if (isAllHomed(homing_)) {
+            find_again(place_, kinematics_, commanded(joints_).data(), first_place(settings_));
+        }
         publish_limits();
     }
 }

@@ -21,6 +21,18 @@ void follow_joints(Place &place, const kins::Kinematics &kinematics, const doubl
     }
 }
 
+void find_again(Place &place, const kins::Kinematics &kinematics, const double *joints,
+                const geom::Pose &first) noexcept {
+    geom::Pose pose = place.cmd;
+    if (kinematics.kind() != kins::Kind::BOTH || isAnswered(kinematics.forward(joints, pose))) {
+        return;
+    }
+    pose = first;
+    if (isAnswered(kinematics.forward(joints, pose))) {
+        place.cmd = place.fb = pose;
+    }
+}
+
 void follow_pose(Place &place, const geom::Pose &pose, double period_s) noexcept {
     place.velocity = geom::norm_xyz(pose - place.cmd) / period_s;
     place.cmd = pose;

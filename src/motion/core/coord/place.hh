@@ -21,6 +21,10 @@ struct Place {
 /// Joints lead; the commanded pose follows them where it is known.
 void follow_joints(Place &place, const kins::Kinematics &kinematics, const double *joints,
                    bool isKnown) noexcept;
+/// The pose of joints that have just been homed. Forward kinematics that iterate look from where the pose was
+/// and, where that leads nowhere, from `first`: what was lost need not be near.
+void find_again(Place &place, const kins::Kinematics &kinematics, const double *joints,
+                const geom::Pose &first) noexcept;
 /// The pose leads.
 void follow_pose(Place &place, const geom::Pose &pose, double period_s) noexcept;
 void fill(const Place &place, Status &status) noexcept;
