@@ -55,18 +55,15 @@ double Piece::brake_at(double x, double b) const noexcept {
 Piece::BrakeLeg Piece::brake_leg(double x, double b) const noexcept {
     const bool isPlanned = !(braking.top > 0);
     BrakeLeg leg{brake_at(x, b), isPlanned ? length : braking.end_of(Braking::part_at(x, length), length)};
-    const auto ends_by = [&](const BrakingTuning::Look &look) {
+    using Looks = std::span<const BrakingTuning::Look>;
+    const Looks looks = braking.isDense ? Looks(BrakingTuning::DENSE_LOOKS) : Looks(BrakingTuning::LOOKS);
+    for (const BrakingTuning::Look &look : looks) {
         const double slower = look.slower * b;
-        if (!(leg.a > 0) || !(brake_at(x, slower) > look.gain * leg.a)) {
-            return false;
+        if (leg.a > 0 && brake_at(x, slower) > look.gain * leg.a) {
+            const double way = std::max(0.5 * (b - slower) / leg.a, BrakingTuning::SHORT_S * std::sqrt(b));
+            leg.end = std::min(leg.end, x + way);
+            break;
         }
-        const double way = std::max(0.5 * (b - slower) / leg.a, BrakingTuning::SHORT_S * std::sqrt(b));
-        leg.end = std::min(leg.end, x + way);
-        return true;
-    };
-    const bool isSoon = braking.isDense && std::ranges::any_of(BrakingTuning::DENSE_LOOKS, ends_by);
-    if (!isSoon) {
-        std::ranges::any_of(BrakingTuning::LOOKS, ends_by);
     }
     return leg;
 }

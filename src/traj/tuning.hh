@@ -100,7 +100,8 @@ struct BrakingTuning {
     /// Without a mean, which a brake takes tau to get through, the bound has these parts and is looked at as
     /// often.
     static constexpr double DENSE_CHORDS[] = {0, 0.5, 0.85, 0.97, 0.995, 0.9995, 1};
-    static constexpr Look DENSE_LOOKS[] = {{0.9995, 1.5}, {0.998, 1.3}, {0.99, 1.3}};
+    static constexpr Look DENSE_LOOKS[] = {{0.9995, 1.5}, {0.998, 1.3}, {0.99, 1.3},
+                                           {0.97, 1.5},   {0.9, 1.3},   {0.7, 1.05}};
     /// Part of the highest speed with which such curves are driven, so that there is something to begin with.
     static constexpr double DENSE_DRIVEN = 1 - 5e-5;
     /// What derivatives may be more than their differences tell.
