@@ -270,7 +270,7 @@ void Controller::step_homing(const Inputs &in) noexcept {
     }
     const bool isOtherMap = offsets_.shared.joints != 0 && !map_.isAsIn(kinematics_);
     if (limits_.homed.joints != homed_mask(homing_) || isOtherMap) [[unlikely]] {
-        if (isAllHomed(homing_)) {
+        if (power_.mode == Mode::FREE && isAllHomed(homing_)) {  // elsewhere the pose leads
             find_again(place_, kinematics_, commanded(joints_).data(), first_place(settings_));
         }
         publish_limits();
