@@ -3,7 +3,9 @@
 
 #include <filesystem>
 
+#include "base/atomic_file.hh"
 #include "interp/ast/syntax_errors.hh"
+#include "interp/block_history.hh"
 #include "interp/codes/executor.hh"
 #include "interp/flow/flow.hh"
 #include "interp/kept.hh"
@@ -13,13 +15,14 @@ namespace mw::interp {
 struct Interpreter::Impl {
     Impl(Canon &canon, World &world, ToolSource &tools, ParameterSource &source, Settings given)
         : settings(std::move(given)), target(canon), executor(world, tools, source, settings, names),
-          flow(executor, names, canon, settings) {}
+          flow(executor, names, canon, settings), history(executor, flow) {}
 
     Settings settings;
     Canon &target;
     detail::Names names;
     detail::Executor executor;
     detail::Flow flow;
+    detail::BlockHistory history;
 };
 
 Interpreter::Interpreter(Canon &canon, World &world, ToolSource &tools, ParameterSource &parameters,
@@ -37,11 +40,7 @@ Result<> Interpreter::load_parameters(const std::string &path) {
 }
 
 Result<> Interpreter::save_parameters(const std::string &path) const {
-    return impl_->executor.parameters.save(path);
-}
-
-std::string Interpreter::parameter_text() const {
-    return impl_->executor.parameters.text();
+    return write_file_with_backup(path, impl_->history.parameter_text());
 }
 
 Result<> Interpreter::begin() {
@@ -212,16 +211,15 @@ bool Interpreter::isThreading() const {
 
 std::shared_ptr<const Interpreter::Kept> Interpreter::keep() const {
     const detail::Executor &executor = impl_->executor;
-    return std::make_shared<Kept>(executor.state, executor.parameters, executor.saved_modes);
+    return std::make_shared<Kept>(detail::keep(executor));
 }
 
 void Interpreter::restore(const Kept &kept) {
-    detail::Executor &executor = impl_->executor;
-    executor.state = kept.state;
-    executor.parameters = kept.parameters;
-    executor.saved_modes = kept.saved_modes;
-    executor.tools.forget();
-    executor.awaited = {};
+    detail::restore(kept, impl_->executor);
+}
+
+ReadAhead &Interpreter::read_ahead() {
+    return impl_->history;
 }
 
 void Interpreter::know_tools(const std::map<int, ToolEntry> &entries) {

@@ -109,6 +109,28 @@ struct NextLine {
     bool isInMainFile = true;  ///< the line is one of the main program's file
 };
 
+/// Keeps the state of the block that the machine executes while the interpreter reads later ones. Steps have
+/// numbers that never fall. One thread.
+class ReadAhead {
+  public:
+    virtual ~ReadAhead() = default;
+    /// All that was read is executed; what later steps change is recorded.
+    virtual void begin() = 0;
+    /// Records nothing until the next begin().
+    virtual void stop() = 0;
+    /// The interpreter is as step `number` left it.
+    virtual void note(std::uint64_t number) = 0;
+    /// The machine has reached step `number`.
+    virtual void mark_executed(std::uint64_t number) = 0;
+    /// Modes, offsets and parameters become those of the executed step; calls and loops end.
+    virtual void return_to_executed() = 0;
+    virtual ActiveCodes executed_codes() const = 0;
+    /// What the parameter file is to have, as of the executed step.
+    virtual std::string parameter_text() const = 0;
+    /// The line that was read last has no words: it is blank, a comment alone, or skipped.
+    virtual bool isLineEmpty() const = 0;
+};
+
 /// The interpreter of RS-274/NGC.
 class Interpreter final : public ProgramInterpreter {
   public:
@@ -119,8 +141,6 @@ class Interpreter final : public ProgramInterpreter {
 
     Result<> load_parameters(const std::string &path) override;
     Result<> save_parameters(const std::string &path) const override;
-    /// What save_parameters() would write.
-    std::string parameter_text() const;
 
     /// Loads scripts, announces offsets, units and modes to the canon and runs the start-up code.
     Result<> begin() override;
@@ -179,6 +199,10 @@ class Interpreter final : public ProgramInterpreter {
     Result<std::shared_ptr<const Kept>> unpack_kept(std::string_view bytes);
     /// How often Python was asked for something.
     std::uint64_t count_script_calls() const;
+
+    /// For machines that read ahead of what they execute.
+    ReadAhead &read_ahead();
+
     /// Scripts that a step would run fail instead: what they do is not known.
     void forbid_scripts(bool isForbidden);
 

@@ -172,7 +172,7 @@ Result<Interpreter::Kept> unpack(std::string_view bytes, const Interpreter::Kept
     if (form != FORM) {
         return fail("modes and parameters were written by another version");
     }
-    Interpreter::Kept kept{now.state, now.parameters, {}};
+    Interpreter::Kept kept{now.state, now.parameters, {}, now.returned, now.block_codes};
     kept.state.comp = {};
     kept.state.spline = {};
     fields(in, kept.state);

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "interp/ast/names.hh"
+#include "interp/codes/around_block.hh"
 #include "interp/codes/saved_modes.hh"
 #include "interp/codes/state.hh"
 #include "interp/eval/parameters.hh"
@@ -17,6 +18,8 @@ struct Interpreter::Kept {
     detail::State state;
     detail::Parameters parameters;
     detail::SavedModes saved_modes;
+    detail::ReturnValue returned;
+    detail::BlockCodes block_codes;
 };
 
 /// As bytes; an error says what is under way that cannot be told so.

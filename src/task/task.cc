@@ -94,6 +94,7 @@ Result<> Task::start() {
         post(MessageKind::OPERATOR_TEXT, offer);
     }
     Result<> begun = reader_.interpreter().begin();
+    reader_.begin_history();
     for (const std::string &warning : reader_.interpreter().warnings()) {
         post(MessageKind::OPERATOR_TEXT, warning);
     }
@@ -137,11 +138,12 @@ void Task::step_run() {
     if (!run_.isHeld()) {
         sequencer_.step(now_ns_);
     }
-    if (run_.hold() == Hold::STEPPING && sequencer_.isStepDone()) {
-        run_.change(RunEvent::STEP_DONE);
-    }
+    reader_.follow(sequencer_);
+    // The step that carries out the last block ends the program: nothing is left to pause in front of.
     if (run_.phase() == RunPhase::FINISHING && sequencer_.isIdle() && !run_.isHeld()) {
         finish_run(Progress::DONE, {});
+    } else if (run_.hold() == Hold::STEPPING && sequencer_.isStepDone()) {
+        run_.change(RunEvent::STEP_DONE);
     }
     while (!run_.isRunning()) {  // lines of MDI follow at once: nothing comes between them
         const auto line = mdi_queue_.next();
@@ -277,17 +279,15 @@ bool Task::begin_run() {
     }
     run_.change(RunEvent::BEGUN);
     synch_interpreter();
-    reader_.note_codes();
     Start{*this}.prepare_journal();
     Start{*this}.begin_journal(1);
     if (const auto tap = mdi_queue_.take_tap()) {
+        reader_.canon().begin_read();
         reader_.canon().begin_block({});
         reader_.canon().take(*tap);
         run_.change(RunEvent::READ);
     } else if (run_.kind() == RunKind::MDI) {
-        const interp::Step result = reader_.interpreter().execute(run_.line());
-        reader_.note_codes();
-        on_step_result(result);
+        on_step_result(reader_.execute(run_.line()));
     }
     return true;
 }
@@ -320,8 +320,7 @@ void Task::run_interpreter() {
                 sequencer_.log_probe(probe);
             }
         }
-        const interp::Step result = reader_.interpreter().step();
-        reader_.note_codes();
+        const interp::Step result = reader_.step();
         Start{*this}.note_doubt();
         on_step_result(result);
     }
@@ -352,6 +351,10 @@ bool Task::on_stop(const interp::ProgramStop &stop, int line) {
 }
 
 void Task::finish_run(Progress progress, const std::string &reason) {
+    if (progress == Progress::FAILED) {
+        reader_.follow(sequencer_);
+        reader_.return_to_executed();
+    }
     if (run_.isProgram()) {
         reader_.interpreter().close();
         ++status_.task.programs_ended;
@@ -359,9 +362,7 @@ void Task::finish_run(Progress progress, const std::string &reason) {
         post(MessageKind::OPERATOR_TEXT,
              "cutter compensation holds this move back until the next one or G40 says where it ends");
     }
-    if (!run_.isProgram()) {  // a touch-off must outlive a crash that follows
-        parameter_file_.keep();
-    }
+    parameter_file_.keep();  // a touch-off must outlive a crash that follows
     sequencer_.end_step();
     recovery_.end();
     tell(run_.end(progress, reason));

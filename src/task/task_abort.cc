@@ -41,10 +41,12 @@ void Task::abort_work(AbortReason reason) {
     mode_.note_stop(now_ns_);
     status_.task.motion_line = 0;
     if (!isFollowing || run_.phase() != RunPhase::CLEANING) {
+        reader_.follow(sequencer_);
         sequencer_.abort(static_cast<int>(reason));
         user_program_.stop();
         Start{*this}.drop();
-        reader_.drop();
+        reader_.return_to_executed();
+        reader_.announce();
         run_.change(RunEvent::CLEAN);
     }
     sequencer_.stop_spindles();

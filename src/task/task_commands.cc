@@ -151,7 +151,12 @@ Outcome Task::Handler::operator()(const StepProgram &) {
     return isFirst ? Progress::STARTED : Progress::DONE;
 }
 
+/// Where nothing runs there is nothing to do, as with LinuxCNC: screens and buttons ask without looking
+/// first.
 Outcome Task::Handler::operator()(const PauseProgram &) {
+    if (!task.run_.isRunning()) {
+        return Progress::DONE;
+    }
     const auto taken = task.run_.take(RunEvent::PAUSE);
     if (!taken.has_value()) {
         return std::unexpected(taken.error());
@@ -164,6 +169,9 @@ Outcome Task::Handler::operator()(const ConfirmApproach &command) {
 }
 
 Outcome Task::Handler::operator()(const ResumeProgram &) {
+    if (!task.run_.isHeld()) {
+        return Progress::DONE;
+    }
     if (task.run_.hold() == Hold::PROPOSED) {
         return Start{task}.confirm(0);
     }
@@ -194,7 +202,8 @@ Outcome Task::Handler::operator()(const CloseProgram &) {
 }
 
 Outcome Task::Handler::operator()(const ResetInterpreter &) {
-    task.reader_.drop();
+    task.reader_.return_to_executed();
+    task.reader_.announce();
     return (*this)(CloseProgram{});
 }
 

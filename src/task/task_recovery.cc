@@ -50,7 +50,7 @@ void Task::Start::note_place() {
     const bool isUnderWay =
         task.run_.isProgram() && task.run_.phase() >= RunPhase::READING && task.run_.hold() != Hold::PROPOSED;
     if (isUnderWay && task.recovery_.isOn()) {
-        const motion::SourceTag source = task.sequencer_.under_way();
+        const motion::SourceTag source = task.sequencer_.place().source;
         const geom::Pose place = motion::programmed_position(task.motion_.status());
         task.recovery_.step(task.now_ns_, {source.block, source.line, place, task.io_.outputs.tool_number},
                             task.reader_.canon().marks(), task.parts_.tools);
@@ -126,7 +126,7 @@ Result<Progress> Task::Start::calculate_again() {
                         why.str(),
                     {}, "abort, and run from the line");
     };
-    const motion::SourceTag source = task.sequencer_.under_way();
+    const motion::SourceTag source = task.sequencer_.place().source;
     const std::string program = task.status_.task.program.str();
     const Result<> called =
         task.run_.isProgram()
@@ -137,7 +137,7 @@ Result<Progress> Task::Start::calculate_again() {
         return refused(called.error());
     }
     task.reader_.queue().clear();
-    task.reader_.interpreter().abort();
+    task.reader_.return_to_executed();
     const Result<> opened = task.reader_.interpreter().open(program);
     if (!opened.has_value()) {
         task.recovery_.refuse(opened.error().str());

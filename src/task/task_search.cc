@@ -146,7 +146,7 @@ void Task::Start::go_on(const ApproachPlan &plan) {
         }
     }
     task.reader_.canon().insert_first(plan.calls(), motion::programmed_position(task.motion_.status()),
-                                      plan.line);
+                                      plan.line, task.reader_.executed());
     task.on_step_result(last);
 }
 

@@ -23,14 +23,20 @@ tool::CutLife cut_since(const Status &status, std::int64_t now_ns) {
     return isCutting ? tool::CutLife{elapsed_s, velocity * elapsed_s} : tool::CutLife{};
 }
 
-/// Modal codes of the move under way, which is at `place`; where nothing runs, those of the interpreter.
+/// Modal codes of the move that runs, which comes from `source`; where nothing runs, those of the
+/// interpreter. `isExecuted`: it is the block that an abort would return to, and no earlier one on a path run
+/// in reverse.
 interp::ActiveCodes codes_in_force(const ProgramReader &reader, const ProgramRun &run,
-                                   const motion::SourceTag &place) {
+                                   const motion::SourceTag &source, bool isExecuted) {
     const CodesTrail &trail = reader.codes();
     const bool isReadAhead = run.isRunning() && run.phase() != RunPhase::SEARCHING &&
                              run.phase() != RunPhase::STARTING && !trail.isEmpty();
+    const int line = run.isProgram() ? source.line : 0;
+    if (isReadAhead && isExecuted && reader.isGCode()) {
+        return numbered(reader.executed_codes(), line);
+    }
     if (isReadAhead) {
-        return trail.at(place.block, run.isProgram() ? place.line : 0);
+        return trail.at(source.block, line);
     }
     // A line of MDI has no number, nor has the start-up code.
     const interp::ActiveCodes read = reader.interpreter().active_codes();
@@ -96,7 +102,9 @@ void Task::update_status() {
     const bool isMoving = motion.active_path_id != 0;
     // The line of the last move stays while a program waits, and after it.
     task.motion_line = isMoving ? motion.source.line : task.motion_line;
-    status_.codes = shown(codes_in_force(reader_, run_, isMoving ? motion.source : sequencer_.under_way()));
+    const motion::SourceTag under_way = sequencer_.place().source;
+    const bool isExecuted = !isMoving || motion.source.block == under_way.block;
+    status_.codes = shown(codes_in_force(reader_, run_, isMoving ? motion.source : under_way, isExecuted));
     approach_.show(status_.approach, status_.offsets, shown(reader_.interpreter().active_codes()));
     step_tools();
     // A tool that is being looked for is not ready yet; no tool (T0) is ready at once.

@@ -18,26 +18,24 @@ std::optional<World> carried_out(const std::vector<Line> &lines, World world, bo
     return world;
 }
 
-std::vector<World> after_stop(const std::vector<Line> &lines, const World &before, bool isBlockDelete) {
+std::vector<World> after_stop(const std::vector<Line> &lines, const World &before, bool isBlockDelete,
+                              std::size_t from) {
     std::vector<World> prefixes{before};
-    World world = before;
     for (const Line &line : lines) {
-        apply(line, world, isBlockDelete);
-        prefixes.push_back(world);
+        World after = prefixes.back();
+        apply(line, after, isBlockDelete);
+        prefixes.push_back(after);
     }
-    end_program(world);
-    prefixes.push_back(world);
-    std::vector<Doings> doings;
+    prefixes.push_back(prefixes.back());
+    end_program(prefixes.back());
     std::vector<World> all;
-    for (const World &read : prefixes) {
-        World done = read;
-        switch_devices_off(done);
-        done.doings.at = {};
-        if (std::ranges::find(doings, done.doings) == doings.end()) {
-            doings.push_back(done.doings);
-        }
-        for (const Doings &one : doings) {
-            add(all, {read.modes, one});
+    for (std::size_t i = from > 0 ? from - 1 : 0; i < prefixes.size(); ++i) {
+        const std::size_t first = from > 0 || i == 0 ? 0 : i - 1;
+        for (std::size_t done = first; done <= i; ++done) {
+            World stopped{prefixes[i].modes, prefixes[done].doings};
+            switch_devices_off(stopped);
+            stopped.doings.at = {};
+            add(all, stopped);
         }
     }
     return all;

@@ -146,6 +146,10 @@ bool fits(const World &world, const Bench &bench, bool isHomed, std::string &why
                 fmt::format("G92 offset {}, not {}", str(place_of(offsets.g92)), str(m.g92))) ||
         differs(!task_campaign::isSame(offsets.tool[2], m.tool_z),
                 fmt::format("tool offset {:.4f}, not {:.4f}", offsets.tool[2], m.tool_z)) ||
+        differs(!task_campaign::isSame(codes.settings[1], m.feed),
+                fmt::format("F {}, not {}", codes.settings[1], m.feed)) ||
+        differs(!task_campaign::isSame(codes.settings[2], m.speed_rpm),
+                fmt::format("S {}, not {}", codes.settings[2], m.speed_rpm)) ||
         differs(!hasCode(codes, m.isInch ? 200 : 210), "units") ||
         differs(!hasCode(codes, m.isAbsolute ? 900 : 910), "G90 or G91") ||
         differs(status.tool.in_spindle != d.in_spindle,

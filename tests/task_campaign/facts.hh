@@ -24,7 +24,7 @@ struct Tool {
     bool operator==(const Tool &) const = default;
 };
 
-/// What the interpreter holds: a stop leaves it where it had read to.
+/// What programs set: a stop leaves it as the block that is executed has it.
 struct Modes {
     bool isAbsolute = true, isInch = false;
     int system = 1;                        ///< G54 is 1
@@ -33,8 +33,9 @@ struct Modes {
     bool isG92On = false;
     double tool_z = 0;  ///< G43
     Place g28{}, g30{};
-    double kept = 0;  ///< #3101, which the parameter file has
-    double speed_rpm = 0;
+    double kept = 0;       ///< #3101, which the parameter file has
+    double feed = 0;       ///< F
+    double speed_rpm = 0;  ///< S
     bool operator==(const Modes &) const = default;
 };
 

@@ -143,8 +143,8 @@ void Session::try_odd(int client, std::uint64_t seed, bool isAtRest) {
         Expected expected;
     };
     const Odd all[] = {
-        {msgs::PauseProgram{}, Expected::REFUSED},
-        {msgs::ResumeProgram{}, Expected::REFUSED},
+        {msgs::PauseProgram{}, taken_if(isOn)},
+        {msgs::ResumeProgram{}, taken_if(isOn)},
         {msgs::ForwardProgram{}, Expected::REFUSED},
         {msgs::ConfirmApproach{77}, Expected::REFUSED},
         {msgs::ReleaseAxes{}, Expected::REFUSED},

@@ -88,7 +88,7 @@ void Session::end_program_of(const Act &act, End end) {
         if (after.has_value()) {
             add(whole, *after);
         }
-        for (const World &one : after_stop(act.blocks, world, beliefs_.isBlockDelete)) {
+        for (const World &one : after_stop(act.blocks, world, beliefs_.isBlockDelete, first_line_of(act))) {
             add(stopped, one);
         }
         if (act.work == Work::FROM_LINE) {  // its search has failed: nothing is changed
@@ -138,7 +138,7 @@ void Session::end_by_crash(const Act &act) {
         before = std::move(left);
     }
     for (const World &world : before) {
-        for (const World &stopped : after_stop(act.blocks, world, wasBlockDelete_)) {
+        for (const World &stopped : after_stop(act.blocks, world, wasBlockDelete_, first_line_of(act))) {
             add(beliefs_.worlds, after_crash({world.modes, stopped.doings}));
             if (!wasRunning_) {  // it has just ended
                 add(beliefs_.worlds, after_crash(stopped));
@@ -194,7 +194,7 @@ void Session::recover(const Act &act, const World &before, bool isBlockDelete) {
         beliefs_.worlds = {*whole};
         return;
     }
-    for (const World &one : after_stop(act.blocks, before, isBlockDelete)) {
+    for (const World &one : after_stop(act.blocks, before, isBlockDelete, 1)) {
         add(beliefs_.worlds, one);
     }
     beliefs_.switch_devices_off();

@@ -6,7 +6,8 @@
 
 namespace mw::interp::detail {
 
-ActiveCodes active_codes(const State &state, const Parameters &parameters, int sequence) {
+ActiveCodes active_codes(const State &state, const Parameters &parameters, const BlockCodes &block,
+                         int sequence) {
     ActiveCodes out;
     const int feed_code = state.feed_mode == FeedMode::INVERSE_TIME       ? 930
                           : state.feed_mode == FeedMode::UNITS_PER_MINUTE ? 940
@@ -17,7 +18,7 @@ ActiveCodes active_codes(const State &state, const Parameters &parameters, int s
     const SpindleState &spindle = state.spindles[static_cast<std::size_t>(state.active_spindle)];
     out.g = {sequence,
              state.motion,
-             -1,
+             block.non_modal,
              plane_code(state.plane),
              state.comp.code(),
              state.units == LengthUnits::INCH ? 200 : 210,
@@ -31,18 +32,18 @@ ActiveCodes active_codes(const State &state, const Parameters &parameters, int s
              spindle.isConstantSurface ? 960 : 970,
              state.isCentreAbsolute ? 901 : 911,
              state.isDiameter ? 70 : 80,
-             parameters.get(P_G92_APPLIED) != 0.0 ? 923 : -1};
+             parameters.get(P_G92_APPLIED) != 0.0 ? 923 : 922};
     const bool isSpeedOverride = spindle.isOverridden;
     out.m = {sequence,
-             -1,
+             block.stop,
              spindle.direction > 0 ? 3 : (spindle.direction < 0 ? 4 : 5),
-             -1,
+             block.tool_change,
              state.isMist ? 7 : (state.isFlood ? -1 : 9),
              state.isFlood ? 8 : -1,
              state.isFeedOverride ? (isSpeedOverride ? 48 : 50) : (isSpeedOverride ? 51 : 49),
              state.isAdaptive ? 52 : -1,
              state.isFeedHold ? 53 : -1,
-             -1};
+             0};
     out.settings = {static_cast<double>(sequence), state.feed, spindle.speed, state.tolerance,
                     state.naivecam};
     return out;

@@ -11,6 +11,13 @@ struct BlockPlace {
     int call_level = 0;
 };
 
+/// Codes of the last block that set no mode; -1: none.
+struct BlockCodes {
+    int non_modal = -1;    ///< ten times the G code
+    int stop = -1;         ///< M0, M1, M2, M30, M60
+    int tool_change = -1;  ///< M6, M61
+};
+
 /// What the last call returned: #<_value> and #<_value_returned>.
 struct ReturnValue {
     double value = 0;

@@ -11,6 +11,24 @@
 namespace mw::interp::detail {
 namespace {
 
+BlockCodes codes_of(const BlockValues &values) {
+    constexpr int G92 = 920, G92_3 = 923;
+    BlockCodes out;
+    for (const ActiveCode &active : values.codes) {
+        switch (active.code->group) {
+        case Group::NON_MODAL:
+            // LinuxCNC shows G92.1 to G92.3 by what they leave in force alone.
+            out.non_modal =
+                active.code->number > G92 && active.code->number <= G92_3 ? -1 : active.code->number;
+            break;
+        case Group::STOP: out.stop = active.code->number; break;
+        case Group::TOOL_CHANGE: out.tool_change = active.code->number; break;
+        default: break;
+        }
+    }
+    return out;
+}
+
 /// Nothing, or a straight move alone, which fails before it changes anything.
 bool isStateSafe(const BlockValues &values, const State &state) {
     constexpr int G1 = 10;
@@ -33,6 +51,7 @@ Executor::Executor(World &world, ToolSource &tool_source, ParameterSource &sourc
 bool Executor::run(const BlockView &view, std::string_view line_text) {
     BlockValues &values = block_.values;
     values.clear();
+    block_codes = {};
     outcome = Outcome::OK;
     if (!read_words(view, {evaluator_, remaps}, values, fault) ||
         (view.block->setting_count > 0 && !settings_.apply(view, evaluator_, names_, parameters, fault))) {
@@ -55,6 +74,7 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
         !check_rotary(values, state, fault)) {
         return false;
     }
+    block_codes = codes_of(values);
     return run_codes(values, 0);
 }
 
@@ -147,6 +167,7 @@ void Executor::begin_block() {
 
 void Executor::begin_light_block() {
     isStateKept_ = false;
+    codes_before_ = block_codes;
     canon.begin_undo();
     outcome = Outcome::OK;
 }
@@ -170,6 +191,7 @@ void Executor::rollback() {
     if (isStateKept_) {
         state = before_;
     }
+    block_codes = codes_before_;
     parameters.rollback();
     tools.rollback();
     saved_modes.rollback();

@@ -68,6 +68,7 @@ class Executor : public BuiltIns {
     Awaited awaited;
     BlockPlace block_place;
     ReturnValue returned;
+    BlockCodes block_codes;
     ScriptLevels script_levels;
 
     Evaluator &evaluator() { return evaluator_; }
@@ -100,7 +101,9 @@ class Executor : public BuiltIns {
     void announce_modes();
     /// Takes positions, tools and switches from the machine.
     void synch();
-    ActiveCodes active_codes() const { return detail::active_codes(state, parameters, block_place.sequence); }
+    ActiveCodes active_codes() const {
+        return detail::active_codes(state, parameters, block_codes, block_place.sequence);
+    }
 
     // exec_outside.cc: what programs and scripts read.
     AttributeSources attribute_sources();
@@ -125,7 +128,8 @@ class Executor : public BuiltIns {
     BlockSettings settings_;
     AxisCheck axis_check_;
     std::vector<NurbsPoint> control_points_;  ///< of the NURBS that is open
-    State before_;                            ///< as the block found it, once keep_state() was called for it
+    BlockCodes codes_before_;
+    State before_;  ///< as the block found it, once keep_state() was called for it
     bool isStateKept_ = false;
     ScriptNames *script_names_ = nullptr;
     mutable std::set<std::string, std::less<>> ini_names_read_;

@@ -12,6 +12,7 @@ std::optional<State> SavedModes::pop_call() {
         out = level.modes;
     }
     levels_.pop_back();
+    ++revision_;
     forget_undo();
     return out;
 }
@@ -19,6 +20,7 @@ std::optional<State> SavedModes::pop_call() {
 void SavedModes::drop_calls(std::size_t depth) {
     while (levels_.size() > depth + 1) {
         levels_.pop_back();
+        ++revision_;
     }
     forget_undo();
 }
@@ -26,6 +28,7 @@ void SavedModes::drop_calls(std::size_t depth) {
 void SavedModes::change(Level &&level) {
     log_.push_back({levels_.size() - 1, std::move(levels_.back())});
     levels_.back() = std::move(level);
+    ++revision_;
 }
 
 void SavedModes::forget_undo() {
@@ -34,6 +37,7 @@ void SavedModes::forget_undo() {
 
 void SavedModes::rollback() {
     for (; !log_.empty(); log_.pop_back()) {
+        ++revision_;
         levels_[log_.back().level] = std::move(log_.back().before);
     }
 }

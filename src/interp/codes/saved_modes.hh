@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -16,7 +17,10 @@ class SavedModes {
   public:
     /// Calls that run, one inside the other; 0 in the main program.
     std::size_t depth() const { return levels_.size() - 1; }
-    void push_call() { levels_.emplace_back(); }
+    void push_call() {
+        levels_.emplace_back();
+        ++revision_;
+    }
     /// Ends the innermost call; gives the modes that M73 has saved for its return.
     std::optional<State> pop_call();
     /// Ends calls down to `depth` of them.
@@ -29,6 +33,9 @@ class SavedModes {
     const State *saved() const { return levels_.back().modes ? &*levels_.back().modes : nullptr; }
     /// Of a level (0: the main program). Bit 0: modes are saved; bit 1: the last to save was M73.
     int status(std::size_t level) const;
+
+    /// Another number whenever something has changed.
+    std::uint64_t revision() const { return revision_; }
 
     void commit() { log_.clear(); }
     void rollback();
@@ -47,6 +54,7 @@ class SavedModes {
     /// Levels that are gone have nothing to take back.
     void forget_undo();
 
+    std::uint64_t revision_ = 0;
     std::vector<Level> levels_{1};
     std::vector<Undo> log_;  ///< of the block that runs; its levels are there
 };

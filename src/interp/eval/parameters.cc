@@ -2,8 +2,14 @@
 #include "interp/eval/parameters.hh"
 
 #include <algorithm>
+#include <utility>
 
 namespace mw::interp::detail {
+namespace {
+
+using Kind = ParameterChange::Kind;
+
+}  // namespace
 
 Parameters::Parameters() : values_(PARAMETER_COUNT, 0.0), frames_(1) {
     values_[P_COORDINATE_SYSTEM] = 1;
@@ -13,6 +19,7 @@ Parameters::Parameters() : values_(PARAMETER_COUNT, 0.0), frames_(1) {
 void Parameters::set(int number, double value) {
     double &slot = values_[static_cast<std::size_t>(number)];
     log_.push_back({Undo::Kind::NUMBER, number, NO_ID, slot});
+    record({Kind::NUMBER, number, NO_ID, value});
     slot = value;
 }
 
@@ -29,6 +36,7 @@ std::optional<double> Parameters::named(NameId id, bool isGlobal) const {
 }
 
 void Parameters::set_named(NameId id, bool isGlobal, double value) {
+    record({isGlobal ? Kind::GLOBAL : Kind::LOCAL, 0, id, value});
     if (isGlobal) {
         if (id >= globals_.size()) {
             globals_.resize(id + 1);
@@ -50,12 +58,14 @@ void Parameters::set_named(NameId id, bool isGlobal, double value) {
 }
 
 void Parameters::forget_names() {
+    record({Kind::FORGET_NAMES});
     globals_.clear();
     frames_[depth_ - 1].locals.clear();
     log_.clear();
 }
 
 void Parameters::push_call() {
+    record({Kind::PUSH_CALL});
     if (depth_ == frames_.size()) {
         frames_.emplace_back();
     }
@@ -67,14 +77,19 @@ void Parameters::push_call() {
 
 void Parameters::set_arguments(std::span<const double> given) {
     std::ranges::copy(given, values_.begin() + 1);
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        record({Kind::NUMBER, static_cast<int>(i) + 1, NO_ID, given[i]});
+    }
 }
 
 void Parameters::keep_aside(std::size_t count) {
+    record({Kind::KEEP_ASIDE, static_cast<int>(count)});
     const auto first = values_.begin() + 1 + ARGUMENT_COUNT;
     frames_[depth_ - 1].more.assign(first, first + static_cast<std::ptrdiff_t>(count) - ARGUMENT_COUNT);
 }
 
 void Parameters::pop_call(bool isSharing) {
+    record({isSharing ? Kind::POP_SHARING_CALL : Kind::POP_CALL});
     const Frame &frame = frames_[--depth_];
     std::ranges::copy(frame.more, values_.begin() + 1 + ARGUMENT_COUNT);
     if (!isSharing) {
@@ -106,24 +121,51 @@ std::array<double, ARGUMENT_COUNT> Parameters::saved_arguments(int level) const 
     return out;
 }
 
+void Parameters::forget_local(NameId id) {
+    std::erase_if(frames_[depth_ - 1].locals, [&](const Named &local) { return local.id == id; });
+    record({Kind::FORGET_LOCAL, 0, id});
+}
+
 void Parameters::rollback() {
-    for (auto entry = log_.rbegin(); entry != log_.rend(); ++entry) {
+    const std::vector<Undo> log = std::exchange(log_, {});
+    for (auto entry = log.rbegin(); entry != log.rend(); ++entry) {
         if (entry->kind == Undo::Kind::NUMBER) {
-            values_[static_cast<std::size_t>(entry->number)] = *entry->old;
+            set(entry->number, *entry->old);
+        } else if (entry->old) {
+            set_named(entry->id, entry->kind == Undo::Kind::GLOBAL, *entry->old);
         } else if (entry->kind == Undo::Kind::GLOBAL) {
-            globals_[entry->id] = entry->old;
+            globals_[entry->id].reset();
+            record({Kind::FORGET_GLOBAL, 0, entry->id});
         } else {
-            std::vector<Named> &locals = frames_[depth_ - 1].locals;
-            const auto found = std::find_if(locals.begin(), locals.end(),
-                                            [&](const Named &local) { return local.id == entry->id; });
-            if (found != locals.end() && entry->old) {
-                found->value = *entry->old;
-            } else if (found != locals.end()) {
-                locals.erase(found);
-            }
+            forget_local(entry->id);
         }
     }
     log_.clear();
+}
+
+void Parameters::take_changes(std::vector<ParameterChange> &changes) {
+    if (changes.empty()) {
+        changes.swap(changes_);
+    } else {
+        changes.insert(changes.end(), changes_.begin(), changes_.end());
+        changes_.clear();
+    }
+}
+
+void Parameters::apply(const ParameterChange &change) {
+    switch (change.kind) {
+    case Kind::NUMBER: set(change.number, change.value); break;
+    case Kind::GLOBAL: set_named(change.id, true, change.value); break;
+    case Kind::LOCAL: set_named(change.id, false, change.value); break;
+    case Kind::FORGET_GLOBAL: globals_[change.id].reset(); break;
+    case Kind::FORGET_LOCAL: forget_local(change.id); break;
+    case Kind::FORGET_NAMES: forget_names(); break;
+    case Kind::PUSH_CALL: push_call(); break;
+    case Kind::KEEP_ASIDE: keep_aside(static_cast<std::size_t>(change.number)); break;
+    case Kind::POP_CALL: pop_call(false); break;
+    case Kind::POP_SHARING_CALL: pop_call(true); break;
+    }
+    commit();
 }
 
 }  // namespace mw::interp::detail

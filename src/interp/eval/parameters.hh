@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -50,6 +51,26 @@ constexpr bool isBuiltInNumber(int number) {
     return (number >= P_BUILD_FIRST && number <= P_BUILD_LAST) ||
            (number >= P_MACHINE_POSITION && number < P_MACHINE_POSITION + AXIS_NUMBERS);
 }
+
+/// One change of parameters, so that another set of them can follow. What is changed back is a change, too.
+struct ParameterChange {
+    enum class Kind : std::uint8_t {
+        NUMBER,         ///< `number` becomes `value`
+        GLOBAL,         ///< `id` becomes `value`
+        LOCAL,          ///< `id` of the innermost call becomes `value`
+        FORGET_GLOBAL,  ///< `id` has no value
+        FORGET_LOCAL,
+        FORGET_NAMES,
+        PUSH_CALL,
+        KEEP_ASIDE,  ///< up to `number`
+        POP_CALL,
+        POP_SHARING_CALL,
+    };
+    Kind kind = Kind::NUMBER;
+    int number = 0;
+    NameId id = NO_ID;
+    double value = 0;
+};
 
 class Parameters {
     struct Named {
@@ -102,6 +123,17 @@ class Parameters {
     void commit() { log_.clear(); }
     void rollback();
 
+    /// Remembers changes from here on, for take_changes().
+    void record_changes(bool isRecorded) {
+        isRecorded_ = isRecorded;
+        changes_.clear();
+    }
+    bool hasChanges() const { return !changes_.empty(); }
+    /// The changes since the last call are added to `changes`, in their order.
+    void take_changes(std::vector<ParameterChange> &changes);
+    /// Makes a change that another set of parameters has made. Not to be rolled back.
+    void apply(const ParameterChange &change);
+
     Result<> load(const std::string &path);
     /// The same for text in memory; `path` names it in errors. On an error nothing is changed.
     Result<> parse(std::string_view text, const std::string &path);
@@ -126,7 +158,16 @@ class Parameters {
     std::vector<std::optional<double>> globals_;  ///< by NameId
     std::vector<Frame> frames_;  ///< those above depth_ wait for the next call, with their room
     std::size_t depth_ = 1;
+    void record(const ParameterChange &change) {
+        if (isRecorded_) {
+            changes_.push_back(change);
+        }
+    }
+    void forget_local(NameId id);
+
     std::vector<Undo> log_;
+    bool isRecorded_ = false;
+    std::vector<ParameterChange> changes_;
     std::vector<int> file_numbers_;  ///< numbers that the parameter file had
 };
 

@@ -82,6 +82,7 @@ Step Flow::step() {
         script_calls_.expect_sync(false);
     }
     if (levels_.isInCall() && levels_.top().isInScript()) {
+        isLineEmpty_ = false;
         return script_calls_.go_on(parts_) ? after_block() : fail_block();
     }
     const Place &here = levels_.here();
@@ -156,6 +157,8 @@ Step Flow::run_line() {
     ++here.next;
     here.after = here.next;
     const Block &block = *view.block;
+    isLineEmpty_ = block.isPercent || (block.isDeletable && executor_.world().isBlockDeleteOn()) ||
+                   (block.word_count == 0 && block.setting_count == 0 && block.oword == NO_ID);
     if (block.isPercent) {
         return percent();
     }

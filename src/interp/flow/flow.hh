@@ -36,6 +36,8 @@ class Flow {
     const Scripts &scripts() const { return scripts_; }
     Scripts &scripts() { return scripts_; }
     LoopBudget &budget() { return budget_; }
+    /// The line that was read last has no words and no script.
+    bool isLineEmpty() const { return isLineEmpty_; }
 
     /// Opens the script host if it is needed; see Scripts::load().
     Result<> load_scripts();
@@ -77,6 +79,7 @@ class Flow {
     const FlowParts parts_;
     std::unique_ptr<InterpreterView> view_;
     bool isContinuable_ = false;
+    bool isLineEmpty_ = false;
     diag::Diagnostic error_;
 };
 

@@ -189,7 +189,7 @@ const Attribute OF_MOTION[] = {
     MW_STAT("queue_full", "no further move is taken", s.trajectory.isQueueFull),
     MW_STAT("motion_id", "line of the move that is made, 0 none",
             s.trajectory.active_move != 0 ? s.task.motion_line : 0),
-    MW_STAT("paused", "motion is held", s.trajectory.isPaused),
+    MW_STAT("paused", "the program or motion is paused", s.task.isPaused || s.trajectory.isPaused),
     MW_STAT("single_stepping", "one block at a time", s.trajectory.isStepping),
     MW_STAT("feedrate", "feed override, 1 is 100 %", s.overrides.feed),
     MW_STAT("rapidrate", "rapid override, 1 is 100 %", s.overrides.rapid),

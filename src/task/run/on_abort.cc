@@ -38,9 +38,9 @@ bool isForbiddenAfterAbort(const interp::MachineCall &call) {
 
 Result<> OnAbort::read(ProgramReader &reader, AbortReason reason) const {
     interp::ProgramInterpreter &interp = reader.interpreter();
-    interp::Step step = interp.execute(fmt::format("{} [{}]", command_, static_cast<int>(reason)));
+    interp::Step step = reader.execute(fmt::format("{} [{}]", command_, static_cast<int>(reason)));
     for (int blocks = 1; step == interp::Step::OK && blocks < MAX_BLOCKS; ++blocks) {
-        step = interp.step();
+        step = reader.step();
     }
     if (step != interp::Step::FILE_END) {
         interp.abort();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "task/run/program_reader.hh"
 
+#include <algorithm>
 #include <map>
 
 #include <fmt/format.h>
@@ -17,7 +18,7 @@ ProgramReader::ProgramReader(const Sources &sources, Setup setup)
                    canon_.set_position(search.snapshot().position);
                    canon_.marks().begin(search.sum());
                }}),
-      frame_(switch_, setup_.units) {
+      frame_(switch_, setup_.units), executed_frame_(frame_) {
     // A machine runs its programs: #<_task>, self.task of scripts, and M99 in the main program begins it
     // again.
     setup_.interpreter.isTask = true;
@@ -45,18 +46,96 @@ Result<> ProgramReader::save_parameters() const {
 }
 
 std::string ProgramReader::parameter_text() const {
-    return rs274_ != nullptr ? rs274_->parameter_text() : std::string();
+    return rs274_ != nullptr ? rs274_->read_ahead().parameter_text() : std::string();
 }
 
+/// What the machine says is no block that could be read ahead.
 void ProgramReader::synch(const geom::Pose &position) {
     canon_.set_position(position);
     frame_.set_position(position);
     interp_->synch();
+    note_read();
+    mark_all_executed();
 }
 
-void ProgramReader::drop() {
-    interp_->abort();
-    interp_->announce();
+interp::Step ProgramReader::step() {
+    canon_.begin_read();
+    const interp::Step result = interp_->step();
+    if (rs274_ != nullptr && result == interp::Step::OK) {
+        const std::string &file = rs274_->file();
+        const int line = rs274_->line();
+        keep_place({file, line, line, rs274_->call_level(), rs274_->line_text(file, line), false});
+    }
+    note_read();
+    return result;
+}
+
+interp::Step ProgramReader::execute(std::string_view line) {
+    canon_.begin_read();
+    const interp::Step result = interp_->execute(line);
+    if (result == interp::Step::FILE_END) {
+        keep_place({{}, 0, 0, 0, line});
+    }
+    note_read();
+    return result;
+}
+
+/// A block that asks the machine for nothing is executed in its turn, too.
+void ProgramReader::keep_place(const interp::BlockRef &block) {
+    const bool isSilent = !canon_.isAsking() && !interp_->isMoveHeld();
+    if (isSilent && rs274_ != nullptr && search_ == nullptr && !rs274_->read_ahead().isLineEmpty()) {
+        canon_.pass_block(block);
+    }
+}
+
+/// A move that cutter compensation holds back is executed with the step that lets it go: what this step has
+/// changed counts from there on.
+void ProgramReader::note_read() {
+    note_codes();
+    if (rs274_ == nullptr || search_ != nullptr) {
+        return;
+    }
+    const std::uint64_t read = canon_.reads() + (rs274_->isMoveHeld() ? 1 : 0);
+    rs274_->read_ahead().note(read);
+    frames_ahead_.push_back({read, frame_});
+}
+
+void ProgramReader::begin_history() {
+    if (rs274_ != nullptr) {
+        rs274_->read_ahead().begin();
+    }
+    executed_ = canon_.reads();
+    executed_frame_ = frame_;
+    frames_ahead_.clear();
+}
+
+void ProgramReader::mark_executed(std::uint64_t read) {
+    if (rs274_ == nullptr || search_ != nullptr) {
+        return;
+    }
+    executed_ = std::max(executed_, read);
+    rs274_->read_ahead().mark_executed(read);
+    for (; !frames_ahead_.empty() && frames_ahead_.front().read <= read; frames_ahead_.pop_front()) {
+        executed_frame_ = frames_ahead_.front().frame;
+    }
+}
+
+void ProgramReader::follow(const Sequencer &sequencer) {
+    sequencer.isIdle() ? mark_all_executed() : mark_executed(sequencer.place().read);
+}
+
+interp::ActiveCodes ProgramReader::executed_codes() const {
+    return rs274_ != nullptr ? rs274_->read_ahead().executed_codes() : interp_->active_codes();
+}
+
+void ProgramReader::return_to_executed() {
+    if (rs274_ == nullptr) {
+        interp_->abort();
+        return;
+    }
+    rs274_->read_ahead().return_to_executed();
+    frame_ = executed_frame_;
+    begin_history();
 }
 
 Result<> ProgramReader::begin_search(int line) {
@@ -66,6 +145,7 @@ Result<> ProgramReader::begin_search(int line) {
     }
     kept_ = rs274_->keep();
     kept_frame_ = frame_;
+    rs274_->read_ahead().stop();
     const SearchMachine::Real real{sources_.world, sources_.tools, sources_.parameters,
                                    setup_.tool_change_place, setup_.isToolChangeWithSpindleOn};
     search_ = std::make_unique<BlockSearch>(*rs274_, switch_, real, line);
@@ -83,6 +163,7 @@ Result<> ProgramReader::begin_recovery(StartRecord record, const LostPlace &plac
     }
     kept_ = rs274_->keep();
     kept_frame_ = frame_;
+    rs274_->read_ahead().stop();
     rs274_->restore(**modes);
     if (!frame_.unpack(record.frame)) {
         cancel_search();
@@ -143,6 +224,7 @@ void ProgramReader::accept_search() {
     recorded_.reset();
     kept_.reset();
     rs274_->know_tools(on_their_way);
+    begin_history();
 }
 
 void ProgramReader::cancel_search() {
@@ -153,6 +235,7 @@ void ProgramReader::cancel_search() {
     rs274_->restore(*kept_);
     frame_ = *kept_frame_;
     kept_.reset();
+    begin_history();
 }
 
 std::string ProgramReader::probe_line() const {

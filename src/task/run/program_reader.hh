@@ -2,9 +2,12 @@
 // The interpreter of a machine with its parameters, and the queue that it writes.
 #pragma once
 
+#include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "interp/canon/machine_frame.hh"
 #include "interp/interpreter.hh"
@@ -13,6 +16,7 @@
 #include "task/run/machine_switch.hh"
 #include "task/run/start_record.hh"
 #include "task/run/task_canon.hh"
+#include "task/sequencer/sequencer.hh"
 
 namespace mw::task {
 
@@ -43,8 +47,23 @@ class ProgramReader {
     bool isGCode() const { return rs274_ != nullptr; }
     /// The world shows the machine as it is now; the position is the program's from here.
     void synch(const geom::Pose &position);
-    /// Forgets what was read ahead, and tells again what is in force: displays and motion follow it.
-    void drop();
+    // One step of the interpreter: the next line of the program, or a line of MDI.
+    interp::Step step();
+    interp::Step execute(std::string_view line);
+    /// All that was read is executed; from here on the machine may read ahead.
+    void begin_history();
+    /// The machine has reached what step `read` of the interpreter asked for (Item::read).
+    void mark_executed(std::uint64_t read);
+    void mark_all_executed() { mark_executed(canon_.reads()); }
+    /// Once a cycle: what the sequencer has come to is executed; where nothing waits, all is.
+    void follow(const Sequencer &sequencer);
+    std::uint64_t executed() const { return executed_; }
+    /// Modal codes as of there.
+    interp::ActiveCodes executed_codes() const;
+    /// Forgets what was read ahead: modes, offsets and parameters are those of the block that is executed.
+    void return_to_executed();
+    /// Announces the modes and offsets again: displays and motion follow them.
+    void announce() { interp_->announce(); }
     /// The result of a probe, as a line of the file of (probeopen); empty when it has not tripped.
     std::string probe_line() const;
 
@@ -87,6 +106,13 @@ class ProgramReader {
     ItemQueue &queue() { return queue_; }
 
   private:
+    struct FrameAfter {
+        std::uint64_t read = 0;
+        interp::MachineFrame frame;
+    };
+    void keep_place(const interp::BlockRef &block);
+    void note_read();
+
     Sources sources_;
     Setup setup_;
     ItemQueue queue_;
@@ -101,6 +127,10 @@ class ProgramReader {
     std::uint64_t script_calls_ = 0;                         ///< that are known
     std::shared_ptr<const interp::Interpreter::Kept> kept_;  ///< as before the search
     std::optional<interp::MachineFrame> kept_frame_;
+    // What an abort returns to; the interpreter has the rest of it.
+    interp::MachineFrame executed_frame_;
+    std::deque<FrameAfter> frames_ahead_;
+    std::uint64_t executed_ = 0;
 };
 
 }  // namespace mw::task

@@ -2,6 +2,7 @@
 #include "task/run/task_canon.hh"
 
 #include <cmath>
+#include <utility>
 
 namespace mw::task {
 
@@ -12,7 +13,7 @@ void TaskCanon::reset() {
     marks_.end();
 }
 
-void TaskCanon::begin_block(const interp::BlockRef &block) {
+void TaskCanon::enter_line(const interp::BlockRef &block) {
     const bool isSameFile = tag_.file_index < files_.size() && files_[tag_.file_index] == block.file;
     if (!isSameFile) {
         std::uint32_t index = 0;
@@ -25,8 +26,17 @@ void TaskCanon::begin_block(const interp::BlockRef &block) {
         tag_.file_index = index;
     }
     tag_.line = block.line;
-    ++tag_.block;
     text_ = block.text;
+}
+
+void TaskCanon::pass_block(const interp::BlockRef &block) {
+    enter_line(block);
+    add(interp::ProgramComment{});
+}
+
+void TaskCanon::begin_block(const interp::BlockRef &block) {
+    enter_line(block);
+    ++tag_.block;
     marks_.begin_block(tag_.block);
 }
 
@@ -91,11 +101,12 @@ std::vector<geom::Pose> tool_change_moves(const ToolChangePlace &place, const ge
 }
 
 void TaskCanon::insert_first(const std::vector<interp::MachineCall> &calls, const geom::Pose &position,
-                             int line) {
+                             int line, std::uint64_t read) {
     ItemQueue behind;
     behind.swap(queue_);
     const geom::Pose end = last_end_;
     const motion::SourceTag tag = tag_;
+    const std::uint64_t last_read = std::exchange(read_, read);
     last_end_ = position;
     // They belong to what is done next, not to what was read last: nothing before that is done.
     tag_ = behind.empty() ? tag_ : behind.front().source;
@@ -105,6 +116,7 @@ void TaskCanon::insert_first(const std::vector<interp::MachineCall> &calls, cons
     }
     last_end_ = end;
     tag_ = tag;
+    read_ = last_read;
     for (const Item &item : behind) {  // announced before, in force after it
         if (const auto *offsets = std::get_if<interp::UseOffsets>(&item.call)) {
             offsets_ = *offsets;

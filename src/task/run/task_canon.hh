@@ -41,8 +41,21 @@ class TaskCanon final : public interp::MachineCanon {
     void set_blocks(std::uint32_t blocks) { tag_.block = blocks; }
     /// Checksums of what the program asks for; off until they are begun.
     CallMarks &marks() { return marks_; }
-    /// What is done before all that waits, from `position` on; as of `line`.
-    void insert_first(const std::vector<interp::MachineCall> &calls, const geom::Pose &position, int line);
+    /// Calls from here on belong to another step of the interpreter.
+    void begin_read() {
+        ++read_;
+        isAsking_ = false;
+    }
+    /// The number of that step.
+    std::uint64_t reads() const { return read_; }
+    /// That step has asked the machine for something.
+    bool isAsking() const { return isAsking_; }
+    /// A block that asks the machine for nothing keeps its place in the order: it is executed when the queue
+    /// comes to it.
+    void pass_block(const interp::BlockRef &block);
+    /// What is done before all that waits, from `position` on; as of `line` and of step `read`.
+    void insert_first(const std::vector<interp::MachineCall> &calls, const geom::Pose &position, int line,
+                      std::uint64_t read);
     /// Where the machine stands: the end of the last move, where it is that but for the rounding of those who
     /// have brought it there. So what a program says does not depend on them.
     geom::Pose exact(const geom::Pose &machine) const;
@@ -54,13 +67,19 @@ class TaskCanon final : public interp::MachineCanon {
 
   private:
     void put(const interp::MachineCall &call);
-    void add(const interp::MachineCall &call) { queue_.push_back({tag_, call}); }
+    void add(const interp::MachineCall &call) {
+        queue_.push_back({tag_, call, read_});
+        isAsking_ = true;
+    }
+    void enter_line(const interp::BlockRef &block);
     void change_tool();
 
     ItemQueue &queue_;
     ToolChangePlace place_;
     geom::Pose last_end_{};
     motion::SourceTag tag_{};
+    std::uint64_t read_ = 0;
+    bool isAsking_ = false;
     std::vector<std::string> files_;
     std::string text_;
     CallMarks marks_;

@@ -2,6 +2,7 @@
 // The ordered queue between the interpreter and the machine: what a program does, in program order.
 #pragma once
 
+#include <cstdint>
 #include <deque>
 
 #include "interp/canon/machine_canon.hh"
@@ -12,6 +13,7 @@ namespace mw::task {
 struct Item {
     motion::SourceTag source;
     interp::MachineCall call;
+    std::uint64_t read = 0;  ///< number of the step of the interpreter that asked for it; never falls
 };
 
 using ItemQueue = std::deque<Item>;

@@ -66,9 +66,9 @@ void SentMoves::forget(motion::CommandId id) {
     }
 }
 
-const motion::SourceTag *SentMoves::oldest_after(motion::CommandId id) const {
+const Item *SentMoves::oldest_after(motion::CommandId id) const {
     const auto first = std::ranges::find_if(sent_, [id](const Sent &one) { return one.id > id; });
-    return first == sent_.end() ? nullptr : &first->item.source;
+    return first == sent_.end() ? nullptr : &first->item;
 }
 
 std::deque<SentMoves::Sent>::const_iterator SentMoves::under_way(const motion::Status &status) const {
@@ -110,7 +110,7 @@ std::vector<Item> SentMoves::rest(const motion::Status &status, const geom::Pose
         if (isFirstMove && arc != nullptr) {
             for (const interp::MachineCall &call :
                  rest_of_arc(*arc, at->start, place, status.distance_to_go)) {
-                all.push_back({at->item.source, call});
+                all.push_back({at->item.source, call, at->item.read});
             }
         } else {
             all.push_back(at->item);

@@ -21,8 +21,8 @@ class SentMoves {
     /// Those up to `id` are done.
     void forget(motion::CommandId id);
     void clear() { sent_.clear(); }
-    /// Where the first that is not done comes from when those up to `id` are; null for none.
-    const motion::SourceTag *oldest_after(motion::CommandId id) const;
+    /// The first that is not done when those up to `id` are; null for none.
+    const Item *oldest_after(motion::CommandId id) const;
 
     /// Why the move under way cannot be begun again from `place`, in its middle; empty: it can.
     std::string why_not(const motion::Status &status, const geom::Pose &place) const;

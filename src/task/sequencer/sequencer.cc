@@ -109,11 +109,12 @@ void Sequencer::step(std::int64_t now_ns) {
         }
         if (queue_.empty()) {
             motion_.flush();
-            isStepDone_ = isStepping_ && isIdle();
+            isStepDone_ = isStepping_ && step_read_ != 0 && isIdle();
             return;
         }
         const Item &item = queue_.front();
         if (isStepBoundary(item)) {
+            blocked_ = ExecState::WAITING_FOR_MOTION;
             return;
         }
         if (!isReady(item)) {
@@ -121,12 +122,12 @@ void Sequencer::step(std::int64_t now_ns) {
                                                                  : ExecState::WAITING_FOR_MOTION;
             return;
         }
-        const motion::SourceTag source = item.source;
+        const ItemPlace place{item.source, item.read};
         if (!execute(item, now_ns)) {
             blocked_ = ExecState::WAITING_FOR_MOTION_QUEUE;
             return;
         }
-        last_begun_ = source;
+        last_begun_ = place;
         if (!queue_.empty()) {
             queue_.pop_front();
         }
@@ -144,10 +145,10 @@ bool Sequencer::isStepBoundary(const Item &item) {
     if (!isStepping_) {
         return false;
     }
-    if (step_block_ == 0) {
-        step_block_ = item.source.block;
+    if (step_read_ == 0) {
+        step_read_ = item.read;
     }
-    if (item.source.block == step_block_) {
+    if (item.read == step_read_) {
         return false;
     }
     motion_.flush();
@@ -155,20 +156,20 @@ bool Sequencer::isStepBoundary(const Item &item) {
     return true;
 }
 
-motion::SourceTag Sequencer::under_way() const {
-    const motion::SourceTag *const sent = sent_.oldest_after(motion_.status().last_path_id);
+ItemPlace Sequencer::place() const {
+    const Item *const sent = sent_.oldest_after(motion_.status().last_path_id);
     if (sent != nullptr) {
-        return *sent;
+        return {sent->source, sent->read};
     }
     // What was taken back waits in front again.
-    const bool isBack = !queue_.empty() && queue_.front().source.block < last_begun_.block;
-    return isBack ? queue_.front().source : last_begun_;
+    const bool isBack = !queue_.empty() && queue_.front().source.block < last_begun_.source.block;
+    return isBack ? ItemPlace{queue_.front().source, queue_.front().read} : last_begun_;
 }
 
 void Sequencer::start_step() {
     isStepping_ = true;
     isStepDone_ = false;
-    step_block_ = 0;
+    step_read_ = 0;
 }
 
 bool Sequencer::isReady(const Item &item) {

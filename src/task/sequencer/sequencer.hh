@@ -40,6 +40,12 @@ struct SequencerEvents {
     std::function<std::optional<Result<>>()> user_code_result;
 };
 
+/// Where an item comes from.
+struct ItemPlace {
+    motion::SourceTag source;
+    std::uint64_t read = 0;  ///< Item::read
+};
+
 /// Is told of each move when it is handed to the planner.
 using MoveListener = std::function<void(motion::CommandId id, const motion::PathBody &move)>;
 
@@ -69,7 +75,7 @@ class Sequencer {
     void abort(int reason);
     /// Nothing queued, nothing waited for, motion complete, no handshake.
     bool isIdle() const;
-    /// After the current block's items motion comes to rest and isStepDone() is true.
+    /// Carries out one block: isStepDone() is true once the next one could begin and the axes are stopped.
     void start_step();
     void end_step() { isStepping_ = isStepDone_ = false; }
     bool isStepDone() const { return isStepDone_; }
@@ -88,8 +94,8 @@ class Sequencer {
         bool isTimedOut = false;
     };
     InputResult input() const { return {input_value_, isInputTimedOut_}; }
-    /// The first block that is not done; number 0 before the first.
-    motion::SourceTag under_way() const;
+    /// Of the first block that is not done; number 0 before the first.
+    ItemPlace place() const;
     /// Another program begins.
     void forget_place() { last_begun_ = {}; }
     /// Starts or stops a spindle at once (operator's command).
@@ -158,11 +164,11 @@ class Sequencer {
     ToolChange tool_change_;
     ProgramSpindles spindles_;
     bool isStepping_ = false, isStepDone_ = false;
-    bool isHeld_ = false;     ///< by the stop that was executed last, for the rest of the cycle
-    bool hasFailed_ = false;  ///< nothing more is begun until abort()
-    std::uint32_t step_block_ = 0;
-    motion::SourceTag last_begun_;  ///< of the last item that was begun
-    ProgramLog log_, probe_log_;    ///< of (log,...), of (probeopen ...)
+    bool isHeld_ = false;          ///< by the stop that was executed last, for the rest of the cycle
+    bool hasFailed_ = false;       ///< nothing more is begun until abort()
+    std::uint64_t step_read_ = 0;  ///< what the single step carries out; 0: nothing yet
+    ItemPlace last_begun_;         ///< of the last item that was begun
+    ProgramLog log_, probe_log_;   ///< of (log,...), of (probeopen ...)
     bool isProbeMade_ = false;
 };
 

@@ -161,14 +161,12 @@ struct Model {
         return true;
     }
     bool take(const PauseProgram &) {
-        const bool isAllowed = run != Run::NONE;
-        run = isAllowed ? Run::HELD : run;
-        return isAllowed;
+        run = run != Run::NONE ? Run::HELD : run;
+        return isOn();
     }
     bool take(const ResumeProgram &) {
-        const bool isAllowed = run == Run::HELD;
-        run = isAllowed ? Run::GOING : run;
-        return isAllowed;
+        run = run == Run::HELD ? Run::GOING : run;
+        return isOn();
     }
     bool take(const AbortAll &) {
         stop();

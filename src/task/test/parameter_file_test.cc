@@ -113,11 +113,10 @@ TEST_F(ParameterFileTest, TheBackupHasWhatTheFileHadBefore_D3) {
     EXPECT_EQ(disk.files[disk.names[BACKUP_NAME]].now, before);
 }
 
-TEST_F(ParameterFileTest, AProgramKeepsItsOwnUntilItsEnd) {
+TEST_F(ParameterFileTest, WhatAProgramHasSetIsWrittenAtItsEnd) {
     open("G21 F600\nG10 L2 P1 X9\nG1 X1\nM2\n");
     ASSERT_EQ(ask(RunProgram{}), Progress::DONE) << reason(request);
-    EXPECT_FALSE(writer.work());
-    ASSERT_TRUE(task.save_parameters().has_value());
+    EXPECT_TRUE(writer.work());
     EXPECT_EQ(value_after_power_cut(5221), 9.0);
 }
 

@@ -67,7 +67,7 @@ TEST_F(RunFromLineTest, AnAbortDropsTheProposalAndWhatWasCalculated_D1) {
     ASSERT_EQ(ask(AbortAll{}), Progress::DONE);
     EXPECT_EQ(progress(run), Progress::FAILED);
     EXPECT_EQ(ask(ConfirmApproach{number}), Progress::REFUSED);
-    EXPECT_EQ(ask(ResumeProgram{}), Progress::REFUSED);
+    EXPECT_EQ(ask(ResumeProgram{}), Progress::DONE);
     cycles(50);
     EXPECT_EQ(joined().find("line"), std::string::npos) << joined();
     ASSERT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);

@@ -120,10 +120,16 @@ TEST_F(ReaderTest, BeginsWhereTheMachineStands_D2) {
     EXPECT_EQ(std::get<interp::LineMove>(reader.queue().back().call).end.y(), 7);
 }
 
-TEST_F(ReaderTest, WhatWasDroppedIsAnnouncedAgain_D2) {
-    EXPECT_EQ(reader.interpreter().execute("G10 L2 P1 X5"), interp::Step::FILE_END);
+TEST_F(ReaderTest, AnAbortReturnsToTheExecutedBlockAndAnnouncesItsOffsets_D2) {
+    reader.begin_history();
+    EXPECT_EQ(reader.execute("G21 G10 L2 P1 X5"), interp::Step::FILE_END);
+    reader.mark_all_executed();
+    EXPECT_EQ(reader.execute("G10 L2 P1 X7"), interp::Step::FILE_END);
+    EXPECT_EQ(reader.execute("G20 G91 F3 S100"), interp::Step::FILE_END);
+    EXPECT_EQ(reader.execute("#31=7"), interp::Step::FILE_END);
     reader.queue().clear();
-    reader.drop();
+    reader.return_to_executed();
+    reader.announce();
     ASSERT_GE(count<interp::UseOffsets>(), 1);
     EXPECT_EQ(count<interp::LineMove>(), 0);
     for (const Item &item : reader.queue()) {
@@ -131,6 +137,24 @@ TEST_F(ReaderTest, WhatWasDroppedIsAnnouncedAgain_D2) {
             EXPECT_EQ(offsets->g5x.x(), 5);
         }
     }
+    EXPECT_EQ(reader.interpreter().parameter(31), 0);
+    EXPECT_EQ(reader.interpreter().parameter(5221), 5);
+    const interp::ActiveCodes codes = reader.interpreter().active_codes();
+    EXPECT_EQ(codes.g[5], 210) << "units";
+    EXPECT_EQ(codes.g[6], 900) << "distance mode";
+    EXPECT_EQ(codes.settings[1], 0) << "F";
+    EXPECT_EQ(codes.settings[2], 0) << "S";
+}
+
+TEST_F(ReaderTest, BlocksThatAskForNothingKeepTheirPlaceInTheOrder_D2) {
+    reader.begin_history();
+    EXPECT_EQ(reader.execute("#31=1"), interp::Step::FILE_END);
+    EXPECT_EQ(reader.execute("(a comment)"), interp::Step::FILE_END);
+    EXPECT_EQ(reader.execute("#31=2"), interp::Step::FILE_END);
+    ASSERT_EQ(reader.queue().size(), 2U);
+    reader.mark_executed(reader.queue().front().read);
+    reader.return_to_executed();
+    EXPECT_EQ(reader.interpreter().parameter(31), 1);
 }
 
 TEST_F(ReaderTest, AProbeThatHasNotTrippedHasNoLine_I1) {

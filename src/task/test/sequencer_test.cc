@@ -18,7 +18,7 @@ class SequencerTest : public testing::Test {
         motion::SourceTag tag{};
         tag.line = static_cast<int>(block);
         tag.block = block;
-        queue.push_back({tag, call});
+        queue.push_back({tag, call, block});
     }
     void add_line(double x, std::uint32_t block = 1) {
         interp::LineMove line;

@@ -248,13 +248,19 @@ TEST_F(TaskTest, CommandsThatCannotBeDoneAreRefusedWithAReason_C5) {
     EXPECT_EQ(ask(Mdi{"G0 X1"}), Progress::REFUSED);
     EXPECT_EQ(reason(request), "Must be in MDI mode to issue MDI command");
     EXPECT_EQ(ask(RunProgram{}), Progress::REFUSED);
-    EXPECT_EQ(ask(PauseProgram{}), Progress::REFUSED);
     EXPECT_EQ(ask(OpenProgram{"/nowhere.ngc"}), Progress::REFUSED);
     EXPECT_NE(reason(request).find("/nowhere.ngc"), std::string::npos);
     motion.status.isAllHomed = false;
     open("M2\n");
     EXPECT_EQ(ask(RunProgram{}), Progress::REFUSED);
     EXPECT_NE(reason(request).find("not all joints are homed"), std::string::npos);
+}
+
+TEST_F(TaskTest, WhereNothingRunsPauseAndResumeAreTakenAndDoNothing_C5) {
+    EXPECT_EQ(ask(PauseProgram{}), Progress::DONE) << reason(request);
+    EXPECT_FALSE(task.status().task.isPaused);
+    EXPECT_EQ(ask(ResumeProgram{}), Progress::DONE) << reason(request);
+    EXPECT_EQ(task.status().task.interp_state, InterpState::IDLE);
 }
 
 TEST_F(TaskTest, CommandsOfOtherNamesDoTheirJobAndTheRestSaysWhyNot_F8) {

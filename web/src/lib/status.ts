@@ -239,20 +239,17 @@ export function workPosition(position: readonly number[], offsets: Offsets): num
   return at.map((value, i) => value - (offsets.g92[i] ?? 0));
 }
 
-/** Modal codes in force as they are written, "G54"; those that are none left out. */
+/** Places in the lists of codes that are no modes: the line number, and codes of the last block alone. */
+const NO_MODE_G = [0, 2];
+const NO_MODE_M = [0, 1, 3, 9];
+/** No G92 offset is active. */
+const G92_2 = 922;
+
+/** Active modal codes as they are written, "G54". */
 export function modalWords(codes: Codes): string[] {
-  const words: string[] = [];
-  for (const code of codes.g.slice(1)) {
-    if (code >= 0) {
-      words.push(`G${code % 10 === 0 ? code / 10 : (code / 10).toFixed(1)}`);
-    }
-  }
-  for (const code of codes.m.slice(1)) {
-    if (code >= 0) {
-      words.push(`M${code}`);
-    }
-  }
-  return words;
+  const g = codes.g.filter((code, i) => !NO_MODE_G.includes(i) && code >= 0 && code !== G92_2);
+  const m = codes.m.filter((code, i) => !NO_MODE_M.includes(i) && code >= 0);
+  return [...g.map((code) => `G${code % 10 === 0 ? code / 10 : (code / 10).toFixed(1)}`), ...m.map((code) => `M${code}`)];
 }
 
 export const SYSTEMS = ['', 'G54', 'G55', 'G56', 'G57', 'G58', 'G59', 'G59.1', 'G59.2', 'G59.3'];

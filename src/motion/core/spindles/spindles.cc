@@ -216,6 +216,7 @@ std::uint32_t step(Spindles &spindles, const Inputs &in, const Settings &setting
         const double scale = s.isTapping ? s.tap_scale : scale_of(s);
         const double rpm = within_range(settings, n, speed_of(s, cycle.x) * scale * s.tap_factor);
         s.out_rpm = pins.isInhibited || !s.isOn ? 0.0 : rpm;
+        s.commanded_rpm = within_range(settings, n, s.speed_rpm * s.tap_factor);
         watch(s.turn_back, {s.out_rpm / 60.0, s.turns, s.speed_rps, cycle.period_s});
         faults |= hasOrientFailed(s, pins) ? 1U << n : 0U;
     }
@@ -242,7 +243,7 @@ void fill(const Spindles &spindles, const Inputs &in, bool isEnabled, Outputs &o
         SpindleOutputs &o = out.spindle[at(n)];
         o.speed_rpm = s.out_rpm;
         o.isOn = s.isOn && isEnabled;
-        const double wanted_rpm = s.speed_rpm * s.tap_factor;
+        const double wanted_rpm = s.commanded_rpm;
         o.isForward = o.isOn && wanted_rpm > 0;
         o.isReverse = o.isOn && wanted_rpm < 0;
         o.isBrakeOn = s.isBrakeOn;

@@ -19,8 +19,9 @@ struct Spindle {
     double speed_rpm = 0, css_factor = 0, css_max_rpm = 0, css_x_offset = 0;
     double scale = 1;
     double out_rpm = 0;
-    double turns = 0;      ///< the last ones counted that were a number
-    double speed_rps = 0;  ///< measured; 0 while that is no number
+    double commanded_rpm = 0;  ///< within the limits of the spindle, before the override
+    double turns = 0;          ///< the last ones counted that were a number
+    double speed_rps = 0;      ///< measured; 0 while that is no number
     bool isOn = false, isOverrideEnabled = true, isBrakeOn = true;
     bool isOrienting = false, isLocked = false;
     double orient_angle = 0;

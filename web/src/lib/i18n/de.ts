@@ -89,7 +89,6 @@ export const de: Catalogue = {
   'dro.tool': 'Werkzeug',
   'dro.no_tool': 'keines',
   'dro.system': 'Nullpunkt',
-  'dro.read_ahead': 'Vorausgelesen:',
   'dro.codes': 'Codes in Kraft',
   'dro.touch_off': '{axis} setzen',
 

@@ -89,7 +89,6 @@ export const en = {
   'dro.tool': 'Tool',
   'dro.no_tool': 'none',
   'dro.system': 'Offset',
-  'dro.read_ahead': 'Read ahead:',
   'dro.codes': 'Codes in force',
   'dro.touch_off': 'Set {axis}',
 

@@ -89,7 +89,6 @@ export const es: Catalogue = {
   'dro.tool': 'Herramienta',
   'dro.no_tool': 'ninguna',
   'dro.system': 'Origen',
-  'dro.read_ahead': 'Leído por adelantado:',
   'dro.codes': 'Códigos vigentes',
   'dro.touch_off': 'Fijar {axis}',
 
