@@ -100,7 +100,8 @@ def discover(reference):
 
 
 def exports_of(reference, name, load):
-    out, work = reference.run('exports', f'loadrt {load}\nshow pin\nshow param\nshow funct\n')
+    text = load if COMPONENTS[name].single else COMPONENTS[name].load_text(load, 1)
+    out, work = reference.run('exports', f'loadrt {text}\nshow pin\nshow param\nshow funct\n')
     shutil.rmtree(work)
     prefix, found = COMPONENTS[name].prefix_of(name, 0), {}
     for words in map(str.split, out.splitlines()):
@@ -142,6 +143,11 @@ class Comparison:
         difference = instance.may_differ(pin)
         if difference:
             self.explained.append(difference)
+            return
+        early = max((d for d in hal_differences.of_component(instance.name) if d.covers(pin)), key=lambda d: d.first,
+                    default=None)
+        if early and wrong[-1] < early.first:
+            self.explained.append(early)
             return
         first = wrong[0]
         self.unexplained.append(f'{instance.prefix}{pin} ({instance.load}): {len(wrong)} of {ROWS} periods, first '

@@ -25,6 +25,32 @@ def pick(*choices, change=1.0):
     return lambda r, last: last if last is not None and r.random() > change else r.choice(choices)
 
 
+def once(*choices):
+    """One of them, for the whole file."""
+    return pick(*choices, change=0)
+
+
+def rare(chance):
+    """A bit that is seldom TRUE."""
+    return lambda r, last: int(r.random() < chance)
+
+
+class LateBit:
+    """A bit that is FALSE in the first periods."""
+
+    def __init__(self, periods):
+        self.periods = periods
+
+    def __call__(self, r, last):
+        return bits()(r, last)
+
+    def column(self, r, rows):
+        values = [0] * self.periods
+        while len(values) < rows:
+            values.append(bits(0.05)(r, values[-1]))
+        return values
+
+
 def constant(value):
     return lambda r, last: value
 
@@ -35,6 +61,17 @@ def walk(step, start=0.0):
 
 def walk_whole(step):
     return lambda r, last: (last or 0) + r.randint(-step, step)
+
+
+def quadrature(r, rows):
+    """The two columns of an encoder that moves at random."""
+    states, at, step, columns = ((0, 0), (1, 0), (1, 1), (0, 1)), 0, r.choice((-1, 0, 1)), ([], [])
+    for _ in range(rows):
+        step = r.choice((-1, 0, 1)) if r.random() < 0.1 else step
+        at += step if columns[0] and r.random() < 0.7 else 0
+        for column, bit in zip(columns, states[at % 4]):
+            column.append(bit)
+    return columns
 
 
 def default_generator(kind, r):
@@ -56,6 +93,7 @@ class Component:
     hide: str = ''    # outputs that are not compared: they show times of the computer
     single: bool = False  # one instance and functions of the module
     count: str = 'count'
+    pairs: list = dataclasses.field(default_factory=list)  # inputs that are the two phases of an encoder
     prefix: str = ''  # where it is not the module's name with a number
 
     def is_skipped(self, pin):
@@ -97,53 +135,86 @@ def generator_of(spec, forced, pin, kind, r):
 
 C = Component
 COMPONENTS = {name: C() for name in '''abs abs_s32 and2 or2 xor2 not bin2gray gray2bin bitwise blend clarke2 clarke3
-clarkeinv comp conv_bit_float conv_bit_s32 conv_bit_u32 conv_float_s32 conv_float_u32 conv_s32_bit conv_s32_float
+clarkeinv conv_bit_float conv_bit_s32 conv_bit_u32 conv_float_s32 conv_float_u32 conv_s32_bit conv_s32_float
 conv_s32_u32 conv_u32_bit conv_u32_float conv_u32_s32 corexy_by_hal ddt deadzone differential div2 estop_latch feedcomp
-filter_kalman flipflop gearchange hypot ilowpass integ invert joyhandle knob2float limit1 limit2 limit3 lowpass lut5
-maj3 match8 minmax modmath mult2 mux2 mux4 mux8 near offset oneshot orient sample_hold scale scaled_s32_sums select8
-sim_home_switch sim_spindle sphereprobe spindle_monitor sum2 supply timedelay tof ton tp toggle toggle2nist tristate_bit
-tristate_float updown wcomp xor2 edge biquad constant dbounce multiclick ohmic time threadtest mux16 histobins
-eoffset_per_angle'''.split()}
+flipflop hypot invert joyhandle knob2float lowpass lut5 maj3 match8 minmax modmath mult2 mux2 mux4 mux8
+offset sample_hold scale scaled_s32_sums select8 sim_spindle spindle_monitor sum2 toggle toggle2nist
+tristate_bit tristate_float updown wcomp edge constant dbounce multiclick time threadtest sim_parport millturn
+eoffset_per_angle steptest simple_tp anglejog'''.split()}
+LIMITS = {'min.?': uniform(-2, -0.2), 'max.?': uniform(0.2, 2), 'maxv': once(0.5, 10, 1000), 'maxa': once(10, 5000)}
+DELAYS = once(0, 0.002, 0.0035)
 COMPONENTS.update({
+    'comp': C(values={'hyst': once(0, 0.5, 2)}),
+    'near': C(values={'difference': once(0, 0.5, 1), 'scale': once(1, 1.1, 2)}),
+    'filter_kalman': C(values={'[RQ]k': once(0.1, 0.5, 1)}),
+    'gearchange': C(values={'min.': once(0, 0.2), 'max.': once(1, 3), 'scale2': once(0.5, 2)}),
+    'integ': C(values=LIMITS), 'limit1': C(values=LIMITS), 'limit2': C(values=LIMITS), 'limit3': C(values=LIMITS),
+    'oneshot': C(values={'width': DELAYS}), 'timedelay': C(values={'o.*-delay': DELAYS}),
+    'ton': C(values={'pt': DELAYS}), 'tof': C(values={'pt': DELAYS}), 'tp': C(values={'pt': DELAYS}),
+    'orient': C(values={'mode': whole(0, 2, 0.1), 'angle': uniform(0, 359)}),
+    'sphereprobe': C(values={'r': once(3, 6), 'c[xyz]': once(-2, 0, 2)}),
+    'biquad': C(values={'f0': once(50, 80, 120), 'Q': once(0.7, 1.3), 'type': once(0, 1, 2), 'enable': bits(0.02)}),
+    'ohmic': C(values={'thcad-0-volt-freq': once(122900), 'thcad-max-volt-freq': once(925700),
+                       'thcad-fullscale': once(5, 10), 'thcad-divide': once(1, 32), 'volt-divider': once(1, 5),
+                       'velocity-in': uniform(0, 35000), 'ohmic-low': once(0.2, 1), 'ohmic-threshold': once(2, 5)}),
+    'mux16': C(values={'debounce-time': once(0, 0.0025)}),
+    'histobins': C(values={'pintype': once(0, 1, 2, 3), 'method': once(0, 1), 'nbins': once(5, 50),
+                           'binsize': once(0.5, 2), 'minvalue': once(-3, 0), 'index': whole(-1, 7)}),
     'logic': C(['logic personality=' + p for p in ('0x102', '0x203', '0x404', '0x706', '0x1f03', '0x1708')]),
     'bitslice': C(['bitslice personality=4', 'bitslice personality=9']),
     'demux': C(['demux personality=6', 'demux personality=12']),
     'lincurve': C(['lincurve personality=4'], {'x-val-00': constant(0), 'x-val-01': constant(1),
                                                'x-val-02': constant(2.5), 'x-val-03': constant(5)}),
-    'gantry': C(['gantry personality=3']),
-    'spindle': C(['spindle numgears=1'], single=True),
-    'pid': C(['pid debug=1'], {'tune-mode': constant(0), 'tune-start': constant(0), 'max.*': pick(0, 0.5, 3),
-                               'command': walk(0.05), 'feedback': walk(0.05), '.gain': pick(0, 0.1, 2),
-                               'FF.': pick(0, 1e-3, 0.1)}, count='num_chan'),
-    'siggen': C(values={'frequency': pick(0, 1, 17.5, change=0.02)}, count='num_chan'),
+    'gantry': C(['gantry personality=3'], {'search-vel': once(-1, 1), 'joint.*home': bits(0.02)}),
+    'spindle': C(['spindle'], {'commanded-speed': pick(100, -200, 500, 30, 0, change=0.02),
+                               'actual-speed': uniform(0, 5), 'select-gear': constant(0), 'max.*': once(400),
+                               'min.*': once(50), 'accel.*': once(900), 'decel.*': once(1500),
+                               'scale.*': once(0.1, 1)}, single=True),
+    'pid': C(['pid debug=1'], {'tune-.*': constant(0), 'max.*': once(0, 0.5, 3), 'command': walk(0.05),
+                               'feedback': walk(0.05), '.gain': once(0, 0.1, 2), 'FF[01]': once(0, 0.1),
+                               'FF[23]': once(0, 1e-5), 'enable': bits(0.05), 'deadband': once(0, 0.05),
+                               'index-enable': bits(0.05)}, count='num_chan'),
+    'siggen': C(values={'frequency': once(1, 17.5, 100)}, count='num_chan'),
     'debounce': C(['debounce cfg=3'], {'delay': whole(0, 5)}, prefix='debounce.0.', single=True),
     'charge_pump': C(prefix='charge-pump.', single=True),
-    'thc': C(prefix='thc.', single=True), 'thcud': C(prefix='thcud.', single=True),
-    'watchdog': C(['watchdog num_inputs=3'], {'timeout-.': pick(0.003, 0.0055)}, prefix='watchdog.', single=True),
+    'supply': C(single=True),
+    'thc': C(values={'vel-scale': once(1.1), 'scale-offset': once(3), 'velocity-tol': once(5),
+                     'voltage-tol': once(1), 'correction-vel': once(0.01), 'volts-requested': once(105),
+                     'requested-vel': once(10), 'current-vel': uniform(9, 10.5), 'encoder-vel': uniform(90, 110),
+                     'z-pos-in': walk(0.01)}, prefix='thc.', single=True),
+    'thcud': C(values={'velocity-tol': once(5), 'correction-vel': once(0.01), 'requested-vel': once(10),
+                       'current-vel': uniform(9, 10.5), 'z-pos-in': walk(0.01)}, prefix='thcud.', single=True),
+    'watchdog': C(['watchdog num_inputs=3'], {'timeout-.': once(0.003, 0.0055), 'input-.': bits(0.8)},
+                  prefix='watchdog.', single=True),
     'weighted_sum': C(['weighted_sum wsum_sizes=4'], prefix='wsum.0.', single=True),
-    'encoder': C(['encoder num_chan=1'], {'phase-.': bits(0.3), 'position-scale': pick(1, 4, -10)}, single=True),
-    'counter': C(['counter num_chan=1'], {'position-scale': pick(1, 4, -10)}, single=True),
-    'encoder_ratio': C(['encoder_ratio num_chan=1'], {'.*teeth': whole(1, 9), '.*ppr': whole(1, 4)}, single=True),
-    'sim_encoder': C(['sim_encoder num_chan=1'], {'speed': pick(0, 1, -3, 20, change=0.02), 'ppr': pick(4, 10)},
+    'encoder': C(['encoder num_chan=1'], {'position-scale': once(1, 4, -10), 'counter-mode': constant(0),
+                                          'x4-mode': once(0, 1), 'missing-teeth': constant(0),
+                                          'min-speed-estimate': once(0, 1)},
+                 pairs=[('phase-A', 'phase-B')], single=True),
+    'counter': C(['counter num_chan=1'], {'position-scale': once(1, 4, -10)}, single=True),
+    'encoder_ratio': C(['encoder_ratio num_chan=1'], {'.*teeth': once(1, 9, 5), '.*ppr': once(1, 4)},
+                       pairs=[('master-A', 'master-B'), ('slave-A', 'slave-B')], single=True),
+    'sim_encoder': C(['sim_encoder num_chan=1'], {'speed': pick(0, 1.3, -3.7, 9.1, change=0.02), 'ppr': once(4, 10)},
                      single=True),
     'stepgen': C([f'stepgen step_type={t} ctrl_type={c}' for t in (0, 1, 2, 5, 9) for c in 'pv'],
-                 {'position-cmd': walk(0.3), 'velocity-cmd': pick(0, 30, -80, 200, change=0.05),
-                  'enable': bits(0.02), 'position-scale': pick(1, 4, -3), 'maxaccel': pick(0, 500, 5000),
-                  'maxvel': pick(0, 50, 1000), '(step|dir).*': pick(1, 1000000, 2000000)}, single=True),
+                 {'position-cmd': walk(0.02), 'velocity-cmd': pick(0, 30, -80, 60, change=0.05),
+                  'enable': bits(0.02), 'position-scale': once(1, 4, -3), 'maxaccel': once(0, 500, 5000),
+                  'maxvel': once(0, 50, 1000), '(step|dir).*': once(1, 1000000, 2000000)}, single=True),
     'pwmgen': C([f'pwmgen output_type={t}' for t in (0, 1, 2)],
-                {'pwm-freq': pick(0, 10, 100), 'value': pick(-1.2, -0.5, 0.0, 0.3, 0.8, 2.0, change=0.05),
-                 'scale': pick(1, 2), 'enable': bits(0.03)}, single=True),
+                {'pwm-freq': once(0, 10, 100), 'value': pick(-1.2, -0.5, 0.0, 0.3, 0.8, 2.0, change=0.05),
+                 'scale': once(1, 2), 'enable': bits(0.03), 'min-dc': once(0, 0.2), 'max-dc': once(0.7, 1),
+                 'offset': once(0, 0.1)}, single=True),
     'multiswitch': C(['multiswitch cfg=4'], single=True),
     'mux_generic': C(['mux_generic config=ff4', 'mux_generic config=bb5', 'mux_generic config=fs4',
-                      'mux_generic config=ub3'], {'debounce-us': pick(0, 2500)}, single=True),
-    'sim_matrix_kb': C(),
-    'sim_parport': C(),
-    'sim_axis_hardware': C(),
+                      'mux_generic config=ub3'], {'debounce-us': once(0, 2500)}, single=True),
+    'sim_matrix_kb': C(values={'button.c03.r04': bits(0.1)}, skip='button.*(?<!c03.r04)'),
+    'sim_home_switch': C(values={'index-delay-ms': once(1, 3.5, 10)}),
+    'ilowpass': C(values={'scale': once(1, 1024), 'gain': once(0.1, 0.5, 1)}),
+    'sim_axis_hardware': C(values={'.*sw-upper': uniform(1.5, 3), '.*maxsw-lower': once(1.5),
+                                   '.*minsw-lower': once(-3), '.*homesw-hyst': once(0.2), '.*homesw-pos': once(1)}),
     'bldc': C(['bldc cfg=' + c for c in ('a', 'aT', 'aB6', 'aHF', 'h', 'h6', 'f', 'n', 'qh')],
               {'value': pick(0.5, -0.3, 1.0, 0.0, change=0.1), 'rawcounts': walk_whole(30),
-               'pattern': pick(25, 7, 40), 'output-pattern': pick(25, 13), 'rev': bits(0.02),
+               'pattern': once(25, 7, 40), 'output-pattern': once(25, 13), 'rev': bits(0.02),
                'frequency': pick(0, 5, -20, change=0.1)}, single=True),
-    'steptest': C(), 'simple_tp': C(), 'anglejog': C(), 'moveoff': C(['moveoff personality=2']), 'millturn': C(),
-    'carousel': C(['carousel pockets=8'], single=True),
-    'max31855': C(),
+    'moveoff': C(['moveoff personality=2']),
 })

@@ -9,7 +9,7 @@ import itertools
 import random
 
 import hal_differences
-from hal_components import COMPONENTS, LETTERS, generator_of
+from hal_components import COMPONENTS, LETTERS, generator_of, quadrature
 
 FIFO_PINS = 20
 FIFOS = 8
@@ -99,11 +99,15 @@ class HalFile:
             draw = generator_of(spec, forced, pin, kind, self.random)
             if direction == 'IN':
                 values[pin] = self.column(draw)
-            elif direction == 'RW' and (pin in forced or spec.has_generator(pin) or self.random.random() < 0.5):
+            elif direction in ('RW', 'I/O') and (pin in forced or spec.has_generator(pin) or self.random.random() < 0.5):
                 params[pin] = draw(self.random, None)
+        for first, second in spec.pairs:
+            values[first], values[second] = quadrature(self.random, ROWS)
         return {'load': load, 'found': found, 'values': values, 'params': params, 'avoided': avoided}
 
     def column(self, draw):
+        if hasattr(draw, 'column'):
+            return draw.column(self.random, ROWS)
         values, last = [], None
         for _ in range(ROWS):
             last = draw(self.random, last)
@@ -127,7 +131,8 @@ class HalFile:
                            for out, what in other['found'].items()
                            if what[0] == kind and what[1:2] == ('OUT',) and not COMPONENTS[chosen[at]].is_hidden(out)
                            and not self.is_uncertain(chosen[at], out, other['avoided'])]
-                is_fixed = any(pin in d.avoid for d in plan['avoided']) or COMPONENTS[chosen[to]].has_generator(pin)
+                is_fixed = any(pin in d.avoid for d in plan['avoided']) or COMPONENTS[chosen[to]].has_generator(pin) \
+                    or any(pin in pair for pair in COMPONENTS[chosen[to]].pairs)
                 if outputs and not is_fixed and self.random.random() < 0.4:
                     links[to, pin] = self.random.choice(outputs)
         return links
@@ -181,7 +186,7 @@ class HalFile:
         if streams:
             lines.append(f'loadrt streamer cfg={",".join(streams)} depth={",".join([str(depth)] * len(streams))}')
         lines.append(f'loadrt sampler cfg={",".join(samples)} depth={",".join([str(depth)] * len(samples))}')
-        lines += [f'loadrt {load}' for load in self.loads] + self.nets + [f'setp {text}' for text in self.setps]
+        lines += [f'loadrt {load}' for load in self.loads] + [f'setp {text}' for text in self.setps] + self.nets
         lines += [f'addf streamer.{i} t' for i in range(len(streams))] + [f'addf {f} t' for f in self.adds]
         lines += [f'addf sampler.{i} t' for i in range(len(samples))]
         lines += [f'loadusr -w halstreamer -c {i} in{i}.txt' for i in range(len(streams))] + ['start']

@@ -122,7 +122,7 @@ void PwmChannel::make_pulses() noexcept {
     }
     pulse = isHigh;
     if (type == 1) {
-        dir = isOn && isNegative;
+        dir = isNegative;  // ahead of the first pulse, also while disabled
     }
 }
 
