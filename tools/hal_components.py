@@ -138,7 +138,7 @@ COMPONENTS = {name: C() for name in '''abs abs_s32 and2 or2 xor2 not bin2gray gr
 clarkeinv conv_bit_float conv_bit_s32 conv_bit_u32 conv_float_s32 conv_float_u32 conv_s32_bit conv_s32_float
 conv_s32_u32 conv_u32_bit conv_u32_float conv_u32_s32 corexy_by_hal ddt deadzone differential div2 estop_latch feedcomp
 flipflop hypot invert joyhandle knob2float lowpass lut5 maj3 match8 minmax modmath mult2 mux2 mux4 mux8
-offset sample_hold scale scaled_s32_sums select8 sim_spindle spindle_monitor sum2 toggle toggle2nist
+offset sample_hold scale scaled_s32_sums select8 spindle_monitor sum2 toggle2nist
 tristate_bit tristate_float updown wcomp edge constant dbounce multiclick time threadtest sim_parport millturn
 eoffset_per_angle steptest simple_tp anglejog'''.split()}
 LIMITS = {'min.?': uniform(-2, -0.2), 'max.?': uniform(0.2, 2), 'maxv': once(0.5, 10, 1000), 'maxa': once(10, 5000)}
@@ -167,7 +167,7 @@ COMPONENTS.update({
                                                'x-val-02': constant(2.5), 'x-val-03': constant(5)}),
     'gantry': C(['gantry personality=3'], {'search-vel': once(-1, 1), 'joint.*home': bits(0.02)}),
     'spindle': C(['spindle'], {'commanded-speed': pick(100, -200, 500, 30, 0, change=0.02),
-                               'actual-speed': uniform(0, 5), 'select-gear': constant(0), 'max.*': once(400),
+                               'actual-speed': uniform(0, 5), 'simulate-encoder': once(0, 1), 'select-gear': constant(0), 'max.*': once(0, 400),
                                'min.*': once(50), 'accel.*': once(900), 'decel.*': once(1500),
                                'scale.*': once(0.1, 1)}, single=True),
     'pid': C(['pid debug=1'], {'tune-.*': constant(0), 'max.*': once(0, 0.5, 3), 'command': walk(0.05),
@@ -209,6 +209,7 @@ COMPONENTS.update({
                       'mux_generic config=ub3'], {'debounce-us': once(0, 2500)}, single=True),
     'sim_matrix_kb': C(values={'button.c03.r04': bits(0.1)}, skip='button.*(?<!c03.r04)'),
     'sim_home_switch': C(values={'index-delay-ms': once(1, 3.5, 10)}),
+    'toggle': C(values={'debounce': once(1, 2, 3)}), 'sim_spindle': C(values={'scale': once(1, 2)}),
     'ilowpass': C(values={'scale': once(1, 1024), 'gain': once(0.1, 0.5, 1)}),
     'sim_axis_hardware': C(values={'.*sw-upper': uniform(1.5, 3), '.*maxsw-lower': once(1.5),
                                    '.*minsw-lower': once(-3), '.*homesw-hyst': once(0.2), '.*homesw-pos': once(1)}),

@@ -41,7 +41,7 @@ DIFFERENCES = [
     D('gantry', '.*', 'gantry with three'),
     D('thcd?|thcud', '.*', 'thc, thcud'),
     D('simple_tp|anglejog|steptest|moveoff', '.*', 'simple_tp, anglejog, steptest, moveoff'),
-    D('limit3', '.*', 'limit3'),
+    D('limit3', '.*', 'limit3 |'),
     D('watchdog', 'ok-out', 'watchdog: enable-in FALSE', first=1, avoid={'enable-in': 1}),
     D('counter', 'velocity', 'counter, encoder: velocity'),
     D('counter', 'index-enable', 'counter: index-enable'),
@@ -54,10 +54,10 @@ DIFFERENCES = [
     D('mux16', 'out-.', 'mux16: debounce-time', avoid={'debounce-time': 0}),
     D('sim_axis_hardware', 'A.*-homesw-out', 'sim_axis_hardware: axis A'),
     D('sim_spindle', 'index-enable', 'sim_spindle: index', avoid={'velocity-cmd': uniform(1, 3)}),
-    D('knob2float', 'out', 'knob2float'),
+    D('knob2float', 'out', 'knob2float', avoid={'enable': LateBit(2)}),
     D('bldc', '.*', 'bldc: first period'),
     D('stepgen', '.*', 'stepgen: position control'),
-    D('spindle', '.*', 'spindle: the direction'),
+    D('spindle', '.*', 'spindle: ramps'),
 ]
 
 

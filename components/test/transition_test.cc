@@ -168,11 +168,37 @@ TEST(Bldc, TheSignOfValueDoesNotReverseTheAlignment_B6) {
     }
 }
 
-TEST(Debounce, CfgIsRequired_B6) {
-    Bench bench("");
-    bench.run("loadrt debounce");
-    EXPECT_NE(bench.output.errors, "");
-    EXPECT_FALSE(bench.hal().get("debounce.0.delay").has_value());
+struct MandatoryCase {
+    const char *load;
+    const char *parameter;
+};
+
+TEST(Loadrt, AMissingMandatoryParameterIsAnErrorThatNamesIt_B6) {
+    for (const MandatoryCase &one : {MandatoryCase{"bldc", "cfg="},
+                                     {"carousel", "pockets="},
+                                     {"debounce", "cfg="},
+                                     {"debounce cfg=", "cfg="},
+                                     {"debounce cfg=0", "cfg="},
+                                     {"lcd", "fmt_strings="},
+                                     {"logic", "personality"},
+                                     {"matrix_kb", "config="},
+                                     {"message", "messages="},
+                                     {"mux_generic", "config="},
+                                     {"demux_generic", "config="},
+                                     {"enum", "enums="},
+                                     {"pwmgen", "output_type="},
+                                     {"sampler", "cfg="},
+                                     {"stepgen", "step_type="},
+                                     {"streamer", "cfg="},
+                                     {"watchdog", "num_inputs="},
+                                     {"weighted_sum", "wsum_sizes="}}) {
+        Bench bench("");
+        const std::size_t pins = bench.hal().pins().size();
+        bench.run("loadrt " + std::string(one.load));
+        EXPECT_NE(bench.output.errors.find(one.parameter), std::string::npos)
+            << one.load << ": " << bench.output.errors;
+        EXPECT_EQ(bench.hal().pins().size(), pins) << one.load;
+    }
 }
 
 const std::vector<Table> TRANSITIONS = {
