@@ -12,6 +12,7 @@ import collections
 import concurrent.futures
 import hashlib
 import json
+import math
 import os
 import pathlib
 import pwd
@@ -119,7 +120,9 @@ def is_same(kind, a, b):
     if kind != 'float':
         return False
     a, b = float(a), float(b)
-    return a == b or (a != a and b != b) or abs(a - b) <= 2e-6 + 1e-6 * max(abs(a), abs(b))
+    if not (math.isfinite(a) and math.isfinite(b)):
+        return a != a and b != b
+    return abs(a - b) <= 2e-6 + 1e-6 * max(abs(a), abs(b))
 
 
 class Comparison:

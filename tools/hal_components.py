@@ -136,10 +136,10 @@ def generator_of(spec, forced, pin, kind, r):
 C = Component
 COMPONENTS = {name: C() for name in '''abs abs_s32 and2 or2 xor2 not bin2gray gray2bin bitwise blend clarke2 clarke3
 clarkeinv conv_bit_float conv_bit_s32 conv_bit_u32 conv_float_s32 conv_float_u32 conv_s32_bit conv_s32_float
-conv_s32_u32 conv_u32_bit conv_u32_float conv_u32_s32 corexy_by_hal ddt deadzone differential div2 estop_latch feedcomp
+conv_s32_u32 conv_u32_bit conv_u32_float conv_u32_s32 corexy_by_hal ddt deadzone differential div2 estop_latch
 flipflop hypot invert joyhandle knob2float lowpass lut5 maj3 match8 minmax modmath mult2 mux2 mux4 mux8
-offset sample_hold scale scaled_s32_sums select8 spindle_monitor sum2 toggle2nist
-tristate_bit tristate_float updown wcomp edge constant dbounce multiclick time threadtest sim_parport millturn
+offset sample_hold scale scaled_s32_sums select8 sum2 toggle2nist
+tristate_bit tristate_float wcomp edge constant dbounce multiclick time threadtest sim_parport millturn
 eoffset_per_angle steptest simple_tp anglejog'''.split()}
 LIMITS = {'min.?': uniform(-2, -0.2), 'max.?': uniform(0.2, 2), 'maxv': once(0.5, 10, 1000), 'maxa': once(10, 5000)}
 DELAYS = once(0, 0.002, 0.0035)
@@ -204,11 +204,13 @@ COMPONENTS.update({
                 {'pwm-freq': once(0, 10, 100), 'value': pick(-1.2, -0.5, 0.0, 0.3, 0.8, 2.0, change=0.05),
                  'scale': once(1, 2), 'enable': bits(0.03), 'min-dc': once(0, 0.2), 'max-dc': once(0.7, 1),
                  'offset': once(0, 0.1)}, single=True),
-    'multiswitch': C(['multiswitch cfg=4'], single=True),
+    'multiswitch': C(['multiswitch cfg=4'], {'top-position': whole(1, 3), 'position': constant(0)}, single=True),
     'mux_generic': C(['mux_generic config=ff4', 'mux_generic config=bb5', 'mux_generic config=fs4',
                       'mux_generic config=ub3'], {'debounce-us': once(0, 2500)}, single=True),
     'sim_matrix_kb': C(values={'button.c03.r04': bits(0.1)}, skip='button.*(?<!c03.r04)'),
     'sim_home_switch': C(values={'index-delay-ms': once(1, 3.5, 10)}),
+    'feedcomp': C(values={'feed': once(0.5, 2)}), 'spindle_monitor': C(skip='level'),
+    'updown': C(values={'max': once(2, 5), 'min': once(-2, 0)}),
     'toggle': C(values={'debounce': once(1, 2, 3)}), 'sim_spindle': C(values={'scale': once(1, 2)}),
     'ilowpass': C(values={'scale': once(1, 1024), 'gain': once(0.1, 0.5, 1)}),
     'sim_axis_hardware': C(values={'.*sw-upper': uniform(1.5, 3), '.*maxsw-lower': once(1.5),

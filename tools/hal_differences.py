@@ -50,7 +50,7 @@ DIFFERENCES = [
     D('pwmgen', 'pwm|up|down', 'pwmgen: first pulse'),
     D('pwmgen', '.*', 'pwmgen: scale', first=3, avoid={'scale': 1}),
     D('pwmgen', '.*', 'pwmgen: min-dc', avoid={'min-dc': 0.0}),
-    D('ohmic', 'ohmic-on', 'ohmic: ohmic-on', avoid={'volt-divider': 1}),
+    D('ohmic', 'ohmic-on', 'ohmic: ohmic-on'),
     D('mux16', 'out-.', 'mux16: debounce-time', avoid={'debounce-time': 0}),
     D('sim_axis_hardware', 'A.*-homesw-out', 'sim_axis_hardware: axis A'),
     D('sim_spindle', 'index-enable', 'sim_spindle: index', avoid={'velocity-cmd': uniform(1, 3)}),

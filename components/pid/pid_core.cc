@@ -83,7 +83,7 @@ Outputs Controller::run(const Inputs &in, const Tuning &tuning, double dt) noexc
         saturated_count_ = 0;
         return out;
     }
-    const double error = limited(outside(out.error, tuning.deadband), tuning.max_error);
+    const double error = outside(limited(out.error, tuning.max_error), tuning.deadband);
     // While the output is limited, error that would push further must not pile up.
     const bool windsUp = limit_state_ != 0 && (error > 0.0) == (limit_state_ > 0);
     if (!windsUp) {

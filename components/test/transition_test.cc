@@ -105,6 +105,29 @@ TEST(Pid, AValueThatIsNoNumberLeavesNothingBehind_B6) {
     EXPECT_NEAR(pid.get("output"), 1.0, 1e-9) << "as in a first period";
 }
 
+TEST(Pid, MaxerrorLimitsTheErrorBeforeDeadband_B6) {
+    PidBench pid(
+        "setp pid.0.Pgain 1\nsetp pid.0.deadband 0.05\nsetp pid.0.maxerror 0.5\nsetp pid.0.enable 1");
+    pid.step(2.0, 0.0);
+    EXPECT_NEAR(pid.get("output"), 0.45, 1e-12);
+}
+
+TEST(Encoder, AnIndexThatIsTrueInTheFirstPeriodIsNotPassed_B6) {
+    for (const char *load : {"encoder", "counter"}) {
+        const std::string name = load;
+        Bench bench("loadrt " + name + " num_chan=1\nsetp " + name + ".0.phase-Z 1\nsetp " + name +
+                    ".0.index-enable 1\naddf " + name + ".update-counters t\naddf " + name +
+                    ".capture-position t");
+        bench.pass(3);
+        EXPECT_EQ(bench.get(name + ".0.index-enable"), 1.0);
+        bench.set(name + ".0.phase-Z", 0);
+        bench.pass();
+        bench.set(name + ".0.phase-Z", 1);
+        bench.pass();
+        EXPECT_EQ(bench.get(name + ".0.index-enable"), 0.0);
+    }
+}
+
 TEST(Pid, InnerValuesArePins_B6) {
     Bench bench(
         "loadrt pid num_chan=1 debug=1\nnet i pid.0.errorI\nnet d <= pid.0.errorD\nnet c pid.0.commandD\n"
