@@ -27,17 +27,16 @@ class HomeSwitch {
 
 class DelayedIndex {
   public:
-    /// True once `isAsked` has been true for `delay` seconds.
+    /// True `delay` seconds after the period in which `isAsked` became true.
     bool run(bool isAsked, double delay, double dt) noexcept {
-        waited_ = isAsked ? waited_ + dt : 0.0;
+        waited_ = isAsked && was_asked_ ? waited_ + dt : 0.0;
         const bool isDue = isAsked && waited_ >= delay;
-        if (isDue) {
-            waited_ = 0.0;
-        }
+        was_asked_ = isAsked && !isDue;
         return isDue;
     }
 
   private:
+    bool was_asked_ = false;
     double waited_ = 0.0;
 };
 

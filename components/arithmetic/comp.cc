@@ -2,7 +2,7 @@
 // comp: compares two floats, with hysteresis.
 //
 // `out` (bit) becomes true when in1 - in0 exceeds hyst/2 and false when it falls below -hyst/2; with `hyst` 0
-// it is simply in1 > in0. `equal` (bit) is true while |in1 - in0| is less than hyst/2. `hyst` is a parameter
+// it is simply in1 > in0. `equal` (bit) is true while |in1 - in0| is at most hyst/2. `hyst` is a parameter
 // [units of in].
 #include <cmath>
 
@@ -33,7 +33,7 @@ struct Comp {
         } else if (difference < -band || band == 0.0) {
             out = false;
         }
-        equal = std::fabs(difference) < band;
+        equal = std::fabs(difference) <= band;
     }
 };
 

@@ -77,12 +77,9 @@ To wrapped(From value) noexcept {
         if (!std::isfinite(value)) {
             return 0;
         }
-        const double modulus = 18446744073709551616.0;  // 2^64
-        double rest = std::fmod(std::trunc(value), modulus);
-        if (rest < 0.0) {
-            rest += modulus;
-        }
-        return static_cast<To>(rest >= modulus ? 0U : static_cast<std::uint64_t>(rest));
+        constexpr double MODULUS = 18446744073709551616.0;  // 2^64
+        const auto size = static_cast<std::uint64_t>(std::fmod(std::trunc(std::fabs(value)), MODULUS));
+        return static_cast<To>(value < 0.0 ? 0U - size : size);
     } else {
         return static_cast<To>(value);
     }
@@ -95,9 +92,12 @@ Converted<To> convert(From value, bool isClamping) noexcept {
         return {static_cast<To>(value), false};
     } else if constexpr (std::is_same_v<To, bool>) {
         if constexpr (std::is_floating_point_v<From>) {
-            return {std::fabs(value) > FALSE_BELOW, value < 0.0 || value > 1.0};
+            const bool is_negative = value < 0.0;
+            return {std::fabs(value) > FALSE_BELOW && !(is_negative && isClamping),
+                    is_negative || value > 1.0};
         } else {
-            return {value != 0, value < From{0} || value > From{1}};
+            const bool is_below = value < From{0};
+            return {value != 0 && !(is_below && isClamping), is_below || value > From{1}};
         }
     } else {
         Converted<To> result = clamped<To>(value);

@@ -4,7 +4,9 @@
 //
 // Functions: update-counters (as often as possible) and capture-position. Pins of counter.N: phase-A,
 // phase-Z, reset (bit), index-enable (I/O), position-scale [counts/unit] (I/O), counts, rawcounts (s32),
-// position, velocity [units/s].
+// position, velocity [units/s]. Reset sets rawcounts to 0, too; an index does not.
+#include <atomic>
+
 #include "components/encoder/encoder_core.hh"
 #include "hal/sdk/component.hh"
 
@@ -18,6 +20,8 @@ struct CounterChannel {
     Out<std::int32_t> counts, rawcounts;
     Out<double> position, velocity;
 
+    std::atomic<std::int32_t> raw_zero{
+        0};  ///< raw count at the last reset; written by capture, read by sample
     encoder::FastPart fast;
     encoder::SlowPart slow;
 
@@ -38,7 +42,7 @@ struct CounterChannel {
         settings.isCounter = true;
         settings.isIndexEnabled = index_enable;
         fast.run({phase_a, false, phase_z, false}, settings, period_ns);
-        rawcounts = fast.raw();
+        show_raw();
     }
 
     void capture() noexcept {
@@ -50,9 +54,20 @@ struct CounterChannel {
         if (measured.indexSeen) {
             index_enable = false;
         }
+        if (reset) {
+            raw_zero.store(fast.raw(), std::memory_order_relaxed);
+            show_raw();
+        }
         counts = measured.counts;
         position = measured.position;
         velocity = measured.velocity;
+    }
+
+  private:
+    void show_raw() noexcept {
+        rawcounts =
+            static_cast<std::int32_t>(static_cast<std::uint32_t>(fast.raw()) -
+                                      static_cast<std::uint32_t>(raw_zero.load(std::memory_order_relaxed)));
     }
 };
 

@@ -64,7 +64,7 @@ class FastPart {
     int change_of(const Phases &phases, const FastSettings &settings) const noexcept;
     bool isIndex(const Phases &phases, const FastSettings &settings, int change) noexcept;
 
-    Phases last_{};
+    Phases last_{.z = true};  // an index signal that is TRUE in the first period is no edge
     std::int32_t raw_ = 0;
     std::int64_t now_ns_ = 0;
     std::int64_t last_tooth_ns_ = 0;

@@ -3,9 +3,10 @@
 // default, or `names=`).
 //
 // Functions: sample (as often as possible) and update (servo thread). Pins of encoder-ratio.N: master-A,
-// master-B, slave-A, slave-B, enable (bit); error (float, turns of the slave): the slave's position, and
-// while enabled minus the master's since then times master-teeth / slave-teeth; master-ppr, slave-ppr (pulses
-// a turn, four counts each), master-teeth, slave-teeth (u32, I/O).
+// master-B, slave-A, slave-B, enable (bit); error (float, turns of the slave): the slave's position
+// minus the travel of the master while enabled, times master-teeth / slave-teeth. When enable falls the error
+// does not jump: the slave stays where it is. master-ppr, slave-ppr (counts a turn), master-teeth,
+// slave-teeth (u32, I/O).
 #include "components/encoder/encoder_core.hh"
 #include "hal/sdk/component.hh"
 
@@ -20,9 +21,8 @@ struct RatioChannel {
     unsigned last_master = 0;
     unsigned last_slave = 0;
     bool isFirst = true;                  ///< where the signals stand at first is no movement
-    std::atomic<std::int32_t> master{0};  ///< counts; written by sample, read by update
-    std::atomic<std::int32_t> slave{0};
-    std::int32_t master_start = 0;  ///< where the master stood when the gear was engaged
+    std::atomic<std::int32_t> master{0};  ///< counts while enabled; written by sample, read by update
+    std::atomic<std::int32_t> slave{0};   ///< counts
 
     void declare(Declare &d) noexcept {
         d.legacy_pin(master_a, "master-a", "master-A");
@@ -38,25 +38,22 @@ struct RatioChannel {
     }
 
     void sample() noexcept {
-        count(master_a, master_b, last_master, master);
-        count(slave_a, slave_b, last_slave, slave);
-        if (isFirst) {
-            isFirst = false;
-            master.store(0, std::memory_order_relaxed);
-            slave.store(0, std::memory_order_relaxed);
+        const std::int32_t master_step = change(master_a, master_b, last_master);
+        const std::int32_t slave_step = change(slave_a, slave_b, last_slave);
+        if (!isFirst && enable) {
+            master.fetch_add(master_step, std::memory_order_relaxed);
         }
+        if (!isFirst) {
+            slave.fetch_add(slave_step, std::memory_order_relaxed);
+        }
+        isFirst = false;
     }
 
     void update() noexcept {
-        const std::int32_t master_now = master.load(std::memory_order_relaxed);
+        const double master_turns = turns(master.load(std::memory_order_relaxed), master_ppr);
         const double slave_turns = turns(slave.load(std::memory_order_relaxed), slave_ppr);
-        if (!enable) {
-            master_start = master_now;
-        }
-        const auto moved = static_cast<std::int32_t>(static_cast<std::uint32_t>(master_now) -
-                                                     static_cast<std::uint32_t>(master_start));
         const double ratio = static_cast<double>(master_teeth) / at_least_one(slave_teeth);
-        error = slave_turns - turns(moved, master_ppr) * ratio;
+        error = slave_turns - master_turns * ratio;
     }
 
   private:
@@ -64,10 +61,11 @@ struct RatioChannel {
     static double turns(std::int32_t counts, std::uint32_t ppr) noexcept {
         return counts / at_least_one(ppr);
     }
-    static void count(bool a, bool b, unsigned &last, std::atomic<std::int32_t> &counts) noexcept {
+    static std::int32_t change(bool a, bool b, unsigned &last) noexcept {
         const unsigned now = (a ? 2U : 0U) | (b ? 1U : 0U);
-        counts.fetch_add(encoder::quadrature_change(last, now), std::memory_order_relaxed);
+        const std::int32_t step = encoder::quadrature_change(last, now);
         last = now;
+        return step;
     }
 };
 

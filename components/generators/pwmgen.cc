@@ -105,6 +105,9 @@ void PwmChannel::update(double tick_ns) noexcept {
     }
     isNegative = wanted < 0.0;
     isEnabled = enable;
+    if (type == 1) {
+        dir = isNegative;  // ahead of the first pulse, also while disabled
+    }
     generator.plan(made, ticks, dither);
     curr_dc = std::copysign(made, wanted);
 }
@@ -121,9 +124,6 @@ void PwmChannel::make_pulses() noexcept {
         return;
     }
     pulse = isHigh;
-    if (type == 1) {
-        dir = isOn && isNegative;
-    }
 }
 
 struct Pwmgen {

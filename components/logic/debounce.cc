@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// debounce: groups of inputs with one delay each. `cfg=2,3` makes groups 0 and 1 of 2 and 3 inputs (1 when
-// not given), up to 8 groups of up to 50.
+// debounce: groups of inputs with one delay each. `cfg=2,3` (required) makes groups 0 and 1 of 2 and 3
+// inputs, up to 8 groups of up to 50.
 //
 // Function debounce.G. Pins debounce.G.F.in and debounce.G.F.out (bit); parameter debounce.G.delay (s32, 5 at
 // start) [periods]: see dbounce.
@@ -8,7 +8,7 @@
 #include "hal/sdk/component.hh"
 
 constexpr int MAX_GROUPS = 8;
-static int cfg[MAX_GROUPS] = {1};
+static int cfg[MAX_GROUPS];
 RTAPI_MP_ARRAY_INT(cfg, MAX_GROUPS, "inputs of each group");
 
 namespace mw::components {
@@ -42,6 +42,10 @@ struct DebounceGroup {
 
 struct Debounce {
     int load(int comp_id) noexcept {
+        if (cfg[0] == 0) {
+            rtapi_print_msg(RTAPI_MSG_ERR, "debounce: cfg= is missing, for example cfg=2,3");
+            return -EINVAL;
+        }
         int status = 0;
         for (int group = 0; group < MAX_GROUPS && cfg[group] != 0 && status == 0; ++group) {
             status = load_group(comp_id, group);

@@ -14,8 +14,8 @@ struct Updown {
     Out<std::int32_t> count;
     ParamRw<bool> clamp, wrap;
     ParamRw<std::int32_t> max, min;
-    bool last_up = false;
-    bool last_down = false;
+    bool last_up = true;  // an input that is TRUE in the first period is no edge
+    bool last_down = true;
 
     void declare(Declare &d) noexcept {
         d.pin(countup, "countup");

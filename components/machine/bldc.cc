@@ -67,7 +67,7 @@ struct Bldc {
     double counts_per_turn() const noexcept;
     void read_hall() noexcept;
     void read_encoder() noexcept;
-    void run_homing(double amplitude, double dt) noexcept;
+    void run_homing(double dt) noexcept;
     void write(double phase, int commuted, double size) noexcept;
     void write_codes(double phase) noexcept;
 };
@@ -222,7 +222,7 @@ void Bldc::read_encoder() noexcept {
 }
 
 /// Without hall sensors: turn the field until the index comes, or to zero, and call that the rotor's angle.
-void Bldc::run_homing(double amplitude, double dt) noexcept {
+void Bldc::run_homing(double dt) noexcept {
     const bool isInit = init;
     if (isInit && !last_init) {
         homing = has(INDEX) ? BldcHoming::SEARCHING : BldcHoming::ALIGNING;
@@ -235,7 +235,7 @@ void Bldc::run_homing(double amplitude, double dt) noexcept {
     }
     last_init = isInit;
     waited_s += dt;
-    const double direction = amplitude < 0.0 || rev ? -1.0 : 1.0;
+    const double direction = rev != (initvalue < 0.0) ? -1.0 : 1.0;
     if (homing == BldcHoming::SEARCHING) {
         field = bldc::fraction(direction * waited_s);
         if (isAligned) {
@@ -314,7 +314,7 @@ void Bldc::update(long period_ns) noexcept {
         rotor = std::isfinite(turned) ? bldc::fraction(rotor + turned) : rotor;
     }
     if (has(QUADRATURE) && !has(HALL)) {
-        run_homing(amplitude, dt);
+        run_homing(dt);
     }
     last_index = has(INDEX) && index_enable;
     const bool isHoming = homing == BldcHoming::ALIGNING || homing == BldcHoming::SEARCHING;
@@ -322,7 +322,7 @@ void Bldc::update(long period_ns) noexcept {
     const bool isLost = !has(ABSOLUTE | HALL) && has(QUADRATURE) && !isAligned && !isHoming;
     const bool isFree = !has(HALL | ABSOLUTE | QUADRATURE | FANUC);
     if (isHoming) {
-        amplitude = initvalue;
+        amplitude = std::fabs(initvalue);
     } else if (isLost || (usesHall && sector < 0)) {
         amplitude = 0.0;
     }

@@ -106,7 +106,8 @@ double Spindle::target(const Gear &used) noexcept {
         limited = false;
         return 0.0;
     }
-    const double held = limit::between(size, used.min, used.max);
+    const bool has_max = used.max != 0.0;
+    const double held = limit::between(size, used.min, has_max ? used.max.get() : HUGE_VAL);
     limited = held != size;
     return std::copysign(held, command);
 }

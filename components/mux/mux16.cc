@@ -3,8 +3,8 @@
 // make; `out-s` (s32) is its whole part, the nearest possible when it does not fit.
 //
 // `use-graycode` (bit): the number is in Gray code. `suppress-no-input` (bit): no selection at all changes
-// nothing. A selection counts when it has held still for `debounce-time` [s]. Parameters `elapsed` [s] and
-// `selected` (s32) show the debouncing.
+// nothing. A selection counts when it has held still for `debounce-time` [s]; until then the outputs keep
+// their values. Parameters `elapsed` [s] and `selected` (s32) show the debouncing.
 #include "components/conv/conv_core.hh"
 #include "components/logic/gray.hh"
 #include "components/mux/selector.hh"
@@ -50,9 +50,12 @@ struct Mux16 {
         }
         const std::uint32_t debounce_us = conv::convert<std::uint32_t>(debounce_time * 1e6, true).value;
         const std::uint32_t chosen = selector.run(wanted, INPUTS, debounce_us, suppress, period_ns);
-        const double value = in[chosen];
-        out_f = value;
-        out_s = conv::convert<std::int32_t>(value, true).value;
+        const bool is_suppressed = suppress && wanted == 0;
+        if (selector.is_settled() && !is_suppressed) {
+            const double value = in[chosen];
+            out_f = value;
+            out_s = conv::convert<std::int32_t>(value, true).value;
+        }
         elapsed = selector.waited_us() * 1e-6;
         selected = static_cast<std::int32_t>(chosen);
     }

@@ -31,6 +31,8 @@ class Selector {
         return bounded(selected_, size);
     }
 
+    /// False while a new selection is debounced.
+    bool is_settled() const noexcept { return wanted_ == selected_; }
     /// As asked for, not bounded.
     std::uint32_t selected() const noexcept { return selected_; }
     std::uint32_t waited_us() const noexcept { return static_cast<std::uint32_t>(waited_ns_ / 1000); }

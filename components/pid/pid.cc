@@ -8,15 +8,15 @@
 // [periods]. Tuning (inputs): Pgain (1 at start), Igain, Dgain, FF0 to FF3, bias, deadband, maxoutput,
 // maxerror, maxerrorI, maxerrorD, maxcmdD, maxcmdDD, maxcmdDDD (0: no limit). Auto-tuning: tune-mode (bit)
 // opens the loop, tune-start (bit, I/O) begins and is set back at the end; tune-type 0 finds P, I, D and 1
-// finds P, I, FF1; tune-cycles, tune-effort. `debug=1` adds parameters with the inner values.
-// While command or feedback is not a number the controller counts as disabled.
+// finds P, I, FF1; tune-cycles, tune-effort. `debug=1` adds pins with the inner values.
+// While command, feedback or a linked derivative is not a number the controller counts as disabled.
 #include <cmath>
 
 #include "components/pid/pid_core.hh"
 #include "hal/sdk/component.hh"
 
 static int debug = 0;
-RTAPI_MP_INT(debug, "1: export inner values as parameters");
+RTAPI_MP_INT(debug, "1: export inner values as pins");
 
 namespace mw::components {
 using namespace sdk;
@@ -34,6 +34,30 @@ struct LinkableInput {
         own = slot;
     }
     bool isLinked() const noexcept { return slot != own; }
+    /// 0 while it is not linked.
+    double get() const noexcept { return isLinked() ? *slot : 0.0; }
+};
+
+/// The pins that debug=1 adds.
+struct InnerPins {
+    Out<double> error_i, error_d, command_d, command_dd, command_ddd, ultimate_gain, ultimate_period;
+
+    void declare(Declare &declare) noexcept {
+        declare.legacy_pin(error_i, "error-i", "errorI");
+        declare.legacy_pin(error_d, "error-d", "errorD");
+        declare.legacy_pin(command_d, "command-d", "commandD");
+        declare.legacy_pin(command_dd, "command-dd", "commandDD");
+        declare.legacy_pin(command_ddd, "command-ddd", "commandDDD");
+        declare.pin(ultimate_gain, "ultimate-gain");
+        declare.pin(ultimate_period, "ultimate-period");
+    }
+    void show(const pid::Controller &controller) noexcept {
+        error_i = controller.error_i;
+        error_d = controller.error_d;
+        command_d = controller.command_d;
+        command_dd = controller.command_dd;
+        command_ddd = controller.command_ddd;
+    }
 };
 
 struct Pid {
@@ -48,8 +72,7 @@ struct Pid {
     InOut<bool> tune_start;
     InOut<std::uint32_t> tune_type, tune_cycles;
     InOut<double> tune_effort;
-    ParamRo<double> error_i, error_d, command_d, command_dd, command_ddd;
-    Out<double> ultimate_gain, ultimate_period;
+    InnerPins inner;
 
     pid::Controller controller;
     double last_command = 0.0;
@@ -80,13 +103,7 @@ void Pid::declare(Declare &declare) noexcept {
     declare.pin(saturated_count, "saturated-count");
     declare_tuning(declare);
     if (debug != 0) {
-        declare.legacy_param(error_i, "error-i", "errorI");
-        declare.legacy_param(error_d, "error-d", "errorD");
-        declare.legacy_param(command_d, "command-d", "commandD");
-        declare.legacy_param(command_dd, "command-dd", "commandDD");
-        declare.legacy_param(command_ddd, "command-ddd", "commandDDD");
-        declare.pin(ultimate_gain, "ultimate-gain");
-        declare.pin(ultimate_period, "ultimate-period");
+        inner.declare(declare);
     }
     declare.function<&Pid::update>(this, "do-pid-calcs");
 }
@@ -140,7 +157,7 @@ pid::Tuning Pid::tuning() const noexcept {
 void Pid::tune(double dt) noexcept {
     const double difference = command - feedback;
     error = difference;
-    controller.reset(command, feedback);
+    controller.reset();
     if (tune_start && !tuner.isRunning()) {
         tuner.start();
     }
@@ -157,8 +174,8 @@ void Pid::tune(double dt) noexcept {
         d = found.d;
         ff1 = found.ff1;
         if (debug != 0) {
-            ultimate_gain = tuner.ultimate_gain;
-            ultimate_period = tuner.ultimate_period;
+            inner.ultimate_gain = tuner.ultimate_gain;
+            inner.ultimate_period = tuner.ultimate_period;
         }
     }
 }
@@ -177,16 +194,19 @@ void Pid::update(long period_ns) noexcept {
     const double wanted = command;
     const double measured = feedback;
     // A sensor that is broken must not reach the motor, nor stay in the integrator.
-    const bool isSane = std::isfinite(wanted) && std::isfinite(measured);
+    const double command_derivative = command_deriv.get();
+    const double feedback_derivative = feedback_deriv.get();
+    const bool isSane = std::isfinite(wanted) && std::isfinite(measured) &&
+                        std::isfinite(command_derivative) && std::isfinite(feedback_derivative);
     last_command = std::isfinite(wanted) ? wanted : last_command;
     last_feedback = std::isfinite(measured) ? measured : last_feedback;
     in.isEnabled = enable && isSane;
     in.command = last_command;
     in.feedback = last_feedback;
-    in.hasCommandDerivative = command_deriv.isLinked();
-    in.command_derivative = *command_deriv.slot;
-    in.hasFeedbackDerivative = feedback_deriv.isLinked();
-    in.feedback_derivative = *feedback_deriv.slot;
+    in.hasCommandDerivative = command_deriv.isLinked() && isSane;
+    in.command_derivative = command_derivative;
+    in.hasFeedbackDerivative = feedback_deriv.isLinked() && isSane;
+    in.feedback_derivative = feedback_derivative;
     in.usesPreviousTarget = error_previous_target;
     in.isIndexEnabled = index_enable;
     const pid::Outputs out = controller.run(in, tuning(), dt);
@@ -195,11 +215,12 @@ void Pid::update(long period_ns) noexcept {
     saturated = out.isSaturated;
     saturated_s = out.saturated_s;
     saturated_count = out.saturated_count;
-    error_i = controller.error_i;
-    error_d = controller.error_d;
-    command_d = controller.command_d;
-    command_dd = controller.command_dd;
-    command_ddd = controller.command_ddd;
+    if (debug != 0) {
+        inner.show(controller);
+    }
+    if (!isSane) {
+        controller.reset();
+    }
 }
 
 /// at_pid is another name of the module; the pins are those of pid.

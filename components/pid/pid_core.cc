@@ -26,66 +26,69 @@ double outside(double error, double band) noexcept {
 
 }  // namespace
 
-void Controller::reset(double command, double feedback) noexcept {
-    error_i = 0.0;
-    error_d = 0.0;
-    command_d = 0.0;
-    command_dd = 0.0;
-    command_ddd = 0.0;
-    previous_command_ = command;
-    previous_target_ = command;
-    previous_feedback_ = feedback;
-    raw_command_d_ = 0.0;
-    feedback_d_ = 0.0;
-    limit_state_ = 0;
-    saturated_s_ = 0.0;
-    saturated_count_ = 0;
+void Controller::reset() noexcept {
+    *this = Controller{};
+}
+
+/// The command that feedback is compared with. A previous target of other coordinates does not count.
+double Controller::target(const Inputs &in) noexcept {
+    const bool is_comparable = has_samples_ && !has_jumped_;
+    return in.usesPreviousTarget && is_comparable ? previous_command_ : in.command;
 }
 
 void Controller::derive_command(const Inputs &in, const Tuning &tuning, double dt) noexcept {
-    const bool hasJumped = wasIndexEnabled_ && !in.isIndexEnabled;
     const double before_d = command_d;
     const double before_dd = command_dd;
+    const bool had_d = has_command_d_;
+    const bool had_dd = has_command_dd_;
     if (in.hasCommandDerivative) {
         raw_command_d_ = in.command_derivative;
-    } else if (!hasJumped) {
+    } else if (!has_samples_) {
+        raw_command_d_ = 0.0;
+    } else if (!has_jumped_) {
         raw_command_d_ = (in.command - previous_command_) / dt;
     }
+    has_command_d_ = in.hasCommandDerivative || has_samples_;
+    has_command_dd_ = has_command_d_ && had_d;
     command_d = limited(raw_command_d_, tuning.max_command_d);
-    command_dd = limited((command_d - before_d) / dt, tuning.max_command_dd);
-    command_ddd = limited((command_dd - before_dd) / dt, tuning.max_command_ddd);
-    previous_command_ = in.command;
+    command_dd = has_command_dd_ ? limited((command_d - before_d) / dt, tuning.max_command_dd) : 0.0;
+    command_ddd =
+        has_command_dd_ && had_dd ? limited((command_dd - before_dd) / dt, tuning.max_command_ddd) : 0.0;
 }
 
 void Controller::derive_error(const Inputs &in, const Tuning &tuning, double dt) noexcept {
-    const bool hasJumped = wasIndexEnabled_ && !in.isIndexEnabled;
-    if (!hasJumped) {
-        feedback_d_ =
-            in.hasFeedbackDerivative ? in.feedback_derivative : (in.feedback - previous_feedback_) / dt;
+    if (in.hasFeedbackDerivative) {
+        feedback_d_ = in.feedback_derivative;
+    } else if (!has_jumped_) {
+        feedback_d_ = has_samples_ ? (in.feedback - previous_feedback_) / dt : 0.0;
     }
-    error_d = limited(raw_command_d_ - feedback_d_, tuning.max_error_d);
-    previous_feedback_ = in.feedback;
+    const bool is_known = has_command_d_ && (in.hasFeedbackDerivative || has_samples_);
+    error_d = is_known ? limited(raw_command_d_ - feedback_d_, tuning.max_error_d) : 0.0;
 }
 
 Outputs Controller::run(const Inputs &in, const Tuning &tuning, double dt) noexcept {
     Outputs out;
-    const double target = in.usesPreviousTarget ? previous_target_ : in.command;
-    out.error = target - in.feedback;
-    previous_target_ = in.command;
+    has_jumped_ = was_index_enabled_ && !in.isIndexEnabled;
+    out.error = target(in) - in.feedback;
+    derive_command(in, tuning, dt);
+    derive_error(in, tuning, dt);
+    was_index_enabled_ = in.isIndexEnabled;
+    previous_command_ = in.command;
+    previous_feedback_ = in.feedback;
+    has_samples_ = true;
     if (!in.isEnabled) {
-        reset(in.command, in.feedback);
-        wasIndexEnabled_ = in.isIndexEnabled;
+        error_i = 0.0;
+        limit_state_ = 0;
+        saturated_s_ = 0.0;
+        saturated_count_ = 0;
         return out;
     }
-    const double error = limited(outside(out.error, tuning.deadband), tuning.max_error);
+    const double error = outside(limited(out.error, tuning.max_error), tuning.deadband);
     // While the output is limited, error that would push further must not pile up.
     const bool windsUp = limit_state_ != 0 && (error > 0.0) == (limit_state_ > 0);
     if (!windsUp) {
         error_i = limited(error_i + error * dt, tuning.max_error_i);
     }
-    derive_command(in, tuning, dt);
-    derive_error(in, tuning, dt);
-    wasIndexEnabled_ = in.isIndexEnabled;
     const double sum = tuning.bias + tuning.p * error + tuning.i * error_i + tuning.d * error_d +
                        tuning.ff0 * in.command + tuning.ff1 * command_d + tuning.ff2 * command_dd +
                        tuning.ff3 * command_ddd;

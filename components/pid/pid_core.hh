@@ -38,7 +38,7 @@ struct Inputs {
     bool hasFeedbackDerivative = false;
     double feedback_derivative = 0.0;
     bool usesPreviousTarget = true;  ///< compare the feedback with the command of the call before
-    bool isIndexEnabled = false;     ///< its falling edge means that positions have jumped
+    bool isIndexEnabled = false;     ///< its falling edge means that command and feedback have jumped
 };
 
 struct Outputs {
@@ -49,11 +49,14 @@ struct Outputs {
     std::int32_t saturated_count = 0;
 };
 
+/// Derivatives are computed in every period, enabled or not, from samples of the present coordinates only:
+/// not across an index, and not before there are enough samples. Until then they are 0, so that neither the
+/// first period nor an index adds a step to the output.
 class Controller {
   public:
     Outputs run(const Inputs &in, const Tuning &tuning, double dt) noexcept;
-    /// Forgets everything but where command and feedback are, as when disabled.
-    void reset(double command, double feedback) noexcept;
+    /// Forgets integrator and samples: the next period is like the first one.
+    void reset() noexcept;
 
     // For tuning by eye.
     double error_i = 0.0;
@@ -63,16 +66,20 @@ class Controller {
     double command_ddd = 0.0;
 
   private:
+    double target(const Inputs &in) noexcept;
     void derive_command(const Inputs &in, const Tuning &tuning, double dt) noexcept;
     void derive_error(const Inputs &in, const Tuning &tuning, double dt) noexcept;
 
-    double previous_target_ = 0.0;
+    bool has_samples_ = false;  ///< the previous command and feedback are known
+    bool has_command_d_ = false;
+    bool has_command_dd_ = false;
+    bool has_jumped_ = false;  ///< the index was found in this period
+    bool was_index_enabled_ = false;
     double previous_command_ = 0.0;
     double previous_feedback_ = 0.0;
     double raw_command_d_ = 0.0;  ///< not limited
     double feedback_d_ = 0.0;
-    int limit_state_ = 0;  ///< sign of the limited output of the call before
-    bool wasIndexEnabled_ = false;
+    int limit_state_ = 0;  ///< sign of the limited output of the previous period
     double saturated_s_ = 0.0;
     std::int32_t saturated_count_ = 0;
 };

@@ -106,6 +106,7 @@ double StepChannel::scale() noexcept {
 }
 
 void StepChannel::make_pulses(long period_ns) noexcept {
+    pulses.isEnabled = enable;
     pulses.run(period_ns);
     rawcounts = pulses.counts;
     if (pulses.type == STEP_AND_DIR) {
@@ -137,8 +138,8 @@ void StepChannel::update(std::int64_t pulse_period_ns, std::int64_t period_ns, b
         dirdelay = timing.dirdelay;
     }
     pulses.timing = timing;
-    pulses.isEnabled = enable;
     Command command;
+    command.isEnabled = enable;
     command.isVelocity = isVelocity;
     command.scale = scale();
     command.max_vel = maxvel;

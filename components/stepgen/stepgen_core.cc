@@ -180,7 +180,7 @@ void RateControl::run(const Command &command, PulseChannel &channel, std::int64_
         wanted = following_velocity(error, velocity, command_velocity, accel, dt);
     }
     last_position = command.position;
-    if (!channel.isEnabled) {
+    if (!command.isEnabled) {
         frequency = 0.0;
         channel.rate = 0;
         return;

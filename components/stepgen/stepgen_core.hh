@@ -52,8 +52,8 @@ struct PulseChannel {
     int type = STEP_AND_DIR;
     Pattern pattern{};
     Timing timing{};
-    bool isEnabled = false;
-    Phase rate = 0;  ///< steps per pulse period
+    bool isEnabled = false;  ///< set by the fast part in every period: without it no step begins
+    Phase rate = 0;          ///< steps per pulse period
 
     // Outputs.
     bool step = false;  ///< type 0: step; type 1: a pulse in the direction of `isReverse`
@@ -80,6 +80,7 @@ struct PulseChannel {
 
 /// What the slow part needs to know in a call. Lengths in machine units.
 struct Command {
+    bool isEnabled = false;
     bool isVelocity = false;  ///< control type v instead of p
     double position = 0.0;
     double velocity = 0.0;   ///< [units/s]

@@ -124,9 +124,17 @@ TEST(EncoderRatio, ErrorIsZeroWhileTheSlaveFollows_B6) {
         "addf encoder-ratio.sample t\naddf encoder-ratio.update t");
     bench.pass(2000);
     EXPECT_NEAR(bench.get("encoder-ratio.0.error"), 0.0, 0.025) << "within two counts";
+    bench.run("setp m.speed 0\nsetp s.speed 0");
     bench.set("encoder-ratio.0.enable", 0);
     bench.pass(2);
-    EXPECT_NEAR(bench.get("encoder-ratio.0.error"), 4.0, 0.025) << "turns of the slave";
+    EXPECT_NEAR(bench.get("encoder-ratio.0.error"), 0.0, 0.025) << "the slave stays where it is";
+    bench.set("s.speed", 1);
+    bench.pass(1000);
+    EXPECT_NEAR(bench.get("encoder-ratio.0.error"), 1.0, 0.025) << "turns of the slave";
+    bench.set("s.speed", 0);
+    bench.set("m.speed", 1);
+    bench.pass(1000);
+    EXPECT_NEAR(bench.get("encoder-ratio.0.error"), 1.0, 0.025) << "the master is disengaged";
 }
 
 TEST(Stepgen, StepsToTheCommandWithinItsLimits_B6) {
@@ -218,7 +226,7 @@ TEST(SimHomeSwitch, ClosesAtItsPlaceAndOpensWithHysteresis_B6) {
     EXPECT_EQ(bench.after("sim-home-switch.0.cur-pos", 1.95, "sim-home-switch.0.home-sw"), 1.0);
     EXPECT_EQ(bench.after("sim-home-switch.0.cur-pos", 1.89, "sim-home-switch.0.home-sw"), 0.0);
     bench.set("sim-home-switch.0.index-enable", 1);
-    bench.pass(2);
+    bench.pass(3);
     EXPECT_EQ(bench.get("sim-home-switch.0.index-enable"), 1.0);
     bench.pass(1);
     EXPECT_EQ(bench.get("sim-home-switch.0.index-enable"), 0.0);

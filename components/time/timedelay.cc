@@ -32,7 +32,7 @@ struct Timedelay {
         }
         const double limit = input ? on_delay : off_delay;
         const double waited = (hasChanged ? 0.0 : elapsed.get()) + static_cast<double>(period_ns) * 1e-9;
-        elapsed = waited < limit ? waited : limit;
+        elapsed = waited;
         if (waited >= limit) {
             out = input;
         }

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace mw {
 namespace {
@@ -58,8 +59,57 @@ constexpr std::array<char, 200> PAIRS = [] {
     return pairs;
 }();
 
-bool hasHexPrefix(std::string_view text) {
-    return text.size() > 2 && text[0] == '0' && lower(text[1]) == 'x';
+bool has_hex_prefix(std::string_view digits) {
+    return digits.size() > 2 && digits[0] == '0' && lower(digits[1]) == 'x';
+}
+
+/// A number's text without its sign.
+struct Signed {
+    bool is_negative = false;
+    std::string_view digits;
+
+    explicit Signed(std::string_view text) : digits(text) {
+        const bool has_sign = !text.empty() && (text.front() == '-' || text.front() == '+');
+        is_negative = has_sign && text.front() == '-';
+        digits.remove_prefix(has_sign ? 1 : 0);
+    }
+    /// False when a second sign follows.
+    bool has_digits() const { return !digits.empty() && digits.front() != '-' && digits.front() != '+'; }
+};
+
+enum class Octal { NO, YES };
+
+/// The size of an integer, without its sign.
+std::optional<std::uint64_t> magnitude(const Signed &number, Octal octal) {
+    if (!number.has_digits()) {
+        return std::nullopt;
+    }
+    if (has_hex_prefix(number.digits)) {
+        return parse_whole<std::uint64_t>(number.digits.substr(2), 16);
+    }
+    const bool is_octal = octal == Octal::YES && number.digits.size() > 1 && number.digits.front() == '0';
+    return parse_whole<std::uint64_t>(number.digits, is_octal ? 8 : 10);
+}
+
+std::optional<std::int64_t> whole_int(const Signed &number, Octal octal) {
+    constexpr auto LARGEST = std::uint64_t{std::numeric_limits<std::int64_t>::max()};
+    const auto size = magnitude(number, octal);
+    if (!size || *size > LARGEST + (number.is_negative ? 1 : 0)) {
+        return std::nullopt;
+    }
+    return static_cast<std::int64_t>(number.is_negative ? 0 - *size : *size);
+}
+
+std::optional<std::uint64_t> whole_uint(const Signed &number, Octal octal) {
+    const auto size = magnitude(number, octal);
+    const bool is_below_zero = number.is_negative && size.value_or(1) != 0;
+    return is_below_zero ? std::nullopt : size;
+}
+
+/// Whether a number that no double holds is too small rather than too large: by the sign of its exponent.
+bool is_below_one(std::string_view digits, bool is_hex) {
+    const std::size_t exponent = digits.find_first_of(is_hex ? "pP" : "eE");
+    return exponent != std::string_view::npos && exponent + 1 < digits.size() && digits[exponent + 1] == '-';
 }
 
 }  // namespace
@@ -77,24 +127,44 @@ std::optional<double> parse_double(std::string_view text) {
     return isWhole && std::isfinite(value) ? std::optional<double>(value) : std::nullopt;
 }
 
+std::optional<double> parse_c_double(std::string_view text) {
+    if (const auto decimal = parse_double(text)) {
+        return decimal;
+    }
+    const Signed number(text);
+    const bool is_hex = has_hex_prefix(number.digits);
+    const std::string_view digits = number.digits.substr(is_hex ? 2 : 0);
+    if (!number.has_digits() || digits.front() == '-') {
+        return std::nullopt;
+    }
+    const auto format = is_hex ? std::chars_format::hex : std::chars_format::general;
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, format);
+    if (end != digits.data() + digits.size() || !std::isfinite(value)) {
+        return std::nullopt;
+    }
+    const bool is_tiny = error == std::errc::result_out_of_range && is_below_one(digits, is_hex);
+    if (error != std::errc() && !is_tiny) {
+        return std::nullopt;
+    }
+    const double size = is_tiny ? 0.0 : value;
+    return number.is_negative ? -size : size;
+}
+
 std::optional<std::int64_t> parse_int(std::string_view text) {
-    if (!text.empty() && text.front() == '+') {
-        text.remove_prefix(1);
-    }
-    if (hasHexPrefix(text)) {
-        return parse_whole<std::int64_t>(text.substr(2), 16);
-    }
-    return parse_whole<std::int64_t>(text, 10);
+    return whole_int(Signed(text), Octal::NO);
 }
 
 std::optional<std::uint64_t> parse_uint(std::string_view text) {
-    if (!text.empty() && text.front() == '+') {
-        text.remove_prefix(1);
-    }
-    if (hasHexPrefix(text)) {
-        return parse_whole<std::uint64_t>(text.substr(2), 16);
-    }
-    return parse_whole<std::uint64_t>(text, 10);
+    return whole_uint(Signed(text), Octal::NO);
+}
+
+std::optional<std::int64_t> parse_c_int(std::string_view text) {
+    return whole_int(Signed(text), Octal::YES);
+}
+
+std::optional<std::uint64_t> parse_c_uint(std::string_view text) {
+    return whole_uint(Signed(text), Octal::YES);
 }
 
 std::string to_text(double value) {

@@ -15,9 +15,17 @@ namespace mw {
 /// value is not finite. A decimal comma is never accepted.
 std::optional<double> parse_double(std::string_view text);
 
-/// The whole of `text` as an integer, decimal or with prefix 0x; nothing on leftovers or overflow.
+/// As parse_double(), and hexadecimal as C writes it ("-0x10", "0x1.8p3"). Too small a value is 0.
+std::optional<double> parse_c_double(std::string_view text);
+
+/// The whole of `text` as an integer, decimal or with prefix 0x, which follows the sign; nothing on leftovers
+/// or overflow.
 std::optional<std::int64_t> parse_int(std::string_view text);
 std::optional<std::uint64_t> parse_uint(std::string_view text);
+
+/// As parse_int(), and octal with prefix 0, as in C: "010" is 8 and "08" is nothing.
+std::optional<std::int64_t> parse_c_int(std::string_view text);
+std::optional<std::uint64_t> parse_c_uint(std::string_view text);
 
 /// Shortest text that reads back as the same double.
 std::string to_text(double value);

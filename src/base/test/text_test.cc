@@ -27,6 +27,32 @@ TEST(Text, NumbersAreReadWholeOrNotAtAll) {
     EXPECT_EQ(parse_uint("18446744073709551615"), 18446744073709551615ULL);
     EXPECT_FALSE(parse_int("9223372036854775808").has_value());
     EXPECT_FALSE(parse_uint("-1").has_value());
+    EXPECT_EQ(parse_int("-0x10"), -16);
+    EXPECT_EQ(parse_int("+0X1f"), 31);
+    EXPECT_EQ(parse_int("010"), 10);
+    EXPECT_EQ(parse_int("-9223372036854775808"), std::numeric_limits<std::int64_t>::min());
+    for (const char *bad : {"", "+", "-", "+-1", "--1", "0x", "0x-1", "0xg", "1 ", "-9223372036854775809"}) {
+        EXPECT_FALSE(parse_int(bad).has_value()) << bad;
+        EXPECT_FALSE(parse_c_int(bad).has_value()) << bad;
+        EXPECT_FALSE(parse_c_uint(bad).has_value()) << bad;
+        EXPECT_EQ(parse_uint(bad), std::nullopt) << bad;
+    }
+}
+
+TEST(Text, NumbersAsInCMayBeHexadecimalOrOctal) {
+    EXPECT_EQ(parse_c_int("-010"), -8);
+    EXPECT_EQ(parse_c_int("-0x10"), -16);
+    EXPECT_EQ(parse_c_uint("-0"), 0U);
+    EXPECT_EQ(parse_c_uint("0xffffffffffffffff"), ~0ULL);
+    EXPECT_FALSE(parse_c_int("08").has_value());
+    EXPECT_EQ(parse_c_double("-0x10"), -16.0);
+    EXPECT_EQ(parse_c_double("0x1.8p1"), 3.0);
+    EXPECT_EQ(parse_c_double("010"), 10.0);
+    EXPECT_EQ(parse_c_double("1e-400"), 0.0);
+    for (const char *bad :
+         {"", "-", "+-1", "0x", "0x-1", "-0x-1", "1e400", "-1e400", "0x1p4000", "inf", "-nan"}) {
+        EXPECT_FALSE(parse_c_double(bad).has_value()) << bad;
+    }
 }
 
 TEST(Text, TheLocaleDoesNotMatter_A8) {

@@ -88,7 +88,7 @@ struct LogTap {
 };
 
 Result<> set_number(const rtapi_mp_info &info, int index, std::string_view text) {
-    const auto value = parse_int(text);
+    const auto value = parse_c_int(text);
     const bool isInt = info.mp_type == RTAPI_MP_TYPE_INT;
     if (!value ||
         (isInt && (*value < std::numeric_limits<int>::min() || *value > std::numeric_limits<int>::max()))) {

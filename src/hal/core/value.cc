@@ -3,7 +3,6 @@
 
 #include <array>
 #include <bit>
-#include <charconv>
 #include <limits>
 #include <optional>
 
@@ -39,22 +38,6 @@ std::optional<bool> parse_bit(std::string_view text) {
     return lower == "0" || lower == "1" ? std::optional<bool>(lower == "1") : std::nullopt;
 }
 
-/// As in C: 0x before hexadecimal, 0 before octal digits.
-std::optional<std::int64_t> parse_whole(std::string_view text) {
-    const bool isSigned = !text.empty() && (text[0] == '-' || text[0] == '+');
-    const std::string_view digits = text.substr(isSigned ? 1 : 0);
-    const bool isOctal = digits.size() > 1 && digits[0] == '0' && digits[1] >= '0' && digits[1] <= '9';
-    if (!isOctal) {
-        return parse_int(text);
-    }
-    std::int64_t value = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 8);
-    if (error != std::errc() || end != digits.data() + digits.size()) {
-        return std::nullopt;
-    }
-    return text[0] == '-' ? -value : value;
-}
-
 }  // namespace
 
 const char *type_name(Type type) noexcept {
@@ -68,7 +51,7 @@ const char *type_name(Type type) noexcept {
 
 Result<Type> parse_type(std::string_view name) {
     for (const TypeRow &row : TYPES) {
-        if (name == row.name || name == row.other) {
+        if (equals_ignoring_case(name, row.name) || equals_ignoring_case(name, row.other)) {
             return row.type;
         }
     }
@@ -151,7 +134,7 @@ std::string Value::str() const {
 }
 
 Result<Value> parse_value(Type type, std::string_view text) {
-    const auto whole = parse_whole(text);
+    const auto whole = parse_c_int(text);
     switch (type) {
     case Type::BIT:
         if (const auto bit = parse_bit(text)) {
@@ -159,11 +142,8 @@ Result<Value> parse_value(Type type, std::string_view text) {
         }
         return not_a(type, text, "TRUE, FALSE, 1 or 0");
     case Type::FLOAT:
-        if (const auto number = parse_double(text)) {
+        if (const auto number = parse_c_double(text)) {
             return Value::of_float(*number);
-        }
-        if (const auto decimal = parse_int(text)) {
-            return Value::of_float(static_cast<double>(*decimal));
         }
         return not_a(type, text, "a number such as 1, -0.5 or 4.2e1");
     case Type::S32:
@@ -186,7 +166,7 @@ Result<Value> parse_value(Type type, std::string_view text) {
         }
         return not_a(type, text, "a whole number from -9223372036854775808 to 9223372036854775807");
     case Type::U64:
-        if (const auto number = parse_uint(text)) {
+        if (const auto number = parse_c_uint(text)) {
             return Value::of_u64(*number);
         }
         return not_a(type, text, "a whole number from 0 to 18446744073709551615");

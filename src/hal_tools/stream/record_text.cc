@@ -44,7 +44,7 @@ bool parse_value(hal_type_t type, std::string_view text, hal_stream_data_u &valu
         return text == "0" || text == "1";
     }
     if (type == HAL_FLOAT) {
-        const std::optional<double> number = parse_double(text);
+        const std::optional<double> number = parse_c_double(text);
         value.f = number.value_or(0.0);
         return number.has_value();
     }

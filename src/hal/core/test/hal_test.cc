@@ -234,6 +234,13 @@ TEST(HalValue, ReadsAndPrintsEveryType) {
     EXPECT_EQ(*parse_value(Type::S32, "010"), Value::of_s32(8));
     EXPECT_EQ(*parse_value(Type::S32, "-010"), Value::of_s32(-8));
     EXPECT_FALSE(parse_value(Type::U32, "08"));
+    EXPECT_EQ(*parse_value(Type::S32, "-0x10"), Value::of_s32(-16));
+    EXPECT_EQ(*parse_value(Type::U32, "+0x10"), Value::of_u32(16));
+    EXPECT_EQ(*parse_value(Type::S64, "-0x10"), Value::of_s64(-16));
+    EXPECT_EQ(*parse_value(Type::U64, "010"), Value::of_u64(8));
+    EXPECT_EQ(*parse_value(Type::FLOAT, "-0x10"), Value::of_float(-16));
+    EXPECT_FALSE(parse_value(Type::S32, "+-1"));
+    EXPECT_FALSE(parse_value(Type::FLOAT, "nan"));
     EXPECT_EQ(*parse_value(Type::FLOAT, "010"), Value::of_float(10));
     EXPECT_EQ(*parse_value(Type::FLOAT, ".15"), Value::of_float(0.15));
     EXPECT_EQ(*parse_value(Type::FLOAT, "4.2e1"), Value::of_float(42));
@@ -245,6 +252,14 @@ TEST(HalValue, ReadsAndPrintsEveryType) {
     EXPECT_EQ(parse_value(Type::S64, "-9223372036854775808")->str(), "-9223372036854775808");
     EXPECT_EQ(Value::of_float(2147483647).str(), "2.147484e+09");
     EXPECT_EQ(Value::of_bit(true).str(), "TRUE");
+}
+
+TEST(HalValue, NamesOfTypesAreInAnyCase) {
+    EXPECT_EQ(*parse_type("BIT"), Type::BIT);
+    EXPECT_EQ(*parse_type("Float"), Type::FLOAT);
+    EXPECT_EQ(*parse_type("S32"), Type::S32);
+    EXPECT_EQ(*parse_type("U64"), Type::U64);
+    EXPECT_FALSE(parse_type("BITS"));
 }
 
 }  // namespace

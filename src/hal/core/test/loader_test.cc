@@ -107,6 +107,8 @@ TEST(Loader, SdkComponentHasItsPinsParametersAndFunctions) {
     TestMachine machine;
     ASSERT_EQ(machine.load("threads2"), "ok");
     EXPECT_NE(machine.load("sdk_sum", {"count=5"}).find("1 to 4 are possible"), std::string::npos);
+    EXPECT_NE(machine.load("sdk_sum", {"count=010"}).find("count=8"), std::string::npos) << "octal, as in C";
+    EXPECT_NE(machine.load("sdk_sum", {"count=-0x1"}).find("count=-1"), std::string::npos);
     EXPECT_NE(machine.load("sdk_sum", {"count=1", "names=a"}).find("not both"), std::string::npos);
     ASSERT_EQ(machine.load("sdk_sum", {"count=2"}), "ok");
     ASSERT_TRUE(machine.hal().add_function("sdk-sum.1", "fast"));

@@ -21,6 +21,8 @@ constexpr Case GOOD[] = {
     {"newsig a bit\nnewsig b float\nnewsig c s32\nnewsig d u32\nnewsig e s64\nnewsig f u64\nnewsig g "
      "port\nlist sig",
      "a b c d e f g \n"},
+    {"newsig a BIT\nnewsig b Float\nstype a\nstype b", "bit\nfloat\n"},
+    {"newsig a s32\nsets a -0x10\ngets a", "-16\n"},
     {"newsig a bit\ndelsig a\nlist sig", "\n"},
     {"newsig a bit\nnewsig b bit\ndelsig all\nlist sig", "\n"},
     {"net s board.out => board.in0\nsave netla", "# nets\nnet s board.out => board.in0\n"},
