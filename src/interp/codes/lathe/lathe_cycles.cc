@@ -167,7 +167,6 @@ bool begin_lathe_cycle(const Code &code, const BlockValues &values, const Machin
     const Check checks[] = {
         {state.plane != Plane::XZ, 'q', "needs the plane G18"},
         {state.comp.isOn() && code.number != 700, 'q', "cannot be used with cutter radius compensation on"},
-        {values.isMachineCoordinates, 'q', "cannot be used with g53"},
         {values.has('@') || values.has('^'), 'q', "takes no polar words"},
         {state.feed_mode == FeedMode::INVERSE_TIME, 'q', "cannot be used with inverse time feed"},
         {state.feed == 0.0, 'q', "needs a feed: give F first"},
