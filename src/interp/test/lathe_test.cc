@@ -180,8 +180,19 @@ TEST(LatheCycle, AStartBelowTheProfileBoresInLayers_I1) {
 
 TEST(LatheCycle, WhereTheStartTellsNoSideItIsRefused_I1) {
     const std::string both = "O100 sub\nG0 Z0\nG1 X12 Z-5\nG1 X8 Z-15\nO100 endsub\n";
-    EXPECT_NE(error_of(both, "G71 Q100 X10 I1").find("both sides"), std::string::npos);
-    EXPECT_NE(error_of(both, "G70 Q100 X10 D1").find("both sides"), std::string::npos);
+    const std::string text = "goes from X8 to X12, and the cycle starts between them at X10";
+    EXPECT_NE(error_of(both, "G71 Q100 X10 I1").find(text), std::string::npos)
+        << error_of(both, "G71 Q100 X10 I1");
+    EXPECT_NE(error_of(both, "G70 Q100 X10 D1").find(text), std::string::npos);
+    EXPECT_NE(error_of(both, "G71 Q100 X10 I1")
+                  .find("start at X12 or more for an outside, at X8 or less for a bore"),
+              std::string::npos);
+    EXPECT_FALSE(moves_of(both, "G71 Q100 X12 I1").empty()) << "where the text leads";
+    EXPECT_FALSE(moves_of(both, "G71 Q100 X8 I1").empty());
+    const std::string facing = "O100 sub\nG0 X30\nG1 Z12 X20\nG1 Z8 X10\nO100 endsub\n";
+    EXPECT_NE(error_of(facing, "G72 Q100 Z10 I1")
+                  .find("goes from Z8 to Z12, and the cycle starts between them at Z10"),
+              std::string::npos);
     EXPECT_FALSE(moves_of(both, "G70 Q100 X10").empty()) << "no distance, no side";
 }
 
