@@ -4,6 +4,7 @@
 Each function takes a Pair and changes its two lists of calls where it finds its own difference and nothing else. What is
 equal after all of them is explained by those that have changed something.
 """
+import math
 import re
 
 NUMBER = re.compile(r'-?\d+\.\d+')
@@ -223,7 +224,91 @@ def orientation_of_back_boring(pair):
                           for call in pair.reference]
 
 
-CLASSES = (speed_override_at_end, order_under_compensation, context_announced, threading_enables_override,
+def isAroundCorner(start, middle, end):
+    """Whether the points between start and end are corners of a polygon around the circle through both, whose first
+    and last side touch it there."""
+    (x1, y1), (x2, y2), (dx, dy) = start, end, (middle[0][0] - start[0], middle[0][1] - start[1])
+    across = dx * (y2 - y1) - dy * (x2 - x1)
+    chord = (x2 - x1)**2 + (y2 - y1)**2
+    if abs(across) < 1e-12 or chord < 1e-8:
+        return False
+    # The centre is on the normal to the first side in its start, and as far from the end.
+    factor = chord / (2 * across)
+    centre = (x1 - dy * factor, y1 + dx * factor)
+    radius = math.hypot(x1 - centre[0], y1 - centre[1])
+    # Four decimals are printed: the error of a difference, carried to the centre.
+    slack = 3e-4 + radius * 1.5e-4 * (math.hypot(dx, dy) + math.sqrt(chord)) / abs(across)
+    far = [math.hypot(x - centre[0], y - centre[1]) for x, y in middle]
+    last = (end[0] - middle[-1][0], end[1] - middle[-1][1])
+    leaving = last[0] * (x2 - centre[0]) + last[1] * (y2 - centre[1])
+    return all(radius - slack <= d <= 1.3 * radius + slack for d in far) and abs(leaving) <= math.hypot(*last) * slack + 3e-4 * radius
+
+
+def rapid_corners(pair):
+    """G0 around a convex corner under compensation: LinuxCNC's rapid is a chord, ours goes around the tool's circle."""
+    if not any('cutter radius compensation on' in call for call in pair.reference):
+        return
+    out, at, mine = [], None, pair.ours
+    i = 0
+    while i < len(mine):
+        j = len(out)
+        isTheirs = j < len(pair.reference) and isSameCall(mine[i], pair.reference[j])
+        found = 0
+        for more in range(1, 6):
+            isRun = not isTheirs and at is not None and i + more < len(mine) and j < len(pair.reference) and all(
+                call.startswith('STRAIGHT_TRAVERSE(') for call in mine[i:i + more + 1])
+            if isRun and isSameCall(mine[i + more], pair.reference[j]):
+                points = [numbers(call) for call in mine[i:i + more + 1]]
+                for a, b in ((0, 1), (0, 2)):
+                    flat = [(one[a], one[b]) for one in points]
+                    found = more if isAroundCorner((at[a], at[b]), flat[:-1], flat[-1]) else found
+                break
+        i += found
+        out.append(mine[i])
+        at = end_of(mine[i]) or at
+        i += 1
+    pair.ours = out
+
+
+def end_of(call):
+    """X Y Z of a move; None for other calls. Arcs are told in the plane XY or XZ by what they print."""
+    return numbers(call)[:3] if call.startswith(('STRAIGHT_FEED(', 'STRAIGHT_TRAVERSE(')) else None
+
+
+def tolerance_after_units(pair):
+    """A canned cycle behind G20 or G21 restores the figures of G64 in the units of before; here their lengths."""
+    restored = ('SET_MOTION_CONTROL_MODE(CANON_CONTINUOUS', 'SET_NAIVECAM_TOLERANCE(')
+    for i, (theirs, mine) in enumerate(zip(pair.reference, pair.ours)):
+        if not theirs.startswith(restored) or theirs == mine or NUMBER.sub('#', theirs) != NUMBER.sub('#', mine):
+            continue
+        a, b = numbers(theirs)[0], numbers(mine)[0]
+        if abs(b - 25.4 * a) < 2e-3 or abs(a - 25.4 * b) < 2e-3:
+            pair.ours[i] = theirs
+
+
+def thread_passes(pair):
+    """G76 whose last calculated depth is K but for rounding: LinuxCNC cuts at K once more; here the passes are counted."""
+    if not pair.has('g76'):
+        return
+    at = next((i for i, (a, b) in enumerate(zip(pair.reference, pair.ours)) if not isSameCall(a, b)), len(pair.ours))
+    while at < len(pair.reference):
+        for length in range(6, 12):
+            first = at - length
+            one, other = pair.reference[max(first, 0):at], pair.reference[at:at + length]
+            isPass = any(call.startswith('START_SPEED_FEED_SYNC(') for call in one) and \
+                sum(call == 'STOP_SPEED_FEED_SYNCH()' for call in one) == 1
+            if first >= 0 and isPass and isSame(one, other):
+                del pair.reference[at:at + length]
+                break
+        else:
+            return
+        found = next((i for i, (a, b) in enumerate(zip(pair.reference, pair.ours)) if not isSameCall(a, b)), None)
+        if found is None or found <= at:
+            return
+        at = found
+
+
+CLASSES = (speed_override_at_end, order_under_compensation, rapid_corners, tolerance_after_units, thread_passes, context_announced, threading_enables_override,
            lathe_pieces, way_out_of_finishing, peck_at_the_bottom, long_numbers, small_numbers, angles_of_home, orientation_of_back_boring)
 
 # What ours refuses and LinuxCNC does not, and what it refuses it with. What was done before must be equal.
@@ -239,6 +324,10 @@ STRICTER = {
     'G5.1 needs I or J': 'G5.1 with I0 J0',
     'g5 needs the word': 'lines after a G5 that lack P and Q',
     'G64 must not be negative': 'G64 with a negative tolerance',
+    'm67 needs the word Q': 'M67 and M68 without Q',
+    'm68 needs the word Q': 'M67 and M68 without Q',
+    'The wait mode L of M66': 'M66 with another wait mode than 0 to 4',
+    'Cannot do g33 with cutter radius compensation on': 'G33 under compensation',
 }
 
 

@@ -42,6 +42,9 @@ class Program:
             self.statement()
         self.lines.append(self.random.choice(('M2', 'M2', 'M2', 'M30', '%')) if self.lines[0] == '%'
                           else self.random.choice(('M2', 'M30')))
+        if self.chance(0.03):
+            self.lines.insert(self.random.randint(1, len(self.lines)),
+                              self.random.choice(('%', '%', ' % ', '% end', '/%', 'G0 X1 %')))
 
     def text(self):
         return '\n'.join(self.lines) + '\n'
@@ -101,7 +104,8 @@ class Program:
         kinds = ((12, self.straight), (8, self.arc), (7, self.cycle), (5, self.modal), (4, self.coordinates),
                  (4, self.machine_code), (3, self.parameters), (3, self.flow), (2, self.tool), (2, self.compensation),
                  (2, self.comment), (1, self.polar), (1, self.threading), (1, self.feed), (1, self.nonsense),
-                 (1, self.spline), (1, self.home), (1, self.lathe), (1, self.probe), (1, self.oriented), (1, self.call))
+                 (1, self.spline), (1, self.home), (1, self.lathe), (1, self.probe), (1, self.oriented), (1, self.call),
+                 (1, self.tabled_tool))
         chosen = self.random.choices([k for _, k in kinds], [w for w, _ in kinds])[0]
         chosen()
 
@@ -170,7 +174,8 @@ class Program:
             line += ' F10'
         self.add(line)
         for _ in range(self.random.randint(0, 2)):
-            self.add(self.words((self.random.choice((first, second)),)) + (' F10' if self.feed_mode == 'G93' else ''))
+            again = f' R{self.number(0, 3, 1)}' if self.chance(0.1) else ''
+            self.add(self.words((self.random.choice((first, second)),)) + again + (' F10' if self.feed_mode == 'G93' else ''))
         self.add('G80')
         self.motion = 'G80'
 
@@ -283,7 +288,11 @@ class Program:
             self.body()
             self.lines.append(f'{label} while [#30 lt {self.random.randint(0, 4)}]')
         elif kind == 'repeat':
-            self.lines.append(f'{label} repeat [{self.random.randint(0, 3)}]')
+            self.lines.append(f'{label} repeat [{self.random.choice((0, 1, 2, 3, "0.4", "1.6", "2.5"))}]')
+            if self.chance(0.1):
+                inner = self.label()
+                self.lines += [f'{inner} if [{self.random.choice((0, 0, 1))}]',
+                               f'{label} {self.random.choice(("break", "continue"))}', f'{inner} endif']
             self.body()
             self.lines.append(f'{label} endrepeat')
         else:
@@ -360,6 +369,13 @@ class Program:
     def threading(self):
         self.add('S100 M3')
         self.motion = 'G80'
+        if self.chance(0.4):  # K is the depth of a whole number of passes
+            first, passes = self.random.randint(1, 9), self.random.randint(1, 8)
+            power, depth = self.random.choice(((1, passes), (2, passes), ('1.5', passes**2), ('0.5', passes)))
+            self.add(f'G18 G76 P{self.number(0.05, 0.2, 2)} Z{self.number(-3, -1)} I-0.1 J0.0{first} '
+                     f'K{first * depth / 100:.2f} R{power} H{self.random.randint(0, 1)}')
+            self.plane = 'G18'
+            return
         self.add(self.random.choice((f'G33 Z{self.number(-3, 3)} K{self.random.uniform(0.02, 0.2):.3f}',
                                      f'G33.1 Z{self.number(-3, 3)} K{self.random.uniform(0.02, 0.2):.3f}',
                                      f'G18 G76 P{self.random.uniform(0.05, 0.2):.3f} Z{self.number(-3, -1)} I-0.1 J0.01 K0.05 R{self.number(1, 2)} Q29.5 H{self.random.randint(0, 2)} E0.05 L{self.random.randint(0, 3)}')))
@@ -374,7 +390,9 @@ class Program:
         if self.chance(0.5):
             return
         self.add(self.random.choice(('G1 X', 'G1 X1 X2', 'G2 X1 Y1', 'G0 G1 X1', 'G43.1', 'M66', 'G10 L2', 'G81 X1', 'T-1 M6', 'S-1', 'G2 X1 Y1 R0.01',
-                                     'G4', 'G999', 'M999', '#31=[1/0]', 'G1 X[1', 'Q1', 'G92', 'G53 X1', 'G41 D99', 'G64 P-1', 'G10 L2 P10 X1', 'F-1', 'G33 Z1', 'G96', 'H1 D1', 'G5 X1')))
+                                     'G4', 'G999', 'M999', '#31=[1/0]', 'G1 X[1', 'Q1', 'G92', 'G53 X1', 'G41 D99', 'G64 P-1', 'G10 L2 P10 X1', 'F-1', 'G33 Z1', 'G96', 'H1 D1', 'G5 X1',
+                                     'G53', 'G53 M5', 'G53 F10', 'G53 G2 X1 I0.5', 'G53 G81 X1 Z-1 R1', 'G53 G33 Z1 K1', 'G53 G80', 'G53 G43.1 X1',
+                                     'G53 G38.2 X1', 'G53 G0', 'M67 E1', 'M68 E1', 'M66 P0 L5', 'M66 P0 L5 Q1')))
 
     def spline(self):
         kind = self.random.choice(('G5', 'G5.1', 'G5.2', 'G5'))
@@ -428,6 +446,24 @@ class Program:
             x += self.random.uniform(1, 4)
             z -= self.random.uniform(0.5, 4)
         self.lines += ['G40', f'G0 X{self.number(20, 30)} Z{self.number(5, 10)}']
+
+    def tabled_tool(self):
+        """G41 and G42 with a tool of the table, of any orientation, in any plane."""
+        if self.feed_mode == 'G93' or self.is_compensated:
+            return
+        number = self.random.randint(1, 3)
+        plane = self.random.choice(('G17', 'G18', 'G18', 'G18', 'G19'))
+        orientation = self.random.choice((0, 0, 9, self.random.randint(1, 8)))
+        self.lines += ['G80 G90 G40', f'G10 L1 P{number} R{self.number(0.05, 0.3, 3)} Q{orientation}', plane,
+                       'G1 X0 Y0 Z0 F100' + (' S100' if self.feed_mode == 'G95' else ''),
+                       f'{self.random.choice(("G41", "G42"))} D{number}']
+        self.plane, self.is_incremental, self.motion = plane, False, 'G80'
+        first, second = PLANES[plane][:2]
+        at = [0.0, 0.0]
+        for _ in range(self.random.randint(1, 4)):
+            at = [at[0] + self.random.uniform(1, 4), at[1] + self.random.uniform(-2, 2)]
+            self.lines.append(f'G1 {first}{at[0]:.3f} {second}{at[1]:.3f}')
+        self.lines += ['G40', f'G1 {first}{at[0] + 3:.3f} {second}{at[1]:.3f}']
 
     def call(self):
         """Subroutines that call each other, by number and by expression; M98."""

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/duration.hh"
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
@@ -72,7 +73,7 @@ Result<> MachineStart::make() {
     make_parameter_file();
     fmt::print("{} is up: instance '{}', {}\n", loaded_.machine.name, instance_, settings_.ini);
     std::fflush(stdout);
-    const auto delay_ns = static_cast<std::int64_t>(loaded_.machine.applications_delay_s * 1e9);
+    const auto delay_ns = to_ns(loaded_.machine.applications_delay_s);
     const std::string ini = whole_path(settings_.ini);
     side_programs_.emplace(settings_.isDisplayed ? loaded_.machine.applications : std::vector<std::string>{},
                            ini, access_->now_ns() + delay_ns);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/atomic_file.hh"
+#include "base/duration.hh"
 #include "base/stop_signals.hh"
 
 namespace mw::app {
@@ -19,7 +20,7 @@ constexpr std::int64_t STOP_TIMEOUT_NS = 30000000000;
 Operator::Operator(MachineAccess &machine, const machine::MachineConfig &config, diag::Sink &sink,
                    const OperatorOptions &options)
     : machine_(machine), config_(config), sink_(sink), panel_(machine, config, sink, options.attendance),
-      patience_ns_(static_cast<std::int64_t>(options.patience_s * 1e9)) {
+      patience_ns_(to_ns(options.patience_s)) {
     static_cast<void>(machine_.client().read_status());
 }
 

@@ -19,6 +19,7 @@
 #include "app/ui_filter.hh"
 #include "app/ui_path.hh"
 #include "app/ui_tabs.hh"
+#include "base/duration.hh"
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
@@ -114,7 +115,7 @@ ui::web::ApiSetup setup_of(const UiWords &words, const machine::LoadedConfig &lo
     setup.facts.filters.folder = filtered_folder(instance);
     setup.screens.connect = [instance, ini] { return connect(instance, ini); };
     setup.screens.version = MW_VERSION;
-    setup.screens.status_period_ns = static_cast<std::int64_t>(status_period_s(loaded.ini, sink) * 1e9);
+    setup.screens.status_period_ns = to_ns(status_period_s(loaded.ini, sink));
     setup.screen_folder = screen_folder(words.screen);
     setup.dialogs = dialog_facts(loaded.ini, sink);
     setup.connect_hal = [instance]() -> Result<std::unique_ptr<hal::Host>> {

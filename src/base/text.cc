@@ -230,6 +230,11 @@ std::string printable(std::string_view text) {
     return out;
 }
 
+std::string_view without_byte_order_mark(std::string_view text) {
+    constexpr std::string_view MARK = "\xEF\xBB\xBF";
+    return text.starts_with(MARK) ? text.substr(MARK.size()) : text;
+}
+
 std::string_view trim(std::string_view text) {
     while (!text.empty() && isBlank(text.front())) {
         text.remove_prefix(1);

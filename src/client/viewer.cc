@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/duration.hh"
 #include "msgs/binary.hh"
 
 namespace mw::client {
@@ -48,7 +49,7 @@ int Viewer::machine_pid() const {
 }
 
 std::int64_t Viewer::end_of(double timeout_s) {
-    return monotonic_ns() + static_cast<std::int64_t>(timeout_s * 1e9);
+    return monotonic_ns() + to_ns(timeout_s);
 }
 
 Result<> Viewer::sleep(std::uint32_t heard, std::int64_t end_ns) const {

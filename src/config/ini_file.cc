@@ -70,6 +70,7 @@ class IniParser {
 
     void text(std::string_view text, const std::string &path, int depth) {
         int line = 0;
+        text = without_byte_order_mark(text);
         open_.push_back(path);
         while (!text.empty() && !isStopped_) {
             ++line;

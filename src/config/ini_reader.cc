@@ -35,7 +35,32 @@ std::string_view name_of(const IniKey &key, std::string_view section) {
     return section.empty() ? key.section : section;
 }
 
+/// A value with " #" or " ;" in it: a comment was meant.
+bool hasCommentAfter(std::string_view value) {
+    for (std::size_t at = 1; at < value.size(); ++at) {
+        const bool isMark = value[at] == '#' || value[at] == ';';
+        if (isMark && (value[at - 1] == ' ' || value[at - 1] == '\t')) {
+            return true;
+        }
+    }
+    return false;
+}
+
 }  // namespace
+
+diag::Diagnostic IniReader::with_comment_hint(diag::Diagnostic one) const {
+    const SourcePlace &place = one.what.place;
+    const bool isInComment = std::ranges::any_of(file_.entries(), [&place](const IniEntry &entry) {
+        return entry.place.line == place.line && entry.place.file == place.file &&
+               hasCommentAfter(entry.value);
+    });
+    if (isInComment) {
+        one.what.hint += one.what.hint.empty() ? "" : "; ";
+        one.what.hint +=
+            "# and ; begin a comment only at the start of a line: write the comment in a line of its own";
+    }
+    return one;
+}
 
 void IniReader::know(std::string_view section, std::string_view key) {
     known_[std::string(section)].insert(std::string(key));
@@ -89,9 +114,9 @@ const IniEntry *IniReader::scalar(const IniKey &key, std::string_view section) {
     const IniEntry *first = file_.find(section, key.name);
     const IniEntry *second = file_.find(section, key.name, 2);
     if (second != nullptr && warned_twice_.insert(label(section, key.name)).second) {
-        sink_->warning(label(section, key.name) + " is given twice; the first one, '" + first->value +
-                           "' in " + first->place.str() + ", is used",
-                       second->place);
+        sink_.warning(label(section, key.name) + " is given twice; the first one, '" + first->value +
+                          "' in " + first->place.str() + ", is used",
+                      second->place);
     }
     return first;
 }
@@ -102,11 +127,11 @@ void IniReader::missing(std::string_view section, const IniKey &key, const std::
         return;  // one message for the whole section
     }
     const std::string near = nearest_name(key.name, file_.keys(section));
-    sink_->error(hasSection ? label(section, key.name) + " is missing"
-                            : "section [" + std::string(section) + "] is missing",
-                 file_.place_of_section(section),
-                 "expected " + label(section, key.name) + " = " + expected +
-                     (near.empty() ? "" : "; is '" + near + "' a misspelling?"));
+    sink_.error(hasSection ? label(section, key.name) + " is missing"
+                           : "section [" + std::string(section) + "] is missing",
+                file_.place_of_section(section),
+                "expected " + label(section, key.name) + " = " + expected +
+                    (near.empty() ? "" : "; is '" + near + "' a misspelling?"));
 }
 
 std::optional<double> IniReader::number(const IniEntry &entry, const IniKey &key) {
@@ -114,13 +139,13 @@ std::optional<double> IniReader::number(const IniEntry &entry, const IniKey &key
     const auto value = words.empty() ? std::nullopt : parse_double(words[0]);
     const bool isCommentAfter = words.size() > 1 && (words[1][0] == '#' || words[1][0] == ';');
     if (!value.has_value() || (words.size() > 1 && !isCommentAfter)) {
-        sink_->error(label(entry.section, entry.key) + " = '" + entry.value + "' is not a number",
-                     entry.place, "expected " + describe_number(key) + ", with a decimal point");
+        sink_.error(label(entry.section, entry.key) + " = '" + entry.value + "' is not a number", entry.place,
+                    "expected " + describe_number(key) + ", with a decimal point");
         return std::nullopt;
     }
     if (*value < key.lowest || *value > key.highest) {
-        sink_->error(label(entry.section, entry.key) + " = " + entry.value + " is out of range", entry.place,
-                     "expected " + describe_number(key));
+        sink_.error(label(entry.section, entry.key) + " = " + entry.value + " is out of range", entry.place,
+                    "expected " + describe_number(key));
         return std::nullopt;
     }
     return value;
@@ -140,14 +165,14 @@ std::optional<std::int64_t> IniReader::whole(const IniEntry &entry, const IniKey
     }
     const bool isCommentAfter = words.size() > 1 && (words[1][0] == '#' || words[1][0] == ';');
     if (!value.has_value() || (words.size() > 1 && !isCommentAfter)) {
-        sink_->error(label(entry.section, entry.key) + " = '" + entry.value + "' is not a whole number",
-                     entry.place, "expected " + describe_whole(key));
+        sink_.error(label(entry.section, entry.key) + " = '" + entry.value + "' is not a whole number",
+                    entry.place, "expected " + describe_whole(key));
         return std::nullopt;
     }
     const auto size = static_cast<double>(*value);
     if (size < key.lowest || size > key.highest) {
-        sink_->error(label(entry.section, entry.key) + " = " + entry.value + " is out of range", entry.place,
-                     "expected " + describe_whole(key));
+        sink_.error(label(entry.section, entry.key) + " = " + entry.value + " is out of range", entry.place,
+                    "expected " + describe_whole(key));
         return std::nullopt;
     }
     return value;
@@ -184,8 +209,8 @@ bool IniReader::boolean(const IniKey &key, std::string_view section) {
     if (const auto truth = ini_bool(words.empty() ? "" : words[0])) {
         return *truth;
     }
-    sink_->error(label(entry->section, entry->key) + " = '" + entry->value + "' is neither true nor false",
-                 entry->place, "expected YES, TRUE or 1, or NO, FALSE or 0");
+    sink_.error(label(entry->section, entry->key) + " = '" + entry->value + "' is neither true nor false",
+                entry->place, "expected YES, TRUE or 1, or NO, FALSE or 0");
     return preset;
 }
 
@@ -211,8 +236,8 @@ std::string IniReader::choice(const IniKey &key, std::string_view section) {
         }
         all += (all.empty() ? "" : ", ") + one;
     }
-    sink_->error(label(entry->section, entry->key) + " = '" + entry->value + "' is not known", entry->place,
-                 "expected one of " + all);
+    sink_.error(label(entry->section, entry->key) + " = '" + entry->value + "' is not known", entry->place,
+                "expected one of " + all);
     return std::string(key.text);
 }
 
@@ -237,9 +262,9 @@ void IniReader::report_sections(diag::Severity severity) {
             known_.count(section) > 0 || open_.count(section) > 0 || used_sections_.count(section) > 0;
         const std::string near = isMeant ? "" : nearest_name(section, names);
         if (!near.empty() && used_sections_.insert(section).second) {
-            sink_->report({severity,
-                           {"unknown section [" + section + "]; it has no effect",
-                            file_.place_of_section(section), "did you mean [" + near + "]?"}});
+            sink_.report({severity,
+                          {"unknown section [" + section + "]; it has no effect",
+                           file_.place_of_section(section), "did you mean [" + near + "]?"}});
         }
     }
 }
@@ -251,7 +276,7 @@ void IniReader::report_unknown(bool isStrict) {
         place.column = 1;
         const auto why = without_effect_.find(label(entry.section, entry.key));
         if (why != without_effect_.end()) {
-            sink_->report({severity, {why->first + " has no effect: " + why->second, place, {}}});
+            sink_.report({severity, {why->first + " has no effect: " + why->second, place, {}}});
             without_effect_.erase(why);  // once
         }
         const auto section = known_.find(entry.section);
@@ -264,9 +289,9 @@ void IniReader::report_unknown(bool isStrict) {
         }
         const std::vector<std::string> names(section->second.begin(), section->second.end());
         const std::string near = nearest_name(entry.key, names);
-        sink_->report({severity,
-                       {"unknown key " + label(entry.section, entry.key) + "; it has no effect", place,
-                        near.empty() ? "" : "did you mean " + near + "?"}});
+        sink_.report({severity,
+                      {"unknown key " + label(entry.section, entry.key) + "; it has no effect", place,
+                       near.empty() ? "" : "did you mean " + near + "?"}});
     }
     report_sections(severity);
 }

@@ -20,12 +20,17 @@ namespace mw::config {
 /// line and column; the value returned then is the default, so that reading goes on and reports them all.
 class IniReader {
   public:
-    IniReader(const IniFile &file, diag::Sink &sink) : file_(file), sink_(&sink) {}
+    IniReader(const IniFile &file, diag::Sink &sink)
+        : file_(file), target_(&sink),
+          sink_([this](const diag::Diagnostic &one) { target_->report(with_comment_hint(one)); }) {}
+    IniReader(const IniReader &) = delete;
+    IniReader &operator=(const IniReader &) = delete;
 
     const IniFile &file() const { return file_; }
-    diag::Sink &sink() { return *sink_; }
+    /// For problems of this file: one in a line with a comment after the value gets a hint about it.
+    diag::Sink &sink() { return sink_; }
     /// From now on problems go there.
-    void tell(diag::Sink &sink) { sink_ = &sink; }
+    void tell(diag::Sink &sink) { target_ = &sink; }
 
     /// Makes the keys of a table known. Rows of "JOINT_*" and the like count with declare_in().
     void declare(std::span<const IniKey> keys);
@@ -67,8 +72,11 @@ class IniReader {
     std::optional<double> number(const IniEntry &entry, const IniKey &key);
     std::optional<std::int64_t> whole(const IniEntry &entry, const IniKey &key);
 
+    diag::Diagnostic with_comment_hint(diag::Diagnostic one) const;
+
     const IniFile &file_;
-    diag::Sink *sink_;
+    diag::Sink *target_;
+    diag::Sink sink_;  ///< passes on to `target_`
     std::map<std::string, std::set<std::string>, std::less<>> known_;
     std::set<std::string, std::less<>> open_;
     std::set<std::string, std::less<>> used_sections_;

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "base/duration.hh"
 #include "base/text.hh"
 #include "geom/pose.hh"
 #include "interp/ini_keys.hh"
@@ -388,7 +389,7 @@ void read_periods(IniReader &ini, MachineConfig &machine) {
     const double cycle_s = ini.real(ini_key("TASK", "CYCLE_TIME"));
     // A slow task cycle must not look like one that stands still.
     machine.task.watchdog_s = std::max(0.5, 10.0 * cycle_s);
-    machine.task_period_ns = static_cast<std::int64_t>(std::llround(cycle_s * 1e9));
+    machine.task_period_ns = to_ns(cycle_s);
     machine.task.mdi_queued_commands = static_cast<int>(ini.integer(ini_key("TASK", "MDI_QUEUED_COMMANDS")));
     machine.task.interpreter_plugin = ini.text(ini_key("TASK", "INTERPRETER"));
 }

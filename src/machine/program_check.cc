@@ -95,9 +95,9 @@ class Checker {
         if (options_.points == nullptr) {
             return;
         }
-        constexpr int CHORDS = 48;  ///< of a full turn
+        constexpr double CHORDS = 48, MOST_CHORDS = 100000;  ///< of a full turn, of a piece
         const double turns = std::abs(piece.angle_rad) / (2 * std::numbers::pi);
-        const int chords = std::max(1, static_cast<int>(std::ceil(CHORDS * turns)));
+        const int chords = static_cast<int>(std::clamp(std::ceil(CHORDS * turns), 1.0, MOST_CHORDS));
         const PieceShape shape(piece);
         for (int i = options_.points->all().empty() ? 0 : 1; i <= chords; ++i) {
             options_.points->add(shape.point_at(static_cast<double>(i) / chords), piece.isRapid);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/atomic_file.hh"
+#include "base/duration.hh"
 #include "base/text.hh"
 
 namespace mw::machine {
@@ -18,7 +19,6 @@ constexpr const char *END = "FINI";
 constexpr const char *REFUSAL = "NAK";
 constexpr std::size_t MOST_ARGUMENTS = 10;
 constexpr std::size_t MOST_TOOLS_BYTES = 1000000;
-constexpr double NS_PER_S = 1e9;
 
 std::int64_t now_ns() {
     return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
@@ -41,8 +41,7 @@ bool isRefusal(const std::string &line) {
 
 ToolDatabase::ToolDatabase(Setup setup, LineProgram program)
     : ToolData(tool::Table(setup.changer)), setup_(std::move(setup)), program_(std::move(program)) {
-    awaited_.push_back(
-        {Kind::VERSION, {}, now_ns() + static_cast<std::int64_t>(setup_.patience_s * NS_PER_S)});
+    awaited_.push_back({Kind::VERSION, {}, now_ns() + to_ns(setup_.patience_s)});
 }
 
 Result<std::unique_ptr<task::ToolStore>> ToolDatabase::start(const Setup &setup, diag::Sink &sink) {
@@ -77,7 +76,7 @@ Result<> ToolDatabase::ask(Kind kind, const std::string &line) {
         give_up(written.error().message);
         return fail(trouble_);
     }
-    awaited_.push_back({kind, line, now_ns() + static_cast<std::int64_t>(setup_.patience_s * NS_PER_S)});
+    awaited_.push_back({kind, line, now_ns() + to_ns(setup_.patience_s)});
     if (setup_.isWaitedFor) {
         wait();
     }

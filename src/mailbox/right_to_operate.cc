@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/duration.hh"
 #include "mailbox/stops.hh"
 
 namespace mw::mailbox {
@@ -26,7 +27,7 @@ Result<> RightToOperate::claim(ClientId client, double lease_s, std::int64_t now
     if (holder_ != 0 && holder_ != client) {
         return fail(fmt::format("client {} operates the machine", holder_), {}, "it can hand the right over");
     }
-    lease_ns_ = static_cast<std::int64_t>(lease_s * NS_PER_S);
+    lease_ns_ = to_ns(lease_s);
     give(client, now_ns);
     return {};
 }

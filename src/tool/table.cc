@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/atomic_file.hh"
+#include "base/text.hh"
 
 namespace mw::tool {
 namespace {
@@ -69,7 +70,7 @@ Result<Table> Table::load(const std::string &path) {
     if (!text) {
         return std::unexpected(text.error());
     }
-    return parse(*text, path);
+    return parse(without_byte_order_mark(*text), path);
 }
 
 void Table::take_tool(const Result<ToolEntry> &made, Reading &reading) {

@@ -37,24 +37,31 @@ class Estimator {
     /// The path begins or goes on at `pose` after whatever is not motion.
     void begin(const Pose &pose);
     const Pose &end() const { return planner_->end(); }
-    /// Appends a move; drives what there is no room for. Moves of length 0 are left out.
+    /// Appends a move; drives what there is no room for. Moves of length 0 are left out. The work for one
+    /// move is bounded: of a longer one than DRIVEN_S seconds only the end is driven, from standstill, and
+    /// its speed gives the time of the rest.
     void add(const Primitive &primitive, const MoveRequest &request);
     /// Drives to the end of what has been added and stands.
     void finish();
-    /// False when a path came to a stand that nothing ended: the time then lacks what was left of it.
+    /// False when a path stopped that nothing ended, or a move took far longer than its limits suggest: the
+    /// time then lacks what was left of it.
     bool isComplete() const { return isComplete_; }
     /// All time so far [s].
-    double seconds() const { return static_cast<double>(cycle_) * period_s_; }
+    double seconds() const { return static_cast<double>(cycle_) * period_s_ + skipped_s_; }
+
+    static constexpr double DRIVEN_S = 60;  ///< of a move [s]
 
   private:
-    /// False when the path stands for longer than any plan can need.
+    /// False when the path stands, or a move takes, longer than any plan can need.
     bool step();
+    double speed_bound(const Primitive &primitive, const MoveRequest &request) const;
+    Primitive skip_to_end(const Primitive &primitive, const MoveRequest &request);
     void count(const ExecutorOutput &out);
     void close_move();
     double ratio(int i, int order) const;
 
     Limits limits_;
-    double feed_scale_ = 1;
+    Scales scales_;
     double period_s_;
     std::array<double, 3> period_power_;  ///< [s, s^2, s^3]
     Listener listener_;
@@ -66,6 +73,8 @@ class Estimator {
     std::uint64_t move_cycles_ = 0;
     double move_top_ = 0;  ///< highest speed along its parameter so far
     std::uint64_t standing_cycles_ = 0;
+    double skipped_ = 0,
+           skipped_s_ = 0;  ///< length and time that were not driven; the length of the newest move
     bool isComplete_ = true;
     bool isFresh_ = true;  ///< nothing has been added to the path
     std::array<Pose, 4> last_{};

@@ -35,9 +35,8 @@ bool Writer::probe_wrongly(const Contact &contact, bool isHigh, bool isTouching)
     const double wall = isHigh ? contact.high : contact.low;
     const double inside = wall + 0.3 * (middle - wall);
     const double outside = wall + (isHigh ? 3 : -3);
-    const int kind = isTouching            ? random_.whole(TOWARDS, TOWARDS_MAYBE)  // it has contact already
-                     : random_.chance(0.5) ? TOWARDS                                // it finds none
-                                           : random_.whole(AWAY, AWAY_MAYBE);       // it has none
+    const int kind = isTouching || random_.chance(0.5) ? TOWARDS  // has contact already, or finds none
+                                                       : AWAY;    // has no contact
     probe(contact, isHigh, kind, isTouching ? outside : inside);
     return true;
 }

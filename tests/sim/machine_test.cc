@@ -190,6 +190,28 @@ TEST_F(MachineTest, BackBoringMovesAsideOnlyWithAnOrientedSpindle_I1) {
     EXPECT_EQ(finish(), task::Progress::DONE) << messages();
 }
 
+TEST_F(MachineTest, WaitsBeyondTheRangeOfTheClockDoNotEnd_D2) {
+    constexpr int CYCLES = 20000;
+    for (const char *wait : {"G4 P1000000000000000000", "G4 P9223372037", "M66 P0 L3 Q100000000000"}) {
+        start(std::string("G21 G90\n") + wait + "\nG0 X5\nM2\n");
+        EXPECT_EQ(finish(CYCLES), task::Progress::STARTED) << wait;
+        EXPECT_NEAR(x(), 0, 1e-9) << wait;
+        ask(task::AbortAll{});
+        cycles(100);
+    }
+}
+
+TEST_F(MachineTest, SynchronisedOutputsWithoutAMoveAreNeverTooMany_D2) {
+    std::string text = "G21 G90\nG0 X1\n";
+    for (int n = 0; n < 5000; ++n) {
+        text += "M62 P0\nM63 P1\n";
+    }
+    start(text + "G0 X2\nM2\n");
+    EXPECT_EQ(finish(), task::Progress::DONE) << messages();
+    EXPECT_NEAR(x(), 2, 1e-6);
+    EXPECT_EQ(motion().digital_out & 3U, 1U);
+}
+
 TEST_F(MachineTest, MoveAndOutputStayInProgramOrder_D2) {
     start("G21 G90 F3000\nG1 X10\nM64 P0\nG1 X20\nM65 P0\nM2\n");
     double on_at = -1, off_at = -1;

@@ -92,6 +92,35 @@ TEST_F(ProbeTest, ResultsAreInProgramUnitsAndToolOffsetsCount_I1) {
     EXPECT_NE(messages().find("0.20"), std::string::npos);
 }
 
+TEST_F(ProbeTest, AProbeInItsTargetStateAtTheStartHasTripped_I1) {
+    // G38.3 with a closed probe and G38.5 with an open one: no error, and the program continues.
+    for (const auto &[code, probe] : {std::pair{"G38.3", "TRUE"}, std::pair{"G38.5", "FALSE"}}) {
+        set_pin("motion.probe-input", probe);
+        cycles(5);
+        start(std::string("G21 G90\nG0 X1\n") + code + " X5 F600\n(debug,#5070 at %.2f#5061)\nG1 X3\nM2\n");
+        EXPECT_EQ(finish(), task::Progress::DONE) << code;
+        const std::string all = messages();
+        EXPECT_NE(all.find("1.000000 at 1.00"), std::string::npos) << code << ": " << all;
+        EXPECT_NEAR(x(), 3, 1e-6) << code;
+    }
+}
+
+TEST_F(ProbeTest, AProbeThatMustTripNamesTheStateThatItIsInAtTheStart_I1) {
+    const struct {
+        const char *code, *probe, *text;
+    } cases[] = {{"G38.2", "TRUE", "the probe is already tripped before G38.2"},
+                 {"G38.4", "FALSE", "the probe is already open before G38.4"}};
+    for (const auto &one : cases) {
+        set_pin("motion.probe-input", one.probe);
+        cycles(5);
+        start(std::string("G21 G90\n") + one.code + " X5 F600\nG0 X3\nM2\n");
+        EXPECT_EQ(finish(), task::Progress::FAILED) << one.code;
+        const std::string all = messages() + reason(run_);
+        EXPECT_NE(all.find(one.text), std::string::npos) << all;
+        EXPECT_NEAR(x(), 0, 1e-6) << one.code;
+    }
+}
+
 TEST_F(ProbeTest, AMissEndsTheProgramOnlyWhereItMust_I1) {
     EXPECT_EQ(probe("G21 G90\nG38.3 X2 F600\n(debug,hit %d#5070 at %.1f#5061)\nG0 X0\nM2\n", 50),
               task::Progress::DONE);

@@ -49,6 +49,33 @@ TEST(Ini, EveryMalformedLineIsReported) {
     EXPECT_EQ(ini.sink.all()[1].what.place.line, 2);
 }
 
+TEST(Ini, AProblemOfAValueWithACommentBehindItSaysThatACommentNeedsItsOwnLine) {
+    const std::string own_line = "write the comment in a line of its own";
+    const auto units = ini_choice("T", "UNITS", "mm", "mm inch", "");
+    Read choice("[T]\nUNITS = mm   # metric\n");
+    choice.reader.choice(units);
+    EXPECT_NE(choice.first_message().find(own_line), std::string::npos) << choice.first_message();
+    EXPECT_NE(choice.first_message().find("expected one of"), std::string::npos) << choice.first_message();
+    Read semicolon("[J]\nV = abc\t; left stop\n");
+    semicolon.reader.real(NUMBER);
+    EXPECT_NE(semicolon.first_message().find(own_line), std::string::npos) << semicolon.first_message();
+    Read elsewhere("[J]\nK = X Y # two axes\nV = abc\n");
+    elsewhere.reader.real(NUMBER);
+    EXPECT_EQ(elsewhere.first_message().find(own_line), std::string::npos) << elsewhere.first_message();
+    elsewhere.reader.sink().error("the letter '#'", elsewhere.file.find("J", "K")->place);
+    EXPECT_NE(elsewhere.sink.all()[1].what.str().find(own_line), std::string::npos)
+        << "whoever reads the value";
+    Read sign("[T]\nUNITS = mm#\n");
+    sign.reader.choice(units);
+    EXPECT_EQ(sign.first_message().find(own_line), std::string::npos) << "no comment was meant";
+}
+
+TEST(Ini, AByteOrderMarkAtTheStartIsSkipped) {
+    Read ini("\xEF\xBB\xBF[A]\nK = 1\n");
+    EXPECT_TRUE(ini.sink.all().empty()) << ini.first_message();
+    EXPECT_EQ(ini.file.find("A", "K")->value, "1");
+}
+
 TEST(Ini, NumbersAreTypedAndRanged) {
     Read ini("[J]\nV = 1,5\nA = -3\nF = 2.5 # fast\n");
     EXPECT_EQ(ini.reader.real(NUMBER), 7.0);

@@ -225,7 +225,7 @@ Result<> Session::run_file(const std::string &name, const std::vector<std::strin
     if (file->first.ends_with(".tcl")) {
         return run_script(file->first, arguments);
     }
-    return run_text(file->second, file->first);
+    return run_text(without_byte_order_mark(file->second), file->first);
 }
 
 Result<> Session::run_text(std::string_view text, const std::string &name, int first_line) {

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "base/duration.hh"
 #include "base/text.hh"
 #include "hal/host/host_client.hh"
 #include "hal_tools/view/capture.hh"
@@ -44,7 +45,8 @@ int report(const Result<> &result, const char *program = "millwright hal") {
 }
 
 void nap(double seconds) {
-    timespec pause{static_cast<time_t>(seconds), static_cast<long>((seconds - std::floor(seconds)) * 1e9)};
+    const std::int64_t ns = to_ns(seconds);
+    const timespec pause{ns / NS_PER_SECOND, ns % NS_PER_SECOND};
     nanosleep(&pause, nullptr);
 }
 

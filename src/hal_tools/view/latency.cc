@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "base/atomic_file.hh"
+#include "base/duration.hh"
 #include "base/text.hh"
 #include "hal/host/host_client.hh"
 #include "picture/chart.hh"
@@ -20,8 +21,8 @@ namespace mw::hal::view {
 namespace {
 
 void nap(double seconds) {
-    timespec pause{static_cast<time_t>(seconds), 0};
-    pause.tv_nsec = static_cast<long>((seconds - std::floor(seconds)) * 1e9);
+    const std::int64_t ns = to_ns(seconds);
+    const timespec pause{ns / NS_PER_SECOND, ns % NS_PER_SECOND};
     nanosleep(&pause, nullptr);  // a signal ends it early
 }
 

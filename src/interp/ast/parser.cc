@@ -47,6 +47,12 @@ bool takesValue(OKind kind) {
 
 }  // namespace
 
+bool isPercentLine(std::string_view line) {
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    return first != std::string_view::npos && line[first] == '%' &&
+           line.find_first_not_of(" \t\r", first + 1) == std::string_view::npos;
+}
+
 Block Parser::parse_line(std::string_view line, std::uint32_t line_number_) {
     Block out;
     out.line = line_number_;
@@ -91,7 +97,7 @@ bool Parser::block(Lexer &in, Block &out) {
         out.isDeletable = true;
     }
     char c = in.peek();
-    if (c == '%') {
+    if (c == '%' && !out.isDeletable && isPercentLine(in.line())) {
         out.isPercent = true;
         return true;
     }

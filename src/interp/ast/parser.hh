@@ -11,6 +11,9 @@
 
 namespace mw::interp::detail {
 
+/// A line with nothing but a percent sign.
+bool isPercentLine(std::string_view line);
+
 class Parser {
   public:
     Parser(Arena &arena, Names &names) : arena_(arena), names_(names) {}

@@ -62,14 +62,14 @@ bool Program::look_at(int line, std::string_view content) {
     if (first == content.size()) {
         return true;
     }
-    const bool isPercent = content[first] == '%';
+    const bool isPercent = isPercentLine(content);
     const bool isBegun = first_content_line_ != 0;
     if (!isBegun) {
         first_content_line_ = line;
         isPercentDelimited_ = isPercent;
     }
-    const bool isAtEnd = isPercent && (isBegun || !isPercentDelimited_);
-    closing_percent_line_ = isAtEnd && closing_percent_line_ == 0 ? line : closing_percent_line_;
+    const bool isClosing = isPercent && isBegun && isPercentDelimited_;
+    closing_percent_line_ = isClosing && closing_percent_line_ == 0 ? line : closing_percent_line_;
     if (closing_percent_line_ != 0) {
         return true;  // nothing behind it counts
     }
@@ -216,11 +216,21 @@ const Program::OLine *Program::find_oline(int line) const {
     return found != olines_.end() && found->line == line ? &*found : nullptr;
 }
 
+Block Program::parse(int line, Arena &arena) {
+    Block block = Parser(arena, names_).parse_line(line_text(line), static_cast<std::uint32_t>(line));
+    if (block.isPercent && !isPercentDelimited_) {
+        block.isPercent = false;
+        block.error = static_cast<std::uint32_t>(arena.errors.size());
+        arena.errors.push_back(
+            {"Bad character '%' used: % ends a program only when the first line of the file is %", 1});
+    }
+    return block;
+}
+
 BlockView Program::block(int line) {
     if (cached_.empty() || cached_[static_cast<std::size_t>(line)] == NOT_KEPT) {
         scratch_.clear();
-        scratch_block_ =
-            Parser(scratch_, names_).parse_line(line_text(line), static_cast<std::uint32_t>(line));
+        scratch_block_ = parse(line, scratch_);
         if (!text_.isHeld() && !text_.failure().empty()) {
             scratch_block_.error = static_cast<std::uint32_t>(scratch_.errors.size());
             scratch_.errors.push_back({text_.failure(), 0});
@@ -231,10 +241,7 @@ BlockView Program::block(int line) {
     if (index == NO_ID) {
         index = static_cast<std::uint32_t>(blocks_.size());
         const OLine *oline = find_oline(line);
-        blocks_.push_back(
-            oline != nullptr
-                ? oline->block
-                : Parser(arena_, names_).parse_line(line_text(line), static_cast<std::uint32_t>(line)));
+        blocks_.push_back(oline != nullptr ? oline->block : parse(line, arena_));
     }
     return {&blocks_[index], &arena_};
 }

@@ -37,7 +37,7 @@ class Program {
     /// so that memory is bounded by the text and those. A file without O words is not even held as text when
     /// it is large.
     BlockView block(int line);
-    /// A program that begins with % ends at the next one.
+    /// A program that begins with % ends at the next one; in any other file % is an error of its line.
     bool isPercentDelimited() const { return isPercentDelimited_; }
     /// False when the file begins with % and no other line does.
     bool hasClosingPercent() const;
@@ -65,6 +65,8 @@ class Program {
     Program(std::string path, ProgramText text, Names &names);
     Result<> prepare();
     bool look_at(int line, std::string_view content);
+    /// A line that is not an O word line.
+    Block parse(int line, Arena &arena);
     void link_owords();
     void check_labels();
     void mark_kept();

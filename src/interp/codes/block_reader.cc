@@ -144,6 +144,13 @@ bool choose_motion(BlockValues &values, int motion, const Remaps &remaps, Fault 
     return insert_code(*lookup('g', motion, remaps), 0, values, fault);
 }
 
+bool check_machine_coordinates(const BlockValues &values, Fault &fault) {
+    constexpr int G0 = 0, G1 = 10;
+    const int motion = values.motion != nullptr ? values.motion->number : MOTION_NONE;
+    return !values.isMachineCoordinates || motion == G0 || motion == G1 ||
+           fault.set("Must use g0 or g1 with g53");
+}
+
 bool check_words(const BlockValues &values, Fault &fault) {
     constexpr std::uint32_t ALWAYS = letters("fstn");
     std::uint32_t allowed = ALWAYS;

@@ -26,6 +26,8 @@ bool read_words(const BlockView &view, const BlockSources &sources, BlockValues 
 bool choose_motion(BlockValues &values, int motion, const Remaps &remaps, Fault &fault);
 /// Each code has the words that it needs, each word a code that uses it.
 bool check_words(const BlockValues &values, Fault &fault);
+/// G53 is for straight moves: G0 or G1 is in the block, or current with axis words.
+bool check_machine_coordinates(const BlockValues &values, Fault &fault);
 
 /// The machine must have the axes that a block names.
 class AxisCheck {

@@ -69,7 +69,8 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
     if (view.block->word_count == 0) {
         return true;  // settings and comments alone: lines of loops are mostly that
     }
-    if (!choose_motion(values, state.motion, remaps, fault) || !check_open_nurbs(values, state, fault) ||
+    if (!choose_motion(values, state.motion, remaps, fault) || !check_machine_coordinates(values, fault) ||
+        !check_open_nurbs(values, state, fault) ||
         !axis_check_.check(values, machine_.world.axis_mask(), fault) || !check_words(values, fault) ||
         !check_rotary(values, state, fault)) {
         return false;

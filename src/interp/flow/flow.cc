@@ -129,10 +129,10 @@ Step Flow::end_of_lines() {
                                         : "File ended with no percent sign or program end");
 }
 
-/// The first % opens a program that begins with it; any other ends it.
+/// The first % opens a program that begins with it, the second ends it. Any other is an error of its line.
 Step Flow::percent() {
     const Place &here = levels_.here();
-    if (here.program->isPercentDelimited() && here.line == here.program->first_content_line()) {
+    if (here.line == here.program->first_content_line()) {
         return Step::OK;
     }
     if (levels_.isInCall()) {

@@ -115,6 +115,8 @@ bool run_repeat(const BlockView &view, const OWord &oword, Place &here, const Ju
         here.next = end + 1;
         return true;
     }
+    const auto stale = std::ranges::find(here.repeats, here.line, &Repeat::line);
+    here.repeats.erase(stale, here.repeats.end());  // left by break or continue of an outer loop
     here.repeats.push_back({here.line, static_cast<int>(std::lround(count))});
     return true;
 }
@@ -137,32 +139,25 @@ bool run_end_repeat(const OWord &oword, Place &here, const JumpValues &values, L
     return true;
 }
 
-/// break and continue.
+/// break and continue: of a loop with a condition.
 bool run_leave(const OWord &oword, Place &here, const JumpValues &values) {
     const Program &program = *here.program;
     const int opener = find_before(program, here.line, {OKind::WHILE, OKind::DO, OKind::REPEAT});
     if (opener == 0) {
-        return fail_unmatched(oword, "while, do or repeat", here, values);
+        return fail_unmatched(oword, "while or do", here, values);
     }
     const OKind kind = program.oword_at(opener)->kind;
-    const OKind closing =
-        kind == OKind::WHILE ? OKind::ENDWHILE : (kind == OKind::DO ? OKind::WHILE : OKind::ENDREPEAT);
-    const int end = find_after(program, here.line, {closing});
+    if (kind == OKind::REPEAT) {
+        return values.fault.set(fmt::format("o{}: {} is for while and do loops, line {} is a repeat",
+                                            label_text(oword, values.names),
+                                            oword.kind == OKind::BREAK ? "break" : "continue", opener),
+                                oword.column, "write the loop as while with a counter");
+    }
+    const int end = find_after(program, here.line, {kind == OKind::WHILE ? OKind::ENDWHILE : OKind::WHILE});
     if (end == 0) {
         return fail_unmatched(oword, "end of the loop", here, values);
     }
-    if (oword.kind == OKind::CONTINUE) {
-        here.next = end;
-        return true;
-    }
-    here.next = end + 1;
-    while (kind == OKind::REPEAT && !here.repeats.empty()) {
-        const bool isThis = here.repeats.back().line == opener;
-        here.repeats.pop_back();
-        if (isThis) {
-            break;
-        }
-    }
+    here.next = oword.kind == OKind::CONTINUE ? end : end + 1;
     return true;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "code_cases.hh"
@@ -73,7 +74,7 @@ std::string joined(const std::vector<std::string> &calls) {
 class GoodCode : public testing::TestWithParam<GoodCase> {};
 
 TEST_P(GoodCode, CallsTheCanon_I1) {
-    const Outcome out = run(std::string(GetParam().program) + "\n%\n");
+    const Outcome out = run(std::string("%\n") + GetParam().program + "\n%\n");
     std::vector<std::string> want = GetParam().calls;
     const bool isEnded = std::ranges::count(want, "PROGRAM_END()") > 0;
     EXPECT_EQ(out.step, isEnded ? Step::PROGRAM_END : Step::FILE_END) << out.error;
@@ -185,7 +186,7 @@ INSTANTIATE_TEST_SUITE_P(MoreCodes, GoodCode, testing::ValuesIn(MORE_GOOD));
 class BadCode : public testing::TestWithParam<BadCase> {};
 
 TEST_P(BadCode, NamesTheFaultAndItsPlace_I1) {
-    const Outcome out = run(std::string("(first line)\n") + GetParam().program + "\n%\n");
+    const Outcome out = run(std::string("(first line)\n") + GetParam().program + "\nM2\n");
     EXPECT_EQ(out.step, Step::FAILED);
     EXPECT_NE(out.error.find(GetParam().error), std::string::npos) << out.error;
     EXPECT_EQ(out.error_line, 2);
@@ -207,6 +208,18 @@ const BadCase BAD[] = {
     {"G43 H99", "Requested tool 99"},
     {"G43.2", "No axes specified and H word missing"},
     {"G53 G91 G0 X1", "g53 incremental"},
+    {"G53", "Must use g0 or g1 with g53"},
+    {"G53 F1", "Must use g0 or g1 with g53"},
+    {"F1 G53 G2 X1 I0.5", "Must use g0 or g1 with g53"},
+    {"F1 G53 G38.2 X1", "Must use g0 or g1 with g53"},
+    {"F1 G53 G81 X1 Z-1 R1", "Must use g0 or g1 with g53"},
+    {"F1 G53 G5.1 X1 I1", "Must use g0 or g1 with g53"},
+    {"G53 G43.1 X1", "Must use g0 or g1 with g53"},
+    {"G53 G80", "Must use g0 or g1 with g53"},
+    {"M3 S1 G53 G33 Z1 K1", "Must use g0 or g1 with g53"},
+    {"%", "Bad character '%' used"},
+    {"% G0 X1", "Bad character '%' used"},
+    {"/%", "Bad character '%' used"},
     {"G64 P-1", "must not be negative"},
     {"F1 G81 X1 Z0 A1 R1", "Cannot put an a in canned cycle"},
     {"F1 G81 X1 R1", "needs the depth"},
@@ -316,6 +329,27 @@ TEST(CodesTable, EveryCodeHasAGoodAndABadCase_I1) {
         EXPECT_TRUE(good.contains(name)) << name << " has no good case";
         EXPECT_TRUE(bad.contains(name)) << name << " has no bad case";
     }
+}
+
+/// The feeds along Z of a canned cycle.
+std::vector<std::string> feeds_of(const std::string &cycle) {
+    std::vector<std::string> found;
+    const Outcome outcome = run("F100\n" + cycle + "\nM2\n");
+    EXPECT_EQ(outcome.step, Step::PROGRAM_END) << outcome.error;
+    std::ranges::copy_if(outcome.calls, std::back_inserter(found),
+                         [](const std::string &call) { return call.starts_with("STRAIGHT_FEED"); });
+    return found;
+}
+
+TEST(Codes, PecksOfEqualDepthEndAtTheBottom_I1) {
+    for (int pecks = 1; pecks <= 60; ++pecks) {
+        for (const int q : {1, 3, 7}) {
+            const std::string cycle = fmt::format("X1 R0.1 Z{:.2f} Q0.0{}", 0.1 - pecks * q * 0.01, q);
+            EXPECT_EQ(feeds_of("G83 " + cycle).size(), static_cast<std::size_t>(pecks)) << cycle;
+            EXPECT_EQ(feeds_of("G73 " + cycle).size(), static_cast<std::size_t>(pecks)) << cycle;
+        }
+    }
+    EXPECT_EQ(feeds_of("G83 X1 R1 Z1 Q1").size(), 1U);
 }
 
 TEST(Codes, TapsAlongTheNormalOfThePlane_I1) {

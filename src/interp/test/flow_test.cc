@@ -21,7 +21,7 @@ TEST(Flow, SubroutineGetsArgumentsAndReturnsAValue_I1) {
 
 TEST(Flow, ANurbsWithoutItsEndIsToldAndLeavesNothingBehind_I1) {
     Machine machine;
-    EXPECT_EQ(machine.run("F10\nG5.2 P1 L2\nX1 Y1\n%\n"), Step::FAILED);
+    EXPECT_EQ(machine.run("%\nF10\nG5.2 P1 L2\nX1 Y1\n%\n"), Step::FAILED);
     EXPECT_NE(machine.error().find("G5.3"), std::string::npos) << machine.error();
     EXPECT_EQ(machine.run("F10\nG5.2 P1 L2\nX1 Y1\nM2\n"), Step::FAILED);
     EXPECT_EQ(machine.run("G0 X1\n"), Step::PROGRAM_END) << machine.error();

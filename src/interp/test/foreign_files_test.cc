@@ -29,7 +29,7 @@ TEST(ForeignFiles, NulDoesNotHideTheRestOfItsLine) {
 }
 
 TEST(ForeignFiles, CharactersThatAreNotAsciiAreNamedWithTheirPlace) {
-    EXPECT_EQ(message_of("\xEF\xBB\xBFG0 X1\n"), "Bad character U+FEFF (byte order mark) used");
+    EXPECT_EQ(message_of("G0 X1\n\xEF\xBB\xBFG0 X2\n"), "Bad character U+FEFF (byte order mark) used");
     EXPECT_EQ(message_of("G0 X\xE2\x88\x92"
                          "5\n"),
               "Bad character U+2212 (minus sign, not '-') used");
@@ -48,6 +48,34 @@ TEST(ForeignFiles, CharactersThatAreNotAsciiAreNamedWithTheirPlace) {
               Step::FAILED);
     EXPECT_EQ(machine.interpreter->error().what.place.line, 2);
     EXPECT_EQ(machine.interpreter->error().what.place.column, 5);
+}
+
+TEST(ForeignFiles, AByteOrderMarkAtTheStartIsSkipped) {
+    for (const std::string text : {"\xEF\xBB\xBFG0 X1\n", "\xEF\xBB\xBF%\nG0 X1\n%\n",
+                                   "\xEF\xBB\xBFo1 sub\nG0 X1\no1 endsub\no1 call\n"}) {
+        Machine machine;
+        EXPECT_NE(machine.run(text), Step::FAILED) << machine.error();
+        EXPECT_EQ(machine.record.lines.size(), 1U);
+    }
+    Machine machine;
+    ASSERT_EQ(machine.run("\xEF\xBB\xBFG0 Q1\n"), Step::FAILED);
+    EXPECT_EQ(machine.interpreter->error().what.place.column, 4) << "columns count what the editor shows";
+}
+
+TEST(ForeignFiles, PercentInAFileThatDoesNotBeginWithItIsAnError) {
+    const std::string bad =
+        "Bad character '%' used: % ends a program only when the first line of the file is %";
+    Machine machine;
+    EXPECT_EQ(machine.run("G0 X1\nM3 S100\n%\nG0 X2\n"), Step::FAILED);
+    EXPECT_EQ(machine.interpreter->error().what.message, bad);
+    EXPECT_EQ(machine.interpreter->error().what.place.line, 3);
+    EXPECT_EQ(machine.record.lines.size(), 1U);
+    EXPECT_EQ(message_of("(begins with a comment)\n%\nG0 X1\n%\n"), bad);
+    EXPECT_EQ(message_of("o1 sub\nG0 X1\n%\no1 endsub\no1 call\n"), bad);
+    EXPECT_EQ(message_of("o1 if [0]\n%\no1 endif\n"), "") << "not reached";
+    Machine delimited;
+    EXPECT_EQ(delimited.run("\n %\nG0 X1\n%\nG0 X2\n"), Step::FILE_END);
+    EXPECT_EQ(delimited.record.lines.size(), 1U);
 }
 
 TEST(ForeignFiles, NothingBehindTheClosingPercentSignCounts) {

@@ -128,16 +128,24 @@ TEST(Jumps, BreakAndContinueMeanTheLoopOfTheirLabel_I1) {
                       "o3 if [#1 ge 4]\no1 break\no3 endif\nG1 X1\no1 endwhile\n")
                   .trace(),
               "10 10 ");
-    JumpRun outer("o1 repeat [5]\no2 repeat [5]\nG1\no1 break\no2 endrepeat\no1 endrepeat\nG1\n");
+    JumpRun outer("o1 while [1]\no2 repeat [5]\nG1\no1 break\no2 endrepeat\no1 endwhile\nG1\n");
     EXPECT_EQ(outer.trace(), "3 7 ");
-    EXPECT_TRUE(outer.here.repeats.empty()) << "the inner loop is left as well";
     EXPECT_EQ(JumpRun("#1=0\no1 do\n#1=[#1+1]\nG1\no1 continue\nG1\no1 while [#1 lt 2]\n").trace(), "4 4 ");
-    EXPECT_EQ(JumpRun("o1 repeat [2]\nG1\no1 continue\nG1\no1 endrepeat\n").trace(), "2 2 ");
 }
 
-TEST(Jumps, ALoopThatIsBegunAgainAfterABreakCountsAnew_I1) {
-    JumpRun run("o1 repeat [2]\no2 repeat [3]\nG1\no2 break\no2 endrepeat\no1 endrepeat\n");
-    EXPECT_EQ(run.trace(), "3 3 ");
+TEST(Jumps, BreakAndContinueAreErrorsInRepeat_I1) {
+    EXPECT_EQ(JumpRun("o1 repeat [2]\nG1\no1 break\no1 endrepeat\n").trace(),
+              "2 line 3: o1: break is for while and do loops, line 1 is a repeat");
+    EXPECT_EQ(JumpRun("o1 repeat [2]\nG1\no1 continue\no1 endrepeat\n").trace(),
+              "2 line 3: o1: continue is for while and do loops, line 1 is a repeat");
+    EXPECT_EQ(JumpRun("o1 repeat [2]\nG1\no2 if [0]\no1 break\no2 endif\no1 endrepeat\n").trace(), "2 2 ")
+        << "one that is not reached is no error";
+}
+
+TEST(Jumps, ARepeatLeftByAnOuterLoopCountsFromTheStart_I1) {
+    JumpRun run("#1=0\no1 while [#1 lt 3]\n#1=[#1+1]\no2 repeat [2]\nG1\no3 if [#1 lt 3]\no1 continue\n"
+                "o3 endif\no2 endrepeat\no1 endwhile\n");
+    EXPECT_EQ(run.trace(), "5 5 5 5 ");
     EXPECT_TRUE(run.here.repeats.empty());
 }
 
@@ -153,7 +161,7 @@ TEST(Jumps, WhatIsMissingIsNamed_I1) {
         {"o1 do\nG1\n", "line 1: o1: there is no matching while"},
         {"o1 repeat [2]\n", "line 1: o1: there is no matching endrepeat"},
         {"o1 endrepeat\n", "line 1: o1: there is no matching repeat"},
-        {"o1 break\n", "line 1: o1: there is no matching while, do or repeat"},
+        {"o1 break\n", "line 1: o1: there is no matching while or do"},
         {"o1 if [1]\no2 endif\n", "line 2: o2: there is no matching if"},
     };
     for (const auto &one : cases) {

@@ -180,8 +180,19 @@ TEST(LatheCycle, AStartBelowTheProfileBoresInLayers_I1) {
 
 TEST(LatheCycle, WhereTheStartTellsNoSideItIsRefused_I1) {
     const std::string both = "O100 sub\nG0 Z0\nG1 X12 Z-5\nG1 X8 Z-15\nO100 endsub\n";
-    EXPECT_NE(error_of(both, "G71 Q100 X10 I1").find("both sides"), std::string::npos);
-    EXPECT_NE(error_of(both, "G70 Q100 X10 D1").find("both sides"), std::string::npos);
+    const std::string text = "goes from X8 to X12, and the cycle starts between them at X10";
+    EXPECT_NE(error_of(both, "G71 Q100 X10 I1").find(text), std::string::npos)
+        << error_of(both, "G71 Q100 X10 I1");
+    EXPECT_NE(error_of(both, "G70 Q100 X10 D1").find(text), std::string::npos);
+    EXPECT_NE(error_of(both, "G71 Q100 X10 I1")
+                  .find("start at X12 or more for an outside, at X8 or less for a bore"),
+              std::string::npos);
+    EXPECT_FALSE(moves_of(both, "G71 Q100 X12 I1").empty()) << "where the text leads";
+    EXPECT_FALSE(moves_of(both, "G71 Q100 X8 I1").empty());
+    const std::string facing = "O100 sub\nG0 X30\nG1 Z12 X20\nG1 Z8 X10\nO100 endsub\n";
+    EXPECT_NE(error_of(facing, "G72 Q100 Z10 I1")
+                  .find("goes from Z8 to Z12, and the cycle starts between them at Z10"),
+              std::string::npos);
     EXPECT_FALSE(moves_of(both, "G70 Q100 X10").empty()) << "no distance, no side";
 }
 
@@ -320,6 +331,70 @@ TEST(LatheCompensation, RefusesOtherOrientations_I1) {
     EXPECT_NE(error_of("", "G42.1 D1 L10").find("0 to 9"), std::string::npos);
     EXPECT_NE(error_of("", "G42.1 D1 L-1").find("0 to 9"), std::string::npos);
     EXPECT_NE(error_of("", "G17 G42.1 D1 L1").find("G18"), std::string::npos);
+}
+
+TEST(LatheCompensation, AnOrientedToolOfTheTableNeedsG18_I1) {
+    for (int orientation = 0; orientation <= 9; ++orientation) {
+        Machine machine;
+        ToolEntry tool;
+        tool.toolno = 1;
+        tool.diameter = 1;
+        tool.orientation = orientation;
+        machine.mill.tools.push_back(tool);
+        const bool isNose = orientation != 0 && orientation != 9;
+        for (const std::string code : {"G41", "G42"}) {
+            const Step step = machine.run("G17 G21 F100\nG0 X0 Y0\n" + code + " D1\nG40\n");
+            EXPECT_EQ(step, isNose ? Step::FAILED : Step::PROGRAM_END) << code << " L" << orientation;
+            EXPECT_EQ(machine.run("G18 G21 F100\nG0 X0 Z0\n" + code + " D1\nG40\n"), Step::PROGRAM_END);
+        }
+        if (isNose) {
+            EXPECT_EQ(machine.run("T1 M6\nG17\nG42\n"), Step::FAILED) << "the tool in the spindle as well";
+            EXPECT_EQ(machine.interpreter->error().what.message, "G42 with lathe tool, but plane is not G18");
+        }
+    }
+}
+
+/// The depths of the passes of a G76 in radius that begins at X10.
+std::vector<double> depths_of(const std::string &words) {
+    Machine machine;
+    EXPECT_EQ(machine.run("G18 G21 G8 F100 S100 M3\nG0 X10 Z0\nG76 P1 Z-9 I-1 " + words + "\n"),
+              Step::PROGRAM_END)
+        << machine.error();
+    std::vector<double> depths;
+    for (const LineMove &move : machine.record.lines) {
+        if (move.settings.feed_per_revolution > 0) {
+            depths.push_back(9.0 - move.end[0]);
+        }
+    }
+    return depths;
+}
+
+TEST(Thread, PassesAreCountedOnceAndTheLastOneIsAtK_I1) {
+    EXPECT_EQ(depths_of("J0.2 K0.8 R1.5").size(), 8U) << "0.2 * 8^(1/1.5) is 0.8";
+    EXPECT_EQ(depths_of("J0.5 K0.7 R1").size(), 2U);
+    EXPECT_EQ(depths_of("J0.7 K0.7 R2 H2").size(), 3U) << "and two spring passes";
+    int whole = 0;
+    for (int passes = 1; passes <= 40; ++passes) {
+        for (int j = 1; j <= 9; ++j) {  // K is J times the number of passes, both as they are written
+            const std::string words = fmt::format("J0.0{} K{:.2f} R1", j, passes * j * 0.01);
+            const std::vector<double> depths = depths_of(words);
+            EXPECT_EQ(depths.size(), static_cast<std::size_t>(passes)) << words;
+            EXPECT_NEAR(depths.back(), passes * j * 0.01, 1e-12) << words;
+            whole += depths.size() == static_cast<std::size_t>(passes) ? 1 : 0;
+        }
+        const std::string words = fmt::format("J0.1 K{:.1f} R2", passes * 0.1);
+        EXPECT_EQ(depths_of(words).size(), static_cast<std::size_t>(passes * passes)) << words;
+    }
+    EXPECT_EQ(whole, 360);
+}
+
+TEST(Thread, EveryPassIsDeeperThanTheOneBefore_I1) {
+    for (const char *words : {"J0.1 K0.35 R1", "J0.1 K0.3001 R1", "J0.05 K0.613 R1.7", "J0.2 K0.8 R1.5"}) {
+        const std::vector<double> depths = depths_of(words);
+        for (std::size_t i = 1; i < depths.size(); ++i) {
+            EXPECT_GT(depths[i] - depths[i - 1], 1e-6) << words << ", pass " << i + 1;
+        }
+    }
 }
 
 TEST(Compensation, TheMoveAfterItIsStraightAndAThreadIsOne_I1) {

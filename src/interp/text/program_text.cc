@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "base/atomic_file.hh"
+#include "base/text.hh"
 
 namespace mw::interp::detail {
 namespace {
@@ -18,11 +19,12 @@ namespace {
 constexpr int WINDOW_LINES = 4096;
 constexpr std::size_t CHUNK_BYTES = 1U << 20U;
 
-std::string_view without_newline(std::string_view line) {
+/// Without the newline; the first line without a byte order mark.
+std::string_view line_content(int number, std::string_view line) {
     while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) {
         line.remove_suffix(1);
     }
-    return line;
+    return number == 1 ? without_byte_order_mark(line) : line;
 }
 
 }  // namespace
@@ -94,7 +96,7 @@ class ProgramText::Reader {
         if (i + 1 >= w.starts.size()) {
             return {};
         }
-        return without_newline({w.bytes.data() + w.starts[i], w.starts[i + 1] - w.starts[i]});
+        return line_content(number, {w.bytes.data() + w.starts[i], w.starts[i + 1] - w.starts[i]});
     }
 
   private:
@@ -239,7 +241,7 @@ bool ProgramText::next_of_scan(std::string_view &content) {
     }
     scanned_ += content.size();
     ++count_;
-    content = without_newline(content);
+    content = line_content(count_, content);
     return true;
 }
 
@@ -267,7 +269,7 @@ std::string_view ProgramText::line(int line) const {
         return reader_->line(line);
     }
     const auto i = static_cast<std::size_t>(line - 1);
-    return without_newline({text_.data() + starts_[i], starts_[i + 1] - starts_[i]});
+    return line_content(line, {text_.data() + starts_[i], starts_[i + 1] - starts_[i]});
 }
 
 const std::string &ProgramText::failure() const {

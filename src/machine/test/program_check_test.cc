@@ -2,13 +2,16 @@
 // What a check finds in a program before a machine moves.
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "machine/loaded_config.hh"
 #include "machine/program_check.hh"
+#include "machine/time_estimate.hh"
 
 namespace mw::machine {
 namespace {
@@ -98,6 +101,63 @@ TEST_F(ProgramCheck, WhatBoundsALongMoveIsWhatBoundsMostOfIt) {
     const SlowPlace &last = result.time->slowest.back();
     EXPECT_EQ(last.line, 4);
     EXPECT_NE(last.limit.find("acceleration"), std::string::npos) << last.limit;
+}
+
+/// The time of one move from 0.
+class MoveTime {
+  public:
+    explicit MoveTime(const MachineConfig &machine) : estimate_(machine) { estimate_.start({}); }
+    double line(double x, double feed) {
+        geom::Pose end;
+        end[0] = x;
+        estimate_.line(end, settings(feed));
+        return finish();
+    }
+    double circles(double radius, double turns, double feed) {
+        interp::ArcMove arc;
+        arc.centre[0] = radius;
+        arc.normal[2] = 1;
+        arc.angle_rad = 2 * std::numbers::pi * turns;
+        arc.end[0] = radius * (1 - std::cos(arc.angle_rad));
+        arc.end[1] = -radius * std::sin(arc.angle_rad);
+        arc.settings = settings(feed);
+        estimate_.arc(arc);
+        return finish();
+    }
+
+  private:
+    static geom::MoveSettings settings(double feed) {
+        geom::MoveSettings out;
+        out.feed = feed;
+        out.isRapid = feed == 0;
+        return out;
+    }
+    double finish() {
+        const TimeFigures &figures = estimate_.finish();
+        EXPECT_TRUE(figures.isComplete);
+        return figures.total_s;
+    }
+    TimeEstimate estimate_;
+};
+
+TEST_F(ProgramCheck, TheEstimateOfAnyMoveEndsAndIsItsLengthOverItsSpeed_I1) {
+    ASSERT_NE(config_, nullptr);
+    const MachineConfig &machine = config_->machine;
+    const auto isNear = [](double seconds, double expected) {
+        return std::fabs(seconds - expected) < 0.01 * expected;
+    };
+    for (const double seconds : {40.0, 59.0, 61.0, 1e3, 1e6, 1e12, 1e18}) {
+        SCOPED_TRACE(seconds);
+        EXPECT_TRUE(isNear(MoveTime(machine).line(10 * seconds, 10), seconds)) << "long";
+        EXPECT_TRUE(isNear(MoveTime(machine).line(1, 1 / seconds), seconds)) << "slow";
+        EXPECT_TRUE(isNear(MoveTime(machine).circles(1e3 * seconds, 0.01, 20 * std::numbers::pi), seconds))
+            << "wide";
+        EXPECT_TRUE(isNear(MoveTime(machine).circles(1, seconds, 2 * std::numbers::pi), seconds)) << "turns";
+    }
+    const double driven = MoveTime(machine).line(5000, 0);
+    EXPECT_LT(driven, traj::Estimator::DRIVEN_S);
+    EXPECT_TRUE(isNear(MoveTime(machine).line(5e9, 0), driven * 1e6)) << driven;
+    EXPECT_TRUE(isNear(MoveTime(machine).line(5e9, 1e6), driven * 1e6)) << "the machine's speed";
 }
 
 TEST_F(ProgramCheck, TheTimeKnowsThatACutThatWaitsForTheSpindleBeginsAtRest) {

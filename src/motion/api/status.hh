@@ -128,6 +128,7 @@ enum class Reason : std::uint16_t {
     JOINT_INACTIVE,
     QUEUE_FULL,
     PROBE_ALREADY_TRIPPED,
+    PROBE_ALREADY_OPEN,
     NOT_A_NUMBER,
     NO_WAY_BACK,  ///< nothing is remembered of the path
     BAD_ARC,

@@ -130,7 +130,12 @@ std::string reason_text(const Answer &answer) {
         return "the external enable is off: pin motion.enable or the e-stop chain is FALSE";
     case Reason::JOINT_INACTIVE: return fmt::format("{} is deactivated", joint_name(i));
     case Reason::QUEUE_FULL: return "the motion queue is full";
-    case Reason::PROBE_ALREADY_TRIPPED: return "the probe is already tripped before the probing move";
+    case Reason::PROBE_ALREADY_TRIPPED:
+        return "the probe is already tripped before G38.2, which ends at contact: move the probe clear first";
+    case Reason::PROBE_ALREADY_OPEN:
+        return "the probe is already open before G38.4, which ends when contact is lost: bring the probe "
+               "into "
+               "contact first";
     case Reason::NOT_A_NUMBER: return "a value is not a finite number";
     case Reason::NO_WAY_BACK:
         return "there is no way back: nothing is remembered of the path (docs/motion/commands.md)";

@@ -215,6 +215,13 @@ bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
     if (line != nullptr && line->terms.isThread() && wasLocked_ && !areSpindlesReady()) {
         return true;
     }
+    const bool isOutput = std::holds_alternative<SynchedDigitalOutput>(c.body) ||
+                          std::holds_alternative<SynchedAnalogOutput>(c.body);
+    if (isOutput && link_.store.events.size() >= link_.store.events.capacity()) {
+        planner_.release_end();  // those before it change once the path is driven to here
+        isQueueFull_ = true;
+        return true;
+    }
     isQueueFull_ = isPathBegun_ && !planner_.hasRoom(view_.executor);
     return isQueueFull_ || pending_.size() + 2 >= PendingCommands::CAPACITY;
 }

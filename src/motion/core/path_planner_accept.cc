@@ -428,10 +428,11 @@ Reason PathPlanner::accept_tap(const PathCommand &c, const RigidTap &tap) noexce
     return Reason::NONE;
 }
 
-/// A probe comes alone: what was before it is complete, and nothing is taken until it is.
+/// A probe comes alone: what was before it is complete, and nothing is taken until it is. One that need not
+/// trip may begin in its target state: the first cycle of the move finds it tripped.
 Reason PathPlanner::accept_probe(const PathCommand &c, const Probe &probe) noexcept {
-    if (view_.isProbeClosed != probe.isAway) {
-        return Reason::PROBE_ALREADY_TRIPPED;
+    if (probe.mustTrip && view_.isProbeClosed != probe.isAway) {
+        return probe.isAway ? Reason::PROBE_ALREADY_OPEN : Reason::PROBE_ALREADY_TRIPPED;
     }
     const traj::Sequence before = planner_.last_move();
     MoveTerms terms = probe.terms;

@@ -44,6 +44,7 @@ const char *word_for(Reason reason) {
     case Reason::JOINT_INACTIVE: return "inactive";
     case Reason::QUEUE_FULL: return "queue full";
     case Reason::PROBE_ALREADY_TRIPPED: return "probe tripped";
+    case Reason::PROBE_ALREADY_OPEN: return "probe open";
     case Reason::NOT_A_NUMBER: return "no number";
     case Reason::NO_WAY_BACK: return "no way back";
     case Reason::BAD_ARC: return "bad arc";

@@ -452,22 +452,5 @@ TEST(Machine, AProbeThatTripsWhileHomingMayBeLeftOutOfAccount_C4_C10) {
     }
 }
 
-TEST(Machine, AProbingMoveIsRefusedWhereItsEndIsThereAtTheStart_C9) {
-    for (const bool isAway : {false, true}) {
-        MotionRig rig;
-        rig.ready();
-        rig.in.isProbeClosed = !isAway;
-        rig.step(10);
-        Probe probe;
-        probe.end[2] = -20;
-        probe.terms.feed = 10;
-        probe.isAway = isAway;
-        const CommandId id = rig.send_path(probe);
-        rig.step(100);
-        EXPECT_EQ(rig.refusal(id), Reason::PROBE_ALREADY_TRIPPED);
-        EXPECT_EQ(rig.out->joint[2].motor_pos_cmd, 0);
-    }
-}
-
 }  // namespace
 }  // namespace mw::motion

@@ -10,6 +10,8 @@
 #include <cerrno>
 #include <limits>
 
+#include "base/duration.hh"
+
 namespace mw::nml {
 namespace {
 
@@ -31,7 +33,7 @@ std::int64_t monotonic_ns() {
 
 Deadline::Deadline(Timeout timeout) : timeout_(timeout.seconds > LONGEST_S ? FOREVER : timeout) {
     if (!timeout_.isForever()) {
-        end_ns_ = monotonic_ns() + static_cast<std::int64_t>(timeout_.seconds * 1e9);
+        end_ns_ = monotonic_ns() + to_ns(timeout_.seconds);
     }
 }
 

@@ -102,7 +102,9 @@ py::list chords(const py::object &canon, const ArcWords &arc, const std::array<d
     const double from = std::atan2(y0, x0);
     const double angle = arc.rotation == 0 ? 0.0 : sweep(from, std::atan2(y1, x1), arc.rotation);
     const double r0 = std::hypot(x0, y0), r1 = std::hypot(x1, y1);
-    const int count = std::max(1, static_cast<int>(std::ceil(std::abs(angle) / FULL_TURN * max_segments)));
+    constexpr double MOST_SEGMENTS = 1e5;
+    const int count = static_cast<int>(
+        std::clamp(std::ceil(std::abs(angle) / FULL_TURN * max_segments), 1.0, MOST_SEGMENTS));
     py::list out;
     for (int i = 1; i < count; ++i) {
         const double t = static_cast<double>(i) / count;

@@ -76,9 +76,9 @@ class GcodeTest(unittest.TestCase):
         self.assertEqual(canon.named("set_g5x_offset")[1][:2], (1, 1))
 
     def test_arcs_planes_and_others_have_the_arguments_that_previews_know(self):
-        canon, result = self.parse("F100 G3 X50.8 I25.4 Z25.4\nG18\nG2 X0 Z0 R50 \n(hello)\n(msg, look)\nG4 P0.5\n"
+        canon, result = self.parse("%\nF100 G3 X50.8 I25.4 Z25.4\nG18\nG2 X0 Z0 R50 \n(hello)\n(msg, look)\nG4 P0.5\n"
                                    "M100 P1 Q2\nG20 M3 S100\nG33.1 Z1 K1\n%\n")
-        self.assertEqual(result, (gcode.MIN_ERROR, 10))
+        self.assertEqual(result, (gcode.MIN_ERROR, 11))
         self.assertEqual(canon.named("arc_feed")[0], (2, 0, 1, 0, 1, 1, 0, 0, 0, 0, 0, 0))
         self.assertEqual(canon.named("set_plane"), [(3,)])
         self.assertIn(("hello",), canon.named("comment"))

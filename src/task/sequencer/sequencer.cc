@@ -4,16 +4,13 @@
 #include <cmath>
 #include <type_traits>
 
+#include "base/duration.hh"
+
 namespace mw::task {
 namespace {
 
-constexpr std::int64_t NS_PER_S = 1000000000;
 /// Items issued in one task cycle at most, so that the cycle stays short.
 constexpr int ITEMS_PER_CYCLE = 500;
-
-std::int64_t to_ns(double seconds) {
-    return static_cast<std::int64_t>(std::llround(seconds * static_cast<double>(NS_PER_S)));
-}
 
 struct MoveSource {
     const motion::SourceTag &tag;

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "interp/codes/block_words.hh"
 #include "interp/codes/tools/tools.hh"
 
@@ -56,9 +58,16 @@ bool set_compensation(const Code &code, const BlockValues &values, const Machine
             orientation = entry.orientation;
         }
     }
-    constexpr int HIGHEST_ORIENTATION = 9;
+    constexpr int HIGHEST_ORIENTATION = 9, CENTRE = 9;
     if (orientation < 0 || orientation > HIGHEST_ORIENTATION) {
         return fault.set("The orientation of a lathe tool must be 0 to 9", values.column_of('l'));
+    }
+    const bool isNose = orientation > 0 && orientation < CENTRE;
+    if (isNose && state.plane != Plane::XZ) {
+        return fault.set(fmt::format("G{} with lathe tool, but plane is not G18", code.number / 10), 0,
+                         fmt::format("the tool has orientation {}: program G18 first, or use a tool with "
+                                     "orientation 0 or 9",
+                                     orientation));
     }
     const bool isLeft = (code.number < 420) == (diameter >= 0.0);
     state.comp.turn_on(isLeft ? CompSide::LEFT : CompSide::RIGHT, code.number, std::fabs(diameter) / 2.0,

@@ -9,6 +9,7 @@
 #include "interp/canon/plane_axes.hh"
 #include "interp/codes/block_words.hh"
 #include "interp/codes/moves/targets.hh"
+#include "interp/codes/step_count.hh"
 
 namespace mw::interp::detail {
 namespace {
@@ -86,9 +87,6 @@ bool check_cycle(const Code &code, const BlockValues &values, const Machine &mac
     if (plane_axes(state.plane).normal > geom::AXIS_Z) {
         return fault.set("Canned cycles need one of the planes G17, G18 or G19");
     }
-    if (values.isMachineCoordinates) {
-        return fault.set("Cannot use g53 with a canned cycle");
-    }
     if (state.feed_mode == FeedMode::INVERSE_TIME) {
         return fault.set("Cannot use inverse time feed with canned cycles");
     }
@@ -138,6 +136,13 @@ struct CyclePlan {
     int code = 0;
     double r = 0, bottom = 0, clear = 0;
 };
+
+/// Pecks of G73 and G83 from R to the bottom, at least one.
+double count_pecks(const CyclePlan &plan, double peck) {
+    const double error = FIGURE_ERROR * (std::fabs(plan.r) + std::fabs(plan.bottom)) / peck;
+    const double pecks = (plan.r - plan.bottom) / peck;
+    return std::fmax(1.0, count_steps(pecks, error + FIGURE_ERROR * pecks));
+}
 
 /// What the cycles do at one hole.
 struct CycleMoves {
@@ -214,8 +219,9 @@ void CycleMoves::run_peck(const CyclePlan &plan) {
         isDeep ? settings.parameter_g83_peck_clearance_mm : settings.parameter_g73_peck_clearance_mm;
     const double configured = clearance_mm / (state.units == LengthUnits::MM ? 1.0 : MM_PER_INCH);
     const double clearance = state.cycle.hasClearance ? state.cycle.p : configured;
-    constexpr double SAME = 1e-9;
-    for (double depth = plan.r - state.cycle.q; depth > plan.bottom + SAME; depth -= state.cycle.q) {
+    const double pecks = count_pecks(plan, state.cycle.q);
+    for (int peck = 1; peck < static_cast<int>(pecks); ++peck) {
+        const double depth = plan.r - peck * state.cycle.q;
         cycle_move(false, normal, depth);
         if (isDeep) {
             cycle_move(true, normal, plan.r);
@@ -332,7 +338,7 @@ bool run_canned_cycle(const Code &code, const BlockValues &values, const Machine
                          values.column_of('r'));
     }
     constexpr double MOST_MOVES = 1e6;  // a slip of the keyboard, not a program
-    const double pecks = needsPeck(code.number) ? (plan.r - plan.bottom) / state.cycle.q + 1.0 : 1.0;
+    const double pecks = needsPeck(code.number) ? count_pecks(plan, state.cycle.q) : 1.0;
     if (pecks * repeats > MOST_MOVES) {
         return fault.set(
             "This canned cycle would make more than a million moves: is L too large or Q too small?",

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <expected>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -106,6 +107,37 @@ double clear_height(const Profile &cut) {
     return height;
 }
 
+/// The start of the cycle is between the ends of the profile's range in X (facing: Z), so that no side is the
+/// one without material.
+bool refuse_side(const LatheRequest &request, const CutFrame &cut, std::string_view name, bool isDiameter,
+                 Fault &fault) {
+    const auto highest = [&](double across) {
+        const CutFrame frame{.isFacing = cut.isFacing, .across = across};
+        double top = -std::numeric_limits<double>::infinity();
+        for (const ProfileSegment &segment :
+             in_frame({request.profile.begin() + 1, request.profile.end()}, frame)) {
+            top = std::fmax(top, top_of(segment));
+        }
+        return top;
+    };
+    const char axis = cut.isFacing ? 'Z' : 'X';
+    const double scale = isDiameter && !cut.isFacing ? 2.0 : 1.0;
+    const double low = -highest(-1) * scale, high = highest(1) * scale;
+    const double start = request.start[cut.isFacing ? Z : X] * scale;
+    return fault.set(
+        fmt::format(
+            "The profile of {} goes from {}{:g} to {}{:g}, and the cycle starts between them at {}{:g}", name,
+            axis, low, axis, high, axis, start),
+        0,
+        cut.isFacing
+            ? fmt::format("start at Z{:g} or more for a front face, at Z{:g} or less for a back face: "
+                          "move there before the cycle, or give it as the cycle's Z",
+                          high, low)
+            : fmt::format("start at X{:g} or more for an outside, at X{:g} or less for a bore: move "
+                          "there before the cycle, or give it as the cycle's X",
+                          high, low));
+}
+
 /// A move of the cycle, compensated when G41 or G42 is on.
 bool send_profile_move(const ProfileMove &move, const CutFrame &frame, State &state, CanonQueue &canon,
                        Fault &fault) {
@@ -167,7 +199,6 @@ bool begin_lathe_cycle(const Code &code, const BlockValues &values, const Machin
     const Check checks[] = {
         {state.plane != Plane::XZ, 'q', "needs the plane G18"},
         {state.comp.isOn() && code.number != 700, 'q', "cannot be used with cutter radius compensation on"},
-        {values.isMachineCoordinates, 'q', "cannot be used with g53"},
         {values.has('@') || values.has('^'), 'q', "takes no polar words"},
         {state.feed_mode == FeedMode::INVERSE_TIME, 'q', "cannot be used with inverse time feed"},
         {state.feed == 0.0, 'q', "needs a feed: give F first"},
@@ -317,10 +348,7 @@ bool LatheCycles::cut(const LatheRequest &request, State &state, CanonQueue &can
     }
     const bool isSideNeeded = !isFinishing || request.distance > 0.0 || request.end_distance > 0.0;
     if (isSideNeeded && !framed->frame.isSideClear) {
-        return fault.set(
-            fmt::format("The profile of {} goes to both sides of the cycle's start, which has its "
-                        "{}: start clear of it, on the side without material",
-                        name, framed->frame.isFacing ? "Z" : "X"));
+        return refuse_side(request, framed->frame, name, state.isDiameter, fault);
     }
     ProfileSegment &entry = framed->profile.front();
     entry.start.x = std::fmin(entry.start.x, entry.end.x);

@@ -8,6 +8,7 @@
 #include "interp/codes/block_words.hh"
 #include "interp/codes/moves/spindle_moves.hh"
 #include "interp/codes/moves/targets.hh"
+#include "interp/codes/step_count.hh"
 
 namespace mw::interp::detail {
 namespace {
@@ -80,6 +81,14 @@ bool check_thread_cycle(const BlockValues &values, const Machine &machine, const
     return check_pitch(machine, state, fault, plan.spindle, plan.pitch, values.column_of('p'));
 }
 
+/// Passes without springs: the first n whose depth J * n^(1/R) reaches K, so n = (K / J)^R rounded up. The
+/// error is that of J, K and R carried through the power.
+double count_passes(const ThreadPlan &plan) {
+    const double ratio = plan.full_depth / plan.first_cut;
+    const double passes = std::pow(ratio, plan.degression);
+    return count_steps(passes, passes * FIGURE_ERROR * (1.0 + plan.degression * (2.0 + std::log(ratio))));
+}
+
 /// One cut at `depth` below the peaks, infeed along the flank.
 void thread_pass(const ThreadPlan &plan, double depth, State &state, CanonQueue &canon) {
     const double rest = plan.full_depth - depth;
@@ -148,17 +157,16 @@ bool cut_thread(const Code &code, const BlockValues &values, const Machine &mach
     if (tapers * plan.taper_length > std::fabs(plan.end_z - plan.start_z)) {
         return fault.set("The tapers of G76 are longer than the thread", values.column_of('e'));
     }
+    const double passes = count_passes(plan);
+    if (!(passes <= MAX_PASSES)) {
+        return fault.set("G76 would need more than 10000 passes: the first cut J is too small",
+                         values.column_of('j'));
+    }
     state.motion = code.number;
     state.cycle.isRunning = false;
     state.comp.set_exit(false);
-    double depth = plan.first_cut;
-    for (int pass = 1; depth < plan.full_depth; ++pass) {
-        if (pass > MAX_PASSES) {
-            return fault.set("G76 would need more than 10000 passes: the first cut J is too small",
-                             values.column_of('j'));
-        }
-        thread_pass(plan, depth, state, canon);
-        depth = plan.first_cut * std::pow(pass + 1, 1.0 / plan.degression);
+    for (int pass = 1; pass < static_cast<int>(passes); ++pass) {
+        thread_pass(plan, plan.first_cut * std::pow(pass, 1.0 / plan.degression), state, canon);
     }
     for (int pass = 0; pass <= plan.springs; ++pass) {
         thread_pass(plan, plan.full_depth, state, canon);

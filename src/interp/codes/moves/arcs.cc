@@ -134,9 +134,6 @@ bool move_along_arc(const Code &code, const BlockValues &values, const Machine &
     if (!check_feed_per_revolution(state, fault)) {
         return false;
     }
-    if (values.isMachineCoordinates) {
-        return fault.set("Cannot use g53 with an arc");
-    }
     if (state.comp.isExit()) {
         return fault.set("The move just after exiting cutter compensation mode must be straight, not an arc");
     }

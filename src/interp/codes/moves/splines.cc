@@ -26,9 +26,6 @@ bool check_spline(const BlockValues &values, std::string_view code, bool isPlane
     if (state.comp.isOn()) {
         return fault.set(fmt::format("{} cannot be used with cutter radius compensation on", code));
     }
-    if (values.isMachineCoordinates) {
-        return fault.set(fmt::format("Cannot use g53 with {}", code));
-    }
     const PlaneAxes axes = plane_axes(state.plane);
     for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
         const char name = geom::AXIS_LETTERS_LOWER[axis];

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "base/duration.hh"
+
 namespace mw::motion {
 
 namespace {
@@ -99,9 +101,8 @@ Reason start_continuous(Jogs &jogs, const JogTarget &target, double velocity,
 }
 
 void begin_lease(Jogs &jogs, const JogContinuous &command, std::int64_t time_ns) noexcept {
-    constexpr double NS_PER_S = 1e9;
     JogLease &lease = jogs.at(command.target).lease;
-    lease.length_ns = static_cast<std::int64_t>(command.lease_s * NS_PER_S + 0.5);
+    lease.length_ns = to_ns(command.lease_s);
     lease.end_ns = time_ns + lease.length_ns;
     lease.isForward = command.velocity > 0;
     jogs.leased |= bit_of(command.target);
