@@ -9,7 +9,10 @@
 #include <fmt/format.h>
 
 #include "app/commands.hh"
+#include "app/ui_dialogs.hh"
+#include "app/ui_facts.hh"
 #include "base/stop_signals.hh"
+#include "base/text.hh"
 #include "config/ini_file.hh"
 #include "doctor/examine.hh"
 #include "language/language.hh"
@@ -65,6 +68,16 @@ const char *kind_of(diag::Severity severity) {
     return "info";
 }
 
+/// The settings of our screen, read as the screen reads them; other displays have readers of their own.
+void examine_screen(const machine::LoadedConfig &loaded, diag::Sink &sink) {
+    const std::vector<std::string> words = split_words(loaded.machine.display);
+    if (!words.empty() && words[0] == "millwright") {
+        static_cast<void>(machine_facts(loaded, sink));
+        static_cast<void>(status_period_s(loaded.ini, sink));
+        static_cast<void>(dialog_facts(loaded.ini, sink));
+    }
+}
+
 }  // namespace
 
 int command_doctor(const std::vector<std::string> &arguments) {
@@ -90,6 +103,7 @@ int command_doctor(const std::vector<std::string> &arguments) {
         fmt::print(out.get(), "{}\n", language::shown(doctor::finding_line(finding)));
         std::fflush(out.get());
     });
+    words.scope.display = examine_screen;
     doctor::examine(words.rest[0], words.scope, stop_signal, sink);
     fmt::print(stderr, "{}",
                language::shown(fmt::format("{}: {} errors, {} warnings\n", words.rest[0], counted.errors,
@@ -130,7 +144,8 @@ int command_check_ini(const std::vector<std::string> &arguments) {
         fmt::print(stderr, "{}: {}: {}\n", ini, kind_of(finding.severity),
                    language::shown(finding.what.str()));
     });
-    doctor::examine(ini, {.hasHal = false, .hasSystem = false, .latency_s = 0}, stop_signal, sink);
+    doctor::examine(ini, {.hasHal = false, .hasSystem = false, .latency_s = 0, .display = examine_screen},
+                    stop_signal, sink);
     return counted.errors > 0 || (isStrict && counted.warnings > 0) ? 1 : 0;
 }
 

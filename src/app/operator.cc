@@ -52,6 +52,12 @@ Result<> Operator::home_all() {
     if (!manual.has_value()) {
         return manual;
     }
+    if (status().trajectory.mode == msgs::MotionMode::TELEOP) {
+        const auto joints = ask(msgs::SetTeleop{false}, "joint mode");
+        if (!joints.has_value()) {
+            return joints;
+        }
+    }
     const auto homed = ask(msgs::HomeJoint{-1}, "homing");
     for (int joint = 0; joint < config_.num_joints; ++joint) {
         const auto i = static_cast<std::size_t>(joint);

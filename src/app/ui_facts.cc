@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -19,15 +20,19 @@ using ui::web::Increment;
 
 constexpr double MM_PER_INCH = 25.4;
 
-/// A number of the INI file above 0; a warning where it is none.
+/// Whether 0 is a value of a key.
+enum class Least : std::uint8_t { ABOVE_0, FROM_0 };
+
+/// A number of the INI file above 0, or from 0; a warning where it is none.
 std::optional<double> number(const config::IniFile &ini, const char *section, const char *key,
-                             diag::Sink &sink) {
+                             diag::Sink &sink, Least least = Least::ABOVE_0) {
     const config::IniEntry *entry = ini.find(section, key);
     if (entry == nullptr) {
         return std::nullopt;
     }
     const auto value = parse_double(entry->value);
-    if (!value.has_value() || *value <= 0) {
+    const bool isZero = value.has_value() && *value == 0 && least == Least::FROM_0;
+    if (!value.has_value() || !std::isfinite(*value) || (*value <= 0 && !isZero)) {
         sink.warning("[" + entry->section + "]" + entry->key + " is '" + entry->value +
                          "', which is no number above 0: the screen does without it",
                      entry->place);
@@ -40,10 +45,10 @@ struct Key {
     const char *section, *key;
 };
 
-std::optional<double> first_of(const config::IniFile &ini, std::initializer_list<Key> keys,
-                               diag::Sink &sink) {
+std::optional<double> first_of(const config::IniFile &ini, std::initializer_list<Key> keys, diag::Sink &sink,
+                               Least least = Least::ABOVE_0) {
     for (const Key &key : keys) {
-        if (const auto value = number(ini, key.section, key.key, sink)) {
+        if (const auto value = number(ini, key.section, key.key, sink, least)) {
             return value;
         }
     }
@@ -160,6 +165,61 @@ std::optional<double> fastest_axis(const machine::LoadedConfig &loaded, bool isA
         }
     }
     return most;
+}
+
+/// Speeds of jogs [units/s].
+struct JogSpeeds {
+    double highest = 1, preset = 1;
+};
+
+/// [DISPLAY] before [TRAJ]. No jog is faster than the fastest axis of its kind.
+JogSpeeds jog_speeds(const machine::LoadedConfig &loaded, bool isAngular, diag::Sink &sink) {
+    const config::IniFile &ini = loaded.ini;
+    const char *const highest_key = isAngular ? "MAX_ANGULAR_VELOCITY" : "MAX_LINEAR_VELOCITY";
+    const char *const preset_key = isAngular ? "DEFAULT_ANGULAR_VELOCITY" : "DEFAULT_LINEAR_VELOCITY";
+    constexpr double PRESET_SHARE = 0.25;
+    const auto fastest = fastest_axis(loaded, isAngular, sink);
+    const auto set = first_of(ini, {{"DISPLAY", highest_key}, {"TRAJ", highest_key}}, sink);
+    JogSpeeds speeds;
+    speeds.highest = std::min(set.value_or(fastest.value_or(1)), fastest.value_or(set.value_or(1)));
+    const auto preset = first_of(ini, {{"DISPLAY", preset_key}, {"TRAJ", preset_key}}, sink);
+    speeds.preset = std::min(preset.value_or(speeds.highest * PRESET_SHARE), speeds.highest);
+    if (preset.has_value() && *preset > speeds.highest) {
+        const config::IniEntry *entry = ini.find("DISPLAY", preset_key);
+        entry = entry != nullptr ? entry : ini.find("TRAJ", preset_key);
+        sink.warning("[" + entry->section + "]" + entry->key + " = " + to_text(*preset) +
+                         " exceeds the maximum jog speed of " + to_text(speeds.highest) +
+                         " units/s: jogs start with the maximum",
+                     entry->place, "speeds in the INI file are per second");
+    }
+    return speeds;
+}
+
+/// [DISPLAY] keys with the number of the spindle come before those without one.
+ui::web::SpindleFacts spindle_facts(const machine::LoadedConfig &loaded, int spindle, diag::Sink &sink) {
+    const std::string number = std::to_string(spindle), section = "SPINDLE_" + number;
+    const auto value = [&](const std::string &first, const std::string &last) -> std::optional<double> {
+        const std::string own = first + "_SPINDLE_" + number + '_' + last, all = first + "_SPINDLE_" + last;
+        return first_of(loaded.ini, {{"DISPLAY", own.c_str()}, {"DISPLAY", all.c_str()}}, sink,
+                        Least::FROM_0);
+    };
+    ui::web::SpindleFacts facts;
+    facts.min_override = value("MIN", "OVERRIDE").value_or(loaded.machine.panel.min_spindle_override);
+    facts.max_override = value("MAX", "OVERRIDE").value_or(loaded.machine.panel.max_spindle_override);
+    facts.min_speed = value("MIN", "SPEED").value_or(0);
+    facts.max_speed = value("MAX", "SPEED").value_or(0);
+    facts.default_speed = value("DEFAULT", "SPEED").value_or(0);
+    facts.increment =
+        first_of(loaded.ini, {{"DISPLAY", "SPINDLE_INCREMENT"}, {section.c_str(), "INCREMENT"}}, sink)
+            .value_or(facts.increment);
+    const SourcePlace place{loaded.ini.path(), 0, 0};
+    if (facts.min_override > facts.max_override) {
+        sink.warning("the override of spindle " + number + " has a minimum above its maximum", place);
+    }
+    if (facts.max_speed > 0 && facts.min_speed > facts.max_speed) {
+        sink.warning("the speed of spindle " + number + " has a minimum above its maximum", place);
+    }
+    return facts;
 }
 
 std::string text_of(const config::IniFile &ini, const char *section, const char *key) {
@@ -281,41 +341,23 @@ ui::web::MachineFacts machine_facts(const machine::LoadedConfig &loaded, diag::S
     facts.isHomingForced = machine.task.isHomingForced;
     facts.linear_unit = machine.isMetric ? "mm" : "inch";
     facts.program_prefix = program_folder(loaded);
-    facts.max_linear_velocity =
-        first_of(ini, {{"DISPLAY", "MAX_LINEAR_VELOCITY"}, {"TRAJ", "MAX_LINEAR_VELOCITY"}}, sink)
-            .value_or(fastest_axis(loaded, false, sink).value_or(1));
-    facts.default_linear_velocity = std::min(
-        facts.max_linear_velocity,
-        first_of(ini, {{"DISPLAY", "DEFAULT_LINEAR_VELOCITY"}, {"TRAJ", "DEFAULT_LINEAR_VELOCITY"}}, sink)
-            .value_or(facts.max_linear_velocity / 4));
+    const JogSpeeds linear = jog_speeds(loaded, false, sink);
+    facts.max_linear_velocity = linear.highest;
+    facts.default_linear_velocity = linear.preset;
     const auto lowest = [&](const char *key) {
         return first_of(ini, {{"DISPLAY", key}, {"TRAJ", key}}, sink).value_or(0);
     };
     facts.min_linear_velocity = std::min(facts.max_linear_velocity, lowest("MIN_LINEAR_VELOCITY"));
     facts.min_angular_velocity = hasRotary ? lowest("MIN_ANGULAR_VELOCITY") : 0;
-    facts.spindle_increment = first_of(ini, {{"DISPLAY", "SPINDLE_INCREMENT"}}, sink).value_or(100);
-    facts.min_spindle_speed =
-        first_of(ini, {{"DISPLAY", "MIN_SPINDLE_0_SPEED"}, {"DISPLAY", "MIN_SPINDLE_SPEED"}}, sink)
-            .value_or(0);
-    facts.max_spindle_speed =
-        first_of(ini, {{"DISPLAY", "MAX_SPINDLE_0_SPEED"}, {"DISPLAY", "MAX_SPINDLE_SPEED"}}, sink)
-            .value_or(0);
     if (hasRotary) {
-        facts.max_angular_velocity =
-            first_of(ini, {{"DISPLAY", "MAX_ANGULAR_VELOCITY"}, {"TRAJ", "MAX_ANGULAR_VELOCITY"}}, sink)
-                .value_or(fastest_axis(loaded, true, sink).value_or(1));
-        facts.default_angular_velocity = std::min(
-            facts.max_angular_velocity,
-            first_of(ini, {{"DISPLAY", "DEFAULT_ANGULAR_VELOCITY"}, {"TRAJ", "DEFAULT_ANGULAR_VELOCITY"}},
-                     sink)
-                .value_or(facts.max_angular_velocity / 4));
+        const JogSpeeds angular = jog_speeds(loaded, true, sink);
+        facts.max_angular_velocity = angular.highest;
+        facts.default_angular_velocity = angular.preset;
     }
     facts.max_feed_override = machine.panel.max_feed_override;
-    facts.min_spindle_override = machine.panel.min_spindle_override;
-    facts.max_spindle_override = machine.panel.max_spindle_override;
-    facts.default_spindle_speed =
-        first_of(ini, {{"DISPLAY", "DEFAULT_SPINDLE_0_SPEED"}, {"DISPLAY", "DEFAULT_SPINDLE_SPEED"}}, sink)
-            .value_or(0);
+    for (int spindle = 0; spindle < machine.num_spindles; ++spindle) {
+        facts.spindles.push_back(spindle_facts(loaded, spindle, sink));
+    }
     facts.increments = increments_of(loaded, hasRotary, sink);
     for (const config::IniEntry &entry : ini.entries()) {
         if (entry.section == "MDI_COMMAND_LIST" && entry.key.starts_with("MDI_COMMAND")) {

@@ -45,6 +45,9 @@ void examine(const std::string &ini, const Scope &scope, volatile std::sig_atomi
     machine::LoadedConfig loaded(std::move(*file), sink);
     examine_contradictions(loaded.ini, loaded.machine, sink);
     examine_named_files(loaded.ini, loaded.machine, sink);
+    if (scope.display) {
+        scope.display(loaded, sink);
+    }
     const bool isUp = isMachineUp();
     if (sink.hasErrors() || !scope.hasHal || isUp) {
         if (scope.hasHal) {

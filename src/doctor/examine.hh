@@ -3,9 +3,11 @@
 #pragma once
 
 #include <csignal>
+#include <functional>
 #include <string>
 
 #include "diag/sink.hh"
+#include "machine/loaded_config.hh"
 
 namespace mw::doctor {
 
@@ -13,6 +15,8 @@ struct Scope {
     bool hasHal = true;     ///< HAL files are carried out, under the virtual clock
     bool hasSystem = true;  ///< kernel, processors and rights
     double latency_s = 10;  ///< 0: not measured
+    /// What the machine's display reads of the settings; empty: nobody knows.
+    std::function<void(const machine::LoadedConfig &, diag::Sink &)> display;
 };
 
 /// Tells findings to `sink`, which has errors when the machine would not start or not work.

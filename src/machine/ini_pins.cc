@@ -110,7 +110,7 @@ void IniPins::make_named(hal::UserPin<T> &pin, const std::string &name, hal::Hal
     }
 }
 
-void IniPins::make_pins(int num_joints, hal::Hal &hal, Result<> &status) {
+void IniPins::make_pins(int num_joints, const Defaults &defaults, hal::Hal &hal, Result<> &status) {
     const auto make = [&](const std::string &prefix, const IniPin &row, int index) {
         Pin pin;
         pin.name = prefix + std::string(row.name);
@@ -123,7 +123,9 @@ void IniPins::make_pins(int num_joints, hal::Hal &hal, Result<> &status) {
         }
         std::visit([&](auto &p) { make_named(p, pin.name, hal, status); }, pin.pin);
         if (status.has_value()) {
-            pin.set(row.preset);
+            pin.set(row.name == "default-velocity"       ? defaults.velocity
+                    : row.name == "default-acceleration" ? defaults.acceleration
+                                                         : row.preset);
             pins_.push_back(std::move(pin));
         }
     };
@@ -144,7 +146,8 @@ void IniPins::make_pins(int num_joints, hal::Hal &hal, Result<> &status) {
     make_named(corner_scale_, "ini.traj-scurve-peak-scale", hal, status);
 }
 
-Result<> IniPins::create(hal::Hal &hal, const std::vector<motion::SetParameter> &parameters, int num_joints) {
+Result<> IniPins::create(hal::Hal &hal, const std::vector<motion::SetParameter> &parameters, int num_joints,
+                         const Defaults &defaults) {
     const auto id = hal.new_component("inihal");
     if (!id.has_value()) {
         return std::unexpected(id.error());
@@ -152,12 +155,11 @@ Result<> IniPins::create(hal::Hal &hal, const std::vector<motion::SetParameter> 
     hal_ = &hal;
     comp_id_ = *id;
     Result<> status;
-    make_pins(num_joints, hal, status);
+    make_pins(num_joints, defaults, hal, status);
     if (!status.has_value()) {
         destroy();
         return status;
     }
-    settings_ = motion::settings_of(parameters);
     for (const motion::SetParameter &p : parameters) {
         const auto parameter = static_cast<Parameter>(p.parameter);
         if (parameter == Parameter::TRAJ_PLANNER_TYPE) {
@@ -206,7 +208,7 @@ bool IniPins::isTaken(const Pin &pin, double value, task::Task &task) const {
     }
     const Parameter other = other_limit(pin.use.parameter);
     if (other != Parameter::COUNT) {
-        const double end = settings_.get(other, pin.index);
+        const double end = task.motion_settings().get(other, pin.index);
         if (isLower(pin.use.parameter) ? value >= end : value <= end) {
             return refuse(fmt::format("the other limit is {}, and the old one stays in force", end));
         }
@@ -238,7 +240,6 @@ void IniPins::step(Pin &pin, task::Task &task) {
     pin.isWaiting = false;
     const motion::SetParameter setting{static_cast<std::uint16_t>(pin.use.parameter),
                                        static_cast<std::int16_t>(pin.index), pin.last};
-    settings_.set(setting, MAX_JOINTS, MAX_SPINDLES);
     task.change(setting);
 }
 

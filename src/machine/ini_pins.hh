@@ -17,8 +17,13 @@ namespace mw::machine {
 /// says, 0 where it says nothing. Not realtime; one thread.
 class IniPins {
   public:
+    /// [TRAJ]DEFAULT_LINEAR_VELOCITY and DEFAULT_LINEAR_ACCELERATION, which nothing acts on.
+    struct Defaults {
+        double velocity = 0, acceleration = 0;
+    };
     /// Makes the component and its pins.
-    Result<> create(hal::Hal &hal, const std::vector<motion::SetParameter> &parameters, int num_joints);
+    Result<> create(hal::Hal &hal, const std::vector<motion::SetParameter> &parameters, int num_joints,
+                    const Defaults &defaults);
     void destroy();
     /// Tells task what has changed since the last call. Speeds and accelerations wait until nothing moves in
     /// a mode of jogs, and nothing changes while joints home.
@@ -45,14 +50,13 @@ class IniPins {
     };
     template <class T>
     void make_named(hal::UserPin<T> &pin, const std::string &name, hal::Hal &hal, Result<> &status);
-    void make_pins(int num_joints, hal::Hal &hal, Result<> &status);
+    void make_pins(int num_joints, const Defaults &defaults, hal::Hal &hal, Result<> &status);
     bool isTaken(const Pin &pin, double value, task::Task &task) const;
     void step(Pin &pin, task::Task &task);
 
     hal::Hal *hal_ = nullptr;
     int comp_id_ = 0;
     std::vector<Pin> pins_;
-    motion::Settings settings_;  ///< as they were told to motion
     hal::UserPin<std::int32_t> planner_type_;
     hal::UserPin<double> corner_scale_;
     std::int32_t last_type_ = 0;

@@ -10,7 +10,45 @@ namespace mw::machine {
 
 using config::IniReader, motion::Parameter;
 
+namespace {
+
+/// Whether a key of [DISPLAY] is a limit of an override: MAX_FEED_OVERRIDE, MIN_SPINDLE_1_OVERRIDE and the
+/// like.
+bool isOverrideLimit(std::string_view key) {
+    const bool isLimit = key.starts_with("MIN_") || key.starts_with("MAX_") || key.starts_with("DEFAULT_");
+    return isLimit && key.ends_with("_OVERRIDE");
+}
+
+/// Override limits are ratios; one that looks like a percentage is 100 times what its author expects.
+void check_override_limits(IniReader &ini) {
+    constexpr double MOST_PLAUSIBLE = 10, PERCENT = 100;
+    for (const config::IniEntry &entry : ini.file().entries()) {
+        if (entry.section != "DISPLAY" || !isOverrideLimit(entry.key)) {
+            continue;
+        }
+        const auto value = parse_double(entry.value);
+        if (value.has_value() && *value > MOST_PLAUSIBLE) {
+            ini.sink().warning("[DISPLAY]" + entry.key + " = " + entry.value + ": the override may reach " +
+                                   to_text(*value * PERCENT) + " %",
+                               entry.place, "1.0 is 100 %");
+        }
+    }
+}
+
+/// The keys of the messages that MULTIMESSAGE_ID names.
+void know_messages(IniReader &ini) {
+    for (const config::IniEntry *id : ini.file().find_all("DISPLAY", "MULTIMESSAGE_ID")) {
+        for (const char *part : {"NUMBER", "TYPE", "TITLE", "TEXT", "DETAILS", "ICON"}) {
+            ini.know_if_ours("DISPLAY", "MULTIMESSAGE_" + std::string(trim(id->value)) + '_' + part);
+        }
+    }
+}
+
+}  // namespace
+
 void read_panel(IniReader &ini, MachineConfig &machine) {
+    check_override_limits(ini);
+    know_messages(ini);
     PanelConfig &panel = machine.panel;
     panel.min_spindle_override = ini.real(ini_key("DISPLAY", "MIN_SPINDLE_OVERRIDE"));
     panel.max_spindle_override = ini.real(ini_key("DISPLAY", "MAX_SPINDLE_OVERRIDE"));

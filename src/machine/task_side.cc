@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "machine/task_side.hh"
 
+#include "base/text.hh"
 #include "base/whole_path.hh"
 #include "machine/hal_setup.hh"
 
@@ -80,10 +81,7 @@ Result<> TaskSide::start(const MachineOptions &options) {
     task_ = std::make_unique<task::Task>(
         task::Parts{*channels_, *this, *tools_, parameters_, mailbox_.segment(), journal},
         std::move(settings));
-    for (const auto &table : parts_.config.screw_tables) {
-        task_->load_compensation(table);
-    }
-    task_->configure(parts_.config.parameters);
+    task_->configure(parts_.config.parameters, parts_.config.screw_tables);
     return {};
 }
 
@@ -101,7 +99,12 @@ Result<> TaskSide::identify() {
 Result<> TaskSide::make_pins() {
     auto status = io_pins_.create(host_.hal());
     if (status.has_value()) {
-        status = ini_pins_.create(host_.hal(), parts_.config.parameters, parts_.config.num_joints);
+        const auto number = [this](const char *key) {
+            const config::IniEntry *entry = parts_.ini.find("TRAJ", key);
+            return entry != nullptr ? parse_double(entry->value).value_or(0) : 0;
+        };
+        status = ini_pins_.create(host_.hal(), parts_.config.parameters, parts_.config.num_joints,
+                                  {number("DEFAULT_LINEAR_VELOCITY"), number("DEFAULT_LINEAR_ACCELERATION")});
     }
     if (status.has_value() && parts_.config.hasHalui) {
         status = halui_.create(host_.hal(), halui_settings(parts_.config));

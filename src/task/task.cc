@@ -62,7 +62,10 @@ SequencerEvents Task::make_events() {
     return events;
 }
 
-void Task::configure(const std::vector<motion::SetParameter> &parameters) {
+void Task::configure(const std::vector<motion::SetParameter> &parameters, const ScrewTables &tables) {
+    for (const auto &table : tables) {
+        motion_.send_table(table);
+    }
     planner_mode_.configure(parameters);
     for (const motion::SetParameter &parameter : parameters) {
         shown_settings_.note(parameter);

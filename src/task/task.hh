@@ -89,17 +89,17 @@ class Task {
     Task(const Task &) = delete;
     Task &operator=(const Task &) = delete;
 
-    /// Hands settings to the motion controller; a refused one comes as a message, and the first is kept.
-    void configure(const std::vector<motion::SetParameter> &parameters);
+    using ScrewTables = std::vector<std::vector<motion::LoadCompensation>>;
+    /// Hands settings and tables of screw errors to the motion controller; a refused one comes as a message,
+    /// and the first is kept.
+    void configure(const std::vector<motion::SetParameter> &parameters, const ScrewTables &tables = {});
     /// One setting, later on; whoever asks has seen that it is no time at which it cannot be.
     void change(const motion::SetParameter &parameter) {
         shown_settings_.note(parameter);
         motion_.send(parameter);
     }
-    /// And a table of the errors of a joint's screw.
-    void load_compensation(const std::vector<motion::LoadCompensation> &points) {
-        motion_.send_table(points);
-    }
+    /// The settings of motion, with all changes.
+    const motion::Settings &motion_settings() const { return shown_settings_.settings(); }
     /// All settings handed over are answered; an error, once they are, when one or a table was refused.
     Result<bool> isConfigured() const;
 

@@ -2,10 +2,12 @@
 // The handlers of the operator's commands, for the files that define them.
 #pragma once
 
+#include <span>
 #include <string>
 #include <type_traits>
 
 #include "task/link/device_orders.hh"
+#include "task/link/joint_settings.hh"
 #include "task/link/motion_words.hh"
 #include "task/task_start.hh"
 
@@ -80,12 +82,28 @@ struct Task::Handler {
         task.world_.set_block_delete(command.isOn);
         return Progress::DONE;
     }
-    template <command_lists::CarriedOutByMotion C>
+    template <class C>
+        requires command_lists::CarriedOutByMotion<C> || command_lists::JointSetting<C>
     Outcome operator()(const C &command) {
-        if constexpr (std::is_same_v<C, SetMaxVelocity>) {
-            task.shown_settings_.limit_velocity(command.velocity);
+        if constexpr (command_lists::JointSetting<C>) {
+            const auto changes = joint_settings(command);
+            const bool isHoming = task.homing_.isUnderWay() || task.motion_.status().isHoming;
+            const auto checked =
+                check_settings(changes, task.motion_settings(), {task.settings_.num_joints, isHoming});
+            if (!checked.has_value()) {
+                return std::unexpected(checked.error());
+            }
+            for (const motion::SetParameter &change : std::span(changes).first(changes.size() - 1)) {
+                task.change(change);
+            }
+            task.shown_settings_.note(changes.back());
+            return order(changes.back());
+        } else {
+            if constexpr (std::is_same_v<C, SetMaxVelocity>) {
+                task.shown_settings_.limit_velocity(command.velocity);
+            }
+            return order(in_motion_words(command));
         }
-        return order(in_motion_words(command));
     }
     template <OneOf<ReverseProgram, ForwardProgram> C>
     Outcome operator()(const C &) {

@@ -21,6 +21,9 @@ Outcome Task::Handler::operator()(const HomeJoint &command) {
     if (task.homing_.isUnderWay()) {
         return task.homing_.wait(command.joint, id);
     }
+    if (task.motion_.status().mode == motion::Mode::TELEOP) {
+        return fail("must be in joint mode to home", {}, "switch to joint mode first");
+    }
     task.motion_.send(motion::SetMode{motion::Mode::FREE});
     task.homing_.begin(command.joint, id, task.motion_.send(motion::Home{command.joint}));
     return Progress::STARTED;
@@ -67,7 +70,7 @@ Outcome Task::Handler::operator()(const LoadCompensation &command) {
     if (!points.has_value()) {
         return std::unexpected(points.error());
     }
-    task.load_compensation(*points);
+    task.motion_.send_table(*points);
     return Progress::DONE;
 }
 

@@ -61,7 +61,8 @@ bool Session::prepare(msgs::Mode mode) {
         beliefs_.state = msgs::State::ON;
     }
     if (!beliefs_.isHomed) {
-        if (!isDone(msgs::SetMode{msgs::Mode::MANUAL}) || !isDone(msgs::HomeJoint{})) {
+        if (!isDone(msgs::SetMode{msgs::Mode::MANUAL}) || !isDone(msgs::SetTeleop{false}) ||
+            !isDone(msgs::HomeJoint{})) {
             return false;
         }
         beliefs_.isHomed = true;

@@ -7,6 +7,7 @@ import { en, type TextKey } from '../src/lib/i18n/en';
 import { es } from '../src/lib/i18n/es';
 import { Texts } from '../src/lib/i18n/said';
 import { fill, placesOf } from '../src/lib/i18n/text';
+import { macroOf } from '../src/lib/macros';
 import { formatBytes, formatDuration, formatNumber, parseNumber, parseWhole } from '../src/lib/numbers';
 import { ChunkReader, readChunks, type Chunk, type Moves } from '../src/lib/path/chunks';
 import { thin } from '../src/lib/path/thin';
@@ -15,9 +16,10 @@ import { mergeDelta, modalWords, workPosition } from '../src/lib/status';
 describe('numbers (A8)', () => {
   it.each([
     ['1', 1], ['-1.5', -1.5], ['+2,25', 2.25], ['.5', 0.5], [',5', 0.5], ['3.', 3], ['  7 ', 7],
+    ['1 000', 1000], ['-12 345,5', -12345.5], ['1\u00a0000', 1000], ['1\u202f000\u202f000.25', 1_000_000.25], ['\u00a07\u202f', 7],
   ])('reads %s', (text, value) => expect(parseNumber(text)).toBe(value));
-  it.each(['', '1.2.3', '1,000.5', '1 000', 'x', '1e5', '-', '.', 'Infinity', '0x10', '1..'])('refuses %s', (text) => expect(parseNumber(text)).toBeNull());
-  it.each([['1', 1], [' 77 ', 77], ['99999', 99999], ['007', 7]])('reads %s as the number of a tool', (text, value) => expect(parseWhole(text, 1, 99999)).toBe(value));
+  it.each(['', '1.2.3', '1,000.5', '1 00', '1 0000', '10 00', '1  000', '1 000 00', '1.5 000', '1 - 1', 'x', '1e5', '-', '.', 'Infinity', '0x10', '1..'])('refuses %s', (text) => expect(parseNumber(text)).toBeNull());
+  it.each([['1', 1], [' 77 ', 77], ['99999', 99999], ['007', 7], ['1 000', 1000], ['\u00a012\u202f345', 12345]])('reads %s as the number of a tool', (text, value) => expect(parseWhole(text, 1, 99999)).toBe(value));
   it.each(['', '0', '100000', '-1', '+1', '1.0', '1,5', '1e3', 'x', '9999999999'])('refuses %s as the number of a tool', (text) => expect(parseWhole(text, 1, 99999)).toBeNull());
   it('shows no minus before a zero, and a dash where there is no number', () => {
     expect(formatNumber(-0.0001, 3)).toBe('0.000');
@@ -32,6 +34,14 @@ describe('numbers (A8)', () => {
     expect(formatBytes(999)).toBe('999 B');
     expect(formatBytes(1_500_000)).toBe('1.5 MB');
   });
+});
+
+describe('macros of [MDI_COMMAND_LIST] (J1)', () => {
+  it.each([
+    ['G0 X0; G0 Y0, Home XY', 'Home XY', ['G0 X0', 'G0 Y0']],
+    ['G0 Z25;X0 Y0;Z0, Goto\\nUser\\nZero', 'Goto User Zero', ['G0 Z25', 'X0 Y0', 'Z0']],
+    ['M8', 'M8', ['M8']],
+  ])('reads %s', (text, label, lines) => expect(macroOf(text)).toEqual({ label, lines }));
 });
 
 describe('what the machine says (A8)', () => {

@@ -97,9 +97,10 @@ TEST_F(UiMachine, TheMillSaysWhatItIs_J1) {
     EXPECT_EQ(facts.default_linear_velocity, 50);
     EXPECT_EQ(facts.max_angular_velocity, 0);
     EXPECT_EQ(facts.max_feed_override, 2);
-    EXPECT_EQ(facts.min_spindle_override, 0.5);
-    EXPECT_EQ(facts.max_spindle_override, 1.5);
-    EXPECT_EQ(facts.default_spindle_speed, 750);
+    ASSERT_EQ(facts.spindles.size(), 1U);
+    EXPECT_EQ(facts.spindles[0].min_override, 0.5);
+    EXPECT_EQ(facts.spindles[0].max_override, 1.5);
+    EXPECT_EQ(facts.spindles[0].default_speed, 750);
     ASSERT_EQ(facts.increments.size(), 2U);
     EXPECT_NEAR(facts.increments[1].value, 2.54, 1e-12);
     EXPECT_EQ(facts.mdi_commands, (std::vector<std::string>{"G0 X0, Home X", "G0 Y0"}));
@@ -109,6 +110,46 @@ TEST_F(UiMachine, TheMillSaysWhatItIs_J1) {
     EXPECT_EQ(status_period_s(loaded->ini, sink_), 0.1);
     EXPECT_EQ(sink_.count_errors(), 0);
     EXPECT_NE(sink_.all().back().str().find("junk"), std::string::npos);
+}
+
+TEST_F(UiMachine, EachSpindleHasItsOwnLimits_J1) {
+    const auto loaded =
+        load("mill_mm",
+             "MIN_SPINDLE_OVERRIDE = 0.4\nMAX_SPINDLE_0_OVERRIDE = 1.2\nMIN_SPINDLE_1_OVERRIDE = 0\n"
+             "MAX_SPINDLE_1_OVERRIDE = 1.6\nMIN_SPINDLE_1_SPEED = 300\nMAX_SPINDLE_1_SPEED = 9000\n"
+             "DEFAULT_SPINDLE_1_SPEED = 4000\nDEFAULT_SPINDLE_SPEED = 800\n",
+             "\n[SPINDLE_1]\nINCREMENT = 250\n");
+    ASSERT_NE(loaded, nullptr);
+    loaded->machine.num_spindles = 2;
+    const auto facts = machine_facts(*loaded, sink_);
+    ASSERT_EQ(facts.spindles.size(), 2U);
+    EXPECT_EQ(facts.spindles[0].min_override, 0.4);
+    EXPECT_EQ(facts.spindles[0].max_override, 1.2);
+    EXPECT_EQ(facts.spindles[0].default_speed, 800);
+    EXPECT_EQ(facts.spindles[0].increment, 100);
+    EXPECT_EQ(facts.spindles[1].min_override, 0);
+    EXPECT_EQ(facts.spindles[1].max_override, 1.6);
+    EXPECT_EQ(facts.spindles[1].min_speed, 300);
+    EXPECT_EQ(facts.spindles[1].max_speed, 9000);
+    EXPECT_EQ(facts.spindles[1].default_speed, 4000);
+    EXPECT_EQ(facts.spindles[1].increment, 250);
+    EXPECT_EQ(sink_.all().size(), 0U);
+}
+
+TEST_F(UiMachine, JogsStartWithinWhatTheMachineCan_J1) {
+    const auto facts = [this](const char *display) {
+        return machine_facts(*load("mill_mm", display), sink_);
+    };
+    EXPECT_EQ(facts("DEFAULT_LINEAR_VELOCITY = 20\n").default_linear_velocity, 20);
+    EXPECT_TRUE(sink_.all().empty());
+    const auto fast = facts("DEFAULT_LINEAR_VELOCITY = 3000\nMAX_LINEAR_VELOCITY = 6000\n");
+    EXPECT_EQ(fast.max_linear_velocity, 200) << "MAX_VELOCITY of the fastest axis";
+    EXPECT_EQ(fast.default_linear_velocity, 200);
+    ASSERT_EQ(sink_.all().size(), 1U);
+    EXPECT_NE(sink_.all()[0].str().find(
+                  "[DISPLAY]DEFAULT_LINEAR_VELOCITY = 3000 exceeds the maximum jog speed of 200"),
+              std::string::npos)
+        << sink_.all()[0].str();
 }
 
 TEST_F(UiMachine, CycleTimeIsSecondsOrMilliseconds_J1) {

@@ -200,6 +200,27 @@ TEST(MachineConfig, KeysWithoutEffectAreNamedAndErrorsWhenStrict_A3) {
     EXPECT_TRUE(display.says("did you mean MAX_FEED_OVERRIDE?"));
 }
 
+TEST(MachineConfig, KeysOfEachMultimessageAreKnown_A3) {
+    Config known(std::string(GOOD) + "[DISPLAY]\nMULTIMESSAGE_ID = VFD\nMULTIMESSAGE_VFD_NUMBER = 1\n"
+                                     "MULTIMESSAGE_VFD_TYPE = okdialog\nMULTIMESSAGE_VFD_TITLE = t\n"
+                                     "MULTIMESSAGE_VFD_TEXT = x\nMULTIMESSAGE_VFD_DETAILS = d\n"
+                                     "MULTIMESSAGE_VFD_ICON = INFO\nMULTIMESSAGE_VFD_NUMBER = 2\n");
+    known.reader.report_unknown(true);
+    EXPECT_FALSE(known.sink.hasErrors());
+    Config unknown(std::string(GOOD) + "[DISPLAY]\nMULTIMESSAGE_ID = VFD\nMULTIMESSAGE_VDF_TEXT = x\n");
+    unknown.reader.report_unknown(true);
+    EXPECT_TRUE(unknown.sink.hasErrors());
+}
+
+TEST(MachineConfig, AnOverrideLimitThatLooksLikeAPercentageIsReported_A3) {
+    Config percent(std::string(GOOD) + "[DISPLAY]\nMAX_FEED_OVERRIDE = 120\nMAX_SPINDLE_1_OVERRIDE = 150\n");
+    EXPECT_TRUE(percent.says("[DISPLAY]MAX_FEED_OVERRIDE = 120: the override may reach 12000 %"));
+    EXPECT_TRUE(percent.says("[DISPLAY]MAX_SPINDLE_1_OVERRIDE = 150: the override may reach 15000 %"));
+    EXPECT_TRUE(percent.says("1.0 is 100 %"));
+    Config ratio(std::string(GOOD) + "[DISPLAY]\nMAX_FEED_OVERRIDE = 1.2\n");
+    EXPECT_FALSE(ratio.says("the override may reach"));
+}
+
 /// What a new key takes: one row in a table (docs/extending/ini_key.md).
 TEST(IniKeys, EachIsDeclaredOnceWithItsMeaning_A3) {
     std::set<std::pair<std::string_view, std::string_view>> seen;

@@ -28,6 +28,16 @@ bool isBesideIndexer(const Jogs &jogs, const FoldedLimits &limits, const Indexer
     return is;
 }
 
+/// Where a jog of `target` may go.
+JogRange range_of(const FoldedLimits &limits, const AxisMap &map, const ExternalOffsets &offsets,
+                  const Joints &joints, const JogTarget &target) noexcept {
+    JogRange range = jog_range(limits, map, target, commanded(joints).data());
+    if (!target.isJoint) {
+        narrow(range, offsets, target.index);
+    }
+    return range;
+}
+
 /// Nobody goes back to before a stop, or to before the spindle turned, stopped or had another tool.
 void forget_way(Retracing &retracing, const CommandBody &body) noexcept {
     const bool isChange =
@@ -312,6 +322,11 @@ Verdict Controller::set_parameter(const SetParameter &command) noexcept {
         place_.fb[command.index] = command.value;
     }
     publish_limits();
+    for (int n = 0; n < config_.num_joints + MAX_AXES; ++n) {
+        const bool isJoint = n < config_.num_joints;
+        const JogTarget target{isJoint, isJoint ? n : n - config_.num_joints};
+        keep_within(jogs_.at(target), range_of(limits_, map_, offsets_, joints_, target));
+    }
     return {};
 }
 
@@ -339,10 +354,7 @@ JogSituation Controller::situation_of(const Inputs &in, const JogTarget &target)
     s.isShared = !target.isJoint && !map_.areJointsAxes();
     s.isBesideIndexer = indexers_.mask != 0 && isBesideIndexer(jogs_, limits_, indexers_, target);
     s.most = limits_.jog(target);
-    s.range = jog_range(limits_, map_, target, commanded(joints_).data());
-    if (!target.isJoint) {
-        narrow(s.range, offsets_, target.index);
-    }
+    s.range = range_of(limits_, map_, offsets_, joints_, target);
     return s;
 }
 

@@ -23,11 +23,10 @@ concept OfInterpreter =
           ClearProbe, SetSpindleSpeed, CallTaskPlugin, CallIoPlugin>;
 
 template <class T>
-concept OfStart = OneOf<T, SetJointKind, SetJointUnits, SetJointMinLimit, SetJointMaxLimit, SetJointFerror,
-                        SetJointMinFerror, SetJointMaxVelocity, SetJointBacklash, SetJointHoming, SetTrajAxes,
-                        SetTrajUnits, SetTrajCycleTime, SetMaxAcceleration, SetTrajHome, SetIoCycleTime,
-                        InitTask, HaltTask, InitMachine, HaltMachine, InitMotion, HaltMotion, InitTraj,
-                        HaltTraj, InitJoint, HaltJoint, InitTool, HaltTool, InitIo, HaltIo>;
+concept OfStart = OneOf<T, SetJointKind, SetJointUnits, SetJointMaxVelocity, SetTrajAxes, SetTrajUnits,
+                        SetTrajCycleTime, SetMaxAcceleration, SetTrajHome, SetIoCycleTime, InitTask, HaltTask,
+                        InitMachine, HaltMachine, InitMotion, HaltMotion, InitTraj, HaltTraj, InitJoint,
+                        HaltJoint, InitTool, HaltTool, InitIo, HaltIo>;
 
 template <class T>
 concept OfOperator =
@@ -38,7 +37,9 @@ concept OfOperator =
           OperatorError, OperatorText, OperatorDisplay, ClaimOperation, HandOverOperation,
           ReleaseOperation> ||
     OneOf<T, HomeJoint, UnhomeJoint, JogContinuous, JogIncrement, JogAbsolute, JogStop, OverrideLimits,
-          AbortJoint, EnableJoint, DisableJoint, ActivateJoint, DeactivateJoint, LoadCompensation> ||
+          AbortJoint, EnableJoint, DisableJoint, ActivateJoint, DeactivateJoint, LoadCompensation,
+          SetJointMinLimit, SetJointMaxLimit, SetJointFerror, SetJointMinFerror, SetJointBacklash,
+          SetJointHoming> ||
     OneOf<T, SetFeedOverride, SetRapidOverride, SetSpindleOverride, EnableFeedOverride, EnableSpindleOverride,
           EnableFeedHold, EnableAdaptiveFeed, SetMaxVelocity, SetTeleop, SetMotionMode, SetTeleopVector,
           EnableTraj, DisableTraj, AbortTraj, PauseTraj, StepTraj, ResumeTraj, AbortMotion, SetAnalogOutput,

@@ -9,6 +9,7 @@ namespace mw::task {
 
 void ShownSettings::note(const motion::SetParameter &parameter) {
     using motion::Parameter;
+    settings_.set(parameter, MAX_JOINTS, MAX_SPINDLES);
     const auto index = static_cast<std::size_t>(std::max<int>(parameter.index, 0));
     msgs::JointSettings &joint = shown_.joints[std::min<std::size_t>(index, MAX_JOINTS - 1)];
     switch (static_cast<Parameter>(parameter.parameter)) {

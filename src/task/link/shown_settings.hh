@@ -3,6 +3,7 @@
 #pragma once
 
 #include "motion/api/command.hh"
+#include "motion/api/settings.hh"
 #include "msgs/status.hh"
 
 namespace mw::task {
@@ -22,9 +23,12 @@ class ShownSettings {
     /// Bits as of [EMC]DEBUG, for clients that go by them.
     void set_debug(std::uint32_t mask) { shown_.debug = mask; }
     const msgs::SettingsStatus &shown() const { return shown_; }
+    /// All settings as motion has them.
+    const motion::Settings &settings() const { return settings_; }
 
   private:
     msgs::SettingsStatus shown_;
+    motion::Settings settings_;
     double most_velocity_ = 1e99;  ///< [TRAJ]MAX_LINEAR_VELOCITY
 };
 

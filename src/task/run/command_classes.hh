@@ -22,7 +22,7 @@ enum class CommandClass : std::uint8_t {
     MDI,           ///< one line, or a tap that a client sends
     JOG,           ///< moves by hand
     TELEOP,        ///< whether moves by hand are those of axes or of joints
-    JOINTS,        ///< homing of joints
+    JOINTS,        ///< homing of joints, and their limits and homing parameters
     UNHOME,        ///< forgets where joints are
     ENERGISE,      ///< starts a spindle, coolant, lubrication
     TOOL_TABLE,    ///< reads it again, or sets an entry
@@ -61,7 +61,10 @@ concept Jog = OneOf<T, JogContinuous, JogIncrement, JogAbsolute, SetTeleopVector
 template <class T>
 concept Teleop = OneOf<T, SetTeleop, SetMotionMode>;
 template <class T>
-concept Joints = OneOf<T, HomeJoint>;
+concept JointSetting = OneOf<T, SetJointMinLimit, SetJointMaxLimit, SetJointFerror, SetJointMinFerror,
+                             SetJointBacklash, SetJointHoming>;
+template <class T>
+concept Joints = OneOf<T, HomeJoint> || JointSetting<T>;
 template <class T>
 concept Unhome = OneOf<T, UnhomeJoint>;
 template <class T>
@@ -84,9 +87,8 @@ concept PartOfPrograms = OneOf<T, LinearMove, CircularMove, ProbeMove, Delay, Se
 /// What the INI file says.
 template <class T>
 concept PartOfConfiguration =
-    OneOf<T, SetJointKind, SetJointUnits, SetJointMinLimit, SetJointMaxLimit, SetJointFerror,
-          SetJointMinFerror, SetJointMaxVelocity, SetJointBacklash, SetJointHoming, SetTrajAxes, SetTrajUnits,
-          SetTrajCycleTime, SetMaxAcceleration, SetTrajHome, SetIoCycleTime>;
+    OneOf<T, SetJointKind, SetJointUnits, SetJointMaxVelocity, SetTrajAxes, SetTrajUnits, SetTrajCycleTime,
+          SetMaxAcceleration, SetTrajHome, SetIoCycleTime>;
 /// What starts and ends with the machine.
 template <class T>
 concept PartOfStart = OneOf<T, InitTask, HaltTask, InitMachine, HaltMachine, InitMotion, HaltMotion, InitTraj,

@@ -42,7 +42,7 @@ constexpr std::array<Named, static_cast<std::size_t>(CommandClass::COUNT)> CLASS
     {"line", "one line of MDI; while one runs it waits behind it"},
     {"jog", "moves by hand"},
     {"teleop", "whether moves by hand are those of axes or of joints"},
-    {"joints", "homing"},
+    {"joints", "homing, limits and homing parameters of joints"},
     {"unhome", "forgets where joints are"},
     {"energise", "starts a spindle or coolant"},
     {"tool table", "reads it again"},

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "ui/jog_speed.hh"
+
 namespace mw::ui {
 namespace {
 
@@ -40,11 +42,12 @@ std::vector<msgs::Command> JogPins::step(const JogInputs &now, const JogSettings
     target_ = target;
     isWaiting_ = isWaiting_ && part != 0;
     if (!isWaiting_) {
-        step_held(part, settings.speed, now_ns, asked);
+        step_held(part, per_second(std::abs(settings.speed_per_min)), now_ns, asked);
     }
     const bool isForward = plus_.step(now.isIncrementPlus), isBack = minus_.step(now.isIncrementMinus);
     if (isForward != isBack) {
-        asked.emplace_back(msgs::JogIncrement{target.isJoint, target.index, std::abs(settings.speed),
+        asked.emplace_back(msgs::JogIncrement{target.isJoint, target.index,
+                                              per_second(std::abs(settings.speed_per_min)),
                                               isForward ? now.increment : -now.increment});
     }
     return asked;
@@ -64,8 +67,7 @@ void JogPins::step_held(double part, double speed, std::int64_t now_ns, std::vec
     }
     part_ = part;
     renewed_ns_ = now_ns;
-    asked.emplace_back(
-        msgs::JogContinuous{target_.isJoint, target_.index, part * std::abs(speed), LEASE_MS, !isNew});
+    asked.emplace_back(msgs::JogContinuous{target_.isJoint, target_.index, part * speed, LEASE_MS, !isNew});
 }
 
 }  // namespace mw::ui

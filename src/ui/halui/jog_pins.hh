@@ -26,6 +26,7 @@ class JogPins {
   private:
     /// Part of the jog speed, with its sign, that the pins ask for; 0: none.
     static double part_of(const JogInputs &now, const JogSettings &settings);
+    /// @param speed of the whole jog speed [units/s]
     void step_held(double part, double speed, std::int64_t now_ns, std::vector<msgs::Command> &asked);
 
     Target target_;

@@ -37,7 +37,7 @@ struct JogInputs {
 };
 /// Of all joints, or all axes.
 struct JogSettings {
-    double speed = 0;
+    double speed_per_min = 0;
     double deadband = 0;
 };
 /// A wheel and its buttons.
@@ -153,11 +153,11 @@ inline constexpr auto SELECTED_AXIS_JOGS = pin_table("halui.axis.selected",
     in<bool>("increment-minus", "", "jogs it back by the increment on a rising edge", [](JogInputs &p, bool v) { p.isIncrementMinus = v; }));
 
 inline constexpr auto JOINT_JOG_SETTINGS = pin_table("halui.joint",
-    in<double>("jog-speed", "unit/s", "of all jogs of joints", [](JogSettings &p, double v) { p.speed = v; }),
+    in<double>("jog-speed", "unit/min", "of all jogs of joints", [](JogSettings &p, double v) { p.speed_per_min = v; }),
     in<double>("jog-deadband", "", "analog inputs up to this stand for 0", [](JogSettings &p, double v) { p.deadband = v; }, 0.2));
 
 inline constexpr auto AXIS_JOG_SETTINGS = pin_table("halui.axis",
-    in<double>("jog-speed", "unit/s", "of all jogs of axes", [](JogSettings &p, double v) { p.speed = v; }),
+    in<double>("jog-speed", "unit/min", "of all jogs of axes", [](JogSettings &p, double v) { p.speed_per_min = v; }),
     in<double>("jog-deadband", "", "analog inputs up to this stand for 0", [](JogSettings &p, double v) { p.deadband = v; }, 0.2));
 
 inline constexpr auto FEED_DIAL = pin_table("halui.feed-override",

@@ -6,12 +6,13 @@
 #include <fmt/format.h>
 
 #include "base/text.hh"
+#include "ui/jog_speed.hh"
 #include "ui/rsh/machine_orders.hh"
 
 namespace mw::ui::rsh {
 namespace {
 
-constexpr double SECONDS_PER_MINUTE = 60, PERCENT = 100;
+constexpr double PERCENT = 100;
 /// Until a joint that was asked to home has begun.
 constexpr double PATIENCE_S = 2;
 
@@ -102,7 +103,7 @@ Result<Waiting> jog(const Ordered &o) {
     if (isNoTimeToJog(o)) {
         return Waiting{};
     }
-    const auto serial = o.commander.jog(*target, *speed / SECONDS_PER_MINUTE);
+    const auto serial = o.commander.jog(*target, per_second(*speed));
     return serial.has_value() ? Result<Waiting>(Waiting{Until::TAKEN, {*serial}, {}, false})
                               : std::unexpected(serial.error());
 }
@@ -118,7 +119,7 @@ Result<Waiting> jog_increment(const Ordered &o) {
     if (isNoTimeToJog(o)) {
         return Waiting{};
     }
-    const double velocity = *speed / SECONDS_PER_MINUTE;
+    const double velocity = per_second(*speed);
     return ask(o,
                msgs::JogIncrement{target->isJoint, target->index, std::abs(velocity),
                                   velocity < 0 ? -*distance : *distance},

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/text.hh"
+#include "ui/jog_speed.hh"
 #include "ui/tcl/commands.hh"
 
 namespace mw::ui::tcl {
@@ -135,7 +136,7 @@ Result<Target> target(const Words &words) {
         if (!speed.has_value()) {
             return fail(fmt::format("a speed is a number, not '{}'", printable(words[SPEED])));
         }
-        out.velocity = *speed / 60;  // per minute, as displays have it
+        out.velocity = per_second(*speed);
     }
     return out;
 }

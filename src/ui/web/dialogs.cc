@@ -80,6 +80,13 @@ const std::vector<std::size_t> &Dialogs::look() {
         }
         asker.isAsking = isPerson;
         asker.waiting = isPerson;
+        if (value != 0 && now == nullptr) {
+            if (isNew) {
+                notes_.push_back(std::string(COMPONENT) + '.' + asker.id + " is " + std::to_string(value) +
+                                 ", and [DISPLAY] has no MULTIMESSAGE with this number");
+            }
+            set_zero(asker);  // HAL does not wait for an answer to a question that nobody reads
+        }
         if (isPerson || (isOpen && now->kind.isLasting)) {
             asked_.push_back(place);
         } else if (isOpen && now->kind.isStatus) {

@@ -213,6 +213,15 @@ std::string machine_document(const MachineFacts &facts) {
         increments.push_back(
             {{"text", increment.text}, {"value", increment.value}, {"angular", increment.isAngular}});
     }
+    Json spindles = Json::array();
+    for (const SpindleFacts &spindle : facts.spindles) {
+        spindles.push_back({{"min_override", spindle.min_override},
+                            {"max_override", spindle.max_override},
+                            {"min_speed", spindle.min_speed},
+                            {"max_speed", spindle.max_speed},
+                            {"default_speed", spindle.default_speed},
+                            {"increment", spindle.increment}});
+    }
     Json tabs = Json::array();
     for (const Tab &tab : facts.tabs) {
         tabs.push_back(tab_document(tab));
@@ -225,9 +234,7 @@ std::string machine_document(const MachineFacts &facts) {
                         {"tabs", std::move(tabs)},
                         {"min_linear_velocity", facts.min_linear_velocity},
                         {"min_angular_velocity", facts.min_angular_velocity},
-                        {"spindle_increment", facts.spindle_increment},
-                        {"min_spindle_speed", facts.min_spindle_speed},
-                        {"max_spindle_speed", facts.max_spindle_speed},
+                        {"spindles", std::move(spindles)},
                         {"ini", facts.ini},
                         {"instance", facts.instance},
                         {"axes", facts.axes},
@@ -245,9 +252,6 @@ std::string machine_document(const MachineFacts &facts) {
                         {"max_angular_velocity", facts.max_angular_velocity},
                         {"default_angular_velocity", facts.default_angular_velocity},
                         {"max_feed_override", facts.max_feed_override},
-                        {"min_spindle_override", facts.min_spindle_override},
-                        {"max_spindle_override", facts.max_spindle_override},
-                        {"default_spindle_speed", facts.default_spindle_speed},
                         {"increments", std::move(increments)},
                         {"mdi_commands", facts.mdi_commands},
                         {"program_extensions", facts.program_extensions},

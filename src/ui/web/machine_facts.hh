@@ -56,6 +56,14 @@ struct MachineLook {
     double foam_z = 0, foam_w = 0;  ///< heights of the planes of a foam cutter [machine units]
 };
 
+/// What an operator may set of a spindle.
+struct SpindleFacts {
+    double min_override = 0, max_override = 1;  ///< 1.0 is 100 %
+    double min_speed = 0, max_speed = 0;        ///< [rev/min]; maximum 0: none set
+    double default_speed = 0;                   ///< that a screen proposes [rev/min]; 0: none set
+    double increment = 100;                     ///< of one step up or down [rev/min]
+};
+
 /// Lengths in machine units, angles in degrees, speeds in those per second.
 struct MachineFacts {
     std::string name, ini, instance;
@@ -71,10 +79,7 @@ struct MachineFacts {
     double max_angular_velocity = 0, default_angular_velocity = 0;
     double min_linear_velocity = 0, min_angular_velocity = 0;  ///< of jogs
     double max_feed_override = 1;                              ///< 1.0 is 100 %
-    double min_spindle_override = 0, max_spindle_override = 1;
-    double spindle_increment = 100, min_spindle_speed = 0,
-           max_spindle_speed = 0;      ///< [rev/min]; highest 0: none set
-    double default_spindle_speed = 0;  ///< that a screen proposes [rev/min]; 0: none is set
+    std::vector<SpindleFacts> spindles;                        ///< of each spindle
     std::vector<Increment> increments;
     std::vector<std::string> mdi_commands;
     ScreenFiles files;

@@ -53,9 +53,9 @@ export const resetEmergencyStop = (): Promise<Outcome> => send({ message: 'SetSt
 export const switchOn = (): Promise<Outcome> => send({ message: 'SetState', state: 'ON' });
 export const switchOff = (): Promise<Outcome> => send({ message: 'SetState', state: 'OFF' });
 
-/** Joints are homed in free mode; -1: all. */
+/** Joints are homed in joint mode; -1: all. */
 export function home(joint: number): Promise<Outcome> {
-  return inOrder(...toMode('MANUAL'), { message: 'HomeJoint', joint });
+  return inOrder(...toMode('MANUAL'), { message: 'SetTeleop', teleop: false }, { message: 'HomeJoint', joint });
 }
 
 export function unhome(joint: number): Promise<Outcome> {

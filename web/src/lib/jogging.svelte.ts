@@ -42,12 +42,20 @@ export function targets(): Target[] {
   }));
 }
 
+/** The share of the maximum speed that jogs have: the operator's, else that of [DISPLAY]DEFAULT_..._VELOCITY. */
+export function jogShare(isAngular: boolean): number {
+  const { facts } = machine;
+  const highest = (isAngular ? facts?.max_angular_velocity : facts?.max_linear_velocity) ?? 0;
+  const preset = (isAngular ? facts?.default_angular_velocity : facts?.default_linear_velocity) ?? 0;
+  return prefs.jogShare ?? (highest > 0 ? Math.min(1, preset / highest) : 1);
+}
+
 /** Machine units or degrees per second. */
 export function jogSpeed(isAngular: boolean, isRapid: boolean): number {
   const { facts } = machine;
   const highest = isAngular ? (facts?.max_angular_velocity ?? 0) : (facts?.max_linear_velocity ?? 0);
   const lowest = isAngular ? (facts?.min_angular_velocity ?? 0) : (facts?.min_linear_velocity ?? 0);
-  return isRapid ? highest : Math.max(lowest, highest * prefs.jogShare);
+  return isRapid ? highest : Math.max(lowest, highest * jogShare(isAngular));
 }
 
 export function press(target: Target, sign: number, isRapid: boolean): void {

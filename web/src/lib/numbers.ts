@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Numbers as people write and read them (A8): a comma or a point separates decimals, and one of them only.
 
-/** Nothing where the text is no number, or has more than one separator. */
+/** Blanks that people and spreadsheets put between groups of three digits: plain, no-break, narrow and thin ones. */
+const GROUPS = /^([+-]?\d{1,3})(?:[ \u00a0\u2007\u2009\u202f]\d{3})+(?=$|[.,])/;
+
+/** Without the blanks between groups of three digits before the decimal separator. */
+function ungrouped(text: string): string {
+  return text.replace(GROUPS, (digits) => digits.replace(/\s/g, ''));
+}
+
+/** Nothing where the text is no number, or has more than one separator. Blanks between groups of thousands are read over. */
 export function parseNumber(text: string): number | null {
-  const trimmed = text.trim();
+  const trimmed = ungrouped(text.trim());
   if (!/^[+-]?(\d+([.,]\d*)?|[.,]\d+)$/.test(trimmed)) {
     return null;
   }
@@ -13,7 +21,8 @@ export function parseNumber(text: string): number | null {
 
 /** Digits alone: a number of a tool or a pocket, from `least` to `most`. */
 export function parseWhole(text: string, least: number, most: number): number | null {
-  const value = /^\d{1,9}$/.test(text.trim()) ? Number(text) : NaN;
+  const digits = ungrouped(text.trim());
+  const value = /^\d{1,9}$/.test(digits) ? Number(digits) : NaN;
   return value >= least && value <= most ? value : null;
 }
 

@@ -16,7 +16,8 @@ export interface Preferences {
   positions: 'feedback' | 'commanded';
   mdiHistory: string[];
   increment: number | null;
-  jogShare: number;
+  /** Of the maximum jog speed; null: as the INI file sets it. */
+  jogShare: number | null;
 }
 
 const KEY = 'millwright.preferences';
@@ -34,7 +35,7 @@ const PRESETS: Preferences = {
   positions: 'feedback',
   mdiHistory: [],
   increment: null,
-  jogShare: 0.25,
+  jogShare: null,
 };
 
 function read(): Preferences {

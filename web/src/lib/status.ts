@@ -164,9 +164,8 @@ export interface MachineFacts {
   tabs: Tab[];
   min_linear_velocity: number;
   min_angular_velocity: number;
-  spindle_increment: number;
-  min_spindle_speed: number;
-  max_spindle_speed: number;
+  /** Overrides with 1.0 for 100 %, speeds in rev/min; max_speed and default_speed 0: none set. */
+  spindles: { min_override: number; max_override: number; min_speed: number; max_speed: number; default_speed: number; increment: number }[];
   ini: string;
   instance: string;
   axes: string;
@@ -192,9 +191,6 @@ export interface MachineFacts {
   filter_extensions: string[];
   filtered_folder: string;
   max_feed_override: number;
-  min_spindle_override: number;
-  max_spindle_override: number;
-  default_spindle_speed: number;
 }
 
 type Tree = { [key: string]: unknown };

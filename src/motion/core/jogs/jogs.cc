@@ -292,6 +292,20 @@ JogTarget end_lease(Jogs &jogs, std::int64_t time_ns) noexcept {
     return {true, -1};
 }
 
+void keep_within(Jog &jog, const JogRange &range) noexcept {
+    traj::JogPlanner &p = jog.planner;
+    if (p.isAtRest()) {
+        return;
+    }
+    const bool isLeaving = (p.position > range.high && p.target > p.position) ||
+                           (p.position < range.low && p.target < p.position);
+    if (isLeaving) {
+        brake(jog);
+    } else {
+        p.target = std::clamp(p.target, std::min(range.low, p.position), std::max(range.high, p.position));
+    }
+}
+
 void stop(Jogs &jogs) noexcept {
     jogs.leased = 0;
     for (int j = 0; j < jogs.num_joints; ++j) {

@@ -106,6 +106,8 @@ Verdict take(Jogs &jogs, const SetTeleopVector &command, const JogSituation *sit
 /// told, index -1 when there is none any more. Called until then, in each cycle before the jogs move.
 [[gnu::hot]] JogTarget end_lease(Jogs &jogs, std::int64_t time_ns) noexcept;
 
+/// After a change of the limits: a jog ends at the edge of its range, and one that leads away from it brakes.
+void keep_within(Jog &jog, const JogRange &range) noexcept;
 /// Every jog brakes.
 void stop(Jogs &jogs) noexcept;
 /// Every jog stands in this cycle, whatever that asks of the drives.

@@ -100,7 +100,7 @@ TEST_F(HaluiInputs, TheSpindleTurnsAsProgrammedAndStepsFromThere_J4) {
     EXPECT_EQ(press("spindle.0.decrease"), asked(SpindleOn{0, -1}));
 }
 
-TEST_F(HaluiInputs, JogsGoOnWhileTheirPinSaysSo_J4) {
+TEST_F(HaluiInputs, JogSpeedsArePerMinuteAndAJogLastsAsLongAsItsPin_J4) {
     using namespace msgs;
     constexpr int LEASE_MS = 500;
     struct Case {
@@ -112,7 +112,7 @@ TEST_F(HaluiInputs, JogsGoOnWhileTheirPinSaysSo_J4) {
                             Case{"axis.z", "axis", false, 2}, Case{"axis.selected", "axis", false, 0}}) {
         SCOPED_TRACE(one.pins);
         cycle();
-        set_value(one.group + ".jog-speed", "5");
+        set_value(one.group + ".jog-speed", "300");
         set(one.pins + ".plus", true);
         EXPECT_EQ(cycle(), asked(JogContinuous{one.isJoint, one.index, 5, LEASE_MS, false}));
         EXPECT_EQ(cycle(), "");
@@ -141,7 +141,7 @@ TEST_F(HaluiInputs, AStickJogsBeyondItsDeadbandWithItsPartOfTheSpeed_J4) {
         const std::string stick = isJoint ? "joint.0.analog" : "axis.x.analog";
         cycle();
         EXPECT_EQ(value(group + ".jog-deadband"), 0.2);
-        set_value(group + ".jog-speed", "10");
+        set_value(group + ".jog-speed", "600");
         set_value(stick, "0.2");
         EXPECT_EQ(cycle(), "");
         set_value(stick, "0.5");
@@ -159,7 +159,7 @@ TEST_F(HaluiInputs, AStickJogsBeyondItsDeadbandWithItsPartOfTheSpeed_J4) {
 TEST_F(HaluiInputs, AnotherSelectionEndsTheJogAndBeginsNone_J4) {
     using namespace msgs;
     cycle();
-    set_value("joint.jog-speed", "5");
+    set_value("joint.jog-speed", "300");
     set("joint.selected.plus", true);
     cycle();
     set("joint.1.select", true);
@@ -172,7 +172,7 @@ TEST_F(HaluiInputs, AnotherSelectionEndsTheJogAndBeginsNone_J4) {
 }
 
 TEST_F(HaluiInputs, WhatIsOnAtTheStartWasPressedByNobody_J4) {
-    set_value("joint.jog-speed", "5");
+    set_value("joint.jog-speed", "300");
     set("joint.0.plus", true);
     set("axis.x.increment-plus", true);
     set("mdi-command-00", true);

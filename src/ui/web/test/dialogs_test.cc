@@ -93,6 +93,23 @@ TEST_F(DialogsTest, ANumberChoosesItsText_J2) {
     EXPECT_EQ(dialogs.look(), Places{});
 }
 
+TEST_F(DialogsTest, ANumberWithoutATextIsReportedAndReset_J2) {
+    set("vfd", 1);
+    EXPECT_EQ(dialogs.look(), Places{4});
+    set("vfd", 2);
+    EXPECT_EQ(dialogs.look(), Places{});
+    EXPECT_EQ(
+        dialogs.take_notes(),
+        std::vector<std::string>{"screen.vfd is 2, and [DISPLAY] has no MULTIMESSAGE with this number"});
+    EXPECT_EQ(get("vfd"), 0);
+    EXPECT_EQ(get("vfd-waiting"), 0);
+    EXPECT_FALSE(dialogs.answer("vfd", 1, true));
+    EXPECT_EQ(dialogs.look(), Places{});
+    EXPECT_TRUE(dialogs.take_notes().empty());
+    set("vfd", 1);
+    EXPECT_EQ(dialogs.look(), Places{4});
+}
+
 TEST_F(DialogsTest, WhoKeepsThePinSetAsksOnce_J2) {
     set("door", 1);
     dialogs.look();
