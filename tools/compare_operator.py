@@ -114,15 +114,15 @@ net tool-change-loop iocontrol.0.tool-change => iocontrol.0.tool-changed
 TABLE = 'T1 P1 Z0 D3\nT2 P2 Z4.5 D6\nT3 P3 Z-2 D1\n'
 
 
-def start(prefix, folder, name, first, count, acts, user):
+def start(prefix, folder, name, first, count, acts, user, display='operator_session.py'):
     """A process that runs the sessions; its results are in folder/out."""
     machine = folder / 'machine'
     (folder / 'home/linuxcnc/nc_files').mkdir(parents=True)
     machine.mkdir()
-    (machine / 'm.ini').write_text(ini_of(name), encoding='ascii')
+    (machine / 'm.ini').write_text(ini_of(name).replace('operator_session.py', display), encoding='ascii')
     (machine / 'm.hal').write_text(hal_of(name), encoding='ascii')
     (machine / 'tool.tbl').write_text(TABLE, encoding='ascii')
-    shutil.copy(ROOT / 'tools/operator_session.py', machine)
+    shutil.copy(ROOT / 'tools' / display, machine)
     subprocess.run(['chown', '-R', f'{user}:', str(folder)], check=True)
     os.chmod(folder, 0o755)
     path = '/usr/local/bin:/usr/bin:/bin'

@@ -56,6 +56,7 @@ void Task::abort_work(AbortReason reason) {
     tell(homing_.give_up("aborted"));
     desk_.refuse(homing_.drop(), OVERTAKEN);
     tell(mode_.give_up("aborted"));
+    synch_interpreter();  // spindles and coolant are off
     if (!isFollowing) {
         begin_clean_up(reason);
     }
