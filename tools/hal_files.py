@@ -81,6 +81,8 @@ class HalFile:
             self.connect([instance], [plan], {}, name)
             functions = list(instance.functions)
             self.random.shuffle(functions)
+            if COMPONENTS[name].ordered:
+                functions.sort(reverse=True)
             self.adds += functions
             self.loads.append(plan['load'])
 
