@@ -147,7 +147,7 @@ class Comparison:
         if difference:
             self.explained.append(difference)
             return
-        early = max((d for d in hal_differences.of_component(instance.name) if d.covers(pin)), key=lambda d: d.first,
+        early = max((d for d in hal_differences.of_component(instance.name, instance.load) if d.covers(pin)), key=lambda d: d.first,
                     default=None)
         if early and wrong[-1] < early.first:
             self.explained.append(early)

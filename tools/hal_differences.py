@@ -15,6 +15,7 @@ class Difference:
     component: str  # regular expression over the module's name
     pins: str       # regular expression over the outputs, without the prefix
     row: str        # beginning of the row in docs/compatibility.md, without '| '
+    load: str = ''  # regular expression over the load, where the difference depends on it
     first: int = 0  # in so many periods the pins may differ even then
     avoid: dict = dataclasses.field(default_factory=dict, hash=False, compare=False)
 
@@ -59,8 +60,9 @@ DIFFERENCES = [
     D('sim_axis_hardware', 'A.*-homesw-out', 'sim_axis_hardware: axis A'),
     D('sim_spindle', 'index-enable', 'sim_spindle: index', avoid={'velocity-cmd': uniform(1, 3)}),
     D('knob2float', 'out', 'knob2float', avoid={'enable': LateBit(2)}),
-    D('bldc', '.*', 'bldc: first period'),
-    D('stepgen', '.*', 'stepgen: position control'),
+    D('bldc', '.*', 'bldc: first period', first=2),
+    D('stepgen', 'position-fb', 'stepgen: position control'),
+    D('stepgen', '.*', 'stepgen: position control', load='.*ctrl_type=p'),
     D('spindle', '.*', 'spindle: ramps'),
 ]
 
@@ -70,5 +72,5 @@ def rows_without_page(page):
     return sorted({d.row for d in DIFFERENCES if not re.search(r'^\| ' + re.escape(d.row), page, re.M)})
 
 
-def of_component(name):
-    return [d for d in DIFFERENCES if re.fullmatch(d.component, name)]
+def of_component(name, load=''):
+    return [d for d in DIFFERENCES if re.fullmatch(d.component, name) and re.fullmatch(d.load or '.*', load)]
