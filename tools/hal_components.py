@@ -51,6 +51,22 @@ class LateBit:
         return values
 
 
+class SlowBit:
+    """A bit that keeps its value for so many periods at least."""
+
+    def __init__(self, periods):
+        self.periods = periods
+
+    def __call__(self, r, last):
+        return bits()(r, last)
+
+    def column(self, r, rows):
+        values = []
+        while len(values) < rows:
+            values += [1 - values[-1] if values else r.randint(0, 1)] * r.randint(self.periods, 2 * self.periods)
+        return values[:rows]
+
+
 def constant(value):
     return lambda r, last: value
 
@@ -168,7 +184,8 @@ COMPONENTS.update({
                                                'x-val-02': constant(2.5), 'x-val-03': constant(5)}),
     'gantry': C(['gantry personality=3'], {'search-vel': once(-1, 1), 'joint.*home': bits(0.02)}),
     'spindle': C(['spindle'], {'commanded-speed': pick(100, -200, 500, 30, 0, change=0.02),
-                               'actual-speed': uniform(0, 5), 'simulate-encoder': once(0, 1), 'select-gear': constant(0), 'max.*': once(0, 400),
+                               'actual-speed': uniform(0, 5), 'simulate-encoder': once(0, 1),
+                               'select-gear': constant(0), 'max.*': once(0, 400),
                                'min.*': once(50), 'accel.*': once(900), 'decel.*': once(1500),
                                'scale.*': once(0.1, 1)}, single=True),
     'pid': C(['pid debug=1'], {'tune-.*': constant(0), 'max.*': once(0, 0.5, 3), 'command': walk(0.05),

@@ -101,7 +101,8 @@ class HalFile:
             draw = generator_of(spec, forced, pin, kind, self.random)
             if direction == 'IN':
                 values[pin] = self.column(draw)
-            elif direction in ('RW', 'I/O') and (pin in forced or spec.has_generator(pin) or self.random.random() < 0.5):
+            elif direction in ('RW', 'I/O') and (pin in forced or spec.has_generator(pin)
+                                                 or self.random.random() < 0.5):
                 params[pin] = draw(self.random, None)
         for first, second in spec.pairs:
             values[first], values[second] = quadrature(self.random, ROWS)
