@@ -147,8 +147,8 @@ class Comparison:
         if difference:
             self.explained.append(difference)
             return
-        early = max((d for d in hal_differences.of_component(instance.name) if d.covers(pin)), key=lambda d: d.first,
-                    default=None)
+        covering = [d for d in hal_differences.of_component(instance.name, instance.load) if d.covers(pin)]
+        early = max(covering, key=lambda d: d.first, default=None)
         if early and wrong[-1] < early.first:
             self.explained.append(early)
             return

@@ -51,6 +51,22 @@ class LateBit:
         return values
 
 
+class SlowBit:
+    """A bit that keeps its value for so many periods at least."""
+
+    def __init__(self, periods):
+        self.periods = periods
+
+    def __call__(self, r, last):
+        return bits()(r, last)
+
+    def column(self, r, rows):
+        values = []
+        while len(values) < rows:
+            values += [1 - values[-1] if values else r.randint(0, 1)] * r.randint(self.periods, 2 * self.periods)
+        return values[:rows]
+
+
 def constant(value):
     return lambda r, last: value
 
@@ -91,6 +107,7 @@ class Component:
     values: dict = dataclasses.field(default_factory=dict)  # {regular expression over a pin or parameter: generator}
     skip: str = ''    # inputs and parameters that keep their value
     hide: str = ''    # outputs that are not compared: they show times of the computer
+    ordered: bool = False  # functions in the order of their names, backwards
     single: bool = False  # one instance and functions of the module
     count: str = 'count'
     pairs: list = dataclasses.field(default_factory=list)  # inputs that are the two phases of an encoder
@@ -137,7 +154,7 @@ C = Component
 COMPONENTS = {name: C() for name in '''abs abs_s32 and2 or2 xor2 not bin2gray gray2bin bitwise blend clarke2 clarke3
 clarkeinv conv_bit_float conv_bit_s32 conv_bit_u32 conv_float_s32 conv_float_u32 conv_s32_bit conv_s32_float
 conv_s32_u32 conv_u32_bit conv_u32_float conv_u32_s32 corexy_by_hal ddt deadzone differential div2 estop_latch
-flipflop hypot invert joyhandle knob2float lowpass lut5 maj3 match8 minmax modmath mult2 mux2 mux4 mux8
+flipflop hypot invert joyhandle knob2float lowpass lut5 maj3 match8 minmax mult2 mux2 mux4 mux8
 offset sample_hold scale scaled_s32_sums select8 sum2 toggle2nist
 tristate_bit tristate_float wcomp edge constant dbounce multiclick time threadtest sim_parport millturn
 eoffset_per_angle steptest simple_tp anglejog'''.split()}
@@ -167,7 +184,8 @@ COMPONENTS.update({
                                                'x-val-02': constant(2.5), 'x-val-03': constant(5)}),
     'gantry': C(['gantry personality=3'], {'search-vel': once(-1, 1), 'joint.*home': bits(0.02)}),
     'spindle': C(['spindle'], {'commanded-speed': pick(100, -200, 500, 30, 0, change=0.02),
-                               'actual-speed': uniform(0, 5), 'simulate-encoder': once(0, 1), 'select-gear': constant(0), 'max.*': once(0, 400),
+                               'actual-speed': uniform(0, 5), 'simulate-encoder': once(0, 1),
+                               'select-gear': constant(0), 'max.*': once(0, 400),
                                'min.*': once(50), 'accel.*': once(900), 'decel.*': once(1500),
                                'scale.*': once(0.1, 1)}, single=True),
     'pid': C(['pid debug=1'], {'tune-.*': constant(0), 'max.*': once(0, 0.5, 3), 'command': walk(0.05),
@@ -185,7 +203,7 @@ COMPONENTS.update({
     'thcud': C(values={'velocity-tol': once(5), 'correction-vel': once(0.01), 'requested-vel': once(10),
                        'current-vel': uniform(9, 10.5), 'z-pos-in': walk(0.01)}, prefix='thcud.', single=True),
     'watchdog': C(['watchdog num_inputs=3'], {'timeout-.': once(0.003, 0.0055), 'input-.': bits(0.8)},
-                  prefix='watchdog.', single=True),
+                  prefix='watchdog.', ordered=True, single=True),
     'weighted_sum': C(['weighted_sum wsum_sizes=4'], prefix='wsum.0.', single=True),
     'encoder': C(['encoder num_chan=1'], {'position-scale': once(1, 4, -10), 'counter-mode': constant(0),
                                           'x4-mode': once(0, 1), 'missing-teeth': constant(0),
@@ -206,7 +224,11 @@ COMPONENTS.update({
                  'offset': once(0, 0.1)}, single=True),
     'multiswitch': C(['multiswitch cfg=4'], {'top-position': whole(1, 3), 'position': constant(0)}, single=True),
     'mux_generic': C(['mux_generic config=ff4', 'mux_generic config=bb5', 'mux_generic config=fs4',
-                      'mux_generic config=ub3'], {'debounce-us': once(0, 2500)}, single=True),
+                      'mux_generic config=ub3'], {'debounce-us': once(0, 2500), 'sel-int': whole(0, 4, 0.1)},
+                     prefix='mux-gen.00.', single=True),
+    'matrix_kb': C(['matrix_kb config=4x4'], {'keycode': pick(0x40, 0x80, 0xc0, 0xc5, 0x85, 0xc2, 0x82, 0)},
+                   prefix='matrix_kb.0.', single=True),
+
     'sim_matrix_kb': C(values={'button.c03.r04': bits(0.1)}, skip='button.*(?<!c03.r04)'),
     'sim_home_switch': C(values={'index-delay-ms': once(1, 3.5, 10)}),
     'feedcomp': C(values={'feed': once(0.5, 2)}), 'spindle_monitor': C(skip='level'),

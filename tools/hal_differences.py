@@ -7,7 +7,7 @@ parameters with which the difference does not occur: most files use them, and th
 import dataclasses
 import re
 
-from hal_components import LateBit, uniform
+from hal_components import LateBit, SlowBit, uniform
 
 
 @dataclasses.dataclass(frozen=True)
@@ -15,6 +15,7 @@ class Difference:
     component: str  # regular expression over the module's name
     pins: str       # regular expression over the outputs, without the prefix
     row: str        # beginning of the row in docs/compatibility.md, without '| '
+    load: str = ''  # regular expression over the load, where the difference depends on it
     first: int = 0  # in so many periods the pins may differ even then
     avoid: dict = dataclasses.field(default_factory=dict, hash=False, compare=False)
 
@@ -27,7 +28,7 @@ DIFFERENCES = [
     D('pid', 'output|saturated.*|error[DI]?|commandD+', 'pid: first period', first=4,
       avoid={'enable': LateBit(5)}),
     D('comp', 'out', 'comp: out with hyst 0', avoid={'hyst': 0.7}),
-    D('tp', 'q|et', 'tp: an edge of in in the period after a pulse', avoid={'pt': 1000.0}),
+    D('tp', 'q|et', 'tp: an edge of in in the period after a pulse', avoid={'in': SlowBit(8)}),
     D('conv_.*', 'out-of-range', 'conv components'),
     D('conv_(float|s32)_u32', 'out', 'conv components', avoid={'clamp': 0}),
     D('d(e)?bounce', r'out|\d\.out', 'dbounce, debounce'),
@@ -42,21 +43,26 @@ DIFFERENCES = [
     D('thcd?|thcud', '.*', 'thc, thcud'),
     D('simple_tp|anglejog|steptest|moveoff', '.*', 'simple_tp, anglejog, steptest, moveoff'),
     D('limit3', '.*', 'limit3 |'),
-    D('watchdog', 'ok-out', 'watchdog: enable-in FALSE', first=1, avoid={'enable-in': 1}),
+    D('watchdog', 'ok-out', 'watchdog |', first=1, avoid={'enable-in': 1}),
     D('counter', 'velocity', 'counter, encoder: velocity'),
     D('counter', 'index-enable', 'counter: index-enable'),
+    D('counter|encoder', '.*', 'counter, encoder: phase-Z', avoid={'phase-Z': LateBit(2)}),
     D('encoder', 'velocity.*|position-interpolated', 'counter, encoder: velocity'),
     D('sim_encoder', 'phase-.|rawcounts', 'sim_encoder: pulses'),
     D('pwmgen', 'pwm|up|down', 'pwmgen: first pulse'),
     D('pwmgen', '.*', 'pwmgen: scale', first=3, avoid={'scale': 1}),
+    D('pwmgen', 'pwm-freq', 'pwmgen: pwm-freq'),
     D('pwmgen', '.*', 'pwmgen: min-dc', avoid={'min-dc': 0.0}),
-    D('ohmic', 'ohmic-on', 'ohmic: ohmic-on'),
-    D('mux16', 'out-.', 'mux16: debounce-time', avoid={'debounce-time': 0}),
+    D('orient', 'is-oriented', 'orient: is-oriented'),
+    D('matrix_kb', 'key.*', 'matrix_kb: releases'),
+    D('ohmic', 'ohmic-on', 'ohmic |'),
+    D('mux16|mux_generic', 'out-.*', 'mux16, mux_generic: debouncing', avoid={'debounce-time': 0, 'debounce-us': 0}),
     D('sim_axis_hardware', 'A.*-homesw-out', 'sim_axis_hardware: axis A'),
     D('sim_spindle', 'index-enable', 'sim_spindle: index', avoid={'velocity-cmd': uniform(1, 3)}),
     D('knob2float', 'out', 'knob2float', avoid={'enable': LateBit(2)}),
-    D('bldc', '.*', 'bldc: first period'),
-    D('stepgen', '.*', 'stepgen: position control'),
+    D('bldc', '.*', 'bldc: first period', first=2),
+    D('stepgen', 'position-fb', 'stepgen: position control'),
+    D('stepgen', '.*', 'stepgen: position control', load='.*ctrl_type=p'),
     D('spindle', '.*', 'spindle: ramps'),
 ]
 
@@ -66,5 +72,5 @@ def rows_without_page(page):
     return sorted({d.row for d in DIFFERENCES if not re.search(r'^\| ' + re.escape(d.row), page, re.M)})
 
 
-def of_component(name):
-    return [d for d in DIFFERENCES if re.fullmatch(d.component, name)]
+def of_component(name, load=''):
+    return [d for d in DIFFERENCES if re.fullmatch(d.component, name) and re.fullmatch(d.load or '.*', load)]

@@ -32,7 +32,7 @@ class Instance:
 
     def may_differ(self, pin):
         """The difference that covers this output, or None."""
-        return next((d for d in hal_differences.of_component(self.name)
+        return next((d for d in hal_differences.of_component(self.name, self.load)
                      if d not in self.avoided and d.covers(pin)), None)
 
 
@@ -81,6 +81,8 @@ class HalFile:
             self.connect([instance], [plan], {}, name)
             functions = list(instance.functions)
             self.random.shuffle(functions)
+            if COMPONENTS[name].ordered:
+                functions.sort(reverse=True)
             self.adds += functions
             self.loads.append(plan['load'])
 
@@ -89,7 +91,7 @@ class HalFile:
         spec = COMPONENTS[name]
         load = self.random.choice(spec.loads or [name])
         found = self.exports[name].of_load(load)
-        avoided = {d for d in hal_differences.of_component(name) if d.avoid and self.random.random() < 0.7}
+        avoided = {d for d in hal_differences.of_component(name, load) if d.avoid and self.random.random() < 0.7}
         forced = {pin: value for d in avoided for pin, value in d.avoid.items()}
         values, params = {}, {}
         for pin, what in found.items():
@@ -99,7 +101,8 @@ class HalFile:
             draw = generator_of(spec, forced, pin, kind, self.random)
             if direction == 'IN':
                 values[pin] = self.column(draw)
-            elif direction in ('RW', 'I/O') and (pin in forced or spec.has_generator(pin) or self.random.random() < 0.5):
+            elif direction in ('RW', 'I/O') and (pin in forced or spec.has_generator(pin)
+                                                 or self.random.random() < 0.5):
                 params[pin] = draw(self.random, None)
         for first, second in spec.pairs:
             values[first], values[second] = quadrature(self.random, ROWS)
@@ -130,7 +133,8 @@ class HalFile:
                 outputs = [(at, out) for at, other in enumerate(plans) if at != to
                            for out, what in other['found'].items()
                            if what[0] == kind and what[1:2] == ('OUT',) and not COMPONENTS[chosen[at]].is_hidden(out)
-                           and not self.is_uncertain(chosen[at], out, other['avoided'])]
+                           and not self.is_uncertain(chosen[at], other['load'], out,
+                                                         other['avoided'])]
                 is_fixed = any(pin in d.avoid for d in plan['avoided']) or COMPONENTS[chosen[to]].has_generator(pin) \
                     or any(pin in pair for pair in COMPONENTS[chosen[to]].pairs)
                 if outputs and not is_fixed and self.random.random() < 0.4:
@@ -138,8 +142,8 @@ class HalFile:
         return links
 
     @staticmethod
-    def is_uncertain(name, pin, avoided):
-        return any(d.covers(pin) for d in hal_differences.of_component(name) if d not in avoided)
+    def is_uncertain(name, load, pin, avoided):
+        return any(d.covers(pin) for d in hal_differences.of_component(name, load) if d not in avoided)
 
     # How it is connected.
 

@@ -290,6 +290,17 @@ void Carousel::update(long period_ns) noexcept {
 }
 
 struct Carousels {
+    /// One for each pocket, index and pulse, or `num_sense`.
+    static int sense_pins_of(carousel::Encoding kind, int pockets_of_one, int inputs) noexcept {
+        switch (kind) {
+        case carousel::Encoding::SINGLE: return pockets_of_one;
+        case carousel::Encoding::INDEX: return 2;
+        case carousel::Encoding::EDGE:
+        case carousel::Encoding::COUNTS: return inputs > 2 ? inputs : 2;
+        default: return inputs;
+        }
+    }
+
     int load(int comp_id) noexcept {
         int status = 0;
         carousel::Encoding kind = carousel::Encoding::GRAY;
@@ -308,6 +319,12 @@ struct Carousels {
             inputs = num_sense[count] != NOT_GIVEN ? num_sense[count] : inputs;
             directions = dir[count] != NOT_GIVEN ? dir[count] : directions;
             odd = parity[count] != NOT_GIVEN ? parity[count] : odd;
+            const bool has_too_many = kind == carousel::Encoding::SINGLE && pockets[count] > MAX_SENSE;
+            if (has_too_many) {
+                rtapi_print_msg(RTAPI_MSG_ERR, "carousel: encoding 'single' has at most %d pockets, not %d",
+                                MAX_SENSE, pockets[count]);
+                return -EINVAL;
+            }
             const bool isPossible = pockets[count] > 0 && pockets[count] <= MAX_POCKETS && inputs > 0 &&
                                     inputs <= MAX_SENSE && (directions == 1 || directions == 2);
             if (!isPossible) {
@@ -322,7 +339,7 @@ struct Carousels {
             }
             made->position.encoding = kind;
             made->position.pockets = pockets[count];
-            made->position.sense_pins = made->position.needsHoming() ? 2 : inputs;
+            made->position.sense_pins = sense_pins_of(kind, pockets[count], inputs);
             made->isBidirectional = directions == 2;
             made->isOddParity = odd != 0;
             Name prefix;

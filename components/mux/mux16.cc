@@ -50,8 +50,7 @@ struct Mux16 {
         }
         const std::uint32_t debounce_us = conv::convert<std::uint32_t>(debounce_time * 1e6, true).value;
         const std::uint32_t chosen = selector.run(wanted, INPUTS, debounce_us, suppress, period_ns);
-        const bool is_suppressed = suppress && wanted == 0;
-        if (selector.is_settled() && !is_suppressed) {
+        if (selector.is_settled()) {
             const double value = in[chosen];
             out_f = value;
             out_s = conv::convert<std::int32_t>(value, true).value;

@@ -69,7 +69,9 @@ void MuxGeneric::update(long period_ns) noexcept {
         selector.run(wanted, static_cast<std::uint32_t>(shape.size), debounce_us, suppress, period_ns);
     elapsed = selector.waited_us();
     selected = selector.selected();
-    copy_pin(inputs[chosen], shape.from->type, shape.to->type, output);
+    if (selector.is_settled()) {
+        copy_pin(inputs[chosen], shape.from->type, shape.to->type, output);
+    }
 }
 
 }  // namespace mw::components

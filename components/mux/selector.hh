@@ -13,8 +13,8 @@ class Selector {
     /// With `skipsZero` a selection of 0 changes nothing. Answers the selection in force, below `size`.
     std::uint32_t run(std::uint32_t wanted, std::uint32_t size, std::uint32_t debounce_us, bool skipsZero,
                       std::int64_t period_ns) noexcept {
-        const bool isIgnored = skipsZero && wanted == 0;
-        if (isIgnored) {
+        is_suppressed_ = skipsZero && wanted == 0;
+        if (is_suppressed_) {
             waited_ns_ = 0;
             return bounded(selected_, size);
         }
@@ -31,8 +31,8 @@ class Selector {
         return bounded(selected_, size);
     }
 
-    /// False while a new selection is debounced.
-    bool is_settled() const noexcept { return wanted_ == selected_; }
+    /// False while the output keeps its value: a new selection is debounced, or none is skipped.
+    bool is_settled() const noexcept { return wanted_ == selected_ && !is_suppressed_; }
     /// As asked for, not bounded.
     std::uint32_t selected() const noexcept { return selected_; }
     std::uint32_t waited_us() const noexcept { return static_cast<std::uint32_t>(waited_ns_ / 1000); }
@@ -42,6 +42,7 @@ class Selector {
         return selection < size ? selection : size - 1;
     }
 
+    bool is_suppressed_ = false;
     std::uint32_t wanted_ = 0;
     std::uint32_t selected_ = 0;
     std::int64_t waited_ns_ = 0;

@@ -128,6 +128,26 @@ TEST(Encoder, AnIndexThatIsTrueInTheFirstPeriodIsNotPassed_B6) {
     }
 }
 
+TEST(Carousel, HasTheSensorsOfItsEncoding_B6) {
+    struct Case {
+        const char *load;
+        int pins;
+    };
+    for (const Case &one : {Case{"encoding=single pockets=12", 12},
+                            {"encoding=index pockets=8", 2},
+                            {"encoding=edge pockets=8", 4},
+                            {"encoding=counts pockets=8", 4},
+                            {"encoding=gray pockets=20 num_sense=5", 5}}) {
+        Bench bench("loadrt carousel " + std::string(one.load));
+        EXPECT_TRUE(bench.hal().get("carousel.0.sense-" + std::to_string(one.pins - 1)).has_value())
+            << one.load;
+        EXPECT_FALSE(bench.hal().get("carousel.0.sense-" + std::to_string(one.pins)).has_value()) << one.load;
+    }
+    Bench bench("");
+    bench.run("loadrt carousel encoding=single pockets=33");
+    EXPECT_NE(bench.output.errors.find("at most 32"), std::string::npos);
+}
+
 TEST(Pid, InnerValuesArePins_B6) {
     Bench bench(
         "loadrt pid num_chan=1 debug=1\nnet i pid.0.errorI\nnet d <= pid.0.errorD\nnet c pid.0.commandD\n"
