@@ -20,7 +20,7 @@ class Pair:
         self.program, self.reference, self.ours = program, reference, ours
 
     def has(self, pattern):
-        return re.search(pattern, self.program, re.I) is not None
+        return re.search(pattern, self.program, re.I | re.M) is not None
 
 
 def numbers(call):
@@ -160,6 +160,24 @@ def way_out_of_finishing(pair):
             pair.reference.insert(i, pair.ours[i])
 
 
+def narrow_layers(pair):
+    """G71 and G72: LinuxCNC pulls away from a layer of next to no width with two rapids of no use."""
+    if not LATHE_CYCLE.search(pair.program):
+        return
+    calls, out, i = pair.reference, [], 0
+    while i < len(calls):
+        run = calls[i - 1:i + 3] if i > 0 else []
+        isAway = len(run) == 4 and all(one.startswith('STRAIGHT_TRAVERSE(') for one in run[1:3]) and \
+            run[0].startswith('STRAIGHT_FEED(') and run[3].startswith('STRAIGHT_FEED(') and \
+            all(abs(x - y) < 0.03 for x, y in zip(numbers(run[0]), numbers(run[3])))
+        if isAway:
+            i += 2
+            continue
+        out.append(calls[i])
+        i += 1
+    pair.reference = out
+
+
 def close(a, b):
     return len(a) == len(b) and all(abs(x - y) < 1.5e-4 for x, y in zip(a, b))
 
@@ -286,6 +304,26 @@ def tolerance_after_units(pair):
             pair.ours[i] = theirs
 
 
+def cycle_with_another_height(pair):
+    """A line of a canned cycle that changes R: LinuxCNC goes to the new R beside the hole, down as well, or slanting; ours
+    never leaves the clear height before it is over the hole."""
+    if not pair.has(r'^\s*(n\d+\s*)?/?\s*[xyz][^\n]*r'):
+        return
+
+    def heights_left_out(calls):
+        out, isOver = [], False
+        for i, call in enumerate(calls):
+            isTraverse = call.startswith('STRAIGHT_TRAVERSE(')
+            follows = calls[i + 1] if i + 1 < len(calls) else ''
+            begins = out and out[-1].startswith('SET_NAIVECAM_TOLERANCE(') and follows.startswith('SET_MOTION_CONTROL_MODE(')
+            isOver = call == 'SET_MOTION_CONTROL_MODE(CANON_EXACT_PATH)' or (isOver and isTraverse)
+            if isTraverse and (begins or (isOver and follows.startswith('STRAIGHT_TRAVERSE('))):
+                continue
+            out.append(call)
+        return out
+    pair.reference, pair.ours = heights_left_out(pair.reference), heights_left_out(pair.ours)
+
+
 def thread_passes(pair):
     """G76 whose last calculated depth is K but for rounding: LinuxCNC cuts at K once more; here the passes are counted."""
     if not pair.has('g76'):
@@ -308,11 +346,14 @@ def thread_passes(pair):
         at = found
 
 
-CLASSES = (speed_override_at_end, order_under_compensation, rapid_corners, tolerance_after_units, thread_passes, context_announced, threading_enables_override,
-           lathe_pieces, way_out_of_finishing, peck_at_the_bottom, long_numbers, small_numbers, angles_of_home, orientation_of_back_boring)
+# Those that compare the lists place by place come last; lathe_pieces may join what rapid_corners looks for.
+CLASSES = (speed_override_at_end, order_under_compensation, cycle_with_another_height, rapid_corners, context_announced,
+           threading_enables_override, lathe_pieces, way_out_of_finishing, narrow_layers, peck_at_the_bottom, long_numbers,
+           small_numbers, angles_of_home, orientation_of_back_boring, tolerance_after_units, rapid_corners, thread_passes)
 
 # What ours refuses and LinuxCNC does not, and what it refuses it with. What was done before must be equal.
 STRICTER = {
+    'in concave corner cannot be reached': 'a corner of nearly 180 degrees towards the tool',
     'Concave corner cannot be reached': 'a corner of nearly 180 degrees towards the tool',
     'M6 needs a tool': 'M6 with no T word before',
     'The feed is per revolution': 'G95 feed with spindle speed 0 in canned cycles',
@@ -326,6 +367,7 @@ STRICTER = {
     'G64 must not be negative': 'G64 with a negative tolerance',
     'm67 needs the word Q': 'M67 and M68 without Q',
     'm68 needs the word Q': 'M67 and M68 without Q',
+    'The degression R of G76 must': 'G76 with R below 1',
     'The wait mode L of M66': 'M66 with another wait mode than 0 to 4',
     'Cannot do g33 with cutter radius compensation on': 'G33 under compensation',
 }

@@ -174,7 +174,7 @@ class Program:
             line += ' F10'
         self.add(line)
         for _ in range(self.random.randint(0, 2)):
-            again = f' R{self.number(0, 3, 1)}' if self.chance(0.1) else ''
+            again = f' R{self.number(0, 3, 1)}' if self.chance(0.04) else ''
             self.add(self.words((self.random.choice((first, second)),)) + again + (' F10' if self.feed_mode == 'G93' else ''))
         self.add('G80')
         self.motion = 'G80'
@@ -288,7 +288,7 @@ class Program:
             self.body()
             self.lines.append(f'{label} while [#30 lt {self.random.randint(0, 4)}]')
         elif kind == 'repeat':
-            self.lines.append(f'{label} repeat [{self.random.choice((0, 1, 2, 3, "0.4", "1.6", "2.5"))}]')
+            self.lines.append(f'{label} repeat [{self.random.choice((0, 1, 2, 3, "0.4", "1.6"))}]')
             if self.chance(0.1):
                 inner = self.label()
                 self.lines += [f'{inner} if [{self.random.choice((0, 0, 1))}]',
@@ -370,8 +370,8 @@ class Program:
         self.add('S100 M3')
         self.motion = 'G80'
         if self.chance(0.4):  # K is the depth of a whole number of passes
-            first, passes = self.random.randint(1, 9), self.random.randint(1, 8)
-            power, depth = self.random.choice(((1, passes), (2, passes), ('1.5', passes**2), ('0.5', passes)))
+            first, passes = self.random.randint(1, 9), self.random.randint(1 if self.chance(0.05) else 2, 8)
+            power, depth = self.random.choice(((1, passes), (2, passes), ('1.5', passes**2)))
             self.add(f'G18 G76 P{self.number(0.05, 0.2, 2)} Z{self.number(-3, -1)} I-0.1 J0.0{first} '
                      f'K{first * depth / 100:.2f} R{power} H{self.random.randint(0, 1)}')
             self.plane = 'G18'

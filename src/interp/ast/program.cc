@@ -135,7 +135,7 @@ int Program::find_bad_oword(int after, int before) const {
 }
 
 /// A label that is used again inside of what it has begun would end the wrong part: such a line gets an
-/// error, and so does the second definition of a subroutine.
+/// error, and so do the second definition of a subroutine, and break and continue of a repeat.
 void Program::check_labels() {
     std::unordered_map<NameId, const OLine *> open, subs;
     for (OLine &oline : olines_) {
@@ -169,6 +169,17 @@ void Program::check_labels() {
                      oword.column});
             } else {
                 found[oword.label] = &oline;
+            }
+            break;
+        case OKind::BREAK:
+        case OKind::CONTINUE:
+            if (isOpen && arena_.owords[earlier->second->block.oword].kind == OKind::REPEAT) {
+                oline.block.error = static_cast<std::uint32_t>(arena_.errors.size());
+                arena_.errors.push_back(
+                    {fmt::format("o{}: {} is for while and do loops, line {} is a repeat",
+                                 names_.text(oword.label), oword.kind == OKind::BREAK ? "break" : "continue",
+                                 earlier->second->line),
+                     oword.column});
             }
             break;
         case OKind::ENDIF:

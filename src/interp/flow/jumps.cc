@@ -142,17 +142,11 @@ bool run_end_repeat(const OWord &oword, Place &here, const JumpValues &values, L
 /// break and continue: of a loop with a condition.
 bool run_leave(const OWord &oword, Place &here, const JumpValues &values) {
     const Program &program = *here.program;
-    const int opener = find_before(program, here.line, {OKind::WHILE, OKind::DO, OKind::REPEAT});
+    const int opener = find_before(program, here.line, {OKind::WHILE, OKind::DO});
     if (opener == 0) {
         return fail_unmatched(oword, "while or do", here, values);
     }
     const OKind kind = program.oword_at(opener)->kind;
-    if (kind == OKind::REPEAT) {
-        return values.fault.set(fmt::format("o{}: {} is for while and do loops, line {} is a repeat",
-                                            label_text(oword, values.names),
-                                            oword.kind == OKind::BREAK ? "break" : "continue", opener),
-                                oword.column, "write the loop as while with a counter");
-    }
     const int end = find_after(program, here.line, {kind == OKind::WHILE ? OKind::ENDWHILE : OKind::WHILE});
     if (end == 0) {
         return fail_unmatched(oword, "end of the loop", here, values);

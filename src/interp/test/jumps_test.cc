@@ -54,6 +54,10 @@ class JumpRun {
             evaluator_.value(*view.arena, setting.value, value);
             parameters.set(static_cast<int>(index), value);
         }
+        if (view.block->error != NO_ID) {
+            const SyntaxError &error = view.arena->errors[view.block->error];
+            return fault.set(error.message, error.column);
+        }
         if (view.block->oword == NO_ID) {
             return true;
         }
@@ -138,8 +142,9 @@ TEST(Jumps, BreakAndContinueAreErrorsInRepeat_I1) {
               "2 line 3: o1: break is for while and do loops, line 1 is a repeat");
     EXPECT_EQ(JumpRun("o1 repeat [2]\nG1\no1 continue\no1 endrepeat\n").trace(),
               "2 line 3: o1: continue is for while and do loops, line 1 is a repeat");
-    EXPECT_EQ(JumpRun("o1 repeat [2]\nG1\no2 if [0]\no1 break\no2 endif\no1 endrepeat\n").trace(), "2 2 ")
-        << "one that is not reached is no error";
+    EXPECT_EQ(JumpRun("o1 repeat [2]\nG1\no2 if [0]\no1 break\no2 endif\no1 endrepeat\n").trace(),
+              "2 line 4: o1: break is for while and do loops, line 1 is a repeat")
+        << "one that is jumped over as well";
 }
 
 TEST(Jumps, ARepeatLeftByAnOuterLoopCountsFromTheStart_I1) {

@@ -59,7 +59,7 @@ bool check_thread_cycle(const BlockValues &values, const Machine &machine, const
         {plan.pitch <= 0.0, 'p', "The pitch P of G76 must be above 0"},
         {plan.first_cut <= 0.0, 'j', "The first cut J of G76 must be above 0"},
         {plan.full_depth <= 0.0, 'k', "The depth K of G76 must be above 0"},
-        {plan.first_cut > plan.full_depth, 'j', "The first cut J of G76 must not be deeper than K"},
+        {plan.first_cut >= plan.full_depth, 'k', "In G76, K must be greater than J"},
         {plan.degression < 1.0, 'r', "The degression R of G76 must be at least 1"},
         {plan.springs < 0 || plan.springs > MAX_PASSES, 'h',
          "The number of spring passes H of G76 must be 0 to 10000"},
