@@ -16,6 +16,9 @@ import re
 import sys
 
 FOLDERS = ('app', 'client', 'config', 'doctor', 'homing', 'interp', 'io', 'journal', 'kins', 'machine', 'mailbox', 'motion', 'options', 'task', 'tool')
+# Programs that print for other programs: of their texts people read the help.
+HELP_OF = tuple(f'hal_tools/programs/{name}.cc' for name in ('halcmd', 'halrun', 'haltcl', 'realtime', 'twopass')) + ('comp/program.cc', 'cli/millwright.cc')
+HELP = re.compile(r'usage: |halcompile: makes ')
 # Manual pages, reference pages and `explain` are made from these; and what programs print for other programs.
 NOT_SHOWN = re.compile(r'/(test|bench|logger|canon)/|keys\.hh$|pin_tables\.hh$|motion/api/parameters\.hh$|states_page\.cc$'
                        r'|codes/code_texts\.cc$|app/summary\.cc$|app/time_report\.cc$|app/recorder\.cc$|app/plot\.cc$'
@@ -125,6 +128,12 @@ def texts(root):
                 key = key_of(text)
                 if is_text(key) and not NEVER.search(key):
                     found.setdefault(key, name)
+    for name in HELP_OF:
+        seq = list(tokens((root / 'src' / name).read_text()))
+        for at, (kind, text) in enumerate(seq):
+            if kind == '"' and HELP.match(text):
+                found.setdefault(key_of(whole_text(seq, at)[0]), 'src/' + name)
+    found.setdefault('usage:', 'src/options/command_line.cc')
     found.update({word: 'src/diag/sink.cc' for word in ('error', 'warning', 'note')})
     found.setdefault('called from {}', 'src/diag/sink.cc')
     return found

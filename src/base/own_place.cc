@@ -21,6 +21,16 @@ void prepend(const char *variable, const std::string &folder, const char *fallba
     ::setenv(variable, (before.empty() ? folder : folder + ":" + before).c_str(), 1);
 }
 
+/// TCLLIBPATH is a list of Tcl; of packages with one name and version the first folder's is taken.
+void prepend_tcl(const std::string &folder) {
+    const char *set = std::getenv("TCLLIBPATH");
+    const std::string before = set != nullptr ? set : "", word = '{' + folder + '}';
+    if (before == word || before.starts_with(word + ' ')) {
+        return;
+    }
+    ::setenv("TCLLIBPATH", (before.empty() ? word : word + ' ' + before).c_str(), 1);
+}
+
 }  // namespace
 
 std::string program_folder() {
@@ -44,6 +54,12 @@ void offer_own_programs() {
     const std::string here = program_folder();
     prepend("PATH", here, "/usr/local/bin:/usr/bin:/bin");
     // In the build folder, and installed.
+    for (const char *packages : {"/../lib/tcl", "/../lib/millwright/tcl"}) {
+        if (::access((here + packages + "/pkgIndex.tcl").c_str(), R_OK) == 0) {
+            prepend_tcl(here + packages);
+            break;
+        }
+    }
     for (const char *modules : {"/../lib/python", "/../lib/millwright/python"}) {
         if (::access((here + modules + "/hal").c_str(), R_OK) == 0) {
             prepend("PYTHONPATH", here + modules, "");

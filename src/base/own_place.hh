@@ -13,9 +13,9 @@ std::string program_folder();
 /// the whole process, once, from main().
 void tell_when_memory_ends() noexcept;
 
-/// Calls tell_when_memory_ends(), and puts our programs first in PATH and our Python modules first in
-/// PYTHONPATH, so that programs started from here (loadusr, displays) find those of this version. Call it
-/// once at the start, while there is one thread.
+/// Calls tell_when_memory_ends(), and puts our programs first in PATH, our Python modules first in PYTHONPATH
+/// and our Tcl packages first in TCLLIBPATH, so that programs started from here (loadusr, displays) find
+/// those of this version. Call it once at the start, while there is one thread.
 void offer_own_programs();
 
 }  // namespace mw

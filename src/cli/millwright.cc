@@ -11,6 +11,7 @@
 #include "gcode/commands.hh"
 #include "hal/core/instead.hh"
 #include "hal_tools/view/commands.hh"
+#include "language/language.hh"
 
 namespace {
 
@@ -47,11 +48,11 @@ int main(int argc, char **argv) {
     mw::offer_own_programs();
     const std::vector<std::string> words(argv + 1, argv + argc);
     if (words.empty()) {
-        std::fputs(USAGE, stderr);
+        std::fputs(mw::language::shown(USAGE).c_str(), stderr);
         return 2;
     }
     if (words[0] == "--help" || words[0] == "-h") {
-        std::fputs(USAGE, stdout);
+        std::fputs(mw::language::shown(USAGE).c_str(), stdout);
         return 0;
     }
     if (words[0] == "--version") {

@@ -15,6 +15,7 @@
 #include "comp/temporary_folder.hh"
 #include "comp/toolchain.hh"
 #include "diag/sink.hh"
+#include "language/language.hh"
 
 namespace mw::halcompile {
 namespace {
@@ -271,7 +272,7 @@ int run(const std::string &program, const std::vector<std::string> &arguments) {
     }
     const Places places = Places::of_program(program);
     if (options->mode == Mode::HELP) {
-        std::fputs(USAGE, stdout);
+        std::fputs(language::shown(USAGE).c_str(), stdout);
         return 0;
     }
     if (options->mode == Mode::PRINT_MODINC) {
@@ -279,7 +280,7 @@ int run(const std::string &program, const std::vector<std::string> &arguments) {
         return 0;
     }
     if (options->files.empty()) {
-        std::fputs(USAGE, stderr);
+        std::fputs(language::shown(USAGE).c_str(), stderr);
         return 1;
     }
     if (!options->output.empty() && options->files.size() > 1) {

@@ -246,18 +246,9 @@ void examine_overrides(const IniFile &ini, const MachineConfig &machine, diag::S
     }
 }
 
-void examine_version(const IniFile &ini, diag::Sink &sink) {
-    const std::string version = text(ini, "EMC", "VERSION");
-    if (!version.empty() && version != "1.1" && version != "$Revision$") {
-        sink.warning("[EMC]VERSION = " + version + " is of an older form", ini.find("EMC", "VERSION")->place,
-                     "update_ini brings the file to 1.1");
-    }
-}
-
 }  // namespace
 
 void examine_contradictions(const IniFile &ini, const MachineConfig &machine, diag::Sink &sink) {
-    examine_version(ini, sink);
     examine_letters(ini, machine, sink);
     examine_units(ini, machine, sink);
     examine_periods(ini, sink);

@@ -2,6 +2,7 @@
 #include "language/language.hh"
 
 #include <dlfcn.h>
+#include <link.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -20,12 +21,18 @@ bool isEnglish(std::string_view locale) {
     return locale == "C" || locale == "POSIX" || locale.starts_with("en");
 }
 
-/// The folder of the file that this code is in: a program, or a module of Python or Tcl.
+/// The folder of the file that this code is in: a program, or a module of Python or Tcl. The loader knows a
+/// program only by the name that it was started with, which need not lead to its file; the system knows the
+/// file.
 std::string own_folder() {
     Dl_info info{};
+    void *object = nullptr;
     char path[4096];
-    const bool isKnown = ::dladdr(reinterpret_cast<const void *>(&own_folder), &info) != 0;
-    if (!isKnown || ::realpath(info.dli_fname, path) == nullptr) {
+    const bool isKnown =
+        ::dladdr1(reinterpret_cast<const void *>(&own_folder), &info, &object, RTLD_DL_LINKMAP) != 0;
+    const auto *map = static_cast<const link_map *>(object);
+    const bool isProgram = !isKnown || map->l_name == nullptr || map->l_name[0] == '\0';
+    if (::realpath(isProgram ? "/proc/self/exe" : map->l_name, path) == nullptr) {
         return ".";
     }
     const std::string_view file(path);

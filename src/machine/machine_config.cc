@@ -12,6 +12,7 @@
 #include "geom/pose.hh"
 #include "interp/ini_keys.hh"
 #include "interp/ini_settings.hh"
+#include "machine/ini_form.hh"
 #include "machine/ini_keys.hh"
 #include "machine/io_config.hh"
 #include "machine/offset_axes.hh"
@@ -463,6 +464,7 @@ motion::FoldedLimits MachineConfig::limits() const {
 MachineConfig read_machine_config(config::IniReader &reader) {
     MachineConfig machine;
     reader.declare(all_ini_keys());
+    check_form(reader);
     read_names(reader, machine);
     read_coordinates(reader, machine);
     read_first_place(reader, machine);

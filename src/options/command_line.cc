@@ -217,7 +217,7 @@ Result<> CommandLine::parse(const Words &words) const {
 }
 
 std::string CommandLine::help() const {
-    std::string out = "usage: " + usage_ + "\n\n" + language::shown(about_);
+    std::string out = language::shown("usage:") + ' ' + usage_ + "\n\n" + language::shown(about_);
     out += options_.empty() ? "" : "\n";
     for (const Option &option : options_) {
         if (option.doc.empty()) {

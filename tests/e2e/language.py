@@ -61,6 +61,25 @@ def check_programs(programs, root, folder):
     expect(output([programs / 'linuxcnc', '-h'], {**GERMAN, 'LC_ALL': 'C'})[0].startswith('usage: linuxcnc'), 'help in the locale C')
 
 
+def check_names_in_path(programs, folder):
+    """A program that is started by its name finds its catalogue, wherever it is started and whatever PATH has before it."""
+    (folder / 'elsewhere').mkdir()
+    links = folder / 'links'
+    links.mkdir()
+    for name in ('linuxcnc', 'millwright', 'halcmd', 'halrun', 'haltcl', 'halcompile'):
+        (links / name).symlink_to(programs / name)
+    for place in (programs, links):
+        path = {**GERMAN, 'PATH': f"{place}:{os.environ['PATH']}"}
+        for words, text in ((['linuxcnc', '-h'], 'Aufruf: linuxcnc'), (['millwright', '--help'], 'Aufruf: millwright'), (['millwright', 'check', '--help'], 'Aufruf: millwright check'),
+                            (['halcmd', '-h'], 'Führt HAL-Befehle'), (['halrun', '-h'], 'Startet einen Echtzeitprozess'), (['haltcl', '-h'], 'Führt ein Tcl-Skript'),
+                            (['halcompile', '--help'], 'erzeugt HAL-Komponenten')):
+            said = output(words, path, folder / 'elsewhere')
+            expect(text in said[0], f'{words[0]} by its name in {place.name}', said)
+    # A name that is no path, as a shell's exec -a gives it.
+    said = output(['bash', '-c', f'exec -a linuxcnc {programs}/linuxcnc -h'], GERMAN, folder / 'elsewhere')
+    expect('Aufruf: linuxcnc' in said[0], 'linuxcnc by another name', said)
+
+
 def check_machine_read(programs, root, folder):
     """The same bytes in every language, also where something is wrong."""
     program = folder / 'run.ngc'
@@ -99,6 +118,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix='mw_language_') as name:
         folder = pathlib.Path(name)
         check_programs(programs, root, folder)
+        check_names_in_path(programs, folder)
         check_machine_read(programs, root, folder)
         check_clients(programs, root, folder)
     return FOUND.status()

@@ -102,6 +102,10 @@ def main():
             hal.write_text(HAL.format(z=numbers[-1], y='net y axis.1.motor-pos-cmd => axis.1.motor-pos-fb' if 1 in numbers else ''))
             (folder / 'old.tbl').write_text('T1 P1 Z0 D6\n')
             before = {path.name: path.read_text() for path in (ini, hal)}
+            for words in (['linuxcnc', '-r', 'old.ini'], ['millwright', 'doctor', 'old.ini', '--latency', '0', '--no-system']):
+                stopped = run(words, folder)
+                first = (stopped.stderr if words[0] == 'linuxcnc' else stopped.stdout).splitlines()[:1]
+                expect(stopped.returncode == 1 and first and 'update_ini' in first[0], f'{name}: {words[0]} names update_ini: {stopped}')
             refused = run(['update_ini', '-d', 'old.ini'], folder, 'n\n')
             expect(refused.returncode == 42 and ini.read_text() == before['old.ini'], f'{name}: a person says no: {refused}')
             done = run(['update_ini', 'old.ini'], folder)

@@ -9,6 +9,7 @@
 #include "hal_lang/lang/commands.hh"
 #include "hal_tools/programs/command_line.hh"
 #include "hal_tools/programs/host_watch.hh"
+#include "language/language.hh"
 
 namespace mw::hal::tools {
 
@@ -38,7 +39,7 @@ int fail_with(const Error &error) {
 
 int show_help(const CommandLine &line) {
     if (line.words.empty()) {
-        fmt::print("{}\ncommands:\n{}", USAGE, lang::help_overview());
+        fmt::print("{}\ncommands:\n{}", language::shown(USAGE), lang::help_overview());
         return 0;
     }
     const lang::CommandSpec *spec = lang::find_command(line.words[0]);
@@ -85,7 +86,7 @@ Result<std::unique_ptr<HostClient>> join_or_start() {
 int halcmd(const std::vector<std::string> &arguments) {
     Result<CommandLine> line = parse_command_line(arguments);
     if (!line) {
-        std::fputs(USAGE, stderr);
+        std::fputs(language::shown(USAGE).c_str(), stderr);
         return fail_with(line.error());
     }
     if (line->wantsHelp) {

@@ -7,6 +7,7 @@
 #include "hal/host/host_client.hh"
 #include "hal_tools/programs/command_line.hh"
 #include "hal_tools/programs/host_watch.hh"
+#include "language/language.hh"
 
 namespace mw::hal::tools {
 
@@ -122,11 +123,11 @@ int end_running(const char *program) {
 int halrun(const std::vector<std::string> &arguments) {
     Result<CommandLine> line = parse_command_line(arguments);
     if (!line) {
-        std::fputs(USAGE, stderr);
+        std::fputs(language::shown(USAGE).c_str(), stderr);
         return fail_with(line.error());
     }
     if (line->wantsHelp) {
-        std::fputs(USAGE, stdout);
+        std::fputs(language::shown(USAGE).c_str(), stdout);
         return 0;
     }
     if (line->isKilling) {

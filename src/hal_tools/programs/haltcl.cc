@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "hal_tools/programs/command_line.hh"
+#include "language/language.hh"
 
 namespace mw::hal::tools {
 
@@ -31,7 +32,7 @@ int haltcl(const std::vector<std::string> &given) {
     }
     if (!arguments.empty() && arguments[0].starts_with('-')) {
         const bool isHelp = arguments[0] == "-h" || arguments[0] == "--help";
-        std::fputs(USAGE, isHelp ? stdout : stderr);
+        std::fputs(language::shown(USAGE).c_str(), isHelp ? stdout : stderr);
         return isHelp ? 0 : 1;
     }
     IniOption ini;

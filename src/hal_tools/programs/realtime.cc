@@ -6,6 +6,7 @@
 
 #include "hal/host/host_client.hh"
 #include "hal_tools/programs/command_line.hh"
+#include "language/language.hh"
 
 namespace mw::hal::tools {
 namespace {
@@ -76,7 +77,7 @@ int realtime(const std::vector<std::string> &arguments) {
         return verify();
     }
     const bool isHelp = what == "-h" || what == "--help";
-    std::fputs(USAGE, isHelp ? stdout : stderr);
+    std::fputs(language::shown(USAGE).c_str(), isHelp ? stdout : stderr);
     return isHelp ? 0 : 2;
 }
 

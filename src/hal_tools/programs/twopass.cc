@@ -5,6 +5,7 @@
 
 #include "hal_lang/lang/two_pass.hh"
 #include "hal_tools/programs/command_line.hh"
+#include "language/language.hh"
 
 namespace mw::hal::tools {
 
@@ -45,11 +46,11 @@ Result<> run_two_pass_ini(lang::Session &session, const config::IniFile &ini) {
 int halcmd_twopass(const std::vector<std::string> &arguments) {
     Result<CommandLine> line = parse_command_line(arguments);
     if (line && line->wantsHelp) {
-        std::fputs(USAGE, stdout);
+        std::fputs(language::shown(USAGE).c_str(), stdout);
         return 0;
     }
     if (!line || line->words.size() != 1) {
-        std::fputs(USAGE, stderr);
+        std::fputs(language::shown(USAGE).c_str(), stderr);
         return line ? 1 : fail_with(line.error());
     }
     IniOption ini;

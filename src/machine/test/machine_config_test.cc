@@ -221,6 +221,16 @@ TEST(MachineConfig, AnOverrideLimitThatLooksLikeAPercentageIsReported_A3) {
     EXPECT_FALSE(ratio.says("the override may reach"));
 }
 
+TEST(MachineConfig, AFileOfAnOlderFormNamesUpdateIni_A3) {
+    Config version(std::string(GOOD) + "[EMC]\nVERSION = 1.0\n");
+    EXPECT_TRUE(version.says("[EMC]VERSION = 1.0 is of an older form"));
+    EXPECT_TRUE(version.says("update_ini"));
+    Config axes(std::string(GOOD) + "[AXIS_0]\nMAX_VELOCITY = 1\n");
+    EXPECT_TRUE(axes.sink.hasErrors());
+    EXPECT_TRUE(axes.says("section [AXIS_0] is of the form before LinuxCNC 2.8"));
+    EXPECT_TRUE(axes.says("update_ini"));
+}
+
 /// What a new key takes: one row in a table (docs/extending/ini_key.md).
 TEST(IniKeys, EachIsDeclaredOnceWithItsMeaning_A3) {
     std::set<std::pair<std::string_view, std::string_view>> seen;

@@ -3,8 +3,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <algorithm>
-
+#include "base/text.hh"
 #include "python/linuxcnc/command.hh"
 #include "python/linuxcnc/module.hh"
 
@@ -207,20 +206,34 @@ void define_joints(Class &command) {
             py::arg("joint"), py::arg("limit"));
 }
 
+/// A factor below 0 counts as 0, as in LinuxCNC, and is reported.
+double checked_factor(Command &self, const char *method, double factor) {
+    if (factor >= 0) {
+        return factor;
+    }
+    self.send(msgs::OperatorText{std::string(method) + '(' + to_text(factor) +
+                                 ") becomes 0: an override cannot be below 0"});
+    return 0;
+}
+
 void define_overrides(Class &command) {
     command
         .def(
             "feedrate",
-            [](Command &self, double factor) { self.send(msgs::SetFeedOverride{std::max(0.0, factor)}); },
+            [](Command &self, double factor) {
+                self.send(msgs::SetFeedOverride{checked_factor(self, "feedrate", factor)});
+            },
             py::arg("factor"), "1 is 100 %.")
         .def(
             "rapidrate",
-            [](Command &self, double factor) { self.send(msgs::SetRapidOverride{std::max(0.0, factor)}); },
+            [](Command &self, double factor) {
+                self.send(msgs::SetRapidOverride{checked_factor(self, "rapidrate", factor)});
+            },
             py::arg("factor"), "1 is 100 %.")
         .def(
             "spindleoverride",
             [](Command &self, double factor, int spindle) {
-                self.send(msgs::SetSpindleOverride{std::max(0.0, factor), spindle});
+                self.send(msgs::SetSpindleOverride{checked_factor(self, "spindleoverride", factor), spindle});
             },
             py::arg("factor"), py::arg("spindle") = 0)
         .def(
