@@ -297,8 +297,8 @@ def do(act):
     return COMMAND.wait_complete(3.0)
 
 
-RESET = ['G21 G90 G94 G17 G40 G49 G64 G97 G80 G91.1 G99 G8 M5 M9 M48 M52 P0 M53 P1', 'G54 G92.1', 'G10 L2 P1 X0 Z0 R0', 'G10 L2 P2 X0 Z0',
-         'G10 L2 P3 X0 Z0', 'G10 L1 P1 Z0', 'M65 P0 M65 P1', 'M68 E0 Q0', '#5=0 #31=0', 'F1000', 'S0', 'T0 M6', 'G53 G0 X0 Z0', 'G10 L2 P1 X0']
+RESET = ['G21 G90 G94 G17 G40 G49 G64 G97 G80 G91.1 G99 G8 M5 M9 M48', 'M52 P0', 'M53 P1', 'G54 G92.1', 'G10 L2 P1 X0 Z0 R0', 'G10 L2 P2 X0 Z0',
+         'G10 L2 P3 X0 Z0', 'G10 L1 P1 Z0', 'M65 P0', 'M65 P1', 'M68 E0 Q0', '#5=0 #31=0', 'F1000', 'S0', 'T0 M6', 'G53 G0 X0 Z0', 'G10 L2 P1 X0']
 
 
 def reset():
@@ -331,8 +331,9 @@ def after_stop():
     COMMAND.abort()
     COMMAND.wait_complete(3)
     mode(linuxcnc.MODE_MDI)
-    COMMAND.mdi('G53 G0 X0')
-    COMMAND.wait_complete(5)
+    for line in ('G90 G21 G94 G49 F1000', 'G54 G92.1 G64', 'G10 L2 P1 X0', 'G53 G0 X0'):
+        COMMAND.mdi(line)
+        COMMAND.wait_complete(5)
 
 
 def main():
