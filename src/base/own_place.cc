@@ -21,7 +21,7 @@ void prepend(const char *variable, const std::string &folder, const char *fallba
     ::setenv(variable, (before.empty() ? folder : folder + ":" + before).c_str(), 1);
 }
 
-/// TCLLIBPATH is a list of Tcl; of packages with one name and version the first folder's is taken.
+/// TCLLIBPATH is a Tcl list. Of packages with the same name and version Tcl takes that of the first folder.
 void prepend_tcl(const std::string &folder) {
     const char *set = std::getenv("TCLLIBPATH");
     const std::string before = set != nullptr ? set : "", word = '{' + folder + '}';

@@ -15,7 +15,7 @@ struct Scope {
     bool hasHal = true;     ///< HAL files are carried out, under the virtual clock
     bool hasSystem = true;  ///< kernel, processors and rights
     double latency_s = 10;  ///< 0: not measured
-    /// What the machine's display reads of the settings; empty: nobody knows.
+    /// What the machine's display reads of the settings; empty: not examined.
     std::function<void(const machine::LoadedConfig &, diag::Sink &)> display;
 };
 

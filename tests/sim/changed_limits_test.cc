@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Limits that clients and pins change while a joint or axis is jogged.
+#include <algorithm>
+
 #include "sim/virtual_machine.hh"
 
 namespace mw::machine {
@@ -36,6 +38,19 @@ TEST_F(ChangedLimits, AJogOfAnAxisEndsAtTheLimitOfItsPin_C9) {
     set_pin("ini.x.max_limit", std::to_string(limit));
     cycles(2000);
     EXPECT_NEAR(x(), limit, 1e-5) << messages();
+}
+
+TEST_F(ChangedLimits, AJogThatCannotStopBeforeANewLimitComesBackToIt_C9) {
+    begin_jog(true);
+    const double limit = x() + 0.05;  // it needs 0.13 to brake
+    ASSERT_EQ(progress(ask(task::SetJointMaxLimit{0, limit})), task::Progress::DONE);
+    double furthest = x();
+    for (int i = 0; i < 2000; ++i) {
+        cycles(1);
+        furthest = std::max(furthest, x());
+    }
+    EXPECT_LT(furthest, limit + 0.3);
+    EXPECT_NEAR(x(), limit, 1e-6) << messages();
 }
 
 TEST_F(ChangedLimits, AJogThatIsOutsideOfANewLimitBrakesAndMayOnlyComeBack_C9) {
