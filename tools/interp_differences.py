@@ -376,6 +376,9 @@ STRICTER = {
     'Cannot do g33 with cutter radius compensation on': 'G33 under compensation',
 }
 
+# The same, where the program has what the expression finds.
+STRICTER_WITH = {'Must use g0 or g1 with g53': (r'g5\.1', 'lines after a G5.1')}
+
 
 def explain(pair, hasFailed):
     """The classes that make the two lists equal, or None. What both have failed in has done nothing here."""
