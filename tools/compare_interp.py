@@ -83,6 +83,10 @@ def compare(folder, number, program):
             if our_status and text in '\n'.join(our_err):
                 names.append(name)
                 ref_status = our_status
+        for text, (needed, name) in interp_differences.STRICTER_WITH.items():
+            if our_status and text in '\n'.join(our_err) and re.search(needed, program, re.I):
+                names.append(name)
+                ref_status = our_status
     if 'G7X error' in error_of(ref_err) and 'profile of g7' in '\n'.join(our_err) and our_status:
         names.append('a lathe cycle that is refused has made no move')
         ref_calls = ref_calls[:len(our_calls)]

@@ -161,17 +161,18 @@ def way_out_of_finishing(pair):
 
 
 def narrow_layers(pair):
-    """G71 and G72: LinuxCNC pulls away from a layer of next to no width with two rapids of no use."""
+    """G71 and G72: LinuxCNC pulls away from a layer of next to no width with rapids of no use."""
     if not LATHE_CYCLE.search(pair.program):
         return
     calls, out, i = pair.reference, [], 0
     while i < len(calls):
         run = calls[i - 1:i + 3] if i > 0 else []
         isAway = len(run) == 4 and all(one.startswith('STRAIGHT_TRAVERSE(') for one in run[1:3]) and \
-            run[0].startswith('STRAIGHT_FEED(') and run[3].startswith('STRAIGHT_FEED(') and \
+            run[0].startswith('STRAIGHT_FEED(') and run[3].startswith('STRAIGHT_') and \
             all(abs(x - y) < 0.03 for x, y in zip(numbers(run[0]), numbers(run[3])))
         if isAway:
-            i += 2
+            out.append(run[3].replace('TRAVERSE', 'FEED'))
+            i += 3
             continue
         out.append(calls[i])
         i += 1
@@ -266,22 +267,24 @@ def rapid_corners(pair):
     """G0 around a convex corner under compensation: LinuxCNC's rapid is a chord, ours goes around the tool's circle."""
     if not any('cutter radius compensation on' in call for call in pair.reference):
         return
-    out, at, mine = [], None, pair.ours
-    i = 0
+    chords, at = [], None
+    for call in pair.reference:
+        end = end_of(call)
+        if end and at and call.startswith('STRAIGHT_TRAVERSE('):
+            chords.append((at, end))
+        at = end or at
+    out, at, i, mine = [], None, 0, pair.ours
     while i < len(mine):
-        j = len(out)
-        isTheirs = j < len(pair.reference) and isSameCall(mine[i], pair.reference[j])
-        found = 0
         for more in range(1, 6):
-            isRun = not isTheirs and at is not None and i + more < len(mine) and j < len(pair.reference) and all(
-                call.startswith('STRAIGHT_TRAVERSE(') for call in mine[i:i + more + 1])
-            if isRun and isSameCall(mine[i + more], pair.reference[j]):
-                points = [numbers(call) for call in mine[i:i + more + 1]]
-                for a, b in ((0, 1), (0, 2)):
-                    flat = [(one[a], one[b]) for one in points]
-                    found = more if isAroundCorner((at[a], at[b]), flat[:-1], flat[-1]) else found
+            run = mine[i:i + more + 1]
+            if at is None or len(run) <= more or not all(call.startswith('STRAIGHT_TRAVERSE(') for call in run):
                 break
-        i += found
+            points = [end_of(call) for call in run]
+            isChord = any(close(at, a) and close(points[-1], b) for a, b in chords)
+            if isChord and any(isAroundCorner((at[0], at[k]), [(one[0], one[k]) for one in points[:-1]],
+                                              (points[-1][0], points[-1][k])) for k in (1, 2)):
+                i += more
+                break
         out.append(mine[i])
         at = end_of(mine[i]) or at
         i += 1
@@ -315,7 +318,7 @@ def cycle_with_another_height(pair):
         for i, call in enumerate(calls):
             isTraverse = call.startswith('STRAIGHT_TRAVERSE(')
             follows = calls[i + 1] if i + 1 < len(calls) else ''
-            begins = out and out[-1].startswith('SET_NAIVECAM_TOLERANCE(') and follows.startswith('SET_MOTION_CONTROL_MODE(')
+            begins = follows == 'SET_MOTION_CONTROL_MODE(CANON_EXACT_PATH)'
             isOver = call == 'SET_MOTION_CONTROL_MODE(CANON_EXACT_PATH)' or (isOver and isTraverse)
             if isTraverse and (begins or (isOver and follows.startswith('STRAIGHT_TRAVERSE('))):
                 continue
@@ -364,6 +367,7 @@ STRICTER = {
     'g5.1 needs': 'lines after a G5.1',
     'G5.1 needs I or J': 'G5.1 with I0 J0',
     'g5 needs the word': 'lines after a G5 that lack P and Q',
+    'is for while and do loops': 'break and continue of a repeat, when jumped over',
     'G64 must not be negative': 'G64 with a negative tolerance',
     'm67 needs the word Q': 'M67 and M68 without Q',
     'm68 needs the word Q': 'M67 and M68 without Q',
@@ -371,6 +375,9 @@ STRICTER = {
     'The wait mode L of M66': 'M66 with another wait mode than 0 to 4',
     'Cannot do g33 with cutter radius compensation on': 'G33 under compensation',
 }
+
+# The same, where the program has what the expression finds.
+STRICTER_WITH = {'Must use g0 or g1 with g53': (r'g5\.1', 'lines after a G5.1')}
 
 
 def explain(pair, hasFailed):

@@ -392,7 +392,7 @@ class Program:
         self.add(self.random.choice(('G1 X', 'G1 X1 X2', 'G2 X1 Y1', 'G0 G1 X1', 'G43.1', 'M66', 'G10 L2', 'G81 X1', 'T-1 M6', 'S-1', 'G2 X1 Y1 R0.01',
                                      'G4', 'G999', 'M999', '#31=[1/0]', 'G1 X[1', 'Q1', 'G92', 'G53 X1', 'G41 D99', 'G64 P-1', 'G10 L2 P10 X1', 'F-1', 'G33 Z1', 'G96', 'H1 D1', 'G5 X1',
                                      'G53', 'G53 M5', 'G53 F10', 'G53 G2 X1 I0.5', 'G53 G81 X1 Z-1 R1', 'G53 G33 Z1 K1', 'G53 G80', 'G53 G43.1 X1',
-                                     'G53 G38.2 X1', 'G53 G0', 'M67 E1', 'M68 E1', 'M66 P0 L5', 'M66 P0 L5 Q1')))
+                                     'G53 G38.2 X1', 'M67 E1', 'M68 E1', 'M66 P0 L5', 'M66 P0 L5 Q1')))
 
     def spline(self):
         kind = self.random.choice(('G5', 'G5.1', 'G5.2', 'G5'))
