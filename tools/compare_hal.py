@@ -125,6 +125,13 @@ def is_same(kind, a, b):
     return abs(a - b) <= 2e-6 + 1e-6 * max(abs(a), abs(b))
 
 
+def is_shifted(theirs, ours, rows, most):
+    """Whether each value that differs is one that the other side has at most `most` periods earlier or later."""
+    def near(values, row):
+        return values[max(0, row - most):row + most + 1]
+    return all(ours[row] in near(theirs, row) or theirs[row] in near(ours, row) for row in rows)
+
+
 class Comparison:
     """The outcome of one file."""
 
@@ -148,6 +155,10 @@ class Comparison:
             self.explained.append(difference)
             return
         covering = [d for d in hal_differences.of_component(instance.name, instance.load) if d.covers(pin)]
+        late = next((d for d in covering if d.shift and is_shifted(theirs, ours, wrong, d.shift)), None)
+        if late:
+            self.explained.append(late)
+            return
         early = max(covering, key=lambda d: d.first, default=None)
         if early and wrong[-1] < early.first:
             self.explained.append(early)
