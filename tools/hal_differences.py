@@ -16,6 +16,7 @@ class Difference:
     pins: str       # regular expression over the outputs, without the prefix
     row: str        # beginning of the row in docs/compatibility.md, without '| '
     load: str = ''  # regular expression over the load, where the difference depends on it
+    shift: int = 0  # values may come so many periods earlier or later
     first: int = 0  # in so many periods the pins may differ even then
     avoid: dict = dataclasses.field(default_factory=dict, hash=False, compare=False)
 
@@ -53,6 +54,7 @@ DIFFERENCES = [
     D('pwmgen', '.*', 'pwmgen: scale', first=3, avoid={'scale': 1}),
     D('pwmgen', 'pwm-freq', 'pwmgen: pwm-freq'),
     D('pwmgen', '.*', 'pwmgen: min-dc', avoid={'min-dc': 0.0}),
+    D('scaled_s32_sums', 'out-s', 'scaled_s32_sums, mux16 out of range'),
     D('orient', 'is-oriented', 'orient: is-oriented'),
     D('matrix_kb', 'key.*', 'matrix_kb: releases'),
     D('ohmic', 'ohmic-on', 'ohmic |'),
@@ -62,6 +64,8 @@ DIFFERENCES = [
     D('knob2float', 'out', 'knob2float', avoid={'enable': LateBit(2)}),
     D('bldc', '.*', 'bldc: first period', first=2),
     D('stepgen', 'position-fb', 'stepgen: position control'),
+    D('stepgen', 'step|dir|up|down|phase-.|counts|rawcounts', 'stepgen: position control', shift=2,
+      load='.*ctrl_type=v'),
     D('stepgen', '.*', 'stepgen: position control', load='.*ctrl_type=p'),
     D('spindle', '.*', 'spindle: ramps'),
 ]

@@ -33,7 +33,7 @@ class Instance:
     def may_differ(self, pin):
         """The difference that covers this output, or None."""
         return next((d for d in hal_differences.of_component(self.name, self.load)
-                     if d not in self.avoided and d.covers(pin)), None)
+                     if d not in self.avoided and d.shift == 0 and d.covers(pin)), None)
 
 
 class HalFile:
