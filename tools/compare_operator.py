@@ -55,6 +55,11 @@ INTENDED = [
     ('`stat.interpreter_errcode`', {'error_code'}, lambda act, a, b: a['error_code'] == 0),
     ('pause while nothing runs', {'interp', 'rcs', 'ret', 'paused', 'task_paused', 'exec'},
      lambda act, a, b: a['interp'] == 1 and not a['paused'] and (act[0] == 'pause_now' or b['task_paused'])),
+    ('M62, M63, M67 without a move behind them', {'analog', 'digital'}, lambda act, a, b: True),
+    ('G96 while a spindle runs that the operator started', {'spindles'}, lambda act, a, b: 960 in a['gcodes'] and 960 in b['gcodes']),
+    ('S of a program that is stopped by off or an emergency stop', {'S'}, lambda act, a, b: act[0] == 'stop' and act[2] in ('off', 'estop')),
+    ('`stat.program_units` of a program that is paused or stopped', {'units'}, lambda act, a, b: act[0] in ('stop', 'pause')),
+    ('state of the last command after a program that failed', {'rcs', 'ret'}, lambda act, a, b: act == ['run', 'bad']),
     ('F after M2 and M30 in MDI', {'F'}, lambda act, a, b: act in (['mdi', 'M2'], ['mdi', 'M30'])),
 ]
 

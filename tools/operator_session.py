@@ -147,7 +147,7 @@ def random_act(r):
     if k < 0.34:
         return ['mdi', r.choice(MDI)]
     if k < 0.50:
-        return ['run', r.choice(sorted(PROGRAMS))]
+        return ['run', r.choice(sorted(n for n, p in PROGRAMS.items() if not p[1]))]
     if k < 0.62:
         return [r.choice(['stop', 'stop', 'pause']), r.choice(sorted(n for n, p in PROGRAMS.items() if p[1])),
                 r.choice(['abort', 'abort', 'off', 'estop', 'halui', 'rsh'])]

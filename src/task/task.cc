@@ -344,7 +344,10 @@ void Task::on_step_result(interp::Step result) {
 }
 
 bool Task::on_stop(const interp::ProgramStop &stop, int line) {
-    if (stop.isOptional && !world_.isOptionalStopOn()) {
+    // Behind the last block of an MDI line there is nothing to pause.
+    const bool isLast =
+        run_.kind() == RunKind::MDI && run_.phase() == RunPhase::FINISHING && reader_.queue().size() <= 1;
+    if (isLast || (stop.isOptional && !world_.isOptionalStopOn())) {
         return false;
     }
     status_.task.stop_line = line;

@@ -141,6 +141,13 @@ TEST_F(StopsTest, InASubroutineNamesAndArgumentsOfTheCallersReturn_D1) {
     EXPECT_DOUBLE_EQ(motion().carte_pos_cmd.z(), -6.0);
 }
 
+TEST_F(StopsTest, AStopByMdiHasNothingToPause_D1) {
+    switch_on();
+    EXPECT_EQ(mdi("M0"), task::Progress::DONE) << messages();
+    EXPECT_FALSE(machine_->task().status().task.isPaused);
+    EXPECT_EQ(mdi("G0 X1"), task::Progress::DONE) << messages();
+}
+
 class StepsTest : public StopsTest {
   protected:
     /// One step; waits until it is done.
